@@ -1,0 +1,91 @@
+#include "base/file.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+
+namespace goniochrome {
+namespace {
+
+class Files : public testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::create_directories(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  std::size_t files_in_folder() const {
+    return static_cast<std::size_t>(
+        std::distance(std::filesystem::directory_iterator(folder_), std::filesystem::directory_iterator()));
+  }
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("gonio_file_test_" + std::to_string(getpid()));
+  std::string path_ = (folder_ / "out.txt").string();
+};
+
+TEST_F(Files, WholeContentComesBack) {
+  const std::string bytes("a\0b\nc", 5);
+  ASSERT_TRUE(write_file(path_, bytes).ok());
+  EXPECT_EQ(*file_content(path_), bytes);
+  EXPECT_EQ(files_in_folder(), 1u);
+}
+
+TEST_F(Files, MissingInputNamesThePath) {
+  const auto content = file_content(path_);
+  ASSERT_FALSE(content.ok());
+  EXPECT_EQ(content.error().message, path_ + ": cannot be read: No such file or directory");
+}
+
+TEST_F(Files, FolderAsTargetIsRefused) {
+  EXPECT_FALSE(write_file(folder_.string(), "x").ok());
+}
+
+TEST_F(Files, ScratchPathCanBeOpenedByName) {
+  {
+    auto file = OutputFile::create(path_);
+    ASSERT_TRUE(file.ok());
+    std::ofstream(file->scratch_path()) << "by name";
+    ASSERT_TRUE(file->commit().ok());
+  }
+  EXPECT_EQ(*file_content(path_), "by name");
+}
+
+// The control writes in place, as fopen(path, "w") does, and dies: its old content is gone.
+TEST_F(Files, HardCase_interrupted_leaves_the_old_file) {
+  ASSERT_TRUE(write_file(path_, "old").ok());
+  const auto killed_while = [&](auto&& writing) {
+    const pid_t child = fork();
+    if (child == 0) {
+      writing();
+      raise(SIGKILL);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    EXPECT_TRUE(WIFSIGNALED(status));
+  };
+  killed_while([&] {
+    auto file = OutputFile::create(path_);
+    (void)file->write("half of the new one");
+    (void)file->flush();
+  });
+  EXPECT_EQ(*file_content(path_), "old");
+  EXPECT_EQ(files_in_folder(), 1u) << "nothing may be left behind";
+  killed_while([&] {
+    std::FILE* control = std::fopen(path_.c_str(), "w");
+    std::fputs("half of the new one", control);
+    std::fflush(control);
+  });
+  EXPECT_NE(*file_content(path_), "old");
+}
+
+TEST_F(Files, HardCase_interrupted_disk_full_is_an_error) {
+  auto file = OutputFile::create("/dev/full");
+  ASSERT_TRUE(file.ok());
+  const auto written = file->write(std::string(1 << 20, 'x'));
+  ASSERT_FALSE(written.ok());
+  EXPECT_NE(written.error().message.find("No space left"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace goniochrome

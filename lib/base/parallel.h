@@ -1,0 +1,21 @@
+// Loops over all cores whose result never depends on how many there are.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace goniochrome {
+
+// Caps the number of threads of every later parallel_for; 0 means one for each core. Call once, at the start.
+void set_threads(int threads);
+
+// The number of threads in force.
+int threads();
+
+// Calls body(begin, end) for the chunks [0,chunk), [chunk,2*chunk), ... that cover [0,n), on several threads.
+// The chunks depend on n and chunk alone, so a body that writes only to its own range gives bit-identical results for
+// any number of threads. Sums: one partial sum per chunk, added in order afterwards.
+void parallel_for(std::size_t n, std::size_t chunk,
+                  const std::function<void(std::size_t begin, std::size_t end)>& body);
+
+}  // namespace goniochrome

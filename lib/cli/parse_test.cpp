@@ -1,0 +1,131 @@
+#include "cli/parse.h"
+
+#include <gtest/gtest.h>
+
+#include "cli/tool.h"
+
+namespace goniochrome::cli {
+namespace {
+
+struct Values {
+  std::string output = "-";
+  std::string method = "l2";
+  double tolerance = 0.5;
+  int size = 0;
+  bool quiet = false;
+  std::vector<std::string> parts;
+  std::vector<double> exponents;
+  std::vector<std::string> inputs;
+};
+
+ToolSpec table(Values& v) {
+  ToolSpec spec;
+  spec.name = "sample-tool";
+  spec.summary = "do nothing, for a test";
+  spec.description = {"One paragraph."};
+  spec.options = {
+      {.name = "output", .letter = 'o', .value = "FILE", .help = "where to write", .target = &v.output},
+      {.name = "method", .value = "M", .help = "how", .target = &v.method, .choices = {"l1", "l2"}},
+      {.name = "tolerance", .value = "X", .help = "error", .target = &v.tolerance, .low = 0, .high = 1},
+      {.name = "size", .value = "N", .help = "texels", .target = &v.size, .low = 1},
+      {.name = "quiet", .help = "silence", .target = &v.quiet},
+      {.name = "part", .value = "NAME=PAINT", .help = "paint of a part", .target = &v.parts},
+      {.name = "exponents", .value = "LIST", .help = "exponents", .target = &v.exponents},
+  };
+  spec.inputs = Positional{"FILE", "files to read", &v.inputs, 0, 2};
+  spec.examples = {{"sample-tool -o x", "writes x"}};
+  spec.report = {{"lobes[].time_s", "seconds"}};
+  return spec;
+}
+
+Result<void> parsed(Values& v, const std::vector<std::string>& arguments) {
+  return parse(table(v), arguments);
+}
+
+std::string message(const std::vector<std::string>& arguments) {
+  Values v;
+  const auto result = parsed(v, arguments);
+  return result.ok() ? "" : result.error().message;
+}
+
+TEST(Parse, ValuesReachTheirTargets) {
+  EXPECT_EQ(message({"--quiet", "-"}), "");
+  EXPECT_EQ(message({"in", "-"}), "");
+  EXPECT_EQ(message({"--tolerance", "1e-3"}), "");
+  EXPECT_EQ(message({"--exponents", "1,2.5", "in"}), "");
+  EXPECT_EQ(message({"--part", "1,2.5", "--part", "in"}), "");
+  Values v;
+  ASSERT_TRUE(parsed(v, {"-o", "x", "--method=l1", "--tolerance", "1e-3", "--size", "64", "--quiet", "--part", "A=b",
+                         "--part", "C=d", "--exponents", "1,2.5", "in", "-"})
+                  .ok());
+  EXPECT_EQ(v.output, "x");
+  EXPECT_EQ(v.method, "l1");
+  EXPECT_EQ(v.tolerance, 1e-3);
+  EXPECT_EQ(v.size, 64);
+  EXPECT_TRUE(v.quiet);
+  EXPECT_EQ(v.parts, (std::vector<std::string>{"A=b", "C=d"}));
+  EXPECT_EQ(v.exponents, (std::vector<double>{1, 2.5}));
+  EXPECT_EQ(v.inputs, (std::vector<std::string>{"in", "-"}));
+}
+
+TEST(Parse, NegativeNumbersAreValues) {
+  Values v;
+  ASSERT_TRUE(parsed(v, {"--exponents", "-1,-2"}).ok());
+  EXPECT_EQ(v.exponents, (std::vector<double>{-1, -2}));
+}
+
+TEST(Parse, MistakesNameOptionValueAndRemedy) {
+  EXPECT_EQ(message({"--size", "64abc"}), "--size is \"64abc\": give a whole number of 1 or more");
+  EXPECT_EQ(message({"--size", "0"}), "--size is \"0\": give a whole number of 1 or more");
+  EXPECT_EQ(message({"--tolerance", "1,5"}), "--tolerance is \"1,5\": give a number from 0 to 1");
+  EXPECT_EQ(message({"--method", "l3"}), "--method is \"l3\": give l1, l2");
+  EXPECT_EQ(message({"--methd", "l1"}), "unknown option --methd: did you mean --method?");
+  EXPECT_EQ(message({"--zzzzzzzz"}), "unknown option --zzzzzzzz: `sample-tool --help` lists them");
+  EXPECT_EQ(message({"--size"}), "--size needs a value");
+  EXPECT_EQ(message({"--size", "1", "--size", "2"}), "--size is given 2 times: give it once");
+  EXPECT_EQ(message({"a", "b", "c"}), "3 inputs are given: sample-tool takes at most 2");
+}
+
+TEST(Parse, RequiredOptionIsAskedFor) {
+  Values v;
+  ToolSpec spec = table(v);
+  spec.options[0].required = true;
+  const auto result = parse(spec, {});
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().message, "--output FILE is missing: where to write");
+  EXPECT_EQ(exit_status(result.error()), 2);
+}
+
+TEST(Texts, EveryOptionIsInHelpManAndCompletion) {
+  Values v;
+  const ToolSpec spec = table(v);
+  std::string man = man_page(spec);
+  for (std::size_t at; (at = man.find("\\-")) != std::string::npos;) man.replace(at, 2, "-");
+  for (const Option& option : spec.options) {
+    EXPECT_NE(help_text(spec).find("--" + option.name), std::string::npos);
+    EXPECT_NE(man.find("--" + option.name), std::string::npos);
+    EXPECT_NE(bash_completion(spec).find("--" + option.name), std::string::npos);
+  }
+}
+
+int run_tool(const std::vector<std::string>& words, const std::function<Result<Verdict>(Session&)>& run) {
+  Values v;
+  CommonOptions common;
+  std::vector<std::string> storage = {"sample-tool"};
+  storage.insert(storage.end(), words.begin(), words.end());
+  std::vector<char*> argv;
+  for (std::string& word : storage) argv.push_back(word.data());
+  return tool_main(static_cast<int>(argv.size()), argv.data(), table(v), common, run);
+}
+
+TEST(Tool, ExitStatusFollowsTheOutcome) {
+  EXPECT_EQ(run_tool({}, [](Session&) { return Verdict::kDone; }), 0);
+  EXPECT_EQ(run_tool({}, [](Session&) { return Verdict::kNegative; }), 1);
+  EXPECT_EQ(run_tool({"--nonsense"}, [](Session&) { return Verdict::kDone; }), 2);
+  EXPECT_EQ(run_tool({}, [](Session&) -> Result<Verdict> { return input_error("x: is bad"); }), 3);
+  EXPECT_EQ(run_tool({}, [](Session&) { return Verdict::kStopped; }), 4);
+  EXPECT_EQ(run_tool({}, [](Session&) -> Result<Verdict> { throw std::logic_error("broken"); }), 70);
+}
+
+}  // namespace
+}  // namespace goniochrome::cli

@@ -1,0 +1,146 @@
+#include "cli/tool.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <exception>
+
+#include "base/file.h"
+#include "base/parallel.h"
+#include "cli/parse.h"
+
+namespace goniochrome::cli {
+
+namespace {
+
+// What --help, --version and --generate ask for; set by the table like any other option.
+struct Requests {
+  bool help = false;
+  bool version = false;
+  std::string generate;
+};
+
+std::string quoted(const std::string& word) {
+  const bool plain = !word.empty() && word.find_first_of(" \t\n\"'\\$`&|;<>()*?[]#~!{}") == std::string::npos;
+  if (plain) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? "'\\''" : std::string(1, c);
+  return text + "'";
+}
+
+std::string command_line(const std::string& name, const std::vector<std::string>& arguments) {
+  std::string text = name;
+  for (const std::string& word : arguments) text += " " + quoted(word);
+  return text;
+}
+
+int fail(const std::string& tool, const Error& error) {
+  fmt::print(stderr, "{}: {}\n", tool, error.message);
+  if (error.kind == ErrorKind::kUsage) fmt::print(stderr, "`{} --help` shows the usage\n", tool);
+  return exit_status(error);
+}
+
+// Standard output must have reached its reader before a tool may say that it is done.
+Result<void> close_output() {
+  if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return {};
+  return input_error("standard output: cannot be written");
+}
+
+}  // namespace
+
+int exit_status(const Error& error) {
+  switch (error.kind) {
+    case ErrorKind::kUsage:
+      return 2;
+    case ErrorKind::kInput:
+      return 3;
+    case ErrorKind::kLimit:
+      return 4;
+    case ErrorKind::kBug:
+      break;
+  }
+  return 70;
+}
+
+const char* Session::version() {
+  return GONIOCHROME_VERSION;
+}
+
+void Session::say(const std::string& line) const {
+  if (common_.quiet) return;
+  if (progress_shown_) fmt::print(stderr, "\r\033[K");
+  progress_shown_ = false;
+  fmt::print(stderr, "{}\n", line);
+}
+
+void Session::warn(const std::string& line) {
+  results_["warnings"].push_back(line);
+  say(fmt::format("{}: warning: {}", tool_, line));
+}
+
+void Session::progress(const std::string& line) const {
+  if (common_.quiet || clock_.elapsed_s() < 0.5 || !isatty(STDERR_FILENO)) return;
+  fmt::print(stderr, "\r\033[K{}", line);
+  std::fflush(stderr);
+  progress_shown_ = true;
+}
+
+void Session::explain(const std::string& text) const {
+  if (common_.explain) fmt::print(stderr, "{}", text);
+}
+
+Result<void> Session::write_report() const {
+  if (common_.report.empty()) return {};
+  const Json report = {{"tool", tool_},
+                       {"version", version()},
+                       {"command", command_line_},
+                       {"elapsed_s", clock_.elapsed_s()},
+                       {"peak_rss_mb", peak_rss_mb()},
+                       {"threads", threads()},
+                       {"seed", common_.seed},
+                       {"results", results_}};
+  return write_file(common_.report, report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+int tool_main(int argc, char** argv, const ToolSpec& table, const CommonOptions& common,
+              const std::function<Result<Verdict>(Session&)>& run) {
+  Requests requests;
+  ToolSpec spec = table;
+  spec.options.push_back({.name = "help", .letter = 'h', .help = "print this help", .target = &requests.help});
+  spec.options.push_back({.name = "version", .help = "print the version", .target = &requests.version});
+  spec.options.push_back({.name = "generate",
+                          .value = "TEXT",
+                          .help = "print a text made from the option table",
+                          .target = &requests.generate,
+                          .choices = {"man", "completion"}});
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
+  // These three answer whatever else is on the line, and even where a required option is missing.
+  for (const std::string& word : arguments) {
+    if (word == "--") break;
+    if (word == "--help" || word == "-h") return fmt::print("{}", help_text(spec)), 0;
+    if (word == "--version") return fmt::print("{} {}\n", spec.name, Session::version()), 0;
+    if (word == "--generate=man") return fmt::print("{}", man_page(spec)), 0;
+    if (word == "--generate=completion") return fmt::print("{}", bash_completion(spec)), 0;
+  }
+  try {
+    if (const auto parsed = parse(spec, arguments); !parsed.ok()) return fail(spec.name, parsed.error());
+    if (requests.generate == "man") return fmt::print("{}", man_page(spec)), 0;
+    if (requests.generate == "completion") return fmt::print("{}", bash_completion(spec)), 0;
+    set_threads(common.threads);
+    Session session(spec.name, command_line(spec.name, arguments), common);
+    const auto verdict = run(session);
+    if (!verdict.ok()) return fail(spec.name, verdict.error());
+    if (const auto written = session.write_report(); !written.ok()) return fail(spec.name, written.error());
+    if (const auto closed = close_output(); !closed.ok()) return fail(spec.name, closed.error());
+    return static_cast<int>(*verdict);
+  } catch (const std::bad_alloc&) {
+    return fail(spec.name, {ErrorKind::kInput, "out of memory: the input is too large for this machine"});
+  } catch (const std::exception& bug) {
+    return fail(spec.name,
+                {ErrorKind::kBug, fmt::format("internal error: {}: please report it with the command", bug.what())});
+  }
+}
+
+}  // namespace goniochrome::cli

@@ -1,0 +1,50 @@
+#!/usr/bin/env bash
+# Holds the option tables, --help, man pages, completions and README together, in both directions.
+#
+#   documents_test.sh BIN
+set -euo pipefail
+bin=$1
+top=$(cd "$(dirname "$0")/.." && pwd)
+made=$(mktemp -d)
+trap 'rm -rf "$made"' EXIT
+
+wrong=0
+complain() {
+  echo "$*"
+  wrong=1
+}
+
+# The committed pages and completions are what the tables make now.
+"$top/scripts/make-documents" "$bin" "$made"
+for kind in man scripts/completions; do
+  for file in "$made/$kind"/*; do
+    diff -u "$top/$kind/$(basename "$file")" "$file" || complain "$kind/$(basename "$file") is stale: run scripts/make-documents"
+  done
+done
+
+checked=0
+for folder in "$top"/tools/*/; do
+  tool=$(basename "$folder")
+  help=$("$bin/$tool" --help)
+  page=$(sed 's/\\-/-/g; s/\\f[BIR]//g' "$top/man/$tool.1")
+  # Both ways: an option of the help is in the page, and one of the page is in the help.
+  for option in $(grep -oE '^ +(-[a-zA-Z], )?--[a-z0-9-]+' <<<"$help" | grep -oE -- '--[a-z0-9-]+'); do
+    grep -qE -- "^(-[a-zA-Z], )?$option( |$)" <<<"$page" || complain "$tool: $option is in --help and not in the man page"
+    grep -q -- "$option" "$top/scripts/completions/$tool.bash" || complain "$tool: $option is not in the completion"
+    checked=$((checked + 1))
+  done
+  for option in $(grep -oE '^(-[a-zA-Z], )?--[a-z0-9-]+' <<<"$page" | grep -oE -- '--[a-z0-9-]+'); do
+    grep -q -- "$option" <<<"$help" || complain "$tool: $option is in the man page and not in --help"
+  done
+  grep -qE "^\| \`$tool\` \|" "$top/README.md" || complain "README.md: the tool table lacks $tool"
+  grep -q "$tool" "$top/man/goniochrome-theory.7" || complain "goniochrome-theory(7) does not name $tool"
+done
+while read -r tool; do
+  [ -d "$top/tools/$tool" ] || complain "README.md: the tool table has $tool, which does not exist"
+done < <(sed -nE 's/^\| `([a-z-]+)` \|.*/\1/p' "$top/README.md")
+for page in "$top"/man/*.1; do
+  [ -d "$top/tools/$(basename "$page" .1)" ] || complain "$page: there is no such tool"
+done
+mandoc -Tlint -W warning "$top"/man/*.[1-9] || complain "mandoc finds fault with the man pages"
+[ "$checked" -gt 20 ] || complain "only $checked options were checked"
+exit $wrong
