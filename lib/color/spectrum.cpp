@@ -1,0 +1,117 @@
+#include "color/spectrum.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <optional>
+
+#include "color/cie_tables.h"
+
+namespace goniochrome {
+
+namespace {
+
+std::optional<std::size_t> illuminant_column(const std::string& name) {
+  if (name == "D65") return 0;
+  if (name == "D50") return 1;
+  if (name == "A") return 2;
+  return std::nullopt;
+}
+
+// The nodes of the interpolating cubic at `x`: two on either side, three in all at the ends of the list (CIE 167:2005).
+struct Window {
+  std::size_t first, count;
+};
+Window window_around(std::span<const double> nodes, double x) {
+  const auto above = static_cast<std::size_t>(std::upper_bound(nodes.begin(), nodes.end(), x) - nodes.begin());
+  const std::size_t interval = std::clamp<std::size_t>(above, 1, nodes.size() - 1) - 1;
+  const std::size_t first = interval == 0 ? 0 : interval - 1;
+  const std::size_t last = std::min(interval + 2, nodes.size() - 1);
+  return {first, last - first + 1};
+}
+
+// The weight of node `k` of the window in the Lagrange polynomial at `x`.
+double lagrange_weight(std::span<const double> nodes, const Window& window, std::size_t k, double x) {
+  double weight = 1;
+  for (std::size_t j = window.first; j < window.first + window.count; ++j)
+    if (j != k) weight *= (x - nodes[j]) / (nodes[k] - nodes[j]);
+  return weight;
+}
+
+using Triple = std::array<double, 3>;
+constexpr int kCieSteps_1nm = static_cast<int>((kCieRows - 1) * kCieStep_nm);
+
+// Illuminant times color-matching functions at a wavelength of the table's range.
+Triple weighted_observer(double nm, std::size_t illuminant, int observer_deg) {
+  static const std::array<double, kCieRows> kWavelengths_nm = [] {
+    std::array<double, kCieRows> all{};
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = kCieTable[i].wavelength_nm;
+    return all;
+  }();
+  const double at = (nm - kCieStart_nm) / kCieStep_nm;
+  const auto i = std::min(static_cast<std::size_t>(at), kCieTable.size() - 2);
+  const double light = std::lerp(kCieTable[i].illuminants[illuminant], kCieTable[i + 1].illuminants[illuminant],
+                                 at - static_cast<double>(i));
+  Triple result{};
+  const Window window = window_around(kWavelengths_nm, nm);
+  for (std::size_t k = window.first; k < window.first + window.count; ++k) {
+    const double share = light * lagrange_weight(kWavelengths_nm, window, k, nm);
+    const Triple& observer = observer_deg == 2 ? kCieTable[k].observer_2 : kCieTable[k].observer_10;
+    for (std::size_t c = 0; c < 3; ++c) result[c] += share * observer[c];
+  }
+  return result;
+}
+
+}  // namespace
+
+// X = k sum_l S(l) xbar(l) R(l) over every nanometer, k = 1 / sum_l S(l) ybar(l) (CIE 15:2004, 7.1). The 5 nm of the
+// tables become 1 nm as their makers say: the illuminants along straight lines, the color-matching functions along
+// cubics. R between the measured wavelengths is the Lagrange cubic through four of them; beyond them the outermost
+// value is held. All this is linear in R, so it folds into one weight per measured wavelength.
+Result<SpectralColorimeter> SpectralColorimeter::make(std::span<const double> wavelengths_nm,
+                                                      const ViewingCondition& condition) {
+  const auto illuminant = illuminant_column(condition.illuminant);
+  if (!illuminant)
+    return input_error("illuminant is \"{}\": spectra are integrated under D65, D50 or A", condition.illuminant);
+  if (condition.observer_deg != 2 && condition.observer_deg != 10)
+    return input_error("observer is {} deg: the standard observers are 2 and 10 deg", condition.observer_deg);
+  if (wavelengths_nm.size() < 2) return input_error("a spectrum needs at least two wavelengths");
+  if (!std::is_sorted(wavelengths_nm.begin(), wavelengths_nm.end(), std::less_equal<>()))
+    return input_error("wavelengths must ascend");
+
+  SpectralColorimeter result;
+  result.weights_.assign(wavelengths_nm.size(), {});
+  Triple total{}, held{};
+  for (int step = 0; step <= kCieSteps_1nm; ++step) {
+    const double nm = kCieStart_nm + step;
+    const Triple power = weighted_observer(nm, *illuminant, condition.observer_deg);
+    const double inside_nm = std::clamp(nm, wavelengths_nm.front(), wavelengths_nm.back());
+    const Window window = window_around(wavelengths_nm, inside_nm);
+    for (std::size_t c = 0; c < 3; ++c) {
+      total[c] += power[c];
+      if (inside_nm != nm) held[c] += power[c];
+    }
+    for (std::size_t k = window.first; k < window.first + window.count; ++k) {
+      const double share = lagrange_weight(wavelengths_nm, window, k, inside_nm);
+      for (std::size_t c = 0; c < 3; ++c) result.weights_[k][c] += power[c] * share;
+    }
+  }
+  for (auto& weight : result.weights_)
+    for (double& w : weight) w /= total[1];
+  result.white_ = {total[0] / total[1], 1.0, total[2] / total[1]};
+  for (std::size_t c = 0; c < 3; ++c) result.held_share_ = std::max(result.held_share_, held[c] / total[c]);
+  return result;
+}
+
+Xyz SpectralColorimeter::xyz(std::span<const double> reflectance) const {
+  Xyz sum;
+  for (std::size_t k = 0; k < weights_.size(); ++k) {
+    sum.X += weights_[k][0] * reflectance[k];
+    sum.Y += weights_[k][1] * reflectance[k];
+    sum.Z += weights_[k][2] * reflectance[k];
+  }
+  return sum;
+}
+
+}  // namespace goniochrome

@@ -1,0 +1,38 @@
+// From spectral reflectance to color: CIE tables, an illuminant and an observer. goniochrome-theory(7), SPECTRA.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "base/result.h"
+#include "color/color.h"
+
+namespace goniochrome {
+
+// Turns reflectance factors at fixed wavelengths into XYZ under one viewing condition. The perfect diffuser gives its
+// own white exactly, so Lab needs no second table.
+class SpectralColorimeter {
+ public:
+  // `wavelengths_nm` ascend, at least two. Error: they do not, or the condition is unknown (the message says what is
+  // known).
+  static Result<SpectralColorimeter> make(std::span<const double> wavelengths_nm, const ViewingCondition& condition);
+
+  // XYZ of a reflectance factor per wavelength; Y = 1 for the perfect diffuser. Values may be negative or above 1.
+  Xyz xyz(std::span<const double> reflectance) const;
+  Lab lab(std::span<const double> reflectance) const { return lab_from_xyz(xyz(reflectance), white_); }
+
+  // The illuminant's own XYZ by the same sum, Y = 1.
+  const Xyz& white() const { return white_; }
+
+  // The largest share (0..1) of X, Y or Z that comes from wavelengths beyond the measured ones, where the outermost
+  // value is held.
+  double held_share() const { return held_share_; }
+
+ private:
+  std::vector<std::array<double, 3>> weights_;  // one triple per wavelength
+  Xyz white_;
+  double held_share_ = 0;
+};
+
+}  // namespace goniochrome

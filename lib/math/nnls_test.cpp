@@ -1,0 +1,241 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <random>
+
+#include "math/least_squares.h"
+#include "math/problems_for_test.h"
+
+namespace goniochrome {
+namespace {
+
+using problems::Problem;
+
+// The best objective over all subsets of columns, each by Householder QR in long double: independent of active sets.
+long double reference_objective(const Problem& p) {
+  const int m = p.m.rows, n = p.m.columns;
+  long double best = 0;
+  for (const double v : p.b) best += static_cast<long double>(v) * v;
+  best = std::sqrt(best);
+  for (int subset = 1; subset < 1 << n; ++subset) {
+    std::vector<std::vector<long double>> a;
+    for (int j = 0; j < n; ++j)
+      if (subset >> j & 1) a.emplace_back(p.m.column(j), p.m.column(j) + m);
+    const int k = static_cast<int>(a.size());
+    if (k > m) continue;
+    std::vector<long double> b(p.b.begin(), p.b.end());
+    bool singular = false;
+    for (int c = 0; c < k && !singular; ++c) {
+      long double norm = 0, whole = 0;
+      for (int i = 0; i < m; ++i) whole += a[c][i] * a[c][i];
+      for (int i = c; i < m; ++i) norm += a[c][i] * a[c][i];
+      norm = std::sqrt(norm);
+      singular = norm <= 1e-17L * std::sqrt(whole);
+      if (singular) break;
+      const long double diagonal = a[c][c] > 0 ? -norm : norm;
+      std::vector<long double> v(a[c].begin() + c, a[c].end());
+      v[0] -= diagonal;
+      long double half = 0;
+      for (const long double x : v) half += x * x / 2;
+      const auto reflect = [&](std::vector<long double>& t) {
+        long double s = 0;
+        for (int i = c; i < m; ++i) s += v[i - c] * t[i];
+        for (int i = c; i < m; ++i) t[i] -= s / half * v[i - c];
+      };
+      for (int q = c; q < k; ++q) reflect(a[q]);
+      reflect(b);
+    }
+    if (singular) continue;
+    std::vector<long double> x(k);
+    bool feasible = true;
+    for (int c = k - 1; c >= 0; --c) {
+      x[c] = b[c];
+      for (int q = c + 1; q < k; ++q) x[c] -= a[q][c] * x[q];
+      x[c] /= a[c][c];
+      feasible = feasible && x[c] >= 0;
+    }
+    if (!feasible) continue;
+    long double rest = 0;
+    for (int i = k; i < m; ++i) rest += b[i] * b[i];
+    best = std::min(best, std::sqrt(rest));
+  }
+  return best;
+}
+
+double norm(const std::vector<double>& v) {
+  double s = 0;
+  for (const double x : v) s = std::hypot(s, x);
+  return s;
+}
+
+TEST(Nnls, MatchesTheBestSubsetInLongDouble) {
+  std::mt19937_64 random(1);
+  for (int trial = 0; trial < 3000; ++trial) {
+    const Problem p = problems::make(problems::kinds()[trial % problems::kinds().size()], random);
+    const NonNegativeFit fit = nnls(p.m, p.b);
+    ASSERT_TRUE(fit.converged) << p.kind << " " << trial;
+    for (const double x : fit.x) ASSERT_GE(x, 0);
+    // A gradient known to a few ulp of |b| fixes the squared objective to as many ulp of |b|^2 times the weights.
+    const double ours = fit.objective / norm(p.b), reference = static_cast<double>(reference_objective(p)) / norm(p.b);
+    if (norm(p.b) == 0) continue;
+    EXPECT_NEAR(ours * ours, reference * reference, 2e-14) << p.kind << " " << trial;
+    if (reference > 1e-4) {
+      EXPECT_NEAR(ours, reference, 1e-9 * reference) << p.kind << " " << trial;
+    }
+  }
+}
+
+TEST(Nnls, HundredThousandProblemsAllOptimal) {
+  std::mt19937_64 random(2);
+  std::map<std::string, double> worst;
+  for (int trial = 0; trial < 100000; ++trial) {
+    const Problem p = problems::make(problems::kinds()[trial % problems::kinds().size()], random);
+    const NonNegativeFit fit = nnls(p.m, p.b);
+    ASSERT_TRUE(fit.converged) << p.kind << " " << trial;
+    worst[p.kind] = std::max(worst[p.kind], fit.optimality_gap);
+  }
+  EXPECT_EQ(worst.size(), problems::kinds().size());
+  // Largest for columns of mixed sign, whose weights can be large and of opposite effect.
+  for (const auto& [kind, gap] : worst) EXPECT_LE(gap, kind == "signed" ? 1e-11 : 1e-14) << kind;
+}
+
+// Columns of cos^E at the usual angles; what a basis with exponents 900 and 1000, or twice the same, gives.
+Matrix lobe_columns(const std::vector<double>& exponents) {
+  const std::vector<double> angles = {2, 5, 10, 15, 25, 45, 75, 110};
+  Matrix m(static_cast<int>(angles.size()), static_cast<int>(exponents.size()));
+  for (int i = 0; i < m.rows; ++i)
+    for (int j = 0; j < m.columns; ++j)
+      m(i, j) = std::pow(std::max(0.0, std::cos(angles[i] * M_PI / 180)), exponents[j]);
+  return m;
+}
+
+// The textbook form: normal equations and Cholesky for the passive set.
+std::vector<double> normal_equations(const Matrix& m, const std::vector<double>& b) {
+  const int n = m.columns;
+  std::vector<double> g(static_cast<std::size_t>(n) * n, 0.0), h(n, 0.0);
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < m.rows; ++i) {
+      for (int k = 0; k < n; ++k) g[j * n + k] += m(i, j) * m(i, k);
+      h[j] += m(i, j) * b[i];
+    }
+  for (int k = 0; k < n; ++k) {
+    for (int i = k + 1; i < n; ++i) {
+      const double f = g[i * n + k] / g[k * n + k];
+      for (int j = k; j < n; ++j) g[i * n + j] -= f * g[k * n + j];
+      h[i] -= f * h[k];
+    }
+  }
+  for (int i = n - 1; i >= 0; --i) {
+    for (int j = i + 1; j < n; ++j) h[i] -= g[i * n + j] * h[j];
+    h[i] /= g[i * n + i];
+  }
+  return h;
+}
+
+TEST(HardCase, fit_collinear_same_objective_and_bounded_weights) {
+  const std::vector<double> b = {4.2, 3.9, 3.1, 2.2, 1.0, 0.3, 0.1, 0.05};
+  const NonNegativeFit lean = nnls(lobe_columns({0, 6, 70, 900}), b);
+  for (const std::vector<double>& exponents :
+       {std::vector<double>{0, 6, 70, 900, 900}, {0, 6, 6, 70, 900}, {0, 0, 6, 70, 70, 900, 900, 900}}) {
+    const NonNegativeFit fit = nnls(lobe_columns(exponents), b);
+    EXPECT_NEAR(fit.objective, lean.objective, 1e-9 * lean.objective);
+    for (const double x : fit.x) EXPECT_LE(x, 2 * norm(b));
+    // The control: normal equations divide by zero or by rounding noise.
+    const std::vector<double> textbook = normal_equations(lobe_columns(exponents), b);
+    double largest = 0;
+    for (const double x : textbook) largest = std::isfinite(x) ? std::max(largest, std::abs(x)) : INFINITY;
+    EXPECT_GT(largest, 100 * norm(b));
+  }
+  const NonNegativeFit near = nnls(lobe_columns({0, 6, 70, 900, 1000}), b);
+  EXPECT_LE(near.objective, lean.objective * (1 + 1e-12));
+  for (const double x : near.x) EXPECT_LE(x, 2 * norm(b));
+}
+
+TEST(HardCase, fit_range_scale_free) {
+  std::mt19937_64 random(3);
+  for (int trial = 0; trial < 300; ++trial) {
+    const Problem p = problems::lobes(random, 8, 7);
+    const NonNegativeFit fit = nnls(p.m, p.b);
+    const NonNegativeFit lp = l1_fit(p.m, p.b);
+    for (const double s : {0x1p-60, 0x1p40, 1e-8, 1e4, 1e-150, 1e150}) {
+      std::vector<double> scaled = p.b;
+      for (double& v : scaled) v *= s;
+      const NonNegativeFit fit_s = nnls(p.m, scaled), lp_s = l1_fit(p.m, scaled);
+      const bool power_of_two = std::log2(s) == std::floor(std::log2(s));
+      for (int j = 0; j < p.m.columns; ++j) {
+        if (power_of_two) {  // no rounding anywhere: the same bits
+          EXPECT_EQ(fit_s.x[j], s * fit.x[j]);
+          EXPECT_EQ(lp_s.x[j], s * lp.x[j]);
+          continue;
+        }
+        // b is rounded once more; condition numbers of some 1e5 magnify it in a lobe's share of the target.
+        const double share = *std::max_element(p.m.column(j), p.m.column(j) + p.m.rows);
+        EXPECT_NEAR(fit_s.x[j] / s * share, fit.x[j] * share, 1e-8 * norm(p.b));
+        EXPECT_NEAR(lp_s.x[j] / s * share, lp.x[j] * share, 1e-8 * norm(p.b));
+      }
+    }
+  }
+}
+
+TEST(HardCase, fit_range_weights_of_1e_8_and_1e4_together) {
+  Matrix m = lobe_columns({0, 6, 70, 900});
+  const std::vector<double> truth = {1e-8, 3e-7, 0, 1e4};
+  std::vector<double> b(m.rows, 0.0);
+  for (int i = 0; i < m.rows; ++i)
+    for (int j = 0; j < m.columns; ++j) b[i] += truth[j] * m(i, j);
+  const NonNegativeFit fit = nnls(m, b);
+  // At 110 deg only the constant is left: b holds it exactly, but the sum of squares does not resolve 1e-8 beside 1e4
+  // (their ratio squared is 1e-24); what can be asked is the residual relative to |b|.
+  EXPECT_NEAR(fit.x[3], 1e4, 1e-9 * 1e4);
+  EXPECT_LE(fit.objective, 1e-13 * norm(b));
+  // The control: a stop on the gradient of unscaled columns, |gradient| <= 1e-6, leaves the small target at zero.
+  std::vector<double> dark(m.rows);
+  for (int i = 0; i < m.rows; ++i) dark[i] = 1e-8 * m(i, 0) + 3e-7 * m(i, 1);
+  double gradient = 0;
+  for (int j = 0; j < m.columns; ++j) {
+    double g = 0;
+    for (int i = 0; i < m.rows; ++i) g += m(i, j) * dark[i];
+    gradient = std::max(gradient, g);
+  }
+  EXPECT_LE(gradient, 2e-6) << "the textbook stop is met by x = 0";
+  const NonNegativeFit ours = nnls(m, dark);
+  EXPECT_NEAR(ours.x[0], 1e-8, 1e-18);
+  EXPECT_NEAR(ours.x[1], 3e-7, 1e-17);
+}
+
+TEST(HardCase, fit_range_zero_target_and_one_sample) {
+  const Matrix m = lobe_columns({0, 6, 70});
+  for (auto* solve : {&nnls, &l1_fit}) {
+    const NonNegativeFit zero = (*solve)(m, std::vector<double>(m.rows, 0.0));
+    EXPECT_EQ(zero.x, std::vector<double>(3, 0.0));
+    EXPECT_EQ(zero.objective, 0);
+    EXPECT_TRUE(zero.converged);
+    Matrix one(1, 3);
+    one(0, 0) = 1, one(0, 1) = 0.5, one(0, 2) = 1e-30;
+    const NonNegativeFit single = (*solve)(one, {7});
+    EXPECT_NEAR(single.objective, 0, 1e-14);
+    EXPECT_EQ((*solve)(one, {-7}).x, std::vector<double>(3, 0.0));
+  }
+}
+
+TEST(Nnls, ErrorNeverRisesWithAnotherLobe) {
+  std::mt19937_64 random(5);
+  for (int trial = 0; trial < 500; ++trial) {
+    const Problem p = problems::lobes(random, 10, 9);
+    double before2 = INFINITY, before1 = INFINITY;
+    for (int columns = 1; columns <= 9; ++columns) {
+      Matrix part(10, columns);
+      std::copy_n(p.m.values.begin(), part.values.size(), part.values.begin());
+      const double now2 = nnls(part, p.b).objective, now1 = l1_fit(part, p.b).objective;
+      // Both differ from the exact optimum by some ten ulp of |b| times the condition of the columns.
+      EXPECT_LE(now2, before2 + 1e-13 * norm(p.b));
+      EXPECT_LE(now1, before1 + 1e-13 * norm(p.b));
+      before2 = now2, before1 = now1;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace goniochrome
