@@ -1,0 +1,73 @@
+// The curve of a paint against aspecular angle, and the ways between the three representations.
+// [Shimizu2009] 3.3.8-3.3.10 goniochrome-theory(7), PAINT REPRESENTATIONS.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "base/result.h"
+#include "paint/paint.h"
+
+namespace goniochrome {
+
+constexpr double kFaceAngle_deg = 15;
+
+// Lab at an unsigned aspecular angle (deg, 0..180) by the clamped quadratic in vertex form:
+// flop + (face - flop) ((travel - t)/(travel - 15))^2 for t < travel, flop beyond. Exactly constant for a solid color.
+Lab lab_at(const Appearance& appearance, double aspecular_deg);
+
+// Refuses a travel outside (15,180]; the message names it.
+Result<void> check(const Appearance& appearance);
+
+// How far the quadratic is blown up at 0 deg: (travel/(travel-15))^2. Tools warn above 4.
+double extrapolation_at_specular(const Appearance& appearance);
+
+// One channel's clamped quadratic through its values at 15, 45 and 110 deg. `exact` where it passes through all three:
+// for 0 <= s < 1, s = (q45 - q110)/(q15 - q110), unless the vertex would lie beyond 180 deg, and for equal values. Any
+// other channel gets the nearest clamped quadratic (least squares).
+struct ChannelCurve {
+  double face = 0, flop = 0, travel_deg = 60;
+  bool exact = true;
+  double at(double aspecular_deg) const;
+};
+ChannelCurve channel_curve(double at_15, double at_45, double at_110);
+
+// The face, flop and travel nearest (least squares in Lab) to rows at any number of aspecular angles: linear in face
+// and flop for fixed travel, which is scanned over its domain and refined. The rows in the plane of incidence are
+// fitted, or all where there is none. `de00` has every row given; residual_de00 is the worst of those fitted. Where the
+// rows leave the travel open, it is the largest that fits them, and where they are constant, 60 deg. Error: no rows.
+struct AppearanceFit {
+  Appearance appearance;
+  std::vector<double> de00;
+};
+Result<AppearanceFit> appearance_from_rows(const std::vector<LabReading>& rows);
+
+// The aspecular angles (deg) at which designed paints are handed over: 15/45/110 and 25/45/75. [Shimizu2009] 3.3.3
+constexpr std::array<double, 5> kExportAngles_deg = {15, 25, 45, 75, 110};
+
+// What a designed paint would measure: rows at 45 deg incidence and the export angles.
+std::vector<LabReading> rows_of(const Appearance& appearance);
+
+// The color of a paint at any aspecular angle, from its measurement (monotone piecewise cubic, PCHIP, per channel
+// through the in-plane rows by unsigned angle, rows at the same angle averaged; constant beyond the ends) or from its
+// appearance (fitted to the rows where it has none).
+class TargetCurve {
+ public:
+  enum class Kind { kMeasured, kCurve };
+  // The kind asked for, or the other one where the paint has only that. Error: the paint has neither rows nor an
+  // appearance, or one out of its domain.
+  static Result<TargetCurve> make(const Paint& paint, Kind kind);
+  Kind kind() const { return kind_; }
+  Lab at(double aspecular_deg) const;
+  // The aspecular angles (deg, ascending, unsigned) at which the target is known and not interpolated: the rows', or
+  // the export angles of a designed paint.
+  const std::vector<double>& known_angles_deg() const { return known_deg_; }
+
+ private:
+  Kind kind_ = Kind::kMeasured;
+  Appearance appearance_;
+  std::vector<double> known_deg_;
+  std::array<std::vector<double>, 3> value_, slope_;  // per channel at the known angles
+};
+
+}  // namespace goniochrome

@@ -1,0 +1,327 @@
+#include "paint/edit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "base/text.h"
+#include "paint/curve.h"
+#include "paint/metrics.h"
+
+namespace goniochrome {
+
+namespace {
+
+constexpr std::array kAverageAngles_deg = {15.0, 45.0, 110.0};
+constexpr double kHighestGloss = 100;
+
+Lab operator+(const Lab& x, const Lab& y) {
+  return {x.L + y.L, x.a + y.a, x.b + y.b};
+}
+Lab operator-(const Lab& x, const Lab& y) {
+  return {x.L - y.L, x.a - y.a, x.b - y.b};
+}
+Lab mixed(const Lab& x, const Lab& y, double fraction) {
+  return {std::lerp(x.L, y.L, fraction), std::lerp(x.a, y.a, fraction), std::lerp(x.b, y.b, fraction)};
+}
+
+// What a color move works on: the appearance and the rows, which move together.
+struct Locus {
+  Appearance appearance;
+  std::vector<LabReading> rows;
+};
+
+// Every color through one map that is affine in Lab, as the tweaks are: the curve is an affine combination of face and
+// flop, so it goes through the same map.
+void map_all(Locus& locus, const Tweak& tweak) {
+  locus.appearance.face = tweaked(locus.appearance.face, tweak);
+  locus.appearance.flop = tweaked(locus.appearance.flop, tweak);
+  for (LabReading& row : locus.rows) row.lab = tweaked(row.lab, tweak);
+}
+
+// A new curve: each row moves by what the curve moves at its angle. With r = (travel - t)/(travel - 15) a move of the
+// face by D moves a row by D r^2 and a move of the flop by D moves it by D (1 - r^2): the weights of the curve itself.
+void move_to(Locus& locus, const Appearance& target) {
+  for (LabReading& row : locus.rows) {
+    const double t = aspecular_angle_deg(row.geometry);
+    row.lab = row.lab + (lab_at(target, t) - lab_at(locus.appearance, t));
+  }
+  locus.appearance = target;
+}
+
+// Turned into (-180, 180].
+double turn_deg(double from_deg, double to_deg) {
+  const double turn = std::remainder(to_deg - from_deg, 360.0);
+  return turn == -180 ? 180 : turn;
+}
+
+void move_average(Locus& locus, const Edit& edit, Edited& result) {
+  const AverageColor average = average_color(locus.appearance);
+  const bool achromatic = average.chroma < kLeastChroma;
+  Tweak tweak;
+  if (edit.average_hue_deg && !achromatic) tweak.hue_deg = turn_deg(average.hue_deg, *edit.average_hue_deg);
+  if (edit.average_chroma && !achromatic) tweak.chroma_factor = *edit.average_chroma / average.chroma;
+  if (edit.average_lightness) tweak.lightness = *edit.average_lightness - average.L;
+  if (achromatic && (edit.average_hue_deg || edit.average_chroma))
+    result.skipped.push_back(
+        fmt::format("{}: the average chroma {:.2f} is below 1, a gray has no hue: move its face and flop",
+                    edit.average_hue_deg ? "hue" : "chroma", average.chroma));
+  map_all(locus, tweak);
+}
+
+void tweak_at(Locus& locus, const Tweak& tweak, double aspecular_deg) {
+  const double share = face_share(locus.appearance, aspecular_deg);
+  Appearance target = locus.appearance;
+  target.face = mixed(target.face, tweaked(target.face, tweak), share);
+  target.flop = mixed(target.flop, tweaked(target.flop, tweak), 1 - share);
+  move_to(locus, target);
+}
+
+void move_ends(Locus& locus, const Edit& edit) {
+  Appearance target = locus.appearance;
+  target.face = edit.face.value_or(target.face) + edit.face_shift;
+  target.flop = edit.flop.value_or(target.flop) + edit.flop_shift;
+  move_to(locus, target);
+}
+
+void move_travel(Locus& locus, const Edit& edit, Edited& result) {
+  if (!edit.travel_deg && edit.travel_shift_deg == 0) return;
+  Appearance target = locus.appearance;
+  target.travel_deg = edit.travel_deg.value_or(target.travel_deg) + edit.travel_shift_deg;
+  if (const auto checked = check(target); checked.ok())
+    move_to(locus, target);
+  else
+    result.skipped.push_back(
+        fmt::format("travel: from {} deg it would go to {} deg, and it lies above 15 and up to 180",
+                    shortest(locus.appearance.travel_deg), shortest(target.travel_deg)));
+}
+
+void clip(Lab& lab, const std::string& what, Edited& result) {
+  if (lab.L >= 0) return;
+  result.clipped.push_back(fmt::format("{}: L* {:.2f} to 0", what, lab.L));
+  lab.L = 0;
+}
+
+// The worst row in the plane of incidence, or of all where there is none there, as in appearance_from_rows.
+double worst_de00(const Locus& locus) {
+  const auto in_plane = [](const LabReading& row) { return !row.geometry.out_of_plane; };
+  const bool any = std::ranges::any_of(locus.rows, in_plane);
+  double worst = 0;
+  for (const LabReading& row : locus.rows)
+    if (in_plane(row) || !any)
+      worst = std::max(worst, delta_e_2000(row.lab, lab_at(locus.appearance, aspecular_angle_deg(row.geometry))));
+  return worst;
+}
+
+// The paint's appearance and rows; the appearance fitted where it has none.
+Result<Locus> locus_of(const Paint& paint) {
+  Locus locus;
+  if (paint.measurement) locus.rows = paint.measurement->rows;
+  if (paint.appearance) {
+    locus.appearance = *paint.appearance;
+    return locus;
+  }
+  auto fit = appearance_from_rows(locus.rows);
+  if (!fit.ok()) return Error{fit.error().kind, fmt::format("paint \"{}\": {}", paint.name, fit.error().message)};
+  locus.appearance = fit->appearance;
+  return locus;
+}
+
+bool has_color(const Paint& paint) {
+  return paint.appearance || (paint.measurement && !paint.measurement->rows.empty());
+}
+
+// Puts a moved locus back: its residual is told by the rows it has now.
+void put_back(Paint& paint, Locus locus) {
+  locus.appearance.residual_de00 = locus.rows.empty() ? std::nullopt : std::optional<double>(worst_de00(locus));
+  paint.appearance = locus.appearance;
+  if (!paint.measurement) return;
+  paint.measurement->rows = std::move(locus.rows);
+  paint.measurement->instrument.clear();
+}
+
+void drop_lobes(Paint& paint, Edited& result) {
+  if (paint.lobes) result.dropped.push_back("lobes");
+  paint.lobes.reset();
+}
+
+Result<void> edit_color(const Edit& edit, Edited& result) {
+  Paint& paint = result.paint;
+  if (!has_color(paint)) {
+    result.skipped.push_back("color: it has neither measured rows nor an appearance");
+    return {};
+  }
+  GONIO_ASSIGN(Locus locus, locus_of(paint));
+  if (!paint.appearance) result.fitted_de00 = locus.appearance.residual_de00;
+  result.before = locus.appearance;
+  move_average(locus, edit, result);
+  if (edit.at_deg)
+    tweak_at(locus, edit.tweak, *edit.at_deg);
+  else
+    map_all(locus, edit.tweak);
+  move_ends(locus, edit);
+  move_travel(locus, edit, result);
+  clip(locus.appearance.face, "face", result);
+  clip(locus.appearance.flop, "flop", result);
+  for (LabReading& row : locus.rows) clip(row.lab, geometry_name(row.geometry), result);
+  result.after = locus.appearance;
+  put_back(paint, std::move(locus));
+  drop_lobes(paint, result);
+  if (paint.color_map) result.dropped.push_back("color map");
+  paint.color_map.reset();
+  return {};
+}
+
+void edit_gloss(const Edit& edit, Edited& result) {
+  Paint& paint = result.paint;
+  const auto at_angle = [&](const GlossReading& reading) { return reading.angle_deg == edit.gloss_angle_deg; };
+  const auto old = std::ranges::find_if(paint.gloss, at_angle);
+  if (!edit.gloss && old == paint.gloss.end()) {
+    result.skipped.push_back(
+        fmt::format("gloss: it has no reading at {} deg to shift: set one", shortest(edit.gloss_angle_deg)));
+    return;
+  }
+  const double start = edit.gloss ? *edit.gloss : old->gloss_units;
+  const double wanted = start + edit.gloss_shift;
+  const double units = std::clamp(wanted, 0.0, std::max(kHighestGloss, start));
+  if (units != wanted) result.clipped.push_back(fmt::format("gloss: {} to {}", shortest(wanted), shortest(units)));
+  // One number shapes the whole highlight, so readings at other angles would contradict it.
+  for (const GlossReading& reading : paint.gloss)
+    if (!at_angle(reading)) result.dropped.push_back(fmt::format("gloss at {} deg", shortest(reading.angle_deg)));
+  paint.gloss = {{edit.gloss_angle_deg, units}};
+  drop_lobes(paint, result);
+}
+
+// The rows of the geometries both paints have, in the first paint's order.
+std::vector<LabReading> rows_between(const Measurement& from, const Measurement& to, double fraction) {
+  std::vector<LabReading> rows;
+  for (const LabReading& row : from.rows) {
+    const auto other = std::ranges::find_if(to.rows, [&](const LabReading& r) { return r.geometry == row.geometry; });
+    if (other != to.rows.end()) rows.push_back({row.geometry, mixed(row.lab, other->lab, fraction)});
+  }
+  return rows;
+}
+
+// A color that does not travel has no say in where the travel ends.
+double travel_between(const Appearance& from, const Appearance& to, double fraction) {
+  if (from.face == from.flop) return to.travel_deg;
+  if (to.face == to.flop) return from.travel_deg;
+  return std::lerp(from.travel_deg, to.travel_deg, fraction);
+}
+
+std::vector<GlossReading> gloss_between(const Paint& from, const Paint& to, double fraction) {
+  std::vector<GlossReading> readings;
+  for (const GlossReading& reading : from.gloss)
+    for (const GlossReading& other : to.gloss)
+      if (other.angle_deg == reading.angle_deg)
+        readings.push_back({reading.angle_deg, std::lerp(reading.gloss_units, other.gloss_units, fraction)});
+  return readings;
+}
+
+}  // namespace
+
+AverageColor average_color(const Appearance& appearance) {
+  AverageColor average;
+  Lab sum;
+  for (const double angle : kAverageAngles_deg) {
+    const Lab lab = lab_at(appearance, angle);
+    average.L += lab.L / kAverageAngles_deg.size();
+    average.chroma += chroma(lab) / kAverageAngles_deg.size();
+    sum = sum + lab;
+  }
+  average.hue_deg = hue_deg(sum);
+  return average;
+}
+
+Lab tweaked(const Lab& lab, const Tweak& tweak) {
+  const double turn_rad = tweak.hue_deg * std::numbers::pi / 180;
+  const double c = tweak.chroma_factor * std::cos(turn_rad);
+  const double s = tweak.chroma_factor * std::sin(turn_rad);
+  return {lab.L + tweak.lightness, c * lab.a - s * lab.b, s * lab.a + c * lab.b};
+}
+
+double face_share(const Appearance& appearance, double aspecular_deg) {
+  return std::clamp((appearance.travel_deg - aspecular_deg) / (appearance.travel_deg - kFaceAngle_deg), 0.0, 1.0);
+}
+
+bool moves_color(const Edit& edit) {
+  return edit.average_hue_deg || edit.average_chroma || edit.average_lightness || edit.tweak != Tweak() || edit.face ||
+         edit.flop || edit.face_shift != Lab() || edit.flop_shift != Lab() || edit.travel_deg ||
+         edit.travel_shift_deg != 0;
+}
+
+bool moves_gloss(const Edit& edit) {
+  return edit.gloss || edit.gloss_shift != 0;
+}
+
+Result<Edited> edited(const Paint& paint, const Edit& edit) {
+  Edited result;
+  result.paint = paint;
+  if (moves_color(edit)) GONIO_TRY(edit_color(edit, result));
+  if (moves_gloss(edit)) edit_gloss(edit, result);
+  return result;
+}
+
+// The six directions in the a*b* plane stand 60 deg apart from 30 deg on, near the hues of the words they are named by,
+// and not along the paint's own hue and chroma: a gray has neither, and still has eight distinct neighbors.
+std::vector<Neighbor> neighbors(Variation variation, double step) {
+  std::vector<Neighbor> result;
+  if (variation == Variation::kFace || variation == Variation::kFlop) {
+    const bool is_face = variation == Variation::kFace;
+    const auto add = [&](const char* name, const Lab& shift) {
+      Neighbor neighbor{fmt::format("{}-{}", is_face ? "face" : "flop", name), {}};
+      (is_face ? neighbor.edit.face_shift : neighbor.edit.flop_shift) = shift;
+      result.push_back(neighbor);
+    };
+    add("lighter", {step, 0, 0});
+    add("darker", {-step, 0, 0});
+    constexpr std::array kNames = {"red", "yellow", "green", "cyan", "blue", "magenta"};
+    for (std::size_t i = 0; i < kNames.size(); ++i) {
+      const double hue_rad = (30 + 60.0 * static_cast<double>(i)) * std::numbers::pi / 180;
+      add(kNames[i], {0, step * std::cos(hue_rad), step * std::sin(hue_rad)});
+    }
+    return result;
+  }
+  const bool is_travel = variation == Variation::kTravel;
+  for (const int count : {-4, -3, -2, -1, 1, 2, 3, 4}) {
+    Neighbor neighbor{
+        fmt::format("{}{}{}", is_travel ? "travel" : "gloss", count > 0 ? "+" : "", shortest(count * step)), {}};
+    (is_travel ? neighbor.edit.travel_shift_deg : neighbor.edit.gloss_shift) = count * step;
+    result.push_back(neighbor);
+  }
+  return result;
+}
+
+Result<Paint> between(const Paint& from, const Paint& to, double fraction) {
+  for (const Paint* paint : {&from, &to})
+    if (!has_color(*paint))
+      return input_error("paint \"{}\" has neither measured rows nor an appearance: a gradient needs its color",
+                         paint->name);
+  const ViewingCondition a = condition_of(from), b = condition_of(to);
+  if (a != b)
+    return input_error("paint \"{}\" is stated for {}/{} and \"{}\" for {}/{}: convert one of them first", from.name,
+                       a.illuminant, a.observer_deg, to.name, b.illuminant, b.observer_deg);
+  GONIO_ASSIGN(const Locus start, locus_of(from));
+  GONIO_ASSIGN(const Locus end, locus_of(to));
+
+  Locus locus;
+  locus.appearance.face = mixed(start.appearance.face, end.appearance.face, fraction);
+  locus.appearance.flop = mixed(start.appearance.flop, end.appearance.flop, fraction);
+  locus.appearance.travel_deg = travel_between(start.appearance, end.appearance, fraction);
+
+  Paint paint;
+  paint.paint_class = from.paint_class == to.paint_class ? from.paint_class : PaintClass::kUnknown;
+  paint.gloss = gloss_between(from, to, fraction);
+  if (from.anisotropy && to.anisotropy)
+    paint.anisotropy = Anisotropy{std::lerp(from.anisotropy->alpha_x, to.anisotropy->alpha_x, fraction),
+                                  std::lerp(from.anisotropy->alpha_y, to.anisotropy->alpha_y, fraction)};
+  if (from.measurement && to.measurement) locus.rows = rows_between(*from.measurement, *to.measurement, fraction);
+  // Only a measurement states a condition: under any but the default one a paint without rows gets those of its curve.
+  if (locus.rows.empty() && a != ViewingCondition()) locus.rows = rows_of(locus.appearance);
+  if (!locus.rows.empty()) paint.measurement = Measurement{a, "", {}};
+  put_back(paint, std::move(locus));
+  return paint;
+}
+
+}  // namespace goniochrome

@@ -1,0 +1,426 @@
+#include "paint/edit.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <set>
+
+#include "paint/curve.h"
+
+namespace goniochrome {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+// Lab values up to 150 go through a handful of operations, each rounded by half an ulp (1.4e-14 at 128): 1e-12 leaves
+// room for some seventy of them.
+constexpr double kRounding = 1e-12;
+
+void expect_near(const Lab& x, const Lab& y, double bound = kRounding) {
+  EXPECT_NEAR(x.L, y.L, bound);
+  EXPECT_NEAR(x.a, y.a, bound);
+  EXPECT_NEAR(x.b, y.b, bound);
+}
+
+Appearance blue() {
+  return {{62, -13.5, -51}, {12, 17, -38}, 72, std::nullopt};
+}
+
+LabReading reading(const char* geometry, const Lab& lab) {
+  return {*parse_geometry(geometry), lab};
+}
+
+// A paint whose rows lie on its curve.
+Paint on_curve(const Appearance& appearance) {
+  Paint paint;
+  paint.name = "p";
+  paint.appearance = appearance;
+  paint.measurement.emplace();
+  for (const char* geometry : {"45as-15", "45as15", "45as25", "45as45", "45as75", "45as110", "45as60az125"}) {
+    const double angle = aspecular_angle_deg(*parse_geometry(geometry));
+    paint.measurement->rows.push_back(reading(geometry, lab_at(appearance, angle)));
+  }
+  paint.gloss = {{60, 91}};
+  return paint;
+}
+
+// A three-angle measurement, without an appearance.
+Paint measured() {
+  Paint paint;
+  paint.name = "m";
+  paint.code = "RM331";
+  paint.paint_class = PaintClass::kMetallic;
+  paint.measurement = Measurement{{}, "meter", {}};
+  paint.measurement->rows = {reading("45as15", {57.7, -13.3, -55.4}), reading("45as45", {29.1, 3.8, -53.2}),
+                             reading("45as110", {12.2, 17.9, -39.4})};
+  return paint;
+}
+
+Paint done(const Paint& paint, const Edit& edit) {
+  const auto result = edited(paint, edit);
+  EXPECT_TRUE(result.ok());
+  return result->paint;
+}
+
+TEST(Tweak, identity_changes_no_bit) {
+  const Lab lab{41.3, -0.1, 17.7};
+  EXPECT_EQ(tweaked(lab, {}), lab);
+}
+
+TEST(Tweak, turns_scales_and_lifts) {
+  expect_near(tweaked({50, 30, -10}, {4, 2, 90}), {54, 20, 60});
+  EXPECT_NEAR(chroma(tweaked({50, 30, -10}, {0, 1, 37})), std::hypot(30, 10), kRounding);
+  EXPECT_EQ(chroma(tweaked({50, 30, -10}, {0, 0, 0})), 0);
+}
+
+TEST(FaceShare, is_one_at_the_face_and_zero_at_the_flop) {
+  const Appearance a{{}, {}, 95, std::nullopt};
+  EXPECT_EQ(face_share(a, 0), 1);
+  EXPECT_EQ(face_share(a, 15), 1);
+  EXPECT_EQ(face_share(a, 55), 0.5);
+  EXPECT_EQ(face_share(a, 95), 0);
+  EXPECT_EQ(face_share(a, 180), 0);
+}
+
+TEST(FaceShare, printed_form_moves_the_wrong_end) {
+  // As printed, R is 0 below 15 deg and 1 beyond the travel, and the face is blended by R: a tweak at the face leaves
+  // the face alone and moves the flop.
+  const Appearance a = blue();
+  const auto printed = [&](double t) { return std::clamp((t - 15) / (a.travel_deg - 15), 0.0, 1.0); };
+  Edit edit;
+  edit.tweak.lightness = 10;
+  edit.at_deg = 15;
+  const Appearance ours = *done(on_curve(a), edit).appearance;
+  EXPECT_EQ(ours.face.L, a.face.L + 10);
+  EXPECT_EQ(ours.flop, a.flop);
+  const double printed_face_L = a.face.L + printed(15) * 10;
+  EXPECT_NE(printed_face_L, a.face.L + 10);
+}
+
+TEST(Edit, at_an_angle_moves_each_end_by_its_share) {
+  const Appearance a{{80, 20, 10}, {20, 5, 0}, 75, std::nullopt};
+  Edit edit;
+  edit.tweak = {8, 1.5, 0};
+  edit.at_deg = 30;  // R = 45/60
+  const Appearance b = *done(on_curve(a), edit).appearance;
+  expect_near(b.face, {80 + 6, 20 * 1.375, 10 * 1.375});
+  expect_near(b.flop, {20 + 2, 5 * 1.125, 0});
+  EXPECT_EQ(b.travel_deg, 75);
+}
+
+TEST(Edit, reaches_the_average_it_is_told) {
+  Edit edit;
+  edit.average_hue_deg = 140;
+  edit.average_chroma = 25;
+  edit.average_lightness = 44;
+  const AverageColor average = average_color(*done(on_curve(blue()), edit).appearance);
+  EXPECT_NEAR(average.hue_deg, 140, kRounding);
+  EXPECT_NEAR(average.chroma, 25, kRounding);
+  EXPECT_NEAR(average.L, 44, kRounding);
+}
+
+TEST(Edit, average_hue_of_360_is_that_of_0) {
+  Edit zero, full, negative;
+  zero.average_hue_deg = 0;
+  full.average_hue_deg = 360;
+  negative.average_hue_deg = -360;
+  expect_near(done(on_curve(blue()), zero).appearance->face, done(on_curve(blue()), full).appearance->face);
+  expect_near(done(on_curve(blue()), zero).appearance->face, done(on_curve(blue()), negative).appearance->face);
+}
+
+Edit random_edit(std::mt19937& random) {
+  const auto uniform = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
+  Edit edit;
+  switch (random() % 5) {
+    case 0:
+      edit.tweak = {uniform(0, 20), uniform(0, 2), uniform(-180, 180)};
+      break;
+    case 1:
+      edit.tweak = {uniform(0, 20), uniform(0, 2), uniform(-180, 180)};
+      edit.at_deg = uniform(0, 180);
+      break;
+    case 2:
+      edit.face = Lab{uniform(60, 120), uniform(-60, 60), uniform(-60, 60)};
+      break;
+    case 3:
+      edit.flop_shift = {uniform(0, 40), uniform(-30, 30), uniform(-30, 30)};
+      break;
+    default:
+      edit.travel_deg = uniform(25, 180);
+  }
+  return edit;
+}
+
+// Rows on the curve stay on it. Blending a row by R, which is linear in the angle, and not by the weight R^2 that the
+// curve gives the face there, takes it off the curve.
+TEST(Edit, rows_on_the_curve_stay_on_it) {
+  std::mt19937 random(7);
+  double worst_linear = 0;
+  for (int i = 0; i < 500; ++i) {
+    const Appearance a = blue();
+    const Edit edit = random_edit(random);
+    const Paint paint = done(on_curve(a), edit);
+    for (const LabReading& row : paint.measurement->rows) {
+      const double t = aspecular_angle_deg(row.geometry);
+      expect_near(row.lab, lab_at(*paint.appearance, t));
+      const double share = face_share(a, t);
+      const double linear = lab_at(a, t).L + share * (paint.appearance->face.L - a.face.L) +
+                            (1 - share) * (paint.appearance->flop.L - a.flop.L);
+      worst_linear = std::max(worst_linear, std::abs(linear - lab_at(*paint.appearance, t).L));
+    }
+    EXPECT_NEAR(*paint.appearance->residual_de00, 0, 1e-9);
+  }
+  EXPECT_GT(worst_linear, 1);
+}
+
+TEST(Edit, what_the_curve_does_not_explain_stays) {
+  const Paint paint = measured();
+  const auto fit = appearance_from_rows(paint.measurement->rows);
+  ASSERT_TRUE(fit.ok());
+  Edit edit;
+  edit.flop_shift = {10, 3, -4};
+  edit.travel_shift_deg = 12;
+  const auto result = edited(paint, edit);
+  ASSERT_TRUE(result.ok());
+  ASSERT_TRUE(result->fitted_de00);
+  EXPECT_EQ(*result->fitted_de00, *fit->appearance.residual_de00);
+  const Appearance& after = *result->paint.appearance;
+  EXPECT_EQ(after.travel_deg, fit->appearance.travel_deg + 12);
+  for (std::size_t i = 0; i < paint.measurement->rows.size(); ++i) {
+    const double t = aspecular_angle_deg(paint.measurement->rows[i].geometry);
+    const Lab before = paint.measurement->rows[i].lab, now = result->paint.measurement->rows[i].lab;
+    const Lab was = lab_at(fit->appearance, t), is = lab_at(after, t);
+    EXPECT_NEAR(before.L - was.L, now.L - is.L, kRounding);
+    EXPECT_NEAR(before.a - was.a, now.a - is.a, kRounding);
+    EXPECT_NEAR(before.b - was.b, now.b - is.b, kRounding);
+  }
+}
+
+TEST(Edit, whole_paint_maps_every_row) {
+  const Paint paint = measured();
+  Edit edit;
+  edit.tweak = {2, 0.5, 30};
+  const Paint now = done(paint, edit);
+  for (std::size_t i = 0; i < paint.measurement->rows.size(); ++i)
+    EXPECT_EQ(now.measurement->rows[i].lab, tweaked(paint.measurement->rows[i].lab, edit.tweak));
+}
+
+TEST(Edit, keeps_the_identity_and_forgets_the_meter) {
+  Edit edit;
+  edit.tweak.lightness = 1;
+  const Paint now = done(measured(), edit);
+  EXPECT_EQ(now.name, "m");
+  EXPECT_EQ(now.code, "RM331");
+  EXPECT_EQ(now.paint_class, PaintClass::kMetallic);
+  EXPECT_EQ(now.measurement->instrument, "");
+}
+
+TEST(Edit, drops_what_holds_the_old_color) {
+  Paint paint = on_curve(blue());
+  paint.lobes.emplace();
+  paint.color_map = ColorMapReference{"map.exr", 1.5};
+  paint.anisotropy = Anisotropy{0.05, 0.3};
+  Edit edit;
+  edit.tweak.hue_deg = 5;
+  const auto result = edited(paint, edit);
+  ASSERT_TRUE(result.ok());
+  EXPECT_FALSE(result->paint.lobes);
+  EXPECT_FALSE(result->paint.color_map);
+  EXPECT_TRUE(result->paint.anisotropy);
+  EXPECT_THAT(result->dropped, ElementsAre("lobes", "color map"));
+}
+
+TEST(Edit, gloss_alone_leaves_the_color_as_it_is) {
+  Paint paint = measured();
+  paint.lobes.emplace();
+  paint.color_map = ColorMapReference{"map.exr", 1.5};
+  paint.gloss = {{20, 80}, {60, 91}};
+  Edit edit;
+  edit.gloss = 30;
+  const auto result = edited(paint, edit);
+  ASSERT_TRUE(result.ok());
+  EXPECT_FALSE(result->paint.appearance);
+  EXPECT_EQ(result->paint.measurement->instrument, "meter");
+  EXPECT_EQ(result->paint.measurement->rows[0].lab, paint.measurement->rows[0].lab);
+  EXPECT_TRUE(result->paint.color_map);
+  ASSERT_EQ(result->paint.gloss.size(), 1u);
+  EXPECT_EQ(result->paint.gloss[0].gloss_units, 30);
+  EXPECT_THAT(result->dropped, ElementsAre("gloss at 20 deg", "lobes"));
+}
+
+TEST(Edit, gloss_stays_within_its_scale) {
+  Edit up, down;
+  up.gloss_shift = 50;
+  down.gloss_shift = -95;
+  EXPECT_EQ(done(on_curve(blue()), up).gloss[0].gloss_units, 100);
+  EXPECT_EQ(done(on_curve(blue()), down).gloss[0].gloss_units, 0);
+  Paint mirror = on_curve(blue());
+  mirror.gloss = {{60, 400}};
+  EXPECT_EQ(done(mirror, up).gloss[0].gloss_units, 400);
+  EXPECT_EQ(done(mirror, down).gloss[0].gloss_units, 305);
+}
+
+TEST(Edit, gloss_shift_without_a_reading_is_left_out) {
+  Edit edit;
+  edit.gloss_shift = 5;
+  edit.gloss_angle_deg = 20;
+  const auto result = edited(on_curve(blue()), edit);
+  ASSERT_TRUE(result.ok());
+  EXPECT_THAT(result->skipped, ElementsAre(HasSubstr("20 deg")));
+  EXPECT_EQ(result->paint.gloss.size(), 1u);
+}
+
+TEST(Edit, gray_has_no_hue_to_set) {
+  const Appearance gray{{60, 0.2, 0}, {30, 0, -0.3}, 70, std::nullopt};
+  Edit edit;
+  edit.average_hue_deg = 90;
+  edit.average_lightness = 50;
+  const auto result = edited(on_curve(gray), edit);
+  ASSERT_TRUE(result.ok());
+  EXPECT_THAT(result->skipped, ElementsAre(HasSubstr("hue")));
+  EXPECT_EQ(result->paint.appearance->face.a, 0.2);
+  EXPECT_NEAR(average_color(*result->paint.appearance).L, 50, kRounding);
+}
+
+TEST(Edit, travel_out_of_its_domain_is_left_out) {
+  for (const double shift : {-57.0, -200.0, 108.5}) {
+    Edit edit;
+    edit.travel_shift_deg = shift;
+    const auto result = edited(on_curve(blue()), edit);
+    ASSERT_TRUE(result.ok());
+    EXPECT_THAT(result->skipped, ElementsAre(HasSubstr("travel")));
+    EXPECT_EQ(result->paint.appearance->travel_deg, 72);
+  }
+  Edit last;
+  last.travel_shift_deg = 108;
+  EXPECT_EQ(done(on_curve(blue()), last).appearance->travel_deg, 180);
+}
+
+TEST(Edit, lightness_stops_at_black) {
+  Edit edit;
+  edit.tweak.lightness = -20;
+  const auto result = edited(on_curve(blue()), edit);
+  ASSERT_TRUE(result.ok());
+  EXPECT_EQ(result->paint.appearance->flop.L, 0);
+  EXPECT_EQ(result->paint.appearance->face.L, 42);
+  for (const LabReading& row : result->paint.measurement->rows) EXPECT_GE(row.lab.L, 0);
+  EXPECT_THAT(result->clipped, testing::Contains(HasSubstr("flop")));
+}
+
+TEST(Edit, paint_without_color_takes_gloss_only) {
+  Paint paint;
+  paint.gloss = {{60, 50}};
+  Edit edit;
+  edit.tweak.lightness = 3;
+  edit.gloss_shift = 3;
+  const auto result = edited(paint, edit);
+  ASSERT_TRUE(result.ok());
+  EXPECT_THAT(result->skipped, ElementsAre(HasSubstr("color")));
+  EXPECT_FALSE(result->paint.appearance);
+  EXPECT_EQ(result->paint.gloss[0].gloss_units, 53);
+}
+
+// The form that divides by the quadratic's first coefficient has 0/0 for a solid: the vertex form keeps it constant.
+TEST(HardCase, curve_solid_edited) {
+  const Lab gray{50, 0, 0};
+  Paint paint = on_curve({gray, gray, 60, std::nullopt});
+  paint.appearance.reset();
+  for (LabReading& row : paint.measurement->rows) row.lab = gray;
+  Edit edit;
+  edit.tweak = {7, 1.2, 15};
+  edit.travel_deg = 140;
+  const Paint now = done(paint, edit);
+  for (const LabReading& row : now.measurement->rows) EXPECT_EQ(row.lab, (Lab{57, 0, 0}));
+  EXPECT_EQ(now.appearance->face, now.appearance->flop);
+  const double textbook_a = (gray.L - gray.L) / ((15 - 60.0) * (15 - 60.0)), textbook_b = -2 * textbook_a * 60;
+  EXPECT_TRUE(std::isnan(-textbook_b / (2 * textbook_a)));
+}
+
+TEST(Neighbors, are_eight_distinct_ones_at_the_step) {
+  const Paint paint = on_curve(blue());
+  for (const Variation variation : {Variation::kFace, Variation::kFlop, Variation::kTravel, Variation::kGloss}) {
+    std::set<std::string> names;
+    for (const Neighbor& neighbor : neighbors(variation, 2)) {
+      names.insert(neighbor.name);
+      const Paint now = done(paint, neighbor.edit);
+      const double face = delta_e_76(now.appearance->face, blue().face);
+      const double flop = delta_e_76(now.appearance->flop, blue().flop);
+      EXPECT_NEAR(face, variation == Variation::kFace ? 2 : 0, kRounding) << neighbor.name;
+      EXPECT_NEAR(flop, variation == Variation::kFlop ? 2 : 0, kRounding) << neighbor.name;
+      EXPECT_EQ(now.appearance->travel_deg != 72, variation == Variation::kTravel) << neighbor.name;
+      EXPECT_EQ(now.gloss[0].gloss_units != 91, variation == Variation::kGloss) << neighbor.name;
+    }
+    EXPECT_EQ(names.size(), 8u);
+  }
+}
+
+TEST(Between, starts_at_one_paint_and_ends_at_the_other) {
+  const Appearance red{{52, 60, 33}, {11, 29, 15}, 80, std::nullopt};
+  const Paint from = on_curve(blue()), to = on_curve(red);
+  for (const double fraction : {0.0, 1.0}) {
+    const auto paint = between(from, to, fraction);
+    ASSERT_TRUE(paint.ok());
+    const Paint& end = fraction == 0 ? from : to;
+    EXPECT_EQ(paint->appearance->face, end.appearance->face);
+    EXPECT_EQ(paint->appearance->flop, end.appearance->flop);
+    EXPECT_EQ(paint->appearance->travel_deg, end.appearance->travel_deg);
+    for (std::size_t i = 0; i < end.measurement->rows.size(); ++i)
+      EXPECT_EQ(paint->measurement->rows[i].lab, end.measurement->rows[i].lab);
+  }
+}
+
+TEST(Between, half_way_is_half_way) {
+  Appearance red{{52, 60, 33}, {11, 29, 15}, 80, std::nullopt};
+  Paint to = on_curve(red);
+  to.gloss = {{60, 71}, {20, 40}};
+  to.paint_class = PaintClass::kPearl;
+  to.measurement->rows.erase(to.measurement->rows.begin());
+  const auto paint = between(on_curve(blue()), to, 0.5);
+  ASSERT_TRUE(paint.ok());
+  expect_near(paint->appearance->face, {57, 23.25, -9});
+  EXPECT_EQ(paint->appearance->travel_deg, 76);
+  ASSERT_EQ(paint->gloss.size(), 1u);
+  EXPECT_EQ(paint->gloss[0].gloss_units, 81);
+  EXPECT_EQ(paint->paint_class, PaintClass::kUnknown);
+  EXPECT_EQ(paint->measurement->rows.size(), 6u);
+  expect_near(paint->measurement->rows[0].lab, {57, 23.25, -9});
+}
+
+TEST(Between, solid_end_has_no_travel_of_its_own) {
+  const Lab white{90, 0, 0};
+  const auto paint = between(on_curve(blue()), on_curve({white, white, 170, std::nullopt}), 0.25);
+  ASSERT_TRUE(paint.ok());
+  EXPECT_EQ(paint->appearance->travel_deg, 72);
+}
+
+TEST(Between, refuses_two_observers) {
+  Paint other = measured();
+  other.name = "two_degrees";
+  other.measurement->condition.observer_deg = 2;
+  const auto paint = between(measured(), other, 0.5);
+  ASSERT_FALSE(paint.ok());
+  EXPECT_THAT(paint.error().message, HasSubstr("two_degrees"));
+}
+
+TEST(Between, keeps_the_condition_without_common_geometries) {
+  Paint from = measured(), to = measured();
+  from.measurement->condition.observer_deg = to.measurement->condition.observer_deg = 2;
+  for (LabReading& row : to.measurement->rows) row.geometry.aspecular_deg += 1;
+  const auto paint = between(from, to, 0.5);
+  ASSERT_TRUE(paint.ok());
+  EXPECT_EQ(condition_of(*paint).observer_deg, 2);
+  // Without rows the condition would be lost in a file.
+  ASSERT_EQ(paint->measurement->rows.size(), kExportAngles_deg.size());
+  expect_near(paint->measurement->rows[0].lab, paint->appearance->face);
+
+  from.measurement->condition.observer_deg = to.measurement->condition.observer_deg = 10;
+  const auto usual = between(from, to, 0.5);
+  ASSERT_TRUE(usual.ok());
+  EXPECT_FALSE(usual->measurement);
+}
+
+}  // namespace
+}  // namespace goniochrome

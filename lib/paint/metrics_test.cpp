@@ -1,0 +1,188 @@
+#include "paint/metrics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "paint/curve.h"
+
+namespace goniochrome {
+namespace {
+
+Paint measured(const std::vector<std::pair<double, Lab>>& rows) {
+  Paint paint;
+  paint.name = "test";
+  paint.measurement = Measurement{};
+  for (const auto& [aspecular_deg, lab] : rows)
+    paint.measurement->rows.push_back({{.incidence_deg = 45, .aspecular_deg = aspecular_deg}, lab});
+  return paint;
+}
+
+Lab polar(double L, double C, double hue_deg) {
+  const double h = hue_deg * std::numbers::pi / 180;
+  return {L, C * std::cos(h), C * std::sin(h)};
+}
+
+bool has_flag(const PaintMetrics& numbers, std::string_view flag) {
+  for (const char* f : numbers.flags)
+    if (f == flag) return true;
+  return false;
+}
+
+double textbook_flop_index(double L15, double L45, double L110) {
+  return 2.69 * std::pow(L15 - L110, 1.11) / std::pow(L45, 0.86);
+}
+
+TEST(Metrics, flop_index_of_a_metallic) {
+  // 2.69 * 80^1.11 / 50^0.86 by hand: 80^1.11 = 129.548, 50^0.86 = 28.916.
+  EXPECT_NEAR(flop_index(100, 50, 20).value, 12.052, 1e-3);
+  EXPECT_DOUBLE_EQ(flop_index(100, 50, 20).value, textbook_flop_index(100, 50, 20));
+  EXPECT_FALSE(flop_index(100, 50, 20).unstable());
+  EXPECT_EQ(flop_index(40, 40, 40).value, 0);
+}
+
+TEST(HardCase, flop_index_dark) {
+  // The textbook form has no value where the flop is lighter than the face; ours is the mirrored one, negative.
+  EXPECT_TRUE(std::isnan(textbook_flop_index(20, 50, 100)));
+  EXPECT_EQ(flop_index(20, 50, 100).value, -flop_index(100, 50, 20).value);
+
+  // It explodes in the dark without a word: 0.1 in one L*, within any instrument's repeatability, moves it a lot.
+  EXPECT_GT(textbook_flop_index(3, 0.2, 0.2) - textbook_flop_index(3, 0.3, 0.2), 9);
+  EXPECT_FALSE(std::isfinite(textbook_flop_index(3, 0, 0.2)));
+  EXPECT_TRUE(flop_index(3, 0.2, 0.2).unstable());
+  EXPECT_GT(flop_index(3, 0.2, 0.2).sensitivity, 9);
+  EXPECT_TRUE(flop_index(3, 0.1, 0.2).unstable());
+  EXPECT_TRUE(std::isinf(flop_index(3, 0.1, 0.2).sensitivity));
+  EXPECT_TRUE(std::isnan(flop_index(3, 0, 0.2).value));
+  EXPECT_TRUE(flop_index(3, 0, 0.2).unstable());
+  EXPECT_TRUE(flop_index(0, 0, 0).unstable());
+  EXPECT_TRUE(has_flag(*metrics(measured({{15, {3, 1, 2}}, {45, {0.2, 0, 0}}, {110, {0.2, 0, 0}}})), "dark"));
+}
+
+// The sensitivity holds for every move within 0.1, and is reached.
+TEST(Metrics, flop_sensitivity_is_the_worst_case) {
+  for (const auto& [a, b, c] :
+       {std::array{100.0, 50.0, 20.0}, {20.0, 30.0, 60.0}, {10.05, 10.0, 10.0}, {5.0, 1.0, 1.0}}) {
+    const FlopIndex index = flop_index(a, b, c);
+    double worst = 0;
+    for (int i = 0; i < 21 * 21 * 21; ++i) {
+      const double x = a + (i % 21 - 10) * 0.01, y = b + (i / 21 % 21 - 10) * 0.01, z = c + (i / 441 - 10) * 0.01;
+      worst = std::max(worst, std::abs(flop_index(x, y, z).value - index.value));
+    }
+    EXPECT_LE(worst, index.sensitivity * (1 + 1e-9));
+    EXPECT_NEAR(worst, index.sensitivity, 1e-6 * index.sensitivity + 1e-9);
+  }
+}
+
+double textbook_hue_shift(const Lab& f, const Lab& g) {
+  return std::abs(g.a * f.b - f.a * g.b) / std::sqrt(f.a * f.a + f.b * f.b);
+}
+
+TEST(Metrics, hue_shift_and_chroma) {
+  const Lab face = polar(60, 50, 30), flop = polar(20, 20, 60);
+  EXPECT_NEAR(hue_shift_index(face, flop), 20 * std::sin(std::numbers::pi / 6), 1e-12);
+  EXPECT_DOUBLE_EQ(hue_shift_index(face, flop), textbook_hue_shift(face, flop));
+  EXPECT_NEAR(chroma_index(face, flop), 30, 1e-12);
+  EXPECT_NEAR(hue_travel(std::array{face, flop}).degrees, 30, 1e-12);
+  EXPECT_NEAR(hue_travel(std::array{flop, face}).degrees, -30, 1e-12);
+}
+
+TEST(HardCase, hue_shift_achromatic) {
+  // Gray face: the textbook form divides 0 by 0, or turns rounding into 15 units of hue shift.
+  EXPECT_TRUE(std::isnan(textbook_hue_shift({50, 0, 0}, {20, 15, 0})));
+  EXPECT_NEAR(textbook_hue_shift({50, 0, 1e-17}, {20, 15, 0}), 15, 1e-9);
+  EXPECT_TRUE(std::isnan(hue_shift_index({50, 0, 1e-17}, {20, 15, 0})));
+  const auto gray = *metrics(measured({{15, {50, 0, 1e-17}}, {45, {30, 5, 0}}, {110, {20, 15, 0}}}));
+  EXPECT_TRUE(std::isnan(gray.hue_shift_index));
+  EXPECT_TRUE(std::isnan(gray.hue_travel_deg));
+  EXPECT_TRUE(has_flag(gray, "achromatic"));
+
+  // Hue turned by 180 deg: the textbook form reads 0, as of a paint of one hue. The travel tells.
+  const auto turned = *metrics(measured(
+      {{15, polar(60, 40, 20)}, {25, polar(55, 40, 80)}, {45, polar(45, 35, 140)}, {110, polar(30, 30, 200)}}));
+  EXPECT_NEAR(turned.hue_shift_index, 0, 1e-9);
+  EXPECT_NEAR(turned.hue_travel_deg, 180, 1e-9);
+  EXPECT_FALSE(has_flag(turned, "through_gray"));
+
+  // Beyond a full turn it goes on counting.
+  std::vector<std::pair<double, Lab>> winding;
+  for (int i = 0; i <= 10; ++i) winding.emplace_back(15 + 9.5 * i, polar(50, 30, 45 * i));
+  EXPECT_NEAR(hue_travel([&] {
+                std::vector<Lab> path;
+                for (const auto& row : winding) path.push_back(row.second);
+                return path;
+              }())
+                  .degrees,
+              450, 1e-9);
+
+  // Straight through gray the sense of turning is noise, and is told.
+  EXPECT_TRUE(hue_travel(std::array{polar(60, 40, 20), polar(30, 40, 200.5)}).through_gray);
+}
+
+TEST(Metrics, from_rows_curve_and_fit) {
+  const Appearance appearance{polar(80, 40, 250), polar(20, 10, 260), 70, {}};
+  Paint designed;
+  designed.appearance = appearance;
+  const auto from_curve = *metrics(designed);
+  EXPECT_EQ(from_curve.source, PaintMetrics::Source::kCurve);
+  EXPECT_TRUE(std::isnan(from_curve.residual_de00));
+  EXPECT_EQ(from_curve.travel_deg, 70);
+
+  Paint with_rows =
+      measured({{15, lab_at(appearance, 15)}, {45, lab_at(appearance, 45)}, {110, lab_at(appearance, 110)}});
+  with_rows.gloss = {{20, 80}, {60, 92}};
+  const auto from_rows = *metrics(with_rows);
+  EXPECT_EQ(from_rows.source, PaintMetrics::Source::kRows);
+  EXPECT_DOUBLE_EQ(from_rows.flop_index, from_curve.flop_index);
+  EXPECT_DOUBLE_EQ(from_rows.hue_shift_index, from_curve.hue_shift_index);
+  EXPECT_EQ(from_rows.gloss, 92);
+  EXPECT_EQ(from_rows.gloss_angle_deg, 60);
+  EXPECT_LT(from_rows.residual_de00, 1e-5);
+  EXPECT_NEAR(from_rows.travel_deg, 70, 1e-4);
+
+  // Neither 15 nor 110 was measured: the fitted curve stands in, and says so.
+  const auto fitted =
+      *metrics(measured({{25, lab_at(appearance, 25)}, {45, lab_at(appearance, 45)}, {75, lab_at(appearance, 75)}}));
+  EXPECT_EQ(fitted.source, PaintMetrics::Source::kFitted);
+  EXPECT_NEAR(fitted.flop_index, from_curve.flop_index, 1e-3);
+
+  // A stated curve that misses the rows has the residual of its worst row.
+  with_rows.appearance = appearance;
+  with_rows.appearance->flop.L += 5;
+  const auto missed = *metrics(with_rows);
+  EXPECT_DOUBLE_EQ(missed.residual_de00, delta_e_2000(lab_at(appearance, 110), lab_at(*with_rows.appearance, 110)));
+
+  const auto quick =
+      *metrics(measured({{15, {50, 1, 2}}, {45, {40, 1, 2}}, {110, {30, 1, 2}}}), CurveFit::kWhereNeeded);
+  EXPECT_TRUE(std::isnan(quick.travel_deg));
+  EXPECT_FALSE(std::isnan(quick.flop_index));
+}
+
+TEST(Metrics, no_color_and_gamut) {
+  EXPECT_TRUE(has_flag(*metrics(Paint{}), "no_color"));
+  EXPECT_TRUE(std::isnan(metrics(Paint{})->flop_index));
+  const auto inside = *metrics(measured({{15, {50, 10, 10}}, {45, {40, 5, 5}}, {110, {30, 1, 2}}}));
+  EXPECT_EQ(inside.gamut_de00, 0);
+  const auto outside = *metrics(measured({{15, {50, -140, 20}}, {45, {40, 5, 5}}, {110, {30, 1, 2}}}));
+  EXPECT_GT(outside.gamut_de00, 1);
+  EXPECT_TRUE(has_flag(outside, "gamut"));
+}
+
+TEST(Metrics, rows_off_the_path_are_left_out) {
+  Paint paint = measured({{15, polar(60, 40, 20)}, {45, polar(45, 35, 30)}, {110, polar(30, 30, 40)}});
+  paint.measurement->rows.push_back({{.incidence_deg = 15, .aspecular_deg = 15}, polar(90, 90, 200)});
+  paint.measurement->rows.push_back({{.incidence_deg = 45, .aspecular_deg = -15}, polar(90, 90, 200)});
+  paint.measurement->rows.push_back(
+      {{.incidence_deg = 45, .aspecular_deg = 25, .out_of_plane = true, .azimuth_deg = 90}, polar(90, 90, 200)});
+  EXPECT_NEAR(metrics(paint)->hue_travel_deg, 20, 1e-9);
+}
+
+TEST(Metrics, columns_have_distinct_names) {
+  for (const MetricColumn& column : metric_columns()) EXPECT_EQ(find_metric(column.name), &column);
+  EXPECT_EQ(find_metric("nonsense"), nullptr);
+  EXPECT_EQ(metric_columns_without_fit().size(), metric_columns().size() - 2);
+}
+
+}  // namespace
+}  // namespace goniochrome

@@ -1,0 +1,87 @@
+// One paint and its three representations: measured aspecular rows, the curve, face and flop. [Shimizu2009] 3.3
+// goniochrome-theory(7), PAINT REPRESENTATIONS; goniochrome-paint(5) has the file format.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "color/color.h"
+#include "paint/geometry.h"
+
+namespace goniochrome {
+
+enum class PaintClass { kUnknown, kSolid, kMetallic, kPearl, kInterference };
+
+struct LabReading {
+  Geometry geometry;
+  Lab lab;
+};
+
+// What an instrument or a designer stated: Lab at several geometries, all under one viewing condition.
+struct Measurement {
+  ViewingCondition condition;
+  std::string instrument;
+  std::vector<LabReading> rows;
+};
+
+struct GlossReading {
+  double angle_deg = 60;  // 20 | 60 | 85
+  double gloss_units = 0;
+};
+
+// Face at 15 deg, flop, and the aspecular angle where the color stops changing (15 < travel <= 180).
+struct Appearance {
+  Lab face, flop;
+  double travel_deg = 60;
+  std::optional<double> residual_de00;  // of the fit that made it, where it came from a measurement
+};
+
+struct Anisotropy {
+  double alpha_x = 0, alpha_y = 0;
+};
+
+struct ColorMapReference {
+  std::string href;
+  double index = 1.5;
+};
+
+// One lobe's weights, in 1/sr per working-space channel; an infinite exponent is the mirror (weight times Fresnel).
+struct Lobe {
+  double exponent = 1;
+  Rgb directional_diffuse;
+  Rgb gloss;
+};
+
+// A paint fitted to a basis: f = K_D + sum K_DD cos^E(theta_as) + (1/cos_i) sum K_G cos^E(theta_as).
+struct LobeFit {
+  std::string basis, method;
+  double max_de00 = 0, mean_de00 = 0;
+  Rgb diffuse;  // K_D, 1/sr
+  std::vector<Lobe> lobes;
+};
+
+struct Paint {
+  std::string name;
+  std::string code;
+  PaintClass paint_class = PaintClass::kUnknown;
+  std::optional<Measurement> measurement;
+  std::vector<GlossReading> gloss;
+  std::optional<Appearance> appearance;
+  std::optional<Anisotropy> anisotropy;
+  std::optional<ColorMapReference> color_map;
+  std::optional<LobeFit> lobes;
+  // Elements of other vocabularies, kept as they came (serialized XML), in order.
+  std::vector<std::string> foreign;
+};
+
+const char* paint_class_name(PaintClass paint_class);
+
+// The class of that name, or nothing: "solid", "metallic", "pearl", "interference", "unknown".
+std::optional<PaintClass> paint_class_of(std::string_view name);
+
+// The condition the Lab values of `paint` are relative to: its measurement's, or the default D65/10.
+ViewingCondition condition_of(const Paint& paint);
+
+}  // namespace goniochrome

@@ -1,0 +1,122 @@
+#include <cmath>
+
+#include "base/text.h"
+#include "paint/schemas.h"
+#include "paint/utf8.h"
+#include "paint/xml.h"
+#include "paint/xml_stream.h"
+
+namespace goniochrome {
+
+namespace {
+
+// ` name="text"`, escaped.
+std::string attribute(std::string_view name, std::string_view text) {
+  return fmt::format(" {}=\"{}\"", name, xml_escaped(text));
+}
+std::string attribute(std::string_view name, double value) {
+  return fmt::format(" {}=\"{}\"", name, shortest(value));
+}
+// The same, or nothing where there is nothing to say.
+std::string optional_attribute(std::string_view name, std::string_view text) {
+  return text.empty() ? "" : attribute(name, text);
+}
+
+std::string lab_attributes(const Lab& lab) {
+  return attribute("L", lab.L) + attribute("a", lab.a) + attribute("b", lab.b);
+}
+std::string rgb_attributes(const std::string& prefix, const Rgb& rgb) {
+  return attribute(prefix + "r", rgb.x) + attribute(prefix + "g", rgb.y) + attribute(prefix + "b", rgb.z);
+}
+
+std::string measurement_element(const Measurement& measurement) {
+  std::string text = "    <measurement" + attribute("illuminant", measurement.condition.illuminant) +
+                     attribute("observer", measurement.condition.observer_deg) +
+                     optional_attribute("instrument", measurement.instrument) + ">\n";
+  for (const LabReading& row : measurement.rows)
+    text += "      <lab" + attribute("geometry", geometry_name(row.geometry)) + lab_attributes(row.lab) + "/>\n";
+  return text + "    </measurement>\n";
+}
+
+std::string appearance_element(const Appearance& appearance) {
+  std::string text = "    <appearance" + attribute("travel", appearance.travel_deg);
+  if (appearance.residual_de00) text += attribute("residual_de00", *appearance.residual_de00);
+  return text + ">\n      <face" + lab_attributes(appearance.face) + "/>\n      <flop" +
+         lab_attributes(appearance.flop) + "/>\n    </appearance>\n";
+}
+
+std::string lobes_element(const LobeFit& lobes) {
+  std::string text = "    <lobes" + attribute("space", "lin_rec2020_scene") + attribute("basis", lobes.basis) +
+                     attribute("method", lobes.method) + attribute("max_de00", lobes.max_de00) +
+                     attribute("mean_de00", lobes.mean_de00) + ">\n      <diffuse" + rgb_attributes("", lobes.diffuse) +
+                     "/>\n";
+  for (const Lobe& lobe : lobes.lobes)
+    text += "      <lobe" +
+            (std::isinf(lobe.exponent) ? attribute("exponent", "mirror") : attribute("exponent", lobe.exponent)) +
+            rgb_attributes("dd", lobe.directional_diffuse) + rgb_attributes("g", lobe.gloss) + "/>\n";
+  return text + "    </lobes>\n";
+}
+
+std::string paint_element(const Paint& paint) {
+  std::string text = "  <paint" + attribute("name", paint.name);
+  if (paint.paint_class != PaintClass::kUnknown) text += attribute("class", paint_class_name(paint.paint_class));
+  text += optional_attribute("code", paint.code) + ">\n";
+  if (paint.measurement && !paint.measurement->rows.empty()) text += measurement_element(*paint.measurement);
+  for (const GlossReading& gloss : paint.gloss)
+    text += fmt::format("    <gloss angle=\"{}\">{}</gloss>\n", shortest(gloss.angle_deg), shortest(gloss.gloss_units));
+  if (paint.appearance) text += appearance_element(*paint.appearance);
+  if (paint.anisotropy)
+    text += "    <anisotropy" + attribute("alphaX", paint.anisotropy->alpha_x) +
+            attribute("alphaY", paint.anisotropy->alpha_y) + "/>\n";
+  if (paint.color_map)
+    text += "    <colorMap" + attribute("href", paint.color_map->href) + attribute("index", paint.color_map->index) +
+            "/>\n";
+  if (paint.lobes) text += lobes_element(*paint.lobes);
+  for (const std::string& element : paint.foreign) text += "    " + element + "\n";
+  return text + "  </paint>\n";
+}
+
+// What XML cannot hold, or what a reader would refuse: found before it is written.
+Result<void> check_texts(const Paint& paint) {
+  const std::string* texts[] = {&paint.name,
+                                &paint.code,
+                                paint.measurement ? &paint.measurement->instrument : nullptr,
+                                paint.measurement ? &paint.measurement->condition.illuminant : nullptr,
+                                paint.color_map ? &paint.color_map->href : nullptr,
+                                paint.lobes ? &paint.lobes->basis : nullptr,
+                                paint.lobes ? &paint.lobes->method : nullptr};
+  if (paint.name.empty()) return input_error("a paint has no name: XML cannot hold it");
+  for (const std::string* text : texts)
+    if (text && !is_plain_utf8(*text))
+      return input_error("paint \"{}\" holds a text that is not valid UTF-8 or has a control character: \"{}\"",
+                         shown(paint.name), shown(*text));
+  return {};
+}
+
+}  // namespace
+
+Result<PaintWriter> PaintWriter::begin(OutputFile file, const std::vector<Processing>& history,
+                                       const std::vector<std::string>& foreign) {
+  std::string head =
+      fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<paints xmlns=\"{}\" version=\"1\">\n", kPaintNamespace);
+  for (const Processing& step : history)
+    head += "  <processing" + attribute("tool", plain_utf8(step.tool)) +
+            attribute("version", plain_utf8(step.version)) + attribute("command", plain_utf8(step.command)) + "/>\n";
+  for (const std::string& element : foreign) head += "  " + element + "\n";
+  PaintWriter writer(std::move(file));
+  GONIO_TRY(writer.file_.write(head));
+  return writer;
+}
+
+Result<void> PaintWriter::write(const Paint& paint) {
+  GONIO_TRY(check_texts(paint));
+  GONIO_TRY(file_.write(paint_element(paint)));
+  return is_stream_ ? file_.flush() : Result<void>();
+}
+
+Result<void> PaintWriter::finish() {
+  GONIO_TRY(file_.write("</paints>\n"));
+  return file_.commit();
+}
+
+}  // namespace goniochrome
