@@ -1,0 +1,222 @@
+// The simulated gloss meter.
+//
+// Source image and receptor window are rectangles seen from the sample, w_par wide in the plane of incidence and w_perp
+// across it [ASTM D523]. In the tangent plane of the mirror direction s (u in the plane of incidence, v
+// across) a direction is (s + p u + q v)/|...| with dw = dp dq / (1 + p^2 + q^2)^(3/2). The reflected source lies in
+// the same plane, so the aspecular angle of a pair is that of two nearby points and
+//
+//   G = 100 * (integral f cos_i cos_o dw_i dw_o) / (integral F_1.567 cos_i dw_i)
+//
+// A lobe of exponent E is about a Gaussian of standard deviation 1/sqrt(E) in that plane, so the receptor is cut into
+// panels around each source point, at 0, 2.5 and 6.5 deviations (beyond lies 1e-9 of the peak), with five points each;
+// what is left is a smooth function of the source point, and 3 x 3 points on half the source are enough: the source is
+// narrower than the receptor by more than it would take to see an edge.
+#include "brdf/gloss.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "math/least_squares.h"
+#include "math/quadrature.h"
+
+namespace goniochrome {
+
+namespace {
+
+constexpr double kRadian = M_PI / 180;
+
+struct Aperture {
+  double half_par, half_perp;  // in the tangent plane
+};
+Aperture aperture(double par_deg, double perp_deg) {
+  return {std::tan(par_deg / 2 * kRadian), std::tan(perp_deg / 2 * kRadian)};
+}
+
+struct Meter {
+  double angle_deg, receptor_par_deg, receptor_perp_deg;
+};
+constexpr Meter kMeters[] = {{20, 1.8, 3.6}, {60, 4.4, 11.7}, {85, 4.0, 6.0}};
+constexpr double kSourcePar_deg = 0.75, kSourcePerp_deg = 2.5;
+
+struct Sample {
+  double p, q, weight;  // weight holds the solid angle
+  double cos_normal;
+};
+
+Sample sample(double p, double q, double weight, double angle_deg) {
+  const double length = std::sqrt(1 + p * p + q * q);
+  const double cos_normal = (std::cos(angle_deg * kRadian) - p * std::sin(angle_deg * kRadian)) / length;
+  return {p, q, weight / (length * length * length), cos_normal};
+}
+
+// 1 - cos of the angle between two points of the tangent plane: |a - b|^2/2 of the unit vectors, whose difference along
+// s is taken from p and q so that near points keep their digits.
+double versine(const Sample& a, const Sample& b) {
+  const double la = std::sqrt(1 + a.p * a.p + a.q * a.q), lb = std::sqrt(1 + b.p * b.p + b.q * b.q);
+  const double ds = (b.p * b.p - a.p * a.p + b.q * b.q - a.q * a.q) / (la * lb * (la + lb));
+  const double dp = a.p / la - b.p / lb, dq = a.q / la - b.q / lb;
+  return 0.5 * (ds * ds + dp * dp + dq * dq);
+}
+
+// The quadrature points of one axis: panels around `center` clipped to [-half, half].
+std::vector<QuadraturePoint> panels(double center, double half, double exponent) {
+  static const std::vector<QuadraturePoint> rule = gauss_legendre(5);
+  constexpr std::array<double, 5> kCuts = {-6.5, -2.5, 0, 2.5, 6.5};
+  const double deviation = 1 / std::sqrt(exponent + 1);
+  std::vector<QuadraturePoint> points;
+  for (std::size_t k = 0; k + 1 < kCuts.size(); ++k) {
+    const double low = std::max(-half, center + kCuts[k] * deviation);
+    const double high = std::min(half, center + kCuts[k + 1] * deviation);
+    if (low >= high) continue;
+    for (const auto& [x, w] : rule) points.push_back({(low + high) / 2 + (high - low) / 2 * x, (high - low) / 2 * w});
+  }
+  return points;
+}
+
+std::vector<Sample> source_samples(double angle_deg) {
+  const std::vector<QuadraturePoint> rule = gauss_legendre(3);
+  const Aperture source = aperture(kSourcePar_deg, kSourcePerp_deg);
+  std::vector<Sample> samples;
+  for (const auto& [x, wx] : rule)
+    for (const auto& [y, wy] : rule)  // q > 0 only; the other half is its mirror image
+      samples.push_back(sample(x * source.half_par, (y + 1) / 2 * source.half_perp,
+                               wx * wy * source.half_par * source.half_perp, angle_deg));
+  return samples;
+}
+
+struct LobeReading {
+  double directional_diffuse, gloss;
+};
+
+// The numerator integrals of one lobe with weight 1: K_DD cos_i cos_o cos^E and K_G cos_o cos^E.
+LobeReading lobe_integrals(const Meter& meter, const std::vector<Sample>& source, double exponent) {
+  const Aperture receptor = aperture(meter.receptor_par_deg, meter.receptor_perp_deg);
+  LobeReading sum = {0, 0};
+  for (const Sample& in : source) {
+    double received = 0;
+    const auto across = panels(in.q, receptor.half_perp, exponent);
+    for (const auto& [p, wp] : panels(in.p, receptor.half_par, exponent)) {
+      for (const auto& [q, wq] : across) {
+        const Sample out = sample(p, q, wp * wq, meter.angle_deg);
+        received += out.weight * out.cos_normal * cos_power_from_versine(versine(in, out), exponent);
+      }
+    }
+    sum.directional_diffuse += in.weight * in.cos_normal * received;
+    sum.gloss += in.weight * received;
+  }
+  return sum;
+}
+
+double luminance(const Rgb& rgb) {
+  return xyz_d65_from_rgb(rgb).Y;
+}
+
+// K_G and mirror for one reading of `gu`, already free of flake light; weights ordered as the basis, the mirror last.
+std::vector<double> one_reading(const GlossTable& table, const GlossColumns& meter, double gu, bool has_mirror) {
+  const std::size_t lobes = table.exponents().size();
+  std::vector<double> weights(lobes + 1, 0.0);
+  if (gu <= 0) return weights;
+  // Each column with the energy of the smooth coat, in the order of rising readings.
+  const double energy = fresnel_dielectric(std::cos(meter.angle_deg * kRadian), kCoatIndex);
+  const auto full_weight = [&](std::size_t j) {
+    return j == lobes ? 1.0 : energy * (table.exponents()[j] + 1) / (2 * M_PI);
+  };
+  const auto full_reading = [&](std::size_t j) {
+    return full_weight(j) * (j == lobes ? meter.mirror : meter.gloss[j]);
+  };
+  const std::size_t end = lobes + (has_mirror ? 1 : 0);
+  if (end == 0) return weights;
+  std::size_t sharper = 0;
+  while (sharper < end && full_reading(sharper) < gu) ++sharper;
+  if (sharper == 0 || sharper == end) {
+    const std::size_t only = sharper == 0 ? 0 : end - 1;
+    weights[only] = full_weight(only) * gu / full_reading(only);
+    return weights;
+  }
+  const double wide = full_reading(sharper - 1), sharp = full_reading(sharper);
+  const double share = (gu - wide) / (sharp - wide);
+  weights[sharper] = share * full_weight(sharper);
+  weights[sharper - 1] = (1 - share) * full_weight(sharper - 1);
+  return weights;
+}
+
+}  // namespace
+
+GlossTable::GlossTable(const std::vector<double>& exponents) : exponents_(exponents) {
+  for (const Meter& meter : kMeters) {
+    const std::vector<Sample> source = source_samples(meter.angle_deg);
+    double standard = 0, smooth = 0;
+    for (const Sample& in : source) {
+      standard += in.weight * in.cos_normal * fresnel_dielectric(in.cos_normal, kBlackGlassIndex);
+      smooth += in.weight * in.cos_normal * fresnel_dielectric(in.cos_normal, kCoatIndex);
+    }
+    GlossColumns columns;
+    columns.angle_deg = meter.angle_deg;
+    columns.mirror = 100 * smooth / standard;
+    columns.diffuse = 100 * lobe_integrals(meter, source, 0).directional_diffuse / standard;
+    for (const double exponent : exponents) {
+      const LobeReading lobe = lobe_integrals(meter, source, exponent);
+      columns.directional_diffuse.push_back(100 * lobe.directional_diffuse / standard);
+      columns.gloss.push_back(100 * lobe.gloss / standard);
+    }
+    columns_.push_back(std::move(columns));
+  }
+}
+
+Result<const GlossColumns*> GlossTable::at(double angle_deg) const {
+  for (const GlossColumns& columns : columns_)
+    if (columns.angle_deg == angle_deg) return &columns;
+  return input_error("gloss angle {} deg: gloss meters have 20, 60 or 85", angle_deg);
+}
+
+double gloss_units(const GlossTable& table, const GlossColumns& meter, const LobeFit& fit) {
+  double gu = meter.diffuse * luminance(fit.diffuse);
+  for (const Lobe& lobe : fit.lobes) {
+    if (std::isinf(lobe.exponent)) {
+      gu += meter.mirror * luminance(lobe.gloss);
+      continue;
+    }
+    const auto found = std::find(table.exponents().begin(), table.exponents().end(), lobe.exponent);
+    if (found == table.exponents().end()) continue;
+    const std::size_t j = found - table.exponents().begin();
+    gu += meter.directional_diffuse[j] * luminance(lobe.directional_diffuse) + meter.gloss[j] * luminance(lobe.gloss);
+  }
+  return gu;
+}
+
+Result<std::vector<double>> set_gloss(const GlossTable& table, const std::vector<GlossReading>& readings,
+                                      LobeFit& fit) {
+  const std::size_t lobes = table.exponents().size();
+  const bool has_mirror = fit.lobes.size() > lobes;
+  for (Lobe& lobe : fit.lobes) lobe.gloss = {};
+
+  std::vector<const GlossColumns*> meters;
+  std::vector<double> wanted;
+  for (const GlossReading& reading : readings) {
+    GONIO_ASSIGN(const GlossColumns* meter, table.at(reading.angle_deg));
+    if (!(reading.gloss_units >= 0)) return input_error("gloss {} GU: a reading is 0 or more", reading.gloss_units);
+    meters.push_back(meter);
+    wanted.push_back(std::min(reading.gloss_units, 100.0) - gloss_units(table, *meter, fit));
+  }
+
+  std::vector<double> weights(lobes + 1, 0.0);
+  if (readings.size() == 1) {
+    weights = one_reading(table, *meters[0], wanted[0], has_mirror);
+  } else if (!readings.empty()) {
+    Matrix m(static_cast<int>(readings.size()), static_cast<int>(lobes + (has_mirror ? 1 : 0)));
+    for (int i = 0; i < m.rows; ++i)
+      for (int j = 0; j < m.columns; ++j)
+        m(i, j) = j < static_cast<int>(lobes) ? meters[i]->gloss[j] : meters[i]->mirror;
+    const NonNegativeFit best = nnls(m, wanted);
+    std::copy(best.x.begin(), best.x.end(), weights.begin());
+  }
+  for (std::size_t j = 0; j < fit.lobes.size(); ++j) fit.lobes[j].gloss = {weights[j], weights[j], weights[j]};
+
+  std::vector<double> misfit_gu;
+  for (std::size_t i = 0; i < readings.size(); ++i)
+    misfit_gu.push_back(gloss_units(table, *meters[i], fit) - readings[i].gloss_units);
+  return misfit_gu;
+}
+
+}  // namespace goniochrome

@@ -1,0 +1,200 @@
+#include "brdf/gloss.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "math/quadrature.h"
+
+namespace goniochrome {
+namespace {
+
+const std::vector<double> kBasis = {1.3, 6, 20, 70, 250, 900, 3000};
+constexpr double kMirror = std::numeric_limits<double>::infinity();
+
+LobeFit empty_fit(bool mirror = true) {
+  LobeFit fit;
+  for (const double e : kBasis) fit.lobes.push_back({e, {}, {}});
+  if (mirror) fit.lobes.push_back({kMirror, {}, {}});
+  return fit;
+}
+
+const GlossTable& table() {
+  static const GlossTable made(kBasis);
+  return made;
+}
+
+struct Angles {
+  double angle_deg, receptor_par_deg, receptor_perp_deg;
+};
+const Angles kAngles[] = {{20, 1.8, 3.6}, {60, 4.4, 11.7}, {85, 4, 6}};
+
+// The meter by brute force: unit vectors, the plain dot product, one dense product rule over both windows.
+double brute_force_gloss(const Angles& meter, double exponent, int source_points, int receptor_points) {
+  const double t = meter.angle_deg * M_PI / 180;
+  const Vec3 s = {std::sin(t), 0, std::cos(t)}, u = {std::cos(t), 0, -std::sin(t)}, v = {0, 1, 0};
+  struct Point {
+    Vec3 w;
+    double solid_angle;
+  };
+  const auto window = [&](double par_deg, double perp_deg, int n) {
+    std::vector<Point> points;
+    const double a = std::tan(par_deg / 2 * M_PI / 180), b = std::tan(perp_deg / 2 * M_PI / 180);
+    for (const auto& [x, wx] : gauss_legendre(n))
+      for (const auto& [y, wy] : gauss_legendre(n)) {
+        const Vec3 d = s + (a * x) * u + (b * y) * v;
+        points.push_back({normalized(d), wx * wy * a * b / std::pow(length(d), 3)});
+      }
+    return points;
+  };
+  const auto source = window(0.75, 2.5, source_points);
+  const auto receptor = window(meter.receptor_par_deg, meter.receptor_perp_deg, receptor_points);
+  double numerator = 0, denominator = 0;
+  for (const Point& i : source) {
+    denominator += i.solid_angle * i.w.z * fresnel_dielectric(i.w.z, kBlackGlassIndex);
+    for (const Point& o : receptor)
+      numerator += i.solid_angle * o.solid_angle * o.w.z * std::pow(std::max(0.0, dot(i.w, o.w)), exponent);
+  }
+  return 100 * numerator / denominator;
+}
+
+TEST(Gloss, QuadratureMatchesBruteForce) {
+  const std::vector<double> exponents = {0, 1.3, 70, 900, 3000, 30000};
+  const GlossTable many(exponents);
+  for (const Angles& meter : kAngles)
+    for (std::size_t j = 0; j < exponents.size(); ++j) {
+      const double brute = brute_force_gloss(meter, exponents[j], 6, exponents[j] > 5000 ? 96 : 40);
+      EXPECT_NEAR((*many.at(meter.angle_deg))->gloss[j] / brute, 1, 1e-4) << meter.angle_deg << " " << exponents[j];
+    }
+}
+
+TEST(Gloss, VerySharpLobeReadsAsTheMirrorOfItsEnergy) {
+  const GlossTable sharp({1e6});
+  for (const Angles& meter : kAngles) {
+    const GlossColumns& columns = **sharp.at(meter.angle_deg);
+    // All of a unit-energy lobe enters the receptor: 100 / F_1.567, averaged over the source (its cosines vary).
+    const double energy_one = (1e6 + 1) / (2 * M_PI) * columns.gloss[0];
+    const double f = fresnel_dielectric(std::cos(meter.angle_deg * M_PI / 180), kCoatIndex);
+    EXPECT_NEAR(energy_one * f / columns.mirror, 1, 1e-3) << meter.angle_deg;
+  }
+}
+
+TEST(Gloss, ClosedFormSeedIsNear) {
+  // G ~ 100 F/F_1.567 erf(w_par/2 sqrt(e/2)) erf(w_perp/2 sqrt(e/2)) has no cosines and a source without width, which
+  // matters most at 20 deg, where the receptor is only 1.8 deg wide: 10 % at e = 3000.
+  for (const Angles& meter : kAngles)
+    for (const double e : {70.0, 250.0, 900.0, 3000.0}) {
+      const GlossTable one({e});
+      const double t = meter.angle_deg * M_PI / 180, c = std::cos(t);
+      const double seed = 100 / fresnel_dielectric(c, kBlackGlassIndex) *
+                          std::erf(meter.receptor_par_deg / 2 * M_PI / 180 * std::sqrt(e / 2)) *
+                          std::erf(meter.receptor_perp_deg / 2 * M_PI / 180 * std::sqrt(e / 2));
+      const double ours = (*one.at(meter.angle_deg))->gloss[0] * (e + 1) / (2 * M_PI);
+      EXPECT_NEAR(ours / seed, 1, 0.12) << meter.angle_deg << " " << e;
+    }
+}
+
+TEST(HardCase, gloss_limits_smooth_coat_reads_the_published_values) {
+  // Published from Fresnel factors of four digits (.0403/.0491): good to 0.1 GU.
+  EXPECT_NEAR((*table().at(20))->mirror, 82.1, 0.1);
+  EXPECT_NEAR((*table().at(60))->mirror, 89.1, 0.1);
+  EXPECT_NEAR((*table().at(85))->mirror, 99.0, 0.1);
+}
+
+TEST(HardCase, gloss_limits_end_points_are_exact) {
+  for (const double angle : {20.0, 60.0, 85.0}) {
+    LobeFit fit = empty_fit();
+    // 0 GU: nothing at all.
+    auto misfit = set_gloss(table(), {{angle, 0}}, fit);
+    ASSERT_TRUE(misfit.ok());
+    for (const Lobe& lobe : fit.lobes) EXPECT_EQ(lobe.gloss, Rgb{});
+    EXPECT_EQ((*misfit)[0], 0);
+    // The smooth limit: the mirror alone with weight 1.
+    const double smooth = (*table().at(angle))->mirror;
+    misfit = set_gloss(table(), {{angle, smooth}}, fit);
+    EXPECT_NEAR(fit.lobes.back().gloss.x, 1, 1e-12);
+    for (std::size_t j = 0; j + 1 < fit.lobes.size(); ++j) EXPECT_NEAR(fit.lobes[j].gloss.x, 0, 1e-9);
+    // 100 GU: a little more mirror; beyond, the rest is told.
+    misfit = set_gloss(table(), {{angle, 100}}, fit);
+    EXPECT_NEAR(fit.lobes.back().gloss.x, 100 / smooth, 1e-12);
+    EXPECT_NEAR((*misfit)[0], 0, 1e-10);
+    misfit = set_gloss(table(), {{angle, 130}}, fit);
+    EXPECT_NEAR((*misfit)[0], -30, 1e-10);
+  }
+}
+
+TEST(HardCase, gloss_limits_any_single_reading_is_met) {
+  for (const bool mirror : {true, false})
+    for (const double angle : {20.0, 60.0, 85.0})
+      for (double gu = 0.01; gu <= 100; gu *= 1.17) {
+        LobeFit fit = empty_fit(mirror);
+        const auto misfit = set_gloss(table(), {{angle, gu}}, fit);
+        ASSERT_TRUE(misfit.ok());
+        EXPECT_NEAR((*misfit)[0], 0, 1e-10 * gu) << angle << " " << gu;
+        int used = 0;
+        for (const Lobe& lobe : fit.lobes) {
+          EXPECT_GE(lobe.gloss.x, 0);
+          EXPECT_EQ(lobe.gloss.x, lobe.gloss.z);
+          used += lobe.gloss.x > 0;
+        }
+        EXPECT_LE(used, 2);
+      }
+  // The control: the equivalent lobe put on the nearest exponent of the basis alone.
+  const double energy = fresnel_dielectric(0.5, kCoatIndex);
+  double worst = 0;
+  for (double gu = 1; gu < 89; ++gu) {
+    double nearest = INFINITY;
+    for (std::size_t j = 0; j < kBasis.size(); ++j) {
+      LobeFit fit = empty_fit();
+      fit.lobes[j].gloss = (energy * (kBasis[j] + 1) / (2 * M_PI)) * Rgb{1, 1, 1};
+      nearest = std::min(nearest, std::abs(gloss_units(table(), **table().at(60), fit) - gu));
+    }
+    worst = std::max(worst, nearest);
+  }
+  EXPECT_GT(worst, 5);
+}
+
+TEST(HardCase, gloss_limits_impossible_triples_are_told) {
+  LobeFit fit = empty_fit();
+  // A smooth coat is possible, and found.
+  auto misfit = set_gloss(table(), {{20, 82.1}, {60, 89.1}, {85, 99.0}}, fit);
+  ASSERT_TRUE(misfit.ok());
+  for (const double m : *misfit) EXPECT_NEAR(m, 0, 0.1);
+  EXPECT_NEAR(fit.lobes.back().gloss.x, 1, 2e-3);
+  // Glossy at 20 deg and dull at 85 is not.
+  misfit = set_gloss(table(), {{20, 90}, {60, 40}, {85, 5}}, fit);
+  ASSERT_TRUE(misfit.ok());
+  double worst = 0;
+  for (const double m : *misfit) worst = std::max(worst, std::abs(m));
+  EXPECT_GT(worst, 10);
+  for (const Lobe& lobe : fit.lobes) EXPECT_TRUE(std::isfinite(lobe.gloss.x) && lobe.gloss.x >= 0);
+  // No such meter; no such reading.
+  EXPECT_FALSE(set_gloss(table(), {{45, 50}}, fit).ok());
+  EXPECT_FALSE(set_gloss(table(), {{60, -1}}, fit).ok());
+  EXPECT_FALSE(set_gloss(table(), {{60, std::nan("")}}, fit).ok());
+}
+
+TEST(Gloss, DiffuseAndFlakeLightCountInTheReading) {
+  LobeFit white = empty_fit();
+  white.diffuse = (1 / M_PI) * Rgb{1, 1, 1};
+  const double alone = gloss_units(table(), **table().at(60), white);
+  EXPECT_NEAR(alone, 2.5, 0.2);  // cos x receptor / (pi F): a white card is not at 0
+  const auto misfit = set_gloss(table(), {{60, 91.4}}, white);
+  EXPECT_NEAR((*misfit)[0], 0, 1e-10);
+  EXPECT_LT(white.lobes.back().gloss.x, 1.0);
+  // It cannot read less than its own diffuse light.
+  EXPECT_NEAR((*set_gloss(table(), {{60, 1}}, white))[0], alone - 1, 1e-10);
+}
+
+TEST(Gloss, NoReadingNoGloss) {
+  LobeFit fit = empty_fit();
+  fit.lobes[2].gloss = {1, 1, 1};
+  const auto misfit = set_gloss(table(), {}, fit);
+  ASSERT_TRUE(misfit.ok());
+  EXPECT_TRUE(misfit->empty());
+  for (const Lobe& lobe : fit.lobes) EXPECT_EQ(lobe.gloss, Rgb{});
+}
+
+}  // namespace
+}  // namespace goniochrome

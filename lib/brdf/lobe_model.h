@@ -1,0 +1,30 @@
+// The lobe model of a paint: a constant plus cosine lobes about the mirror direction. [ShimizuMeyer] 3.1
+// goniochrome-theory(7), LOBE MODEL.
+#pragma once
+
+#include "base/vec3.h"
+#include "color/color.h"
+#include "paint/paint.h"
+
+namespace goniochrome {
+
+// cos(angle)^exponent for 0 <= angle_rad <= pi/2 (0 beyond), exponent 0..1e6, relative error <= 1e-12: the log of the
+// cosine comes from log1p(-sin^2)/2 near 0, where cos itself has already lost the digits.
+double cos_power(double angle_rad, double exponent);
+
+// Same, from s = |r - d|^2 / 2 = 1 - cos, which two nearly parallel unit vectors give without cancellation.
+double cos_power_from_versine(double versine, double exponent);
+
+// Unpolarized Fresnel reflectance of a smooth dielectric of relative index n for cos_i in [0,1].
+double fresnel_dielectric(double cos_i, double index);
+
+constexpr double kCoatIndex = 1.5;
+
+// f(wi,wo) in 1/sr without its mirror lobe (that is a delta: see render/reference.h). 0 where either direction is below
+// the horizon.
+Rgb brdf(const LobeFit& fit, const Vec3& to_light, const Vec3& to_viewer, const Vec3& normal);
+
+// The reflectance factor pi f without conventional gloss at an aspecular angle: what a multi-angle instrument reads.
+Rgb flake_reflectance_factor(const LobeFit& fit, double aspecular_deg);
+
+}  // namespace goniochrome

@@ -1,0 +1,120 @@
+#include "brdf/lobe_model.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace goniochrome {
+namespace {
+
+// cos^E of the double `angle`, whose cosine is taken in long double: sin^2 by the half angle keeps 1 - cos.
+long double reference_power(double angle, double exponent) {
+  const long double h = std::sin(static_cast<long double>(angle) / 2), versine = 2 * h * h;
+  const long double log_cos =
+      versine < 0.3L ? std::log1p(-versine) : std::log(std::cos(static_cast<long double>(angle)));
+  return std::exp(exponent * log_cos);
+}
+
+TEST(HardCase, pow_cos_within_1e_12_of_long_double) {
+  double worst = 0, textbook = 0;
+  int compared = 0, vanished = 0;
+  for (double exponent : {0.3, 1.0, 7.5, 150.0, 3000.0, 1e4, 1e5, 1e6}) {
+    for (double angle_deg = 1e-8; angle_deg < 89.9991; angle_deg *= 1.003) {
+      const double angle = angle_deg * M_PI / 180;
+      const long double reference = reference_power(angle, exponent);
+      const double ours = cos_power(angle, exponent);
+      EXPECT_TRUE(std::isfinite(ours));
+      if (reference < std::numeric_limits<double>::min()) {  // below the normal range there is no relative error
+        EXPECT_LE(ours, 2 * std::numeric_limits<double>::min());
+        ++vanished;
+        continue;
+      }
+      ++compared;
+      worst = std::max(worst, static_cast<double>(std::abs(ours / reference - 1)));
+      textbook = std::max(textbook, static_cast<double>(std::abs(std::pow(std::cos(angle), exponent) / reference - 1)));
+    }
+    const double last = 89.999 * M_PI / 180;
+    if (exponent >= 60) continue;
+    EXPECT_NEAR(cos_power(last, exponent) / static_cast<double>(reference_power(last, exponent)), 1, 1e-12);
+  }
+  EXPECT_GT(compared, 10000);
+  EXPECT_GT(vanished, 100);
+  EXPECT_LE(worst, 1e-12);
+  EXPECT_GT(textbook, 1e-11) << "the control, pow(cos(angle), E), holds too";
+}
+
+TEST(HardCase, pow_cos_from_versine) {
+  for (const double exponent : {1.0, 70.0, 1e6})
+    for (const double versine : {0.0, 1e-20, 1e-12, 1e-7, 1e-4, 0.1, 0.5, 0.99}) {
+      const long double reference = std::exp(exponent * std::log1p(-static_cast<long double>(versine)));
+      if (reference < 1e-300L) continue;
+      EXPECT_NEAR(static_cast<double>(cos_power_from_versine(versine, exponent) / reference), 1, 1e-12);
+    }
+  EXPECT_EQ(cos_power_from_versine(1, 3), 0);
+  EXPECT_EQ(cos_power_from_versine(1.7, 0), 0);
+}
+
+TEST(LobeModel, PowerAtTheEndsOfItsDomain) {
+  EXPECT_EQ(cos_power(0, 1e6), 1);
+  EXPECT_EQ(cos_power(0.5, 0), 1);
+  EXPECT_EQ(cos_power(M_PI / 2, 0), 0);
+  EXPECT_EQ(cos_power(2, 3), 0);
+  EXPECT_EQ(cos_power(-0.3, 20), cos_power(0.3, 20));
+}
+
+TEST(LobeModel, FresnelKnownValues) {
+  const double at_normal = std::pow((1.5 - 1) / (1.5 + 1), 2);
+  EXPECT_NEAR(fresnel_dielectric(1, 1.5), at_normal, 1e-16);
+  // The three values the gloss standard is built on (ASTM D523 prints four digits).
+  EXPECT_NEAR(fresnel_dielectric(std::cos(20 * M_PI / 180), 1.567), 0.0491, 5e-5);
+  EXPECT_NEAR(fresnel_dielectric(std::cos(60 * M_PI / 180), 1.567), 0.1001, 1e-4);
+  EXPECT_NEAR(fresnel_dielectric(std::cos(85 * M_PI / 180), 1.567), 0.6192, 1e-4);
+  EXPECT_NEAR(fresnel_dielectric(0, 1.5), 1, 1e-15);
+  // Brewster's angle: half of r_s^2 alone, ((n^2-1)/(n^2+1))^2 / 2.
+  const double n2 = 2.25;
+  EXPECT_NEAR(fresnel_dielectric(1 / std::sqrt(1 + n2), 1.5), 0.5 * std::pow((n2 - 1) / (n2 + 1), 2), 1e-16);
+  // From inside, past the critical angle.
+  EXPECT_EQ(fresnel_dielectric(0.5, 1 / 1.5), 1);
+}
+
+TEST(LobeModel, FresnelOfMatchedIndexVanishesSmoothly) {
+  for (const double c : {0.0, 1e-9, 0.3, 1.0}) EXPECT_EQ(fresnel_dielectric(c, 1), 0);
+  // F ~ (n-1)^2 at normal incidence /4; the textbook (c-g)/(c+g) loses half the digits here.
+  const double tiny = 0x1p-40;
+  EXPECT_NEAR(fresnel_dielectric(1, 1 + tiny) / (tiny * tiny / 4), 1, 1e-11);
+  EXPECT_NEAR(fresnel_dielectric(1, 1 - tiny) / (tiny * tiny / 4), 1, 1e-11);
+}
+
+LobeFit sample_fit() {
+  LobeFit fit;
+  fit.diffuse = {0.1, 0.05, 0.02};
+  fit.lobes = {{20, {0.5, 0.4, 0.3}, {0, 0, 0}},
+               {900, {0, 0.1, 0}, {2, 2, 2}},
+               {std::numeric_limits<double>::infinity(), {}, {1, 1, 1}}};
+  return fit;
+}
+
+TEST(LobeModel, BrdfAddsItsParts) {
+  const LobeFit fit = sample_fit();
+  const Vec3 normal = {0, 0, 1};
+  const double ti = 45 * M_PI / 180, to = 30 * M_PI / 180;  // 15 deg aspecular, in plane
+  const Vec3 light = {-std::sin(ti), 0, std::cos(ti)}, view = {std::sin(to), 0, std::cos(to)};
+  const double c20 = std::pow(std::cos(15 * M_PI / 180), 20), c900 = std::pow(std::cos(15 * M_PI / 180), 900);
+  const Rgb f = brdf(fit, light, view, normal);
+  EXPECT_NEAR(f.x, 0.1 + 0.5 * c20 + 2 * c900 / std::cos(ti), 1e-14);
+  EXPECT_NEAR(f.y, 0.05 + 0.4 * c20 + 0.1 * c900 + 2 * c900 / std::cos(ti), 1e-14);
+  EXPECT_EQ(brdf(fit, {0, 0, -1}, view, normal), Rgb{});
+  EXPECT_EQ(brdf(fit, light, {0, 1, 0}, normal), Rgb{});
+}
+
+TEST(LobeModel, ReflectanceFactorLeavesGlossOut) {
+  const LobeFit fit = sample_fit();
+  const double c20 = std::pow(std::cos(15 * M_PI / 180), 20);
+  EXPECT_NEAR(flake_reflectance_factor(fit, 15).x, M_PI * (0.1 + 0.5 * c20), 1e-14);
+  EXPECT_NEAR(flake_reflectance_factor(fit, 0).y, M_PI * (0.05 + 0.4 + 0.1), 1e-14);
+  EXPECT_NEAR(flake_reflectance_factor(fit, 110).z, M_PI * 0.02, 1e-16);
+}
+
+}  // namespace
+}  // namespace goniochrome

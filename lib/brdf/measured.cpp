@@ -1,0 +1,174 @@
+#include "brdf/measured.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/file.h"
+#include "base/text.h"
+#include "brdf/measured_formats.h"
+
+namespace goniochrome {
+
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+double mean_of(const std::vector<double>& f) {
+  double sum = 0;
+  for (const double x : f) sum += x;
+  return sum / static_cast<double>(f.size());
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// The k-th point of van der Corput's sequence in a base: even coverage without chance.
+double radical_inverse(int base, int k) {
+  double result = 0, place = 1;
+  for (; k > 0; k /= base) result += (place /= base) * (k % base);
+  return result;
+}
+
+// f(a,b) and f(b,a), each the mean over the channels.
+struct Swapped {
+  double there, back, cos_there, cos_back;  // the cosine of the viewer's angle belongs to each
+};
+
+// |there - back| over their mean size, 0..2.
+double disagreement(double there, double back) {
+  const double size = (std::abs(there) + std::abs(back)) / 2;
+  return size > 0 ? std::abs(there - back) / size : 0;
+}
+
+std::vector<Swapped> swapped_pairs(const MeasuredBrdf& brdf) {
+  std::vector<Swapped> pairs;
+  for (const DirectionPair& pair : brdf.probes()) {
+    const MeasuredValue there = brdf.value(pair.light, pair.view), back = brdf.value(pair.view, pair.light);
+    if (!there.measured || !back.measured || there.outside_deg > 0 || back.outside_deg > 0) continue;
+    pairs.push_back({mean_of(there.f), mean_of(back.f), pair.view.z, pair.light.z});
+  }
+  return pairs;
+}
+
+// Half the variance of f(a,b) - f(b,a) is the variance of either; among the darkest tenth of the pairs the signal is
+// small, and what is left is noise (and any systematic error there, which a reading cannot be told from either).
+double dark_noise(std::vector<Swapped> pairs) {
+  const std::size_t darkest = pairs.size() / 10;
+  if (darkest == 0) return 0;
+  std::nth_element(pairs.begin(), pairs.begin() + static_cast<std::ptrdiff_t>(darkest), pairs.end(),
+                   [](const Swapped& a, const Swapped& b) { return a.there + a.back < b.there + b.back; });
+  double sum = 0;
+  for (std::size_t i = 0; i < darkest; ++i) sum += (pairs[i].there - pairs[i].back) * (pairs[i].there - pairs[i].back);
+  return std::sqrt(sum / 2 / static_cast<double>(darkest));
+}
+
+// integral f cos(theta_o) d omega for light at 45 deg, the midpoint rule on equal cosine-weighted areas; the 10 deg
+// about specular hold the gloss, which no such grid resolves.
+double albedo_without_gloss(const MeasuredBrdf& brdf) {
+  constexpr int kRings = 24, kSpokes = 48;
+  const Vec3 light = {std::sin(45 * kDegree), 0, std::cos(45 * kDegree)};
+  double sum = 0;
+  for (int i = 0; i < kRings; ++i)
+    for (int j = 0; j < kSpokes; ++j) {
+      const double sine = std::sqrt((i + 0.5) / kRings), azimuth = 2 * std::numbers::pi * (j + 0.5) / kSpokes;
+      const Vec3 view = {sine * std::cos(azimuth), sine * std::sin(azimuth), std::sqrt(1 - sine * sine)};
+      if (aspecular_angle_rad(light, view, {0, 0, 1}) < 10 * kDegree) continue;
+      sum += mean_of(brdf.value(light, view).f);
+    }
+  return sum * std::numbers::pi / (kRings * kSpokes);
+}
+
+}  // namespace
+
+Cell cell_at(double coordinate, std::size_t n) {
+  const double held = std::clamp(coordinate, 0.0, static_cast<double>(n - 1));
+  const auto low = std::min(static_cast<std::size_t>(held), n - 2);
+  return {low, held - static_cast<double>(low)};
+}
+
+double polar_angle(const Vec3& direction) {
+  return std::atan2(std::hypot(direction.x, direction.y), direction.z);
+}
+
+double azimuth_between(const Vec3& a, const Vec3& b) {
+  return std::atan2(std::abs(a.x * b.y - a.y * b.x), a.x * b.x + a.y * b.y);
+}
+
+std::vector<DirectionPair> MeasuredBrdf::probes() const {
+  constexpr int kProbes = 1000;
+  const double most = std::sin(75 * kDegree);
+  std::vector<DirectionPair> result;
+  for (int k = 1; k <= kProbes; ++k) {
+    const auto direction = [&](int polar_base, int azimuth_base) -> Vec3 {
+      const double sine = most * std::sqrt(radical_inverse(polar_base, k));
+      const double azimuth = 2 * std::numbers::pi * radical_inverse(azimuth_base, k);
+      return {sine * std::cos(azimuth), sine * std::sin(azimuth), std::sqrt(1 - sine * sine)};
+    };
+    const DirectionPair pair{direction(2, 3), direction(5, 7)};
+    if (aspecular_angle_rad(pair.light, pair.view, {0, 0, 1}) > 15 * kDegree) result.push_back(pair);
+  }
+  return result;
+}
+
+bool looks_measured(std::string_view path, std::string_view head) {
+  return looks_rgl(head) || looks_mbsdf(head) || looks_merl(head) || lower(path).ends_with(".brdf");
+}
+
+Result<std::unique_ptr<MeasuredBrdf>> read_measured(const std::string& path) {
+  GONIO_ASSIGN(const std::string bytes, file_content(path));
+  return read_measured(path, bytes);
+}
+
+Result<std::unique_ptr<MeasuredBrdf>> read_measured(const std::string& name, std::string_view bytes) {
+  if (looks_rgl(bytes)) return read_rgl(name, bytes);
+  if (looks_mbsdf(bytes)) return read_mbsdf(name, bytes);
+  if (looks_merl(bytes)) return read_merl(name, bytes);
+  if (bytes.find('\0') != std::string_view::npos)
+    return input_error("{}: is none of MERL .binary, Cornell .brdf, NVIDIA .mbsdf and RGL _rgb.bsdf", name);
+  return read_cornell(name, bytes);
+}
+
+MeasuredChecks checks(const MeasuredBrdf& brdf) {
+  const MeasuredTraits& traits = brdf.traits();
+  MeasuredChecks result;
+  result.negative_share = static_cast<double>(traits.negative) / static_cast<double>(traits.samples);
+  result.zero_share = static_cast<double>(traits.zero) / static_cast<double>(traits.samples);
+  result.warnings = traits.findings;
+
+  const auto pairs = swapped_pairs(brdf);
+  std::vector<double> as_f, as_f_cos;
+  for (const Swapped& pair : pairs) {
+    as_f.push_back(disagreement(pair.there, pair.back));
+    as_f_cos.push_back(disagreement(pair.there / pair.cos_there, pair.back / pair.cos_back));
+  }
+  if (!pairs.empty()) {
+    result.reciprocity_error = median(as_f);
+    result.reciprocity_if_f_cos = median(as_f_cos);
+  }
+  result.values = traits.symmetric                                          ? "symmetric"
+                  : result.reciprocity_error <= result.reciprocity_if_f_cos ? "f"
+                                                                            : "f_cos";
+  result.noise_floor = std::numbers::pi * std::max(traits.negative_rms, traits.symmetric ? 0.0 : dark_noise(pairs));
+  result.albedo_45 = albedo_without_gloss(brdf);
+
+  if (traits.negative > 0)
+    result.warnings.push_back(fmt::format("{:.1f} % of the samples are negative", 100 * result.negative_share));
+  constexpr double kPoorReciprocity = 0.05;
+  if (result.reciprocity_error > kPoorReciprocity)
+    result.warnings.push_back(fmt::format(
+        "with light and viewer swapped the values differ by {:.0f} % (median): take that for their uncertainty",
+        100 * result.reciprocity_error));
+  if (result.values == "f_cos" && result.reciprocity_if_f_cos < 0.8 * result.reciprocity_error)
+    result.warnings.push_back(
+        "the values fit f cos(theta_o) better than f: colors far from the normal may be too dark");
+  if (result.albedo_45 > 1)
+    result.warnings.push_back(
+        fmt::format("reflects {:.2f} of the light at 45 deg: more than there is", result.albedo_45));
+  return result;
+}
+
+}  // namespace goniochrome

@@ -1,0 +1,47 @@
+// Cube maps: texel <-> direction, exact solid angles, lookup. OpenGL's face order (+X -X +Y -Y +Z -Z) and orientation,
+// texel centers at (i+.5)/N. goniochrome-theory(7), PREFILTERING.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "base/vec3.h"
+
+namespace goniochrome {
+
+// Six faces of N x N RGB texels, faces from the top, rows from the top: index ((face*N + row)*N + column)*3 + channel.
+struct CubeMap {
+  int size = 0;
+  std::vector<float> texels;
+
+  CubeMap() = default;
+  explicit CubeMap(int n) : size(n), texels(static_cast<std::size_t>(n) * n * 18, 0.0F) {}
+  float* at(int face, int row, int column) {
+    return &texels[((static_cast<std::size_t>(face) * size + row) * size + column) * 3];
+  }
+  const float* at(int face, int row, int column) const {
+    return &texels[((static_cast<std::size_t>(face) * size + row) * size + column) * 3];
+  }
+};
+
+// Unit direction through (column, row) of a face of size n, in texels from its upper left corner; a center is at +.5.
+Vec3 cube_direction(int face, double column, double row, int n);
+
+// The face and the continuous (column, row) in texels that a direction meets.
+struct CubePosition {
+  int face = 0;
+  double column = 0, row = 0;
+};
+CubePosition cube_position(const Vec3& direction, int n);
+
+// Exact solid angle (sr) of a texel. The texels of a cube sum to 4 pi.
+double cube_texel_solid_angle(int column, int row, int n);
+
+// Exact solid angle (sr) of the cell [s0,s1] x [t0,t1] of a face that spans -1..1.
+double cube_cell_solid_angle(double s0, double s1, double t0, double t1);
+
+// Bilinear lookup between texel centers, across face edges as OpenGL's seamless filtering does it (at a corner the
+// three texels that meet there are averaged for the missing fourth).
+Vec3 bilinear(const CubeMap& map, const Vec3& direction);
+
+}  // namespace goniochrome

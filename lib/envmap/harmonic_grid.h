@@ -1,0 +1,39 @@
+// Spherical harmonics evaluated at many scattered directions: on a fine grid by fast transforms, then by a short
+// weighted sum around each direction (a non-uniform fast Fourier transform). goniochrome-theory(7), PREFILTERING,
+// Zonal harmonics.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "envmap/cube_map.h"
+#include "envmap/harmonics.h"
+
+namespace goniochrome {
+
+// Taps along each axis for an error of `error` relative to the largest value of the function; 2..14.
+int taps_for(double error);
+
+// Polar angle and azimuth (harmonics.h) of the texel centers of a cube of size n, in the order of its texels.
+struct CubeAngles {
+  int size = 0;
+  std::vector<double> theta, phi;
+  explicit CubeAngles(int n);
+};
+
+// A lobe map: the sum over l, m of k[l] a_lm Y_lm at the texel centers of a cube, negative values set to zero (nothing
+// below zero is true). The degree is k.size() - 1, at most that of `harmonics`.
+CubeMap lobe_map(const Harmonics& harmonics, const std::vector<double>& k, const CubeAngles& angles, int taps);
+
+// The Fourier moments along the rows of a grid onto which the texels of a cube environment (constant patches, at the
+// nodes of a quadrature that is good enough once degree l is multiplied by k[l]) are spread: the way back of the same
+// transform. Frequency n of the column moments is to be multiplied by scale[|n|].
+struct ScatteredMoments {
+  std::vector<double> values;  // [m][row][re R G B im R G B]
+  std::size_t rows = 0, circle = 0;
+  std::ptrdiff_t first_row = 0;
+  std::vector<double> scale;
+};
+ScatteredMoments scattered_moments(const Environment& env, const std::vector<double>& k);
+
+}  // namespace goniochrome

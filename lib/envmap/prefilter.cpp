@@ -1,0 +1,373 @@
+#include "envmap/prefilter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <optional>
+
+#include "base/clock.h"
+#include "base/parallel.h"
+#include "envmap/bright_texels.h"
+#include "envmap/harmonic_grid.h"
+#include "envmap/harmonics.h"
+#include "envmap/lobe_tree.h"
+#include "envmap/mirror.h"
+
+namespace goniochrome {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kFloor = 1e-3;       // errors are relative to no less than this of the mean
+constexpr int kMostDegree = 640;      // of harmonics: beyond, their grids take more memory than they save time
+constexpr int kWideDegree = 512;      // of the harmonics for lobes whose kernel bends at the horizon
+constexpr double kSharpestWide = 20;  // such lobes have exponents below this
+constexpr int kMostBright = 1024;
+constexpr double kHalfError = 0x1p-11;
+constexpr double kCoherence = 1.0 / 16;  // see WideLobe
+
+using Method = LobePlan::Method;
+
+// What the method may err by: the tolerance less what the file's rounding takes.
+double method_tolerance(double tolerance) {
+  return tolerance >= 2 * kHalfError * 0.999 ? tolerance - kHalfError : tolerance * (1 - 1.0 / 64);
+}
+
+double rounding_error(double tolerance) {
+  return tolerance - method_tolerance(tolerance);
+}
+
+// Bilinear lookup between texels 2/N apart errs by E h^2/8 with h = pi/(2N): the face that keeps ten times the
+// tolerance. [theory: Lookup]
+int own_size(double exponent, double tolerance) {
+  const double wanted = kPi / 2 * std::sqrt(std::max(exponent, 1.0) / (8 * 10 * tolerance));
+  const int least = exponent < 8 ? 32 : 16;  // kinks of a wide lobe at the horizon of a sun
+  return std::clamp((static_cast<int>(std::ceil(wanted)) + 3) / 4 * 4, least, 1024);
+}
+
+double lookup_error(double exponent, int size) {
+  const double h = kPi / (2 * size);
+  return std::max(exponent, 1.0) * h * h / 8;
+}
+
+int mirror_size(const Environment& env) {
+  if (env.layout() != Environment::Layout::kLatLong) return env.width();
+  return std::clamp((env.width() + 3) / 4, 16, 2048);
+}
+
+// Seconds on one core of 2020, measured: grids of (4 L)^2/2 by transforms, Legendre sums of L^3, taps at each texel.
+double harmonics_time_s(int degree, int size) {
+  const double l = degree, texels = 6.0 * size * size;
+  return 6e-7 * l * l + 1.5e-10 * l * l * l + 6e-8 * texels;
+}
+
+LobePlan lobe_plan(const PrefilterRequest& request, double exponent) {
+  LobePlan plan;
+  plan.exponent = exponent;
+  plan.size = request.size > 0 ? request.size : own_size(exponent, request.tolerance);
+  plan.lookup_error = lookup_error(exponent, plan.size);
+  const double texels = 6.0 * plan.size * plan.size, tolerance = method_tolerance(request.tolerance);
+  // Half of the method's share goes to the degrees left out, relative to the floor.
+  plan.degree = sufficient_degree(exponent, 0.5 * tolerance * kFloor, kMostDegree);
+  plan.predicted_error = rounding_error(request.tolerance) + tolerance;
+  if (plan.degree >= 0) {
+    plan.method = Method::kHarmonics;
+    plan.predicted_time_s = harmonics_time_s(plan.degree, plan.size) / threads();
+  } else if (exponent >= 1 && exponent < kSharpestWide) {
+    plan.method = Method::kBrightHarmonics;
+    plan.degree = kWideDegree;
+    plan.predicted_time_s = (harmonics_time_s(kWideDegree, plan.size) + 1e-6 * texels) / threads();
+  } else {
+    plan.method = Method::kBlocks;
+    plan.degree = 0;
+    // Sharp lobes see few texels; wide ones walk along the horizon.
+    const double seen = exponent > 100 ? 60 / exponent / 4e-5 : 3000;
+    plan.predicted_time_s = texels * (2e-5 + 1e-6 * seen) / threads();
+  }
+  return plan;
+}
+
+// What the harmonics up to each degree leave of a map: its root mean square, per channel, by Parseval.
+std::vector<Vec3> residual_rms(const Environment& env, const Harmonics& harmonics) {
+  std::vector<Vec3> rows(static_cast<std::size_t>(env.height()));
+  parallel_for(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row) {
+      const int y = static_cast<int>(row);
+      double area = env.solid_angle(0, y);  // of every texel of a lat-long row
+      for (int column = 0; column < env.width(); ++column) {
+        if (env.layout() != Environment::Layout::kLatLong) area = env.solid_angle(column, y);
+        const float* rgb = env.radiance(column, y);
+        const Vec3 value = {rgb[0], rgb[1], rgb[2]};
+        rows[row] += area * (value * value);
+      }
+    }
+  });
+  std::vector<Vec3> left(static_cast<std::size_t>(harmonics.degree) + 1);
+  for (int m = 0; m <= harmonics.degree; ++m) {
+    const double* a = harmonics.order(m);
+    for (int l = m; l <= harmonics.degree; ++l, a += 6)
+      for (int c = 0; c < 3; ++c) left[l][c] -= (m == 0 ? 1 : 2) * (a[c] * a[c] + a[3 + c] * a[3 + c]);
+  }
+  Vec3 square;
+  for (const Vec3& row : rows) square += row;
+  for (Vec3& value : left) {
+    square += value;
+    for (int c = 0; c < 3; ++c) value[c] = std::sqrt(std::max(0.0, square[c]) / (4 * kPi));
+  }
+  return left;
+}
+
+float largest_value(const Environment& env) {
+  float most = 0;
+  for (int row = 0; row < env.height(); ++row) {
+    const float* rgb = env.radiance(0, row);
+    most = std::max(most, *std::max_element(rgb, rgb + 3 * static_cast<std::size_t>(env.width())));
+  }
+  return most;
+}
+
+// Sums that wait for the first lobe that needs them.
+class Workshop {
+ public:
+  Workshop(const Environment& env, const std::vector<LobePlan>& plan)
+      : env_(env), flux_(env.flux()), largest_(largest_value(env)) {
+    for (const LobePlan& lobe : plan)
+      if (lobe.method == Method::kHarmonics && lobe.degree > degree_) degree_ = lobe.degree, sharpest_ = lobe.exponent;
+  }
+
+  const Vec3& flux() const { return flux_; }
+  float largest() const { return largest_; }
+  const Harmonics& harmonics() {
+    if (!harmonics_) harmonics_.emplace(harmonics_of(env_, zonal_multipliers(sharpest_, degree_)));
+    return *harmonics_;
+  }
+  const LobeTree& tree() {
+    if (!tree_) tree_.emplace(env_);
+    return *tree_;
+  }
+  const BrightTexels& bright() {
+    if (!bright_) bright_ = std::make_unique<BrightTexels>(env_, kMostBright);
+    return *bright_;
+  }
+  const Harmonics& rest() {
+    if (!rest_) rest_.emplace(harmonics_of(bright().rest(), zonal_multipliers(kSharpestWide, kWideDegree)));
+    return *rest_;
+  }
+  const std::vector<Vec3>& rest_rms() {
+    if (rest_rms_.empty()) rest_rms_ = residual_rms(bright().rest(), rest());
+    return rest_rms_;
+  }
+  const CubeAngles& angles(int size) {
+    if (!angles_ || angles_->size != size) angles_.emplace(size);
+    return *angles_;
+  }
+
+ private:
+  const Environment& env_;
+  Vec3 flux_;
+  float largest_;
+  int degree_ = -1;
+  double sharpest_ = 0;
+  std::optional<Harmonics> harmonics_, rest_;
+  std::vector<Vec3> rest_rms_;
+  std::optional<LobeTree> tree_;
+  std::unique_ptr<BrightTexels> bright_;
+  std::optional<CubeAngles> angles_;
+};
+
+// The texels of a cube, in parallel: body(face, row, column, rgb).
+template <class Body>
+void for_each_texel(CubeMap& map, const Body& body) {
+  const std::size_t n = static_cast<std::size_t>(map.size);
+  parallel_for(6 * n * n, 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const int face = static_cast<int>(i / (n * n)), row = static_cast<int>(i / n % n);
+      body(cube_direction(face, static_cast<double>(i % n) + 0.5, row + 0.5, map.size), &map.texels[3 * i]);
+    }
+  });
+}
+
+// How many taps keep the interpolation below a tenth of the tolerance at the floor: the largest value of a lobe map is
+// at most that of the environment and of all its flux in the middle of the lobe.
+int taps(const Vec3& flux, double most, double exponent, double tolerance) {
+  const double mean = std::max({flux.x, flux.y, flux.z}) / (4 * kPi);
+  if (!(mean > 0)) return taps_for(1);
+  const double peak = std::min(most / mean, 2 * (exponent + 1));
+  return taps_for(0.1 * tolerance * kFloor / std::max(peak, 1.0));
+}
+
+// sqrt(sum over l > degree of (2l+1) k_l^2): by Cauchy and Schwarz, times the root mean square of what the harmonics
+// leave of the map, a bound on the error.
+double residual_norm(double exponent, int degree) {
+  const int end = degree + 20000;
+  const std::vector<double> k = zonal_multipliers(exponent, end);
+  double sum = 0;
+  for (int l = degree + 1; l <= end; ++l) sum += (2.0 * l + 1) * k[l] * k[l];
+  return std::sqrt(sum);
+}
+
+// A lobe whose kernel bends at the horizon: harmonics of the rest to the degree that the darkest texels need, and the
+// bright texels one by one.
+//
+// What the harmonics of the rest leave out is at most residual_norm() times residual_rms(), reached only by a map whose
+// every degree peaks in phase at one point. Maps come nowhere near: the worst texels of measured maps reach a thirtieth
+// to a fiftieth of it, so a sixteenth is allowed for. A texel that could be off by more than its tolerance all the same
+// (it is dark, or the map is black and white) is done by blocks.
+class WideLobe {
+ public:
+  WideLobe(const LobePlan& plan, double tolerance, Workshop& shop)
+      : plan_(plan), tolerance_(tolerance), shop_(shop), mean_((1 / (4 * kPi)) * shop.flux()) {}
+
+  CubeMap map() {
+    const CubeAngles coarse(std::min(plan_.size, 12));
+    const CubeMap sketch = sum(32, coarse);
+    Vec3 darkest = {1e300, 1e300, 1e300};
+    for (std::size_t i = 0; i < sketch.texels.size(); ++i)
+      darkest[static_cast<int>(i % 3)] = std::min<double>(darkest[static_cast<int>(i % 3)], sketch.texels[i]);
+    const std::vector<int> degrees = {64, 96, 128, 192, 256, 384, kWideDegree};
+    Vec3 bound;
+    int degree = 0;
+    for (const int candidate : degrees) {
+      degree = candidate;
+      bound = kCoherence * residual_norm(plan_.exponent, degree) * shop_.rest_rms()[degree];
+      if (fits(0.9 * darkest, bound)) break;
+    }
+    CubeMap map = sum(degree, shop_.angles(plan_.size));
+    patch_up(map, bound);
+    return map;
+  }
+
+ private:
+  bool fits(const Vec3& value, const Vec3& bound) const {
+    const double gray = kFloor * kFloor * std::max({mean_.x, mean_.y, mean_.z});
+    for (int c = 0; c < 3; ++c)
+      if (bound[c] > 0.8 * tolerance_ * std::max({value[c], kFloor * mean_[c], gray})) return false;
+    return true;
+  }
+
+  CubeMap sum(int degree, const CubeAngles& angles) {
+    const BrightTexels& bright = shop_.bright();
+    CubeMap map = lobe_map(shop_.rest(), zonal_multipliers(plan_.exponent, degree), angles,
+                           taps(shop_.flux(), shop_.largest(), plan_.exponent, tolerance_));
+    if (bright.count() > 0)
+      for_each_texel(map, [&](const Vec3& d, float* rgb) {
+        const Vec3 extra = bright.lobe(d, plan_.exponent);
+        for (int c = 0; c < 3; ++c) rgb[c] += static_cast<float>(extra[c]);
+      });
+    return map;
+  }
+
+  void patch_up(CubeMap& map, const Vec3& bound) {
+    const auto unfit = [&](const float* rgb) { return !fits({rgb[0], rgb[1], rgb[2]}, bound); };
+    bool any = false;
+    for (std::size_t i = 0; i < map.texels.size() && !any; i += 3) any = unfit(&map.texels[i]);
+    if (!any) return;
+    const LobeTree& tree = shop_.tree();
+    for_each_texel(map, [&](const Vec3& d, float* rgb) {
+      if (!unfit(rgb)) return;
+      const Vec3 value = tree.lobe(d, plan_.exponent, tolerance_);
+      for (int c = 0; c < 3; ++c) rgb[c] = static_cast<float>(value[c]);
+    });
+  }
+
+  const LobePlan& plan_;
+  double tolerance_;
+  Workshop& shop_;
+  Vec3 mean_;
+};
+
+CubeMap lobe_by_plan(const Environment& env, const LobePlan& plan, double tolerance, Workshop& shop) {
+  switch (plan.method) {
+    case Method::kMirror:
+      return mirror_map(env, plan.size);
+    case Method::kHarmonics:
+      return lobe_map(shop.harmonics(), zonal_multipliers(plan.exponent, plan.degree), shop.angles(plan.size),
+                      taps(shop.flux(), shop.largest(), plan.exponent, tolerance));
+    case Method::kBrightHarmonics:
+      return WideLobe(plan, tolerance, shop).map();
+    case Method::kBlocks:
+      break;
+  }
+  CubeMap map(plan.size);
+  const LobeTree& tree = shop.tree();
+  for_each_texel(map, [&](const Vec3& d, float* rgb) {
+    const Vec3 value = tree.lobe(d, plan.exponent, tolerance);
+    for (int c = 0; c < 3; ++c) rgb[c] = static_cast<float>(value[c]);
+  });
+  return map;
+}
+
+}  // namespace
+
+const char* method_name(Method method) {
+  switch (method) {
+    case Method::kHarmonics:
+      return "harmonics";
+    case Method::kBrightHarmonics:
+      return "harmonics+bright";
+    case Method::kBlocks:
+      return "blocks";
+    case Method::kMirror:
+      return "overlaps";
+  }
+  return "";
+}
+
+std::vector<LobePlan> prefilter_plan(const Environment& env, const PrefilterRequest& request) {
+  std::vector<LobePlan> plan = {lobe_plan(request, 1)};
+  for (const double exponent : request.exponents) plan.push_back(lobe_plan(request, exponent));
+  if (!request.mirror) return plan;
+  LobePlan mirror;
+  mirror.exponent = kMirrorExponent;
+  mirror.method = Method::kMirror;
+  mirror.size = request.size > 0 ? request.size : mirror_size(env);
+  mirror.predicted_error = rounding_error(request.tolerance);
+  mirror.predicted_time_s = 6.0 * mirror.size * mirror.size * 2e-6 / threads();
+  plan.push_back(mirror);
+  return plan;
+}
+
+PrefilteredEnvironment prefiltered(const Environment& env, const PrefilterRequest& request,
+                                   const std::vector<LobePlan>& plan,
+                                   const std::function<void(const PrefilteredLobe&, double time_s)>& done) {
+  PrefilteredEnvironment result;
+  result.source = env.source();
+  result.mirror.exponent = kMirrorExponent;
+  const double tolerance = method_tolerance(request.tolerance);
+  Workshop shop(env, plan);
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    const Stopwatch clock;
+    PrefilteredLobe lobe;
+    lobe.exponent = plan[i].exponent;
+    lobe.tolerance = request.tolerance;
+    lobe.predicted_error = plan[i].predicted_error;
+    lobe.lookup_error = plan[i].lookup_error;
+    lobe.method = method_name(plan[i].method);
+    lobe.map = lobe_by_plan(env, plan[i], tolerance, shop);
+    round_to_storage(lobe);
+    done(lobe, clock.elapsed_s());
+    if (i == 0)
+      result.diffuse = std::move(lobe);
+    else if (plan[i].method == Method::kMirror)
+      result.mirror = std::move(lobe);
+    else
+      result.lobes.push_back(std::move(lobe));
+  }
+  return result;
+}
+
+double energy_ratio(const Environment& env, const CubeMap& map) {
+  Vec3 sum;
+  for (int face = 0; face < 6; ++face)
+    for (int row = 0; row < map.size; ++row)
+      for (int column = 0; column < map.size; ++column) {
+        const float* rgb = map.at(face, row, column);
+        sum += cube_texel_solid_angle(column, row, map.size) * Vec3{rgb[0], rgb[1], rgb[2]};
+      }
+  const Vec3 flux = env.flux();
+  const double all = flux.x + flux.y + flux.z;
+  return all > 0 ? (sum.x + sum.y + sum.z) / all : 1;
+}
+
+}  // namespace goniochrome

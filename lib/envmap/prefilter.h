@@ -1,0 +1,53 @@
+// An environment filtered by every lobe of a basis, each by the cheapest method that keeps the tolerance.
+// goniochrome-theory(7), PREFILTERING.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "envmap/environment.h"
+#include "envmap/prefiltered.h"
+
+namespace goniochrome {
+
+struct PrefilterRequest {
+  std::vector<double> exponents;  // finite, >= 0; the diffuse lobe (1) comes by itself
+  bool mirror = true;
+  int size = 0;             // of every face; 0 chooses each lobe's own
+  double tolerance = 1e-3;  // relative to the larger of the local value and 1e-3 of the mean
+};
+
+// How a lobe will be computed.
+struct LobePlan {
+  enum class Method {
+    kHarmonics,        // zonal harmonics with a bound on what is left out
+    kBrightHarmonics,  // the same for the rest after the brightest texels; texels beyond the bound by blocks
+    kBlocks,           // the tree of texel blocks
+    kMirror,           // exact overlaps
+  };
+  double exponent = 1;
+  int size = 0;
+  Method method = Method::kHarmonics;
+  int degree = 0;              // of the harmonics
+  double predicted_error = 0;  // relative, as the tolerance; with the rounding of the file
+  double predicted_time_s = 0;
+  double lookup_error = 0;  // what a bilinear lookup adds, typically: E h^2/8
+};
+const char* method_name(LobePlan::Method method);
+
+// The plan of a request: diffuse first, then the exponents as given, then the mirror.
+std::vector<LobePlan> prefilter_plan(const Environment& env, const PrefilterRequest& request);
+
+// Carries a plan out. `done` is called after each lobe with the time that it took, in seconds. The maps are as the file
+// will hold them (round_to_storage()). Bit-identical for any number of threads.
+PrefilteredEnvironment prefiltered(const Environment& env, const PrefilterRequest& request,
+                                   const std::vector<LobePlan>& plan,
+                                   const std::function<void(const PrefilteredLobe&, double time_s)>& done);
+
+// The flux of a map over the flux of the environment, all channels together; 1 when nothing is lost. 1 where there is
+// no light.
+double energy_ratio(const Environment& env, const CubeMap& map);
+
+}  // namespace goniochrome

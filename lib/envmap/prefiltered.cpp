@@ -1,0 +1,172 @@
+#include "envmap/prefiltered.h"
+
+#include <Imath/half.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include "base/parallel.h"
+
+namespace goniochrome {
+
+namespace {
+
+constexpr float kMostHalf = 65504.0F;
+constexpr double kHalfError = 0x1p-11;      // relative, of a normal half
+constexpr double kHalfSubnormal = 0x1p-25;  // absolute, below 2^-14
+constexpr double kFloor = 1e-3;             // errors are relative to the local value, but no less than this of the mean
+constexpr const char* kTexels = "goniochrome:texels";
+constexpr const char* kExponent = "goniochrome:exponent";
+
+double mean_value(const CubeMap& map) {
+  double sum = 0;
+  for (const float value : map.texels) sum += value;
+  return map.texels.empty() ? 0 : sum / static_cast<double>(map.texels.size());
+}
+
+// The fewest bits of a fraction that keep the rounding error 2^-(bits+1) below 1/64 of the tolerance.
+int fraction_bits(double tolerance) {
+  if (!(tolerance > 0)) return 23;
+  return std::clamp(static_cast<int>(std::ceil(std::log2(64 / tolerance))) - 1, 8, 23);
+}
+
+float rounded_to_bits(float value, int bits) {
+  const std::uint32_t drop = 23 - static_cast<std::uint32_t>(bits);
+  if (drop == 0) return value;
+  const std::uint32_t word = std::bit_cast<std::uint32_t>(value);
+  const std::uint32_t half_step = (1U << (drop - 1)) - 1 + ((word >> drop) & 1);  // ties to even
+  const float rounded = std::bit_cast<float>((word + half_step) & ~((1U << drop) - 1));
+  return std::isfinite(rounded) ? rounded : value;
+}
+
+ImagePart part_of(const std::string& name, const PrefilteredLobe& lobe, const std::string& source,
+                  const std::string& command) {
+  ImagePart part;
+  part.name = name;
+  part.type = storage_type(lobe);
+  part.image = {lobe.map.size, 6 * lobe.map.size, 3, lobe.map.texels, {}};
+  part.attributes = {
+      {kTexels, std::string("center")},
+      {kExponent, static_cast<float>(lobe.exponent)},
+      {"goniochrome:tolerance", static_cast<float>(lobe.tolerance)},
+      {"goniochrome:maxError", static_cast<float>(lobe.max_error)},
+      {"goniochrome:meanError", static_cast<float>(lobe.mean_error)},
+      {"goniochrome:verifiedTexels", lobe.verified_texels},
+      {"goniochrome:predictedError", static_cast<float>(lobe.predicted_error)},
+      {"goniochrome:lookupError", static_cast<float>(lobe.lookup_error)},
+      {"goniochrome:method", lobe.method},
+      {"goniochrome:source", source},
+      {"goniochrome:command", command},
+      {"colorInteropID", std::string("lin_rec2020_scene")},
+  };
+  return part;
+}
+
+double number_attribute(const ImagePart& part, const std::string& name) {
+  const auto found = part.attributes.find(name);
+  if (found == part.attributes.end()) return 0;
+  if (const auto* number = std::get_if<float>(&found->second)) return *number;
+  const auto* whole = std::get_if<int>(&found->second);
+  return whole ? *whole : 0;
+}
+
+std::string text_attribute(const ImagePart& part, const std::string& name) {
+  const auto found = part.attributes.find(name);
+  const auto* text = found == part.attributes.end() ? nullptr : std::get_if<std::string>(&found->second);
+  return text ? *text : "";
+}
+
+Result<PrefilteredLobe> lobe_of(ImagePart part, const std::string& path) {
+  const auto refused = [&](const std::string& why) {
+    return input_error("{}: part {}: {}: write it with prefilter-envmap", path, part.name, why);
+  };
+  const Image& image = part.image;
+  if (image.height != 6 * image.width)
+    return refused(fmt::format("is {} x {}, not a strip of six faces", image.width, image.height));
+  if (image.channels != 3) return refused(fmt::format("has {} channels, not 3", image.channels));
+  if (text_attribute(part, kTexels) != "center")
+    return refused(fmt::format("attribute {} is \"{}\", not \"center\"", kTexels, text_attribute(part, kTexels)));
+  if (!part.attributes.count(kExponent)) return refused(fmt::format("attribute {} is missing", kExponent));
+  PrefilteredLobe lobe;
+  lobe.exponent = number_attribute(part, kExponent);
+  if (!(lobe.exponent >= 0)) return refused(fmt::format("attribute {} is {}", kExponent, lobe.exponent));
+  lobe.tolerance = number_attribute(part, "goniochrome:tolerance");
+  lobe.max_error = number_attribute(part, "goniochrome:maxError");
+  lobe.mean_error = number_attribute(part, "goniochrome:meanError");
+  lobe.verified_texels = static_cast<int>(number_attribute(part, "goniochrome:verifiedTexels"));
+  lobe.predicted_error = number_attribute(part, "goniochrome:predictedError");
+  lobe.lookup_error = number_attribute(part, "goniochrome:lookupError");
+  lobe.method = text_attribute(part, "goniochrome:method");
+  lobe.map.size = image.width;
+  lobe.map.texels = std::move(part.image.data);
+  return lobe;
+}
+
+}  // namespace
+
+PixelType storage_type(const PrefilteredLobe& lobe) {
+  if (lobe.tolerance < 2 * kHalfError * 0.999) return PixelType::kFloat;
+  const double floor = kFloor * mean_value(lobe.map);
+  for (const float value : lobe.map.texels) {
+    const double size = std::fabs(value);
+    if (size > kMostHalf) return PixelType::kFloat;
+    if (size < 0x1p-14 && kHalfSubnormal > kHalfError * std::max(size, floor) && size > 0) return PixelType::kFloat;
+  }
+  return PixelType::kHalf;
+}
+
+void round_to_storage(PrefilteredLobe& lobe) {
+  const bool as_half = storage_type(lobe) == PixelType::kHalf;
+  const int bits = fraction_bits(lobe.tolerance);
+  std::vector<float>& texels = lobe.map.texels;
+  parallel_for(texels.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      texels[i] = as_half ? static_cast<float>(Imath::half(texels[i])) : rounded_to_bits(texels[i], bits);
+  });
+}
+
+const PrefilteredLobe* PrefilteredEnvironment::lobe(double exponent) const {
+  const auto same = [exponent](const PrefilteredLobe& l) {
+    return l.exponent == exponent || std::fabs(l.exponent - exponent) <= 1e-6 * std::fabs(exponent);
+  };
+  if (std::isinf(exponent)) return mirror.map.size > 0 ? &mirror : nullptr;
+  for (const PrefilteredLobe& l : lobes)
+    if (same(l)) return &l;
+  return same(diffuse) && diffuse.map.size > 0 ? &diffuse : nullptr;
+}
+
+Result<PrefilteredEnvironment> read_env(const std::string& path) {
+  GONIO_ASSIGN(std::vector<ImagePart> parts, read_exr(path));
+  PrefilteredEnvironment env;
+  env.mirror.exponent = kMirrorExponent;
+  for (ImagePart& part : parts) {
+    const std::string name = part.name;
+    if (name != "diffuse" && name != "mirror" && !name.starts_with("lobe-")) continue;
+    if (env.source.empty()) env.source = text_attribute(part, "goniochrome:source");
+    GONIO_ASSIGN(PrefilteredLobe lobe, lobe_of(std::move(part), path));
+    if (name == "diffuse")
+      env.diffuse = std::move(lobe);
+    else if (name == "mirror")
+      env.mirror = std::move(lobe);
+    else
+      env.lobes.push_back(std::move(lobe));
+  }
+  if (env.diffuse.map.size == 0)
+    return input_error("{}: has no part `diffuse`: it is not a prefiltered environment; make one with prefilter-envmap",
+                       path);
+  std::sort(env.lobes.begin(), env.lobes.end(),
+            [](const PrefilteredLobe& a, const PrefilteredLobe& b) { return a.exponent < b.exponent; });
+  return env;
+}
+
+Result<void> write_env(const std::string& path, const PrefilteredEnvironment& env, const std::string& command) {
+  std::vector<ImagePart> parts = {part_of("diffuse", env.diffuse, env.source, command)};
+  for (std::size_t i = 0; i < env.lobes.size(); ++i)
+    parts.push_back(part_of(fmt::format("lobe-{:03}", i), env.lobes[i], env.source, command));
+  if (env.mirror.map.size > 0) parts.push_back(part_of("mirror", env.mirror, env.source, command));
+  return write_exr(path, parts);
+}
+
+}  // namespace goniochrome

@@ -1,0 +1,52 @@
+// A prefiltered environment (`*.env.exr`): one cube map for each lobe, with its measured error.
+// goniochrome-theory(7), PREFILTERING; the file format is in goniochrome-paint(5).
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "envmap/cube_map.h"
+#include "image/image.h"
+
+namespace goniochrome {
+
+constexpr double kMirrorExponent = std::numeric_limits<double>::infinity();
+
+// P_E = (E+1)/(2 pi) * integral of L(w) max(0, d.w)^E dw: a constant map stays itself.
+struct PrefilteredLobe {
+  double exponent = 1;
+  CubeMap map;
+  double tolerance = 0;                  // asked for; relative
+  double max_error = 0, mean_error = 0;  // measured on the verified texels; relative
+  int verified_texels = 0;
+  double predicted_error = 0;  // of the stored texels; relative
+  double lookup_error = 0;     // what a bilinear lookup between them adds; relative
+  std::string method;          // how it was computed
+};
+
+// How write_env() stores a lobe: halves where every value keeps half the tolerance, else floats.
+PixelType storage_type(const PrefilteredLobe& lobe);
+
+// Rounds every value to what the file will hold, so that memory and file agree: to a half, or to as many bits of a
+// float as 1/64 of the tolerance needs (the zero bits left over compress well).
+void round_to_storage(PrefilteredLobe& lobe);
+
+struct PrefilteredEnvironment {
+  PrefilteredLobe diffuse;             // exponent 1: pi P_1(n) is the irradiance
+  std::vector<PrefilteredLobe> lobes;  // ascending exponents
+  PrefilteredLobe mirror;              // the environment itself, exponent inf; size 0 where absent
+  std::string source;
+
+  // The lobe of this exponent (to 1e-6 relative), or null.
+  const PrefilteredLobe* lobe(double exponent) const;
+};
+
+// Reads parts diffuse, lobe-NNN and mirror. Error: the part and what is wrong with it.
+Result<PrefilteredEnvironment> read_env(const std::string& path);
+
+// Writes the parts; half floats unless a value or the tolerance needs float. `command` is kept for provenance.
+Result<void> write_env(const std::string& path, const PrefilteredEnvironment& env, const std::string& command);
+
+}  // namespace goniochrome

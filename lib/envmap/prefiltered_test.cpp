@@ -1,0 +1,109 @@
+#include "envmap/prefiltered.h"
+
+#include <Imath/half.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <random>
+
+namespace goniochrome {
+namespace {
+
+using testing::HasSubstr;
+
+class EnvFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() / fmt::format("goniochrome-env-{}", getpid());
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::filesystem::path folder_;
+};
+
+PrefilteredLobe random_lobe(double exponent, int size, double tolerance, double low, double high) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> log_value(std::log(low), std::log(high));
+  PrefilteredLobe lobe;
+  lobe.exponent = exponent;
+  lobe.tolerance = tolerance;
+  lobe.method = "by hand";
+  lobe.max_error = 3e-4, lobe.mean_error = 1e-5, lobe.verified_texels = 12, lobe.predicted_error = 2e-4;
+  lobe.map = CubeMap(size);
+  for (float& v : lobe.map.texels) v = static_cast<float>(std::exp(log_value(random)));
+  return lobe;
+}
+
+PrefilteredEnvironment small_env() {
+  PrefilteredEnvironment env;
+  env.source = "hall.hdr";
+  env.diffuse = random_lobe(1, 4, 1e-3, .1, 10);
+  env.lobes = {random_lobe(1.3, 3, 1e-3, .1, 10), random_lobe(70, 8, 1e-4, .1, 10)};
+  env.mirror = random_lobe(kMirrorExponent, 16, 1e-3, .1, 1e5);
+  return env;
+}
+
+TEST_F(EnvFile, an_environment_returns_as_rounded) {
+  PrefilteredEnvironment env = small_env();
+  for (PrefilteredLobe* lobe : {&env.diffuse, &env.lobes[0], &env.lobes[1], &env.mirror}) round_to_storage(*lobe);
+  ASSERT_TRUE(write_env(path("x.env.exr"), env, "prefilter-envmap hall.hdr").ok());
+  const auto read = read_env(path("x.env.exr"));
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_EQ(read->source, "hall.hdr");
+  ASSERT_EQ(read->lobes.size(), 2U);
+  EXPECT_EQ(read->diffuse.map.texels, env.diffuse.map.texels);
+  EXPECT_EQ(read->lobes[0].map.texels, env.lobes[0].map.texels);
+  EXPECT_EQ(read->lobes[1].map.texels, env.lobes[1].map.texels);
+  EXPECT_EQ(read->mirror.map.texels, env.mirror.map.texels);
+  EXPECT_EQ(read->mirror.exponent, kMirrorExponent);
+  EXPECT_FLOAT_EQ(static_cast<float>(read->lobes[0].max_error), 3e-4F);
+  EXPECT_EQ(read->lobes[0].verified_texels, 12);
+  EXPECT_EQ(read->lobes[0].method, "by hand");
+  EXPECT_EQ(read->lobe(1.3), &read->lobes[0]);  // the file holds the float 1.3
+  EXPECT_EQ(read->lobe(1), &read->diffuse);
+  EXPECT_EQ(read->lobe(kMirrorExponent), &read->mirror);
+  EXPECT_EQ(read->lobe(71), nullptr);
+}
+
+// Halves are kept where they meet the tolerance; the textbook writer always stores them.
+TEST_F(EnvFile, storage_keeps_the_tolerance) {
+  for (const double tolerance : {1e-2, 1e-3, 3e-4, 1e-5}) {
+    PrefilteredLobe lobe = random_lobe(6, 16, tolerance, .1, 10);
+    const CubeMap before = lobe.map;
+    round_to_storage(lobe);
+    EXPECT_EQ(storage_type(lobe), tolerance >= 1e-3 ? PixelType::kHalf : PixelType::kFloat);
+    double worst = 0, worst_half = 0;
+    for (std::size_t i = 0; i < before.texels.size(); ++i) {
+      worst = std::max(worst, std::fabs(lobe.map.texels[i] / double(before.texels[i]) - 1));
+      worst_half = std::max(
+          worst_half, std::fabs(static_cast<float>(Imath::half(before.texels[i])) / double(before.texels[i]) - 1));
+    }
+    EXPECT_LE(worst, tolerance >= 1e-3 ? 0x1p-11 : tolerance / 64);
+    EXPECT_EQ(worst_half > tolerance, tolerance < 4e-4);  // the control: what halves would cost
+  }
+}
+
+TEST_F(EnvFile, HardCase_prefilter_sun_storage_never_overflows_or_loses_the_dark) {
+  EXPECT_EQ(storage_type(random_lobe(6, 4, 1e-2, 1, 1e9)), PixelType::kFloat);
+  EXPECT_EQ(storage_type(random_lobe(6, 4, 1e-2, 1e-9, 1e-8)), PixelType::kFloat);  // halves end at 6e-8
+  EXPECT_EQ(storage_type(random_lobe(6, 4, 1e-2, 1, 60000)), PixelType::kHalf);
+}
+
+TEST_F(EnvFile, other_files_are_refused_by_part) {
+  ASSERT_TRUE(write_exr(path("p.exr"), {{"", {2, 2, 3, std::vector<float>(12, 1.0F), {}}, {}, PixelType::kHalf}}).ok());
+  EXPECT_THAT(read_env(path("p.exr")).error().message, HasSubstr("p.exr: has no part `diffuse`"));
+  ImagePart part = {"diffuse", {2, 12, 3, std::vector<float>(72, 1.0F), {}}, {}, PixelType::kHalf};
+  ASSERT_TRUE(write_exr(path("q.exr"), {part}).ok());
+  EXPECT_THAT(read_env(path("q.exr")).error().message, HasSubstr("q.exr: part diffuse: attribute goniochrome:texels"));
+  part.image.height = 6;
+  part.image.width = 4;
+  ASSERT_TRUE(write_exr(path("r.exr"), {part}).ok());
+  EXPECT_THAT(read_env(path("r.exr")).error().message, HasSubstr("is 4 x 6, not a strip of six faces"));
+}
+
+}  // namespace
+}  // namespace goniochrome

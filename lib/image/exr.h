@@ -1,0 +1,14 @@
+// Shared by the readers of this module alone.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "image/image.h"
+
+namespace goniochrome {
+
+// All parts of an EXR file held in memory; `name` is what errors call it.
+Result<std::vector<ImagePart>> decoded_exr(const std::string& content, const std::string& name);
+
+}  // namespace goniochrome

@@ -1,0 +1,218 @@
+#include "image/image.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <random>
+
+#include "base/file.h"
+
+namespace goniochrome {
+namespace {
+
+using testing::HasSubstr;
+
+class ImageFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() / fmt::format("goniochrome-image-{}", getpid());
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  std::filesystem::path folder_;
+};
+
+ImagePart random_part(const std::string& name, int width, int height, int channels, PixelType type) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> exponent(-6, 4);
+  ImagePart part;
+  part.name = name;
+  part.type = type;
+  part.image = {width, height, channels, {}, {}};
+  for (int i = 0; i < width * height * channels; ++i) part.image.data.push_back(std::pow(10.0F, exponent(random)));
+  return part;
+}
+
+bool maps_contain(const std::string& text) {
+  std::ifstream maps("/proc/self/maps");
+  const std::string all((std::istreambuf_iterator<char>(maps)), std::istreambuf_iterator<char>());
+  return all.find(text) != std::string::npos;
+}
+
+TEST_F(ImageFile, exr_parts_of_their_own_size_and_attributes_return) {
+  std::vector<ImagePart> parts = {random_part("a", 5, 7, 3, PixelType::kFloat),
+                                  random_part("b", 2, 12, 4, PixelType::kHalf),
+                                  random_part("c", 9, 1, 1, PixelType::kFloat)};
+  parts[0].attributes = {{"text", std::string("x y")},
+                         {"number", 2.5F},
+                         {"whole", 3},
+                         {"unbounded", std::numeric_limits<float>::infinity()},
+                         {"chromaticities", std::vector<float>{.64F, .33F, .3F, .6F, .15F, .06F, .3127F, .329F}},
+                         {"envmap", std::string("cube")}};
+  parts[2].attributes = {{"chromaticities", std::vector<float>{.64F, .33F, .3F, .6F, .15F, .06F, .3127F, .329F}}};
+  parts[1].attributes = parts[2].attributes;
+  ASSERT_TRUE(write_exr(path("x.exr"), parts).ok());
+  const auto read = read_exr(path("x.exr"));
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  ASSERT_EQ(read->size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const ImagePart &want = parts[i], &got = read.value()[i];
+    EXPECT_EQ(got.name, want.name);
+    EXPECT_EQ(got.type, want.type);
+    EXPECT_EQ(got.image.width, want.image.width);
+    EXPECT_EQ(got.image.height, want.image.height);
+    ASSERT_EQ(got.image.data.size(), want.image.data.size());
+    for (std::size_t k = 0; k < want.image.data.size(); ++k) {
+      if (want.type == PixelType::kFloat)
+        ASSERT_EQ(got.image.data[k], want.image.data[k]);
+      else  // half an ulp of 11 bits, or of the subnormals
+        ASSERT_NEAR(got.image.data[k], want.image.data[k], std::max(want.image.data[k] * 0x1p-11F, 0x1p-25F));
+    }
+    for (const auto& [name, value] : want.attributes) EXPECT_EQ(got.attributes.at(name), value) << name;
+  }
+  EXPECT_EQ(read.value()[0].image.channel_names, (std::vector<std::string>{"R", "G", "B"}));
+}
+
+TEST_F(ImageFile, halves_are_rounded_and_not_truncated) {
+  ImagePart part = random_part("a", 100, 100, 3, PixelType::kHalf);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> one_to_two(1, 2);
+  for (float& value : part.image.data) value = one_to_two(random);
+  ASSERT_TRUE(write_exr(path("x.exr"), {part}).ok());
+  const auto read = read_exr(path("x.exr"));
+  ASSERT_TRUE(read.ok());
+  double bias = 0;
+  for (std::size_t i = 0; i < part.image.data.size(); ++i)
+    bias += (read.value()[0].image.data[i] - part.image.data[i]) / part.image.data[i];
+  // Truncation would give a mean of -2^-12 .. -2^-11; rounding gives 0 with a spread of 2^-12/sqrt(30000).
+  EXPECT_LT(std::fabs(bias / part.image.data.size()), 0x1p-12 / std::sqrt(30000.0) * 4);
+}
+
+// The textbook writer stores halves whatever comes: 70000 becomes Inf.
+TEST_F(ImageFile, HardCase_prefilter_sun_a_value_beyond_half_makes_the_part_float) {
+  ImagePart part = random_part("sun", 2, 2, 3, PixelType::kHalf);
+  part.image.data[5] = 1e9F;
+  ASSERT_TRUE(write_exr(path("x.exr"), {part}).ok());
+  const auto read = read_exr(path("x.exr"));
+  ASSERT_TRUE(read.ok());
+  EXPECT_EQ(read.value()[0].type, PixelType::kFloat);
+  EXPECT_EQ(read.value()[0].image.data, part.image.data);
+}
+
+TEST_F(ImageFile, a_value_that_is_not_finite_is_refused_by_pixel) {
+  ImagePart part = random_part("depth", 3, 2, 3, PixelType::kFloat);
+  part.image.data[3 * (3 + 2) + 1] = std::numeric_limits<float>::quiet_NaN();
+  const auto written = write_exr(path("x.exr"), {part});
+  ASSERT_FALSE(written.ok());
+  EXPECT_THAT(written.error().message, HasSubstr("x.exr: part depth: pixel 2,1 channel G is nan"));
+  EXPECT_FALSE(std::filesystem::exists(path("x.exr")));
+}
+
+TEST_F(ImageFile, every_cut_exr_is_refused) {
+  ASSERT_TRUE(write_exr(path("x.exr"),
+                        {random_part("a", 40, 40, 3, PixelType::kFloat), random_part("b", 40, 60, 3, PixelType::kHalf)})
+                  .ok());
+  const std::string whole = file_content(path("x.exr")).value();
+  for (std::size_t size = 0; size < whole.size(); size += 1 + whole.size() / 97) {
+    ASSERT_TRUE(write_file(path("cut.exr"), whole.substr(0, size)).ok());
+    const auto read = read_exr(path("cut.exr"));
+    ASSERT_FALSE(read.ok()) << size;
+    EXPECT_THAT(read.error().message, HasSubstr("cut.exr: "));
+  }
+  const auto read = read_exr(path("absent.exr"));
+  ASSERT_FALSE(read.ok());
+  EXPECT_THAT(read.error().message, HasSubstr("absent.exr: cannot be read: No such file"));
+}
+
+TEST_F(ImageFile, damaged_exr_never_crashes) {
+  ASSERT_TRUE(write_exr(path("x.exr"), {random_part("a", 30, 30, 3, PixelType::kHalf)}).ok());
+  const std::string whole = file_content(path("x.exr")).value();
+  std::mt19937 random(3);
+  int refused = 0;
+  for (int i = 0; i < 300; ++i) {
+    std::string hurt = whole;
+    for (int k = 0; k < 3; ++k) hurt[random() % std::min<std::size_t>(hurt.size(), 400)] = static_cast<char>(random());
+    ASSERT_TRUE(write_file(path("hurt.exr"), hurt).ok());
+    if (!read_exr(path("hurt.exr")).ok()) ++refused;
+  }
+  EXPECT_GT(refused, 50);
+}
+
+TEST_F(ImageFile, exr_alone_does_not_load_the_other_formats) {
+  if (maps_contain("goniochrome-oiio")) GTEST_SKIP() << "another test of this process has loaded it";
+  ASSERT_TRUE(write_exr(path("x.exr"), {random_part("a", 4, 2, 3, PixelType::kHalf)}).ok());
+  ASSERT_TRUE(read_image(path("x.exr")).ok());
+  EXPECT_FALSE(maps_contain("OpenImageIO"));
+}
+
+TEST_F(ImageFile, a_missing_module_says_where_it_was_looked_for_and_what_to_do) {
+  ASSERT_TRUE(write_png(path("x.png"), {1, 1, 3, {0, 0, 0}, {}}).ok());
+  if (maps_contain("goniochrome-oiio")) GTEST_SKIP() << "another test of this process has loaded it";
+  setenv("GONIOCHROME_MODULE_PATH", "/nonexistent", 1);
+  const auto read = read_image(path("x.png"));
+  unsetenv("GONIOCHROME_MODULE_PATH");
+  ASSERT_FALSE(read.ok());
+  EXPECT_THAT(read.error().message, HasSubstr("/nonexistent/goniochrome-oiio.so: cannot be loaded"));
+  EXPECT_THAT(read.error().message, HasSubstr("convert the image to EXR"));
+}
+
+TEST_F(ImageFile, png_returns_within_half_a_step_with_its_text) {
+  Image image = {16, 16, 3, {}, {}};
+  for (int i = 0; i < 16 * 16 * 3; ++i) image.data.push_back(static_cast<float>(i % 257) / 256.0F);
+  image.data[0] = -1;
+  image.data[1] = 2;
+  image.data[2] = std::numeric_limits<float>::quiet_NaN();
+  ASSERT_TRUE(write_png(path("x.png"), image, {{"Software", std::string("goniochrome")}}).ok());
+  const auto read = read_image(path("x.png"));
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_TRUE(maps_contain("goniochrome-oiio"));
+  EXPECT_EQ(std::get<std::string>(read->attributes.at("oiio:ColorSpace")), "sRGB");
+  EXPECT_EQ(read->image.data[0], 0);
+  EXPECT_EQ(read->image.data[1], 1);
+  EXPECT_EQ(read->image.data[2], 0);
+  for (std::size_t i = 3; i < image.data.size(); ++i)
+    EXPECT_NEAR(read->image.data[i], image.data[i], 0.5 / 255 + 1e-6) << i;
+  EXPECT_THAT(file_content(path("x.png")).value(), HasSubstr("Software"));
+}
+
+TEST_F(ImageFile, an_unknown_format_is_refused_by_name) {
+  ASSERT_TRUE(write_file(path("notes.hdr"), "these are notes").ok());
+  const auto read = read_image(path("notes.hdr"));
+  ASSERT_FALSE(read.ok());
+  EXPECT_THAT(read.error().message, HasSubstr("notes.hdr: cannot be read as an image"));
+  EXPECT_FALSE(read_image(path("absent.hdr")).ok());
+  EXPECT_THAT(read_image(folder_.string()).error().message, HasSubstr("name an image"));
+}
+
+// The textbook writer opens the target itself: a full disk leaves a stump that looks like a file.
+TEST_F(ImageFile, HardCase_interrupted_a_full_disk_leaves_the_old_file) {
+  ASSERT_TRUE(write_file(path("x.exr"), "old").ok());
+  rlimit before = {};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit limit = {4096, before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &limit);
+  const auto written = write_exr(path("x.exr"), {random_part("a", 100, 100, 3, PixelType::kFloat)});
+  std::ofstream(path("stump.exr")) << std::string(100000, 'x');  // the control
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, old_handler);
+  ASSERT_FALSE(written.ok());
+  EXPECT_THAT(written.error().message, HasSubstr("x.exr: cannot be written: File too large"));
+  EXPECT_EQ(file_content(path("x.exr")).value(), "old");
+  EXPECT_GT(std::filesystem::file_size(path("stump.exr")), 0U);
+  std::filesystem::remove(path("stump.exr"));
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
+}
+
+}  // namespace
+}  // namespace goniochrome

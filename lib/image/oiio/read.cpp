@@ -1,0 +1,56 @@
+// goniochrome-oiio.so: reads any format that OpenImageIO knows.
+#include <OpenImageIO/imageio.h>
+
+#include <exception>
+#include <string>
+#include <vector>
+
+#include "image/oiio_module.h"
+
+namespace {
+
+std::string text_attribute(const OIIO::ImageSpec& spec, const char* name) {
+  return std::string(spec.get_string_attribute(name));
+}
+
+std::string envmap_kind(const OIIO::ImageSpec& spec) {
+  const std::string kind = text_attribute(spec, "textureformat");
+  if (kind == "LatLong Environment") return "latlong";
+  if (kind == "CubeFace Environment") return "cube";
+  return "";
+}
+
+void read(const char* path, void* context, GoniochromeOiioTake take, GoniochromeOiioFail fail) {
+  auto input = OIIO::ImageInput::open(path);
+  if (!input) return fail(context, OIIO::geterror().c_str());
+  const OIIO::ImageSpec& spec = input->spec();
+  if (spec.depth > 1 || spec.deep) return fail(context, "volumes and deep images are not read");
+  std::vector<float> pixels(static_cast<std::size_t>(spec.image_pixels()) * spec.nchannels);
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data()))
+    return fail(context, input->geterror().c_str());
+
+  std::vector<const char*> names;
+  for (const std::string& name : spec.channelnames) names.push_back(name.c_str());
+  const std::string color_space = text_attribute(spec, "oiio:ColorSpace");
+  const std::string interop_id = text_attribute(spec, "colorInteropID");
+  const std::string envmap = envmap_kind(spec);
+  const OIIO::ParamValue* chromaticities =
+      spec.find_attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8));
+  const GoniochromeOiioImage image = {
+      spec.width,         spec.height,    spec.nchannels,
+      pixels.data(),      names.data(),   color_space.c_str(),
+      interop_id.c_str(), envmap.c_str(), chromaticities ? static_cast<const float*>(chromaticities->data()) : nullptr};
+  take(context, &image);
+}
+
+}  // namespace
+
+extern "C" __attribute__((visibility("default"))) void goniochrome_oiio_read_1(const char* path, void* context,
+                                                                               GoniochromeOiioTake take,
+                                                                               GoniochromeOiioFail fail) {
+  try {
+    read(path, context, take, fail);
+  } catch (const std::exception& e) {
+    fail(context, e.what());
+  }
+}

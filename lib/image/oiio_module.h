@@ -1,0 +1,26 @@
+// The border between the tools and goniochrome-oiio.so, in C so that it holds across compilers.
+#pragma once
+
+extern "C" {
+
+// A decoded image: interleaved float pixels from the top, valid only during the call that hands it over.
+struct GoniochromeOiioImage {
+  int width, height, channels;
+  const float* pixels;
+  const char* const* channel_names;  // one for each channel
+  const char* color_space;           // oiio:ColorSpace, or ""
+  const char* interop_id;            // colorInteropID, or ""
+  const char* envmap;                // "latlong", "cube" or ""
+  const float* chromaticities;       // 8 values, or null
+};
+
+// Decodes `path` and calls take(context, image) once, or fail(context, reason) once.
+using GoniochromeOiioTake = void (*)(void* context, const GoniochromeOiioImage* image);
+using GoniochromeOiioFail = void (*)(void* context, const char* reason);
+using GoniochromeOiioRead = void (*)(const char* path, void* context, GoniochromeOiioTake take,
+                                     GoniochromeOiioFail fail);
+
+}  // extern "C"
+
+// The name under which the module exports its GoniochromeOiioRead.
+constexpr const char* kGoniochromeOiioReadName = "goniochrome_oiio_read_1";

@@ -1,0 +1,127 @@
+#include <dlfcn.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+
+#include "base/file.h"
+#include "image/exr.h"
+#include "image/image.h"
+#include "image/oiio_module.h"
+
+namespace goniochrome {
+
+namespace {
+
+constexpr const char* kModuleName = "goniochrome-oiio.so";
+
+// The module's path: in $GONIOCHROME_MODULE_PATH where that is set, else in ../lib/goniochrome beside the program.
+std::filesystem::path module_path() {
+  if (const char* folder = std::getenv("GONIOCHROME_MODULE_PATH")) return std::filesystem::path(folder) / kModuleName;
+  std::error_code ignored;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", ignored);
+  return program.parent_path().parent_path() / "lib" / "goniochrome" / kModuleName;
+}
+
+struct Module {
+  GoniochromeOiioRead read = nullptr;
+};
+
+// The module, loaded once. Error: where it was looked for, and the remedy.
+Result<Module> loaded_module() {
+  static Module loaded;
+  if (loaded.read) return loaded;
+  const std::string path = module_path().string();
+  void* handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (!handle)
+    return input_error(
+        "{}: cannot be loaded ({}): it reads every format but EXR; install it there, set GONIOCHROME_MODULE_PATH to "
+        "its "
+        "folder, or convert the image to EXR",
+        path, dlerror());
+  loaded.read = reinterpret_cast<GoniochromeOiioRead>(dlsym(handle, kGoniochromeOiioReadName));
+  if (!loaded.read) return input_error("{}: is not of this version of Goniochrome: install both from one build", path);
+  return loaded;
+}
+
+struct Decoded {
+  ImagePart part;
+  std::string failure;
+};
+
+void take(void* context, const GoniochromeOiioImage* image) {
+  ImagePart& part = static_cast<Decoded*>(context)->part;
+  part.type = PixelType::kFloat;
+  part.image.width = image->width;
+  part.image.height = image->height;
+  part.image.channels = image->channels;
+  part.image.data.assign(image->pixels,
+                         image->pixels + static_cast<std::size_t>(image->width) * image->height * image->channels);
+  part.image.channel_names.assign(image->channel_names, image->channel_names + image->channels);
+  const auto keep = [&](const char* name, const std::string& value) {
+    if (!value.empty()) part.attributes[name] = value;
+  };
+  keep("oiio:ColorSpace", image->color_space);
+  keep("colorInteropID", image->interop_id);
+  keep("envmap", image->envmap);
+  if (image->chromaticities)
+    part.attributes["chromaticities"] = std::vector<float>(image->chromaticities, image->chromaticities + 8);
+}
+
+void fail(void* context, const char* reason) {
+  std::string text = reason && *reason ? reason : "unknown reason";
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  static_cast<Decoded*>(context)->failure = text;
+}
+
+Result<ImagePart> read_through_module(const std::string& path, const std::string& shown) {
+  GONIO_ASSIGN(const Module module, loaded_module());
+  Decoded decoded;
+  module.read(path.c_str(), &decoded, take, fail);
+  if (!decoded.failure.empty()) return input_error("{}: cannot be read as an image: {}", shown, decoded.failure);
+  return std::move(decoded.part);
+}
+
+// Standard input as a file in memory, for a library that wants a name.
+Result<ImagePart> read_content_through_module(const std::string& content) {
+  const int fd = memfd_create("goniochrome", MFD_CLOEXEC);
+  if (fd < 0) return input_error("standard input: cannot be kept in memory");
+  std::size_t done = 0;
+  while (done < content.size()) {
+    const ssize_t count = write(fd, content.data() + done, content.size() - done);
+    if (count <= 0) break;
+    done += static_cast<std::size_t>(count);
+  }
+  auto part = done == content.size() ? read_through_module(fmt::format("/proc/self/fd/{}", fd), "standard input")
+                                     : Result<ImagePart>(input_error("standard input: cannot be kept in memory"));
+  close(fd);
+  return part;
+}
+
+bool is_exr(std::string_view head) {
+  return head.substr(0, 4) == std::string_view("\x76\x2f\x31\x01", 4);
+}
+
+Result<std::string> file_head(const std::string& path) {
+  std::FILE* stream = std::fopen(path.c_str(), "rb");
+  if (!stream) return file_content(path);  // says why
+  char head[4];
+  const std::size_t count = std::fread(head, 1, sizeof head, stream);
+  std::fclose(stream);
+  return std::string(head, count);
+}
+
+}  // namespace
+
+Result<ImagePart> read_image(const std::string& path) {
+  GONIO_ASSIGN(const std::string head, path == "-" ? file_content(path) : file_head(path));
+  const std::string shown = path == "-" ? "standard input" : path;
+  if (head.empty()) return input_error("{}: is empty or a folder: name an image", shown);
+  if (!is_exr(head)) return path == "-" ? read_content_through_module(head) : read_through_module(path, shown);
+  GONIO_ASSIGN(auto parts, path == "-" ? decoded_exr(head, shown) : read_exr(path));
+  return std::move(parts.front());
+}
+
+}  // namespace goniochrome
