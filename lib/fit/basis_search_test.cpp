@@ -1,0 +1,133 @@
+#include "fit/basis_search.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "base/parallel.h"
+#include "brdf/lobe_model.h"
+#include "fit/basis_targets.h"
+
+namespace goniochrome {
+namespace {
+
+// Paints that are sums of lobes with random weights, at 40 angles from 15 to 90 deg.
+std::vector<BasisTarget> planted(const std::vector<double>& exponents, int paints, double noise = 0) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<BasisTarget> targets;
+  for (int p = 0; p < paints; ++p) {
+    BasisTarget target;
+    target.name = "paint" + std::to_string(p);
+    for (int i = 0; i < 40; ++i) target.angles_deg.push_back(15 + 75.0 * i / 39);
+    for (int c = 0; c < 3; ++c) {
+      std::vector<double> weights;
+      for (std::size_t j = 0; j <= exponents.size(); ++j) weights.push_back(unit(random));
+      for (const double angle : target.angles_deg) {
+        double value = 0.1 * weights[0];
+        for (std::size_t j = 0; j < exponents.size(); ++j)
+          value += weights[j + 1] * cos_power(angle * std::numbers::pi / 180, exponents[j]);
+        target.value[c].push_back(value + noise * unit(random));
+        target.weight[c].push_back(1);
+      }
+    }
+    targets.push_back(target);
+  }
+  return targets;
+}
+
+TEST(BasisSearch, FindsPlantedExponents) {
+  const auto targets = planted({3, 40}, 12);
+  BasisSearchOptions options;
+  options.last = 3;
+  const BasisSearch search = search_basis(targets, options);
+  ASSERT_EQ(search.sets.size(), 3u);
+  ASSERT_EQ(search.sets[1].exponents.size(), 2u);
+  EXPECT_NEAR(search.sets[1].exponents[0], 3, 0.1);
+  EXPECT_NEAR(search.sets[1].exponents[1], 40, 1);
+  EXPECT_GT(search.sets[0].error.objective(), 10 * search.sets[1].error.objective());
+}
+
+// The control: every pair (triple) of a grid in log E. The search must be at least as good as the best of them.
+TEST(BasisSearch, NotWorseThanAnExhaustiveGrid) {
+  const auto targets = planted({1.5, 9, 70}, 10, 0.02);
+  BasisSearchOptions options;
+  options.low = 0.5, options.high = 500, options.last = 3;
+  for (const BasisMethod method : {BasisMethod::kPowerMean, BasisMethod::kLevenbergMarquardt}) {
+    options.method = method;
+    const BasisSearch search = search_basis(targets, options);
+    std::vector<double> grid;
+    for (double x = std::log(0.5); x < std::log(500); x += 0.35) grid.push_back(std::exp(x));
+    double best[4] = {0, 1e9, 1e9, 1e9};
+    for (std::size_t i = 0; i < grid.size(); ++i) {
+      best[1] = std::min(best[1], basis_error({grid[i]}, targets).objective());
+      for (std::size_t j = i + 1; j < grid.size(); ++j) {
+        best[2] = std::min(best[2], basis_error({grid[i], grid[j]}, targets).objective());
+        for (std::size_t k = j + 1; k < grid.size(); k += 2)
+          best[3] = std::min(best[3], basis_error({grid[i], grid[j], grid[k]}, targets).objective());
+      }
+    }
+    for (std::size_t m = 1; m <= 3; ++m) EXPECT_LE(search.sets[m - 1].error.objective(), best[m] * (1 + 1e-9)) << m;
+  }
+}
+
+TEST(BasisSearch, ErrorNeverRisesWithALobeAndDoesNotDependOnThreads) {
+  const auto targets = planted({1.2, 5, 25, 140}, 8, 0.05);
+  BasisSearchOptions options;
+  options.last = 6, options.starts = 3;
+  set_threads(1);
+  const BasisSearch one = search_basis(targets, options);
+  set_threads(7);
+  const BasisSearch seven = search_basis(targets, options);
+  set_threads(0);
+  for (std::size_t i = 0; i < one.sets.size(); ++i) {
+    EXPECT_EQ(one.sets[i].exponents, seven.sets[i].exponents);
+    if (i) {
+      EXPECT_LE(one.sets[i].error.objective(), one.sets[i - 1].error.objective());
+    }
+    EXPECT_TRUE(std::ranges::is_sorted(one.sets[i].exponents));
+  }
+}
+
+// The gradient leaves the inner optimum out (envelope theorem); central differences take it along.
+TEST(BasisSearch, GradientMatchesDifferences) {
+  const auto targets = planted({2, 30}, 4, 0.1);
+  const std::vector<double> exponents = {1.1, 6, 55};
+  const auto errors = squared_basis_errors(exponents, targets, true);
+  constexpr double kStep = 1e-5;
+  for (std::size_t j = 0; j < exponents.size(); ++j) {
+    auto up = exponents, down = exponents;
+    up[j] *= std::exp(kStep), down[j] *= std::exp(-kStep);
+    const auto above = squared_basis_errors(up, targets, false), below = squared_basis_errors(down, targets, false);
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+      const double difference = (above[i].value - below[i].value) / (2 * kStep);
+      EXPECT_NEAR(errors[i].gradient[j], difference, 1e-6 * (std::abs(difference) + errors[i].value));
+    }
+  }
+}
+
+TEST(BasisSearch, TimeLimitKeepsTheBestSoFar) {
+  const auto targets = planted({2, 30}, 40, 0.1);
+  BasisSearchOptions options;
+  options.time_limit_s = 0.02;
+  const BasisSearch search = search_basis(targets, options);
+  EXPECT_TRUE(search.stopped);
+  ASSERT_GE(search.sets.size(), 1u);
+  EXPECT_LT(search.sets.size(), 11u);
+}
+
+TEST(BasisTargets, SolidPaintNeedsNoLobe) {
+  Paint paint;
+  paint.name = "gray";
+  paint.appearance = Appearance{{50, 0, 0}, {50, 0, 0}, 60, {}};
+  const auto target = basis_target(paint, {.target = TargetCurve::Kind::kCurve});
+  ASSERT_TRUE(target.ok());
+  EXPECT_LT(basis_error({10}, *target), 1e-9);
+  EXPECT_LT(basis_de00({10}, *target), 1e-6);
+}
+
+}  // namespace
+}  // namespace goniochrome

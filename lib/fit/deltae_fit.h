@@ -1,0 +1,41 @@
+// The last polish of a fit: weights that make the CIEDE2000 differences at the readings least, from a linear fit's
+// start. goniochrome-theory(7), FITTING.
+#pragma once
+
+#include <vector>
+
+#include "base/vec3.h"
+#include "color/color.h"
+
+namespace goniochrome {
+
+// Predicted color of row i is sum_j shape(i,j) x_j, x_j >= 0 a working-space triple per column.
+struct DeltaEProblem {
+  int columns = 0;
+  Xyz white;  // that the Lab values are relative to
+  struct Reading {
+    std::vector<double> shape;  // one per column
+    Lab lab;
+  };
+  std::vector<Reading> readings;
+  // Inferred rows, which steer where no reading is: residual weight * (prediction - value), in L*.
+  struct Guide {
+    std::vector<double> shape;
+    Rgb value;
+    double weight = 0;
+  };
+  std::vector<Guide> guides;
+};
+
+struct DeltaEFit {
+  std::vector<Rgb> x;    // one per column
+  double objective = 0;  // root of the sum of squared dE00 and squared guide residuals
+  double optimality_gap =
+      0;  // the largest cosine between the residual and a free column of its derivative; 0 is stationary
+  bool converged = true;  // false: stopped at the iteration limit
+};
+
+// The best of the local minima reached from each start; never worse than a start. Deterministic.
+DeltaEFit deltae_fit(const DeltaEProblem& problem, const std::vector<std::vector<Rgb>>& starts);
+
+}  // namespace goniochrome

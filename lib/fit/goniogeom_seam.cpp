@@ -1,0 +1,159 @@
+#include "fit/goniogeom_seam.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "envmap/cube_map.h"
+#include "fit/paint_fit.h"
+
+namespace goniochrome {
+
+namespace {
+
+constexpr double kRadians = M_PI / 180;
+constexpr double kEdgeOn = 0.02;  // cosine; a panel nearer to edge on is not seen
+
+bool sees_both(const SeamPoint& p, const Vec3& view) {
+  return dot(p.normal_a, view) > kEdgeOn && dot(p.normal_b, view) > kEdgeOn;
+}
+
+bool is_glare(const Vec3& light, const Vec3& view, const Vec3& normal) {
+  return aspecular_angle_rad(light, view, normal) < kIndexGlare_deg * kRadians - 1e-9;
+}
+
+double luminance(const float* rgb) {
+  return xyz_d65_from_rgb({rgb[0], rgb[1], rgb[2]}).Y;
+}
+
+}  // namespace
+
+// In the frame of the first panel at a place, x points away from the light in the plane of incidence. For a seam across
+// that plane x is `across` where the light comes from the first panel's side, and its opposite for the second's.
+std::vector<SeamView> views_at_seam(const Seam& seam, const GeometryList& geometries, double seam_deg) {
+  std::vector<SeamView> views;
+  const double turn = (90 - seam_deg) * kRadians;
+  for (std::size_t i = 0; i < seam.points.size(); ++i) {
+    const SeamPoint& p = seam.points[i];
+    for (const double side : {1.0, -1.0}) {
+      const Vec3 across = side * p.across;
+      const Vec3 x = std::cos(turn) * across - std::sin(turn) * cross(p.normal_a, across), y = cross(p.normal_a, x);
+      const auto to_world = [&](const Vec3& v) { return v.x * x + v.y * y + v.z * p.normal_a; };
+      for (std::size_t g = 0; g < geometries.pairs.size(); ++g) {
+        const DirectionPair pair = directions(geometries.pairs[g]);
+        const Vec3 view = to_world(pair.view);
+        if (sees_both(p, view)) views.push_back({i, to_world(pair.light), view, geometries.weights[g]});
+      }
+    }
+  }
+  return views;
+}
+
+std::vector<SeamView> views_in_world(const Seam& seam, const std::vector<Vec3>& lights,
+                                     const std::vector<Vec3>& viewers) {
+  std::vector<SeamView> views;
+  for (std::size_t i = 0; i < seam.points.size(); ++i) {
+    const SeamPoint& p = seam.points[i];
+    for (const Vec3& view : viewers) {
+      if (!sees_both(p, view)) continue;
+      if (lights.empty()) views.push_back({i, std::nullopt, view, 1});
+      for (const Vec3& light : lights) {
+        const bool dark = dot(light, p.normal_a) <= 0 && dot(light, p.normal_b) <= 0;
+        if (!dark && !is_glare(light, view, p.normal_a) && !is_glare(light, view, p.normal_b))
+          views.push_back({i, light, view, 1});
+      }
+    }
+  }
+  return views;
+}
+
+PanelView panel_view(const Seam& seam, const SeamView& view) {
+  const SeamPoint& p = seam.points[view.point];
+  const auto aspecular = [&](const Vec3& n) { return aspecular_angle_rad(*view.light, view.view, n) / kRadians; };
+  const auto cosine = [&](const Vec3& n) { return std::max(0.0, dot(n, *view.light)); };
+  return {aspecular(p.normal_a), cosine(p.normal_a), aspecular(p.normal_b), cosine(p.normal_b), view.weight};
+}
+
+std::vector<SeamDifference> by_place(const Seam& seam, const std::vector<SeamView>& views,
+                                     const std::vector<double>& de) {
+  std::vector<SeamDifference> places(seam.points.size());
+  std::vector<double> weight(seam.points.size(), 0.0);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    SeamDifference& place = places[views[i].point];
+    place.max = std::max(place.max, de[i]);
+    place.rms += views[i].weight * de[i] * de[i];
+    weight[views[i].point] += views[i].weight;
+    ++place.views;
+  }
+  for (std::size_t p = 0; p < places.size(); ++p) {
+    places[p].rms = std::sqrt(places[p].rms / weight[p]);  // NaN without views
+    if (places[p].views == 0) places[p].max = std::numeric_limits<double>::quiet_NaN();
+  }
+  return places;
+}
+
+Result<EnvironmentPanels> EnvironmentPanels::make(const PrefilteredEnvironment& env,
+                                                  const ViewingCondition& condition) {
+  EnvironmentPanels panels;
+  panels.env_ = &env;
+  for (const PrefilteredLobe& lobe : env.lobes) panels.exponents_.push_back(lobe.exponent);
+  if (panels.exponents_.empty())
+    return input_error("the environment has no lobes: make it by prefilter-envmap with a basis or --exponents");
+  double most = 0;
+  const CubeMap& diffuse = env.diffuse.map;
+  for (std::size_t i = 0; i < diffuse.texels.size(); i += 3) most = std::max(most, luminance(&diffuse.texels[i]));
+  if (!(most > 0)) return input_error("the environment is black: there is no white to compare with");
+  panels.luminance_ = most;
+  panels.condition_ = condition;
+  GONIO_ASSIGN(panels.white_, white_point(condition));
+  FitOptions options;
+  options.method = FitMethod::kL2;
+  options.target = TargetCurve::Kind::kCurve;
+  panels.fitter_ = std::make_shared<const PaintFitter>(Basis{"environment", panels.exponents_}, options);
+  return panels;
+}
+
+// The mirrored view stands for the light's direction, as it does in the renderer: pi P_1(n) is the irradiance, and
+// 2 pi/(E + 1) P_E(r) the light in a lobe of exponent E.
+EnvironmentPanels::Light EnvironmentPanels::light(const Vec3& normal, const Vec3& view) const {
+  const Vec3 mirrored = 2 * dot(normal, view) * normal - view;
+  Light light{M_PI * bilinear(env_->diffuse.map, normal), {}, std::max(0.0, dot(normal, mirrored))};
+  for (const PrefilteredLobe& lobe : env_->lobes)
+    light.lobes.push_back((2 * M_PI / (lobe.exponent + 1)) * bilinear(lobe.map, mirrored));
+  return light;
+}
+
+Result<LobeFit> EnvironmentPanels::lobes(const Appearance& appearance) const {
+  Paint paint;
+  paint.measurement = Measurement{condition_, "", rows_of(appearance)};
+  paint.appearance = appearance;
+  GONIO_ASSIGN(PaintFit fit, fitter_->fit(paint));
+  return std::move(fit.lobes);
+}
+
+Lab EnvironmentPanels::color(const LobeFit& paint, const Light& light) const {
+  Rgb radiance = paint.diffuse * light.diffuse;
+  for (const Lobe& lobe : paint.lobes) {
+    const auto at = std::ranges::find(exponents_, lobe.exponent);
+    if (at == exponents_.end()) continue;
+    radiance +=
+        light.cosine * (lobe.directional_diffuse * light.lobes[static_cast<std::size_t>(at - exponents_.begin())]);
+  }
+  return lab_from_rgb((1 / luminance_) * radiance, white_);
+}
+
+PanelColors seam_colors(const EnvironmentPanels& panels, const Seam& seam, const std::vector<SeamView>& views,
+                        SeamSide side) {
+  std::vector<EnvironmentPanels::Light> lights;
+  for (const SeamView& view : views) {
+    const SeamPoint& p = seam.points[view.point];
+    lights.push_back(panels.light(side == SeamSide::kA ? p.normal_a : p.normal_b, view.view));
+  }
+  return [&panels, lights = std::move(lights)](const Appearance& paint) -> Result<std::vector<Lab>> {
+    GONIO_ASSIGN(const LobeFit fit, panels.lobes(paint));
+    std::vector<Lab> colors;
+    for (const auto& light : lights) colors.push_back(panels.color(fit, light));
+    return colors;
+  };
+}
+
+}  // namespace goniochrome

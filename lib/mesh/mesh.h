@@ -1,0 +1,46 @@
+// Triangle meshes of named parts.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "base/vec3.h"
+
+namespace goniochrome {
+
+// Triangles of one part are contiguous: [first, first + count). The material is that of the part's first face.
+struct MeshPart {
+  std::string name;
+  std::string material;
+  std::size_t first = 0, count = 0;
+};
+
+// Indexed triangles, counter-clockwise seen from outside; one unit normal per vertex.
+struct Mesh {
+  std::vector<Vec3> positions;
+  std::vector<Vec3> normals;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<MeshPart> parts;
+
+  struct Repairs {
+    int normals_made = 0;        // vertices without a normal, which got one
+    int degenerate_dropped = 0;  // triangles without area
+    int polygons_split = 0;      // faces of more than three corners
+    int triangles_turned = 0;    // wound against the file's own normals
+  } repairs;
+};
+
+struct Box {
+  Vec3 low, high;
+};
+Box bounding_box(const Mesh& mesh);
+
+// Reads OBJ (parts from `o`, else `g`; a name that comes twice is one part), or OFF, PLY, STL as a single part. Normals
+// are made where the file has none (angle-weighted, broken at edges sharper than 60 degrees), degenerate triangles are
+// dropped, both counted. Errors name file, line and remedy.
+Result<Mesh> read_mesh(const std::string& path);
+
+}  // namespace goniochrome

@@ -1,0 +1,235 @@
+#include "mesh/mesh.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <numbers>
+
+#include "base/file.h"
+#include "mesh/polygons.h"
+
+namespace goniochrome {
+namespace {
+
+using testing::HasSubstr;
+
+class MeshFiles : public testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::create_directories(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  std::string file(const std::string& name, const std::string& content) const {
+    const std::string path = (folder_ / name).string();
+    EXPECT_TRUE(write_file(path, content).ok());
+    return path;
+  }
+  Result<Mesh> obj(const std::string& content) const { return read_mesh(file("t.obj", content)); }
+  std::string obj_error(const std::string& content) const {
+    const auto mesh = obj(content);
+    return mesh.ok() ? "no error" : mesh.error().message.substr(folder_.string().size() + 1);
+  }
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("gonio_mesh_test_" + std::to_string(getpid()));
+};
+
+const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+double area(const Mesh& mesh) {
+  double sum = 0;
+  for (const auto& [i, j, k] : mesh.triangles) {
+    sum += length(cross(mesh.positions[j] - mesh.positions[i], mesh.positions[k] - mesh.positions[i])) / 2;
+  }
+  return sum;
+}
+
+TEST_F(MeshFiles, PartsComeFromObjectsAndANameTwiceIsOnePart) {
+  const auto mesh = obj(kSquare + "o hood\nusemtl red\nf 1 2 3\no roof\nusemtl blue\nf 1 3 4\no hood\nf 2 3 4\n");
+  ASSERT_TRUE(mesh.ok());
+  ASSERT_EQ(mesh->parts.size(), 2u);
+  EXPECT_EQ(mesh->parts[0].name, "hood");
+  EXPECT_EQ(mesh->parts[0].material, "red");
+  EXPECT_EQ(mesh->parts[0].first, 0u);
+  EXPECT_EQ(mesh->parts[0].count, 2u);
+  EXPECT_EQ(mesh->parts[1].name, "roof");
+  EXPECT_EQ(mesh->parts[1].first, 2u);
+}
+
+TEST_F(MeshFiles, GroupsNamePartsOnlyWhereThereAreNoObjects) {
+  const auto groups = obj(kSquare + "g left side\nf 1 2 3\ng right\nf 1 3 4\n");
+  ASSERT_TRUE(groups.ok());
+  ASSERT_EQ(groups->parts.size(), 2u);
+  EXPECT_EQ(groups->parts[0].name, "left side");
+  const auto objects = obj(kSquare + "g left\nf 1 2 3\no all\ng right\nf 1 3 4\n");
+  ASSERT_TRUE(objects.ok());
+  ASSERT_EQ(objects->parts.size(), 2u);
+  EXPECT_EQ(objects->parts[0].name, "unnamed");
+  EXPECT_EQ(objects->parts[1].name, "all");
+  EXPECT_EQ(obj(kSquare + "f 1 2 3\n")->parts[0].name, "t") << "the file names the only part";
+}
+
+TEST_F(MeshFiles, EveryWayToWriteACorner) {
+  const std::string tail = "vt 0 0\nvn 0 0 5\n";
+  for (const char* face : {"f 1 2 3", "f 1/1 2/1 3/1", "f 1//1 2//1 3//1", "f 1/1/1 2/1/1 3/1/1", "f -4 -3 -2",
+                           "f -4/-1/-1 -3/-1/-1 -2/-1/-1", "f 1 \\\n2 3", "f 1 2 3 # not 4", "f\t1  2\t3 \r"}) {
+    const auto mesh = obj(kSquare + tail + face + "\n");
+    ASSERT_TRUE(mesh.ok()) << face << ": " << mesh.error().message;
+    EXPECT_EQ(mesh->triangles.size(), 1u) << face;
+    for (const Vec3& n : mesh->normals) EXPECT_EQ(n, (Vec3{0, 0, 1})) << face;
+  }
+}
+
+TEST_F(MeshFiles, VertexColorsAndStrangersArePassedOver) {
+  const auto mesh = obj("mtllib x.mtl\nv 0 0 0 1 .5 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\ns off\nl 1 2\nf 1 2 3");
+  ASSERT_TRUE(mesh.ok()) << mesh.error().message;
+  EXPECT_EQ(mesh->triangles.size(), 1u);
+}
+
+TEST_F(MeshFiles, ErrorsNameLineValueAndRemedy) {
+  EXPECT_EQ(obj_error("v 0 0,5 0\n"),
+            "t.obj:1: vertex coordinate 2 is \"0,5\": write a finite number with a decimal point");
+  EXPECT_EQ(obj_error("v 0 0\n"), "t.obj:1: vertex coordinate 3 is \"\": write a finite number with a decimal point");
+  EXPECT_THAT(obj_error("v 0 nan 0\n"), HasSubstr("\"nan\""));
+  EXPECT_EQ(obj_error(kSquare + "f 1 2 9\n"),
+            "t.obj:5: the face refers to vertex 9, but there are 4 so far: the file may be cut or reordered");
+  EXPECT_THAT(obj_error(kSquare + "f 1 2 -5\n"), HasSubstr("vertex -5"));
+  EXPECT_THAT(obj_error(kSquare + "f 0 1 2\n"), HasSubstr("whole number from 1"));
+  EXPECT_THAT(obj_error(kSquare + "f 1//1 2//1 3//1\n"), HasSubstr("normal 1, but there are 0"));
+  EXPECT_THAT(obj_error(kSquare + "\nf 1 2\n"), HasSubstr("t.obj:6: a face of 2 corners"));
+  EXPECT_THAT(obj_error(kSquare), HasSubstr("holds no faces"));
+  EXPECT_THAT(obj_error(kSquare + "f 1 1 2\n"), HasSubstr("none of its 1 faces has an area"));
+  EXPECT_THAT(obj_error(kSquare + "f 1 2 \\\n3 \\\nx\n"), HasSubstr("t.obj:7: \"x\"")) << "continued lines count";
+  EXPECT_THAT(read_mesh("car.fbx").error().message, HasSubstr("\".fbx\" is no mesh format"));
+  EXPECT_THAT(read_mesh("/nowhere/car.obj").error().message, HasSubstr("No such file"));
+  EXPECT_THAT(read_mesh("/nowhere/car.ply").error().message, HasSubstr("no such file"));
+  EXPECT_THAT(read_mesh(file("cut.ply", "ply\nformat ascii 1.0\nelement vertex 3\n")).error().message,
+              HasSubstr("not a whole ply mesh"));
+}
+
+// A fan from the first corner, the textbook triangulation, covers the notch of a concave polygon.
+TEST(Triangulation, ConcavePolygonKeepsItsArea) {
+  const std::vector<Vec3> arrow = {
+      {0, 0, 0}, {2, -2, 1}, {1, 0, 0.5}, {2, 2, 1}};  // in the plane z = x/2, a notch at 1
+  const std::vector<Vec3> comb = {{0, 0, 0}, {5, 0, 0}, {5, 3, 0}, {4, 3, 0}, {4, 1, 0}, {3, 1, 0},
+                                  {3, 3, 0}, {2, 3, 0}, {2, 1, 0}, {1, 1, 0}, {1, 3, 0}, {0, 3, 0}};
+  const auto signed_area = [](const std::vector<Vec3>& p, const auto& triangles) {
+    double sum = 0, absolute = 0;
+    for (const auto& [i, j, k] : triangles) {
+      const Vec3 doubled = cross(p[j] - p[i], p[k] - p[i]);
+      sum += doubled.z / 2;
+      absolute += std::abs(doubled.z) / 2;
+    }
+    return std::pair{sum, absolute};
+  };
+  for (const auto& [ring, wanted] : {std::pair{arrow, 2.0}, std::pair{comb, 11.0}}) {
+    for (std::size_t turn = 0; turn < ring.size(); ++turn) {
+      std::vector<Vec3> turned = ring;
+      std::rotate(turned.begin(), turned.begin() + static_cast<std::ptrdiff_t>(turn), turned.end());
+      const auto triangles = triangulated(turned);
+      EXPECT_EQ(triangles.size(), ring.size() - 2);
+      const auto [sum, absolute] = signed_area(turned, triangles);
+      EXPECT_NEAR(sum, wanted, 1e-12);
+      EXPECT_NEAR(absolute, wanted, 1e-12) << "no triangle may be turned over";
+    }
+  }
+  std::vector<std::array<std::uint32_t, 3>> fan;
+  std::vector<Vec3> turned = comb;
+  std::rotate(turned.begin(), turned.begin() + 2, turned.end());
+  for (std::uint32_t i = 1; i + 1 < turned.size(); ++i) fan.push_back({0, i, i + 1});
+  EXPECT_GT(signed_area(turned, fan).second, 11.5) << "the control must fail";
+}
+
+TEST(Triangulation, HopelessPolygonsStillEnd) {
+  EXPECT_EQ(triangulated(std::vector<Vec3>(50)).size(), 48u);                                     // all in one place
+  EXPECT_EQ(triangulated({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}, {0.5, 2, 0}}).size(), 3u);  // crosses itself
+}
+
+TEST_F(MeshFiles, DegenerateTrianglesAreDroppedAndCounted) {
+  const auto mesh = obj(kSquare + "v 0.5 0 0\nf 1 2 3\nf 1 1 2\nf 1 5 2\nf 1 3 4\n");
+  ASSERT_TRUE(mesh.ok());
+  EXPECT_EQ(mesh->repairs.degenerate_dropped, 2);
+  EXPECT_EQ(mesh->triangles.size(), 2u);
+  EXPECT_NEAR(area(*mesh), 1, 1e-15);
+}
+
+TEST_F(MeshFiles, TrianglesAreTurnedToTheirNormals) {
+  const auto mesh = obj(kSquare + "vn 0 0 1\nf 1//1 2//1 3//1\nf 1//1 4//1 3//1\n");
+  ASSERT_TRUE(mesh.ok());
+  EXPECT_EQ(mesh->repairs.triangles_turned, 1);
+  for (const auto& [i, j, k] : mesh->triangles) {
+    EXPECT_GT(cross(mesh->positions[j] - mesh->positions[i], mesh->positions[k] - mesh->positions[i]).z, 0);
+  }
+}
+
+// A cube keeps its six flat faces, a fine sphere gets smooth normals: the made normal of a sphere's vertex is radial
+// within the size of its triangles squared.
+TEST_F(MeshFiles, MadeNormalsAreSmoothButKeepCreases) {
+  const auto cube =
+      obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+          "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+  ASSERT_TRUE(cube.ok());
+  EXPECT_EQ(cube->positions.size(), 24u);
+  EXPECT_EQ(cube->repairs.normals_made, 24);
+  EXPECT_EQ(cube->repairs.polygons_split, 6);
+  for (const auto& triangle : cube->triangles) {
+    EXPECT_EQ(cube->normals[triangle[0]], cube->normals[triangle[1]]);
+    EXPECT_EQ(cube->normals[triangle[0]], cube->normals[triangle[2]]);
+  }
+
+  constexpr int kRows = 32, kColumns = 64;
+  std::string text;
+  for (int i = 0; i <= kRows; ++i) {
+    for (int j = 0; j < kColumns; ++j) {
+      const double t = std::numbers::pi * i / kRows, p = 2 * std::numbers::pi * j / kColumns;
+      const double sine = i % kRows == 0 ? 0 : std::sin(t);  // the poles are one point, whatever the number of vertices
+      text += fmt::format("v {} {} {}\n", sine * std::cos(p), std::cos(t), sine * std::sin(p));
+    }
+  }
+  for (int i = 0; i < kRows; ++i) {
+    for (int j = 0; j < kColumns; ++j) {
+      const int a = i * kColumns + j + 1, b = i * kColumns + (j + 1) % kColumns + 1;
+      text += fmt::format("f {} {} {} {}\n", a, b, b + kColumns, a + kColumns);
+    }
+  }
+  const auto sphere = obj(text);
+  ASSERT_TRUE(sphere.ok());
+  EXPECT_EQ(sphere->repairs.degenerate_dropped, 2 * kColumns) << "one triangle of each quad at the poles";
+  for (std::size_t i = 0; i < sphere->normals.size(); ++i) {
+    EXPECT_NEAR(length(sphere->normals[i]), 1, 1e-15);
+    EXPECT_NEAR(dot(sphere->normals[i], sphere->positions[i]), 1, 1e-4);
+  }
+}
+
+TEST_F(MeshFiles, OffPlyAndStlAreOnePartNamedForTheFile) {
+  const std::string off = "OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n";
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n";
+  const std::string stl =
+      "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\nendfacet\n"
+      "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 1 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid s\n";
+  for (const auto& [name, text] : {std::pair{"panel.off", off}, {"panel.ply", ply}, {"panel.stl", stl}}) {
+    const auto mesh = read_mesh(file(name, text));
+    ASSERT_TRUE(mesh.ok()) << name << ": " << mesh.error().message;
+    EXPECT_EQ(mesh->parts.size(), 1u) << name;
+    EXPECT_EQ(mesh->parts[0].name, "panel") << name;
+    EXPECT_EQ(mesh->triangles.size(), 2u) << name;
+    EXPECT_NEAR(area(*mesh), 1, 1e-15) << name;
+    for (const Vec3& n : mesh->normals) EXPECT_EQ(n, (Vec3{0, 0, 1})) << name;
+  }
+}
+
+TEST(Mesh, VehicleRealData) {
+  const char* data = std::getenv("GONIOCHROME_DATA");
+  if (data == nullptr) GTEST_SKIP() << "GONIOCHROME_DATA is not set";
+  const auto mesh = read_mesh(std::string(data) + "/mesh/vehicle.obj");
+  ASSERT_TRUE(mesh.ok()) << mesh.error().message;
+  EXPECT_GT(mesh->triangles.size(), 48000u);
+  EXPECT_EQ(mesh->repairs.normals_made, 0);
+  EXPECT_TRUE(std::any_of(mesh->parts.begin(), mesh->parts.end(),
+                          [](const MeshPart& p) { return p.name == "Body" && p.material == "Paint_Red"; }));
+}
+
+}  // namespace
+}  // namespace goniochrome

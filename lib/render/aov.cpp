@@ -1,0 +1,78 @@
+#include "render/aov.h"
+
+#include <algorithm>
+#include <functional>
+#include <numbers>
+
+#include "paint/geometry.h"
+
+namespace goniochrome {
+
+namespace {
+
+// One buffer: its channels, and the value of each of them at a pixel of the mesh.
+struct Aov {
+  std::string name;
+  std::vector<std::string> channels;
+  float nothing;  // where the mesh is not
+  std::function<void(const Gbuffer&, int x, int y, const Vec3& to_light, float* value)> evaluate;
+};
+
+const std::vector<Aov>& aovs() {
+  static const std::vector<Aov> table = {
+      {"normal",
+       {"normal.X", "normal.Y", "normal.Z"},
+       0,
+       [](const Gbuffer& g, int x, int y, const Vec3&, float* value) { std::copy_n(g.at(x, y), 3, value); }},
+      {"aspecular",
+       {"aspecular"},
+       180,
+       [](const Gbuffer& g, int x, int y, const Vec3& to_light, float* value) {
+         const double angle_rad = aspecular_angle_rad(to_light, g.to_viewer(x, y), g.normal(x, y));
+         *value = static_cast<float>(angle_rad * 180 / std::numbers::pi);
+       }},
+      {"lambert",
+       {"lambert"},
+       0,
+       [](const Gbuffer& g, int x, int y, const Vec3& to_light, float* value) {
+         *value = static_cast<float>(std::max(0.0, dot(g.normal(x, y), to_light)));
+       }},
+      {"mask", {"mask"}, 0, [](const Gbuffer&, int, int, const Vec3&, float* value) { *value = 1; }},
+      {"part",
+       {"part"},
+       0,
+       [](const Gbuffer& g, int x, int y, const Vec3&, float* value) {
+         *value = static_cast<float>(g.part(x, y) + 1);
+       }},
+  };
+  return table;
+}
+
+}  // namespace
+
+Result<void> add_aov(Image& picture, const Gbuffer& gbuffer, const std::string& name, const Vec3& to_light) {
+  const auto aov = std::find_if(aovs().begin(), aovs().end(), [&](const Aov& a) { return a.name == name; });
+  if (aov == aovs().end()) {
+    std::string known;
+    for (const Aov& a : aovs()) known += (known.empty() ? "" : ", ") + a.name;
+    return usage_error("there is no buffer \"{}\": there are {}", name, known);
+  }
+  const int old_channels = picture.channels, added = static_cast<int>(aov->channels.size());
+  Image wider{picture.width, picture.height, old_channels + added, {}, picture.channel_names};
+  wider.channel_names.insert(wider.channel_names.end(), aov->channels.begin(), aov->channels.end());
+  wider.data.resize(static_cast<std::size_t>(wider.width) * wider.height * wider.channels);
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      float* pixel = std::copy_n(picture.pixel(x, y), old_channels, wider.pixel(x, y));
+      if (gbuffer.part(x, y) >= 0) {
+        aov->evaluate(gbuffer, x, y, to_light, pixel);
+      } else {
+        std::fill_n(pixel, added, aov->nothing);
+      }
+    }
+  }
+  picture = std::move(wider);
+  return {};
+}
+
+}  // namespace goniochrome

@@ -1,0 +1,22 @@
+// Buffers that go with a picture: what was seen at the center of each pixel. goniochrome-theory(7), RENDERING.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "image/image.h"
+#include "render/renderer.h"
+
+namespace goniochrome {
+
+// Adds the channels of one buffer to a picture; 0 where nothing is seen (aspecular: 180).
+//   normal     normal.X normal.Y normal.Z, unit, world axes, turned to the viewer
+//   aspecular  the angle (deg, 0..180) between the view and the mirror direction of `to_light`
+//   lambert    the cosine of the angle between normal and `to_light`, at least 0
+//   mask       1 on the mesh
+//   part       the number of the part, from 1
+// Error (usage): the names there are.
+Result<void> add_aov(Image& picture, const Gbuffer& gbuffer, const std::string& name, const Vec3& to_light);
+
+}  // namespace goniochrome

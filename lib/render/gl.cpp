@@ -1,0 +1,109 @@
+#include "render/gl.h"
+
+#include <GL/osmesa.h>
+
+#include <cstdlib>
+
+#include "base/parallel.h"
+
+#ifdef __SANITIZE_ADDRESS__
+// Mesa keeps its window buffers and its compiled code until the process ends.
+extern "C" const char* __lsan_default_suppressions() {
+  return "leak:libOSMesa.so\nleak:libLLVM";
+}
+#endif
+
+namespace goniochrome {
+
+namespace {
+
+// OSMesa wants a window to draw in; everything here goes to framebuffer objects instead.
+constexpr int kWindow = 4;
+unsigned char window_pixels[kWindow * kWindow * 4];
+
+void destroy(void* context) {
+  OSMesaDestroyContext(static_cast<OSMesaContext>(context));
+}
+
+}  // namespace
+
+GlContext::GlContext(void* context) : context_(context, destroy) {}
+
+Result<GlContext> GlContext::create() {
+  // llvmpipe reads this once, when the first context of the process is made.
+  setenv("LP_NUM_THREADS", std::to_string(threads()).c_str(), 0);
+  const int wanted[] = {OSMESA_FORMAT,
+                        OSMESA_RGBA,
+                        OSMESA_DEPTH_BITS,
+                        0,
+                        OSMESA_PROFILE,
+                        OSMESA_CORE_PROFILE,
+                        OSMESA_CONTEXT_MAJOR_VERSION,
+                        3,
+                        OSMESA_CONTEXT_MINOR_VERSION,
+                        3,
+                        0};
+  void* context = OSMesaCreateContextAttribs(wanted, nullptr);
+  if (context == nullptr) {
+    return input_error("OSMesa makes no OpenGL 3.3 core context: install libosmesa6 of Mesa 22 or later");
+  }
+  GlContext gl(context);
+  gl.make_current();
+#define GONIO_GL_LOAD(type, name)                                     \
+  gl.name = reinterpret_cast<type>(OSMesaGetProcAddress("gl" #name)); \
+  if (gl.name == nullptr) return input_error("OSMesa lacks gl" #name ": install libosmesa6 of Mesa 22 or later");
+  GONIO_GL_FUNCTIONS(GONIO_GL_LOAD)
+#undef GONIO_GL_LOAD
+  gl.Enable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
+  return gl;
+}
+
+void GlContext::make_current() const {
+  OSMesaMakeCurrent(static_cast<OSMesaContext>(context_.get()), window_pixels, GL_UNSIGNED_BYTE, kWindow, kWindow);
+}
+
+Result<GLuint> GlContext::program(const std::string& vertex, const std::string& fragment) const {
+  const GLuint program = CreateProgram();
+  GLint done = 0;
+  char log[4096] = "";
+  for (const auto& [kind, text] : {std::pair{GL_VERTEX_SHADER, &vertex}, std::pair{GL_FRAGMENT_SHADER, &fragment}}) {
+    const GLuint shader = CreateShader(static_cast<GLenum>(kind));
+    const char* source = text->c_str();
+    ShaderSource(shader, 1, &source, nullptr);
+    CompileShader(shader);
+    GetShaderiv(shader, GL_COMPILE_STATUS, &done);
+    if (done == 0) {
+      GetShaderInfoLog(shader, sizeof log, nullptr, log);
+      return Error{ErrorKind::kBug, fmt::format("shader does not compile: {}\n{}", log, *text)};
+    }
+    AttachShader(program, shader);
+    DeleteShader(shader);  // lives on as long as the program
+  }
+  LinkProgram(program);
+  GetProgramiv(program, GL_LINK_STATUS, &done);
+  if (done == 0) {
+    GetProgramInfoLog(program, sizeof log, nullptr, log);
+    return Error{ErrorKind::kBug, fmt::format("shaders do not link: {}\n{}", log, fragment)};
+  }
+  return program;
+}
+
+Result<void> GlContext::status(const char* doing) const {
+  const GLenum error = GetError();
+  if (error == GL_NO_ERROR) return {};
+  if (error == GL_OUT_OF_MEMORY)
+    return input_error("OpenGL is out of memory when {}: make the picture or the maps smaller", doing);
+  return Error{ErrorKind::kBug, fmt::format("OpenGL error 0x{:04x} when {}", error, doing)};
+}
+
+int GlContext::integer(GLenum name) const {
+  GLint value = 0;
+  GetIntegerv(name, &value);
+  return value;
+}
+
+std::string GlContext::engine() const {
+  return reinterpret_cast<const char*>(GetString(GL_RENDERER));
+}
+
+}  // namespace goniochrome

@@ -1,0 +1,340 @@
+#include "render/renderer.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "brdf/lobe_model.h"
+#include "render/aov.h"
+#include "render/scenes_for_test.h"
+
+namespace goniochrome {
+namespace {
+
+using testing::HasSubstr;
+
+// Shader arithmetic is float, and llvmpipe's exp and log are polynomials.
+constexpr double kFloat = 2e-6;
+
+Camera front(double distance = 8, double fov_deg = 20) {
+  Camera camera;
+  camera.eye = {0, 0, distance};
+  camera.fov_deg = fov_deg;
+  return camera;
+}
+
+Frame drawn(const Scene& scene, const Camera& camera, int width, int height, int samples = 1) {
+  auto renderer = Renderer::create();
+  EXPECT_TRUE(renderer.ok());
+  const auto loaded = renderer->load(scene);
+  EXPECT_TRUE(loaded.ok()) << loaded.error().message;
+  auto frame = renderer->draw(camera, width, height, samples, true);
+  EXPECT_TRUE(frame.ok()) << frame.error().message;
+  return *std::move(frame);
+}
+
+template <class Body>
+int for_each_visible(const Frame& frame, Body body) {
+  int visible = 0;
+  for (int y = 0; y < frame.gbuffer.height; ++y) {
+    for (int x = 0; x < frame.gbuffer.width; ++x) {
+      if (frame.gbuffer.part(x, y) < 0) continue;
+      ++visible;
+      body(x, y, frame.centers.pixel(x, y));
+    }
+  }
+  return visible;
+}
+
+TEST(Renderer, WhiteMattPaintShowsTheConstantEnvironment) {
+  const Mesh mesh = sphere_mesh();
+  const PrefilteredEnvironment env = constant_env({0.25, 0.5, 2}, {});
+  Scene scene{&mesh, {matt({1, 1, 1})}, &env, {}, Background::kNone, {}};
+  const Frame frame = drawn(scene, front(), 64, 64);
+  const int visible = for_each_visible(frame, [](int x, int y, const float* pixel) {
+    EXPECT_NEAR(pixel[0], 0.25, 0.25 * kFloat) << x << " " << y;
+    EXPECT_NEAR(pixel[1], 0.5, 0.5 * kFloat);
+    EXPECT_NEAR(pixel[2], 2, 2 * kFloat);
+    EXPECT_EQ(pixel[3], 1);
+  });
+  EXPECT_NEAR(visible, std::numbers::pi * std::pow(32 / std::tan(10 * std::numbers::pi / 180) / std::sqrt(63), 2), 40);
+}
+
+// The closed form of theory, RENDERING, in a constant environment: every P_E is 1.
+TEST(Renderer, FurnaceFollowsTheClosedForm) {
+  const Mesh mesh = sphere_mesh();
+  const PrefilteredEnvironment env = constant_env({1, 1, 1}, {2.5, 40, 3000});
+  LobeFit paint = matt({0.1, 0.2, 0.3});
+  paint.lobes.push_back({2.5, {0.01, 0.02, 0.03}, {}});
+  paint.lobes.push_back({40, {0.3, 0.2, 0.1}, {0.5, 0.5, 0.5}});
+  paint.lobes.push_back({3000, {}, {20, 20, 20}});
+  paint.lobes.push_back({kMirrorExponent, {}, {0.9, 0.9, 0.9}});
+  Scene scene{&mesh, {paint}, &env, {}, Background::kNone, {}};
+  const Frame frame = drawn(scene, front(), 64, 64);
+  const int visible = for_each_visible(frame, [&](int x, int y, const float* pixel) {
+    const double c = dot(frame.gbuffer.normal(x, y), frame.gbuffer.to_viewer(x, y));
+    for (int channel = 0; channel < 3; ++channel) {
+      double wanted = std::numbers::pi * paint.diffuse[channel] + 0.9 * fresnel_dielectric(c, kCoatIndex);
+      for (int j = 0; j < 3; ++j) {
+        const Lobe& lobe = paint.lobes[static_cast<std::size_t>(j)];
+        wanted +=
+            (c * lobe.directional_diffuse[channel] + lobe.gloss[channel]) * 2 * std::numbers::pi / (lobe.exponent + 1);
+      }
+      EXPECT_NEAR(pixel[channel], wanted, 1e-5 * wanted) << x << " " << y;
+    }
+  });
+  EXPECT_GT(visible, 1000);
+}
+
+// Random texels show every mistake in the order, the turning or the flipping of faces, in the texel rule, at edges and
+// at corners.
+TEST(Renderer, MirrorShowsTheEnvironmentAsTheCubeMapHasIt) {
+  const Mesh mesh = sphere_mesh();
+  TestNumbers random(7);
+  PrefilteredEnvironment env = constant_env({0, 0, 0}, {});
+  env.mirror.map = cube_of(8, [&](const Vec3&) { return Vec3{random(), random(), random()}; });
+  Scene scene{&mesh, {only_mirror()}, &env, {}, Background::kEnvironment, {}};
+  int compared = 0;
+  for (const auto& [azimuth, elevation] : {std::pair{0, 0}, {90, 10}, {200, -50}, {300, 80}}) {
+    const Frame frame = drawn(scene, Camera::orbit(mesh, azimuth, elevation, 1, 40, 1), 96, 96);
+    for (int y = 0; y < 96; ++y) {
+      for (int x = 0; x < 96; ++x) {
+        const bool seen = frame.gbuffer.part(x, y) >= 0;
+        const Vec3 n = frame.gbuffer.normal(x, y), wo = frame.gbuffer.to_viewer(x, y);
+        const Vec3 direction = seen ? 2 * dot(n, wo) * n - wo : -wo;
+        const Vec3 wanted =
+            (seen ? fresnel_dielectric(dot(n, wo), kCoatIndex) : 1) * bilinear(env.mirror.map, direction);
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(frame.centers.pixel(x, y)[c], wanted[c], 1e-4) << x << " " << y;
+        ++compared;
+      }
+    }
+  }
+  EXPECT_EQ(compared, 4 * 96 * 96);
+}
+
+// One bright direction, and where a person would look for its reflection: half way between it and the viewer.
+TEST(Renderer, OneBrightTexelIsSeenOnItsOwnSide) {
+  const Mesh mesh = sphere_mesh();
+  struct Case {
+    Vec3 direction;
+    int right, up;  // of the sphere's middle in the picture
+  };
+  for (const Case& one : {Case{{1, 0, 0}, 1, 0}, {{-1, 0, 0}, -1, 0}, {{0, 1, 0}, 0, 1}, {{0, -1, 0}, 0, -1}}) {
+    PrefilteredEnvironment env = constant_env({0, 0, 0}, {});
+    env.mirror.map = cube_of(15, [&](const Vec3& d) {
+      return dot(d, one.direction) > 0.9999 ? Vec3{1, 1, 1} : Vec3{};
+    });
+    Scene scene{&mesh, {only_mirror()}, &env, {}, Background::kNone, {}};
+    const Frame frame = drawn(scene, front(8, 15), 101, 101);
+    double sum = 0, x_sum = 0, y_sum = 0;
+    for_each_visible(frame, [&](int x, int y, const float* pixel) {
+      sum += pixel[0], x_sum += pixel[0] * (x - 50), y_sum += pixel[0] * (50 - y);
+    });
+    ASSERT_GT(sum, 0);
+    const double sphere = 50 / std::tan(7.5 * std::numbers::pi / 180) / std::sqrt(63);  // its radius in pixels
+    EXPECT_NEAR(x_sum / sum, one.right * sphere * std::sqrt(0.5), 3);
+    EXPECT_NEAR(y_sum / sum, one.up * sphere * std::sqrt(0.5), 3);
+  }
+}
+
+TEST(Renderer, LightsFollowTheExactBrdf) {
+  const Mesh mesh = sphere_mesh();
+  LobeFit paint = matt({0.1, 0.2, 0.3});
+  paint.lobes.push_back({0.3, {0.05, 0.02, 0.03}, {}});
+  paint.lobes.push_back({25, {0.3, 0.2, 0.1}, {0.5, 0.5, 0.5}});
+  paint.lobes.push_back({4000, {}, {200, 200, 200}});
+  Scene scene{&mesh,
+              {paint},
+              nullptr,
+              {{normalized({1, 2, 3}), {1, 1, 1}}, {normalized({-3, -1, 0.5}), {2, 0, 1}}},
+              Background::kNone,
+              {}};
+  const Frame frame = drawn(scene, front(), 128, 128);
+  double brightest = 0;
+  for_each_visible(frame, [&](int x, int y, const float* pixel) {
+    const Vec3 n = frame.gbuffer.normal(x, y), wo = frame.gbuffer.to_viewer(x, y);
+    Rgb wanted;
+    for (const Light& light : scene.lights) {
+      const double cos_i = std::max(0.0, dot(n, light.direction));
+      wanted += std::numbers::pi * cos_i * (light.white * brdf(paint, light.direction, wo, n));
+    }
+    brightest = std::max(brightest, wanted.x);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(pixel[c], wanted[c], 2e-4 * wanted[c] + 1e-6) << x << " " << y;
+  });
+  EXPECT_GT(brightest, 100) << "the sharp highlight was met";
+}
+
+// The normal of the ideal sphere that the pixel's ray meets. Interpolating exact normals over triangles of size h errs
+// by h^2/8 = 2e-5 rad at the middle, and the flat triangle moves the point by as much over the cosine.
+TEST(Renderer, SphereNormalsAreExact) {
+  const Mesh mesh = sphere_mesh();
+  Scene scene{&mesh, {matt({1, 1, 1})}, nullptr, {Light{}}, Background::kNone, {}};
+  const Camera camera = Camera::orbit(mesh, 30, 20, 1, 30, 1);
+  const Frame frame = drawn(scene, camera, 128, 128);
+  const int visible = for_each_visible(frame, [&](int x, int y, const float*) {
+    const Vec3 ray = -frame.gbuffer.to_viewer(x, y);
+    const double b = dot(camera.eye, ray), under_root = b * b - dot(camera.eye, camera.eye) + 1;
+    if (under_root < 1e-3) return;  // the outline
+    const Vec3 wanted = camera.eye + (-b - std::sqrt(under_root)) * ray;
+    const double cos_o = -dot(wanted, ray);
+    EXPECT_LT(length(frame.gbuffer.normal(x, y) - wanted), 4e-5 / cos_o + 1e-6) << x << " " << y;
+    EXPECT_GE(dot(frame.gbuffer.normal(x, y), -ray), 9e-4) << "never away from the viewer";
+  });
+  EXPECT_GT(visible, 5000);
+}
+
+TEST(Renderer, EachPartWearsItsPaint) {
+  const Mesh mesh = panels_mesh(3);
+  const PrefilteredEnvironment env = constant_env({1, 1, 1}, {});
+  Scene scene{
+      &mesh, {matt({1, 0, 0}), matt({0, 1, 0}), matt({0, 0, 1})}, &env, {}, Background::kColor, {0.5, 0.25, 0.125}};
+  const Frame frame = drawn(scene, front(4, 30), 120, 60);
+  for (int panel = 0; panel < 3; ++panel) {
+    const int x = 60 + (panel - 1) * 28;
+    EXPECT_EQ(frame.gbuffer.part(x, 30), panel);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(frame.centers.pixel(x, 30)[c], c == panel ? 1 : 0, kFloat);
+  }
+  EXPECT_EQ(frame.gbuffer.part(60, 2), -1);
+  EXPECT_EQ(frame.centers.pixel(60, 2)[1], 0.25F);
+  EXPECT_EQ(frame.centers.pixel(60, 2)[3], 1);
+}
+
+// Panels that share an edge leave no gap and no line between them, however the picture is turned and sampled.
+TEST(Renderer, PartsMeetWithoutASeam) {
+  const Mesh mesh = panels_mesh(7);
+  const PrefilteredEnvironment env = constant_env({1, 1, 1}, {});
+  Scene scene{&mesh, std::vector<LobeFit>(7, matt({0.5, 0.5, 0.5})), &env, {}, Background::kNone, {}};
+  for (const int samples : {1, 4, 16}) {
+    Camera camera = front(1.2, 25);
+    camera.eye = {0.3, 0.05, 1.2};
+    camera.target = {0.31, 0.02, 0};
+    camera.up = {0.3, 1, 0};
+    const Frame frame = drawn(scene, camera, 128, 96, samples);
+    for (int y = 0; y < 96; ++y) {
+      for (int x = 0; x < 128; ++x) {
+        EXPECT_NEAR(frame.picture.pixel(x, y)[0], 0.5, kFloat) << x << " " << y;
+        EXPECT_EQ(frame.picture.pixel(x, y)[3], 1);
+      }
+    }
+  }
+}
+
+// An upright edge at a known place: coverage is resolved in as many steps as there are samples.
+TEST(Renderer, SamplesResolveCoverage) {
+  const Mesh mesh = panels_mesh(2);
+  const PrefilteredEnvironment env = constant_env({1, 1, 1}, {});
+  Scene scene{&mesh, std::vector<LobeFit>(2, matt({1, 1, 1})), &env, {}, Background::kNone, {}};
+  for (const int samples : {4, 16}) {
+    for (const double part : {0.1, 0.3, 0.55, 0.9}) {
+      Camera camera = front(1, 30);
+      const double pixel = 2 * std::tan(15 * std::numbers::pi / 180) / 20;
+      camera.eye = {1 - part * pixel, 0, 1};  // the edge at x = 1 falls at this part of pixel 10
+      camera.target = {1 - part * pixel, 0, 0};
+      const Frame frame = drawn(scene, camera, 20, 20, samples);
+      const float* edge = frame.picture.pixel(10, 10);
+      EXPECT_NEAR(edge[3], part, 0.51 / samples + 1e-6) << samples;
+      EXPECT_NEAR(edge[0], edge[3], kFloat) << "premultiplied";
+      EXPECT_EQ(frame.picture.pixel(9, 10)[3], 1);
+      EXPECT_EQ(frame.picture.pixel(11, 10)[3], 0);
+    }
+  }
+}
+
+TEST(Renderer, BackSidesAreTurnedAndMarked) {
+  const Mesh mesh = sphere_mesh(32);
+  Scene scene{&mesh, {matt({1, 1, 1})}, nullptr, {Light{}}, Background::kNone, {}};
+  Camera camera;
+  camera.eye = {0.1, 0, 0};
+  camera.target = {1, 0, 0};
+  camera.fov_deg = 60;
+  const Frame frame = drawn(scene, camera, 32, 32);
+  const int visible = for_each_visible(frame, [&](int x, int y, const float*) {
+    EXPECT_LT(frame.gbuffer.at(x, y)[3], 0);
+    EXPECT_EQ(frame.gbuffer.part(x, y), 0);
+    EXPECT_GT(dot(frame.gbuffer.normal(x, y), frame.gbuffer.to_viewer(x, y)), 0);
+  });
+  EXPECT_EQ(visible, 32 * 32);
+}
+
+TEST(Renderer, MissingLobeNamesExponentAndCommand) {
+  const Mesh mesh = sphere_mesh(8);
+  PrefilteredEnvironment env = constant_env({1, 1, 1}, {6});
+  env.source = "hall.hdr";
+  LobeFit paint;
+  paint.lobes.push_back({6, {1, 1, 1}, {}});
+  paint.lobes.push_back({12.5, {}, {1, 1, 1}});
+  paint.lobes.push_back({70, {}, {}});  // no weight: not needed
+  auto renderer = Renderer::create();
+  ASSERT_TRUE(renderer.ok());
+  const auto refused = renderer->load({&mesh, {paint}, &env, {}, Background::kNone, {}});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_THAT(refused.error().message, HasSubstr("no lobe of exponent 12.5"));
+  EXPECT_THAT(refused.error().message, HasSubstr("prefilter-envmap hall.hdr --exponents 6,12.5 "));
+  env.mirror = {};
+  const auto no_mirror = renderer->load({&mesh, {only_mirror()}, &env, {}, Background::kNone, {}});
+  ASSERT_FALSE(no_mirror.ok());
+  EXPECT_THAT(no_mirror.error().message, HasSubstr("no mirror part"));
+  EXPECT_TRUE(renderer->load({&mesh, {paint}, nullptr, {Light{}}, Background::kNone, {}}).ok())
+      << "lights alone need no lobe maps";
+}
+
+TEST(Renderer, ShaderHoldsOnlyWhatTheSceneUses) {
+  const Mesh mesh = sphere_mesh(8);
+  const PrefilteredEnvironment env = constant_env({1, 1, 1}, {6, 20});
+  auto renderer = Renderer::create();
+  ASSERT_TRUE(renderer.ok());
+  ASSERT_TRUE(renderer->load({&mesh, {matt({1, 1, 1})}, &env, {}, Background::kNone, {}}).ok());
+  for (const char* word : {"lobe_", "fresnel", "light", "cos_power", "mirror"}) {
+    EXPECT_EQ(renderer->shader().find(word), std::string::npos) << word;
+  }
+  LobeFit paint = only_mirror();
+  paint.lobes.insert(paint.lobes.begin(), {20, {1, 1, 1}, {}});
+  ASSERT_TRUE(renderer->load({&mesh, {paint}, &env, {Light{}}, Background::kNone, {}}).ok());
+  for (const char* word : {"lobe_0", "fresnel", "light", "cos_power", "mirror", "E = 20"}) {
+    EXPECT_NE(renderer->shader().find(word), std::string::npos) << word;
+  }
+  EXPECT_EQ(renderer->shader().find("lobe_1"), std::string::npos);
+}
+
+TEST(Renderer, OneRendererDrawsManyScenesAndSizes) {
+  const Mesh mesh = sphere_mesh(64), panels = panels_mesh(2);
+  const PrefilteredEnvironment env = constant_env({1, 1, 1}, {6});
+  LobeFit paint = matt({0.5, 0.5, 0.5});
+  paint.lobes.push_back({6, {0.1, 0.1, 0.1}, {}});
+  auto renderer = Renderer::create();
+  ASSERT_TRUE(renderer.ok());
+  std::vector<float> first;
+  for (int turn = 0; turn < 3; ++turn) {
+    ASSERT_TRUE(renderer->load({&mesh, {paint}, &env, {}, Background::kNone, {}}).ok());
+    const auto frame = renderer->draw(front(), 64, 48, 1);
+    ASSERT_TRUE(frame.ok());
+    if (turn == 0) first = frame->picture.data;
+    EXPECT_EQ(frame->picture.data, first);
+    ASSERT_TRUE(renderer->load({&panels, {paint, matt({0, 0, 0})}, nullptr, {Light{}}, Background::kNone, {}}).ok());
+    ASSERT_TRUE(renderer->draw(front(), 33, 77, 4).ok());
+  }
+}
+
+TEST(Aov, BuffersHoldWhatWasSeen) {
+  const Mesh mesh = panels_mesh(1);
+  Scene scene{&mesh, {matt({1, 1, 1})}, nullptr, {{normalized({0, 1, 1}), {1, 1, 1}}}, Background::kNone, {}};
+  const Frame frame = drawn(scene, front(4, 30), 41, 41);
+  Image picture = frame.picture;
+  for (const char* name : {"normal", "aspecular", "lambert", "mask", "part"}) {
+    ASSERT_TRUE(add_aov(picture, frame.gbuffer, name, scene.lights[0].direction).ok());
+  }
+  EXPECT_EQ(picture.channel_names, (std::vector<std::string>{"R", "G", "B", "A", "normal.X", "normal.Y", "normal.Z",
+                                                             "aspecular", "lambert", "mask", "part"}));
+  const float* middle = picture.pixel(20, 20);
+  EXPECT_NEAR(middle[6], 1, 1e-6);
+  EXPECT_NEAR(middle[7], 45, 1e-4);  // the panel sends light from 45 deg above to 45 deg below; the viewer is in front
+  EXPECT_NEAR(middle[8], std::sqrt(0.5), 1e-6);
+  EXPECT_EQ(middle[9], 1);
+  EXPECT_EQ(middle[10], 1);
+  const float* corner = picture.pixel(0, 0);
+  EXPECT_EQ(corner[7], 180);
+  EXPECT_EQ(corner[9] + corner[10] + corner[4], 0);
+  EXPECT_THAT(add_aov(picture, frame.gbuffer, "depth", {}).error().message, HasSubstr("normal, aspecular, lambert"));
+}
+
+}  // namespace
+}  // namespace goniochrome

@@ -1,0 +1,64 @@
+#include "render/scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "color/color.h"
+
+namespace goniochrome {
+
+namespace {
+
+bool has_weight(const Lobe& lobe) {
+  return lobe.directional_diffuse != Rgb{} || lobe.gloss != Rgb{};
+}
+
+double luminance(const Rgb& rgb) {
+  return xyz_d65_from_rgb(rgb).Y;
+}
+
+}  // namespace
+
+std::vector<double> lobe_exponents(const std::vector<LobeFit>& paints) {
+  std::vector<double> exponents;
+  for (const LobeFit& paint : paints) {
+    for (const Lobe& lobe : paint.lobes) {
+      if (std::isfinite(lobe.exponent) && has_weight(lobe)) exponents.push_back(lobe.exponent);
+    }
+  }
+  std::sort(exponents.begin(), exponents.end());
+  exponents.erase(std::unique(exponents.begin(), exponents.end()), exponents.end());
+  return exponents;
+}
+
+bool has_mirror(const std::vector<LobeFit>& paints) {
+  return std::any_of(paints.begin(), paints.end(), [](const LobeFit& paint) {
+    const Lobe* mirror = find_lobe(paint, kMirrorExponent);
+    return mirror != nullptr && has_weight(*mirror);
+  });
+}
+
+const Lobe* find_lobe(const LobeFit& paint, double exponent) {
+  const auto at =
+      std::find_if(paint.lobes.begin(), paint.lobes.end(), [&](const Lobe& lobe) { return lobe.exponent == exponent; });
+  return at == paint.lobes.end() ? nullptr : &*at;
+}
+
+DiffuseWhite diffuse_white(const PrefilteredEnvironment* env, const std::vector<Light>& lights) {
+  DiffuseWhite white;
+  const int n = env != nullptr ? env->diffuse.map.size : 0;
+  for (int face = 0; face < 6; ++face) {
+    for (int row = 0; row < n; ++row) {
+      for (int column = 0; column < n; ++column) {
+        const float* texel = env->diffuse.map.at(face, row, column);
+        const double y = luminance({texel[0], texel[1], texel[2]});
+        if (y <= white.luminance) continue;
+        white = {y, cube_direction(face, column + 0.5, row + 0.5, n)};
+      }
+    }
+  }
+  for (const Light& light : lights) white.luminance += luminance(light.white);
+  return white;
+}
+
+}  // namespace goniochrome

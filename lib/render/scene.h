@@ -1,0 +1,48 @@
+// What is to be seen: a mesh, a paint for each part, light, and what stands behind it.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "base/result.h"
+#include "envmap/prefiltered.h"
+#include "mesh/mesh.h"
+#include "paint/paint.h"
+
+namespace goniochrome {
+
+// A directional light. `white` is the radiance that a perfect white diffuser facing it shows: irradiance / pi.
+struct Light {
+  Vec3 direction{0, 1, 0};  // to the light, unit
+  Rgb white{1, 1, 1};
+};
+
+enum class Background { kNone, kColor, kEnvironment };
+
+struct Scene {
+  const Mesh* mesh = nullptr;
+  std::vector<LobeFit> paints;                  // one for each part of the mesh, in order
+  const PrefilteredEnvironment* env = nullptr;  // none: lights alone
+  std::vector<Light> lights;
+  Background background = Background::kNone;
+  Rgb background_color;
+};
+
+// The exponents (finite, ascending) of the lobes with any weight, over all paints.
+std::vector<double> lobe_exponents(const std::vector<LobeFit>& paints);
+
+// Whether any paint has a mirror lobe.
+bool has_mirror(const std::vector<LobeFit>& paints);
+
+// A paint's lobe of this exponent, or null where it has none.
+const Lobe* find_lobe(const LobeFit& paint, double exponent);
+
+// The brightest that a perfect white diffuser can be in this light: what the eye takes for white. Its direction is
+// where the environment's irradiance is largest; lights add what they give to a surface that faces them.
+struct DiffuseWhite {
+  double luminance = 0;
+  Vec3 direction{0, 1, 0};  // of the environment's largest irradiance
+};
+DiffuseWhite diffuse_white(const PrefilteredEnvironment* env, const std::vector<Light>& lights);
+
+}  // namespace goniochrome

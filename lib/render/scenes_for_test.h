@@ -1,0 +1,106 @@
+// Meshes and environments with known answers, for the tests of this module.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <numbers>
+
+#include "render/scene.h"
+
+namespace goniochrome {
+
+// A sphere of radius 1 with exact normals. The chord between two rows bends away by h^2/8, h = pi/rows.
+inline Mesh sphere_mesh(int rows = 256) {
+  Mesh mesh;
+  const int columns = 2 * rows;
+  for (int i = 0; i <= rows; ++i) {
+    for (int j = 0; j <= columns; ++j) {
+      const double t = std::numbers::pi * i / rows, p = 2 * std::numbers::pi * j / columns;
+      mesh.positions.push_back({std::sin(t) * std::sin(p), std::cos(t), std::sin(t) * std::cos(p)});
+    }
+  }
+  mesh.normals = mesh.positions;
+  const auto at = [&](int i, int j) { return static_cast<std::uint32_t>(i * (columns + 1) + j); };
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j < columns; ++j) {
+      if (i > 0) mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i, j + 1)});
+      if (i < rows - 1) mesh.triangles.push_back({at(i, j + 1), at(i + 1, j), at(i + 1, j + 1)});
+    }
+  }
+  mesh.parts = {{"sphere", "", 0, mesh.triangles.size()}};
+  return mesh;
+}
+
+// Squares side by side along x from -n/2 to n/2, -.5 to .5 in y, facing +Z; one part each, "panel-0" ...
+inline Mesh panels_mesh(int n) {
+  Mesh mesh;
+  for (int i = 0; i <= n; ++i) {
+    for (const double y : {-0.5, 0.5}) {
+      mesh.positions.push_back({i - 0.5 * n, y, 0});
+      mesh.normals.push_back({0, 0, 1});
+    }
+  }
+  for (int i = 0; i < n; ++i) {
+    const auto v = static_cast<std::uint32_t>(2 * i);
+    mesh.parts.push_back({"panel-" + std::to_string(i), "", mesh.triangles.size(), 2});
+    mesh.triangles.push_back({v, v + 2, v + 3});
+    mesh.triangles.push_back({v, v + 3, v + 1});
+  }
+  return mesh;
+}
+
+inline CubeMap cube_of(int size, const std::function<Vec3(const Vec3& direction)>& radiance) {
+  CubeMap map(size);
+  for (int face = 0; face < 6; ++face) {
+    for (int row = 0; row < size; ++row) {
+      for (int column = 0; column < size; ++column) {
+        const Vec3 value = radiance(cube_direction(face, column + 0.5, row + 0.5, size));
+        for (int c = 0; c < 3; ++c) map.at(face, row, column)[c] = static_cast<float>(value[c]);
+      }
+    }
+  }
+  return map;
+}
+
+// The same everywhere, for these exponents: prefiltering leaves it alone.
+inline PrefilteredEnvironment constant_env(const Vec3& radiance, const std::vector<double>& exponents) {
+  const CubeMap map = cube_of(4, [&](const Vec3&) { return radiance; });
+  PrefilteredEnvironment env;
+  env.diffuse.map = env.mirror.map = map;
+  env.mirror.exponent = kMirrorExponent;
+  for (const double exponent : exponents) {
+    env.lobes.emplace_back();
+    env.lobes.back().exponent = exponent;
+    env.lobes.back().map = map;
+  }
+  env.source = "constant.exr";
+  return env;
+}
+
+inline LobeFit matt(const Rgb& reflectance) {
+  LobeFit paint;
+  paint.diffuse = (1 / std::numbers::pi) * reflectance;
+  return paint;
+}
+
+inline LobeFit only_mirror(double weight = 1) {
+  LobeFit paint;
+  paint.lobes.push_back({kMirrorExponent, {}, {weight, weight, weight}});
+  return paint;
+}
+
+// Evenly distributed numbers in [0,1), the same on every machine.
+class TestNumbers {
+ public:
+  explicit TestNumbers(std::uint64_t seed) : state_(seed) {}
+  double operator()() {
+    state_ = state_ * 6364136223846793005U + 1442695040888963407U;
+    return static_cast<double>(state_ >> 11) * 0x1p-53;
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+}  // namespace goniochrome

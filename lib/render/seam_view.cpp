@@ -1,0 +1,89 @@
+#include "render/seam_view.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.h"
+
+namespace goniochrome {
+
+namespace {
+
+Result<std::vector<Vec3>> directions_of(const char* option, const std::vector<std::string>& texts) {
+  std::vector<Vec3> directions;
+  for (const std::string& text : texts) {
+    const auto words = split(text, ',');
+    const auto azimuth = parse_number(trimmed(words[0]));
+    const auto elevation = words.size() == 2 ? parse_number(trimmed(words[1])) : std::nullopt;
+    if (!azimuth || !elevation || std::abs(*elevation) > 90)
+      return usage_error("{} is \"{}\": write AZIMUTH,ELEVATION in degrees, elevation -90 to 90", option, text);
+    directions.push_back(orbit_direction(*azimuth, *elevation));
+  }
+  return directions;
+}
+
+}  // namespace
+
+bool SeamTexts::names_anything_but_mesh() const {
+  return !seam.empty() || !environment.empty() || !lights_from.empty() || !views_from.empty();
+}
+
+Result<SeamWorld> seam_world(const SeamTexts& texts) {
+  SeamWorld world;
+  const auto parts = split(texts.seam, ',');
+  if (parts.size() != 2 || trimmed(parts[0]).empty() || trimmed(parts[1]).empty())
+    return usage_error("--seam is \"{}\": name two parts of the mesh, A,B", texts.seam);
+  world.part_a = trimmed(parts[0]), world.part_b = trimmed(parts[1]);
+  world.seam.unit_m = texts.unit == "m" ? 1 : texts.unit == "cm" ? 1e-2 : texts.unit == "mm" ? 1e-3 : 0;
+  world.seam.max_gap_mm = texts.max_gap_mm;
+  GONIO_ASSIGN(world.lights, directions_of("--light-from", texts.lights_from));
+  GONIO_ASSIGN(world.viewers, directions_of("--view-from", texts.views_from));
+  if (!world.lights.empty() && !texts.environment.empty())
+    return usage_error("--light-from and --environment exclude each other");
+  world.in_world = !world.lights.empty() || !texts.environment.empty();
+  if (world.in_world && world.viewers.empty())
+    return usage_error("lights in the world want viewers there: give --view-from AZ,EL");
+  if (!world.in_world && !world.viewers.empty()) return usage_error("--view-from wants --light-from or --environment");
+  return world;
+}
+
+// The sphere about the middle of the seam's box that holds all places just fits between the borders that are nearer.
+Camera seam_camera_from(const Seam& seam, const Vec3& direction, double aspect, double fov_deg, double margin) {
+  Box box{seam.points.front().a, seam.points.front().a};
+  for (const SeamPoint& p : seam.points)
+    for (int c = 0; c < 3; ++c) {
+      box.low[c] = std::min({box.low[c], p.a[c], p.b[c]});
+      box.high[c] = std::max({box.high[c], p.a[c], p.b[c]});
+    }
+  const Vec3 middle = 0.5 * (box.low + box.high);
+  double radius = 0;
+  for (const SeamPoint& p : seam.points) radius = std::max(radius, length(p.a - middle));
+  const double half = fov_deg / 2 * M_PI / 180;
+  const double narrow = aspect < 1 ? std::atan(std::tan(half) * aspect) : half;
+  Camera camera;
+  camera.target = middle;
+  camera.eye = middle + (margin * radius / std::sin(narrow)) * direction;
+  camera.fov_deg = fov_deg;
+  return camera;
+}
+
+Camera seam_camera(const Seam& seam, double aspect, double fov_deg, double margin) {
+  Vec3 outward;
+  for (const SeamPoint& p : seam.points) outward += p.normal_a + p.normal_b;
+  Vec3 direction =
+      length(outward) > 1e-6 * static_cast<double>(seam.points.size()) ? normalized(outward) : Vec3{0, 0, 1};
+  if (direction.y < 0.25) direction.y = 0.25;
+  return seam_camera_from(seam, normalized(direction), aspect, fov_deg, margin);
+}
+
+// point - eye = s (corner + x right + y down): Cramer's rule for (s, s x, s y).
+std::optional<PicturePoint> projected(const Camera& camera, const Rays& rays, const Vec3& point) {
+  const Vec3 d = point - camera.eye;
+  const double determinant = dot(rays.corner, cross(rays.right, rays.down));
+  const double s = dot(d, cross(rays.right, rays.down)) / determinant;
+  if (!(s > 0)) return std::nullopt;
+  return PicturePoint{dot(rays.corner, cross(d, rays.down)) / determinant / s,
+                      dot(rays.corner, cross(rays.right, d)) / determinant / s};
+}
+
+}  // namespace goniochrome

@@ -1,0 +1,45 @@
+// Looking at a seam: the words that say which, in what light and from where; a camera before it, and where its places
+// fall in the picture.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mesh/seam.h"
+#include "render/camera.h"
+
+namespace goniochrome {
+
+// What the options of a tool say of a seam: the file of a mesh, two parts A,B, auto | m | cm | mm, and lights and
+// viewers in the world as AZIMUTH,ELEVATION of orbit_direction(), or a prefiltered environment.
+struct SeamTexts {
+  std::string mesh, seam, unit = "auto", environment;
+  double max_gap_mm = 0;
+  std::vector<std::string> lights_from, views_from;
+  bool names_anything_but_mesh() const;
+};
+
+// What the words mean. Error (usage): the option, its value and what it takes, or lights without viewers and the like.
+struct SeamWorld {
+  std::string part_a, part_b;
+  SeamOptions seam;
+  std::vector<Vec3> lights, viewers;  // directions, unit
+  bool in_world = false;              // else lights and viewers stand to every place alike
+};
+Result<SeamWorld> seam_world(const SeamTexts& texts);
+
+// A camera that sees the whole seam from outside, a little from above, its field of view as given; `aspect` is the
+// picture's width over height. `margin` 1 just fits the seam in.
+Camera seam_camera(const Seam& seam, double aspect, double fov_deg, double margin);
+
+// The same from a direction, such as orbit_direction().
+Camera seam_camera_from(const Seam& seam, const Vec3& direction, double aspect, double fov_deg, double margin);
+
+// The picture's (x, y) of a world point, in pixels from the upper left corner; none behind the camera.
+struct PicturePoint {
+  double x = 0, y = 0;
+};
+std::optional<PicturePoint> projected(const Camera& camera, const Rays& rays, const Vec3& point);
+
+}  // namespace goniochrome

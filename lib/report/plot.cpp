@@ -1,0 +1,210 @@
+#include "report/plot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace goniochrome {
+
+namespace {
+
+// Okabe and Ito's palette, without its yellow, which is lost on white paper.
+constexpr const char* kPalette[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#444444"};
+
+constexpr double kLeft = 64, kRight = 16, kTop = 34, kBottom = 48;
+constexpr double kLegendLine = 17;
+constexpr double kLetter = 6.6;  // mean width of a letter at 12 px
+
+// A data axis laid along a stretch of the picture.
+class Scale {
+ public:
+  Scale(const Axis& axis, const std::vector<Series>& series, const std::vector<double> Series::*values, double from,
+        double to)
+      : logarithmic_(axis.logarithmic), from_(from), to_(to) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Series& s : series)
+      for (const double v : s.*values)
+        if (usable(v)) low = std::min(low, v), high = std::max(high, v);
+    if (!(low <= high)) low = logarithmic_ ? 0.1 : 0, high = 1;
+    widen(low, high);
+    low_ = axis.low.value_or(low), high_ = axis.high.value_or(high);
+  }
+
+  bool usable(double v) const { return std::isfinite(v) && (!logarithmic_ || v > 0); }
+  double at(double v) const {
+    const double part = logarithmic_ ? std::log(v / low_) / std::log(high_ / low_) : (v - low_) / (high_ - low_);
+    return from_ + (to_ - from_) * part;
+  }
+  std::vector<double> ticks(int count) const { return goniochrome::ticks(low_, high_, logarithmic_, count); }
+
+ private:
+  // A little air around the data, and room where all values are one.
+  void widen(double& low, double& high) const {
+    if (logarithmic_) {
+      const double factor = high > low ? std::pow(high / low, 0.04) : 2;
+      low /= factor, high *= factor;
+    } else {
+      const double air = high > low ? 0.04 * (high - low) : std::max(1.0, 0.1 * std::abs(high));
+      // An axis that begins at zero shall be seen to do so.
+      low = low >= 0 && low < 0.2 * high ? 0 : low - air;
+      high += air;
+    }
+  }
+
+  bool logarithmic_;
+  double from_, to_, low_ = 0, high_ = 1;
+};
+
+std::string tick_label(double v) {
+  const double size = std::abs(v);
+  if (size != 0 && (size >= 1e5 || size < 1e-3)) return fmt::format("{:.0e}", v);
+  return fmt::format("{:.6g}", v);
+}
+
+std::string text(double x, double y, const char* anchor, const std::string& words, const std::string& more = "") {
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\"{}>{}</text>\n", x, y, anchor, more,
+                     escaped(words));
+}
+
+std::string axes(const Plot& plot, const Scale& x, const Scale& y, double right, double bottom) {
+  std::string out;
+  for (const double v : x.ticks(static_cast<int>((right - kLeft) / 70))) {
+    out += fmt::format("<path class=\"grid\" d=\"M{:.1f} {:.1f}V{:.1f}\"/>\n", x.at(v), kTop, bottom);
+    out += text(x.at(v), bottom + 16, "middle", tick_label(v));
+  }
+  for (const double v : y.ticks(static_cast<int>((bottom - kTop) / 40))) {
+    out += fmt::format("<path class=\"grid\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>\n", kLeft, y.at(v), right);
+    out += text(kLeft - 6, y.at(v) + 4, "end", tick_label(v));
+  }
+  out += fmt::format("<rect class=\"frame\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n", kLeft,
+                     kTop, right - kLeft, bottom - kTop);
+  out += text((kLeft + right) / 2, bottom + 36, "middle", plot.x.label);
+  out += text(0, 0, "middle", plot.y.label,
+              fmt::format(" transform=\"translate(14 {:.1f}) rotate(-90)\"", (kTop + bottom) / 2));
+  out += text(kLeft, kTop - 12, "start", plot.title, " class=\"title\"");
+  return out;
+}
+
+std::string curve(const Series& series, const Scale& x, const Scale& y, const std::string& color) {
+  std::string path, points;
+  bool pen_down = false;
+  for (std::size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i) {
+    if (!x.usable(series.x[i]) || !y.usable(series.y[i])) {
+      pen_down = false;
+      continue;
+    }
+    path += fmt::format("{}{:.2f} {:.2f}", pen_down ? "L" : "M", x.at(series.x[i]), y.at(series.y[i]));
+    points += fmt::format("<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"3\" fill=\"{}\"/>", x.at(series.x[i]),
+                          y.at(series.y[i]), color);
+    pen_down = true;
+  }
+  std::string out;
+  if (series.style != Series::Style::kPoints)
+    out += fmt::format("<path class=\"curve\" stroke=\"{}\"{} d=\"{}\"/>\n", color,
+                       series.style == Series::Style::kDashed ? " stroke-dasharray=\"5 4\"" : "", path);
+  if (series.style == Series::Style::kPoints || series.style == Series::Style::kLineAndPoints) out += points + "\n";
+  return out;
+}
+
+// One plot with its upper left corner at the origin.
+std::string body(const Plot& plot) {
+  std::size_t longest = 0;
+  for (const Series& s : plot.series) longest = std::max(longest, s.label.size());
+  const double legend = longest ? 34 + kLetter * static_cast<double>(longest) : 0;
+  const double right = plot.width - kRight - legend, bottom = plot.height - kBottom;
+  const Scale x(plot.x, plot.series, &Series::x, kLeft, right), y(plot.y, plot.series, &Series::y, bottom, kTop);
+
+  std::string out = axes(plot, x, y, right, bottom);
+  std::size_t next = 0;
+  double line = kTop + 10;
+  // Nested, so that curves end at the frame where an axis is narrower than the data.
+  std::string curves = fmt::format(
+      "<svg x=\"{0:.1f}\" y=\"{1:.1f}\" width=\"{2:.1f}\" height=\"{3:.1f}\" viewBox=\"{0:.1f} {1:.1f} {2:.1f} "
+      "{3:.1f}\">\n",
+      kLeft, kTop, right - kLeft, bottom - kTop);
+  for (const Series& s : plot.series) {
+    const std::string color = s.color.empty() ? kPalette[next++ % std::size(kPalette)] : s.color;
+    curves += curve(s, x, y, color);
+    if (s.label.empty()) continue;
+    out += fmt::format("<path class=\"curve\" stroke=\"{}\"{} d=\"M{:.1f} {:.1f}h18\"/>", color,
+                       s.style == Series::Style::kDashed ? " stroke-dasharray=\"5 4\"" : "", right + 10, line - 4);
+    if (s.style == Series::Style::kPoints || s.style == Series::Style::kLineAndPoints)
+      out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"{}\"/>", right + 19, line - 4, color);
+    out += text(right + 33, line, "start", s.label);
+    line += kLegendLine;
+  }
+  return out + curves + "</svg>\n";
+}
+
+}  // namespace
+
+std::string escaped(const std::string& words) {
+  std::string out;
+  for (const char c : words) switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += c;
+    }
+  return out;
+}
+
+std::vector<double> ticks(double low, double high, bool logarithmic, int count) {
+  std::vector<double> at;
+  if (!(low < high)) return at;
+  if (logarithmic) {
+    const bool dense = high / low < 100;
+    const int every = std::max(1, static_cast<int>(std::ceil(std::log10(high / low) / std::max(count, 1))));
+    for (int decade = static_cast<int>(std::floor(std::log10(low))); decade <= std::ceil(std::log10(high)); ++decade)
+      for (const double part : {1.0, 2.0, 5.0}) {
+        const double v = part * std::pow(10.0, decade);
+        if ((part == 1 ? decade % every == 0 : dense) && v >= low * (1 - 1e-12) && v <= high * (1 + 1e-12))
+          at.push_back(v);
+      }
+    return at;
+  }
+  const double rough = (high - low) / std::max(count, 1), power = std::pow(10.0, std::floor(std::log10(rough)));
+  const double step = power * (rough / power <= 1 ? 1 : rough / power <= 2 ? 2 : rough / power <= 5 ? 5 : 10);
+  for (double i = std::ceil(low / step - 1e-9); i <= high / step + 1e-9; ++i)
+    at.push_back(i * step + 0.0);  // -0 becomes 0
+  return at;
+}
+
+std::string svg(const std::vector<Plot>& plots, int columns) {
+  int width = 0, height = 0, row_width = 0, row_height = 0, column = 0;
+  std::string bodies;
+  for (const Plot& plot : plots) {
+    if (column == columns) height += row_height, row_width = row_height = column = 0;
+    bodies += fmt::format("<g transform=\"translate({} {})\">\n{}</g>\n", row_width, height, body(plot));
+    row_width += plot.width;
+    row_height = std::max(row_height, plot.height);
+    width = std::max(width, row_width);
+    ++column;
+  }
+  height += row_height;
+  return fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\">\n"
+      "<style>text{{font:12px sans-serif;fill:#222}}.title{{font-size:14px;font-weight:bold}}"
+      ".grid{{stroke:#ddd;fill:none}}.frame{{stroke:#555;fill:none}}"
+      ".curve{{fill:none;stroke-width:1.8;stroke-linejoin:round}}</style>\n"
+      "<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n{2}</svg>\n",
+      width, height, bodies);
+}
+
+std::string svg(const Plot& plot) {
+  return svg(std::vector<Plot>{plot}, 1);
+}
+
+}  // namespace goniochrome

@@ -1,0 +1,42 @@
+// Plots as SVG: lines and points on linear or logarithmic axes, readable on paper. Every tool and report draws with
+// this.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace goniochrome {
+
+struct Axis {
+  std::string label;                          // with its unit: "aspecular angle (deg)"
+  bool logarithmic = false;                   // then only values > 0 are drawn
+  std::optional<double> low = {}, high = {};  // from the data where not given
+};
+
+struct Series {
+  std::string label;         // in the legend; empty: not listed
+  std::vector<double> x, y;  // a y (or x) that is not finite breaks the line
+  enum class Style { kLine, kPoints, kLineAndPoints, kDashed } style = Style::kLine;
+  std::string color = {};  // CSS; empty: the next of a palette that color-blind readers can tell apart
+};
+
+struct Plot {
+  std::string title = {};
+  Axis x, y;
+  std::vector<Series> series = {};
+  int width = 640, height = 400;  // of the whole picture, in px
+};
+
+// One SVG document, or several plots as one document in rows of `columns`.
+std::string svg(const Plot& plot);
+std::string svg(const std::vector<Plot>& plots, int columns);
+
+// Text with the characters that markup gives a meaning replaced.
+std::string escaped(const std::string& text);
+
+// Where an axis from low to high is labeled: multiples of 1, 2 or 5 times a power of ten, about `count` of them; on a
+// logarithmic axis the powers of ten, and 2 and 5 times them where the axis spans less than two decades.
+std::vector<double> ticks(double low, double high, bool logarithmic, int count);
+
+}  // namespace goniochrome

@@ -1,0 +1,51 @@
+#include "report/plot.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace goniochrome {
+namespace {
+
+TEST(Plot, TicksAreRoundNumbersInsideTheAxis) {
+  EXPECT_EQ(ticks(0, 10, false, 5), (std::vector<double>{0, 2, 4, 6, 8, 10}));
+  EXPECT_EQ(ticks(1, 1000, true, 6), (std::vector<double>{1, 10, 100, 1000}));
+  EXPECT_EQ(ticks(1, 20, true, 6), (std::vector<double>{1, 2, 5, 10, 20}));
+  EXPECT_TRUE(ticks(3, 3, false, 5).empty());
+  for (const double high : {1e-7, 0.3, 17.0, 9e6}) {
+    const auto at = ticks(-high, high, false, 6);
+    EXPECT_GE(at.size(), 3u);
+    EXPECT_LE(at.size(), 14u);
+  }
+}
+
+TEST(Plot, LabelsAreEscaped) {
+  Plot plot;
+  plot.title = "a < b & \"c\"";
+  plot.series = {{"<script>", {0, 1}, {0, 1}}};
+  const std::string text = svg(plot);
+  EXPECT_NE(text.find("a &lt; b &amp; &quot;c&quot;"), std::string::npos);
+  EXPECT_EQ(text.find("<script>"), std::string::npos);
+}
+
+TEST(Plot, ValuesThatCannotBeDrawnBreakTheLineAndNothingElse) {
+  Plot plot;
+  plot.y.logarithmic = true;
+  plot.series = {{"s", {1, 2, 3, 4, 5}, {1, std::nan(""), 10, 0, 100}}};
+  const std::string text = svg(plot);
+  EXPECT_EQ(text.find("nan"), std::string::npos);
+  EXPECT_EQ(text.find("inf"), std::string::npos);
+  plot.series = {{"nothing", {}, {}}, {"one point", {2}, {2}}};
+  EXPECT_EQ(svg(plot).find("nan"), std::string::npos);
+}
+
+TEST(Plot, SheetHoldsEveryPlot) {
+  Plot plot;
+  plot.width = 300, plot.height = 200;
+  const std::string text = svg({plot, plot, plot}, 2);
+  EXPECT_NE(text.find("width=\"600\" height=\"400\""), std::string::npos);
+}
+
+}  // namespace
+}  // namespace goniochrome
