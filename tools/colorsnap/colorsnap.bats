@@ -1,0 +1,303 @@
+# colorsnap from the outside: the index and its life, options, streams, exit statuses.
+
+bats_require_minimum_version 1.5.0
+
+setup() {
+  cd "$BATS_TEST_TMPDIR" || exit 1
+  head='<?xml version="1.0"?><paints xmlns="urn:goniochrome:paint:1" version="1">'
+  {
+    echo "$head"
+    paint R1 100,60,30 50,40,20 20,20,10 'code="c-R1" class="metallic"'
+    paint R2 90,60,30 50,40,20 20,20,10 'code="c-R2" class="solid"'
+    paint G1 80,-50,30 40,-30,20 20,-10,5 'code="c-G1" class="metallic"'
+    paint B1 60,10,-60 30,10,-50 15,5,-40
+    paint R1again 100,60,30 50,40,20 20,20,10
+    echo "</paints>"
+  } >lib.xml
+  {
+    echo "$head"
+    paint wish 99,60,30 50,40,20 20,20,10
+    echo "</paints>"
+  } >wish.xml
+}
+
+# paint NAME L,a,b L,a,b L,a,b [ATTRIBUTES]: a paint with readings at 15, 45 and 110 deg.
+paint() {
+  local name=$1 rows='' angle=(15 45 110) i=0
+  for row in "$2" "$3" "$4"; do
+    IFS=, read -r l a b <<<"$row"
+    rows+="<lab geometry=\"45as${angle[i]}\" L=\"$l\" a=\"$a\" b=\"$b\"/>"
+    i=$((i + 1))
+  done
+  echo "<paint name=\"$name\" ${5:-}><measurement illuminant=\"D65\" observer=\"10\">$rows</measurement></paint>"
+}
+
+# column NAME: that column of the table on standard input, without its head, on one line.
+column() {
+  awk -F'\t' -v name="$1" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = i; next } { print $c }' | paste -sd' '
+}
+
+@test "nearest first, ties in the library's order, with the difference at each geometry" {
+  run --separate-stderr colorsnap --library lib.xml -k 3 wish.xml
+  [ "$status" -eq 0 ]
+  [ "$stderr" = "colorsnap: 1 paints against 5" ]
+  [ "$(column name <<<"$output")" = "R1 R1again R2" ]
+  [ "$(column rank <<<"$output")" = "1 2 3" ]
+  [ "$(column distance <<<"$output")" = "1 1 9" ]
+  [ "$(column code <<<"$output")" = "c-R1  c-R2" ]
+  [ "$(column status <<<"$output")" = "ok ok ok" ]
+  [ "$(column de_by_geometry <<<"$output" | cut -d' ' -f1)" = "45as15=1,45as45=0,45as110=0" ]
+}
+
+@test "the index is written once and mapped after" {
+  colorsnap -q -l lib.xml wish.xml --report a.json >a.tsv
+  colorsnap -q -l lib.xml wish.xml --report b.json >b.tsv
+  [ "$(jq -r .results.index a.json)" = built ]
+  [ "$(jq -r .results.index b.json)" = mapped ]
+  jq -e '.results.read_s == 0 and .results.index_s < 0.05' b.json
+  cmp a.tsv b.tsv
+  [ -f lib.xml.snapindex ]
+}
+
+@test "a changed library makes the index anew, and says so" {
+  colorsnap -q -l lib.xml wish.xml >/dev/null
+  sed -i 's/"R1"/"X1"/' lib.xml
+  touch -d '+1 minute' lib.xml
+  run --separate-stderr colorsnap -l lib.xml -k 1 wish.xml
+  [ "$(column name <<<"$output")" = X1 ]
+  [[ "$stderr" == *"lib.xml.snapindex: made anew, the library has changed"* ]]
+}
+
+@test "a damaged index is made anew" {
+  colorsnap -q -l lib.xml wish.xml >a.tsv
+  head -c 1000 lib.xml.snapindex >cut && mv cut lib.xml.snapindex
+  run --separate-stderr colorsnap -l lib.xml wish.xml
+  [ "$status" -eq 0 ]
+  [ "$output" = "$(cat a.tsv)" ]
+  [[ "$stderr" == *"damaged or of another version"* ]]
+}
+
+@test "where the index cannot be written it stays in memory, and that is told" {
+  mkdir lib.xml.snapindex
+  run --separate-stderr colorsnap -l lib.xml -k 1 wish.xml --report r.json
+  [ "$status" -eq 0 ]
+  [ "$(column name <<<"$output")" = R1 ]
+  [[ "$stderr" == *"stays in memory"* ]]
+  [ "$(jq -r .results.index r.json)" = in_memory ]
+}
+
+@test "--library missing, unreadable, a stream, broken" {
+  run --separate-stderr colorsnap wish.xml
+  [ "$status" -eq 2 ]
+  [[ "$stderr" == *"--library"* ]]
+  run --separate-stderr colorsnap wish.xml -l
+  [ "$status" -eq 2 ]
+  run --separate-stderr colorsnap -l none.xml wish.xml
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *"none.xml: cannot be read"* ]]
+  run --separate-stderr colorsnap -l /dev/null wish.xml
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *"no plain file"* ]]
+  sed 's/L="80"/L="12,5"/' lib.xml >bad.xml
+  run --separate-stderr colorsnap -l bad.xml wish.xml
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *"bad.xml:4:"*"12,5"* ]]
+  [ ! -e bad.xml.snapindex ]
+}
+
+@test "both metrics and both methods; the same answer from tree and scan" {
+  cp "$TESTDATA/paints.paints.xml" all.xml
+  for metric in de76 de00; do
+    for method in auto tree scan; do
+      colorsnap -q -l all.xml all.xml -m $metric --method $method >$method.tsv
+    done
+    cmp tree.tsv scan.tsv
+    cmp tree.tsv auto.tsv
+  done
+  [ "$(colorsnap -q -l lib.xml -k 1 -m de00 wish.xml | column distance)" != 1 ]
+
+  run colorsnap -l lib.xml wish.xml --metric de94
+  [ "$status" -eq 2 ]
+  [[ "$output" == *'--metric is "de94": give de76, de00'* ]]
+  run colorsnap -l lib.xml wish.xml --method grid
+  [ "$status" -eq 2 ]
+}
+
+@test "-k: all there are, and nonsense" {
+  [ "$(colorsnap -q -l lib.xml -k 100 wish.xml | column rank)" = "1 2 3 4 5" ]
+  for k in 0 -1 x 1.5; do
+    run colorsnap -l lib.xml wish.xml -k $k
+    [ "$status" -eq 2 ]
+  done
+}
+
+@test "--geometry and --weight" {
+  [ "$(colorsnap -q -l lib.xml -k 1 -g 45as45,45as110 wish.xml | column de_by_geometry)" = "45as45=0,45as110=0" ]
+  [ "$(colorsnap -q -l lib.xml -k 1 -w 45as15=3 wish.xml | column distance)" = 3 ]
+  [ "$(colorsnap -q -l lib.xml -k 1 -w 45as15=0,45as110=2 wish.xml | column distance)" = 0 ]
+  run --separate-stderr colorsnap -l lib.xml wish.xml -w 45as25=2
+  [ "$status" -eq 0 ]
+  [[ "$stderr" == *"weight of 45as25 has no effect"* ]]
+  run --separate-stderr colorsnap -l lib.xml wish.xml -g 45as45 -w 45as45=0
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *"weight 0"* ]]
+  run --separate-stderr colorsnap -l lib.xml wish.xml -g 45as25
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *'paint "wish": it has no color at 45as25'* ]]
+  for wrong in 45as15 45as15= 45as15=x 45as15=-1 =2 45xx15=2; do
+    run colorsnap -l lib.xml wish.xml --weight "$wrong"
+    [ "$status" -eq 2 ]
+  done
+  run colorsnap -l lib.xml wish.xml --geometry 45az
+  [ "$status" -eq 2 ]
+  [[ "$output" == *"45az"* ]]
+}
+
+@test "--filter by metric and by class" {
+  [ "$(colorsnap -q -l lib.xml -k 9 --filter class=metallic wish.xml | column name)" = "R1 G1" ]
+  [ "$(colorsnap -q -l lib.xml -k 9 --filter class=metallic,solid --filter L15=85: wish.xml | column name)" = "R1 R2" ]
+  run --separate-stderr colorsnap -l lib.xml --filter flop_index=1000: wish.xml
+  [ "$status" -eq 1 ]
+  [ "$(column status <<<"$output")" = no_match ]
+  [[ "$stderr" == *"the filters leave no paint"* ]]
+  for wrong in flop_index=3 flop_indx=3:4 flop_index=4:3 class=wood flop_index=a:b; do
+    run colorsnap -l lib.xml wish.xml --filter "$wrong"
+    [ "$status" -eq 2 ]
+  done
+  run --separate-stderr colorsnap -l lib.xml wish.xml --filter travel_deg=20:30
+  [ "$status" -eq 2 ]
+  [[ "$stderr" == *"paint-stats --where"* ]]
+}
+
+@test "a design outside the library: told, to which side, exit 1" {
+  paint deep 40,95,45 30,80,40 20,60,30 | sed "s|^|$head|; s|\$|</paints>|" >deep.xml
+  run --separate-stderr colorsnap -l lib.xml -k 1 deep.xml
+  [ "$status" -eq 1 ]
+  [ "$(column status <<<"$output")" = outside ]
+  [[ "$stderr" =~ 'paint "deep" is outside the library: the nearest, "R2", is '.*', chroma +'[2-4][0-9]\. ]]
+  run --separate-stderr colorsnap -l lib.xml -k 1 deep.xml --threshold 100
+  [ "$status" -eq 0 ]
+  run colorsnap -l lib.xml wish.xml --threshold 0
+  [ "$status" -eq 1 ]
+  run colorsnap -l lib.xml wish.xml --threshold x
+  [ "$status" -eq 2 ]
+}
+
+@test "a design of off-radial travel is told" {
+  paint turning 99,60,30 50,40,20 20,10,22 | sed "s|^|$head|; s|\$|</paints>|" >turning.xml
+  run --separate-stderr colorsnap -l lib.xml -k 1 turning.xml --report r.json
+  [ "$status" -eq 0 ]
+  [ "$(column status <<<"$output")" = off_radial ]
+  [[ "$stderr" == *'paint "turning" travels off-radially'* ]]
+  jq -e '.results.queries[0] | .hue_shift > 10 and .matched_hue_shift == 0' r.json
+  [ "$(colorsnap -q -l lib.xml -k 1 turning.xml --off-radial 50 | column status)" = ok ]
+  run colorsnap -l lib.xml wish.xml --off-radial x
+  [ "$status" -eq 2 ]
+}
+
+@test "no common geometry is an error that names both sides" {
+  sed 's/45as15"/45as25"/; s/45as45"/45as75"/; s/45as110"/45as60"/' wish.xml >other.xml
+  run --separate-stderr colorsnap -l lib.xml other.xml
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *'paint "wish": it has no geometry in common with the library: it was measured at 45as25,45as60,45as75, the library at 45as15,45as45,45as110'* ]]
+}
+
+@test "mixed observers are refused unless they are asked for" {
+  sed 's/observer="10"/observer="2"/' wish.xml >two.xml
+  run --separate-stderr colorsnap -l lib.xml two.xml
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *'D65/2'*'D65/10'*'--mix-observers'* ]]
+  run --separate-stderr colorsnap -l lib.xml -k 1 two.xml --mix-observers
+  [ "$status" -eq 0 ]
+  [ "$(column name <<<"$output")" = R1 ]
+  [[ "$stderr" == *"compared with others as they are"* ]]
+}
+
+@test "--keep-going leaves bad queries out, exit 1" {
+  {
+    echo "$head"
+    paint good 99,60,30 50,40,20 20,20,10
+    paint bad 1,2,3 4,5,6 7,8,9 | sed 's/L="4"/L="four"/'
+    echo '<paint name="bare"/>'
+    paint last 60,10,-60 30,10,-50 15,5,-40
+    echo "</paints>"
+  } >mixed.xml
+  run --separate-stderr colorsnap -l lib.xml mixed.xml
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *'mixed.xml:3:'*four* ]]
+  run --separate-stderr colorsnap -l lib.xml -k 1 mixed.xml --keep-going
+  [ "$status" -eq 1 ]
+  [ "$(column query <<<"$output")" = "good last" ]
+  [ "$(column name <<<"$output")" = "R1 B1" ]
+  [[ "$stderr" == *four*'left out'*'paint "bare": it has no color'*'left out'* ]]
+}
+
+@test "a designed paint is compared by its curve" {
+  echo "$head<paint name=\"d\"><appearance travel=\"60\"><face L=\"100\" a=\"60\" b=\"30\"/><flop L=\"20\" a=\"20\" b=\"10\"/></appearance></paint></paints>" >d.xml
+  [ "$(colorsnap -q -l lib.xml -k 1 d.xml | column name)" = R1 ]
+}
+
+@test "standard input to standard output" {
+  [ "$(colorsnap -q -l lib.xml -k 1 <wish.xml | column name)" = R1 ]
+  [ "$(colorsnap -q -l lib.xml -k 1 - wish.xml <wish.xml | column query)" = "wish wish" ]
+}
+
+@test "--format paints writes each matched paint once, every element kept" {
+  sed -i 's|name="R2" code="c-R2" class="solid">|&<s:mark xmlns:s="urn:example:shelf" row="7"/>|' lib.xml
+  colorsnap -q -l lib.xml -k 3 -f paints - wish.xml <wish.xml >out.xml
+  xmllint --noout out.xml
+  [ "$(sed -n 's/.*<paint name="\([^"]*\)".*/\1/p' out.xml | paste -sd' ')" = "R1 R1again R2" ]
+  grep -q 'row="7"' out.xml
+  grep -q '<processing tool="colorsnap"' out.xml
+  colorsnap -q -l lib.xml -k 1 wish.xml -o a.paints.xml
+  grep -q '<paint name="R1"' a.paints.xml
+}
+
+@test "--format json, and the report has the same" {
+  colorsnap -q -l lib.xml -f json wish.xml --report r.json >a.jsonl
+  jq -e '.matches[0].name == "R1" and .matches[0].de_by_geometry["45as15"] == 1' a.jsonl
+  diff <(jq -S . a.jsonl) <(jq -S '.results.queries[0]' r.json)
+  jq -e '.results | .library_size == 5 and .candidates == 5 and .searched == 1 and .query_us > 0' r.json
+  run colorsnap -l lib.xml wish.xml -f xlsx
+  [ "$status" -eq 2 ]
+  run colorsnap -l lib.xml wish.xml -o
+  [ "$status" -eq 2 ]
+  run colorsnap -l lib.xml wish.xml -o /no/such/folder/x
+  [ "$status" -eq 3 ]
+}
+
+@test "a closed pipe ends quietly" {
+  {
+    echo "$head"
+    for i in $(seq 5000); do paint "p$i" 99,60,30 50,40,20 20,20,10; done
+    echo "</paints>"
+  } >many.xml
+  run --separate-stderr bash -o pipefail -c 'colorsnap -q -l lib.xml many.xml | head -1'
+  [ -z "$stderr" ]
+}
+
+@test "missing and cut queries are errors" {
+  run colorsnap -l lib.xml none.xml
+  [ "$status" -eq 3 ]
+  head -c 300 wish.xml >cut.xml
+  run colorsnap -l lib.xml cut.xml -o kept.tsv
+  [ "$status" -eq 3 ]
+  [ ! -e kept.tsv ]
+}
+
+@test "results do not depend on --threads" {
+  for n in 1 2 7; do colorsnap -q -l lib.xml lib.xml --threads $n >$n.tsv; done
+  cmp 1.tsv 2.tsv
+  cmp 1.tsv 7.tsv
+}
+
+@test "--explain says which method and why; --quiet, --help, --version" {
+  run --separate-stderr colorsnap -q -l lib.xml wish.xml --explain
+  [[ "$stderr" == *"5 paints, D65/10 at 45as15,45as45,45as110: scan"*"measured"*"left out"* ]]
+  [ -z "$(colorsnap --quiet -l lib.xml wish.xml 2>&1 >/dev/null)" ]
+  colorsnap --help | grep -q -- --off-radial
+  colorsnap --version | grep -q '^colorsnap '
+  run colorsnap --libary x
+  [ "$status" -eq 2 ]
+  [[ "$output" == *"did you mean --library?"* ]]
+}

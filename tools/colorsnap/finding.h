@@ -1,0 +1,45 @@
+// What a search found for one paint, and what it says of the design. [Shimizu2009] 5.3.5
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "paint/search_library.h"
+
+namespace goniochrome {
+
+// One library paint beside the query. Differences are query less match, means over the geometries.
+struct Neighbor {
+  LibraryMatch match;
+  double mean_de = 0;             // distance per unit of weight
+  double dL = 0, dC = 0, dH = 0;  // CIELAB lightness, chroma and hue difference
+  std::vector<double> de;         // at each geometry, without weight
+};
+
+struct Finding {
+  std::string query;
+  SearchPlan plan;
+  std::vector<Neighbor> neighbors;              // nearest first
+  double hue_shift = 0, matched_hue_shift = 0;  // NaN where there is none
+  bool outside = false, off_radial = false;
+  double search_s = 0;
+
+  bool no_match() const { return neighbors.empty(); }
+  // "ok", or "outside", "off_radial", "outside,off_radial", "no_match".
+  std::string status() const;
+};
+
+// How far and to which side the flop leaves the line through the origin and the face's a*b*: the hue-shift index,
+// negative where the hue turns clockwise.
+double signed_hue_shift(double hue_shift_index, double hue_travel_deg);
+
+struct FindingLimits {
+  double outside = 10;    // mean difference
+  double off_radial = 5;  // difference of hue shifts
+};
+
+// Searches and judges. `query` must be the paint of the plan. Safe to call from several threads.
+Finding finding_of(const Paint& query, SearchPlan plan, const LibrarySearch& search, const LibraryIndex& index,
+                   ColorMetric metric, const FindingLimits& limits);
+
+}  // namespace goniochrome

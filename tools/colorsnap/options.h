@@ -1,0 +1,34 @@
+// The options of colorsnap.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/options.h"
+#include "paint/search_library.h"
+
+namespace goniochrome {
+
+struct ColorsnapOptions {
+  std::vector<std::string> inputs;
+  std::string library;
+  std::string output = "-";
+  std::string format = "auto";
+  int count = 5;
+  std::string metric = "de76";
+  std::vector<std::string> geometries;
+  std::vector<std::string> weights;
+  std::vector<std::string> filters;
+  std::string method = "auto";
+  double threshold = 10;
+  double off_radial = 5;
+  bool mix_observers = false;
+  bool keep_going = false;
+};
+
+cli::ToolSpec colorsnap_spec(ColorsnapOptions& options, cli::CommonOptions& common);
+
+// What the options ask of a search. Error: a text that cannot be understood.
+Result<LibrarySearchOptions> search_options(const ColorsnapOptions& options);
+
+}  // namespace goniochrome

@@ -1,0 +1,238 @@
+#include "run.h"
+
+#include <algorithm>
+#include <functional>
+#include <optional>
+#include <set>
+
+#include "base/clock.h"
+#include "base/parallel.h"
+#include "finding.h"
+#include "paint/batches.h"
+#include "sink.h"
+
+namespace goniochrome {
+
+namespace {
+
+constexpr std::size_t kWarningsShown = 10;
+
+Format format_of(const ColorsnapOptions& options) {
+  const auto ends = [&](const char* ending) { return options.output.ends_with(ending); };
+  if (options.format == "paints" || (options.format == "auto" && ends(".xml"))) return Format::kPaints;
+  if (options.format == "json" || (options.format == "auto" && (ends(".json") || ends(".jsonl")))) return Format::kJson;
+  return Format::kTable;
+}
+
+std::string names_of(const std::vector<Geometry>& geometries) {
+  std::string names;
+  for (const Geometry& geometry : geometries) names += (names.empty() ? "" : ",") + geometry_name(geometry);
+  return names;
+}
+
+const char* origin_name(LibraryIndex::Origin origin) {
+  switch (origin) {
+    case LibraryIndex::Origin::kMapped:
+      return "mapped";
+    case LibraryIndex::Origin::kBuilt:
+      return "built";
+    case LibraryIndex::Origin::kInMemory:
+      break;
+  }
+  return "in_memory";
+}
+
+// One run: queries in, findings out.
+class Run {
+ public:
+  Run(const ColorsnapOptions& options, cli::Session& session, const LibraryIndex& index, LibrarySearchOptions search)
+      : options_(options),
+        session_(session),
+        index_(index),
+        metric_(search.metric),
+        weights_(search.weights),
+        search_(index, std::move(search)) {}
+
+  Result<cli::Verdict> operator()() {
+    session_.explain(plan_text());
+    GONIO_ASSIGN(PaintBatches batches, PaintBatches::open(options_.inputs));
+    GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
+    GONIO_ASSIGN(Sink sink, Sink::begin(format_of(options_), std::move(file)));
+    if (!session_.common().report.empty()) session_.results()["queries"] = Json::array();
+    for (;;) {
+      GONIO_ASSIGN(const std::vector<Paint> batch, batches.next(left_out()));
+      if (batch.empty()) break;
+      GONIO_TRY(answer(batch, sink));
+      session_.progress(fmt::format("{}: {} paints", session_.tool(), searched_));
+    }
+    GONIO_TRY(sink.finish(options_.library, {session_.tool(), cli::Session::version(), session_.command_line()}));
+    return finish();
+  }
+
+ private:
+  // What becomes of a query that cannot be read.
+  std::function<void(const Error&)> left_out() {
+    if (!options_.keep_going) return {};
+    return [this](const Error& error) { leave_out(error.message); };
+  }
+
+  void leave_out(const std::string& message) {
+    session_.warn(message + ": left out");
+    ++left_out_;
+  }
+
+  Result<void> answer(const std::vector<Paint>& batch, Sink& sink) {
+    std::vector<std::pair<const Paint*, SearchPlan>> queries;
+    for (const Paint& paint : batch) {
+      auto plan = search_.plan(paint);
+      if (plan.ok()) {
+        tell_once(*plan);
+        queries.emplace_back(&paint, std::move(*plan));
+        continue;
+      }
+      const std::string message = fmt::format("paint \"{}\": {}", paint.name, plan.error().message);
+      if (!options_.keep_going) return Error{plan.error().kind, message};
+      leave_out(message);
+    }
+    const Stopwatch searching;
+    std::vector<Finding> findings(queries.size());
+    parallel_for(queries.size(), 4, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        findings[i] = finding_of(*queries[i].first, std::move(queries[i].second), search_, index_, metric_,
+                                 {options_.threshold, options_.off_radial});
+    });
+    wall_s_ += searching.elapsed_s();
+    for (const Finding& finding : findings) {
+      note(finding);
+      GONIO_TRY(sink.write(finding, index_));
+    }
+    return sink.flush();
+  }
+
+  void note(const Finding& finding) {
+    ++searched_;
+    search_s_ += finding.search_s;
+    outside_ += finding.outside;
+    off_radial_ += finding.off_radial;
+    no_match_ += finding.no_match();
+    if (!session_.common().report.empty()) session_.results()["queries"].push_back(finding_json(finding, index_));
+    if (finding.status() == "ok" || ++problems_ > kWarningsShown) return;
+    if (finding.no_match())
+      return session_.warn(fmt::format("paint \"{}\": the filters leave no paint of the library", finding.query));
+    const Neighbor& nearest = finding.neighbors.front();
+    const auto name = index_.name(nearest.match.paint);
+    if (finding.outside)
+      session_.warn(
+          fmt::format("paint \"{}\" is outside the library: the nearest, \"{}\", is {:.1f} away on average; "
+                      "the design has L* {:+.1f}, chroma {:+.1f}, hue {:+.1f} against it",
+                      finding.query, name, nearest.mean_de, nearest.dL, nearest.dC, nearest.dH));
+    if (finding.off_radial)
+      session_.warn(
+          fmt::format("paint \"{}\" travels off-radially: its flop lies {:+.1f} off the face's hue line, that "
+                      "of the nearest, \"{}\", {:+.1f}",
+                      finding.query, finding.hue_shift, name, finding.matched_hue_shift));
+  }
+
+  // Paints that are left out and conditions that are mixed, once for each set of geometries.
+  void tell_once(const SearchPlan& plan) {
+    const std::string names = names_of(plan.geometries);
+    for (const Geometry& geometry : plan.geometries) compared_.insert(geometry_name(geometry));
+    if ((plan.left_out == 0 && !plan.mixed) || !told_.insert(names).second) return;
+    if (plan.left_out > 0)
+      session_.warn(
+          fmt::format("{} of {} library paints lack one of {} and are left out", plan.left_out, index_.size(), names));
+    if (plan.mixed)
+      session_.warn(fmt::format("Lab values for {}/{} are compared with others as they are", plan.mixed->illuminant,
+                                plan.mixed->observer_deg));
+  }
+
+  std::string method_names() const {
+    std::set<std::string> names;
+    for (std::size_t i = 0; i < index_.sections().size(); ++i)
+      names.insert(search_.method(i) == SearchMethod::kTree ? "tree" : "scan");
+    return fmt::format("{}", fmt::join(names, ","));
+  }
+
+  std::string plan_text() const {
+    std::string text = fmt::format("library {}: {} paints, {} to consider; index {}{}, {:.1f} MB, {:.3f} s\n",
+                                   options_.library, index_.size(), search_.candidates(), origin_name(index_.origin()),
+                                   index_.note().empty() ? "" : " (" + index_.note() + ")",
+                                   static_cast<double>(index_.bytes()) / 1048576, index_.build_s());
+    for (std::size_t i = 0; i < index_.sections().size(); ++i) {
+      const LibrarySection& section = index_.sections()[i];
+      const bool tree = search_.method(i) == SearchMethod::kTree;
+      text += fmt::format("  {} paints, {}/{} at {}: {}\n", section.tree.size, section.condition.illuminant,
+                          section.condition.observer_deg, names_of(section.geometries), tree ? "tree" : "scan");
+    }
+    return text +
+           fmt::format(
+               "method {}: {}; the scan wins only below {} paints, or where a filter lets fewer than one in {} through "
+               "(measured: 10^6 paints, 5 nearest, tree 52 us against 5.8 ms in dE76, 1.3 against 120 ms in dE00)\n"
+               "metric {}: {}\n"
+               "compared at {}; every answer is exact, ties in the library's order\n"
+               "left out: paints without a color\n",
+               options_.method, options_.method == "auto" ? "as measured" : "as told", kLeafSize + 1, kScanFraction,
+               options_.metric,
+               metric_ == ColorMetric::kDe76 ? "sum of CIE 1976 differences"
+                                             : "sum of CIEDE2000 differences, pruned by a proven lower bound",
+               options_.geometries.empty() ? "the geometries that query and library share"
+                                           : "the geometries asked for");
+  }
+
+  cli::Verdict finish() {
+    Json& results = session_.results();
+    results["library_size"] = index_.size();
+    results["candidates"] = search_.candidates();
+    results["index"] = origin_name(index_.origin());
+    results["index_s"] = index_.build_s();
+    results["read_s"] = index_.read_s();
+    results["index_bytes"] = index_.bytes();
+    results["method"] = method_names();
+    results["query_us"] = json_number(searched_ > 0 ? 1e6 * search_s_ / static_cast<double>(searched_) : 0);
+    results["queries_per_s"] = json_number(wall_s_ > 0 ? static_cast<double>(searched_) / wall_s_ : 0);
+    results["searched"] = searched_;
+    results["outside"] = outside_;
+    results["off_radial"] = off_radial_;
+    results["no_match"] = no_match_;
+    results["left_out"] = left_out_;
+    for (const auto& [geometry, weight] : weights_)
+      if (searched_ > 0 && !compared_.contains(geometry_name(geometry)))
+        session_.warn(
+            fmt::format("the weight of {} has no effect: nothing was compared there", geometry_name(geometry)));
+    if (problems_ > kWarningsShown)
+      session_.warn(fmt::format("{} more designs with problems", problems_ - kWarningsShown));
+    std::string line = fmt::format("{}: {} paints against {}", session_.tool(), searched_, index_.size());
+    if (outside_ > 0) line += fmt::format(", {} outside", outside_);
+    if (off_radial_ > 0) line += fmt::format(", {} off-radial", off_radial_);
+    if (no_match_ > 0) line += fmt::format(", {} without a match", no_match_);
+    if (left_out_ > 0) line += fmt::format(", {} left out", left_out_);
+    session_.say(line);
+    return outside_ + no_match_ + left_out_ > 0 ? cli::Verdict::kNegative : cli::Verdict::kDone;
+  }
+
+  const ColorsnapOptions& options_;
+  cli::Session& session_;
+  const LibraryIndex& index_;
+  ColorMetric metric_;
+  std::vector<std::pair<Geometry, double>> weights_;
+  LibrarySearch search_;
+  std::set<std::string> told_, compared_;
+  std::size_t searched_ = 0, outside_ = 0, off_radial_ = 0, no_match_ = 0, left_out_ = 0, problems_ = 0;
+  double search_s_ = 0, wall_s_ = 0;
+};
+
+}  // namespace
+
+Result<cli::Verdict> run(const ColorsnapOptions& options, cli::Session& session) {
+  GONIO_ASSIGN(LibrarySearchOptions search, search_options(options));
+  GONIO_ASSIGN(const LibraryIndex index, LibraryIndex::open(options.library, [&](std::size_t paints) {
+                 session.progress(fmt::format("{}: indexing {}: {} paints", session.tool(), options.library, paints));
+               }));
+  if (index.origin() == LibraryIndex::Origin::kBuilt && index.note() != "there was none")
+    session.say(fmt::format("{}: {}: made anew, {}", session.tool(), index_path(options.library), index.note()));
+  if (index.origin() == LibraryIndex::Origin::kInMemory)
+    session.warn(fmt::format("the index stays in memory and is made again by every run: {}", index.note()));
+  return Run(options, session, index, std::move(search))();
+}
+
+}  // namespace goniochrome

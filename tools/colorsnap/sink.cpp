@@ -1,0 +1,111 @@
+#include "sink.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include "base/text.h"
+
+namespace goniochrome {
+
+namespace {
+
+constexpr const char* kTableHead =
+    "query\trank\tname\tcode\tclass\tdistance\tmean_de\tdL\tdC\tdH\tstatus\tde_by_geometry\n";
+
+// A text that stays in its field of a table.
+std::string field(std::string_view given) {
+  std::string text(given);
+  std::ranges::replace_if(
+      text, [](char c) { return c == '\t' || c == '\n' || c == '\r'; }, ' ');
+  return text;
+}
+
+std::string table_lines(const Finding& finding, const LibraryIndex& index) {
+  const std::string query = field(finding.query), status = finding.status();
+  if (finding.no_match()) return query + "\t0\t\t\t\tn/a\tn/a\tn/a\tn/a\tn/a\t" + status + "\t-\n";
+  std::string text;
+  int rank = 0;
+  for (const Neighbor& neighbor : finding.neighbors) {
+    const std::size_t paint = neighbor.match.paint;
+    text += fmt::format("{}\t{}\t{}\t{}\t{}", query, ++rank, field(index.name(paint)), field(index.code(paint)),
+                        paint_class_name(index.paint_class(paint)));
+    for (const double value : {neighbor.match.distance, neighbor.mean_de, neighbor.dL, neighbor.dC, neighbor.dH})
+      text += "\t" + shortest(value);
+    text += "\t" + status + "\t";
+    for (std::size_t i = 0; i < neighbor.de.size(); ++i)
+      text += (i ? "," : "") + geometry_name(finding.plan.geometries[i]) + "=" + shortest(neighbor.de[i]);
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+Json finding_json(const Finding& finding, const LibraryIndex& index) {
+  Json geometries = Json::array(), matches = Json::array();
+  for (const Geometry& geometry : finding.plan.geometries) geometries.push_back(geometry_name(geometry));
+  for (const Neighbor& neighbor : finding.neighbors) {
+    const std::size_t paint = neighbor.match.paint;
+    Json differences = Json::object();
+    for (std::size_t i = 0; i < neighbor.de.size(); ++i)
+      differences[geometry_name(finding.plan.geometries[i])] = json_number(neighbor.de[i]);
+    matches.push_back({{"name", index.name(paint)},
+                       {"code", index.code(paint)},
+                       {"class", paint_class_name(index.paint_class(paint))},
+                       {"distance", json_number(neighbor.match.distance)},
+                       {"mean_de", json_number(neighbor.mean_de)},
+                       {"dL", json_number(neighbor.dL)},
+                       {"dC", json_number(neighbor.dC)},
+                       {"dH", json_number(neighbor.dH)},
+                       {"de_by_geometry", differences}});
+  }
+  return {{"name", finding.query},
+          {"status", finding.status()},
+          {"geometries", geometries},
+          {"hue_shift", json_number(finding.hue_shift)},
+          {"matched_hue_shift", json_number(finding.matched_hue_shift)},
+          {"matches", matches}};
+}
+
+Result<Sink> Sink::begin(Format format, OutputFile file) {
+  Sink sink(format, std::move(file));
+  if (format == Format::kTable) GONIO_TRY(sink.file_.write(kTableHead));
+  return sink;
+}
+
+Result<void> Sink::write(const Finding& finding, const LibraryIndex& index) {
+  switch (format_) {
+    case Format::kTable:
+      return file_.write(table_lines(finding, index));
+    case Format::kJson:
+      return file_.write(finding_json(finding, index).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
+    case Format::kPaints:
+      break;
+  }
+  for (const Neighbor& neighbor : finding.neighbors)
+    if (met_.insert(neighbor.match.paint).second) wanted_.push_back(neighbor.match.paint);
+  return {};
+}
+
+Result<void> Sink::finish(const std::string& library_path, const Processing& step) {
+  return format_ == Format::kPaints ? write_paints(library_path, step) : file_.commit();
+}
+
+Result<void> Sink::write_paints(const std::string& library_path, const Processing& step) {
+  GONIO_ASSIGN(PaintReader reader, PaintReader::open(library_path));
+  reader.read_prolog();
+  std::vector<Processing> history = reader.processing();
+  history.push_back(step);
+  std::unordered_map<std::uint32_t, Paint> paints;
+  for (std::uint32_t place = 0; paints.size() < wanted_.size(); ++place) {
+    GONIO_ASSIGN(std::optional<Paint> paint, reader.next());
+    if (!paint) return input_error("{}: it was changed while it was searched: run again", library_path);
+    if (met_.contains(place)) paints.emplace(place, std::move(*paint));
+  }
+  GONIO_ASSIGN(PaintWriter writer, PaintWriter::begin(std::move(file_), history, reader.foreign()));
+  for (const std::uint32_t place : wanted_) GONIO_TRY(writer.write(paints.at(place)));
+  return writer.finish();
+}
+
+}  // namespace goniochrome

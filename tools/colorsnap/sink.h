@@ -1,0 +1,38 @@
+// Where findings go: a table, JSON lines, or the matched paints themselves.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <unordered_set>
+#include <vector>
+
+#include "base/file.h"
+#include "base/json.h"
+#include "finding.h"
+#include "paint/xml.h"
+
+namespace goniochrome {
+
+enum class Format { kTable, kJson, kPaints };
+
+Json finding_json(const Finding& finding, const LibraryIndex& index);
+
+class Sink {
+ public:
+  static Result<Sink> begin(Format format, OutputFile file);
+  Result<void> write(const Finding& finding, const LibraryIndex& index);
+  Result<void> flush() { return file_.flush(); }
+  // Ends the output. The paints are read from the library, whose place in it the index knows; `step` joins its history.
+  Result<void> finish(const std::string& library_path, const Processing& step);
+
+ private:
+  explicit Sink(Format format, OutputFile file) : format_(format), file_(std::move(file)) {}
+  Result<void> write_paints(const std::string& library_path, const Processing& step);
+
+  Format format_;
+  OutputFile file_;
+  std::vector<std::uint32_t> wanted_;  // library paints, in the order they were first met
+  std::unordered_set<std::uint32_t> met_;
+};
+
+}  // namespace goniochrome

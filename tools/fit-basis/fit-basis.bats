@@ -1,0 +1,77 @@
+# fit-basis from the outside: options, streams, exit statuses.
+
+setup() { cd "$BATS_TEST_TMPDIR"; }
+
+quick=(--lobes 2 --starts 1 --angles 12)
+
+@test "a basis comes out, ascending, and fit-paint takes it" {
+  run fit-basis "${quick[@]}" --mirror "$TESTDATA/paints.paints.xml" -o b.basis.xml
+  [ "$status" -eq 0 ]
+  grep -q '<basis [^>]*name="b2"' b.basis.xml
+  [ "$(grep -c '<exponent>' b.basis.xml)" -eq 2 ]
+  grep -q '<mirror/>' b.basis.xml
+  fit-paint --basis b.basis.xml "$TESTDATA/paints.paints.xml" -o fitted.paints.xml
+}
+
+@test "a range writes every set, the table and the plot" {
+  run fit-basis --lobes 1..3 --starts 1 --angles 12 --each set- --table sets.csv --plot sets.svg --report r.json \
+    "$TESTDATA/paints.paints.xml" -o b.basis.xml
+  [ "$status" -eq 0 ]
+  [ -e set-1.basis.xml ] && [ -e set-2.basis.xml ] && [ -e set-3.basis.xml ]
+  [ "$(wc -l <sets.csv)" -eq 4 ]
+  xmllint --noout sets.svg
+  jq -e '.results.sets | length == 3 and (.[0].objective >= .[1].objective) and (.[1].objective >= .[2].objective)' r.json
+}
+
+@test "reads a stream and writes a stream" {
+  run bash -c "fit-basis ${quick[*]} --quiet - <'$TESTDATA/paints.paints.xml' | xmllint --noout -"
+  [ "$status" -eq 0 ]
+}
+
+@test "the same seed gives the same basis for any number of threads" {
+  for threads in 1 2 7; do
+    fit-basis --lobes 2 --starts 4 --angles 12 --seed 9 --threads $threads --quiet "$TESTDATA/paints.paints.xml" -o $threads.xml
+  done
+  diff 1.xml 2.xml && diff 1.xml 7.xml
+}
+
+@test "both methods, both targets, both weights" {
+  for choice in "--method lm" "--method power-mean" "--target curve" "--weights plain" "--name mine"; do
+    fit-basis "${quick[@]}" $choice --quiet "$TESTDATA/paints.paints.xml" -o b.basis.xml
+  done
+  grep -q 'name="mine"' b.basis.xml
+}
+
+@test "the time limit is kept and told" {
+  run fit-basis --lobes 1..11 --time-limit 0.2 "$TESTDATA/paints.paints.xml" -o b.basis.xml
+  [ "$status" -eq 4 ]
+  [ -s b.basis.xml ]
+}
+
+@test "--explain says what is done and left out" {
+  run fit-basis "${quick[@]}" --explain "$TESTDATA/paints.paints.xml" -o b.basis.xml
+  [ "$status" -eq 0 ]
+  [[ "$output" == *"left out: gloss"* ]]
+}
+
+@test "wrong values are refused by name" {
+  for wrong in "--lobes 0" "--lobes 3..1" "--lobes x" "--lobes 25" "--starts 0" "--angles 2" "--method best" "--target lab" \
+    "--weights heavy" "--visible -1" "--seed x" "--time-limit x"; do
+    run fit-basis $wrong "$TESTDATA/paints.paints.xml" -o b.basis.xml
+    [ "$status" -eq 2 ]
+    [[ "$output" == *"${wrong%% *}"* ]]
+  done
+  [ ! -e b.basis.xml ]
+}
+
+@test "a missing file, an empty library, a full disk: exit 3 and no basis" {
+  run fit-basis "${quick[@]}" nothing.xml -o b.basis.xml
+  [ "$status" -eq 3 ]
+  echo '<paints xmlns="urn:goniochrome:paint:1" version="1"/>' >empty.xml
+  run fit-basis "${quick[@]}" empty.xml -o b.basis.xml
+  [ "$status" -eq 3 ]
+  [[ "$output" == *"no paint to choose a basis for"* ]]
+  [ ! -e b.basis.xml ]
+  run fit-basis "${quick[@]}" "$TESTDATA/paints.paints.xml" -o /dev/full
+  [ "$status" -eq 3 ]
+}

@@ -1,0 +1,29 @@
+// The options of fit-basis.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/options.h"
+
+namespace goniochrome {
+
+struct Options {
+  cli::CommonOptions common;
+  std::vector<std::string> paints;
+  std::string output = "-";
+  std::string name;
+  std::string lobes = "1..11";
+  std::string method = "power-mean";
+  std::string target = "measured";
+  std::string weights = "perceptual";
+  std::string each, table, plot;
+  int starts = 6;
+  int angles = 40;
+  double visible_de00 = 0.5;
+  bool mirror = false;
+};
+
+cli::ToolSpec tool_spec(Options& options);
+
+}  // namespace goniochrome

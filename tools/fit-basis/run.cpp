@@ -1,0 +1,183 @@
+#include "run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/file.h"
+#include "base/text.h"
+#include "fit/basis_search.h"
+#include "fit/basis_targets.h"
+#include "paint/basis.h"
+#include "paint/xml.h"
+#include "report/plot.h"
+
+namespace goniochrome {
+
+namespace {
+
+constexpr int kMostLobes = 24;
+
+struct Range {
+  int first = 1, last = 11;
+};
+
+Result<Range> lobe_range(const std::string& text) {
+  const auto dots = text.find("..");
+  const auto first = parse_integer(text.substr(0, dots));
+  const auto last = dots == std::string::npos ? first : parse_integer(text.substr(dots + 2));
+  if (!first || !last || *first < 1 || *last < *first || *last > kMostLobes)
+    return usage_error("--lobes is \"{}\": give a number from 1 to {}, or a range like 1..11", text, kMostLobes);
+  return Range{static_cast<int>(*first), static_cast<int>(*last)};
+}
+
+Result<std::vector<BasisTarget>> read_targets(const Options& options, cli::Session& session) {
+  const BasisTargetOptions target_options{
+      options.target == "curve" ? TargetCurve::Kind::kCurve : TargetCurve::Kind::kMeasured, options.angles,
+      options.weights == "perceptual"};
+  std::vector<BasisTarget> targets;
+  for (const std::string& path : options.paints.empty() ? std::vector<std::string>{"-"} : options.paints) {
+    GONIO_ASSIGN(PaintReader reader, PaintReader::open(path));
+    for (;;) {
+      GONIO_ASSIGN(const std::optional<Paint> paint, reader.next());
+      if (!paint) break;
+      auto target = basis_target(*paint, target_options);
+      if (target.ok())
+        targets.push_back(std::move(*target));
+      else
+        session.warn(fmt::format("{}:{}: left out: {}", path, reader.line(), target.error().message));
+    }
+  }
+  if (targets.empty()) return input_error("no paint to choose a basis for: give a library with at least one");
+  return targets;
+}
+
+std::string list(const std::vector<double>& exponents) {
+  std::vector<std::string> texts;
+  for (const double e : exponents) texts.push_back(fmt::format("{:.4g}", e));
+  return fmt::format("{}", fmt::join(texts, " "));
+}
+
+// dE00 of the worst paint at its worst angle, per set.
+std::vector<double> visible_errors(const BasisSearch& search, const std::vector<BasisTarget>& targets) {
+  std::vector<double> errors;
+  for (const FoundBasis& set : search.sets) {
+    double worst = 0;
+    for (const BasisTarget& target : targets) worst = std::max(worst, basis_de00(set.exponents, target));
+    errors.push_back(worst);
+  }
+  return errors;
+}
+
+// The first number of lobes from which on the worst color changes by less than
+// `visible` with every further lobe; 0 where the largest set still gains.
+int enough_lobes(const BasisSearch& search, const std::vector<double>& de00, double visible) {
+  for (std::size_t i = 0; i + 1 < de00.size(); ++i) {
+    const double best_later = *std::min_element(de00.begin() + static_cast<std::ptrdiff_t>(i), de00.end());
+    if (de00[i] - best_later < visible) return static_cast<int>(search.sets[i].exponents.size());
+  }
+  return 0;
+}
+
+std::string table_csv(const BasisSearch& search, const std::vector<double>& de00) {
+  std::string text = "lobes,max_error,mean_error,de00_max,time_s,exponents\n";
+  for (std::size_t i = 0; i < search.sets.size(); ++i) {
+    const FoundBasis& set = search.sets[i];
+    text += fmt::format("{},{},{},{},{:.4f},{}\n", set.exponents.size(), shortest(set.error.max),
+                        shortest(set.error.mean), shortest(de00[i]), set.time_s, list(set.exponents));
+  }
+  return text;
+}
+
+std::string plot_svg(const BasisSearch& search, const std::vector<double>& de00) {
+  Plot exponents{
+      .title = "Chosen exponents", .x = {.label = "exponent", .logarithmic = true}, .y = {.label = "number of lobes"}};
+  Plot errors{
+      .title = "Error of the library", .x = {.label = "number of lobes"}, .y = {.label = "error", .logarithmic = true}};
+  Series max{"largest", {}, {}, Series::Style::kLineAndPoints}, mean{"mean", {}, {}, Series::Style::kLineAndPoints},
+      color{"worst dE00", {}, {}, Series::Style::kLineAndPoints};
+  for (std::size_t i = 0; i < search.sets.size(); ++i) {
+    const FoundBasis& set = search.sets[i];
+    const double lobes = static_cast<double>(set.exponents.size());
+    exponents.series.push_back({"", set.exponents, std::vector<double>(set.exponents.size(), lobes),
+                                Series::Style::kLineAndPoints, "#0072b2"});
+    for (Series* s : {&max, &mean, &color}) s->x.push_back(lobes);
+    max.y.push_back(set.error.max), mean.y.push_back(set.error.mean), color.y.push_back(de00[i]);
+  }
+  errors.series = {max, mean, color};
+  return svg({exponents, errors}, 1);
+}
+
+Basis basis_of(const Options& options, const BasisSearch& search, const FoundBasis& found) {
+  Basis basis{options.name.empty() ? fmt::format("b{}", found.exponents.size()) : options.name,
+              found.exponents,
+              options.mirror,
+              {}};
+  for (const FoundBasis& each : search.sets)
+    basis.sets.push_back(
+        {static_cast<int>(each.exponents.size()), each.error.max, each.error.mean, each.error.objective()});
+  return basis;
+}
+
+void report(const BasisSearch& search, const std::vector<BasisTarget>& targets, const std::vector<double>& de00,
+            cli::Session& session) {
+  Json sets = Json::array();
+  for (std::size_t i = 0; i < search.sets.size(); ++i) {
+    const FoundBasis& set = search.sets[i];
+    const auto worst = std::ranges::max_element(set.error.each) - set.error.each.begin();
+    sets.push_back({{"lobes", set.exponents.size()},
+                    {"exponents", set.exponents},
+                    {"max_error", json_number(set.error.max)},
+                    {"mean_error", json_number(set.error.mean)},
+                    {"objective", json_number(set.error.objective())},
+                    {"de00_max", json_number(de00[i])},
+                    {"worst", targets[static_cast<std::size_t>(worst)].name},
+                    {"time_s", set.time_s},
+                    {"starts", set.starts},
+                    {"evaluations", set.evaluations}});
+    session.say(fmt::format("{:2} lobes: largest {:.3g}, mean {:.3g}, dE00 {:.2f}, {:.2f} s: {}", set.exponents.size(),
+                            set.error.max, set.error.mean, de00[i], set.time_s, list(set.exponents)));
+  }
+  session.results()["sets"] = sets;
+  session.results()["paints"] = targets.size();
+}
+
+}  // namespace
+
+Result<cli::Verdict> run(const Options& options, cli::Session& session) {
+  GONIO_ASSIGN(const Range range, lobe_range(options.lobes));
+  GONIO_ASSIGN(const std::vector<BasisTarget> targets, read_targets(options, session));
+  BasisSearchOptions search_options;
+  search_options.method = options.method == "lm" ? BasisMethod::kLevenbergMarquardt : BasisMethod::kPowerMean;
+  search_options.first = range.first, search_options.last = range.last;
+  search_options.starts = options.starts;
+  search_options.seed = options.common.seed;
+  search_options.time_limit_s = options.common.time_limit_s;
+  session.explain(
+      fmt::format("{} paints at {} angles; {} starts for each of {} to {} "
+                  "lobes, method {}\n"
+                  "left out: gloss and the mirror, which no aspecular reading "
+                  "sees; directions out of plane\n",
+                  targets.size(), options.angles, options.starts, range.first, range.last, options.method));
+
+  const BasisSearch search = search_basis(targets, search_options);
+  const std::vector<double> de00 = visible_errors(search, targets);
+  report(search, targets, de00, session);
+  const int enough = enough_lobes(search, de00, options.visible_de00);
+  session.results()["enough_lobes"] = enough ? Json(enough) : Json(nullptr);
+  if (search.sets.size() > 1)
+    session.say(
+        enough ? fmt::format("fit-basis: beyond {} lobes no paint changes by dE00 {}", enough, options.visible_de00)
+               : fmt::format("fit-basis: the last lobe is still worth dE00 {} or more", options.visible_de00));
+
+  if (!options.table.empty()) GONIO_TRY(write_file(options.table, table_csv(search, de00)));
+  if (!options.plot.empty()) GONIO_TRY(write_file(options.plot, plot_svg(search, de00)));
+  if (!options.each.empty())
+    for (const FoundBasis& set : search.sets)
+      GONIO_TRY(write_basis(fmt::format("{}{}.basis.xml", options.each, set.exponents.size()),
+                            basis_of(options, search, set)));
+  GONIO_TRY(write_basis(options.output, basis_of(options, search, search.sets.back())));
+  return search.stopped ? cli::Verdict::kStopped : cli::Verdict::kDone;
+}
+
+}  // namespace goniochrome

@@ -1,0 +1,12 @@
+// What fit-basis does.
+#pragma once
+
+#include "base/result.h"
+#include "cli/tool.h"
+#include "options.h"
+
+namespace goniochrome {
+
+Result<cli::Verdict> run(const Options& options, cli::Session& session);
+
+}  // namespace goniochrome

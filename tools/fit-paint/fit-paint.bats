@@ -1,0 +1,172 @@
+# fit-paint from the outside: options, streams, exit statuses.
+
+bats_require_minimum_version 1.5.0
+
+setup() {
+  cd "$BATS_TEST_TMPDIR" || exit 1
+  basis=$TESTDATA/b7.basis.xml
+  paints=$TESTDATA/paints.paints.xml
+  head='<?xml version="1.0"?><paints xmlns="urn:goniochrome:paint:1" version="1">'
+  row='<lab geometry="45as15" L="60" a="5" b="-20"/><lab geometry="45as45" L="30" a="8" b="-25"/><lab geometry="45as110" L="12" a="9" b="-20"/>'
+  one="<paint name=\"one\"><measurement illuminant=\"D65\" observer=\"10\">$row</measurement></paint>"
+}
+
+# number KEY: the first number of that key in the report.
+number() { grep -m1 "\"$1\"" r.json | sed -E 's/.*: ([-0-9.e+]+),?$/\1/'; }
+
+@test "every sample paint is fitted, and the summary says how well" {
+  run --separate-stderr fit-paint --basis "$basis" "$paints" -o out.xml --report r.json
+  [ "$status" -eq 0 ]
+  [ -z "$output" ]
+  [[ "$stderr" =~ ^"fit-paint: "[0-9]+" paints by l1, dE00 mean "[0-9.]+", worst "[0-9.]+" ("[a-z0-9_]+" at 45as" ]]
+  count=$(grep -c '<paint ' "$paints")
+  [ "$(grep -c '<lobes ' out.xml)" -eq "$count" ]
+  [ "$(grep -c '"status": "optimal"' r.json)" -eq "$count" ]
+  grep -q '"de00_by_geometry"' r.json
+  [ "$(number failed)" = 0 ]
+}
+
+@test "names, order and readings pass unchanged" {
+  fit-paint -q -b "$basis" "$paints" -o out.xml
+  diff <(grep -o '<paint name="[^"]*"' "$paints") <(grep -o '<paint name="[^"]*"' out.xml)
+  diff <(grep -o '<lab [^>]*>' "$paints") <(grep -o '<lab [^>]*>' out.xml)
+}
+
+@test "standard input to standard output, the report to a file" {
+  run --separate-stderr bash -c "echo '$head$one</paints>' | fit-paint -b '$basis' --report r.json"
+  [ "$status" -eq 0 ]
+  [[ "$output" =~ '<lobes space="lin_rec2020_scene" basis="b7" method="l1"' ]]
+  [ "$(number active_lobes)" -ge 1 ]
+}
+
+@test "its own output can be fitted again, with both steps in the history" {
+  echo "$head$one</paints>" | fit-paint -q -b "$basis" | fit-paint -q -b "$TESTDATA/b5.basis.xml" --method l2 -o out.xml
+  [ "$(grep -c '<processing ' out.xml)" -eq 2 ]
+  [ "$(grep -c '<lobes ' out.xml)" -eq 1 ]
+  grep -q 'basis="b5" method="l2"' out.xml
+}
+
+@test "elements it does not know stay" {
+  foreign='<shelf:mark xmlns:shelf="urn:example:shelf" row="7"/>'
+  echo "$head${one/<\/paint>/$foreign</paint>}</paints>" | fit-paint -q -b "$basis" -o out.xml
+  grep -q 'row="7"' out.xml
+}
+
+@test "several inputs follow each other" {
+  echo "$head$one</paints>" >a.xml
+  echo "$head${one/\"one\"/\"two\"}</paints>" >b.xml
+  fit-paint -q -b "$basis" b.xml a.xml -o out.xml
+  [ "$(grep -o '<paint name="[^"]*"' out.xml | tr -d '\n')" = '<paint name="two"<paint name="one"' ]
+  run fit-paint -q -b "$basis" a.xml b.xml a.xml -o again.xml
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ "a.xml:1: paint \"one\" is already in a.xml" ]]
+  [ ! -e again.xml ]
+}
+
+@test "--method l2 and l1 differ, and each reports its proof" {
+  for method in l1 l2; do
+    fit-paint -q -b "$basis" --method $method "$paints" -o $method.xml --report r.json
+    grep -q "\"method\": \"$method\"" r.json
+    awk -F': ' '/optimality_gap/ { if ($2 + 0 > 1e-9) exit 1 }' r.json
+  done
+  ! diff -q l1.xml l2.xml
+}
+
+@test "--target curve is a poorer target than the readings" {
+  echo "$head<paint name=\"m\"><measurement illuminant=\"D65\" observer=\"10\"><lab geometry=\"45as15\" L=\"78\" a=\"-2\" b=\"-38\"/><lab geometry=\"45as25\" L=\"60\" a=\"0\" b=\"-42\"/><lab geometry=\"45as45\" L=\"34\" a=\"6\" b=\"-40\"/><lab geometry=\"45as75\" L=\"17\" a=\"11\" b=\"-33\"/><lab geometry=\"45as110\" L=\"11\" a=\"12\" b=\"-28\"/></measurement></paint></paints>" >m.xml
+  fit-paint -q -b "$basis" --target measured m.xml -o /dev/null --report r.json
+  measured=$(number de00_mean)
+  fit-paint -q -b "$basis" --target curve m.xml -o /dev/null --report r.json
+  awk -v m="$measured" -v c="$(number de00_mean)" 'BEGIN { exit !(c > m) }'
+}
+
+@test "--weights plain lowers the plain error" {
+  fit-paint -q -b "$basis" --weights perceptual "$paints" -o /dev/null --report r.json
+  perceptual=$(number plain_objective)
+  fit-paint -q -b "$basis" --weights plain "$paints" -o /dev/null --report r.json
+  awk -v a="$perceptual" -v b="$(number plain_objective)" 'BEGIN { exit !(b <= a * (1 + 1e-9)) }'
+}
+
+@test "--gloss gives a coat to paints that state no gloss" {
+  echo "$head$one</paints>" >one.xml
+  fit-paint -q -b "$basis" one.xml -o matt.xml
+  ! grep -q 'exponent="mirror"' matt.xml
+  fit-paint -q -b "$basis" --gloss 92 one.xml -o coat.xml --report r.json
+  grep -q 'exponent="mirror"' coat.xml
+  grep -q '"stated_gu": 92' r.json
+}
+
+@test "--explain tells the plan and what is left out" {
+  run --separate-stderr fit-paint -b "$basis" --explain "$paints" -o /dev/null
+  [ "$status" -eq 0 ]
+  [[ "$stderr" =~ "no reading sees them: 250 900 3000" ]]
+}
+
+@test "any number of threads writes the same bytes" {
+  for n in 1 2 7; do
+    fit-paint -q -b "$basis" --threads $n "$paints" -o t$n.xml
+    sed -i 's/--threads [0-9]*//; s/t[0-9].xml//' t$n.xml
+  done
+  cmp t1.xml t2.xml
+  cmp t1.xml t7.xml
+}
+
+@test "a paint that cannot be fitted passes, is named, and the exit status is 1" {
+  echo "$head<paint name=\"bare\"/>$one</paints>" >mixed.xml
+  run --separate-stderr fit-paint -b "$basis" mixed.xml -o out.xml --report r.json
+  [ "$status" -eq 1 ]
+  [[ "$stderr" =~ "mixed.xml:1: paint \"bare\" is passed on unfitted" ]]
+  grep -q '<paint name="bare"' out.xml
+  [ "$(grep -c '<lobes ' out.xml)" -eq 1 ]
+  grep -q '"status": "failed"' r.json
+}
+
+@test "a missing basis is a usage error, an absent one is bad input" {
+  run fit-paint "$paints"
+  [ "$status" -eq 2 ]
+  [[ "$output" =~ "--basis" ]]
+  run fit-paint --basis absent.basis.xml "$paints"
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ "absent.basis.xml" ]]
+  run fit-paint --basis "$paints" "$paints"
+  [ "$status" -eq 3 ]
+}
+
+@test "wrong words for each option are usage errors that name what is right" {
+  for wrong in "--method l3" "--target guess" "--weights heavy" "--gloss much" "--gloss -1" "--gloss 2000" "--threads x"; do
+    # shellcheck disable=SC2086
+    run fit-paint -b "$basis" $wrong "$paints" -o out.xml
+    [ "$status" -eq 2 ]
+    [[ "$output" =~ ${wrong%% *} ]]
+    [ ! -e out.xml ]
+  done
+  run fit-paint -b "$basis" --methd l1 "$paints"
+  [ "$status" -eq 2 ]
+  [[ "$output" =~ "--method" ]]
+}
+
+@test "bad paints are named by file and line, and no output appears" {
+  printf '%s\n%s\n' "$head" "${one/L=\"60\"/L=\"6,0\"}</paints>" >bad.xml
+  run fit-paint -b "$basis" bad.xml -o out.xml
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ "bad.xml:2" ]]
+  [ ! -e out.xml ]
+  echo "$head$one" >cut.xml
+  run fit-paint -b "$basis" cut.xml -o out.xml
+  [ "$status" -eq 3 ]
+  [ ! -e out.xml ]
+  run fit-paint -b "$basis" absent.paints.xml -o out.xml
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ "absent.paints.xml" ]]
+}
+
+@test "an output that cannot be written is exit 3" {
+  run fit-paint -q -b "$basis" "$paints" -o no/such/folder/out.xml
+  [ "$status" -eq 3 ]
+}
+
+@test "a closed pipe ends quietly" {
+  { echo "$head"; for i in $(seq 3000); do echo "${one/\"one\"/\"p$i\"}"; done; echo '</paints>'; } >many.xml
+  fit-paint -b "$basis" many.xml 2>err | head -n 3 >/dev/null
+  [ ! -s err ]
+}

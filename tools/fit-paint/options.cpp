@@ -1,0 +1,104 @@
+#include "options.h"
+
+namespace goniochrome {
+
+cli::ToolSpec tool_spec(Options& o) {
+  cli::ToolSpec spec{
+      .name = "fit-paint",
+      .summary = "fit paints to a basis of cosine lobes",
+      .description =
+          {"Reads paints, fits each to the exponents of the basis, and writes it on with its lobes element: a constant "
+           "and one non-negative weight per lobe and working-space channel, such that the color at the measured "
+           "aspecular angles comes out as close as the basis allows. Everything else in the paint passes unchanged; "
+           "lobes that were there are replaced. Paints are written in the order they came, as soon as they are done, "
+           "in constant memory.",
+           "The weights of l1 and l2 are the optimum of their norm, not an approximation, and the report holds the "
+           "proof: "
+           "the duality gap (l1) or the optimality residual (l2). deltae goes on from both to the nearest least color "
+           "difference, and reports how far from stationary it ended. Compare paints by the color their lobes predict, "
+           "never "
+           "by the weights themselves: a tenth of a percent of noise moves weights by tens of percent while the color "
+           "stays.",
+           "Readings within 10 deg of the mirror direction hold glare and are left out. Lobes too sharp to be seen by "
+           "any reading get no flake weight. Below the first reading the flake highlight goes on rising at the rate "
+           "it had there, which is the least that any sum of lobes can do. Gloss readings (20, 60, 85 deg) set the "
+           "gloss lobes and the mirror through a simulated gloss meter; what they cannot meet is told in the report.",
+           "A paint that cannot be fitted (no reading, no appearance) is named, passes unchanged, and the exit status "
+           "is 1."},
+      .options =
+          {{.name = "basis",
+            .letter = 'b',
+            .value = "FILE",
+            .help = "the basis of exponents to fit to",
+            .target = &o.basis,
+            .required = true},
+           {.name = "output",
+            .letter = 'o',
+            .value = "FILE",
+            .help = "where the paints go, - is standard output",
+            .target = &o.output},
+           {.name = "method",
+            .letter = 'm',
+            .value = "METHOD",
+            .help = "least absolute deviations (l1), least squares (l2), or least color difference at the readings "
+                    "(deltae, slower)",
+            .target = &o.method,
+            .choices = {"l1", "l2", "deltae"}},
+           {.name = "target",
+            .letter = 't',
+            .value = "TARGET",
+            .help = "fit the readings with a monotone curve between them (measured), or the quadratic curve of face, "
+                    "flop and travel (curve)",
+            .target = &o.target,
+            .choices = {"measured", "curve"}},
+           {.name = "weights",
+            .letter = 'w',
+            .value = "WEIGHTS",
+            .help = "weigh errors by their effect on lightness, so that a dark flop counts (perceptual), or all alike "
+                    "(plain)",
+            .target = &o.weights,
+            .choices = {"perceptual", "plain"}},
+           {.name = "gloss",
+            .letter = 'g',
+            .value = "GU",
+            .help = "gloss at 60 deg to assume for paints that state none; 0 leaves them matt",
+            .target = &o.gloss,
+            .low = 0,
+            .high = 100}},
+      .inputs =
+          cli::Positional{
+              .value = "PAINTS", .help = "paint XML files, - is standard input", .target = &o.paints, .low = 0},
+      .examples =
+          {{"fit-paint --basis testdata/b7.basis.xml testdata/paints.paints.xml -o fitted.paints.xml",
+            "fits every sample paint and prints the worst"},
+           {"paint-convert testdata/paints.csv -o - | fit-paint -b testdata/b7.basis.xml --gloss 90 -o car.paints.xml",
+            "fits measurements from a CSV table, with the gloss of a clear coat"},
+           {"fit-paint -b testdata/b5.basis.xml --method l2 --report fit.json testdata/paints.paints.xml -o /dev/null",
+            "keeps only the report: the color difference at each geometry of each paint"}},
+      .report = {{"paints[].name", "name of the paint"},
+                 {"paints[].method", "l1, l2 or deltae"},
+                 {"paints[].status",
+                  "optimal; not_converged: a solver gave up, the best weights found; failed: passed on unfitted"},
+                 {"paints[].time_us", "time of the fit, without XML"},
+                 {"paints[].objective", "weighted norm of the error over rows and channels, in L* if perceptual"},
+                 {"paints[].plain_objective", "the same norm without weights, in reflectance factor"},
+                 {"paints[].optimality_gap", "proven distance from the optimum, relative to the target's norm"},
+                 {"paints[].active_lobes", "lobes with any weight, the mirror included"},
+                 {"paints[].unseen_exponents", "lobes that no reading sees; flake weight 0"},
+                 {"paints[].de00_max", "largest CIEDE2000 difference at the readings"},
+                 {"paints[].de00_mean", "mean CIEDE2000 difference at the readings"},
+                 {"paints[].de00_by_geometry", "the difference at each geometry"},
+                 {"paints[].gamut_de00", "color lost because the working space has no negative channels"},
+                 {"paints[].glare_rows", "readings left out for being within 10 deg of specular"},
+                 {"paints[].gloss[]", "angle_deg, stated_gu and misfit_gu (simulated minus stated)"},
+                 {"paints[].message", "why a paint failed"},
+                 {"fits_per_s", "fits a second, without reading and writing"},
+                 {"fitted", "paints that got lobes"},
+                 {"failed", "paints passed on unfitted"},
+                 {"warnings[]", "the first messages about failed paints"}},
+      .see_also = {"paint-convert(1)", "render-osmesa(1)", "goniochrome-paint(5)", "goniochrome-theory(7)"}};
+  cli::add_common_options(spec, o.common, {cli::Common::kExplain});
+  return spec;
+}
+
+}  // namespace goniochrome

@@ -1,0 +1,178 @@
+# paint-convert and the formats of others: CxF3, CGATS, measured BRDFs. Real data only where GONIOCHROME_DATA is set.
+
+setup() {
+  cd "$BATS_TEST_TMPDIR" || exit 1
+  bats_require_minimum_version 1.5.0
+  export SOURCE_DATE_EPOCH=1700000000
+  header=sample,geometry,illuminant,observer,L,a,b,class,code,instrument,gloss20,gloss60,gloss85
+  cat >paints.csv <<END
+$header
+"blue ""night"" & <7>",45as15,A,2,41.870000000000005,-45.99,-21.733333333333334,metallic,B-7,MA-T12,,92.1,
+"blue ""night"" & <7>",45as-15,A,2,130.5,1e-17,-0.1,metallic,B-7,MA-T12,,92.1,
+"blue ""night"" & <7>",45as25az-76,A,2,0,0,0.1,metallic,B-7,MA-T12,,92.1,
+plain,45as15,D65,10,1,2,3,unknown,,,,,
+plain,r45as-15,D65,10,4,5,6,unknown,,,,,
+END
+  head='CGATS.17\nWEIGHTING_FUNCTION "ILLUMINANT, D65"\nWEIGHTING_FUNCTION "OBSERVER, 10 degree"\n'
+}
+
+real_data() { [ -n "${GONIOCHROME_DATA:-}" ] || skip "GONIOCHROME_DATA is not set"; }
+
+# brdf N: a spectral measurement of a gray sample with reflectance factor 0.5, at N incidences.
+brdf() {
+  awk -v n="$1" 'BEGIN {
+    print "# gray\n2\n380 780"
+    for (i = 1; i <= n; ++i) for (o = 0; o <= 7; ++o) for (p = 0; p <= 4; ++p)
+      printf "%.6f 0 %.6f %.6f 0.1591549431 0.1591549431\n", i * 1.4 / n, o * 0.2, p * 0.785398
+  }'
+}
+
+@test "XML, table, CxF and CGATS in a circle: every Lab, name, gloss and observer as before" {
+  paint-convert -q paints.csv -o 1.xml
+  paint-convert -q 1.xml --to csv --columns all -o 2.csv
+  cmp paints.csv 2.csv
+  paint-convert -q 2.csv -o 3.cxf
+  paint-convert -q 3.cxf -o 4.cgats
+  paint-convert -q 4.cgats -o 5.xml
+  diff <(grep -v '<processing' 1.xml) <(grep -v '<processing' 5.xml)
+  paint-convert -q 5.xml --cxf-compat -o 6.cxf
+  [ "$(grep -c '<cc:Object ' 6.cxf)" -eq 5 ]
+  paint-convert -q 6.cxf --to csv --columns all | cmp - paints.csv
+}
+
+@test "the sample library through CxF and CGATS" {
+  paint-convert -q "$TESTDATA/paints.csv" --to cxf | paint-convert -q --to cgats | paint-convert -q --to csv | cmp - "$TESTDATA/paints.csv"
+}
+
+@test "CxF is the same each time with SOURCE_DATE_EPOCH" {
+  paint-convert -q paints.csv --to cxf >a.cxf
+  paint-convert -q paints.csv --to cxf >b.cxf
+  cmp a.cxf b.cxf
+  grep -q '<cc:CreationDate>2023-11-14T22:13:20Z</cc:CreationDate>' a.cxf
+}
+
+@test "CGATS of another program: names with spaces, decimal commas, what it leaves open" {
+  printf 'ECI2002\nBEGIN_DATA_FORMAT\nSampleID\tSAMPLE_NAME\tLAB_L\tLAB_A\tLAB_B\nEND_DATA_FORMAT\nBEGIN_DATA\n1\tPaper white\t95,5\t-0.2\t1.5\nEND_DATA\n' >other.txt
+  run --separate-stderr paint-convert other.txt --to csv
+  [ "$status" -eq 0 ]
+  [ "${lines[1]}" = "Paper white,45as45,D50,2,95.5,-0.2,1.5" ]
+  [[ "$stderr" == *"decimal commas were read as points (line 6)"* ]]
+  [[ "$stderr" == *"taken as D50/2"* && "$stderr" == *"taken as 45/0"* ]]
+  run --separate-stderr paint-convert -q other.txt --to csv --illuminant D65 --observer 10
+  [ "${lines[1]}" = "Paper white,45as45,D65,10,95.5,-0.2,1.5" ]
+}
+
+@test "bad CGATS: line and cell are named; --keep-going keeps the good rows" {
+  printf "${head}BEGIN_DATA_FORMAT\nSAMPLE_NAME GEOMETRY LAB_L LAB_A LAB_B\nEND_DATA_FORMAT\nBEGIN_DATA\np 15 1 2 x\nq 15 4 5 6\nEND_DATA\n" >bad.cgats
+  run --separate-stderr paint-convert bad.cgats -o out.xml
+  [ "$status" -eq 3 ]
+  [ "$stderr" = 'paint-convert: bad.cgats:8: LAB_B is "x": write a number' ]
+  [ ! -e out.xml ]
+  run --separate-stderr paint-convert -k bad.cgats --to csv
+  [ "$status" -eq 1 ]
+  [ "${lines[1]}" = "q,45as15,D65,10,4,5,6" ]
+  [[ "$stderr" == *'bad.cgats:8: LAB_B is "x"'*"1 left out"* ]]
+}
+
+@test "hostile CxF is refused" {
+  paint-convert -q paints.csv --to cxf >good.cxf
+  sed '1a <!DOCTYPE x [<!ENTITY a "aaaa"><!ENTITY b "&a;&a;&a;&a;">]>' good.cxf >bomb.cxf
+  run --separate-stderr paint-convert bomb.cxf
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *"bomb.cxf:2: <!DOCTYPE is not accepted"* ]]
+  head -c 1500 good.cxf >cut.cxf
+  run --separate-stderr paint-convert cut.cxf -o out.xml
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *"cut off"* ]]
+  [ ! -e out.xml ]
+  sed 's/<cc:L>1</<cc:L>1,5</' good.cxf >comma.cxf
+  run --separate-stderr paint-convert comma.cxf
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *'L is "1,5": write a number with a decimal point'* ]]
+}
+
+@test "what the formats cannot hold" {
+  printf '%s\n' sample,geometry,illuminant,observer,L,a,b dark,45as110,D65,10,-0.5,0,0 >dark.csv
+  run --separate-stderr paint-convert dark.csv --to cxf -o dark.cxf
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *'paint "dark" at 45as110: L* is -0.5: CxF3 allows none below 0'* ]]
+  [ ! -e dark.cxf ]
+  run --separate-stderr paint-convert paints.csv --cxf-compat --to csv
+  [ "$status" -eq 2 ]
+  [[ "$stderr" == *"--cxf-compat is for CxF, and the output is long table: give --to cxf"* ]]
+  run --separate-stderr paint-convert paints.csv --to cgats --illuminant A
+  [ "$status" -eq 0 ]
+  [[ "$stderr" == *"paints.csv: --illuminant and --observer do nothing to a long table"* ]]
+}
+
+@test "a measured BRDF becomes a paint under the illuminant and observer asked for" {
+  brdf 7 >gray.brdf
+  run --separate-stderr paint-convert gray.brdf --to csv --report r.json
+  [ "$status" -eq 0 ]
+  [ "${#lines[@]}" -eq 6 ]
+  [[ "${lines[1]}" =~ ^gray,45as15,D65,10,76\.0692 ]]
+  grep -q '"format": "cornell"' r.json
+  grep -q '"gap_deg": [1-9]' r.json
+  run --separate-stderr paint-convert -q gray.brdf --to csv --geometry 20,45as25az90 --illuminant A --observer 2 --aperture 2
+  [[ "${lines[1]}" =~ ^gray,45as20,A,2,76\.0692 ]]
+  [[ "${lines[2]}" =~ ^gray,45as25az90,A,2,76\.0692 ]]
+  # From standard input the format must be named.
+  run --separate-stderr bash -c 'paint-convert -q --from measured --to csv <gray.brdf'
+  [[ "${lines[1]}" =~ ^measured,45as15 ]]
+}
+
+@test "measured BRDFs that are none, or asked for the impossible" {
+  brdf 7 | sed 's/^0.6[0-9]* 0/0.6/' >short.brdf
+  run --separate-stderr paint-convert short.brdf
+  [ "$status" -eq 3 ]
+  [[ "$stderr" =~ short.brdf:[0-9]+:\ 5\ numbers\ where\ 4\ angles\ and\ 2\ wavelengths\ make\ 6 ]]
+  brdf 7 >gray.brdf
+  run --separate-stderr paint-convert gray.brdf --illuminant F11
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *'gray.brdf: illuminant is "F11": spectra are integrated under D65, D50 or A' ]]
+  for option in --illuminant --observer --aperture; do
+    run --separate-stderr paint-convert gray.brdf $option
+    [ "$status" -eq 2 ]
+  done
+  run --separate-stderr paint-convert gray.brdf --observer 4
+  [ "$status" -eq 2 ]
+  run --separate-stderr paint-convert gray.brdf --aperture 30
+  [ "$status" -eq 2 ]
+}
+
+@test "cayman metallic against the published table" {
+  real_data
+  run --separate-stderr paint-convert "$GONIOCHROME_DATA/brdf/cornell/cayman.brdf" --to csv --observer 2 \
+    --geometry 45as15,45as25,45as45,45as75,45as110
+  [ "$status" -eq 0 ]
+  [[ "$stderr" == *"interpolated between samples far apart: 45as75 across 43 deg"* ]]
+  paste -d, <(tail -n +2 <<<"$output") <(grep cayman "$GONIOCHROME_DATA/lab/measured-multiangle.csv") |
+    awk -F, '{ d = sqrt(($5-$12)^2 + ($6-$13)^2 + ($7-$14)^2); n += d <= 1.5 } END { exit n != 5 }'
+}
+
+@test "the NVIDIA files tell their negatives, reciprocity and noise" {
+  real_data
+  for paint in carpaint_blue carpaint_red; do
+    run --separate-stderr paint-convert "$GONIOCHROME_DATA/brdf/nvidia/$paint.mbsdf" --to csv --report $paint.json
+    [ "$status" -eq 0 ]
+    [[ "$stderr" == *"% of the samples are negative"*"light and viewer swapped"*"darker than the noise"* ]]
+    grep -q '"noise_floor": 0.0[1-9]' $paint.json
+  done
+  run --separate-stderr paint-convert "$GONIOCHROME_DATA/brdf/nvidia/carpaint_red.mbsdf" --observer 10 -o out.xml
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *"D65/10 would need spectra"* ]]
+}
+
+@test "our CxF is valid, and the published samples are read" {
+  real_data
+  for option in "" --cxf-compat; do
+    paint-convert -q paints.csv $option -o ours.cxf
+    if command -v xmllint >/dev/null; then xmllint --noout --schema "$GONIOCHROME_DATA/cxf/CxF3_Core.xsd" ours.cxf; fi
+  done
+  for sample in "$GONIOCHROME_DATA"/cxf/*.cxf; do
+    run --separate-stderr paint-convert "$sample" --to csv
+    [ "$status" -eq 0 ]
+  done
+  run --separate-stderr paint-convert -q "$GONIOCHROME_DATA/cxf/geometry_edge_cases.cxf" --to csv
+  [ "$(tail -n +2 <<<"$output" | cut -d, -f2 | tr '\n' ' ')" = "45as15 45as25 45as45 45as15az30 45as25az60 " ]
+}

@@ -1,0 +1,180 @@
+#include "foreign_formats.h"
+
+#include <filesystem>
+
+#include "base/text.h"
+#include "brdf/measured.h"
+#include "paint/cgats.h"
+#include "paint/curve.h"
+#include "paint/cxf.h"
+
+namespace goniochrome {
+
+namespace {
+
+using SourcePointer = std::unique_ptr<PaintSource>;
+using SinkPointer = std::unique_ptr<PaintSink>;
+
+// A format that is read as a whole, at the first call of next(): paints, and what was left out.
+class ImportedSource : public PaintSource {
+ public:
+  using Read = Result<ImportedPaints> (*)(InputFile input, const ImportOptions& options);
+  ImportedSource(InputFile input, const ImportOptions& options, Read read, std::string format)
+      : name_(input.name()), format_(std::move(format)), options_(options), read_(read), input_(std::move(input)) {}
+
+  Result<std::optional<Paint>> next() override {
+    if (input_) {
+      InputFile input = std::move(*input_);
+      input_.reset();
+      GONIO_ASSIGN(imported_, read_(std::move(input), options_));
+    }
+    if (skipped_ < imported_.skipped.size()) return input_error("{}", imported_.skipped[skipped_++]);
+    if (given_ == imported_.paints.size()) return std::optional<Paint>();
+    return std::optional(std::move(imported_.paints[given_++]));
+  }
+  std::string place() const override { return name_; }
+  std::string format() const override { return format_; }
+  std::vector<std::string> closing_warnings() const override {
+    std::vector<std::string> lines;
+    for (const std::string& warning : imported_.warnings) lines.push_back(fmt::format("{}: {}", name_, warning));
+    return lines;
+  }
+  bool takes_condition() const override { return true; }
+
+ private:
+  std::string name_, format_;
+  ImportOptions options_;
+  Read read_;
+  std::optional<InputFile> input_;
+  ImportedPaints imported_;
+  std::size_t skipped_ = 0, given_ = 0;
+};
+
+Json as_json(const std::string& name, const MeasuredTraits& traits, const MeasuredChecks& told,
+             const MeasuredColor& color) {
+  Json json = {{"name", name},
+               {"format", traits.format},
+               {"description", traits.description},
+               {"illuminant", color.condition.illuminant},
+               {"observer", color.condition.observer_deg},
+               {"samples", traits.samples},
+               {"negative_share", told.negative_share},
+               {"zero_share", told.zero_share},
+               {"reciprocity_error", told.reciprocity_error},
+               {"reciprocity_if_f_cos", told.reciprocity_if_f_cos},
+               {"values", told.values},
+               {"noise_floor", told.noise_floor},
+               {"albedo_45", told.albedo_45},
+               {"held_share", color.held_share},
+               {"geometries", Json::array()}};
+  for (const MeasuredReading& reading : color.readings)
+    json["geometries"].push_back({{"geometry", geometry_name(reading.geometry)},
+                                  {"gap_deg", reading.gap_deg},
+                                  {"outside_deg", reading.outside_deg},
+                                  {"negative", reading.negative},
+                                  {"below_noise", reading.noise}});
+  return json;
+}
+
+// The readings to be wary of, one line for each reason.
+std::vector<std::string> cautions(const MeasuredColor& color) {
+  constexpr double kWideGap_deg = 15;
+  std::string gaps, outside, negative, noise, unmeasured;
+  const auto append = [](std::string& list, const std::string& item) { list += (list.empty() ? "" : ", ") + item; };
+  for (const MeasuredReading& reading : color.readings) {
+    const std::string name = geometry_name(reading.geometry);
+    if (reading.outside_deg > 0)
+      append(outside, fmt::format("{} by {:.0f} deg", name, reading.outside_deg));
+    else if (reading.gap_deg > kWideGap_deg)
+      append(gaps, fmt::format("{} across {:.0f} deg", name, reading.gap_deg));
+    if (reading.negative) append(negative, name);
+    if (reading.noise) append(noise, name);
+  }
+  for (const Geometry& geometry : color.unmeasured) append(unmeasured, geometry_name(geometry));
+  std::vector<std::string> lines;
+  if (!gaps.empty()) lines.push_back("interpolated between samples far apart: " + gaps);
+  if (!outside.empty()) lines.push_back("beyond the measured directions, the nearest sample was taken: " + outside);
+  if (!negative.empty()) lines.push_back("a channel is negative and was taken as 0: " + negative);
+  if (!noise.empty()) lines.push_back("darker than the noise of the data: " + noise);
+  if (!unmeasured.empty()) lines.push_back("the file has no value, the row is left out: " + unmeasured);
+  return lines;
+}
+
+// A measured BRDF is one paint, named for its file.
+class MeasuredSource : public PaintSource {
+ public:
+  MeasuredSource(InputFile input, const SourceSetup& setup)
+      : name_(input.name()), setup_(setup), input_(std::move(input)) {}
+
+  Result<std::optional<Paint>> next() override {
+    if (!input_) return std::optional<Paint>();
+    InputFile input = std::move(*input_);
+    input_.reset();
+    constexpr std::size_t kLargestFile = std::size_t{1} << 30;
+    GONIO_ASSIGN(const std::string bytes, whole_content(input, kLargestFile));
+    GONIO_ASSIGN(const auto brdf, read_measured(name_, bytes));
+    const bool is_rgb = brdf->traits().wavelengths_nm.empty();
+    const MeasuredChecks told = checks(*brdf);
+    MeasuredColorOptions options{setup_.geometries, {}, setup_.aperture_deg, told.noise_floor};
+    if (is_rgb) options.condition.observer_deg = 2;
+    if (!setup_.import.illuminant.empty()) options.condition.illuminant = setup_.import.illuminant;
+    if (setup_.import.observer_deg) options.condition.observer_deg = setup_.import.observer_deg;
+    if (options.geometries.empty())
+      for (const LabReading& row : rows_of({})) options.geometries.push_back(row.geometry);
+    const auto color = measured_color(*brdf, options);
+    if (!color.ok()) return input_error("{}: {}", name_, color.error().message);
+
+    for (const std::string& warning : told.warnings) tell(warning);
+    for (const std::string& caution : cautions(*color)) tell(caution);
+    if (is_rgb && setup_.import.observer_deg == 0)
+      tell("its RGB is what the 2 deg observer sees under D65: Lab is D65/2");
+    Paint paint;
+    paint.name = name_ == "standard input" ? "measured" : std::filesystem::path(name_).stem().string();
+    paint.measurement = Measurement{color->condition, "", {}};
+    for (const MeasuredReading& reading : color->readings)
+      paint.measurement->rows.push_back({reading.geometry, reading.lab});
+    figures_ = as_json(paint.name, brdf->traits(), told, *color);
+    return std::optional(std::move(paint));
+  }
+  std::string place() const override { return name_; }
+  std::string format() const override { return "measured BRDF"; }
+  std::vector<std::string> closing_warnings() const override { return warnings_; }
+  Json figures() const override { return figures_; }
+  bool takes_condition() const override { return true; }
+
+ private:
+  void tell(const std::string& what) { warnings_.push_back(fmt::format("{}: {}", name_, what)); }
+
+  std::string name_;
+  SourceSetup setup_;
+  std::optional<InputFile> input_;
+  std::vector<std::string> warnings_;
+  Json figures_;
+};
+
+}  // namespace
+
+Result<SourcePointer> open_cxf(InputFile input, const SourceSetup& setup) {
+  return SourcePointer(std::make_unique<ImportedSource>(std::move(input), setup.import, read_cxf, "CxF3"));
+}
+
+Result<SourcePointer> open_cgats(InputFile input, const SourceSetup& setup) {
+  return SourcePointer(std::make_unique<ImportedSource>(std::move(input), setup.import, read_cgats, "CGATS text"));
+}
+
+Result<SourcePointer> open_measured(InputFile input, const SourceSetup& setup) {
+  return SourcePointer(std::make_unique<MeasuredSource>(std::move(input), setup));
+}
+
+Result<SinkPointer> begin_cxf(OutputFile file, const SinkSetup& setup) {
+  GONIO_ASSIGN(CxfWriter writer,
+               CxfWriter::begin(std::move(file), {setup.creator, setup.command, setup.created, setup.cxf_compat}));
+  return SinkPointer(std::make_unique<SinkOf<CxfWriter>>(std::move(writer)));
+}
+
+Result<SinkPointer> begin_cgats(OutputFile file, const SinkSetup& setup) {
+  GONIO_ASSIGN(CgatsWriter writer, CgatsWriter::begin(std::move(file), setup.creator, setup.created.substr(0, 10)));
+  return SinkPointer(std::make_unique<SinkOf<CgatsWriter>>(std::move(writer)));
+}
+
+}  // namespace goniochrome

@@ -1,0 +1,160 @@
+#include "formats.h"
+
+#include <algorithm>
+#include <array>
+
+#include "base/text.h"
+#include "brdf/measured.h"
+#include "foreign_formats.h"
+#include "paint/cgats.h"
+#include "paint/cxf.h"
+
+namespace goniochrome {
+
+namespace {
+
+class XmlSource : public PaintSource {
+ public:
+  explicit XmlSource(InputFile input) : name_(input.name()), reader_(std::move(input)) {}
+  Result<std::optional<Paint>> next() override { return reader_.next(); }
+  std::string place() const override { return fmt::format("{}:{}", name_, reader_.line()); }
+  std::string format() const override { return "paint XML"; }
+  Prolog prolog() override {
+    reader_.read_prolog();
+    return {reader_.processing(), reader_.foreign()};
+  }
+
+ private:
+  std::string name_;
+  PaintReader reader_;
+};
+
+class CsvSource : public PaintSource {
+ public:
+  CsvSource(std::string name, CsvPaintReader reader) : name_(std::move(name)), reader_(std::move(reader)) {}
+  Result<std::optional<Paint>> next() override { return reader_.next(); }
+  std::string place() const override { return fmt::format("{}:{}", name_, reader_.line()); }
+  std::string format() const override { return reader_.is_wide() ? "wide table" : "long table"; }
+  std::vector<std::string> warnings() const override { return reader_.warnings(); }
+
+ private:
+  std::string name_;
+  CsvPaintReader reader_;
+};
+
+using SourcePointer = std::unique_ptr<PaintSource>;
+using SinkPointer = std::unique_ptr<PaintSink>;
+
+// The first character that is no white space, behind a byte order mark; 0 where there is none.
+char first_character(std::string_view head) {
+  if (head.starts_with("\xef\xbb\xbf")) head.remove_prefix(3);
+  head = trimmed(head);
+  return head.empty() ? '\0' : head.front();
+}
+
+bool looks_xml(std::string_view, std::string_view head) {
+  return first_character(head) == '<' || head.starts_with("\xff\xfe<") || head.starts_with("\xfe\xff");
+}
+
+bool looks_cxf_document(std::string_view, std::string_view head) {
+  return looks_cxf(head);
+}
+
+bool looks_cgats_text(std::string_view, std::string_view head) {
+  return looks_cgats(head);
+}
+
+bool looks_table(std::string_view, std::string_view head) {
+  const std::string_view line = head.substr(0, head.find_first_of("\r\n", head.find_first_not_of("\r\n \t")));
+  return line.find_first_of(",;\t") != std::string_view::npos;
+}
+
+Result<SourcePointer> open_xml(InputFile input, const SourceSetup&) {
+  return SourcePointer(std::make_unique<XmlSource>(std::move(input)));
+}
+
+Result<SourcePointer> open_csv(InputFile input, const SourceSetup&) {
+  std::string name = input.name();
+  GONIO_ASSIGN(CsvPaintReader reader, CsvPaintReader::open(std::move(input)));
+  return SourcePointer(std::make_unique<CsvSource>(std::move(name), std::move(reader)));
+}
+
+Result<SinkPointer> begin_xml(OutputFile file, const SinkSetup& setup) {
+  GONIO_ASSIGN(PaintWriter writer, PaintWriter::begin(std::move(file), setup.prolog.processing, setup.prolog.foreign));
+  return SinkPointer(std::make_unique<SinkOf<PaintWriter>>(std::move(writer)));
+}
+
+Result<SinkPointer> begin_csv(OutputFile file, const SinkSetup& setup) {
+  GONIO_ASSIGN(CsvPaintWriter writer, CsvPaintWriter::begin(std::move(file), setup.layout));
+  return SinkPointer(std::make_unique<SinkOf<CsvPaintWriter>>(std::move(writer)));
+}
+
+struct InputFormat {
+  const char* name;
+  bool (*looks)(std::string_view path, std::string_view head);
+  Result<SourcePointer> (*open)(InputFile input, const SourceSetup& setup);
+};
+// In the order in which they are tried.
+constexpr std::array kInputs = {
+    InputFormat{"measured", looks_measured, open_measured},
+    InputFormat{"cxf", looks_cxf_document, open_cxf},
+    InputFormat{"xml", looks_xml, open_xml},
+    InputFormat{"cgats", looks_cgats_text, open_cgats},
+    InputFormat{"csv", looks_table, open_csv},
+};
+
+const std::array kOutputs = {
+    OutputFormat{"xml", "paint XML", false, false, true, begin_xml},
+    OutputFormat{"csv", "long table", true, false, false, begin_csv},
+    OutputFormat{"wide", "wide table", true, true, false, begin_csv},
+    OutputFormat{"cxf", "CxF3", true, false, true, begin_cxf},
+    OutputFormat{"cgats", "CGATS text", true, false, true, begin_cgats},
+};
+
+}  // namespace
+
+std::vector<std::string> input_format_names() {
+  std::vector<std::string> names = {"auto"};
+  for (const InputFormat& format : kInputs) names.emplace_back(format.name);
+  return names;
+}
+
+std::vector<std::string> output_format_names() {
+  std::vector<std::string> names = {"auto"};
+  for (const OutputFormat& format : kOutputs) names.push_back(format.name);
+  return names;
+}
+
+Result<SourcePointer> open_source(const std::string& path, const std::string& format, const SourceSetup& setup) {
+  GONIO_ASSIGN(InputFile input, InputFile::open(path));
+  GONIO_ASSIGN(const std::string_view head, input.peek());
+  if (head.empty()) return input_error("{}: is empty: give it paints", input.name());
+  const auto* known = std::ranges::find_if(kInputs, [&](const InputFormat& candidate) {
+    return format == "auto" ? candidate.looks(path, head) : candidate.name == format;
+  });
+  if (known == kInputs.end())
+    return input_error(
+        "{}: is neither paint XML nor a table, CxF, CGATS or measured BRDF: name its format by --from if it is one",
+        input.name());
+  return known->open(std::move(input), setup);
+}
+
+Result<const OutputFormat*> output_format(const std::string& path, const std::string& format) {
+  std::string wanted = format;
+  if (format == "auto") {
+    const std::string name = lower(path);
+    const bool is_stream = path == "-" || path.starts_with("/dev/");
+    wanted = is_stream || name.ends_with(".xml")                  ? "xml"
+             : name.ends_with(".csv")                             ? "csv"
+             : name.ends_with(".cxf")                             ? "cxf"
+             : name.ends_with(".cgats") || name.ends_with(".txt") ? "cgats"
+                                                                  : "";
+  }
+  const auto* known = std::ranges::find(kOutputs, wanted, &OutputFormat::name);
+  if (known == kOutputs.end())
+    return usage_error(
+        "the format of {} cannot be told from its name: end it in .xml, .csv, .cxf or .cgats, or give --to", path);
+  return known;
+}
+
+}  // namespace goniochrome

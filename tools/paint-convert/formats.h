@@ -1,0 +1,101 @@
+// The formats of paint-convert: each input format is a source of paints, each output format a sink. A new format is one
+// more row in a table of formats.cpp.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/file.h"
+#include "base/input.h"
+#include "base/json.h"
+#include "base/result.h"
+#include "paint/csv.h"
+#include "paint/imported.h"
+#include "paint/xml.h"
+
+namespace goniochrome {
+
+// What stood in front of the first paint.
+struct Prolog {
+  std::vector<Processing> processing;
+  std::vector<std::string> foreign;
+};
+
+class PaintSource {
+ public:
+  virtual ~PaintSource() = default;
+  // The next paint, or nothing at the end. After an error next() goes on with what can still be read.
+  virtual Result<std::optional<Paint>> next() = 0;
+  // Where the paint last returned began: `file:line`.
+  virtual std::string place() const = 0;
+  // "paint XML", "long table", ...
+  virtual std::string format() const = 0;
+  virtual Prolog prolog() { return {}; }
+  virtual std::vector<std::string> warnings() const { return {}; }
+  // What is known after the last paint only.
+  virtual std::vector<std::string> closing_warnings() const { return {}; }
+  // What the report says of a measured BRDF; null for other formats.
+  virtual Json figures() const { return {}; }
+  // Whether an illuminant or observer can be chosen.
+  virtual bool takes_condition() const { return false; }
+};
+
+// What a source may need to know.
+struct SourceSetup {
+  ImportOptions import;
+  std::vector<Geometry> geometries;  // where to read a measured BRDF; none: at both sets of the industry
+  double aperture_deg = 0;
+};
+
+class PaintSink {
+ public:
+  virtual ~PaintSink() = default;
+  virtual Result<void> write(const Paint& paint) = 0;
+  // Puts the file in place.
+  virtual Result<void> finish() = 0;
+};
+
+// A writer with write() and finish() as a sink.
+template <class Writer>
+class SinkOf : public PaintSink {
+ public:
+  explicit SinkOf(Writer writer) : writer_(std::move(writer)) {}
+  Result<void> write(const Paint& paint) override { return writer_.write(paint); }
+  Result<void> finish() override { return writer_.finish(); }
+
+ private:
+  Writer writer_;
+};
+
+// What a sink needs to begin.
+struct SinkSetup {
+  Prolog prolog;
+  CsvLayout layout;
+  std::string creator, command, created;  // tool and version, command line, date and time
+  bool cxf_compat = false;                // one object per angle
+};
+
+// What an output format can hold.
+struct OutputFormat {
+  std::string name, title;
+  bool only_rows;  // only geometries and Lab, under a viewing condition
+  bool is_wide;    // needs its geometries before the first paint
+  bool has_gloss;  // also gloss, class, code and instrument, whatever --columns says
+  Result<std::unique_ptr<PaintSink>> (*begin)(OutputFile file, const SinkSetup& setup);
+};
+
+// The words that --from and --to take.
+std::vector<std::string> input_format_names();
+std::vector<std::string> output_format_names();
+
+// Opens an input; "auto" finds its format from the first bytes. Error: the file, and the formats there are.
+Result<std::unique_ptr<PaintSource>> open_source(const std::string& path, const std::string& format,
+                                                 const SourceSetup& setup);
+
+// The output format of that name; "auto" goes by the ending of `path`, and is paint XML for standard output. Error: the
+// path and what to do.
+Result<const OutputFormat*> output_format(const std::string& path, const std::string& format);
+
+}  // namespace goniochrome

@@ -1,0 +1,26 @@
+// What paint-convert takes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/options.h"
+
+namespace goniochrome {
+
+struct ConvertOptions {
+  std::vector<std::string> inputs;
+  std::string output = "-";
+  std::string from = "auto", to = "auto";
+  std::vector<std::string> geometry;
+  std::string illuminant = "auto", observer = "auto";
+  double aperture_deg = 0;
+  bool cxf_compat = false;
+  std::string columns = "core";
+  bool fit_appearance = false;
+  bool keep_going = false;
+};
+
+cli::ToolSpec paint_convert_spec(ConvertOptions& options, cli::CommonOptions& common);
+
+}  // namespace goniochrome

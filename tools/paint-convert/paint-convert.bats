@@ -1,0 +1,273 @@
+# paint-convert from the outside: options, formats, streams, exit statuses.
+
+setup() {
+  cd "$BATS_TEST_TMPDIR" || exit 1
+  bats_require_minimum_version 1.5.0
+  header=sample,geometry,illuminant,observer,L,a,b
+  xml_head='<?xml version="1.0" encoding="UTF-8"?><paints xmlns="urn:goniochrome:paint:1" version="1">'
+  printf '%s\n' "$header" a,45as15,A,2,41.87,-45.99,-21.73 a,45as45,A,2,18.1,-28,-18.6 b,45as15,D65,10,1,2,3 >ab.csv
+  designed='<paint name="d"><gloss angle="60">90</gloss><appearance travel="63"><face L="60" a="5" b="-20"/><flop L="20" a="3" b="-9"/></appearance></paint>'
+  echo "$xml_head$designed</paints>" >d.xml
+}
+
+# lab FILE: the Lab rows of a paint XML file, without its provenance.
+lab() { grep -oE '<(paint name|lab) [^>]*' "$1"; }
+
+@test "the sample table and the sample library turn into each other without a change" {
+  paint-convert -q "$TESTDATA/paints.csv" -o p.xml
+  diff <(lab p.xml) <(grep -v '<face' "$TESTDATA/paints.paints.xml" | lab /dev/stdin | sed 's/ class="[a-z]*"//; s/ code="[^"]*"//')
+  paint-convert -q p.xml -o p.csv
+  cmp p.csv "$TESTDATA/paints.csv"
+  paint-convert -q "$TESTDATA/paints-wide.csv" -o w.xml
+  diff <(lab p.xml | sort) <(lab w.xml | sort)
+  paint-convert -q p.xml --to wide -o w.csv
+  cmp w.csv "$TESTDATA/paints-wide.csv"
+}
+
+@test "XML to table to XML keeps names, conditions, gloss, class and code with --columns all" {
+  for to in csv wide; do
+    paint-convert -q "$TESTDATA/paints.paints.xml" --to $to --columns all -o p.csv
+    paint-convert -q p.csv -o p.xml
+    diff <(grep -vE '<(!--|processing|\?xml|/?paints|appearance|face|flop|/appearance)' "$TESTDATA/paints.paints.xml" | sed 's/ class="unknown"//') \
+      <(grep -vE '<(processing|\?xml|/?paints)' p.xml)
+  done
+}
+
+@test "standard input to standard output, found by the first bytes" {
+  run --separate-stderr bash -c 'paint-convert <ab.csv'
+  [ "$status" -eq 0 ]
+  [[ "$output" == '<?xml'*'<paint name="a">'*'</paints>' ]]
+  [[ "$stderr" == "paint-convert: 2 paints read, 2 written as paint XML" ]]
+  run --separate-stderr bash -c 'paint-convert -q - -o - --to csv <ab.csv'
+  [ "$output" = "$(cat ab.csv)" ]
+  [ -z "$stderr" ]
+  run --separate-stderr bash -c 'cat ab.csv | paint-convert -q | paint-convert -q --to csv | paint-convert -q --to wide'
+  [ "${lines[1]}" = "a,A,2,,,,41.87,-45.99,-21.73,,,,18.1,-28,-18.6,,,,,," ]
+}
+
+@test "semicolons, decimal commas, byte order marks and starred headings" {
+  printf '\xef\xbb\xbfsample;geometry;illuminant;observer;L*;a*;b*\r\na;45as15;A;2;41,87;-45,99;-21,73\r\na;45as45;A;2;18,1;-28;-18,6\r\nb;15;D65;10;1;2;3\r\n' >german.csv
+  run --separate-stderr paint-convert -q german.csv --to csv
+  [ "$output" = "$(cat ab.csv)" ]
+}
+
+@test "a designed paint is handed over at both sets of the industry, or where it is asked" {
+  run --separate-stderr paint-convert d.xml --to csv
+  [ "$(cut -d, -f1-4 <<<"$output" | tail -n +2 | tr '\n' ' ')" = "d,45as15,D65,10 d,45as25,D65,10 d,45as45,D65,10 d,45as75,D65,10 d,45as110,D65,10 " ]
+  [ "$(sed -n 2p <<<"$output")" = "d,45as15,D65,10,60,5,-20" ]
+  [ "$(sed -n 6p <<<"$output")" = "d,45as110,D65,10,20,3,-9" ]
+  run --separate-stderr paint-convert -q d.xml --to wide
+  [ "$(cut -d, -f1-9 <<<"${lines[1]}")" = "d,D65,10,,,,60,5,-20" ]
+  run --separate-stderr paint-convert -q d.xml --to csv --geometry 15 --geometry 45as25az90,75
+  [ "$(cut -d, -f2 <<<"$output" | tr '\n' ' ')" = "geometry 45as15 45as25az90 45as75 " ]
+  # As paint XML it stays what it was, unless rows are asked for.
+  run --separate-stderr paint-convert -q d.xml
+  [[ "$output" != *"<lab "* ]]
+  run --separate-stderr paint-convert -q d.xml --geometry 15,45,110
+  [ "$(grep -c '<lab ' <<<"$output")" -eq 3 ]
+}
+
+@test "--geometry selects rows, says what is missing and never interpolates" {
+  run --separate-stderr paint-convert ab.csv --to csv --geometry 45as15,25
+  [ "$status" -eq 0 ]
+  [ "$(tail -n +2 <<<"$output" | cut -d, -f1,2 | tr '\n' ' ')" = "a,45as15 b,45as15 " ]
+  [[ "$stderr" == *"warning: 45as25 is not measured (a and 1 more)"* ]]
+  run --separate-stderr paint-convert ab.csv --to csv --geometry 45
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *'ab.csv:4: paint "b" is not measured at 45as45: choose other geometries'* ]]
+  run --separate-stderr paint-convert ab.csv --geometry 45xx
+  [ "$status" -eq 2 ]
+  [[ "$stderr" == *'--geometry: geometry "45xx" is not understood'* ]]
+  run --separate-stderr paint-convert ab.csv --geometry 15,45as15
+  [ "$status" -eq 2 ]
+  [[ "$stderr" == *"--geometry names 45as15 twice"* ]]
+}
+
+@test "a wide table says what it has no columns for" {
+  printf '%s\n' "$header" a,15,D65,10,1,2,3 a,45as25az90,D65,10,4,5,6 >odd.csv
+  run --separate-stderr paint-convert odd.csv --to wide
+  [ "$status" -eq 0 ]
+  [[ "$stderr" == *"warning: rows beside the usual six geometries are left out: name the columns with --geometry (a)"* ]]
+  run --separate-stderr paint-convert -q odd.csv --to wide --geometry 15,45as25az90
+  [ "${lines[0]}" = "sample,illuminant,observer,L15,a15,b15,L45as25az90,a45as25az90,b45as25az90" ]
+  [ "${lines[1]}" = "a,D65,10,1,2,3,4,5,6" ]
+}
+
+@test "--fit-appearance writes face, flop, travel and the residual" {
+  paint-convert -q d.xml --geometry 15,25,45,75,110 | paint-convert -q --to csv -o rows.csv
+  run --separate-stderr paint-convert -q rows.csv --fit-appearance
+  [ "$status" -eq 0 ]
+  [[ "$output" =~ '<appearance travel="'(62.99999|63)[0-9.]*'" residual_de00="'[0-9.e-]+'">' ]]
+}
+
+@test "what a table cannot hold is named" {
+  cat >full.xml <<END
+$xml_head<paint name="p" class="pearl"><measurement illuminant="D65" observer="10"><lab geometry="15" L="1" a="2" b="3"/></measurement>
+<lobes space="lin_rec2020_scene" basis="b" method="l1" max_de00="1" mean_de00="1"><diffuse r="0" g="0" b="0"/></lobes>
+<x:n xmlns:x="urn:x"/></paint></paints>
+END
+  run --separate-stderr paint-convert full.xml -o full.csv --report r.json
+  [ "$status" -eq 0 ]
+  [[ "$stderr" == *"lobes are left out: only paint XML holds them (p)"* ]]
+  [[ "$stderr" == *"elements of other vocabularies are left out"* ]]
+  [[ "$stderr" == *"gloss, class, code and instrument are left out: --columns all keeps them (p)"* ]]
+  grep -q '"read": 1' r.json
+  grep -q '"written": 1' r.json
+  [ "$(grep -c 'left out' r.json)" -eq 3 ]
+}
+
+@test "foreign elements and the history stay in paint XML, and the command is added" {
+  echo "$xml_head<processing tool=\"t\" version=\"1\" command=\"t x\"/><x:top xmlns:x=\"urn:x\"/><paint name=\"p\"><x:one xmlns:x=\"urn:x\">1 &lt; 2</x:one></paint></paints>" >f.xml
+  run --separate-stderr paint-convert -q f.xml
+  [[ "$output" == *'command="t x"/>'*'command="paint-convert -q f.xml"/>'*'<x:top xmlns:x="urn:x"/>'*'<x:one xmlns:x="urn:x">1 &lt; 2</x:one>'* ]]
+}
+
+@test "several inputs make one library; a name in two of them is refused" {
+  printf '%s\n' "$header" c,45as15,D65,10,1,2,3 >c.csv
+  run --separate-stderr paint-convert ab.csv d.xml c.csv
+  [ "$status" -eq 0 ]
+  [ "$(grep -oE '<paint name="."' <<<"$output" | cut -d'"' -f2 | tr -d '\n')" = abdc ]
+  run --separate-stderr paint-convert -o both.xml ab.csv c.csv ab.csv
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == 'paint-convert: ab.csv:2: paint "a" is also in ab.csv: rename one of them' ]]
+  [ ! -e both.xml ]
+  run --separate-stderr bash -c 'paint-convert -q d.xml - <c.csv'
+  [ "$(grep -c '<paint ' <<<"$output")" -eq 2 ]
+  run --separate-stderr bash -c 'paint-convert -q <(cat d.xml) <(cat c.csv)'
+  [ "$(grep -c '<paint ' <<<"$output")" -eq 2 ]
+}
+
+@test "a wrong value: exit 3, one line that names it, the old file stays" {
+  sed -i 's/-28/minus/' ab.csv
+  echo old >out.xml
+  run --separate-stderr paint-convert ab.csv -o out.xml
+  [ "$status" -eq 3 ]
+  [ "$stderr" = 'paint-convert: ab.csv:3: a is "minus": write a number such as 12.5' ]
+  [ "$(cat out.xml)" = old ]
+}
+
+@test "--keep-going keeps the good rows and paints, counts the others and exits with 1" {
+  sed -i 's/-28/minus/' ab.csv
+  for flag in --keep-going -k; do
+    run --separate-stderr paint-convert $flag ab.csv -o out.csv --report r.json
+    [ "$status" -eq 1 ]
+    [[ "$stderr" == *'warning: ab.csv:3: a is "minus"'* ]]
+    [ "$(wc -l <out.csv)" -eq 3 ]
+    grep -q '"skipped": 1' r.json
+  done
+  echo "$xml_head<paint name=\"x\"><gloss angle=\"60\">no</gloss></paint>$designed</paints>" >x.xml
+  run --separate-stderr paint-convert -k x.xml
+  [ "$status" -eq 1 ]
+  [[ "$output" == *'<paint name="d">'* && "$output" != *'<paint name="x"'* ]]
+  # A file that is cut off gives what it has.
+  head -c -40 d.xml | sed 's/<paint name="d"/<paint name="whole"\/>&/' >cut.xml
+  run --separate-stderr paint-convert -k cut.xml
+  [ "$status" -eq 1 ]
+  [[ "$output" == *'<paint name="whole">'* && "$stderr" == *"it was cut off"* ]]
+}
+
+@test "a paint without color has no place in a table" {
+  echo "$xml_head<paint name=\"x\"/></paints>" >x.xml
+  run --separate-stderr paint-convert x.xml -o x.csv
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *'x.xml:1: paint "x" has neither readings nor face and flop: a long table cannot hold it' ]]
+}
+
+@test "inputs that are none" {
+  run --separate-stderr paint-convert missing.csv -o out.xml
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == "paint-convert: missing.csv: cannot be read: No such file or directory" ]]
+  [ ! -e out.xml ]
+  run --separate-stderr paint-convert .
+  [ "$status" -eq 3 ]
+  run --separate-stderr bash -c 'paint-convert </dev/null'
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *"standard input: is empty"* ]]
+  echo hello >hello.txt
+  run --separate-stderr paint-convert hello.txt
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *"hello.txt: is neither paint XML nor a table"* ]]
+  run --separate-stderr paint-convert --from csv d.xml
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *"d.xml:1: the header has no column"* ]]
+  run --separate-stderr paint-convert --from xml ab.csv
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *"ab.csv:1: this is not XML"* ]]
+}
+
+@test "formats: right, wrong and missing" {
+  run --separate-stderr paint-convert --from csv --to xml ab.csv
+  [ "$status" -eq 0 ]
+  run --separate-stderr paint-convert --to wide ab.csv -o out.dat
+  [ "$status" -eq 0 ]
+  head -1 out.dat | grep -q L15
+  run --separate-stderr paint-convert ab.csv -o other.dat
+  [ "$status" -eq 2 ]
+  [[ "$stderr" == *"the format of other.dat cannot be told from its name: end it in .xml, .csv, .cxf or .cgats, or give --to"* ]]
+  for option in --from --to --columns; do
+    run --separate-stderr paint-convert $option pdf ab.csv
+    [ "$status" -eq 2 ]
+    [[ "$stderr" == *"$option is \"pdf\": give "* ]]
+  done
+  for option in --from --to --columns --geometry --output --report; do
+    run --separate-stderr paint-convert ab.csv $option
+    [ "$status" -eq 2 ]
+    [[ "$stderr" == *"needs a value"* ]]
+  done
+  run --separate-stderr paint-convert --frm csv ab.csv
+  [ "$status" -eq 2 ]
+  [[ "$stderr" == *"did you mean --from?"* ]]
+}
+
+@test "the report: to a file, to standard output, and not among the data" {
+  run --separate-stderr paint-convert ab.csv -o out.xml --report -
+  [ "$status" -eq 0 ]
+  [[ "$output" == *'"tool": "paint-convert"'*'"read": 2'*'"warnings": []'* ]]
+  run --separate-stderr paint-convert ab.csv --report -
+  [ "$status" -eq 2 ]
+  [[ "$stderr" == *"give -o FILE"* ]]
+}
+
+@test "--explain tells inputs, output and losses" {
+  run --separate-stderr paint-convert --explain ab.csv d.xml -o out.csv
+  [ "$status" -eq 0 ]
+  [[ "$stderr" == *"ab.csv: long table"*"d.xml: paint XML"*"output: long table"*"left out: lobes"* ]]
+  run --separate-stderr paint-convert --explain ab.csv --fit-appearance --geometry 15 -o out.xml
+  [[ "$stderr" == *"rows: only 45as15"*"fitted to the rows"* ]]
+}
+
+@test "output that cannot be written" {
+  run --separate-stderr paint-convert ab.csv -o no/such/folder/out.xml
+  [ "$status" -eq 3 ]
+  run --separate-stderr bash -c 'paint-convert ab.csv >/dev/full'
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *"standard output"* ]]
+}
+
+@test "a closed pipe ends quietly" {
+  for i in $(seq 1 5000); do echo "p$i,45as15,D65,10,1,2,3"; done | cat <(echo "$header") - >many.csv
+  run --separate-stderr bash -c 'paint-convert many.csv | head -1'
+  [ "$status" -eq 0 ]
+  [ -z "$stderr" ]
+}
+
+@test "each paint goes through at once" {
+  mkfifo in out
+  paint-convert -q --from csv in --to csv >out &
+  exec 7<>out
+  exec 8<>in
+  printf '%s\n' "$header" a,45as15,D65,10,1,2,3 b,45as15,D65,10,1,2,3 >&8
+  read -r -t 10 line <&7
+  [ "$line" = "$header" ]
+  read -r -t 10 line <&7
+  [ "$line" = a,45as15,D65,10,1,2,3 ]
+  exec 8>&-
+  read -r -t 10 line <&7
+  [ "$line" = b,45as15,D65,10,1,2,3 ]
+  wait
+}
+
+@test "a comma locale changes nothing" {
+  run --separate-stderr env LC_ALL=de_DE.UTF-8 paint-convert -q ab.csv --to csv
+  [ "$output" = "$(cat ab.csv)" ]
+}

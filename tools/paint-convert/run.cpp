@@ -1,0 +1,177 @@
+#include "run.h"
+
+#include <cstdlib>
+#include <ctime>
+#include <filesystem>
+
+#include "base/text.h"
+#include "formats.h"
+#include "paint/name_ledger.h"
+#include "selection.h"
+
+namespace goniochrome {
+
+namespace {
+
+// An input, open or still to be opened.
+struct Input {
+  std::string path;
+  std::unique_ptr<PaintSource> source;
+};
+
+// Opens each input once to see that it is there and what stood before its first paint. Files are closed again, since
+// there may be more of them than can be open; what cannot be opened twice stays open.
+Result<std::vector<Input>> surveyed(const ConvertOptions& options, const SourceSetup& source_setup, SinkSetup& setup,
+                                    cli::Session& session) {
+  std::vector<std::string> paths = options.inputs;
+  if (paths.empty()) paths.push_back("-");
+  std::vector<Input> inputs;
+  for (const std::string& path : paths) {
+    GONIO_ASSIGN(auto source, open_source(path, options.from, source_setup));
+    session.explain(fmt::format("{}: {}\n", path == "-" ? "standard input" : path, source->format()));
+    Prolog prolog = source->prolog();
+    std::ranges::move(prolog.processing, std::back_inserter(setup.prolog.processing));
+    std::ranges::move(prolog.foreign, std::back_inserter(setup.prolog.foreign));
+    const bool reopens = paths.size() > 1 && path != "-" && std::filesystem::is_regular_file(path);
+    inputs.push_back({path, reopens ? nullptr : std::move(source)});
+  }
+  return inputs;
+}
+
+SourceSetup source_setup_of(const ConvertOptions& options, const Selection& selection) {
+  SourceSetup setup;
+  if (options.illuminant != "auto") setup.import.illuminant = options.illuminant;
+  if (options.observer != "auto") setup.import.observer_deg = options.observer == "2" ? 2 : 10;
+  setup.import.keep_going = options.keep_going;
+  setup.geometries = selection.requested();
+  setup.aperture_deg = options.aperture_deg;
+  return setup;
+}
+
+// 2026-11-21T10:00:00Z; SOURCE_DATE_EPOCH, as usual, sets the clock where files are to be the same again.
+std::string now_utc() {
+  const char* epoch = std::getenv("SOURCE_DATE_EPOCH");
+  const auto seconds = epoch ? parse_integer(epoch) : std::nullopt;
+  const std::time_t now = seconds ? static_cast<std::time_t>(*seconds) : std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
+
+// One conversion: what goes through it, and what it counts.
+class Conversion {
+ public:
+  Conversion(const ConvertOptions& options, const SourceSetup& setup, const Selection& selection, PaintSink& sink,
+             cli::Session& session)
+      : options_(options), setup_(setup), selection_(selection), sink_(sink), session_(session) {}
+
+  Result<void> convert(Input& input);
+  Result<void> finish();
+  int read = 0, written = 0, skipped = 0;
+
+ private:
+  Result<void> pass(Paint paint, const PaintSource& source);
+  Result<void> skip(const Error& error);
+
+  const ConvertOptions& options_;
+  const SourceSetup& setup_;
+  const Selection& selection_;
+  PaintSink& sink_;
+  cli::Session& session_;
+  Remarks remarks_;
+  NameLedger names_;
+  std::vector<std::string> inputs_;
+};
+
+// Bad input stops the run, or is told and counted under --keep-going.
+Result<void> Conversion::skip(const Error& error) {
+  if (!options_.keep_going || error.kind != ErrorKind::kInput) return error;
+  ++skipped;
+  session_.warn(error.message);
+  return {};
+}
+
+Result<void> Conversion::pass(Paint paint, const PaintSource& source) {
+  ++read;
+  if (const auto other = names_.note(paint.name, static_cast<int>(inputs_.size())))
+    if (*other != static_cast<int>(inputs_.size()))
+      return skip(input_error("{}: paint \"{}\" is also in {}: rename one of them", source.place(), paint.name,
+                              inputs_[*other - 1]));
+  const auto selected = selection_.apply(paint, remarks_);
+  if (!selected.ok()) return skip(input_error("{}: {}", source.place(), selected.error().message));
+  GONIO_TRY(sink_.write(paint));
+  ++written;
+  if (written % 1000 == 0) session_.progress(fmt::format("{} paints", written));
+  return {};
+}
+
+Result<void> Conversion::convert(Input& input) {
+  inputs_.push_back(input.path);
+  if (!input.source) {
+    GONIO_ASSIGN(input.source, open_source(input.path, options_.from, setup_));
+  }
+  for (const std::string& warning : input.source->warnings()) session_.warn(warning);
+  if (!input.source->takes_condition() && !(setup_.import.illuminant.empty() && setup_.import.observer_deg == 0))
+    session_.warn(fmt::format("{}: --illuminant and --observer do nothing to a {}: it states its own", input.path,
+                              input.source->format()));
+  for (;;) {
+    auto paint = input.source->next();
+    if (!paint.ok()) {
+      GONIO_TRY(skip(paint.error()));
+      continue;
+    }
+    if (!*paint) break;
+    GONIO_TRY(pass(std::move(**paint), *input.source));
+  }
+  for (const std::string& warning : input.source->closing_warnings()) session_.warn(warning);
+  if (Json figures = input.source->figures(); !figures.is_null())
+    session_.results()["measured"].push_back(std::move(figures));
+  input.source.reset();
+  return {};
+}
+
+Result<void> Conversion::finish() {
+  GONIO_TRY(sink_.finish());
+  for (const std::string& remark : remarks_.lines()) session_.warn(remark);
+  session_.results()["read"] = read;
+  session_.results()["written"] = written;
+  session_.results()["skipped"] = skipped;
+  return {};
+}
+
+}  // namespace
+
+Result<cli::Verdict> run_paint_convert(const ConvertOptions& options, cli::Session& session) {
+  session.results() = {
+      {"read", 0}, {"written", 0}, {"skipped", 0}, {"measured", Json::array()}, {"warnings", Json::array()}};
+  GONIO_ASSIGN(const OutputFormat* format, output_format(options.output, options.to));
+  GONIO_ASSIGN(const Selection selection, Selection::make(options, *format));
+  if (session.common().report == "-" && options.output == "-")
+    return usage_error("--report - needs standard output for itself: give -o FILE");
+
+  const SourceSetup source_setup = source_setup_of(options, selection);
+  SinkSetup setup{.prolog = {},
+                  .layout = selection.layout(),
+                  .creator = fmt::format("goniochrome {} {}", session.tool(), cli::Session::version()),
+                  .command = session.command_line(),
+                  .created = now_utc(),
+                  .cxf_compat = options.cxf_compat};
+  if (options.cxf_compat && format->name != "cxf")
+    return usage_error("--cxf-compat is for CxF, and the output is {}: give --to cxf", format->title);
+  GONIO_ASSIGN(std::vector<Input> inputs, surveyed(options, source_setup, setup, session));
+  session.explain(selection.explanation());
+  setup.prolog.processing.push_back({session.tool(), cli::Session::version(), session.command_line()});
+  GONIO_ASSIGN(OutputFile file, OutputFile::create(options.output));
+  GONIO_ASSIGN(const auto sink, format->begin(std::move(file), setup));
+
+  Conversion conversion(options, source_setup, selection, *sink, session);
+  for (Input& input : inputs) GONIO_TRY(conversion.convert(input));
+  GONIO_TRY(conversion.finish());
+  session.say(fmt::format("paint-convert: {} paints read, {} written as {}{}", conversion.read, conversion.written,
+                          format->title, conversion.skipped ? fmt::format(", {} left out", conversion.skipped) : ""));
+  return conversion.skipped ? cli::Verdict::kNegative : cli::Verdict::kDone;
+}
+
+}  // namespace goniochrome

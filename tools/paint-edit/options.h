@@ -1,0 +1,31 @@
+// What paint-edit takes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/options.h"
+#include "paint/edit.h"
+
+namespace goniochrome {
+
+// A list is empty where the option is not given.
+struct PaintEditOptions {
+  std::vector<std::string> inputs;
+  std::string output = "-";
+  std::vector<std::string> only;
+  std::string suffix;
+  std::vector<double> hue_deg, chroma, lightness, at_deg, face, flop, face_shift, flop_shift, travel_deg, gloss;
+  double hue_shift_deg = 0, chroma_factor = 1, lightness_shift = 0, travel_shift_deg = 0, gloss_shift = 0;
+  std::string gloss_angle_deg = "60";
+  std::string variations;
+  double step = 5;
+  int gradient = 0;
+};
+
+cli::ToolSpec paint_edit_spec(PaintEditOptions& options, cli::CommonOptions& common);
+
+// The moves that the options ask for. Error (usage): options that contradict each other or lack a number.
+Result<Edit> edit_of(const PaintEditOptions& options);
+
+}  // namespace goniochrome

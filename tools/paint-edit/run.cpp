@@ -1,0 +1,218 @@
+#include "run.h"
+
+#include <algorithm>
+#include <set>
+
+#include "base/text.h"
+#include "paint/curve.h"
+#include "source.h"
+
+namespace goniochrome {
+
+namespace {
+
+Variation variation_of(const std::string& word) {
+  if (word == "face") return Variation::kFace;
+  if (word == "flop") return Variation::kFlop;
+  return word == "travel" ? Variation::kTravel : Variation::kGloss;
+}
+
+Json lab_json(const Lab& lab) {
+  return {json_number(lab.L), json_number(lab.a), json_number(lab.b)};
+}
+
+// Face, flop, travel and gloss as the report has them.
+Json state_json(const std::optional<Appearance>& appearance, const std::vector<GlossReading>& gloss) {
+  Json json = Json::object();
+  if (appearance) {
+    json["face"] = lab_json(appearance->face);
+    json["flop"] = lab_json(appearance->flop);
+    json["travel_deg"] = appearance->travel_deg;
+  }
+  for (const GlossReading& reading : gloss)
+    json[fmt::format("gloss_{}_deg", shortest(reading.angle_deg))] = reading.gloss_units;
+  return json;
+}
+
+double de00_max(const Appearance& before, const Appearance& after) {
+  double worst = 0;
+  for (const double angle : {15.0, 45.0, 110.0})
+    worst = std::max(worst, delta_e_2000(lab_at(before, angle), lab_at(after, angle)));
+  return worst;
+}
+
+// One run: paints in, moves, paints out.
+class Run {
+ public:
+  Run(const PaintEditOptions& options, Edit edit, cli::Session& session)
+      : options_(options),
+        edit_(std::move(edit)),
+        session_(session),
+        wanted_(options.only.begin(), options.only.end()) {}
+
+  Result<cli::Verdict> operator()() {
+    GONIO_ASSIGN(PaintSource source, PaintSource::open(options_.inputs));
+    GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
+    auto history = source.processing();
+    history.push_back({session_.tool(), cli::Session::version(), session_.command_line()});
+    GONIO_ASSIGN(PaintWriter opened, PaintWriter::begin(std::move(file), history, source.foreign()));
+    writer_.emplace(std::move(opened));
+    for (;;) {
+      GONIO_ASSIGN(std::optional<Paint> paint, source.next());
+      if (!paint) break;
+      ++read_;
+      GONIO_TRY(take(std::move(*paint)));
+    }
+    GONIO_TRY(writer_->finish());
+    return finish();
+  }
+
+ private:
+  Result<void> take(Paint paint) {
+    if (options_.gradient > 0) return lead_to(std::move(paint));
+    if (!wanted_.empty() && !wanted_.contains(paint.name)) return write(paint);
+    met_.insert(paint.name);
+    if (!options_.variations.empty()) return vary(paint);
+    GONIO_ASSIGN(Edited done, edited(paint, edit_));
+    done.paint.name += options_.suffix;
+    tell(paint, done);
+    return write(done.paint);
+  }
+
+  Result<void> vary(const Paint& paint) {
+    GONIO_TRY(write(paint));
+    for (const Neighbor& neighbor : neighbors(variation_of(options_.variations), options_.step)) {
+      GONIO_ASSIGN(Edited done, edited(paint, neighbor.edit));
+      done.paint.name += "." + neighbor.name;
+      tell(paint, done);
+      // A neighbor beyond the domain would be a copy of the paint itself.
+      if (done.skipped.empty()) GONIO_TRY(write(done.paint));
+    }
+    return {};
+  }
+
+  // The paints between the one before and this one, then this one.
+  Result<void> lead_to(Paint paint) {
+    for (int i = 1; last_ && i <= options_.gradient; ++i) {
+      const double fraction = i / (options_.gradient + 1.0);
+      GONIO_ASSIGN(Paint step, between(*last_, paint, fraction));
+      step.name = fmt::format("{}-{}.{}", last_->name, paint.name, i);
+      if (i == 1) tell_rows(*last_, paint);
+      note({{"name", step.name},
+            {"from", {last_->name, paint.name}},
+            {"fraction", fraction},
+            {"after", state_json(step.appearance, step.gloss)}});
+      GONIO_TRY(write(step));
+    }
+    last_ = std::move(paint);
+    return write(*last_);
+  }
+
+  Result<void> write(const Paint& paint) {
+    ++written_;
+    if (written_ % 1000 == 0) session_.progress(fmt::format("{} paints", written_));
+    return writer_->write(paint);
+  }
+
+  // Rows that only one end of a gradient has cannot be carried along it.
+  void tell_rows(const Paint& from, const Paint& to) {
+    const auto rows = [](const Paint& paint) {
+      return paint.measurement ? paint.measurement->rows : std::vector<LabReading>();
+    };
+    const auto a = rows(from), b = rows(to);
+    const auto common = std::ranges::count_if(a, [&](const LabReading& row) {
+      return std::ranges::any_of(b, [&](const LabReading& other) { return other.geometry == row.geometry; });
+    });
+    if (static_cast<std::size_t>(common) < std::max(a.size(), b.size()))
+      session_.warn(fmt::format("{} to {}: {} of {} and {} measured geometries are common to both and kept", from.name,
+                                to.name, common, a.size(), b.size()));
+  }
+
+  void note(Json change) {
+    ++changes_;
+    if (!session_.common().report.empty()) session_.results()["changes"].push_back(std::move(change));
+  }
+
+  void tell(const Paint& from, const Edited& done) {
+    for (const std::string& skipped : done.skipped) session_.warn(fmt::format("{}: left out: {}", from.name, skipped));
+    for (const std::string& clipped : done.clipped)
+      session_.warn(fmt::format("{}: clipped: {}", done.paint.name, clipped));
+    skipped_ += !done.skipped.empty();
+    for (const std::string& dropped : done.dropped) dropped_.insert(dropped);
+    Json change = {{"name", done.paint.name},
+                   {"from", from.name},
+                   {"before", state_json(done.before, from.gloss)},
+                   {"after", state_json(done.after, done.paint.gloss)}};
+    if (done.before) change["de00_max"] = json_number(de00_max(*done.before, *done.after));
+    if (done.fitted_de00) change["fitted_de00"] = json_number(*done.fitted_de00);
+    change["dropped"] = done.dropped;
+    change["clipped"] = done.clipped;
+    change["skipped"] = done.skipped;
+    note(std::move(change));
+  }
+
+  cli::Verdict finish() {
+    bool negative = skipped_ > 0;
+    for (const std::string& name : wanted_)
+      if (!met_.contains(name)) {
+        session_.warn(fmt::format("no paint is named \"{}\": names are taken letter by letter", name));
+        negative = true;
+      }
+    if (options_.gradient > 0 && read_ < 2) {
+      session_.warn(fmt::format("{} paint was read: a gradient takes two or more", read_));
+      negative = true;
+    }
+    Json& results = session_.results();
+    results["read"] = read_;
+    results["written"] = written_;
+    if (!results.contains("changes")) results["changes"] = Json::array();
+    const std::string stale =
+        dropped_.empty() ? "" : fmt::format("; dropped because they no longer hold: {}", fmt::join(dropped_, ", "));
+    session_.say(fmt::format("paints: {} read, {} {}, {} written{}", read_, changes_,
+                             options_.variations.empty() && options_.gradient == 0 ? "edited" : "made", written_,
+                             stale));
+    return negative ? cli::Verdict::kNegative : cli::Verdict::kDone;
+  }
+
+  const PaintEditOptions& options_;
+  const Edit edit_;
+  cli::Session& session_;
+  const std::set<std::string> wanted_;
+  std::optional<PaintWriter> writer_;
+  std::optional<Paint> last_;
+  std::set<std::string> met_, dropped_;
+  std::size_t read_ = 0, written_ = 0, changes_ = 0, skipped_ = 0;
+};
+
+std::string plan_text(const PaintEditOptions& options, const Edit& edit) {
+  std::string text;
+  const auto line = [&](const std::string& sentence) { text += sentence + "\n"; };
+  if (options.gradient > 0)
+    line(fmt::format("between each paint and the next: {} new ones, equally spaced in Lab", options.gradient));
+  if (!options.variations.empty())
+    line(
+        fmt::format("each paint and its eight neighbors in {}, {} a step", options.variations, shortest(options.step)));
+  if (moves_color(edit)) {
+    line("color: rows and appearance move together; the appearance is fitted where a paint has only rows");
+    line("       (the costly part: the fit scans the whole domain of the travel)");
+    line("dropped: lobes and color maps, which hold the old color; run fit-paint afterwards");
+  }
+  if (edit.at_deg)
+    line(fmt::format("at {} deg: face and flop move by R and 1 - R, R = (travel - {}) / (travel - 15) within 0 and 1",
+                     shortest(*edit.at_deg), shortest(*edit.at_deg)));
+  if (moves_gloss(edit))
+    line(fmt::format("gloss: the reading at {} deg is moved, readings at other angles and the lobes are dropped",
+                     options.gloss_angle_deg));
+  if (!options.only.empty()) line(fmt::format("left as they are: all paints but {}", fmt::join(options.only, ", ")));
+  return text;
+}
+
+}  // namespace
+
+Result<cli::Verdict> run_paint_edit(const PaintEditOptions& options, cli::Session& session) {
+  GONIO_ASSIGN(const Edit edit, edit_of(options));
+  session.explain(plan_text(options, edit));
+  return Run(options, edit, session)();
+}
+
+}  // namespace goniochrome

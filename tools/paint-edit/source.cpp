@@ -1,0 +1,63 @@
+#include "source.h"
+
+#include <filesystem>
+#include <utility>
+
+namespace goniochrome {
+
+namespace {
+
+// FILE#NAME taken apart; a file whose own name has a # is meant as it stands.
+std::pair<std::string, std::optional<std::string>> parts(const std::string& input) {
+  const auto hash = input.rfind('#');
+  if (hash == std::string::npos || std::filesystem::exists(input)) return {input, std::nullopt};
+  return {input.substr(0, hash), input.substr(hash + 1)};
+}
+
+}  // namespace
+
+Result<std::optional<Paint>> PaintSource::Input::next() {
+  if (first) return std::exchange(first, std::nullopt);
+  for (;;) {
+    GONIO_ASSIGN(std::optional<Paint> paint, reader.next());
+    if (!paint || !name || paint->name == *name) return paint;
+  }
+}
+
+Result<PaintSource> PaintSource::open(const std::vector<std::string>& inputs) {
+  PaintSource source;
+  for (const std::string& input : inputs.empty() ? std::vector<std::string>{"-"} : inputs) {
+    auto [path, name] = parts(input);
+    GONIO_ASSIGN(PaintReader reader, PaintReader::open(path));
+    Input opened{path, name, std::move(reader), std::nullopt};
+    GONIO_ASSIGN(opened.first, opened.next());
+    if (name && !opened.first)
+      return input_error("{}: no paint is named \"{}\": names are taken letter by letter", path, *name);
+    source.inputs_.push_back(std::move(opened));
+  }
+  return source;
+}
+
+Result<std::optional<Paint>> PaintSource::next() {
+  for (; current_ < inputs_.size(); ++current_) {
+    GONIO_ASSIGN(std::optional<Paint> paint, inputs_[current_].next());
+    if (paint) return paint;
+  }
+  return std::optional<Paint>();
+}
+
+std::vector<Processing> PaintSource::processing() const {
+  std::vector<Processing> all;
+  for (const Input& input : inputs_)
+    all.insert(all.end(), input.reader.processing().begin(), input.reader.processing().end());
+  return all;
+}
+
+std::vector<std::string> PaintSource::foreign() const {
+  std::vector<std::string> all;
+  for (const Input& input : inputs_)
+    all.insert(all.end(), input.reader.foreign().begin(), input.reader.foreign().end());
+  return all;
+}
+
+}  // namespace goniochrome

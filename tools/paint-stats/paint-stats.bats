@@ -1,0 +1,237 @@
+# paint-stats from the outside: options, conditions, streams, exit statuses.
+
+bats_require_minimum_version 1.5.0
+
+setup() {
+  cd "$BATS_TEST_TMPDIR" || exit 1
+  paints=$TESTDATA/paints.paints.xml
+  count=$(grep -c '<paint ' "$paints")
+  head='<?xml version="1.0"?><paints xmlns="urn:goniochrome:paint:1" version="1">'
+  metallic=$(paint one 100,10,0 50,5,0 20,2,0)
+}
+
+# paint NAME L,a,b L,a,b L,a,b: a paint with readings at 15, 45 and 110 deg.
+paint() {
+  local name=$1 row rows='' angle=(15 45 110) i=0
+  shift
+  for row in "$@"; do
+    IFS=, read -r l a b <<<"$row"
+    rows+="<lab geometry=\"45as${angle[i]}\" L=\"$l\" a=\"$a\" b=\"$b\"/>"
+    i=$((i + 1))
+  done
+  echo "<paint name=\"$name\"><measurement illuminant=\"D65\" observer=\"10\">$rows</measurement></paint>"
+}
+
+# column NAME: that column of the table on standard input, without its head.
+column() {
+  awk -F'\t' -v name="$1" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = i; next } { print $c }'
+}
+
+@test "a line a paint, in order, under a head" {
+  run --separate-stderr paint-stats "$paints"
+  [ "$status" -eq 0 ]
+  [ "${#lines[@]}" -eq $((count + 1)) ]
+  [[ "${lines[0]}" == "name	code	class	flop_index	"* ]]
+  [ "$stderr" = "paint-stats: $count paints" ]
+  diff <(paint-stats -q "$paints" | column name) <(sed -n 's/.*<paint name="\([^"]*\)".*/\1/p' "$paints")
+}
+
+@test "the flop index of a known paint" {
+  echo "$head$metallic</paints>" | paint-stats -q >t.tsv
+  [[ "$(column flop_index <t.tsv)" == 12.05* ]]
+  [ "$(column chroma_index <t.tsv)" = 8 ]
+  [ "$(column hue_shift_index <t.tsv)" = 0 ]
+  [ "$(column hue_travel_deg <t.tsv)" = 0 ]
+  [ "$(column gloss <t.tsv)" = n/a ]
+  [ "$(column source <t.tsv)" = rows ]
+  [ "$(column flags <t.tsv)" = - ]
+}
+
+@test "dark, gray and turned paints are flagged, with n/a where nothing applies" {
+  {
+    echo "$head"
+    paint black 3,1,2 0.05,0,0 0.2,0,0
+    paint lighter_flop 20,10,0 50,5,0 100,2,0
+    paint gray 50,0,0 40,0,0 30,5,0
+    echo "</paints>"
+  } | paint-stats -q >t.tsv
+  [ "$(column flags <t.tsv | paste -sd' ')" = "dark - achromatic" ]
+  [ "$(column flop_sensitivity <t.tsv | head -1)" = inf ]
+  [[ "$(column flop_index <t.tsv | sed -n 2p)" == -12.05* ]]
+  [ "$(column hue_shift_index <t.tsv | tail -1)" = n/a ]
+  [ "$(column hue_travel_deg <t.tsv | tail -1)" = n/a ]
+}
+
+@test "a paint without any color is told, not invented" {
+  echo "$head<paint name=\"none\"/></paints>" | paint-stats -q >t.tsv
+  [ "$(column flop_index <t.tsv)" = n/a ]
+  [ "$(column flags <t.tsv)" = no_color ]
+}
+
+@test "--where picks, and no match is exit 1" {
+  run --separate-stderr paint-stats --where 'flop_index>=17 && chroma_index<5' "$paints"
+  [ "$status" -eq 0 ]
+  [[ "$stderr" =~ "$count paints, "[1-9][0-9]*" match" ]]
+  paint-stats -q -w 'flop_index>=17 and chroma_index<5' "$paints" | column flop_index | awk '$1 < 17 { exit 1 }'
+  run --separate-stderr paint-stats -w 'flop_index>1e6' "$paints"
+  [ "$status" -eq 1 ]
+  [ "${#lines[@]}" -eq 1 ]
+}
+
+@test "--where: classes, names, flags and n/a" {
+  [ "$(paint-stats -q -w 'class==solid' "$paints" | column class | sort -u)" = solid ]
+  [ "$(paint-stats -q -w 'name=="arctic_white"' "$paints" | column name)" = arctic_white ]
+  [ "$(paint-stats -q -w 'hue_shift_index==na' "$paints" | column hue_shift_index | sort -u)" = n/a ]
+  a=$(paint-stats -q -w 'hue_shift_index<3' "$paints" | wc -l)
+  b=$(paint-stats -q -w 'not hue_shift_index<3' "$paints" | wc -l)
+  [ $((a + b)) -eq $((count + 2)) ]
+}
+
+@test "--where: errors say where and what" {
+  for case in 'flop_idx>3|did you mean flop_index?' 'flop_index>|ends where a name or a number is needed' \
+    'flop_index=3|write "=="' '(gloss>3|")"' 'class==metalic|there is no class "metalic"'; do
+    condition=${case%%|*}
+    run --separate-stderr paint-stats --where "$condition" "$paints"
+    [ "$status" -eq 2 ]
+    [ -z "$output" ]
+    [[ "$stderr" == *"${case#*|}"* ]]
+  done
+  run --separate-stderr paint-stats "$paints" --where
+  [ "$status" -eq 2 ]
+  [[ "$stderr" == *"--where needs a value"* ]]
+}
+
+@test "--format paints is a filter: every element stays and the step is in the history" {
+  foreign='<shelf:mark xmlns:shelf="urn:example:shelf" row="7"/>'
+  echo "$head${metallic/<\/paint>/$foreign</paint>}$(paint two 50,0,0 50,0,0 50,0,0)</paints>" |
+    paint-stats -q -w 'flop_index>5' --format paints | paint-stats -q -w 'chroma_index>1' -f paints -o out.xml
+  [ "$(grep -c '<paint ' out.xml)" -eq 1 ]
+  [ "$(grep -c '<processing ' out.xml)" -eq 2 ]
+  grep -q 'row="7"' out.xml
+  xmllint --noout out.xml
+}
+
+@test "--format json is one object a line" {
+  paint-stats -q -f json "$paints" >t.json
+  [ "$(wc -l <t.json)" -eq "$count" ]
+  jq -es 'map(select(.name == "reference_gray"))[0] | .hue_shift_index == null and .flags == ["achromatic"]' t.json
+}
+
+@test "the output's ending chooses the format, --format overrules it" {
+  paint-stats -q "$paints" -o a.paints.xml
+  paint-stats -q "$paints" -o a.json
+  paint-stats -q "$paints" --output=a.tsv
+  paint-stats -q "$paints" -f tsv -o b.xml
+  grep -q '<paints ' a.paints.xml
+  jq -es length a.json
+  diff a.tsv b.xml
+  run paint-stats "$paints" --format csv
+  [ "$status" -eq 2 ]
+  [[ "$output" == *'--format is "csv": give auto, tsv, json, paints'* ]]
+  run paint-stats "$paints" -f
+  [ "$status" -eq 2 ]
+  run paint-stats "$paints" -o
+  [ "$status" -eq 2 ]
+  run paint-stats "$paints" -o /no/such/folder/x.tsv
+  [ "$status" -eq 3 ]
+}
+
+@test "--report holds the same figures" {
+  paint-stats -q "$paints" --report r.json >t.tsv
+  jq -e ".results.read == $count and .results.matched == $count and .results.left_out == 0" r.json
+  jq -e '.results.paints_per_s > 0 and .tool == "paint-stats"' r.json
+  diff <(jq -r '.results.paints[].flop_index' r.json) <(column flop_index <t.tsv)
+  run paint-stats "$paints" --report
+  [ "$status" -eq 2 ]
+}
+
+@test "several inputs and - follow each other" {
+  echo "$head$metallic</paints>" >a.xml
+  [ "$(echo "$head${metallic/one/two}</paints>" | paint-stats -q - a.xml | column name | paste -sd' ')" = "two one" ]
+}
+
+@test "the first paint of a slow pipe comes through at once" {
+  mkfifo in
+  paint-stats -q in >t.tsv &
+  exec 7>in
+  echo "$head$metallic$(for i in 1 2 3; do echo "${metallic/one/p$i}"; done)" >&7
+  for _ in $(seq 50); do
+    grep -q '^one' t.tsv && break
+    sleep 0.1
+  done
+  grep -q '^one' t.tsv
+  echo "</paints>" >&7
+  exec 7>&-
+  wait
+}
+
+@test "a bad row is named and stops the run, or is left out with --keep-going" {
+  {
+    echo "$head"
+    echo "$metallic"
+    echo "${metallic/L=\"50\"/L=\"12,5\"}" | sed 's/one/bad/'
+    echo "${metallic/one/three}"
+    echo "</paints>"
+  } >a.xml
+  run --separate-stderr paint-stats a.xml
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *'a.xml:3'*'12,5'* ]]
+  run --separate-stderr paint-stats --keep-going a.xml
+  [ "$status" -eq 1 ]
+  [[ "$stderr" == *'12,5'*'left out'*'2 paints, 1 left out'* ]]
+  [ "$(column name <<<"$output" | paste -sd' ')" = "one three" ]
+}
+
+@test "a cut file is no success, with or without --keep-going" {
+  echo "$head$metallic<paint name=\"x\">" >cut.xml
+  run paint-stats cut.xml
+  [ "$status" -eq 3 ]
+  [[ "$output" == *cut.xml:* ]]
+  run paint-stats -k cut.xml
+  [ "$status" -eq 1 ]
+  run paint-stats -o kept.xml cut.xml
+  [ "$status" -eq 3 ]
+  [ ! -e kept.xml ]
+}
+
+@test "missing input is an error" {
+  run --separate-stderr paint-stats none.xml
+  [ "$status" -eq 3 ]
+  [ -z "$output" ]
+  [[ "$stderr" == *"none.xml: cannot be read"* ]]
+}
+
+@test "a closed pipe ends quietly" {
+  {
+    echo "$head"
+    for i in $(seq 20000); do echo "${metallic/one/p$i}"; done
+    echo "</paints>"
+  } >many.xml
+  run --separate-stderr bash -o pipefail -c 'paint-stats -q many.xml | head -1'
+  [ -z "$stderr" ]
+}
+
+@test "a full disk is an error" {
+  [ -e /dev/full ] || skip
+  run --separate-stderr paint-stats -q "$paints" -o /dev/full
+  [ "$status" -eq 3 ]
+}
+
+@test "results do not depend on --threads" {
+  for n in 1 2 7; do paint-stats -q "$paints" --threads $n >$n.tsv; done
+  cmp 1.tsv 2.tsv
+  cmp 1.tsv 7.tsv
+  run paint-stats "$paints" --threads x
+  [ "$status" -eq 2 ]
+}
+
+@test "--explain, --quiet, --help, --version, an unknown option" {
+  run --separate-stderr paint-stats -q --explain -w 'gloss>1' "$paints"
+  [[ "$stderr" == *"only paints with gloss>1"*"left out:"* ]]
+  [ -z "$(paint-stats --quiet "$paints" 2>&1 >/dev/null)" ]
+  paint-stats --help | grep -q -- --where
+  paint-stats --version | grep -q '^paint-stats '
+  run paint-stats --wher x
+  [ "$status" -eq 2 ]
+  [[ "$output" == *"--where"* ]]
+}

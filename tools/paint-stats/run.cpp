@@ -1,0 +1,204 @@
+#include "run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+
+#include "base/clock.h"
+#include "base/file.h"
+#include "base/parallel.h"
+#include "base/text.h"
+#include "paint/batches.h"
+#include "paint/metrics_filter.h"
+
+namespace goniochrome {
+
+namespace {
+
+// A text that stays in its field of a table.
+std::string field(std::string text) {
+  std::ranges::replace_if(
+      text, [](char c) { return c == '\t' || c == '\n' || c == '\r'; }, ' ');
+  return text;
+}
+
+std::string number_field(double value) {
+  if (std::isnan(value)) return "n/a";
+  return std::isinf(value) ? (value < 0 ? "-inf" : "inf") : shortest(value);
+}
+
+Json as_json(const Paint& paint, const PaintMetrics& numbers) {
+  Json json = {{"name", paint.name}, {"code", paint.code}, {"class", paint_class_name(paint.paint_class)}};
+  for (const MetricColumn& column : metric_columns()) json[column.name] = json_number(numbers.*column.value);
+  json["source"] = source_name(numbers.source);
+  json["flags"] = numbers.flags;
+  return json;
+}
+
+std::string table_head() {
+  std::string text = "name\tcode\tclass";
+  for (const MetricColumn& column : metric_columns()) text += std::string("\t") + column.name;
+  return text + "\tsource\tflags\n";
+}
+
+std::string table_line(const Paint& paint, const PaintMetrics& numbers) {
+  std::string text = field(paint.name) + "\t" + field(paint.code) + "\t" + paint_class_name(paint.paint_class);
+  for (const MetricColumn& column : metric_columns()) text += "\t" + number_field(numbers.*column.value);
+  std::string flags;
+  for (const char* flag : numbers.flags) flags += (flags.empty() ? "" : ",") + std::string(flag);
+  return text + "\t" + source_name(numbers.source) + "\t" + (flags.empty() ? "-" : flags) + "\n";
+}
+
+enum class Format { kTable, kJson, kPaints };
+
+Format format_of(const PaintStatsOptions& options) {
+  const auto ends = [&](const char* ending) { return options.output.ends_with(ending); };
+  if (options.format == "paints" || (options.format == "auto" && ends(".xml"))) return Format::kPaints;
+  if (options.format == "json" || (options.format == "auto" && (ends(".json") || ends(".jsonl")))) return Format::kJson;
+  return Format::kTable;
+}
+
+// Where matching paints go, in one of the three formats.
+class Sink {
+ public:
+  static Result<Sink> begin(Format format, OutputFile file, const std::vector<Processing>& history,
+                            const std::vector<std::string>& foreign) {
+    Sink sink;
+    sink.format_ = format;
+    if (format == Format::kPaints) {
+      GONIO_ASSIGN(PaintWriter writer, PaintWriter::begin(std::move(file), history, foreign));
+      sink.writer_.emplace(std::move(writer));
+      return sink;
+    }
+    sink.file_.emplace(std::move(file));
+    if (format == Format::kTable) GONIO_TRY(sink.file_->write(table_head()));
+    return sink;
+  }
+
+  Result<void> write(const Paint& paint, const PaintMetrics& numbers) {
+    switch (format_) {
+      case Format::kPaints:
+        return writer_->write(paint);
+      case Format::kJson:
+        return file_->write(as_json(paint, numbers).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
+      case Format::kTable:
+        break;
+    }
+    return file_->write(table_line(paint, numbers));
+  }
+  Result<void> flush() { return file_ ? file_->flush() : Result<void>(); }
+  Result<void> finish() { return writer_ ? writer_->finish() : file_->commit(); }
+
+ private:
+  Format format_ = Format::kTable;
+  std::optional<OutputFile> file_;
+  std::optional<PaintWriter> writer_;
+};
+
+// One run: paints in, figures or paints out.
+class Run {
+ public:
+  Run(const PaintStatsOptions& options, cli::Session& session) : options_(options), session_(session) {}
+
+  Result<cli::Verdict> operator()() {
+    if (!options_.where.empty()) {
+      GONIO_ASSIGN(PaintFilter filter, PaintFilter::parse(options_.where));
+      filter_.emplace(std::move(filter));
+    }
+    GONIO_ASSIGN(PaintBatches batches, PaintBatches::open(options_.inputs));
+    GONIO_TRY(open_output(batches.processing(), batches.foreign()));
+    if (!session_.common().report.empty()) session_.results()["paints"] = Json::array();
+    for (;;) {
+      GONIO_ASSIGN(const std::vector<Paint> batch, batches.next(left_out()));
+      if (batch.empty()) break;
+      GONIO_TRY(measure(batch));
+      session_.progress(fmt::format("{}: {} paints", session_.tool(), read_));
+    }
+    GONIO_TRY(sink_->finish());
+    return finish();
+  }
+
+ private:
+  Result<void> open_output(std::vector<Processing> history, const std::vector<std::string>& foreign) {
+    history.push_back({session_.tool(), cli::Session::version(), session_.command_line()});
+    GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
+    GONIO_ASSIGN(Sink sink, Sink::begin(format_of(options_), std::move(file), history, foreign));
+    sink_.emplace(std::move(sink));
+    return {};
+  }
+
+  // What becomes of a paint that cannot be read.
+  std::function<void(const Error&)> left_out() {
+    if (!options_.keep_going) return {};
+    return [this](const Error& error) {
+      session_.warn(error.message + ": left out");
+      ++left_out_;
+    };
+  }
+
+  Result<void> measure(const std::vector<Paint>& batch) {
+    const Stopwatch measuring;
+    std::vector<std::optional<Result<PaintMetrics>>> numbers(batch.size());
+    parallel_for(batch.size(), 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) numbers[i] = metrics(batch[i]);
+    });
+    measuring_s_ += measuring.elapsed_s();
+    read_ += batch.size();
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      if (!numbers[i]->ok()) return input_error("paint \"{}\": {}", batch[i].name, numbers[i]->error().message);
+      GONIO_TRY(take(batch[i], **numbers[i]));
+    }
+    return sink_->flush();
+  }
+
+  Result<void> take(const Paint& paint, const PaintMetrics& numbers) {
+    if (filter_ && !filter_->matches(paint, numbers)) return {};
+    ++matched_;
+    if (!session_.common().report.empty()) session_.results()["paints"].push_back(as_json(paint, numbers));
+    return sink_->write(paint, numbers);
+  }
+
+  cli::Verdict finish() {
+    Json& results = session_.results();
+    results["read"] = read_;
+    results["matched"] = matched_;
+    results["left_out"] = left_out_;
+    results["paints_per_s"] = measuring_s_ > 0 ? static_cast<double>(read_) / measuring_s_ : 0.0;
+    std::string line = fmt::format("{}: {} paints", session_.tool(), read_);
+    if (filter_) line += fmt::format(", {} match", matched_);
+    if (left_out_ > 0) line += fmt::format(", {} left out", left_out_);
+    session_.say(line);
+    return left_out_ > 0 || (filter_ && matched_ == 0) ? cli::Verdict::kNegative : cli::Verdict::kDone;
+  }
+
+  const PaintStatsOptions& options_;
+  cli::Session& session_;
+  std::optional<PaintFilter> filter_;
+  std::optional<Sink> sink_;
+  std::size_t read_ = 0, matched_ = 0, left_out_ = 0;
+  double measuring_s_ = 0;
+};
+
+std::string plan(const PaintStatsOptions& options) {
+  const Format format = format_of(options);
+  return fmt::format(
+      "colors: measured rows at 15, 45 and 110 deg, else the stated curve, else a fitted one; about 1 us a paint, 10 "
+      "us where a curve is fitted for travel and residual\n"
+      "{}"
+      "output: {}\n"
+      "left out: rows out of plane, or not at 45 deg incidence, have no part in the indices\n",
+      options.where.empty() ? "all paints\n" : fmt::format("only paints with {}\n", options.where),
+      format == Format::kPaints ? "the paints as they came, with this step in their history"
+      : format == Format::kJson ? "one JSON object a line"
+                                : "a table");
+}
+
+}  // namespace
+
+Result<cli::Verdict> run(const PaintStatsOptions& options, cli::Session& session) {
+  session.explain(plan(options));
+  return Run(options, session)();
+}
+
+}  // namespace goniochrome
