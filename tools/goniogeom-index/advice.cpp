@@ -1,0 +1,113 @@
+#include "advice.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.h"
+
+namespace goniochrome {
+
+namespace {
+
+constexpr double kLowAspecular_deg = 45;  // the highlight's side of the curve
+constexpr std::size_t kMostFitted = 600;  // views for the trial fits
+
+struct Rms {
+  double squares = 0, weight = 0;
+  void add(double de, double w) { squares += w * de * de, weight += w; }
+  bool any() const { return weight > 0; }
+  double value() const { return std::sqrt(squares / weight); }
+};
+
+// The RMS difference that the best paint for the second panel leaves over these views.
+std::optional<double> best_left(const Appearance& a, const Paint& paint, const std::vector<PanelView>& views) {
+  if (views.empty()) return std::nullopt;
+  // Spread by the golden ratio, so that no geometry that comes round at every place is favored.
+  std::vector<PanelView> some;
+  for (std::size_t i = 0; i < std::min(views.size(), kMostFitted); ++i) {
+    const double part = views.size() <= kMostFitted ? static_cast<double>(i) / static_cast<double>(views.size())
+                                                    : std::fmod(static_cast<double>(i) * 0.6180339887498949, 1.0);
+    some.push_back(views[static_cast<std::size_t>(part * static_cast<double>(views.size()) + 1e-9)]);
+  }
+  const auto fit = trompe_fit(a, paint.paint_class == PaintClass::kSolid, some, {});
+  return fit.ok() ? std::optional<double>(fit->after.rms) : std::nullopt;
+}
+
+double largest_solid_difference(const Appearance& a, const std::vector<PanelView>& views, DifferenceMetric metric) {
+  const Lab solid = lab_at(a, 45);
+  double most = 0;
+  for (const PanelView& view : views)
+    most = std::max(most, difference(metric, panel_color(solid, view.cos_a), panel_color(solid, view.cos_b)));
+  return most;
+}
+
+}  // namespace
+
+std::vector<std::string> advice(const Paint& paint, const SeamRequest& request, const Seam& seam,
+                                const std::vector<SeamView>& views, const std::vector<double>& de) {
+  const auto appearance = appearance_of(paint);
+  if (!appearance.ok()) return {};
+  const FlakeCurve curve(*appearance);
+  std::vector<double> folds;
+  for (const SeamPoint& p : seam.points) folds.push_back(std::abs(p.fold_deg));
+  std::ranges::sort(folds);
+  const double fold = folds[folds.size() * 95 / 100];
+
+  // Under lights of the environment the views of an instrument stand in: there is no one aspecular angle to name.
+  const bool has_lights = !views.empty() && views.front().light.has_value();
+  std::vector<PanelView> seen, near_side, far_side;
+  Rms low, high;
+  for (std::size_t i = 0; has_lights && i < views.size(); ++i) {
+    const PanelView view = panel_view(seam, views[i]);
+    seen.push_back(view);
+    (view.aspecular_a_deg <= kLowAspecular_deg ? low : high).add(de[i], view.weight);
+    // Where the second panel is turned toward the highlight, against where it is turned away from it.
+    (view.aspecular_b_deg < view.aspecular_a_deg ? near_side : far_side).push_back(view);
+  }
+  double index = std::numeric_limits<double>::infinity();
+  const GeometryList set = has_lights && !request.world.in_world ? request.geometries : *geometry_list({});
+  for (const LightView& g : set.pairs)
+    index = std::min(index,
+                     geometry_index(curve, TiltedPair::make(g, 90), request.threshold, request.metric).smallest_deg());
+  const double most = *std::ranges::max_element(de);
+  const std::string shown = shortest(request.threshold);
+  const auto verdict = [](bool applies) { return applies ? "applies" : "is met"; };
+
+  std::vector<std::string> lines;
+  lines.push_back(
+      fmt::format("1 high travel only on parallel panels: {}; {} is seen from {:.2g} deg on, the seam is out by {:.2g} "
+                  "deg (95 % of it "
+                  "less)",
+                  verdict(index < fold), paint.name, index, fold));
+  if (has_lights) {
+    const double solid = largest_solid_difference(*appearance, seen, request.metric);
+    lines.push_back(
+        fmt::format("2 solid or low travel where panels are not flush: {}; a solid of this paint's color at 45 deg "
+                    "would show dE {:.2g} "
+                    "at most, this paint shows {:.2g}",
+                    verdict(most >= request.threshold && solid < 0.7 * most), solid, most));
+  }
+  if (low.any() && high.any()) {
+    lines.push_back(fmt::format(
+        "3 no seams that are seen at low aspecular angles: {}; rms dE {:.2g} up to {} deg aspecular, {:.2g} "
+        "beyond",
+        verdict(low.value() >= request.threshold && low.value() > 1.5 * high.value()), low.value(), kLowAspecular_deg,
+        high.value()));
+  }
+  lines.push_back(
+      fmt::format("4 tolerances by paint: {}; for dE {} this paint allows {:.2g} deg, the seam has up to {:.2g}",
+                  verdict(index < folds.back()), shown, index, folds.back()));
+  const auto all = best_left(*appearance, paint, seen), near = best_left(*appearance, paint, near_side),
+             far = best_left(*appearance, paint, far_side);
+  if (all && near && far) {
+    const double limited = std::min(*near, *far);
+    lines.push_back(
+        fmt::format("5 a limited range of views: {}; with another paint on the second panel rms dE {:.2g} is left for "
+                    "all views, {:.2g} "
+                    "for those on one side of the highlight (trompe-fit)",
+                    verdict(*all >= request.threshold && limited < 0.7 * *all), *all, limited));
+  }
+  return lines;
+}
+
+}  // namespace goniochrome

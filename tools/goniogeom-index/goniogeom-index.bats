@@ -1,0 +1,204 @@
+# goniogeom-index from the outside: options, figures, exit statuses.
+
+bats_require_minimum_version 1.5.0
+
+setup() {
+  cd "$BATS_TEST_TMPDIR" || exit 1
+  paints=$TESTDATA/paints.paints.xml
+  head='<paints xmlns="urn:goniochrome:paint:1" version="1">'
+  gray='<appearance travel="60"><face L="50" a="0" b="0"/><flop L="50" a="0" b="0"/></appearance>'
+  echo "$head<paint name=\"gray\" class=\"solid\">$gray</paint></paints>" >gray.xml
+}
+
+# column N of the first data row
+column() { sed -n 2p | cut -f "$1"; }
+
+@test "a solid paint has the index of the cosine alone, and a much larger one under a light above it" {
+  # dE = 66 |cbrt(cos) - cbrt(cos 45)|: the closed form, toward and away from the light.
+  for sign in plus:6:1 minus:7:-1; do
+    IFS=: read -r _ field s <<<"$sign"
+    wanted=$(awk -v s="$s" 'BEGIN { r = atan2(0, -1) / 180; k = cos(45 * r)^(1 / 3) + s * 2.3 / 66
+      c = k^3; a = atan2(sqrt(1 - c * c), c) / r; d = a - 45; printf "%.9f", d < 0 ? -d : d }')
+    got=$(goniogeom-index gray.xml --views 0 2>/dev/null | column "$field")
+    awk -v a="$got" -v b="$wanted" 'BEGIN { d = a - b; exit !(d < 1e-6 && d > -1e-6) }'
+  done
+  at45=$(goniogeom-index gray.xml --views 0 2>/dev/null | column 7)
+  at0=$(goniogeom-index gray.xml --lights 0 --views 20 2>/dev/null | column 7)
+  awk -v a="$at0" -v b="$at45" 'BEGIN { exit !(a > 3 * b) }'
+}
+
+@test "every paint and pair has its row" {
+  run --separate-stderr goniogeom-index "$paints" --lights 30,45 --views as15,as45,as110 --report r.json -o i.tsv
+  [ "$status" -eq 0 ]
+  [ -z "$output" ]
+  [[ "$stderr" =~ "59 paints, 6 geometries: smallest index "[0-9.]+" deg (liquid_metal at light" ]]
+  [ "$(wc -l <i.tsv)" -eq $((59 * 6 + 1)) ]
+  [ "$(jq '.results.paints | length' r.json)" -eq 59 ]
+  [ "$(jq '.results.paints[0].geometries | length' r.json)" -eq 6 ]
+  [ "$(jq '[.results.paints[].worst_deg] | min == .[0]' r.json)" = false ]
+  [ "$(jq '([.results.paints[].worst_deg] | min) == .results.worst_deg' r.json)" = true ]
+}
+
+@test "--only, --worst, --out-of-plane, --seam-axis and --target choose what is looked at" {
+  [ "$(goniogeom-index "$paints" --only silver_fine -q | wc -l)" -eq 6 ]
+  [ "$(goniogeom-index "$paints" --worst -q | wc -l)" -eq 60 ]
+  [ "$(goniogeom-index "$paints" --only silver_fine -q --views -20 --out-of-plane 0:90:30 | wc -l)" -eq 5 ]
+  across=$(goniogeom-index "$paints" --only silver_fine -q --views 0 | column 6)
+  along=$(goniogeom-index "$paints" --only silver_fine -q --views 0 --seam-axis 0 | column 6)
+  awk -v a="$along" -v b="$across" 'BEGIN { exit !(a > 2 * b) }'
+  [ "$(goniogeom-index "$paints" --only silver_fine -q --target measured)" != "$(goniogeom-index "$paints" --only silver_fine -q)" ]
+}
+
+@test "--threshold and --metric move the index" {
+  loose=$(goniogeom-index gray.xml -q --views 0 -t 5 | column 6)
+  tight=$(goniogeom-index gray.xml -q --views 0 -t 1 | column 6)
+  de00=$(goniogeom-index gray.xml -q --views 0 -t 1 --metric de00 | column 6)
+  awk -v a="$tight" -v b="$loose" -v c="$de00" 'BEGIN { exit !(a < b && c != a && c < b) }'
+  [ "$(goniogeom-index gray.xml -q --views 0 -t 500 | column 6)" = none ]
+}
+
+@test "named sets stand for lights and views" {
+  for set in instrument showroom outdoor; do
+    rows=$(goniogeom-index gray.xml -q --lights set:$set --views set:$set | wc -l)
+    [ "$rows" -ge 6 ]
+  done
+}
+
+@test "--tolerance-for fails the paints that do not hold, by exit status 1" {
+  run --separate-stderr goniogeom-index "$paints" --tolerance-for 0.5 -o t.tsv --report r.json
+  [ "$status" -eq 1 ]
+  [[ "$stderr" =~ "56 stay under 2.3 up to 0.5 deg, 3 do not" ]]
+  [ "$(grep -c 'fail$' t.tsv)" -eq 3 ]
+  [ "$(jq -r '.results.failing | length' r.json)" -eq 3 ]
+  run goniogeom-index gray.xml --tolerance-for 2 -q -o t.tsv
+  [ "$status" -eq 0 ]
+}
+
+@test "--curve writes CSV and SVG of one paint, for the --misalignments asked" {
+  goniogeom-index "$paints" --only silver_fine -q --curve c.csv --curve c.svg --misalignments -2,2 -o i.tsv
+  [ "$(head -1 c.csv)" = light_deg,view_deg,aspecular_deg,misalignment_deg,de ]
+  [ "$(tail -n +2 c.csv | cut -d, -f4 | sort -u | tr '\n' ' ')" = "-2 2 " ]
+  xmllint --noout c.svg
+  run goniogeom-index "$paints" -q --curve c.svg -o j.tsv
+  [ "$status" -eq 2 ]
+  [[ "$output" =~ "choose one by --only" ]]
+  [ ! -e j.tsv ]
+}
+
+@test "a paint without color is left out by name, the others are done, exit 1" {
+  echo "$head<paint name=\"empty\"/><paint name=\"gray\">$gray</paint></paints>" >two.xml
+  run --separate-stderr goniogeom-index two.xml
+  [ "$status" -eq 1 ]
+  [[ "$stderr" =~ "left out: empty: the paint has neither Lab rows nor face, flop and travel" ]]
+  [[ "$output" =~ gray ]]
+}
+
+@test "bad options are refused by value, with the remedy" {
+  refused() {
+    run goniogeom-index gray.xml "${@:2}"
+    [ "$status" -eq 2 ]
+    [[ "$output" =~ $1 ]]
+  }
+  refused 'threshold is 0: give a color difference above 0' --threshold 0
+  refused 'threshold is "-1"' --threshold -1
+  refused 'lights has 95: that light is below the horizon' --lights 95
+  refused 'views has "x"' --views x
+  refused 'out-of-plane has "y"' --out-of-plane y
+  refused 'there are instrument, showroom, outdoor' --views set:garage
+  refused 'no pair of light and viewer is left' --views 45
+  refused 'give a name that ends in .csv or .svg' --curve c.png
+  refused 'tolerance-for is given 2 angles' --tolerance-for 1,2
+  refused 'tolerance-for is 0' --tolerance-for 0
+  refused 'seam-axis' --seam-axis x
+  refused 'metric' --metric de94
+  refused 'target' --target both
+  refused 'misalignments' --misalignments 100
+  run goniogeom-index gray.xml --only nix -o n.tsv
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ 'no paint is named "nix"' ]]
+  run goniogeom-index absent.xml
+  [ "$status" -eq 3 ]
+}
+
+@test "standard input, any number of threads, the same bytes; --explain tells the plan" {
+  goniogeom-index -q --threads 1 <"$paints" >a.tsv
+  goniogeom-index -q --threads 7 "$paints" -o b.tsv
+  cmp a.tsv b.tsv
+  run --separate-stderr goniogeom-index --explain gray.xml --lights 45 --views 45,as30
+  [[ "$stderr" =~ "1 pairs of light and viewer; left out: 1 within 10 deg of the mirror direction" ]]
+}
+
+@test "a seam of the speed shape: bumper 8 degrees out, door in line" {
+  shape="--mesh $TESTDATA/speed-shape.obj"
+  run --separate-stderr goniogeom-index "$paints" --only silver_fine $shape --seam Hood,Bumper_F --report r.json -o s.tsv
+  [ "$status" -eq 0 ]
+  [[ "$stderr" =~ "seam Hood | Bumper_F: 0.99 m, misalignment" ]]
+  jq -e '.results | .misalignment_deg.median > 8 and .misalignment_deg.median < 9.2 and .paints[0].de_max > 20 and
+    .paints[0].over_threshold == 1 and (.paints[0].seam | length) > 150' r.json
+  [ "$(wc -l <s.tsv)" -eq $(($(jq '.results.paints[0].seam | length' r.json) + 1)) ]
+  goniogeom-index "$paints" --only silver_fine $shape --seam Door_L,Fender_L --report d.json -q -o d.tsv
+  jq -e '.results.misalignment_deg.median | fabs < 0.5' d.json
+  [ "$(goniogeom-index "$paints" --only silver_fine $shape --seam Hood,Bumper_F --worst -q | wc -l)" -eq 2 ]
+}
+
+@test "--advise tells the five guidelines, --picture draws" {
+  run --separate-stderr goniogeom-index "$paints" --only silver_fine --mesh "$TESTDATA/speed-shape.obj" \
+    --seam Hood,Bumper_F --advise --picture s.png --report r.json -o s.tsv
+  [ "$status" -eq 0 ]
+  [[ "$stderr" =~ "1 high travel only on parallel panels: applies" ]]
+  [ "$(jq '.results.paints[0].advice | length' r.json)" -eq 5 ]
+  [ "$(head -c 4 s.png | tail -c 3)" = PNG ]
+}
+
+@test "lights, viewers and an environment in the world" {
+  shape="--mesh $TESTDATA/speed-shape.obj --seam Hood,Bumper_F"
+  near=$(goniogeom-index "$paints" --only silver_fine $shape --light-from 0,75 --view-from 25,20 --worst -q | column 11)
+  far=$(goniogeom-index "$paints" --only silver_fine $shape --light-from 180,60 --view-from 180,70 --worst -q | column 11)
+  awk -v a="$near" -v b="$far" 'BEGIN { exit !(a > 2 * b) }'
+  prefilter-envmap -e 2,8,32 --size 8 "$TESTDATA/studio.exr" -o e.env.exr -q
+  env=$(goniogeom-index "$paints" --only silver_fine $shape --environment e.env.exr --view-from 25,20 --worst -q | column 11)
+  awk -v a="$env" 'BEGIN { exit !(a > 2 && a < 40) }'
+}
+
+@test "units and gaps" {
+  awk '$1 == "v" { printf "v %.9g %.9g %.9g\n", $2 * 1000, $3 * 1000, $4 * 1000; next } { print }' \
+    "$TESTDATA/speed-shape.obj" >mm.obj
+  run --separate-stderr goniogeom-index "$paints" --only silver_fine --mesh mm.obj --seam Hood,Bumper_F --worst
+  [[ "$stderr" =~ "0.99 m, misalignment" ]]
+  [[ "$stderr" =~ "taken as millimeters (--unit says otherwise)" ]]
+  run --separate-stderr goniogeom-index "$paints" --only silver_fine --mesh mm.obj --unit cm --seam Hood,Bumper_F --worst
+  [[ "$stderr" =~ "9.95 m, misalignment" ]]
+  run goniogeom-index "$paints" --only silver_fine --mesh mm.obj --max-gap 3 --seam Hood,Bumper_F
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ "do not touch: their edges are" ]]
+}
+
+@test "bad seams are refused by name" {
+  shape="--mesh $TESTDATA/speed-shape.obj"
+  run goniogeom-index gray.xml $shape --seam Hood,Dorr_L
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ 'speed-shape.obj: the mesh has no part "Dorr_L": it has Hood, Fender_L' ]]
+  run goniogeom-index gray.xml $shape --seam Roof,Bumper_F
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ '"Roof" and "Bumper_F" do not touch: their edges are 17'.*' mm apart at the nearest' ]]
+  seam_refused() {
+    run goniogeom-index gray.xml "${@:2}"
+    [ "$status" -eq 2 ]
+    [[ "$output" =~ $1 ]]
+  }
+  seam_refused 'give --mesh' --seam Hood,Roof
+  seam_refused 'give --mesh' --advise
+  seam_refused 'name two parts of the mesh, A,B' $shape --seam Hood
+  seam_refused 'leave out --mesh' $shape --seam Hood,Bumper_F --tolerance-for 1
+  seam_refused 'ends in .png' $shape --seam Hood,Bumper_F --picture x.jpg
+  seam_refused 'give --view-from AZ,EL' $shape --seam Hood,Bumper_F --light-from 0,50
+  seam_refused 'wants --light-from or --environment' $shape --seam Hood,Bumper_F --view-from 0,50
+  seam_refused 'light-from is "north"' $shape --seam Hood,Bumper_F --light-from north
+  seam_refused 'view-from is "0,100"' $shape --seam Hood,Bumper_F --light-from 0,1 --view-from 0,100
+  seam_refused 'exclude each other' $shape --seam Hood,Bumper_F --light-from 0,50 --environment x --view-from 0,3
+  seam_refused 'unit' $shape --seam Hood,Bumper_F --unit inch
+  seam_refused 'max-gap' $shape --seam Hood,Bumper_F --max-gap -1
+  run goniogeom-index "$paints" $shape --seam Hood,Bumper_F --picture x.png -q -o x.tsv
+  [ "$status" -eq 2 ]
+  [[ "$output" =~ "choose one by --only" ]]
+}

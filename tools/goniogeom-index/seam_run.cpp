@@ -1,0 +1,248 @@
+#include "seam_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "advice.h"
+#include "base/file.h"
+#include "base/parallel.h"
+#include "base/text.h"
+#include "paint/batches.h"
+#include "seam_picture.h"
+
+namespace goniochrome {
+
+namespace {
+
+struct Spread {
+  double low = 0, median = 0, high = 0;
+};
+Spread spread(const Seam& seam, double SeamPoint::*value) {
+  std::vector<double> values;
+  for (const SeamPoint& p : seam.points) values.push_back(p.*value);
+  std::ranges::sort(values);
+  return {values.front(), values[values.size() / 2], values.back()};
+}
+Json spread_json(const Spread& s) {
+  return {{"low", s.low}, {"median", s.median}, {"high", s.high}};
+}
+
+std::string seam_line(const SeamRequest& request, const Seam& seam) {
+  const Spread fold = spread(seam, &SeamPoint::fold_deg), gap = spread(seam, &SeamPoint::gap_mm),
+               flush = spread(seam, &SeamPoint::flush_mm);
+  std::string line = fmt::format(
+      "seam {} | {}: {:.2f} m, misalignment {:+.1f} to {:+.1f} deg (median {:+.1f}), gap {:.1f} mm ({:.1f} to {:.1f}), "
+      "flush "
+      "{:+.1f} to {:+.1f} mm",
+      request.world.part_a, request.world.part_b, seam.length_m, fold.low, fold.high, fold.median, gap.median, gap.low,
+      gap.high, flush.low, flush.high);
+  if (seam.unit_guessed && seam.unit_m != 1) line += "; taken as millimeters (--unit says otherwise)";
+  return line;
+}
+
+void tell_repairs(const Seam& seam, const Mesh& mesh, cli::Session& session) {
+  const auto tell = [&](int count, const char* what) {
+    if (count > 0) session.say(fmt::format("  {} {}", count, what));
+  };
+  tell(seam.repairs.duplicate_faces, "duplicate faces were left out");
+  tell(seam.repairs.non_manifold_edges, "edges of more than two faces were taken as ends of a panel");
+  tell(seam.repairs.turned, "edges had inward normals, which were turned");
+  tell(seam.not_continued, "places stand at more than 30 deg and were left out");
+  tell(mesh.repairs.degenerate_dropped, "faces without area were left out");
+  tell(mesh.repairs.triangles_turned, "faces were wound against their normals and turned");
+}
+
+class SeamRun {
+ public:
+  SeamRun(const IndexOptions& options, const SeamRequest& request, cli::Session& session)
+      : options_(options), request_(request), session_(session), wanted_(options.only.begin(), options.only.end()) {}
+
+  Result<cli::Verdict> operator()() {
+    GONIO_TRY(prepare());
+    GONIO_ASSIGN(PaintBatches paints, PaintBatches::open(options_.inputs));
+    GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
+    GONIO_TRY(
+        file.write("name\trun\tdistance_m\tx\ty\tz\tgap_mm\tflush_mm\tangle_deg\tfold_deg\tde_max\tde_rms\tviews\n"));
+    for (;;) {
+      GONIO_ASSIGN(std::vector<Paint> batch, paints.next());
+      if (batch.empty()) break;
+      if (!wanted_.empty()) std::erase_if(batch, [&](const Paint& p) { return !wanted_.contains(p.name); });
+      for (const Paint& paint : batch) GONIO_TRY(take(paint, file));
+    }
+    for (const std::string& name : wanted_)
+      if (!met_.contains(name)) return input_error("no paint is named \"{}\": names are taken letter by letter", name);
+    GONIO_TRY(file.commit());
+    return failed_ > 0 ? cli::Verdict::kNegative : cli::Verdict::kDone;
+  }
+
+ private:
+  Result<void> prepare() {
+    GONIO_ASSIGN(mesh_, read_mesh(options_.seam.mesh));
+    auto seam = seam_between(mesh_, request_.world.part_a, request_.world.part_b, request_.world.seam);
+    if (!seam.ok()) return input_error("{}: {}", options_.seam.mesh, seam.error().message);
+    seam_ = std::move(*seam);
+    views_ = request_.world.in_world ? views_in_world(seam_, request_.world.lights, request_.world.viewers)
+                                     : views_at_seam(seam_, request_.geometries, options_.seam_deg);
+    if (views_.empty())
+      return input_error("{}: no viewer sees both panels in any light: change --views or --view-from",
+                         options_.seam.mesh);
+    if (!options_.seam.environment.empty()) {
+      GONIO_ASSIGN(env_, read_env(options_.seam.environment));
+      // Told once, by the file's name, and not for every paint.
+      if (auto panels = EnvironmentPanels::make(env_, {}); !panels.ok())
+        return input_error("{}: {}", options_.seam.environment, panels.error().message);
+    }
+    session_.say(seam_line(request_, seam_));
+    tell_repairs(seam_, mesh_, session_);
+    Json& results = session_.results();
+    results["seam_length_m"] = seam_.length_m;
+    results["unit_m"] = seam_.unit_m;
+    results["misalignment_deg"] = spread_json(spread(seam_, &SeamPoint::fold_deg));
+    results["gap_mm"] = spread_json(spread(seam_, &SeamPoint::gap_mm));
+    results["flush_mm"] = spread_json(spread(seam_, &SeamPoint::flush_mm));
+    results["repairs"] = {{"duplicate_faces", seam_.repairs.duplicate_faces},
+                          {"non_manifold_edges", seam_.repairs.non_manifold_edges},
+                          {"turned", seam_.repairs.turned},
+                          {"not_continued", seam_.not_continued}};
+    results["paints"] = Json::array();
+    return {};
+  }
+
+  // The difference of the panels for every view.
+  Result<std::vector<double>> differences(const Paint& paint) {
+    std::vector<double> de(views_.size());
+    if (!options_.seam.environment.empty()) {
+      GONIO_ASSIGN(const Appearance appearance, appearance_of(paint));
+      GONIO_ASSIGN(const EnvironmentPanels panels, EnvironmentPanels::make(env_, condition_of(paint)));
+      GONIO_ASSIGN(const auto a, seam_colors(panels, seam_, views_, SeamSide::kA)(appearance));
+      GONIO_ASSIGN(const auto b, seam_colors(panels, seam_, views_, SeamSide::kB)(appearance));
+      for (std::size_t i = 0; i < de.size(); ++i) de[i] = difference(request_.metric, a[i], b[i]);
+      return de;
+    }
+    GONIO_ASSIGN(const FlakeCurve curve, FlakeCurve::make(paint, request_.target));
+    parallel_for(de.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const PanelView view = panel_view(seam_, views_[i]);
+        de[i] = difference(request_.metric, panel_color(curve.at(view.aspecular_a_deg), view.cos_a),
+                           panel_color(curve.at(view.aspecular_b_deg), view.cos_b));
+      }
+    });
+    return de;
+  }
+
+  Result<void> take(const Paint& paint, OutputFile& file) {
+    met_.insert(paint.name);
+    const auto de = differences(paint);
+    if (!de.ok()) {
+      session_.warn(fmt::format("left out: {}: {}", paint.name, de.error().message));
+      ++failed_;
+      return {};
+    }
+    const std::vector<SeamDifference> places = by_place(seam_, views_, *de);
+    GONIO_TRY(write_rows(paint, places, file));
+    report(paint, places);
+    if (options_.advise)
+      for (const std::string& line : advice(paint, request_, seam_, views_, *de)) {
+        session_.say(line);
+        session_.results()["paints"].back()["advice"].push_back(line);
+      }
+    if (options_.picture.empty()) return {};
+    if (++pictures_ > 1)
+      return usage_error("--picture draws one paint and there is another, \"{}\": choose one by --only", paint.name);
+    const SeamPicture picture{fmt::format("{}: {} | {}", paint.name, request_.world.part_a, request_.world.part_b),
+                              request_.threshold, places};
+    GONIO_ASSIGN(const Image image, seam_picture(mesh_, request_, seam_, picture));
+    return write_png(
+        options_.picture, image,
+        {{"Software", session_.tool() + " " + cli::Session::version()}, {"Comment", session_.command_line()}});
+  }
+
+  Result<void> write_rows(const Paint& paint, const std::vector<SeamDifference>& places, OutputFile& file) {
+    std::size_t first = 0, last = places.size();
+    if (options_.worst) {
+      // NaN compares false: places without views are never the worst.
+      for (std::size_t i = 0; i < places.size(); ++i)
+        if (places[i].views > 0 && (places[first].views == 0 || places[i].max > places[first].max)) first = i;
+      last = first + 1;
+    }
+    std::string text;
+    for (std::size_t i = first; i < last; ++i) {
+      const SeamPoint& p = seam_.points[i];
+      fmt::format_to(std::back_inserter(text),
+                     "{}\t{}\t{:.6g}\t{:.6g}\t{:.6g}\t{:.6g}\t{:.4f}\t{:.4f}\t{:.4f}\t{:.4f}\t", paint.name, p.run,
+                     p.distance_m, p.a.x, p.a.y, p.a.z, p.gap_mm, p.flush_mm, p.angle_deg, p.fold_deg);
+      text += places[i].views > 0 ? fmt::format("{:.6g}\t{:.6g}\t{}\n", places[i].max, places[i].rms, places[i].views)
+                                  : "-\t-\t0\n";
+    }
+    return file.write(text);
+  }
+
+  void report(const Paint& paint, const std::vector<SeamDifference>& places) {
+    double most = 0, squares = 0;
+    std::size_t seen = 0, over = 0;
+    Json rows = Json::array();
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const SeamPoint& p = seam_.points[i];
+      rows.push_back({{"run", p.run},
+                      {"distance_m", p.distance_m},
+                      {"x", p.a.x},
+                      {"y", p.a.y},
+                      {"z", p.a.z},
+                      {"gap_mm", p.gap_mm},
+                      {"flush_mm", p.flush_mm},
+                      {"angle_deg", p.angle_deg},
+                      {"fold_deg", p.fold_deg},
+                      {"de_max", json_number(places[i].max)},
+                      {"de_rms", json_number(places[i].rms)}});
+      if (places[i].views == 0) continue;
+      ++seen, over += places[i].max >= request_.threshold;
+      most = std::max(most, places[i].max);
+      squares += places[i].rms * places[i].rms;
+    }
+    const double rms = std::sqrt(squares / static_cast<double>(seen));
+    session_.results()["paints"].push_back({{"name", paint.name},
+                                            {"de_max", most},
+                                            {"de_rms", json_number(rms)},
+                                            {"over_threshold", static_cast<double>(over) / static_cast<double>(seen)},
+                                            {"seam", std::move(rows)}});
+    session_.say(fmt::format("{}: dE max {:.2f}, rms {:.2f}; {:.0f} % of the seam reach {}", paint.name, most, rms,
+                             100.0 * static_cast<double>(over) / static_cast<double>(seen),
+                             shortest(request_.threshold)));
+  }
+
+  const IndexOptions& options_;
+  const SeamRequest& request_;
+  cli::Session& session_;
+  const std::set<std::string> wanted_;
+  std::set<std::string> met_;
+  Mesh mesh_;
+  Seam seam_;
+  std::vector<SeamView> views_;
+  PrefilteredEnvironment env_;
+  int failed_ = 0, pictures_ = 0;
+};
+
+std::string plan(const IndexOptions& options, const SeamRequest& request) {
+  std::string text = fmt::format("seam of {} and {} in {}: places a thousandth of the mesh's size apart\n",
+                                 request.world.part_a, request.world.part_b, options.seam.mesh);
+  if (!request.world.in_world) {
+    text += fmt::format("{} pairs of light and viewer at every place, the light from both sides of the seam\n",
+                        request.geometries.pairs.size());
+  } else {
+    text += fmt::format("{} viewers in the world, {}\n", request.world.viewers.size(),
+                        options.seam.environment.empty() ? fmt::format("{} lights", request.world.lights.size())
+                                                         : "light of " + options.seam.environment);
+  }
+  return text + "left out: gloss, and shadows and reflections of the mesh on itself\n";
+}
+
+}  // namespace
+
+Result<cli::Verdict> run_on_seam(const IndexOptions& options, cli::Session& session) {
+  GONIO_ASSIGN(const SeamRequest request, seam_request_of(options));
+  session.explain(plan(options, request));
+  return SeamRun(options, request, session)();
+}
+
+}  // namespace goniochrome

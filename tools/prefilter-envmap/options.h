@@ -1,0 +1,25 @@
+// The options of prefilter-envmap.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/options.h"
+
+namespace goniochrome {
+
+struct Options {
+  cli::CommonOptions common;
+  std::vector<std::string> images;
+  std::string output = "-";
+  std::string basis;
+  std::vector<double> exponents;
+  std::string size = "auto";
+  int verify = 0;
+  std::string bad_pixels = "error";
+  bool no_mirror = false;
+};
+
+cli::ToolSpec tool_spec(Options& options);
+
+}  // namespace goniochrome

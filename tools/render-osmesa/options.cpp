@@ -1,0 +1,137 @@
+#include "options.h"
+
+namespace goniochrome {
+
+cli::ToolSpec render_spec(RenderOptions& o, cli::CommonOptions& common) {
+  cli::ToolSpec spec;
+  spec.name = "render-osmesa";
+  spec.summary = "draw painted meshes under image light and directional lights";
+  spec.description = {
+      "Draws a mesh whose parts wear paints fitted by fit-paint(1), lit by an environment prefiltered by "
+      "prefilter-envmap(1), by directional lights, or by both, with OpenGL on the processor: no window, no graphics "
+      "card. "
+      "The result is scene-linear radiance (OpenEXR, linear Rec.2020) or a display picture (PNG).",
+      "A PAINT is FILE[#NAME], a paint of a paint XML file; NAME may be left out where the file holds only one. --part "
+      "paints the part of that name, or, where no part has it, every part of that material (the material of a part's "
+      "first face); --paint paints the "
+      "others. A part without a paint is matt gray of 18 %, and the tool says so. World axes are those of the "
+      "environment: +Y is up, azimuth 0 is +Z and grows toward +X.",
+      "A light is AZIMUTH,ELEVATION or a vector X,Y,Z toward it, then, if wanted, R,G,B: what a perfect white diffuser "
+      "facing it shows (1,1,1). Its mirror image is a point without extent and is not drawn.",
+      "--exposure auto leaves an EXR as it is, and in a PNG brings the brightest that a white diffuser can be in this "
+      "light "
+      "to 1. The view Paint keeps colors exact up to 80 % of display white and the hue of every "
+      "highlight; ACES SDR is the film-like rendering of ACES 1.0; Un-tone-mapped clips. Where $OCIO is set, the views "
+      "are those of its configuration.",
+      "--aov adds buffers of the pixel centers to an EXR: normal (normal.X .Y .Z, turned to the viewer), aspecular "
+      "(the "
+      "angle in degrees between the view and the mirror direction of the first light), lambert (the cosine between "
+      "normal "
+      "and that light), mask (1 on the mesh) and part (numbered from 1; the attribute goniochrome:parts names them). "
+      "Without --light, the light of these two is the direction in which the environment's irradiance is largest; "
+      "goniochrome:aovLight holds it.",
+      "--check compares that many random pixel centers with the reference integrator: the exact lobe model against "
+      "every "
+      "texel of the environment's source, without prefiltering. The differences are CIEDE2000 relative to the "
+      "brightest "
+      "that a white diffuser can be in this light, whatever the exposure.",
+  };
+  spec.options = {
+      {.name = "mesh",
+       .letter = 'm',
+       .value = "FILE",
+       .help = "mesh: OBJ with parts, or OFF, PLY, STL",
+       .target = &o.mesh,
+       .required = true},
+      {.name = "part",
+       .value = "PART=PAINT",
+       .help = "paint of a part or material; repeat for more",
+       .target = &o.parts},
+      {.name = "paint", .letter = 'p', .value = "PAINT", .help = "paint of all other parts", .target = &o.paint},
+      {.name = "env", .letter = 'e', .value = "FILE", .help = "prefiltered environment (*.env.exr)", .target = &o.env},
+      {.name = "light",
+       .value = "DIR[,RGB]",
+       .help = "directional light: AZ,EL or X,Y,Z, then R,G,B; repeat for more",
+       .target = &o.lights},
+      {.name = "size", .letter = 's', .value = "WxH", .help = "picture size in pixels", .target = &o.size},
+      {.name = "orbit",
+       .value = "AZ,EL[,DIST]",
+       .help = "camera around the mesh, in degrees; at distance 1 the mesh just fits from every azimuth",
+       .target = &o.orbit},
+      {.name = "camera",
+       .value = "EYE,TARGET[,FOV]",
+       .help = "camera at EX,EY,EZ looking at TX,TY,TZ, with its field of view, instead of --orbit",
+       .target = &o.camera},
+      {.name = "fov", .value = "DEG", .help = "vertical field of view", .target = &o.fov_deg, .low = 1, .high = 150},
+      {.name = "samples",
+       .value = "N",
+       .help = "samples a pixel: 1, 4 or 16",
+       .target = &o.samples,
+       .low = 1,
+       .high = 16},
+      {.name = "background",
+       .value = "WHAT",
+       .help = "none (transparent; 18 % gray in a PNG), env, or a color R,G,B",
+       .target = &o.background},
+      {.name = "exposure", .value = "STOPS", .help = "brightens by 2^STOPS, or auto", .target = &o.exposure},
+      {.name = "view",
+       .value = "NAME",
+       .help = "display view of a PNG: Paint, ACES SDR or Un-tone-mapped",
+       .target = &o.view},
+      {.name = "aov",
+       .value = "NAMES",
+       .help = "buffers to add to an EXR: normal, aspecular, lambert, mask, part",
+       .target = &o.aovs},
+      {.name = "check",
+       .value = "N",
+       .help = "compare N random visible pixels with the reference integrator",
+       .target = &o.check,
+       .low = 0,
+       .high = 1e8},
+      {.name = "check-source",
+       .value = "FILE",
+       .help = "image that the environment was made from, where it has moved",
+       .target = &o.check_source},
+      {.name = "output",
+       .letter = 'o',
+       .value = "FILE",
+       .help = "picture to write: .exr or .png; - is EXR on standard output",
+       .target = &o.output,
+       .required = true},
+  };
+  add_common_options(spec, common, {cli::Common::kExplain, cli::Common::kSeed});
+  spec.examples = {
+      {"render-osmesa --mesh testdata/speed-shape.obj --light 30,50 -o shape.png",
+       "draws the bare shape under one light."},
+      {"fit-paint --basis testdata/b7.basis.xml testdata/paints.paints.xml -o fitted.xml && "
+       "render-osmesa --mesh testdata/speed-shape.obj --paint fitted.xml#candy_red --part "
+       "Glass=fitted.xml#silver_black_flop "
+       "--light 30,50 --light -60,20,0.5,0.5,0.6 --samples 16 -o candy.png",
+       "dresses it in a fitted paint, its windows in another."},
+      {"prefilter-envmap testdata/studio.exr --basis testdata/b7.basis.xml -o studio.env.exr && "
+       "fit-paint --basis testdata/b7.basis.xml testdata/paints.paints.xml -o fitted.xml && "
+       "render-osmesa --mesh testdata/speed-shape.obj --paint fitted.xml#candy_red --env studio.env.exr --check 100 -o "
+       "studio.png",
+       "draws it in a photo studio, and tells how far the picture is from the reference integrator."},
+      {"render-osmesa --mesh testdata/speed-shape.obj --light 30,50 --aov aspecular,lambert,mask,part -o buffers.exr",
+       "writes the buffers that a sketch is fitted from."},
+  };
+  spec.report = {
+      {"engine", "the OpenGL renderer"},
+      {"gbuffer_ms", "time to rasterize the mesh once"},
+      {"frame_ms", "time to draw the picture, all samples, without reading and uploading"},
+      {"triangles", "triangles of the mesh"},
+      {"parts[]: name, material, paint", "the parts of the mesh and what they wear"},
+      {"exposure_stops", "exposure in force"},
+      {"view", "display and view of a PNG"},
+      {"white_luminance", "the brightest that a white diffuser can be in this light"},
+      {"repairs: normals_made, degenerate_dropped, polygons_split, triangles_turned", "what was mended in the mesh"},
+      {"error: de00_mean, de00_p95, de00_max", "CIEDE2000 of the checked pixels against the reference integrator"},
+      {"error: checked_pixels, worst_x, worst_y, time_s", "how many, where it is worst, and how long the check took"},
+      {"error: source", "the image that the reference integrator used"},
+  };
+  spec.see_also = {"fit-paint(1)", "prefilter-envmap(1)", "goniochrome-paint(5)", "goniochrome-theory(7)"};
+  return spec;
+}
+
+}  // namespace goniochrome

@@ -1,0 +1,29 @@
+// What render-osmesa takes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/options.h"
+
+namespace goniochrome {
+
+struct RenderOptions {
+  std::string mesh, paint, env, output;
+  std::vector<std::string> parts, lights;
+  std::string size = "1280x720";
+  std::vector<double> orbit = {35, 12};
+  std::vector<double> camera;
+  double fov_deg = 30;
+  int samples = 4;
+  std::string exposure = "auto";
+  std::string view;
+  std::string background = "none";
+  std::vector<std::string> aovs;
+  int check = 0;
+  std::string check_source;
+};
+
+cli::ToolSpec render_spec(RenderOptions& options, cli::CommonOptions& common);
+
+}  // namespace goniochrome

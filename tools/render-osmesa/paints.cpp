@@ -1,0 +1,136 @@
+#include "paints.h"
+
+#include <algorithm>
+#include <map>
+#include <numbers>
+
+#include "base/text.h"
+#include "paint/xml.h"
+
+namespace goniochrome {
+
+namespace {
+
+constexpr double kUnpaintedReflectance = 0.18;
+
+// Up to `most` names, in order, then how many there are.
+std::string listed(const std::vector<std::string>& names, std::size_t most = 12) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, names.size()); ++i) text += (i == 0 ? "" : ", ") + names[i];
+  return names.size() > most ? fmt::format("{}, ... ({} in all)", text, names.size()) : text;
+}
+
+// `did you mean "X"? `, or nothing.
+std::string nearest_of(const std::string& wanted, const std::vector<std::string>& names) {
+  const auto distance = [&](const std::string& name) { return edit_distance(lower(wanted), lower(name)); };
+  const auto nearest = std::min_element(names.begin(), names.end(), [&](const std::string& a, const std::string& b) {
+    return distance(a) < distance(b);
+  });
+  if (nearest == names.end() || distance(*nearest) > std::max<std::size_t>(2, wanted.size() / 3)) return "";
+  return fmt::format("did you mean \"{}\"? ", *nearest);
+}
+
+// The paints of all files named, each file read once.
+class PaintShelf {
+ public:
+  // `reference` is FILE or FILE#NAME.
+  Result<Paint> paint(const std::string& reference) {
+    const auto hash = reference.rfind('#');
+    const std::string file = reference.substr(0, hash);
+    if (!files_.contains(file)) {
+      GONIO_ASSIGN(files_[file], read_paints(file));
+    }
+    const std::vector<Paint>& paints = files_[file];
+    std::vector<std::string> names;
+    for (const Paint& paint : paints) names.push_back(paint.name);
+    if (hash == std::string::npos) {
+      if (paints.size() == 1) return with_lobes(paints.front(), file);
+      return usage_error("{} holds {} paints: write {}#NAME: it holds {}", file, paints.size(), file, listed(names));
+    }
+    const std::string name = reference.substr(hash + 1);
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end())
+      return usage_error("{} holds no paint \"{}\": {}it holds {}", file, name, nearest_of(name, names), listed(names));
+    return with_lobes(paints[static_cast<std::size_t>(found - names.begin())], file);
+  }
+
+ private:
+  static Result<Paint> with_lobes(const Paint& paint, const std::string& file) {
+    if (paint.lobes) return paint;
+    return input_error(
+        "{}: the paint \"{}\" has no lobes: fit it first, as in `fit-paint {} --basis BASIS.xml -o FITTED.xml`", file,
+        paint.name, file);
+  }
+
+  std::map<std::string, std::vector<Paint>> files_;
+};
+
+struct Assignment {
+  std::string part, reference;
+};
+
+Result<std::vector<Assignment>> assignments(const std::vector<std::string>& options) {
+  std::vector<Assignment> all;
+  for (const std::string& option : options) {
+    const auto equals = option.find('=');
+    if (equals == 0 || equals == std::string::npos || equals + 1 == option.size()) {
+      return usage_error("--part is \"{}\": write PART=FILE.xml#PAINT", option);
+    }
+    all.push_back({option.substr(0, equals), option.substr(equals + 1)});
+  }
+  return all;
+}
+
+// The parts that a word means: the part of that name, or all of that material.
+Result<std::vector<std::size_t>> parts_meant(const Mesh& mesh, const std::string& word) {
+  std::vector<std::size_t> named, made_of;
+  for (std::size_t i = 0; i < mesh.parts.size(); ++i) {
+    if (mesh.parts[i].name == word) named.push_back(i);
+    if (mesh.parts[i].material == word) made_of.push_back(i);
+  }
+  if (!named.empty()) return named;
+  if (!made_of.empty()) return made_of;
+  std::vector<std::string> parts, materials;
+  for (const MeshPart& part : mesh.parts) {
+    parts.push_back(part.name);
+    const bool is_new = std::find(materials.begin(), materials.end(), part.material) == materials.end();
+    if (is_new && !part.material.empty()) materials.push_back(part.material);
+  }
+  std::vector<std::string> both = parts;
+  both.insert(both.end(), materials.begin(), materials.end());
+  return usage_error("the mesh has no part or material \"{}\": {}its parts are {}{}", word, nearest_of(word, both),
+                     listed(parts), materials.empty() ? "" : "; its materials are " + listed(materials, 30));
+}
+
+}  // namespace
+
+Result<DressedMesh> dressed(const Mesh& mesh, const RenderOptions& options) {
+  PaintShelf shelf;
+  LobeFit gray;
+  gray.diffuse = (kUnpaintedReflectance / std::numbers::pi) * Rgb{1, 1, 1};
+  DressedMesh result{std::vector<LobeFit>(mesh.parts.size(), gray), std::vector<std::string>(mesh.parts.size()), {}};
+  const auto wear = [&](std::size_t part, const Paint& paint) {
+    result.paints[part] = *paint.lobes;
+    result.names[part] = paint.name;
+  };
+  if (!options.paint.empty()) {
+    GONIO_ASSIGN(const Paint paint, shelf.paint(options.paint));
+    for (std::size_t part = 0; part < mesh.parts.size(); ++part) wear(part, paint);
+  }
+  // A part's own name is meant before its material, wherever it stands on the command line.
+  GONIO_ASSIGN(const std::vector<Assignment> all, assignments(options.parts));
+  for (const bool by_name : {false, true}) {
+    for (const Assignment& assignment : all) {
+      GONIO_ASSIGN(const std::vector<std::size_t> parts, parts_meant(mesh, assignment.part));
+      if ((mesh.parts[parts.front()].name == assignment.part) != by_name) continue;
+      GONIO_ASSIGN(const Paint paint, shelf.paint(assignment.reference));
+      for (const std::size_t part : parts) wear(part, paint);
+    }
+  }
+  for (std::size_t part = 0; part < mesh.parts.size(); ++part) {
+    if (result.names[part].empty()) result.unpainted.push_back(mesh.parts[part].name);
+  }
+  return result;
+}
+
+}  // namespace goniochrome

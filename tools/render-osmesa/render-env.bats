@@ -1,0 +1,88 @@
+# render-osmesa under a prefiltered environment.
+
+setup_file() {
+  cd "$BATS_FILE_TMPDIR" || exit 1
+  oiiotool "$TESTDATA/studio.exr" --resize:filter=box 64x32 -o small.exr
+  prefilter-envmap -q small.exr --basis "$TESTDATA/b7.basis.xml" -o small.env.exr
+}
+
+setup() {
+  cd "$BATS_FILE_TMPDIR" || exit 1
+  shape=$TESTDATA/speed-shape.obj
+  small="--size 96x54 --samples 1"
+  open='<?xml version="1.0"?><paints xmlns="urn:goniochrome:paint:1" version="1">'
+  lobes='<lobes space="lin_rec2020_scene" basis="b7" method="l1" max_de00="0" mean_de00="0">'
+  echo "$open<paint name=\"matt\">$lobes<diffuse r=\"0.1\" g=\"0.2\" b=\"0.3\"/></lobes></paint>" \
+    "<paint name=\"flake\">$lobes<diffuse r=\"0.01\" g=\"0.01\" b=\"0.02\"/>" \
+    '<lobe exponent="20" ddr="0.1" ddg="0.1" ddb="0.2" gr="0" gg="0" gb="0"/>' \
+    '<lobe exponent="900" ddr="0" ddg="0" ddb="0" gr="4" gg="4" gb="4"/></lobes></paint>' \
+    "<paint name=\"other\">$lobes<diffuse r=\"0.01\" g=\"0.01\" b=\"0.02\"/>" \
+    '<lobe exponent="33" ddr="0.1" ddg="0.1" ddb="0.2" gr="0" gg="0" gb="0"/></lobes></paint></paints>' >paints.xml
+}
+
+# number KEY: the first number of that key in the report.
+number() { grep -m1 "\"$1\"" r.json | sed -E 's/.*: ([-0-9.e+]+),?$/\1/'; }
+
+# Matt paint has no approximation but the map of E = 1: 1e-3 by its tolerance and as much by the lookup between texels. A
+# channel off by 2e-3 moves a* by at most 500/3 times that, 0.33.
+@test "matt paint agrees with the reference integrator" {
+  run render-osmesa --mesh "$shape" -p paints.xml#matt --env small.env.exr $small --check 100 -o out.exr --report r.json
+  [ "$status" -eq 0 ]
+  awk -v max="$(number de00_max)" 'BEGIN { exit !(max < 0.35) }'
+  grep -q '"source": "small.exr"' r.json
+}
+
+@test "flake and gloss are told how far they are from it" {
+  render-osmesa -q --mesh "$shape" -p paints.xml#flake --env small.env.exr $small --check 100 -o out.exr --report r.json
+  awk -v mean="$(number de00_mean)" -v p95="$(number de00_p95)" -v max="$(number de00_max)" \
+    'BEGIN { exit !(0 < mean && mean <= p95 && p95 <= max) }'
+}
+
+@test "the environment as background fills the picture" {
+  render-osmesa -q --mesh "$shape" -p paints.xml#matt --env small.env.exr $small --background env -o out.exr
+  oiiotool out.exr --ch A --printstats | grep -q 'Stats Min: 1'
+  render-osmesa -q --mesh "$shape" -p paints.xml#matt --env small.env.exr $small -o out.exr
+  oiiotool out.exr --ch A --printstats | grep -q 'Stats Min: 0'
+}
+
+@test "without --light the buffers are those of the brightest direction, which the header holds" {
+  render-osmesa -q --mesh "$shape" -p paints.xml#matt --env small.env.exr $small --aov lambert -o out.exr
+  exrheader out.exr | grep -A1 -q 'goniochrome:aovLight'
+}
+
+@test "a lobe that the environment lacks is named, with the command that makes it" {
+  run render-osmesa --mesh "$shape" -p paints.xml#other --env small.env.exr $small -o lobe.exr
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ "small.env.exr: the environment has no lobe of exponent 33" ]]
+  [[ "$output" =~ "prefilter-envmap small.exr --exponents 33 -o" ]]
+  [ ! -e lobe.exr ]
+}
+
+@test "a moved source is looked for beside the environment, then named by --check-source, then done without" {
+  mkdir -p moved elsewhere
+  cp small.env.exr small.exr moved
+  cp small.env.exr elsewhere
+  cp paints.xml elsewhere
+  run render-osmesa --mesh "$shape" -p paints.xml#matt --env moved/small.env.exr $small --check 5 -o out.exr
+  [ "$status" -eq 0 ]
+  [[ ! "$output" =~ warning ]]
+  cd elsewhere
+  run render-osmesa --mesh "$shape" -p paints.xml#matt --env small.env.exr $small --check 5 -o out.exr
+  [ "$status" -eq 0 ]
+  [[ "$output" =~ 'the source "small.exr" of small.env.exr is not there: checked against its mirror part instead' ]]
+  run render-osmesa --mesh "$shape" -p paints.xml#matt --env small.env.exr $small --check 5 --check-source ../small.exr -o out.exr
+  [ "$status" -eq 0 ]
+  [[ ! "$output" =~ warning ]]
+  run render-osmesa --mesh "$shape" -p paints.xml#matt --env small.env.exr $small --check 5 --check-source nowhere.exr -o none.exr
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ nowhere.exr ]]
+  [ ! -e none.exr ]
+}
+
+@test "a file that is no environment is refused" {
+  run render-osmesa --mesh "$shape" --env small.exr $small -o none.exr
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ small.exr ]]
+  run render-osmesa --mesh "$shape" --env "$shape" $small -o none.exr
+  [ "$status" -eq 3 ]
+}

@@ -1,0 +1,208 @@
+# render-osmesa from the outside: options, pictures, files, exit statuses.
+
+setup() {
+  cd "$BATS_TEST_TMPDIR" || exit 1
+  shape=$TESTDATA/speed-shape.obj
+  light="--light 30,40"
+  small="--size 96x54 --samples 1"
+  # Three panels side by side, facing +Z.
+  cat >panels.obj <<'OBJ'
+v -1.5 -0.5 0
+v -1.5 0.5 0
+v -0.5 -0.5 0
+v -0.5 0.5 0
+v 0.5 -0.5 0
+v 0.5 0.5 0
+v 1.5 -0.5 0
+v 1.5 0.5 0
+o left
+usemtl lacquer
+f 1 3 4 2
+o middle
+usemtl glass
+f 3 5 6 4
+o right
+usemtl lacquer
+f 5 7 8 6
+OBJ
+  matt() { # NAME R G B: a matt paint of those reflectances
+    awk -v n="$1" -v r="$2" -v g="$3" -v b="$4" 'BEGIN { p = atan2(0, -1)
+      printf "<paint name=\"%s\"><lobes space=\"lin_rec2020_scene\" basis=\"none\" method=\"l1\" max_de00=\"0\" mean_de00=\"0\">", n
+      printf "<diffuse r=\"%.9g\" g=\"%.9g\" b=\"%.9g\"/></lobes></paint>\n", r / p, g / p, b / p }'
+  }
+  {
+    echo '<?xml version="1.0"?><paints xmlns="urn:goniochrome:paint:1" version="1">'
+    matt red 0.8 0.1 0.1
+    matt green 0.1 0.8 0.1
+    matt white 1 1 1
+    echo '<paint name="bare"><measurement illuminant="D65" observer="10"><lab geometry="45as45" L="50" a="0" b="0"/></measurement></paint>'
+    echo '</paints>'
+  } >paints.xml
+  front="--camera 0,0,4,0,0,0,30 --size 90x60 --samples 1"
+}
+
+# pixel FILE X Y: its channels, separated by blanks.
+pixel() { oiiotool "$1" --cut "1x1+$2+$3" --printstats 2>/dev/null | sed -nE 's/.*Stats Avg: +(.*) \(float\)/\1/p' | tr -s ' '; }
+
+# near "A B C ..." "D E F ...": whether the numbers agree within 1e-3.
+near() {
+  awk -v a="$1" -v b="$2" 'BEGIN { n = split(b, y, " "); split(a, x, " ")
+    for (i = 1; i <= n; ++i) if ((x[i] - y[i])^2 > 1e-6) exit 1 }' && return 0
+  echo "$1 is not $2"
+  return 1
+}
+
+@test "parts wear their paints, by part, by material, and the rest by --paint" {
+  run render-osmesa --mesh panels.obj --light 0,0 $front -p paints.xml#white --part lacquer=paints.xml#green \
+    --part right=paints.xml#red -o out.exr --report r.json
+  [ "$status" -eq 0 ]
+  near "$(pixel out.exr 22 30)" "0.1 0.8 0.1 1"
+  near "$(pixel out.exr 45 30)" "1 1 1 1"
+  near "$(pixel out.exr 67 30)" "0.8 0.1 0.1 1"
+  grep -q '"paint": "green"' r.json
+}
+
+@test "the part's own name goes before its material, whatever the order" {
+  render-osmesa -q --mesh panels.obj --light 0,0 $front --part right=paints.xml#red --part lacquer=paints.xml#green -o a.exr
+  render-osmesa -q --mesh panels.obj --light 0,0 $front --part lacquer=paints.xml#green --part right=paints.xml#red -o b.exr
+  near "$(pixel a.exr 67 30)" "0.8 0.1 0.1 1"
+  near "$(pixel b.exr 67 30)" "0.8 0.1 0.1 1"
+}
+
+@test "parts without a paint are gray, told once" {
+  run render-osmesa --mesh panels.obj --light 0,0 $front -o out.exr
+  [ "$status" -eq 0 ]
+  [[ "$output" =~ "3 of 3 parts have no paint and are matt gray: left, middle, right: give --paint or --part" ]]
+  [ "$(grep -c 'warning' <<<"$output")" -eq 1 ]
+}
+
+@test "the EXR says what made it, and in which space it is" {
+  render-osmesa -q --mesh panels.obj --light 0,0 $front --part left=paints.xml#red -o out.exr
+  header=$(exrheader out.exr)
+  [[ "$header" =~ "render-osmesa" ]]
+  [[ "$header" =~ "--light 0,0" ]]
+  [[ "$header" =~ "lin_rec2020_scene" ]]
+  [[ "$header" =~ chromaticities ]]
+}
+
+@test "buffers go into the same EXR, with the names of the parts" {
+  render-osmesa -q --mesh panels.obj --light 0,45 $front --aov normal,aspecular,lambert --aov mask,part -o out.exr
+  header=$(exrheader out.exr)
+  for channel in normal.X normal.Y normal.Z aspecular lambert mask part; do [[ "$header" =~ $channel ]]; done
+  [[ "$header" =~ '["left","middle","right"]' ]]
+  oiiotool out.exr --ch part --cut 1x1+67+30 --printstats | grep -q 'Stats Avg: 3'
+  oiiotool out.exr --ch aspecular --cut 1x1+45+30 --printstats | grep -qE 'Stats Avg: (45|44.9)'
+}
+
+@test "a PNG is what --view says, and needs no --exposure" {
+  render-osmesa -q --mesh "$shape" $light $small -o shape.png
+  file shape.png | grep -q 'PNG image data, 96 x 54, 8-bit/color RGB'
+  render-osmesa -q --mesh "$shape" $light $small --view 'aces sdr' -o aces.png
+  ! cmp -s shape.png aces.png
+  run render-osmesa --mesh "$shape" $light $small --view filmic -o no.png
+  [ "$status" -eq 2 ]
+  [[ "$output" =~ 'there are "Paint", "Un-tone-mapped", "ACES SDR"' ]]
+  [ ! -e no.png ]
+}
+
+@test "EXR on standard output" {
+  render-osmesa --mesh panels.obj --light 0,0 $front -o - 2>messages >out.exr
+  near "$(pixel out.exr 45 30)" "0.18 0.18 0.18 1"
+  grep -q 'standard output' messages
+}
+
+@test "HardCase threads: the same bytes for any number" {
+  for threads in 1 2 7; do
+    LP_NUM_THREADS=$threads render-osmesa -q --mesh "$shape" $light $small --aov normal,part -o out.exr
+    mv out.exr $threads.exr
+  done
+  cmp 1.exr 2.exr
+  cmp 1.exr 7.exr
+  for threads in 1 7; do
+    render-osmesa -q --threads $threads --mesh "$shape" $light $small --aov normal,part -o out.exr
+    oiiotool out.exr 1.exr --diff >/dev/null
+  done
+}
+
+@test "--check agrees with the reference integrator where nothing is approximated" {
+  run render-osmesa --mesh panels.obj --light 20,30 --light -1,1,1,0.5,0.5,0.2 -p paints.xml#red $front --check 100 -o out.exr --report r.json
+  [ "$status" -eq 0 ]
+  [[ "$output" =~ "dE00 to the reference: mean 0.00, p95 0.00, max 0.00" ]]
+  grep -q '"checked_pixels": 100' r.json
+}
+
+@test "--seed chooses the checked pixels" {
+  for seed in 1 1 2; do
+    render-osmesa -q --mesh "$shape" $light $small --check 3 --seed $seed -o out.exr --report r.json
+    grep -E '"(worst_x|worst_y|de00_max)"' r.json >>"seed-$seed.txt"
+  done
+  [ "$(head -3 seed-1.txt)" = "$(tail -3 seed-1.txt)" ]
+  [ "$(head -3 seed-1.txt)" != "$(cat seed-2.txt)" ]
+}
+
+@test "a camera inside the mesh, or looking elsewhere, is told" {
+  run render-osmesa --mesh "$shape" $light $small --orbit 0,0,0.01 -o out.exr
+  [ "$status" -eq 0 ]
+  [[ "$output" =~ "the camera is inside the mesh" ]]
+  run render-osmesa --mesh panels.obj $light $small --camera 0,0,4,0,0,9 -o out.exr
+  [ "$status" -eq 0 ]
+  [[ "$output" =~ "the mesh is not in the picture" ]]
+}
+
+# refused STATUS TEXT ARGUMENT...: exit status, message, and no file.
+refused() {
+  local status_wanted=$1 text=$2
+  shift 2
+  run render-osmesa --size 32x32 -o out.exr "$@"
+  [ "$status" -eq "$status_wanted" ] && [[ "$output" == *"$text"* ]] && [ ! -e out.exr ] && return 0
+  echo "status $status: $output"
+  return 1
+}
+
+@test "mistakes in part and paint names are answered with what there is" {
+  refused 2 'no part or material "midle": did you mean "middle"? its parts are left, middle, right; its materials are lacquer, glass' \
+    --mesh panels.obj $light --part midle=paints.xml#red
+  refused 2 'holds no paint "rde": did you mean "red"? it holds red, green, white, bare' --mesh panels.obj $light -p paints.xml#rde
+  refused 2 'holds 4 paints: write paints.xml#NAME' --mesh panels.obj $light -p paints.xml
+  refused 2 'write PART=FILE.xml#PAINT' --mesh panels.obj $light --part paints.xml
+  refused 3 '"bare" has no lobes: fit it first, as in `fit-paint paints.xml' --mesh panels.obj $light -p paints.xml#bare
+  refused 3 'nowhere.xml' --mesh panels.obj $light -p nowhere.xml#red
+}
+
+@test "mistakes in the other options name the option, the value and what it takes" {
+  refused 2 'there is no light: give --env, --light or both' --mesh panels.obj
+  refused 2 '--light is "30": write AZ,EL or X,Y,Z' --mesh panels.obj --light 30
+  refused 2 '--light is "0,0,0": the vector to the light has no length' --mesh panels.obj --light 0,0,0
+  refused 2 '--light is "0,0,1,-1,1,1": light cannot be negative' --mesh panels.obj --light 0,0,1,-1,1,1
+  refused 2 '--samples is 8: give 1, 4 or 16' --mesh panels.obj $light --samples 8
+  refused 2 '--orbit has the elevation 95' --mesh panels.obj $light --orbit 0,95
+  refused 2 '--camera has 5 numbers' --mesh panels.obj $light --camera 1,2,3,4,5
+  refused 2 "eye and target are the same point" --mesh panels.obj $light --camera 1,2,3,1,2,3
+  refused 2 '--background is "blue": write none, env or R,G,B' --mesh panels.obj $light --background blue
+  refused 2 '--background env needs --env' --mesh panels.obj $light --background env
+  refused 2 '--exposure is "bright": write a number of stops, or auto' --mesh panels.obj $light --exposure bright
+  refused 2 'no buffer "depth": there are normal, aspecular, lambert, mask, part' --mesh panels.obj $light --aov depth
+  refused 2 '--view is for a PNG' --mesh panels.obj $light --view Paint
+  refused 3 'nowhere.obj' --mesh nowhere.obj $light
+  refused 3 'nowhere.env.exr' --mesh panels.obj --env nowhere.env.exr
+  run render-osmesa --mesh panels.obj $light --size 32 -o out.exr
+  [ "$status" -eq 2 ]
+  [[ "$output" =~ '--size is "32": write WIDTHxHEIGHT in pixels' ]]
+  run render-osmesa --mesh panels.obj $light -o out.jpg
+  [ "$status" -eq 2 ]
+  [[ "$output" =~ 'write a name that ends in .exr or .png' ]]
+  run render-osmesa --mesh panels.obj $light -o out.png --aov mask
+  [ "$status" -eq 2 ]
+}
+
+@test "a writing error is an error, and says so" {
+  run render-osmesa --mesh panels.obj $light $small -o /nowhere/out.exr
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ "/nowhere/out.exr" ]]
+}
+
+@test "--explain prints parts, lobes and the program" {
+  run render-osmesa --mesh panels.obj $light $front -p paints.xml#red --explain -o out.exr
+  [[ "$output" =~ "3 parts" ]]
+  [[ "$output" =~ "#version 330 core" ]]
+}

@@ -1,0 +1,36 @@
+// From the words of the command line to a scene's numbers.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "options.h"
+#include "render/camera.h"
+#include "render/scene.h"
+
+namespace goniochrome {
+
+struct PictureSize {
+  int width = 0, height = 0;
+};
+// "1280x720". Errors of all of these are usage errors that name the option, its value and what it takes.
+Result<PictureSize> parse_size(const std::string& text);
+
+// AZ,EL or X,Y,Z, then R,G,B if the light is not 1,1,1.
+Result<Light> parse_light(const std::string& text);
+
+// --camera or --orbit.
+Result<Camera> camera_of(const RenderOptions& options, const Mesh& mesh, const PictureSize& size);
+
+// The background of `scene` as --background has it.
+Result<void> set_background(Scene& scene, const std::string& text);
+
+// --exposure in stops, or nothing for "auto".
+Result<std::optional<double>> parse_exposure(const std::string& text);
+
+// The names of --aov, each given once.
+std::vector<std::string> aov_names(const std::vector<std::string>& options);
+
+}  // namespace goniochrome

@@ -1,0 +1,76 @@
+#include "answer.h"
+
+#include <cmath>
+
+#include "base/text.h"
+
+namespace goniochrome {
+
+namespace {
+
+Json errors_json(const TrompeErrors& errors) {
+  return {{"rms", json_number(errors.rms)}, {"max", json_number(errors.max)}};
+}
+
+}  // namespace
+
+Paint painted(const Paint& paint, const Answer& answer) {
+  Paint b = paint;
+  b.name = answer.name;
+  b.code.clear();
+  b.appearance = answer.fit.b;
+  b.measurement = Measurement{condition_of(paint), "", rows_of(answer.fit.b)};
+  b.lobes.reset(), b.color_map.reset();
+  return b;
+}
+
+Json answer_json(const Answer& answer) {
+  Json json = {{"name", answer.name}};
+  if (answer.light_deg) json["light_deg"] = *answer.light_deg;
+  json["status"] = answer.fit.converged ? "converged" : "not_converged";
+  json["before"] = errors_json(answer.before);
+  json["after"] = errors_json(answer.after);
+  const TrompeValues from = values_of(answer.a), to = values_of(answer.fit.b);
+  for (int p = 0; p < kTrompeParameters; ++p) json["delta"][parameter_name(p)] = to[p] - from[p];
+  json["geometries"] = Json::array();
+  for (std::size_t i = 0; i < answer.judged.size(); ++i) {
+    const TrompeGeometry& g = *answer.judged[i];
+    json["geometries"].push_back({{"light_deg", g.geometry.light_deg},
+                                  {"view_deg", g.geometry.view_deg},
+                                  {"azimuth_deg", g.geometry.azimuth_deg},
+                                  {"aspecular_deg", g.view.aspecular_a_deg},
+                                  {"aspecular_b_deg", g.view.aspecular_b_deg},
+                                  {"weight", g.view.weight},
+                                  {"de_before", json_number(answer.before.de[i])},
+                                  {"de_after", json_number(answer.after.de[i])}});
+  }
+  json["undetermined"] = answer.fit.undetermined;
+  json["at_bound"] = answer.fit.at_bound;
+  json["solid"] = answer.fit.solid;
+  json["starts"] = answer.fit.starts;
+  json["time_ms"] = answer.fit.time_ms;
+  return json;
+}
+
+std::string answer_line(const Answer& answer) {
+  std::string line = fmt::format("{}: dE rms {:.2f} to {:.2f}, max {:.2f} to {:.2f}", answer.name, answer.before.rms,
+                                 answer.after.rms, answer.before.max, answer.after.max);
+  const TrompeValues from = values_of(answer.a), to = values_of(answer.fit.b);
+  std::string changes;
+  for (int p = 0; p < kTrompeParameters; ++p)
+    if (std::abs(to[p] - from[p]) >= 0.005)
+      changes += fmt::format("{}{} {:+.2f}", changes.empty() ? "; " : ", ", parameter_name(p), to[p] - from[p]);
+  line += changes;
+  if (!answer.fit.undetermined.empty())
+    line += fmt::format("; not determined by these views: {}", fmt::join(answer.fit.undetermined, ", "));
+  if (!answer.fit.at_bound.empty()) line += fmt::format("; held by a bound: {}", fmt::join(answer.fit.at_bound, ", "));
+  if (answer.fit.solid) line += "; solid: face and flop as one, travel left alone";
+  return line;
+}
+
+bool is_improved(const Answer& answer, const TrompeOptions& options) {
+  return options.least_maximum ? answer.fit.after.max < answer.fit.before.max
+                               : answer.fit.after.rms < answer.fit.before.rms;
+}
+
+}  // namespace goniochrome

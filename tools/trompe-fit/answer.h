@@ -1,0 +1,35 @@
+// One answer of trompe-fit: the paint for the second panel, how it does, and how it is told.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/json.h"
+#include "options.h"
+#include "paint/paint.h"
+
+namespace goniochrome {
+
+struct Answer {
+  std::string name;
+  Appearance a;                     // of the first panel
+  std::optional<double> light_deg;  // of --mode rows
+  TrompeFit fit;
+  std::vector<const TrompeGeometry*> judged;  // empty on a mesh
+  TrompeErrors before, after;                 // over all that is judged
+};
+
+// The paint of an answer: what an instrument would read of it; gloss, class and strangers as they were.
+Paint painted(const Paint& paint, const Answer& answer);
+
+// Its part of the report.
+Json answer_json(const Answer& answer);
+
+// "silver_b: dE rms 4.30 to 0.07, max 9.06 to 0.10; face_l +11.0, travel +4.3"
+std::string answer_line(const Answer& answer);
+
+// Whether the paint found is better by what was asked to be least.
+bool is_improved(const Answer& answer, const TrompeOptions& options);
+
+}  // namespace goniochrome

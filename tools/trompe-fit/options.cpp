@@ -1,0 +1,269 @@
+#include "options.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.h"
+
+namespace goniochrome {
+
+namespace {
+
+Result<std::array<bool, kTrompeParameters>> parse_vary(const std::string& text) {
+  std::array<bool, kTrompeParameters> vary{};
+  for (const std::string_view piece : split(text, ',')) {
+    const std::string_view name = trimmed(piece);
+    if (name == "face_l") {
+      vary[kFaceL] = true;
+    } else if (name == "face_ab") {
+      vary[kFaceA] = vary[kFaceB] = true;
+    } else if (name == "flop_l") {
+      vary[kFlopL] = true;
+    } else if (name == "flop_ab") {
+      vary[kFlopA] = vary[kFlopB] = true;
+    } else if (name == "travel") {
+      vary[kTravel] = true;
+    } else {
+      return usage_error("--vary has \"{}\": choose of face_l, face_ab, flop_l, flop_ab, travel", name);
+    }
+  }
+  return vary;
+}
+
+// NAME=LOW:HIGH; face_ab and flop_ab bound both coordinates.
+Result<void> parse_bound(const std::string& text, TrompeOptions& fit) {
+  const auto error = [&] {
+    return usage_error("--bounds is \"{}\": write NAME=LOW:HIGH, with NAME of face_l, face_ab, flop_l, flop_ab, travel",
+                       text);
+  };
+  const auto sides = split(text, '=');
+  if (sides.size() != 2) return error();
+  const auto ends = split(sides[1], ':');
+  if (ends.size() != 2) return error();
+  const auto low = parse_number(trimmed(ends[0])), high = parse_number(trimmed(ends[1]));
+  if (!low || !high || trimmed(sides[0]).find(',') != std::string_view::npos) return error();
+  const auto bounded = parse_vary(std::string(trimmed(sides[0])));
+  if (!bounded.ok()) return error();
+  for (int p = 0; p < kTrompeParameters; ++p)
+    if ((*bounded)[p]) fit.low[p] = *low, fit.high[p] = *high;
+  return {};
+}
+
+// --vary, --bounds, --objective and --picture.
+Result<void> parse_fit(const TrompeFitOptions& options, TrompeOptions& fit) {
+  GONIO_ASSIGN(fit.vary, parse_vary(options.vary));
+  for (const std::string& bound : options.bounds) GONIO_TRY(parse_bound(bound, fit));
+  fit.least_maximum = options.objective == "max";
+  if (!options.picture.empty() && !options.picture.ends_with(".png"))
+    return usage_error("--picture is \"{}\": give a name that ends in .png", options.picture);
+  return {};
+}
+
+Result<std::optional<TrompeGeometry>> parse_single(const TrompeFitOptions& options, double angle_deg) {
+  if (options.mode != "single") {
+    if (!options.at.empty()) return usage_error("--at is for --mode single");
+    return std::optional<TrompeGeometry>();
+  }
+  if (options.at.size() != 2) return usage_error("--mode single needs --at LIGHT,VIEW");
+  const LightView geometry{options.at[0], options.at[1], 0};
+  if (geometry.light_deg < 0 || geometry.light_deg >= 90 || std::abs(geometry.view_deg) >= 90)
+    return usage_error("--at is {},{}: light and viewer must be above the panel, 0 to 90 and -90 to 90",
+                       shortest(geometry.light_deg), shortest(geometry.view_deg));
+  const auto view = panel_view(geometry, options.seam_deg, angle_deg);
+  if (!view) return usage_error("--at names a viewer who does not see the second panel: change the view");
+  return std::optional<TrompeGeometry>({geometry, *view});
+}
+
+}  // namespace
+
+Result<TrompeRequest> request_of(const TrompeFitOptions& options) {
+  TrompeRequest request;
+  if (options.seam.names_anything_but_mesh() || !options.dark.empty())
+    return usage_error("--seam, --light-from, --view-from, --environment and --dark are for a mesh: give --mesh");
+  if (options.angle_deg.size() != 1) return usage_error("give the misalignment once: --angle DEG");
+  request.angle_deg = options.angle_deg[0];
+  if (request.angle_deg == 0) return usage_error("--angle is 0: panels in line match in the same paint");
+  GONIO_TRY(parse_fit(options, request.fit));
+  request.mode = options.mode == "all"      ? TrompeMode::kAll
+                 : options.mode == "single" ? TrompeMode::kSingle
+                                            : TrompeMode::kRows;
+  GONIO_ASSIGN(request.single, parse_single(options, request.angle_deg));
+  GONIO_ASSIGN(const GeometryList list, geometry_list(options.geometries));
+  request.glare = list.glare, request.below_horizon = list.below_horizon;
+  for (std::size_t i = 0; i < list.pairs.size(); ++i) {
+    auto view = panel_view(list.pairs[i], options.seam_deg, request.angle_deg);
+    if (!view) {
+      ++request.hidden;
+      continue;
+    }
+    view->weight = list.weights[i];
+    request.geometries.push_back({list.pairs[i], *view});
+  }
+  if (request.geometries.empty())
+    return usage_error("no viewer of --views sees the second panel at {} deg: change the views",
+                       shortest(request.angle_deg));
+  return request;
+}
+
+Result<TrompeSeamRequest> seam_request_of(const TrompeFitOptions& options) {
+  TrompeSeamRequest request;
+  GONIO_ASSIGN(request.world, seam_world(options.seam));
+  if (!options.angle_deg.empty()) return usage_error("--angle is for panels without a mesh: the seam has its own");
+  if (options.mode != "all" || !options.at.empty())
+    return usage_error("--mode and --at are for panels without a mesh: leave out --mesh");
+  GONIO_TRY(parse_fit(options, request.fit));
+  GONIO_ASSIGN(request.geometries, geometry_list(options.geometries));
+  if (!options.picture.empty() && !request.world.in_world)
+    return usage_error(
+        "a picture of the mesh wants its light and viewer: give --light-from or --environment, and "
+        "--view-from");
+  return request;
+}
+
+cli::ToolSpec trompe_fit_spec(TrompeFitOptions& o, cli::CommonOptions& common) {
+  cli::ToolSpec spec;
+  spec.name = "trompe-fit";
+  spec.summary = "the paint for a misaligned panel that hides the misalignment";
+  spec.description = {
+      "trompe-fit takes a paint and the angle by which a second panel is turned against the first, and finds the paint "
+      "for the second panel that looks most like the first one, over a set of lights and viewers. Positive angles turn "
+      "the second panel toward the light. Paints are written with the face, flop and travel found and with the rows "
+      "an instrument would read; gloss and class stay; lobes and color maps are dropped.",
+      "Lights, views and named sets are those of goniogeom-index(1), and so are the colors: the clamped quadratic of "
+      "face, flop and travel at the aspecular angle of each panel, times the cosine of its light, without gloss. "
+      "Differences are CIE 1976.",
+      "The match can be made perfect for one light and viewer (--mode single), and is then poor elsewhere; the table "
+      "of all geometries in the report says how poor. --mode all, the default, minimizes over the whole set. --mode "
+      "rows finds one paint for each light.",
+      "A panel turned by b shows an aspecular angle 2b smaller in the plane of incidence. The first guess is therefore "
+      "a curve moved by 2b: a travel that much longer for a panel turned away from the light, with a brighter face. "
+      "Viewers on both sides of the mirror direction ask for opposite changes, which no paint can make.",
+      "With --mesh and --seam A,B the misalignment is that of every place along the seam of two parts, as "
+      "goniogeom-index(1) finds it. Lights and viewers stand to the first panel at every place as they would to a flat "
+      "one, "
+      "the light from either side, which no one paint can serve; or, by --light-from and --view-from, in the world; or "
+      "the "
+      "light is that of a prefiltered environment, in which paints are fitted to the environment's own lobes.",
+      "A solid paint (by its class, or with face and flop closer than 1) has no travel: its face and flop move "
+      "together. Parameters that the views do not determine stay near those of the paint given and are named. The exit "
+      "status is 1 where a paint is not improved."};
+  spec.inputs = {.value = "PAINTS", .help = "paint XML files; standard input where none is given", .target = &o.inputs};
+  spec.options = {
+      {.name = "output", .letter = 'o', .value = "FILE", .help = "paint XML to write", .target = &o.output},
+      {.name = "only", .value = "NAME", .help = "take the paints of this name; repeatable", .target = &o.only},
+      {.name = "angle",
+       .letter = 'a',
+       .value = "DEG",
+       .help = "how far the second panel is turned, positive toward the light",
+       .target = &o.angle_deg,
+       .low = -45,
+       .high = 45},
+      {.name = "lights", .value = "LIST", .help = "lights, degrees from the normal", .target = &o.geometries.lights},
+      {.name = "views",
+       .value = "LIST",
+       .help = "viewers, degrees from the normal or as and the aspecular angle",
+       .target = &o.geometries.views},
+      {.name = "out-of-plane",
+       .value = "LIST",
+       .help = "azimuths of the viewers about the normal, 0 in the plane of incidence",
+       .target = &o.geometries.azimuths},
+      {.name = "light-weights", .value = "LIST", .help = "weight of each light", .target = &o.geometries.light_weights},
+      {.name = "view-weights", .value = "LIST", .help = "weight of each view", .target = &o.geometries.view_weights},
+      {.name = "seam-axis",
+       .value = "DEG",
+       .help = "direction of the seam from the plane of incidence",
+       .target = &o.seam_deg,
+       .low = -360,
+       .high = 360},
+      {.name = "vary",
+       .value = "LIST",
+       .help = "what may change: face_l, face_ab, flop_l, flop_ab, travel",
+       .target = &o.vary},
+      {.name = "objective",
+       .value = "NAME",
+       .help = "minimize the weighted RMS difference or the largest one",
+       .target = &o.objective,
+       .choices = {"rms", "max"}},
+      {.name = "mode",
+       .value = "MODE",
+       .help = "one paint for all geometries, for the one of --at, or one for each light",
+       .target = &o.mode,
+       .choices = {"all", "single", "rows"}},
+      {.name = "at", .value = "LIGHT,VIEW", .help = "the geometry of --mode single", .target = &o.at},
+      {.name = "bounds",
+       .value = "NAME=LOW:HIGH",
+       .help = "keep a parameter of --vary within; repeatable",
+       .target = &o.bounds},
+      {.name = "mesh",
+       .value = "FILE",
+       .help = "take the misalignment from a seam of this mesh (OBJ)",
+       .target = &o.seam.mesh},
+      {.name = "seam",
+       .value = "A,B",
+       .help = "the two parts of the mesh; the second one gets the paint found",
+       .target = &o.seam.seam},
+      {.name = "unit",
+       .value = "UNIT",
+       .help = "length of one unit of the mesh",
+       .target = &o.seam.unit,
+       .choices = {"auto", "m", "cm", "mm"}},
+      {.name = "max-gap",
+       .value = "MM",
+       .help = "wider gaps are no seam; 0 is a hundredth of the mesh's size",
+       .target = &o.seam.max_gap_mm,
+       .low = 0,
+       .high = 1e6},
+      {.name = "light-from",
+       .value = "AZ,EL",
+       .help = "a light in the world: azimuth from +Z toward +X and elevation, degrees; repeatable",
+       .target = &o.seam.lights_from},
+      {.name = "view-from",
+       .value = "AZ,EL",
+       .help = "a distant viewer in the world; repeatable; the first one sees the picture",
+       .target = &o.seam.views_from},
+      {.name = "environment",
+       .value = "FILE",
+       .help = "match in the light of this prefiltered environment",
+       .target = &o.seam.environment},
+      {.name = "picture",
+       .value = "FILE",
+       .help = "PNG of before and after: flat panels, or the mesh",
+       .target = &o.picture},
+      {.name = "dark", .value = "PART", .help = "a part that the picture shows black; repeatable", .target = &o.dark},
+      {.name = "suffix", .value = "TEXT", .help = "appended to the name of the paint", .target = &o.suffix},
+  };
+  spec.examples = {
+      {"trompe-fit testdata/paints.paints.xml --only silver_black_flop --angle -2 --views as15:105:10 --vary "
+       "face_l,travel -o b.paints.xml",
+       "The silver for a panel turned 2 degrees away from the light, by its face L* and travel alone."},
+      {"trompe-fit testdata/paints.paints.xml --only signal_red --angle 3 --lights 0,15.5,29.1,39.8,45,52 --views 0 "
+       "--mode rows -o rows.paints.xml",
+       "A solid paint under six lights, one answer for each."},
+      {"trompe-fit testdata/paints.paints.xml --only silver_fine --mesh testdata/speed-shape.obj --seam Hood,Bumper_F "
+       "--light-from 0,75 --view-from 25,20 --dark Glass --dark Seams --dark Underbody --picture pair.png -o "
+       "b.paints.xml",
+       "The silver that hides a bumper 8 degrees out of flush, before and after."},
+  };
+  spec.report = {
+      {"before.rms, before.max", "difference of the panels in the same paint, over all geometries"},
+      {"after.rms, after.max", "difference with the paint found"},
+      {"delta.face_l ... delta.travel", "change of each parameter"},
+      {"geometries[].light_deg", "also view_deg, azimuth_deg, aspecular_deg, aspecular_b_deg, weight"},
+      {"geometries[].de_before", "difference there in the same paint; de_after: with the paint found"},
+      {"undetermined[]", "parameters that the views leave open"},
+      {"at_bound[]", "parameters that a bound holds back"},
+      {"solid", "whether face and flop were moved together"},
+      {"status", "converged, not_converged, or failed with a message"},
+      {"time_ms", "of the fit"},
+      {"misalignment_deg", "with --mesh: of the seam, low, median and high"},
+      {"seam[].rms_before",
+       "with --mesh, for each place: also rms_after, run, distance_m, fold_deg; geometries[] is left "
+       "out; views counts all"},
+      {"fits[]", "where there is more than one: all of these, with name and light_deg, for each"},
+  };
+  spec.see_also = {"goniogeom-index(1)", "paint-edit(1)", "fit-paint(1)", "goniochrome-theory(7)"};
+  cli::add_common_options(spec, common, {cli::Common::kExplain});
+  return spec;
+}
+
+}  // namespace goniochrome

@@ -1,0 +1,186 @@
+#include "picture.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/text.h"
+#include "fit/paint_fit.h"
+#include "image/label.h"
+#include "render/display.h"
+#include "render/renderer.h"
+#include "render/seam_view.h"
+
+namespace goniochrome {
+
+namespace {
+
+using Color = std::array<float, 3>;
+constexpr Color kInk{0.95F, 0.95F, 0.95F};
+constexpr float kBackdrop = 0.30F;
+
+Image blank(int width, int height) {
+  return {width, height, 3, std::vector<float>(static_cast<std::size_t>(width) * height * 3, kBackdrop), {}};
+}
+
+std::string figures(double de_before, double de_after) {
+  return fmt::format("dE {:.1f} > {:.1f}", de_before, de_after);
+}
+
+// The highest luminance that shall still be shown as it is.
+double stops_for(double luminance) {
+  return luminance > 0.7 ? std::log2(0.7 / luminance) : 0;
+}
+
+// One sheet of linear colors to be shown by the display, with places to be filled.
+class Sheet {
+ public:
+  Sheet(int width, int height) : linear_{width, height, 4, std::vector<float>(4UL * width * height, 0.0F), {}} {}
+
+  void fill(int x, int y, int width, int height, const Rgb& rgb) {
+    for (int j = y; j < y + height; ++j)
+      for (int i = x; i < x + width; ++i) {
+        float* pixel = linear_.pixel(i, j);
+        for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(rgb[c]);
+        pixel[3] = 1;
+      }
+    brightest_ = std::max(brightest_, xyz_d65_from_rgb(rgb).Y);
+  }
+
+  Result<Image> shown() const {
+    GONIO_ASSIGN(const Display display, Display::make(""));
+    return display.image(linear_, stops_for(brightest_));
+  }
+
+ private:
+  Image linear_;
+  double brightest_ = 0;
+};
+
+constexpr std::size_t kMostRows = 24;
+
+}  // namespace
+
+Result<Image> swatches(const ViewingCondition& condition, const std::vector<Answer>& answers) {
+  constexpr int kSide = 150, kHalf = 36, kStep = 2 * kHalf + 14, kLeft = 330, kRight = kLeft + kSide + 40, kTop = 80;
+  struct Row {
+    const Answer* answer;
+    const TrompeGeometry* geometry;
+    double before, after;
+  };
+  std::vector<Row> rows;
+  for (const Answer& answer : answers)
+    for (std::size_t i = 0; i < answer.judged.size(); ++i)
+      rows.push_back({&answer, answer.judged[i], answer.before.de[i], answer.after.de[i]});
+  const std::size_t all = rows.size();
+  if (all > kMostRows) {  // evenly chosen
+    for (std::size_t i = 0; i < kMostRows; ++i) rows[i] = rows[i * all / kMostRows];
+    rows.resize(kMostRows);
+  }
+  GONIO_ASSIGN(const Xyz white, white_point(condition));
+  const int height = kTop + static_cast<int>(rows.size()) * kStep + 50;
+  Sheet sheet(kRight + kSide + 260, height);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto& [answer, geometry, before, after] = rows[i];
+    const PanelView& view = geometry->view;
+    const auto rgb = [&](const Appearance& paint, double aspecular, double cosine) {
+      return rgb_from_lab(panel_color(lab_at(paint, aspecular), cosine), white);
+    };
+    const int y = kTop + static_cast<int>(i) * kStep;
+    const Rgb a = rgb(answer->a, view.aspecular_a_deg, view.cos_a);
+    for (const int x : {kLeft, kRight}) sheet.fill(x, y, kSide, kHalf, a);
+    sheet.fill(kLeft, y + kHalf, kSide, kHalf, rgb(answer->a, view.aspecular_b_deg, view.cos_b));
+    sheet.fill(kRight, y + kHalf, kSide, kHalf, rgb(answer->fit.b, view.aspecular_b_deg, view.cos_b));
+  }
+  GONIO_ASSIGN(Image image, sheet.shown());
+  draw_label(image, 20, 20, answers.front().name, 2, kInk);
+  draw_label(image, kLeft, kTop - 24, "one paint", 2, kInk);
+  draw_label(image, kRight, kTop - 24, "two paints", 2, kInk);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const int y = kTop + static_cast<int>(i) * kStep + kHalf - label_height(2) / 2;
+    const LightView& g = rows[i].geometry->geometry;
+    std::string where = fmt::format("light {} view {}", shortest(g.light_deg), shortest(g.view_deg));
+    if (g.azimuth_deg != 0) where += fmt::format(" az {}", shortest(g.azimuth_deg));
+    draw_label(image, 20, y, where, 2, kInk);
+    draw_label(image, kRight + kSide + 20, y, figures(rows[i].before, rows[i].after), 2, kInk);
+  }
+  std::string total = answers.size() == 1
+                          ? fmt::format("rms {:.2f} > {:.2f}  max {:.2f} > {:.2f}", answers[0].before.rms,
+                                        answers[0].after.rms, answers[0].before.max, answers[0].after.max)
+                          : "a paint for each light";
+  if (all > rows.size()) total += fmt::format("  ({} of {} geometries shown)", rows.size(), all);
+  draw_label(image, 20, height - 34, total, 2, kInk);
+  return image;
+}
+
+// Without gloss: highlights need not line up and would only hide what is to be compared.
+Result<Image> seam_pair(const SeamPair& pair) {
+  constexpr int kWidth = 760, kHeight = 620, kFoot = 110;
+  Basis basis{"picture", {1.5, 3, 6, 12, 25, 50, 100, 200}};
+  if (pair.env != nullptr) {
+    basis.exponents.clear();
+    for (const PrefilteredLobe& lobe : pair.env->lobes) basis.exponents.push_back(lobe.exponent);
+  }
+  FitOptions fit_options;
+  fit_options.method = FitMethod::kL2;
+  fit_options.target = TargetCurve::Kind::kCurve;
+  const PaintFitter fitter(basis, fit_options);
+  const auto lobes = [&](const Appearance& appearance) -> Result<LobeFit> {
+    Paint paint;
+    paint.measurement = Measurement{condition_of(pair.a), "", rows_of(appearance)};
+    paint.appearance = appearance;
+    GONIO_ASSIGN(PaintFit fit, fitter.fit(paint));
+    return std::move(fit.lobes);
+  };
+  GONIO_ASSIGN(const LobeFit a, lobes(pair.answer.a));
+  GONIO_ASSIGN(const LobeFit b, lobes(pair.answer.fit.b));
+  LobeFit black;
+  black.diffuse = (0.01 / M_PI) * Rgb{1, 1, 1};
+  for (const std::string& name : pair.dark)
+    if (std::ranges::find(pair.mesh->parts, name, &MeshPart::name) == pair.mesh->parts.end())
+      return input_error("the mesh has no part \"{}\", which --dark names", name);
+
+  GONIO_ASSIGN(Renderer renderer, Renderer::create());
+  const Camera camera = seam_camera_from(*pair.seam, pair.viewer, static_cast<double>(kWidth) / kHeight, 10, 1.15);
+  std::array<Image, 2> halves;
+  Scene scene;
+  scene.mesh = pair.mesh, scene.env = pair.env;
+  for (const Vec3& light : pair.lights) scene.lights.push_back({light, {1, 1, 1}});
+  for (int after = 0; after < 2; ++after) {
+    scene.paints.clear();
+    for (const MeshPart& part : pair.mesh->parts)
+      scene.paints.push_back(std::ranges::find(pair.dark, part.name) != pair.dark.end() ? black
+                             : after == 1 && part.name == pair.part_b                   ? b
+                                                                                        : a);
+    GONIO_TRY(renderer.load(scene));
+    GONIO_ASSIGN(Frame frame, renderer.draw(camera, kWidth, kHeight, 16));
+    halves[static_cast<std::size_t>(after)] = std::move(frame.picture);
+  }
+  // One exposure for both: 99 of 100 pixels of the first are below the display's white.
+  std::vector<double> luminances;
+  for (std::size_t i = 0; i < halves[0].data.size(); i += 4)
+    if (halves[0].data[i + 3] > 0.99F)
+      luminances.push_back(xyz_d65_from_rgb({halves[0].data[i], halves[0].data[i + 1], halves[0].data[i + 2]}).Y);
+  double stops = 0;
+  if (!luminances.empty()) {
+    std::ranges::sort(luminances);
+    stops = std::log2(0.75 / std::max(1e-6, luminances[luminances.size() * 99 / 100]));
+  }
+  GONIO_ASSIGN(const Display display, Display::make(""));
+  Image image = blank(2 * kWidth + 10, kHeight + kFoot);
+  for (int after = 0; after < 2; ++after) {
+    GONIO_ASSIGN(const Image shown, display.image(halves[static_cast<std::size_t>(after)], stops));
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) std::copy_n(shown.pixel(x, y), 3, image.pixel(after * (kWidth + 10) + x, y));
+  }
+  const TrompeErrors &before = pair.answer.before, &found = pair.answer.after;
+  draw_label(image, 20, kHeight + 20, fmt::format("one paint: dE rms {:.2f} max {:.2f}", before.rms, before.max), 3,
+             kInk);
+  draw_label(image, kWidth + 30, kHeight + 20,
+             fmt::format("{} on {}: dE rms {:.2f} max {:.2f}", pair.answer.name, pair.part_b, found.rms, found.max),
+             label_width(pair.answer.name + pair.part_b, 3) > 330 ? 2 : 3, kInk);
+  draw_label(image, 20, kHeight + 62, pair.a.name, 2, kInk);
+  return image;
+}
+
+}  // namespace goniochrome

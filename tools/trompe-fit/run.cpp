@@ -1,0 +1,183 @@
+#include "run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "answer.h"
+#include "base/parallel.h"
+#include "base/text.h"
+#include "paint/batches.h"
+#include "picture.h"
+#include "seam_run.h"
+
+namespace goniochrome {
+
+namespace {
+
+constexpr int kNamesShown = 20;
+
+using Answers = std::vector<Answer>;
+
+std::vector<PanelView> views_of(const std::vector<const TrompeGeometry*>& geometries) {
+  std::vector<PanelView> views;
+  for (const TrompeGeometry* geometry : geometries) views.push_back(geometry->view);
+  return views;
+}
+
+Result<Answer> answer(const Paint& paint, const Appearance& a, const std::vector<PanelView>& fitted,
+                      std::vector<const TrompeGeometry*> judged, const TrompeRequest& request) {
+  Answer result;
+  result.a = a;
+  GONIO_ASSIGN(result.fit, trompe_fit(a, paint.paint_class == PaintClass::kSolid, fitted, request.fit));
+  const std::vector<PanelView> views = views_of(judged);
+  result.before = trompe_errors(a, a, views);
+  result.after = trompe_errors(a, result.fit.b, views);
+  result.judged = std::move(judged);
+  return result;
+}
+
+// The paints for the second panel, by the mode asked.
+Result<Answers> answers_for(const Paint& paint, const TrompeRequest& request, const std::string& suffix) {
+  GONIO_ASSIGN(const Appearance a, appearance_of(paint));
+  Answers answers;
+  std::vector<const TrompeGeometry*> all;
+  for (const TrompeGeometry& geometry : request.geometries) all.push_back(&geometry);
+  if (request.mode != TrompeMode::kRows) {
+    const auto fitted = request.single ? std::vector<PanelView>{request.single->view} : views_of(all);
+    GONIO_ASSIGN(Answer one, answer(paint, a, fitted, all, request));
+    one.name = paint.name + suffix;
+    answers.push_back(std::move(one));
+    return answers;
+  }
+  std::vector<double> lights;
+  for (const TrompeGeometry& g : request.geometries)
+    if (std::ranges::find(lights, g.geometry.light_deg) == lights.end()) lights.push_back(g.geometry.light_deg);
+  for (const double light : lights) {
+    std::vector<const TrompeGeometry*> row;
+    std::ranges::copy_if(all, std::back_inserter(row),
+                         [&](const TrompeGeometry* g) { return g->geometry.light_deg == light; });
+    GONIO_ASSIGN(Answer one, answer(paint, a, views_of(row), row, request));
+    one.name = fmt::format("{}{}.light{}", paint.name, suffix, shortest(light));
+    one.light_deg = light;
+    answers.push_back(std::move(one));
+  }
+  return answers;
+}
+
+std::string plan(const TrompeFitOptions& options, const TrompeRequest& request) {
+  std::string text = fmt::format(
+      "{} pairs of light and viewer; left out: {} within {} deg of the mirror direction, {} below the horizon, {} that "
+      "do not see the second panel\n"
+      "minimized: {} of dE76 over {}, by {}, from several starts; some milliseconds a paint\n",
+      request.geometries.size(), request.glare, kIndexGlare_deg, request.below_horizon, request.hidden,
+      options.objective,
+      request.mode == TrompeMode::kAll      ? "all of them"
+      : request.mode == TrompeMode::kSingle ? "the one geometry of --at; the others only judge"
+                                            : "those of each light, one paint for each",
+      options.vary);
+  return text + fmt::format("in the plane of incidence the second panel's aspecular angles are {} deg {}\n",
+                            shortest(2 * std::abs(request.angle_deg)), request.angle_deg > 0 ? "smaller" : "larger");
+}
+
+class Run {
+ public:
+  Run(const TrompeFitOptions& options, const TrompeRequest& request, cli::Session& session)
+      : options_(options), request_(request), session_(session), wanted_(options.only.begin(), options.only.end()) {}
+
+  Result<cli::Verdict> operator()() {
+    GONIO_ASSIGN(PaintBatches paints, PaintBatches::open(options_.inputs));
+    GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
+    auto history = paints.processing();
+    history.push_back({session_.tool(), cli::Session::version(), session_.command_line()});
+    GONIO_ASSIGN(PaintWriter writer, PaintWriter::begin(std::move(file), history, paints.foreign()));
+    for (;;) {
+      GONIO_ASSIGN(std::vector<Paint> batch, paints.next());
+      if (batch.empty()) break;
+      if (!wanted_.empty()) std::erase_if(batch, [&](const Paint& p) { return !wanted_.contains(p.name); });
+      GONIO_TRY(take(batch, writer));
+      session_.progress(fmt::format("{} paints", fits_.size()));
+    }
+    for (const std::string& name : wanted_)
+      if (!met_.contains(name)) return input_error("no paint is named \"{}\": names are taken letter by letter", name);
+    GONIO_TRY(writer.finish());
+    return finish();
+  }
+
+ private:
+  Result<void> take(const std::vector<Paint>& batch, PaintWriter& writer) {
+    std::vector<std::optional<Result<Answers>>> found(batch.size());
+    parallel_for(batch.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) found[i] = answers_for(batch[i], request_, options_.suffix);
+    });
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      met_.insert(batch[i].name);
+      const Result<Answers>& answers = *found[i];
+      if (!answers.ok()) {
+        if (answers.error().kind == ErrorKind::kUsage) return answers.error();
+        negative_ = true;
+        session_.warn(fmt::format("left out: {}", answers.error().message));
+        fits_.push_back({{"name", batch[i].name}, {"status", "failed"}, {"message", answers.error().message}});
+        continue;
+      }
+      for (const Answer& answer : *answers) {
+        note(answer);
+        GONIO_TRY(writer.write(painted(batch[i], answer)));
+      }
+      if (!options_.picture.empty()) GONIO_TRY(draw(batch[i], *answers));
+    }
+    return {};
+  }
+
+  Result<void> draw(const Paint& paint, const Answers& answers) {
+    if (++pictures_ > 1)
+      return usage_error("--picture shows one paint and there is another, \"{}\": choose one by --only", paint.name);
+    GONIO_ASSIGN(const Image image, swatches(condition_of(paint), answers));
+    return write_png(
+        options_.picture, image,
+        {{"Software", session_.tool() + " " + cli::Session::version()}, {"Comment", session_.command_line()}});
+  }
+
+  void note(const Answer& answer) {
+    fits_.push_back(answer_json(answer));
+    if (!is_improved(answer, request_.fit) || !answer.fit.converged) negative_ = true;
+    if (!answer.fit.converged)
+      session_.warn(fmt::format("{}: not converged: the best paint found is written", answer.name));
+    if (++told_ <= kNamesShown) session_.say(answer_line(answer));
+    if (request_.single)
+      session_.say(
+          fmt::format("  at light {}, view {}: {:.2f} to {:.2f}; one geometry can always be met, the others pay",
+                      shortest(request_.single->geometry.light_deg), shortest(request_.single->geometry.view_deg),
+                      answer.fit.before.max, answer.fit.after.max));
+  }
+
+  cli::Verdict finish() {
+    if (told_ > kNamesShown) session_.say(fmt::format("... and {} more", told_ - kNamesShown));
+    if (fits_.size() == 1) {
+      session_.results().update(fits_.front());
+    } else {
+      session_.results()["fits"] = fits_;
+    }
+    return negative_ ? cli::Verdict::kNegative : cli::Verdict::kDone;
+  }
+
+  const TrompeFitOptions& options_;
+  const TrompeRequest& request_;
+  cli::Session& session_;
+  const std::set<std::string> wanted_;
+  std::set<std::string> met_;
+  std::vector<Json> fits_;
+  int told_ = 0, pictures_ = 0;
+  bool negative_ = false;
+};
+
+}  // namespace
+
+Result<cli::Verdict> run_trompe_fit(const TrompeFitOptions& options, cli::Session& session) {
+  if (!options.seam.mesh.empty()) return run_on_seam(options, session);
+  GONIO_ASSIGN(const TrompeRequest request, request_of(options));
+  session.explain(plan(options, request));
+  return Run(options, request, session)();
+}
+
+}  // namespace goniochrome

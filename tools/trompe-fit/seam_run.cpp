@@ -1,0 +1,214 @@
+#include "seam_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "answer.h"
+#include "base/text.h"
+#include "fit/goniogeom_seam.h"
+#include "paint/batches.h"
+#include "picture.h"
+
+namespace goniochrome {
+
+namespace {
+
+constexpr std::size_t kMostFitted = 400;  // views that a fit looks at; all views judge it
+
+// Spread by the golden ratio, so that no geometry that comes round at every place is favored.
+std::vector<SeamView> some_of(const std::vector<SeamView>& views) {
+  if (views.size() <= kMostFitted) return views;
+  std::vector<SeamView> some;
+  for (std::size_t i = 0; i < kMostFitted; ++i) {
+    const double part = std::fmod(static_cast<double>(i) * 0.6180339887498949, 1.0);
+    some.push_back(views[static_cast<std::size_t>(part * static_cast<double>(views.size()))]);
+  }
+  return some;
+}
+
+std::vector<PanelView> panel_views(const Seam& seam, const std::vector<SeamView>& views) {
+  std::vector<PanelView> seen;
+  for (const SeamView& view : views) seen.push_back(panel_view(seam, view));
+  return seen;
+}
+
+std::vector<double> weights_of(const std::vector<SeamView>& views) {
+  std::vector<double> weights;
+  for (const SeamView& view : views) weights.push_back(view.weight);
+  return weights;
+}
+
+class SeamRun {
+ public:
+  SeamRun(const TrompeFitOptions& options, const TrompeSeamRequest& request, cli::Session& session)
+      : options_(options), request_(request), session_(session), wanted_(options.only.begin(), options.only.end()) {}
+
+  Result<cli::Verdict> operator()() {
+    GONIO_TRY(prepare());
+    GONIO_ASSIGN(PaintBatches paints, PaintBatches::open(options_.inputs));
+    GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
+    auto history = paints.processing();
+    history.push_back({session_.tool(), cli::Session::version(), session_.command_line()});
+    GONIO_ASSIGN(PaintWriter writer, PaintWriter::begin(std::move(file), history, paints.foreign()));
+    for (;;) {
+      GONIO_ASSIGN(std::vector<Paint> batch, paints.next());
+      if (batch.empty()) break;
+      if (!wanted_.empty()) std::erase_if(batch, [&](const Paint& p) { return !wanted_.contains(p.name); });
+      for (const Paint& paint : batch) GONIO_TRY(take(paint, writer));
+    }
+    for (const std::string& name : wanted_)
+      if (!met_.contains(name)) return input_error("no paint is named \"{}\": names are taken letter by letter", name);
+    GONIO_TRY(writer.finish());
+    if (fits_.size() == 1) {
+      session_.results().update(fits_.front());
+    } else {
+      session_.results()["fits"] = fits_;
+    }
+    return negative_ ? cli::Verdict::kNegative : cli::Verdict::kDone;
+  }
+
+ private:
+  Result<void> prepare() {
+    GONIO_ASSIGN(mesh_, read_mesh(options_.seam.mesh));
+    auto seam = seam_between(mesh_, request_.world.part_a, request_.world.part_b, request_.world.seam);
+    if (!seam.ok()) return input_error("{}: {}", options_.seam.mesh, seam.error().message);
+    seam_ = std::move(*seam);
+    views_ = request_.world.in_world ? views_in_world(seam_, request_.world.lights, request_.world.viewers)
+                                     : views_at_seam(seam_, request_.geometries, options_.seam_deg);
+    if (views_.empty())
+      return input_error("{}: no viewer sees both panels in any light: change --views or --view-from",
+                         options_.seam.mesh);
+    fitted_ = some_of(views_);
+    if (!options_.seam.environment.empty()) {
+      GONIO_ASSIGN(env_, read_env(options_.seam.environment));
+      // Told once, by the file's name, and not for every paint.
+      if (auto panels = EnvironmentPanels::make(env_, {}); !panels.ok())
+        return input_error("{}: {}", options_.seam.environment, panels.error().message);
+    }
+    std::vector<double> folds;
+    for (const SeamPoint& p : seam_.points) folds.push_back(p.fold_deg);
+    std::ranges::sort(folds);
+    session_.say(fmt::format("seam {} | {}: {:.2f} m, misalignment {:+.1f} to {:+.1f} deg (median {:+.1f})",
+                             request_.world.part_a, request_.world.part_b, seam_.length_m, folds.front(), folds.back(),
+                             folds[folds.size() / 2]));
+    session_.results()["misalignment_deg"] = {
+        {"low", folds.front()}, {"median", folds[folds.size() / 2]}, {"high", folds.back()}};
+    return {};
+  }
+
+  Result<Answer> answer_for(const Paint& paint) const {
+    Answer answer;
+    answer.name = paint.name + options_.suffix;
+    GONIO_ASSIGN(answer.a, appearance_of(paint));
+    const bool solid = paint.paint_class == PaintClass::kSolid;
+    if (options_.seam.environment.empty()) {
+      GONIO_ASSIGN(answer.fit, trompe_fit(answer.a, solid, panel_views(seam_, fitted_), request_.fit));
+      const std::vector<PanelView> all = panel_views(seam_, views_);
+      answer.before = trompe_errors(answer.a, answer.a, all);
+      answer.after = trompe_errors(answer.a, answer.fit.b, all);
+      return answer;
+    }
+    GONIO_ASSIGN(const EnvironmentPanels panels, EnvironmentPanels::make(env_, condition_of(paint)));
+    const auto colors = [&](const std::vector<SeamView>& views, SeamSide side, const Appearance& appearance) {
+      return seam_colors(panels, seam_, views, side)(appearance);
+    };
+    GONIO_ASSIGN(const std::vector<Lab> target, colors(fitted_, SeamSide::kA, answer.a));
+    GONIO_ASSIGN(answer.fit, trompe_fit(answer.a, solid, target, weights_of(fitted_),
+                                        seam_colors(panels, seam_, fitted_, SeamSide::kB), request_.fit));
+    GONIO_ASSIGN(const std::vector<Lab> first, colors(views_, SeamSide::kA, answer.a));
+    GONIO_ASSIGN(const std::vector<Lab> before, colors(views_, SeamSide::kB, answer.a));
+    GONIO_ASSIGN(const std::vector<Lab> after, colors(views_, SeamSide::kB, answer.fit.b));
+    answer.before = trompe_errors(first, before, weights_of(views_));
+    answer.after = trompe_errors(first, after, weights_of(views_));
+    return answer;
+  }
+
+  Result<void> take(const Paint& paint, PaintWriter& writer) {
+    met_.insert(paint.name);
+    const Result<Answer> answer = answer_for(paint);
+    if (!answer.ok()) {
+      if (answer.error().kind == ErrorKind::kUsage) return answer.error();
+      negative_ = true;
+      session_.warn(fmt::format("left out: {}: {}", paint.name, answer.error().message));
+      fits_.push_back({{"name", paint.name}, {"status", "failed"}, {"message", answer.error().message}});
+      return {};
+    }
+    Json json = answer_json(*answer);
+    json.erase("geometries");
+    json["views"] = views_.size();
+    json["seam"] = places_json(*answer);
+    fits_.push_back(std::move(json));
+    if (!is_improved(*answer, request_.fit) || !answer->fit.converged) negative_ = true;
+    session_.say(answer_line(*answer));
+    GONIO_TRY(writer.write(painted(paint, *answer)));
+    return options_.picture.empty() ? Result<void>() : draw(paint, *answer);
+  }
+
+  Json places_json(const Answer& answer) const {
+    const auto before = by_place(seam_, views_, answer.before.de), after = by_place(seam_, views_, answer.after.de);
+    Json places = Json::array();
+    for (std::size_t i = 0; i < seam_.points.size(); ++i)
+      places.push_back({{"run", seam_.points[i].run},
+                        {"distance_m", seam_.points[i].distance_m},
+                        {"fold_deg", seam_.points[i].fold_deg},
+                        {"rms_before", json_number(before[i].rms)},
+                        {"rms_after", json_number(after[i].rms)}});
+    return places;
+  }
+
+  Result<void> draw(const Paint& paint, const Answer& answer) {
+    if (++pictures_ > 1)
+      return usage_error("--picture shows one paint and there is another, \"{}\": choose one by --only", paint.name);
+    SeamPair pair;
+    pair.mesh = &mesh_, pair.seam = &seam_;
+    pair.env = options_.seam.environment.empty() ? nullptr : &env_;
+    pair.lights = request_.world.lights, pair.viewer = request_.world.viewers.front();
+    pair.part_b = request_.world.part_b, pair.dark = options_.dark;
+    pair.a = paint, pair.answer = answer;
+    GONIO_ASSIGN(const Image image, seam_pair(pair));
+    return write_png(
+        options_.picture, image,
+        {{"Software", session_.tool() + " " + cli::Session::version()}, {"Comment", session_.command_line()}});
+  }
+
+  const TrompeFitOptions& options_;
+  const TrompeSeamRequest& request_;
+  cli::Session& session_;
+  const std::set<std::string> wanted_;
+  std::set<std::string> met_;
+  Mesh mesh_;
+  Seam seam_;
+  std::vector<SeamView> views_, fitted_;
+  PrefilteredEnvironment env_;
+  std::vector<Json> fits_;
+  int pictures_ = 0;
+  bool negative_ = false;
+};
+
+std::string plan(const TrompeFitOptions& options, const TrompeSeamRequest& request) {
+  std::string text = fmt::format("seam of {} and {} in {}; paint B goes to {}\n", request.world.part_a,
+                                 request.world.part_b, options.seam.mesh, request.world.part_b);
+  if (!request.world.in_world) {
+    text += fmt::format("{} pairs of light and viewer at every place, the light from both sides of the seam\n",
+                        request.geometries.pairs.size());
+  } else {
+    text += fmt::format("{} viewers in the world, {}\n", request.world.viewers.size(),
+                        options.seam.environment.empty() ? fmt::format("{} lights", request.world.lights.size())
+                                                         : "light of " + options.seam.environment);
+  }
+  return text + fmt::format(
+                    "minimized: {} of dE76 over at most {} views spread along the seam, by {}; judged by all\n"
+                    "left out: gloss, and shadows and reflections of the mesh on itself\n",
+                    options.objective, kMostFitted, options.vary);
+}
+
+}  // namespace
+
+Result<cli::Verdict> run_on_seam(const TrompeFitOptions& options, cli::Session& session) {
+  GONIO_ASSIGN(const TrompeSeamRequest request, seam_request_of(options));
+  session.explain(plan(options, request));
+  return SeamRun(options, request, session)();
+}
+
+}  // namespace goniochrome

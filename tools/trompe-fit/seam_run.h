@@ -1,0 +1,11 @@
+// trompe-fit on a seam of a mesh.
+#pragma once
+
+#include "cli/tool.h"
+#include "options.h"
+
+namespace goniochrome {
+
+Result<cli::Verdict> run_on_seam(const TrompeFitOptions& options, cli::Session& session);
+
+}  // namespace goniochrome
