@@ -1,0 +1,50 @@
+# Shared by the scripts beside it: installs what the build needs, builds. Source it.
+# Plain Debian 12; root, or a user with sudo, only where a package is missing.
+
+top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+
+build_packages=(
+  g++ cmake ninja-build ccache pkg-config
+  libcgal-dev libceres-dev libcli11-dev libeigen3-dev libfmt-dev libhwy-dev libimath-dev libopencolorio-dev libopenexr-dev
+  libopenimageio-dev libosmesa6-dev libpng-dev libtbb-dev libxml2-dev nlohmann-json3-dev
+)
+test_packages=(bats coinor-libclp-dev jq libbenchmark-dev libgmock-dev libgtest-dev libxml2-utils mandoc openexr openimageio-tools python3)
+demo_packages=(fonts-dejavu-core openimageio-tools)
+
+say() { printf '%s\n' "$*" >&2; }
+
+die() {
+  say "$(basename "$0"): $*"
+  exit 3
+}
+
+# install PACKAGE...: installs those that are missing, by name.
+install() {
+  local missing=() package
+  for package in "$@"; do
+    dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
+  done
+  [ ${#missing[@]} -eq 0 ] && return
+  command -v apt-get >/dev/null || die "these Debian packages are missing: ${missing[*]}"
+  local root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || die "installing ${missing[*]} takes root: run as root, or install sudo"
+    root=(sudo)
+  fi
+  say "installing ${#missing[@]} packages: ${missing[*]}"
+  "${root[@]}" apt-get update -qq
+  DEBIAN_FRONTEND=noninteractive "${root[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+}
+
+# build PRESET [CMAKE OPTION...]: configures and builds into build/PRESET.
+build() {
+  local preset=$1 log
+  shift
+  log=$(mktemp)
+  (cd "$top" && cmake --preset "$preset" "$@") >"$log" 2>&1 || {
+    cat "$log" >&2
+    die "configuring failed"
+  }
+  rm -f "$log"
+  cmake --build "$top/build/$preset" >&2 || die "the build failed"
+}

@@ -1,0 +1,21 @@
+_prefilter_envmap() {
+  local word=${COMP_WORDS[COMP_CWORD]}
+  case ${COMP_WORDS[COMP_CWORD-1]} in
+    --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --basis|-b) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --exponents|-e) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --size|-s) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --verify|-v) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --bad-pixels) COMPREPLY=($(compgen -W "error zero" -- "$word")); return ;;
+    --tolerance) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --seed) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --report) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --threads) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
+  esac
+  case $word in
+    -*) COMPREPLY=($(compgen -W "--output --basis --exponents --size --verify --bad-pixels --no-mirror --explain --tolerance --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    *) COMPREPLY=($(compgen -f -- "$word")) ;;
+  esac
+}
+complete -o filenames -F _prefilter_envmap prefilter-envmap

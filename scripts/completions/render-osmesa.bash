@@ -1,0 +1,31 @@
+_render_osmesa() {
+  local word=${COMP_WORDS[COMP_CWORD]}
+  case ${COMP_WORDS[COMP_CWORD-1]} in
+    --mesh|-m) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --part) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --paint|-p) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --env|-e) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --light) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --size|-s) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --orbit) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --camera) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --fov) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --samples) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --background) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --exposure) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --view) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --aov) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --check) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --check-source) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --seed) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --report) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --threads) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
+  esac
+  case $word in
+    -*) COMPREPLY=($(compgen -W "--mesh --part --paint --env --light --size --orbit --camera --fov --samples --background --exposure --view --aov --check --check-source --output --explain --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    *) COMPREPLY=($(compgen -f -- "$word")) ;;
+  esac
+}
+complete -o filenames -F _render_osmesa render-osmesa

@@ -1,0 +1,1 @@
+"""What scripts/make-testdata makes, one module for each kind of file."""

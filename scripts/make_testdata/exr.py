@@ -1,0 +1,68 @@
+"""Lat-long EXR images: their directions, and the file itself (scan lines, ZIP, half or float)."""
+
+import math
+import struct
+import zlib
+
+HALF, FLOAT = 1, 2
+ZIP_COMPRESSION, LINES_PER_BLOCK = 3, 16
+REC709 = (0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329)  # x y of red, green, blue and white
+
+
+def direction(column, row, width, height):
+    """The unit vector (+Y up) of a point of a lat-long image: its centre looks along +Z, its left quarter along +X."""
+    latitude = math.pi * (0.5 - row / height)
+    longitude = 2 * math.pi * (0.5 - column / width)
+    ring = math.cos(latitude)
+    return (ring * math.sin(longitude), math.sin(latitude), ring * math.cos(longitude))
+
+
+def attribute(name, kind, payload):
+    """One header attribute."""
+    return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(payload)) + payload
+
+
+def header(width, height, pixel_type, comments):
+    """The magic number, the version and the header of a single-part scan-line file."""
+    channels = b"".join(c + b"\0" + struct.pack("<iBxxxii", pixel_type, 0, 1, 1) for c in (b"B", b"G", b"R"))
+    window = struct.pack("<4i", 0, 0, width - 1, height - 1)
+    return b"".join([
+        struct.pack("<Ii", 20000630, 2),
+        attribute("channels", "chlist", channels + b"\0"),
+        attribute("chromaticities", "chromaticities", struct.pack("<8f", *REC709)),
+        attribute("comments", "string", comments.encode()),
+        attribute("compression", "compression", struct.pack("<B", ZIP_COMPRESSION)),
+        attribute("dataWindow", "box2i", window),
+        attribute("displayWindow", "box2i", window),
+        attribute("lineOrder", "lineOrder", b"\0"),
+        attribute("pixelAspectRatio", "float", struct.pack("<f", 1)),
+        attribute("screenWindowCenter", "v2f", struct.pack("<2f", 0, 0)),
+        attribute("screenWindowWidth", "float", struct.pack("<f", 1)),
+        attribute("software", "string", b"make-testdata"),
+        b"\0"])
+
+
+def zipped(raw):
+    """A block as EXR's ZIP stores it: bytes of even and odd place apart, differences, deflate; raw if no shorter."""
+    parted = raw[0::2] + raw[1::2]
+    differences = bytes([parted[0]]) + bytes((b - a + 128) & 255 for a, b in zip(parted, parted[1:]))
+    packed = zlib.compress(differences, 9)
+    return packed if len(packed) < len(raw) else raw
+
+
+def exr_file(rows, pixel_type, comments):
+    """The bytes of an EXR. `rows`: from the top, each a list of (r, g, b)."""
+    width, height = len(rows[0]), len(rows)
+    line_format = f"<{width}{'e' if pixel_type == HALF else 'f'}"
+    head = header(width, height, pixel_type, comments)
+    blocks = []
+    for top in range(0, height, LINES_PER_BLOCK):
+        raw = b"".join(struct.pack(line_format, *(texel[channel] for texel in row))
+                       for row in rows[top:top + LINES_PER_BLOCK] for channel in (2, 1, 0))
+        packed = zipped(raw)
+        blocks.append(struct.pack("<ii", top, len(packed)) + packed)
+    offsets, position = [], len(head) + 8 * len(blocks)
+    for block in blocks:
+        offsets.append(position)
+        position += len(block)
+    return head + struct.pack(f"<{len(blocks)}Q", *offsets) + b"".join(blocks)

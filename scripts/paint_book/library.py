@@ -1,0 +1,149 @@
+"""The paints of a library: what paint XML says of them, and where they stand in the book."""
+
+import dataclasses
+import math
+import re
+import xml.etree.ElementTree as tree
+
+NAMESPACE = "urn:goniochrome:paint:1"
+tree.register_namespace("", NAMESPACE)
+
+CLASSES = ["solid", "metallic", "pearl", "interference", "unknown"]
+
+# The groups of a book and the sets they make. Metallics and pearls stand together, since the eye alone often cannot
+# tell one from the other.
+SETS = {"solids": ("Solids", ["solid"]),
+        "effects": ("Metallics, pearls and interference colors", ["metallic", "pearl", "interference"]),
+        "unknown": ("Not classified", ["unknown"])}
+CHROMATIC = ["red", "yellow", "green", "blue"]
+NEUTRAL = ["light", "medium", "dark"]
+
+# Chromatic groups end halfway between the hues (CIELAB, degrees) that most people call pure: 25, 93, 165 and 246.
+HUE_ENDS = [(59, "red"), (129, "yellow"), (205, "green"), (315.5, "blue"), (360, "red")]
+NEUTRAL_CHROMA = 7  # below this average chroma a paint is filed by its lightness
+LIGHT_L, MEDIUM_L = 66, 33
+
+
+@dataclasses.dataclass
+class Row:
+    """One reading: a geometry, its aspecular angle (signed in plane), and Lab."""
+    geometry: str
+    angle_deg: float
+    in_plane: bool
+    lab: tuple
+
+
+@dataclasses.dataclass
+class Paint:
+    name: str
+    code: str
+    paint_class: str
+    condition: str
+    rows: list
+    gloss: dict
+    appearance: dict  # face, flop, travel, residual; empty where there is none
+    element: tree.Element
+    fit: dict  # how far the lobes of the picture are from the readings, dE00: max, mean
+    indices: dict = dataclasses.field(default_factory=dict)
+    flags: list = dataclasses.field(default_factory=list)
+
+    def lab_at(self, angle_deg):
+        """Lab at an unsigned aspecular angle: the reading at 45as<angle>, else the curve, else between readings."""
+        for row in self.rows:
+            if row.in_plane and row.angle_deg == angle_deg:
+                return row.lab
+        if self.appearance:
+            return self.curve_at(angle_deg)
+        return between_rows([row for row in self.rows if row.in_plane and row.angle_deg >= 0] or self.rows, angle_deg)
+
+    def curve_at(self, angle_deg):
+        """The clamped quadratic of face, flop and travel: goniochrome-theory(7), paint representations."""
+        face, flop, travel = (self.appearance[key] for key in ("face", "flop", "travel"))
+        share = ((travel - min(angle_deg, travel)) / (travel - 15)) ** 2
+        return tuple(o + (f - o) * share for f, o in zip(face, flop))
+
+    def average(self):
+        """Lab over 15, 45 and 110 degrees: L*, chroma, hue in degrees."""
+        labs = [self.lab_at(angle) for angle in (15, 45, 110)]
+        lightness, a, b = (sum(values) / 3 for values in zip(*labs))
+        return lightness, sum(math.hypot(lab[1], lab[2]) for lab in labs) / 3, math.degrees(math.atan2(b, a)) % 360
+
+    def place(self):
+        """(set, group) of the hierarchy."""
+        in_set = next((key for key, (_, classes) in SETS.items() if self.paint_class in classes), "unknown")
+        lightness, chroma, hue = self.average()
+        if chroma < NEUTRAL_CHROMA:
+            return in_set, "light" if lightness >= LIGHT_L else "medium" if lightness >= MEDIUM_L else "dark"
+        return in_set, next(group for end, group in HUE_ENDS if hue <= end)
+
+    def order(self):
+        """Sorts a group: neutrals from light to dark, colors round the hue circle from magenta on."""
+        lightness, chroma, hue = self.average()
+        if chroma < NEUTRAL_CHROMA:
+            return (-lightness, self.name)
+        return ((hue - HUE_ENDS[-2][0]) % 360, self.name)
+
+    def document(self):
+        """Paint XML that holds this paint alone."""
+        return (f'<?xml version="1.0" encoding="UTF-8"?>\n<paints xmlns="{NAMESPACE}" version="1">\n  '
+                + tree.tostring(self.element, encoding="unicode").replace(f' xmlns="{NAMESPACE}"', "", 1).strip()
+                + "\n</paints>\n")
+
+
+def between_rows(rows, angle_deg):
+    """Straight lines between readings, constant beyond the ends."""
+    rows = sorted(rows, key=lambda row: abs(row.angle_deg))
+    if angle_deg <= abs(rows[0].angle_deg):
+        return rows[0].lab
+    for near, far in zip(rows, rows[1:]):
+        start, end = abs(near.angle_deg), abs(far.angle_deg)
+        if start < end and angle_deg <= end:
+            t = (angle_deg - start) / (end - start)
+            return tuple(n + t * (f - n) for n, f in zip(near.lab, far.lab))
+    return rows[-1].lab
+
+
+GEOMETRY = re.compile(r"r?(?:[0-9.]+as)?(-?[0-9.]+)(az-?[0-9.]+)?")
+
+
+def row_of(element):
+    name = element.get("geometry")
+    match = GEOMETRY.fullmatch(name)
+    if not match:
+        raise ValueError(f'geometry "{name}"')
+    return Row(name, float(match[1]), not match[2] and not name.startswith("r"), lab_of(element))
+
+
+def lab_of(element):
+    return tuple(float(element.get(key)) for key in "Lab")
+
+
+def paint_of(element):
+    def q(tag):
+        return f"{{{NAMESPACE}}}{tag}"
+
+    measurement = element.find(q("measurement"))
+    appearance = element.find(q("appearance"))
+    condition, rows, curve = "D65, 10 deg observer", [], {}
+    if measurement is not None:
+        condition = f"{measurement.get('illuminant', 'D65')}, {measurement.get('observer', '10')} deg observer"
+        rows = [row_of(lab) for lab in measurement.iter(q("lab"))]
+    if appearance is not None:
+        curve = {"face": lab_of(appearance.find(q("face"))), "flop": lab_of(appearance.find(q("flop"))),
+                 "travel": float(appearance.get("travel")), "residual": appearance.get("residual_de00")}
+    lobes = element.find(q("lobes"))
+    fit = {} if lobes is None else {key: float(lobes.get(f"{key}_de00")) for key in ("max", "mean")}
+    gloss = {float(reading.get("angle", "60")): float(reading.text) for reading in element.iter(q("gloss"))}
+    return Paint(element.get("name"), element.get("code") or "", element.get("class") or "unknown", condition, rows,
+                 gloss, curve, element, fit)
+
+
+def read(path):
+    """The paints of a paint XML file. ValueError: a paint that has no color to show."""
+    paints = []
+    for element in tree.parse(path).getroot().iter(f"{{{NAMESPACE}}}paint"):
+        paint = paint_of(element)
+        if not paint.rows and not paint.appearance:
+            raise ValueError(f'paint "{paint.name}" has neither measured rows nor an appearance')
+        paints.append(paint)
+    return paints

@@ -1,0 +1,191 @@
+#!/usr/bin/env bats
+# scripts/paint-book from outside: what the page holds, and that it holds together. Browsers are not asked here.
+
+book() {
+  "$BATS_TEST_DIRNAME/../paint-book" "$@"
+}
+
+setup_file() {
+  cd "$BATS_FILE_TMPDIR"
+  cat >small.paints.xml <<'XML'
+<paints xmlns="urn:goniochrome:paint:1" version="1">
+  <paint name="gray" class="solid"><measurement illuminant="D65" observer="10">
+    <lab geometry="45as15" L="50" a="0" b="0"/><lab geometry="45as45" L="50" a="0" b="0"/><lab geometry="45as110" L="50" a="0" b="0"/>
+  </measurement></paint>
+  <paint name="red" class="solid" code="R1"><measurement illuminant="D65" observer="10">
+    <lab geometry="45as15" L="43" a="57" b="37"/><lab geometry="45as45" L="42" a="58" b="38"/><lab geometry="45as110" L="42" a="59" b="39"/>
+  </measurement><gloss angle="60">90</gloss></paint>
+  <paint name="blue &lt;/script&gt; &quot;x&quot; &amp; {{title}}" class="metallic"><measurement illuminant="D65" observer="10">
+    <lab geometry="45as-15" L="61" a="-14" b="-53"/><lab geometry="45as15" L="58" a="-13" b="-55"/>
+    <lab geometry="45as45" L="29" a="4" b="-53"/><lab geometry="45as110" L="12" a="18" b="-39"/>
+  </measurement><gloss angle="60">92</gloss></paint>
+  <paint name="designed" class="pearl"><appearance travel="80"><face L="80" a="-2" b="60"/><flop L="40" a="5" b="30"/></appearance></paint>
+</paints>
+XML
+  prefilter-envmap "$TESTDATA/studio.exr" --basis "$TESTDATA/b5.basis.xml" --size 16 --quiet -o small.env.exr
+  book small.paints.xml --env small.env.exr --basis "$TESTDATA/b5.basis.xml" --size 96x64 --title 'A & B' -o small.html
+}
+
+setup() {
+  cd "$BATS_FILE_TMPDIR"
+}
+
+@test "the page holds together: ids, links, cards, sliders and data" {
+  /usr/bin/python3 - small.html <<'PY'
+import base64, html.parser, json, sys
+
+class Reader(html.parser.HTMLParser):
+    VOID = {"meta", "input", "img", "link", "br"}
+
+    def __init__(self):
+        super().__init__()
+        self.open, self.tags, self.texts = [], [], {}
+
+    def handle_starttag(self, tag, attributes):
+        attributes = dict(attributes)
+        self.tags.append((tag, attributes))
+        if tag not in self.VOID:
+            self.open.append((tag, attributes.get("id")))
+
+    def handle_startendtag(self, tag, attributes):
+        self.tags.append((tag, dict(attributes)))
+
+    def handle_endtag(self, tag):
+        name, _ = self.open.pop()
+        assert name == tag, f"</{tag}> closes <{name}>"
+
+    def handle_data(self, data):
+        if self.open:
+            self.texts.setdefault(self.open[-1][1], []).append(data)
+
+page = Reader()
+page.feed(open(sys.argv[1], encoding="utf-8").read())
+page.close()
+assert not page.open, page.open
+tags = page.tags
+ids = [a["id"] for _, a in tags if "id" in a and a["id"] != "card-name"]
+assert len(ids) == len(set(ids)), "an id stands twice"
+
+# Nothing is fetched: every address is inside the page.
+for tag, a in tags:
+    for key in ("src", "href", "action", "poster", "data"):
+        value = a.get(key)
+        assert value is None or value.startswith(("#", "data:image/png;base64,")), (tag, key, value[:60])
+        if value and value.startswith("#"):
+            assert value[1:] in ids, value
+for tag, a in tags:
+    for key in ("aria-labelledby", "for"):
+        assert a.get(key) is None or a[key] in ids + ["card-name"], a
+
+paints = json.loads("".join(page.texts["data"]))
+assert [p["name"] for p in paints] == ["gray", "red", 'blue </script> "x" & {{title}}', "designed"]
+tiles = [int(a["data-paint"]) for _, a in tags if "data-paint" in a]
+assert sorted(tiles) == [0, 1, 2, 3]
+for i in tiles:
+    assert f"card-{i}" in ids
+for _, a in tags:
+    if a.get("src", "").startswith("data:image"):
+        png = base64.b64decode(a["src"].split(",")[1])
+        assert png[:8] == b"\x89PNG\r\n\x1a\n" and png[16:24] == bytes([0, 0, 0, 96, 0, 0, 0, 64])
+
+# What the filter reads is there, in the page's own words.
+indices = [a["data-index"] for _, a in tags if "data-index" in a]
+assert indices == ["flop_index", "chroma_index", "hue_shift_index"]
+classes = [a["value"] for _, a in tags if a.get("type") == "checkbox"]
+assert classes == ["solid", "metallic", "pearl"]
+sliders = [a for _, a in tags if a.get("type") == "range"]
+assert len(sliders) == 6
+for index, low, high in zip(indices, sliders[::2], sliders[1::2]):
+    assert low["value"] == low["min"] and high["value"] == high["max"] and low["min"] == high["min"]
+    for p in paints:
+        assert p["class"] in classes
+        assert p[index] is None or float(low["min"]) <= p[index] <= float(high["max"]), (index, p[index])
+    assert all(a["aria-label"] for a in (low, high))
+assert paints[0]["hue_shift_index"] is None, "a gray has no hue"
+assert paints[0]["flop_index"] == 0
+assert abs(paints[2]["flop_index"] - 2.69 * 46 ** 1.11 / 29 ** 0.86) < 1e-6
+
+# Every paint can be taken along in three formats.
+for p in paints:
+    assert [f["name"].rsplit(".", 1)[1] for f in p["files"]] == ["xml", "csv", "cxf"]
+    assert all("/" not in f["name"] and "<" not in f["name"] and f["text"] for f in p["files"])
+
+# The places: gray and red among the solids, blue and yellow among the effect colors.
+heads = [a["id"] for tag, a in tags if tag in ("h2", "h3") and "id" in a and a["id"] != "card-name"]
+assert heads == ["solids", "solids-red", "solids-medium", "effects", "effects-yellow", "effects-blue"], heads
+PY
+}
+
+@test "texts from the library are text in the page" {
+  grep -qF '<title>A &amp; B</title>' small.html
+  grep -qF 'blue &lt;/script&gt; &quot;x&quot; &amp; {{title}}' small.html
+  [ "$(grep -c '</script>' small.html)" -eq 2 ]
+}
+
+@test "the downloads read back with the paint's numbers" {
+  /usr/bin/python3 - small.html <<'PY'
+import json, re, sys
+page = open(sys.argv[1], encoding="utf-8").read()
+for paint in json.loads(re.search(r'id="data">(.*?)</script>', page, re.S)[1]):
+    for f in paint["files"]:
+        open("taken." + f["name"].rsplit(".", 1)[1], "w", encoding="utf-8").write(f["text"])
+    if paint["name"] == "red":
+        break
+PY
+  mv taken.xml taken.paints.xml
+  for file in taken.paints.xml taken.csv taken.cxf; do
+    paint-convert "$file" --to csv -o - | grep -q '^red,45as45,D65,10,42,58,38$'
+  done
+}
+
+@test "the filter is the one function that the page states" {
+  grep -qF 'function matches(paint, wanted)' small.html
+  grep -qF 'whole || (paint[index] !== null && paint[index] >= low && paint[index] <= high)' small.html
+  ! grep -qE 'https?://[^u]*\.(js|css)|@import|fetch\(|XMLHttpRequest' small.html
+}
+
+@test "a paint without gloss is drawn matt or with the gloss assumed, and its card says so" {
+  [ "$(grep -c 'Note: no gloss reading, drawn matt' small.html)" -ge 1 ]
+  book "$BATS_FILE_TMPDIR/small.paints.xml" --env small.env.exr --basis "$TESTDATA/b5.basis.xml" --size 96x64 --gloss 85 --quiet -o coated.html
+  grep -q 'Note: no gloss reading, drawn with 85 units' coated.html
+}
+
+@test "a missing library, mesh or light is named, and no book is left" {
+  run book missing.paints.xml -o none.html
+  [ "$status" -eq 3 ]
+  [[ $output == *missing.paints.xml* ]]
+  run book small.paints.xml --env small.env.exr --basis "$TESTDATA/b5.basis.xml" --mesh missing.obj --size 96x64 -o none.html
+  [ "$status" -eq 3 ]
+  [[ $output == *missing.obj* ]]
+  run book small.paints.xml --env missing.exr -o none.html
+  [ "$status" -eq 3 ]
+  [[ $output == *missing.exr* ]]
+  run book small.paints.xml --env small.env.exr -o nowhere/none.html
+  [ "$status" -eq 3 ]
+  [[ $output == *"nowhere: there is no such folder"* ]]
+  [ ! -e none.html ] && [ ! -e none.html.partial ]
+}
+
+@test "usage errors" {
+  run book small.paints.xml
+  [ "$status" -eq 2 ]
+  run book small.paints.xml --size big -o none.html
+  [ "$status" -eq 2 ]
+  [[ $output == *"give width x height in pixels"* ]]
+  run book small.paints.xml --jobs 0 -o none.html
+  [ "$status" -eq 2 ]
+  run book small.paints.xml --gloss 101 -o none.html
+  [ "$status" -eq 2 ]
+  [[ $output == *"give gloss units from 0 to 100"* ]]
+  run book small.paints.xml --bin /nowhere -o none.html
+  [ "$status" -eq 3 ]
+  [[ $output == *"paint-convert is not in /nowhere"* ]]
+}
+
+@test "the tools' own words reach the user" {
+  printf '<paints xmlns="urn:goniochrome:paint:1" version="1"><paint name="p"><gloss angle="60">5</gloss></paint></paints>' >colorless.paints.xml
+  run book colorless.paints.xml --env small.env.exr -o none.html
+  [ "$status" -eq 3 ]
+  [[ $output == "paint-book: "*p* ]]
+  [ ! -e none.html ]
+}
