@@ -29,7 +29,9 @@ cli::ToolSpec render_spec(RenderOptions& o, cli::CommonOptions& common) {
       "normal "
       "and that light), mask (1 on the mesh) and part (numbered from 1; the attribute goniochrome:parts names them). "
       "Without --light, the light of these two is the direction in which the environment's irradiance is largest; "
-      "goniochrome:aovLight holds it.",
+      "goniochrome:aovLight holds it. goniochrome:rays (corner;right;down, the ray through the point x,y being their sum "
+      "with the second times x and the third times y, in pixels from the upper left), goniochrome:lights (direction and "
+      "white of each) and goniochrome:environment say what is needed to shade the buffers again.",
       "--check compares that many random pixel centers with the reference integrator: the exact lobe model against "
       "every "
       "texel of the environment's source, without prefiltering. The differences are CIEDE2000 relative to the "

@@ -50,6 +50,16 @@ number() { grep -m1 "\"$1\"" r.json | sed -E 's/.*: ([-0-9.e+]+),?$/\1/'; }
   exrheader out.exr | grep -A1 -q 'goniochrome:aovLight'
 }
 
+@test "buffers come with the rays, the lights and the environment they were seen in" {
+  render-osmesa -q --mesh "$shape" -p paints.xml#matt --env small.env.exr --light 0,0,2,0.5,1,1 $small --aov mask -o out.exr
+  exrheader out.exr >header
+  grep -A1 'goniochrome:lights' header | grep -q '"0,0,1,0.5,1,1"'
+  grep -A1 'goniochrome:environment' header | grep -q '"small.env.exr"'
+  rays=$(grep -A1 'goniochrome:rays' header | grep -oE '"[^"]+"')
+  [ "$(tr -cd ';' <<<"$rays" | wc -c)" -eq 2 ]
+  [ "$(tr -cd ',' <<<"$rays" | wc -c)" -eq 6 ]
+}
+
 @test "a lobe that the environment lacks is named, with the command that makes it" {
   run render-osmesa --mesh "$shape" -p paints.xml#other --env small.env.exr $small -o lobe.exr
   [ "$status" -eq 3 ]

@@ -160,6 +160,22 @@ Attributes provenance(const cli::Session& session) {
           {"goniochrome:command", session.command_line()}};
 }
 
+std::string spelled(const Vec3& v) {
+  return fmt::format("{},{},{}", shortest(v.x), shortest(v.y), shortest(v.z));
+}
+
+// What one must know to shade the buffers again: the rays through the pixels, and the light.
+void describe_view(const RenderOptions& options, const Rays& rays, const std::vector<Light>& lights,
+                   Attributes& attributes) {
+  attributes["goniochrome:rays"] =
+      fmt::format("{};{};{}", spelled(rays.corner), spelled(rays.right), spelled(rays.down));
+  std::string all;
+  for (const Light& light : lights)
+    all += fmt::format("{}{},{}", all.empty() ? "" : ";", spelled(light.direction), spelled(light.white));
+  attributes["goniochrome:lights"] = all;
+  attributes["goniochrome:environment"] = options.env;
+}
+
 Result<void> write_exr_picture(const RenderOptions& options, const Request& request, const Frame& frame,
                                const Scene& scene, const DiffuseWhite& white, double stops,
                                const cli::Session& session) {
@@ -175,8 +191,8 @@ Result<void> write_exr_picture(const RenderOptions& options, const Request& requ
     const Vec3 to_light = scene.lights.empty() ? white.direction : scene.lights.front().direction;
     for (const std::string& aov : request.aovs) GONIO_TRY(add_aov(part.image, frame.gbuffer, aov, to_light));
     part.type = PixelType::kFloat;
-    part.attributes["goniochrome:aovLight"] =
-        fmt::format("{},{},{}", shortest(to_light.x), shortest(to_light.y), shortest(to_light.z));
+    part.attributes["goniochrome:aovLight"] = spelled(to_light);
+    describe_view(options, frame.gbuffer.rays, scene.lights, part.attributes);
     Json names = Json::array();
     for (const MeshPart& mesh_part : scene.mesh->parts) names.push_back(mesh_part.name);
     part.attributes["goniochrome:parts"] = names.dump(-1, ' ', false, Json::error_handler_t::replace);
