@@ -1,5 +1,6 @@
 #include "brdf/lobe_model.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace goniochrome {
@@ -39,15 +40,63 @@ double fresnel_dielectric(double cos_i, double index) {
   return 0.5 * (r_s * r_s + r_p * r_p);
 }
 
+namespace {
+
+// The two views around an angle and the share of the upper one.
+struct ViewPair {
+  const ViewLobes *low, *high;
+  double share;
+};
+
+ViewPair views_around(const std::vector<ViewLobes>& views, double view_deg) {
+  const auto above = std::ranges::upper_bound(views, view_deg, {}, &ViewLobes::view_deg);
+  if (above == views.begin()) return {&views.front(), &views.front(), 0};
+  if (above == views.end()) return {&views.back(), &views.back(), 0};
+  const ViewLobes &low = above[-1], &high = above[0];
+  return {&low, &high, (view_deg - low.view_deg) / (high.view_deg - low.view_deg)};
+}
+
+Rgb lobes_at(const Rgb& diffuse, const std::vector<Lobe>& lobes, double angle_rad, double cos_i) {
+  Rgb f = diffuse;
+  for (const Lobe& lobe : lobes)
+    if (std::isfinite(lobe.exponent))
+      f += cos_power(angle_rad, lobe.exponent) * (lobe.directional_diffuse + (1 / cos_i) * lobe.gloss);
+  return f;
+}
+
+void add_scaled(const ViewLobes& view, double scale, LobeFit& sum) {
+  sum.diffuse += scale * view.diffuse;
+  for (const Lobe& lobe : view.lobes) {
+    auto at = std::ranges::lower_bound(sum.lobes, lobe.exponent, {}, &Lobe::exponent);
+    if (at == sum.lobes.end() || at->exponent != lobe.exponent) at = sum.lobes.insert(at, {lobe.exponent, {}, {}});
+    at->directional_diffuse += scale * lobe.directional_diffuse;
+    at->gloss += scale * lobe.gloss;
+  }
+}
+
+}  // namespace
+
+LobeFit at_view(const LobeFit& fit, double view_deg) {
+  LobeFit result = fit;
+  result.views.clear();
+  if (fit.views.empty()) return result;
+  result.diffuse = {};
+  result.lobes.clear();
+  const ViewPair around = views_around(fit.views, view_deg);
+  add_scaled(*around.low, 1 - around.share, result);
+  if (around.share > 0) add_scaled(*around.high, around.share, result);
+  return result;
+}
+
 Rgb brdf(const LobeFit& fit, const Vec3& to_light, const Vec3& to_viewer, const Vec3& normal) {
   const double cos_i = dot(normal, to_light);
   if (cos_i <= 0 || dot(normal, to_viewer) <= 0) return {};
   const double angle_rad = aspecular_angle_rad(to_light, to_viewer, normal);
-  Rgb f = fit.diffuse;
-  for (const Lobe& lobe : fit.lobes) {
-    if (std::isinf(lobe.exponent)) continue;
-    f += cos_power(angle_rad, lobe.exponent) * (lobe.directional_diffuse + (1 / cos_i) * lobe.gloss);
-  }
+  if (fit.views.empty()) return lobes_at(fit.diffuse, fit.lobes, angle_rad, cos_i);
+  const double view_rad = std::atan2(length(cross(normal, to_viewer)), dot(normal, to_viewer));
+  const auto [low, high, share] = views_around(fit.views, view_rad * (180 / M_PI));
+  Rgb f = (1 - share) * lobes_at(low->diffuse, low->lobes, angle_rad, cos_i);
+  if (share > 0) f += share * lobes_at(high->diffuse, high->lobes, angle_rad, cos_i);
   return f;
 }
 

@@ -20,11 +20,16 @@ double fresnel_dielectric(double cos_i, double index);
 
 constexpr double kCoatIndex = 1.5;
 
+// The weights that hold for a viewer at that angle from the normal: `fit` itself without its views, or the linear
+// interpolation between two of them, constant beyond the ends. Exponents ascending, as in the views.
+LobeFit at_view(const LobeFit& fit, double view_deg);
+
 // f(wi,wo) in 1/sr without its mirror lobe (that is a delta: see render/reference.h). 0 where either direction is below
 // the horizon.
 Rgb brdf(const LobeFit& fit, const Vec3& to_light, const Vec3& to_viewer, const Vec3& normal);
 
-// The reflectance factor pi f without conventional gloss at an aspecular angle: what a multi-angle instrument reads.
+// The reflectance factor pi f without conventional gloss at an aspecular angle: what a multi-angle instrument reads,
+// by the weights for all views.
 Rgb flake_reflectance_factor(const LobeFit& fit, double aspecular_deg);
 
 }  // namespace goniochrome

@@ -108,6 +108,30 @@ TEST(LobeModel, BrdfAddsItsParts) {
   EXPECT_EQ(brdf(fit, light, {0, 1, 0}, normal), Rgb{});
 }
 
+TEST(LobeModel, ViewsAreInterpolatedAndHeldAtTheEnds) {
+  LobeFit fit = sample_fit();
+  fit.views = {{0, {0.1, 0, 0}, {{20, {1, 0, 0}, {}}}},
+               {40, {0.3, 0, 0}, {{20, {0, 0, 0}, {2, 0, 0}}, {50, {4, 0, 0}, {}}}}};
+  const auto at = [](double deg) { return Vec3{std::sin(deg * M_PI / 180), 0, std::cos(deg * M_PI / 180)}; };
+  const auto lobe = [](double deg, double e) { return std::pow(std::cos(deg * M_PI / 180), e); };
+  const Vec3 light = at(-45), normal = {0, 0, 1};
+  EXPECT_NEAR(brdf(fit, light, at(0), normal).x, 0.1 + lobe(45, 20), 1e-14);
+  const double gloss = 2 / std::cos(45 * M_PI / 180);
+  EXPECT_NEAR(brdf(fit, light, at(40), normal).x, 0.3 + gloss * lobe(5, 20) + 4 * lobe(5, 50), 1e-12);
+  EXPECT_NEAR(brdf(fit, light, at(60), normal).x, 0.3 + gloss * lobe(15, 20) + 4 * lobe(15, 50), 1e-12);
+  // A quarter of the way, on either side of the normal.
+  for (const double side : {1.0, -1.0}) {
+    const double as = 45 - side * 10;
+    EXPECT_NEAR(brdf(fit, light, at(side * 10), normal).x,
+                0.75 * (0.1 + lobe(as, 20)) + 0.25 * (0.3 + gloss * lobe(as, 20) + 4 * lobe(as, 50)), 1e-12);
+  }
+  const LobeFit quarter = at_view(fit, 10);
+  EXPECT_TRUE(quarter.views.empty());
+  ASSERT_EQ(quarter.lobes.size(), 2u);
+  EXPECT_NEAR(brdf(quarter, light, at(10), normal).x, brdf(fit, light, at(10), normal).x, 1e-14);
+  EXPECT_EQ(at_view(sample_fit(), 10).diffuse, sample_fit().diffuse);
+}
+
 TEST(LobeModel, ReflectanceFactorLeavesGlossOut) {
   const LobeFit fit = sample_fit();
   const double c20 = std::pow(std::cos(15 * M_PI / 180), 20);

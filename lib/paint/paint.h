@@ -54,12 +54,23 @@ struct Lobe {
   Rgb gloss;
 };
 
+// The weights at one angle of the viewer from the normal.
+struct ViewLobes {
+  double view_deg = 0;  // 0..90
+  Rgb diffuse;
+  std::vector<Lobe> lobes;
+};
+
 // A paint fitted to a basis: f = K_D + sum K_DD cos^E(theta_as) + (1/cos_i) sum K_G cos^E(theta_as).
 struct LobeFit {
   std::string basis, method;
   double max_de00 = 0, mean_de00 = 0;
   Rgb diffuse;  // K_D, 1/sr
   std::vector<Lobe> lobes;
+  // Weights that change with the view, ascending in view_deg, each set complete; linear between two of them and constant
+  // beyond the ends. Where there are none, `diffuse` and `lobes` hold for every view; where there are, these remain the
+  // best weights for all views together.
+  std::vector<ViewLobes> views = {};
 };
 
 struct Paint {

@@ -33,7 +33,10 @@ enum class Node {
   kColorMap,
   kLobes,
   kDiffuse,
-  kLobe
+  kLobe,
+  kView,
+  kViewDiffuse,
+  kViewLobe
 };
 
 // The elements of paint XML: where each stands and what attributes it takes ("?" marks those that may be missing). The
@@ -57,6 +60,9 @@ constexpr std::array kRules = {
     ElementRule{Node::kLobes, Node::kPaint, "lobes", "space basis method max_de00 mean_de00"},
     ElementRule{Node::kDiffuse, Node::kLobes, "diffuse", "r g b"},
     ElementRule{Node::kLobe, Node::kLobes, "lobe", "exponent ddr ddg ddb gr gg gb"},
+    ElementRule{Node::kView, Node::kLobes, "view", "angle"},
+    ElementRule{Node::kViewDiffuse, Node::kView, "diffuse", "r g b"},
+    ElementRule{Node::kViewLobe, Node::kView, "lobe", "exponent ddr ddg ddb gr gg gb"},
 };
 
 std::string_view name_of(Node node) {
@@ -109,7 +115,8 @@ class PaintHandler : public XmlHandler {
   Result<void> begin_gloss(const XmlValues& values);
   Result<void> begin_appearance(const XmlValues& values);
   Result<void> begin_lobes(const XmlValues& values);
-  Result<void> begin_lobe(const XmlValues& values);
+  Result<void> begin_lobe(const XmlValues& values, std::vector<Lobe>& lobes);
+  Result<void> begin_view(const XmlValues& values);
   Result<void> finish(Node node, int line);
   Result<void> once(bool seen, const XmlValues& values) const;
   Result<void> lose_paint(const Error& error);
@@ -126,7 +133,7 @@ class PaintHandler : public XmlHandler {
   Paint paint_;
   int paint_line_ = 0;
   std::size_t paint_bytes_ = 0;
-  bool has_face_ = false, has_flop_ = false, has_diffuse_ = false;
+  bool has_face_ = false, has_flop_ = false, has_diffuse_ = false, has_view_diffuse_ = false;
   std::string gloss_text_;
   int gloss_line_ = 0;
 };
@@ -239,7 +246,14 @@ Result<void> PaintHandler::begin(Node node, const XmlValues& values) {
       GONIO_TRY(once(std::exchange(has_diffuse_, true), values));
       return values.rgb("", paint_.lobes->diffuse);
     case Node::kLobe:
-      return begin_lobe(values);
+      return begin_lobe(values, paint_.lobes->lobes);
+    case Node::kView:
+      return begin_view(values);
+    case Node::kViewDiffuse:
+      GONIO_TRY(once(std::exchange(has_view_diffuse_, true), values));
+      return values.rgb("", paint_.lobes->views.back().diffuse);
+    case Node::kViewLobe:
+      return begin_lobe(values, paint_.lobes->views.back().lobes);
     default:
       return {};
   }
@@ -326,8 +340,20 @@ Result<void> PaintHandler::begin_lobes(const XmlValues& values) {
   return values.number("mean_de00", lobes.mean_de00, Domain::kNotNegative);
 }
 
-Result<void> PaintHandler::begin_lobe(const XmlValues& values) {
-  auto& lobes = paint_.lobes->lobes;
+Result<void> PaintHandler::begin_view(const XmlValues& values) {
+  auto& views = paint_.lobes->views;
+  if (views.size() >= kMostRows) return values.error(fmt::format("more than {} views in one paint", kMostRows));
+  has_view_diffuse_ = false;
+  ViewLobes view;
+  GONIO_TRY(values.number("angle", view.view_deg, Domain::kNotNegative));
+  if (view.view_deg > 90) return values.error("angle", "give degrees from the normal, 0 to 90");
+  if (!views.empty() && view.view_deg <= views.back().view_deg)
+    return values.error("angle", "views stand in the order of their angles, each once");
+  views.push_back(std::move(view));
+  return {};
+}
+
+Result<void> PaintHandler::begin_lobe(const XmlValues& values, std::vector<Lobe>& lobes) {
   if (lobes.size() >= kMostRows) return values.error(fmt::format("more than {} lobes in one paint", kMostRows));
   Lobe& lobe = lobes.emplace_back();
   if (values.text("exponent") == "mirror")
@@ -382,6 +408,9 @@ Result<void> PaintHandler::finish(Node node, int line) {
       break;
     case Node::kLobes:
       if (!has_diffuse_) return lacks("diffuse");
+      break;
+    case Node::kView:
+      if (!has_view_diffuse_) return lacks("diffuse");
       break;
     case Node::kGloss: {
       auto gloss = number_in(gloss_text_, Domain::kNotNegative);

@@ -90,6 +90,7 @@ Paint full_paint() {
   paint.color_map = ColorMapReference{"maps/x y.exr", 1.5};
   paint.lobes = LobeFit{"b7", "l1", 1.25, 0.5, {0.1, 0.2, 0.3}, {}};
   paint.lobes->lobes = {{12.5, {1, 2, 3}, {4, 5, 6}}, {INFINITY, {0, 0, 0}, {1e-300, 1e300, 0.1}}};
+  paint.lobes->views = {{0, {0.1, 0.2, 0.3}, {{12.5, {1, 2, 3}, {}}}}, {90, {0.3, 0.2, 0.1}, {}}};
   paint.foreign = {"<x:note xmlns:x=\"urn:x\" k=\"1\">a<x:b/>c &amp; d</x:note>", "<y xmlns=\"urn:y\"/>"};
   return paint;
 }
@@ -144,6 +145,12 @@ TEST(PaintXml, every_part_survives_to_the_last_bit) {
     EXPECT_EQ(back.lobes->lobes[i].directional_diffuse, paint.lobes->lobes[i].directional_diffuse);
     EXPECT_EQ(back.lobes->lobes[i].gloss, paint.lobes->lobes[i].gloss);
   }
+  ASSERT_EQ(back.lobes->views.size(), 2u);
+  EXPECT_EQ(back.lobes->views[0].view_deg, 0);
+  ASSERT_EQ(back.lobes->views[0].lobes.size(), 1u);
+  EXPECT_EQ(back.lobes->views[0].lobes[0].directional_diffuse, (Rgb{1, 2, 3}));
+  EXPECT_EQ(back.lobes->views[1].view_deg, 90);
+  EXPECT_EQ(back.lobes->views[1].diffuse, (Rgb{0.3, 0.2, 0.1}));
   EXPECT_EQ(reading.foreign, foreign);
   ASSERT_EQ(reading.processing.size(), 1u);
   EXPECT_EQ(reading.processing[0].command, "fit-paint 'a b' < x & y");
@@ -253,6 +260,16 @@ TEST(PaintXml, wrong_values_are_named_with_line_and_remedy) {
   EXPECT_EQ(paint("<note xmlns=\"\"/>"), "p.xml:4: <note> has no namespace: declare one with xmlns=\"...\"");
   EXPECT_EQ(paint("<lobes space=\"lin_rec709\" basis=\"b\" method=\"l1\" max_de00=\"1\" mean_de00=\"1\"/>"),
             "p.xml:4: space is \"lin_rec709\": weights must be in lin_rec2020_scene: fit the paint again");
+  const auto lobes = [&](const std::string& views) {
+    return paint("<lobes space=\"lin_rec2020_scene\" basis=\"b\" method=\"l1\" max_de00=\"1\" mean_de00=\"1\">"
+                 "<diffuse r=\"1\" g=\"1\" b=\"1\"/>" + views + "</lobes>");
+  };
+  const std::string diffuse = "<diffuse r=\"1\" g=\"1\" b=\"1\"/></view>";
+  EXPECT_EQ(lobes("<view angle=\"91\">" + diffuse),
+            "p.xml:4: angle is \"91\": give degrees from the normal, 0 to 90");
+  EXPECT_EQ(lobes("<view angle=\"15\">" + diffuse + "<view angle=\"15\">" + diffuse),
+            "p.xml:4: angle is \"15\": views stand in the order of their angles, each once");
+  EXPECT_EQ(lobes("<view angle=\"15\"/>"), "p.xml:4: <view> of paint \"p\" has no <diffuse>: add it");
   EXPECT_EQ(only_error(document("<paint name=\"\"/>\n")), "p.xml:3: name is empty: write something");
   EXPECT_EQ(only_error(document("<paint/>\n")), "p.xml:3: <paint> has no name: write name=\"...\"");
   EXPECT_EQ(only_error(document("<paint name=\"p\" class=\"shiny\"/>\n")),

@@ -45,15 +45,24 @@ std::string appearance_element(const Appearance& appearance) {
          lab_attributes(appearance.flop) + "/>\n    </appearance>\n";
 }
 
+// <diffuse> and the <lobe> elements.
+std::string weights(const std::string& indent, const Rgb& diffuse, const std::vector<Lobe>& lobes) {
+  std::string text = indent + "<diffuse" + rgb_attributes("", diffuse) + "/>\n";
+  for (const Lobe& lobe : lobes)
+    text += indent + "<lobe" +
+            (std::isinf(lobe.exponent) ? attribute("exponent", "mirror") : attribute("exponent", lobe.exponent)) +
+            rgb_attributes("dd", lobe.directional_diffuse) + rgb_attributes("g", lobe.gloss) + "/>\n";
+  return text;
+}
+
 std::string lobes_element(const LobeFit& lobes) {
   std::string text = "    <lobes" + attribute("space", "lin_rec2020_scene") + attribute("basis", lobes.basis) +
                      attribute("method", lobes.method) + attribute("max_de00", lobes.max_de00) +
-                     attribute("mean_de00", lobes.mean_de00) + ">\n      <diffuse" + rgb_attributes("", lobes.diffuse) +
-                     "/>\n";
-  for (const Lobe& lobe : lobes.lobes)
-    text += "      <lobe" +
-            (std::isinf(lobe.exponent) ? attribute("exponent", "mirror") : attribute("exponent", lobe.exponent)) +
-            rgb_attributes("dd", lobe.directional_diffuse) + rgb_attributes("g", lobe.gloss) + "/>\n";
+                     attribute("mean_de00", lobes.mean_de00) + ">\n" +
+                     weights("      ", lobes.diffuse, lobes.lobes);
+  for (const ViewLobes& view : lobes.views)
+    text += "      <view" + attribute("angle", view.view_deg) + ">\n" + weights("        ", view.diffuse, view.lobes) +
+            "      </view>\n";
   return text + "    </lobes>\n";
 }
 
