@@ -1,0 +1,60 @@
+#include "brdf/lafortune.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace goniochrome {
+
+// pow(x, n) overflows or vanishes before its factor can bring it back, and inf * 0 is no number. log x near 1 is good
+// to an ulp of itself, being exact in its argument; n log x + log scale is at most 745 in size where the result is not
+// 0.
+double scaled_power(double scale, double x, double exponent) {
+  if (!(x > 0) || scale == 0) return 0;
+  const double largest = std::log(std::numeric_limits<double>::max());
+  const double power = exponent * std::log(x) + std::log(std::abs(scale));
+  return std::copysign(std::exp(std::min(power, largest)), scale);
+}
+
+namespace {
+
+Rgb scaled_color(const Rgb& scale, double x, double exponent) {
+  return {scaled_power(scale.x, x, exponent), scaled_power(scale.y, x, exponent), scaled_power(scale.z, x, exponent)};
+}
+
+}  // namespace
+
+Rgb brdf(const Lafortune& surface, const Vec3& to_light, const Vec3& to_viewer) {
+  if (to_light.z <= 0 || to_viewer.z <= 0) return {};
+  Rgb f = surface.diffuse;
+  for (const LafortuneLobe& lobe : surface.lobes)
+    f += scaled_color(lobe.albedo, dot(lobe.axes * to_viewer, to_light), lobe.exponent);
+  return f;
+}
+
+LobeFetch environment_fetch(const LafortuneLobe& lobe, const Vec3& to_viewer) {
+  const Vec3 p = lobe.axes * to_viewer;
+  const double size = std::hypot(p.x, p.y, p.z);
+  if (!(size > 0) || p.z <= 0) return {};
+  const double cosine = p.z / size, energy = 2 * std::numbers::pi / (lobe.exponent + 1);
+  return {{p.x / size, p.y / size, cosine}, scaled_color((cosine * energy) * lobe.albedo, size, lobe.exponent)};
+}
+
+ExponentBlend exponent_blend(double exponent, const std::vector<double>& stored) {
+  const auto upper = std::upper_bound(stored.begin(), stored.end(), exponent);
+  const int last = static_cast<int>(stored.size()) - 1;
+  if (upper == stored.begin()) return {0, 0};
+  if (upper == stored.end()) return {last, 0};
+  const int lower = static_cast<int>(upper - stored.begin()) - 1;
+  const double low = stored[static_cast<std::size_t>(lower)];
+  if (low <= 0) return {lower, 0};
+  return {lower, std::log(exponent / low) / std::log(*upper / low)};
+}
+
+double mip_level(double exponent, double finest, int levels) {
+  if (!(exponent > 0)) return levels - 1;
+  return std::clamp(0.5 * std::log2(finest / exponent), 0.0, levels - 1.0);
+}
+
+}  // namespace goniochrome

@@ -1,0 +1,50 @@
+// Ward's anisotropic lobe, and its resolution into isotropic lobes about tilted normals for prefiltered maps.
+// goniochrome-theory(7), ANISOTROPY; [Ward1992], [Shimizu2009] 2.5.3
+#pragma once
+
+#include <vector>
+
+#include "base/result.h"
+#include "base/vec3.h"
+#include "paint/paint.h"
+
+namespace goniochrome {
+
+// f in 1/sr of a lobe of strength 1 with slope distributions alpha_x and alpha_y along the tangents x and y, in the
+// frame z = normal; 0 where a direction is below the surface. Finite at grazing angles, reciprocal, and no light comes
+// back that was not sent: the integral of f cos_i is at most 1 for every viewer and every alpha > 0.
+double ward(const Vec3& to_light, const Vec3& to_viewer, const Anisotropy& alpha);
+
+// A normal to mirror the view about, in the frame of ward(), and its share of the light.
+struct Tilt {
+  Vec3 normal;
+  double weight = 1;
+};
+
+// Tilts about the narrow axis that turn an isotropic lobe of `narrow_alpha` into one of `alpha`; weights sum to 1.
+struct TiltSet {
+  std::vector<Tilt> tilts;
+  double narrow_alpha = 0;  // of the isotropic lobe, the smaller alpha or more
+  double error = 0;         // bound, relative to the peak, over half vectors; more than asked at `max_count`
+};
+
+constexpr int kMostTilts = 8192;
+
+// The fewest tilts whose error is at most `tolerance` (0..1, exclusive), or `max_count` of them. `narrow_alpha` is the
+// width of the isotropic lobe that is drawn, at least the smaller alpha: lobe_alpha() of the sharpest lobe in use. One
+// tilt where the lobe is isotropic. Error: alpha not positive.
+Result<TiltSet> ward_tilts(const Anisotropy& alpha, double narrow_alpha, double tolerance, int max_count = kMostTilts);
+
+// The Ward alpha as wide as cos^E of the aspecular angle: sqrt(1/(2E)), and back.
+double lobe_alpha(double exponent);
+double lobe_exponent(double alpha);
+
+// Weights K_DD in 1/sr of cos^E lobes, one for each exponent, that draw an isotropic Ward lobe of strength 1: closest
+// to its shape, with its energy.
+struct WardLobes {
+  std::vector<double> directional_diffuse;
+  double error = 0;  // RMS of the shape over the sphere, relative to the peak
+};
+WardLobes isotropic_ward_lobes(double alpha, const std::vector<double>& exponents);
+
+}  // namespace goniochrome

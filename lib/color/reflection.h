@@ -1,0 +1,68 @@
+// Reflection of colored light without spectra: a bilinear product of light and reflectance in place of the
+// component-wise one. goniochrome-theory(7), COLORED LIGHT; [GranierDamez2004]
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "base/result.h"
+#include "color/color.h"
+
+namespace goniochrome {
+
+// The 27 coefficients of C_c = sum_d sum_e k[c][d][e] A_d B_e. Two properties are kept by everything here: k is
+// symmetric in d and e, so that light and reflectance may trade places, and coherent, sum_e k[c][d][e] = (c == d), so
+// that white light changes nothing.
+struct ReflectionOperator {
+  std::array<std::array<std::array<double, 3>, 3>, 3> k{};
+};
+
+// k[c][c][c] = 1, all else 0: each channel by itself.
+ReflectionOperator component_wise();
+
+// The table of [GranierDamez2004] 5.3 for the sensors of ISO 17321, made coherent beyond its printed digits.
+ReflectionOperator iso_rgb_operator();
+
+// The operator of the working space, linear Rec.2020, estimated from the CIE 1931 color-matching functions.
+ReflectionOperator working_space_operator();
+
+// A (x) B. White is (1,1,1).
+constexpr Rgb reflected(const ReflectionOperator& op, const Rgb& a, const Rgb& b) {
+  Rgb c;
+  for (int i = 0; i < 3; ++i)
+    for (int d = 0; d < 3; ++d)
+      for (int e = 0; e < 3; ++e) c[i] += op.k[i][d][e] * a[d] * b[e];
+  return c;
+}
+
+// The matrix of B -> A (x) B, rows by output channel.
+using Matrix3 = std::array<std::array<double, 3>, 3>;
+Matrix3 reflection_matrix(const ReflectionOperator& op, const Rgb& a);
+Rgb product(const Matrix3& m, const Rgb& b);
+
+// Beyond this condition number a division is refused: a relative error of 1e-4 would become 1.
+constexpr double kWorstCondition = 1e4;
+
+// The inverse of a matrix and its condition number in the 1-norm, infinite where it is singular (then the inverse is
+// 0).
+struct Inverse3 {
+  Matrix3 matrix{};
+  double condition = 0;
+};
+Inverse3 inverse(const Matrix3& m);
+
+// C (/) A: the B with A (x) B = C. Error: the condition number of A, where it is beyond kWorstCondition.
+Result<Rgb> divided(const ReflectionOperator& op, const Rgb& c, const Rgb& a);
+
+// How much each channel receives from the others, 0..1 and beyond: k_iii = 1 - alpha_i, the other k[i] scaled to stay
+// coherent. alpha_i = 0 is the component-wise product of channel i. Error: alpha_i is not 0 where k_iii = 1.
+Result<ReflectionOperator> with_transfer(const ReflectionOperator& op, const Rgb& alpha);
+
+// The nearest operator (least squares) that is symmetric and coherent.
+ReflectionOperator nearest_coherent(const ReflectionOperator& op);
+
+// The operator of a color space from its color-matching functions, sampled at equal steps of wavelength, each scaled to
+// sum 1. Error: fewer than three samples, or functions that depend on each other.
+Result<ReflectionOperator> estimated_operator(std::span<const Rgb> color_matching);
+
+}  // namespace goniochrome

@@ -1,0 +1,165 @@
+#include "color/reflection.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace goniochrome {
+namespace {
+
+double largest_difference(const ReflectionOperator& a, const ReflectionOperator& b) {
+  double largest = 0;
+  for (int c = 0; c < 3; ++c)
+    for (int d = 0; d < 3; ++d)
+      for (int e = 0; e < 3; ++e) largest = std::max(largest, std::abs(a.k[c][d][e] - b.k[c][d][e]));
+  return largest;
+}
+
+void expect_near(const Rgb& got, const Rgb& want, double tolerance) {
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(got[c], want[c], tolerance);
+}
+
+TEST(Reflection, WhiteLightChangesNothing) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> uniform(0, 2);
+  for (const ReflectionOperator& op : {component_wise(), iso_rgb_operator(), working_space_operator()}) {
+    for (int i = 0; i < 1000; ++i) {
+      const Rgb color = {uniform(random), uniform(random), uniform(random)};
+      const double gray = uniform(random);
+      expect_near(reflected(op, {gray, gray, gray}, color), gray * color, 1e-12);
+      const Rgb other = {uniform(random), uniform(random), uniform(random)};
+      expect_near(reflected(op, color, other), reflected(op, other, color), 1e-14);
+    }
+  }
+}
+
+TEST(Reflection, PublishedTableIsKeptToItsDigits) {
+  const ReflectionOperator op = iso_rgb_operator();
+  EXPECT_NEAR(op.k[0][0][0], .6533043776, 5e-10);
+  EXPECT_NEAR(op.k[0][1][1], -.2135258222, 5e-10);
+  EXPECT_NEAR(op.k[1][2][0], -.01811892773, 5e-10);
+  EXPECT_NEAR(op.k[2][2][2], .9497684667, 5e-10);
+}
+
+TEST(Reflection, ComponentWiseIsThePlainProduct) {
+  expect_near(reflected(component_wise(), {0.2, 0.5, 3}, {0.7, 0.1, 2}), {0.14, 0.05, 6}, 1e-15);
+}
+
+TEST(Reflection, RedStaysRedInCyanLight) {
+  const Rgb red = {0.6, 0.02, 0.02}, cyan = {0, 1, 1};
+  const Rgb plain = reflected(component_wise(), red, cyan), ours = reflected(iso_rgb_operator(), red, cyan);
+  EXPECT_EQ(plain.x, 0);
+  EXPECT_GT(ours.x, 0.15);
+  EXPECT_GT(ours.x, 3 * std::max(ours.y, ours.z));
+}
+
+TEST(Reflection, DivisionUndoesMultiplication) {
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (const ReflectionOperator& op : {component_wise(), iso_rgb_operator(), working_space_operator()}) {
+    int divisions = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const Rgb a = {uniform(random), uniform(random), uniform(random)}, b = {uniform(random), 1, uniform(random)};
+      const auto back = divided(op, reflected(op, a, b), a);
+      if (!back.ok()) continue;
+      ++divisions;
+      // Rounding times the worst condition number that is let pass.
+      expect_near(*back, b, 1e-15 * kWorstCondition);
+    }
+    EXPECT_GT(divisions, 1900);
+  }
+}
+
+TEST(HardCase, colour_divide_refuses_with_the_condition_number) {
+  const ReflectionOperator iso = iso_rgb_operator();
+  const auto by_black = divided(iso, {1, 1, 1}, {0, 0, 0});
+  ASSERT_FALSE(by_black.ok());
+  EXPECT_NE(by_black.error().message.find("condition number is inf"), std::string::npos) << by_black.error().message;
+
+  // Component by component, one dark channel is enough; the control divides 0 by 0.
+  EXPECT_FALSE(divided(component_wise(), {1, 0, 1}, {1, 0, 1}).ok());
+  EXPECT_TRUE(std::isnan(0.0 / 0.0));
+  // Pure red can be divided by here.
+  EXPECT_TRUE(divided(iso, {0.3, 0.1, 0.1}, {1, 0, 0}).ok());
+
+  // Along a line from where the determinant is positive to where it is negative there is a color that cannot be divided
+  // by: found by bisection, it and all that is near is refused, and never Inf or NaN returned.
+  const Rgb from = {1, 0, 0}, to = {0, 1, 0};
+  const auto at = [&](double t) { return (1 - t) * from + t * to; };
+  const auto determinant = [&](const Rgb& a) {
+    const Matrix3 m = reflection_matrix(iso, a);
+    return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+           m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+  };
+  double low = 0, high = 1;
+  ASSERT_LT(determinant(at(low)) * determinant(at(high)), 0);
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (determinant(at(middle)) * determinant(at(low)) > 0 ? low : high) = middle;
+  }
+  int refused = 0, done = 0;
+  for (const double off : {0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-2}) {
+    const auto quotient = divided(iso, {0.2, 0.2, 0.2}, at(low + off));
+    EXPECT_TRUE(!quotient.ok() || std::isfinite(quotient->x + quotient->y + quotient->z));
+    quotient.ok() ? ++done : ++refused;
+  }
+  EXPECT_GE(refused, 4);
+  EXPECT_GE(done, 1);
+}
+
+TEST(HardCase, colour_divide_transfer_of_a_channel_that_has_none) {
+  ASSERT_TRUE(with_transfer(component_wise(), {0, 0, 0}).ok());
+  const auto refused = with_transfer(component_wise(), {0, 0.5, 0});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().message.find("channel 1"), std::string::npos);
+  EXPECT_TRUE(std::isinf(0.5 / (1 - component_wise().k[1][1][1]))) << "the control divides by 0";
+}
+
+TEST(Reflection, TransferRunsFromThePlainProductToTheTable) {
+  const ReflectionOperator iso = iso_rgb_operator();
+  const auto none = with_transfer(iso, {0, 0, 0});
+  ASSERT_TRUE(none.ok());
+  EXPECT_EQ(largest_difference(*none, component_wise()), 0);
+  const auto same = with_transfer(iso, {1 - iso.k[0][0][0], 1 - iso.k[1][1][1], 1 - iso.k[2][2][2]});
+  ASSERT_TRUE(same.ok());
+  EXPECT_LE(largest_difference(*same, iso), 1e-14);
+  // Any transfer stays coherent and symmetric: projecting it again moves nothing.
+  const auto blue = with_transfer(iso, {0, 0, 1});
+  ASSERT_TRUE(blue.ok());
+  EXPECT_LE(largest_difference(nearest_coherent(*blue), *blue), 1e-14);
+  EXPECT_EQ(blue->k[2][2][2], 0);
+  EXPECT_FALSE(with_transfer(iso, {NAN, 0, 0}).ok());
+}
+
+TEST(Reflection, NearestCoherentIsNearest) {
+  ReflectionOperator op = iso_rgb_operator();
+  op.k[0][0][1] += 0.3, op.k[2][1][1] -= 0.2;
+  const ReflectionOperator near = nearest_coherent(op);
+  expect_near(reflected(near, {1, 1, 1}, {0.3, 0.6, 0.2}), {0.3, 0.6, 0.2}, 1e-15);
+  // The residual is orthogonal to every coherent direction: here k[c] of the form v v' with v = (1,-1,0).
+  for (int c = 0; c < 3; ++c) {
+    double along = 0;
+    const double v[3] = {1, -1, 0};
+    for (int d = 0; d < 3; ++d)
+      for (int e = 0; e < 3; ++e) along += v[d] * v[e] * (op.k[c][d][e] - near.k[c][d][e]);
+    EXPECT_NEAR(along, 0, 1e-15);
+  }
+}
+
+TEST(Reflection, EstimationIsExactForSensorsThatDoNotOverlap) {
+  // Three boxes: each channel is its own spectrum, and the product is the plain one.
+  std::vector<Rgb> boxes(90);
+  for (int i = 0; i < 90; ++i) boxes[i][i / 30] = 1;
+  const auto op = estimated_operator(boxes);
+  ASSERT_TRUE(op.ok());
+  EXPECT_LE(largest_difference(*op, component_wise()), 1e-14);
+  EXPECT_FALSE(estimated_operator(std::vector<Rgb>(90, Rgb{1, 1, 1})).ok());
+  EXPECT_FALSE(estimated_operator(std::vector<Rgb>{}).ok());
+}
+
+}  // namespace
+}  // namespace goniochrome
