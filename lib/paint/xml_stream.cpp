@@ -74,7 +74,7 @@ std::string explained(int code, std::string_view detail) {
       return "there is more after the end of the document: give several documents as several files";
     case XML_ERR_DOCUMENT_EMPTY:
     case XML_ERR_DOCUMENT_START:
-      return "this is not XML: it must begin with < and an element";
+      return "this is not XML: it must begin with < and an element (paint-convert makes XML of paint tables)";
     case XML_WAR_NS_URI:
       return "a namespace is not a URI: write it as it is documented";
     case XML_ERR_RESERVED_XML_NAME:

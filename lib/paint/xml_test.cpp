@@ -261,12 +261,13 @@ TEST(PaintXml, wrong_values_are_named_with_line_and_remedy) {
   EXPECT_EQ(paint("<lobes space=\"lin_rec709\" basis=\"b\" method=\"l1\" max_de00=\"1\" mean_de00=\"1\"/>"),
             "p.xml:4: space is \"lin_rec709\": weights must be in lin_rec2020_scene: fit the paint again");
   const auto lobes = [&](const std::string& views) {
-    return paint("<lobes space=\"lin_rec2020_scene\" basis=\"b\" method=\"l1\" max_de00=\"1\" mean_de00=\"1\">"
-                 "<diffuse r=\"1\" g=\"1\" b=\"1\"/>" + views + "</lobes>");
+    return paint(
+        "<lobes space=\"lin_rec2020_scene\" basis=\"b\" method=\"l1\" max_de00=\"1\" mean_de00=\"1\">"
+        "<diffuse r=\"1\" g=\"1\" b=\"1\"/>" +
+        views + "</lobes>");
   };
   const std::string diffuse = "<diffuse r=\"1\" g=\"1\" b=\"1\"/></view>";
-  EXPECT_EQ(lobes("<view angle=\"91\">" + diffuse),
-            "p.xml:4: angle is \"91\": give degrees from the normal, 0 to 90");
+  EXPECT_EQ(lobes("<view angle=\"91\">" + diffuse), "p.xml:4: angle is \"91\": give degrees from the normal, 0 to 90");
   EXPECT_EQ(lobes("<view angle=\"15\">" + diffuse + "<view angle=\"15\">" + diffuse),
             "p.xml:4: angle is \"15\": views stand in the order of their angles, each once");
   EXPECT_EQ(lobes("<view angle=\"15\"/>"), "p.xml:4: <view> of paint \"p\" has no <diffuse>: add it");
@@ -288,7 +289,8 @@ TEST(PaintXml, other_documents_are_refused_by_name) {
   EXPECT_EQ(only_error("<paints xmlns=\"urn:goniochrome:paint:1\" version=\"2\"/>"),
             "p.xml:1: version is \"2\": this program reads version 1: convert the file with the program that wrote it");
   EXPECT_EQ(only_error(""), "p.xml: is empty: give it a document");
-  EXPECT_EQ(only_error("sample,geometry\n"), "p.xml:1: this is not XML: it must begin with < and an element");
+  EXPECT_EQ(only_error("sample,geometry\n"),
+            "p.xml:1: this is not XML: it must begin with < and an element (paint-convert makes XML of paint tables)");
   EXPECT_EQ(only_error(document("") + kHead),
             "p.xml:4: there is more after the end of the document: give several documents as several files");
   EXPECT_THAT(only_error(document("<paint name=\"p\"></pain></paint>")), HasSubstr("p.xml:3: the closing tag"));
