@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "base/result.h"
 #include "base/vec3.h"
 #include "color/color.h"
+#include "color/spectrum.h"
 #include "paint/geometry.h"
 
 namespace goniochrome {
@@ -50,6 +52,11 @@ class MeasuredBrdf {
   // normal and at least 15 deg from specular.
   virtual std::vector<DirectionPair> probes() const;
 
+  // Pairs of directions to fit a model to: the measured ones where the file holds scattered ones. Else lights at 0, 10,
+  // ..., 70 deg from the normal and, for each, views to 80 deg from the normal on cones about its mirror direction, dense
+  // near it, one side of the plane of incidence.
+  virtual std::vector<DirectionPair> samples() const;
+
  protected:
   explicit MeasuredBrdf(MeasuredTraits traits) : traits_(std::move(traits)) {}
 
@@ -77,6 +84,19 @@ struct MeasuredChecks {
   std::vector<std::string> warnings;
 };
 MeasuredChecks checks(const MeasuredBrdf& brdf);
+
+// XYZ (Y = 1: perfect diffuser) of reflectance factors in the channels of a file, and the white it is relative to.
+class ChannelColorimeter {
+ public:
+  // Error: an illuminant or observer the data cannot be seen under (RGB knows D65/2 alone).
+  static Result<ChannelColorimeter> make(const MeasuredTraits& traits, const ViewingCondition& condition);
+  Xyz xyz(const std::vector<double>& reflectance) const;
+  Xyz white() const { return meter_ ? meter_->white() : xyz({1, 1, 1}); }
+  double held_share() const { return meter_ ? meter_->held_share() : 0; }
+
+ private:
+  std::optional<SpectralColorimeter> meter_;
+};
 
 // What a multi-angle instrument reads.
 struct MeasuredReading {

@@ -4,10 +4,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <optional>
 
 #include "brdf/measured.h"
-#include "color/spectrum.h"
 
 namespace goniochrome {
 
@@ -32,31 +30,6 @@ std::vector<ApertureSample> aperture_samples(const Vec3& view, double aperture_d
   return samples;
 }
 
-// XYZ (Y = 1: perfect diffuser) and Lab of reflectance factors in the channels of a file.
-class ColorOfChannels {
- public:
-  static Result<ColorOfChannels> make(const MeasuredTraits& traits, const ViewingCondition& condition) {
-    ColorOfChannels result;
-    if (traits.wavelengths_nm.empty()) {
-      if (condition != ViewingCondition{"D65", 2})
-        return input_error("its RGB is what the 2 deg observer sees under D65: {}/{} would need spectra",
-                           condition.illuminant, condition.observer_deg);
-      return result;
-    }
-    GONIO_ASSIGN(result.meter_, SpectralColorimeter::make(traits.wavelengths_nm, condition));
-    return result;
-  }
-  Xyz xyz(const std::vector<double>& reflectance) const {
-    if (meter_) return meter_->xyz(reflectance);
-    return xyz_d65_from_rgb(rec2020_from_rec709({reflectance[0], reflectance[1], reflectance[2]}));
-  }
-  Xyz white() const { return meter_ ? meter_->white() : xyz({1, 1, 1}); }
-  double held_share() const { return meter_ ? meter_->held_share() : 0; }
-
- private:
-  std::optional<SpectralColorimeter> meter_;
-};
-
 // The aperture's mean value; `measured` is false where any of it is not.
 Result<MeasuredValue> seen_value(const MeasuredBrdf& brdf, const Geometry& geometry, double aperture_deg) {
   const DirectionPair pair = directions(geometry);
@@ -77,8 +50,25 @@ Result<MeasuredValue> seen_value(const MeasuredBrdf& brdf, const Geometry& geome
 
 }  // namespace
 
+Result<ChannelColorimeter> ChannelColorimeter::make(const MeasuredTraits& traits, const ViewingCondition& condition) {
+  ChannelColorimeter result;
+  if (traits.wavelengths_nm.empty()) {
+    if (condition != ViewingCondition{"D65", 2})
+      return input_error("its RGB is what the 2 deg observer sees under D65: {}/{} would need spectra",
+                         condition.illuminant, condition.observer_deg);
+    return result;
+  }
+  GONIO_ASSIGN(result.meter_, SpectralColorimeter::make(traits.wavelengths_nm, condition));
+  return result;
+}
+
+Xyz ChannelColorimeter::xyz(const std::vector<double>& reflectance) const {
+  if (meter_) return meter_->xyz(reflectance);
+  return xyz_d65_from_rgb(rec2020_from_rec709({reflectance[0], reflectance[1], reflectance[2]}));
+}
+
 Result<MeasuredColor> measured_color(const MeasuredBrdf& brdf, const MeasuredColorOptions& options) {
-  GONIO_ASSIGN(const ColorOfChannels color, ColorOfChannels::make(brdf.traits(), options.condition));
+  GONIO_ASSIGN(const ChannelColorimeter color, ChannelColorimeter::make(brdf.traits(), options.condition));
   MeasuredColor result{options.condition, color.held_share(), {}, {}};
   for (const Geometry& geometry : options.geometries) {
     GONIO_ASSIGN(MeasuredValue value, seen_value(brdf, geometry, options.aperture_deg));

@@ -166,7 +166,13 @@ class CornellBrdf final : public MeasuredBrdf {
     return result;
   }
 
-  // The measured rows themselves.
+  std::vector<DirectionPair> samples() const override {
+    std::vector<DirectionPair> result;
+    for (const Row& row : rows_) result.push_back(row.pair);
+    return result;
+  }
+
+  // The measured rows themselves, away from specular and grazing.
   std::vector<DirectionPair> probes() const override {
     std::vector<DirectionPair> result;
     for (const Row& row : rows_) {

@@ -139,6 +139,24 @@ TEST_F(Measured, cornell_refusals_name_the_line) {
   EXPECT_THAT(refusal("a.brdf", std::string("\x01\0\x02", 3)), HasSubstr("none of MERL"));
 }
 
+TEST_F(Measured, cornell_is_fitted_at_its_own_rows_and_grids_on_cones) {
+  const auto scattered = read("a.brdf", cornell_text(lobe));
+  ASSERT_TRUE(scattered);
+  const auto rows = scattered->samples();
+  EXPECT_EQ(rows.size(), 7u * 11 * 16);
+  for (const DirectionPair& pair : rows) EXPECT_EQ(scattered->value(pair.light, pair.view).gap_deg, 0);
+  // Any other format: every cone has its angle, and no direction is steep or comes twice.
+  class Plain final : public MeasuredBrdf {
+   public:
+    Plain() : MeasuredBrdf(MeasuredTraits{}) {}
+    MeasuredValue value(const Vec3&, const Vec3&) const override { return {}; }
+  };
+  const auto cones = Plain().samples();
+  EXPECT_GT(cones.size(), 1000u);
+  for (const DirectionPair& pair : cones) EXPECT_GT(std::min(pair.light.z, pair.view.z), std::cos(80.001 * kDegree));
+  EXPECT_EQ(std::ranges::count_if(cones, [](const DirectionPair& p) { return p.light.z > 1 - 1e-12; }), 26);
+}
+
 // --- MERL ------------------------------------------------------------------------------------------------------------
 
 std::string merl_bytes(const Model& f) {
