@@ -1,6 +1,7 @@
 #include "render/gl.h"
 
 #include <GL/osmesa.h>
+#include <dlfcn.h>
 
 #include <cstdlib>
 
@@ -21,8 +22,36 @@ namespace {
 constexpr int kWindow = 4;
 unsigned char window_pixels[kWindow * kWindow * 4];
 
+// OSMesa brings a compiler of 100 MB with it: tools that may draw, but do not, start without it.
+constexpr const char* kLibrary = "libOSMesa.so.8";
+struct OSMesa {
+  decltype(&OSMesaCreateContextAttribs) create = nullptr;
+  decltype(&OSMesaMakeCurrent) make_current = nullptr;
+  decltype(&OSMesaDestroyContext) destroy = nullptr;
+  decltype(&OSMesaGetProcAddress) address = nullptr;
+};
+
+// The library, loaded once. Error: it is not there, or is another one.
+Result<const OSMesa*> osmesa() {
+  static const OSMesa loaded = [] {
+    OSMesa library;
+    if (void* handle = dlopen(kLibrary, RTLD_NOW | RTLD_LOCAL)) {
+      const auto find = [&](auto& function, const char* name) {
+        function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(dlsym(handle, name));
+      };
+      find(library.create, "OSMesaCreateContextAttribs");
+      find(library.make_current, "OSMesaMakeCurrent");
+      find(library.destroy, "OSMesaDestroyContext");
+      find(library.address, "OSMesaGetProcAddress");
+    }
+    return library;
+  }();
+  if (loaded.create && loaded.make_current && loaded.destroy && loaded.address) return &loaded;
+  return input_error("{} of Mesa 22 or later cannot be loaded: install libosmesa6", kLibrary);
+}
+
 void destroy(void* context) {
-  OSMesaDestroyContext(static_cast<OSMesaContext>(context));
+  (*osmesa())->destroy(static_cast<OSMesaContext>(context));
 }
 
 }  // namespace
@@ -43,14 +72,15 @@ Result<GlContext> GlContext::create() {
                         OSMESA_CONTEXT_MINOR_VERSION,
                         3,
                         0};
-  void* context = OSMesaCreateContextAttribs(wanted, nullptr);
+  GONIO_ASSIGN(const OSMesa* library, osmesa());
+  void* context = library->create(wanted, nullptr);
   if (context == nullptr) {
     return input_error("OSMesa makes no OpenGL 3.3 core context: install libosmesa6 of Mesa 22 or later");
   }
   GlContext gl(context);
   gl.make_current();
-#define GONIO_GL_LOAD(type, name)                                     \
-  gl.name = reinterpret_cast<type>(OSMesaGetProcAddress("gl" #name)); \
+#define GONIO_GL_LOAD(type, name)                                 \
+  gl.name = reinterpret_cast<type>(library->address("gl" #name)); \
   if (gl.name == nullptr) return input_error("OSMesa lacks gl" #name ": install libosmesa6 of Mesa 22 or later");
   GONIO_GL_FUNCTIONS(GONIO_GL_LOAD)
 #undef GONIO_GL_LOAD
@@ -59,7 +89,8 @@ Result<GlContext> GlContext::create() {
 }
 
 void GlContext::make_current() const {
-  OSMesaMakeCurrent(static_cast<OSMesaContext>(context_.get()), window_pixels, GL_UNSIGNED_BYTE, kWindow, kWindow);
+  (*osmesa())->make_current(static_cast<OSMesaContext>(context_.get()), window_pixels, GL_UNSIGNED_BYTE, kWindow,
+                            kWindow);
 }
 
 Result<GLuint> GlContext::program(const std::string& vertex, const std::string& fragment) const {
