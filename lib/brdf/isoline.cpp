@@ -55,11 +55,12 @@ void slide(const InCoat& in, double index, Solved& pair) {
   pair.cos_near = other_leg(pair.sin_near);
 }
 
-// kSlideMap: the map goes on to the left of its border, x = -beyond = -sqrt(n^2 sin^2 t1 - 1), and its lines go up by
-// as much as they go right. Heights are 0 at the normal, 1 on the far horizon, -1 on the near one.
+// kSlideMap: the map goes on to the left of its border, x = -beyond = -sqrt(n^2 sin^2 t1 - 1), and lines parallel to
+// its gloss line x + height = 1 go down by as much as they go right. Heights are 0 at the normal, 1 on the far horizon,
+// -1 on the near one.
 void slide_in_map(double beyond, Solved& pair) {
   const double height = pair.sin_near <= 0 ? 1 - pair.cos_near : pair.cos_near - 1;
-  const double slid = std::min(height + beyond, 1.0);
+  const double slid = std::max(height - beyond, -1.0);
   pair.cos_near = 1 - std::abs(slid);
   pair.sin_near = std::copysign(other_leg(pair.cos_near), -slid);
 }

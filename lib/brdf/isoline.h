@@ -23,7 +23,7 @@ FlakeAngles flake_angles(const Vec3& to_light, const Vec3& to_viewer, double ind
 enum class CriticalAngle {
   kClip,      // the steeper direction lies at 90 deg, the other stays
   kSlide,     // the steeper lies at 90 deg, the flake angle (half the in-coat aspecular angle) stays
-  kSlideMap,  // as kSlide, along the straight lines of the color map that are perpendicular to its gloss line
+  kSlideMap,  // as kSlide, along straight lines of the color map parallel to its gloss line
   kIndexOne,  // no refraction at all; what is still below the horizon is clipped
 };
 

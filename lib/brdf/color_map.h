@@ -1,0 +1,49 @@
+// The color map of a flake paint: its color at every pair of directions in plane, which by its isolines is its color at
+// every pair of directions. goniochrome-theory(7), ISOCHROMATIC LINES; [Kirchner], figure 2
+#pragma once
+
+#include <vector>
+
+#include "brdf/isoline.h"
+#include "color/color.h"
+
+namespace goniochrome {
+
+// Reflectance factors (pi f, 1 = perfect diffuser) in the working space, gloss left out, negative where a color is
+// outside it, over the cosines of both angles in air: `size` columns, cosine of one direction from 0 (90 deg) to 1; 2
+// size rows from the top, cosine of the other from 0 to 1 on the opposite side of the normal (the gloss line is the
+// diagonal of this half), then back to 0 on the same side. Texel centers at (i + 1/2)/size.
+struct ColorMap {
+  int size = 0;
+  double index = 1.5;          // of the coat
+  std::vector<float> factors;  // RGB interleaved, row by row
+
+  float* texel(int column, int row) { return &factors[3 * (static_cast<std::size_t>(row) * size + column)]; }
+  const float* texel(int column, int row) const {
+    return &factors[3 * (static_cast<std::size_t>(row) * size + column)];
+  }
+};
+
+// An unfilled map.
+ColorMap color_map_of_size(int size, double index);
+
+// The directions to light and viewer that a texel's center stands for, the light at azimuth 0.
+struct MapDirections {
+  Vec3 light, view;
+};
+MapDirections map_directions(int size, int column, int row);
+
+// Where a pair stands, in texels from the upper left corner; fetch there bilinearly, held at the borders.
+struct MapPlace {
+  double x = 0, y = 0;
+};
+MapPlace map_place(const InPlane& pair, int size);
+
+// The bilinear fetch.
+Rgb fetched(const ColorMap& map, const MapPlace& place);
+
+// The reflectance factor for unit directions in the frame z = normal, in plane or not; 0 where one is below the
+// surface.
+Rgb reflectance_factor(const ColorMap& map, const Vec3& to_light, const Vec3& to_viewer, CriticalAngle treatment);
+
+}  // namespace goniochrome
