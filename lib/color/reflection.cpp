@@ -85,12 +85,31 @@ Inverse3 inverse(const Matrix3& m) {
   return result;
 }
 
-Result<Rgb> divided(const ReflectionOperator& op, const Rgb& c, const Rgb& a) {
+namespace {
+
+Result<Inverse3> divisor(const ReflectionOperator& op, const Rgb& a) {
   const Inverse3 m = inverse(reflection_matrix(op, a));
   if (m.condition > kWorstCondition)
     return input_error("cannot divide by the color {} {} {}: its condition number is {:.3g}, more than {:g}", a.x, a.y,
                        a.z, m.condition, kWorstCondition);
+  return m;
+}
+
+}  // namespace
+
+Result<Rgb> divided(const ReflectionOperator& op, const Rgb& c, const Rgb& a) {
+  GONIO_ASSIGN(const Inverse3 m, divisor(op, a));
   return product(m.matrix, c);
+}
+
+Result<Relighting> relighting(const ReflectionOperator& op, const Rgb& from, const Rgb& to) {
+  GONIO_ASSIGN(const Inverse3 m, divisor(op, from));
+  const Matrix3 light = reflection_matrix(op, to);
+  Relighting result{{}, m.condition};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      for (int k = 0; k < 3; ++k) result.matrix[i][j] += light[i][k] * m.matrix[k][j];
+  return result;
 }
 
 // sum_e k[i][i][e] = 1 and sum_e k[i][d][e] = 0 for d != i stay true when k_iii becomes 1 - alpha and all else, whose

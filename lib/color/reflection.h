@@ -20,10 +20,13 @@ struct ReflectionOperator {
 // k[c][c][c] = 1, all else 0: each channel by itself.
 ReflectionOperator component_wise();
 
-// The table of [GranierDamez2004] 5.3 for the sensors of ISO 17321, made coherent beyond its printed digits.
+// The table of [GranierDamez2004] 5.3 for the sensors of ISO 17321, made coherent beyond its printed digits. The
+// default for rendering, on working-space values as they are.
 ReflectionOperator iso_rgb_operator();
 
-// The operator of the working space, linear Rec.2020, estimated from the CIE 1931 color-matching functions.
+// The operator of the working space, linear Rec.2020, estimated from the CIE 1931 color-matching functions. Its
+// primaries are nearly monochromatic: red in cyan light goes negative there, where red of Rec.709 in its cyan stays
+// red.
 ReflectionOperator working_space_operator();
 
 // A (x) B. White is (1,1,1).
@@ -53,6 +56,14 @@ Inverse3 inverse(const Matrix3& m);
 
 // C (/) A: the B with A (x) B = C. Error: the condition number of A, where it is beyond kWorstCondition.
 Result<Rgb> divided(const ReflectionOperator& op, const Rgb& c, const Rgb& a);
+
+// The change of every color of an image from one illuminant to another: divide by `from`, multiply by `to`. Error: the
+// condition number of `from`.
+struct Relighting {
+  Matrix3 matrix{};
+  double condition = 0;
+};
+Result<Relighting> relighting(const ReflectionOperator& op, const Rgb& from, const Rgb& to);
 
 // How much each channel receives from the others, 0..1 and beyond: k_iii = 1 - alpha_i, the other k[i] scaled to stay
 // coherent. alpha_i = 0 is the component-wise product of channel i. Error: alpha_i is not 0 where k_iii = 1.

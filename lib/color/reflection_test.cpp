@@ -8,6 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "base/file.h"
+#include "color/cie_tables.h"
+#include "color/reflection_json.h"
+
 namespace goniochrome {
 namespace {
 
@@ -55,6 +59,23 @@ TEST(Reflection, RedStaysRedInCyanLight) {
   EXPECT_EQ(plain.x, 0);
   EXPECT_GT(ours.x, 0.15);
   EXPECT_GT(ours.x, 3 * std::max(ours.y, ours.z));
+  // The estimate for the working space does the same to the colors of a display.
+  const auto of_display = [](const Rgb& a, const Rgb& b) {
+    return rec709_from_rec2020(reflected(working_space_operator(), rec2020_from_rec709(a), rec2020_from_rec709(b)));
+  };
+  EXPECT_GT(of_display(red, cyan).x, 0.1);
+}
+
+// Color-matching functions of Rec.709, which the sensors of ISO 17321 are close to, give nearly the published table.
+TEST(Reflection, EstimateForRec709IsCloseToThePublishedTable) {
+  std::vector<Rgb> matching;
+  for (const CieRow& row : kCieTable)
+    matching.push_back(
+        rec709_from_rec2020(rgb_from_xyz_d65({row.observer_2[0], row.observer_2[1], row.observer_2[2]})));
+  const auto op = estimated_operator(matching);
+  ASSERT_TRUE(op.ok());
+  EXPECT_LE(largest_difference(*op, iso_rgb_operator()), 0.1);
+  EXPECT_GT(largest_difference(*op, component_wise()), 0.2);
 }
 
 TEST(Reflection, DivisionUndoesMultiplication) {
@@ -72,6 +93,40 @@ TEST(Reflection, DivisionUndoesMultiplication) {
     }
     EXPECT_GT(divisions, 1900);
   }
+}
+
+TEST(Reflection, RelightingThereAndBack) {
+  const ReflectionOperator op = iso_rgb_operator();
+  const Rgb blue_sky = {0.4, 0.9, 1.0}, yellow = {1.0, 0.9, 0.1}, color = {0.3, 0.5, 0.2};
+  const auto there = relighting(op, blue_sky, yellow), back = relighting(op, yellow, blue_sky);
+  ASSERT_TRUE(there.ok() && back.ok());
+  expect_near(product(back->matrix, product(there->matrix, color)), color, 1e-12);
+  expect_near(product(there->matrix, reflected(op, blue_sky, color)), reflected(op, yellow, color), 1e-14);
+  EXPECT_FALSE(relighting(op, {0, 0, 0}, yellow).ok());
+  // The same light changes nothing.
+  expect_near(product(relighting(op, yellow, yellow)->matrix, color), color, 1e-13);
+}
+
+TEST(ReflectionJson, RoundTripAndRefusals) {
+  const std::string path = testing::TempDir() + "operator.json";
+  const auto write = [&](const std::string& text) { ASSERT_TRUE(write_file(path, text).ok()); };
+  write(reflection_json(iso_rgb_operator()));
+  const auto back = read_reflection_operator(path);
+  ASSERT_TRUE(back.ok()) << back.error().message;
+  EXPECT_LE(largest_difference(*back, iso_rgb_operator()), 1e-15);
+  for (const auto& [text, told] :
+       {std::pair<std::string, std::string>{"no", "JSON object"},
+        {"{\"k\": [[1,2],[3]]}", "3 x 3"},
+        {"{\"k\": [[[1,0,0],[0,0,0],[0,0,0]],[[0,0,0],[0,1,0],[0,0,0]],[[0,0,0],[0,0,0],[0,0,2]]]}",
+         "k[2][2] is not coherent"},
+        {"{\"k\": [[[1,1,-1],[0,0,0],[0,0,0]],[[0,0,0],[0,1,0],[0,0,0]],[[0,0,0],[0,0,0],[0,0,1]]]}",
+         "k[0][0] is not symmetric"}}) {
+    write(text);
+    const auto refused = read_reflection_operator(path);
+    ASSERT_FALSE(refused.ok()) << text;
+    EXPECT_NE(refused.error().message.find(told), std::string::npos) << refused.error().message;
+  }
+  EXPECT_FALSE(read_reflection_operator("/nowhere/at-all.json").ok());
 }
 
 TEST(HardCase, colour_divide_refuses_with_the_condition_number) {

@@ -1,0 +1,11 @@
+// relight: an HDR image from one illuminant to another.
+#include "cli/tool.h"
+#include "options.h"
+#include "run.h"
+
+int main(int argc, char** argv) {
+  using namespace goniochrome;
+  Options options;
+  const cli::ToolSpec spec = tool_spec(options);
+  return cli::tool_main(argc, argv, spec, options.common, [&](cli::Session& s) { return run(options, s); });
+}
