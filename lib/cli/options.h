@@ -22,6 +22,7 @@ struct Option {
   std::vector<std::string> choices = {};  // the words it takes, if it is a choice
   double low = -1e300, high = 1e300;      // the domain of a number, both ends included
   bool required = false;
+  std::string alias = {};  // another long name that means the same
 };
 // A vector<string> target collects a repeated option; a vector<double> target takes a comma-separated list, or repeats.
 

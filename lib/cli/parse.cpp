@@ -110,7 +110,8 @@ Result<void> parse(const ToolSpec& spec, const std::vector<std::string>& argumen
   app.allow_extras();
   std::map<std::string, std::vector<std::string>> texts;
   for (const Option& option : spec.options) {
-    const std::string names = (option.letter ? fmt::format("-{},", option.letter) : "") + dashed(option);
+    const std::string names = (option.letter ? fmt::format("-{},", option.letter) : "") + dashed(option) +
+                              (option.alias.empty() ? "" : ",--" + option.alias);
     if (option.value.empty())
       app.add_flag_callback(names, [&texts, &option] { texts[option.name].emplace_back(); });
     else

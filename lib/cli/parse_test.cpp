@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "cli/tool.h"
 
 namespace goniochrome::cli {
@@ -84,6 +86,16 @@ TEST(Parse, MistakesNameOptionValueAndRemedy) {
   EXPECT_EQ(message({"--size"}), "--size needs a value");
   EXPECT_EQ(message({"--size", "1", "--size", "2"}), "--size is given 2 times: give it once");
   EXPECT_EQ(message({"a", "b", "c"}), "3 inputs are given: sample-tool takes at most 2");
+}
+
+TEST(Parse, AnAliasIsTheSameOption) {
+  Values v;
+  ToolSpec spec = table(v);
+  std::ranges::find(spec.options, "size", &Option::name)->alias = "width";
+  ASSERT_TRUE(parse(spec, {"--width", "64"}).ok());
+  EXPECT_EQ(v.size, 64);
+  EXPECT_EQ(parse(spec, {"--width", "1", "--size", "2"}).error().message, "--size is given 2 times: give it once");
+  EXPECT_NE(help_text(spec).find("; also --width"), std::string::npos);
 }
 
 TEST(Parse, RequiredOptionIsAskedFor) {

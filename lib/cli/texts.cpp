@@ -29,6 +29,7 @@ struct DefaultText {
 std::string option_help(const Option& option) {
   std::string text = option.help;
   if (!option.choices.empty()) text += fmt::format(": {}", fmt::join(option.choices, ", "));
+  if (!option.alias.empty()) text += fmt::format("; also --{}", option.alias);
   const std::string value = std::visit(DefaultText{}, option.target);
   if (option.required)
     text += " (required)";
@@ -105,8 +106,8 @@ std::string help_text(const ToolSpec& spec) {
 std::string man_page(const ToolSpec& spec) {
   std::string title = spec.name;
   std::ranges::transform(title, title.begin(), [](char c) { return c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c; });
-  std::string text = fmt::format(".TH {} 1 2026-11-21 \"Goniochrome\" \"Goniochrome\"\n.SH NAME\n{} \\- {}\n", roff(title),
-                                 roff(spec.name), roff(spec.summary));
+  std::string text = fmt::format(".TH {} 1 2026-11-21 \"Goniochrome\" \"Goniochrome\"\n.SH NAME\n{} \\- {}\n",
+                                 roff(title), roff(spec.name), roff(spec.summary));
   text += fmt::format(".SH SYNOPSIS\n.B {}\n[options]", roff(spec.name));
   if (spec.inputs) text += roff(usage(spec).substr(spec.name.size() + 10));
   text += "\n.SH DESCRIPTION\n";

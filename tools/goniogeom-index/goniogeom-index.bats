@@ -23,7 +23,7 @@ column() { sed -n 2p | cut -f "$1"; }
     awk -v a="$got" -v b="$wanted" 'BEGIN { d = a - b; exit !(d < 1e-6 && d > -1e-6) }'
   done
   at45=$(goniogeom-index gray.xml --views 0 2>/dev/null | column 7)
-  at0=$(goniogeom-index gray.xml --lights 0 --views 20 2>/dev/null | column 7)
+  at0=$(goniogeom-index gray.xml --light 0 --view 20 2>/dev/null | column 7)
   awk -v a="$at0" -v b="$at45" 'BEGIN { exit !(a > 3 * b) }'
 }
 

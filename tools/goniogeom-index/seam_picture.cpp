@@ -90,7 +90,7 @@ Result<Image> seam_picture(const Mesh& mesh, const SeamRequest& request, const S
     for (std::size_t i = 0; i < seam.points.size(); ++i) {
       const SeamPoint& p = seam.points[i];
       const Vec3 middle = 0.5 * (p.a + p.b);
-      const auto at = projected(camera, frame.gbuffer.rays, middle);
+      const auto at = projected(camera, frame.gbuffer->rays, middle);
       if (!at || dot(p.normal_a + p.normal_b, camera.eye - middle) <= 0) continue;
       const bool seen = picture.places[i].views > 0;
       draw_dot(image, at->x, at->y, radius,
