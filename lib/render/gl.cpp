@@ -133,6 +133,36 @@ int GlContext::integer(GLenum name) const {
   return value;
 }
 
+GLuint GlContext::float_texture(int columns, int rows, const float* rgba) const {
+  GLuint texture = 0;
+  GenTextures(1, &texture);
+  BindTexture(GL_TEXTURE_2D, texture);
+  TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, columns, rows, 0, GL_RGBA, GL_FLOAT, rgba);
+  TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  return texture;
+}
+
+void GlContext::float_target(int columns, int rows, GLuint& texture, GLuint& framebuffer) const {
+  DeleteTextures(1, &texture);
+  DeleteFramebuffers(1, &framebuffer);
+  texture = float_texture(columns, rows, nullptr);
+  GenFramebuffers(1, &framebuffer);
+  BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+  FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture, 0);
+}
+
+void GlContext::set(GLuint program, const std::string& name, const Vec3& value) const {
+  Uniform3f(GetUniformLocation(program, name.c_str()), static_cast<float>(value.x), static_cast<float>(value.y),
+            static_cast<float>(value.z));
+}
+
+void GlContext::set_rays(GLuint program, const Rays& rays) const {
+  set(program, "corner", rays.corner);
+  set(program, "right", rays.right);
+  set(program, "down", rays.down);
+}
+
 std::string GlContext::engine() const {
   return reinterpret_cast<const char*>(GetString(GL_RENDERER));
 }

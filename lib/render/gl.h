@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/result.h"
+#include "render/camera.h"
 
 // Every OpenGL function in use. libepoxy aborts under OSMesa, so they are looked up here, by name.
 #define GONIO_GL_FUNCTIONS(X)                                  \
@@ -83,6 +84,14 @@ class GlContext {
   Result<void> status(const char* doing) const;
 
   int integer(GLenum name) const;
+
+  // A texture of RGBA floats, fetched by texel; null leaves it undefined. And one to draw into, with its framebuffer.
+  GLuint float_texture(int columns, int rows, const float* rgba) const;
+  void float_target(int columns, int rows, GLuint& texture, GLuint& framebuffer) const;
+
+  // Sets the uniforms corner, right and down of a program.
+  void set_rays(GLuint program, const Rays& rays) const;
+  void set(GLuint program, const std::string& name, const Vec3& value) const;
   // "llvmpipe (LLVM 15.0.6, 256 bits)"
   std::string engine() const;
 

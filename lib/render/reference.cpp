@@ -172,7 +172,7 @@ PictureError picture_error(const Frame& frame, const Scene& scene, const Environ
                            int count, std::uint64_t seed) {
   const Stopwatch clock;
   const double white = white_luminance > 0 ? white_luminance : 1;  // in the dark all is black
-  const Gbuffer& g = frame.gbuffer;
+  const Gbuffer& g = *frame.gbuffer;
   std::vector<std::array<int, 2>> visible;
   for (int y = 0; y < g.height; ++y) {
     for (int x = 0; x < g.width; ++x) {

@@ -1,8 +1,10 @@
-// A picture of the speed shape, and the reference integrator. Correctness first: the furnace's closed form beside the
-// time.
+// Frames of a vehicle or of the speed shape, and the reference integrator. Correctness first: the difference of the two
+// engines, or the closed form, beside the time.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <string>
 
 #include "render/reference.h"
 #include "render/renderer.h"
@@ -22,7 +24,8 @@ struct BenchScene {
 // Every weight chosen so that a constant environment of 1 shows (1 + c)/2 per lobe.
 std::unique_ptr<BenchScene> bench_scene(int lobes) {
   auto bench = std::make_unique<BenchScene>();
-  auto mesh = read_mesh(GONIOCHROME_TESTDATA "/speed-shape.obj");
+  const char* data = std::getenv("GONIOCHROME_DATA");  // the vehicle of 51k triangles, where there is one
+  auto mesh = read_mesh(data != nullptr ? std::string(data) + "/mesh/vehicle.obj" : GONIOCHROME_TESTDATA "/speed-shape.obj");
   bench->mesh = mesh.ok() ? *std::move(mesh) : sphere_mesh();
   bench->env = constant_env({1, 1, 1}, {kExponents, kExponents + lobes});
   for (PrefilteredLobe& lobe : bench->env.lobes) lobe.map = cube_of(128, [](const Vec3&) { return Vec3{1, 1, 1}; });
@@ -37,41 +40,70 @@ std::unique_ptr<BenchScene> bench_scene(int lobes) {
   return bench;
 }
 
-double furnace_error(const Frame& frame, int lobes) {
+// The largest relative difference of any pixel between the two engines.
+double disagreement(const BenchScene& bench, const View& view) {
+  Frame frames[2];
+  for (const Engine engine : {Engine::kGl, Engine::kCpu}) {
+    auto renderer = Renderer::create();
+    if (!renderer.ok() || !renderer->load(bench.scene, engine).ok()) return 1;
+    if (!renderer->draw(view, frames[engine == Engine::kCpu]).ok()) return 1;
+  }
   double worst = 0;
-  for (int y = 0; y < frame.gbuffer.height; ++y) {
-    for (int x = 0; x < frame.gbuffer.width; ++x) {
-      if (frame.gbuffer.part(x, y) < 0) continue;
-      const double wanted = lobes * (1 + dot(frame.gbuffer.normal(x, y), frame.gbuffer.to_viewer(x, y))) / 2;
-      worst = std::max(worst, std::abs(frame.centers.pixel(x, y)[0] / wanted - 1));
-    }
+  for (std::size_t i = 0; i < frames[0].picture.data.size(); ++i) {
+    const double a = frames[0].picture.data[i], b = frames[1].picture.data[i];
+    if (a != b) worst = std::max(worst, std::abs(a - b) / std::max(std::abs(a), 1e-3));
   }
   return worst;
 }
 
-// 1280 x 720; arguments: lobes, samples.
-void BM_Frame(benchmark::State& state) {
-  const int lobes = static_cast<int>(state.range(0)), samples = static_cast<int>(state.range(1));
+View bench_view(const BenchScene& bench, double azimuth_deg, int samples) {
+  return {Camera::orbit(bench.mesh, azimuth_deg, 12, 1, 30, 16.0 / 9), 1280, 720, samples, false};
+}
+
+void time_frames(benchmark::State& state, bool view_moves) {
+  const auto engine = static_cast<Engine>(state.range(0));
+  const int lobes = static_cast<int>(state.range(1)), samples = static_cast<int>(state.range(2));
   const auto bench = bench_scene(lobes);
+  const double error = disagreement(*bench, bench_view(*bench, 35, samples));
+  if (error > 1e-3) return state.SkipWithError("the engines disagree");
   auto renderer = Renderer::create();
-  if (!renderer.ok() || !renderer->load(bench->scene).ok()) return state.SkipWithError("no renderer");
-  const Camera camera = Camera::orbit(bench->mesh, 35, 12, 1, 30, 16.0 / 9);
-  const auto checked = renderer->draw(camera, 1280, 720, 1, true);
-  const double error = furnace_error(*checked, lobes);
-  if (error > 1e-4) return state.SkipWithError("the furnace does not hold");
-  double gbuffer_ms = 0;
-  for (auto _ : state) gbuffer_ms = renderer->draw(camera, 1280, 720, samples)->gbuffer_ms;
+  if (!renderer.ok() || !renderer->load(bench->scene, engine).ok()) return state.SkipWithError("no renderer");
+  Frame frame;
+  if (!renderer->draw(bench_view(*bench, 35, samples), frame).ok()) return state.SkipWithError("nothing drawn");
+  double azimuth_deg = 35, gbuffer_ms = 0;
+  for (auto _ : state) {
+    if (view_moves) azimuth_deg += 3;
+    for (LobeFit& paint : bench->scene.paints) paint.diffuse.x += 1e-4;
+    renderer->load_paints(bench->scene);
+    if (!renderer->draw(bench_view(*bench, azimuth_deg, samples), frame).ok()) return state.SkipWithError("nothing drawn");
+    gbuffer_ms = std::max(gbuffer_ms, frame.gbuffer_ms);
+  }
+  std::size_t seen = 0;
+  for (std::size_t i = 3; i < frame.gbuffer->data.size(); i += 4) seen += frame.gbuffer->data[i] != 0;
   state.counters["max_rel_error"] = error;
   state.counters["gbuffer_ms"] = gbuffer_ms;
+  state.counters["seen"] = static_cast<double>(seen);
   state.counters["triangles"] = static_cast<double>(bench->mesh.triangles.size());
+  state.SetLabel(engine == Engine::kCpu ? "cpu" : "gl");
 }
-BENCHMARK(BM_Frame)
-    ->Args({1, 1})
-    ->Args({5, 1})
-    ->Args({7, 1})
-    ->Args({5, 4})
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime();
+
+// 1280 x 720, diffuse, flake and gloss in every lobe, all effects; arguments: engine (0 gl, 1 cpu), lobes, samples.
+// The paint is edited before every frame.
+void BM_PaintEdited(benchmark::State& state) {
+  time_frames(state, false);
+}
+void BM_ViewChanged(benchmark::State& state) {
+  time_frames(state, true);
+}
+void frames(benchmark::internal::Benchmark* b) {
+  for (const int engine : {0, 1}) {
+    for (const int lobes : {1, 5, 7}) b->Args({engine, lobes, 1});
+    b->Args({engine, 5, 4});
+  }
+  b->Unit(benchmark::kMillisecond)->UseRealTime();
+}
+BENCHMARK(BM_PaintEdited)->Apply(frames);
+BENCHMARK(BM_ViewChanged)->Apply(frames);
 
 // Points a second against an environment of 1024 x 512.
 void BM_Reference(benchmark::State& state) {

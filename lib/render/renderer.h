@@ -1,5 +1,5 @@
-// Draws scenes with OpenGL on OSMesa, in float: rasterizes normals and parts, then shades them with a program written
-// for the scene. goniochrome-theory(7), RENDERING.
+// Draws scenes in float: OpenGL on OSMesa rasterizes normals and parts, then one of two engines shades them.
+// goniochrome-theory(7), RENDERING.
 #pragma once
 
 #include <memory>
@@ -9,28 +9,27 @@
 #include "base/result.h"
 #include "image/image.h"
 #include "render/camera.h"
+#include "render/effects.h"
+#include "render/gbuffer.h"
 #include "render/scene.h"
 
 namespace goniochrome {
 
-// What is visible at the center of every pixel; row 0 at the top.
-struct Gbuffer {
-  int width = 0, height = 0;
-  std::vector<float> data;  // 4 a pixel: unit normal turned to the viewer, part + 1 (negative: seen from inside), or 0
-  Rays rays;
+enum class Engine { kGl, kCpu };
 
-  const float* at(int x, int y) const { return &data[(static_cast<std::size_t>(y) * width + x) * 4]; }
-  // The part seen, or -1.
-  int part(int x, int y) const;
-  Vec3 normal(int x, int y) const;
-  Vec3 to_viewer(int x, int y) const { return -rays.direction(x + 0.5, y + 0.5); }
+// What a picture is taken of: from where, and how finely.
+struct View {
+  Camera camera;
+  int width = 0, height = 0;
+  int samples = 1;            // 1, 4 or 16 a pixel
+  bool with_centers = false;  // also the pixel centers alone
 };
 
 struct Frame {
   Image picture;  // R G B A, scene-linear radiance, premultiplied
   Image centers;  // the same, of the pixel centers alone; empty unless asked for
-  Gbuffer gbuffer;
-  double gbuffer_ms = 0;  // one rasterization
+  std::shared_ptr<const Gbuffer> gbuffer;  // of the pixel centers
+  double gbuffer_ms = 0;  // one rasterization; 0 where the view was seen before
   double frame_ms = 0;    // everything but uploads
 };
 
@@ -41,17 +40,26 @@ class Renderer {
   Renderer(Renderer&&) noexcept;
   ~Renderer();
 
-  // Uploads what the scene needs and writes its program. The scene must outlive the drawing. Error: a lobe or the
-  // mirror part that the environment lacks, with the command that makes it.
-  Result<void> load(const Scene& scene);
+  // Uploads what the scene needs, with the effects given, else all that it calls for. The scene must outlive the
+  // drawing. Error: a lobe or the mirror part that the environment lacks, with the command that makes it.
+  Result<void> load(const Scene& scene, Engine engine = Engine::kGl);
+  Result<void> load(const Scene& scene, const Effects& effects, Engine engine);
 
-  // The picture, as the mean of 1, 4 or 16 samples a pixel.
+  // Other paints or lights for the scene and the effects that were loaded: what an edit of a paint costs.
+  void load_paints(const Scene& scene);
+
+  // Draws into `frame`, whose storage is used again. G-buffers of the view drawn last are kept, as far as they are small
+  // enough.
+  Result<void> draw(const View& view, Frame& frame);
   Result<Frame> draw(const Camera& camera, int width, int height, int samples, bool with_centers = false);
 
+  // The mesh as it will be seen, before anything is shaded.
+  Result<std::shared_ptr<const Gbuffer>> look(const Mesh& mesh, const View& view);
+
   // "llvmpipe (LLVM 15.0.6, 256 bits)"
-  std::string engine() const;
-  // The shading program in use.
-  const std::string& shader() const;
+  std::string opengl() const;
+  // The shading program of the GL engine for the effects loaded.
+  std::string shader() const;
 
  private:
   struct State;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "color/reflection.h"
 #include "envmap/prefiltered.h"
 #include "mesh/mesh.h"
 #include "paint/paint.h"
@@ -26,6 +27,9 @@ struct Scene {
   std::vector<Light> lights;
   Background background = Background::kNone;
   Rgb background_color;
+  std::vector<double> gloss_deg = {};  // for each part, the angle of incidence its gloss weights hold at; none: 45
+  std::vector<Anisotropy> anisotropy = {};  // for each part; alpha 0 is none. The tangent runs level around +Y
+  ReflectionOperator reflection = component_wise();
 };
 
 // The exponents (finite, ascending) of the lobes with any weight, over all paints.

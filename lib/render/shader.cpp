@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "base/text.h"
@@ -10,16 +11,6 @@
 namespace goniochrome {
 
 namespace {
-
-int directional_diffuse_column(std::size_t lobe) {
-  return 1 + 2 * static_cast<int>(lobe);
-}
-int gloss_column(std::size_t lobe) {
-  return 2 + 2 * static_cast<int>(lobe);
-}
-int mirror_column(const Effects& effects) {
-  return 1 + 2 * static_cast<int>(effects.lobes.size());
-}
 
 // A GLSL constant, which needs a point or an exponent to be a float.
 std::string glsl(double value) {
@@ -35,10 +26,11 @@ vec3 ray() { return normalize(corner + gl_FragCoord.x * right + gl_FragCoord.y *
 
 std::string uniforms(const Effects& effects) {
   std::string text = R"(uniform sampler2D gbuffer;  // normal, part + 1 (negative: seen from inside)
-uniform sampler2D weights;  // a row for each part, 1/sr
+uniform sampler2D weights;  // a row for each part; two texels for each slot of each segment of the view
 )";
+  if (effects.anisotropy) text += "uniform sampler2D tilts;  // a row for each part: normal in its frame, share\n";
   if (effects.environment) {
-    text += "uniform samplerCube diffuse;  // P_1\n";
+    if (effects.diffuse) text += "uniform samplerCube diffuse;  // P_1\n";
     for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
       text += fmt::format("uniform samplerCube lobe_{};  // P_E, E = {}\n", j, shortest(effects.lobes[j].exponent));
     }
@@ -51,6 +43,26 @@ uniform sampler2D weights;  // a row for each part, 1/sr
   }
   if (effects.background == Background::kColor) text += "uniform vec3 background;\n";
   return text;
+}
+
+// Where the weights of this point begin, and how far into its segment the view is.
+constexpr const char* kWeight = R"(
+int row, column = 0;
+float t;
+vec3 W(int slot) {
+  ivec2 at = ivec2(column + 2 * slot, row);
+  return texelFetch(weights, at, 0).rgb + t * texelFetch(weights, at + ivec2(1, 0), 0).rgb;
+}
+)";
+
+std::string row_of_view(const Effects& effects) {
+  if (!effects.depends_on_view()) return "  t = c;\n";
+  return fmt::format(R"(  float view = {0}.0 * sqrt(c);
+  int segment = min(int(view), {1});
+  column = {2} * segment;
+  t = view - float(segment);
+)",
+                     kViewSegments, kViewSegments - 1, 2 * slots_of(effects).slots);
 }
 
 // brdf's fresnel_dielectric() with the refracted cosine g/n written in c: r_s = (c-g)/(c+g), r_p = (n^2 c-g)/(n^2 c+g).
@@ -74,21 +86,79 @@ float cos_power(float versine, float exponent) {
 }
 )";
 
-// L = K_D pi P_1(n) + c sum K_DD (2 pi/(E+1)) P_E(r) + sum K_G (2 pi/(E+1)) P_E(r) + K_M F P_inf(r)
-std::string environment_terms(const Effects& effects) {
-  std::string text = fmt::format("\n  // the environment\n  radiance += K(0) * {} * textureLod(diffuse, n, 0.0).rgb;\n",
-                                 glsl(std::numbers::pi));
+bool lit_gloss(const Effects& effects) {
+  return effects.lights > 0 && effects.fresnel &&
+         std::any_of(effects.lobes.begin(), effects.lobes.end(), [](const Effects::LobeUse& use) { return use.gloss; });
+}
+
+// The product of two colors: each channel by itself, or by the operator.
+std::string times(const Effects& effects, const std::string& a, const std::string& b) {
+  return effects.reflection ? fmt::format("times({}, {})", a, b) : fmt::format("{} * {}", a, b);
+}
+
+std::string reflection_function(const ReflectionOperator& op) {
+  std::string text = "\nvec3 times(vec3 a, vec3 b) {  // bilinear reflection\n  return vec3(";
+  for (std::size_t c = 0; c < 3; ++c) {
+    text += fmt::format("{}dot(a, mat3(", c == 0 ? "" : "              ");
+    for (std::size_t e = 0; e < 3; ++e) {
+      for (std::size_t d = 0; d < 3; ++d) text += fmt::format("{}{}", e + d == 0 ? "" : ", ", glsl(op.k[c][d][e]));
+    }
+    text += c == 2 ? ") * b));\n}\n" : ") * b),\n";
+  }
+  return text;
+}
+
+// What the lobes show of the environment in a mirror direction, and what they send from a light.
+std::string lobe_functions(const Effects& effects) {
+  std::string text;
+  if (effects.environment) {
+    text += "\nvec3 lobes(vec3 r) {\n  vec3 sum = vec3(0.0);\n";
+    for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
+      text += fmt::format("  sum += {};\n", times(effects, fmt::format("W({})", WeightTable::lobe_slot(j)),
+                                                  fmt::format("textureLod(lobe_{}, r, 0.0).rgb", j)));
+    }
+    text += "  return sum;\n}\n";
+  }
+  if (effects.lights == 0) return text;
+  const WeightTable slots = slots_of(effects);
+  text += "\nvec3 lit_lobes(vec3 r, vec3 l, float cos_i, float F) {  // without the gloss term's 1/cos_i\n";
+  text += "  float versine = 0.5 * dot(r - l, r - l);\n  vec3 sum = vec3(0.0);\n";
   for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
     const Effects::LobeUse& lobe = effects.lobes[j];
     std::string weight;
-    if (lobe.directional_diffuse) weight = fmt::format("c * K({})", directional_diffuse_column(j));
-    if (lobe.gloss) weight += fmt::format("{}K({})", weight.empty() ? "" : " + ", gloss_column(j));
-    text += fmt::format("  radiance += ({}) * {} * textureLod(lobe_{}, r, 0.0).rgb;\n", weight,
-                        glsl(2 * std::numbers::pi / (lobe.exponent + 1)), j);
+    if (lobe.directional_diffuse) weight = fmt::format("cos_i * W({})", slots.directional_diffuse_slot(j));
+    if (lobe.gloss) weight += fmt::format("{}F * W({})", weight.empty() ? "" : " + ", slots.gloss_slot(j));
+    text += fmt::format("  sum += ({}) * cos_power(versine, {});\n", weight, glsl(lobe.exponent));
   }
-  if (effects.mirror) {
-    text += fmt::format("  radiance += K({}) * fresnel(c) * textureLod(mirror, r, 0.0).rgb;\n", mirror_column(effects));
-  }
+  return text + "  return sum;\n}\n";
+}
+
+// Adds to `sum` a function of the mirror direction: about the normal, or averaged over the tilted normals.
+std::string over_tilts(const Effects& effects, const std::string& sum, const std::string& function,
+                       const std::string& more) {
+  if (!effects.anisotropy) return fmt::format("  {} += {}(r{});\n", sum, function, more);
+  return fmt::format(R"(  for (int k = 0; k < tilt_count; ++k) {{
+    vec4 tilt = texelFetch(tilts, ivec2(k, row), 0);
+    if (tilt.w == 0.0) break;
+    vec3 m = tilt.x * x + tilt.y * y + tilt.z * n;
+    float cos_m = dot(m, wo);
+    vec3 r_m = 2.0 * cos_m * m - wo;
+    if (cos_m > 0.0 && dot(r_m, n) > 0.0) {} += tilt.w * {}(r_m{});
+  }}
+)",
+                     sum, function, more);
+}
+
+// L = K_D pi P_1(n) + sum W_j P_Ej(r) + K_M F P_inf(r)
+std::string environment_terms(const Effects& effects) {
+  std::string text = "\n  // the environment\n";
+  const auto term = [&](int slot, const char* map, const char* direction) {
+    text += fmt::format("  radiance += {};\n", times(effects, fmt::format("W({})", slot),
+                                                     fmt::format("textureLod({}, {}, 0.0).rgb", map, direction)));
+  };
+  if (effects.diffuse) term(WeightTable::diffuse_slot(), "diffuse", "n");
+  if (!effects.lobes.empty()) text += over_tilts(effects, "radiance", "lobes", "");
+  if (effects.mirror) term(slots_of(effects).mirror_slot(), "mirror", "r");
   return text;
 }
 
@@ -97,21 +167,19 @@ std::string light_terms(const Effects& effects) {
   std::string text = fmt::format(R"(
   // the lights
   for (int i = 0; i < {}; ++i) {{
-    float cos_i = dot(n, light_direction[i]);
+    vec3 l = light_direction[i];
+    float cos_i = dot(n, l);
     if (cos_i <= 0.0) continue;
-    vec3 apart = r - light_direction[i];
-    float versine = 0.5 * dot(apart, apart);
-    vec3 reflected = cos_i * K(0);
+    vec3 reflected = {};
 )",
-                                 effects.lights);
-  for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
-    const Effects::LobeUse& lobe = effects.lobes[j];
-    std::string weight;
-    if (lobe.directional_diffuse) weight = fmt::format("cos_i * K({})", directional_diffuse_column(j));
-    if (lobe.gloss) weight += fmt::format("{}K({})", weight.empty() ? "" : " + ", gloss_column(j));
-    text += fmt::format("    reflected += ({}) * cos_power(versine, {});\n", weight, glsl(lobe.exponent));
+                                 effects.lights,
+                                 effects.diffuse ? fmt::format("cos_i * W({})", slots_of(effects).light_slot()) : "vec3(0.0)");
+  if (!effects.lobes.empty()) {
+    const char* fresnel = lit_gloss(effects) ? "fresnel(sqrt(0.5 + 0.5 * dot(l, wo)))" : "1.0";
+    text += over_tilts(effects, "reflected", "lit_lobes", fmt::format(", l, cos_i, {}", fresnel));
   }
-  return text + fmt::format("    radiance += {} * light_white[i] * reflected;\n  }}\n", glsl(std::numbers::pi));
+  return text + fmt::format("    radiance += {} * {};\n  }}\n", glsl(std::numbers::pi),
+                            times(effects, "light_white[i]", "reflected"));
 }
 
 std::string background_color(Background background) {
@@ -127,48 +195,6 @@ std::string background_color(Background background) {
 }
 
 }  // namespace
-
-Effects effects_of(const Scene& scene) {
-  Effects effects;
-  effects.environment = scene.env != nullptr;
-  effects.mirror = effects.environment && has_mirror(scene.paints);
-  effects.lights = scene.lights.size();
-  effects.background = scene.background;
-  for (const double exponent : lobe_exponents(scene.paints)) {
-    Effects::LobeUse use{exponent, false, false};
-    for (const LobeFit& paint : scene.paints) {
-      const Lobe* lobe = find_lobe(paint, exponent);
-      if (lobe == nullptr) continue;
-      use.directional_diffuse |= lobe->directional_diffuse != Rgb{};
-      use.gloss |= lobe->gloss != Rgb{};
-    }
-    effects.lobes.push_back(use);
-  }
-  return effects;
-}
-
-WeightTable weight_table(const Scene& scene, const Effects& effects) {
-  WeightTable table{mirror_column(effects) + 1, static_cast<int>(scene.paints.size()), {}};
-  table.rgba.assign(static_cast<std::size_t>(table.columns) * scene.paints.size() * 4, 0.0F);
-  for (std::size_t row = 0; row < scene.paints.size(); ++row) {
-    const auto set = [&](int column, const Rgb& weight) {
-      float* texel =
-          &table.rgba[(row * static_cast<std::size_t>(table.columns) + static_cast<std::size_t>(column)) * 4];
-      for (int channel = 0; channel < 3; ++channel) texel[channel] = static_cast<float>(weight[channel]);
-    };
-    const LobeFit& paint = scene.paints[row];
-    set(0, paint.diffuse);
-    for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
-      const Lobe* lobe = find_lobe(paint, effects.lobes[j].exponent);
-      if (lobe == nullptr) continue;
-      set(directional_diffuse_column(j), lobe->directional_diffuse);
-      set(gloss_column(j), lobe->gloss);
-    }
-    const Lobe* mirror = find_lobe(paint, kMirrorExponent);
-    if (mirror != nullptr) set(mirror_column(effects), mirror->gloss);
-  }
-  return table;
-}
 
 std::string gbuffer_vertex_shader() {
   return R"(#version 330 core
@@ -206,12 +232,14 @@ void main() {  // one triangle that covers the picture
 )";
 }
 
-std::string shading_fragment_shader(const Effects& effects) {
+std::string shading_fragment_shader(const Effects& effects, const ReflectionOperator& op) {
+  const bool lit_lobes = effects.lights > 0 && !effects.lobes.empty();
   std::string text = "#version 330 core\n// goniochrome-theory(7), RENDERING\n";
-  text += uniforms(effects) + kRays + "layout(location = 0) out vec4 color;\n\nint row;\n";
-  text += "vec3 K(int column) { return texelFetch(weights, ivec2(column, row), 0).rgb; }\n";
-  if (effects.mirror) text += fresnel_function();
-  if (effects.lights > 0 && !effects.lobes.empty()) text += kCosPower;
+  text += uniforms(effects) + kRays + "layout(location = 0) out vec4 color;\n" + kWeight;
+  if (effects.reflection) text += reflection_function(op);
+  if (lit_gloss(effects)) text += fresnel_function();
+  if (lit_lobes) text += kCosPower;
+  if (!effects.lobes.empty()) text += lobe_functions(effects);
   text += fmt::format(R"(
 void main() {{
   vec4 point = texelFetch(gbuffer, ivec2(gl_FragCoord.xy), 0);
@@ -220,13 +248,18 @@ void main() {{
     color = {};
     return;
   }}
-  row = int(abs(point.w)) - 1;
   vec3 n = point.xyz;
   float c = dot(n, wo);  // = n.r
   vec3 r = 2.0 * c * n - wo;
-  vec3 radiance = vec3(0.0);
+  row = int(abs(point.w)) - 1;
+{}  vec3 radiance = vec3(0.0);
 )",
-                      background_color(effects.background));
+                      background_color(effects.background), row_of_view(effects));
+  if (effects.anisotropy) {
+    text += R"(  int tilt_count = textureSize(tilts, 0).x;
+  vec3 x = dot(n.xz, n.xz) > 1e-12 ? normalize(vec3(n.z, 0.0, -n.x)) : vec3(1.0, 0.0, 0.0), y = cross(n, x);
+)";
+  }
   if (effects.environment) text += environment_terms(effects);
   if (effects.lights > 0) text += light_terms(effects);
   return text + "  color = vec4(radiance, 1.0);\n}\n";

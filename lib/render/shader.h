@@ -3,33 +3,10 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
-#include "render/scene.h"
+#include "render/effects.h"
 
 namespace goniochrome {
-
-// What a scene calls for.
-struct Effects {
-  struct LobeUse {
-    double exponent = 1;
-    bool directional_diffuse = false, gloss = false;  // whether any paint has such a weight
-  };
-  bool environment = false;
-  bool mirror = false;
-  std::size_t lights = 0;
-  Background background = Background::kNone;
-  std::vector<LobeUse> lobes;  // ascending exponents
-};
-Effects effects_of(const Scene& scene);
-
-// The weights that the program reads: for each part a row of RGBA texels (diffuse; directional-diffuse and gloss of
-// each lobe; mirror), in 1/sr.
-struct WeightTable {
-  int columns = 0, rows = 0;
-  std::vector<float> rgba;
-};
-WeightTable weight_table(const Scene& scene, const Effects& effects);
 
 // Draws the G-buffer: unit normal, turned to the viewer, and part + 1 (negative where a surface is seen from inside).
 std::string gbuffer_vertex_shader();
@@ -37,6 +14,7 @@ std::string gbuffer_fragment_shader();
 
 // Covers the picture, and shades each point of the G-buffer.
 std::string shading_vertex_shader();
-std::string shading_fragment_shader(const Effects& effects);
+// The operator is written into it where the effects have it.
+std::string shading_fragment_shader(const Effects& effects, const ReflectionOperator& op);
 
 }  // namespace goniochrome

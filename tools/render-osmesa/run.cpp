@@ -189,10 +189,10 @@ Result<void> write_exr_picture(const RenderOptions& options, const Request& requ
   part.attributes["goniochrome:whiteLuminance"] = static_cast<float>(white.luminance);
   if (!request.aovs.empty()) {
     const Vec3 to_light = scene.lights.empty() ? white.direction : scene.lights.front().direction;
-    for (const std::string& aov : request.aovs) GONIO_TRY(add_aov(part.image, frame.gbuffer, aov, to_light));
+    for (const std::string& aov : request.aovs) GONIO_TRY(add_aov(part.image, *frame.gbuffer, aov, to_light));
     part.type = PixelType::kFloat;
     part.attributes["goniochrome:aovLight"] = spelled(to_light);
-    describe_view(options, frame.gbuffer.rays, scene.lights, part.attributes);
+    describe_view(options, frame.gbuffer->rays, scene.lights, part.attributes);
     Json names = Json::array();
     for (const MeshPart& mesh_part : scene.mesh->parts) names.push_back(mesh_part.name);
     part.attributes["goniochrome:parts"] = names.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -249,12 +249,12 @@ Result<cli::Verdict> run(const RenderOptions& options, cli::Session& session) {
   session.explain(explanation(stage.mesh, stage.dress, scene, renderer.shader()));
   GONIO_ASSIGN(const Frame frame,
                renderer.draw(camera, request.size.width, request.size.height, options.samples, options.check > 0));
-  tell_visibility(frame.gbuffer, session);
+  tell_visibility(*frame.gbuffer, session);
   const DiffuseWhite white = diffuse_white(scene.env, scene.lights);
   const double automatic = request.png && white.luminance > 0 ? -std::log2(white.luminance) : 0;
   const double stops = request.stops.value_or(automatic);
   Json& results = session.results();
-  results["engine"] = renderer.engine();
+  results["engine"] = renderer.opengl();
   results["gbuffer_ms"] = frame.gbuffer_ms;
   results["frame_ms"] = frame.frame_ms;
   results["exposure_stops"] = stops;

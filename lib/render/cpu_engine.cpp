@@ -1,0 +1,254 @@
+#include "render/cpu_engine.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/parallel.h"
+
+namespace goniochrome {
+
+namespace {
+
+constexpr std::size_t kBlock = 8;  // floats: two maps, R G B 0 each
+
+int blocks_of(std::size_t maps) {
+  return static_cast<int>((maps + 1) / 2);
+}
+
+std::vector<float> interleaved(const std::vector<CubeMap>& maps) {
+  const std::size_t wide = static_cast<std::size_t>(maps.front().size) + 2, texels = wide * wide;
+  const std::size_t stride = static_cast<std::size_t>(blocks_of(maps.size())) * kBlock;
+  std::vector<float> data(6 * texels * stride, 0.0F);
+  parallel_for(6 * maps.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t job = begin; job < end; ++job) {
+      const std::size_t face = job / maps.size(), map = job % maps.size();
+      const std::vector<float> texel = bordered_face(maps[map], static_cast<int>(face));
+      float* to = &data[face * texels * stride + 4 * map];
+      for (std::size_t i = 0; i < texels; ++i) std::copy_n(&texel[3 * i], 3, to + i * stride);
+    }
+  });
+  return data;
+}
+
+// The three diagonals of the matrix of K (x), each of 3 floats, a pair of blocks apart: in place, and for the light's
+// channels turned by one and by two.
+void put_diagonals(const ReflectionOperator& op, const float* weight, float* to) {
+  const Matrix3 m = reflection_matrix(op, {weight[0], weight[1], weight[2]});
+  for (std::size_t turn = 0; turn < 3; ++turn) {
+    for (std::size_t c = 0; c < 3; ++c) to[2 * kBlock * turn + c] = static_cast<float>(m[c][(c + turn) % 3]);
+  }
+}
+
+// Points that are gathered until there are enough for the kernel, and where their colors go.
+class Batch {
+ public:
+  explicit Batch(const CpuShading& shading) : shading_(shading) {
+    PointArrays& p = points_;
+    std::fill_n(p.nx, kPointsAtOnce, 0.0F), std::fill_n(p.ny, kPointsAtOnce, 0.0F), std::fill_n(p.nz, kPointsAtOnce, 1.0F);
+    std::fill_n(p.vx, kPointsAtOnce, 0.0F), std::fill_n(p.vy, kPointsAtOnce, 0.0F), std::fill_n(p.vz, kPointsAtOnce, 1.0F);
+    std::fill_n(p.part, kPointsAtOnce, 0);
+  }
+
+  bool full() const { return count_ == kPointsAtOnce; }
+  int count() const { return count_; }
+  std::size_t index(int i) const { return index_[i]; }
+  const float* rgba(int i) const { return rgba_ + 4 * i; }
+
+  void add(std::size_t index, const float* normal, const float* to_viewer, int part) {
+    PointArrays& p = points_;
+    p.nx[count_] = normal[0], p.ny[count_] = normal[1], p.nz[count_] = normal[2];
+    p.vx[count_] = to_viewer[0], p.vy[count_] = to_viewer[1], p.vz[count_] = to_viewer[2];
+    p.part[count_] = part;
+    index_[count_++] = index;
+  }
+  void shade() { shade_points(shading_, points_, count_, rgba_); }
+  void look_up(const InterleavedMaps& map) { look_up_background(map, points_, count_, rgba_); }
+  void clear() { count_ = 0; }
+
+ private:
+  const CpuShading& shading_;
+  PointArrays points_;
+  std::size_t index_[kPointsAtOnce];
+  int count_ = 0;
+  alignas(64) float rgba_[4 * kPointsAtOnce];
+};
+
+}  // namespace
+
+void CpuEngine::interleave(const MapClass& maps, MapUse use) {
+  if (maps.size == 0) return;
+  stacks_.push_back({{maps.size, maps.slots, {}}, use, blocks_of(maps.slots.size()), interleaved(maps.maps)});
+}
+
+Result<void> CpuEngine::load(const Scene& scene, const Effects& effects, const SceneMaps& maps) {
+  stacks_.clear();
+  background_map_ = {};
+  interleave(maps.diffuse, MapUse::kNormal);
+  for (const MapClass& lobes : maps.lobes) interleave(lobes, MapUse::kTilted);
+  if (effects.mirror) interleave(maps.mirror, MapUse::kMirror);
+  if (effects.background == Background::kEnvironment) {
+    background_map_ = {{maps.mirror.size, {}, {}}, MapUse::kMirror, 1, interleaved(maps.mirror.maps)};
+  }
+  int tilted_blocks = 0;
+  for (const Stack& stack : stacks_) tilted_blocks += stack.use == MapUse::kTilted ? stack.blocks : 0;
+  if (stacks_.size() > kMostClasses || tilted_blocks > kMostBlocks || effects.lobes.size() > kMostLobes) {
+    return input_error("the paints use {} lobes of {} very different face sizes: fit them to one common basis",
+                       effects.lobes.size(), stacks_.size());
+  }
+  shading_ = {};
+  for (const Stack& stack : stacks_) {
+    shading_.use[shading_.classes] = stack.use;
+    shading_.maps[shading_.classes++] = {stack.shape.size, stack.blocks, stack.texels.data()};
+  }
+  load_paints(scene, effects, weight_table(scene, effects));
+  return {};
+}
+
+void CpuEngine::load_paints(const Scene& scene, const Effects& effects, const WeightTable& table) {
+  std::size_t blocks = 0;
+  for (const Stack& stack : stacks_) blocks += static_cast<std::size_t>(stack.blocks);
+  const int light_slots = effects.lights > 0 ? table.slots - table.light_slot() : 0;
+  const std::size_t pairs = effects.reflection ? 3 : 1;
+  shading_.reflection = effects.reflection;
+  shading_.segments = table.segments;
+  shading_.light_offset = 2 * kBlock * pairs * blocks;
+  shading_.segment_floats = shading_.light_offset + 8 * static_cast<std::size_t>(light_slots);
+  weights_.assign(shading_.segment_floats * static_cast<std::size_t>(table.segments * table.parts), 0.0F);
+  float* to = weights_.data();
+  for (int row = 0; row < table.parts * table.segments; ++row) {
+    const auto texel = [&](int slot) { return table.at(row / table.segments, row % table.segments, slot); };
+    for (const Stack& stack : stacks_) {
+      for (std::size_t i = 0; i < stack.shape.slots.size(); ++i) {
+        float* ends = to + 2 * kBlock * pairs * (i / 2) + 4 * (i % 2);
+        const float* weight = texel(stack.shape.slots[i]);
+        for (const int end : {0, 4}) {
+          if (effects.reflection) {
+            put_diagonals(scene.reflection, weight + end, ends + 2 * end);
+          } else {
+            std::copy_n(weight + end, 4, ends + 2 * end);
+          }
+        }
+      }
+      to += 2 * kBlock * pairs * static_cast<std::size_t>(stack.blocks);
+    }
+    for (int slot = 0; slot < light_slots; ++slot, to += 8) std::copy_n(texel(table.light_slot() + slot), 8, to);
+  }
+  shading_.weights = weights_.data();
+  set_lights(scene, effects);
+  set_tilts(scene, effects);
+  background_ = effects.background;
+  background_color_ = scene.background_color;
+}
+
+void CpuEngine::set_lights(const Scene& scene, const Effects& effects) {
+  lights_.clear(), exponents_.clear();
+  for (const Light& light : effects.lights > 0 ? scene.lights : std::vector<Light>()) {
+    for (int c = 0; c < 3; ++c) lights_.push_back(static_cast<float>(light.direction[c]));
+    lights_.push_back(0);
+    const Matrix3 product =
+        reflection_matrix(effects.reflection ? scene.reflection : component_wise(), std::numbers::pi * light.white);
+    for (std::size_t column = 0; column < 3; ++column) {
+      for (std::size_t row = 0; row < 3; ++row) lights_.push_back(static_cast<float>(product[row][column]));
+      lights_.push_back(0);
+    }
+  }
+  for (const Effects::LobeUse& lobe : effects.lobes) exponents_.push_back(static_cast<float>(lobe.exponent));
+  shading_.lights = static_cast<int>(lights_.size() / 16);
+  shading_.light = lights_.data();
+  shading_.lobes = static_cast<int>(exponents_.size());
+  shading_.exponents = exponents_.data();
+  shading_.lit_diffuse = effects.diffuse;
+  shading_.fresnel = effects.fresnel;
+}
+
+void CpuEngine::set_tilts(const Scene& scene, const Effects& effects) {
+  tilts_.clear(), first_tilt_ = {0};
+  shading_.tilts = nullptr, shading_.most_tilts = 1;
+  if (!effects.anisotropy) return;
+  for (const std::vector<Tilt>& tilts : tilts_of(scene, effects)) {
+    for (const Tilt& tilt : tilts) {
+      for (int c = 0; c < 3; ++c) tilts_.push_back(static_cast<float>(tilt.normal[c]));
+      tilts_.push_back(static_cast<float>(tilt.weight));
+    }
+    first_tilt_.push_back(first_tilt_.back() + static_cast<int>(tilts.size()));
+    shading_.most_tilts = std::max(shading_.most_tilts, static_cast<int>(tilts.size()));
+  }
+  shading_.tilts = tilts_.data();
+  shading_.first_tilt = first_tilt_.data();
+}
+
+void CpuEngine::shade_row(const Gbuffer& gbuffer, int y, float gain, bool add, float* rgba) const {
+  const auto put = [&](std::size_t x, const float* color, float alpha) {
+    float* pixel = rgba + 4 * x;
+    for (int c = 0; c < 3; ++c) pixel[c] = gain * color[c] + (add ? pixel[c] : 0);
+    pixel[3] = gain * alpha + (add ? pixel[3] : 0);
+  };
+  Batch seen(shading_), missed(shading_);
+  const InterleavedMaps sky{background_map_.shape.size, 1, background_map_.texels.data()};
+  const auto flush = [&](Batch& batch) {
+    if (batch.count() == 0) return;
+    if (&batch == &seen) {
+      batch.shade();
+    } else {
+      batch.look_up(sky);
+    }
+    for (int i = 0; i < batch.count(); ++i) put(batch.index(i), batch.rgba(i), 1);
+    batch.clear();
+  };
+  const Rays& rays = gbuffer.rays;
+  const Vec3 first = rays.corner + (y + 0.5) * rays.down;
+  const float plain[4] = {static_cast<float>(background_color_.x), static_cast<float>(background_color_.y),
+                          static_cast<float>(background_color_.z), 0};
+  const float nothing[4] = {0, 0, 0, 0};
+  for (int x = 0; x < gbuffer.width; ++x) {
+    const float* point = gbuffer.at(x, y);
+    if (point[3] == 0 && background_ != Background::kEnvironment) {
+      const bool colored = background_ == Background::kColor;
+      put(static_cast<std::size_t>(x), colored ? plain : nothing, colored ? 1 : 0);
+      continue;
+    }
+    const double across = x + 0.5;
+    const float to_viewer[3] = {static_cast<float>(-(first.x + across * rays.right.x)),
+                                static_cast<float>(-(first.y + across * rays.right.y)),
+                                static_cast<float>(-(first.z + across * rays.right.z))};
+    Batch& batch = point[3] == 0 ? missed : seen;
+    batch.add(static_cast<std::size_t>(x), point, to_viewer, std::max(0, static_cast<int>(std::abs(point[3])) - 1));
+    if (batch.full()) flush(batch);
+  }
+  flush(seen), flush(missed);
+}
+
+void CpuEngine::shade(const Gbuffer& gbuffer, float gain, bool add, Image& rgba) const {
+  rgba.width = gbuffer.width, rgba.height = gbuffer.height, rgba.channels = 4;
+  rgba.data.resize(static_cast<std::size_t>(gbuffer.width) * static_cast<std::size_t>(gbuffer.height) * 4);
+  parallel_for(static_cast<std::size_t>(gbuffer.height), 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t y = begin; y < end; ++y) {
+      shade_row(gbuffer, static_cast<int>(y), gain, add, rgba.pixel(0, static_cast<int>(y)));
+    }
+  });
+}
+
+std::vector<Rgb> CpuEngine::shade(const std::vector<VisiblePoint>& points) const {
+  std::vector<Rgb> colors(points.size());
+  parallel_for(points.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
+    Batch batch(shading_);
+    for (std::size_t i = begin; i < end; ++i) {
+      const VisiblePoint& point = points[i];
+      float normal[3], to_viewer[3];
+      for (int c = 0; c < 3; ++c) {
+        normal[c] = static_cast<float>(point.normal[c]);
+        to_viewer[c] = static_cast<float>(point.to_viewer[c]);
+      }
+      batch.add(i, normal, to_viewer, point.part);
+    }
+    batch.shade();
+    for (int i = 0; i < batch.count(); ++i) {
+      const float* rgb = batch.rgba(i);
+      colors[batch.index(i)] = {rgb[0], rgb[1], rgb[2]};
+    }
+  });
+  return colors;
+}
+
+}  // namespace goniochrome

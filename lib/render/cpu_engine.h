@@ -1,0 +1,57 @@
+// Shades G-buffers on the processor, without OpenGL: the maps that one direction meets lie interleaved, so that one set
+// of addresses and one bilinear fetch serve all of their lobes. goniochrome-theory(7), RENDERING.
+#pragma once
+
+#include <vector>
+
+#include "image/image.h"
+#include "render/cpu_kernel.h"
+#include "render/effects.h"
+#include "render/gbuffer.h"
+#include "render/maps.h"
+
+namespace goniochrome {
+
+// A point to be shaded alone.
+struct VisiblePoint {
+  Vec3 normal, to_viewer;  // unit, on the same side
+  int part = 0;
+};
+
+class CpuEngine {
+ public:
+  CpuEngine() = default;
+  CpuEngine(const CpuEngine&) = delete;  // the kernel's tables point into it
+  CpuEngine& operator=(const CpuEngine&) = delete;
+
+  // Interleaves the maps. Error: more face sizes than there is room for.
+  Result<void> load(const Scene& scene, const Effects& effects, const SceneMaps& maps);
+  // Other paints, or other lights, for the effects loaded.
+  void load_paints(const Scene& scene, const Effects& effects, const WeightTable& table);
+
+  // Shades all pixels, radiance times `gain`; `add` adds to what is there. Bit-identical for any number of threads.
+  void shade(const Gbuffer& gbuffer, float gain, bool add, Image& rgba) const;
+  std::vector<Rgb> shade(const std::vector<VisiblePoint>& points) const;
+
+ private:
+  struct Stack {
+    MapClass shape;  // without its maps
+    MapUse use = MapUse::kMirror;
+    int blocks = 0;
+    std::vector<float> texels;
+  };
+  void interleave(const MapClass& maps, MapUse use);
+  void set_lights(const Scene& scene, const Effects& effects);
+  void set_tilts(const Scene& scene, const Effects& effects);
+  void shade_row(const Gbuffer& gbuffer, int y, float gain, bool add, float* rgba) const;
+
+  std::vector<Stack> stacks_;
+  Stack background_map_;
+  std::vector<float> weights_, lights_, exponents_, tilts_;
+  std::vector<int> first_tilt_;
+  CpuShading shading_;
+  Background background_ = Background::kNone;
+  Rgb background_color_;
+};
+
+}  // namespace goniochrome

@@ -1,0 +1,443 @@
+#include "render/cpu_kernel.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/cpu_kernel.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+// After highway.h:
+#include <hwy/contrib/math/math-inl.h>
+
+#include "brdf/lobe_model.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace goniochrome {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using D = hn::CappedTag<float, 16>;  // points side by side
+using V = hn::Vec<D>;
+
+struct Direction {
+  V x, y, z;
+};
+
+HWY_INLINE V dot(const Direction& a, const Direction& b) {
+  return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
+}
+
+// Four texels and their shares, for each point.
+struct Taps {
+  HWY_ALIGN std::int32_t offset[kPointsAtOnce];  // of the upper left texel, in texels
+  HWY_ALIGN float across[kPointsAtOnce], down[kPointsAtOnce];
+};
+
+// OpenGL 4.5, table 8.19: the face, and its coordinates s and t from -1 to 1.
+HWY_INLINE void address(const Direction& d, int size, std::size_t i, Taps& taps) {
+  const D f;
+  const hn::RebindToSigned<D> n;
+  const V x = hn::Abs(d.x), y = hn::Abs(d.y), z = hn::Abs(d.z), zero = hn::Zero(f);
+  const auto on_x = hn::And(hn::Ge(x, y), hn::Ge(x, z));
+  const auto on_y = hn::AndNot(on_x, hn::Ge(y, z));
+  const V axis = hn::IfThenElse(on_x, d.x, hn::IfThenElse(on_y, d.y, d.z));
+  const auto back = hn::Lt(axis, zero);
+  const V s_of_z = hn::IfThenElse(back, hn::Neg(d.x), d.x);
+  const V s_of_x = hn::IfThenElse(back, d.z, hn::Neg(d.z));
+  const V t_of_y = hn::IfThenElse(back, hn::Neg(d.z), d.z);
+  const V s = hn::IfThenElse(on_x, s_of_x, hn::IfThenElse(on_y, d.x, s_of_z));
+  const V t = hn::IfThenElse(on_y, t_of_y, hn::Neg(d.y));
+  const V half = hn::Set(f, 0.5F * static_cast<float>(size));
+  const V scale = hn::Div(half, hn::Abs(axis));
+  // In texels of the face with its border; centers are at whole numbers.
+  const V middle = hn::Set(f, 0.5F * static_cast<float>(size) + 0.5F);
+  const V most = hn::Set(f, static_cast<float>(size) + 0.999F);
+  const V column = hn::Min(hn::Max(hn::MulAdd(s, scale, middle), zero), most);
+  const V row = hn::Min(hn::Max(hn::MulAdd(t, scale, middle), zero), most);
+  const auto i_column = hn::ConvertTo(n, column), i_row = hn::ConvertTo(n, row);
+  const V face = hn::Add(hn::IfThenElse(on_x, zero, hn::IfThenElse(on_y, hn::Set(f, 2.0F), hn::Set(f, 4.0F))),
+                         hn::IfThenElse(back, hn::Set(f, 1.0F), zero));
+  const auto wide = hn::Set(n, size + 2);
+  const auto offset = hn::Add(hn::Mul(hn::Add(hn::Mul(hn::ConvertTo(n, face), wide), i_row), wide), i_column);
+  hn::Store(offset, n, taps.offset + i);
+  hn::Store(hn::Sub(column, hn::ConvertTo(f, i_column)), f, taps.across + i);
+  hn::Store(hn::Sub(row, hn::ConvertTo(f, i_row)), f, taps.down + i);
+}
+
+// n floats, in as many registers as they need.
+template <std::size_t n>
+struct Pack {
+  using Tag = hn::CappedTag<float, n>;
+  static constexpr std::size_t kLanes = hn::MaxLanes(Tag()), kRegisters = n / kLanes;
+  hn::Vec<Tag> v[kRegisters];
+
+  static HWY_INLINE Pack load(const float* from) {
+    Pack pack;
+    for (std::size_t i = 0; i < kRegisters; ++i) pack.v[i] = hn::LoadU(Tag(), from + i * kLanes);
+    return pack;
+  }
+  static HWY_INLINE Pack filled(float value) {
+    Pack pack;
+    for (std::size_t i = 0; i < kRegisters; ++i) pack.v[i] = hn::Set(Tag(), value);
+    return pack;
+  }
+  HWY_INLINE void store(float* to) const {
+    for (std::size_t i = 0; i < kRegisters; ++i) hn::StoreU(v[i], Tag(), to + i * kLanes);
+  }
+};
+template <std::size_t n>
+HWY_INLINE Pack<n> mul_add(const Pack<n>& a, const Pack<n>& b, const Pack<n>& c) {
+  Pack<n> pack;
+  for (std::size_t i = 0; i < Pack<n>::kRegisters; ++i) pack.v[i] = hn::MulAdd(a.v[i], b.v[i], c.v[i]);
+  return pack;
+}
+
+using Block = Pack<8>;  // one texel's block: two maps, R G B 0 each
+using Quad = Pack<4>;   // one R G B 0
+HWY_INLINE Block load(const float* from) {
+  return Block::load(from);
+}
+HWY_INLINE Block filled(float value) {
+  return Block::filled(value);
+}
+
+// Four texels and the share of each.
+struct Corners {
+  const float *upper, *lower;
+  std::size_t right;
+  Block share[4];
+};
+
+// The four corners of point i, their shares times `scale`.
+HWY_INLINE Corners corners_of(const InterleavedMaps& maps, const Taps& taps, int i, float scale = 1) {
+  const std::size_t texel = static_cast<std::size_t>(maps.blocks) * 8;
+  const float* upper = maps.texels + static_cast<std::size_t>(taps.offset[i]) * texel;
+  const float u = taps.across[i], lower = scale * taps.down[i], upper_share = scale - lower;
+  return {upper,
+          upper + static_cast<std::size_t>(maps.size + 2) * texel,
+          texel,
+          {filled((1 - u) * upper_share), filled(u * upper_share), filled((1 - u) * lower), filled(u * lower)}};
+}
+
+// Adds one block of a texel, between the four, to `sum`.
+HWY_INLINE Block add_between(const Corners& c, std::size_t at, const Block& sum) {
+  const Block upper = mul_add(c.share[0], load(c.upper + at), mul_add(c.share[1], load(c.upper + c.right + at), sum));
+  return mul_add(c.share[2], load(c.lower + at), mul_add(c.share[3], load(c.lower + c.right + at), upper));
+}
+
+// The view of every point, and where its weights are.
+struct Frame {
+  HWY_ALIGN float cos_o[kPointsAtOnce];
+  HWY_ALIGN float rx[kPointsAtOnce], ry[kPointsAtOnce], rz[kPointsAtOnce];
+  HWY_ALIGN float t[kPointsAtOnce];
+  HWY_ALIGN std::int32_t segment[kPointsAtOnce];
+
+  Direction r(std::size_t i) const {
+    const D f;
+    return {hn::Load(f, rx + i), hn::Load(f, ry + i), hn::Load(f, rz + i)};
+  }
+  const float* weights(const CpuShading& s, const PointArrays& points, int i) const {
+    return s.weights + static_cast<std::size_t>(points.part[i] * s.segments + segment[i]) * s.segment_floats;
+  }
+};
+
+HWY_INLINE Direction normal_of(const PointArrays& p, std::size_t i) {
+  const D f;
+  return {hn::LoadU(f, p.nx + i), hn::LoadU(f, p.ny + i), hn::LoadU(f, p.nz + i)};
+}
+HWY_INLINE Direction viewer_of(const PointArrays& p, std::size_t i) {
+  const D f;
+  return {hn::LoadU(f, p.vx + i), hn::LoadU(f, p.vy + i), hn::LoadU(f, p.vz + i)};
+}
+
+// Makes the directions to the viewer unit, mirrors them, and finds the segments of the weights.
+HWY_INLINE void set_up(const CpuShading& s, PointArrays& points, Frame& frame) {
+  const D f;
+  const hn::RebindToSigned<D> whole;
+  for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
+    Direction v = viewer_of(points, i);
+    const V scale = hn::Div(hn::Set(f, 1.0F), hn::Sqrt(dot(v, v)));
+    v = {hn::Mul(v.x, scale), hn::Mul(v.y, scale), hn::Mul(v.z, scale)};
+    hn::StoreU(v.x, f, points.vx + i), hn::StoreU(v.y, f, points.vy + i), hn::StoreU(v.z, f, points.vz + i);
+    const Direction n = normal_of(points, i);
+    const V c = dot(n, v), two_c = hn::Add(c, c);
+    hn::Store(c, f, frame.cos_o + i);
+    hn::Store(hn::MulSub(two_c, n.x, v.x), f, frame.rx + i);
+    hn::Store(hn::MulSub(two_c, n.y, v.y), f, frame.ry + i);
+    hn::Store(hn::MulSub(two_c, n.z, v.z), f, frame.rz + i);
+    V t = c;
+    auto segment = hn::Zero(whole);
+    if (s.segments > 1) {
+      const V x = hn::Mul(hn::Set(f, static_cast<float>(s.segments)), hn::Sqrt(hn::Max(c, hn::Zero(f))));
+      segment = hn::Min(hn::ConvertTo(whole, x), hn::Set(whole, s.segments - 1));
+      t = hn::Sub(x, hn::ConvertTo(f, segment));
+    }
+    hn::Store(t, f, frame.t + i);
+    hn::Store(segment, whole, frame.segment + i);
+  }
+}
+
+// The two halves of a block together: the sum of its maps.
+HWY_INLINE void store_sum(const Block& sum, float* rgba) {
+  float lanes[8];
+  sum.store(lanes);
+  for (int c = 0; c < 4; ++c) rgba[c] = lanes[c] + lanes[4 + c];
+}
+
+// Turns the channels of each map in a block by `by`: lane c becomes c + by, modulo 3.
+template <int by>
+HWY_INLINE Block turned(const Block& block) {
+  Block result;
+#if HWY_TARGET == HWY_SCALAR
+  for (std::size_t i = 0; i < 8; ++i) result.v[i] = i % 4 == 3 ? block.v[i] : block.v[i / 4 * 4 + (i % 4 + by) % 3];
+#else
+  const Block::Tag f;
+  const hn::Repartition<std::uint8_t, Block::Tag> bytes;
+  HWY_ALIGN static constexpr std::uint8_t kOnce[16] = {4, 5, 6, 7, 8, 9, 10, 11, 0, 1, 2, 3, 12, 13, 14, 15};
+  HWY_ALIGN static constexpr std::uint8_t kTwice[16] = {8, 9, 10, 11, 0, 1, 2, 3, 4, 5, 6, 7, 12, 13, 14, 15};
+  const auto table = hn::LoadDup128(bytes, by == 1 ? kOnce : kTwice);
+  for (std::size_t i = 0; i < Block::kRegisters; ++i) {
+    result.v[i] = hn::BitCast(f, hn::TableLookupBytes(hn::BitCast(bytes, block.v[i]), table));
+  }
+#endif
+  return result;
+}
+
+// Adds what one block of the maps shows to `sum`, and steps to the weights of the next.
+HWY_INLINE Block add_weighted(bool reflection, const Block& t, const Block& maps, const float*& weight, Block sum) {
+  sum = mul_add(mul_add(t, load(weight + 8), load(weight)), maps, sum);
+  weight += 16;
+  if (!reflection) return sum;
+  sum = mul_add(mul_add(t, load(weight + 8), load(weight)), turned<1>(maps), sum);
+  sum = mul_add(mul_add(t, load(weight + 24), load(weight + 16)), turned<2>(maps), sum);
+  weight += 32;
+  return sum;
+}
+
+// The tilted normals of every point, one at a time.
+struct Tilted {
+  HWY_ALIGN float rx[kPointsAtOnce], ry[kPointsAtOnce], rz[kPointsAtOnce];
+  HWY_ALIGN float share[kPointsAtOnce];  // 0 where a point has no such tilt, or sees nothing by it
+
+  Direction r(std::size_t i) const {
+    const D f;
+    return {hn::Load(f, rx + i), hn::Load(f, ry + i), hn::Load(f, rz + i)};
+  }
+};
+
+// The tangent runs level around the vertical axis; on a level surface along +X.
+HWY_INLINE void tilt(const CpuShading& s, const PointArrays& points, int which, Tilted& tilted) {
+  const D f;
+  HWY_ALIGN float tx[kPointsAtOnce], ty[kPointsAtOnce], tz[kPointsAtOnce];
+  for (int i = 0; i < kPointsAtOnce; ++i) {
+    const int first = s.first_tilt[points.part[i]], count = s.first_tilt[points.part[i] + 1] - first;
+    const float* t = s.tilts + 4 * (first + (which < count ? which : 0));
+    tx[i] = t[0], ty[i] = t[1], tz[i] = t[2];
+    tilted.share[i] = which < count ? t[3] : 0;
+  }
+  const V zero = hn::Zero(f), one = hn::Set(f, 1.0F);
+  for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
+    const Direction n = normal_of(points, i), v = viewer_of(points, i);
+    const V level2 = hn::MulAdd(n.x, n.x, hn::Mul(n.z, n.z));
+    const auto steep = hn::Gt(level2, hn::Set(f, 1e-12F));
+    const V scale = hn::Div(one, hn::Sqrt(hn::IfThenElse(steep, level2, one)));
+    const Direction x = {hn::IfThenElse(steep, hn::Mul(n.z, scale), one), zero,
+                         hn::IfThenElse(steep, hn::Neg(hn::Mul(n.x, scale)), zero)};
+    const Direction y = {hn::Mul(n.y, x.z), hn::MulSub(n.z, x.x, hn::Mul(n.x, x.z)), hn::Neg(hn::Mul(n.y, x.x))};
+    const V a = hn::Load(f, tx + i), b = hn::Load(f, ty + i), c = hn::Load(f, tz + i);
+    const Direction m = {hn::MulAdd(a, x.x, hn::MulAdd(b, y.x, hn::Mul(c, n.x))),
+                         hn::MulAdd(b, y.y, hn::Mul(c, n.y)),
+                         hn::MulAdd(a, x.z, hn::MulAdd(b, y.z, hn::Mul(c, n.z)))};
+    const V cos_m = dot(m, v), two = hn::Add(cos_m, cos_m);
+    const Direction r = {hn::MulSub(two, m.x, v.x), hn::MulSub(two, m.y, v.y), hn::MulSub(two, m.z, v.z)};
+    hn::Store(r.x, f, tilted.rx + i), hn::Store(r.y, f, tilted.ry + i), hn::Store(r.z, f, tilted.rz + i);
+    const auto seen = hn::And(hn::Gt(cos_m, zero), hn::Gt(dot(r, n), zero));
+    hn::Store(hn::IfThenElseZero(seen, hn::Load(f, tilted.share + i)), f, tilted.share + i);
+  }
+}
+
+// The blocks of all tilted classes, side by side, between their texels and averaged over the tilts.
+HWY_INLINE void gather_tilted(const CpuShading& s, const PointArrays& points, int count, float* gathered) {
+  const D f;
+  Tilted tilted;
+  Taps taps;
+  for (int which = 0; which < s.most_tilts; ++which) {
+    tilt(s, points, which, tilted);
+    int first = 0;
+    for (int k = 0; k < s.classes; ++k) {
+      if (s.use[k] != MapUse::kTilted) continue;
+      for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(f)) address(tilted.r(i), s.maps[k].size, i, taps);
+      for (int i = 0; i < count; ++i) {
+        if (which > 0 && tilted.share[i] == 0) continue;
+        const Corners corners = corners_of(s.maps[k], taps, i, tilted.share[i]);
+        float* sums = gathered + (i * kMostBlocks + first) * 8;
+        for (int block = 0; block < s.maps[k].blocks; ++block, sums += 8) {
+          const Block before = which > 0 ? load(sums) : filled(0);
+          add_between(corners, static_cast<std::size_t>(block) * 8, before).store(sums);
+        }
+      }
+      first += s.maps[k].blocks;
+    }
+  }
+}
+
+template <bool reflection>
+HWY_INLINE void add_environment(const CpuShading& s, const PointArrays& points, const Frame& frame, int count,
+                                float* rgba) {
+  const D f;
+  Taps taps[kMostClasses];
+  HWY_ALIGN float gathered[kPointsAtOnce * kMostBlocks * 8];
+  if (s.tilts != nullptr) gather_tilted(s, points, count, gathered);
+  for (int k = 0; k < s.classes; ++k) {
+    if (s.use[k] == MapUse::kTilted && s.tilts != nullptr) continue;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(f)) {
+      address(s.use[k] == MapUse::kNormal ? normal_of(points, i) : frame.r(i), s.maps[k].size, i, taps[k]);
+    }
+  }
+  for (int i = 0; i < count; ++i) {
+    const float* weight = frame.weights(s, points, i);
+    const Block t = filled(frame.t[i]);
+    const float* tilted = gathered + i * kMostBlocks * 8;
+    Block sum = filled(0);
+    for (int k = 0; k < s.classes; ++k) {
+      if (s.use[k] == MapUse::kTilted && s.tilts != nullptr) {
+        for (int block = 0; block < s.maps[k].blocks; ++block, tilted += 8) {
+          sum = add_weighted(reflection, t, load(tilted), weight, sum);
+        }
+        continue;
+      }
+      const Corners corners = corners_of(s.maps[k], taps[k], i);
+      for (int block = 0; block < s.maps[k].blocks; ++block) {
+        const Block maps = add_between(corners, static_cast<std::size_t>(block) * 8, filled(0));
+        sum = add_weighted(reflection, t, maps, weight, sum);
+      }
+    }
+    store_sum(sum, rgba + 4 * i);
+  }
+}
+
+// cos^E from 1 - cos, which is exact where cos is 1 but for the last digits.
+HWY_INLINE V log_cos_of(V versine) {
+  const D f;
+  const V s = versine;
+  const V series = hn::Mul(
+      hn::Neg(s),
+      hn::MulAdd(s, hn::MulAdd(s, hn::MulAdd(s, hn::Set(f, 0.25F), hn::Set(f, 0.33333333F)), hn::Set(f, 0.5F)),
+                 hn::Set(f, 1.0F)));
+  const V direct = hn::Log(f, hn::Max(hn::Sub(hn::Set(f, 1.0F), s), hn::Set(f, 1e-30F)));
+  return hn::IfThenElse(hn::Lt(s, hn::Set(f, 0.02F)), series, direct);
+}
+
+// brdf's fresnel_dielectric() with the refracted cosine g/n written in c: r_s = (c-g)/(c+g), r_p = (n^2 c-g)/(n^2 c+g).
+HWY_INLINE V fresnel_of(V c) {
+  const D f;
+  const V n2 = hn::Set(f, static_cast<float>(kCoatIndex * kCoatIndex));
+  const V g = hn::Sqrt(hn::MulAdd(c, c, hn::Set(f, static_cast<float>(kCoatIndex * kCoatIndex - 1))));
+  const V s = hn::Div(hn::Sub(c, g), hn::Add(c, g)), p = hn::Div(hn::MulSub(n2, c, g), hn::MulAdd(n2, c, g));
+  return hn::Mul(hn::Set(f, 0.5F), hn::MulAdd(s, s, hn::Mul(p, p)));
+}
+
+// What every lobe sends from a light to the viewer, cos^E of the angle to the mirror direction, mean over the tilts.
+HWY_INLINE void lobe_powers(const CpuShading& s, const Direction& l, const PointArrays& points, const Frame& frame,
+                            const float* cos_i, float* powers) {
+  const D f;
+  Tilted tilted;
+  for (int which = 0; which < s.most_tilts; ++which) {
+    if (s.tilts != nullptr) tilt(s, points, which, tilted);
+    for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
+      const Direction r = s.tilts != nullptr ? tilted.r(i) : frame.r(i);
+      const Direction apart = {hn::Sub(r.x, l.x), hn::Sub(r.y, l.y), hn::Sub(r.z, l.z)};
+      const V versine = hn::Mul(hn::Set(f, 0.5F), dot(apart, apart)), log_cos = log_cos_of(versine);
+      const auto lit = hn::And(hn::Lt(versine, hn::Set(f, 1.0F)), hn::Gt(hn::Load(f, cos_i + i), hn::Zero(f)));
+      const V share = s.tilts != nullptr ? hn::Load(f, tilted.share + i) : hn::Set(f, 1.0F);
+      for (int j = 0; j < s.lobes; ++j) {
+        float* power = powers + j * kPointsAtOnce + i;
+        const V x = hn::Mul(hn::Set(f, s.exponents[j]), log_cos);
+        const auto seen = hn::And(lit, hn::Gt(x, hn::Set(f, -80.0F)));
+        const V here = hn::IfThenElseZero(seen, hn::Mul(share, hn::Exp(f, hn::Max(x, hn::Set(f, -80.0F)))));
+        hn::Store(which > 0 ? hn::Add(here, hn::Load(f, power)) : here, f, power);
+      }
+    }
+  }
+}
+
+// The exact BRDF times cos_i, so that the gloss term's 1/cos_i is gone.
+HWY_INLINE void add_light(const CpuShading& s, const float* light, const PointArrays& points, const Frame& frame,
+                          int count, float* rgba) {
+  const D f;
+  HWY_ALIGN float cos_i[kPointsAtOnce], fresnel[kPointsAtOnce];
+  HWY_ALIGN float powers[kMostLobes * kPointsAtOnce];
+  const Direction l = {hn::Set(f, light[0]), hn::Set(f, light[1]), hn::Set(f, light[2])};
+  for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
+    hn::Store(hn::Max(dot(normal_of(points, i), l), hn::Zero(f)), f, cos_i + i);
+    const V half = hn::Set(f, 0.5F), cos_half2 = hn::MulAdd(half, dot(viewer_of(points, i), l), half);
+    hn::Store(s.fresnel ? fresnel_of(hn::Sqrt(hn::Max(cos_half2, hn::Zero(f)))) : hn::Set(f, 1.0F), f, fresnel + i);
+  }
+  lobe_powers(s, l, points, frame, cos_i, powers);
+  for (int i = 0; i < count; ++i) {
+    if (!(cos_i[i] > 0)) continue;
+    const float* weight = frame.weights(s, points, i) + s.light_offset;
+    const Quad t = Quad::filled(frame.t[i]);
+    Quad reflected = Quad::filled(0);
+    const auto add = [&](float share) HWY_ATTR {
+      reflected = mul_add(Quad::filled(share), mul_add(t, Quad::load(weight + 4), Quad::load(weight)), reflected);
+      weight += 8;
+    };
+    add(s.lit_diffuse ? cos_i[i] : 0);
+    for (int j = 0; j < s.lobes; ++j) {
+      const float power = powers[j * kPointsAtOnce + i];
+      if (power == 0) {
+        weight += 16;
+        continue;
+      }
+      add(cos_i[i] * power);
+      add(fresnel[i] * power);
+    }
+    float k[4];
+    reflected.store(k);
+    float* pixel = rgba + 4 * i;
+    Quad sum = Quad::load(pixel);
+    for (int c = 0; c < 3; ++c) sum = mul_add(Quad::filled(k[c]), Quad::load(light + 4 + 4 * c), sum);
+    sum.store(pixel);
+  }
+}
+
+void ShadePoints(const CpuShading& s, PointArrays& points, int count, float* rgba) {
+  Frame frame;
+  set_up(s, points, frame);
+  if (s.reflection) {
+    add_environment<true>(s, points, frame, count, rgba);
+  } else {
+    add_environment<false>(s, points, frame, count, rgba);
+  }
+  for (int i = 0; i < s.lights; ++i) add_light(s, s.light + 16 * i, points, frame, count, rgba);
+}
+
+void LookUpBackground(const InterleavedMaps& map, PointArrays& points, int count, float* rgba) {
+  const D f;
+  Taps taps;
+  for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
+    const Direction v = viewer_of(points, i);
+    address({hn::Neg(v.x), hn::Neg(v.y), hn::Neg(v.z)}, map.size, i, taps);
+  }
+  for (int i = 0; i < count; ++i) store_sum(add_between(corners_of(map, taps, i), 0, filled(0)), rgba + 4 * i);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace goniochrome
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace goniochrome {
+
+HWY_EXPORT(ShadePoints);
+HWY_EXPORT(LookUpBackground);
+
+void shade_points(const CpuShading& shading, PointArrays& points, int count, float* rgba) {
+  HWY_DYNAMIC_DISPATCH(ShadePoints)(shading, points, count, rgba);
+}
+
+void look_up_background(const InterleavedMaps& map, PointArrays& points, int count, float* rgba) {
+  HWY_DYNAMIC_DISPATCH(LookUpBackground)(map, points, count, rgba);
+}
+
+}  // namespace goniochrome
+#endif

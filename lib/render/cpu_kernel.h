@@ -1,0 +1,65 @@
+// The arithmetic of the CPU engine, compiled for several instruction sets and chosen at run time. Internal to lib/render.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace goniochrome {
+
+// So many points are shaded at a time: their addresses stay in the first cache.
+constexpr int kPointsAtOnce = 64;
+
+// Maps that one direction meets, their texels interleaved: for each texel, blocks of two maps, each R G B 0.
+struct InterleavedMaps {
+  int size = 0;    // of a face, without its border of one texel
+  int blocks = 0;  // of 8 floats in a texel
+  const float* texels = nullptr;
+};
+
+// What direction meets them: the normal; the mirror direction; or the mirror directions about tilted normals.
+enum class MapUse { kNormal, kMirror, kTilted };
+
+constexpr int kMostClasses = 8;
+constexpr int kMostBlocks = 32;  // of all maps met by the mirror direction together
+constexpr int kMostLobes = 2 * kMostBlocks;
+
+// What the kernel shades with. Weights of a part and segment: for each class of maps in order, for each block, 8 floats a
+// and 8 floats b (W = a + b t), or three such pairs under a reflection operator: the three diagonals of its matrix, for
+// the maps' channels in place, and turned by one and by two. Then, for each light slot, 4 floats a and 4 floats b.
+struct CpuShading {
+  int classes = 0;
+  InterleavedMaps maps[kMostClasses];
+  MapUse use[kMostClasses] = {};
+  bool reflection = false;
+  int segments = 1;
+  const float* weights = nullptr;
+  std::size_t segment_floats = 0;
+  std::size_t light_offset = 0;  // of the light slots, within a segment
+
+  // Tilts of the normal, 4 floats each (in the frame of the surface, then the share); part p has those from
+  // first_tilt[p] to first_tilt[p + 1]. Null where no part has more than one.
+  const float* tilts = nullptr;
+  const int* first_tilt = nullptr;
+  int most_tilts = 1;
+
+  int lights = 0;
+  const float* light = nullptr;  // 16 a light: direction, 0, and the columns (4 floats) of pi times its product's matrix
+  int lobes = 0;
+  const float* exponents = nullptr;
+  bool lit_diffuse = false, fresnel = false;
+};
+
+// Points as separate arrays, of kPointsAtOnce each; `count` of them are meant, the others must hold numbers.
+struct PointArrays {
+  float nx[kPointsAtOnce], ny[kPointsAtOnce], nz[kPointsAtOnce];
+  float vx[kPointsAtOnce], vy[kPointsAtOnce], vz[kPointsAtOnce];  // toward the viewer, of any length
+  std::int32_t part[kPointsAtOnce];
+};
+
+// rgba: 4 floats a point; the fourth is not meant.
+void shade_points(const CpuShading& shading, PointArrays& points, int count, float* rgba);
+
+// Looks up one class of maps (a single map) in the directions toward which the points' v point, reversed.
+void look_up_background(const InterleavedMaps& map, PointArrays& points, int count, float* rgba);
+
+}  // namespace goniochrome

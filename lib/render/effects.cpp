@@ -1,0 +1,146 @@
+#include "render/effects.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "brdf/lobe_model.h"
+#include "render/lobe_curves.h"
+
+namespace goniochrome {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+// The value of every slot of a part at one view.
+class SlotValues {
+ public:
+  SlotValues(const WeightTable& table, const Effects& effects, double gloss_deg)
+      : table_(table), effects_(effects), values_(static_cast<std::size_t>(table.slots)) {
+    if (effects.fresnel) fresnel_scale_ = 1 / fresnel_dielectric(std::cos(gloss_deg * kPi / 180), kCoatIndex);
+  }
+
+  // `node` counts the ends of the segments; a table of one segment has the view cos_o = 0 at its start and 1 at its end.
+  const std::vector<Rgb>& at(const LobeFit& paint, double cos_o, int node) {
+    std::fill(values_.begin(), values_.end(), Rgb{});
+    if (effects_.diffuse) {
+      set(WeightTable::diffuse_slot(), kPi * paint.diffuse);
+      set(table_.light_slot(), paint.diffuse);
+    }
+    for (std::size_t j = 0; j < effects_.lobes.size(); ++j) {
+      const Effects::LobeUse& use = effects_.lobes[j];
+      const Lobe* lobe = find_lobe(paint, use.exponent);
+      if (lobe == nullptr) continue;
+      const Rgb flake = use.directional_diffuse ? lobe->directional_diffuse : Rgb{};
+      const Rgb gloss = use.gloss ? fresnel_scale_ * lobe->gloss : Rgb{};
+      const LobeIntegrals seen = table_.segments > 1
+                                     ? lobe_curve(use.exponent, table_.segments, effects_.horizon)[node]
+                                     : lobe_integrals(use.exponent, cos_o, false);
+      set(WeightTable::lobe_slot(j), seen.cosine * flake + (effects_.fresnel ? seen.fresnel : seen.plain) * gloss);
+      set(table_.directional_diffuse_slot(j), flake);
+      set(table_.gloss_slot(j), gloss);
+    }
+    const Lobe* mirror = effects_.mirror ? find_lobe(paint, kMirrorExponent) : nullptr;
+    const double seen_cos = effects_.fresnel ? cos_o : std::numbers::sqrt2 / 2;
+    if (mirror != nullptr) set(table_.mirror_slot(), fresnel_dielectric(seen_cos, kCoatIndex) * mirror->gloss);
+    return values_;
+  }
+
+ private:
+  void set(int slot, const Rgb& value) { values_[static_cast<std::size_t>(slot)] = value; }
+
+  const WeightTable& table_;
+  const Effects& effects_;
+  double fresnel_scale_ = 1;
+  std::vector<Rgb> values_;
+};
+
+bool is_anisotropic(const Anisotropy& alpha) {
+  return alpha.alpha_x > 0 && alpha.alpha_x != alpha.alpha_y;
+}
+
+}  // namespace
+
+Effects effects_of(const Scene& scene) {
+  Effects effects;
+  effects.environment = scene.env != nullptr;
+  effects.mirror = effects.environment && has_mirror(scene.paints);
+  effects.lights = scene.lights.size();
+  effects.background = scene.background;
+  bool gloss = effects.mirror;
+  for (const double exponent : lobe_exponents(scene.paints)) {
+    Effects::LobeUse use{exponent, false, false};
+    for (const LobeFit& paint : scene.paints) {
+      const Lobe* lobe = find_lobe(paint, exponent);
+      if (lobe == nullptr) continue;
+      use.directional_diffuse |= lobe->directional_diffuse != Rgb{};
+      use.gloss |= lobe->gloss != Rgb{};
+    }
+    gloss |= use.gloss;
+    effects.lobes.push_back(use);
+  }
+  effects.fresnel = gloss;
+  effects.horizon = effects.environment && !effects.lobes.empty();
+  effects.views = std::any_of(scene.paints.begin(), scene.paints.end(),
+                              [](const LobeFit& paint) { return !paint.views.empty(); });
+  effects.anisotropy = !effects.lobes.empty() && std::any_of(scene.anisotropy.begin(), scene.anisotropy.end(), is_anisotropic);
+  effects.reflection = scene.reflection.k != component_wise().k;
+  return effects;
+}
+
+std::vector<std::vector<Tilt>> tilts_of(const Scene& scene, const Effects& effects) {
+  std::vector<std::vector<Tilt>> tilts(scene.paints.size(), {{{0, 0, 1}, 1}});
+  for (std::size_t part = 0; part < scene.anisotropy.size(); ++part) {
+    const Anisotropy& alpha = scene.anisotropy[part];
+    if (!(alpha.alpha_x > 0) || effects.lobes.empty()) continue;
+    double sharpest = 0;
+    for (const Effects::LobeUse& use : effects.lobes) {
+      if (find_lobe(scene.paints[part], use.exponent) != nullptr) sharpest = use.exponent;
+    }
+    if (sharpest == 0) continue;
+    const double narrow = std::max(std::min(alpha.alpha_x, alpha.alpha_y), lobe_alpha(sharpest));
+    auto set = ward_tilts(alpha, narrow, effects.tilt_tolerance, effects.most_tilts);
+    if (set.ok()) tilts[part] = std::move(set->tilts);
+  }
+  return tilts;
+}
+
+WeightTable slots_of(const Effects& effects) {
+  WeightTable table;
+  table.lobes = static_cast<int>(effects.lobes.size());
+  table.segments = effects.depends_on_view() ? kViewSegments : 1;
+  table.slots = 3 + 3 * table.lobes;
+  return table;
+}
+
+WeightTable weight_table(const Scene& scene, const Effects& effects) {
+  WeightTable table = slots_of(effects);
+  table.parts = static_cast<int>(scene.paints.size());
+  const std::size_t row = static_cast<std::size_t>(table.slots) * 8, part_size = row * static_cast<std::size_t>(table.segments);
+  table.rgba.assign(part_size * scene.paints.size(), 0.0F);
+  for (std::size_t part = 0; part < scene.paints.size(); ++part) {
+    SlotValues values(table, effects, part < scene.gloss_deg.size() ? scene.gloss_deg[part] : 45);
+    std::vector<Rgb> before;
+    for (int node = 0; node <= table.segments; ++node) {
+      const double x = static_cast<double>(node) / table.segments, cos_o = table.segments > 1 ? x * x : x;
+      const bool with_views = effects.views && !scene.paints[part].views.empty();
+      const LobeFit& paint = scene.paints[part];
+      const std::vector<Rgb>& here =
+          values.at(with_views ? at_view(paint, std::acos(cos_o) * 180 / kPi) : paint, cos_o, node);
+      if (node > 0) {
+        float* texel = &table.rgba[part * part_size + static_cast<std::size_t>(node - 1) * row];
+        for (std::size_t slot = 0; slot < here.size(); ++slot, texel += 8) {
+          for (int c = 0; c < 3; ++c) {
+            texel[c] = static_cast<float>(before[slot][c]);
+            texel[4 + c] = static_cast<float>(here[slot][c] - before[slot][c]);
+          }
+        }
+      }
+      before = here;
+    }
+  }
+  return table;
+}
+
+}  // namespace goniochrome

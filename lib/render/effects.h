@@ -1,0 +1,69 @@
+// What a scene is shaded with, and the weights that both engines read. goniochrome-theory(7), RENDERING.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "brdf/ward.h"
+#include "render/scene.h"
+
+namespace goniochrome {
+
+// The effects that are on.
+struct Effects {
+  struct LobeUse {
+    double exponent = 1;
+    bool directional_diffuse = false, gloss = false;  // whether any paint has such a weight
+  };
+  bool environment = false;
+  bool diffuse = true;
+  std::vector<LobeUse> lobes;  // ascending exponents
+  bool mirror = false;
+  bool fresnel = false;  // of gloss lobes and mirror
+  bool horizon = false;  // lobes end at the horizon, and each of their directions has its own cosine
+  bool views = false;    // weights of paints that change with the view
+  bool anisotropy = false;
+  double tilt_tolerance = 0.02;  // of the lobes drawn about tilted normals, relative to their peak
+  int most_tilts = 1024;
+  bool reflection = false;  // the scene's reflection operator in place of the component-wise product
+  std::size_t lights = 0;
+  Background background = Background::kNone;
+
+  bool depends_on_view() const { return fresnel || horizon || views; }
+};
+
+// Everything that the scene's paints and lights call for.
+Effects effects_of(const Scene& scene);
+
+// The tilted normals that each part's lobes are drawn about; a single one where the part is isotropic.
+std::vector<std::vector<Tilt>> tilts_of(const Scene& scene, const Effects& effects);
+
+// Weights are piecewise linear in the view: W = a + b t. Where no effect depends on the view there is one segment, with
+// t = n.wo itself; else kViewSegments of them, even in x = sqrt(n.wo), with t the part of a segment. Each part of the
+// mesh has a row for each segment; each slot has two RGBA texels, a and b.
+//   slot 0            pi K_D, of the diffuse map
+//   slot 1 + j        lobe j's share of P_Ej(r), cosine and 2 pi/(E+1) included
+//   slot 1 + lobes    K_M F, of the mirror map
+//   then, for lights, K_D, and K_DD and K_G of each lobe, in 1/sr
+constexpr int kViewSegments = 64;
+struct WeightTable {
+  int lobes = 0, segments = 1, slots = 0, parts = 0;
+  std::vector<float> rgba;  // ((part * segments + segment) * slots + slot) * 8
+
+  static int diffuse_slot() { return 0; }
+  static int lobe_slot(std::size_t lobe) { return 1 + static_cast<int>(lobe); }
+  int mirror_slot() const { return 1 + lobes; }
+  int light_slot() const { return 2 + lobes; }
+  int directional_diffuse_slot(std::size_t lobe) const { return 3 + lobes + 2 * static_cast<int>(lobe); }
+  int gloss_slot(std::size_t lobe) const { return directional_diffuse_slot(lobe) + 1; }
+  const float* at(int part, int segment, int slot) const {
+    return &rgba[(static_cast<std::size_t>(part * segments + segment) * static_cast<std::size_t>(slots) +
+                  static_cast<std::size_t>(slot)) *
+                 8];
+  }
+};
+// The table's sizes, without its weights.
+WeightTable slots_of(const Effects& effects);
+WeightTable weight_table(const Scene& scene, const Effects& effects);
+
+}  // namespace goniochrome

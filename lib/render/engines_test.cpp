@@ -1,0 +1,171 @@
+// The two engines against each other, and what the weights hold against the integrals they stand for.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "brdf/lobe_model.h"
+#include "color/color.h"
+#include "render/lobe_curves.h"
+#include "render/renderer.h"
+#include "render/scenes_for_test.h"
+
+namespace goniochrome {
+namespace {
+
+// Maps of many sizes, smooth but far from constant, so that wrong faces, seams, weights and classes all show.
+PrefilteredEnvironment uneven_env(const std::vector<double>& exponents, const std::vector<int>& sizes) {
+  PrefilteredEnvironment env = constant_env({1, 1, 1}, exponents);
+  const auto radiance = [](double k) {
+    return [k](const Vec3& d) {
+      return Vec3{1 + 0.5 * std::sin(k * d.x), 0.7 + 0.3 * d.y * d.z + 0.2 * std::cos(k * d.z), 0.5 + 0.3 * d.x * d.y};
+    };
+  };
+  env.diffuse.map = cube_of(12, radiance(1));
+  env.mirror.map = cube_of(40, radiance(9));
+  for (std::size_t i = 0; i < exponents.size(); ++i) env.lobes[i].map = cube_of(sizes[i], radiance(2.0 + static_cast<double>(i)));
+  return env;
+}
+
+LobeFit rich_paint() {
+  LobeFit paint = matt({0.05, 0.1, 0.2});
+  paint.lobes = {{1.3, {0.02, 0.01, 0.03}, {}},
+                 {6, {0.05, 0.1, 0.2}, {0.01, 0.01, 0.01}},
+                 {40, {0.3, 0.2, 0.1}, {0.2, 0.2, 0.2}},
+                 {300, {0.5, 0.6, 0.1}, {}},
+                 {3000, {}, {9, 9, 9}},
+                 {kMirrorExponent, {}, {0.6, 0.6, 0.6}}};
+  return paint;
+}
+
+Lab lab_of(const float* pixel) {
+  return lab_from_xyz(xyz_d65_from_rgb({pixel[0], pixel[1], pixel[2]}), xyz_d65_from_rgb({1, 1, 1}));
+}
+
+// Draws with both engines and returns the largest dE00 of any pixel.
+double disagreement(const Scene& scene, const Effects& effects, int samples) {
+  Frame frames[2];
+  for (const Engine engine : {Engine::kGl, Engine::kCpu}) {
+    auto renderer = Renderer::create();
+    EXPECT_TRUE(renderer.ok());
+    const auto loaded = renderer->load(scene, effects, engine);
+    EXPECT_TRUE(loaded.ok()) << loaded.error().message;
+    const View view{Camera::orbit(*scene.mesh, 30, 20, 0.9, 30, 1.5), 120, 80, samples, false};
+    EXPECT_TRUE(renderer->draw(view, frames[engine == Engine::kCpu]).ok());
+  }
+  double worst = 0, alpha = 0;
+  for (int y = 0; y < 80; ++y) {
+    for (int x = 0; x < 120; ++x) {
+      const float *gl = frames[0].picture.pixel(x, y), *cpu = frames[1].picture.pixel(x, y);
+      worst = std::max(worst, delta_e_2000(lab_of(gl), lab_of(cpu)));
+      EXPECT_NEAR(gl[3], cpu[3], 1e-6);
+      alpha = std::max<double>(alpha, gl[3]);
+    }
+  }
+  EXPECT_EQ(alpha, 1) << "the mesh is in the picture";
+  return worst;
+}
+
+// Single precision in another order: a few 1e-6 of the value, and of a lobe of exponent E that many times E/1000.
+constexpr double kAgreed = 0.05;
+
+TEST(Engines, AgreeOnEveryEffectAlone) {
+  const Mesh mesh = sphere_mesh(96);
+  const std::vector<double> exponents = {1.3, 6, 40, 300, 3000};
+  const PrefilteredEnvironment env = uneven_env(exponents, {32, 20, 44, 100, 64});
+  const std::vector<Light> lights = {{normalized({1, 2, 3}), {1, 1, 1}}, {normalized({-3, -1, 2.5}), {0.4, 0.1, 0.6}}};
+  Scene scene{&mesh, {rich_paint()}, &env, lights, Background::kNone, {}};
+  const Effects all = effects_of(scene);
+  Effects none;
+  none.environment = true, none.diffuse = false;
+  scene.anisotropy = {{0.05, 0.3}};
+  scene.reflection = working_space_operator();
+  std::vector<Effects> cases(13, none);
+  cases[0].diffuse = true;
+  cases[1].lobes = {{1.3, true, false}};
+  cases[2].lobes = all.lobes;
+  cases[3].lobes = all.lobes, cases[3].fresnel = true;
+  cases[4].lobes = all.lobes, cases[4].horizon = true;
+  cases[5].mirror = true;
+  cases[6].mirror = cases[6].fresnel = true;
+  cases[7].environment = false, cases[7].lights = 2, cases[7].lobes = all.lobes, cases[7].diffuse = true;
+  cases[8] = all;
+  cases[9].lobes = all.lobes, cases[9].anisotropy = true;
+  cases[10] = cases[7], cases[10].anisotropy = cases[10].fresnel = true;
+  cases[11] = all, cases[11].reflection = true;
+  cases[12] = effects_of(scene);
+  EXPECT_TRUE(cases[12].anisotropy && cases[12].reflection && cases[12].fresnel && cases[12].horizon);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    EXPECT_LT(disagreement(scene, cases[i], 1), kAgreed) << "case " << i;
+  }
+}
+
+TEST(Engines, AgreeOnSamplesBackgroundsAndParts) {
+  const Mesh mesh = panels_mesh(3);
+  const PrefilteredEnvironment env = uneven_env({1.3, 6, 40, 300, 3000}, {32, 20, 44, 100, 64});
+  Scene scene{&mesh, {rich_paint(), matt({1, 0.5, 0.2}), only_mirror()}, &env, {Light{}}, Background::kNone, {}};
+  for (const Background background : {Background::kNone, Background::kColor, Background::kEnvironment}) {
+    scene.background = background;
+    scene.background_color = {0.1, 0.2, 0.4};
+    for (const int samples : {1, 4, 16}) EXPECT_LT(disagreement(scene, effects_of(scene), samples), kAgreed);
+  }
+}
+
+// The whole integral over the hemisphere by a plain sum of many directions, as the failing control's yardstick.
+LobeIntegrals summed(double exponent, double cos_o) {
+  constexpr int kRings = 2000, kAround = 400;
+  const double sin_o = std::sqrt(1 - cos_o * cos_o);
+  const Vec3 wo{sin_o, 0, cos_o}, r{-sin_o, 0, cos_o};
+  LobeIntegrals sum;
+  for (int i = 0; i < kRings; ++i) {
+    const double z = (i + 0.5) / kRings, s = std::sqrt(1 - z * z);
+    for (int j = 0; j < kAround; ++j) {
+      const double phi = 2 * std::numbers::pi * (j + 0.5) / kAround;
+      const Vec3 w{s * std::cos(phi), s * std::sin(phi), z};
+      const double power = std::pow(std::max(0.0, dot(r, w)), exponent) * 2 * std::numbers::pi / kRings / kAround;
+      sum.cosine += power * z;
+      sum.plain += power;
+      sum.fresnel += power * fresnel_dielectric(length(w + wo) / 2, kCoatIndex);
+    }
+  }
+  return sum;
+}
+
+TEST(LobeCurves, HorizonIntegralsAreThoseOfTheHemisphere) {
+  bool apart = false;
+  for (const double exponent : {1.3, 6.0, 40.0, 100.0}) {
+    for (const double cos_o : {0.02, 0.2, 0.5, 0.8, 1.0}) {
+      const LobeIntegrals wanted = summed(exponent, cos_o), got = lobe_integrals(exponent, cos_o, true);
+      const LobeIntegrals textbook = lobe_integrals(exponent, cos_o, false);
+      EXPECT_NEAR(got.cosine / wanted.cosine, 1, 3e-3) << exponent << " " << cos_o;
+      EXPECT_NEAR(got.plain / wanted.plain, 1, 3e-3) << exponent << " " << cos_o;
+      EXPECT_NEAR(got.fresnel / wanted.fresnel, 1, 1e-2) << exponent << " " << cos_o;
+      apart |= textbook.plain / wanted.plain > 1.5;
+    }
+  }
+  EXPECT_TRUE(apart) << "the whole lobe would have been wrong somewhere";
+}
+
+TEST(Renderer, KeptViewsAndEditedPaintsDrawWhatFreshOnesDo) {
+  const Mesh mesh = sphere_mesh(64);
+  const PrefilteredEnvironment env = uneven_env({1.3, 6, 40, 300, 3000}, {32, 20, 44, 100, 64});
+  Scene scene{&mesh, {rich_paint()}, &env, {}, Background::kNone, {}};
+  const View view{Camera::orbit(mesh, 30, 20, 1, 30, 1), 64, 64, 4, true};
+  for (const Engine engine : {Engine::kGl, Engine::kCpu}) {
+    auto renderer = Renderer::create();
+    ASSERT_TRUE(renderer->load(scene, engine).ok());
+    Frame first, edited, fresh;
+    ASSERT_TRUE(renderer->draw(view, first).ok());
+    Scene other = scene;
+    other.paints[0].diffuse = {0.2, 0.05, 0.01};
+    renderer->load_paints(other);
+    ASSERT_TRUE(renderer->draw(view, edited).ok());
+    EXPECT_NE(first.picture.data, edited.picture.data);
+    auto again = Renderer::create();
+    ASSERT_TRUE(again->load(other, engine).ok());
+    ASSERT_TRUE(again->draw(view, fresh).ok());
+    EXPECT_EQ(fresh.picture.data, edited.picture.data);
+    EXPECT_EQ(fresh.centers.data, edited.centers.data);
+  }
+}
+
+}  // namespace
+}  // namespace goniochrome

@@ -1,0 +1,113 @@
+#include "render/gbuffer.h"
+
+#include <cmath>
+
+#include "render/gl.h"
+#include "render/shader.h"
+
+namespace goniochrome {
+
+int Gbuffer::part(int x, int y) const {
+  return static_cast<int>(std::abs(at(x, y)[3])) - 1;
+}
+
+Vec3 Gbuffer::normal(int x, int y) const {
+  const float* n = at(x, y);
+  return normalized({n[0], n[1], n[2]});
+}
+
+std::vector<std::array<double, 2>> sample_shifts(int samples) {
+  const int k = static_cast<int>(std::lround(std::sqrt(samples)));
+  std::vector<std::array<double, 2>> shifts;
+  for (int i = 0; i < k; ++i) {
+    for (int j = 0; j < k; ++j) {
+      shifts.push_back({(i * k + (k - 1 - j) + 0.5) / samples - 0.5, (j * k + i + 0.5) / samples - 0.5});
+    }
+  }
+  return shifts;
+}
+
+Result<Rasterizer> Rasterizer::create(const GlContext& gl) {
+  Rasterizer rasterizer(gl);
+  GONIO_ASSIGN(rasterizer.program_, gl.program(gbuffer_vertex_shader(), gbuffer_fragment_shader()));
+  gl.GenVertexArrays(1, &rasterizer.vertex_array_);
+  gl.GenBuffers(1, &rasterizer.positions_);
+  gl.GenBuffers(1, &rasterizer.normals_);
+  gl.GenBuffers(1, &rasterizer.indices_);
+  gl.FrontFace(GL_CW);  // counter-clockwise, seen with y down
+  return rasterizer;
+}
+
+void Rasterizer::upload(const Mesh& mesh) {
+  const GlContext& gl = *gl_;
+  const auto attribute = [&](GLuint buffer, GLuint index, const std::vector<Vec3>& values) {
+    std::vector<float> floats;
+    floats.reserve(3 * values.size());
+    for (const Vec3& v : values) {
+      for (int axis = 0; axis < 3; ++axis) floats.push_back(static_cast<float>(v[axis]));
+    }
+    gl.BindBuffer(GL_ARRAY_BUFFER, buffer);
+    gl.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(floats.size() * sizeof(float)), floats.data(),
+                  GL_STATIC_DRAW);
+    gl.VertexAttribPointer(index, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
+    gl.EnableVertexAttribArray(index);
+  };
+  mesh_ = &mesh;
+  box_ = bounding_box(mesh);
+  gl.BindVertexArray(vertex_array_);
+  attribute(positions_, 0, mesh.positions);
+  attribute(normals_, 1, mesh.normals);
+  gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_);
+  gl.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.triangles.size() * sizeof(mesh.triangles[0])),
+                mesh.triangles.data(), GL_STATIC_DRAW);
+}
+
+Result<void> Rasterizer::resize(int width, int height) {
+  if (width == width_ && height == height_) return {};
+  const GlContext& gl = *gl_;
+  gl.float_target(width, height, texture_, target_);
+  gl.DeleteRenderbuffers(1, &depth_);
+  gl.GenRenderbuffers(1, &depth_);
+  gl.BindRenderbuffer(GL_RENDERBUFFER, depth_);
+  gl.RenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT32F, width, height);
+  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_);
+  GONIO_TRY(gl.status("making the framebuffer"));
+  if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+    return input_error("OpenGL cannot draw float pictures of {} x {}", width, height);
+  }
+  width_ = width, height_ = height;
+  return {};
+}
+
+void Rasterizer::draw(const Camera& camera, const Rays& rays, double shift_x, double shift_y) {
+  const GlContext& gl = *gl_;
+  const auto matrix = clip_matrix(camera, rays, width_, height_, box_, shift_x, shift_y);
+  drawn_ = rays;
+  drawn_.corner += shift_x * rays.right + shift_y * rays.down;
+  gl.BindFramebuffer(GL_FRAMEBUFFER, target_);
+  gl.Viewport(0, 0, width_, height_);
+  gl.Enable(GL_DEPTH_TEST);
+  gl.ClearColor(0, 0, 0, 0);
+  gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  gl.UseProgram(program_);
+  gl.UniformMatrix4fv(gl.GetUniformLocation(program_, "clip"), 1, GL_FALSE, matrix.data());
+  gl.set_rays(program_, drawn_);
+  gl.BindVertexArray(vertex_array_);
+  const GLint part_location = gl.GetUniformLocation(program_, "part");
+  for (std::size_t part = 0; part < mesh_->parts.size(); ++part) {
+    const MeshPart& range = mesh_->parts[part];
+    gl.Uniform1i(part_location, static_cast<GLint>(part));
+    gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * range.count), GL_UNSIGNED_INT,
+                    reinterpret_cast<const void*>(range.first * sizeof(mesh_->triangles[0])));
+  }
+}
+
+void Rasterizer::read(Gbuffer& gbuffer) const {
+  gbuffer.width = width_, gbuffer.height = height_;
+  gbuffer.rays = drawn_;
+  gbuffer.data.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * 4);
+  gl_->BindFramebuffer(GL_FRAMEBUFFER, target_);
+  gl_->ReadPixels(0, 0, width_, height_, GL_RGBA, GL_FLOAT, gbuffer.data.data());
+}
+
+}  // namespace goniochrome

@@ -1,0 +1,45 @@
+// Shades G-buffers with OpenGL, by a program written for the scene. goniochrome-theory(7), RENDERING.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "image/image.h"
+#include "render/effects.h"
+#include "render/gl.h"
+#include "render/maps.h"
+
+namespace goniochrome {
+
+class GlEngine {
+ public:
+  // The context must outlive it.
+  explicit GlEngine(const GlContext& gl) : gl_(&gl) {}
+
+  // Uploads maps and weights, and compiles the program if it is another. Error: more maps than texture units.
+  Result<void> load(const Scene& scene, const Effects& effects, const SceneMaps& maps);
+  // Other paints, or other lights of the same number, for the effects loaded.
+  void load_paints(const Scene& scene, const WeightTable& table);
+
+  Result<void> resize(int width, int height);
+  // Shades the texture of a G-buffer; `add` adds to what was shaded before.
+  void shade(GLuint gbuffer_texture, const Rays& rays, bool add);
+  void read(Image& rgba) const;
+
+  const std::string& program() const { return text_; }
+
+ private:
+  void upload_tilts(const std::vector<std::vector<Tilt>>& tilts);
+  void upload(const CubeMap& map, const std::string& sampler);
+
+  const GlContext* gl_;
+  Effects effects_;
+  std::string text_;
+  GLuint program_ = 0, weights_ = 0, tilts_ = 0, no_vertices_ = 0, texture_ = 0, target_ = 0;
+  std::vector<std::pair<std::string, GLuint>> cubes_;  // by the name of their sampler
+  std::vector<Light> lights_;
+  Rgb background_color_;
+  int width_ = 0, height_ = 0;
+};
+
+}  // namespace goniochrome

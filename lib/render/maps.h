@@ -1,0 +1,35 @@
+// The environment's maps as both engines sample them: those met by one direction in few face sizes, so that one set of
+// texel addresses serves many lobes. goniochrome-theory(7), RENDERING.
+#pragma once
+
+#include <vector>
+
+#include "base/result.h"
+#include "envmap/prefiltered.h"
+#include "render/effects.h"
+
+namespace goniochrome {
+
+// Maps that are sampled together, all with faces of one size.
+struct MapClass {
+  int size = 0;
+  std::vector<int> slots;      // of the weight table, ascending
+  std::vector<CubeMap> maps;   // one for each slot
+};
+
+struct SceneMaps {
+  MapClass diffuse;             // met by the normal
+  std::vector<MapClass> lobes;  // met by the mirror direction; small faces first
+  MapClass mirror;              // met by the mirror direction, and by rays that miss the mesh
+};
+
+// What the effects need of the scene's environment. A lobe's map is brought to the size of its class by bilinear
+// interpolation between its own texels. Error: a lobe or the mirror part that the environment lacks, with the command
+// that makes it.
+Result<SceneMaps> scene_maps(const Scene& scene, const Effects& effects);
+
+// A face with the texels of its neighbors around it, as seamless filtering has them (a corner is the mean of the three
+// texels that meet there): (size + 2)^2 RGB triples.
+std::vector<float> bordered_face(const CubeMap& map, int face);
+
+}  // namespace goniochrome
