@@ -12,6 +12,8 @@ namespace goniochrome {
 
 constexpr double kBlackGlassIndex = 1.567;  // the standard that reads 100 GU
 
+constexpr double kGlossAngles_deg[] = {20, 60, 85};  // of the meters there are
+
 // What the meter at 20, 60 or 85 deg reads, in gloss units (GU), for each part of the lobe model with weight 1.
 struct GlossColumns {
   double angle_deg = 60;

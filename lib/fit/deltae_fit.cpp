@@ -97,7 +97,8 @@ double stationarity(const Residuals& residuals, const std::vector<double>& x) {
 
 }  // namespace
 
-DeltaEFit deltae_fit(const DeltaEProblem& problem, const std::vector<std::vector<Rgb>>& starts) {
+DeltaEFit deltae_fit(const DeltaEProblem& problem, const std::vector<std::vector<Rgb>>& starts,
+                     const Deadline& deadline) {
   DeltaEFit best;
   Residuals residuals(problem);
   std::vector<double> best_x;
@@ -111,14 +112,17 @@ DeltaEFit deltae_fit(const DeltaEProblem& problem, const std::vector<std::vector
     search.AddResidualBlock(&residuals, nullptr, x.data());
     for (std::size_t k = 0; k < x.size(); ++k) search.SetParameterLowerBound(x.data(), static_cast<int>(k), 0);
     ceres::Solver::Options options = quiet_solver_options();
-    options.max_num_iterations = 60;
+    options.max_num_iterations = 400;
     options.function_tolerance = 1e-7;
+    if (deadline.limit_s() > 0) options.max_solver_time_in_seconds = std::max(1e-6, deadline.left_s());
     ceres::Solver::Summary summary;
     ceres::Solve(options, &search, &summary);
     const double objective = std::sqrt(2 * summary.final_cost);
     if (!best_x.empty() && objective >= best.objective) continue;
     best.objective = objective;
-    best.converged = summary.termination_type == ceres::CONVERGENCE;
+    best.status = summary.termination_type == ceres::CONVERGENCE ? FitStatus::kOptimal
+                  : deadline.passed()                            ? FitStatus::kTimeLimit
+                                                                 : FitStatus::kNotConverged;
     best_x = x;
   }
   best.optimality_gap = stationarity(residuals, best_x);

@@ -4,8 +4,10 @@
 
 #include <vector>
 
+#include "base/clock.h"
 #include "base/vec3.h"
 #include "color/color.h"
+#include "fit/fit_status.h"
 
 namespace goniochrome {
 
@@ -32,10 +34,11 @@ struct DeltaEFit {
   double objective = 0;  // root of the sum of squared dE00 and squared guide residuals
   double optimality_gap =
       0;  // the largest cosine between the residual and a free column of its derivative; 0 is stationary
-  bool converged = true;  // false: stopped at the iteration limit
+  FitStatus status = FitStatus::kOptimal;
 };
 
 // The best of the local minima reached from each start; never worse than a start. Deterministic.
-DeltaEFit deltae_fit(const DeltaEProblem& problem, const std::vector<std::vector<Rgb>>& starts);
+DeltaEFit deltae_fit(const DeltaEProblem& problem, const std::vector<std::vector<Rgb>>& starts,
+                     const Deadline& deadline);
 
 }  // namespace goniochrome

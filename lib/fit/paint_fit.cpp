@@ -6,125 +6,117 @@
 
 #include "base/clock.h"
 #include "base/parallel.h"
-#include "fit/deltae_fit.h"
+#include "fit/brdf_rows.h"
+#include "fit/flake_fit.h"
+#include "fit/lobe_choice.h"
 #include "fit/target_rows.h"
-#include "math/least_squares.h"
 
 namespace goniochrome {
 
 namespace {
 
-// The exponents that the samples see, as indices into `exponents`.
-std::vector<int> seen_lobes(const std::vector<double>& exponents, double first_rad) {
-  std::vector<int> seen;
-  for (std::size_t j = 0; j < exponents.size(); ++j)
-    if (cos_power(first_rad, exponents[j]) >= kSeenPart) seen.push_back(static_cast<int>(j));
+// The exponents that the samples see.
+std::vector<double> seen_exponents(const std::vector<double>& exponents, double first_rad) {
+  std::vector<double> seen;
+  for (const double e : exponents)
+    if (cos_power(first_rad, e) >= kSeenPart) seen.push_back(e);
   return seen;
 }
 
-double norm_of(FitMethod method, const std::vector<double>& residuals) {
-  double sum = 0;
-  for (const double r : residuals) sum += method == FitMethod::kL1 ? std::abs(r) : r * r;
-  return method == FitMethod::kL1 ? sum : std::sqrt(sum);
+// Those of `all` that are not in `part`.
+std::vector<double> difference(const std::vector<double>& all, const std::vector<double>& part) {
+  std::vector<double> rest;
+  std::ranges::set_difference(all, part, std::back_inserter(rest));
+  return rest;
 }
 
-// The linear problem of a paint: rows of the target, columns the constant and the seen lobes; reflectance factors.
-struct System {
-  Matrix shape;
-  std::vector<double> weight;
-};
+// The columns were fitted to reflectance factors; the model is in 1/sr. `lobes` are those of the basis.
+void set_weights(const std::vector<double>& exponents, const Rgb* x, Rgb& diffuse, std::vector<Lobe>& lobes) {
+  diffuse = (1 / M_PI) * x[0];
+  std::size_t next = 0;
+  for (Lobe& lobe : lobes)
+    if (next < exponents.size() && lobe.exponent == exponents[next])
+      lobe.directional_diffuse = (1 / M_PI) * x[++next];
+}
 
-System system_of(const FitOptions& options, const Target& target, const std::vector<double>& exponents,
-                 const std::vector<int>& seen) {
-  System s{Matrix(static_cast<int>(target.rows.size()), static_cast<int>(seen.size()) + 1), {}};
-  for (int i = 0; i < s.shape.rows; ++i) {
-    const TargetRow& row = target.rows[i];
-    s.weight.push_back(row.importance * (options.perceptual_weights ? lightness_slope(row.lightness) : 1));
-    for (int j = 0; j < s.shape.columns; ++j)
-      s.shape(i, j) = j == 0 ? 1 : cos_power(row.angle_deg * (M_PI / 180), exponents[seen[j - 1]]);
+// The lobes that a fit may use.
+std::vector<double> chosen_exponents(const FitOptions& options, const FlakeTarget& target,
+                                     const std::vector<double>& seen, const Deadline& deadline) {
+  std::vector<double> chosen = seen;
+  if (options.most_lobes > 0) chosen = best_exponents(options.method, target, chosen, options.most_lobes, deadline);
+  if (options.prune_de00 > 0) chosen = pruned_exponents(options.method, target, chosen, options.prune_de00, deadline);
+  return chosen;
+}
+
+// Solves for K_D and K_DD, for all views and for each.
+void fit_flake(const FitOptions& options, const FlakeTarget& together, const FlakeTarget& by_view,
+               const std::vector<double>& exponents, double first_rad, PaintFit& out) {
+  const Deadline deadline(options.time_limit_s);
+  PaintFitReport& report = out.report;
+  const std::vector<double> seen = seen_exponents(exponents, first_rad);
+  FlakeModel model{chosen_exponents(options, together, seen, deadline)};
+  report.unseen = difference(exponents, seen);
+  report.dropped = difference(seen, model.exponents);
+  const FlakeFit flake = flake_fit(options.method, together, model, deadline);
+  set_weights(model.exponents, flake.x.data(), out.lobes.diffuse, out.lobes.lobes);
+  report.status = deadline.passed() ? FitStatus::kTimeLimit : flake.status;
+  report.objective = flake.objective;
+  report.plain_objective = flake.plain_objective;
+  report.optimality_gap = flake.optimality_gap;
+  if (options.views_deg.empty()) return;
+
+  model.views_deg = options.views_deg;
+  const FlakeFit each = flake_fit(options.method, by_view, model, deadline);
+  for (std::size_t v = 0; v < model.views_deg.size(); ++v) {
+    ViewLobes view{model.views_deg[v], {}, out.lobes.lobes};
+    for (Lobe& lobe : view.lobes) lobe.directional_diffuse = {};
+    set_weights(model.exponents, &each.x[v * static_cast<std::size_t>(model.columns_per_view())], view.diffuse,
+                view.lobes);
+    out.lobes.views.push_back(std::move(view));
   }
-  return s;
+  if (report.status == FitStatus::kOptimal) report.status = each.status;
+  report.optimality_gap = std::max(report.optimality_gap, each.optimality_gap);
+  if (deadline.passed()) report.status = FitStatus::kTimeLimit;
 }
 
-// One weight triple per column, channel by channel the optimum of its norm.
-std::vector<Rgb> linear_solution(FitMethod method, const System& s, const Target& target, PaintFitReport& report) {
-  Matrix weighted = s.shape;
-  for (int i = 0; i < s.shape.rows; ++i)
-    for (int j = 0; j < s.shape.columns; ++j) weighted(i, j) *= s.weight[i];
-  std::vector<Rgb> x(static_cast<std::size_t>(s.shape.columns));
-  std::vector<double> b(s.weight.size());
-  for (int c = 0; c < 3; ++c) {
-    for (int i = 0; i < s.shape.rows; ++i) b[i] = s.weight[i] * target.rows[i].reflectance_factor[c];
-    const NonNegativeFit solved = method == FitMethod::kL1 ? l1_fit(weighted, b) : nnls(weighted, b);
-    if (!solved.converged) report.status = "not_converged";
-    report.optimality_gap = std::max(report.optimality_gap, solved.optimality_gap);
-    for (std::size_t j = 0; j < x.size(); ++j) x[j][c] = solved.x[j];
-  }
-  return x;
+FlakeTarget flake_target(const FitOptions& options, const Target& target, const Xyz& white) {
+  FlakeTarget flake{white, {}, {}};
+  for (const TargetRow& row : target.rows)
+    flake.rows.push_back({{row.angle_deg * (M_PI / 180), row.view_deg},
+                          row.reflectance_factor,
+                          row.importance * (options.perceptual_weights ? lightness_slope(row.lightness) : 1),
+                          row.importance < 1});
+  for (const LabReading& reading : target.readings)
+    flake.readings.push_back({{aspecular_angle_deg(reading.geometry) * (M_PI / 180), view_angle_deg(reading.geometry)},
+                              reading.lab});
+  return flake;
 }
 
-// A squared norm feels many small rows more than the sum of absolute values does, so the inferred ones steer the color
-// search with less weight than the linear fits.
-constexpr double kGuideShare = 0.1;
-
-// Both linear solutions, then the color differences at the readings made least; the inferred rows go on steering.
-std::vector<Rgb> deltae_solution(const System& s, const Target& target, const std::vector<double>& exponents,
-                                 const std::vector<int>& seen, const Xyz& white, PaintFitReport& report) {
-  DeltaEProblem problem;
-  problem.columns = s.shape.columns;
-  problem.white = white;
-  for (const LabReading& reading : target.readings) {
-    const double angle_rad = aspecular_angle_deg(reading.geometry) * (M_PI / 180);
-    std::vector<double> shape = {1};
-    for (const int j : seen) shape.push_back(cos_power(angle_rad, exponents[j]));
-    problem.readings.push_back({shape, reading.lab});
-  }
-  for (int i = 0; i < s.shape.rows; ++i) {
-    if (target.rows[i].importance >= 1) continue;
-    std::vector<double> shape;
-    for (int j = 0; j < s.shape.columns; ++j) shape.push_back(s.shape(i, j));
-    problem.guides.push_back({shape, target.rows[i].reflectance_factor, kGuideShare * s.weight[i]});
-  }
-  const auto l1 = linear_solution(FitMethod::kL1, s, target, report);
-  const auto l2 = linear_solution(FitMethod::kL2, s, target, report);
-  const DeltaEFit fit = deltae_fit(problem, {l1, l2});
-  report.optimality_gap = fit.optimality_gap;
-  report.status = fit.converged ? "optimal" : "not_converged";
-  return fit.x;
-}
-
-// Solves for K_D and K_DD.
-void solve(const FitOptions& options, const Target& target, const std::vector<double>& exponents,
-           const std::vector<int>& seen, const Xyz& white, LobeFit& fit, PaintFitReport& report) {
-  const System s = system_of(options, target, exponents, seen);
-  const std::vector<Rgb> x = options.method == FitMethod::kDeltaE
-                                 ? deltae_solution(s, target, exponents, seen, white, report)
-                                 : linear_solution(options.method, s, target, report);
-  // The columns were fitted to reflectance factors; the model is in 1/sr.
-  fit.diffuse = (1 / M_PI) * x[0];
-  for (std::size_t j = 1; j < x.size(); ++j) fit.lobes[seen[j - 1]].directional_diffuse = (1 / M_PI) * x[j];
-  std::vector<double> residuals, plain;
-  for (int c = 0; c < 3; ++c)
-    for (int i = 0; i < s.shape.rows; ++i) {
-      double r = target.rows[i].reflectance_factor[c];
-      for (std::size_t j = 0; j < x.size(); ++j) r -= s.shape(i, static_cast<int>(j)) * x[j][c];
-      residuals.push_back(s.weight[i] * r);
-      plain.push_back(r);
-    }
-  report.objective = norm_of(options.method, residuals);
-  report.plain_objective = norm_of(options.method, plain);
-}
-
-void compare(const std::vector<LabReading>& readings, const Xyz& white, const LobeFit& fit, PaintFitReport& report) {
-  double sum = 0;
+// The color differences at the readings.
+std::vector<GeometryError> errors_at(const std::vector<LabReading>& readings, const Xyz& white, const LobeFit& fit) {
+  std::vector<GeometryError> errors;
   for (const LabReading& reading : readings) {
-    const Rgb predicted = flake_reflectance_factor(fit, aspecular_angle_deg(reading.geometry));
-    const double de00 = delta_e_2000(reading.lab, lab_from_rgb(predicted, white));
-    report.de00_by_geometry.push_back({geometry_name(reading.geometry), de00});
-    report.de00_max = std::max(report.de00_max, de00);
-    sum += de00;
+    const double angle_deg = aspecular_angle_deg(reading.geometry);
+    const Rgb predicted = fit.views.empty()
+                              ? flake_reflectance_factor(fit, angle_deg)
+                              : flake_reflectance_factor(at_view(fit, view_angle_deg(reading.geometry)), angle_deg);
+    errors.push_back({geometry_name(reading.geometry), delta_e_2000(reading.lab, lab_from_rgb(predicted, white))});
   }
-  report.de00_mean = sum / static_cast<double>(readings.size());
+  return errors;
+}
+
+double mean_de00(const std::vector<GeometryError>& errors) {
+  double sum = 0;
+  for (const GeometryError& error : errors) sum += error.de00;
+  return errors.empty() ? 0 : sum / static_cast<double>(errors.size());
+}
+
+double max_de00(const std::vector<GeometryError>& errors) {
+  return errors.empty() ? 0 : std::ranges::max_element(errors, {}, &GeometryError::de00)->de00;
+}
+
+void drop_unused(std::vector<Lobe>& lobes) {
+  std::erase_if(lobes, [](const Lobe& lobe) { return lobe.directional_diffuse == Rgb{} && lobe.gloss == Rgb{}; });
 }
 
 }  // namespace
@@ -141,38 +133,97 @@ const char* fit_method_name(FitMethod method) {
   return "deltae";
 }
 
+const char* fit_status_name(FitStatus status) {
+  switch (status) {
+    case FitStatus::kOptimal:
+      return "optimal";
+    case FitStatus::kNotConverged:
+      return "not_converged";
+    case FitStatus::kTimeLimit:
+      break;
+  }
+  return "time_limit";
+}
+
 PaintFitter::PaintFitter(Basis basis, FitOptions options)
-    : basis_(std::move(basis)), options_(options), gloss_(basis_.exponents) {}
+    : basis_(std::move(basis)), options_(std::move(options)), gloss_(basis_.exponents) {}
+
+// Every lobe of the basis without weight.
+PaintFit PaintFitter::started() const {
+  PaintFit out;
+  out.lobes.basis = basis_.name;
+  out.lobes.method = fit_method_name(options_.method);
+  for (const double exponent : basis_.exponents) out.lobes.lobes.push_back({exponent, {}, {}});
+  if (basis_.mirror) out.lobes.lobes.push_back({std::numeric_limits<double>::infinity(), {}, {}});
+  return out;
+}
+
+// Gives every view the gloss, drops unused lobes, and compares with the readings.
+void PaintFitter::finish(const std::vector<LabReading>& readings, const Xyz& white, PaintFit& out) const {
+  LobeFit& fit = out.lobes;
+  PaintFitReport& report = out.report;
+  for (ViewLobes& view : fit.views) {
+    for (std::size_t j = 0; j < view.lobes.size(); ++j) view.lobes[j].gloss = fit.lobes[j].gloss;
+    drop_unused(view.lobes);
+  }
+  drop_unused(fit.lobes);
+  report.active_lobes = static_cast<int>(fit.lobes.size());
+  report.de00_by_geometry = errors_at(readings, white, fit);
+  report.de00_max = max_de00(report.de00_by_geometry);
+  report.de00_mean = mean_de00(report.de00_by_geometry);
+  fit.max_de00 = report.de00_max, fit.mean_de00 = report.de00_mean;
+  if (fit.views.empty()) return;
+  LobeFit together = fit;
+  together.views.clear();
+  const auto errors = errors_at(readings, white, together);
+  report.views = ViewFigures{report.de00_mean, mean_de00(errors)};
+}
 
 Result<PaintFit> PaintFitter::fit(const Paint& paint) const {
   const Stopwatch clock;
-  PaintFit out;
-  LobeFit& fit = out.lobes;
-  PaintFitReport& report = out.report;
-  fit.basis = basis_.name;
-  fit.method = fit_method_name(options_.method);
-  for (const double exponent : basis_.exponents) fit.lobes.push_back({exponent, {}, {}});
-  if (basis_.mirror) fit.lobes.push_back({std::numeric_limits<double>::infinity(), {}, {}});
-
+  PaintFit out = started();
   GONIO_ASSIGN(const Xyz white, white_point(condition_of(paint)));
   GONIO_ASSIGN(const Target target, target_rows(paint, options_.target, white, basis_.exponents));
-  const std::vector<int> seen = seen_lobes(basis_.exponents, target.first_deg * (M_PI / 180));
-  for (std::size_t j = seen.size(); j < basis_.exponents.size(); ++j) report.unseen.push_back(basis_.exponents[j]);
-  report.gamut_de00 = target.gamut_de00;
-  report.glare_rows = target.glare_rows;
-  solve(options_, target, basis_.exponents, seen, white, fit, report);
+  const FlakeTarget together = flake_target(options_, target, white);
+  const double first_rad = target.first_deg * (M_PI / 180);
+  if (options_.views_deg.empty()) {
+    fit_flake(options_, together, together, basis_.exponents, first_rad, out);
+  } else {
+    GONIO_ASSIGN(const Target apart, target_rows(paint, options_.target, white, basis_.exponents, true));
+    fit_flake(options_, together, flake_target(options_, apart, white), basis_.exponents, first_rad, out);
+  }
+  out.report.gamut_de00 = target.gamut_de00;
+  out.report.glare_rows = target.glare_rows;
 
-  std::vector<GlossReading> readings = paint.gloss;
-  if (readings.empty() && options_.assumed_gloss_60_gu) readings.push_back({60, *options_.assumed_gloss_60_gu});
-  GONIO_ASSIGN(const std::vector<double> misfit, set_gloss(gloss_, readings, fit));
-  for (std::size_t i = 0; i < readings.size(); ++i)
-    report.gloss.push_back({readings[i].angle_deg, readings[i].gloss_units, misfit[i]});
+  const std::vector<GlossReading>& readings = paint.gloss.empty() ? options_.assumed_gloss : paint.gloss;
+  GONIO_TRY(set_gloss(gloss_, readings, out.lobes));
+  for (const double angle : kGlossAngles_deg) {
+    const auto stated = std::ranges::find(readings, angle, &GlossReading::angle_deg);
+    GONIO_ASSIGN(const GlossColumns* meter, gloss_.at(angle));
+    out.report.gloss.push_back({angle, gloss_units(gloss_, *meter, out.lobes),
+                                stated == readings.end() ? std::nullopt : std::optional(stated->gloss_units)});
+  }
+  finish(target.readings, white, out);
+  out.report.time_us = clock.elapsed_s() * 1e6;
+  return out;
+}
 
-  std::erase_if(fit.lobes, [](const Lobe& lobe) { return lobe.directional_diffuse == Rgb{} && lobe.gloss == Rgb{}; });
-  report.active_lobes = static_cast<int>(fit.lobes.size());
-  compare(target.readings, white, fit, report);
-  fit.max_de00 = report.de00_max, fit.mean_de00 = report.de00_mean;
-  report.time_us = clock.elapsed_s() * 1e6;
+Result<PaintFit> PaintFitter::fit(const BrdfTarget& brdf) const {
+  const Stopwatch clock;
+  PaintFit out = started();
+  GONIO_ASSIGN(const Xyz white, white_point({"D65", 2}));
+  GONIO_ASSIGN(const BrdfRows rows, brdf_rows(brdf, white, options_, basis_.exponents));
+  fit_flake(options_, rows.flake, rows.flake, basis_.exponents, rows.first_rad, out);
+  out.report.gamut_de00 = rows.gamut_de00;
+  out.report.brdf = BrdfFigures{.fitted = rows.fitted.size(), .glare = rows.glare.size(), .steep = rows.steep};
+  set_spike(rows, out);
+  for (const double angle : kGlossAngles_deg) {
+    GONIO_ASSIGN(const GlossColumns* meter, gloss_.at(angle));
+    out.report.gloss.push_back({angle, gloss_units(gloss_, *meter, out.lobes), {}});
+  }
+  finish(brdf.paint.measurement ? brdf.paint.measurement->rows : std::vector<LabReading>(), white, out);
+  compare(rows, white, out);
+  out.report.time_us = clock.elapsed_s() * 1e6;
   return out;
 }
 

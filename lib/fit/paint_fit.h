@@ -8,6 +8,8 @@
 
 #include "base/result.h"
 #include "brdf/gloss.h"
+#include "fit/brdf_target.h"
+#include "fit/fit_status.h"
 #include "paint/basis.h"
 #include "paint/curve.h"
 #include "paint/paint.h"
@@ -23,8 +25,13 @@ const char* fit_method_name(FitMethod method);
 struct FitOptions {
   FitMethod method = FitMethod::kL1;
   TargetCurve::Kind target = TargetCurve::Kind::kMeasured;
-  bool perceptual_weights = true;                  // rows weighted by dL*/dY of the target
-  std::optional<double> assumed_gloss_60_gu = {};  // for paints that state no gloss
+  bool perceptual_weights = true;                // rows weighted by dL*/dY of the target
+  std::vector<GlossReading> assumed_gloss = {};  // for paints that state no gloss
+  int most_lobes = 0;                            // flake lobes to use, the best subset of the basis; 0: all
+  double prune_de00 = 0;                         // lobes that move no color by more than this are dropped; 0: none are
+  std::vector<double> views_deg = {};            // weights at these angles of the viewer too; empty: none
+  double steepest_deg = 75;                      // measured BRDFs: directions farther from the normal are left out
+  double time_limit_s = 0;                       // for one paint; 0: none
 };
 
 // Readings nearer to specular than this hold conventional glare and belong to the gloss meter.
@@ -39,12 +46,31 @@ struct GeometryError {
 };
 
 struct GlossMisfit {
-  double angle_deg = 60, stated_gu = 0, misfit_gu = 0;  // simulated minus stated
+  double angle_deg = 60;
+  double simulated_gu = 0;                 // what the fit reads in the simulated meter
+  std::optional<double> stated_gu = {};    // by the paint; the fit was to meet it
+};
+
+// How well a measured BRDF is met, over the directions that were fitted.
+struct BrdfFigures {
+  std::size_t fitted = 0;            // directions
+  std::size_t glare = 0, steep = 0;  // left out of the flake: near specular, near grazing
+  // |predicted - measured| / |measured| of the working-space triple: median and 95 %
+  double relative_error_median = 0, relative_error_p95 = 0;
+  double de00_median = 0, de00_p95 = 0;
+  double spike_albedo_45 = 0;  // what the separated spike reflects of light at 45 deg
+};
+
+// What weights for each view are worth: the mean color difference at the readings, or over the fitted directions of a
+// measured BRDF, with them and by the weights for all views.
+struct ViewFigures {
+  double de00_mean = 0, de00_mean_without = 0;
+  double gain_de00() const { return de00_mean_without - de00_mean; }
 };
 
 // How good a fit is, and the proof.
 struct PaintFitReport {
-  std::string status = "optimal";  // "optimal" | "not_converged" (a solver gave up: the best weights found)
+  FitStatus status = FitStatus::kOptimal;
   double objective = 0;            // |W(Mx-b)| over all rows and channels, in L* where weights are perceptual
   double plain_objective = 0;      // the same without weights, in reflectance factor
   double optimality_gap = 0;       // the largest of the channels; see least_squares.h
@@ -53,8 +79,11 @@ struct PaintFitReport {
   double de00_max = 0, de00_mean = 0;
   double gamut_de00 = 0;           // the largest color change from negative working-space channels of the target
   std::vector<double> unseen;      // exponents that no sample sees: K_DD left at 0
+  std::vector<double> dropped;     // exponents that a limit on lobes or visibility left out
   int glare_rows = 0;              // readings left out for being within kGlareAngle_deg of specular
-  std::vector<GlossMisfit> gloss;  // one per gloss reading
+  std::vector<GlossMisfit> gloss;  // at 20, 60 and 85 deg
+  std::optional<BrdfFigures> brdf;
+  std::optional<ViewFigures> views;
   double time_us = 0;
 };
 
@@ -72,10 +101,17 @@ class PaintFitter {
   // angle of a reading.
   Result<PaintFit> fit(const Paint& paint) const;
 
+  // The same for a measured BRDF: the flake lobes from all directions beyond glare and not steeper than the options
+  // say, then the gloss of a clear coat from what is left within glare. Error: no direction is left.
+  Result<PaintFit> fit(const BrdfTarget& brdf) const;
+
   const Basis& basis() const { return basis_; }
   const FitOptions& options() const { return options_; }
 
  private:
+  PaintFit started() const;
+  void finish(const std::vector<LabReading>& readings, const Xyz& white, PaintFit& fit) const;
+
   Basis basis_;
   FitOptions options_;
   GlossTable gloss_;

@@ -54,7 +54,7 @@ TEST(PaintFit, RecoversTheColorOfKnownLobes) {
   truth.lobes = {{6, {0.05, 0.06, 0.1}, {}}, {70, {0.5, 0.4, 0.6}, {}}};
   for (const FitMethod method : kMethods) {
     const PaintFitReport report = report_of(paint_from(truth, kFive), {.method = method});
-    EXPECT_EQ(report.status, "optimal");
+    EXPECT_EQ(report.status, FitStatus::kOptimal);
     EXPECT_LE(report.optimality_gap, 1e-9);
     EXPECT_EQ(report.de00_by_geometry.size(), 5u);
     EXPECT_EQ(report.de00_by_geometry[0].geometry, "45as15");
@@ -186,15 +186,18 @@ TEST(PaintFit, PerceptualWeightsSaveTheDarkFlop) {
 
 TEST(PaintFit, GlossIsMetAndAssumedOnlyWhereNoneIsStated) {
   Paint paint = metallic_blue();
-  EXPECT_TRUE(report_of(paint).gloss.empty());
-  const PaintFitReport assumed = report_of(paint, {.assumed_gloss_60_gu = 90.0});
-  ASSERT_EQ(assumed.gloss.size(), 1u);
-  EXPECT_NEAR(assumed.gloss[0].misfit_gu, 0, 1e-9);
+  for (const GlossMisfit& matt : report_of(paint).gloss) EXPECT_FALSE(matt.stated_gu);
+  const PaintFitReport assumed = report_of(paint, {.assumed_gloss = {{60, 90}}});
+  ASSERT_EQ(assumed.gloss.size(), 3u);
+  EXPECT_EQ(assumed.gloss[1].stated_gu, 90);
+  EXPECT_NEAR(assumed.gloss[1].simulated_gu, 90, 1e-9);
+  EXPECT_FALSE(assumed.gloss[0].stated_gu);
+  EXPECT_GT(assumed.gloss[0].simulated_gu, 20) << "what the other meters would read is told too";
   paint.gloss = {{20, 30}};
-  const PaintFitReport stated = report_of(paint, {.assumed_gloss_60_gu = 90.0});
-  ASSERT_EQ(stated.gloss.size(), 1u);
-  EXPECT_EQ(stated.gloss[0].angle_deg, 20);
-  EXPECT_NEAR(stated.gloss[0].misfit_gu, 0, 1e-9);
+  const PaintFitReport stated = report_of(paint, {.assumed_gloss = {{60, 90}}});
+  EXPECT_EQ(stated.gloss[0].stated_gu, 30);
+  EXPECT_NEAR(stated.gloss[0].simulated_gu, 30, 1e-9);
+  EXPECT_FALSE(stated.gloss[1].stated_gu);
 }
 
 TEST(PaintFit, ErrorsSayWhatIsMissing) {
@@ -258,7 +261,7 @@ TEST(PaintFit, MeasuredPaintsWithinFourRealData) {
     double sum = 0;
     for (const auto& fit : fits(PaintFitter(kBasis, {.method = method}), paints)) {
       ASSERT_TRUE(fit.ok());
-      EXPECT_EQ(fit->report.status, "optimal");
+      EXPECT_EQ(fit->report.status, FitStatus::kOptimal);
       EXPECT_LE(fit->report.de00_max, 4);  // carpaint_red brightens toward the flop, which no lobes do
       sum += fit->report.de00_mean;
     }

@@ -18,60 +18,88 @@ constexpr double kRadian = M_PI / 180;
 constexpr double kInterpolatedImportance = 0.03;
 constexpr double kExtendedImportance = 0.02;
 
+// The view of an in-plane geometry at 45 deg.
+double usual_view_deg(double aspecular_deg) {
+  return std::abs(45 - aspecular_deg);
+}
+
 // Adds the row of `lab` and notes the gamut loss.
-void add_row(const Lab& lab, const Xyz& white, double angle_deg, double importance, Target& target) {
+void add_row(const Lab& lab, const Xyz& white, double angle_deg, double view_deg, double importance, Target& target) {
   Rgb rgb = rgb_from_lab(lab, white);
   if (rgb.x < 0 || rgb.y < 0 || rgb.z < 0) {
     for (int c = 0; c < 3; ++c) rgb[c] = std::max(rgb[c], 0.0);
     target.gamut_de00 = std::max(target.gamut_de00, delta_e_2000(lab, lab_from_rgb(rgb, white)));
   }
-  target.rows.push_back({angle_deg, rgb, importance, lab.L});
+  target.rows.push_back({angle_deg, view_deg, rgb, importance, lab.L});
 }
 
 // One row per unsigned aspecular angle: readings that share it (45as15 and 45as-15) are averaged and count together.
 // Kept apart, the l1 fit could take its red from one and its green from the other.
-void add_readings(const Xyz& white, Target& target) {
-  std::vector<std::pair<double, Lab>> sorted;
+void add_readings(const Xyz& white, bool by_view, Target& target) {
+  struct Seen {
+    double angle_deg, view_deg;
+    Lab lab;
+    bool with(const Seen& other, bool same_view) const {
+      return std::abs(angle_deg - other.angle_deg) <= 1e-6 &&
+             (!same_view || std::abs(view_deg - other.view_deg) <= 1e-6);
+    }
+  };
+  std::vector<Seen> sorted;
   for (const LabReading& reading : target.readings)
-    sorted.emplace_back(aspecular_angle_deg(reading.geometry), reading.lab);
-  std::ranges::stable_sort(sorted, {}, &std::pair<double, Lab>::first);
+    sorted.push_back({aspecular_angle_deg(reading.geometry), view_angle_deg(reading.geometry), reading.lab});
+  std::ranges::stable_sort(sorted, [&](const Seen& a, const Seen& b) {
+    return a.angle_deg != b.angle_deg ? a.angle_deg < b.angle_deg : by_view && a.view_deg < b.view_deg;
+  });
   for (auto first = sorted.begin(); first != sorted.end();) {
-    const auto last = std::find_if(first, sorted.end(), [&](const auto& r) { return r.first > first->first + 1e-6; });
+    const auto last = std::find_if(first, sorted.end(), [&](const Seen& s) { return !s.with(*first, by_view); });
     const auto count = static_cast<double>(last - first);
     Lab mean;
-    for (auto r = first; r != last; ++r)
-      mean = {mean.L + r->second.L / count, mean.a + r->second.a / count, mean.b + r->second.b / count};
-    add_row(mean, white, first->first, count, target);
+    for (auto s = first; s != last; ++s)
+      mean = {mean.L + s->lab.L / count, mean.a + s->lab.a / count, mean.b + s->lab.b / count};
+    add_row(mean, white, first->angle_deg, first->view_deg, count, target);
     first = last;
-  }
-}
-
-// Below the first known angle a the color goes on as f(t) = f(a) (cos t / cos a)^e, with the e that the curve has
-// between a and a + 10 deg. Every sum of non-negative lobes is convex in the logarithm against u = -log cos t (a sum of
-// exponentials of linear functions), so it lies on or above this line: the extension is the least highlight that the
-// lobes can have, and it leaves no reason for a sharp lobe with an arbitrary weight.
-void extend_to_specular(const TargetCurve& curve, const Xyz& white, double steepest, Target& target) {
-  const double a = target.first_deg, b = a + 10;
-  const double cos_a = std::cos(a * kRadian), cos_b = std::cos(b * kRadian);
-  const Rgb at_a = rgb_from_lab(curve.at(a), white), at_b = rgb_from_lab(curve.at(b), white);
-  Rgb start, exponent;
-  for (int c = 0; c < 3; ++c) {
-    start[c] = std::max(at_a[c], 0.0);
-    if (start[c] <= at_b[c] || cos_b <= 0) continue;
-    exponent[c] = at_b[c] > 0 ? std::min(steepest, std::log(at_a[c] / at_b[c]) / std::log(cos_a / cos_b)) : steepest;
-  }
-  for (double t = 0; t < a - kStep_deg / 2; t += kStep_deg) {
-    TargetRow row = {t, start, kExtendedImportance, 0};
-    for (int c = 0; c < 3; ++c) row.reflectance_factor[c] *= std::pow(std::cos(t * kRadian) / cos_a, exponent[c]);
-    row.lightness = lab_from_rgb(row.reflectance_factor, white).L;
-    target.rows.push_back(row);
   }
 }
 
 }  // namespace
 
+double view_angle_deg(const Geometry& geometry) {
+  const Vec3 view = directions(geometry).view;
+  return std::atan2(std::hypot(view.x, view.y), view.z) / kRadian;
+}
+
+double steepest_seen(const std::vector<double>& exponents, double first_rad) {
+  double steepest = 0;
+  for (const double e : exponents)
+    if (cos_power(first_rad, e) >= kSeenPart) steepest = std::max(steepest, e);
+  return steepest;
+}
+
+// Below the first known angle a the color goes on as f(t) = f(a) (cos t / cos a)^e, with the e that the curve has
+// between a and b. Every sum of non-negative lobes is convex in the logarithm against u = -log cos t (a sum of
+// exponentials of linear functions), so it lies on or above this line: the extension is the least highlight that the
+// lobes can have, and it leaves no reason for a sharp lobe with an arbitrary weight.
+std::vector<TargetRow> extension_to_specular(const HighlightEnd& end, double steepest, const Xyz& white,
+                                             double importance) {
+  const double cos_a = std::cos(end.a_deg * kRadian), cos_b = std::cos(end.b_deg * kRadian);
+  Rgb exponent;
+  for (int c = 0; c < 3; ++c) {
+    if (end.at_a[c] <= end.at_b[c] || cos_b <= 0) continue;
+    exponent[c] = end.at_b[c] > 0 ? std::min(steepest, std::log(end.at_a[c] / end.at_b[c]) / std::log(cos_a / cos_b))
+                                  : steepest;
+  }
+  std::vector<TargetRow> rows;
+  for (double t = 0; t < end.a_deg - kStep_deg / 2; t += kStep_deg) {
+    TargetRow row = {t, usual_view_deg(t), end.at_a, importance, 0};
+    for (int c = 0; c < 3; ++c) row.reflectance_factor[c] *= std::pow(std::cos(t * kRadian) / cos_a, exponent[c]);
+    row.lightness = lab_from_rgb(row.reflectance_factor, white).L;
+    rows.push_back(row);
+  }
+  return rows;
+}
+
 Result<Target> target_rows(const Paint& paint, TargetCurve::Kind kind, const Xyz& white,
-                           const std::vector<double>& exponents) {
+                           const std::vector<double>& exponents, bool by_view) {
   Target target;
   if (paint.measurement) {
     for (const LabReading& reading : paint.measurement->rows) {
@@ -92,19 +120,25 @@ Result<Target> target_rows(const Paint& paint, TargetCurve::Kind kind, const Xyz
   for (const LabReading& reading : target.readings) known.push_back(aspecular_angle_deg(reading.geometry));
   const auto [first, last] = std::minmax_element(known.begin(), known.end());
   const bool is_curve = kind == TargetCurve::Kind::kCurve;
-  if (!is_curve) add_readings(white, target);
+  if (!is_curve) add_readings(white, by_view, target);
   target.first_deg = is_curve ? kFaceAngle_deg : *first;
   const double end_deg = is_curve ? std::max(*last, 110.0) : *last;
   for (double t = target.first_deg; t <= end_deg; t += kStep_deg) {
     const bool near_known =
         std::any_of(known.begin(), known.end(), [&](double k) { return std::abs(k - t) < kStep_deg / 2; });
-    if (is_curve || !near_known) add_row(curve.at(t), white, t, is_curve ? 1 : kInterpolatedImportance, target);
+    if (is_curve || !near_known) add_row(curve.at(t), white, t, usual_view_deg(t), is_curve ? 1 : kInterpolatedImportance, target);
   }
 
-  double steepest = 0;
-  for (const double e : exponents)
-    if (cos_power(target.first_deg * kRadian, e) >= kSeenPart) steepest = std::max(steepest, e);
-  extend_to_specular(curve, white, steepest, target);
+  HighlightEnd end{target.first_deg, target.first_deg + 10, {}, {}};
+  const auto color_at = [&](double angle_deg) {
+    Rgb rgb = rgb_from_lab(curve.at(angle_deg), white);
+    for (int c = 0; c < 3; ++c) rgb[c] = std::max(rgb[c], 0.0);
+    return rgb;
+  };
+  end.at_a = color_at(end.a_deg), end.at_b = color_at(end.b_deg);
+  std::ranges::move(extension_to_specular(end, steepest_seen(exponents, target.first_deg * kRadian), white,
+                                          kExtendedImportance),
+                    std::back_inserter(target.rows));
   return target;
 }
 

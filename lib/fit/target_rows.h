@@ -14,6 +14,7 @@ namespace goniochrome {
 // One row of the fit at an unsigned aspecular angle.
 struct TargetRow {
   double angle_deg = 0;
+  double view_deg = 0;     // of the viewer from the normal; of inferred rows: with light at 45 deg, in plane
   Rgb reflectance_factor;  // working space, negative channels set to 0
   double importance = 1;   // 1 for each reading that is known, less for what is inferred
   double lightness = 0;    // L*, for the perceptual weight
@@ -27,9 +28,25 @@ struct Target {
   std::vector<LabReading> readings;  // what the fit is judged by
 };
 
+// Readings at one aspecular angle make one row, unless `by_view`: then those from other views stand alone.
 // Error: no color beyond glare. `white` is that of the paint's viewing condition. The highlight below first_deg rises
 // no steeper than the sharpest of `exponents` that the samples see.
 Result<Target> target_rows(const Paint& paint, TargetCurve::Kind kind, const Xyz& white,
-                           const std::vector<double>& exponents);
+                           const std::vector<double>& exponents, bool by_view = false);
+
+// How the flake highlight goes on from the angle a toward specular, in rows every 5 deg from 0, by its color there and
+// at b > a (reflectance factors, at least 0): no steeper than a lobe of the exponent `steepest`.
+struct HighlightEnd {
+  double a_deg = 0, b_deg = 0;
+  Rgb at_a, at_b;
+};
+std::vector<TargetRow> extension_to_specular(const HighlightEnd& end, double steepest, const Xyz& white,
+                                             double importance);
+
+// The sharpest exponent that is seen from that angle on.
+double steepest_seen(const std::vector<double>& exponents, double first_rad);
+
+// The angle of the viewer of a geometry from the normal.
+double view_angle_deg(const Geometry& geometry);
 
 }  // namespace goniochrome

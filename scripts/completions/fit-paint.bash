@@ -7,12 +7,17 @@ _fit_paint() {
     --target|-t) COMPREPLY=($(compgen -W "measured curve" -- "$word")); return ;;
     --weights|-w) COMPREPLY=($(compgen -W "perceptual plain" -- "$word")); return ;;
     --gloss|-g) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --lobes|-n) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --prune) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --views) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --steepest) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --paint-time-limit) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --report) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --threads) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--basis --output --method --target --weights --gloss --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--basis --output --method --target --weights --gloss --lobes --prune --views --steepest --paint-time-limit --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

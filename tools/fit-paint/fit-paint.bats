@@ -170,3 +170,100 @@ number() { grep -m1 "\"$1\"" r.json | sed -E 's/.*: ([-0-9.e+]+),?$/\1/'; }
   fit-paint -b "$basis" many.xml 2>err | head -n 3 >/dev/null
   [ ! -s err ]
 }
+
+# cornell FILE: a measured BRDF whose flake is 0.05 + cos^10 with a spike of cos^3000 over cos_i on top, all gray.
+cornell() {
+  awk 'BEGIN {
+    pi = 3.14159265358979; print "# made for a test\n3\n400 550 700"
+    for (ti = 0; ti <= 80; ti += 10) for (to = 0; to <= 80; to += 5) for (az = 0; az <= 180; az += 20) {
+      a = ti * pi / 180; b = to * pi / 180; c = az * pi / 180
+      cosine = cos(a) * cos(b) - sin(a) * sin(b) * cos(c)
+      f = 0.05; if (cosine > 0) f += 0.1 * cosine ^ 10 + 20 * cosine ^ 3000 / cos(a)
+      printf "%.6f 0 %.6f %.6f %.7f %.7f %.7f\n", a, b, c, f, f, f } }' >"$1"
+}
+
+@test "a measured BRDF becomes one fitted paint, its spike apart" {
+  cornell metal.brdf
+  fit-paint -q -b "$basis" metal.brdf -o out.xml --report r.json
+  grep -q '<paint name="metal"' out.xml
+  [ "$(grep -c '<lab ' out.xml)" -eq 5 ]
+  # b7 has no exponent 10: 6 and 20 between them come within 2 %.
+  awk -v e="$(number relative_error_median)" 'BEGIN { exit !(e < 0.02) }'
+  [ "$(number steep_directions)" -gt 0 ]
+  [ "$(number glare_directions)" -gt 0 ]
+  # 2 pi 20/3001 = 0.0419 is the albedo of the spike; the directions of the file sample it once or twice a lobe.
+  awk -v e="$(number spike_albedo_45)" 'BEGIN { exit !(e > 0.03 && e < 0.055) }'
+  grep -q 'exponent="3000".* gr="[1-9]' out.xml
+}
+
+@test "measured BRDFs and libraries in one run; their names must differ" {
+  cornell one.brdf
+  echo "$head${one/\"one\"/\"two\"}</paints>" >two.xml
+  run fit-paint -b "$basis" one.brdf two.xml -o out.xml
+  [ "$status" -eq 0 ]
+  [[ "$output" =~ "1 measured BRDFs with a median relative error of 0.0" ]]
+  [ "$(grep -c '<lobes ' out.xml)" -eq 2 ]
+  echo "$head$one</paints>" >same.xml
+  run fit-paint -q -b "$basis" one.brdf same.xml -o again.xml
+  [ "$status" -eq 3 ]
+  [ ! -e again.xml ]
+}
+
+@test "--steepest leaves directions out" {
+  cornell metal.brdf
+  fit-paint -q -b "$basis" --steepest 80 metal.brdf -o /dev/null --report r.json
+  [ "$(number steep_directions)" = 0 ]
+  fit-paint -q -b "$basis" --steepest 40 metal.brdf -o /dev/null --report r.json
+  [ "$(number steep_directions)" -gt 500 ]
+}
+
+@test "--lobes takes the best few, --prune drops what nobody sees, and both are told" {
+  echo "$head$one</paints>" >one.xml
+  fit-paint -q -b "$basis" --lobes 2 one.xml -o two.xml --report r.json
+  [ "$(grep -c '<lobe ' two.xml)" -le 2 ]
+  grep -q '"dropped_exponents"' r.json
+  two=$(number objective)
+  fit-paint -q -b "$basis" one.xml -o all.xml --report r.json
+  awk -v few="$two" -v all="$(number objective)" 'BEGIN { exit !(all <= few * (1 + 1e-9)) }'
+  fit-paint -q -b "$basis" --prune 100 one.xml -o none.xml
+  [ "$(grep -c '<lobe ' none.xml)" -eq 0 ]
+}
+
+@test "--views writes weights for each view and tells what they gain" {
+  two_sided="${row/\/>/\/><lab geometry=\"45as-15\" L=\"70\" a=\"40\" b=\"10\"\/>}"
+  echo "$head<paint name=\"shift\"><measurement illuminant=\"D65\" observer=\"10\">$two_sided</measurement></paint></paints>" >s.xml
+  run fit-paint -b "$basis" --views 0,15,30,45,60,75 s.xml -o out.xml --report r.json
+  [ "$status" -eq 0 ]
+  [ "$(grep -c '<view angle=' out.xml)" -eq 6 ]
+  [[ "$output" =~ "the views gain dE00" ]]
+  awk -v g="$(number gain_de00)" 'BEGIN { exit !(g > 3) }'
+  # It can be read again.
+  fit-paint -q -b "$basis" out.xml -o again.xml
+}
+
+@test "--gloss takes several meters, and the misfit of each is told" {
+  echo "$head$one</paints>" >one.xml
+  fit-paint -q -b "$basis" --gloss 20:30,60:70,85:90 one.xml -o out.xml --report r.json
+  [ "$(grep -c '"misfit_gu"' r.json)" -eq 3 ]
+  [ "$(grep -c '"simulated_gu"' r.json)" -eq 3 ]
+}
+
+@test "--paint-time-limit stops a paint, writes the best and exits 4" {
+  cornell metal.brdf
+  run fit-paint -b "$basis" --method deltae --paint-time-limit 0.000001 metal.brdf -o out.xml --report r.json
+  [ "$status" -eq 4 ]
+  grep -q '"status": "time_limit"' r.json
+  grep -q '<lobes ' out.xml
+  fit-paint -q -b "$basis" --method l2 --paint-time-limit 60 metal.brdf -o out.xml
+}
+
+@test "wrong values of the newer options name what is right" {
+  for wrong in "--gloss 45:80" "--gloss 60:80,60:90" "--gloss 60:" "--lobes -1" "--lobes few" "--prune x" \
+    "--views 30" "--views 30,15" "--views 0,100" "--views a,b" "--steepest 91" "--paint-time-limit -1"; do
+    # shellcheck disable=SC2086
+    run fit-paint -b "$basis" $wrong "$paints" -o out.xml
+    [ "$status" -eq 2 ]
+    [[ "$output" =~ ${wrong%% *} ]]
+    [ ! -e out.xml ]
+  done
+}

@@ -23,6 +23,14 @@ cli::ToolSpec tool_spec(Options& o) {
            "any reading get no flake weight. Below the first reading the flake highlight goes on rising at the rate "
            "it had there, which is the least that any sum of lobes can do. Gloss readings (20, 60, 85 deg) set the "
            "gloss lobes and the mirror through a simulated gloss meter; what they cannot meet is told in the report.",
+           "A measured BRDF (MERL .binary, Cornell .brdf, NVIDIA .mbsdf, RGL _rgb.bsdf) becomes one paint, fitted to "
+           "all its directions but those within 10 deg of specular and near grazing, in and out of plane. What the "
+           "flake leaves within 10 deg goes to the gloss lobes: the spike of the coat, whose reading in the three gloss "
+           "meters is reported.",
+           "With --views every lobe has weights for several angles of the viewer, linear between them, which follow "
+           "color that turns with the view and the two sides of specular of an interference paint. The weights for all "
+           "views stay in front of them, and the report tells what the views gain. Readings of a multi-angle "
+           "instrument see each view once or twice: between them the weights rest on smoothness, not on data.",
            "A paint that cannot be fitted (no reading, no appearance) is named, passes unchanged, and the exit status "
            "is 1."},
       .options =
@@ -60,14 +68,46 @@ cli::ToolSpec tool_spec(Options& o) {
             .choices = {"perceptual", "plain"}},
            {.name = "gloss",
             .letter = 'g',
-            .value = "GU",
-            .help = "gloss at 60 deg to assume for paints that state none; 0 leaves them matt",
-            .target = &o.gloss,
+            .value = "GU|ANGLE:GU,...",
+            .help = "gloss to assume for paints that state none: at 60 deg, or at several of 20, 60 and 85 deg as in "
+                    "20:80,60:90; 0 leaves them matt",
+            .target = &o.gloss},
+           {.name = "lobes",
+            .letter = 'n',
+            .value = "N",
+            .help = "use the best N flake lobes of the basis; 0 uses all",
+            .target = &o.lobes,
             .low = 0,
-            .high = 100}},
+            .high = 1000},
+           {.name = "prune",
+            .value = "DE00",
+            .help = "drop flake lobes as long as no color moves by more than this; 0 drops none",
+            .target = &o.prune_de00,
+            .low = 0,
+            .high = 100},
+           {.name = "views",
+            .value = "DEG,...",
+            .help = "fit weights for these angles of the viewer from the normal too, ascending, at least two",
+            .target = &o.views_deg,
+            .low = 0,
+            .high = 90},
+           {.name = "steepest",
+            .value = "DEG",
+            .help = "of measured BRDFs, leave out directions farther than this from the normal",
+            .target = &o.steepest_deg,
+            .low = 0,
+            .high = 90},
+           {.name = "paint-time-limit",
+            .value = "S",
+            .help = "seconds for one paint, after which the best weights so far are taken; 0 is none",
+            .target = &o.paint_time_limit_s,
+            .low = 0}},
       .inputs =
           cli::Positional{
-              .value = "PAINTS", .help = "paint XML files, - is standard input", .target = &o.paints, .low = 0},
+              .value = "PAINTS",
+              .help = "paint XML files or measured BRDFs, - is standard input",
+              .target = &o.paints,
+              .low = 0},
       .examples =
           {{"fit-paint --basis testdata/b7.basis.xml testdata/paints.paints.xml -o fitted.paints.xml",
             "fits every sample paint and prints the worst"},
@@ -78,19 +118,30 @@ cli::ToolSpec tool_spec(Options& o) {
       .report = {{"paints[].name", "name of the paint"},
                  {"paints[].method", "l1, l2 or deltae"},
                  {"paints[].status",
-                  "optimal; not_converged: a solver gave up, the best weights found; failed: passed on unfitted"},
+                  "optimal; not_converged: a solver gave up, the best weights found; time_limit: the best until then; "
+                  "failed: passed on unfitted"},
                  {"paints[].time_us", "time of the fit, without XML"},
                  {"paints[].objective", "weighted norm of the error over rows and channels, in L* if perceptual"},
                  {"paints[].plain_objective", "the same norm without weights, in reflectance factor"},
                  {"paints[].optimality_gap", "proven distance from the optimum, relative to the target's norm"},
                  {"paints[].active_lobes", "lobes with any weight, the mirror included"},
                  {"paints[].unseen_exponents", "lobes that no reading sees; flake weight 0"},
+                 {"paints[].dropped_exponents", "lobes that --lobes or --prune left out"},
                  {"paints[].de00_max", "largest CIEDE2000 difference at the readings"},
                  {"paints[].de00_mean", "mean CIEDE2000 difference at the readings"},
                  {"paints[].de00_by_geometry", "the difference at each geometry"},
                  {"paints[].gamut_de00", "color lost because the working space has no negative channels"},
                  {"paints[].glare_rows", "readings left out for being within 10 deg of specular"},
-                 {"paints[].gloss[]", "angle_deg, stated_gu and misfit_gu (simulated minus stated)"},
+                 {"paints[].gloss[]",
+                  "angle_deg, simulated_gu, and where the paint states it stated_gu and misfit_gu (simulated minus "
+                  "stated)"},
+                 {"paints[].brdf",
+                  "of a measured BRDF: directions fitted, glare_directions and steep_directions left out, "
+                  "relative_error_median and relative_error_p95 of the color triple, de00_median and de00_p95 over the "
+                  "fitted ones, spike_albedo_45"},
+                 {"paints[].views",
+                  "with --views: de00_mean at the readings, or over the fitted directions of a measured BRDF, "
+                  "de00_mean_without by the weights for all views, and their difference gain_de00"},
                  {"paints[].message", "why a paint failed"},
                  {"fits_per_s", "fits a second, without reading and writing"},
                  {"fitted", "paints that got lobes"},

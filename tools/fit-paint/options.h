@@ -16,7 +16,12 @@ struct Options {
   std::string method = "l1";
   std::string target = "measured";
   std::string weights = "perceptual";
-  double gloss = 0;
+  std::string gloss = "0";
+  int lobes = 0;
+  double prune_de00 = 0;
+  std::vector<double> views_deg;
+  double steepest_deg = 75;
+  double paint_time_limit_s = 0;
 };
 
 cli::ToolSpec tool_spec(Options& options);

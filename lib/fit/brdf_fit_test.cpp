@@ -1,0 +1,213 @@
+// Fits to measured BRDFs, by view, and with fewer lobes.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+#include "brdf/lobe_model.h"
+#include "fit/brdf_target.h"
+#include "fit/paint_fit.h"
+
+namespace goniochrome {
+namespace {
+
+const Basis kBasis = {"b7", {1.3, 6, 20, 70, 250, 900, 3000}, true};
+constexpr double kRadian = M_PI / 180;
+
+Vec3 direction(double polar_deg, double azimuth_deg) {
+  const double t = polar_deg * kRadian, p = azimuth_deg * kRadian;
+  return {std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)};
+}
+
+// What a goniometer would see of known lobes, every 5 deg of the view and every 20 of its azimuth.
+BrdfTarget measured_from(const LobeFit& lobes) {
+  BrdfTarget target;
+  target.paint.name = "test";
+  for (double light = 0; light <= 80; light += 10)
+    for (double view = 0; view <= 80; view += 5)
+      for (double azimuth = 0; azimuth <= 180; azimuth += 20) {
+        const Vec3 in = direction(light, 0), out = direction(view, azimuth);
+        target.samples.push_back(
+            {aspecular_angle_rad(in, out, {0, 0, 1}), light, view, M_PI * brdf(lobes, in, out, {0, 0, 1})});
+      }
+  return target;
+}
+
+LobeFit metallic() {
+  LobeFit fit;
+  fit.diffuse = {0.02, 0.03, 0.06};
+  fit.lobes = {{6, {0.05, 0.06, 0.1}, {}}, {20, {0.3, 0.2, 0.5}, {}}};
+  return fit;
+}
+
+PaintFit fit_of(const BrdfTarget& target, FitOptions options) {
+  auto fit = PaintFitter(kBasis, std::move(options)).fit(target);
+  EXPECT_TRUE(fit.ok()) << (fit.ok() ? "" : fit.error().message);
+  return std::move(fit).value();
+}
+
+TEST(BrdfFit, RecoversKnownLobesByEveryMethod) {
+  const BrdfTarget target = measured_from(metallic());
+  for (const FitMethod method : {FitMethod::kL1, FitMethod::kL2, FitMethod::kDeltaE}) {
+    const PaintFit fit = fit_of(target, {.method = method});
+    EXPECT_EQ(fit.report.status, FitStatus::kOptimal) << fit_method_name(method);
+    // The rows toward specular, which know of no lobe, pull a little: they weigh a hundredth of the others.
+    EXPECT_LT(fit.report.brdf->relative_error_median, method == FitMethod::kL1 ? 1e-9 : 0.01);
+    EXPECT_EQ(fit.report.gamut_de00, 0);
+    EXPECT_NEAR(fit.report.brdf->spike_albedo_45, 0, 1e-3);
+  }
+}
+
+TEST(BrdfFit, TheSpikeOfTheCoatIsNotTakenForFlake) {
+  LobeFit coated = metallic();
+  coated.lobes.push_back({3000, {}, {20, 20, 20}});
+  const PaintFit fit = fit_of(measured_from(coated), {});
+  // Against the same paint without its coat: the flake has not moved.
+  EXPECT_LT(fit.report.brdf->relative_error_median, 1e-6);
+  EXPECT_NEAR(fit.report.brdf->spike_albedo_45, 20 * 2 * M_PI / 3001, 0.002);
+  ASSERT_FALSE(fit.lobes.lobes.empty());
+  EXPECT_EQ(fit.lobes.lobes.back().exponent, 3000);
+  EXPECT_NEAR(fit.lobes.lobes.back().gloss.y, 20, 1);
+  EXPECT_EQ(fit.lobes.lobes.back().directional_diffuse, Rgb{});
+  // The control: with the glare among the rows, least squares gives flake lobes to the spike.
+  BrdfTarget taken_in = measured_from(coated);
+  for (BrdfSample& sample : taken_in.samples)
+    if (sample.aspecular_rad < kGlareAngle_deg * kRadian) sample.aspecular_rad += kGlareAngle_deg * kRadian;
+  const PaintFit fooled = fit_of(taken_in, {.method = FitMethod::kL2});
+  EXPECT_GT(fooled.report.brdf->relative_error_p95, 10 * fit.report.brdf->relative_error_p95 + 0.1);
+}
+
+TEST(BrdfFit, SteepDirectionsAndColorsOutOfGamutAreCounted) {
+  BrdfTarget target = measured_from(metallic());
+  const std::size_t all = target.samples.size();
+  const PaintFit every = fit_of(target, {.steepest_deg = 90});
+  EXPECT_EQ(every.report.brdf->steep, 0u);
+  EXPECT_EQ(every.report.brdf->fitted + every.report.brdf->glare, all);
+  const PaintFit flat = fit_of(target, {.steepest_deg = 60});
+  EXPECT_EQ(flat.report.brdf->fitted + flat.report.brdf->glare + flat.report.brdf->steep, all);
+  EXPECT_GT(flat.report.brdf->steep, all / 3);
+  for (BrdfSample& sample : target.samples) sample.value.x = -0.05 * sample.value.y;
+  EXPECT_GT(fit_of(target, {}).report.gamut_de00, 1);
+  for (BrdfSample& sample : target.samples) sample.view_deg = 89;
+  const auto none = PaintFitter(kBasis, {}).fit(target);
+  ASSERT_FALSE(none.ok());
+  EXPECT_NE(none.error().message.find("at most 75 deg from the normal"), std::string::npos);
+}
+
+// Weights that really change with the view: they are found, and the weights for all views cannot do it.
+TEST(BrdfFit, ViewsFollowColorThatTurns) {
+  LobeFit turning = metallic();
+  turning.views = {{0, {0.02, 0.03, 0.06}, {{20, {0.5, 0.1, 0.1}, {}}}},
+                   {75, {0.02, 0.03, 0.06}, {{20, {0.1, 0.1, 0.5}, {}}}}};
+  const BrdfTarget target = measured_from(turning);
+  for (const FitMethod method : {FitMethod::kL1, FitMethod::kL2}) {
+    const PaintFit fit = fit_of(target, {.method = method, .views_deg = {0, 25, 50, 75}});
+    ASSERT_EQ(fit.lobes.views.size(), 4u);
+    ASSERT_TRUE(fit.report.views);
+    // What is left is the wish that neighboring views look alike.
+    EXPECT_LT(fit.report.views->de00_mean, 0.5);
+    EXPECT_GT(fit.report.views->de00_mean_without, 3 * fit.report.views->de00_mean);
+    EXPECT_EQ(fit.report.views->gain_de00(), fit.report.views->de00_mean_without - fit.report.views->de00_mean);
+    EXPECT_LT(fit.report.brdf->relative_error_median, 0.02);
+  }
+  // Where nothing turns, views gain nothing.
+  const PaintFit still = fit_of(measured_from(metallic()), {.views_deg = {0, 25, 50, 75}});
+  EXPECT_NEAR(still.report.views->gain_de00(), 0, 0.05);
+}
+
+TEST(BrdfFit, ViewsTellTheSidesOfSpecularApart) {
+  const Lab near = {70, 40, -20}, far = {75, 5, 45};
+  Paint paint;
+  paint.name = "two sides";
+  paint.measurement.emplace();
+  for (const auto& [angle, lab] : std::vector<std::pair<double, Lab>>{
+           {15, near}, {-15, far}, {25, {60, 20, 5}}, {45, {30, 15, 5}}, {75, {15, 8, 3}}, {110, {12, 8, 2}}})
+    paint.measurement->rows.push_back({{.aspecular_deg = angle}, lab});
+  const auto together = PaintFitter(kBasis, {}).fit(paint);
+  const auto by_view = PaintFitter(kBasis, {.views_deg = {0, 15, 30, 45, 60, 75}}).fit(paint);
+  ASSERT_TRUE(together.ok() && by_view.ok());
+  EXPECT_GT(together->report.de00_max, 10) << "one color for both sides";
+  EXPECT_LT(by_view->report.de00_max, 1);
+  EXPECT_NEAR(by_view->report.views->de00_mean_without, together->report.de00_mean, 1e-9);
+}
+
+TEST(BrdfFit, ErrorNeverRisesWithALobe) {
+  LobeFit hidden = metallic();
+  hidden.lobes = {{3, {0.1, 0.1, 0.1}, {}}, {11, {0.05, 0.06, 0.1}, {}}, {40, {0.3, 0.2, 0.5}, {}}};
+  const BrdfTarget target = measured_from(hidden);
+  double before = std::numeric_limits<double>::infinity();
+  for (int lobes = 1; lobes <= 7; ++lobes) {
+    const PaintFit fit = fit_of(target, {.method = FitMethod::kL2, .most_lobes = lobes});
+    EXPECT_LE(fit.report.objective, before * (1 + 1e-9)) << lobes;
+    before = fit.report.objective;
+    EXPECT_LE(static_cast<int>(kBasis.exponents.size() - fit.report.dropped.size() - fit.report.unseen.size()), lobes);
+  }
+  // The control: the first so many lobes of the basis, not the best.
+  const PaintFit best = fit_of(target, {.method = FitMethod::kL2, .most_lobes = 2});
+  const auto first = PaintFitter({"b2", {1.3, 6}, false}, {.method = FitMethod::kL2}).fit(target);
+  ASSERT_TRUE(first.ok());
+  EXPECT_LT(best.report.objective, 0.7 * first->report.objective);
+}
+
+TEST(BrdfFit, PruningMovesNoColorByMoreThanAllowed) {
+  const BrdfTarget target = measured_from(metallic());
+  const PaintFit full = fit_of(target, {.method = FitMethod::kL2});
+  std::size_t before = 0;
+  for (const double limit : {5.0, 20.0}) {
+    const PaintFit lean = fit_of(target, {.method = FitMethod::kL2, .prune_de00 = limit});
+    EXPECT_GT(lean.report.dropped.size(), before);
+    before = lean.report.dropped.size();
+    const Xyz white = *white_point({"D65", 2});
+    for (const BrdfSample& sample : target.samples) {
+      const double angle = sample.aspecular_rad / kRadian;
+      if (angle < kGlareAngle_deg || std::max(sample.light_deg, sample.view_deg) > 75) continue;
+      EXPECT_LE(delta_e_2000(lab_from_rgb(flake_reflectance_factor(lean.lobes, angle), white),
+                             lab_from_rgb(flake_reflectance_factor(full.lobes, angle), white)),
+                limit + 1e-9);
+    }
+  }
+}
+
+TEST(BrdfFit, ATimeLimitLeavesTheBestSoFar) {
+  const BrdfTarget target = measured_from(metallic());
+  const PaintFit stopped = fit_of(target, {.method = FitMethod::kDeltaE, .time_limit_s = 1e-9});
+  EXPECT_EQ(stopped.report.status, FitStatus::kTimeLimit);
+  // deltae starts from the linear fits, so what it has is never worse than their better one.
+  EXPECT_LT(stopped.report.brdf->relative_error_median, 0.05);
+}
+
+// The three Cornell paints: the bounds are those of the best known fits with mirror- and half-angle lobes. Cayman is a
+// color-travel paint, which lobes for all views meet to 60 deg from the normal and lobes for each view to 75.
+TEST(BrdfFit, CornellPaintsRealData) {
+  const char* folder = std::getenv("GONIOCHROME_DATA");
+  if (!folder) GTEST_SKIP() << "GONIOCHROME_DATA is not set";
+  Basis wide{"b12", {}, false};
+  for (int j = 0; j < 12; ++j) wide.exponents.push_back(0.3 * std::pow(1e4, j / 11.0));
+  const struct {
+    const char* name;
+    double bound;
+  } paints[] = {{"cayman", 0.121}, {"garnet_red", 0.200}, {"krylon_blue", 0.07}};
+  for (const auto& [name, bound] : paints) {
+    auto file = InputFile::open(std::string(folder) + "/brdf/cornell/" + name + ".brdf");
+    ASSERT_TRUE(file.ok());
+    const auto target = read_brdf_target(*file);
+    ASSERT_TRUE(target.ok());
+    EXPECT_EQ(target->samples.size(), 1439u);
+    for (const FitMethod method : {FitMethod::kL1, FitMethod::kL2}) {
+      const auto flat = PaintFitter(wide, {.method = method, .steepest_deg = 60}).fit(*target);
+      ASSERT_TRUE(flat.ok());
+      EXPECT_LE(flat->report.optimality_gap, 1e-9);
+      EXPECT_LE(flat->report.brdf->relative_error_median, bound) << name << " " << fit_method_name(method);
+    }
+    const auto views = PaintFitter({"b8", {0.4, 1, 2.5, 6, 15, 40, 100, 250}, false},
+                                   {.views_deg = {0, 15, 30, 45, 60, 75}})
+                           .fit(*target);
+    ASSERT_TRUE(views.ok());
+    EXPECT_LE(views->report.brdf->relative_error_median, bound) << name;
+    EXPECT_GT(views->report.views->gain_de00(), 0);
+  }
+}
+
+}  // namespace
+}  // namespace goniochrome

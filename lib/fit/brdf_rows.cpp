@@ -1,0 +1,173 @@
+#include "fit/brdf_rows.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fit/target_rows.h"
+
+
+namespace goniochrome {
+
+namespace {
+
+constexpr double kRadian = M_PI / 180;
+
+// A lobe that the coat's spike may use gives less than this part of its peak where the flake begins.
+constexpr double kSpikePart = 0.01;
+
+double luminance(const Rgb& rgb) {
+  return xyz_d65_from_rgb(rgb).Y;
+}
+
+FlakeRow row_of(const BrdfSample& sample, const Rgb& value, double lightness, const FitOptions& options) {
+  return {{sample.aspecular_rad, sample.view_deg},
+          value,
+          options.perceptual_weights ? lightness_slope(lightness) : 1,
+          false};
+}
+
+// Reflectance factor without the spike.
+Rgb flake_at(const LobeFit& fit, const BrdfSample& sample) {
+  const double angle_deg = sample.aspecular_rad / kRadian;
+  return fit.views.empty() ? flake_reflectance_factor(fit, angle_deg)
+                           : flake_reflectance_factor(at_view(fit, sample.view_deg), angle_deg);
+}
+
+// The mean color and angle of the flake from one aspecular angle to another; false where nothing was measured there.
+bool mean_between(const std::vector<FlakeRow>& rows, double from_deg, double to_deg, double& angle_deg, Rgb& color) {
+  double count = 0;
+  angle_deg = 0, color = {};
+  for (const FlakeRow& row : rows) {
+    const double angle = row.at.aspecular_rad / kRadian;
+    if (angle < from_deg || angle >= to_deg) continue;
+    ++count, angle_deg += angle, color += row.value;
+  }
+  if (count == 0) return false;
+  angle_deg /= count, color = (1 / count) * color;
+  return true;
+}
+
+// The flake within glare is not seen, for the spike covers it: it goes on as from readings. All of these rows together
+// weigh about one part in a hundred of the measured ones.
+void add_extension(const FitOptions& options, const std::vector<double>& exponents, BrdfRows& rows) {
+  constexpr double kShare = 0.004;
+  HighlightEnd end;
+  if (!mean_between(rows.flake.rows, kGlareAngle_deg, kGlareAngle_deg + 5, end.a_deg, end.at_a) ||
+      !mean_between(rows.flake.rows, kGlareAngle_deg + 10, kGlareAngle_deg + 15, end.b_deg, end.at_b))
+    return;
+  const double importance = kShare * static_cast<double>(rows.fitted.size());
+  for (const TargetRow& row :
+       extension_to_specular(end, steepest_seen(exponents, rows.first_rad), rows.flake.white, importance))
+    rows.flake.rows.push_back({{row.angle_deg * kRadian, row.view_deg},
+                               row.reflectance_factor,
+                               importance * (options.perceptual_weights ? lightness_slope(row.lightness) : 1),
+                               true});
+}
+
+double at_part(std::vector<double> values, double part) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+std::vector<double> relative_errors(const BrdfRows& rows, const LobeFit& fit) {
+  std::vector<double> errors;
+  for (const BrdfSample& sample : rows.fitted) {
+    const double size = length(sample.value);
+    if (size > 0) errors.push_back(length(flake_at(fit, sample) - sample.value) / size);
+  }
+  return errors.empty() ? std::vector<double>{0} : errors;
+}
+
+std::vector<double> color_errors(const BrdfRows& rows, const Xyz& white, const LobeFit& fit) {
+  std::vector<double> errors;
+  for (const BrdfSample& sample : rows.fitted)
+    errors.push_back(delta_e_2000(lab_from_rgb(sample.value, white), lab_from_rgb(flake_at(fit, sample), white)));
+  return errors;
+}
+
+double mean_of(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double v : values) sum += v;
+  return sum / static_cast<double>(values.size());
+}
+
+}  // namespace
+
+Result<BrdfRows> brdf_rows(const BrdfTarget& brdf, const Xyz& white, const FitOptions& options,
+                           const std::vector<double>& exponents) {
+  BrdfRows rows;
+  rows.flake.white = white;
+  rows.first_rad = M_PI;
+  for (const BrdfSample& sample : brdf.samples) {
+    // Angles in files are rounded to 1e-6 rad.
+    constexpr double kSlack_deg = 1e-3;
+    if (std::max(sample.light_deg, sample.view_deg) > options.steepest_deg + kSlack_deg) {
+      ++rows.steep;
+      continue;
+    }
+    if (sample.aspecular_rad < kGlareAngle_deg * kRadian) {
+      rows.glare.push_back(sample);
+      continue;
+    }
+    const Lab lab = lab_from_rgb(sample.value, white);
+    Rgb value = sample.value;
+    for (int c = 0; c < 3; ++c) value[c] = std::max(value[c], 0.0);
+    if (value != sample.value)
+      rows.gamut_de00 = std::max(rows.gamut_de00, delta_e_2000(lab, lab_from_rgb(value, white)));
+    rows.flake.rows.push_back(row_of(sample, value, lab.L, options));
+    if (options.method == FitMethod::kDeltaE) rows.flake.readings.push_back({rows.flake.rows.back().at, lab});
+    rows.fitted.push_back(sample);
+    rows.first_rad = std::min(rows.first_rad, sample.aspecular_rad);
+  }
+  if (rows.fitted.empty())
+    return input_error("no direction {} deg or more from specular and at most {} deg from the normal", kGlareAngle_deg,
+                       options.steepest_deg);
+  add_extension(options, exponents, rows);
+  return rows;
+}
+
+void set_spike(const BrdfRows& rows, PaintFit& out) {
+  std::vector<std::size_t> sharp;
+  for (std::size_t j = 0; j < out.lobes.lobes.size(); ++j) {
+    const double e = out.lobes.lobes[j].exponent;
+    if (std::isfinite(e) && cos_power(kGlareAngle_deg * kRadian, e) <= kSpikePart) sharp.push_back(j);
+  }
+  if (sharp.empty() || rows.glare.empty()) return;
+  Matrix m(static_cast<int>(rows.glare.size()), static_cast<int>(sharp.size()));
+  std::vector<double> left(rows.glare.size());
+  for (int i = 0; i < m.rows; ++i) {
+    const BrdfSample& sample = rows.glare[static_cast<std::size_t>(i)];
+    const double weight = lightness_slope(lab_from_rgb(sample.value, rows.flake.white).L);
+    left[i] = weight * luminance(sample.value - flake_at(out.lobes, sample));
+    for (int j = 0; j < m.columns; ++j)
+      m(i, j) = weight * cos_power(sample.aspecular_rad, out.lobes.lobes[sharp[j]].exponent) /
+                std::cos(sample.light_deg * kRadian);
+  }
+  const NonNegativeFit spike = nnls(m, left);
+  double albedo = 0;
+  for (std::size_t j = 0; j < sharp.size(); ++j) {
+    Lobe& lobe = out.lobes.lobes[sharp[j]];
+    const double weight = spike.x[j] / M_PI;
+    lobe.gloss = {weight, weight, weight};
+    // Sharp lobes reflect 2 pi/(E+1) times the weight, since the cosines of light and viewer are equal across them.
+    albedo += 2 * M_PI / (lobe.exponent + 1) * weight;
+  }
+  out.report.brdf->spike_albedo_45 = albedo;
+}
+
+void compare(const BrdfRows& rows, const Xyz& white, PaintFit& out) {
+  BrdfFigures& figures = *out.report.brdf;
+  const std::vector<double> relative = relative_errors(rows, out.lobes);
+  figures.relative_error_median = at_part(relative, 0.5);
+  figures.relative_error_p95 = at_part(relative, 0.95);
+  const std::vector<double> de00 = color_errors(rows, white, out.lobes);
+  figures.de00_median = at_part(de00, 0.5);
+  figures.de00_p95 = at_part(de00, 0.95);
+  if (out.lobes.views.empty()) return;
+  LobeFit together = out.lobes;
+  together.views.clear();
+  out.report.views = ViewFigures{mean_of(de00), mean_of(color_errors(rows, white, together))};
+}
+
+}  // namespace goniochrome

@@ -1,0 +1,61 @@
+#include "fit/brdf_target.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "paint/curve.h"
+
+namespace goniochrome {
+
+namespace {
+
+const ViewingCondition kWorkingCondition = {"D65", 2};
+
+double from_normal_deg(const Vec3& direction) {
+  return std::atan2(std::hypot(direction.x, direction.y), direction.z) * (180 / M_PI);
+}
+
+}  // namespace
+
+Result<BrdfTarget> brdf_target(const std::string& name, const MeasuredBrdf& brdf) {
+  BrdfTarget target;
+  target.paint.name = name;
+  GONIO_ASSIGN(const ChannelColorimeter meter, ChannelColorimeter::make(brdf.traits(), kWorkingCondition));
+  const Xyz white = meter.white();
+  for (const DirectionPair& pair : brdf.samples()) {
+    MeasuredValue value = brdf.value(pair.light, pair.view);
+    if (!value.measured || value.outside_deg > 0) continue;
+    for (double& f : value.f) f *= M_PI;
+    const Lab lab = lab_from_xyz(meter.xyz(value.f), white);
+    if (!std::isfinite(lab.L + lab.a + lab.b))
+      return input_error("{}: its data give a value that is not finite: the file is damaged", name);
+    const Rgb rgb = rgb_from_lab(lab, white);
+    target.samples.push_back({aspecular_angle_rad(pair.light, pair.view, {0, 0, 1}), from_normal_deg(pair.light),
+                              from_normal_deg(pair.view), rgb});
+  }
+  if (target.samples.empty()) return input_error("{}: holds no value that a fit could use", name);
+
+  MeasuredColorOptions options{.geometries = {}, .condition = kWorkingCondition};
+  for (const double angle : kExportAngles_deg) options.geometries.push_back({.aspecular_deg = angle});
+  GONIO_ASSIGN(const MeasuredColor color, measured_color(brdf, options));
+  Measurement& measurement = target.paint.measurement.emplace();
+  measurement.condition = kWorkingCondition;
+  for (const MeasuredReading& reading : color.readings) measurement.rows.push_back({reading.geometry, reading.lab});
+  if (measurement.rows.empty()) target.paint.measurement.reset();
+  return target;
+}
+
+Result<BrdfTarget> read_brdf_target(InputFile& file) {
+  std::string bytes;
+  for (;;) {
+    constexpr std::size_t kPiece = std::size_t{1} << 22;
+    GONIO_ASSIGN(const std::size_t count, file.read(bytes, kPiece));
+    if (count == 0) break;
+  }
+  GONIO_ASSIGN(const auto brdf, read_measured(file.name(), bytes));
+  const bool is_stream = file.name() == "standard input";
+  return brdf_target(is_stream ? "measured" : std::filesystem::path(file.name()).stem().string(), *brdf);
+}
+
+}  // namespace goniochrome

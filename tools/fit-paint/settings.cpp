@@ -1,0 +1,102 @@
+#include "settings.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.h"
+
+namespace goniochrome {
+
+namespace {
+
+// "90", "60:90" or "20:80,60:90".
+Result<std::vector<GlossReading>> gloss_readings(const std::string& text) {
+  std::vector<GlossReading> readings;
+  for (const std::string_view part : split(text, ',')) {
+    const auto colon = part.find(':');
+    const bool has_angle = colon != std::string_view::npos;
+    const auto angle = has_angle ? parse_number(part.substr(0, colon)) : 60;
+    const auto units = parse_number(has_angle ? part.substr(colon + 1) : part);
+    if (!angle || !units || *units < 0 || *units > 100)
+      return usage_error("--gloss \"{}\": give gloss units from 0 to 100, or ANGLE:GU, as in 20:80,60:90", text);
+    if (std::ranges::find(kGlossAngles_deg, *angle) == std::end(kGlossAngles_deg))
+      return usage_error("--gloss \"{}\": gloss meters have 20, 60 and 85 deg", text);
+    if (std::ranges::find(readings, *angle, &GlossReading::angle_deg) != readings.end())
+      return usage_error("--gloss \"{}\": {} deg is given twice", text, *angle);
+    readings.push_back({*angle, *units});
+  }
+  if (readings.size() == 1 && readings[0].gloss_units == 0) readings.clear();
+  return readings;
+}
+
+std::string list(const std::vector<double>& values) {
+  std::string text;
+  for (const double v : values) text += fmt::format(" {}", v);
+  return text.empty() ? " none" : text;
+}
+
+const char* method_plan(FitMethod method) {
+  switch (method) {
+    case FitMethod::kL1:
+      return "least absolute error; about 20 us a paint, leaves an outlier aside";
+    case FitMethod::kL2:
+      return "least squares; about 15 us a paint, 7-12 % worse in absolute error";
+    case FitMethod::kDeltaE:
+      break;
+  }
+  return "least color difference at the readings, started from l1 and l2; some ms a paint";
+}
+
+std::string gloss_plan(const std::vector<GlossReading>& readings) {
+  std::string text = "as stated, else";
+  for (const GlossReading& r : readings) text += fmt::format(" {} GU at {} deg", r.gloss_units, r.angle_deg);
+  return readings.empty() ? text + " matt" : text;
+}
+
+}  // namespace
+
+Result<FitOptions> fit_options(const Options& options) {
+  FitOptions fit;
+  fit.method = options.method == "l2"       ? FitMethod::kL2
+               : options.method == "deltae" ? FitMethod::kDeltaE
+                                            : FitMethod::kL1;
+  fit.target = options.target == "curve" ? TargetCurve::Kind::kCurve : TargetCurve::Kind::kMeasured;
+  fit.perceptual_weights = options.weights == "perceptual";
+  fit.most_lobes = options.lobes;
+  fit.prune_de00 = options.prune_de00;
+  fit.steepest_deg = options.steepest_deg;
+  fit.time_limit_s = options.paint_time_limit_s;
+  GONIO_ASSIGN(fit.assumed_gloss, gloss_readings(options.gloss));
+  fit.views_deg = options.views_deg;
+  const bool ascending = std::ranges::adjacent_find(fit.views_deg, std::greater_equal<>()) == fit.views_deg.end();
+  if (fit.views_deg.size() == 1 || !ascending)
+    return usage_error("--views: give two or more angles, ascending, such as 0,15,30,45,60,75");
+  return fit;
+}
+
+std::string plan(const Options& options, const FitOptions& fit, const Basis& basis) {
+  std::vector<double> seen, unseen;
+  for (const double e : basis.exponents)
+    (cos_power(15 * M_PI / 180, e) >= kSeenPart ? seen : unseen).push_back(e);
+  std::string text = fmt::format(
+      "basis {}: {} lobes{}\n"
+      "  flake lobes at a first reading of 15 deg:{}\n"
+      "  gloss alone, no reading sees them:{}\n"
+      "target {}: {}\n"
+      "method {}: {}\n"
+      "gloss: {}\n"
+      "left out: readings within {} deg of specular; the colors of the working space below 0 (told as gamut_de00)\n",
+      basis.name, basis.exponents.size(), basis.mirror ? " and the mirror" : "", list(seen), list(unseen),
+      options.target,
+      options.target == "curve" ? "quadratic of face, flop and travel; misses 5-angle readings by some dE00"
+                                : "the readings, a monotone cubic between them at 3 % of their weight",
+      options.method, method_plan(fit.method), gloss_plan(fit.assumed_gloss), kGlareAngle_deg);
+  text += fmt::format("measured BRDFs: directions to {} deg from the normal; some ms each\n", fit.steepest_deg);
+  if (fit.most_lobes > 0) text += fmt::format("lobes: the best subset of {}\n", fit.most_lobes);
+  if (fit.prune_de00 > 0) text += fmt::format("lobes that move no color by dE00 {} are dropped\n", fit.prune_de00);
+  if (!fit.views_deg.empty())
+    text += fmt::format("views at{} deg: a set of weights each, beside the one for all\n", list(fit.views_deg));
+  return text;
+}
+
+}  // namespace goniochrome

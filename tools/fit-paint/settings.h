@@ -1,0 +1,18 @@
+// What the command line asks for.
+#pragma once
+
+#include <string>
+
+#include "base/result.h"
+#include "fit/paint_fit.h"
+#include "options.h"
+
+namespace goniochrome {
+
+// Error: a gloss or a list of views that makes no sense.
+Result<FitOptions> fit_options(const Options& options);
+
+// What will be done, left out, and what it costs.
+std::string plan(const Options& options, const FitOptions& fit, const Basis& basis);
+
+}  // namespace goniochrome
