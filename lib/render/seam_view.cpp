@@ -47,6 +47,36 @@ Result<SeamWorld> seam_world(const SeamTexts& texts) {
   return world;
 }
 
+Result<SeamStage> seam_stage(const SeamTexts& texts, const SeamWorld& world, const GeometryList& geometries,
+                             double seam_deg) {
+  SeamStage stage;
+  GONIO_ASSIGN(stage.mesh, read_mesh(texts.mesh));
+  auto seam = seam_between(stage.mesh, world.part_a, world.part_b, world.seam);
+  if (!seam.ok()) return input_error("{}: {}", texts.mesh, seam.error().message);
+  stage.seam = std::move(*seam);
+  stage.views = world.in_world ? views_in_world(stage.seam, world.lights, world.viewers)
+                               : views_at_seam(stage.seam, geometries, seam_deg);
+  if (stage.views.empty())
+    return input_error("{}: no viewer sees both panels in any light: change --views or --view-from", texts.mesh);
+  if (texts.environment.empty()) return stage;
+  GONIO_ASSIGN(stage.env, read_env(texts.environment));
+  // Told once, by the file's name, and not for every paint.
+  if (auto panels = EnvironmentPanels::make(stage.env, {}); !panels.ok())
+    return input_error("{}: {}", texts.environment, panels.error().message);
+  return stage;
+}
+
+std::string seam_light_text(const SeamTexts& texts, const SeamWorld& world, const GeometryList& geometries) {
+  constexpr const char* kLeftOut = "left out: gloss, and shadows and reflections of the mesh on itself\n";
+  if (!world.in_world)
+    return fmt::format("{} pairs of light and viewer at every place, the light from both sides of the seam\n{}",
+                       geometries.pairs.size(), kLeftOut);
+  return fmt::format(
+      "{} viewers in the world, {}\n{}", world.viewers.size(),
+      texts.environment.empty() ? fmt::format("{} lights", world.lights.size()) : "light of " + texts.environment,
+      kLeftOut);
+}
+
 // The sphere about the middle of the seam's box that holds all places just fits between the borders that are nearer.
 Camera seam_camera_from(const Seam& seam, const Vec3& direction, double aspect, double fov_deg, double margin) {
   Box box{seam.points.front().a, seam.points.front().a};

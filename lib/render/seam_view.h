@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "fit/goniogeom_seam.h"
+#include "mesh/mesh.h"
 #include "mesh/seam.h"
 #include "render/camera.h"
 
@@ -28,6 +30,21 @@ struct SeamWorld {
   bool in_world = false;              // else lights and viewers stand to every place alike
 };
 Result<SeamWorld> seam_world(const SeamTexts& texts);
+
+// The mesh, its seam, who sees it in what light, and the environment where there is one. Lights and viewers stand to
+// every place as `geometries` and `seam_deg` say, or in the world. Error: a file that cannot be read, parts that do not
+// meet, or no viewer who sees both panels.
+struct SeamStage {
+  Mesh mesh;
+  Seam seam;
+  std::vector<SeamView> views;
+  PrefilteredEnvironment env;
+};
+Result<SeamStage> seam_stage(const SeamTexts& texts, const SeamWorld& world, const GeometryList& geometries,
+                             double seam_deg);
+
+// A line that says in what light the seam is seen, and one that says what is left out.
+std::string seam_light_text(const SeamTexts& texts, const SeamWorld& world, const GeometryList& geometries);
 
 // A camera that sees the whole seam from outside, a little from above, its field of view as given; `aspect` is the
 // picture's width over height. `margin` 1 just fits the seam in.

@@ -78,52 +78,39 @@ class SeamRun {
 
  private:
   Result<void> prepare() {
-    GONIO_ASSIGN(mesh_, read_mesh(options_.seam.mesh));
-    auto seam = seam_between(mesh_, request_.world.part_a, request_.world.part_b, request_.world.seam);
-    if (!seam.ok()) return input_error("{}: {}", options_.seam.mesh, seam.error().message);
-    seam_ = std::move(*seam);
-    views_ = request_.world.in_world ? views_in_world(seam_, request_.world.lights, request_.world.viewers)
-                                     : views_at_seam(seam_, request_.geometries, options_.seam_deg);
-    if (views_.empty())
-      return input_error("{}: no viewer sees both panels in any light: change --views or --view-from",
-                         options_.seam.mesh);
-    if (!options_.seam.environment.empty()) {
-      GONIO_ASSIGN(env_, read_env(options_.seam.environment));
-      // Told once, by the file's name, and not for every paint.
-      if (auto panels = EnvironmentPanels::make(env_, {}); !panels.ok())
-        return input_error("{}: {}", options_.seam.environment, panels.error().message);
-    }
-    session_.say(seam_line(request_, seam_));
-    tell_repairs(seam_, mesh_, session_);
+    GONIO_ASSIGN(stage_, seam_stage(options_.seam, request_.world, request_.geometries, options_.seam_deg));
+    const Seam& seam = stage_.seam;
+    session_.say(seam_line(request_, seam));
+    tell_repairs(seam, stage_.mesh, session_);
     Json& results = session_.results();
-    results["seam_length_m"] = seam_.length_m;
-    results["unit_m"] = seam_.unit_m;
-    results["misalignment_deg"] = spread_json(spread(seam_, &SeamPoint::fold_deg));
-    results["gap_mm"] = spread_json(spread(seam_, &SeamPoint::gap_mm));
-    results["flush_mm"] = spread_json(spread(seam_, &SeamPoint::flush_mm));
-    results["repairs"] = {{"duplicate_faces", seam_.repairs.duplicate_faces},
-                          {"non_manifold_edges", seam_.repairs.non_manifold_edges},
-                          {"turned", seam_.repairs.turned},
-                          {"not_continued", seam_.not_continued}};
+    results["seam_length_m"] = seam.length_m;
+    results["unit_m"] = seam.unit_m;
+    results["misalignment_deg"] = spread_json(spread(seam, &SeamPoint::fold_deg));
+    results["gap_mm"] = spread_json(spread(seam, &SeamPoint::gap_mm));
+    results["flush_mm"] = spread_json(spread(seam, &SeamPoint::flush_mm));
+    results["repairs"] = {{"duplicate_faces", seam.repairs.duplicate_faces},
+                          {"non_manifold_edges", seam.repairs.non_manifold_edges},
+                          {"turned", seam.repairs.turned},
+                          {"not_continued", seam.not_continued}};
     results["paints"] = Json::array();
     return {};
   }
 
   // The difference of the panels for every view.
   Result<std::vector<double>> differences(const Paint& paint) {
-    std::vector<double> de(views_.size());
+    std::vector<double> de(stage_.views.size());
     if (!options_.seam.environment.empty()) {
       GONIO_ASSIGN(const Appearance appearance, appearance_of(paint));
-      GONIO_ASSIGN(const EnvironmentPanels panels, EnvironmentPanels::make(env_, condition_of(paint)));
-      GONIO_ASSIGN(const auto a, seam_colors(panels, seam_, views_, SeamSide::kA)(appearance));
-      GONIO_ASSIGN(const auto b, seam_colors(panels, seam_, views_, SeamSide::kB)(appearance));
+      GONIO_ASSIGN(const EnvironmentPanels panels, EnvironmentPanels::make(stage_.env, condition_of(paint)));
+      GONIO_ASSIGN(const auto a, seam_colors(panels, stage_.seam, stage_.views, SeamSide::kA)(appearance));
+      GONIO_ASSIGN(const auto b, seam_colors(panels, stage_.seam, stage_.views, SeamSide::kB)(appearance));
       for (std::size_t i = 0; i < de.size(); ++i) de[i] = difference(request_.metric, a[i], b[i]);
       return de;
     }
     GONIO_ASSIGN(const FlakeCurve curve, FlakeCurve::make(paint, request_.target));
     parallel_for(de.size(), 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        const PanelView view = panel_view(seam_, views_[i]);
+        const PanelView view = panel_view(stage_.seam, stage_.views[i]);
         de[i] = difference(request_.metric, panel_color(curve.at(view.aspecular_a_deg), view.cos_a),
                            panel_color(curve.at(view.aspecular_b_deg), view.cos_b));
       }
@@ -139,11 +126,11 @@ class SeamRun {
       ++failed_;
       return {};
     }
-    const std::vector<SeamDifference> places = by_place(seam_, views_, *de);
+    const std::vector<SeamDifference> places = by_place(stage_.seam, stage_.views, *de);
     GONIO_TRY(write_rows(paint, places, file));
     report(paint, places);
     if (options_.advise)
-      for (const std::string& line : advice(paint, request_, seam_, views_, *de)) {
+      for (const std::string& line : advice(paint, request_, stage_.seam, stage_.views, *de)) {
         session_.say(line);
         session_.results()["paints"].back()["advice"].push_back(line);
       }
@@ -152,7 +139,7 @@ class SeamRun {
       return usage_error("--picture draws one paint and there is another, \"{}\": choose one by --only", paint.name);
     const SeamPicture picture{fmt::format("{}: {} | {}", paint.name, request_.world.part_a, request_.world.part_b),
                               request_.threshold, places};
-    GONIO_ASSIGN(const Image image, seam_picture(mesh_, request_, seam_, picture));
+    GONIO_ASSIGN(const Image image, seam_picture(stage_.mesh, request_, stage_.seam, picture));
     return write_png(
         options_.picture, image,
         {{"Software", session_.tool() + " " + cli::Session::version()}, {"Comment", session_.command_line()}});
@@ -168,7 +155,7 @@ class SeamRun {
     }
     std::string text;
     for (std::size_t i = first; i < last; ++i) {
-      const SeamPoint& p = seam_.points[i];
+      const SeamPoint& p = stage_.seam.points[i];
       fmt::format_to(std::back_inserter(text),
                      "{}\t{}\t{:.6g}\t{:.6g}\t{:.6g}\t{:.6g}\t{:.4f}\t{:.4f}\t{:.4f}\t{:.4f}\t", paint.name, p.run,
                      p.distance_m, p.a.x, p.a.y, p.a.z, p.gap_mm, p.flush_mm, p.angle_deg, p.fold_deg);
@@ -183,7 +170,7 @@ class SeamRun {
     std::size_t seen = 0, over = 0;
     Json rows = Json::array();
     for (std::size_t i = 0; i < places.size(); ++i) {
-      const SeamPoint& p = seam_.points[i];
+      const SeamPoint& p = stage_.seam.points[i];
       rows.push_back({{"run", p.run},
                       {"distance_m", p.distance_m},
                       {"x", p.a.x},
@@ -216,25 +203,14 @@ class SeamRun {
   cli::Session& session_;
   const std::set<std::string> wanted_;
   std::set<std::string> met_;
-  Mesh mesh_;
-  Seam seam_;
-  std::vector<SeamView> views_;
-  PrefilteredEnvironment env_;
+  SeamStage stage_;
   int failed_ = 0, pictures_ = 0;
 };
 
 std::string plan(const IndexOptions& options, const SeamRequest& request) {
-  std::string text = fmt::format("seam of {} and {} in {}: places a thousandth of the mesh's size apart\n",
-                                 request.world.part_a, request.world.part_b, options.seam.mesh);
-  if (!request.world.in_world) {
-    text += fmt::format("{} pairs of light and viewer at every place, the light from both sides of the seam\n",
-                        request.geometries.pairs.size());
-  } else {
-    text += fmt::format("{} viewers in the world, {}\n", request.world.viewers.size(),
-                        options.seam.environment.empty() ? fmt::format("{} lights", request.world.lights.size())
-                                                         : "light of " + options.seam.environment);
-  }
-  return text + "left out: gloss, and shadows and reflections of the mesh on itself\n";
+  return fmt::format("seam of {} and {} in {}: places a thousandth of the mesh's size apart\n{}", request.world.part_a,
+                     request.world.part_b, options.seam.mesh,
+                     seam_light_text(options.seam, request.world, request.geometries));
 }
 
 }  // namespace

@@ -70,28 +70,14 @@ class SeamRun {
 
  private:
   Result<void> prepare() {
-    GONIO_ASSIGN(mesh_, read_mesh(options_.seam.mesh));
-    auto seam = seam_between(mesh_, request_.world.part_a, request_.world.part_b, request_.world.seam);
-    if (!seam.ok()) return input_error("{}: {}", options_.seam.mesh, seam.error().message);
-    seam_ = std::move(*seam);
-    views_ = request_.world.in_world ? views_in_world(seam_, request_.world.lights, request_.world.viewers)
-                                     : views_at_seam(seam_, request_.geometries, options_.seam_deg);
-    if (views_.empty())
-      return input_error("{}: no viewer sees both panels in any light: change --views or --view-from",
-                         options_.seam.mesh);
-    fitted_ = some_of(views_);
-    if (!options_.seam.environment.empty()) {
-      GONIO_ASSIGN(env_, read_env(options_.seam.environment));
-      // Told once, by the file's name, and not for every paint.
-      if (auto panels = EnvironmentPanels::make(env_, {}); !panels.ok())
-        return input_error("{}: {}", options_.seam.environment, panels.error().message);
-    }
+    GONIO_ASSIGN(stage_, seam_stage(options_.seam, request_.world, request_.geometries, options_.seam_deg));
+    fitted_ = some_of(stage_.views);
     std::vector<double> folds;
-    for (const SeamPoint& p : seam_.points) folds.push_back(p.fold_deg);
+    for (const SeamPoint& p : stage_.seam.points) folds.push_back(p.fold_deg);
     std::ranges::sort(folds);
     session_.say(fmt::format("seam {} | {}: {:.2f} m, misalignment {:+.1f} to {:+.1f} deg (median {:+.1f})",
-                             request_.world.part_a, request_.world.part_b, seam_.length_m, folds.front(), folds.back(),
-                             folds[folds.size() / 2]));
+                             request_.world.part_a, request_.world.part_b, stage_.seam.length_m, folds.front(),
+                             folds.back(), folds[folds.size() / 2]));
     session_.results()["misalignment_deg"] = {
         {"low", folds.front()}, {"median", folds[folds.size() / 2]}, {"high", folds.back()}};
     return {};
@@ -103,24 +89,24 @@ class SeamRun {
     GONIO_ASSIGN(answer.a, appearance_of(paint));
     const bool solid = paint.paint_class == PaintClass::kSolid;
     if (options_.seam.environment.empty()) {
-      GONIO_ASSIGN(answer.fit, trompe_fit(answer.a, solid, panel_views(seam_, fitted_), request_.fit));
-      const std::vector<PanelView> all = panel_views(seam_, views_);
+      GONIO_ASSIGN(answer.fit, trompe_fit(answer.a, solid, panel_views(stage_.seam, fitted_), request_.fit));
+      const std::vector<PanelView> all = panel_views(stage_.seam, stage_.views);
       answer.before = trompe_errors(answer.a, answer.a, all);
       answer.after = trompe_errors(answer.a, answer.fit.b, all);
       return answer;
     }
-    GONIO_ASSIGN(const EnvironmentPanels panels, EnvironmentPanels::make(env_, condition_of(paint)));
+    GONIO_ASSIGN(const EnvironmentPanels panels, EnvironmentPanels::make(stage_.env, condition_of(paint)));
     const auto colors = [&](const std::vector<SeamView>& views, SeamSide side, const Appearance& appearance) {
-      return seam_colors(panels, seam_, views, side)(appearance);
+      return seam_colors(panels, stage_.seam, views, side)(appearance);
     };
     GONIO_ASSIGN(const std::vector<Lab> target, colors(fitted_, SeamSide::kA, answer.a));
     GONIO_ASSIGN(answer.fit, trompe_fit(answer.a, solid, target, weights_of(fitted_),
-                                        seam_colors(panels, seam_, fitted_, SeamSide::kB), request_.fit));
-    GONIO_ASSIGN(const std::vector<Lab> first, colors(views_, SeamSide::kA, answer.a));
-    GONIO_ASSIGN(const std::vector<Lab> before, colors(views_, SeamSide::kB, answer.a));
-    GONIO_ASSIGN(const std::vector<Lab> after, colors(views_, SeamSide::kB, answer.fit.b));
-    answer.before = trompe_errors(first, before, weights_of(views_));
-    answer.after = trompe_errors(first, after, weights_of(views_));
+                                        seam_colors(panels, stage_.seam, fitted_, SeamSide::kB), request_.fit));
+    GONIO_ASSIGN(const std::vector<Lab> first, colors(stage_.views, SeamSide::kA, answer.a));
+    GONIO_ASSIGN(const std::vector<Lab> before, colors(stage_.views, SeamSide::kB, answer.a));
+    GONIO_ASSIGN(const std::vector<Lab> after, colors(stage_.views, SeamSide::kB, answer.fit.b));
+    answer.before = trompe_errors(first, before, weights_of(stage_.views));
+    answer.after = trompe_errors(first, after, weights_of(stage_.views));
     return answer;
   }
 
@@ -136,7 +122,7 @@ class SeamRun {
     }
     Json json = answer_json(*answer);
     json.erase("geometries");
-    json["views"] = views_.size();
+    json["views"] = stage_.views.size();
     json["seam"] = places_json(*answer);
     fits_.push_back(std::move(json));
     if (!is_improved(*answer, request_.fit) || !answer->fit.converged) negative_ = true;
@@ -146,12 +132,13 @@ class SeamRun {
   }
 
   Json places_json(const Answer& answer) const {
-    const auto before = by_place(seam_, views_, answer.before.de), after = by_place(seam_, views_, answer.after.de);
+    const auto before = by_place(stage_.seam, stage_.views, answer.before.de),
+               after = by_place(stage_.seam, stage_.views, answer.after.de);
     Json places = Json::array();
-    for (std::size_t i = 0; i < seam_.points.size(); ++i)
-      places.push_back({{"run", seam_.points[i].run},
-                        {"distance_m", seam_.points[i].distance_m},
-                        {"fold_deg", seam_.points[i].fold_deg},
+    for (std::size_t i = 0; i < stage_.seam.points.size(); ++i)
+      places.push_back({{"run", stage_.seam.points[i].run},
+                        {"distance_m", stage_.seam.points[i].distance_m},
+                        {"fold_deg", stage_.seam.points[i].fold_deg},
                         {"rms_before", json_number(before[i].rms)},
                         {"rms_after", json_number(after[i].rms)}});
     return places;
@@ -161,8 +148,8 @@ class SeamRun {
     if (++pictures_ > 1)
       return usage_error("--picture shows one paint and there is another, \"{}\": choose one by --only", paint.name);
     SeamPair pair;
-    pair.mesh = &mesh_, pair.seam = &seam_;
-    pair.env = options_.seam.environment.empty() ? nullptr : &env_;
+    pair.mesh = &stage_.mesh, pair.seam = &stage_.seam;
+    pair.env = options_.seam.environment.empty() ? nullptr : &stage_.env;
     pair.lights = request_.world.lights, pair.viewer = request_.world.viewers.front();
     pair.part_b = request_.world.part_b, pair.dark = options_.dark;
     pair.a = paint, pair.answer = answer;
@@ -177,30 +164,19 @@ class SeamRun {
   cli::Session& session_;
   const std::set<std::string> wanted_;
   std::set<std::string> met_;
-  Mesh mesh_;
-  Seam seam_;
-  std::vector<SeamView> views_, fitted_;
-  PrefilteredEnvironment env_;
+  SeamStage stage_;
+  std::vector<SeamView> fitted_;
   std::vector<Json> fits_;
   int pictures_ = 0;
   bool negative_ = false;
 };
 
 std::string plan(const TrompeFitOptions& options, const TrompeSeamRequest& request) {
-  std::string text = fmt::format("seam of {} and {} in {}; paint B goes to {}\n", request.world.part_a,
-                                 request.world.part_b, options.seam.mesh, request.world.part_b);
-  if (!request.world.in_world) {
-    text += fmt::format("{} pairs of light and viewer at every place, the light from both sides of the seam\n",
-                        request.geometries.pairs.size());
-  } else {
-    text += fmt::format("{} viewers in the world, {}\n", request.world.viewers.size(),
-                        options.seam.environment.empty() ? fmt::format("{} lights", request.world.lights.size())
-                                                         : "light of " + options.seam.environment);
-  }
-  return text + fmt::format(
-                    "minimized: {} of dE76 over at most {} views spread along the seam, by {}; judged by all\n"
-                    "left out: gloss, and shadows and reflections of the mesh on itself\n",
-                    options.objective, kMostFitted, options.vary);
+  return fmt::format(
+      "seam of {} and {} in {}; paint B goes to {}\n{}"
+      "minimized: {} of dE76 over at most {} views spread along the seam, by {}; judged by all\n",
+      request.world.part_a, request.world.part_b, options.seam.mesh, request.world.part_b,
+      seam_light_text(options.seam, request.world, request.geometries), options.objective, kMostFitted, options.vary);
 }
 
 }  // namespace
