@@ -9,14 +9,9 @@
 #include "render/effects.h"
 #include "render/gbuffer.h"
 #include "render/maps.h"
+#include "render/visible_point.h"
 
 namespace goniochrome {
-
-// A point to be shaded alone.
-struct VisiblePoint {
-  Vec3 normal, to_viewer;  // unit, on the same side
-  int part = 0;
-};
 
 class CpuEngine {
  public:

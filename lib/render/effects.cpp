@@ -89,6 +89,26 @@ Effects effects_of(const Scene& scene) {
   return effects;
 }
 
+LobeFit with_effects(const LobeFit& paint, const Effects& effects) {
+  LobeFit result = paint;
+  if (!effects.views) result.views.clear();
+  const auto strip = [&](Rgb& diffuse, std::vector<Lobe>& lobes) {
+    if (!effects.diffuse) diffuse = {};
+    std::erase_if(lobes, [&](Lobe& lobe) {
+      if (lobe.exponent == kMirrorExponent) return !effects.mirror;
+      const auto use = std::find_if(effects.lobes.begin(), effects.lobes.end(),
+                                    [&](const Effects::LobeUse& u) { return u.exponent == lobe.exponent; });
+      if (use == effects.lobes.end()) return true;
+      if (!use->directional_diffuse) lobe.directional_diffuse = {};
+      if (!use->gloss) lobe.gloss = {};
+      return false;
+    });
+  };
+  strip(result.diffuse, result.lobes);
+  for (ViewLobes& view : result.views) strip(view.diffuse, view.lobes);
+  return result;
+}
+
 std::vector<std::vector<Tilt>> tilts_of(const Scene& scene, const Effects& effects) {
   std::vector<std::vector<Tilt>> tilts(scene.paints.size(), {{{0, 0, 1}, 1}});
   for (std::size_t part = 0; part < scene.anisotropy.size(); ++part) {

@@ -35,6 +35,9 @@ struct Effects {
 // Everything that the scene's paints and lights call for.
 Effects effects_of(const Scene& scene);
 
+// A paint with the diffuse part, lobes, mirror and views that are on alone.
+LobeFit with_effects(const LobeFit& paint, const Effects& effects);
+
 // The tilted normals that each part's lobes are drawn about; a single one where the part is isotropic.
 std::vector<std::vector<Tilt>> tilts_of(const Scene& scene, const Effects& effects);
 

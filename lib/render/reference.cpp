@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "brdf/lobe_model.h"
 #include "color/color.h"
+#include "render/seen.h"
 
 namespace goniochrome {
 
@@ -20,6 +21,9 @@ constexpr double kTail = 40;
 // The midpoint rule then errs by (1/4)^2/24 of the value on a patch, and far less in the sum over smooth radiance.
 constexpr double kPiece = 0.25;
 
+// Tilts of the truth: of an anisotropic lobe's peak.
+constexpr double kTiltTolerance = 1e-3;
+
 // A run of texels is set up once for so many points: directions cost more than lobes.
 constexpr std::size_t kPointsAtOnce = 16;
 
@@ -28,21 +32,37 @@ struct Patch {
   double solid_angle_sr;
 };
 
+const ExactModel& model_of(const SurfacePoint& point) {
+  static const ExactModel bare;
+  return point.model != nullptr ? *point.model : bare;
+}
+
+double view_deg(const SurfacePoint& point) {
+  return std::atan2(length(cross(point.normal, point.to_viewer)), dot(point.normal, point.to_viewer)) * 180 /
+         std::numbers::pi;
+}
+
 // The reflected radiance of one point, gathered patch by patch.
 class Gatherer {
  public:
   // Texels are at most `texel_rad` across.
-  Gatherer(const SurfacePoint& point, double texel_rad) : point_(point) {
-    reflected_ = 2 * dot(point.normal, point.to_viewer) * point.normal - point.to_viewer;
-    for (const Lobe& lobe : point.paint->lobes) {
-      if (std::isfinite(lobe.exponent)) lobes_.push_back(&lobe);
+  Gatherer(const SurfacePoint& point, double texel_rad)
+      : point_(point), model_(model_of(point)), paint_(at_view(*point.paint, view_deg(point))) {
+    cos_o_ = dot(point.normal, point.to_viewer);
+    set_mirror_directions();
+    for (const Lobe& lobe : paint_.lobes) {
+      if (std::isfinite(lobe.exponent)) lobes_.push_back(lobe);
     }
-    std::sort(lobes_.begin(), lobes_.end(), [](const Lobe* a, const Lobe* b) { return a->exponent < b->exponent; });
+    std::sort(lobes_.begin(), lobes_.end(), [](const Lobe& a, const Lobe& b) { return a.exponent < b.exponent; });
+    if (model_.fresnel) {
+      const double share = 1 / fresnel_dielectric(std::cos(model_.gloss_deg * std::numbers::pi / 180), kCoatIndex);
+      for (Lobe& lobe : lobes_) lobe.gloss = share * lobe.gloss;
+    }
     for (auto lobe = lobes_.rbegin(); lobe != lobes_.rend(); ++lobe) {
-      const double pieces = std::ceil(texel_rad * std::sqrt((*lobe)->exponent) / kPiece);
+      const double pieces = std::ceil(texel_rad * std::sqrt(lobe->exponent) / kPiece);
       if (pieces <= 1) break;
       // cos^E = exp(-kTail) at this angle; a texel whose center is that far and its own extent has nothing to give.
-      const double reach_rad = std::acos(std::exp(-kTail / (*lobe)->exponent)) + texel_rad;
+      const double reach_rad = std::acos(std::exp(-kTail / lobe->exponent)) + texel_rad;
       const double chord = 2 * std::sin(0.5 * std::min(reach_rad, std::numbers::pi));
       cuts_.push_back({chord * chord, static_cast<int>(pieces)});
     }
@@ -53,8 +73,8 @@ class Gatherer {
   // Into how many pieces, across and down, a texel about this direction is to be cut.
   int pieces(const Vec3& direction) const {
     if (cuts_.empty()) return 1;
-    const Vec3 apart = reflected_ - direction;
-    const double chord2 = dot(apart, apart);
+    double chord2 = 4;
+    for (const Mirrored& m : mirrored_) chord2 = std::min(chord2, dot(m.direction - direction, m.direction - direction));
     for (const Cut& cut : cuts_) {
       if (chord2 < cut.chord2) return cut.pieces;
     }
@@ -63,19 +83,20 @@ class Gatherer {
 
   // Adds f L cos_i dw, with cos_i multiplied into f so that the gloss term needs no division.
   void add(const Patch& patch, const Rgb& radiance) {
-    const double cos_i = dot(point_.normal, patch.direction);
-    if (cos_i <= 0) return;
-    const Vec3 apart = reflected_ - patch.direction;
-    const double versine = 0.5 * dot(apart, apart);
-    Rgb f = cos_i * point_.paint->diffuse;
-    if (versine < 1) {
-      const double log_cos = std::log1p(-versine);
-      for (const Lobe* lobe : lobes_) {
-        if (lobe->exponent * -log_cos > kTail) break;
-        f += std::exp(lobe->exponent * log_cos) * (cos_i * lobe->directional_diffuse + lobe->gloss);
-      }
-    }
-    sum_ += patch.solid_angle_sr * (f * radiance);
+    const double above = dot(point_.normal, patch.direction), cos_i = model_.horizon ? above : cos_o_;
+    Rgb f = above > 0 ? above * paint_.diffuse : Rgb{};
+    if (above > 0 || !model_.horizon) f += lobes_toward(patch.direction, cos_i);
+    const Rgb product = model_.reflection != nullptr ? goniochrome::reflected(*model_.reflection, f, radiance) : f * radiance;
+    sum_ += patch.solid_angle_sr * product;
+  }
+
+  // The mirror lobe, which sees this radiance.
+  void add_mirror(const Rgb& radiance) {
+    const Lobe* mirror = find_lobe(paint_, kMirrorExponent);
+    if (mirror == nullptr) return;
+    const bool fresnel = point_.model == nullptr || model_.fresnel;
+    const Rgb k = fresnel_dielectric(fresnel ? cos_o_ : std::numbers::sqrt2 / 2, kCoatIndex) * mirror->gloss;
+    sum_ += model_.reflection != nullptr ? goniochrome::reflected(*model_.reflection, k, radiance) : k * radiance;
   }
 
   const Rgb& sum() const { return sum_; }
@@ -85,10 +106,55 @@ class Gatherer {
     double chord2;  // within this squared distance of the mirror direction
     int pieces;
   };
+  struct Mirrored {
+    Vec3 direction;
+    double share;
+  };
+
+  // About the normal, and about each tilted normal: the tangent runs level around +Y, on a level surface along +X.
+  void set_mirror_directions() {
+    const Vec3& n = point_.normal;
+    reflected_ = 2 * cos_o_ * n - point_.to_viewer;
+    if (model_.tilts.empty()) {
+      mirrored_ = {{reflected_, 1}};
+      return;
+    }
+    const double level2 = n.x * n.x + n.z * n.z;
+    const Vec3 x = level2 > 1e-12 ? normalized({n.z, 0, -n.x}) : Vec3{1, 0, 0}, y = cross(n, x);
+    for (const Tilt& tilt : model_.tilts) {
+      const Vec3 m = tilt.normal.x * x + tilt.normal.y * y + tilt.normal.z * n;
+      const double cos_m = dot(m, point_.to_viewer);
+      const Vec3 r = 2 * cos_m * m - point_.to_viewer;
+      if (cos_m > 0 && dot(r, n) > 0) mirrored_.push_back({r, tilt.weight});
+    }
+  }
+
+  Rgb lobes_toward(const Vec3& direction, double cos_i) const {
+    Rgb f;
+    const double cos_half = 0.5 * length(direction + point_.to_viewer);
+    const double fresnel = model_.fresnel ? fresnel_dielectric(std::min(1.0, cos_half), kCoatIndex) : 1;
+    for (const Mirrored& m : mirrored_) {
+      const Vec3 apart = m.direction - direction;
+      const double versine = 0.5 * dot(apart, apart);
+      if (versine >= 1) continue;
+      const double log_cos = std::log1p(-versine);
+      for (const Lobe& lobe : lobes_) {
+        if (lobe.exponent * -log_cos > kTail) break;
+        const double power = m.share * std::exp(lobe.exponent * log_cos);
+        f += power * (cos_i * lobe.directional_diffuse + fresnel * lobe.gloss);
+      }
+    }
+    return f;
+  }
+
   const SurfacePoint& point_;
+  const ExactModel& model_;
+  LobeFit paint_;
+  double cos_o_ = 1;
   Vec3 reflected_;
-  std::vector<const Lobe*> lobes_;  // finite exponents, ascending
-  std::vector<Cut> cuts_;           // of the lobes narrower than a texel, sharpest first
+  std::vector<Mirrored> mirrored_;
+  std::vector<Lobe> lobes_;  // finite exponents, ascending
+  std::vector<Cut> cuts_;    // of the lobes narrower than a texel, sharpest first
   Rgb sum_;
 };
 
@@ -119,14 +185,6 @@ void gather_environment(const Environment& env, std::vector<Gatherer>& points) {
   }
 }
 
-Rgb mirrored(const SurfacePoint& point, const Vec3& reflected, const Environment& env) {
-  const Lobe* mirror = find_lobe(*point.paint, kMirrorExponent);
-  if (mirror == nullptr) return {};
-  const float* texel = env.lookup(reflected);
-  const double fresnel = fresnel_dielectric(dot(point.normal, point.to_viewer), kCoatIndex);
-  return fresnel * (mirror->gloss * Rgb{texel[0], texel[1], texel[2]});
-}
-
 // `count` of the n numbers 0..n-1, evenly drawn, in ascending order (Fisher-Yates on splitmix64).
 std::vector<std::size_t> drawn(std::size_t n, std::size_t count, std::uint64_t seed) {
   std::vector<std::size_t> all(n);
@@ -143,11 +201,6 @@ std::vector<std::size_t> drawn(std::size_t n, std::size_t count, std::uint64_t s
   return all;
 }
 
-Lab seen_lab(const Rgb& radiance, double white_luminance) {
-  const Xyz white = xyz_d65_from_rgb({1, 1, 1});
-  return lab_from_xyz(xyz_d65_from_rgb((1 / white_luminance) * radiance), white);
-}
-
 }  // namespace
 
 std::vector<Rgb> reference_radiance(const std::vector<SurfacePoint>& points, const Environment* env,
@@ -161,45 +214,76 @@ std::vector<Rgb> reference_radiance(const std::vector<SurfacePoint>& points, con
     for (std::size_t i = begin; i < end; ++i) {
       Gatherer& gatherer = gatherers[i - begin];
       for (const Light& light : lights) gatherer.add({light.direction, std::numbers::pi}, light.white);
+      if (env != nullptr) {
+        const float* texel = env->lookup(gatherer.reflected());
+        gatherer.add_mirror({texel[0], texel[1], texel[2]});
+      }
       radiance[i] = gatherer.sum();
-      if (env != nullptr) radiance[i] += mirrored(points[i], gatherer.reflected(), *env);
     }
   });
   return radiance;
 }
 
-PictureError picture_error(const Frame& frame, const Scene& scene, const Environment* env, double white_luminance,
-                           int count, std::uint64_t seed) {
-  const Stopwatch clock;
-  const double white = white_luminance > 0 ? white_luminance : 1;  // in the dark all is black
-  const Gbuffer& g = *frame.gbuffer;
+std::vector<Rgb> exact_radiance(const std::vector<VisiblePoint>& points, const Scene& scene, const Effects& effects,
+                                const Environment* env) {
+  std::vector<LobeFit> paints;
+  std::vector<ExactModel> models(scene.paints.size());
+  Effects dense = effects;
+  dense.tilt_tolerance = kTiltTolerance;
+  const auto tilts = effects.anisotropy ? tilts_of(scene, dense) : std::vector<std::vector<Tilt>>(scene.paints.size());
+  for (std::size_t part = 0; part < scene.paints.size(); ++part) {
+    paints.push_back(with_effects(scene.paints[part], effects));
+    ExactModel& model = models[part];
+    model.fresnel = effects.fresnel;
+    if (part < scene.gloss_deg.size()) model.gloss_deg = scene.gloss_deg[part];
+    model.horizon = effects.horizon || effects.lobes.empty();
+    if (tilts[part].size() > 1) model.tilts = tilts[part];
+    if (effects.reflection) model.reflection = &scene.reflection;
+  }
+  std::vector<SurfacePoint> surface;
+  for (const VisiblePoint& point : points) {
+    const auto part = static_cast<std::size_t>(point.part);
+    surface.push_back({point.normal, point.to_viewer, &paints[part], &models[part]});
+  }
+  return reference_radiance(surface, effects.environment ? env : nullptr, effects.lights > 0 ? scene.lights : std::vector<Light>());
+}
+
+PixelSample sampled_pixels(const Gbuffer& g, int count, std::uint64_t seed) {
   std::vector<std::array<int, 2>> visible;
   for (int y = 0; y < g.height; ++y) {
     for (int x = 0; x < g.width; ++x) {
       if (g.part(x, y) >= 0) visible.push_back({x, y});
     }
   }
-  std::vector<std::array<int, 2>> chosen;
-  for (const std::size_t i : drawn(visible.size(), static_cast<std::size_t>(count), seed)) chosen.push_back(visible[i]);
-  std::vector<SurfacePoint> points;
-  for (const auto& [x, y] : chosen) {
-    points.push_back({g.normal(x, y), g.to_viewer(x, y), &scene.paints[static_cast<std::size_t>(g.part(x, y))]});
+  PixelSample sample;
+  for (const std::size_t i : drawn(visible.size(), static_cast<std::size_t>(count), seed)) {
+    const auto [x, y] = visible[i];
+    sample.places.push_back(visible[i]);
+    sample.points.push_back({g.normal(x, y), g.to_viewer(x, y), g.part(x, y)});
   }
-  const std::vector<Rgb> truth = reference_radiance(points, env, scene.lights);
+  return sample;
+}
+
+PictureError picture_error(const Frame& frame, const Scene& scene, const Environment* env, double white_luminance,
+                           int count, std::uint64_t seed) {
+  const Stopwatch clock;
+  const double white = white_luminance > 0 ? white_luminance : 1;  // in the dark all is black
+  const PixelSample sample = sampled_pixels(*frame.gbuffer, count, seed);
+  const std::vector<std::array<int, 2>>& chosen = sample.places;
+  const std::vector<Rgb> truth = exact_radiance(sample.points, scene, effects_of(scene), env);
 
   PictureError error;
   error.checked_pixels = static_cast<int>(chosen.size());
   std::vector<double> de00;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const float* pixel = frame.centers.pixel(chosen[i][0], chosen[i][1]);
-    de00.push_back(delta_e_2000(seen_lab({pixel[0], pixel[1], pixel[2]}, white), seen_lab(truth[i], white)));
+    de00.push_back(seen_difference({pixel[0], pixel[1], pixel[2]}, truth[i], white));
     error.de00_mean += de00.back() / static_cast<double>(chosen.size());
     if (de00.back() <= error.de00_max) continue;
     error.de00_max = de00.back();
     error.worst_x = chosen[i][0], error.worst_y = chosen[i][1];
   }
-  std::sort(de00.begin(), de00.end());
-  if (!de00.empty()) error.de00_p95 = de00[(de00.size() * 95 + 99) / 100 - 1];
+  error.de00_p95 = percentile_95(std::move(de00));
   error.time_s = clock.elapsed_s();
   return error;
 }

@@ -2,19 +2,31 @@
 // any prefiltering. goniochrome-theory(7), REFERENCE INTEGRATOR.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "envmap/environment.h"
 #include "image/image.h"
 #include "render/renderer.h"
+#include "render/visible_point.h"
 #include "render/scene.h"
 
 namespace goniochrome {
 
+// What the exact BRDF of a point holds beside its paint's diffuse and lobes.
+struct ExactModel {
+  bool fresnel = false;    // of gloss lobes, relative to gloss_deg, and of the mirror
+  double gloss_deg = 45;
+  bool horizon = true;     // each direction with its own cosine, and none from below; else as prefiltered maps have it
+  std::vector<Tilt> tilts;  // none: isotropic
+  const ReflectionOperator* reflection = nullptr;  // null: component-wise
+};
+
 struct SurfacePoint {
   Vec3 normal, to_viewer;  // unit, on the same side
   const LobeFit* paint = nullptr;
+  const ExactModel* model = nullptr;  // null: that of a bare lobe model, the mirror with its Fresnel reflectance
 };
 
 // The radiance of each point, in the working space: the integral of f L cos_i over the texels above the horizon, each a
@@ -22,6 +34,10 @@ struct SurfacePoint {
 // times the texel that it sees; and the lights. `env` may be null. Bit-identical for any number of threads.
 std::vector<Rgb> reference_radiance(const std::vector<SurfacePoint>& points, const Environment* env,
                                     const std::vector<Light>& lights);
+
+// The same for points of a scene, by the effects that are on.
+std::vector<Rgb> exact_radiance(const std::vector<VisiblePoint>& points, const Scene& scene, const Effects& effects,
+                                const Environment* env);
 
 // How far a picture is from the reference.
 struct PictureError {
@@ -31,8 +47,16 @@ struct PictureError {
   double time_s = 0;
 };
 
+// Random visible pixels, `count` of them or all where there are fewer: their places in the picture and their points.
+struct PixelSample {
+  std::vector<std::array<int, 2>> places;
+  std::vector<VisiblePoint> points;
+};
+PixelSample sampled_pixels(const Gbuffer& gbuffer, int count, std::uint64_t seed);
+
 // Compares the centers of `count` random visible pixels (all, where there are fewer) with the reference, as CIEDE2000
-// of Lab values relative to `white_luminance`, D65. The frame must hold its centers.
+// of Lab values relative to `white_luminance`, D65. The frame must hold its centers. The reference has everything that
+// the scene calls for.
 PictureError picture_error(const Frame& frame, const Scene& scene, const Environment* env, double white_luminance,
                            int count, std::uint64_t seed);
 
