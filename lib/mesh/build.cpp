@@ -34,6 +34,19 @@ struct HashVec3 {
   }
 };
 
+// What makes a corner a vertex of its own.
+struct VertexKey {
+  std::uint64_t position_and_normal;
+  std::int32_t texture;
+  friend bool operator==(const VertexKey&, const VertexKey&) = default;
+};
+struct HashVertexKey {
+  std::size_t operator()(const VertexKey& key) const {
+    std::size_t hash = (key.position_and_normal ^ static_cast<std::uint32_t>(key.texture)) * 0x9E3779B97F4A7C15U;
+    return hash ^ (hash >> 29);
+  }
+};
+
 std::vector<Triangle> triangles_of(const Polygons& polygons, Mesh::Repairs& repairs) {
   std::vector<Triangle> triangles;
   std::vector<Vec3> ring;
@@ -124,7 +137,7 @@ Result<Mesh> mesh_from_polygons(const Polygons& polygons, const std::string& pat
 
   std::vector<std::vector<std::size_t>> members(polygons.parts.size());
   for (std::size_t i = 0; i < triangles.size(); ++i) members[triangles[i].part].push_back(i);
-  std::unordered_map<std::uint64_t, std::uint32_t> vertex_of;
+  std::unordered_map<VertexKey, std::uint32_t, HashVertexKey> vertex_of;
   for (std::size_t part = 0; part < members.size(); ++part) {
     if (members[part].empty()) continue;
     mesh.parts.push_back(
@@ -133,13 +146,18 @@ Result<Mesh> mesh_from_polygons(const Polygons& polygons, const std::string& pat
       std::array<std::uint32_t, 3> triangle;
       for (int k = 0; k < 3; ++k) {
         const Polygons::Corner& corner = triangles[i].corners[k];
-        const std::uint64_t key = std::uint64_t{corner.position} << 32 | static_cast<std::uint32_t>(corner.normal);
+        const VertexKey key = {std::uint64_t{corner.position} << 32 | static_cast<std::uint32_t>(corner.normal),
+                               corner.texture};
         const auto [entry, is_new] = vertex_of.try_emplace(key, static_cast<std::uint32_t>(mesh.positions.size()));
         triangle[k] = entry->second;
         if (!is_new) continue;
         const auto normal = static_cast<std::size_t>(corner.normal);
         mesh.positions.push_back(polygons.positions[corner.position]);
         mesh.normals.push_back(normals[normal]);
+        if (!polygons.texture.empty())
+          mesh.texture.push_back(corner.texture == kNoTexture
+                                     ? std::array<float, 2>{}
+                                     : polygons.texture[static_cast<std::size_t>(corner.texture)]);
         if (normal >= polygons.normals.size()) ++mesh.repairs.normals_made;
       }
       mesh.triangles.push_back(triangle);

@@ -31,6 +31,8 @@ struct Mesh {
     int polygons_split = 0;      // faces of more than three corners
     int triangles_turned = 0;    // wound against the file's own normals
   } repairs;
+
+  std::vector<std::array<float, 2>> texture = {};  // u v of each vertex, v up; empty where the file has none
 };
 
 struct Box {

@@ -220,6 +220,23 @@ TEST_F(MeshFiles, OffPlyAndStlAreOnePartNamedForTheFile) {
   }
 }
 
+TEST_F(MeshFiles, TextureCoordinates) {
+  const std::string text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0 0\nvt 1 0.5\nvt 0\n";
+  const auto mesh = read_mesh(file("uv.obj", text + "f 1/1 2/2 3/3\nf 1/4 3/3 4\n"));
+  ASSERT_TRUE(mesh.ok()) << mesh.error().message;
+  ASSERT_EQ(mesh->texture.size(), mesh->positions.size());
+  EXPECT_EQ(mesh->positions.size(), 5u);  // the first position has two texture coordinates
+  EXPECT_EQ(mesh->texture[mesh->triangles[0][2]], (std::array<float, 2>{1, 0.5F}));
+  EXPECT_EQ(mesh->texture[mesh->triangles[1][2]], (std::array<float, 2>{0, 0}));
+  EXPECT_TRUE(read_mesh(file("none.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1/1 2/2 3/3\n"))->texture.empty());
+  const auto past = read_mesh(file("past.obj", text + "f 1/1 2/2 3/5\n"));
+  ASSERT_FALSE(past.ok());
+  EXPECT_NE(past.error().message.find("texture 5"), std::string::npos) << past.error().message;
+  const auto comma = read_mesh(file("comma.obj", "vt 0,5 1\n" + text));
+  ASSERT_FALSE(comma.ok());
+  EXPECT_NE(comma.error().message.find("comma.obj:1: texture coordinate 1 is \"0,5\""), std::string::npos);
+}
+
 TEST(Mesh, VehicleRealData) {
   const char* data = std::getenv("GONIOCHROME_DATA");
   if (data == nullptr) GTEST_SKIP() << "GONIOCHROME_DATA is not set";

@@ -1,4 +1,4 @@
-// Wavefront OBJ, as far as a picture needs it: v, vn, f, o, g, usemtl. Everything else (texture coordinates, lines,
+// Wavefront OBJ, as far as a picture needs it: v, vt, vn, f, o, g, usemtl. Everything else (lines,
 // smoothing groups, material libraries) is passed over.
 #include <algorithm>
 #include <filesystem>
@@ -74,6 +74,7 @@ class ObjParser {
     line = line.substr(0, line.find('#'));
     const auto keyword = next_word(line);
     if (keyword == "v") return vertex(line);
+    if (keyword == "vt") return texture(line);
     if (keyword == "vn") return normal(line);
     if (keyword == "f") return face(line);
     if (keyword == "usemtl") material_ = trimmed(line);
@@ -98,6 +99,21 @@ class ObjParser {
   Result<void> vertex(std::string_view line) {
     GONIO_ASSIGN(const Vec3 position, three_numbers(line, "vertex"));
     mesh_.positions.push_back(position);
+    return {};
+  }
+
+  // u v, and a w that is passed over.
+  Result<void> texture(std::string_view line) {
+    std::array<float, 2> uv{};
+    for (std::size_t k = 0; k < 2; ++k) {
+      const auto word = next_word(line);
+      const auto number = k == 1 && word.empty() ? std::optional(0.0) : parse_number(word);
+      if (!number)
+        return input_error("{}:{}: texture coordinate {} is \"{}\": write a finite number with a decimal point", path_,
+                           line_, k + 1, word);
+      uv[k] = static_cast<float>(*number);
+    }
+    mesh_.texture.push_back(uv);
     return {};
   }
 
@@ -135,6 +151,11 @@ class ObjParser {
     corner.position = static_cast<std::uint32_t>(position);
     if (first_slash == std::string_view::npos) return corner;
     const auto second_slash = word.find('/', first_slash + 1);
+    const auto place = word.substr(first_slash + 1, second_slash - first_slash - 1);
+    if (!place.empty() && !mesh_.texture.empty()) {  // references to nothing at all are passed over
+      GONIO_ASSIGN(const std::size_t at, reference(place, mesh_.texture.size(), "texture"));
+      corner.texture = static_cast<std::int32_t>(at);
+    }
     if (second_slash == std::string_view::npos) return corner;
     GONIO_ASSIGN(const std::size_t at, reference(word.substr(second_slash + 1), normal_index_.size(), "normal"));
     corner.normal = normal_index_[at];

@@ -10,12 +10,13 @@
 
 namespace goniochrome {
 
-constexpr std::int32_t kNoNormal = -1;
+constexpr std::int32_t kNoNormal = -1, kNoTexture = -1;
 
 struct Polygons {
   struct Corner {
     std::uint32_t position = 0;
     std::int32_t normal = kNoNormal;
+    std::int32_t texture = kNoTexture;
   };
   struct Face {
     std::size_t first = 0;  // of its corners
@@ -26,7 +27,8 @@ struct Polygons {
     std::string name, material;
   };
   std::vector<Vec3> positions;
-  std::vector<Vec3> normals;  // unit
+  std::vector<Vec3> normals;                  // unit
+  std::vector<std::array<float, 2>> texture;  // u v
   std::vector<Corner> corners;
   std::vector<Face> faces;
   std::vector<Part> parts;

@@ -22,9 +22,9 @@ def attribute(name, kind, payload):
     return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(payload)) + payload
 
 
-def header(width, height, pixel_type, comments):
-    """The magic number, the version and the header of a single-part scan-line file."""
-    channels = b"".join(c + b"\0" + struct.pack("<iBxxxii", pixel_type, 0, 1, 1) for c in (b"B", b"G", b"R"))
+def header(width, height, names, pixel_type, comments):
+    """The magic number, the version and the header of a single-part scan-line file with these channels."""
+    channels = b"".join(name.encode() + b"\0" + struct.pack("<iBxxxii", pixel_type, 0, 1, 1) for name in names)
     window = struct.pack("<4i", 0, 0, width - 1, height - 1)
     return b"".join([
         struct.pack("<Ii", 20000630, 2),
@@ -50,15 +50,16 @@ def zipped(raw):
     return packed if len(packed) < len(raw) else raw
 
 
-def exr_file(rows, pixel_type, comments):
-    """The bytes of an EXR. `rows`: from the top, each a list of (r, g, b)."""
+def exr_file(rows, pixel_type, comments, names=("R", "G", "B")):
+    """The bytes of an EXR. `rows`: from the top, each a list of texels with one value for each of the names."""
     width, height = len(rows[0]), len(rows)
+    stored = sorted(range(len(names)), key=lambda channel: names[channel])
     line_format = f"<{width}{'e' if pixel_type == HALF else 'f'}"
-    head = header(width, height, pixel_type, comments)
+    head = header(width, height, [names[channel] for channel in stored], pixel_type, comments)
     blocks = []
     for top in range(0, height, LINES_PER_BLOCK):
         raw = b"".join(struct.pack(line_format, *(texel[channel] for texel in row))
-                       for row in rows[top:top + LINES_PER_BLOCK] for channel in (2, 1, 0))
+                       for row in rows[top:top + LINES_PER_BLOCK] for channel in stored)
         packed = zipped(raw)
         blocks.append(struct.pack("<ii", top, len(packed)) + packed)
     offsets, position = [], len(head) + 8 * len(blocks)

@@ -1,0 +1,40 @@
+// Spatially varying surfaces as textures: one sum of generalized cosine lobes per texel, and the direction its frame is
+// turned to. goniochrome-theory(7), SPATIALLY VARYING SURFACES; [McAllister2002]
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "brdf/lafortune.h"
+
+namespace goniochrome {
+
+// Texels row by row from the top, each: diffuse RGB; cos and sin of twice the angle from the tangent to the texel's own
+// x axis (turned by 180 deg a lobe is the same); then for each lobe albedo RGB, axes XYZ, exponent.
+struct SbrdfTexture {
+  int width = 0, height = 0, lobes = 0;
+  std::vector<float> values;
+
+  int stride() const { return 5 + 7 * lobes; }
+  const float* texel(int column, int row) const {
+    return &values[(static_cast<std::size_t>(row) * width + column) * static_cast<std::size_t>(stride())];
+  }
+};
+
+// One texel, ready to be shaded: its x axis is x_tangent * tangent + x_bitangent * bitangent.
+struct SbrdfTexel {
+  Lafortune surface;
+  double x_tangent = 1, x_bitangent = 0;
+};
+SbrdfTexel sbrdf_texel(const SbrdfTexture& texture, int column, int row);
+
+// The four texels around a place and their bilinear weights; u runs right, v up, both repeat beyond 0..1. The texels
+// are to be shaded one by one and the colors blended: a mean of two lobes' parameters is a third lobe.
+struct TextureTap {
+  int column = 0, row = 0;
+  double weight = 0;
+};
+std::array<TextureTap, 4> texture_taps(int width, int height, double u, double v);
+
+}  // namespace goniochrome

@@ -1,0 +1,74 @@
+#include "image/sbrdf_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "image/image.h"
+
+namespace goniochrome {
+
+bool names_sbrdf(const std::string& path) {
+  return std::string_view(path).ends_with(".sbrdf.exr");
+}
+
+namespace {
+
+// The channels of a file with so many lobes, in the order of SbrdfTexture.
+std::vector<std::string> channels_of(int lobes) {
+  std::vector<std::string> names = {"diffuse.R", "diffuse.G", "diffuse.B", "frame.c", "frame.s"};
+  for (int lobe = 0; lobe < lobes; ++lobe)
+    for (const char* channel : {"R", "G", "B", "x", "y", "z", "n"})
+      names.push_back(fmt::format("lobe{}.{}", lobe, channel));
+  return names;
+}
+
+bool may_be_negative(const std::string& name) {
+  return name.starts_with("frame.") || name.ends_with(".x") || name.ends_with(".y") || name.ends_with(".z");
+}
+
+// Which channel of the file holds each value; -1 for an absent frame.
+Result<std::vector<int>> sources(const std::vector<std::string>& wanted, const std::vector<std::string>& given,
+                                 const std::string& path) {
+  std::vector<int> result;
+  for (const std::string& name : wanted) {
+    const auto found = std::ranges::find(given, name);
+    if (found == given.end() && !name.starts_with("frame."))
+      return input_error("{}: channel {} is missing: lobes are lobe0, lobe1 ... with R G B x y z n", path, name);
+    result.push_back(found == given.end() ? -1 : static_cast<int>(found - given.begin()));
+  }
+  if ((result[3] < 0) != (result[4] < 0)) return input_error("{}: give frame.c and frame.s, or neither", path);
+  for (const std::string& name : given)
+    if (std::ranges::find(wanted, name) == wanted.end())
+      return input_error("{}: channel {} is not known: there are diffuse, frame and lobe0 to lobe15", path, name);
+  return result;
+}
+
+}  // namespace
+
+Result<SbrdfTexture> read_sbrdf(const std::string& path) {
+  GONIO_ASSIGN(const std::vector<ImagePart> parts, read_exr(path));
+  const Image& image = parts.front().image;
+  SbrdfTexture texture{image.width, image.height, 0, {}};
+  const auto& given = image.channel_names;
+  while (texture.lobes < 16 && std::ranges::find(given, fmt::format("lobe{}.n", texture.lobes)) != given.end())
+    ++texture.lobes;
+  const std::vector<std::string> wanted = channels_of(texture.lobes);
+  GONIO_ASSIGN(const std::vector<int> from, sources(wanted, given, path));
+  texture.values.reserve(static_cast<std::size_t>(image.width) * image.height * wanted.size());
+  for (int row = 0; row < image.height; ++row) {
+    for (int column = 0; column < image.width; ++column) {
+      const float* pixel = image.pixel(column, row);
+      for (std::size_t k = 0; k < wanted.size(); ++k) {
+        const float value = from[k] < 0 ? (k == 3 ? 1.0F : 0.0F) : pixel[from[k]];
+        if (!std::isfinite(value) || (value < 0 && !may_be_negative(wanted[k])))
+          return input_error("{}: {} of texel ({},{}) is {}: give a finite number{}", path, wanted[k], column, row,
+                             value, may_be_negative(wanted[k]) ? "" : " of 0 or more");
+        texture.values.push_back(value);
+      }
+    }
+  }
+  return texture;
+}
+
+}  // namespace goniochrome

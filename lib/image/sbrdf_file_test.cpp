@@ -1,0 +1,83 @@
+#include "image/sbrdf_file.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "image/image.h"
+
+namespace goniochrome {
+namespace {
+
+const std::vector<std::string> kChannels = {"diffuse.R", "diffuse.G", "diffuse.B", "lobe0.R", "lobe0.G",
+                                            "lobe0.B",   "lobe0.x",   "lobe0.y",   "lobe0.z", "lobe0.n"};
+
+class SbrdfFile : public testing::Test {
+ protected:
+  // What reading says of a 1x1 texture with these channels.
+  Result<SbrdfTexture> read(const std::vector<std::string>& channels, const std::vector<float>& values) {
+    const Image image{1, 1, static_cast<int>(channels.size()), values, channels};
+    EXPECT_TRUE(write_exr(path_, {{"", image, {}, PixelType::kFloat}}).ok());
+    return read_sbrdf(path_);
+  }
+  void TearDown() override { std::filesystem::remove(path_); }
+  const std::string path_ = testing::TempDir() + "one.sbrdf.exr";
+};
+
+TEST_F(SbrdfFile, ReadsWhateverTheOrderOfChannels) {
+  const std::vector<float> values = {0.1F, 0.2F, 0.3F, 1, 2, 3, -1, -0.5F, 1, 40};
+  const auto texture = read(kChannels, values);
+  ASSERT_TRUE(texture.ok()) << texture.error().message;
+  EXPECT_EQ(texture->lobes, 1);
+  EXPECT_EQ(texture->values, (std::vector<float>{0.1F, 0.2F, 0.3F, 1, 0, 1, 2, 3, -1, -0.5F, 1, 40}));
+  EXPECT_EQ(read({"diffuse.R", "diffuse.G", "diffuse.B"}, {1, 1, 1})->lobes, 0);
+}
+
+TEST_F(SbrdfFile, TellsWhatIsWrong) {
+  const std::vector<float> good = {0.1F, 0.2F, 0.3F, 1, 2, 3, -1, -0.5F, 1, 40};
+  const auto told = [&](std::vector<std::string> channels, std::vector<float> values) {
+    const auto refused = read(channels, values);
+    return refused.ok() ? std::string("nothing") : refused.error().message;
+  };
+  auto channels = kChannels;
+  channels[7] = "lobe0.q";
+  EXPECT_NE(told(channels, good).find("channel lobe0.y is missing"), std::string::npos) << told(channels, good);
+  channels = kChannels;
+  channels.push_back("glow.R");
+  auto values = good;
+  values.push_back(1);
+  EXPECT_NE(told(channels, values).find("glow.R is not known"), std::string::npos);
+  channels.back() = "frame.c";
+  EXPECT_NE(told(channels, values).find("frame.c and frame.s"), std::string::npos);
+  values = good;
+  values[9] = -1;
+  EXPECT_NE(told(kChannels, values).find("lobe0.n of texel (0,0) is -1"), std::string::npos);
+  EXPECT_NE(told({"R", "G", "B"}, {1, 1, 1}).find("diffuse.R is missing"), std::string::npos);
+  EXPECT_TRUE(names_sbrdf("a/b.sbrdf.exr"));
+  EXPECT_FALSE(names_sbrdf("b.exr"));
+}
+
+TEST_F(SbrdfFile, TheTexturesOfTheTestData) {
+  for (const auto& [name, lobes] : {std::pair{"brushed", 3}, {"nameplate", 3}, {"wood", 1}}) {
+    const auto texture = read_sbrdf(std::string(GONIOCHROME_TESTDATA "/") + name + ".sbrdf.exr");
+    ASSERT_TRUE(texture.ok()) << texture.error().message;
+    EXPECT_EQ(texture->lobes, lobes);
+    EXPECT_EQ(texture->width, 128);
+    // No texel sends back more than it gets, as far as its lobes about the mirror direction tell at normal incidence.
+    double most = 0;
+    for (int row = 0; row < texture->height; ++row)
+      for (int column = 0; column < texture->width; ++column) {
+        const SbrdfTexel texel = sbrdf_texel(*texture, column, row);
+        double albedo = M_PI * texel.surface.diffuse.x;
+        for (const LafortuneLobe& lobe : texel.surface.lobes) albedo += environment_fetch(lobe, {0, 0, 1}).weight.x;
+        most = std::max(most, albedo);
+      }
+    EXPECT_LE(most, 1) << name;
+    EXPECT_GT(most, 0.1) << name;
+  }
+}
+
+}  // namespace
+}  // namespace goniochrome

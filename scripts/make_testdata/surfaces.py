@@ -1,0 +1,137 @@
+"""Spatially varying surfaces (*.sbrdf.exr): brushed metal, a nameplate, wood.
+
+Each texel is a sum of generalized cosine lobes, f = diffuse + sum albedo (x wo.x wi.x + y wo.y wi.y + z wo.z wi.z)^n in
+1/sr, linear Rec.2020, in a frame whose x axis (along the brush or the grain) is turned by half the angle of (frame.c,
+frame.s). goniochrome-theory(7), SPATIALLY VARYING SURFACES.
+"""
+
+import math
+
+from make_testdata import exr
+from make_testdata.blend import mix, smooth_step
+
+SIZE = 128
+
+
+def noise(*integers):
+    """A number 0..1 that looks random, from a hash of integers."""
+    state = 0x9E3779B9
+    for value in integers:
+        state = (state ^ (value & 0xFFFFFFFF)) * 0x85EBCA6B & 0xFFFFFFFF
+        state ^= state >> 13
+        state = state * 0xC2B2AE35 & 0xFFFFFFFF
+        state ^= state >> 16
+    return state / 0xFFFFFFFF
+
+
+def soft_noise(x, y, period_x, period_y, seed):
+    """Noise that is smooth between whole numbers and repeats after the periods."""
+    column, row = math.floor(x), math.floor(y)
+    s, t = smooth_step(0, 1, x - column), smooth_step(0, 1, y - row)
+    at = [[noise((column + i) % period_x, (row + j) % period_y, seed) for i in (0, 1)] for j in (0, 1)]
+    top, bottom = (a + s * (b - a) for a, b in at)
+    return top + t * (bottom - top)
+
+
+def lobe_energy(exponent):
+    """The albedo (1/sr) that gives a lobe about the mirror direction a total of 1."""
+    return (exponent + 1) / (2 * math.pi)
+
+
+def metal(tint, strength):
+    """Three lobes of a metal brushed along x. The sharp one is a mirror's; the wider ones follow the view less and less
+    across the brush (y), as the mean direction of grooves does, and so draw the highlight long across it."""
+    fan = ((18, 0.0, 0.40), (56, 0.80, 0.30), (184, 1.0, 0.15))
+    values = []
+    for exponent, across, share in fan:
+        albedo = strength * share * lobe_energy(exponent)
+        values += [albedo * c for c in tint] + [-1.0, -across, 1.0, exponent]
+    return values
+
+
+def names(lobes):
+    """The channels of a texel, in its order."""
+    result = ["diffuse.R", "diffuse.G", "diffuse.B", "frame.c", "frame.s"]
+    for lobe in range(lobes):
+        result += [f"lobe{lobe}.{channel}" for channel in "RGBxyzn"]
+    return result
+
+
+def frame(angle):
+    """The direction of a texel's x axis, as it is stored."""
+    return [math.cos(2 * angle), math.sin(2 * angle)]
+
+
+STEEL, BRASS = (0.80, 0.82, 0.84), (0.86, 0.68, 0.36)
+
+
+def brushed(column, row):
+    """Steel whose brush direction turns once (half a turn of its axis twice) across the texture, with fine streaks."""
+    angle = 2 * math.pi * (column + 0.5) / SIZE
+    along = math.cos(angle) * column + math.sin(angle) * row
+    across = -math.sin(angle) * column + math.cos(angle) * row
+    streak = 0.85 + 0.3 * soft_noise(along / 24, across * 1.5, 4096, 4096, 1)
+    return [0.012 * c for c in STEEL] + frame(angle) + metal(STEEL, streak)
+
+
+# 5 x 7 letters, a row of bits each.
+LETTERS = {
+    "G": (14, 17, 16, 23, 17, 17, 15), "O": (14, 17, 17, 17, 17, 17, 14), "N": (17, 25, 21, 19, 17, 17, 17),
+    "I": (14, 4, 4, 4, 4, 4, 14), "C": (14, 17, 16, 16, 16, 17, 14), "H": (17, 17, 17, 31, 17, 17, 17),
+    "R": (30, 17, 17, 30, 20, 18, 17), "M": (17, 27, 21, 21, 17, 17, 17), "E": (31, 16, 16, 30, 16, 16, 31),
+}
+LINES, DOT = ("GONIO", "CHROME"), 3
+
+
+def lettered(column, row):
+    """Whether the texel is inside the lettering: two lines, centered."""
+    for number, word in enumerate(LINES):
+        width, top = (6 * len(word) - 1) * DOT, SIZE // 2 - 26 + 30 * number
+        x, y = column - (SIZE - width) // 2, row - top
+        if 0 <= x < width and 0 <= y < 7 * DOT:
+            letter, dot = divmod(x // DOT, 6)
+            return dot < 5 and LETTERS[word[letter]][y // DOT] >> (4 - dot) & 1 == 1
+    return False
+
+
+def nameplate(column, row):
+    """Brass brushed across, its letters brushed upright: the same metal, told by its highlights alone, and a little
+    darkened."""
+    inside = lettered(column, row)
+    angle = math.pi / 2 if inside else 0.0
+    along, across = (row, column) if inside else (column, row)
+    streak = 0.85 + 0.3 * soft_noise(along / 16, across * 1.0, SIZE // 16, SIZE, 2)
+    return [0.012 * c for c in BRASS] + frame(angle) + metal(BRASS, streak * (0.8 if inside else 1.0))
+
+
+def wood(column, row):
+    """Varnished wood: rings cut along the trunk. The grain is wide (exponent about 10), the wood between it glossier (about
+    150), and both reflect more at grazing angles, where |p| is above 1."""
+    x, y = (column + 0.5) / SIZE, (row + 0.5) / SIZE
+    bend = 0.12 * math.sin(2 * math.pi * x) + 0.05 * soft_noise(4 * x, 4 * y, 4, 4, 3)
+    ring = 6 * (y + bend) + 0.35 * soft_noise(8 * x, 24 * y, 8, 24, 4)
+    phase = ring - math.floor(ring)
+    grain = smooth_step(0.55, 0.92, phase) * (1 - smooth_step(0.94, 1.0, phase))
+    fiber = 0.85 + 0.3 * soft_noise(6 * x, 64 * y, 6, 64, 5)
+    color = tuple(fiber * c / math.pi for c in mix((0.36, 0.19, 0.085), (0.13, 0.055, 0.025), grain))
+    exponent = 150 * (10 / 150) ** grain
+    strength = 0.035 * (1 - 0.6 * grain) * lobe_energy(exponent)
+    return list(color) + frame(0.0) + [strength] * 3 + [-1 - 1.5 / exponent] * 2 + [1.0, exponent]
+
+
+def surface_exr(texel, lobes, comments):
+    """The bytes of one texture."""
+    rows = [[texel(column, row) for column in range(SIZE)] for row in range(SIZE)]
+    return exr.exr_file(rows, exr.HALF, comments, names(lobes))
+
+
+def brushed_exr():
+    return surface_exr(brushed, 3, "brushed steel, the brush turning once across; generalized cosine lobes, linear Rec.2020")
+
+
+def nameplate_exr():
+    return surface_exr(nameplate, 3, "lettering in brushed brass; generalized cosine lobes, linear Rec.2020")
+
+
+def wood_exr():
+    return surface_exr(wood, 1, "varnished wood; generalized cosine lobes, linear Rec.2020")
