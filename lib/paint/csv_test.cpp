@@ -230,7 +230,7 @@ TEST(PaintCsv, wrong_cells_lose_a_row_and_name_line_column_value_and_remedy) {
   EXPECT_EQ(reading.paints[1].name, "d");
 }
 
-TEST(HardCase, xml_hostile_duplicate_names_in_tables) {
+TEST(PaintCsv, duplicate_names_are_told_with_both_lines) {
   const Reading reading = reading_of_text(kHeader +
                                           "a,15,D65,10,1,2,3\nb,15,D65,10,1,2,3\nb,45,D65,10,1,2,3\n"
                                           "a,25,D65,10,1,2,3\na,45,D65,10,1,2,3\nc,15,D65,10,1,2,3\n");

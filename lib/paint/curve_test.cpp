@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "base/hard_case_for_test.h"
+
 namespace goniochrome {
 namespace {
 
@@ -51,13 +53,19 @@ TEST(Curve, passes_face_at_15_and_flop_from_the_travel_on) {
   EXPECT_LE(difference(lab_at(appearance, 15), appearance.face), 2e-14);
 }
 
-TEST(HardCase, curve_solid) {
+TEST(HardCase, CurveSolid) {
+  const Lab lab{41.87, -0.3, 0.1};
+  double ours = 0;
   for (const double travel : {15.0001, 16.0, 60.0, 180.0}) {
-    const Lab lab{41.87, -0.3, 0.1};
     const Appearance solid{lab, lab, travel, {}};
-    for (const double t : {0.0, 15.0, 45.0, 110.0, 180.0}) EXPECT_EQ(lab_at(solid, t), lab);
+    for (const double t : {0.0, 15.0, 45.0, 110.0, 180.0}) ours = worst_of(ours, difference(lab_at(solid, t), lab));
     EXPECT_TRUE(std::isnan(TextbookQuadratic(lab.L, lab.L, travel).at(45)));
   }
+  hard_case("curve-solid", {.what = "L*a*b* of a curve whose face is its flop",
+                            .textbook = TextbookQuadratic(lab.L, lab.L, 60).at(45) - lab.L,
+                            .ours = ours,
+                            .bound = 0,
+                            .unit = "L*"});
   const ChannelCurve channel = channel_curve(50, 50, 50);
   EXPECT_TRUE(channel.exact);
   EXPECT_EQ(channel.at(0), 50);
@@ -68,7 +76,7 @@ TEST(HardCase, curve_solid) {
   EXPECT_EQ(*fit->appearance.residual_de00, 0);
 }
 
-TEST(HardCase, curve_travel_15) {
+TEST(HardCase, CurveTravel15) {
   // Refused at 15 and beyond 180, bounded and told just above.
   for (const double travel : {15.0, 14.0, -3.0, 180.001, std::nan("")}) {
     const auto checked = check({{}, {}, travel, {}});
@@ -79,29 +87,39 @@ TEST(HardCase, curve_travel_15) {
   EXPECT_TRUE(check({{}, {}, 15.01, {}}).ok());
   const double above = std::nextafter(15.0, 16.0);
   const Appearance steep{{80, 0, 0}, {30, 0, 0}, above, {}};
-  EXPECT_EQ(lab_at(steep, 15), steep.face);
   EXPECT_EQ(lab_at(steep, above), steep.flop);
   EXPECT_TRUE(std::isfinite(lab_at(steep, 0).L));
   EXPECT_GT(extrapolation_at_specular(steep), 4);
   EXPECT_DOUBLE_EQ(extrapolation_at_specular({{}, {}, 30, {}}), 4);
   // The textbook coefficients grow as 1/(travel - 15)^2 and cancel: the face is lost.
   const TextbookQuadratic textbook(80, 30, above);
-  EXPECT_GT(std::abs(textbook.at(15) - 80), 1);
+  hard_case("curve-travel-15", {.what = "face of a curve whose travel is the next number above 15",
+                                .textbook = std::abs(textbook.at(15) - 80),
+                                .ours = difference(lab_at(steep, 15), steep.face),
+                                .bound = 0,
+                                .unit = "L*"});
   EXPECT_TRUE(std::isnan(TextbookQuadratic(80, 30, 15).at(20)));
   EXPECT_NEAR(lab_at({{80, 0, 0}, {30, 0, 0}, 15 + 1e-9, {}}, 15).L, 80, 1e-13);
 }
 
-TEST(HardCase, aspecular_nonmonotone) {
+TEST(HardCase, AspecularNonmonotone) {
   struct {
     double at_15, at_45, at_110;
   } const odd[] = {{50, 60, 40}, {50, 30, 40}, {40, 60, 50}, {50, 60, 50}, {50, 40, 50}, {50, 50, 40}, {0, -5, 3}};
+  // How far a travel is outside of its domain: above 15 and up to 180 deg.
+  const auto outside_deg = [](double travel) {
+    return std::isfinite(travel) ? std::max({0.0, std::nextafter(15.0, 16.0) - travel, travel - 180}) : INFINITY;
+  };
+  double textbook_outside = 0, ours_outside = 0;
   for (const auto& q : odd) {
     // Not a number, infinite, or on the wrong side of 15 deg.
     const double textbook = textbook_travel_deg(q.at_15, q.at_45, q.at_110);
-    EXPECT_FALSE(textbook > 15 && textbook <= 180);
+    EXPECT_GT(outside_deg(textbook), 0);
+    textbook_outside = worst_of(textbook_outside, outside_deg(textbook));
     const ChannelCurve curve = channel_curve(q.at_15, q.at_45, q.at_110);
     EXPECT_FALSE(curve.exact);
     ASSERT_TRUE(check({{}, {}, curve.travel_deg, {}}).ok()) << curve.travel_deg;
+    ours_outside = worst_of(ours_outside, outside_deg(curve.travel_deg));
     // Least squares: no clamped quadratic of a fine brute-force scan comes closer.
     const auto squares = [&](const auto& at) {
       return std::pow(at(15) - q.at_15, 2) + std::pow(at(45) - q.at_45, 2) + std::pow(at(110) - q.at_110, 2);
@@ -120,6 +138,11 @@ TEST(HardCase, aspecular_nonmonotone) {
     EXPECT_GT(*fit->appearance.residual_de00, 0.1);
     EXPECT_EQ(fit->de00.size(), 3u);
   }
+  hard_case("aspecular-nonmonotone", {.what = "travel outside of its domain, L45 not between L15 and L110",
+                                      .textbook = textbook_outside,
+                                      .ours = ours_outside,
+                                      .bound = 0,
+                                      .unit = "deg"});
 }
 
 // Every channel with 0 <= s < 1 whose vertex stays within 180 deg is met at all three angles.

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <random>
 
+#include "base/hard_case_for_test.h"
+
 namespace goniochrome {
 namespace {
 
@@ -132,11 +134,12 @@ double ulps(double value, long double exact) {
 // Directions on a grid of 2^-20 make every product of the reference exact in long double (64 bits: 21 + 21 bits for a
 // product with the normal (0,0,1), and 42 for the cross product), so the reference errs by its own square root and arc
 // tangent alone, 1e-3 ulp of a double.
-TEST(HardCase, angle_acos) {
+TEST(HardCase, AngleAcos) {
   std::mt19937_64 random(3);
   std::uniform_int_distribution<int> grid(-(1 << 20), 1 << 20), tiny(-3, 3);
   const Vec3 normal{0, 0, 1};
   int parallel = 0, opposite = 0, wide = 0;
+  double worst = 0, textbook = 0;
   for (int i = 0; i < 300000; ++i) {
     const std::array<int, 3> light{grid(random), grid(random), grid(random)};
     std::array<int, 3> view{grid(random), grid(random), grid(random)};
@@ -153,17 +156,24 @@ TEST(HardCase, angle_acos) {
     constexpr double kGrid = 1.0 / (1 << 20);
     const Vec3 l{light[0] * kGrid, light[1] * kGrid, light[2] * kGrid};
     const Vec3 w{view[0] * kGrid, view[1] * kGrid, view[2] * kGrid};
-    ASSERT_LE(ulps(aspecular_angle_rad(l, w, normal), exact), 4) << static_cast<double>(exact);
+    worst = worst_of(worst, ulps(aspecular_angle_rad(l, w, normal), exact));
+    textbook = worst_of(textbook, ulps(textbook_angle_rad((1 / length(l)) * l, (1 / length(w)) * w, normal), exact));
     (exact < 1e-4L ? parallel : exact > 3.1414L ? opposite : wide)++;
   }
   EXPECT_GT(parallel, 50000);
   EXPECT_GT(opposite, 50000);
   EXPECT_GT(wide, 50000);
+  hard_case("angle-acos", {.what = "aspecular angle, near the mirror direction and opposite to it",
+                           .textbook = textbook,
+                           .ours = worst,
+                           .bound = 4,
+                           .unit = "ulp"});
 }
 
 // Unit directions a known tiny angle from the mirror direction about a tilted normal.
-TEST(HardCase, angle_acos_of_unit_vectors) {
+TEST(HardCase, AngleAcosOfUnitVectors) {
   int textbook_wrong = 0, textbook_nan = 0;
+  double worst = 0, control = 0;
   for (const double angle : {1e-14, 1e-10, 1e-8, 1e-6, 1e-3})
     for (int i = 0; i < 100; ++i) {
       const double t = 0.01 + 0.015 * i;
@@ -171,13 +181,19 @@ TEST(HardCase, angle_acos_of_unit_vectors) {
       const Vec3 view{std::sin(t) + std::cos(t) * angle, 0, std::cos(t) - std::sin(t) * angle};
       const double ours = aspecular_angle_rad(light, view, {0, 0, 1});
       // sin and cos are rounded to 1.1e-16, which turns the directions themselves by at most 4 such steps.
-      EXPECT_NEAR(ours, std::atan(angle), 5e-16);
+      worst = worst_of(worst, std::abs(ours - std::atan(angle)));
       const double textbook = textbook_angle_rad(light, (1 / length(view)) * view, {0, 0, 1});
       textbook_nan += std::isnan(textbook);
+      if (!std::isnan(textbook)) control = worst_of(control, std::abs(textbook - std::atan(angle)));
       textbook_wrong += !(std::abs(textbook - std::atan(angle)) < 1e-3 * angle);
     }
   EXPECT_GT(textbook_nan, 0);
   EXPECT_GT(textbook_wrong, 200);
+  hard_case("angle-acos", {.what = "angle between unit directions 1e-14 to 1e-3 apart, where it is a number",
+                           .textbook = control,
+                           .ours = worst,
+                           .bound = 5e-16,
+                           .unit = "rad"});
   // Tilted normals, any lengths: a common factor of each vector changes nothing.
   std::mt19937_64 random(4);
   std::normal_distribution<double> any;
