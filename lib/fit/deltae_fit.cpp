@@ -3,37 +3,45 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fit/solver.h"
+#include "math/least_squares.h"
 
 namespace goniochrome {
 
 namespace {
 
-// Residuals: three for each reading (a vector of length dE00) and three for each guide. Parameters: x, column by
-// column.
-class Residuals final : public ceres::CostFunction {
+// Residuals: three for each reading (a vector of length dE00) and three for each guide. Unknowns: x, column by column.
+class Residuals {
  public:
-  explicit Residuals(const DeltaEProblem& problem) : problem_(problem) {
-    set_num_residuals(static_cast<int>(3 * (problem.readings.size() + problem.guides.size())));
-    mutable_parameter_block_sizes()->push_back(3 * problem.columns);
+  explicit Residuals(const DeltaEProblem& problem) : problem_(problem) {}
+
+  int rows() const { return static_cast<int>(3 * (problem_.readings.size() + problem_.guides.size())); }
+  int unknowns() const { return 3 * problem_.columns; }
+
+  double sum_of_squares(const std::vector<double>& x) const {
+    double sum = 0;
+    for (const auto& reading : problem_.readings) {
+      const Vec3 e = difference(reading.lab, prediction(reading.shape, x));
+      sum += dot(e, e);
+    }
+    for (const auto& guide : problem_.guides) {
+      const Rgb e = guide.weight * (prediction(guide.shape, x) - guide.value);
+      sum += dot(e, e);
+    }
+    return sum;
   }
 
-  bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
-    const double* x = parameters[0];
-    double* jacobian = jacobians ? jacobians[0] : nullptr;
-    const std::size_t width = 3 * static_cast<std::size_t>(problem_.columns);
-    std::size_t row = 0;
+  // The residuals and, in the leading rows of `jacobian`, their derivative.
+  void linearize(const std::vector<double>& x, std::vector<double>& residuals, Matrix& jacobian) const {
+    residuals.resize(static_cast<std::size_t>(rows()));
+    int row = 0;
     for (const auto& reading : problem_.readings) {
       const Rgb rgb = prediction(reading.shape, x);
       const Vec3 e = difference(reading.lab, rgb);
       for (int k = 0; k < 3; ++k) residuals[row + k] = e[k];
-      if (jacobian) {
-        for (int c = 0; c < 3; ++c) {
-          const Vec3 slope = derivative(reading.lab, rgb, c);
-          for (int k = 0; k < 3; ++k)
-            for (int j = 0; j < problem_.columns; ++j)
-              jacobian[(row + k) * width + 3 * j + c] = slope[k] * reading.shape[j];
-        }
+      for (int c = 0; c < 3; ++c) {
+        const Vec3 slope = derivative(reading.lab, rgb, c);
+        for (int j = 0; j < problem_.columns; ++j)
+          for (int k = 0; k < 3; ++k) jacobian(row + k, 3 * j + c) = slope[k] * reading.shape[j];
       }
       row += 3;
     }
@@ -41,18 +49,14 @@ class Residuals final : public ceres::CostFunction {
       const Rgb rgb = prediction(guide.shape, x);
       for (int c = 0; c < 3; ++c) {
         residuals[row + c] = guide.weight * (rgb[c] - guide.value[c]);
-        if (!jacobian) continue;
-        for (std::size_t j = 0; j < width; ++j) jacobian[(row + c) * width + j] = 0;
-        for (int j = 0; j < problem_.columns; ++j)
-          jacobian[(row + c) * width + 3 * j + c] = guide.weight * guide.shape[j];
+        for (int j = 0; j < problem_.columns; ++j) jacobian(row + c, 3 * j + c) = guide.weight * guide.shape[j];
       }
       row += 3;
     }
-    return true;
   }
 
  private:
-  static Rgb prediction(const std::vector<double>& shape, const double* x) {
+  static Rgb prediction(const std::vector<double>& shape, const std::vector<double>& x) {
     Rgb rgb;
     for (std::size_t j = 0; j < shape.size(); ++j) rgb += shape[j] * Rgb{x[3 * j], x[3 * j + 1], x[3 * j + 2]};
     return rgb;
@@ -71,60 +75,124 @@ class Residuals final : public ceres::CostFunction {
   const DeltaEProblem& problem_;
 };
 
+double column_norm(const Matrix& m, int column, int rows) {
+  double sum = 0;
+  for (int i = 0; i < rows; ++i) sum += m(i, column) * m(i, column);
+  return std::sqrt(sum);
+}
+
 // How far x is from stationary: for each column of the derivative its cosine to the residual, where x may still move
 // that way.
 double stationarity(const Residuals& residuals, const std::vector<double>& x) {
-  const std::size_t rows = static_cast<std::size_t>(residuals.num_residuals()), columns = x.size();
-  std::vector<double> r(rows), j(rows * columns);
-  const double* parameters = x.data();
-  double* jacobian = j.data();
-  residuals.Evaluate(&parameters, r.data(), &jacobian);
+  std::vector<double> r;
+  Matrix j(residuals.rows(), residuals.unknowns());
+  residuals.linearize(x, r, j);
   double size = 0;
   for (const double v : r) size += v * v;
   if (size < 1e-20) return 0;
   double worst = 0;
-  for (std::size_t k = 0; k < columns; ++k) {
-    double gradient = 0, norm = 0;
-    for (std::size_t i = 0; i < rows; ++i) {
-      gradient += j[i * columns + k] * r[i];
-      norm += j[i * columns + k] * j[i * columns + k];
-    }
+  for (int k = 0; k < j.columns; ++k) {
+    double gradient = 0;
+    for (int i = 0; i < j.rows; ++i) gradient += j(i, k) * r[i];
+    const double norm = column_norm(j, k, j.rows);
     if (norm == 0 || (x[k] <= 0 && gradient > 0)) continue;
-    worst = std::max(worst, std::abs(gradient) / std::sqrt(norm * size));
+    worst = std::max(worst, std::abs(gradient) / (norm * std::sqrt(size)));
   }
   return worst;
 }
+
+// Levenberg and Marquardt's method on x >= 0. Each step z is the exact minimum of the linearized problem under the
+// bounds, a non-negative least-squares problem of its own:
+//
+//   minimize |J (z - x) + r|^2 + damping |D (z - x)|^2   over z >= 0,   D = the lengths of J's columns
+//
+// so that weights enter and leave the bounds many at a time. It is stationary to rounding after 10 to 30 steps where a
+// trust region with projected steps was still on its way after 400.
+class Search {
+ public:
+  Search(const Residuals& residuals, const Deadline& deadline)
+      : residuals_(residuals),
+        deadline_(deadline),
+        rows_(residuals.rows()),
+        unknowns_(residuals.unknowns()),
+        system_(rows_ + unknowns_, unknowns_),
+        right_(static_cast<std::size_t>(rows_ + unknowns_)),
+        scale_(static_cast<std::size_t>(unknowns_)) {}
+
+  FitStatus run(std::vector<double>& x, double& value) {
+    constexpr int kMostSteps = 200;
+    value = residuals_.sum_of_squares(x);
+    double damping = 1e-3;
+    int small_gains = 0;
+    for (int step = 0; step < kMostSteps; ++step) {
+      if (deadline_.passed()) return FitStatus::kTimeLimit;
+      linearize(x);
+      double next_value = value;
+      std::vector<double> next;
+      for (;; damping *= 8) {
+        next = solved(x, damping);
+        next_value = residuals_.sum_of_squares(next);
+        if (next_value < value) break;
+        constexpr double kNoStepLeft = 1e8;
+        if (damping > kNoStepLeft) return FitStatus::kOptimal;
+        if (deadline_.passed()) return FitStatus::kTimeLimit;
+      }
+      const double gain = value - next_value;
+      x = std::move(next), value = next_value;
+      damping = std::max(damping / 10, 1e-12);
+      constexpr double kSmallGain = 1e-8;  // of the sum of squares: 1e-9 dE00 of a typical one
+      small_gains = gain < kSmallGain * value ? small_gains + 1 : 0;
+      if (small_gains >= 2 || value < 1e-16) return FitStatus::kOptimal;
+    }
+    return FitStatus::kNotConverged;
+  }
+
+ private:
+  void linearize(const std::vector<double>& x) {
+    residuals_.linearize(x, r_, system_);
+    for (int k = 0; k < unknowns_; ++k) scale_[k] = std::max(column_norm(system_, k, rows_), 1e-12);
+    for (int i = 0; i < rows_; ++i) {
+      right_[i] = -r_[i];
+      for (int k = 0; k < unknowns_; ++k)
+        if (x[k] != 0) right_[i] += system_(i, k) * x[k];
+    }
+  }
+
+  std::vector<double> solved(const std::vector<double>& x, double damping) {
+    const double root = std::sqrt(damping);
+    for (int k = 0; k < unknowns_; ++k) {
+      system_(rows_ + k, k) = root * scale_[k];
+      right_[rows_ + k] = root * scale_[k] * x[k];
+    }
+    return nnls(system_, right_).x;
+  }
+
+  const Residuals& residuals_;
+  const Deadline& deadline_;
+  int rows_, unknowns_;
+  Matrix system_;
+  std::vector<double> r_, right_, scale_;
+};
 
 }  // namespace
 
 DeltaEFit deltae_fit(const DeltaEProblem& problem, const std::vector<std::vector<Rgb>>& starts,
                      const Deadline& deadline) {
   DeltaEFit best;
-  Residuals residuals(problem);
+  const Residuals residuals(problem);
+  Search search(residuals, deadline);
   std::vector<double> best_x;
+  double best_value = 0;
   for (const std::vector<Rgb>& start : starts) {
     std::vector<double> x;
     for (const Rgb& rgb : start)
       for (int c = 0; c < 3; ++c) x.push_back(std::max(rgb[c], 0.0));
-    ceres::Problem::Options ownership;
-    ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    ceres::Problem search(ownership);
-    search.AddResidualBlock(&residuals, nullptr, x.data());
-    for (std::size_t k = 0; k < x.size(); ++k) search.SetParameterLowerBound(x.data(), static_cast<int>(k), 0);
-    ceres::Solver::Options options = quiet_solver_options();
-    options.max_num_iterations = 400;
-    options.function_tolerance = 1e-7;
-    if (deadline.limit_s() > 0) options.max_solver_time_in_seconds = std::max(1e-6, deadline.left_s());
-    ceres::Solver::Summary summary;
-    ceres::Solve(options, &search, &summary);
-    const double objective = std::sqrt(2 * summary.final_cost);
-    if (!best_x.empty() && objective >= best.objective) continue;
-    best.objective = objective;
-    best.status = summary.termination_type == ceres::CONVERGENCE ? FitStatus::kOptimal
-                  : deadline.passed()                            ? FitStatus::kTimeLimit
-                                                                 : FitStatus::kNotConverged;
-    best_x = x;
+    double value = 0;
+    const FitStatus status = search.run(x, value);
+    if (!best_x.empty() && value >= best_value) continue;
+    best_value = value, best.status = status, best_x = std::move(x);
   }
+  best.objective = std::sqrt(best_value);
   best.optimality_gap = stationarity(residuals, best_x);
   for (std::size_t j = 0; j < best_x.size(); j += 3) best.x.push_back({best_x[j], best_x[j + 1], best_x[j + 2]});
   return best;

@@ -17,13 +17,14 @@ constexpr double kGuideShare = 0.1;
 // How much it counts, in each row, that the next view shows something else.
 constexpr double kSmoothnessShare = 0.01;
 
-// Rows that ask two neighboring views to show the same at the angle of every row of the target.
+// Rows that ask two neighboring views to show the same, at the angles of the target's rows, no closer than about 9 deg.
 void add_smoothness(const FlakeTarget& target, const FlakeModel& model, LinearProblem& problem) {
   const int views = static_cast<int>(model.views_deg.size()), width = model.columns_per_view();
+  constexpr double kApart_rad = 0.16;
   std::vector<const FlakeRow*> angles;
   for (const FlakeRow& row : target.rows)
     if (std::ranges::none_of(angles, [&](const FlakeRow* other) {
-          return std::abs(other->at.aspecular_rad - row.at.aspecular_rad) < 0.04;
+          return std::abs(other->at.aspecular_rad - row.at.aspecular_rad) < kApart_rad;
         }))
       angles.push_back(&row);
   const int known = problem.rows(), more = (views - 1) * static_cast<int>(angles.size());

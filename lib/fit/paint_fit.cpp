@@ -7,6 +7,7 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "fit/brdf_rows.h"
+#include "fit/fit_limit.h"
 #include "fit/flake_fit.h"
 #include "fit/lobe_choice.h"
 #include "fit/target_rows.h"
@@ -172,6 +173,8 @@ void PaintFitter::finish(const std::vector<LabReading>& readings, const Xyz& whi
   report.de00_max = max_de00(report.de00_by_geometry);
   report.de00_mean = mean_de00(report.de00_by_geometry);
   fit.max_de00 = report.de00_max, fit.mean_de00 = report.de00_mean;
+  constexpr double kVisible_de00 = 0.5;
+  if (report.de00_max > kVisible_de00) report.limit = fit_limit(readings, report.de00_by_geometry, white);
   if (fit.views.empty()) return;
   LobeFit together = fit;
   together.views.clear();

@@ -77,6 +77,7 @@ struct PaintFitReport {
   int active_lobes = 0;            // lobes with any weight, the mirror included
   std::vector<GeometryError> de00_by_geometry;  // against the readings (or the designed curve at 15, 45 and 110 deg)
   double de00_max = 0, de00_mean = 0;
+  std::string limit;               // why the worst reading is not met any better, in words; empty where all are met
   double gamut_de00 = 0;           // the largest color change from negative working-space channels of the target
   std::vector<double> unseen;      // exponents that no sample sees: K_DD left at 0
   std::vector<double> dropped;     // exponents that a limit on lobes or visibility left out

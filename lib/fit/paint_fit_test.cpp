@@ -158,6 +158,21 @@ TEST(PaintFit, GamutLossIsReported) {
   EXPECT_GT(report.gamut_de00, 1);
 }
 
+TEST(PaintFit, TellsWhatLimitsIt) {
+  EXPECT_EQ(report_of(metallic_blue(), {.method = FitMethod::kDeltaE}).limit, "");
+  const auto limit = [](const Paint& paint) { return report_of(paint).limit; };
+  EXPECT_NE(limit(paint_with({{15, {60, -90, 10}}, {45, {40, -80, 10}}, {110, {30, -70, 10}}})).find("outside the"),
+            std::string::npos);
+  EXPECT_NE(limit(paint_with({{15, {70, 40, -20}}, {-15, {75, 5, 45}}, {45, {30, 15, 5}}})).find("two sides"),
+            std::string::npos);
+  EXPECT_NE(limit(paint_with({{15, {40, 0, 0}}, {25, {30, 0, 0}}, {45, {20, 0, 0}}, {75, {30, 0, 0}}})).find("grows by"),
+            std::string::npos);
+  // Flat, then steep: a single step in the middle is no sum of wide lobes.
+  EXPECT_NE(limit(paint_with({{15, {80, 0, 0}}, {25, {79, 0, 0}}, {45, {78, 0, 0}}, {75, {10, 0, 0}}, {110, {10, 0, 0}}}))
+                .find("basis"),
+            std::string::npos);
+}
+
 TEST(PaintFit, CurveTargetFollowsTheDesign) {
   Paint designed;
   designed.appearance = Appearance{{70, 10, -30}, {25, 12, -20}, 60, {}};
@@ -269,6 +284,17 @@ TEST(PaintFit, MeasuredPaintsWithinFourRealData) {
   }
 }
 
+// Every search ends where no weight can move and gain, by the cosine of its column to the residual.
+TEST(PaintFit, DeltaEIsStationary) {
+  const auto paints = read_paints(GONIOCHROME_TESTDATA "/paints.paints.xml");
+  ASSERT_TRUE(paints.ok());
+  for (const auto& fit : fits(PaintFitter(kBasis, {.method = FitMethod::kDeltaE}), *paints)) {
+    ASSERT_TRUE(fit.ok());
+    EXPECT_EQ(fit->report.status, FitStatus::kOptimal);
+    EXPECT_LE(fit->report.optimality_gap, 1e-4);
+  }
+}
+
 // The color differences at the readings are never larger, in the mean square, than those of the better linear fit: the
 // search starts there. The inferred rows may trade a little, hence the 1 %.
 TEST(PaintFit, DeltaEIsNotWorseThanItsStarts) {
@@ -286,7 +312,7 @@ TEST(PaintFit, DeltaEIsNotWorseThanItsStarts) {
       for (const auto& g : fit->report.de00_by_geometry) sums[static_cast<int>(method)] += g.de00 * g.de00;
     }
   }
-  // Most of what is left are interference paints whose two sides of specular differ, which no such model can meet.
+  // Most of what is left are interference paints whose two sides of specular differ, which needs weights by view.
   EXPECT_LT(sums[2], 0.98 * std::min(sums[0], sums[1])) << "a search that gains nothing is not worth its time";
 }
 

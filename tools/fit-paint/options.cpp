@@ -135,6 +135,9 @@ cli::ToolSpec tool_spec(Options& o) {
                  {"paints[].gloss[]",
                   "angle_deg, simulated_gu, and where the paint states it stated_gu and misfit_gu (simulated minus "
                   "stated)"},
+                 {"paints[].limit",
+                  "why the worst reading is not met any better: the working space, two sides of specular, a channel "
+                  "that grows away from specular, or the basis; empty below dE00 0.5"},
                  {"paints[].brdf",
                   "of a measured BRDF: directions fitted, glare_directions and steep_directions left out, "
                   "relative_error_median and relative_error_p95 of the color triple, de00_median and de00_p95 over the "

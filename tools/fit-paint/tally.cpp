@@ -46,6 +46,7 @@ Json report_of(const Paint& paint, const PaintFit& fit) {
                  {"de00_max", json_number(r.de00_max)},
                  {"de00_mean", json_number(r.de00_mean)},
                  {"de00_by_geometry", by_geometry(r.de00_by_geometry)},
+                 {"limit", r.limit},
                  {"gamut_de00", json_number(r.gamut_de00)},
                  {"glare_rows", r.glare_rows},
                  {"gloss", gloss_of(r.gloss)}};
@@ -82,7 +83,7 @@ void Tally::add(const Paint& paint, const PaintFit& fit) {
   if (!r.de00_by_geometry.empty() && (worst_.empty() || r.de00_max > worst_de00_)) {
     worst_de00_ = r.de00_max;
     const auto worst = std::ranges::max_element(r.de00_by_geometry, {}, &GeometryError::de00);
-    worst_ = fmt::format("{} at {}", paint.name, worst->geometry);
+    worst_ = fmt::format("{} at {}{}{}", paint.name, worst->geometry, r.limit.empty() ? "" : ": ", r.limit);
   }
   if (!options_.common.report.empty()) session_.results()["paints"].push_back(report_of(paint, fit));
 }
