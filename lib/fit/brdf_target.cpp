@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "paint/curve.h"
 
@@ -53,9 +54,12 @@ Result<BrdfTarget> read_brdf_target(InputFile& file) {
     GONIO_ASSIGN(const std::size_t count, file.read(bytes, kPiece));
     if (count == 0) break;
   }
-  GONIO_ASSIGN(const auto brdf, read_measured(file.name(), bytes));
+  GONIO_ASSIGN(auto brdf, read_measured(file.name(), bytes));
   const bool is_stream = file.name() == "standard input";
-  return brdf_target(is_stream ? "measured" : std::filesystem::path(file.name()).stem().string(), *brdf);
+  GONIO_ASSIGN(BrdfTarget target,
+               brdf_target(is_stream ? "measured" : std::filesystem::path(file.name()).stem().string(), *brdf));
+  target.source = std::move(brdf);
+  return target;
 }
 
 }  // namespace goniochrome

@@ -2,6 +2,7 @@
 // and out of plane. goniochrome-theory(7), FITTING.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct BrdfSample {
 struct BrdfTarget {
   Paint paint;  // name, and what a five-angle instrument would have read, D65/2
   std::vector<BrdfSample> samples;
+  std::shared_ptr<const MeasuredBrdf> source = {};  // where it was read from a file
 };
 
 // The samples of a measured BRDF and its readings at 15, 25, 45, 75 and 110 deg, seen under D65 by the 2 deg observer,

@@ -12,12 +12,13 @@ _fit_paint() {
     --views) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --steepest) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --paint-time-limit) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --color-map) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --report) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --threads) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--basis --output --method --target --weights --gloss --lobes --prune --views --steepest --paint-time-limit --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--basis --output --method --target --weights --gloss --lobes --prune --views --steepest --paint-time-limit --color-map --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

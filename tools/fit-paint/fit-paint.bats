@@ -267,3 +267,31 @@ cornell() {
     [ ! -e out.xml ]
   done
 }
+
+@test "--color-map: missing, wrong, right" {
+  run fit-paint -b "$basis" "$paints" -o out.xml --color-map
+  [ "$status" -eq 2 ]
+  touch file
+  run --separate-stderr fit-paint -b "$basis" "$paints" -o out.xml --color-map file
+  [ "$status" -eq 3 ]
+  [[ "$stderr" =~ "file: is no folder" ]]
+  [ ! -e out.xml ]
+  rows=
+  for light in 25 45 65; do
+    for aspecular in 15 30 60 90; do
+      rows+="<lab geometry=\"${light}as$aspecular\" L=\"$((80 - aspecular / 2))\" a=\"$((light - 40))\" b=\"-20\"/>"
+    done
+  done
+  several="<paint name=\"sea green/1\"><measurement illuminant=\"D65\" observer=\"10\">$rows</measurement></paint>"
+  mkdir deep
+  echo "$head$one$several</paints>" >in.xml
+  run --separate-stderr fit-paint -b "$basis" in.xml -o deep/out.xml --color-map deep/maps --report r.json
+  [ "$status" -eq 0 ]
+  [[ "$stderr" =~ 'in.xml:1: paint "one" gets no color map: a color map takes 4 readings' ]]
+  [[ "$stderr" =~ "1 color maps, mean dE76 of a reading predicted from the others" ]]
+  [ -s deep/maps/sea_green_1.exr ]
+  grep -q '<colorMap href="maps/sea_green_1.exr" index="1.5"/>' deep/out.xml
+  [ "$(grep -c '<colorMap' deep/out.xml)" -eq 1 ]
+  [ "$(number rows)" = 12 ]
+  [ "$(number without_color_map)" = 1 ]
+}

@@ -101,7 +101,12 @@ cli::ToolSpec tool_spec(Options& o) {
             .value = "S",
             .help = "seconds for one paint, after which the best weights so far are taken; 0 is none",
             .target = &o.paint_time_limit_s,
-            .low = 0}},
+            .low = 0},
+           {.name = "color-map",
+            .value = "FOLDER",
+            .help = "also make a color map of every paint that was read at two or more angles of incidence, as "
+                    "FOLDER/name.exr, and name it in the paint",
+            .target = &o.color_map}},
       .inputs =
           cli::Positional{
               .value = "PAINTS",
@@ -130,14 +135,14 @@ cli::ToolSpec tool_spec(Options& o) {
                  {"paints[].de00_max", "largest CIEDE2000 difference at the readings"},
                  {"paints[].de00_mean", "mean CIEDE2000 difference at the readings"},
                  {"paints[].de00_by_geometry", "the difference at each geometry"},
+                 {"paints[].limit",
+                  "why the worst reading is not met any better: the working space, two sides of specular, a channel "
+                  "that grows away from specular, or the basis; empty below dE00 0.5"},
                  {"paints[].gamut_de00", "color lost because the working space has no negative channels"},
                  {"paints[].glare_rows", "readings left out for being within 10 deg of specular"},
                  {"paints[].gloss[]",
                   "angle_deg, simulated_gu, and where the paint states it stated_gu and misfit_gu (simulated minus "
                   "stated)"},
-                 {"paints[].limit",
-                  "why the worst reading is not met any better: the working space, two sides of specular, a channel "
-                  "that grows away from specular, or the basis; empty below dE00 0.5"},
                  {"paints[].brdf",
                   "of a measured BRDF: directions fitted, glare_directions and steep_directions left out, "
                   "relative_error_median and relative_error_p95 of the color triple, de00_median and de00_p95 over the "
@@ -146,6 +151,15 @@ cli::ToolSpec tool_spec(Options& o) {
                   "with --views: de00_mean at the readings, or over the fitted directions of a measured BRDF, "
                   "de00_mean_without by the weights for all views, and their difference gain_de00"},
                  {"paints[].message", "why a paint failed"},
+                 {"color_maps[].name", "with --color-map: the paint"},
+                 {"color_maps[].file", "its map"},
+                 {"color_maps[].rows", "readings that the map goes through"},
+                 {"color_maps[].glare_rows", "readings left out for being within 10 deg of specular"},
+                 {"color_maps[].grazing_rows", "readings left out for a direction more than 75 deg from the normal"},
+                 {"color_maps[].illuminations", "different angles of incidence on the flakes, to 1 deg"},
+                 {"color_maps[].held_out_de76", "mean CIE 1976 difference of a reading predicted from the others"},
+                 {"color_maps[].negative_share", "share of the map that is outside the working space"},
+                 {"without_color_map", "paints whose readings do not make a map"},
                  {"fits_per_s", "fits a second, without reading and writing"},
                  {"fitted", "paints that got lobes"},
                  {"failed", "paints passed on unfitted"},

@@ -22,6 +22,7 @@ struct Options {
   std::vector<double> views_deg;
   double steepest_deg = 75;
   double paint_time_limit_s = 0;
+  std::string color_map;
 };
 
 cli::ToolSpec tool_spec(Options& options);

@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "base/input.h"
+#include "color_maps.h"
 #include "fit/paint_fit.h"
 #include "paint/name_ledger.h"
 #include "paint/xml.h"
@@ -66,9 +67,15 @@ class NamesOfAll {
 // One run over all inputs.
 class Run {
  public:
-  Run(const PaintFitter& fitter, std::vector<Input>& inputs, PaintWriter& writer, Tally& tally,
+  Run(const PaintFitter& fitter, std::vector<Input>& inputs, PaintWriter& writer, Tally& tally, ColorMaps& maps,
       const cli::Session& session)
-      : fitter_(fitter), inputs_(inputs), writer_(writer), tally_(tally), session_(session), names_(inputs) {}
+      : fitter_(fitter),
+        inputs_(inputs),
+        writer_(writer),
+        tally_(tally),
+        maps_(maps),
+        session_(session),
+        names_(inputs) {}
 
   Result<void> all() {
     for (std::size_t k = 0; k < inputs_.size(); ++k) GONIO_TRY(inputs_[k].reader ? library(k) : measured(k));
@@ -108,6 +115,7 @@ class Run {
       } else {
         tally_.add_failure(batch[i], fmt::format("{}:{}", name, lines[i]), results[i].error().message);
       }
+      GONIO_TRY(maps_.add(batch[i], nullptr, fmt::format("{}:{}", name, lines[i])));
       GONIO_TRY(writer_.write(batch[i]));
     }
     return {};
@@ -127,6 +135,7 @@ class Run {
     } else {
       tally_.add_failure(target.paint, input.name, fit.error().message);
     }
+    GONIO_TRY(maps_.add(target.paint, target.source.get(), input.name));
     return writer_.write(target.paint);
   }
 
@@ -134,6 +143,7 @@ class Run {
   std::vector<Input>& inputs_;
   PaintWriter& writer_;
   Tally& tally_;
+  ColorMaps& maps_;
   const cli::Session& session_;
   NamesOfAll names_;
 };
@@ -159,8 +169,11 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   GONIO_ASSIGN(OutputFile file, OutputFile::create(options.output));
   GONIO_ASSIGN(PaintWriter writer, PaintWriter::begin(std::move(file), history, foreign));
   Tally tally(options, session);
-  GONIO_TRY(Run(fitter, inputs, writer, tally, session).all());
+  ColorMaps maps(options, session);
+  GONIO_TRY(maps.begin());
+  GONIO_TRY(Run(fitter, inputs, writer, tally, maps, session).all());
   GONIO_TRY(writer.finish());
+  maps.finish();
   return tally.finish();
 }
 

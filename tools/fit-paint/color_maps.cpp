@@ -1,0 +1,97 @@
+#include "color_maps.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+
+#include "image/color_map_file.h"
+
+namespace goniochrome {
+
+namespace {
+
+constexpr int kWarningsShown = 5;
+
+bool is_plain(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
+}
+
+// The folder as seen from the paint file, or from here where the paints go to standard output.
+std::filesystem::path folder_from_output(const Options& options) {
+  const std::filesystem::path output = options.output == "-" ? "" : options.output;
+  const auto base = output.has_parent_path() ? output.parent_path() : std::filesystem::path(".");
+  std::error_code failed;
+  const auto relative = std::filesystem::proximate(options.color_map, base, failed);
+  return failed ? std::filesystem::path(options.color_map) : relative;
+}
+
+Result<ColorMapFit> fitted(const Paint& paint, const MeasuredBrdf* brdf, const ColorMapOptions& options) {
+  if (brdf != nullptr) return fit_color_map(*brdf, {"D65", 2}, options);
+  if (!paint.measurement) return input_error("it has no readings");
+  return fit_color_map(*paint.measurement, options);
+}
+
+}  // namespace
+
+ColorMaps::ColorMaps(const Options& options, cli::Session& session) : options_(options), session_(session) {}
+
+Result<void> ColorMaps::begin() const {
+  if (options_.color_map.empty()) return {};
+  std::error_code failed;
+  std::filesystem::create_directories(options_.color_map, failed);
+  if (!std::filesystem::is_directory(options_.color_map))
+    return input_error("{}: is no folder and cannot be made: {}", options_.color_map,
+                       failed ? failed.message() : "there is a file of that name");
+  return {};
+}
+
+// Letters, digits, - and _ of the paint's name; a number where two names become one.
+std::string ColorMaps::file_name(const std::string& paint) {
+  std::string plain = paint;
+  std::ranges::replace_if(
+      plain, [](char c) { return !is_plain(c); }, '_');
+  std::string name = plain;
+  for (int n = 2; !names_.insert(name).second; ++n) name = fmt::format("{}-{}", plain, n);
+  return name + ".exr";
+}
+
+Result<void> ColorMaps::add(Paint& paint, const MeasuredBrdf* brdf, const std::string& where) {
+  if (options_.color_map.empty()) return {};
+  ColorMapOptions asked;
+  if (paint.color_map) asked.index = paint.color_map->index;
+  const auto fit = fitted(paint, brdf, asked);
+  if (!fit.ok()) {
+    if (++without_ <= kWarningsShown)
+      session_.warn(fmt::format("{}: paint \"{}\" gets no color map: {}", where, paint.name, fit.error().message));
+    return {};
+  }
+  const std::string name = file_name(paint.name);
+  const std::string path = (std::filesystem::path(options_.color_map) / name).string();
+  GONIO_TRY(write_color_map(path, fit->map,
+                            {{"goniochrome:command", fmt::format("{} {}: {}", session_.tool(), cli::Session::version(),
+                                                                 session_.command_line())}}));
+  paint.color_map = ColorMapReference{(folder_from_output(options_) / name).generic_string(), asked.index};
+  ++made_;
+  sum_held_out_ += fit->held_out_de76;
+  if (!session_.common().report.empty())
+    session_.results()["color_maps"].push_back({{"name", paint.name},
+                                                {"file", path},
+                                                {"rows", fit->rows},
+                                                {"glare_rows", fit->glare_rows},
+                                                {"grazing_rows", fit->grazing_rows},
+                                                {"illuminations", fit->illuminations},
+                                                {"held_out_de76", json_number(fit->held_out_de76)},
+                                                {"negative_share", fit->negative_share}});
+  return {};
+}
+
+void ColorMaps::finish() {
+  if (options_.color_map.empty()) return;
+  session_.results()["without_color_map"] = without_;
+  if (without_ > kWarningsShown)
+    session_.warn(fmt::format("{} more paints get no color map", without_ - kWarningsShown));
+  session_.say(fmt::format("{}: {} color maps, mean dE76 of a reading predicted from the others {:.2f}",
+                           session_.tool(), made_, made_ > 0 ? sum_held_out_ / made_ : 0));
+}
+
+}  // namespace goniochrome

@@ -1,0 +1,38 @@
+// The color maps of a run: one file for each paint, in one folder.
+#pragma once
+
+#include <set>
+#include <string>
+
+#include "brdf/measured.h"
+#include "cli/tool.h"
+#include "fit/color_map_fit.h"
+#include "options.h"
+
+namespace goniochrome {
+
+class ColorMaps {
+ public:
+  ColorMaps(const Options& options, cli::Session& session);
+
+  // Makes the folder, if maps are asked for. Error: it cannot be made.
+  Result<void> begin() const;
+
+  // Makes the map of a paint from its readings or, where it has one, from its measured BRDF, and names it in the paint.
+  // A paint that cannot have one is told and left as it is. Error: the file cannot be written.
+  Result<void> add(Paint& paint, const MeasuredBrdf* brdf, const std::string& where);
+
+  // How many there are, into the report and the summary.
+  void finish();
+
+ private:
+  std::string file_name(const std::string& paint);
+
+  const Options& options_;
+  cli::Session& session_;
+  std::set<std::string> names_;
+  int made_ = 0, without_ = 0;
+  double sum_held_out_ = 0;
+};
+
+}  // namespace goniochrome
