@@ -128,8 +128,9 @@ std::string body(const Plot& plot) {
     const std::string color = s.color.empty() ? kPalette[next++ % std::size(kPalette)] : s.color;
     curves += curve(s, x, y, color);
     if (s.label.empty()) continue;
-    out += fmt::format("<path class=\"curve\" stroke=\"{}\"{} d=\"M{:.1f} {:.1f}h18\"/>", color,
-                       s.style == Series::Style::kDashed ? " stroke-dasharray=\"5 4\"" : "", right + 10, line - 4);
+    if (s.style != Series::Style::kPoints)
+      out += fmt::format("<path class=\"curve\" stroke=\"{}\"{} d=\"M{:.1f} {:.1f}h18\"/>", color,
+                         s.style == Series::Style::kDashed ? " stroke-dasharray=\"5 4\"" : "", right + 10, line - 4);
     if (s.style == Series::Style::kPoints || s.style == Series::Style::kLineAndPoints)
       out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"{}\"/>", right + 19, line - 4, color);
     out += text(right + 33, line, "start", s.label);
@@ -182,25 +183,51 @@ std::vector<double> ticks(double low, double high, bool logarithmic, int count) 
   return at;
 }
 
-std::string svg(const std::vector<Plot>& plots, int columns) {
-  int width = 0, height = 0, row_width = 0, row_height = 0, column = 0;
-  std::string bodies;
-  for (const Plot& plot : plots) {
-    if (column == columns) height += row_height, row_width = row_height = column = 0;
-    bodies += fmt::format("<g transform=\"translate({} {})\">\n{}</g>\n", row_width, height, body(plot));
-    row_width += plot.width;
-    row_height = std::max(row_height, plot.height);
-    width = std::max(width, row_width);
-    ++column;
+Drawing drawing(const Plot& plot) {
+  return {plot.width, plot.height, body(plot)};
+}
+
+Drawing row_of(const std::vector<Drawing>& drawings) {
+  Drawing row;
+  for (const Drawing& each : drawings) {
+    row.body += fmt::format("<g transform=\"translate({} 0)\">\n{}</g>\n", row.width, each.body);
+    row.width += each.width;
+    row.height = std::max(row.height, each.height);
   }
-  height += row_height;
+  return row;
+}
+
+Drawing column_of(const std::vector<Drawing>& drawings) {
+  Drawing column;
+  for (const Drawing& each : drawings) {
+    column.body += fmt::format("<g transform=\"translate(0 {})\">\n{}</g>\n", column.height, each.body);
+    column.height += each.height;
+    column.width = std::max(column.width, each.width);
+  }
+  return column;
+}
+
+std::string svg(const std::vector<Drawing>& drawings, int columns) {
+  std::vector<Drawing> rows;
+  for (std::size_t i = 0; i < drawings.size(); i += static_cast<std::size_t>(columns)) {
+    const auto end = std::min(drawings.size(), i + static_cast<std::size_t>(columns));
+    rows.push_back(row_of(
+        {drawings.begin() + static_cast<std::ptrdiff_t>(i), drawings.begin() + static_cast<std::ptrdiff_t>(end)}));
+  }
+  const Drawing page = column_of(rows);
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\">\n"
       "<style>text{{font:12px sans-serif;fill:#222}}.title{{font-size:14px;font-weight:bold}}"
       ".grid{{stroke:#ddd;fill:none}}.frame{{stroke:#555;fill:none}}"
       ".curve{{fill:none;stroke-width:1.8;stroke-linejoin:round}}</style>\n"
       "<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n{2}</svg>\n",
-      width, height, bodies);
+      page.width, page.height, page.body);
+}
+
+std::string svg(const std::vector<Plot>& plots, int columns) {
+  std::vector<Drawing> drawings;
+  for (const Plot& plot : plots) drawings.push_back(drawing(plot));
+  return svg(drawings, columns);
 }
 
 std::string svg(const Plot& plot) {

@@ -1,0 +1,64 @@
+# draw-plot from the outside: the table, the axes, and what is wrong with either.
+
+bats_require_minimum_version 1.5.0
+
+setup() {
+  cd "$BATS_TEST_TMPDIR" || exit 1
+  printf 'series,x,y,style\nours,1,0.1,both\nours,10,0.01,both\nbrute force,100,0,points\nbrute force,50,1e-6,points\n' >t.csv
+}
+
+@test "series become lines and points with a legend" {
+  draw-plot t.csv --title 'error against time' --x-label 'time (ms)' --y-label 'error' --width 500 --height 300 -o p.svg
+  xmllint --noout p.svg
+  grep -q '>error against time<' p.svg
+  grep -q '>time (ms)<' p.svg
+  grep -q '>brute force<' p.svg
+  grep -q 'width="500" height="300"' p.svg
+  # One line, of "ours"; a circle for each of four points and two in the legend.
+  [ "$(grep -o '<path class="curve"[^>]*L[0-9]' p.svg | wc -l)" -eq 1 ]
+  [ "$(grep -o '<circle' p.svg | wc -l)" -eq 6 ]
+}
+
+@test "standard input to standard output" {
+  draw-plot <t.csv | xmllint --noout -
+}
+
+@test "a logarithmic axis leaves out what is not above 0, and says so" {
+  run --separate-stderr draw-plot t.csv --logarithmic both -o p.svg --report r.json
+  [ "$status" -eq 0 ]
+  [[ "$stderr" == *'1 points of "brute force" are not above 0'* ]]
+  [ "$(jq '.results.series[1].left_out' r.json)" -eq 1 ]
+  [ "$(grep -o '<circle' p.svg | wc -l)" -eq 5 ]
+}
+
+# refused STATUS MESSAGE COMMAND...: nothing is written.
+refused() {
+  local wanted=$1 message=$2
+  shift 2
+  run --separate-stderr "$@" -o none.svg
+  [ "$status" -eq "$wanted" ]
+  [[ "$stderr" == *"$message"* ]]
+  [ ! -e none.svg ]
+}
+
+@test "a bad table is told by line, value and remedy" {
+  printf 'series,x\na,1\n' >bad.csv
+  refused 3 'bad.csv:1: there is no heading y' draw-plot bad.csv
+  printf 'series,x,y\na,1,2\nb,1,two\n' >bad.csv
+  refused 3 'bad.csv:3: y is "two": write a number' draw-plot bad.csv
+  printf 'series,x,y\na,1\n' >bad.csv
+  refused 3 'bad.csv:2: 2 cells where the headings are 3' draw-plot bad.csv
+  printf 'series,x,y,style\na,1,2,thick\n' >bad.csv
+  refused 3 'style is "thick": give line, points, both or dashed' draw-plot bad.csv
+  printf 'series,x,y\n' >bad.csv
+  refused 3 'nothing to draw' draw-plot bad.csv
+  refused 3 'none.csv' draw-plot none.csv
+}
+
+@test "options are checked" {
+  refused 2 '--logarithmic is "z": give none, x, y, both' draw-plot t.csv --logarithmic z
+  refused 2 '--width is "10"' draw-plot t.csv --width 10
+  run --separate-stderr draw-plot t.csv -o none.svg --title
+  [ "$status" -eq 2 ]
+  [[ "$stderr" == *'--title needs a value'* ]]
+}

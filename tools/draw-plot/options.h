@@ -1,0 +1,22 @@
+// The options of draw-plot.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/options.h"
+
+namespace goniochrome {
+
+struct Options {
+  cli::CommonOptions common;
+  std::vector<std::string> table;
+  std::string output = "-";
+  std::string title, x_label = "x", y_label = "y";
+  std::string logarithmic = "none";
+  int width = 640, height = 400;
+};
+
+cli::ToolSpec tool_spec(Options& options);
+
+}  // namespace goniochrome

@@ -1,0 +1,112 @@
+#include "run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "base/file.h"
+#include "base/text.h"
+#include "report/plot.h"
+
+namespace goniochrome {
+
+namespace {
+
+const std::map<std::string_view, Series::Style> kStyles = {{"line", Series::Style::kLine},
+                                                           {"points", Series::Style::kPoints},
+                                                           {"both", Series::Style::kLineAndPoints},
+                                                           {"dashed", Series::Style::kDashed}};
+
+// Where each heading stands among the words of a row; style may be missing.
+struct Columns {
+  std::size_t series = 0, x = 0, y = 0, count = 0;
+  std::optional<std::size_t> style;
+};
+
+Result<Columns> columns_of(const std::string& name, int line, const std::vector<std::string_view>& words) {
+  std::map<std::string, std::size_t> at;
+  for (std::size_t i = 0; i < words.size(); ++i) at[lower(trimmed(words[i]))] = i;
+  for (const char* heading : {"series", "x", "y"})
+    if (!at.contains(heading))
+      return input_error("{}:{}: there is no heading {}: begin with a line such as series,x,y", name, line, heading);
+  Columns columns{at["series"], at["x"], at["y"], words.size(), std::nullopt};
+  if (at.contains("style")) columns.style = at["style"];
+  return columns;
+}
+
+// A number, or NaN for an empty cell, which breaks a line.
+Result<double> coordinate(const std::string& name, int line, const char* column, std::string_view text) {
+  if (trimmed(text).empty()) return std::numeric_limits<double>::quiet_NaN();
+  if (const auto value = parse_number(trimmed(text))) return *value;
+  return input_error("{}:{}: {} is \"{}\": write a number such as 0.5, or nothing", name, line, column, trimmed(text));
+}
+
+Result<std::vector<Series>> read_table(const std::string& path) {
+  const std::string name = path == "-" ? "standard input" : path;
+  GONIO_ASSIGN(const std::string text, file_content(path));
+  std::vector<Series> all;
+  std::optional<Columns> columns;
+  int line = 0;
+  for (const std::string_view raw : split(text, '\n')) {
+    ++line;
+    if (trimmed(raw).empty()) continue;
+    const auto words = split(trimmed(raw), ',');
+    if (!columns) {
+      GONIO_ASSIGN(columns, columns_of(name, line, words));
+      continue;
+    }
+    if (words.size() != columns->count)
+      return input_error("{}:{}: {} cells where the headings are {}", name, line, words.size(), columns->count);
+    const std::string label(trimmed(words[columns->series]));
+    auto series = std::ranges::find(all, label, &Series::label);
+    if (series == all.end()) {
+      series = all.insert(series, {.label = label, .x = {}, .y = {}});
+      if (columns->style) {
+        const std::string_view style = trimmed(words[*columns->style]);
+        if (!kStyles.contains(style))
+          return input_error("{}:{}: style is \"{}\": give line, points, both or dashed", name, line, style);
+        series->style = kStyles.at(style);
+      }
+    }
+    GONIO_ASSIGN(const double x, coordinate(name, line, "x", words[columns->x]));
+    GONIO_ASSIGN(const double y, coordinate(name, line, "y", words[columns->y]));
+    series->x.push_back(x), series->y.push_back(y);
+  }
+  if (all.empty()) return input_error("{}: there is nothing to draw: give headings series,x,y and rows", name);
+  return all;
+}
+
+// Points with both numbers that an axis cannot show.
+int left_out(const Series& series, const Plot& plot) {
+  int count = 0;
+  for (std::size_t i = 0; i < series.x.size(); ++i)
+    if (std::isfinite(series.x[i]) && std::isfinite(series.y[i]))
+      count += (plot.x.logarithmic && series.x[i] <= 0) || (plot.y.logarithmic && series.y[i] <= 0);
+  return count;
+}
+
+}  // namespace
+
+Result<cli::Verdict> run(const Options& options, cli::Session& session) {
+  Plot plot;
+  plot.title = options.title;
+  plot.x = {options.x_label, options.logarithmic == "x" || options.logarithmic == "both"};
+  plot.y = {options.y_label, options.logarithmic == "y" || options.logarithmic == "both"};
+  plot.width = options.width, plot.height = options.height;
+  GONIO_ASSIGN(plot.series, read_table(options.table.empty() ? "-" : options.table.front()));
+  session.results()["series"] = Json::array();
+  for (const Series& series : plot.series) {
+    const int out = left_out(series, plot);
+    if (out > 0)
+      session.warn(fmt::format("{} points of \"{}\" are not above 0 and have no place on a logarithmic axis", out,
+                               series.label));
+    session.results()["series"].push_back({{"label", series.label}, {"points", series.x.size()}, {"left_out", out}});
+  }
+  GONIO_ASSIGN(OutputFile file, OutputFile::create(options.output));
+  GONIO_TRY(file.write(svg(plot)));
+  GONIO_TRY(file.commit());
+  return cli::Verdict::kDone;
+}
+
+}  // namespace goniochrome

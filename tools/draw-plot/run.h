@@ -1,0 +1,12 @@
+// What draw-plot does.
+#pragma once
+
+#include "cli/tool.h"
+#include "options.h"
+
+namespace goniochrome {
+
+// Error: a table that cannot be read, with its line; or a file that cannot be written.
+Result<cli::Verdict> run(const Options& options, cli::Session& session);
+
+}  // namespace goniochrome
