@@ -28,9 +28,21 @@ struct Plot {
   int width = 640, height = 400;  // of the whole picture, in px
 };
 
-// One SVG document, or several plots as one document in rows of `columns`.
+// SVG elements with their upper left corner at the origin.
+struct Drawing {
+  int width = 0, height = 0;
+  std::string body = {};
+};
+Drawing drawing(const Plot& plot);
+
+// One SVG document, or several plots or drawings as one document in rows of `columns`.
 std::string svg(const Plot& plot);
 std::string svg(const std::vector<Plot>& plots, int columns);
+std::string svg(const std::vector<Drawing>& drawings, int columns);
+
+// Drawings beside each other, or below each other, as one.
+Drawing row_of(const std::vector<Drawing>& drawings);
+Drawing column_of(const std::vector<Drawing>& drawings);
 
 // Text with the characters that markup gives a meaning replaced.
 std::string escaped(const std::string& text);
