@@ -1,0 +1,81 @@
+"""The command line: which studies run, on what, and where the page goes."""
+
+import argparse
+import importlib
+import os
+import pathlib
+import shutil
+import sys
+import time
+
+from . import page
+from .study import Run
+
+TOP = pathlib.Path(__file__).resolve().parents[2]
+
+# In the order of the page. Each is a module beside this one with study(run) -> Study.
+STUDIES = {
+    "prefilter": "prefiltering: tolerance and size against the exact sum",
+    "fit": "fitting: method, lobes and target against the measured colors",
+    "render": "rendering: effects and engine against the reference integrator",
+    "search": "search: library size, tree and scan against brute force",
+    "index": "misalignment: paints and geometries against a dense grid",
+    "chain": "the whole chain: where the error of a picture comes from, and what it costs to lower it",
+}
+
+
+def available():
+    """The studies that this checkout holds."""
+    return [name for name in STUDIES if (pathlib.Path(__file__).parent / f"{name}.py").exists()]
+
+
+def parse(arguments):
+    parser = argparse.ArgumentParser(
+        prog="accuracy-report",
+        description="Sweep the knobs of the tools against exact references; write one HTML page, a CSV of every raw "
+        "reading, and the plots as SVG. Exit status 1: a default setting is dominated.",
+    )
+    parser.add_argument("studies", nargs="*", metavar="STUDY", help="of: " + "; ".join(f"{n} ({STUDIES[n]})" for n in available()) + "; default: all")
+    parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("accuracy"), metavar="DIR", help="folder to write [accuracy]")
+    parser.add_argument("--quick", action="store_true", help="fewer settings, in about a minute")
+    parser.add_argument("--bin", type=pathlib.Path, metavar="DIR", help="folder of the tools [PATH, then build/release/bin]")
+    parser.add_argument("--paints", type=pathlib.Path, default=TOP / "testdata/paints.paints.xml", metavar="FILE", help="library to use [testdata]")
+    parser.add_argument("--probe", type=pathlib.Path, default=TOP / "testdata/studio.exr", metavar="FILE", help="HDR panorama to use [testdata]")
+    parser.add_argument("--mesh", type=pathlib.Path, default=TOP / "testdata/speed-shape.obj", metavar="FILE", help="mesh to use [testdata]")
+    options = parser.parse_args(arguments)
+    for name in options.studies:
+        if name not in available():
+            parser.error(f"there is no study {name}: choose of {', '.join(available())}")
+    for path in (options.paints, options.probe, options.mesh):
+        if not path.is_file():
+            print(f"accuracy-report: {path}: there is no such file", file=sys.stderr)
+            sys.exit(3)
+    return options
+
+
+def bin_folder(options):
+    if options.bin:
+        return options.bin
+    found = shutil.which("render-osmesa")
+    return pathlib.Path(found).parent if found else TOP / "build/release/bin"
+
+
+def main(arguments=None):
+    options = parse(arguments)
+    folder = bin_folder(options)
+    if not os.access(folder / "render-osmesa", os.X_OK):
+        print(f"accuracy-report: {folder}: the tools are not there: build them (cmake --preset release && cmake --build --preset release), or name their folder with --bin", file=sys.stderr)
+        return 3
+    options.output.mkdir(parents=True, exist_ok=True)
+    start = time.monotonic()
+    studies = []
+    with Run(folder.resolve(), options) as run:
+        for name in options.studies or available():
+            run.say(f"{name}: {STUDIES[name]}")
+            studies.append(importlib.import_module(f".{name}", __package__).study(run))
+        page.write(run, studies, time.monotonic() - start)
+    dominated = [text for study in studies for text in study.dominated_defaults()]
+    for text in dominated:
+        print(f"accuracy-report: dominated default: {text}", file=sys.stderr)
+    run.say(f"{options.output / 'index.html'}: {len(studies)} studies in {time.monotonic() - start:.0f} s")
+    return 1 if dominated else 0

@@ -1,0 +1,122 @@
+"""What a study is made of, and how it runs tools: readings of error and time, and which of them are worth having."""
+
+import dataclasses
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+
+class Failed(Exception):
+    """A tool failed; the text is what it printed."""
+
+
+@dataclasses.dataclass
+class Reading:
+    """One setting, what it costs and how far it is off."""
+
+    setting: str
+    time_s: float  # the least of the repetitions
+    error: float
+    method: str = ""  # readings of one method make one line of the plot
+    default: bool = False
+    raw_s: tuple = ()  # every repetition
+    numbers: dict = dataclasses.field(default_factory=dict)  # whatever else was measured
+
+
+@dataclasses.dataclass
+class Figure:
+    """Readings on one pair of axes. `front`: error against time, where less of both is better."""
+
+    name: str  # of the SVG file
+    title: str
+    readings: list
+    x_label: str = "time (s)"
+    y_label: str = "error"
+    front: bool = True
+    x: object = None  # reading -> x; default: its time
+    y: object = None  # reading -> y; default: its error
+    logarithmic: str = "both"
+
+    def point(self, reading):
+        return (self.x(reading) if self.x else reading.time_s, self.y(reading) if self.y else reading.error)
+
+    def pareto(self):
+        """The readings that no other one beats in both, by time."""
+        best, front = float("inf"), []
+        for reading in sorted(self.readings, key=lambda r: (r.time_s, r.error)):
+            if reading.error < best:
+                best = reading.error
+                front.append(reading)
+        return front
+
+
+@dataclasses.dataclass
+class Study:
+    """One chapter of the page: prose, figures and tables, all from readings."""
+
+    title: str
+    text: str
+    figures: list = dataclasses.field(default_factory=list)
+    tables: list = dataclasses.field(default_factory=list)  # (caption, head, rows)
+
+    # A default is dominated where another reading is better by more than this factor in one and no worse in the other:
+    # times of one machine scatter by so much.
+    SCATTER = 1.25
+
+    def dominated_defaults(self):
+        for figure in self.figures:
+            if not figure.front:
+                continue
+            for one in (r for r in figure.readings if r.default):
+                for other in figure.readings:
+                    faster = other.time_s * self.SCATTER < one.time_s and other.error <= one.error
+                    truer = other.error * self.SCATTER < one.error and other.time_s <= one.time_s
+                    if other is not one and (faster or truer):
+                        yield (f"{figure.title}: {one.setting} ({one.time_s:.3g} s, {one.error:.2g}) by "
+                               f"{other.setting} ({other.time_s:.3g} s, {other.error:.2g})")
+                        break
+
+
+class Run:
+    """The tools, a folder to work in, and what the user asked for."""
+
+    def __init__(self, folder, options):
+        self.folder, self.options = folder, options
+        self.quick = options.quick
+        self.paints, self.probe, self.mesh = (p.resolve() for p in (options.paints, options.probe, options.mesh))
+        self.output = options.output
+        self.data = pathlib.Path(__file__).resolve().parents[2] / "testdata"
+        self.raw = []  # rows of the CSV
+
+    def __enter__(self):
+        self.work = pathlib.Path(tempfile.mkdtemp(prefix="accuracy-"))
+        return self
+
+    def __exit__(self, *unused):
+        shutil.rmtree(self.work, ignore_errors=True)
+
+    def say(self, text):
+        print(f"accuracy-report: {text}", file=sys.stderr, flush=True)
+
+    def tool(self, name, *words, may_be_negative=True):
+        """Runs a tool and returns (results of its report, seconds of the whole process)."""
+        report = self.work / "report.json"
+        start = time.monotonic()
+        done = subprocess.run([str(self.folder / name), *map(str, words), "--report", str(report), "--quiet"],
+                              cwd=self.work, capture_output=True, text=True)
+        seconds = time.monotonic() - start
+        if done.returncode not in ((0, 1) if may_be_negative else (0,)):
+            raise Failed(f"{name} {' '.join(map(str, words))}: {done.stderr.strip() or done.returncode}")
+        return json.loads(report.read_text())["results"], seconds
+
+    def repeated(self, name, *words, times=3):
+        """The same several times: (results of the last, the least seconds, all seconds)."""
+        all_s = []
+        for _ in range(1 if self.quick else times):
+            results, seconds = self.tool(name, *words)
+            all_s.append(seconds)
+        return results, min(all_s), tuple(all_s)
