@@ -12,6 +12,10 @@ struct GoniochromeOiioImage {
   const char* interop_id;            // colorInteropID, or ""
   const char* envmap;                // "latlong", "cube" or ""
   const float* chromaticities;       // 8 values, or null
+  const char* icc_profile;           // the bytes of an embedded ICC profile, or null
+  unsigned long icc_size;
+  const char* stored_space;          // what a JPEG was stored in, as in "CMYK", or ""
+  int is_integer;                    // whether the file holds whole numbers, which 0..1 stand for here
 };
 
 // Decodes `path` and calls take(context, image) once, or fail(context, reason) once.
@@ -23,4 +27,4 @@ using GoniochromeOiioRead = void (*)(const char* path, void* context, Goniochrom
 }  // extern "C"
 
 // The name under which the module exports its GoniochromeOiioRead.
-constexpr const char* kGoniochromeOiioReadName = "goniochrome_oiio_read_1";
+constexpr const char* kGoniochromeOiioReadName = "goniochrome_oiio_read_2";

@@ -66,6 +66,9 @@ void take(void* context, const GoniochromeOiioImage* image) {
   keep("oiio:ColorSpace", image->color_space);
   keep("colorInteropID", image->interop_id);
   keep("envmap", image->envmap);
+  keep("jpeg:ColorSpace", image->stored_space);
+  if (image->icc_profile) keep("ICCProfile", std::string(image->icc_profile, image->icc_size));
+  part.attributes["goniochrome:integer"] = image->is_integer;
   if (image->chromaticities)
     part.attributes["chromaticities"] = std::vector<float>(image->chromaticities, image->chromaticities + 8);
 }

@@ -36,16 +36,28 @@ void read(const char* path, void* context, GoniochromeOiioTake take, Goniochrome
   const std::string envmap = envmap_kind(spec);
   const OIIO::ParamValue* chromaticities =
       spec.find_attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8));
+  const OIIO::ParamValue* icc = spec.find_attribute("ICCProfile");
+  const std::string stored_space = text_attribute(spec, "jpeg:ColorSpace");
   const GoniochromeOiioImage image = {
-      spec.width,         spec.height,    spec.nchannels,
-      pixels.data(),      names.data(),   color_space.c_str(),
-      interop_id.c_str(), envmap.c_str(), chromaticities ? static_cast<const float*>(chromaticities->data()) : nullptr};
+      spec.width,
+      spec.height,
+      spec.nchannels,
+      pixels.data(),
+      names.data(),
+      color_space.c_str(),
+      interop_id.c_str(),
+      envmap.c_str(),
+      chromaticities ? static_cast<const float*>(chromaticities->data()) : nullptr,
+      icc ? static_cast<const char*>(icc->data()) : nullptr,
+      icc ? static_cast<unsigned long>(icc->datasize()) : 0,
+      stored_space.c_str(),
+      spec.format.is_floating_point() ? 0 : 1};
   take(context, &image);
 }
 
 }  // namespace
 
-extern "C" __attribute__((visibility("default"))) void goniochrome_oiio_read_1(const char* path, void* context,
+extern "C" __attribute__((visibility("default"))) void goniochrome_oiio_read_2(const char* path, void* context,
                                                                                GoniochromeOiioTake take,
                                                                                GoniochromeOiioFail fail) {
   try {

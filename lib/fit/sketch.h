@@ -1,0 +1,61 @@
+// From an edited picture of a painted mesh back to the paint. [Shimizu2009] 3.7, goniochrome-theory(7), SKETCH FITTING.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "envmap/prefiltered.h"
+#include "fit/sketch_pixels.h"
+#include "paint/basis.h"
+#include "paint/paint.h"
+
+namespace goniochrome {
+
+struct SketchLimits {
+  double median_de76 = 10;     // half of the pixels may differ by more than the found paint explains
+  double least_span_deg = 20;  // of aspecular angles
+  double most_condition = 1e4;
+};
+
+struct SketchFit {
+  std::string status = "fitted";  // or "diffuse_fallback"
+  std::string reason;             // for the fallback
+  std::string model;              // "lobes", "quadratic", "search" or "diffuse"
+  Appearance appearance;
+  std::vector<LabReading> rows;          // at the export angles
+  std::vector<double> extrapolated_deg;  // angles of those rows that no pixel shows
+  double gloss_60_gu = 0;
+  std::string gloss_from;  // "highlight", "contrast" or "search"
+  double condition = 0;
+  double rms_de76 = 0, median_de76 = 0;  // edited picture against the paint found, relative to white
+  double seen_from_deg = 0, seen_to_deg = 0;
+  std::vector<float> de76;  // of every used pixel, in the order of SketchPixels::used; where asked for
+};
+
+// One directional light, exactly: the lobe curve or the clamped quadratic, whichever explains the pixels better.
+// The search for face, flop, travel and gloss
+// in lobes of `basis` is preferred where it explains them as well.
+SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, const Basis& basis,
+                       const SketchLimits& limits, bool with_differences);
+
+// Seven lobes and the mirror: the basis of point light where none is named.
+Basis sketch_basis();
+
+// Any light of the buffers together with this environment: face, flop, travel and gloss by nonlinear search on the
+// renderer's own equations. Error: buffers without normals or rays.
+Result<SketchFit> sketch_environment(const SketchInput& input, const SketchPixels& pixels,
+                                     const PrefilteredEnvironment& env, const SketchLimits& limits,
+                                     bool with_differences);
+
+// The found paint as it is written: rows, face, flop, travel and gloss; a fallback is solid.
+Paint sketch_paint(const SketchFit& fit, const std::string& name);
+
+// By how many pixels the edited picture seems to lie to the right of and below the buffers' own: the shift, up to 8
+// pixels either way, at which the edges of both meet best.
+struct SketchShift {
+  int x = 0, y = 0;
+};
+SketchShift sketch_shift(const SketchInput& input);
+
+}  // namespace goniochrome

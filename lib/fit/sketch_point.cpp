@@ -1,0 +1,233 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "brdf/lobe_model.h"
+#include "fit/sketch_common.h"
+#include "fit/sketch_curve.h"
+#include "fit/sketch_gloss.h"
+#include "paint/curve.h"
+
+namespace goniochrome {
+
+namespace {
+
+constexpr double kContrastRegion_deg = 15;  // [Shimizu2009] 3.7.3
+constexpr std::size_t kFewestCells = 8;
+constexpr double kReach_deg = 2;  // an angle this close to one seen counts as seen
+constexpr std::size_t kSearchCells = 700;
+
+// What the buffers and the picture have at each pixel, relative to the light.
+class Seen {
+ public:
+  explicit Seen(const SketchInput& input) : input_(input), image_(input.buffers->image) {
+    aspecular_ = *input.buffers->channel("aspecular");
+    lambert_ = *input.buffers->channel("lambert");
+    if (input.buffers->lights.empty()) return;
+    const Rgb white = input.buffers->lights.front().white;
+    for (int c = 0; c < 3; ++c) scale_[c] = white[c] > 0 ? 1 / white[c] : 0;
+  }
+
+  SketchSample at(std::uint32_t place) const {
+    const float* pixel = &image_.data[static_cast<std::size_t>(place) * image_.channels];
+    const Rgb light = scale_ * edited_light(input_, place);
+    return {pixel[aspecular_],
+            pixel[lambert_],
+            {static_cast<float>(light.x), static_cast<float>(light.y), static_cast<float>(light.z)}};
+  }
+
+ private:
+  const SketchInput& input_;
+  const Image& image_;
+  int aspecular_ = 0, lambert_ = 0;
+  Rgb scale_{1, 1, 1};
+};
+
+double luminance(const std::array<float, 3>& rgb) {
+  return xyz_d65_from_rgb({rgb[0], rgb[1], rgb[2]}).Y;
+}
+
+void find_gloss(const SketchInput& input, const SketchPixels& pixels, const Seen& seen, const SketchCurve& curve,
+                SketchFit& fit) {
+  std::vector<double> brightness;
+  std::vector<HighlightSample> highlight;
+  std::size_t clipped = 0;
+  const auto look = [&](std::uint32_t place) {
+    const SketchSample s = seen.at(place);
+    if (s.aspecular_deg >= kContrastRegion_deg) return;
+    const double y = luminance(s.seen);
+    brightness.push_back(display_brightness(y));
+    const std::size_t width = static_cast<std::size_t>(input.buffers->image.width);
+    const std::size_t shifted =
+        place + static_cast<std::size_t>(input.shift_y) * width + static_cast<std::size_t>(input.shift_x);
+    if (input.edited->state[shifted] == Picture::kClipped) {
+      ++clipped;
+      return;
+    }
+    const Rgb matt = static_cast<double>(s.cos_i) * curve.reflectance(s.aspecular_deg);
+    highlight.push_back({s.aspecular_deg, y - xyz_d65_from_rgb(matt).Y});
+  };
+  for (const std::uint32_t place : pixels.glare) look(place);
+  for (const std::uint32_t place : pixels.used) look(place);
+  const auto measured = clipped == 0 ? highlight_gloss(highlight) : std::nullopt;
+  fit.gloss_60_gu = measured ? *measured : contrast_gloss(brightness);
+  fit.gloss_from = measured ? "highlight" : "contrast";
+}
+
+// The same cells as light on lobes: at most kSearchCells of them, of all cosines alike.
+SearchSamples search_samples(const std::vector<SketchCell>& cells, const Basis& basis, bool display) {
+  std::size_t step = std::max<std::size_t>(1, cells.size() / kSearchCells);
+  while (step > 1 && (step % 2 == 0 || step % 3 == 0)) ++step;  // cells stand in rows of twelve cosines
+  SearchSamples samples;
+  samples.columns = search_columns(basis);
+  samples.display = display;
+  for (std::size_t i = 0; i < cells.size(); i += step) {
+    const SketchCell& cell = cells[i];
+    const auto light = [&](double value) { samples.light.push_back(value * std::numbers::pi * Vec3{1, 1, 1}); };
+    light(cell.cos_i);
+    for (const double exponent : basis.exponents) {
+      const double power = cos_power(cell.aspecular_deg * std::numbers::pi / 180, exponent);
+      light(cell.cos_i * power), light(power);
+    }
+    light(0);  // the mirror image of a lamp is a point
+    samples.seen.push_back(cell.seen);
+    samples.importance.push_back(cell_importance(cell));
+  }
+  return samples;
+}
+
+bool is_seen(const std::vector<SketchCell>& cells, double angle_deg) {
+  return std::any_of(cells.begin(), cells.end(),
+                     [&](const SketchCell& cell) { return std::abs(cell.aspecular_deg - angle_deg) <= kReach_deg; });
+}
+
+// Rows, face, flop and travel of a curve.
+void take_curve(const SketchCurve& curve, SketchFit& fit) {
+  fit.model = curve.travel_deg > 0 ? "quadratic" : "lobes";
+  std::vector<LabReading> designed;  // [Shimizu2009] 3.7.3 evaluates at these three
+  for (const double angle : kExportAngles_deg) {
+    const LabReading row{{45, angle}, paint_lab(curve.reflectance(angle))};
+    fit.rows.push_back(row);
+    if (angle == 15 || angle == 45 || angle == 110) designed.push_back(row);
+  }
+  fit.appearance = appearance_from_rows(designed)->appearance;
+}
+
+// Whether the search, which has a paint's few degrees of freedom, explains the cells as well as a free curve: nearly,
+// in a clean picture; in a noisy one the curve's gain may be the noise's.
+bool is_as_good(double search_cost, double curve_cost) {
+  constexpr double kNoisy = 0.2;  // of log(1 + dE^2): about half a dE
+  return search_cost <= 1.15 * curve_cost + 0.02 || (curve_cost > kNoisy && search_cost <= 1.6 * curve_cost);
+}
+
+SketchCurve curve_of(const FoundPaint& found, const Basis& basis) {
+  SketchCurve curve;
+  curve.exponents = basis.exponents;
+  curve.diffuse = std::numbers::pi * found.weights.front();
+  for (std::size_t j = 0; j < basis.exponents.size(); ++j) {
+    curve.flake.push_back(std::numbers::pi * found.weights[1 + 2 * j]);
+    curve.glare.push_back(std::numbers::pi * found.weights[2 + 2 * j]);
+  }
+  return curve;
+}
+
+std::string rank_problem(const std::vector<SketchCell>& cells, const SketchFit& fit, const SketchLimits& limits) {
+  if (cells.size() < kFewestCells)
+    return fmt::format("the pixels show {} different views of the paint, too few for a curve", cells.size());
+  if (fit.seen_to_deg - fit.seen_from_deg < limits.least_span_deg)
+    return fmt::format("the pixels show aspecular angles from {:.1f} to {:.1f} deg only", fit.seen_from_deg,
+                       fit.seen_to_deg);
+  return "";
+}
+
+}  // namespace
+
+Basis sketch_basis() {
+  Basis basis;
+  basis.name = "sketch", basis.exponents = {1.3, 6, 20, 70, 250, 900, 3000}, basis.mirror = true;
+  return basis;
+}
+
+std::string poor_match(const SketchFit& fit) {
+  return fmt::format("half of the pixels differ by more than {:.1f} dE76 from the best paint", fit.median_de76);
+}
+
+void take_found(const FoundPaint& found, SketchFit& fit) {
+  const Paint paint = found.paint();
+  fit.model = found.has_free_rows() ? "search with free rows" : "search";
+  fit.appearance = paint.appearance ? *paint.appearance : appearance_from_rows(paint.measurement->rows)->appearance;
+  fit.rows = paint.appearance ? rows_of(fit.appearance) : paint.measurement->rows;
+  fit.gloss_60_gu = paint.gloss.front().gloss_units;
+  fit.gloss_from = "search";
+  fit.condition = found.search.condition;
+}
+
+void fall_back(const Rgb& color, const std::string& reason, SketchFit& fit) {
+  fit.status = "diffuse_fallback", fit.reason = reason, fit.model = "diffuse";
+  const Lab lab = paint_lab(color);
+  fit.appearance = {lab, lab, 60, std::nullopt};
+  fit.rows = rows_of(fit.appearance);
+  fit.extrapolated_deg.clear();
+}
+
+SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, const Basis& basis,
+                       const SketchLimits& limits, bool with_differences) {
+  const Seen seen(input);
+  std::vector<SketchSample> samples;
+  samples.reserve(pixels.used.size());
+  for (const std::uint32_t place : pixels.used) samples.push_back(seen.at(place));
+  const std::vector<SketchCell> cells = sketch_cells(samples);
+  SketchFit fit;
+  if (!cells.empty()) fit.seen_from_deg = cells.front().aspecular_deg, fit.seen_to_deg = cells.back().aspecular_deg;
+
+  SketchCurve curve;
+  curve.diffuse = mean_diffuse(cells);
+  const auto judge = [&] {
+    judge_sketch(
+        samples.size(), with_differences,
+        [&](std::size_t i) {
+          const SketchSample& s = samples[i];
+          const Rgb shown =
+              static_cast<double>(s.cos_i) * curve.reflectance(s.aspecular_deg) + curve.gloss(s.aspecular_deg);
+          return delta_e_76(paint_lab({s.seen[0], s.seen[1], s.seen[2]}), paint_lab(as_displayed(shown, input)));
+        },
+        fit);
+  };
+  if (const std::string problem = rank_problem(cells, fit, limits); !problem.empty()) {
+    fall_back(curve.diffuse, problem, fit);
+    judge();
+    return fit;
+  }
+  const CurveFit quadratic = fit_quadratic(cells), lobes = fit_lobes(cells);
+  const Rgb matt = curve.diffuse;
+  const CurveFit& better = lobes.cost <= quadratic.cost ? lobes : quadratic;
+  const FoundPaint found = LobeSearch(basis, search_samples(cells, basis, !input.edited->scene_linear)).find(false);
+  const bool as_good = is_as_good(found.search.cost, better.cost);
+  curve = as_good ? curve_of(found, basis) : better.curve;
+  judge();
+  if (fit.median_de76 > limits.median_de76) {
+    fall_back(matt, poor_match(fit), fit);
+    curve = {}, curve.diffuse = matt;
+    judge();
+    return fit;
+  }
+  take_curve(curve, fit);
+  if (as_good) take_found(found, fit);
+  fit.condition = quadratic.condition;
+  for (const LabReading& row : fit.rows)
+    if (!is_seen(cells, row.geometry.aspecular_deg)) fit.extrapolated_deg.push_back(row.geometry.aspecular_deg);
+  find_gloss(input, pixels, seen, curve, fit);
+  return fit;
+}
+
+Paint sketch_paint(const SketchFit& fit, const std::string& name) {
+  Paint paint;
+  paint.name = name;
+  paint.paint_class = fit.status == "fitted" ? PaintClass::kUnknown : PaintClass::kSolid;
+  paint.measurement = Measurement{{}, "", fit.rows};
+  paint.appearance = fit.appearance;
+  if (!fit.gloss_from.empty()) paint.gloss.push_back({60, fit.gloss_60_gu});
+  return paint;
+}
+
+}  // namespace goniochrome

@@ -1,0 +1,307 @@
+#include "fit/sketch.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "fit/sketch_curve.h"
+#include "fit/sketch_scene_for_test.h"
+
+namespace goniochrome {
+namespace {
+
+using namespace sketch_scene;
+using testing::HasSubstr;
+
+const Vec3 kLamp{0.3, 0.5, 1};
+
+// The whole way back: paint, lobes, picture, paint. What the lobes could not hold of a short travel never was in the
+// picture, and comes on top.
+TEST(Sketch, planted_paints_return_under_a_lamp) {
+  std::mt19937_64 random(11);
+  AovFile ball = sphere(120, kLamp);
+  double sum = 0, most = 0;
+  for (int i = 0; i < 100; ++i) {
+    const Paint paint = random_paint(random);
+    const PaintFit planted = *PaintFitter(basis(), {}).fit(paint);
+    shade(ball, planted.lobes);
+    const Picture p = picture(ball);
+    const SketchFit found = fit(input(ball, p));
+    ASSERT_EQ(found.status, "fitted");
+    const double worst = worst_de00(found, *paint.appearance);
+    sum += worst, most = std::max(most, worst - planted.report.de00_max);
+  }
+  EXPECT_LE(sum / 100, 0.3);
+  EXPECT_LE(most, 1);
+}
+
+Paint designed(const Lab& face, const Lab& flop, double travel_deg) {
+  Paint paint;
+  paint.appearance = Appearance{face, flop, travel_deg, std::nullopt};
+  return paint;
+}
+
+// A cube whose texels are bright about a direction, the more so the sharper the lobe.
+CubeMap glow(double sharpness) {
+  CubeMap map(16);
+  const Vec3 lamp = normalized(Vec3{0.4, 0.8, 0.5});
+  for (int face = 0; face < 6; ++face)
+    for (int row = 0; row < 16; ++row)
+      for (int column = 0; column < 16; ++column) {
+        const Vec3 d = cube_direction(face, column + 0.5, row + 0.5, 16);
+        const double hot = std::pow(0.5 + 0.5 * dot(d, lamp), sharpness);
+        const Rgb light{0.3 + 2 * hot + 0.1 * d.x, 0.3 + 2 * hot, 0.3 + 1.8 * hot - 0.1 * d.y};
+        for (int c = 0; c < 3; ++c) map.at(face, row, column)[c] = static_cast<float>(light[c]);
+      }
+  return map;
+}
+
+PrefilteredEnvironment glowing() {
+  PrefilteredEnvironment env;
+  env.diffuse.map = glow(1);
+  for (const double exponent : basis().exponents) {
+    PrefilteredLobe lobe;
+    lobe.exponent = exponent, lobe.map = glow(1 + std::sqrt(exponent));
+    env.lobes.push_back(lobe);
+  }
+  env.mirror.exponent = kMirrorExponent, env.mirror.map = glow(80);
+  return env;
+}
+
+// The renderer's equation, written out once more.
+void shade_under(const PrefilteredEnvironment& env, const LobeFit& fit, AovFile& file) {
+  const double pi = std::numbers::pi;
+  for (int y = 0; y < file.image.height; ++y)
+    for (int x = 0; x < file.image.width; ++x) {
+      if (file.image.pixel(x, y)[6] == 0) continue;
+      const Vec3 n = normal(file, x, y), wo = file.to_viewer(x, y);
+      const double c = dot(n, wo);
+      const Vec3 r = 2 * c * n - wo;
+      Rgb sum = pi * (fit.diffuse * bilinear(env.diffuse.map, n));
+      for (const Lobe& lobe : fit.lobes) {
+        if (std::isfinite(lobe.exponent)) {
+          const Rgb weight = c * lobe.directional_diffuse + lobe.gloss;
+          sum += (2 * pi / (lobe.exponent + 1)) * (weight * bilinear(env.lobe(lobe.exponent)->map, r));
+        } else {
+          sum += fresnel_dielectric(c, kCoatIndex) * (lobe.gloss * bilinear(env.mirror.map, r));
+        }
+      }
+      set(file, x, y, sum);
+    }
+}
+
+TEST(Sketch, planted_paints_return_under_an_environment) {
+  std::mt19937_64 random(12);
+  const PrefilteredEnvironment env = glowing();
+  AovFile ball = sphere(80, kLamp);
+  ball.lights.clear();
+  ball.white_luminance = 2;
+  double sum = 0;
+  for (int i = 0; i < 6; ++i) {
+    const Paint paint = random_paint(random);
+    shade_under(env, lobes(paint), ball);
+    const Picture p = picture(ball);
+    SketchInput in = input(ball, p);
+    in.least_cosine = in.glare_deg = 0;
+    const auto found = sketch_environment(in, *sketch_pixels(in), env, {}, false);
+    ASSERT_TRUE(found.ok());
+    ASSERT_EQ(found->status, "fitted");
+    sum += worst_de00(*found, *paint.appearance);
+    EXPECT_NEAR(found->gloss_60_gu, paint.gloss.front().gloss_units, 2);
+  }
+  EXPECT_LE(sum / 6, 1);
+}
+
+TEST(Sketch, an_environment_wants_normals_and_rays) {
+  AovFile ball = sphere(40, kLamp);
+  const Picture p = picture(ball);
+  const SketchInput in = input(ball, p);
+  const SketchPixels pixels = *sketch_pixels(in);
+  ball.has_rays = false;
+  auto found = sketch_environment(in, pixels, glowing(), {}, false);
+  ASSERT_FALSE(found.ok());
+  EXPECT_THAT(found.error().message, HasSubstr("goniochrome:rays"));
+  ball.image.channel_names[7] = "other";
+  found = sketch_environment(in, pixels, glowing(), {}, false);
+  ASSERT_FALSE(found.ok());
+  EXPECT_THAT(found.error().message, HasSubstr("no channel \"normal.X\""));
+  EXPECT_THAT(found.error().message, HasSubstr("--aov normal,aspecular,lambert,mask,part"));
+}
+
+// Plain least squares of the clamped quadratic with the travel known, the textbook form, on all pixels.
+Lab least_squares_lab(const AovFile& file, const Picture& p, double angle_deg, double travel_deg) {
+  double gram[3][4] = {};
+  Rgb result;
+  const auto row = [&](double t, double* r) {
+    const double u = std::min(t, travel_deg) / travel_deg;
+    r[0] = u * u, r[1] = u, r[2] = 1;
+  };
+  for (int channel = 0; channel < 3; ++channel) {
+    for (auto& g : gram) std::fill(std::begin(g), std::end(g), 0.0);
+    for (std::size_t i = 0; i < p.state.size(); ++i) {
+      const float* b = &file.image.data[i * 11];
+      if (b[6] == 0 || b[5] < 0.05F || b[4] < 10) continue;
+      double r[3];
+      row(b[4], r);
+      for (int a = 0; a < 3; ++a) {
+        for (int c = 0; c < 3; ++c) gram[a][c] += r[a] * r[c] * b[5] * b[5];
+        gram[a][3] += r[a] * b[5] * p.rgb.data[3 * i + channel];
+      }
+    }
+    for (int k = 0; k < 3; ++k)
+      for (int j = 0; j < 3; ++j)
+        if (j != k) {
+          const double f = gram[j][k] / gram[k][k];
+          for (int c = 0; c < 4; ++c) gram[j][c] -= f * gram[k][c];
+        }
+    double r[3];
+    row(angle_deg, r);
+    for (int k = 0; k < 3; ++k) result[channel] += r[k] * gram[k][3] / gram[k][k];
+  }
+  return lab_from_rgb(result, *white_point({}));
+}
+
+TEST(Sketch, sketch_rank_a_third_of_outliers_does_not_move_the_paint) {
+  std::mt19937_64 random(13);
+  AovFile ball = sphere(160, kLamp);
+  Paint paint = random_paint(random);
+  paint.appearance = Appearance{{70, 30, 20}, {25, 10, 5}, 70, std::nullopt};
+  shade(ball, lobes(paint));
+  Picture p = picture(ball);
+  std::uniform_real_distribution<float> unit(0, 1);
+  for (std::size_t i = 0; i < p.state.size(); ++i)
+    if (unit(random) < 0.3F)
+      for (int c = 0; c < 3; ++c) p.rgb.data[3 * i + c] = 0.5F + 0.5F * unit(random);
+  SketchInput in = input(ball, p);
+  in.rule = PixelRule::kAll;
+  const SketchFit found = fit(in);
+  EXPECT_EQ(found.status, "fitted");
+  EXPECT_LE(worst_de00(found, *paint.appearance), 1);
+  // The control: the same pixels without reweighting.
+  EXPECT_GT(delta_e_2000(least_squares_lab(ball, p, 45, 70), lab_at(*paint.appearance, 45)), 5);
+}
+
+TEST(Sketch, sketch_rank_one_angle_and_few_pixels_fall_back_to_the_matt_color) {
+  std::mt19937_64 random(14);
+  AovFile ball = sphere(120, kLamp);
+  const Paint paint = random_paint(random);
+  shade(ball, lobes(paint));
+  const Picture p = picture(ball);
+  Image mask{120, 120, 1, std::vector<float>(120 * 120, 0), {}};
+  SketchInput in = input(ball, p);
+  in.mask = &mask;
+  for (int y = 0; y < 120; ++y)
+    for (int x = 0; x < 120; ++x) mask.data[y * 120 + x] = std::abs(ball.image.pixel(x, y)[4] - 50) < 1;
+  SketchFit found = fit(in);
+  EXPECT_EQ(found.status, "diffuse_fallback");
+  EXPECT_THAT(found.reason, HasSubstr("aspecular angles from"));
+  EXPECT_LE(delta_e_2000(found.appearance.face, lab_at(*paint.appearance, 50)), 3);  // of +-1 deg and of the lobes
+  EXPECT_EQ(found.appearance.face, found.appearance.flop);
+
+  std::fill(mask.data.begin(), mask.data.end(), 0.0F);
+  for (int x = 58; x < 61; ++x) mask.data[60 * 120 + x] = 1;
+  found = fit(in);
+  EXPECT_EQ(found.status, "diffuse_fallback");
+  EXPECT_THAT(found.reason, HasSubstr("different views"));
+  EXPECT_TRUE(std::isfinite(found.appearance.face.L));
+
+  // The control: of one angle the textbook's normal equations have no inverse.
+  std::vector<SketchCell> cells(10, SketchCell{50, 0.5, 10, {0.2, 0.2, 0.2}});
+  EXPECT_GT(fit_quadratic(cells).condition, 1e6);
+}
+
+TEST(Sketch, sketch_rank_all_clipped_leaves_no_pixel_and_says_so) {
+  AovFile ball = sphere(60, kLamp);
+  shade(ball, lobes(designed({60, 0, 0}, {20, 0, 0}, 60)));
+  Picture p = picture(ball);
+  p.state.assign(p.state.size(), Picture::kClipped);
+  const SketchPixels pixels = *sketch_pixels(input(ball, p));
+  EXPECT_TRUE(pixels.used.empty());
+  EXPECT_GT(pixels.count[static_cast<std::size_t>(PixelUse::kClipped)], 500U);
+}
+
+// One flat color, as of a marker, has no shading: half of the pixels disagree with every paint.
+TEST(Sketch, flat_strokes_fall_back_and_say_so) {
+  AovFile ball = sphere(120, kLamp);
+  shade(ball, lobes(designed({60, 0, 0}, {20, 0, 0}, 60)));
+  Picture p = picture(ball);
+  for (std::size_t i = 0; i < p.state.size(); ++i) {
+    const bool light = (i / 12) % 2 == 0;  // two markers in stripes
+    const float color[3] = {light ? 0.5F : 0.02F, light ? 0.1F : 0.02F, light ? 0.1F : 0.2F};
+    std::copy_n(color, 3, &p.rgb.data[3 * i]);
+  }
+  const SketchFit found = fit(input(ball, p));
+  EXPECT_EQ(found.status, "diffuse_fallback");
+  EXPECT_THAT(found.reason, HasSubstr("half of the pixels differ by more than"));
+  EXPECT_EQ(sketch_paint(found, "x").paint_class, PaintClass::kSolid);
+  EXPECT_TRUE(sketch_paint(found, "x").gloss.empty());
+}
+
+// Moves the picture right and down by whole pixels.
+Picture moved(const Picture& from, int dx, int dy) {
+  Picture to = from;
+  for (int y = 0; y < from.rgb.height; ++y)
+    for (int x = 0; x < from.rgb.width; ++x) {
+      const int sx = std::clamp(x - dx, 0, from.rgb.width - 1), sy = std::clamp(y - dy, 0, from.rgb.height - 1);
+      std::copy_n(from.pixel(sx, sy), 3, to.rgb.pixel(x, y));
+    }
+  return to;
+}
+
+TEST(Sketch, a_moved_picture_is_told_and_fits_again_with_its_shift) {
+  std::mt19937_64 random(15);
+  AovFile ball = sphere(160, kLamp);
+  const Paint paint = random_paint(random);
+  shade(ball, lobes(paint));
+  const Picture still = picture(ball);
+  EXPECT_EQ(sketch_shift(input(ball, still)).x, 0);
+  EXPECT_EQ(sketch_shift(input(ball, still)).y, 0);
+  const Picture p = moved(still, 3, -2);
+  SketchInput in = input(ball, p);
+  const SketchShift shift = sketch_shift(in);
+  EXPECT_EQ(shift.x, 3);
+  EXPECT_EQ(shift.y, -2);
+  in.rule = PixelRule::kAll;
+  const double unshifted = worst_de00(fit(in), *paint.appearance);
+  in.shift_x = shift.x, in.shift_y = shift.y;
+  const double shifted = worst_de00(fit(in), *paint.appearance);
+  EXPECT_LE(shifted, 1);
+  EXPECT_GT(unshifted, shifted);
+}
+
+TEST(Sketch, only_the_pixels_that_were_edited_count) {
+  AovFile ball = sphere(160, kLamp);
+  const Paint before = designed({60, 10, 0}, {20, 5, 0}, 60), after = designed({60, -30, 20}, {20, -10, 5}, 60);
+  AovFile other = ball;
+  shade(ball, lobes(before)), shade(other, lobes(after));
+  Picture p = picture(ball);
+  const Picture repainted = picture(other);
+  for (int y = 0; y < 160; ++y)  // the left part of the ball
+    std::copy_n(repainted.pixel(0, y), 3 * 72, p.rgb.pixel(0, y));
+  SketchInput in = input(ball, p);
+  const SketchPixels pixels = *sketch_pixels(in);
+  EXPECT_TRUE(pixels.changed_only);
+  EXPECT_EQ(pixels.changed, pixels.used.size());
+  EXPECT_LE(worst_de00(fit(in), *after.appearance), 1);
+  in.rule = PixelRule::kAll;
+  EXPECT_FALSE(sketch_pixels(in)->changed_only);
+  in.rule = PixelRule::kAuto;
+  EXPECT_FALSE(sketch_pixels(input(other, repainted))->changed_only);
+}
+
+TEST(Sketch, sizes_that_differ_are_both_named) {
+  const AovFile ball = sphere(40, kLamp), larger = sphere(50, kLamp);
+  const Picture p = picture(larger), own = picture(ball);
+  auto pixels = sketch_pixels(input(ball, p));
+  ASSERT_FALSE(pixels.ok());
+  EXPECT_THAT(pixels.error().message,
+              HasSubstr("the picture is 50 x 50 pixels and the buffers of sphere.exr are 40 x 40"));
+  const Image mask{7, 9, 1, std::vector<float>(63, 1), {}};
+  SketchInput in = input(ball, own);
+  in.mask = &mask;
+  pixels = sketch_pixels(in);
+  ASSERT_FALSE(pixels.ok());
+  EXPECT_THAT(pixels.error().message, HasSubstr("the mask is 7 x 9 pixels"));
+}
+
+}  // namespace
+}  // namespace goniochrome

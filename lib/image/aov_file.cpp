@@ -1,0 +1,95 @@
+#include "image/aov_file.h"
+
+#include <algorithm>
+
+#include "base/json.h"
+#include "base/text.h"
+
+namespace goniochrome {
+
+namespace {
+
+template <class T>
+T attribute(const Attributes& attributes, const char* name, const T& otherwise) {
+  const auto found = attributes.find(name);
+  const T* value = found == attributes.end() ? nullptr : std::get_if<T>(&found->second);
+  return value ? *value : otherwise;
+}
+
+// `count` comma-separated numbers.
+Result<std::vector<double>> numbers(std::string_view text, std::size_t count, const std::string& path,
+                                    const char* name) {
+  std::vector<double> values;
+  for (const std::string_view piece : split(text, ','))
+    if (const auto value = parse_number(trimmed(piece))) values.push_back(*value);
+  if (values.size() != count)
+    return input_error("{}: its {} is \"{}\", not {} numbers: render the buffers again", path, name, text, count);
+  return values;
+}
+
+Result<void> take_rays(const std::string& text, AovFile& file) {
+  if (text.empty()) return {};
+  const auto pieces = split(text, ';');
+  if (pieces.size() != 3)
+    return input_error("{}: its goniochrome:rays is \"{}\", not three vectors: render the buffers again", file.path,
+                       text);
+  Vec3* const rays[3] = {&file.corner, &file.right, &file.down};
+  for (int i = 0; i < 3; ++i) {
+    GONIO_ASSIGN(const auto v, numbers(pieces[i], 3, file.path, "goniochrome:rays"));
+    *rays[i] = {v[0], v[1], v[2]};
+  }
+  file.has_rays = true;
+  return {};
+}
+
+Result<void> take_lights(const std::string& text, AovFile& file) {
+  if (text.empty()) return {};
+  for (const std::string_view piece : split(text, ';')) {
+    GONIO_ASSIGN(const auto v, numbers(piece, 6, file.path, "goniochrome:lights"));
+    file.lights.push_back({{v[0], v[1], v[2]}, {v[3], v[4], v[5]}});
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<int> AovFile::channel(const std::string& name) const {
+  const auto found = std::find(image.channel_names.begin(), image.channel_names.end(), name);
+  if (found != image.channel_names.end()) return static_cast<int>(found - image.channel_names.begin());
+  return input_error(
+      "{}: has no channel \"{}\": make the buffers by render-osmesa ... --aov normal,aspecular,lambert,mask,part -o "
+      "{}{}",
+      path, name, path, command.empty() ? "" : fmt::format(" (it was made by `{}`)", command));
+}
+
+Result<int> AovFile::part(const std::string& name) const {
+  const auto found = std::find(parts.begin(), parts.end(), name);
+  if (found != parts.end()) return static_cast<int>(found - parts.begin()) + 1;
+  return usage_error("{} has no part \"{}\": its parts are {}", path, name, fmt::join(parts, ", "));
+}
+
+Result<AovFile> read_aov_file(const std::string& path) {
+  GONIO_ASSIGN(auto read, read_exr(path));
+  const Attributes& attributes = read.front().attributes;
+  AovFile file;
+  file.path = path == "-" ? "standard input" : path;
+  file.exposure_stops = attribute<float>(attributes, "goniochrome:exposure", 0);
+  file.white_luminance = attribute<float>(attributes, "goniochrome:whiteLuminance", 1);
+  if (!(file.white_luminance > 0)) file.white_luminance = 1;
+  file.environment = attribute<std::string>(attributes, "goniochrome:environment", "");
+  file.command = attribute<std::string>(attributes, "goniochrome:command", "");
+  if (const auto light = attribute<std::string>(attributes, "goniochrome:aovLight", ""); !light.empty()) {
+    GONIO_ASSIGN(const auto v, numbers(light, 3, file.path, "goniochrome:aovLight"));
+    file.light = {v[0], v[1], v[2]};
+  }
+  GONIO_TRY(take_rays(attribute<std::string>(attributes, "goniochrome:rays", ""), file));
+  GONIO_TRY(take_lights(attribute<std::string>(attributes, "goniochrome:lights", ""), file));
+  const auto parts = attribute<std::string>(attributes, "goniochrome:parts", "");
+  const Json names = Json::parse(parts.empty() ? "[]" : parts, nullptr, false);
+  for (const Json& name : names)
+    if (name.is_string()) file.parts.push_back(name.get<std::string>());
+  file.image = std::move(read.front().image);
+  return file;
+}
+
+}  // namespace goniochrome

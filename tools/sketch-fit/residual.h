@@ -1,0 +1,16 @@
+// The picture of what a fit leaves.
+#pragma once
+
+#include <string>
+
+#include "base/result.h"
+#include "fit/sketch.h"
+
+namespace goniochrome {
+
+// A PNG of the buffers' size: differences from black through red and yellow to white at 20 dE76, pixels left out in
+// dark blue, what is not the mesh in gray, with a scale at the lower left.
+Result<void> write_residual(const std::string& path, const AovFile& buffers, const SketchPixels& pixels,
+                            const SketchFit& fit);
+
+}  // namespace goniochrome

@@ -1,0 +1,216 @@
+#include "run.h"
+
+#include <cmath>
+
+#include "base/clock.h"
+#include "base/text.h"
+#include "fit/sketch.h"
+#include "paint/xml.h"
+#include "residual.h"
+
+namespace goniochrome {
+
+namespace {
+
+// Everything that the fit looks at; `input` points into it.
+struct Material {
+  AovFile buffers;
+  Picture picture;
+  Image mask;
+  PrefilteredEnvironment env;
+  Basis basis;
+  SketchInput input;
+};
+
+Result<double> gain_of(const SketchFitOptions& options, const Material& material) {
+  if (options.exposure != "auto") {
+    const auto stops = parse_number(options.exposure);
+    if (!stops || std::abs(*stops) > 64)
+      return usage_error("--exposure is \"{}\": write a number of stops, or auto", options.exposure);
+    return std::exp2(-*stops);
+  }
+  return material.picture.scene_linear ? std::exp2(-material.buffers.exposure_stops) : material.buffers.white_luminance;
+}
+
+Result<void> check_light(const SketchFitOptions& options, const AovFile& buffers) {
+  if (!options.env.empty()) return {};
+  if (!buffers.environment.empty())
+    return usage_error("{} was rendered under the environment {}: give --env {}", buffers.path, buffers.environment,
+                       buffers.environment);
+  if (buffers.lights.size() > 1)
+    return input_error("{} was rendered with {} lights: render picture and buffers with one --light", buffers.path,
+                       buffers.lights.size());
+  return {};
+}
+
+Result<void> gather(const SketchFitOptions& options, Material& material) {
+  if (!options.shift.empty() && options.shift.size() != 2)
+    return usage_error("--shift is given {} numbers: write X,Y", options.shift.size());
+  if (!options.basis.empty() && !options.env.empty())
+    return usage_error("--basis is for a point light: an environment brings its own");
+  if (!options.residual.empty() && !options.residual.ends_with(".png"))
+    return usage_error("--residual is \"{}\": give a name that ends in .png", options.residual);
+  SketchInput& input = material.input;
+  GONIO_ASSIGN(material.buffers, read_aov_file(options.buffers));
+  GONIO_TRY(check_light(options, material.buffers));
+  for (const std::string& name : options.parts) {
+    GONIO_ASSIGN(const int part, material.buffers.part(name));
+    input.parts.push_back(part);
+  }
+  GONIO_ASSIGN(material.picture,
+               read_picture(options.image, options.view == "plain" ? PictureView::kPlain : PictureView::kPaint));
+  if (!options.mask.empty()) {
+    GONIO_ASSIGN(ImagePart mask, read_image(options.mask));
+    material.mask = std::move(mask.image);
+    input.mask = &material.mask;
+  }
+  GONIO_ASSIGN(input.gain, gain_of(options, material));
+  input.buffers = &material.buffers, input.edited = &material.picture;
+  input.rule = options.pixels == "all"       ? PixelRule::kAll
+               : options.pixels == "changed" ? PixelRule::kChanged
+                                             : PixelRule::kAuto;
+  if (!options.shift.empty())
+    input.shift_x = static_cast<int>(std::lround(options.shift[0])),
+    input.shift_y = static_cast<int>(std::lround(options.shift[1]));
+  if (options.env.empty()) {
+    input.least_cosine = 0.05, input.glare_deg = options.glare_deg;
+    material.basis = sketch_basis();
+    if (options.basis.empty()) return {};
+    GONIO_ASSIGN(material.basis, read_basis(options.basis));
+    return {};
+  }
+  GONIO_ASSIGN(material.env, read_env(options.env));
+  return {};
+}
+
+void report_pixels(const SketchPixels& pixels, Json& results) {
+  results["pixels_used"] = pixels.used.size();
+  results["pixels_changed"] = pixels.changed;
+  results["pixels_rule"] = pixels.changed_only ? "changed" : "all";
+  results["pixels_left_out"] = Json::object();
+  for (int use = 1; use < static_cast<int>(PixelUse::kCount); ++use)
+    results["pixels_left_out"][pixel_use_name(static_cast<PixelUse>(use))] =
+        pixels.count[static_cast<std::size_t>(use)];
+}
+
+Json lab_json(const Lab& lab) {
+  return {json_number(lab.L), json_number(lab.a), json_number(lab.b)};
+}
+
+void report_fit(const SketchFit& fit, bool environment, Json& results) {
+  const bool fitted = fit.status == "fitted";
+  results["status"] = fit.status;
+  results["reason"] = fitted ? Json(nullptr) : Json(fit.reason);
+  results["mode"] = environment ? "environment" : "point";
+  results["model"] = fit.model;
+  results["rms_de76"] = json_number(fit.rms_de76);
+  results["median_de76"] = json_number(fit.median_de76);
+  results["travel_deg"] = fit.appearance.travel_deg;
+  results["face"] = lab_json(fit.appearance.face);
+  results["flop"] = lab_json(fit.appearance.flop);
+  results["rows"] = Json::array();
+  for (const LabReading& row : fit.rows)
+    results["rows"].push_back(
+        {{"geometry", geometry_name(row.geometry)}, {"L", row.lab.L}, {"a", row.lab.a}, {"b", row.lab.b}});
+  results["extrapolated_deg"] = fit.extrapolated_deg;
+  results["gloss_60_gu"] = fit.gloss_from.empty() ? Json(nullptr) : Json(fit.gloss_60_gu);
+  results["gloss_from"] = fit.gloss_from.empty() ? Json(nullptr) : Json(fit.gloss_from);
+  results["condition"] = fit.condition > 0 ? json_number(fit.condition) : Json(nullptr);
+  results["aspecular_from_deg"] = environment ? Json(nullptr) : Json(fit.seen_from_deg);
+  results["aspecular_to_deg"] = environment ? Json(nullptr) : Json(fit.seen_to_deg);
+}
+
+// What a reader should know beside the paint.
+void tell(const SketchFitOptions& options, const SketchPixels& pixels, const SketchFit& fit, cli::Session& session) {
+  if (fit.status != "fitted")
+    session.warn(fmt::format("{}: the answer is the matt color that explains them best", fit.reason));
+  if (!fit.extrapolated_deg.empty())
+    session.warn(fmt::format("no pixel shows {} deg from specular: the color there is extrapolated",
+                             fmt::join(fit.extrapolated_deg, ", ")));
+  const Appearance& a = fit.appearance;
+  const std::string gloss =
+      fit.gloss_from.empty() ? "" : fmt::format(", gloss {:.0f} GU by {}", fit.gloss_60_gu, fit.gloss_from);
+  session.say(fmt::format(
+      "{}: face {:.1f} {:.1f} {:.1f}, flop {:.1f} {:.1f} {:.1f}, travel {:.0f}{}; dE76 median {:.1f}, rms {:.1f}, {} {}"
+      "pixels",
+      options.name, a.face.L, a.face.a, a.face.b, a.flop.L, a.flop.a, a.flop.b, a.travel_deg, gloss, fit.median_de76,
+      fit.rms_de76, pixels.used.size(), pixels.changed_only ? "edited " : ""));
+}
+
+Result<void> write_paint(const SketchFitOptions& options, const SketchFit& fit, const cli::Session& session) {
+  GONIO_ASSIGN(OutputFile file, OutputFile::create(options.output));
+  GONIO_ASSIGN(
+      PaintWriter writer,
+      PaintWriter::begin(std::move(file), {{session.tool(), cli::Session::version(), session.command_line()}}));
+  GONIO_TRY(writer.write(sketch_paint(fit, options.name)));
+  return writer.finish();
+}
+
+Result<void> check_usable(const SketchPixels& pixels, const SketchFitOptions& options) {
+  if (!pixels.used.empty()) return {};
+  std::string reasons;
+  for (int use = 1; use < static_cast<int>(PixelUse::kCount); ++use)
+    if (const auto count = pixels.count[static_cast<std::size_t>(use)]; count > 0)
+      reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, pixel_use_name(static_cast<PixelUse>(use)));
+  return input_error("{}: no pixel is left to fit ({}): check --mask, --part, --pixels and the exposure", options.image,
+                     reasons);
+}
+
+void tell_shift(const SketchInput& input, cli::Session& session) {
+  const SketchShift shift = sketch_shift(input);
+  session.results()["suggested_shift"] = {shift.x, shift.y};
+  if (shift.x != input.shift_x || shift.y != input.shift_y)
+    session.warn(fmt::format("the picture seems moved by {},{} pixels against the buffers: try --shift {},{}", shift.x,
+                             shift.y, shift.x, shift.y));
+}
+
+std::string plan_text(const SketchFitOptions& options) {
+  std::string text =
+      options.env.empty()
+          ? "light: one lamp, from the buffers' aspecular and lambert\n"
+            "curve: cosine lobes for flake and gloss light, or the clamped quadratic, whichever costs less; "
+            "reweighted\n"
+          : "light: the environment and the lamps of the buffers' header\n"
+            "search: face, flop, travel and gloss by damped least squares, from two starts; then three free rows\n";
+  text += fmt::format("left out: edges, transparent and clipped pixels{}\n",
+                      options.env.empty()
+                          ? fmt::format(", light below 0.05, the {} deg about specular", shortest(options.glare_deg))
+                          : "");
+  return text + fmt::format("fallback: the matt color, where half of the pixels differ by more than {} dE76\n",
+                            shortest(options.most_de76));
+}
+
+}  // namespace
+
+Result<cli::Verdict> run_sketch_fit(const SketchFitOptions& options, cli::Session& session) {
+  session.explain(plan_text(options));
+  Material material;
+  GONIO_TRY(gather(options, material));
+  const SketchInput& input = material.input;
+  for (const std::string& warning : material.picture.warnings) session.warn(warning);
+  const Stopwatch clock;
+  GONIO_ASSIGN(const SketchPixels pixels, sketch_pixels(input));
+  GONIO_TRY(check_usable(pixels, options));
+  SketchLimits limits;
+  limits.median_de76 = options.most_de76;
+  const bool differences = !options.residual.empty();
+  const bool environment = !options.env.empty();
+  SketchFit fit;
+  if (environment) {
+    GONIO_ASSIGN(fit, sketch_environment(input, pixels, material.env, limits, differences));
+  } else {
+    fit = sketch_point(input, pixels, material.basis, limits, differences);
+  }
+  Json& results = session.results();
+  report_fit(fit, environment, results);
+  report_pixels(pixels, results);
+  tell_shift(input, session);
+  results["color_space"] = material.picture.space;
+  results["fit_s"] = clock.elapsed_s();
+  if (differences) GONIO_TRY(write_residual(options.residual, material.buffers, pixels, fit));
+  GONIO_TRY(write_paint(options, fit, session));
+  tell(options, pixels, fit, session);
+  return cli::Verdict::kDone;
+}
+
+}  // namespace goniochrome

@@ -1,0 +1,253 @@
+# sketch-fit: render, edit the picture, find the paint.
+
+setup_file() {
+  cd "$BATS_FILE_TMPDIR" || exit 1
+  # Designed: at 45 deg the curve has (35/65)^2 = 0.28994 of the way from flop to face.
+  cat >designed.xml <<'EOF'
+<paints xmlns="urn:goniochrome:paint:1" version="1">
+  <paint name="steel"><gloss angle="60">85</gloss>
+    <appearance travel="80"><face L="75" a="-5" b="-20"/><flop L="25" a="-2" b="-10"/></appearance></paint>
+  <paint name="satin"><gloss angle="60">30</gloss>
+    <appearance travel="60"><face L="80" a="5" b="10"/><flop L="30" a="2" b="4"/></appearance></paint>
+  <paint name="ruby"><gloss angle="60">90</gloss>
+    <appearance travel="70"><face L="50" a="45" b="20"/><flop L="12" a="15" b="6"/></appearance></paint>
+</paints>
+EOF
+  fit-paint -q --basis "$TESTDATA/b7.basis.xml" designed.xml -o fitted.xml
+  scene="--mesh $TESTDATA/speed-shape.obj --light 0,20 --size 320x200 --samples 1"
+  for paint in steel ruby; do
+    render-osmesa -q $scene --paint "fitted.xml#$paint" --aov normal,aspecular,lambert,mask,part -o $paint.exr
+    render-osmesa -q $scene --paint "fitted.xml#$paint" -o $paint.png
+  done
+}
+
+setup() {
+  cd "$BATS_FILE_TMPDIR" || exit 1
+}
+
+# result KEY: its value in the report.
+result() { jq -r ".results.$1" r.json; }
+
+# below VALUE LIMIT
+below() { awk -v value="$1" -v limit="$2" 'BEGIN { exit !(value <= limit) }' || { echo "$1 is above $2"; return 1; }; }
+
+# lab GEOMETRY FILE: L a b of the paint's row.
+lab() {
+  xmllint --xpath "//*[local-name()='lab'][@geometry='$1']" "$2" | grep -oE '[Lab]="[^"]*"' | grep -oE '[-0-9.]+' | tr '\n' ' '
+}
+
+# distance X Y: dE76.
+distance() { awk '{ print sqrt(($1-$4)^2 + ($2-$5)^2 + ($3-$6)^2) }' <<<"$1 $2"; }
+
+fit() { sketch-fit -q -o found.xml --report r.json "$@"; }
+
+@test "an unedited picture gives its paint back, as light and as PNG" {
+  # Half a code of 8 bits is up to 0.3 in L* and twice that in a* and b*; few of these pixels lie near 15 deg.
+  for case in steel.exr:0.3 steel.png:2; do
+    fit -i ${case%:*} -b steel.exr
+    [ "$(result status)" = fitted ]
+    below "$(result median_de76)" 0.6
+    below "$(distance "$(lab 45as15 found.xml)" "75 -5 -20")" ${case#*:}
+    below "$(distance "$(lab 45as45 found.xml)" "39.497 -2.870 -12.899")" ${case#*:}
+    below "$(distance "$(lab 45as110 found.xml)" "25 -2 -10")" ${case#*:}
+  done
+  [ "$(result mode)" = point ]
+  [ "$(result pixels_rule)" = all ]
+  [ "$(result color_space)" = sRGB ]
+}
+
+@test "the found paint goes on through the pipe" {
+  fit -i steel.exr -b steel.exr --name found
+  xmllint --noout found.xml
+  fit-paint -q --basis "$TESTDATA/b7.basis.xml" found.xml -o again.xml
+  render-osmesa -q --mesh "$TESTDATA/speed-shape.obj" --light 0,20 --size 320x200 --samples 1 --paint again.xml#found -o again.exr
+  # Where the highlight is, gloss differs; elsewhere the pictures agree.
+  run oiiotool steel.exr --ch R,G,B again.exr --ch R,G,B --fail 0.01 --failpercent 3 --diff
+  [ "$status" -eq 0 ] || { echo "$output"; return 1; }
+}
+
+@test "a turned hue is found, and its picture again within 2 dE, the source's figure" {
+  # A rotation about the gray axis by 60 degrees, in the display's signals, as an image editor has it.
+  oiiotool ruby.png --ccmatrix "0.667,0.667,-0.333,0,-0.333,0.667,0.667,0,0.667,-0.333,0.667,0,0,0,0,1" -d uint8 -o turned.png
+  fit -i turned.png -b ruby.exr
+  [ "$(result status)" = fitted ]
+  below "$(result rms_de76)" 2
+}
+
+@test "edited pixels count, the others do not" {
+  oiiotool steel.png --cut 90x200+0+0 --mulc 0.5,1.1,0.5 steel.png --paste +0+0 -d uint8 -o part.png
+  fit -i part.png -b steel.exr
+  [ "$(result pixels_rule)" = changed ]
+  below "$(result 'face[1]')" -10
+  fit -i part.png -b steel.exr --pixels all
+  [ "$(result pixels_rule)" = all ]
+}
+
+@test "under an environment the paint and its gloss come back" {
+  oiiotool "$TESTDATA/studio.exr" --resize:filter=box 64x32 -o small.exr
+  prefilter-envmap -q small.exr --basis "$TESTDATA/b7.basis.xml" -o small.env.exr
+  scene="--mesh $TESTDATA/speed-shape.obj --env small.env.exr --size 240x150 --samples 1"
+  render-osmesa -q $scene --paint fitted.xml#satin --aov normal,aspecular,lambert,mask,part -o env.exr
+  run sketch-fit -i env.exr -b env.exr -o found.xml
+  [ "$status" -eq 2 ]
+  [[ $output == *"env.exr was rendered under the environment small.env.exr: give --env small.env.exr"* ]]
+  fit -i env.exr -b env.exr --env small.env.exr
+  [ "$(result status)" = fitted ]
+  [ "$(result mode)" = environment ]
+  [ "$(result gloss_from)" = search ]
+  below "$(distance "$(lab 45as15 found.xml)" "80 5 10")" 1
+  below "$(distance "$(lab 45as110 found.xml)" "30 2 4")" 1
+  awk -v g="$(result gloss_60_gu)" 'BEGIN { exit !(28 < g && g < 33) }'
+}
+
+@test "every format: 16 bits, gray, alpha" {
+  oiiotool steel.png -d uint16 -o deep.png
+  oiiotool steel.png -d uint16 -o deep.tif
+  oiiotool steel.png --ch G -o gray.png
+  oiiotool steel.png --ch R,G,B,A=1 -o alpha.png
+  for image in deep.png deep.tif gray.png alpha.png; do
+    fit -i $image -b steel.exr
+    [ "$(result status)" = fitted ] || { echo $image; return 1; }
+    below "$(result median_de76)" 3
+  done
+  fit -i alpha.png -b steel.exr
+  [ "$(result pixels_left_out.transparent)" -eq 0 ]
+  oiiotool steel.png --ch R,G,B,A=0.5 -o glass.png
+  run sketch-fit -i glass.png -b steel.exr -o none.xml
+  [ "$status" -eq 3 ]
+  [[ $output == *"glass.png: no pixel is left to fit ("*" transparent"* ]]
+  [ ! -e none.xml ]
+}
+
+@test "a profile is followed, and one that is not read is refused" {
+  python3 - <<'EOF'
+import struct, zlib
+def png(path, profile):
+    rows = open('steel.png', 'rb').read()
+    packed = b'x\0\0' + zlib.compress(profile)
+    chunk = struct.pack('>I', len(packed)) + b'iCCP' + packed + struct.pack('>I', zlib.crc32(b'iCCP' + packed))
+    open(path, 'wb').write(rows[:33] + chunk + rows[33:])
+def profile(space):
+    # sRGB's colorants, D50, and the plain gamma of 2.2
+    xyz = [(0.43607, 0.22249, 0.01392), (0.38515, 0.71687, 0.09708), (0.14307, 0.06061, 0.7141)]
+    data, tags = b'', []
+    at = 132 + 12 * 6
+    for name, v in zip(('rXYZ', 'gXYZ', 'bXYZ'), xyz):
+        body = b'XYZ \0\0\0\0' + b''.join(struct.pack('>i', round(x * 65536)) for x in v)
+        tags.append((name, at + len(data), len(body))); data += body
+    body = b'curv\0\0\0\0' + struct.pack('>IH', 1, 563)
+    for name in ('rTRC', 'gTRC', 'bTRC'):
+        tags.append((name, at + len(data), len(body)))
+    data += body + b'\0\0'
+    table = struct.pack('>I', 6) + b''.join(n.encode() + struct.pack('>II', o, s) for n, o, s in tags)
+    size = 128 + len(table) + len(data)
+    head = struct.pack('>I', size) + b'\0' * 4 + struct.pack('>I', 0x02400000) + b'mntr' + space + b'XYZ ' + b'\0' * 12
+    head += b'acsp' + b'\0' * 28 + struct.pack('>iii', 63190, 65536, 54061)
+    return head + b'\0' * (128 - len(head)) + table + data
+png('tagged.png', profile(b'RGB '))
+EOF
+  fit -i tagged.png -b steel.exr
+  [ "$(result color_space)" = "its ICC profile" ]
+  below "$(result median_de76)" 1
+}
+
+@test "sizes that differ, missing buffers and masks that leave nothing are told" {
+  oiiotool steel.png --resize 100x100 -o small.png
+  run sketch-fit -i small.png -b steel.exr
+  [ "$status" -eq 3 ]
+  [[ $output == *"the picture is 100 x 100 pixels and the buffers of steel.exr are 320 x 200"* ]]
+  oiiotool steel.exr --ch R,G,B,A,mask,part,lambert -o lacking.exr
+  run sketch-fit -i steel.png -b lacking.exr
+  [ "$status" -eq 3 ]
+  [[ $output == *'lacking.exr: has no channel "aspecular": make the buffers by render-osmesa'*"--aov normal,aspecular"* ]]
+  oiiotool --create 320x200 1 -o black.png
+  run sketch-fit -i steel.png -b steel.exr --mask black.png
+  [ "$status" -eq 3 ]
+  [[ $output == *"no pixel is left to fit ("*" masked"*"check --mask"* ]]
+  oiiotool --create 20x20 1 -o odd.png
+  run sketch-fit -i steel.png -b steel.exr --mask odd.png
+  [ "$status" -eq 3 ]
+  [[ $output == *"the mask is 20 x 20 pixels"* ]]
+  oiiotool --create 320x200 1 --fill:color=1 320x200 -o white.png
+  fit -i steel.png -b steel.exr --mask white.png
+  [ "$(result pixels_left_out.masked)" -eq 0 ]
+}
+
+@test "too little to see falls back to a matt color, told, with exit status 0" {
+  oiiotool --create 320x200 1 --fill:color=1 4x4+160+100 -o dot.png
+  run sketch-fit -i steel.exr -b steel.exr --mask dot.png -o found.xml --report r.json
+  [ "$status" -eq 0 ]
+  [[ $output == *"warning: the pixels show "*": the answer is the matt color that explains them best"* ]]
+  [ "$(result status)" = diffuse_fallback ]
+  [ "$(result gloss_60_gu)" = null ]
+  grep -q 'class="solid"' found.xml
+  fit -i ruby.exr -b steel.exr --max-de 0 --pixels all
+  [ "$(result status)" = diffuse_fallback ]
+}
+
+@test "a moved picture is told with the shift that mends it" {
+  oiiotool steel.png --origin +3+0 --fullsize 320x200+0+0 --croptofull -d uint8 -o moved.png
+  run sketch-fit -i moved.png -b steel.exr -o found.xml --report r.json
+  [ "$status" -eq 0 ]
+  [[ $output == *"the picture seems moved by 3,0 pixels against the buffers: try --shift 3,0"* ]]
+  run sketch-fit -i moved.png -b steel.exr --shift 3,0 --pixels all -o found.xml --report r.json
+  [[ $output != *"seems moved"* ]]
+  below "$(result median_de76)" 1
+}
+
+@test "the residual is a picture of the buffers' size" {
+  fit -i ruby.png -b steel.exr --pixels all --residual residual.png
+  oiiotool --info residual.png | grep -q '320 x  200, 3 channel, uint8 png'
+  run sketch-fit -i ruby.png -b steel.exr --residual residual.exr
+  [ "$status" -eq 2 ]
+  [[ $output == *"--residual is \"residual.exr\": give a name that ends in .png"* ]]
+}
+
+@test "options: parts, basis, view, exposure, glare" {
+  fit -i steel.exr -b steel.exr --part Hood --part Roof
+  [ "$(result pixels_left_out.other_part)" -gt 1000 ]
+  fit -i steel.exr -b steel.exr --basis "$TESTDATA/b5.basis.xml" --glare 20
+  [ "$(result aspecular_from_deg | cut -d. -f1)" -ge 20 ]
+  fit -i steel.png -b steel.exr --view plain --exposure 1 --pixels all
+  below "$(result 'face[0]')" 80 # an exposure of one stop more means half the light
+  sketch-fit --explain -q -i steel.exr -b steel.exr -o found.xml 2>&1 | grep -q '^fallback: the matt color'
+}
+
+usage_error() { # TEXT ARGUMENTS...
+  local text=$1
+  shift
+  run sketch-fit -i steel.png -b steel.exr -o none.xml "$@"
+  [ "$status" -eq 2 ] || { echo "$* gave $status: $output"; return 1; }
+  [[ $output == *"$text"* ]] || { echo "$* said: $output"; return 1; }
+  [ ! -e none.xml ]
+}
+
+@test "usage errors name the option and the remedy" {
+  usage_error '--shift is given 1 numbers: write X,Y' --shift 3
+  usage_error '--pixels is "some"' --pixels some
+  usage_error '--view is "film"' --view film
+  usage_error '--exposure is "bright"' --exposure bright
+  usage_error '--glare is "90"' --glare 90
+  usage_error '--max-de is "-1"' --max-de -1
+  usage_error 'steel.exr has no part "Bonnet": its parts are Hood, ' --part Bonnet
+  usage_error '--basis is for a point light' --basis x --env y
+  run sketch-fit -b steel.exr
+  [ "$status" -eq 2 ]
+  [[ $output == *"--image"* ]]
+  run sketch-fit -i steel.png
+  [ "$status" -eq 2 ]
+  [[ $output == *"--buffers"* ]]
+}
+
+@test "input errors name the file" {
+  for option in --mask --basis --env; do
+    run sketch-fit -i steel.exr -b steel.exr $option missing.file -o none.xml
+    [ "$status" -eq 3 ]
+    [[ $output == *missing.file* ]]
+  done
+  run sketch-fit -i missing.png -b steel.exr -o none.xml
+  [ "$status" -eq 3 ]
+  run sketch-fit -i steel.png -b missing.exr -o none.xml
+  [ "$status" -eq 3 ]
+  [ ! -e none.xml ]
+}
