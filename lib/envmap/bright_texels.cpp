@@ -58,9 +58,9 @@ void BrightTexels::Points::add(const Vec3& at, const Vec3& rgb) {
   for (int c = 0; c < 3; ++c) flux.push_back(static_cast<float>(rgb[c]));
 }
 
-// The centroid errs by E |E-1| h^2/24 of the texel, 5e-7 at E = 1.5 and 1024 columns.
+// The centroid is exact for E = 1 alone; elsewhere it errs by E |E-1| h^2/(24 t^2) of the texel, much near the horizon.
 Vec3 BrightTexels::lobe(const Vec3& d, double exponent) const {
-  const Points& points = exponent <= 1.5 ? centroids_ : gauss_;
+  const Points& points = exponent == 1 ? centroids_ : gauss_;
   const double direction[3] = {d.x, d.y, d.z};
   double sum[3] = {0, 0, 0};
   add_points(points.flux.data(), points.x.size(), points.x.data(), points.y.data(), points.z.data(), direction,

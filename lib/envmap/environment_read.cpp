@@ -82,6 +82,15 @@ std::array<Placement, 6> openexr_placements(int n) {
   return faces;
 }
 
+// The disc of an angular probe alone: what lies beyond the rim sees nothing.
+Image without_corners(Image square) {
+  const SphereGrid grid(SphereGrid::Layout::kAngular, square.width, square.height);
+  for (int row = 0; row < square.height; ++row)
+    for (int column = 0; column < square.width; ++column)
+      if (grid.solid_angle(column, row) == 0) std::fill_n(square.pixel(column, row), 3, 0.0F);
+  return square;
+}
+
 std::string envmap_attribute(const ImagePart& part) {
   const auto found = part.attributes.find("envmap");
   const auto* value = found == part.attributes.end() ? nullptr : std::get_if<std::string>(&found->second);
@@ -94,9 +103,7 @@ class EnvironmentReader {
  public:
   static Environment make(Environment::Layout layout, Image rgb, const Counts& counts, const std::string& name) {
     Environment env;
-    env.layout_ = layout;
-    env.width_ = rgb.width;
-    env.height_ = rgb.height;
+    env.grid_ = SphereGrid(layout, rgb.width, rgb.height);
     env.rgb_ = std::move(rgb.data);
     env.source_ = name;
     env.replaced_ = counts;
@@ -128,6 +135,7 @@ class EnvironmentReader {
     if (w >= 2 && std::abs(w - 2 * h) <= 1) return make(Layout::kLatLong, std::move(rgb), counts, name);
     if (envmap == "latlong")
       return input_error("{}: is tagged as lat-long but is {} x {}: it must be twice as wide as high", name, w, h);
+    if (w == h && w >= 2) return make(Layout::kAngular, without_corners(std::move(rgb)), counts, name);
     if (h == 6 * w) return make(Layout::kCube, std::move(rgb), counts, name);
     if (w == 6 * h) return cube(h, {{{0, 0}, {1, 0}, {2, 0}, {3, 0}, {4, 0}, {5, 0}}});
     // Crosses: the faces unfolded around +Z, as OpenGL addresses them; the upright cross has -Z below, upside down.
@@ -139,8 +147,10 @@ class EnvironmentReader {
       return make(Layout::kCube, strip_of(rgb, n, faces), counts, name);
     }
     return input_error(
-        "{}: {} x {} is no known shape: a lat-long map is 2:1, a cube 1:6, 6:1, 4:3 or 3:4, or six square files", name,
-        w, h);
+        "{}: {} x {} is no known shape: a lat-long map is 2:1, an angular probe 1:1, a cube 1:6, 6:1, 4:3 or 3:4, or "
+        "six "
+        "square files",
+        name, w, h);
   }
 };
 
@@ -183,6 +193,13 @@ Result<Environment> Environment::from_lat_long(Image rgb, BadPixels bad_pixels, 
   if (rgb.channels != 3 || rgb.width < 2 || std::abs(rgb.width - 2 * rgb.height) > 1)
     return input_error("{}: {} x {} is no lat-long map: it must be twice as wide as high", name, rgb.width, rgb.height);
   return EnvironmentReader::make(Layout::kLatLong, std::move(rgb), counts, name);
+}
+
+Result<Environment> Environment::from_angular(Image rgb, BadPixels bad_pixels, const std::string& name) {
+  GONIO_ASSIGN(const Counts counts, checked(rgb, bad_pixels, name));
+  if (rgb.channels != 3 || rgb.width < 2 || rgb.width != rgb.height)
+    return input_error("{}: {} x {} is no angular probe: it must be square", name, rgb.width, rgb.height);
+  return EnvironmentReader::make(Layout::kAngular, without_corners(std::move(rgb)), counts, name);
 }
 
 Environment Environment::from_cube(const CubeMap& map, const std::string& name) {

@@ -265,7 +265,7 @@ TEST_F(EnvironmentFile, HardCase_prefilter_bad_shapes_are_refused_and_odd_ones_r
                                      envmap),
                              BadPixels::kError);
   };
-  for (const auto& [w, h] : {std::pair{1, 1}, {3, 3}, {10, 3}, {5, 4}}) {
+  for (const auto& [w, h] : {std::pair{1, 1}, {10, 3}, {5, 4}}) {
     const auto env = read(w, h);
     ASSERT_FALSE(env.ok()) << w << " x " << h;
     EXPECT_THAT(env.error().message, HasSubstr(fmt::format("s.exr: {} x {} is no known shape", w, h)));

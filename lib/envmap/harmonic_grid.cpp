@@ -6,6 +6,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -301,15 +302,14 @@ int taps_for(double error) {
   return std::clamp(static_cast<int>(std::ceil(taps)) + 1, 4, 14);
 }
 
-CubeAngles::CubeAngles(int n) : size(n) {
-  const std::size_t face = static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
-  theta.resize(6 * face);
-  phi.resize(6 * face);
-  parallel_for(6 * face, 1 << 12, [&](std::size_t begin, std::size_t end) {
+GridAngles::GridAngles(const SphereGrid& grid, const Rotation& turn) {
+  const std::size_t width = static_cast<std::size_t>(grid.width()),
+                    count = width * static_cast<std::size_t>(grid.height());
+  theta.resize(count);
+  phi.resize(count);
+  parallel_for(count, 1 << 12, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const std::size_t column = i % static_cast<std::size_t>(n), row = i / static_cast<std::size_t>(n);
-      const Vec3 d = cube_direction(static_cast<int>(i / face), static_cast<double>(column) + 0.5,
-                                    static_cast<double>(row % static_cast<std::size_t>(n)) + 0.5, n);
+      const Vec3 d = turn.to_environment(grid.direction(static_cast<int>(i % width), static_cast<int>(i / width)));
       theta[i] = std::atan2(std::hypot(d.x, d.z), d.y);
       const double azimuth = std::atan2(d.x, -d.z);
       phi[i] = azimuth < 0 ? azimuth + 2 * kPi : azimuth;
@@ -317,15 +317,16 @@ CubeAngles::CubeAngles(int n) : size(n) {
   });
 }
 
-CubeMap lobe_map(const Harmonics& harmonics, const std::vector<double>& k, const CubeAngles& angles, int taps) {
+std::vector<float> lobe_values(const Harmonics& harmonics, const std::vector<double>& k, const GridAngles& angles,
+                               int taps) {
   const Bump bump = make_bump(taps);
   const Grid grid = make_grid(harmonics, k, bump);
-  CubeMap map(angles.size);
+  std::vector<float> values(3 * angles.theta.size());
   parallel_for(angles.theta.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
     HWY_DYNAMIC_DISPATCH(Gather)
-    (grid, bump, &angles.theta[begin], &angles.phi[begin], end - begin, &map.texels[3 * begin]);
+    (grid, bump, &angles.theta[begin], &angles.phi[begin], end - begin, &values[3 * begin]);
   });
-  return map;
+  return values;
 }
 
 namespace {
@@ -334,18 +335,57 @@ struct Points {
   std::vector<double> theta, phi, weight[3];
 };
 
-// The texels of a row as points: `pieces` x `pieces` equal parts of each with four Gauss points a side.
-Points row_points(const Environment& env, int row, int pieces) {
-  constexpr double kAt[] = {.06943184420297371, .33000947820757187, .66999052179242813, .93056815579702629};
-  constexpr double kWeight[] = {.17392742256872693, .32607257743127307, .32607257743127307, .17392742256872693};
+// A rule over a texel: `pieces` x `pieces` equal parts of it with two to four Gauss points a side.
+struct TexelRule {
+  std::vector<double> at, weight;  // on 0..1
+};
+
+TexelRule texel_rule(std::size_t points, int pieces) {
+  constexpr std::array<std::array<double, 4>, 3> kAt = {
+      {{.21132486540518713, .78867513459481287},
+       {.1127016653792583, .5, .8872983346207417},
+       {.06943184420297371, .33000947820757187, .66999052179242813, .93056815579702629}}};
+  constexpr std::array<std::array<double, 4>, 3> kWeight = {
+      {{.5, .5},
+       {5.0 / 18, 8.0 / 18, 5.0 / 18},
+       {.17392742256872693, .32607257743127307, .32607257743127307, .17392742256872693}}};
+  TexelRule rule;
+  for (int piece = 0; piece < pieces; ++piece)
+    for (std::size_t i = 0; i < points; ++i) {
+      rule.at.push_back((piece + kAt[points - 2][i]) / pieces);
+      rule.weight.push_back(kWeight[points - 2][i] / pieces);
+    }
+  return rule;
+}
+
+// n points across h err by (l h)^2n / C_n at degree l, C = 4320, 2e6, 1.8e9: the fewest that keep k_l times that below
+// 1e-7.
+TexelRule rule_for(const std::vector<double>& k, double texel_rad) {
+  constexpr std::array<double, 3> kScale = {4320, 2e6, 1.8e9};
+  const auto error = [&](std::size_t points, int pieces) {
+    double worst = 0;
+    for (std::size_t l = 0; l < k.size(); ++l)
+      worst = std::max(worst, std::fabs(k[l]) * std::pow(static_cast<double>(l) * texel_rad / pieces,
+                                                         2.0 * static_cast<double>(points)));
+    return worst / kScale[points - 2];
+  };
+  for (const std::size_t points : {2, 3, 4})
+    if (error(points, 1) < 1e-7) return texel_rule(points, 1);
+  int pieces = 2;
+  while (error(4, pieces) >= 1e-7) ++pieces;
+  return texel_rule(4, pieces);
+}
+
+Points row_points(const Environment& env, int row, const TexelRule& rule) {
   Points points;
   for (int column = 0; column < env.width(); ++column) {
     const float* rgb = env.radiance(column, row);
-    for (int i = 0; i < 4 * pieces; ++i)
-      for (int j = 0; j < 4 * pieces; ++j) {
-        const double x = column + (i / 4 + kAt[i % 4]) / pieces, y = row + (j / 4 + kAt[j % 4]) / pieces;
+    if (rgb[0] == 0 && rgb[1] == 0 && rgb[2] == 0) continue;
+    for (std::size_t i = 0; i < rule.at.size(); ++i)
+      for (std::size_t j = 0; j < rule.at.size(); ++j) {
+        const double x = column + rule.at[i], y = row + rule.at[j];
         const Vec3 d = env.direction_at(x, y);
-        const double area = env.solid_angle_density(x, y) * kWeight[i % 4] * kWeight[j % 4] / (pieces * pieces);
+        const double area = env.solid_angle_density(x, y) * rule.weight[i] * rule.weight[j];
         const double azimuth = std::atan2(d.x, -d.z);
         points.theta.push_back(std::atan2(std::hypot(d.x, d.z), d.y));
         points.phi.push_back(azimuth < 0 ? azimuth + 2 * kPi : azimuth);
@@ -355,16 +395,6 @@ Points row_points(const Environment& env, int row, int pieces) {
   return points;
 }
 
-// Four points across h err by (l h)^8/1.8e9 at degree l: the fewest pieces that keep k_l times that below 1e-7.
-int pieces_for(const std::vector<double>& k, double texel_rad) {
-  for (int pieces = 1;; ++pieces) {
-    double worst = 0;
-    for (std::size_t l = 0; l < k.size(); ++l)
-      worst = std::max(worst, std::fabs(k[l]) * std::pow(static_cast<double>(l) * texel_rad / pieces, 8) / 1.8e9);
-    if (worst < 1e-7) return pieces;
-  }
-}
-
 }  // namespace
 
 ScatteredMoments scattered_moments(const Environment& env, const std::vector<double>& k) {
@@ -372,12 +402,12 @@ ScatteredMoments scattered_moments(const Environment& env, const std::vector<dou
   const Bump bump = make_bump(14);
   Grid grid = blank_grid(degree + 1, bump);
   const std::size_t fine = grid.columns, orders = static_cast<std::size_t>(degree) + 1;
-  const int pieces = pieces_for(k, env.largest_texel_rad());
-  std::vector<Points> rows(static_cast<std::size_t>(env.width()));
-  for (int face = 0; face < 6; ++face) {
+  const TexelRule rule = rule_for(k, env.largest_texel_rad());
+  constexpr int kRowsAtATime = 64;  // points take memory
+  for (int first = 0; first < env.height(); first += kRowsAtATime) {
+    std::vector<Points> rows(static_cast<std::size_t>(std::min(kRowsAtATime, env.height() - first)));
     parallel_for(rows.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i)
-        rows[i] = row_points(env, face * env.width() + static_cast<int>(i), pieces);
+      for (std::size_t i = begin; i < end; ++i) rows[i] = row_points(env, first + static_cast<int>(i), rule);
     });
     parallel_for(3, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t c = begin; c < end; ++c)

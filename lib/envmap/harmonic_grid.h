@@ -6,26 +6,28 @@
 #include <cstddef>
 #include <vector>
 
-#include "envmap/cube_map.h"
 #include "envmap/harmonics.h"
+#include "envmap/rotation.h"
+#include "envmap/sphere_grid.h"
 
 namespace goniochrome {
 
 // Taps along each axis for an error of `error` relative to the largest value of the function; 2..14.
 int taps_for(double error);
 
-// Polar angle and azimuth (harmonics.h) of the texel centers of a cube of size n, in the order of its texels.
-struct CubeAngles {
-  int size = 0;
+// Polar angle and azimuth (harmonics.h), in the frame of the environment, of the texel centers of a grid in the scene
+// that `turn` brings the environment to; row by row.
+struct GridAngles {
   std::vector<double> theta, phi;
-  explicit CubeAngles(int n);
+  GridAngles(const SphereGrid& grid, const Rotation& turn);
 };
 
-// A lobe map: the sum over l, m of k[l] a_lm Y_lm at the texel centers of a cube, negative values set to zero (nothing
+// Texels of a lobe map, RGB: the sum over l, m of k[l] a_lm Y_lm at the angles, negative values set to zero (nothing
 // below zero is true). The degree is k.size() - 1, at most that of `harmonics`.
-CubeMap lobe_map(const Harmonics& harmonics, const std::vector<double>& k, const CubeAngles& angles, int taps);
+std::vector<float> lobe_values(const Harmonics& harmonics, const std::vector<double>& k, const GridAngles& angles,
+                               int taps);
 
-// The Fourier moments along the rows of a grid onto which the texels of a cube environment (constant patches, at the
+// The Fourier moments along the rows of a grid onto which the texels of an environment (constant patches, at the
 // nodes of a quadrature that is good enough once degree l is multiplied by k[l]) are spread: the way back of the same
 // transform. Frequency n of the column moments is to be multiplied by scale[|n|].
 struct ScatteredMoments {

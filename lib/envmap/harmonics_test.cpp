@@ -20,6 +20,10 @@ Environment random_environment(int width, int height, unsigned seed) {
   return Environment::from_lat_long(image, Environment::BadPixels::kError, "random").value();
 }
 
+SphereGrid cube(int n) {
+  return map_grid(SphereGrid::Layout::kCube, n);
+}
+
 TEST(Fft, every_length_equals_the_sum) {
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
@@ -90,10 +94,11 @@ TEST(Harmonics, lobe_map_equals_the_reference) {
     for (const double exponent : {6.0, 70.0, 900.0}) {
       const int degree = sufficient_degree(exponent, 1e-8, 600);
       const Harmonics harmonics = harmonics_of(env, zonal_multipliers(exponent, degree));
-      const CubeAngles angles(9);
+      const GridAngles angles(cube(9), {});
       PrefilteredLobe lobe;
       lobe.exponent = exponent;
-      lobe.map = lobe_map(harmonics, zonal_multipliers(exponent, degree), angles, 12);
+      lobe.map.size = 9;
+      lobe.map.texels = lobe_values(harmonics, zonal_multipliers(exponent, degree), angles, 12);
       // Floats round at 6e-8.
       EXPECT_LT(lobe_error(env, lobe, 40, 3, 1).max, 3e-7) << width << " " << exponent;
     }
@@ -115,7 +120,8 @@ TEST(Harmonics, lobe_map_of_a_cube_equals_the_reference) {
       const Harmonics harmonics = harmonics_of(env, zonal_multipliers(exponent, degree));
       PrefilteredLobe lobe;
       lobe.exponent = exponent;
-      lobe.map = lobe_map(harmonics, zonal_multipliers(exponent, degree), CubeAngles(9), 13);
+      lobe.map.size = 9;
+      lobe.map.texels = lobe_values(harmonics, zonal_multipliers(exponent, degree), GridAngles(cube(9), {}), 13);
       EXPECT_LT(lobe_error(env, lobe, 15, 3, 1).max, 2e-6) << exponent;
     }
 }
@@ -126,13 +132,12 @@ TEST(Harmonics, taps_keep_their_promise) {
   const int degree = sufficient_degree(exponent, 1e-10, 600);
   const Harmonics harmonics = harmonics_of(env, zonal_multipliers(exponent, degree));
   const std::vector<double> k = zonal_multipliers(exponent, degree);
-  const CubeAngles angles(16);
-  const CubeMap best = lobe_map(harmonics, k, angles, 14);
+  const GridAngles angles(cube(16), {});
+  const std::vector<float> best = lobe_values(harmonics, k, angles, 14);
   for (const double error : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
-    const CubeMap map = lobe_map(harmonics, k, angles, taps_for(error));
+    const std::vector<float> map = lobe_values(harmonics, k, angles, taps_for(error));
     double worst = 0;
-    for (std::size_t i = 0; i < map.texels.size(); ++i)
-      worst = std::max(worst, std::fabs(double(map.texels[i]) - best.texels[i]));
+    for (std::size_t i = 0; i < map.size(); ++i) worst = std::max(worst, std::fabs(double(map[i]) - best[i]));
     EXPECT_LT(worst, error);
   }
 }

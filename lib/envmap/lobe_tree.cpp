@@ -41,7 +41,7 @@ struct LobeTree::Walk {
 };
 
 LobeTree::LobeTree(const Environment& env) : env_(env), flux_(env.flux()) {
-  if (env.layout() == Environment::Layout::kLatLong)
+  if (!env.grid().is_cube())
     sheets_.push_back({0, env.width(), env.height(), {}});
   else
     for (int face = 0; face < 6; ++face) sheets_.push_back({face * env.width(), env.width(), env.width(), {}});

@@ -72,6 +72,12 @@ TEST(LobeTree, HardCase_prefilter_exponent_the_textbook_form_fails) {
   }
 }
 
+CubeMap mirror_map(const Environment& env, int n) {
+  CubeMap map(n);
+  map.texels = mirror_values(env, map_grid(SphereGrid::Layout::kCube, n), {});
+  return map;
+}
+
 TEST(Mirror, keeps_flux_and_constants_and_copies_an_equal_cube) {
   for (const Environment& env : environments())
     for (const int n : {1, 2, 7, 16, 45}) {

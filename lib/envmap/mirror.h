@@ -1,14 +1,17 @@
-// The mirror lobe: the environment itself as a cube, each texel the mean radiance over it.
-// goniochrome-theory(7), PREFILTERING, The mirror.
+// The environment itself on other texels: what the mirror lobe looks up. goniochrome-theory(7), PREFILTERING, The
+// mirror.
 #pragma once
 
-#include "envmap/cube_map.h"
+#include <vector>
+
 #include "envmap/environment.h"
+#include "envmap/rotation.h"
+#include "envmap/sphere_grid.h"
 
 namespace goniochrome {
 
-// A cube of size n whose texels hold the mean of the environment over their solid angle, by exact overlaps with the
-// environment's texels, so that neither flux nor a sun between sample points is lost.
-CubeMap mirror_map(const Environment& env, int n);
+// The mean radiance over each texel of a lat-long map or cube in the scene that `turn` brings the environment to: flux
+// is kept. RGB, row by row.
+std::vector<float> mirror_values(const Environment& env, const SphereGrid& grid, const Rotation& turn);
 
 }  // namespace goniochrome

@@ -23,7 +23,9 @@ constexpr double kFloor = 1e-3;       // errors are relative to no less than thi
 constexpr int kMostDegree = 640;      // of harmonics: beyond, their grids take more memory than they save time
 constexpr int kWideDegree = 512;      // of the harmonics for lobes whose kernel bends at the horizon
 constexpr double kSharpestWide = 20;  // such lobes have exponents below this
+constexpr double kFlatTexel = 0.06;   // rad: on larger texels t is not linear enough for BrightTexels
 constexpr int kMostBright = 1024;
+constexpr int kSketch = 12;  // texels along a face of the cube that finds the darkest texels
 constexpr double kHalfError = 0x1p-11;
 constexpr double kCoherence = 1.0 / 16;  // see WideLobe
 
@@ -38,46 +40,44 @@ double rounding_error(double tolerance) {
   return tolerance - method_tolerance(tolerance);
 }
 
-// Bilinear lookup between texels 2/N apart errs by E h^2/8 with h = pi/(2N): the face that keeps ten times the
-// tolerance. [theory: Lookup]
-int own_size(double exponent, double tolerance) {
-  const double wanted = kPi / 2 * std::sqrt(std::max(exponent, 1.0) / (8 * 10 * tolerance));
-  const int least = exponent < 8 ? 32 : 16;  // kinks of a wide lobe at the horizon of a sun
-  return std::clamp((static_cast<int>(std::ceil(wanted)) + 3) / 4 * 4, least, 1024);
-}
-
 double lookup_error(double exponent, int size) {
   const double h = kPi / (2 * size);
   return std::max(exponent, 1.0) * h * h / 8;
 }
 
+// As fine as the environment at its middle.
 int mirror_size(const Environment& env) {
-  if (env.layout() != Environment::Layout::kLatLong) return env.width();
+  if (env.grid().is_cube()) return env.width();
   return std::clamp((env.width() + 3) / 4, 16, 2048);
 }
 
+double texel_count(SphereGrid::Layout layout, int n) {
+  const SphereGrid grid = map_grid(layout, n);
+  return static_cast<double>(grid.width()) * grid.height();
+}
+
 // Seconds on one core of 2020, measured: grids of (4 L)^2/2 by transforms, Legendre sums of L^3, taps at each texel.
-double harmonics_time_s(int degree, int size) {
-  const double l = degree, texels = 6.0 * size * size;
+double harmonics_time_s(int degree, double texels) {
+  const double l = degree;
   return 6e-7 * l * l + 1.5e-10 * l * l * l + 6e-8 * texels;
 }
 
-LobePlan lobe_plan(const PrefilterRequest& request, double exponent) {
+LobePlan lobe_plan(const Environment& env, const PrefilterRequest& request, double exponent, int size) {
   LobePlan plan;
   plan.exponent = exponent;
-  plan.size = request.size > 0 ? request.size : own_size(exponent, request.tolerance);
+  plan.size = size > 0 ? size : own_size(exponent, request.tolerance);
   plan.lookup_error = lookup_error(exponent, plan.size);
-  const double texels = 6.0 * plan.size * plan.size, tolerance = method_tolerance(request.tolerance);
+  const double texels = texel_count(request.layout, plan.size), tolerance = method_tolerance(request.tolerance);
   // Half of the method's share goes to the degrees left out, relative to the floor.
   plan.degree = sufficient_degree(exponent, 0.5 * tolerance * kFloor, kMostDegree);
   plan.predicted_error = rounding_error(request.tolerance) + tolerance;
   if (plan.degree >= 0) {
     plan.method = Method::kHarmonics;
-    plan.predicted_time_s = harmonics_time_s(plan.degree, plan.size) / threads();
-  } else if (exponent >= 1 && exponent < kSharpestWide) {
+    plan.predicted_time_s = harmonics_time_s(plan.degree, texels) / threads();
+  } else if (exponent >= 1 && exponent < kSharpestWide && env.largest_texel_rad() <= kFlatTexel) {
     plan.method = Method::kBrightHarmonics;
     plan.degree = kWideDegree;
-    plan.predicted_time_s = (harmonics_time_s(kWideDegree, plan.size) + 1e-6 * texels) / threads();
+    plan.predicted_time_s = (harmonics_time_s(kWideDegree, texels) + 1e-6 * texels) / threads();
   } else {
     plan.method = Method::kBlocks;
     plan.degree = 0;
@@ -130,8 +130,8 @@ float largest_value(const Environment& env) {
 // Sums that wait for the first lobe that needs them.
 class Workshop {
  public:
-  Workshop(const Environment& env, const std::vector<LobePlan>& plan)
-      : env_(env), flux_(env.flux()), largest_(largest_value(env)) {
+  Workshop(const Environment& env, const PrefilterRequest& request, const std::vector<LobePlan>& plan)
+      : env_(env), turn_(request.turn), layout_(request.layout), flux_(env.flux()), largest_(largest_value(env)) {
     for (const LobePlan& lobe : plan)
       if (lobe.method == Method::kHarmonics && lobe.degree > degree_) degree_ = lobe.degree, sharpest_ = lobe.exponent;
   }
@@ -158,33 +158,38 @@ class Workshop {
     if (rest_rms_.empty()) rest_rms_ = residual_rms(bright().rest(), rest());
     return rest_rms_;
   }
-  const CubeAngles& angles(int size) {
-    if (!angles_ || angles_->size != size) angles_.emplace(size);
+  const Environment& environment() const { return env_; }
+  SphereGrid grid(int size) const { return map_grid(layout_, size); }
+  const GridAngles& angles(int size) {
+    if (size != angles_size_) angles_.emplace(grid(size), turn_);
+    angles_size_ = size;
     return *angles_;
   }
+  const Rotation& turn() const { return turn_; }
 
  private:
   const Environment& env_;
+  Rotation turn_;
+  SphereGrid::Layout layout_;
   Vec3 flux_;
   float largest_;
-  int degree_ = -1;
+  int degree_ = -1, angles_size_ = 0;
   double sharpest_ = 0;
   std::optional<Harmonics> harmonics_, rest_;
   std::vector<Vec3> rest_rms_;
   std::optional<LobeTree> tree_;
   std::unique_ptr<BrightTexels> bright_;
-  std::optional<CubeAngles> angles_;
+  std::optional<GridAngles> angles_;
 };
 
-// The texels of a cube, in parallel: body(face, row, column, rgb).
+// The texels of a grid, in parallel: body(direction in the environment's frame, rgb).
 template <class Body>
-void for_each_texel(CubeMap& map, const Body& body) {
-  const std::size_t n = static_cast<std::size_t>(map.size);
-  parallel_for(6 * n * n, 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const int face = static_cast<int>(i / (n * n)), row = static_cast<int>(i / n % n);
-      body(cube_direction(face, static_cast<double>(i % n) + 0.5, row + 0.5, map.size), &map.texels[3 * i]);
-    }
+void for_each_texel(const SphereGrid& grid, const Rotation& turn, std::vector<float>& values, const Body& body) {
+  const std::size_t width = static_cast<std::size_t>(grid.width());
+  parallel_for(values.size() / 3, 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      body(turn.to_environment(grid.direction(static_cast<int>(i % width), static_cast<int>(i / width))),
+           &values[3 * i]);
   });
 }
 
@@ -219,12 +224,14 @@ class WideLobe {
   WideLobe(const LobePlan& plan, double tolerance, Workshop& shop)
       : plan_(plan), tolerance_(tolerance), shop_(shop), mean_((1 / (4 * kPi)) * shop.flux()) {}
 
-  CubeMap map() {
-    const CubeAngles coarse(std::min(plan_.size, 12));
-    const CubeMap sketch = sum(32, coarse);
+  std::vector<float> values() {
+    const SphereGrid coarse(SphereGrid::Layout::kCube, kSketch, 6 * kSketch);
+    const std::vector<float> sketch = sum(32, coarse, GridAngles(coarse, shop_.turn()));
     Vec3 darkest = {1e300, 1e300, 1e300};
-    for (std::size_t i = 0; i < sketch.texels.size(); ++i)
-      darkest[static_cast<int>(i % 3)] = std::min<double>(darkest[static_cast<int>(i % 3)], sketch.texels[i]);
+    for (std::size_t i = 0; i < sketch.size(); ++i) {
+      double& channel = darkest[static_cast<int>(i % 3)];
+      channel = std::min<double>(channel, sketch[i]);
+    }
     const std::vector<int> degrees = {64, 96, 128, 192, 256, 384, kWideDegree};
     Vec3 bound;
     int degree = 0;
@@ -233,9 +240,9 @@ class WideLobe {
       bound = kCoherence * residual_norm(plan_.exponent, degree) * shop_.rest_rms()[degree];
       if (fits(0.9 * darkest, bound)) break;
     }
-    CubeMap map = sum(degree, shop_.angles(plan_.size));
-    patch_up(map, bound);
-    return map;
+    std::vector<float> texels = sum(degree, shop_.grid(plan_.size), shop_.angles(plan_.size));
+    patch_up(texels, bound);
+    return texels;
   }
 
  private:
@@ -246,25 +253,25 @@ class WideLobe {
     return true;
   }
 
-  CubeMap sum(int degree, const CubeAngles& angles) {
+  std::vector<float> sum(int degree, const SphereGrid& grid, const GridAngles& angles) {
     const BrightTexels& bright = shop_.bright();
-    CubeMap map = lobe_map(shop_.rest(), zonal_multipliers(plan_.exponent, degree), angles,
-                           taps(shop_.flux(), shop_.largest(), plan_.exponent, tolerance_));
+    std::vector<float> texels = lobe_values(shop_.rest(), zonal_multipliers(plan_.exponent, degree), angles,
+                                            taps(shop_.flux(), shop_.largest(), plan_.exponent, tolerance_));
     if (bright.count() > 0)
-      for_each_texel(map, [&](const Vec3& d, float* rgb) {
+      for_each_texel(grid, shop_.turn(), texels, [&](const Vec3& d, float* rgb) {
         const Vec3 extra = bright.lobe(d, plan_.exponent);
         for (int c = 0; c < 3; ++c) rgb[c] += static_cast<float>(extra[c]);
       });
-    return map;
+    return texels;
   }
 
-  void patch_up(CubeMap& map, const Vec3& bound) {
+  void patch_up(std::vector<float>& texels, const Vec3& bound) {
     const auto unfit = [&](const float* rgb) { return !fits({rgb[0], rgb[1], rgb[2]}, bound); };
     bool any = false;
-    for (std::size_t i = 0; i < map.texels.size() && !any; i += 3) any = unfit(&map.texels[i]);
+    for (std::size_t i = 0; i < texels.size() && !any; i += 3) any = unfit(&texels[i]);
     if (!any) return;
     const LobeTree& tree = shop_.tree();
-    for_each_texel(map, [&](const Vec3& d, float* rgb) {
+    for_each_texel(shop_.grid(plan_.size), shop_.turn(), texels, [&](const Vec3& d, float* rgb) {
       if (!unfit(rgb)) return;
       const Vec3 value = tree.lobe(d, plan_.exponent, tolerance_);
       for (int c = 0; c < 3; ++c) rgb[c] = static_cast<float>(value[c]);
@@ -277,25 +284,26 @@ class WideLobe {
   Vec3 mean_;
 };
 
-CubeMap lobe_by_plan(const Environment& env, const LobePlan& plan, double tolerance, Workshop& shop) {
+std::vector<float> lobe_by_plan(const LobePlan& plan, double tolerance, Workshop& shop) {
   switch (plan.method) {
     case Method::kMirror:
-      return mirror_map(env, plan.size);
+      return mirror_values(shop.environment(), shop.grid(plan.size), shop.turn());
     case Method::kHarmonics:
-      return lobe_map(shop.harmonics(), zonal_multipliers(plan.exponent, plan.degree), shop.angles(plan.size),
-                      taps(shop.flux(), shop.largest(), plan.exponent, tolerance));
+      return lobe_values(shop.harmonics(), zonal_multipliers(plan.exponent, plan.degree), shop.angles(plan.size),
+                         taps(shop.flux(), shop.largest(), plan.exponent, tolerance));
     case Method::kBrightHarmonics:
-      return WideLobe(plan, tolerance, shop).map();
+      return WideLobe(plan, tolerance, shop).values();
     case Method::kBlocks:
       break;
   }
-  CubeMap map(plan.size);
+  const SphereGrid grid = shop.grid(plan.size);
+  std::vector<float> values(3 * static_cast<std::size_t>(grid.width()) * grid.height());
   const LobeTree& tree = shop.tree();
-  for_each_texel(map, [&](const Vec3& d, float* rgb) {
+  for_each_texel(grid, shop.turn(), values, [&](const Vec3& d, float* rgb) {
     const Vec3 value = tree.lobe(d, plan.exponent, tolerance);
     for (int c = 0; c < 3; ++c) rgb[c] = static_cast<float>(value[c]);
   });
-  return map;
+  return values;
 }
 
 }  // namespace
@@ -314,40 +322,65 @@ const char* method_name(Method method) {
   return "";
 }
 
+// Bilinear lookup between texels 2/N apart errs by E h^2/8 with h = pi/(2N): the face that keeps ten times the
+// tolerance. [theory: Lookup]
+int own_size(double exponent, double tolerance) {
+  const double wanted = kPi / 2 * std::sqrt(std::max(exponent, 1.0) / (8 * 10 * tolerance));
+  const int least = exponent < 8 ? 32 : 16;  // kinks of a wide lobe at the horizon of a sun
+  return std::clamp((static_cast<int>(std::ceil(wanted)) + 3) / 4 * 4, least, 1024);
+}
+
 std::vector<LobePlan> prefilter_plan(const Environment& env, const PrefilterRequest& request) {
-  std::vector<LobePlan> plan = {lobe_plan(request, 1)};
-  for (const double exponent : request.exponents) plan.push_back(lobe_plan(request, exponent));
+  std::vector<LobePlan> plan;
+  if (request.diffuse) plan.push_back(lobe_plan(env, request, 1, request.size));
+  for (std::size_t i = 0; i < request.exponents.size(); ++i)
+    plan.push_back(
+        lobe_plan(env, request, request.exponents[i], request.sizes.empty() ? request.size : request.sizes[i]));
   if (!request.mirror) return plan;
   LobePlan mirror;
   mirror.exponent = kMirrorExponent;
   mirror.method = Method::kMirror;
   mirror.size = request.size > 0 ? request.size : mirror_size(env);
   mirror.predicted_error = rounding_error(request.tolerance);
-  mirror.predicted_time_s = 6.0 * mirror.size * mirror.size * 2e-6 / threads();
+  mirror.predicted_time_s = texel_count(request.layout, mirror.size) * 2e-6 / threads();
   plan.push_back(mirror);
   return plan;
 }
 
 PrefilteredEnvironment prefiltered(const Environment& env, const PrefilterRequest& request,
                                    const std::vector<LobePlan>& plan,
-                                   const std::function<void(const PrefilteredLobe&, double time_s)>& done) {
+                                   const std::function<void(const PrefilteredLobe&, double time_s)>& done,
+                                   const LobeSource& known) {
   PrefilteredEnvironment result;
   result.source = env.source();
   result.mirror.exponent = kMirrorExponent;
   const double tolerance = method_tolerance(request.tolerance);
-  Workshop shop(env, plan);
+  std::vector<std::optional<PrefilteredLobe>> there(plan.size());
+  std::vector<LobePlan> missing;
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    if (known) there[i] = known(plan[i]);
+    if (!there[i]) missing.push_back(plan[i]);
+  }
+  Workshop shop(env, request, missing);
   for (std::size_t i = 0; i < plan.size(); ++i) {
     const Stopwatch clock;
     PrefilteredLobe lobe;
-    lobe.exponent = plan[i].exponent;
-    lobe.tolerance = request.tolerance;
-    lobe.predicted_error = plan[i].predicted_error;
-    lobe.lookup_error = plan[i].lookup_error;
-    lobe.method = method_name(plan[i].method);
-    lobe.map = lobe_by_plan(env, plan[i], tolerance, shop);
-    round_to_storage(lobe);
+    if (there[i]) {
+      lobe = std::move(*there[i]);
+      lobe.tolerance = request.tolerance;
+    } else {
+      lobe.exponent = plan[i].exponent;
+      lobe.layout = request.layout;
+      lobe.tolerance = request.tolerance;
+      lobe.predicted_error = plan[i].predicted_error;
+      lobe.lookup_error = plan[i].lookup_error;
+      lobe.method = method_name(plan[i].method);
+      lobe.map.size = plan[i].size;
+      lobe.map.texels = lobe_by_plan(plan[i], tolerance, shop);
+      round_to_storage(lobe);
+    }
     done(lobe, clock.elapsed_s());
-    if (i == 0)
+    if (i == 0 && request.diffuse)
       result.diffuse = std::move(lobe);
     else if (plan[i].method == Method::kMirror)
       result.mirror = std::move(lobe);
@@ -357,14 +390,13 @@ PrefilteredEnvironment prefiltered(const Environment& env, const PrefilterReques
   return result;
 }
 
-double energy_ratio(const Environment& env, const CubeMap& map) {
+double energy_ratio(const Environment& env, const PrefilteredLobe& lobe) {
+  const SphereGrid grid = map_grid(lobe.layout, lobe.map.size);
+  const float* rgb = lobe.map.texels.data();
   Vec3 sum;
-  for (int face = 0; face < 6; ++face)
-    for (int row = 0; row < map.size; ++row)
-      for (int column = 0; column < map.size; ++column) {
-        const float* rgb = map.at(face, row, column);
-        sum += cube_texel_solid_angle(column, row, map.size) * Vec3{rgb[0], rgb[1], rgb[2]};
-      }
+  for (int row = 0; row < grid.height(); ++row)
+    for (int column = 0; column < grid.width(); ++column, rgb += 3)
+      sum += grid.solid_angle(column, row) * Vec3{rgb[0], rgb[1], rgb[2]};
   const Vec3 flux = env.flux();
   const double all = flux.x + flux.y + flux.z;
   return all > 0 ? (sum.x + sum.y + sum.z) / all : 1;

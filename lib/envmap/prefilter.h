@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,10 @@ struct PrefilterRequest {
   bool mirror = true;
   int size = 0;             // of every face; 0 chooses each lobe's own
   double tolerance = 1e-3;  // relative to the larger of the local value and 1e-3 of the mean
+  SphereGrid::Layout layout = SphereGrid::Layout::kCube;  // of the maps: a cube of either kind, or lat-long
+  Rotation turn = {};                                     // of the environment
+  std::vector<int> sizes = {};                            // of each exponent's map; empty: `size` says it
+  bool diffuse = true;                                    // false: not by itself
 };
 
 // How a lobe will be computed.
@@ -37,17 +42,24 @@ struct LobePlan {
 };
 const char* method_name(LobePlan::Method method);
 
+// The size of face that a bilinear lookup of a lobe needs to err by no more than ten times the tolerance.
+int own_size(double exponent, double tolerance);
+
 // The plan of a request: diffuse first, then the exponents as given, then the mirror.
 std::vector<LobePlan> prefilter_plan(const Environment& env, const PrefilterRequest& request);
 
-// Carries a plan out. `done` is called after each lobe with the time that it took, in seconds. The maps are as the file
-// will hold them (round_to_storage()). Bit-identical for any number of threads.
+// The lobe of a plan that is there already, or nothing.
+using LobeSource = std::function<std::optional<PrefilteredLobe>(const LobePlan&)>;
+
+// Carries a plan out, but for the lobes that `known` has. `done` is called after each lobe with the time that it took,
+// in seconds. The maps are as the file will hold them (round_to_storage()). Bit-identical for any number of threads.
 PrefilteredEnvironment prefiltered(const Environment& env, const PrefilterRequest& request,
                                    const std::vector<LobePlan>& plan,
-                                   const std::function<void(const PrefilteredLobe&, double time_s)>& done);
+                                   const std::function<void(const PrefilteredLobe&, double time_s)>& done,
+                                   const LobeSource& known = {});
 
 // The flux of a map over the flux of the environment, all channels together; 1 when nothing is lost. 1 where there is
 // no light.
-double energy_ratio(const Environment& env, const CubeMap& map);
+double energy_ratio(const Environment& env, const PrefilteredLobe& lobe);
 
 }  // namespace goniochrome

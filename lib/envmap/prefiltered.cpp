@@ -41,14 +41,31 @@ float rounded_to_bits(float value, int bits) {
   return std::isfinite(rounded) ? rounded : value;
 }
 
+// OpenEXR's faces are OpenGL's seen from the other side: X and Z mirrored left to right, Y top to bottom.
+std::vector<float> openexr_faces(const CubeMap& map) {
+  const int n = map.size;
+  CubeMap turned(n);
+  for (int face = 0; face < 6; ++face)
+    for (int row = 0; row < n; ++row)
+      for (int column = 0; column < n; ++column) {
+        const bool pole = face / 2 == 1;
+        std::copy_n(map.at(face, pole ? n - 1 - row : row, pole ? column : n - 1 - column), 3,
+                    turned.at(face, row, column));
+      }
+  return std::move(turned.texels);
+}
+
 ImagePart part_of(const std::string& name, const PrefilteredLobe& lobe, const std::string& source,
                   const std::string& command) {
   ImagePart part;
   part.name = name;
   part.type = storage_type(lobe);
-  part.image = {lobe.map.size, 6 * lobe.map.size, 3, lobe.map.texels, {}};
+  using Layout = SphereGrid::Layout;
+  const SphereGrid grid = map_grid(lobe.layout, lobe.map.size);
+  const bool edges = lobe.layout == Layout::kCubeEdges;
+  part.image = {grid.width(), grid.height(), 3, edges ? openexr_faces(lobe.map) : lobe.map.texels, {}};
   part.attributes = {
-      {kTexels, std::string("center")},
+      {kTexels, std::string(edges ? "edge" : "center")},
       {kExponent, static_cast<float>(lobe.exponent)},
       {"goniochrome:tolerance", static_cast<float>(lobe.tolerance)},
       {"goniochrome:maxError", static_cast<float>(lobe.max_error)},
@@ -61,6 +78,8 @@ ImagePart part_of(const std::string& name, const PrefilteredLobe& lobe, const st
       {"goniochrome:command", command},
       {"colorInteropID", std::string("lin_rec2020_scene")},
   };
+  if (edges) part.attributes["envmap"] = std::string("cube");
+  if (lobe.layout == Layout::kLatLong) part.attributes["envmap"] = std::string("latlong");
   return part;
 }
 
@@ -80,7 +99,7 @@ std::string text_attribute(const ImagePart& part, const std::string& name) {
 
 Result<PrefilteredLobe> lobe_of(ImagePart part, const std::string& path) {
   const auto refused = [&](const std::string& why) {
-    return input_error("{}: part {}: {}: write it with prefilter-envmap", path, part.name, why);
+    return input_error("{}: part {}: {}: write it with prefilter-envmap, in its own layout", path, part.name, why);
   };
   const Image& image = part.image;
   if (image.height != 6 * image.width)
@@ -105,6 +124,11 @@ Result<PrefilteredLobe> lobe_of(ImagePart part, const std::string& path) {
 }
 
 }  // namespace
+
+SphereGrid map_grid(SphereGrid::Layout layout, int n) {
+  if (layout == SphereGrid::Layout::kLatLong) return {layout, 2 * n, n};
+  return {layout, n, 6 * n};
+}
 
 PixelType storage_type(const PrefilteredLobe& lobe) {
   if (lobe.tolerance < 2 * kHalfError * 0.999) return PixelType::kFloat;

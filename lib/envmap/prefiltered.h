@@ -8,6 +8,7 @@
 
 #include "base/result.h"
 #include "envmap/cube_map.h"
+#include "envmap/sphere_grid.h"
 #include "image/image.h"
 
 namespace goniochrome {
@@ -17,7 +18,8 @@ constexpr double kMirrorExponent = std::numeric_limits<double>::infinity();
 // P_E = (E+1)/(2 pi) * integral of L(w) max(0, d.w)^E dw: a constant map stays itself.
 struct PrefilteredLobe {
   double exponent = 1;
-  CubeMap map;
+  CubeMap map;  // of another layout: its texels row by row, and N of its N x 6N or 2N x N
+  SphereGrid::Layout layout = SphereGrid::Layout::kCube;
   double tolerance = 0;                  // asked for; relative
   double max_error = 0, mean_error = 0;  // measured on the verified texels; relative
   int verified_texels = 0;
@@ -25,6 +27,9 @@ struct PrefilteredLobe {
   double lookup_error = 0;     // what a bilinear lookup between them adds; relative
   std::string method;          // how it was computed
 };
+
+// The texels of a map: N along a face, or N rows of a lat-long map.
+SphereGrid map_grid(SphereGrid::Layout layout, int n);
 
 // How write_env() stores a lobe: halves where every value keeps half the tolerance, else floats.
 PixelType storage_type(const PrefilteredLobe& lobe);
@@ -34,7 +39,7 @@ PixelType storage_type(const PrefilteredLobe& lobe);
 void round_to_storage(PrefilteredLobe& lobe);
 
 struct PrefilteredEnvironment {
-  PrefilteredLobe diffuse;             // exponent 1: pi P_1(n) is the irradiance
+  PrefilteredLobe diffuse;             // exponent 1: pi P_1(n) is the irradiance; size 0 where absent
   std::vector<PrefilteredLobe> lobes;  // ascending exponents
   PrefilteredLobe mirror;              // the environment itself, exponent inf; size 0 where absent
   std::string source;
@@ -46,7 +51,8 @@ struct PrefilteredEnvironment {
 // Reads parts diffuse, lobe-NNN and mirror. Error: the part and what is wrong with it.
 Result<PrefilteredEnvironment> read_env(const std::string& path);
 
-// Writes the parts; half floats unless a value or the tolerance needs float. `command` is kept for provenance.
+// Writes the parts; half floats unless a value or the tolerance needs float. `command` is kept for provenance. Lat-long
+// maps and cubes with texel centers on the edges are written by OpenEXR's own conventions, tagged `envmap`.
 Result<void> write_env(const std::string& path, const PrefilteredEnvironment& env, const std::string& command);
 
 }  // namespace goniochrome

@@ -93,6 +93,15 @@ class RowCosines {
   int row_ = 0;
 };
 
+// The part of itself that a texel cut by the horizon may be off by, so that no more flux than `allowed` is.
+double at_horizon(const Environment& env, const Cell& cell, const float* rgb, double exponent, double allowed) {
+  const double radius = env.radius_rad(cell.column0, cell.row0, cell.column1, cell.row1);
+  const double share = std::max({rgb[0], rgb[1], rgb[2]}) *
+                       env.solid_angle(cell.column0, cell.row0, cell.column1, cell.row1) *
+                       std::pow(std::min(1.0, 2 * radius), exponent);
+  return std::clamp(allowed / share, 1e-7, 0.1);
+}
+
 // The texels whose quadrature the horizon spoils, done one by one; `done` tells the row sum to leave them out.
 class HorizonRow {
  public:
@@ -115,9 +124,8 @@ class HorizonRow {
       float* rgb = &rgb_[3 * static_cast<std::size_t>(column)];
       if (rgb[0] == 0 && rgb[1] == 0 && rgb[2] == 0) continue;
       const Cell whole = {double(column), double(row), double(column + 1), double(row + 1)};
-      const double share =
-          std::max({rgb[0], rgb[1], rgb[2]}) * env.solid_angle(column, row) * std::pow(2 * cell, exponent);
-      const double k = lobe_over_cell(env, whole, d, exponent, kRelative, std::clamp(allowed / share, 1e-7, 0.1));
+      const double k =
+          lobe_over_cell(env, whole, d, exponent, kRelative, at_horizon(env, whole, rgb, exponent, allowed));
       sum_ += k * Vec3{rgb[0], rgb[1], rgb[2]};
       std::fill(rgb, rgb + 3, 0.0F);
     }
@@ -137,10 +145,11 @@ class Summation {
   Summation(const Environment& env, double exponent)
       : env_(env),
         exponent_(exponent),
-        coarse_(env.largest_texel_rad() > std::min(kCoarse, 2 / std::sqrt(std::max(exponent, 1.0)))) {
-    if (coarse_) return;
+        coarse_(env.layout() == Environment::Layout::kAngular ||
+                env.largest_texel_rad() > std::min(kCoarse, 2 / std::sqrt(std::max(exponent, 1.0)))) {
     const Vec3 flux = env.flux();
     allowed_ = kHorizonShare * std::max({flux.x, flux.y, flux.z, 1e-300}) / (exponent + 1);
+    if (coarse_) return;
     nodes_ = nodes_for(env.largest_texel_rad(), exponent);
     const std::size_t n = static_cast<std::size_t>(env.width());
     for (std::size_t k = 0; k < nodes_.at.size(); ++k) {
@@ -151,8 +160,8 @@ class Summation {
           a[j] = std::sin(2 * kPi * (0.5 - column / env.width()));
           b[j] = std::cos(2 * kPi * (0.5 - column / env.width()));
         } else {
-          a[j] = env.face_coordinate(column);
-          b[j] = env.face_slope(column);
+          a[j] = env.grid().face_coordinate(column);
+          b[j] = env.grid().face_slope(column);
         }
       }
       first_.push_back(std::move(a));
@@ -185,7 +194,8 @@ class Summation {
       const float* rgb = env_.radiance(column, row);
       if (rgb[0] == 0 && rgb[1] == 0 && rgb[2] == 0) continue;
       const Cell cell = {double(column), double(row), column + 1.0, row + 1.0};
-      sum += lobe_over_cell(env_, cell, d, exponent_, kRelative, 100 * kRelative) * Vec3{rgb[0], rgb[1], rgb[2]};
+      sum += lobe_over_cell(env_, cell, d, exponent_, kRelative, at_horizon(env_, cell, rgb, exponent_, allowed_)) *
+             Vec3{rgb[0], rgb[1], rgb[2]};
     }
     return sum;
   }
@@ -205,12 +215,12 @@ class Summation {
 
   Vec3 cube_row(const Vec3& d, int row, const float* rgb, std::size_t j) const {
     const int n = env_.width(), face = row / n;
-    const double at = row % n + nodes_.at[j], t = env_.face_coordinate(at);
+    const double at = row % n + nodes_.at[j], t = env_.grid().face_coordinate(at);
     // The face's frame: its middle, and its column and row axes as OpenGL has them.
     const Vec3 middle = cube_direction(face, 1, 1, 2);
     const Vec3 s_axis = std::sqrt(2.0) * cube_direction(face, 2, 1, 2) - middle;
     const Vec3 t_axis = std::sqrt(2.0) * cube_direction(face, 1, 2, 2) - middle;
-    const double weight = nodes_.weight[j] * env_.face_slope(at);
+    const double weight = nodes_.weight[j] * env_.grid().face_slope(at);
     Vec3 sum;
     for (std::size_t i = 0; i < nodes_.at.size(); ++i) {
       double rgb_sum[3] = {0, 0, 0};
@@ -223,20 +233,18 @@ class Summation {
 
   const Environment& env_;
   double exponent_;
-  bool coarse_;         // texels so large, or a lobe so narrow, that every texel is done by recursion
+  bool coarse_;         // texels so large or odd, or a lobe so narrow, that every texel is done by recursion
   double allowed_ = 0;  // flux that a texel on the horizon may be off by
   Nodes nodes_;
   std::vector<std::vector<double>> first_, second_;  // lat-long: sin and cos of the longitude; cube: s and ds/dcolumn
 };
 
-Vec3 mean_of(const CubeMap& map) {
+Vec3 mean_of(const SphereGrid& grid, const std::vector<float>& texels) {
   Vec3 sum;
-  for (int face = 0; face < 6; ++face)
-    for (int row = 0; row < map.size; ++row)
-      for (int column = 0; column < map.size; ++column) {
-        const float* rgb = map.at(face, row, column);
-        sum += cube_texel_solid_angle(column, row, map.size) * Vec3{rgb[0], rgb[1], rgb[2]};
-      }
+  const float* rgb = texels.data();
+  for (int row = 0; row < grid.height(); ++row)
+    for (int column = 0; column < grid.width(); ++column, rgb += 3)
+      sum += grid.solid_angle(column, row) * Vec3{rgb[0], rgb[1], rgb[2]};
   return (1 / (4 * kPi)) * sum;
 }
 
@@ -259,18 +267,19 @@ std::vector<std::size_t> chosen_texels(const CubeMap& map, int count, int extrem
   return chosen;
 }
 
-// The mean radiance over parts of a face, found by looking alone: a part is quartered until its corners and middle see
+// The mean radiance over parts of a texel, found by looking alone: a part is quartered until its corners and middle see
 // one texel, or two that a line parts; where the line meets the sides is found by bisection.
 class MirrorSearch {
  public:
-  MirrorSearch(const Environment& env, int face) : env_(env), face_(face) {}
+  MirrorSearch(const Environment& env, const SphereGrid& grid, const Rotation& turn)
+      : env_(env), grid_(grid), turn_(turn) {}
 
-  // The integral over s0..s1, t0..t1 of the face.
+  // The integral over columns s0..s1 and rows t0..t1 within one texel.
   Vec3 integral(double s0, double t0, double s1, double t1, int depth) const {
     // A texel's corner may lie unseen between the five points of a larger part, and edges bend.
     constexpr int kLeast = 7, kMost = 20;
     const double s = (s0 + s1) / 2, t = (t0 + t1) / 2;
-    const double area = cube_cell_solid_angle(s0, s1, t0, t1);
+    const double area = grid_.solid_angle(s0, t0, s1, t1);
     // Just inside: an edge of the part may be an edge of a texel. Around: (s0,t0) (s1,t0) (s1,t1) (s0,t1).
     const double i = (1 - 1e-9) * (s1 - s), j = (1 - 1e-9) * (t1 - t);
     const std::array<std::array<double, 2>, 4> corner = {
@@ -297,7 +306,7 @@ class MirrorSearch {
  private:
   static Vec3 vec(const float* rgb) { return {rgb[0], rgb[1], rgb[2]}; }
   const float* seen(const std::array<double, 2>& at) const {
-    return env_.lookup(cube_direction(face_, at[0] + 1, at[1] + 1, 2));
+    return env_.lookup(turn_.to_environment(grid_.direction_at(at[0], at[1])));
   }
 
   // The part (of solid angle) on the side of `other`: its corners and the crossings of the sides as a polygon.
@@ -329,16 +338,16 @@ class MirrorSearch {
     // Each side weighs what the density of solid angle is at its centroid.
     const auto weight = [&](double share, double mx, double my) {
       if (share < 1e-12) return 0.0;
-      const double s = corner[0][0] + mx / share * (corner[2][0] - corner[0][0]);
-      const double t = corner[0][1] + my / share * (corner[2][1] - corner[0][1]);
-      return share * std::pow(1 + s * s + t * t, -1.5);
+      return share * grid_.solid_angle_density(corner[0][0] + mx / share * (corner[2][0] - corner[0][0]),
+                                               corner[0][1] + my / share * (corner[2][1] - corner[0][1]));
     };
     const double far = weight(part, x, y), near = weight(1 - part, 0.5 - x, 0.5 - y);
     return far / (far + near);
   }
 
   const Environment& env_;
-  int face_;
+  const SphereGrid& grid_;
+  const Rotation& turn_;
 };
 
 }  // namespace
@@ -351,27 +360,27 @@ Vec3 reference_lobe(const Environment& env, const Vec3& d, double exponent) {
   return Summation(env, exponent).at(d);
 }
 
-Vec3 reference_mirror(const Environment& env, int face, int column, int row, int n) {
-  const auto edge = [n](int i) { return 2.0 * i / n - 1; };
-  return (1 / cube_texel_solid_angle(column, row, n)) *
-         MirrorSearch(env, face).integral(edge(column), edge(row), edge(column + 1), edge(row + 1), 0);
+Vec3 reference_mirror(const Environment& env, const SphereGrid& grid, const Rotation& turn, int column, int row) {
+  return (1 / grid.solid_angle(column, row)) *
+         MirrorSearch(env, grid, turn).integral(column, row, column + 1, row + 1, 0);
 }
 
-LobeError lobe_error(const Environment& env, const PrefilteredLobe& lobe, int count, int extremes, std::uint64_t seed) {
+LobeError lobe_error(const Environment& env, const PrefilteredLobe& lobe, int count, int extremes, std::uint64_t seed,
+                     const Rotation& turn) {
   const CubeMap& map = lobe.map;
+  const SphereGrid grid = map_grid(lobe.layout, map.size);
   const std::vector<std::size_t> texels = chosen_texels(map, count, extremes, seed);
-  const Vec3 mean = mean_of(map);
+  const Vec3 mean = mean_of(grid, map.texels);
   const double gray = std::max({mean.x, mean.y, mean.z});
   const bool mirror = std::isinf(lobe.exponent);
   const Summation summation(env, mirror ? 1 : lobe.exponent);
   std::vector<double> errors(texels.size());
   parallel_for(texels.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const std::size_t n = static_cast<std::size_t>(map.size), index = texels[i];
-      const int face = static_cast<int>(index / (n * n)), row = static_cast<int>(index / n % n);
-      const int column = static_cast<int>(index % n);
-      const Vec3 wanted = mirror ? reference_mirror(env, face, column, row, map.size)
-                                 : summation.at(cube_direction(face, column + 0.5, row + 0.5, map.size));
+      const std::size_t index = texels[i], width = static_cast<std::size_t>(grid.width());
+      const int column = static_cast<int>(index % width), row = static_cast<int>(index / width);
+      const Vec3 wanted = mirror ? reference_mirror(env, grid, turn, column, row)
+                                 : summation.at(turn.to_environment(grid.direction(column, row)));
       for (int c = 0; c < 3; ++c) {
         const double scale = std::max({wanted[c], kFloor * mean[c], kFloor * kFloor * gray, 1e-300});
         errors[i] = std::max(errors[i], std::fabs(map.texels[3 * index + c] - wanted[c]) / scale);

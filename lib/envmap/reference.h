@@ -13,17 +13,19 @@ namespace goniochrome {
 // P_E(d) per channel, summed texel by texel. An infinite exponent is the texel that d falls in.
 Vec3 reference_lobe(const Environment& env, const Vec3& d, double exponent);
 
-// The mean radiance over a texel of a cube of size n, found by looking alone, cut where texels meet:
-// what the mirror part of a prefiltered environment holds.
-Vec3 reference_mirror(const Environment& env, int face, int column, int row, int n);
+// The mean radiance over a texel of a grid in the scene that `turn` brings the environment to, found by looking alone,
+// cut where texels meet: what the mirror part of a prefiltered environment holds.
+Vec3 reference_mirror(const Environment& env, const SphereGrid& grid, const Rotation& turn, int column, int row);
 
-// How far a lobe's map is from the reference on `count` random texels, `extremes` of its brightest and as many of its
-// darkest: relative, per channel, to the larger of the local value and 1e-3 of the channel's mean over the map (1e-6 of
-// the largest channel's mean, where a channel is almost empty).
+// How far a lobe's map, in the scene that `turn` brings the environment to, is from the reference on `count` random
+// texels, `extremes` of its brightest and as many of its darkest: relative, per channel, to the larger of the local
+// value and 1e-3 of the channel's mean over the map (1e-6 of the largest channel's mean, where a channel is almost
+// empty).
 struct LobeError {
   double max = 0, mean = 0;
   int texels = 0;
 };
-LobeError lobe_error(const Environment& env, const PrefilteredLobe& lobe, int count, int extremes, std::uint64_t seed);
+LobeError lobe_error(const Environment& env, const PrefilteredLobe& lobe, int count, int extremes, std::uint64_t seed,
+                     const Rotation& turn = {});
 
 }  // namespace goniochrome

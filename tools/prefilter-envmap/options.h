@@ -18,6 +18,12 @@ struct Options {
   int verify = 0;
   std::string bad_pixels = "error";
   bool no_mirror = false;
+  std::string paints;  // --for
+  std::string layout = "env";
+  std::string cache;
+  std::vector<double> rotate;
+  double exposure = 0;
+  double horizon = -90;
 };
 
 cli::ToolSpec tool_spec(Options& options);

@@ -69,7 +69,7 @@ within() { awk -v limit="$1" '$1 > limit { bad = 1 } { n++ } END { exit bad || !
 @test "usage errors" {
   run prefilter-envmap "$sky" -o x.env.exr
   [ "$status" -eq 2 ]
-  [[ "$output" =~ "give either --basis FILE or --exponents LIST" ]]
+  [[ "$output" =~ "give one of --basis FILE, --exponents LIST and --for PAINTS" ]]
   run prefilter-envmap -b "$basis" -e 6 "$sky" -o x.env.exr
   [ "$status" -eq 2 ]
   run prefilter-envmap -e 6,-1 "$sky" -o x.env.exr
@@ -116,4 +116,105 @@ within() { awk -v limit="$1" '$1 > limit { bad = 1 } { n++ } END { exit bad || !
   timeout -s KILL 0.3 prefilter-envmap -q -e 0.3 --size 512 "$sky" -o out.env.exr || true
   [ "$(cat out.env.exr)" = old ]
   [ "$(ls -A | wc -l)" -eq 1 ]
+}
+
+# lobes_paint EXPONENT:WEIGHT... : a paint of those lobes on a black ground.
+lobes_paint() {
+  printf '<paints xmlns="urn:goniochrome:paint:1" version="1"><paint name="P" class="metallic">'
+  printf '<lobes space="lin_rec2020_scene" basis="b" method="l1" max_de00="0" mean_de00="0"><diffuse r="0.1" g="0.1" b="0.1"/>'
+  for lobe in "$@"; do
+    printf '<lobe exponent="%s" ddr="%s" ddg="0" ddb="0" gr="0" gg="0" gb="0"/>' "${lobe%:*}" "${lobe#*:}"
+  done
+  printf '</lobes></paint></paints>'
+}
+
+@test "only the lobes that paints need, and which were left out" {
+  lobes_paint 6:0.2 70:0.00001 900:5 >p.paints.xml
+  run --separate-stderr prefilter-envmap --for p.paints.xml --size 8 --explain --report r.json "$sky" -o out.env.exr
+  [ "$status" -eq 0 ]
+  [[ "$stderr" =~ "left out: 70: at most "[0-9.e-]+" of what any of 1 paints reflects, below the tolerance 0.001" ]]
+  [ "$(jq -c '[.results.lobes[].exponent]' r.json)" = "[1,6,900]" ]
+  [ "$(jq -c '[.results.left_out[].exponent]' r.json)" = "[70]" ]
+  lobes_paint 6:0.2 mirror:0.5 >m.paints.xml
+  prefilter-envmap -q --for m.paints.xml --size 8 --report r.json "$sky" -o out.env.exr
+  [ "$(jq -c '[.results.lobes[].exponent]' r.json)" = '[1,6,"mirror"]' ]
+  run prefilter-envmap --for absent.xml "$sky" -o x.env.exr
+  [ "$status" -eq 3 ]
+  run prefilter-envmap --for p.paints.xml -e 6 "$sky" -o x.env.exr
+  [ "$status" -eq 2 ]
+  run prefilter-envmap --for "$TESTDATA/paints.paints.xml" "$sky" -o x.env.exr
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ "has no lobes: fit it with fit-paint" ]]
+  run prefilter-envmap --for
+  [ "$status" -eq 2 ]
+}
+
+@test "a cache gives lobes back by content" {
+  prefilter-envmap -q -e 6,70 --size 8 --cache kept "$sky" -o a.env.exr
+  [ "$(ls kept | wc -l)" -eq 4 ]
+  cp "$sky" renamed.exr
+  prefilter-envmap -q -e 6,900 --size 8 --cache kept --verify 5 --report r.json renamed.exr -o b.env.exr
+  [ "$(jq -c '[.results.lobes[].cached]' r.json)" = "[true,true,false,true]" ]
+  values max_rel_error | within 1e-3
+  # Another exposure, turn, size, layout or tolerance is another lobe; a spoilt file is as none.
+  for change in "--size 8 --exposure 1" "--size 8 --rotate 10" "--size 16" "--size 8 --layout latlong" \
+    "--size 8 --tolerance 1e-4" "--size 8 --horizon 0"; do
+    prefilter-envmap -q -e 6 --no-mirror --cache kept $change --report r.json "$sky" -o c.env.exr
+    [ "$(jq -c '[.results.lobes[].cached]' r.json)" = "[false,false]" ]
+  done
+  for file in kept/*; do echo spoilt >"$file"; done
+  prefilter-envmap -q -e 6 --size 8 --no-mirror --cache kept --verify 5 --report r.json "$sky" -o c.env.exr
+  [ "$(jq -c '[.results.lobes[].cached]' r.json)" = "[false,false]" ]
+  echo file >taken
+  run prefilter-envmap -e 6 --cache taken "$sky" -o x.env.exr
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ "taken: cannot be a cache" ]]
+  run prefilter-envmap -e 6 "$sky" -o x.env.exr --cache
+  [ "$status" -eq 2 ]
+}
+
+@test "other layouts, with their exponents, by their own conventions" {
+  command -v exrheader >/dev/null || skip "no exrheader"
+  prefilter-envmap -q -e 70 --size 8 --layout latlong --verify 5 --report r.json "$sky" -o flat.exr
+  values max_rel_error | within 1e-3
+  exrheader flat.exr >header
+  [ "$(grep -c 'envmap.*latitude-longitude' header)" -eq 3 ]
+  [ "$(grep -c 'dataWindow.*(0 0) - (15 7)' header)" -eq 3 ]
+  prefilter-envmap -q -e 70 --size 8 --layout openexr --verify 5 --report r.json "$sky" -o edges.exr
+  values max_rel_error | within 1e-3
+  exrheader edges.exr >header
+  [ "$(grep -c 'envmap.*cube' header)" -eq 3 ]
+  # What was written that way is read that way.
+  prefilter-envmap -q -e 6 --size 4 --no-mirror --report r.json edges.exr -o again.env.exr
+  [ "$(jq -r .results.source.layout r.json)" = "cube with texel centers on the edges" ]
+  prefilter-envmap -q -e 64,16 --size 8 --layout mip --verify 5 --report r.json "$sky" -o mip.exr
+  values max_rel_error | within 1e-3
+  exrheader mip.exr >header
+  grep -q 'goniochrome:exponents.*"64 16 4 1"' header
+  grep -q 'mip-map' header
+  run prefilter-envmap -e 64 --size 12 --layout mip "$sky" -o x.exr
+  [ "$status" -eq 2 ]
+  [[ "$output" =~ "give a power of two" ]]
+  run prefilter-envmap -e 1,2,3 --size 2 --layout mip "$sky" -o x.exr
+  [ "$status" -eq 2 ]
+  run prefilter-envmap -e 6 --layout sphere "$sky" -o x.exr
+  [ "$status" -eq 2 ]
+  run prefilter-envmap -e 6 "$sky" -o x.exr --layout
+  [ "$status" -eq 2 ]
+  [ ! -e x.exr ]
+}
+
+@test "a turn, an exposure and a horizon" {
+  prefilter-envmap -q -e 6 --size 8 --verify 5 --rotate 30,20,-100 --exposure 2 --report r.json "$sky" -o a.env.exr
+  values max_rel_error | within 1e-3
+  prefilter-envmap -q -e 6 --size 8 --horizon 0 --verify 5 --report r.json "$sky" -o b.env.exr
+  values max_rel_error | within 1e-3
+  for bad in "--rotate 1,2,3,4" "--rotate 400" "--rotate x" "--exposure 99" "--exposure x" "--horizon 91" "--horizon x"; do
+    run prefilter-envmap -e 6 $bad "$sky" -o x.env.exr
+    [ "$status" -eq 2 ]
+  done
+  for missing in --rotate --exposure --horizon; do
+    run prefilter-envmap -e 6 "$sky" -o x.env.exr $missing
+    [ "$status" -eq 2 ]
+  done
 }

@@ -2,19 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <optional>
 
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "envmap/lobe_cache.h"
+#include "envmap/mip_write.h"
 #include "envmap/prefilter.h"
 #include "envmap/reference.h"
-#include "paint/basis.h"
+#include "wanted.h"
 
 namespace goniochrome {
 
 namespace {
-
-constexpr double kLeastTolerance = 1e-6;  // floats hold 6e-8, the reference 1e-8
 
 std::string exponent_name(double exponent) {
   return std::isinf(exponent) ? "mirror" : shortest(exponent);
@@ -28,41 +30,19 @@ const char* layout_name(Environment::Layout layout) {
       return "cube";
     case Environment::Layout::kCubeEdges:
       return "cube with texel centers on the edges";
+    case Environment::Layout::kAngular:
+      return "angular probe";
   }
   return "";
 }
 
-// What is asked for. Ascending exponents, each once; the diffuse lobe stands for exponent 1.
-Result<PrefilterRequest> request_of(const Options& options) {
-  PrefilterRequest request;
-  if (options.basis.empty() == options.exponents.empty())
-    return usage_error("give either --basis FILE or --exponents LIST");
-  request.exponents = options.exponents;
-  if (!options.basis.empty()) {
-    GONIO_ASSIGN(const Basis basis, read_basis(options.basis));
-    request.exponents = basis.exponents;
-  }
-  std::vector<double>& e = request.exponents;
-  std::sort(e.begin(), e.end());
-  e.erase(std::unique(e.begin(), e.end()), e.end());
-  std::erase(e, 1.0);
-  request.mirror = !options.no_mirror;
-  if (options.size != "auto") {
-    const auto size = parse_integer(options.size);
-    if (!size || *size < 1 || *size > 8192)
-      return usage_error("--size is \"{}\": give auto or the texels along a face, 1 to 8192", options.size);
-    request.size = static_cast<int>(*size);
-  }
-  request.tolerance = options.common.tolerance;
-  if (!(request.tolerance >= kLeastTolerance && request.tolerance < 1))
-    return usage_error("--tolerance is {}: give {} to 1", shortest(request.tolerance), shortest(kLeastTolerance));
-  return request;
-}
-
-Result<Environment> read_environment(const Options& options) {
+Result<Environment> read_environment(const Options& options, const Rotation& turn) {
   const auto bad = options.bad_pixels == "zero" ? Environment::BadPixels::kZero : Environment::BadPixels::kError;
-  if (options.images.size() > 1) return Environment::read_faces(options.images, bad);
-  return Environment::read(options.images.empty() ? "-" : options.images.front(), bad);
+  auto read = options.images.size() > 1 ? Environment::read_faces(options.images, bad)
+                                        : Environment::read(options.images.empty() ? "-" : options.images.front(), bad);
+  if (read.ok() && options.exposure != 0) read = read->scaled(std::exp2(options.exposure));
+  if (read.ok() && options.horizon > -90) read = read->above(options.horizon * std::numbers::pi / 180, turn);
+  return read;
 }
 
 void tell_source(const Environment& env, cli::Session& session) {
@@ -78,35 +58,50 @@ void tell_source(const Environment& env, cli::Session& session) {
     session.warn(fmt::format("{}: {} texels beyond Rec.2020 clipped to it", env.source(), n.out_of_gamut));
 }
 
-std::string plan_text(const Environment& env, const PrefilterRequest& request, const std::vector<LobePlan>& plan) {
+// The plan, before the work.
+std::string plan_text(const Environment& env, const Wanted& wanted, const Options& options,
+                      const std::vector<LobePlan>& plan, const LobeSource& known) {
+  const PrefilterRequest& request = wanted.request;
   std::string text = fmt::format("{}: {}, {} x {} texels, each a constant patch\n", env.source(),
                                  layout_name(env.layout()), env.width(), env.height());
+  for (const LeftOut& lobe : wanted.left_out)
+    text += fmt::format("left out: {}: at most {:.1e} of what any of {} paints reflects, below the tolerance {}\n",
+                        exponent_name(lobe.exponent), lobe.share, wanted.paints, shortest(request.tolerance));
+  if (!request.mirror && options.layout == "mip")
+    text += "left out: the diffuse lobe and the mirror, which a mip-mapped cube has no level for\n";
   text += "exponent  size  method            degree  error    lookup   time\n";
   double total = 0;
   for (const LobePlan& lobe : plan) {
-    text += fmt::format("{:<9} {:<5} {:<17} {:<7} {:<8.1e} {:<8.1e} {:.3f} s\n", exponent_name(lobe.exponent),
-                        lobe.size, method_name(lobe.method), lobe.degree > 0 ? std::to_string(lobe.degree) : "-",
-                        lobe.predicted_error, lobe.lookup_error, lobe.predicted_time_s);
-    total += lobe.predicted_time_s;
+    const bool there = known && known(lobe);
+    text +=
+        fmt::format("{:<9} {:<5} {:<17} {:<7} {:<8.1e} {:<8.1e} {:.3f} s\n", exponent_name(lobe.exponent), lobe.size,
+                    there ? "cache" : method_name(lobe.method), lobe.degree > 0 ? std::to_string(lobe.degree) : "-",
+                    lobe.predicted_error, lobe.lookup_error, there ? 0 : lobe.predicted_time_s);
+    total += there ? 0 : lobe.predicted_time_s;
   }
   text += fmt::format("about {:.2f} s on {} threads, and reading and writing\n", total, threads());
   text += fmt::format(
       "error: of a texel, relative to it or to 1e-3 of the mean, at most {}; lookup: what bilinear fetches between "
-      "texels "
-      "typically add{}\n",
+      "texels typically add{}\n",
       shortest(request.tolerance), request.size > 0 ? "; --size auto would keep that at ten times the tolerance" : "");
   return text;
 }
 
-Json report_of(const LobePlan& plan, const PrefilteredLobe& lobe, double time_s, double ratio) {
+struct Timing {
+  double time_s = 0;
+  bool cached = false;
+};
+
+Json report_of(const LobePlan& plan, const PrefilteredLobe& lobe, const Timing& timing, double ratio) {
   const bool verified = lobe.verified_texels > 0;
   return {{"exponent", std::isinf(lobe.exponent) ? Json("mirror") : Json(lobe.exponent)},
           {"size", lobe.map.size},
           {"method", lobe.method},
+          {"cached", timing.cached},
           {"degree", plan.degree},
           {"storage", storage_type(lobe) == PixelType::kHalf ? "half" : "float"},
           {"predicted_time_s", plan.predicted_time_s},
-          {"time_s", time_s},
+          {"time_s", timing.time_s},
           {"predicted_error", plan.predicted_error},
           {"lookup_error", plan.lookup_error},
           {"max_rel_error", verified ? json_number(lobe.max_error) : Json(nullptr)},
@@ -116,18 +111,21 @@ Json report_of(const LobePlan& plan, const PrefilteredLobe& lobe, double time_s,
 }
 
 std::vector<PrefilteredLobe*> all_lobes(PrefilteredEnvironment& env) {
-  std::vector<PrefilteredLobe*> lobes = {&env.diffuse};
+  std::vector<PrefilteredLobe*> lobes;
+  if (env.diffuse.map.size > 0) lobes.push_back(&env.diffuse);
   for (PrefilteredLobe& lobe : env.lobes) lobes.push_back(&lobe);
   if (env.mirror.map.size > 0) lobes.push_back(&env.mirror);
   return lobes;
 }
 
 // Measures every lobe against the reference. Returns whether all keep the tolerance.
-bool verify(const Options& options, const Environment& env, PrefilteredEnvironment& result, cli::Session& session) {
+bool verify(const Options& options, const Environment& env, const Rotation& turn, PrefilteredEnvironment& result,
+            cli::Session& session) {
   bool within = true;
   for (PrefilteredLobe* lobe : all_lobes(result)) {
     session.progress(fmt::format("{}: verifying {}", session.tool(), exponent_name(lobe->exponent)));
-    const LobeError error = lobe_error(env, *lobe, options.verify, (options.verify + 9) / 10, options.common.seed);
+    const LobeError error =
+        lobe_error(env, *lobe, options.verify, (options.verify + 9) / 10, options.common.seed, turn);
     lobe->max_error = error.max;
     lobe->mean_error = error.mean;
     lobe->verified_texels = error.texels;
@@ -139,46 +137,90 @@ bool verify(const Options& options, const Environment& env, PrefilteredEnvironme
   return within;
 }
 
+Result<void> write(const Options& options, const PrefilteredEnvironment& result, const cli::Session& session) {
+  const std::string command = fmt::format("{} {}: {}", session.tool(), cli::Session::version(), session.command_line());
+  if (options.layout == "mip") return write_mip(options.output, result.lobes, result.source, command);
+  return write_env(options.output, result, command);
+}
+
+void tell_wanted(const Options& options, const Wanted& wanted, cli::Session& session) {
+  session.results()["layout"] = options.layout;
+  Json& left_out = session.results()["left_out"] = Json::array();
+  for (const LeftOut& lobe : wanted.left_out)
+    left_out.push_back({{"exponent", std::isinf(lobe.exponent) ? Json("mirror") : Json(lobe.exponent)},
+                        {"share", json_number(lobe.share)}});
+}
+
+// The maps, and how long each took. Lobes that the cache has not are put into it.
+Result<PrefilteredEnvironment> filter(const Environment& env, const PrefilterRequest& request,
+                                      const std::vector<LobePlan>& plan, const std::optional<LobeCache>& cache,
+                                      cli::Session& session, std::vector<Timing>& timings) {
+  std::vector<bool> found;
+  Result<void> kept = {};
+  const auto done = [&](const PrefilteredLobe& lobe, double time_s) {
+    const bool cached = cache && found[timings.size()];
+    timings.push_back({time_s, cached});
+    if (cache && !cached && kept.ok()) kept = cache->keep(lobe);
+    session.progress(fmt::format("{}: {} of {} lobes, {}", session.tool(), timings.size(), plan.size(),
+                                 exponent_name(lobe.exponent)));
+  };
+  LobeSource known;
+  if (cache)
+    known = [&](const LobePlan& lobe) {
+      auto there = cache->find(lobe);
+      found.push_back(there.has_value());
+      return there;
+    };
+  PrefilteredEnvironment result = prefiltered(env, request, plan, done, known);
+  GONIO_TRY(kept);
+  return result;
+}
+
 }  // namespace
 
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
-  GONIO_ASSIGN(const PrefilterRequest request, request_of(options));
+  GONIO_ASSIGN(const Wanted wanted, wanted_lobes(options));
+  const PrefilterRequest& request = wanted.request;
   const Stopwatch read_clock;
-  GONIO_ASSIGN(const Environment env, read_environment(options));
+  GONIO_ASSIGN(const Environment env, read_environment(options, request.turn));
   session.results()["read_s"] = read_clock.elapsed_s();
+  tell_wanted(options, wanted, session);
   tell_source(env, session);
+  std::optional<LobeCache> cache;
+  if (!options.cache.empty()) {
+    GONIO_ASSIGN(cache, LobeCache::open(options.cache, env, request, cli::Session::version()));
+  }
   const std::vector<LobePlan> plan = prefilter_plan(env, request);
-  if (options.common.explain) session.explain(plan_text(env, request, plan));
+  if (options.common.explain) {
+    LobeSource known;
+    if (cache) known = [&](const LobePlan& lobe) { return cache->find(lobe); };
+    session.explain(plan_text(env, wanted, options, plan, known));
+  }
 
   const Stopwatch filter_clock;
-  std::vector<double> times;
-  PrefilteredEnvironment result = prefiltered(env, request, plan, [&](const PrefilteredLobe& lobe, double time_s) {
-    times.push_back(time_s);
-    session.progress(
-        fmt::format("{}: {} of {} lobes, {}", session.tool(), times.size(), plan.size(), exponent_name(lobe.exponent)));
-  });
+  std::vector<Timing> timings;
+  GONIO_ASSIGN(PrefilteredEnvironment result, filter(env, request, plan, cache, session, timings));
   const double filter_s = filter_clock.elapsed_s();
   session.results()["filter_s"] = filter_s;
 
   const Stopwatch verify_clock;
-  const bool within = options.verify == 0 || verify(options, env, result, session);
+  const bool within = options.verify == 0 || verify(options, env, request.turn, result, session);
   session.results()["verify_s"] = verify_clock.elapsed_s();
 
   double worst = 0;
   std::vector<PrefilteredLobe*> lobes = all_lobes(result);
   for (std::size_t i = 0; i < lobes.size(); ++i) {
     worst = std::max(worst, lobes[i]->max_error);
-    session.results()["lobes"].push_back(report_of(plan[i], *lobes[i], times[i], energy_ratio(env, lobes[i]->map)));
+    session.results()["lobes"].push_back(report_of(plan[i], *lobes[i], timings[i], energy_ratio(env, *lobes[i])));
   }
   const Stopwatch write_clock;
-  GONIO_TRY(write_env(options.output, result,
-                      fmt::format("{} {}: {}", session.tool(), cli::Session::version(), session.command_line())));
+  GONIO_TRY(write(options, result, session));
   session.results()["write_s"] = write_clock.elapsed_s();
 
   const std::string checked = options.verify == 0
                                   ? fmt::format("tolerance {}, not verified", shortest(request.tolerance))
                                   : fmt::format("largest error {:.2e} of {} texels a lobe, tolerance {}", worst,
-                                                result.diffuse.verified_texels, shortest(request.tolerance));
+                                                lobes.front()->verified_texels, shortest(request.tolerance));
   session.say(fmt::format("{}: {} lobes in {:.2f} s; {}", session.tool(), lobes.size(), filter_s, checked));
   return within ? cli::Verdict::kDone : cli::Verdict::kNegative;
 }

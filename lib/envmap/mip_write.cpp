@@ -1,0 +1,111 @@
+#include "envmap/mip_write.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfStdIO.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfTiledOutputFile.h>
+
+#include <algorithm>
+#include <exception>
+#include <functional>
+
+#include "base/file.h"
+#include "base/text.h"
+
+namespace goniochrome {
+
+namespace {
+
+// One line of numbers, level by level.
+template <class Number>
+Imf::StringAttribute listed(const std::vector<PrefilteredLobe>& levels, const Number& number) {
+  std::string text;
+  for (const PrefilteredLobe& level : levels) text += (text.empty() ? "" : " ") + shortest(number(level));
+  return Imf::StringAttribute(text);
+}
+
+Imf::Header header_of(const std::vector<PrefilteredLobe>& levels, Imf::PixelType type, const std::string& source,
+                      const std::string& command) {
+  const int n = levels.front().map.size;
+  Imf::Header header(n, 6 * n);
+  for (const char* name : {"R", "G", "B"}) header.channels().insert(name, Imf::Channel(type));
+  header.compression() = Imf::ZIP_COMPRESSION;
+  header.setTileDescription(Imf::TileDescription(64, 64, Imf::MIPMAP_LEVELS, Imf::ROUND_DOWN));
+  header.insert("goniochrome:texels", Imf::StringAttribute("center"));
+  header.insert("goniochrome:exponents", listed(levels, [](const PrefilteredLobe& l) { return l.exponent; }));
+  header.insert("goniochrome:maxErrors", listed(levels, [](const PrefilteredLobe& l) { return l.max_error; }));
+  header.insert("goniochrome:lookupErrors", listed(levels, [](const PrefilteredLobe& l) { return l.lookup_error; }));
+  header.insert("goniochrome:tolerance", Imf::StringAttribute(shortest(levels.front().tolerance)));
+  header.insert("goniochrome:source", Imf::StringAttribute(source));
+  header.insert("goniochrome:command", Imf::StringAttribute(command));
+  header.insert("colorInteropID", Imf::StringAttribute("lin_rec2020_scene"));
+  return header;
+}
+
+// The values of a level; the two that the format wants below one texel a face (1 x 3 and 1 x 1) hold the mean.
+std::vector<float> level_values(const std::vector<PrefilteredLobe>& levels, std::size_t level) {
+  if (level < levels.size()) return levels[level].map.texels;
+  const std::vector<float>& last = levels.back().map.texels;
+  std::vector<float> mean(3 * 6, 0.0F);
+  for (std::size_t i = 0; i < mean.size(); ++i)
+    for (std::size_t face = 0; face < 6; ++face) mean[i] += last[3 * face + i % 3] / 6;
+  return mean;
+}
+
+std::string encoded(const std::vector<PrefilteredLobe>& levels, const std::string& source, const std::string& command) {
+  const bool as_float = std::any_of(levels.begin(), levels.end(), [](const PrefilteredLobe& level) {
+    return storage_type(level) == PixelType::kFloat;
+  });
+  const Imf::PixelType type = as_float ? Imf::FLOAT : Imf::HALF;
+  Imf::StdOSStream stream;
+  {
+    Imf::TiledOutputFile file(stream, header_of(levels, type, source, command));
+    for (int level = 0; level < file.numLevels(); ++level) {
+      std::vector<float> values = level_values(levels, static_cast<std::size_t>(level));
+      const std::vector<half> halves(values.begin(), values.end());
+      const std::size_t size = as_float ? sizeof(float) : sizeof(half);
+      char* base = as_float ? reinterpret_cast<char*>(values.data())
+                            : const_cast<char*>(reinterpret_cast<const char*>(halves.data()));
+      Imf::FrameBuffer buffer;
+      for (std::size_t c = 0; c < 3; ++c)
+        buffer.insert(
+            std::string(1, "RGB"[c]),
+            Imf::Slice(type, base + c * size, 3 * size, 3 * size * static_cast<std::size_t>(file.levelWidth(level))));
+      file.setFrameBuffer(buffer);
+      file.writeTiles(0, file.numXTiles(level) - 1, 0, file.numYTiles(level) - 1, level);
+    }
+  }
+  return stream.str();
+}
+
+}  // namespace
+
+Result<std::vector<double>> mip_exponents(std::vector<double> given, int size) {
+  if (size < 1 || (size & (size - 1)) != 0)
+    return usage_error("a mip-mapped cube of {} texels a face: give a power of two", size);
+  std::size_t levels = 1;
+  for (int n = size; n > 1; n /= 2) ++levels;
+  if (given.size() > levels)
+    return usage_error("{} exponents but a cube of {} has {} levels: give fewer, or a larger --size", given.size(),
+                       size, levels);
+  std::sort(given.begin(), given.end(), std::greater<>());
+  while (given.size() < levels) {
+    const double next = given.back() / 4;
+    given.push_back(next < 0.25 ? 0 : next);
+  }
+  return given;
+}
+
+Result<void> write_mip(const std::string& path, const std::vector<PrefilteredLobe>& levels, const std::string& source,
+                       const std::string& command) {
+  try {
+    return write_file(path, encoded(levels, source, command));
+  } catch (const std::exception& e) {
+    return input_error("{}: cannot be written as EXR: {}", path.empty() || path == "-" ? "standard output" : path,
+                       e.what());
+  }
+}
+
+}  // namespace goniochrome

@@ -1,0 +1,22 @@
+// One mip-mapped cube with a lobe in every level, for paints whose exponent varies from point to point.
+// [McAllister2002] 6.2; goniochrome-theory(7), PREFILTERING, Mip-mapped lobes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "envmap/prefiltered.h"
+
+namespace goniochrome {
+
+// The exponent of every level of a cube of `size` (a power of two) down to one texel a face: the given ones, sharpest
+// first, then each a quarter of the one before, as wide for its texels; below 1/4 it is 0. Error: more exponents than
+// levels, or a size that is no power of two.
+Result<std::vector<double>> mip_exponents(std::vector<double> given, int size);
+
+// Writes the levels (cubes of halving sizes) as one tiled EXR; attributes say exponent, error and texels of each.
+Result<void> write_mip(const std::string& path, const std::vector<PrefilteredLobe>& levels, const std::string& source,
+                       const std::string& command);
+
+}  // namespace goniochrome

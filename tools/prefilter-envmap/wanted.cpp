@@ -1,0 +1,133 @@
+#include "wanted.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "base/text.h"
+#include "envmap/mip_write.h"
+#include "paint/basis.h"
+#include "paint/xml.h"
+
+namespace goniochrome {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kLeastTolerance = 1e-6;  // floats hold 6e-8, the reference 1e-8
+
+double largest(const Rgb& weights) {
+  return std::max({weights[0], weights[1], weights[2]});
+}
+
+// What a lobe reflects of a constant environment at normal incidence: its weight times 2 pi/(E+1); the mirror, its
+// weight.
+double reflectance(const Lobe& lobe) {
+  const double weight = largest(lobe.directional_diffuse) + largest(lobe.gloss);
+  return std::isinf(lobe.exponent) ? weight : weight * 2 * kPi / (lobe.exponent + 1);
+}
+
+// The largest share of a paint's reflectance that each exponent has, over paints and views.
+void add_shares(const Rgb& diffuse, const std::vector<Lobe>& lobes, std::map<double, double>& shares) {
+  double all = kPi * largest(diffuse);
+  for (const Lobe& lobe : lobes) all += reflectance(lobe);
+  for (const Lobe& lobe : lobes) {
+    double& share = shares[lobe.exponent];
+    if (all > 0) share = std::max(share, reflectance(lobe) / all);
+  }
+}
+
+Result<void> want_those_of_paints(const Options& options, Wanted& wanted) {
+  GONIO_ASSIGN(PaintReader reader, PaintReader::open(options.paints));
+  std::map<double, double> shares;
+  for (;;) {
+    GONIO_ASSIGN(const std::optional<Paint> paint, reader.next());
+    if (!paint) break;
+    ++wanted.paints;
+    if (!paint->lobes)
+      return input_error("{}:{}: paint {} has no lobes: fit it with fit-paint", options.paints, reader.line(),
+                         paint->name);
+    add_shares(paint->lobes->diffuse, paint->lobes->lobes, shares);
+    for (const ViewLobes& view : paint->lobes->views) add_shares(view.diffuse, view.lobes, shares);
+  }
+  if (wanted.paints == 0) return input_error("{}: holds no paint: name paints that have lobes", options.paints);
+  wanted.request.mirror = false;
+  for (const auto& [exponent, share] : shares) {
+    if (share <= wanted.request.tolerance)
+      wanted.left_out.push_back({exponent, share});
+    else if (std::isinf(exponent))
+      wanted.request.mirror = true;
+    else
+      wanted.request.exponents.push_back(exponent);
+  }
+  return {};
+}
+
+Result<void> set_geometry(const Options& options, PrefilterRequest& request) {
+  using Layout = SphereGrid::Layout;
+  if (options.size != "auto") {
+    const auto size = parse_integer(options.size);
+    if (!size || *size < 1 || *size > 8192)
+      return usage_error("--size is \"{}\": give auto or the texels along a face, 1 to 8192", options.size);
+    request.size = static_cast<int>(*size);
+  }
+  if (options.layout == "openexr" && request.size == 1)
+    return usage_error("--size 1 with --layout openexr: texel centers on the edges take a size of 2 or more");
+  request.layout = options.layout == "latlong"   ? Layout::kLatLong
+                   : options.layout == "openexr" ? Layout::kCubeEdges
+                                                 : Layout::kCube;
+  const std::vector<double>& turn = options.rotate;
+  if (turn.size() > 3)
+    return usage_error("--rotate has {} angles: give one to three, about +Y, +X and +Z", turn.size());
+  const auto angle = [&](std::size_t i) { return i < turn.size() ? turn[i] * kPi / 180 : 0; };
+  request.turn = Rotation::about_axes(angle(0), angle(1), angle(2));
+  return {};
+}
+
+// The levels of the mip-mapped cube, in place of diffuse lobe, lobes and mirror.
+Result<void> set_levels(PrefilterRequest& request) {
+  if (request.exponents.empty()) return usage_error("--layout mip without an exponent: give --exponents or --basis");
+  const double sharpest = *std::max_element(request.exponents.begin(), request.exponents.end());
+  int size = request.size > 0
+                 ? request.size
+                 : static_cast<int>(std::bit_ceil(static_cast<unsigned>(own_size(sharpest, request.tolerance))));
+  GONIO_ASSIGN(request.exponents, mip_exponents(request.exponents, size));
+  for (std::size_t i = 0; i < request.exponents.size(); ++i, size /= 2) request.sizes.push_back(size);
+  request.diffuse = request.mirror = false;
+  return {};
+}
+
+}  // namespace
+
+Result<Wanted> wanted_lobes(const Options& options) {
+  if (int(options.basis.empty()) + int(options.exponents.empty()) + int(options.paints.empty()) != 2)
+    return usage_error("give one of --basis FILE, --exponents LIST and --for PAINTS");
+  Wanted wanted;
+  PrefilterRequest& request = wanted.request;
+  request.tolerance = options.common.tolerance;
+  if (!(request.tolerance >= kLeastTolerance && request.tolerance < 1))
+    return usage_error("--tolerance is {}: give {} to 1", shortest(request.tolerance), shortest(kLeastTolerance));
+  GONIO_TRY(set_geometry(options, request));
+  request.exponents = options.exponents;
+  if (!options.basis.empty()) {
+    GONIO_ASSIGN(const Basis basis, read_basis(options.basis));
+    request.exponents = basis.exponents;
+  } else if (!options.paints.empty()) {
+    GONIO_TRY(want_those_of_paints(options, wanted));
+  }
+  // Ascending, each once; the diffuse lobe stands for exponent 1.
+  std::vector<double>& e = request.exponents;
+  std::sort(e.begin(), e.end());
+  e.erase(std::unique(e.begin(), e.end()), e.end());
+  if (options.no_mirror) request.mirror = false;
+  if (options.layout == "mip") {
+    GONIO_TRY(set_levels(request));
+  } else {
+    std::erase(e, 1.0);
+  }
+  return wanted;
+}
+
+}  // namespace goniochrome

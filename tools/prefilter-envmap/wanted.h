@@ -1,0 +1,27 @@
+// Which lobes are asked for: by a basis, by a list or by the paints that reflect by them.
+#pragma once
+
+#include <vector>
+
+#include "base/result.h"
+#include "envmap/prefilter.h"
+#include "options.h"
+
+namespace goniochrome {
+
+// An exponent that paints name but do not need.
+struct LeftOut {
+  double exponent = 0;
+  double share = 0;  // the largest part of any paint's reflectance
+};
+
+struct Wanted {
+  PrefilterRequest request;
+  std::vector<LeftOut> left_out;
+  int paints = 0;
+};
+
+// The request that the options make. Errors: usage, or the basis or the paints.
+Result<Wanted> wanted_lobes(const Options& options);
+
+}  // namespace goniochrome
