@@ -51,8 +51,9 @@ Result<MipCube> mip_cube(const PrefilteredEnvironment& env) {
   return mip;
 }
 
-SbrdfShader::SbrdfShader(const PrefilteredEnvironment* env, const MipCube* mip, std::vector<Light> lights)
-    : env_(env), mip_(mip), lights_(std::move(lights)) {
+SbrdfShader::SbrdfShader(const PrefilteredEnvironment* env, const MipCube* mip, std::vector<Light> lights,
+                         const ReflectionOperator& reflection)
+    : env_(env), mip_(mip), lights_(std::move(lights)), reflection_(reflection) {
   if (env_ == nullptr) return;
   bool diffuse = false;
   const auto add = [&](double exponent, const CubeMap& map) { exponents_.push_back(exponent), maps_.push_back(&map); };
@@ -86,14 +87,16 @@ Rgb SbrdfShader::shade(const SbrdfTexel& texel, const Vec3& normal, const Vec3& 
   Rgb sum;
   for (const Light& light : lights_) {
     const Vec3 to_light = axes.local(light.direction);
-    if (to_light.z > 0) sum += (std::numbers::pi * to_light.z) * (brdf(texel.surface, to_light, viewer) * light.white);
+    if (to_light.z > 0)
+      sum +=
+          (std::numbers::pi * to_light.z) * reflected(reflection_, light.white, brdf(texel.surface, to_light, viewer));
   }
   if (env_ == nullptr) return sum;
-  sum += std::numbers::pi * (texel.surface.diffuse * bilinear(env_->diffuse.map, normal));
+  sum += std::numbers::pi * reflected(reflection_, bilinear(env_->diffuse.map, normal), texel.surface.diffuse);
   for (const LafortuneLobe& lobe : texel.surface.lobes) {
     const LobeFetch fetch = environment_fetch(lobe, viewer);
     if (fetch.weight == Rgb{}) continue;
-    sum += fetch.weight * filtered(lobe.exponent, axes.world(fetch.direction));
+    sum += reflected(reflection_, filtered(lobe.exponent, axes.world(fetch.direction)), fetch.weight);
   }
   return sum;
 }

@@ -25,7 +25,8 @@ Result<MipCube> mip_cube(const PrefilteredEnvironment& env);
 // own maps, two neighbors in exponent blended. Both may be null, and must outlive the shader.
 class SbrdfShader {
  public:
-  SbrdfShader(const PrefilteredEnvironment* env, const MipCube* mip, std::vector<Light> lights);
+  SbrdfShader(const PrefilteredEnvironment* env, const MipCube* mip, std::vector<Light> lights,
+              const ReflectionOperator& reflection = component_wise());
 
   // Radiance in the working space toward `to_viewer` (unit, world), of a surface with unit normal and tangent; the
   // tangent is made perpendicular. 0 seen from below.
@@ -41,6 +42,7 @@ class SbrdfShader {
   const PrefilteredEnvironment* env_;
   const MipCube* mip_;
   std::vector<Light> lights_;
+  ReflectionOperator reflection_;
   std::vector<double> exponents_;  // of the maps, ascending; the diffuse map is the lobe of exponent 1
   std::vector<const CubeMap*> maps_;
 };

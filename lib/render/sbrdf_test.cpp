@@ -94,6 +94,18 @@ TEST(SbrdfShader, LightsAreExactAndFramesTurn) {
   EXPECT_TRUE(std::isfinite(shader.shade(texel, kNormal, kNormal, kViewer).x));
 }
 
+TEST(SbrdfShader, ColoredLightGoesThroughTheOperator) {
+  const PrefilteredEnvironment env = slope_environment({4, 16}, 8);
+  const ReflectionOperator iso = iso_rgb_operator();
+  // The environment is white: nothing changes there. A cyan light keeps some red.
+  const Light cyan{normalized({0.5, 1, 0.2}), {0, 1, 1}};
+  const Rgb plain = SbrdfShader(&env, nullptr, {}).shade(phong_texel(9), kNormal, kTangent, kViewer);
+  const Rgb same = SbrdfShader(&env, nullptr, {}, iso).shade(phong_texel(9), kNormal, kTangent, kViewer);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(same[c], plain[c], 1e-12);
+  EXPECT_EQ(SbrdfShader(nullptr, nullptr, {cyan}).shade(phong_texel(9), kNormal, kTangent, kViewer).x, 0);
+  EXPECT_GT(SbrdfShader(nullptr, nullptr, {cyan}, iso).shade(phong_texel(9), kNormal, kTangent, kViewer).x, 0.05);
+}
+
 TEST(SbrdfShader, ATextureIsItsTexelsShadedAndBlended) {
   const SbrdfTexture texture = {
       2, 1, 1, {0, 0, 0, 1, 0, 1, 1, 1, -1, -1, 1, 400, 0, 0, 0, 1, 0, 1, 1, 1, 0.8F, 0.8F, 0.6F, 400}};
