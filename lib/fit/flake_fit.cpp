@@ -15,7 +15,7 @@ namespace {
 constexpr double kGuideShare = 0.1;
 
 // How much it counts, in each row, that the next view shows something else.
-constexpr double kSmoothnessShare = 0.01;
+constexpr double kSmoothnessShare = 0.1;
 
 // Rows that ask two neighboring views to show the same, at the angles of the target's rows, no closer than about 9 deg.
 void add_smoothness(const FlakeTarget& target, const FlakeModel& model, LinearProblem& problem) {

@@ -15,8 +15,8 @@ struct Axis {
 };
 
 struct Series {
-  std::string label;         // in the legend; empty: not listed
-  std::vector<double> x, y;  // a y (or x) that is not finite breaks the line
+  std::string label = {};         // in the legend; empty: not listed
+  std::vector<double> x = {}, y = {};  // a y (or x) that is not finite breaks the line
   enum class Style { kLine, kPoints, kLineAndPoints, kDashed } style = Style::kLine;
   std::string color = {};  // CSS; empty: the next of a palette that color-blind readers can tell apart
 };

@@ -1,0 +1,11 @@
+// plot-paint: paints and their lobes as drawings.
+#include "cli/tool.h"
+#include "options.h"
+#include "run.h"
+
+int main(int argc, char** argv) {
+  using namespace goniochrome;
+  Options options;
+  const cli::ToolSpec spec = tool_spec(options);
+  return cli::tool_main(argc, argv, spec, options.common, [&](cli::Session& s) { return run(options, s); });
+}

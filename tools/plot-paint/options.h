@@ -1,0 +1,24 @@
+// The options of plot-paint.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/options.h"
+
+namespace goniochrome {
+
+struct Options {
+  cli::CommonOptions common;
+  std::vector<std::string> libraries;
+  std::string output = "-";
+  std::string pages;
+  std::string format = "svg";
+  std::vector<std::string> names;
+  std::vector<std::string> brdfs;
+  std::vector<double> incidence_deg = {10, 40, 70};
+};
+
+cli::ToolSpec tool_spec(Options& options);
+
+}  // namespace goniochrome

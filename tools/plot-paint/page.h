@@ -1,0 +1,24 @@
+// The drawing of one paint.
+#pragma once
+
+#include <vector>
+
+#include "brdf/measured.h"
+#include "paint/paint.h"
+#include "report/plot.h"
+
+namespace goniochrome {
+
+struct PageInput {
+  const Paint& paint;
+  const MeasuredBrdf* brdf = nullptr;  // what the squares are held against, where there is one
+  std::vector<double> incidence_deg;
+};
+
+// A page of 1080 px. Error: the paint has neither readings nor an appearance nor lobes, or its illuminant is unknown.
+Result<Drawing> page_of(const PageInput& input);
+
+// The same in one row: L*, a* and b*, and the squares.
+Result<Drawing> row_of_sheet(const PageInput& input);
+
+}  // namespace goniochrome

@@ -1,0 +1,102 @@
+# plot-paint from the outside: pages, sheets, formats, exit statuses.
+
+bats_require_minimum_version 1.5.0
+
+setup() {
+  cd "$BATS_TEST_TMPDIR" || exit 1
+  paints=$TESTDATA/paints.paints.xml
+  fit-paint -q -b "$TESTDATA/b7.basis.xml" "$paints" -o fitted.xml
+}
+
+@test "one paint makes a page: curves, lobes, polar diagram, surfaces and squares" {
+  run --separate-stderr plot-paint --paint candy_red fitted.xml -o page.svg --report r.json
+  [ "$status" -eq 0 ]
+  [ -z "$output" ]
+  [[ "$stderr" =~ "plot-paint: 1 paints drawn"$ ]]
+  xmllint --noout page.svg
+  for title in 'L\*' 'a\*' 'b\*' 'Parts of the reflectance factor' 'Reflectance factor, light at 45 deg' \
+    'Root of the flake, green' '10 deg, curve' '70 deg, fit'; do
+    grep -q ">$title<" page.svg
+  done
+  ! grep -q 'nan\|inf"' page.svg
+  grep -q '"target": "curve"' r.json
+}
+
+@test "several paints make a sheet, --pages a page each" {
+  plot-paint -q --paint candy_red --paint jet_black fitted.xml -o sheet.svg
+  xmllint --noout sheet.svg
+  [ "$(grep -c '>L\*<' sheet.svg)" -eq 2 ]
+  mkdir pages
+  plot-paint -q --paint candy_red --paint jet_black --pages pages fitted.xml
+  [ "$(ls pages)" = "$(printf 'candy_red.svg\njet_black.svg')" ]
+  run plot-paint --pages absent fitted.xml
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ "absent: is no folder" ]]
+}
+
+@test "a paint without lobes is drawn, and the summary says what makes them" {
+  run plot-paint --paint candy_red "$paints" -o page.svg
+  [ "$status" -eq 0 ]
+  [[ "$output" =~ "1 of them without lobes: fit-paint makes them" ]]
+  ! grep -q '10 deg, fit' page.svg
+}
+
+@test "standard input to standard output" {
+  run --separate-stderr bash -c "plot-paint -q --paint candy_red <fitted.xml"
+  [ "$status" -eq 0 ]
+  [[ "$output" =~ "<svg " ]]
+}
+
+@test "PNG by the ending and by --format, where rsvg-convert is there" {
+  mkdir pages
+  if command -v rsvg-convert >/dev/null; then
+    plot-paint -q --paint candy_red fitted.xml -o page.png
+    file page.png | grep -q 'PNG image data, 1080 x'
+    plot-paint -q --paint candy_red --format png --pages pages fitted.xml
+    file pages/candy_red.png | grep -q 'PNG image data'
+  fi
+  tool=$(command -v plot-paint)
+  PATH=/nowhere run "$tool" --paint candy_red fitted.xml -o no.png
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ "install librsvg2-bin" ]]
+  [ ! -e no.png ]
+}
+
+@test "--incidence chooses the squares" {
+  plot-paint -q --paint candy_red --incidence 25 fitted.xml -o page.svg
+  grep -q '>25 deg, fit<' page.svg
+  ! grep -q '>40 deg, fit<' page.svg
+}
+
+@test "--brdf holds a measured BRDF against its paint" {
+  awk 'BEGIN { print "3\n400 550 700"
+    for (ti = 0; ti < 1.5; ti += 0.2) for (to = 0; to < 1.5; to += 0.1) for (az = 0; az <= 3.1; az += 0.3)
+      print ti, 0, to, az, 0.1, 0.2, 0.05 }' >candy_red.brdf
+  plot-paint -q --paint candy_red --brdf candy_red.brdf fitted.xml -o page.svg --report r.json
+  grep -q '>40 deg, measured<' page.svg
+  grep -q '"target": "measured BRDF"' r.json
+  cp candy_red.brdf other.brdf
+  run plot-paint --paint candy_red --brdf other.brdf fitted.xml -o page.svg
+  [[ "$output" =~ 'no paint is named "other"' ]]
+}
+
+@test "wrong values are refused by name" {
+  for wrong in "--format pdf" "--incidence 95" "--incidence x"; do
+    # shellcheck disable=SC2086
+    run plot-paint $wrong fitted.xml -o page.svg
+    [ "$status" -eq 2 ]
+    [[ "$output" =~ ${wrong%% *} ]]
+  done
+  run plot-paint --paint nobody fitted.xml -o page.svg
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ 'there is no paint "nobody"' ]]
+  run plot-paint --brdf absent.brdf fitted.xml -o page.svg
+  [ "$status" -eq 3 ]
+  run plot-paint absent.xml -o page.svg
+  [ "$status" -eq 3 ]
+  echo '<paints xmlns="urn:goniochrome:paint:1" version="1"><paint name="bare"/></paints>' >bare.xml
+  run plot-paint bare.xml -o page.svg
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ "nothing to draw" ]]
+  [ ! -e page.svg ]
+}

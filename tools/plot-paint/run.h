@@ -1,0 +1,11 @@
+// What plot-paint does.
+#pragma once
+
+#include "cli/tool.h"
+#include "options.h"
+
+namespace goniochrome {
+
+Result<cli::Verdict> run(const Options& options, cli::Session& session);
+
+}  // namespace goniochrome
