@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/../lib"
 
-order=(base math color paint brdf image envmap mesh fit render report)
+order=(base math color paint brdf image envmap mesh fit render report fuzz)
 declare -A rank
 for i in "${!order[@]}"; do rank[${order[i]}]=$i; done
 

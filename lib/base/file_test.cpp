@@ -78,7 +78,7 @@ TEST_F(Files, HardCase_InterruptedLeavesTheOldFile) {
     std::fputs("half of the new one", control);
     std::fflush(control);
   });
-  hard_case("interrupted", {.what = "of the old file lost when killed while writing",
+  hard_case("interrupted", {.what = "bytes of the old file lost when killed while writing",
                             .textbook = *file_content(path_) == "old" ? 0.0 : 3.0,
                             .ours = lost,
                             .bound = 0,

@@ -128,7 +128,7 @@ TEST(HardCase, TrompeFlat) {
   EXPECT_EQ(fit->b.travel_deg, 60) << "a solid paint has no travel to fit";
   EXPECT_LT(delta_e_76(fit->b.face, fit->b.flop), 1e-9) << "a solid paint stays solid";
   // One light: the cosine alone, which one color makes up for.
-  hard_case("trompe-flat", {.what = "left between solid panels, by a step that is no number or by ours",
+  hard_case("trompe-flat", {.what = "difference left between solid panels",
                             .textbook = solvable ? fit->after.max : INFINITY,
                             .ours = fit->after.max,
                             .bound = 1e-3,

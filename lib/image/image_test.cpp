@@ -215,7 +215,7 @@ TEST_F(ImageFile, HardCase_InterruptedAFullDiskLeavesTheOldFile) {
   std::signal(SIGXFSZ, old_handler);
   ASSERT_FALSE(written.ok());
   EXPECT_THAT(written.error().message, HasSubstr("x.exr: cannot be written: File too large"));
-  hard_case("interrupted", {.what = "of half a picture where the disk is full",
+  hard_case("interrupted", {.what = "bytes of half a picture where the disk is full",
                             .textbook = static_cast<double>(std::filesystem::file_size(path("stump.exr"))),
                             .ours = file_content(path("x.exr")).value() == "old" ? 0.0 : 1.0,
                             .bound = 0,

@@ -24,7 +24,9 @@ namespace goniochrome {
 
 namespace {
 
-constexpr std::size_t kMostSamples = std::size_t{1} << 31;  // of one part; a forged header must not ask for more
+// Of one part. A forged header must not ask for more, nor for more than the file's own bytes can stand for: one color
+// all over packs best, 7000 half samples to a byte (8192 x 4096, DWAB).
+constexpr std::size_t kMostSamples = std::size_t{1} << 31, kMostSamplesAByte = 16384;
 
 class MemoryInput : public Imf::IStream {
  public:
@@ -82,7 +84,8 @@ std::vector<std::string> ordered_channels(const Imf::ChannelList& list) {
   return names;
 }
 
-Result<ImagePart> decoded_part(Imf::MultiPartInputFile& file, int index, const std::string& file_name) {
+Result<ImagePart> decoded_part(Imf::MultiPartInputFile& file, int index, const std::string& file_name,
+                               std::size_t file_bytes) {
   const Imf::Header& header = file.header(index);
   ImagePart part;
   if (header.hasName()) part.name = header.name();
@@ -99,7 +102,9 @@ Result<ImagePart> decoded_part(Imf::MultiPartInputFile& file, int index, const s
   image.channels = static_cast<int>(image.channel_names.size());
   const std::size_t samples = static_cast<std::size_t>(image.width) * image.height * image.channels;
   if (samples == 0) return input_error("{}: holds no pixels", where);
-  if (samples > kMostSamples) return input_error("{}: {} x {} pixels are too many", where, image.width, image.height);
+  if (samples > kMostSamples || samples / kMostSamplesAByte > file_bytes)
+    return input_error("{}: {} x {} pixels are too many for a file of {} bytes", where, image.width, image.height,
+                       file_bytes);
   image.data.resize(samples);
 
   part.type = PixelType::kHalf;
@@ -128,7 +133,7 @@ Result<std::vector<ImagePart>> decoded_exr(const std::string& content, const std
     Imf::MultiPartInputFile file(stream, threads());
     std::vector<ImagePart> parts;
     for (int i = 0; i < file.parts(); ++i) {
-      GONIO_ASSIGN(auto part, decoded_part(file, i, name));
+      GONIO_ASSIGN(auto part, decoded_part(file, i, name, content.size()));
       parts.push_back(std::move(part));
     }
     return parts;

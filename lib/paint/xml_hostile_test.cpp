@@ -107,7 +107,7 @@ TEST(HardCase, XmlHostileEntityBomb) {
     EXPECT_THAT(outcome.errors[0], HasSubstr("p.xml:2: <!DOCTYPE is not accepted, nor are the entities it declares"));
   }
   EXPECT_LT(growth.mb(), 20);
-  hard_case("xml-hostile", {.what = "that an entity bomb of 600 bytes grew to",
+  hard_case("xml-hostile", {.what = "bytes that an entity bomb of 600 bytes grew to",
                             .textbook = static_cast<double>(textbook.content().size()),
                             .ours = static_cast<double>(passed),
                             .bound = 0,
@@ -121,7 +121,7 @@ TEST(HardCase, XmlHostileExternalEntity) {
       "<!DOCTYPE paints [<!ENTITY x SYSTEM \"file://" + secret + "\">]>\n" + kRoot + "&x;</paints>";
   const Outcome outcome = outcome_of(folder.file("p.xml", text));
   ASSERT_EQ(outcome.errors.size(), 1u);
-  hard_case("xml-hostile", {.what = "read from another file by an external entity",
+  hard_case("xml-hostile", {.what = "bytes read from another file by an external entity",
                             .textbook = static_cast<double>(TextbookDocument(text, XML_PARSE_NOENT).content().size()),
                             .ours = static_cast<double>(outcome.paints),
                             .bound = 0,
@@ -174,7 +174,7 @@ class EndlessPipe {
 TEST(HardCase, XmlHostileGiantAttribute) {
   const std::string giant = kRoot + "<paint name=\"" + std::string(20 << 20, 'x') + "\"/></paints>";
   const bool taken = TextbookDocument(giant, XML_PARSE_HUGE).paints() == 1;
-  hard_case("xml-hostile", {.what = "in one attribute that is taken",
+  hard_case("xml-hostile", {.what = "MB in one attribute that is taken",
                             .textbook = taken ? 20.0 : 0,
                             .ours = outcome_of_text(giant).errors.empty() ? 20.0 : 0,
                             .bound = 1,
@@ -218,7 +218,7 @@ TEST(HardCase, XmlHostileCutFile) {
     cut_off += outcome.errors[0].find("cut off") != std::string::npos;
   }
   EXPECT_EQ(cut_off, static_cast<int>(whole.size()) - 2);
-  hard_case("xml-hostile", {.what = "cut off at any byte and taken for whole",
+  hard_case("xml-hostile", {.what = "files cut off at any byte and taken for whole",
                             .textbook = silent == 2 ? 1.0 : 0,
                             .ours = static_cast<double>(untold),
                             .bound = 0,
@@ -236,7 +236,7 @@ TEST(HardCase, XmlHostileBadUtf8) {
     ASSERT_EQ(outcome.errors.size(), 1u) << name;
     EXPECT_THAT(outcome.errors[0], HasSubstr("p.xml:2: a character is not valid UTF-8: save the file as UTF-8"));
   }
-  hard_case("xml-hostile", {.what = "with bytes that are no UTF-8, taken",
+  hard_case("xml-hostile", {.what = "files with bytes that are no UTF-8, taken",
                             .textbook = static_cast<double>(TextbookDocument(latin1, XML_PARSE_RECOVER).paints()),
                             .ours = static_cast<double>(untold),
                             .bound = 0,
@@ -251,7 +251,7 @@ TEST(HardCase, XmlHostileDuplicateNames) {
     text += std::string("<paint name=\"") + name + "\">" + kLab + "</paint>\n";
   text += "</paints>\n";
   const Outcome outcome = outcome_of_text(text);
-  hard_case("xml-hostile", {.what = "of a name that another has",
+  hard_case("xml-hostile", {.what = "paints of a name that another has",
                             .textbook = TextbookDocument(text, 0).paints() - 3.0,
                             .ours = outcome.paints - 3.0,
                             .bound = 0,

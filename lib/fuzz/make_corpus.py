@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+"""Writes lib/fuzz/corpus/TARGET/*: one small good file of every kind that the readers take.
+
+    lib/fuzz/make_corpus.py BIN     BIN: folder of built tools
+
+Files named found-*, inputs that once broke a reader, are kept.
+"""
+import json
+import os
+import pathlib
+import struct
+import subprocess
+import sys
+
+# Files hold the command that made them, so every path is relative to the checkout.
+BIN = pathlib.Path(sys.argv[1]).resolve() if len(sys.argv) == 2 else sys.exit(__doc__)
+os.chdir(pathlib.Path(__file__).resolve().parent.parent.parent)
+HERE, TESTDATA = pathlib.Path("lib/fuzz"), pathlib.Path("testdata")
+
+
+def put(target, name, content):
+    folder = HERE / "corpus" / target
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
+    return folder / name
+
+
+def tool(*arguments):
+    return subprocess.run([BIN / arguments[0], *arguments[1:]], check=True, capture_output=True).stdout
+
+
+def paints():
+    text = (TESTDATA / "paints.paints.xml").read_text()
+    small = ("</paint>".join(text.split("</paint>")[:2]) + "</paint>\n</paints>\n").encode()
+    library = put("paint-xml", "library.xml", small)
+    put("csv", "long.csv", tool("paint-convert", library, "--to", "csv"))
+    put("csv", "wide.csv", "\n".join((TESTDATA / "paints-wide.csv").read_text().splitlines()[:3]) + "\n")
+    put("csv", "german.csv", "\ufeffsample;geometry;L*;a*;b*\nx;45as15;41,5;-1,25;3\nx;45as45;30,1;0;-2,5\n")
+    put("cxf", "library.cxf", tool("paint-convert", library, "--to", "cxf"))
+    put("cgats", "library.txt", tool("paint-convert", library, "--to", "cgats"))
+    put("paint-xml", "fitted.xml", subprocess.run(
+        [BIN / "fit-paint", "-q", "-b", TESTDATA / "b5.basis.xml"], input=small, check=True,
+        capture_output=True).stdout)
+    put("paint-xml", "designed.xml", """<?xml version="1.0" encoding="UTF-8"?>
+<paints xmlns="urn:goniochrome:paint:1" version="1">
+<paint name="&#233;t&#xE9; &amp; &quot;red&quot;" class="pearl" code="1">
+<measurement illuminant="A" observer="2" instrument="none"><lab geometry="45as-15" L="0.1" a="1e-17" b="-0"/>
+<lab geometry="45as25az90" L="120" a="100" b="-100"/></measurement>
+<gloss angle="20">82.1</gloss><gloss angle="60">0</gloss>
+<appearance travel="63.5" residual_de00="0.1"><face L="80" a="1" b="2"/><flop L="20" a="-3" b="4"/></appearance>
+<anisotropy alphaX="0.05" alphaY="0.3"/><colorMap href="x.exr" index="1.5"/>
+<note xmlns="urn:else"><![CDATA[<kept>]]></note><!-- said -->
+</paint></paints>
+""")
+
+
+def bases():
+    put("basis-xml", "b5.xml", (TESTDATA / "b5.basis.xml").read_bytes())
+    put("basis-xml", "small.xml", '<basis xmlns="urn:goniochrome:basis:1" name="b"><exponent>0.3</exponent>'
+        '<exponent>70</exponent><mirror/></basis>\n')
+
+
+def measured():
+    rows = "".join(f"{i} 0 {o} {p} 0.3 0.2 0.1\n" for i in (0.2, 0.7) for o in (0.1, 0.6, 1.1) for p in (0, 1.5, 3.1))
+    put("measured", "cornell.brdf", "# made\n# num wls\n3\n# wls\n400 550 700\n" + rows)
+    grid = b"".join(struct.pack("<fff", 0.3, 0.2, 0.1 * k) for k in range(3 * 3 * 4))
+    put("measured", "grid.mbsdf", b"NVIDIA ARC MBSDF V1\nMBSDF_DATA_REFLECTION=\n" + struct.pack("<III", 1, 3, 4) + grid)
+    put("measured", "head.binary", struct.pack("<iii", 90, 90, 180) + struct.pack("<d", 0.5) * 16)
+    theta = [0.0, 0.8, 1.5707963]
+    fields = [("phi_i", [1], [0.0]), ("theta_i", [3], theta), ("sigma", [2, 2], [0.5] * 4), ("ndf", [2, 2], [2.0] * 4),
+              ("vndf", [1, 3, 3, 3], [3.0] * 27), ("rgb", [1, 3, 3, 3, 3], [0.1 * (k % 7) for k in range(81)]),
+              ("luminance", [1, 3, 3, 3], [0.2] * 27)]
+    start = 12 + 2 + 4 + sum(2 + len(name) + 2 + 1 + 8 + 8 * len(shape) for name, shape, _ in fields)
+    head, data = b"tensor_file\0\1\0" + struct.pack("<I", len(fields)), b""
+    for name, shape, values in fields:
+        head += struct.pack("<H", len(name)) + name.encode() + struct.pack("<HBQ", len(shape), 10, start + len(data))
+        head += struct.pack(f"<{len(shape)}Q", *shape)
+        data += struct.pack(f"<{len(values)}f", *values)
+    put("measured", "tensors.bsdf", head + data)
+
+
+def environments():
+    pfm = put("env-exr", "sky.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8 +X 16\n" + bytes([128, 64, 32, 129]) * 128)
+    out = HERE / "corpus" / "env-exr" / "sky.env.exr"
+    tool("prefilter-envmap", "-q", pfm, "--exponents", "6", "--size", "2", "-o", out)
+    pfm.unlink()
+
+
+def meshes():
+    put("obj", "cube.obj", "# made\nmtllib none.mtl\no Body\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\n"
+        "vt 0 0\nvn 0 0 1\nusemtl red\nf 1 2 3 4\nf 1/1/1 2/1/1 5/1/1\no Lid\ng top\nf -5//1 -4//1 -1//1\ns off\n")
+    put("obj", "colors.obj", "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nf 1 2 3\nl 1 2\np 1\n")
+
+
+def operators():
+    plain = [[[1.0 if c == d == e else 0.0 for e in range(3)] for d in range(3)] for c in range(3)]
+    put("operator-json", "plain.json", json.dumps({"name": "plain", "k": plain}))
+
+
+paints(), bases(), measured(), environments(), meshes(), operators()
+print(sum(f.stat().st_size for f in HERE.glob("corpus/*/*")), "bytes", file=sys.stderr)

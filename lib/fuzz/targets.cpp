@@ -1,0 +1,150 @@
+#include "fuzz/targets.h"
+
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "brdf/measured.h"
+#include "color/reflection_json.h"
+#include "envmap/prefiltered.h"
+#include "mesh/mesh.h"
+#include "paint/basis.h"
+#include "paint/cgats.h"
+#include "paint/csv.h"
+#include "paint/cxf.h"
+#include "paint/library_index.h"
+#include "paint/xml.h"
+
+namespace goniochrome {
+
+namespace {
+
+// What a reader let through must hold for everything behind it.
+void demand(bool holds, const char* what) {
+  if (holds) return;
+  std::fprintf(stderr, "fuzz: %s\n", what);
+  std::abort();
+}
+
+void demand_message(const Error& error) {
+  demand(!error.message.empty(), "an error without a message");
+  demand(error.kind != ErrorKind::kBug, "an error that calls itself a bug");
+}
+
+void demand_paint(const Paint& paint) {
+  demand(!paint.name.empty(), "a paint without a name");
+  if (!paint.measurement) return;
+  for (const LabReading& row : paint.measurement->rows)
+    demand(std::isfinite(row.lab.L + row.lab.a + row.lab.b + row.geometry.aspecular_deg),
+           "a reading that is no number");
+}
+
+// Every next() of a stream of paints. A stream of `most` errors and paints from a file of its size does not end.
+template <class Reader>
+void drain(Reader& reader, std::size_t most) {
+  for (std::size_t i = 0;; ++i) {
+    demand(i <= most, "more paints and errors than the file has bytes");
+    const auto paint = reader.next();
+    if (!paint.ok()) {
+      demand_message(paint.error());
+    } else if (!*paint) {
+      return;
+    } else {
+      demand_paint(**paint);
+    }
+  }
+}
+
+void read_paint_xml(const std::string& path) {
+  auto reader = PaintReader::open(path);
+  if (!reader.ok()) return demand_message(reader.error());
+  drain(*reader, std::filesystem::file_size(path) + 2);
+}
+
+void read_basis_xml(const std::string& path) {
+  const auto basis = read_basis(path);
+  if (!basis.ok()) return demand_message(basis.error());
+  for (const double e : basis->exponents) demand(std::isfinite(e) && e >= 0, "an exponent that is none");
+}
+
+void read_csv(const std::string& path) {
+  auto reader = CsvPaintReader::open(path);
+  if (!reader.ok()) return demand_message(reader.error());
+  drain(*reader, std::filesystem::file_size(path) + 2);
+}
+
+template <Result<ImportedPaints> (*import)(InputFile, const ImportOptions&)>
+void read_imported(const std::string& path) {
+  auto input = InputFile::open(path);
+  if (!input.ok()) return demand_message(input.error());
+  const auto imported = import(std::move(*input), {});
+  if (!imported.ok()) return demand_message(imported.error());
+  for (const Paint& paint : imported->paints) demand_paint(paint);
+}
+
+void read_measured_file(const std::string& path) {
+  const auto brdf = read_measured(path);
+  if (!brdf.ok()) return demand_message(brdf.error());
+  checks(**brdf);
+  for (const double tilt : {0.0, 0.4, 1.2, 1.57}) {
+    const MeasuredValue value = (*brdf)->value({std::sin(tilt), 0, std::cos(tilt)},
+                                               {-std::sin(tilt) * 0.6, std::sin(tilt) * 0.8, std::cos(tilt)});
+    for (const double f : value.f) demand(std::isfinite(f), "a reflectance that is no number");
+  }
+}
+
+void read_env_file(const std::string& path) {
+  const auto env = read_env(path);
+  if (!env.ok()) demand_message(env.error());
+}
+
+void read_obj(const std::string& path) {
+  const auto mesh = read_mesh(path);
+  if (!mesh.ok()) demand_message(mesh.error());
+}
+
+void read_operator(const std::string& path) {
+  const auto op = read_reflection_operator(path);
+  if (!op.ok()) demand_message(op.error());
+}
+
+}  // namespace
+
+const std::vector<FuzzTarget>& fuzz_targets() {
+  static const std::vector<FuzzTarget> targets = {
+      {"paint-xml", "a.paints.xml", read_paint_xml},
+      {"basis-xml", "a.basis.xml", read_basis_xml},
+      {"csv", "a.csv", read_csv},
+      {"cxf", "a.cxf", read_imported<read_cxf>},
+      {"cgats", "a.txt", read_imported<read_cgats>},
+      {"measured", "a.brdf", read_measured_file},
+      {"env-exr", "a.env.exr", read_env_file},
+      {"obj", "a.obj", read_obj},
+      {"operator-json", "a.json", read_operator},
+  };
+  return targets;
+}
+
+FuzzRun::FuzzRun(const FuzzTarget& target) : target_(target) {
+  // In memory where the system has such a folder: a disk would set the pace.
+  const char* top = std::filesystem::is_directory("/dev/shm") ? "/dev/shm" : "/tmp";
+  folder_ = std::string(top) + "/gonio-fuzz-" + std::to_string(getpid());
+  std::filesystem::create_directories(folder_);
+  path_ = folder_ + "/" + std::string(target.file_name);
+}
+
+FuzzRun::~FuzzRun() {
+  std::error_code ignored;
+  std::filesystem::remove_all(folder_, ignored);
+}
+
+void FuzzRun::operator()(std::string_view bytes) const {
+  std::ofstream(path_, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  target_.read(path_);
+}
+
+}  // namespace goniochrome
