@@ -1,0 +1,65 @@
+#!/usr/bin/env bash
+# Executes the examples of man pages: the commands of tool pages, which have to be done (0), if with a negative verdict (1)
+# or into a pipe that head closes (141); and of goniochrome-paint(5) the sample files, which have to be read.
+#
+#   examples_test.sh PAGE...     the tools are in PATH, TESTDATA is the folder of sample data
+set -euo pipefail
+pages=()
+for page in "$@"; do pages+=("$(realpath "$page")"); done
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder"
+ln -s "$(realpath "$TESTDATA")" testdata
+
+wrong=0
+executed=0
+
+# commands PAGE: the example commands as a reader copies them, one a line.
+commands() {
+  sed -n '/^\.SH EXAMPLES/,/^\.SH SEE/p' "$1" | sed -n '/^\.RS/,/^\.RE/p' | sed '/^\.R[SE]/d; s/\\-/-/g; s/\\(aq/'\''/g; s/\\e/\\/g; s/^\\&//'
+}
+
+# execute COMMAND [STATUS...]: runs it; any other exit status than 0 and these is wrong.
+execute() {
+  local command=$1 status=0
+  shift
+  bash -c "set -eo pipefail; $command" >out 2>err </dev/null || status=$?
+  executed=$((executed + 1))
+  [[ " 0 $* " == *" $status "* ]] && return
+  printf 'exit status %d: %s\n' "$status" "$command"
+  tail -n 5 err
+  wrong=1
+}
+
+# samples PAGE: writes the literal blocks of a page to sample-1, sample-2, ...
+samples() {
+  awk '/^\.Bd -literal/ { inside = 1; file = "sample-" ++count; next } /^\.Ed/ { inside = 0 } inside { print > file }' "$1"
+}
+
+# Reads each sample by what it starts with; a sample message is no file.
+read_samples() {
+  samples "$1"
+  local sample
+  mkdir -p maps
+  for sample in sample-*; do
+    case $(head -c 200 "$sample") in
+      *'<paints'*) execute "paint-convert --to xml $sample -o read.paints.xml && grep -q RM331 read.paints.xml" ;;
+      '<basis'*) execute "fit-paint --quiet --basis $sample testdata/paints.paints.xml -o /dev/null" ;;
+      sample,*) execute "paint-convert --from csv --to xml $sample -o read.paints.xml && grep -q RM331 read.paints.xml" ;;
+    esac
+  done
+}
+
+for page in "${pages[@]}"; do
+  before=$executed
+  case $page in
+    *.5) read_samples "$page" ;;
+    *) while IFS= read -r command; do execute "$command" 1 141; done < <(commands "$page") ;;
+  esac
+  [ "$executed" -gt "$before" ] || {
+    echo "$page: no example was found"
+    wrong=1
+  }
+done
+echo "$executed examples"
+exit $wrong
