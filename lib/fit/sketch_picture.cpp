@@ -121,11 +121,14 @@ Rgb in_display_gamut(const Rgb& rgb) {
 
 Result<Picture> read_picture(const std::string& path, PictureView view) {
   GONIO_ASSIGN(ImagePart part, read_image(path));
-  const std::string name = path == "-" ? "standard input" : path;
+  return picture_of(std::move(part), path == "-" ? "standard input" : path, view);
+}
+
+Result<Picture> picture_of(ImagePart part, const std::string& name, PictureView view) {
   const bool integer = holds_integers(part), is_exr = !part.attributes.contains("goniochrome:integer");
   Picture picture;
   picture.scene_linear = !integer;
-  if (const auto stored = text_of(part, "jpeg:ColorSpace"); stored == "CMYK" || stored == "YCCK") {
+  if (const auto stored = text_of(part, "jpeg:ColorSpace"); stored == "CMYK" || stored == "YCbCrK") {
     picture.warnings.push_back(fmt::format(
         "{} is a {} JPEG, converted without regard to its inks: for exact color save it as sRGB", name, stored));
     part.attributes.erase("ICCProfile");

@@ -34,6 +34,8 @@ struct Picture {
 // are sRGB, untagged EXR is in the working space as render-osmesa writes it, other floats linear Rec.709. Error: not an
 // image, a CMYK or table profile, or an unknown color space, with the remedy.
 Result<Picture> read_picture(const std::string& path, PictureView view);
+// The same of an image that was read, or of a piece of one; `name` is what errors call it.
+Result<Picture> picture_of(ImagePart part, const std::string& name, PictureView view);
 
 // The view "Paint" undone for linear Rec.709 values below 1 in every channel.
 Rgb paint_view_undone(const Rgb& shown);

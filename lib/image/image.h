@@ -53,4 +53,7 @@ Result<ImagePart> read_image(const std::string& path);
 // output. One channel is gray; channels after the third are left out.
 Result<void> write_png(const std::string& path, const Image& image, const Attributes& text = {});
 
+// The bytes of that PNG; `name` is what errors call it.
+Result<std::string> png_content(const std::string& name, const Image& image, const Attributes& text = {});
+
 }  // namespace goniochrome

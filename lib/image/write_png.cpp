@@ -57,16 +57,16 @@ bool encode(png_structp png, png_infop info, const Image& image, const std::uint
 
 }  // namespace
 
-Result<void> write_png(const std::string& path, const Image& image, const Attributes& text) {
+Result<std::string> png_content(const std::string& name, const Image& image, const Attributes& text) {
   const std::vector<std::uint8_t> bytes = rgb_bytes(image);
   std::vector<std::string> words;
   words.reserve(text.size());
   std::vector<png_text> entries;
-  for (const auto& [name, value] : text) {
+  for (const auto& [key, value] : text) {
     words.push_back(spelled(value));
     png_text entry = {};
     entry.compression = PNG_TEXT_COMPRESSION_NONE;
-    entry.key = const_cast<char*>(name.c_str());
+    entry.key = const_cast<char*>(key.c_str());
     entry.text = words.back().data();
     entry.text_length = words.back().size();
     entries.push_back(entry);
@@ -77,7 +77,12 @@ Result<void> write_png(const std::string& path, const Image& image, const Attrib
   if (info) png_set_write_fn(png, &file, append, nullptr);
   const bool done = info && encode(png, info, image, bytes.data(), entries);
   png_destroy_write_struct(&png, &info);
-  if (!done) return input_error("{}: cannot be encoded as PNG", path);
+  if (!done) return input_error("{}: cannot be encoded as PNG", name);
+  return file;
+}
+
+Result<void> write_png(const std::string& path, const Image& image, const Attributes& text) {
+  GONIO_ASSIGN(const std::string file, png_content(path, image, text));
   return write_file(path, file);
 }
 

@@ -1,0 +1,32 @@
+// Pictures of picked paints.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "base/result.h"
+#include "options.h"
+#include "paint/paint.h"
+
+namespace goniochrome {
+
+// Draws one paint after another on the mesh and under the light of the options.
+class PaintDrawing {
+ public:
+  static Result<PaintDrawing> make(const PaintPickOptions& options);
+  PaintDrawing(PaintDrawing&&) noexcept;
+  ~PaintDrawing();
+
+  // A PNG of the paint.
+  Result<std::string> png(const Paint& paint);
+
+  // "on car.obj under studio.env.exr"
+  std::string described() const;
+
+ private:
+  struct State;
+  explicit PaintDrawing(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace goniochrome

@@ -1,0 +1,24 @@
+// What paint-pick takes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/options.h"
+
+namespace goniochrome {
+
+struct PaintPickOptions {
+  std::vector<std::string> images;
+  std::string face, flop, gloss;
+  double travel_deg = 60;
+  bool retro = false;
+  std::string name = "picked";
+  int palette = 0;
+  std::string board, output = "-";
+  std::string mesh, env, basis;
+};
+
+cli::ToolSpec paint_pick_spec(PaintPickOptions& options, cli::CommonOptions& common);
+
+}  // namespace goniochrome

@@ -1,0 +1,194 @@
+#include "page.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fit/sketch_gloss.h"
+#include "fit/sketch_picture.h"
+#include "paint/curve.h"
+
+namespace goniochrome {
+
+namespace {
+
+constexpr int kWidest = 720;  // pixels of a picture on the page
+
+// Neutral grays only: the paints are the color on this page.
+constexpr const char* kStyle = R"(
+:root { font: 15px/1.45 system-ui, "DejaVu Sans", "Helvetica Neue", Arial, sans-serif; color: #1c1c1c; background: #dcdcdc; }
+*, *::before, *::after { box-sizing: border-box; }
+body { margin: 0; }
+header { padding: 14px 24px; background: #ededed; border-bottom: 1px solid #bdbdbd; }
+h1 { margin: 0; font-size: 21px; overflow-wrap: anywhere; }
+header p { margin: 2px 0 0; font-size: 13px; color: #555; }
+.frame { display: grid; grid-template-columns: minmax(0, 3fr) minmax(320px, 2fr); gap: 24px; padding: 20px 24px 48px; align-items: start; }
+.board { position: sticky; top: 20px; columns: 2 260px; column-gap: 16px; }
+figure { margin: 0 0 16px; padding: 8px 8px 4px; background: #f6f6f6; border: 1px solid #bdbdbd; border-radius: 6px; break-inside: avoid; }
+figure div { position: relative; }
+figure img, .paint img { display: block; width: 100%; height: auto; }
+figure svg { position: absolute; inset: 0; width: 100%; height: 100%; overflow: visible; }
+figcaption { padding: 4px 2px; font-size: 13px; color: #555; overflow-wrap: anywhere; }
+circle { fill: none; vector-effect: non-scaling-stroke; }
+.tag { position: absolute; transform: translate(10px, -50%); padding: 1px 6px; border-radius: 9px; font-size: 11.5px; white-space: nowrap;
+  background: rgba(255, 255, 255, .88); border: 1px solid rgba(0, 0, 0, .4); }
+.tag.left { transform: translate(calc(-100% - 10px), -50%); }
+.paint { margin: 0 0 18px; background: #f6f6f6; border: 1px solid #bdbdbd; border-radius: 8px; overflow: hidden; }
+.paint .text { padding: 10px 14px 12px; }
+h2 { margin: 0 0 6px; font-size: 17px; overflow-wrap: anywhere; }
+.strip { display: block; height: 14px; }
+table { width: 100%; border-collapse: collapse; font-size: 13.5px; }
+th, td { padding: 3px 0; text-align: left; font-weight: 400; border-top: 1px solid #d8d8d8; font-variant-numeric: tabular-nums; }
+th { color: #555; }
+td.number { text-align: right; }
+.swatch { display: inline-block; width: 14px; height: 14px; margin-right: 7px; border: 1px solid rgba(0, 0, 0, .35); border-radius: 3px; vertical-align: -2px; }
+.note { margin: 6px 0 0; font-size: 12.5px; color: #555; }
+@media (max-width: 800px) { .frame { grid-template-columns: minmax(0, 1fr); padding: 14px; } .board { position: static; columns: 1; } }
+@media print { :root { background: #fff; } }
+)";
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&') {
+      out += "&amp;";
+    } else if (c == '<') {
+      out += "&lt;";
+    } else if (c == '>') {
+      out += "&gt;";
+    } else if (c == '"') {
+      out += "&quot;";
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+std::string base64(const std::string& bytes) {
+  constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0);
+    for (std::size_t k = 0; k < 4; ++k) text += i + k > bytes.size() ? '=' : kDigits[group >> (18 - 6 * k) & 63];
+  }
+  return text;
+}
+
+std::string embedded(const std::string& png) {
+  return "data:image/png;base64," + base64(png);
+}
+
+// Each channel's signal on an sRGB display, what lies outside its gamut mixed with its gray.
+Rgb signals(const Rgb& light) {
+  const Rgb shown = rec709_from_rec2020(in_display_gamut(light));
+  return {display_brightness(shown.x), display_brightness(shown.y), display_brightness(shown.z)};
+}
+
+std::string css_color(const Lab& lab) {
+  const Rgb s = signals(rgb_from_lab(lab, *white_point({})));
+  const auto byte = [](double v) { return static_cast<int>(std::lround(255 * v)); };
+  return fmt::format("#{:02x}{:02x}{:02x}", byte(s.x), byte(s.y), byte(s.z));
+}
+
+// The picture for the page: no wider than kWidest, each pixel the mean light of those it stands for.
+Result<std::string> page_png(const PageImage& image) {
+  GONIO_ASSIGN(const Picture picture, picture_of(image.content, image.image.path, PictureView::kPlain));
+  const Image& from = picture.rgb;
+  const int step = (from.width + kWidest - 1) / kWidest;
+  Image to{(from.width + step - 1) / step, (from.height + step - 1) / step, 3, {}, {}};
+  for (int y = 0; y < to.height; ++y)
+    for (int x = 0; x < to.width; ++x) {
+      Rgb sum;
+      double count = 0;
+      for (int j = y * step; j < std::min((y + 1) * step, from.height); ++j)
+        for (int i = x * step; i < std::min((x + 1) * step, from.width); ++i, ++count) {
+          const float* p = from.pixel(i, j);
+          sum += {p[0], p[1], p[2]};
+        }
+      const Rgb s = signals((1 / count) * sum);
+      for (int c = 0; c < 3; ++c) to.data.push_back(static_cast<float>(s[c]));
+    }
+  return png_content(image.image.path, to);
+}
+
+// A dropper as two rings, which show on light and on dark, and a tag with the paint's name.
+std::string dropper_marks(const PageImage& image, const std::vector<PageOfPaint>& paints) {
+  const double width = image.content.image.width, height = image.content.image.height;
+  std::string rings, tags;
+  for (const PageOfPaint& paint : paints)
+    for (const auto& [kind, sample] : paint.samples) {
+      if (sample.dropper.image != image.image.name) continue;
+      const double x = sample.dropper.x + 0.5, y = sample.dropper.y + 0.5;
+      const double radius = std::max(sample.dropper.radius + 0.5, 0.012 * width);
+      for (const char* stroke : {"#fff\" stroke-width=\"4", "#000\" stroke-width=\"1.6"})
+        rings += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\" stroke=\"{}\"/>", x, y, radius, stroke);
+      tags += fmt::format("<span class=\"tag{}\" style=\"left:{:.2f}%;top:{:.2f}%\">{} {}</span>",
+                          x > 0.6 * width ? " left" : "", 100 * x / width, 100 * y / height,
+                          escaped(paint.picked.paint.name), kind);
+    }
+  return fmt::format("<svg viewBox=\"0 0 {:.0f} {:.0f}\" preserveAspectRatio=\"none\" aria-hidden=\"true\">{}</svg>{}",
+                     width, height, rings, tags);
+}
+
+// One digit after the point, and no minus before zero.
+std::string figure(double value) {
+  const std::string text = fmt::format("{:.1f}", value);
+  return text == "-0.0" ? "0.0" : text;
+}
+
+std::string color_row(const char* name, const Lab& lab) {
+  return fmt::format(
+      "<tr><th scope=\"row\"><span class=\"swatch\" style=\"background:{}\"></span>{}</th>"
+      "<td class=\"number\">L* {}</td><td class=\"number\">a* {}</td><td class=\"number\">b* {}</td></tr>",
+      css_color(lab), name, figure(lab.L), figure(lab.a), figure(lab.b));
+}
+
+std::string paint_card(const PageOfPaint& paint) {
+  const Paint& p = paint.picked.paint;
+  const Appearance& a = *p.appearance;
+  std::string stops;
+  for (int angle = 15; angle <= 110; angle += 5)
+    stops += fmt::format("{}{} {:.1f}%", stops.empty() ? "" : ",", css_color(lab_at(a, angle)), (angle - 15) / 0.95);
+  std::string text = fmt::format(
+      "<article class=\"paint\"><img alt=\"{0}, drawn\" src=\"{1}\">"
+      "<span class=\"strip\" title=\"color from 15 to 110 degrees from specular\" "
+      "style=\"background:linear-gradient(90deg,{2})\"></span>"
+      "<div class=\"text\"><h2>{0}</h2><table>",
+      escaped(p.name), embedded(paint.picture), stops);
+  text += color_row("Face", a.face) + color_row("Flop", a.flop);
+  text += fmt::format("<tr><th scope=\"row\">Travel</th><td class=\"number\" colspan=\"3\">{:.0f}&deg;</td></tr>",
+                      a.travel_deg);
+  const std::string gloss = p.gloss.empty() ? "not picked" : fmt::format("{:.0f} GU", p.gloss.front().gloss_units);
+  text += fmt::format(
+      "<tr><th scope=\"row\">Gloss at 60&deg;</th><td class=\"number\" colspan=\"3\">{}</td></tr></table>", gloss);
+  if (paint.picked.swapped) text += "<p class=\"note\">Face and flop traded places: the flop was the lighter one.</p>";
+  return text + "</div></article>\n";
+}
+
+}  // namespace
+
+Result<std::string> board_page(const Board& board, const std::vector<PageImage>& images,
+                               const std::vector<PageOfPaint>& paints, const std::string& lit_by) {
+  const std::string title = escaped(board.title.empty() ? "Mood board" : board.title);
+  std::string page = fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<meta name=\"generator\" content=\"Goniochrome "
+      "paint-pick\">\n<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n"
+      "<header><h1>{0}</h1><p>{2} picture{3}, {4} paint{5}, drawn {6}</p></header>\n<div class=\"frame\">\n"
+      "<section class=\"board\" aria-label=\"Pictures\">\n",
+      title, kStyle, images.size(), images.size() == 1 ? "" : "s", paints.size(), paints.size() == 1 ? "" : "s",
+      escaped(lit_by));
+  for (const PageImage& image : images) {
+    GONIO_ASSIGN(const std::string png, page_png(image));
+    page += fmt::format("<figure><div><img alt=\"{0}\" src=\"{1}\">{2}</div><figcaption>{0}</figcaption></figure>\n",
+                        escaped(image.image.name), embedded(png), dropper_marks(image, paints));
+  }
+  page += "</section>\n<main>\n";
+  for (const PageOfPaint& paint : paints) page += paint_card(paint);
+  return page + "</main>\n</div>\n</body>\n</html>\n";
+}
+
+}  // namespace goniochrome

@@ -1,0 +1,28 @@
+// The page of a mood board.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "fit/pick.h"
+
+namespace goniochrome {
+
+// What the page shows of one paint.
+struct PageOfPaint {
+  PickedPaint picked;
+  std::vector<std::pair<std::string, PickSample>> samples;  // "face", "flop", "gloss"
+  std::string picture;                                      // PNG
+};
+
+struct PageImage {
+  BoardImage image;
+  ImagePart content;
+};
+
+// One HTML page that needs nothing beside itself. `lit_by` says how the paints were drawn.
+Result<std::string> board_page(const Board& board, const std::vector<PageImage>& images,
+                               const std::vector<PageOfPaint>& paints, const std::string& lit_by);
+
+}  // namespace goniochrome

@@ -1,0 +1,226 @@
+# paint-pick: droppers, palettes and boards.
+
+setup() {
+  cd "$BATS_TEST_TMPDIR" || exit 1
+  # A light left half, a dark right half; signals 0.8 and 0.2.
+  oiiotool --create 100x60 3 --fill:color=0.8,0.4,0.4 50x60+0+0 --fill:color=0.2,0.1,0.1 50x60+50+0 -d uint16 -o two.png
+}
+
+result() { jq -r ".results.$1" r.json; }
+near() { awk -v x="$1" -v y="$2" -v d="$3" 'BEGIN { exit !(x - y <= d && y - x <= d) }' || { echo "$1 is not $2"; return 1; }; }
+
+@test "face and flop are the colors under the droppers" {
+  paint-pick -q --face two.png@20,30,4 --flop two.png@80,30 --travel 75 --name dawn -o out.xml --report r.json
+  xmllint --noout out.xml
+  grep -q '<paint name="dawn">' out.xml
+  grep -q 'travel="75"' out.xml
+  # sRGB (.8,.4,.4) is Y .2126 .6038 + .7874 .1329 = .2330, L* 55.4; (.2,.1,.1) is Y .0149, L* 12.6.
+  near "$(result 'paints[0].face[0]')" 55.4 0.1
+  near "$(result 'paints[0].flop[0]')" 12.6 0.1
+  [ "$(result 'paints[0].gloss_60_gu')" = null ]
+  [ "$(result 'samples[0].pixels')" -eq 49 ] # of the disc of radius 4
+}
+
+@test "a disc across an edge is averaged in light, not in signals" {
+  # Columns 44..49 are light, 50..54 dark: shares in the disc of radius 5 about column 49: 46 light, 35 dark of 81 pixels.
+  paint-pick -q --face two.png@49,30,5 -o out.xml --report r.json
+  near "$(result 'samples[0].pixels')" 81 0
+  near "$(result 'paints[0].face[0]')" 44.2 0.7 # L* of Y .139; the mean signal has 40.0
+  grep -q 'class="solid"' out.xml
+}
+
+@test "face and flop trade places where the flop is lighter, unless --retro" {
+  run paint-pick --face two.png@80,30 --flop two.png@20,30 -o out.xml --report r.json
+  [ "$status" -eq 0 ]
+  [[ $output == *"picked: face and flop traded places, for the flop was the lighter one: --retro keeps them"* ]]
+  [ "$(result 'paints[0].swapped')" = true ]
+  near "$(result 'paints[0].face[0]')" 55.4 0.1
+  paint-pick -q --retro --face two.png@80,30 --flop two.png@20,30 -o out.xml --report r.json
+  [ "$(result 'paints[0].swapped')" = false ]
+  near "$(result 'paints[0].face[0]')" 12.6 0.1
+}
+
+@test "gloss_limits: a flat spot has none, a hard contrast has 100" {
+  paint-pick -q --face two.png@20,30 --gloss two.png@20,30,6 -o out.xml --report r.json
+  near "$(result 'paints[0].gloss_60_gu')" 0 1e-6
+  oiiotool --create 40x40 3 --fill:color=1,1,1 20x40+0+0 -o hard.png
+  paint-pick -q --face two.png@20,30 --gloss hard.png@20,20,10 -o out.xml --report r.json
+  [ "$(result 'paints[0].gloss_60_gu')" = 100 ]
+}
+
+@test "a palette has the picture's colors, light and dark" {
+  oiiotool --create 90x60 3 \
+    --fill:topleft=0.9,0.2,0.2:topright=0.9,0.2,0.2:bottomleft=0.3,0.05,0.05:bottomright=0.3,0.05,0.05 60x60+0+0 \
+    --fill:topleft=0.2,0.3,0.9:topright=0.2,0.3,0.9:bottomleft=0.05,0.08,0.3:bottomright=0.05,0.08,0.3 30x60+60+0 -o three.png
+  paint-pick -q --palette 2 three.png --name p -o out.xml --report r.json
+  [ "$(grep -c '<paint ' out.xml)" -eq 2 ]
+  near "$(result 'paints[0].share')" 0.667 0.05
+  awk -v r="$(result 'paints[0].face[1]')" -v b="$(result 'paints[1].face[2]')" 'BEGIN { exit !(r > 30 && b < -30) }'
+  awk -v f="$(result 'paints[0].face[0]')" -v d="$(result 'paints[0].flop[0]')" 'BEGIN { exit !(f > d + 15) }'
+  oiiotool --create 30x30 3 -o black.png
+  run paint-pick --palette 5 black.png -o out.xml
+  [ "$status" -eq 0 ]
+  [[ $output == *"black.png: 1 of 5 paints: the picture has no more colors"* ]]
+  [ "$(grep -c '<paint ' out.xml)" -eq 1 ]
+  paint-pick -q --palette 8 "$TESTDATA/contact-sheet.jpg" -o a.xml
+  paint-pick -q --palette 8 "$TESTDATA/contact-sheet.jpg" -o b.xml --threads 1
+  [ "$(grep -v processing a.xml)" = "$(grep -v processing b.xml)" ]
+}
+
+write_board() {
+  mkdir -p pictures
+  cp two.png pictures/
+  oiiotool --create 64x48 3 --fill:color=0.1,0.5,0.7 64x48 -o pictures/sea.png
+  oiiotool --create 64x48 3 --fill:color=0.9,0.8,0.2 64x48 -o pictures/sand.png
+  cat >board.txt <<'EOF'
+# three pictures
+title Beach & Sea
+image rock pictures/two.png
+image sea pictures/sea.png
+image sand pictures/sand.png
+
+paint Deep Sea
+  face sea@10,10,3
+  flop rock@80,30
+  gloss rock@50,30,8
+  travel 45
+paint Dune
+  face sand@30,20
+EOF
+}
+
+@test "a board gives its paints" {
+  write_board
+  paint-pick -q --board board.txt -o out.xml --report r.json
+  [ "$(grep -c '<paint ' out.xml)" -eq 2 ]
+  [ "$(result 'paints[0].name')" = "Deep Sea" ]
+  [ "$(result 'paints[0].travel_deg')" = 45 ]
+  [ "$(result 'samples | length')" -eq 4 ]
+}
+
+@test "a board as a page needs nothing beside itself" {
+  write_board
+  paint-pick -q --board board.txt -o board.html
+  [ "$(grep -o 'data:image/png;base64' board.html | wc -l)" -eq 5 ]
+  grep -q '<title>Beach &amp; Sea</title>' board.html
+  grep -q 'Deep Sea gloss</span>' board.html
+  grep -q 'drawn on a ball under two lamps' board.html
+  ! grep -qE '(src|href)="[^d]' board.html
+  xmllint --html --noout board.html 2>&1 | grep -vE 'Tag (header|section|figure|figcaption|main|article|svg|circle) invalid|^<|^ |\^' | grep -q error && return 1
+  oiiotool "$TESTDATA/studio.exr" --resize:filter=box 32x16 -o small.exr
+  prefilter-envmap -q small.exr --basis "$TESTDATA/b5.basis.xml" -o small.env.exr
+  paint-pick -q --board board.txt -o board.html --mesh "$TESTDATA/speed-shape.obj" --env small.env.exr
+  grep -q 'drawn on speed-shape.obj under small.env.exr' board.html
+  paint-pick -q --board board.txt -o board.html --basis "$TESTDATA/b5.basis.xml"
+  [ -s board.html ]
+}
+
+board_error() { # TEXT LINE...
+  local text=$1
+  shift
+  printf '%s\n' "image sea sea.png" "paint A" "$@" >bad.txt
+  run paint-pick --board bad.txt -o none.xml
+  [ "$status" -eq 3 ] || { echo "$* gave $status: $output"; return 1; }
+  [[ $output == *"$text"* ]] || { echo "$* said: $output"; return 1; }
+  [ ! -e none.xml ]
+}
+
+@test "a board's mistakes are told with their line" {
+  board_error 'bad.txt:3: "color" is none of title, image, paint, face' 'color red'
+  board_error 'bad.txt:3: "face" lacks what it says' 'face'
+  board_error 'bad.txt:3: "retro" stands alone' 'retro yes'
+  board_error 'bad.txt:3: face is "sea": write IMAGE@X,Y' 'face sea'
+  board_error 'bad.txt:3: face names the image "sky", which no line' 'face sky@1,1'
+  board_error 'bad.txt:3: travel is "10": it lies above 15' 'travel 10'
+  board_error 'bad.txt:4: the paint A has two droppers for its face' 'face sea@1,1' 'face sea@2,2'
+  board_error 'bad.txt:3: there are two images named sea' 'image sea other.png'
+  board_error 'bad.txt:3: image is "lone": write image NAME PATH' 'image lone'
+  board_error 'bad.txt:3: there are two paints named A' 'paint A'
+  board_error 'bad.txt: the paint A has neither face nor flop' 'travel 40'
+  board_error 'sea.png' 'face sea@1,1'
+  echo 'face sea@1,1' >bad.txt
+  run paint-pick --board bad.txt
+  [ "$status" -eq 3 ]
+  [[ $output == *'bad.txt:1: "face" belongs below a line "paint NAME"'* ]]
+  echo '# nothing' >bad.txt
+  run paint-pick --board bad.txt
+  [ "$status" -eq 3 ]
+  [[ $output == *'bad.txt: has no paint'* ]]
+}
+
+@test "every format: gray, alpha, 8 bits, light, CMYK" {
+  oiiotool two.png --ch R -o gray.png
+  oiiotool two.png --ch R,G,B,A=1 -o alpha.png
+  oiiotool two.png -d uint8 -o eight.tif
+  oiiotool two.png --colorconvert sRGB linear -d half -o light.exr
+  for image in gray.png alpha.png eight.tif; do
+    paint-pick -q --face $image@20,30 --flop $image@80,30 -o out.xml --report r.json
+    awk -v x="$(result 'paints[0].face[0]')" 'BEGIN { exit !(55 < x && x < 84) }' || { echo $image; return 1; }
+  done
+  paint-pick -q --face light.exr@20,30 -o out.xml
+  oiiotool two.png --ch R,G,B,A=0 -o glass.png
+  run paint-pick --face glass.png@20,30 -o none.xml
+  [ "$status" -eq 3 ]
+  [[ $output == *"glass.png: every pixel about 20,30 is transparent"* ]]
+  base64 -d >cmyk.jpg <<<'/9j/7gAOQWRvYmUAZAAAAAAC/9sAQwAGBAUGBQQGBgUGBwcGCAoQCgoJCQoUDg8MEBcUGBgXFBYWGh0lHxobIxwWFiAsICMmJykqKRkfLTAtKDAlKCko/9sAQwEHBwcKCAoTCgoTKBoWGigoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgo/8AAFAgACAAIBAERAAIRAQMRAQQRAP/EABUAAQEAAAAAAAAAAAAAAAAAAAUI/8QAFBABAAAAAAAAAAAAAAAAAAAAAP/EABUBAQEAAAAAAAAAAAAAAAAAAAYH/8QAFBEBAAAAAAAAAAAAAAAAAAAAAP/aAA4EAQACEQMRBAAAPwBAnQ1QL//Z'
+  run paint-pick --face cmyk.jpg@4,4,2 -o out.xml
+  [ "$status" -eq 0 ]
+  [[ $output == *"cmyk.jpg is a "*" JPEG, converted without regard to its inks"* ]]
+}
+
+@test "clipped spots are told" {
+  oiiotool --create 20x20 3 --fill:color=1,1,1 20x20 -o white.png
+  run paint-pick --face white.png@10,10 -o out.xml
+  [ "$status" -eq 0 ]
+  [[ $output == *"warning: face of picked: "*" pixels are as bright as the picture can show"* ]]
+}
+
+usage_error() { # TEXT ARGUMENTS...
+  local text=$1
+  shift
+  run paint-pick -o none.xml "$@"
+  [ "$status" -eq 2 ] || { echo "$* gave $status: $output"; return 1; }
+  [[ $output == *"$text"* ]] || { echo "$* said: $output"; return 1; }
+  [ ! -e none.xml ]
+}
+
+@test "usage errors name the option and the remedy" {
+  usage_error "there is nothing to pick"
+  usage_error '--face is "two.png": write IMAGE@X,Y or IMAGE@X,Y,RADIUS' --face two.png
+  usage_error '--face is "two.png@1"' --face two.png@1
+  usage_error '--flop is "two.png@1,x"' --flop two.png@1,x
+  usage_error '--flop is "two.png@1,1,-2"' --flop two.png@1,1,-2
+  usage_error '--gloss is "@1,1"' --face two.png@1,1 --gloss @1,1
+  usage_error '--gloss alone makes no paint' --gloss two.png@1,1
+  usage_error '--travel is "12"' --face two.png@1,1 --travel 12
+  usage_error '--palette is "none"' --palette none two.png
+  usage_error '--palette takes a picture: name one' --palette 4
+  usage_error 'the picture two.png is given and no --palette' --face two.png@1,1 two.png
+  usage_error 'exclude each other' --palette 4 --face two.png@1,1 two.png
+  usage_error '--mesh, --env and --basis are for the page of a board' --face two.png@1,1 --mesh x.obj
+  run paint-pick --face two.png@1,1 -o page.html
+  [ "$status" -eq 2 ]
+  [[ $output == *'--output is "page.html": a page shows a --board'* ]]
+  run paint-pick --board b.txt --env e --basis b -o page.html
+  [ "$status" -eq 2 ]
+  [[ $output == *'--basis is for lamps'* ]]
+}
+
+@test "input errors name the file" {
+  run paint-pick --face two.png@100,30 -o none.xml
+  [ "$status" -eq 3 ]
+  [[ $output == *"two.png: the point 100,30 lies outside its 100 x 60 pixels"* ]]
+  run paint-pick --face missing.png@1,1 -o none.xml
+  [ "$status" -eq 3 ]
+  [[ $output == *missing.png* ]]
+  run paint-pick --board missing.txt -o none.xml
+  [ "$status" -eq 3 ]
+  [[ $output == *missing.txt* ]]
+  write_board
+  for option in --mesh --env --basis; do
+    run paint-pick -q --board board.txt -o none.html $option missing.file
+    [ "$status" -eq 3 ]
+    [[ $output == *missing.file* ]]
+    [ ! -e none.html ]
+  done
+}

@@ -1,0 +1,202 @@
+#include "run.h"
+
+#include <map>
+
+#include "base/text.h"
+#include "drawing.h"
+#include "fit/pick.h"
+#include "page.h"
+#include "paint/xml.h"
+
+namespace goniochrome {
+
+namespace {
+
+// Every picture is read once, whatever the number of droppers on it.
+class Shelf {
+ public:
+  Result<const ImagePart*> image(const std::string& path) {
+    const auto found = images_.find(path);
+    if (found != images_.end()) return &found->second;
+    GONIO_ASSIGN(images_[path], read_image(path));
+    return &images_[path];
+  }
+
+ private:
+  std::map<std::string, ImagePart> images_;
+};
+
+Json lab_json(const Lab& lab) {
+  return {json_number(lab.L), json_number(lab.a), json_number(lab.b)};
+}
+
+void tell_sample(const std::string& kind, const std::string& paint, const PickSample& s, cli::Session& session) {
+  session.results()["samples"].push_back({{"dropper", kind},
+                                          {"paint", paint},
+                                          {"image", s.path},
+                                          {"x", s.dropper.x},
+                                          {"y", s.dropper.y},
+                                          {"radius", s.dropper.radius},
+                                          {"pixels", s.pixels},
+                                          {"clipped", s.clipped},
+                                          {"lab", lab_json(s.lab)},
+                                          {"gloss_gu", s.gloss}});
+  for (const std::string& warning : s.warnings) session.warn(warning);
+  if (kind != "gloss" && 2 * s.clipped > s.pixels)
+    session.warn(
+        fmt::format("{} of {}: {} of {} pixels are as bright as the picture can show: the color is darker than "
+                    "what was photographed",
+                    kind, paint, s.clipped, s.pixels));
+}
+
+void tell_paint(const PickedPaint& picked, cli::Session& session) {
+  const Paint& paint = picked.paint;
+  const Appearance& a = *paint.appearance;
+  session.results()["paints"].push_back(
+      {{"name", paint.name},
+       {"face", lab_json(a.face)},
+       {"flop", lab_json(a.flop)},
+       {"travel_deg", a.travel_deg},
+       {"gloss_60_gu", paint.gloss.empty() ? Json(nullptr) : Json(paint.gloss.front().gloss_units)},
+       {"swapped", picked.swapped}});
+  if (picked.swapped)
+    session.say(fmt::format("{}: face and flop traded places, for the flop was the lighter one: --retro keeps them",
+                            paint.name));
+  const std::string gloss =
+      paint.gloss.empty() ? "" : fmt::format(", gloss {:.0f} GU", paint.gloss.front().gloss_units);
+  session.say(fmt::format("{}: face {:.1f} {:.1f} {:.1f}, flop {:.1f} {:.1f} {:.1f}, travel {}{}", paint.name, a.face.L,
+                          a.face.a, a.face.b, a.flop.L, a.flop.a, a.flop.b, shortest(a.travel_deg), gloss));
+}
+
+// Puts a paint's droppers on their pictures; path_of() tells the path of a dropper's image.
+template <class PathOf>
+Result<PageOfPaint> picked(const PaintPick& wanted, Shelf& shelf, PathOf&& path_of, cli::Session& session) {
+  PageOfPaint page;
+  std::optional<Lab> face, flop;
+  std::optional<double> gloss;
+  const auto take = [&](const char* kind, const std::optional<Dropper>& dropper) -> Result<void> {
+    if (!dropper) return {};
+    const std::string path = path_of(dropper->image);
+    GONIO_ASSIGN(const ImagePart* image, shelf.image(path));
+    GONIO_ASSIGN(PickSample sample, pick(*image, path, *dropper));
+    tell_sample(kind, wanted.name, sample, session);
+    page.samples.emplace_back(kind, std::move(sample));
+    return {};
+  };
+  GONIO_TRY(take("face", wanted.face));
+  if (wanted.face) face = page.samples.back().second.lab;
+  GONIO_TRY(take("flop", wanted.flop));
+  if (wanted.flop) flop = page.samples.back().second.lab;
+  GONIO_TRY(take("gloss", wanted.gloss));
+  if (wanted.gloss) gloss = page.samples.back().second.gloss;
+  page.picked = picked_paint(wanted, face, flop, gloss);
+  tell_paint(page.picked, session);
+  return page;
+}
+
+Result<void> write_paints(const std::string& path, const std::vector<PageOfPaint>& paints,
+                          const cli::Session& session) {
+  GONIO_ASSIGN(OutputFile file, OutputFile::create(path));
+  GONIO_ASSIGN(
+      PaintWriter writer,
+      PaintWriter::begin(std::move(file), {{session.tool(), cli::Session::version(), session.command_line()}}));
+  for (const PageOfPaint& paint : paints) GONIO_TRY(writer.write(paint.picked.paint));
+  return writer.finish();
+}
+
+Result<cli::Verdict> run_board(const PaintPickOptions& options, bool as_page, cli::Session& session) {
+  GONIO_ASSIGN(const Board board, read_board(options.board));
+  Shelf shelf;
+  const auto path_of = [&](const std::string& name) {
+    for (const BoardImage& image : board.images)
+      if (image.name == name) return image.path;
+    return name;
+  };
+  std::vector<PageOfPaint> paints;
+  for (const PaintPick& wanted : board.paints) {
+    GONIO_ASSIGN(PageOfPaint paint, picked(wanted, shelf, path_of, session));
+    paints.push_back(std::move(paint));
+  }
+  if (!as_page) {
+    GONIO_TRY(write_paints(options.output, paints, session));
+    return cli::Verdict::kDone;
+  }
+  GONIO_ASSIGN(PaintDrawing drawing, PaintDrawing::make(options));
+  for (PageOfPaint& paint : paints) {
+    GONIO_ASSIGN(paint.picture, drawing.png(paint.picked.paint));
+  }
+  std::vector<PageImage> images;
+  for (const BoardImage& image : board.images) {
+    GONIO_ASSIGN(const ImagePart* content, shelf.image(image.path));
+    images.push_back({image, *content});
+  }
+  GONIO_ASSIGN(const std::string page, board_page(board, images, paints, drawing.described()));
+  GONIO_TRY(write_file(options.output, page));
+  return cli::Verdict::kDone;
+}
+
+Result<cli::Verdict> run_palette(const PaintPickOptions& options, cli::Session& session) {
+  GONIO_ASSIGN(const ImagePart image, read_image(options.images.front()));
+  GONIO_ASSIGN(const auto pairs, palette(image, options.images.front(), options.palette));
+  std::vector<PageOfPaint> paints;
+  for (const PalettePair& pair : pairs) {
+    PaintPick wanted;
+    wanted.name = fmt::format("{}_{}", options.name, paints.size() + 1);
+    wanted.travel_deg = options.travel_deg;
+    paints.push_back({picked_paint(wanted, pair.face, pair.flop, std::nullopt), {}, {}});
+    tell_paint(paints.back().picked, session);
+    session.results()["paints"].back()["share"] = pair.share;
+  }
+  if (static_cast<int>(pairs.size()) < options.palette)
+    session.say(fmt::format("{}: {} of {} paints: the picture has no more colors", options.images.front(), pairs.size(),
+                            options.palette));
+  GONIO_TRY(write_paints(options.output, paints, session));
+  return cli::Verdict::kDone;
+}
+
+Result<cli::Verdict> run_droppers(const PaintPickOptions& options, cli::Session& session) {
+  PaintPick wanted;
+  wanted.name = options.name, wanted.travel_deg = options.travel_deg, wanted.retro = options.retro;
+  const auto parse = [&](const char* option, const std::string& text, std::optional<Dropper>& to) -> Result<void> {
+    if (text.empty()) return {};
+    GONIO_ASSIGN(to, parse_dropper(text, option));
+    return {};
+  };
+  GONIO_TRY(parse("--face", options.face, wanted.face));
+  GONIO_TRY(parse("--flop", options.flop, wanted.flop));
+  GONIO_TRY(parse("--gloss", options.gloss, wanted.gloss));
+  Shelf shelf;
+  GONIO_ASSIGN(PageOfPaint paint, picked(
+                                      wanted, shelf, [](const std::string& path) { return path; }, session));
+  GONIO_TRY(write_paints(options.output, {std::move(paint)}, session));
+  return cli::Verdict::kDone;
+}
+
+}  // namespace
+
+Result<cli::Verdict> run_paint_pick(const PaintPickOptions& options, cli::Session& session) {
+  const bool droppers = !options.face.empty() || !options.flop.empty() || !options.gloss.empty();
+  const bool as_page = options.output.ends_with(".html");
+  const int ways = droppers + (options.palette > 0) + !options.board.empty();
+  if (ways == 0)
+    return usage_error("there is nothing to pick: give --face and --flop, --palette N with a picture, or --board");
+  if (ways > 1) return usage_error("droppers, --palette and --board exclude each other");
+  if (as_page && options.board.empty())
+    return usage_error("--output is \"{}\": a page shows a --board", options.output);
+  if (!as_page && !(options.mesh.empty() && options.env.empty() && options.basis.empty()))
+    return usage_error("--mesh, --env and --basis are for the page of a board: give -o NAME.html");
+  if (!options.basis.empty() && !options.env.empty())
+    return usage_error("--basis is for lamps: an environment brings its own");
+  if (options.palette == 0 && !options.images.empty())
+    return usage_error("the picture {} is given and no --palette: name it in a dropper", options.images.front());
+  if (droppers && options.face.empty() && options.flop.empty())
+    return usage_error("--gloss alone makes no paint: give --face or --flop");
+  session.results()["samples"] = Json::array();
+  session.results()["paints"] = Json::array();
+  if (!options.board.empty()) return run_board(options, as_page, session);
+  if (droppers) return run_droppers(options, session);
+  if (options.images.empty()) return usage_error("--palette takes a picture: name one");
+  return run_palette(options, session);
+}
+
+}  // namespace goniochrome
