@@ -45,8 +45,10 @@ class Batch {
  public:
   explicit Batch(const CpuShading& shading) : shading_(shading) {
     PointArrays& p = points_;
-    std::fill_n(p.nx, kPointsAtOnce, 0.0F), std::fill_n(p.ny, kPointsAtOnce, 0.0F), std::fill_n(p.nz, kPointsAtOnce, 1.0F);
-    std::fill_n(p.vx, kPointsAtOnce, 0.0F), std::fill_n(p.vy, kPointsAtOnce, 0.0F), std::fill_n(p.vz, kPointsAtOnce, 1.0F);
+    std::fill_n(p.nx, kPointsAtOnce, 0.0F), std::fill_n(p.ny, kPointsAtOnce, 0.0F),
+        std::fill_n(p.nz, kPointsAtOnce, 1.0F);
+    std::fill_n(p.vx, kPointsAtOnce, 0.0F), std::fill_n(p.vy, kPointsAtOnce, 0.0F),
+        std::fill_n(p.vz, kPointsAtOnce, 1.0F);
     std::fill_n(p.part, kPointsAtOnce, 0);
   }
 

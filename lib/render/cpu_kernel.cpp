@@ -243,8 +243,7 @@ HWY_INLINE void tilt(const CpuShading& s, const PointArrays& points, int which, 
                          hn::IfThenElse(steep, hn::Neg(hn::Mul(n.x, scale)), zero)};
     const Direction y = {hn::Mul(n.y, x.z), hn::MulSub(n.z, x.x, hn::Mul(n.x, x.z)), hn::Neg(hn::Mul(n.y, x.x))};
     const V a = hn::Load(f, tx + i), b = hn::Load(f, ty + i), c = hn::Load(f, tz + i);
-    const Direction m = {hn::MulAdd(a, x.x, hn::MulAdd(b, y.x, hn::Mul(c, n.x))),
-                         hn::MulAdd(b, y.y, hn::Mul(c, n.y)),
+    const Direction m = {hn::MulAdd(a, x.x, hn::MulAdd(b, y.x, hn::Mul(c, n.x))), hn::MulAdd(b, y.y, hn::Mul(c, n.y)),
                          hn::MulAdd(a, x.z, hn::MulAdd(b, y.z, hn::Mul(c, n.z)))};
     const V cos_m = dot(m, v), two = hn::Add(cos_m, cos_m);
     const Direction r = {hn::MulSub(two, m.x, v.x), hn::MulSub(two, m.y, v.y), hn::MulSub(two, m.z, v.z)};
@@ -264,7 +263,8 @@ HWY_INLINE void gather_tilted(const CpuShading& s, const PointArrays& points, in
     int first = 0;
     for (int k = 0; k < s.classes; ++k) {
       if (s.use[k] != MapUse::kTilted) continue;
-      for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(f)) address(tilted.r(i), s.maps[k].size, i, taps);
+      for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(f))
+        address(tilted.r(i), s.maps[k].size, i, taps);
       for (int i = 0; i < count; ++i) {
         if (which > 0 && tilted.share[i] == 0) continue;
         const Corners corners = corners_of(s.maps[k], taps, i, tilted.share[i]);
@@ -318,10 +318,10 @@ HWY_INLINE void add_environment(const CpuShading& s, const PointArrays& points, 
 HWY_INLINE V log_cos_of(V versine) {
   const D f;
   const V s = versine;
-  const V series = hn::Mul(
-      hn::Neg(s),
-      hn::MulAdd(s, hn::MulAdd(s, hn::MulAdd(s, hn::Set(f, 0.25F), hn::Set(f, 0.33333333F)), hn::Set(f, 0.5F)),
-                 hn::Set(f, 1.0F)));
+  const V series =
+      hn::Mul(hn::Neg(s),
+              hn::MulAdd(s, hn::MulAdd(s, hn::MulAdd(s, hn::Set(f, 0.25F), hn::Set(f, 0.33333333F)), hn::Set(f, 0.5F)),
+                         hn::Set(f, 1.0F)));
   const V direct = hn::Log(f, hn::Max(hn::Sub(hn::Set(f, 1.0F), s), hn::Set(f, 1e-30F)));
   return hn::IfThenElse(hn::Lt(s, hn::Set(f, 0.02F)), series, direct);
 }

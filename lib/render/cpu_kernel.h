@@ -1,4 +1,5 @@
-// The arithmetic of the CPU engine, compiled for several instruction sets and chosen at run time. Internal to lib/render.
+// The arithmetic of the CPU engine, compiled for several instruction sets and chosen at run time. Internal to
+// lib/render.
 #pragma once
 
 #include <cstddef>
@@ -23,9 +24,9 @@ constexpr int kMostClasses = 8;
 constexpr int kMostBlocks = 32;  // of all maps met by the mirror direction together
 constexpr int kMostLobes = 2 * kMostBlocks;
 
-// What the kernel shades with. Weights of a part and segment: for each class of maps in order, for each block, 8 floats a
-// and 8 floats b (W = a + b t), or three such pairs under a reflection operator: the three diagonals of its matrix, for
-// the maps' channels in place, and turned by one and by two. Then, for each light slot, 4 floats a and 4 floats b.
+// What the kernel shades with. Weights of a part and segment: for each class of maps in order, for each block, 8 floats
+// a and 8 floats b (W = a + b t), or three such pairs under a reflection operator: the three diagonals of its matrix,
+// for the maps' channels in place, and turned by one and by two. Then, for each light slot, 4 floats a and 4 floats b.
 struct CpuShading {
   int classes = 0;
   InterleavedMaps maps[kMostClasses];
@@ -43,7 +44,8 @@ struct CpuShading {
   int most_tilts = 1;
 
   int lights = 0;
-  const float* light = nullptr;  // 16 a light: direction, 0, and the columns (4 floats) of pi times its product's matrix
+  const float* light =
+      nullptr;  // 16 a light: direction, 0, and the columns (4 floats) of pi times its product's matrix
   int lobes = 0;
   const float* exponents = nullptr;
   bool lit_diffuse = false, fresnel = false;

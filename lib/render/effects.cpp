@@ -13,6 +13,10 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
+double gloss_deg_of(const Scene& scene, std::size_t part) {
+  return part < scene.gloss_deg.size() ? scene.gloss_deg[part] : 45;
+}
+
 // The value of every slot of a part at one view.
 class SlotValues {
  public:
@@ -21,7 +25,8 @@ class SlotValues {
     if (effects.fresnel) fresnel_scale_ = 1 / fresnel_dielectric(std::cos(gloss_deg * kPi / 180), kCoatIndex);
   }
 
-  // `node` counts the ends of the segments; a table of one segment has the view cos_o = 0 at its start and 1 at its end.
+  // `node` counts the ends of the segments; a table of one segment has the view cos_o = 0 at its start and 1 at its
+  // end.
   const std::vector<Rgb>& at(const LobeFit& paint, double cos_o, int node) {
     std::fill(values_.begin(), values_.end(), Rgb{});
     if (effects_.diffuse) {
@@ -34,9 +39,8 @@ class SlotValues {
       if (lobe == nullptr) continue;
       const Rgb flake = use.directional_diffuse ? lobe->directional_diffuse : Rgb{};
       const Rgb gloss = use.gloss ? fresnel_scale_ * lobe->gloss : Rgb{};
-      const LobeIntegrals seen = table_.segments > 1
-                                     ? lobe_curve(use.exponent, table_.segments, effects_.horizon)[node]
-                                     : lobe_integrals(use.exponent, cos_o, false);
+      const LobeIntegrals seen = table_.segments > 1 ? lobe_curve(use.exponent, table_.segments, effects_.horizon)[node]
+                                                     : lobe_integrals(use.exponent, cos_o, false);
       set(WeightTable::lobe_slot(j), seen.cosine * flake + (effects_.fresnel ? seen.fresnel : seen.plain) * gloss);
       set(table_.directional_diffuse_slot(j), flake);
       set(table_.gloss_slot(j), gloss);
@@ -56,11 +60,53 @@ class SlotValues {
   std::vector<Rgb> values_;
 };
 
+void fill_part(const Scene& scene, const Effects& effects, std::size_t part, const WeightTable& table, float* rows) {
+  const LobeFit& paint = scene.paints[part];
+  const bool with_views = effects.views && !paint.views.empty();
+  SlotValues values(table, effects, gloss_deg_of(scene, part));
+  std::vector<Rgb> before;
+  for (int node = 0; node <= table.segments; ++node) {
+    const double x = static_cast<double>(node) / table.segments, cos_o = table.segments > 1 ? x * x : x;
+    const std::vector<Rgb>& here =
+        values.at(with_views ? at_view(paint, std::acos(cos_o) * 180 / kPi) : paint, cos_o, node);
+    if (node > 0) {
+      for (std::size_t slot = 0; slot < here.size(); ++slot, rows += 8) {
+        for (int c = 0; c < 3; ++c) {
+          rows[c] = static_cast<float>(before[slot][c]);
+          rows[4 + c] = static_cast<float>(here[slot][c] - before[slot][c]);
+        }
+      }
+    }
+    before = here;
+  }
+}
+
 bool is_anisotropic(const Anisotropy& alpha) {
   return alpha.alpha_x > 0 && alpha.alpha_x != alpha.alpha_y;
 }
 
+bool same_lobes(const std::vector<Lobe>& a, const std::vector<Lobe>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Lobe& x, const Lobe& y) {
+    return x.exponent == y.exponent && x.directional_diffuse == y.directional_diffuse && x.gloss == y.gloss;
+  });
+}
+
+Anisotropy anisotropy_of(const Scene& scene, std::size_t part) {
+  return part < scene.anisotropy.size() ? scene.anisotropy[part] : Anisotropy{};
+}
+
 }  // namespace
+
+bool same_wear(const Scene& scene, std::size_t a, std::size_t b) {
+  const LobeFit &x = scene.paints[a], &y = scene.paints[b];
+  const Anisotropy brushed_x = anisotropy_of(scene, a), brushed_y = anisotropy_of(scene, b);
+  return x.diffuse == y.diffuse && same_lobes(x.lobes, y.lobes) && gloss_deg_of(scene, a) == gloss_deg_of(scene, b) &&
+         brushed_x.alpha_x == brushed_y.alpha_x && brushed_x.alpha_y == brushed_y.alpha_y &&
+         std::equal(x.views.begin(), x.views.end(), y.views.begin(), y.views.end(),
+                    [](const ViewLobes& v, const ViewLobes& w) {
+                      return v.view_deg == w.view_deg && v.diffuse == w.diffuse && same_lobes(v.lobes, w.lobes);
+                    });
+}
 
 Effects effects_of(const Scene& scene) {
   Effects effects;
@@ -82,9 +128,10 @@ Effects effects_of(const Scene& scene) {
   }
   effects.fresnel = gloss;
   effects.horizon = effects.environment && !effects.lobes.empty();
-  effects.views = std::any_of(scene.paints.begin(), scene.paints.end(),
-                              [](const LobeFit& paint) { return !paint.views.empty(); });
-  effects.anisotropy = !effects.lobes.empty() && std::any_of(scene.anisotropy.begin(), scene.anisotropy.end(), is_anisotropic);
+  effects.views =
+      std::any_of(scene.paints.begin(), scene.paints.end(), [](const LobeFit& paint) { return !paint.views.empty(); });
+  effects.anisotropy =
+      !effects.lobes.empty() && std::any_of(scene.anisotropy.begin(), scene.anisotropy.end(), is_anisotropic);
   effects.reflection = scene.reflection.k != component_wise().k;
   return effects;
 }
@@ -137,27 +184,15 @@ WeightTable slots_of(const Effects& effects) {
 WeightTable weight_table(const Scene& scene, const Effects& effects) {
   WeightTable table = slots_of(effects);
   table.parts = static_cast<int>(scene.paints.size());
-  const std::size_t row = static_cast<std::size_t>(table.slots) * 8, part_size = row * static_cast<std::size_t>(table.segments);
+  const std::size_t row = static_cast<std::size_t>(table.slots) * 8,
+                    part_size = row * static_cast<std::size_t>(table.segments);
   table.rgba.assign(part_size * scene.paints.size(), 0.0F);
   for (std::size_t part = 0; part < scene.paints.size(); ++part) {
-    SlotValues values(table, effects, part < scene.gloss_deg.size() ? scene.gloss_deg[part] : 45);
-    std::vector<Rgb> before;
-    for (int node = 0; node <= table.segments; ++node) {
-      const double x = static_cast<double>(node) / table.segments, cos_o = table.segments > 1 ? x * x : x;
-      const bool with_views = effects.views && !scene.paints[part].views.empty();
-      const LobeFit& paint = scene.paints[part];
-      const std::vector<Rgb>& here =
-          values.at(with_views ? at_view(paint, std::acos(cos_o) * 180 / kPi) : paint, cos_o, node);
-      if (node > 0) {
-        float* texel = &table.rgba[part * part_size + static_cast<std::size_t>(node - 1) * row];
-        for (std::size_t slot = 0; slot < here.size(); ++slot, texel += 8) {
-          for (int c = 0; c < 3; ++c) {
-            texel[c] = static_cast<float>(before[slot][c]);
-            texel[4 + c] = static_cast<float>(here[slot][c] - before[slot][c]);
-          }
-        }
-      }
-      before = here;
+    float* rows = &table.rgba[part * part_size];
+    if (part > 0 && same_wear(scene, part, part - 1)) {
+      std::copy_n(rows - part_size, part_size, rows);
+    } else {
+      fill_part(scene, effects, part, table, rows);
     }
   }
   return table;

@@ -9,6 +9,8 @@
 
 namespace goniochrome {
 
+enum class Engine { kGl, kCpu };
+
 // The effects that are on.
 struct Effects {
   struct LobeUse {
@@ -34,6 +36,9 @@ struct Effects {
 
 // Everything that the scene's paints and lights call for.
 Effects effects_of(const Scene& scene);
+
+// Whether two parts of the scene wear the same.
+bool same_wear(const Scene& scene, std::size_t a, std::size_t b);
 
 // A paint with the diffuse part, lobes, mirror and views that are on alone.
 LobeFit with_effects(const LobeFit& paint, const Effects& effects);

@@ -21,7 +21,8 @@ PrefilteredEnvironment uneven_env(const std::vector<double>& exponents, const st
   };
   env.diffuse.map = cube_of(12, radiance(1));
   env.mirror.map = cube_of(40, radiance(9));
-  for (std::size_t i = 0; i < exponents.size(); ++i) env.lobes[i].map = cube_of(sizes[i], radiance(2.0 + static_cast<double>(i)));
+  for (std::size_t i = 0; i < exponents.size(); ++i)
+    env.lobes[i].map = cube_of(sizes[i], radiance(2.0 + static_cast<double>(i)));
   return env;
 }
 

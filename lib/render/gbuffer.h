@@ -41,8 +41,8 @@ class Rasterizer {
   void upload(const Mesh& mesh);
   Result<void> resize(int width, int height);
 
-  // Draws the points of all pixels that `rays`, without their shift, and the shift (in pixels) name. The result stays in
-  // texture().
+  // Draws the points of all pixels that `rays`, without their shift, and the shift (in pixels) name. The result stays
+  // in texture().
   void draw(const Camera& camera, const Rays& rays, double shift_x, double shift_y);
   // Reads back what was drawn last.
   void read(Gbuffer& gbuffer) const;

@@ -35,7 +35,8 @@ Result<void> GlEngine::load(const Scene& scene, const Effects& effects, const Sc
   cubes_.clear();
   if (maps.diffuse.size > 0) upload(maps.diffuse.maps[0], "diffuse");
   for (const MapClass& lobes : maps.lobes) {
-    for (std::size_t i = 0; i < lobes.slots.size(); ++i) upload(lobes.maps[i], fmt::format("lobe_{}", lobes.slots[i] - 1));
+    for (std::size_t i = 0; i < lobes.slots.size(); ++i)
+      upload(lobes.maps[i], fmt::format("lobe_{}", lobes.slots[i] - 1));
   }
   if (maps.mirror.size > 0) upload(maps.mirror.maps[0], "mirror");
   const int units = gl_->integer(GL_MAX_TEXTURE_IMAGE_UNITS);

@@ -61,9 +61,11 @@ Result<SceneMaps> scene_maps(const Scene& scene, const Effects& effects) {
     GONIO_ASSIGN(const PrefilteredLobe* lobe, lobe_of(env, effects.lobes[j].exponent, effects));
     members.push_back({WeightTable::lobe_slot(j), &lobe->map});
   }
-  std::stable_sort(members.begin(), members.end(), [](const Member& a, const Member& b) { return a.map->size > b.map->size; });
+  std::stable_sort(members.begin(), members.end(),
+                   [](const Member& a, const Member& b) { return a.map->size > b.map->size; });
   for (const Member& member : members) {
-    if (maps.lobes.empty() || member.map->size < kSmallest * maps.lobes.back().size) maps.lobes.push_back({member.map->size, {}, {}});
+    if (maps.lobes.empty() || member.map->size < kSmallest * maps.lobes.back().size)
+      maps.lobes.push_back({member.map->size, {}, {}});
     MapClass& into = maps.lobes.back();
     into.slots.push_back(member.slot);
     into.maps.push_back(resized(*member.map, into.size));
@@ -83,7 +85,9 @@ Result<SceneMaps> scene_maps(const Scene& scene, const Effects& effects) {
 std::vector<float> bordered_face(const CubeMap& map, int face) {
   const int n = map.size, wide = n + 2;
   std::vector<float> texels(static_cast<std::size_t>(wide) * static_cast<std::size_t>(wide) * 3);
-  const auto at = [&](int column, int row) { return &texels[(static_cast<std::size_t>(row + 1) * wide + column + 1) * 3]; };
+  const auto at = [&](int column, int row) {
+    return &texels[(static_cast<std::size_t>(row + 1) * wide + column + 1) * 3];
+  };
   // The center of a texel beside the face, in the plane of the face, lies less than half a texel from the center of the
   // neighbor's first texel, so the direction finds it.
   const auto across = [&](int column, int row) {

@@ -13,8 +13,8 @@ namespace goniochrome {
 // Maps that are sampled together, all with faces of one size.
 struct MapClass {
   int size = 0;
-  std::vector<int> slots;      // of the weight table, ascending
-  std::vector<CubeMap> maps;   // one for each slot
+  std::vector<int> slots;     // of the weight table, ascending
+  std::vector<CubeMap> maps;  // one for each slot
 };
 
 struct SceneMaps {

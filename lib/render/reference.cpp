@@ -25,7 +25,7 @@ constexpr double kPiece = 0.25;
 constexpr double kTiltTolerance = 1e-3;
 
 // A run of texels is set up once for so many points: directions cost more than lobes.
-constexpr std::size_t kPointsAtOnce = 16;
+constexpr std::size_t kPointsTogether = 16;
 
 struct Patch {
   Vec3 direction;  // unit
@@ -74,7 +74,8 @@ class Gatherer {
   int pieces(const Vec3& direction) const {
     if (cuts_.empty()) return 1;
     double chord2 = 4;
-    for (const Mirrored& m : mirrored_) chord2 = std::min(chord2, dot(m.direction - direction, m.direction - direction));
+    for (const Mirrored& m : mirrored_)
+      chord2 = std::min(chord2, dot(m.direction - direction, m.direction - direction));
     for (const Cut& cut : cuts_) {
       if (chord2 < cut.chord2) return cut.pieces;
     }
@@ -86,7 +87,8 @@ class Gatherer {
     const double above = dot(point_.normal, patch.direction), cos_i = model_.horizon ? above : cos_o_;
     Rgb f = above > 0 ? above * paint_.diffuse : Rgb{};
     if (above > 0 || !model_.horizon) f += lobes_toward(patch.direction, cos_i);
-    const Rgb product = model_.reflection != nullptr ? goniochrome::reflected(*model_.reflection, f, radiance) : f * radiance;
+    const Rgb product =
+        model_.reflection != nullptr ? goniochrome::reflected(*model_.reflection, f, radiance) : f * radiance;
     sum_ += patch.solid_angle_sr * product;
   }
 
@@ -207,7 +209,7 @@ std::vector<Rgb> reference_radiance(const std::vector<SurfacePoint>& points, con
                                     const std::vector<Light>& lights) {
   std::vector<Rgb> radiance(points.size());
   const double texel_rad = env != nullptr ? env->largest_texel_rad() : 0;
-  parallel_for(points.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(points.size(), kPointsTogether, [&](std::size_t begin, std::size_t end) {
     std::vector<Gatherer> gatherers;
     for (std::size_t i = begin; i < end; ++i) gatherers.emplace_back(points[i], texel_rad);
     if (env != nullptr) gather_environment(*env, gatherers);
@@ -245,7 +247,8 @@ std::vector<Rgb> exact_radiance(const std::vector<VisiblePoint>& points, const S
     const auto part = static_cast<std::size_t>(point.part);
     surface.push_back({point.normal, point.to_viewer, &paints[part], &models[part]});
   }
-  return reference_radiance(surface, effects.environment ? env : nullptr, effects.lights > 0 ? scene.lights : std::vector<Light>());
+  return reference_radiance(surface, effects.environment ? env : nullptr,
+                            effects.lights > 0 ? scene.lights : std::vector<Light>());
 }
 
 PixelSample sampled_pixels(const Gbuffer& g, int count, std::uint64_t seed) {

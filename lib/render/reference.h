@@ -9,16 +9,16 @@
 #include "envmap/environment.h"
 #include "image/image.h"
 #include "render/renderer.h"
-#include "render/visible_point.h"
 #include "render/scene.h"
+#include "render/visible_point.h"
 
 namespace goniochrome {
 
 // What the exact BRDF of a point holds beside its paint's diffuse and lobes.
 struct ExactModel {
-  bool fresnel = false;    // of gloss lobes, relative to gloss_deg, and of the mirror
+  bool fresnel = false;  // of gloss lobes, relative to gloss_deg, and of the mirror
   double gloss_deg = 45;
-  bool horizon = true;     // each direction with its own cosine, and none from below; else as prefiltered maps have it
+  bool horizon = true;      // each direction with its own cosine, and none from below; else as prefiltered maps have it
   std::vector<Tilt> tilts;  // none: isotropic
   const ReflectionOperator* reflection = nullptr;  // null: component-wise
 };

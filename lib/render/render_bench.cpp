@@ -25,7 +25,8 @@ struct BenchScene {
 std::unique_ptr<BenchScene> bench_scene(int lobes) {
   auto bench = std::make_unique<BenchScene>();
   const char* data = std::getenv("GONIOCHROME_DATA");  // the vehicle of 51k triangles, where there is one
-  auto mesh = read_mesh(data != nullptr ? std::string(data) + "/mesh/vehicle.obj" : GONIOCHROME_TESTDATA "/speed-shape.obj");
+  auto mesh =
+      read_mesh(data != nullptr ? std::string(data) + "/mesh/vehicle.obj" : GONIOCHROME_TESTDATA "/speed-shape.obj");
   bench->mesh = mesh.ok() ? *std::move(mesh) : sphere_mesh();
   bench->env = constant_env({1, 1, 1}, {kExponents, kExponents + lobes});
   for (PrefilteredLobe& lobe : bench->env.lobes) lobe.map = cube_of(128, [](const Vec3&) { return Vec3{1, 1, 1}; });
@@ -75,7 +76,8 @@ void time_frames(benchmark::State& state, bool view_moves) {
     if (view_moves) azimuth_deg += 3;
     for (LobeFit& paint : bench->scene.paints) paint.diffuse.x += 1e-4;
     renderer->load_paints(bench->scene);
-    if (!renderer->draw(bench_view(*bench, azimuth_deg, samples), frame).ok()) return state.SkipWithError("nothing drawn");
+    if (!renderer->draw(bench_view(*bench, azimuth_deg, samples), frame).ok())
+      return state.SkipWithError("nothing drawn");
     gbuffer_ms = std::max(gbuffer_ms, frame.gbuffer_ms);
   }
   std::size_t seen = 0;
@@ -100,7 +102,7 @@ void frames(benchmark::internal::Benchmark* b) {
     for (const int lobes : {1, 5, 7}) b->Args({engine, lobes, 1});
     b->Args({engine, 5, 4});
   }
-  b->Unit(benchmark::kMillisecond)->UseRealTime();
+  b->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 }
 BENCHMARK(BM_PaintEdited)->Apply(frames);
 BENCHMARK(BM_ViewChanged)->Apply(frames);

@@ -1,5 +1,6 @@
 #include "render/renderer.h"
 
+#include <algorithm>
 #include <optional>
 
 #include "base/clock.h"
@@ -14,6 +15,9 @@ namespace {
 
 // G-buffers are kept up to this size together: 16 samples of 1280 x 720.
 constexpr std::size_t kMostKept = std::size_t{256} << 20;
+
+// Visible points that a plan is made from.
+constexpr std::size_t kProbe = 512;
 
 bool same_view(const View& a, const View& b) {
   const Camera &x = a.camera, &y = b.camera;
@@ -141,6 +145,23 @@ Result<void> Renderer::load(const Scene& scene, const Effects& effects, Engine e
   GONIO_ASSIGN(const SceneMaps maps, scene_maps(scene, effects));
   if (engine == Engine::kCpu) return s.cpu_engine.load(scene, effects, maps);
   return s.gl_engine.load(scene, effects, maps);
+}
+
+// The plan is made with all maps interleaved; where the processor shades and all lobes stay, they are used as they are.
+Result<Plan> Renderer::load(const Scene& scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers,
+                            const PlanRequest& request) {
+  State& s = *state_;
+  const Scene seen = seen_scene(scene, gbuffers);
+  GONIO_TRY(load(seen, effects_of(seen), Engine::kCpu));
+  const std::vector<VisiblePoint> probe = probe_points(gbuffers, kProbe);
+  std::size_t visible = 0;
+  for (const auto& g : gbuffers) {
+    for (std::size_t i = 3; i < g->data.size(); i += 4) visible += g->data[i] != 0 ? 1 : 0;
+  }
+  const double in_one = static_cast<double>(visible) / static_cast<double>(std::max<std::size_t>(1, gbuffers.size()));
+  GONIO_ASSIGN(Plan plan, make_plan(seen, probe, in_one, request, s.cpu_engine));
+  GONIO_TRY(load(seen, plan.effects, plan.engine));
+  return plan;
 }
 
 void Renderer::load_paints(const Scene& scene) {

@@ -11,11 +11,10 @@
 #include "render/camera.h"
 #include "render/effects.h"
 #include "render/gbuffer.h"
+#include "render/plan.h"
 #include "render/scene.h"
 
 namespace goniochrome {
-
-enum class Engine { kGl, kCpu };
 
 // What a picture is taken of: from where, and how finely.
 struct View {
@@ -26,11 +25,11 @@ struct View {
 };
 
 struct Frame {
-  Image picture;  // R G B A, scene-linear radiance, premultiplied
-  Image centers;  // the same, of the pixel centers alone; empty unless asked for
+  Image picture;                           // R G B A, scene-linear radiance, premultiplied
+  Image centers;                           // the same, of the pixel centers alone; empty unless asked for
   std::shared_ptr<const Gbuffer> gbuffer;  // of the pixel centers
-  double gbuffer_ms = 0;  // one rasterization; 0 where the view was seen before
-  double frame_ms = 0;    // everything but uploads
+  double gbuffer_ms = 0;                   // one rasterization; 0 where the view was seen before
+  double frame_ms = 0;                     // everything but uploads
 };
 
 class Renderer {
@@ -45,11 +44,16 @@ class Renderer {
   Result<void> load(const Scene& scene, Engine engine = Engine::kGl);
   Result<void> load(const Scene& scene, const Effects& effects, Engine engine);
 
+  // Decides what to shade with, and by which engine, for views like those of the G-buffers (of one mesh); loads it.
+  // Error: as load(), and a word of request.effects that is none.
+  Result<Plan> load(const Scene& scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers,
+                    const PlanRequest& request);
+
   // Other paints or lights for the scene and the effects that were loaded: what an edit of a paint costs.
   void load_paints(const Scene& scene);
 
-  // Draws into `frame`, whose storage is used again. G-buffers of the view drawn last are kept, as far as they are small
-  // enough.
+  // Draws into `frame`, whose storage is used again. G-buffers of the view drawn last are kept, as far as they are
+  // small enough.
   Result<void> draw(const View& view, Frame& frame);
   Result<Frame> draw(const Camera& camera, int width, int height, int samples, bool with_centers = false);
 

@@ -15,8 +15,8 @@ using testing::HasSubstr;
 // Shader arithmetic is float, and llvmpipe's exp and log are polynomials.
 constexpr double kFloat = 2e-6;
 
-// The Fresnel reflectance F(x^2) is drawn as 64 straight pieces of x: h^2/8 times its second derivative, which is largest
-// at grazing, -11.6.
+// The Fresnel reflectance F(x^2) is drawn as 64 straight pieces of x: h^2/8 times its second derivative, which is
+// largest at grazing, -11.6.
 constexpr double kPieces = 11.6 / 8 / 64 / 64;
 
 Camera front(double distance = 8, double fov_deg = 20) {
@@ -93,8 +93,10 @@ TEST(Renderer, FurnaceFollowsTheClosedForm) {
         const Lobe& lobe = paint.lobes[static_cast<std::size_t>(j)];
         const double solid_angle = 2 * std::numbers::pi / (lobe.exponent + 1);
         wanted += (c * lobe.directional_diffuse[channel] + fresnel_share(c) * lobe.gloss[channel]) * solid_angle;
-        pieces += kPieces * (lobe.directional_diffuse[channel] +
-                             lobe.gloss[channel] / fresnel_dielectric(std::sqrt(0.5), kCoatIndex)) * solid_angle;
+        pieces +=
+            kPieces *
+            (lobe.directional_diffuse[channel] + lobe.gloss[channel] / fresnel_dielectric(std::sqrt(0.5), kCoatIndex)) *
+            solid_angle;
       }
       EXPECT_NEAR(pixel[channel], wanted, pieces + 1e-5 * wanted) << x << " " << y;
     }
@@ -120,7 +122,8 @@ TEST(Renderer, MirrorShowsTheEnvironmentAsTheCubeMapHasIt) {
         const Vec3 direction = seen ? 2 * dot(n, wo) * n - wo : -wo;
         const Vec3 wanted =
             (seen ? fresnel_dielectric(dot(n, wo), kCoatIndex) : 1) * bilinear(env.mirror.map, direction);
-        for (int c = 0; c < 3; ++c) EXPECT_NEAR(frame.centers.pixel(x, y)[c], wanted[c], 1e-4 + kPieces) << x << " " << y;
+        for (int c = 0; c < 3; ++c)
+          EXPECT_NEAR(frame.centers.pixel(x, y)[c], wanted[c], 1e-4 + kPieces) << x << " " << y;
         ++compared;
       }
     }

@@ -27,7 +27,7 @@ struct Scene {
   std::vector<Light> lights;
   Background background = Background::kNone;
   Rgb background_color;
-  std::vector<double> gloss_deg = {};  // for each part, the angle of incidence its gloss weights hold at; none: 45
+  std::vector<double> gloss_deg = {};       // for each part, the angle of incidence its gloss weights hold at; none: 45
   std::vector<Anisotropy> anisotropy = {};  // for each part; alpha 0 is none. The tangent runs level around +Y
   ReflectionOperator reflection = component_wise();
 };

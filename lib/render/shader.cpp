@@ -164,7 +164,8 @@ std::string environment_terms(const Effects& effects) {
 
 // The exact BRDF times cos_i, so that the gloss term's 1/cos_i is gone.
 std::string light_terms(const Effects& effects) {
-  std::string text = fmt::format(R"(
+  std::string text = fmt::format(
+      R"(
   // the lights
   for (int i = 0; i < {}; ++i) {{
     vec3 l = light_direction[i];
@@ -172,8 +173,7 @@ std::string light_terms(const Effects& effects) {
     if (cos_i <= 0.0) continue;
     vec3 reflected = {};
 )",
-                                 effects.lights,
-                                 effects.diffuse ? fmt::format("cos_i * W({})", slots_of(effects).light_slot()) : "vec3(0.0)");
+      effects.lights, effects.diffuse ? fmt::format("cos_i * W({})", slots_of(effects).light_slot()) : "vec3(0.0)");
   if (!effects.lobes.empty()) {
     const char* fresnel = lit_gloss(effects) ? "fresnel(sqrt(0.5 + 0.5 * dot(l, wo)))" : "1.0";
     text += over_tilts(effects, "reflected", "lit_lobes", fmt::format(", l, cos_i, {}", fresnel));

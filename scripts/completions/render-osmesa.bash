@@ -15,16 +15,24 @@ _render_osmesa() {
     --exposure) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --view) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --aov) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --effects) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --budget) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --engine) COMPREPLY=($(compgen -W "auto cpu gl" -- "$word")); return ;;
+    --operator) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --split) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --turntable) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --light-sweep) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --check) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --check-source) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --tolerance) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --seed) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --report) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --threads) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--mesh --part --paint --env --light --size --orbit --camera --fov --samples --background --exposure --view --aov --check --check-source --output --explain --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--mesh --part --paint --env --light --size --orbit --camera --fov --samples --background --exposure --view --aov --effects --budget --engine --operator --print-shader --split --turntable --light-sweep --check --check-source --output --explain --tolerance --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

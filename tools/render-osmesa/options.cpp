@@ -29,9 +29,32 @@ cli::ToolSpec render_spec(RenderOptions& o, cli::CommonOptions& common) {
       "normal "
       "and that light), mask (1 on the mesh) and part (numbered from 1; the attribute goniochrome:parts names them). "
       "Without --light, the light of these two is the direction in which the environment's irradiance is largest; "
-      "goniochrome:aovLight holds it. goniochrome:rays (corner;right;down, the ray through the point x,y being their sum "
-      "with the second times x and the third times y, in pixels from the upper left), goniochrome:lights (direction and "
+      "goniochrome:aovLight holds it. goniochrome:rays (corner;right;down, the ray through the point x,y being their "
+      "sum "
+      "with the second times x and the third times y, in pixels from the upper left), goniochrome:lights (direction "
+      "and "
       "white of each) and goniochrome:environment say what is needed to shade the buffers again.",
+      "Before drawing, the effects that the scene calls for are priced: what each changes in the picture (CIEDE2000, "
+      "the "
+      "95th percentile over visible pixels) and what it costs. What all together changes less than --tolerance is left "
+      "out; with --budget, what is worth least for its time as well. --effects overrides: auto, all or none, then "
+      "+NAME "
+      "and -NAME, as in auto,-fresnel. The names are diffuse, lobes, gloss, mirror, fresnel, horizon, anisotropy, "
+      "travel, "
+      "operator and lights; lobe-20 and gloss-900 are single lobes. --explain prints the table, which is in the report "
+      "and "
+      "in the header of an EXR as well.",
+      "Two engines draw the same picture: gl, in OpenGL, and cpu, which reads all lobes of a texel at once; auto takes "
+      "the "
+      "one predicted faster.",
+      "--operator says how colored light and paint multiply: iso, a bilinear product by the published table for camera "
+      "sensors; rec2020, by one estimated from color-matching functions, which can make saturated colors negative; or "
+      "none, "
+      "each channel by itself. A number from 0 to 1 after a comma says how much the channels share, as in iso,0.1.",
+      "--split draws the picture twice, its left half in the first paint and its right half in the second, both in the "
+      "place of --paint. --turntable and --light-sweep write a sequence, NAME-0001.exr and so on: the camera, or the "
+      "first "
+      "light, goes once around the vertical axis.",
       "--check compares that many random pixel centers with the reference integrator: the exact lobe model against "
       "every "
       "texel of the environment's source, without prefiltering. The differences are CIEDE2000 relative to the "
@@ -84,6 +107,40 @@ cli::ToolSpec render_spec(RenderOptions& o, cli::CommonOptions& common) {
        .value = "NAMES",
        .help = "buffers to add to an EXR: normal, aspecular, lambert, mask, part",
        .target = &o.aovs},
+      {.name = "effects",
+       .value = "WORDS",
+       .help = "auto, all or none, then +NAME and -NAME, separated by commas",
+       .target = &o.effects},
+      {.name = "budget",
+       .value = "MS",
+       .help = "most time for the shading of a frame, in ms; 0 is no limit",
+       .target = &o.budget_ms,
+       .low = 0,
+       .high = 1e6},
+      {.name = "engine", .value = "NAME", .help = "what shades", .target = &o.engine, .choices = {"auto", "cpu", "gl"}},
+      {.name = "operator",
+       .value = "NAME[,SHARE]",
+       .help = "how colored light and paint multiply: iso, rec2020 or none",
+       .target = &o.reflection},
+      {.name = "print-shader",
+       .help = "print the OpenGL program of the scene on standard output",
+       .target = &o.print_shader},
+      {.name = "split",
+       .value = "PAINT,PAINT",
+       .help = "left and right half of the picture in two paints",
+       .target = &o.split},
+      {.name = "turntable",
+       .value = "N",
+       .help = "write N pictures from all around",
+       .target = &o.turntable,
+       .low = 0,
+       .high = 9999},
+      {.name = "light-sweep",
+       .value = "N",
+       .help = "write N pictures with the first light from all around",
+       .target = &o.light_sweep,
+       .low = 0,
+       .high = 9999},
       {.name = "check",
        .value = "N",
        .help = "compare N random visible pixels with the reference integrator",
@@ -101,7 +158,8 @@ cli::ToolSpec render_spec(RenderOptions& o, cli::CommonOptions& common) {
        .target = &o.output,
        .required = true},
   };
-  add_common_options(spec, common, {cli::Common::kExplain, cli::Common::kSeed});
+  common.tolerance = 0.5;
+  add_common_options(spec, common, {cli::Common::kExplain, cli::Common::kTolerance, cli::Common::kSeed});
   spec.examples = {
       {"render-osmesa --mesh testdata/speed-shape.obj --light 30,50 -o shape.png",
        "draws the bare shape under one light."},
@@ -119,7 +177,12 @@ cli::ToolSpec render_spec(RenderOptions& o, cli::CommonOptions& common) {
        "writes the buffers that a sketch is fitted from."},
   };
   spec.report = {
-      {"engine", "the OpenGL renderer"},
+      {"plan[]: effect, needed, reason, de00_p95, cost_ms, decision",
+       "what each effect is worth, and whether it is drawn; with --check truth_de00_p95 as well"},
+      {"plan_de00_p95, plan_ms", "what all that is left out changes together, and the time that planning took"},
+      {"engine, engine_reason", "what shaded, gl or cpu, and why"},
+      {"opengl", "the OpenGL renderer"},
+      {"frames", "pictures written"},
       {"gbuffer_ms", "time to rasterize the mesh once"},
       {"frame_ms", "time to draw the picture, all samples, without reading and uploading"},
       {"triangles", "triangles of the mesh"},

@@ -20,6 +20,12 @@ struct RenderOptions {
   std::string view;
   std::string background = "none";
   std::vector<std::string> aovs;
+  std::string effects = "auto", engine = "auto";
+  std::string reflection = "iso";
+  double budget_ms = 0;
+  bool print_shader = false;
+  std::vector<std::string> split;
+  int turntable = 0, light_sweep = 0;
   int check = 0;
   std::string check_source;
 };

@@ -12,6 +12,7 @@ namespace goniochrome {
 namespace {
 
 constexpr double kUnpaintedReflectance = 0.18;
+constexpr double kUnreadGlossDeg = 45;
 
 // Up to `most` names, in order, then how many there are.
 std::string listed(const std::vector<std::string>& names, std::size_t most = 12) {
@@ -108,9 +109,16 @@ Result<DressedMesh> dressed(const Mesh& mesh, const RenderOptions& options) {
   PaintShelf shelf;
   LobeFit gray;
   gray.diffuse = (kUnpaintedReflectance / std::numbers::pi) * Rgb{1, 1, 1};
-  DressedMesh result{std::vector<LobeFit>(mesh.parts.size(), gray), std::vector<std::string>(mesh.parts.size()), {}};
+  const std::size_t parts_there = mesh.parts.size();
+  DressedMesh result{std::vector<LobeFit>(parts_there, gray),
+                     std::vector<double>(parts_there, kUnreadGlossDeg),
+                     std::vector<Anisotropy>(parts_there),
+                     std::vector<std::string>(parts_there),
+                     {}};
   const auto wear = [&](std::size_t part, const Paint& paint) {
     result.paints[part] = *paint.lobes;
+    result.gloss_deg[part] = paint.gloss.empty() ? kUnreadGlossDeg : paint.gloss.front().angle_deg;
+    result.anisotropy[part] = paint.anisotropy.value_or(Anisotropy{});
     result.names[part] = paint.name;
   };
   if (!options.paint.empty()) {
@@ -131,6 +139,11 @@ Result<DressedMesh> dressed(const Mesh& mesh, const RenderOptions& options) {
     if (result.names[part].empty()) result.unpainted.push_back(mesh.parts[part].name);
   }
   return result;
+}
+
+Result<DressedMesh> dressed_in(const Mesh& mesh, RenderOptions options, const std::string& paint) {
+  options.paint = paint;
+  return dressed(mesh, options);
 }
 
 }  // namespace goniochrome

@@ -13,11 +13,16 @@ namespace goniochrome {
 
 struct DressedMesh {
   std::vector<LobeFit> paints;         // for each part of the mesh
+  std::vector<double> gloss_deg;       // at which their gloss was read; 45 where it was not
+  std::vector<Anisotropy> anisotropy;  // alpha 0 where there is none
   std::vector<std::string> names;      // of those paints; "" where none was given
   std::vector<std::string> unpainted;  // names of the parts that wear the gray of unpainted parts
 };
 
 // Resolves --part and --paint. Error: an unknown part, paint or file, or a paint without lobes, with what there is.
 Result<DressedMesh> dressed(const Mesh& mesh, const RenderOptions& options);
+
+// The same with another paint in the place of --paint.
+Result<DressedMesh> dressed_in(const Mesh& mesh, RenderOptions options, const std::string& paint);
 
 }  // namespace goniochrome

@@ -125,7 +125,7 @@ near() {
 }
 
 @test "--check agrees with the reference integrator where nothing is approximated" {
-  run render-osmesa --mesh panels.obj --light 20,30 --light -1,1,1,0.5,0.5,0.2 -p paints.xml#red $front --check 100 -o out.exr --report r.json
+  run render-osmesa --mesh panels.obj --light 20,30 --light -1,1,1,0.5,0.5,0.2 -p paints.xml#red $front --effects all --check 100 -o out.exr --report r.json
   [ "$status" -eq 0 ]
   [[ "$output" =~ "dE00 to the reference: mean 0.00, p95 0.00, max 0.00" ]]
   grep -q '"checked_pixels": 100' r.json
@@ -201,8 +201,79 @@ refused() {
   [[ "$output" =~ "/nowhere/out.exr" ]]
 }
 
-@test "--explain prints parts, lobes and the program" {
-  run render-osmesa --mesh panels.obj $light $front -p paints.xml#red --explain -o out.exr
+@test "--explain prints parts, effects and the engine; --print-shader the program" {
+  run render-osmesa --mesh panels.obj --light 0,0 $front -p paints.xml#red --explain --print-shader -o out.exr
+  [ "$status" -eq 0 ]
   [[ "$output" =~ "3 parts" ]]
+  [[ "$output" =~ "effect       needed" ]]
+  [[ "$output" =~ "solid paints: no flake lobes" ]]
+  [[ "$output" =~ "engine cpu: the faster: predicted" ]]
   [[ "$output" =~ "#version 330 core" ]]
+}
+
+@test "the plan is in the report and in the header" {
+  render-osmesa -q --mesh panels.obj --light 0,0 $front -p paints.xml#red --report r.json -o out.exr
+  for key in '"effect": "fresnel"' '"needed": false' '"decision": "not in the scene"' '"engine": "cpu"' '"plan_ms"'; do
+    grep -q "$key" r.json
+  done
+  [[ "$(exrheader out.exr)" =~ goniochrome:plan ]]
+}
+
+@test "--effects and --engine choose, and both engines draw the same" {
+  render-osmesa -q --mesh "$shape" $light $small --engine gl -o gl.exr --report r.json
+  grep -q '"engine": "gl"' r.json
+  render-osmesa -q --mesh "$shape" $light $small --engine cpu -o cpu.exr
+  oiiotool gl.exr cpu.exr --fail 0.001 --diff >/dev/null
+  render-osmesa -q --mesh "$shape" $light $small --effects none -o none.exr
+  [ "$(pixel none.exr 48 27)" = "0.000000 0.000000 0.000000 1.000000" ] || near "$(pixel none.exr 48 27)" "0 0 0 1"
+  run render-osmesa --mesh "$shape" $light $small --budget 0.000001 --explain -o out.exr
+  [[ "$output" =~ "over budget" ]]
+  rm out.exr
+  refused 2 '--effects is "fast": write auto, all or none' --mesh "$shape" $light --effects fast
+  refused 2 '--effects names "shine": there are diffuse' --mesh "$shape" $light --effects all,-shine
+  refused 2 'engine' --mesh "$shape" $light --engine vulkan
+  refused 2 'budget' --mesh "$shape" $light --budget -1
+  refused 2 'tolerance' --mesh "$shape" $light --tolerance -1
+}
+
+@test "--operator: red paint in cyan light keeps some red" {
+  red="--mesh panels.obj -p paints.xml#red $front --light 0,0,0,1,1 --effects all"
+  render-osmesa -q $red --operator none -o none.exr
+  near "$(pixel none.exr 45 30)" "0 0.1 0.1 1"
+  render-osmesa -q $red -o iso.exr
+  awk -v p="$(pixel iso.exr 45 30)" 'BEGIN { split(p, c, " "); exit !(c[1] > 0.1) }'
+  render-osmesa -q $red --operator iso,0 -o plain.exr
+  near "$(pixel plain.exr 45 30)" "0 0.1 0.1 1"
+  render-osmesa -q $red --operator rec2020 -o rec2020.exr
+  run cmp -s iso.exr rec2020.exr
+  [ "$status" -eq 1 ]
+  refused 2 '--operator is "xyz": write iso, rec2020 or none' --mesh panels.obj $light --operator xyz
+  refused 2 '--operator is "iso,2"' --mesh panels.obj $light --operator iso,2
+}
+
+@test "--split draws two paints side by side" {
+  render-osmesa -q --mesh panels.obj --light 0,0 $front --split paints.xml#red,paints.xml#green -o out.exr
+  near "$(pixel out.exr 22 30)" "0.8 0.1 0.1 1"
+  near "$(pixel out.exr 67 30)" "0.1 0.8 0.1 1"
+  rm out.exr
+  refused 2 '--split names 1 paints: write two' --mesh panels.obj $light --split paints.xml#red
+  refused 2 '--split and --check exclude each other' --mesh panels.obj $light --split paints.xml#red,paints.xml#green --check 5
+}
+
+@test "--turntable and --light-sweep write sequences" {
+  render-osmesa -q --mesh panels.obj -p paints.xml#red --light 0,0 $front --turntable 4 -o turn.exr --report r.json
+  grep -q '"frames": 4' r.json
+  [ "$(ls turn-*.exr | wc -l)" -eq 4 ]
+  near "$(pixel turn-0001.exr 45 30)" "0.8 0.1 0.1 1"
+  near "$(pixel turn-0003.exr 45 30)" "0 0 0 1"
+  render-osmesa -q --mesh panels.obj -p paints.xml#red --light 0,0 $front --light-sweep 4 -o sweep.png
+  [ -e sweep-0004.png ]
+  run cmp sweep-0001.png sweep-0003.png
+  [ "$status" -eq 1 ]
+  refused 2 '--turntable and --light-sweep exclude each other' --mesh panels.obj $light --turntable 2 --light-sweep 2
+  run render-osmesa --mesh panels.obj $light --turntable 2 -o -
+  [ "$status" -eq 2 ]
+  [[ "$output" =~ "give --output a name" ]]
+  run render-osmesa --mesh panels.obj --env nowhere.env.exr --light-sweep 2 -o out.exr
+  [ "$status" -ne 0 ]
 }

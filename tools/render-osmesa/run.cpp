@@ -1,12 +1,15 @@
 #include "run.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 
 #include "base/text.h"
 #include "envmap/environment.h"
 #include "mesh/mesh.h"
 #include "paints.h"
+#include "plan_text.h"
 #include "render/aov.h"
 #include "render/display.h"
 #include "render/reference.h"
@@ -17,6 +20,9 @@ namespace goniochrome {
 
 namespace {
 
+// Pixels that the truth of each effect is measured at; it takes an integration for each of them.
+constexpr int kMostTruth = 100;
+
 // What the command line says, checked before anything is read.
 struct Request {
   PictureSize size;
@@ -24,6 +30,8 @@ struct Request {
   std::optional<double> stops;
   std::vector<std::string> aovs;
   bool png = false;
+  ReflectionOperator reflection;
+  PlanRequest plan;
 };
 
 Result<Request> request_of(const RenderOptions& options) {
@@ -45,6 +53,15 @@ Result<Request> request_of(const RenderOptions& options) {
   if (options.samples != 1 && options.samples != 4 && options.samples != 16) {
     return usage_error("--samples is {}: give 1, 4 or 16", options.samples);
   }
+  GONIO_ASSIGN(request.reflection, parse_operator(options.reflection));
+  GONIO_TRY(check_effects(options.effects));
+  request.plan.effects = options.effects;
+  request.plan.budget_ms = options.budget_ms;
+  request.plan.samples = options.samples;
+  if (options.engine != "auto") request.plan.engine = options.engine == "cpu" ? Engine::kCpu : Engine::kGl;
+  if (!options.split.empty() && options.check > 0) return usage_error("--split and --check exclude each other");
+  if (options.print_shader && options.output == "-")
+    return usage_error("--print-shader and a picture both want standard output");
   if (request.png && !request.aovs.empty()) return usage_error("a PNG holds no --aov buffers: write an .exr");
   if (!request.png && !options.view.empty()) return usage_error("--view is for a PNG: an EXR stays scene-linear");
   Image unused{0, 0, 0, {}, {}};
@@ -93,17 +110,12 @@ void tell_visibility(const Gbuffer& gbuffer, cli::Session& session) {
   }
 }
 
-std::string explanation(const Mesh& mesh, const DressedMesh& dress, const Scene& scene, const std::string& shader) {
+std::string explanation(const Mesh& mesh, const DressedMesh& dress) {
   std::string text = fmt::format("mesh: {} triangles, {} parts\n", mesh.triangles.size(), mesh.parts.size());
   for (std::size_t i = 0; i < mesh.parts.size(); ++i) {
     text += fmt::format("  {:24} {}\n", mesh.parts[i].name, dress.names[i].empty() ? "(gray)" : dress.names[i]);
   }
-  std::string lobes;
-  for (const double exponent : lobe_exponents(scene.paints)) lobes += " " + shortest(exponent);
-  text += fmt::format("lobes with weight:{}{}\n", lobes.empty() ? " none" : lobes,
-                      has_mirror(scene.paints) ? ", and the mirror" : "");
-  text += "left out against the reference: the horizon below a lobe, and the light's own cosine within it\n";
-  return text + "program:\n" + shader;
+  return text;
 }
 
 struct CheckSource {
@@ -176,10 +188,12 @@ void describe_view(const RenderOptions& options, const Rays& rays, const std::ve
   attributes["goniochrome:environment"] = options.env;
 }
 
-Result<void> write_exr_picture(const RenderOptions& options, const Request& request, const Frame& frame,
-                               const Scene& scene, const DiffuseWhite& white, double stops,
-                               const cli::Session& session) {
+Result<void> write_exr_picture(const RenderOptions& options, const Request& request, const Shot& shot,
+                               const Frame& frame, const Scene& scene, const Plan& plan, const DiffuseWhite& white,
+                               double stops, const cli::Session& session) {
   ImagePart part{"picture", frame.picture, provenance(session), PixelType::kHalf};
+  part.attributes["goniochrome:plan"] = plan_rows(plan, false).dump(-1, ' ', false, Json::error_handler_t::replace);
+  part.attributes["goniochrome:engine"] = std::string(engine_name(plan.engine));
   const float gain = static_cast<float>(std::exp2(stops));
   for (std::size_t i = 0; i < part.image.data.size(); ++i) part.image.data[i] *= i % 4 == 3 ? 1 : gain;
   part.attributes["colorInteropID"] = "lin_rec2020_scene";
@@ -197,26 +211,52 @@ Result<void> write_exr_picture(const RenderOptions& options, const Request& requ
     for (const MeshPart& mesh_part : scene.mesh->parts) names.push_back(mesh_part.name);
     part.attributes["goniochrome:parts"] = names.dump(-1, ' ', false, Json::error_handler_t::replace);
   }
-  return write_exr(options.output, {part});
+  return write_exr(shot.output, {part});
 }
 
 // Everything that a picture is made from; the scene points into it.
 struct Stage {
   Mesh mesh;
-  DressedMesh dress;
+  std::vector<DressedMesh> dresses;  // one, or those of --split
   PrefilteredEnvironment env;
   Scene scene;
   CheckSource check;
 };
 
+void wear(const DressedMesh& dress, Scene& scene) {
+  scene.paints = dress.paints;
+  scene.gloss_deg = dress.gloss_deg;
+  scene.anisotropy = dress.anisotropy;
+}
+
+Result<void> dress_stage(const RenderOptions& options, Stage& stage) {
+  if (options.split.empty()) {
+    GONIO_ASSIGN(DressedMesh dress, dressed(stage.mesh, options));
+    stage.dresses.push_back(std::move(dress));
+    return {};
+  }
+  std::vector<std::string> paints;
+  for (const std::string& text : options.split) {
+    for (const std::string_view paint : split(text, ',')) paints.emplace_back(trimmed(paint));
+  }
+  if (paints.size() != 2)
+    return usage_error("--split names {} paints: write two, A.xml#NAME,B.xml#NAME", paints.size());
+  for (const std::string& paint : paints) {
+    GONIO_ASSIGN(DressedMesh dress, dressed_in(stage.mesh, options, paint));
+    stage.dresses.push_back(std::move(dress));
+  }
+  return {};
+}
+
 Result<void> set_stage(const RenderOptions& options, const Request& request, Stage& stage, cli::Session& session) {
   GONIO_ASSIGN(stage.mesh, read_mesh(options.mesh));
-  GONIO_ASSIGN(stage.dress, dressed(stage.mesh, options));
-  tell_mesh(stage.mesh, stage.dress, session);
+  GONIO_TRY(dress_stage(options, stage));
+  tell_mesh(stage.mesh, stage.dresses.front(), session);
   Scene& scene = stage.scene;
   scene.mesh = &stage.mesh;
-  scene.paints = stage.dress.paints;
   scene.lights = request.lights;
+  scene.reflection = request.reflection;
+  wear(stage.dresses.front(), scene);
   if (!options.env.empty()) {
     GONIO_ASSIGN(stage.env, read_env(options.env));
     scene.env = &stage.env;
@@ -227,10 +267,150 @@ Result<void> set_stage(const RenderOptions& options, const Request& request, Sta
   return set_background(scene, options.background);
 }
 
+// The right half of `other` takes the place of the picture's.
+void put_right_half(const Frame& other, Frame& frame) {
+  for (int y = 0; y < frame.picture.height; ++y) {
+    for (int x = frame.picture.width / 2; x < frame.picture.width; ++x) {
+      std::copy_n(other.picture.pixel(x, y), 4, frame.picture.pixel(x, y));
+    }
+  }
+}
+
+// A run that draws: its shots share one context and one upload.
+class Shooting {
+ public:
+  Shooting(const RenderOptions& options, Request request, Stage& stage, cli::Session& session)
+      : options_(options), request_(std::move(request)), stage_(stage), session_(session) {}
+
+  Result<void> shoot(const std::optional<Display>& display);
+
+ private:
+  View view(const Shot& shot, int shrink) const {
+    return {shot.camera, std::max(1, request_.size.width / shrink), std::max(1, request_.size.height / shrink),
+            shrink > 1 ? 1 : options_.samples, shrink == 1 && options_.check > 0};
+  }
+  Result<void> look(Renderer& renderer);
+  Result<Plan> load(Renderer& renderer, const DressedMesh& dress);
+  Result<void> draw(Renderer& renderer, const Shot& shot, bool first);
+  Result<void> write(const Shot& shot, const std::optional<Display>& display, double stops);
+  void tell_plan(Plan plan, const std::string& shader);
+
+  const RenderOptions& options_;
+  Request request_;
+  Stage& stage_;
+  cli::Session& session_;
+  std::vector<Shot> shots_;
+  std::vector<std::shared_ptr<const Gbuffer>> looks_;
+  DiffuseWhite white_;
+  Plan plan_;
+  Frame frame_;
+};
+
+// A sequence is planned on small pictures from some of its places, a single picture on itself.
+Result<void> Shooting::look(Renderer& renderer) {
+  constexpr std::size_t kLooks = 8;
+  const int shrink = shots_.size() > 1 ? 4 : 1;
+  const std::size_t step = (shots_.size() + kLooks - 1) / kLooks;
+  for (std::size_t i = 0; i < shots_.size(); i += step) {
+    GONIO_ASSIGN(std::shared_ptr<const Gbuffer> seen, renderer.look(stage_.mesh, view(shots_[i], shrink)));
+    looks_.push_back(std::move(seen));
+    if (options_.turntable == 0) break;
+  }
+  return {};
+}
+
+Result<Plan> Shooting::load(Renderer& renderer, const DressedMesh& dress) {
+  wear(dress, stage_.scene);
+  auto plan = renderer.load(stage_.scene, looks_, request_.plan);
+  if (plan.ok()) return plan;
+  return Error{plan.error().kind, (options_.env.empty() ? "" : options_.env + ": ") + plan.error().message};
+}
+
+void Shooting::tell_plan(Plan plan, const std::string& shader) {
+  Json& results = session_.results();
+  for (Json& row : plan_rows(plan, true)) results["plan"].push_back(std::move(row));
+  results["plan_de00_p95"] = json_number(plan.de00_p95);
+  results["plan_ms"] = plan.time_ms;
+  results["engine"] = engine_name(plan.engine);
+  results["engine_reason"] = plan.engine_reason;
+  session_.explain(plan_table(plan));
+  if (options_.print_shader) std::fputs(shader.c_str(), stdout);
+  plan_ = std::move(plan);
+}
+
+Result<void> Shooting::draw(Renderer& renderer, const Shot& shot, bool first) {
+  stage_.scene.lights = shot.lights;
+  for (std::size_t i = 0; i < stage_.dresses.size(); ++i) {
+    Frame other;
+    if (stage_.dresses.size() > 1 || first) {
+      GONIO_ASSIGN(Plan plan, load(renderer, stage_.dresses[i]));
+      if (first && options_.check > 0) {
+        const Environment* environment = stage_.check.environment ? &*stage_.check.environment : nullptr;
+        const auto sample =
+            sampled_pixels(*looks_.front(), std::min(options_.check, kMostTruth), session_.common().seed);
+        add_truth(plan, seen_scene(stage_.scene, looks_), sample.points, environment, white_.luminance);
+      }
+      if (first) tell_plan(std::move(plan), renderer.shader());
+    } else {
+      renderer.load_paints(stage_.scene);
+    }
+    GONIO_TRY(renderer.draw(view(shot, 1), i == 0 ? frame_ : other));
+    if (i == 1) put_right_half(other, frame_);
+  }
+  return {};
+}
+
+Result<void> Shooting::write(const Shot& shot, const std::optional<Display>& display, double stops) {
+  if (!display) {
+    return write_exr_picture(options_, request_, shot, frame_, stage_.scene, plan_, white_, stops, session_);
+  }
+  GONIO_ASSIGN(const Image shown, display->image(frame_.picture, stops));
+  return write_png(shot.output, shown, provenance(session_));
+}
+
+Result<void> Shooting::shoot(const std::optional<Display>& display) {
+  GONIO_ASSIGN(shots_, shots_of(options_, stage_.mesh, request_.size, request_.lights));
+  GONIO_ASSIGN(Renderer renderer, Renderer::create());
+  GONIO_TRY(look(renderer));
+  tell_visibility(*looks_.front(), session_);
+  white_ = diffuse_white(stage_.scene.env, stage_.scene.lights);
+  request_.plan.white_luminance = white_.luminance;
+  request_.plan.tolerance_de00 = session_.common().tolerance;
+  request_.plan.frames = static_cast<int>(shots_.size());
+  session_.explain(explanation(stage_.mesh, stage_.dresses.front()));
+  const double automatic = request_.png && white_.luminance > 0 ? -std::log2(white_.luminance) : 0;
+  const double stops = request_.stops.value_or(automatic);
+  double frame_ms = 0;
+  for (const Shot& shot : shots_) {
+    GONIO_TRY(draw(renderer, shot, &shot == &shots_.front()));
+    frame_ms += frame_.frame_ms / static_cast<double>(shots_.size());
+    session_.progress(shot.output);
+    GONIO_TRY(write(shot, display, stops));
+  }
+  Json& results = session_.results();
+  results["opengl"] = renderer.opengl();
+  results["gbuffer_ms"] = frame_.gbuffer_ms;
+  results["frame_ms"] = frame_ms;
+  results["frames"] = shots_.size();
+  results["exposure_stops"] = stops;
+  results["white_luminance"] = json_number(white_.luminance);
+  const std::string name = options_.output == "-" ? "standard output" : shots_.front().output;
+  session_.say(fmt::format(
+      "{}{}: {} x {}, {} samples a pixel, drawn in {:.0f} ms by {} (one rasterization {:.0f} ms), exposure {:+.2f}{}",
+      name, shots_.size() > 1 ? fmt::format(" and {} more", shots_.size() - 1) : "", request_.size.width,
+      request_.size.height, options_.samples, frame_ms, engine_name(plan_.engine), frame_.gbuffer_ms, stops,
+      display ? ", " + display->name() : ""));
+  if (options_.check > 0) {
+    wear(stage_.dresses.front(), stage_.scene);
+    check(options_, frame_, stage_.scene, stage_.check, white_.luminance, session_);
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<cli::Verdict> run(const RenderOptions& options, cli::Session& session) {
-  GONIO_ASSIGN(const Request request, request_of(options));
+  GONIO_ASSIGN(Request request, request_of(options));
   std::optional<Display> display;
   if (request.png) {
     GONIO_ASSIGN(Display made, Display::make(options.view));
@@ -239,38 +419,7 @@ Result<cli::Verdict> run(const RenderOptions& options, cli::Session& session) {
   }
   Stage stage;
   GONIO_TRY(set_stage(options, request, stage, session));
-  const Scene& scene = stage.scene;
-  GONIO_ASSIGN(const Camera camera, camera_of(options, stage.mesh, request.size));
-
-  GONIO_ASSIGN(Renderer renderer, Renderer::create());
-  if (auto loaded = renderer.load(scene); !loaded.ok()) {
-    return Error{loaded.error().kind, (options.env.empty() ? "" : options.env + ": ") + loaded.error().message};
-  }
-  session.explain(explanation(stage.mesh, stage.dress, scene, renderer.shader()));
-  GONIO_ASSIGN(const Frame frame,
-               renderer.draw(camera, request.size.width, request.size.height, options.samples, options.check > 0));
-  tell_visibility(*frame.gbuffer, session);
-  const DiffuseWhite white = diffuse_white(scene.env, scene.lights);
-  const double automatic = request.png && white.luminance > 0 ? -std::log2(white.luminance) : 0;
-  const double stops = request.stops.value_or(automatic);
-  Json& results = session.results();
-  results["engine"] = renderer.opengl();
-  results["gbuffer_ms"] = frame.gbuffer_ms;
-  results["frame_ms"] = frame.frame_ms;
-  results["exposure_stops"] = stops;
-  results["white_luminance"] = json_number(white.luminance);
-
-  if (display) {
-    GONIO_ASSIGN(const Image shown, display->image(frame.picture, stops));
-    GONIO_TRY(write_png(options.output, shown, provenance(session)));
-  } else {
-    GONIO_TRY(write_exr_picture(options, request, frame, scene, white, stops, session));
-  }
-  session.say(fmt::format(
-      "{}: {} x {}, {} samples a pixel, drawn in {:.0f} ms (one rasterization {:.0f} ms), exposure {:+.2f}{}",
-      options.output == "-" ? "standard output" : options.output, request.size.width, request.size.height,
-      options.samples, frame.frame_ms, frame.gbuffer_ms, stops, display ? ", " + display->name() : ""));
-  if (options.check > 0) check(options, frame, scene, stage.check, white.luminance, session);
+  GONIO_TRY(Shooting(options, std::move(request), stage, session).shoot(display));
   return cli::Verdict::kDone;
 }
 

@@ -1,6 +1,9 @@
 #include "setup.h"
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
 
 #include "base/text.h"
 
@@ -72,6 +75,46 @@ Result<Camera> camera_of(const RenderOptions& options, const Mesh& mesh, const P
     return usage_error("--orbit has the elevation {}: it goes from -90 to 90 degrees", shortest(o[1]));
   if (!(distance > 0)) return usage_error("--orbit has the distance {}: it must be above 0", shortest(distance));
   return Camera::orbit(mesh, o[0], o[1], distance, options.fov_deg, static_cast<double>(size.width) / size.height);
+}
+
+Result<ReflectionOperator> parse_operator(const std::string& text) {
+  const auto words = split(text, ',');
+  const std::string name(trimmed(words[0]));
+  const auto wrong = [&] {
+    return usage_error(
+        "--operator is \"{}\": write iso, rec2020 or none, and if wanted a share from 0 to 1 after a comma", text);
+  };
+  if (name == "none" && words.size() == 1) return component_wise();
+  if ((name != "rec2020" && name != "iso") || words.size() > 2) return wrong();
+  const ReflectionOperator full = name == "iso" ? iso_rgb_operator() : working_space_operator();
+  if (words.size() == 1) return full;
+  const auto share = parse_number(trimmed(words[1]));
+  if (!share || *share < 0 || *share > 1) return wrong();
+  return with_transfer(full, {*share, *share, *share});
+}
+
+Result<std::vector<Shot>> shots_of(const RenderOptions& options, const Mesh& mesh, const PictureSize& size,
+                                   const std::vector<Light>& lights) {
+  GONIO_ASSIGN(const Camera camera, camera_of(options, mesh, size));
+  if (options.turntable > 0 && options.light_sweep > 0)
+    return usage_error("--turntable and --light-sweep exclude each other");
+  const int count = std::max(options.turntable, options.light_sweep);
+  if (count == 0) return std::vector<Shot>{{camera, lights, options.output}};
+  if (options.output == "-") return usage_error("a sequence does not go on standard output: give --output a name");
+  if (options.light_sweep > 0 && lights.empty()) return usage_error("--light-sweep needs a --light to move");
+  const std::filesystem::path path(options.output);
+  std::vector<Shot> shots;
+  for (int i = 0; i < count; ++i) {
+    const double turn_rad = 2 * std::numbers::pi * i / count, c = std::cos(turn_rad), s = std::sin(turn_rad);
+    const auto turned = [&](const Vec3& v) { return Vec3{c * v.x + s * v.z, v.y, c * v.z - s * v.x}; };
+    Shot shot{camera, lights, ""};
+    if (options.turntable > 0) shot.camera.eye = camera.target + turned(camera.eye - camera.target);
+    if (options.light_sweep > 0) shot.lights[0].direction = turned(lights[0].direction);
+    const std::string name = fmt::format("{}-{:04}{}", path.stem().string(), i + 1, path.extension().string());
+    shot.output = (path.parent_path() / name).string();
+    shots.push_back(std::move(shot));
+  }
+  return shots;
 }
 
 Result<void> set_background(Scene& scene, const std::string& text) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "color/reflection.h"
 #include "options.h"
 #include "render/camera.h"
 #include "render/scene.h"
@@ -23,6 +24,20 @@ Result<Light> parse_light(const std::string& text);
 
 // --camera or --orbit.
 Result<Camera> camera_of(const RenderOptions& options, const Mesh& mesh, const PictureSize& size);
+
+// The operator of --operator. Error (usage): the names there are.
+Result<ReflectionOperator> parse_operator(const std::string& text);
+
+// One picture of a sequence.
+struct Shot {
+  Camera camera;
+  std::vector<Light> lights;
+  std::string output;
+};
+// The pictures that --turntable or --light-sweep ask for, else the one. Error: a sequence on standard output, both at
+// once, or a sweep without a light.
+Result<std::vector<Shot>> shots_of(const RenderOptions& options, const Mesh& mesh, const PictureSize& size,
+                                   const std::vector<Light>& lights);
 
 // The background of `scene` as --background has it.
 Result<void> set_background(Scene& scene, const std::string& text);

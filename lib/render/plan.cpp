@@ -1,0 +1,335 @@
+#include "render/plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "base/clock.h"
+#include "base/parallel.h"
+#include "base/text.h"
+#include "render/cost.h"
+#include "render/effect_list.h"
+#include "render/reference.h"
+#include "render/seen.h"
+
+namespace goniochrome {
+
+namespace {
+
+// The probe sees 95 % of some hundred points; the picture's own percentile is that far off at most times.
+constexpr double kSafety = 0.8;
+
+struct Words {
+  std::string base = "auto";
+  std::vector<std::pair<std::string, bool>> forced;  // name, on
+};
+
+Result<Words> words_of(const std::string& text) {
+  Words words;
+  for (const std::string_view piece : split(text, ',')) {
+    const std::string word(trimmed(piece));
+    if (word == "auto" || word == "all" || word == "none") {
+      words.base = word;
+    } else if (word.size() > 1 && (word[0] == '+' || word[0] == '-')) {
+      words.forced.emplace_back(word.substr(1), word[0] == '+');
+    } else {
+      return usage_error("--effects is \"{}\": write auto, all or none, then +NAME or -NAME, as in \"auto,-fresnel\"",
+                         text);
+    }
+  }
+  for (const auto& [name, on] : words.forced) {
+    const auto& groups = effect_groups();
+    const bool lobe = name.starts_with("lobe-") || name.starts_with("gloss-");
+    if (lobe && parse_number(name.substr(name.find('-') + 1))) continue;
+    if (std::find(groups.begin(), groups.end(), name) != groups.end()) continue;
+    std::string known;
+    for (const std::string& group : groups) known += (known.empty() ? "" : ", ") + group;
+    return usage_error("--effects names \"{}\": there are {}, and single lobes such as lobe-20 or gloss-900", name,
+                       known);
+  }
+  return words;
+}
+
+// Shades the probe with any choice of effects.
+class Prober {
+ public:
+  Prober(const Scene& scene, const Effects& all, const std::vector<EffectSwitch>& switches,
+         const std::vector<VisiblePoint>& points, double white, CpuEngine& engine)
+      : scene_(scene),
+        all_(all),
+        switches_(switches),
+        points_(points),
+        white_(white > 0 ? white : 1),
+        engine_(engine) {}
+
+  Effects effects(const std::vector<bool>& on) const {
+    Effects effects = all_;
+    for (std::size_t i = 0; i < switches_.size(); ++i) {
+      if (!on[i]) switches_[i].turn_off(effects);
+    }
+    return effects;
+  }
+
+  std::vector<Rgb> colors(const std::vector<bool>& on) {
+    const Effects chosen = effects(on);
+    engine_.load_paints(scene_, chosen, weight_table(scene_, chosen));
+    return engine_.shade(points_);
+  }
+
+  double difference(const std::vector<Rgb>& a, const std::vector<Rgb>& b) const {
+    std::vector<double> de00;
+    for (std::size_t i = 0; i < a.size(); ++i) de00.push_back(seen_difference(a[i], b[i], white_));
+    return percentile_95(std::move(de00));
+  }
+
+  // Seconds that a point takes on all cores together, the best of a few runs.
+  double seconds_per_point() const {
+    double best = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 3; ++i) {
+      const Stopwatch clock;
+      const auto colors = engine_.shade(points_);
+      best = std::min(best, clock.elapsed_s());
+    }
+    return points_.empty() ? 0 : best / static_cast<double>(points_.size());
+  }
+
+ private:
+  const Scene& scene_;
+  const Effects& all_;
+  const std::vector<EffectSwitch>& switches_;
+  const std::vector<VisiblePoint>& points_;
+  double white_;
+  CpuEngine& engine_;
+};
+
+double mean_tilts(const Scene& scene, const Effects& effects, const std::vector<VisiblePoint>& points) {
+  if (!effects.anisotropy || points.empty()) return 1;
+  const auto tilts = tilts_of(scene, effects);
+  double sum = 0;
+  for (const VisiblePoint& point : points)
+    sum += static_cast<double>(tilts[static_cast<std::size_t>(point.part)].size());
+  return sum / static_cast<double>(points.size());
+}
+
+// What one frame's shading takes, in ms.
+struct CostModel {
+  double points = 0, tilts = 1, speed = 1;  // speed: measured over counted
+  double ms(const Effects& effects, Engine engine) const {
+    return 1e-6 * points * speed * point_ns(effects, engine, tilts) / threads();
+  }
+};
+
+// The scene with each paint once, and the points' parts renumbered.
+struct Compact {
+  Scene scene;
+  std::vector<VisiblePoint> points;
+};
+Compact compacted(const Scene& scene, const std::vector<VisiblePoint>& points) {
+  Compact compact{scene, points};
+  compact.scene.paints.clear(), compact.scene.gloss_deg.clear(), compact.scene.anisotropy.clear();
+  std::vector<std::size_t> first;
+  std::vector<int> place(scene.paints.size());
+  for (std::size_t part = 0; part < scene.paints.size(); ++part) {
+    const auto same =
+        std::find_if(first.begin(), first.end(), [&](std::size_t f) { return same_wear(scene, f, part); });
+    place[part] = static_cast<int>(same - first.begin());
+    if (same != first.end()) continue;
+    first.push_back(part);
+    compact.scene.paints.push_back(scene.paints[part]);
+    compact.scene.gloss_deg.push_back(part < scene.gloss_deg.size() ? scene.gloss_deg[part] : 45);
+    compact.scene.anisotropy.push_back(part < scene.anisotropy.size() ? scene.anisotropy[part] : Anisotropy{});
+  }
+  for (VisiblePoint& point : compact.points) point.part = place[static_cast<std::size_t>(point.part)];
+  return compact;
+}
+
+// What is on while the plan is made, and which of it may be changed.
+struct Choice {
+  std::vector<bool> on, forced;
+};
+
+Choice forced_choice(const Words& words, const std::vector<EffectSwitch>& switches) {
+  Choice choice{std::vector<bool>(switches.size()), std::vector<bool>(switches.size(), false)};
+  for (std::size_t i = 0; i < switches.size(); ++i) {
+    choice.on[i] = switches[i].needed && words.base != "none";
+    for (const auto& [name, on] : words.forced) {
+      if (name != switches[i].name && name != switches[i].group) continue;
+      choice.on[i] = switches[i].needed && on;
+      choice.forced[i] = true;
+    }
+  }
+  return choice;
+}
+
+// Leaves out, cheapest to miss first, what all together cannot be seen.
+void drop_unseen(Prober& prober, const std::vector<PlanItem>& items, double tolerance, Choice& choice) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (choice.on[i] && !choice.forced[i] && items[i].de00_p95 <= tolerance) order.push_back(i);
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return items[a].de00_p95 < items[b].de00_p95; });
+  const std::vector<Rgb> wanted = prober.colors(choice.on);
+  for (const std::size_t i : order) {
+    choice.on[i] = false;
+    if (prober.difference(wanted, prober.colors(choice.on)) > kSafety * tolerance) choice.on[i] = true;
+  }
+}
+
+// Leaves out what is worth least for its time until the rest fits; returns those left out.
+std::set<std::size_t> keep_affordable(Prober& prober, const CostModel& cost, Engine engine, double budget_ms,
+                                      Choice& choice) {
+  std::set<std::size_t> gone;
+  const std::vector<Rgb> wanted = prober.colors(choice.on);
+  while (cost.ms(prober.effects(choice.on), engine) > budget_ms) {
+    const double now_ms = cost.ms(prober.effects(choice.on), engine);
+    std::size_t worst = choice.on.size();
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < choice.on.size(); ++i) {
+      if (!choice.on[i] || choice.forced[i]) continue;
+      choice.on[i] = false;
+      const double saved_ms = now_ms - cost.ms(prober.effects(choice.on), engine);
+      const double lost = prober.difference(wanted, prober.colors(choice.on)) / std::max(saved_ms, 1e-9);
+      choice.on[i] = true;
+      if (saved_ms > 0 && lost < least) least = lost, worst = i;
+    }
+    if (worst == choice.on.size()) break;
+    choice.on[worst] = false;
+    gone.insert(worst);
+  }
+  return gone;
+}
+
+void choose_engine(const PlanRequest& request, Plan& plan) {
+  const double cpu = plan.cpu_ms * request.frames, gl = plan.gl_ms * request.frames + kCompileMs;
+  plan.engine = request.engine.value_or(cpu <= gl ? Engine::kCpu : Engine::kGl);
+  plan.engine_reason =
+      fmt::format("{}: predicted {:.1f} ms a frame on the processor, {:.1f} ms in OpenGL and {:.0f} ms to compile",
+                  request.engine ? "as asked" : "the faster", plan.cpu_ms, plan.gl_ms, kCompileMs);
+}
+
+// Lobes without any weight are not drawn, nor their maps uploaded.
+void tidy(Effects& effects) {
+  std::erase_if(effects.lobes, [](const Effects::LobeUse& use) { return !use.directional_diffuse && !use.gloss; });
+  const bool gloss = effects.mirror ||
+                     std::any_of(effects.lobes.begin(), effects.lobes.end(), [](const auto& use) { return use.gloss; });
+  effects.fresnel = effects.fresnel && gloss;
+  effects.horizon = effects.horizon && !effects.lobes.empty();
+  effects.anisotropy = effects.anisotropy && !effects.lobes.empty();
+}
+
+std::string decision_of(const EffectSwitch& effect, bool on, bool forced, bool over_budget) {
+  if (!effect.needed) return "not in the scene";
+  if (forced) return on ? "forced on" : "forced off";
+  if (over_budget) return "over budget";
+  return on ? "drawn" : "dropped";
+}
+
+}  // namespace
+
+Result<void> check_effects(const std::string& effects) {
+  GONIO_ASSIGN(const Words words, words_of(effects));
+  return {};
+}
+
+std::vector<VisiblePoint> probe_points(const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers, std::size_t count) {
+  std::size_t visible = 0;
+  for (const auto& g : gbuffers) {
+    for (std::size_t i = 3; i < g->data.size(); i += 4) visible += g->data[i] != 0 ? 1 : 0;
+  }
+  // Every n-th visible point, row by row; a stride that shares no factor with common widths keeps columns apart.
+  const std::size_t stride = std::max<std::size_t>(1, visible / count) | 1;
+  std::vector<VisiblePoint> points;
+  std::size_t met = stride / 2;
+  for (const auto& g : gbuffers) {
+    for (std::size_t i = 0; 4 * i + 3 < g->data.size(); ++i) {
+      if (g->data[4 * i + 3] == 0 || ++met % stride != 0) continue;
+      const int x = static_cast<int>(i) % g->width, y = static_cast<int>(i) / g->width;
+      points.push_back({g->normal(x, y), g->to_viewer(x, y), g->part(x, y)});
+    }
+  }
+  return points;
+}
+
+Scene seen_scene(const Scene& scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers) {
+  std::vector<bool> seen(scene.paints.size(), false);
+  for (const auto& g : gbuffers) {
+    for (std::size_t i = 3; i < g->data.size(); i += 4) {
+      if (g->data[i] != 0) seen[static_cast<std::size_t>(std::abs(g->data[i])) - 1] = true;
+    }
+  }
+  Scene result = scene;
+  for (std::size_t part = 0; part < seen.size(); ++part) {
+    if (seen[part]) continue;
+    result.paints[part] = {};
+    if (part < result.anisotropy.size()) result.anisotropy[part] = {};
+  }
+  return result;
+}
+
+Result<Plan> make_plan(const Scene& scene, const std::vector<VisiblePoint>& probe, double visible_pixels,
+                       const PlanRequest& request, CpuEngine& engine) {
+  const Stopwatch clock;
+  GONIO_ASSIGN(const Words words, words_of(request.effects));
+  const Effects all = effects_of(scene);
+  const std::vector<EffectSwitch> switches = effect_switches(scene, all, probe);
+  const Compact compact = compacted(scene, probe);
+  Prober prober(compact.scene, all, switches, compact.points, request.white_luminance, engine);
+  const std::vector<bool> everything(switches.size(), true);
+  const std::vector<Rgb> full = prober.colors(everything);
+
+  CostModel cost{visible_pixels * request.samples, mean_tilts(scene, all, probe), 1};
+  const double counted_s = 1e-9 * point_ns(all, Engine::kCpu, cost.tilts) / threads();
+  if (!probe.empty()) cost.speed = prober.seconds_per_point() / counted_s;
+  Plan plan;
+  for (std::size_t i = 0; i < switches.size(); ++i) {
+    PlanItem item{switches[i].name, switches[i].needed, switches[i].reason, 0, 0, false, "", {}};
+    if (item.needed) {
+      std::vector<bool> without = everything;
+      without[i] = false;
+      item.de00_p95 = prober.difference(full, prober.colors(without));
+    }
+    plan.items.push_back(std::move(item));
+  }
+  Choice choice = forced_choice(words, switches);
+  if (words.base == "auto") drop_unseen(prober, plan.items, request.tolerance_de00, choice);
+  plan.cpu_ms = cost.ms(prober.effects(choice.on), Engine::kCpu);
+  plan.gl_ms = cost.ms(prober.effects(choice.on), Engine::kGl);
+  choose_engine(request, plan);
+  std::set<std::size_t> gone;
+  if (request.budget_ms > 0) gone = keep_affordable(prober, cost, plan.engine, request.budget_ms, choice);
+  plan.de00_p95 = prober.difference(full, prober.colors(choice.on));
+  plan.effects = prober.effects(choice.on);
+  plan.cpu_ms = cost.ms(plan.effects, Engine::kCpu), plan.gl_ms = cost.ms(plan.effects, Engine::kGl);
+  for (std::size_t i = 0; i < switches.size(); ++i) {
+    PlanItem& item = plan.items[i];
+    std::vector<bool> without = everything;
+    without[i] = false;
+    if (item.needed) item.cost_ms = cost.ms(all, plan.engine) - cost.ms(prober.effects(without), plan.engine);
+    item.on = choice.on[i];
+    item.decision = decision_of(switches[i], item.on, choice.forced[i], gone.contains(i));
+  }
+  tidy(plan.effects);
+  plan.time_ms = 1000 * clock.elapsed_s();
+  return plan;
+}
+
+void add_truth(Plan& plan, const Scene& scene, const std::vector<VisiblePoint>& points, const Environment* env,
+               double white_luminance) {
+  const Effects all = effects_of(scene);
+  const std::vector<EffectSwitch> switches = effect_switches(scene, all, points);
+  const std::vector<Rgb> full = exact_radiance(points, scene, all, env);
+  const double white = white_luminance > 0 ? white_luminance : 1;
+  for (std::size_t i = 0; i < switches.size(); ++i) {
+    if (!switches[i].needed) continue;
+    Effects without = all;
+    switches[i].turn_off(without);
+    const std::vector<Rgb> colors = exact_radiance(points, scene, without, env);
+    std::vector<double> de00;
+    for (std::size_t j = 0; j < full.size(); ++j) de00.push_back(seen_difference(full[j], colors[j], white));
+    plan.items[i].truth_de00_p95 = percentile_95(std::move(de00));
+  }
+}
+
+}  // namespace goniochrome

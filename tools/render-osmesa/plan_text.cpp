@@ -1,0 +1,44 @@
+#include "plan_text.h"
+
+#include <fmt/format.h>
+
+namespace goniochrome {
+
+const char* engine_name(Engine engine) {
+  return engine == Engine::kCpu ? "cpu" : "gl";
+}
+
+std::string plan_table(const Plan& plan) {
+  bool truth = false;
+  for (const PlanItem& item : plan.items) truth |= item.truth_de00_p95.has_value();
+  std::string text = fmt::format("{:<12} {:<6} {:>7} {}{:>7}  {:<16} {}\n", "effect", "needed", "dE00",
+                                 truth ? "  truth " : "", "ms", "decision", "why");
+  for (const PlanItem& item : plan.items) {
+    const std::string exact = item.truth_de00_p95 ? fmt::format("{:7.2f} ", *item.truth_de00_p95)
+                              : truth             ? "        "
+                                                  : "";
+    text += item.needed ? fmt::format("{:<12} {:<6} {:>7.2f} {}{:>7.2f}  {:<16} {}\n", item.effect, "yes",
+                                      item.de00_p95, exact, item.cost_ms, item.decision, item.reason)
+                        : fmt::format("{:<12} {:<6} {:>7} {}{:>7}  {:<16} {}\n", item.effect, "no", "-",
+                                      truth ? "        " : "", "-", item.decision, item.reason);
+  }
+  return text + fmt::format("left out together: dE00 {:.2f} (p95); planned in {:.1f} ms\nengine {}: {}\n",
+                            plan.de00_p95, plan.time_ms, engine_name(plan.engine), plan.engine_reason);
+}
+
+Json plan_rows(const Plan& plan, bool times) {
+  Json rows = Json::array();
+  for (const PlanItem& item : plan.items) {
+    Json row = {{"effect", item.effect},
+                {"needed", item.needed},
+                {"reason", item.reason},
+                {"de00_p95", item.needed ? json_number(item.de00_p95) : Json(nullptr)},
+                {"decision", item.decision}};
+    if (times) row["cost_ms"] = item.needed ? json_number(item.cost_ms) : Json(nullptr);
+    if (item.truth_de00_p95) row["truth_de00_p95"] = json_number(*item.truth_de00_p95);
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+}  // namespace goniochrome

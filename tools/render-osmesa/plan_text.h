@@ -1,0 +1,20 @@
+// A plan as a table, as a report and as a line of a file's header.
+#pragma once
+
+#include <string>
+
+#include "base/json.h"
+#include "render/plan.h"
+
+namespace goniochrome {
+
+const char* engine_name(Engine engine);
+
+// A row for each effect: effect, needed, dE00, ms, decision, why; then the engine.
+std::string plan_table(const Plan& plan);
+
+// Rows of the report: effect, needed, reason, de00_p95, cost_ms, decision, and truth_de00_p95 where it was measured.
+// Without `times` nothing in them changes from run to run: for the header of a file.
+Json plan_rows(const Plan& plan, bool times);
+
+}  // namespace goniochrome
