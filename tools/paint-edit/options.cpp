@@ -78,6 +78,11 @@ cli::ToolSpec paint_edit_spec(PaintEditOptions& o, cli::CommonOptions& common) {
       "three "
       "shifts where a viewer sees that aspecular angle: at 15 degrees they fall on the face alone, from the travel on "
       "the flop alone, and between on both in proportion.",
+      "On a picture of the paint the place is a pixel instead: --image names the buffers that render-osmesa(1) wrote "
+      "with "
+      "it, and --at-pixel X,Y makes the moves of --lighter, --chroma (a factor) and --hue (a turn) at the aspecular "
+      "angle "
+      "under that pixel; --travel-to X,Y ends the travel and --gloss-to X,Y the highlight there.",
       "A paint is edited in every form it has. Measured rows move by what the curve moves at their angle, so that what "
       "the curve did not explain of a measurement stays. A paint that has only rows is fitted first and carries face, "
       "flop and travel from then on. Lobes and color maps no longer hold after a move of the color, nor lobes after a "
@@ -131,6 +136,22 @@ cli::ToolSpec paint_edit_spec(PaintEditOptions& o, cli::CommonOptions& common) {
        .target = &o.at_deg,
        .low = 0,
        .high = 180},
+      {.name = "image",
+       .value = "FILE",
+       .help = "buffers of a picture of the paint, of render-osmesa --aov aspecular,mask",
+       .target = &o.image},
+      {.name = "at-pixel",
+       .value = "X,Y",
+       .help = "make the shifts at the aspecular angle under this pixel; --chroma is then a factor, --hue a turn",
+       .target = &o.at_pixel,
+       .low = 0,
+       .high = 1048576},
+      {.name = "lighter",
+       .value = "D",
+       .help = "L* plus this under the pixel of --at-pixel",
+       .target = &o.lighter,
+       .low = -300,
+       .high = 300},
       {.name = "face", .value = "L,A,B", .help = "color at 15 degrees", .target = &o.face, .low = -300, .high = 300},
       {.name = "face-shift",
        .value = "L,A,B",
@@ -162,6 +183,12 @@ cli::ToolSpec paint_edit_spec(PaintEditOptions& o, cli::CommonOptions& common) {
        .target = &o.travel_shift_deg,
        .low = -165,
        .high = 165},
+      {.name = "travel-to",
+       .value = "X,Y",
+       .help = "let the color stop changing where this pixel of --image is",
+       .target = &o.travel_to,
+       .low = 0,
+       .high = 1048576},
       {.name = "gloss", .value = "GU", .help = "gloss units to reach", .target = &o.gloss, .low = 0, .high = 100},
       {.name = "gloss-shift",
        .value = "GU",
@@ -169,6 +196,12 @@ cli::ToolSpec paint_edit_spec(PaintEditOptions& o, cli::CommonOptions& common) {
        .target = &o.gloss_shift,
        .low = -100,
        .high = 100},
+      {.name = "gloss-to",
+       .value = "X,Y",
+       .help = "let the highlight fall to half its brightness at this pixel of --image",
+       .target = &o.gloss_to,
+       .low = 0,
+       .high = 1048576},
       {.name = "gloss-angle",
        .value = "DEG",
        .help = "which gloss reading is meant",
@@ -196,6 +229,12 @@ cli::ToolSpec paint_edit_spec(PaintEditOptions& o, cli::CommonOptions& common) {
        "Turns a blue metallic toward green and keeps its travel."},
       {"paint-edit testdata/paints.paints.xml --at 45 --lightness-shift 4 --chroma-factor 1.1 -o brighter.paints.xml",
        "Lightens every paint where it is seen at 45 degrees, and face and flop each by its share."},
+      {"render-osmesa --mesh testdata/speed-shape.obj --light 30,50 --size 640x400 --aov aspecular,mask -o scene.exr "
+       "&& "
+       "paint-edit testdata/paints.paints.xml#candy_red --image scene.exr --at-pixel 250,200 --lighter 3 --chroma 1.1 "
+       "-o "
+       "tweaked.paints.xml",
+       "Lightens a red where the pixel shows it."},
       {"paint-edit testdata/paints.paints.xml#silver_fine --variations flop --step 6 -o nine.paints.xml",
        "Writes a silver and the eight paints around it for a variations sheet."},
       {"paint-edit testdata/paints.paints.xml#ice_blue testdata/paints.paints.xml#candy_blue --gradient 6 -o "
@@ -204,6 +243,10 @@ cli::ToolSpec paint_edit_spec(PaintEditOptions& o, cli::CommonOptions& common) {
   spec.report = {
       {"read", "paints read"},
       {"written", "paints written"},
+      {"pixels[].option", "an option that names a place in --image"},
+      {"pixels[].x", "the place, in pixels from the left"},
+      {"pixels[].y", "and from the top"},
+      {"pixels[].aspecular_deg", "aspecular angle seen there"},
       {"changes[].name", "name of a paint that was edited or made"},
       {"changes[].from", "name of the paint it was made from; of both for a gradient"},
       {"changes[].fraction", "place in a gradient, 0 to 1"},

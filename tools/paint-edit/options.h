@@ -18,6 +18,9 @@ struct PaintEditOptions {
   std::vector<double> hue_deg, chroma, lightness, at_deg, face, flop, face_shift, flop_shift, travel_deg, gloss;
   double hue_shift_deg = 0, chroma_factor = 1, lightness_shift = 0, travel_shift_deg = 0, gloss_shift = 0;
   std::string gloss_angle_deg = "60";
+  std::string image;
+  std::vector<double> at_pixel, travel_to, gloss_to;
+  double lighter = 0;
   std::string variations;
   double step = 5;
   int gradient = 0;

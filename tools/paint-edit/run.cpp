@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "at_pixel.h"
 #include "base/text.h"
 #include "paint/curve.h"
 #include "source.h"
@@ -209,8 +210,16 @@ std::string plan_text(const PaintEditOptions& options, const Edit& edit) {
 
 }  // namespace
 
-Result<cli::Verdict> run_paint_edit(const PaintEditOptions& options, cli::Session& session) {
+Result<cli::Verdict> run_paint_edit(const PaintEditOptions& stated, cli::Session& session) {
+  GONIO_ASSIGN(const PlacedOptions place, placed(stated));
+  const PaintEditOptions& options = place.options;
   GONIO_ASSIGN(const Edit edit, edit_of(options));
+  for (const SeenPixel& pixel : place.pixels) {
+    session.results()["pixels"].push_back(
+        {{"option", pixel.option}, {"x", pixel.x}, {"y", pixel.y}, {"aspecular_deg", pixel.aspecular_deg}});
+    session.say(
+        fmt::format("{} {},{} is {:.1f} deg from specular", pixel.option, pixel.x, pixel.y, pixel.aspecular_deg));
+  }
   session.explain(plan_text(options, edit));
   return Run(options, edit, session)();
 }

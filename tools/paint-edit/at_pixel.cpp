@@ -1,0 +1,109 @@
+#include "at_pixel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/text.h"
+#include "brdf/gloss.h"
+#include "image/aov_file.h"
+
+namespace goniochrome {
+
+namespace {
+
+Result<SeenPixel> seen(const AovFile& file, const std::string& option, const std::vector<double>& place) {
+  const bool whole = place.size() == 2 && std::floor(place[0]) == place[0] && std::floor(place[1]) == place[1];
+  if (!whole) return usage_error("{} takes a pixel: write {} X,Y, whole numbers from the upper left", option, option);
+  SeenPixel pixel{option, static_cast<int>(place[0]), static_cast<int>(place[1]), 0};
+  if (pixel.x >= file.image.width || pixel.y >= file.image.height)
+    return usage_error("{} is {},{}: {} has {} x {} pixels", option, pixel.x, pixel.y, file.path, file.image.width,
+                       file.image.height);
+  GONIO_ASSIGN(const int aspecular, file.channel("aspecular"));
+  GONIO_ASSIGN(const int mask, file.channel("mask"));
+  const float* values = file.image.pixel(pixel.x, pixel.y);
+  if (values[mask] < 0.5F)
+    return usage_error("{} is {},{}: no mesh is seen there in {}", option, pixel.x, pixel.y, file.path);
+  pixel.aspecular_deg = values[aspecular];
+  return pixel;
+}
+
+Result<void> check_places(const PaintEditOptions& o) {
+  const bool places = !o.at_pixel.empty() || !o.travel_to.empty() || !o.gloss_to.empty();
+  if (o.image.empty() && places) return usage_error("--at-pixel, --travel-to and --gloss-to need --image");
+  if (!o.image.empty() && !places)
+    return usage_error("--image lacks a place in it: give --at-pixel, --travel-to or --gloss-to");
+  if (o.at_pixel.empty() && o.lighter != 0) return usage_error("--lighter is for --at-pixel: use --lightness-shift");
+  if (!o.at_pixel.empty() && !o.at_deg.empty()) return usage_error("--at and --at-pixel name two places: give one");
+  if (!o.travel_to.empty() && !o.travel_deg.empty()) return usage_error("--travel and --travel-to exclude each other");
+  if (!o.gloss_to.empty() && !o.gloss.empty()) return usage_error("--gloss and --gloss-to exclude each other");
+  return {};
+}
+
+// At a place, chroma is a factor and hue a turn: nothing else can be meant there.
+Result<void> place_tweak(PaintEditOptions& o) {
+  if ((!o.chroma.empty() && o.chroma_factor != 1) || (!o.hue_deg.empty() && o.hue_shift_deg != 0) ||
+      (o.lighter != 0 && o.lightness_shift != 0))
+    return usage_error("--at-pixel is told one move twice: --lighter, --chroma and --hue are its shifts");
+  if (o.chroma.size() > 1 || o.hue_deg.size() > 1)
+    return usage_error("--at-pixel takes one --chroma factor and one --hue turn");
+  if (!o.chroma.empty()) o.chroma_factor = o.chroma.front();
+  if (!o.hue_deg.empty()) o.hue_shift_deg = o.hue_deg.front();
+  if (o.lighter != 0) o.lightness_shift = o.lighter;
+  if (o.lightness_shift == 0 && o.chroma_factor == 1 && o.hue_shift_deg == 0)
+    return usage_error("--at-pixel lacks its move: add --lighter, --chroma or --hue");
+  o.chroma.clear(), o.hue_deg.clear();
+  return {};
+}
+
+}  // namespace
+
+// cos^e(edge) = 1/2 gives the exponent; the lobe's total energy is the Fresnel reflectance of the coat, as in GLOSS.
+Result<double> gloss_of_edge(double edge_deg, double meter_deg) {
+  constexpr double kSharpest = 1e6;
+  const double radians = std::clamp(edge_deg, 0.0, 89.0) * std::numbers::pi / 180;
+  const double sine = std::sin(radians);
+  const double minus_log_cos = -0.5 * std::log1p(-sine * sine);
+  const double exponent = std::min(kSharpest, std::numbers::ln2 / std::max(minus_log_cos, 1e-12));
+  const double energy = fresnel_dielectric(std::cos(meter_deg * std::numbers::pi / 180), kCoatIndex);
+  const double weight = energy * (exponent + 1) / (2 * std::numbers::pi);
+  const GlossTable table({exponent});
+  GONIO_ASSIGN(const GlossColumns* meter, table.at(meter_deg));
+  LobeFit lobe;
+  lobe.lobes.push_back({exponent, {}, {weight, weight, weight}});
+  return std::clamp(gloss_units(table, *meter, lobe), 0.0, 100.0);
+}
+
+Result<PlacedOptions> placed(const PaintEditOptions& options) {
+  GONIO_TRY(check_places(options));
+  PlacedOptions result{options, {}};
+  if (options.image.empty()) return result;
+  PaintEditOptions& o = result.options;
+  GONIO_ASSIGN(const AovFile file, read_aov_file(options.image));
+  const auto look = [&](const char* option, const std::vector<double>& place) -> Result<double> {
+    GONIO_ASSIGN(const SeenPixel pixel, seen(file, option, place));
+    result.pixels.push_back(pixel);
+    return pixel.aspecular_deg;
+  };
+  if (!o.at_pixel.empty()) {
+    GONIO_ASSIGN(const double angle, look("--at-pixel", o.at_pixel));
+    o.at_deg = {angle};
+    GONIO_TRY(place_tweak(o));
+  }
+  if (!o.travel_to.empty()) {
+    GONIO_ASSIGN(const double angle, look("--travel-to", o.travel_to));
+    if (angle <= 15)
+      return usage_error(
+          "--travel-to is {},{}, {:.1f} deg from specular: a travel lies above 15: go farther from the light",
+          o.travel_to[0], o.travel_to[1], angle);
+    o.travel_deg = {angle};
+  }
+  if (!o.gloss_to.empty()) {
+    GONIO_ASSIGN(const double angle, look("--gloss-to", o.gloss_to));
+    GONIO_ASSIGN(const double gloss, gloss_of_edge(angle, *parse_number(o.gloss_angle_deg)));
+    o.gloss = {gloss};
+  }
+  return result;
+}
+
+}  // namespace goniochrome

@@ -1,0 +1,33 @@
+// Moves at a place in a picture of the painted mesh: the aspecular angle under a pixel. [Shimizu2009] 3.6
+// goniochrome-theory(7), DESIGN MOVES.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "options.h"
+
+namespace goniochrome {
+
+// A pixel that an option names, and the aspecular angle (deg) seen there.
+struct SeenPixel {
+  std::string option;
+  int x = 0, y = 0;
+  double aspecular_deg = 0;
+};
+
+// The options with the places of --at-pixel, --travel-to and --gloss-to in --image put into --at, --travel and --gloss,
+// and what --lighter, --chroma and --hue say there into the shifts. Options without a place come back as they are.
+// Error: what is missing, an image without the buffer, a pixel outside or beside the mesh, or one so near specular that
+// no travel ends there.
+struct PlacedOptions {
+  PaintEditOptions options;
+  std::vector<SeenPixel> pixels;
+};
+Result<PlacedOptions> placed(const PaintEditOptions& options);
+
+// The reading of a gloss meter (GU) on the lobe whose brightness is half its peak at this aspecular angle (deg, 0..90).
+Result<double> gloss_of_edge(double edge_deg, double meter_deg);
+
+}  // namespace goniochrome
