@@ -8,7 +8,7 @@ import shutil
 import sys
 import time
 
-from . import page
+from . import page, target
 from .study import Run
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
@@ -42,7 +42,10 @@ def parse(arguments):
     parser.add_argument("--paints", type=pathlib.Path, default=TOP / "testdata/paints.paints.xml", metavar="FILE", help="library to use [testdata]")
     parser.add_argument("--probe", type=pathlib.Path, default=TOP / "testdata/studio.exr", metavar="FILE", help="HDR panorama to use [testdata]")
     parser.add_argument("--mesh", type=pathlib.Path, default=TOP / "testdata/speed-shape.obj", metavar="FILE", help="mesh to use [testdata]")
+    parser.add_argument("--target-de00", type=float, metavar="X", help="instead: find and prove the cheapest settings that bring three scenes within X")
     options = parser.parse_args(arguments)
+    if options.target_de00 is not None and not options.target_de00 > 0:
+        parser.error(f"--target-de00 is {options.target_de00:g}: give a color difference above 0")
     for name in options.studies:
         if name not in available():
             parser.error(f"there is no study {name}: choose of {', '.join(available())}")
@@ -66,6 +69,9 @@ def main(arguments=None):
     if not os.access(folder / "render-osmesa", os.X_OK):
         print(f"accuracy-report: {folder}: the tools are not there: build them (cmake --preset release && cmake --build --preset release), or name their folder with --bin", file=sys.stderr)
         return 3
+    if options.target_de00 is not None:
+        with Run(folder.resolve(), options) as run:
+            return 0 if target.report(run, options.target_de00) else 1
     options.output.mkdir(parents=True, exist_ok=True)
     start = time.monotonic()
     studies = []
