@@ -46,6 +46,7 @@ BrightTexels::BrightTexels(const Environment& env, int most) : rest_(env.clipped
       const auto at = [&](double x, double y) { return env.direction_at(column + x, row + y); };
       texels_.push_back({area * excess, centroid, 2 * (at(0.75, 0.5) - at(0.25, 0.5)),
                          2 * (at(0.5, 0.75) - at(0.5, 0.25)), env.radius_rad(column, row, column + 1, row + 1)});
+      largest_radius_ = std::max(largest_radius_, texels_.back().radius_rad);
       centroids_.add(centroid, area * excess);
       for (const double i : {.21132486540518713, .78867513459481287})
         for (const double j : {.21132486540518713, .78867513459481287})
@@ -68,10 +69,16 @@ Vec3 BrightTexels::lobe(const Vec3& d, double exponent) const {
   Vec3 total = {sum[0], sum[1], sum[2]};
   // Where the horizon cuts a texel, or t^E bends beside it, its points are replaced by the patch, on which t is linear
   // but for r/5 of its change; a texel of radius r counts there r^E at most, so that is little.
-  for (std::size_t i = 0; i < texels_.size(); ++i) {
+  const double reach = exponent == 1 ? 1 : 4;
+  thread_local std::vector<std::size_t> near;
+  near.resize(texels_.size());
+  const std::size_t count = points_near_horizon(texels_.size(), centroids_.x.data(), centroids_.y.data(),
+                                                centroids_.z.data(), direction, reach * largest_radius_, near.data());
+  for (std::size_t n = 0; n < count; ++n) {
+    const std::size_t i = near[n];
     const Texel& texel = texels_[i];
     const double t = dot(d, texel.centroid);
-    if (std::fabs(t) > (exponent == 1 ? 1 : 4) * texel.radius_rad) continue;
+    if (std::fabs(t) > reach * texel.radius_rad) continue;
     for (std::size_t k = points.per_texel * i; k < points.per_texel * (i + 1); ++k) {
       const double power = cosine_power(dot(d, {points.x[k], points.y[k], points.z[k]}), exponent);
       for (int c = 0; c < 3; ++c) total[c] -= power * points.flux[3 * k + c];

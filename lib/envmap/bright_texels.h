@@ -28,6 +28,7 @@ class BrightTexels {
   };
   Environment rest_;
   std::vector<Texel> texels_;
+  double largest_radius_ = 0;
   // A texel as points, their flux as floats: its centroid, which is exact for E = 1 above the horizon, and four Gauss
   // points.
   struct Points {

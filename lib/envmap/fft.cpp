@@ -83,6 +83,32 @@ void Radix4(const Pass& f) {
   }
 }
 
+// A small odd r: the points once through registers, r^2 products with the r-th roots of unity, then the twiddles.
+template <std::size_t R>
+void OddRadix(const Pass& f) {
+  const hn::ScalableTag<double> d;
+  for (std::size_t p = 0; p < f.m; ++p)
+    for (std::size_t i = 0; i < f.run; i += hn::Lanes(d)) {
+      hn::Vec<decltype(d)> xr[R], xi[R];
+      for (std::size_t k = 0; k < R; ++k) {
+        xr[k] = hn::LoadU(d, f.x_re + (p + f.m * k) * f.run + i);
+        xi[k] = hn::LoadU(d, f.x_im + (p + f.m * k) * f.run + i);
+      }
+      for (std::size_t j = 0; j < R; ++j) {
+        auto sum_r = xr[0], sum_i = xi[0];
+        for (std::size_t k = 1; k < R; ++k) {
+          const std::size_t turn = j * k % R * f.m * f.stride;
+          const auto wr = hn::Set(d, f.cosine[turn]), wi = hn::Set(d, f.sign * f.sine[turn]);
+          sum_r = hn::MulAdd(xr[k], wr, hn::NegMulAdd(xi[k], wi, sum_r));
+          sum_i = hn::MulAdd(xr[k], wi, hn::MulAdd(xi[k], wr, sum_i));
+        }
+        const auto wr = hn::Set(d, f.cosine[j * p * f.stride]), wi = hn::Set(d, f.sign * f.sine[j * p * f.stride]);
+        hn::StoreU(hn::MulSub(sum_r, wr, hn::Mul(sum_i, wi)), d, f.y_re + (R * p + j) * f.run + i);
+        hn::StoreU(hn::MulAdd(sum_r, wi, hn::Mul(sum_i, wr)), d, f.y_im + (R * p + j) * f.run + i);
+      }
+    }
+}
+
 // Any other prime: r^2 products a point.
 void AnyRadix(const Pass& f) {
   const hn::ScalableTag<double> d;
@@ -107,6 +133,8 @@ void AnyRadix(const Pass& f) {
 void RunPass(const Pass& f) {
   if (f.r == 4) return Radix4(f);
   if (f.r == 2) return Radix2(f);
+  if (f.r == 3) return OddRadix<3>(f);
+  if (f.r == 5) return OddRadix<5>(f);
   AnyRadix(f);
 }
 

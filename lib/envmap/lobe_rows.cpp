@@ -4,6 +4,8 @@
 #define HWY_TARGET_INCLUDE "envmap/lobe_rows.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+
+#include <cmath>
 // After highway.h:
 #include <hwy/contrib/math/math-inl.h>
 
@@ -91,6 +93,33 @@ void Points(const float* rgb, std::size_t points, const double* x, const double*
       sum);
 }
 
+std::size_t NearHorizon(std::size_t points, const double* x, const double* y, const double* z,
+                        const double direction[3], double margin, std::size_t* found) {
+  const D d;
+  const std::size_t lanes = hn::Lanes(d);
+  std::size_t count = 0;
+  const auto dx = hn::Set(d, direction[0]), dy = hn::Set(d, direction[1]), dz = hn::Set(d, direction[2]);
+  std::size_t j = 0;
+  for (; j < points; j += lanes) {
+    // The last vector reaches back over points that were looked at.
+    const std::size_t at = j + lanes <= points || points < lanes ? j : points - lanes;
+    if (points < lanes) break;
+    const auto t =
+        hn::MulAdd(dx, hn::LoadU(d, x + at), hn::MulAdd(dy, hn::LoadU(d, y + at), hn::Mul(dz, hn::LoadU(d, z + at))));
+    const auto near = hn::Le(hn::Abs(t), hn::Set(d, margin));
+    if (hn::AllFalse(d, near)) continue;
+    for (std::size_t i = j; i < at + lanes; ++i) {
+      const double one = direction[0] * x[i] + (direction[1] * y[i] + direction[2] * z[i]);
+      if (std::fabs(one) <= margin) found[count++] = i;
+    }
+  }
+  for (; j < points && points < lanes; ++j) {
+    const double one = direction[0] * x[j] + (direction[1] * y[j] + direction[2] * z[j]);
+    if (std::fabs(one) <= margin) found[count++] = j;
+  }
+  return count;
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace goniochrome
 HWY_AFTER_NAMESPACE();
@@ -101,6 +130,7 @@ namespace goniochrome {
 HWY_EXPORT(LatLongRow);
 HWY_EXPORT(CubeRow);
 HWY_EXPORT(Points);
+HWY_EXPORT(NearHorizon);
 
 void add_lat_long_row(const float* rgb, std::size_t columns, const double* sine, const double* cosine, double a,
                       double b, double c, double exponent, double sum[3]) {
@@ -115,6 +145,11 @@ void add_cube_row(const float* rgb, std::size_t columns, const double* s, const 
 void add_points(const float* rgb, std::size_t points, const double* x, const double* y, const double* z,
                 const double d[3], double exponent, double sum[3]) {
   HWY_DYNAMIC_DISPATCH(Points)(rgb, points, x, y, z, d, exponent, sum);
+}
+
+std::size_t points_near_horizon(std::size_t points, const double* x, const double* y, const double* z,
+                                const double d[3], double margin, std::size_t* found) {
+  return HWY_DYNAMIC_DISPATCH(NearHorizon)(points, x, y, z, d, margin, found);
 }
 
 }  // namespace goniochrome

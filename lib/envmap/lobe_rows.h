@@ -18,4 +18,8 @@ void add_cube_row(const float* rgb, std::size_t columns, const double* s, const 
 void add_points(const float* rgb, std::size_t points, const double* x, const double* y, const double* z,
                 const double d[3], double exponent, double sum[3]);
 
+// The points with |d.(x,y,z)| <= margin: their indices in order to `found`, which has room for all. Returns how many.
+std::size_t points_near_horizon(std::size_t points, const double* x, const double* y, const double* z,
+                                const double d[3], double margin, std::size_t* found);
+
 }  // namespace goniochrome

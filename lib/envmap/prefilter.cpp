@@ -390,14 +390,13 @@ PrefilteredEnvironment prefiltered(const Environment& env, const PrefilterReques
   return result;
 }
 
-double energy_ratio(const Environment& env, const PrefilteredLobe& lobe) {
+double energy_ratio(const Vec3& flux, const PrefilteredLobe& lobe) {
   const SphereGrid grid = map_grid(lobe.layout, lobe.map.size);
   const float* rgb = lobe.map.texels.data();
   Vec3 sum;
   for (int row = 0; row < grid.height(); ++row)
     for (int column = 0; column < grid.width(); ++column, rgb += 3)
       sum += grid.solid_angle(column, row) * Vec3{rgb[0], rgb[1], rgb[2]};
-  const Vec3 flux = env.flux();
   const double all = flux.x + flux.y + flux.z;
   return all > 0 ? (sum.x + sum.y + sum.z) / all : 1;
 }

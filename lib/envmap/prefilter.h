@@ -58,8 +58,8 @@ PrefilteredEnvironment prefiltered(const Environment& env, const PrefilterReques
                                    const std::function<void(const PrefilteredLobe&, double time_s)>& done,
                                    const LobeSource& known = {});
 
-// The flux of a map over the flux of the environment, all channels together; 1 when nothing is lost. 1 where there is
+// The flux of a map over that of the environment, all channels together; 1 when nothing is lost. 1 where there is
 // no light.
-double energy_ratio(const Environment& env, const PrefilteredLobe& lobe);
+double energy_ratio(const Vec3& flux, const PrefilteredLobe& lobe);
 
 }  // namespace goniochrome

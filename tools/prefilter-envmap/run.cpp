@@ -207,11 +207,12 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   const bool within = options.verify == 0 || verify(options, env, request.turn, result, session);
   session.results()["verify_s"] = verify_clock.elapsed_s();
 
+  const Vec3 flux = env.flux();
   double worst = 0;
   std::vector<PrefilteredLobe*> lobes = all_lobes(result);
   for (std::size_t i = 0; i < lobes.size(); ++i) {
     worst = std::max(worst, lobes[i]->max_error);
-    session.results()["lobes"].push_back(report_of(plan[i], *lobes[i], timings[i], energy_ratio(env, *lobes[i])));
+    session.results()["lobes"].push_back(report_of(plan[i], *lobes[i], timings[i], energy_ratio(flux, *lobes[i])));
   }
   const Stopwatch write_clock;
   GONIO_TRY(write(options, result, session));
