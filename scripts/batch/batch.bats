@@ -1,0 +1,96 @@
+#!/usr/bin/env bats
+# scripts/batch without a workflow engine: what a batch makes, whatever the shards, and what it says of bad paints.
+
+batch() {
+  "$BATS_TEST_DIRNAME/paint-batch" "$@"
+}
+
+# whole OUT OPTION...: a batch of ten paints, one unreadable and one without a color.
+whole() {
+  local out=$1 n
+  shift
+  batch plan library.paints.xml --out "$out" --size 64x48 --env-size 16 --basis "$TESTDATA/b5.basis.xml" "$@"
+  for n in $(batch list "$out"); do batch shard "$out" "$n"; done
+  batch merge "$out" 2>"$out/said"
+}
+
+setup_file() {
+  cd "$BATS_FILE_TMPDIR"
+  paint-convert -q "$TESTDATA/paints.paints.xml" -o - | paint-stats -q -f paints -w 'class==metallic' >metallic.xml
+  {
+    awk '/<paint / && ++n > 8 { exit } { print }' metallic.xml
+    echo '<paint name="no_color" class="solid"><gloss angle="60">90</gloss></paint>'
+    echo '<paint name="misread"><measurement illuminant="D65" observer="10"><lab geometry="45as15" L="12,5" a="0" b="0"/></measurement></paint>'
+    echo '</paints>'
+  } >library.paints.xml
+  whole one --shard-paints 100
+}
+
+setup() {
+  cd "$BATS_FILE_TMPDIR"
+}
+
+@test "every paint has a row, a fit and a picture" {
+  [ "$(tail -n +2 one/report.tsv | wc -l)" -eq 9 ]
+  [ "$(jq .fitted one/report.json)" -eq 8 ]
+  [ "$(jq .pictures one/report.json)" -eq 8 ]
+  [ "$(find one/pictures -name '*.png' | wc -l)" -eq 8 ]
+  file one/pictures/*/000000.png | grep -q '64 x 48'
+  xmllint --noout --schema "$TESTDATA/../lib/paint/paint.xsd" one/fitted.paints.xml
+}
+
+@test "bad paints are reported by name and are not fatal" {
+  jq -r '.rejected[]' one/report.json | grep -q '12,5'
+  [ "$(jq -r '.failed[].name' one/report.json)" = no_color ]
+  [ -n "$(jq -r '.failed[0].fit' one/report.json)" ]
+}
+
+@test "the report is the same for any shards" {
+  whole three --shard-paints 3
+  whole each --shard-paints 1
+  for other in three each; do
+    cmp one/report.tsv "$other/report.tsv"
+    cmp one/report.json "$other/report.json"
+    cmp one/fitted.paints.xml "$other/fitted.paints.xml"
+    diff -r one/pictures "$other/pictures"
+  done
+}
+
+@test "a shard that was done is not done again, one that was interrupted keeps its pictures" {
+  cp -r one again
+  sed -i "s|$PWD/one|$PWD/again|g" again/plan.json
+  batch shard again 0
+  [ "$(wc -l <again/shards/0000/log)" -eq 1 ]
+  rm again/shards/0000/done.json
+  rm again/pictures/*/000003.png
+  touch -d 2000-01-01 again/pictures/*/*.png
+  batch shard again 0
+  [ "$(find again/pictures -name '*.png' -newermt 2001-01-01 | wc -l)" -eq 1 ]
+  batch merge again
+  cmp one/report.tsv again/report.tsv
+}
+
+@test "the plan tells its estimate, the merged report the time beside it" {
+  run batch plan library.paints.xml --out told --env --explain --basis "$TESTDATA/b5.basis.xml"
+  [ "$status" -eq 0 ]
+  [[ $output == *'estimate: '*' s of work'* ]]
+  grep -qE 'time in tools: [0-9.]+ s, estimated [0-9.]+ s' one/said
+}
+
+@test "a chapter of the book holds the pictures that were drawn" {
+  batch book one 0
+  [ "$(grep -oE 'data:image/png;base64' one/book-001.html | wc -l)" -ge 8 ]
+}
+
+@test "options: missing, wrong, right" {
+  run batch plan
+  [ "$status" -eq 2 ]
+  run batch plan library.paints.xml --out x --size big
+  [ "$status" -eq 2 ]
+  [[ $output == *'"big": give width x height'* ]]
+  run batch plan nowhere.xml --out x --env
+  [ "$status" -eq 3 ]
+  [[ $output == *nowhere.xml* ]]
+  run batch shard one ten
+  [ "$status" -eq 2 ]
+}

@@ -1,0 +1,42 @@
+# Shared by snakemake.bats and slurm.bats.
+
+batch() {
+  "$BATS_TEST_DIRNAME/paint-batch" "$@"
+}
+
+# local_run OUT: the workflow on two cores of this machine.
+local_run() {
+  snakemake -s "$BATS_TEST_DIRNAME/Snakefile" --config "out=$1" --cores 2 --keep-going --rerun-incomplete --nolock --quiet all
+}
+
+slurm_run() {
+  snakemake -s "$BATS_TEST_DIRNAME/Snakefile" --config "out=$1" --profile "$BATS_TEST_DIRNAME/slurm" --nolock
+}
+
+# plan OUT [N]: shards of N paints, small pictures.
+plan() {
+  batch plan library.paints.xml --out "$1" --size 64x48 --env-size 16 --basis "$TESTDATA/b5.basis.xml" --shard-paints "${2:-4}"
+}
+
+same_as_undisturbed() {
+  cmp undisturbed/report.tsv "$1/report.tsv"
+  cmp undisturbed/report.json "$1/report.json"
+  cmp undisturbed/fitted.paints.xml "$1/fitted.paints.xml"
+  diff -r undisturbed/pictures "$1/pictures"
+}
+
+# until_done OUT N: waits for N shards that are done.
+until_done() {
+  for _ in {1..600}; do
+    [ "$(find "$1/shards" -name done.json 2>/dev/null | wc -l)" -ge "$2" ] && return
+    sleep 0.1
+  done
+  return 1
+}
+
+# undisturbed: the batch that the others are held against.
+undisturbed() {
+  cp "$TESTDATA/paints.paints.xml" library.paints.xml
+  plan undisturbed
+  local_run undisturbed
+}

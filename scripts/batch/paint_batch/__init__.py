@@ -1,0 +1,1 @@
+"""The steps of a batch over a paint library."""

@@ -1,0 +1,107 @@
+"""Prepares what every shard shares, measures what a paint costs, and cuts the library into shards of like time."""
+
+import contextlib
+import pathlib
+import sys
+import tempfile
+import time
+
+from . import files, library
+from .steps import Shard
+from .tools import ToolError, Tools
+
+PROBE = 24  # paints whose cost is measured, spread over the library
+PICTURED = 3  # of them, those that are drawn
+JOB_S = 0.5  # what an engine and Python add to a shard
+
+
+def prepare(options, out):
+    """Writes the cleaned library, the environments and the index of colorsnap; gives back scenes and rejected paints."""
+    tools = Tools()
+    out.mkdir(parents=True, exist_ok=True)
+    clean = out / "library.paints.xml"
+    rejected = out / "rejected.json"
+    if not (clean.exists() and rejected.exists()):
+        converted, reports = out / "converted.paints.xml", [out / "convert.tmp.json", out / "clean.tmp.json"]
+        tools.run("paint-convert", "-q", "-k", "--report", reports[0], "--to", "xml", options.library, "-o", converted)
+        tools.run("paint-stats", "-q", "-k", "-f", "paints", "--report", reports[1], converted, "-o", clean)
+        files.write_json(rejected, [warning for report in reports for warning in files.read_json(report)["results"].get("warnings", [])])
+        for file in [converted, *reports]:
+            file.unlink()
+    scenes = []
+    for source in options.env:
+        env = pathlib.Path(source).absolute()
+        if not source.endswith(".env.exr"):
+            made = out / "environments" / f"{env.stem}.env.exr"
+            made.parent.mkdir(exist_ok=True)
+            if not made.exists():
+                tools.run("prefilter-envmap", "-q", "--size", options.env_size, "--basis", options.basis, source, "-o", made)
+            env = pathlib.Path("out") / made.relative_to(out)  # a scratch folder's link to the batch
+        scenes += [{"env": str(env), "mesh": str(pathlib.Path(mesh).absolute()), "view": view,
+                    "name": f"{pathlib.Path(source).name.split('.')[0]}-{pathlib.Path(mesh).stem}-{view}"}
+                   for mesh in options.mesh for view in options.view]
+    return scenes, tools.seconds
+
+
+def stream_seconds(work, paints, folder):
+    """Seconds of all steps but the pictures."""
+    work.tools.seconds = {}
+    for step in (work.fit, work.stats, work.index, work.snap):
+        work.tools.lines(step, paints, folder)
+    return sum(work.tools.seconds.values())
+
+
+def measured(plan, out, places):
+    """Seconds of a paint, a picture and a start of all tools, from PROBE paints, of which PICTURED are drawn."""
+    count = min(PROBE, len(places))
+    chosen = [places[i * len(places) // count] for i in range(count)]
+    paints = [library.paints_at(out / "library.paints.xml", place, place)[0] for place in chosen]
+    with tempfile.TemporaryDirectory(prefix="paint-batch-") as scratch:
+        folder = pathlib.Path(scratch)
+        work = Shard(plan, out)
+        work.tools.lines(work.snap, paints[:1], folder)  # makes the index that all shards map
+        start_s = stream_seconds(work, paints[:1], folder)
+        stream_s = max(0, stream_seconds(work, paints, folder) - start_s) / max(1, count - 1)
+        fitted = [fit[0] for fit in work.tools.lines(work.fit, paints, folder) if not isinstance(fit, ToolError)]
+        work.tools.seconds = {}
+        drawn = 0
+        for paint in fitted[:PICTURED]:
+            for scene in plan["scenes"]:
+                with contextlib.suppress(ToolError):
+                    work.draw(scene, paint, folder, "probe.png")
+                    drawn += 1
+        picture_s = work.tools.seconds.get("render-osmesa", 0) / max(1, drawn)
+    return {"start_s": start_s + JOB_S, "stream_s": stream_s, "picture_s": picture_s}
+
+
+def make(options):
+    """Writes plan.json into options.out; a plan that is there is kept, so that a batch taken up again has the same shards."""
+    out = options.out.absolute()
+    if (out / "plan.json").exists():
+        return files.read_json(out / "plan.json"), 0.0
+    started = time.monotonic()
+    scenes, _ = prepare(options, out)
+    places = list(library.places(out / "library.paints.xml"))
+    if not places:
+        raise ToolError(f"{options.library}: there is no paint in it that can be read")
+    plan = {"library": str(options.library), "basis": str(options.basis.absolute()), "gloss": options.gloss, "size": options.size,
+            "against": str(options.against.absolute() if options.against else out / "library.paints.xml"), "scenes": scenes,
+            "chapter": options.chapter, "paints": len(places), "cores": options.cores}
+    cost = measured(plan, out, places)
+    paint_s = cost["stream_s"] + cost["picture_s"] * len(scenes)
+    # A shard lasts about shard_s, and every core has two at least where that leaves a shard 20 times its overhead.
+    wanted = max(len(places) * paint_s / options.shard_s, min(2 * options.cores, len(places) * paint_s / (20 * cost["start_s"])))
+    size = options.shard_paints or max(1, round(len(places) / max(1, wanted)))
+    cuts = range(0, len(places), size)
+    plan["shards"] = [{"first": i, "places": [places[i], places[min(i + size, len(places)) - 1]]} for i in cuts]
+    work_s = len(places) * paint_s + len(cuts) * cost["start_s"]
+    plan["estimate"] = {**cost, "paint_s": paint_s, "work_s": work_s, "elapsed_s": work_s / min(options.cores, len(cuts))}
+    files.write_json(out / "plan.json", plan)
+    return plan, time.monotonic() - started
+
+
+def explain(plan, took_s):
+    e = plan["estimate"]
+    print(f"{plan['paints']} paints, {len(plan['scenes'])} pictures each, in {len(plan['shards'])} shards; prepared in {took_s:.1f} s\n"
+          f"measured: {e['stream_s'] * 1000:.1f} ms a paint to fit, tell, check and search, {e['picture_s'] * 1000:.0f} ms a picture\n"
+          f"estimate: {e['work_s']:.0f} s of work, {e['elapsed_s']:.0f} s on {plan['cores']} cores", file=sys.stderr)

@@ -1,0 +1,87 @@
+"""The merged report: what it holds depends on library and options alone, not on shards, times or restarts."""
+
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+from . import files, library
+from .steps import COLUMNS, picture_path
+
+
+def shard_folders(out, plan):
+    return [out / "shards" / f"{number:04d}" for number in range(len(plan["shards"]))]
+
+
+def merge(out):
+    """Writes report.tsv (a line a paint), report.json (summary and failures), fitted.paints.xml and times.json."""
+    plan = files.read_json(out / "plan.json")
+    summary = {"paints": 0, "fitted": 0, "pictures": 0, "rejected": files.read_json(out / "rejected.json"), "failed": []}
+    errors, seconds = [], {}
+    table, fitted = out / "report.tsv.partial", out / "fitted.paints.xml.partial"
+    with open(table, "w", encoding="utf-8") as rows, open(fitted, "w", encoding="utf-8") as paints:
+        print("\t".join(COLUMNS), file=rows)
+        paints.write(library.HEAD)
+        for folder in shard_folders(out, plan):
+            for row in files.read_json(folder / "rows.json"):
+                print("\t".join(cell(row[column]) for column in COLUMNS), file=rows)
+                summary["paints"] += 1
+                summary["fitted"] += "fit" not in row["failed"]
+                summary["pictures"] += row["pictures"]
+                if row["failed"]:
+                    summary["failed"].append({"paint": row["paint"], "name": row["name"], **row["failed"]})
+                if row["de00_max"] is not None:
+                    errors.append(row["de00_max"])
+            paints.write((folder / "fitted.txt").read_text(encoding="utf-8"))
+            for tool, spent in files.read_json(folder / "done.json")["tools_s"].items():
+                seconds[tool] = seconds.get(tool, 0) + spent
+        paints.write(library.TAIL)
+    errors.sort()
+    summary["fit_de00"] = {name: errors[int(share * (len(errors) - 1))] if errors else None
+                           for name, share in (("median", 0.5), ("p95", 0.95), ("max", 1))}
+    os.replace(table, out / "report.tsv")
+    os.replace(fitted, out / "fitted.paints.xml")
+    files.write_json(out / "times.json", {"estimate": plan["estimate"], "tools_s": seconds, "work_s": sum(seconds.values())})
+    files.write_json(out / "report.json", summary)
+    tell(plan, summary, sum(seconds.values()))
+    return summary
+
+
+def tell(plan, summary, work_s):
+    print(f"{summary['paints']} paints, {summary['fitted']} fitted, {summary['pictures']} pictures, "
+          f"{len(summary['failed'])} failed, {len(summary['rejected'])} messages about unreadable ones\n"
+          f"time in tools: {work_s:.1f} s, estimated {plan['estimate']['work_s']:.1f} s", file=sys.stderr)
+
+
+def cell(value):
+    if value is None:
+        return "n/a"
+    if isinstance(value, dict):
+        return "; ".join(f"{step}: {message}" for step, message in value.items())
+    return str(value).replace("\t", " ").replace("\n", " ")
+
+
+def book(out, chapter):
+    """Writes chapter `chapter` of the paint book, from the pictures of the first scene."""
+    plan = files.read_json(out / "plan.json")
+    first, last = chapter * plan["chapter"], (chapter + 1) * plan["chapter"]
+    scene = plan["scenes"][0]
+    skipped = {entry["paint"] for entry in files.read_json(out / "report.json")["failed"]}
+    numbers = [number for number in range(first, min(last, plan["paints"])) if number not in skipped]
+    places = list(library.places(out / "fitted.paints.xml"))
+    page = out / f"book-{chapter + 1:03d}.html"
+    with tempfile.TemporaryDirectory(prefix="paint-batch-") as scratch:
+        folder = pathlib.Path(scratch)
+        paints = [library.paints_at(out / "fitted.paints.xml", places[n], places[n])[0] for n in numbers]
+        files.write(folder / "chapter.paints.xml", library.document(paints))
+        (folder / "out").symlink_to(out, target_is_directory=True)
+        for index, number in enumerate(numbers):
+            shutil.copy(picture_path(out, scene, number), folder / f"{index}.png")
+        program = pathlib.Path(__file__).resolve().parents[2] / "paint-book"
+        width, height = plan["size"].split("x")
+        subprocess.run([program, folder / "chapter.paints.xml", "--quiet", "--jobs", "1", "--basis", plan["basis"], "--mesh", scene["mesh"],
+                        "--env", scene["env"], "--size", f"{width}x{height}", "--pictures", folder, "--title",
+                        f"Paints {first + 1} to {min(last, plan['paints'])}", "-o", page], check=True,
+                       cwd=folder)

@@ -1,0 +1,121 @@
+"""What is done with a shard: fit, indices, panel check, nearest paint, pictures, one row a paint."""
+
+import pathlib
+import tempfile
+
+from . import files, library
+from .tools import ToolError, Tools, json_lines
+
+COLUMNS = ["paint", "name", "class", "fit", "de00_max", "de00_mean", "gamut_de00", "flop_index", "chroma_index",
+           "hue_shift_index", "worst_deg", "nearest", "nearest_distance", "pictures", "failed"]
+
+
+class Shard:
+    def __init__(self, plan, out):
+        self.plan, self.out, self.tools = plan, out, Tools()
+
+    def fit(self, given, folder):
+        fitted, report = folder / "fitted.paints.xml", folder / "fit.json"
+        gloss = ["--gloss", self.plan["gloss"]] if self.plan["gloss"] else []
+        self.tools.run("fit-paint", "-q", "--threads", 1, "--basis", self.plan["basis"], *gloss, "--report", report, given, "-o", fitted)
+        return list(zip(library.cut(fitted.read_text(encoding="utf-8")), files.read_json(report)["results"]["paints"]))
+
+    def stats(self, given, folder):
+        out = folder / "stats.jsonl"
+        self.tools.run("paint-stats", "-q", "--threads", 1, "-f", "json", given, "-o", out)
+        return json_lines(out)
+
+    def index(self, given, folder):
+        report = folder / "index.json"
+        self.tools.run("goniogeom-index", "-q", "--threads", 1, "--worst", "--report", report, given, "-o", "/dev/null")
+        return files.read_json(report)["results"]["paints"]
+
+    def snap(self, given, folder):
+        out = folder / "snap.jsonl"
+        self.tools.run("colorsnap", "-q", "--threads", 1, "-l", self.plan["against"], "-k", 2, "-f", "json", given, "-o", out)
+        return json_lines(out)
+
+    def draw(self, scene, paint, folder, picture):
+        """Draws one picture, whole or not at all; `picture` is seen from `folder`, in which out is a link to the batch.
+
+        A picture tells the command that made it, so the paths in it are the same for any shard and folder.
+        """
+        files.write(folder / "alone.paints.xml", library.document([paint]))
+        if not (folder / "out").exists():
+            (folder / "out").symlink_to(self.out, target_is_directory=True)
+        self.tools.run("render-osmesa", "-q", "--threads", 1, "--mesh", scene["mesh"], "--env", scene["env"], "--paint",
+                       "alone.paints.xml", "--orbit", scene["view"], "--size", self.plan["size"], "--background",
+                       "0.3,0.3,0.3", "-o", picture, cwd=folder)
+
+    def pictures(self, number, paint, folder):
+        """Draws what is not there yet; gives back the number of pictures."""
+        for scene in self.plan["scenes"]:
+            if not picture_path(self.out, scene, number).exists():
+                self.draw(scene, paint, folder, picture_path("out", scene, number))
+        return len(self.plan["scenes"])
+
+    def rows(self, first, paints, folder):
+        """The row of each paint and its fitted text; a paint that fails keeps the message and goes no further."""
+        steps = {"fit": self.fit, "stats": self.stats, "index": self.index, "snap": self.snap}
+        results = {name: self.tools.lines(step, paints, folder) for name, step in steps.items()}
+        rows = []
+        for i, paint in enumerate(paints):
+            got = {name: result[i] for name, result in results.items()}
+            fitted = paint if isinstance(got["fit"], ToolError) else got["fit"][0]
+            row = row_of(first + i, got)
+            if "fit" not in row["failed"]:
+                try:
+                    row["pictures"] = self.pictures(first + i, fitted, folder)
+                except ToolError as error:
+                    row["failed"]["picture"] = without(error, folder)
+            row["failed"] = {step: without(message, folder) for step, message in row["failed"].items()}
+            rows.append((row, fitted))
+        return rows
+
+
+def picture_path(out, scene, number):
+    return pathlib.Path(out) / "pictures" / scene["name"] / f"{number:06d}.png"
+
+
+def without(message, folder):
+    """A message without the folder of this run and the line of its scratch file, so that sharding does not show in it."""
+    return str(message).replace(f"{folder}/", "")
+
+
+def row_of(number, got):
+    """One row from what the steps gave. Missing values are None."""
+    failed = {name: str(result) for name, result in got.items() if isinstance(result, ToolError)}
+    fit = {} if "fit" in failed else got["fit"][1]
+    stats, index, snap = ({} if name in failed else got[name] for name in ("stats", "index", "snap"))
+    if fit.get("status") == "failed":
+        failed["fit"] = fit.get("message") or "not fitted"
+    if index.get("status", "done") != "done":
+        failed["index"] = index.get("message") or index["status"]
+    name = stats.get("name") or fit.get("name")
+    nearest = next((match for match in snap.get("matches", []) if match["name"] != name), {})
+    return {"paint": number, "name": name, "class": stats.get("class"), "fit": fit.get("status"),
+            **{key: fit.get(key) for key in ("de00_max", "de00_mean", "gamut_de00")},
+            **{key: stats.get(key) for key in ("flop_index", "chroma_index", "hue_shift_index")},
+            "worst_deg": index.get("worst_deg"), "nearest": nearest.get("name"), "nearest_distance": nearest.get("distance"),
+            "pictures": 0, "failed": failed}
+
+
+def run_shard(out, number):
+    """Does shard `number` of the plan in `out`, unless it is done; says so by done.json, written last."""
+    plan = files.read_json(out / "plan.json")
+    shard = plan["shards"][number]
+    folder = out / "shards" / f"{number:04d}"
+    with files.locked(folder):
+        if (folder / "done.json").exists():
+            return
+        with open(folder / "log", "a", encoding="utf-8") as log:
+            print("begun", file=log)
+        for scene in plan["scenes"]:
+            picture_path(out, scene, 0).parent.mkdir(parents=True, exist_ok=True)
+        work = Shard(plan, out)
+        with tempfile.TemporaryDirectory(prefix="paint-batch-") as scratch:
+            paints = library.paints_at(out / "library.paints.xml", *shard["places"])
+            rows = work.rows(shard["first"], paints, pathlib.Path(scratch))
+        files.write(folder / "fitted.txt", "".join(f"  {fitted}\n" for _, fitted in rows))
+        files.write_json(folder / "rows.json", [row for row, _ in rows])
+        files.write_json(folder / "done.json", {"tools_s": work.tools.seconds})

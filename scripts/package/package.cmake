@@ -1,0 +1,65 @@
+# What is installed beside the tools, and the Debian package. Included by the top CMakeLists.txt.
+
+# The tools' own files are the component "tools", which the package holds; the library for other programs is
+# "development", which `cmake --install` adds.
+set(modules base math color paint brdf image envmap mesh fit render report)
+foreach(module ${modules})
+  set_target_properties(goniochrome_${module} PROPERTIES EXPORT_NAME ${module})
+  target_include_directories(goniochrome_${module} PUBLIC $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/goniochrome>)
+  install(TARGETS goniochrome_${module} EXPORT goniochrome ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
+  install(
+    DIRECTORY ${PROJECT_SOURCE_DIR}/lib/${module}
+    DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/goniochrome
+    COMPONENT development
+    FILES_MATCHING
+    PATTERN "*.h"
+    PATTERN "*_for_test.h" EXCLUDE
+    PATTERN "oiio" EXCLUDE)
+endforeach()
+
+include(CMakePackageConfigHelpers)
+set(config_folder ${CMAKE_INSTALL_LIBDIR}/cmake/Goniochrome)
+configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/GoniochromeConfig.cmake.in ${PROJECT_BINARY_DIR}/GoniochromeConfig.cmake
+                              INSTALL_DESTINATION ${config_folder})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/GoniochromeConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(EXPORT goniochrome NAMESPACE goniochrome:: FILE GoniochromeTargets.cmake DESTINATION ${config_folder} COMPONENT development)
+install(FILES ${PROJECT_BINARY_DIR}/GoniochromeConfig.cmake ${PROJECT_BINARY_DIR}/GoniochromeConfigVersion.cmake
+        DESTINATION ${config_folder} COMPONENT development)
+
+# Scripts that work on an installed toolchain; they find the sample data beside them.
+install(
+  DIRECTORY ${PROJECT_SOURCE_DIR}/scripts/batch ${PROJECT_SOURCE_DIR}/scripts/paint_book
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/goniochrome/scripts
+  USE_SOURCE_PERMISSIONS
+  PATTERN "__pycache__" EXCLUDE
+  PATTERN "*.bats" EXCLUDE
+  PATTERN "*_test.bash" EXCLUDE)
+install(PROGRAMS ${PROJECT_SOURCE_DIR}/scripts/paint-book DESTINATION ${CMAKE_INSTALL_DATADIR}/goniochrome/scripts)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME goniochrome)
+set(CPACK_PACKAGE_CONTACT "The Goniochrome authors <goniochrome@example.org>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "computer-aided color appearance design of effect paints")
+set(CPACK_PACKAGE_DESCRIPTION
+    "Single-purpose tools that take a measured or designed goniochromatic paint\n(metallic, pearl, interference) to a picture under real HDR light and to\nthe aspecular Lab file that a formulation system mixes from.")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
+    OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_COMPONENTS_ALL tools)
+set(CPACK_COMPONENTS_GROUPING ALL_COMPONENTS_IN_ONE)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "libosmesa6") # opened at run time, so no program names it
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "snakemake, parallel, openimageio-tools")
+set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_LIST_DIR}/debian-files.cmake)
+set(CPACK_GONIOCHROME_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+include(CPack)
+
+if(GONIOCHROME_TESTS)
+  add_test(NAME project.consumer COMMAND ${CMAKE_CURRENT_LIST_DIR}/consumer_test.sh ${PROJECT_BINARY_DIR} ${CMAKE_CXX_COMPILER})
+  set_tests_properties(project.consumer PROPERTIES TIMEOUT 300)
+endif()
