@@ -1,12 +1,14 @@
 #include "envmap/prefilter.h"
 
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
 #include <cmath>
 #include <functional>
 #include <random>
 
 #include "base/parallel.h"
+#include "envmap/bright_texels.h"
 #include "envmap/mirror.h"
 #include "envmap/patch.h"
 #include "envmap/reference.h"
@@ -79,7 +81,7 @@ TEST(Prefilter, HardCase_prefilter_seam_a_constant_map_stays_itself) {
     even += k * k, all += 1;
   }
   EXPECT_GT(std::fabs(even / all / (1.0 / 6) - 1), 0.1);  // the mean of max(0,y)^2 over the sphere is 1/6
-  const PrefilteredEnvironment result = run(env, {{0, 1.3, 6, 70, 900, 1e5}, true, 3, 1e-6});
+  const PrefilteredEnvironment result = run(env, {{0, 1.3, 6, 70, 900, 1e5}, true, 2, 1e-6});
   for (const PrefilteredLobe* lobe : all_of(result))
     each_texel(lobe->map, [&](const Vec3&, const float* rgb) {
       EXPECT_NEAR(rgb[0], 1, 1e-6) << lobe->exponent;
@@ -153,11 +155,11 @@ TEST(Prefilter, HardCase_prefilter_sun_the_textbook_form_fails) {
 }
 
 TEST(Prefilter, HardCase_prefilter_exponent_every_lobe_keeps_the_tolerance) {
-  const Environment env = outdoors(80);
+  const Environment env = outdoors(64);
   for (const double tolerance : {1e-2, 1e-4}) {
-    const PrefilteredEnvironment result = run(env, {{0, 0.3, 1.3, 2, 3.5, 6, 250, 3000, 1e5}, true, 4, tolerance});
+    const PrefilteredEnvironment result = run(env, {{0.3, 1.3, 3.5, 250, 1e5}, true, 2, tolerance});
     for (const PrefilteredLobe* lobe : all_of(result))
-      EXPECT_LE(lobe_error(env, *lobe, 15, 5, 1).max, tolerance) << lobe->exponent;
+      EXPECT_LE(lobe_error(env, *lobe, 4, 2, 1).max, tolerance) << lobe->exponent;
   }
 }
 
@@ -187,23 +189,23 @@ TEST(Prefilter, turns_with_the_map) {
     const float* rgb = env.radiance((x + 32) % 128, y);
     return Vec3{rgb[0], rgb[1], rgb[2]};
   });
-  const PrefilterRequest request = {{6, 250}, true, 8, 1e-5};
+  const PrefilterRequest request = {{6, 250}, true, 4, 1e-4};
   const PrefilteredEnvironment a = run(env, request), b = run(turned, request);
   // Column 0 looks along -Z and column 32 along +X: what was in +X is now in -Z, and so on around.
   const int from[] = {4, 5, -1, -1, 1, 0};
   for (std::size_t i = 0; i < all_of(a).size(); ++i)
     for (int face = 0; face < 6; ++face) {
       if (from[face] < 0) continue;
-      for (int row = 0; row < 8; ++row)
-        for (int column = 0; column < 8; ++column)
+      for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 4; ++column)
           EXPECT_NEAR(all_of(b)[i]->map.at(face, row, column)[0] / all_of(a)[i]->map.at(from[face], row, column)[0], 1,
-                      3e-5);
+                      3e-4);
     }
 }
 
 TEST(Prefilter, HardCase_threads_bits_do_not_depend_on_their_number) {
   const Environment env = outdoors(64);
-  const PrefilterRequest request = {{0.3, 1.3, 70, 1e5}, true, 3, 1e-3};
+  const PrefilterRequest request = {{0.3, 1.3, 70, 1e5}, true, 1, 1e-2};
   set_threads(1);
   const PrefilteredEnvironment one = run(env, request);
   for (const int threads : {2, 7}) {
@@ -226,25 +228,56 @@ TEST(Prefilter, turns_by_any_angle_and_into_any_layout) {
   CubeMap map(24);
   map.texels = mirror_values(flat, map_grid(Layout::kCube, 24), {});
   const Environment cube = Environment::from_cube(map, "cube");
-  for (const Environment& env : {flat, cube, probe(128)})
+  for (const Environment& env : {flat, cube, probe(64)})
     for (const Layout layout : {Layout::kCube, Layout::kCubeEdges, Layout::kLatLong}) {
-      const PrefilterRequest request = {{250}, true, 4, 1e-4, layout, Rotation::about_axes(0.7, -0.4, 2.1)};
+      const PrefilterRequest request = {{250}, true, 4, 1e-4, layout, Rotation::about_axes(0.7, -0.4, 2.1), {}, false};
       const PrefilteredEnvironment result = run(env, request);
       for (const PrefilteredLobe* lobe : {&result.lobes[0], &result.mirror}) {
         EXPECT_EQ(lobe->layout, layout);
         const bool mirror = std::isinf(lobe->exponent);
         // The search for the mirror's mean takes edges as straight over 1/128 of a texel, and the overlaps of a probe
-        // take the density as even over a texel (h^2 pi^2/24 = 1e-4); that counts by the contrast of 40.
-        EXPECT_LE(lobe_error(env, *lobe, 6, 1, 1, request.turn).max, mirror ? 4e-3 : request.tolerance)
+        // take the density as even over a texel (h^2 pi^2/24 = 4e-4); that counts by the contrast of 40.
+        EXPECT_LE(lobe_error(env, *lobe, 3, 1, 1, request.turn).max, mirror ? 1e-2 : request.tolerance)
             << lobe->exponent << " from " << int(env.layout()) << " to " << int(layout);
         if (mirror) {
-          EXPECT_NEAR(energy_ratio(env.flux(), *lobe), 1, env.layout() == Layout::kAngular ? 3e-4 : 1e-4)
+          EXPECT_NEAR(energy_ratio(env.flux(), *lobe), 1, env.layout() == Layout::kAngular ? 1e-3 : 1e-4)
               << int(env.layout()) << " to " << int(layout);
         }
       }
       // Left as it was, it is another scene.
       EXPECT_GT(lobe_error(env, result.lobes[0], 6, 2, 1).max, 0.01);
     }
+}
+
+// Vectors of every width the machine has give the same sums but for their order: 1e-12 in double precision, then
+// rounded to a float.
+TEST(Prefilter, vectors_of_any_width_agree) {
+  const Environment env = outdoors(64);
+  const PrefilterRequest request = {{20, 250, 1e4}, true, 2, 1e-4, Layout::kCube, {}, {}, false};
+  const BrightTexels bright(env, 2);
+  ASSERT_EQ(bright.count(), 2U);
+  const auto everything = [&] {
+    const PrefilteredEnvironment maps = run(env, request);
+    std::vector<double> values;
+    for (const PrefilteredLobe& lobe : maps.lobes)
+      values.insert(values.end(), lobe.map.texels.begin(), lobe.map.texels.end());
+    for (int row = 0; row < env.height(); ++row)
+      for (const double exponent : {1.0, 1.3}) values.push_back(1 + bright.lobe(env.direction(row, row), exponent).x);
+    values.push_back(reference_lobe(env, {0, 0, 1}, 6).y);
+    return values;
+  };
+  const std::vector<double> widest = everything();
+  const std::int64_t all = hwy::SupportedTargets();
+  for (const std::int64_t target :
+       {std::int64_t{HWY_STATIC_TARGET}, std::int64_t{HWY_SSE4}, std::int64_t{HWY_AVX2}, std::int64_t{HWY_AVX3}}) {
+    if (target != HWY_STATIC_TARGET && (all & target) == 0) continue;
+    hwy::SetSupportedTargetsForTest(target | HWY_STATIC_TARGET);
+    const std::vector<double> other = everything();
+    ASSERT_EQ(other.size(), widest.size());
+    for (std::size_t i = 0; i < other.size(); ++i)
+      ASSERT_NEAR(other[i] / widest[i], 1, 2e-6) << hwy::TargetName(target) << " " << i;
+  }
+  hwy::SetSupportedTargetsForTest(0);
 }
 
 // Cubes go the same way, whichever convention they came in.

@@ -93,13 +93,15 @@ class RowCosines {
   int row_ = 0;
 };
 
-// The part of itself that a texel cut by the horizon may be off by, so that no more flux than `allowed` is.
-double at_horizon(const Environment& env, const Cell& cell, const float* rgb, double exponent, double allowed) {
+// The part of itself that a texel cut by the horizon may be off by, so that no more flux than `allowed` is; no
+// less than `least`.
+double at_horizon(const Environment& env, const Cell& cell, const float* rgb, double exponent, double allowed,
+                  double least) {
   const double radius = env.radius_rad(cell.column0, cell.row0, cell.column1, cell.row1);
   const double share = std::max({rgb[0], rgb[1], rgb[2]}) *
                        env.solid_angle(cell.column0, cell.row0, cell.column1, cell.row1) *
                        std::pow(std::min(1.0, 2 * radius), exponent);
-  return std::clamp(allowed / share, 1e-7, 0.1);
+  return std::clamp(allowed / share, least, 0.1);
 }
 
 // The texels whose quadrature the horizon spoils, done one by one; `done` tells the row sum to leave them out.
@@ -124,8 +126,8 @@ class HorizonRow {
       float* rgb = &rgb_[3 * static_cast<std::size_t>(column)];
       if (rgb[0] == 0 && rgb[1] == 0 && rgb[2] == 0) continue;
       const Cell whole = {double(column), double(row), double(column + 1), double(row + 1)};
-      const double k =
-          lobe_over_cell(env, whole, d, exponent, kRelative, at_horizon(env, whole, rgb, exponent, allowed));
+      const double k = lobe_over_cell(env, whole, d, exponent, kRelative,
+                                      at_horizon(env, whole, rgb, exponent, allowed, 10 * kRelative));
       sum_ += k * Vec3{rgb[0], rgb[1], rgb[2]};
       std::fill(rgb, rgb + 3, 0.0F);
     }
@@ -194,7 +196,8 @@ class Summation {
       const float* rgb = env_.radiance(column, row);
       if (rgb[0] == 0 && rgb[1] == 0 && rgb[2] == 0) continue;
       const Cell cell = {double(column), double(row), column + 1.0, row + 1.0};
-      sum += lobe_over_cell(env_, cell, d, exponent_, kRelative, at_horizon(env_, cell, rgb, exponent_, allowed_)) *
+      sum += lobe_over_cell(env_, cell, d, exponent_, kRelative,
+                            at_horizon(env_, cell, rgb, exponent_, allowed_, 100 * kRelative)) *
              Vec3{rgb[0], rgb[1], rgb[2]};
     }
     return sum;

@@ -46,7 +46,7 @@ Vec3 random_direction(std::mt19937_64& random) {
 // A constant map stays itself, for every exponent and layout; only the pieces along the horizon are not exact.
 TEST(Reference, constant_map_is_one) {
   std::vector<Environment> all;
-  for (const int height : {1, 3, 40}) all.push_back(lat_long(height, [](const Vec3&) { return Vec3{1, 1, 1}; }));
+  for (const int height : {1, 3, 64}) all.push_back(lat_long(height, [](const Vec3&) { return Vec3{1, 1, 1}; }));
   all.push_back(lat_long(
       3,
       [](const Vec3&) {
@@ -54,12 +54,12 @@ TEST(Reference, constant_map_is_one) {
       },
       7));
   all.push_back(cube(1, 1));
-  all.push_back(cube(24, 1));
+  all.push_back(cube(16, 1));
   all.push_back(cube_edges(2));
-  all.push_back(cube_edges(17));
+  all.push_back(cube_edges(9));
   std::mt19937_64 random(1);
   for (const Environment& env : all)
-    for (const double exponent : {0.0, 0.3, 1.0, 6.0, 70.0, 3000.0, 1e5}) {
+    for (const double exponent : {0.0, 0.3, 1.0, 6.0, 3000.0}) {
       const Vec3 d = random_direction(random);
       EXPECT_NEAR(reference_lobe(env, d, exponent).x, 1, exponent < 1 ? 1e-6 : 1e-7)
           << "width " << env.width() << " exponent " << exponent;
@@ -75,7 +75,7 @@ TEST(Reference, rows_equal_the_recursion_texel_by_texel) {
   for (float& v : map.texels) v = static_cast<float>(unit(random));
   const Environment box = Environment::from_cube(map, "box");
   for (const Environment* env : {&flat, &box})
-    for (const double exponent : {0.0, 0.3, 1.0, 1.3, 2.0, 6.0, 70.0, 900.0, 3e4}) {
+    for (const double exponent : {0.0, 0.3, 1.3, 6.0, 900.0, 3e4}) {
       const Vec3 d = random_direction(random);
       Vec3 sum;
       for (int row = 0; row < env->height(); ++row)
