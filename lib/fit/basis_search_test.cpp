@@ -119,6 +119,24 @@ TEST(BasisSearch, TimeLimitKeepsTheBestSoFar) {
   EXPECT_LT(search.sets.size(), 11u);
 }
 
+TEST(BasisTargets, MeasuredBrdfIsAveragedByAspecularAngle) {
+  BrdfTarget brdf;
+  brdf.paint.name = "one lobe";
+  for (int i = 0; i < 2000; ++i) {
+    const double angle = 5 + 0.055 * i;
+    const double value = 0.1 + cos_power(angle * std::numbers::pi / 180, 12);
+    brdf.samples.push_back({angle * std::numbers::pi / 180, 30, 30, {value, value / 2, value / 4}});
+    brdf.samples.push_back({angle * std::numbers::pi / 180, 30, 80, {9, 9, 9}});  // too steep to count
+  }
+  const auto target = basis_target(brdf, {});
+  ASSERT_TRUE(target.ok());
+  EXPECT_EQ(target->angles_deg.size(), 40u);
+  EXPECT_LT(basis_error({12}, *target), 0.2) << "means over 2.5 deg of a lobe that bends";
+  EXPECT_GT(basis_error({3}, *target), 1);
+  brdf.samples.resize(2);
+  EXPECT_FALSE(basis_target(brdf, {}).ok());
+}
+
 TEST(BasisTargets, SolidPaintNeedsNoLobe) {
   Paint paint;
   paint.name = "gray";

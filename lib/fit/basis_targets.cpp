@@ -32,6 +32,39 @@ Result<BasisTarget> basis_target(const Paint& paint, const BasisTargetOptions& o
   return target;
 }
 
+Result<BasisTarget> basis_target(const BrdfTarget& brdf, const BasisTargetOptions& options) {
+  constexpr double kStep_deg = 2.5, kLast_deg = 110, kSteepest_deg = 75;
+  constexpr auto kBins = static_cast<std::size_t>((kLast_deg - kGlareAngle_deg) / kStep_deg);
+  struct Bin {
+    double count = 0, angle_deg = 0;
+    Rgb sum;
+  };
+  std::vector<Bin> bins(kBins);
+  for (const BrdfSample& sample : brdf.samples) {
+    const double angle_deg = sample.aspecular_rad * (180 / std::numbers::pi);
+    const double at = (angle_deg - kGlareAngle_deg) / kStep_deg;
+    if (at < 0 || at >= static_cast<double>(kBins)) continue;
+    if (std::max(sample.light_deg, sample.view_deg) > kSteepest_deg) continue;
+    Bin& bin = bins[static_cast<std::size_t>(at)];
+    ++bin.count, bin.angle_deg += angle_deg, bin.sum += sample.value;
+  }
+  GONIO_ASSIGN(const Xyz white, white_point({"D65", 2}));
+  BasisTarget target;
+  target.name = brdf.paint.name;
+  for (const Bin& bin : bins) {
+    if (bin.count == 0) continue;
+    const Rgb mean = (1 / bin.count) * bin.sum;
+    target.angles_deg.push_back(bin.angle_deg / bin.count);
+    for (int c = 0; c < 3; ++c) {
+      target.value[c].push_back(std::max(mean[c], 0.0));
+      target.weight[c].push_back(options.perceptual_weights ? lightness_slope(lab_from_rgb(mean, white).L) : 1);
+    }
+  }
+  if (target.angles_deg.size() < 2)
+    return input_error("{}: has directions at less than two aspecular angles: a basis needs more", target.name);
+  return target;
+}
+
 double basis_de00(const std::vector<double>& exponents, const BasisTarget& target) {
   const int rows = static_cast<int>(target.angles_deg.size()), columns = static_cast<int>(exponents.size()) + 1;
   std::vector<Rgb> fitted(static_cast<std::size_t>(rows));

@@ -4,6 +4,7 @@
 
 #include "base/result.h"
 #include "fit/basis_search.h"
+#include "fit/brdf_target.h"
 #include "paint/curve.h"
 #include "paint/paint.h"
 
@@ -19,6 +20,10 @@ struct BasisTargetOptions {
 // the paint has no rows beyond glare and no appearance, or its illuminant is
 // unknown.
 Result<BasisTarget> basis_target(const Paint& paint, const BasisTargetOptions& options);
+
+// The same for a measured BRDF: means over all directions to 75 deg from the normal, in steps of 2.5 deg of the
+// aspecular angle from 10 to 110. Error: fewer than two steps hold a direction.
+Result<BasisTarget> basis_target(const BrdfTarget& brdf, const BasisTargetOptions& options);
 
 // The largest dE00 over the sample angles between a target and its best fit
 // with these exponents.

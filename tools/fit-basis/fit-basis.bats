@@ -42,6 +42,18 @@ quick=(--lobes 2 --starts 1 --angles 12)
   grep -q 'name="mine"' b.basis.xml
 }
 
+@test "measured BRDFs take part" {
+  awk 'BEGIN { print "3\n400 550 700"
+    for (ti = 0; ti < 1.3; ti += 0.2) for (to = 0; to < 1.3; to += 0.1) for (az = 0; az <= 3.1; az += 0.3) {
+      c = cos(ti) * cos(to) - sin(ti) * sin(to) * cos(az); f = 0.02 + (c > 0 ? 0.3 * c ^ 9 : 0)
+      print ti, 0, to, az, f, f, f } }' >nine.brdf
+  fit-basis --quiet --lobes 1 --starts 2 nine.brdf -o b.basis.xml --report r.json
+  exponent=$(sed -nE 's/.*<exponent>(.*)<.exponent>.*/\1/p' b.basis.xml)
+  awk -v e="$exponent" 'BEGIN { exit !(e > 8.5 && e < 9.5) }'
+  fit-basis "${quick[@]}" --quiet nine.brdf "$TESTDATA/paints.paints.xml" -o b.basis.xml --report r.json
+  grep -q '"paints": 60' r.json
+}
+
 @test "the time limit is kept and told" {
   run fit-basis --lobes 1..11 --time-limit 0.2 "$TESTDATA/paints.paints.xml" -o b.basis.xml
   [ "$status" -eq 4 ]

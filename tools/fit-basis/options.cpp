@@ -92,7 +92,10 @@ cli::ToolSpec tool_spec(Options& o) {
                    .target = &o.plot}},
       .inputs =
           cli::Positional{
-              .value = "PAINTS", .help = "paint XML files, - is standard input", .target = &o.paints, .low = 0},
+              .value = "PAINTS",
+              .help = "paint XML files or measured BRDFs, - is standard input",
+              .target = &o.paints,
+              .low = 0},
       .examples = {{"fit-basis --lobes 5 testdata/paints.paints.xml -o my.basis.xml",
                     "chooses five exponents for the sample library"},
                    {"fit-basis --lobes 1..4 --starts 2 --table sets.csv --plot "

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/file.h"
+#include "base/input.h"
 #include "base/text.h"
 #include "fit/basis_search.h"
 #include "fit/basis_targets.h"
@@ -37,7 +38,15 @@ Result<std::vector<BasisTarget>> read_targets(const Options& options, cli::Sessi
       options.weights == "perceptual"};
   std::vector<BasisTarget> targets;
   for (const std::string& path : options.paints.empty() ? std::vector<std::string>{"-"} : options.paints) {
-    GONIO_ASSIGN(PaintReader reader, PaintReader::open(path));
+    GONIO_ASSIGN(InputFile file, InputFile::open(path));
+    GONIO_ASSIGN(const std::string_view head, file.peek());
+    if (looks_measured(path, head)) {
+      GONIO_ASSIGN(const BrdfTarget brdf, read_brdf_target(file));
+      GONIO_ASSIGN(BasisTarget target, basis_target(brdf, target_options));
+      targets.push_back(std::move(target));
+      continue;
+    }
+    PaintReader reader(std::move(file));
     for (;;) {
       GONIO_ASSIGN(const std::optional<Paint> paint, reader.next());
       if (!paint) break;
