@@ -1,5 +1,6 @@
 #include "brdf/sbrdf.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace goniochrome {
@@ -8,8 +9,10 @@ SbrdfTexel sbrdf_texel(const SbrdfTexture& texture, int column, int row) {
   const float* at = texture.texel(column, row);
   SbrdfTexel texel;
   texel.surface.diffuse = {at[0], at[1], at[2]};
-  const double angle_rad = 0.5 * std::atan2(at[4], at[3]);
-  texel.x_tangent = std::cos(angle_rad), texel.x_bitangent = std::sin(angle_rad);
+  // The half of an angle -180..180 deg lies at -90..90: its cosine is not negative, its sine has the sign of the whole.
+  const double size = std::hypot(at[3], at[4]), cosine = size > 0 ? at[3] / size : 1;
+  texel.x_tangent = std::sqrt(std::max(0.5 * (1 + cosine), 0.0));
+  texel.x_bitangent = std::copysign(std::sqrt(std::max(0.5 * (1 - cosine), 0.0)), at[4]);
   texel.surface.lobes.reserve(static_cast<std::size_t>(texture.lobes));
   for (int lobe = 0; lobe < texture.lobes; ++lobe) {
     const float* l = at + 5 + 7 * lobe;
