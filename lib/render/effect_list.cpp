@@ -99,8 +99,8 @@ std::string reflection_reason(const Scene& scene, const Effects& all) {
 }  // namespace
 
 const std::vector<std::string>& effect_groups() {
-  static const std::vector<std::string> groups = {"diffuse", "lobes",      "gloss",  "mirror",   "fresnel",
-                                                  "horizon", "anisotropy", "travel", "operator", "lights"};
+  static const std::vector<std::string> groups = {"diffuse",    "lobes",  "gloss",   "mirror",   "fresnel", "horizon",
+                                                  "anisotropy", "travel", "texture", "operator", "lights"};
   return groups;
 }
 
@@ -108,7 +108,7 @@ std::vector<EffectSwitch> effect_switches(const Scene& scene, const Effects& all
                                           const std::vector<VisiblePoint>& seen) {
   std::vector<EffectSwitch> list;
   const auto add = [&](const char* name, bool needed, const std::string& reason, std::function<void(Effects&)> off) {
-    list.push_back({name, name, needed, reason, std::move(off)});
+    list.push_back({name, name, needed, reason, std::move(off), std::string_view(name) != "texture"});
   };
   const bool diffuse =
       std::any_of(scene.paints.begin(), scene.paints.end(), [](const LobeFit& p) { return p.diffuse != Rgb{}; });
@@ -128,12 +128,20 @@ std::vector<EffectSwitch> effect_switches(const Scene& scene, const Effects& all
       [](Effects& e) { e.fresnel = false; });
   add("horizon", all.horizon, horizon_reason(all, seen), [](Effects& e) { e.horizon = false; });
   add("anisotropy", all.anisotropy, anisotropy_reason(scene, all), [](Effects& e) { e.anisotropy = false; });
-  add("travel", all.views,
-      all.views ? "weights change with the view" : "no visible paint has weights for several views",
-      [](Effects& e) { e.views = false; });
+  add("travel", all.views || all.maps,
+      all.views && all.maps ? "weights change with the view, and a color map under lights"
+      : all.views           ? "weights change with the view"
+      : all.maps            ? "a color map under lights"
+                            : "no visible paint has a color map or weights for several views",
+      [](Effects& e) { e.views = e.maps = false; });
+  add("texture", all.texture, all.texture ? "all that its parts show" : "no visible part has a texture",
+      [](Effects& e) { e.texture = false; });
   add("operator", all.reflection, reflection_reason(scene, all), [](Effects& e) { e.reflection = false; });
   add("lights", all.lights > 0, fmt::format("{} directional light{}", all.lights, all.lights == 1 ? "" : "s"),
-      [](Effects& e) { e.lights = 0; });
+      [](Effects& e) {
+        e.lights = 0;
+        e.maps = false;
+      });
   return list;
 }
 

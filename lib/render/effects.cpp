@@ -6,6 +6,7 @@
 
 #include "brdf/lobe_model.h"
 #include "render/lobe_curves.h"
+#include "render/surface_layer.h"
 
 namespace goniochrome {
 
@@ -25,13 +26,13 @@ class SlotValues {
     if (effects.fresnel) fresnel_scale_ = 1 / fresnel_dielectric(std::cos(gloss_deg * kPi / 180), kCoatIndex);
   }
 
-  // `node` counts the ends of the segments; a table of one segment has the view cos_o = 0 at its start and 1 at its
-  // end.
-  const std::vector<Rgb>& at(const LobeFit& paint, double cos_o, int node) {
+  // `lit` is what lights meet. `node` counts the ends of the segments; a table of one segment has the view cos_o = 0 at
+  // its start and 1 at its end.
+  const std::vector<Rgb>& at(const LobeFit& paint, const LobeFit& lit, double cos_o, int node) {
     std::fill(values_.begin(), values_.end(), Rgb{});
     if (effects_.diffuse) {
       set(WeightTable::diffuse_slot(), kPi * paint.diffuse);
-      set(table_.light_slot(), paint.diffuse);
+      set(table_.light_slot(), lit.diffuse);
     }
     for (std::size_t j = 0; j < effects_.lobes.size(); ++j) {
       const Effects::LobeUse& use = effects_.lobes[j];
@@ -42,8 +43,10 @@ class SlotValues {
       const LobeIntegrals seen = table_.segments > 1 ? lobe_curve(use.exponent, table_.segments, effects_.horizon)[node]
                                                      : lobe_integrals(use.exponent, cos_o, false);
       set(WeightTable::lobe_slot(j), seen.cosine * flake + (effects_.fresnel ? seen.fresnel : seen.plain) * gloss);
-      set(table_.directional_diffuse_slot(j), flake);
-      set(table_.gloss_slot(j), gloss);
+      const Lobe* met = find_lobe(lit, use.exponent);
+      if (met == nullptr) continue;
+      if (use.directional_diffuse) set(table_.directional_diffuse_slot(j), met->directional_diffuse);
+      if (use.gloss) set(table_.gloss_slot(j), fresnel_scale_ * met->gloss);
     }
     const Lobe* mirror = effects_.mirror ? find_lobe(paint, kMirrorExponent) : nullptr;
     const double seen_cos = effects_.fresnel ? cos_o : std::numbers::sqrt2 / 2;
@@ -67,8 +70,8 @@ void fill_part(const Scene& scene, const Effects& effects, std::size_t part, con
   std::vector<Rgb> before;
   for (int node = 0; node <= table.segments; ++node) {
     const double x = static_cast<double>(node) / table.segments, cos_o = table.segments > 1 ? x * x : x;
-    const std::vector<Rgb>& here =
-        values.at(with_views ? at_view(paint, std::acos(cos_o) * 180 / kPi) : paint, cos_o, node);
+    const LobeFit here_paint = with_views ? at_view(paint, std::acos(cos_o) * 180 / kPi) : paint;
+    const std::vector<Rgb>& here = values.at(here_paint, effects.maps ? paint : here_paint, cos_o, node);
     if (node > 0) {
       for (std::size_t slot = 0; slot < here.size(); ++slot, rows += 8) {
         for (int c = 0; c < 3; ++c) {
@@ -132,6 +135,8 @@ Effects effects_of(const Scene& scene) {
       std::any_of(scene.paints.begin(), scene.paints.end(), [](const LobeFit& paint) { return !paint.views.empty(); });
   effects.anisotropy =
       !effects.lobes.empty() && std::any_of(scene.anisotropy.begin(), scene.anisotropy.end(), is_anisotropic);
+  effects.texture = scene.layer != nullptr && scene.layer->textured();
+  effects.maps = scene.layer != nullptr && scene.layer->mapped();
   effects.reflection = scene.reflection.k != component_wise().k;
   return effects;
 }
@@ -163,11 +168,17 @@ std::vector<std::vector<Tilt>> tilts_of(const Scene& scene, const Effects& effec
     if (!(alpha.alpha_x > 0) || effects.lobes.empty()) continue;
     double sharpest = 0;
     for (const Effects::LobeUse& use : effects.lobes) {
-      if (find_lobe(scene.paints[part], use.exponent) != nullptr) sharpest = use.exponent;
+      const Lobe* lobe = find_lobe(scene.paints[part], use.exponent);
+      if (lobe != nullptr && (lobe->directional_diffuse != Rgb{} || lobe->gloss != Rgb{})) sharpest = use.exponent;
     }
     if (sharpest == 0) continue;
-    const double narrow = std::max(std::min(alpha.alpha_x, alpha.alpha_y), lobe_alpha(sharpest));
-    auto set = ward_tilts(alpha, narrow, effects.tilt_tolerance, effects.most_tilts);
+    // The tilts must be close enough for the sharpest lobe, which may be narrower than the surface's narrow side: the
+    // same spread, wide^2 - narrow^2, about that lobe.
+    const double low = std::min(alpha.alpha_x, alpha.alpha_y), high = std::max(alpha.alpha_x, alpha.alpha_y);
+    const double narrow = std::min(low, lobe_alpha(sharpest)),
+                 wide = std::sqrt(high * high - low * low + narrow * narrow);
+    const Anisotropy fine = alpha.alpha_x < alpha.alpha_y ? Anisotropy{narrow, wide} : Anisotropy{wide, narrow};
+    auto set = ward_tilts(fine, narrow, effects.tilt_tolerance, effects.most_tilts);
     if (set.ok()) tilts[part] = std::move(set->tilts);
   }
   return tilts;

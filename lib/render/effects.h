@@ -24,8 +24,10 @@ struct Effects {
   bool fresnel = false;  // of gloss lobes and mirror
   bool horizon = false;  // lobes end at the horizon, and each of their directions has its own cosine
   bool views = false;    // weights of paints that change with the view
+  bool maps = false;     // color maps under lights
+  bool texture = false;  // textures of lobes
   bool anisotropy = false;
-  double tilt_tolerance = 0.02;  // of the lobes drawn about tilted normals, relative to their peak
+  double tilt_tolerance = 0.005;  // of the lobes drawn about tilted normals, relative to their peak
   int most_tilts = 1024;
   bool reflection = false;  // the scene's reflection operator in place of the component-wise product
   std::size_t lights = 0;

@@ -12,6 +12,7 @@
 #include "render/effect_list.h"
 #include "render/reference.h"
 #include "render/seen.h"
+#include "render/surface_layer.h"
 
 namespace goniochrome {
 
@@ -55,11 +56,13 @@ Result<Words> words_of(const std::string& text) {
 class Prober {
  public:
   Prober(const Scene& scene, const Effects& all, const std::vector<EffectSwitch>& switches,
-         const std::vector<VisiblePoint>& points, double white, CpuEngine& engine)
+         const std::vector<VisiblePoint>& points, const std::vector<VisiblePoint>& seen, double white,
+         CpuEngine& engine)
       : scene_(scene),
         all_(all),
         switches_(switches),
         points_(points),
+        seen_(seen),
         white_(white > 0 ? white : 1),
         engine_(engine) {}
 
@@ -74,7 +77,10 @@ class Prober {
   std::vector<Rgb> colors(const std::vector<bool>& on) {
     const Effects chosen = effects(on);
     engine_.load_paints(scene_, chosen, weight_table(scene_, chosen));
-    return engine_.shade(points_);
+    std::vector<Rgb> colors = engine_.shade(points_);
+    if (chosen.maps) add_mapped(scene_, seen_, colors);
+    if (chosen.texture) add_textured(scene_, seen_, colors);
+    return colors;
   }
 
   double difference(const std::vector<Rgb>& a, const std::vector<Rgb>& b) const {
@@ -99,6 +105,7 @@ class Prober {
   const Effects& all_;
   const std::vector<EffectSwitch>& switches_;
   const std::vector<VisiblePoint>& points_;
+  const std::vector<VisiblePoint>& seen_;  // the same, with the parts of the whole scene
   double white_;
   CpuEngine& engine_;
 };
@@ -275,7 +282,7 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<VisiblePoint>& prob
   const Effects all = effects_of(scene);
   const std::vector<EffectSwitch> switches = effect_switches(scene, all, probe);
   const Compact compact = compacted(scene, probe);
-  Prober prober(compact.scene, all, switches, compact.points, request.white_luminance, engine);
+  Prober prober(compact.scene, all, switches, compact.points, probe, request.white_luminance, engine);
   const std::vector<bool> everything(switches.size(), true);
   const std::vector<Rgb> full = prober.colors(everything);
 
@@ -285,7 +292,8 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<VisiblePoint>& prob
   Plan plan;
   for (std::size_t i = 0; i < switches.size(); ++i) {
     PlanItem item{switches[i].name, switches[i].needed, switches[i].reason, 0, 0, false, "", {}};
-    if (item.needed) {
+    if (!switches[i].priced) item.de00_p95 = std::numeric_limits<double>::quiet_NaN();
+    if (item.needed && switches[i].priced) {
       std::vector<bool> without = everything;
       without[i] = false;
       item.de00_p95 = prober.difference(full, prober.colors(without));
@@ -322,7 +330,7 @@ void add_truth(Plan& plan, const Scene& scene, const std::vector<VisiblePoint>& 
   const std::vector<Rgb> full = exact_radiance(points, scene, all, env);
   const double white = white_luminance > 0 ? white_luminance : 1;
   for (std::size_t i = 0; i < switches.size(); ++i) {
-    if (!switches[i].needed) continue;
+    if (!switches[i].needed || !switches[i].priced) continue;
     Effects without = all;
     switches[i].turn_off(without);
     const std::vector<Rgb> colors = exact_radiance(points, scene, without, env);

@@ -10,6 +10,7 @@
 #include "brdf/lobe_model.h"
 #include "color/color.h"
 #include "render/seen.h"
+#include "render/surface_layer.h"
 
 namespace goniochrome {
 
@@ -236,6 +237,7 @@ std::vector<Rgb> exact_radiance(const std::vector<VisiblePoint>& points, const S
   for (std::size_t part = 0; part < scene.paints.size(); ++part) {
     paints.push_back(with_effects(scene.paints[part], effects));
     ExactModel& model = models[part];
+    if (effects.maps) paints.back().views.clear();  // the maps are told apart from the weights for all views
     model.fresnel = effects.fresnel;
     if (part < scene.gloss_deg.size()) model.gloss_deg = scene.gloss_deg[part];
     model.horizon = effects.horizon || effects.lobes.empty();
@@ -247,15 +249,20 @@ std::vector<Rgb> exact_radiance(const std::vector<VisiblePoint>& points, const S
     const auto part = static_cast<std::size_t>(point.part);
     surface.push_back({point.normal, point.to_viewer, &paints[part], &models[part]});
   }
-  return reference_radiance(surface, effects.environment ? env : nullptr,
-                            effects.lights > 0 ? scene.lights : std::vector<Light>());
+  std::vector<Rgb> colors = reference_radiance(surface, effects.environment ? env : nullptr,
+                                               effects.lights > 0 ? scene.lights : std::vector<Light>());
+  if (effects.maps) add_mapped(scene, points, colors);
+  return colors;
 }
 
-PixelSample sampled_pixels(const Gbuffer& g, int count, std::uint64_t seed) {
+PixelSample sampled_pixels(const Gbuffer& g, const Scene& scene, int count, std::uint64_t seed) {
+  const auto textured = [&](int part) {
+    return scene.layer != nullptr && scene.layer->surface(part).texture != nullptr;
+  };
   std::vector<std::array<int, 2>> visible;
   for (int y = 0; y < g.height; ++y) {
     for (int x = 0; x < g.width; ++x) {
-      if (g.part(x, y) >= 0) visible.push_back({x, y});
+      if (g.part(x, y) >= 0 && !textured(g.part(x, y))) visible.push_back({x, y});
     }
   }
   PixelSample sample;
@@ -271,7 +278,7 @@ PictureError picture_error(const Frame& frame, const Scene& scene, const Environ
                            int count, std::uint64_t seed) {
   const Stopwatch clock;
   const double white = white_luminance > 0 ? white_luminance : 1;  // in the dark all is black
-  const PixelSample sample = sampled_pixels(*frame.gbuffer, count, seed);
+  const PixelSample sample = sampled_pixels(*frame.gbuffer, scene, count, seed);
   const std::vector<std::array<int, 2>>& chosen = sample.places;
   const std::vector<Rgb> truth = exact_radiance(sample.points, scene, effects_of(scene), env);
 

@@ -47,12 +47,13 @@ struct PictureError {
   double time_s = 0;
 };
 
-// Random visible pixels, `count` of them or all where there are fewer: their places in the picture and their points.
+// Random visible pixels without a texture, `count` of them or all where there are fewer: their places in the picture
+// and their points.
 struct PixelSample {
   std::vector<std::array<int, 2>> places;
   std::vector<VisiblePoint> points;
 };
-PixelSample sampled_pixels(const Gbuffer& gbuffer, int count, std::uint64_t seed);
+PixelSample sampled_pixels(const Gbuffer& gbuffer, const Scene& scene, int count, std::uint64_t seed);
 
 // Compares the centers of `count` random visible pixels (all, where there are fewer) with the reference, as CIEDE2000
 // of Lab values relative to `white_luminance`, D65. The frame must hold its centers. The reference has everything that

@@ -8,6 +8,7 @@
 #include "render/gl.h"
 #include "render/gl_engine.h"
 #include "render/shader.h"
+#include "render/surface_layer.h"
 
 namespace goniochrome {
 
@@ -191,6 +192,12 @@ Result<void> Renderer::draw(const View& view, Frame& frame) {
   if (s.engine == Engine::kGl) GONIO_TRY(s.gl_engine.resize(view.width, view.height));
   frame.gbuffer = s.gbuffer(0);
   frame.gbuffer_ms = s.rasterization_ms;
+  const auto add_layer = [&](Image& image, int first, int count) {
+    if (!s.effects.texture && !s.effects.maps) return;
+    for (int i = first; i < first + count; ++i) {
+      s.scene.layer->add(*s.gbuffer(i), view.camera.eye, 1.0F / static_cast<float>(count), image, s.effects.maps);
+    }
+  };
   const auto read = [&](Image& image, int samples) {
     if (s.engine == Engine::kGl) {
       s.gl_engine.read(image);
@@ -201,11 +208,13 @@ Result<void> Renderer::draw(const View& view, Frame& frame) {
   if (view.with_centers || view.samples == 1) {
     s.shade(0, false, 1, frame.picture);
     read(frame.picture, 1);
+    add_layer(frame.picture, 0, 1);
     frame.centers = view.with_centers ? frame.picture : Image{};
   }
   if (view.samples > 1) {
     for (int i = 1; i <= view.samples; ++i) s.shade(i, i > 1, view.samples, frame.picture);
     read(frame.picture, view.samples);
+    add_layer(frame.picture, 1, view.samples);
   }
   frame.frame_ms = 1000 * whole.elapsed_s();
   return s.gl.status("drawing");

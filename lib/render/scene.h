@@ -20,6 +20,8 @@ struct Light {
 
 enum class Background { kNone, kColor, kEnvironment };
 
+class SurfaceLayer;
+
 struct Scene {
   const Mesh* mesh = nullptr;
   std::vector<LobeFit> paints;                  // one for each part of the mesh, in order
@@ -30,6 +32,7 @@ struct Scene {
   std::vector<double> gloss_deg = {};       // for each part, the angle of incidence its gloss weights hold at; none: 45
   std::vector<Anisotropy> anisotropy = {};  // for each part; alpha 0 is none. The tangent runs level around +Y
   ReflectionOperator reflection = component_wise();
+  const SurfaceLayer* layer = nullptr;  // textures and color maps of parts, if there are any
 };
 
 // The exponents (finite, ascending) of the lobes with any weight, over all paints.

@@ -57,7 +57,34 @@ Rgb SurfaceLayer::mapped_difference(int part, const Vec3& normal, const Vec3& to
   return sum;
 }
 
-void SurfaceLayer::add(const Gbuffer& gbuffer, const Vec3& eye, float weight, Image& rgba) const {
+void add_mapped(const Scene& scene, const std::vector<VisiblePoint>& points, std::vector<Rgb>& colors) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (scene.layer->surface(points[i].part).color_map == nullptr) continue;
+    colors[i] += scene.layer->mapped_difference(points[i].part, points[i].normal, points[i].to_viewer);
+  }
+}
+
+Rgb SurfaceLayer::texel_radiance(int part, int column, int row, const Vec3& normal, const Vec3& to_viewer) const {
+  const SbrdfTexel texel = sbrdf_texel(*surface(part).texture, column, row);
+  return shader_->sbrdf.shade(texel, normal, cross({0, 1, 0}, normal), to_viewer);
+}
+
+void add_textured(const Scene& scene, const std::vector<VisiblePoint>& points, std::vector<Rgb>& colors) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const VisiblePoint& p = points[i];
+    const SbrdfTexture* texture = scene.layer->surface(p.part).texture;
+    if (texture == nullptr) continue;
+    // Steps of the golden section cover both sides evenly.
+    const auto step = [i](double share, int n) {
+      const double at = share * static_cast<double>(i);
+      return static_cast<int>((at - std::floor(at)) * n);
+    };
+    colors[i] += scene.layer->texel_radiance(p.part, step(0.61803398875, texture->width),
+                                             step(0.7548776662, texture->height), p.normal, p.to_viewer);
+  }
+}
+
+void SurfaceLayer::add(const Gbuffer& gbuffer, const Vec3& eye, float weight, Image& rgba, bool with_maps) const {
   if (empty()) return;
   std::vector<TexturePlace> places;
   if (textured_) places = texture_places(*scene_.mesh, gbuffer.rays, eye, gbuffer.width, gbuffer.height, 1);
@@ -74,7 +101,7 @@ void SurfaceLayer::add(const Gbuffer& gbuffer, const Vec3& eye, float weight, Im
           color = shader_->sbrdf.shade(*surface.texture, surface.repeat * place.u, surface.repeat * place.v,
                                        gbuffer.normal(x, y), {place.tangent[0], place.tangent[1], place.tangent[2]},
                                        gbuffer.to_viewer(x, y));
-        } else if (surface.color_map != nullptr) {
+        } else if (with_maps && surface.color_map != nullptr) {
           color = mapped_difference(part, gbuffer.normal(x, y), gbuffer.to_viewer(x, y));
         }
         for (int c = 0; c < 3; ++c) rgba.pixel(x, y)[c] += weight * static_cast<float>(color[c]);

@@ -11,6 +11,7 @@
 #include "image/image.h"
 #include "render/gbuffer.h"
 #include "render/scene.h"
+#include "render/visible_point.h"
 
 namespace goniochrome {
 
@@ -27,16 +28,22 @@ class SurfaceLayer {
   SurfaceLayer(const Scene& scene, std::vector<PartSurface> surfaces, CriticalAngle treatment);
   ~SurfaceLayer();
 
-  // Whether there is nothing to add.
+  // Whether there is nothing to add, and what there is: textures, and color maps under lights.
   bool empty() const { return !textured_ && !mapped_; }
+  bool textured() const { return textured_; }
+  bool mapped() const { return mapped_; }
+  const PartSurface& surface(int part) const { return surfaces_[static_cast<std::size_t>(part)]; }
 
-  // Adds `weight` times the layer to the RGB of every pixel. `eye` is that of the G-buffer's camera. Of a color map it
-  // adds the difference to what the lobe model shows of the same light, gloss apart. Bit-identical for any number of
-  // threads.
-  void add(const Gbuffer& gbuffer, const Vec3& eye, float weight, Image& rgba) const;
+  // Adds `weight` times the layer, with or without its color maps, to the RGB of every pixel. `eye` is that of the
+  // G-buffer's camera. Of a color map it adds the difference to what the lobe model shows of the same light, gloss
+  // apart. Bit-identical for any number of threads.
+  void add(const Gbuffer& gbuffer, const Vec3& eye, float weight, Image& rgba, bool with_maps = true) const;
 
   // The color map's part at one point: radiance under the scene's lights less that of the paint's flake lobes.
   Rgb mapped_difference(int part, const Vec3& normal, const Vec3& to_viewer) const;
+
+  // The radiance of one texel of a textured part, its tangent level.
+  Rgb texel_radiance(int part, int column, int row, const Vec3& normal, const Vec3& to_viewer) const;
 
  private:
   struct Shader;
@@ -46,5 +53,12 @@ class SurfaceLayer {
   bool textured_ = false, mapped_ = false;
   std::unique_ptr<Shader> shader_;
 };
+
+// Adds what the scene's color maps change under its lights to the colors of these points.
+void add_mapped(const Scene& scene, const std::vector<VisiblePoint>& points, std::vector<Rgb>& colors);
+
+// Adds what its textures show. Where on its texture a point lies is not known: each takes another texel, which is
+// enough to tell what a texture is worth.
+void add_textured(const Scene& scene, const std::vector<VisiblePoint>& points, std::vector<Rgb>& colors);
 
 }  // namespace goniochrome

@@ -4,6 +4,7 @@ _render_osmesa() {
     --mesh|-m) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --part) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --paint|-p) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --texture) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --env|-e) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --light) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --size|-s) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -19,6 +20,7 @@ _render_osmesa() {
     --budget) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --engine) COMPREPLY=($(compgen -W "auto cpu gl" -- "$word")); return ;;
     --operator) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --critical-angle) COMPREPLY=($(compgen -W "clip slide slide-map index" -- "$word")); return ;;
     --split) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --turntable) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --light-sweep) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -32,7 +34,7 @@ _render_osmesa() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--mesh --part --paint --env --light --size --orbit --camera --fov --samples --background --exposure --view --aov --effects --budget --engine --operator --print-shader --split --turntable --light-sweep --check --check-source --output --explain --tolerance --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--mesh --part --paint --texture --env --light --size --orbit --camera --fov --samples --background --exposure --view --aov --effects --budget --engine --operator --critical-angle --print-shader --split --turntable --light-sweep --check --check-source --output --explain --tolerance --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

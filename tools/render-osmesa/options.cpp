@@ -51,6 +51,13 @@ cli::ToolSpec render_spec(RenderOptions& o, cli::CommonOptions& common) {
       "sensors; rec2020, by one estimated from color-matching functions, which can make saturated colors negative; or "
       "none, "
       "each channel by itself. A number from 0 to 1 after a comma says how much the channels share, as in iso,0.1.",
+      "Under lights, a paint with a color map shows the map's own colors; under an environment, its weights for "
+      "several "
+      "views. --texture gives a part a spatially varying surface of generalized cosine lobes (EXR) in the place of a "
+      "paint; "
+      "it is laid by the mesh's texture coordinates, or around the vertical axis where it has none. Textured parts are "
+      "not "
+      "checked.",
       "--split draws the picture twice, its left half in the first paint and its right half in the second, both in the "
       "place of --paint. --turntable and --light-sweep write a sequence, NAME-0001.exr and so on: the camera, or the "
       "first "
@@ -73,6 +80,10 @@ cli::ToolSpec render_spec(RenderOptions& o, cli::CommonOptions& common) {
        .help = "paint of a part or material; repeat for more",
        .target = &o.parts},
       {.name = "paint", .letter = 'p', .value = "PAINT", .help = "paint of all other parts", .target = &o.paint},
+      {.name = "texture",
+       .value = "PART=FILE",
+       .help = "texture of lobes of a part or material; repeat for more; FILE*N lays it N times",
+       .target = &o.textures},
       {.name = "env", .letter = 'e', .value = "FILE", .help = "prefiltered environment (*.env.exr)", .target = &o.env},
       {.name = "light",
        .value = "DIR[,RGB]",
@@ -122,6 +133,11 @@ cli::ToolSpec render_spec(RenderOptions& o, cli::CommonOptions& common) {
        .value = "NAME[,SHARE]",
        .help = "how colored light and paint multiply: iso, rec2020 or none",
        .target = &o.reflection},
+      {.name = "critical-angle",
+       .value = "NAME",
+       .help = "what color maps do beyond the critical angle under lights",
+       .target = &o.critical_angle,
+       .choices = {"clip", "slide", "slide-map", "index"}},
       {.name = "print-shader",
        .help = "print the OpenGL program of the scene on standard output",
        .target = &o.print_shader},

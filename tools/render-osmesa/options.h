@@ -22,6 +22,8 @@ struct RenderOptions {
   std::vector<std::string> aovs;
   std::string effects = "auto", engine = "auto";
   std::string reflection = "iso";
+  std::string critical_angle = "slide";
+  std::vector<std::string> textures;
   double budget_ms = 0;
   bool print_shader = false;
   std::vector<std::string> split;

@@ -1,10 +1,13 @@
 #include "paints.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <numbers>
 
 #include "base/text.h"
+#include "image/color_map_file.h"
+#include "image/sbrdf_file.h"
 #include "paint/xml.h"
 
 namespace goniochrome {
@@ -55,6 +58,24 @@ class PaintShelf {
     return with_lobes(paints[static_cast<std::size_t>(found - names.begin())], file);
   }
 
+  // The color map that the paint of a reference names, relative to its file; null where it names none.
+  Result<const ColorMap*> color_map(const std::string& reference, const Paint& paint) {
+    if (!paint.color_map) return static_cast<const ColorMap*>(nullptr);
+    const std::filesystem::path file = reference.substr(0, reference.rfind('#'));
+    const std::string path = (file.parent_path() / paint.color_map->href).string();
+    if (!maps_.contains(path)) {
+      GONIO_ASSIGN(ColorMap map, read_color_map(path));
+      map.index = paint.color_map->index;
+      maps_[path] = std::make_shared<ColorMap>(std::move(map));
+    }
+    return maps_[path].get();
+  }
+  std::vector<std::shared_ptr<const ColorMap>> color_maps() const {
+    std::vector<std::shared_ptr<const ColorMap>> all;
+    for (const auto& [path, map] : maps_) all.push_back(map);
+    return all;
+  }
+
  private:
   static Result<Paint> with_lobes(const Paint& paint, const std::string& file) {
     if (paint.lobes) return paint;
@@ -64,6 +85,7 @@ class PaintShelf {
   }
 
   std::map<std::string, std::vector<Paint>> files_;
+  std::map<std::string, std::shared_ptr<const ColorMap>> maps_;
 };
 
 struct Assignment {
@@ -103,6 +125,33 @@ Result<std::vector<std::size_t>> parts_meant(const Mesh& mesh, const std::string
                      listed(parts), materials.empty() ? "" : "; its materials are " + listed(materials, 30));
 }
 
+// --texture, part by part: FILE, or FILE*N.
+Result<void> lay_textures(const Mesh& mesh, const RenderOptions& options, DressedMesh& result) {
+  for (const std::string& option : options.textures) {
+    const auto equals = option.find('=');
+    if (equals == 0 || equals == std::string::npos || equals + 1 == option.size())
+      return usage_error("--texture is \"{}\": write PART=FILE.exr, or PART=FILE.exr*N to lay it N times", option);
+    std::string file = option.substr(equals + 1);
+    double repeat = 1;
+    if (const auto star = file.rfind('*'); star != std::string::npos) {
+      const auto times = parse_number(file.substr(star + 1));
+      if (!times || *times <= 0) return usage_error("--texture is \"{}\": the number after * must be above 0", option);
+      repeat = *times;
+      file.resize(star);
+    }
+    GONIO_ASSIGN(const std::vector<std::size_t> parts, parts_meant(mesh, option.substr(0, equals)));
+    GONIO_ASSIGN(SbrdfTexture texture, read_sbrdf(file));
+    result.textures.push_back(std::make_shared<SbrdfTexture>(std::move(texture)));
+    for (const std::size_t part : parts) {
+      result.paints[part] = {};
+      result.anisotropy[part] = {};
+      result.surfaces[part] = {result.textures.back().get(), repeat, nullptr};
+      result.names[part] = file;
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<DressedMesh> dressed(const Mesh& mesh, const RenderOptions& options) {
@@ -110,20 +159,23 @@ Result<DressedMesh> dressed(const Mesh& mesh, const RenderOptions& options) {
   LobeFit gray;
   gray.diffuse = (kUnpaintedReflectance / std::numbers::pi) * Rgb{1, 1, 1};
   const std::size_t parts_there = mesh.parts.size();
-  DressedMesh result{std::vector<LobeFit>(parts_there, gray),
-                     std::vector<double>(parts_there, kUnreadGlossDeg),
-                     std::vector<Anisotropy>(parts_there),
-                     std::vector<std::string>(parts_there),
-                     {}};
-  const auto wear = [&](std::size_t part, const Paint& paint) {
+  DressedMesh result;
+  result.paints.assign(parts_there, gray);
+  result.gloss_deg.assign(parts_there, kUnreadGlossDeg);
+  result.anisotropy.resize(parts_there);
+  result.surfaces.resize(parts_there);
+  result.names.resize(parts_there);
+  const auto wear = [&](std::size_t part, const Paint& paint, const ColorMap* map) {
     result.paints[part] = *paint.lobes;
     result.gloss_deg[part] = paint.gloss.empty() ? kUnreadGlossDeg : paint.gloss.front().angle_deg;
     result.anisotropy[part] = paint.anisotropy.value_or(Anisotropy{});
+    result.surfaces[part] = {nullptr, 1, map};
     result.names[part] = paint.name;
   };
   if (!options.paint.empty()) {
     GONIO_ASSIGN(const Paint paint, shelf.paint(options.paint));
-    for (std::size_t part = 0; part < mesh.parts.size(); ++part) wear(part, paint);
+    GONIO_ASSIGN(const ColorMap* map, shelf.color_map(options.paint, paint));
+    for (std::size_t part = 0; part < mesh.parts.size(); ++part) wear(part, paint, map);
   }
   // A part's own name is meant before its material, wherever it stands on the command line.
   GONIO_ASSIGN(const std::vector<Assignment> all, assignments(options.parts));
@@ -132,9 +184,12 @@ Result<DressedMesh> dressed(const Mesh& mesh, const RenderOptions& options) {
       GONIO_ASSIGN(const std::vector<std::size_t> parts, parts_meant(mesh, assignment.part));
       if ((mesh.parts[parts.front()].name == assignment.part) != by_name) continue;
       GONIO_ASSIGN(const Paint paint, shelf.paint(assignment.reference));
-      for (const std::size_t part : parts) wear(part, paint);
+      GONIO_ASSIGN(const ColorMap* map, shelf.color_map(assignment.reference, paint));
+      for (const std::size_t part : parts) wear(part, paint, map);
     }
   }
+  result.color_maps = shelf.color_maps();
+  GONIO_TRY(lay_textures(mesh, options, result));
   for (std::size_t part = 0; part < mesh.parts.size(); ++part) {
     if (result.names[part].empty()) result.unpainted.push_back(mesh.parts[part].name);
   }

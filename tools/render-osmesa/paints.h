@@ -1,6 +1,7 @@
 // Which part wears which paint.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "mesh/mesh.h"
 #include "options.h"
 #include "paint/paint.h"
+#include "render/surface_layer.h"
 
 namespace goniochrome {
 
@@ -15,6 +17,9 @@ struct DressedMesh {
   std::vector<LobeFit> paints;         // for each part of the mesh
   std::vector<double> gloss_deg;       // at which their gloss was read; 45 where it was not
   std::vector<Anisotropy> anisotropy;  // alpha 0 where there is none
+  std::vector<PartSurface> surfaces;   // textures and color maps, held by the two below
+  std::vector<std::shared_ptr<const SbrdfTexture>> textures;
+  std::vector<std::shared_ptr<const ColorMap>> color_maps;
   std::vector<std::string> names;      // of those paints; "" where none was given
   std::vector<std::string> unpainted;  // names of the parts that wear the gray of unpainted parts
 };

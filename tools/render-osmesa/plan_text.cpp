@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace goniochrome {
 
 const char* engine_name(Engine engine) {
@@ -17,8 +19,9 @@ std::string plan_table(const Plan& plan) {
     const std::string exact = item.truth_de00_p95 ? fmt::format("{:7.2f} ", *item.truth_de00_p95)
                               : truth             ? "        "
                                                   : "";
-    text += item.needed ? fmt::format("{:<12} {:<6} {:>7.2f} {}{:>7.2f}  {:<16} {}\n", item.effect, "yes",
-                                      item.de00_p95, exact, item.cost_ms, item.decision, item.reason)
+    const std::string change = std::isnan(item.de00_p95) ? "-" : fmt::format("{:.2f}", item.de00_p95);
+    text += item.needed ? fmt::format("{:<12} {:<6} {:>7} {}{:>7.2f}  {:<16} {}\n", item.effect, "yes", change, exact,
+                                      item.cost_ms, item.decision, item.reason)
                         : fmt::format("{:<12} {:<6} {:>7} {}{:>7}  {:<16} {}\n", item.effect, "no", "-",
                                       truth ? "        " : "", "-", item.decision, item.reason);
   }

@@ -96,3 +96,26 @@ number() { sed -n '/"error": {/,/}/p' r.json | grep -m1 "\"$1\"" | sed -E 's/.*:
   run render-osmesa --mesh "$shape" --env "$shape" $small -o none.exr
   [ "$status" -eq 3 ]
 }
+
+@test "--texture lays a surface of lobes, and its part is not checked" {
+  texture="$TESTDATA/wood.sbrdf.exr"
+  part=$(sed -n 's/^[og] //p' "$shape" | head -1)
+  run render-osmesa --mesh "$shape" -p paints.xml#matt --env small.env.exr $small --texture "$part=$texture*4" --explain \
+    --check 5 -o wood.exr --report r.json
+  [ "$status" -eq 0 ]
+  [[ "$output" =~ drawn\ +all\ that\ its\ parts\ show ]]
+  render-osmesa -q --mesh "$shape" -p paints.xml#matt --env small.env.exr $small -o plain.exr
+  run cmp -s wood.exr plain.exr
+  [ "$status" -eq 1 ]
+  run render-osmesa --mesh "$shape" --env small.env.exr $small --texture "$texture" -o none.exr
+  [ "$status" -eq 2 ]
+  [[ "$output" =~ "write PART=FILE.exr" ]]
+  run render-osmesa --mesh "$shape" --env small.env.exr $small --texture "$part=$texture*0" -o none.exr
+  [ "$status" -eq 2 ]
+  run render-osmesa --mesh "$shape" --env small.env.exr $small --texture "$part=small.exr" -o none.exr
+  [ "$status" -eq 3 ]
+  run render-osmesa --mesh "$shape" --env small.env.exr $small --critical-angle bend -o none.exr
+  [ "$status" -eq 2 ]
+  [[ "$output" =~ "slide-map" ]]
+  [ ! -e none.exr ]
+}

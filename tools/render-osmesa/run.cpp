@@ -14,6 +14,7 @@
 #include "render/display.h"
 #include "render/reference.h"
 #include "render/renderer.h"
+#include "render/surface_layer.h"
 #include "setup.h"
 
 namespace goniochrome {
@@ -220,13 +221,18 @@ struct Stage {
   std::vector<DressedMesh> dresses;  // one, or those of --split
   PrefilteredEnvironment env;
   Scene scene;
+  std::unique_ptr<SurfaceLayer> layer;
   CheckSource check;
 };
 
-void wear(const DressedMesh& dress, Scene& scene) {
+void wear(const DressedMesh& dress, const RenderOptions& options, Stage& stage) {
+  Scene& scene = stage.scene;
   scene.paints = dress.paints;
   scene.gloss_deg = dress.gloss_deg;
   scene.anisotropy = dress.anisotropy;
+  stage.layer = std::make_unique<SurfaceLayer>(
+      scene, dress.surfaces, critical_angle_of(options.critical_angle).value_or(CriticalAngle::kSlide));
+  scene.layer = stage.layer->empty() ? nullptr : stage.layer.get();
 }
 
 Result<void> dress_stage(const RenderOptions& options, Stage& stage) {
@@ -256,11 +262,11 @@ Result<void> set_stage(const RenderOptions& options, const Request& request, Sta
   scene.mesh = &stage.mesh;
   scene.lights = request.lights;
   scene.reflection = request.reflection;
-  wear(stage.dresses.front(), scene);
   if (!options.env.empty()) {
     GONIO_ASSIGN(stage.env, read_env(options.env));
     scene.env = &stage.env;
   }
+  wear(stage.dresses.front(), options, stage);
   if (options.check > 0) {
     GONIO_ASSIGN(stage.check, check_source(options, scene, session));
   }
@@ -320,7 +326,7 @@ Result<void> Shooting::look(Renderer& renderer) {
 }
 
 Result<Plan> Shooting::load(Renderer& renderer, const DressedMesh& dress) {
-  wear(dress, stage_.scene);
+  wear(dress, options_, stage_);
   auto plan = renderer.load(stage_.scene, looks_, request_.plan);
   if (plan.ok()) return plan;
   return Error{plan.error().kind, (options_.env.empty() ? "" : options_.env + ": ") + plan.error().message};
@@ -347,11 +353,12 @@ Result<void> Shooting::draw(Renderer& renderer, const Shot& shot, bool first) {
       if (first && options_.check > 0) {
         const Environment* environment = stage_.check.environment ? &*stage_.check.environment : nullptr;
         const auto sample =
-            sampled_pixels(*looks_.front(), std::min(options_.check, kMostTruth), session_.common().seed);
+            sampled_pixels(*looks_.front(), stage_.scene, std::min(options_.check, kMostTruth), session_.common().seed);
         add_truth(plan, seen_scene(stage_.scene, looks_), sample.points, environment, white_.luminance);
       }
       if (first) tell_plan(std::move(plan), renderer.shader());
     } else {
+      wear(stage_.dresses[i], options_, stage_);
       renderer.load_paints(stage_.scene);
     }
     GONIO_TRY(renderer.draw(view(shot, 1), i == 0 ? frame_ : other));
@@ -401,7 +408,6 @@ Result<void> Shooting::shoot(const std::optional<Display>& display) {
       request_.size.height, options_.samples, frame_ms, engine_name(plan_.engine), frame_.gbuffer_ms, stops,
       display ? ", " + display->name() : ""));
   if (options_.check > 0) {
-    wear(stage_.dresses.front(), stage_.scene);
     check(options_, frame_, stage_.scene, stage_.check, white_.luminance, session_);
   }
   return {};

@@ -1,0 +1,70 @@
+# Ten scenes, planned and with everything: what is left out is not seen, and what is forced out is what the plan said.
+
+setup_file() {
+  cd "$BATS_FILE_TMPDIR" || exit 1
+  oiiotool "$TESTDATA/studio.exr" --resize:filter=box 64x32 -o studio.exr
+  oiiotool "$TESTDATA/outdoor.exr" --resize:filter=box 64x32 -o outdoor.exr
+  for light in studio outdoor; do prefilter-envmap -q $light.exr --basis "$TESTDATA/b5.basis.xml" -o $light.env.exr; done
+  fit-paint -q --basis "$TESTDATA/b5.basis.xml" "$TESTDATA/paints.paints.xml" -o fitted.xml
+  sed 's/<lobes /<anisotropy alphaX="0.05" alphaY="0.3"\/><lobes /' fitted.xml >brushed.xml
+}
+
+setup() {
+  cd "$BATS_FILE_TMPDIR" || exit 1
+  view="--mesh $TESTDATA/speed-shape.obj --size 96x54 --samples 1"
+}
+
+# error FILE: the p95 of the checked pixels.
+error() { sed -n '/"error": {/,/}/p' "$1" | grep -m1 de00_p95 | sed -E 's/.*: ([-0-9.e+]+),?$/\1/'; }
+
+# scene PAINT LIGHT...: the picture of the plan is no farther from the exact one than that of all effects, plus the
+# tolerance.
+scene() {
+  local paint=$1
+  shift
+  for effects in all auto; do
+    render-osmesa -q $view --check 60 -p "$paint" "$@" --effects $effects -o $effects.exr --report $effects.json || return 1
+  done
+  awk -v all="$(error all.json)" -v auto="$(error auto.json)" 'BEGIN { exit !(auto <= all + 0.5) }' && return 0
+  echo "$paint $*: $(error all.json) with everything, $(error auto.json) as planned"
+  return 1
+}
+
+# decided EFFECT DECISION: as the report of the last scene has it.
+decided() { grep -A4 "\"effect\": \"$1\"" auto.json | grep -q "\"decision\": \"$2\""; }
+
+@test "solid paint" {
+  scene fitted.xml#signal_white --env outdoor.env.exr
+  decided anisotropy "not in the scene"
+  scene fitted.xml#signal_white --env studio.env.exr
+  scene fitted.xml#signal_white --light 40,50
+  decided mirror "not in the scene"
+  decided operator dropped
+}
+
+@test "metallic paint" {
+  scene fitted.xml#candy_red --env outdoor.env.exr
+  scene fitted.xml#candy_red --env studio.env.exr
+  decided fresnel drawn
+  scene fitted.xml#candy_red --light 40,50
+  scene fitted.xml#candy_red --light 40,50,0.2,0.6,1
+  decided operator drawn
+}
+
+@test "brushed metal" {
+  scene brushed.xml#silver_black_flop --light 40,50
+  decided anisotropy drawn
+  scene brushed.xml#silver_black_flop --light 40,50,1,0.5,0.2
+  decided operator drawn
+  scene brushed.xml#candy_red --light -30,20
+}
+
+# Forced out, the error that the check shows is the one that the plan predicted, within a factor of 2.
+@test "an effect forced off errs by what the plan predicted" {
+  for effect in fresnel mirror lobes; do
+    render-osmesa -q $view --check 60 -p fitted.xml#candy_red --env studio.env.exr --effects all,-$effect -o off.exr \
+      --report off.json
+    awk -v plan="$(grep -m1 plan_de00_p95 off.json | sed -E 's/.*: ([-0-9.e+]+),?$/\1/')" -v truth="$(error off.json)" \
+      -v effect=$effect 'BEGIN { print effect, plan, truth; exit !(truth < 2 * plan && truth > plan / 2) }'
+  done
+}
