@@ -84,10 +84,14 @@ class Gatherer {
   }
 
   // Adds f L cos_i dw, with cos_i multiplied into f so that the gloss term needs no division.
-  void add(const Patch& patch, const Rgb& radiance) {
-    const double above = dot(point_.normal, patch.direction), cos_i = model_.horizon ? above : cos_o_;
+  void add(const Patch& patch, const Rgb& radiance) { add(patch, radiance, model_.horizon); }
+  void add_light(const Light& light) { add({light.direction, std::numbers::pi}, light.white, true); }
+
+  // With `horizon`, the direction's own cosine, and nothing from below.
+  void add(const Patch& patch, const Rgb& radiance, bool horizon) {
+    const double above = dot(point_.normal, patch.direction), cos_i = horizon ? above : cos_o_;
     Rgb f = above > 0 ? above * paint_.diffuse : Rgb{};
-    if (above > 0 || !model_.horizon) f += lobes_toward(patch.direction, cos_i);
+    if (above > 0 || !horizon) f += lobes_toward(patch.direction, cos_i);
     const Rgb product =
         model_.reflection != nullptr ? goniochrome::reflected(*model_.reflection, f, radiance) : f * radiance;
     sum_ += patch.solid_angle_sr * product;
@@ -216,7 +220,7 @@ std::vector<Rgb> reference_radiance(const std::vector<SurfacePoint>& points, con
     if (env != nullptr) gather_environment(*env, gatherers);
     for (std::size_t i = begin; i < end; ++i) {
       Gatherer& gatherer = gatherers[i - begin];
-      for (const Light& light : lights) gatherer.add({light.direction, std::numbers::pi}, light.white);
+      for (const Light& light : lights) gatherer.add_light(light);
       if (env != nullptr) {
         const float* texel = env->lookup(gatherer.reflected());
         gatherer.add_mirror({texel[0], texel[1], texel[2]});
@@ -240,7 +244,7 @@ std::vector<Rgb> exact_radiance(const std::vector<VisiblePoint>& points, const S
     if (effects.maps) paints.back().views.clear();  // the maps are told apart from the weights for all views
     model.fresnel = effects.fresnel;
     if (part < scene.gloss_deg.size()) model.gloss_deg = scene.gloss_deg[part];
-    model.horizon = effects.horizon || effects.lobes.empty();
+    model.horizon = effects.horizon || effects.lobes.empty() || !effects.environment;
     if (tilts[part].size() > 1) model.tilts = tilts[part];
     if (effects.reflection) model.reflection = &scene.reflection;
   }

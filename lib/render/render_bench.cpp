@@ -9,6 +9,7 @@
 #include "render/reference.h"
 #include "render/renderer.h"
 #include "render/scenes_for_test.h"
+#include "render/seen.h"
 
 namespace goniochrome {
 namespace {
@@ -106,6 +107,48 @@ void frames(benchmark::internal::Benchmark* b) {
 }
 BENCHMARK(BM_PaintEdited)->Apply(frames);
 BENCHMARK(BM_ViewChanged)->Apply(frames);
+
+// Brushed metal with 5 lobes in so many tilted normals, under light that changes fast; the truth has 400.
+void BM_Tilts(benchmark::State& state) {
+  auto bench = bench_scene(5);
+  for (std::size_t i = 0; i < bench->env.lobes.size(); ++i) {
+    const double k = 2.0 + 6.0 * static_cast<double>(i);
+    bench->env.lobes[i].map = cube_of(128, [k](const Vec3& d) {
+      return Vec3{1 + std::sin(k * d.x), 1 + std::cos(k * d.y), 1 + std::sin(k * d.z)};
+    });
+  }
+  bench->scene.anisotropy.assign(bench->mesh.parts.size(), {0.04, 0.3});
+  Effects effects = effects_of(bench->scene);
+  effects.tilt_tolerance = 1e-9;
+  const View view = bench_view(*bench, 35, 1);
+  auto renderer = Renderer::create();
+  Frame truth, frame;
+  effects.most_tilts = 400;
+  if (!renderer.ok() || !renderer->load(bench->scene, effects, Engine::kCpu).ok() || !renderer->draw(view, truth).ok())
+    return state.SkipWithError("no renderer");
+  effects.most_tilts = static_cast<int>(state.range(0));
+  if (!renderer->load(bench->scene, effects, Engine::kCpu).ok()) return state.SkipWithError("not loaded");
+  for (auto _ : state) {
+    if (!renderer->draw(view, frame).ok()) return state.SkipWithError("nothing drawn");
+  }
+  std::vector<double> de00;
+  for (int y = 0; y < view.height; ++y) {
+    for (int x = 0; x < view.width; ++x) {
+      if (frame.gbuffer->part(x, y) < 0) continue;
+      const float *a = frame.picture.pixel(x, y), *b = truth.picture.pixel(x, y);
+      de00.push_back(seen_difference({a[0], a[1], a[2]}, {b[0], b[1], b[2]}, 5));
+    }
+  }
+  state.counters["de00_p95"] = percentile_95(std::move(de00));
+}
+BENCHMARK(BM_Tilts)
+    ->Arg(5)
+    ->Arg(9)
+    ->Arg(31)
+    ->Arg(81)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
 
 // Points a second against an environment of 1024 x 512.
 void BM_Reference(benchmark::State& state) {
