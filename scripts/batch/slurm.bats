@@ -27,19 +27,19 @@ teardown() {
 @test "through Slurm, a job and the controller killed: the same report, every shard finished once" {
   export SLURM_CONF=$PWD/slurm/slurm.conf
   "$BATS_TEST_DIRNAME/slurm/one-node" start slurm 3>&-
-  plan farmed 8
+  plan farmed
   slurm_run farmed >slurm.said 2>&1 3>&- &
   workflow=$!
   until_done farmed 1
-  for _ in {1..600}; do [ "$(begun farmed)" -gt "$(finished farmed)" ] && break || sleep 0.05; done
-  for job in $(squeue -h -t running -o %i); do scancel --signal=KILL --full "$job"; done
-  until_done farmed 3
+  scancel --signal=KILL --full "$(squeue -h -t running -o %i | head -n 1)"
+  # The controller writes its state every 5 s; what it forgets it learns from the node only minutes later.
+  until_done farmed 2
+  sleep 6
   "$BATS_TEST_DIRNAME/slurm/one-node" controller kill slurm
   sleep 2
   "$BATS_TEST_DIRNAME/slurm/one-node" controller start slurm 3>&-
   wait "$workflow"
   same_as_undisturbed farmed
-  # A shard was in work when its job was killed and was begun again; the two running then are all that were.
-  [ "$(begun farmed)" -gt "$(finished farmed)" ]
+  # Only the shards of the two jobs that ran when one was killed can have been begun again.
   [ "$(begun farmed)" -le $(($(finished farmed) + 2)) ]
 }

@@ -10,7 +10,7 @@ from . import files, library
 from .steps import Shard
 from .tools import ToolError, Tools
 
-PROBE = 24  # paints whose cost is measured, spread over the library
+PROBE = 400  # paints whose cost is measured, spread over the library
 PICTURED = 3  # of them, those that are drawn
 JOB_S = 0.5  # what an engine and Python add to a shard
 
