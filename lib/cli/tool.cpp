@@ -124,6 +124,7 @@ int tool_main(int argc, char** argv, const ToolSpec& table, const CommonOptions&
     if (word == "--generate=man") return fmt::print("{}", man_page(spec)), 0;
     if (word == "--generate=completion") return fmt::print("{}", bash_completion(spec)), 0;
   }
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond its limit is a writing error, which names the file
   try {
     if (const auto parsed = parse(spec, arguments); !parsed.ok()) return fail(spec.name, parsed.error());
     if (requests.generate == "man") return fmt::print("{}", man_page(spec)), 0;

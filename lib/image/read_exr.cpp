@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cstring>
 #include <exception>
+#include <new>
 #include <stdexcept>
 
 #include "base/file.h"
@@ -137,6 +138,8 @@ Result<std::vector<ImagePart>> decoded_exr(const std::string& content, const std
       parts.push_back(std::move(part));
     }
     return parts;
+  } catch (const std::bad_alloc&) {
+    return input_error("{}: is too large for the memory there is", name);
   } catch (const std::exception& e) {
     return input_error("{}: cannot be read as EXR: {}", name, e.what());
   }
