@@ -40,6 +40,8 @@ Result<void> check_sizes(const SketchInput& input) {
   return {};
 }
 
+enum Change : std::uint8_t { kSame, kTouched, kEdited };
+
 class Sorter {
  public:
   Sorter(const SketchInput& input, const Channels& at)
@@ -70,8 +72,9 @@ class Sorter {
     return PixelUse::kUsed;
   }
 
-  // Whether an edit shows: more than five codes of an 8-bit display, about two units of lightness.
-  bool is_changed(int x, int y) const {
+  // How much an edit shows: kEdited above five codes of an 8-bit display, about two units of lightness, kTouched where
+  // it is more than rounding.
+  Change change(int x, int y) const {
     const float* pixel = image_.pixel(x, y);
     const float* edited = input_.edited->pixel(x + input_.shift_x, y + input_.shift_y);
     Rgb was = original_gain_ * Rgb{pixel[0], pixel[1], pixel[2]};
@@ -80,9 +83,11 @@ class Sorter {
     was = scale * was;
     const Rgb is = (scale * input_.gain) * Rgb{edited[0], edited[1], edited[2]};
     const double brightest = std::max({was.x, was.y, was.z, is.x, is.y, is.z});
+    double most = 0;
     for (int c = 0; c < 3; ++c)
-      if (std::abs(is[c] - was[c]) > code_width(std::max(was[c], is[c]), brightest)) return true;
-    return false;
+      most = std::max(most, std::abs(is[c] - was[c]) / code_width(std::max(was[c], is[c]), brightest));
+    const double touched = input_.edited->scene_linear ? 0.01 : 0.3;  // floats come back as they were
+    return most > 1 ? kEdited : most > touched ? kTouched : kSame;
   }
 
  private:
@@ -102,7 +107,7 @@ class Sorter {
   std::vector<bool> wanted_;
 };
 
-// Sorts all pixels; `changed` is set for those that could be used and differ from the original.
+// Sorts all pixels; `changed` is told for those that could be used.
 void sort_pixels(const Sorter& sorter, const Image& image, bool compare, SketchPixels& pixels,
                  std::vector<std::uint8_t>& changed) {
   parallel_for(static_cast<std::size_t>(image.height), kRows, [&](std::size_t begin, std::size_t end) {
@@ -111,7 +116,7 @@ void sort_pixels(const Sorter& sorter, const Image& image, bool compare, SketchP
         const std::size_t i = static_cast<std::size_t>(y) * image.width + x;
         pixels.use[i] = sorter.use(x, y);
         if (compare && (pixels.use[i] == PixelUse::kUsed || pixels.use[i] == PixelUse::kGlare))
-          changed[i] = sorter.is_changed(x, y);
+          changed[i] = sorter.change(x, y);
       }
   });
 }
@@ -123,12 +128,12 @@ void drop_scattered(const Image& image, std::vector<std::uint8_t>& changed) {
   parallel_for(static_cast<std::size_t>(image.height), kRows, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin; y < end; ++y)
       for (std::size_t x = 0; x < width; ++x) {
-        if (!was[y * width + x]) continue;
+        if (was[y * width + x] != kEdited) continue;
         if (y == 0 || x == 0 || y + 1 == static_cast<std::size_t>(image.height) || x + 1 == width) continue;
         int count = 0;
         for (const std::size_t row : {(y - 1) * width, y * width, (y + 1) * width})
-          for (std::size_t column = x - 1; column <= x + 1; ++column) count += was[row + column];
-        changed[y * width + x] = count >= 5;
+          for (std::size_t column = x - 1; column <= x + 1; ++column) count += was[row + column] == kEdited;
+        if (count < 5) changed[y * width + x] = kTouched;
       }
   });
 }
@@ -153,16 +158,19 @@ Result<SketchPixels> sketch_pixels(const SketchInput& input) {
   sort_pixels(sorter, image, compare, pixels, changed);
   if (compare) drop_scattered(image, changed);
 
-  std::size_t usable = 0;
+  std::size_t usable = 0, touched = 0;
   for (std::size_t i = 0; i < changed.size(); ++i)
-    if (pixels.use[i] == PixelUse::kUsed) ++usable, pixels.changed += changed[i];
-  const double share = usable > 0 ? static_cast<double>(pixels.changed) / static_cast<double>(usable) : 0;
-  pixels.changed_only = input.rule == PixelRule::kChanged ||
-                        (input.rule == PixelRule::kAuto && share >= kLeastChangedShare && share < kRepaintedShare);
+    if (pixels.use[i] == PixelUse::kUsed)
+      ++usable, pixels.changed += changed[i] == kEdited, touched += changed[i] != kSame;
+  const auto share = [&](std::size_t count) {
+    return usable > 0 ? static_cast<double>(count) / static_cast<double>(usable) : 0;
+  };
+  const bool partly = share(pixels.changed) >= kLeastChangedShare && share(touched) < kRepaintedShare;
+  pixels.changed_only = input.rule == PixelRule::kChanged || (input.rule == PixelRule::kAuto && partly);
   for (std::size_t i = 0; i < pixels.use.size(); ++i) {
     PixelUse& use = pixels.use[i];
     const bool candidate = use == PixelUse::kUsed || use == PixelUse::kGlare;
-    if (candidate && pixels.changed_only && !changed[i]) use = PixelUse::kUnchanged;
+    if (candidate && pixels.changed_only && changed[i] != kEdited) use = PixelUse::kUnchanged;
     if (use == PixelUse::kUsed) pixels.used.push_back(static_cast<std::uint32_t>(i));
     if (use == PixelUse::kGlare) pixels.glare.push_back(static_cast<std::uint32_t>(i));
     ++pixels.count[static_cast<std::size_t>(use)];

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <optional>
 
 #include "brdf/lobe_model.h"
 #include "fit/sketch_common.h"
@@ -16,6 +18,7 @@ constexpr double kContrastRegion_deg = 15;  // [Shimizu2009] 3.7.3
 constexpr std::size_t kFewestCells = 8;
 constexpr double kReach_deg = 2;  // an angle this close to one seen counts as seen
 constexpr std::size_t kSearchCells = 700;
+constexpr double kSameCost = 1.05, kSameCostBy = 0.005;  // costs of two values of gloss that the pixels cannot tell
 
 // What the buffers and the picture have at each pixel, relative to the light.
 class Seen {
@@ -47,19 +50,24 @@ double luminance(const std::array<float, 3>& rgb) {
   return xyz_d65_from_rgb({rgb[0], rgb[1], rgb[2]}).Y;
 }
 
-void find_gloss(const SketchInput& input, const SketchPixels& pixels, const Seen& seen, const SketchCurve& curve,
-                SketchFit& fit) {
+// What the pixels within 15 deg of specular say of gloss.
+struct Highlight {
+  std::optional<double> by_shape;
+  double by_contrast = 0;
+};
+
+Highlight highlight_of(const SketchInput& input, const SketchPixels& pixels, const Seen& seen,
+                       const SketchCurve& curve) {
   std::vector<double> brightness;
   std::vector<HighlightSample> highlight;
   std::size_t clipped = 0;
+  const int width = input.buffers->image.width;
   const auto look = [&](std::uint32_t place) {
     const SketchSample s = seen.at(place);
     if (s.aspecular_deg >= kContrastRegion_deg) return;
     const double y = luminance(s.seen);
     brightness.push_back(display_brightness(y));
-    const std::size_t width = static_cast<std::size_t>(input.buffers->image.width);
-    const std::size_t shifted =
-        place + static_cast<std::size_t>(input.shift_y) * width + static_cast<std::size_t>(input.shift_x);
+    const auto shifted = static_cast<std::size_t>(static_cast<int>(place) + input.shift_y * width + input.shift_x);
     if (input.edited->state[shifted] == Picture::kClipped) {
       ++clipped;
       return;
@@ -69,9 +77,22 @@ void find_gloss(const SketchInput& input, const SketchPixels& pixels, const Seen
   };
   for (const std::uint32_t place : pixels.glare) look(place);
   for (const std::uint32_t place : pixels.used) look(place);
-  const auto measured = clipped == 0 ? highlight_gloss(highlight) : std::nullopt;
-  fit.gloss_60_gu = measured ? *measured : contrast_gloss(brightness);
-  fit.gloss_from = measured ? "highlight" : "contrast";
+  Highlight found;
+  if (clipped == 0) found.by_shape = highlight_gloss(highlight);
+  found.by_contrast = contrast_gloss(brightness);
+  return found;
+}
+
+// The highlight's gloss, by shape or else by contrast; `allows`, where there is one, says whether the pixels farther
+// from specular, which show the flanks of wide lobes, agree. Where they do not, that of the search stays.
+void take_gloss(const Highlight& highlight, const std::function<bool(double)>& allows, SketchFit& fit) {
+  const auto take = [&](double gloss, const char* from) {
+    if (allows && !allows(gloss)) return false;
+    fit.gloss_60_gu = gloss, fit.gloss_from = from;
+    return true;
+  };
+  if (highlight.by_shape && take(*highlight.by_shape, "highlight")) return;
+  take(highlight.by_contrast, "contrast");
 }
 
 // The same cells as light on lobes: at most kSearchCells of them, of all cosines alike.
@@ -201,7 +222,8 @@ SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, con
   const CurveFit quadratic = fit_quadratic(cells), lobes = fit_lobes(cells);
   const Rgb matt = curve.diffuse;
   const CurveFit& better = lobes.cost <= quadratic.cost ? lobes : quadratic;
-  const FoundPaint found = LobeSearch(basis, search_samples(cells, basis, !input.edited->scene_linear)).find(false);
+  const LobeSearch search(basis, search_samples(cells, basis, !input.edited->scene_linear));
+  const FoundPaint found = search.find(false);
   const bool as_good = is_as_good(found.search.cost, better.cost);
   curve = as_good ? curve_of(found, basis) : better.curve;
   judge();
@@ -216,7 +238,10 @@ SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, con
   fit.condition = quadratic.condition;
   for (const LabReading& row : fit.rows)
     if (!is_seen(cells, row.geometry.aspecular_deg)) fit.extrapolated_deg.push_back(row.geometry.aspecular_deg);
-  find_gloss(input, pixels, seen, curve, fit);
+  const auto allows = [&](double gloss) {
+    return search.cost_with_gloss(found, gloss) <= kSameCost * found.search.cost + kSameCostBy;
+  };
+  take_gloss(highlight_of(input, pixels, seen, curve), as_good ? allows : std::function<bool(double)>(), fit);
   return fit;
 }
 

@@ -157,6 +157,13 @@ Rgb LobeSearch::matt() const {
   return color;
 }
 
+double LobeSearch::cost_with_gloss(const FoundPaint& found, double gloss) const {
+  std::vector<double> values = found.search.values, r(3 * target_.size());
+  values.back() = gloss;
+  residuals(weights(found.exact ? exact_ : smooth_, values), r);
+  return robust_cost(r, samples_.importance);
+}
+
 // The gloss of least cost among some, the rest held: the cost has a valley at each lobe of the basis.
 void LobeSearch::scan_gloss(std::vector<SearchParameter>& start) const {
   std::vector<double> values;
@@ -198,7 +205,7 @@ SearchResult LobeSearch::best_rows(const SearchResult& appearance) const {
 }
 
 FoundPaint LobeSearch::find(bool from_silver) const {
-  FoundPaint found{best_appearance(from_silver), {}};
+  FoundPaint found{best_appearance(from_silver), {}, false};
   if (found.search.cost > kGoodCost) {
     SearchResult rows = best_rows(found.search);
     if (rows.cost < kRowsGain * found.search.cost) found.search = std::move(rows);
@@ -209,6 +216,7 @@ FoundPaint LobeSearch::find(bool from_silver) const {
   if (other.cost < found.search.cost) {
     found.search = std::move(other);
     found.weights = weights(exact_, found.search.values);
+    found.exact = true;
   }
   return found;
 }

@@ -23,6 +23,7 @@ std::size_t search_columns(const Basis& basis);
 struct FoundPaint {
   SearchResult search;
   std::vector<Rgb> weights;  // of its lobes, in the order of the columns
+  bool exact = false;        // those of least absolute error
   Paint paint() const;
   bool has_free_rows() const { return search.values.size() == 10; }
 };
@@ -34,6 +35,9 @@ class LobeSearch {
   // From a linear start, and where `from_silver` also from a neutral silver of medium gloss; then, unless face, flop
   // and travel explain the samples as well, with the colors at three angles freed.
   FoundPaint find(bool from_silver) const;
+
+  // The cost of a paint found, with another gloss (gloss units).
+  double cost_with_gloss(const FoundPaint& found, double gloss) const;
 
   // The matt reflectance factor that explains the samples best.
   Rgb matt() const;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/hard_case_for_test.h"
 #include "fit/sketch_curve.h"
 #include "fit/sketch_scene_for_test.h"
 
@@ -160,7 +161,7 @@ Lab least_squares_lab(const AovFile& file, const Picture& p, double angle_deg, d
   return lab_from_rgb(result, *white_point({}));
 }
 
-TEST(Sketch, sketch_rank_a_third_of_outliers_does_not_move_the_paint) {
+TEST(Sketch, HardCase_sketch_rank_a_third_of_outliers_does_not_move_the_paint) {
   std::mt19937_64 random(13);
   AovFile ball = sphere(160, kLamp);
   Paint paint = random_paint(random);
@@ -175,12 +176,15 @@ TEST(Sketch, sketch_rank_a_third_of_outliers_does_not_move_the_paint) {
   in.rule = PixelRule::kAll;
   const SketchFit found = fit(in);
   EXPECT_EQ(found.status, "fitted");
-  EXPECT_LE(worst_de00(found, *paint.appearance), 1);
   // The control: the same pixels without reweighting.
-  EXPECT_GT(delta_e_2000(least_squares_lab(ball, p, 45, 70), lab_at(*paint.appearance, 45)), 5);
+  hard_case("sketch-rank", {.what = "the paint, with 30 % of the pixels painted over",
+                            .textbook = delta_e_2000(least_squares_lab(ball, p, 45, 70), lab_at(*paint.appearance, 45)),
+                            .ours = worst_de00(found, *paint.appearance),
+                            .bound = 1,
+                            .unit = "dE00"});
 }
 
-TEST(Sketch, sketch_rank_one_angle_and_few_pixels_fall_back_to_the_matt_color) {
+TEST(Sketch, HardCase_sketch_rank_one_angle_and_few_pixels_fall_back_to_the_matt_color) {
   std::mt19937_64 random(14);
   AovFile ball = sphere(120, kLamp);
   const Paint paint = random_paint(random);
@@ -194,7 +198,7 @@ TEST(Sketch, sketch_rank_one_angle_and_few_pixels_fall_back_to_the_matt_color) {
   SketchFit found = fit(in);
   EXPECT_EQ(found.status, "diffuse_fallback");
   EXPECT_THAT(found.reason, HasSubstr("aspecular angles from"));
-  EXPECT_LE(delta_e_2000(found.appearance.face, lab_at(*paint.appearance, 50)), 3);  // of +-1 deg and of the lobes
+  const double off = delta_e_2000(found.appearance.face, lab_at(*paint.appearance, 50));
   EXPECT_EQ(found.appearance.face, found.appearance.flop);
 
   std::fill(mask.data.begin(), mask.data.end(), 0.0F);
@@ -206,10 +210,15 @@ TEST(Sketch, sketch_rank_one_angle_and_few_pixels_fall_back_to_the_matt_color) {
 
   // The control: of one angle the textbook's normal equations have no inverse.
   std::vector<SketchCell> cells(10, SketchCell{50, 0.5, 10, {0.2, 0.2, 0.2}});
-  EXPECT_GT(fit_quadratic(cells).condition, 1e6);
+  const double condition = fit_quadratic(cells).condition;
+  hard_case("sketch-rank", {.what = "the color of pixels of one angle",
+                            .textbook = condition > 1e6 ? INFINITY : off,
+                            .ours = off,
+                            .bound = 3,  // of +-1 deg and of the lobes
+                            .unit = "dE00"});
 }
 
-TEST(Sketch, sketch_rank_all_clipped_leaves_no_pixel_and_says_so) {
+TEST(Sketch, HardCase_sketch_rank_all_clipped_leaves_no_pixel_and_says_so) {
   AovFile ball = sphere(60, kLamp);
   shade(ball, lobes(designed({60, 0, 0}, {20, 0, 0}, 60)));
   Picture p = picture(ball);
@@ -301,6 +310,57 @@ TEST(Sketch, sizes_that_differ_are_both_named) {
   pixels = sketch_pixels(in);
   ASSERT_FALSE(pixels.ok());
   EXPECT_THAT(pixels.error().message, HasSubstr("the mask is 7 x 9 pixels"));
+}
+
+// What is done to a picture in an image editor.
+enum class Touch { kHue, kLightness, kBurn };
+
+// Hue: the channels trade places by a rotation about gray; lightness: a third more light; burn: the color far from
+// specular darkened by up to a half.
+void touch(Touch kind, const AovFile& file, Picture& p) {
+  for (std::size_t i = 0; i < p.state.size(); ++i) {
+    float* rgb = &p.rgb.data[3 * i];
+    const Rgb was{rgb[0], rgb[1], rgb[2]};
+    const double t = file.image.data[i * 11 + 4];
+    Rgb is = (4.0 / 3) * was;
+    if (kind == Touch::kHue) is = {0.8 * was.x + 0.2 * was.y, 0.8 * was.y + 0.2 * was.z, 0.8 * was.z + 0.2 * was.x};
+    if (kind == Touch::kBurn) is = (1 - 0.5 * std::clamp((t - 40) / 60, 0.0, 1.0)) * was;
+    for (int c = 0; c < 3; ++c) rgb[c] = static_cast<float>(is[c]);
+  }
+}
+
+// RMS of the CIE 1976 differences between an edited picture and one of the paint found, over the pixels used.
+double rms_of(const SketchPixels& pixels, const Picture& edited, const AovFile& again) {
+  const Xyz white = *white_point({});
+  double sum = 0;
+  for (const std::uint32_t place : pixels.used) {
+    const float *a = &edited.rgb.data[3 * place], *b = &again.image.data[11 * place];
+    const double de = delta_e_76(lab_from_rgb({a[0], a[1], a[2]}, white), lab_from_rgb({b[0], b[1], b[2]}, white));
+    sum += de * de;
+  }
+  return std::sqrt(sum / static_cast<double>(pixels.used.size()));
+}
+
+// The whole loop: render, edit, fit, render, compare. The bound is the source's figure for a hue turned, 2 dE
+// [Shimizu2009] 3.7.4; single burns, which bend a curve as no paint does, reach three times that.
+TEST(Sketch, an_edit_comes_back_in_the_picture_of_the_paint_found) {
+  std::mt19937_64 random(16);
+  AovFile ball = sphere(80, kLamp), again = ball;
+  std::array<double, 3> sum{}, most{};
+  for (int i = 0; i < 102; ++i) {
+    const int kind = i % 3;
+    shade(ball, lobes(random_paint(random)));
+    Picture p = picture(ball);
+    touch(static_cast<Touch>(kind), ball, p);
+    const SketchInput in = input(ball, p);
+    const SketchPixels pixels = *sketch_pixels(in);
+    const SketchFit found = sketch_point(in, pixels, basis(), {}, false);
+    ASSERT_EQ(found.status, "fitted") << i << ": " << found.reason;
+    shade(again, lobes(sketch_paint(found, "found")));
+    const double rms = rms_of(pixels, p, again);
+    sum[kind] += rms / 34, most[kind] = std::max(most[kind], rms);
+  }
+  for (int kind = 0; kind < 3; ++kind) EXPECT_LE(sum[kind], 2) << kind << ", at most " << most[kind];
 }
 
 }  // namespace

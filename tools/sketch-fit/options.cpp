@@ -27,8 +27,8 @@ cli::ToolSpec sketch_fit_spec(SketchFitOptions& o, cli::CommonOptions& common) {
       "Where the pixels show too few angles, or half of them differ by more than --max-de from the best paint, the "
       "answer is the matt color that explains them best; the report and a warning say so, and the exit status stays 0. "
       "A picture that seems to be moved against the buffers is told with the shift to give.",
-      "Gloss comes from the shape of the highlight where it is seen unclipped, else from its contrast; with --env from "
-      "the search."};
+      "Gloss comes from the shape of the highlight where it is seen unclipped, else from its contrast; with --env, and "
+      "where other pixels contradict the highlight, from the search."};
   spec.options = {
       {.name = "image",
        .letter = 'i',
