@@ -36,9 +36,14 @@ std::string command_line(const std::string& name, const std::vector<std::string>
   return text;
 }
 
+// Where messages cannot be written, the exit status still tells; fmt::print would throw.
+void tell(const std::string& text) {
+  std::fputs(text.c_str(), stderr);
+}
+
 int fail(const std::string& tool, const Error& error) {
-  fmt::print(stderr, "{}: {}\n", tool, error.message);
-  if (error.kind == ErrorKind::kUsage) fmt::print(stderr, "`{} --help` shows the usage\n", tool);
+  tell(fmt::format("{}: {}\n", tool, error.message));
+  if (error.kind == ErrorKind::kUsage) tell(fmt::format("`{} --help` shows the usage\n", tool));
   return exit_status(error);
 }
 
@@ -46,6 +51,13 @@ int fail(const std::string& tool, const Error& error) {
 Result<void> close_output() {
   if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return {};
   return input_error("standard output: cannot be written");
+}
+
+// The exit status after `text` as the whole of standard output.
+int answer(const ToolSpec& spec, const std::string& text) {
+  std::fputs(text.c_str(), stdout);
+  const auto closed = close_output();
+  return closed.ok() ? 0 : fail(spec.name, closed.error());
 }
 
 }  // namespace
@@ -70,9 +82,9 @@ const char* Session::version() {
 
 void Session::say(const std::string& line) const {
   if (common_.quiet) return;
-  if (progress_shown_) fmt::print(stderr, "\r\033[K");
+  if (progress_shown_) tell("\r\033[K");
   progress_shown_ = false;
-  fmt::print(stderr, "{}\n", line);
+  tell(line + "\n");
 }
 
 void Session::warn(const std::string& line) {
@@ -82,13 +94,13 @@ void Session::warn(const std::string& line) {
 
 void Session::progress(const std::string& line) const {
   if (common_.quiet || clock_.elapsed_s() < 0.5 || !isatty(STDERR_FILENO)) return;
-  fmt::print(stderr, "\r\033[K{}", line);
+  tell("\r\033[K" + line);
   std::fflush(stderr);
   progress_shown_ = true;
 }
 
 void Session::explain(const std::string& text) const {
-  if (common_.explain) fmt::print(stderr, "{}", text);
+  if (common_.explain) tell(text);
 }
 
 Result<void> Session::write_report() const {
@@ -119,16 +131,16 @@ int tool_main(int argc, char** argv, const ToolSpec& table, const CommonOptions&
   // These three answer whatever else is on the line, and even where a required option is missing.
   for (const std::string& word : arguments) {
     if (word == "--") break;
-    if (word == "--help" || word == "-h") return fmt::print("{}", help_text(spec)), 0;
-    if (word == "--version") return fmt::print("{} {}\n", spec.name, Session::version()), 0;
-    if (word == "--generate=man") return fmt::print("{}", man_page(spec)), 0;
-    if (word == "--generate=completion") return fmt::print("{}", bash_completion(spec)), 0;
+    if (word == "--help" || word == "-h") return answer(spec, help_text(spec));
+    if (word == "--version") return answer(spec, fmt::format("{} {}\n", spec.name, Session::version()));
+    if (word == "--generate=man") return answer(spec, man_page(spec));
+    if (word == "--generate=completion") return answer(spec, bash_completion(spec));
   }
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond its limit is a writing error, which names the file
   try {
     if (const auto parsed = parse(spec, arguments); !parsed.ok()) return fail(spec.name, parsed.error());
-    if (requests.generate == "man") return fmt::print("{}", man_page(spec)), 0;
-    if (requests.generate == "completion") return fmt::print("{}", bash_completion(spec)), 0;
+    if (requests.generate == "man") return answer(spec, man_page(spec));
+    if (requests.generate == "completion") return answer(spec, bash_completion(spec));
     set_threads(common.threads);
     Session session(spec.name, command_line(spec.name, arguments), common);
     const auto verdict = run(session);

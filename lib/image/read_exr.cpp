@@ -1,5 +1,6 @@
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfChromaticitiesAttribute.h>
+#include <OpenEXR/ImfCompression.h>
 #include <OpenEXR/ImfEnvmapAttribute.h>
 #include <OpenEXR/ImfFloatAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
@@ -25,9 +26,27 @@ namespace goniochrome {
 
 namespace {
 
-// Of one part. A forged header must not ask for more, nor for more than the file's own bytes can stand for: one color
-// all over packs best, 7000 half samples to a byte (8192 x 4096, DWAB).
-constexpr std::size_t kMostSamples = std::size_t{1} << 31, kMostSamplesAByte = 16384;
+// Of one part; a forged header must not ask for more, nor for more than the bytes of its file can stand for.
+constexpr std::size_t kMostSamples = std::size_t{1} << 31;
+
+// The most samples that a byte can stand for. Deflate makes 1032 bytes of one; of the others, one color all over packs
+// best: 8192 x 4096 halves take 31 (RLE), 145 (PIZ), 5 (B44A) and 7068 (DWAB) samples to a byte.
+std::size_t most_samples_a_byte(Imf::Compression compression) {
+  switch (compression) {
+    case Imf::NO_COMPRESSION:
+      return 1;
+    case Imf::RLE_COMPRESSION:
+      return 64;
+    case Imf::B44_COMPRESSION:
+    case Imf::B44A_COMPRESSION:
+      return 16;
+    case Imf::DWAA_COMPRESSION:
+    case Imf::DWAB_COMPRESSION:
+      return 16384;
+    default:
+      return 1032;
+  }
+}
 
 class MemoryInput : public Imf::IStream {
  public:
@@ -103,7 +122,7 @@ Result<ImagePart> decoded_part(Imf::MultiPartInputFile& file, int index, const s
   image.channels = static_cast<int>(image.channel_names.size());
   const std::size_t samples = static_cast<std::size_t>(image.width) * image.height * image.channels;
   if (samples == 0) return input_error("{}: holds no pixels", where);
-  if (samples > kMostSamples || samples / kMostSamplesAByte > file_bytes)
+  if (samples > kMostSamples || samples / most_samples_a_byte(header.compression()) > file_bytes)
     return input_error("{}: {} x {} pixels are too many for a file of {} bytes", where, image.width, image.height,
                        file_bytes);
   image.data.resize(samples);
