@@ -90,11 +90,16 @@ void read_measured_file(const std::string& path) {
   const auto brdf = read_measured(path);
   if (!brdf.ok()) return demand_message(brdf.error());
   checks(**brdf);
-  for (const double tilt : {0.0, 0.4, 1.2, 1.57}) {
-    const MeasuredValue value = (*brdf)->value({std::sin(tilt), 0, std::cos(tilt)},
-                                               {-std::sin(tilt) * 0.6, std::sin(tilt) * 0.8, std::cos(tilt)});
-    for (const double f : value.f) demand(std::isfinite(f), "a reflectance that is no number");
-  }
+  for (const double aspecular : {15.0, 110.0})
+    for (const ViewingCondition& condition : {ViewingCondition{"D65", 2}, {"A", 10}}) {
+      const auto color = measured_color(**brdf, {{{45, aspecular}}, condition});
+      if (!color.ok()) {
+        demand_message(color.error());
+        continue;
+      }
+      for (const MeasuredReading& reading : color->readings)
+        demand(std::isfinite(reading.lab.L + reading.lab.a + reading.lab.b), "a color that is no number");
+    }
 }
 
 void read_env_file(const std::string& path) {
