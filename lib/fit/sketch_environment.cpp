@@ -123,7 +123,7 @@ Result<SketchFit> sketch_environment(const SketchInput& input, const SketchPixel
   };
   if (pixels.used.size() < kFewestPixels)
     return give_up(fmt::format("{} pixels are too few for a search", pixels.used.size()));
-  const FoundPaint found = search.find(true);
+  const FoundPaint found = search.find();
   take_found(found, fit);
   weights = found.weights;
   judge();

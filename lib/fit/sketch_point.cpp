@@ -223,7 +223,7 @@ SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, con
   const Rgb matt = curve.diffuse;
   const CurveFit& better = lobes.cost <= quadratic.cost ? lobes : quadratic;
   const LobeSearch search(basis, search_samples(cells, basis, !input.edited->scene_linear));
-  const FoundPaint found = search.find(true);
+  const FoundPaint found = search.find();
   const bool as_good = is_as_good(found.search.cost, better.cost);
   curve = as_good ? curve_of(found, basis) : better.curve;
   judge();

@@ -175,22 +175,23 @@ void LobeSearch::scan_gloss(std::vector<SearchParameter>& start) const {
   }
 }
 
-SearchResult LobeSearch::best_appearance(bool from_silver) const {
+// A paint read off the linear fit, with three values of gloss, and a neutral silver of medium gloss, the start of
+// [Shimizu2009] 3.7.5.
+std::vector<std::vector<SearchParameter>> LobeSearch::starts() const {
   const LobeFit guess = linear();
   std::vector<LabReading> rows;
   for (const double angle : {15.0, 45.0, 110.0})
     rows.push_back({{45, angle}, paint_lab(flake_reflectance_factor(guess, angle))});
   const GlossTable table(basis_.exponents);
   const double gloss = std::clamp(gloss_units(table, **table.at(60), guess), 0.0, 100.0);
-  std::vector<std::vector<SearchParameter>> starts = {parameters(appearance_from_rows(rows)->appearance, gloss)};
-  if (from_silver) starts.push_back(parameters({{80, 0, 0}, {30, 0, 0}, 60, std::nullopt}, 50));
-  SearchResult best;
-  for (auto& start : starts) {
-    scan_gloss(start);
-    SearchResult result = run(smooth_, start);
-    if (best.values.empty() || result.cost < best.cost) best = std::move(result);
+  std::vector<std::vector<SearchParameter>> all = {parameters(appearance_from_rows(rows)->appearance, gloss),
+                                                   parameters({{80, 0, 0}, {30, 0, 0}, 60, std::nullopt}, 50)};
+  for (auto& start : all) scan_gloss(start);
+  for (const double other : {20.0, 90.0}) {  // wide gloss lobes look like flake: the paint read off, with some and none
+    all.push_back(all.front());
+    all.back().back().value = other;
   }
-  return best;
+  return all;
 }
 
 SearchResult LobeSearch::best_rows(const SearchResult& appearance) const {
@@ -204,21 +205,27 @@ SearchResult LobeSearch::best_rows(const SearchResult& appearance) const {
   return run(smooth_, parameters_of(values));
 }
 
-FoundPaint LobeSearch::find(bool from_silver) const {
-  FoundPaint found{best_appearance(from_silver), {}, false};
-  if (found.search.cost > kGoodCost) {
-    SearchResult rows = best_rows(found.search);
-    if (rows.cost < kRowsGain * found.search.cost) found.search = std::move(rows);
+// Which of the two ways made the picture's lobes is not known: each start goes both.
+FoundPaint LobeSearch::find() const {
+  FoundPaint best;
+  const auto take = [&](SearchResult result, bool exact) {
+    if (best.search.values.empty() || result.cost < best.search.cost) best = {std::move(result), {}, exact};
+  };
+  for (const auto& start : starts()) {
+    SearchResult smooth = run(smooth_, start);
+    take(run(exact_, parameters_of(smooth.values)), true);
+    take(std::move(smooth), false);
   }
-  found.weights = weights(smooth_, found.search.values);
-  // Which of the two ways made the picture's lobes is not known.
-  SearchResult other = run(exact_, parameters_of(found.search.values));
-  if (other.cost < found.search.cost) {
-    found.search = std::move(other);
-    found.weights = weights(exact_, found.search.values);
-    found.exact = true;
+  if (best.search.cost > kGoodCost) {
+    SearchResult rows = best_rows(best.search);
+    if (rows.cost < kRowsGain * best.search.cost) {
+      SearchResult exact = run(exact_, parameters_of(rows.values));
+      take(std::move(rows), false);
+      take(std::move(exact), true);
+    }
   }
-  return found;
+  best.weights = weights(best.exact ? exact_ : smooth_, best.search.values);
+  return best;
 }
 
 }  // namespace goniochrome

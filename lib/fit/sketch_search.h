@@ -32,9 +32,9 @@ class LobeSearch {
  public:
   LobeSearch(const Basis& basis, SearchSamples samples);
 
-  // From a linear start, and where `from_silver` also from a neutral silver of medium gloss; then, unless face, flop
-  // and travel explain the samples as well, with the colors at three angles freed.
-  FoundPaint find(bool from_silver) const;
+  // From four starts; then, unless face, flop and travel explain the samples as well, with the colors at three angles
+  // freed.
+  FoundPaint find() const;
 
   // The cost of a paint found, with another gloss (gloss units).
   double cost_with_gloss(const FoundPaint& found, double gloss) const;
@@ -50,7 +50,7 @@ class LobeSearch {
   LobeFit linear() const;
   std::vector<double> linear_channel(int channel) const;
   void scan_gloss(std::vector<SearchParameter>& start) const;
-  SearchResult best_appearance(bool from_silver) const;
+  std::vector<std::vector<SearchParameter>> starts() const;
   SearchResult best_rows(const SearchResult& appearance) const;
 
   Basis basis_;
