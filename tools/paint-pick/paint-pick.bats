@@ -107,7 +107,7 @@ EOF
   grep -q 'drawn on a ball under two lamps' board.html
   ! grep -qE '(src|href)="[^d]' board.html
   xmllint --html --noout board.html 2>&1 | grep -vE 'Tag (header|section|figure|figcaption|main|article|svg|circle) invalid|^<|^ |\^' | grep -q error && return 1
-  oiiotool "$TESTDATA/studio.exr" --resize:filter=box 32x16 -o small.exr
+  oiiotool "$TESTDATA/studio.exr" --resize:filter=box 128x64 -o small.exr
   prefilter-envmap -q small.exr --basis "$TESTDATA/b5.basis.xml" -o small.env.exr
   paint-pick -q --board board.txt -o board.html --mesh "$TESTDATA/speed-shape.obj" --env small.env.exr
   grep -q 'drawn on speed-shape.obj under small.env.exr' board.html

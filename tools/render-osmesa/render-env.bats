@@ -2,7 +2,7 @@
 
 setup_file() {
   cd "$BATS_FILE_TMPDIR" || exit 1
-  oiiotool "$TESTDATA/studio.exr" --resize:filter=box 64x32 -o small.exr
+  oiiotool "$TESTDATA/studio.exr" --resize:filter=box 128x64 -o small.exr
   prefilter-envmap -q small.exr --basis "$TESTDATA/b7.basis.xml" -o small.env.exr
 }
 

@@ -2,8 +2,8 @@
 
 setup_file() {
   cd "$BATS_FILE_TMPDIR" || exit 1
-  oiiotool "$TESTDATA/studio.exr" --resize:filter=box 64x32 -o studio.exr
-  oiiotool "$TESTDATA/outdoor.exr" --resize:filter=box 64x32 -o outdoor.exr
+  oiiotool "$TESTDATA/studio.exr" --resize:filter=box 128x64 -o studio.exr
+  oiiotool "$TESTDATA/outdoor.exr" --resize:filter=box 128x64 -o outdoor.exr
   for light in studio outdoor; do prefilter-envmap -q $light.exr --basis "$TESTDATA/b5.basis.xml" -o $light.env.exr; done
   fit-paint -q --basis "$TESTDATA/b5.basis.xml" "$TESTDATA/paints.paints.xml" -o fitted.xml
   sed 's/<lobes /<anisotropy alphaX="0.05" alphaY="0.3"\/><lobes /' fitted.xml >brushed.xml

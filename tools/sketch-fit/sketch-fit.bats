@@ -84,7 +84,7 @@ fit() { sketch-fit -q -o found.xml --report r.json "$@"; }
 }
 
 @test "under an environment the paint and its gloss come back" {
-  oiiotool "$TESTDATA/studio.exr" --resize:filter=box 64x32 -o small.exr
+  oiiotool "$TESTDATA/studio.exr" --resize:filter=box 128x64 -o small.exr
   prefilter-envmap -q small.exr --basis "$TESTDATA/b7.basis.xml" -o small.env.exr
   scene="--mesh $TESTDATA/speed-shape.obj --env small.env.exr --size 240x150 --samples 1"
   render-osmesa -q $scene --paint fitted.xml#satin --aov normal,aspecular,lambert,mask,part -o env.exr
