@@ -28,7 +28,7 @@ for folder in "$top"/tools/*/; do
   help=$("$bin/$tool" --help)
   page=$(sed 's/\\-/-/g; s/\\f[BIR]//g' "$top/man/$tool.1")
   # Both ways: an option of the help is in the page, and one of the page is in the help.
-  for option in $(grep -oE '^ +(-[a-zA-Z], )?--[a-z0-9-]+' <<<"$help" | grep -oE -- '--[a-z0-9-]+'); do
+  for option in $(grep -oE '^ {2,6}(-[a-zA-Z], )?--[a-z0-9-]+' <<<"$help" | grep -oE -- '--[a-z0-9-]+'); do
     grep -qE -- "^(-[a-zA-Z], )?$option( |$)" <<<"$page" || complain "$tool: $option is in --help and not in the man page"
     grep -q -- "$option" "$top/scripts/completions/$tool.bash" || complain "$tool: $option is not in the completion"
     checked=$((checked + 1))
