@@ -89,6 +89,17 @@ class Prober {
     return percentile_95(std::move(de00));
   }
 
+  // What decides whether a change is seen: the difference that 95 % of the points stay below or, where few points hold
+  // all of it, as they do a highlight, the root mean square.
+  double seen(const std::vector<Rgb>& a, const std::vector<Rgb>& b) const {
+    double squares = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const double de00 = seen_difference(a[i], b[i], white_);
+      squares += de00 * de00;
+    }
+    return std::max(difference(a, b), std::sqrt(squares / static_cast<double>(std::max<std::size_t>(a.size(), 1))));
+  }
+
   // Seconds that a point takes on all cores together, the best of a few runs.
   double seconds_per_point() const {
     double best = std::numeric_limits<double>::infinity();
@@ -169,10 +180,12 @@ Choice forced_choice(const Words& words, const std::vector<EffectSwitch>& switch
   return choice;
 }
 
-// Leaves out, cheapest to miss first, what all together cannot be seen.
-void drop_unseen(Prober& prober, const std::vector<PlanItem>& items, double tolerance, Choice& choice) {
+// Leaves out, cheapest to miss first, what all together cannot be seen. The gloss of a lamp stays: its highlight may
+// lie between the points, and is the first thing that is seen.
+void drop_unseen(Prober& prober, const std::vector<PlanItem>& items, bool lamps, double tolerance, Choice& choice) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < items.size(); ++i) {
+    if (lamps && items[i].effect.starts_with("gloss-")) continue;
     if (choice.on[i] && !choice.forced[i] && items[i].de00_p95 <= tolerance) order.push_back(i);
   }
   std::stable_sort(order.begin(), order.end(),
@@ -180,7 +193,7 @@ void drop_unseen(Prober& prober, const std::vector<PlanItem>& items, double tole
   const std::vector<Rgb> wanted = prober.colors(choice.on);
   for (const std::size_t i : order) {
     choice.on[i] = false;
-    if (prober.difference(wanted, prober.colors(choice.on)) > kSafety * tolerance) choice.on[i] = true;
+    if (prober.seen(wanted, prober.colors(choice.on)) > kSafety * tolerance) choice.on[i] = true;
   }
 }
 
@@ -301,7 +314,7 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<VisiblePoint>& prob
     plan.items.push_back(std::move(item));
   }
   Choice choice = forced_choice(words, switches);
-  if (words.base == "auto") drop_unseen(prober, plan.items, request.tolerance_de00, choice);
+  if (words.base == "auto") drop_unseen(prober, plan.items, !scene.lights.empty(), request.tolerance_de00, choice);
   plan.cpu_ms = cost.ms(prober.effects(choice.on), Engine::kCpu);
   plan.gl_ms = cost.ms(prober.effects(choice.on), Engine::kGl);
   choose_engine(request, plan);
