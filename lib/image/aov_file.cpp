@@ -88,6 +88,14 @@ Result<AovFile> read_aov_file(const std::string& path) {
   const Json names = Json::parse(parts.empty() ? "[]" : parts, nullptr, false);
   for (const Json& name : names)
     if (name.is_string()) file.parts.push_back(name.get<std::string>());
+  const auto plan = attribute<std::string>(attributes, "goniochrome:plan", "");
+  const Json effects = Json::parse(plan.empty() ? "[]" : plan, nullptr, false);
+  for (const Json& effect : effects) {
+    if (!effect.is_object() || !effect.contains("effect") || !effect["effect"].is_string()) continue;
+    const std::string decision =
+        effect.value("decision", Json()).is_string() ? effect["decision"].get<std::string>() : "";
+    if (decision == "drawn" || decision == "forced on") file.drawn.push_back(effect["effect"].get<std::string>());
+  }
   file.image = std::move(read.front().image);
   return file;
 }

@@ -26,7 +26,8 @@ struct AovFile {
   bool has_rays = false;
   Vec3 corner, right, down;  // the ray through the point (x, y), pixels from the upper left: corner + x right + y down
   std::vector<std::string> parts;
-  std::string command;  // that made the file
+  std::string command;             // that made the file
+  std::vector<std::string> drawn;  // effects of the picture, by render-osmesa's names
 
   // The channel's place in a pixel. Error: the file lacks it, with the command that makes it.
   Result<int> channel(const std::string& name) const;

@@ -1,5 +1,6 @@
 #include "run.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/clock.h"
@@ -41,6 +42,18 @@ Result<void> check_light(const SketchFitOptions& options, const AovFile& buffers
     return input_error("{} was rendered with {} lights: render picture and buffers with one --light", buffers.path,
                        buffers.lights.size());
   return {};
+}
+
+// What an environment's picture shows and the search does not know.
+void warn_of_effects(const AovFile& buffers, cli::Session& session) {
+  std::string unknown;
+  for (const char* effect : {"fresnel", "horizon", "operator", "anisotropy"})
+    if (std::ranges::find(buffers.drawn, effect) != buffers.drawn.end()) unknown += std::string(",-") + effect;
+  if (!unknown.empty())
+    session.warn(
+        fmt::format("{} was drawn with effects that the search does not know, and the paint will be off: render "
+                    "it with --effects all{}",
+                    buffers.path, unknown));
 }
 
 Result<void> gather(const SketchFitOptions& options, Material& material) {
@@ -188,6 +201,7 @@ Result<cli::Verdict> run_sketch_fit(const SketchFitOptions& options, cli::Sessio
   GONIO_TRY(gather(options, material));
   const SketchInput& input = material.input;
   for (const std::string& warning : material.picture.warnings) session.warn(warning);
+  if (!options.env.empty()) warn_of_effects(material.buffers, session);
   const Stopwatch clock;
   GONIO_ASSIGN(const SketchPixels pixels, sketch_pixels(input));
   GONIO_TRY(check_usable(pixels, options));

@@ -14,7 +14,7 @@ setup_file() {
 </paints>
 EOF
   fit-paint -q --basis "$TESTDATA/b7.basis.xml" designed.xml -o fitted.xml
-  scene="--mesh $TESTDATA/speed-shape.obj --light 0,20 --size 320x200 --samples 1"
+  scene="--mesh $TESTDATA/speed-shape.obj --light 0,20 --size 320x200 --samples 1 --effects all"
   for paint in steel ruby; do
     render-osmesa -q $scene --paint "fitted.xml#$paint" --aov normal,aspecular,lambert,mask,part -o $paint.exr
     render-osmesa -q $scene --paint "fitted.xml#$paint" -o $paint.png
@@ -87,6 +87,10 @@ fit() { sketch-fit -q -o found.xml --report r.json "$@"; }
   oiiotool "$TESTDATA/studio.exr" --resize:filter=box 128x64 -o small.exr
   prefilter-envmap -q small.exr --basis "$TESTDATA/b7.basis.xml" -o small.env.exr
   scene="--mesh $TESTDATA/speed-shape.obj --env small.env.exr --size 240x150 --samples 1"
+  render-osmesa -q $scene --paint fitted.xml#satin --aov normal,aspecular,lambert,mask,part -o env.exr
+  run sketch-fit -i env.exr -b env.exr --env small.env.exr -o found.xml
+  [[ $output == *"effects that the search does not know"*"--effects all,-fresnel,-horizon"* ]]
+  scene="$scene --effects all,-fresnel,-horizon,-operator"
   render-osmesa -q $scene --paint fitted.xml#satin --aov normal,aspecular,lambert,mask,part -o env.exr
   run sketch-fit -i env.exr -b env.exr -o found.xml
   [ "$status" -eq 2 ]
