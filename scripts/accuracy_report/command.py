@@ -19,14 +19,9 @@ STUDIES = {
     "fit": "fitting: method, lobes and target against the measured colors",
     "render": "rendering: effects and engine against the reference integrator",
     "search": "search: library size, tree and scan against brute force",
-    "index": "misalignment: paints and geometries against a dense grid",
+    "growth": "growth of times with probes, maps, paints, pixels and lights, and where it is steepest",
     "chain": "the whole chain: where the error of a picture comes from, and what it costs to lower it",
 }
-
-
-def available():
-    """The studies that this checkout holds."""
-    return [name for name in STUDIES if (pathlib.Path(__file__).parent / f"{name}.py").exists()]
 
 
 def parse(arguments):
@@ -35,7 +30,7 @@ def parse(arguments):
         description="Sweep the knobs of the tools against exact references; write one HTML page, a CSV of every raw "
         "reading, and the plots as SVG. Exit status 1: a default setting is dominated.",
     )
-    parser.add_argument("studies", nargs="*", metavar="STUDY", help="of: " + "; ".join(f"{n} ({STUDIES[n]})" for n in available()) + "; default: all")
+    parser.add_argument("studies", nargs="*", metavar="STUDY", help="of: " + "; ".join(f"{n} ({STUDIES[n]})" for n in STUDIES) + "; default: all")
     parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("accuracy"), metavar="DIR", help="folder to write [accuracy]")
     parser.add_argument("--quick", action="store_true", help="fewer settings, in about a minute")
     parser.add_argument("--bin", type=pathlib.Path, metavar="DIR", help="folder of the tools [PATH, then build/release/bin]")
@@ -47,8 +42,8 @@ def parse(arguments):
     if options.target_de00 is not None and not options.target_de00 > 0:
         parser.error(f"--target-de00 is {options.target_de00:g}: give a color difference above 0")
     for name in options.studies:
-        if name not in available():
-            parser.error(f"there is no study {name}: choose of {', '.join(available())}")
+        if name not in STUDIES:
+            parser.error(f"there is no study {name}: choose of {', '.join(STUDIES)}")
     for path in (options.paints, options.probe, options.mesh):
         if not path.is_file():
             print(f"accuracy-report: {path}: there is no such file", file=sys.stderr)
@@ -76,7 +71,7 @@ def main(arguments=None):
     start = time.monotonic()
     studies = []
     with Run(folder.resolve(), options) as run:
-        for name in options.studies or available():
+        for name in options.studies or STUDIES:
             run.say(f"{name}: {STUDIES[name]}")
             studies.append(importlib.import_module(f".{name}", __package__).study(run))
         page.write(run, studies, time.monotonic() - start)

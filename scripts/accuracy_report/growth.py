@@ -1,0 +1,88 @@
+"""How times grow with the size of the job: exponents, and the steps that are steeper than the rest."""
+
+import math
+
+from .scene import CAMERA
+from .search import write_library
+from .study import Figure, Reading, Study
+
+EXPONENTS = "6,20,70,250,900,3000"  # and 1, the diffuse lobe
+
+
+def write_probe(path, height):
+    """A flat Radiance file of 2:1: a sky that brightens upward, and one lamp."""
+    with path.open("wb") as file:
+        file.write(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n" + f"-Y {height} +X {2 * height}\n".encode())
+        for row in range(height):
+            sky = bytes((60 + 120 * (height - row) // height, 80 + 90 * (height - row) // height, 90, 129))
+            lamp = bytes((200, 190, 180, 135)) if height // 4 <= row < height // 4 + max(1, height // 16) else sky
+            wide = max(1, height // 16)
+            file.write(sky * (height - wide) + lamp * wide + sky * height)
+
+
+def curve(readings):
+    """(exponent over the larger half, steepest step and its exponent) of times against sizes."""
+    points = [(math.log(r.numbers["n"]), math.log(r.time_s)) for r in readings]
+    steps = [(y1 - y0) / (x1 - x0) for (x0, y0), (x1, y1) in zip(points, points[1:])]
+    steepest = max(range(len(steps)), key=steps.__getitem__)
+    half = points[(len(points) - 1) // 2:]
+    mean_x, mean_y = (sum(p[i] for p in half) / len(half) for i in (0, 1))
+    slope = sum((x - mean_x) * (y - mean_y) for x, y in half) / sum((x - mean_x) ** 2 for x, _ in half)
+    return slope, f"{readings[steepest].numbers['n']} to {readings[steepest + 1].numbers['n']}", steps[steepest]
+
+
+def prefiltering(run):
+    heights, sizes = ((64, 128, 256), (32, 64, 128)) if run.quick else ((64, 128, 256, 512, 1024, 2048), (32, 64, 128, 256, 512))
+    probe, out = run.work / "probe.hdr", run.work / "growth.env.exr"
+    for height in heights:
+        write_probe(probe, height)
+        _, best, raw = run.repeated("prefilter-envmap", probe, "-e", EXPONENTS, "--size", 128, "-o", out)
+        yield "prefilter-envmap: rows of the probe", height, best, raw
+    write_probe(probe, 512)
+    for size in sizes:
+        _, best, raw = run.repeated("prefilter-envmap", probe, "-e", EXPONENTS, "--size", size, "-o", out)
+        yield "prefilter-envmap: texels of a face", size, best, raw
+
+
+def fitting(run):
+    table, library = run.work / "growth.csv", run.work / "growth.xml"
+    for count in (100, 1000) if run.quick else (100, 1000, 10_000, 100_000):
+        write_library(table, count, seed=count)
+        run.tool("paint-convert", table, "-o", library)
+        for method in ("l2", "deltae"):
+            _, best, raw = run.repeated("fit-paint", "--basis", run.data / "b7.basis.xml", "--method", method, library, "-o", run.work / "fitted.xml", times=1)
+            yield f"fit-paint {method}: paints", count, best, raw
+        _, best, raw = run.repeated("goniogeom-index", library, "--worst", "-o", run.work / "index.tsv", times=1)
+        yield "goniogeom-index: paints", count, best, raw
+
+
+def rendering(run):
+    fitted, env = run.work / "fitted.xml", run.work / "studio.env.exr"
+    run.tool("fit-paint", "--basis", run.data / "b7.basis.xml", run.paints, "-o", fitted)
+    run.tool("prefilter-envmap", run.probe, "--basis", run.data / "b7.basis.xml", "-o", env)
+    # Without the first words, the size; all effects, so that every size draws the same.
+    words = ("--mesh", run.mesh, "--paint", f"{fitted}#silver_black_flop", "--effects", "all", *CAMERA[2:], "-o", run.work / "p.exr")
+    def frame(*more):
+        frames = [run.tool("render-osmesa", *words, *more)[0]["frame_ms"] * 1e-3 for _ in range(1 if run.quick else 3)]
+        return min(frames), tuple(frames)
+    for width in (160, 320, 640) if run.quick else (160, 320, 640, 1280, 2560):
+        yield "render-osmesa: pixels", width * width * 9 // 16, *frame("--env", env, "--size", f"{width}x{width * 9 // 16}")
+    for lights in (1, 4, 16) if run.quick else (1, 2, 4, 8, 16, 32):
+        directions = [word for i in range(lights) for word in ("--light", f"{360 * i / lights - 180:.1f},40")]
+        yield "render-osmesa: lights", lights, *frame(*directions, "--size", "640x360")
+
+
+def study(run):
+    kinds = {}
+    for part in (prefiltering, fitting, rendering):
+        for kind, n, best, raw in part(run):
+            kinds.setdefault(kind, []).append(Reading(setting=f"{kind} {n}", time_s=best, error=0.0, method=kind, raw_s=raw, numbers={"n": n}))
+    readings = [r for rs in kinds.values() for r in rs]
+    figure = Figure("growth", "Time against the size of the job", readings, x_label="size", y_label="time (s)", front=False,
+                    x=lambda r: r.numbers["n"], y=lambda r: r.time_s)
+    rows = [(kind, f"{rs[0].numbers['n']} to {rs[-1].numbers['n']}", rs[0].time_s, rs[-1].time_s, *curve(rs)) for kind, rs in kinds.items()]
+    text = ("Exponents are of the time against the size, over the larger half of the sizes, where start-up counts least: 1 is proportional. The "
+            "steepest step is the cliff to know about: an exponent far above the others there says that doubling the job at that point costs more "
+            "than elsewhere. Probes are lat-long and go to 128 texels a face; faces come from 1024 x 512; lights shine on 640 x 360 pixels, and "
+            "pixels are counted under the probe. Times of render-osmesa are of a frame, all others of the whole tool.")
+    return Study("Growth", text, [figure], [("Growth", ("what grows", "sizes", "least (s)", "most (s)", "exponent", "steepest step", "its exponent"), rows)])
