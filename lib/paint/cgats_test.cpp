@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
+#include "paint/import_for_test.h"
 
 namespace goniochrome {
 namespace {
@@ -13,33 +13,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-class Cgats : public testing::Test {
- protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::string path() const { return (folder_ / "paints.txt").string(); }
-  Result<ImportedPaints> read(std::string_view text, const ImportOptions& options = {}) const {
-    EXPECT_TRUE(write_file(path(), text).ok());
-    auto input = InputFile::open(path());
-    EXPECT_TRUE(input.ok());
-    return read_cgats(std::move(input).value(), options);
-  }
-  ImportedPaints good(std::string_view text, const ImportOptions& options = {}) const {
-    auto result = read(text, options);
-    EXPECT_TRUE(result.ok()) << (result.ok() ? "" : result.error().message);
-    return result.ok() ? std::move(result).value() : ImportedPaints{};
-  }
-  std::string refusal(std::string_view text) const {
-    const auto result = read(text);
-    EXPECT_FALSE(result.ok());
-    return result.ok() ? "" : result.error().message;
-  }
-
- private:
-  std::filesystem::path folder_ =
-      std::filesystem::path(testing::TempDir()) /
-      ("cgats-" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-};
+using Cgats = ImportTest<read_cgats>;
 
 Geometry geometry(const char* name) {
   return parse_geometry(name).value();

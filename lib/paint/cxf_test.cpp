@@ -4,7 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <filesystem>
+
+#include "paint/import_for_test.h"
 
 namespace goniochrome {
 namespace {
@@ -14,30 +15,8 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-class Cxf : public testing::Test {
+class Cxf : public ImportTest<read_cxf> {
  protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::string path() const { return (folder_ / "paints.cxf").string(); }
-  static Result<ImportedPaints> read_file(const std::string& path, const ImportOptions& options = {}) {
-    auto input = InputFile::open(path);
-    EXPECT_TRUE(input.ok());
-    return read_cxf(std::move(input).value(), options);
-  }
-  Result<ImportedPaints> read(std::string_view text, const ImportOptions& options = {}) const {
-    EXPECT_TRUE(write_file(path(), text).ok());
-    return read_file(path(), options);
-  }
-  ImportedPaints good(std::string_view text, const ImportOptions& options = {}) const {
-    auto result = read(text, options);
-    EXPECT_TRUE(result.ok()) << (result.ok() ? "" : result.error().message);
-    return result.ok() ? std::move(result).value() : ImportedPaints{};
-  }
-  std::string refusal(std::string_view text) const {
-    const auto result = read(text);
-    EXPECT_FALSE(result.ok());
-    return result.ok() ? "" : result.error().message;
-  }
   void write(const std::vector<Paint>& paints, bool one_object_per_angle) const {
     auto writer = CxfWriter::begin(OutputFile::create(path()).value(),
                                    {"test <1>", "made & tried", "2026-01-02T03:04:05Z", one_object_per_angle});
@@ -45,10 +24,6 @@ class Cxf : public testing::Test {
     for (const Paint& paint : paints) ASSERT_TRUE(writer->write(paint).ok());
     ASSERT_TRUE(writer->finish().ok());
   }
-
- private:
-  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) /
-                                  ("cxf-" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
 };
 
 Geometry geometry(const char* name) {
