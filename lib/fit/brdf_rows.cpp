@@ -3,14 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brdf/isoline.h"
+#include "brdf/lobe_model.h"
 #include "fit/target_rows.h"
-
 
 namespace goniochrome {
 
 namespace {
 
 constexpr double kRadian = M_PI / 180;
+
+// Angles in files are rounded to 1e-6 rad.
+constexpr double kSlack_deg = 1e-3;
 
 // A lobe that the coat's spike may use gives less than this part of its peak where the flake begins.
 constexpr double kSpikePart = 0.01;
@@ -92,7 +96,42 @@ double mean_of(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
+// The aspecular angle at which light at 45 deg shows, in plane, the flakes that mirror the light of a sample to its
+// viewer: those whose normal is as far from the coat's, seen in the coat. goniochrome-theory(7), ISOCHROMATIC LINES
+double aspecular_of_flakes_deg(const BrdfSample& sample) {
+  const double light = sample.light_deg * kRadian, view = sample.view_deg * kRadian;
+  // The spherical triangle of mirror direction, viewer and normal gives the azimuth between light and viewer.
+  const double across = std::sin(light) * std::sin(view);
+  const double cos_azimuth =
+      across > 0 ? (std::cos(light) * std::cos(view) - std::cos(sample.aspecular_rad)) / across : 1;
+  const double azimuth = std::acos(std::clamp(cos_azimuth, -1.0, 1.0));
+  const Vec3 to_light = {std::sin(light), 0, std::cos(light)};
+  const Vec3 to_viewer = {std::sin(view) * std::cos(azimuth), std::sin(view) * std::sin(azimuth), std::cos(view)};
+  const double flake = flake_angles(to_light, to_viewer, kCoatIndex).flake_rad;
+  const double light_in_coat = std::asin(std::sin(45 * kRadian) / kCoatIndex);
+  const double sine = kCoatIndex * std::sin(2 * flake - light_in_coat);
+  return 45 + std::asin(std::clamp(sine, -1.0, 1.0)) / kRadian;
+}
+
 }  // namespace
+
+FiveAngleFigures five_angle_figures(const BrdfTarget& brdf, const LobeFit& lobes) {
+  constexpr double kSteepest_deg = 60 + kSlack_deg;
+  std::vector<double> by_aspecular, by_flake;
+  for (const BrdfSample& sample : brdf.samples) {
+    const double size = length(sample.value);
+    if (std::max(sample.light_deg, sample.view_deg) > kSteepest_deg ||
+        sample.aspecular_rad < kGlareAngle_deg * kRadian || size <= 0)
+      continue;
+    const auto error = [&](double angle_deg) {
+      return length(flake_reflectance_factor(lobes, angle_deg) - sample.value) / size;
+    };
+    by_aspecular.push_back(error(sample.aspecular_rad / kRadian));
+    by_flake.push_back(error(aspecular_of_flakes_deg(sample)));
+  }
+  if (by_flake.empty()) return {};
+  return {by_flake.size(), at_part(by_aspecular, 0.5), at_part(by_flake, 0.5)};
+}
 
 Result<BrdfRows> brdf_rows(const BrdfTarget& brdf, const Xyz& white, const FitOptions& options,
                            const std::vector<double>& exponents) {
@@ -100,8 +139,6 @@ Result<BrdfRows> brdf_rows(const BrdfTarget& brdf, const Xyz& white, const FitOp
   rows.flake.white = white;
   rows.first_rad = M_PI;
   for (const BrdfSample& sample : brdf.samples) {
-    // Angles in files are rounded to 1e-6 rad.
-    constexpr double kSlack_deg = 1e-3;
     if (std::max(sample.light_deg, sample.view_deg) > options.steepest_deg + kSlack_deg) {
       ++rows.steep;
       continue;

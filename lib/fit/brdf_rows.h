@@ -26,6 +26,9 @@ Result<BrdfRows> brdf_rows(const BrdfTarget& brdf, const Xyz& white, const FitOp
 // Sets K_G of the sharp lobes (gray) from what the flake leaves of the values within glare, and the albedo of it.
 void set_spike(const BrdfRows& rows, PaintFit& fit);
 
+// How lobes predict directions that they were not fitted to.
+FiveAngleFigures five_angle_figures(const BrdfTarget& brdf, const LobeFit& lobes);
+
 // Fills in the errors over the fitted directions.
 void compare(const BrdfRows& rows, const Xyz& white, PaintFit& fit);
 

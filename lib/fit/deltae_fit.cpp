@@ -141,7 +141,11 @@ class Search {
       x = std::move(next), value = next_value;
       damping = std::max(damping / 10, 1e-12);
       constexpr double kSmallGain = 1e-8;  // of the sum of squares: 1e-9 dE00 of a typical one
-      small_gains = gain < kSmallGain * value ? small_gains + 1 : 0;
+      // Where all differences together are unseen, hues of nearly gray colors jump and steps are short: the search ends
+      // where their length falls by less than 1e-4 dE00.
+      constexpr double kUnseen = 0.06, kUnseenGain = 2e-4;
+      const double least_gain = value < kUnseen ? kUnseenGain * std::sqrt(value) : kSmallGain * value;
+      small_gains = gain < least_gain ? small_gains + 1 : 0;
       if (small_gains >= 2 || value < 1e-16) return FitStatus::kOptimal;
     }
     return FitStatus::kNotConverged;

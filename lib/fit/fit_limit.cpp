@@ -34,7 +34,7 @@ std::pair<int, double> steepest_rise(const std::vector<LabReading>& readings, co
 }  // namespace
 
 std::string fit_limit(const std::vector<LabReading>& readings, const std::vector<GeometryError>& errors,
-                      const Xyz& white) {
+                      const Xyz& white, bool by_view) {
   const auto worst = std::ranges::max_element(errors, {}, &GeometryError::de00) - errors.begin();
   const LabReading& reading = readings[static_cast<std::size_t>(worst)];
   const double error = errors[static_cast<std::size_t>(worst)].de00, angle = aspecular_angle_deg(reading.geometry);
@@ -44,7 +44,7 @@ std::string fit_limit(const std::vector<LabReading>& readings, const std::vector
   for (const LabReading& other : readings)
     if (std::abs(aspecular_angle_deg(other.geometry) - angle) < 0.5)
       apart = std::max(apart, delta_e_2000(other.lab, reading.lab));
-  if (apart >= error) return fmt::format("its two sides of specular differ by dE00 {:.2f}", apart);
+  if (!by_view && apart >= error) return fmt::format("its two sides of specular differ by dE00 {:.2f}", apart);
   constexpr double kClearRise = 0.02;
   const auto [channel, rise] = steepest_rise(readings, reading, white);
   constexpr const char* kChannels[] = {"red", "green", "blue"};

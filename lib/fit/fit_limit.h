@@ -8,10 +8,10 @@
 
 namespace goniochrome {
 
-// What limits the worst reading of a fit for all views, in words: its color is outside the working space, its twin on
-// the other side of specular has another color, a channel grows away from specular; or else the exponents of the
-// basis. `errors` are those of the readings, in their order; at least one.
+// What limits the worst reading of a fit, in words: its color is outside the working space, its twin on the other side
+// of specular has another color (of a fit for all views), a channel grows away from specular; or else the exponents of
+// the basis. `errors` are those of the readings, in their order; at least one.
 std::string fit_limit(const std::vector<LabReading>& readings, const std::vector<GeometryError>& errors,
-                      const Xyz& white);
+                      const Xyz& white, bool by_view);
 
 }  // namespace goniochrome

@@ -11,6 +11,7 @@
 #include "fit/flake_fit.h"
 #include "fit/lobe_choice.h"
 #include "fit/target_rows.h"
+#include "fit/twins.h"
 
 namespace goniochrome {
 
@@ -36,8 +37,7 @@ void set_weights(const std::vector<double>& exponents, const Rgb* x, Rgb& diffus
   diffuse = (1 / M_PI) * x[0];
   std::size_t next = 0;
   for (Lobe& lobe : lobes)
-    if (next < exponents.size() && lobe.exponent == exponents[next])
-      lobe.directional_diffuse = (1 / M_PI) * x[++next];
+    if (next < exponents.size() && lobe.exponent == exponents[next]) lobe.directional_diffuse = (1 / M_PI) * x[++next];
 }
 
 // The lobes that a fit may use.
@@ -49,9 +49,10 @@ std::vector<double> chosen_exponents(const FitOptions& options, const FlakeTarge
   return chosen;
 }
 
-// Solves for K_D and K_DD, for all views and for each.
+// Solves for K_D and K_DD, for all views and for each of `views_deg`.
 void fit_flake(const FitOptions& options, const FlakeTarget& together, const FlakeTarget& by_view,
-               const std::vector<double>& exponents, double first_rad, PaintFit& out) {
+               const std::vector<double>& views_deg, const std::vector<double>& exponents, double first_rad,
+               PaintFit& out) {
   const Deadline deadline(options.time_limit_s);
   PaintFitReport& report = out.report;
   const std::vector<double> seen = seen_exponents(exponents, first_rad);
@@ -64,9 +65,9 @@ void fit_flake(const FitOptions& options, const FlakeTarget& together, const Fla
   report.objective = flake.objective;
   report.plain_objective = flake.plain_objective;
   report.optimality_gap = flake.optimality_gap;
-  if (options.views_deg.empty()) return;
+  if (views_deg.empty()) return;
 
-  model.views_deg = options.views_deg;
+  model.views_deg = views_deg;
   const FlakeFit each = flake_fit(options.method, by_view, model, deadline);
   for (std::size_t v = 0; v < model.views_deg.size(); ++v) {
     ViewLobes view{model.views_deg[v], {}, out.lobes.lobes};
@@ -88,8 +89,8 @@ FlakeTarget flake_target(const FitOptions& options, const Target& target, const 
                           row.importance * (options.perceptual_weights ? lightness_slope(row.lightness) : 1),
                           row.importance < 1});
   for (const LabReading& reading : target.readings)
-    flake.readings.push_back({{aspecular_angle_deg(reading.geometry) * (M_PI / 180), view_angle_deg(reading.geometry)},
-                              reading.lab});
+    flake.readings.push_back(
+        {{aspecular_angle_deg(reading.geometry) * (M_PI / 180), view_angle_deg(reading.geometry)}, reading.lab});
   return flake;
 }
 
@@ -173,8 +174,8 @@ void PaintFitter::finish(const std::vector<LabReading>& readings, const Xyz& whi
   report.de00_max = max_de00(report.de00_by_geometry);
   report.de00_mean = mean_de00(report.de00_by_geometry);
   fit.max_de00 = report.de00_max, fit.mean_de00 = report.de00_mean;
-  constexpr double kVisible_de00 = 0.5;
-  if (report.de00_max > kVisible_de00) report.limit = fit_limit(readings, report.de00_by_geometry, white);
+  if (report.de00_max > kVisible_de00)
+    report.limit = fit_limit(readings, report.de00_by_geometry, white, !fit.views.empty());
   if (fit.views.empty()) return;
   LobeFit together = fit;
   together.views.clear();
@@ -189,12 +190,16 @@ Result<PaintFit> PaintFitter::fit(const Paint& paint) const {
   GONIO_ASSIGN(const Target target, target_rows(paint, options_.target, white, basis_.exponents));
   const FlakeTarget together = flake_target(options_, target, white);
   const double first_rad = target.first_deg * (M_PI / 180);
-  if (options_.views_deg.empty()) {
-    fit_flake(options_, together, together, basis_.exponents, first_rad, out);
+  const Twins twins = twins_of(target.readings);
+  const std::vector<double>& views = options_.views_where_needed ? twins.views_deg : options_.views_deg;
+  if (views.empty()) {
+    fit_flake(options_, together, together, views, basis_.exponents, first_rad, out);
   } else {
     GONIO_ASSIGN(const Target apart, target_rows(paint, options_.target, white, basis_.exponents, true));
-    fit_flake(options_, together, flake_target(options_, apart, white), basis_.exponents, first_rad, out);
+    fit_flake(options_, together, flake_target(options_, apart, white), views, basis_.exponents, first_rad, out);
   }
+  out.report.floor = {twins.apart_de00, twins.sum_de00 / static_cast<double>(target.readings.size()),
+                      twins.largest_de00};
   out.report.gamut_de00 = target.gamut_de00;
   out.report.glare_rows = target.glare_rows;
 
@@ -216,7 +221,9 @@ Result<PaintFit> PaintFitter::fit(const BrdfTarget& brdf) const {
   PaintFit out = started();
   GONIO_ASSIGN(const Xyz white, white_point({"D65", 2}));
   GONIO_ASSIGN(const BrdfRows rows, brdf_rows(brdf, white, options_, basis_.exponents));
-  fit_flake(options_, rows.flake, rows.flake, basis_.exponents, rows.first_rad, out);
+  static const std::vector<double> kEvery15_deg = {0, 15, 30, 45, 60, 75};
+  fit_flake(options_, rows.flake, rows.flake, options_.views_where_needed ? kEvery15_deg : options_.views_deg,
+            basis_.exponents, rows.first_rad, out);
   out.report.gamut_de00 = rows.gamut_de00;
   out.report.brdf = BrdfFigures{.fitted = rows.fitted.size(), .glare = rows.glare.size(), .steep = rows.steep};
   set_spike(rows, out);
@@ -226,8 +233,21 @@ Result<PaintFit> PaintFitter::fit(const BrdfTarget& brdf) const {
   }
   finish(brdf.paint.measurement ? brdf.paint.measurement->rows : std::vector<LabReading>(), white, out);
   compare(rows, white, out);
+  if (brdf.paint.measurement) {
+    GONIO_ASSIGN(out.report.brdf->from_five_angles, from_five_angles(brdf));
+  }
   out.report.time_us = clock.elapsed_s() * 1e6;
   return out;
+}
+
+// Without views, which five readings know nothing of, and without gloss, which no direction beyond glare shows.
+Result<FiveAngleFigures> PaintFitter::from_five_angles(const BrdfTarget& brdf) const {
+  PaintFit five = started();
+  GONIO_ASSIGN(const Xyz white, white_point(condition_of(brdf.paint)));
+  GONIO_ASSIGN(const Target target, target_rows(brdf.paint, options_.target, white, basis_.exponents));
+  const FlakeTarget flake = flake_target(options_, target, white);
+  fit_flake(options_, flake, flake, {}, basis_.exponents, target.first_deg * (M_PI / 180), five);
+  return five_angle_figures(brdf, five.lobes);
 }
 
 std::vector<Result<PaintFit>> fits(const PaintFitter& fitter, const std::vector<Paint>& paints) {

@@ -30,12 +30,17 @@ struct FitOptions {
   int most_lobes = 0;                            // flake lobes to use, the best subset of the basis; 0: all
   double prune_de00 = 0;                         // lobes that move no color by more than this are dropped; 0: none are
   std::vector<double> views_deg = {};            // weights at these angles of the viewer too; empty: none
+  bool views_where_needed = false;               // those of readings that differ at one aspecular angle, else none; of
+                                                 // a measured BRDF every 15 deg
   double steepest_deg = 75;                      // measured BRDFs: directions farther from the normal are left out
   double time_limit_s = 0;                       // for one paint; 0: none
 };
 
 // Readings nearer to specular than this hold conventional glare and belong to the gloss meter.
 constexpr double kGlareAngle_deg = 10;
+
+// A difference below this is not seen.
+constexpr double kVisible_de00 = 0.5;
 
 // A lobe that gives every sample less than this part of its peak is not seen by the samples.
 constexpr double kSeenPart = 1e-3;
@@ -47,8 +52,16 @@ struct GeometryError {
 
 struct GlossMisfit {
   double angle_deg = 60;
-  double simulated_gu = 0;                 // what the fit reads in the simulated meter
-  std::optional<double> stated_gu = {};    // by the paint; the fit was to meet it
+  double simulated_gu = 0;               // what the fit reads in the simulated meter
+  std::optional<double> stated_gu = {};  // by the paint; the fit was to meet it
+};
+
+// How well lobes that were fitted to the five usual readings alone predict a measured BRDF, over its directions beyond
+// glare and at most 60 deg from the normal: medians of the relative error as below.
+struct FiveAngleFigures {
+  std::size_t directions = 0;
+  double by_aspecular = 0;  // the lobes at the aspecular angle of each direction
+  double by_flake = 0;      // at that which shows the same flakes, seen through the coat, to a light at 45 deg
 };
 
 // How well a measured BRDF is met, over the directions that were fitted.
@@ -58,7 +71,8 @@ struct BrdfFigures {
   // |predicted - measured| / |measured| of the working-space triple: median and 95 %
   double relative_error_median = 0, relative_error_p95 = 0;
   double de00_median = 0, de00_p95 = 0;
-  double spike_albedo_45 = 0;  // what the separated spike reflects of light at 45 deg
+  double spike_albedo_45 = 0;                             // what the separated spike reflects of light at 45 deg
+  std::optional<FiveAngleFigures> from_five_angles = {};  // where it has readings
 };
 
 // What weights for each view are worth: the mean color difference at the readings, or over the fitted directions of a
@@ -68,15 +82,24 @@ struct ViewFigures {
   double gain_de00() const { return de00_mean_without - de00_mean; }
 };
 
+// What fits for all views cannot come below: readings at one aspecular angle, as on both sides of specular, that
+// differ. All 0 where none do.
+struct ViewFloor {
+  double apart_de00 = 0;             // the largest difference of two such readings
+  double de00_mean = 0;              // over all readings
+  std::vector<double> largest_de00;  // for each shared angle, at the worse of its readings
+};
+
 // How good a fit is, and the proof.
 struct PaintFitReport {
   FitStatus status = FitStatus::kOptimal;
-  double objective = 0;            // |W(Mx-b)| over all rows and channels, in L* where weights are perceptual
-  double plain_objective = 0;      // the same without weights, in reflectance factor
-  double optimality_gap = 0;       // the largest of the channels; see least_squares.h
-  int active_lobes = 0;            // lobes with any weight, the mirror included
+  double objective = 0;        // |W(Mx-b)| over all rows and channels, in L* where weights are perceptual
+  double plain_objective = 0;  // the same without weights, in reflectance factor
+  double optimality_gap = 0;   // the largest of the channels; see least_squares.h
+  int active_lobes = 0;        // lobes with any weight, the mirror included
   std::vector<GeometryError> de00_by_geometry;  // against the readings (or the designed curve at 15, 45 and 110 deg)
   double de00_max = 0, de00_mean = 0;
+  ViewFloor floor;
   std::string limit;               // why the worst reading is not met any better, in words; empty where all are met
   double gamut_de00 = 0;           // the largest color change from negative working-space channels of the target
   std::vector<double> unseen;      // exponents that no sample sees: K_DD left at 0
@@ -111,6 +134,7 @@ class PaintFitter {
 
  private:
   PaintFit started() const;
+  Result<FiveAngleFigures> from_five_angles(const BrdfTarget& brdf) const;
   void finish(const std::vector<LabReading>& readings, const Xyz& white, PaintFit& fit) const;
 
   Basis basis_;

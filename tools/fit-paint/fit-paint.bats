@@ -18,7 +18,7 @@ number() { grep -m1 "\"$1\"" r.json | sed -E 's/.*: ([-0-9.e+]+),?$/\1/'; }
   run --separate-stderr fit-paint --basis "$basis" "$paints" -o out.xml --report r.json
   [ "$status" -eq 0 ]
   [ -z "$output" ]
-  [[ "$stderr" =~ ^"fit-paint: "[0-9]+" paints by l1, dE00 mean "[0-9.]+", worst "[0-9.]+" ("[a-z0-9_]+" at 45as" ]]
+  [[ "$stderr" =~ ^"fit-paint: "[0-9]+" paints by l1, dE00 mean "[0-9.]+", 95 % below "[0-9.]+", worst "[0-9.]+" ("[a-z0-9_]+" at 45as" ]]
   count=$(grep -c '<paint ' "$paints")
   [ "$(grep -c '<lobes ' out.xml)" -eq "$count" ]
   [ "$(grep -c '"status": "optimal"' r.json)" -eq "$count" ]
@@ -241,6 +241,49 @@ cornell() {
   fit-paint -q -b "$basis" out.xml -o again.xml
 }
 
+@test "--views auto gives weights by view to paints that contradict themselves, and the floor is told without" {
+  two_sided="${row/\/>/\/><lab geometry=\"45as-15\" L=\"70\" a=\"40\" b=\"10\"\/>}"
+  echo "$head$one<paint name=\"shift\"><measurement illuminant=\"D65\" observer=\"10\">$two_sided</measurement></paint></paints>" >s.xml
+  run fit-paint -b "$basis" --views auto s.xml -o out.xml --report r.json
+  [ "$status" -eq 0 ]
+  [ "$(grep -c '<view angle=' out.xml)" -eq 2 ]
+  grep -q '<view angle="30"' out.xml
+  grep -q '<view angle="60"' out.xml
+  [[ ! "$output" =~ "contradict" ]]
+  awk -v e="$(number de00_p95)" 'BEGIN { exit !(e < 1) }'
+  run fit-paint -b "$basis" s.xml -o out.xml --report r.json
+  [ "$status" -eq 0 ]
+  [ "$(grep -c '<view angle=' out.xml)" -eq 0 ]
+  [[ "$output" =~ "1 paints contradict themselves at one aspecular angle: no weights for all views come below dE00 mean "[1-9] ]]
+  [ "$(number contradicting)" = 1 ]
+  awk -v floor="$(grep '"floor_de00_p95"' r.json | tr -dc 0-9.)" 'BEGIN { exit !(floor > 3) }'
+  # One that agrees with itself says nothing of it.
+  echo "$head$one</paints>" >one.xml
+  run fit-paint -b "$basis" one.xml -o out.xml
+  [[ ! "$output" =~ "contradict" ]]
+}
+
+@test "the worst paints are named with the reason" {
+  bad=
+  for k in 1 2 3 4 5 6 7; do
+    bad+="<paint name=\"bad$k\"><measurement illuminant=\"D65\" observer=\"10\"><lab geometry=\"45as15\" L=\"30\" a=\"0\" b=\"0\"/><lab geometry=\"45as45\" L=\"$((40 + 3 * k))\" a=\"0\" b=\"0\"/></measurement></paint>"
+  done
+  echo "$head$one$bad</paints>" >bad.xml
+  run --separate-stderr fit-paint -b "$basis" bad.xml -o out.xml --report r.json
+  [ "$status" -eq 0 ]
+  [[ "$stderr" =~ "(bad7 at 45as"[0-9]+": its red grows by" ]]
+  [ "$(grep -c '^  then ' <<<"$stderr")" -eq 4 ]
+  [[ ! "$stderr" =~ bad2 ]]
+  [ "$(sed -n '/"worst"/,/\]/p' r.json | grep -c '"limit"')" -eq 5 ]
+}
+
+@test "a measured BRDF tells how well five of its angles predict the others" {
+  cornell metal.brdf
+  fit-paint -q -b "$basis" metal.brdf -o out.xml --report r.json
+  # Its color is a function of the aspecular angle; what is left is that b7 has no exponent 10.
+  awk -v a="$(number by_aspecular)" -v f="$(number by_flake)" 'BEGIN { exit !(a < 0.025 && f > 1.3 * a) }'
+}
+
 @test "--gloss takes several meters, and the misfit of each is told" {
   echo "$head$one</paints>" >one.xml
   fit-paint -q -b "$basis" --gloss 20:30,60:70,85:90 one.xml -o out.xml --report r.json
@@ -259,7 +302,7 @@ cornell() {
 
 @test "wrong values of the newer options name what is right" {
   for wrong in "--gloss 45:80" "--gloss 60:80,60:90" "--gloss 60:" "--lobes -1" "--lobes few" "--prune x" \
-    "--views 30" "--views 30,15" "--views 0,100" "--views a,b" "--steepest 91" "--paint-time-limit -1"; do
+    "--views 30" "--views 30,15" "--views 0,100" "--views a,b" "--views automatic" "--steepest 91" "--paint-time-limit -1"; do
     # shellcheck disable=SC2086
     run fit-paint -b "$basis" $wrong "$paints" -o out.xml
     [ "$status" -eq 2 ]

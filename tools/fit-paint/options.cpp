@@ -25,12 +25,17 @@ cli::ToolSpec tool_spec(Options& o) {
            "gloss lobes and the mirror through a simulated gloss meter; what they cannot meet is told in the report.",
            "A measured BRDF (MERL .binary, Cornell .brdf, NVIDIA .mbsdf, RGL _rgb.bsdf) becomes one paint, fitted to "
            "all its directions but those within 10 deg of specular and near grazing, in and out of plane. What the "
-           "flake leaves within 10 deg goes to the gloss lobes: the spike of the coat, whose reading in the three gloss "
+           "flake leaves within 10 deg goes to the gloss lobes: the spike of the coat, whose reading in the three "
+           "gloss "
            "meters is reported.",
            "With --views every lobe has weights for several angles of the viewer, linear between them, which follow "
            "color that turns with the view and the two sides of specular of an interference paint. The weights for all "
            "views stay in front of them, and the report tells what the views gain. Readings of a multi-angle "
            "instrument see each view once or twice: between them the weights rest on smoothness, not on data.",
+           "Readings at one aspecular angle that differ, as 45as15 and 45as-15 of many paints do, contradict each "
+           "other "
+           "for lobes that know the aspecular angle alone. The summary tells how near such lobes can come at best; "
+           "--views auto gives those paints weights for the views of these readings.",
            "A paint that cannot be fitted (no reading, no appearance) is named, passes unchanged, and the exit status "
            "is 1."},
       .options =
@@ -86,11 +91,11 @@ cli::ToolSpec tool_spec(Options& o) {
             .low = 0,
             .high = 100},
            {.name = "views",
-            .value = "DEG,...",
-            .help = "fit weights for these angles of the viewer from the normal too, ascending, at least two",
-            .target = &o.views_deg,
-            .low = 0,
-            .high = 90},
+            .value = "auto|DEG,...",
+            .help =
+                "fit weights for these angles of the viewer from the normal too, ascending, at least two; auto takes "
+                "the views of readings that differ visibly at one aspecular angle, and none for other paints",
+            .target = &o.views},
            {.name = "steepest",
             .value = "DEG",
             .help = "of measured BRDFs, leave out directions farther than this from the normal",
@@ -107,12 +112,10 @@ cli::ToolSpec tool_spec(Options& o) {
             .help = "also make a color map of every paint that was read at two or more angles of incidence, as "
                     "FOLDER/name.exr, and name it in the paint",
             .target = &o.color_map}},
-      .inputs =
-          cli::Positional{
-              .value = "PAINTS",
-              .help = "paint XML files or measured BRDFs, - is standard input",
-              .target = &o.paints,
-              .low = 0},
+      .inputs = cli::Positional{.value = "PAINTS",
+                                .help = "paint XML files or measured BRDFs, - is standard input",
+                                .target = &o.paints,
+                                .low = 0},
       .examples =
           {{"fit-paint --basis testdata/b7.basis.xml testdata/paints.paints.xml -o fitted.paints.xml",
             "fits every sample paint and prints the worst"},
@@ -138,6 +141,9 @@ cli::ToolSpec tool_spec(Options& o) {
                  {"paints[].limit",
                   "why the worst reading is not met any better: the working space, two sides of specular, a channel "
                   "that grows away from specular, or the basis; empty below dE00 0.5"},
+                 {"paints[].apart_de00", "the largest difference of two readings at one aspecular angle"},
+                 {"paints[].floor_de00_mean",
+                  "for such readings, what de00_mean of weights for all views cannot be below"},
                  {"paints[].gamut_de00", "color lost because the working space has no negative channels"},
                  {"paints[].glare_rows", "readings left out for being within 10 deg of specular"},
                  {"paints[].gloss[]",
@@ -147,6 +153,10 @@ cli::ToolSpec tool_spec(Options& o) {
                   "of a measured BRDF: directions fitted, glare_directions and steep_directions left out, "
                   "relative_error_median and relative_error_p95 of the color triple, de00_median and de00_p95 over the "
                   "fitted ones, spike_albedo_45"},
+                 {"paints[].brdf.from_five_angles",
+                  "how well lobes that know only the readings at 15, 25, 45, 75 and 110 deg predict the directions to "
+                  "60 deg from the normal: directions, and the median relative error by the aspecular angle, and by "
+                  "the angle of the flakes in the coat"},
                  {"paints[].views",
                   "with --views: de00_mean at the readings, or over the fitted directions of a measured BRDF, "
                   "de00_mean_without by the weights for all views, and their difference gain_de00"},
@@ -163,6 +173,12 @@ cli::ToolSpec tool_spec(Options& o) {
                  {"fits_per_s", "fits a second, without reading and writing"},
                  {"fitted", "paints that got lobes"},
                  {"failed", "paints passed on unfitted"},
+                 {"de00_mean", "mean color difference over the readings of all paints"},
+                 {"de00_p95", "95 % of the readings are below, to 0.01"},
+                 {"worst[]", "the five worst paints: name, geometry, de00, limit"},
+                 {"contradicting", "paints with readings at one aspecular angle that differ visibly"},
+                 {"floor_de00_mean", "what de00_mean cannot be below by weights for all views"},
+                 {"floor_de00_p95", "the same for de00_p95"},
                  {"warnings[]", "the first messages about failed paints"}},
       .see_also = {"paint-convert(1)", "render-osmesa(1)", "goniochrome-paint(5)", "goniochrome-theory(7)"}};
   cli::add_common_options(spec, o.common, {cli::Common::kExplain});

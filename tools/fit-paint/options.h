@@ -19,7 +19,7 @@ struct Options {
   std::string gloss = "0";
   int lobes = 0;
   double prune_de00 = 0;
-  std::vector<double> views_deg;
+  std::string views;
   double steepest_deg = 75;
   double paint_time_limit_s = 0;
   std::string color_map;

@@ -29,6 +29,22 @@ Result<std::vector<GlossReading>> gloss_readings(const std::string& text) {
   return readings;
 }
 
+// "0,15,30", or nothing.
+Result<std::vector<double>> view_angles(const std::string& text) {
+  std::vector<double> angles;
+  if (text.empty()) return angles;
+  for (const std::string_view part : split(text, ',')) {
+    const auto angle = parse_number(part);
+    const bool ascending = angle && (angles.empty() || *angle > angles.back());
+    if (!ascending || *angle < 0 || *angle > 90)
+      return usage_error("--views \"{}\": give auto, or angles from 0 to 90 deg, ascending, as in 0,15,30,45,60,75",
+                         text);
+    angles.push_back(*angle);
+  }
+  if (angles.size() < 2) return usage_error("--views \"{}\": give two or more angles, or auto", text);
+  return angles;
+}
+
 std::string list(const std::vector<double>& values) {
   std::string text;
   for (const double v : values) text += fmt::format(" {}", v);
@@ -67,17 +83,16 @@ Result<FitOptions> fit_options(const Options& options) {
   fit.steepest_deg = options.steepest_deg;
   fit.time_limit_s = options.paint_time_limit_s;
   GONIO_ASSIGN(fit.assumed_gloss, gloss_readings(options.gloss));
-  fit.views_deg = options.views_deg;
-  const bool ascending = std::ranges::adjacent_find(fit.views_deg, std::greater_equal<>()) == fit.views_deg.end();
-  if (fit.views_deg.size() == 1 || !ascending)
-    return usage_error("--views: give two or more angles, ascending, such as 0,15,30,45,60,75");
+  fit.views_where_needed = options.views == "auto";
+  if (!fit.views_where_needed) {
+    GONIO_ASSIGN(fit.views_deg, view_angles(options.views));
+  }
   return fit;
 }
 
 std::string plan(const Options& options, const FitOptions& fit, const Basis& basis) {
   std::vector<double> seen, unseen;
-  for (const double e : basis.exponents)
-    (cos_power(15 * M_PI / 180, e) >= kSeenPart ? seen : unseen).push_back(e);
+  for (const double e : basis.exponents) (cos_power(15 * M_PI / 180, e) >= kSeenPart ? seen : unseen).push_back(e);
   std::string text = fmt::format(
       "basis {}: {} lobes{}\n"
       "  flake lobes at a first reading of 15 deg:{}\n"
@@ -94,6 +109,9 @@ std::string plan(const Options& options, const FitOptions& fit, const Basis& bas
   text += fmt::format("measured BRDFs: directions to {} deg from the normal; some ms each\n", fit.steepest_deg);
   if (fit.most_lobes > 0) text += fmt::format("lobes: the best subset of {}\n", fit.most_lobes);
   if (fit.prune_de00 > 0) text += fmt::format("lobes that move no color by dE00 {} are dropped\n", fit.prune_de00);
+  if (fit.views_where_needed)
+    text +=
+        "views where readings at one aspecular angle differ visibly: a set of weights each, beside the one for all\n";
   if (!fit.views_deg.empty())
     text += fmt::format("views at{} deg: a set of weights each, beside the one for all\n", list(fit.views_deg));
   return text;

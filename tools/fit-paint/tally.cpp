@@ -1,12 +1,16 @@
 #include "tally.h"
 
 #include <algorithm>
+#include <functional>
 
 namespace goniochrome {
 
 namespace {
 
 constexpr int kWarningsShown = 10;
+constexpr std::size_t kWorstShown = 5;
+constexpr double kBad_de00 = 2;  // paints above are named
+constexpr double kSpreadStep = 0.01;
 
 Json by_geometry(const std::vector<GeometryError>& errors) {
   Json object = Json::object();
@@ -47,6 +51,8 @@ Json report_of(const Paint& paint, const PaintFit& fit) {
                  {"de00_mean", json_number(r.de00_mean)},
                  {"de00_by_geometry", by_geometry(r.de00_by_geometry)},
                  {"limit", r.limit},
+                 {"floor_de00_mean", json_number(r.floor.de00_mean)},
+                 {"apart_de00", json_number(r.floor.apart_de00)},
                  {"gamut_de00", json_number(r.gamut_de00)},
                  {"glare_rows", r.glare_rows},
                  {"gloss", gloss_of(r.gloss)}};
@@ -59,6 +65,10 @@ Json report_of(const Paint& paint, const PaintFit& fit) {
                       {"de00_median", json_number(r.brdf->de00_median)},
                       {"de00_p95", json_number(r.brdf->de00_p95)},
                       {"spike_albedo_45", json_number(r.brdf->spike_albedo_45)}};
+  if (r.brdf && r.brdf->from_five_angles)
+    report["brdf"]["from_five_angles"] = {{"directions", r.brdf->from_five_angles->directions},
+                                          {"by_aspecular", json_number(r.brdf->from_five_angles->by_aspecular)},
+                                          {"by_flake", json_number(r.brdf->from_five_angles->by_flake)}};
   if (r.views)
     report["views"] = {{"de00_mean", json_number(r.views->de00_mean)},
                        {"de00_mean_without", json_number(r.views->de00_mean_without)},
@@ -66,10 +76,38 @@ Json report_of(const Paint& paint, const PaintFit& fit) {
   return report;
 }
 
+double p95(const Spread& spread) {
+  return spread.all_but(0.05 * static_cast<double>(spread.count())) + kSpreadStep;
+}
+
 }  // namespace
+
+void Spread::add(double de00) {
+  constexpr double kLargest = 1000;
+  const auto step = static_cast<std::size_t>(std::clamp(de00, 0.0, kLargest) / kSpreadStep);
+  if (steps_.size() <= step) steps_.resize(step + 1, 0);
+  ++steps_[step], ++count_, sum_ += de00;
+}
+
+double Spread::all_but(double most) const {
+  std::size_t above = 0;
+  for (std::size_t step = steps_.size(); step > 0; --step) {
+    above += steps_[step - 1];
+    if (static_cast<double>(above) > most) return kSpreadStep * static_cast<double>(step - 1);
+  }
+  return 0;
+}
 
 Tally::Tally(const Options& options, cli::Session& session) : options_(options), session_(session) {
   if (!options.common.report.empty()) session.results()["paints"] = Json::array();
+}
+
+void Tally::add_worst(const Paint& paint, const PaintFitReport& r) {
+  if (r.de00_by_geometry.empty()) return;
+  const auto at = std::ranges::max_element(r.de00_by_geometry, {}, &GeometryError::de00);
+  const auto place = std::ranges::upper_bound(worst_, at->de00, std::greater<>(), &Bad::de00);
+  worst_.insert(place, {paint.name, at->geometry, r.limit, at->de00});
+  if (worst_.size() > kWorstShown) worst_.pop_back();
 }
 
 void Tally::add(const Paint& paint, const PaintFit& fit) {
@@ -77,14 +115,13 @@ void Tally::add(const Paint& paint, const PaintFit& fit) {
   ++fitted_;
   not_converged_ += r.status == FitStatus::kNotConverged;
   stopped_ += r.status == FitStatus::kTimeLimit;
-  sum_mean_ += r.de00_mean;
+  for (const GeometryError& error : r.de00_by_geometry) errors_.add(error.de00);
+  add_worst(paint, r);
+  contradicting_ += r.floor.apart_de00 > kVisible_de00;
+  sum_floor_ += r.floor.de00_mean * static_cast<double>(r.de00_by_geometry.size());
+  for (const double floor : r.floor.largest_de00) floors_.add(floor);
   if (r.views) sum_gain_ += r.views->gain_de00();
   if (r.brdf) ++measured_, sum_relative_ += r.brdf->relative_error_median;
-  if (!r.de00_by_geometry.empty() && (worst_.empty() || r.de00_max > worst_de00_)) {
-    worst_de00_ = r.de00_max;
-    const auto worst = std::ranges::max_element(r.de00_by_geometry, {}, &GeometryError::de00);
-    worst_ = fmt::format("{} at {}{}{}", paint.name, worst->geometry, r.limit.empty() ? "" : ": ", r.limit);
-  }
   if (!options_.common.report.empty()) session_.results()["paints"].push_back(report_of(paint, fit));
 }
 
@@ -96,24 +133,60 @@ void Tally::add_failure(const Paint& paint, const std::string& where, const std:
         {{"name", paint.name}, {"method", options_.method}, {"status", "failed"}, {"message", message}});
 }
 
-cli::Verdict Tally::finish() {
-  if (failed_ > kWarningsShown) session_.warn(fmt::format("{} more paints unfitted", failed_ - kWarningsShown));
+std::string Tally::summary() const {
   const double rate = fit_s_ > 0 ? static_cast<double>(done()) / fit_s_ : 0;
-  session_.results()["fits_per_s"] = rate;
-  session_.results()["fitted"] = fitted_;
-  session_.results()["failed"] = failed_;
-  const auto count = static_cast<double>(std::max<std::size_t>(fitted_, 1));
   std::string line = fmt::format("{}: {} paints by {}", session_.tool(), fitted_, options_.method);
-  if (!worst_.empty())
-    line += fmt::format(", dE00 mean {:.2f}, worst {:.2f} ({})", sum_mean_ / count, worst_de00_, worst_);
+  if (!worst_.empty()) {
+    const Bad& worst = worst_.front();
+    line +=
+        fmt::format(", dE00 mean {:.2f}, 95 % below {:.2f}, worst {:.2f} ({} at {}{}{})", errors_.mean(), p95(errors_),
+                    worst.de00, worst.name, worst.geometry, worst.limit.empty() ? "" : ": ", worst.limit);
+  }
   if (measured_ > 0)
     line += fmt::format(", {} measured BRDFs with a median relative error of {:.3f}", measured_,
                         sum_relative_ / static_cast<double>(measured_));
-  if (!options_.views_deg.empty()) line += fmt::format(", the views gain dE00 {:.2f}", sum_gain_ / count);
+  if (!options_.views.empty())
+    line +=
+        fmt::format(", the views gain dE00 {:.2f}", sum_gain_ / static_cast<double>(std::max<std::size_t>(fitted_, 1)));
   if (not_converged_ > 0) line += fmt::format(", {} not converged", not_converged_);
   if (stopped_ > 0) line += fmt::format(", {} stopped by the time limit", stopped_);
   if (failed_ > 0) line += fmt::format(", {} unfitted", failed_);
-  session_.say(line + fmt::format("; {:.0f} fits/s", rate));
+  return line + fmt::format("; {:.0f} fits/s", rate);
+}
+
+// The mean, and what 95 % of the readings cannot all be below: of each two that contradict each other one is at least
+// as far off as the least of the larger difference, whatever the fit.
+std::string Tally::floor() const {
+  const auto readings = static_cast<double>(std::max<std::size_t>(errors_.count(), 1));
+  return fmt::format("dE00 mean {:.2f}, 95 % below {:.2f}", sum_floor_ / readings, floors_.all_but(0.05 * readings));
+}
+
+cli::Verdict Tally::finish() {
+  if (failed_ > kWarningsShown) session_.warn(fmt::format("{} more paints unfitted", failed_ - kWarningsShown));
+  const auto readings = static_cast<double>(std::max<std::size_t>(errors_.count(), 1));
+  Json& results = session_.results();
+  results["fits_per_s"] = fit_s_ > 0 ? static_cast<double>(done()) / fit_s_ : 0;
+  results["fitted"] = fitted_;
+  results["failed"] = failed_;
+  results["de00_mean"] = errors_.mean();
+  results["de00_p95"] = p95(errors_);
+  results["contradicting"] = contradicting_;
+  results["floor_de00_mean"] = sum_floor_ / readings;
+  results["floor_de00_p95"] = floors_.all_but(0.05 * readings);
+  results["worst"] = Json::array();
+  for (const Bad& bad : worst_)
+    results["worst"].push_back(
+        {{"name", bad.name}, {"geometry", bad.geometry}, {"de00", bad.de00}, {"limit", bad.limit}});
+
+  session_.say(summary());
+  for (std::size_t k = 1; k < worst_.size() && worst_[k].de00 > kBad_de00; ++k)
+    session_.say(fmt::format("  then {:.2f} ({} at {}: {})", worst_[k].de00, worst_[k].name, worst_[k].geometry,
+                             worst_[k].limit));
+  if (contradicting_ > 0 && options_.views.empty())
+    session_.say(
+        fmt::format("{}: {} paints contradict themselves at one aspecular angle: no weights for all views come "
+                    "below {}; --views auto does",
+                    session_.tool(), contradicting_, floor()));
   if (stopped_ > 0) return cli::Verdict::kStopped;
   return failed_ > 0 || not_converged_ > 0 ? cli::Verdict::kNegative : cli::Verdict::kDone;
 }

@@ -2,12 +2,28 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "cli/tool.h"
 #include "fit/paint_fit.h"
 #include "options.h"
 
 namespace goniochrome {
+
+// Color differences in constant memory, in steps of 0.01.
+class Spread {
+ public:
+  void add(double de00);
+  std::size_t count() const { return count_; }
+  double mean() const { return count_ > 0 ? sum_ / static_cast<double>(count_) : 0; }
+  // What no more than `most` values exceed, rounded down to a step.
+  double all_but(double most) const;
+
+ private:
+  std::vector<std::size_t> steps_;
+  std::size_t count_ = 0;
+  double sum_ = 0;
+};
 
 class Tally {
  public:
@@ -22,11 +38,24 @@ class Tally {
   cli::Verdict finish();
 
  private:
+  struct Bad {
+    std::string name, geometry, limit;
+    double de00 = 0;
+  };
+
+  void add_worst(const Paint& paint, const PaintFitReport& report);
+  std::string summary() const;
+  std::string floor() const;
+
   const Options& options_;
   cli::Session& session_;
   std::size_t fitted_ = 0, failed_ = 0, not_converged_ = 0, stopped_ = 0, measured_ = 0;
-  double sum_mean_ = 0, worst_de00_ = 0, fit_s_ = 0, sum_relative_ = 0, sum_gain_ = 0;
-  std::string worst_;
+  double fit_s_ = 0, sum_relative_ = 0, sum_gain_ = 0;
+  Spread errors_;                  // of all readings
+  std::size_t contradicting_ = 0;  // paints
+  double sum_floor_ = 0;           // over all readings
+  Spread floors_;                  // of the worse readings at shared angles
+  std::vector<Bad> worst_;         // the worst paints, worst first
 };
 
 }  // namespace goniochrome
