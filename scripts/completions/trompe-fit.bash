@@ -7,9 +7,9 @@ _trompe_fit() {
     --lights) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --views) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --out-of-plane) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --seam-axis) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --light-weights) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --view-weights) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --seam-axis) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --vary) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --objective) COMPREPLY=($(compgen -W "rms max" -- "$word")); return ;;
     --mode) COMPREPLY=($(compgen -W "all single rows" -- "$word")); return ;;
@@ -30,7 +30,7 @@ _trompe_fit() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--output --only --angle --lights --views --out-of-plane --light-weights --view-weights --seam-axis --vary --objective --mode --at --bounds --mesh --seam --unit --max-gap --light-from --view-from --environment --picture --dark --suffix --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--output --only --angle --lights --views --out-of-plane --seam-axis --light-weights --view-weights --vary --objective --mode --at --bounds --mesh --seam --unit --max-gap --light-from --view-from --environment --picture --dark --suffix --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
+#include "../seam_options.h"
 #include "base/text.h"
 
 namespace goniochrome {
@@ -139,7 +141,8 @@ cli::ToolSpec trompe_fit_spec(TrompeFitOptions& o, cli::CommonOptions& common) {
       "a curve moved by 2b: a travel that much longer for a panel turned away from the light, with a brighter face. "
       "Viewers on both sides of the mirror direction ask for opposite changes, which no paint can make.",
       "With --mesh and --seam A,B the misalignment is that of every place along the seam of two parts, as "
-      "goniogeom-index(1) finds it. Lights and viewers stand to the first panel at every place as they would to a flat "
+      "goniogeom-index(1) finds it, and B gets the paint found. Lights and viewers stand to the first panel at every "
+      "place as they would to a flat "
       "one, "
       "the light from either side, which no one paint can serve; or, by --light-from and --view-from, in the world; or "
       "the "
@@ -158,85 +161,53 @@ cli::ToolSpec trompe_fit_spec(TrompeFitOptions& o, cli::CommonOptions& common) {
        .target = &o.angle_deg,
        .low = -45,
        .high = 45},
-      {.name = "lights",
-       .value = "LIST",
-       .help = "lights, degrees from the normal",
-       .target = &o.geometries.lights,
-       .alias = "light"},
-      {.name = "views",
-       .value = "LIST",
-       .help = "viewers, degrees from the normal or as and the aspecular angle",
-       .target = &o.geometries.views,
-       .alias = "view"},
-      {.name = "out-of-plane",
-       .value = "LIST",
-       .help = "azimuths of the viewers about the normal, 0 in the plane of incidence",
-       .target = &o.geometries.azimuths},
-      {.name = "light-weights", .value = "LIST", .help = "weight of each light", .target = &o.geometries.light_weights},
-      {.name = "view-weights", .value = "LIST", .help = "weight of each view", .target = &o.geometries.view_weights},
-      {.name = "seam-axis",
-       .value = "DEG",
-       .help = "direction of the seam from the plane of incidence",
-       .target = &o.seam_deg,
-       .low = -360,
-       .high = 360},
-      {.name = "vary",
-       .value = "LIST",
-       .help = "what may change: face_l, face_ab, flop_l, flop_ab, travel",
-       .target = &o.vary},
-      {.name = "objective",
-       .value = "NAME",
-       .help = "minimize the weighted RMS difference or the largest one",
-       .target = &o.objective,
-       .choices = {"rms", "max"}},
-      {.name = "mode",
-       .value = "MODE",
-       .help = "one paint for all geometries, for the one of --at, or one for each light",
-       .target = &o.mode,
-       .choices = {"all", "single", "rows"}},
-      {.name = "at", .value = "LIGHT,VIEW", .help = "the geometry of --mode single", .target = &o.at},
-      {.name = "bounds",
-       .value = "NAME=LOW:HIGH",
-       .help = "keep a parameter of --vary within; repeatable",
-       .target = &o.bounds},
-      {.name = "mesh",
-       .value = "FILE",
-       .help = "take the misalignment from a seam of this mesh (OBJ)",
-       .target = &o.seam.mesh},
-      {.name = "seam",
-       .value = "A,B",
-       .help = "the two parts of the mesh; the second one gets the paint found",
-       .target = &o.seam.seam},
-      {.name = "unit",
-       .value = "UNIT",
-       .help = "length of one unit of the mesh",
-       .target = &o.seam.unit,
-       .choices = {"auto", "m", "cm", "mm"}},
-      {.name = "max-gap",
-       .value = "MM",
-       .help = "wider gaps are no seam; 0 is a hundredth of the mesh's size",
-       .target = &o.seam.max_gap_mm,
-       .low = 0,
-       .high = 1e6},
-      {.name = "light-from",
-       .value = "AZ,EL",
-       .help = "a light in the world: azimuth from +Z toward +X and elevation, degrees; repeatable",
-       .target = &o.seam.lights_from},
-      {.name = "view-from",
-       .value = "AZ,EL",
-       .help = "a distant viewer in the world; repeatable; the first one sees the picture",
-       .target = &o.seam.views_from},
-      {.name = "environment",
-       .value = "FILE",
-       .help = "match in the light of this prefiltered environment",
-       .target = &o.seam.environment},
-      {.name = "picture",
-       .value = "FILE",
-       .help = "PNG of before and after: flat panels, or the mesh",
-       .target = &o.picture},
-      {.name = "dark", .value = "PART", .help = "a part that the picture shows black; repeatable", .target = &o.dark},
-      {.name = "suffix", .value = "TEXT", .help = "appended to the name of the paint", .target = &o.suffix},
   };
+  std::ranges::move(geometry_options(o.geometries, o.seam_deg), std::back_inserter(spec.options));
+  spec.options.insert(
+      spec.options.end(),
+      {
+          {.name = "light-weights",
+           .value = "LIST",
+           .help = "weight of each light",
+           .target = &o.geometries.light_weights},
+          {.name = "view-weights",
+           .value = "LIST",
+           .help = "weight of each view",
+           .target = &o.geometries.view_weights},
+          {.name = "vary",
+           .value = "LIST",
+           .help = "what may change: face_l, face_ab, flop_l, flop_ab, travel",
+           .target = &o.vary},
+          {.name = "objective",
+           .value = "NAME",
+           .help = "minimize the weighted RMS difference or the largest one",
+           .target = &o.objective,
+           .choices = {"rms", "max"}},
+          {.name = "mode",
+           .value = "MODE",
+           .help = "one paint for all geometries, for the one of --at, or one for each light",
+           .target = &o.mode,
+           .choices = {"all", "single", "rows"}},
+          {.name = "at", .value = "LIGHT,VIEW", .help = "the geometry of --mode single", .target = &o.at},
+          {.name = "bounds",
+           .value = "NAME=LOW:HIGH",
+           .help = "keep a parameter of --vary within; repeatable",
+           .target = &o.bounds},
+      });
+  std::ranges::move(seam_options(o.seam), std::back_inserter(spec.options));
+  spec.options.insert(
+      spec.options.end(),
+      {
+          {.name = "picture",
+           .value = "FILE",
+           .help = "PNG of before and after: flat panels, or the mesh as the first --view-from sees it",
+           .target = &o.picture},
+          {.name = "dark",
+           .value = "PART",
+           .help = "a part that the picture shows black; repeatable",
+           .target = &o.dark},
+          {.name = "suffix", .value = "TEXT", .help = "appended to the name of the paint", .target = &o.suffix},
+      });
   spec.examples = {
       {"trompe-fit testdata/paints.paints.xml --only silver_black_flop --angle -2 --views as15:105:10 --vary "
        "face_l,travel -o b.paints.xml",
