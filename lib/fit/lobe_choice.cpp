@@ -19,7 +19,6 @@ class SubsetSearch {
   }
 
   const std::vector<int>& best() const { return best_; }
-
   void try_all(int count) {
     std::vector<char> taken(static_cast<std::size_t>(all_), 0);
     std::fill(taken.begin(), taken.begin() + count, 1);
@@ -31,6 +30,23 @@ class SubsetSearch {
     } while (!deadline_.passed() && std::ranges::prev_permutation(taken).found);
   }
 
+  // From the best k - 1 lobes to the best k, of all subsets or step by step; false, and nothing changed, where the
+  // error falls by no more than that part of it.
+  bool grow(int k, bool of_all, double least_gain) {
+    const std::vector<int> fewer = best_;
+    const double before = value_;
+    if (of_all) {
+      try_all(k);
+    } else if (add_one()) {
+      while (exchange_one()) {
+      }
+    }
+    if (value_ < (1 - least_gain) * before) return true;
+    best_ = fewer, value_ = before;
+    return false;
+  }
+
+ private:
   // Adds the lobe that gains most; false where none does.
   bool add_one() {
     const std::vector<int> smaller = best_;
@@ -56,7 +72,6 @@ class SubsetSearch {
     return gained;
   }
 
- private:
   bool consider(const std::vector<int>& lobes) {
     std::vector<int> columns = {0};
     for (const int j : lobes) {
@@ -102,19 +117,21 @@ double largest_change(const FlakeTarget& target, const FlakeModel& full, const s
 
 std::vector<double> best_exponents(FitMethod method, const FlakeTarget& target, const std::vector<double>& exponents,
                                    int count, const Deadline& deadline) {
-  const int all = static_cast<int>(exponents.size());
-  if (count >= all) return exponents;
   // An exact l1 fit to thousands of rows takes a hundred times as long as l2, and both choose much the same lobes.
   constexpr std::size_t kManyRows = 200;
-  const Norm norm = target.rows.size() > kManyRows ? Norm::kL2 : norm_of(method);
-  SubsetSearch search(norm, target, exponents, deadline);
+  const bool many = target.rows.size() > kManyRows;
+  const int all = static_cast<int>(exponents.size());
+  if (count >= all && !many) return exponents;
+  count = std::min(count, all);
+  SubsetSearch search(many ? Norm::kL2 : norm_of(method), target, exponents, deadline);
   constexpr double kFewSubsets = 500;
-  if (subsets_of(all, count) <= kFewSubsets) {
+  if (!many && subsets_of(all, count) <= kFewSubsets) {
     search.try_all(count);
   } else {
-    for (int k = 0; k < count && search.add_one(); ++k)
-      while (search.exchange_one()) {
-      }
+    // Of thousands of directions, what a lobe gains below a hundredth of the error is noise.
+    const double least_gain = many ? 0.01 : 0;
+    bool gained = true;
+    for (int k = 1; k <= count && gained; ++k) gained = search.grow(k, subsets_of(all, k) <= kFewSubsets, least_gain);
   }
   std::vector<double> chosen;
   for (const int j : search.best()) chosen.push_back(exponents[static_cast<std::size_t>(j)]);
