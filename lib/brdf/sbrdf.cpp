@@ -21,6 +21,15 @@ SbrdfTexel sbrdf_texel(const SbrdfTexture& texture, int column, int row) {
   return texel;
 }
 
+SurfaceFrame surface_frame(const SbrdfTexel& texel, const Vec3& normal, const Vec3& tangent) {
+  const auto level = [&](const Vec3& d) { return d - dot(d, normal) * normal; };
+  Vec3 t = level(tangent);
+  if (!(dot(t, t) >= 1e-12)) t = level(std::abs(normal.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0});
+  t = normalized(t);
+  const Vec3 x = texel.x_tangent * t + texel.x_bitangent * cross(normal, t);
+  return {x, cross(normal, x), normal};
+}
+
 namespace {
 
 int wrapped(double index, int n) {
@@ -36,6 +45,57 @@ std::array<TextureTap, 4> texture_taps(int width, int height, double u, double v
   const int x0 = wrapped(left, width), x1 = wrapped(left + 1, width);
   const int y0 = wrapped(top, height), y1 = wrapped(top + 1, height);
   return {{{x0, y0, (1 - s) * (1 - t)}, {x1, y0, s * (1 - t)}, {x0, y1, (1 - s) * t}, {x1, y1, s * t}}};
+}
+
+namespace {
+
+// Sums over texels of one lobe. Its axes in the tangent frame are the matrix even I + odd (cos 2a, sin 2a; sin 2a,
+// -cos 2a), the frame turned by a.
+struct LobeSums {
+  double weight = 0, log_exponent = 0, even = 0, normal = 0;
+  std::array<double, 2> odd{};
+  Rgb energy;
+
+  void add(const float* lobe, const float* frame, double share) {
+    const double scale = share / (lobe[6] + 1.0), size = std::hypot(frame[0], frame[1]);
+    const Rgb here = scale * Rgb{lobe[0], lobe[1], lobe[2]};
+    const double w = std::max(here.x + here.y + here.z, 1e-30), half = 0.5 * (lobe[3] - lobe[4]);
+    energy += here;
+    weight += w;
+    log_exponent += w * std::log1p(lobe[6]);
+    even += w * 0.5 * (lobe[3] + lobe[4]), normal += w * lobe[5];
+    odd[0] += w * half * (size > 0 ? frame[0] / size : 1), odd[1] += w * half * (size > 0 ? frame[1] / size : 0);
+  }
+};
+
+}  // namespace
+
+SbrdfTexture mean_texture(const SbrdfTexture& texture) {
+  SbrdfTexture mean{1, 1, texture.lobes, std::vector<float>(static_cast<std::size_t>(texture.stride()), 0.0F)};
+  const auto texels = static_cast<std::size_t>(texture.width) * static_cast<std::size_t>(texture.height);
+  const double share = 1 / static_cast<double>(texels);
+  std::vector<LobeSums> sums(static_cast<std::size_t>(texture.lobes));
+  Rgb diffuse;
+  for (std::size_t i = 0; i < texels; ++i) {
+    const float* at = &texture.values[i * static_cast<std::size_t>(texture.stride())];
+    diffuse += share * Rgb{at[0], at[1], at[2]};
+    for (std::size_t lobe = 0; lobe < sums.size(); ++lobe) sums[lobe].add(at + 5 + 7 * lobe, at + 3, share);
+  }
+  double c = 0, s = 0;
+  for (const LobeSums& lobe : sums) c += lobe.odd[0], s += lobe.odd[1];
+  const double size = std::hypot(c, s);
+  c = size > 0 ? c / size : 1, s = size > 0 ? s / size : 0;
+  float* to = mean.values.data();
+  for (int k = 0; k < 3; ++k) to[k] = static_cast<float>(diffuse[k]);
+  to[3] = static_cast<float>(c), to[4] = static_cast<float>(s), to += 5;
+  for (const LobeSums& lobe : sums) {
+    const double n1 = std::exp(lobe.log_exponent / lobe.weight), even = lobe.even / lobe.weight;
+    const double odd = (c * lobe.odd[0] + s * lobe.odd[1]) / lobe.weight;
+    for (const double value : {n1 * lobe.energy.x, n1 * lobe.energy.y, n1 * lobe.energy.z, even + odd, even - odd,
+                               lobe.normal / lobe.weight, n1 - 1})
+      *to++ = static_cast<float>(value);
+  }
+  return mean;
 }
 
 }  // namespace goniochrome

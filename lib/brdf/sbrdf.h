@@ -29,6 +29,15 @@ struct SbrdfTexel {
 };
 SbrdfTexel sbrdf_texel(const SbrdfTexture& texture, int column, int row);
 
+// The axes of a texel in the world, on a surface with unit normal. The tangent is made perpendicular; one along the
+// normal says nothing, and any direction in the surface will do.
+struct SurfaceFrame {
+  Vec3 x, y, z;
+  Vec3 local(const Vec3& d) const { return {dot(d, x), dot(d, y), dot(d, z)}; }
+  Vec3 world(const Vec3& d) const { return d.x * x + d.y * y + d.z * z; }
+};
+SurfaceFrame surface_frame(const SbrdfTexel& texel, const Vec3& normal, const Vec3& tangent);
+
 // The four texels around a place and their bilinear weights; u runs right, v up, both repeat beyond 0..1. The texels
 // are to be shaded one by one and the colors blended: a mean of two lobes' parameters is a third lobe.
 struct TextureTap {
@@ -36,5 +45,11 @@ struct TextureTap {
   double weight = 0;
 };
 std::array<TextureTap, 4> texture_taps(int width, int height, double u, double v);
+
+// One texel in the place of all: the mean diffuse part, and for each lobe, weighted by albedo/(n+1), the mean of that,
+// of log(n+1) and of the axes as matrices of the tangent frame, whose common direction is its frame's. What a texture
+// is worth is told against it; it is not the mean of the texels' BRDFs, which would take as many lobes as there are
+// texels.
+SbrdfTexture mean_texture(const SbrdfTexture& texture);
 
 }  // namespace goniochrome

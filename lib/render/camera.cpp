@@ -71,7 +71,7 @@ Result<Rays> rays(const Camera& camera, int width, int height) {
   const Axes axes = axes_of(camera);
   const double pixel = 2 * std::tan(0.5 * camera.fov_deg * kRadians) / height;
   return Rays{axes.forward - (0.5 * width * pixel) * axes.right - (0.5 * height * pixel) * axes.down,
-              pixel * axes.right, pixel * axes.down};
+              pixel * axes.right, pixel * axes.down, camera.eye};
 }
 
 // With u = p - eye, d = u.forward and pixel size q: x = u.right/(d q) + width/2 pixels. Clip coordinates are

@@ -28,6 +28,7 @@ struct Camera {
 // normalized(corner + x*right + y*down). Pixel centers are at +.5.
 struct Rays {
   Vec3 corner, right, down;
+  Vec3 eye = {};  // where they begin
   Vec3 direction(double x, double y) const { return normalized(corner + x * right + y * down); }
 };
 // Error (usage): the eye is the target, or the fov is outside (0,180). An up vector along the line of sight is

@@ -1,6 +1,7 @@
 #include "render/cost.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace goniochrome {
 
@@ -29,6 +30,14 @@ double point_ns(const Effects& effects, Engine engine, double tilts) {
     if (effects.reflection) ns += (single + lobes) * c.reflection_map;
   }
   return ns + static_cast<double>(effects.lights) * (c.light + spread * lobes * c.lit_lobe);
+}
+
+// Four texels around a place, each with its lobes, or the mean texel. Measured by BM_Texture.
+double textured_point_ns(const Effects& effects, int lobes) {
+  constexpr double kPoint = 60, kLobe = 20, kLitLobe = 8;
+  const std::uint32_t on = effects.texture_lobes & ((1U << lobes) - 1);
+  const double lobe = (effects.environment ? kLobe : 0) + static_cast<double>(effects.lights) * kLitLobe;
+  return kPoint + (effects.texture ? 4 : 1) * std::popcount(on) * lobe;
 }
 
 }  // namespace goniochrome

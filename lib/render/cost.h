@@ -9,6 +9,9 @@ namespace goniochrome {
 // PLAN. `tilts` is the mean number of tilted normals of a visible point.
 double point_ns(const Effects& effects, Engine engine, double tilts);
 
+// What a textured point adds, whatever the engine; `lobes` of its texture.
+double textured_point_ns(const Effects& effects, int lobes);
+
 // What the GL engine costs once: compiling its program.
 constexpr double kCompileMs = 110;
 

@@ -7,6 +7,7 @@
 
 #include "base/text.h"
 #include "color/color.h"
+#include "render/surface_layer.h"
 
 namespace goniochrome {
 
@@ -96,11 +97,28 @@ std::string reflection_reason(const Scene& scene, const Effects& all) {
   return fmt::format("colored light, up to C* {:.0f} on a white diffuser", most);
 }
 
+std::string texture_reason(const Scene& scene, const Effects& all, const std::vector<VisiblePoint>& seen) {
+  if (!all.texture) return "no part has a texture";
+  return fmt::format("{:.0f} % of what is seen is textured: beside its mean texel",
+                     percent(seen, [&](const auto& p) { return scene.layer->surface(p.part).texture != nullptr; }));
+}
+
+// The lobes of textures by number, those of all textures together.
+void add_texture_lobes(const Scene& scene, const Effects& all, std::vector<EffectSwitch>& list) {
+  const int lobes = all.texture ? scene.layer->lobes() : 0;
+  for (int lobe = 0; lobe < lobes; ++lobe) {
+    list.push_back({fmt::format("texture-{}", lobe), "texture-lobes", true, fmt::format("lobe{} of the textures", lobe),
+                    [=](Effects& e) { e.texture_lobes &= ~(1U << lobe); }});
+  }
+  if (lobes == 0) list.push_back({"texture-lobes", "texture-lobes", false, "no texture has lobes", [](Effects&) {}});
+}
+
 }  // namespace
 
 const std::vector<std::string>& effect_groups() {
-  static const std::vector<std::string> groups = {"diffuse",    "lobes",  "gloss",   "mirror",   "fresnel", "horizon",
-                                                  "anisotropy", "travel", "texture", "operator", "lights"};
+  static const std::vector<std::string> groups = {"diffuse", "lobes",         "gloss",      "mirror",
+                                                  "fresnel", "horizon",       "anisotropy", "travel",
+                                                  "texture", "texture-lobes", "operator",   "lights"};
   return groups;
 }
 
@@ -108,7 +126,7 @@ std::vector<EffectSwitch> effect_switches(const Scene& scene, const Effects& all
                                           const std::vector<VisiblePoint>& seen) {
   std::vector<EffectSwitch> list;
   const auto add = [&](const char* name, bool needed, const std::string& reason, std::function<void(Effects&)> off) {
-    list.push_back({name, name, needed, reason, std::move(off), std::string_view(name) != "texture"});
+    list.push_back({name, name, needed, reason, std::move(off)});
   };
   const bool diffuse =
       std::any_of(scene.paints.begin(), scene.paints.end(), [](const LobeFit& p) { return p.diffuse != Rgb{}; });
@@ -134,8 +152,8 @@ std::vector<EffectSwitch> effect_switches(const Scene& scene, const Effects& all
       : all.maps            ? "a color map under lights"
                             : "no visible paint has a color map or weights for several views",
       [](Effects& e) { e.views = e.maps = false; });
-  add("texture", all.texture, all.texture ? "all that its parts show" : "no visible part has a texture",
-      [](Effects& e) { e.texture = false; });
+  add("texture", all.texture, texture_reason(scene, all, seen), [](Effects& e) { e.texture = false; });
+  add_texture_lobes(scene, all, list);
   add("operator", all.reflection, reflection_reason(scene, all), [](Effects& e) { e.reflection = false; });
   add("lights", all.lights > 0, fmt::format("{} directional light{}", all.lights, all.lights == 1 ? "" : "s"),
       [](Effects& e) {

@@ -16,7 +16,6 @@ struct EffectSwitch {
   bool needed = false;
   std::string reason;
   std::function<void(Effects&)> turn_off;
-  bool priced = true;  // else it is drawn unless forced off: the points of a plan do not show it
 };
 
 // The groups, in the order of the list.

@@ -1,6 +1,7 @@
 // What a scene is shaded with, and the weights that both engines read. goniochrome-theory(7), RENDERING.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,8 @@ struct Effects {
   bool horizon = false;  // lobes end at the horizon, and each of their directions has its own cosine
   bool views = false;    // weights of paints that change with the view
   bool maps = false;     // color maps under lights
-  bool texture = false;  // textures of lobes
+  bool texture = false;  // textures of lobes; else the mean texel of each
+  std::uint32_t texture_lobes = ~0U;  // of textures, by bits
   bool anisotropy = false;
   double tilt_tolerance = 0.005;  // of the lobes drawn about tilted normals, relative to their peak
   int most_tilts = 1024;

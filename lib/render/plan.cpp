@@ -41,7 +41,7 @@ Result<Words> words_of(const std::string& text) {
   }
   for (const auto& [name, on] : words.forced) {
     const auto& groups = effect_groups();
-    const bool lobe = name.starts_with("lobe-") || name.starts_with("gloss-");
+    const bool lobe = name.starts_with("lobe-") || name.starts_with("gloss-") || name.starts_with("texture-");
     if (lobe && parse_number(name.substr(name.find('-') + 1))) continue;
     if (std::find(groups.begin(), groups.end(), name) != groups.end()) continue;
     std::string known;
@@ -78,8 +78,7 @@ class Prober {
     const Effects chosen = effects(on);
     engine_.load_paints(scene_, chosen, weight_table(scene_, chosen));
     std::vector<Rgb> colors = engine_.shade(points_);
-    if (chosen.maps) add_mapped(scene_, seen_, colors);
-    if (chosen.texture) add_textured(scene_, seen_, colors);
+    if (scene_.layer != nullptr) scene_.layer->add(seen_, chosen, colors);
     return colors;
   }
 
@@ -133,10 +132,21 @@ double mean_tilts(const Scene& scene, const Effects& effects, const std::vector<
 // What one frame's shading takes, in ms.
 struct CostModel {
   double points = 0, tilts = 1, speed = 1;  // speed: measured over counted
+  double textured = 0;                      // of the points
+  int texture_lobes = 0;
   double ms(const Effects& effects, Engine engine) const {
-    return 1e-6 * points * speed * point_ns(effects, engine, tilts) / threads();
+    const double texture_ns = textured > 0 ? textured_point_ns(effects, texture_lobes) : 0;
+    return 1e-6 * speed * (points * point_ns(effects, engine, tilts) + textured * texture_ns) / threads();
   }
 };
+
+// The share of these points that has a texture.
+double textured_share(const Scene& scene, const std::vector<VisiblePoint>& points) {
+  if (scene.layer == nullptr || points.empty()) return 0;
+  const auto count = std::ranges::count_if(
+      points, [&](const VisiblePoint& p) { return scene.layer->surface(p.part).texture != nullptr; });
+  return static_cast<double>(count) / static_cast<double>(points.size());
+}
 
 // The scene with each paint once, and the points' parts renumbered.
 struct Compact {
@@ -185,7 +195,7 @@ Choice forced_choice(const Words& words, const std::vector<EffectSwitch>& switch
 void drop_unseen(Prober& prober, const std::vector<PlanItem>& items, bool lamps, double tolerance, Choice& choice) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < items.size(); ++i) {
-    if (lamps && items[i].effect.starts_with("gloss-")) continue;
+    if (lamps && (items[i].effect.starts_with("gloss-") || items[i].effect.starts_with("texture-"))) continue;
     if (choice.on[i] && !choice.forced[i] && items[i].de00_p95 <= tolerance) order.push_back(i);
   }
   std::stable_sort(order.begin(), order.end(),
@@ -300,13 +310,14 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<VisiblePoint>& prob
   const std::vector<Rgb> full = prober.colors(everything);
 
   CostModel cost{visible_pixels * request.samples, mean_tilts(scene, all, probe), 1};
+  cost.textured = cost.points * textured_share(scene, probe);
+  cost.texture_lobes = scene.layer != nullptr ? scene.layer->lobes() : 0;
   const double counted_s = 1e-9 * point_ns(all, Engine::kCpu, cost.tilts) / threads();
   if (!probe.empty()) cost.speed = prober.seconds_per_point() / counted_s;
   Plan plan;
   for (std::size_t i = 0; i < switches.size(); ++i) {
     PlanItem item{switches[i].name, switches[i].needed, switches[i].reason, 0, 0, false, "", {}};
-    if (!switches[i].priced) item.de00_p95 = std::numeric_limits<double>::quiet_NaN();
-    if (item.needed && switches[i].priced) {
+    if (item.needed) {
       std::vector<bool> without = everything;
       without[i] = false;
       item.de00_p95 = prober.difference(full, prober.colors(without));
@@ -343,7 +354,7 @@ void add_truth(Plan& plan, const Scene& scene, const std::vector<VisiblePoint>& 
   const std::vector<Rgb> full = exact_radiance(points, scene, all, env);
   const double white = white_luminance > 0 ? white_luminance : 1;
   for (std::size_t i = 0; i < switches.size(); ++i) {
-    if (!switches[i].needed || !switches[i].priced) continue;
+    if (!switches[i].needed) continue;
     Effects without = all;
     switches[i].turn_off(without);
     const std::vector<Rgb> colors = exact_radiance(points, scene, without, env);

@@ -30,7 +30,7 @@ struct PlanItem {
   std::string effect;
   bool needed = false;  // the scene calls for it
   std::string reason;
-  double de00_p95 = 0;  // what leaving it out alone changes; NaN where it is not priced, and drawn
+  double de00_p95 = 0;  // what leaving it out alone changes
   double cost_ms = 0;   // what it adds to a frame's shading
   bool on = false;
   std::string decision;                  // drawn | dropped | forced on | forced off | over budget | not in the scene

@@ -10,7 +10,6 @@
 #include "brdf/lobe_model.h"
 #include "color/color.h"
 #include "render/seen.h"
-#include "render/surface_layer.h"
 
 namespace goniochrome {
 
@@ -165,20 +164,100 @@ class Gatherer {
   Rgb sum_;
 };
 
+// The reflected radiance of one point of a texture: the exact lobes of the texels around it.
+class TextureGatherer {
+ public:
+  TextureGatherer(const TexturedPoint& point, const ReflectionOperator* reflection, double texel_rad)
+      : point_(point), reflection_(reflection) {
+    const Vec3& n = point.normal;
+    for (const SurfaceLayer::Piece& piece : point.place.pieces) {
+      const SurfaceFrame frame = surface_frame(piece.texel, n, point.place.tangent);
+      const Vec3 viewer = frame.local(point.to_viewer);
+      diffuse_ += piece.share * piece.texel.surface.diffuse;
+      for (const LafortuneLobe& lobe : piece.texel.surface.lobes)
+        add_lobe(frame.world(lobe.axes * viewer), lobe.exponent, piece.share * lobe.albedo, texel_rad);
+    }
+  }
+
+  int pieces(const Vec3& direction) const {
+    int most = 1;
+    for (const TexelLobe& lobe : lobes_) {
+      if (lobe.pieces > most && dot(lobe.middle, direction) > lobe.cut_cosine) most = lobe.pieces;
+    }
+    return most;
+  }
+
+  void add(const Patch& patch, const Rgb& radiance) {
+    const double cos_i = dot(point_.normal, patch.direction);
+    if (cos_i <= 0) return;
+    Rgb f = diffuse_;
+    for (const TexelLobe& lobe : lobes_) {
+      if (dot(lobe.middle, patch.direction) < lobe.least_cosine) continue;
+      const Vec3 apart = lobe.middle - patch.direction;
+      const double log_cos = std::log1p(-0.5 * dot(apart, apart));
+      f += std::exp(std::min(lobe.log_peak + lobe.exponent * log_cos, kLargestLog)) * lobe.color;
+    }
+    const Rgb product = reflection_ != nullptr ? goniochrome::reflected(*reflection_, f, radiance) : f * radiance;
+    sum_ += patch.solid_angle_sr * cos_i * product;
+  }
+  void add_light(const Light& light) { add({light.direction, std::numbers::pi}, light.white); }
+
+  const Rgb& sum() const { return sum_; }
+
+ private:
+  static constexpr double kLargestLog = 700;
+  struct TexelLobe {
+    Vec3 axis;    // p = C wo, in the world
+    Vec3 middle;  // of length 1
+    double exponent = 1, log_peak = 0;
+    Rgb color;
+    double least_cosine = 0;  // below it, nothing that counts
+    int pieces = 1;           // that a texel is cut into, within
+    double cut_cosine = 2;
+  };
+
+  // Neighboring texels often hold the same lobe in another color.
+  void add_lobe(const Vec3& axis, double exponent, const Rgb& albedo, double texel_rad) {
+    const double size = length(axis);
+    if (albedo == Rgb{} || !(size > 0)) return;
+    for (TexelLobe& lobe : lobes_) {
+      if (lobe.axis == axis && lobe.exponent == exponent) {
+        lobe.color += albedo;
+        return;
+      }
+    }
+    TexelLobe lobe{axis, (1 / size) * axis, exponent, exponent * std::log(size), albedo};
+    if (exponent > 0) lobe.least_cosine = std::exp(-kTail / exponent);
+    const double pieces = std::ceil(texel_rad * std::sqrt(exponent) / kPiece);
+    if (pieces > 1) {
+      lobe.pieces = static_cast<int>(pieces);
+      lobe.cut_cosine = std::cos(std::min(std::acos(lobe.least_cosine) + texel_rad, std::numbers::pi));
+    }
+    lobes_.push_back(lobe);
+  }
+
+  const TexturedPoint& point_;
+  const ReflectionOperator* reflection_;
+  Rgb diffuse_;
+  std::vector<TexelLobe> lobes_;
+  Rgb sum_;
+};
+
 // The piece (i, j) of a texel cut into k x k.
 Patch piece(const Environment& env, int column, int row, int i, int j, int k) {
   const double step = 1.0 / k, left = column + i * step, top = row + j * step;
   return {env.direction_at(left + 0.5 * step, top + 0.5 * step), env.solid_angle(left, top, left + step, top + step)};
 }
 
-void gather_environment(const Environment& env, std::vector<Gatherer>& points) {
+template <class AnyGatherer>
+void gather_environment(const Environment& env, std::vector<AnyGatherer>& points) {
   for (int row = 0; row < env.height(); ++row) {
     for (int column = 0; column < env.width(); ++column) {
       const float* texel = env.radiance(column, row);
       const Rgb radiance{texel[0], texel[1], texel[2]};
       if (radiance == Rgb{}) continue;
       const Patch whole{env.direction(column, row), env.solid_angle(column, row)};
-      for (Gatherer& point : points) {
+      for (AnyGatherer& point : points) {
         const int k = point.pieces(whole.direction);
         if (k == 1) {
           point.add(whole, radiance);
@@ -231,6 +310,46 @@ std::vector<Rgb> reference_radiance(const std::vector<SurfacePoint>& points, con
   return radiance;
 }
 
+std::vector<Rgb> textured_radiance(const std::vector<TexturedPoint>& points, const Environment* env,
+                                   const std::vector<Light>& lights, const ReflectionOperator* reflection) {
+  std::vector<Rgb> radiance(points.size());
+  const double texel_rad = env != nullptr ? env->largest_texel_rad() : 0;
+  parallel_for(points.size(), kPointsTogether, [&](std::size_t begin, std::size_t end) {
+    std::vector<TextureGatherer> gatherers;
+    for (std::size_t i = begin; i < end; ++i) gatherers.emplace_back(points[i], reflection, texel_rad);
+    if (env != nullptr) gather_environment(*env, gatherers);
+    for (std::size_t i = begin; i < end; ++i) {
+      for (const Light& light : lights) gatherers[i - begin].add_light(light);
+      radiance[i] = gatherers[i - begin].sum();
+    }
+  });
+  return radiance;
+}
+
+namespace {
+
+bool is_textured(const Scene& scene, int part) {
+  return scene.layer != nullptr && scene.layer->surface(part).texture != nullptr;
+}
+
+// The colors of the textured ones of these points take the place of what is there.
+void put_textured(const Scene& scene, const std::vector<VisiblePoint>& points, const Effects& effects,
+                  const Environment* env, std::vector<Rgb>& colors) {
+  std::vector<TexturedPoint> textured;
+  std::vector<std::size_t> numbers;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!is_textured(scene, points[i].part)) continue;
+    textured.push_back({points[i].normal, points[i].to_viewer, scene.layer->place(points[i], i, effects)});
+    numbers.push_back(i);
+  }
+  const std::vector<Rgb> shown = textured_radiance(textured, effects.environment ? env : nullptr,
+                                                   effects.lights > 0 ? scene.lights : std::vector<Light>(),
+                                                   effects.reflection ? &scene.reflection : nullptr);
+  for (std::size_t i = 0; i < shown.size(); ++i) colors[numbers[i]] = shown[i];
+}
+
+}  // namespace
+
 std::vector<Rgb> exact_radiance(const std::vector<VisiblePoint>& points, const Scene& scene, const Effects& effects,
                                 const Environment* env) {
   std::vector<LobeFit> paints;
@@ -249,31 +368,39 @@ std::vector<Rgb> exact_radiance(const std::vector<VisiblePoint>& points, const S
     if (effects.reflection) model.reflection = &scene.reflection;
   }
   std::vector<SurfacePoint> surface;
-  for (const VisiblePoint& point : points) {
-    const auto part = static_cast<std::size_t>(point.part);
-    surface.push_back({point.normal, point.to_viewer, &paints[part], &models[part]});
+  std::vector<std::size_t> numbers;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto part = static_cast<std::size_t>(points[i].part);
+    if (is_textured(scene, points[i].part)) continue;
+    surface.push_back({points[i].normal, points[i].to_viewer, &paints[part], &models[part]});
+    numbers.push_back(i);
   }
-  std::vector<Rgb> colors = reference_radiance(surface, effects.environment ? env : nullptr,
-                                               effects.lights > 0 ? scene.lights : std::vector<Light>());
-  if (effects.maps) add_mapped(scene, points, colors);
+  const std::vector<Rgb> plain = reference_radiance(surface, effects.environment ? env : nullptr,
+                                                    effects.lights > 0 ? scene.lights : std::vector<Light>());
+  std::vector<Rgb> colors(points.size());
+  for (std::size_t i = 0; i < plain.size(); ++i) colors[numbers[i]] = plain[i];
+  if (effects.maps) scene.layer->add_mapped(points, colors);
+  put_textured(scene, points, effects, env, colors);
   return colors;
 }
 
 PixelSample sampled_pixels(const Gbuffer& g, const Scene& scene, int count, std::uint64_t seed) {
-  const auto textured = [&](int part) {
-    return scene.layer != nullptr && scene.layer->surface(part).texture != nullptr;
-  };
   std::vector<std::array<int, 2>> visible;
   for (int y = 0; y < g.height; ++y) {
     for (int x = 0; x < g.width; ++x) {
-      if (g.part(x, y) >= 0 && !textured(g.part(x, y))) visible.push_back({x, y});
+      if (g.part(x, y) >= 0) visible.push_back({x, y});
     }
   }
+  std::vector<TexturePlace> places;
+  if (scene.layer != nullptr) places = scene.layer->places(g);
   PixelSample sample;
   for (const std::size_t i : drawn(visible.size(), static_cast<std::size_t>(count), seed)) {
     const auto [x, y] = visible[i];
     sample.places.push_back(visible[i]);
     sample.points.push_back({g.normal(x, y), g.to_viewer(x, y), g.part(x, y)});
+    if (places.empty()) continue;
+    sample.points.back().placed = true;
+    sample.points.back().place = places[static_cast<std::size_t>(y) * g.width + x];
   }
   return sample;
 }

@@ -10,6 +10,7 @@
 #include "image/image.h"
 #include "render/renderer.h"
 #include "render/scene.h"
+#include "render/surface_layer.h"
 #include "render/visible_point.h"
 
 namespace goniochrome {
@@ -35,6 +36,16 @@ struct SurfacePoint {
 std::vector<Rgb> reference_radiance(const std::vector<SurfacePoint>& points, const Environment* env,
                                     const std::vector<Light>& lights);
 
+// A point of a texture.
+struct TexturedPoint {
+  Vec3 normal, to_viewer;
+  SurfaceLayer::Place place;
+};
+
+// The same for textures: the integral of the blended texels' f L cos_i. `reflection` null: component-wise.
+std::vector<Rgb> textured_radiance(const std::vector<TexturedPoint>& points, const Environment* env,
+                                   const std::vector<Light>& lights, const ReflectionOperator* reflection);
+
 // The same for points of a scene, by the effects that are on.
 std::vector<Rgb> exact_radiance(const std::vector<VisiblePoint>& points, const Scene& scene, const Effects& effects,
                                 const Environment* env);
@@ -47,7 +58,7 @@ struct PictureError {
   double time_s = 0;
 };
 
-// Random visible pixels without a texture, `count` of them or all where there are fewer: their places in the picture
+// Random visible pixels, `count` of them or all where there are fewer: their places in the picture
 // and their points.
 struct PixelSample {
   std::vector<std::array<int, 2>> places;

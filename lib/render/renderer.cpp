@@ -51,6 +51,8 @@ struct Renderer::State {
   std::optional<View> view;
   Rays rays;
   std::vector<std::shared_ptr<Gbuffer>> kept;
+  std::vector<std::vector<TexturePlace>> placed;  // on textures, of the same; empty: not yet
+  std::uint64_t placed_for = 0;                   // the layer
   int in_texture = -1;
   double rasterization_ms = 0;
 
@@ -58,6 +60,7 @@ struct Renderer::State {
   Result<void> look_at(const View& wanted);
   void rasterize(int sample);
   const std::shared_ptr<Gbuffer>& gbuffer(int sample);
+  const std::vector<TexturePlace>& places(int sample);
   void shade(int sample, bool add, int samples, Image& rgba);
 };
 
@@ -99,11 +102,26 @@ const std::shared_ptr<Gbuffer>& Renderer::State::gbuffer(int sample) {
   if (!g) g = std::make_shared<Gbuffer>();
   if (g->width != 0 && (room || sample == 0)) return g;
   const Stopwatch clock;
+  placed.resize(kept.size());
+  placed[place].clear();
   rasterize(sample);
   gl.Finish();
   rasterization_ms = 1000 * clock.elapsed_s();
   rasterizer->read(*g);
   return g;
+}
+
+const std::vector<TexturePlace>& Renderer::State::places(int sample) {
+  const SurfaceLayer& layer = *scene.layer;
+  if (placed_for != layer.id()) {
+    for (std::vector<TexturePlace>& old : placed) old.clear();
+    placed_for = layer.id();
+  }
+  const std::shared_ptr<Gbuffer>& of = gbuffer(sample);
+  const auto place = static_cast<std::size_t>(std::find(kept.begin(), kept.end(), of) - kept.begin());
+  placed.resize(kept.size());
+  if (placed[place].empty()) placed[place] = layer.places(*of);
+  return placed[place];
 }
 
 void Renderer::State::shade(int sample, bool add, int samples, Image& rgba) {
@@ -193,9 +211,9 @@ Result<void> Renderer::draw(const View& view, Frame& frame) {
   frame.gbuffer = s.gbuffer(0);
   frame.gbuffer_ms = s.rasterization_ms;
   const auto add_layer = [&](Image& image, int first, int count) {
-    if (!s.effects.texture && !s.effects.maps) return;
+    if (s.scene.layer == nullptr) return;
     for (int i = first; i < first + count; ++i) {
-      s.scene.layer->add(*s.gbuffer(i), view.camera.eye, 1.0F / static_cast<float>(count), image, s.effects.maps);
+      s.scene.layer->add(*s.gbuffer(i), s.places(i), s.effects, 1.0F / static_cast<float>(count), image);
     }
   };
   const auto read = [&](Image& image, int samples) {

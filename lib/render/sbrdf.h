@@ -2,12 +2,15 @@
 // VARYING SURFACES; [McAllister2002] 4.1 and 6.1
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "base/result.h"
 #include "brdf/sbrdf.h"
 #include "envmap/prefiltered.h"
+#include "render/sbrdf_kernel.h"
 #include "render/scene.h"
+#include "render/visible_point.h"
 
 namespace goniochrome {
 
@@ -21,30 +24,70 @@ struct MipCube {
 // that makes them.
 Result<MipCube> mip_cube(const PrefilteredEnvironment& env);
 
-// Shades under an environment and lights. With `mip` lobes are fetched there (trilinearly), else from the environment's
-// own maps, two neighbors in exponent blended. Both may be null, and must outlive the shader.
+// What textures are seen in, and how much of them.
+struct SbrdfLight {
+  bool environment = true;  // as far as there is one
+  std::vector<Light> lights = {};
+  ReflectionOperator reflection = component_wise();
+  bool horizon = true;        // lobes under the environment end at the horizon
+  std::uint32_t lobes = ~0U;  // by bits
+};
+
+// Textures packed for the kernel, and the maps that their lobes need.
 class SbrdfShader {
  public:
-  SbrdfShader(const PrefilteredEnvironment* env, const MipCube* mip, std::vector<Light> lights,
-              const ReflectionOperator& reflection = component_wise());
+  // With `mip` lobes are fetched there (trilinearly), else from the environment's own maps, two neighbors in exponent
+  // blended. Both may be null, and all but the textures must outlive the shader.
+  SbrdfShader(const PrefilteredEnvironment* env, const MipCube* mip, const std::vector<const SbrdfTexture*>& textures);
 
-  // Radiance in the working space toward `to_viewer` (unit, world), of a surface with unit normal and tangent; the
-  // tangent is made perpendicular. 0 seen from below.
-  Rgb shade(const SbrdfTexel& texel, const Vec3& normal, const Vec3& tangent, const Vec3& to_viewer) const;
+  // Radiance in the working space of points on one texture, at their places; 0 seen from below. The four texels around
+  // a place are shaded one by one, and their colors blended. Single precision; the same for any company of points.
+  std::vector<Rgb> shade(std::size_t texture, const SbrdfLight& light, const std::vector<VisiblePoint>& points) const;
 
-  // The same at a place of a texture: its four texels shaded and blended.
-  Rgb shade(const SbrdfTexture& texture, double u, double v, const Vec3& normal, const Vec3& tangent,
-            const Vec3& to_viewer) const;
+  // Shades up to kPointsAtOnce points that were put.
+  class Batch {
+   public:
+    Batch(const SbrdfShader& shader, std::size_t texture, const SbrdfLight& light);
+    Batch(const Batch&) = delete;  // the kernel's tables point into it
+    Batch& operator=(const Batch&) = delete;
+    // `normal` and `to_viewer` on the same side, the first unit.
+    void put(const float* normal, const float* to_viewer, const TexturePlace& place, double repeat);
+    int count() const { return count_; }
+    bool full() const { return count_ == kPointsAtOnce; }
+    // The colors of all, 4 floats each; the batch is empty again.
+    const float* shade();
+
+   private:
+    const SbrdfShader& shader_;
+    std::size_t texture_;
+    SbrdfShading shading_;
+    std::vector<float> lights_, reflection_;
+    SbrdfPoints points_;
+    int count_ = 0;
+    alignas(64) float rgba_[4 * kPointsAtOnce];
+  };
 
  private:
-  Vec3 filtered(double exponent, const Vec3& direction) const;  // P_n
+  struct Packed {
+    int width = 0, height = 0, lobes = 0;
+    std::vector<float> texels;
+    const float* at(int column, int row) const {
+      return &texels[(static_cast<std::size_t>(row) * width + column) *
+                     (kTexelFloats + kTexelLobeFloats * static_cast<std::size_t>(lobes))];
+    }
+  };
+  void make_maps(const PrefilteredEnvironment& env, const MipCube* mip, double low, double high);
+  void make_horizon(double low, double high);
+  Packed packed(const SbrdfTexture& texture) const;
+  void pack_lobe(const LafortuneLobe& lobe, float* to) const;
 
-  const PrefilteredEnvironment* env_;
-  const MipCube* mip_;
-  std::vector<Light> lights_;
-  ReflectionOperator reflection_;
-  std::vector<double> exponents_;  // of the maps, ascending; the diffuse map is the lobe of exponent 1
-  std::vector<const CubeMap*> maps_;
+  std::vector<Packed> textures_;
+  std::vector<double> exponents_;  // of the maps, ascending
+  std::vector<LobeMap> maps_;
+  LobeMap diffuse_;
+  std::vector<std::vector<float>> texels_;  // of the maps and of the diffuse one
+  std::vector<double> horizon_exponents_;
+  std::vector<float> horizon_;
 };
 
 }  // namespace goniochrome

@@ -9,8 +9,11 @@
 #include "brdf/color_map.h"
 #include "brdf/sbrdf.h"
 #include "image/image.h"
+#include "render/effects.h"
 #include "render/gbuffer.h"
+#include "render/sbrdf.h"
 #include "render/scene.h"
+#include "render/texture_places.h"
 #include "render/visible_point.h"
 
 namespace goniochrome {
@@ -24,8 +27,10 @@ struct PartSurface {
 
 class SurfaceLayer {
  public:
-  // One surface for each part of the scene's mesh; none where there are fewer. All must outlive the layer.
-  SurfaceLayer(const Scene& scene, std::vector<PartSurface> surfaces, CriticalAngle treatment);
+  // One surface for each part of the scene's mesh; none where there are fewer. All must outlive the layer. With `mip`
+  // the lobes of textures are fetched from there, else from the maps of the scene's environment.
+  SurfaceLayer(const Scene& scene, std::vector<PartSurface> surfaces, CriticalAngle treatment,
+               const MipCube* mip = nullptr);
   ~SurfaceLayer();
 
   // Whether there is nothing to add, and what there is: textures, and color maps under lights.
@@ -33,32 +38,56 @@ class SurfaceLayer {
   bool textured() const { return textured_; }
   bool mapped() const { return mapped_; }
   const PartSurface& surface(int part) const { return surfaces_[static_cast<std::size_t>(part)]; }
+  // No other layer has it.
+  std::uint64_t id() const { return id_; }
+  // The most lobes of a texture.
+  int lobes() const;
 
-  // Adds `weight` times the layer, with or without its color maps, to the RGB of every pixel. `eye` is that of the
-  // G-buffer's camera. Of a color map it adds the difference to what the lobe model shows of the same light, gloss
-  // apart. Bit-identical for any number of threads.
-  void add(const Gbuffer& gbuffer, const Vec3& eye, float weight, Image& rgba, bool with_maps = true) const;
+  // Where the textured parts of a G-buffer's pixels lie on their textures; empty without textures.
+  std::vector<TexturePlace> places(const Gbuffer& gbuffer) const;
+
+  // Adds `weight` times the layer, as far as the effects have it, to the RGB of every pixel; a part whose texture is
+  // left out shows its mean texel. `places` are those of the G-buffer. Of a color map it adds the difference to what
+  // the lobe model shows of the same light, gloss apart. Bit-identical for any number of threads.
+  void add(const Gbuffer& gbuffer, const std::vector<TexturePlace>& places, const Effects& effects, float weight,
+           Image& rgba) const;
 
   // The color map's part at one point: radiance under the scene's lights less that of the paint's flake lobes.
   Rgb mapped_difference(int part, const Vec3& normal, const Vec3& to_viewer) const;
 
-  // The radiance of one texel of a textured part, its tangent level.
-  Rgb texel_radiance(int part, int column, int row, const Vec3& normal, const Vec3& to_viewer) const;
+  // Adds to the colors of these points what color maps change under the scene's lights.
+  void add_mapped(const std::vector<VisiblePoint>& points, std::vector<Rgb>& colors) const;
+
+  // Adds the layer to the colors of these points. One whose place on its texture is not known takes another place for
+  // each, which is enough to tell what a texture is worth.
+  void add(const std::vector<VisiblePoint>& points, const Effects& effects, std::vector<Rgb>& colors) const;
+
+  // Texels, in the frame of normal and tangent, and their shares: what a textured point consists of.
+  struct Piece {
+    SbrdfTexel texel;
+    double share = 1;
+  };
+  struct Place {
+    Vec3 tangent;
+    std::vector<Piece> pieces;
+  };
+  // Of the point of this number; its lobes that the effects have.
+  Place place(const VisiblePoint& point, std::size_t number, const Effects& effects) const;
 
  private:
-  struct Shader;
+  class Row;
+  std::size_t shading_of(int part, const Effects& effects) const;
+  TexturePlace placed(const VisiblePoint& point, std::size_t number) const;
+
   const Scene& scene_;
   std::vector<PartSurface> surfaces_;
   CriticalAngle treatment_;
+  std::uint64_t id_;
   bool textured_ = false, mapped_ = false;
-  std::unique_ptr<Shader> shader_;
+  std::vector<const SbrdfTexture*> textures_;  // each once
+  std::vector<SbrdfTexture> means_;            // of the same
+  std::unique_ptr<const SbrdfShader> shader_;  // of the textures, then of the means
+  std::unique_ptr<const TextureLayout> layout_;
 };
-
-// Adds what the scene's color maps change under its lights to the colors of these points.
-void add_mapped(const Scene& scene, const std::vector<VisiblePoint>& points, std::vector<Rgb>& colors);
-
-// Adds what its textures show. Where on its texture a point lies is not known: each takes another texel, which is
-// enough to tell what a texture is worth.
-void add_textured(const Scene& scene, const std::vector<VisiblePoint>& points, std::vector<Rgb>& colors);
 
 }  // namespace goniochrome

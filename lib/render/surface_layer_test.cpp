@@ -23,6 +23,12 @@ Gbuffer sphere_row(int n) {
   return g;
 }
 
+Effects effects_of_maps() {
+  Effects effects;
+  effects.maps = true, effects.lights = 1;
+  return effects;
+}
+
 ColorMap even_map(float value) {
   ColorMap map = color_map_of_size(8, 1.5);
   for (float& factor : map.factors) factor = value;
@@ -69,7 +75,7 @@ TEST(SurfaceLayer, AddsItsWeightAndNothingElsewhere) {
   Gbuffer g = sphere_row(8);
   g.data[3] = 0;  // the first pixel misses the mesh
   Image picture{8, 1, 4, std::vector<float>(32, 1), {}};
-  layer.add(g, {0, 0, 5}, 0.25F, picture);
+  layer.add(g, {}, effects_of_maps(), 0.25F, picture);
   EXPECT_EQ(picture.data[0], 1);
   EXPECT_EQ(picture.data[7], 1);  // coverage
   const Rgb whole = layer.mapped_difference(0, g.normal(3, 0), g.to_viewer(3, 0));
@@ -85,6 +91,8 @@ TEST(SurfaceLayer, AddsItsWeightAndNothingElsewhere) {
 TEST(SurfaceLayer, BitsDoNotDependOnTheThreads) {
   const Stage stage;
   SbrdfTexture texture = {1, 1, 1, {0.1F, 0.1F, 0.1F, 1, 0, 1, 1, 1, -1, -1, 1, 30}};
+  Effects effects;
+  effects.texture = true, effects.lights = 1;
   const SurfaceLayer layer(stage.scene, {{&texture, 2, nullptr}}, CriticalAngle::kClip);
   Camera camera;
   camera.eye = {0, 0, 5};
@@ -97,7 +105,7 @@ TEST(SurfaceLayer, BitsDoNotDependOnTheThreads) {
   for (const int n : {1, 2, 7}) {
     set_threads(n);
     Image picture{16, 16, 4, std::vector<float>(1024, 0), {}};
-    layer.add(g, camera.eye, 1, picture);
+    layer.add(g, layer.places(g), effects, 1, picture);
     pictures.push_back(picture.data);
   }
   set_threads(0);

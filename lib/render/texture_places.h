@@ -5,19 +5,37 @@
 #include <vector>
 
 #include "mesh/mesh.h"
-#include "render/camera.h"
+#include "render/gbuffer.h"
+#include "render/visible_point.h"
 
 namespace goniochrome {
 
-struct TexturePlace {
-  float u = 0, v = 0;
-  float tangent[3] = {1, 0, 0};  // world, along u; of about unit length
-};
+// A mesh laid out for textures. Texture coordinates are the mesh's own; where it has none, u runs once around the
+// vertical axis through the middle of the bounding box and v upward in the same measure. Tangents run along u and are
+// the means over the triangles at a vertex, by area, so that a smooth surface has smooth tangents.
+class TextureLayout {
+ public:
+  // For these parts of the mesh, which must outlive it.
+  TextureLayout(const Mesh& mesh, const std::vector<bool>& parts);
 
-// The places of the pixel centers of a picture; of pixels that miss the mesh they mean nothing. Texture coordinates are
-// the mesh's own; where it has none, u runs once around the vertical axis through the middle of the bounding box and v
-// upward in the same measure. `repeat` (> 0) multiplies both.
-std::vector<TexturePlace> texture_places(const Mesh& mesh, const Rays& rays, const Vec3& eye, int width, int height,
-                                         double repeat);
+  // The places of what a G-buffer of the mesh shows, pixel by pixel; of other parts, and of nothing, they mean nothing.
+  // Bit-identical for any number of threads.
+  std::vector<TexturePlace> places(const Gbuffer& gbuffer) const;
+
+ private:
+  struct Corner {
+    float u = 0, v = 0;
+  };
+  struct Face {
+    std::uint32_t vertex[3];
+    Corner uv[3];
+    int part = 0;
+  };
+  class Canvas;
+
+  const Mesh& mesh_;
+  std::vector<Face> faces_;
+  std::vector<Vec3> tangents_;  // of the vertices
+};
 
 }  // namespace goniochrome

@@ -41,7 +41,8 @@ cli::ToolSpec render_spec(RenderOptions& o, cli::CommonOptions& common) {
       "+NAME "
       "and -NAME, as in auto,-fresnel. The names are diffuse, lobes, gloss, mirror, fresnel, horizon, anisotropy, "
       "travel, "
-      "operator and lights; lobe-20 and gloss-900 are single lobes. --explain prints the table, which is in the report "
+      "texture, texture-lobes, operator and lights; lobe-20, gloss-900 and texture-0 (lobe0 of the textures) are single "
+      "lobes. --explain prints the table, which is in the report "
       "and "
       "in the header of an EXR as well.",
       "Two engines draw the same picture: gl, in OpenGL, and cpu, which reads all lobes of a texel at once; auto takes "
@@ -55,9 +56,8 @@ cli::ToolSpec render_spec(RenderOptions& o, cli::CommonOptions& common) {
       "several "
       "views. --texture gives a part a spatially varying surface of generalized cosine lobes (EXR) in the place of a "
       "paint; "
-      "it is laid by the mesh's texture coordinates, or around the vertical axis where it has none. Textured parts are "
-      "not "
-      "checked.",
+      "it is laid by the mesh's texture coordinates, or around the vertical axis where it has none. Without the effect "
+      "texture, a part shows the mean texel of its texture.",
       "--split draws the picture twice, its left half in the first paint and its right half in the second, both in the "
       "place of --paint. --turntable and --light-sweep write a sequence, NAME-0001.exr and so on: the camera, or the "
       "first "

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 namespace goniochrome {
 
 const char* engine_name(Engine engine) {
@@ -13,16 +11,15 @@ const char* engine_name(Engine engine) {
 std::string plan_table(const Plan& plan) {
   bool truth = false;
   for (const PlanItem& item : plan.items) truth |= item.truth_de00_p95.has_value();
-  std::string text = fmt::format("{:<12} {:<6} {:>7} {}{:>7}  {:<16} {}\n", "effect", "needed", "dE00",
+  std::string text = fmt::format("{:<13} {:<6} {:>7} {}{:>7}  {:<16} {}\n", "effect", "needed", "dE00",
                                  truth ? "  truth " : "", "ms", "decision", "why");
   for (const PlanItem& item : plan.items) {
     const std::string exact = item.truth_de00_p95 ? fmt::format("{:7.2f} ", *item.truth_de00_p95)
                               : truth             ? "        "
                                                   : "";
-    const std::string change = std::isnan(item.de00_p95) ? "-" : fmt::format("{:.2f}", item.de00_p95);
-    text += item.needed ? fmt::format("{:<12} {:<6} {:>7} {}{:>7.2f}  {:<16} {}\n", item.effect, "yes", change, exact,
-                                      item.cost_ms, item.decision, item.reason)
-                        : fmt::format("{:<12} {:<6} {:>7} {}{:>7}  {:<16} {}\n", item.effect, "no", "-",
+    text += item.needed ? fmt::format("{:<13} {:<6} {:>7.2f} {}{:>7.2f}  {:<16} {}\n", item.effect, "yes",
+                                      item.de00_p95, exact, item.cost_ms, item.decision, item.reason)
+                        : fmt::format("{:<13} {:<6} {:>7} {}{:>7}  {:<16} {}\n", item.effect, "no", "-",
                                       truth ? "        " : "", "-", item.decision, item.reason);
   }
   return text + fmt::format("left out together: dE00 {:.2f} (p95); planned in {:.1f} ms\nengine {}: {}\n",

@@ -97,13 +97,16 @@ number() { sed -n '/"error": {/,/}/p' r.json | grep -m1 "\"$1\"" | sed -E 's/.*:
   [ "$status" -eq 3 ]
 }
 
-@test "--texture lays a surface of lobes, and its part is not checked" {
+@test "--texture lays a surface of lobes, which is planned and checked" {
   texture="$TESTDATA/wood.sbrdf.exr"
   part=$(sed -n 's/^[og] //p' "$shape" | head -1)
   run render-osmesa --mesh "$shape" -p paints.xml#matt --env small.env.exr $small --texture "$part=$texture*4" --explain \
     --check 5 -o wood.exr --report r.json
   [ "$status" -eq 0 ]
-  [[ "$output" =~ drawn\ +all\ that\ its\ parts\ show ]]
+  [[ "$output" =~ texture\ +yes.*drawn.*"of what is seen is textured" ]]
+  [[ "$output" =~ texture-0\ +yes ]]
+  [ "$(jq '[.results.plan[] | select(.effect == "texture" and .truth_de00_p95 != null)] | length' r.json)" -eq 1 ]
+  [ "$(jq .results.error.checked_pixels r.json)" -eq 5 ]
   render-osmesa -q --mesh "$shape" -p paints.xml#matt --env small.env.exr $small -o plain.exr
   run cmp -s wood.exr plain.exr
   [ "$status" -eq 1 ]
