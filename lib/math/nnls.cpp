@@ -21,6 +21,16 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
+// The 2-norm without overflow or underflow.
+double safe_norm(const double* v, int n) {
+  double largest = 0;
+  for (int i = 0; i < n; ++i) largest = std::max(largest, std::abs(v[i]));
+  if (largest == 0) return 0;
+  double sum = 0;
+  for (int i = 0; i < n; ++i) sum += (v[i] / largest) * (v[i] / largest);
+  return largest * std::sqrt(sum);
+}
+
 class ActiveSet {
  public:
   NonNegativeFit fit(const Matrix& m, const std::vector<double>& b);
@@ -29,6 +39,7 @@ class ActiveSet {
   double* column(int j) { return &a_[static_cast<std::size_t>(j) * rows_]; }
   bool load(const Matrix& m, const std::vector<double>& b);
   int best_waiting() const;
+  int best_nearly_dependent() const;
   bool enter(int j);
   void leave(int position);
   void solve_triangle();
@@ -40,16 +51,6 @@ class ActiveSet {
   std::vector<double> a_, b_, scale_, x_, z_, gradient_, reflector_;
   std::vector<int> order_;  // the passive columns first
 };
-
-// The 2-norm without overflow or underflow.
-double safe_norm(const double* v, int n) {
-  double largest = 0;
-  for (int i = 0; i < n; ++i) largest = std::max(largest, std::abs(v[i]));
-  if (largest == 0) return 0;
-  double sum = 0;
-  for (int i = 0; i < n; ++i) sum += (v[i] / largest) * (v[i] / largest);
-  return largest * std::sqrt(sum);
-}
 
 // Unit columns and a unit right-hand side: every later threshold is free of the scale of the data.
 bool ActiveSet::load(const Matrix& m, const std::vector<double>& b) {
@@ -77,6 +78,22 @@ int ActiveSet::best_waiting() const {
   double largest = 2 * kEpsilon * rows_;
   for (int p = passive_; p < static_cast<int>(order_.size()); ++p)
     if (gradient_[order_[p]] > largest) largest = gradient_[order_[p]], best = p;
+  return best >= 0 ? best : best_nearly_dependent();
+}
+
+// What is left of a column that nearly depends on the passive ones is short, and so is its gradient, which is exact to
+// a rounding of either length below the triangle: one beyond that counts by its gain, gradient over length.
+int ActiveSet::best_nearly_dependent() const {
+  const double residual = safe_norm(b_.data() + passive_, rows_ - passive_);
+  int best = -1;
+  double largest = 0;
+  for (int p = passive_; p < static_cast<int>(order_.size()); ++p) {
+    const int j = order_[p];
+    if (gradient_[j] <= 2 * kEpsilon * rows_ * residual) continue;
+    const double length = safe_norm(&a_[static_cast<std::size_t>(j) * rows_ + passive_], rows_ - passive_);
+    if (gradient_[j] <= 2 * kEpsilon * rows_ * (residual + length)) continue;
+    if (gradient_[j] > largest * length) largest = gradient_[j] / length, best = p;
+  }
   return best;
 }
 

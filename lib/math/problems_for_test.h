@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <random>
 #include <string>
 #include <vector>
@@ -10,6 +11,12 @@
 #include "math/least_squares.h"
 
 namespace goniochrome::problems {
+
+// How many problems to try: `usual`, or as many as the environment variable GONIOCHROME_TRIALS asks for.
+inline int trials(int usual) {
+  const char* asked = std::getenv("GONIOCHROME_TRIALS");
+  return asked ? std::max(1, std::atoi(asked)) : usual;
+}
 
 struct Problem {
   std::string kind;
