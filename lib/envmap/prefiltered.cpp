@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "base/parallel.h"
+#include "envmap/mip_read.h"
 
 namespace goniochrome {
 
@@ -163,6 +164,7 @@ const PrefilteredLobe* PrefilteredEnvironment::lobe(double exponent) const {
 
 Result<PrefilteredEnvironment> read_env(const std::string& path) {
   GONIO_ASSIGN(std::vector<ImagePart> parts, read_exr(path));
+  if (!text_attribute(parts.front(), "goniochrome:exponents").empty()) return read_mip(path);
   PrefilteredEnvironment env;
   env.mirror.exponent = kMirrorExponent;
   for (ImagePart& part : parts) {

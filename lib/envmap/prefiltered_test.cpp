@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <random>
 
+#include "envmap/mip_write.h"
+
 namespace goniochrome {
 namespace {
 
@@ -91,6 +93,30 @@ TEST_F(EnvFile, HardCase_prefilter_sun_storage_never_overflows_or_loses_the_dark
   EXPECT_EQ(storage_type(random_lobe(6, 4, 1e-2, 1, 1e9)), PixelType::kFloat);
   EXPECT_EQ(storage_type(random_lobe(6, 4, 1e-2, 1e-9, 1e-8)), PixelType::kFloat);  // halves end at 6e-8
   EXPECT_EQ(storage_type(random_lobe(6, 4, 1e-2, 1, 60000)), PixelType::kHalf);
+}
+
+TEST_F(EnvFile, mip_mapped_cubes_come_back_as_lobes) {
+  std::vector<PrefilteredLobe> levels;
+  const auto exponents = mip_exponents({16}, 16);
+  ASSERT_TRUE(exponents.ok());
+  for (std::size_t i = 0; i < exponents->size(); ++i) {
+    levels.push_back(random_lobe((*exponents)[i], 16 >> i, 1e-2, .1, 10));
+    round_to_storage(levels.back());
+  }
+  ASSERT_TRUE(write_mip(path("m.exr"), levels, "sky.exr", "test").ok());
+  const auto env = read_env(path("m.exr"));
+  ASSERT_TRUE(env.ok()) << env.error().message;
+  EXPECT_EQ(env->source, "sky.exr");
+  ASSERT_EQ(env->lobes.size(), 4u);  // 16, 4, 1, 1/4; the last level is of exponent 0
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(env->lobes[3 - i].exponent, levels[i].exponent);
+    EXPECT_EQ(env->lobes[3 - i].map.texels, levels[i].map.texels) << i;
+  }
+  EXPECT_EQ(env->diffuse.map.texels, levels[2].map.texels);
+  // No level for the diffuse light.
+  for (PrefilteredLobe& level : levels) level.exponent *= 3;
+  ASSERT_TRUE(write_mip(path("n.exr"), levels, "sky.exr", "test").ok());
+  EXPECT_THAT(read_env(path("n.exr")).error().message, HasSubstr("no level has the exponent 1"));
 }
 
 TEST_F(EnvFile, other_files_are_refused_by_part) {

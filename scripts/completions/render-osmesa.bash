@@ -5,6 +5,7 @@ _render_osmesa() {
     --part) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --paint|-p) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --texture) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --texture-maps) COMPREPLY=($(compgen -W "cubes mip" -- "$word")); return ;;
     --env|-e) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --light) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --size|-s) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -34,7 +35,7 @@ _render_osmesa() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--mesh --part --paint --texture --env --light --size --orbit --camera --fov --samples --background --exposure --view --aov --effects --budget --engine --operator --critical-angle --print-shader --split --turntable --light-sweep --check --check-source --output --explain --tolerance --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--mesh --part --paint --texture --texture-maps --env --light --size --orbit --camera --fov --samples --background --exposure --view --aov --effects --budget --engine --operator --critical-angle --print-shader --split --turntable --light-sweep --check --check-source --output --explain --tolerance --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

@@ -57,7 +57,9 @@ cli::ToolSpec render_spec(RenderOptions& o, cli::CommonOptions& common) {
       "views. --texture gives a part a spatially varying surface of generalized cosine lobes (EXR) in the place of a "
       "paint; "
       "it is laid by the mesh's texture coordinates, or around the vertical axis where it has none. Without the effect "
-      "texture, a part shows the mean texel of its texture.",
+      "texture, a part shows the mean texel of its texture. Exponents between those of the environment are blended: from "
+      "a cube for each (--texture-maps cubes), or from one whose coarser levels hold wider lobes (mip), which needs the "
+      "sharpest exponent and its quarters, or the layout mip of prefilter-envmap(1).",
       "--split draws the picture twice, its left half in the first paint and its right half in the second, both in the "
       "place of --paint. --turntable and --light-sweep write a sequence, NAME-0001.exr and so on: the camera, or the "
       "first "
@@ -84,6 +86,11 @@ cli::ToolSpec render_spec(RenderOptions& o, cli::CommonOptions& common) {
        .value = "PART=FILE",
        .help = "texture of lobes of a part or material; repeat for more; FILE*N lays it N times",
        .target = &o.textures},
+      {.name = "texture-maps",
+       .value = "WHAT",
+       .help = "where the lobes of textures look: cubes, one for each exponent, or mip, one with all in its levels",
+       .target = &o.texture_maps,
+       .choices = {"cubes", "mip"}},
       {.name = "env", .letter = 'e', .value = "FILE", .help = "prefiltered environment (*.env.exr)", .target = &o.env},
       {.name = "light",
        .value = "DIR[,RGB]",

@@ -24,6 +24,7 @@ struct RenderOptions {
   std::string reflection = "iso";
   std::string critical_angle = "slide";
   std::vector<std::string> textures;
+  std::string texture_maps = "cubes";
   double budget_ms = 0;
   bool print_shader = false;
   std::vector<std::string> split;

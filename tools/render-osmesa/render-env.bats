@@ -97,6 +97,23 @@ number() { sed -n '/"error": {/,/}/p' r.json | grep -m1 "\"$1\"" | sed -E 's/.*:
   [ "$status" -eq 3 ]
 }
 
+@test "--texture-maps: lobes of textures from a cube for each exponent, or from the levels of one" {
+  texture="$TESTDATA/wood.sbrdf.exr"
+  part=$(sed -n 's/^[og] //p' "$shape" | head -1)
+  prefilter-envmap -q small.exr -e 64 --size 64 --layout mip -o mip.env.exr
+  for maps in cubes mip; do
+    run render-osmesa --mesh "$shape" --env mip.env.exr $small --texture "$part=$texture" --texture-maps $maps --check 5 \
+      -o $maps.exr --report $maps.json
+    [ "$status" -eq 0 ]
+    jq -e '.results.error.de00_p95 < 3' $maps.json
+  done
+  prefilter-envmap -q small.exr -e 4,16,64 -o quarters.env.exr
+  render-osmesa -q --mesh "$shape" --env quarters.env.exr $small --texture "$part=$texture" --texture-maps cubes -o a.exr
+  render-osmesa -q --mesh "$shape" --env quarters.env.exr $small --texture "$part=$texture" --texture-maps mip -o b.exr
+  run cmp -s a.exr b.exr
+  [ "$status" -eq 1 ]
+}
+
 @test "--texture lays a surface of lobes, which is planned and checked" {
   texture="$TESTDATA/wood.sbrdf.exr"
   part=$(sed -n 's/^[og] //p' "$shape" | head -1)
@@ -117,6 +134,14 @@ number() { sed -n '/"error": {/,/}/p' r.json | grep -m1 "\"$1\"" | sed -E 's/.*:
   [ "$status" -eq 2 ]
   run render-osmesa --mesh "$shape" --env small.env.exr $small --texture "$part=small.exr" -o none.exr
   [ "$status" -eq 3 ]
+  run render-osmesa --mesh "$shape" --env small.env.exr $small --texture "$part=$texture" --texture-maps mip -o none.exr
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ "prefilter with quarters of the sharpest" ]]
+  run render-osmesa --mesh "$shape" --env small.env.exr $small --texture-maps tall -o none.exr
+  [ "$status" -eq 2 ]
+  [[ "$output" =~ "cubes" ]]
+  run render-osmesa --mesh "$shape" --env small.env.exr $small --texture-maps
+  [ "$status" -eq 2 ]
   run render-osmesa --mesh "$shape" --env small.env.exr $small --critical-angle bend -o none.exr
   [ "$status" -eq 2 ]
   [[ "$output" =~ "slide-map" ]]

@@ -221,6 +221,7 @@ struct Stage {
   std::vector<DressedMesh> dresses;  // one, or those of --split
   PrefilteredEnvironment env;
   Scene scene;
+  std::optional<MipCube> mip;
   std::unique_ptr<SurfaceLayer> layer;
   CheckSource check;
 };
@@ -231,7 +232,8 @@ void wear(const DressedMesh& dress, const RenderOptions& options, Stage& stage) 
   scene.gloss_deg = dress.gloss_deg;
   scene.anisotropy = dress.anisotropy;
   stage.layer = std::make_unique<SurfaceLayer>(
-      scene, dress.surfaces, critical_angle_of(options.critical_angle).value_or(CriticalAngle::kSlide));
+      scene, dress.surfaces, critical_angle_of(options.critical_angle).value_or(CriticalAngle::kSlide),
+      stage.mip ? &*stage.mip : nullptr);
   scene.layer = stage.layer->empty() ? nullptr : stage.layer.get();
 }
 
@@ -265,6 +267,9 @@ Result<void> set_stage(const RenderOptions& options, const Request& request, Sta
   if (!options.env.empty()) {
     GONIO_ASSIGN(stage.env, read_env(options.env));
     scene.env = &stage.env;
+    if (options.texture_maps == "mip") {
+      GONIO_ASSIGN(stage.mip, mip_cube(stage.env));
+    }
   }
   wear(stage.dresses.front(), options, stage);
   if (options.check > 0) {
