@@ -107,6 +107,7 @@ cli::ToolSpec tool_spec(Options& o) {
                  {"sets[].mean_error", "mean over the paints"},
                  {"sets[].objective", "max_error + mean_error, what the search makes least"},
                  {"sets[].de00_max", "largest color difference of any paint at any sample angle"},
+                 {"sets[].log_regularity", "squared correlation of the exponents' logarithms with their rank, 1 is regular"},
                  {"sets[].worst", "the paint with the largest error"},
                  {"sets[].time_s", "time of the search for this number"},
                  {"sets[].starts", "starting points tried"},

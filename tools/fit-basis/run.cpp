@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/file.h"
 #include "base/input.h"
@@ -78,6 +79,21 @@ std::vector<double> visible_errors(const BasisSearch& search, const std::vector<
   return errors;
 }
 
+// How regular exponents are in log space: the squared correlation of log E with its rank; 1 where there are fewer
+// than 3.
+double log_regularity(const std::vector<double>& exponents) {
+  const auto n = static_cast<double>(exponents.size());
+  if (exponents.size() < 3) return 1;
+  double mean = 0;
+  for (const double e : exponents) mean += std::log(e) / n;
+  double of_ranks = 0, of_logs = 0, both = 0;
+  for (std::size_t j = 0; j < exponents.size(); ++j) {
+    const double rank = static_cast<double>(j) - (n - 1) / 2, log = std::log(exponents[j]) - mean;
+    of_ranks += rank * rank, of_logs += log * log, both += rank * log;
+  }
+  return of_logs > 0 ? both * both / (of_ranks * of_logs) : 0;
+}
+
 // The first number of lobes from which on the worst color changes by less than
 // `visible` with every further lobe; 0 where the largest set still gains.
 int enough_lobes(const BasisSearch& search, const std::vector<double>& de00, double visible) {
@@ -89,11 +105,12 @@ int enough_lobes(const BasisSearch& search, const std::vector<double>& de00, dou
 }
 
 std::string table_csv(const BasisSearch& search, const std::vector<double>& de00) {
-  std::string text = "lobes,max_error,mean_error,de00_max,time_s,exponents\n";
+  std::string text = "lobes,max_error,mean_error,de00_max,log_regularity,time_s,exponents\n";
   for (std::size_t i = 0; i < search.sets.size(); ++i) {
     const FoundBasis& set = search.sets[i];
-    text += fmt::format("{},{},{},{},{:.4f},{}\n", set.exponents.size(), shortest(set.error.max),
-                        shortest(set.error.mean), shortest(de00[i]), set.time_s, list(set.exponents));
+    text += fmt::format("{},{},{},{},{:.4f},{:.4f},{}\n", set.exponents.size(), shortest(set.error.max),
+                        shortest(set.error.mean), shortest(de00[i]), log_regularity(set.exponents), set.time_s,
+                        list(set.exponents));
   }
   return text;
 }
@@ -140,6 +157,7 @@ void report(const BasisSearch& search, const std::vector<BasisTarget>& targets, 
                     {"mean_error", json_number(set.error.mean)},
                     {"objective", json_number(set.error.objective())},
                     {"de00_max", json_number(de00[i])},
+                    {"log_regularity", json_number(log_regularity(set.exponents))},
                     {"worst", targets[static_cast<std::size_t>(worst)].name},
                     {"time_s", set.time_s},
                     {"starts", set.starts},
