@@ -80,7 +80,7 @@ class Batch {
 
 void CpuEngine::interleave(const MapClass& maps, MapUse use) {
   if (maps.size == 0) return;
-  stacks_.push_back({{maps.size, maps.slots, {}}, use, blocks_of(maps.slots.size()), interleaved(maps.maps)});
+  stacks_.push_back({{maps.size, maps.slots, {}, maps.shifted}, use, blocks_of(maps.slots.size()), interleaved(maps.maps)});
 }
 
 Result<void> CpuEngine::load(const Scene& scene, const Effects& effects, const SceneMaps& maps) {
@@ -101,6 +101,7 @@ Result<void> CpuEngine::load(const Scene& scene, const Effects& effects, const S
   shading_ = {};
   for (const Stack& stack : stacks_) {
     shading_.use[shading_.classes] = stack.use;
+    shading_.shifted[shading_.classes] = stack.shape.shifted;
     shading_.maps[shading_.classes++] = {stack.shape.size, stack.blocks, stack.texels.data()};
   }
   load_paints(scene, effects, weight_table(scene, effects));
@@ -127,6 +128,7 @@ void CpuEngine::load_paints(const Scene& scene, const Effects& effects, const We
         for (const int end : {0, 4}) {
           if (effects.reflection) {
             put_diagonals(scene.reflection, weight + end, ends + 2 * end);
+            ends[2 * end + 3] = weight[end + 3];
           } else {
             std::copy_n(weight + end, 4, ends + 2 * end);
           }

@@ -96,6 +96,28 @@ HWY_INLINE void set_up(const CpuShading& s, PointArrays& points, Frame& frame) {
   }
 }
 
+// Where class k looks instead of `r`, its weights lying `offset` floats into those of a point.
+struct Shifts {
+  HWY_ALIGN float shift[kPointsAtOnce];
+
+  HWY_INLINE void set(const CpuShading& s, const PointArrays& points, const Frame& frame, int k, std::size_t offset) {
+    for (int i = 0; i < kPointsAtOnce; ++i) {
+      const float* weight = frame.weights(s, points, i) + offset;
+      shift[i] = s.shifted[k] ? weight[3] + frame.t[i] * weight[11] : 0;
+    }
+  }
+  HWY_INLINE Direction of(const Direction& r, const Direction& n, std::size_t i) const {
+    const D f;
+    const V by = hn::Load(f, shift + i);
+    return {hn::MulAdd(by, n.x, r.x), hn::MulAdd(by, n.y, r.y), hn::MulAdd(by, n.z, r.z)};
+  }
+};
+
+// The floats of class k's weights.
+HWY_INLINE std::size_t weights_of(const CpuShading& s, int k) {
+  return static_cast<std::size_t>(s.maps[k].blocks) * (s.reflection ? 48 : 16);
+}
+
 // The two halves of a block together: the sum of its maps.
 HWY_INLINE void store_sum(const Block& sum, float* rgba) {
   float lanes[8];
@@ -175,17 +197,24 @@ HWY_INLINE void tilt(const CpuShading& s, const PointArrays& points, int which, 
 }
 
 // The blocks of all tilted classes, side by side, between their texels and averaged over the tilts.
-HWY_INLINE void gather_tilted(const CpuShading& s, const PointArrays& points, int count, float* gathered) {
+HWY_INLINE void gather_tilted(const CpuShading& s, const PointArrays& points, const Frame& frame, int count,
+                              float* gathered) {
   const D f;
   Tilted tilted;
   Taps taps;
+  Shifts shifts[kMostClasses];
+  std::size_t offset = 0;
+  for (int k = 0; k < s.classes; ++k) {
+    if (s.use[k] == MapUse::kTilted) shifts[k].set(s, points, frame, k, offset);
+    offset += weights_of(s, k);
+  }
   for (int which = 0; which < s.most_tilts; ++which) {
     tilt(s, points, which, tilted);
     int first = 0;
     for (int k = 0; k < s.classes; ++k) {
       if (s.use[k] != MapUse::kTilted) continue;
       for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(f))
-        address(tilted.r(i), s.maps[k].size, i, taps);
+        address(shifts[k].of(tilted.r(i), normal_of(points, i), i), s.maps[k].size, i, taps);
       for (int i = 0; i < count; ++i) {
         if (which > 0 && tilted.share[i] == 0) continue;
         const Corners corners = corners_of(s.maps[k], taps, i, tilted.share[i]);
@@ -206,11 +235,16 @@ HWY_INLINE void add_environment(const CpuShading& s, const PointArrays& points, 
   const D f;
   Taps taps[kMostClasses];
   HWY_ALIGN float gathered[kPointsAtOnce * kMostBlocks * 8];
-  if (s.tilts != nullptr) gather_tilted(s, points, count, gathered);
-  for (int k = 0; k < s.classes; ++k) {
+  if (s.tilts != nullptr) gather_tilted(s, points, frame, count, gathered);
+  std::size_t offset = 0;
+  for (int k = 0; k < s.classes; offset += weights_of(s, k++)) {
     if (s.use[k] == MapUse::kTilted && s.tilts != nullptr) continue;
+    Shifts shifts;
+    if (s.shifted[k]) shifts.set(s, points, frame, k, offset);
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(f)) {
-      address(s.use[k] == MapUse::kNormal ? normal_of(points, i) : frame.r(i), s.maps[k].size, i, taps[k]);
+      const Direction n = normal_of(points, i);
+      const Direction d = s.use[k] == MapUse::kNormal ? n : s.shifted[k] ? shifts.of(frame.r(i), n, i) : frame.r(i);
+      address(d, s.maps[k].size, i, taps[k]);
     }
   }
   for (int i = 0; i < count; ++i) {

@@ -20,17 +20,19 @@ struct InterleavedMaps {
 // What direction meets them: the normal; the mirror direction; or the mirror directions about tilted normals.
 enum class MapUse { kNormal, kMirror, kTilted };
 
-constexpr int kMostClasses = 8;
+constexpr int kMostClasses = 16;
 constexpr int kMostBlocks = 32;  // of all maps met by the mirror direction together
 constexpr int kMostLobes = 2 * kMostBlocks;
 
 // What the kernel shades with. Weights of a part and segment: for each class of maps in order, for each block, 8 floats
 // a and 8 floats b (W = a + b t), or three such pairs under a reflection operator: the three diagonals of its matrix,
-// for the maps' channels in place, and turned by one and by two. Then, for each light slot, 4 floats a and 4 floats b.
+// for the maps' channels in place, and turned by one and by two. The fourth floats of a shifted class's first block are
+// the shift s of its direction, r + s n. Then, for each light slot, 4 floats a and 4 floats b.
 struct CpuShading {
   int classes = 0;
   InterleavedMaps maps[kMostClasses];
   MapUse use[kMostClasses] = {};
+  bool shifted[kMostClasses] = {};
   bool reflection = false;
   int segments = 1;
   const float* weights = nullptr;

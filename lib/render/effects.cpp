@@ -21,6 +21,12 @@ double gloss_deg_of(const Scene& scene, std::size_t part) {
 // The value of every slot of a part at one view.
 class SlotValues {
  public:
+  struct Value {
+    Rgb weight;
+    double shift = 0;
+    double operator[](int i) const { return i < 3 ? weight[i] : shift; }
+  };
+
   SlotValues(const WeightTable& table, const Effects& effects, double gloss_deg)
       : table_(table), effects_(effects), values_(static_cast<std::size_t>(table.slots)) {
     if (effects.fresnel) fresnel_scale_ = 1 / fresnel_dielectric(std::cos(gloss_deg * kPi / 180), kCoatIndex);
@@ -28,8 +34,8 @@ class SlotValues {
 
   // `lit` is what lights meet. `node` counts the ends of the segments; a table of one segment has the view cos_o = 0 at
   // its start and 1 at its end.
-  const std::vector<Rgb>& at(const LobeFit& paint, const LobeFit& lit, double cos_o, int node) {
-    std::fill(values_.begin(), values_.end(), Rgb{});
+  const std::vector<Value>& at(const LobeFit& paint, const LobeFit& lit, double cos_o, int node) {
+    std::fill(values_.begin(), values_.end(), Value{});
     if (effects_.diffuse) {
       set(WeightTable::diffuse_slot(), kPi * paint.diffuse);
       set(table_.light_slot(), lit.diffuse);
@@ -42,7 +48,14 @@ class SlotValues {
       const Rgb gloss = use.gloss ? fresnel_scale_ * lobe->gloss : Rgb{};
       const LobeIntegrals seen = table_.segments > 1 ? lobe_curve(use.exponent, table_.segments, effects_.horizon)[node]
                                                      : lobe_integrals(use.exponent, cos_o, false);
-      set(WeightTable::lobe_slot(j), seen.cosine * flake + (effects_.fresnel ? seen.fresnel : seen.plain) * gloss);
+      const Rgb by_flake = seen.cosine * flake, by_gloss = (effects_.fresnel ? seen.fresnel : seen.plain) * gloss;
+      set(WeightTable::lobe_slot(j), by_flake + by_gloss);
+      if (is_shifted(effects_, use.exponent)) {
+        const double f = sum(by_flake), g = sum(by_gloss);
+        const double share = f + g > 0 ? g / (f + g) : 0;
+        values_[static_cast<std::size_t>(WeightTable::lobe_slot(j))].shift =
+            seen.cosine_shift + share * (seen.plain_shift - seen.cosine_shift);
+      }
       const Lobe* met = find_lobe(lit, use.exponent);
       if (met == nullptr) continue;
       if (use.directional_diffuse) set(table_.directional_diffuse_slot(j), met->directional_diffuse);
@@ -55,26 +68,27 @@ class SlotValues {
   }
 
  private:
-  void set(int slot, const Rgb& value) { values_[static_cast<std::size_t>(slot)] = value; }
+  void set(int slot, const Rgb& value) { values_[static_cast<std::size_t>(slot)].weight = value; }
+  static double sum(const Rgb& c) { return std::abs(c.x) + std::abs(c.y) + std::abs(c.z); }
 
   const WeightTable& table_;
   const Effects& effects_;
   double fresnel_scale_ = 1;
-  std::vector<Rgb> values_;
+  std::vector<Value> values_;
 };
 
 void fill_part(const Scene& scene, const Effects& effects, std::size_t part, const WeightTable& table, float* rows) {
   const LobeFit& paint = scene.paints[part];
   const bool with_views = effects.views && !paint.views.empty();
   SlotValues values(table, effects, gloss_deg_of(scene, part));
-  std::vector<Rgb> before;
+  std::vector<SlotValues::Value> before;
   for (int node = 0; node <= table.segments; ++node) {
     const double x = static_cast<double>(node) / table.segments, cos_o = table.segments > 1 ? x * x : x;
     const LobeFit here_paint = with_views ? at_view(paint, std::acos(cos_o) * 180 / kPi) : paint;
-    const std::vector<Rgb>& here = values.at(here_paint, effects.maps ? paint : here_paint, cos_o, node);
+    const std::vector<SlotValues::Value>& here = values.at(here_paint, effects.maps ? paint : here_paint, cos_o, node);
     if (node > 0) {
       for (std::size_t slot = 0; slot < here.size(); ++slot, rows += 8) {
-        for (int c = 0; c < 3; ++c) {
+        for (int c = 0; c < 4; ++c) {
           rows[c] = static_cast<float>(before[slot][c]);
           rows[4 + c] = static_cast<float>(here[slot][c] - before[slot][c]);
         }

@@ -54,10 +54,16 @@ std::vector<std::vector<Tilt>> tilts_of(const Scene& scene, const Effects& effec
 // t = n.wo itself; else kViewSegments of them, even in x = sqrt(n.wo), with t the part of a segment. Each part of the
 // mesh has a row for each segment; each slot has two RGBA texels, a and b.
 //   slot 0            pi K_D, of the diffuse map
-//   slot 1 + j        lobe j's share of P_Ej(r), cosine and 2 pi/(E+1) included
+//   slot 1 + j        lobe j's share of P_Ej(r + s n), cosine and 2 pi/(E+1) included; alpha is s
 //   slot 1 + lobes    K_M F, of the mirror map
 //   then, for lights, K_D, and K_DD and K_G of each lobe, in 1/sr
 constexpr int kViewSegments = 64;
+// Lobes up to this exponent look where the light they gather above the horizon comes from, each by itself; sharper ones
+// share the mirror direction. With the effect `horizon`.
+constexpr double kWidestShared = 100;
+inline bool is_shifted(const Effects& effects, double exponent) {
+  return effects.horizon && exponent <= kWidestShared;
+}
 struct WeightTable {
   int lobes = 0, segments = 1, slots = 0, parts = 0;
   std::vector<float> rgba;  // ((part * segments + segment) * slots + slot) * 8

@@ -13,6 +13,8 @@ struct LobeIntegrals {
   double cosine = 0;   // of cos^E n.w
   double plain = 0;    // of cos^E
   double fresnel = 0;  // of cos^E F, the reflectance of the coat at half the angle between light and viewer
+  // The mean direction of the light that the first two gather is that of r + shift n, r the mirror direction.
+  double cosine_shift = 0, plain_shift = 0;
 };
 LobeIntegrals lobe_integrals(double exponent, double cos_o, bool horizon);
 

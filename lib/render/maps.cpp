@@ -42,7 +42,7 @@ CubeMap resized(const CubeMap& map, int size) {
 }
 
 MapClass single(int slot, const CubeMap& map) {
-  return {map.size, {slot}, {map}};
+  return {map.size, {slot}, {map}, false};
 }
 
 }  // namespace
@@ -56,9 +56,15 @@ Result<SceneMaps> scene_maps(const Scene& scene, const Effects& effects) {
     int slot;
     const CubeMap* map;
   };
+  std::vector<MapClass> wide;
   std::vector<Member> members;
   for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
     GONIO_ASSIGN(const PrefilteredLobe* lobe, lobe_of(env, effects.lobes[j].exponent, effects));
+    if (is_shifted(effects, effects.lobes[j].exponent)) {
+      wide.push_back(single(WeightTable::lobe_slot(j), lobe->map));
+      wide.back().shifted = true;
+      continue;
+    }
     members.push_back({WeightTable::lobe_slot(j), &lobe->map});
   }
   std::stable_sort(members.begin(), members.end(),
@@ -71,6 +77,7 @@ Result<SceneMaps> scene_maps(const Scene& scene, const Effects& effects) {
     into.maps.push_back(resized(*member.map, into.size));
   }
   std::reverse(maps.lobes.begin(), maps.lobes.end());
+  maps.lobes.insert(maps.lobes.begin(), wide.begin(), wide.end());
   if (effects.mirror || effects.background == Background::kEnvironment) {
     if (env.mirror.map.size == 0) {
       return input_error(

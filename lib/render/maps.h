@@ -15,6 +15,7 @@ struct MapClass {
   int size = 0;
   std::vector<int> slots;     // of the weight table, ascending
   std::vector<CubeMap> maps;  // one for each slot
+  bool shifted = false;       // a single lobe, met by r + s n
 };
 
 struct SceneMaps {

@@ -54,6 +54,18 @@ vec3 W(int slot) {
   return texelFetch(weights, at, 0).rgb + t * texelFetch(weights, at + ivec2(1, 0), 0).rgb;
 }
 )";
+constexpr const char* kShift = R"(
+float S(int slot) {  // the light that a lobe gathers comes from r + S n
+  ivec2 at = ivec2(column + 2 * slot, row);
+  return texelFetch(weights, at, 0).a + t * texelFetch(weights, at + ivec2(1, 0), 0).a;
+}
+)";
+
+bool any_shifted(const Effects& effects) {
+  return effects.environment && std::any_of(effects.lobes.begin(), effects.lobes.end(), [&](const auto& use) {
+           return is_shifted(effects, use.exponent);
+         });
+}
 
 std::string row_of_view(const Effects& effects) {
   if (!effects.depends_on_view()) return "  t = c;\n";
@@ -112,10 +124,12 @@ std::string reflection_function(const ReflectionOperator& op) {
 std::string lobe_functions(const Effects& effects) {
   std::string text;
   if (effects.environment) {
-    text += "\nvec3 lobes(vec3 r) {\n  vec3 sum = vec3(0.0);\n";
+    text += "\nvec3 lobes(vec3 r, vec3 n) {\n  vec3 sum = vec3(0.0);\n";
     for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
+      const bool shifted = is_shifted(effects, effects.lobes[j].exponent);
+      const std::string toward = shifted ? fmt::format("r + S({}) * n", WeightTable::lobe_slot(j)) : "r";
       text += fmt::format("  sum += {};\n", times(effects, fmt::format("W({})", WeightTable::lobe_slot(j)),
-                                                  fmt::format("textureLod(lobe_{}, r, 0.0).rgb", j)));
+                                                  fmt::format("textureLod(lobe_{}, {}, 0.0).rgb", j, toward)));
     }
     text += "  return sum;\n}\n";
   }
@@ -157,7 +171,7 @@ std::string environment_terms(const Effects& effects) {
                                                      fmt::format("textureLod({}, {}, 0.0).rgb", map, direction)));
   };
   if (effects.diffuse) term(WeightTable::diffuse_slot(), "diffuse", "n");
-  if (!effects.lobes.empty()) text += over_tilts(effects, "radiance", "lobes", "");
+  if (!effects.lobes.empty()) text += over_tilts(effects, "radiance", "lobes", ", n");
   if (effects.mirror) term(slots_of(effects).mirror_slot(), "mirror", "r");
   return text;
 }
@@ -236,6 +250,7 @@ std::string shading_fragment_shader(const Effects& effects, const ReflectionOper
   const bool lit_lobes = effects.lights > 0 && !effects.lobes.empty();
   std::string text = "#version 330 core\n// goniochrome-theory(7), RENDERING\n";
   text += uniforms(effects) + kRays + "layout(location = 0) out vec4 color;\n" + kWeight;
+  if (any_shifted(effects)) text += kShift;
   if (effects.reflection) text += reflection_function(op);
   if (lit_gloss(effects)) text += fresnel_function();
   if (lit_lobes) text += kCosPower;

@@ -217,6 +217,10 @@ cli::ToolSpec render_spec(RenderOptions& o, cli::CommonOptions& common) {
       {"error: de00_mean, de00_p95, de00_max", "CIEDE2000 of the checked pixels against the reference integrator"},
       {"error: checked_pixels, worst_x, worst_y, time_s", "how many, where it is worst, and how long the check took"},
       {"error: source", "the image that the reference integrator used"},
+      {"left_out: de00_mean, de00_p95, de00_max",
+       "with --check, how far the picture is from that of all effects, over all visible pixels"},
+      {"left_out: shading_ms, shading_all_ms, predicted_ms",
+       "the time of one sample of each pixel as planned, that with all effects, and what the plan expected"},
   };
   spec.see_also = {"fit-paint(1)", "prefilter-envmap(1)", "goniochrome-paint(5)", "goniochrome-theory(7)"};
   return spec;

@@ -12,6 +12,7 @@
 #include "plan_text.h"
 #include "render/aov.h"
 #include "render/display.h"
+#include "render/left_out.h"
 #include "render/reference.h"
 #include "render/renderer.h"
 #include "render/surface_layer.h"
@@ -165,6 +166,24 @@ void check(const RenderOptions& options, const Frame& frame, const Scene& scene,
   session.say(fmt::format("dE00 to the reference: mean {:.2f}, p95 {:.2f}, max {:.2f} at {},{} ({} pixels, {:.1f} s)",
                           error.de00_mean, error.de00_p95, error.de00_max, error.worst_x, error.worst_y,
                           error.checked_pixels, error.time_s));
+}
+
+// Beside the plan's estimates, what they are worth here: how far the picture is from that of all effects, and its time.
+Result<void> measure_plan(Renderer& renderer, const Scene& scene, const Plan& plan, const View& view, double white,
+                          cli::Session& session) {
+  GONIO_ASSIGN(const LeftOut measured, left_out(renderer, scene, plan, view, white));
+  const double predicted_ms = plan.engine == Engine::kCpu ? plan.cpu_ms : plan.gl_ms;
+  session.results()["left_out"] = {{"de00_mean", json_number(measured.de00_mean)},
+                                   {"de00_p95", json_number(measured.de00_p95)},
+                                   {"de00_max", json_number(measured.de00_max)},
+                                   {"shading_ms", measured.planned_ms},
+                                   {"shading_all_ms", measured.full_ms},
+                                   {"predicted_ms", predicted_ms / view.samples}};
+  session.say(fmt::format(
+      "left out: dE00 p95 {:.2f} to the picture of all effects (predicted {:.2f}); shading {:.1f} ms a sample of each "
+      "pixel (predicted {:.1f}), with all effects {:.1f}",
+      measured.de00_p95, plan.de00_p95, measured.planned_ms, predicted_ms / view.samples, measured.full_ms));
+  return {};
 }
 
 Attributes provenance(const cli::Session& session) {
@@ -414,6 +433,8 @@ Result<void> Shooting::shoot(const std::optional<Display>& display) {
       display ? ", " + display->name() : ""));
   if (options_.check > 0) {
     check(options_, frame_, stage_.scene, stage_.check, white_.luminance, session_);
+    GONIO_TRY(measure_plan(renderer, seen_scene(stage_.scene, looks_), plan_, view(shots_.back(), 1), white_.luminance,
+                           session_));
   }
   return {};
 }
