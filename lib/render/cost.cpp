@@ -32,11 +32,12 @@ double point_ns(const Effects& effects, Engine engine, double tilts) {
   return ns + static_cast<double>(effects.lights) * (c.light + spread * lobes * c.lit_lobe);
 }
 
-// Four texels around a place, each with its lobes, or the mean texel. Measured by BM_Texture.
+// Four texels around a place, each with its lobes, or the mean texel. Measured by BM_Texture: a point, a lobe of a texel,
+// its two fetches, its light.
 double textured_point_ns(const Effects& effects, int lobes) {
-  constexpr double kPoint = 60, kLobe = 20, kLitLobe = 8;
+  constexpr double kPoint = 30, kLobe = 6, kFetches = 10, kLit = 3;
   const std::uint32_t on = effects.texture_lobes & ((1U << lobes) - 1);
-  const double lobe = (effects.environment ? kLobe : 0) + static_cast<double>(effects.lights) * kLitLobe;
+  const double lobe = kLobe + (effects.environment ? kFetches : 0) + static_cast<double>(effects.lights) * kLit;
   return kPoint + (effects.texture ? 4 : 1) * std::popcount(on) * lobe;
 }
 
