@@ -222,7 +222,7 @@ TEST(BrdfFit, MedianNeverRisesWithALobeRealData) {
     const auto target = read_brdf_target(*file);
     ASSERT_TRUE(target.ok());
     double before = std::numeric_limits<double>::infinity(), objective = before;
-    for (int lobes = 1; lobes <= 24; ++lobes) {
+    for (const int lobes : {1, 2, 3, 4, 5, 24}) {
       const auto fit =
           PaintFitter(wide, {.method = FitMethod::kL2, .most_lobes = lobes, .steepest_deg = 60}).fit(*target);
       ASSERT_TRUE(fit.ok());

@@ -91,28 +91,27 @@ bool DualSimplex::load(const Matrix& m, const std::vector<double>& b) {
   return lobes_ > 0;
 }
 
-// All s basic, all y at -1 (or, where a column has negative entries and -1 is not feasible, at 0 between the bounds).
+// All s basic, y at -1; between the bounds, at 0, where a sample has negative entries, which might make s negative. Were
+// all y at 0, every s would be too, and the search would stand on that one vertex for tens of thousands of pivots.
 void DualSimplex::start() {
   tableau_.assign(static_cast<std::size_t>(lobes_) * width_, 0.0);
   cost_.assign(width_, 0.0);
   place_.assign(width_, kLower);
   basis_.resize(lobes_), value_.resize(lobes_);
   std::copy(b_.begin(), b_.end(), cost_.begin());
-  bool feasible = true;
+  for (int j = 0; j < lobes_; ++j)
+    for (int i = 0; i < samples_; ++i)
+      if (a_[static_cast<std::size_t>(j) * samples_ + i] < 0) place_[i] = kMiddle;
   for (int j = 0; j < lobes_; ++j) {
     double sum = 0;
     for (int i = 0; i < samples_; ++i) {
       row(j)[i] = a_[static_cast<std::size_t>(j) * samples_ + i];
-      sum += row(j)[i];
+      if (place_[i] == kLower) sum += row(j)[i];
     }
     row(j)[samples_ + j] = 1;
     basis_[j] = samples_ + j, place_[samples_ + j] = kBasic;
     value_[j] = sum;
-    feasible &= sum >= 0;
   }
-  if (feasible) return;
-  std::fill(place_.begin(), place_.begin() + samples_, kMiddle);
-  std::fill(value_.begin(), value_.end(), 0.0);
 }
 
 // The variable whose move gains most (or, by Bland's rule, the first that gains), or -1 at the optimum.

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
 #include <coin/ClpSimplex.hpp>
+#include <cstdio>
 #include <map>
 #include <random>
 
@@ -182,6 +182,32 @@ TEST(HardCase, FitDegenerateLpWideColumnsFoolAutomaticScaling) {
                                   .ours = gap,
                                   .bound = 1e-11,
                                   .unit = "relative"});
+}
+
+// Lobes with weights for six views, and rows that ask neighboring views to differ little: entries of both signs.
+TEST(L1Fit, RowsOfBothSignsEndSoon) {
+  constexpr int kViews = 6, kLobes = 6, kData = 600, kAlike = 60;
+  std::mt19937_64 random(17);
+  std::uniform_real_distribution<double> unit(0, 1);
+  int most = 0;
+  for (int trial = 0; trial < 10; ++trial) {
+    Matrix m(kData + kAlike, kViews * kLobes);
+    std::vector<double> b(kData + kAlike, 0.0);
+    for (int i = 0; i < m.rows; ++i) {
+      const int view = i < kData ? static_cast<int>(random() % kViews) : i % (kViews - 1);
+      const double c = std::cos((10 + 90 * unit(random)) * M_PI / 180), weight = i < kData ? 1 : 0.1;
+      for (int j = 0; j < kLobes; ++j) {
+        m(i, view * kLobes + j) = weight * std::pow(std::max(c, 0.0), j == 0 ? 0 : std::pow(3, j - 1));
+        if (i >= kData) m(i, (view + 1) * kLobes + j) = -m(i, view * kLobes + j);
+      }
+      if (i < kData) b[i] = std::max(0.0, std::pow(std::max(c, 0.0), 5 + view) - 0.3 * unit(random));
+    }
+    const NonNegativeFit fit = l1_fit(m, b);
+    EXPECT_TRUE(fit.converged);
+    EXPECT_LE(fit.optimality_gap, 1e-12);
+    most = std::max(most, fit.iterations);
+  }
+  EXPECT_LE(most, kData);
 }
 
 TEST(L1Fit, IgnoresOutliersThatPullLeastSquares) {
