@@ -15,5 +15,8 @@ file(WRITE ${folder}/copyright
 string(TIMESTAMP now "%a, %d %b %Y %H:%M:%S +0000" UTC)
 file(WRITE ${folder}/changelog "${CPACK_PACKAGE_NAME} (${CPACK_PACKAGE_VERSION}) unstable; urgency=medium\n\n  * Version ${CPACK_PACKAGE_VERSION}.\n\n -- ${CPACK_PACKAGE_CONTACT}  ${now}\n")
 
+# Whoever builds with a umask of 002 has a tree that the group may write.
+execute_process(COMMAND chmod -R go-w ${share} COMMAND_ERROR_IS_FATAL ANY)
+
 file(GLOB pages ${share}/man/man*/*.[1-9])
 execute_process(COMMAND gzip -9nf ${folder}/changelog ${pages} COMMAND_ERROR_IS_FATAL ANY)

@@ -38,7 +38,8 @@ install(PROGRAMS ${PROJECT_SOURCE_DIR}/scripts/paint-book DESTINATION ${CMAKE_IN
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME goniochrome)
-set(CPACK_PACKAGE_CONTACT "The Goniochrome authors <goniochrome@example.org>")
+# The field has to hold an address; .invalid is the domain that says there is none (RFC 2606).
+set(CPACK_PACKAGE_CONTACT "The Goniochrome project <goniochrome@goniochrome.invalid>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "computer-aided color appearance design of effect paints")
 set(CPACK_PACKAGE_DESCRIPTION
     "Single-purpose tools that take a measured or designed goniochromatic paint\n(metallic, pearl, interference) to a picture under real HDR light and to\nthe aspecular Lab file that a formulation system mixes from.")
