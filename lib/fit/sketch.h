@@ -1,11 +1,15 @@
 // From an edited picture of a painted mesh back to the paint. [Shimizu2009] 3.7, goniochrome-theory(7), SKETCH FITTING.
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/result.h"
-#include "envmap/prefiltered.h"
+#include "base/vec3.h"
+#include "color/reflection.h"
 #include "fit/sketch_pixels.h"
 #include "paint/basis.h"
 #include "paint/paint.h"
@@ -42,11 +46,19 @@ SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, con
 // Seven lobes and the mirror: the basis of point light where none is named.
 Basis sketch_basis();
 
-// Any light of the buffers together with this environment: face, flop, travel and gloss by nonlinear search on the
-// renderer's own equations. Error: buffers without normals or rays.
-Result<SketchFit> sketch_environment(const SketchInput& input, const SketchPixels& pixels,
-                                     const PrefilteredEnvironment& env, const SketchLimits& limits,
-                                     bool with_differences);
+// What any light makes of the lobe model. The renderer's equations stand behind it.
+struct SketchLight {
+  Basis basis;
+  std::optional<ReflectionOperator> reflection;  // of light and paint, in place of the component-wise product
+  // The light of each part of the model with weight 1 (1/sr) at a place of the buffers, relative to white: K_D, then
+  // K_DD and K_G of every lobe, then the mirror.
+  std::function<void(std::uint32_t place, Vec3* columns)> shade;
+};
+std::size_t search_columns(const Basis& basis);
+
+// Face, flop, travel and gloss by nonlinear search under this light.
+SketchFit sketch_environment(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light,
+                             const SketchLimits& limits, bool with_differences);
 
 // The found paint as it is written: rows, face, flop, travel and gloss; a fallback is solid.
 Paint sketch_paint(const SketchFit& fit, const std::string& name);

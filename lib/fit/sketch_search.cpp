@@ -59,9 +59,18 @@ std::size_t search_columns(const Basis& basis) {
   return 2 * basis.exponents.size() + 2;
 }
 
-Rgb shown_light(const Vec3* columns, const std::vector<Rgb>& weights) {
+Rgb shown_light(const Vec3* columns, const std::vector<Rgb>& weights,
+                const std::optional<ReflectionOperator>& reflection) {
   Rgb sum;
   for (std::size_t k = 0; k < weights.size(); ++k) sum += weights[k] * columns[k];
+  if (!reflection) return sum;
+  std::array<Rgb, 3> pairs;  // light of channel d on weights of channel e
+  for (std::size_t k = 0; k < weights.size(); ++k)
+    for (int d = 0; d < 3; ++d) pairs[d] += columns[k][d] * weights[k];
+  sum = {};
+  for (int c = 0; c < 3; ++c)
+    for (int d = 0; d < 3; ++d)
+      for (int e = 0; e < 3; ++e) sum[c] += reflection->k[c][d][e] * pairs[d][e];
   return sum;
 }
 
@@ -92,7 +101,7 @@ std::vector<Rgb> LobeSearch::weights(const PaintFitter& fitter, const std::vecto
 
 void LobeSearch::residuals(const std::vector<Rgb>& w, std::vector<double>& out) const {
   for (std::size_t i = 0; i < target_.size(); ++i) {
-    const Rgb light = shown_light(&samples_.light[i * samples_.columns], w);
+    const Rgb light = shown_light(&samples_.light[i * samples_.columns], w, samples_.reflection);
     const Lab lab = paint_lab(samples_.display ? in_display_gamut(light) : light);
     out[3 * i] = lab.L - target_[i].L, out[3 * i + 1] = lab.a - target_[i].a, out[3 * i + 2] = lab.b - target_[i].b;
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fit/paint_fit.h"
+#include "fit/sketch.h"
 #include "fit/sketch_solve.h"
 
 namespace goniochrome {
@@ -14,10 +15,10 @@ struct SearchSamples {
   std::size_t columns = 0;  // K_D, then K_DD and K_G of every lobe of the basis, then the mirror
   std::vector<Vec3> light;  // `columns` for each sample
   std::vector<Rgb> seen;
-  std::vector<double> importance;  // of each sample; more than 0
-  bool display = false;            // seen on an sRGB display, whose gamut is then part of the picture
+  std::vector<double> importance;                     // of each sample; more than 0
+  std::optional<ReflectionOperator> reflection = {};  // as that of a SketchLight
+  bool display = false;  // seen on an sRGB display, whose gamut is then part of the picture
 };
-std::size_t search_columns(const Basis& basis);
 
 // A paint found: eight numbers (face, flop, travel, gloss), or ten (Lab at 15, 45 and 110 deg, gloss).
 struct FoundPaint {
@@ -60,6 +61,7 @@ class LobeSearch {
 };
 
 // The light that weights make of one sample's columns.
-Rgb shown_light(const Vec3* columns, const std::vector<Rgb>& weights);
+Rgb shown_light(const Vec3* columns, const std::vector<Rgb>& weights,
+                const std::optional<ReflectionOperator>& reflection);
 
 }  // namespace goniochrome

@@ -51,6 +51,16 @@ Result<void> take_lights(const std::string& text, AovFile& file) {
   return {};
 }
 
+Result<void> take_operator(const std::string& text, AovFile& file) {
+  if (text.empty()) return {};
+  GONIO_ASSIGN(const auto v, numbers(text, 27, file.path, "goniochrome:operator"));
+  std::size_t next = 0;
+  for (auto& matrix : file.reflection.k)
+    for (auto& row : matrix)
+      for (double& value : row) value = v[next++];
+  return {};
+}
+
 }  // namespace
 
 Result<int> AovFile::channel(const std::string& name) const {
@@ -84,6 +94,7 @@ Result<AovFile> read_aov_file(const std::string& path) {
   }
   GONIO_TRY(take_rays(attribute<std::string>(attributes, "goniochrome:rays", ""), file));
   GONIO_TRY(take_lights(attribute<std::string>(attributes, "goniochrome:lights", ""), file));
+  GONIO_TRY(take_operator(attribute<std::string>(attributes, "goniochrome:operator", ""), file));
   const auto parts = attribute<std::string>(attributes, "goniochrome:parts", "");
   const Json names = Json::parse(parts.empty() ? "[]" : parts, nullptr, false);
   for (const Json& name : names)

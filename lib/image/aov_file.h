@@ -6,6 +6,7 @@
 
 #include "base/result.h"
 #include "base/vec3.h"
+#include "color/reflection.h"
 #include "image/image.h"
 
 namespace goniochrome {
@@ -26,8 +27,9 @@ struct AovFile {
   bool has_rays = false;
   Vec3 corner, right, down;  // the ray through the point (x, y), pixels from the upper left: corner + x right + y down
   std::vector<std::string> parts;
-  std::string command;             // that made the file
-  std::vector<std::string> drawn;  // effects of the picture, by render-osmesa's names
+  std::string command;                                 // that made the file
+  std::vector<std::string> drawn;                      // effects of the picture, by render-osmesa's names
+  ReflectionOperator reflection = iso_rgb_operator();  // by which the effect "operator" was drawn
 
   // The channel's place in a pixel. Error: the file lacks it, with the command that makes it.
   Result<int> channel(const std::string& name) const;

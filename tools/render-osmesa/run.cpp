@@ -208,6 +208,15 @@ void describe_view(const RenderOptions& options, const Rays& rays, const std::ve
   attributes["goniochrome:environment"] = options.env;
 }
 
+// The 27 coefficients, the last index running fastest.
+std::string spelled(const ReflectionOperator& reflection) {
+  std::string all;
+  for (const auto& matrix : reflection.k)
+    for (const auto& row : matrix)
+      for (const double value : row) all += (all.empty() ? "" : ",") + shortest(value);
+  return all;
+}
+
 Result<void> write_exr_picture(const RenderOptions& options, const Request& request, const Shot& shot,
                                const Frame& frame, const Scene& scene, const Plan& plan, const DiffuseWhite& white,
                                double stops, const cli::Session& session) {
@@ -227,6 +236,7 @@ Result<void> write_exr_picture(const RenderOptions& options, const Request& requ
     part.type = PixelType::kFloat;
     part.attributes["goniochrome:aovLight"] = spelled(to_light);
     describe_view(options, frame.gbuffer->rays, scene.lights, part.attributes);
+    part.attributes["goniochrome:operator"] = spelled(scene.reflection);
     Json names = Json::array();
     for (const MeshPart& mesh_part : scene.mesh->parts) names.push_back(mesh_part.name);
     part.attributes["goniochrome:parts"] = names.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -408,6 +418,7 @@ Result<void> Shooting::shoot(const std::optional<Display>& display) {
   request_.plan.white_luminance = white_.luminance;
   request_.plan.tolerance_de00 = session_.common().tolerance;
   request_.plan.frames = static_cast<int>(shots_.size());
+  request_.plan.pixels = static_cast<double>(request_.size.width) * request_.size.height;
   session_.explain(explanation(stage_.mesh, stage_.dresses.front()));
   const double automatic = request_.png && white_.luminance > 0 ? -std::log2(white_.luminance) : 0;
   const double stops = request_.stops.value_or(automatic);

@@ -17,8 +17,10 @@ cli::ToolSpec sketch_fit_spec(SketchFitOptions& o, cli::CommonOptions& common) {
       "cosine "
       "lobes, or, where it explains the pixels better, the clamped quadratic whose travel is scanned. With --env, the "
       "light is an environment: face, flop, travel and gloss are searched with the renderer's own equations on the "
-      "buffers, without drawing again. That search knows diffuse light, lobes and gloss alone: render picture and "
-      "buffers with --effects all,-fresnel,-horizon,-operator, or be warned.",
+      "buffers, without drawing again, and with the effects that were drawn: Fresnel reflectance, the horizon "
+      "and the operator of colored light. Brushed paint, travel of color maps and textures it does not know; it warns "
+      "where "
+      "the buffers have them.",
       "The picture may be of any format. Whole numbers (PNG, JPEG, TIFF) are what a display shows: sRGB, or what an "
       "embedded profile says, after the view and the exposure of render-osmesa; floats (EXR) are light. Pixels are "
       "left "

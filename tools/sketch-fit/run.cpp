@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "fit/sketch.h"
 #include "paint/xml.h"
+#include "render/sketch_light.h"
 #include "residual.h"
 
 namespace goniochrome {
@@ -47,12 +48,11 @@ Result<void> check_light(const SketchFitOptions& options, const AovFile& buffers
 // What an environment's picture shows and the search does not know.
 void warn_of_effects(const AovFile& buffers, cli::Session& session) {
   std::string unknown;
-  for (const char* effect : {"fresnel", "horizon", "operator", "anisotropy"})
-    if (std::ranges::find(buffers.drawn, effect) != buffers.drawn.end()) unknown += std::string(",-") + effect;
+  for (const std::string& effect : effects_without_light(buffers)) unknown += ",-" + effect;
   if (!unknown.empty())
     session.warn(
         fmt::format("{} was drawn with effects that the search does not know, and the paint will be off: render "
-                    "it with --effects all{}",
+                    "it with --effects auto{}",
                     buffers.path, unknown));
 }
 
@@ -211,7 +211,8 @@ Result<cli::Verdict> run_sketch_fit(const SketchFitOptions& options, cli::Sessio
   const bool environment = !options.env.empty();
   SketchFit fit;
   if (environment) {
-    GONIO_ASSIGN(fit, sketch_environment(input, pixels, material.env, limits, differences));
+    GONIO_ASSIGN(const SketchLight light, sketch_light(material.buffers, material.env));
+    fit = sketch_environment(input, pixels, light, limits, differences);
   } else {
     fit = sketch_point(input, pixels, material.basis, limits, differences);
   }

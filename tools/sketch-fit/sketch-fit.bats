@@ -14,7 +14,7 @@ setup_file() {
 </paints>
 EOF
   fit-paint -q --basis "$TESTDATA/b7.basis.xml" designed.xml -o fitted.xml
-  scene="--mesh $TESTDATA/speed-shape.obj --light 0,20 --size 320x200 --samples 1 --effects all"
+  scene="--mesh $TESTDATA/speed-shape.obj --light 0,20 --size 320x200 --samples 1"
   for paint in steel ruby; do
     render-osmesa -q $scene --paint "fitted.xml#$paint" --aov normal,aspecular,lambert,mask,part -o $paint.exr
     render-osmesa -q $scene --paint "fitted.xml#$paint" -o $paint.png
@@ -88,20 +88,34 @@ fit() { sketch-fit -q -o found.xml --report r.json "$@"; }
   prefilter-envmap -q small.exr --basis "$TESTDATA/b7.basis.xml" -o small.env.exr
   scene="--mesh $TESTDATA/speed-shape.obj --env small.env.exr --size 240x150 --samples 1"
   render-osmesa -q $scene --paint fitted.xml#satin --aov normal,aspecular,lambert,mask,part -o env.exr
-  run sketch-fit -i env.exr -b env.exr --env small.env.exr -o found.xml
-  [[ $output == *"effects that the search does not know"*"--effects all,-fresnel,-horizon"* ]]
-  scene="$scene --effects all,-fresnel,-horizon,-operator"
-  render-osmesa -q $scene --paint fitted.xml#satin --aov normal,aspecular,lambert,mask,part -o env.exr
   run sketch-fit -i env.exr -b env.exr -o found.xml
   [ "$status" -eq 2 ]
   [[ $output == *"env.exr was rendered under the environment small.env.exr: give --env small.env.exr"* ]]
-  fit -i env.exr -b env.exr --env small.env.exr
-  [ "$(result status)" = fitted ]
-  [ "$(result mode)" = environment ]
-  [ "$(result gloss_from)" = search ]
-  below "$(distance "$(lab 45as15 found.xml)" "80 5 10")" 1
-  below "$(distance "$(lab 45as110 found.xml)" "30 2 4")" 1
-  awk -v g="$(result gloss_60_gu)" 'BEGIN { exit !(28 < g && g < 33) }'
+  exrheader env.exr | grep -q '"effect":"fresnel","needed":true.*"decision":"drawn"'
+  for effects in auto all all,-fresnel,-horizon,-operator; do
+    render-osmesa -q $scene --paint fitted.xml#satin --effects $effects --aov normal,aspecular,lambert,mask,part -o env.exr
+    run sketch-fit -i env.exr -b env.exr --env small.env.exr -o found.xml --report r.json
+    [ "$status" -eq 0 ]
+    [[ $output != *warning* ]] || { echo "$effects: $output"; return 1; }
+    [ "$(result status)" = fitted ]
+    [ "$(result mode)" = environment ]
+    [ "$(result gloss_from)" = search ]
+    below "$(distance "$(lab 45as15 found.xml)" "80 5 10")" 1
+    below "$(distance "$(lab 45as110 found.xml)" "30 2 4")" 1
+    awk -v g="$(result gloss_60_gu)" 'BEGIN { exit !(28 < g && g < 33) }'
+  done
+}
+
+@test "an effect that the search does not know is told with its remedy" {
+  oiiotool "$TESTDATA/studio.exr" --resize:filter=box 64x32 -o coarse.exr
+  prefilter-envmap -q coarse.exr --exponents 4,16,64 -o coarse.env.exr
+  echo '<basis xmlns="urn:goniochrome:basis:1" name="b3"><exponent>4</exponent><exponent>16</exponent><exponent>64</exponent></basis>' >b3.xml
+  fit-paint -q --basis b3.xml designed.xml -o b3-fitted.xml
+  render-osmesa -q --mesh "$TESTDATA/speed-shape.obj" --env coarse.env.exr --size 120x75 --samples 1 \
+    --paint b3-fitted.xml#satin --texture "Hood=$TESTDATA/wood.sbrdf.exr" --aov normal,aspecular,lambert,mask,part -o wood.exr
+  run sketch-fit -i wood.exr -b wood.exr --env coarse.env.exr -o found.xml
+  [ "$status" -eq 0 ]
+  [[ $output == *"wood.exr was drawn with effects that the search does not know"*"--effects auto,-texture"* ]] || { echo "$output"; return 1; }
 }
 
 @test "every format: 16 bits, gray, alpha" {

@@ -1,0 +1,139 @@
+#include "render/sketch_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "brdf/lobe_model.h"
+#include "render/effects.h"
+
+namespace goniochrome {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kGloss_deg = 60;  // of the reading that a paint found carries
+
+bool drawn(const AovFile& buffers, const char* effect) {
+  return std::ranges::find(buffers.drawn, effect) != buffers.drawn.end();
+}
+
+Basis basis_of(const PrefilteredEnvironment& env) {
+  Basis basis;
+  basis.name = "environment";
+  for (const PrefilteredLobe& lobe : env.lobes) basis.exponents.push_back(lobe.exponent);
+  basis.mirror = env.mirror.map.size > 0;
+  return basis;
+}
+
+// One paint for each column, with weight 1 in it and nowhere else. All have all lobes, so that each of them is drawn.
+std::vector<LobeFit> unit_paints(const Basis& basis) {
+  LobeFit blank;
+  for (const double exponent : basis.exponents) blank.lobes.push_back({exponent, {}, {}});
+  blank.lobes.push_back({kMirrorExponent, {}, {}});
+  std::vector<LobeFit> paints(search_columns(basis), blank);
+  const Rgb one{1, 1, 1};
+  paints.front().diffuse = one;
+  for (std::size_t j = 0; j < basis.exponents.size(); ++j)
+    paints[1 + 2 * j].lobes[j].directional_diffuse = one, paints[2 + 2 * j].lobes[j].gloss = one;
+  if (basis.mirror) paints.back().lobes.back().gloss = one;
+  return paints;
+}
+
+class Shading {
+ public:
+  Shading(const AovFile& buffers, const PrefilteredEnvironment& env, int normal)
+      : buffers_(buffers), env_(env), basis_(basis_of(env)), normal_(normal) {
+    Scene scene;
+    scene.paints = unit_paints(basis_);
+    scene.env = &env;
+    for (const AovLight& light : buffers.lights) scene.lights.push_back({light.direction, light.white});
+    scene.gloss_deg.assign(scene.paints.size(), kGloss_deg);
+    Effects effects = effects_of(scene);
+    effects.fresnel = fresnel_ = drawn(buffers, "fresnel");
+    effects.horizon = drawn(buffers, "horizon");
+    table_ = weight_table(scene, effects);
+  }
+
+  const Basis& basis() const { return basis_; }
+
+  void shade(std::uint32_t place, Vec3* column) const {
+    const int width = buffers_.image.width;
+    const float* pixel = &buffers_.image.data[static_cast<std::size_t>(place) * buffers_.image.channels + normal_];
+    const Vec3 n{pixel[0], pixel[1], pixel[2]};
+    const Vec3 wo = buffers_.to_viewer(static_cast<int>(place % width), static_cast<int>(place / width));
+    const View view{n, wo, 2 * dot(n, wo) * n - wo, std::clamp(dot(n, wo), 0.0, 1.0)};
+    const double scale = 1 / buffers_.white_luminance;
+    const int last = static_cast<int>(search_columns(basis_)) - 1;
+    column[0] = scale * weight(0, WeightTable::diffuse_slot(), view.cos_o, 0) * bilinear(env_.diffuse.map, n);
+    for (int k = 1; k < last; ++k) {
+      const auto lobe = static_cast<std::size_t>((k - 1) / 2);
+      const int slot = WeightTable::lobe_slot(lobe);
+      const Vec3 toward = view.mirrored + weight(k, slot, view.cos_o, 3) * n;
+      column[k] = scale * weight(k, slot, view.cos_o, 0) * bilinear(env_.lobes[lobe].map, toward);
+    }
+    column[last] = {};
+    if (basis_.mirror)
+      column[last] =
+          scale * weight(last, table_.mirror_slot(), view.cos_o, 0) * bilinear(env_.mirror.map, view.mirrored);
+    for (const AovLight& light : buffers_.lights) add_light(light, view, scale, column);
+  }
+
+ private:
+  struct View {
+    Vec3 normal, to_viewer, mirrored;
+    double cos_o;
+  };
+
+  // A slot's channel of the paint of this number; 3 is how far its lobe looks toward the normal.
+  double weight(int paint, int slot, double cos_o, int channel) const {
+    const double x = table_.segments > 1 ? std::sqrt(cos_o) * table_.segments : cos_o;
+    const int segment = std::min(static_cast<int>(x), table_.segments - 1);
+    const float* w = table_.at(paint, segment, slot);
+    return w[channel] + w[4 + channel] * (x - segment);
+  }
+
+  void add_light(const AovLight& light, const View& view, double scale, Vec3* column) const {
+    const double cos_i = dot(view.normal, light.direction), c = view.cos_o;
+    if (cos_i <= 0) return;
+    const Vec3 apart = view.mirrored - light.direction, white = scale * kPi * light.white;
+    const double cos_half = std::sqrt(0.5 + 0.5 * dot(light.direction, view.to_viewer));
+    const double coat = fresnel_ ? fresnel_dielectric(cos_half, kCoatIndex) : 1;
+    column[0] += cos_i * weight(0, table_.light_slot(), c, 0) * white;
+    for (std::size_t j = 0; j < basis_.exponents.size(); ++j) {
+      const double power = cos_power_from_versine(0.5 * dot(apart, apart), basis_.exponents[j]);
+      const int flake = static_cast<int>(1 + 2 * j), gloss = flake + 1;
+      column[flake] += cos_i * power * weight(flake, table_.directional_diffuse_slot(j), c, 0) * white;
+      column[gloss] += coat * power * weight(gloss, table_.gloss_slot(j), c, 0) * white;
+    }
+  }
+
+  const AovFile& buffers_;
+  const PrefilteredEnvironment& env_;
+  Basis basis_;
+  int normal_;
+  bool fresnel_ = false;
+  WeightTable table_;
+};
+
+}  // namespace
+
+Result<SketchLight> sketch_light(const AovFile& buffers, const PrefilteredEnvironment& env) {
+  GONIO_ASSIGN(const int normal, buffers.channel("normal.X"));
+  if (!buffers.has_rays)
+    return input_error("{}: its header lacks goniochrome:rays: render the buffers again", buffers.path);
+  const auto shading = std::make_shared<const Shading>(buffers, env, normal);
+  SketchLight light{shading->basis(), {}, [shading](std::uint32_t place, Vec3* out) { shading->shade(place, out); }};
+  if (drawn(buffers, "operator")) light.reflection = buffers.reflection;
+  return light;
+}
+
+std::vector<std::string> effects_without_light(const AovFile& buffers) {
+  std::vector<std::string> missing;
+  for (const char* effect : {"anisotropy", "travel", "texture"})
+    if (drawn(buffers, effect)) missing.emplace_back(effect);
+  return missing;
+}
+
+}  // namespace goniochrome
