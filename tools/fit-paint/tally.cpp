@@ -122,6 +122,7 @@ void Tally::add(const Paint& paint, const PaintFit& fit) {
   for (const double floor : r.floor.largest_de00) floors_.add(floor);
   if (r.views) sum_gain_ += r.views->gain_de00();
   if (r.brdf) ++measured_, sum_relative_ += r.brdf->relative_error_median;
+  if (r.brdf && r.brdf->from_five_angles) ++predicted_, sum_five_ += r.brdf->from_five_angles->by_flake;
   if (!options_.common.report.empty()) session_.results()["paints"].push_back(report_of(paint, fit));
 }
 
@@ -145,6 +146,9 @@ std::string Tally::summary() const {
   if (measured_ > 0)
     line += fmt::format(", {} measured BRDFs with a median relative error of {:.3f}", measured_,
                         sum_relative_ / static_cast<double>(measured_));
+  if (predicted_ > 0)
+    line +=
+        fmt::format(", five angles predict those to 60 deg with {:.3f}", sum_five_ / static_cast<double>(predicted_));
   if (!options_.views.empty())
     line +=
         fmt::format(", the views gain dE00 {:.2f}", sum_gain_ / static_cast<double>(std::max<std::size_t>(fitted_, 1)));
