@@ -60,7 +60,7 @@ setup() {
   cp -r one again
   sed -i "s|$PWD/one|$PWD/again|g" again/plan.json
   batch shard again 0
-  [ "$(wc -l <again/shards/0000/log)" -eq 1 ]
+  [ "$(cat again/shards/0000/log)" = $'begun\nfinished' ]
   rm again/shards/0000/done.json
   rm again/pictures/*/000003.png
   touch -d 2000-01-01 again/pictures/*/*.png
@@ -73,7 +73,12 @@ setup() {
 @test "the plan tells its estimate, the merged report the time beside it" {
   run batch plan library.paints.xml --out told --env --explain --basis "$TESTDATA/b5.basis.xml"
   [ "$status" -eq 0 ]
-  [[ $output == *'estimate: '*' s of work'* ]]
+  [[ ${lines[0]} == 'plan: library.paints.xml, about 10 paints' ]]
+  [[ $output == *'in shards: '*' s of work'*'measured: '*'estimate: '*' s of work'* ]]
+  # What is announced stands there before anything is prepared, so also before what fails.
+  run batch plan nowhere.xml --out nothing --env --explain
+  [ "$status" -eq 3 ]
+  [[ ${lines[0]} == 'plan: nowhere.xml, about 0 paints' ]]
   grep -qE 'time in tools: [0-9.]+ s, estimated [0-9.]+ s' one/said
 }
 

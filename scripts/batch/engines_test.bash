@@ -10,7 +10,7 @@ local_run() {
 }
 
 slurm_run() {
-  timeout 240 snakemake -s "$BATS_TEST_DIRNAME/Snakefile" --config "out=$1" --profile "$BATS_TEST_DIRNAME/slurm" --nolock
+  timeout -k 5 200 snakemake -s "$BATS_TEST_DIRNAME/Snakefile" --config "out=$1" --profile "$BATS_TEST_DIRNAME/slurm" --nolock
 }
 
 # plan OUT [N]: shards of N paints, small pictures.

@@ -72,6 +72,9 @@ def book(out, chapter):
     numbers = [number for number in range(first, min(last, plan["paints"])) if number not in skipped]
     places = list(library.places(out / "fitted.paints.xml"))
     page = out / f"book-{chapter + 1:03d}.html"
+    if not numbers:
+        files.write(page, f"<!DOCTYPE html><title>Paints {first + 1} to {min(last, plan['paints'])}</title><p>No paint of this chapter could be drawn; see report.json.\n")
+        return
     with tempfile.TemporaryDirectory(prefix="paint-batch-") as scratch:
         folder = pathlib.Path(scratch)
         paints = [library.paints_at(out / "fitted.paints.xml", places[n], places[n])[0] for n in numbers]

@@ -118,4 +118,6 @@ def run_shard(out, number):
             rows = work.rows(shard["first"], paints, pathlib.Path(scratch))
         files.write(folder / "fitted.txt", "".join(f"  {fitted}\n" for _, fitted in rows))
         files.write_json(folder / "rows.json", [row for row, _ in rows])
+        with open(folder / "log", "a", encoding="utf-8") as log:
+            print("finished", file=log)
         files.write_json(folder / "done.json", {"tools_s": work.tools.seconds})
