@@ -18,6 +18,7 @@ STUDIES = {
     "prefilter": "prefiltering: tolerance and size against the exact sum",
     "fit": "fitting: method, lobes and target against the measured colors",
     "render": "rendering: effects and engine against the reference integrator",
+    "scenes": "ten scenes: what the plan leaves out, and what it says that each effect is worth",
     "search": "search: library size, tree and scan against brute force",
     "growth": "growth of times with probes, maps, paints, pixels and lights, and where it is steepest",
     "chain": "the whole chain: where the error of a picture comes from, and what it costs to lower it",

@@ -1,0 +1,104 @@
+"""Ten scenes: what the plan leaves out, whether that is seen, what it saves; and what it says that each effect is worth."""
+
+import math
+import os
+import pathlib
+
+from make_testdata import exr
+
+from .study import Study
+
+SIZE = ("--size", "480x270")
+
+# paint, what it wears, light; a light is a probe (testdata's, made here, or measured where there are measurements) or the words of --light
+SCENES = (("signal_red", "fitted", "overcast"), ("signal_white", "fitted", "studio"), ("navy_blue", "fitted", "sun"),
+          ("silver_black_flop", "fitted", "overcast"), ("candy_red", "fitted", "sunset"), ("candy_red", "fitted", "40,50,0.2,0.6,1"),
+          ("blue_to_purple", "views", "studio"), ("cyan_to_violet", "views", "sunset"),
+          ("silver_fine", "brushed", "40,50,1,0.5,0.2"), ("jet_black", "texture", "studio"))
+QUICK = (0, 4, 8)
+
+# Each effect in the scene (of the list above) where it matters.
+MATTERS = {"diffuse": 0, "lobes": 3, "gloss": 3, "mirror": 2, "fresnel": 2, "horizon": 3, "travel": 7, "operator": 4, "anisotropy": 8, "lights": 8}
+MEASURED = {"overcast": "uffizi.hdr", "studio": "studio_small_03_1k.hdr", "sunset": "venice_sunset_1k.hdr"}
+
+
+def sky(zenith, horizon, ground, width=256):
+    """A lat-long sky between two colors over even ground, after CIE's overcast sky: (1 + 2 sin e)/3 of the zenith."""
+    rows = []
+    for row in range(width // 2):
+        up = exr.direction(0.5, row + 0.5, width, width // 2)[1]
+        share = (1 + 2 * up) / 3
+        texel = tuple(share * z + (1 - share) * h for z, h in zip(zenith, horizon)) if up > 0 else ground
+        rows.append([texel] * width)
+    return exr.exr_file(rows, exr.FLOAT, "an even sky between two colors")
+
+
+MADE = {"overcast": ((1, 1, 1), (0.25, 0.25, 0.25), (0.2, 0.2, 0.2)), "sunset": ((0.2, 0.3, 0.6), (2.5, 0.9, 0.3), (0.15, 0.1, 0.06))}
+
+
+class Stage:
+    """The lights and paints of the scenes, each made once."""
+
+    def __init__(self, run):
+        self.run, self.lights = run, {}
+        basis = ("--basis", run.data / "b7.basis.xml")
+        run.tool("fit-paint", *basis, run.paints, "-o", run.work / "fitted.xml")
+        run.tool("fit-paint", *basis, "--views", "0,30,45,60,75", run.paints, "-o", run.work / "views.xml")
+        brushed = (run.work / "fitted.xml").read_text().replace("<lobes ", '<anisotropy alphaX="0.1" alphaY="0.3"/><lobes ')
+        (run.work / "brushed.xml").write_text(brushed)
+
+    def probe(self, name):
+        folder = os.environ.get("GONIOCHROME_DATA")
+        if folder and name in MEASURED:
+            return pathlib.Path(folder) / "probes" / MEASURED[name]
+        if name in MADE:
+            path = self.run.work / f"{name}.exr"
+            path.write_bytes(sky(*MADE[name]))
+            return path
+        return self.run.data / {"studio": "studio.exr", "sun": "outdoor.exr"}[name]
+
+    def light(self, name):
+        if name[0].isdigit():
+            return ("--light", name)
+        if name not in self.lights:
+            source, env = self.probe(name), self.run.work / f"{name}.env.exr"
+            self.run.tool("prefilter-envmap", source, "--basis", self.run.data / "b7.basis.xml", "--verify", 0, "-o", env)
+            self.lights[name] = ("--env", env, "--check-source", source)
+        return self.lights[name]
+
+    def picture(self, scene, effects):
+        """The report of a scene with these effects, checked."""
+        paint, wears, light = scene
+        words = ["--mesh", self.run.mesh, *SIZE, "--effects", effects, *self.light(light), "--check", 40 if self.run.quick else 100]
+        if wears == "texture":
+            wears = "fitted"
+            words += ["--texture", f"Hood={self.run.data / 'nameplate.sbrdf.exr'}"]
+        words += ["--paint", f"{self.run.work / wears}.xml#{paint}", "-o", self.run.work / "picture.exr"]
+        return self.run.tool("render-osmesa", *words)[0]
+
+
+def scene_row(stage, scene):
+    planned, full = stage.picture(scene, "auto"), stage.picture(scene, "all")
+    gone = [row["effect"] for row in planned["plan"] if row["decision"] == "dropped"]
+    left = planned["left_out"]
+    return ("{} ({}), {}".format(*scene), " ".join(gone) or "-", planned["plan_de00_p95"], left["de00_p95"], planned["error"]["de00_p95"], full["error"]["de00_p95"],
+            left["shading_ms"], left["shading_all_ms"], left["predicted_ms"], planned["plan_ms"])
+
+
+def effect_row(stage, effect, scene):
+    without = stage.picture(scene, f"all,-{effect}")
+    truth = [row["truth_de00_p95"] for row in without["plan"] if row["effect"] == effect and row.get("truth_de00_p95") is not None]
+    return (effect, "{} ({}), {}".format(*scene), without["plan_de00_p95"], without["left_out"]["de00_p95"], without["error"]["de00_p95"], truth[0] if truth else math.nan)
+
+
+def study(run):
+    stage = Stage(run)
+    scenes = [scene_row(stage, SCENES[i]) for i in (QUICK if run.quick else range(len(SCENES)))]
+    effects = [effect_row(stage, effect, SCENES[i]) for effect, i in MATTERS.items() if not run.quick or i in QUICK]
+    within = all(predicted / 2 < checked < 2 * predicted for _, _, predicted, _, checked, _ in effects)
+    run.say(f"scenes: {sum(1 for r in scenes if r[3] <= 0.5)} of {len(scenes)} within the tolerance; every effect {'' if within else 'NOT '}within a factor 2")
+    return Study("Scenes", "What --effects auto leaves out of ten scenes at a tolerance of 0.5 dE00, and how far the picture is then from that of all effects and from the exact integral; "
+                 "and, for every effect, what the plan says that it is worth beside the error of the picture without it. "
+                 "All differences are 95th percentiles of CIEDE2000; those to the exact integral are of random pixels, the others of all.", [],
+                 [("What is left out", ("scene", "left out", "predicted", "to all effects", "check, planned", "check, all", "ms", "ms, all", "ms, predicted", "planning (ms)"), scenes),
+                  ("Each effect forced off where it matters", ("effect", "scene", "predicted", "to all effects", "check", "exact, alone"), effects)])
