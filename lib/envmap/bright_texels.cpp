@@ -32,9 +32,17 @@ float limit_of(const Environment& env, int most) {
   return above[kept];
 }
 
+// `env` with the mean of the others in the place of its bright texels: a plateau at the limit would leave edges as steep
+// as the limit, which is high where a sun makes the mean.
+Environment without_bright(const Environment& env, int most) {
+  const float limit = limit_of(env, most);
+  const Vec3 others = env.clipped(limit, 0).flux();
+  return env.clipped(limit, static_cast<float>(std::max({others.x, others.y, others.z}) / (4 * kPi)));
+}
+
 }  // namespace
 
-BrightTexels::BrightTexels(const Environment& env, int most) : rest_(env.clipped(limit_of(env, most))) {
+BrightTexels::BrightTexels(const Environment& env, int most) : rest_(without_bright(env, most)) {
   gauss_.per_texel = 4;
   for (int row = 0; row < env.height(); ++row)
     for (int column = 0; column < env.width(); ++column) {

@@ -8,7 +8,8 @@
 
 namespace goniochrome {
 
-// A map split in two: `rest` holds every texel up to a limit, the bright texels what exceeds it.
+// A map split in two: `rest` holds the mean of the others in the place of every bright texel, in its color, and the
+// bright texels what exceeds that.
 class BrightTexels {
  public:
   // Splits off at most `most` texels, those above 50 times the mean.

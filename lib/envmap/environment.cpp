@@ -8,13 +8,38 @@
 
 namespace goniochrome {
 
-Environment Environment::clipped(float most) const {
+// A cube with texel centers on its edges has cells of 2/(N-1), half as wide at the edges of a face: on a grid of
+// 2(N-1) equal cells its cell i covers 2i-1 and 2i. In every other layout texels are cut where they are.
+Environment Environment::cut_to(double most_rad) const {
+  const double widest = grid_.largest_texel_rad();
+  if (widest <= most_rad) return *this;
+  const bool on_edges = layout() == Layout::kCubeEdges;
+  const int parts = static_cast<int>(std::ceil((on_edges ? widest / 2 : widest) / most_rad));
+  const auto whole = [&](int part) { return on_edges ? (part / parts + 1) / 2 : part / parts; };
+  const int faces = grid_.is_cube() ? 6 : 1, old_rows = height() / faces;
+  const int columns = parts * (on_edges ? 2 * (width() - 1) : width());
+  const int rows = parts * (on_edges ? 2 * (old_rows - 1) : old_rows);
+  Environment fine;
+  fine.grid_ = SphereGrid(on_edges ? Layout::kCube : layout(), columns, faces * rows);
+  fine.source_ = source_;
+  fine.replaced_ = replaced_;
+  fine.rgb_.reserve(3 * static_cast<std::size_t>(columns) * static_cast<std::size_t>(faces * rows));
+  for (int face = 0; face < faces; ++face)
+    for (int row = 0; row < rows; ++row)
+      for (int column = 0; column < columns; ++column) {
+        const float* rgb = radiance(whole(column), face * old_rows + whole(row));
+        fine.rgb_.insert(fine.rgb_.end(), rgb, rgb + 3);
+      }
+  return fine;
+}
+
+Environment Environment::clipped(float most, float to) const {
   Environment rest = *this;
   for (std::size_t i = 0; i < rest.rgb_.size(); i += 3) {
     float* rgb = &rest.rgb_[i];
     const float largest = std::max({rgb[0], rgb[1], rgb[2]});
     if (largest > most)
-      for (int c = 0; c < 3; ++c) rgb[c] *= most / largest;
+      for (int c = 0; c < 3; ++c) rgb[c] *= to / largest;
   }
   return rest;
 }

@@ -41,8 +41,11 @@ class Environment {
   static Environment from_cube(const CubeMap& map, const std::string& name);
   static Result<Environment> from_cube_edges(Image strip, BadPixels bad_pixels, const std::string& name);
 
-  // The same map with every texel scaled so that no channel exceeds `most`.
-  Environment clipped(float most) const;
+  // The same radiance on finer texels, none wider or higher than `most_rad`: each texel is cut into equal parts, so
+  // nothing changes on the sphere. What is that fine already comes back as it is.
+  Environment cut_to(double most_rad) const;
+  // The same map, every texel above `most` in some channel scaled so that its largest is `to`.
+  Environment clipped(float most, float to) const;
   // With every value times `factor`. Error: the first texel whose value a float cannot hold.
   Result<Environment> scaled(double factor) const;
   // With black in the place of every texel whose center, turned by `turn`, lies below the elevation (radians).

@@ -297,6 +297,32 @@ TEST_F(EnvironmentFile, HardCase_PrefilterBadShapesAreRefusedAndOddOnesRead) {
               HasSubstr("sea-px.exr"));
 }
 
+TEST_F(EnvironmentFile, finer_texels_show_the_same_radiance_everywhere) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> unit(0, 1);
+  std::normal_distribution<double> normal;
+  const auto noise = [&](int width, int height) {
+    return filled(width, height, [&](double, double) { return Vec3{unit(random), unit(random), unit(random)}; });
+  };
+  CubeMap cube(5);
+  cube.texels = noise(5, 30).data;
+  for (const Environment& env : {Environment::from_lat_long(noise(12, 6), BadPixels::kError, "flat").value(),
+                                 Environment::from_cube(cube, "cube"),
+                                 Environment::from_cube_edges(noise(5, 30), BadPixels::kError, "edges").value(),
+                                 Environment::from_angular(noise(9, 9), BadPixels::kError, "probe").value()}) {
+    const Environment fine = env.cut_to(0.06);
+    EXPECT_LE(fine.grid().largest_texel_rad(), 0.06 * (1 + 1e-12));
+    EXPECT_EQ(fine.cut_to(0.06).values(), fine.values());
+    for (int i = 0; i < 1000; ++i) {
+      const Vec3 d = normalized({normal(random), normal(random), normal(random)});
+      for (int c = 0; c < 3; ++c) ASSERT_EQ(fine.lookup(d)[c], env.lookup(d)[c]) << int(env.layout());
+    }
+    // The rim of a probe is summed in equal parts: to 1/32 of the texels that it cuts, whose density is all but zero.
+    const double rounding = env.layout() == Layout::kAngular ? 1e-3 : 1e-12;
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(fine.flux()[c] / env.flux()[c], 1, rounding) << int(env.layout());
+  }
+}
+
 TEST_F(EnvironmentFile, faces_of_different_size_are_refused) {
   std::vector<std::string> paths;
   for (int f = 0; f < 6; ++f) {

@@ -12,6 +12,7 @@
 
 #include "base/parallel.h"
 #include "envmap/fft.h"
+#include "envmap/gauss_rule.h"
 #include "envmap/legendre.h"
 
 // On the full circle of the polar angle a function of degree L is a trigonometric polynomial of degree L in both
@@ -335,48 +336,24 @@ struct Points {
   std::vector<double> theta, phi, weight[3];
 };
 
-// A rule over a texel: `pieces` x `pieces` equal parts of it with two to four Gauss points a side.
-struct TexelRule {
-  std::vector<double> at, weight;  // on 0..1
-};
-
-TexelRule texel_rule(std::size_t points, int pieces) {
-  constexpr std::array<std::array<double, 4>, 3> kAt = {
-      {{.21132486540518713, .78867513459481287},
-       {.1127016653792583, .5, .8872983346207417},
-       {.06943184420297371, .33000947820757187, .66999052179242813, .93056815579702629}}};
-  constexpr std::array<std::array<double, 4>, 3> kWeight = {
-      {{.5, .5},
-       {5.0 / 18, 8.0 / 18, 5.0 / 18},
-       {.17392742256872693, .32607257743127307, .32607257743127307, .17392742256872693}}};
-  TexelRule rule;
-  for (int piece = 0; piece < pieces; ++piece)
-    for (std::size_t i = 0; i < points; ++i) {
-      rule.at.push_back((piece + kAt[points - 2][i]) / pieces);
-      rule.weight.push_back(kWeight[points - 2][i] / pieces);
-    }
-  return rule;
-}
-
 // n points across h err by (l h)^2n / C_n at degree l, C = 4320, 2e6, 1.8e9: the fewest that keep k_l times that below
 // 1e-7.
-TexelRule rule_for(const std::vector<double>& k, double texel_rad) {
+GaussRule rule_for(const std::vector<double>& k, double texel_rad) {
   constexpr std::array<double, 3> kScale = {4320, 2e6, 1.8e9};
-  const auto error = [&](std::size_t points, int pieces) {
+  const auto error = [&](int points, int pieces) {
     double worst = 0;
     for (std::size_t l = 0; l < k.size(); ++l)
-      worst = std::max(worst, std::fabs(k[l]) * std::pow(static_cast<double>(l) * texel_rad / pieces,
-                                                         2.0 * static_cast<double>(points)));
-    return worst / kScale[points - 2];
+      worst = std::max(worst, std::fabs(k[l]) * std::pow(static_cast<double>(l) * texel_rad / pieces, 2.0 * points));
+    return worst / kScale[static_cast<std::size_t>(points) - 2];
   };
-  for (const std::size_t points : {2, 3, 4})
-    if (error(points, 1) < 1e-7) return texel_rule(points, 1);
+  for (const int points : {2, 3, 4})
+    if (error(points, 1) < 1e-7) return gauss_rule(points, 1);
   int pieces = 2;
   while (error(4, pieces) >= 1e-7) ++pieces;
-  return texel_rule(4, pieces);
+  return gauss_rule(4, pieces);
 }
 
-Points row_points(const Environment& env, int row, const TexelRule& rule) {
+Points row_points(const Environment& env, int row, const GaussRule& rule) {
   Points points;
   for (int column = 0; column < env.width(); ++column) {
     const float* rgb = env.radiance(column, row);
@@ -402,7 +379,7 @@ ScatteredMoments scattered_moments(const Environment& env, const std::vector<dou
   const Bump bump = make_bump(14);
   Grid grid = blank_grid(degree + 1, bump);
   const std::size_t fine = grid.columns, orders = static_cast<std::size_t>(degree) + 1;
-  const TexelRule rule = rule_for(k, env.largest_texel_rad());
+  const GaussRule rule = rule_for(k, env.largest_texel_rad());
   constexpr int kRowsAtATime = 64;  // points take memory
   for (int first = 0; first < env.height(); first += kRowsAtATime) {
     std::vector<Points> rows(static_cast<std::size_t>(std::min(kRowsAtATime, env.height() - first)));

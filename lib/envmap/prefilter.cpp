@@ -23,7 +23,7 @@ constexpr double kFloor = 1e-3;       // errors are relative to no less than thi
 constexpr int kMostDegree = 640;      // of harmonics: beyond, their grids take more memory than they save time
 constexpr int kWideDegree = 512;      // of the harmonics for lobes whose kernel bends at the horizon
 constexpr double kSharpestWide = 20;  // such lobes have exponents below this
-constexpr double kFlatTexel = 0.06;   // rad: on larger texels t is not linear enough for BrightTexels
+constexpr double kFlatTexel = 0.03;   // rad: larger texels are cut: t is not linear enough on them for BrightTexels
 constexpr int kMostBright = 1024;
 constexpr int kSketch = 12;  // texels along a face of the cube that finds the darkest texels
 constexpr double kHalfError = 0x1p-11;
@@ -62,7 +62,7 @@ double harmonics_time_s(int degree, double texels) {
   return 6e-7 * l * l + 1.5e-10 * l * l * l + 6e-8 * texels;
 }
 
-LobePlan lobe_plan(const Environment& env, const PrefilterRequest& request, double exponent, int size) {
+LobePlan lobe_plan(const PrefilterRequest& request, double exponent, int size) {
   LobePlan plan;
   plan.exponent = exponent;
   plan.size = size > 0 ? size : own_size(exponent, request.tolerance);
@@ -74,7 +74,7 @@ LobePlan lobe_plan(const Environment& env, const PrefilterRequest& request, doub
   if (plan.degree >= 0) {
     plan.method = Method::kHarmonics;
     plan.predicted_time_s = harmonics_time_s(plan.degree, texels) / threads();
-  } else if (exponent >= 1 && exponent < kSharpestWide && env.largest_texel_rad() <= kFlatTexel) {
+  } else if (exponent >= 1 && exponent < kSharpestWide) {
     plan.method = Method::kBrightHarmonics;
     plan.degree = kWideDegree;
     plan.predicted_time_s = (harmonics_time_s(kWideDegree, texels) + 1e-6 * texels) / threads();
@@ -143,15 +143,16 @@ class Workshop {
     return *harmonics_;
   }
   const LobeTree& tree() {
-    if (!tree_) tree_.emplace(env_);
+    if (!tree_) tree_.emplace(fine());
     return *tree_;
   }
   const BrightTexels& bright() {
-    if (!bright_) bright_ = std::make_unique<BrightTexels>(env_, kMostBright);
+    if (!bright_) bright_ = std::make_unique<BrightTexels>(fine(), kMostBright);
     return *bright_;
   }
   const Harmonics& rest() {
-    if (!rest_) rest_.emplace(harmonics_of(bright().rest(), zonal_multipliers(kSharpestWide, kWideDegree)));
+    // The cosine's k_l are the largest of those that come here.
+    if (!rest_) rest_.emplace(harmonics_of(bright().rest(), zonal_multipliers(1, kWideDegree)));
     return *rest_;
   }
   const std::vector<Vec3>& rest_rms() {
@@ -168,7 +169,15 @@ class Workshop {
   const Rotation& turn() const { return turn_; }
 
  private:
+  // The environment, its texels cut where they are large.
+  const Environment& fine() {
+    if (env_.largest_texel_rad() <= kFlatTexel) return env_;
+    if (!fine_) fine_.emplace(env_.cut_to(kFlatTexel));
+    return *fine_;
+  }
+
   const Environment& env_;
+  std::optional<Environment> fine_;
   Rotation turn_;
   SphereGrid::Layout layout_;
   Vec3 flux_;
@@ -332,10 +341,9 @@ int own_size(double exponent, double tolerance) {
 
 std::vector<LobePlan> prefilter_plan(const Environment& env, const PrefilterRequest& request) {
   std::vector<LobePlan> plan;
-  if (request.diffuse) plan.push_back(lobe_plan(env, request, 1, request.size));
+  if (request.diffuse) plan.push_back(lobe_plan(request, 1, request.size));
   for (std::size_t i = 0; i < request.exponents.size(); ++i)
-    plan.push_back(
-        lobe_plan(env, request, request.exponents[i], request.sizes.empty() ? request.size : request.sizes[i]));
+    plan.push_back(lobe_plan(request, request.exponents[i], request.sizes.empty() ? request.size : request.sizes[i]));
   if (!request.mirror) return plan;
   LobePlan mirror;
   mirror.exponent = kMirrorExponent;

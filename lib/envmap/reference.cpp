@@ -7,6 +7,7 @@
 #include <random>
 
 #include "base/parallel.h"
+#include "envmap/gauss_rule.h"
 #include "envmap/lobe_rows.h"
 #include "envmap/patch.h"
 
@@ -20,36 +21,14 @@ constexpr double kHorizonShare = 1e-10;  // of the flux; some 1e3 texels on a ho
 constexpr double kCoarse = 0.05;         // rad: texels beyond this are no small patches
 constexpr double kFloor = 1e-3;          // of the mean: see LobeError
 
-// Gauss-Legendre nodes and weights on [0,1] in `pieces` equal parts.
-struct Nodes {
-  std::vector<double> at, weight;
-};
-Nodes gauss_nodes(int points, int pieces) {
-  constexpr std::array<std::array<double, 4>, 3> kAt = {
-      {{.21132486540518713, .78867513459481287},
-       {.1127016653792583, .5, .8872983346207417},
-       {.06943184420297371, .33000947820757187, .66999052179242813, .93056815579702629}}};
-  constexpr std::array<std::array<double, 4>, 3> kWeight = {
-      {{.5, .5},
-       {5.0 / 18, 8.0 / 18, 5.0 / 18},
-       {.17392742256872693, .32607257743127307, .32607257743127307, .17392742256872693}}};
-  Nodes nodes;
-  for (int p = 0; p < pieces; ++p)
-    for (int i = 0; i < points; ++i) {
-      nodes.at.push_back((p + kAt[points - 2][i]) / pieces);
-      nodes.weight.push_back(kWeight[points - 2][i] / pieces);
-    }
-  return nodes;
-}
-
 // As many nodes across a texel as a lobe sqrt(E) times narrower than a radian wants: with v = texel sqrt(E), two points
 // err by v^4/4320, three by v^6/2e6, four by v^8/1.8e9 times Hermite polynomials of the distance in lobe widths; 5
 // widths out (e^-12 of the peak) that is 1e-7 of the value there at the limits below.
-Nodes nodes_for(double texel_rad, double exponent) {
+GaussRule nodes_for(double texel_rad, double exponent) {
   const double v = texel_rad * std::sqrt(std::max(exponent, 1.0));
-  if (v <= 0.03) return gauss_nodes(2, 1);
-  if (v <= 0.15) return gauss_nodes(3, 1);
-  return gauss_nodes(4, std::max(1, static_cast<int>(std::ceil(v / 0.4))));
+  if (v <= 0.03) return gauss_rule(2, 1);
+  if (v <= 0.15) return gauss_rule(3, 1);
+  return gauss_rule(4, std::max(1, static_cast<int>(std::ceil(v / 0.4))));
 }
 
 // Nothing of cos^E beyond this angle, in radians: below 1e-30 of the peak.
@@ -238,7 +217,7 @@ class Summation {
   double exponent_;
   bool coarse_;         // texels so large or odd, or a lobe so narrow, that every texel is done by recursion
   double allowed_ = 0;  // flux that a texel on the horizon may be off by
-  Nodes nodes_;
+  GaussRule nodes_;
   std::vector<std::vector<double>> first_, second_;  // lat-long: sin and cos of the longitude; cube: s and ds/dcolumn
 };
 
