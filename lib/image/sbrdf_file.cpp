@@ -27,6 +27,30 @@ bool may_be_negative(const std::string& name) {
   return name.starts_with("frame.") || name.ends_with(".x") || name.ends_with(".y") || name.ends_with(".z");
 }
 
+// The channels of all parts side by side.
+Result<Image> joined(const std::vector<ImagePart>& parts, const std::string& path) {
+  const Image& first = parts.front().image;
+  if (parts.size() == 1) return first;
+  Image all{first.width, first.height, 0, {}, {}};
+  for (const ImagePart& part : parts) {
+    const Image& image = part.image;
+    if (image.width != first.width || image.height != first.height)
+      return input_error("{}: part {} is {} x {}, but part {} is {} x {}: give all of a texture the same size", path,
+                         part.name, image.width, image.height, parts.front().name, first.width, first.height);
+    all.channels += image.channels;
+    all.channel_names.insert(all.channel_names.end(), image.channel_names.begin(), image.channel_names.end());
+  }
+  for (int row = 0; row < all.height; ++row) {
+    for (int column = 0; column < all.width; ++column) {
+      for (const ImagePart& part : parts) {
+        const float* pixel = part.image.pixel(column, row);
+        all.data.insert(all.data.end(), pixel, pixel + part.image.channels);
+      }
+    }
+  }
+  return all;
+}
+
 // Which channel of the file holds each value; -1 for an absent frame.
 Result<std::vector<int>> sources(const std::vector<std::string>& wanted, const std::vector<std::string>& given,
                                  const std::string& path) {
@@ -48,7 +72,7 @@ Result<std::vector<int>> sources(const std::vector<std::string>& wanted, const s
 
 Result<SbrdfTexture> read_sbrdf(const std::string& path) {
   GONIO_ASSIGN(const std::vector<ImagePart> parts, read_exr(path));
-  const Image& image = parts.front().image;
+  GONIO_ASSIGN(const Image image, joined(parts, path));
   SbrdfTexture texture{image.width, image.height, 0, {}};
   const auto& given = image.channel_names;
   while (texture.lobes < 16 && std::ranges::find(given, fmt::format("lobe{}.n", texture.lobes)) != given.end())

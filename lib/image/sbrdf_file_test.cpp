@@ -35,6 +35,22 @@ TEST_F(SbrdfFile, ReadsWhateverTheOrderOfChannels) {
   EXPECT_EQ(read({"diffuse.R", "diffuse.G", "diffuse.B"}, {1, 1, 1})->lobes, 0);
 }
 
+TEST_F(SbrdfFile, PartsOfOneSizeAreOneTexture) {
+  const auto part = [](const char* name, int width, int first, int last) {
+    const std::vector<std::string> channels(kChannels.begin() + first, kChannels.begin() + last);
+    const auto n = static_cast<std::size_t>(width * (last - first));
+    return ImagePart{name, {width, 1, last - first, std::vector<float>(n, 0.5F), channels}, {}, PixelType::kFloat};
+  };
+  ASSERT_TRUE(write_exr(path_, {part("diffuse", 2, 0, 3), part("lobe", 2, 3, 10)}).ok());
+  const auto texture = read_sbrdf(path_);
+  ASSERT_TRUE(texture.ok()) << texture.error().message;
+  EXPECT_EQ(texture->lobes, 1);
+  EXPECT_EQ(texture->texel(1, 0)[11], 0.5F);
+  ASSERT_TRUE(write_exr(path_, {part("diffuse", 2, 0, 3), part("lobe", 4, 3, 10)}).ok());
+  const std::string told = read_sbrdf(path_).error().message;
+  EXPECT_NE(told.find("part lobe is 4 x 1, but part diffuse is 2 x 1"), std::string::npos) << told;
+}
+
 TEST_F(SbrdfFile, TellsWhatIsWrong) {
   const std::vector<float> good = {0.1F, 0.2F, 0.3F, 1, 2, 3, -1, -0.5F, 1, 40};
   const auto told = [&](std::vector<std::string> channels, std::vector<float> values) {
