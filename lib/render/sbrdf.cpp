@@ -102,12 +102,15 @@ void SbrdfShader::make_maps(const PrefilteredEnvironment& env, const MipCube* mi
                 exponents_.begin() + static_cast<std::ptrdiff_t>(last) + 1};
 }
 
-// The mean of n.w over the part of a lobe above the surface, relative to the whole lobe.
+// The mean of n.w over the part of a lobe above the surface, relative to the whole lobe, and where that light comes
+// from.
 void SbrdfShader::make_horizon(double low, double high) {
   for (double exponent = std::max(low, 0.1);; exponent *= kHorizonStep) {
     horizon_exponents_.push_back(exponent);
-    for (const LobeIntegrals& lobe : lobe_curve(exponent, kHorizonSegments, true))
+    for (const LobeIntegrals& lobe : lobe_curve(exponent, kHorizonSegments, true)) {
       horizon_.push_back(static_cast<float>(lobe.cosine * (exponent + 1) / (2 * std::numbers::pi)));
+      horizon_.push_back(static_cast<float>(lobe.cosine_shift));
+    }
     if (exponent >= high) return;
   }
 }

@@ -145,15 +145,22 @@ HWY_INLINE void add_product(const Quad& light, const Quad& color, float* sums) {
   }
 }
 
-// The cosine of a lobe's middle, or the mean cosine of what lies above the surface.
-HWY_INLINE float cosine_of(const SbrdfShading& s, const float* lobe, float cosine) {
-  if (s.horizon == nullptr || !(cosine > 0)) return cosine;
+// The cosine of a lobe's middle, or the mean cosine of what lies above the surface and the shift of the direction.
+struct Seen {
+  float cosine, shift;
+};
+HWY_INLINE Seen seen_of(const SbrdfShading& s, const float* lobe, float cosine) {
+  if (s.horizon == nullptr || !(cosine > 0)) return {cosine, 0};
   const float x = std::sqrt(std::min(cosine, 1.0F)) * static_cast<float>(s.horizon_segments);
   const int at = std::min(static_cast<int>(x), s.horizon_segments - 1);
   const float t = x - static_cast<float>(at), share = lobe[kLobeHorizon + 1];
-  const float* row = s.horizon + static_cast<std::size_t>(lobe[kLobeHorizon]) * (s.horizon_segments + 1) + at;
-  const float* next = share > 0 ? row + s.horizon_segments + 1 : row;
-  return (1 - share) * ((1 - t) * row[0] + t * row[1]) + share * ((1 - t) * next[0] + t * next[1]);
+  const std::size_t wide = 2 * static_cast<std::size_t>(s.horizon_segments + 1);
+  const float* row = s.horizon + static_cast<std::size_t>(lobe[kLobeHorizon]) * wide + 2 * at;
+  const float* next = share > 0 ? row + wide : row;
+  const auto between = [&](int k) {
+    return (1 - share) * ((1 - t) * row[k] + t * row[2 + k]) + share * ((1 - t) * next[k] + t * next[2 + k]);
+  };
+  return {between(0), between(1)};
 }
 
 // Adds what one lobe of one texel shows of the environment.
@@ -163,8 +170,10 @@ HWY_INLINE void add_filtered(const SbrdfShading& s, const SbrdfPoints& p, const 
   const D f;
   const hn::RebindToSigned<D> whole;
   HWY_ALIGN std::int32_t sizes[2][kPointsAtOnce];
-  HWY_ALIGN float weight[kPointsAtOnce];
+  HWY_ALIGN float weight[kPointsAtOnce], cosine[kPointsAtOnce], shift[kPointsAtOnce];
   for (int i = 0; i < kPointsAtOnce; ++i) {
+    const Seen seen = seen_of(s, l.lobe[i], middles.z[i]);
+    cosine[i] = seen.cosine, shift[i] = seen.shift;
     const auto map = static_cast<std::size_t>(l.lobe[i][kLobeMap]);
     sizes[0][i] = s.maps[map].size;
     sizes[1][i] = l.lobe[i][kLobeMap + 1] > 0 ? s.maps[map + 1].size : sizes[0][i];
@@ -174,20 +183,22 @@ HWY_INLINE void add_filtered(const SbrdfShading& s, const SbrdfPoints& p, const 
     const V c = hn::Load(f, l.cos_x + i), q = hn::Load(f, l.sin_x + i);
     const Direction m = loaded(middles.x, middles.y, middles.z, i);
     const V along_t = hn::MulSub(c, m.x, hn::Mul(q, m.y)), along_b = hn::MulAdd(q, m.x, hn::Mul(c, m.y));
+    const V along_n = hn::Add(m.z, hn::Load(f, shift + i));
     const auto turned = [&](const float* t, const float* b, const float* n) HWY_ATTR {
       return hn::MulAdd(along_t, hn::Load(f, t + i),
-                        hn::MulAdd(along_b, hn::Load(f, b + i), hn::Mul(m.z, hn::LoadU(f, n + i))));
+                        hn::MulAdd(along_b, hn::Load(f, b + i), hn::Mul(along_n, hn::LoadU(f, n + i))));
     };
     const OnFace face = on_face(
         {turned(frames.tx, frames.bx, p.nx), turned(frames.ty, frames.by, p.ny), turned(frames.tz, frames.bz, p.nz)});
     for (const int k : {0, 1}) address(face, hn::Load(whole, sizes[k] + i), i, taps[k]);
     const V power = bounded_exp(hn::Add(hn::Load(f, l.energy + i), hn::Load(f, middles.log_power + i)));
     const auto seen = hn::And(hn::Gt(m.z, hn::Zero(f)), hn::Gt(hn::Load(f, frames.vn + i), hn::Zero(f)));
-    hn::Store(hn::IfThenElseZero(seen, hn::Mul(power, hn::LoadU(f, p.share[tap] + i))), f, weight + i);
+    const V share = hn::Mul(hn::Load(f, cosine + i), hn::LoadU(f, p.share[tap] + i));
+    hn::Store(hn::IfThenElseZero(seen, hn::Mul(power, share)), f, weight + i);
   }
   for (int i = 0; i < count; ++i) {
     const float* lobe = l.lobe[i];
-    const float w = weight[i] * cosine_of(s, lobe, middles.z[i]);
+    const float w = weight[i];
     if (!(w > 0)) continue;
     const auto map = static_cast<std::size_t>(lobe[kLobeMap]);
     const float upper = lobe[kLobeMap + 1];

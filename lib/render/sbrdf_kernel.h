@@ -27,8 +27,9 @@ struct LobeMap {
 struct SbrdfShading {
   LobeMap diffuse;                // P_1; null where there is no environment
   const LobeMap* maps = nullptr;  // ascending exponents
-  // Rows of so many segments, and one value more: the mean cosine above the surface over a lobe whose middle is at the
-  // cosine (i/segments)^2. Null: the cosine of the middle itself.
+  // Rows of so many segments, and one pair more: the mean cosine above the surface over a lobe whose middle m is at the
+  // cosine (i/segments)^2, and s, where m + s n is the mean direction of the light that it gathers there. Null: the
+  // cosine of the middle itself, and 0.
   const float* horizon = nullptr;
   int horizon_segments = 0;
   int lobes = 0;                 // of a packed texel

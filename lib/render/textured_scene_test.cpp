@@ -238,8 +238,8 @@ TEST_F(TexturedScene, OneTexelIsAPaint) {
   scene.paints[0].diffuse = {0.1, 0.05, 0.02};
   scene.paints[0].lobes = {{16, {0.5, 0.4, 0.3}, {}}};
   const Frame painted = drawn(Engine::kCpu, effects_of(scene));
-  EXPECT_NEAR(picture_error(painted, scene, &source, 1, 40, 5).de00_mean, error, 0.3);
-  EXPECT_LT(difference(textured, painted), 0.6);
+  EXPECT_NEAR(picture_error(painted, scene, &source, 1, 40, 5).de00_mean, error, 0.1);
+  EXPECT_LT(difference(textured, painted), 0.3);
 }
 
 }  // namespace
