@@ -7,25 +7,33 @@ namespace goniochrome {
 
 namespace {
 
-// Measured by BM_PaintEdited and BM_Tilts: a part that every point has, one map more, one light more, one lobe in a
-// light.
+// Measured by BM_PaintEdited, BM_Tilts and BM_Operator: a pixel of the picture, seen or not (it is written, and read
+// back from OpenGL), a part that every point has, one map more, one light more, one lobe in a light.
 struct Counts {
-  double point, map, class_of_maps, light, lit_lobe, view, reflection_map;
+  double pixel, point, map, class_of_maps, light, lit_lobe, view, reflection_map;
 };
-constexpr Counts kCpu = {20, 4, 8, 12, 5, 4, 2};
-constexpr Counts kGl = {100, 47, 0, 40, 30, 12, 8};
+constexpr Counts kCpu = {2.5, 6, 1.5, 6, 12, 5, 2, 1};
+constexpr Counts kGl = {12, 30, 42, 0, 40, 30, 12, 8};
 
 }  // namespace
+
+double pixel_ns(Engine engine) {
+  return engine == Engine::kCpu ? kCpu.pixel : kGl.pixel;
+}
 
 double point_ns(const Effects& effects, Engine engine, double tilts) {
   const Counts& c = engine == Engine::kCpu ? kCpu : kGl;
   const double spread = effects.anisotropy ? tilts : 1;
-  double lobes = 0;
-  for (const Effects::LobeUse& use : effects.lobes) lobes += use.directional_diffuse || use.gloss ? 1 : 0;
+  double lobes = 0, shifted = 0;
+  for (const Effects::LobeUse& use : effects.lobes) {
+    if (!use.directional_diffuse && !use.gloss) continue;
+    ++lobes;
+    shifted += is_shifted(effects, use.exponent) ? 1 : 0;
+  }
   double ns = c.point + (effects.depends_on_view() ? c.view : 0);
   if (effects.environment) {
     const double single = (effects.diffuse ? 1 : 0) + (effects.mirror ? 1 : 0);
-    const double classes = lobes > 0 ? std::min(2.0, lobes) : 0;
+    const double classes = shifted + std::min(2.0, lobes - shifted);
     ns += single * (c.map + c.class_of_maps) + spread * (lobes * c.map + classes * c.class_of_maps);
     if (effects.reflection) ns += (single + lobes) * c.reflection_map;
   }

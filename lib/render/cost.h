@@ -12,6 +12,9 @@ double point_ns(const Effects& effects, Engine engine, double tilts);
 // What a textured point adds, whatever the engine; `lobes` of its texture.
 double textured_point_ns(const Effects& effects, int lobes);
 
+// Nanoseconds a pixel of the picture, whether the mesh is seen there or not.
+double pixel_ns(Engine engine);
+
 // What the GL engine costs once: compiling its program.
 constexpr double kCompileMs = 110;
 

@@ -99,15 +99,25 @@ class Prober {
     return std::max(difference(a, b), std::sqrt(squares / static_cast<double>(std::max<std::size_t>(a.size(), 1))));
   }
 
-  // Seconds that a point takes on all cores together, the best of a few runs.
+  // Seconds that a point takes on all cores together, the best of a few runs, each long enough that starting the threads
+  // does not count.
   double seconds_per_point() const {
+    if (points_.empty()) return 0;
+    constexpr double kLong_s = 2e-4, kSlow_s = 2e-3;
+    std::vector<VisiblePoint> many = points_;
+    const Stopwatch clock_once;
+    const auto first = engine_.shade(points_);
+    const double once_s = clock_once.elapsed_s();
+    if (once_s > kSlow_s) return once_s / static_cast<double>(points_.size());
+    for (double s = once_s; s < kLong_s && many.size() < 8192; s += once_s)
+      many.insert(many.end(), points_.begin(), points_.end());
     double best = std::numeric_limits<double>::infinity();
     for (int i = 0; i < 3; ++i) {
       const Stopwatch clock;
-      const auto colors = engine_.shade(points_);
+      const auto colors = engine_.shade(many);
       best = std::min(best, clock.elapsed_s());
     }
-    return points_.empty() ? 0 : best / static_cast<double>(points_.size());
+    return best / static_cast<double>(many.size());
   }
 
  private:
@@ -131,12 +141,13 @@ double mean_tilts(const Scene& scene, const Effects& effects, const std::vector<
 
 // What one frame's shading takes, in ms.
 struct CostModel {
-  double points = 0, tilts = 1, speed = 1;  // speed: measured over counted
+  double points = 0, pixels = 0, tilts = 1, speed = 1;  // speed: measured over counted
   double textured = 0;                      // of the points
   int texture_lobes = 0;
   double ms(const Effects& effects, Engine engine) const {
     const double texture_ns = textured > 0 ? textured_point_ns(effects, texture_lobes) : 0;
-    return 1e-6 * speed * (points * point_ns(effects, engine, tilts) + textured * texture_ns) / threads();
+    const double ns = pixels * pixel_ns(engine) + points * point_ns(effects, engine, tilts) + textured * texture_ns;
+    return 1e-6 * speed * ns / threads();
   }
 };
 
@@ -309,7 +320,7 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<VisiblePoint>& prob
   const std::vector<bool> everything(switches.size(), true);
   const std::vector<Rgb> full = prober.colors(everything);
 
-  CostModel cost{visible_pixels * request.samples, mean_tilts(scene, all, probe), 1};
+  CostModel cost{visible_pixels * request.samples, request.pixels * request.samples, mean_tilts(scene, all, probe)};
   cost.textured = cost.points * textured_share(scene, probe);
   cost.texture_lobes = scene.layer != nullptr ? scene.layer->lobes() : 0;
   const double counted_s = 1e-9 * point_ns(all, Engine::kCpu, cost.tilts) / threads();

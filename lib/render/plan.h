@@ -24,6 +24,7 @@ struct PlanRequest {
   std::optional<Engine> engine;  // none: the one predicted faster
   double white_luminance = 1;    // what color differences are relative to
   int samples = 1, frames = 1;
+  double pixels = 0;  // of one frame, seen or not; 0: those of the G-buffers
 };
 
 struct PlanItem {

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "render/left_out.h"
 #include "render/reference.h"
 #include "render/renderer.h"
 #include "render/scenes_for_test.h"
@@ -149,6 +150,63 @@ BENCHMARK(BM_Tilts)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
+
+// Colored light through the bilinear operator beside the component-wise product, frame by frame in turns; the least of
+// each. Argument: engine.
+void BM_Operator(benchmark::State& state) {
+  const auto engine = static_cast<Engine>(state.range(0));
+  const auto bench = bench_scene(5);
+  bench->env.diffuse.map = cube_of(32, [](const Vec3& d) { return Vec3{1, 1 + 0.5 * d.x, 1 + 0.5 * d.y}; });
+  const View view = bench_view(*bench, 35, 1);
+  double least_ms[2] = {1e9, 1e9};
+  std::vector<Renderer> renderers;
+  for (const bool bilinear : {false, true}) {
+    bench->scene.reflection = bilinear ? working_space_operator() : component_wise();
+    if (disagreement(*bench, view) > 1e-3) return state.SkipWithError("the engines disagree");
+    auto renderer = Renderer::create();
+    if (!renderer.ok() || !renderer->load(bench->scene, engine).ok()) return state.SkipWithError("no renderer");
+    renderers.push_back(*std::move(renderer));
+  }
+  Frame frame;
+  for (auto _ : state) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (!renderers[i].draw(view, frame).ok()) return state.SkipWithError("nothing drawn");
+      least_ms[i] = std::min(least_ms[i], frame.frame_ms);
+    }
+  }
+  state.counters["plain_ms"] = least_ms[0];
+  state.counters["bilinear_ms"] = least_ms[1];
+  state.counters["over_percent"] = 100 * (least_ms[1] / least_ms[0] - 1);
+  state.SetLabel(engine == Engine::kCpu ? "cpu" : "gl");
+}
+BENCHMARK(BM_Operator)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+// Planning, all of it, beside a frame of what was planned. The picture must be within the tolerance of all effects.
+void BM_Plan(benchmark::State& state) {
+  const auto bench = bench_scene(5);
+  const View view = bench_view(*bench, 35, 1);
+  auto renderer = Renderer::create();
+  if (!renderer.ok()) return state.SkipWithError("no renderer");
+  const auto seen = renderer->look(bench->mesh, view);
+  PlanRequest request;
+  request.white_luminance = 5;
+  double plan_ms = 1e9;
+  Plan plan;
+  for (auto _ : state) {
+    auto made = renderer->load(bench->scene, {*seen}, request);
+    if (!made.ok()) return state.SkipWithError("no plan");
+    plan = *std::move(made);
+    plan_ms = std::min(plan_ms, plan.time_ms);
+  }
+  const auto left = left_out(*renderer, seen_scene(bench->scene, {*seen}), plan, view, request.white_luminance);
+  if (!left.ok() || left->de00_p95 > request.tolerance_de00) return state.SkipWithError("what is left out is seen");
+  state.counters["plan_ms"] = plan_ms;
+  state.counters["frame_ms"] = left->planned_ms;
+  state.counters["frame_all_ms"] = left->full_ms;
+  state.counters["predicted_ms"] = plan.engine == Engine::kCpu ? plan.cpu_ms : plan.gl_ms;
+  state.counters["de00_p95"] = left->de00_p95;
+}
+BENCHMARK(BM_Plan)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 // Points a second against an environment of 1024 x 512.
 void BM_Reference(benchmark::State& state) {

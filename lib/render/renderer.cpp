@@ -173,12 +173,15 @@ Result<Plan> Renderer::load(const Scene& scene, const std::vector<std::shared_pt
   const Scene seen = seen_scene(scene, gbuffers);
   GONIO_TRY(load(seen, effects_of(seen), Engine::kCpu));
   const std::vector<VisiblePoint> probe = probe_points(gbuffers, kProbe);
-  std::size_t visible = 0;
+  double visible = 0, all = 0;
   for (const auto& g : gbuffers) {
     for (std::size_t i = 3; i < g->data.size(); i += 4) visible += g->data[i] != 0 ? 1 : 0;
+    all += static_cast<double>(g->data.size() / 4);
   }
-  const double in_one = static_cast<double>(visible) / static_cast<double>(std::max<std::size_t>(1, gbuffers.size()));
-  GONIO_ASSIGN(Plan plan, make_plan(seen, probe, in_one, request, s.cpu_engine));
+  PlanRequest sized = request;
+  if (sized.pixels == 0) sized.pixels = all / static_cast<double>(std::max<std::size_t>(1, gbuffers.size()));
+  const double in_one = all > 0 ? sized.pixels * visible / all : 0;  // the G-buffers may be smaller than the frame
+  GONIO_ASSIGN(Plan plan, make_plan(seen, probe, in_one, sized, s.cpu_engine));
   GONIO_TRY(load(seen, plan.effects, plan.engine));
   return plan;
 }
