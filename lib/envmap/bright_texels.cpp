@@ -32,8 +32,8 @@ float limit_of(const Environment& env, int most) {
   return above[kept];
 }
 
-// `env` with the mean of the others in the place of its bright texels: a plateau at the limit would leave edges as steep
-// as the limit, which is high where a sun makes the mean.
+// `env` with the mean of the others in the place of its bright texels: a plateau at the limit would leave edges as
+// steep as the limit, which is high where a sun makes the mean.
 Environment without_bright(const Environment& env, int most) {
   const float limit = limit_of(env, most);
   const Vec3 others = env.clipped(limit, 0).flux();
