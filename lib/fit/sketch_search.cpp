@@ -15,7 +15,9 @@ namespace goniochrome {
 namespace {
 
 constexpr double kRowsGain = 0.8;   // free rows must lower the cost to this part of that of face, flop and travel
-constexpr double kGoodCost = 0.02;  // of log(1 + dE^2): an agreement that nothing need improve
+constexpr double kExactCost = 1e-3;  // of log(1 + dE^2): RMS 0.03 dE; a wrong valley costs ten times that
+constexpr double kNoisyCost = 0.2;   // RMS half a dE
+constexpr double kGoodCost = 0.02;  // an agreement that freed rows need not improve
 constexpr double kDarkest = 0.004;  // of a channel, for its weight; L* 4
 
 FitOptions by(FitMethod method) {
@@ -203,6 +205,18 @@ std::vector<std::vector<SearchParameter>> LobeSearch::starts() const {
   return all;
 }
 
+// Wide gloss and the rise of a short travel look alike near specular, and lead into valleys of each other: the paint
+// read off, with each of some travels and values of gloss.
+std::vector<std::vector<SearchParameter>> LobeSearch::further_starts(const std::vector<SearchParameter>& first) {
+  std::vector<std::vector<SearchParameter>> all;
+  for (const double travel_deg : {38.0, 60.0, 90.0})
+    for (const double gloss : {15.0, 50.0, 85.0}) {
+      all.push_back(first);
+      all.back()[6].value = travel_deg, all.back()[7].value = gloss;
+    }
+  return all;
+}
+
 SearchResult LobeSearch::best_rows(const SearchResult& appearance) const {
   const Appearance a = *paint_of(appearance.values).appearance;
   std::vector<double> values;
@@ -214,17 +228,24 @@ SearchResult LobeSearch::best_rows(const SearchResult& appearance) const {
   return run(smooth_, parameters_of(values));
 }
 
-// Which of the two ways made the picture's lobes is not known: each start goes both.
+// Which of the two ways made the picture's lobes is not known: each start goes both. A paint that explains the samples
+// exactly ends the search; where noise hides what is exact, the further starts are not worth their time.
 FoundPaint LobeSearch::find() const {
   FoundPaint best;
   const auto take = [&](SearchResult result, bool exact) {
     if (best.search.values.empty() || result.cost < best.search.cost) best = {std::move(result), {}, exact};
   };
-  for (const auto& start : starts()) {
-    SearchResult smooth = run(smooth_, start);
-    take(run(exact_, parameters_of(smooth.values)), true);
-    take(std::move(smooth), false);
-  }
+  const auto try_all = [&](const std::vector<std::vector<SearchParameter>>& starts) {
+    for (const auto& start : starts) {
+      if (!best.search.values.empty() && best.search.cost <= kExactCost) return;
+      SearchResult smooth = run(smooth_, start);
+      take(run(exact_, parameters_of(smooth.values)), true);
+      take(std::move(smooth), false);
+    }
+  };
+  const auto first = starts();
+  try_all(first);
+  if (best.search.cost <= kNoisyCost) try_all(further_starts(first.front()));
   if (best.search.cost > kGoodCost) {
     SearchResult rows = best_rows(best.search);
     if (rows.cost < kRowsGain * best.search.cost) {

@@ -33,8 +33,8 @@ class LobeSearch {
  public:
   LobeSearch(const Basis& basis, SearchSamples samples);
 
-  // From four starts; then, unless face, flop and travel explain the samples as well, with the colors at three angles
-  // freed.
+  // From four starts, and nine more where they find no exact agreement in a clean picture; then, unless face, flop and
+  // travel explain the samples as well, with the colors at three angles freed.
   FoundPaint find() const;
 
   // The cost of a paint found, with another gloss (gloss units).
@@ -52,6 +52,7 @@ class LobeSearch {
   std::vector<double> linear_channel(int channel) const;
   void scan_gloss(std::vector<SearchParameter>& start) const;
   std::vector<std::vector<SearchParameter>> starts() const;
+  static std::vector<std::vector<SearchParameter>> further_starts(const std::vector<SearchParameter>& first);
   SearchResult best_rows(const SearchResult& appearance) const;
 
   Basis basis_;

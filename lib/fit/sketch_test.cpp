@@ -17,14 +17,13 @@ using testing::HasSubstr;
 const Vec3 kLamp{0.3, 0.5, 1};
 
 // The whole way back: paint, lobes, picture, paint. What the lobes could not hold of a short travel never was in the
-// picture, and comes on top. Wide gloss can pass for flake: where a paint is missed all the same, its picture must be
-// that of the planted one to half a dE, below what the eye tells, and that happens once in a hundred.
+// picture, and comes on top. In both series a paint of short travel has gloss that passes for flake.
 TEST(Sketch, planted_paints_return_under_a_lamp) {
-  std::mt19937_64 random(11);
   AovFile ball = sphere(120, kLamp);
   double sum = 0;
-  int missed = 0;
-  for (int i = 0; i < 100; ++i) {
+  std::mt19937_64 random;
+  for (int i = 0; i < 200; ++i) {
+    if (i % 100 == 0) random.seed(i == 0 ? 11 : 22);
     const Paint paint = random_paint(random);
     const PaintFit planted = *PaintFitter(basis(), {}).fit(paint);
     shade(ball, planted.lobes);
@@ -33,12 +32,9 @@ TEST(Sketch, planted_paints_return_under_a_lamp) {
     ASSERT_EQ(found.status, "fitted");
     const double worst = worst_de00(found, *paint.appearance);
     sum += worst;
-    if (worst - planted.report.de00_max <= 1) continue;
-    ++missed;
-    EXPECT_LE(found.rms_de76, 0.5) << i << ": " << worst;
+    EXPECT_LE(worst - planted.report.de00_max, 1) << i;
   }
-  EXPECT_LE(sum / 100, 0.3);
-  EXPECT_LE(missed, 1);
+  EXPECT_LE(sum / 200, 0.3);
 }
 
 Paint designed(const Lab& face, const Lab& flop, double travel_deg) {
