@@ -16,7 +16,7 @@ JOB_S = 0.5  # what an engine and Python add to a shard
 
 
 # Seconds on one core of a server of 2020, for the plan that is printed before anything is measured.
-TYPICAL = {"clean_s": 0.0003, "environment_s": 4.0, "stream_s": 0.004, "picture_s": 0.12, "start_s": 0.8}
+TYPICAL = {"clean_s": 0.0001, "environment_s": 1.0, "stream_s": 0.0005, "picture_s": 0.25, "start_s": 0.1}
 
 
 def roughly_counted(path):
