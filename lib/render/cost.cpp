@@ -7,13 +7,13 @@ namespace goniochrome {
 
 namespace {
 
-// Measured by BM_PaintEdited, BM_Tilts and BM_Operator: a pixel of the picture, seen or not (it is written, and read
+// Measured by BM_PaintEdited and BM_Tilts: a pixel of the picture, seen or not (it is written, and read
 // back from OpenGL), a part that every point has, one map more, one light more, one lobe in a light.
 struct Counts {
-  double pixel, point, map, class_of_maps, light, lit_lobe, view, reflection_map;
+  double pixel, point, map, class_of_maps, light, lit_lobe, view;
 };
-constexpr Counts kCpu = {2.5, 6, 1.5, 6, 12, 5, 2, 1};
-constexpr Counts kGl = {12, 30, 42, 0, 40, 30, 12, 8};
+constexpr Counts kCpu = {2.5, 6, 1.5, 6, 12, 5, 2};
+constexpr Counts kGl = {12, 30, 42, 0, 40, 30, 12};
 
 }  // namespace
 
@@ -35,13 +35,12 @@ double point_ns(const Effects& effects, Engine engine, double tilts) {
     const double single = (effects.diffuse ? 1 : 0) + (effects.mirror ? 1 : 0);
     const double classes = shifted + std::min(2.0, lobes - shifted);
     ns += single * (c.map + c.class_of_maps) + spread * (lobes * c.map + classes * c.class_of_maps);
-    if (effects.reflection) ns += (single + lobes) * c.reflection_map;
   }
   return ns + static_cast<double>(effects.lights) * (c.light + spread * lobes * c.lit_lobe);
 }
 
-// Four texels around a place, each with its lobes, or the mean texel. Measured by BM_Texture: a point, a lobe of a texel,
-// its two fetches, its light.
+// Four texels around a place, each with its lobes, or the mean texel. Measured by BM_Texture: a point, a lobe of a
+// texel, its two fetches, its light.
 double textured_point_ns(const Effects& effects, int lobes) {
   constexpr double kPoint = 30, kLobe = 6, kFetches = 10, kLit = 3;
   const std::uint32_t on = effects.texture_lobes & ((1U << lobes) - 1);

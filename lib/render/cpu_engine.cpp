@@ -10,34 +10,34 @@ namespace goniochrome {
 
 namespace {
 
-constexpr std::size_t kBlock = 8;  // floats: two maps, R G B 0 each
+constexpr std::size_t kBlock = 8;  // floats of a texel: two maps of four forms, or one of six
 
-int blocks_of(std::size_t maps) {
-  return static_cast<int>((maps + 1) / 2);
+std::size_t floats_of(const ProductForms& forms) {
+  return forms.count > 4 ? kBlock : kBlock / 2;
 }
 
-std::vector<float> interleaved(const std::vector<CubeMap>& maps) {
+std::size_t blocks_of(std::size_t maps, const ProductForms& forms) {
+  return (maps * floats_of(forms) + kBlock - 1) / kBlock;
+}
+
+void put_forms(const ProductForms& forms, const float* rgb, float* to) {
+  const Rgb color{rgb[0], rgb[1], rgb[2]};
+  for (int form = 0; form < forms.count; ++form) to[form] = static_cast<float>(forms.of(form, color));
+}
+
+std::vector<float> interleaved(const std::vector<CubeMap>& maps, const ProductForms& forms) {
   const std::size_t wide = static_cast<std::size_t>(maps.front().size) + 2, texels = wide * wide;
-  const std::size_t stride = static_cast<std::size_t>(blocks_of(maps.size())) * kBlock;
+  const std::size_t stride = blocks_of(maps.size(), forms) * kBlock;
   std::vector<float> data(6 * texels * stride, 0.0F);
   parallel_for(6 * maps.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t job = begin; job < end; ++job) {
       const std::size_t face = job / maps.size(), map = job % maps.size();
       const std::vector<float> texel = bordered_face(maps[map], static_cast<int>(face));
-      float* to = &data[face * texels * stride + 4 * map];
-      for (std::size_t i = 0; i < texels; ++i) std::copy_n(&texel[3 * i], 3, to + i * stride);
+      float* to = &data[face * texels * stride + floats_of(forms) * map];
+      for (std::size_t i = 0; i < texels; ++i) put_forms(forms, &texel[3 * i], to + i * stride);
     }
   });
   return data;
-}
-
-// The three diagonals of the matrix of K (x), each of 3 floats, a pair of blocks apart: in place, and for the light's
-// channels turned by one and by two.
-void put_diagonals(const ReflectionOperator& op, const float* weight, float* to) {
-  const Matrix3 m = reflection_matrix(op, {weight[0], weight[1], weight[2]});
-  for (std::size_t turn = 0; turn < 3; ++turn) {
-    for (std::size_t c = 0; c < 3; ++c) to[2 * kBlock * turn + c] = static_cast<float>(m[c][(c + turn) % 3]);
-  }
 }
 
 // Points that are gathered until there are enough for the kernel, and where their colors go.
@@ -80,17 +80,21 @@ class Batch {
 
 void CpuEngine::interleave(const MapClass& maps, MapUse use) {
   if (maps.size == 0) return;
-  stacks_.push_back({{maps.size, maps.slots, {}, maps.shifted}, use, blocks_of(maps.slots.size()), interleaved(maps.maps)});
+  stacks_.push_back({{maps.size, maps.slots, {}, maps.shifted},
+                     use,
+                     static_cast<int>(blocks_of(maps.slots.size(), forms_)),
+                     interleaved(maps.maps, forms_)});
 }
 
 Result<void> CpuEngine::load(const Scene& scene, const Effects& effects, const SceneMaps& maps) {
   stacks_.clear();
   background_map_ = {};
+  forms_ = effects.reflection ? product_forms(scene.reflection) : ProductForms{};
   interleave(maps.diffuse, MapUse::kNormal);
   for (const MapClass& lobes : maps.lobes) interleave(lobes, MapUse::kTilted);
   if (effects.mirror) interleave(maps.mirror, MapUse::kMirror);
   if (effects.background == Background::kEnvironment) {
-    background_map_ = {{maps.mirror.size, {}, {}}, MapUse::kMirror, 1, interleaved(maps.mirror.maps)};
+    background_map_ = {{maps.mirror.size, {}, {}}, MapUse::kMirror, 1, interleaved(maps.mirror.maps, {})};
   }
   int tilted_blocks = 0;
   for (const Stack& stack : stacks_) tilted_blocks += stack.use == MapUse::kTilted ? stack.blocks : 0;
@@ -104,6 +108,13 @@ Result<void> CpuEngine::load(const Scene& scene, const Effects& effects, const S
     shading_.shifted[shading_.classes] = stack.shape.shifted;
     shading_.maps[shading_.classes++] = {stack.shape.size, stack.blocks, stack.texels.data()};
   }
+  colors_of_forms_.assign(4 * kBlock, 0.0F);
+  for (std::size_t form = 0; form < static_cast<std::size_t>(forms_.count); ++form) {
+    for (int c = 0; c < 3; ++c)
+      colors_of_forms_[4 * form + static_cast<std::size_t>(c)] = static_cast<float>(forms_.out[form][c]);
+  }
+  shading_.map_floats = static_cast<int>(floats_of(forms_));
+  shading_.colors_of_forms = colors_of_forms_.data();
   load_paints(scene, effects, weight_table(scene, effects));
   return {};
 }
@@ -111,32 +122,33 @@ Result<void> CpuEngine::load(const Scene& scene, const Effects& effects, const S
 void CpuEngine::load_paints(const Scene& scene, const Effects& effects, const WeightTable& table) {
   std::size_t blocks = 0;
   for (const Stack& stack : stacks_) blocks += static_cast<std::size_t>(stack.blocks);
-  const int light_slots = effects.lights > 0 ? table.slots - table.light_slot() : 0;
-  const std::size_t pairs = effects.reflection ? 3 : 1;
-  shading_.reflection = effects.reflection;
+  const int light_slots = effects.lights > 0 ? table.shift_slot(0) - table.light_slot() : 0;
   shading_.segments = table.segments;
-  shading_.light_offset = 2 * kBlock * pairs * blocks;
-  shading_.segment_floats = shading_.light_offset + 8 * static_cast<std::size_t>(light_slots);
+  shading_.light_offset = 2 * kBlock * blocks;
+  shading_.shift_offset = shading_.light_offset + 8 * static_cast<std::size_t>(light_slots);
+  const std::size_t shift_floats = (2 * stacks_.size() + kBlock - 1) / kBlock * kBlock;
+  shading_.segment_floats = shading_.shift_offset + shift_floats;
   weights_.assign(shading_.segment_floats * static_cast<std::size_t>(table.segments * table.parts), 0.0F);
   float* to = weights_.data();
   for (int row = 0; row < table.parts * table.segments; ++row) {
     const auto texel = [&](int slot) { return table.at(row / table.segments, row % table.segments, slot); };
     for (const Stack& stack : stacks_) {
       for (std::size_t i = 0; i < stack.shape.slots.size(); ++i) {
-        float* ends = to + 2 * kBlock * pairs * (i / 2) + 4 * (i % 2);
-        const float* weight = texel(stack.shape.slots[i]);
-        for (const int end : {0, 4}) {
-          if (effects.reflection) {
-            put_diagonals(scene.reflection, weight + end, ends + 2 * end);
-            ends[2 * end + 3] = weight[end + 3];
-          } else {
-            std::copy_n(weight + end, 4, ends + 2 * end);
-          }
-        }
+        const std::size_t at = i * floats_of(forms_);
+        float* ends = to + 2 * kBlock * (at / kBlock) + at % kBlock;
+        for (const std::size_t end : {0, 1})
+          put_forms(forms_, texel(stack.shape.slots[i]) + 4 * end, ends + kBlock * end);
       }
-      to += 2 * kBlock * pairs * static_cast<std::size_t>(stack.blocks);
+      to += 2 * kBlock * static_cast<std::size_t>(stack.blocks);
     }
     for (int slot = 0; slot < light_slots; ++slot, to += 8) std::copy_n(texel(table.light_slot() + slot), 8, to);
+    for (std::size_t k = 0; k < stacks_.size(); ++k) {
+      if (!stacks_[k].shape.shifted) continue;
+      const auto lobe = static_cast<std::size_t>(stacks_[k].shape.slots.front() - WeightTable::lobe_slot(0));
+      const float* shift = texel(table.shift_slot(lobe)) + lobe % 4;
+      to[2 * k] = shift[0], to[2 * k + 1] = shift[4];
+    }
+    to += shift_floats;
   }
   shading_.weights = weights_.data();
   set_lights(scene, effects);

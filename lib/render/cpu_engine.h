@@ -9,6 +9,7 @@
 #include "render/effects.h"
 #include "render/gbuffer.h"
 #include "render/maps.h"
+#include "render/product_forms.h"
 #include "render/visible_point.h"
 
 namespace goniochrome {
@@ -42,7 +43,8 @@ class CpuEngine {
 
   std::vector<Stack> stacks_;
   Stack background_map_;
-  std::vector<float> weights_, lights_, exponents_, tilts_;
+  ProductForms forms_;
+  std::vector<float> weights_, lights_, exponents_, tilts_, colors_of_forms_;
   std::vector<int> first_tilt_;
   CpuShading shading_;
   Background background_ = Background::kNone;

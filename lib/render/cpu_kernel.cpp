@@ -96,14 +96,14 @@ HWY_INLINE void set_up(const CpuShading& s, PointArrays& points, Frame& frame) {
   }
 }
 
-// Where class k looks instead of `r`, its weights lying `offset` floats into those of a point.
+// Where class k looks instead of `r`.
 struct Shifts {
   HWY_ALIGN float shift[kPointsAtOnce];
 
-  HWY_INLINE void set(const CpuShading& s, const PointArrays& points, const Frame& frame, int k, std::size_t offset) {
+  HWY_INLINE void set(const CpuShading& s, const PointArrays& points, const Frame& frame, int k) {
     for (int i = 0; i < kPointsAtOnce; ++i) {
-      const float* weight = frame.weights(s, points, i) + offset;
-      shift[i] = s.shifted[k] ? weight[3] + frame.t[i] * weight[11] : 0;
+      const float* ends = frame.weights(s, points, i) + s.shift_offset + 2 * k;
+      shift[i] = ends[0] + frame.t[i] * ends[1];
     }
   }
   HWY_INLINE Direction of(const Direction& r, const Direction& n, std::size_t i) const {
@@ -113,11 +113,6 @@ struct Shifts {
   }
 };
 
-// The floats of class k's weights.
-HWY_INLINE std::size_t weights_of(const CpuShading& s, int k) {
-  return static_cast<std::size_t>(s.maps[k].blocks) * (s.reflection ? 48 : 16);
-}
-
 // The two halves of a block together: the sum of its maps.
 HWY_INLINE void store_sum(const Block& sum, float* rgba) {
   float lanes[8];
@@ -125,33 +120,24 @@ HWY_INLINE void store_sum(const Block& sum, float* rgba) {
   for (int c = 0; c < 4; ++c) rgba[c] = lanes[c] + lanes[4 + c];
 }
 
-// Turns the channels of each map in a block by `by`: lane c becomes c + by, modulo 3.
-template <int by>
-HWY_INLINE Block turned(const Block& block) {
-  Block result;
-#if HWY_TARGET == HWY_SCALAR
-  for (std::size_t i = 0; i < 8; ++i) result.v[i] = i % 4 == 3 ? block.v[i] : block.v[i / 4 * 4 + (i % 4 + by) % 3];
-#else
-  const Block::Tag f;
-  const hn::Repartition<std::uint8_t, Block::Tag> bytes;
-  HWY_ALIGN static constexpr std::uint8_t kOnce[16] = {4, 5, 6, 7, 8, 9, 10, 11, 0, 1, 2, 3, 12, 13, 14, 15};
-  HWY_ALIGN static constexpr std::uint8_t kTwice[16] = {8, 9, 10, 11, 0, 1, 2, 3, 4, 5, 6, 7, 12, 13, 14, 15};
-  const auto table = hn::LoadDup128(bytes, by == 1 ? kOnce : kTwice);
-  for (std::size_t i = 0; i < Block::kRegisters; ++i) {
-    result.v[i] = hn::BitCast(f, hn::TableLookupBytes(hn::BitCast(bytes, block.v[i]), table));
+// The color that the forms' products stand for.
+HWY_INLINE void store_color(const CpuShading& s, const Block& products, float* rgba) {
+  float lanes[8];
+  products.store(lanes);
+  if (s.map_floats == 4) {
+    for (int c = 0; c < 4; ++c) lanes[c] += lanes[4 + c];
   }
-#endif
-  return result;
+  Quad color = Quad::filled(0);
+  for (int c = 0; c < s.map_floats; ++c) {
+    color = mul_add(Quad::filled(lanes[c]), Quad::load(s.colors_of_forms + 4 * c), color);
+  }
+  color.store(rgba);
 }
 
 // Adds what one block of the maps shows to `sum`, and steps to the weights of the next.
-HWY_INLINE Block add_weighted(bool reflection, const Block& t, const Block& maps, const float*& weight, Block sum) {
+HWY_INLINE Block add_weighted(const Block& t, const Block& maps, const float*& weight, Block sum) {
   sum = mul_add(mul_add(t, load(weight + 8), load(weight)), maps, sum);
   weight += 16;
-  if (!reflection) return sum;
-  sum = mul_add(mul_add(t, load(weight + 8), load(weight)), turned<1>(maps), sum);
-  sum = mul_add(mul_add(t, load(weight + 24), load(weight + 16)), turned<2>(maps), sum);
-  weight += 32;
   return sum;
 }
 
@@ -203,10 +189,8 @@ HWY_INLINE void gather_tilted(const CpuShading& s, const PointArrays& points, co
   Tilted tilted;
   Taps taps;
   Shifts shifts[kMostClasses];
-  std::size_t offset = 0;
   for (int k = 0; k < s.classes; ++k) {
-    if (s.use[k] == MapUse::kTilted) shifts[k].set(s, points, frame, k, offset);
-    offset += weights_of(s, k);
+    if (s.use[k] == MapUse::kTilted) shifts[k].set(s, points, frame, k);
   }
   for (int which = 0; which < s.most_tilts; ++which) {
     tilt(s, points, which, tilted);
@@ -229,18 +213,16 @@ HWY_INLINE void gather_tilted(const CpuShading& s, const PointArrays& points, co
   }
 }
 
-template <bool reflection>
 HWY_INLINE void add_environment(const CpuShading& s, const PointArrays& points, const Frame& frame, int count,
                                 float* rgba) {
   const D f;
   Taps taps[kMostClasses];
   HWY_ALIGN float gathered[kPointsAtOnce * kMostBlocks * 8];
   if (s.tilts != nullptr) gather_tilted(s, points, frame, count, gathered);
-  std::size_t offset = 0;
-  for (int k = 0; k < s.classes; offset += weights_of(s, k++)) {
+  for (int k = 0; k < s.classes; ++k) {
     if (s.use[k] == MapUse::kTilted && s.tilts != nullptr) continue;
     Shifts shifts;
-    if (s.shifted[k]) shifts.set(s, points, frame, k, offset);
+    if (s.shifted[k]) shifts.set(s, points, frame, k);
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(f)) {
       const Direction n = normal_of(points, i);
       const Direction d = s.use[k] == MapUse::kNormal ? n : s.shifted[k] ? shifts.of(frame.r(i), n, i) : frame.r(i);
@@ -255,17 +237,17 @@ HWY_INLINE void add_environment(const CpuShading& s, const PointArrays& points, 
     for (int k = 0; k < s.classes; ++k) {
       if (s.use[k] == MapUse::kTilted && s.tilts != nullptr) {
         for (int block = 0; block < s.maps[k].blocks; ++block, tilted += 8) {
-          sum = add_weighted(reflection, t, load(tilted), weight, sum);
+          sum = add_weighted(t, load(tilted), weight, sum);
         }
         continue;
       }
       const Corners corners = corners_of(s.maps[k], taps[k], i);
       for (int block = 0; block < s.maps[k].blocks; ++block) {
         const Block maps = add_between(corners, static_cast<std::size_t>(block) * 8, filled(0));
-        sum = add_weighted(reflection, t, maps, weight, sum);
+        sum = add_weighted(t, maps, weight, sum);
       }
     }
-    store_sum(sum, rgba + 4 * i);
+    store_color(s, sum, rgba + 4 * i);
   }
 }
 
@@ -346,11 +328,7 @@ HWY_INLINE void add_light(const CpuShading& s, const float* light, const PointAr
 void ShadePoints(const CpuShading& s, PointArrays& points, int count, float* rgba) {
   Frame frame;
   set_up(s, points, frame);
-  if (s.reflection) {
-    add_environment<true>(s, points, frame, count, rgba);
-  } else {
-    add_environment<false>(s, points, frame, count, rgba);
-  }
+  add_environment(s, points, frame, count, rgba);
   for (int i = 0; i < s.lights; ++i) add_light(s, s.light + 16 * i, points, frame, count, rgba);
 }
 

@@ -10,7 +10,8 @@ namespace goniochrome {
 // So many points are shaded at a time: their addresses stay in the first cache.
 constexpr int kPointsAtOnce = 64;
 
-// Maps that one direction meets, their texels interleaved: for each texel, blocks of two maps, each R G B 0.
+// Maps that one direction meets, their texels interleaved: for each texel, blocks of two maps, the four forms of the
+// product of each (R G B 0 where it is component-wise); or of one map with six forms.
 struct InterleavedMaps {
   int size = 0;    // of a face, without its border of one texel
   int blocks = 0;  // of 8 floats in a texel
@@ -25,19 +26,19 @@ constexpr int kMostBlocks = 32;  // of all maps met by the mirror direction toge
 constexpr int kMostLobes = 2 * kMostBlocks;
 
 // What the kernel shades with. Weights of a part and segment: for each class of maps in order, for each block, 8 floats
-// a and 8 floats b (W = a + b t), or three such pairs under a reflection operator: the three diagonals of its matrix,
-// for the maps' channels in place, and turned by one and by two. The fourth floats of a shifted class's first block are
-// the shift s of its direction, r + s n. Then, for each light slot, 4 floats a and 4 floats b.
+// a and 8 floats b (W = a + b t), in the forms of the maps. Then, for each light slot, 4 floats a and 4 floats b. Then,
+// for each class, a and b of the shift s of its direction, r + s n.
 struct CpuShading {
   int classes = 0;
   InterleavedMaps maps[kMostClasses];
   MapUse use[kMostClasses] = {};
   bool shifted[kMostClasses] = {};
-  bool reflection = false;
+  int map_floats = 4;                      // of a texel of one map, 4 or 8
+  const float* colors_of_forms = nullptr;  // R G B 0 of each
   int segments = 1;
   const float* weights = nullptr;
   std::size_t segment_floats = 0;
-  std::size_t light_offset = 0;  // of the light slots, within a segment
+  std::size_t light_offset = 0, shift_offset = 0;  // of the light slots and of the shifts, within a segment
 
   // Tilts of the normal, 4 floats each (in the frame of the surface, then the share); part p has those from
   // first_tilt[p] to first_tilt[p + 1]. Null where no part has more than one.

@@ -1,6 +1,7 @@
 #include "render/effects.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -21,11 +22,7 @@ double gloss_deg_of(const Scene& scene, std::size_t part) {
 // The value of every slot of a part at one view.
 class SlotValues {
  public:
-  struct Value {
-    Rgb weight;
-    double shift = 0;
-    double operator[](int i) const { return i < 3 ? weight[i] : shift; }
-  };
+  using Texel = std::array<double, 4>;
 
   SlotValues(const WeightTable& table, const Effects& effects, double gloss_deg)
       : table_(table), effects_(effects), values_(static_cast<std::size_t>(table.slots)) {
@@ -34,8 +31,8 @@ class SlotValues {
 
   // `lit` is what lights meet. `node` counts the ends of the segments; a table of one segment has the view cos_o = 0 at
   // its start and 1 at its end.
-  const std::vector<Value>& at(const LobeFit& paint, const LobeFit& lit, double cos_o, int node) {
-    std::fill(values_.begin(), values_.end(), Value{});
+  const std::vector<Texel>& at(const LobeFit& paint, const LobeFit& lit, double cos_o, int node) {
+    std::fill(values_.begin(), values_.end(), Texel{});
     if (effects_.diffuse) {
       set(WeightTable::diffuse_slot(), kPi * paint.diffuse);
       set(table_.light_slot(), lit.diffuse);
@@ -53,8 +50,8 @@ class SlotValues {
       if (is_shifted(effects_, use.exponent)) {
         const double f = sum(by_flake), g = sum(by_gloss);
         const double share = f + g > 0 ? g / (f + g) : 0;
-        values_[static_cast<std::size_t>(WeightTable::lobe_slot(j))].shift =
-            seen.cosine_shift + share * (seen.plain_shift - seen.cosine_shift);
+        const double shift = seen.cosine_shift + share * (seen.plain_shift - seen.cosine_shift);
+        values_[static_cast<std::size_t>(table_.shift_slot(j))][j % 4] = shift;
       }
       const Lobe* met = find_lobe(lit, use.exponent);
       if (met == nullptr) continue;
@@ -68,27 +65,29 @@ class SlotValues {
   }
 
  private:
-  void set(int slot, const Rgb& value) { values_[static_cast<std::size_t>(slot)].weight = value; }
+  void set(int slot, const Rgb& value) {
+    for (std::size_t c = 0; c < 3; ++c) values_[static_cast<std::size_t>(slot)][c] = value[static_cast<int>(c)];
+  }
   static double sum(const Rgb& c) { return std::abs(c.x) + std::abs(c.y) + std::abs(c.z); }
 
   const WeightTable& table_;
   const Effects& effects_;
   double fresnel_scale_ = 1;
-  std::vector<Value> values_;
+  std::vector<Texel> values_;
 };
 
 void fill_part(const Scene& scene, const Effects& effects, std::size_t part, const WeightTable& table, float* rows) {
   const LobeFit& paint = scene.paints[part];
   const bool with_views = effects.views && !paint.views.empty();
   SlotValues values(table, effects, gloss_deg_of(scene, part));
-  std::vector<SlotValues::Value> before;
+  std::vector<SlotValues::Texel> before;
   for (int node = 0; node <= table.segments; ++node) {
     const double x = static_cast<double>(node) / table.segments, cos_o = table.segments > 1 ? x * x : x;
     const LobeFit here_paint = with_views ? at_view(paint, std::acos(cos_o) * 180 / kPi) : paint;
-    const std::vector<SlotValues::Value>& here = values.at(here_paint, effects.maps ? paint : here_paint, cos_o, node);
+    const std::vector<SlotValues::Texel>& here = values.at(here_paint, effects.maps ? paint : here_paint, cos_o, node);
     if (node > 0) {
       for (std::size_t slot = 0; slot < here.size(); ++slot, rows += 8) {
-        for (int c = 0; c < 4; ++c) {
+        for (std::size_t c = 0; c < 4; ++c) {
           rows[c] = static_cast<float>(before[slot][c]);
           rows[4 + c] = static_cast<float>(here[slot][c] - before[slot][c]);
         }
@@ -202,7 +201,7 @@ WeightTable slots_of(const Effects& effects) {
   WeightTable table;
   table.lobes = static_cast<int>(effects.lobes.size());
   table.segments = effects.depends_on_view() ? kViewSegments : 1;
-  table.slots = 3 + 3 * table.lobes;
+  table.slots = 3 + 3 * table.lobes + (table.lobes + 3) / 4;
   return table;
 }
 

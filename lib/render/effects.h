@@ -22,11 +22,11 @@ struct Effects {
   bool diffuse = true;
   std::vector<LobeUse> lobes;  // ascending exponents
   bool mirror = false;
-  bool fresnel = false;  // of gloss lobes and mirror
-  bool horizon = false;  // lobes end at the horizon, and each of their directions has its own cosine
-  bool views = false;    // weights of paints that change with the view
-  bool maps = false;     // color maps under lights
-  bool texture = false;  // textures of lobes; else the mean texel of each
+  bool fresnel = false;               // of gloss lobes and mirror
+  bool horizon = false;               // lobes end at the horizon, and each of their directions has its own cosine
+  bool views = false;                 // weights of paints that change with the view
+  bool maps = false;                  // color maps under lights
+  bool texture = false;               // textures of lobes; else the mean texel of each
   std::uint32_t texture_lobes = ~0U;  // of textures, by bits
   bool anisotropy = false;
   double tilt_tolerance = 0.005;  // of the lobes drawn about tilted normals, relative to their peak
@@ -54,9 +54,10 @@ std::vector<std::vector<Tilt>> tilts_of(const Scene& scene, const Effects& effec
 // t = n.wo itself; else kViewSegments of them, even in x = sqrt(n.wo), with t the part of a segment. Each part of the
 // mesh has a row for each segment; each slot has two RGBA texels, a and b.
 //   slot 0            pi K_D, of the diffuse map
-//   slot 1 + j        lobe j's share of P_Ej(r + s n), cosine and 2 pi/(E+1) included; alpha is s
+//   slot 1 + j        lobe j's share of P_Ej(r + s n), cosine and 2 pi/(E+1) included
 //   slot 1 + lobes    K_M F, of the mirror map
 //   then, for lights, K_D, and K_DD and K_G of each lobe, in 1/sr
+//   then s of each lobe, four in a slot
 constexpr int kViewSegments = 64;
 // Lobes up to this exponent look where the light they gather above the horizon comes from, each by itself; sharper ones
 // share the mirror direction. With the effect `horizon`.
@@ -74,6 +75,7 @@ struct WeightTable {
   int light_slot() const { return 2 + lobes; }
   int directional_diffuse_slot(std::size_t lobe) const { return 3 + lobes + 2 * static_cast<int>(lobe); }
   int gloss_slot(std::size_t lobe) const { return directional_diffuse_slot(lobe) + 1; }
+  int shift_slot(std::size_t lobe) const { return 3 + 3 * lobes + static_cast<int>(lobe / 4); }  // channel lobe % 4
   const float* at(int part, int segment, int slot) const {
     return &rgba[(static_cast<std::size_t>(part * segments + segment) * static_cast<std::size_t>(slots) +
                   static_cast<std::size_t>(slot)) *

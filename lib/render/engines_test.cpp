@@ -110,6 +110,20 @@ TEST(Engines, AgreeOnSamplesBackgroundsAndParts) {
   }
 }
 
+// Operators of four forms and of six, with the environment behind the mesh, which must come out of its forms again.
+TEST(Engines, AgreeOnEveryOperator) {
+  const Mesh mesh = sphere_mesh(96);
+  const PrefilteredEnvironment env = uneven_env({1.3, 6, 40, 300, 3000}, {32, 20, 44, 100, 64});
+  Scene scene{&mesh, {rich_paint()}, &env, {{normalized({1, 2, 3}), {1, 0.5, 0.2}}}, Background::kEnvironment, {}};
+  scene.anisotropy = {{0.05, 0.3}};
+  for (const ReflectionOperator& op : {iso_rgb_operator(), five_form_operator()}) {
+    scene.reflection = op;
+    EXPECT_LT(disagreement(scene, effects_of(scene), 1), kAgreed);
+    scene.anisotropy.clear();
+    EXPECT_LT(disagreement(scene, effects_of(scene), 1), kAgreed);
+  }
+}
+
 // The whole integral over the hemisphere by a plain sum of many directions, as the failing control's yardstick.
 LobeIntegrals summed(double exponent, double cos_o) {
   constexpr int kRings = 2000, kAround = 400;

@@ -8,14 +8,35 @@
 
 namespace goniochrome {
 
+namespace {
+
+// The four forms of colors that lie `step` floats apart.
+std::vector<float> in_forms(const ProductForms& forms, const float* colors, std::size_t count, std::size_t step) {
+  std::vector<float> result(4 * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Rgb color{colors[step * i], colors[step * i + 1], colors[step * i + 2]};
+    for (int form = 0; form < 4; ++form)
+      result[4 * i + static_cast<std::size_t>(form)] = static_cast<float>(forms.of(form, color));
+  }
+  return result;
+}
+
+}  // namespace
+
 // Float texels: a half would have to be rounded first, since llvmpipe truncates, and is no faster to fetch.
 void GlEngine::upload(const CubeMap& map, const std::string& sampler) {
   GLuint texture = 0;
   gl_->GenTextures(1, &texture);
   gl_->BindTexture(GL_TEXTURE_CUBE_MAP, texture);
+  const auto texels = static_cast<std::size_t>(map.size) * static_cast<std::size_t>(map.size);
   for (int face = 0; face < 6; ++face) {
-    gl_->TexImage2D(GL_TEXTURE_CUBE_MAP_POSITIVE_X + static_cast<GLenum>(face), 0, GL_RGB32F, map.size, map.size, 0,
-                    GL_RGB, GL_FLOAT, map.at(face, 0, 0));
+    const GLenum target = GL_TEXTURE_CUBE_MAP_POSITIVE_X + static_cast<GLenum>(face);
+    if (forms_.count == 4) {
+      gl_->TexImage2D(target, 0, GL_RGBA32F, map.size, map.size, 0, GL_RGBA, GL_FLOAT,
+                      in_forms(forms_, map.at(face, 0, 0), texels, 3).data());
+    } else {
+      gl_->TexImage2D(target, 0, GL_RGB32F, map.size, map.size, 0, GL_RGB, GL_FLOAT, map.at(face, 0, 0));
+    }
   }
   gl_->TexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
   gl_->TexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
@@ -29,6 +50,7 @@ Result<void> GlEngine::load(const Scene& scene, const Effects& effects, const Sc
     GONIO_ASSIGN(program_, gl_->program(shading_vertex_shader(), text));
     text_ = text;
   }
+  forms_ = effects.reflection ? product_forms(scene.reflection) : ProductForms{};
   if (no_vertices_ == 0) gl_->GenVertexArrays(1, &no_vertices_);
   gl_->BlendFunc(GL_ONE, GL_ONE);
   for (const auto& [sampler, texture] : cubes_) gl_->DeleteTextures(1, &texture);
@@ -65,7 +87,14 @@ void GlEngine::upload_tilts(const std::vector<std::vector<Tilt>>& tilts) {
 
 void GlEngine::load_paints(const Scene& scene, const WeightTable& table) {
   gl_->DeleteTextures(1, &weights_);
-  weights_ = gl_->float_texture(2 * table.slots * table.segments, table.parts, table.rgba.data());
+  std::vector<float> weights = table.rgba;
+  if (forms_.count == 4) {  // those that meet maps
+    const auto met = static_cast<std::size_t>(table.light_slot()) * 8,
+               slots = static_cast<std::size_t>(table.slots) * 8;
+    for (std::size_t at = 0; at < weights.size(); at += slots)
+      std::ranges::copy(in_forms(forms_, &table.rgba[at], met / 4, 4), &weights[at]);
+  }
+  weights_ = gl_->float_texture(2 * table.slots * table.segments, table.parts, weights.data());
   gl_->DeleteTextures(1, &tilts_);
   tilts_ = 0;
   if (effects_.anisotropy) upload_tilts(tilts_of(scene, effects_));

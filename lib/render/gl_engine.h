@@ -8,6 +8,7 @@
 #include "render/effects.h"
 #include "render/gl.h"
 #include "render/maps.h"
+#include "render/product_forms.h"
 
 namespace goniochrome {
 
@@ -34,6 +35,7 @@ class GlEngine {
 
   const GlContext* gl_;
   Effects effects_;
+  ProductForms forms_;
   std::string text_;
   GLuint program_ = 0, weights_ = 0, tilts_ = 0, no_vertices_ = 0, texture_ = 0, target_ = 0;
   std::vector<std::pair<std::string, GLuint>> cubes_;  // by the name of their sampler

@@ -57,14 +57,15 @@ class Prober {
  public:
   Prober(const Scene& scene, const Effects& all, const std::vector<EffectSwitch>& switches,
          const std::vector<VisiblePoint>& points, const std::vector<VisiblePoint>& seen, double white,
-         CpuEngine& engine)
+         CpuEngine& engine, CpuEngine& component_wise)
       : scene_(scene),
         all_(all),
         switches_(switches),
         points_(points),
         seen_(seen),
         white_(white > 0 ? white : 1),
-        engine_(engine) {}
+        engine_(engine),
+        component_wise_(component_wise) {}
 
   Effects effects(const std::vector<bool>& on) const {
     Effects effects = all_;
@@ -76,8 +77,9 @@ class Prober {
 
   std::vector<Rgb> colors(const std::vector<bool>& on) {
     const Effects chosen = effects(on);
-    engine_.load_paints(scene_, chosen, weight_table(scene_, chosen));
-    std::vector<Rgb> colors = engine_.shade(points_);
+    CpuEngine& engine = chosen.reflection ? engine_ : component_wise_;
+    engine.load_paints(scene_, chosen, weight_table(scene_, chosen));
+    std::vector<Rgb> colors = engine.shade(points_);
     if (scene_.layer != nullptr) scene_.layer->add(seen_, chosen, colors);
     return colors;
   }
@@ -99,8 +101,8 @@ class Prober {
     return std::max(difference(a, b), std::sqrt(squares / static_cast<double>(std::max<std::size_t>(a.size(), 1))));
   }
 
-  // Seconds that a point takes on all cores together, the best of a few runs, each long enough that starting the threads
-  // does not count.
+  // Seconds that a point takes on all cores together, the best of a few runs, each long enough that starting the
+  // threads does not count.
   double seconds_per_point() const {
     if (points_.empty()) return 0;
     constexpr double kLong_s = 2e-4, kSlow_s = 2e-3;
@@ -127,7 +129,7 @@ class Prober {
   const std::vector<VisiblePoint>& points_;
   const std::vector<VisiblePoint>& seen_;  // the same, with the parts of the whole scene
   double white_;
-  CpuEngine& engine_;
+  CpuEngine &engine_, &component_wise_;
 };
 
 double mean_tilts(const Scene& scene, const Effects& effects, const std::vector<VisiblePoint>& points) {
@@ -142,7 +144,7 @@ double mean_tilts(const Scene& scene, const Effects& effects, const std::vector<
 // What one frame's shading takes, in ms.
 struct CostModel {
   double points = 0, pixels = 0, tilts = 1, speed = 1;  // speed: measured over counted
-  double textured = 0;                      // of the points
+  double textured = 0;                                  // of the points
   int texture_lobes = 0;
   double ms(const Effects& effects, Engine engine) const {
     const double texture_ns = textured > 0 ? textured_point_ns(effects, texture_lobes) : 0;
@@ -310,13 +312,13 @@ Scene seen_scene(const Scene& scene, const std::vector<std::shared_ptr<const Gbu
 }
 
 Result<Plan> make_plan(const Scene& scene, const std::vector<VisiblePoint>& probe, double visible_pixels,
-                       const PlanRequest& request, CpuEngine& engine) {
+                       const PlanRequest& request, CpuEngine& engine, CpuEngine& component_wise) {
   const Stopwatch clock;
   GONIO_ASSIGN(const Words words, words_of(request.effects));
   const Effects all = effects_of(scene);
   const std::vector<EffectSwitch> switches = effect_switches(scene, all, probe);
   const Compact compact = compacted(scene, probe);
-  Prober prober(compact.scene, all, switches, compact.points, probe, request.white_luminance, engine);
+  Prober prober(compact.scene, all, switches, compact.points, probe, request.white_luminance, engine, component_wise);
   const std::vector<bool> everything(switches.size(), true);
   const std::vector<Rgb> full = prober.colors(everything);
 

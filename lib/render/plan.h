@@ -57,9 +57,10 @@ std::vector<VisiblePoint> probe_points(const std::vector<std::shared_ptr<const G
 // The scene as far as it is seen: paints of parts that no G-buffer shows are bare, so that nothing is loaded for them.
 Scene seen_scene(const Scene& scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers);
 
-// `engine` must be loaded with all effects of the scene; its weights are changed. `visible_pixels` of one frame.
+// `engine` must be loaded with all effects of the scene, `component_wise` with all but the operator (it may be the same
+// where the scene has none); their weights are changed. `visible_pixels` of one frame.
 Result<Plan> make_plan(const Scene& scene, const std::vector<VisiblePoint>& probe, double visible_pixels,
-                       const PlanRequest& request, CpuEngine& engine);
+                       const PlanRequest& request, CpuEngine& engine, CpuEngine& component_wise);
 
 // Fills in the truth of every effect that is needed: the change of the exact picture without it, at these points.
 void add_truth(Plan& plan, const Scene& scene, const std::vector<VisiblePoint>& points, const Environment* env,

@@ -171,7 +171,15 @@ Result<Plan> Renderer::load(const Scene& scene, const std::vector<std::shared_pt
                             const PlanRequest& request) {
   State& s = *state_;
   const Scene seen = seen_scene(scene, gbuffers);
-  GONIO_TRY(load(seen, effects_of(seen), Engine::kCpu));
+  const Effects effects = effects_of(seen);
+  GONIO_TRY(load(seen, effects, Engine::kCpu));
+  CpuEngine component_wise;
+  if (effects.reflection) {
+    Effects plain = effects;
+    plain.reflection = false;
+    GONIO_ASSIGN(const SceneMaps maps, scene_maps(seen, plain));
+    GONIO_TRY(component_wise.load(seen, plain, maps));
+  }
   const std::vector<VisiblePoint> probe = probe_points(gbuffers, kProbe);
   double visible = 0, all = 0;
   for (const auto& g : gbuffers) {
@@ -181,7 +189,8 @@ Result<Plan> Renderer::load(const Scene& scene, const std::vector<std::shared_pt
   PlanRequest sized = request;
   if (sized.pixels == 0) sized.pixels = all / static_cast<double>(std::max<std::size_t>(1, gbuffers.size()));
   const double in_one = all > 0 ? sized.pixels * visible / all : 0;  // the G-buffers may be smaller than the frame
-  GONIO_ASSIGN(Plan plan, make_plan(seen, probe, in_one, sized, s.cpu_engine));
+  GONIO_ASSIGN(Plan plan,
+               make_plan(seen, probe, in_one, sized, s.cpu_engine, effects.reflection ? component_wise : s.cpu_engine));
   GONIO_TRY(load(seen, plan.effects, plan.engine));
   return plan;
 }

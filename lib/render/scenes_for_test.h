@@ -90,6 +90,22 @@ inline LobeFit only_mirror(double weight = 1) {
   return paint;
 }
 
+// The product of polynomials in s up to s^2, with s^3 = 0, needs five forms; in coordinates where 1 is white.
+inline ReflectionOperator five_form_operator() {
+  const Matrix3 to_rgb = {{{1, 0, 0}, {1, 1, 0}, {1, 0, 1}}}, from_rgb = {{{1, 0, 0}, {-1, 1, 0}, {-1, 0, 1}}};
+  ReflectionOperator op;
+  for (std::size_t d = 0; d < 3; ++d) {
+    for (std::size_t e = 0; e < 3; ++e) {
+      Rgb polynomial;
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; i + j < 3; ++j) polynomial[static_cast<int>(i + j)] += from_rgb[i][d] * from_rgb[j][e];
+      const Rgb color = product(to_rgb, polynomial);
+      for (std::size_t c = 0; c < 3; ++c) op.k[c][d][e] = color[static_cast<int>(c)];
+    }
+  }
+  return op;
+}
+
 // Evenly distributed numbers in [0,1), the same on every machine.
 class TestNumbers {
  public:

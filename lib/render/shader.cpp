@@ -7,6 +7,7 @@
 
 #include "base/text.h"
 #include "brdf/lobe_model.h"
+#include "render/product_forms.h"
 
 namespace goniochrome {
 
@@ -23,6 +24,15 @@ constexpr const char* kRays =
     R"(uniform vec3 corner, right, down;  // the ray through (x, y), in pixels from the upper left
 vec3 ray() { return normalize(corner + gl_FragCoord.x * right + gl_FragCoord.y * down); }
 )";
+
+// How products with the environment's maps are taken: in plain RGB, in the four forms of the operator (which the maps
+// and their weights hold already), or by the operator itself.
+enum class Product { kPlain, kForms, kOperator };
+
+Product product_of(const Effects& effects, const ProductForms& forms) {
+  if (!effects.reflection) return Product::kPlain;
+  return forms.count == 4 ? Product::kForms : Product::kOperator;
+}
 
 std::string uniforms(const Effects& effects) {
   std::string text = R"(uniform sampler2D gbuffer;  // normal, part + 1 (negative: seen from inside)
@@ -49,23 +59,11 @@ uniform sampler2D weights;  // a row for each part; two texels for each slot of 
 constexpr const char* kWeight = R"(
 int row, column = 0;
 float t;
-vec3 W(int slot) {
+vec4 W(int slot) {
   ivec2 at = ivec2(column + 2 * slot, row);
-  return texelFetch(weights, at, 0).rgb + t * texelFetch(weights, at + ivec2(1, 0), 0).rgb;
+  return texelFetch(weights, at, 0) + t * texelFetch(weights, at + ivec2(1, 0), 0);
 }
 )";
-constexpr const char* kShift = R"(
-float S(int slot) {  // the light that a lobe gathers comes from r + S n
-  ivec2 at = ivec2(column + 2 * slot, row);
-  return texelFetch(weights, at, 0).a + t * texelFetch(weights, at + ivec2(1, 0), 0).a;
-}
-)";
-
-bool any_shifted(const Effects& effects) {
-  return effects.environment && std::any_of(effects.lobes.begin(), effects.lobes.end(), [&](const auto& use) {
-           return is_shifted(effects, use.exponent);
-         });
-}
 
 std::string row_of_view(const Effects& effects) {
   if (!effects.depends_on_view()) return "  t = c;\n";
@@ -120,16 +118,48 @@ std::string reflection_function(const ReflectionOperator& op) {
   return text;
 }
 
+// The color that products of the four forms stand for, and the environment itself again.
+std::string forms_functions(const ProductForms& forms, bool background) {
+  std::string columns, white;
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (int c = 0; c < 3; ++c) columns += (columns.empty() ? "" : ", ") + glsl(forms.out[i][c]);
+    white += (white.empty() ? "" : ", ") + glsl(forms.of(static_cast<int>(i), {1, 1, 1}));
+  }
+  std::string text = fmt::format(
+      "\nvec3 color_of(vec4 products) {{  // of weights and maps, both in the four forms of bilinear reflection\n"
+      "  return mat4x3({}) * products;\n}}\n",
+      columns);
+  if (background) {
+    text += fmt::format("vec3 unreflected(vec4 forms) {{ return color_of(forms * vec4({})); }}  // by white\n", white);
+  }
+  return text;
+}
+
+// One term of what the environment shows.
+std::string product_with_map(Product product, int slot, const std::string& map, const std::string& direction) {
+  const std::string weight = fmt::format("W({})", slot), light = fmt::format("textureLod({}, {}, 0.0)", map, direction);
+  if (product == Product::kForms) return weight + " * " + light;
+  if (product == Product::kPlain) return weight + ".rgb * " + light + ".rgb";
+  return fmt::format("times({}.rgb, {}.rgb)", weight, light);
+}
+
+const char* sum_type(Product product) {
+  return product == Product::kForms ? "vec4" : "vec3";
+}
+
 // What the lobes show of the environment in a mirror direction, and what they send from a light.
-std::string lobe_functions(const Effects& effects) {
+std::string lobe_functions(const Effects& effects, Product product) {
   std::string text;
   if (effects.environment) {
-    text += "\nvec3 lobes(vec3 r, vec3 n) {\n  vec3 sum = vec3(0.0);\n";
+    text += fmt::format(
+        "\n{0} lobes(vec3 r, vec3 n) {{  // the light that a lobe gathers comes from r + s n\n  {0} sum = {0}(0.0);\n",
+        sum_type(product));
+    const WeightTable slots = slots_of(effects);
     for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
       const bool shifted = is_shifted(effects, effects.lobes[j].exponent);
-      const std::string toward = shifted ? fmt::format("r + S({}) * n", WeightTable::lobe_slot(j)) : "r";
-      text += fmt::format("  sum += {};\n", times(effects, fmt::format("W({})", WeightTable::lobe_slot(j)),
-                                                  fmt::format("textureLod(lobe_{}, {}, 0.0).rgb", j, toward)));
+      const std::string toward = shifted ? fmt::format("r + W({}).{} * n", slots.shift_slot(j), "rgba"[j % 4]) : "r";
+      text += fmt::format("  sum += {};\n",
+                          product_with_map(product, WeightTable::lobe_slot(j), fmt::format("lobe_{}", j), toward));
     }
     text += "  return sum;\n}\n";
   }
@@ -140,8 +170,8 @@ std::string lobe_functions(const Effects& effects) {
   for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
     const Effects::LobeUse& lobe = effects.lobes[j];
     std::string weight;
-    if (lobe.directional_diffuse) weight = fmt::format("cos_i * W({})", slots.directional_diffuse_slot(j));
-    if (lobe.gloss) weight += fmt::format("{}F * W({})", weight.empty() ? "" : " + ", slots.gloss_slot(j));
+    if (lobe.directional_diffuse) weight = fmt::format("cos_i * W({}).rgb", slots.directional_diffuse_slot(j));
+    if (lobe.gloss) weight += fmt::format("{}F * W({}).rgb", weight.empty() ? "" : " + ", slots.gloss_slot(j));
     text += fmt::format("  sum += ({}) * cos_power(versine, {});\n", weight, glsl(lobe.exponent));
   }
   return text + "  return sum;\n}\n";
@@ -164,15 +194,17 @@ std::string over_tilts(const Effects& effects, const std::string& sum, const std
 }
 
 // L = K_D pi P_1(n) + sum W_j P_Ej(r) + K_M F P_inf(r)
-std::string environment_terms(const Effects& effects) {
+std::string environment_terms(const Effects& effects, Product product) {
   std::string text = "\n  // the environment\n";
+  const std::string sum = product == Product::kForms ? "products" : "radiance";
+  if (product == Product::kForms) text += "  vec4 products = vec4(0.0);\n";
   const auto term = [&](int slot, const char* map, const char* direction) {
-    text += fmt::format("  radiance += {};\n", times(effects, fmt::format("W({})", slot),
-                                                     fmt::format("textureLod({}, {}, 0.0).rgb", map, direction)));
+    text += fmt::format("  {} += {};\n", sum, product_with_map(product, slot, map, direction));
   };
   if (effects.diffuse) term(WeightTable::diffuse_slot(), "diffuse", "n");
-  if (!effects.lobes.empty()) text += over_tilts(effects, "radiance", "lobes", ", n");
+  if (!effects.lobes.empty()) text += over_tilts(effects, sum, "lobes", ", n");
   if (effects.mirror) term(slots_of(effects).mirror_slot(), "mirror", "r");
+  if (product == Product::kForms) text += "  radiance += color_of(products);\n";
   return text;
 }
 
@@ -187,7 +219,7 @@ std::string light_terms(const Effects& effects) {
     if (cos_i <= 0.0) continue;
     vec3 reflected = {};
 )",
-      effects.lights, effects.diffuse ? fmt::format("cos_i * W({})", slots_of(effects).light_slot()) : "vec3(0.0)");
+      effects.lights, effects.diffuse ? fmt::format("cos_i * W({}).rgb", slots_of(effects).light_slot()) : "vec3(0.0)");
   if (!effects.lobes.empty()) {
     const char* fresnel = lit_gloss(effects) ? "fresnel(sqrt(0.5 + 0.5 * dot(l, wo)))" : "1.0";
     text += over_tilts(effects, "reflected", "lit_lobes", fmt::format(", l, cos_i, {}", fresnel));
@@ -196,10 +228,11 @@ std::string light_terms(const Effects& effects) {
                             times(effects, "light_white[i]", "reflected"));
 }
 
-std::string background_color(Background background) {
+std::string background_color(Background background, Product product) {
   switch (background) {
     case Background::kEnvironment:
-      return "vec4(textureLod(mirror, -wo, 0.0).rgb, 1.0)";
+      return product == Product::kForms ? "vec4(unreflected(textureLod(mirror, -wo, 0.0)), 1.0)"
+                                        : "vec4(textureLod(mirror, -wo, 0.0).rgb, 1.0)";
     case Background::kColor:
       return "vec4(background, 1.0)";
     case Background::kNone:
@@ -248,13 +281,16 @@ void main() {  // one triangle that covers the picture
 
 std::string shading_fragment_shader(const Effects& effects, const ReflectionOperator& op) {
   const bool lit_lobes = effects.lights > 0 && !effects.lobes.empty();
+  const ProductForms forms = effects.reflection ? product_forms(op) : ProductForms{};
+  const Product product = product_of(effects, forms);
   std::string text = "#version 330 core\n// goniochrome-theory(7), RENDERING\n";
   text += uniforms(effects) + kRays + "layout(location = 0) out vec4 color;\n" + kWeight;
-  if (any_shifted(effects)) text += kShift;
-  if (effects.reflection) text += reflection_function(op);
+  if (effects.reflection && (product == Product::kOperator || effects.lights > 0)) text += reflection_function(op);
+  if (effects.environment && product == Product::kForms)
+    text += forms_functions(forms, effects.background == Background::kEnvironment);
   if (lit_gloss(effects)) text += fresnel_function();
   if (lit_lobes) text += kCosPower;
-  if (!effects.lobes.empty()) text += lobe_functions(effects);
+  if (!effects.lobes.empty()) text += lobe_functions(effects, product);
   text += fmt::format(R"(
 void main() {{
   vec4 point = texelFetch(gbuffer, ivec2(gl_FragCoord.xy), 0);
@@ -269,13 +305,13 @@ void main() {{
   row = int(abs(point.w)) - 1;
 {}  vec3 radiance = vec3(0.0);
 )",
-                      background_color(effects.background), row_of_view(effects));
+                      background_color(effects.background, product), row_of_view(effects));
   if (effects.anisotropy) {
     text += R"(  int tilt_count = textureSize(tilts, 0).x;
   vec3 x = dot(n.xz, n.xz) > 1e-12 ? normalize(vec3(n.z, 0.0, -n.x)) : vec3(1.0, 0.0, 0.0), y = cross(n, x);
 )";
   }
-  if (effects.environment) text += environment_terms(effects);
+  if (effects.environment) text += environment_terms(effects, product);
   if (effects.lights > 0) text += light_terms(effects);
   return text + "  color = vec4(radiance, 1.0);\n}\n";
 }

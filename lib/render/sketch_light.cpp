@@ -70,7 +70,8 @@ class Shading {
     for (int k = 1; k < last; ++k) {
       const auto lobe = static_cast<std::size_t>((k - 1) / 2);
       const int slot = WeightTable::lobe_slot(lobe);
-      const Vec3 toward = view.mirrored + weight(k, slot, view.cos_o, 3) * n;
+      const Vec3 toward =
+          view.mirrored + weight(k, table_.shift_slot(lobe), view.cos_o, static_cast<int>(lobe % 4)) * n;
       column[k] = scale * weight(k, slot, view.cos_o, 0) * bilinear(env_.lobes[lobe].map, toward);
     }
     column[last] = {};
@@ -86,7 +87,7 @@ class Shading {
     double cos_o;
   };
 
-  // A slot's channel of the paint of this number; 3 is how far its lobe looks toward the normal.
+  // A slot's channel of the paint of this number.
   double weight(int paint, int slot, double cos_o, int channel) const {
     const double x = table_.segments > 1 ? std::sqrt(cos_o) * table_.segments : cos_o;
     const int segment = std::min(static_cast<int>(x), table_.segments - 1);
