@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/parallel.h"
 #include "brdf/lobe_model.h"
 #include "fit/sketch_solve.h"
 
@@ -21,6 +22,7 @@ constexpr double kTuning = 2.385;          // Cauchy's: 95 % as good as least sq
 constexpr double kLeastScale = 1;          // of residuals, in L*: what a curve cannot follow is no outlier yet
 constexpr double kDarkest = 0.004;         // of a channel, for its weight; L* 4
 constexpr int kIterations = 12;
+constexpr std::size_t kScannedCells = 500;  // for the travel alone
 
 double median(std::vector<double>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -77,15 +79,13 @@ struct Weighing {
 
   double square(std::size_t i, int c) const { return count[i] * agreement[i] * lightness[i][c] * lightness[i][c]; }
 
-  // Residuals in L*, from which the weights of the next round follow: those of least absolute deviations first, then
+  // Residuals of light(i) in L*, from which the weights of the next round follow: those of least absolute deviations first, then
   // Cauchy's. Returns the cost, sum of count log(1 + (r/s)^2) with s fixed, over the sum of counts.
-  double reweigh(const std::vector<SketchCell>& cells, const SketchCurve& curve, bool absolute) {
+  template <class Light>
+  double reweigh(const std::vector<SketchCell>& cells, Light&& light, bool absolute) {
     std::vector<double> residual(cells.size()), sorted;
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      const SketchCell& cell = cells[i];
-      const Rgb apart =
-          cell.cos_i * curve.reflectance(cell.aspecular_deg) + curve.gloss(cell.aspecular_deg) - cell.seen;
-      residual[i] = length(lightness[i] * apart);
+      residual[i] = length(lightness[i] * (light(i) - cells[i].seen));
       sorted.push_back(residual[i]);
     }
     const double scale = kTuning * std::max(kSigmas * median(sorted), kLeastScale);
@@ -124,9 +124,19 @@ CurveFit quadratic_at(double travel_deg, const std::vector<SketchCell>& cells, i
       const Eigen::Vector3d x = gram.ldlt().solve(right);
       for (int k = 0; k < 3; ++k) fit.curve.quadratic[k][c] = x[k];
     }
-    fit.cost = weighing.reweigh(cells, fit.curve, round < iterations / 2);
+    const auto& q = fit.curve.quadratic;
+    const auto light = [&](std::size_t i) { return rows[i][0] * q[0] + rows[i][1] * q[1] + rows[i][2] * q[2]; };
+    fit.cost = weighing.reweigh(cells, light, round < iterations / 2);
   }
   return fit;
+}
+
+// About kScannedCells of the cells, of all angles and cosines alike.
+std::vector<SketchCell> sample_of(const std::vector<SketchCell>& cells) {
+  const std::size_t step = sketch_step(cells.size(), kScannedCells);
+  std::vector<SketchCell> some;
+  for (std::size_t i = 0; i < cells.size(); i += step) some.push_back(cells[i]);
+  return some;
 }
 
 // The condition of the three columns under the final weights, by luminance' channel, each column of length 1.
@@ -151,11 +161,23 @@ const std::vector<double>& lobe_exponents_used() {
 }
 constexpr std::size_t kFirstGloss = 3;  // gloss lobes are at least this sharp
 constexpr int kLobeColumns = 1 + 9 + 6;
+constexpr double kShownFrom_deg = 15;  // the curve is asked for from here on
+constexpr double kMostGrowth = 2;      // of a lobe from the first angle seen to the first asked for
 
-std::array<double, kLobeColumns> lobe_row(const SketchCell& cell) {
+// Whether the angles seen tell of a lobe this sharp. One that has all but vanished there would take any weight, and
+// follow the noise of the first cells up into any color.
+bool is_lobe_seen(double exponent, double from_deg) {
+  const double asked = std::min(from_deg, kShownFrom_deg) * std::numbers::pi / 180;
+  const double seen = from_deg * std::numbers::pi / 180;
+  return kMostGrowth * cos_power(seen, exponent) >= cos_power(asked, exponent);
+}
+
+// `from_deg`: the first angle of all cells.
+std::array<double, kLobeColumns> lobe_row(const SketchCell& cell, double from_deg) {
   const auto& exponents = lobe_exponents_used();
   std::array<double, kLobeColumns> row{cell.cos_i};
   for (std::size_t j = 0; j < exponents.size(); ++j) {
+    if (!is_lobe_seen(exponents[j], from_deg)) continue;
     const double power = cos_power(cell.aspecular_deg * std::numbers::pi / 180, exponents[j]);
     row[1 + j] = cell.cos_i * power;
     if (j >= kFirstGloss) row[10 + j - kFirstGloss] = power;
@@ -164,6 +186,12 @@ std::array<double, kLobeColumns> lobe_row(const SketchCell& cell) {
 }
 
 }  // namespace
+
+std::size_t sketch_step(std::size_t count, std::size_t most) {
+  std::size_t step = std::max<std::size_t>(1, count / most);
+  while (step > 1 && (step % 2 == 0 || step % 3 == 0)) ++step;
+  return step;
+}
 
 double cell_importance(const SketchCell& cell) {
   return std::sqrt(std::min(cell.count, kFullCount) / kFullCount);
@@ -181,12 +209,12 @@ std::vector<SketchCell> sketch_cells(const std::vector<SketchSample>& samples) {
   std::vector<SketchSample> sorted(samples.size());
   std::vector<std::size_t> place(begin.begin(), begin.end() - 1);
   for (const SketchSample& s : samples) sorted[place[cell_of(s)]++] = s;
-  std::vector<SketchCell> cells;
-  for (std::size_t i = 0; i + 1 < begin.size(); ++i)
-    if (begin[i + 1] > begin[i]) {
-      const SketchCell cell = robust_mean(&sorted[begin[i]], begin[i + 1] - begin[i]);
-      if (cell.count > 0) cells.push_back(cell);
-    }
+  std::vector<SketchCell> cells(begin.size() - 1);
+  parallel_for(cells.size(), kCosineBins, [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i)
+      if (begin[i + 1] > begin[i]) cells[i] = robust_mean(&sorted[begin[i]], begin[i + 1] - begin[i]);
+  });
+  std::erase_if(cells, [](const SketchCell& cell) { return cell.count == 0; });
   return cells;
 }
 
@@ -209,10 +237,11 @@ Rgb SketchCurve::gloss(double aspecular_deg) const {
 }
 
 CurveFit fit_quadratic(const std::vector<SketchCell>& cells) {
-  CurveFit best = quadratic_at(60, cells, 4);
+  const std::vector<SketchCell> some = sample_of(cells);
+  CurveFit best = quadratic_at(60, some, 4);
   const auto try_travel = [&](double travel_deg) {
     if (travel_deg <= 15 || travel_deg > 180) return;
-    CurveFit fit = quadratic_at(travel_deg, cells, 4);
+    CurveFit fit = quadratic_at(travel_deg, some, 4);
     if (fit.cost < best.cost) best = std::move(fit);
   };
   for (double travel_deg = 20; travel_deg <= 180; travel_deg += 10) try_travel(travel_deg);
@@ -232,20 +261,27 @@ CurveFit fit_lobes(const std::vector<SketchCell>& cells) {
   curve.flake.resize(curve.exponents.size()), curve.glare.resize(curve.exponents.size());
   Weighing weighing(cells);
   std::vector<std::array<double, kLobeColumns>> rows;
-  for (const SketchCell& cell : cells) rows.push_back(lobe_row(cell));
+  for (const SketchCell& cell : cells) rows.push_back(lobe_row(cell, cells.front().aspecular_deg));
+  std::array<Rgb, kLobeColumns> weights;
   for (int round = 0; round < kIterations; ++round) {
     for (int c = 0; c < 3; ++c) {
       NormalEquations normal(kLobeColumns);
       for (std::size_t i = 0; i < cells.size(); ++i)
         normal.add(rows[i].data(), cells[i].seen[c], weighing.square(i, c));
       const std::vector<double> x = normal.non_negative();
+      for (int k = 0; k < kLobeColumns; ++k) weights[k][c] = x[k];
       curve.diffuse[c] = x[0];
       for (std::size_t j = 0; j < curve.exponents.size(); ++j) {
         curve.flake[j][c] = x[1 + j];
         if (j >= kFirstGloss) curve.glare[j][c] = x[10 + j - kFirstGloss];
       }
     }
-    fit.cost = weighing.reweigh(cells, curve, round < kIterations / 2);
+    const auto light = [&](std::size_t i) {
+      Rgb sum;
+      for (int k = 0; k < kLobeColumns; ++k) sum += rows[i][k] * weights[k];
+      return sum;
+    };
+    fit.cost = weighing.reweigh(cells, light, round < kIterations / 2);
   }
   return fit;
 }

@@ -19,6 +19,10 @@ struct SketchCell {
 // the many of a flat roof; 64 samples have their full say.
 double cell_importance(const SketchCell& cell);
 
+// Every how many-th of `count` cells to take for about `most` of them. Cells stand in rows of twelve cosines, of which
+// all are to be met: the step shares no factor with twelve.
+std::size_t sketch_step(std::size_t count, std::size_t most);
+
 struct SketchSample {
   float aspecular_deg, cos_i;
   std::array<float, 3> seen;

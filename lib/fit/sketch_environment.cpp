@@ -9,11 +9,13 @@ namespace goniochrome {
 
 namespace {
 
-constexpr std::size_t kMostPixels = 6000;  // looked at by the search; more change the answer by less than 0.05 dE
+constexpr std::size_t kMostPixels = 6000;   // looked at for the answer; more change it by less than 0.05 dE
+constexpr std::size_t kFirstPixels = 1500;  // and on the way to it
 constexpr std::size_t kFewestPixels = 30;
 
-SearchSamples samples_of(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light) {
-  const std::size_t step = std::max<std::size_t>(1, pixels.used.size() / kMostPixels);
+SearchSamples samples_of(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light,
+                         std::size_t most) {
+  const std::size_t step = std::max<std::size_t>(1, pixels.used.size() / most);
   std::vector<std::uint32_t> places;
   for (std::size_t i = 0; i < pixels.used.size(); i += step) places.push_back(pixels.used[i]);
   SearchSamples samples;
@@ -34,7 +36,7 @@ SearchSamples samples_of(const SketchInput& input, const SketchPixels& pixels, c
 
 SketchFit sketch_environment(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light,
                              const SketchLimits& limits, bool with_differences) {
-  const LobeSearch search(light.basis, samples_of(input, pixels, light));
+  const LobeSearch search(light.basis, samples_of(input, pixels, light, kMostPixels));
   SketchFit fit;
   std::vector<Rgb> weights(search_columns(light.basis));
   const auto judge = [&] {
@@ -57,7 +59,8 @@ SketchFit sketch_environment(const SketchInput& input, const SketchPixels& pixel
   };
   if (pixels.used.size() < kFewestPixels)
     return give_up(fmt::format("{} pixels are too few for a search", pixels.used.size()));
-  const FoundPaint found = search.find();
+  const LobeSearch first(light.basis, samples_of(input, pixels, light, kFirstPixels));
+  const FoundPaint found = search.find(first);
   take_found(found, fit);
   weights = found.weights;
   judge();

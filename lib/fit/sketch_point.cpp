@@ -4,6 +4,7 @@
 #include <numbers>
 #include <optional>
 
+#include "base/parallel.h"
 #include "brdf/lobe_model.h"
 #include "fit/sketch_common.h"
 #include "fit/sketch_curve.h"
@@ -15,9 +16,9 @@ namespace goniochrome {
 namespace {
 
 constexpr double kContrastRegion_deg = 15;  // [Shimizu2009] 3.7.3
-constexpr std::size_t kFewestCells = 8;
+constexpr std::size_t kFewestCells = 8, kChunk = 8192;
 constexpr double kReach_deg = 2;  // an angle this close to one seen counts as seen
-constexpr std::size_t kSearchCells = 700;
+constexpr std::size_t kSearchCells = 700, kFirstCells = 400;  // that the answer and the way to it look at
 constexpr double kSameCost = 1.05, kSameCostBy = 0.005;  // costs of two values of gloss that the pixels cannot tell
 
 // What the buffers and the picture have at each pixel, relative to the light.
@@ -95,10 +96,9 @@ void take_gloss(const Highlight& highlight, const std::function<bool(double)>& a
   take(highlight.by_contrast, "contrast");
 }
 
-// The same cells as light on lobes: at most kSearchCells of them, of all cosines alike.
-SearchSamples search_samples(const std::vector<SketchCell>& cells, const Basis& basis, bool display) {
-  std::size_t step = std::max<std::size_t>(1, cells.size() / kSearchCells);
-  while (step > 1 && (step % 2 == 0 || step % 3 == 0)) ++step;  // cells stand in rows of twelve cosines
+// The same cells as light on lobes: about `most` of them, of all angles and cosines alike.
+SearchSamples search_samples(const std::vector<SketchCell>& cells, const Basis& basis, bool display, std::size_t most) {
+  const std::size_t step = sketch_step(cells.size(), most);
   SearchSamples samples;
   samples.columns = search_columns(basis);
   samples.display = display;
@@ -194,9 +194,10 @@ void fall_back(const Rgb& color, const std::string& reason, SketchFit& fit) {
 SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, const Basis& basis,
                        const SketchLimits& limits, bool with_differences) {
   const Seen seen(input);
-  std::vector<SketchSample> samples;
-  samples.reserve(pixels.used.size());
-  for (const std::uint32_t place : pixels.used) samples.push_back(seen.at(place));
+  std::vector<SketchSample> samples(pixels.used.size());
+  parallel_for(samples.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) samples[i] = seen.at(pixels.used[i]);
+  });
   const std::vector<SketchCell> cells = sketch_cells(samples);
   SketchFit fit;
   if (!cells.empty()) fit.seen_from_deg = cells.front().aspecular_deg, fit.seen_to_deg = cells.back().aspecular_deg;
@@ -222,8 +223,10 @@ SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, con
   const CurveFit quadratic = fit_quadratic(cells), lobes = fit_lobes(cells);
   const Rgb matt = curve.diffuse;
   const CurveFit& better = lobes.cost <= quadratic.cost ? lobes : quadratic;
-  const LobeSearch search(basis, search_samples(cells, basis, !input.edited->scene_linear));
-  const FoundPaint found = search.find();
+  const bool display = !input.edited->scene_linear;
+  const LobeSearch first(basis, search_samples(cells, basis, display, kFirstCells));
+  const LobeSearch search(basis, search_samples(cells, basis, display, kSearchCells));
+  const FoundPaint found = search.find(first);
   const bool as_good = is_as_good(found.search.cost, better.cost);
   curve = as_good ? curve_of(found, basis) : better.curve;
   judge();

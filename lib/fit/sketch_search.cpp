@@ -51,6 +51,10 @@ std::vector<SearchParameter> parameters_of(const std::vector<double>& v) {
   return p;
 }
 
+void take_better(SearchResult result, bool exact, FoundPaint& best) {
+  if (best.search.values.empty() || result.cost < best.search.cost) best = {std::move(result), {}, exact};
+}
+
 std::vector<SearchParameter> parameters(const Appearance& a, double gloss) {
   return parameters_of({a.face.L, a.face.a, a.face.b, a.flop.L, a.flop.a, a.flop.b, a.travel_deg, gloss});
 }
@@ -230,28 +234,31 @@ SearchResult LobeSearch::best_rows(const SearchResult& appearance) const {
 
 // Which of the two ways made the picture's lobes is not known: each start goes both. A paint that explains the samples
 // exactly ends the search; where noise hides what is exact, the further starts are not worth their time.
-FoundPaint LobeSearch::find() const {
+FoundPaint LobeSearch::best_of_starts() const {
   FoundPaint best;
-  const auto take = [&](SearchResult result, bool exact) {
-    if (best.search.values.empty() || result.cost < best.search.cost) best = {std::move(result), {}, exact};
-  };
   const auto try_all = [&](const std::vector<std::vector<SearchParameter>>& starts) {
     for (const auto& start : starts) {
       if (!best.search.values.empty() && best.search.cost <= kExactCost) return;
       SearchResult smooth = run(smooth_, start);
-      take(run(exact_, parameters_of(smooth.values)), true);
-      take(std::move(smooth), false);
+      take_better(run(exact_, parameters_of(smooth.values)), true, best);
+      take_better(std::move(smooth), false, best);
     }
   };
   const auto first = starts();
   try_all(first);
   if (best.search.cost <= kNoisyCost) try_all(further_starts(first.front()));
+  return best;
+}
+
+FoundPaint LobeSearch::find(const LobeSearch& first) const {
+  const FoundPaint begun = first.best_of_starts();
+  FoundPaint best = {run(begun.exact ? exact_ : smooth_, parameters_of(begun.search.values)), {}, begun.exact};
   if (best.search.cost > kGoodCost) {
     SearchResult rows = best_rows(best.search);
     if (rows.cost < kRowsGain * best.search.cost) {
       SearchResult exact = run(exact_, parameters_of(rows.values));
-      take(std::move(rows), false);
-      take(std::move(exact), true);
+      take_better(std::move(rows), false, best);
+      take_better(std::move(exact), true, best);
     }
   }
   best.weights = weights(best.exact ? exact_ : smooth_, best.search.values);

@@ -33,9 +33,10 @@ class LobeSearch {
  public:
   LobeSearch(const Basis& basis, SearchSamples samples);
 
-  // From four starts, and nine more where they find no exact agreement in a clean picture; then, unless face, flop and
-  // travel explain the samples as well, with the colors at three angles freed.
-  FoundPaint find() const;
+  // From four starts, and nine more where they find no exact agreement in a clean picture, all in the samples of
+  // `first`, a part of these; the best goes on in all samples, and then, unless face, flop and travel explain them as
+  // well, with the colors at three angles freed.
+  FoundPaint find(const LobeSearch& first) const;
 
   // The cost of a paint found, with another gloss (gloss units).
   double cost_with_gloss(const FoundPaint& found, double gloss) const;
@@ -53,6 +54,7 @@ class LobeSearch {
   void scan_gloss(std::vector<SearchParameter>& start) const;
   std::vector<std::vector<SearchParameter>> starts() const;
   static std::vector<std::vector<SearchParameter>> further_starts(const std::vector<SearchParameter>& first);
+  FoundPaint best_of_starts() const;
   SearchResult best_rows(const SearchResult& appearance) const;
 
   Basis basis_;

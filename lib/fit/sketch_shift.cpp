@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "fit/sketch.h"
 
 namespace goniochrome {
@@ -8,7 +9,7 @@ namespace goniochrome {
 namespace {
 
 constexpr int kReach = 8;                  // pixels
-constexpr std::size_t kMostEdges = 20000;  // looked at
+constexpr std::size_t kMostEdges = 8000;  // looked at
 constexpr double kBetter = 1.1;            // than no shift, or none is suggested
 
 // How strong the edge at a pixel is: the larger neighboring difference of the square roots of luminance, which cut no
@@ -46,17 +47,18 @@ SketchShift sketch_shift(const SketchInput& input) {
                      [](const Edge& a, const Edge& b) { return a.strength > b.strength; });
     edges.resize(kMostEdges);
   }
-  const auto agreement = [&](int dx, int dy) {
-    double sum = 0;
-    for (const Edge& e : edges) sum += e.strength * edge(is, e.x + dx, e.y + dy);
-    return sum;
-  };
+  constexpr int kSide = 2 * kReach + 1;
+  std::vector<double> agreement(kSide * kSide, 0);
+  parallel_for(agreement.size(), kSide, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const int dx = static_cast<int>(i % kSide) - kReach, dy = static_cast<int>(i / kSide) - kReach;
+      for (const Edge& e : edges) agreement[i] += e.strength * edge(is, e.x + dx, e.y + dy);
+    }
+  });
   SketchShift best;
-  const double unmoved = agreement(0, 0);
-  double most = kBetter * unmoved;
-  for (int dy = -kReach; dy <= kReach; ++dy)
-    for (int dx = -kReach; dx <= kReach; ++dx)
-      if (const double sum = agreement(dx, dy); sum > most) most = sum, best = {dx, dy};
+  double most = kBetter * agreement[kReach * kSide + kReach];
+  for (int i = 0; i < kSide * kSide; ++i)
+    if (agreement[i] > most) most = agreement[i], best = {i % kSide - kReach, i / kSide - kReach};
   return best;
 }
 

@@ -11,6 +11,7 @@
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfThreading.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -174,6 +175,7 @@ Result<ImagePart> decoded_part(Imf::MultiPartInputFile& file, int index, const s
 }  // namespace
 
 Result<std::vector<ImagePart>> decoded_exr(const std::string& content, const std::string& name) {
+  if (Imf::globalThreadCount() == 0 && threads() > 1) Imf::setGlobalThreadCount(threads());
   // What is no EXR file at all is the library's to tell.
   if (content.starts_with("\x76\x2f\x31\x01") && !header_ends_within(content))
     return input_error("{}: is cut off within its header", name);

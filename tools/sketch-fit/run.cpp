@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/clock.h"
+#include "base/parallel.h"
 #include "base/text.h"
 #include "fit/sketch.h"
 #include "paint/xml.h"
@@ -64,14 +65,20 @@ Result<void> gather(const SketchFitOptions& options, Material& material) {
   if (!options.residual.empty() && !options.residual.ends_with(".png"))
     return usage_error("--residual is \"{}\": give a name that ends in .png", options.residual);
   SketchInput& input = material.input;
-  GONIO_ASSIGN(material.buffers, read_aov_file(options.buffers));
+  Result<AovFile> buffers = AovFile{};
+  Result<Picture> picture = Picture{};
+  const auto view = options.view == "plain" ? PictureView::kPlain : PictureView::kPaint;
+  parallel_for(2, 1, [&](std::size_t begin, std::size_t) {
+    if (begin == 0) picture = read_picture(options.image, view);
+    if (begin == 1) buffers = read_aov_file(options.buffers);
+  });
+  GONIO_ASSIGN(material.buffers, std::move(buffers));
   GONIO_TRY(check_light(options, material.buffers));
   for (const std::string& name : options.parts) {
     GONIO_ASSIGN(const int part, material.buffers.part(name));
     input.parts.push_back(part);
   }
-  GONIO_ASSIGN(material.picture,
-               read_picture(options.image, options.view == "plain" ? PictureView::kPlain : PictureView::kPaint));
+  GONIO_ASSIGN(material.picture, std::move(picture));
   if (!options.mask.empty()) {
     GONIO_ASSIGN(ImagePart mask, read_image(options.mask));
     material.mask = std::move(mask.image);
