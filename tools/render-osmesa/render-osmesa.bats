@@ -134,10 +134,10 @@ near() {
 @test "--seed chooses the checked pixels" {
   for seed in 1 1 2; do
     render-osmesa -q --mesh "$shape" $light $small --check 3 --seed $seed -o out.exr --report r.json
-    grep -E '"(worst_x|worst_y|de00_max)"' r.json >>"seed-$seed.txt"
+    grep -E '"worst_[xy]"' r.json >>"seed-$seed.txt"
   done
-  [ "$(head -3 seed-1.txt)" = "$(tail -3 seed-1.txt)" ]
-  [ "$(head -3 seed-1.txt)" != "$(cat seed-2.txt)" ]
+  [ "$(head -2 seed-1.txt)" = "$(tail -2 seed-1.txt)" ]
+  [ "$(head -2 seed-1.txt)" != "$(cat seed-2.txt)" ]
 }
 
 @test "a camera inside the mesh, or looking elsewhere, is told" {
@@ -205,7 +205,7 @@ refused() {
   run render-osmesa --mesh panels.obj --light 0,0 $front -p paints.xml#red --explain --print-shader -o out.exr
   [ "$status" -eq 0 ]
   [[ "$output" =~ "3 parts" ]]
-  [[ "$output" =~ "effect       needed" ]]
+  [[ "$output" =~ effect\ +needed ]]
   [[ "$output" =~ "solid paints: no flake lobes" ]]
   [[ "$output" =~ "engine cpu: the faster: predicted" ]]
   [[ "$output" =~ "#version 330 core" ]]

@@ -60,6 +60,17 @@ decided() { grep -A4 "\"effect\": \"$1\"" auto.json | grep -q "\"decision\": \"$
 }
 
 # Forced out, the error that the check shows is the one that the plan predicted, within a factor of 2.
+@test "--check tells what the plan left out" {
+  run render-osmesa $view --check 5 -p fitted.xml#candy_red --env studio.env.exr --effects all,-mirror -o off.exr --report off.json
+  [ "$status" -eq 0 ]
+  [[ "$output" =~ left\ out:\ dE00\ p95\ [1-9] ]]
+  for key in de00_mean de00_p95 de00_max shading_ms shading_all_ms predicted_ms; do
+    sed -n '/"left_out": {/,/}/p' off.json | grep -q "\"$key\": [0-9]"
+  done
+  render-osmesa -q $view --check 5 -p fitted.xml#candy_red --env studio.env.exr --effects all -o all.exr --report all.json
+  sed -n '/"left_out": {/,/}/p' all.json | grep -qE '"de00_max": 0(\.0)?,?$'
+}
+
 @test "an effect forced off errs by what the plan predicted" {
   for effect in fresnel mirror lobes; do
     render-osmesa -q $view --check 60 -p fitted.xml#candy_red --env studio.env.exr --effects all,-$effect -o off.exr \

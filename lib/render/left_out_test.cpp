@@ -1,0 +1,82 @@
+#include "render/left_out.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "render/scenes_for_test.h"
+#include "render/seen.h"
+
+namespace goniochrome {
+namespace {
+
+constexpr int kSize = 64;
+
+struct World {
+  Mesh mesh = sphere_mesh(64);
+  PrefilteredEnvironment env = constant_env({1, 1, 1}, {6, 40});
+  Scene scene;
+  View view;
+  World() {
+    LobeFit paint = matt({0.1, 0.2, 0.05});
+    paint.lobes = {{6, {0.05, 0.1, 0.02}, {}}, {40, {0.2, 0.3, 0.1}, {}}};
+    scene.mesh = &mesh, scene.env = &env, scene.paints = {paint};
+    view = {Camera::orbit(mesh, 30, 20, 1, 30, 1), kSize, kSize, 1, false};
+  }
+  Image draw(const Effects& effects) const {
+    auto renderer = Renderer::create();
+    EXPECT_TRUE(renderer->load(scene, effects, Engine::kCpu).ok());
+    Frame frame;
+    EXPECT_TRUE(renderer->draw(view, frame).ok());
+    return frame.picture;
+  }
+};
+
+TEST(LeftOut, IsTheDifferenceOfThePlannedPictureFromThatOfAllEffects) {
+  const World world;
+  auto renderer = Renderer::create();
+  ASSERT_TRUE(renderer.ok()) << renderer.error().message;
+  const auto seen = renderer->look(world.mesh, world.view);
+  PlanRequest request;
+  request.effects = "all,-diffuse", request.engine = Engine::kCpu;
+  const auto plan = renderer->load(world.scene, {*seen}, request);
+  ASSERT_TRUE(plan.ok());
+  const auto left = left_out(*renderer, world.scene, *plan, world.view, 1);
+  ASSERT_TRUE(left.ok());
+  Effects without = effects_of(world.scene);
+  without.diffuse = false;
+  const Image full = world.draw(effects_of(world.scene)), planned = world.draw(without);
+  std::vector<double> de00;
+  for (int y = 0; y < kSize; ++y) {
+    for (int x = 0; x < kSize; ++x) {
+      const float *a = planned.pixel(x, y), *b = full.pixel(x, y);
+      if ((*seen)->part(x, y) >= 0) de00.push_back(seen_difference({a[0], a[1], a[2]}, {b[0], b[1], b[2]}, 1));
+    }
+  }
+  EXPECT_GT(left->de00_p95, 5) << "the diffuse part of a green paint is seen";
+  EXPECT_DOUBLE_EQ(left->de00_max, *std::max_element(de00.begin(), de00.end()));
+  EXPECT_DOUBLE_EQ(left->de00_p95, percentile_95(std::move(de00)));
+  EXPECT_GT(left->planned_ms, 0);
+  EXPECT_GT(left->full_ms, 0);
+  Frame after;
+  ASSERT_TRUE(renderer->draw(world.view, after).ok());
+  EXPECT_EQ(after.picture.data, planned.data) << "the renderer is left as planned";
+}
+
+TEST(LeftOut, IsNothingWhereAllIsDrawn) {
+  const World world;
+  auto renderer = Renderer::create();
+  ASSERT_TRUE(renderer.ok()) << renderer.error().message;
+  const auto seen = renderer->look(world.mesh, world.view);
+  PlanRequest request;
+  request.effects = "all";
+  const auto plan = renderer->load(world.scene, {*seen}, request);
+  ASSERT_TRUE(plan.ok());
+  const auto left = left_out(*renderer, world.scene, *plan, world.view, 1);
+  ASSERT_TRUE(left.ok());
+  EXPECT_EQ(left->de00_max, 0);
+  EXPECT_EQ(left->full_ms, left->planned_ms);
+}
+
+}  // namespace
+}  // namespace goniochrome
