@@ -17,7 +17,8 @@ namespace {
 
 constexpr double kContrastRegion_deg = 15;  // [Shimizu2009] 3.7.3
 constexpr std::size_t kFewestCells = 8, kChunk = 8192;
-constexpr double kReach_deg = 2;  // an angle this close to one seen counts as seen
+constexpr double kFace_deg = 15;                              // the least of the export angles
+constexpr double kReach_deg = 2;                              // an angle this close to one seen counts as seen
 constexpr std::size_t kSearchCells = 700, kFirstCells = 400;  // that the answer and the way to it look at
 constexpr double kSameCost = 1.05, kSameCostBy = 0.005;  // costs of two values of gloss that the pixels cannot tell
 
@@ -135,9 +136,11 @@ void take_curve(const SketchCurve& curve, SketchFit& fit) {
 }
 
 // Whether the search, which has a paint's few degrees of freedom, explains the cells as well as a free curve: nearly,
-// in a clean picture; in a noisy one the curve's gain may be the noise's.
-bool is_as_good(double search_cost, double curve_cost) {
+// in a clean picture; in a noisy one the curve's gain may be the noise's, and the more so where no pixel holds the
+// curve at the angles asked for.
+bool is_as_good(double search_cost, double curve_cost, bool extrapolates) {
   constexpr double kNoisy = 0.2;  // of log(1 + dE^2): about half a dE
+  if (extrapolates && search_cost <= kNoisy + 1.6 * curve_cost) return true;
   return search_cost <= 1.15 * curve_cost + 0.02 || (curve_cost > kNoisy && search_cost <= 1.6 * curve_cost);
 }
 
@@ -227,7 +230,7 @@ SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, con
   const LobeSearch first(basis, search_samples(cells, basis, display, kFirstCells));
   const LobeSearch search(basis, search_samples(cells, basis, display, kSearchCells));
   const FoundPaint found = search.find(first);
-  const bool as_good = is_as_good(found.search.cost, better.cost);
+  const bool as_good = is_as_good(found.search.cost, better.cost, !is_seen(cells, kFace_deg));
   curve = as_good ? curve_of(found, basis) : better.curve;
   judge();
   if (fit.median_de76 > limits.median_de76) {

@@ -1,9 +1,11 @@
 #include "fit/sketch_search.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
+#include "base/parallel.h"
 #include "brdf/lobe_model.h"
 #include "envmap/prefiltered.h"
 #include "fit/sketch_common.h"
@@ -14,11 +16,12 @@ namespace goniochrome {
 
 namespace {
 
-constexpr double kRowsGain = 0.8;   // free rows must lower the cost to this part of that of face, flop and travel
+constexpr double kRowsGain = 0.8;    // free rows must lower the cost to this part of that of face, flop and travel
 constexpr double kExactCost = 1e-3;  // of log(1 + dE^2): RMS 0.03 dE; a wrong valley costs ten times that
 constexpr double kNoisyCost = 0.2;   // RMS half a dE
-constexpr double kGoodCost = 0.02;  // an agreement that freed rows need not improve
-constexpr double kDarkest = 0.004;  // of a channel, for its weight; L* 4
+constexpr double kGoodCost = 0.02;   // an agreement that freed rows need not improve
+constexpr std::size_t kAtOnce = 2;   // starts; fixed, so that no result depends on the number of threads
+constexpr double kDarkest = 0.004;   // of a channel, for its weight; L* 4
 
 FitOptions by(FitMethod method) {
   FitOptions options;
@@ -237,15 +240,21 @@ SearchResult LobeSearch::best_rows(const SearchResult& appearance) const {
 FoundPaint LobeSearch::best_of_starts() const {
   FoundPaint best;
   const auto try_all = [&](const std::vector<std::vector<SearchParameter>>& starts) {
-    for (const auto& start : starts) {
+    for (std::size_t from = 0; from < starts.size(); from += kAtOnce) {
       if (!best.search.values.empty() && best.search.cost <= kExactCost) return;
-      SearchResult smooth = run(smooth_, start);
-      take_better(run(exact_, parameters_of(smooth.values)), true, best);
-      take_better(std::move(smooth), false, best);
+      const std::size_t count = std::min(kAtOnce, starts.size() - from);
+      std::array<SearchResult, kAtOnce> smooth, exact;
+      parallel_for(count, 1, [&](std::size_t i, std::size_t) {
+        smooth[i] = run(smooth_, starts[from + i]);
+        exact[i] = run(exact_, parameters_of(smooth[i].values));
+      });
+      for (std::size_t i = 0; i < count; ++i)
+        take_better(std::move(exact[i]), true, best), take_better(std::move(smooth[i]), false, best);
     }
   };
   const auto first = starts();
-  try_all(first);
+  try_all({first.front()});  // mostly the way to an exact answer
+  try_all({first.begin() + 1, first.end()});
   if (best.search.cost <= kNoisyCost) try_all(further_starts(first.front()));
   return best;
 }
