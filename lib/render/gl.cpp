@@ -7,13 +7,6 @@
 
 #include "base/parallel.h"
 
-#ifdef __SANITIZE_ADDRESS__
-// Mesa keeps its window buffers and its compiled code until the process ends.
-extern "C" const char* __lsan_default_suppressions() {
-  return "leak:libOSMesa.so\nleak:libLLVM";
-}
-#endif
-
 namespace goniochrome {
 
 namespace {

@@ -62,5 +62,7 @@ include(CPack)
 
 if(GONIOCHROME_TESTS)
   add_test(NAME project.consumer COMMAND ${CMAKE_CURRENT_LIST_DIR}/consumer_test.sh ${PROJECT_BINARY_DIR} ${CMAKE_CXX_COMPILER})
-  set_tests_properties(project.consumer PROPERTIES TIMEOUT 300)
+  # As the libraries were compiled: sanitizers want it.
+  string(TOUPPER "${CMAKE_BUILD_TYPE}" type)
+  set_tests_properties(project.consumer PROPERTIES TIMEOUT 300 ENVIRONMENT "CXXFLAGS=${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${type}}")
 endif()
