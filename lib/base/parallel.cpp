@@ -9,13 +9,12 @@
 
 #ifdef __SANITIZE_ADDRESS__
 // Here, since every program uses this file. Mesa keeps its window buffers and its compiled code until the process ends,
-// and the C library the catalogs of a locale. The search for leaks crashes in the thread-local storage of threads that
-// Mesa ends.
+// and the C library the catalogs of a locale. Tests compare what tools print.
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:libOSMesa.so\nleak:libLLVM\nleak:argz_add_sep";
 }
 extern "C" const char* __lsan_default_options() {
-  return "print_suppressions=0:use_tls=0";
+  return "print_suppressions=0";
 }
 #endif
 
