@@ -95,6 +95,7 @@ struct Matter {
   LobeFit paint;
   Anisotropy brushed = {};
   ReflectionOperator reflection = component_wise();
+  friend void PrintTo(const Matter& matter, std::ostream* out) { *out << matter.effect; }
 };
 
 std::vector<Matter> where_it_matters() {
