@@ -119,18 +119,23 @@ double decoded(double value, const Space& space) {
 
 }  // namespace
 
-Result<Image> working_space_rgb(const ImagePart& part, const std::string& name) {
+Result<Image> working_space_rgb(ImagePart part, const std::string& name) {
   GONIO_ASSIGN(const Space space, space_of(part, name));
   GONIO_ASSIGN(const Columns columns, to_working_space(space.primaries, name));
   const bool convert = !same(space.primaries, kRec2020);
-  const Image& from = part.image;
+  Image& from = part.image;
   const int green = from.channels < 3 ? 0 : 1, blue = from.channels < 3 ? 0 : 2;
   Image to = {from.width, from.height, 3, {}, {}};
-  to.data.resize(static_cast<std::size_t>(from.width) * from.height * 3);
+  // Three channels are converted where they are.
+  if (from.channels == 3)
+    to.data.swap(from.data);
+  else
+    to.data.resize(static_cast<std::size_t>(from.width) * from.height * 3);
+  const float* source = from.channels == 3 ? to.data.data() : from.data.data();
   parallel_for(static_cast<std::size_t>(from.height), 16, [&](std::size_t begin, std::size_t end) {
     const std::size_t width = static_cast<std::size_t>(from.width);
     for (std::size_t i = begin * width; i < end * width; ++i) {
-      const float* in = &from.data[i * from.channels];
+      const float* in = &source[i * from.channels];
       Vec3 rgb = {decoded(in[0], space), decoded(in[green], space), decoded(in[blue], space)};
       if (convert) rgb = rgb.x * columns[0] + rgb.y * columns[1] + rgb.z * columns[2];
       for (int c = 0; c < 3; ++c) to.data[3 * i + c] = static_cast<float>(rgb[c]);

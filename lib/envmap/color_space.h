@@ -9,6 +9,6 @@ namespace goniochrome {
 // Turns the first three channels of `part` (one channel is gray) into linear working-space RGB, as its attributes say:
 // colorInteropID, else chromaticities, else oiio:ColorSpace; untagged images are linear Rec.709. Whites are adapted to
 // D65 by Bradford. Error: names a color space that is not known, and the remedy.
-Result<Image> working_space_rgb(const ImagePart& part, const std::string& name);
+Result<Image> working_space_rgb(ImagePart part, const std::string& name);
 
 }  // namespace goniochrome

@@ -112,9 +112,10 @@ class EnvironmentReader {
 
   static Result<Environment> from_part(ImagePart part, BadPixels bad_pixels, const std::string& name) {
     GONIO_ASSIGN(Counts counts, checked(part.image, bad_pixels, name));
-    GONIO_ASSIGN(Image rgb, working_space_rgb(part, name));
+    const std::string envmap = envmap_attribute(part);
+    GONIO_ASSIGN(Image rgb, working_space_rgb(std::move(part), name));
     counts.out_of_gamut = clip_to_gamut(rgb);
-    return arranged(std::move(rgb), envmap_attribute(part), counts, name);
+    return arranged(std::move(rgb), envmap, counts, name);
   }
 
  private:
@@ -175,7 +176,7 @@ Result<Environment> Environment::read_faces(const std::vector<std::string>& path
     const std::string& path = paths[face];
     GONIO_ASSIGN(ImagePart part, read_image(path));
     GONIO_ASSIGN(const Counts bad, checked(part.image, bad_pixels, path));
-    GONIO_ASSIGN(const Image rgb, working_space_rgb(part, path));
+    GONIO_ASSIGN(const Image rgb, working_space_rgb(std::move(part), path));
     const int n = rgb.width;
     if (face == 0) strip = {n, 6 * n, 3, {}, {}};
     if (rgb.height != n || n != strip.width)

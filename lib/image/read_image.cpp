@@ -8,6 +8,7 @@
 
 #include "base/file.h"
 #include "image/exr.h"
+#include "image/hdr.h"
 #include "image/image.h"
 #include "image/oiio_module.h"
 
@@ -122,6 +123,14 @@ Result<ImagePart> read_image(const std::string& path) {
   GONIO_ASSIGN(const std::string head, path == "-" ? file_content(path) : file_head(path));
   const std::string shown = path == "-" ? "standard input" : path;
   if (head.empty()) return input_error("{}: is empty or a folder: name an image", shown);
+  if (is_radiance(head)) {
+    std::string content;
+    if (path != "-") {
+      GONIO_ASSIGN(content, file_content(path));
+    }
+    GONIO_ASSIGN(auto part, decoded_hdr(path == "-" ? head : content, shown));
+    if (part) return std::move(*part);
+  }
   if (!is_exr(head)) return path == "-" ? read_content_through_module(head) : read_through_module(path, shown);
   GONIO_ASSIGN(auto parts, path == "-" ? decoded_exr(head, shown) : read_exr(path));
   return std::move(parts.front());

@@ -16,11 +16,9 @@ cli::ToolSpec tool_spec(Options& o) {
            "faces (+X -X +Y -Y +Z -Z), a cross (4:3 or 3:4), or six square files, given one by one in that order or as "
            "one pattern with {face} in the place of px, nx, py and so on; a single square is an angular probe, what a "
            "mirror ball shows, unrolled about +Z. Faces are OpenGL's; an EXR whose envmap "
-           "attribute says cube is read by OpenEXR's own convention. EXR is read directly, other formats (Radiance "
-           "HDR, "
-           "TIFF, PNG) through OpenImageIO. Values are linear Rec.709 unless the file says otherwise, and are "
-           "converted "
-           "to linear Rec.2020.",
+           "attribute says cube is read by OpenEXR's own convention. EXR and Radiance HDR are read "
+           "directly, other formats (TIFF, PNG) through OpenImageIO. Values are linear Rec.709 unless the file says "
+           "otherwise, and are converted to linear Rec.2020.",
            "Every texel counts as a patch of constant radiance with its exact solid angle; a lat-long map is not "
            "resampled first. The tolerance is relative to that sum in double precision, at each texel written, or to a "
            "thousandth of the map's mean where the texel is darker still; it covers the rounding of the file. Smooth "

@@ -101,14 +101,26 @@ within() { awk -v limit="$1" '$1 > limit { bad = 1 } { n++ } END { exit bad || !
 }
 
 @test "a missing module for other formats is told with its remedy" {
-  printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n12341234' >tiny.hdr
-  GONIOCHROME_MODULE_PATH=/nowhere run prefilter-envmap -e 6 tiny.hdr -o x.env.exr
+  printf 'P6\n2 1\n255\n123123' >tiny.ppm
+  GONIOCHROME_MODULE_PATH=/nowhere run prefilter-envmap -e 6 tiny.ppm -o x.env.exr
   [ "$status" -eq 3 ]
   [[ "$output" =~ "/nowhere/goniochrome-oiio.so: cannot be loaded" ]]
   [[ "$output" =~ "GONIOCHROME_MODULE_PATH" ]]
-  run prefilter-envmap -q -e 6 --size 4 tiny.hdr -o x.env.exr
+  run prefilter-envmap -q -e 6 --size 4 tiny.ppm -o x.env.exr
   [ "$status" -eq 0 ]
   [ -s x.env.exr ]
+}
+
+@test "EXR and Radiance HDR need no module" {
+  printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n12341234' >tiny.hdr
+  GONIOCHROME_MODULE_PATH=/nowhere run prefilter-envmap -q -e 6 --size 4 tiny.hdr -o x.env.exr
+  [ "$status" -eq 0 ]
+  [ -s x.env.exr ]
+  head -c 50 tiny.hdr >cut.hdr
+  run prefilter-envmap -q -e 6 --size 4 cut.hdr -o y.env.exr
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ "cut.hdr: is cut short" ]]
+  [ ! -e y.env.exr ]
 }
 
 @test "a killed run leaves the old file" {
