@@ -88,7 +88,7 @@ void Session::say(const std::string& line) const {
 }
 
 void Session::warn(const std::string& line) {
-  results_["warnings"].push_back(line);
+  results()["warnings"].push_back(line);
   say(fmt::format("{}: warning: {}", tool_, line));
 }
 
@@ -105,15 +105,13 @@ void Session::explain(const std::string& text) const {
 
 Result<void> Session::write_report() const {
   if (common_.report.empty()) return {};
-  const Json report = {{"tool", tool_},
-                       {"version", version()},
-                       {"command", command_line_},
-                       {"elapsed_s", clock_.elapsed_s()},
-                       {"peak_rss_mb", peak_rss_mb()},
-                       {"threads", threads()},
-                       {"seed", common_.seed},
-                       {"results", results_}};
-  return write_file(common_.report, report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  return report_.write(common_.report, {{"tool", tool_},
+                                        {"version", version()},
+                                        {"command", command_line_},
+                                        {"elapsed_s", clock_.elapsed_s()},
+                                        {"peak_rss_mb", peak_rss_mb()},
+                                        {"threads", threads()},
+                                        {"seed", common_.seed}});
 }
 
 int tool_main(int argc, char** argv, const ToolSpec& table, const CommonOptions& common,

@@ -9,6 +9,7 @@
 #include "base/json.h"
 #include "base/result.h"
 #include "cli/options.h"
+#include "cli/report.h"
 
 namespace goniochrome::cli {
 
@@ -36,7 +37,15 @@ class Session {
   double elapsed_s() const { return clock_.elapsed_s(); }
 
   // `results` of --report.
-  Json& results() { return results_; }
+  Json& results() { return report_.results(); }
+
+  // A list of `results` that grows with the library: empty at first, then an element for each add(), which is what
+  // `element` returns; it is not asked without --report.
+  void begin_list(const std::string& list) { report_.begin_list(list); }
+  template <class Element>
+  void add(const std::string& list, const Element& element) {
+    if (!common_.report.empty()) report_.add(list, element());
+  }
 
   // One line on standard error, unless --quiet.
   void say(const std::string& line) const;
@@ -53,7 +62,7 @@ class Session {
   std::string tool_, command_line_;
   const CommonOptions& common_;
   Stopwatch clock_;
-  Json results_ = Json::object();
+  Report report_;
   mutable bool progress_shown_ = false;
 };
 

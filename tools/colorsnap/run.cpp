@@ -58,7 +58,7 @@ class Run {
     GONIO_ASSIGN(PaintBatches batches, PaintBatches::open(options_.inputs));
     GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
     GONIO_ASSIGN(Sink sink, Sink::begin(format_of(options_), std::move(file)));
-    if (!session_.common().report.empty()) session_.results()["queries"] = Json::array();
+    session_.begin_list("queries");
     for (;;) {
       GONIO_ASSIGN(const std::vector<Paint> batch, batches.next(left_out()));
       if (batch.empty()) break;
@@ -115,7 +115,7 @@ class Run {
     outside_ += finding.outside;
     off_radial_ += finding.off_radial;
     no_match_ += finding.no_match();
-    if (!session_.common().report.empty()) session_.results()["queries"].push_back(finding_json(finding, index_));
+    session_.add("queries", [&] { return finding_json(finding, index_); });
     if (finding.status() == "ok" || ++problems_ > kWarningsShown) return;
     if (finding.no_match())
       return session_.warn(fmt::format("paint \"{}\": the filters leave no paint of the library", finding.query));

@@ -73,15 +73,16 @@ Result<void> ColorMaps::add(Paint& paint, const MeasuredBrdf* brdf, const std::s
   paint.color_map = ColorMapReference{(folder_from_output(options_) / name).generic_string(), asked.index};
   ++made_;
   sum_held_out_ += fit->held_out_de76;
-  if (!session_.common().report.empty())
-    session_.results()["color_maps"].push_back({{"name", paint.name},
-                                                {"file", path},
-                                                {"rows", fit->rows},
-                                                {"glare_rows", fit->glare_rows},
-                                                {"grazing_rows", fit->grazing_rows},
-                                                {"illuminations", fit->illuminations},
-                                                {"held_out_de76", json_number(fit->held_out_de76)},
-                                                {"negative_share", fit->negative_share}});
+  session_.add("color_maps", [&] {
+    return Json{{"name", paint.name},
+                {"file", path},
+                {"rows", fit->rows},
+                {"glare_rows", fit->glare_rows},
+                {"grazing_rows", fit->grazing_rows},
+                {"illuminations", fit->illuminations},
+                {"held_out_de76", json_number(fit->held_out_de76)},
+                {"negative_share", fit->negative_share}};
+  });
   return {};
 }
 

@@ -99,7 +99,7 @@ double Spread::all_but(double most) const {
 }
 
 Tally::Tally(const Options& options, cli::Session& session) : options_(options), session_(session) {
-  if (!options.common.report.empty()) session.results()["paints"] = Json::array();
+  session.begin_list("paints");
 }
 
 void Tally::add_worst(const Paint& paint, const PaintFitReport& r) {
@@ -123,15 +123,15 @@ void Tally::add(const Paint& paint, const PaintFit& fit) {
   if (r.views) sum_gain_ += r.views->gain_de00();
   if (r.brdf) ++measured_, sum_relative_ += r.brdf->relative_error_median;
   if (r.brdf && r.brdf->from_five_angles) ++predicted_, sum_five_ += r.brdf->from_five_angles->by_flake;
-  if (!options_.common.report.empty()) session_.results()["paints"].push_back(report_of(paint, fit));
+  session_.add("paints", [&] { return report_of(paint, fit); });
 }
 
 void Tally::add_failure(const Paint& paint, const std::string& where, const std::string& message) {
   if (++failed_ <= kWarningsShown)
     session_.warn(fmt::format("{}: paint \"{}\" is passed on unfitted: {}", where, paint.name, message));
-  if (!options_.common.report.empty())
-    session_.results()["paints"].push_back(
-        {{"name", paint.name}, {"method", options_.method}, {"status", "failed"}, {"message", message}});
+  session_.add("paints", [&] {
+    return Json{{"name", paint.name}, {"method", options_.method}, {"status", "failed"}, {"message", message}};
+  });
 }
 
 std::string Tally::summary() const {

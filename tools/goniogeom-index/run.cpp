@@ -128,7 +128,7 @@ class Run {
     GONIO_ASSIGN(PaintBatches paints, PaintBatches::open(options_.inputs));
     GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
     GONIO_TRY(file.write(table_head(request_)));
-    if (has_report()) session_.results()["paints"] = Json::array();
+    session_.begin_list("paints");
     for (;;) {
       GONIO_ASSIGN(std::vector<Paint> batch, paints.next());
       if (batch.empty()) break;
@@ -141,8 +141,6 @@ class Run {
   }
 
  private:
-  bool has_report() const { return !session_.common().report.empty(); }
-
   Result<void> take(const std::vector<Paint>& batch, OutputFile& file) {
     std::vector<PaintIndex> indices(batch.size());
     std::vector<std::string> rows(batch.size());
@@ -163,9 +161,9 @@ class Run {
     met_.insert(paint.name);
     if (!index.failure.empty()) {
       if (++failed_ <= kNamesShown) session_.warn(fmt::format("left out: {}", index.failure));
-      if (has_report())
-        session_.results()["paints"].push_back(
-            {{"name", paint.name}, {"status", "failed"}, {"message", index.failure}});
+      session_.add("paints", [&] {
+        return Json{{"name", paint.name}, {"status", "failed"}, {"message", index.failure}};
+      });
       return {};
     }
     ++done_;
@@ -175,7 +173,7 @@ class Run {
       worst_ = fmt::format("{} at light {}, view {}", paint.name, shortest(g.light_deg), shortest(g.view_deg));
     }
     if (request_.tolerance_deg && verdict_of(index, *request_.tolerance_deg) == "fail") failing_.push_back(paint.name);
-    if (has_report()) session_.results()["paints"].push_back(paint_json(paint, index, request_));
+    session_.add("paints", [&] { return paint_json(paint, index, request_); });
     return options_.curves.empty() ? Result<void>() : write_curves(paint);
   }
 

@@ -131,7 +131,7 @@ class Run {
 
   void note(Json change) {
     ++changes_;
-    if (!session_.common().report.empty()) session_.results()["changes"].push_back(std::move(change));
+    session_.add("changes", [&] { return std::move(change); });
   }
 
   void tell(const Paint& from, const Edited& done) {

@@ -108,7 +108,7 @@ class Run {
     }
     GONIO_ASSIGN(PaintBatches batches, PaintBatches::open(options_.inputs));
     GONIO_TRY(open_output(batches.processing(), batches.foreign()));
-    if (!session_.common().report.empty()) session_.results()["paints"] = Json::array();
+    session_.begin_list("paints");
     for (;;) {
       GONIO_ASSIGN(const std::vector<Paint> batch, batches.next(left_out()));
       if (batch.empty()) break;
@@ -155,7 +155,7 @@ class Run {
   Result<void> take(const Paint& paint, const PaintMetrics& numbers) {
     if (filter_ && !filter_->matches(paint, numbers)) return {};
     ++matched_;
-    if (!session_.common().report.empty()) session_.results()["paints"].push_back(as_json(paint, numbers));
+    session_.add("paints", [&] { return as_json(paint, numbers); });
     return sink_->write(paint, numbers);
   }
 

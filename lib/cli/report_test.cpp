@@ -1,0 +1,59 @@
+#include "cli/report.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "base/clock.h"
+#include "base/file.h"
+
+namespace goniochrome::cli {
+namespace {
+
+std::string path() {
+  return (std::filesystem::path(testing::TempDir()) / "goniochrome-report.json").string();
+}
+
+// The text is what one dump of the whole document gives, lists or no lists, so both ways of adding can be mixed.
+TEST(Report, reads_as_one_document_in_the_order_written) {
+  const Json head = {{"tool", "fit-paint"}, {"seed", 1}};
+  const Json paint = {
+      {"name", "red\n\"flake\""}, {"lobes", {1, 2}}, {"views", Json::object()}, {"none", Json::array()}};
+  Report report;
+  Json expected = head;
+  report.results()["first"] = expected["results"]["first"] = {1.5, nullptr};
+  for (int i = 0; i < 3; ++i) {
+    report.add("paints", paint);
+    expected["results"]["paints"].push_back(paint);
+  }
+  report.begin_list("none");
+  expected["results"]["none"] = Json::array();
+  report.results()["last"] = expected["results"]["last"] = paint;
+  ASSERT_TRUE(report.write(path(), head).ok());
+  EXPECT_EQ(*file_content(path()), expected.dump(2) + "\n");
+}
+
+TEST(Report, without_results_is_a_document) {
+  ASSERT_TRUE(Report().write(path(), {{"tool", "relight"}}).ok());
+  EXPECT_EQ(*file_content(path()), "{\n  \"tool\": \"relight\",\n  \"results\": {}\n}\n");
+}
+
+// 10^5 paints with forty figures each, 90 MB as text. The control: a fifth of them in one document.
+TEST(Report, a_list_of_any_length_takes_constant_memory) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "AddressSanitizer keeps what was freed";
+#endif
+  const Json paint = {{"name", "red"}, {"de00_by_geometry", std::vector<double>(40, 0.123456789)}};
+  const double before_mb = peak_rss_mb();
+  Report report;
+  for (int i = 0; i < 100'000; ++i) report.add("paints", paint);
+  ASSERT_TRUE(report.write(path(), Json::object()).ok());
+  EXPECT_GT(std::filesystem::file_size(path()), 80e6);
+  EXPECT_LT(peak_rss_mb() - before_mb, 4);
+  const std::vector<Json> document(20'000, paint);
+  EXPECT_GT(peak_rss_mb() - before_mb, 10);
+  std::filesystem::remove(path());
+}
+
+}  // namespace
+}  // namespace goniochrome::cli
