@@ -61,6 +61,15 @@ Result<void> take_operator(const std::string& text, AovFile& file) {
   return {};
 }
 
+// The strings of a JSON list.
+std::vector<std::string> names_of(const Attributes& attributes, const char* name) {
+  const auto text = attribute<std::string>(attributes, name, "");
+  std::vector<std::string> names;
+  for (const Json& entry : Json::parse(text.empty() ? "[]" : text, nullptr, false))
+    if (entry.is_string()) names.push_back(entry.get<std::string>());
+  return names;
+}
+
 }  // namespace
 
 Result<int> AovFile::channel(const std::string& name) const {
@@ -95,10 +104,9 @@ Result<AovFile> read_aov_file(const std::string& path) {
   GONIO_TRY(take_rays(attribute<std::string>(attributes, "goniochrome:rays", ""), file));
   GONIO_TRY(take_lights(attribute<std::string>(attributes, "goniochrome:lights", ""), file));
   GONIO_TRY(take_operator(attribute<std::string>(attributes, "goniochrome:operator", ""), file));
-  const auto parts = attribute<std::string>(attributes, "goniochrome:parts", "");
-  const Json names = Json::parse(parts.empty() ? "[]" : parts, nullptr, false);
-  for (const Json& name : names)
-    if (name.is_string()) file.parts.push_back(name.get<std::string>());
+  file.parts = names_of(attributes, "goniochrome:parts");
+  file.materials = names_of(attributes, "goniochrome:materials");
+  file.materials.resize(file.parts.size());
   const auto plan = attribute<std::string>(attributes, "goniochrome:plan", "");
   const Json effects = Json::parse(plan.empty() ? "[]" : plan, nullptr, false);
   for (const Json& effect : effects) {

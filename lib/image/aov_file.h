@@ -26,7 +26,7 @@ struct AovFile {
   std::string environment;       // "" for none
   bool has_rays = false;
   Vec3 corner, right, down;  // the ray through the point (x, y), pixels from the upper left: corner + x right + y down
-  std::vector<std::string> parts;
+  std::vector<std::string> parts, materials;           // one material for each part, "" where the mesh named none
   std::string command;                                 // that made the file
   std::vector<std::string> drawn;                      // effects of the picture, by render-osmesa's names
   ReflectionOperator reflection = iso_rgb_operator();  // by which the effect "operator" was drawn

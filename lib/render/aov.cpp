@@ -1,6 +1,7 @@
 #include "render/aov.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <numbers>
 
@@ -73,6 +74,39 @@ Result<void> add_aov(Image& picture, const Gbuffer& gbuffer, const std::string& 
   }
   picture = std::move(wider);
   return {};
+}
+
+Result<Gbuffer> gbuffer_of(const AovFile& buffers) {
+  constexpr double kUnit = 1e-3;  // a normal kept in halves is 5e-4 off unit length
+  GONIO_ASSIGN(const int normal_x, buffers.channel("normal.X"));
+  GONIO_ASSIGN(const int normal_y, buffers.channel("normal.Y"));
+  GONIO_ASSIGN(const int normal_z, buffers.channel("normal.Z"));
+  GONIO_ASSIGN(const int part_channel, buffers.channel("part"));
+  if (!buffers.has_rays || buffers.parts.empty())
+    return input_error("{}: its header lacks goniochrome:{}: render the buffers again", buffers.path,
+                       buffers.has_rays ? "parts" : "rays");
+  const Image& image = buffers.image;
+  Gbuffer gbuffer{image.width, image.height, {}, {buffers.corner, buffers.right, buffers.down}};
+  gbuffer.data.resize(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 4);
+  float* to = gbuffer.data.data();
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x, to += 4) {
+      const float* pixel = image.pixel(x, y);
+      const float part = pixel[part_channel];
+      if (part == 0) continue;
+      if (!(part > 0 && part <= static_cast<float>(buffers.parts.size()) && part == std::floor(part)))
+        return input_error(
+            "{}: part {} at pixel {},{}: the header names {} parts, counted from 1: render again without "
+            "filtering",
+            buffers.path, part, x, y, buffers.parts.size());
+      const Vec3 normal{pixel[normal_x], pixel[normal_y], pixel[normal_z]};
+      if (!(std::abs(length(normal) - 1) < kUnit))
+        return input_error("{}: the normal at pixel {},{} has the length {:.4g}, not 1: render again without filtering",
+                           buffers.path, x, y, length(normal));
+      to[0] = pixel[normal_x], to[1] = pixel[normal_y], to[2] = pixel[normal_z], to[3] = part;
+    }
+  }
+  return gbuffer;
 }
 
 }  // namespace goniochrome

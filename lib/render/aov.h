@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "image/aov_file.h"
 #include "image/image.h"
 #include "render/renderer.h"
 
@@ -18,5 +19,9 @@ namespace goniochrome {
 //   part       the number of the part, from 1
 // Error (usage): the names there are.
 Result<void> add_aov(Image& picture, const Gbuffer& gbuffer, const std::string& name, const Vec3& to_light);
+
+// The G-buffer back from the channels normal and part, bit for bit, but for which parts were seen from inside.
+// Error: what the file lacks, with the command that makes it; or the pixel that holds no normal or no part.
+Result<Gbuffer> gbuffer_of(const AovFile& buffers);
 
 }  // namespace goniochrome

@@ -34,12 +34,17 @@ std::array<double, 2> shift_of(int sample, int samples) {
 
 }  // namespace
 
-struct Renderer::State {
-  explicit State(GlContext context) : gl(std::move(context)), gl_engine(gl) {}
+struct OpenGl {
+  explicit OpenGl(GlContext made) : context(std::move(made)), engine(context) {}
 
-  GlContext gl;
+  GlContext context;
   std::optional<Rasterizer> rasterizer;
-  GlEngine gl_engine;
+  GlEngine engine;
+};
+
+struct Renderer::State {
+  std::unique_ptr<OpenGl> gl;            // none: `given` is all there is to see
+  std::shared_ptr<const Gbuffer> given;  // of the pixel centers, whatever the view
   CpuEngine cpu_engine;
   Engine engine = Engine::kGl;
   Scene scene;
@@ -56,23 +61,42 @@ struct Renderer::State {
   int in_texture = -1;
   double rasterization_ms = 0;
 
+  void begin() const {
+    if (gl) gl->context.make_current();
+  }
+  Result<void> can_shade(const Scene& wanted, Engine by) const;
   void show(const Mesh& mesh);
   Result<void> look_at(const View& wanted);
   void rasterize(int sample);
-  const std::shared_ptr<Gbuffer>& gbuffer(int sample);
+  std::shared_ptr<const Gbuffer> gbuffer(int sample);
   const std::vector<TexturePlace>& places(int sample);
   void shade(int sample, bool add, int samples, Image& rgba);
 };
 
+// What a G-buffer alone does not allow.
+Result<void> Renderer::State::can_shade(const Scene& wanted, Engine by) const {
+  if (gl) return {};
+  if (by == Engine::kGl) return usage_error("the engine gl draws the mesh: a G-buffer that is given is shaded by cpu");
+  if (wanted.layer != nullptr && wanted.layer->textured())
+    return usage_error("textures lie on the mesh: a G-buffer that is given has no places on them");
+  return {};
+}
+
 void Renderer::State::show(const Mesh& mesh) {
-  if (uploaded == &mesh && uploaded_triangles == mesh.triangles.size()) return;
-  rasterizer->upload(mesh);
+  if (!gl || (uploaded == &mesh && uploaded_triangles == mesh.triangles.size())) return;
+  gl->rasterizer->upload(mesh);
   uploaded = &mesh, uploaded_triangles = mesh.triangles.size();
   view.reset();
 }
 
 Result<void> Renderer::State::look_at(const View& wanted) {
-  GONIO_TRY(rasterizer->resize(wanted.width, wanted.height));
+  if (given) {
+    if (wanted.samples != 1)
+      return usage_error("a G-buffer that is given has 1 sample a pixel, not {}", wanted.samples);
+    view = wanted;
+    return {};
+  }
+  GONIO_TRY(gl->rasterizer->resize(wanted.width, wanted.height));
   if (!view || !same_view(*view, wanted) || view->samples != wanted.samples) {
     GONIO_ASSIGN(rays, goniochrome::rays(wanted.camera, wanted.width, wanted.height));
     in_texture = -1;
@@ -88,12 +112,13 @@ Result<void> Renderer::State::look_at(const View& wanted) {
 void Renderer::State::rasterize(int sample) {
   if (in_texture == sample) return;
   const auto [x, y] = shift_of(sample, view->samples);
-  rasterizer->draw(view->camera, rays, x, y);
+  gl->rasterizer->draw(view->camera, rays, x, y);
   in_texture = sample;
 }
 
 // A sample's G-buffer, kept or drawn anew. Where not all can be kept, those after the first share a place.
-const std::shared_ptr<Gbuffer>& Renderer::State::gbuffer(int sample) {
+std::shared_ptr<const Gbuffer> Renderer::State::gbuffer(int sample) {
+  if (given) return given;
   const std::size_t bytes = static_cast<std::size_t>(view->width) * static_cast<std::size_t>(view->height) * 16;
   const bool room = bytes * (static_cast<std::size_t>(view->samples) + 1) <= kMostKept;
   const std::size_t place = room || sample == 0 ? static_cast<std::size_t>(sample) : 1;
@@ -105,9 +130,9 @@ const std::shared_ptr<Gbuffer>& Renderer::State::gbuffer(int sample) {
   placed.resize(kept.size());
   placed[place].clear();
   rasterize(sample);
-  gl.Finish();
+  gl->context.Finish();
   rasterization_ms = 1000 * clock.elapsed_s();
-  rasterizer->read(*g);
+  gl->rasterizer->read(*g);
   return g;
 }
 
@@ -117,7 +142,7 @@ const std::vector<TexturePlace>& Renderer::State::places(int sample) {
     for (std::vector<TexturePlace>& old : placed) old.clear();
     placed_for = layer.id();
   }
-  const std::shared_ptr<Gbuffer>& of = gbuffer(sample);
+  const std::shared_ptr<const Gbuffer> of = gbuffer(sample);
   const auto place = static_cast<std::size_t>(std::find(kept.begin(), kept.end(), of) - kept.begin());
   placed.resize(kept.size());
   if (placed[place].empty()) placed[place] = layer.places(*of);
@@ -127,7 +152,7 @@ const std::vector<TexturePlace>& Renderer::State::places(int sample) {
 void Renderer::State::shade(int sample, bool add, int samples, Image& rgba) {
   if (engine == Engine::kCpu) return cpu_engine.shade(*gbuffer(sample), 1.0F / static_cast<float>(samples), add, rgba);
   rasterize(sample);
-  gl_engine.shade(rasterizer->texture(), rasterizer->drawn_rays(), add);
+  gl->engine.shade(gl->rasterizer->texture(), gl->rasterizer->drawn_rays(), add);
 }
 
 Renderer::Renderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -136,14 +161,22 @@ Renderer::~Renderer() = default;
 
 Result<Renderer> Renderer::create() {
   GONIO_ASSIGN(GlContext context, GlContext::create());
-  auto state = std::make_unique<State>(std::move(context));
-  GONIO_ASSIGN(state->rasterizer, Rasterizer::create(state->gl));
+  auto state = std::make_unique<State>();
+  state->gl = std::make_unique<OpenGl>(std::move(context));
+  GONIO_ASSIGN(state->gl->rasterizer, Rasterizer::create(state->gl->context));
+  return Renderer(std::move(state));
+}
+
+Renderer Renderer::shading(std::shared_ptr<const Gbuffer> gbuffer) {
+  auto state = std::make_unique<State>();
+  state->given = std::move(gbuffer);
+  state->engine = Engine::kCpu;
   return Renderer(std::move(state));
 }
 
 std::string Renderer::opengl() const {
-  state_->gl.make_current();
-  return state_->gl.engine();
+  state_->begin();
+  return state_->gl ? state_->gl->context.engine() : "";
 }
 
 std::string Renderer::shader() const {
@@ -156,14 +189,15 @@ Result<void> Renderer::load(const Scene& scene, Engine engine) {
 
 Result<void> Renderer::load(const Scene& scene, const Effects& effects, Engine engine) {
   State& s = *state_;
-  s.gl.make_current();
+  GONIO_TRY(s.can_shade(scene, engine));
+  s.begin();
   s.scene = scene;
   s.effects = effects;
   s.engine = engine;
   s.show(*scene.mesh);
   GONIO_ASSIGN(const SceneMaps maps, scene_maps(scene, effects));
   if (engine == Engine::kCpu) return s.cpu_engine.load(scene, effects, maps);
-  return s.gl_engine.load(scene, effects, maps);
+  return s.gl->engine.load(scene, effects, maps);
 }
 
 // The plan is made with all maps interleaved; where the processor shades and all lobes stay, they are used as they are.
@@ -187,6 +221,7 @@ Result<Plan> Renderer::load(const Scene& scene, const std::vector<std::shared_pt
     all += static_cast<double>(g->data.size() / 4);
   }
   PlanRequest sized = request;
+  if (s.given && !sized.engine) sized.engine = Engine::kCpu;
   if (sized.pixels == 0) sized.pixels = all / static_cast<double>(std::max<std::size_t>(1, gbuffers.size()));
   const double in_one = all > 0 ? sized.pixels * visible / all : 0;  // the G-buffers may be smaller than the frame
   GONIO_ASSIGN(Plan plan,
@@ -200,13 +235,13 @@ void Renderer::load_paints(const Scene& scene) {
   s.scene = scene;
   const WeightTable table = weight_table(scene, s.effects);
   if (s.engine == Engine::kCpu) return s.cpu_engine.load_paints(scene, s.effects, table);
-  s.gl.make_current();
-  s.gl_engine.load_paints(scene, table);
+  s.begin();
+  s.gl->engine.load_paints(scene, table);
 }
 
 Result<std::shared_ptr<const Gbuffer>> Renderer::look(const Mesh& mesh, const View& view) {
   State& s = *state_;
-  s.gl.make_current();
+  s.begin();
   s.show(mesh);
   GONIO_TRY(s.look_at(view));
   return std::shared_ptr<const Gbuffer>(s.gbuffer(0));
@@ -214,12 +249,12 @@ Result<std::shared_ptr<const Gbuffer>> Renderer::look(const Mesh& mesh, const Vi
 
 Result<void> Renderer::draw(const View& view, Frame& frame) {
   State& s = *state_;
-  s.gl.make_current();
+  s.begin();
   const Stopwatch whole;
   s.rasterization_ms = 0;
   frame.gbuffer.reset();
   GONIO_TRY(s.look_at(view));
-  if (s.engine == Engine::kGl) GONIO_TRY(s.gl_engine.resize(view.width, view.height));
+  if (s.engine == Engine::kGl) GONIO_TRY(s.gl->engine.resize(view.width, view.height));
   frame.gbuffer = s.gbuffer(0);
   frame.gbuffer_ms = s.rasterization_ms;
   const auto add_layer = [&](Image& image, int first, int count) {
@@ -230,7 +265,7 @@ Result<void> Renderer::draw(const View& view, Frame& frame) {
   };
   const auto read = [&](Image& image, int samples) {
     if (s.engine == Engine::kGl) {
-      s.gl_engine.read(image);
+      s.gl->engine.read(image);
       for (float& value : image.data) value /= static_cast<float>(samples);
     }
     image.channel_names = {"R", "G", "B", "A"};
@@ -247,7 +282,7 @@ Result<void> Renderer::draw(const View& view, Frame& frame) {
     add_layer(frame.picture, 1, view.samples);
   }
   frame.frame_ms = 1000 * whole.elapsed_s();
-  return s.gl.status("drawing");
+  return s.gl ? s.gl->context.status("drawing") : Result<void>();
 }
 
 Result<Frame> Renderer::draw(const Camera& camera, int width, int height, int samples, bool with_centers) {

@@ -36,6 +36,9 @@ class Renderer {
  public:
   // Error: no OpenGL on this machine.
   static Result<Renderer> create();
+  // Shades one G-buffer, again and again, without mesh and OpenGL. It is what every view shows, whose camera is not
+  // meant; of the scene's mesh only the parts are. Error of the others: the engine gl, or more than one sample.
+  static Renderer shading(std::shared_ptr<const Gbuffer> gbuffer);
   Renderer(Renderer&&) noexcept;
   ~Renderer();
 
@@ -60,7 +63,7 @@ class Renderer {
   // The mesh as it will be seen, before anything is shaded.
   Result<std::shared_ptr<const Gbuffer>> look(const Mesh& mesh, const View& view);
 
-  // "llvmpipe (LLVM 15.0.6, 256 bits)"
+  // "llvmpipe (LLVM 15.0.6, 256 bits)"; "" without OpenGL
   std::string opengl() const;
   // The shading program of the GL engine for the effects loaded.
   std::string shader() const;

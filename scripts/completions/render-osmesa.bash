@@ -2,6 +2,7 @@ _render_osmesa() {
   local word=${COMP_WORDS[COMP_CWORD]}
   case ${COMP_WORDS[COMP_CWORD-1]} in
     --mesh|-m) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --gbuffer) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --part) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --paint|-p) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --texture) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -35,7 +36,7 @@ _render_osmesa() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--mesh --part --paint --texture --texture-maps --env --light --size --orbit --camera --fov --samples --background --exposure --view --aov --effects --budget --engine --operator --critical-angle --print-shader --split --turntable --light-sweep --check --check-source --output --explain --tolerance --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--mesh --gbuffer --part --paint --texture --texture-maps --env --light --size --orbit --camera --fov --samples --background --exposure --view --aov --effects --budget --engine --operator --critical-angle --print-shader --split --turntable --light-sweep --check --check-source --output --explain --tolerance --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

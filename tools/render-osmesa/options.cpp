@@ -34,6 +34,9 @@ cli::ToolSpec render_spec(RenderOptions& o, cli::CommonOptions& common) {
       "with the second times x and the third times y, in pixels from the upper left), goniochrome:lights (direction "
       "and "
       "white of each) and goniochrome:environment say what is needed to shade the buffers again.",
+      "--gbuffer shades such an EXR again, in other paints or light, without the mesh and without rasterizing: its "
+      "buffers normal and part, and goniochrome:rays, parts and materials, hold all that the engine cpu needs. The "
+      "picture is that of --samples 1, bit for bit; view and size are the file's. Textures need the mesh.",
       "Before drawing, the effects that the scene calls for are priced: what each changes in the picture (CIEDE2000, "
       "the "
       "95th percentile over visible pixels) and what it costs. What all together changes less than --tolerance is left "
@@ -41,7 +44,8 @@ cli::ToolSpec render_spec(RenderOptions& o, cli::CommonOptions& common) {
       "+NAME "
       "and -NAME, as in auto,-fresnel. The names are diffuse, lobes, gloss, mirror, fresnel, horizon, anisotropy, "
       "travel, "
-      "texture, texture-lobes, operator and lights; lobe-20, gloss-900 and texture-0 (lobe0 of the textures) are single "
+      "texture, texture-lobes, operator and lights; lobe-20, gloss-900 and texture-0 (lobe0 of the textures) are "
+      "single "
       "lobes. --explain prints the table, which is in the report "
       "and "
       "in the header of an EXR as well.",
@@ -57,8 +61,10 @@ cli::ToolSpec render_spec(RenderOptions& o, cli::CommonOptions& common) {
       "views. --texture gives a part a spatially varying surface of generalized cosine lobes (EXR) in the place of a "
       "paint; "
       "it is laid by the mesh's texture coordinates, or around the vertical axis where it has none. Without the effect "
-      "texture, a part shows the mean texel of its texture. Exponents between those of the environment are blended: from "
-      "a cube for each (--texture-maps cubes), or from one whose coarser levels hold wider lobes (mip), which needs the "
+      "texture, a part shows the mean texel of its texture. Exponents between those of the environment are blended: "
+      "from "
+      "a cube for each (--texture-maps cubes), or from one whose coarser levels hold wider lobes (mip), which needs "
+      "the "
       "sharpest exponent and its quarters, or the layout mip of prefilter-envmap(1).",
       "--split draws the picture twice, its left half in the first paint and its right half in the second, both in the "
       "place of --paint. --turntable and --light-sweep write a sequence, NAME-0001.exr and so on: the camera, or the "
@@ -75,8 +81,11 @@ cli::ToolSpec render_spec(RenderOptions& o, cli::CommonOptions& common) {
        .letter = 'm',
        .value = "FILE",
        .help = "mesh: OBJ with parts, or OFF, PLY, STL",
-       .target = &o.mesh,
-       .required = true},
+       .target = &o.mesh},
+      {.name = "gbuffer",
+       .value = "FILE",
+       .help = "shade the buffers of an EXR made with --aov normal,part, instead of --mesh",
+       .target = &o.gbuffer},
       {.name = "part",
        .value = "PART=PAINT",
        .help = "paint of a part or material; repeat for more",
@@ -96,7 +105,11 @@ cli::ToolSpec render_spec(RenderOptions& o, cli::CommonOptions& common) {
        .value = "DIR[,RGB]",
        .help = "directional light: AZ,EL or X,Y,Z, then R,G,B; repeat for more",
        .target = &o.lights},
-      {.name = "size", .letter = 's', .value = "WxH", .help = "picture size in pixels", .target = &o.size},
+      {.name = "size",
+       .letter = 's',
+       .value = "WxH",
+       .help = "picture size in pixels; auto is 1280x720, or that of --gbuffer",
+       .target = &o.size},
       {.name = "orbit",
        .value = "AZ,EL[,DIST]",
        .help = "camera around the mesh, in degrees; at distance 1 the mesh just fits from every azimuth",
@@ -108,9 +121,9 @@ cli::ToolSpec render_spec(RenderOptions& o, cli::CommonOptions& common) {
       {.name = "fov", .value = "DEG", .help = "vertical field of view", .target = &o.fov_deg, .low = 1, .high = 150},
       {.name = "samples",
        .value = "N",
-       .help = "samples a pixel: 1, 4 or 16",
+       .help = "samples a pixel: 1, 4 or 16; 0 is 4, or 1 with --gbuffer",
        .target = &o.samples,
-       .low = 1,
+       .low = 0,
        .high = 16},
       {.name = "background",
        .value = "WHAT",
@@ -198,17 +211,20 @@ cli::ToolSpec render_spec(RenderOptions& o, cli::CommonOptions& common) {
        "draws it in a photo studio, and tells how far the picture is from the reference integrator."},
       {"render-osmesa --mesh testdata/speed-shape.obj --light 30,50 --aov aspecular,lambert,mask,part -o buffers.exr",
        "writes the buffers that a sketch is fitted from."},
+      {"render-osmesa --mesh testdata/speed-shape.obj --light 30,50 --aov normal,part -o view.exr && "
+       "render-osmesa --gbuffer view.exr --light 30,50 --light-sweep 12 -o sweep.png",
+       "rasterizes the mesh once, and moves the light around it."},
   };
   spec.report = {
       {"plan[]: effect, needed, reason, de00_p95, cost_ms, decision",
        "what each effect is worth, and whether it is drawn; with --check truth_de00_p95 as well"},
       {"plan_de00_p95, plan_ms", "what all that is left out changes together, and the time that planning took"},
       {"engine, engine_reason", "what shaded, gl or cpu, and why"},
-      {"opengl", "the OpenGL renderer"},
+      {"opengl", "the OpenGL renderer; null with --gbuffer"},
       {"frames", "pictures written"},
-      {"gbuffer_ms", "time to rasterize the mesh once"},
+      {"gbuffer_ms", "time to rasterize the mesh once; 0 with --gbuffer"},
       {"frame_ms", "time to draw the picture, all samples, without reading and uploading"},
-      {"triangles", "triangles of the mesh"},
+      {"triangles", "triangles of the mesh, where it was read"},
       {"parts[]: name, material, paint", "the parts of the mesh and what they wear"},
       {"exposure_stops", "exposure in force"},
       {"view", "display and view of a PNG"},

@@ -9,13 +9,13 @@
 namespace goniochrome {
 
 struct RenderOptions {
-  std::string mesh, paint, env, output;
+  std::string mesh, gbuffer, paint, env, output;
   std::vector<std::string> parts, lights;
-  std::string size = "1280x720";
+  std::string size = "auto";
   std::vector<double> orbit = {35, 12};
   std::vector<double> camera;
   double fov_deg = 30;
-  int samples = 4;
+  int samples = 0;
   std::string exposure = "auto";
   std::string view;
   std::string background = "none";

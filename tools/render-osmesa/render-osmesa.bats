@@ -105,6 +105,39 @@ near() {
   [ ! -e no.png ]
 }
 
+@test "--gbuffer shades the buffers again, bit for bit, without the mesh" {
+  world="--light 10,30 --part lacquer=paints.xml#green --part right=paints.xml#red"
+  render-osmesa -q --mesh panels.obj $front $world --engine cpu --aov normal,part -o direct.exr
+  render-osmesa -q --gbuffer direct.exr $world --aov normal,part -o again.exr --report r.json
+  oiiotool direct.exr again.exr --diff >/dev/null
+  grep -q '"opengl": null' r.json
+  [[ "$(exrheader again.exr)" =~ '["lacquer","glass","lacquer"]' ]]
+  render-osmesa -q --gbuffer direct.exr --light 0,0 -p paints.xml#white -o other.exr
+  near "$(pixel other.exr 45 30)" "1 1 1 1"
+  render-osmesa -q --gbuffer direct.exr --light 0,0 --light-sweep 2 -o sweep.exr
+  [ -e sweep-0002.exr ]
+  rm -f out.exr
+  refused 2 'there is nothing to draw: give --mesh, or --gbuffer' $light
+  for both in "--mesh panels.obj" "--size 32x32" "--camera 0,0,4,0,0,0" "--orbit 0,0" "--fov 20" "--turntable 2" "--texture a=b.exr"; do
+    run render-osmesa --gbuffer direct.exr $light $both -o out.exr
+    [ "$status" -eq 2 ]
+    [[ "$output" =~ "--gbuffer and ${both%% *} exclude each other" ]]
+  done
+  run render-osmesa --gbuffer direct.exr $light --samples 4 -o out.exr
+  [ "$status" -eq 2 ]
+  [[ "$output" =~ "--samples is 4: --gbuffer holds pixel centers" ]]
+  run render-osmesa --gbuffer direct.exr $light --engine gl -o out.exr
+  [ "$status" -eq 2 ]
+  render-osmesa -q --mesh panels.obj $front $world -o plain.exr
+  run render-osmesa --gbuffer plain.exr $light -o out.exr
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ 'has no channel "normal.X": make the buffers by render-osmesa' ]]
+  run render-osmesa --gbuffer nowhere.exr $light -o out.exr
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ "nowhere.exr" ]]
+  [ ! -e out.exr ]
+}
+
 @test "EXR on standard output" {
   render-osmesa --mesh panels.obj --light 0,0 $front -o - 2>messages >out.exr
   near "$(pixel out.exr 45 30)" "0.18 0.18 0.18 1"

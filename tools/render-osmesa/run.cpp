@@ -27,7 +27,8 @@ constexpr int kMostTruth = 100;
 
 // What the command line says, checked before anything is read.
 struct Request {
-  PictureSize size;
+  PictureSize size;  // with --gbuffer, that of the file
+  int samples = 1;
   std::vector<Light> lights;
   std::optional<double> stops;
   std::vector<std::string> aovs;
@@ -38,6 +39,7 @@ struct Request {
 
 Result<Request> request_of(const RenderOptions& options) {
   Request request;
+  GONIO_TRY(check_surfaces(options));
   GONIO_ASSIGN(request.size, parse_size(options.size));
   for (const std::string& text : options.lights) {
     GONIO_ASSIGN(const Light light, parse_light(text));
@@ -52,14 +54,15 @@ Result<Request> request_of(const RenderOptions& options) {
   }
   if (options.env.empty() && request.lights.empty())
     return usage_error("there is no light: give --env, --light or both");
-  if (options.samples != 1 && options.samples != 4 && options.samples != 16) {
+  if (options.samples != 0 && options.samples != 1 && options.samples != 4 && options.samples != 16) {
     return usage_error("--samples is {}: give 1, 4 or 16", options.samples);
   }
   GONIO_ASSIGN(request.reflection, parse_operator(options.reflection));
   GONIO_TRY(check_effects(options.effects));
   request.plan.effects = options.effects;
   request.plan.budget_ms = options.budget_ms;
-  request.plan.samples = options.samples;
+  request.samples = !options.gbuffer.empty() ? 1 : options.samples > 0 ? options.samples : 4;
+  request.plan.samples = request.samples;
   if (options.engine != "auto") request.plan.engine = options.engine == "cpu" ? Engine::kCpu : Engine::kGl;
   if (!options.split.empty() && options.check > 0) return usage_error("--split and --check exclude each other");
   if (options.print_shader && options.output == "-")
@@ -71,20 +74,23 @@ Result<Request> request_of(const RenderOptions& options) {
   return request;
 }
 
-void tell_mesh(const Mesh& mesh, const DressedMesh& dress, cli::Session& session) {
+void tell_repairs(const Mesh& mesh, cli::Session& session) {
   const Mesh::Repairs& repairs = mesh.repairs;
+  session.results()["triangles"] = mesh.triangles.size();
+  session.results()["repairs"] = {{"normals_made", repairs.normals_made},
+                                  {"degenerate_dropped", repairs.degenerate_dropped},
+                                  {"polygons_split", repairs.polygons_split},
+                                  {"triangles_turned", repairs.triangles_turned}};
+  if (repairs.normals_made > 0) {
+    session.say(fmt::format("{} of {} vertices had no normal and got one", repairs.normals_made, mesh.normals.size()));
+  }
+}
+
+void tell_parts(const Mesh& mesh, const DressedMesh& dress, cli::Session& session) {
   Json& results = session.results();
-  results["triangles"] = mesh.triangles.size();
   for (std::size_t i = 0; i < mesh.parts.size(); ++i) {
     const Json paint = dress.names[i].empty() ? Json(nullptr) : Json(dress.names[i]);
     results["parts"].push_back({{"name", mesh.parts[i].name}, {"material", mesh.parts[i].material}, {"paint", paint}});
-  }
-  results["repairs"] = {{"normals_made", repairs.normals_made},
-                        {"degenerate_dropped", repairs.degenerate_dropped},
-                        {"polygons_split", repairs.polygons_split},
-                        {"triangles_turned", repairs.triangles_turned}};
-  if (repairs.normals_made > 0) {
-    session.say(fmt::format("{} of {} vertices had no normal and got one", repairs.normals_made, mesh.normals.size()));
   }
   if (dress.unpainted.empty()) return;
   std::string names;
@@ -112,8 +118,10 @@ void tell_visibility(const Gbuffer& gbuffer, cli::Session& session) {
   }
 }
 
-std::string explanation(const Mesh& mesh, const DressedMesh& dress) {
-  std::string text = fmt::format("mesh: {} triangles, {} parts\n", mesh.triangles.size(), mesh.parts.size());
+std::string explanation(const RenderOptions& options, const Mesh& mesh, const DressedMesh& dress) {
+  std::string text = options.gbuffer.empty()
+                         ? fmt::format("mesh: {} triangles, {} parts\n", mesh.triangles.size(), mesh.parts.size())
+                         : fmt::format("buffers of {}: {} parts\n", options.gbuffer, mesh.parts.size());
   for (std::size_t i = 0; i < mesh.parts.size(); ++i) {
     text += fmt::format("  {:24} {}\n", mesh.parts[i].name, dress.names[i].empty() ? "(gray)" : dress.names[i]);
   }
@@ -173,12 +181,10 @@ Result<void> measure_plan(Renderer& renderer, const Scene& scene, const Plan& pl
                           cli::Session& session) {
   GONIO_ASSIGN(const LeftOut measured, left_out(renderer, scene, plan, view, white));
   const double predicted_ms = plan.engine == Engine::kCpu ? plan.cpu_ms : plan.gl_ms;
-  session.results()["left_out"] = {{"de00_mean", json_number(measured.de00_mean)},
-                                   {"de00_p95", json_number(measured.de00_p95)},
-                                   {"de00_max", json_number(measured.de00_max)},
-                                   {"shading_ms", measured.planned_ms},
-                                   {"shading_all_ms", measured.full_ms},
-                                   {"predicted_ms", predicted_ms / view.samples}};
+  session.results()["left_out"] = {
+      {"de00_mean", json_number(measured.de00_mean)}, {"de00_p95", json_number(measured.de00_p95)},
+      {"de00_max", json_number(measured.de00_max)},   {"shading_ms", measured.planned_ms},
+      {"shading_all_ms", measured.full_ms},           {"predicted_ms", predicted_ms / view.samples}};
   session.say(fmt::format(
       "left out: dE00 p95 {:.2f} to the picture of all effects (predicted {:.2f}); shading {:.1f} ms a sample of each "
       "pixel (predicted {:.1f}), with all effects {:.1f}",
@@ -237,17 +243,22 @@ Result<void> write_exr_picture(const RenderOptions& options, const Request& requ
     part.attributes["goniochrome:aovLight"] = spelled(to_light);
     describe_view(options, frame.gbuffer->rays, scene.lights, part.attributes);
     part.attributes["goniochrome:operator"] = spelled(scene.reflection);
-    Json names = Json::array();
-    for (const MeshPart& mesh_part : scene.mesh->parts) names.push_back(mesh_part.name);
+    Json names = Json::array(), materials = Json::array();
+    for (const MeshPart& mesh_part : scene.mesh->parts) {
+      names.push_back(mesh_part.name);
+      materials.push_back(mesh_part.material);
+    }
     part.attributes["goniochrome:parts"] = names.dump(-1, ' ', false, Json::error_handler_t::replace);
+    part.attributes["goniochrome:materials"] = materials.dump(-1, ' ', false, Json::error_handler_t::replace);
   }
   return write_exr(shot.output, {part});
 }
 
 // Everything that a picture is made from; the scene points into it.
 struct Stage {
-  Mesh mesh;
-  std::vector<DressedMesh> dresses;  // one, or those of --split
+  Mesh mesh;                               // of its parts alone where there are buffers of it
+  std::shared_ptr<const Gbuffer> gbuffer;  // of --gbuffer, or none
+  std::vector<DressedMesh> dresses;        // one, or those of --split
   PrefilteredEnvironment env;
   Scene scene;
   std::optional<MipCube> mip;
@@ -285,10 +296,25 @@ Result<void> dress_stage(const RenderOptions& options, Stage& stage) {
   return {};
 }
 
+// The buffers of --gbuffer, and a mesh that has their parts.
+Result<void> set_gbuffer(const RenderOptions& options, Stage& stage) {
+  GONIO_ASSIGN(const AovFile buffers, read_aov_file(options.gbuffer));
+  GONIO_ASSIGN(Gbuffer gbuffer, gbuffer_of(buffers));
+  stage.gbuffer = std::make_shared<const Gbuffer>(std::move(gbuffer));
+  for (std::size_t i = 0; i < buffers.parts.size(); ++i)
+    stage.mesh.parts.push_back({buffers.parts[i], buffers.materials[i], 0, 0});
+  return {};
+}
+
 Result<void> set_stage(const RenderOptions& options, const Request& request, Stage& stage, cli::Session& session) {
-  GONIO_ASSIGN(stage.mesh, read_mesh(options.mesh));
+  if (options.gbuffer.empty()) {
+    GONIO_ASSIGN(stage.mesh, read_mesh(options.mesh));
+    tell_repairs(stage.mesh, session);
+  } else {
+    GONIO_TRY(set_gbuffer(options, stage));
+  }
   GONIO_TRY(dress_stage(options, stage));
-  tell_mesh(stage.mesh, stage.dresses.front(), session);
+  tell_parts(stage.mesh, stage.dresses.front(), session);
   Scene& scene = stage.scene;
   scene.mesh = &stage.mesh;
   scene.lights = request.lights;
@@ -327,7 +353,7 @@ class Shooting {
  private:
   View view(const Shot& shot, int shrink) const {
     return {shot.camera, std::max(1, request_.size.width / shrink), std::max(1, request_.size.height / shrink),
-            shrink > 1 ? 1 : options_.samples, shrink == 1 && options_.check > 0};
+            shrink > 1 ? 1 : request_.samples, shrink == 1 && options_.check > 0};
   }
   Result<void> look(Renderer& renderer);
   Result<Plan> load(Renderer& renderer, const DressedMesh& dress);
@@ -411,7 +437,7 @@ Result<void> Shooting::write(const Shot& shot, const std::optional<Display>& dis
 
 Result<void> Shooting::shoot(const std::optional<Display>& display) {
   GONIO_ASSIGN(shots_, shots_of(options_, stage_.mesh, request_.size, request_.lights));
-  GONIO_ASSIGN(Renderer renderer, Renderer::create());
+  GONIO_ASSIGN(Renderer renderer, stage_.gbuffer ? Renderer::shading(stage_.gbuffer) : Renderer::create());
   GONIO_TRY(look(renderer));
   tell_visibility(*looks_.front(), session_);
   white_ = diffuse_white(stage_.scene.env, stage_.scene.lights);
@@ -419,7 +445,7 @@ Result<void> Shooting::shoot(const std::optional<Display>& display) {
   request_.plan.tolerance_de00 = session_.common().tolerance;
   request_.plan.frames = static_cast<int>(shots_.size());
   request_.plan.pixels = static_cast<double>(request_.size.width) * request_.size.height;
-  session_.explain(explanation(stage_.mesh, stage_.dresses.front()));
+  session_.explain(explanation(options_, stage_.mesh, stage_.dresses.front()));
   const double automatic = request_.png && white_.luminance > 0 ? -std::log2(white_.luminance) : 0;
   const double stops = request_.stops.value_or(automatic);
   double frame_ms = 0;
@@ -430,7 +456,7 @@ Result<void> Shooting::shoot(const std::optional<Display>& display) {
     GONIO_TRY(write(shot, display, stops));
   }
   Json& results = session_.results();
-  results["opengl"] = renderer.opengl();
+  results["opengl"] = stage_.gbuffer ? Json(nullptr) : Json(renderer.opengl());
   results["gbuffer_ms"] = frame_.gbuffer_ms;
   results["frame_ms"] = frame_ms;
   results["frames"] = shots_.size();
@@ -440,7 +466,7 @@ Result<void> Shooting::shoot(const std::optional<Display>& display) {
   session_.say(fmt::format(
       "{}{}: {} x {}, {} samples a pixel, drawn in {:.0f} ms by {} (one rasterization {:.0f} ms), exposure {:+.2f}{}",
       name, shots_.size() > 1 ? fmt::format(" and {} more", shots_.size() - 1) : "", request_.size.width,
-      request_.size.height, options_.samples, frame_ms, engine_name(plan_.engine), frame_.gbuffer_ms, stops,
+      request_.size.height, request_.samples, frame_ms, engine_name(plan_.engine), frame_.gbuffer_ms, stops,
       display ? ", " + display->name() : ""));
   if (options_.check > 0) {
     check(options_, frame_, stage_.scene, stage_.check, white_.luminance, session_);
@@ -462,6 +488,7 @@ Result<cli::Verdict> run(const RenderOptions& options, cli::Session& session) {
   }
   Stage stage;
   GONIO_TRY(set_stage(options, request, stage, session));
+  if (stage.gbuffer) request.size = {stage.gbuffer->width, stage.gbuffer->height};
   GONIO_TRY(Shooting(options, std::move(request), stage, session).shoot(display));
   return cli::Verdict::kDone;
 }

@@ -24,8 +24,31 @@ std::optional<std::vector<double>> numbers(const std::string& text) {
 
 }  // namespace
 
+// Where the surfaces come from: a mesh, or buffers that hold one view of it.
+Result<void> check_surfaces(const RenderOptions& options) {
+  if (options.mesh.empty() && options.gbuffer.empty())
+    return usage_error("there is nothing to draw: give --mesh, or --gbuffer with the buffers of an earlier picture");
+  if (options.gbuffer.empty()) return {};
+  const RenderOptions usual;
+  const std::pair<const char*, bool> given[] = {
+      {"mesh", !options.mesh.empty()},           {"size", options.size != usual.size},
+      {"orbit", options.orbit != usual.orbit},   {"camera", !options.camera.empty()},
+      {"fov", options.fov_deg != usual.fov_deg}, {"turntable", options.turntable > 0},
+      {"texture", !options.textures.empty()}};
+  for (const auto& [name, is_given] : given) {
+    if (is_given)
+      return usage_error("--gbuffer and --{} exclude each other: {} holds one view of surfaces without their mesh",
+                         name, options.gbuffer);
+  }
+  if (options.samples != 0 && options.samples != 1)
+    return usage_error("--samples is {}: --gbuffer holds pixel centers, 1 sample each", options.samples);
+  if (options.engine == "gl") return usage_error("--engine gl draws a mesh: --gbuffer is shaded by cpu");
+  return {};
+}
+
 Result<PictureSize> parse_size(const std::string& text) {
   constexpr std::int64_t kMost = 16384;  // of OpenGL here
+  if (text == "auto") return PictureSize{1280, 720};
   const auto pieces = split(text, 'x');
   if (pieces.size() == 2) {
     const auto width = parse_integer(pieces[0]), height = parse_integer(pieces[1]);
@@ -33,7 +56,7 @@ Result<PictureSize> parse_size(const std::string& text) {
       return PictureSize{static_cast<int>(*width), static_cast<int>(*height)};
     }
   }
-  return usage_error("--size is \"{}\": write WIDTHxHEIGHT in pixels, 1x1 to {}x{}", text, kMost, kMost);
+  return usage_error("--size is \"{}\": write WIDTHxHEIGHT in pixels, 1x1 to {}x{}, or auto", text, kMost, kMost);
 }
 
 Result<Light> parse_light(const std::string& text) {
@@ -95,7 +118,10 @@ Result<ReflectionOperator> parse_operator(const std::string& text) {
 
 Result<std::vector<Shot>> shots_of(const RenderOptions& options, const Mesh& mesh, const PictureSize& size,
                                    const std::vector<Light>& lights) {
-  GONIO_ASSIGN(const Camera camera, camera_of(options, mesh, size));
+  Camera camera;  // of --gbuffer it is not meant
+  if (options.gbuffer.empty()) {
+    GONIO_ASSIGN(camera, camera_of(options, mesh, size));
+  }
   if (options.turntable > 0 && options.light_sweep > 0)
     return usage_error("--turntable and --light-sweep exclude each other");
   const int count = std::max(options.turntable, options.light_sweep);
