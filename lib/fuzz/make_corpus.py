@@ -80,10 +80,11 @@ def measured():
 
 
 def environments():
-    pfm = put("env-exr", "sky.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8 +X 16\n" + bytes([128, 64, 32, 129]) * 128)
+    head = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8 +X 16\n"
+    sky = put("probe-hdr", "plain.hdr", head + bytes([128, 64, 32, 129]) * 128)
+    put("probe-hdr", "runs.hdr", head + (bytes([2, 2, 0, 16]) + bytes([144, 128, 4, 9, 8, 7, 6, 140, 5, 144, 32, 144, 129])) * 8)
     out = HERE / "corpus" / "env-exr" / "sky.env.exr"
-    tool("prefilter-envmap", "-q", pfm, "--exponents", "6", "--size", "2", "-o", out)
-    pfm.unlink()
+    tool("prefilter-envmap", "-q", sky, "--exponents", "6", "--size", "2", "-o", out)
 
 
 def meshes():

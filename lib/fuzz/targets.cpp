@@ -11,6 +11,7 @@
 #include "brdf/measured.h"
 #include "color/reflection_json.h"
 #include "envmap/prefiltered.h"
+#include "image/image.h"
 #include "mesh/mesh.h"
 #include "paint/basis.h"
 #include "paint/cgats.h"
@@ -107,6 +108,12 @@ void read_env_file(const std::string& path) {
   if (!env.ok()) demand_message(env.error());
 }
 
+void read_probe(const std::string& path) {
+  const auto probe = read_image(path);
+  if (!probe.ok()) return demand_message(probe.error());
+  for (const float value : probe->image.data) demand(std::isfinite(value), "a radiance that is no number");
+}
+
 void read_obj(const std::string& path) {
   const auto mesh = read_mesh(path);
   if (!mesh.ok()) demand_message(mesh.error());
@@ -129,6 +136,7 @@ const std::vector<FuzzTarget>& fuzz_targets() {
       {"measured", "a.brdf", read_measured_file},
       {"env-exr", "a.env.exr", read_env_file},
       {"obj", "a.obj", read_obj},
+      {"probe-hdr", "a.hdr", read_probe},
       {"operator-json", "a.json", read_operator},
   };
   return targets;

@@ -108,6 +108,8 @@ TEST_F(HdrFile, a_damaged_file_is_refused_by_row) {
   std::string overrun = whole;
   overrun[header(200, 6).size() + 4] = static_cast<char>(0);  // a run of nothing
   EXPECT_THAT(decoded_hdr(overrun, "sky.hdr").error().message, HasSubstr("row 0"));
+  const std::string repeated = header(2, 1) + "\x80\x80\x80\x81\x01\x01\x01\x01";
+  EXPECT_THAT(decoded_hdr(repeated, "sky.hdr").error().message, HasSubstr("row 0"));
   // A size that the bytes cannot stand for asks for no memory.
   const auto forged = decoded_hdr(header(30000, 20000) + rows_in_runs(200, 6), "sky.hdr");
   ASSERT_FALSE(forged.ok());
