@@ -217,7 +217,7 @@ cli::ToolSpec render_spec(RenderOptions& o, cli::CommonOptions& common) {
   };
   spec.report = {
       {"plan[]: effect, needed, reason, de00_p95, cost_ms, decision",
-       "what each effect is worth, and whether it is drawn; with --check truth_de00_p95 as well"},
+       "what each effect is worth, and whether it is drawn; with --check and --explain truth_de00_p95 as well"},
       {"plan_de00_p95, plan_ms", "what all that is left out changes together, and the time that planning took"},
       {"engine, engine_reason", "what shaded, gl or cpu, and why"},
       {"opengl", "the OpenGL renderer; null with --gbuffer"},

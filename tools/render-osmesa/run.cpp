@@ -410,7 +410,7 @@ Result<void> Shooting::draw(Renderer& renderer, const Shot& shot, bool first) {
     Frame other;
     if (stage_.dresses.size() > 1 || first) {
       GONIO_ASSIGN(Plan plan, load(renderer, stage_.dresses[i]));
-      if (first && options_.check > 0) {
+      if (first && options_.check > 0 && session_.common().explain) {
         const Environment* environment = stage_.check.environment ? &*stage_.check.environment : nullptr;
         const auto sample =
             sampled_pixels(*looks_.front(), stage_.scene, std::min(options_.check, kMostTruth), session_.common().seed);
