@@ -32,12 +32,12 @@ float limit_of(const Environment& env, int most) {
   return above[kept];
 }
 
-// `env` with the mean of the others in the place of its bright texels: a plateau at the limit would leave edges as
-// steep as the limit, which is high where a sun makes the mean.
-Environment without_bright(const Environment& env, int most) {
+// Leaves the mean of the others in the place of the bright texels: a plateau at the limit would leave edges as steep as
+// the limit, which is high where a sun makes the mean.
+Clip without_bright(const Environment& env, int most) {
   const float limit = limit_of(env, most);
-  const Vec3 others = env.clipped(limit, 0).flux();
-  return env.clipped(limit, static_cast<float>(std::max({others.x, others.y, others.z}) / (4 * kPi)));
+  const Vec3 others = env.flux({limit, 0});
+  return {limit, static_cast<float>(std::max({others.x, others.y, others.z}) / (4 * kPi))};
 }
 
 }  // namespace
@@ -46,8 +46,9 @@ BrightTexels::BrightTexels(const Environment& env, int most) : rest_(without_bri
   gauss_.per_texel = 4;
   for (int row = 0; row < env.height(); ++row)
     for (int column = 0; column < env.width(); ++column) {
-      const float *all = env.radiance(column, row), *rest = rest_.radiance(column, row);
-      if (all[0] == rest[0] && all[1] == rest[1] && all[2] == rest[2]) continue;
+      const float* all = env.radiance(column, row);
+      if (!(std::max({all[0], all[1], all[2]}) > rest_.most)) continue;
+      const std::array<float, 3> rest = rest_.left_of(all);
       const Vec3 excess = {double(all[0]) - rest[0], double(all[1]) - rest[1], double(all[2]) - rest[2]};
       const double area = env.solid_angle(column, row);
       const Vec3 centroid = (1 / area) * moment_of_cell(env, {double(column), double(row), column + 1.0, row + 1.0});

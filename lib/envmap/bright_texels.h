@@ -8,15 +8,15 @@
 
 namespace goniochrome {
 
-// A map split in two: `rest` holds the mean of the others in the place of every bright texel, in its color, and the
-// bright texels what exceeds that.
+// A map split in two: rest() leaves the mean of the others in the place of every bright texel, in its color, and the
+// bright texels are what exceeds that.
 class BrightTexels {
  public:
   // Splits off at most `most` texels, those above 50 times the mean.
   BrightTexels(const Environment& env, int most);
 
   std::size_t count() const { return texels_.size(); }
-  const Environment& rest() const { return rest_; }
+  const Clip& rest() const { return rest_; }
 
   // Their part of P_E(d), each a constant patch.
   Vec3 lobe(const Vec3& d, double exponent) const;
@@ -27,7 +27,7 @@ class BrightTexels {
     Vec3 centroid, across, down;  // mean direction, and how it changes from side to side
     double radius_rad;
   };
-  Environment rest_;
+  Clip rest_;
   std::vector<Texel> texels_;
   double largest_radius_ = 0;
   // A texel as points, their flux as floats: its centroid, which is exact for E = 1 above the horizon, and four Gauss

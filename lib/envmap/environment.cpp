@@ -33,17 +33,6 @@ Environment Environment::cut_to(double most_rad) const {
   return fine;
 }
 
-Environment Environment::clipped(float most, float to) const {
-  Environment rest = *this;
-  for (std::size_t i = 0; i < rest.rgb_.size(); i += 3) {
-    float* rgb = &rest.rgb_[i];
-    const float largest = std::max({rgb[0], rgb[1], rgb[2]});
-    if (largest > most)
-      for (int c = 0; c < 3; ++c) rgb[c] *= to / largest;
-  }
-  return rest;
-}
-
 Result<Environment> Environment::scaled(double factor) const {
   Environment brighter = *this;
   for (std::size_t i = 0; i < rgb_.size(); ++i) {
@@ -66,7 +55,7 @@ Environment Environment::above(double elevation_rad, const Rotation& turn) const
   return upper;
 }
 
-Vec3 Environment::flux() const {
+Vec3 Environment::flux(const Clip& clip) const {
   std::vector<Vec3> rows(static_cast<std::size_t>(height()));
   parallel_for(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row) {
@@ -74,7 +63,7 @@ Vec3 Environment::flux() const {
       double area = solid_angle(0, y);  // of every texel of a lat-long row
       for (int column = 0; column < width(); ++column) {
         if (layout() != Layout::kLatLong) area = solid_angle(column, y);
-        const float* rgb = radiance(column, y);
+        const std::array<float, 3> rgb = clip.left_of(radiance(column, y));
         rows[row] += area * Vec3{rgb[0], rgb[1], rgb[2]};
       }
     }

@@ -2,6 +2,9 @@
 // cubes; goniochrome-theory(7), ENVIRONMENTS.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -13,6 +16,19 @@
 #include "image/image.h"
 
 namespace goniochrome {
+
+// What is left of a texel when its excess is taken away: one above `most` in some channel is scaled so that its largest
+// channel is `to`.
+struct Clip {
+  float most = std::numeric_limits<float>::infinity(), to = 0;
+
+  std::array<float, 3> left_of(const float* rgb) const {
+    const float largest = std::max({rgb[0], rgb[1], rgb[2]});
+    if (!(largest > most)) return {rgb[0], rgb[1], rgb[2]};
+    const float scale = to / largest;
+    return {scale * rgb[0], scale * rgb[1], scale * rgb[2]};
+  }
+};
 
 // Piecewise constant radiance: one value, one exact solid angle and one center direction per texel. Working space.
 // How the texels lie is told in sphere_grid.h.
@@ -44,8 +60,6 @@ class Environment {
   // The same radiance on finer texels, none wider or higher than `most_rad`: each texel is cut into equal parts, so
   // nothing changes on the sphere. What is that fine already comes back as it is.
   Environment cut_to(double most_rad) const;
-  // The same map, every texel above `most` in some channel scaled so that its largest is `to`.
-  Environment clipped(float most, float to) const;
   // With every value times `factor`. Error: the first texel whose value a float cannot hold.
   Result<Environment> scaled(double factor) const;
   // With black in the place of every texel whose center, turned by `turn`, lies below the elevation (radians).
@@ -80,8 +94,8 @@ class Environment {
     return &rgb_[3 * static_cast<std::size_t>(grid_.texel(direction))];
   }
 
-  // sum of radiance * solid angle, per channel.
-  Vec3 flux() const;
+  // sum of radiance * solid angle, per channel, of what `clip` leaves.
+  Vec3 flux(const Clip& clip = {}) const;
 
  private:
   friend class EnvironmentReader;

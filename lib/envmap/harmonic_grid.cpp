@@ -353,10 +353,10 @@ GaussRule rule_for(const std::vector<double>& k, double texel_rad) {
   return gauss_rule(4, pieces);
 }
 
-Points row_points(const Environment& env, int row, const GaussRule& rule) {
+Points row_points(const Environment& env, int row, const GaussRule& rule, const Clip& clip) {
   Points points;
   for (int column = 0; column < env.width(); ++column) {
-    const float* rgb = env.radiance(column, row);
+    const std::array<float, 3> rgb = clip.left_of(env.radiance(column, row));
     if (rgb[0] == 0 && rgb[1] == 0 && rgb[2] == 0) continue;
     for (std::size_t i = 0; i < rule.at.size(); ++i)
       for (std::size_t j = 0; j < rule.at.size(); ++j) {
@@ -374,7 +374,7 @@ Points row_points(const Environment& env, int row, const GaussRule& rule) {
 
 }  // namespace
 
-ScatteredMoments scattered_moments(const Environment& env, const std::vector<double>& k) {
+ScatteredMoments scattered_moments(const Environment& env, const std::vector<double>& k, const Clip& clip) {
   const int degree = static_cast<int>(k.size()) - 1;
   const Bump bump = make_bump(14);
   Grid grid = blank_grid(degree + 1, bump);
@@ -384,7 +384,7 @@ ScatteredMoments scattered_moments(const Environment& env, const std::vector<dou
   for (int first = 0; first < env.height(); first += kRowsAtATime) {
     std::vector<Points> rows(static_cast<std::size_t>(std::min(kRowsAtATime, env.height() - first)));
     parallel_for(rows.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) rows[i] = row_points(env, first + static_cast<int>(i), rule);
+      for (std::size_t i = begin; i < end; ++i) rows[i] = row_points(env, first + static_cast<int>(i), rule, clip);
     });
     parallel_for(3, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t c = begin; c < end; ++c)

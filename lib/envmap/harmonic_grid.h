@@ -36,6 +36,6 @@ struct ScatteredMoments {
   std::ptrdiff_t first_row = 0;
   std::vector<double> scale;
 };
-ScatteredMoments scattered_moments(const Environment& env, const std::vector<double>& k);
+ScatteredMoments scattered_moments(const Environment& env, const std::vector<double>& k, const Clip& clip);
 
 }  // namespace goniochrome

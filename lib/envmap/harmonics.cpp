@@ -40,7 +40,7 @@ Complex turn(double angle) {
 }
 
 // f_m of every row: [m][row][re R G B im R G B].
-std::vector<double> row_moments(const Environment& env, int degree) {
+std::vector<double> row_moments(const Environment& env, int degree, const Clip& clip) {
   const std::size_t width = static_cast<std::size_t>(env.width()), height = static_cast<std::size_t>(env.height());
   std::vector<double> moments(static_cast<std::size_t>(degree + 1) * height * 6);
   const Fft fft(width);
@@ -48,12 +48,14 @@ std::vector<double> row_moments(const Environment& env, int degree) {
     constexpr std::size_t kReals = 3 * kRowsAtOnce;
     Block block(width, kReals / 2);
     for (std::size_t row = begin; row < end; ++row)
-      for (std::size_t j = 0; j < width; ++j)
+      for (std::size_t j = 0; j < width; ++j) {
+        const std::array<float, 3> rgb = clip.left_of(env.radiance(static_cast<int>(j), static_cast<int>(row)));
         for (std::size_t c = 0; c < 3; ++c) {
           const std::size_t series = 3 * (row - begin) + c;
           std::vector<double>& part = series % 2 == 0 ? block.re : block.im;
-          part[j * block.lanes + series / 2] = env.radiance(static_cast<int>(j), static_cast<int>(row))[c];
+          part[j * block.lanes + series / 2] = rgb[c];
         }
+      }
     block.transform(fft, -1);
     for (int m = 0; m <= degree; ++m) {
       const double angle = kPi * m / static_cast<double>(width);
@@ -172,11 +174,11 @@ Harmonics harmonics_from(const RowMoments& moments, int degree) {
 
 }  // namespace
 
-Harmonics harmonics_of(const Environment& env, const std::vector<double>& k) {
+Harmonics harmonics_of(const Environment& env, const std::vector<double>& k, const Clip& clip) {
   const int degree = static_cast<int>(k.size()) - 1;
   RowMoments moments;
   if (env.layout() == Environment::Layout::kLatLong) {
-    moments.values = row_moments(env, degree);
+    moments.values = row_moments(env, degree, clip);
     moments.rows = static_cast<std::size_t>(env.height());
     moments.circle = 2 * moments.rows;
     moments.offset = 0.5;
@@ -184,7 +186,7 @@ Harmonics harmonics_of(const Environment& env, const std::vector<double>& k) {
     for (int n = 0; n <= degree + 1; ++n)
       moments.scale.push_back(kPi / env.height() * sinc(kPi * n / (2.0 * env.height())));
   } else {
-    ScatteredMoments scattered = scattered_moments(env, k);
+    ScatteredMoments scattered = scattered_moments(env, k, clip);
     moments.values = std::move(scattered.values);
     moments.rows = scattered.rows;
     moments.circle = scattered.circle;

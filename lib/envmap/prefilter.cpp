@@ -88,8 +88,8 @@ LobePlan lobe_plan(const PrefilterRequest& request, double exponent, int size) {
   return plan;
 }
 
-// What the harmonics up to each degree leave of a map: its root mean square, per channel, by Parseval.
-std::vector<Vec3> residual_rms(const Environment& env, const Harmonics& harmonics) {
+// What the harmonics up to each degree leave of a clipped map: its root mean square, per channel, by Parseval.
+std::vector<Vec3> residual_rms(const Environment& env, const Clip& clip, const Harmonics& harmonics) {
   std::vector<Vec3> rows(static_cast<std::size_t>(env.height()));
   parallel_for(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row) {
@@ -97,7 +97,7 @@ std::vector<Vec3> residual_rms(const Environment& env, const Harmonics& harmonic
       double area = env.solid_angle(0, y);  // of every texel of a lat-long row
       for (int column = 0; column < env.width(); ++column) {
         if (env.layout() != Environment::Layout::kLatLong) area = env.solid_angle(column, y);
-        const float* rgb = env.radiance(column, y);
+        const std::array<float, 3> rgb = clip.left_of(env.radiance(column, y));
         const Vec3 value = {rgb[0], rgb[1], rgb[2]};
         rows[row] += area * (value * value);
       }
@@ -152,11 +152,11 @@ class Workshop {
   }
   const Harmonics& rest() {
     // The cosine's k_l are the largest of those that come here.
-    if (!rest_) rest_.emplace(harmonics_of(bright().rest(), zonal_multipliers(1, kWideDegree)));
+    if (!rest_) rest_.emplace(harmonics_of(fine(), zonal_multipliers(1, kWideDegree), bright().rest()));
     return *rest_;
   }
   const std::vector<Vec3>& rest_rms() {
-    if (rest_rms_.empty()) rest_rms_ = residual_rms(bright().rest(), rest());
+    if (rest_rms_.empty()) rest_rms_ = residual_rms(fine(), bright().rest(), rest());
     return rest_rms_;
   }
   const Environment& environment() const { return env_; }
