@@ -60,6 +60,10 @@ class CxfHandler final : public XmlHandler {
       objects_.emplace_back();
       const std::string name = attribute("Name");
       objects_.back().paint.name = name.empty() ? attribute("Id") : name;
+      if (objects_.back().paint.name.empty()) {
+        objects_.back().paint.name = fmt::format("line {}", tag.line);
+        remarks_.note("objects with neither Name nor Id are called by their line", objects_.back().paint.name);
+      }
     } else if (in("ColorValues", "ColorCIELab") || in("ColorValues", "ColorCIELCh") ||
                in("ColorValues", "ReflectanceSpectrum")) {
       color_ = {attribute("ColorSpecification"), tag.line, {}, {}, 0};

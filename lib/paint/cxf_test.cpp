@@ -163,6 +163,15 @@ TEST_F(Cxf, values_find_their_angles) {
   EXPECT_THAT(paints.warnings, Contains(HasSubstr("\"gone\" is not in the file")));
 }
 
+TEST_F(Cxf, objects_without_a_name_get_one) {
+  const std::string bare = "<Object ObjectType=\"Standard\"><ColorValues>" + lab("m") + "</ColorValues></Object>";
+  const auto paints = good(cxf(bare + bare, specification("m", angles({{15, ""}}))));
+  ASSERT_EQ(paints.paints.size(), 2u);
+  EXPECT_THAT(paints.paints[0].name, HasSubstr("line "));
+  EXPECT_NE(paints.paints[0].name, paints.paints[1].name);
+  EXPECT_THAT(paints.warnings, Contains(HasSubstr("called by their line")));
+}
+
 TEST_F(Cxf, spectra_become_lab_under_their_specification) {
   std::string ones;
   for (int i = 0; i < 41; ++i) ones += " 0.5";
