@@ -9,7 +9,7 @@ import sys
 import time
 
 from . import page, target
-from .study import Run
+from .study import Failed, Run
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
 
@@ -38,10 +38,13 @@ def parse(arguments):
     parser.add_argument("--paints", type=pathlib.Path, default=TOP / "testdata/paints.paints.xml", metavar="FILE", help="library to use [testdata]")
     parser.add_argument("--probe", type=pathlib.Path, default=TOP / "testdata/studio.exr", metavar="FILE", help="HDR panorama to use [testdata]")
     parser.add_argument("--mesh", type=pathlib.Path, default=TOP / "testdata/speed-shape.obj", metavar="FILE", help="mesh to use [testdata]")
-    parser.add_argument("--target-de00", type=float, metavar="X", help="instead: find and prove the cheapest settings that bring three scenes within X")
+    parser.add_argument("--target-de00", type=float, metavar="X", help="instead: find and prove the cheapest settings that bring scenes within a mean of X")
+    parser.add_argument("--scene", action="append", metavar="PAINT[,PROBE]", help="with --target-de00: a paint, and a probe if not that of --probe; repeat for more [three of testdata]")
     options = parser.parse_args(arguments)
     if options.target_de00 is not None and not options.target_de00 > 0:
         parser.error(f"--target-de00 is {options.target_de00:g}: give a color difference above 0")
+    if options.scene and options.target_de00 is None:
+        parser.error("--scene goes with --target-de00")
     for name in options.studies:
         if name not in STUDIES:
             parser.error(f"there is no study {name}: choose of {', '.join(STUDIES)}")
@@ -65,9 +68,18 @@ def main(arguments=None):
     if not os.access(folder / "render-osmesa", os.X_OK):
         print(f"accuracy-report: {folder}: the tools are not there: build them (cmake --preset release && cmake --build --preset release), or name their folder with --bin", file=sys.stderr)
         return 3
+    try:
+        return work(folder, options)
+    except Failed as failure:
+        print(f"accuracy-report: {failure}", file=sys.stderr)
+        return 3
+
+
+def work(folder, options):
+    """Runs what was asked for; the exit status."""
     if options.target_de00 is not None:
         with Run(folder.resolve(), options) as run:
-            return 0 if target.report(run, options.target_de00) else 1
+            return 0 if target.report(run, options.target_de00, options.scene) else 1
     options.output.mkdir(parents=True, exist_ok=True)
     start = time.monotonic()
     studies = []

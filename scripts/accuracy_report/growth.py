@@ -50,9 +50,9 @@ def fitting(run):
         write_library(table, count, seed=count)
         run.tool("paint-convert", table, "-o", library)
         for method in ("l2", "deltae"):
-            _, best, raw = run.repeated("fit-paint", "--basis", run.data / "b7.basis.xml", "--method", method, library, "-o", run.work / "fitted.xml", times=1)
+            _, best, raw = run.repeated("fit-paint", "--basis", run.data / "b7.basis.xml", "--method", method, library, "-o", run.work / "fitted.xml")
             yield f"fit-paint {method}: paints", count, best, raw
-        _, best, raw = run.repeated("goniogeom-index", library, "--worst", "-o", run.work / "index.tsv", times=1)
+        _, best, raw = run.repeated("goniogeom-index", library, "--worst", "-o", run.work / "index.tsv")
         yield "goniogeom-index: paints", count, best, raw
 
 
@@ -84,5 +84,5 @@ def study(run):
     text = ("Exponents are of the time against the size, over the larger half of the sizes, where start-up counts least: 1 is proportional. The "
             "steepest step is the cliff to know about: an exponent far above the others there says that doubling the job at that point costs more "
             "than elsewhere. Probes are lat-long and go to 128 texels a face; faces come from 1024 x 512; lights shine on 640 x 360 pixels, and "
-            "pixels are counted under the probe. Times of render-osmesa are of a frame, all others of the whole tool.")
+            "pixels are counted under the probe. Times of render-osmesa are of a frame, all others are processor time of the whole tool.")
     return Study("Growth", text, [figure], [("Growth", ("what grows", "sizes", "least (s)", "most (s)", "exponent", "steepest step", "its exponent"), rows)])

@@ -46,7 +46,7 @@ def plot(run, figure):
     """Draws a figure with draw-plot(1) and returns its SVG; the file is kept beside the page."""
     rows = []
     for reading in figure.readings:
-        rows.append((reading.method, *figure.point(reading), "both"))
+        rows.append((reading.method, *figure.point(reading), "both" if figure.joined else "points"))
     for reading in (r for r in figure.readings if r.default):
         rows.append(("default", *figure.point(reading), "points"))
     if figure.front:

@@ -9,15 +9,15 @@ PAINTS = ("signal_red", "silver_black_flop", "blue_to_purple")
 def study(run):
     effects = ("none", "2", "0.5", "all") if run.quick else ("none", "5", "2", "1", "0.5", "0.2", "0.1", "all")
     figures, rows = [], []
-    for paint in PAINTS[:1] if run.quick else PAINTS:
+    for paint in run.named(PAINTS[:1] if run.quick else PAINTS):
         scene = Scene(run, paint)
         readings = []
         for engine in ("gl", "cpu"):
             for choice in effects:
-                numbers = scene.picture(Settings("b7", "l1", 1e-3, choice), "--engine", engine)
+                numbers = scene.picture(Settings("b7", "l1", False, 1e-3, choice), "--engine", engine)
                 kept = sum(1 for row in numbers["plan"] if row["decision"] == "drawn")
                 readings.append(Reading(setting=f"{engine}, {choice}", time_s=numbers["frame_ms"] * 1e-3, error=numbers["render_de00"], method=engine, default=(engine, choice) == ("cpu", "0.5"),
-                                        raw_s=(numbers["render_s"],), numbers={"p95": numbers["render_p95"], "effects": kept}))
+                                        raw_s=tuple(1e-3 * ms for ms in numbers["all_frame_ms"]), numbers={"p95": numbers["render_p95"], "effects": kept}))
                 rows.append((paint, engine, choice, kept, numbers["frame_ms"], numbers["render_de00"], numbers["render_p95"]))
         figures.append(Figure(f"render-{paint}", f"{paint}: mean dE00 to the reference integrator against time", readings, "time of a frame (s)", "dE00, mean"))
     return Study("Rendering", "Each point is a tolerance of render-osmesa: effects whose estimated worth stays below it are left out. "

@@ -2,6 +2,12 @@
 
 import dataclasses
 
+from .study import Failed
+
+# Bases beside those of testdata. Lobes narrower than a paint's flop reach less below the horizon, where light that
+# changes across a lobe is what a picture misses most; views take up what the fit then lacks.
+STEEP = {"steep": (4, 15, 60, 300, 1500)}
+
 CAMERA = ("--size", "320x180", "--camera", "3.6,1.75,4.6,0,0.5,0.1", "--fov", "25")
 
 
@@ -9,53 +15,88 @@ CAMERA = ("--size", "320x180", "--camera", "3.6,1.75,4.6,0,0.5,0.1", "--fov", "2
 class Settings:
     """The knobs of the three stages."""
 
-    basis: str  # of testdata: b5, b7
+    basis: str  # of testdata, b5 or b7, or one above
     method: str  # of fit-paint
+    views: bool  # fitted for several angles of the viewer, where the readings call for it
     prefilter: float  # tolerance of prefilter-envmap
     effects: str  # tolerance of render-osmesa in dE00, or all, or none
 
+    def fit_words(self):
+        return ("--method", self.method, *(("--views", "auto") if self.views else ()))
+
+    def render_words(self):
+        return ("--effects", self.effects) if self.effects in ("all", "none") else ("--tolerance", self.effects)
+
     def __str__(self):
         effects = self.effects if self.effects in ("all", "none") else f"effects to {self.effects} dE00"
-        return f"{self.basis}, {self.method}, prefilter {self.prefilter:g}, {effects}"
+        return f"{self.basis}, {self.method}{', views' if self.views else ''}, prefilter {self.prefilter:g}, {effects}"
+
+    def commands(self):
+        """What to type for these settings, without files in and out."""
+        return (f"fit-paint --basis {self.basis}.basis.xml {' '.join(self.fit_words())}",
+                f"prefilter-envmap --basis {self.basis}.basis.xml --tolerance {self.prefilter:g}",
+                f"render-osmesa {' '.join(self.render_words())}")
+
+
+def basis_file(run, name):
+    if name not in STEEP:
+        return run.data / f"{name}.basis.xml"
+    path = run.work / f"{name}.basis.xml"
+    exponents = "".join(f"<exponent>{e}</exponent>" for e in STEEP[name])
+    path.write_text(f'<basis xmlns="urn:goniochrome:basis:1" name="{name}">{exponents}<mirror/></basis>\n')
+    return path
 
 
 class Scene:
-    """A paint on a mesh under a probe. Stages that two settings share run once and count for both."""
+    """A paint on a mesh under a probe. Stages that two settings share run once, for all scenes of a run, and count for each."""
 
-    def __init__(self, run, paint, probe=None, frame=CAMERA, checks=None):
+    def __init__(self, run, paint, probe=None, frame=CAMERA, checks=40):
         self.run, self.paint, self.probe = run, paint, probe or run.probe
-        self.frame = frame
-        self.checks = checks or (60 if run.quick else 200)
-        self.fits, self.environments = {}, {}
+        self.frame, self.checks = frame, checks
 
-    def fit(self, basis, method):
-        if (basis, method) not in self.fits:
-            out = self.run.work / f"{basis}-{method}.xml"
-            results, seconds = self.run.tool("fit-paint", "--basis", self.run.data / f"{basis}.basis.xml", "--method", method, self.run.paints, "-o", out)
-            of_paint = next(p for p in results["paints"] if p["name"] == self.paint)
-            self.fits[basis, method] = out, of_paint["de00_mean"], seconds / len(results["paints"])
-        return self.fits[basis, method]
+    def fit(self, settings):
+        """(the fitted library, the paint's mean dE00 at its readings, seconds for one paint)"""
+        key = (settings.basis, *settings.fit_words())
+        if key not in self.run.kept:
+            out = self.run.work / f"{'-'.join(key)}.xml"
+            results, seconds, _ = self.run.repeated("fit-paint", "--basis", basis_file(self.run, settings.basis), *settings.fit_words(), self.run.paints, "-o", out)
+            self.run.kept[key] = out, {p["name"]: p["de00_mean"] for p in results["paints"]}, seconds / len(results["paints"])
+        out, de00, seconds = self.run.kept[key]
+        if de00.get(self.paint) is None:
+            raise Failed(f"{self.run.paints}: there is no paint {self.paint} that can be fitted")
+        return out, de00[self.paint], seconds
 
-    def environment(self, basis, tolerance):
-        if (basis, tolerance) not in self.environments:
-            out = self.run.work / f"{self.probe.stem}-{basis}-{tolerance:g}.env.exr"
-            _, seconds = self.run.tool("prefilter-envmap", self.probe, "--basis", self.run.data / f"{basis}.basis.xml", "--tolerance", tolerance, "--verify", 0, "-o", out)
-            self.environments[basis, tolerance] = out, seconds
-        return self.environments[basis, tolerance]
+    def environment(self, settings):
+        """(the prefiltered probe, seconds)"""
+        key = (self.probe, settings.basis, settings.prefilter)
+        if key not in self.run.kept:
+            out = self.run.work / f"{self.probe.stem}-{settings.basis}-{settings.prefilter:g}.env.exr"
+            _, seconds, _ = self.run.repeated("prefilter-envmap", self.probe, "--basis", basis_file(self.run, settings.basis), "--tolerance", settings.prefilter, "--verify", 0, "-o", out)
+            self.run.kept[key] = out, seconds
+        return self.run.kept[key]
+
+    def words(self, settings):
+        fitted, env = self.fit(settings)[0], self.environment(settings)[0]
+        return ("--mesh", self.run.mesh, "--paint", f"{fitted}#{self.paint}", "--env", env, *self.frame, *settings.render_words(), "-o", self.run.work / "picture.exr")
+
+    def cost(self, settings, *more):
+        """Seconds by stage, and the least milliseconds of a frame."""
+        frames, seconds = [], []
+        for _ in range(self.run.repeats):
+            results, taken = self.run.tool("render-osmesa", *self.words(settings), *more)
+            frames.append(results["frame_ms"])
+            seconds.append(taken)
+        return {"fit_s": self.fit(settings)[2], "prefilter_s": self.environment(settings)[1], "render_s": min(seconds), "frame_ms": min(frames), "all_frame_ms": tuple(frames)}
+
+    def error(self, settings, *more, checks=None):
+        """dE00 of the fit to the readings and of the picture to the reference integrator, and the plan."""
+        results, _ = self.run.tool("render-osmesa", *self.words(settings), *more, "--check", checks or self.checks)
+        error = results["error"]
+        return {"fit_de00": self.fit(settings)[1], "render_de00": error["de00_mean"], "render_p95": error["de00_p95"], "plan": results.get("plan", [])}
 
     def picture(self, settings, *more):
-        """Renders for the time and once more, with the reference integrator, for the error: a dict of seconds by stage,
-        dE00 of fit and picture, and the plan."""
-        fitted, fit_de00, fit_s = self.fit(settings.basis, settings.method)
-        env, prefilter_s = self.environment(settings.basis, settings.prefilter)
-        effects = ("--effects", settings.effects) if settings.effects in ("all", "none") else ("--tolerance", settings.effects)
-        words = ("--mesh", self.run.mesh, "--paint", f"{fitted}#{self.paint}", "--env", env, *self.frame, *effects, *more, "-o", self.run.work / "picture.exr")
-        timed = [self.run.tool("render-osmesa", *words) for _ in range(1 if self.run.quick else 3)]
-        results, _ = self.run.tool("render-osmesa", *words, "--check", self.checks)
-        error = results["error"]
-        return {"fit_s": fit_s, "prefilter_s": prefilter_s, "render_s": min(s for _, s in timed), "fit_de00": fit_de00,
-                "frame_ms": min(r["frame_ms"] for r, _ in timed),
-                "render_de00": error["de00_mean"], "render_p95": error["de00_p95"], "plan": results.get("plan", [])}
+        """Both."""
+        return self.cost(settings, *more) | self.error(settings, *more)
 
 
 def total_s(numbers):

@@ -41,9 +41,9 @@ class Stage:
 
     def __init__(self, run):
         self.run, self.lights = run, {}
-        basis = ("--basis", run.data / "b7.basis.xml")
-        run.tool("fit-paint", *basis, run.paints, "-o", run.work / "fitted.xml")
-        run.tool("fit-paint", *basis, "--views", "0,30,45,60,75", run.paints, "-o", run.work / "views.xml")
+        basis, paints = ("--basis", run.data / "b7.basis.xml"), run.data / "paints.paints.xml"
+        run.tool("fit-paint", *basis, paints, "-o", run.work / "fitted.xml")
+        run.tool("fit-paint", *basis, "--views", "0,30,45,60,75", paints, "-o", run.work / "views.xml")
         brushed = (run.work / "fitted.xml").read_text().replace("<lobes ", '<anisotropy alphaX="0.1" alphaY="0.3"/><lobes ')
         (run.work / "brushed.xml").write_text(brushed)
 
@@ -66,10 +66,10 @@ class Stage:
             self.lights[name] = ("--env", env, "--check-source", source)
         return self.lights[name]
 
-    def picture(self, scene, effects):
+    def picture(self, scene, effects, *more):
         """The report of a scene with these effects, checked."""
         paint, wears, light = scene
-        words = ["--mesh", self.run.mesh, *SIZE, "--effects", effects, *self.light(light), "--check", 40 if self.run.quick else 100]
+        words = ["--mesh", self.run.mesh, *SIZE, "--effects", effects, *self.light(light), "--check", 40 if self.run.quick else 100, *more]
         if wears == "texture":
             wears = "fitted"
             words += ["--texture", f"Hood={self.run.data / 'nameplate.sbrdf.exr'}"]
@@ -86,7 +86,7 @@ def scene_row(stage, scene):
 
 
 def effect_row(stage, effect, scene):
-    without = stage.picture(scene, f"all,-{effect}")
+    without = stage.picture(scene, f"all,-{effect}", "--explain")
     truth = [row["truth_de00_p95"] for row in without["plan"] if row["effect"] == effect and row.get("truth_de00_p95") is not None]
     return (effect, "{} ({}), {}".format(*scene), without["plan_de00_p95"], without["left_out"]["de00_p95"], without["error"]["de00_p95"], truth[0] if truth else math.nan)
 

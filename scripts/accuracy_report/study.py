@@ -3,11 +3,12 @@
 import dataclasses
 import json
 import pathlib
+import resource
 import shutil
 import subprocess
 import sys
 import tempfile
-import time
+import xml.etree.ElementTree
 
 
 class Failed(Exception):
@@ -40,6 +41,7 @@ class Figure:
     x: object = None  # reading -> x; default: its time
     y: object = None  # reading -> y; default: its error
     logarithmic: str = "both"
+    joined: bool = True  # the readings of one method by a line
 
     def point(self, reading):
         return (self.x(reading) if self.x else reading.time_s, self.y(reading) if self.y else reading.error)
@@ -81,12 +83,22 @@ class Study:
                         break
 
 
+def processor_s():
+    """Processor time of all tools so far: other work on the machine does not count, and threads count each."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
 class Run:
     """The tools, a folder to work in, and what the user asked for."""
+
+    SHORT_S, ENOUGH_S = 0.2, 4  # shorter runs are repeated more often; after so many seconds none is repeated
 
     def __init__(self, folder, options):
         self.folder, self.options = folder, options
         self.quick = options.quick
+        self.repeats = 1 if options.quick else 3
+        self.kept = {}  # results of stages that several pictures share
         self.paints, self.probe, self.mesh = (p.resolve() for p in (options.paints, options.probe, options.mesh))
         self.output = options.output
         self.data = pathlib.Path(__file__).resolve().parents[2] / "testdata"
@@ -102,21 +114,26 @@ class Run:
     def say(self, text):
         print(f"accuracy-report: {text}", file=sys.stderr, flush=True)
 
-    def tool(self, name, *words, may_be_negative=True):
-        """Runs a tool and returns (results of its report, seconds of the whole process)."""
+    def named(self, wanted):
+        """Those of these paints that the library has; of a library that has none, as many from its beginning."""
+        names = [paint.get("name") for _, paint in xml.etree.ElementTree.iterparse(self.paints) if paint.tag.endswith("}paint")]
+        return [name for name in wanted if name in names] or names[: len(wanted)]
+
+    def tool(self, name, *words):
+        """Runs a tool and returns (results of its report, seconds of processor time of the whole process)."""
         report = self.work / "report.json"
-        start = time.monotonic()
+        before = processor_s()
         done = subprocess.run([str(self.folder / name), *map(str, words), "--report", str(report), "--quiet"],
                               cwd=self.work, capture_output=True, text=True)
-        seconds = time.monotonic() - start
-        if done.returncode not in ((0, 1) if may_be_negative else (0,)):
+        seconds = processor_s() - before
+        if done.returncode not in (0, 1):
             raise Failed(f"{name} {' '.join(map(str, words))}: {done.stderr.strip() or done.returncode}")
         return json.loads(report.read_text())["results"], seconds
 
-    def repeated(self, name, *words, times=3):
-        """The same several times: (results of the last, the least seconds, all seconds)."""
+    def repeated(self, name, *words):
+        """The same several times, short ones more often: (results of the last, the least seconds, all seconds)."""
         all_s = []
-        for _ in range(1 if self.quick else times):
+        while len(all_s) < self.repeats * (2 if min(all_s, default=0) < self.SHORT_S else 1) and sum(all_s) < self.ENOUGH_S:
             results, seconds = self.tool(name, *words)
             all_s.append(seconds)
         return results, min(all_s), tuple(all_s)
