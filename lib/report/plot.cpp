@@ -59,7 +59,7 @@ class Scale {
 
 std::string tick_label(double v) {
   const double size = std::abs(v);
-  if (size != 0 && (size >= 1e5 || size < 1e-3)) return fmt::format("{:.0e}", v);
+  if (size != 0 && (size >= 1e5 || size < 1e-3)) return fmt::format("{:.3g}", v);
   return fmt::format("{:.6g}", v);
 }
 
@@ -174,7 +174,9 @@ std::vector<double> ticks(double low, double high, bool logarithmic, int count) 
         if ((part == 1 ? decade % every == 0 : dense) && v >= low * (1 - 1e-12) && v <= high * (1 + 1e-12))
           at.push_back(v);
       }
-    return at;
+    // Within a decade, round steps tell more.
+    if (at.size() > 2) return at;
+    at.clear();
   }
   const double rough = (high - low) / std::max(count, 1), power = std::pow(10.0, std::floor(std::log10(rough)));
   const double step = power * (rough / power <= 1 ? 1 : rough / power <= 2 ? 2 : rough / power <= 5 ? 5 : 10);

@@ -13,6 +13,8 @@ TEST(Plot, TicksAreRoundNumbersInsideTheAxis) {
   EXPECT_EQ(ticks(1, 1000, true, 6), (std::vector<double>{1, 10, 100, 1000}));
   EXPECT_EQ(ticks(1, 20, true, 6), (std::vector<double>{1, 2, 5, 10, 20}));
   EXPECT_TRUE(ticks(3, 3, false, 5).empty());
+  EXPECT_EQ(ticks(0.21, 0.48, true, 3).size(), 2u);  // 0.3 and 0.4, where 1, 2 and 5 are not
+  EXPECT_GE(ticks(0.0021, 0.0048, true, 6).size(), 3u);
   for (const double high : {1e-7, 0.3, 17.0, 9e6}) {
     const auto at = ticks(-high, high, false, 6);
     EXPECT_GE(at.size(), 3u);
