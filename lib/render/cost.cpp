@@ -3,16 +3,19 @@
 #include <algorithm>
 #include <bit>
 
+#include "render/maps.h"
+
 namespace goniochrome {
 
 namespace {
 
 // Measured by BM_PaintEdited and BM_Tilts: a pixel of the picture, seen or not (it is written, and read
-// back from OpenGL), a part that every point has, one map more, one light more, one lobe in a light.
+// back from OpenGL), a part that every point has, one block of maps more (two on the processor, one in OpenGL), one
+// direction more that maps are met by, one light more, one lobe in a light.
 struct Counts {
-  double pixel, point, map, class_of_maps, light, lit_lobe, view;
+  double pixel, point, block, direction, light, lit_lobe, view;
 };
-constexpr Counts kCpu = {2.5, 6, 1.5, 6, 12, 5, 2};
+constexpr Counts kCpu = {2.5, 6, 3, 6, 12, 5, 2};
 constexpr Counts kGl = {12, 30, 42, 0, 40, 30, 12};
 
 }  // namespace
@@ -21,22 +24,24 @@ double pixel_ns(Engine engine) {
   return engine == Engine::kCpu ? kCpu.pixel : kGl.pixel;
 }
 
-double point_ns(const Effects& effects, Engine engine, double tilts) {
+double point_ns(const Scene& scene, const Effects& effects, Engine engine, const PointCounts& counts) {
   const Counts& c = engine == Engine::kCpu ? kCpu : kGl;
-  const double spread = effects.anisotropy ? tilts : 1;
-  double lobes = 0, shifted = 0;
-  for (const Effects::LobeUse& use : effects.lobes) {
-    if (!use.directional_diffuse && !use.gloss) continue;
-    ++lobes;
-    shifted += is_shifted(effects, use.exponent) ? 1 : 0;
-  }
+  const double spread = effects.anisotropy ? counts.tilts : 1;
   double ns = c.point + (effects.depends_on_view() ? c.view : 0);
   if (effects.environment) {
+    const bool pairs = engine == Engine::kCpu && !(effects.reflection && counts.forms > 4);
     const double single = (effects.diffuse ? 1 : 0) + (effects.mirror ? 1 : 0);
-    const double classes = shifted + std::min(2.0, lobes - shifted);
-    ns += single * (c.map + c.class_of_maps) + spread * (lobes * c.map + classes * c.class_of_maps);
+    ns += single * (c.block + c.direction);
+    for (const LobeClass& of : lobe_classes(*scene.env, effects))
+      ns += spread * (c.direction + c.block * static_cast<double>(pairs ? (of.lobes.size() + 1) / 2 : of.lobes.size()));
   }
-  return ns + static_cast<double>(effects.lights) * (c.light + spread * lobes * c.lit_lobe);
+  return ns + static_cast<double>(effects.lights) *
+                  (c.light + spread * static_cast<double>(effects.lobes.size()) * c.lit_lobe);
+}
+
+double mapped_point_ns(const Effects& effects) {
+  constexpr double kMapped = 300;
+  return effects.maps ? kMapped * static_cast<double>(effects.lights) : 0;
 }
 
 // Four texels around a place, each with its lobes, or the mean texel. Measured by BM_Texture: a point, a lobe of a

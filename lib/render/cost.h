@@ -6,11 +6,18 @@
 namespace goniochrome {
 
 // Nanoseconds a point on one core of the machine the counts were taken on (2.6 GHz, AVX-512). goniochrome-theory(7),
-// PLAN. `tilts` is the mean number of tilted normals of a visible point.
-double point_ns(const Effects& effects, Engine engine, double tilts);
+// PLAN.
+struct PointCounts {
+  double tilts = 1;  // normals that lobes are drawn about, mean over the visible points
+  int forms = 3;     // of the product that the operator stands for
+};
+double point_ns(const Scene& scene, const Effects& effects, Engine engine, const PointCounts& counts);
 
 // What a textured point adds, whatever the engine; `lobes` of its texture.
 double textured_point_ns(const Effects& effects, int lobes);
+
+// What the colors of a color map add to a point under the scene's lights, whatever the engine.
+double mapped_point_ns(const Effects& effects);
 
 // Nanoseconds a pixel of the picture, whether the mesh is seen there or not.
 double pixel_ns(Engine engine);

@@ -15,6 +15,8 @@ namespace {
 
 constexpr double kGrazingCos = 0.5;  // beyond 60 deg the reflectance of a coat leaves 4 %
 
+constexpr double kWhiteChroma = 1e-3;  // of light kept in single precision
+
 // The share of the points (percent) for which it holds.
 template <class Condition>
 double percent(const std::vector<VisiblePoint>& points, Condition holds) {
@@ -93,8 +95,8 @@ double light_chroma(const Scene& scene, const Effects& all) {
 std::string reflection_reason(const Scene& scene, const Effects& all) {
   if (!all.reflection) return "the operator is the component-wise product";
   const double most = light_chroma(scene, all);
-  if (most < 1) return "white light: the operator changes nothing";
-  return fmt::format("colored light, up to C* {:.0f} on a white diffuser", most);
+  if (most <= kWhiteChroma) return "white light: the operator changes nothing";
+  return fmt::format("colored light, up to C* {:.2g} on a white diffuser", most);
 }
 
 std::string texture_reason(const Scene& scene, const Effects& all, const std::vector<VisiblePoint>& seen) {
@@ -154,7 +156,8 @@ std::vector<EffectSwitch> effect_switches(const Scene& scene, const Effects& all
       [](Effects& e) { e.views = e.maps = false; });
   add("texture", all.texture, texture_reason(scene, all, seen), [](Effects& e) { e.texture = false; });
   add_texture_lobes(scene, all, list);
-  add("operator", all.reflection, reflection_reason(scene, all), [](Effects& e) { e.reflection = false; });
+  add("operator", all.reflection && light_chroma(scene, all) > kWhiteChroma, reflection_reason(scene, all),
+      [](Effects& e) { e.reflection = false; });
   add("lights", all.lights > 0, fmt::format("{} directional light{}", all.lights, all.lights == 1 ? "" : "s"),
       [](Effects& e) {
         e.lights = 0;

@@ -32,17 +32,33 @@ struct World {
   }
 };
 
+// What is left out of the world by a plan with these effects, and what the renderer draws after it was measured.
+struct Measured {
+  std::shared_ptr<const Gbuffer> seen;
+  LeftOut left;
+  Image after;
+};
+Measured measured(const World& world, const std::string& effects) {
+  Measured result;
+  auto renderer = Renderer::create();
+  EXPECT_TRUE(renderer.ok()) << renderer.error().message;
+  result.seen = *renderer->look(world.mesh, world.view);
+  PlanRequest request;
+  request.effects = effects, request.engine = Engine::kCpu;
+  const auto plan = renderer->load(world.scene, {result.seen}, request);
+  EXPECT_TRUE(plan.ok());
+  const auto left = left_out(*renderer, world.scene, *plan, world.view, 1);
+  EXPECT_TRUE(left.ok());
+  result.left = *left;
+  Frame frame;
+  EXPECT_TRUE(renderer->draw(world.view, frame).ok());
+  result.after = std::move(frame.picture);
+  return result;
+}
+
 TEST(LeftOut, IsTheDifferenceOfThePlannedPictureFromThatOfAllEffects) {
   const World world;
-  auto renderer = Renderer::create();
-  ASSERT_TRUE(renderer.ok()) << renderer.error().message;
-  const auto seen = renderer->look(world.mesh, world.view);
-  PlanRequest request;
-  request.effects = "all,-diffuse", request.engine = Engine::kCpu;
-  const auto plan = renderer->load(world.scene, {*seen}, request);
-  ASSERT_TRUE(plan.ok());
-  const auto left = left_out(*renderer, world.scene, *plan, world.view, 1);
-  ASSERT_TRUE(left.ok());
+  const Measured result = measured(world, "all,-diffuse");
   Effects without = effects_of(world.scene);
   without.diffuse = false;
   const Image full = world.draw(effects_of(world.scene)), planned = world.draw(without);
@@ -50,32 +66,22 @@ TEST(LeftOut, IsTheDifferenceOfThePlannedPictureFromThatOfAllEffects) {
   for (int y = 0; y < kSize; ++y) {
     for (int x = 0; x < kSize; ++x) {
       const float *a = planned.pixel(x, y), *b = full.pixel(x, y);
-      if ((*seen)->part(x, y) >= 0) de00.push_back(seen_difference({a[0], a[1], a[2]}, {b[0], b[1], b[2]}, 1));
+      if (result.seen->part(x, y) >= 0) de00.push_back(seen_difference({a[0], a[1], a[2]}, {b[0], b[1], b[2]}, 1));
     }
   }
-  EXPECT_GT(left->de00_p95, 5) << "the diffuse part of a green paint is seen";
-  EXPECT_DOUBLE_EQ(left->de00_max, *std::max_element(de00.begin(), de00.end()));
-  EXPECT_DOUBLE_EQ(left->de00_p95, percentile_95(std::move(de00)));
-  EXPECT_GT(left->planned_ms, 0);
-  EXPECT_GT(left->full_ms, 0);
-  Frame after;
-  ASSERT_TRUE(renderer->draw(world.view, after).ok());
-  EXPECT_EQ(after.picture.data, planned.data) << "the renderer is left as planned";
+  const LeftOut& left = result.left;
+  EXPECT_GT(left.de00_p95, 5) << "the diffuse part of a green paint is seen";
+  EXPECT_DOUBLE_EQ(left.de00_max, *std::max_element(de00.begin(), de00.end()));
+  EXPECT_DOUBLE_EQ(left.de00_p95, percentile_95(std::move(de00)));
+  EXPECT_GT(left.planned_ms, 0);
+  EXPECT_GT(left.full_ms, 0);
+  EXPECT_EQ(result.after.data, planned.data) << "the renderer is left as planned";
 }
 
 TEST(LeftOut, IsNothingWhereAllIsDrawn) {
-  const World world;
-  auto renderer = Renderer::create();
-  ASSERT_TRUE(renderer.ok()) << renderer.error().message;
-  const auto seen = renderer->look(world.mesh, world.view);
-  PlanRequest request;
-  request.effects = "all";
-  const auto plan = renderer->load(world.scene, {*seen}, request);
-  ASSERT_TRUE(plan.ok());
-  const auto left = left_out(*renderer, world.scene, *plan, world.view, 1);
-  ASSERT_TRUE(left.ok());
-  EXPECT_EQ(left->de00_max, 0);
-  EXPECT_EQ(left->full_ms, left->planned_ms);
+  const LeftOut left = measured(World(), "all").left;
+  EXPECT_EQ(left.de00_max, 0);
+  EXPECT_EQ(left.full_ms, left.planned_ms);
 }
 
 }  // namespace

@@ -13,10 +13,9 @@ namespace {
 // A class holds maps down to this share of its face size.
 constexpr double kSmallest = 0.4;
 
-// The lobe's map, or an error with the command that adds it.
-Result<const PrefilteredLobe*> lobe_of(const PrefilteredEnvironment& env, double exponent, const Effects& effects) {
-  const PrefilteredLobe* lobe = env.lobe(exponent);
-  if (lobe != nullptr) return lobe;
+// Whether the lobe is there; else an error with the command that adds it.
+Result<void> check_lobe(const PrefilteredEnvironment& env, double exponent, const Effects& effects) {
+  if (env.lobe(exponent) != nullptr) return {};
   std::string list;
   for (const Effects::LobeUse& use : effects.lobes) list += (list.empty() ? "" : ",") + shortest(use.exponent);
   return input_error(
@@ -47,37 +46,42 @@ MapClass single(int slot, const CubeMap& map) {
 
 }  // namespace
 
+std::vector<LobeClass> lobe_classes(const PrefilteredEnvironment& env, const Effects& effects) {
+  std::vector<LobeClass> shifted, shared;
+  std::vector<std::size_t> members;
+  for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
+    if (env.lobe(effects.lobes[j].exponent) == nullptr) continue;
+    if (is_shifted(effects, effects.lobes[j].exponent)) {
+      shifted.push_back({{j}, true});
+    } else {
+      members.push_back(j);
+    }
+  }
+  const auto size = [&](std::size_t j) { return env.lobe(effects.lobes[j].exponent)->map.size; };
+  std::ranges::stable_sort(members, [&](std::size_t a, std::size_t b) { return size(a) > size(b); });
+  for (const std::size_t j : members) {
+    if (shared.empty() || size(j) < kSmallest * size(shared.back().lobes.front())) shared.push_back({{}, false});
+    shared.back().lobes.push_back(j);
+  }
+  std::ranges::reverse(shared);
+  shifted.insert(shifted.end(), shared.begin(), shared.end());
+  return shifted;
+}
+
 Result<SceneMaps> scene_maps(const Scene& scene, const Effects& effects) {
   SceneMaps maps;
   if (!effects.environment) return maps;
   const PrefilteredEnvironment& env = *scene.env;
   if (effects.diffuse) maps.diffuse = single(WeightTable::diffuse_slot(), env.diffuse.map);
-  struct Member {
-    int slot;
-    const CubeMap* map;
-  };
-  std::vector<MapClass> wide;
-  std::vector<Member> members;
-  for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
-    GONIO_ASSIGN(const PrefilteredLobe* lobe, lobe_of(env, effects.lobes[j].exponent, effects));
-    if (is_shifted(effects, effects.lobes[j].exponent)) {
-      wide.push_back(single(WeightTable::lobe_slot(j), lobe->map));
-      wide.back().shifted = true;
-      continue;
+  for (const Effects::LobeUse& use : effects.lobes) GONIO_TRY(check_lobe(env, use.exponent, effects));
+  for (const LobeClass& of : lobe_classes(env, effects)) {
+    MapClass into{env.lobe(effects.lobes[of.lobes.front()].exponent)->map.size, {}, {}, of.shifted};
+    for (const std::size_t j : of.lobes) {
+      into.slots.push_back(WeightTable::lobe_slot(j));
+      into.maps.push_back(resized(env.lobe(effects.lobes[j].exponent)->map, into.size));
     }
-    members.push_back({WeightTable::lobe_slot(j), &lobe->map});
+    maps.lobes.push_back(std::move(into));
   }
-  std::stable_sort(members.begin(), members.end(),
-                   [](const Member& a, const Member& b) { return a.map->size > b.map->size; });
-  for (const Member& member : members) {
-    if (maps.lobes.empty() || member.map->size < kSmallest * maps.lobes.back().size)
-      maps.lobes.push_back({member.map->size, {}, {}});
-    MapClass& into = maps.lobes.back();
-    into.slots.push_back(member.slot);
-    into.maps.push_back(resized(*member.map, into.size));
-  }
-  std::reverse(maps.lobes.begin(), maps.lobes.end());
-  maps.lobes.insert(maps.lobes.begin(), wide.begin(), wide.end());
   if (effects.mirror || effects.background == Background::kEnvironment) {
     if (env.mirror.map.size == 0) {
       return input_error(

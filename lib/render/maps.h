@@ -24,6 +24,14 @@ struct SceneMaps {
   MapClass mirror;              // met by the mirror direction, and by rays that miss the mesh
 };
 
+// The lobes of the effects (by number) that share one direction and one face size; small faces first, after those that
+// have a direction of their own. Lobes that the environment lacks are in none.
+struct LobeClass {
+  std::vector<std::size_t> lobes;
+  bool shifted = false;
+};
+std::vector<LobeClass> lobe_classes(const PrefilteredEnvironment& env, const Effects& effects);
+
 // What the effects need of the scene's environment. A lobe's map is brought to the size of its class by bilinear
 // interpolation between its own texels. Error: a lobe or the mirror part that the environment lacks, with the command
 // that makes it.

@@ -10,6 +10,7 @@
 #include "base/text.h"
 #include "render/cost.h"
 #include "render/effect_list.h"
+#include "render/product_forms.h"
 #include "render/reference.h"
 #include "render/seen.h"
 #include "render/surface_layer.h"
@@ -141,25 +142,48 @@ double mean_tilts(const Scene& scene, const Effects& effects, const std::vector<
   return sum / static_cast<double>(points.size());
 }
 
+// The share of these points on parts with such a surface.
+template <class Has>
+double share_of(const Scene& scene, const std::vector<VisiblePoint>& points, Has has) {
+  if (scene.layer == nullptr || points.empty()) return 0;
+  const auto count = std::ranges::count_if(points, [&](const auto& p) { return has(scene.layer->surface(p.part)); });
+  return static_cast<double>(count) / static_cast<double>(points.size());
+}
+
+// Lobes without any weight are not drawn, nor their maps uploaded.
+void tidy(Effects& effects) {
+  std::erase_if(effects.lobes, [](const Effects::LobeUse& use) { return !use.directional_diffuse && !use.gloss; });
+  const bool gloss = effects.mirror ||
+                     std::any_of(effects.lobes.begin(), effects.lobes.end(), [](const auto& use) { return use.gloss; });
+  effects.fresnel = effects.fresnel && gloss;
+  effects.horizon = effects.horizon && !effects.lobes.empty();
+  effects.anisotropy = effects.anisotropy && !effects.lobes.empty();
+}
+
 // What one frame's shading takes, in ms.
 struct CostModel {
-  double points = 0, pixels = 0, tilts = 1, speed = 1;  // speed: measured over counted
-  double textured = 0;                                  // of the points
+  const Scene& scene;
+  PointCounts counts;
+  double points = 0, pixels = 0, speed = 1;  // speed: measured over counted
+  double textured = 0, mapped = 0;           // of the points
   int texture_lobes = 0;
-  double ms(const Effects& effects, Engine engine) const {
+
+  CostModel(const Scene& of, const Effects& all, const std::vector<VisiblePoint>& probe, double visible_pixels,
+            const PlanRequest& request)
+      : scene(of), points(visible_pixels * request.samples), pixels(request.pixels * request.samples) {
+    counts = {mean_tilts(of, all, probe), all.reflection ? product_forms(of.reflection).count : 3};
+    textured = points * share_of(scene, probe, [](const PartSurface& s) { return s.texture != nullptr; });
+    mapped = points * share_of(scene, probe, [](const PartSurface& s) { return s.color_map != nullptr; });
+    texture_lobes = scene.layer != nullptr ? scene.layer->lobes() : 0;
+  }
+  double ms(Effects effects, Engine engine) const {
+    tidy(effects);
     const double texture_ns = textured > 0 ? textured_point_ns(effects, texture_lobes) : 0;
-    const double ns = pixels * pixel_ns(engine) + points * point_ns(effects, engine, tilts) + textured * texture_ns;
+    const double ns = pixels * pixel_ns(engine) + points * point_ns(scene, effects, engine, counts) +
+                      textured * texture_ns + mapped * mapped_point_ns(effects);
     return 1e-6 * speed * ns / threads();
   }
 };
-
-// The share of these points that has a texture.
-double textured_share(const Scene& scene, const std::vector<VisiblePoint>& points) {
-  if (scene.layer == nullptr || points.empty()) return 0;
-  const auto count = std::ranges::count_if(
-      points, [&](const VisiblePoint& p) { return scene.layer->surface(p.part).texture != nullptr; });
-  return static_cast<double>(count) / static_cast<double>(points.size());
-}
 
 // The scene with each paint once, and the points' parts renumbered.
 struct Compact {
@@ -220,7 +244,30 @@ void drop_unseen(Prober& prober, const std::vector<PlanItem>& items, bool lamps,
   }
 }
 
-// Leaves out what is worth least for its time until the rest fits; returns those left out.
+// What leaving an effect out must save, of the frame's shading; less is lost in the noise of any measurement.
+constexpr double kFree = 0.02;
+
+// Takes back what was left out for nothing, whatever is worth most first: what is drawn with the rest at no price.
+void take_back_free(const Prober& prober, const CostModel& cost, Engine engine, std::vector<PlanItem>& items,
+                    Choice& choice) {
+  std::vector<std::size_t> gone;
+  for (std::size_t i = 0; i < items.size(); ++i)
+    if (items[i].needed && !choice.on[i] && !choice.forced[i]) gone.push_back(i);
+  std::ranges::stable_sort(gone, [&](std::size_t a, std::size_t b) { return items[a].de00_p95 > items[b].de00_p95; });
+  for (const std::size_t i : gone) {
+    const double without_ms = cost.ms(prober.effects(choice.on), engine);
+    choice.on[i] = true;
+    const double with_ms = cost.ms(prober.effects(choice.on), engine);
+    if (with_ms - without_ms <= kFree * without_ms) {
+      items[i].reason += "; costs nothing";
+    } else {
+      choice.on[i] = false;
+    }
+  }
+}
+
+// Leaves out what is worth least for its time until the rest fits, and takes back what fits after all; returns those
+// left out.
 std::set<std::size_t> keep_affordable(Prober& prober, const CostModel& cost, Engine engine, double budget_ms,
                                       Choice& choice) {
   std::set<std::size_t> gone;
@@ -235,12 +282,18 @@ std::set<std::size_t> keep_affordable(Prober& prober, const CostModel& cost, Eng
       const double saved_ms = now_ms - cost.ms(prober.effects(choice.on), engine);
       const double lost = prober.difference(wanted, prober.colors(choice.on)) / std::max(saved_ms, 1e-9);
       choice.on[i] = true;
-      if (saved_ms > 0 && lost < least) least = lost, worst = i;
+      if (lost < least) least = lost, worst = i;
     }
     if (worst == choice.on.size()) break;
     choice.on[worst] = false;
     gone.insert(worst);
   }
+  std::erase_if(gone, [&](std::size_t i) {
+    choice.on[i] = true;
+    const bool fits = cost.ms(prober.effects(choice.on), engine) <= budget_ms;
+    choice.on[i] = fits;
+    return fits;
+  });
   return gone;
 }
 
@@ -250,16 +303,6 @@ void choose_engine(const PlanRequest& request, Plan& plan) {
   plan.engine_reason =
       fmt::format("{}: predicted {:.1f} ms a frame on the processor, {:.1f} ms in OpenGL and {:.0f} ms to compile",
                   request.engine ? "as asked" : "the faster", plan.cpu_ms, plan.gl_ms, kCompileMs);
-}
-
-// Lobes without any weight are not drawn, nor their maps uploaded.
-void tidy(Effects& effects) {
-  std::erase_if(effects.lobes, [](const Effects::LobeUse& use) { return !use.directional_diffuse && !use.gloss; });
-  const bool gloss = effects.mirror ||
-                     std::any_of(effects.lobes.begin(), effects.lobes.end(), [](const auto& use) { return use.gloss; });
-  effects.fresnel = effects.fresnel && gloss;
-  effects.horizon = effects.horizon && !effects.lobes.empty();
-  effects.anisotropy = effects.anisotropy && !effects.lobes.empty();
 }
 
 std::string decision_of(const EffectSwitch& effect, bool on, bool forced, bool over_budget) {
@@ -322,10 +365,8 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<VisiblePoint>& prob
   const std::vector<bool> everything(switches.size(), true);
   const std::vector<Rgb> full = prober.colors(everything);
 
-  CostModel cost{visible_pixels * request.samples, request.pixels * request.samples, mean_tilts(scene, all, probe)};
-  cost.textured = cost.points * textured_share(scene, probe);
-  cost.texture_lobes = scene.layer != nullptr ? scene.layer->lobes() : 0;
-  const double counted_s = 1e-9 * point_ns(all, Engine::kCpu, cost.tilts) / threads();
+  CostModel cost(scene, all, probe, visible_pixels, request);
+  const double counted_s = 1e-9 * point_ns(scene, all, Engine::kCpu, cost.counts) / threads();
   if (!probe.empty()) cost.speed = prober.seconds_per_point() / counted_s;
   Plan plan;
   for (std::size_t i = 0; i < switches.size(); ++i) {
@@ -342,6 +383,7 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<VisiblePoint>& prob
   plan.cpu_ms = cost.ms(prober.effects(choice.on), Engine::kCpu);
   plan.gl_ms = cost.ms(prober.effects(choice.on), Engine::kGl);
   choose_engine(request, plan);
+  if (words.base == "auto") take_back_free(prober, cost, plan.engine, plan.items, choice);
   std::set<std::size_t> gone;
   if (request.budget_ms > 0) gone = keep_affordable(prober, cost, plan.engine, request.budget_ms, choice);
   plan.de00_p95 = prober.difference(full, prober.colors(choice.on));

@@ -82,13 +82,13 @@ TEST(Plan, AsksOnlyForWhatTheSceneCallsFor) {
   solid.scene.reflection = working_space_operator();
   const Plan plan = planned(solid).plan;
   EXPECT_TRUE(item(plan, "diffuse").on);
-  for (const char* name : {"lobes", "gloss", "mirror", "fresnel", "horizon", "anisotropy", "travel", "lights"}) {
+  for (const char* name :
+       {"lobes", "gloss", "mirror", "fresnel", "horizon", "anisotropy", "travel", "lights", "operator"}) {
     EXPECT_FALSE(item(plan, name).needed) << name;
     EXPECT_EQ(item(plan, name).decision, "not in the scene") << name;
   }
   EXPECT_THAT(item(plan, "lobes").reason, HasSubstr("solid"));
   EXPECT_THAT(item(plan, "operator").reason, HasSubstr("white light"));
-  EXPECT_EQ(item(plan, "operator").decision, "dropped");
   EXPECT_FALSE(plan.effects.reflection);
 }
 
@@ -100,6 +100,21 @@ TEST(Plan, ColoredLightCallsForTheOperator) {
   EXPECT_TRUE(item(plan, "operator").on);
   EXPECT_GT(item(plan, "operator").de00_p95, 2);
   EXPECT_THAT(item(plan, "operator").reason, HasSubstr("colored light"));
+}
+
+// In light that is nearly white the operator cannot be seen; in four forms it saves nothing to leave it out.
+TEST(Plan, WhatCostsNothingIsDrawn) {
+  World world(flake_paint());
+  world.scene.reflection = working_space_operator();
+  world.env.diffuse.map = cube_of(4, [](const Vec3&) { return Vec3{1, 1, 0.97}; });
+  const PlanRequest request;
+  const Plan plan = planned(world, request).plan;
+  const PlanItem& op = item(plan, "operator");
+  EXPECT_GT(op.de00_p95, 0);
+  EXPECT_LT(op.de00_p95, 0.5 * request.tolerance_de00);
+  EXPECT_EQ(op.decision, "drawn");
+  EXPECT_THAT(op.reason, HasSubstr("costs nothing"));
+  for (const PlanItem& i : plan.items) EXPECT_FALSE(i.decision == "dropped" && i.cost_ms == 0) << i.effect;
 }
 
 // Every effect forced off changes the picture by what the plan said it would: the same percentile of 512 points and of

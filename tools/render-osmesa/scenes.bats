@@ -39,7 +39,7 @@ decided() { grep -A4 "\"effect\": \"$1\"" auto.json | grep -q "\"decision\": \"$
   scene fitted.xml#signal_white --env studio.env.exr
   scene fitted.xml#signal_white --light 40,50
   decided mirror "not in the scene"
-  decided operator dropped
+  decided operator "not in the scene"
 }
 
 @test "metallic paint" {
