@@ -28,30 +28,38 @@ Lab lab_of(const Channels& c) {
 struct Sample {
   double aspecular_deg;
   Channels value;
+  double weight = 1;
 };
 struct Fit {
   Channels face{}, flop{};
   double travel_deg = 60;
-  double squares = 0;  // sum of squared differences over samples and channels
+  double squares = 0;  // sum of weighted squared differences over samples and channels
 };
+
+double sum_of_weights(const std::vector<Sample>& samples) {
+  double sum = 0;
+  for (const Sample& sample : samples) sum += sample.weight;
+  return sum;
+}
 
 // For fixed travel each channel is a straight line in the weight w: value = flop + (face - flop) w. Regression on
 // w - mean(w), which does not cancel; where w is the same for all samples, only the mean is known and the color is
 // constant.
 Fit fit_at(double travel_deg, const std::vector<Sample>& samples) {
-  const auto n = static_cast<double>(samples.size());
+  const double n = sum_of_weights(samples);
   double mean_w = 0;
   Channels mean{};
   for (const Sample& sample : samples) {
-    mean_w += face_weight(travel_deg, sample.aspecular_deg) / n;
-    for (int c = 0; c < 3; ++c) mean[c] += sample.value[c] / n;
+    const double share = sample.weight / n;
+    mean_w += share * face_weight(travel_deg, sample.aspecular_deg);
+    for (int c = 0; c < 3; ++c) mean[c] += share * sample.value[c];
   }
   double spread = 0;
   Channels covariance{};
   for (const Sample& sample : samples) {
     const double w = face_weight(travel_deg, sample.aspecular_deg) - mean_w;
-    spread += w * w;
-    for (int c = 0; c < 3; ++c) covariance[c] += w * (sample.value[c] - mean[c]);
+    spread += sample.weight * w * w;
+    for (int c = 0; c < 3; ++c) covariance[c] += sample.weight * w * (sample.value[c] - mean[c]);
   }
   Fit fit;
   fit.travel_deg = travel_deg;
@@ -64,7 +72,7 @@ Fit fit_at(double travel_deg, const std::vector<Sample>& samples) {
     const double w = face_weight(travel_deg, sample.aspecular_deg);
     for (int c = 0; c < 3; ++c) {
       const double miss = sample.value[c] - (fit.flop[c] + (fit.face[c] - fit.flop[c]) * w);
-      fit.squares += miss * miss;
+      fit.squares += sample.weight * miss * miss;
     }
   }
   return fit;
@@ -77,11 +85,11 @@ double squares_at(double travel_deg, const std::vector<Sample>& samples, double 
   Channels covariance{};
   for (const Sample& sample : samples) {
     const double way = std::max(0.0, travel_deg - sample.aspecular_deg), w = way * way;
-    sum_w += w;
-    sum_ww += w * w;
-    for (int c = 0; c < 3; ++c) covariance[c] += w * sample.value[c];
+    sum_w += sample.weight * w;
+    sum_ww += sample.weight * w * w;
+    for (int c = 0; c < 3; ++c) covariance[c] += sample.weight * w * sample.value[c];
   }
-  const double spread = sum_ww - sum_w * sum_w / static_cast<double>(samples.size());
+  const double spread = sum_ww - sum_w * sum_w / sum_of_weights(samples);
   if (!(spread > 0)) return total;
   double explained = 0;
   for (int c = 0; c < 3; ++c) explained += covariance[c] * covariance[c];
@@ -94,26 +102,27 @@ double squares_at(double travel_deg, const std::vector<Sample>& samples, double 
 // nothing.
 Fit refined(Fit best, double low, double high, const std::vector<Sample>& samples) {
   for (int i = 0; i < 20 && best.squares > 0; ++i) {
-    const double n = static_cast<double>(samples.size()), unit = best.travel_deg - kFaceAngle_deg;
+    const double n = sum_of_weights(samples), unit = best.travel_deg - kFaceAngle_deg;
     double mean_w = 0, mean_d = 0;
     const auto weight = [&](const Sample& s) { return face_weight(best.travel_deg, s.aspecular_deg); };
     const auto slope = [&](const Sample& s) {
       return 2 * std::max(0.0, best.travel_deg - s.aspecular_deg) / unit / unit;
     };
-    for (const Sample& sample : samples) mean_w += weight(sample) / n, mean_d += slope(sample) / n;
+    for (const Sample& sample : samples)
+      mean_w += sample.weight * weight(sample) / n, mean_d += sample.weight * slope(sample) / n;
     double ww = 0, wd = 0;
     for (const Sample& sample : samples) {
       const double w = weight(sample) - mean_w;
-      ww += w * w;
-      wd += w * (slope(sample) - mean_d);
+      ww += sample.weight * w * w;
+      wd += sample.weight * w * (slope(sample) - mean_d);
     }
     double jr = 0, jj = 0;
     for (const Sample& sample : samples) {
       const double w = weight(sample), d = slope(sample) - mean_d - (ww > 0 ? wd / ww : 0) * (w - mean_w);
       for (int c = 0; c < 3; ++c) {
         const double rise = best.face[c] - best.flop[c], j = rise * d;
-        jr += j * (sample.value[c] - best.flop[c] - rise * w);
-        jj += j * j;
+        jr += sample.weight * j * (sample.value[c] - best.flop[c] - rise * w);
+        jj += sample.weight * j * j;
       }
     }
     if (!(jj > 0)) break;
@@ -142,13 +151,14 @@ Fit nearest(const std::vector<Sample>& samples) {
 
   std::vector<Sample> centered = samples;
   Channels mean{};
+  const double weights = sum_of_weights(samples);
   for (const Sample& sample : samples)
-    for (int c = 0; c < 3; ++c) mean[c] += sample.value[c] / static_cast<double>(samples.size());
+    for (int c = 0; c < 3; ++c) mean[c] += sample.weight * sample.value[c] / weights;
   double total = 0;
   for (Sample& sample : centered)
     for (int c = 0; c < 3; ++c) {
       sample.value[c] -= mean[c];
-      total += sample.value[c] * sample.value[c];
+      total += sample.weight * sample.value[c] * sample.value[c];
     }
   double travel_deg = kFirst, squares = squares_at(kFirst, centered, total);
   for (double travel = kFirst + kStep; travel <= kLast; travel += kStep) {
@@ -202,8 +212,14 @@ ChannelCurve channel_curve(double at_15, double at_45, double at_110) {
       return {at_15, at_110 + (at_15 - at_110) * plateau, vertex, true};
     }
   }
-  const Fit fit = nearest({{15, {at_15, 0, 0}}, {45, {at_45, 0, 0}}, {110, {at_110, 0, 0}}});
-  return {fit.face[0], fit.flop[0], fit.travel_deg, false};
+  return nearest_channel_curve({{15, at_15}, {45, at_45}, {110, at_110}});
+}
+
+ChannelCurve nearest_channel_curve(const std::vector<ChannelValue>& values) {
+  std::vector<Sample> samples;
+  for (const ChannelValue& v : values) samples.push_back({v.aspecular_deg, {v.value, 0, 0}, v.weight});
+  const Fit fit = nearest(samples);
+  return {fit.face[0], fit.flop[0], fit.travel_deg, fit.squares == 0};
 }
 
 Result<AppearanceFit> appearance_from_rows(const std::vector<LabReading>& rows) {

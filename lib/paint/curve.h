@@ -32,6 +32,13 @@ struct ChannelCurve {
 };
 ChannelCurve channel_curve(double at_15, double at_45, double at_110);
 
+// One channel's clamped quadratic nearest (weighted least squares) to values at any number of angles, at least one.
+struct ChannelValue {
+  double aspecular_deg = 0, value = 0;
+  double weight = 1;  // > 0
+};
+ChannelCurve nearest_channel_curve(const std::vector<ChannelValue>& values);
+
 // The face, flop and travel nearest (least squares in Lab) to rows at any number of aspecular angles: linear in face
 // and flop for fixed travel, which is scanned over its domain and refined. The rows in the plane of incidence are
 // fitted, or all where there is none. `de00` has every row given; residual_de00 is the worst of those fitted. Where the
@@ -48,9 +55,10 @@ constexpr std::array<double, 5> kExportAngles_deg = {15, 25, 45, 75, 110};
 // What a designed paint would measure: rows at 45 deg incidence and the export angles.
 std::vector<LabReading> rows_of(const Appearance& appearance);
 
-// The color of a paint at any aspecular angle, from its measurement (monotone piecewise cubic, PCHIP, per channel
-// through the in-plane rows by unsigned angle, rows at the same angle averaged; constant beyond the ends) or from its
-// appearance (fitted to the rows where it has none).
+// The color of a paint at any aspecular angle, by unsigned angle, in-plane rows at the same angle averaged:
+// - kMeasured: per channel a monotone piecewise cubic (PCHIP) through the rows, constant beyond the ends;
+// - kCurve: the clamped quadratic of the appearance, or where the paint has none one per channel, nearest to the rows,
+//   each of which counts for the angles that are nearest to it.
 class TargetCurve {
  public:
   enum class Kind { kMeasured, kCurve };
@@ -65,7 +73,7 @@ class TargetCurve {
 
  private:
   Kind kind_ = Kind::kMeasured;
-  Appearance appearance_;
+  std::array<ChannelCurve, 3> quadratic_;
   std::vector<double> known_deg_;
   std::array<std::vector<double>, 3> value_, slope_;  // per channel at the known angles
 };

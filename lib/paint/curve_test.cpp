@@ -286,6 +286,46 @@ TEST(TargetCurve, both_sides_of_specular_are_averaged_and_out_of_plane_left_out)
   EXPECT_NEAR(curve->at(30).L, 56, 1e-12);
 }
 
+// Each channel travels on its own, as the common travel of face and flop cannot, and is met where it is a quadratic.
+TEST(TargetCurve, channels_travel_on_their_own) {
+  const ChannelCurve L{80, 20, 60, true}, a{-10, 30, 120, true}, b{5, -40, 45, true};
+  std::vector<std::pair<Geometry, Lab>> rows;
+  for (const double t : {15.0, 25.0, 45.0, 75.0, 110.0})
+    rows.push_back({{.aspecular_deg = t}, {L.at(t), a.at(t), b.at(t)}});
+  const Paint paint = measured(rows);
+  const auto curve = TargetCurve::make(paint, TargetCurve::Kind::kCurve);
+  for (double t = 10; t <= 130; t += 5) {
+    EXPECT_NEAR(curve->at(t).L, L.at(t), 1e-6) << t;
+    EXPECT_NEAR(curve->at(t).a, a.at(t), 1e-6) << t;
+    EXPECT_NEAR(curve->at(t).b, b.at(t), 1e-6) << t;
+  }
+  // The control: the nearest face and flop.
+  EXPECT_GT(*appearance_from_rows(paint.measurement->rows)->appearance.residual_de00, 1);
+}
+
+// Readings close together near specular count no more than the one whose place they take.
+TEST(TargetCurve, close_readings_do_not_outvote_the_flop) {
+  const auto rows = [](const std::vector<double>& angles) {
+    std::vector<std::pair<Geometry, Lab>> r;
+    for (const double t : angles) r.push_back({{.aspecular_deg = t}, {100 * std::exp(-t / 30), 0, 0}});
+    return measured(r);
+  };
+  const Paint few = rows({15, 25, 45, 75, 110}), many = rows({15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 45, 75, 110});
+  const auto sparse = TargetCurve::make(few, TargetCurve::Kind::kCurve);
+  const auto dense = TargetCurve::make(many, TargetCurve::Kind::kCurve);
+  // The control: the same readings with one vote each.
+  std::vector<ChannelValue> equal;
+  for (const LabReading& r : many.measurement->rows) equal.push_back({r.geometry.aspecular_deg, r.lab.L});
+  const ChannelCurve control = nearest_channel_curve(equal);
+  double worst = 0, worst_control = 0;
+  for (const double t : {45.0, 60.0, 75.0, 90.0, 110.0}) {
+    worst = std::max(worst, std::abs(dense->at(t).L - sparse->at(t).L));
+    worst_control = std::max(worst_control, std::abs(control.at(t) - sparse->at(t).L));
+  }
+  EXPECT_LT(worst, 0.5);
+  EXPECT_GT(worst_control, 2 * worst);
+}
+
 TEST(TargetCurve, falls_back_on_what_the_paint_has) {
   Paint designed;
   designed.name = "d";

@@ -61,6 +61,24 @@ std::vector<double> monotone_slopes(const std::vector<double>& x, const std::vec
   return slopes;
 }
 
+// The quadratic of one channel; each value weighs by the width of angles up to halfway to its neighbors, so that where
+// an instrument has its readings close together, near specular, does not decide the flop.
+ChannelCurve quadratic_through(const std::vector<double>& angle_deg, const std::vector<double>& value) {
+  std::vector<ChannelValue> values;
+  const std::size_t last = angle_deg.size() - 1;
+  for (std::size_t i = 0; i <= last; ++i) {
+    const double width = angle_deg[std::min(i + 1, last)] - angle_deg[i > 0 ? i - 1 : 0];
+    values.push_back({angle_deg[i], value[i], last > 0 ? width / 2 : 1});
+  }
+  return nearest_channel_curve(values);
+}
+
+std::array<ChannelCurve, 3> quadratics_of(const Appearance& a) {
+  return {ChannelCurve{a.face.L, a.flop.L, a.travel_deg},
+          {a.face.a, a.flop.a, a.travel_deg},
+          {a.face.b, a.flop.b, a.travel_deg}};
+}
+
 }  // namespace
 
 Result<TargetCurve> TargetCurve::make(const Paint& paint, Kind kind) {
@@ -79,10 +97,12 @@ Result<TargetCurve> TargetCurve::make(const Paint& paint, Kind kind) {
   }
   if (paint.appearance) {
     GONIO_TRY(check(*paint.appearance));
-    curve.appearance_ = *paint.appearance;
+    curve.quadratic_ = quadratics_of(*paint.appearance);
+  } else if (!means.empty()) {
+    for (int c = 0; c < 3; ++c) curve.quadratic_[c] = quadratic_through(curve.known_deg_, curve.value_[c]);
   } else if (!rows.empty()) {
     GONIO_ASSIGN(const AppearanceFit fit, appearance_from_rows(rows));
-    curve.appearance_ = fit.appearance;
+    curve.quadratic_ = quadratics_of(fit.appearance);
   } else {
     return input_error("paint \"{}\" has no color: give it a measurement or an appearance", shown(paint.name));
   }
@@ -92,7 +112,8 @@ Result<TargetCurve> TargetCurve::make(const Paint& paint, Kind kind) {
 
 // Hermite's cubic on the interval that holds the angle.
 Lab TargetCurve::at(double aspecular_deg) const {
-  if (kind_ == Kind::kCurve) return lab_at(appearance_, aspecular_deg);
+  if (kind_ == Kind::kCurve)
+    return {quadratic_[0].at(aspecular_deg), quadratic_[1].at(aspecular_deg), quadratic_[2].at(aspecular_deg)};
   const double t = std::clamp(aspecular_deg, known_deg_.front(), known_deg_.back());
   const auto above = std::ranges::upper_bound(known_deg_, t);
   const std::size_t last = known_deg_.size() - 1;
