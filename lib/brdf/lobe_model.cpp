@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "brdf/lobe_angles.h"
 
 namespace goniochrome {
 
@@ -9,13 +12,15 @@ namespace goniochrome {
 // log cos x to a few ulp of ITSELF: below 45 deg by log1p(-sin^2)/2, where sin^2 <= 1/2 keeps its digits; above, cos x
 // is at most 0.71 and its logarithm is well conditioned. Where the power is not 0 in double precision the exponent is
 // at most 745 in size, so that the few ulp become at most 5e-13.
-double cos_power(double angle_rad, double exponent) {
+double log_cosine(double angle_rad) {
   const double angle = std::abs(angle_rad);
-  if (angle >= M_PI / 2) return 0;
-  if (exponent == 0) return 1;
+  if (angle >= M_PI / 2) return -std::numeric_limits<double>::infinity();
   const double s = std::sin(angle);
-  const double log_cos = s * s <= 0.5 ? 0.5 * std::log1p(-s * s) : std::log(std::cos(angle));
-  return std::exp(exponent * log_cos);
+  return s * s <= 0.5 ? 0.5 * std::log1p(-s * s) : std::log(std::cos(angle));
+}
+
+double cos_power(double angle_rad, double exponent) {
+  return power_of_cosine(log_cosine(angle_rad), exponent);
 }
 
 double cos_power_from_versine(double versine, double exponent) {
@@ -56,12 +61,22 @@ ViewPair views_around(const std::vector<ViewLobes>& views, double view_deg) {
   return {&low, &high, (view_deg - low.view_deg) / (high.view_deg - low.view_deg)};
 }
 
-Rgb lobes_at(const Rgb& diffuse, const std::vector<Lobe>& lobes, double angle_rad, double cos_i) {
+// `gloss_scale` is what a gloss weight of 1 shows.
+Rgb lobes_at(const Rgb& diffuse, const std::vector<Lobe>& lobes, double angle_rad, double gloss_scale) {
   Rgb f = diffuse;
+  const double log_cos = log_cosine(angle_rad);
   for (const Lobe& lobe : lobes)
     if (std::isfinite(lobe.exponent))
-      f += cos_power(angle_rad, lobe.exponent) * (lobe.directional_diffuse + (1 / cos_i) * lobe.gloss);
+      f += power_of_cosine(log_cos, lobe.exponent) * (lobe.directional_diffuse + gloss_scale * lobe.gloss);
   return f;
+}
+
+Rgb brdf(const LobeFit& fit, const Vec3& to_light, const Vec3& to_viewer, const Vec3& normal, double fresnel) {
+  const double cos_i = dot(normal, to_light), cos_o = dot(normal, to_viewer);
+  if (cos_i <= 0 || cos_o <= 0) return {};
+  const double view_rad = fit.views.empty() ? 0 : std::atan2(length(cross(normal, to_viewer)), cos_o);
+  return brdf_by_angles(fit, aspecular_angle_rad(to_light, to_viewer, normal), view_rad * (180 / M_PI),
+                        fresnel / cos_i);
 }
 
 void add_scaled(const ViewLobes& view, double scale, LobeFit& sum) {
@@ -88,24 +103,29 @@ LobeFit at_view(const LobeFit& fit, double view_deg) {
   return result;
 }
 
-Rgb brdf(const LobeFit& fit, const Vec3& to_light, const Vec3& to_viewer, const Vec3& normal) {
-  const double cos_i = dot(normal, to_light);
-  if (cos_i <= 0 || dot(normal, to_viewer) <= 0) return {};
-  const double angle_rad = aspecular_angle_rad(to_light, to_viewer, normal);
-  if (fit.views.empty()) return lobes_at(fit.diffuse, fit.lobes, angle_rad, cos_i);
-  const double view_rad = std::atan2(length(cross(normal, to_viewer)), dot(normal, to_viewer));
-  const auto [low, high, share] = views_around(fit.views, view_rad * (180 / M_PI));
-  Rgb f = (1 - share) * lobes_at(low->diffuse, low->lobes, angle_rad, cos_i);
-  if (share > 0) f += share * lobes_at(high->diffuse, high->lobes, angle_rad, cos_i);
+Rgb brdf_by_angles(const LobeFit& fit, double aspecular_rad, double view_deg, double gloss_scale) {
+  if (fit.views.empty()) return lobes_at(fit.diffuse, fit.lobes, aspecular_rad, gloss_scale);
+  const auto [low, high, share] = views_around(fit.views, view_deg);
+  Rgb f = (1 - share) * lobes_at(low->diffuse, low->lobes, aspecular_rad, gloss_scale);
+  if (share > 0) f += share * lobes_at(high->diffuse, high->lobes, aspecular_rad, gloss_scale);
   return f;
 }
 
+Rgb brdf(const LobeFit& fit, const Vec3& to_light, const Vec3& to_viewer, const Vec3& normal) {
+  return brdf(fit, to_light, to_viewer, normal, 1);
+}
+
+double coat_fresnel(double cos_half, double gloss_deg) {
+  return fresnel_dielectric(std::min(cos_half, 1.0), kCoatIndex) /
+         fresnel_dielectric(std::cos(gloss_deg * (M_PI / 180)), kCoatIndex);
+}
+
+Rgb coated_brdf(const LobeFit& fit, const Vec3& to_light, const Vec3& to_viewer, const Vec3& normal, double gloss_deg) {
+  return brdf(fit, to_light, to_viewer, normal, coat_fresnel(length(to_light + to_viewer) / 2, gloss_deg));
+}
+
 Rgb flake_reflectance_factor(const LobeFit& fit, double aspecular_deg) {
-  const double angle_rad = aspecular_deg * (M_PI / 180);
-  Rgb f = fit.diffuse;
-  for (const Lobe& lobe : fit.lobes)
-    if (std::isfinite(lobe.exponent)) f += cos_power(angle_rad, lobe.exponent) * lobe.directional_diffuse;
-  return M_PI * f;
+  return M_PI * lobes_at(fit.diffuse, fit.lobes, aspecular_deg * (M_PI / 180), 0);
 }
 
 }  // namespace goniochrome

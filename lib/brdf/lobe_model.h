@@ -28,6 +28,17 @@ LobeFit at_view(const LobeFit& fit, double view_deg);
 // the horizon.
 Rgb brdf(const LobeFit& fit, const Vec3& to_light, const Vec3& to_viewer, const Vec3& normal);
 
+// The incidence at which K_G holds where no gloss meter's angle says so.
+constexpr double kGlossIncidence_deg = 45;
+
+// What gloss is multiplied by under a clear coat: its Fresnel reflectance where light and viewer are each at an angle
+// of that cosine from the normal between them, over that at the incidence `gloss_deg`.
+double coat_fresnel(double cos_half, double gloss_deg = kGlossIncidence_deg);
+
+// As brdf(), with gloss lobes times coat_fresnel().
+Rgb coated_brdf(const LobeFit& fit, const Vec3& to_light, const Vec3& to_viewer, const Vec3& normal,
+                double gloss_deg = kGlossIncidence_deg);
+
 // The reflectance factor pi f without conventional gloss at an aspecular angle: what a multi-angle instrument reads,
 // by the weights for all views.
 Rgb flake_reflectance_factor(const LobeFit& fit, double aspecular_deg);

@@ -1,20 +1,20 @@
-// Fitting a measured BRDF: time and relative error of the lobes beside a single GGX lobe found by Ceres, on the same
-// directions with the same weights. Needs GONIOCHROME_DATA.
+// Fitting a measured BRDF: time and errors of the lobes beside those of a single GGX lobe found by Ceres on the same
+// directions. Needs GONIOCHROME_DATA.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
-#include "base/clock.h"
-#include "fit/brdf_rows.h"
+#include "brdf/lobe_model.h"
+#include "fit/albedo_error.h"
+#include "fit/ggx_for_test.h"
 #include "fit/paint_fit.h"
-#include "fit/solver.h"
 
 namespace goniochrome {
 namespace {
 
-constexpr double kRadian = M_PI / 180;
+constexpr double kSteepest_deg = 75.001;  // angles in files are rounded
 constexpr const char* kFiles[] = {"rgl/vch_golden_yellow_rgb.bsdf", "rgl/satin_rosaline_rgb.bsdf",
                                   "rgl/cc_ibiza_sunset_rgb.bsdf", "cornell/garnet_red.brdf"};
 
@@ -34,92 +34,48 @@ Result<BrdfTarget> target(int file) {
 void lobes(benchmark::State& state) {
   const auto brdf = target(static_cast<int>(state.range(0)));
   if (!brdf.ok()) return state.SkipWithError(brdf.error().message.c_str());
-  const PaintFitter fitter(basis(12), {.method = state.range(1) == 1 ? FitMethod::kL1 : FitMethod::kL2});
-  double error = 0;
-  std::size_t directions = 0;
-  for (auto _ : state) {
-    const auto fit = fitter.fit(*brdf);
-    error = fit->report.brdf->relative_error_median, directions = fit->report.brdf->fitted;
-  }
+  const PaintFitter fitter(basis(12), {.method = state.range(1) == 1 ? FitMethod::kL1 : FitMethod::kL2,
+                                       .views_where_needed = state.range(2) == 1});
+  PaintFit fit;
+  for (auto _ : state) fit = *fitter.fit(*brdf);
   state.SetLabel(kFiles[state.range(0)]);
-  state.counters["relative_error"] = error;
-  state.counters["directions"] = static_cast<double>(directions);
+  state.counters["relative_error"] = fit.report.brdf->relative_error_median;
+  const auto misplaced = *albedo_error(*brdf->source, [&](const Vec3& light, const Vec3& view) {
+    return coated_brdf(fit.lobes, light, view, {0, 0, 1});
+  });
+  if (misplaced) state.counters["albedo_error"] = *misplaced;
+  state.counters["directions"] = static_cast<double>(fit.report.brdf->fitted);
 }
-BENCHMARK(lobes)->ArgNames({"file", "l"})->ArgsProduct({{0, 1, 2, 3}, {1, 2}})->Unit(benchmark::kMillisecond);
+BENCHMARK(lobes)
+    ->ArgNames({"file", "l", "views"})
+    ->ArgsProduct({{0, 1, 2, 3}, {1, 2}, {0, 1}})
+    ->Unit(benchmark::kMillisecond);
 
-// pi f = kd + ks D G / (4 cos_i cos_o), G Smith's for GGX, without Fresnel: seven unknowns, the log of the roughness
-// last. Only angles are known of a direction: cos_h follows from them.
-struct Ggx final : public ceres::CostFunction {
-  explicit Ggx(const BrdfRows& r) : rows(r) {
-    set_num_residuals(static_cast<int>(3 * r.fitted.size()));
-    mutable_parameter_block_sizes()->push_back(7);
-  }
-  static double shape(const BrdfSample& s, double roughness) {
-    const double ci = std::cos(s.light_deg * kRadian), co = std::cos(s.view_deg * kRadian), a2 = roughness * roughness;
-    // The aspecular angle tells the cosine between light and viewer: r(wi).wo = 2 ci co - wi.wo.
-    const double io = 2 * ci * co - std::cos(s.aspecular_rad);
-    const double ch2 = (ci + co) * (ci + co) / std::max(2 + 2 * io, 1e-12), d = ch2 * (a2 - 1) + 1;
-    const auto lambda = [&](double c) { return (std::sqrt(1 + a2 * (1 / (c * c) - 1)) - 1) / 2; };
-    return a2 / (d * d) / (1 + lambda(ci) + lambda(co)) / (4 * ci * co);
-  }
-  Rgb prediction(const BrdfSample& s, const double* x) const {
-    const double lobe = shape(s, std::exp(x[6]));
-    return {x[0] + x[3] * lobe, x[1] + x[4] * lobe, x[2] + x[5] * lobe};
-  }
-  bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
-    const double* x = parameters[0];
-    for (std::size_t i = 0; i < rows.fitted.size(); ++i) {
-      const double w = rows.flake.rows[i].weight, lobe = shape(rows.fitted[i], std::exp(x[6]));
-      constexpr double kStep = 1e-6;
-      const double slope =
-          (shape(rows.fitted[i], std::exp(x[6] + kStep)) - shape(rows.fitted[i], std::exp(x[6] - kStep))) / (2 * kStep);
-      const Rgb predicted = prediction(rows.fitted[i], x);
-      for (int c = 0; c < 3; ++c) {
-        residuals[3 * i + c] = w * (predicted[c] - rows.flake.rows[i].value[c]);
-        if (!jacobians || !jacobians[0]) continue;
-        double* row = jacobians[0] + 7 * (3 * i + c);
-        std::fill(row, row + 7, 0.0);
-        row[c] = w, row[3 + c] = w * lobe, row[6] = w * x[3 + c] * slope;
-      }
-    }
-    return true;
-  }
-  const BrdfRows& rows;
-};
-
+// The GGX lobe as the public fitter has it (0: log10(1 + f), Schlick's reflectance, no diffuse part), with a diffuse
+// part (1), and weighed as the lobes are, with Schlick's reflectance (2) and without (3).
 void ggx(benchmark::State& state) {
   const auto brdf = target(static_cast<int>(state.range(0)));
   if (!brdf.ok()) return state.SkipWithError(brdf.error().message.c_str());
-  const auto rows = brdf_rows(*brdf, *white_point({"D65", 2}), {.method = FitMethod::kL2}, basis(12).exponents);
-  double error = 0;
-  for (auto _ : state) {
-    double best_cost = INFINITY;
-    for (const double roughness : {0.05, 0.2, 0.5}) {
-      double x[7] = {0.05, 0.05, 0.05, 0.1, 0.1, 0.1, std::log(roughness)};
-      Ggx cost(*rows);
-      ceres::Problem::Options ownership;
-      ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-      ceres::Problem problem(ownership);
-      problem.AddResidualBlock(&cost, nullptr, x);
-      for (int k = 0; k < 6; ++k) problem.SetParameterLowerBound(x, k, 0);
-      problem.SetParameterLowerBound(x, 6, std::log(1e-3));
-      problem.SetParameterUpperBound(x, 6, 0);
-      ceres::Solver::Options options = quiet_solver_options();
-      options.max_num_iterations = 200;
-      ceres::Solver::Summary summary;
-      ceres::Solve(options, &problem, &summary);
-      if (summary.final_cost >= best_cost) continue;
-      best_cost = summary.final_cost;
-      std::vector<double> errors;
-      for (const BrdfSample& s : rows->fitted) errors.push_back(length(cost.prediction(s, x) - s.value) / length(s.value));
-      std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2), errors.end());
-      error = errors[errors.size() / 2];
-    }
+  constexpr GgxKind kKinds[] = {{false, true, true}, {true, true, true}, {true, true, false}, {true, false, false}};
+  std::vector<BrdfSample> samples;
+  for (const BrdfSample& s : brdf->samples)
+    if (std::max(s.light_deg, s.view_deg) <= kSteepest_deg) samples.push_back(s);
+  GgxModel model;
+  for (auto _ : state) model = fitted_ggx(samples, kKinds[state.range(1)], *white_point({"D65", 2}));
+  const auto f = [&](const Vec3& light, const Vec3& view) { return model.f(light, view); };
+  std::vector<double> errors;
+  for (const BrdfSample& s : samples) {
+    if (s.aspecular_rad < kGlareAngle_deg * (M_PI / 180)) continue;
+    const DirectionPair pair = directions_of(s);
+    errors.push_back(length(M_PI * f(pair.light, pair.view) - s.value) / length(s.value));
   }
+  std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2), errors.end());
   state.SetLabel(kFiles[state.range(0)]);
-  state.counters["relative_error"] = error;
+  state.counters["relative_error"] = errors[errors.size() / 2];
+  const auto misplaced = *albedo_error(*brdf->source, f);
+  if (misplaced) state.counters["albedo_error"] = *misplaced;
 }
-BENCHMARK(ggx)->ArgName("file")->DenseRange(0, 3)->Unit(benchmark::kMillisecond);
+BENCHMARK(ggx)->ArgNames({"file", "kind"})->ArgsProduct({{0, 1, 2, 3}, {0, 1, 2, 3}})->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace goniochrome

@@ -5,6 +5,7 @@
 
 #include "brdf/isoline.h"
 #include "brdf/lobe_model.h"
+#include "fit/brdf_spike.h"
 #include "fit/target_rows.h"
 
 namespace goniochrome {
@@ -16,25 +17,11 @@ constexpr double kRadian = M_PI / 180;
 // Angles in files are rounded to 1e-6 rad.
 constexpr double kSlack_deg = 1e-3;
 
-// A lobe that the coat's spike may use gives less than this part of its peak where the flake begins.
-constexpr double kSpikePart = 0.01;
-
-double luminance(const Rgb& rgb) {
-  return xyz_d65_from_rgb(rgb).Y;
-}
-
 FlakeRow row_of(const BrdfSample& sample, const Rgb& value, double lightness, const FitOptions& options) {
   return {{sample.aspecular_rad, sample.view_deg},
           value,
           options.perceptual_weights ? lightness_slope(lightness) : 1,
           false};
-}
-
-// Reflectance factor without the spike.
-Rgb flake_at(const LobeFit& fit, const BrdfSample& sample) {
-  const double angle_deg = sample.aspecular_rad / kRadian;
-  return fit.views.empty() ? flake_reflectance_factor(fit, angle_deg)
-                           : flake_reflectance_factor(at_view(fit, sample.view_deg), angle_deg);
 }
 
 // The mean color and angle of the flake from one aspecular angle to another; false where nothing was measured there.
@@ -78,7 +65,7 @@ std::vector<double> relative_errors(const BrdfRows& rows, const LobeFit& fit) {
   std::vector<double> errors;
   for (const BrdfSample& sample : rows.fitted) {
     const double size = length(sample.value);
-    if (size > 0) errors.push_back(length(flake_at(fit, sample) - sample.value) / size);
+    if (size > 0) errors.push_back(length(shown_at(fit, sample) - sample.value) / size);
   }
   return errors.empty() ? std::vector<double>{0} : errors;
 }
@@ -86,7 +73,7 @@ std::vector<double> relative_errors(const BrdfRows& rows, const LobeFit& fit) {
 std::vector<double> color_errors(const BrdfRows& rows, const Xyz& white, const LobeFit& fit) {
   std::vector<double> errors;
   for (const BrdfSample& sample : rows.fitted)
-    errors.push_back(delta_e_2000(lab_from_rgb(sample.value, white), lab_from_rgb(flake_at(fit, sample), white)));
+    errors.push_back(delta_e_2000(lab_from_rgb(sample.value, white), lab_from_rgb(shown_at(fit, sample), white)));
   return errors;
 }
 
@@ -99,15 +86,8 @@ double mean_of(const std::vector<double>& values) {
 // The aspecular angle at which light at 45 deg shows, in plane, the flakes that mirror the light of a sample to its
 // viewer: those whose normal is as far from the coat's, seen in the coat. goniochrome-theory(7), ISOCHROMATIC LINES
 double aspecular_of_flakes_deg(const BrdfSample& sample) {
-  const double light = sample.light_deg * kRadian, view = sample.view_deg * kRadian;
-  // The spherical triangle of mirror direction, viewer and normal gives the azimuth between light and viewer.
-  const double across = std::sin(light) * std::sin(view);
-  const double cos_azimuth =
-      across > 0 ? (std::cos(light) * std::cos(view) - std::cos(sample.aspecular_rad)) / across : 1;
-  const double azimuth = std::acos(std::clamp(cos_azimuth, -1.0, 1.0));
-  const Vec3 to_light = {std::sin(light), 0, std::cos(light)};
-  const Vec3 to_viewer = {std::sin(view) * std::cos(azimuth), std::sin(view) * std::sin(azimuth), std::cos(view)};
-  const double flake = flake_angles(to_light, to_viewer, kCoatIndex).flake_rad;
+  const DirectionPair pair = directions_of(sample);
+  const double flake = flake_angles(pair.light, pair.view, kCoatIndex).flake_rad;
   const double light_in_coat = std::asin(std::sin(45 * kRadian) / kCoatIndex);
   const double sine = kCoatIndex * std::sin(2 * flake - light_in_coat);
   return 45 + std::asin(std::clamp(sine, -1.0, 1.0)) / kRadian;
@@ -162,35 +142,6 @@ Result<BrdfRows> brdf_rows(const BrdfTarget& brdf, const Xyz& white, const FitOp
                        options.steepest_deg);
   add_extension(options, exponents, rows);
   return rows;
-}
-
-void set_spike(const BrdfRows& rows, PaintFit& out) {
-  std::vector<std::size_t> sharp;
-  for (std::size_t j = 0; j < out.lobes.lobes.size(); ++j) {
-    const double e = out.lobes.lobes[j].exponent;
-    if (std::isfinite(e) && cos_power(kGlareAngle_deg * kRadian, e) <= kSpikePart) sharp.push_back(j);
-  }
-  if (sharp.empty() || rows.glare.empty()) return;
-  Matrix m(static_cast<int>(rows.glare.size()), static_cast<int>(sharp.size()));
-  std::vector<double> left(rows.glare.size());
-  for (int i = 0; i < m.rows; ++i) {
-    const BrdfSample& sample = rows.glare[static_cast<std::size_t>(i)];
-    const double weight = lightness_slope(lab_from_rgb(sample.value, rows.flake.white).L);
-    left[i] = weight * luminance(sample.value - flake_at(out.lobes, sample));
-    for (int j = 0; j < m.columns; ++j)
-      m(i, j) = weight * cos_power(sample.aspecular_rad, out.lobes.lobes[sharp[j]].exponent) /
-                std::cos(sample.light_deg * kRadian);
-  }
-  const NonNegativeFit spike = nnls(m, left);
-  double albedo = 0;
-  for (std::size_t j = 0; j < sharp.size(); ++j) {
-    Lobe& lobe = out.lobes.lobes[sharp[j]];
-    const double weight = spike.x[j] / M_PI;
-    lobe.gloss = {weight, weight, weight};
-    // Sharp lobes reflect 2 pi/(E+1) times the weight, since the cosines of light and viewer are equal across them.
-    albedo += 2 * M_PI / (lobe.exponent + 1) * weight;
-  }
-  out.report.brdf->spike_albedo_45 = albedo;
 }
 
 void compare(const BrdfRows& rows, const Xyz& white, PaintFit& out) {

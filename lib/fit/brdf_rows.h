@@ -1,4 +1,4 @@
-// The rows of a measured BRDF's fit, its clear-coat spike, and how well it was met. Internal to lib/fit.
+// The rows of a measured BRDF's fit, and how well it was met. Internal to lib/fit.
 // goniochrome-theory(7), FITTING.
 #pragma once
 
@@ -22,9 +22,6 @@ struct BrdfRows {
 // Error: no direction is left beyond glare and not steeper than the options say.
 Result<BrdfRows> brdf_rows(const BrdfTarget& brdf, const Xyz& white, const FitOptions& options,
                            const std::vector<double>& exponents);
-
-// Sets K_G of the sharp lobes (gray) from what the flake leaves of the values within glare, and the albedo of it.
-void set_spike(const BrdfRows& rows, PaintFit& fit);
 
 // How lobes predict directions that they were not fitted to.
 FiveAngleFigures five_angle_figures(const BrdfTarget& brdf, const LobeFit& lobes);

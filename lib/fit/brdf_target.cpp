@@ -19,6 +19,22 @@ double from_normal_deg(const Vec3& direction) {
 
 }  // namespace
 
+// The spherical triangle of mirror direction, viewer and normal gives the azimuth between light and viewer.
+DirectionPair directions_of(const BrdfSample& sample) {
+  const double light = sample.light_deg * (M_PI / 180), view = sample.view_deg * (M_PI / 180);
+  const double across = std::sin(light) * std::sin(view);
+  const double cosine = across > 0 ? (std::cos(light) * std::cos(view) - std::cos(sample.aspecular_rad)) / across : 1;
+  const double azimuth = std::acos(std::clamp(cosine, -1.0, 1.0));
+  return {{std::sin(light), 0, std::cos(light)},
+          {std::sin(view) * std::cos(azimuth), std::sin(view) * std::sin(azimuth), std::cos(view)}};
+}
+
+// r(wi).wo = 2 (n.wi)(n.wo) - wi.wo, and wi.wo = 2 cos^2 - 1 of half the angle.
+double half_angle_cosine(const BrdfSample& sample) {
+  const double normals = std::cos(sample.light_deg * (M_PI / 180)) * std::cos(sample.view_deg * (M_PI / 180));
+  return std::sqrt(std::clamp((1 + 2 * normals - std::cos(sample.aspecular_rad)) / 2, 0.0, 1.0));
+}
+
 Result<BrdfTarget> brdf_target(const std::string& name, const MeasuredBrdf& brdf) {
   BrdfTarget target;
   target.paint.name = name;

@@ -19,6 +19,12 @@ struct BrdfSample {
   Rgb value;                           // reflectance factor in the working space; channels may be negative
 };
 
+// Such a pair of directions about the normal z, the light's azimuth 0; all formats are isotropic.
+DirectionPair directions_of(const BrdfSample& sample);
+
+// The cosine of half the angle between light and viewer.
+double half_angle_cosine(const BrdfSample& sample);
+
 struct BrdfTarget {
   Paint paint;  // name, and what a five-angle instrument would have read, D65/2
   std::vector<BrdfSample> samples;

@@ -6,7 +6,9 @@
 
 #include "base/clock.h"
 #include "base/parallel.h"
+#include "brdf/lobe_model.h"
 #include "fit/brdf_rows.h"
+#include "fit/brdf_spike.h"
 #include "fit/fit_limit.h"
 #include "fit/flake_fit.h"
 #include "fit/lobe_choice.h"
@@ -115,6 +117,27 @@ double mean_de00(const std::vector<GeometryError>& errors) {
 
 double max_de00(const std::vector<GeometryError>& errors) {
   return errors.empty() ? 0 : std::ranges::max_element(errors, {}, &GeometryError::de00)->de00;
+}
+
+// The lobes whose flake may have a sharp part: all but those left out, where their number was limited by what the flake
+// beyond glare wants.
+std::vector<double> spike_exponents(const FitOptions& options, const std::vector<double>& exponents,
+                                    const PaintFitReport& report) {
+  const std::vector<double> left = difference(exponents, report.dropped);
+  return options.most_lobes > 0 ? difference(left, report.unseen) : left;
+}
+
+bool has_flake(const std::vector<Lobe>& lobes, double exponent) {
+  const auto at = std::ranges::find(lobes, exponent, &Lobe::exponent);
+  return at != lobes.end() && at->directional_diffuse != Rgb{};
+}
+
+// Its gloss as a coat shows it to a meter of that angle.
+LobeFit with_gloss_at(LobeFit lobes, double incidence_deg) {
+  const double fresnel = coat_fresnel(std::cos(incidence_deg * (M_PI / 180)));
+  for (Lobe& lobe : lobes.lobes)
+    if (std::isfinite(lobe.exponent)) lobe.gloss = fresnel * lobe.gloss;
+  return lobes;
 }
 
 void drop_unused(std::vector<Lobe>& lobes) {
@@ -226,10 +249,11 @@ Result<PaintFit> PaintFitter::fit(const BrdfTarget& brdf) const {
             basis_.exponents, rows.first_rad, out);
   out.report.gamut_de00 = rows.gamut_de00;
   out.report.brdf = BrdfFigures{.fitted = rows.fitted.size(), .glare = rows.glare.size(), .steep = rows.steep};
-  set_spike(rows, out);
+  add_spike(rows, spike_exponents(options_, basis_.exponents, out.report), out);
+  std::erase_if(out.report.unseen, [&](double e) { return has_flake(out.lobes.lobes, e); });
   for (const double angle : kGlossAngles_deg) {
     GONIO_ASSIGN(const GlossColumns* meter, gloss_.at(angle));
-    out.report.gloss.push_back({angle, gloss_units(gloss_, *meter, out.lobes), {}});
+    out.report.gloss.push_back({angle, gloss_units(gloss_, *meter, with_gloss_at(out.lobes, angle)), {}});
   }
   finish(brdf.paint.measurement ? brdf.paint.measurement->rows : std::vector<LabReading>(), white, out);
   compare(rows, white, out);

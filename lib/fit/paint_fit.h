@@ -64,15 +64,16 @@ struct FiveAngleFigures {
   double by_flake = 0;      // at that which shows the same flakes, seen through the coat, to a light at 45 deg
 };
 
-// How well a measured BRDF is met, over the directions that were fitted.
+// How well a measured BRDF is met, over the directions that were fitted, by all that the lobes show there.
 struct BrdfFigures {
   std::size_t fitted = 0;            // directions
   std::size_t glare = 0, steep = 0;  // left out of the flake: near specular, near grazing
   // |predicted - measured| / |measured| of the working-space triple: median and 95 %
   double relative_error_median = 0, relative_error_p95 = 0;
   double de00_median = 0, de00_p95 = 0;
-  double spike_albedo_45 = 0;                             // what the separated spike reflects of light at 45 deg
+  double spike_albedo_45 = 0;                             // what the coat's spike reflects of light at 45 deg
   std::optional<FiveAngleFigures> from_five_angles = {};  // where it has readings
+  std::optional<double> albedo_error = {};                // see albedo_error.h; left to the caller
 };
 
 // What weights for each view are worth: the mean color difference at the readings, or over the fitted directions of a
@@ -126,7 +127,8 @@ class PaintFitter {
   Result<PaintFit> fit(const Paint& paint) const;
 
   // The same for a measured BRDF: the flake lobes from all directions beyond glare and not steeper than the options
-  // say, then the gloss of a clear coat from what is left within glare. Error: no direction is left.
+  // say, then the gloss of a clear coat and the sharp part of the flake from what is left near specular. Its gloss holds
+  // at kGlossIncidence_deg. Error: no direction is left.
   Result<PaintFit> fit(const BrdfTarget& brdf) const;
 
   const Basis& basis() const { return basis_; }

@@ -25,9 +25,9 @@ cli::ToolSpec tool_spec(Options& o) {
            "gloss lobes and the mirror through a simulated gloss meter; what they cannot meet is told in the report.",
            "A measured BRDF (MERL .binary, Cornell .brdf, NVIDIA .mbsdf, RGL _rgb.bsdf) becomes one paint, fitted to "
            "all its directions but those within 10 deg of specular and near grazing, in and out of plane. What the "
-           "flake leaves within 10 deg goes to the gloss lobes: the spike of the coat, whose reading in the three "
-           "gloss "
-           "meters is reported.",
+           "flake leaves near specular goes to sharp lobes: gray gloss with the reflectance of a coat, which grows "
+           "toward grazing, and flake in color. What the spike of the coat reads in the three gloss meters is "
+           "reported.",
            "With --views every lobe has weights for several angles of the viewer, linear between them, which follow "
            "color that turns with the view and the two sides of specular of an interference paint. The weights for all "
            "views stay in front of them, and the report tells what the views gain. Readings of a multi-angle "
@@ -153,7 +153,8 @@ cli::ToolSpec tool_spec(Options& o) {
                  {"paints[].brdf",
                   "of a measured BRDF: directions fitted, glare_directions and steep_directions left out, "
                   "relative_error_median and relative_error_p95 of the color triple, de00_median and de00_p95 over the "
-                  "fitted ones, spike_albedo_45"},
+                  "fitted ones, spike_albedo_45 of the coat, and for files that are a grid albedo_error: how much is "
+                  "reflected elsewhere than measured, specular included, of light from 0, 10, ..., 80 deg"},
                  {"paints[].brdf.from_five_angles",
                   "how well lobes that know only the readings at 15, 25, 45, 75 and 110 deg predict the directions to "
                   "60 deg from the normal: directions, and the median relative error by the aspecular angle, and by "

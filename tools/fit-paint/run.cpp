@@ -6,7 +6,9 @@
 
 #include "base/clock.h"
 #include "base/input.h"
+#include "brdf/lobe_model.h"
 #include "color_maps.h"
+#include "fit/albedo_error.h"
 #include "fit/paint_fit.h"
 #include "paint/name_ledger.h"
 #include "paint/xml.h"
@@ -130,6 +132,10 @@ class Run {
     Result<PaintFit> fit = fitter_.fit(target);
     tally_.add_time(clock.elapsed_s());
     if (fit.ok()) {
+      GONIO_ASSIGN(fit->report.brdf->albedo_error,
+                   albedo_error(*target.source, [&](const Vec3& light, const Vec3& view) {
+                     return coated_brdf(fit->lobes, light, view, {0, 0, 1});
+                   }));
       tally_.add(target.paint, *fit);
       target.paint.lobes = std::move(fit->lobes);
     } else {

@@ -65,6 +65,7 @@ Json report_of(const Paint& paint, const PaintFit& fit) {
                       {"de00_median", json_number(r.brdf->de00_median)},
                       {"de00_p95", json_number(r.brdf->de00_p95)},
                       {"spike_albedo_45", json_number(r.brdf->spike_albedo_45)}};
+  if (r.brdf && r.brdf->albedo_error) report["brdf"]["albedo_error"] = json_number(*r.brdf->albedo_error);
   if (r.brdf && r.brdf->from_five_angles)
     report["brdf"]["from_five_angles"] = {{"directions", r.brdf->from_five_angles->directions},
                                           {"by_aspecular", json_number(r.brdf->from_five_angles->by_aspecular)},
@@ -121,7 +122,10 @@ void Tally::add(const Paint& paint, const PaintFit& fit) {
   sum_floor_ += r.floor.de00_mean * static_cast<double>(r.de00_by_geometry.size());
   for (const double floor : r.floor.largest_de00) floors_.add(floor);
   if (r.views) sum_gain_ += r.views->gain_de00();
-  if (r.brdf) ++measured_, sum_relative_ += r.brdf->relative_error_median;
+  if (r.brdf) {
+    ++measured_, sum_relative_ += r.brdf->relative_error_median;
+    if (r.brdf->albedo_error) ++resolved_, sum_misplaced_ += *r.brdf->albedo_error;
+  }
   if (r.brdf && r.brdf->from_five_angles) ++predicted_, sum_five_ += r.brdf->from_five_angles->by_flake;
   session_.add("paints", [&] { return report_of(paint, fit); });
 }
@@ -146,6 +150,8 @@ std::string Tally::summary() const {
   if (measured_ > 0)
     line += fmt::format(", {} measured BRDFs with a median relative error of {:.3f}", measured_,
                         sum_relative_ / static_cast<double>(measured_));
+  if (resolved_ > 0)
+    line += fmt::format(", {:.3f} of the light misplaced", sum_misplaced_ / static_cast<double>(resolved_));
   if (predicted_ > 0)
     line +=
         fmt::format(", five angles predict those to 60 deg with {:.3f}", sum_five_ / static_cast<double>(predicted_));

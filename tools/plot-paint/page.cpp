@@ -228,7 +228,11 @@ class Slices {
     for (double& f : value.f) f *= M_PI;
     return rgb_from_xyz_d65(adapted(meter_->xyz(value.f), meter_->white(), *white_point({"D65", 2})));
   }
-  Rgb fit(const Vec3& view) const { return M_PI * brdf(*s_.lobes, light_, view, {0, 0, 1}); }
+  Rgb fit(const Vec3& view) const {
+    const std::vector<GlossReading>& gloss = s_.input.paint.gloss;
+    return M_PI * coated_brdf(*s_.lobes, light_, view, {0, 0, 1},
+                              gloss.empty() ? kGlossIncidence_deg : gloss.front().angle_deg);
+  }
 
   // The brightest twentieth may burn out.
   double exposure() const {
