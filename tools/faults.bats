@@ -121,6 +121,24 @@ full() {
   each_writer full
 }
 
+# In a mount namespace of its own: a disk of one page, which the old file fills.
+small_disk() {
+  local target=$1
+  shift
+  run unshare -rm bash -c 'mount -t tmpfs -o size=4k none disk && echo old >"disk/$1" && target=$1 && shift || exit 99
+    "$@" -o "disk/$target"; status=$?
+    [ "$(cat "disk/$target")" = old ] && [ "$(ls -A disk)" = "$target" ] || exit 98
+    exit $status' disk "$target" "$@"
+  [ "$status" -eq 3 ] || { echo "$1 on a small disk: exit $status: $output"; return 1; }
+  [[ "$output" = *"No space left"* ]] || { echo "$1: $output"; return 1; }
+}
+
+@test "a disk without room is an error, the old file stays, and nothing else is left" {
+  mkdir disk
+  unshare -rm mount -t tmpfs none disk 2>/dev/null || skip "no disk may be mounted here"
+  each_writer small_disk
+}
+
 readonly_target() {
   shift
   for place in /proc/none.exr no/such/folder/file.exr; do
@@ -183,6 +201,23 @@ closed() {
   [ ! -e none.exr ]
 }
 
+# The whole file, or none and the reason.
+in_300_mb() {
+  local target=$1 status=0
+  shift
+  (ulimit -v 307200; exec "$@" -o "$target") 2>err || status=$?
+  case $status in
+    0 | 1) [ -s "$target" ] || { echo "$1 wrote nothing"; return 1; } ;;
+    3) grep -qE "memory|map segment" err && [ ! -e "$target" ] || { echo "$1: $(cat err)"; return 1; } ;;
+    *) echo "$1 in 300 MB: exit $status: $(cat err)"; return 1 ;;
+  esac
+}
+
+@test "300 MB of address space: every tool ends by itself, with a whole file or none" {
+  if ldd "$(command -v paint-convert)" | grep -q libasan; then skip "built with a sanitizer"; fi
+  each_writer in_300_mb
+}
+
 localized() {
   local target=$1
   shift
@@ -230,6 +265,55 @@ threaded() {
     [[ "$stderr" = *cut.env.exr* ]]
     [ ! -e none.exr ]
   done
+}
+
+# Every tool that reads an EXR; CUT stands for it.
+@test "an EXR that was cut off is refused by every tool, which leaves nothing" {
+  local size cut line source
+  while read -r source line; do
+    [ -e "$source" ] || source=$TESTDATA/$source
+    size=$(stat -L -c %s "$source")
+    for cut in 0 5 300 $((size / 2)) $((size - 1)); do
+      head -c "$cut" "$source" >cut.exr
+      # shellcheck disable=SC2086
+      run --separate-stderr ${line//CUT/cut.exr} -o none.exr
+      [ "$status" -eq 3 ] || { echo "$line, cut at $cut: exit $status: $stderr"; return 1; }
+      [[ "$stderr" = *cut.exr* ]] || { echo "$line, cut at $cut: $stderr"; return 1; }
+      [ ! -e none.exr ]
+    done
+  done <<EOF
+studio.exr prefilter-envmap -q -e 6 -s 8 CUT
+studio.exr relight -q --from D65 --to A CUT
+seen.exr sketch-fit -q -i seen.png -b CUT
+seen.exr sketch-fit -q -i CUT -b seen.exr
+seen.exr paint-pick -q --face CUT@40,25
+seen.exr render-osmesa -q --gbuffer CUT --light 0,20
+brushed.sbrdf.exr render-osmesa -q --mesh $TESTDATA/box.obj --size 16x16 --env sky.env.exr --texture White=CUT
+EOF
+}
+
+@test "light and paint below the normal range stay numbers in every tool" {
+  printf 'sample,geometry,illuminant,observer,L,a,b\n' >tiny.csv
+  for angle in 15 45 110; do printf 'd,45as%d,D65,10,1e-310,-4.9e-324,0\n' $angle >>tiny.csv; done
+  paint-convert -q tiny.csv -o tiny.xml
+  oiiotool --pattern constant:color=1e-40,1e-41,3e-45 32x16 3 -d float -o dim.exr
+  while read -r line; do
+    # shellcheck disable=SC2086
+    run --separate-stderr $line -o "out.${line%% *}.exr"
+    [ "$status" -le 1 ] || { echo "$line: exit $status: $stderr"; return 1; }
+    ! grep -aqiE '"-?(nan|inf)|[ \t]-?(nan|inf)\b' "out.${line%% *}.exr" || { echo "$line writes what is no number"; return 1; }
+  done <<EOF
+paint-convert -q tiny.xml --to csv
+paint-edit -q tiny.xml --hue-shift 90
+paint-stats -q tiny.xml
+fit-paint -q -b $TESTDATA/b5.basis.xml tiny.xml
+fit-basis -q --lobes 2 --starts 1 --angles 12 tiny.xml
+goniogeom-index -q tiny.xml --lights 30,45 --views as15,as45
+trompe-fit -q tiny.xml --angle 2
+colorsnap -q -l many.xml -k 3 tiny.xml
+prefilter-envmap -q -e 6,70 -s 8 dim.exr
+relight -q --from D65 --to A dim.exr
+EOF
 }
 
 @test "numbers below the normal range pass as numbers" {

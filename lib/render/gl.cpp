@@ -26,6 +26,7 @@ struct OSMesa {
 
 // The library, loaded once. Error: it is not there, or is another one.
 Result<const OSMesa*> osmesa() {
+  static std::string reason;
   static const OSMesa loaded = [] {
     OSMesa library;
     if (void* handle = dlopen(kLibrary, RTLD_NOW | RTLD_LOCAL)) {
@@ -36,11 +37,14 @@ Result<const OSMesa*> osmesa() {
       find(library.make_current, "OSMesaMakeCurrent");
       find(library.destroy, "OSMesaDestroyContext");
       find(library.address, "OSMesaGetProcAddress");
+    } else if (const char* why = dlerror()) {
+      reason = fmt::format(" ({})", why);
     }
     return library;
   }();
   if (loaded.create && loaded.make_current && loaded.destroy && loaded.address) return &loaded;
-  return input_error("{} of Mesa 22 or later cannot be loaded: install libosmesa6", kLibrary);
+  return input_error("{} of Mesa 22 or later cannot be loaded{}: install libosmesa6, or give more memory", kLibrary,
+                     reason);
 }
 
 void destroy(void* context) {
@@ -51,9 +55,13 @@ void destroy(void* context) {
 
 GlContext::GlContext(void* context) : context_(context, destroy) {}
 
-Result<GlContext> GlContext::create() {
-  // llvmpipe reads this once, when the first context of the process is made.
+// It is read once, when the first context of the process is made.
+void GlContext::set_threads() {
   setenv("LP_NUM_THREADS", std::to_string(threads()).c_str(), 0);
+}
+
+Result<GlContext> GlContext::create() {
+  set_threads();
   const int wanted[] = {OSMESA_FORMAT,
                         OSMESA_RGBA,
                         OSMESA_DEPTH_BITS,

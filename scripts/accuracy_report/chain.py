@@ -12,7 +12,7 @@ TARGETS = (5, 2, 1, 0.5, 0.1)
 def ladder(quick):
     """The settings looked at."""
     bases = ("b5", "b7") if quick else ("b5", "b7", "steep")
-    fits = (("l1", False), ("l1", True)) if quick else (("l2", False), ("l1", False), ("l1", True), ("deltae", True))
+    fits = (("l1", False), ("l1", True)) if quick else (("l1", False), ("l1", True), ("deltae", True))
     tolerances, effects = ((1e-1, 1e-3), ("none", "0.5")) if quick else ((1e-1, 1e-2, 1e-3), ("none", "0.5", "all"))
     return [Settings(b, *f, t, e) for t, e, b, f in itertools.product(tolerances, effects, bases, fits)]
 

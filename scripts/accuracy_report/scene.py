@@ -89,10 +89,11 @@ class Scene:
         return {"fit_s": self.fit(settings)[2], "prefilter_s": self.environment(settings)[1], "render_s": min(seconds), "frame_ms": min(frames), "all_frame_ms": tuple(frames)}
 
     def error(self, settings, *more, checks=None):
-        """dE00 of the fit to the readings and of the picture to the reference integrator, and the plan."""
+        """dE00 of the fit to the readings and of the picture to the reference integrator, the time of shading, and the plan."""
         results, _ = self.run.tool("render-osmesa", *self.words(settings), *more, "--check", checks or self.checks)
         error = results["error"]
-        return {"fit_de00": self.fit(settings)[1], "render_de00": error["de00_mean"], "render_p95": error["de00_p95"], "plan": results.get("plan", [])}
+        return {"fit_de00": self.fit(settings)[1], "render_de00": error["de00_mean"], "render_p95": error["de00_p95"],
+                "shading_ms": results["left_out"]["shading_ms"], "plan": results.get("plan", [])}
 
     def picture(self, settings, *more):
         """Both."""
