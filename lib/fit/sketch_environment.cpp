@@ -10,7 +10,7 @@ namespace goniochrome {
 namespace {
 
 constexpr std::size_t kMostPixels = 6000;   // looked at for the answer; more change it by less than 0.05 dE
-constexpr std::size_t kFirstPixels = 1500;  // and on the way to it
+constexpr std::size_t kFirstPixels = 1000;  // and on the way to it
 constexpr std::size_t kFewestPixels = 30;
 
 SearchSamples samples_of(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light,
@@ -36,7 +36,8 @@ SearchSamples samples_of(const SketchInput& input, const SketchPixels& pixels, c
 
 SketchFit sketch_environment(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light,
                              const SketchLimits& limits, bool with_differences) {
-  const LobeSearch search(light.basis, samples_of(input, pixels, light, kMostPixels));
+  const SearchFitters fitters(light.basis);
+  const LobeSearch search(fitters, samples_of(input, pixels, light, kMostPixels));
   SketchFit fit;
   std::vector<Rgb> weights(search_columns(light.basis));
   const auto judge = [&] {
@@ -59,7 +60,7 @@ SketchFit sketch_environment(const SketchInput& input, const SketchPixels& pixel
   };
   if (pixels.used.size() < kFewestPixels)
     return give_up(fmt::format("{} pixels are too few for a search", pixels.used.size()));
-  const LobeSearch first(light.basis, samples_of(input, pixels, light, kFirstPixels));
+  const LobeSearch first(fitters, samples_of(input, pixels, light, kFirstPixels));
   const FoundPaint found = search.find(first);
   take_found(found, fit);
   weights = found.weights;

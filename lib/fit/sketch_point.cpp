@@ -178,7 +178,7 @@ std::string poor_match(const SketchFit& fit) {
 
 void take_found(const FoundPaint& found, SketchFit& fit) {
   const Paint paint = found.paint();
-  fit.model = found.has_free_rows() ? "search with free rows" : "search";
+  fit.model = found.model();
   fit.appearance = paint.appearance ? *paint.appearance : appearance_from_rows(paint.measurement->rows)->appearance;
   fit.rows = paint.appearance ? rows_of(fit.appearance) : paint.measurement->rows;
   fit.gloss_60_gu = paint.gloss.front().gloss_units;
@@ -227,9 +227,10 @@ SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, con
   const Rgb matt = curve.diffuse;
   const CurveFit& better = lobes.cost <= quadratic.cost ? lobes : quadratic;
   const bool display = !input.edited->scene_linear;
-  const LobeSearch first(basis, search_samples(cells, basis, display, kFirstCells));
-  const LobeSearch search(basis, search_samples(cells, basis, display, kSearchCells));
-  const FoundPaint found = search.find(first);
+  const SearchFitters fitters(basis);
+  const LobeSearch first(fitters, search_samples(cells, basis, display, kFirstCells));
+  const LobeSearch search(fitters, search_samples(cells, basis, display, kSearchCells));
+  const FoundPaint found = search.find_plain(first);
   const bool as_good = is_as_good(found.search.cost, better.cost, !is_seen(cells, kFace_deg));
   curve = as_good ? curve_of(found, basis) : better.curve;
   judge();

@@ -31,10 +31,13 @@ inline Paint random_paint(std::mt19937_64& random) {
   return paint;
 }
 
-inline LobeFit lobes(const Paint& paint, FitMethod method = FitMethod::kL1) {
-  FitOptions options;
-  options.method = method;
-  return PaintFitter(basis(), options).fit(paint)->lobes;
+inline const PaintFitter& fitter() {
+  static const PaintFitter one(basis(), {});
+  return one;
+}
+
+inline LobeFit lobes(const Paint& paint) {
+  return fitter().fit(paint)->lobes;
 }
 
 // The buffers of a unit sphere seen from +Z, nearly from infinity, with one part named Ball.

@@ -6,37 +6,41 @@
 
 #include "fit/paint_fit.h"
 #include "fit/sketch.h"
+#include "fit/sketch_lobes.h"
+#include "fit/sketch_samples.h"
 #include "fit/sketch_solve.h"
 
 namespace goniochrome {
 
-// What was seen, and the light of each part of the lobe model with weight 1 (1/sr) there, all relative to white.
-struct SearchSamples {
-  std::size_t columns = 0;  // K_D, then K_DD and K_G of every lobe of the basis, then the mirror
-  std::vector<Vec3> light;  // `columns` for each sample
-  std::vector<Rgb> seen;
-  std::vector<double> importance;                     // of each sample; more than 0
-  std::optional<ReflectionOperator> reflection = {};  // as that of a SketchLight
-  bool display = false;  // seen on an sRGB display, whose gamut is then part of the picture
-};
-
-// A paint found: eight numbers (face, flop, travel, gloss), or ten (Lab at 15, 45 and 110 deg, gloss).
+// A paint found: eight numbers (face, flop, travel, gloss), ten (Lab at 15, 45 and 110 deg, gloss), or sixteen (Lab at
+// the export angles, gloss), which are read off lobes of any weight.
 struct FoundPaint {
   SearchResult search;
   std::vector<Rgb> weights;  // of its lobes, in the order of the columns
-  bool exact = false;        // those of least absolute error
   Paint paint() const;
-  bool has_free_rows() const { return search.values.size() == 10; }
+  const char* model() const;
+};
+
+// The ways from a paint to its lobes: least squares, whose weights follow a paint smoothly, and least absolute error.
+struct SearchFitters {
+  explicit SearchFitters(const Basis& basis);
+  GlossTable gloss;
+  PaintFitter smooth, exact;
 };
 
 class LobeSearch {
  public:
-  LobeSearch(const Basis& basis, SearchSamples samples);
+  // The fitters must outlive it.
+  LobeSearch(const SearchFitters& fitters, SearchSamples samples);
 
-  // From four starts, and nine more where they find no exact agreement in a clean picture, all in the samples of
-  // `first`, a part of these; the best goes on in all samples, and then, unless face, flop and travel explain them as
-  // well, with the colors at three angles freed.
+  // For light from everywhere, which tells each lobe. The lobes of any weight that explain the samples best; then, from
+  // there, face, flop and travel, which are the answer where they explain the samples as well, or else the colors at
+  // three angles, or else those lobes. Ways are found in the samples of `first`, a part of these.
   FoundPaint find(const LobeSearch& first) const;
+
+  // For one lamp, whose glare is left out, so that wide gloss passes for flake: face, flop and travel, from that start
+  // and more until one explains the samples exactly, or the colors at three angles where they explain them better.
+  FoundPaint find_plain(const LobeSearch& first) const;
 
   // The cost of a paint found, with another gloss (gloss units).
   double cost_with_gloss(const FoundPaint& found, double gloss) const;
@@ -46,25 +50,21 @@ class LobeSearch {
 
  private:
   std::vector<Rgb> weights(const PaintFitter& fitter, const std::vector<double>& values) const;
-  void residuals(const std::vector<Rgb>& weights, std::vector<double>& out) const;
-  double cost(const std::vector<double>& values) const;
+  double cost(const std::vector<Rgb>& weights) const;
   SearchResult run(const PaintFitter& fitter, const std::vector<SearchParameter>& start) const;
-  LobeFit linear() const;
-  std::vector<double> linear_channel(int channel) const;
-  void scan_gloss(std::vector<SearchParameter>& start) const;
-  std::vector<std::vector<SearchParameter>> starts() const;
-  static std::vector<std::vector<SearchParameter>> further_starts(const std::vector<SearchParameter>& first);
-  FoundPaint best_of_starts() const;
-  SearchResult best_rows(const SearchResult& appearance) const;
+  struct Way {
+    SearchResult result;
+    const PaintFitter* fitter = nullptr;
+  };
+  Way way(const std::vector<double>& start) const;
+  Way best_way() const;
+  void scan_gloss(std::vector<double>& start) const;
+  FreeLobeFit free_lobes() const { return {basis_, fitters_.gloss, samples_, target_}; }
 
-  Basis basis_;
-  PaintFitter smooth_, exact_;  // least squares, whose weights follow a paint smoothly; least absolute error
+  const SearchFitters& fitters_;
+  const Basis& basis_;
   SearchSamples samples_;
   std::vector<Lab> target_;
 };
-
-// The light that weights make of one sample's columns.
-Rgb shown_light(const Vec3* columns, const std::vector<Rgb>& weights,
-                const std::optional<ReflectionOperator>& reflection);
 
 }  // namespace goniochrome

@@ -16,22 +16,11 @@ constexpr double kUnseen = 1e-12;   // a column of less is seen by no row
 constexpr double kSigmas = 1.4826;  // median absolute deviation to standard deviation
 constexpr double kTuning = 2.385;   // Cauchy's: 95 % as good as least squares for normal noise
 constexpr double kLeastScale = 1;   // of residuals, in dE: what a paint cannot follow is no outlier yet
-constexpr int kMostIterations = 60;
+constexpr int kMostIterations = 40;
+constexpr double kExact = 1e-3;  // of residuals, RMS; less is rounding
 
 double group_length(const std::vector<double>& r, std::size_t i) {
   return std::hypot(r[3 * i], r[3 * i + 1], r[3 * i + 2]);
-}
-
-std::vector<double> cauchy_weights(const std::vector<double>& r, const std::vector<double>& importance) {
-  std::vector<double> lengths(r.size() / 3);
-  for (std::size_t i = 0; i < lengths.size(); ++i) lengths[i] = group_length(r, i);
-  std::vector<double> sorted = lengths;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  const double scale = kTuning * std::max(kSigmas * *middle, kLeastScale);
-  std::vector<double> weights = importance;
-  for (std::size_t i = 0; i < weights.size(); ++i) weights[i] /= 1 + (lengths[i] / scale) * (lengths[i] / scale);
-  return weights;
 }
 
 double weighted_squares(const std::vector<double>& r, const std::vector<double>& weights) {
@@ -83,6 +72,18 @@ double condition_of(const Eigen::MatrixXd& gram) {
 }
 
 }  // namespace
+
+std::vector<double> robust_weights(const std::vector<double>& r, const std::vector<double>& importance) {
+  std::vector<double> lengths(r.size() / 3);
+  for (std::size_t i = 0; i < lengths.size(); ++i) lengths[i] = group_length(r, i);
+  std::vector<double> sorted = lengths;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double scale = kTuning * std::max(kSigmas * *middle, kLeastScale);
+  std::vector<double> weights = importance;
+  for (std::size_t i = 0; i < weights.size(); ++i) weights[i] /= 1 + (lengths[i] / scale) * (lengths[i] / scale);
+  return weights;
+}
 
 void NormalEquations::add(const double* row, double value, double weight) {
   for (int i = 0; i < columns_; ++i) {
@@ -137,9 +138,10 @@ SearchResult robust_search(const std::vector<SearchParameter>& start, const std:
   for (; result.iterations < kMostIterations; ++result.iterations) {
     for (Eigen::Index k = 0; k < n; ++k)
       differentiate(start, result.values, static_cast<std::size_t>(k), residuals, tried, scratch, j.col(k).data());
-    const std::vector<double> weights = cauchy_weights(r, importance);
+    const std::vector<double> weights = robust_weights(r, importance);
     d = weighted(j, r, weights);
     const double before = weighted_squares(r, weights);
+    if (before < kExact * kExact * static_cast<double>(count)) break;
     double gained = 0;
     for (int attempt = 0; attempt < 8; ++attempt) {
       Eigen::MatrixXd damped = d.gram;

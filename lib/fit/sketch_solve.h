@@ -40,6 +40,9 @@ using SearchResiduals = std::function<void(const std::vector<double>& values, st
 SearchResult robust_search(const std::vector<SearchParameter>& start, const std::vector<double>& importance,
                            const SearchResiduals& residuals);
 
+// Cauchy's weights of the groups times their importance: one off by much more than the median counts little.
+std::vector<double> robust_weights(const std::vector<double>& residuals, const std::vector<double>& importance);
+
 // The mean of log(1 + r^2) by importance.
 double robust_cost(const std::vector<double>& residuals, const std::vector<double>& importance);
 

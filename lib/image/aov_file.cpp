@@ -95,6 +95,7 @@ Result<AovFile> read_aov_file(const std::string& path) {
   file.exposure_stops = attribute<float>(attributes, "goniochrome:exposure", 0);
   file.white_luminance = attribute<float>(attributes, "goniochrome:whiteLuminance", 1);
   if (!(file.white_luminance > 0)) file.white_luminance = 1;
+  file.samples = attribute<int>(attributes, "goniochrome:samples", 1);
   file.environment = attribute<std::string>(attributes, "goniochrome:environment", "");
   file.command = attribute<std::string>(attributes, "goniochrome:command", "");
   if (const auto light = attribute<std::string>(attributes, "goniochrome:aovLight", ""); !light.empty()) {

@@ -21,6 +21,7 @@ struct AovFile {
   Image image;  // R G B A and the buffers
   // Of the file's header; a file that does not say has exposure 0 and white 1.
   double exposure_stops = 0, white_luminance = 1;
+  int samples = 1;               // of every pixel of the picture; the buffers are of the centers
   Vec3 light{0, 1, 0};           // that aspecular and lambert are relative to
   std::vector<AovLight> lights;  // all there were
   std::string environment;       // "" for none
@@ -33,8 +34,8 @@ struct AovFile {
 
   // The channel's place in a pixel. Error: the file lacks it, with the command that makes it.
   Result<int> channel(const std::string& name) const;
-  // The unit direction to the viewer at the center of a pixel.
-  Vec3 to_viewer(int x, int y) const { return -normalized(corner + (x + 0.5) * right + (y + 0.5) * down); }
+  // The unit direction to the viewer at the center of a pixel, or beside it.
+  Vec3 to_viewer(double x, double y) const { return -normalized(corner + (x + 0.5) * right + (y + 0.5) * down); }
   // The number of the part of that name, from 1. Error: the names there are.
   Result<int> part(const std::string& name) const;
 };

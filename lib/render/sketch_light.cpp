@@ -7,6 +7,7 @@
 
 #include "brdf/lobe_model.h"
 #include "render/effects.h"
+#include "render/gbuffer.h"
 
 namespace goniochrome {
 
@@ -14,6 +15,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kGloss_deg = 60;  // of the reading that a paint found carries
+constexpr int kMostSamples = 4;    // of a pixel; sixteen have its mean within their spread, 3 %
 
 bool drawn(const AovFile& buffers, const char* effect) {
   return std::ranges::find(buffers.drawn, effect) != buffers.drawn.end();
@@ -43,8 +45,9 @@ std::vector<LobeFit> unit_paints(const Basis& basis) {
 
 class Shading {
  public:
-  Shading(const AovFile& buffers, const PrefilteredEnvironment& env, int normal)
-      : buffers_(buffers), env_(env), basis_(basis_of(env)), normal_(normal) {
+  Shading(const AovFile& buffers, const PrefilteredEnvironment& env, int normal, int part)
+      : buffers_(buffers), env_(env), basis_(basis_of(env)), normal_(normal), part_(part) {
+    if (buffers.samples > 1) shifts_ = sample_shifts(std::min(buffers.samples, kMostSamples));
     Scene scene;
     scene.paints = unit_paints(basis_);
     scene.env = &env;
@@ -58,27 +61,15 @@ class Shading {
 
   const Basis& basis() const { return basis_; }
 
+  // The mean over the samples of the pixel, whose normals follow from those of the pixels around.
   void shade(std::uint32_t place, Vec3* column) const {
-    const int width = buffers_.image.width;
-    const float* pixel = &buffers_.image.data[static_cast<std::size_t>(place) * buffers_.image.channels + normal_];
-    const Vec3 n{pixel[0], pixel[1], pixel[2]};
-    const Vec3 wo = buffers_.to_viewer(static_cast<int>(place % width), static_cast<int>(place / width));
-    const View view{n, wo, 2 * dot(n, wo) * n - wo, std::clamp(dot(n, wo), 0.0, 1.0)};
-    const double scale = 1 / buffers_.white_luminance;
-    const int last = static_cast<int>(search_columns(basis_)) - 1;
-    column[0] = scale * weight(0, WeightTable::diffuse_slot(), view.cos_o, 0) * bilinear(env_.diffuse.map, n);
-    for (int k = 1; k < last; ++k) {
-      const auto lobe = static_cast<std::size_t>((k - 1) / 2);
-      const int slot = WeightTable::lobe_slot(lobe);
-      const Vec3 toward =
-          view.mirrored + weight(k, table_.shift_slot(lobe), view.cos_o, static_cast<int>(lobe % 4)) * n;
-      column[k] = scale * weight(k, slot, view.cos_o, 0) * bilinear(env_.lobes[lobe].map, toward);
-    }
-    column[last] = {};
-    if (basis_.mirror)
-      column[last] =
-          scale * weight(last, table_.mirror_slot(), view.cos_o, 0) * bilinear(env_.mirror.map, view.mirrored);
-    for (const AovLight& light : buffers_.lights) add_light(light, view, scale, column);
+    const int x = static_cast<int>(place) % buffers_.image.width, y = static_cast<int>(place) / buffers_.image.width;
+    const Vec3 n = normal(x, y), right = change(x - 1, y, x + 1, y), down = change(x, y - 1, x, y + 1);
+    const std::size_t columns = search_columns(basis_);
+    std::fill_n(column, columns, Vec3{});
+    const double share = 1 / (buffers_.white_luminance * static_cast<double>(shifts_.size()));
+    for (const auto& [dx, dy] : shifts_)
+      add_sample(normalized(n + dx * right + dy * down), buffers_.to_viewer(x + dx, y + dy), share, column);
   }
 
  private:
@@ -86,6 +77,35 @@ class Shading {
     Vec3 normal, to_viewer, mirrored;
     double cos_o;
   };
+
+  Vec3 normal(int x, int y) const {
+    const float* pixel = buffers_.image.pixel(x, y) + normal_;
+    return {pixel[0], pixel[1], pixel[2]};
+  }
+
+  // Of the normal for each pixel, from one to the other beyond a pixel; none where they lie on two parts.
+  Vec3 change(int x0, int y0, int x1, int y1) const {
+    if (shifts_.size() == 1 || x0 < 0 || y0 < 0 || x1 >= buffers_.image.width || y1 >= buffers_.image.height) return {};
+    if (buffers_.image.pixel(x0, y0)[part_] != buffers_.image.pixel(x1, y1)[part_]) return {};
+    return 0.5 * (normal(x1, y1) - normal(x0, y0));
+  }
+
+  void add_sample(const Vec3& n, const Vec3& wo, double scale, Vec3* column) const {
+    const View view{n, wo, 2 * dot(n, wo) * n - wo, std::clamp(dot(n, wo), 0.0, 1.0)};
+    const int last = static_cast<int>(search_columns(basis_)) - 1;
+    column[0] += scale * weight(0, WeightTable::diffuse_slot(), view.cos_o, 0) * bilinear(env_.diffuse.map, n);
+    for (int k = 1; k < last; ++k) {
+      const auto lobe = static_cast<std::size_t>((k - 1) / 2);
+      const int slot = WeightTable::lobe_slot(lobe);
+      const Vec3 toward =
+          view.mirrored + weight(k, table_.shift_slot(lobe), view.cos_o, static_cast<int>(lobe % 4)) * n;
+      column[k] += scale * weight(k, slot, view.cos_o, 0) * bilinear(env_.lobes[lobe].map, toward);
+    }
+    if (basis_.mirror)
+      column[last] +=
+          scale * weight(last, table_.mirror_slot(), view.cos_o, 0) * bilinear(env_.mirror.map, view.mirrored);
+    for (const AovLight& light : buffers_.lights) add_light(light, view, scale, column);
+  }
 
   // A slot's channel of the paint of this number.
   double weight(int paint, int slot, double cos_o, int channel) const {
@@ -113,7 +133,8 @@ class Shading {
   const AovFile& buffers_;
   const PrefilteredEnvironment& env_;
   Basis basis_;
-  int normal_;
+  int normal_, part_;                                     // channels
+  std::vector<std::array<double, 2>> shifts_ = {{0, 0}};  // of the samples of a pixel from its center
   bool fresnel_ = false;
   WeightTable table_;
 };
@@ -122,9 +143,10 @@ class Shading {
 
 Result<SketchLight> sketch_light(const AovFile& buffers, const PrefilteredEnvironment& env) {
   GONIO_ASSIGN(const int normal, buffers.channel("normal.X"));
+  GONIO_ASSIGN(const int part, buffers.channel("part"));
   if (!buffers.has_rays)
     return input_error("{}: its header lacks goniochrome:rays: render the buffers again", buffers.path);
-  const auto shading = std::make_shared<const Shading>(buffers, env, normal);
+  const auto shading = std::make_shared<const Shading>(buffers, env, normal, part);
   SketchLight light{shading->basis(), {}, [shading](std::uint32_t place, Vec3* out) { shading->shade(place, out); }};
   if (drawn(buffers, "operator")) light.reflection = buffers.reflection;
   return light;

@@ -40,7 +40,7 @@ struct Drawing {
 };
 
 // A sphere of that paint with these effects alone, and its buffers.
-Drawing draw(const PrefilteredEnvironment& env, const std::vector<std::string>& drawn) {
+Drawing draw(const PrefilteredEnvironment& env, const std::vector<std::string>& drawn, int samples = 1) {
   const auto has = [&](const char* name) { return std::ranges::find(drawn, name) != drawn.end(); };
   const Mesh mesh = sphere_mesh(64);
   Scene scene;
@@ -54,20 +54,23 @@ Drawing draw(const PrefilteredEnvironment& env, const std::vector<std::string>& 
   EXPECT_TRUE(renderer->load(scene, effects, Engine::kCpu).ok());
   Camera camera;
   camera.eye = {0, 0, 5};
-  const Frame frame = *renderer->draw(camera, 40, 40, 1, true);
-  Drawing result{{}, frame.centers};
+  const Frame frame = *renderer->draw(camera, 40, 40, samples, true);
+  Drawing result{{}, frame.picture};
   AovFile& buffers = result.buffers;
-  buffers.path = "scene.exr", buffers.image = frame.centers, buffers.drawn = drawn, buffers.has_rays = true;
+  buffers.path = "scene.exr", buffers.image = frame.picture, buffers.drawn = drawn, buffers.has_rays = true;
+  buffers.samples = samples;
   buffers.image.channel_names = {"R", "G", "B", "A"};
-  EXPECT_TRUE(add_aov(buffers.image, *frame.gbuffer, "normal", scene.lights.front().direction).ok());
+  for (const char* aov : {"normal", "part"})
+    EXPECT_TRUE(add_aov(buffers.image, *frame.gbuffer, aov, scene.lights.front().direction).ok());
   buffers.lights = {{scene.lights.front().direction, scene.lights.front().white}};
   const Rays& rays = frame.gbuffer->rays;
   buffers.corner = rays.corner, buffers.right = rays.right, buffers.down = rays.down;
   return result;
 }
 
-// The largest difference of a channel, relative to the brightest, where the sphere is seen within 80 deg.
-double difference(const Drawing& drawing, const SketchLight& light) {
+// The largest difference of a channel, relative to the brightest, where the sphere is seen within that angle from its
+// normal.
+double difference(const Drawing& drawing, const SketchLight& light, double steepest_deg = 80) {
   const LobeFit fit = paint();
   std::vector<Rgb> weights(search_columns(light.basis));
   weights.front() = fit.diffuse, weights.back() = fit.lobes.back().gloss;
@@ -79,7 +82,7 @@ double difference(const Drawing& drawing, const SketchLight& light) {
     for (int x = 0; x < 40; ++x) {
       const float* pixel = drawing.buffers.image.pixel(x, y);
       const Vec3 normal{pixel[4], pixel[5], pixel[6]};
-      if (dot(normal, drawing.buffers.to_viewer(x, y)) < std::cos(80 * std::numbers::pi / 180)) continue;
+      if (dot(normal, drawing.buffers.to_viewer(x, y)) < std::cos(steepest_deg * std::numbers::pi / 180)) continue;
       light.shade(static_cast<std::uint32_t>(40 * y + x), columns.data());
       Rgb sum;
       const ReflectionOperator op = light.reflection.value_or(component_wise());
@@ -106,6 +109,18 @@ TEST(SketchLight, is_what_the_renderer_draws_with_the_same_effects) {
     drawing.buffers.drawn.clear();
     EXPECT_GT(difference(drawing, *sketch_light(drawing.buffers, env)), 5e-3) << testing::PrintToString(drawn);
   }
+}
+
+// Light that changes within a pixel. The control: light of the centers of the pixels alone.
+TEST(SketchLight, is_the_mean_over_the_samples_of_a_pixel) {
+  PrefilteredEnvironment env = constant_env({1, 1, 1}, kExponents);
+  const auto stripes = [](const Vec3& d) { return (1 + 0.9 * std::sin(4 * (d.x + d.y))) * Vec3{1, 1, 1}; };
+  env.mirror.map = cube_of(64, stripes);
+  for (PrefilteredLobe& lobe : env.lobes) lobe.map = env.mirror.map;
+  Drawing drawing = draw(env, {}, 4);
+  const double apart = difference(drawing, *sketch_light(drawing.buffers, env), 45);
+  drawing.buffers.samples = 1;
+  EXPECT_LT(apart, 0.3 * difference(drawing, *sketch_light(drawing.buffers, env), 45));
 }
 
 TEST(SketchLight, wants_normals_and_rays) {

@@ -33,7 +33,9 @@ cli::ToolSpec render_spec(RenderOptions& o, cli::CommonOptions& common) {
       "sum "
       "with the second times x and the third times y, in pixels from the upper left), goniochrome:lights (direction "
       "and "
-      "white of each) and goniochrome:environment say what is needed to shade the buffers again.",
+      "white of each), goniochrome:operator (the 27 coefficients k[c][d][e] of colored light, e running fastest), "
+      "goniochrome:samples (of a pixel of the picture) and goniochrome:environment say what is needed to shade the "
+      "buffers again.",
       "--gbuffer shades such an EXR again, in other paints or light, without the mesh and without rasterizing: its "
       "buffers normal and part, and goniochrome:rays, parts and materials, hold all that the engine cpu needs. The "
       "picture is that of --samples 1, bit for bit; view and size are the file's. Textures need the mesh.",

@@ -243,6 +243,7 @@ Result<void> write_exr_picture(const RenderOptions& options, const Request& requ
     part.attributes["goniochrome:aovLight"] = spelled(to_light);
     describe_view(options, frame.gbuffer->rays, scene.lights, part.attributes);
     part.attributes["goniochrome:operator"] = spelled(scene.reflection);
+    part.attributes["goniochrome:samples"] = request.samples;
     Json names = Json::array(), materials = Json::array();
     for (const MeshPart& mesh_part : scene.mesh->parts) {
       names.push_back(mesh_part.name);

@@ -16,8 +16,9 @@ cli::ToolSpec sketch_fit_spec(SketchFitOptions& o, cli::CommonOptions& common) {
       "equal angles are gathered, outliers among them put aside, and a curve is fitted to them for each channel: "
       "cosine "
       "lobes, or, where it explains the pixels better, the clamped quadratic whose travel is scanned. With --env, the "
-      "light is an environment: face, flop, travel and gloss are searched with the renderer's own equations on the "
-      "buffers, without drawing again, and with the effects that were drawn: Fresnel reflectance, the horizon "
+      "light is an environment: the lobes of any paint are found with the renderer's own equations on the "
+      "buffers, without drawing again, then face, flop, travel and gloss where they explain the picture as well, with "
+      "the effects that were drawn: Fresnel reflectance, the horizon "
       "and the operator of colored light. Brushed paint, travel of color maps and textures it does not know; it warns "
       "where "
       "the buffers have them.",
@@ -119,7 +120,7 @@ cli::ToolSpec sketch_fit_spec(SketchFitOptions& o, cli::CommonOptions& common) {
       {"status", "fitted, or diffuse_fallback"},
       {"reason", "of the fallback; else null"},
       {"mode", "point or environment"},
-      {"model", "lobes, quadratic, search, search with free rows, or diffuse"},
+      {"model", "lobes, quadratic, search, search with free rows, search with free lobes, or diffuse"},
       {"rms_de76", "root mean square CIE 1976 difference of the used pixels from the paint found, relative to white"},
       {"median_de76", "their median, which outliers do not move"},
       {"travel_deg", "travel of the paint found"},

@@ -191,7 +191,9 @@ std::string plan_text(const SketchFitOptions& options) {
             "curve: cosine lobes for flake and gloss light, or the clamped quadratic, whichever costs less; "
             "reweighted\n"
           : "light: the environment and the lamps of the buffers' header\n"
-            "search: face, flop, travel and gloss by damped least squares, from four starts or more; then three free rows\n";
+            "search: lobes of any weight and gloss; from there face, flop, travel and gloss, or else three rows, by "
+            "damped "
+            "least squares; the fewest numbers that explain the pixels as well\n";
   text += fmt::format("left out: edges, transparent and clipped pixels{}\n",
                       options.env.empty()
                           ? fmt::format(", light below 0.05, the {} deg about specular", shortest(options.glare_deg))
