@@ -7,8 +7,10 @@
 #include <random>
 
 #include "base/parallel.h"
+#include "brdf/lobe_angles.h"
 #include "brdf/lobe_model.h"
 #include "fit/basis_lm.h"
+#include "fit/paint_fit.h"
 #include "math/least_squares.h"
 
 namespace goniochrome {
@@ -230,6 +232,14 @@ std::vector<std::vector<double>> starting_points(const std::vector<double>& smal
   return starts;
 }
 
+// The sharpest lobe that some target sees. A sharper one, fitted, would have an absurd weight for what it gives the first
+// angle alone.
+double sharpest_seen(const std::vector<BasisTarget>& targets) {
+  double first_deg = 90;
+  for (const BasisTarget& target : targets) first_deg = std::min(first_deg, target.angles_deg.front());
+  return std::log(kSeenPart) / log_cosine(first_deg * (M_PI / 180));
+}
+
 }  // namespace
 
 double basis_error(const std::vector<double>& exponents, const BasisTarget& target) {
@@ -248,11 +258,12 @@ BasisError basis_error(const std::vector<double>& exponents, const std::vector<B
 
 BasisSearch search_basis(const std::vector<BasisTarget>& targets, const BasisSearchOptions& options) {
   BasisSearch search;
+  const double high = std::max(2 * options.low, std::min(options.high, sharpest_seen(targets)));
   const Deadline deadline(options.time_limit_s);
   std::vector<double> smaller;
   for (int m = options.first; m <= options.last; ++m) {
     const Stopwatch clock;
-    Problem problem{targets, std::log(options.low), std::log(options.high), deadline};
+    Problem problem{targets, std::log(options.low), std::log(high), deadline};
     std::vector<double> best;
     double best_value = std::numeric_limits<double>::infinity();
     const auto starts = starting_points(smaller, m, problem, options);

@@ -52,7 +52,8 @@ struct BasisSearchOptions {
   BasisMethod method = BasisMethod::kPowerMean;
   int first = 1, last = 11;      // numbers of lobes
   int starts = 6;                // for each number of lobes
-  // Domain of the exponents. Below 1 a lobe falls to 0 at 90 deg with infinite slope, which shows as an edge.
+  // Domain of the exponents, up to the sharpest lobe that the targets see. Below 1 a lobe falls to 0 at 90 deg with
+  // infinite slope, which shows as an edge.
   double low = 1, high = 2e4;
   std::uint64_t seed = 1;
   double time_limit_s = 0;  // for the whole search; 0 is none

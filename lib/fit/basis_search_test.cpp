@@ -92,6 +92,19 @@ TEST(BasisSearch, ErrorNeverRisesWithALobeAndDoesNotDependOnThreads) {
   }
 }
 
+// A lobe that is nothing from the second angle on meets the first one exactly, with a weight beyond all measure.
+TEST(BasisSearch, NoLobeIsSharperThanTheTargetsSee) {
+  const auto targets = planted({1.2, 5, 25}, 8, 0.05);
+  BasisSearchOptions options;
+  options.first = 4, options.last = 4, options.starts = 2;
+  const double first_rad = targets.front().angles_deg.front() * M_PI / 180;
+  for (const FoundBasis& set : search_basis(targets, options).sets)
+    EXPECT_GE(cos_power(first_rad, set.exponents.back()), 0.999e-3) << set.exponents.size();
+  // The control: such a lobe lowers the error.
+  const std::vector<double> three = {1.2, 5, 25};
+  EXPECT_LT(basis_error({1.2, 5, 25, 6000}, targets).mean, basis_error(three, targets).mean);
+}
+
 // The gradient leaves the inner optimum out (envelope theorem); central differences take it along.
 TEST(BasisSearch, GradientMatchesDifferences) {
   const auto targets = planted({2, 30}, 4, 0.1);
