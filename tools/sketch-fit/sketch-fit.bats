@@ -106,6 +106,41 @@ fit() { sketch-fit -q -o found.xml --report r.json "$@"; }
   done
 }
 
+# planted ENV PAINT: renders the measured paint under the environment as it is rendered by default, and finds it. What its
+# lobes show at 45 and 110 deg are its readings, to 0.01.
+planted() {
+  render-osmesa -q --mesh "$TESTDATA/speed-shape.obj" --env "$1" --size 240x150 --paint "measured.xml#$2" \
+    --aov normal,aspecular,lambert,mask,part -o planted.exr
+  sketch-fit -q -i planted.exr -b planted.exr --env "$1" -o found.xml --report r.json
+  [ "$(result status)" = fitted ]
+  colorsnap -q -m de00 -g 45as45,45as110 -k 59 -l measured.xml -f json found.xml |
+    jq -s "[.[0].matches[] | select(.name == \"$2\")][0].mean_de" >apart
+}
+
+@test "measured paints come back from a studio, from pictures of four samples a pixel" {
+  fit-paint -q --basis "$TESTDATA/b7.basis.xml" "$TESTDATA/paints.paints.xml" -o measured.xml
+  oiiotool "$TESTDATA/studio.exr" --resize:filter=box 128x64 -o small.exr
+  prefilter-envmap -q small.exr --basis "$TESTDATA/b7.basis.xml" -o small.env.exr
+  # Without the samples of a pixel, and by face, flop and travel alone, these are missed by 1 to 2.
+  for paint in champagne candy_red deep_blue_metallic; do
+    planted small.env.exr $paint
+    below "$(cat apart)" 0.3 || { echo $paint; return 1; }
+  done
+}
+
+@test "measured paints come back from real probes RealData" {
+  [ -n "$GONIOCHROME_DATA" ] || skip "GONIOCHROME_DATA is not set"
+  fit-paint -q --basis "$TESTDATA/b7.basis.xml" "$TESTDATA/paints.paints.xml" -o measured.xml
+  for probe in uffizi venice_sunset_1k; do
+    oiiotool "$GONIOCHROME_DATA/probes/$probe.hdr" --resize:filter=box 128x64 -o real.exr
+    prefilter-envmap -q real.exr --basis "$TESTDATA/b7.basis.xml" -o real.env.exr
+    for paint in champagne deep_blue_metallic; do
+      planted real.env.exr $paint
+      below "$(cat apart)" 0.5 || { echo $probe $paint; return 1; }
+    done
+  done
+}
+
 @test "an effect that the search does not know is told with its remedy" {
   oiiotool "$TESTDATA/studio.exr" --resize:filter=box 64x32 -o coarse.exr
   prefilter-envmap -q coarse.exr --exponents 4,16,64 -o coarse.env.exr
