@@ -4,7 +4,9 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <numeric>
 
+#include "base/parallel.h"
 #include "envmap/lobe_rows.h"
 #include "envmap/patch.h"
 
@@ -15,10 +17,14 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kBright = 50;  // times the mean
 
+float bright_limit(const Environment& env) {
+  const Vec3 flux = env.flux();
+  return static_cast<float>(kBright * std::max({flux.x, flux.y, flux.z}) / (4 * kPi));
+}
+
 // The radiance above which at most `most` texels lie, and no less than kBright means.
 float limit_of(const Environment& env, int most) {
-  const Vec3 flux = env.flux();
-  const float bright = static_cast<float>(kBright * std::max({flux.x, flux.y, flux.z}) / (4 * kPi));
+  const float bright = bright_limit(env);
   std::vector<float> above;
   for (int row = 0; row < env.height(); ++row)
     for (int column = 0; column < env.width(); ++column) {
@@ -41,6 +47,20 @@ Clip without_bright(const Environment& env, int most) {
 }
 
 }  // namespace
+
+std::size_t bright_count(const Environment& env) {
+  const float limit = bright_limit(env);
+  std::vector<std::size_t> rows(static_cast<std::size_t>(env.height()));
+  parallel_for(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row)
+      for (int column = 0; column < env.width(); ++column) {
+        const float* rgb = env.radiance(column, static_cast<int>(row));
+        rows[row] += std::max({rgb[0], rgb[1], rgb[2]}) > limit;
+      }
+  });
+  const std::size_t all = std::accumulate(rows.begin(), rows.end(), std::size_t{0});
+  return std::min(all, static_cast<std::size_t>(kMostBright));
+}
 
 BrightTexels::BrightTexels(const Environment& env, int most) : rest_(without_bright(env, most)) {
   gauss_.per_texel = 4;

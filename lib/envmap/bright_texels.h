@@ -8,6 +8,11 @@
 
 namespace goniochrome {
 
+constexpr int kMostBright = 1024;
+
+// How many texels outshine the mean 50 times, at most kMostBright.
+std::size_t bright_count(const Environment& env);
+
 // A map split in two: rest() leaves the mean of the others in the place of every bright texel, in its color, and the
 // bright texels are what exceeds that.
 class BrightTexels {

@@ -115,11 +115,6 @@ class Symmetric {
  public:
   Symmetric(const Environment& env, int n, std::vector<float>& values) : env_(env), n_(n), values_(values) {}
 
-  static bool serves(const Environment& env, const SphereGrid& grid, const Rotation& turn) {
-    return turn.is_identity() && grid.is_cube() && env.layout() == SphereGrid::Layout::kLatLong &&
-           env.width() % 4 == 0 && env.height() % 2 == 0 && grid.width() % 2 == 0;
-  }
-
   // The cell's overlaps go to its images: on the side faces for a cell of +X, on top and bottom for one of +Y.
   void spread_side(const std::vector<Share>& part, int column, int row) const {
     constexpr std::array<int, 4> kFaces = {0, 1, 4, 5};
@@ -176,10 +171,15 @@ void symmetric_overlaps(const Environment& env, const SphereGrid& grid, std::vec
 
 }  // namespace
 
+bool mirror_is_symmetric(const Environment& env, const SphereGrid& grid, const Rotation& turn) {
+  return turn.is_identity() && grid.is_cube() && env.layout() == SphereGrid::Layout::kLatLong && env.width() % 4 == 0 &&
+         env.height() % 2 == 0 && grid.width() % 2 == 0;
+}
+
 std::vector<float> mirror_values(const Environment& env, const SphereGrid& grid, const Rotation& turn) {
   using Layout = SphereGrid::Layout;
   std::vector<float> values(static_cast<std::size_t>(grid.width()) * grid.height() * 3);
-  if (Symmetric::serves(env, grid, turn))
+  if (mirror_is_symmetric(env, grid, turn))
     symmetric_overlaps(env, grid, values);
   else if (turn.is_identity() && grid.layout() == Layout::kLatLong && env.layout() == Layout::kLatLong)
     flat_overlaps(env, grid, values);

@@ -14,4 +14,7 @@ namespace goniochrome {
 // is kept. RGB, row by row.
 std::vector<float> mirror_values(const Environment& env, const SphereGrid& grid, const Rotation& turn);
 
+// Whether an eighth of the map serves all of it, by turns and mirrors: a cube from an even lat-long map, not turned.
+bool mirror_is_symmetric(const Environment& env, const SphereGrid& grid, const Rotation& turn);
+
 }  // namespace goniochrome

@@ -4,15 +4,18 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <numeric>
 #include <optional>
 
 #include "base/clock.h"
 #include "base/parallel.h"
+#include "envmap/arc_sums.h"
 #include "envmap/bright_texels.h"
 #include "envmap/harmonic_grid.h"
 #include "envmap/harmonics.h"
 #include "envmap/lobe_tree.h"
 #include "envmap/mirror.h"
+#include "envmap/prefilter_cost.h"
 
 namespace goniochrome {
 
@@ -20,16 +23,24 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kFloor = 1e-3;       // errors are relative to no less than this of the mean
-constexpr int kMostDegree = 640;      // of harmonics: beyond, their grids take more memory than they save time
+constexpr int kMostDegree = 1024;     // of harmonics: beyond, their grids take more than 400 MB
 constexpr int kWideDegree = 512;      // of the harmonics for lobes whose kernel bends at the horizon
 constexpr double kSharpestWide = 20;  // such lobes have exponents below this
-constexpr double kFlatTexel = 0.03;   // rad: larger texels are cut: t is not linear enough on them for BrightTexels
-constexpr int kMostBright = 1024;
-constexpr int kSketch = 12;  // texels along a face of the cube that finds the darkest texels
+constexpr double kArcs = 2e-5;        // tolerance below which so many degrees do not serve exponent 1
+constexpr double kArcsOfSteps = 5e-5;
+constexpr double kFlatLobes = 5e-4;  // tolerance above which they serve exponents between
+constexpr double kFlatTexel = 0.03;  // rad: larger texels are cut: t is not linear enough on them for BrightTexels
+constexpr int kSketch = 12;          // texels along a face of the cube that finds the darkest texels
 constexpr double kHalfError = 0x1p-11;
 constexpr double kCoherence = 1.0 / 16;  // see WideLobe
 
 using Method = LobePlan::Method;
+
+// Whether arc_sums() can stand in for harmonics: the step of exponent 0 leaves it an error of some 1e-5.
+bool arcs_serve(const Environment& env, double exponent, double tolerance) {
+  return env.layout() == Environment::Layout::kLatLong &&
+         (exponent == 1 || (exponent == 0 && tolerance > kArcsOfSteps));
+}
 
 // What the method may err by: the tolerance less what the file's rounding takes.
 double method_tolerance(double tolerance) {
@@ -51,39 +62,25 @@ int mirror_size(const Environment& env) {
   return std::clamp((env.width() + 3) / 4, 16, 2048);
 }
 
-double texel_count(SphereGrid::Layout layout, int n) {
-  const SphereGrid grid = map_grid(layout, n);
-  return static_cast<double>(grid.width()) * grid.height();
-}
-
-// Seconds on one core of 2020, measured: grids of (4 L)^2/2 by transforms, Legendre sums of L^3, taps at each texel.
-double harmonics_time_s(int degree, double texels) {
-  const double l = degree;
-  return 6e-7 * l * l + 1.5e-10 * l * l * l + 6e-8 * texels;
-}
-
-LobePlan lobe_plan(const PrefilterRequest& request, double exponent, int size) {
+LobePlan lobe_plan(const Environment& env, const PrefilterRequest& request, double exponent, int size) {
   LobePlan plan;
   plan.exponent = exponent;
   plan.size = size > 0 ? size : own_size(exponent, request.tolerance);
   plan.lookup_error = lookup_error(exponent, plan.size);
-  const double texels = texel_count(request.layout, plan.size), tolerance = method_tolerance(request.tolerance);
+  const double tolerance = method_tolerance(request.tolerance);
   // Half of the method's share goes to the degrees left out, relative to the floor.
   plan.degree = sufficient_degree(exponent, 0.5 * tolerance * kFloor, kMostDegree);
   plan.predicted_error = rounding_error(request.tolerance) + tolerance;
-  if (plan.degree >= 0) {
-    plan.method = Method::kHarmonics;
-    plan.predicted_time_s = harmonics_time_s(plan.degree, texels) / threads();
-  } else if (exponent >= 1 && exponent < kSharpestWide) {
+  const bool arcs = arcs_serve(env, exponent, tolerance);
+  if (plan.degree >= 0) return plan;
+  plan.degree = 0;
+  if (arcs && tolerance < kArcs) {
+    plan.method = Method::kArcs;
+  } else if ((exponent >= 1 || arcs || tolerance > kFlatLobes) && exponent < kSharpestWide) {
     plan.method = Method::kBrightHarmonics;
     plan.degree = kWideDegree;
-    plan.predicted_time_s = (harmonics_time_s(kWideDegree, texels) + 1e-6 * texels) / threads();
   } else {
     plan.method = Method::kBlocks;
-    plan.degree = 0;
-    // Sharp lobes see few texels; wide ones walk along the horizon.
-    const double seen = exponent > 100 ? 60 / exponent / 4e-5 : 3000;
-    plan.predicted_time_s = texels * (2e-5 + 1e-6 * seen) / threads();
   }
   return plan;
 }
@@ -132,8 +129,11 @@ class Workshop {
  public:
   Workshop(const Environment& env, const PrefilterRequest& request, const std::vector<LobePlan>& plan)
       : env_(env), turn_(request.turn), layout_(request.layout), flux_(env.flux()), largest_(largest_value(env)) {
-    for (const LobePlan& lobe : plan)
+    for (const LobePlan& lobe : plan) {
       if (lobe.method == Method::kHarmonics && lobe.degree > degree_) degree_ = lobe.degree, sharpest_ = lobe.exponent;
+      if (lobe.method == Method::kBrightHarmonics)
+        widest_ = std::min(widest_, lobe.exponent);  // its k_l are the largest
+    }
   }
 
   const Vec3& flux() const { return flux_; }
@@ -151,13 +151,18 @@ class Workshop {
     return *bright_;
   }
   const Harmonics& rest() {
-    // The cosine's k_l are the largest of those that come here.
-    if (!rest_) rest_.emplace(harmonics_of(fine(), zonal_multipliers(1, kWideDegree), bright().rest()));
+    if (!rest_) rest_.emplace(harmonics_of(fine(), zonal_multipliers(widest_, kWideDegree), bright().rest()));
     return *rest_;
   }
   const std::vector<Vec3>& rest_rms() {
     if (rest_rms_.empty()) rest_rms_ = residual_rms(fine(), bright().rest(), rest());
     return rest_rms_;
+  }
+  // The environment, its texels cut where they are large.
+  const Environment& fine() {
+    if (env_.largest_texel_rad() <= kFlatTexel) return env_;
+    if (!fine_) fine_.emplace(env_.cut_to(kFlatTexel));
+    return *fine_;
   }
   const Environment& environment() const { return env_; }
   SphereGrid grid(int size) const { return map_grid(layout_, size); }
@@ -169,13 +174,6 @@ class Workshop {
   const Rotation& turn() const { return turn_; }
 
  private:
-  // The environment, its texels cut where they are large.
-  const Environment& fine() {
-    if (env_.largest_texel_rad() <= kFlatTexel) return env_;
-    if (!fine_) fine_.emplace(env_.cut_to(kFlatTexel));
-    return *fine_;
-  }
-
   const Environment& env_;
   std::optional<Environment> fine_;
   Rotation turn_;
@@ -183,7 +181,7 @@ class Workshop {
   Vec3 flux_;
   float largest_;
   int degree_ = -1, angles_size_ = 0;
-  double sharpest_ = 0;
+  double sharpest_ = 0, widest_ = kSharpestWide;
   std::optional<Harmonics> harmonics_, rest_;
   std::vector<Vec3> rest_rms_;
   std::optional<LobeTree> tree_;
@@ -234,6 +232,14 @@ class WideLobe {
       : plan_(plan), tolerance_(tolerance), shop_(shop), mean_((1 / (4 * kPi)) * shop.flux()) {}
 
   std::vector<float> values() {
+    if (plan_.method == Method::kArcs) {
+      const SphereGrid grid = shop_.grid(plan_.size);
+      std::vector<std::size_t> all(static_cast<std::size_t>(grid.width()) * static_cast<std::size_t>(grid.height()));
+      std::iota(all.begin(), all.end(), std::size_t{0});
+      std::vector<float> texels(3 * all.size());
+      one_by_one(all, texels);
+      return texels;
+    }
     const SphereGrid coarse(SphereGrid::Layout::kCube, kSketch, 6 * kSketch);
     const std::vector<float> sketch = sum(32, coarse, GridAngles(coarse, shop_.turn()));
     Vec3 darkest = {1e300, 1e300, 1e300};
@@ -274,16 +280,31 @@ class WideLobe {
     return texels;
   }
 
+  // The texels that the bound does not serve, once more.
   void patch_up(std::vector<float>& texels, const Vec3& bound) {
-    const auto unfit = [&](const float* rgb) { return !fits({rgb[0], rgb[1], rgb[2]}, bound); };
-    bool any = false;
-    for (std::size_t i = 0; i < texels.size() && !any; i += 3) any = unfit(&texels[i]);
-    if (!any) return;
-    const LobeTree& tree = shop_.tree();
-    for_each_texel(shop_.grid(plan_.size), shop_.turn(), texels, [&](const Vec3& d, float* rgb) {
-      if (!unfit(rgb)) return;
-      const Vec3 value = tree.lobe(d, plan_.exponent, tolerance_);
-      for (int c = 0; c < 3; ++c) rgb[c] = static_cast<float>(value[c]);
+    std::vector<std::size_t> unfit;
+    for (std::size_t i = 0; i < texels.size() / 3; ++i)
+      if (!fits({texels[3 * i], texels[3 * i + 1], texels[3 * i + 2]}, bound)) unfit.push_back(i);
+    if (!unfit.empty()) one_by_one(unfit, texels);
+  }
+
+  void one_by_one(const std::vector<std::size_t>& chosen, std::vector<float>& texels) {
+    const SphereGrid grid = shop_.grid(plan_.size);
+    const std::size_t width = static_cast<std::size_t>(grid.width());
+    std::vector<Vec3> directions;
+    for (const std::size_t i : chosen)
+      directions.push_back(
+          shop_.turn().to_environment(grid.direction(static_cast<int>(i % width), static_cast<int>(i / width))));
+    const bool by_arcs = arcs_serve(shop_.environment(), plan_.exponent, tolerance_);
+    const LobeTree* tree = by_arcs ? nullptr : &shop_.tree();
+    std::vector<Vec3> values(chosen.size());
+    if (by_arcs) values = arc_sums(shop_.fine(), shop_.bright().rest(), plan_.exponent, directions, tolerance_);
+    parallel_for(chosen.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        values[i] += tree ? tree->lobe(directions[i], plan_.exponent, tolerance_)
+                          : shop_.bright().lobe(directions[i], plan_.exponent);
+        for (int c = 0; c < 3; ++c) texels[3 * chosen[i] + c] = static_cast<float>(std::max(0.0, values[i][c]));
+      }
     });
   }
 
@@ -301,6 +322,7 @@ std::vector<float> lobe_by_plan(const LobePlan& plan, double tolerance, Workshop
       return lobe_values(shop.harmonics(), zonal_multipliers(plan.exponent, plan.degree), shop.angles(plan.size),
                          taps(shop.flux(), shop.largest(), plan.exponent, tolerance));
     case Method::kBrightHarmonics:
+    case Method::kArcs:
       return WideLobe(plan, tolerance, shop).values();
     case Method::kBlocks:
       break;
@@ -323,6 +345,8 @@ const char* method_name(Method method) {
       return "harmonics";
     case Method::kBrightHarmonics:
       return "harmonics+bright";
+    case Method::kArcs:
+      return "arcs+bright";
     case Method::kBlocks:
       return "blocks";
     case Method::kMirror:
@@ -341,17 +365,19 @@ int own_size(double exponent, double tolerance) {
 
 std::vector<LobePlan> prefilter_plan(const Environment& env, const PrefilterRequest& request) {
   std::vector<LobePlan> plan;
-  if (request.diffuse) plan.push_back(lobe_plan(request, 1, request.size));
+  if (request.diffuse) plan.push_back(lobe_plan(env, request, 1, request.size));
   for (std::size_t i = 0; i < request.exponents.size(); ++i)
-    plan.push_back(lobe_plan(request, request.exponents[i], request.sizes.empty() ? request.size : request.sizes[i]));
-  if (!request.mirror) return plan;
-  LobePlan mirror;
-  mirror.exponent = kMirrorExponent;
-  mirror.method = Method::kMirror;
-  mirror.size = request.size > 0 ? request.size : mirror_size(env);
-  mirror.predicted_error = rounding_error(request.tolerance);
-  mirror.predicted_time_s = texel_count(request.layout, mirror.size) * 2e-6 / threads();
-  plan.push_back(mirror);
+    plan.push_back(
+        lobe_plan(env, request, request.exponents[i], request.sizes.empty() ? request.size : request.sizes[i]));
+  if (request.mirror) {
+    LobePlan mirror;
+    mirror.exponent = kMirrorExponent;
+    mirror.method = Method::kMirror;
+    mirror.size = request.size > 0 ? request.size : mirror_size(env);
+    mirror.predicted_error = rounding_error(request.tolerance);
+    plan.push_back(mirror);
+  }
+  predict_times(env, request, plan);
   return plan;
 }
 

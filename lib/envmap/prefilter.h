@@ -29,6 +29,7 @@ struct LobePlan {
   enum class Method {
     kHarmonics,        // zonal harmonics with a bound on what is left out
     kBrightHarmonics,  // the same for the rest after the brightest texels; texels beyond the bound by blocks
+    kArcs,             // exponents 0 and 1 of the rest by sums along rows, and the brightest texels
     kBlocks,           // the tree of texel blocks
     kMirror,           // exact overlaps
   };

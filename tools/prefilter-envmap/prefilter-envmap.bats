@@ -123,6 +123,21 @@ within() { awk -v limit="$1" '$1 > limit { bad = 1 } { n++ } END { exit bad || !
   [ ! -e y.env.exr ]
 }
 
+@test "a probe of 32 x 16 with a lamp keeps the tolerance" {
+  {
+    printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 16 +X 32\n'
+    for i in $(seq 512); do
+      if [ "$i" -eq 150 ]; then printf '\xff\xf0\xe0\x89'; else printf "\\x80\\x$(printf %x $((i * 37 % 128)))\\x60\\x80"; fi
+    done
+  } >coarse.hdr
+  prefilter-envmap -q -e 6 --size 4 --tolerance 1e-4 --verify 2 coarse.hdr -o x.env.exr --report r.json
+  values max_rel_error | within 1e-4
+  values method | grep -qx 'harmonics+bright'
+  prefilter-envmap -q -e 70 --no-mirror --size 4 --tolerance 1e-6 --verify 2 coarse.hdr -o x.env.exr --report r.json
+  values max_rel_error | within 1e-6
+  values method | grep -qx 'arcs+bright'
+}
+
 @test "a killed run leaves the old file" {
   echo old >out.env.exr
   timeout -s KILL 0.3 prefilter-envmap -q -e 0.3 --size 512 "$sky" -o out.env.exr || true
