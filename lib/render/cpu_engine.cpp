@@ -25,10 +25,9 @@ void put_forms(const ProductForms& forms, const float* rgb, float* to) {
   for (int form = 0; form < forms.count; ++form) to[form] = static_cast<float>(forms.of(form, color));
 }
 
-std::vector<float> interleaved(const std::vector<CubeMap>& maps, const ProductForms& forms) {
+std::vector<float> interleaved(const std::vector<CubeMap>& maps, const ProductForms& forms, std::size_t stride) {
   const std::size_t wide = static_cast<std::size_t>(maps.front().size) + 2, texels = wide * wide;
-  const std::size_t stride = blocks_of(maps.size(), forms) * kBlock;
-  std::vector<float> data(6 * texels * stride, 0.0F);
+  std::vector<float> data(6 * texels * stride + kBlock, 0.0F);  // the last texel is read by the block
   parallel_for(6 * maps.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t job = begin; job < end; ++job) {
       const std::size_t face = job / maps.size(), map = job % maps.size();
@@ -78,12 +77,22 @@ class Batch {
 
 }  // namespace
 
+InterleavedMaps CpuEngine::Stack::maps() const {
+  return {shape.size, blocks, texel_floats, texels.data()};
+}
+
+CpuEngine::Stack CpuEngine::interleaved(const MapClass& maps, MapUse use, const ProductForms& forms) {
+  const std::size_t blocks = blocks_of(maps.maps.size(), forms);
+  const std::size_t stride = maps.maps.size() == 1 ? floats_of(forms) : blocks * kBlock;
+  return {{maps.size, maps.slots, {}, maps.shifted},
+          use,
+          static_cast<int>(blocks),
+          static_cast<int>(stride),
+          goniochrome::interleaved(maps.maps, forms, stride)};
+}
+
 void CpuEngine::interleave(const MapClass& maps, MapUse use) {
-  if (maps.size == 0) return;
-  stacks_.push_back({{maps.size, maps.slots, {}, maps.shifted},
-                     use,
-                     static_cast<int>(blocks_of(maps.slots.size(), forms_)),
-                     interleaved(maps.maps, forms_)});
+  if (maps.size > 0) stacks_.push_back(interleaved(maps, use, forms_));
 }
 
 Result<void> CpuEngine::load(const Scene& scene, const Effects& effects, const SceneMaps& maps) {
@@ -94,7 +103,7 @@ Result<void> CpuEngine::load(const Scene& scene, const Effects& effects, const S
   for (const MapClass& lobes : maps.lobes) interleave(lobes, MapUse::kTilted);
   if (effects.mirror) interleave(maps.mirror, MapUse::kMirror);
   if (effects.background == Background::kEnvironment) {
-    background_map_ = {{maps.mirror.size, {}, {}}, MapUse::kMirror, 1, interleaved(maps.mirror.maps, {})};
+    background_map_ = interleaved(maps.mirror, MapUse::kMirror, {});
   }
   int tilted_blocks = 0;
   for (const Stack& stack : stacks_) tilted_blocks += stack.use == MapUse::kTilted ? stack.blocks : 0;
@@ -106,7 +115,7 @@ Result<void> CpuEngine::load(const Scene& scene, const Effects& effects, const S
   for (const Stack& stack : stacks_) {
     shading_.use[shading_.classes] = stack.use;
     shading_.shifted[shading_.classes] = stack.shape.shifted;
-    shading_.maps[shading_.classes++] = {stack.shape.size, stack.blocks, stack.texels.data()};
+    shading_.maps[shading_.classes++] = stack.maps();
   }
   colors_of_forms_.assign(4 * kBlock, 0.0F);
   for (std::size_t form = 0; form < static_cast<std::size_t>(forms_.count); ++form) {
@@ -201,7 +210,7 @@ void CpuEngine::shade_row(const Gbuffer& gbuffer, int y, float gain, bool add, f
     pixel[3] = gain * alpha + (add ? pixel[3] : 0);
   };
   Batch seen(shading_), missed(shading_);
-  const InterleavedMaps sky{background_map_.shape.size, 1, background_map_.texels.data()};
+  const InterleavedMaps sky = background_map_.maps();
   const auto flush = [&](Batch& batch) {
     if (batch.count() == 0) return;
     if (&batch == &seen) {

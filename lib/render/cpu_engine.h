@@ -33,9 +33,11 @@ class CpuEngine {
   struct Stack {
     MapClass shape;  // without its maps
     MapUse use = MapUse::kMirror;
-    int blocks = 0;
+    InterleavedMaps maps() const;
+    int blocks = 0, texel_floats = 0;
     std::vector<float> texels;
   };
+  static Stack interleaved(const MapClass& maps, MapUse use, const ProductForms& forms);
   void interleave(const MapClass& maps, MapUse use);
   void set_lights(const Scene& scene, const Effects& effects);
   void set_tilts(const Scene& scene, const Effects& effects);

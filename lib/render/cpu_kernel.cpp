@@ -1,5 +1,7 @@
 #include "render/cpu_kernel.h"
 
+#include <algorithm>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/cpu_kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -29,7 +31,7 @@ struct Corners {
 
 // The four corners of point i, their shares times `scale`.
 HWY_INLINE Corners corners_of(const InterleavedMaps& maps, const Taps& taps, int i, float scale = 1) {
-  const std::size_t texel = static_cast<std::size_t>(maps.blocks) * 8;
+  const std::size_t texel = static_cast<std::size_t>(maps.texel_floats);
   const float* upper = maps.texels + static_cast<std::size_t>(taps.offset[i]) * texel;
   const float u = taps.across[i], lower = scale * taps.down[i], upper_share = scale - lower;
   return {upper,
@@ -112,13 +114,6 @@ struct Shifts {
     return {hn::MulAdd(by, n.x, r.x), hn::MulAdd(by, n.y, r.y), hn::MulAdd(by, n.z, r.z)};
   }
 };
-
-// The two halves of a block together: the sum of its maps.
-HWY_INLINE void store_sum(const Block& sum, float* rgba) {
-  float lanes[8];
-  sum.store(lanes);
-  for (int c = 0; c < 4; ++c) rgba[c] = lanes[c] + lanes[4 + c];
-}
 
 // The color that the forms' products stand for.
 HWY_INLINE void store_color(const CpuShading& s, const Block& products, float* rgba) {
@@ -339,7 +334,11 @@ void LookUpBackground(const InterleavedMaps& map, PointArrays& points, int count
     const Direction v = viewer_of(points, i);
     address({hn::Neg(v.x), hn::Neg(v.y), hn::Neg(v.z)}, map.size, i, taps);
   }
-  for (int i = 0; i < count; ++i) store_sum(add_between(corners_of(map, taps, i), 0, filled(0)), rgba + 4 * i);
+  for (int i = 0; i < count; ++i) {
+    float lanes[8];
+    add_between(corners_of(map, taps, i), 0, filled(0)).store(lanes);
+    std::copy_n(lanes, 4, rgba + 4 * i);
+  }
 }
 
 }  // namespace HWY_NAMESPACE
