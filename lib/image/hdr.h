@@ -1,4 +1,4 @@
-// Shared by the readers of this module alone.
+// Shared by the readers of this module and their tests.
 #pragma once
 
 #include <optional>

@@ -9,6 +9,8 @@
 
 namespace {
 
+constexpr OIIO::imagesize_t kMostSamples = OIIO::imagesize_t{1} << 31;  // floats of 8 GB
+
 std::string text_attribute(const OIIO::ImageSpec& spec, const char* name) {
   return std::string(spec.get_string_attribute(name));
 }
@@ -25,7 +27,10 @@ void read(const char* path, void* context, GoniochromeOiioTake take, Goniochrome
   if (!input) return fail(context, OIIO::geterror().c_str());
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.depth > 1 || spec.deep) return fail(context, "volumes and deep images are not read");
-  std::vector<float> pixels(static_cast<std::size_t>(spec.image_pixels()) * spec.nchannels);
+  const OIIO::imagesize_t samples = spec.image_pixels() * static_cast<OIIO::imagesize_t>(spec.nchannels);
+  if (spec.image_pixels() > kMostSamples || samples > kMostSamples)
+    return fail(context, "its header says more pixels than fit into 8 GB: is it damaged?");
+  std::vector<float> pixels(samples);
   if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data()))
     return fail(context, input->geterror().c_str());
 
@@ -38,20 +43,19 @@ void read(const char* path, void* context, GoniochromeOiioTake take, Goniochrome
       spec.find_attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8));
   const OIIO::ParamValue* icc = spec.find_attribute("ICCProfile");
   const std::string stored_space = text_attribute(spec, "jpeg:ColorSpace");
-  const GoniochromeOiioImage image = {
-      spec.width,
-      spec.height,
-      spec.nchannels,
-      pixels.data(),
-      names.data(),
-      color_space.c_str(),
-      interop_id.c_str(),
-      envmap.c_str(),
-      chromaticities ? static_cast<const float*>(chromaticities->data()) : nullptr,
-      icc ? static_cast<const char*>(icc->data()) : nullptr,
-      icc ? static_cast<unsigned long>(icc->datasize()) : 0,
-      stored_space.c_str(),
-      spec.format.is_floating_point() ? 0 : 1};
+  const GoniochromeOiioImage image = {spec.width,
+                                      spec.height,
+                                      spec.nchannels,
+                                      pixels.data(),
+                                      names.data(),
+                                      color_space.c_str(),
+                                      interop_id.c_str(),
+                                      envmap.c_str(),
+                                      chromaticities ? static_cast<const float*>(chromaticities->data()) : nullptr,
+                                      icc ? static_cast<const char*>(icc->data()) : nullptr,
+                                      icc ? static_cast<unsigned long>(icc->datasize()) : 0,
+                                      stored_space.c_str(),
+                                      spec.format.is_floating_point() ? 0 : 1};
   take(context, &image);
 }
 
