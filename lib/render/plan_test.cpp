@@ -162,15 +162,20 @@ TEST(Plan, BudgetKeepsWhatIsWorthMost) {
   PlanRequest request;
   request.effects = "all";
   request.engine = Engine::kCpu;
-  request.budget_ms = 0.6 * free.cpu_ms;
-  const Plan tight = planned(world, request).plan;
-  double lost = 1e9, kept = 0;
-  for (const PlanItem& i : tight.items) {
-    if (i.decision == "over budget") lost = std::min(lost, i.de00_p95);
-    if (i.on) kept = std::max(kept, i.de00_p95);
+  // Every plan measures the speed of the machine anew, and a busy one changes: several budgets, one of which bites.
+  int cut = 0;
+  for (const double share : {0.8, 0.6, 0.4, 0.2}) {
+    request.budget_ms = share * free.cpu_ms;
+    double lost = 1e9, kept = 0;
+    for (const PlanItem& i : planned(world, request).plan.items) {
+      if (i.decision == "over budget") lost = std::min(lost, i.de00_p95);
+      if (i.on) kept = std::max(kept, i.de00_p95);
+    }
+    if (lost == 1e9 || kept == 0) continue;
+    ++cut;
+    EXPECT_GT(kept, lost) << share;
   }
-  EXPECT_LT(lost, 1e9) << "something had to go";
-  EXPECT_GT(kept, lost);
+  EXPECT_GT(cut, 0) << "something had to go";
   request.budget_ms = 1e-9;
   for (const PlanItem& i : planned(world, request).plan.items) EXPECT_FALSE(i.on && i.cost_ms > 0) << i.effect;
 }
