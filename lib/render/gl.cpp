@@ -55,13 +55,9 @@ void destroy(void* context) {
 
 GlContext::GlContext(void* context) : context_(context, destroy) {}
 
-// It is read once, when the first context of the process is made.
-void GlContext::set_threads() {
-  setenv("LP_NUM_THREADS", std::to_string(threads()).c_str(), 0);
-}
-
 Result<GlContext> GlContext::create() {
-  set_threads();
+  // Read once, when the first context of the process is made.
+  setenv("LP_NUM_THREADS", std::to_string(threads()).c_str(), 0);
   const int wanted[] = {OSMESA_FORMAT,
                         OSMESA_RGBA,
                         OSMESA_DEPTH_BITS,

@@ -74,8 +74,6 @@ class GlContext {
  public:
   // Error: OSMesa cannot make one, or lacks a function.
   static Result<GlContext> create();
-  // Tells llvmpipe, in the environment, how many threads there are.
-  static void set_threads();
 
   void make_current() const;
 

@@ -167,10 +167,6 @@ Result<Renderer> Renderer::create() {
   return Renderer(std::move(state));
 }
 
-void Renderer::set_threads() {
-  GlContext::set_threads();
-}
-
 Renderer Renderer::shading(std::shared_ptr<const Gbuffer> gbuffer) {
   auto state = std::make_unique<State>();
   state->given = std::move(gbuffer);

@@ -36,9 +36,6 @@ class Renderer {
  public:
   // Error: no OpenGL on this machine.
   static Result<Renderer> create();
-  // To be called first where other threads run while a renderer is created: the one thing that it changes in the
-  // process's environment.
-  static void set_threads();
   // Shades one G-buffer, again and again, without mesh and OpenGL. It is what every view shows, whose camera is not
   // meant; of the scene's mesh only the parts are. Error of the others: the engine gl, or more than one sample.
   static Renderer shading(std::shared_ptr<const Gbuffer> gbuffer);

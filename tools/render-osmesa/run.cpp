@@ -4,9 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <future>
 
-#include "base/parallel.h"
 #include "base/text.h"
 #include "envmap/environment.h"
 #include "mesh/mesh.h"
@@ -309,23 +307,9 @@ Result<void> set_gbuffer(const RenderOptions& options, Stage& stage) {
   return {};
 }
 
-// The files that take longest are read while OpenGL starts.
-struct Reading {
-  std::future<Result<Mesh>> mesh;
-  std::future<Result<PrefilteredEnvironment>> env;
-
-  explicit Reading(const RenderOptions& options) {
-    Renderer::set_threads();
-    const auto when = threads() > 1 ? std::launch::async : std::launch::deferred;
-    if (options.gbuffer.empty()) mesh = std::async(when, read_mesh, options.mesh);
-    if (!options.env.empty()) env = std::async(when, [path = options.env] { return read_env(path); });
-  }
-};
-
-Result<void> set_stage(const RenderOptions& options, const Request& request, Reading& reading, Stage& stage,
-                       cli::Session& session) {
+Result<void> set_stage(const RenderOptions& options, const Request& request, Stage& stage, cli::Session& session) {
   if (options.gbuffer.empty()) {
-    GONIO_ASSIGN(stage.mesh, reading.mesh.get());
+    GONIO_ASSIGN(stage.mesh, read_mesh(options.mesh));
     tell_repairs(stage.mesh, session);
   } else {
     GONIO_TRY(set_gbuffer(options, stage));
@@ -337,7 +321,7 @@ Result<void> set_stage(const RenderOptions& options, const Request& request, Rea
   scene.lights = request.lights;
   scene.reflection = request.reflection;
   if (!options.env.empty()) {
-    GONIO_ASSIGN(stage.env, reading.env.get());
+    GONIO_ASSIGN(stage.env, read_env(options.env));
     scene.env = &stage.env;
     if (options.texture_maps == "mip") {
       GONIO_ASSIGN(stage.mip, mip_cube(stage.env));
@@ -365,7 +349,7 @@ class Shooting {
   Shooting(const RenderOptions& options, Request request, Stage& stage, cli::Session& session)
       : options_(options), request_(std::move(request)), stage_(stage), session_(session) {}
 
-  Result<void> shoot(Renderer& renderer, const std::optional<Display>& display);
+  Result<void> shoot(const std::optional<Display>& display);
 
  private:
   View view(const Shot& shot, int shrink) const {
@@ -452,8 +436,9 @@ Result<void> Shooting::write(const Shot& shot, const std::optional<Display>& dis
   return write_png(shot.output, shown, provenance(session_));
 }
 
-Result<void> Shooting::shoot(Renderer& renderer, const std::optional<Display>& display) {
+Result<void> Shooting::shoot(const std::optional<Display>& display) {
   GONIO_ASSIGN(shots_, shots_of(options_, stage_.mesh, request_.size, request_.lights));
+  GONIO_ASSIGN(Renderer renderer, stage_.gbuffer ? Renderer::shading(stage_.gbuffer) : Renderer::create());
   GONIO_TRY(look(renderer));
   tell_visibility(*looks_.front(), session_);
   white_ = diffuse_white(stage_.scene.env, stage_.scene.lights);
@@ -502,14 +487,10 @@ Result<cli::Verdict> run(const RenderOptions& options, cli::Session& session) {
     display.emplace(std::move(made));
     session.results()["view"] = display->name();
   }
-  Reading reading(options);
-  std::optional<Result<Renderer>> opengl;
-  if (options.gbuffer.empty()) opengl.emplace(Renderer::create());
   Stage stage;
-  GONIO_TRY(set_stage(options, request, reading, stage, session));
+  GONIO_TRY(set_stage(options, request, stage, session));
   if (stage.gbuffer) request.size = {stage.gbuffer->width, stage.gbuffer->height};
-  GONIO_ASSIGN(Renderer renderer, opengl ? *std::move(opengl) : Renderer::shading(stage.gbuffer));
-  GONIO_TRY(Shooting(options, std::move(request), stage, session).shoot(renderer, display));
+  GONIO_TRY(Shooting(options, std::move(request), stage, session).shoot(display));
   return cli::Verdict::kDone;
 }
 
