@@ -27,9 +27,9 @@ struct Harmonics {
   }
 };
 
-// The coefficients of an environment's constant patches, of what `clip` leaves of them, up to degree k.size() - 1: exact for a lat-long map; for a cube
-// exact to 1e-7 once degree l is multiplied by k[l], the largest multiplier that it will meet. Azimuth runs with the
-// columns of a lat-long map: x = sin t sin p, y = cos t, z = -sin t cos p.
+// The coefficients of an environment's constant patches, of what `clip` leaves of them, up to degree k.size() - 1:
+// exact for a lat-long map; for a cube exact to 1e-7 once degree l is multiplied by k[l], the largest multiplier that
+// it will meet. Azimuth runs with the columns of a lat-long map: x = sin t sin p, y = cos t, z = -sin t cos p.
 Harmonics harmonics_of(const Environment& env, const std::vector<double>& k, const Clip& clip = {});
 
 // k_l, l = 0..degree: what convolution with (E+1)/(2 pi) max(0, cos)^E multiplies degree l by.

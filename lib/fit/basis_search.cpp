@@ -232,8 +232,8 @@ std::vector<std::vector<double>> starting_points(const std::vector<double>& smal
   return starts;
 }
 
-// The sharpest lobe that some target sees. A sharper one, fitted, would have an absurd weight for what it gives the first
-// angle alone.
+// The sharpest lobe that some target sees. A sharper one, fitted, would have an absurd weight for what it gives the
+// first angle alone.
 double sharpest_seen(const std::vector<BasisTarget>& targets) {
   double first_deg = 90;
   for (const BasisTarget& target : targets) first_deg = std::min(first_deg, target.angles_deg.front());

@@ -79,8 +79,8 @@ struct Weighing {
 
   double square(std::size_t i, int c) const { return count[i] * agreement[i] * lightness[i][c] * lightness[i][c]; }
 
-  // Residuals of light(i) in L*, from which the weights of the next round follow: those of least absolute deviations first, then
-  // Cauchy's. Returns the cost, sum of count log(1 + (r/s)^2) with s fixed, over the sum of counts.
+  // Residuals of light(i) in L*, from which the weights of the next round follow: those of least absolute deviations
+  // first, then Cauchy's. Returns the cost, sum of count log(1 + (r/s)^2) with s fixed, over the sum of counts.
   template <class Light>
   double reweigh(const std::vector<SketchCell>& cells, Light&& light, bool absolute) {
     std::vector<double> residual(cells.size()), sorted;

@@ -44,8 +44,9 @@ Result<std::vector<ImagePart>> read_exr(const std::string& path);
 // a value that a half cannot hold makes its part float. NaN and Inf are refused. Unnamed parts are named by number.
 Result<void> write_exr(const std::string& path, const std::vector<ImagePart>& parts);
 
-// An image of any format (EXR and Radiance HDR here, others through OpenImageIO), first part, as stored ("-" is standard input);
-// `attributes` has `oiio:ColorSpace`, `chromaticities`, `colorInteropID`, `ICCProfile`, `jpeg:ColorSpace`, `envmap`
+// An image of any format (EXR and Radiance HDR here, others through OpenImageIO), first part, as stored ("-" is
+// standard input); `attributes` has `oiio:ColorSpace`, `chromaticities`, `colorInteropID`, `ICCProfile`,
+// `jpeg:ColorSpace`, `envmap`
 // ("latlong" or "cube"), as the file has them, and `goniochrome:integer`: 1 where it held whole numbers, now 0..1.
 Result<ImagePart> read_image(const std::string& path);
 

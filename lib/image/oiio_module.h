@@ -14,8 +14,8 @@ struct GoniochromeOiioImage {
   const float* chromaticities;       // 8 values, or null
   const char* icc_profile;           // the bytes of an embedded ICC profile, or null
   unsigned long icc_size;
-  const char* stored_space;          // what a JPEG was stored in, as in "CMYK", or ""
-  int is_integer;                    // whether the file holds whole numbers, which 0..1 stand for here
+  const char* stored_space;  // what a JPEG was stored in, as in "CMYK", or ""
+  int is_integer;            // whether the file holds whole numbers, which 0..1 stand for here
 };
 
 // Decodes `path` and calls take(context, image) once, or fail(context, reason) once.

@@ -28,11 +28,8 @@ namespace goniochrome {
 
 namespace {
 
-// Of one part; a forged header must not ask for more, nor for more than the bytes of its file can stand for.
-constexpr std::size_t kMostSamples = std::size_t{1} << 31;
-
-// The most samples that a byte can stand for. Deflate makes 1032 bytes of one; of the others, one color all over packs
-// best: 8192 x 4096 halves take 31 (RLE), 145 (PIZ), 5 (B44A) and 7068 (DWAB) samples to a byte.
+// The most samples that a byte of a file can stand for. Deflate makes 1032 bytes of one; of the others, one color all
+// over packs best: 8192 x 4096 halves take 31 (RLE), 145 (PIZ), 5 (B44A) and 7068 (DWAB) samples to a byte.
 std::size_t most_samples_a_byte(Imf::Compression compression) {
   switch (compression) {
     case Imf::NO_COMPRESSION:

@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "base/text.h"
+#include "image/exr.h"
 #include "image/hdr.h"
 
 // After lines of text, ended by an empty one and "-Y height +X width", come rows of pixels: three mantissas and an
@@ -19,7 +20,6 @@ namespace goniochrome {
 
 namespace {
 
-constexpr std::size_t kMostSamples = std::size_t{1} << 31;
 constexpr std::size_t kMostRun = 127, kLeastRow = 8, kMostRow = 32767;
 
 struct Header {

@@ -114,7 +114,8 @@ Plot parts_plot(const LobeFit& fit) {
     }
     plot.series.push_back(line);
   };
-  add("diffuse", [&](double) { return M_PI * luminance(fit.diffuse); }, Series::Style::kLine);
+  add(
+      "diffuse", [&](double) { return M_PI * luminance(fit.diffuse); }, Series::Style::kLine);
   for (const Lobe& lobe : fit.lobes) {
     if (std::isinf(lobe.exponent)) continue;
     const auto curve_of = [&](const Rgb& weight) {
@@ -122,7 +123,8 @@ Plot parts_plot(const LobeFit& fit) {
     };
     if (lobe.directional_diffuse != Rgb{})
       add(fmt::format("E {:.3g}", lobe.exponent), curve_of(lobe.directional_diffuse), Series::Style::kLine);
-    if (lobe.gloss != Rgb{}) add(fmt::format("gloss {:.3g}", lobe.exponent), curve_of(lobe.gloss), Series::Style::kDashed);
+    if (lobe.gloss != Rgb{})
+      add(fmt::format("gloss {:.3g}", lobe.exponent), curve_of(lobe.gloss), Series::Style::kDashed);
   }
   plot.y.high = 2 * std::max(highest, 1e-6), plot.y.low = 1e-4 * *plot.y.high;
   return plot;
@@ -158,13 +160,11 @@ Drawing polar_plot(const Subject& s) {
 
 // What the numbers say.
 Drawing facts(const Subject& s) {
-  std::vector<std::string> lines = {fmt::format("basis {}, method {}", s.lobes->basis, s.lobes->method),
-                                    fmt::format("dE00 at the readings: mean {:.2f}, largest {:.2f}",
-                                                s.lobes->mean_de00, s.lobes->max_de00),
-                                    fmt::format("{} lobes{}", s.lobes->lobes.size(),
-                                                s.lobes->views.empty()
-                                                    ? ""
-                                                    : fmt::format(", {} views", s.lobes->views.size()))};
+  std::vector<std::string> lines = {
+      fmt::format("basis {}, method {}", s.lobes->basis, s.lobes->method),
+      fmt::format("dE00 at the readings: mean {:.2f}, largest {:.2f}", s.lobes->mean_de00, s.lobes->max_de00),
+      fmt::format("{} lobes{}", s.lobes->lobes.size(),
+                  s.lobes->views.empty() ? "" : fmt::format(", {} views", s.lobes->views.size()))};
   for (const Lobe& lobe : s.lobes->lobes) {
     if (lines.size() > 13) break;
     const std::string name = std::isinf(lobe.exponent) ? "mirror" : fmt::format("E {:.4g}", lobe.exponent);
@@ -209,9 +209,11 @@ class Slices {
   std::vector<Drawing> drawings(int width, int height) const {
     std::vector<Drawing> both;
     if (has_target())
-      both.push_back(square(s_.input.brdf ? "measured" : "curve", [this](const Vec3& v) { return target(v); }, width,
-                            height));
-    if (s_.lobes) both.push_back(square("fit", [this](const Vec3& v) { return fit(v); }, width, height));
+      both.push_back(square(
+          s_.input.brdf ? "measured" : "curve", [this](const Vec3& v) { return target(v); }, width, height));
+    if (s_.lobes)
+      both.push_back(square(
+          "fit", [this](const Vec3& v) { return fit(v); }, width, height));
     return both;
   }
 
@@ -287,13 +289,12 @@ Drawing squares(const Subject& s, int width, int height) {
 
 Drawing heading(const Paint& paint, int width) {
   const ViewingCondition condition = condition_of(paint);
-  const std::string text = fmt::format("{}{}, {}/{} deg", paint.name,
-                                       paint.paint_class == PaintClass::kUnknown
-                                           ? ""
-                                           : fmt::format(", {}", paint_class_name(paint.paint_class)),
-                                       condition.illuminant, condition.observer_deg);
-  return {width, 34, fmt::format("<text x=\"12\" y=\"24\" style=\"font-size:18px;font-weight:bold\">{}</text>\n",
-                                 escaped(text))};
+  const std::string text = fmt::format(
+      "{}{}, {}/{} deg", paint.name,
+      paint.paint_class == PaintClass::kUnknown ? "" : fmt::format(", {}", paint_class_name(paint.paint_class)),
+      condition.illuminant, condition.observer_deg);
+  return {width, 34,
+          fmt::format("<text x=\"12\" y=\"24\" style=\"font-size:18px;font-weight:bold\">{}</text>\n", escaped(text))};
 }
 
 Drawing lab_row(const Subject& s, int width, int height) {

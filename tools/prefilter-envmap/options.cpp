@@ -23,8 +23,10 @@ cli::ToolSpec tool_spec(Options& o) {
            "resampled first. The tolerance is relative to that sum in double precision, at each texel written, or to a "
            "thousandth of the map's mean where the texel is darker still; it covers the rounding of the file. Smooth "
            "lobes are filtered by zonal harmonics with a proven bound on the degrees left out; lobes that bend at the "
-           "horizon by harmonics of all but the brightest texels, which are convolved one by one, or, for the diffuse lobe "
-           "at the smallest tolerances, by sums along the arcs that a hemisphere cuts from the rows; very sharp and very "
+           "horizon by harmonics of all but the brightest texels, which are convolved one by one, or, for the diffuse "
+           "lobe "
+           "at the smallest tolerances, by sums along the arcs that a hemisphere cuts from the rows; very sharp and "
+           "very "
            "wide ones by a walk over blocks of texels. --explain shows the choice for each lobe.",
            "Lobes may be named by a basis, by their exponents, or by the paints that need them (--for): then only the "
            "exponents that some paint reflects by are filtered, and --explain tells which were left out and why.",

@@ -20,7 +20,8 @@ Result<void> check_surfaces(const RenderOptions& options);
 struct PictureSize {
   int width = 0, height = 0;
 };
-// "1280x720", or "auto", which is that. Errors of all of these are usage errors that name the option, its value and what it takes.
+// "1280x720", or "auto", which is that. Errors of all of these are usage errors that name the option, its value and
+// what it takes.
 Result<PictureSize> parse_size(const std::string& text);
 
 // AZ,EL or X,Y,Z, then R,G,B if the light is not 1,1,1.

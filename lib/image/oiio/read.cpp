@@ -5,11 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "image/exr.h"
 #include "image/oiio_module.h"
 
 namespace {
-
-constexpr OIIO::imagesize_t kMostSamples = OIIO::imagesize_t{1} << 31;  // floats of 8 GB
 
 std::string text_attribute(const OIIO::ImageSpec& spec, const char* name) {
   return std::string(spec.get_string_attribute(name));
@@ -28,7 +27,7 @@ void read(const char* path, void* context, GoniochromeOiioTake take, Goniochrome
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.depth > 1 || spec.deep) return fail(context, "volumes and deep images are not read");
   const OIIO::imagesize_t samples = spec.image_pixels() * static_cast<OIIO::imagesize_t>(spec.nchannels);
-  if (spec.image_pixels() > kMostSamples || samples > kMostSamples)
+  if (spec.image_pixels() > goniochrome::kMostSamples || samples > goniochrome::kMostSamples)
     return fail(context, "its header says more pixels than fit into 8 GB: is it damaged?");
   std::vector<float> pixels(samples);
   if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data()))
