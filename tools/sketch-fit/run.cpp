@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/clock.h"
-#include "base/parallel.h"
 #include "base/text.h"
 #include "fit/sketch.h"
 #include "paint/xml.h"
@@ -65,13 +64,10 @@ Result<void> gather(const SketchFitOptions& options, Material& material) {
   if (!options.residual.empty() && !options.residual.ends_with(".png"))
     return usage_error("--residual is \"{}\": give a name that ends in .png", options.residual);
   SketchInput& input = material.input;
-  Result<AovFile> buffers = AovFile{};
-  Result<Picture> picture = Picture{};
+  // One after the other: the module of other formats, loaded beside other work, crashes where memory runs out.
   const auto view = options.view == "plain" ? PictureView::kPlain : PictureView::kPaint;
-  parallel_for(2, 1, [&](std::size_t begin, std::size_t) {
-    if (begin == 0) picture = read_picture(options.image, view);
-    if (begin == 1) buffers = read_aov_file(options.buffers);
-  });
+  Result<Picture> picture = read_picture(options.image, view);
+  Result<AovFile> buffers = read_aov_file(options.buffers);
   GONIO_ASSIGN(material.buffers, std::move(buffers));
   GONIO_TRY(check_light(options, material.buffers));
   for (const std::string& name : options.parts) {
