@@ -45,6 +45,18 @@ done < <(sed -nE 's/^\| `([a-z-]+)` \|.*/\1/p' "$top/README.md")
 for page in "$top"/man/*.1; do
   [ -d "$top/tools/$(basename "$page" .1)" ] || complain "$page: there is no such tool"
 done
+# Both ways: what is cited, there or in the code, is a reference of goniochrome-theory(7), and each of these is cited.
+theory=$top/man/goniochrome-theory.7
+listed=$(sed -n '/^\.Sh REFERENCES/,/^\.Sh SEE/s/^\.It Bq //p' "$theory" | sort)
+[ -n "$listed" ] || complain "goniochrome-theory(7) has no references"
+body=$(sed '/^\.Sh REFERENCES/,$d' "$theory")
+for key in $({ grep -oE '\b[A-Z][a-z][A-Za-z]*(19|20)[0-9]{2}\b' <<<"$body"
+  grep -rhoE '\[[A-Z][a-z][A-Za-z]*(19|20)[0-9]{2}\]' "$top/lib" "$top/tools" | tr -d '[]'; } | sort -u); do
+  grep -qx "$key" <<<"$listed" || complain "goniochrome-theory(7): $key is cited and not among the references"
+done
+for key in $listed; do
+  grep -qw "$key" <<<"$body" || complain "goniochrome-theory(7): the reference $key is cited nowhere"
+done
 mandoc -Tlint -W warning "$top"/man/*.[1-9] || complain "mandoc finds fault with the man pages"
 [ "$checked" -gt 20 ] || complain "only $checked options were checked"
 exit $wrong
