@@ -13,9 +13,10 @@ constexpr double kSlowBatch_s = 0.02;
 
 }  // namespace
 
-Result<PaintBatches> PaintBatches::open(std::vector<std::string> paths) {
+Result<PaintBatches> PaintBatches::open(std::vector<std::string> paths, const std::vector<std::string>& only) {
   if (paths.empty()) paths = {"-"};
   PaintBatches batches;
+  batches.only_ = batches.unmet_ = {only.begin(), only.end()};
   for (const std::string& path : paths) {
     GONIO_ASSIGN(PaintReader reader, PaintReader::open(path));
     batches.readers_.push_back(std::move(reader));
@@ -37,6 +38,11 @@ std::vector<std::string> PaintBatches::foreign() const {
   return all;
 }
 
+bool PaintBatches::is_wanted(const std::string& name) {
+  unmet_.erase(name);
+  return only_.empty() || only_.contains(name);
+}
+
 Result<std::vector<Paint>> PaintBatches::next(const std::function<void(const Error&)>& left_out) {
   const Stopwatch filling;
   std::vector<Paint> batch;
@@ -46,11 +52,13 @@ Result<std::vector<Paint>> PaintBatches::next(const std::function<void(const Err
       if (!left_out) return paint.error();
       left_out(paint.error());
     } else if (paint->has_value()) {
-      batch.push_back(std::move(**paint));
+      if (is_wanted((*paint)->name)) batch.push_back(std::move(**paint));
     } else {
       ++current_;
     }
   }
+  if (batch.empty() && !unmet_.empty())
+    return input_error("no paint is named \"{}\": names are taken letter by letter", *unmet_.begin());
   size_ = filling.elapsed_s() < kSlowBatch_s ? std::min(2 * size_, kLargestBatch) : 1;
   return batch;
 }

@@ -116,6 +116,7 @@ column() { sed -n 2p | cut -f "$1"; }
   run goniogeom-index gray.xml --only nix -o n.tsv
   [ "$status" -eq 3 ]
   [[ "$output" =~ 'no paint is named "nix"' ]]
+  [ ! -e n.tsv ]
   run goniogeom-index absent.xml
   [ "$status" -eq 3 ]
 }

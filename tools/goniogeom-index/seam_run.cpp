@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "advice.h"
 #include "base/file.h"
@@ -56,22 +55,19 @@ void tell_repairs(const Seam& seam, const Mesh& mesh, cli::Session& session) {
 class SeamRun {
  public:
   SeamRun(const IndexOptions& options, const SeamRequest& request, cli::Session& session)
-      : options_(options), request_(request), session_(session), wanted_(options.only.begin(), options.only.end()) {}
+      : options_(options), request_(request), session_(session) {}
 
   Result<cli::Verdict> operator()() {
     GONIO_TRY(prepare());
-    GONIO_ASSIGN(PaintBatches paints, PaintBatches::open(options_.inputs));
+    GONIO_ASSIGN(PaintBatches paints, PaintBatches::open(options_.inputs, options_.only));
     GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
     GONIO_TRY(
         file.write("name\trun\tdistance_m\tx\ty\tz\tgap_mm\tflush_mm\tangle_deg\tfold_deg\tde_max\tde_rms\tviews\n"));
     for (;;) {
       GONIO_ASSIGN(std::vector<Paint> batch, paints.next());
       if (batch.empty()) break;
-      if (!wanted_.empty()) std::erase_if(batch, [&](const Paint& p) { return !wanted_.contains(p.name); });
       for (const Paint& paint : batch) GONIO_TRY(take(paint, file));
     }
-    for (const std::string& name : wanted_)
-      if (!met_.contains(name)) return input_error("no paint is named \"{}\": names are taken letter by letter", name);
     GONIO_TRY(file.commit());
     return failed_ > 0 ? cli::Verdict::kNegative : cli::Verdict::kDone;
   }
@@ -119,7 +115,6 @@ class SeamRun {
   }
 
   Result<void> take(const Paint& paint, OutputFile& file) {
-    met_.insert(paint.name);
     const auto de = differences(paint);
     if (!de.ok()) {
       session_.warn(fmt::format("left out: {}: {}", paint.name, de.error().message));
@@ -201,8 +196,6 @@ class SeamRun {
   const IndexOptions& options_;
   const SeamRequest& request_;
   cli::Session& session_;
-  const std::set<std::string> wanted_;
-  std::set<std::string> met_;
   SeamStage stage_;
   int failed_ = 0, pictures_ = 0;
 };

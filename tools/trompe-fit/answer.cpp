@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "base/text.h"
 
 namespace goniochrome {
 
@@ -66,6 +65,10 @@ std::string answer_line(const Answer& answer) {
   if (!answer.fit.at_bound.empty()) line += fmt::format("; held by a bound: {}", fmt::join(answer.fit.at_bound, ", "));
   if (answer.fit.solid) line += "; solid: face and flop as one, travel left alone";
   return line;
+}
+
+Json results_of(const std::vector<Json>& fits) {
+  return fits.size() == 1 ? fits.front() : Json{{"fits", fits}};
 }
 
 bool is_improved(const Answer& answer, const TrompeOptions& options) {

@@ -20,11 +20,14 @@ struct Answer {
   TrompeErrors before, after;                 // over all that is judged
 };
 
-// The paint of an answer: what an instrument would read of it; gloss, class and strangers as they were.
+// The paint of an answer: what an instrument would read of it; gloss, class and foreign elements as they were.
 Paint painted(const Paint& paint, const Answer& answer);
 
 // Its part of the report.
 Json answer_json(const Answer& answer);
+
+// The report's results from the parts of all answers: the only one itself, or the list `fits`.
+Json results_of(const std::vector<Json>& fits);
 
 // "silver_b: dE rms 4.30 to 0.07, max 9.06 to 0.10; face_l +11.0, travel +4.3"
 std::string answer_line(const Answer& answer);

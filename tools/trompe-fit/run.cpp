@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "answer.h"
 #include "base/parallel.h"
@@ -83,10 +82,10 @@ std::string plan(const TrompeFitOptions& options, const TrompeRequest& request) 
 class Run {
  public:
   Run(const TrompeFitOptions& options, const TrompeRequest& request, cli::Session& session)
-      : options_(options), request_(request), session_(session), wanted_(options.only.begin(), options.only.end()) {}
+      : options_(options), request_(request), session_(session) {}
 
   Result<cli::Verdict> operator()() {
-    GONIO_ASSIGN(PaintBatches paints, PaintBatches::open(options_.inputs));
+    GONIO_ASSIGN(PaintBatches paints, PaintBatches::open(options_.inputs, options_.only));
     GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
     auto history = paints.processing();
     history.push_back({session_.tool(), cli::Session::version(), session_.command_line()});
@@ -94,12 +93,9 @@ class Run {
     for (;;) {
       GONIO_ASSIGN(std::vector<Paint> batch, paints.next());
       if (batch.empty()) break;
-      if (!wanted_.empty()) std::erase_if(batch, [&](const Paint& p) { return !wanted_.contains(p.name); });
       GONIO_TRY(take(batch, writer));
       session_.progress(fmt::format("{} paints", fits_.size()));
     }
-    for (const std::string& name : wanted_)
-      if (!met_.contains(name)) return input_error("no paint is named \"{}\": names are taken letter by letter", name);
     GONIO_TRY(writer.finish());
     return finish();
   }
@@ -111,7 +107,6 @@ class Run {
       for (std::size_t i = begin; i < end; ++i) found[i] = answers_for(batch[i], request_, options_.suffix);
     });
     for (std::size_t i = 0; i < batch.size(); ++i) {
-      met_.insert(batch[i].name);
       const Result<Answers>& answers = *found[i];
       if (!answers.ok()) {
         if (answers.error().kind == ErrorKind::kUsage) return answers.error();
@@ -153,19 +148,13 @@ class Run {
 
   cli::Verdict finish() {
     if (told_ > kNamesShown) session_.say(fmt::format("... and {} more", told_ - kNamesShown));
-    if (fits_.size() == 1) {
-      session_.results().update(fits_.front());
-    } else {
-      session_.results()["fits"] = fits_;
-    }
+    session_.results().update(results_of(fits_));
     return negative_ ? cli::Verdict::kNegative : cli::Verdict::kDone;
   }
 
   const TrompeFitOptions& options_;
   const TrompeRequest& request_;
   cli::Session& session_;
-  const std::set<std::string> wanted_;
-  std::set<std::string> met_;
   std::vector<Json> fits_;
   int told_ = 0, pictures_ = 0;
   bool negative_ = false;

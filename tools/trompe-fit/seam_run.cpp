@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "answer.h"
-#include "base/text.h"
 #include "fit/goniogeom_seam.h"
 #include "paint/batches.h"
 #include "picture.h"
@@ -42,11 +40,11 @@ std::vector<double> weights_of(const std::vector<SeamView>& views) {
 class SeamRun {
  public:
   SeamRun(const TrompeFitOptions& options, const TrompeSeamRequest& request, cli::Session& session)
-      : options_(options), request_(request), session_(session), wanted_(options.only.begin(), options.only.end()) {}
+      : options_(options), request_(request), session_(session) {}
 
   Result<cli::Verdict> operator()() {
     GONIO_TRY(prepare());
-    GONIO_ASSIGN(PaintBatches paints, PaintBatches::open(options_.inputs));
+    GONIO_ASSIGN(PaintBatches paints, PaintBatches::open(options_.inputs, options_.only));
     GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
     auto history = paints.processing();
     history.push_back({session_.tool(), cli::Session::version(), session_.command_line()});
@@ -54,17 +52,10 @@ class SeamRun {
     for (;;) {
       GONIO_ASSIGN(std::vector<Paint> batch, paints.next());
       if (batch.empty()) break;
-      if (!wanted_.empty()) std::erase_if(batch, [&](const Paint& p) { return !wanted_.contains(p.name); });
       for (const Paint& paint : batch) GONIO_TRY(take(paint, writer));
     }
-    for (const std::string& name : wanted_)
-      if (!met_.contains(name)) return input_error("no paint is named \"{}\": names are taken letter by letter", name);
     GONIO_TRY(writer.finish());
-    if (fits_.size() == 1) {
-      session_.results().update(fits_.front());
-    } else {
-      session_.results()["fits"] = fits_;
-    }
+    session_.results().update(results_of(fits_));
     return negative_ ? cli::Verdict::kNegative : cli::Verdict::kDone;
   }
 
@@ -111,7 +102,6 @@ class SeamRun {
   }
 
   Result<void> take(const Paint& paint, PaintWriter& writer) {
-    met_.insert(paint.name);
     const Result<Answer> answer = answer_for(paint);
     if (!answer.ok()) {
       if (answer.error().kind == ErrorKind::kUsage) return answer.error();
@@ -162,8 +152,6 @@ class SeamRun {
   const TrompeFitOptions& options_;
   const TrompeSeamRequest& request_;
   cli::Session& session_;
-  const std::set<std::string> wanted_;
-  std::set<std::string> met_;
   SeamStage stage_;
   std::vector<SeamView> fitted_;
   std::vector<Json> fits_;
