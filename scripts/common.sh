@@ -8,7 +8,10 @@ build_packages=(
   libcgal-dev libceres-dev libcli11-dev libeigen3-dev libfmt-dev libhwy-dev libimath-dev libopencolorio-dev libopenexr-dev
   libopenimageio-dev libosmesa6-dev libpng-dev libtbb-dev libxml2-dev nlohmann-json3-dev
 )
-test_packages=(bats coinor-libclp-dev file jq librsvg2-bin libbenchmark-dev libgmock-dev libgtest-dev libxml2-utils locales make mandoc openexr openimageio-tools python3)
+test_packages=(
+  bats coinor-libclp-dev file jq librsvg2-bin libbenchmark-dev libgmock-dev libgtest-dev libxml2-utils locales make mandoc
+  openexr openimageio-tools python3
+)
 demo_packages=(fonts-dejavu-core openimageio-tools python3)
 
 say() { printf '%s\n' "$*" >&2; }

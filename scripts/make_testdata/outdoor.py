@@ -6,7 +6,6 @@ pale haze at the horizon. Mantissas are cut to MANTISSA_BITS so that the file st
 """
 
 import math
-import struct
 
 from make_testdata import exr
 from make_testdata.blend import mix, smooth_step

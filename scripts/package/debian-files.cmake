@@ -10,10 +10,14 @@ file(MAKE_DIRECTORY ${folder})
 file(READ ${CPACK_GONIOCHROME_LICENSE} license)
 string(REGEX REPLACE "\n---------.*" "\n" head "${license}")
 file(WRITE ${folder}/copyright
-     "${head}\nOn Debian systems the full text of the GNU General Public License version 3 is in /usr/share/common-licenses/GPL-3.\n")
+     "${head}\nOn Debian systems the full text of the GNU General Public License version 3 is in "
+     "/usr/share/common-licenses/GPL-3.\n")
 
 string(TIMESTAMP now "%a, %d %b %Y %H:%M:%S +0000" UTC)
-file(WRITE ${folder}/changelog "${CPACK_PACKAGE_NAME} (${CPACK_PACKAGE_VERSION}) unstable; urgency=medium\n\n  * Version ${CPACK_PACKAGE_VERSION}.\n\n -- ${CPACK_PACKAGE_CONTACT}  ${now}\n")
+file(WRITE ${folder}/changelog
+     "${CPACK_PACKAGE_NAME} (${CPACK_PACKAGE_VERSION}) unstable; urgency=medium\n\n"
+     "  * Version ${CPACK_PACKAGE_VERSION}.\n\n"
+     " -- ${CPACK_PACKAGE_CONTACT}  ${now}\n")
 
 # Whoever builds with a umask of 002 has a tree that the group may write.
 execute_process(COMMAND chmod -R go-w ${share} COMMAND_ERROR_IS_FATAL ANY)

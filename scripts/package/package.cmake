@@ -41,8 +41,10 @@ set(CPACK_PACKAGE_NAME goniochrome)
 # The field has to hold an address; .invalid is the domain that says there is none (RFC 2606).
 set(CPACK_PACKAGE_CONTACT "The Goniochrome project <goniochrome@goniochrome.invalid>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "computer-aided color appearance design of effect paints")
-set(CPACK_PACKAGE_DESCRIPTION
-    "Single-purpose tools that take a measured or designed goniochromatic paint\n(metallic, pearl, interference) to a picture under real HDR light and to\nthe aspecular Lab file that a formulation system mixes from.")
+string(CONCAT CPACK_PACKAGE_DESCRIPTION
+    "Single-purpose tools that take a measured or designed goniochromatic paint\n"
+    "(metallic, pearl, interference) to a picture under real HDR light and to\n"
+    "the aspecular Lab file that a formulation system mixes from.")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
