@@ -59,9 +59,36 @@ class Scale {
 
 std::string tick_label(double v) {
   const double size = std::abs(v);
-  if (size != 0 && (size >= 1e5 || size < 1e-3)) return fmt::format("{:.3g}", v);
-  return fmt::format("{:.6g}", v);
+  if (size == 0 || (size >= 1e-3 && size < 1e5)) return fmt::format("{:.6g}", v);
+  std::string label = fmt::format("{:.3g}", v);
+  if (const auto e = label.find('e'); e != std::string::npos) {  // 1e-05 and 1e+06 are read as 1e-5 and 1e6
+    if (label[e + 2] == '0') label.erase(e + 2, 1);
+    if (label[e + 1] == '+') label.erase(e + 1, 1);
+  }
+  return label;
 }
+
+// How the points of a series look, and its lines.
+struct Ink {
+  std::string color;
+  Series::Style style = Series::Style::kLine;
+  bool hollow = false;
+
+  bool has_line() const { return style != Series::Style::kPoints && style != Series::Style::kRings; }
+  bool has_points() const { return style != Series::Style::kLine && style != Series::Style::kDashed; }
+  std::string point(double x, double y) const {
+    const bool ring = style == Series::Style::kRings;
+    if (ring || hollow)
+      return fmt::format(
+          "<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"{}\" fill=\"{}\" stroke=\"{}\" stroke-width=\"1.6\"/>", x, y,
+          ring ? 6.5 : 2.8, ring ? "none" : "#fff", color);
+    return fmt::format("<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"3\" fill=\"{}\"/>", x, y, color);
+  }
+  std::string line(const std::string& path) const {
+    return fmt::format("<path class=\"curve\" stroke=\"{}\"{} d=\"{}\"/>", color,
+                       style == Series::Style::kDashed ? " stroke-dasharray=\"5 4\"" : "", path);
+  }
+};
 
 std::string text(double x, double y, const char* anchor, const std::string& words, const std::string& more = "") {
   return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\"{}>{}</text>\n", x, y, anchor, more,
@@ -87,7 +114,7 @@ std::string axes(const Plot& plot, const Scale& x, const Scale& y, double right,
   return out;
 }
 
-std::string curve(const Series& series, const Scale& x, const Scale& y, const std::string& color) {
+std::string curve(const Series& series, const Scale& x, const Scale& y, const Ink& ink) {
   std::string path, points;
   bool pen_down = false;
   for (std::size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i) {
@@ -96,15 +123,12 @@ std::string curve(const Series& series, const Scale& x, const Scale& y, const st
       continue;
     }
     path += fmt::format("{}{:.2f} {:.2f}", pen_down ? "L" : "M", x.at(series.x[i]), y.at(series.y[i]));
-    points += fmt::format("<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"3\" fill=\"{}\"/>", x.at(series.x[i]),
-                          y.at(series.y[i]), color);
+    points += ink.point(x.at(series.x[i]), y.at(series.y[i]));
     pen_down = true;
   }
   std::string out;
-  if (series.style != Series::Style::kPoints)
-    out += fmt::format("<path class=\"curve\" stroke=\"{}\"{} d=\"{}\"/>\n", color,
-                       series.style == Series::Style::kDashed ? " stroke-dasharray=\"5 4\"" : "", path);
-  if (series.style == Series::Style::kPoints || series.style == Series::Style::kLineAndPoints) out += points + "\n";
+  if (ink.has_line()) out += ink.line(path) + "\n";
+  if (ink.has_points()) out += points + "\n";
   return out;
 }
 
@@ -125,14 +149,15 @@ std::string body(const Plot& plot) {
       "{3:.1f}\">\n",
       kLeft, kTop, right - kLeft, bottom - kTop);
   for (const Series& s : plot.series) {
-    const std::string color = s.color.empty() ? kPalette[next++ % std::size(kPalette)] : s.color;
-    curves += curve(s, x, y, color);
+    Ink ink{s.color, s.style};
+    if (s.color.empty()) {
+      ink.hollow = next / std::size(kPalette) % 2 == 1;
+      ink.color = kPalette[next++ % std::size(kPalette)];
+    }
+    curves += curve(s, x, y, ink);
     if (s.label.empty()) continue;
-    if (s.style != Series::Style::kPoints)
-      out += fmt::format("<path class=\"curve\" stroke=\"{}\"{} d=\"M{:.1f} {:.1f}h18\"/>", color,
-                         s.style == Series::Style::kDashed ? " stroke-dasharray=\"5 4\"" : "", right + 10, line - 4);
-    if (s.style == Series::Style::kPoints || s.style == Series::Style::kLineAndPoints)
-      out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"{}\"/>", right + 19, line - 4, color);
+    if (ink.has_line()) out += ink.line(fmt::format("M{:.1f} {:.1f}h18", right + 10, line - 4));
+    if (ink.has_points()) out += ink.point(right + 19, line - 4);
     out += text(right + 33, line, "start", s.label);
     line += kLegendLine;
   }
@@ -166,17 +191,18 @@ std::vector<double> ticks(double low, double high, bool logarithmic, int count) 
   std::vector<double> at;
   if (!(low < high)) return at;
   if (logarithmic) {
-    const bool dense = high / low < 100;
     const int every = std::max(1, static_cast<int>(std::ceil(std::log10(high / low) / std::max(count, 1))));
-    for (int decade = static_cast<int>(std::floor(std::log10(low))); decade <= std::ceil(std::log10(high)); ++decade)
-      for (const double part : {1.0, 2.0, 5.0}) {
-        const double v = part * std::pow(10.0, decade);
-        if ((part == 1 ? decade % every == 0 : dense) && v >= low * (1 - 1e-12) && v <= high * (1 + 1e-12))
-          at.push_back(v);
-      }
-    // Within a decade, round steps tell more.
-    if (at.size() > 2) return at;
-    at.clear();
+    for (const bool dense : {high / low < 100, true}) {
+      at.clear();
+      for (int decade = static_cast<int>(std::floor(std::log10(low))); decade <= std::ceil(std::log10(high)); ++decade)
+        for (const double part : {1.0, 2.0, 5.0}) {
+          const double v = part * std::pow(10.0, decade);
+          if ((part == 1 ? decade % every == 0 : dense) && v >= low * (1 - 1e-12) && v <= high * (1 + 1e-12))
+            at.push_back(v);
+        }
+      if (at.size() > 2) return at;
+    }
+    at.clear();  // within a decade, round steps tell more
   }
   const double rough = (high - low) / std::max(count, 1), power = std::pow(10.0, std::floor(std::log10(rough)));
   const double step = power * (rough / power <= 1 ? 1 : rough / power <= 2 ? 2 : rough / power <= 5 ? 5 : 10);

@@ -15,10 +15,11 @@ struct Axis {
 };
 
 struct Series {
-  std::string label = {};         // in the legend; empty: not listed
+  std::string label = {};              // in the legend; empty: not listed
   std::vector<double> x = {}, y = {};  // a y (or x) that is not finite breaks the line
-  enum class Style { kLine, kPoints, kLineAndPoints, kDashed } style = Style::kLine;
-  std::string color = {};  // CSS; empty: the next of a palette that color-blind readers can tell apart
+  enum class Style { kLine, kPoints, kLineAndPoints, kDashed, kRings } style = Style::kLine;
+  // CSS; empty: the next of a palette that color-blind readers can tell apart, after whose end points are hollow.
+  std::string color = {};
 };
 
 struct Plot {
@@ -48,7 +49,7 @@ Drawing column_of(const std::vector<Drawing>& drawings);
 std::string escaped(const std::string& text);
 
 // Where an axis from low to high is labeled: multiples of 1, 2 or 5 times a power of ten, about `count` of them; on a
-// logarithmic axis the powers of ten, and 2 and 5 times them where the axis spans less than two decades.
+// logarithmic axis the powers of ten, and 2 and 5 times them where those alone would be few.
 std::vector<double> ticks(double low, double high, bool logarithmic, int count);
 
 }  // namespace goniochrome

@@ -31,6 +31,15 @@ setup() {
   [ "$(grep -o '<circle' p.svg | wc -l)" -eq 5 ]
 }
 
+@test "rings go around points, in the color given" {
+  printf 'series,x,y,style,color\nall,1,2,both,\nall,2,3,both,\nchosen,2,3,rings,#123abc\n' >t.csv
+  draw-plot t.csv -o p.svg
+  [ "$(grep -o '<circle' p.svg | wc -l)" -eq 5 ]
+  # One in the plot, one in the legend; the other series keeps the first color of the palette.
+  [ "$(grep -o 'r="6.5" fill="none" stroke="#123abc"' p.svg | wc -l)" -eq 2 ]
+  [ "$(grep -o 'fill="#0072b2"' p.svg | wc -l)" -eq 3 ]
+}
+
 # refused STATUS MESSAGE COMMAND...: nothing is written.
 refused() {
   local wanted=$1 message=$2
@@ -49,7 +58,9 @@ refused() {
   printf 'series,x,y\na,1\n' >bad.csv
   refused 3 'bad.csv:2: 2 cells where the headings are 3' draw-plot bad.csv
   printf 'series,x,y,style\na,1,2,thick\n' >bad.csv
-  refused 3 'style is "thick": give line, points, both or dashed' draw-plot bad.csv
+  refused 3 'style is "thick": give line, points, both, dashed or rings' draw-plot bad.csv
+  printf 'series,x,y,color\na,1,2,red\n' >bad.csv
+  refused 3 'bad.csv:2: color is "red": give #rrggbb' draw-plot bad.csv
   printf 'series,x,y\n' >bad.csv
   refused 3 'nothing to draw' draw-plot bad.csv
   refused 3 'none.csv' draw-plot none.csv

@@ -16,12 +16,13 @@ namespace {
 const std::map<std::string_view, Series::Style> kStyles = {{"line", Series::Style::kLine},
                                                            {"points", Series::Style::kPoints},
                                                            {"both", Series::Style::kLineAndPoints},
-                                                           {"dashed", Series::Style::kDashed}};
+                                                           {"dashed", Series::Style::kDashed},
+                                                           {"rings", Series::Style::kRings}};
 
-// Where each heading stands among the words of a row; style may be missing.
+// Where each heading stands among the words of a row; style and color may be missing.
 struct Columns {
   std::size_t series = 0, x = 0, y = 0, count = 0;
-  std::optional<std::size_t> style;
+  std::optional<std::size_t> style, color;
 };
 
 Result<Columns> columns_of(const std::string& name, int line, const std::vector<std::string_view>& words) {
@@ -30,8 +31,9 @@ Result<Columns> columns_of(const std::string& name, int line, const std::vector<
   for (const char* heading : {"series", "x", "y"})
     if (!at.contains(heading))
       return input_error("{}:{}: there is no heading {}: begin with a line such as series,x,y", name, line, heading);
-  Columns columns{at["series"], at["x"], at["y"], words.size(), std::nullopt};
+  Columns columns{at["series"], at["x"], at["y"], words.size(), std::nullopt, std::nullopt};
   if (at.contains("style")) columns.style = at["style"];
+  if (at.contains("color")) columns.color = at["color"];
   return columns;
 }
 
@@ -40,6 +42,14 @@ Result<double> coordinate(const std::string& name, int line, const char* column,
   if (trimmed(text).empty()) return std::numeric_limits<double>::quiet_NaN();
   if (const auto value = parse_number(trimmed(text))) return *value;
   return input_error("{}:{}: {} is \"{}\": write a number such as 0.5, or nothing", name, line, column, trimmed(text));
+}
+
+// #rrggbb, or nothing for a color of the palette.
+Result<std::string> color(const std::string& name, int line, std::string_view text) {
+  const bool good = text.empty() || (text.size() == 7 && text.front() == '#' &&
+                                     text.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string_view::npos);
+  if (good) return std::string(text);
+  return input_error("{}:{}: color is \"{}\": give #rrggbb such as #0072b2, or nothing", name, line, text);
 }
 
 Result<std::vector<Series>> read_table(const std::string& path) {
@@ -65,8 +75,11 @@ Result<std::vector<Series>> read_table(const std::string& path) {
       if (columns->style) {
         const std::string_view style = trimmed(words[*columns->style]);
         if (!kStyles.contains(style))
-          return input_error("{}:{}: style is \"{}\": give line, points, both or dashed", name, line, style);
+          return input_error("{}:{}: style is \"{}\": give line, points, both, dashed or rings", name, line, style);
         series->style = kStyles.at(style);
+      }
+      if (columns->color) {
+        GONIO_ASSIGN(series->color, color(name, line, trimmed(words[*columns->color])));
       }
     }
     GONIO_ASSIGN(const double x, coordinate(name, line, "x", words[columns->x]));
