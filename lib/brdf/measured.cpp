@@ -115,15 +115,15 @@ std::vector<DirectionPair> MeasuredBrdf::probes() const {
 }
 
 std::vector<DirectionPair> MeasuredBrdf::samples() const {
-  constexpr double kCones_deg[] = {0,  1,  2,  3.5, 5,  7,  9,  11, 13, 15, 17.5, 20, 22.5, 25, 27.5,
+  constexpr double kCones_deg[] = {0,  1,  2,  3.5, 5,  7,  9,  11, 13, 15, 17.5, 20, 22.5, 25,  27.5,
                                    30, 35, 40, 45,  50, 55, 60, 65, 70, 75, 80,   90, 100,  110, 120};
   constexpr double kLightStep_deg = 10, kSteepestLight_deg = 70, kSteepestView_deg = 80, kTurn_deg = 22.5;
   std::vector<DirectionPair> result;
   for (double light = 0; light <= kSteepestLight_deg; light += kLightStep_deg)
     for (const double cone : kCones_deg)
       for (double turn = 0; turn <= 180; turn += kTurn_deg) {
-        const DirectionPair pair = directions(
-            {.incidence_deg = light, .aspecular_deg = cone, .out_of_plane = true, .azimuth_deg = turn});
+        const DirectionPair pair =
+            directions({.incidence_deg = light, .aspecular_deg = cone, .out_of_plane = true, .azimuth_deg = turn});
         // About the normal every turn of the cone is the same pair, and so is every turn of a cone without width.
         if ((cone == 0 || light == 0) && turn > 0) break;
         if (polar_angle(pair.view) <= kSteepestView_deg * kDegree) result.push_back(pair);

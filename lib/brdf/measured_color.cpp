@@ -1,7 +1,6 @@
 // What a multi-angle instrument would have read: reflectance factor pi f, then Lab. goniochrome-theory(7), MEASURED
 // BRDFS.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 

@@ -1,7 +1,6 @@
 // NVIDIA MBSDF: a line of text, then a regular grid over both polar angles and the azimuth between them.
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
 
 #include "brdf/measured_formats.h"

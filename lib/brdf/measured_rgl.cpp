@@ -1,6 +1,5 @@
 // RGL's adaptive measurements as tensor files ([DupuyJakob2018]): RGB over a warped square for each angle of incidence.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "base/hard_case_for_test.h"
-#include "brdf/lobe_model.h"
 
 namespace goniochrome {
 namespace {

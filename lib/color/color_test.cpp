@@ -6,9 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
-#include <limits>
 #include <random>
-#include <sstream>
 
 #include "base/hard_case_for_test.h"
 #include "base/text.h"

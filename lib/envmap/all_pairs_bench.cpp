@@ -6,7 +6,6 @@
 #include <hwy/highway.h>
 
 #include <array>
-#include <cmath>
 #include <numbers>
 
 #if HWY_ARCH_X86

@@ -1,7 +1,6 @@
 #include "fit/basis_targets.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "brdf/lobe_model.h"

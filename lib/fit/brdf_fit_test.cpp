@@ -201,9 +201,9 @@ TEST(BrdfFit, CornellPaintsRealData) {
       EXPECT_LE(flat->report.optimality_gap, 1e-9);
       EXPECT_LE(flat->report.brdf->relative_error_median, bound) << name << " " << fit_method_name(method);
     }
-    const auto views = PaintFitter({"b8", {0.4, 1, 2.5, 6, 15, 40, 100, 250}, false},
-                                   {.views_deg = {0, 15, 30, 45, 60, 75}})
-                           .fit(*target);
+    const auto views =
+        PaintFitter({"b8", {0.4, 1, 2.5, 6, 15, 40, 100, 250}, false}, {.views_deg = {0, 15, 30, 45, 60, 75}})
+            .fit(*target);
     ASSERT_TRUE(views.ok());
     EXPECT_LE(views->report.brdf->relative_error_median, bound) << name;
     EXPECT_GT(views->report.views->gain_de00(), 0);

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <memory>
 
 #include "brdf/lobe_model.h"
 #include "fit/albedo_error.h"

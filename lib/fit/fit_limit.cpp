@@ -49,7 +49,8 @@ std::string fit_limit(const std::vector<LabReading>& readings, const std::vector
   const auto [channel, rise] = steepest_rise(readings, reading, white);
   constexpr const char* kChannels[] = {"red", "green", "blue"};
   if (rise > kClearRise)
-    return fmt::format("its {} grows by {:.0f} % away from specular, which no lobes do", kChannels[channel], 100 * rise);
+    return fmt::format("its {} grows by {:.0f} % away from specular, which no lobes do", kChannels[channel],
+                       100 * rise);
   return "its curve is not one of the basis's lobes";
 }
 

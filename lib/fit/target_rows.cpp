@@ -85,8 +85,8 @@ std::vector<TargetRow> extension_to_specular(const HighlightEnd& end, double ste
   Rgb exponent;
   for (int c = 0; c < 3; ++c) {
     if (end.at_a[c] <= end.at_b[c] || cos_b <= 0) continue;
-    exponent[c] = end.at_b[c] > 0 ? std::min(steepest, std::log(end.at_a[c] / end.at_b[c]) / std::log(cos_a / cos_b))
-                                  : steepest;
+    exponent[c] =
+        end.at_b[c] > 0 ? std::min(steepest, std::log(end.at_a[c] / end.at_b[c]) / std::log(cos_a / cos_b)) : steepest;
   }
   std::vector<TargetRow> rows;
   for (double t = 0; t < end.a_deg - kStep_deg / 2; t += kStep_deg) {
@@ -126,7 +126,8 @@ Result<Target> target_rows(const Paint& paint, TargetCurve::Kind kind, const Xyz
   for (double t = target.first_deg; t <= end_deg; t += kStep_deg) {
     const bool near_known =
         std::any_of(known.begin(), known.end(), [&](double k) { return std::abs(k - t) < kStep_deg / 2; });
-    if (is_curve || !near_known) add_row(curve.at(t), white, t, usual_view_deg(t), is_curve ? 1 : kInterpolatedImportance, target);
+    if (is_curve || !near_known)
+      add_row(curve.at(t), white, t, usual_view_deg(t), is_curve ? 1 : kInterpolatedImportance, target);
   }
 
   HighlightEnd end{target.first_deg, target.first_deg + 10, {}, {}};
@@ -136,9 +137,9 @@ Result<Target> target_rows(const Paint& paint, TargetCurve::Kind kind, const Xyz
     return rgb;
   };
   end.at_a = color_at(end.a_deg), end.at_b = color_at(end.b_deg);
-  std::ranges::move(extension_to_specular(end, steepest_seen(exponents, target.first_deg * kRadian), white,
-                                          kExtendedImportance),
-                    std::back_inserter(target.rows));
+  std::ranges::move(
+      extension_to_specular(end, steepest_seen(exponents, target.first_deg * kRadian), white, kExtendedImportance),
+      std::back_inserter(target.rows));
   return target;
 }
 

@@ -91,8 +91,8 @@ bool DualSimplex::load(const Matrix& m, const std::vector<double>& b) {
   return lobes_ > 0;
 }
 
-// All s basic, y at -1; between the bounds, at 0, where a sample has negative entries, which might make s negative. Were
-// all y at 0, every s would be too, and the search would stand on that one vertex for tens of thousands of pivots.
+// All s basic, y at -1; between the bounds, at 0, where a sample has negative entries, which might make s negative.
+// Were all y at 0, every s would be too, and the search would stand on that one vertex for tens of thousands of pivots.
 void DualSimplex::start() {
   tableau_.assign(static_cast<std::size_t>(lobes_) * width_, 0.0);
   cost_.assign(width_, 0.0);

@@ -11,7 +11,6 @@
 #include <cmath>
 #include <limits>
 
-#include "base/text.h"
 #include "mesh/seam_rim.h"
 
 namespace goniochrome {

@@ -5,8 +5,6 @@
 
 #include <cstdlib>
 
-#include "base/clock.h"
-#include "base/text.h"
 #include "paint/csv_records.h"
 #include "paint/scratch_for_test.h"
 #include "paint/xml.h"

@@ -4,7 +4,6 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "base/text.h"
 #include "paint/csv.h"
 #include "paint/curve.h"
 #include "paint/xml.h"

@@ -58,8 +58,7 @@ std::string weights(const std::string& indent, const Rgb& diffuse, const std::ve
 std::string lobes_element(const LobeFit& lobes) {
   std::string text = "    <lobes" + attribute("space", "lin_rec2020_scene") + attribute("basis", lobes.basis) +
                      attribute("method", lobes.method) + attribute("max_de00", lobes.max_de00) +
-                     attribute("mean_de00", lobes.mean_de00) + ">\n" +
-                     weights("      ", lobes.diffuse, lobes.lobes);
+                     attribute("mean_de00", lobes.mean_de00) + ">\n" + weights("      ", lobes.diffuse, lobes.lobes);
   for (const ViewLobes& view : lobes.views)
     text += "      <view" + attribute("angle", view.view_deg) + ">\n" + weights("        ", view.diffuse, view.lobes) +
             "      </view>\n";

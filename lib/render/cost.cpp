@@ -1,6 +1,5 @@
 #include "render/cost.h"
 
-#include <algorithm>
 #include <bit>
 
 #include "render/maps.h"

@@ -40,8 +40,9 @@ struct Moment {
 //
 //   integral cos^E g dw = 1/(E+1) integral_0^1 du  integral_0^2pi g dp
 //
-// Around the ring, n.w and the moments integrate in closed form, w = cos t r + sin t cos p e + ... The Fresnel reflectance wants the angle between light and viewer; the
-// viewer is the mirror image of the lobe's axis, so that wo.w = cos t cos 2o + sin t sin 2o cos p.
+// Around the ring, n.w and the moments integrate in closed form, w = cos t r + sin t cos p e + ... The Fresnel
+// reflectance wants the angle between light and viewer; the viewer is the mirror image of the lobe's axis, so that wo.w
+// = cos t cos 2o + sin t sin 2o cos p.
 LobeIntegrals lobe_integrals(double exponent, double cos_o, bool horizon) {
   const double whole = 2 * std::numbers::pi / (exponent + 1);
   if (!horizon) return {whole * cos_o, whole, whole * fresnel_dielectric(cos_o, kCoatIndex)};

@@ -1,7 +1,6 @@
 #include "render/maps.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/parallel.h"
 #include "base/text.h"

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "render/scenes_for_test.h"
 
 namespace goniochrome {

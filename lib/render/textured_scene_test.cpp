@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "brdf/lobe_model.h"
 #include "render/reference.h"
 #include "render/renderer.h"
 #include "render/scenes_for_test.h"

@@ -44,14 +44,15 @@ Drawing polar_drawing(const std::string& title, const std::vector<PolarSeries>& 
   std::string out = title_text(title);
   for (const double r : ticks(0, largest, false, 4)) {
     if (r <= 0) continue;
-    out += fmt::format("<path class=\"grid\" d=\"M{:.1f} {:.1f}A{:.1f} {:.1f} 0 0 1 {:.1f} {:.1f}\"/>\n", x0 - r * scale,
-                       y0, r * scale, r * scale, x0 + r * scale, y0);
-    out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{:.3g}</text>\n", x0 + r * scale, y0 + 14,
-                       r);
+    out += fmt::format("<path class=\"grid\" d=\"M{:.1f} {:.1f}A{:.1f} {:.1f} 0 0 1 {:.1f} {:.1f}\"/>\n",
+                       x0 - r * scale, y0, r * scale, r * scale, x0 + r * scale, y0);
+    out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{:.3g}</text>\n", x0 + r * scale,
+                       y0 + 14, r);
   }
   for (int angle = -90; angle <= 90; angle += 30)
-    out += fmt::format("<path class=\"grid\" d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\"/>\n", x0, y0,
-                       x0 + largest * scale * std::sin(angle * kRadian), y0 - largest * scale * std::cos(angle * kRadian));
+    out +=
+        fmt::format("<path class=\"grid\" d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\"/>\n", x0, y0,
+                    x0 + largest * scale * std::sin(angle * kRadian), y0 - largest * scale * std::cos(angle * kRadian));
   double line = 40;
   for (const PolarSeries& s : series) {
     std::string path;
@@ -123,7 +124,8 @@ Drawing surface_drawing(const std::string& title, const std::string& color,
     out += fmt::format("<path fill=\"{0}\" stroke=\"{0}\" stroke-width=\"0.4\" d=\"{1}Z\"/>\n", fill, path);
   }
   const auto [ax, ay] = screen(largest * arrow);
-  out += fmt::format("<path stroke=\"#e69f00\" stroke-width=\"2\" d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\"/>\n", ax, ay, x0, y0);
+  out +=
+      fmt::format("<path stroke=\"#e69f00\" stroke-width=\"2\" d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\"/>\n", ax, ay, x0, y0);
   out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">light</text>\n", ax + 4, ay - 4);
   return {width, height, out};
 }
@@ -131,8 +133,8 @@ Drawing surface_drawing(const std::string& title, const std::string& color,
 Drawing square_drawing(const std::string& title, int n, const std::function<Vec3(double x, double y)>& color, int width,
                        int height) {
   const double size = std::min(width - 16.0, height - 34.0) / n, left = (width - n * size) / 2, top = 28;
-  std::string out = fmt::format("<text x=\"{:.1f}\" y=\"20\" text-anchor=\"middle\">{}</text>\n", width / 2.0,
-                                escaped(title));
+  std::string out =
+      fmt::format("<text x=\"{:.1f}\" y=\"20\" text-anchor=\"middle\">{}</text>\n", width / 2.0, escaped(title));
   for (int row = 0; row < n; ++row) {
     // Neighbors of one color make one rectangle.
     int begin = 0;
@@ -143,13 +145,14 @@ Drawing square_drawing(const std::string& title, int n, const std::function<Vec3
       if (next == current) continue;
       if (column > 0)
         out += fmt::format(
-            "<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" fill=\"{}\" shape-rendering=\"crispEdges\"/>\n",
+            "<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" fill=\"{}\" "
+            "shape-rendering=\"crispEdges\"/>\n",
             left + begin * size, top + row * size, (column - begin) * size, size, current);
       begin = column, current = next;
     }
   }
-  out += fmt::format("<rect class=\"frame\" x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\"/>\n", left, top,
-                     n * size, n * size);
+  out += fmt::format("<rect class=\"frame\" x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\"/>\n", left,
+                     top, n * size, n * size);
   return {width, height, out};
 }
 

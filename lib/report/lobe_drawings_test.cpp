@@ -35,13 +35,15 @@ TEST(LobeDrawings, TheSquareCoversTheHemisphereEvenly) {
 
 TEST(LobeDrawings, NothingToDrawIsDrawnWithoutNan) {
   for (const double r : {0.0, 1.0}) {
-    const std::string surface =
-        surface_drawing("s", "#0072b2", [&](const Vec3&) { return r; }, {0.7, 0, 0.7}, 300, 240).body;
+    const std::string surface = surface_drawing(
+                                    "s", "#0072b2", [&](const Vec3&) { return r; }, {0.7, 0, 0.7}, 300, 240)
+                                    .body;
     EXPECT_EQ(surface.find("nan"), std::string::npos);
     EXPECT_EQ(count(surface, "<path fill"), r > 0 ? 24u * 48 : 0u);
   }
   const std::string polar =
-      polar_drawing("p", {{"a", "#000000", {-90, 0, 90}, {0, 1, NAN}}, {"b", "#111111", {10}, {2}, true}}, 300, 240).body;
+      polar_drawing("p", {{"a", "#000000", {-90, 0, 90}, {0, 1, NAN}}, {"b", "#111111", {10}, {2}, true}}, 300, 240)
+          .body;
   EXPECT_EQ(polar.find("nan"), std::string::npos);
   EXPECT_EQ(count(polar, "<circle"), 1u);
 }

@@ -1,8 +1,6 @@
 #include "run.h"
 
-#include <algorithm>
 #include <functional>
-#include <optional>
 #include <set>
 
 #include "base/clock.h"

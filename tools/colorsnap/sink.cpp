@@ -1,7 +1,6 @@
 #include "sink.h"
 
 #include <algorithm>
-#include <cmath>
 #include <unordered_map>
 
 #include "base/text.h"

@@ -90,12 +90,10 @@ cli::ToolSpec tool_spec(Options& o) {
                    .value = "FILE",
                    .help = "draw exponents and errors against the number of lobes as SVG",
                    .target = &o.plot}},
-      .inputs =
-          cli::Positional{
-              .value = "PAINTS",
-              .help = "paint XML files or measured BRDFs, - is standard input",
-              .target = &o.paints,
-              .low = 0},
+      .inputs = cli::Positional{.value = "PAINTS",
+                                .help = "paint XML files or measured BRDFs, - is standard input",
+                                .target = &o.paints,
+                                .low = 0},
       .examples = {{"fit-basis --lobes 5 testdata/paints.paints.xml -o my.basis.xml",
                     "chooses five exponents for the sample library"},
                    {"fit-basis --lobes 1..4 --starts 2 --table sets.csv --plot "
@@ -107,7 +105,8 @@ cli::ToolSpec tool_spec(Options& o) {
                  {"sets[].mean_error", "mean over the paints"},
                  {"sets[].objective", "max_error + mean_error, what the search makes least"},
                  {"sets[].de00_max", "largest color difference of any paint at any sample angle"},
-                 {"sets[].log_regularity", "squared correlation of the exponents' logarithms with their rank, 1 is regular"},
+                 {"sets[].log_regularity",
+                  "squared correlation of the exponents' logarithms with their rank, 1 is regular"},
                  {"sets[].worst", "the paint with the largest error"},
                  {"sets[].time_s", "time of the search for this number"},
                  {"sets[].starts", "starting points tried"},

@@ -1,7 +1,5 @@
 #include "options.h"
 
-#include <algorithm>
-#include <cmath>
 #include <iterator>
 
 #include "../seam_options.h"

@@ -2,7 +2,6 @@
 
 #include <filesystem>
 
-#include "base/text.h"
 #include "brdf/measured.h"
 #include "paint/cgats.h"
 #include "paint/curve.h"

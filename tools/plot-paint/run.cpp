@@ -59,9 +59,7 @@ std::string file_name(std::string name) {
 
 void report(const PageInput& input, const std::string& file, cli::Session& session) {
   const Paint& paint = input.paint;
-  const char* target = input.brdf                                 ? "measured BRDF"
-                       : paint.measurement || paint.appearance    ? "curve"
-                                                                  : "none";
+  const char* target = input.brdf ? "measured BRDF" : paint.measurement || paint.appearance ? "curve" : "none";
   session.results()["paints"].push_back({{"name", paint.name},
                                          {"file", file},
                                          {"lobes", paint.lobes ? paint.lobes->lobes.size() : 0},
@@ -100,8 +98,9 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   }
   if (options.pages.empty())
     GONIO_TRY(write_drawing(options.output, lower(options.output).ends_with(".png"), column_of(rows)));
-  session.say(fmt::format("{}: {} paints drawn{}", session.tool(), paints.size(),
-                          unfitted > 0 ? fmt::format(", {} of them without lobes: fit-paint makes them", unfitted) : ""));
+  session.say(
+      fmt::format("{}: {} paints drawn{}", session.tool(), paints.size(),
+                  unfitted > 0 ? fmt::format(", {} of them without lobes: fit-paint makes them", unfitted) : ""));
   return cli::Verdict::kDone;
 }
 

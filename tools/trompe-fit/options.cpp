@@ -1,6 +1,5 @@
 #include "options.h"
 
-#include <algorithm>
 #include <cmath>
 #include <iterator>
 
