@@ -1,20 +1,10 @@
 #include "source.h"
 
-#include <filesystem>
 #include <utility>
 
+#include "paint/reference.h"
+
 namespace goniochrome {
-
-namespace {
-
-// FILE#NAME taken apart; a file whose own name has a # is meant as it stands.
-std::pair<std::string, std::optional<std::string>> parts(const std::string& input) {
-  const auto hash = input.rfind('#');
-  if (hash == std::string::npos || std::filesystem::exists(input)) return {input, std::nullopt};
-  return {input.substr(0, hash), input.substr(hash + 1)};
-}
-
-}  // namespace
 
 Result<std::optional<Paint>> PaintSource::Input::next() {
   if (first) return std::exchange(first, std::nullopt);
@@ -27,7 +17,7 @@ Result<std::optional<Paint>> PaintSource::Input::next() {
 Result<PaintSource> PaintSource::open(const std::vector<std::string>& inputs) {
   PaintSource source;
   for (const std::string& input : inputs.empty() ? std::vector<std::string>{"-"} : inputs) {
-    auto [path, name] = parts(input);
+    const auto [path, name] = paint_reference(input);
     GONIO_ASSIGN(PaintReader reader, PaintReader::open(path));
     Input opened{path, name, std::move(reader), std::nullopt};
     GONIO_ASSIGN(opened.first, opened.next());
