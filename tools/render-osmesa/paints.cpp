@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "image/color_map_file.h"
 #include "image/sbrdf_file.h"
+#include "paint/reference.h"
 #include "paint/xml.h"
 
 namespace goniochrome {
@@ -39,29 +40,28 @@ class PaintShelf {
  public:
   // `reference` is FILE or FILE#NAME.
   Result<Paint> paint(const std::string& reference) {
-    const auto hash = reference.rfind('#');
-    const std::string file = reference.substr(0, hash);
+    const auto [file, name] = paint_reference(reference);
     if (!files_.contains(file)) {
       GONIO_ASSIGN(files_[file], read_paints(file));
     }
     const std::vector<Paint>& paints = files_[file];
     std::vector<std::string> names;
     for (const Paint& paint : paints) names.push_back(paint.name);
-    if (hash == std::string::npos) {
+    if (!name) {
       if (paints.size() == 1) return with_lobes(paints.front(), file);
       return usage_error("{} holds {} paints: write {}#NAME: it holds {}", file, paints.size(), file, listed(names));
     }
-    const std::string name = reference.substr(hash + 1);
-    const auto found = std::find(names.begin(), names.end(), name);
+    const auto found = std::find(names.begin(), names.end(), *name);
     if (found == names.end())
-      return usage_error("{} holds no paint \"{}\": {}it holds {}", file, name, nearest_of(name, names), listed(names));
+      return usage_error("{} holds no paint \"{}\": {}it holds {}", file, *name, nearest_of(*name, names),
+                         listed(names));
     return with_lobes(paints[static_cast<std::size_t>(found - names.begin())], file);
   }
 
   // The color map that the paint of a reference names, relative to its file; null where it names none.
   Result<const ColorMap*> color_map(const std::string& reference, const Paint& paint) {
     if (!paint.color_map) return static_cast<const ColorMap*>(nullptr);
-    const std::filesystem::path file = reference.substr(0, reference.rfind('#'));
+    const std::filesystem::path file = paint_reference(reference).file;
     const std::string path = (file.parent_path() / paint.color_map->href).string();
     if (!maps_.contains(path)) {
       GONIO_ASSIGN(ColorMap map, read_color_map(path));

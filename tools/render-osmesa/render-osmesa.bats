@@ -203,6 +203,13 @@ refused() {
   refused 3 'nowhere.xml' --mesh panels.obj $light -p nowhere.xml#red
 }
 
+@test "a file with a # in its own name is meant as it stands" {
+  sed '/name="green"/d; /name="white"/d; /name="bare"/d' paints.xml >'coat#7.xml'
+  render-osmesa -q --mesh panels.obj $light --size 32x32 -p 'coat#7.xml' -o a.exr
+  render-osmesa -q --mesh panels.obj $light --size 32x32 -p 'coat#7.xml#red' -o b.exr
+  oiiotool --hash a.exr b.exr | sed -n 's/.*SHA-1: //p' | uniq -c | grep -q '^ *2 '
+}
+
 @test "mistakes in the other options name the option, the value and what it takes" {
   refused 2 'there is no light: give --env, --light or both' --mesh panels.obj
   refused 2 '--light is "30": write AZ,EL or X,Y,Z' --mesh panels.obj --light 30
