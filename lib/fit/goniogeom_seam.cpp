@@ -66,6 +66,16 @@ std::vector<SeamView> views_in_world(const Seam& seam, const std::vector<Vec3>& 
   return views;
 }
 
+std::vector<std::size_t> spread_places(std::size_t count, std::size_t most) {
+  constexpr double kGolden = 0.6180339887498949;
+  std::vector<std::size_t> places(std::min(count, most));
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const double part = std::fmod(static_cast<double>(i) * kGolden, 1.0);
+    places[i] = count <= most ? i : static_cast<std::size_t>(part * static_cast<double>(count));
+  }
+  return places;
+}
+
 PanelView panel_view(const Seam& seam, const SeamView& view) {
   const SeamPoint& p = seam.points[view.point];
   const auto aspecular = [&](const Vec3& n) { return aspecular_angle_rad(*view.light, view.view, n) / kRadians; };
@@ -91,6 +101,22 @@ std::vector<SeamDifference> by_place(const Seam& seam, const std::vector<SeamVie
   return places;
 }
 
+PaintFitter appearance_fitter(const std::vector<double>& exponents) {
+  FitOptions options;
+  options.method = FitMethod::kL2;
+  options.target = TargetCurve::Kind::kCurve;
+  return {Basis{"appearance", exponents}, options};
+}
+
+Result<LobeFit> appearance_lobes(const PaintFitter& fitter, const Appearance& appearance,
+                                 const ViewingCondition& condition) {
+  Paint paint;
+  paint.measurement = Measurement{condition, "", rows_of(appearance)};
+  paint.appearance = appearance;
+  GONIO_ASSIGN(PaintFit fit, fitter.fit(paint));
+  return std::move(fit.lobes);
+}
+
 Result<EnvironmentPanels> EnvironmentPanels::make(const PrefilteredEnvironment& env,
                                                   const ViewingCondition& condition) {
   EnvironmentPanels panels;
@@ -105,10 +131,7 @@ Result<EnvironmentPanels> EnvironmentPanels::make(const PrefilteredEnvironment& 
   panels.luminance_ = most;
   panels.condition_ = condition;
   GONIO_ASSIGN(panels.white_, white_point(condition));
-  FitOptions options;
-  options.method = FitMethod::kL2;
-  options.target = TargetCurve::Kind::kCurve;
-  panels.fitter_ = std::make_shared<const PaintFitter>(Basis{"environment", panels.exponents_}, options);
+  panels.fitter_ = std::make_shared<const PaintFitter>(appearance_fitter(panels.exponents_));
   return panels;
 }
 
@@ -123,11 +146,7 @@ EnvironmentPanels::Light EnvironmentPanels::light(const Vec3& normal, const Vec3
 }
 
 Result<LobeFit> EnvironmentPanels::lobes(const Appearance& appearance) const {
-  Paint paint;
-  paint.measurement = Measurement{condition_, "", rows_of(appearance)};
-  paint.appearance = appearance;
-  GONIO_ASSIGN(PaintFit fit, fitter_->fit(paint));
-  return std::move(fit.lobes);
+  return appearance_lobes(*fitter_, appearance, condition_);
 }
 
 Lab EnvironmentPanels::color(const LobeFit& paint, const Light& light) const {

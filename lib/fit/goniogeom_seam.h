@@ -16,6 +16,13 @@ namespace goniochrome {
 
 class PaintFitter;
 
+// A fitter to these exponents of face, flop and travel alone, without gloss, by least squares.
+PaintFitter appearance_fitter(const std::vector<double>& exponents);
+
+// The lobes of face, flop and travel, whose Lab is relative to `condition`. Error: an illuminant without a known white.
+Result<LobeFit> appearance_lobes(const PaintFitter& fitter, const Appearance& appearance,
+                                 const ViewingCondition& condition);
+
 // One viewer of one place at the seam, and the light there: none means the environment's.
 struct SeamView {
   std::size_t point = 0;  // of the seam
@@ -33,6 +40,10 @@ std::vector<SeamView> views_at_seam(const Seam& seam, const GeometryList& geomet
 // do not see both panels, lights below both, and viewers within kIndexGlare_deg of a mirror direction.
 std::vector<SeamView> views_in_world(const Seam& seam, const std::vector<Vec3>& lights,
                                      const std::vector<Vec3>& viewers);
+
+// At most `most` of the places 0..count-1: all in order, or `most` spread by the golden ratio, so that no geometry that
+// comes round at every place is favored.
+std::vector<std::size_t> spread_places(std::size_t count, std::size_t most);
 
 // What a viewer sees of both panels; the view must have a light.
 PanelView panel_view(const Seam& seam, const SeamView& view);

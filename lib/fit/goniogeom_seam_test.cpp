@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace goniochrome {
@@ -24,6 +25,22 @@ Seam one_place(double fold_deg) {
 double difference_of(const FlakeCurve& curve, const PanelView& view) {
   return delta_e_76(panel_color(curve.at(view.aspecular_a_deg), view.cos_a),
                     panel_color(curve.at(view.aspecular_b_deg), view.cos_b));
+}
+
+TEST(SpreadPlaces, AreAllInOrderOrEvenlySpread) {
+  EXPECT_EQ(spread_places(3, 5), (std::vector<std::size_t>{0, 1, 2}));
+  EXPECT_TRUE(spread_places(0, 5).empty());
+  // Ten views at each of 200 places of a seam: by the golden ratio each view comes 40 times in 400, and no more than 4
+  // off, which is the spread of such a sequence over ten classes; every fifth place, the control, knows two views only.
+  std::vector<int> of_view(10), of_step(10);
+  const std::vector<std::size_t> some = spread_places(2000, 400);
+  ASSERT_EQ(some.size(), 400u);
+  for (std::size_t i = 0; i < some.size(); ++i) {
+    ASSERT_LT(some[i], 2000u);
+    ++of_view[some[i] % 10], ++of_step[5 * i % 10];
+  }
+  for (const int count : of_view) EXPECT_NEAR(count, 40, 4);
+  EXPECT_EQ(std::ranges::count(of_step, 0), 8);
 }
 
 // A ridge turns the second panel away from light on the first one's side and toward light on its own.

@@ -22,13 +22,8 @@ struct Rms {
 // The RMS difference that the best paint for the second panel leaves over these views.
 std::optional<double> best_left(const Appearance& a, const Paint& paint, const std::vector<PanelView>& views) {
   if (views.empty()) return std::nullopt;
-  // Spread by the golden ratio, so that no geometry that comes round at every place is favored.
   std::vector<PanelView> some;
-  for (std::size_t i = 0; i < std::min(views.size(), kMostFitted); ++i) {
-    const double part = views.size() <= kMostFitted ? static_cast<double>(i) / static_cast<double>(views.size())
-                                                    : std::fmod(static_cast<double>(i) * 0.6180339887498949, 1.0);
-    some.push_back(views[static_cast<std::size_t>(part * static_cast<double>(views.size()) + 1e-9)]);
-  }
+  for (const std::size_t i : spread_places(views.size(), kMostFitted)) some.push_back(views[i]);
   const auto fit = trompe_fit(a, paint.paint_class == PaintClass::kSolid, some, {});
   return fit.ok() ? std::optional<double>(fit->after.rms) : std::nullopt;
 }
@@ -76,21 +71,18 @@ std::vector<std::string> advice(const Paint& paint, const SeamRequest& request, 
   std::vector<std::string> lines;
   lines.push_back(
       fmt::format("1 high travel only on parallel panels: {}; {} is seen from {:.2g} deg on, the seam is out by {:.2g} "
-                  "deg (95 % of it "
-                  "less)",
+                  "deg (95 % of it less)",
                   verdict(index < fold), paint.name, index, fold));
   if (has_lights) {
     const double solid = largest_solid_difference(*appearance, seen, request.metric);
     lines.push_back(
         fmt::format("2 solid or low travel where panels are not flush: {}; a solid of this paint's color at 45 deg "
-                    "would show dE {:.2g} "
-                    "at most, this paint shows {:.2g}",
+                    "would show dE {:.2g} at most, this paint shows {:.2g}",
                     verdict(most >= request.threshold && solid < 0.7 * most), solid, most));
   }
   if (low.any() && high.any()) {
     lines.push_back(fmt::format(
-        "3 no seams that are seen at low aspecular angles: {}; rms dE {:.2g} up to {} deg aspecular, {:.2g} "
-        "beyond",
+        "3 no seams that are seen at low aspecular angles: {}; rms dE {:.2g} up to {} deg aspecular, {:.2g} beyond",
         verdict(low.value() >= request.threshold && low.value() > 1.5 * high.value()), low.value(), kLowAspecular_deg,
         high.value()));
   }
@@ -103,8 +95,7 @@ std::vector<std::string> advice(const Paint& paint, const SeamRequest& request, 
     const double limited = std::min(*near, *far);
     lines.push_back(
         fmt::format("5 a limited range of views: {}; with another paint on the second panel rms dE {:.2g} is left for "
-                    "all views, {:.2g} "
-                    "for those on one side of the highlight (trompe-fit)",
+                    "all views, {:.2g} for those on one side of the highlight (trompe-fit)",
                     verdict(*all >= request.threshold && limited < 0.7 * *all), *all, limited));
   }
   return lines;

@@ -113,35 +113,27 @@ Result<Image> swatches(const ViewingCondition& condition, const std::vector<Answ
   return image;
 }
 
-// Without gloss: highlights need not line up and would only hide what is to be compared.
-Result<Image> seam_pair(const SeamPair& pair) {
-  constexpr int kWidth = 760, kHeight = 620, kFoot = 110;
-  Basis basis{"picture", {1.5, 3, 6, 12, 25, 50, 100, 200}};
+namespace {
+
+constexpr int kHalfWidth = 760, kHalfHeight = 620, kSeamFoot = 110, kBetween = 10;
+
+// The mesh all in paint A, and with paint B on the second part. Without gloss: highlights need not line up and would
+// only hide what is to be compared.
+Result<std::array<Image, 2>> seam_halves(const SeamPair& pair) {
+  std::vector<double> exponents = {1.5, 3, 6, 12, 25, 50, 100, 200};
   if (pair.env != nullptr) {
-    basis.exponents.clear();
-    for (const PrefilteredLobe& lobe : pair.env->lobes) basis.exponents.push_back(lobe.exponent);
+    exponents.clear();
+    for (const PrefilteredLobe& lobe : pair.env->lobes) exponents.push_back(lobe.exponent);
   }
-  FitOptions fit_options;
-  fit_options.method = FitMethod::kL2;
-  fit_options.target = TargetCurve::Kind::kCurve;
-  const PaintFitter fitter(basis, fit_options);
-  const auto lobes = [&](const Appearance& appearance) -> Result<LobeFit> {
-    Paint paint;
-    paint.measurement = Measurement{condition_of(pair.a), "", rows_of(appearance)};
-    paint.appearance = appearance;
-    GONIO_ASSIGN(PaintFit fit, fitter.fit(paint));
-    return std::move(fit.lobes);
-  };
-  GONIO_ASSIGN(const LobeFit a, lobes(pair.answer.a));
-  GONIO_ASSIGN(const LobeFit b, lobes(pair.answer.fit.b));
+  const PaintFitter fitter = appearance_fitter(exponents);
+  GONIO_ASSIGN(const LobeFit a, appearance_lobes(fitter, pair.answer.a, condition_of(pair.a)));
+  GONIO_ASSIGN(const LobeFit b, appearance_lobes(fitter, pair.answer.fit.b, condition_of(pair.a)));
   LobeFit black;
   black.diffuse = (0.01 / M_PI) * Rgb{1, 1, 1};
-  for (const std::string& name : pair.dark)
-    if (std::ranges::find(pair.mesh->parts, name, &MeshPart::name) == pair.mesh->parts.end())
-      return input_error("the mesh has no part \"{}\", which --dark names", name);
 
   GONIO_ASSIGN(Renderer renderer, Renderer::create());
-  const Camera camera = seam_camera_from(*pair.seam, pair.viewer, static_cast<double>(kWidth) / kHeight, 10, 1.15);
+  const Camera camera =
+      seam_camera_from(*pair.seam, pair.viewer, static_cast<double>(kHalfWidth) / kHalfHeight, 10, 1.15);
   std::array<Image, 2> halves;
   Scene scene;
   scene.mesh = pair.mesh, scene.env = pair.env;
@@ -153,33 +145,46 @@ Result<Image> seam_pair(const SeamPair& pair) {
                              : after == 1 && part.name == pair.part_b                   ? b
                                                                                         : a);
     GONIO_TRY(renderer.load(scene));
-    GONIO_ASSIGN(Frame frame, renderer.draw(camera, kWidth, kHeight, 16));
+    GONIO_ASSIGN(Frame frame, renderer.draw(camera, kHalfWidth, kHalfHeight, 16));
     halves[static_cast<std::size_t>(after)] = std::move(frame.picture);
   }
-  // One exposure for both: 99 of 100 pixels of the first are below the display's white.
+  return halves;
+}
+
+// The exposure at which 99 of 100 pixels of the mesh are below the display's white.
+double stops_of(const Image& picture) {
   std::vector<double> luminances;
-  for (std::size_t i = 0; i < halves[0].data.size(); i += 4)
-    if (halves[0].data[i + 3] > 0.99F)
-      luminances.push_back(xyz_d65_from_rgb({halves[0].data[i], halves[0].data[i + 1], halves[0].data[i + 2]}).Y);
-  double stops = 0;
-  if (!luminances.empty()) {
-    std::ranges::sort(luminances);
-    stops = std::log2(0.75 / std::max(1e-6, luminances[luminances.size() * 99 / 100]));
-  }
+  for (std::size_t i = 0; i < picture.data.size(); i += 4)
+    if (picture.data[i + 3] > 0.99F)
+      luminances.push_back(xyz_d65_from_rgb({picture.data[i], picture.data[i + 1], picture.data[i + 2]}).Y);
+  if (luminances.empty()) return 0;
+  std::ranges::sort(luminances);
+  return std::log2(0.75 / std::max(1e-6, luminances[luminances.size() * 99 / 100]));
+}
+
+}  // namespace
+
+Result<Image> seam_pair(const SeamPair& pair) {
+  for (const std::string& name : pair.dark)
+    if (std::ranges::find(pair.mesh->parts, name, &MeshPart::name) == pair.mesh->parts.end())
+      return input_error("the mesh has no part \"{}\", which --dark names", name);
+  GONIO_ASSIGN(const auto halves, seam_halves(pair));
   GONIO_ASSIGN(const Display display, Display::make(""));
-  Image image = blank(2 * kWidth + 10, kHeight + kFoot);
+  const double stops = stops_of(halves[0]);
+  Image image = blank(2 * kHalfWidth + kBetween, kHalfHeight + kSeamFoot);
   for (int after = 0; after < 2; ++after) {
     GONIO_ASSIGN(const Image shown, display.image(halves[static_cast<std::size_t>(after)], stops));
-    for (int y = 0; y < kHeight; ++y)
-      for (int x = 0; x < kWidth; ++x) std::copy_n(shown.pixel(x, y), 3, image.pixel(after * (kWidth + 10) + x, y));
+    for (int y = 0; y < kHalfHeight; ++y)
+      for (int x = 0; x < kHalfWidth; ++x)
+        std::copy_n(shown.pixel(x, y), 3, image.pixel(after * (kHalfWidth + kBetween) + x, y));
   }
   const TrompeErrors &before = pair.answer.before, &found = pair.answer.after;
-  draw_label(image, 20, kHeight + 20, fmt::format("one paint: dE rms {:.2f} max {:.2f}", before.rms, before.max), 3,
+  draw_label(image, 20, kHalfHeight + 20, fmt::format("one paint: dE rms {:.2f} max {:.2f}", before.rms, before.max), 3,
              kInk);
-  draw_label(image, kWidth + 30, kHeight + 20,
+  draw_label(image, kHalfWidth + 30, kHalfHeight + 20,
              fmt::format("{} on {}: dE rms {:.2f} max {:.2f}", pair.answer.name, pair.part_b, found.rms, found.max),
              label_width(pair.answer.name + pair.part_b, 3) > 330 ? 2 : 3, kInk);
-  draw_label(image, 20, kHeight + 62, pair.a.name, 2, kInk);
+  draw_label(image, 20, kHalfHeight + 62, pair.a.name, 2, kInk);
   return image;
 }
 

@@ -14,17 +14,6 @@ namespace {
 
 constexpr std::size_t kMostFitted = 400;  // views that a fit looks at; all views judge it
 
-// Spread by the golden ratio, so that no geometry that comes round at every place is favored.
-std::vector<SeamView> some_of(const std::vector<SeamView>& views) {
-  if (views.size() <= kMostFitted) return views;
-  std::vector<SeamView> some;
-  for (std::size_t i = 0; i < kMostFitted; ++i) {
-    const double part = std::fmod(static_cast<double>(i) * 0.6180339887498949, 1.0);
-    some.push_back(views[static_cast<std::size_t>(part * static_cast<double>(views.size()))]);
-  }
-  return some;
-}
-
 std::vector<PanelView> panel_views(const Seam& seam, const std::vector<SeamView>& views) {
   std::vector<PanelView> seen;
   for (const SeamView& view : views) seen.push_back(panel_view(seam, view));
@@ -62,7 +51,7 @@ class SeamRun {
  private:
   Result<void> prepare() {
     GONIO_ASSIGN(stage_, seam_stage(options_.seam, request_.world, request_.geometries, options_.seam_deg));
-    fitted_ = some_of(stage_.views);
+    for (const std::size_t i : spread_places(stage_.views.size(), kMostFitted)) fitted_.push_back(stage_.views[i]);
     std::vector<double> folds;
     for (const SeamPoint& p : stage_.seam.points) folds.push_back(p.fold_deg);
     std::ranges::sort(folds);
