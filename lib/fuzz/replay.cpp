@@ -34,6 +34,19 @@ Corpus corpus_in(const std::string& folder) {
   return corpus;
 }
 
+// Words that stand for extremes: of numbers, and of what parts them.
+const std::vector<std::string> kWords = [] {
+  std::vector<std::string> words = {"0", "-1", "1e308", "-1e400", "1e-400", "nan", "inf", "4294967296"};
+  for (const char* word : {"-9223372036854775809", "1.5,2", "</a>", "<!--", "]]>", "\xff\xff\xff\xff", "\xef\xbb\xbf",
+                           "\xed\xa0\x80", "\r\n"})
+    words.emplace_back(word);
+  for (const char letter : {'\n', '\t', '\0', ',', ';', '"', '\'', '<', '>', '&', '/', '#'})
+    words.emplace_back(1, letter);
+  words.emplace_back(8, '\0');
+  words.emplace_back(300, '9');
+  return words;
+}();
+
 // One to eight changes of the kinds that break readers: bits, bytes, cuts, repetitions, pieces of other inputs, and
 // words that stand for extremes.
 class Mutator {
@@ -53,37 +66,6 @@ class Mutator {
   const std::string& any_input() { return corpus_[below(corpus_.size())]; }
 
   void change(std::string& bytes) {
-    static const std::vector<std::string> words = {"0",
-                                                   "-1",
-                                                   "1e308",
-                                                   "-1e400",
-                                                   "1e-400",
-                                                   "nan",
-                                                   "inf",
-                                                   "4294967296",
-                                                   "-9223372036854775809",
-                                                   "\n",
-                                                   "\r\n",
-                                                   ",",
-                                                   ";",
-                                                   "\"",
-                                                   "'",
-                                                   "<",
-                                                   ">",
-                                                   "&",
-                                                   "\0",
-                                                   "/",
-                                                   "<!--",
-                                                   "]]>",
-                                                   "\t",
-                                                   "#",
-                                                   "1.5,2",
-                                                   "</a>",
-                                                   "\xff\xff\xff\xff",
-                                                   "\xef\xbb\xbf",
-                                                   "\xed\xa0\x80",
-                                                   std::string(8, '\0'),
-                                                   std::string(300, '9')};
     const std::size_t at = below(bytes.size() + 1), length = below(bytes.size() - at + 1);
     switch (below(8)) {
       case 0:
@@ -102,10 +84,10 @@ class Mutator {
         bytes.insert(at, bytes.substr(at, std::min<std::size_t>(length, 200)));
         break;
       case 5:
-        bytes.insert(at, words[below(words.size())]);
+        bytes.insert(at, kWords[below(kWords.size())]);
         break;
       case 6: {
-        const std::string& word = words[below(words.size())];
+        const std::string& word = kWords[below(kWords.size())];
         bytes.replace(at, std::min(word.size(), bytes.size() - at), word);
         break;
       }

@@ -187,35 +187,30 @@ double nearest_distance(const RimTree& a, const RimTree& b) {
   return least;
 }
 
-}  // namespace
-
-Result<Seam> seam_between(const Mesh& mesh, const std::string& part_a, const std::string& part_b,
-                          const SeamOptions& options) {
-  if (part_a == part_b) return input_error("the seam is between \"{}\" and itself: name two parts", part_a);
-  GONIO_ASSIGN(const MeshPart* a, part_of(mesh, part_a));
-  GONIO_ASSIGN(const MeshPart* b, part_of(mesh, part_b));
-  const Box box = bounding_box(mesh);
-  const double size = length(box.high - box.low), spacing = size / 1000;
-  Seam seam;
-  seam.unit_guessed = !(options.unit_m > 0);
-  seam.unit_m = seam.unit_guessed ? (size > 30 ? 1e-3 : 1) : options.unit_m;
-  const double limit = options.max_gap_mm > 0 ? options.max_gap_mm * 1e-3 / seam.unit_m : size / 100;
-
+// The two rims as they are seen from outside; notes what was repaired.
+Result<std::array<Rim, 2>> seen_rims(const Mesh& mesh, const std::array<const MeshPart*, 2>& parts, double size,
+                                     Seam::Repairs& repairs) {
   const Cover cover(mesh);
-  std::array<Rim, 2> rims = {rim_of(mesh, *a, size), rim_of(mesh, *b, size)};
-  for (Rim& rim : rims) {
+  std::array<Rim, 2> rims;
+  for (std::size_t i = 0; i < 2; ++i) {
+    Rim& rim = rims[i] = rim_of(mesh, *parts[i], size);
     if (rim.edges.empty())
       return input_error(
           "part \"{}\" has no open edge, fold or tight bend where its skin ends: there is nothing to make a seam of",
-          &rim == &rims[0] ? part_a : part_b);
-    seam.repairs.duplicate_faces += rim.duplicate_faces;
-    seam.repairs.non_manifold_edges += rim.non_manifold_edges;
-    seam.repairs.turned += keep_what_is_seen(rim, cover, size);
+          parts[i]->name);
+    repairs.duplicate_faces += rim.duplicate_faces;
+    repairs.non_manifold_edges += rim.non_manifold_edges;
+    repairs.turned += keep_what_is_seen(rim, cover, size);
     if (rim.edges.empty())
       return input_error("every edge of part \"{}\" is covered by other surfaces: there is no seam to be seen",
-                         &rim == &rims[0] ? part_a : part_b);
+                         parts[i]->name);
   }
-  const RimTree rim_a(std::move(rims[0])), rim_b(std::move(rims[1]));
+  return rims;
+}
+
+// The places `spacing` apart where edges face each other across at most `limit`, not in order.
+std::vector<SeamPoint> facing_points(const RimTree& rim_a, const RimTree& rim_b, double limit, double spacing,
+                                     Seam& seam) {
   std::vector<SeamPoint> points;
   for (const RimEdge& edge : rim_a.rim().edges) {
     const Vec3 way = edge.p1 - edge.p0;
@@ -241,19 +236,40 @@ Result<Seam> seam_between(const Mesh& mesh, const std::string& part_a, const std
       points.push_back(p);
     }
   }
-  if (points.empty()) {
-    const double nearest = nearest_distance(rim_a, rim_b);
-    if (nearest > limit)
-      return input_error(
-          "\"{}\" and \"{}\" do not touch: their edges are {:.4g} mm apart at the nearest, and a gap up to {:.4g} mm "
-          "is a seam",
-          part_a, part_b, nearest * seam.unit_m * 1e3, limit * seam.unit_m * 1e3);
+  return points;
+}
+
+Error no_seam(const MeshPart& a, const MeshPart& b, double nearest_mm, double limit_mm) {
+  if (nearest_mm > limit_mm)
     return input_error(
-        "the surfaces of \"{}\" and \"{}\" come near each other and nowhere continue each other within 30 deg: there "
-        "is "
-        "nothing to match",
-        part_a, part_b);
-  }
+        "\"{}\" and \"{}\" do not touch: their edges are {:.4g} mm apart at the nearest, and a gap up to {:.4g} mm is "
+        "a "
+        "seam",
+        a.name, b.name, nearest_mm, limit_mm);
+  return input_error(
+      "the surfaces of \"{}\" and \"{}\" come near each other and nowhere continue each other within 30 deg: there is "
+      "nothing to match",
+      a.name, b.name);
+}
+
+}  // namespace
+
+Result<Seam> seam_between(const Mesh& mesh, const std::string& part_a, const std::string& part_b,
+                          const SeamOptions& options) {
+  if (part_a == part_b) return input_error("the seam is between \"{}\" and itself: name two parts", part_a);
+  GONIO_ASSIGN(const MeshPart* a, part_of(mesh, part_a));
+  GONIO_ASSIGN(const MeshPart* b, part_of(mesh, part_b));
+  const Box box = bounding_box(mesh);
+  const double size = length(box.high - box.low), spacing = size / 1000;
+  Seam seam;
+  seam.unit_guessed = !(options.unit_m > 0);
+  seam.unit_m = seam.unit_guessed ? (size > 30 ? 1e-3 : 1) : options.unit_m;
+  const double unit_mm = seam.unit_m * 1e3, limit = options.max_gap_mm > 0 ? options.max_gap_mm / unit_mm : size / 100;
+
+  GONIO_ASSIGN(auto rims, seen_rims(mesh, {a, b}, size, seam.repairs));
+  const RimTree rim_a(std::move(rims[0])), rim_b(std::move(rims[1]));
+  std::vector<SeamPoint> points = facing_points(rim_a, rim_b, limit, spacing, seam);
+  if (points.empty()) return no_seam(*a, *b, nearest_distance(rim_a, rim_b) * unit_mm, limit * unit_mm);
   seam.points = in_order(std::move(points), spacing);
   for (std::size_t i = 0; i < seam.points.size(); ++i) {
     seam.points[i].distance_m *= seam.unit_m;
