@@ -52,9 +52,4 @@ ExponentBlend exponent_blend(double exponent, const std::vector<double>& stored)
   return {lower, std::log(exponent / low) / std::log(*upper / low)};
 }
 
-double mip_level(double exponent, double finest, int levels) {
-  if (!(exponent > 0)) return levels - 1;
-  return std::clamp(0.5 * std::log2(finest / exponent), 0.0, levels - 1.0);
-}
-
 }  // namespace goniochrome

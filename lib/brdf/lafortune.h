@@ -28,7 +28,7 @@ double scaled_power(double scale, double x, double exponent);
 // f(wi,wo) in 1/sr; 0 where a direction is below the surface.
 Rgb brdf(const Lafortune& surface, const Vec3& to_light, const Vec3& to_viewer);
 
-// What a lobe asks of a prefiltered environment: L = weight * P_n(direction), P_n of theory ENVIRONMENTS.
+// What a lobe asks of a prefiltered environment: L = weight * P_n(direction), P_n of theory PREFILTERING.
 struct LobeFetch {
   Vec3 direction = {0, 0, 1};  // unit, in the frame of the surface
   Rgb weight;                  // rho_s |p|^n max(0, n.p/|p|) 2 pi/(n+1); 0 where the lobe's peak is below the surface
@@ -42,9 +42,5 @@ struct ExponentBlend {
   double upper_weight = 0;
 };
 ExponentBlend exponent_blend(double exponent, const std::vector<double>& stored);
-
-// The exponents of one mip-mapped cube: `finest` at level 0, and a quarter of it at each coarser level, whose texels
-// are twice as wide, for a lobe's width goes as 1/sqrt(n). Level of an exponent, as a fraction, 0..levels-1.
-double mip_level(double exponent, double finest, int levels);
 
 }  // namespace goniochrome

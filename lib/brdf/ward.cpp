@@ -4,9 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "brdf/lobe_model.h"
-#include "math/least_squares.h"
-
 namespace goniochrome {
 
 // With h = (wi+wo)/|wi+wo|, c_h = h.n and c = h.wi,
@@ -33,10 +30,6 @@ double ward(const Vec3& to_light, const Vec3& to_viewer, const Anisotropy& alpha
 
 double lobe_alpha(double exponent) {
   return std::sqrt(0.5 / exponent);
-}
-
-double lobe_exponent(double alpha) {
-  return 0.5 / (alpha * alpha);
 }
 
 namespace {
@@ -115,34 +108,6 @@ Result<TiltSet> ward_tilts(const Anisotropy& alpha, double narrow_alpha, double 
   }
   for (Tilt& tilt : set.tilts) tilt.weight /= total;
   return set;
-}
-
-// The lobe over half vectors is exp(-2 (1 - cos t)/alpha^2) at an angle t from the normal, where the aspecular angle is
-// 2t. A sum of cosine lobes of that shape, drawn as c sum_j K_j 2 pi/(E_j+1) P_Ej, has the albedo c of a narrow Ward
-// lobe at every angle of view where sum_j K_j 2 pi/(E_j+1) = 1.
-WardLobes isotropic_ward_lobes(double alpha, const std::vector<double>& exponents) {
-  constexpr int kSamples = 60;
-  const int lobes = static_cast<int>(exponents.size());
-  const double limit_rad = std::min(std::numbers::pi / 2, 6 * alpha);  // exp(-9) of the peak
-  Matrix m(kSamples, lobes);
-  std::vector<double> target(kSamples), area(kSamples);
-  for (int i = 0; i < kSamples; ++i) {
-    const double as_rad = limit_rad * (i + 0.5) / kSamples;
-    area[i] = std::sqrt(std::sin(as_rad));  // of the ring on the sphere, as a weight on squares
-    target[i] = area[i] * std::exp(-4 * std::pow(std::sin(as_rad / 4) / alpha, 2));
-    for (int j = 0; j < lobes; ++j) m(i, j) = area[i] * cos_power(as_rad, exponents[j]);
-  }
-  const NonNegativeFit fit = nnls(m, target);
-  double energy = 0, squares = 0, areas = 0;
-  for (int j = 0; j < lobes; ++j) energy += fit.x[j] * 2 * std::numbers::pi / (exponents[j] + 1);
-  for (int i = 0; i < kSamples; ++i) {
-    double residual = -target[i];
-    for (int j = 0; j < lobes; ++j) residual += m(i, j) * fit.x[j];
-    squares += residual * residual, areas += area[i] * area[i];
-  }
-  WardLobes result = {fit.x, std::sqrt(squares / areas)};
-  for (double& k : result.directional_diffuse) k = energy > 0 ? k / energy : 0;
-  return result;
 }
 
 }  // namespace goniochrome

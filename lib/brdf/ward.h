@@ -35,16 +35,7 @@ constexpr int kMostTilts = 8192;
 // tilt where the lobe is isotropic. Error: alpha not positive.
 Result<TiltSet> ward_tilts(const Anisotropy& alpha, double narrow_alpha, double tolerance, int max_count = kMostTilts);
 
-// The Ward alpha as wide as cos^E of the aspecular angle: sqrt(1/(2E)), and back.
+// The Ward alpha as wide as cos^E of the aspecular angle: sqrt(1/(2E)), E > 0.
 double lobe_alpha(double exponent);
-double lobe_exponent(double alpha);
-
-// Weights K_DD in 1/sr of cos^E lobes, one for each exponent, that draw an isotropic Ward lobe of strength 1: closest
-// to its shape, with its energy.
-struct WardLobes {
-  std::vector<double> directional_diffuse;
-  double error = 0;  // RMS of the shape over the sphere, relative to the peak
-};
-WardLobes isotropic_ward_lobes(double alpha, const std::vector<double>& exponents);
 
 }  // namespace goniochrome

@@ -172,21 +172,5 @@ TEST(Ward, TiltsOfExtremeAndSwappedAxes) {
   EXPECT_EQ(ward_tilts({0.2, 0.2}, 0, 0.01)->tilts.size(), 1u);
 }
 
-TEST(Ward, LobesOfTheIsotropicLobe) {
-  EXPECT_NEAR(lobe_exponent(lobe_alpha(70)), 70, 1e-12);
-  // A basis that holds the very lobe: cos^E and the Gaussian agree to the order of t^4 E, 1/E.
-  EXPECT_LE(isotropic_ward_lobes(lobe_alpha(900), {900}).error, 1.0 / 900);
-  const std::vector<double> exponents = {5, 20, 70, 250, 900, 3000};
-  for (const double alpha : {0.03, 0.1, 0.25}) {
-    const WardLobes lobes = isotropic_ward_lobes(alpha, exponents);
-    // A Gaussian between neighbors of ratio 3.5 is met to a few per cent of its peak.
-    EXPECT_LE(lobes.error, 0.03) << alpha;
-    double energy = 0;
-    for (std::size_t j = 0; j < exponents.size(); ++j)
-      energy += lobes.directional_diffuse[j] * 2 * M_PI / (exponents[j] + 1);
-    EXPECT_NEAR(energy, 1, 1e-14) << alpha;
-  }
-}
-
 }  // namespace
 }  // namespace goniochrome

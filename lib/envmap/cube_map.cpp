@@ -49,11 +49,6 @@ double cube_cell_solid_angle(double s0, double s1, double t0, double t1) {
   return corner(s1, t1) - corner(s0, t1) - corner(s1, t0) + corner(s0, t0);
 }
 
-double cube_texel_solid_angle(int column, int row, int n) {
-  const auto edge = [n](int i) { return 2.0 * i / n - 1; };
-  return cube_cell_solid_angle(edge(column), edge(column + 1), edge(row), edge(row + 1));
-}
-
 namespace {
 
 Vec3 texel(const CubeMap& map, int face, int column, int row) {

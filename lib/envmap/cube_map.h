@@ -34,10 +34,7 @@ struct CubePosition {
 };
 CubePosition cube_position(const Vec3& direction, int n);
 
-// Exact solid angle (sr) of a texel. The texels of a cube sum to 4 pi.
-double cube_texel_solid_angle(int column, int row, int n);
-
-// Exact solid angle (sr) of the cell [s0,s1] x [t0,t1] of a face that spans -1..1.
+// Exact solid angle (sr) of the cell [s0,s1] x [t0,t1] of a face that spans -1..1; six faces are 4 pi.
 double cube_cell_solid_angle(double s0, double s1, double t0, double t1);
 
 // Bilinear lookup between texel centers, across face edges as OpenGL's seamless filtering does it (at a corner the

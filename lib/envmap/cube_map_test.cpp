@@ -32,9 +32,11 @@ TEST(CubeMap, faces_point_along_their_axes) {
 
 TEST(CubeMap, solid_angles_sum_to_the_sphere) {
   for (const int n : {1, 2, 3, 16, 255, 1024}) {
+    const auto edge = [n](int i) { return 2.0 * i / n - 1; };
     double sum = 0;
     for (int row = 0; row < n; ++row)
-      for (int column = 0; column < n; ++column) sum += cube_texel_solid_angle(column, row, n);
+      for (int column = 0; column < n; ++column)
+        sum += cube_cell_solid_angle(edge(column), edge(column + 1), edge(row), edge(row + 1));
     EXPECT_NEAR(6 * sum / (4 * M_PI), 1, 1e-13 * n) << n;  // n^2 texels, each off by some 1e-16 absolute
   }
 }

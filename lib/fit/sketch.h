@@ -19,7 +19,6 @@ namespace goniochrome {
 struct SketchLimits {
   double median_de76 = 10;     // half of the pixels may differ by more than the found paint explains
   double least_span_deg = 20;  // of aspecular angles
-  double most_condition = 1e4;
 };
 
 struct SketchFit {
@@ -37,9 +36,8 @@ struct SketchFit {
   std::vector<float> de76;  // of every used pixel, in the order of SketchPixels::used; where asked for
 };
 
-// One directional light, exactly: the lobe curve or the clamped quadratic, whichever explains the pixels better.
-// The search for face, flop, travel and gloss
-// in lobes of `basis` is preferred where it explains them as well.
+// One directional light, exactly: the lobe curve or the clamped quadratic, whichever explains the pixels better. The
+// search for face, flop, travel and gloss in lobes of `basis` is preferred where it explains them as well.
 SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, const Basis& basis,
                        const SketchLimits& limits, bool with_differences);
 

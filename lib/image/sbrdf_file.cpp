@@ -2,15 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 
 #include "image/image.h"
 
 namespace goniochrome {
-
-bool names_sbrdf(const std::string& path) {
-  return std::string_view(path).ends_with(".sbrdf.exr");
-}
 
 namespace {
 

@@ -14,7 +14,4 @@ namespace goniochrome {
 // value that is not finite.
 Result<SbrdfTexture> read_sbrdf(const std::string& path);
 
-// Whether a path names such a file: it ends in `.sbrdf.exr`.
-bool names_sbrdf(const std::string& path);
-
 }  // namespace goniochrome

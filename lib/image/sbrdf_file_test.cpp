@@ -71,8 +71,6 @@ TEST_F(SbrdfFile, TellsWhatIsWrong) {
   values[9] = -1;
   EXPECT_NE(told(kChannels, values).find("lobe0.n of texel (0,0) is -1"), std::string::npos);
   EXPECT_NE(told({"R", "G", "B"}, {1, 1, 1}).find("diffuse.R is missing"), std::string::npos);
-  EXPECT_TRUE(names_sbrdf("a/b.sbrdf.exr"));
-  EXPECT_FALSE(names_sbrdf("b.exr"));
 }
 
 TEST_F(SbrdfFile, TheTexturesOfTheTestData) {
