@@ -38,28 +38,37 @@ class Settings:
                 f"render-osmesa {' '.join(self.render_words())}")
 
 
-def basis_file(run, name):
-    if name not in STEEP:
-        return run.data / f"{name}.basis.xml"
-    path = run.work / f"{name}.basis.xml"
+def write_steep(path, name):
+    """Writes one of the bases above."""
     exponents = "".join(f"<exponent>{e}</exponent>" for e in STEEP[name])
     path.write_text(f'<basis xmlns="urn:goniochrome:basis:1" name="{name}">{exponents}<mirror/></basis>\n')
-    return path
 
 
 class Scene:
     """A paint on a mesh under a probe. Stages that two settings share run once, for all scenes of a run, and count for each."""
 
-    def __init__(self, run, paint, probe=None, frame=CAMERA, checks=40):
+    def __init__(self, run, paint, probe=None, frame=CAMERA, checks=40, *, mesh=None, basis=None, fitting=()):
         self.run, self.paint, self.probe = run, paint, probe or run.probe
-        self.frame, self.checks = frame, checks
+        self.mesh, self.frame, self.checks = mesh or run.mesh, frame, checks
+        self.basis = basis  # the file of the only one, in place of those that Settings name
+        self.fitting = fitting  # more words for fit-paint
+
+    def basis_file(self, settings):
+        if self.basis:
+            return self.basis
+        if settings.basis not in STEEP:
+            return self.run.data / f"{settings.basis}.basis.xml"
+        path = self.run.work / f"{settings.basis}.basis.xml"
+        write_steep(path, settings.basis)
+        return path
 
     def fit(self, settings):
         """(the fitted library, the paint's mean dE00 at its readings, seconds for one paint)"""
-        key = (settings.basis, *settings.fit_words())
+        key = (settings.basis, *settings.fit_words(), *self.fitting)
         if key not in self.run.kept:
             out = self.run.work / f"{'-'.join(key)}.xml"
-            results, seconds, _ = self.run.repeated("fit-paint", "--basis", basis_file(self.run, settings.basis), *settings.fit_words(), self.run.paints, "-o", out)
+            words = ("--basis", self.basis_file(settings), *settings.fit_words(), *self.fitting, self.run.paints, "-o", out)
+            results, seconds, _ = self.run.repeated("fit-paint", *words)
             self.run.kept[key] = out, {p["name"]: p["de00_mean"] for p in results["paints"]}, seconds / len(results["paints"])
         out, de00, seconds = self.run.kept[key]
         if de00.get(self.paint) is None:
@@ -70,14 +79,16 @@ class Scene:
         """(the prefiltered probe, seconds)"""
         key = (self.probe, settings.basis, settings.prefilter)
         if key not in self.run.kept:
-            out = self.run.work / f"{self.probe.stem}-{settings.basis}-{settings.prefilter:g}.env.exr"
-            _, seconds, _ = self.run.repeated("prefilter-envmap", self.probe, "--basis", basis_file(self.run, settings.basis), "--tolerance", settings.prefilter, "--verify", 0, "-o", out)
+            out = self.run.work / f"{len(self.run.kept)}-{self.probe.stem}.env.exr"  # probes of two folders may share a name
+            words = ("--basis", self.basis_file(settings), "--tolerance", settings.prefilter, "--verify", 0, "-o", out)
+            _, seconds, _ = self.run.repeated("prefilter-envmap", self.probe, *words)
             self.run.kept[key] = out, seconds
         return self.run.kept[key]
 
     def words(self, settings):
         fitted, env = self.fit(settings)[0], self.environment(settings)[0]
-        return ("--mesh", self.run.mesh, "--paint", f"{fitted}#{self.paint}", "--env", env, *self.frame, *settings.render_words(), "-o", self.run.work / "picture.exr")
+        return ("--mesh", self.mesh, "--paint", f"{fitted}#{self.paint}", "--env", env, *self.frame, *settings.render_words(),
+                "-o", self.run.work / "picture.exr")
 
     def cost(self, settings, *more):
         """Seconds by stage, and the least milliseconds of a frame."""
@@ -92,6 +103,8 @@ class Scene:
         """dE00 of the fit to the readings and of the picture to the reference integrator, the time of shading, and the plan."""
         results, _ = self.run.tool("render-osmesa", *self.words(settings), *more, "--check", checks or self.checks)
         error = results["error"]
+        if not error["checked_pixels"]:
+            raise Failed(f"{self.mesh}: not a pixel of it is in the picture, seen by {' '.join(self.frame)}")
         return {"fit_de00": self.fit(settings)[1], "render_de00": error["de00_mean"], "render_p95": error["de00_p95"],
                 "shading_ms": results["left_out"]["shading_ms"], "plan": results.get("plan", [])}
 

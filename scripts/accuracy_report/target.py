@@ -23,68 +23,101 @@ def scene_of(run, text):
     return Scene(run, paint, data if data.is_file() else pathlib.Path(probe).resolve(), checks=CHOOSING)
 
 
-def fits(scene, basis):
-    """Every fit to a basis, cheapest first: (settings, dE00 of the fit)."""
+@dataclasses.dataclass
+class Job:
+    """What shares its settings: paints of a library, each in the same scenes, of which a few paints stand for all."""
+
+    scenes: list  # of all these paints
+    paints: int = 1  # in the library
+    bases: tuple = BASES  # to choose from
+    proving: int = PROVING
+
+    def seconds(self, settings):
+        """Processor time of all stages: every paint is fitted, and drawn in its scenes; every probe is filtered once."""
+        costs = [scene.cost(settings) for scene in self.scenes]
+        shown = len({scene.paint for scene in self.scenes})
+        filtered = {scene.probe: cost["prefilter_s"] for scene, cost in zip(self.scenes, costs)}
+        return self.paints * (costs[0]["fit_s"] + sum(cost["render_s"] for cost in costs) / shown) + sum(filtered.values())
+
+    def errors(self, settings, *more, checks=None):
+        return [scene.error(settings, *more, checks=checks) for scene in self.scenes]
+
+
+@dataclasses.dataclass
+class Answer:
+    """Settings, and what a check of every scene found."""
+
+    settings: Settings
+    errors: list
+
+    def worst(self):
+        return max(range(len(self.errors)), key=lambda i: total_de00(self.errors[i]))
+
+    def de00(self):
+        return total_de00(self.errors[self.worst()])
+
+
+def fits(job, basis):
+    """Every fit to a basis, cheapest first: (settings, dE00 of the fit in each scene)."""
     every = [Settings(basis, method, views, MAXIMAL.prefilter, "all") for method, views in itertools.product(METHODS, (False, True))]
-    return [(s, scene.fit(s)[1]) for s in sorted(every, key=lambda s: scene.fit(s)[2])]
+    return [(s, [scene.fit(s)[1] for scene in job.scenes]) for s in sorted(every, key=lambda s: job.scenes[0].fit(s)[2])]
 
 
-def with_all_effects(scene, basis):
-    """(time of all stages, settings) for every tolerance of the prefilter, with the truest fit."""
-    fit = min(fits(scene, basis), key=lambda f: f[1])[0]
-    for tolerance in TOLERANCES:
-        settings = dataclasses.replace(fit, prefilter=tolerance)
-        yield total_s(scene.cost(settings)), settings
+def with_all_effects(job, basis):
+    """(time of all stages, settings) for every tolerance of the prefilter, with the truest fit, cheapest first."""
+    fit = min(fits(job, basis), key=lambda f: max(f[1]))[0]
+    every = [dataclasses.replace(fit, prefilter=tolerance) for tolerance in TOLERANCES]
+    return sorted(((job.seconds(settings), settings) for settings in every), key=lambda row: row[0])
 
 
-def with_fewer_effects(scene, settings):
-    """(time, settings) of the tolerances of render-osmesa that are worth their error."""
-    whole = total_s(scene.cost(settings))
-    for effects in EFFECTS:
-        fewer = dataclasses.replace(settings, effects=effects)
-        seconds = total_s(scene.cost(fewer))
-        if seconds < WORTH_IT * whole:
-            yield seconds, fewer
+def with_fewer_effects(job, settings):
+    """Settings with the tolerances of render-osmesa that are worth their error, cheapest first."""
+    whole = job.seconds(settings)
+    every = [dataclasses.replace(settings, effects=effects) for effects in EFFECTS]
+    timed = sorted(((job.seconds(fewer), fewer) for fewer in every), key=lambda row: row[0])
+    return [fewer for seconds, fewer in timed if seconds < WORTH_IT * whole]
 
 
-def proven(scene, settings, target):
+def proven(job, settings, target):
     """The first check, at a few pixels, with the cheapest fit that leaves room for what the picture misses; then another
-    at many other pixels: (settings, what that found, pixels), or None."""
-    missed = scene.error(settings)["render_de00"]
-    enough = [s for s, de00 in fits(scene, settings.basis) if de00 + missed <= target]
+    at many other pixels, which is the Answer. None where no fit leaves room."""
+    missed = [error["render_de00"] for error in job.errors(settings)]
+    enough = [s for s, de00 in fits(job, settings.basis) if all(fit + picture <= target for fit, picture in zip(de00, missed))]
     if not enough:
         return None
     chosen = dataclasses.replace(enough[0], prefilter=settings.prefilter, effects=settings.effects)
-    proof = scene.error(chosen, "--seed", 2, checks=PROVING)
-    return (chosen, proof) if total_de00(proof) <= target else None
+    return Answer(chosen, job.errors(chosen, "--seed", 2, checks=job.proving))
 
 
-def found(scene, target):
-    """(settings, proof) of the cheapest settings within the target, or None. From the cheapest upward; first, though,
-    whether the most exact of a basis are within the target at all. Fewer effects are looked at where all were enough."""
-    table = []
-    for basis in BASES:
-        rows = sorted(with_all_effects(scene, basis), key=lambda row: row[0])
-        if total_de00(scene.error(rows[-1][1])) <= target:
+def found(job, target):
+    """The Answer of the cheapest settings within the target; where none are, of those that came nearest. From the
+    cheapest upward; first, though, whether the most exact of a basis are within the target at all. Fewer effects are
+    looked at where all were enough."""
+    table, firsts, proofs = [], [], []
+    for basis in job.bases:
+        rows = with_all_effects(job, basis)
+        finest = min((settings for _, settings in rows), key=lambda settings: settings.prefilter)
+        firsts.append(Answer(finest, job.errors(finest)))
+        if firsts[-1].de00() <= target:
             table += rows
     for _, settings in sorted(table, key=lambda row: row[0]):
-        answer = proven(scene, settings, target)
-        if not answer:
-            continue
-        cheaper = (proven(scene, fewer, target) for _, fewer in sorted(with_fewer_effects(scene, settings), key=lambda row: row[0]))
-        return next((a for a in cheaper if a), answer)
-    return None
+        answer = proven(job, settings, target)
+        if answer and answer.de00() <= target:
+            cheaper = (proven(job, fewer, target) for fewer in with_fewer_effects(job, settings))
+            return next((a for a in cheaper if a and a.de00() <= target), answer)
+        proofs += [answer] if answer else []
+    return min(proofs or firsts, key=Answer.de00)
 
 
 def told(scene, target):
     """Prints what was found for a scene; returns whether the target was reached."""
     name = f"{scene.paint}, {scene.probe.stem}"
     dearest = scene.picture(MAXIMAL)
-    answer = found(scene, target)
-    if not answer:
+    answer = found(Job([scene]), target)
+    if answer.de00() > target:
         print(f"{name}: dE00 {target:g} is not reached: {total_de00(dearest):.2f} (fit {dearest['fit_de00']:.2f}, picture {dearest['render_de00']:.2f}) with {MAXIMAL}", flush=True)
         return False
-    settings, proof = answer
+    settings, proof = answer.settings, answer.errors[0]
     seconds, most = total_s(scene.cost(settings)), total_s(dearest)
     print(f"{name}: dE00 {total_de00(proof):.2f} (fit {proof['fit_de00']:.2f}, picture {proof['render_de00']:.2f}, {PROVING} pixels) in {seconds:.2f} s; "
           f"everything at its dearest: {total_de00(dearest):.2f} in {most:.2f} s, {most / seconds:.1f} times as long")

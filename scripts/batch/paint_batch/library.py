@@ -28,6 +28,13 @@ def paints_at(path, first, last):
     return cut(text)
 
 
+def spread(path, places, count):
+    """At most `count` paints evenly over a library: (number, text) of each."""
+    count = min(count, len(places))
+    numbers = [i * len(places) // count for i in range(count)]
+    return [(number, paints_at(path, places[number], places[number])[0]) for number in numbers]
+
+
 def cut(text):
     """The paints of a text, each an element of its own."""
     parts = text.split("<paint ")[1:]

@@ -6,7 +6,7 @@ import sys
 import tempfile
 import time
 
-from . import files, library
+from . import choosing, files, library
 from .steps import Shard
 from .tools import ToolError, Tools
 
@@ -16,7 +16,7 @@ JOB_S = 0.5  # what an engine and Python add to a shard
 
 
 # Seconds on one core of a server of 2020, for the plan that is printed before anything is measured.
-TYPICAL = {"clean_s": 0.0001, "environment_s": 1.0, "stream_s": 0.0005, "picture_s": 0.25, "start_s": 0.1}
+TYPICAL = {"clean_s": 0.0001, "environment_s": 1.0, "stream_s": 0.0005, "picture_s": 0.25, "check_s": 0.1, "start_s": 0.1}
 
 
 def roughly_counted(path):
@@ -35,17 +35,22 @@ def announce(options):
     scenes = len(options.env) * len(options.mesh) * len(options.view)
     probed_s = min(PROBE, paints) * 2 * TYPICAL["stream_s"] + min(PICTURED, paints) * scenes * TYPICAL["picture_s"] + 2 * TYPICAL["start_s"]
     prepare_s = paints * TYPICAL["clean_s"] + sum(not env.endswith(".env.exr") for env in options.env) * TYPICAL["environment_s"] + probed_s
-    work_s = paints * (TYPICAL["stream_s"] + scenes * TYPICAL["picture_s"])
-    print(f"plan: {options.library}, about {paints} paints\n"
-          f"  prepare, once: clean the library, filter {len(options.env)} environments, measure {min(PROBE, paints)} paints: about {prepare_s:.0f} s\n"
-          f"  in shards: fit-paint, paint-stats, goniogeom-index, colorsnap, {scenes} pictures a paint: about {work_s:.0f} s of work, "
-          f"{work_s / options.cores:.0f} s on {options.cores} cores\n"
+    picture_s, choice, checked = TYPICAL["picture_s"], "", ""
+    if options.target_de00:
+        picture_s += TYPICAL["check_s"]
+        choice, checked = choosing.announced(options, paints, scenes, TYPICAL), f", each checked at {options.check} pixels"
+    work_s = paints * (TYPICAL["stream_s"] + scenes * picture_s)
+    print(f"plan: {options.library}, about {paints} paints\n{choice}"
+          f"  prepare, once: clean the library, filter {len(options.env)} environments, measure {min(PROBE, paints)} paints: "
+          f"about {prepare_s:.0f} s\n"
+          f"  in shards: fit-paint, paint-stats, goniogeom-index, colorsnap, {scenes} pictures a paint{checked}: "
+          f"about {work_s:.0f} s of work, {work_s / options.cores:.0f} s on {options.cores} cores\n"
           "  merge the report, write the chapters of the book\n"
           "(from typical costs of a tool; the measured estimate follows the preparation)", file=sys.stderr, flush=True)
 
 
-def prepare(options, out):
-    """Writes the cleaned library, the environments and the index of colorsnap; gives back scenes and rejected paints."""
+def clean_library(options, out):
+    """Writes the cleaned library, and what could not be read."""
     tools = Tools()
     out.mkdir(parents=True, exist_ok=True)
     clean = out / "library.paints.xml"
@@ -57,19 +62,37 @@ def prepare(options, out):
         files.write_json(rejected, [warning for report in reports for warning in files.read_json(report)["results"].get("warnings", [])])
         for file in [converted, *reports]:
             file.unlink()
+
+
+def filtered(options, out, source, basis, target):
+    """The environment of a source, filtered into the batch unless it is so already."""
+    if source.endswith(".env.exr"):
+        return pathlib.Path(source).absolute()
+    name = pathlib.Path(source).stem
+    words = ["--size", options.env_size]
+    if target:  # chosen anew after an interruption, settings may differ
+        name = f"{name}-{pathlib.Path(basis).name.split('.')[0]}-{target['prefilter']:g}"
+        words, source = ["--tolerance", target["prefilter"]], pathlib.Path(source).absolute()
+    made = out / "environments" / f"{name}.env.exr"
+    made.parent.mkdir(exist_ok=True)
+    if not made.exists():
+        Tools().run("prefilter-envmap", "-q", *words, "--basis", basis, source, "-o", made)
+    return pathlib.Path("out") / made.relative_to(out)  # a scratch folder's link to the batch
+
+
+def prepared_scenes(options, out, basis, target):
+    """Every mesh and view in every environment."""
     scenes = []
     for source in options.env:
-        env = pathlib.Path(source).absolute()
-        if not source.endswith(".env.exr"):
-            made = out / "environments" / f"{env.stem}.env.exr"
-            made.parent.mkdir(exist_ok=True)
-            if not made.exists():
-                tools.run("prefilter-envmap", "-q", "--size", options.env_size, "--basis", options.basis, source, "-o", made)
-            env = pathlib.Path("out") / made.relative_to(out)  # a scratch folder's link to the batch
+        env = filtered(options, out, source, basis, target)
         scenes += [{"env": str(env), "mesh": str(pathlib.Path(mesh).absolute()), "view": view,
-                    "name": f"{pathlib.Path(source).name.split('.')[0]}-{pathlib.Path(mesh).stem}-{view}"}
+                    "name": f"{pathlib.Path(source).name.split('.')[0]}-{pathlib.Path(mesh).stem}-{view}",
+                    **({"source": str(pathlib.Path(source).absolute())} if target else {})}
                    for mesh in options.mesh for view in options.view]
-    return scenes, tools.seconds
+    twice = {scene["name"] for scene in scenes if [other["name"] for other in scenes].count(scene["name"]) > 1}
+    if twice:
+        raise ToolError(f"the pictures of two environments, meshes or views would share the name {min(twice)}: rename a file")
+    return scenes
 
 
 def stream_seconds(work, paints, folder):
@@ -82,40 +105,53 @@ def stream_seconds(work, paints, folder):
 
 def measured(plan, out, places):
     """Seconds of a paint, a picture and a start of all tools, from PROBE paints, of which PICTURED are drawn."""
-    count = min(PROBE, len(places))
-    chosen = [places[i * len(places) // count] for i in range(count)]
-    paints = [library.paints_at(out / "library.paints.xml", place, place)[0] for place in chosen]
+    paints = [text for _, text in library.spread(out / "library.paints.xml", places, PROBE)]
     with tempfile.TemporaryDirectory(prefix="paint-batch-") as scratch:
         folder = pathlib.Path(scratch)
         work = Shard(plan, out)
         work.tools.lines(work.snap, paints[:1], folder)  # makes the index that all shards map
         start_s = stream_seconds(work, paints[:1], folder)
-        stream_s = max(0, stream_seconds(work, paints, folder) - start_s) / max(1, count - 1)
+        stream_s = max(0, stream_seconds(work, paints, folder) - start_s) / max(1, len(paints) - 1)
         fitted = [fit[0] for fit in work.tools.lines(work.fit, paints, folder) if not isinstance(fit, ToolError)]
-        work.tools.seconds = {}
-        drawn = 0
-        for paint in fitted[:PICTURED]:
-            for scene in plan["scenes"]:
-                with contextlib.suppress(ToolError):
-                    work.draw(scene, paint, folder, "probe.png")
-                    drawn += 1
-        picture_s = work.tools.seconds.get("render-osmesa", 0) / max(1, drawn)
-    return {"start_s": start_s + JOB_S, "stream_s": stream_s, "picture_s": picture_s}
+        cost = {"picture_s": picture_seconds(plan, work, fitted, lambda scene, paint: work.draw(scene, paint, folder, "p.png"))}
+        if work.target:
+            checked_s = picture_seconds(plan, work, fitted, lambda scene, paint: work.checked(scene, 0, paint, folder, "p.png"))
+            cost = {"picture_s": checked_s, "check_s": max(0, checked_s - cost["picture_s"])}
+    return {"start_s": start_s + JOB_S, "stream_s": stream_s, **cost}
+
+
+def picture_seconds(plan, work, fitted, draw):
+    """Seconds of a picture, from PICTURED of the fitted paints."""
+    work.tools.seconds = {}
+    drawn = 0
+    for paint in fitted[:PICTURED]:
+        for scene in plan["scenes"]:
+            with contextlib.suppress(ToolError):
+                draw(scene, paint)
+                drawn += 1
+    return work.tools.seconds.get("render-osmesa", 0) / max(1, drawn)
 
 
 def make(options):
     """Writes plan.json into options.out; a plan that is there is kept, so that a batch taken up again has the same shards."""
     out = options.out.absolute()
     if (out / "plan.json").exists():
-        return files.read_json(out / "plan.json"), 0.0
+        plan = files.read_json(out / "plan.json")
+        held = plan.get("target", {}).get("de00")
+        if held != options.target_de00:
+            made = f"for a mean dE00 of {held:g}" if held else "without --target-de00"
+            raise ToolError(f"{out / 'plan.json'} was made {made}: give another --out, or the same again")
+        return plan, 0.0
     started = time.monotonic()
-    scenes, _ = prepare(options, out)
+    clean_library(options, out)
     places = list(library.places(out / "library.paints.xml"))
     if not places:
         raise ToolError(f"{options.library}: there is no paint in it that can be read")
-    plan = {"library": str(options.library), "basis": str(options.basis.absolute()), "gloss": options.gloss, "size": options.size,
+    basis, target = choosing.choose(options, out, places) if options.target_de00 else (options.basis.absolute(), None)
+    scenes = prepared_scenes(options, out, basis, target)
+    plan = {"library": str(options.library), "basis": str(basis), "gloss": options.gloss, "size": options.size,
             "against": str(options.against.absolute() if options.against else out / "library.paints.xml"), "scenes": scenes,
-            "chapter": options.chapter, "paints": len(places), "cores": options.cores}
+            "chapter": options.chapter, "paints": len(places), "cores": options.cores, **({"target": target} if target else {})}
     cost = measured(plan, out, places)
     paint_s = cost["stream_s"] + cost["picture_s"] * len(scenes)
     # A shard lasts about shard_s, and every core has two at least where that leaves a shard 20 times its overhead.
@@ -131,7 +167,11 @@ def make(options):
 
 def explain(plan, took_s):
     """Prints the estimate from measured costs."""
-    e = plan["estimate"]
-    print(f"{plan['paints']} paints, {len(plan['scenes'])} pictures each, in {len(plan['shards'])} shards; prepared in {took_s:.1f} s\n"
-          f"measured: {e['stream_s'] * 1000:.1f} ms a paint to fit, tell, check and search, {e['picture_s'] * 1000:.0f} ms a picture\n"
+    e, target = plan["estimate"], plan.get("target")
+    chosen = f"{choosing.explained(target)}\n" if target else ""
+    checked = f", of which its check at {target['check']} pixels takes {e['check_s'] * 1000:.0f} ms" if target else ""
+    print(f"{chosen}{plan['paints']} paints, {len(plan['scenes'])} pictures each, in {len(plan['shards'])} shards; "
+          f"prepared in {took_s:.1f} s\n"
+          f"measured: {e['stream_s'] * 1000:.1f} ms a paint to fit, tell, check and search, "
+          f"{e['picture_s'] * 1000:.0f} ms a picture{checked}\n"
           f"estimate: {e['work_s']:.0f} s of work, {e['elapsed_s']:.0f} s on {plan['cores']} cores", file=sys.stderr)

@@ -8,25 +8,73 @@ import sys
 import tempfile
 
 from . import files, library
-from .steps import COLUMNS, picture_path
+from .steps import TARGETED, columns, picture_path
 
 
 def shard_folders(out, plan):
     return [out / "shards" / f"{number:04d}" for number in range(len(plan["shards"]))]
 
 
+def spread(values):
+    """Median, 95th percentile and largest."""
+    values = sorted(values)
+    return {name: values[int(share * (len(values) - 1))] if values else None
+            for name, share in (("median", 0.5), ("p95", 0.95), ("max", 1))}
+
+
+class Verdict:
+    """Which paints --target-de00 holds for: those whose fit and worst picture are within it together."""
+
+    NAMED = 10  # the worst, on standard error
+
+    def __init__(self, target):
+        self.target, self.totals, self.missed = target, [], []
+
+    def add(self, row):
+        if row["within"] is None:
+            return
+        self.totals.append(row["total_de00"])
+        if row["within"] == "no":
+            self.missed.append({key: row[key] for key in ("paint", "name", "de00_mean", *TARGETED[:-1])})
+
+    def summary(self):
+        self.missed.sort(key=lambda row: (-row["total_de00"], row["paint"]))
+        return {**{key: self.target[key] for key in ("de00", "settings", "check", "proof")},
+                "paints": len(self.totals), "within": len(self.totals) - len(self.missed),
+                "missed_by_fit": sum(row["de00_mean"] > self.target["de00"] for row in self.missed),
+                "total_de00": spread(self.totals), "not_within": self.missed}
+
+    def told(self):
+        """Lines for who comes back in the morning: how many, and what to look at first."""
+        found = self.summary()
+        lines = [f"target dE00 {found['de00']:g}: {found['within']} of {found['paints']} drawn paints within it, by a check of "
+                 f"{found['check']} pixels a picture, with {found['settings']}"]
+        if self.totals:
+            figures = ", ".join(f"{name} {de00:.2f}" for name, de00 in found["total_de00"].items())
+            lines.append(f"  fit and worst picture together: {figures}")
+        if self.missed:
+            lines.append(f"  not within, worst first; {found['missed_by_fit']} of these {len(self.missed)} by their fit alone:")
+        for row in self.missed[: self.NAMED]:
+            lines.append(f"    {row['name']} {row['total_de00']:.2f} (fit {row['de00_mean']:.2f}, picture {row['picture_de00']:.2f}, "
+                         f"{row['worst_scene']})")
+        if len(self.missed) > self.NAMED:
+            lines.append(f"    and {len(self.missed) - self.NAMED} more: see not_within in report.json")
+        return "".join(f"{line}\n" for line in lines)
+
+
 def merge(out):
     """Writes report.tsv (a line a paint), report.json (summary and failures), fitted.paints.xml and times.json."""
     plan = files.read_json(out / "plan.json")
     summary = {"paints": 0, "fitted": 0, "pictures": 0, "rejected": files.read_json(out / "rejected.json"), "failed": []}
-    errors, seconds = [], {}
+    errors, seconds, named = [], {}, columns(plan)
+    verdict = Verdict(plan["target"]) if "target" in plan else None
     table, fitted = out / "report.tsv.partial", out / "fitted.paints.xml.partial"
     with open(table, "w", encoding="utf-8") as rows, open(fitted, "w", encoding="utf-8") as paints:
-        print("\t".join(COLUMNS), file=rows)
+        print("\t".join(named), file=rows)
         paints.write(library.HEAD)
         for folder in shard_folders(out, plan):
             for row in files.read_json(folder / "rows.json"):
-                print("\t".join(cell(row[column]) for column in COLUMNS), file=rows)
+                print("\t".join(cell(row[column]) for column in named), file=rows)
                 summary["paints"] += 1
                 summary["fitted"] += "fit" not in row["failed"]
                 summary["pictures"] += row["pictures"]
@@ -34,24 +82,27 @@ def merge(out):
                     summary["failed"].append({"paint": row["paint"], "name": row["name"], **row["failed"]})
                 if row["de00_max"] is not None:
                     errors.append(row["de00_max"])
+                if verdict:
+                    verdict.add(row)
             paints.write((folder / "fitted.txt").read_text(encoding="utf-8"))
             for tool, spent in files.read_json(folder / "done.json")["tools_s"].items():
                 seconds[tool] = seconds.get(tool, 0) + spent
         paints.write(library.TAIL)
-    errors.sort()
-    summary["fit_de00"] = {name: errors[int(share * (len(errors) - 1))] if errors else None
-                           for name, share in (("median", 0.5), ("p95", 0.95), ("max", 1))}
+    summary["fit_de00"] = spread(errors)
+    if verdict:
+        summary["target"] = verdict.summary()
     os.replace(table, out / "report.tsv")
     os.replace(fitted, out / "fitted.paints.xml")
     files.write_json(out / "times.json", {"estimate": plan["estimate"], "tools_s": seconds, "work_s": sum(seconds.values())})
     files.write_json(out / "report.json", summary)
-    tell(plan, summary, sum(seconds.values()))
+    tell(plan, summary, verdict, sum(seconds.values()))
     return summary
 
 
-def tell(plan, summary, work_s):
+def tell(plan, summary, verdict, work_s):
     print(f"{summary['paints']} paints, {summary['fitted']} fitted, {summary['pictures']} pictures, "
           f"{len(summary['failed'])} failed, {len(summary['rejected'])} messages about unreadable ones\n"
+          f"{verdict.told() if verdict else ''}"
           f"time in tools: {work_s:.1f} s, estimated {plan['estimate']['work_s']:.1f} s", file=sys.stderr)
 
 

@@ -1,5 +1,6 @@
 """What is done with a shard: fit, indices, panel check, nearest paint, pictures, one row a paint."""
 
+import json
 import pathlib
 import tempfile
 
@@ -8,17 +9,51 @@ from .tools import ToolError, Tools, json_lines
 
 COLUMNS = ["paint", "name", "class", "fit", "de00_max", "de00_mean", "gamut_de00", "flop_index", "chroma_index",
            "hue_shift_index", "worst_deg", "nearest", "nearest_distance", "pictures", "failed"]
+TARGETED = ["worst_scene", "picture_de00", "total_de00", "within"]  # with --target-de00
+
+
+def columns(plan):
+    return COLUMNS + TARGETED if "target" in plan else COLUMNS
+
+
+def frame_words(view, size):
+    """What the pictures of a scene have in common, for render-osmesa."""
+    return ["--orbit", view, "--size", size, "--background", "0.3,0.3,0.3"]
+
+
+class Checks:
+    """What the checks of pictures found, kept as each is drawn, so that an interrupted shard draws none of them again."""
+
+    def __init__(self, path):
+        self.path, self.found = path, {}
+        for line in path.read_text(encoding="utf-8").splitlines() if path.exists() else []:
+            try:
+                picture, de00 = json.loads(line)
+                self.found[picture] = de00
+            except ValueError:
+                pass  # cut off by a kill
+
+    def add(self, picture, de00):
+        self.found[picture] = de00
+        with open(self.path, "a", encoding="utf-8") as file:
+            file.write("\n" + json.dumps([picture, de00]))
 
 
 class Shard:
-    def __init__(self, plan, out):
-        self.plan, self.out, self.tools = plan, out, Tools()
+    def __init__(self, plan, out, checks=None):
+        self.plan, self.out, self.checks, self.tools = plan, out, checks, Tools()
+        self.target = plan.get("target")
 
     def fit(self, given, folder):
         fitted, report = folder / "fitted.paints.xml", folder / "fit.json"
         gloss = ["--gloss", self.plan["gloss"]] if self.plan["gloss"] else []
-        self.tools.run("fit-paint", "-q", "--threads", 1, "--basis", self.plan["basis"], *gloss, "--report", report, given, "-o", fitted)
+        self.tools.run("fit-paint", "-q", "--threads", 1, "--basis", self.plan["basis"], *self.chosen("fit"), *gloss,
+                       "--report", report, given, "-o", fitted)
         return list(zip(library.cut(fitted.read_text(encoding="utf-8")), files.read_json(report)["results"]["paints"]))
+
+    def chosen(self, stage):
+        """The words of a stage that --target-de00 chose."""
+        return self.target[stage] if self.target else []
 
     def stats(self, given, folder):
         out = folder / "stats.jsonl"
@@ -35,7 +70,7 @@ class Shard:
         self.tools.run("colorsnap", "-q", "--threads", 1, "-l", self.plan["against"], "-k", 2, "-f", "json", given, "-o", out)
         return json_lines(out)
 
-    def draw(self, scene, paint, folder, picture):
+    def draw(self, scene, paint, folder, picture, *more):
         """Draws one picture, whole or not at all; `picture` is seen from `folder`, in which out is a link to the batch.
 
         A picture tells the command that made it, so the paths in it are the same for any shard and folder.
@@ -44,15 +79,31 @@ class Shard:
         if not (folder / "out").exists():
             (folder / "out").symlink_to(self.out, target_is_directory=True)
         self.tools.run("render-osmesa", "-q", "--threads", 1, "--mesh", scene["mesh"], "--env", scene["env"], "--paint",
-                       "alone.paints.xml", "--orbit", scene["view"], "--size", self.plan["size"], "--background",
-                       "0.3,0.3,0.3", "-o", picture, cwd=folder)
+                       "alone.paints.xml", *frame_words(scene["view"], self.plan["size"]), *self.chosen("render"), *more,
+                       "-o", picture, cwd=folder)
+
+    def checked(self, scene, number, paint, folder, picture):
+        """Draws one picture; gives back its mean dE00 to the reference integrator, at pixels drawn anew for every paint."""
+        self.draw(scene, paint, folder, picture, "--check", self.target["check"], "--check-source", scene["source"],
+                  "--seed", self.target["seed"] + number, "--report", "check.json")
+        error = files.read_json(folder / "check.json")["results"]["error"]
+        if not error["checked_pixels"]:
+            raise ToolError(f"{scene['name']}: not a pixel of the mesh is in the picture")
+        return error["de00_mean"]
 
     def pictures(self, number, paint, folder):
-        """Draws what is not there yet; gives back the number of pictures."""
+        """Draws what is not there yet; gives back the mean dE00 of each, where there is a target."""
+        found = {}
         for scene in self.plan["scenes"]:
-            if not picture_path(self.out, scene, number).exists():
-                self.draw(scene, paint, folder, picture_path("out", scene, number))
-        return len(self.plan["scenes"])
+            picture = picture_path("out", scene, number)
+            there = picture_path(self.out, scene, number).exists()
+            if self.target:
+                if not there or str(picture) not in self.checks.found:
+                    self.checks.add(str(picture), self.checked(scene, number, paint, folder, picture))
+                found[scene["name"]] = self.checks.found[str(picture)]
+            elif not there:
+                self.draw(scene, paint, folder, picture)
+        return found
 
     def rows(self, first, paints, folder):
         """The row of each paint and its fitted text; a paint that fails keeps the message and goes no further."""
@@ -62,15 +113,26 @@ class Shard:
         for i, paint in enumerate(paints):
             got = {name: result[i] for name, result in results.items()}
             fitted = paint if isinstance(got["fit"], ToolError) else got["fit"][0]
-            row = row_of(first + i, got)
+            row = row_of(first + i, got) | dict.fromkeys(TARGETED if self.target else ())
             if "fit" not in row["failed"]:
                 try:
-                    row["pictures"] = self.pictures(first + i, fitted, folder)
+                    found = self.pictures(first + i, fitted, folder)
+                    row["pictures"] = len(self.plan["scenes"])
+                    if found and row["de00_mean"] is not None:
+                        row |= verdict(row["de00_mean"], found, self.target["de00"])
                 except ToolError as error:
                     row["failed"]["picture"] = without(error, folder)
             row["failed"] = {step: without(message, folder) for step, message in row["failed"].items()}
             rows.append((row, fitted))
         return rows
+
+
+def verdict(fit_de00, pictures, target):
+    """What a row tells of the target: at most so far is the worst picture from the measured paint."""
+    scene = max(pictures, key=pictures.get)
+    total = fit_de00 + pictures[scene]
+    return {"worst_scene": scene, "picture_de00": pictures[scene], "total_de00": round(total, 9),
+            "within": "yes" if total <= target else "no"}
 
 
 def picture_path(out, scene, number):
@@ -112,7 +174,7 @@ def run_shard(out, number):
             print("begun", file=log)
         for scene in plan["scenes"]:
             picture_path(out, scene, 0).parent.mkdir(parents=True, exist_ok=True)
-        work = Shard(plan, out)
+        work = Shard(plan, out, Checks(folder / "checks"))
         with tempfile.TemporaryDirectory(prefix="paint-batch-") as scratch:
             paints = library.paints_at(out / "library.paints.xml", *shard["places"])
             rows = work.rows(shard["first"], paints, pathlib.Path(scratch))

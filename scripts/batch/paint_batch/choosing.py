@@ -1,0 +1,117 @@
+"""The settings of all stages for a wanted color difference, by the search that serves scripts/demo --target-de00."""
+
+import argparse
+import pathlib
+import re
+import shutil
+import tempfile
+
+from accuracy_report.scene import Scene
+from accuracy_report.study import Failed, Run
+from accuracy_report.target import BASES, CHOOSING, EFFECTS, METHODS, TOLERANCES, Job, found
+
+from . import library
+from .steps import Shard, frame_words
+from .tools import ToolError
+
+DATA = pathlib.Path(__file__).resolve().parents[3] / "testdata"
+
+PROBED = 50  # paints, spread over the library, by which fits are timed
+SAMPLES = 8  # of them, those whose pictures are proven
+PROVING = 200  # random pixels of each of these
+SEED = 3  # of the first paint's; 1 and 2 are those of the search
+
+
+class NotReached(Exception):
+    """No settings bring the samples within the target."""
+
+
+def probed(options, out, places, folder):
+    """Paints that can be fitted, spread over the library: (number, name, text)."""
+    given = library.spread(out / "library.paints.xml", places, PROBED)
+    work = Shard({"basis": options.basis or DATA / f"{BASES[0]}.basis.xml", "gloss": options.gloss}, out)
+    fits = work.tools.lines(work.fit, [text for _, text in given], folder)
+    known = [(number, fit[1]["name"], text) for (number, text), fit in zip(given, fits)
+             if not isinstance(fit, ToolError) and fit[1].get("de00_mean") is not None]
+    if not known:
+        raise ToolError(f"{options.library}: none of {len(given)} paints spread over it can be fitted, to choose settings by")
+    return known
+
+
+def numbered(number, text):
+    """A paint that goes by its number, for names may come twice."""
+    return re.sub(r"""(<paint\b[^>]*?\bname=)("[^"]*"|'[^']*')""", rf'\1"{number}"', text, count=1)
+
+
+def job_of(run, options, samples, paints):
+    """Every sample in every scene of the batch."""
+    basis = options.basis and options.basis.absolute()
+    scenes = [Scene(run, str(number), pathlib.Path(env).absolute(), frame_words(view, options.size), CHOOSING,
+                    mesh=pathlib.Path(mesh).absolute(), basis=basis, fitting=("--gloss", options.gloss) if options.gloss else ())
+              for number, _, _ in samples for env in options.env for mesh in options.mesh for view in options.view]
+    return Job(scenes, paints, (basis.name.split(".")[0],) if basis else BASES, PROVING)
+
+
+def choose(options, out, places):
+    """The basis, and what plan.json tells of the target: words of the stages, and what proves them."""
+    with tempfile.TemporaryDirectory(prefix="paint-batch-") as scratch:
+        folder = pathlib.Path(scratch)
+        known = probed(options, out, places, folder)
+        count = min(SAMPLES, len(known))
+        samples = [known[i * len(known) // count] for i in range(count)]
+        paints = folder / "probed.paints.xml"
+        paints.write_text(library.document([numbered(number, text) for number, _, text in known]), encoding="utf-8")
+        given = argparse.Namespace(quick=True, paints=paints, probe=pathlib.Path(options.env[0]),
+                                   mesh=pathlib.Path(options.mesh[0]), output=None)
+        with Run(pathlib.Path(shutil.which("render-osmesa") or "render-osmesa").parent, given) as run:
+            job = job_of(run, options, samples, len(places))
+            try:
+                answer = found(job, options.target_de00)
+            except Failed as failure:
+                raise ToolError(said_by_tool(str(failure))) from None
+            proof = proof_of(job, answer, {str(number): name for number, name, _ in samples})
+            if answer.de00() > options.target_de00:
+                raise NotReached(f"a mean dE00 of {options.target_de00:g} is not reached by {count} paints spread over the library: "
+                                 f"at best {told(proof)} with {answer.settings}; nothing is planned: give a larger --target-de00")
+            basis = job.scenes[0].basis_file(answer.settings)
+            if basis.parent == run.work:
+                basis = pathlib.Path(shutil.copy(basis, out))
+    settings = answer.settings
+    return basis, {"de00": options.target_de00, "settings": str(settings), "fit": settings.fit_words(),
+                   "prefilter": settings.prefilter, "render": settings.render_words(), "check": options.check, "seed": SEED,
+                   "proof": proof}
+
+
+def said_by_tool(text):
+    """What a tool said, without its command, which names files of the search."""
+    tool = text.split()[0]
+    return text.partition(f": {tool}: ")[2] or text
+
+
+def proof_of(job, answer, names):
+    """What the samples reached at worst."""
+    scene, error = job.scenes[answer.worst()], answer.errors[answer.worst()]
+    return {"paints": len(names), "pixels": PROVING, "paint": names[scene.paint], "env": scene.probe.name,
+            "fit_de00": error["fit_de00"], "picture_de00": error["render_de00"], "total_de00": answer.de00()}
+
+
+def told(proof):
+    return (f"{proof['total_de00']:.2f} (fit {proof['fit_de00']:.2f}, picture {proof['picture_de00']:.2f}: {proof['paint']}, "
+            f"{proof['env']})")
+
+
+def announced(options, paints, scenes, typical):
+    """What the search will do, with a time from typical costs."""
+    samples, bases = min(SAMPLES, paints), 1 if options.basis else len(BASES)
+    pictures_s = samples * scenes * typical["picture_s"]
+    timed_s = bases * len(TOLERANCES) * (len(options.env) * typical["environment_s"] + pictures_s)
+    checks_s = (bases + 6) * (pictures_s + samples * scenes * typical["check_s"])
+    return (f"  choose, once, for a mean dE00 of {options.target_de00:g}: the cheapest of {bases} bas{'es' if bases > 1 else 'is'}, "
+            f"{len(METHODS)} methods with and without views, {len(TOLERANCES)} tolerances of environments and {len(EFFECTS) + 1} of "
+            f"effects, for {samples} paints spread over the library: about {timed_s + checks_s:.0f} s\n")
+
+
+def explained(target):
+    proof = target["proof"]
+    return (f"chosen: {target['settings']}\n"
+            f"  dE00 {told(proof)} at worst of {proof['paints']} paints, by {proof['pixels']} pixels of each picture")
