@@ -42,7 +42,7 @@ Result<MetricRange> range_of(std::string_view text) {
 
 }  // namespace
 
-Result<LibrarySearchOptions> search_options(const ColorsnapOptions& o) {
+Result<LibrarySearchOptions> search_options(const Options& o) {
   LibrarySearchOptions search{.count = static_cast<std::size_t>(o.count),
                               .metric = o.metric == "de00" ? ColorMetric::kDe00 : ColorMetric::kDe76,
                               .mix_conditions = o.mix_observers};
@@ -74,7 +74,7 @@ Result<LibrarySearchOptions> search_options(const ColorsnapOptions& o) {
   return search;
 }
 
-cli::ToolSpec colorsnap_spec(ColorsnapOptions& o, cli::CommonOptions& common) {
+cli::ToolSpec tool_spec(Options& o) {
   cli::ToolSpec spec;
   spec.name = "colorsnap";
   spec.summary = "find the paints of a library nearest to a paint";
@@ -200,7 +200,7 @@ cli::ToolSpec colorsnap_spec(ColorsnapOptions& o, cli::CommonOptions& common) {
                  {"left_out", "queries left out by --keep-going"},
                  {"warnings[]", "what was told"}};
   spec.see_also = {"paint-stats(1)", "paint-edit(1)", "paint-convert(1)"};
-  cli::add_common_options(spec, common, {cli::Common::kExplain});
+  cli::add_common_options(spec, o.common, {cli::Common::kExplain});
   return spec;
 }
 

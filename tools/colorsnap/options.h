@@ -9,7 +9,8 @@
 
 namespace goniochrome {
 
-struct ColorsnapOptions {
+struct Options {
+  cli::CommonOptions common;
   std::vector<std::string> inputs;
   std::string library;
   std::string output = "-";
@@ -26,9 +27,9 @@ struct ColorsnapOptions {
   bool keep_going = false;
 };
 
-cli::ToolSpec colorsnap_spec(ColorsnapOptions& options, cli::CommonOptions& common);
+cli::ToolSpec tool_spec(Options& options);
 
 // What the options ask of a search. Error: a text that cannot be understood.
-Result<LibrarySearchOptions> search_options(const ColorsnapOptions& options);
+Result<LibrarySearchOptions> search_options(const Options& options);
 
 }  // namespace goniochrome

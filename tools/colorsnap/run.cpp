@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kWarningsShown = 10;
 
-Format format_of(const ColorsnapOptions& options) {
+Format format_of(const Options& options) {
   const auto ends = [&](const char* ending) { return options.output.ends_with(ending); };
   if (options.format == "paints" || (options.format == "auto" && ends(".xml"))) return Format::kPaints;
   if (options.format == "json" || (options.format == "auto" && (ends(".json") || ends(".jsonl")))) return Format::kJson;
@@ -43,7 +43,7 @@ const char* origin_name(LibraryIndex::Origin origin) {
 // One run: queries in, findings out.
 class Run {
  public:
-  Run(const ColorsnapOptions& options, cli::Session& session, const LibraryIndex& index, LibrarySearchOptions search)
+  Run(const Options& options, cli::Session& session, const LibraryIndex& index, LibrarySearchOptions search)
       : options_(options),
         session_(session),
         index_(index),
@@ -208,7 +208,7 @@ class Run {
     return outside_ + no_match_ + left_out_ > 0 ? cli::Verdict::kNegative : cli::Verdict::kDone;
   }
 
-  const ColorsnapOptions& options_;
+  const Options& options_;
   cli::Session& session_;
   const LibraryIndex& index_;
   ColorMetric metric_;
@@ -221,7 +221,7 @@ class Run {
 
 }  // namespace
 
-Result<cli::Verdict> run(const ColorsnapOptions& options, cli::Session& session) {
+Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   GONIO_ASSIGN(LibrarySearchOptions search, search_options(options));
   GONIO_ASSIGN(const LibraryIndex index, LibraryIndex::open(options.library, [&](std::size_t paints) {
                  session.progress(fmt::format("{}: indexing {}: {} paints", session.tool(), options.library, paints));

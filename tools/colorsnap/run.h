@@ -1,3 +1,4 @@
+// The work of colorsnap.
 #pragma once
 
 #include "cli/tool.h"
@@ -5,6 +6,6 @@
 
 namespace goniochrome {
 
-Result<cli::Verdict> run(const ColorsnapOptions& options, cli::Session& session);
+Result<cli::Verdict> run(const Options& options, cli::Session& session);
 
 }  // namespace goniochrome

@@ -1,4 +1,4 @@
-// What draw-plot does.
+// The work of draw-plot.
 #pragma once
 
 #include "cli/tool.h"

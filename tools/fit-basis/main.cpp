@@ -1,11 +1,11 @@
+// fit-basis: the lobe exponents that serve a whole library best.
 #include "cli/tool.h"
 #include "options.h"
 #include "run.h"
 
 int main(int argc, char** argv) {
-  goniochrome::Options options;
-  const auto spec = goniochrome::tool_spec(options);
-  return goniochrome::cli::tool_main(argc, argv, spec, options.common, [&](goniochrome::cli::Session& session) {
-    return goniochrome::run(options, session);
-  });
+  using namespace goniochrome;
+  Options options;
+  const cli::ToolSpec spec = tool_spec(options);
+  return cli::tool_main(argc, argv, spec, options.common, [&](cli::Session& s) { return run(options, s); });
 }

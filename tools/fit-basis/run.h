@@ -1,4 +1,4 @@
-// What fit-basis does.
+// The work of fit-basis.
 #pragma once
 
 #include "base/result.h"

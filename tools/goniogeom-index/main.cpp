@@ -1,12 +1,11 @@
+// goniogeom-index: the misalignment at which two panels of one paint stop matching.
 #include "cli/tool.h"
 #include "options.h"
 #include "run.h"
 
 int main(int argc, char** argv) {
-  goniochrome::IndexOptions options;
-  goniochrome::cli::CommonOptions common;
-  const auto spec = goniochrome::goniogeom_index_spec(options, common);
-  return goniochrome::cli::tool_main(argc, argv, spec, common, [&](goniochrome::cli::Session& session) {
-    return goniochrome::run_goniogeom_index(options, session);
-  });
+  using namespace goniochrome;
+  Options options;
+  const cli::ToolSpec spec = tool_spec(options);
+  return cli::tool_main(argc, argv, spec, options.common, [&](cli::Session& s) { return run(options, s); });
 }

@@ -19,7 +19,7 @@ std::string sets_text() {
 
 }  // namespace
 
-Result<IndexRequest> request_of(const IndexOptions& options) {
+Result<IndexRequest> request_of(const Options& options) {
   IndexRequest request;
   if (options.seam.names_anything_but_mesh() || !options.picture.empty() || options.advise)
     return usage_error(
@@ -47,7 +47,7 @@ Result<IndexRequest> request_of(const IndexOptions& options) {
   return request;
 }
 
-Result<SeamRequest> seam_request_of(const IndexOptions& options) {
+Result<SeamRequest> seam_request_of(const Options& options) {
   SeamRequest request;
   GONIO_ASSIGN(request.world, seam_world(options.seam));
   if (!options.tolerance_for_deg.empty() || !options.curves.empty())
@@ -63,7 +63,7 @@ Result<SeamRequest> seam_request_of(const IndexOptions& options) {
   return request;
 }
 
-cli::ToolSpec goniogeom_index_spec(IndexOptions& o, cli::CommonOptions& common) {
+cli::ToolSpec tool_spec(Options& o) {
   cli::ToolSpec spec;
   spec.name = "goniogeom-index";
   spec.summary = "the angle at which two panels of one paint stop matching";
@@ -192,7 +192,7 @@ cli::ToolSpec goniogeom_index_spec(IndexOptions& o, cli::CommonOptions& common) 
       {"failing", "with --tolerance-for: the names of the paints that do not stay under the threshold"},
   };
   spec.see_also = {"trompe-fit(1)", "paint-stats(1)", "goniochrome-theory(7)"};
-  cli::add_common_options(spec, common, {cli::Common::kExplain});
+  cli::add_common_options(spec, o.common, {cli::Common::kExplain});
   return spec;
 }
 

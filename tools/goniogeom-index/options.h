@@ -11,7 +11,8 @@
 
 namespace goniochrome {
 
-struct IndexOptions {
+struct Options {
+  cli::CommonOptions common;
   std::vector<std::string> inputs, only;
   std::string output = "-";
   GeometryTexts geometries;
@@ -27,7 +28,7 @@ struct IndexOptions {
   bool advise = false;
 };
 
-cli::ToolSpec goniogeom_index_spec(IndexOptions& options, cli::CommonOptions& common);
+cli::ToolSpec tool_spec(Options& options);
 
 // What the words mean, checked.
 struct IndexRequest {
@@ -40,7 +41,7 @@ struct IndexRequest {
   std::optional<double> tolerance_deg;
   bool one_row = false;  // for each paint: its worst geometry
 };
-Result<IndexRequest> request_of(const IndexOptions& options);
+Result<IndexRequest> request_of(const Options& options);
 
 // The same for a seam of a mesh.
 struct SeamRequest {
@@ -50,6 +51,6 @@ struct SeamRequest {
   TargetCurve::Kind target = TargetCurve::Kind::kCurve;
   double threshold = 2.3;
 };
-Result<SeamRequest> seam_request_of(const IndexOptions& options);
+Result<SeamRequest> seam_request_of(const Options& options);
 
 }  // namespace goniochrome

@@ -103,7 +103,7 @@ Json paint_json(const Paint& paint, const PaintIndex& index, const IndexRequest&
           {"geometries", std::move(geometries)}};
 }
 
-std::string plan(const IndexOptions& options, const IndexRequest& request) {
+std::string plan(const Options& options, const IndexRequest& request) {
   std::string text = fmt::format(
       "{} pairs of light and viewer; left out: {} within {} deg of the mirror direction (gloss is no mismatch), {} "
       "below the horizon\n"
@@ -120,7 +120,7 @@ std::string plan(const IndexOptions& options, const IndexRequest& request) {
 
 class Run {
  public:
-  Run(const IndexOptions& options, const IndexRequest& request, cli::Session& session)
+  Run(const Options& options, const IndexRequest& request, cli::Session& session)
       : options_(options), request_(request), session_(session) {}
 
   Result<cli::Verdict> operator()() {
@@ -205,7 +205,7 @@ class Run {
     return failing_.empty() && failed_ == 0 ? cli::Verdict::kDone : cli::Verdict::kNegative;
   }
 
-  const IndexOptions& options_;
+  const Options& options_;
   const IndexRequest& request_;
   cli::Session& session_;
   std::vector<std::string> failing_;
@@ -216,7 +216,7 @@ class Run {
 
 }  // namespace
 
-Result<cli::Verdict> run_goniogeom_index(const IndexOptions& options, cli::Session& session) {
+Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   if (!options.seam.mesh.empty()) return run_on_seam(options, session);
   GONIO_ASSIGN(const IndexRequest request, request_of(options));
   session.explain(plan(options, request));

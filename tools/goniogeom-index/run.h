@@ -6,6 +6,6 @@
 
 namespace goniochrome {
 
-Result<cli::Verdict> run_goniogeom_index(const IndexOptions& options, cli::Session& session);
+Result<cli::Verdict> run(const Options& options, cli::Session& session);
 
 }  // namespace goniochrome

@@ -54,7 +54,7 @@ void tell_repairs(const Seam& seam, const Mesh& mesh, cli::Session& session) {
 
 class SeamRun {
  public:
-  SeamRun(const IndexOptions& options, const SeamRequest& request, cli::Session& session)
+  SeamRun(const Options& options, const SeamRequest& request, cli::Session& session)
       : options_(options), request_(request), session_(session) {}
 
   Result<cli::Verdict> operator()() {
@@ -193,14 +193,14 @@ class SeamRun {
                              shortest(request_.threshold)));
   }
 
-  const IndexOptions& options_;
+  const Options& options_;
   const SeamRequest& request_;
   cli::Session& session_;
   SeamStage stage_;
   int failed_ = 0, pictures_ = 0;
 };
 
-std::string plan(const IndexOptions& options, const SeamRequest& request) {
+std::string plan(const Options& options, const SeamRequest& request) {
   return fmt::format("seam of {} and {} in {}: places a thousandth of the mesh's size apart\n{}", request.world.part_a,
                      request.world.part_b, options.seam.mesh,
                      seam_light_text(options.seam, request.world, request.geometries));
@@ -208,7 +208,7 @@ std::string plan(const IndexOptions& options, const SeamRequest& request) {
 
 }  // namespace
 
-Result<cli::Verdict> run_on_seam(const IndexOptions& options, cli::Session& session) {
+Result<cli::Verdict> run_on_seam(const Options& options, cli::Session& session) {
   GONIO_ASSIGN(const SeamRequest request, seam_request_of(options));
   session.explain(plan(options, request));
   return SeamRun(options, request, session)();

@@ -4,7 +4,7 @@
 
 namespace goniochrome {
 
-cli::ToolSpec paint_convert_spec(ConvertOptions& o, cli::CommonOptions& common) {
+cli::ToolSpec tool_spec(Options& o) {
   cli::ToolSpec spec;
   spec.name = "paint-convert";
   spec.summary = "convert paints between paint XML, tables, CxF and CGATS, and read measured BRDFs";
@@ -125,7 +125,7 @@ cli::ToolSpec paint_convert_spec(ConvertOptions& o, cli::CommonOptions& common) 
       {"warnings[]", "what was left out, assumed or lost, one line each"},
   };
   spec.see_also = {"fit-paint(1)", "paint-edit(1)", "goniochrome-paint(5)"};
-  cli::add_common_options(spec, common, {cli::Common::kExplain});
+  cli::add_common_options(spec, o.common, {cli::Common::kExplain});
   return spec;
 }
 

@@ -8,7 +8,8 @@
 
 namespace goniochrome {
 
-struct ConvertOptions {
+struct Options {
+  cli::CommonOptions common;
   std::vector<std::string> inputs;
   std::string output = "-";
   std::string from = "auto", to = "auto";
@@ -21,6 +22,6 @@ struct ConvertOptions {
   bool keep_going = false;
 };
 
-cli::ToolSpec paint_convert_spec(ConvertOptions& options, cli::CommonOptions& common);
+cli::ToolSpec tool_spec(Options& options);
 
 }  // namespace goniochrome

@@ -21,7 +21,7 @@ struct Input {
 
 // Opens each input once to see that it is there and what stood before its first paint. Files are closed again, since
 // there may be more of them than can be open; what cannot be opened twice stays open.
-Result<std::vector<Input>> surveyed(const ConvertOptions& options, const SourceSetup& source_setup, SinkSetup& setup,
+Result<std::vector<Input>> surveyed(const Options& options, const SourceSetup& source_setup, SinkSetup& setup,
                                     cli::Session& session) {
   std::vector<std::string> paths = options.inputs;
   if (paths.empty()) paths.push_back("-");
@@ -38,7 +38,7 @@ Result<std::vector<Input>> surveyed(const ConvertOptions& options, const SourceS
   return inputs;
 }
 
-SourceSetup source_setup_of(const ConvertOptions& options, const Selection& selection) {
+SourceSetup source_setup_of(const Options& options, const Selection& selection) {
   SourceSetup setup;
   if (options.illuminant != "auto") setup.import.illuminant = options.illuminant;
   if (options.observer != "auto") setup.import.observer_deg = options.observer == "2" ? 2 : 10;
@@ -63,7 +63,7 @@ std::string now_utc() {
 // One conversion: what goes through it, and what it counts.
 class Conversion {
  public:
-  Conversion(const ConvertOptions& options, const SourceSetup& setup, const Selection& selection, PaintSink& sink,
+  Conversion(const Options& options, const SourceSetup& setup, const Selection& selection, PaintSink& sink,
              cli::Session& session)
       : options_(options), setup_(setup), selection_(selection), sink_(sink), session_(session) {}
 
@@ -75,7 +75,7 @@ class Conversion {
   Result<void> pass(Paint paint, const PaintSource& source);
   Result<void> skip(const Error& error);
 
-  const ConvertOptions& options_;
+  const Options& options_;
   const SourceSetup& setup_;
   const Selection& selection_;
   PaintSink& sink_;
@@ -143,7 +143,7 @@ Result<void> Conversion::finish() {
 
 }  // namespace
 
-Result<cli::Verdict> run_paint_convert(const ConvertOptions& options, cli::Session& session) {
+Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   session.results() = {
       {"read", 0}, {"written", 0}, {"skipped", 0}, {"measured", Json::array()}, {"warnings", Json::array()}};
   GONIO_ASSIGN(const OutputFormat* format, output_format(options.output, options.to));

@@ -7,6 +7,6 @@
 
 namespace goniochrome {
 
-Result<cli::Verdict> run_paint_convert(const ConvertOptions& options, cli::Session& session);
+Result<cli::Verdict> run(const Options& options, cli::Session& session);
 
 }  // namespace goniochrome

@@ -22,7 +22,7 @@ std::string listed(const std::vector<Geometry>& geometries) {
 
 }  // namespace
 
-Result<Selection> Selection::make(const ConvertOptions& options, const OutputFormat& format) {
+Result<Selection> Selection::make(const Options& options, const OutputFormat& format) {
   Selection selection(options, format);
   for (const std::string& list : options.geometry)
     for (const std::string_view text : split(list, ',')) {

@@ -14,7 +14,7 @@ namespace goniochrome {
 class Selection {
  public:
   // Error (usage): a geometry that is not understood or given twice.
-  static Result<Selection> make(const ConvertOptions& options, const OutputFormat& format);
+  static Result<Selection> make(const Options& options, const OutputFormat& format);
 
   // The columns of a table.
   CsvLayout layout() const;
@@ -29,11 +29,11 @@ class Selection {
   std::string explanation() const;
 
  private:
-  Selection(const ConvertOptions& options, const OutputFormat& format) : options_(options), format_(format) {}
+  Selection(const Options& options, const OutputFormat& format) : options_(options), format_(format) {}
   void keep_chosen(Paint& paint, Remarks& remarks) const;
   void note_losses(const Paint& paint, bool designed, Remarks& remarks) const;
 
-  const ConvertOptions& options_;
+  const Options& options_;
   const OutputFormat& format_;
   std::vector<Geometry> chosen_;  // of --geometry, or of a wide table's usual columns
 };

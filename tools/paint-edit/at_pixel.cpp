@@ -28,7 +28,7 @@ Result<SeenPixel> seen(const AovFile& file, const std::string& option, const std
   return pixel;
 }
 
-Result<void> check_places(const PaintEditOptions& o) {
+Result<void> check_places(const Options& o) {
   const bool places = !o.at_pixel.empty() || !o.travel_to.empty() || !o.gloss_to.empty();
   if (o.image.empty() && places) return usage_error("--at-pixel, --travel-to and --gloss-to need --image");
   if (!o.image.empty() && !places)
@@ -41,7 +41,7 @@ Result<void> check_places(const PaintEditOptions& o) {
 }
 
 // At a place, chroma is a factor and hue a turn: nothing else can be meant there.
-Result<void> place_tweak(PaintEditOptions& o) {
+Result<void> place_tweak(Options& o) {
   if ((!o.chroma.empty() && o.chroma_factor != 1) || (!o.hue_deg.empty() && o.hue_shift_deg != 0) ||
       (o.lighter != 0 && o.lightness_shift != 0))
     return usage_error("--at-pixel is told one move twice: --lighter, --chroma and --hue are its shifts");
@@ -74,11 +74,11 @@ Result<double> gloss_of_edge(double edge_deg, double meter_deg) {
   return std::clamp(gloss_units(table, *meter, lobe), 0.0, 100.0);
 }
 
-Result<PlacedOptions> placed(const PaintEditOptions& options) {
+Result<PlacedOptions> placed(const Options& options) {
   GONIO_TRY(check_places(options));
   PlacedOptions result{options, {}};
   if (options.image.empty()) return result;
-  PaintEditOptions& o = result.options;
+  Options& o = result.options;
   GONIO_ASSIGN(const AovFile file, read_aov_file(options.image));
   const auto look = [&](const char* option, const std::vector<double>& place) -> Result<double> {
     GONIO_ASSIGN(const SeenPixel pixel, seen(file, option, place));

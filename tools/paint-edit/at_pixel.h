@@ -22,10 +22,10 @@ struct SeenPixel {
 // Error: what is missing, an image without the buffer, a pixel outside or beside the mesh, or one so near specular that
 // no travel ends there.
 struct PlacedOptions {
-  PaintEditOptions options;
+  Options options;
   std::vector<SeenPixel> pixels;
 };
-Result<PlacedOptions> placed(const PaintEditOptions& options);
+Result<PlacedOptions> placed(const Options& options);
 
 // The reading of a gloss meter (GU) on the lobe whose brightness is half its peak at this aspecular angle (deg, 0..90).
 Result<double> gloss_of_edge(double edge_deg, double meter_deg);

@@ -1,12 +1,11 @@
+// paint-edit: the designer's moves on a stream of paints.
 #include "cli/tool.h"
 #include "options.h"
 #include "run.h"
 
 int main(int argc, char** argv) {
-  goniochrome::PaintEditOptions options;
-  goniochrome::cli::CommonOptions common;
-  const auto spec = goniochrome::paint_edit_spec(options, common);
-  return goniochrome::cli::tool_main(argc, argv, spec, common, [&](goniochrome::cli::Session& session) {
-    return goniochrome::run_paint_edit(options, session);
-  });
+  using namespace goniochrome;
+  Options options;
+  const cli::ToolSpec spec = tool_spec(options);
+  return cli::tool_main(argc, argv, spec, options.common, [&](cli::Session& s) { return run(options, s); });
 }

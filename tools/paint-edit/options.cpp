@@ -18,7 +18,7 @@ Result<std::optional<Lab>> triple(const char* option, const std::vector<double>&
   return usage_error("{} is given {} numbers: give three, as in {}=50,12.5,-3", option, numbers.size(), option);
 }
 
-Result<void> check_contradictions(const PaintEditOptions& o, const Edit& edit) {
+Result<void> check_contradictions(const Options& o, const Edit& edit) {
   const bool edits = moves_color(edit) || moves_gloss(edit);
   const bool averages = edit.average_hue_deg || edit.average_chroma || edit.average_lightness;
   if (edit.at_deg && averages)
@@ -44,7 +44,7 @@ Result<void> check_contradictions(const PaintEditOptions& o, const Edit& edit) {
 
 }  // namespace
 
-Result<Edit> edit_of(const PaintEditOptions& o) {
+Result<Edit> edit_of(const Options& o) {
   Edit edit;
   GONIO_ASSIGN(edit.average_hue_deg, one("--hue", o.hue_deg));
   GONIO_ASSIGN(edit.average_chroma, one("--chroma", o.chroma));
@@ -66,7 +66,7 @@ Result<Edit> edit_of(const PaintEditOptions& o) {
   return edit;
 }
 
-cli::ToolSpec paint_edit_spec(PaintEditOptions& o, cli::CommonOptions& common) {
+cli::ToolSpec tool_spec(Options& o) {
   cli::ToolSpec spec;
   spec.name = "paint-edit";
   spec.summary = "change the color, travel and gloss of paints, or make variations and gradients of them";
@@ -258,7 +258,7 @@ cli::ToolSpec paint_edit_spec(PaintEditOptions& o, cli::CommonOptions& common) {
       {"changes[].clipped[]", "values that a move took out of their domain and that were put at its edge"},
       {"changes[].skipped[]", "moves this paint cannot take, and why"}};
   spec.see_also = {"fit-paint(1)", "paint-convert(1)", "render-osmesa(1)"};
-  cli::add_common_options(spec, common, {cli::Common::kExplain});
+  cli::add_common_options(spec, o.common, {cli::Common::kExplain});
   return spec;
 }
 

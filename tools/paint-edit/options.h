@@ -10,7 +10,8 @@
 namespace goniochrome {
 
 // A list is empty where the option is not given.
-struct PaintEditOptions {
+struct Options {
+  cli::CommonOptions common;
   std::vector<std::string> inputs;
   std::string output = "-";
   std::vector<std::string> only;
@@ -26,9 +27,9 @@ struct PaintEditOptions {
   int gradient = 0;
 };
 
-cli::ToolSpec paint_edit_spec(PaintEditOptions& options, cli::CommonOptions& common);
+cli::ToolSpec tool_spec(Options& options);
 
 // The moves that the options ask for. Error (usage): options that contradict each other or lack a number.
-Result<Edit> edit_of(const PaintEditOptions& options);
+Result<Edit> edit_of(const Options& options);
 
 }  // namespace goniochrome

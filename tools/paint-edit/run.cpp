@@ -45,7 +45,7 @@ double de00_max(const Appearance& before, const Appearance& after) {
 // One run: paints in, moves, paints out.
 class Run {
  public:
-  Run(const PaintEditOptions& options, Edit edit, cli::Session& session)
+  Run(const Options& options, Edit edit, cli::Session& session)
       : options_(options),
         edit_(std::move(edit)),
         session_(session),
@@ -175,7 +175,7 @@ class Run {
     return negative ? cli::Verdict::kNegative : cli::Verdict::kDone;
   }
 
-  const PaintEditOptions& options_;
+  const Options& options_;
   const Edit edit_;
   cli::Session& session_;
   const std::set<std::string> wanted_;
@@ -185,7 +185,7 @@ class Run {
   std::size_t read_ = 0, written_ = 0, changes_ = 0, skipped_ = 0;
 };
 
-std::string plan_text(const PaintEditOptions& options, const Edit& edit) {
+std::string plan_text(const Options& options, const Edit& edit) {
   std::string text;
   const auto line = [&](const std::string& sentence) { text += sentence + "\n"; };
   if (options.gradient > 0)
@@ -210,9 +210,9 @@ std::string plan_text(const PaintEditOptions& options, const Edit& edit) {
 
 }  // namespace
 
-Result<cli::Verdict> run_paint_edit(const PaintEditOptions& stated, cli::Session& session) {
+Result<cli::Verdict> run(const Options& stated, cli::Session& session) {
   GONIO_ASSIGN(const PlacedOptions place, placed(stated));
-  const PaintEditOptions& options = place.options;
+  const Options& options = place.options;
   GONIO_ASSIGN(const Edit edit, edit_of(options));
   for (const SeenPixel& pixel : place.pixels) {
     session.results()["pixels"].push_back(

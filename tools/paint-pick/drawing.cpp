@@ -67,7 +67,7 @@ std::string PaintDrawing::described() const {
   return state_->description;
 }
 
-Result<PaintDrawing> PaintDrawing::make(const PaintPickOptions& options) {
+Result<PaintDrawing> PaintDrawing::make(const Options& options) {
   auto state = std::make_unique<State>();
   Basis basis = sketch_basis();
   state->mesh = ball();

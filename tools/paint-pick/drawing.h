@@ -13,7 +13,7 @@ namespace goniochrome {
 // Draws one paint after another on the mesh and under the light of the options.
 class PaintDrawing {
  public:
-  static Result<PaintDrawing> make(const PaintPickOptions& options);
+  static Result<PaintDrawing> make(const Options& options);
   PaintDrawing(PaintDrawing&&) noexcept;
   ~PaintDrawing();
 

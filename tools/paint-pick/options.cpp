@@ -2,7 +2,7 @@
 
 namespace goniochrome {
 
-cli::ToolSpec paint_pick_spec(PaintPickOptions& o, cli::CommonOptions& common) {
+cli::ToolSpec tool_spec(Options& o) {
   cli::ToolSpec spec;
   spec.name = "paint-pick";
   spec.summary = "paints from pictures: droppers for face, flop and gloss, palettes and mood boards";
@@ -87,7 +87,7 @@ cli::ToolSpec paint_pick_spec(PaintPickOptions& o, cli::CommonOptions& common) {
                  {"paints[].swapped", "whether face and flop traded places"},
                  {"paints[].share", "part of the picture that has its colors; for a palette alone"}};
   spec.see_also = {"paint-edit(1)", "sketch-fit(1)", "fit-paint(1)", "goniochrome-theory(7)"};
-  cli::add_common_options(spec, common, {});
+  cli::add_common_options(spec, o.common, {});
   return spec;
 }
 

@@ -8,7 +8,8 @@
 
 namespace goniochrome {
 
-struct PaintPickOptions {
+struct Options {
+  cli::CommonOptions common;
   std::vector<std::string> images;
   std::string face, flop, gloss;
   double travel_deg = 60;
@@ -19,6 +20,6 @@ struct PaintPickOptions {
   std::string mesh, env, basis;
 };
 
-cli::ToolSpec paint_pick_spec(PaintPickOptions& options, cli::CommonOptions& common);
+cli::ToolSpec tool_spec(Options& options);
 
 }  // namespace goniochrome

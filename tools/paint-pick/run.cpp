@@ -104,7 +104,7 @@ Result<void> write_paints(const std::string& path, const std::vector<PageOfPaint
   return writer.finish();
 }
 
-Result<cli::Verdict> run_board(const PaintPickOptions& options, bool as_page, cli::Session& session) {
+Result<cli::Verdict> run_board(const Options& options, bool as_page, cli::Session& session) {
   GONIO_ASSIGN(const Board board, read_board(options.board));
   Shelf shelf;
   const auto path_of = [&](const std::string& name) {
@@ -135,7 +135,7 @@ Result<cli::Verdict> run_board(const PaintPickOptions& options, bool as_page, cl
   return cli::Verdict::kDone;
 }
 
-Result<cli::Verdict> run_palette(const PaintPickOptions& options, cli::Session& session) {
+Result<cli::Verdict> run_palette(const Options& options, cli::Session& session) {
   GONIO_ASSIGN(const ImagePart image, read_image(options.images.front()));
   GONIO_ASSIGN(const auto pairs, palette(image, options.images.front(), options.palette));
   std::vector<PageOfPaint> paints;
@@ -154,7 +154,7 @@ Result<cli::Verdict> run_palette(const PaintPickOptions& options, cli::Session& 
   return cli::Verdict::kDone;
 }
 
-Result<cli::Verdict> run_droppers(const PaintPickOptions& options, cli::Session& session) {
+Result<cli::Verdict> run_droppers(const Options& options, cli::Session& session) {
   PaintPick wanted;
   wanted.name = options.name, wanted.travel_deg = options.travel_deg, wanted.retro = options.retro;
   const auto parse = [&](const char* option, const std::string& text, std::optional<Dropper>& to) -> Result<void> {
@@ -174,7 +174,7 @@ Result<cli::Verdict> run_droppers(const PaintPickOptions& options, cli::Session&
 
 }  // namespace
 
-Result<cli::Verdict> run_paint_pick(const PaintPickOptions& options, cli::Session& session) {
+Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   const bool droppers = !options.face.empty() || !options.flop.empty() || !options.gloss.empty();
   const bool as_page = options.output.ends_with(".html");
   const int ways = droppers + (options.palette > 0) + !options.board.empty();

@@ -5,8 +5,7 @@
 
 int main(int argc, char** argv) {
   using namespace goniochrome;
-  PaintStatsOptions options;
-  cli::CommonOptions common;
-  const cli::ToolSpec spec = paint_stats_spec(options, common);
-  return cli::tool_main(argc, argv, spec, common, [&](cli::Session& session) { return run(options, session); });
+  Options options;
+  const cli::ToolSpec spec = tool_spec(options);
+  return cli::tool_main(argc, argv, spec, options.common, [&](cli::Session& s) { return run(options, s); });
 }

@@ -16,7 +16,7 @@ std::string column_list() {
 
 }  // namespace
 
-cli::ToolSpec paint_stats_spec(PaintStatsOptions& o, cli::CommonOptions& common) {
+cli::ToolSpec tool_spec(Options& o) {
   cli::ToolSpec spec;
   spec.name = "paint-stats";
   spec.summary = "tell flop, chroma and hue-shift index and other figures of paints, and pick paints by them";
@@ -83,7 +83,7 @@ cli::ToolSpec paint_stats_spec(PaintStatsOptions& o, cli::CommonOptions& common)
                                          {"paints_per_s", "paints a second, without reading and writing"},
                                          {"warnings[]", "messages about paints left out"}});
   spec.see_also = {"colorsnap(1)", "paint-convert(1)", "paint-edit(1)"};
-  cli::add_common_options(spec, common, {cli::Common::kExplain});
+  cli::add_common_options(spec, o.common, {cli::Common::kExplain});
   return spec;
 }
 

@@ -8,7 +8,8 @@
 
 namespace goniochrome {
 
-struct PaintStatsOptions {
+struct Options {
+  cli::CommonOptions common;
   std::vector<std::string> inputs;
   std::string output = "-";
   std::string format = "auto";
@@ -16,6 +17,6 @@ struct PaintStatsOptions {
   bool keep_going = false;
 };
 
-cli::ToolSpec paint_stats_spec(PaintStatsOptions& options, cli::CommonOptions& common);
+cli::ToolSpec tool_spec(Options& options);
 
 }  // namespace goniochrome

@@ -52,7 +52,7 @@ std::string table_line(const Paint& paint, const PaintMetrics& numbers) {
 
 enum class Format { kTable, kJson, kPaints };
 
-Format format_of(const PaintStatsOptions& options) {
+Format format_of(const Options& options) {
   const auto ends = [&](const char* ending) { return options.output.ends_with(ending); };
   if (options.format == "paints" || (options.format == "auto" && ends(".xml"))) return Format::kPaints;
   if (options.format == "json" || (options.format == "auto" && (ends(".json") || ends(".jsonl")))) return Format::kJson;
@@ -99,7 +99,7 @@ class Sink {
 // One run: paints in, figures or paints out.
 class Run {
  public:
-  Run(const PaintStatsOptions& options, cli::Session& session) : options_(options), session_(session) {}
+  Run(const Options& options, cli::Session& session) : options_(options), session_(session) {}
 
   Result<cli::Verdict> operator()() {
     if (!options_.where.empty()) {
@@ -172,7 +172,7 @@ class Run {
     return left_out_ > 0 || (filter_ && matched_ == 0) ? cli::Verdict::kNegative : cli::Verdict::kDone;
   }
 
-  const PaintStatsOptions& options_;
+  const Options& options_;
   cli::Session& session_;
   std::optional<PaintFilter> filter_;
   std::optional<Sink> sink_;
@@ -180,7 +180,7 @@ class Run {
   double measuring_s_ = 0;
 };
 
-std::string plan(const PaintStatsOptions& options) {
+std::string plan(const Options& options) {
   const Format format = format_of(options);
   return fmt::format(
       "colors: measured rows at 15, 45 and 110 deg, else the stated curve, else a fitted one; about 1 us a paint, 10 "
@@ -196,7 +196,7 @@ std::string plan(const PaintStatsOptions& options) {
 
 }  // namespace
 
-Result<cli::Verdict> run(const PaintStatsOptions& options, cli::Session& session) {
+Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   session.explain(plan(options));
   return Run(options, session)();
 }

@@ -1,4 +1,4 @@
-// What plot-paint does.
+// The work of plot-paint.
 #pragma once
 
 #include "cli/tool.h"

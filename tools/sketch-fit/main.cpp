@@ -1,12 +1,11 @@
+// sketch-fit: from an edited picture of a painted mesh back to the paint.
 #include "cli/tool.h"
 #include "options.h"
 #include "run.h"
 
 int main(int argc, char** argv) {
-  goniochrome::SketchFitOptions options;
-  goniochrome::cli::CommonOptions common;
-  const auto spec = goniochrome::sketch_fit_spec(options, common);
-  return goniochrome::cli::tool_main(argc, argv, spec, common, [&](goniochrome::cli::Session& session) {
-    return goniochrome::run_sketch_fit(options, session);
-  });
+  using namespace goniochrome;
+  Options options;
+  const cli::ToolSpec spec = tool_spec(options);
+  return cli::tool_main(argc, argv, spec, options.common, [&](cli::Session& s) { return run(options, s); });
 }

@@ -2,7 +2,7 @@
 
 namespace goniochrome {
 
-cli::ToolSpec sketch_fit_spec(SketchFitOptions& o, cli::CommonOptions& common) {
+cli::ToolSpec tool_spec(Options& o) {
   cli::ToolSpec spec;
   spec.name = "sketch-fit";
   spec.summary = "the paint that an edited or drawn picture of a painted mesh shows";
@@ -141,7 +141,7 @@ cli::ToolSpec sketch_fit_spec(SketchFitOptions& o, cli::CommonOptions& common) {
       {"color_space", "what the picture was taken for"},
       {"fit_s", "time of the fit, without reading and writing"}};
   spec.see_also = {"render-osmesa(1)", "fit-paint(1)", "paint-pick(1)", "goniochrome-theory(7)"};
-  cli::add_common_options(spec, common, {cli::Common::kExplain});
+  cli::add_common_options(spec, o.common, {cli::Common::kExplain});
   return spec;
 }
 

@@ -8,7 +8,8 @@
 
 namespace goniochrome {
 
-struct SketchFitOptions {
+struct Options {
+  cli::CommonOptions common;
   std::string image, buffers, env, basis, mask;
   std::vector<std::string> parts;
   std::string pixels = "auto", view = "paint", exposure = "auto";
@@ -17,6 +18,6 @@ struct SketchFitOptions {
   std::string name = "sketch", output = "-", residual;
 };
 
-cli::ToolSpec sketch_fit_spec(SketchFitOptions& options, cli::CommonOptions& common);
+cli::ToolSpec tool_spec(Options& options);
 
 }  // namespace goniochrome

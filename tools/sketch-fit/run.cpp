@@ -24,7 +24,7 @@ struct Material {
   SketchInput input;
 };
 
-Result<double> gain_of(const SketchFitOptions& options, const Material& material) {
+Result<double> gain_of(const Options& options, const Material& material) {
   if (options.exposure != "auto") {
     const auto stops = parse_number(options.exposure);
     if (!stops || std::abs(*stops) > 64)
@@ -34,7 +34,7 @@ Result<double> gain_of(const SketchFitOptions& options, const Material& material
   return material.picture.scene_linear ? std::exp2(-material.buffers.exposure_stops) : material.buffers.white_luminance;
 }
 
-Result<void> check_light(const SketchFitOptions& options, const AovFile& buffers) {
+Result<void> check_light(const Options& options, const AovFile& buffers) {
   if (!options.env.empty()) return {};
   if (!buffers.environment.empty())
     return usage_error("{} was rendered under the environment {}: give --env {}", buffers.path, buffers.environment,
@@ -56,7 +56,7 @@ void warn_of_effects(const AovFile& buffers, cli::Session& session) {
                     buffers.path, unknown));
 }
 
-Result<void> gather(const SketchFitOptions& options, Material& material) {
+Result<void> gather(const Options& options, Material& material) {
   if (!options.shift.empty() && options.shift.size() != 2)
     return usage_error("--shift is given {} numbers: write X,Y", options.shift.size());
   if (!options.basis.empty() && !options.env.empty())
@@ -137,7 +137,7 @@ void report_fit(const SketchFit& fit, bool environment, Json& results) {
 }
 
 // What a reader should know beside the paint.
-void tell(const SketchFitOptions& options, const SketchPixels& pixels, const SketchFit& fit, cli::Session& session) {
+void tell(const Options& options, const SketchPixels& pixels, const SketchFit& fit, cli::Session& session) {
   if (fit.status != "fitted")
     session.warn(fmt::format("{}: the answer is the matt color that explains them best", fit.reason));
   if (!fit.extrapolated_deg.empty())
@@ -153,7 +153,7 @@ void tell(const SketchFitOptions& options, const SketchPixels& pixels, const Ske
       fit.rms_de76, pixels.used.size(), pixels.changed_only ? "edited " : ""));
 }
 
-Result<void> write_paint(const SketchFitOptions& options, const SketchFit& fit, const cli::Session& session) {
+Result<void> write_paint(const Options& options, const SketchFit& fit, const cli::Session& session) {
   GONIO_ASSIGN(OutputFile file, OutputFile::create(options.output));
   GONIO_ASSIGN(
       PaintWriter writer,
@@ -162,7 +162,7 @@ Result<void> write_paint(const SketchFitOptions& options, const SketchFit& fit, 
   return writer.finish();
 }
 
-Result<void> check_usable(const SketchPixels& pixels, const SketchFitOptions& options) {
+Result<void> check_usable(const SketchPixels& pixels, const Options& options) {
   if (!pixels.used.empty()) return {};
   std::string reasons;
   for (int use = 1; use < static_cast<int>(PixelUse::kCount); ++use)
@@ -180,7 +180,7 @@ void tell_shift(const SketchInput& input, cli::Session& session) {
                              shift.y, shift.x, shift.y));
 }
 
-std::string plan_text(const SketchFitOptions& options) {
+std::string plan_text(const Options& options) {
   std::string text =
       options.env.empty()
           ? "light: one lamp, from the buffers' aspecular and lambert\n"
@@ -200,7 +200,7 @@ std::string plan_text(const SketchFitOptions& options) {
 
 }  // namespace
 
-Result<cli::Verdict> run_sketch_fit(const SketchFitOptions& options, cli::Session& session) {
+Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   session.explain(plan_text(options));
   Material material;
   GONIO_TRY(gather(options, material));

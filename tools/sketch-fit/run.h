@@ -6,6 +6,6 @@
 
 namespace goniochrome {
 
-Result<cli::Verdict> run_sketch_fit(const SketchFitOptions& options, cli::Session& session);
+Result<cli::Verdict> run(const Options& options, cli::Session& session);
 
 }  // namespace goniochrome

@@ -1,12 +1,11 @@
+// trompe-fit: the paint that hides a misaligned panel.
 #include "cli/tool.h"
 #include "options.h"
 #include "run.h"
 
 int main(int argc, char** argv) {
-  goniochrome::TrompeFitOptions options;
-  goniochrome::cli::CommonOptions common;
-  const auto spec = goniochrome::trompe_fit_spec(options, common);
-  return goniochrome::cli::tool_main(argc, argv, spec, common, [&](goniochrome::cli::Session& session) {
-    return goniochrome::run_trompe_fit(options, session);
-  });
+  using namespace goniochrome;
+  Options options;
+  const cli::ToolSpec spec = tool_spec(options);
+  return cli::tool_main(argc, argv, spec, options.common, [&](cli::Session& s) { return run(options, s); });
 }

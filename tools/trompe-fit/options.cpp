@@ -51,7 +51,7 @@ Result<void> parse_bound(const std::string& text, TrompeOptions& fit) {
 }
 
 // --vary, --bounds, --objective and --picture.
-Result<void> parse_fit(const TrompeFitOptions& options, TrompeOptions& fit) {
+Result<void> parse_fit(const Options& options, TrompeOptions& fit) {
   GONIO_ASSIGN(fit.vary, parse_vary(options.vary));
   for (const std::string& bound : options.bounds) GONIO_TRY(parse_bound(bound, fit));
   fit.least_maximum = options.objective == "max";
@@ -60,7 +60,7 @@ Result<void> parse_fit(const TrompeFitOptions& options, TrompeOptions& fit) {
   return {};
 }
 
-Result<std::optional<TrompeGeometry>> parse_single(const TrompeFitOptions& options, double angle_deg) {
+Result<std::optional<TrompeGeometry>> parse_single(const Options& options, double angle_deg) {
   if (options.mode != "single") {
     if (!options.at.empty()) return usage_error("--at is for --mode single");
     return std::optional<TrompeGeometry>();
@@ -77,7 +77,7 @@ Result<std::optional<TrompeGeometry>> parse_single(const TrompeFitOptions& optio
 
 }  // namespace
 
-Result<TrompeRequest> request_of(const TrompeFitOptions& options) {
+Result<TrompeRequest> request_of(const Options& options) {
   TrompeRequest request;
   if (options.seam.names_anything_but_mesh() || !options.dark.empty())
     return usage_error("--seam, --light-from, --view-from, --environment and --dark are for a mesh: give --mesh");
@@ -106,7 +106,7 @@ Result<TrompeRequest> request_of(const TrompeFitOptions& options) {
   return request;
 }
 
-Result<TrompeSeamRequest> seam_request_of(const TrompeFitOptions& options) {
+Result<TrompeSeamRequest> seam_request_of(const Options& options) {
   TrompeSeamRequest request;
   GONIO_ASSIGN(request.world, seam_world(options.seam));
   if (!options.angle_deg.empty()) return usage_error("--angle is for panels without a mesh: the seam has its own");
@@ -121,7 +121,7 @@ Result<TrompeSeamRequest> seam_request_of(const TrompeFitOptions& options) {
   return request;
 }
 
-cli::ToolSpec trompe_fit_spec(TrompeFitOptions& o, cli::CommonOptions& common) {
+cli::ToolSpec tool_spec(Options& o) {
   cli::ToolSpec spec;
   spec.name = "trompe-fit";
   spec.summary = "the paint for a misaligned panel that hides the misalignment";
@@ -237,7 +237,7 @@ cli::ToolSpec trompe_fit_spec(TrompeFitOptions& o, cli::CommonOptions& common) {
       {"fits[]", "where there is more than one: all of these, with name and light_deg, for each"},
   };
   spec.see_also = {"goniogeom-index(1)", "paint-edit(1)", "fit-paint(1)", "goniochrome-theory(7)"};
-  cli::add_common_options(spec, common, {cli::Common::kExplain});
+  cli::add_common_options(spec, o.common, {cli::Common::kExplain});
   return spec;
 }
 

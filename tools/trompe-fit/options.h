@@ -12,7 +12,8 @@
 
 namespace goniochrome {
 
-struct TrompeFitOptions {
+struct Options {
+  cli::CommonOptions common;
   std::vector<std::string> inputs, only;
   std::string output = "-";
   std::vector<double> angle_deg;
@@ -27,7 +28,7 @@ struct TrompeFitOptions {
   std::vector<std::string> dark;
 };
 
-cli::ToolSpec trompe_fit_spec(TrompeFitOptions& options, cli::CommonOptions& common);
+cli::ToolSpec tool_spec(Options& options);
 
 // A light and viewer with what both panels show there.
 struct TrompeGeometry {
@@ -46,7 +47,7 @@ struct TrompeRequest {
   std::optional<TrompeGeometry> single;
   TrompeOptions fit;
 };
-Result<TrompeRequest> request_of(const TrompeFitOptions& options);
+Result<TrompeRequest> request_of(const Options& options);
 
 // The same for a seam of a mesh.
 struct TrompeSeamRequest {
@@ -54,6 +55,6 @@ struct TrompeSeamRequest {
   GeometryList geometries;  // at every place of the seam, where the world says nothing
   TrompeOptions fit;
 };
-Result<TrompeSeamRequest> seam_request_of(const TrompeFitOptions& options);
+Result<TrompeSeamRequest> seam_request_of(const Options& options);
 
 }  // namespace goniochrome

@@ -64,7 +64,7 @@ Result<Answers> answers_for(const Paint& paint, const TrompeRequest& request, co
   return answers;
 }
 
-std::string plan(const TrompeFitOptions& options, const TrompeRequest& request) {
+std::string plan(const Options& options, const TrompeRequest& request) {
   std::string text = fmt::format(
       "{} pairs of light and viewer; left out: {} within {} deg of the mirror direction, {} below the horizon, {} that "
       "do not see the second panel\n"
@@ -81,7 +81,7 @@ std::string plan(const TrompeFitOptions& options, const TrompeRequest& request) 
 
 class Run {
  public:
-  Run(const TrompeFitOptions& options, const TrompeRequest& request, cli::Session& session)
+  Run(const Options& options, const TrompeRequest& request, cli::Session& session)
       : options_(options), request_(request), session_(session) {}
 
   Result<cli::Verdict> operator()() {
@@ -152,7 +152,7 @@ class Run {
     return negative_ ? cli::Verdict::kNegative : cli::Verdict::kDone;
   }
 
-  const TrompeFitOptions& options_;
+  const Options& options_;
   const TrompeRequest& request_;
   cli::Session& session_;
   std::vector<Json> fits_;
@@ -162,7 +162,7 @@ class Run {
 
 }  // namespace
 
-Result<cli::Verdict> run_trompe_fit(const TrompeFitOptions& options, cli::Session& session) {
+Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   if (!options.seam.mesh.empty()) return run_on_seam(options, session);
   GONIO_ASSIGN(const TrompeRequest request, request_of(options));
   session.explain(plan(options, request));

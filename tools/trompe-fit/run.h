@@ -6,6 +6,6 @@
 
 namespace goniochrome {
 
-Result<cli::Verdict> run_trompe_fit(const TrompeFitOptions& options, cli::Session& session);
+Result<cli::Verdict> run(const Options& options, cli::Session& session);
 
 }  // namespace goniochrome

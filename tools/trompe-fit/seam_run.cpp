@@ -28,7 +28,7 @@ std::vector<double> weights_of(const std::vector<SeamView>& views) {
 
 class SeamRun {
  public:
-  SeamRun(const TrompeFitOptions& options, const TrompeSeamRequest& request, cli::Session& session)
+  SeamRun(const Options& options, const TrompeSeamRequest& request, cli::Session& session)
       : options_(options), request_(request), session_(session) {}
 
   Result<cli::Verdict> operator()() {
@@ -138,7 +138,7 @@ class SeamRun {
         {{"Software", session_.tool() + " " + cli::Session::version()}, {"Comment", session_.command_line()}});
   }
 
-  const TrompeFitOptions& options_;
+  const Options& options_;
   const TrompeSeamRequest& request_;
   cli::Session& session_;
   SeamStage stage_;
@@ -148,7 +148,7 @@ class SeamRun {
   bool negative_ = false;
 };
 
-std::string plan(const TrompeFitOptions& options, const TrompeSeamRequest& request) {
+std::string plan(const Options& options, const TrompeSeamRequest& request) {
   return fmt::format(
       "seam of {} and {} in {}; paint B goes to {}\n{}"
       "minimized: {} of dE76 over at most {} views spread along the seam, by {}; judged by all\n",
@@ -158,7 +158,7 @@ std::string plan(const TrompeFitOptions& options, const TrompeSeamRequest& reque
 
 }  // namespace
 
-Result<cli::Verdict> run_on_seam(const TrompeFitOptions& options, cli::Session& session) {
+Result<cli::Verdict> run_on_seam(const Options& options, cli::Session& session) {
   GONIO_ASSIGN(const TrompeSeamRequest request, seam_request_of(options));
   session.explain(plan(options, request));
   return SeamRun(options, request, session)();

@@ -6,6 +6,6 @@
 
 namespace goniochrome {
 
-Result<cli::Verdict> run_on_seam(const TrompeFitOptions& options, cli::Session& session);
+Result<cli::Verdict> run_on_seam(const Options& options, cli::Session& session);
 
 }  // namespace goniochrome
