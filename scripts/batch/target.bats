@@ -65,6 +65,15 @@ cells() {
   strings whole/pictures/*/000001.png | grep -qF -- "$words --check 25 --check-source $PWD/light.exr --seed 4"
 }
 
+@test "a chapter of the book has the lobes that its pictures have" {
+  copy bound
+  finish bound
+  batch book bound 0
+  fit=$(jq -r '.target.fit[1]' bound/plan.json)
+  grep -qF "method=\\\"$fit\\\"" bound/book-001.html
+  [ "$(grep -oE 'data:image/png;base64' bound/book-001.html | wc -l)" -ge 2 ]
+}
+
 @test "other pixels find the same; without effects they do not" {
   copy other
   finish other

@@ -138,6 +138,15 @@ PY
   done
 }
 
+@test "lobes are fitted anew, or kept" {
+  paint-convert -q small.paints.xml -o - | fit-paint -q --basis "$TESTDATA/b5.basis.xml" --method l2 - -o fitted.paints.xml
+  book fitted.paints.xml --fitted --env small.env.exr --size 96x64 -o kept.html
+  book fitted.paints.xml --basis "$TESTDATA/b5.basis.xml" --env small.env.exr --size 96x64 -o anew.html
+  grep -oE 'method=."l[12]' kept.html | sort -u >kept
+  grep -oE 'method=."l[12]' anew.html | sort -u >anew
+  [ "$(cat kept anew)" = $'method=\\"l2\nmethod=\\"l1' ]
+}
+
 @test "the filter is the one function that the page states" {
   grep -qF 'function matches(paint, wanted)' small.html
   grep -qF 'whole || (paint[index] !== null && paint[index] >= low && paint[index] <= high)' small.html

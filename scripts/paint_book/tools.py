@@ -38,9 +38,12 @@ class Tools:
         return done.stdout
 
     def paint_xml(self, library, basis, gloss, folder):
-        """Path of the library as paint XML, every paint with lobes; `gloss` is assumed where a paint states none."""
+        """Path of the library as paint XML, every paint with lobes, or with those that it has where `basis` is None; `gloss` is
+        assumed where a paint states none."""
         plain, fitted = folder / "library.paints.xml", folder / "fitted.paints.xml"
         self.run("paint-convert", library, "-o", plain)
+        if basis is None:
+            return plain
         self.run("fit-paint", plain, "--basis", basis, *(["--gloss", gloss] if gloss else []), "-o", fitted)
         return fitted
 

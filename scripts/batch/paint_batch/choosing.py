@@ -103,9 +103,10 @@ def told(proof):
 def announced(options, paints, scenes, typical):
     """What the search will do, with a time from typical costs."""
     samples, bases = min(SAMPLES, paints), 1 if options.basis else len(BASES)
-    pictures_s = samples * scenes * typical["picture_s"]
-    timed_s = bases * len(TOLERANCES) * (len(options.env) * typical["environment_s"] + pictures_s)
-    checks_s = (bases + 6) * (pictures_s + samples * scenes * typical["check_s"])
+    pictures = samples * scenes
+    timed_s = bases * len(TOLERANCES) * (len(options.env) * typical["environment_s"] + pictures * typical["picture_s"])
+    pixels = (bases + 3) * CHOOSING + 2 * PROVING  # of the bases, of the cheapest, and of what it is proven by
+    checks_s = pictures * (pixels * typical["check_pixel_s"] + (bases + 5) * typical["picture_s"])
     return (f"  choose, once, for a mean dE00 of {options.target_de00:g}: the cheapest of {bases} bas{'es' if bases > 1 else 'is'}, "
             f"{len(METHODS)} methods with and without views, {len(TOLERANCES)} tolerances of environments and {len(EFFECTS) + 1} of "
             f"effects, for {samples} paints spread over the library: about {timed_s + checks_s:.0f} s\n")

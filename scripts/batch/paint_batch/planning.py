@@ -16,7 +16,7 @@ JOB_S = 0.5  # what an engine and Python add to a shard
 
 
 # Seconds on one core of a server of 2020, for the plan that is printed before anything is measured.
-TYPICAL = {"clean_s": 0.0001, "environment_s": 1.0, "stream_s": 0.0005, "picture_s": 0.25, "check_s": 0.1, "start_s": 0.1}
+TYPICAL = {"clean_s": 0.0001, "environment_s": 1.0, "stream_s": 0.0005, "picture_s": 0.25, "check_pixel_s": 0.01, "start_s": 0.1}
 
 
 def roughly_counted(path):
@@ -37,7 +37,7 @@ def announce(options):
     prepare_s = paints * TYPICAL["clean_s"] + sum(not env.endswith(".env.exr") for env in options.env) * TYPICAL["environment_s"] + probed_s
     picture_s, choice, checked = TYPICAL["picture_s"], "", ""
     if options.target_de00:
-        picture_s += TYPICAL["check_s"]
+        picture_s += options.check * TYPICAL["check_pixel_s"]
         choice, checked = choosing.announced(options, paints, scenes, TYPICAL), f", each checked at {options.check} pixels"
     work_s = paints * (TYPICAL["stream_s"] + scenes * picture_s)
     print(f"plan: {options.library}, about {paints} paints\n{choice}"

@@ -135,7 +135,8 @@ def book(out, chapter):
             shutil.copy(picture_path(out, scene, number), folder / f"{index}.png")
         program = pathlib.Path(__file__).resolve().parents[2] / "paint-book"
         width, height = plan["size"].split("x")
-        subprocess.run([program, folder / "chapter.paints.xml", "--quiet", "--jobs", "1", "--basis", plan["basis"], "--mesh", scene["mesh"],
-                        "--env", scene["env"], "--size", f"{width}x{height}", "--pictures", folder, "--title",
+        fitted = ["--fitted"] if "target" in plan else []  # as --basis alone would not fit them
+        subprocess.run([program, folder / "chapter.paints.xml", "--quiet", "--jobs", "1", "--basis", plan["basis"], *fitted,
+                        "--mesh", scene["mesh"], "--env", scene["env"], "--size", f"{width}x{height}", "--pictures", folder, "--title",
                         f"Paints {first + 1} to {min(last, plan['paints'])}", "-o", page], check=True,
                        cwd=folder)
