@@ -67,8 +67,8 @@ class Session {
 };
 
 // The main() of a tool: parses argv by the table (which writes into the caller's options), answers --help, --version
-// and
-// --generate, sets the threads, runs, writes the report, prints an error as `tool: message`, returns the exit status.
+// and --generate, sets the threads, runs, writes the report, prints an error as `tool: message`, and returns the exit
+// status.
 int tool_main(int argc, char** argv, const ToolSpec& spec, const CommonOptions& common,
               const std::function<Result<Verdict>(Session&)>& run);
 

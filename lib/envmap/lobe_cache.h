@@ -19,6 +19,7 @@ class LobeCache {
   // A lobe with its errors and method as they were, or nothing; a file that is not what it should be is as none.
   std::optional<PrefilteredLobe> find(const LobePlan& plan) const;
 
+  // Writes a lobe into the folder, whole or not at all. Error: the file and the system's reason.
   Result<void> keep(const PrefilteredLobe& lobe) const;
 
  private:

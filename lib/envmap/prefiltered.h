@@ -48,7 +48,7 @@ struct PrefilteredEnvironment {
   const PrefilteredLobe* lobe(double exponent) const;
 };
 
-// Reads parts diffuse, lobe-NNN and mirror, or the levels of a mip-mapped cube. Error: the part and what is wrong with it.
+// Reads parts diffuse, lobe-NNN and mirror, or the levels of a mip-mapped cube. Error: the part, and what is wrong.
 Result<PrefilteredEnvironment> read_env(const std::string& path);
 
 // Writes the parts; half floats unless a value or the tolerance needs float. `command` is kept for provenance. Lat-long

@@ -50,8 +50,8 @@ enum class BasisMethod {
 
 struct BasisSearchOptions {
   BasisMethod method = BasisMethod::kPowerMean;
-  int first = 1, last = 11;      // numbers of lobes
-  int starts = 6;                // for each number of lobes
+  int first = 1, last = 11;  // numbers of lobes
+  int starts = 6;            // for each number of lobes
   // Domain of the exponents, up to the sharpest lobe that the targets see. Below 1 a lobe falls to 0 at 90 deg with
   // infinite slope, which shows as an edge.
   double low = 1, high = 2e4;
@@ -70,7 +70,7 @@ struct FoundBasis {
 
 struct BasisSearch {
   std::vector<FoundBasis> sets;  // by number of lobes, from `first`; fewer where
-                               // the time limit struck
+                                 // the time limit struck
   bool stopped = false;
 };
 

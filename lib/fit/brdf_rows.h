@@ -11,12 +11,12 @@
 namespace goniochrome {
 
 struct BrdfRows {
-  FlakeTarget flake;                // the directions that are fitted
-  std::vector<BrdfSample> fitted;   // the same as measured
-  std::vector<BrdfSample> glare;    // within kGlareAngle_deg of specular
-  std::size_t steep = 0;            // left out for being near grazing
-  double first_rad = 0;             // the smallest aspecular angle fitted
-  double gamut_de00 = 0;            // the largest color change from setting negative channels to 0
+  FlakeTarget flake;               // the directions that are fitted
+  std::vector<BrdfSample> fitted;  // the same as measured
+  std::vector<BrdfSample> glare;   // within kGlareAngle_deg of specular
+  std::size_t steep = 0;           // left out for being near grazing
+  double first_rad = 0;            // the smallest aspecular angle fitted
+  double gamut_de00 = 0;           // the largest color change from setting negative channels to 0
 };
 
 // Error: no direction is left beyond glare and not steeper than the options say.

@@ -32,8 +32,8 @@ struct DeltaEProblem {
 struct DeltaEFit {
   std::vector<Rgb> x;    // one per column
   double objective = 0;  // root of the sum of squared dE00 and squared guide residuals
-  double optimality_gap =
-      0;  // the largest cosine between the residual and a free column of its derivative; 0 is stationary
+  // The largest cosine between the residual and a free column of its derivative; 0 is stationary.
+  double optimality_gap = 0;
   FitStatus status = FitStatus::kOptimal;
 };
 

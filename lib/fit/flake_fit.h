@@ -59,6 +59,7 @@ struct FlakeFit {
 // The color that weights show.
 Rgb shown(const FlakeModel& model, const std::vector<Rgb>& x, const FlakePoint& at);
 
+// The rows of a target as a linear problem in the columns of a model, in reflectance factor.
 LinearProblem linear_problem(const FlakeTarget& target, const FlakeModel& model);
 
 // The best weights. A model with views is also asked to show neighboring views alike, with so little weight that it

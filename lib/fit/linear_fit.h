@@ -31,6 +31,7 @@ struct LinearFit {
   bool converged = true;
 };
 
+// The x >= 0 of least norm, channel by channel and exactly. `converged` is false where l1_fit() gave up on a channel.
 LinearFit linear_fit(Norm norm, const LinearProblem& problem);
 
 // The problem with these columns alone.

@@ -1,4 +1,4 @@
-// The least squares behind inverse trompe l'oeil. Internal to lib/fit.
+// The least squares behind inverse trompe l'oeil. Internal to lib/fit. goniochrome-theory(7), INVERSE TROMPE L'OEIL.
 #pragma once
 
 #include <functional>
@@ -19,6 +19,8 @@ struct ResidualShape {
 };
 using TrompeModel = std::function<void(ceres::Problem&, double* values, const ResidualShape&)>;
 
+// Paint B by its curve at the aspecular angle of each view; by `colors`, which may be any function of face, flop and
+// travel, with `weights` as many as there are colors in `target`.
 TrompeModel view_model(const std::vector<Lab>& target, const std::vector<PanelView>& views);
 TrompeModel color_model(const std::vector<Lab>& target, const std::vector<double>& weights, const PanelColors& colors);
 

@@ -18,6 +18,7 @@ struct Twins {
   std::vector<double> views_deg;     // of the readings that differ visibly from a twin, ascending
 };
 
+// All 0 and empty where no two readings at one unsigned aspecular angle differ.
 Twins twins_of(const std::vector<LabReading>& readings);
 
 }  // namespace goniochrome
