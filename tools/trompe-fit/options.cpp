@@ -229,7 +229,7 @@ cli::ToolSpec tool_spec(Options& o) {
       {"at_bound[]", "parameters that a bound holds back"},
       {"solid", "whether face and flop were moved together"},
       {"status", "converged, not_converged, or failed with a message"},
-      {"time_ms", "of the fit"},
+      {"time_ms", "of the fit; starts: how many it was begun from"},
       {"misalignment_deg", "with --mesh: of the seam, low, median and high"},
       {"seam[].rms_before",
        "with --mesh, for each place: also rms_after, run, distance_m, fold_deg; geometries[] is left "
