@@ -59,7 +59,7 @@ class Scale {
 
 std::string tick_label(double v) {
   const double size = std::abs(v);
-  if (size == 0 || (size >= 1e-3 && size < 1e5)) return fmt::format("{:.6g}", v);
+  if (size == 0 || (size >= 1e-3 && size < 1e6)) return fmt::format("{:.6g}", v);
   std::string label = fmt::format("{:.3g}", v);
   if (const auto e = label.find('e'); e != std::string::npos) {  // 1e-05 and 1e+06 are read as 1e-5 and 1e6
     if (label[e + 2] == '0') label.erase(e + 2, 1);

@@ -16,9 +16,13 @@ TOP = pathlib.Path(__file__).resolve().parents[2]
 # In the order of the page. Each is a module beside this one with study(run) -> Study.
 STUDIES = {
     "prefilter": "prefiltering: tolerance and size against the exact sum",
+    "basis": "choosing a basis: starts, sample angles and method against what its lobes can do",
     "fit": "fitting: method, lobes and target against the measured colors",
-    "render": "rendering: effects and engine against the reference integrator",
+    "lobes": "fewer lobes: smaller bases, the best of a basis, and pruning, against the time of shading",
+    "render": "rendering: effects, engine, textures and brushes against the reference integrator",
+    "edges": "edges: samples of a pixel against hundreds",
     "scenes": "ten scenes: what the plan leaves out, and what it says that each effect is worth",
+    "inverse": "paints looked for: sketches by their size, and panels that hide a misalignment",
     "search": "search: library size, tree and scan against brute force",
     "growth": "growth of times with probes, maps, paints, pixels and lights, and where it is steepest",
     "chain": "the whole chain: where the error of a picture comes from, and what it costs to lower it",
@@ -40,7 +44,7 @@ def parse(arguments):
     parser.add_argument("--mesh", type=pathlib.Path, default=TOP / "testdata/speed-shape.obj", metavar="FILE", help="mesh to use [testdata]")
     parser.add_argument("--target-de00", type=float, metavar="X", help="instead: find and prove the cheapest settings that bring scenes within a mean of X")
     parser.add_argument("--scene", action="append", metavar="PAINT[,PROBE]", help="with --target-de00: a paint, and a probe if not that of --probe; repeat for more [three of testdata]")
-    options = parser.parse_args(arguments)
+    options = parser.parse_intermixed_args(arguments)
     if options.target_de00 is not None and not options.target_de00 > 0:
         parser.error(f"--target-de00 is {options.target_de00:g}: give a color difference above 0")
     if options.scene and options.target_de00 is None:
@@ -87,6 +91,7 @@ def work(folder, options):
         for name in options.studies or STUDIES:
             run.say(f"{name}: {STUDIES[name]}")
             studies.append(importlib.import_module(f".{name}", __package__).study(run))
+            studies[-1].settle()
         page.write(run, studies, time.monotonic() - start)
     dominated = [text for study in studies for text in study.dominated_defaults()]
     for text in dominated:

@@ -3,6 +3,7 @@
 import math
 
 from .scene import CAMERA
+from .inverse import sketches
 from .search import write_library
 from .study import Figure, Reading, Study
 
@@ -72,17 +73,23 @@ def rendering(run):
         yield "render-osmesa: lights", lights, *frame(*directions, "--size", "640x360")
 
 
+def sketching(run):
+    for reading in sketches(run):
+        if reading.method.startswith("steel"):
+            yield f"sketch-fit: pixels, {reading.numbers['light']}", reading.numbers["n"], reading.time_s, reading.raw_s
+
+
 def study(run):
     kinds = {}
-    for part in (prefiltering, fitting, rendering):
+    for part in (prefiltering, fitting, rendering, sketching):
         for kind, n, best, raw in part(run):
             kinds.setdefault(kind, []).append(Reading(setting=f"{kind} {n}", time_s=best, error=0.0, method=kind, raw_s=raw, numbers={"n": n}))
     readings = [r for rs in kinds.values() for r in rs]
-    figure = Figure("growth", "Time against the size of the job", readings, x_label="size", y_label="time (s)", front=False,
+    figure = Figure("growth", "Time against the size of the job", readings, x_label="size: rows, texels, paints, pixels or lights", y_label="time (s)", front=False,
                     x=lambda r: r.numbers["n"], y=lambda r: r.time_s)
     rows = [(kind, f"{rs[0].numbers['n']} to {rs[-1].numbers['n']}", rs[0].time_s, rs[-1].time_s, *curve(rs)) for kind, rs in kinds.items()]
     text = ("Exponents are of the time against the size, over the larger half of the sizes, where start-up counts least: 1 is proportional. The "
             "steepest step is the cliff to know about: an exponent far above the others there says that doubling the job at that point costs more "
-            "than elsewhere. Probes are lat-long and go to 128 texels a face; faces come from 1024 x 512; lights shine on 640 x 360 pixels, and "
-            "pixels are counted under the probe. Times of render-osmesa are of a frame, all others are processor time of the whole tool.")
+            "than elsewhere. Growing probes are filtered to 128 texels a face, growing faces from a probe of 1024 x 512; growing lights shine on "
+            "640 x 360 pixels, and growing pictures stand in the probe. Times of render-osmesa are of a frame, all others are processor time of the whole tool.")
     return Study("Growth", text, [figure], [("Growth", ("what grows", "sizes", "least (s)", "most (s)", "exponent", "steepest step", "its exponent"), rows)])

@@ -7,15 +7,19 @@ import pathlib
 import platform
 import subprocess
 
+FRONT = "#222222"  # of the dashed line, and of the rings around defaults
+
 STYLE = """
 body{font:16px/1.5 sans-serif;color:#1c1c1c;background:#fff;max-width:62rem;margin:2rem auto;padding:0 1rem}
-h1{font-size:1.7rem}h2{margin-top:2.5rem;border-bottom:1px solid #bbb}
-table{border-collapse:collapse;margin:1rem 0;font-size:.9rem;display:block;overflow-x:auto}
-th,td{padding:.2rem .7rem;text-align:right;border-bottom:1px solid #ddd;white-space:nowrap}
-th:first-child,td:first-child{text-align:left}caption{text-align:left;font-weight:bold;padding:.3rem 0}
-figure{margin:1.5rem 0;overflow-x:auto}figcaption{color:#444}svg{max-width:100%;height:auto}
-@media print{body{max-width:none}h2{break-after:avoid}figure,table{break-inside:avoid}}
+h1{font-size:1.7rem}h2{margin-top:2.5rem;border-bottom:1px solid #bbb}nav a{margin-right:1rem;white-space:nowrap}
+table{border-collapse:collapse;margin:1rem 0;font-size:.85rem;line-height:1.35}
+th,td{padding:.2rem .5rem;text-align:right;border-bottom:1px solid #ddd;vertical-align:bottom}
+.text{text-align:left}caption{text-align:left;font-weight:bold;padding:.3rem 0}
+figure{margin:1.5rem 0}figcaption{color:#444;font-size:.9rem}svg{max-width:100%;height:auto}
+@media print{body{max-width:none;margin:0;font-size:10pt}nav{display:none}table{font-size:8pt}h2{break-after:avoid}figure,tr{break-inside:avoid}}
 """
+READING = ("Each point of a plot is a setting: lower is truer, farther left is faster. The dashed line joins the settings that no other one beats in both; "
+           "a ring is the default. Where there is no dashed line, the plot has more than one job in it, or an axis that is no time.")
 
 
 def processor():
@@ -31,36 +35,62 @@ def machine():
 
 
 def number(value):
-    if isinstance(value, float):
-        return f"{value:.3g}" if value == value else "-"
-    return str(value)
+    """Three digits; powers of ten only where a number is very small."""
+    if not isinstance(value, float):
+        return str(value)
+    if value != value:
+        return "-"
+    if abs(value) < 1e-12:
+        return "0"
+    short = f"{value:.3g}"
+    if abs(value) >= 100:
+        short = f"{float(short):.0f}"
+    return short.replace("e-0", "e-")
 
 
 def table(caption, head, rows):
-    cells = lambda tag, row: "".join(f"<{tag}>{html.escape(number(cell))}</{tag}>" for cell in row)
-    body = "".join(f"<tr>{cells('td', row)}</tr>\n" for row in rows)
-    return f"<table><caption>{html.escape(caption)}</caption><tr>{cells('th', head)}</tr>\n{body}</table>\n"
+    def cell(tag, value, like):
+        side = ' class="text"' if isinstance(like, str) else ""
+        return f"<{tag}{side}>{html.escape(number(value))}</{tag}>"
+    first = rows[0] if rows else head
+    heads = "".join(cell("th", name, like) for name, like in zip(head, first))
+    body = "".join(f"<tr>{''.join(cell('td', value, like) for value, like in zip(row, first))}</tr>\n" for row in rows)
+    return f"<table><caption>{html.escape(caption)}</caption><tr>{heads}</tr>\n{body}</table>\n"
 
 
 def plot(run, figure):
     """Draws a figure with draw-plot(1) and returns its SVG; the file is kept beside the page."""
     rows = []
+    if figure.front and not figure.apart:
+        rows += [("best known", *figure.point(r), "dashed", FRONT) for r in figure.pareto()]
     for reading in figure.readings:
-        rows.append((reading.method, *figure.point(reading), "both" if figure.joined else "points"))
-    for reading in (r for r in figure.readings if r.default):
-        rows.append(("default", *figure.point(reading), "points"))
-    if figure.front:
-        rows += [("best known", *figure.point(r), "dashed") for r in figure.pareto()]
+        rows.append((reading.method, *figure.point(reading), "both" if figure.joined else "points", ""))
+    rows += [("default", *figure.point(r), "rings", FRONT) for r in figure.readings if r.default]
     points = run.work / "points.csv"
     with points.open("w", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(("series", "x", "y", "style"))
-        writer.writerows((str(s).replace(",", ";"), x, y, style) for s, x, y, style in rows)
+        writer.writerow(("series", "x", "y", "style", "color"))
+        writer.writerows((str(s).replace(",", ";"), *rest) for s, *rest in rows)
     out = run.output / f"{figure.name}.svg"
     subprocess.run([str(run.folder / "draw-plot"), str(points), "--title", figure.title, "--x-label", figure.x_label,
-                    "--y-label", figure.y_label, "--logarithmic", figure.logarithmic, "--width", "860", "--height",
+                    "--y-label", figure.y_label, "--logarithmic", figure.logarithmic, "--width", "900", "--height",
                     "420", "--quiet", "-o", str(out)], check=True)
     return out.read_text()
+
+
+def anchor(study):
+    return study.title.lower().replace(" ", "-")
+
+
+def chapter(run, study):
+    """The HTML of a study."""
+    parts = [f"<h2 id=\"{anchor(study)}\">{html.escape(study.title)}</h2>\n<p>{html.escape(study.text)}</p>\n"]
+    for figure in study.figures:
+        note = f"<figcaption>{html.escape(figure.note)}</figcaption>" if figure.note else ""
+        parts.append(f"<figure>{plot(run, figure)}{note}</figure>\n")
+    parts += [table(caption, head, rows) for caption, head, rows in study.tables]
+    parts += [f"<p><strong>Dominated default:</strong> {html.escape(text)}</p>\n" for text in study.dominated_defaults()]
+    return "".join(parts)
 
 
 def write(run, studies, seconds):
@@ -72,18 +102,12 @@ def write(run, studies, seconds):
                 for r in figure.readings:
                     writer.writerow((study.title, figure.name, r.method, r.setting, int(r.default), f"{r.time_s:.6g}", f"{r.error:.6g}",
                                      " ".join(f"{s:.6g}" for s in r.raw_s), " ".join(f"{k}={number(v)}" for k, v in r.numbers.items())))
-    parts = []
-    for study in studies:
-        parts.append(f"<h2>{html.escape(study.title)}</h2>\n<p>{html.escape(study.text)}</p>\n")
-        for figure in study.figures:
-            parts.append(f"<figure>{plot(run, figure)}</figure>\n")
-        for caption, head, rows in study.tables:
-            parts.append(table(caption, head, rows))
-        for text in study.dominated_defaults():
-            parts.append(f"<p><strong>Dominated default:</strong> {html.escape(text)}</p>\n")
+    parts = [chapter(run, study) for study in studies]
+    contents = " ".join(f'<a href="#{anchor(study)}">{html.escape(study.title)}</a>' for study in studies)
     inputs = ", ".join(p.name for p in (run.paints, run.probe, run.mesh))
     (run.output / "index.html").write_text(
         f"<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>What accuracy costs</title>\n"
         f"<meta name=\"viewport\" content=\"width=device-width\"><style>{STYLE}</style></head>\n<body><h1>What accuracy costs</h1>\n"
         f"<p>Measured with {html.escape(inputs)} on {html.escape(machine())}, in {seconds:.0f} s{', quick' if run.quick else ''}. "
-        f"Every reading, with every repetition, is in <a href=\"readings.csv\">readings.csv</a>.</p>\n{''.join(parts)}</body></html>\n")
+        f"Every reading, with every repetition, is in <a href=\"readings.csv\">readings.csv</a>.</p>\n<p>{READING}</p>\n"
+        f"<nav>{contents}</nav>\n{''.join(parts)}</body></html>\n")

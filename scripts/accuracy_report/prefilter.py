@@ -1,5 +1,6 @@
 """Prefiltering: tolerance and size against the exact sum, beside the sum over all pairs and a naive mip chain."""
 
+import dataclasses
 import json
 import os
 import resource
@@ -19,19 +20,27 @@ def shared_processor_s():
     return (used.ru_utime + used.ru_stime) / (os.cpu_count() or 1)
 
 
+def size_name(size):
+    return "texels by --size auto" if size == "auto" else f"{size} texels"
+
+
 def ours(run, size, tolerance, verify):
     """One setting of prefilter-envmap: reading, filtering and writing, and the verified error."""
-    name = f"{size} texels, tolerance {tolerance:g}"
+    name = f"{size_name(size)}, tolerance {tolerance:g}"
     words = (run.probe, "-e", EXPONENTS, "--no-mirror", "--size", size, "--tolerance", tolerance, "-o", run.work / "out.env.exr")
-    times = []
-    while len(times) < (2 if run.quick else 3) and sum(times) < ENOUGH_S:
+
+    def once():
         before = shared_processor_s()
         run.tool("prefilter-envmap", *words)
-        times.append(shared_processor_s() - before)
+        return shared_processor_s() - before
+
+    times = []
+    while len(times) < (2 if run.quick else 3) and sum(times) < ENOUGH_S:
+        times.append(once())
     results, _ = run.tool("prefilter-envmap", *words, "--verify", verify)
     lobes = results["lobes"]
     worst = max(lobe["max_rel_error"] for lobe in lobes)
-    return Reading(setting=name, time_s=min(times), error=worst, raw_s=tuple(times),
+    return Reading(setting=name, time_s=min(times), error=worst, raw_s=tuple(times), again=once,
                    numbers={"size": size, "tolerance": tolerance, "mean_error": max(lobe["mean_rel_error"] for lobe in lobes),
                             "lookup_error": max(lobe["lookup_error"] for lobe in lobes),
                             "predicted_s": sum(lobe["predicted_time_s"] for lobe in lobes), "lobes": lobes})
@@ -54,11 +63,18 @@ def rivals(run):
     cores = os.cpu_count() or 1
     readings = []
     for b in benchmark(run, f"BM_AgainstAllPairs/size:{SIZE}"):
-        readings.append(Reading("all pairs, float", b["all_pairs_processor_s"] / cores, b["all_pairs_max_error"], "all pairs"))
+        once = b["all_pairs_processor_s"] / cores
+        readings.append(Reading("all pairs, float", once, b["all_pairs_max_error"], "all pairs", raw_s=(once,)))
     for b in benchmark(run, f"BM_BoxMip/source:.*/size:{SIZE}"):
         source = b["name"].split("source:")[1].split("/")[0]
-        readings.append(Reading(f"source averaged to {source}", b["processor_s"] / cores, b["max_error"], "naive mip chain"))
+        once = b["processor_s"] / cores
+        readings.append(Reading(f"source averaged to {source}", once, b["max_error"], "naive mip chain", raw_s=(once,)))
     return readings
+
+
+def looked_up(reading, method):
+    """The same with the error of a lookup between texels."""
+    return dataclasses.replace(reading, error=reading.error + reading.numbers["lookup_error"], method=method, default=False)
 
 
 def by_lobe(reading):
@@ -83,13 +99,15 @@ def study(run):
     spread = []
     for size in sizes:
         for reading in sweep[size]:
-            spread.append(Reading(reading.setting, reading.time_s, reading.error, f"{size} texels", False, reading.raw_s, reading.numbers))
+            spread.append(dataclasses.replace(reading, method=f"{size} texels", default=False))
     all_sizes = Figure("prefilter-sizes", "The same for every size: what a texel of the file errs", spread, x_label="time (s)",
                        y_label="largest relative error", front=False)
-    lookup = [Reading(r.setting, r.time_s, r.error + r.numbers["lookup_error"], f"tolerance {r.numbers['tolerance']:g}", False, r.raw_s, r.numbers)
-              for t in few for size in sizes for r in sweep[size] if r.numbers["tolerance"] == t]
-    fetched = Figure("prefilter-lookup", "What a bilinear lookup adds for the sharpest lobe, size by size", lookup, x_label="time (s)",
-                     y_label="error of texel and lookup", front=False)
+    auto = [ours(run, "auto", t, verify) for t in few]
+    lookup = [looked_up(r, f"tolerance {r.numbers['tolerance']:g}") for t in few for size in sizes for r in sweep[size] if r.numbers["tolerance"] == t]
+    lookup += [looked_up(r, "--size auto") for r in auto]
+    lookup[-len(auto) + few.index(DEFAULT_TOLERANCE)].default = True
+    fetched = Figure("prefilter-lookup", "What a texel and a bilinear lookup err for the sharpest lobe, size by size", lookup, x_label="time (s)",
+                     y_label="error of texel and lookup")
     tables = [(f"Lobe by lobe at {SIZE} texels, tolerance {DEFAULT_TOLERANCE:g}",
                ("exponent", "method", "degree", "predicted (ms)", "took (ms)", "predicted error", "largest error", "lookup error", "energy - 1"),
                by_lobe(next(r for r in main if r.default)))]

@@ -1,28 +1,81 @@
-"""Rendering: what the plan leaves out against what that is worth, and the two engines."""
+"""Rendering: what the plan leaves out against what that is worth, the two engines, and where textures and brushes look."""
+
+import functools
+
+from make_testdata import bases
 
 from .scene import Scene, Settings
+from .scenes import Stage
 from .study import Figure, Reading, Study
 
-REPEATS = 4
 PAINTS = ("signal_red", "silver_black_flop", "blue_to_purple")
+QUARTERS = (2.9296875, 11.71875, 46.875, 187.5, 750, 3000)  # what one cube with all lobes in its levels wants
+DEFAULT = "0.5"
+SHARES = (0.5, 0.7, 0.85)  # of the time that all effects take, as a budget
+
+
+def choices(run):
+    """What --tolerance is, or none or all of --effects."""
+    return ("none", "2", "0.5", "all") if run.quick else ("none", "5", "2", "1", "0.5", "0.2", "0.1", "all")
+
+
+def words(choice):
+    return (choice,) if choice in ("none", "all") else ("auto", "--tolerance", choice)
+
+
+def reading(run, method, choice, numbers, shading, default):
+    """Of what a check found, and a function that takes the seconds of shading once more."""
+    kept = sum(1 for row in numbers["plan"] if row["decision"] == "drawn")
+    return Reading(f"{method}, {choice}", error=numbers["render_de00"], method=method, default=default, **run.timed(shading, 1e-3 * numbers["shading_ms"]),
+                   numbers={"p95": numbers["render_p95"], "effects": kept})
+
+
+def probed(scene, method, choice, *more, default=False):
+    """A paint under the probe."""
+    settings = Settings("b7", "l1", False, 1e-3, choice)
+    numbers = scene.error(settings, *more)
+    return reading(scene.run, method, choice, numbers, lambda: 1e-3 * scene.error(settings, *more, checks=1)["shading_ms"], default)
+
+
+def plain(run, paint):
+    """A paint under the probe by each engine at every tolerance, and for budgets of the faster one."""
+    scene = Scene(run, paint)
+    readings = [probed(scene, engine, choice, "--engine", engine, default=(engine, choice) == ("cpu", DEFAULT)) for engine in ("gl", "cpu") for choice in choices(run)]
+    all_ms = 1e3 * readings[-1].time_s
+    for share in (0.5,) if run.quick else SHARES:
+        budget = f"{share * all_ms:.3g}"
+        readings.append(probed(scene, "cpu, --budget", "0.1", "--engine", "cpu", "--budget", budget))
+        readings[-1].setting = f"cpu, --budget {budget}"
+    return readings
+
+
+def staged(run, stage, scene, method, *more):
+    """A scene of another study at every tolerance."""
+    for choice in ("none", "2", DEFAULT, "0.1", "all"):
+        drawn = (scene, *words(choice), *more)
+        results = stage.picture(*drawn)
+        numbers = {"render_de00": results["error"]["de00_mean"], "render_p95": results["error"]["de00_p95"], "plan": results["plan"], "shading_ms": results["left_out"]["shading_ms"]}
+        yield reading(run, method, choice, numbers, functools.partial(stage.shading, *drawn), (method, choice) in (("cubes", DEFAULT), ("brushed", DEFAULT)))
+
+
+def textured(run):
+    """A texture whose lobes look into a cube for each exponent, or into the levels of one."""
+    basis = run.work / "quarters.basis.xml"
+    basis.write_bytes(bases.basis_xml("quarters", QUARTERS))
+    stage = Stage(run, basis)
+    return [r for maps in ("cubes", "mip") for r in staged(run, stage, ("jet_black", "texture", "studio"), maps, "--texture-maps", maps)]
 
 
 def study(run):
-    effects = ("none", "2", "0.5", "all") if run.quick else ("none", "5", "2", "1", "0.5", "0.2", "0.1", "all")
+    scenes = {paint: plain(run, paint) for paint in run.named(PAINTS[:1] if run.quick else PAINTS)}
+    if not run.quick:
+        scenes["jet_black with a texture"] = textured(run)
+        scenes["silver_fine, brushed"] = list(staged(run, Stage(run), ("silver_fine", "brushed", "orange lamp"), "brushed"))
     figures, rows = [], []
-    for paint in run.named(PAINTS[:1] if run.quick else PAINTS):
-        scene = Scene(run, paint)
-        readings = []
-        for engine in ("gl", "cpu"):
-            for choice in effects:
-                settings = Settings("b7", "l1", False, 1e-3, choice)
-                numbers = scene.error(settings, "--engine", engine)
-                shading_s = [1e-3 * ms for ms in (numbers["shading_ms"], *(scene.error(settings, "--engine", engine, checks=1)["shading_ms"] for _ in range(REPEATS)))]
-                kept = sum(1 for row in numbers["plan"] if row["decision"] == "drawn")
-                readings.append(Reading(setting=f"{engine}, {choice}", time_s=min(shading_s), error=numbers["render_de00"], method=engine, default=(engine, choice) == ("cpu", "0.5"),
-                                        raw_s=tuple(shading_s), numbers={"p95": numbers["render_p95"], "effects": kept}))
-                rows.append((paint, engine, choice, kept, 1e3 * min(shading_s), numbers["render_de00"], numbers["render_p95"]))
-        figures.append(Figure(f"render-{paint}", f"{paint}: mean dE00 to the reference integrator against time", readings, "time of shading every pixel once (s)", "dE00, mean"))
+    for name, readings in scenes.items():
+        figures.append(Figure(f"render-{name.split(',')[0].split(' ')[0]}", f"{name}: mean dE00 to the reference integrator against time", readings, "time of shading every pixel once (s)", "dE00, mean"))
+        rows += [(name, r.setting, r.numbers["effects"], 1e3 * r.time_s, r.error, r.numbers["p95"]) for r in readings]
     return Study("Rendering", "Each point is a tolerance of render-osmesa: effects whose estimated worth stays below it are left out. "
-                 "The time is that of shading every pixel once, which is all that effects change; the error is that of random visible pixels against the exact lobe model under the whole environment.", figures,
-                 [("What is left out, and what that costs", ("paint", "engine", "effects", "drawn", "shading (ms)", "dE00 mean", "p95"), rows)])
+                 "The time is that of shading every pixel once, which is all that effects change; the error is that of random visible pixels against the exact lobe model under the whole environment. "
+                 "The texture looks into a cube for each exponent or into the levels of one (--texture-maps); the brushed paint, under a lamp, is drawn about tilted normals.", figures,
+                 [("What is left out, and what that costs", ("scene", "method, effects to dE00", "drawn", "shading (ms)", "dE00 mean", "95 %"), rows)])

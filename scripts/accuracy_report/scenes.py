@@ -1,21 +1,24 @@
 """Ten scenes: what the plan leaves out, whether that is seen, what it saves; and what it says that each effect is worth."""
 
+import functools
 import math
 import os
 import pathlib
 
 from make_testdata import exr
 
-from .study import Study
+from .study import Figure, Reading, Study
 
 SIZE = ("--size", "480x270")
 
-# paint, what it wears, light; a light is a probe (testdata's, made here, or measured where there are measurements) or the words of --light
+# paint, what it wears, light; a light is a probe (testdata's, made here, or measured where there are measurements) or a lamp
 SCENES = (("signal_red", "fitted", "overcast"), ("signal_white", "fitted", "studio"), ("navy_blue", "fitted", "sun"),
-          ("silver_black_flop", "fitted", "overcast"), ("candy_red", "fitted", "sunset"), ("candy_red", "fitted", "40,50,0.2,0.6,1"),
+          ("silver_black_flop", "fitted", "overcast"), ("candy_red", "fitted", "sunset"), ("candy_red", "fitted", "blue lamp"),
           ("blue_to_purple", "views", "studio"), ("cyan_to_violet", "views", "sunset"),
-          ("silver_fine", "brushed", "40,50,1,0.5,0.2"), ("jet_black", "texture", "studio"))
+          ("silver_fine", "brushed", "orange lamp"), ("jet_black", "texture", "studio"))
+LAMPS = {"blue lamp": "40,50,0.2,0.6,1", "orange lamp": "40,50,1,0.5,0.2"}  # as --light has them
 QUICK = (0, 4, 8)
+LEAST = 0.01  # of the differences in the plot: below, nobody sees them
 
 # Each effect in the scene (of the list above) where it matters.
 MATTERS = {"diffuse": 0, "lobes": 3, "gloss": 3, "mirror": 2, "fresnel": 2, "horizon": 3, "travel": 7, "operator": 4, "anisotropy": 8, "lights": 8}
@@ -39,13 +42,20 @@ MADE = {"overcast": ((1, 1, 1), (0.25, 0.25, 0.25), (0.2, 0.2, 0.2)), "sunset": 
 class Stage:
     """The lights and paints of the scenes, each made once."""
 
-    def __init__(self, run):
+    def __init__(self, run, basis=None):
         self.run, self.lights = run, {}
-        basis, paints = ("--basis", run.data / "b7.basis.xml"), run.data / "paints.paints.xml"
-        run.tool("fit-paint", *basis, paints, "-o", run.work / "fitted.xml")
-        run.tool("fit-paint", *basis, "--views", "0,30,45,60,75", paints, "-o", run.work / "views.xml")
-        brushed = (run.work / "fitted.xml").read_text().replace("<lobes ", '<anisotropy alphaX="0.1" alphaY="0.3"/><lobes ')
-        (run.work / "brushed.xml").write_text(brushed)
+        self.basis = ("--basis", basis or run.data / "b7.basis.xml")
+
+    def paint(self, name, wears):
+        """A paint as --paint takes it: fitted, fitted for several views, or fitted and brushed."""
+        path = self.run.work / f"{self.basis[1].stem}-{wears}.xml"
+        if not path.exists() and wears == "brushed":
+            fitted = pathlib.Path(self.paint(name, "fitted").partition("#")[0]).read_text()
+            path.write_text(fitted.replace("<lobes ", '<anisotropy alphaX="0.1" alphaY="0.3"/><lobes '))
+        elif not path.exists():
+            views = ("--views", "0,30,45,60,75") if wears == "views" else ()
+            self.run.tool("fit-paint", *self.basis, *views, self.run.data / "paints.paints.xml", "-o", path)
+        return f"{path}#{name}"
 
     def probe(self, name):
         folder = os.environ.get("GONIOCHROME_DATA")
@@ -58,47 +68,68 @@ class Stage:
         return self.run.data / {"studio": "studio.exr", "sun": "outdoor.exr"}[name]
 
     def light(self, name):
-        if name[0].isdigit():
-            return ("--light", name)
+        if name in LAMPS:
+            return ("--light", LAMPS[name])
         if name not in self.lights:
-            source, env = self.probe(name), self.run.work / f"{name}.env.exr"
-            self.run.tool("prefilter-envmap", source, "--basis", self.run.data / "b7.basis.xml", "--verify", 0, "-o", env)
+            source, env = self.probe(name), self.run.work / f"{self.basis[1].stem}-{name}.env.exr"
+            self.run.tool("prefilter-envmap", source, *self.basis, "--verify", 0, "-o", env)
             self.lights[name] = ("--env", env, "--check-source", source)
         return self.lights[name]
 
+    def words(self, scene, effects, *more):
+        """What render-osmesa draws a scene with."""
+        paint, wears, light = scene
+        if wears == "texture":
+            wears, more = "fitted", (*more, "--texture", f"Hood={self.run.data / 'nameplate.sbrdf.exr'}")
+        return ("--mesh", self.run.mesh, *SIZE, "--effects", effects, *self.light(light), "--paint", self.paint(paint, wears), *more, "-o", self.run.work / "picture.exr")
+
     def picture(self, scene, effects, *more):
         """The report of a scene with these effects, checked."""
-        paint, wears, light = scene
-        words = ["--mesh", self.run.mesh, *SIZE, "--effects", effects, *self.light(light), "--check", 40 if self.run.quick else 100, *more]
-        if wears == "texture":
-            wears = "fitted"
-            words += ["--texture", f"Hood={self.run.data / 'nameplate.sbrdf.exr'}"]
-        words += ["--paint", f"{self.run.work / wears}.xml#{paint}", "-o", self.run.work / "picture.exr"]
-        return self.run.tool("render-osmesa", *words)[0]
+        return self.run.tool("render-osmesa", *self.words(scene, effects, *more), "--check", 40 if self.run.quick else 100)[0]
+
+    def shading(self, *drawn):
+        return self.run.shading(*self.words(*drawn))
 
 
-def scene_row(stage, scene):
+def named(scene):
+    return "{} ({}), {}".format(*scene)
+
+
+def scene_readings(stage, scene):
+    """(a row of the table, the scene as planned and with all effects)"""
     planned, full = stage.picture(scene, "auto"), stage.picture(scene, "all")
     gone = [row["effect"] for row in planned["plan"] if row["decision"] == "dropped"]
     left = planned["left_out"]
-    return ("{} ({}), {}".format(*scene), " ".join(gone) or "-", planned["plan_de00_p95"], left["de00_p95"], planned["error"]["de00_p95"], full["error"]["de00_p95"],
-            left["shading_ms"], left["shading_all_ms"], left["predicted_ms"], planned["plan_ms"])
+    readings = []
+    for effects, results in (("auto", planned), ("all", full)):
+        times = stage.run.timed(functools.partial(stage.shading, scene, effects), 1e-3 * results["left_out"]["shading_ms"])
+        readings.append(Reading(f"{named(scene)}, effects {effects}", error=results["error"]["de00_p95"], method=named(scene), default=effects == "auto", **times, numbers=
+                                {"mean": results["error"]["de00_mean"], "to_all": results["left_out"]["de00_p95"], "predicted": results["plan_de00_p95"]}))
+    ms = [1e3 * reading.time_s for reading in readings]
+    return (named(scene), " ".join(gone) or "nothing", planned["plan_de00_p95"], left["de00_p95"], planned["error"]["de00_p95"], full["error"]["de00_p95"],
+            *ms, left["predicted_ms"], planned["plan_ms"]), readings
 
 
 def effect_row(stage, effect, scene):
     without = stage.picture(scene, f"all,-{effect}", "--explain")
     truth = [row["truth_de00_p95"] for row in without["plan"] if row["effect"] == effect and row.get("truth_de00_p95") is not None]
-    return (effect, "{} ({}), {}".format(*scene), without["plan_de00_p95"], without["left_out"]["de00_p95"], without["error"]["de00_p95"], truth[0] if truth else math.nan)
+    return (effect, named(scene), without["plan_de00_p95"], without["left_out"]["de00_p95"], without["error"]["de00_p95"], truth[0] if truth else math.nan)
 
 
 def study(run):
     stage = Stage(run)
-    scenes = [scene_row(stage, SCENES[i]) for i in (QUICK if run.quick else range(len(SCENES)))]
+    scenes, readings = [], []
+    for i in QUICK if run.quick else range(len(SCENES)):
+        row, pair = scene_readings(stage, SCENES[i])
+        scenes.append(row)
+        readings += pair
     effects = [effect_row(stage, effect, SCENES[i]) for effect, i in MATTERS.items() if not run.quick or i in QUICK]
     within = all(predicted / 2 < checked < 2 * predicted for _, _, predicted, _, checked, _ in effects)
     run.say(f"scenes: {sum(1 for r in scenes if r[3] <= 0.5)} of {len(scenes)} within the tolerance; every effect {'' if within else 'NOT '}within a factor 2")
+    figure = Figure("scenes", "As planned, and with all effects: dE00 to the exact integral against time", readings, "time of shading every pixel once (s)", "dE00, 95 % of the pixels", apart=True,
+                    y=lambda r: max(r.error, LEAST), note=f"Each line is a scene, its left end as planned (--effects auto), its right end with all effects. Errors below {LEAST} are drawn at {LEAST}.")
     return Study("Scenes", "What --effects auto leaves out of ten scenes at a tolerance of 0.5 dE00, and how far the picture is then from that of all effects and from the exact integral; "
                  "and, for every effect, what the plan says that it is worth beside the error of the picture without it. "
-                 "All differences are 95th percentiles of CIEDE2000; those to the exact integral are of random pixels, the others of all.", [],
-                 [("What is left out", ("scene", "left out", "predicted", "to all effects", "check, planned", "check, all", "ms", "ms, all", "ms, predicted", "planning (ms)"), scenes),
+                 "All differences are 95th percentiles of CIEDE2000; those to the exact integral are of random pixels, the others of all.", [figure],
+                 [("What is left out", ("scene", "left out", "predicted", "to all effects", "check, planned", "check, all", "shading (ms)", "all effects (ms)", "predicted (ms)", "planning (ms)"), scenes),
                   ("Each effect forced off where it matters", ("effect", "scene", "predicted", "to all effects", "check", "exact, alone"), effects)])

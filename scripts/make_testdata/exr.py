@@ -1,5 +1,6 @@
-"""Lat-long EXR images: their directions, and the file itself (scan lines, ZIP, half or float)."""
+"""Lat-long EXR images: their directions, and the file itself (scan lines, ZIP, half or float), written and read."""
 
+import itertools
 import math
 import struct
 import zlib
@@ -67,3 +68,59 @@ def exr_file(rows, pixel_type, comments, names=("R", "G", "B")):
         offsets.append(position)
         position += len(block)
     return head + struct.pack(f"<{len(blocks)}Q", *offsets) + b"".join(blocks)
+
+
+def unzipped(packed, size):
+    """What zipped() made of `size` bytes."""
+    if len(packed) == size:
+        return packed
+    sums = bytearray(map((255).__and__, itertools.accumulate(zlib.decompress(packed))))
+    sums[1::2] = bytes(b ^ 128 for b in sums[1::2])  # each difference is 128 too large
+    raw, half = bytearray(size), (size + 1) // 2
+    raw[0::2], raw[1::2] = sums[:half], sums[half:]
+    return bytes(raw)
+
+
+def zero_ended(data, at):
+    """(a word that ends in a zero byte, the place behind it)"""
+    end = data.index(b"\0", at)
+    return data[at:end].decode(), end + 1
+
+
+def attributes(data):
+    """({name: payload} of a header, the place behind it)"""
+    found, at = {}, 8
+    while data[at]:
+        name, at = zero_ended(data, at)
+        _, at = zero_ended(data, at)
+        size, = struct.unpack_from("<i", data, at)
+        found[name] = data[at + 4:at + 4 + size]
+        at += 4 + size
+    return found, at + 1
+
+
+def channels_of(path):
+    """{channel: rows of values, from the top} of a scan-line EXR of one part with ZIP or no compression."""
+    data = path.read_bytes()
+    head, at = attributes(data)
+    lines = {0: 1, 2: 1, ZIP_COMPRESSION: LINES_PER_BLOCK}.get(head["compression"][0])
+    kinds, place = [], 0  # of the channels, by name
+    while head["channels"][place]:
+        name, place = zero_ended(head["channels"], place)
+        kinds.append((name, {HALF: "e", FLOAT: "f"}.get(head["channels"][place])))
+        place += 16
+    version, = struct.unpack_from("<I", data, 4)
+    if version & ~0x400 != 2 or lines is None or any(kind is None for _, kind in kinds):
+        raise ValueError(f"{path}: give an EXR of one part in scan lines of half or float, ZIP or not compressed")
+    left, top, right, bottom = struct.unpack("<4i", head["dataWindow"])
+    width = right - left + 1
+    rows = {name: [] for name, _ in kinds}
+    for block in struct.unpack_from(f"<{-(-(bottom - top + 1) // lines)}Q", data, at):
+        y, size = struct.unpack_from("<ii", data, block)
+        count = min(lines, bottom - y + 1)
+        line = [(name, f"<{width}{kind}") for name, kind in kinds]
+        raw, place = unzipped(data[block + 8:block + 8 + size], count * sum(struct.calcsize(f) for _, f in line)), 0
+        for name, form in line * count:
+            rows[name].append(struct.unpack_from(form, raw, place))
+            place += struct.calcsize(form)
+    return rows

@@ -1,0 +1,93 @@
+#!/usr/bin/env bats
+# scripts/accuracy-report from outside: its options, the page, the readings, and when it fails.
+
+bats_require_minimum_version 1.5.0
+
+report() {
+  "$BATS_TEST_DIRNAME/../accuracy-report" "$@"
+}
+
+setup() {
+  cd "$BATS_TEST_TMPDIR" || exit 1
+}
+
+# refused STATUS MESSAGE OPTION...: told why, and nothing is written.
+refused() {
+  local wanted=$1 message=$2
+  shift 2
+  run --separate-stderr report search --quick -o none "$@"
+  [ "$status" -eq "$wanted" ] || { echo "status $status: $stderr"; return 1; }
+  [[ "$stderr" == *"$message"* ]] || { echo "$stderr"; return 1; }
+  [ ! -e none ]
+}
+
+@test "options are checked" {
+  refused 2 'there is no study serch: choose of prefilter' serch
+  refused 2 'expected one argument' --bin
+  refused 3 'nowhere: the tools are not there' --bin nowhere
+  for option in --paints --probe --mesh; do
+    refused 2 'expected one argument' $option
+    refused 3 'none.xml: there is no such file' $option none.xml
+  done
+  refused 2 'expected one argument' --target-de00
+  refused 2 'invalid float' --target-de00 small
+  refused 2 'is 0: give a color difference above 0' --target-de00 0
+  refused 2 '--scene goes with --target-de00' --scene signal_red
+  refused 2 'expected one argument' --output
+}
+
+@test "verdicts, numbers and pictures" {
+  python3 "$BATS_TEST_DIRNAME/accuracy_test.py"
+}
+
+@test "two studies: a page that holds together, and every time" {
+  run report search basis --quick --bin "$(dirname "$(command -v draw-plot)")" -o out
+  echo "$output"
+  [ "$status" -eq 0 ]
+  python3 - out <<'PY'
+import csv, html.parser, pathlib, sys
+
+out = pathlib.Path(sys.argv[1])
+
+class Reader(html.parser.HTMLParser):
+    def __init__(self):
+        super().__init__()
+        self.open, self.ids, self.links, self.words = [], set(), [], []
+
+    def handle_starttag(self, tag, attributes):
+        attributes = dict(attributes)
+        self.ids.add(attributes.get("id"))
+        self.links += [value for key, value in attributes.items() if key in ("href", "src", "xlink:href")]
+        assert tag not in ("script", "img", "link", "iframe"), tag
+        if tag not in ("meta", "br"):
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attributes):
+        pass
+
+    def handle_endtag(self, tag):
+        assert self.open and self.open.pop() == tag, tag
+
+    def handle_data(self, data):
+        self.words.append(data)
+
+page = Reader()
+text = (out / "index.html").read_text()
+page.feed(text)
+page.close()
+assert not page.open, page.open
+for link in page.links:
+    assert link == "readings.csv" or link[1:] in page.ids, link
+assert "url(" not in text and "@import" not in text
+assert {"Nearest paint", "Choosing a basis"} <= {w.strip() for w in page.words}
+
+rows = list(csv.DictReader((out / "readings.csv").open()))
+assert {row["study"] for row in rows} == {"Nearest paint", "Choosing a basis"}
+for row in rows:
+    times = [float(s) for s in row["all_times_s"].split()]
+    assert times and abs(min(times) / float(row["time_s"]) - 1) < 1e-4, row
+assert sum(int(row["default"]) for row in rows if row["figure"] == "basis-angles") == 1
+for name in {row["figure"] for row in rows}:
+    assert (out / f"{name}.svg").read_text() in text, name
+PY
+}

@@ -1,0 +1,81 @@
+"""Paints that are looked for: sketch-fit against the paint that a picture was drawn in, trompe-fit against two flush panels."""
+
+import itertools
+import statistics
+
+from .study import Figure, Reading, Study
+
+# Paints with known colors at every angle. At 45 deg the curve has 0.29 of the way from flop to face.
+PLANTED = """<paints xmlns="urn:goniochrome:paint:1" version="1">
+<paint name="steel"><gloss angle="60">85</gloss><appearance travel="80"><face L="75" a="-5" b="-20"/><flop L="25" a="-2" b="-10"/></appearance></paint>
+<paint name="ruby"><gloss angle="60">90</gloss><appearance travel="70"><face L="50" a="45" b="20"/><flop L="12" a="15" b="6"/></appearance></paint>
+</paints>
+"""
+SHAPE = 16 / 10  # of a picture
+ANGLE_DEG = 2
+VARIED = ("face_l", "face_l,travel", "face_l,flop_l,travel", "face_l,face_ab,flop_l,flop_ab,travel")
+LIGHTS = ("--lights", "30,45,60", "--views", "as15:105:15")
+
+
+def drawn(run, light, paint, width):
+    """Draws a planted paint; (picture, buffers)."""
+    picture, buffers = run.work / "sketch.png", run.work / "sketch.exr"
+    words = ("--mesh", run.data / "speed-shape.obj", "--paint", f"{run.work / 'planted-fitted.xml'}#{paint}", *light, "--size", f"{width}x{int(width / SHAPE)}", "--samples", 1)
+    run.tool("render-osmesa", *words, "-o", picture)
+    run.tool("render-osmesa", *words, "--aov", "normal,aspecular,lambert,mask,part", "-o", buffers)
+    return picture, buffers
+
+
+def sketches(run):
+    """Readings of sketch-fit by the size of the picture, under a lamp and in an environment; made once for all studies."""
+    if "sketches" not in run.kept:
+        planted, env, found = run.work / "planted.xml", run.work / "planted.env.exr", run.work / "found.xml"
+        planted.write_text(PLANTED)
+        basis = ("--basis", run.data / "b7.basis.xml")
+        run.tool("fit-paint", *basis, planted, "-o", run.work / "planted-fitted.xml")
+        run.tool("prefilter-envmap", run.probe, *basis, "-o", env)
+        lights = {"lamp": (("--light", "35,45"), basis), "environment": (("--env", env), ("--env", env))}
+        widths = (80, 160) if run.quick else (40, 80, 160, 320, 640, 1280)
+        readings = []
+        for (name, (light, told)), paint, width in itertools.product(lights.items(), ("steel", "ruby"), widths):
+            picture, buffers = drawn(run, light, paint, width)
+            results, best, raw = run.repeated("sketch-fit", "--image", picture, "--buffers", buffers, *told, "-o", found)
+            match = run.tool("colorsnap", found, "--library", planted, "--metric", "de00", "-k", 2, "-o", run.work / "match.tsv")[0]["queries"][0]["matches"]
+            error = next(m["mean_de"] for m in match if m["name"] == paint)
+            readings.append(Reading(f"{paint}, {name}, {width} pixels wide", best, error, f"{paint}, {name}", raw_s=raw,
+                                    numbers={"n": width * int(width / SHAPE), "used": results["pixels_used"], "fit_s": results["fit_s"], "model": results["model"], "light": name}))
+        run.kept["sketches"] = readings
+    return run.kept["sketches"]
+
+
+def hidden(run, vary, objective, *mode):
+    """A reading of trompe-fit for the whole library, its panels turned by ANGLE_DEG."""
+    words = ("trompe-fit", run.paints, "--angle", ANGLE_DEG, *LIGHTS, "--vary", vary, "--objective", objective, "--mode", *mode, "-o", run.work / "hidden.xml")
+    results, best, raw = run.repeated(*words)
+    fits = [fit for fit in results["fits"] if fit["status"] != "failed"]
+    paints = len({fit["name"].partition(".light")[0] for fit in fits})  # --mode rows has a fit for each light
+    left, largest, before = (statistics.mean(fit[when][what] for fit in fits) for when, what in (("after", "rms"), ("after", "max"), ("before", "rms")))
+    return Reading(f"{vary}; {objective}; {' '.join(mode)}", best / paints, left, objective, raw_s=tuple(s / paints for s in raw), again=lambda: run.tool(*words)[1] / paints, numbers={"before": before, "largest": largest})
+
+
+def study(run):
+    seen = sketches(run)
+    panels = [hidden(run, vary, objective, "all") for objective in (("rms",) if run.quick else ("rms", "max")) for vary in VARIED]
+    next(r for r in panels if r.setting.startswith(f"{VARIED[-1]}; rms")).default = True
+    modes = [hidden(run, VARIED[-1], "rms", *mode) for mode in (("all",), ("single", "--at", "45,0"), ("rows",))]
+    for reading, name in zip(modes, ("one paint for all", "one paint for one geometry", "a paint for each light")):
+        reading.method = name
+    figures = [Figure("sketch", "sketch-fit: dE00 to the paint that was drawn against time, by the size of the picture", seen, "time of sketch-fit (s)", "dE00, mean", apart=True,
+                      note="Points from left to right: pictures from small to large."),
+               Figure("trompe", f"trompe-fit: difference left between panels turned by {ANGLE_DEG} deg against time", panels, "time for a paint (s)", "dE76, RMS over the geometries",
+                      note="Points: what may change, from the face's L* alone to all five parameters."),
+               Figure("trompe-modes", "The same for its modes", modes, "time for a paint (s)", "dE76, RMS over the geometries", front=False,
+                      note="No front: one paint for all geometries, for one of them, and one for each light are different answers.")]
+    sketch_rows = [(r.setting, r.numbers["used"], r.time_s, r.numbers["fit_s"], r.error, r.numbers["model"]) for r in seen]
+    trompe_rows = [(r.setting, 1e3 * r.time_s, r.numbers["before"], r.error, r.numbers["largest"]) for r in panels + modes[1:]]
+    text = ("Two paints with known colors are drawn under a lamp and in the environment, as PNG, and sketch-fit looks for them in pictures of several sizes; the error is the mean dE00 of the "
+            "paint found at the export angles. trompe-fit looks for the paint of the second panel for every paint of the library, under lights at 30, 45 and 60 deg and viewers from 15 to 105 deg "
+            "beside their mirror directions; what is left is the difference of the two panels.")
+    return Study("Paints looked for", text, figures,
+                 [("sketch-fit", ("paint, light, picture", "pixels used", "time (s)", "fit alone (s)", "dE00", "model"), sketch_rows),
+                  ("trompe-fit", ("may change; objective; mode", "time (ms)", "before, RMS", "left, RMS", "left, largest"), trompe_rows)])

@@ -1,0 +1,62 @@
+"""Fewer lobes: smaller bases, --lobes and --prune against the color of the paint and the time of shading it."""
+
+import dataclasses
+import functools
+import statistics
+
+from .fit import bases
+from .scene import CAMERA
+from .study import Figure, Reading, Study
+
+PAINTS = ("silver_black_flop", "candy_red")
+DEFAULT = "b7, all lobes"
+SIZE = ("--size", "640x360")
+
+
+def settings(run):
+    """(series, setting, basis, more words for fit-paint); the default first."""
+    b7 = run.data / "b7.basis.xml"
+    yield "b7, --prune", DEFAULT, b7, ()
+    for de00 in (1,) if run.quick else (0.2, 1, 2, 5):
+        yield "b7, --prune", f"b7, --prune {de00:g}", b7, ("--prune", de00)
+    for count in (3,) if run.quick else (1, 2, 3, 4):
+        yield "b7, --lobes", f"b7, --lobes {count}", b7, ("--lobes", count)
+    for size, basis in bases(run, (2, 4, 7) if run.quick else (1, 2, 3, 4, 5, 7, 11)).items():
+        yield "fit-basis", f"basis of {size} lobes", basis, ()
+
+
+def environment(run, basis):
+    """The probe filtered by a basis, and the seconds that took; made once for each."""
+    key = ("lobes", basis)
+    if key not in run.kept:
+        out = run.work / f"lobes-{basis.stem}.env.exr"
+        run.kept[key] = out, run.tool("prefilter-envmap", run.probe, "--basis", basis, "-o", out)[1]
+    return run.kept[key]
+
+
+def study(run):
+    names = run.named(PAINTS[:1] if run.quick else PAINTS)
+    by_paint, library, rows = {name: [] for name in names}, [], []
+    for i, (series, setting, basis, more) in enumerate(settings(run)):
+        fitted = run.work / f"lobes-fitted-{i}.xml"
+        results, best, raw = run.repeated("fit-paint", "--basis", basis, *more, run.paints, "-o", fitted)
+        env, filter_s = environment(run, basis)
+        paints = {p["name"]: p for p in results["paints"] if p["status"] != "failed"}
+        left = statistics.mean(p["active_lobes"] for p in paints.values())
+        library.append(Reading(setting, best, results["de00_mean"], series, setting == DEFAULT, raw, {"lobes": left, "p95": results["de00_p95"], "prefilter_s": filter_s}))
+        for name in names:
+            shading = functools.partial(run.shading, "--mesh", run.mesh, "--paint", f"{fitted}#{name}", "--env", env, *SIZE, *CAMERA[2:], "--effects", "all", "-o", run.work / "lobes.exr")
+            by_paint[name].append(Reading(setting, error=paints[name]["de00_mean"], method=series, default=setting == DEFAULT, **run.timed(shading),
+                                          numbers={"lobes": paints[name]["active_lobes"]}))
+        shading = [1e3 * by_paint[name][-1].time_s for name in names]
+        rows.append((setting, left, results["de00_mean"], results["de00_p95"], filter_s, *shading))
+    figures = [Figure("lobes", "The library: mean dE00 at the readings against the lobes left", library, "lobes left, mean over the paints", "dE00, mean", front=False,
+                      x=lambda r: r.numbers["lobes"], logarithmic="y", note="No front: the axis is a number, not a time.")]
+    figures += [Figure(f"lobes-{name}", f"{name}: dE00 at its readings with fewer of the lobes of b7 against the time of shading it", [r for r in readings if r.method != "fit-basis"],
+                       "time of shading every pixel once (s)", "dE00 of the fit, mean") for name, readings in by_paint.items()]
+    own = [dataclasses.replace(r, method=name, default=False) for name, readings in by_paint.items() for r in readings if r.method == "fit-basis"]
+    figures.append(Figure("lobes-own", "The same with bases that fit-basis chose for the library", own, "time of shading every pixel once (s)", "dE00 of the fit, mean", apart=True,
+                          note="From left to right: bases of more lobes. Beside the figures above, these lobes serve the readings alone; b7 has two sharp ones for gloss."))
+    return Study("Fewer lobes", "fit-paint with fewer lobes, in three ways: a basis that fit-basis chose for so many, the best so many of the seven of b7 (--lobes), and those without which no color moves "
+                 "by more than so much dE00 (--prune). All effects of the picture are drawn.", figures,
+                 [("What the lobes cost", ("setting", "lobes left", "library, dE00 mean", "95 %", "prefilter (s)", *(f"{name}, shading (ms)" for name in names)), rows)])
