@@ -46,8 +46,10 @@ def study(run):
                 readings.append(Reading(f"{method}, {size} lobes, {target}", time_s, statistics.mean(errors), method=f"{method} {target}", default=(method, target, size) == DEFAULT, raw_s=all_s, numbers=numbers))
                 rows.append((method, target, size, 1e6 * time_s, statistics.mean(errors), numbers["p95"], numbers["max"]))
     mean = Figure("fit-mean", "Mean dE00 at the readings against time for a paint", readings, "time for a paint (s)", "dE00, mean")
-    p95 = Figure("fit-p95", "The same, 95 % of the readings", readings, "time for a paint (s)", "dE00, 95 %", front=False, y=lambda r: r.numbers["p95"])
-    lobes = Figure("fit-lobes", "Mean dE00 against the number of lobes", readings, "lobes", "dE00, mean", front=False, x=lambda r: r.numbers["lobes"], logarithmic="y")
+    p95 = Figure("fit-p95", "The same, 95 % of the readings", readings, "time for a paint (s)", "dE00, 95 %", front=False, y=lambda r: r.numbers["p95"],
+                 note="No front of its own: methods are held to their mean, above.")
+    lobes = Figure("fit-lobes", "Mean dE00 against the number of lobes", readings, "lobes", "dE00, mean", front=False, x=lambda r: r.numbers["lobes"], logarithmic="y",
+                   note="No front: the axis is a number, not a time.")
     return Study("Fitting", "Every paint of the library is fitted to bases of 1 to 11 lobes that fit-basis chose for it, on one thread; the error is that of the color that the lobes predict at "
                  "the readings. What no number of lobes takes away are two sides of specular that differ, and colors outside the working space: fit-paint names them as the limit of a paint.",
                  [mean, p95, lobes],

@@ -86,7 +86,7 @@ def study(run):
             kinds.setdefault(kind, []).append(Reading(setting=f"{kind} {n}", time_s=best, error=0.0, method=kind, raw_s=raw, numbers={"n": n}))
     readings = [r for rs in kinds.values() for r in rs]
     figure = Figure("growth", "Time against the size of the job", readings, x_label="size: rows, texels, paints, pixels or lights", y_label="time (s)", front=False,
-                    x=lambda r: r.numbers["n"], y=lambda r: r.time_s)
+                    x=lambda r: r.numbers["n"], y=lambda r: r.time_s, note="No front: times of different jobs.")
     rows = [(kind, f"{rs[0].numbers['n']} to {rs[-1].numbers['n']}", rs[0].time_s, rs[-1].time_s, *curve(rs)) for kind, rs in kinds.items()]
     text = ("Exponents are of the time against the size, over the larger half of the sizes, where start-up counts least: 1 is proportional. The "
             "steepest step is the cliff to know about: an exponent far above the others there says that doubling the job at that point costs more "

@@ -65,8 +65,8 @@ def study(run):
     modes = [hidden(run, VARIED[-1], "rms", *mode) for mode in (("all",), ("single", "--at", "45,0"), ("rows",))]
     for reading, name in zip(modes, ("one paint for all", "one paint for one geometry", "a paint for each light")):
         reading.method = name
-    figures = [Figure("sketch", "sketch-fit: dE00 to the paint that was drawn against time, by the size of the picture", seen, "time of sketch-fit (s)", "dE00, mean", apart=True,
-                      note="Points from left to right: pictures from small to large."),
+    figures = [Figure("sketch", "sketch-fit: dE00 to the paint that was drawn against the size of the picture", seen, "pixels of the picture", "dE00, mean", front=False,
+                      x=lambda r: r.numbers["n"], note="No front: the size is no knob of sketch-fit. Times are in the table, and in the study of growth."),
                Figure("trompe", f"trompe-fit: difference left between panels turned by {ANGLE_DEG} deg against time", panels, "time for a paint (s)", "dE76, RMS over the geometries",
                       note="Points: what may change, from the face's L* alone to all five parameters."),
                Figure("trompe-modes", "The same for its modes", modes, "time for a paint (s)", "dE76, RMS over the geometries", front=False,

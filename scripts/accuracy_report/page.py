@@ -19,7 +19,7 @@ figure{margin:1.5rem 0}figcaption{color:#444;font-size:.9rem}svg{max-width:100%;
 @media print{body{max-width:none;margin:0;font-size:10pt}nav{display:none}table{font-size:8pt}h2{break-after:avoid}figure,tr{break-inside:avoid}}
 """
 READING = ("Each point of a plot is a setting: lower is truer, farther left is faster. The dashed line joins the settings that no other one beats in both; "
-           "a ring is the default. Where there is no dashed line, the plot has more than one job in it, or an axis that is no time.")
+           "a ring is the default. Where there is no dashed line, the plot has different jobs in it, or an axis that is no time.")
 
 
 def processor():
