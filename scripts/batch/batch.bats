@@ -96,6 +96,9 @@ setup() {
   run batch plan nowhere.xml --out x --env
   [ "$status" -eq 3 ]
   [[ $output == *nowhere.xml* ]]
+  run batch plan library.paints.xml --out x --env a/light.exr b/light.exr
+  [ "$status" -eq 2 ]
+  [[ $output == *'--env has light twice: pictures would share its name'* ]]
   run batch shard one ten
   [ "$status" -eq 2 ]
 }

@@ -89,9 +89,6 @@ def prepared_scenes(options, out, basis, target):
                     "name": f"{pathlib.Path(source).name.split('.')[0]}-{pathlib.Path(mesh).stem}-{view}",
                     **({"source": str(pathlib.Path(source).absolute())} if target else {})}
                    for mesh in options.mesh for view in options.view]
-    twice = {scene["name"] for scene in scenes if [other["name"] for other in scenes].count(scene["name"]) > 1}
-    if twice:
-        raise ToolError(f"the pictures of two environments, meshes or views would share the name {min(twice)}: rename a file")
     return scenes
 
 
