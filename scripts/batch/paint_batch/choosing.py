@@ -11,7 +11,7 @@ from accuracy_report.study import Failed, Run
 from accuracy_report.target import BASES, CHOOSING, EFFECTS, METHODS, TOLERANCES, Job, found
 
 from . import library
-from .steps import Shard, frame_words
+from .steps import Shard, frame_words, scene_name
 from .tools import ToolError
 
 DATA = pathlib.Path(__file__).resolve().parents[3] / "testdata"
@@ -27,28 +27,28 @@ class NotReached(Exception):
 
 
 def probed(options, out, places, folder):
-    """Paints that can be fitted, spread over the library: (number, name, text)."""
+    """Paints that can be fitted, spread over the library: (name, text)."""
     given = library.spread(out / "library.paints.xml", places, PROBED)
     work = Shard({"basis": options.basis or DATA / f"{BASES[0]}.basis.xml", "gloss": options.gloss}, out)
-    fits = work.tools.lines(work.fit, [text for _, text in given], folder)
-    known = [(number, fit[1]["name"], text) for (number, text), fit in zip(given, fits)
+    fits = work.tools.lines(work.fit, given, folder)
+    known = [(fit[1]["name"], text) for text, fit in zip(given, fits)
              if not isinstance(fit, ToolError) and fit[1].get("de00_mean") is not None]
     if not known:
         raise ToolError(f"{options.library}: none of {len(given)} paints spread over it can be fitted, to choose settings by")
     return known
 
 
-def numbered(number, text):
-    """A paint that goes by its number, for names may come twice."""
-    return re.sub(r"""(<paint\b[^>]*?\bname=)("[^"]*"|'[^']*')""", rf'\1"{number}"', text, count=1)
+def renamed(text, name):
+    """A paint of another name: what follows a # in a name is lost in FILE#NAME."""
+    return re.sub(r"""(<paint\b[^>]*?\bname=)("[^"]*"|'[^']*')""", rf'\1"{name}"', text, count=1)
 
 
-def job_of(run, options, samples, paints):
+def job_of(run, options, names, paints):
     """Every sample in every scene of the batch."""
     basis = options.basis and options.basis.absolute()
-    scenes = [Scene(run, str(number), pathlib.Path(env).absolute(), frame_words(view, options.size), CHOOSING,
+    scenes = [Scene(run, name, pathlib.Path(env).absolute(), frame_words(view, options.size), CHOOSING,
                     mesh=pathlib.Path(mesh).absolute(), basis=basis, fitting=("--gloss", options.gloss) if options.gloss else ())
-              for number, _, _ in samples for env in options.env for mesh in options.mesh for view in options.view]
+              for name in names for env in options.env for mesh in options.mesh for view in options.view]
     return Job(scenes, paints, (basis.name.split(".")[0],) if basis else BASES, PROVING)
 
 
@@ -58,21 +58,21 @@ def choose(options, out, places):
         folder = pathlib.Path(scratch)
         known = probed(options, out, places, folder)
         count = min(SAMPLES, len(known))
-        samples = [known[i * len(known) // count] for i in range(count)]
+        samples = [i * len(known) // count for i in range(count)]  # which is also what each is called
         paints = folder / "probed.paints.xml"
-        paints.write_text(library.document([numbered(number, text) for number, _, text in known]), encoding="utf-8")
+        paints.write_text(library.document([renamed(text, i) for i, (_, text) in enumerate(known)]), encoding="utf-8")
         given = argparse.Namespace(quick=True, paints=paints, probe=pathlib.Path(options.env[0]),
                                    mesh=pathlib.Path(options.mesh[0]), output=None)
         with Run(pathlib.Path(shutil.which("render-osmesa") or "render-osmesa").parent, given) as run:
-            job = job_of(run, options, samples, len(places))
+            job = job_of(run, options, map(str, samples), len(places))
             try:
                 answer = found(job, options.target_de00)
             except Failed as failure:
                 raise ToolError(said_by_tool(str(failure))) from None
-            proof = proof_of(job, answer, {str(number): name for number, name, _ in samples})
+            proof = {"paints": count, "pixels": PROVING, **worst_of(job, answer, known)}
             if answer.de00() > options.target_de00:
-                raise NotReached(f"a mean dE00 of {options.target_de00:g} is not reached by {count} paints spread over the library: "
-                                 f"at best {told(proof)} with {answer.settings}; nothing is planned: give a larger --target-de00")
+                raise NotReached(f"a mean dE00 of {options.target_de00:g} is not reached by {count} paint{'s' * (count > 1)} of the "
+                                 f"library: at best {told(proof)} with {answer.settings}; nothing is planned: give a larger one")
             basis = job.scenes[0].basis_file(answer.settings)
             if basis.parent == run.work:
                 basis = pathlib.Path(shutil.copy(basis, out))
@@ -88,16 +88,16 @@ def said_by_tool(text):
     return text.partition(f": {tool}: ")[2] or text
 
 
-def proof_of(job, answer, names):
-    """What the samples reached at worst."""
+def worst_of(job, answer, known):
+    """The paint and scene that are farthest off."""
     scene, error = job.scenes[answer.worst()], answer.errors[answer.worst()]
-    return {"paints": len(names), "pixels": PROVING, "paint": names[scene.paint], "env": scene.probe.name,
+    return {"paint": known[int(scene.paint)][0], "scene": scene_name(scene.probe, scene.mesh, scene.frame[1]),
             "fit_de00": error["fit_de00"], "picture_de00": error["render_de00"], "total_de00": answer.de00()}
 
 
 def told(proof):
     return (f"{proof['total_de00']:.2f} (fit {proof['fit_de00']:.2f}, picture {proof['picture_de00']:.2f}: {proof['paint']}, "
-            f"{proof['env']})")
+            f"{proof['scene']})")
 
 
 def announced(options, paints, scenes, typical):
@@ -109,7 +109,7 @@ def announced(options, paints, scenes, typical):
     checks_s = pictures * (pixels * typical["check_pixel_s"] + (bases + 5) * typical["picture_s"])
     return (f"  choose, once, for a mean dE00 of {options.target_de00:g}: the cheapest of {bases} bas{'es' if bases > 1 else 'is'}, "
             f"{len(METHODS)} methods with and without views, {len(TOLERANCES)} tolerances of environments and {len(EFFECTS) + 1} of "
-            f"effects, for {samples} paints spread over the library: about {timed_s + checks_s:.0f} s\n")
+            f"effects, for {samples} paint{'s' * (samples > 1)} spread over the library: about {timed_s + checks_s:.0f} s\n")
 
 
 def explained(target):

@@ -29,10 +29,10 @@ def paints_at(path, first, last):
 
 
 def spread(path, places, count):
-    """At most `count` paints evenly over a library: (number, text) of each."""
+    """The text of at most `count` paints, evenly over a library."""
     count = min(count, len(places))
-    numbers = [i * len(places) // count for i in range(count)]
-    return [(number, paints_at(path, places[number], places[number])[0]) for number in numbers]
+    chosen = [places[i * len(places) // count] for i in range(count)]
+    return [paints_at(path, place, place)[0] for place in chosen]
 
 
 def cut(text):

@@ -7,7 +7,7 @@ import tempfile
 import time
 
 from . import choosing, files, library
-from .steps import Shard
+from .steps import Shard, scene_name
 from .tools import ToolError, Tools
 
 PROBE = 400  # paints whose cost is measured, spread over the library
@@ -86,7 +86,7 @@ def prepared_scenes(options, out, basis, target):
     for source in options.env:
         env = filtered(options, out, source, basis, target)
         scenes += [{"env": str(env), "mesh": str(pathlib.Path(mesh).absolute()), "view": view,
-                    "name": f"{pathlib.Path(source).name.split('.')[0]}-{pathlib.Path(mesh).stem}-{view}",
+                    "name": scene_name(source, mesh, view),
                     **({"source": str(pathlib.Path(source).absolute())} if target else {})}
                    for mesh in options.mesh for view in options.view]
     return scenes
@@ -102,7 +102,7 @@ def stream_seconds(work, paints, folder):
 
 def measured(plan, out, places):
     """Seconds of a paint, a picture and a start of all tools, from PROBE paints, of which PICTURED are drawn."""
-    paints = [text for _, text in library.spread(out / "library.paints.xml", places, PROBE)]
+    paints = library.spread(out / "library.paints.xml", places, PROBE)
     with tempfile.TemporaryDirectory(prefix="paint-batch-") as scratch:
         folder = pathlib.Path(scratch)
         work = Shard(plan, out)

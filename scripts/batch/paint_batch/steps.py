@@ -21,6 +21,10 @@ def frame_words(view, size):
     return ["--orbit", view, "--size", size, "--background", "0.3,0.3,0.3"]
 
 
+def scene_name(source, mesh, view):
+    return f"{pathlib.Path(source).name.split('.')[0]}-{pathlib.Path(mesh).stem}-{view}"
+
+
 class Checks:
     """What the checks of pictures found, kept as each is drawn, so that an interrupted shard draws none of them again."""
 
