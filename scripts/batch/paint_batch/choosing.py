@@ -71,8 +71,9 @@ def choose(options, out, places):
                 raise ToolError(said_by_tool(str(failure))) from None
             proof = {"paints": count, "pixels": PROVING, **worst_of(job, answer, known)}
             if answer.de00() > options.target_de00:
-                raise NotReached(f"a mean dE00 of {options.target_de00:g} is not reached by {count} paint{'s' * (count > 1)} of the "
-                                 f"library: at best {told(proof)} with {answer.settings}; nothing is planned: give a larger one")
+                raise NotReached(f"a mean dE00 of {options.target_de00:g} is not reached by {count} paint{'s' * (count > 1)} "
+                                 f"of the library: at best {told(proof)} with {answer.settings}; "
+                                 "nothing is planned: give a larger one")
             basis = job.scenes[0].basis_file(answer.settings)
             if basis.parent == run.work:
                 basis = pathlib.Path(shutil.copy(basis, out))
@@ -107,9 +108,10 @@ def announced(options, paints, scenes, typical):
     timed_s = bases * len(TOLERANCES) * (len(options.env) * typical["environment_s"] + pictures * typical["picture_s"])
     pixels = (bases + 3) * CHOOSING + 2 * PROVING  # of the bases, of the cheapest, and of what it is proven by
     checks_s = pictures * (pixels * typical["check_pixel_s"] + (bases + 5) * typical["picture_s"])
-    return (f"  choose, once, for a mean dE00 of {options.target_de00:g}: the cheapest of {bases} bas{'es' if bases > 1 else 'is'}, "
-            f"{len(METHODS)} methods with and without views, {len(TOLERANCES)} tolerances of environments and {len(EFFECTS) + 1} of "
-            f"effects, for {samples} paint{'s' * (samples > 1)} spread over the library: about {timed_s + checks_s:.0f} s\n")
+    return (f"  choose, once, for a mean dE00 of {options.target_de00:g}: "
+            f"the cheapest of {bases} bas{'es' if bases > 1 else 'is'}, {len(METHODS)} methods with and without views, "
+            f"{len(TOLERANCES)} tolerances of environments and {len(EFFECTS) + 1} of effects, "
+            f"for {samples} paint{'s' * (samples > 1)} spread over the library: about {timed_s + checks_s:.0f} s\n")
 
 
 def explained(target):
