@@ -9,7 +9,7 @@ from make_testdata import exr
 
 from .fit import part
 from .scene import CAMERA
-from .study import Figure, Reading, Study
+from .study import Failed, Figure, Reading, Study
 
 PAINTS = ("signal_red", "silver_black_flop")
 SIZE, FINER = (240, 135), 4  # the reference is so many times as wide, with 16 samples of each of its pixels
@@ -66,6 +66,8 @@ def readings_of(run, recipe, paint):
     white = results["white_luminance"]
     exact = {name: list(averaged(rows, FINER)) for name, rows in fine.items()}
     alpha = [a for row in exact["A"] for a in row]
+    if 1 not in alpha or all(a in (0, 1) for a in alpha):
+        raise Failed(f"{run.mesh}: its outline is not in the picture, seen by {' '.join(CAMERA[2:])}")
     reference = list(labs(recipe, exact, white))
     for engine in ("gl", "cpu"):
         for samples in (1, 4, 16):

@@ -50,7 +50,7 @@ def study(run):
                  note="No front of its own: methods are held to their mean, above.")
     lobes = Figure("fit-lobes", "Mean dE00 against the number of lobes", readings, "lobes", "dE00, mean", front=False, x=lambda r: r.numbers["lobes"], logarithmic="y",
                    note="No front: the axis is a number, not a time.")
-    return Study("Fitting", "Every paint of the library is fitted to bases of 1 to 11 lobes that fit-basis chose for it, on one thread; the error is that of the color that the lobes predict at "
+    return Study("Fitting", f"Every paint of the library is fitted to bases of {sizes[0]} to {sizes[-1]} lobes that fit-basis chose for it, on one thread; the error is that of the color that the lobes predict at "
                  "the readings. What no number of lobes takes away are two sides of specular that differ, and colors outside the working space: fit-paint names them as the limit of a paint.",
                  [mean, p95, lobes],
                  [("Method, target and lobes", ("method", "target", "lobes", "time (us)", "dE00 mean", "95 %", "largest"), rows)])

@@ -52,8 +52,8 @@ def hidden(run, vary, objective, *mode):
     """A reading of trompe-fit for the whole library, its panels turned by ANGLE_DEG."""
     words = ("trompe-fit", run.paints, "--angle", ANGLE_DEG, *LIGHTS, "--vary", vary, "--objective", objective, "--mode", *mode, "-o", run.work / "hidden.xml")
     results, best, raw = run.repeated(*words)
-    fits = [fit for fit in results["fits"] if fit["status"] != "failed"]
-    paints = len({fit["name"].partition(".light")[0] for fit in fits})  # --mode rows has a fit for each light
+    fits = [fit for fit in results.get("fits", [results]) if fit["status"] != "failed"]
+    paints = len({fit.get("name", "").partition(".light")[0] for fit in fits})  # --mode rows has a fit for each light
     left, largest, before = (statistics.mean(fit[when][what] for fit in fits) for when, what in (("after", "rms"), ("after", "max"), ("before", "rms")))
     return Reading(f"{vary}; {objective}; {' '.join(mode)}", best / paints, left, objective, raw_s=tuple(s / paints for s in raw), again=lambda: run.tool(*words)[1] / paints, numbers={"before": before, "largest": largest})
 

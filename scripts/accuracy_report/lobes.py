@@ -6,7 +6,7 @@ import statistics
 
 from .fit import bases
 from .scene import CAMERA
-from .study import Figure, Reading, Study
+from .study import Failed, Figure, Reading, Study
 
 PAINTS = ("silver_black_flop", "candy_red")
 DEFAULT = "b7, all lobes"
@@ -42,6 +42,8 @@ def study(run):
         results, best, raw = run.repeated("fit-paint", "--basis", basis, *more, run.paints, "-o", fitted)
         env, filter_s = environment(run, basis)
         paints = {p["name"]: p for p in results["paints"] if p["status"] != "failed"}
+        if not set(names) <= set(paints):
+            raise Failed(f"{run.paints}: {', '.join(set(names) - set(paints))} cannot be fitted")
         left = statistics.mean(p["active_lobes"] for p in paints.values())
         library.append(Reading(setting, best, results["de00_mean"], series, setting == DEFAULT, raw, {"lobes": left, "p95": results["de00_p95"], "prefilter_s": filter_s}))
         for name in names:

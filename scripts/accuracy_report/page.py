@@ -15,7 +15,7 @@ h1{font-size:1.7rem}h2{margin-top:2.5rem;border-bottom:1px solid #bbb}nav a{marg
 table{border-collapse:collapse;margin:1rem 0;font-size:.85rem;line-height:1.35}
 th,td{padding:.2rem .5rem;text-align:right;border-bottom:1px solid #ddd;vertical-align:bottom}
 .text{text-align:left}caption{text-align:left;font-weight:bold;padding:.3rem 0}
-figure{margin:1.5rem 0}figcaption{color:#444;font-size:.9rem}svg{max-width:100%;height:auto}
+figure{margin:1.5rem 0}figcaption{color:#444;font-size:.9em}svg{max-width:100%;height:auto}
 @media print{body{max-width:none;margin:0;font-size:10pt}nav{display:none}table{font-size:8pt}h2{break-after:avoid}figure,tr{break-inside:avoid}}
 """
 READING = ("Each point of a plot is a setting: lower is truer, farther left is faster. The dashed line joins the settings that no other one beats in both; "

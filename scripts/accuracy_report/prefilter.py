@@ -102,7 +102,7 @@ def study(run):
             spread.append(dataclasses.replace(reading, method=f"{size} texels", default=False))
     all_sizes = Figure("prefilter-sizes", "The same for every size: what a texel of the file errs", spread, x_label="time (s)",
                        y_label="largest relative error", front=False, note="No front: more texels are another job; what they are good for is below.")
-    auto = [ours(run, "auto", t, verify) for t in few]
+    auto = [ours(run, "auto", t, verify) for t in few[: 2 if run.quick else None]]
     lookup = [looked_up(r, f"tolerance {r.numbers['tolerance']:g}") for t in few for size in sizes for r in sweep[size] if r.numbers["tolerance"] == t]
     lookup += [looked_up(r, "--size auto") for r in auto]
     lookup[-len(auto) + few.index(DEFAULT_TOLERANCE)].default = True

@@ -153,7 +153,7 @@ class Run:
 
     def timed(self, once, *seconds):
         """What a Reading wants of time: the seconds known, and those of several calls of `once`."""
-        all_s = (*seconds, *(once() for _ in range(self.repeats + 1)))
+        all_s = (*seconds, *(once() for _ in range(self.repeats)))
         return {"time_s": min(all_s), "raw_s": all_s, "again": once}
 
     def shading(self, *words):
