@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/parallel.h"
+#include "envmap/gauss_rule.h"
 #include "envmap/lobe_rows.h"
 #include "envmap/patch.h"
 
@@ -77,8 +78,8 @@ BrightTexels::BrightTexels(const Environment& env, int most) : rest_(without_bri
                          2 * (at(0.5, 0.75) - at(0.5, 0.25)), env.radius_rad(column, row, column + 1, row + 1)});
       largest_radius_ = std::max(largest_radius_, texels_.back().radius_rad);
       centroids_.add(centroid, area * excess);
-      for (const double i : {.21132486540518713, .78867513459481287})
-        for (const double j : {.21132486540518713, .78867513459481287})
+      for (const double i : kGaussPair)
+        for (const double j : kGaussPair)
           gauss_.add(env.direction_at(column + i, row + j), env.solid_angle_density(column + i, row + j) / 4 * excess);
     }
 }

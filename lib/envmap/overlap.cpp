@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "envmap/cube_map.h"
+#include "envmap/gauss_rule.h"
 
 namespace goniochrome {
 
@@ -184,8 +185,7 @@ void OverlapFinder::over_lat_long(const SphereQuad& cell) {
   for (std::size_t i = 1; i < breaks_.size(); ++i) {
     const double width = breaks_[i] - breaks_[i - 1];
     if (width < 1e-13) continue;
-    for (const double at : {.21132486540518713, .78867513459481287})
-      add_column(breaks_[i - 1] + at * width, width / 2, sides);
+    for (const double at : kGaussPair) add_column(breaks_[i - 1] + at * width, width / 2, sides);
   }
 }
 

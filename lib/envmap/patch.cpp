@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "envmap/gauss_rule.h"
+
 namespace goniochrome {
 
 namespace {
@@ -12,27 +14,13 @@ namespace {
 constexpr double kHorizon = std::numbers::pi / 2;
 constexpr double kNothing = 1e-20;  // of the lobe's peak; a sun may outshine the mean by 1e6 and the floor is 1e-3
 
-// Gauss-Legendre nodes and weights on [0,1], for 1 to 4 points.
-struct Rule {
-  int count;
-  std::array<double, 4> node, weight;
-};
-constexpr std::array<Rule, 4> kRules = {{
-    {1, {.5}, {1}},
-    {2, {.21132486540518713, .78867513459481287}, {.5, .5}},
-    {3, {.1127016653792583, .5, .8872983346207417}, {5.0 / 18, 8.0 / 18, 5.0 / 18}},
-    {4,
-     {.06943184420297371, .33000947820757187, .66999052179242813, .93056815579702629},
-     {.17392742256872693, .32607257743127307, .32607257743127307, .17392742256872693}},
-}};
-
 template <class Integrand>
-auto over_cell(const Environment& env, const Cell& cell, const Rule& rule, const Integrand& integrand) {
+auto over_cell(const Environment& env, const Cell& cell, const GaussPoints& rule, const Integrand& integrand) {
   decltype(integrand(Vec3{})) sum{};
   const double width = cell.column1 - cell.column0, height = cell.row1 - cell.row0;
   for (int j = 0; j < rule.count; ++j)
     for (int i = 0; i < rule.count; ++i) {
-      const double column = cell.column0 + rule.node[i] * width, row = cell.row0 + rule.node[j] * height;
+      const double column = cell.column0 + rule.at[i] * width, row = cell.row0 + rule.at[j] * height;
       const double weight = rule.weight[i] * rule.weight[j] * width * height * env.solid_angle_density(column, row);
       sum += weight * integrand(env.direction_at(column, row));
     }
@@ -101,7 +89,7 @@ double integrate(const Task& task, const Cell& cell, int depth) {
   const int points = rule_for(2 * radius * std::max(std::sqrt(task.exponent), steep), task.relative, most);
   // A lat-long cell that is large itself bends; its density must be smooth over it, too.
   if (radius > 0.5 || (points == 0 && depth < kDeepest)) return split();
-  return over_cell(task.env, cell, kRules[std::max(points, radius > 0.05 ? 4 : 2) - 1], lobe);
+  return over_cell(task.env, cell, kGaussPoints[std::max(points, radius > 0.05 ? 4 : 2) - 1], lobe);
 }
 
 }  // namespace
@@ -140,7 +128,7 @@ Vec3 moment_of_cell(const Environment& env, const Cell& cell) {
     for (const Cell& quarter : quarters(cell)) sum += moment_of_cell(env, quarter);
     return sum;
   }
-  return over_cell(env, cell, kRules[radius > 0.01 ? 3 : 1], [](const Vec3& w) { return w; });
+  return over_cell(env, cell, kGaussPoints[radius > 0.01 ? 3 : 1], [](const Vec3& w) { return w; });
 }
 
 }  // namespace goniochrome

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "envmap/cube_map.h"
+#include "envmap/gauss_rule.h"
 
 namespace goniochrome {
 
@@ -39,8 +40,8 @@ double SphereGrid::disc_solid_angle(double column0, double row0, double column1,
   double sum = 0;
   for (int j = 0; j < parts; ++j)
     for (int i = 0; i < parts; ++i)
-      for (const double x : {.21132486540518713, .78867513459481287})
-        for (const double y : {.21132486540518713, .78867513459481287})
+      for (const double x : kGaussPair)
+        for (const double y : kGaussPair)
           sum += solid_angle_density(column0 + (i + x) * width, row0 + (j + y) * height) / 4;
   return sum * width * height;
 }
