@@ -10,7 +10,8 @@
 
 namespace goniochrome {
 
-enum class Engine { kGl, kCpu };
+// kGl and kCpu fetch prefiltered maps; kIntegral sums the environment itself.
+enum class Engine { kGl, kCpu, kIntegral };
 
 // The effects that are on.
 struct Effects {
@@ -31,6 +32,7 @@ struct Effects {
   bool anisotropy = false;
   double tilt_tolerance = 0.005;  // of the lobes drawn about tilted normals, relative to their peak
   int most_tilts = 1024;
+  double spread = 0.3;      // of the blocks that kIntegral sums; render/integral_engine.h
   bool reflection = false;  // the scene's reflection operator in place of the component-wise product
   std::size_t lights = 0;
   Background background = Background::kNone;

@@ -10,6 +10,7 @@
 #include "base/text.h"
 #include "render/cost.h"
 #include "render/effect_list.h"
+#include "render/integral_engine.h"
 #include "render/product_forms.h"
 #include "render/reference.h"
 #include "render/seen.h"
@@ -297,12 +298,29 @@ std::set<std::size_t> keep_affordable(Prober& prober, const CostModel& cost, Eng
   return gone;
 }
 
+// Points that the integral is timed at.
+constexpr std::size_t kTimed = 256;
+
 void choose_engine(const PlanRequest& request, Plan& plan) {
+  if (request.engine == Engine::kIntegral) {
+    plan.engine = Engine::kIntegral;
+    plan.engine_reason = fmt::format("as asked: predicted {:.0f} ms a frame; prefiltered maps would take {:.1f} ms",
+                                     plan.integral_ms, std::min(plan.cpu_ms, plan.gl_ms));
+    return;
+  }
   const double cpu = plan.cpu_ms * request.frames, gl = plan.gl_ms * request.frames + kCompileMs;
   plan.engine = request.engine.value_or(cpu <= gl ? Engine::kCpu : Engine::kGl);
   plan.engine_reason =
       fmt::format("{}: predicted {:.1f} ms a frame on the processor, {:.1f} ms in OpenGL and {:.0f} ms to compile",
                   request.engine ? "as asked" : "the faster", plan.cpu_ms, plan.gl_ms, kCompileMs);
+}
+
+// At most `count` of the points, evenly spread.
+std::vector<VisiblePoint> thinned(const std::vector<VisiblePoint>& points, std::size_t count) {
+  std::vector<VisiblePoint> few;
+  const std::size_t step = std::max<std::size_t>(1, points.size() / count);
+  for (std::size_t i = 0; i < points.size(); i += step) few.push_back(points[i]);
+  return few;
 }
 
 std::string decision_of(const EffectSwitch& effect, bool on, bool forced, bool over_budget) {
@@ -379,21 +397,32 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<VisiblePoint>& prob
     plan.items.push_back(std::move(item));
   }
   Choice choice = forced_choice(words, switches);
-  if (words.base == "auto") drop_unseen(prober, plan.items, !scene.lights.empty(), request.tolerance_de00, choice);
+  const bool summed = request.engine == Engine::kIntegral;
+  if (words.base == "auto" && !summed)
+    drop_unseen(prober, plan.items, !scene.lights.empty(), request.tolerance_de00, choice);
   plan.cpu_ms = cost.ms(prober.effects(choice.on), Engine::kCpu);
   plan.gl_ms = cost.ms(prober.effects(choice.on), Engine::kGl);
+  if (summed) {
+    const std::vector<VisiblePoint> timed = thinned(probe, kTimed);
+    Effects effects = prober.effects(choice.on);
+    effects.spread = spread_for(request.tolerance_de00);
+    plan.integral_ms = 1000 * integral_seconds_per_point(timed, scene, effects) * cost.points;
+  }
   choose_engine(request, plan);
-  if (words.base == "auto") take_back_free(prober, cost, plan.engine, plan.items, choice);
+  if (words.base == "auto" && !summed) take_back_free(prober, cost, plan.engine, plan.items, choice);
   std::set<std::size_t> gone;
-  if (request.budget_ms > 0) gone = keep_affordable(prober, cost, plan.engine, request.budget_ms, choice);
+  if (request.budget_ms > 0 && !summed) gone = keep_affordable(prober, cost, plan.engine, request.budget_ms, choice);
   plan.de00_p95 = prober.difference(full, prober.colors(choice.on));
   plan.effects = prober.effects(choice.on);
+  plan.effects.spread = spread_for(request.tolerance_de00);
   plan.cpu_ms = cost.ms(plan.effects, Engine::kCpu), plan.gl_ms = cost.ms(plan.effects, Engine::kGl);
   for (std::size_t i = 0; i < switches.size(); ++i) {
     PlanItem& item = plan.items[i];
     std::vector<bool> without = everything;
     without[i] = false;
-    if (item.needed) item.cost_ms = cost.ms(all, plan.engine) - cost.ms(prober.effects(without), plan.engine);
+    if (item.needed)
+      item.cost_ms = summed ? std::numeric_limits<double>::quiet_NaN()
+                            : cost.ms(all, plan.engine) - cost.ms(prober.effects(without), plan.engine);
     item.on = choice.on[i];
     item.decision = decision_of(switches[i], item.on, choice.forced[i], gone.contains(i));
   }

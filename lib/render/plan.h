@@ -21,7 +21,7 @@ struct PlanRequest {
   double tolerance_de00 = 0.5;   // what leaving effects out may change, p95 over visible pixels, all together
   double budget_ms = 0;          // of one frame's shading; 0 is none
   std::string effects = "auto";  // auto, all or none, then +NAME and -NAME, separated by commas
-  std::optional<Engine> engine;  // none: the one predicted faster
+  std::optional<Engine> engine;  // none: cpu or gl, the one predicted faster
   double white_luminance = 1;    // what color differences are relative to
   int samples = 1, frames = 1;
   double pixels = 0;  // of one frame, seen or not; 0: those of the G-buffers
@@ -32,7 +32,7 @@ struct PlanItem {
   bool needed = false;  // the scene calls for it
   std::string reason;
   double de00_p95 = 0;  // what leaving it out alone changes
-  double cost_ms = 0;   // what it adds to a frame's shading
+  double cost_ms = 0;   // what it adds to a frame's shading; NaN of the integral, which sums all of them at once
   bool on = false;
   std::string decision;                  // drawn | dropped | forced on | forced off | over budget | not in the scene
   std::optional<double> truth_de00_p95;  // the same by the reference integrator
@@ -44,8 +44,12 @@ struct Plan {
   Engine engine = Engine::kCpu;
   std::string engine_reason;
   double cpu_ms = 0, gl_ms = 0;  // predicted shading of a frame
+  double integral_ms = 0;        // the same; 0 where that engine was not asked for
   double de00_p95 = 0;           // predicted for all that is left out together
   double time_ms = 0;            // that planning took
+
+  // Of the engine that was chosen.
+  double predicted_ms() const { return engine == Engine::kCpu ? cpu_ms : engine == Engine::kGl ? gl_ms : integral_ms; }
 };
 
 // Error (usage): a word of --effects that is none, with those there are.

@@ -3,245 +3,21 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "base/clock.h"
 #include "base/parallel.h"
-#include "brdf/lobe_model.h"
-#include "color/color.h"
+#include "render/gatherer.h"
 #include "render/seen.h"
 
 namespace goniochrome {
 
 namespace {
 
-// cos^E below exp(-kTail) is left out: 4e-18 of the peak.
-constexpr double kTail = 40;
-// A texel is cut into pieces of at most this many standard deviations (1/sqrt E) of the sharpest lobe that reaches it.
-// The midpoint rule then errs by (1/4)^2/24 of the value on a patch, and far less in the sum over smooth radiance.
-constexpr double kPiece = 0.25;
-
 // Tilts of the truth: of an anisotropic lobe's peak.
 constexpr double kTiltTolerance = 1e-3;
 
 // A run of texels is set up once for so many points: directions cost more than lobes.
 constexpr std::size_t kPointsTogether = 16;
-
-struct Patch {
-  Vec3 direction;  // unit
-  double solid_angle_sr;
-};
-
-const ExactModel& model_of(const SurfacePoint& point) {
-  static const ExactModel bare;
-  return point.model != nullptr ? *point.model : bare;
-}
-
-double view_deg(const SurfacePoint& point) {
-  return std::atan2(length(cross(point.normal, point.to_viewer)), dot(point.normal, point.to_viewer)) * 180 /
-         std::numbers::pi;
-}
-
-// The reflected radiance of one point, gathered patch by patch.
-class Gatherer {
- public:
-  // Texels are at most `texel_rad` across.
-  Gatherer(const SurfacePoint& point, double texel_rad)
-      : point_(point), model_(model_of(point)), paint_(at_view(*point.paint, view_deg(point))) {
-    cos_o_ = dot(point.normal, point.to_viewer);
-    set_mirror_directions();
-    for (const Lobe& lobe : paint_.lobes) {
-      if (std::isfinite(lobe.exponent)) lobes_.push_back(lobe);
-    }
-    std::sort(lobes_.begin(), lobes_.end(), [](const Lobe& a, const Lobe& b) { return a.exponent < b.exponent; });
-    if (model_.fresnel) {
-      const double share = 1 / fresnel_dielectric(std::cos(model_.gloss_deg * std::numbers::pi / 180), kCoatIndex);
-      for (Lobe& lobe : lobes_) lobe.gloss = share * lobe.gloss;
-    }
-    for (auto lobe = lobes_.rbegin(); lobe != lobes_.rend(); ++lobe) {
-      const double pieces = std::ceil(texel_rad * std::sqrt(lobe->exponent) / kPiece);
-      if (pieces <= 1) break;
-      // cos^E = exp(-kTail) at this angle; a texel whose center is that far and its own extent has nothing to give.
-      const double reach_rad = std::acos(std::exp(-kTail / lobe->exponent)) + texel_rad;
-      const double chord = 2 * std::sin(0.5 * std::min(reach_rad, std::numbers::pi));
-      cuts_.push_back({chord * chord, static_cast<int>(pieces)});
-    }
-  }
-
-  const Vec3& reflected() const { return reflected_; }
-
-  // Into how many pieces, across and down, a texel about this direction is to be cut.
-  int pieces(const Vec3& direction) const {
-    if (cuts_.empty()) return 1;
-    double chord2 = 4;
-    for (const Mirrored& m : mirrored_)
-      chord2 = std::min(chord2, dot(m.direction - direction, m.direction - direction));
-    for (const Cut& cut : cuts_) {
-      if (chord2 < cut.chord2) return cut.pieces;
-    }
-    return 1;
-  }
-
-  // Adds f L cos_i dw, with cos_i multiplied into f so that the gloss term needs no division.
-  void add(const Patch& patch, const Rgb& radiance) { add(patch, radiance, model_.horizon); }
-  void add_light(const Light& light) { add({light.direction, std::numbers::pi}, light.white, true); }
-
-  // With `horizon`, the direction's own cosine, and nothing from below.
-  void add(const Patch& patch, const Rgb& radiance, bool horizon) {
-    const double above = dot(point_.normal, patch.direction), cos_i = horizon ? above : cos_o_;
-    Rgb f = above > 0 ? above * paint_.diffuse : Rgb{};
-    if (above > 0 || !horizon) f += lobes_toward(patch.direction, cos_i);
-    const Rgb product =
-        model_.reflection != nullptr ? goniochrome::reflected(*model_.reflection, f, radiance) : f * radiance;
-    sum_ += patch.solid_angle_sr * product;
-  }
-
-  // The mirror lobe, which sees this radiance.
-  void add_mirror(const Rgb& radiance) {
-    const Lobe* mirror = find_lobe(paint_, kMirrorExponent);
-    if (mirror == nullptr) return;
-    const bool fresnel = point_.model == nullptr || model_.fresnel;
-    const Rgb k = fresnel_dielectric(fresnel ? cos_o_ : std::numbers::sqrt2 / 2, kCoatIndex) * mirror->gloss;
-    sum_ += model_.reflection != nullptr ? goniochrome::reflected(*model_.reflection, k, radiance) : k * radiance;
-  }
-
-  const Rgb& sum() const { return sum_; }
-
- private:
-  struct Cut {
-    double chord2;  // within this squared distance of the mirror direction
-    int pieces;
-  };
-  struct Mirrored {
-    Vec3 direction;
-    double share;
-  };
-
-  // About the normal, and about each tilted normal: the tangent runs level around +Y, on a level surface along +X.
-  void set_mirror_directions() {
-    const Vec3& n = point_.normal;
-    reflected_ = 2 * cos_o_ * n - point_.to_viewer;
-    if (model_.tilts.empty()) {
-      mirrored_ = {{reflected_, 1}};
-      return;
-    }
-    const double level2 = n.x * n.x + n.z * n.z;
-    const Vec3 x = level2 > 1e-12 ? normalized({n.z, 0, -n.x}) : Vec3{1, 0, 0}, y = cross(n, x);
-    for (const Tilt& tilt : model_.tilts) {
-      const Vec3 m = tilt.normal.x * x + tilt.normal.y * y + tilt.normal.z * n;
-      const double cos_m = dot(m, point_.to_viewer);
-      const Vec3 r = 2 * cos_m * m - point_.to_viewer;
-      if (cos_m > 0 && dot(r, n) > 0) mirrored_.push_back({r, tilt.weight});
-    }
-  }
-
-  Rgb lobes_toward(const Vec3& direction, double cos_i) const {
-    Rgb f;
-    const double cos_half = 0.5 * length(direction + point_.to_viewer);
-    const double fresnel = model_.fresnel ? fresnel_dielectric(std::min(1.0, cos_half), kCoatIndex) : 1;
-    for (const Mirrored& m : mirrored_) {
-      const Vec3 apart = m.direction - direction;
-      const double versine = 0.5 * dot(apart, apart);
-      if (versine >= 1) continue;
-      const double log_cos = std::log1p(-versine);
-      for (const Lobe& lobe : lobes_) {
-        if (lobe.exponent * -log_cos > kTail) break;
-        const double power = m.share * std::exp(lobe.exponent * log_cos);
-        f += power * (cos_i * lobe.directional_diffuse + fresnel * lobe.gloss);
-      }
-    }
-    return f;
-  }
-
-  const SurfacePoint& point_;
-  const ExactModel& model_;
-  LobeFit paint_;
-  double cos_o_ = 1;
-  Vec3 reflected_;
-  std::vector<Mirrored> mirrored_;
-  std::vector<Lobe> lobes_;  // finite exponents, ascending
-  std::vector<Cut> cuts_;    // of the lobes narrower than a texel, sharpest first
-  Rgb sum_;
-};
-
-// The reflected radiance of one point of a texture: the exact lobes of the texels around it.
-class TextureGatherer {
- public:
-  TextureGatherer(const TexturedPoint& point, const ReflectionOperator* reflection, double texel_rad)
-      : point_(point), reflection_(reflection) {
-    const Vec3& n = point.normal;
-    for (const SurfaceLayer::Piece& piece : point.place.pieces) {
-      const SurfaceFrame frame = surface_frame(piece.texel, n, point.place.tangent);
-      const Vec3 viewer = frame.local(point.to_viewer);
-      diffuse_ += piece.share * piece.texel.surface.diffuse;
-      for (const LafortuneLobe& lobe : piece.texel.surface.lobes)
-        add_lobe(frame.world(lobe.axes * viewer), lobe.exponent, piece.share * lobe.albedo, texel_rad);
-    }
-  }
-
-  int pieces(const Vec3& direction) const {
-    int most = 1;
-    for (const TexelLobe& lobe : lobes_) {
-      if (lobe.pieces > most && dot(lobe.middle, direction) > lobe.cut_cosine) most = lobe.pieces;
-    }
-    return most;
-  }
-
-  void add(const Patch& patch, const Rgb& radiance) {
-    const double cos_i = dot(point_.normal, patch.direction);
-    if (cos_i <= 0) return;
-    Rgb f = diffuse_;
-    for (const TexelLobe& lobe : lobes_) {
-      if (dot(lobe.middle, patch.direction) < lobe.least_cosine) continue;
-      const Vec3 apart = lobe.middle - patch.direction;
-      const double log_cos = std::log1p(-0.5 * dot(apart, apart));
-      f += std::exp(std::min(lobe.log_peak + lobe.exponent * log_cos, kLargestLog)) * lobe.color;
-    }
-    const Rgb product = reflection_ != nullptr ? goniochrome::reflected(*reflection_, f, radiance) : f * radiance;
-    sum_ += patch.solid_angle_sr * cos_i * product;
-  }
-  void add_light(const Light& light) { add({light.direction, std::numbers::pi}, light.white); }
-
-  const Rgb& sum() const { return sum_; }
-
- private:
-  static constexpr double kLargestLog = 700;
-  struct TexelLobe {
-    Vec3 axis;    // p = C wo, in the world
-    Vec3 middle;  // of length 1
-    double exponent = 1, log_peak = 0;
-    Rgb color;
-    double least_cosine = 0;  // below it, nothing that counts
-    int pieces = 1;           // that a texel is cut into, within
-    double cut_cosine = 2;
-  };
-
-  // Neighboring texels often hold the same lobe in another color.
-  void add_lobe(const Vec3& axis, double exponent, const Rgb& albedo, double texel_rad) {
-    const double size = length(axis);
-    if (albedo == Rgb{} || !(size > 0)) return;
-    for (TexelLobe& lobe : lobes_) {
-      if (lobe.axis == axis && lobe.exponent == exponent) {
-        lobe.color += albedo;
-        return;
-      }
-    }
-    TexelLobe lobe{axis, (1 / size) * axis, exponent, exponent * std::log(size), albedo};
-    if (exponent > 0) lobe.least_cosine = std::exp(-kTail / exponent);
-    const double pieces = std::ceil(texel_rad * std::sqrt(exponent) / kPiece);
-    if (pieces > 1) {
-      lobe.pieces = static_cast<int>(pieces);
-      lobe.cut_cosine = std::cos(std::min(std::acos(lobe.least_cosine) + texel_rad, std::numbers::pi));
-    }
-    lobes_.push_back(lobe);
-  }
-
-  const TexturedPoint& point_;
-  const ReflectionOperator* reflection_;
-  Rgb diffuse_;
-  std::vector<TexelLobe> lobes_;
-  Rgb sum_;
-};
 
 // The piece (i, j) of a texel cut into k x k.
 Patch piece(const Environment& env, int column, int row, int i, int j, int k) {
@@ -250,24 +26,84 @@ Patch piece(const Environment& env, int column, int row, int i, int j, int k) {
 }
 
 template <class AnyGatherer>
-void gather_environment(const Environment& env, std::vector<AnyGatherer>& points) {
+void gather_texel(const Environment& env, int column, int row, const Patch& whole, const Rgb& radiance,
+                  AnyGatherer& point) {
+  const int k = point.grain().pieces(whole.direction);
+  if (k == 1) return point.add(whole, radiance);
+  for (int j = 0; j < k; ++j) {
+    for (int i = 0; i < k; ++i) point.add(piece(env, column, row, i, j, k), radiance);
+  }
+}
+
+template <class AnyGatherer>
+void gather_texels(const Environment& env, std::vector<AnyGatherer>& points) {
   for (int row = 0; row < env.height(); ++row) {
     for (int column = 0; column < env.width(); ++column) {
       const float* texel = env.radiance(column, row);
       const Rgb radiance{texel[0], texel[1], texel[2]};
       if (radiance == Rgb{}) continue;
       const Patch whole{env.direction(column, row), env.solid_angle(column, row)};
-      for (AnyGatherer& point : points) {
-        const int k = point.pieces(whole.direction);
-        if (k == 1) {
-          point.add(whole, radiance);
-          continue;
-        }
-        for (int j = 0; j < k; ++j) {
-          for (int i = 0; i < k; ++i) point.add(piece(env, column, row, i, j, k), radiance);
-        }
-      }
+      for (AnyGatherer& point : points) gather_texel(env, column, row, whole, radiance, point);
     }
+  }
+}
+
+// Of a disc of even light that fills the cap.
+double even_variance(const BlockTree::Block& block) {
+  return 0.25 * block.sine * block.sine;
+}
+
+// The mean direction of a block's light, all channels together, and its variance along each axis about it.
+struct Beam {
+  Vec3 direction;
+  double variance;
+};
+Beam beam_of(const BlockTree::Block& block) {
+  Vec3 moment;
+  double flux = 0;
+  for (int c = 0; c < 3; ++c) {
+    moment += Vec3{block.moment[c][0], block.moment[c][1], block.moment[c][2]};
+    flux += block.flux[c];
+  }
+  const double size = length(moment);
+  // Floats hold the moments to some 1e-6: narrower blocks are taken as even.
+  constexpr double kRounded = 1e-5;
+  const double variance = 1 - size / flux, even = even_variance(block);
+  return {(1 / size) * moment, variance < kRounded ? std::min(even, kRounded) : variance};
+}
+
+template <class AnyGatherer>
+void gather_blocks(const BlockTree& tree, AnyGatherer& point) {
+  const Environment& env = tree.environment();
+  tree.walk(
+      [&](const BlockTree::Block& block) {
+        const Rgb flux{block.flux[0], block.flux[1], block.flux[2]};
+        if (flux == Rgb{}) return false;
+        if (point.ends_at_horizon()) {
+          const double above = dot(point.normal(), {block.axis[0], block.axis[1], block.axis[2]});
+          if (block.cosine > 0 && above < -block.sine) return false;
+          if (above < block.sine && point.grain().opens_at_horizon(block)) return true;
+        }
+        const Beam beam = beam_of(block);
+        // A strip's variance lies along one axis: the cap's own bounds it.
+        if (point.grain().opens(block, std::max(beam.variance, even_variance(block)))) return true;
+        point.add({beam.direction, 1, beam.variance}, flux);
+        return false;
+      },
+      [&](int column, int row) {
+        const float* texel = env.radiance(column, row);
+        const Rgb radiance{texel[0], texel[1], texel[2]};
+        if (radiance == Rgb{}) return;
+        gather_texel(env, column, row, {env.direction(column, row), env.solid_angle(column, row)}, radiance, point);
+      });
+}
+
+template <class AnyGatherer>
+void gather(const Surroundings& around, std::vector<AnyGatherer>& points) {
+  if (around.blocks != nullptr) {
+    for (AnyGatherer& point : points) gather_blocks(*around.blocks, point);
+  } else if (around.texels != nullptr) {
+    gather_texels(*around.texels, points);
   }
 }
 
@@ -289,14 +125,15 @@ std::vector<std::size_t> drawn(std::size_t n, std::size_t count, std::uint64_t s
 
 }  // namespace
 
-std::vector<Rgb> reference_radiance(const std::vector<SurfacePoint>& points, const Environment* env,
+std::vector<Rgb> reference_radiance(const std::vector<SurfacePoint>& points, const Surroundings& around,
                                     const std::vector<Light>& lights) {
   std::vector<Rgb> radiance(points.size());
+  const Environment* env = around.texels;
   const double texel_rad = env != nullptr ? env->largest_texel_rad() : 0;
   parallel_for(points.size(), kPointsTogether, [&](std::size_t begin, std::size_t end) {
     std::vector<Gatherer> gatherers;
-    for (std::size_t i = begin; i < end; ++i) gatherers.emplace_back(points[i], texel_rad);
-    if (env != nullptr) gather_environment(*env, gatherers);
+    for (std::size_t i = begin; i < end; ++i) gatherers.emplace_back(points[i], texel_rad, around.most_spread);
+    gather(around, gatherers);
     for (std::size_t i = begin; i < end; ++i) {
       Gatherer& gatherer = gatherers[i - begin];
       for (const Light& light : lights) gatherer.add_light(light);
@@ -310,14 +147,16 @@ std::vector<Rgb> reference_radiance(const std::vector<SurfacePoint>& points, con
   return radiance;
 }
 
-std::vector<Rgb> textured_radiance(const std::vector<TexturedPoint>& points, const Environment* env,
+std::vector<Rgb> textured_radiance(const std::vector<TexturedPoint>& points, const Surroundings& around,
                                    const std::vector<Light>& lights, const ReflectionOperator* reflection) {
   std::vector<Rgb> radiance(points.size());
+  const Environment* env = around.texels;
   const double texel_rad = env != nullptr ? env->largest_texel_rad() : 0;
   parallel_for(points.size(), kPointsTogether, [&](std::size_t begin, std::size_t end) {
     std::vector<TextureGatherer> gatherers;
-    for (std::size_t i = begin; i < end; ++i) gatherers.emplace_back(points[i], reflection, texel_rad);
-    if (env != nullptr) gather_environment(*env, gatherers);
+    for (std::size_t i = begin; i < end; ++i)
+      gatherers.emplace_back(points[i], reflection, texel_rad, around.most_spread);
+    gather(around, gatherers);
     for (std::size_t i = begin; i < end; ++i) {
       for (const Light& light : lights) gatherers[i - begin].add_light(light);
       radiance[i] = gatherers[i - begin].sum();
@@ -334,7 +173,7 @@ bool is_textured(const Scene& scene, int part) {
 
 // The colors of the textured ones of these points take the place of what is there.
 void put_textured(const Scene& scene, const std::vector<VisiblePoint>& points, const Effects& effects,
-                  const Environment* env, std::vector<Rgb>& colors) {
+                  const Surroundings& around, std::vector<Rgb>& colors) {
   std::vector<TexturedPoint> textured;
   std::vector<std::size_t> numbers;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -342,7 +181,7 @@ void put_textured(const Scene& scene, const std::vector<VisiblePoint>& points, c
     textured.push_back({points[i].normal, points[i].to_viewer, scene.layer->place(points[i], i, effects)});
     numbers.push_back(i);
   }
-  const std::vector<Rgb> shown = textured_radiance(textured, effects.environment ? env : nullptr,
+  const std::vector<Rgb> shown = textured_radiance(textured, effects.environment ? around : Surroundings(nullptr),
                                                    effects.lights > 0 ? scene.lights : std::vector<Light>(),
                                                    effects.reflection ? &scene.reflection : nullptr);
   for (std::size_t i = 0; i < shown.size(); ++i) colors[numbers[i]] = shown[i];
@@ -351,11 +190,11 @@ void put_textured(const Scene& scene, const std::vector<VisiblePoint>& points, c
 }  // namespace
 
 std::vector<Rgb> exact_radiance(const std::vector<VisiblePoint>& points, const Scene& scene, const Effects& effects,
-                                const Environment* env) {
+                                const Surroundings& around) {
   std::vector<LobeFit> paints;
   std::vector<ExactModel> models(scene.paints.size());
   Effects dense = effects;
-  dense.tilt_tolerance = kTiltTolerance;
+  if (around.blocks == nullptr) dense.tilt_tolerance = kTiltTolerance;
   const auto tilts = effects.anisotropy ? tilts_of(scene, dense) : std::vector<std::vector<Tilt>>(scene.paints.size());
   for (std::size_t part = 0; part < scene.paints.size(); ++part) {
     paints.push_back(with_effects(scene.paints[part], effects));
@@ -375,12 +214,12 @@ std::vector<Rgb> exact_radiance(const std::vector<VisiblePoint>& points, const S
     surface.push_back({points[i].normal, points[i].to_viewer, &paints[part], &models[part]});
     numbers.push_back(i);
   }
-  const std::vector<Rgb> plain = reference_radiance(surface, effects.environment ? env : nullptr,
+  const std::vector<Rgb> plain = reference_radiance(surface, effects.environment ? around : Surroundings(nullptr),
                                                     effects.lights > 0 ? scene.lights : std::vector<Light>());
   std::vector<Rgb> colors(points.size());
   for (std::size_t i = 0; i < plain.size(); ++i) colors[numbers[i]] = plain[i];
   if (effects.maps) scene.layer->add_mapped(points, colors);
-  put_textured(scene, points, effects, env, colors);
+  put_textured(scene, points, effects, around, colors);
   return colors;
 }
 

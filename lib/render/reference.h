@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "envmap/block_tree.h"
 #include "envmap/environment.h"
 #include "image/image.h"
 #include "render/renderer.h"
@@ -30,10 +31,25 @@ struct SurfacePoint {
   const ExactModel* model = nullptr;  // null: that of a bare lobe model, the mirror with its Fresnel reflectance
 };
 
+// The light around, and how finely it is summed.
+struct Surroundings {
+  // Texel by texel: the yardstick. `env` may be null: none.
+  Surroundings(const Environment* env) : texels(env) {}  // NOLINT(google-explicit-constructor)
+  // By blocks of texels, each as one beam from its mean direction where the standard deviation of its directions is at
+  // most `spread` of that of every lobe that reaches it (1/sqrt E), and narrower than `spread` (radians) on the
+  // horizon.
+  Surroundings(const BlockTree& tree, double spread)
+      : texels(&tree.environment()), blocks(&tree), most_spread(spread) {}
+
+  const Environment* texels;
+  const BlockTree* blocks = nullptr;
+  double most_spread = 0;
+};
+
 // The radiance of each point, in the working space: the integral of f L cos_i over the texels above the horizon, each a
 // constant patch with its exact solid angle, cut finer where a lobe is narrower than a texel; the mirror lobe's Fresnel
-// times the texel that it sees; and the lights. `env` may be null. Bit-identical for any number of threads.
-std::vector<Rgb> reference_radiance(const std::vector<SurfacePoint>& points, const Environment* env,
+// times the texel that it sees; and the lights. Bit-identical for any number of threads.
+std::vector<Rgb> reference_radiance(const std::vector<SurfacePoint>& points, const Surroundings& around,
                                     const std::vector<Light>& lights);
 
 // A point of a texture.
@@ -43,12 +59,13 @@ struct TexturedPoint {
 };
 
 // The same for textures: the integral of the blended texels' f L cos_i. `reflection` null: component-wise.
-std::vector<Rgb> textured_radiance(const std::vector<TexturedPoint>& points, const Environment* env,
+std::vector<Rgb> textured_radiance(const std::vector<TexturedPoint>& points, const Surroundings& around,
                                    const std::vector<Light>& lights, const ReflectionOperator* reflection);
 
-// The same for points of a scene, by the effects that are on.
+// The same for points of a scene, by the effects that are on. About the tilted normals of an anisotropic lobe: many
+// where texels are summed, those of the effects where blocks are.
 std::vector<Rgb> exact_radiance(const std::vector<VisiblePoint>& points, const Scene& scene, const Effects& effects,
-                                const Environment* env);
+                                const Surroundings& around);
 
 // How far a picture is from the reference.
 struct PictureError {

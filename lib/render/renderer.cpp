@@ -7,6 +7,7 @@
 #include "render/cpu_engine.h"
 #include "render/gl.h"
 #include "render/gl_engine.h"
+#include "render/integral_engine.h"
 #include "render/shader.h"
 #include "render/surface_layer.h"
 
@@ -65,6 +66,7 @@ struct Renderer::State {
     if (gl) gl->context.make_current();
   }
   Result<void> can_shade(const Scene& wanted, Engine by) const;
+  Effects mapped() const;
   void show(const Mesh& mesh);
   Result<void> look_at(const View& wanted);
   void rasterize(int sample);
@@ -75,11 +77,22 @@ struct Renderer::State {
 
 // What a G-buffer alone does not allow.
 Result<void> Renderer::State::can_shade(const Scene& wanted, Engine by) const {
+  if (by == Engine::kIntegral && wanted.env != nullptr && wanted.texels == nullptr)
+    return usage_error("the engine integral sums the image that the environment was made from, which is not given");
   if (gl) return {};
   if (by == Engine::kGl) return usage_error("the engine gl draws the mesh: a G-buffer that is given is shaded by cpu");
   if (wanted.layer != nullptr && wanted.layer->textured())
     return usage_error("textures lie on the mesh: a G-buffer that is given has no places on them");
   return {};
+}
+
+// The effects that come from prefiltered maps: of the integral, only what stands behind the mesh.
+Effects Renderer::State::mapped() const {
+  if (engine != Engine::kIntegral) return effects;
+  Effects behind;
+  behind.environment = effects.background == Background::kEnvironment;
+  behind.diffuse = false, behind.background = effects.background;
+  return behind;
 }
 
 void Renderer::State::show(const Mesh& mesh) {
@@ -150,7 +163,16 @@ const std::vector<TexturePlace>& Renderer::State::places(int sample) {
 }
 
 void Renderer::State::shade(int sample, bool add, int samples, Image& rgba) {
-  if (engine == Engine::kCpu) return cpu_engine.shade(*gbuffer(sample), 1.0F / static_cast<float>(samples), add, rgba);
+  if (engine != Engine::kGl) {
+    const std::shared_ptr<const Gbuffer> of = gbuffer(sample);
+    const float gain = 1.0F / static_cast<float>(samples);
+    cpu_engine.shade(*of, gain, add, rgba);
+    if (engine == Engine::kIntegral) {
+      const bool placed_there = scene.layer != nullptr && scene.layer->textured();
+      add_integral(*of, placed_there ? places(sample) : std::vector<TexturePlace>(), scene, effects, gain, rgba);
+    }
+    return;
+  }
   rasterize(sample);
   gl->engine.shade(gl->rasterizer->texture(), gl->rasterizer->drawn_rays(), add);
 }
@@ -195,8 +217,9 @@ Result<void> Renderer::load(const Scene& scene, const Effects& effects, Engine e
   s.effects = effects;
   s.engine = engine;
   s.show(*scene.mesh);
-  GONIO_ASSIGN(const SceneMaps maps, scene_maps(scene, effects));
-  if (engine == Engine::kCpu) return s.cpu_engine.load(scene, effects, maps);
+  const Effects mapped = s.mapped();
+  GONIO_ASSIGN(const SceneMaps maps, scene_maps(scene, mapped));
+  if (engine != Engine::kGl) return s.cpu_engine.load(scene, mapped, maps);
   return s.gl->engine.load(scene, effects, maps);
 }
 
@@ -233,8 +256,9 @@ Result<Plan> Renderer::load(const Scene& scene, const std::vector<std::shared_pt
 void Renderer::load_paints(const Scene& scene) {
   State& s = *state_;
   s.scene = scene;
-  const WeightTable table = weight_table(scene, s.effects);
-  if (s.engine == Engine::kCpu) return s.cpu_engine.load_paints(scene, s.effects, table);
+  const Effects mapped = s.mapped();
+  const WeightTable table = weight_table(scene, mapped);
+  if (s.engine != Engine::kGl) return s.cpu_engine.load_paints(scene, mapped, table);
   s.begin();
   s.gl->engine.load_paints(scene, table);
 }
@@ -258,7 +282,7 @@ Result<void> Renderer::draw(const View& view, Frame& frame) {
   frame.gbuffer = s.gbuffer(0);
   frame.gbuffer_ms = s.rasterization_ms;
   const auto add_layer = [&](Image& image, int first, int count) {
-    if (s.scene.layer == nullptr) return;
+    if (s.scene.layer == nullptr || s.engine == Engine::kIntegral) return;
     for (int i = first; i < first + count; ++i) {
       s.scene.layer->add(*s.gbuffer(i), s.places(i), s.effects, 1.0F / static_cast<float>(count), image);
     }

@@ -6,6 +6,7 @@
 
 #include "base/result.h"
 #include "color/reflection.h"
+#include "envmap/block_tree.h"
 #include "envmap/prefiltered.h"
 #include "mesh/mesh.h"
 #include "paint/paint.h"
@@ -33,6 +34,7 @@ struct Scene {
   std::vector<Anisotropy> anisotropy = {};  // for each part; alpha 0 is none. The tangent runs level around +Y
   ReflectionOperator reflection = component_wise();
   const SurfaceLayer* layer = nullptr;  // textures and color maps of parts, if there are any
+  const BlockTree* texels = nullptr;    // of the image that env was made from, for Engine::kIntegral
 };
 
 // The exponents (finite, ascending) of the lobes with any weight, over all paints.

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "render/integral_engine.h"
 #include "render/reference.h"
 #include "render/renderer.h"
 #include "render/scenes_for_test.h"
@@ -207,6 +208,18 @@ TEST_F(TexturedScene, ThePlanPricesTextureAndLobes) {
   EXPECT_EQ(item(chosen, "texture-1").decision, "drawn");
   EXPECT_EQ(item(chosen, "texture").decision, "drawn");
   EXPECT_LE(difference(all, without), request.tolerance_de00);
+}
+
+TEST_F(TexturedScene, TheIntegralIsWithinWhatIsAsked) {
+  dress();
+  const Environment source = sloping_source();
+  const BlockTree blocks(source);
+  scene.texels = &blocks;
+  Effects effects = effects_of(scene);
+  for (const double tolerance : {0.5, 0.1}) {
+    effects.spread = spread_for(tolerance);
+    EXPECT_LT(picture_error(drawn(Engine::kIntegral, effects), scene, &source, 1, 60, 5).de00_p95, tolerance);
+  }
 }
 
 TEST_F(TexturedScene, TruthStandsBesideTheEstimate) {

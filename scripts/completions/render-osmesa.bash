@@ -20,7 +20,7 @@ _render_osmesa() {
     --aov) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --effects) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --budget) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --engine) COMPREPLY=($(compgen -W "auto cpu gl" -- "$word")); return ;;
+    --engine) COMPREPLY=($(compgen -W "auto cpu gl integral" -- "$word")); return ;;
     --operator) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --critical-angle) COMPREPLY=($(compgen -W "clip slide slide-map index" -- "$word")); return ;;
     --split) COMPREPLY=($(compgen -f -- "$word")); return ;;

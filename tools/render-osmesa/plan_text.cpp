@@ -1,12 +1,22 @@
 #include "plan_text.h"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 namespace goniochrome {
 
 const char* engine_name(Engine engine) {
-  return engine == Engine::kCpu ? "cpu" : "gl";
+  return engine == Engine::kCpu ? "cpu" : engine == Engine::kGl ? "gl" : "integral";
 }
+
+namespace {
+
+std::string cost_text(const PlanItem& item) {
+  return std::isnan(item.cost_ms) ? "-" : fmt::format("{:.2f}", item.cost_ms);
+}
+
+}  // namespace
 
 std::string plan_table(const Plan& plan) {
   bool truth = false;
@@ -17,8 +27,8 @@ std::string plan_table(const Plan& plan) {
     const std::string exact = item.truth_de00_p95 ? fmt::format("{:7.2f} ", *item.truth_de00_p95)
                               : truth             ? "        "
                                                   : "";
-    text += item.needed ? fmt::format("{:<13} {:<6} {:>7.2f} {}{:>7.2f}  {:<16} {}\n", item.effect, "yes",
-                                      item.de00_p95, exact, item.cost_ms, item.decision, item.reason)
+    text += item.needed ? fmt::format("{:<13} {:<6} {:>7.2f} {}{:>7}  {:<16} {}\n", item.effect, "yes", item.de00_p95,
+                                      exact, cost_text(item), item.decision, item.reason)
                         : fmt::format("{:<13} {:<6} {:>7} {}{:>7}  {:<16} {}\n", item.effect, "no", "-",
                                       truth ? "        " : "", "-", item.decision, item.reason);
   }

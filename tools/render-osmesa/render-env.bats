@@ -79,13 +79,34 @@ number() { sed -n '/"error": {/,/}/p' r.json | grep -m1 "\"$1\"" | sed -E 's/.*:
   cd elsewhere
   run render-osmesa --mesh "$shape" -p paints.xml#matt --env small.env.exr $small --check 5 -o out.exr
   [ "$status" -eq 0 ]
-  [[ "$output" =~ 'the source "small.exr" of small.env.exr is not there: checked against its mirror part instead' ]]
+  [[ "$output" =~ 'the source "small.exr" of small.env.exr is not there: its mirror part takes its place' ]]
   run render-osmesa --mesh "$shape" -p paints.xml#matt --env small.env.exr $small --check 5 --check-source ../small.exr -o out.exr
   [ "$status" -eq 0 ]
   [[ ! "$output" =~ warning ]]
   run render-osmesa --mesh "$shape" -p paints.xml#matt --env small.env.exr $small --check 5 --check-source nowhere.exr -o none.exr
   [ "$status" -eq 3 ]
   [[ "$output" =~ nowhere.exr ]]
+  [ ! -e none.exr ]
+}
+
+@test "--engine integral sums the image itself, within the tolerance" {
+  to="--mesh $shape --env small.env.exr --size 64x36 --samples 1 --check 40"
+  render-osmesa -q $to -p paints.xml#flake --engine integral -o sum.exr --report r.json
+  [ "$(jq '.results | .engine == "integral" and .error.de00_p95 <= 0.5 and .left_out.de00_p95 == 0' r.json)" = true ]
+  [ "$(jq '[.results.plan[] | select(.needed) | .decision == "drawn" and .cost_ms == null] | all' r.json)" = true ]
+  exrheader sum.exr | grep -q 'goniochrome:engine.*"integral"'
+  render-osmesa -q $to -p paints.xml#flake --engine integral --tolerance 0.02 -o finer.exr --report finer.json
+  [ "$(jq -s '.[0].results.error.de00_mean > .[1].results.error.de00_mean' r.json finer.json)" = true ]
+  # The buffers are enough, and a lamp alone needs no image.
+  render-osmesa -q --mesh "$shape" --env small.env.exr $small --aov normal,part -p paints.xml#flake -o buffers.exr
+  render-osmesa -q --gbuffer buffers.exr --env small.env.exr -p paints.xml#flake --engine integral --check 40 -o again.exr --report r.json
+  [ "$(jq '.results.error.de00_p95 <= 0.5' r.json)" = true ]
+  render-osmesa -q --mesh "$shape" --light 30,50 $small -p paints.xml#flake --engine integral -o lamp.exr
+  run render-osmesa $to -p paints.xml#flake --engine integral --budget 5 -o none.exr
+  [ "$status" -eq 2 ]
+  [[ "$output" =~ "--budget chooses effects of prefiltered maps" ]]
+  run render-osmesa $to -p paints.xml#flake --engine integral --check-source nowhere.exr -o none.exr
+  [ "$status" -eq 3 ]
   [ ! -e none.exr ]
 }
 

@@ -37,6 +37,10 @@ struct Request {
   PlanRequest plan;
 };
 
+Engine engine_of(const std::string& name) {
+  return name == "cpu" ? Engine::kCpu : name == "gl" ? Engine::kGl : Engine::kIntegral;
+}
+
 Result<Request> request_of(const RenderOptions& options) {
   Request request;
   GONIO_TRY(check_surfaces(options));
@@ -63,7 +67,9 @@ Result<Request> request_of(const RenderOptions& options) {
   request.plan.budget_ms = options.budget_ms;
   request.samples = !options.gbuffer.empty() ? 1 : options.samples > 0 ? options.samples : 4;
   request.plan.samples = request.samples;
-  if (options.engine != "auto") request.plan.engine = options.engine == "cpu" ? Engine::kCpu : Engine::kGl;
+  if (options.engine != "auto") request.plan.engine = engine_of(options.engine);
+  if (request.plan.engine == Engine::kIntegral && options.budget_ms > 0)
+    return usage_error("--budget chooses effects of prefiltered maps: leave it out, or --engine integral");
   if (!options.split.empty() && options.check > 0) return usage_error("--split and --check exclude each other");
   if (options.print_shader && options.output == "-")
     return usage_error("--print-shader and a picture both want standard output");
@@ -128,14 +134,14 @@ std::string explanation(const RenderOptions& options, const Mesh& mesh, const Dr
   return text;
 }
 
-struct CheckSource {
+struct Source {
   std::optional<Environment> environment;
   std::string name;
 };
 
 // The image that the environment was made from: as named, or beside the environment; else its mirror part.
-Result<CheckSource> check_source(const RenderOptions& options, const Scene& scene, cli::Session& session) {
-  if (scene.env == nullptr) return CheckSource{};
+Result<Source> source_of(const RenderOptions& options, const Scene& scene, cli::Session& session) {
+  if (scene.env == nullptr) return Source{};
   std::vector<std::string> candidates = {options.check_source};
   if (options.check_source.empty()) {
     candidates = {scene.env->source, (std::filesystem::path(options.env).parent_path() / scene.env->source).string()};
@@ -146,20 +152,20 @@ Result<CheckSource> check_source(const RenderOptions& options, const Scene& scen
     const bool there = is_pattern ? face_paths(path).ok() : std::filesystem::is_regular_file(path, status);
     if (!there && options.check_source.empty()) continue;
     GONIO_ASSIGN(Environment environment, Environment::read(path, Environment::BadPixels::kZero));
-    return CheckSource{std::move(environment), path};
+    return Source{std::move(environment), path};
   }
   if (scene.env->mirror.map.size == 0) {
     return input_error(
         "{}: its source \"{}\" is not there, and it has no mirror part: name the image by --check-source", options.env,
         scene.env->source);
   }
-  session.warn(fmt::format("the source \"{}\" of {} is not there: checked against its mirror part instead",
-                           scene.env->source, options.env));
-  return CheckSource{Environment::from_cube(scene.env->mirror.map, options.env), options.env + " (mirror part)"};
+  session.warn(fmt::format("the source \"{}\" of {} is not there: its mirror part takes its place", scene.env->source,
+                           options.env));
+  return Source{Environment::from_cube(scene.env->mirror.map, options.env), options.env + " (mirror part)"};
 }
 
-void check(const RenderOptions& options, const Frame& frame, const Scene& scene, const CheckSource& source,
-           double white, cli::Session& session) {
+void check(const RenderOptions& options, const Frame& frame, const Scene& scene, const Source& source, double white,
+           cli::Session& session) {
   session.progress(fmt::format("checking {} pixels", options.check));
   const Environment* environment = source.environment ? &*source.environment : nullptr;
   const PictureError error = picture_error(frame, scene, environment, white, options.check, session.common().seed);
@@ -180,7 +186,7 @@ void check(const RenderOptions& options, const Frame& frame, const Scene& scene,
 Result<void> measure_plan(Renderer& renderer, const Scene& scene, const Plan& plan, const View& view, double white,
                           cli::Session& session) {
   GONIO_ASSIGN(const LeftOut measured, left_out(renderer, scene, plan, view, white));
-  const double predicted_ms = plan.engine == Engine::kCpu ? plan.cpu_ms : plan.gl_ms;
+  const double predicted_ms = plan.predicted_ms();
   session.results()["left_out"] = {
       {"de00_mean", json_number(measured.de00_mean)}, {"de00_p95", json_number(measured.de00_p95)},
       {"de00_max", json_number(measured.de00_max)},   {"shading_ms", measured.planned_ms},
@@ -264,7 +270,8 @@ struct Stage {
   Scene scene;
   std::optional<MipCube> mip;
   std::unique_ptr<SurfaceLayer> layer;
-  CheckSource check;
+  Source source;                    // where the picture is checked, or sums it
+  std::optional<BlockTree> texels;  // of the source
 };
 
 void wear(const DressedMesh& dress, const RenderOptions& options, Stage& stage) {
@@ -328,9 +335,11 @@ Result<void> set_stage(const RenderOptions& options, const Request& request, Sta
     }
   }
   wear(stage.dresses.front(), options, stage);
-  if (options.check > 0) {
-    GONIO_ASSIGN(stage.check, check_source(options, scene, session));
+  const bool summed = request.plan.engine == Engine::kIntegral;
+  if (options.check > 0 || summed) {
+    GONIO_ASSIGN(stage.source, source_of(options, scene, session));
   }
+  if (summed && stage.source.environment) scene.texels = &stage.texels.emplace(*stage.source.environment);
   return set_background(scene, options.background);
 }
 
@@ -412,7 +421,7 @@ Result<void> Shooting::draw(Renderer& renderer, const Shot& shot, bool first) {
     if (stage_.dresses.size() > 1 || first) {
       GONIO_ASSIGN(Plan plan, load(renderer, stage_.dresses[i]));
       if (first && options_.check > 0 && session_.common().explain) {
-        const Environment* environment = stage_.check.environment ? &*stage_.check.environment : nullptr;
+        const Environment* environment = stage_.source.environment ? &*stage_.source.environment : nullptr;
         const auto sample =
             sampled_pixels(*looks_.front(), stage_.scene, std::min(options_.check, kMostTruth), session_.common().seed);
         add_truth(plan, seen_scene(stage_.scene, looks_), sample.points, environment, white_.luminance);
@@ -470,7 +479,7 @@ Result<void> Shooting::shoot(const std::optional<Display>& display) {
       request_.size.height, request_.samples, frame_ms, engine_name(plan_.engine), frame_.gbuffer_ms, stops,
       display ? ", " + display->name() : ""));
   if (options_.check > 0) {
-    check(options_, frame_, stage_.scene, stage_.check, white_.luminance, session_);
+    check(options_, frame_, stage_.scene, stage_.source, white_.luminance, session_);
     GONIO_TRY(measure_plan(renderer, seen_scene(stage_.scene, looks_), plan_, view(shots_.back(), 1), white_.luminance,
                            session_));
   }
