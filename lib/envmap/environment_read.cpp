@@ -149,8 +149,7 @@ class EnvironmentReader {
     }
     return input_error(
         "{}: {} x {} is no known shape: a lat-long map is 2:1, an angular probe 1:1, a cube 1:6, 6:1, 4:3 or 3:4, or "
-        "six "
-        "square files",
+        "six square files",
         name, w, h);
   }
 };

@@ -67,8 +67,7 @@ Result<PrefilteredEnvironment> levels_of(Imf::TiledInputFile& file, const std::s
   if (env.diffuse.map.size == 0)
     return input_error(
         "{}: no level has the exponent 1, which the diffuse light needs: prefilter with a power of four as the "
-        "sharpest, "
-        "such as --exponents 256 --layout mip",
+        "sharpest, such as --exponents 256 --layout mip",
         path);
   std::reverse(env.lobes.begin(), env.lobes.end());
   return env;

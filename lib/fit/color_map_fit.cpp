@@ -132,8 +132,7 @@ Result<ColorMapFit> fit_color_map(const std::vector<ColorMapRow>& rows, const Xy
   if (distinct.size() < 4 || fit.illuminations < 2)
     return input_error(
         "a color map takes 4 readings at 2 angles of incidence or more, at least {:g} deg from specular and at most "
-        "{:g} deg "
-        "from the normal: here are {} at {}",
+        "{:g} deg from the normal: here are {} at {}",
         kGlare_deg, kGrazing_deg, distinct.size(), fit.illuminations);
   const Cones cones(distinct);
   fit.held_out_de76 = cones.held_out_de76();

@@ -39,8 +39,7 @@ Result<Module> loaded_module() {
   if (!handle)
     return input_error(
         "{}: cannot be loaded ({}): it reads every format but EXR; install it there, set GONIOCHROME_MODULE_PATH to "
-        "its "
-        "folder, or convert the image to EXR",
+        "its folder, or convert the image to EXR",
         path, dlerror());
   loaded.read = reinterpret_cast<GoniochromeOiioRead>(dlsym(handle, kGoniochromeOiioReadName));
   if (!loaded.read) return input_error("{}: is not of this version of Goniochrome: install both from one build", path);

@@ -243,8 +243,7 @@ Error no_seam(const MeshPart& a, const MeshPart& b, double nearest_mm, double li
   if (nearest_mm > limit_mm)
     return input_error(
         "\"{}\" and \"{}\" do not touch: their edges are {:.4g} mm apart at the nearest, and a gap up to {:.4g} mm is "
-        "a "
-        "seam",
+        "a seam",
         a.name, b.name, nearest_mm, limit_mm);
   return input_error(
       "the surfaces of \"{}\" and \"{}\" come near each other and nowhere continue each other within 30 deg: there is "

@@ -173,8 +173,7 @@ cli::ToolSpec tool_spec(Options& o) {
        .choices = {"auto", "tsv", "json", "paints"}}};
   spec.examples = {
       {"paint-edit testdata/paints.paints.xml#candy_blue --hue-shift 4 | colorsnap --library "
-       "testdata/paints.paints.xml "
-       "-k 3",
+       "testdata/paints.paints.xml -k 3",
        "Names the three paints nearest to a changed blue."},
       {"colorsnap -l testdata/paints.paints.xml --metric de00 --filter flop_index=3:10 --filter class=metallic "
        "testdata/paints.paints.xml -o near.tsv",

@@ -9,10 +9,9 @@ cli::ToolSpec tool_spec(Options& o) {
   spec.description = {
       "draw-plot reads a table of points and writes one plot as SVG, in the colors and with the axes of every other "
       "plot of Goniochrome. The table is CSV with the headings series, x and y in any order, and, if wanted, style "
-      "(line, "
-      "points, both, dashed or rings) and color (#rrggbb; where none is given, the next of seven that color-blind "
-      "readers can tell apart), which are those of the first row of a series. Series are drawn in the order of their "
-      "first rows and named in the legend, save one whose name is empty.",
+      "(line, points, both, dashed or rings) and color (#rrggbb; where none is given, the next of seven that "
+      "color-blind readers can tell apart), which are those of the first row of a series. Series are drawn in the "
+      "order of their first rows and named in the legend, save one whose name is empty.",
       "A row without a number for x or y breaks the line of its series. On a logarithmic axis only values above 0 are "
       "drawn; how many points that leaves out is told.",
   };

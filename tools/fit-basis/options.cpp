@@ -6,20 +6,15 @@ cli::ToolSpec tool_spec(Options& o) {
   cli::ToolSpec spec{
       .name = "fit-basis",
       .summary = "choose the lobe exponents that serve a whole paint library best",
-      .description = {"Reads paints and searches, for each number of lobes, the exponents "
-                      "for which the largest plus the mean error "
-                      "over the library is least after every paint has been fitted to "
-                      "them. The exponents are chosen once; "
-                      "fit-paint then fits single paints to them in microseconds, and "
-                      "prefilter-envmap filters an environment once "
-                      "for all of them.",
-                      "The search adds one lobe at a time to the best smaller set, from "
-                      "several starts. Its error never rises with "
-                      "the number of lobes. The default method follows a power mean of "
-                      "the errors, which tends to their maximum, by "
-                      "a quasi-Newton search; lm is the Levenberg-Marquardt search of the "
-                      "source. Both end in a pattern search on "
-                      "the exact objective, and the errors reported are exact.",
+      .description = {"Reads paints and searches, for each number of lobes, the exponents for which the largest plus "
+                      "the mean error over the library is least after every paint has been fitted to them. The "
+                      "exponents are chosen once; fit-paint then fits single paints to them in microseconds, and "
+                      "prefilter-envmap filters an environment once for all of them.",
+                      "The search adds one lobe at a time to the best smaller set, from several starts. Its error "
+                      "never rises with the number of lobes. The default method follows a power mean of the errors, "
+                      "which tends to their maximum, by a quasi-Newton search; lm is the Levenberg-Marquardt search of "
+                      "the source. Both end in a pattern search on the exact objective, and the errors reported are "
+                      "exact.",
                       "The basis written is the one with the most lobes. The summary line "
                       "names the number of lobes from which on no "
                       "further lobe changes any paint of the library visibly."},

@@ -13,12 +13,10 @@ cli::ToolSpec tool_spec(Options& o) {
            "lobes that were there are replaced. Paints are written in the order they came, as soon as they are done, "
            "in constant memory.",
            "The weights of l1 and l2 are the optimum of their norm, not an approximation, and the report holds the "
-           "proof: "
-           "the duality gap (l1) or the optimality residual (l2). deltae goes on from both to the nearest least color "
-           "difference, and reports how far from stationary it ended. Compare paints by the color their lobes predict, "
-           "never "
-           "by the weights themselves: a tenth of a percent of noise moves weights by tens of percent while the color "
-           "stays.",
+           "proof: the duality gap (l1) or the optimality residual (l2). deltae goes on from both to the nearest least "
+           "color difference, and reports how far from stationary it ended. Compare paints by the color their lobes "
+           "predict, never by the weights themselves: a tenth of a percent of noise moves weights by tens of percent "
+           "while the color stays.",
            "Readings within 10 deg of the mirror direction hold glare and are left out. Lobes too sharp to be seen by "
            "any reading get no flake weight. Below the first reading the flake highlight goes on rising at the rate "
            "it had there, which is the least that any sum of lobes can do. Gloss readings (20, 60, 85 deg) set the "
@@ -33,9 +31,8 @@ cli::ToolSpec tool_spec(Options& o) {
            "views stay in front of them, and the report tells what the views gain. Readings of a multi-angle "
            "instrument see each view once or twice: between them the weights rest on smoothness, not on data.",
            "Readings at one aspecular angle that differ, as 45as15 and 45as-15 of many paints do, contradict each "
-           "other "
-           "for lobes that know the aspecular angle alone. The summary tells how near such lobes can come at best; "
-           "--views auto gives those paints weights for the views of these readings.",
+           "other for lobes that know the aspecular angle alone. The summary tells how near such lobes can come at "
+           "best; --views auto gives those paints weights for the views of these readings.",
            "A paint that cannot be fitted (no reading, no appearance) is named, passes unchanged, and the exit status "
            "is 1."},
       .options =

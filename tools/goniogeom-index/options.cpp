@@ -74,9 +74,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "positive angles, which turn the second panel toward the light, and for negative ones. Gloss is left out: "
       "highlights need not line up for panels to match, and pairs of light and viewer within 10 degrees of the mirror "
       "direction are passed over.",
-      "The difference rises and falls with the angle. The index is its first crossing, found in steps that cannot "
-      "jump over one, and bracketed to 1e-9 degrees; it reads none where the threshold is not reached before the "
-      "second "
+      "The difference rises and falls with the angle. The index is its first crossing, found in steps that cannot jump "
+      "over one, and bracketed to 1e-9 degrees; it reads none where the threshold is not reached before the second "
       "panel turns its back to the viewer.",
       "One row of tab-separated values is written for each paint and pair: name, light, view, azimuth, aspecular "
       "angle, index for + and for -, and the difference at 1, 2 and 5 degrees (the larger of both signs; - where "
@@ -87,16 +86,12 @@ cli::ToolSpec tool_spec(Options& o) {
       "FIRST:LAST:STEP and named sets. " +
           sets_text(),
       "With --mesh and --seam A,B the panels are two parts of a mesh. They meet where their skins end: at open edges, "
-      "folds "
-      "and tight bends, so that a rolled border belongs to the gap. Gap, flush, the angle between the smooth normals "
-      "and "
-      "its part about the seam (positive for a ridge) are written for every place along the seam, with the largest and "
-      "the RMS difference over the lights and viewers, which stand to the first panel at every place as they would to "
-      "a "
-      "flat one, the light from either side of the seam. --light-from and --view-from put them into the world instead, "
-      "and --environment takes the light of a prefiltered environment. Shadows and reflections of the mesh on itself "
-      "are "
-      "left out. Meshes of more than 30 units are taken as millimeters.",
+      "folds and tight bends, so that a rolled border belongs to the gap. Gap, flush, the angle between the smooth "
+      "normals and its part about the seam (positive for a ridge) are written for every place along the seam, with the "
+      "largest and the RMS difference over the lights and viewers, which stand to the first panel at every place as "
+      "they would to a flat one, the light from either side of the seam. --light-from and --view-from put them into "
+      "the world instead, and --environment takes the light of a prefiltered environment. Shadows and reflections of "
+      "the mesh on itself are left out. Meshes of more than 30 units are taken as millimeters.",
       "--tolerance-for DEG answers for a whole library which paints stay under the threshold at every angle up to DEG: "
       "the verdict stands in the last column, those that fail are listed on standard error, and the exit status is 1 "
       "if there are any."};
@@ -162,8 +157,7 @@ cli::ToolSpec tool_spec(Options& o) {
       {"goniogeom-index testdata/paints.paints.xml --only silver_fine --lights set:showroom --views set:showroom",
        "One paint under the lights of a showroom."},
       {"goniogeom-index testdata/paints.paints.xml --only silver_fine --lights 30,45 --curve curve.svg --curve "
-       "curve.csv "
-       "-o index.tsv",
+       "curve.csv -o index.tsv",
        "How far panels differ from every side, for misalignments of 1, 2, 3 and 5 degrees."},
       {"goniogeom-index testdata/paints.paints.xml --only silver_fine --mesh testdata/speed-shape.obj --seam "
        "Hood,Bumper_F --picture seam.png --advise -o seam.tsv",

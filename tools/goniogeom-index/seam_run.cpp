@@ -32,8 +32,7 @@ std::string seam_line(const SeamRequest& request, const Seam& seam) {
                flush = spread(seam, &SeamPoint::flush_mm);
   std::string line = fmt::format(
       "seam {} | {}: {:.2f} m, misalignment {:+.1f} to {:+.1f} deg (median {:+.1f}), gap {:.1f} mm ({:.1f} to {:.1f}), "
-      "flush "
-      "{:+.1f} to {:+.1f} mm",
+      "flush {:+.1f} to {:+.1f} mm",
       request.world.part_a, request.world.part_b, seam.length_m, fold.low, fold.high, fold.median, gap.median, gap.low,
       gap.high, flush.low, flush.high);
   if (seam.unit_guessed && seam.unit_m != 1) line += "; taken as millimeters (--unit says otherwise)";

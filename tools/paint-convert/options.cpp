@@ -18,24 +18,19 @@ cli::ToolSpec tool_spec(Options& o) {
       "separators, with headings like L*, and with a byte order mark. The rows of one sample stand together. Columns "
       "class, code, instrument, gloss20, gloss60 and gloss85 are read where they are there.",
       "CxF3 and CGATS.17 are read from the programs of others, as far as their colors stand at an angle; what does not "
-      "is "
-      "named in a warning. Where a sample has readings under several illuminants or observers, the first counts, or "
+      "is named in a warning. Where a sample has readings under several illuminants or observers, the first counts, or "
       "the one of --illuminant and --observer. Spectra in CxF are integrated under what their specification states. "
-      "CxF "
-      "is written with one color specification for each angle; --cxf-compat writes one object for each angle, for "
+      "CxF is written with one color specification for each angle; --cxf-compat writes one object for each angle, for "
       "programs that take only the first Lab of an object. Both come back as one paint.",
       "A measured BRDF (MERL .binary, Cornell .brdf, NVIDIA .mbsdf, RGL _rgb.bsdf) becomes one paint: what a "
-      "multi-angle "
-      "instrument would have read at the geometries of --geometry, by default 15, 25, 45, 75 and 110 degrees. Its "
-      "spectra "
-      "are integrated under --illuminant and --observer, by default D65 and 10 degrees; RGB data are what the 2 degree "
-      "observer sees under D65, and stay that. The data are checked on the way: the report tells the share of negative "
-      "samples, how far light and viewer can be swapped, whether the values are f or f cos, the noise floor, and which "
-      "readings were interpolated and how far.",
+      "multi-angle instrument would have read at the geometries of --geometry, by default 15, 25, 45, 75 and 110 "
+      "degrees. Its spectra are integrated under --illuminant and --observer, by default D65 and 10 degrees; RGB data "
+      "are what the 2 degree observer sees under D65, and stay that. The data are checked on the way: the report tells "
+      "the share of negative samples, how far light and viewer can be swapped, whether the values are f or f cos, the "
+      "noise floor, and which readings were interpolated and how far.",
       "A measured paint keeps the rows it has; --geometry selects among them and never interpolates. A designed paint, "
       "which has a face, a flop and a travel but no rows, gets rows when readings are written: at 15, 45 and 110 "
-      "degrees "
-      "and at 25, 45 and 75 degrees, the two sets of the industry, or at those of --geometry. What the output "
+      "degrees and at 25, 45 and 75 degrees, the two sets of the industry, or at those of --geometry. What the output "
       "cannot hold is named in a warning.",
       "A wrong value stops the conversion, and an output file stays as it was. With --keep-going the row (of a long "
       "table) or the paint is left out with a warning, and the exit status is 1."};

@@ -75,14 +75,11 @@ cli::ToolSpec tool_spec(Options& o) {
       "options below, whatever their order on the command line: first the average of the whole paint, then tweaks, "
       "face, flop, travel and gloss. Where an end is both set and shifted, it is set first.",
       "Hue, chroma and lightness are averages over the paint's curve at 15, 45 and 110 degrees. --at DEG makes the "
-      "three "
-      "shifts where a viewer sees that aspecular angle: at 15 degrees they fall on the face alone, from the travel on "
-      "the flop alone, and between on both in proportion.",
+      "three shifts where a viewer sees that aspecular angle: at 15 degrees they fall on the face alone, from the "
+      "travel on the flop alone, and between on both in proportion.",
       "On a picture of the paint the place is a pixel instead: --image names the buffers that render-osmesa(1) wrote "
-      "with "
-      "it, and --at-pixel X,Y makes the moves of --lighter, --chroma (a factor) and --hue (a turn) at the aspecular "
-      "angle "
-      "under that pixel; --travel-to X,Y ends the travel and --gloss-to X,Y the highlight there.",
+      "with it, and --at-pixel X,Y makes the moves of --lighter, --chroma (a factor) and --hue (a turn) at the "
+      "aspecular angle under that pixel; --travel-to X,Y ends the travel and --gloss-to X,Y the highlight there.",
       "A paint is edited in every form it has. Measured rows move by what the curve moves at their angle, so that what "
       "the curve did not explain of a measurement stays. A paint that has only rows is fitted first and carries face, "
       "flop and travel from then on. Lobes and color maps no longer hold after a move of the color, nor lobes after a "
@@ -230,10 +227,8 @@ cli::ToolSpec tool_spec(Options& o) {
       {"paint-edit testdata/paints.paints.xml --at 45 --lightness-shift 4 --chroma-factor 1.1 -o brighter.paints.xml",
        "Lightens every paint where it is seen at 45 degrees, and face and flop each by its share."},
       {"render-osmesa --mesh testdata/speed-shape.obj --light 30,50 --size 640x400 --aov aspecular,mask -o scene.exr "
-       "&& "
-       "paint-edit testdata/paints.paints.xml#candy_red --image scene.exr --at-pixel 250,200 --lighter 3 --chroma 1.1 "
-       "-o "
-       "tweaked.paints.xml",
+       "&& paint-edit testdata/paints.paints.xml#candy_red --image scene.exr --at-pixel 250,200 --lighter 3 --chroma "
+       "1.1 -o tweaked.paints.xml",
        "Lightens a red where the pixel shows it."},
       {"paint-edit testdata/paints.paints.xml#silver_fine --variations flop --step 6 -o nine.paints.xml",
        "Writes a silver and the eight paints around it for a variations sheet."},

@@ -13,14 +13,12 @@ cli::ToolSpec tool_spec(Options& o) {
       "5 pixels without a radius. Where only one of face and flop is given the paint is solid.",
       "A face darker than its flop is rare: both are swapped, with a word, unless --retro says that it is meant.",
       "--palette N proposes up to N pairs of face and flop from one picture: its colors grouped by hue and chroma, "
-      "each "
-      "with its light and its dark end.",
+      "each with its light and its dark end.",
       "--board FILE reads a mood board, a text file that names pictures and the droppers on them, and writes its "
-      "paints; "
-      "with -o *.html a page that needs nothing beside itself, with the pictures, the droppers on them and every paint "
-      "drawn on --mesh under --env; a ball under two lamps where they are not given. The lines of a board are title "
-      "TEXT, image NAME PATH (relative to the board), paint NAME, and below a paint face NAME@X,Y[,R], flop, gloss, "
-      "travel DEG and retro; # begins a comment."};
+      "paints; with -o *.html a page that needs nothing beside itself, with the pictures, the droppers on them and "
+      "every paint drawn on --mesh under --env; a ball under two lamps where they are not given. The lines of a board "
+      "are title TEXT, image NAME PATH (relative to the board), paint NAME, and below a paint face NAME@X,Y[,R], flop, "
+      "gloss, travel DEG and retro; # begins a comment."};
   spec.inputs = {.value = "IMAGE", .help = "the picture of --palette", .target = &o.images, .low = 0, .high = 1};
   spec.options = {
       {.name = "face", .value = "DROPPER", .help = "where the color near specular is", .target = &o.face},

@@ -22,11 +22,9 @@ cli::ToolSpec tool_spec(Options& o) {
   spec.summary = "tell flop, chroma and hue-shift index and other figures of paints, and pick paints by them";
   spec.description = {
       "paint-stats reads paints and writes a table: one line a paint, with its name, code and class, its metrics, "
-      "where "
-      "the colors behind them come from, and flags. With --where it writes only the paints for which a condition "
-      "holds; "
-      "with --format paints it writes those paints themselves, every element kept, so that it stands as a filter "
-      "between other tools. Paints go out in the order they came, as soon as they are done, in constant memory.",
+      "where the colors behind them come from, and flags. With --where it writes only the paints for which a condition "
+      "holds; with --format paints it writes those paints themselves, every element kept, so that it stands as a "
+      "filter between other tools. Paints go out in the order they came, as soon as they are done, in constant memory.",
       column_list(),
       "The indices rest on the colors at 15, 45 and 110 degrees: the measured rows where all three are there (source "
       "rows), else the curve the paint states (curve), else a curve fitted to its rows (fitted). A figure that does "

@@ -14,9 +14,8 @@ cli::ToolSpec tool_spec(Options& o) {
            "each.",
            "The surfaces show the square root of the reflectance factor, so that the body under the highlight is seen.",
            "The target of a square is the curve of the paint, which knows the aspecular angle alone, or a measured "
-           "BRDF "
-           "that is given for it and named like it. The square is the map of Shirley and Chiu with equal areas: the "
-           "normal in the middle, grazing views on the border, light from the left, its mirror direction on the "
+           "BRDF that is given for it and named like it. The square is the map of Shirley and Chiu with equal areas: "
+           "the normal in the middle, grazing views on the border, light from the left, its mirror direction on the "
            "right. A black dot marks the mirror direction; target and fit have one exposure.",
            "A PNG is made by rsvg-convert, which must be there for it (Debian package librsvg2-bin)."},
       .options = {{.name = "output",

@@ -9,8 +9,7 @@ cli::ToolSpec tool_spec(Options& o) {
       .description =
           {"Reads the light around a scene and writes it as a prefiltered environment (.env.exr): for the diffuse lobe "
            "and for each cosine lobe of the basis a cube map of the integral of radiance times max(0,cos)^E, "
-           "normalized "
-           "so that a constant environment stays itself, and the environment itself for the mirror lobe. "
+           "normalized so that a constant environment stays itself, and the environment itself for the mirror lobe. "
            "render-osmesa(1) then lights a paint by one lookup a lobe.",
            "The image may be a lat-long map (2:1, +Y up, its center +Z, its left quarter +X), a cube as a strip of six "
            "faces (+X -X +Y -Y +Z -Z), a cross (4:3 or 3:4), or six square files, given one by one in that order or as "
@@ -24,10 +23,8 @@ cli::ToolSpec tool_spec(Options& o) {
            "thousandth of the map's mean where the texel is darker still; it covers the rounding of the file. Smooth "
            "lobes are filtered by zonal harmonics with a proven bound on the degrees left out; lobes that bend at the "
            "horizon by harmonics of all but the brightest texels, which are convolved one by one, or, for the diffuse "
-           "lobe "
-           "at the smallest tolerances, by sums along the arcs that a hemisphere cuts from the rows; very sharp and "
-           "very "
-           "wide ones by a walk over blocks of texels. --explain shows the choice for each lobe.",
+           "lobe at the smallest tolerances, by sums along the arcs that a hemisphere cuts from the rows; very sharp "
+           "and very wide ones by a walk over blocks of texels. --explain shows the choice for each lobe.",
            "Lobes may be named by a basis, by their exponents, or by the paints that need them (--for): then only the "
            "exponents that some paint reflects by are filtered, and --explain tells which were left out and why.",
            "--layout mip writes one mip-mapped cube for paints whose exponent varies from point to point: the sharpest "

@@ -10,8 +10,7 @@ cli::ToolSpec tool_spec(Options& o) {
           {"Reads an image made in light of one color and writes what it would be in light of another: every pixel is "
            "divided by the old illuminant and multiplied by the new one. The product of two colors is bilinear: each "
            "channel of the result takes from every pair of channels of light and reflectance, as overlapping spectra "
-           "do, "
-           "so that a red wall keeps some red in cyan light and a blue one is not black in yellow. White light "
+           "do, so that a red wall keeps some red in cyan light and a blue one is not black in yellow. White light "
            "changes nothing, whatever the operator.",
            "An illuminant is three linear working-space values, R,G,B with 1,1,1 for D65, or the name of a CIE "
            "illuminant. One that cannot be divided by, because a color channel would have to come out of nothing, is "

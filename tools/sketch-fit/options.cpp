@@ -8,26 +8,20 @@ cli::ToolSpec tool_spec(Options& o) {
   spec.summary = "the paint that an edited or drawn picture of a painted mesh shows";
   spec.description = {
       "Takes a picture that began as a rendering by render-osmesa(1) and was edited in an image editor, painted over "
-      "or "
-      "drawn on a trace of it, and the buffers that were rendered with it, and finds the paint: Lab at the export "
+      "or drawn on a trace of it, and the buffers that were rendered with it, and finds the paint: Lab at the export "
       "angles, face, flop, travel and gloss.",
       "Under one directional light the buffers tell the aspecular angle and the light's cosine of every pixel. Pixels "
-      "of "
-      "equal angles are gathered, outliers among them put aside, and a curve is fitted to them for each channel: "
-      "cosine "
-      "lobes, or, where it explains the pixels better, the clamped quadratic whose travel is scanned. With --env, the "
-      "light is an environment: the lobes of any paint are found with the renderer's own equations on the "
+      "of equal angles are gathered, outliers among them put aside, and a curve is fitted to them for each channel: "
+      "cosine lobes, or, where it explains the pixels better, the clamped quadratic whose travel is scanned. With "
+      "--env, the light is an environment: the lobes of any paint are found with the renderer's own equations on the "
       "buffers, without drawing again, then face, flop, travel and gloss where they explain the picture as well, with "
-      "the effects that were drawn: Fresnel reflectance, the horizon "
-      "and the operator of colored light. Brushed paint, travel of color maps and textures it does not know; it warns "
-      "where "
-      "the buffers have them.",
+      "the effects that were drawn: Fresnel reflectance, the horizon and the operator of colored light. Brushed paint, "
+      "travel of color maps and textures it does not know; it warns where the buffers have them.",
       "The picture may be of any format. Whole numbers (PNG, JPEG, TIFF) are what a display shows: sRGB, or what an "
       "embedded profile says, after the view and the exposure of render-osmesa; floats (EXR) are light. Pixels are "
-      "left "
-      "out at edges, at grazing light, near specular, where clipped or transparent, and outside the mask. Where a part "
-      "of the picture was edited, the pixels that changed are taken; where none or more than half of them changed, "
-      "all.",
+      "left out at edges, at grazing light, near specular, where clipped or transparent, and outside the mask. Where a "
+      "part of the picture was edited, the pixels that changed are taken; where none or more than half of them "
+      "changed, all.",
       "Where the pixels show too few angles, or half of them differ by more than --max-de from the best paint, the "
       "answer is the matt color that explains them best; the report and a warning say so, and the exit status stays 0. "
       "A picture that seems to be moved against the buffers is told with the shift to give.",

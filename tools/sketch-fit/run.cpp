@@ -188,8 +188,7 @@ std::string plan_text(const Options& options) {
             "reweighted\n"
           : "light: the environment and the lamps of the buffers' header\n"
             "search: lobes of any weight and gloss; from there face, flop, travel and gloss, or else three rows, by "
-            "damped "
-            "least squares; the fewest numbers that explain the pixels as well\n";
+            "damped least squares; the fewest numbers that explain the pixels as well\n";
   text += fmt::format("left out: edges, transparent and clipped pixels{}\n",
                       options.env.empty()
                           ? fmt::format(", light below 0.05, the {} deg about specular", shortest(options.glare_deg))

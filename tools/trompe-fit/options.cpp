@@ -141,11 +141,9 @@ cli::ToolSpec tool_spec(Options& o) {
       "Viewers on both sides of the mirror direction ask for opposite changes, which no paint can make.",
       "With --mesh and --seam A,B the misalignment is that of every place along the seam of two parts, as "
       "goniogeom-index(1) finds it, and B gets the paint found. Lights and viewers stand to the first panel at every "
-      "place as they would to a flat "
-      "one, "
-      "the light from either side, which no one paint can serve; or, by --light-from and --view-from, in the world; or "
-      "the "
-      "light is that of a prefiltered environment, in which paints are fitted to the environment's own lobes.",
+      "place as they would to a flat one, the light from either side, which no one paint can serve; or, by "
+      "--light-from and --view-from, in the world; or the light is that of a prefiltered environment, in which paints "
+      "are fitted to the environment's own lobes.",
       "A solid paint (by its class, or with face and flop closer than 1) has no travel: its face and flop move "
       "together. Parameters that the views do not determine stay near those of the paint given and are named. The exit "
       "status is 1 where a paint is not improved."};
