@@ -19,8 +19,7 @@ Result<void> check_lobe(const PrefilteredEnvironment& env, double exponent, cons
   for (const Effects::LobeUse& use : effects.lobes) list += (list.empty() ? "" : ",") + shortest(use.exponent);
   return input_error(
       "the environment has no lobe of exponent {}, which a paint needs: make it with `prefilter-envmap {} --exponents "
-      "{} "
-      "-o ENV.env.exr`, or fit the paints to the basis it was made for",
+      "{} -o ENV.env.exr`, or fit the paints to the basis it was made for",
       shortest(exponent), env.source.empty() ? "SOURCE" : env.source, list);
 }
 

@@ -1,11 +1,11 @@
+// render-osmesa: a mesh in its paints under image light, on the processor.
 #include "cli/tool.h"
 #include "options.h"
 #include "run.h"
 
 int main(int argc, char** argv) {
   using namespace goniochrome;
-  RenderOptions options;
-  cli::CommonOptions common;
-  const cli::ToolSpec spec = render_spec(options, common);
-  return cli::tool_main(argc, argv, spec, common, [&](cli::Session& session) { return run(options, session); });
+  Options options;
+  const cli::ToolSpec spec = tool_spec(options);
+  return cli::tool_main(argc, argv, spec, options.common, [&](cli::Session& s) { return run(options, s); });
 }

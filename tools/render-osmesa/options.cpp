@@ -2,87 +2,67 @@
 
 namespace goniochrome {
 
-cli::ToolSpec render_spec(RenderOptions& o, cli::CommonOptions& common) {
+cli::ToolSpec tool_spec(Options& o) {
   cli::ToolSpec spec;
   spec.name = "render-osmesa";
   spec.summary = "draw painted meshes under image light and directional lights";
   spec.description = {
       "Draws a mesh whose parts wear paints fitted by fit-paint(1), lit by an environment prefiltered by "
       "prefilter-envmap(1), by directional lights, or by both, with OpenGL on the processor: no window, no graphics "
-      "card. "
-      "The result is scene-linear radiance (OpenEXR, linear Rec.2020) or a display picture (PNG).",
+      "card. The result is scene-linear radiance (OpenEXR, linear Rec.2020) or a display picture (PNG).",
       "A PAINT is FILE[#NAME], a paint of a paint XML file; NAME may be left out where the file holds only one. --part "
       "paints the part of that name, or, where no part has it, every part of that material (the material of a part's "
-      "first face); --paint paints the "
-      "others. A part without a paint is matt gray of 18 %, and the tool says so. World axes are those of the "
-      "environment: +Y is up, azimuth 0 is +Z and grows toward +X.",
+      "first face); --paint paints the others. A part without a paint is matt gray of 18 %, and the tool says so. "
+      "World axes are those of the environment: +Y is up, azimuth 0 is +Z and grows toward +X.",
       "A light is AZIMUTH,ELEVATION or a vector X,Y,Z toward it, then, if wanted, R,G,B: what a perfect white diffuser "
       "facing it shows (1,1,1). Its mirror image is a point without extent and is not drawn.",
       "--exposure auto leaves an EXR as it is, and in a PNG brings the brightest that a white diffuser can be in this "
-      "light "
-      "to 1. The view Paint keeps colors exact up to 80 % of display white and the hue of every "
-      "highlight; ACES SDR is the film-like rendering of ACES 1.0; Un-tone-mapped clips. Where $OCIO is set, the views "
-      "are those of its configuration.",
+      "light to 1. The view Paint keeps colors exact up to 80 % of display white and the hue of every highlight; ACES "
+      "SDR is the film-like rendering of ACES 1.0; Un-tone-mapped clips. Where $OCIO is set, the views are those of "
+      "its configuration.",
       "--aov adds buffers of the pixel centers to an EXR: normal (normal.X .Y .Z, turned to the viewer), aspecular "
-      "(the "
-      "angle in degrees between the view and the mirror direction of the first light), lambert (the cosine between "
-      "normal "
-      "and that light), mask (1 on the mesh) and part (numbered from 1; the attribute goniochrome:parts names them). "
-      "Without --light, the light of these two is the direction in which the environment's irradiance is largest; "
-      "goniochrome:aovLight holds it. goniochrome:rays (corner;right;down, the ray through the point x,y being their "
-      "sum "
-      "with the second times x and the third times y, in pixels from the upper left), goniochrome:lights (direction "
-      "and "
-      "white of each), goniochrome:operator (the 27 coefficients k[c][d][e] of colored light, e running fastest), "
-      "goniochrome:samples (of a pixel of the picture) and goniochrome:environment say what is needed to shade the "
-      "buffers again.",
+      "(the angle in degrees between the view and the mirror direction of the first light), lambert (the cosine "
+      "between normal and that light), mask (1 on the mesh) and part (numbered from 1; the attribute goniochrome:parts "
+      "names them). Without --light, the light of these two is the direction in which the environment's irradiance is "
+      "largest; goniochrome:aovLight holds it. goniochrome:rays (corner;right;down, the ray through the point x,y "
+      "being their sum with the second times x and the third times y, in pixels from the upper left), "
+      "goniochrome:lights (direction and white of each), goniochrome:operator (the 27 coefficients k[c][d][e] of "
+      "colored light, e running fastest), goniochrome:samples (of a pixel of the picture) and goniochrome:environment "
+      "say what is needed to shade the buffers again.",
       "--gbuffer shades such an EXR again, in other paints or light, without the mesh and without rasterizing: its "
       "buffers normal and part, and goniochrome:rays, parts and materials, hold all that the engine cpu needs. The "
       "picture is that of --samples 1, bit for bit; view and size are the file's. Textures need the mesh.",
       "Before drawing, the effects that the scene calls for are priced: what each changes in the picture (CIEDE2000, "
-      "the "
-      "95th percentile over visible pixels) and what it costs. What all together changes less than --tolerance is left "
-      "out; with --budget, what is worth least for its time as well. --effects overrides: auto, all or none, then "
-      "+NAME "
-      "and -NAME, as in auto,-fresnel. The names are diffuse, lobes, gloss, mirror, fresnel, horizon, anisotropy, "
-      "travel, "
-      "texture, texture-lobes, operator and lights; lobe-20, gloss-900 and texture-0 (lobe0 of the textures) are "
-      "single "
-      "lobes. --explain prints the table, which is in the report "
-      "and "
-      "in the header of an EXR as well.",
+      "the 95th percentile over visible pixels) and what it costs. What all together changes less than --tolerance is "
+      "left out; with --budget, what is worth least for its time as well. --effects overrides: auto, all or none, then "
+      "+NAME and -NAME, as in auto,-fresnel. The names are diffuse, lobes, gloss, mirror, fresnel, horizon, "
+      "anisotropy, travel, texture, texture-lobes, operator and lights; lobe-20, gloss-900 and texture-0 (lobe0 of the "
+      "textures) are single lobes. --explain prints the table, which is in the report and in the header of an EXR as "
+      "well.",
       "Two engines draw the same picture: gl, in OpenGL, and cpu, which reads all lobes of a texel at once; auto takes "
       "the one predicted faster. Maps that know one direction cannot tell light that changes within the part of a "
-      "broad "
-      "lobe above the horizon: some 0.5 to 1 in the mean, and more at single points. The engine integral does without "
-      "them: at every visible point it sums the image that the environment was made from (--check-source, where that "
-      "has "
-      "moved), by blocks as coarse as --tolerance lets 95 of 100 points be. It draws every effect, takes some 300 "
-      "times as "
-      "long at the default tolerance, and a brushed paint another 50 times; --explain foretells it.",
+      "broad lobe above the horizon: some 0.5 to 1 in the mean, and more at single points. The engine integral does "
+      "without them: at every visible point it sums the image that the environment was made from (--check-source, "
+      "where that has moved), by blocks as coarse as --tolerance lets 95 of 100 points be. It draws every effect, "
+      "takes some 300 times as long at the default tolerance, and a brushed paint another 50 times; --explain "
+      "foretells it.",
       "--operator says how colored light and paint multiply: iso, a bilinear product by the published table for camera "
       "sensors; rec2020, by one estimated from color-matching functions, which can make saturated colors negative; or "
-      "none, "
-      "each channel by itself. A number from 0 to 1 after a comma says how much the channels share, as in iso,0.1.",
+      "none, each channel by itself. A number from 0 to 1 after a comma says how much the channels share, as in "
+      "iso,0.1.",
       "Under lights, a paint with a color map shows the map's own colors; under an environment, its weights for "
-      "several "
-      "views. --texture gives a part a spatially varying surface of generalized cosine lobes (EXR) in the place of a "
-      "paint; "
-      "it is laid by the mesh's texture coordinates, or around the vertical axis where it has none. Without the effect "
-      "texture, a part shows the mean texel of its texture. Exponents between those of the environment are blended: "
-      "from "
-      "a cube for each (--texture-maps cubes), or from one whose coarser levels hold wider lobes (mip), which needs "
-      "the "
-      "sharpest exponent and its quarters, or the layout mip of prefilter-envmap(1).",
+      "several views. --texture gives a part a spatially varying surface of generalized cosine lobes (EXR) in the "
+      "place of a paint; it is laid by the mesh's texture coordinates, or around the vertical axis where it has none. "
+      "Without the effect texture, a part shows the mean texel of its texture. Exponents between those of the "
+      "environment are blended: from a cube for each (--texture-maps cubes), or from one whose coarser levels hold "
+      "wider lobes (mip), which needs the sharpest exponent and its quarters, or the layout mip of "
+      "prefilter-envmap(1).",
       "--split draws the picture twice, its left half in the first paint and its right half in the second, both in the "
       "place of --paint. --turntable and --light-sweep write a sequence, NAME-0001.exr and so on: the camera, or the "
-      "first "
-      "light, goes once around the vertical axis.",
+      "first light, goes once around the vertical axis.",
       "--check compares that many random pixel centers with the reference integrator: the exact lobe model against "
-      "every "
-      "texel of the environment's source, without prefiltering. The differences are CIEDE2000 relative to the "
-      "brightest "
-      "that a white diffuser can be in this light, whatever the exposure.",
+      "every texel of the environment's source, without prefiltering. The differences are CIEDE2000 relative to the "
+      "brightest that a white diffuser can be in this light, whatever the exposure.",
   };
   spec.options = {
       {.name = "mesh",
@@ -206,15 +186,14 @@ cli::ToolSpec render_spec(RenderOptions& o, cli::CommonOptions& common) {
        .target = &o.output,
        .required = true},
   };
-  common.tolerance = 0.5;
-  add_common_options(spec, common, {cli::Common::kExplain, cli::Common::kTolerance, cli::Common::kSeed});
+  o.common.tolerance = 0.5;
+  cli::add_common_options(spec, o.common, {cli::Common::kExplain, cli::Common::kTolerance, cli::Common::kSeed});
   spec.examples = {
       {"render-osmesa --mesh testdata/speed-shape.obj --light 30,50 -o shape.png",
        "draws the bare shape under one light."},
-      {"fit-paint --basis testdata/b7.basis.xml testdata/paints.paints.xml -o fitted.xml && "
-       "render-osmesa --mesh testdata/speed-shape.obj --paint fitted.xml#candy_red --part "
-       "Glass=fitted.xml#silver_black_flop "
-       "--light 30,50 --light -60,20,0.5,0.5,0.6 --samples 16 -o candy.png",
+      {"fit-paint --basis testdata/b7.basis.xml testdata/paints.paints.xml -o fitted.xml && render-osmesa --mesh "
+       "testdata/speed-shape.obj --paint fitted.xml#candy_red --part Glass=fitted.xml#silver_black_flop --light 30,50 "
+       "--light -60,20,0.5,0.5,0.6 --samples 16 -o candy.png",
        "dresses it in a fitted paint, its windows in another."},
       {"prefilter-envmap testdata/studio.exr --basis testdata/b7.basis.xml -o studio.env.exr && "
        "fit-paint --basis testdata/b7.basis.xml testdata/paints.paints.xml -o fitted.xml && "

@@ -8,7 +8,8 @@
 
 namespace goniochrome {
 
-struct RenderOptions {
+struct Options {
+  cli::CommonOptions common;
   std::string mesh, gbuffer, paint, env, output;
   std::vector<std::string> parts, lights;
   std::string size = "auto";
@@ -33,6 +34,6 @@ struct RenderOptions {
   std::string check_source;
 };
 
-cli::ToolSpec render_spec(RenderOptions& options, cli::CommonOptions& common);
+cli::ToolSpec tool_spec(Options& options);
 
 }  // namespace goniochrome

@@ -126,7 +126,7 @@ Result<std::vector<std::size_t>> parts_meant(const Mesh& mesh, const std::string
 }
 
 // --texture, part by part: FILE, or FILE*N.
-Result<void> lay_textures(const Mesh& mesh, const RenderOptions& options, DressedMesh& result) {
+Result<void> lay_textures(const Mesh& mesh, const Options& options, DressedMesh& result) {
   for (const std::string& option : options.textures) {
     const auto equals = option.find('=');
     if (equals == 0 || equals == std::string::npos || equals + 1 == option.size())
@@ -154,7 +154,7 @@ Result<void> lay_textures(const Mesh& mesh, const RenderOptions& options, Dresse
 
 }  // namespace
 
-Result<DressedMesh> dressed(const Mesh& mesh, const RenderOptions& options) {
+Result<DressedMesh> dressed(const Mesh& mesh, const Options& options) {
   PaintShelf shelf;
   LobeFit gray;
   gray.diffuse = (kUnpaintedReflectance / std::numbers::pi) * Rgb{1, 1, 1};
@@ -196,7 +196,7 @@ Result<DressedMesh> dressed(const Mesh& mesh, const RenderOptions& options) {
   return result;
 }
 
-Result<DressedMesh> dressed_in(const Mesh& mesh, RenderOptions options, const std::string& paint) {
+Result<DressedMesh> dressed_in(const Mesh& mesh, Options options, const std::string& paint) {
   options.paint = paint;
   return dressed(mesh, options);
 }

@@ -25,9 +25,9 @@ struct DressedMesh {
 };
 
 // Resolves --part and --paint. Error: an unknown part, paint or file, or a paint without lobes, with what there is.
-Result<DressedMesh> dressed(const Mesh& mesh, const RenderOptions& options);
+Result<DressedMesh> dressed(const Mesh& mesh, const Options& options);
 
 // The same with another paint in the place of --paint.
-Result<DressedMesh> dressed_in(const Mesh& mesh, RenderOptions options, const std::string& paint);
+Result<DressedMesh> dressed_in(const Mesh& mesh, Options options, const std::string& paint);
 
 }  // namespace goniochrome

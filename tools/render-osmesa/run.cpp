@@ -41,7 +41,7 @@ Engine engine_of(const std::string& name) {
   return name == "cpu" ? Engine::kCpu : name == "gl" ? Engine::kGl : Engine::kIntegral;
 }
 
-Result<Request> request_of(const RenderOptions& options) {
+Result<Request> request_of(const Options& options) {
   Request request;
   GONIO_TRY(check_surfaces(options));
   GONIO_ASSIGN(request.size, parse_size(options.size));
@@ -124,7 +124,7 @@ void tell_visibility(const Gbuffer& gbuffer, cli::Session& session) {
   }
 }
 
-std::string explanation(const RenderOptions& options, const Mesh& mesh, const DressedMesh& dress) {
+std::string explanation(const Options& options, const Mesh& mesh, const DressedMesh& dress) {
   std::string text = options.gbuffer.empty()
                          ? fmt::format("mesh: {} triangles, {} parts\n", mesh.triangles.size(), mesh.parts.size())
                          : fmt::format("buffers of {}: {} parts\n", options.gbuffer, mesh.parts.size());
@@ -140,7 +140,7 @@ struct Source {
 };
 
 // The image that the environment was made from: as named, or beside the environment; else its mirror part.
-Result<Source> source_of(const RenderOptions& options, const Scene& scene, cli::Session& session) {
+Result<Source> source_of(const Options& options, const Scene& scene, cli::Session& session) {
   if (scene.env == nullptr) return Source{};
   std::vector<std::string> candidates = {options.check_source};
   if (options.check_source.empty()) {
@@ -164,7 +164,7 @@ Result<Source> source_of(const RenderOptions& options, const Scene& scene, cli::
   return Source{Environment::from_cube(scene.env->mirror.map, options.env), options.env + " (mirror part)"};
 }
 
-void check(const RenderOptions& options, const Frame& frame, const Scene& scene, const Source& source, double white,
+void check(const Options& options, const Frame& frame, const Scene& scene, const Source& source, double white,
            cli::Session& session) {
   session.progress(fmt::format("checking {} pixels", options.check));
   const Environment* environment = source.environment ? &*source.environment : nullptr;
@@ -209,8 +209,7 @@ std::string spelled(const Vec3& v) {
 }
 
 // What one must know to shade the buffers again: the rays through the pixels, and the light.
-void describe_view(const RenderOptions& options, const Rays& rays, const std::vector<Light>& lights,
-                   Attributes& attributes) {
+void describe_view(const Options& options, const Rays& rays, const std::vector<Light>& lights, Attributes& attributes) {
   attributes["goniochrome:rays"] =
       fmt::format("{};{};{}", spelled(rays.corner), spelled(rays.right), spelled(rays.down));
   std::string all;
@@ -229,9 +228,9 @@ std::string spelled(const ReflectionOperator& reflection) {
   return all;
 }
 
-Result<void> write_exr_picture(const RenderOptions& options, const Request& request, const Shot& shot,
-                               const Frame& frame, const Scene& scene, const Plan& plan, const DiffuseWhite& white,
-                               double stops, const cli::Session& session) {
+Result<void> write_exr_picture(const Options& options, const Request& request, const Shot& shot, const Frame& frame,
+                               const Scene& scene, const Plan& plan, const DiffuseWhite& white, double stops,
+                               const cli::Session& session) {
   ImagePart part{"picture", frame.picture, provenance(session), PixelType::kHalf};
   part.attributes["goniochrome:plan"] = plan_rows(plan, false).dump(-1, ' ', false, Json::error_handler_t::replace);
   part.attributes["goniochrome:engine"] = std::string(engine_name(plan.engine));
@@ -274,7 +273,7 @@ struct Stage {
   std::optional<BlockTree> texels;  // of the source
 };
 
-void wear(const DressedMesh& dress, const RenderOptions& options, Stage& stage) {
+void wear(const DressedMesh& dress, const Options& options, Stage& stage) {
   Scene& scene = stage.scene;
   scene.paints = dress.paints;
   scene.gloss_deg = dress.gloss_deg;
@@ -285,7 +284,7 @@ void wear(const DressedMesh& dress, const RenderOptions& options, Stage& stage) 
   scene.layer = stage.layer->empty() ? nullptr : stage.layer.get();
 }
 
-Result<void> dress_stage(const RenderOptions& options, Stage& stage) {
+Result<void> dress_stage(const Options& options, Stage& stage) {
   if (options.split.empty()) {
     GONIO_ASSIGN(DressedMesh dress, dressed(stage.mesh, options));
     stage.dresses.push_back(std::move(dress));
@@ -305,7 +304,7 @@ Result<void> dress_stage(const RenderOptions& options, Stage& stage) {
 }
 
 // The buffers of --gbuffer, and a mesh that has their parts.
-Result<void> set_gbuffer(const RenderOptions& options, Stage& stage) {
+Result<void> set_gbuffer(const Options& options, Stage& stage) {
   GONIO_ASSIGN(const AovFile buffers, read_aov_file(options.gbuffer));
   GONIO_ASSIGN(Gbuffer gbuffer, gbuffer_of(buffers));
   stage.gbuffer = std::make_shared<const Gbuffer>(std::move(gbuffer));
@@ -314,7 +313,7 @@ Result<void> set_gbuffer(const RenderOptions& options, Stage& stage) {
   return {};
 }
 
-Result<void> set_stage(const RenderOptions& options, const Request& request, Stage& stage, cli::Session& session) {
+Result<void> set_stage(const Options& options, const Request& request, Stage& stage, cli::Session& session) {
   if (options.gbuffer.empty()) {
     GONIO_ASSIGN(stage.mesh, read_mesh(options.mesh));
     tell_repairs(stage.mesh, session);
@@ -355,7 +354,7 @@ void put_right_half(const Frame& other, Frame& frame) {
 // A run that draws: its shots share one context and one upload.
 class Shooting {
  public:
-  Shooting(const RenderOptions& options, Request request, Stage& stage, cli::Session& session)
+  Shooting(const Options& options, Request request, Stage& stage, cli::Session& session)
       : options_(options), request_(std::move(request)), stage_(stage), session_(session) {}
 
   Result<void> shoot(const std::optional<Display>& display);
@@ -371,7 +370,7 @@ class Shooting {
   Result<void> write(const Shot& shot, const std::optional<Display>& display, double stops);
   void tell_plan(Plan plan, const std::string& shader);
 
-  const RenderOptions& options_;
+  const Options& options_;
   Request request_;
   Stage& stage_;
   cli::Session& session_;
@@ -488,7 +487,7 @@ Result<void> Shooting::shoot(const std::optional<Display>& display) {
 
 }  // namespace
 
-Result<cli::Verdict> run(const RenderOptions& options, cli::Session& session) {
+Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   GONIO_ASSIGN(Request request, request_of(options));
   std::optional<Display> display;
   if (request.png) {

@@ -1,3 +1,4 @@
+// The work of render-osmesa.
 #pragma once
 
 #include "cli/tool.h"
@@ -6,6 +7,6 @@
 namespace goniochrome {
 
 // Reads, draws, checks and writes one picture.
-Result<cli::Verdict> run(const RenderOptions& options, cli::Session& session);
+Result<cli::Verdict> run(const Options& options, cli::Session& session);
 
 }  // namespace goniochrome

@@ -25,11 +25,11 @@ std::optional<std::vector<double>> numbers(const std::string& text) {
 }  // namespace
 
 // Where the surfaces come from: a mesh, or buffers that hold one view of it.
-Result<void> check_surfaces(const RenderOptions& options) {
+Result<void> check_surfaces(const Options& options) {
   if (options.mesh.empty() && options.gbuffer.empty())
     return usage_error("there is nothing to draw: give --mesh, or --gbuffer with the buffers of an earlier picture");
   if (options.gbuffer.empty()) return {};
-  const RenderOptions usual;
+  const Options usual;
   const std::pair<const char*, bool> given[] = {
       {"mesh", !options.mesh.empty()},           {"size", options.size != usual.size},
       {"orbit", options.orbit != usual.orbit},   {"camera", !options.camera.empty()},
@@ -76,7 +76,7 @@ Result<Light> parse_light(const std::string& text) {
   return light;
 }
 
-Result<Camera> camera_of(const RenderOptions& options, const Mesh& mesh, const PictureSize& size) {
+Result<Camera> camera_of(const Options& options, const Mesh& mesh, const PictureSize& size) {
   const std::vector<double>& c = options.camera;
   if (!c.empty()) {
     if (c.size() != 6 && c.size() != 7) {
@@ -116,7 +116,7 @@ Result<ReflectionOperator> parse_operator(const std::string& text) {
   return with_transfer(full, {*share, *share, *share});
 }
 
-Result<std::vector<Shot>> shots_of(const RenderOptions& options, const Mesh& mesh, const PictureSize& size,
+Result<std::vector<Shot>> shots_of(const Options& options, const Mesh& mesh, const PictureSize& size,
                                    const std::vector<Light>& lights) {
   Camera camera;  // of --gbuffer it is not meant
   if (options.gbuffer.empty()) {

@@ -15,7 +15,7 @@ namespace goniochrome {
 
 // Whether there are surfaces to draw: --mesh, or --gbuffer with nothing that would need the mesh. Error (usage): what
 // is missing, or what excludes each other.
-Result<void> check_surfaces(const RenderOptions& options);
+Result<void> check_surfaces(const Options& options);
 
 struct PictureSize {
   int width = 0, height = 0;
@@ -28,7 +28,7 @@ Result<PictureSize> parse_size(const std::string& text);
 Result<Light> parse_light(const std::string& text);
 
 // --camera or --orbit.
-Result<Camera> camera_of(const RenderOptions& options, const Mesh& mesh, const PictureSize& size);
+Result<Camera> camera_of(const Options& options, const Mesh& mesh, const PictureSize& size);
 
 // The operator of --operator. Error (usage): the names there are.
 Result<ReflectionOperator> parse_operator(const std::string& text);
@@ -41,7 +41,7 @@ struct Shot {
 };
 // The pictures that --turntable or --light-sweep ask for, else the one. Error: a sequence on standard output, both at
 // once, or a sweep without a light.
-Result<std::vector<Shot>> shots_of(const RenderOptions& options, const Mesh& mesh, const PictureSize& size,
+Result<std::vector<Shot>> shots_of(const Options& options, const Mesh& mesh, const PictureSize& size,
                                    const std::vector<Light>& lights);
 
 // The background of `scene` as --background has it.
