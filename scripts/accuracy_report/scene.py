@@ -8,7 +8,7 @@ from .study import Failed
 # changes across a lobe is what a picture misses most; views take up what the fit then lacks.
 STEEP = {"steep": (4, 15, 60, 300, 1500)}
 
-CAMERA = ("--size", "320x180", "--camera", "3.6,1.75,4.6,0,0.5,0.1", "--fov", "25")
+CAMERA = ("--size", "320x180", "--samples", "1", "--camera", "3.6,1.75,4.6,0,0.5,0.1", "--fov", "25")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -19,16 +19,24 @@ class Settings:
     method: str  # of fit-paint
     views: bool  # fitted for several angles of the viewer, where the readings call for it
     prefilter: float  # tolerance of prefilter-envmap
-    effects: str  # tolerance of render-osmesa in dE00, or all, or none
+    effects: str  # tolerance of render-osmesa in dE00, or all, or none; "integral X" sums the probe itself, to X
 
     def fit_words(self):
         return ("--method", self.method, *(("--views", "auto") if self.views else ()))
 
+    def integral(self):
+        """The tolerance of the integral, or nothing where maps are looked up."""
+        engine, _, tolerance = self.effects.partition(" ")
+        return tolerance if engine == "integral" else ""
+
     def render_words(self):
+        if self.integral():
+            return ("--engine", "integral", "--tolerance", self.integral())
         return ("--effects", self.effects) if self.effects in ("all", "none") else ("--tolerance", self.effects)
 
     def __str__(self):
-        effects = self.effects if self.effects in ("all", "none") else f"effects to {self.effects} dE00"
+        plain = self.effects in ("all", "none")
+        effects = self.effects if plain else f"integral to {self.integral()} dE00" if self.integral() else f"effects to {self.effects} dE00"
         return f"{self.basis}, {self.method}{', views' if self.views else ''}, prefilter {self.prefilter:g}, {effects}"
 
     def commands(self):

@@ -9,6 +9,7 @@ from .scene import STEEP, Scene, Settings, total_de00, total_s
 SCENES = ("signal_red,studio", "candy_red,outdoor", "silver_fine,studio")
 BASES, METHODS = ("b5", "b7", "steep"), ("l1", "l2", "deltae")
 TOLERANCES, EFFECTS = (1e-1, 3e-2, 1e-2, 1e-3), ("2", "0.5")  # and all effects
+INTEGRALS = ("integral 2", "integral 0.5", "integral 0.1")  # for what no map reaches
 MAXIMAL = Settings("b7", "deltae", True, 1e-4, "all")
 WORTH_IT = 0.99  # fewer effects are looked at where they bring the time of all stages below this part
 CHOOSING, PROVING = 100, 500  # random pixels, of two seeds
@@ -70,8 +71,17 @@ def with_all_effects(job, basis):
     return sorted(((job.seconds(settings), settings) for settings in every), key=lambda row: row[0])
 
 
+def with_integral(job, basis):
+    """(time, settings) of the sums over the probe itself: maps are for the plan alone, and the coarsest will do."""
+    fit = min(fits(job, basis), key=lambda f: max(f[1]))[0]
+    every = [dataclasses.replace(fit, prefilter=TOLERANCES[0], effects=effects) for effects in INTEGRALS]
+    return [(job.seconds(settings), settings) for settings in every]
+
+
 def with_fewer_effects(job, settings):
     """Settings with the tolerances of render-osmesa that are worth their error, cheapest first."""
+    if settings.integral():
+        return []
     whole = job.seconds(settings)
     every = [dataclasses.replace(settings, effects=effects) for effects in EFFECTS]
     timed = sorted(((job.seconds(fewer), fewer) for fewer in every), key=lambda row: row[0])
@@ -91,8 +101,8 @@ def proven(job, settings, target):
 
 def found(job, target):
     """The Answer of the cheapest settings within the target; where none are, of those that came nearest. From the
-    cheapest upward; first, though, whether the most exact of a basis are within the target at all. Fewer effects are
-    looked at where all were enough."""
+    cheapest upward; first, though, whether the most exact maps of a basis are within the target at all, and whether its
+    fit leaves room for the integral. Fewer effects are looked at where all were enough."""
     table, firsts, proofs = [], [], []
     for basis in job.bases:
         rows = with_all_effects(job, basis)
@@ -100,6 +110,8 @@ def found(job, target):
         firsts.append(Answer(finest, job.errors(finest)))
         if firsts[-1].de00() <= target:
             table += rows
+        if max(error["fit_de00"] for error in firsts[-1].errors) < target:
+            table += with_integral(job, basis)
     for _, settings in sorted(table, key=lambda row: row[0]):
         answer = proven(job, settings, target)
         if answer and answer.de00() <= target:
