@@ -87,12 +87,13 @@ def work(folder, options):
     options.output.mkdir(parents=True, exist_ok=True)
     start = time.monotonic()
     studies = []
+    modules = {name: importlib.import_module(f".{name}", __package__) for name in options.studies or STUDIES}
     with Run(folder.resolve(), options) as run:
-        for name in options.studies or STUDIES:
+        for name, module in modules.items():
             run.say(f"{name}: {STUDIES[name]}")
-            studies.append(importlib.import_module(f".{name}", __package__).study(run))
+            studies.append(module.study(run))
             studies[-1].settle()
-        page.write(run, studies, time.monotonic() - start)
+            page.write(run, studies, time.monotonic() - start)  # a run that is ended early leaves what it has
     dominated = [text for study in studies for text in study.dominated_defaults()]
     for text in dominated:
         print(f"accuracy-report: dominated default: {text}", file=sys.stderr)

@@ -55,7 +55,8 @@ def hidden(run, vary, objective, *mode):
     fits = [fit for fit in results.get("fits", [results]) if fit["status"] != "failed"]
     paints = len({fit.get("name", "").partition(".light")[0] for fit in fits})  # --mode rows has a fit for each light
     left, largest, before = (statistics.mean(fit[when][what] for fit in fits) for when, what in (("after", "rms"), ("after", "max"), ("before", "rms")))
-    return Reading(f"{vary}; {objective}; {' '.join(mode)}", best / paints, left, objective, raw_s=tuple(s / paints for s in raw), again=lambda: run.tool(*words)[1] / paints, numbers={"before": before, "largest": largest})
+    return Reading(f"{vary}; {objective}; {' '.join(mode)}", best / paints, left, objective, raw_s=tuple(s / paints for s in raw), numbers={"before": before, "largest": largest},
+                   again=lambda: run.tool(*words)[1] / paints)
 
 
 def study(run):
