@@ -15,13 +15,6 @@ namespace {
 
 constexpr std::size_t kWarningsShown = 10;
 
-Format format_of(const Options& options) {
-  const auto ends = [&](const char* ending) { return options.output.ends_with(ending); };
-  if (options.format == "paints" || (options.format == "auto" && ends(".xml"))) return Format::kPaints;
-  if (options.format == "json" || (options.format == "auto" && (ends(".json") || ends(".jsonl")))) return Format::kJson;
-  return Format::kTable;
-}
-
 std::string names_of(const std::vector<Geometry>& geometries) {
   std::string names;
   for (const Geometry& geometry : geometries) names += (names.empty() ? "" : ",") + geometry_name(geometry);
@@ -55,7 +48,7 @@ class Run {
     session_.explain(plan_text());
     GONIO_ASSIGN(PaintBatches batches, PaintBatches::open(options_.inputs));
     GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
-    GONIO_ASSIGN(Sink sink, Sink::begin(format_of(options_), std::move(file)));
+    GONIO_ASSIGN(Sink sink, Sink::begin(format_of(options_.format, options_.output), std::move(file)));
     session_.begin_list("queries");
     for (;;) {
       GONIO_ASSIGN(const std::vector<Paint> batch, batches.next(left_out()));

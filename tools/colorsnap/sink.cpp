@@ -1,6 +1,5 @@
 #include "sink.h"
 
-#include <algorithm>
 #include <unordered_map>
 
 #include "base/text.h"
@@ -12,23 +11,15 @@ namespace {
 constexpr const char* kTableHead =
     "query\trank\tname\tcode\tclass\tdistance\tmean_de\tdL\tdC\tdH\tstatus\tde_by_geometry\n";
 
-// A text that stays in its field of a table.
-std::string field(std::string_view given) {
-  std::string text(given);
-  std::ranges::replace_if(
-      text, [](char c) { return c == '\t' || c == '\n' || c == '\r'; }, ' ');
-  return text;
-}
-
 std::string table_lines(const Finding& finding, const LibraryIndex& index) {
-  const std::string query = field(finding.query), status = finding.status();
+  const std::string query = table_field(finding.query), status = finding.status();
   if (finding.no_match()) return query + "\t0\t\t\t\tn/a\tn/a\tn/a\tn/a\tn/a\t" + status + "\t-\n";
   std::string text;
   int rank = 0;
   for (const Neighbor& neighbor : finding.neighbors) {
     const std::size_t paint = neighbor.match.paint;
-    text += fmt::format("{}\t{}\t{}\t{}\t{}", query, ++rank, field(index.name(paint)), field(index.code(paint)),
-                        paint_class_name(index.paint_class(paint)));
+    text += fmt::format("{}\t{}\t{}\t{}\t{}", query, ++rank, table_field(std::string(index.name(paint))),
+                        table_field(std::string(index.code(paint))), paint_class_name(index.paint_class(paint)));
     for (const double value : {neighbor.match.distance, neighbor.mean_de, neighbor.dL, neighbor.dC, neighbor.dH})
       text += "\t" + shortest(value);
     text += "\t" + status + "\t";

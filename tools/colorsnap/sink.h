@@ -6,14 +6,13 @@
 #include <unordered_set>
 #include <vector>
 
+#include "../table_output.h"
 #include "base/file.h"
 #include "base/json.h"
 #include "finding.h"
 #include "paint/xml.h"
 
 namespace goniochrome {
-
-enum class Format { kTable, kJson, kPaints };
 
 Json finding_json(const Finding& finding, const LibraryIndex& index);
 

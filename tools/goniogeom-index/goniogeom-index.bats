@@ -27,6 +27,14 @@ column() { sed -n 2p | cut -f "$1"; }
   awk -v a="$at0" -v b="$at45" 'BEGIN { exit !(a > 3 * b) }'
 }
 
+@test "a tab or a line end in a name stays in its field" {
+  echo "$head<paint name=\"a&#9;b&#10;c\" class=\"solid\">$gray</paint></paints>" >odd.xml
+  goniogeom-index -q odd.xml --views 0 >odd.tsv
+  [ "$(wc -l <odd.tsv)" -eq 2 ]
+  [ "$(cut -f 1 odd.tsv | tail -n 1)" = "a b c" ]
+  [ "$(awk -F'\t' '{ print NF }' odd.tsv | uniq | wc -l)" -eq 1 ]
+}
+
 @test "every paint and pair has its row" {
   run --separate-stderr goniogeom-index "$paints" --lights 30,45 --views as15,as45,as110 --report r.json -o i.tsv
   [ "$status" -eq 0 ]

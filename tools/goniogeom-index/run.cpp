@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../table_output.h"
 #include "base/file.h"
 #include "base/parallel.h"
 #include "base/text.h"
@@ -63,8 +64,8 @@ std::string table_rows(const Paint& paint, const PaintIndex& index, const IndexR
   for (std::size_t i = first; i < last; ++i) {
     const LightView& g = request.geometries[i];
     const GeometryRow& row = index.rows[i];
-    fmt::format_to(std::back_inserter(text), "{}\t{}\t{}\t{}\t{:.9g}\t{}\t{}", paint.name, g.light_deg, g.view_deg,
-                   g.azimuth_deg, request.pairs[i].at(0).aspecular_deg, angle_text(row.index.plus_deg),
+    fmt::format_to(std::back_inserter(text), "{}\t{}\t{}\t{}\t{:.9g}\t{}\t{}", table_field(paint.name), g.light_deg,
+                   g.view_deg, g.azimuth_deg, request.pairs[i].at(0).aspecular_deg, angle_text(row.index.plus_deg),
                    angle_text(row.index.minus_deg));
     for (const double de : row.de) text += std::isnan(de) ? "\t-" : fmt::format("\t{:.6g}", de);
     if (request.tolerance_deg) text += "\t" + verdict_of(index, *request.tolerance_deg);

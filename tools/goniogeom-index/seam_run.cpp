@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../table_output.h"
 #include "advice.h"
 #include "base/file.h"
 #include "base/parallel.h"
@@ -151,8 +152,9 @@ class SeamRun {
     for (std::size_t i = first; i < last; ++i) {
       const SeamPoint& p = stage_.seam.points[i];
       fmt::format_to(std::back_inserter(text),
-                     "{}\t{}\t{:.6g}\t{:.6g}\t{:.6g}\t{:.6g}\t{:.4f}\t{:.4f}\t{:.4f}\t{:.4f}\t", paint.name, p.run,
-                     p.distance_m, p.a.x, p.a.y, p.a.z, p.gap_mm, p.flush_mm, p.angle_deg, p.fold_deg);
+                     "{}\t{}\t{:.6g}\t{:.6g}\t{:.6g}\t{:.6g}\t{:.4f}\t{:.4f}\t{:.4f}\t{:.4f}\t",
+                     table_field(paint.name), p.run, p.distance_m, p.a.x, p.a.y, p.a.z, p.gap_mm, p.flush_mm,
+                     p.angle_deg, p.fold_deg);
       text += places[i].views > 0 ? fmt::format("{:.6g}\t{:.6g}\t{}\n", places[i].max, places[i].rms, places[i].views)
                                   : "-\t-\t0\n";
     }

@@ -1,10 +1,10 @@
 #include "run.h"
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <optional>
 
+#include "../table_output.h"
 #include "base/clock.h"
 #include "base/file.h"
 #include "base/parallel.h"
@@ -15,13 +15,6 @@
 namespace goniochrome {
 
 namespace {
-
-// A text that stays in its field of a table.
-std::string field(std::string text) {
-  std::ranges::replace_if(
-      text, [](char c) { return c == '\t' || c == '\n' || c == '\r'; }, ' ');
-  return text;
-}
 
 std::string number_field(double value) {
   if (std::isnan(value)) return "n/a";
@@ -43,20 +36,12 @@ std::string table_head() {
 }
 
 std::string table_line(const Paint& paint, const PaintMetrics& numbers) {
-  std::string text = field(paint.name) + "\t" + field(paint.code) + "\t" + paint_class_name(paint.paint_class);
+  std::string text =
+      table_field(paint.name) + "\t" + table_field(paint.code) + "\t" + paint_class_name(paint.paint_class);
   for (const MetricColumn& column : metric_columns()) text += "\t" + number_field(numbers.*column.value);
   std::string flags;
   for (const char* flag : numbers.flags) flags += (flags.empty() ? "" : ",") + std::string(flag);
   return text + "\t" + source_name(numbers.source) + "\t" + (flags.empty() ? "-" : flags) + "\n";
-}
-
-enum class Format { kTable, kJson, kPaints };
-
-Format format_of(const Options& options) {
-  const auto ends = [&](const char* ending) { return options.output.ends_with(ending); };
-  if (options.format == "paints" || (options.format == "auto" && ends(".xml"))) return Format::kPaints;
-  if (options.format == "json" || (options.format == "auto" && (ends(".json") || ends(".jsonl")))) return Format::kJson;
-  return Format::kTable;
 }
 
 // Where matching paints go, in one of the three formats.
@@ -123,7 +108,8 @@ class Run {
   Result<void> open_output(std::vector<Processing> history, const std::vector<std::string>& foreign) {
     history.push_back({session_.tool(), cli::Session::version(), session_.command_line()});
     GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
-    GONIO_ASSIGN(Sink sink, Sink::begin(format_of(options_), std::move(file), history, foreign));
+    GONIO_ASSIGN(Sink sink,
+                 Sink::begin(format_of(options_.format, options_.output), std::move(file), history, foreign));
     sink_.emplace(std::move(sink));
     return {};
   }
@@ -181,7 +167,7 @@ class Run {
 };
 
 std::string plan(const Options& options) {
-  const Format format = format_of(options);
+  const Format format = format_of(options.format, options.output);
   return fmt::format(
       "colors: measured rows at 15, 45 and 110 deg, else the stated curve, else a fitted one; about 1 us a paint, 10 "
       "us where a curve is fitted for travel and residual\n"
