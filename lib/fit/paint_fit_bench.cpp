@@ -1,5 +1,5 @@
-// Fitting one paint: microseconds (median, 99.9 % and their ratio) and color error side by side. Time is the thread's own,
-// so that other work on the machine does not count.
+// Fitting one paint: microseconds (median, 99.9 % and their ratio) and color error side by side. Time is the thread's
+// own, so that other work on the machine does not count.
 #include "fit/paint_fit.h"
 
 #include <benchmark/benchmark.h>

@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
   paint.appearance = appearance;
   const auto fit = goniochrome::PaintFitter(*basis, {}).fit(paint);
   if (!fit) return 3;
-  std::printf("dE00 mean %.3f, renderer %s\n", fit->report.de00_mean, goniochrome::Renderer::create() ? "works" : "is missing");
+  std::printf("dE00 mean %.3f, renderer %s\n", fit->report.de00_mean,
+              goniochrome::Renderer::create() ? "works" : "is missing");
   return fit->report.de00_mean < 5 ? 0 : 1;
 }
