@@ -8,7 +8,7 @@ import tempfile
 
 from accuracy_report.scene import Scene
 from accuracy_report.study import Failed, Run
-from accuracy_report.target import BASES, CHOOSING, EFFECTS, METHODS, TOLERANCES, Job, found
+from accuracy_report.target import BASES, CHOOSING, EFFECTS, INTEGRALS, METHODS, TOLERANCES, Job, found
 
 from . import library
 from .steps import Shard, frame_words, scene_name
@@ -106,11 +106,12 @@ def announced(options, paints, scenes, typical):
     samples, bases = min(SAMPLES, paints), 1 if options.basis else len(BASES)
     pictures = samples * scenes
     timed_s = bases * len(TOLERANCES) * (len(options.env) * typical["environment_s"] + pictures * typical["picture_s"])
+    timed_s += bases * len(INTEGRALS) * pictures * typical["integral_s"]
     pixels = (bases + 3) * CHOOSING + 2 * PROVING  # of the bases, of the cheapest, and of what it is proven by
     checks_s = pictures * (pixels * typical["check_pixel_s"] + (bases + 5) * typical["picture_s"])
     return (f"  choose, once, for a mean dE00 of {options.target_de00:g}: "
             f"the cheapest of {bases} bas{'es' if bases > 1 else 'is'}, {len(METHODS)} methods with and without views, "
-            f"{len(TOLERANCES)} tolerances of environments and {len(EFFECTS) + 1} of effects, "
+            f"{len(TOLERANCES)} tolerances of environments, {len(EFFECTS) + 1} of effects and {len(INTEGRALS)} of the integral, "
             f"for {samples} paint{'s' * (samples > 1)} spread over the library: about {timed_s + checks_s:.0f} s\n")
 
 

@@ -16,7 +16,7 @@ JOB_S = 0.5  # what an engine and Python add to a shard
 
 
 # Seconds on one core of a server of 2020, for the plan that is printed before anything is measured.
-TYPICAL = {"clean_s": 0.0001, "environment_s": 1.0, "stream_s": 0.0005, "picture_s": 0.25, "check_pixel_s": 0.01, "start_s": 0.1}
+TYPICAL = {"clean_s": 0.0001, "environment_s": 1.0, "stream_s": 0.0005, "picture_s": 0.25, "integral_s": 2.0, "check_pixel_s": 0.01, "start_s": 0.1}
 
 
 def roughly_counted(path):
