@@ -6,7 +6,6 @@
 #include "base/hard_case_for_test.h"
 #include "base/parallel.h"
 #include "brdf/lobe_model.h"
-#include "paint/geometry.h"
 #include "render/scenes_for_test.h"
 
 namespace goniochrome {

@@ -151,8 +151,8 @@ BENCHMARK(BM_Tilts)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
 
-// Colored light through the operator in its forms beside the component-wise product, frame by frame in turns; the least of
-// each. Argument: engine.
+// Colored light through the operator in its forms beside the component-wise product, frame by frame in turns; the least
+// of each. Argument: engine.
 void BM_Operator(benchmark::State& state) {
   const auto engine = static_cast<Engine>(state.range(0));
   const auto bench = bench_scene(5);
