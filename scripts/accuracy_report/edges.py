@@ -12,6 +12,7 @@ from .scene import CAMERA
 from .study import Failed, Figure, Reading, Study
 
 PAINTS = ("signal_red", "silver_black_flop")
+VIEW = CAMERA[CAMERA.index("--camera"):]  # without size and samples, which are the knobs here
 SIZE, FINER = (240, 135), 4  # the reference is so many times as wide, with 16 samples of each of its pixels
 DEFAULT = ("cpu", 4)
 GRAY = 0.18  # behind the mesh, of white
@@ -41,7 +42,7 @@ def labs(recipe, channels, white):
         yield 116 * fy - 16, 500 * (fx - fy), 200 * (fy - fz)
 
 
-class View:
+class Picture:
     """A paint on the mesh under the probe, at any size."""
 
     def __init__(self, run, paint):
@@ -49,7 +50,7 @@ class View:
         fitted, env = run.work / "edges.xml", run.work / "edges.env.exr"
         run.tool("fit-paint", "--basis", run.data / "b7.basis.xml", run.paints, "-o", fitted)
         run.tool("prefilter-envmap", run.probe, "--basis", run.data / "b7.basis.xml", "-o", env)
-        self.words = ("--mesh", run.mesh, "--paint", f"{fitted}#{paint}", "--env", env, *CAMERA[2:], "--effects", "all", "-o", self.out)
+        self.words = ("--mesh", run.mesh, "--paint", f"{fitted}#{paint}", "--env", env, *VIEW, "--effects", "all", "-o", self.out)
 
     def drawn(self, scale, samples, engine):
         size = "x".join(str(scale * side) for side in SIZE)
@@ -61,13 +62,13 @@ class View:
 
 
 def readings_of(run, recipe, paint):
-    view = View(run, paint)
+    view = Picture(run, paint)
     results, fine = view.read(FINER, 16, "cpu")
     white = results["white_luminance"]
     exact = {name: list(averaged(rows, FINER)) for name, rows in fine.items()}
     alpha = [a for row in exact["A"] for a in row]
     if 1 not in alpha or all(a in (0, 1) for a in alpha):
-        raise Failed(f"{run.mesh}: its outline is not in the picture, seen by {' '.join(CAMERA[2:])}")
+        raise Failed(f"{run.mesh}: its outline is not in the picture, seen by {' '.join(VIEW)}")
     reference = list(labs(recipe, exact, white))
     for engine in ("gl", "cpu"):
         for samples in (1, 4, 16):

@@ -87,7 +87,7 @@ class Study:
     # A default is dominated where another reading is better by more than this factor in one and no worse in the other:
     # times of one machine scatter by so much.
     SCATTER = 1.25
-    ROUNDS = 6
+    ROUNDS = 12
 
     def settle(self):
         """Takes the times of defaults that seem dominated, and of what dominates them, again in turn: no verdict on one busy moment."""
