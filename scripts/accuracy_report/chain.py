@@ -25,8 +25,9 @@ def study(run):
     readings = []
     for settings in ladder(run.quick):
         numbers = scene.picture(settings)
-        readings.append(Reading(setting=str(settings), time_s=total_s(numbers), error=total_de00(numbers), method="integral" if settings.integral() else f"effects: {settings.effects}",
-                                numbers={k: v for k, v in numbers.items() if k not in ("plan", "all_frame_ms")}))
+        before_s = numbers["fit_s"] + numbers["prefilter_s"]
+        readings.append(Reading(setting=str(settings), raw_s=tuple(before_s + s for s in numbers["all_render_s"]), time_s=total_s(numbers), error=total_de00(numbers), method="integral" if settings.integral() else f"effects: {settings.effects}",
+                                numbers={k: v for k, v in numbers.items() if k not in ("plan", "all_render_s")}))
     figure = Figure("chain", f"{paint}: dE00 of the picture against the time of all stages", readings, "time of all stages (s)", "dE00, mean", joined=False)
     best = min(readings, key=lambda r: r.error)
     rows = []

@@ -99,13 +99,14 @@ class Scene:
                 "-o", self.run.work / "picture.exr")
 
     def cost(self, settings, *more):
-        """Seconds by stage, and the least milliseconds of a frame."""
+        """Seconds by stage, all those of the last, and the least milliseconds of a frame."""
         frames, seconds = [], []
         for _ in range(self.run.repeats):
             results, taken = self.run.tool("render-osmesa", *self.words(settings), *more)
             frames.append(results["frame_ms"])
             seconds.append(taken)
-        return {"fit_s": self.fit(settings)[2], "prefilter_s": self.environment(settings)[1], "render_s": min(seconds), "frame_ms": min(frames), "all_frame_ms": tuple(frames)}
+        return {"fit_s": self.fit(settings)[2], "prefilter_s": self.environment(settings)[1], "render_s": min(seconds), "frame_ms": min(frames),
+                "all_render_s": tuple(seconds)}
 
     def error(self, settings, *more, checks=None):
         """dE00 of the fit to the readings and of the picture to the reference integrator, the time of shading, and the plan."""
