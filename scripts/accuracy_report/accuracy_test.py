@@ -19,12 +19,15 @@ from make_testdata import exr  # noqa: E402
 
 def figure(*rows, **more):
     """Of (name, time, error) and, if wanted, True for a default and a method."""
-    return Figure("f", "A figure", [Reading(name, time_s, error, raw_s=(time_s,), default=bool(rest[:1] and rest[0]), method="".join(rest[1:])) for name, time_s, error, *rest in rows], **more)
+    def reading(name, time_s, error, default=False, *method):
+        return Reading(name, time_s, error, raw_s=(time_s,), default=bool(default), method="".join(method))
+    return Figure("f", "A figure", [reading(*row) for row in rows], **more)
 
 
 class Front(unittest.TestCase):
     def test_pareto_is_what_no_other_beats_in_both(self):
-        f = figure(("slow", 9, 1), ("good", 3, 2), ("worse", 4, 3), ("fast", 1, 8), ("equal error, slower", 5, 2), ("equal time, worse", 3, 4))
+        f = figure(("slow", 9, 1), ("good", 3, 2), ("worse", 4, 3), ("fast", 1, 8),
+                   ("equal error, slower", 5, 2), ("equal time, worse", 3, 4))
         self.assertEqual([r.setting for r in f.pareto()], ["fast", "good", "slow"])
         self.assertEqual(figure().pareto(), [])
 
@@ -68,7 +71,8 @@ class Front(unittest.TestCase):
             with contextlib.redirect_stderr(io.StringIO()) as told:
                 self.assertEqual(command.main(["fake", "--bin", folder, "-o", folder]), 1)
             self.assertIn("dominated default: figure: default by other", told.getvalue())
-            self.assertIn("Dominated default:</strong> figure: default by other", (pathlib.Path(folder) / "index.html").read_text())
+            written = (pathlib.Path(folder) / "index.html").read_text()
+            self.assertIn("Dominated default:</strong> figure: default by other", written)
             study.dominated_defaults = lambda: []
             with contextlib.redirect_stderr(io.StringIO()):
                 self.assertEqual(command.main(["fake", "--bin", folder, "-o", folder]), 0)
@@ -76,7 +80,8 @@ class Front(unittest.TestCase):
 
 class Words(unittest.TestCase):
     def test_numbers_are_written_as_people_do(self):
-        for value, text in ((1098.4, "1100"), (0.000454321, "0.000454"), (1.88e-5, "1.88e-5"), (9.3e-14, "0"), (0.0, "0"), (123456.0, "123000"), (7, "7"), (float("nan"), "-"), ("b7", "b7")):
+        for value, text in ((1098.4, "1100"), (0.000454321, "0.000454"), (1.88e-5, "1.88e-5"), (9.3e-14, "0"), (0.0, "0"),
+                            (123456.0, "123000"), (7, "7"), (float("nan"), "-"), ("b7", "b7")):
             self.assertEqual(page.number(value), text)
 
     def test_texts_are_escaped(self):
@@ -92,7 +97,8 @@ class Pictures(unittest.TestCase):
                 path.write_bytes(exr.exr_file(rows, kind, "", ("R", "G", "B", "A")))
                 read = exr.channels_of(path)
                 for i, name in enumerate("RGBA"):
-                    rounded = [struct.unpack(f"<37{code}", struct.pack(f"<37{code}", *(texel[i] for texel in row))) for row in rows]
+                    rounded = [struct.unpack(f"<37{code}", struct.pack(f"<37{code}", *(texel[i] for texel in row)))
+                               for row in rows]
                     self.assertEqual(read[name], rounded)
             deep = bytearray(path.read_bytes())
             deep[5] |= 0x08  # says that its pixels are deep

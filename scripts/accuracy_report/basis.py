@@ -9,7 +9,10 @@ METHOD, STARTS, ANGLES = "power-mean", 6, 40  # the defaults
 
 
 def error(run, basis):
-    """(the largest plus the mean RMS error of a paint in L*, which fit-basis makes least, by fit-paint's own rows; mean dE00 of the library)"""
+    """(the largest plus the mean RMS error of a paint in L*, mean dE00 of the library)
+
+    The first is what fit-basis makes least, here by fit-paint's own rows.
+    """
     squares, _ = run.tool("fit-paint", run.paints, "--basis", basis, "--method", "l2", "-o", run.work / "fitted.xml")
     errors = [paint["objective"] for paint in squares["paints"] if paint["status"] != "failed"]
     colors, _ = run.tool("fit-paint", run.paints, "--basis", basis, "--method", "deltae", "-o", run.work / "fitted.xml")
@@ -18,22 +21,28 @@ def error(run, basis):
 
 def reading(run, series, method, starts, angles):
     basis = run.work / "chosen.basis.xml"
-    words = ("fit-basis", run.paints, "--lobes", LOBES, "--mirror", "--method", method, "--starts", starts, "--angles", angles, "-o", basis)
+    words = ("fit-basis", run.paints, "--lobes", LOBES, "--mirror", "--method", method, "--starts", starts,
+             "--angles", angles, "-o", basis)
     found, best, raw = run.repeated(*words)
     missed, de00 = error(run, basis)
-    return Reading(f"{method}, {starts} starts, {angles} angles", best, missed, series, (method, starts, angles) == (METHOD, STARTS, ANGLES), raw,
+    default = (method, starts, angles) == (METHOD, STARTS, ANGLES)
+    return Reading(f"{method}, {starts} starts, {angles} angles", best, missed, series, default, raw,
                    {"de00": de00, "evaluations": found["sets"][-1]["evaluations"]}, again=lambda: run.tool(*words)[1])
 
 
 def study(run):
     angles = [reading(run, METHOD, METHOD, STARTS, n) for n in ((10, 40) if run.quick else (10, 20, 40, 80))]
     angles += [] if run.quick else [reading(run, "lm", "lm", STARTS, n) for n in (20, 40)]
-    starts = [reading(run, method, method, n, ANGLES) for method in ("power-mean", "lm") for n in ((1, STARTS) if run.quick or method == "lm" else (1, 2, 4, STARTS, 12))]
+    starts = [reading(run, method, method, n, ANGLES) for method in ("power-mean", "lm")
+              for n in ((1, STARTS) if run.quick or method == "lm" else (1, 2, 4, STARTS, 12))]
     aim = "RMS error, largest + mean of a paint (L*)"
-    figures = [Figure("basis-angles", f"{LOBES} lobes: error of the library against the time of finding them, by the sample angles of a paint", angles, "time of fit-basis (s)", aim),
+    figures = [Figure("basis-angles", f"{LOBES} lobes: error of the library against the time of finding them, "
+                      "by the sample angles of a paint", angles, "time of fit-basis (s)", aim),
                Figure("basis-starts", "The same by the starts of the search", starts, "time of fit-basis (s)", aim, front=False,
-                      note="No front: starts are a precaution against a poor local minimum, and a library in which two find what twelve find does not tell what another one wants.")]
+                      note="No front: starts are a precaution against a poor local minimum, and a library in which two find "
+                      "what twelve find does not tell what another one wants.")]
     rows = [(r.setting, r.time_s, r.numbers["evaluations"], r.error, r.numbers["de00"]) for r in angles + starts]
-    return Study("Choosing a basis", f"fit-basis looks for {LOBES} exponents for the whole library, one knob moved at a time. The error is what it makes least, taken from the least squares of fit-paint, "
-                 "whose rows do not depend on the angles; the mean dE00 in the table is that of the fits of least color difference.",
+    return Study("Choosing a basis", f"fit-basis looks for {LOBES} exponents for the whole library, one knob moved at a time. "
+                 "The error is what it makes least, taken from the least squares of fit-paint, whose rows do not depend on the "
+                 "angles; the mean dE00 in the table is that of the fits of least color difference.",
                  figures, [("Angles, starts and method", ("settings", "time (s)", "evaluations", aim, "dE00 mean"), rows)])

@@ -26,23 +26,30 @@ def study(run):
     for settings in ladder(run.quick):
         numbers = scene.picture(settings)
         before_s = numbers["fit_s"] + numbers["prefilter_s"]
-        readings.append(Reading(setting=str(settings), raw_s=tuple(before_s + s for s in numbers["all_render_s"]), time_s=total_s(numbers), error=total_de00(numbers), method="integral" if settings.integral() else f"effects: {settings.effects}",
-                                numbers={k: v for k, v in numbers.items() if k not in ("plan", "all_render_s")}))
-    figure = Figure("chain", f"{paint}: dE00 of the picture against the time of all stages", readings, "time of all stages (s)", "dE00, mean", joined=False)
+        method = "integral" if settings.integral() else f"effects: {settings.effects}"
+        kept = {k: v for k, v in numbers.items() if k not in ("plan", "all_render_s")}
+        readings.append(Reading(setting=str(settings), raw_s=tuple(before_s + s for s in numbers["all_render_s"]),
+                                time_s=total_s(numbers), error=total_de00(numbers), method=method, numbers=kept))
+    figure = Figure("chain", f"{paint}: dE00 of the picture against the time of all stages", readings,
+                    "time of all stages (s)", "dE00, mean", joined=False)
     best = min(readings, key=lambda r: r.error)
     rows = []
     for target in TARGETS:
         meeting = sorted((r for r in readings if r.error <= target), key=lambda r: r.time_s)
         rows.append((target, meeting[0].setting, meeting[0].time_s, meeting[0].error) if meeting else
                     (target, "not reached: the best are " + best.setting, best.time_s, best.error))
-    parts = [(r.setting, r.numbers["fit_de00"], r.numbers["render_de00"], r.numbers["fit_s"] * 1e3, r.numbers["prefilter_s"], r.numbers["render_s"])
-             for r in figure.pareto()]
-    text = ("The error of a picture is at most the sum of what the fit misses of the measured colors and what the picture misses of the fitted paint under the whole "
-            "environment; times are processor time of all stages, and what a frame's effects take is small beside reading the mesh. Views (fit-paint --views auto) take up two "
-            "sides of specular that differ, which is most of what a fit misses. Finer maps soon change nothing: what a picture then misses is light that changes unevenly within "
-            "the part of a broad lobe above the horizon, which maps that know one direction only cannot tell. The basis steep "
-            f"({', '.join(map(str, STEEP['steep']))}) has narrower lobes, which miss less of it under a sun; render-osmesa --engine integral does without maps and reaches "
-            "any error, at some hundred times the shading.")
+    parts = [(r.setting, r.numbers["fit_de00"], r.numbers["render_de00"],
+              r.numbers["fit_s"] * 1e3, r.numbers["prefilter_s"], r.numbers["render_s"]) for r in figure.pareto()]
+    text = ("The error of a picture is at most the sum of what the fit misses of the measured colors and what the picture misses "
+            "of the fitted paint under the whole environment; times are processor time of all stages, and what a frame's effects "
+            "take is small beside reading the mesh. Views (fit-paint --views auto) take up two sides of specular that differ, "
+            "which is most of what a fit misses. Finer maps soon change nothing: what a picture then misses is light that "
+            "changes unevenly within the part of a broad lobe above the horizon, which maps that know one direction only "
+            f"cannot tell. The basis steep ({', '.join(map(str, STEEP['steep']))}) has narrower lobes, which miss less of it "
+            "under a sun; render-osmesa --engine integral does without maps and reaches any error, at some hundred times the "
+            "shading.")
     return Study("The whole chain", text,
                  [figure], [("For a mean dE00 of", ("at most", "use", "time (s)", "dE00"), rows),
-                            ("Where the error and the time of the best settings come from", ("settings", "dE00 of the fit", "dE00 of the picture", "fit (ms)", "prefilter (s)", "render (s)"), parts)])
+                            ("Where the error and the time of the best settings come from",
+                             ("settings", "dE00 of the fit", "dE00 of the picture", "fit (ms)", "prefilter (s)", "render (s)"),
+                             parts)])

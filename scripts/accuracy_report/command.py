@@ -35,15 +35,23 @@ def parse(arguments):
         description="Sweep the knobs of the tools against exact references; write one HTML page, a CSV of every raw "
         "reading, and the plots as SVG. Exit status 1: a default setting is dominated.",
     )
-    parser.add_argument("studies", nargs="*", metavar="STUDY", help="of: " + "; ".join(f"{n} ({STUDIES[n]})" for n in STUDIES) + "; default: all")
-    parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("accuracy"), metavar="DIR", help="folder to write [accuracy]")
+    listed = "; ".join(f"{n} ({STUDIES[n]})" for n in STUDIES)
+    parser.add_argument("studies", nargs="*", metavar="STUDY", help="of: " + listed + "; default: all")
+    parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("accuracy"), metavar="DIR",
+                        help="folder to write [accuracy]")
     parser.add_argument("--quick", action="store_true", help="fewer settings, in about a minute")
     parser.add_argument("--bin", type=pathlib.Path, metavar="DIR", help="folder of the tools [PATH, then build/release/bin]")
-    parser.add_argument("--paints", type=pathlib.Path, default=TOP / "testdata/paints.paints.xml", metavar="FILE", help="library to use [testdata]")
-    parser.add_argument("--probe", type=pathlib.Path, default=TOP / "testdata/studio.exr", metavar="FILE", help="HDR panorama to use [testdata]")
-    parser.add_argument("--mesh", type=pathlib.Path, default=TOP / "testdata/speed-shape.obj", metavar="FILE", help="mesh to use [testdata]")
-    parser.add_argument("--target-de00", type=float, metavar="X", help="instead: find and prove the cheapest settings that bring scenes within a mean of X")
-    parser.add_argument("--scene", action="append", metavar="PAINT[,PROBE]", help="with --target-de00: a paint, and a probe if not that of --probe; repeat for more [three of testdata]")
+    parser.add_argument("--paints", type=pathlib.Path, default=TOP / "testdata/paints.paints.xml", metavar="FILE",
+                        help="library to use [testdata]")
+    parser.add_argument("--probe", type=pathlib.Path, default=TOP / "testdata/studio.exr", metavar="FILE",
+                        help="HDR panorama to use [testdata]")
+    parser.add_argument("--mesh", type=pathlib.Path, default=TOP / "testdata/speed-shape.obj", metavar="FILE",
+                        help="mesh to use [testdata]")
+    parser.add_argument("--target-de00", type=float, metavar="X",
+                        help="instead: find and prove the cheapest settings that bring scenes within a mean of X")
+    parser.add_argument("--scene", action="append", metavar="PAINT[,PROBE]",
+                        help="with --target-de00: a paint, and a probe if not that of --probe; repeat for more "
+                        "[three of testdata]")
     options = parser.parse_intermixed_args(arguments)
     if options.target_de00 is not None and not options.target_de00 > 0:
         parser.error(f"--target-de00 is {options.target_de00:g}: give a color difference above 0")
@@ -70,7 +78,8 @@ def main(arguments=None):
     options = parse(arguments)
     folder = bin_folder(options)
     if not os.access(folder / "render-osmesa", os.X_OK):
-        print(f"accuracy-report: {folder}: the tools are not there: build them (cmake --preset release && cmake --build --preset release), or name their folder with --bin", file=sys.stderr)
+        print(f"accuracy-report: {folder}: the tools are not there: build them (cmake --preset release && "
+              "cmake --build --preset release), or name their folder with --bin", file=sys.stderr)
         return 3
     try:
         return work(folder, options)

@@ -21,7 +21,8 @@ XYZ = ((0.636958, 0.144617, 0.168881), (0.262700, 0.677998, 0.059302), (0.0, 0.0
 
 def recipe(run):
     """The recipe that compares pictures, for its color difference."""
-    loader = importlib.machinery.SourceFileLoader("picture_difference", str(run.data.parent / "scripts/batch/recipes/picture-difference"))
+    path = run.data.parent / "scripts/batch/recipes/picture-difference"
+    loader = importlib.machinery.SourceFileLoader("picture_difference", str(path))
     module = importlib.util.module_from_spec(importlib.util.spec_from_loader(loader.name, loader))
     loader.exec_module(module)
     return module
@@ -77,17 +78,25 @@ def readings_of(run, recipe, paint):
             errors = [recipe.de2000(one, other) for one, other in zip(reference, labs(recipe, channels, white))]
             edge = [e for e, a in zip(errors, alpha) if 0 < a < 1]
             times = run.timed(lambda drawn=drawn: 1e-3 * drawn()["frame_ms"], 1e-3 * results["frame_ms"])
-            yield Reading(f"{engine}, {samples} samples", error=statistics.mean(edge), method=engine, default=(engine, samples) == DEFAULT, **times, numbers=
-                          {"paint": paint, "p95": part(edge, 0.95), "inside": statistics.mean(e for e, a in zip(errors, alpha) if a == 1), "pixels": len(edge)})
+            inside = statistics.mean(e for e, a in zip(errors, alpha) if a == 1)
+            yield Reading(f"{engine}, {samples} samples", error=statistics.mean(edge), method=engine,
+                          default=(engine, samples) == DEFAULT, **times,
+                          numbers={"paint": paint, "p95": part(edge, 0.95), "inside": inside, "pixels": len(edge)})
 
 
 def study(run):
     compare = recipe(run)
     by_paint = {paint: list(readings_of(run, compare, paint)) for paint in run.named(PAINTS[:1] if run.quick else PAINTS)}
-    figures = [Figure(f"edges-{paint}", f"{paint}: mean dE00 of the pixels on its outline against time", readings, "time of a frame, all samples (s)", "dE00 on the outline, mean",
-                      note="From left to right: 1, 4 and 16 samples. One is drawn from the buffers of the planning; more want a rasterization each, and the first of them is the cliff.")
+    figures = [Figure(f"edges-{paint}", f"{paint}: mean dE00 of the pixels on its outline against time", readings,
+                      "time of a frame, all samples (s)", "dE00 on the outline, mean",
+                      note="From left to right: 1, 4 and 16 samples. One is drawn from the buffers of the planning; more want a "
+                      "rasterization each, and the first of them is the cliff.")
                for paint, readings in by_paint.items()]
-    rows = [(paint, r.setting, 1e3 * r.time_s, r.error, r.numbers["p95"], r.numbers["inside"]) for paint, readings in by_paint.items() for r in readings]
-    return Study("Edges", f"Pictures of {SIZE[0]} x {SIZE[1]} pixels with 1, 4 and 16 samples a pixel, all effects drawn, before gray of {GRAY * 100:.0f} %. The reference is the same view {FINER} times as wide "
-                 f"and high with 16 samples, {16 * FINER ** 2} for each pixel, averaged as light. Colors are compared as a display shows them, with white as the brightest. ",
-                 figures, [("Samples of a pixel", ("paint", "engine and samples", "frame (ms)", "outline, dE00 mean", "outline, 95 %", "inside, mean"), rows)])
+    rows = [(paint, r.setting, 1e3 * r.time_s, r.error, r.numbers["p95"], r.numbers["inside"])
+            for paint, readings in by_paint.items() for r in readings]
+    return Study("Edges", f"Pictures of {SIZE[0]} x {SIZE[1]} pixels with 1, 4 and 16 samples a pixel, all effects drawn, before "
+                 f"gray of {GRAY * 100:.0f} %. The reference is the same view {FINER} times as wide and high with 16 samples, "
+                 f"{16 * FINER ** 2} for each pixel, averaged as light. Colors are compared as a display shows them, with white "
+                 "as the brightest. ", figures,
+                 [("Samples of a pixel",
+                   ("paint", "engine and samples", "frame (ms)", "outline, dE00 mean", "outline, 95 %", "inside, mean"), rows)])

@@ -15,10 +15,14 @@ def part(values, share):
 
 
 def bases(run, sizes):
-    """A basis for every number of lobes, chosen for the library itself: the most that so many lobes can do. Made once for all studies."""
+    """A basis for every number of lobes, chosen for the library itself: the most that so many lobes can do.
+
+    Made once for all studies.
+    """
     if "bases" not in run.kept:
         most = 7 if run.quick else 11
-        run.tool("fit-basis", run.paints, "--lobes", f"1..{most}", "--starts", 2 if run.quick else 4, "--mirror", "--each", run.work / "lobes-", "-o", run.work / "largest.xml")
+        run.tool("fit-basis", run.paints, "--lobes", f"1..{most}", "--starts", 2 if run.quick else 4, "--mirror",
+                 "--each", run.work / "lobes-", "-o", run.work / "largest.xml")
         run.kept["bases"] = True
     return {size: run.work / f"lobes-{size}.basis.xml" for size in sizes}
 
@@ -27,7 +31,8 @@ def fitted(run, basis, method, target):
     """(time of a paint in s, every repetition, the color differences at the readings)."""
     times = []
     for _ in range(1 if run.quick else 3):
-        results, _ = run.tool("fit-paint", run.paints, "--basis", basis, "--method", method, "--target", target, "--threads", 1, "-o", run.work / "fitted.xml")
+        results, _ = run.tool("fit-paint", run.paints, "--basis", basis, "--method", method, "--target", target,
+                              "--threads", 1, "-o", run.work / "fitted.xml")
         paints = [paint for paint in results["paints"] if paint["status"] != "failed"]
         times.append(1e-6 * statistics.median(paint["time_us"] for paint in paints))
     errors = [error for paint in paints for error in paint["de00_by_geometry"].values()]
@@ -43,14 +48,21 @@ def study(run):
             for size, basis in by_size.items():
                 time_s, all_s, errors = fitted(run, basis, method, target)
                 numbers = {"lobes": size, "p95": part(errors, 0.95), "max": max(errors)}
-                readings.append(Reading(f"{method}, {size} lobes, {target}", time_s, statistics.mean(errors), method=f"{method} {target}", default=(method, target, size) == DEFAULT, raw_s=all_s, numbers=numbers))
+                readings.append(Reading(f"{method}, {size} lobes, {target}", time_s, statistics.mean(errors),
+                                        method=f"{method} {target}", default=(method, target, size) == DEFAULT,
+                                        raw_s=all_s, numbers=numbers))
                 rows.append((method, target, size, 1e6 * time_s, statistics.mean(errors), numbers["p95"], numbers["max"]))
-    mean = Figure("fit-mean", "Mean dE00 at the readings against time for a paint", readings, "time for a paint (s)", "dE00, mean")
-    p95 = Figure("fit-p95", "The same, 95 % of the readings", readings, "time for a paint (s)", "dE00, 95 %", front=False, y=lambda r: r.numbers["p95"],
+    mean = Figure("fit-mean", "Mean dE00 at the readings against time for a paint", readings,
+                  "time for a paint (s)", "dE00, mean")
+    p95 = Figure("fit-p95", "The same, 95 % of the readings", readings, "time for a paint (s)", "dE00, 95 %",
+                 front=False, y=lambda r: r.numbers["p95"],
                  note="No front of its own: methods are held to their mean, above.")
-    lobes = Figure("fit-lobes", "Mean dE00 against the number of lobes", readings, "lobes", "dE00, mean", front=False, x=lambda r: r.numbers["lobes"], logarithmic="y",
+    lobes = Figure("fit-lobes", "Mean dE00 against the number of lobes", readings, "lobes", "dE00, mean",
+                   front=False, x=lambda r: r.numbers["lobes"], logarithmic="y",
                    note="No front: the axis is a number, not a time.")
-    return Study("Fitting", f"Every paint of the library is fitted to bases of {sizes[0]} to {sizes[-1]} lobes that fit-basis chose for it, on one thread; the error is that of the color that the lobes predict at "
-                 "the readings. What no number of lobes takes away are two sides of specular that differ, and colors outside the working space: fit-paint names them as the limit of a paint.",
+    return Study("Fitting", f"Every paint of the library is fitted to bases of {sizes[0]} to {sizes[-1]} lobes that fit-basis "
+                 "chose for it, on one thread; the error is that of the color that the lobes predict at the readings. What no "
+                 "number of lobes takes away are two sides of specular that differ, and colors outside the working space: "
+                 "fit-paint names them as the limit of a paint.",
                  [mean, p95, lobes],
                  [("Method, target and lobes", ("method", "target", "lobes", "time (us)", "dE00 mean", "95 %", "largest"), rows)])

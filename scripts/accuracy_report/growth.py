@@ -51,7 +51,8 @@ def fitting(run):
         write_library(table, count, seed=count)
         run.tool("paint-convert", table, "-o", library)
         for method in ("l2", "deltae"):
-            _, best, raw = run.repeated("fit-paint", "--basis", run.data / "b7.basis.xml", "--method", method, library, "-o", run.work / "fitted.xml")
+            _, best, raw = run.repeated("fit-paint", "--basis", run.data / "b7.basis.xml", "--method", method, library,
+                                        "-o", run.work / "fitted.xml")
             yield f"fit-paint {method}: paints", count, best, raw
         _, best, raw = run.repeated("goniogeom-index", library, "--worst", "-o", run.work / "index.tsv")
         yield "goniogeom-index: paints", count, best, raw
@@ -62,7 +63,8 @@ def rendering(run):
     run.tool("fit-paint", "--basis", run.data / "b7.basis.xml", run.paints, "-o", fitted)
     run.tool("prefilter-envmap", run.probe, "--basis", run.data / "b7.basis.xml", "-o", env)
     # Without the first words, the size; all effects, so that every size draws the same.
-    words = ("--mesh", run.mesh, "--paint", f"{fitted}#silver_black_flop", "--effects", "all", *CAMERA[2:], "-o", run.work / "p.exr")
+    words = ("--mesh", run.mesh, "--paint", f"{fitted}#silver_black_flop", "--effects", "all", *CAMERA[2:],
+             "-o", run.work / "p.exr")
     def frame(*more):
         frames = [run.tool("render-osmesa", *words, *more)[0]["frame_ms"] * 1e-3 for _ in range(1 if run.quick else 3)]
         return min(frames), tuple(frames)
@@ -83,13 +85,18 @@ def study(run):
     kinds = {}
     for part in (prefiltering, fitting, rendering, sketching):
         for kind, n, best, raw in part(run):
-            kinds.setdefault(kind, []).append(Reading(setting=f"{kind} {n}", time_s=best, error=0.0, method=kind, raw_s=raw, numbers={"n": n}))
+            reading = Reading(setting=f"{kind} {n}", time_s=best, error=0.0, method=kind, raw_s=raw, numbers={"n": n})
+            kinds.setdefault(kind, []).append(reading)
     readings = [r for rs in kinds.values() for r in rs]
-    figure = Figure("growth", "Time against the size of the job", readings, x_label="size: rows, texels, paints, pixels or lights", y_label="time (s)", front=False,
+    figure = Figure("growth", "Time against the size of the job", readings,
+                    x_label="size: rows, texels, paints, pixels or lights", y_label="time (s)", front=False,
                     x=lambda r: r.numbers["n"], y=lambda r: r.time_s, note="No front: times of different jobs.")
-    rows = [(kind, f"{rs[0].numbers['n']} to {rs[-1].numbers['n']}", rs[0].time_s, rs[-1].time_s, *curve(rs)) for kind, rs in kinds.items()]
-    text = ("Exponents are of the time against the size, over the larger half of the sizes, where start-up counts least: 1 is proportional. The "
-            "steepest step is the cliff to know about: an exponent far above the others there says that doubling the job at that point costs more "
-            "than elsewhere. Growing probes are filtered to 128 texels a face, growing faces from a probe of 1024 x 512; growing lights shine on "
-            "640 x 360 pixels, and growing pictures stand in the probe. Times of render-osmesa are of a frame, all others are processor time of the whole tool.")
-    return Study("Growth", text, [figure], [("Growth", ("what grows", "sizes", "least (s)", "most (s)", "exponent", "steepest step", "its exponent"), rows)])
+    rows = [(kind, f"{rs[0].numbers['n']} to {rs[-1].numbers['n']}", rs[0].time_s, rs[-1].time_s, *curve(rs))
+            for kind, rs in kinds.items()]
+    text = ("Exponents are of the time against the size, over the larger half of the sizes, where start-up counts least: 1 is "
+            "proportional. The steepest step is the cliff to know about: an exponent far above the others there says that "
+            "doubling the job at that point costs more than elsewhere. Growing probes are filtered to 128 texels a face, "
+            "growing faces from a probe of 1024 x 512; growing lights shine on 640 x 360 pixels, and growing pictures stand in "
+            "the probe. Times of render-osmesa are of a frame, all others are processor time of the whole tool.")
+    head = ("what grows", "sizes", "least (s)", "most (s)", "exponent", "steepest step", "its exponent")
+    return Study("Growth", text, [figure], [("Growth", head, rows)])

@@ -7,8 +7,10 @@ from .study import Figure, Reading, Study
 
 # Paints with known colors at every angle. At 45 deg the curve has 0.29 of the way from flop to face.
 PLANTED = """<paints xmlns="urn:goniochrome:paint:1" version="1">
-<paint name="steel"><gloss angle="60">85</gloss><appearance travel="80"><face L="75" a="-5" b="-20"/><flop L="25" a="-2" b="-10"/></appearance></paint>
-<paint name="ruby"><gloss angle="60">90</gloss><appearance travel="70"><face L="50" a="45" b="20"/><flop L="12" a="15" b="6"/></appearance></paint>
+<paint name="steel"><gloss angle="60">85</gloss>\
+<appearance travel="80"><face L="75" a="-5" b="-20"/><flop L="25" a="-2" b="-10"/></appearance></paint>
+<paint name="ruby"><gloss angle="60">90</gloss>\
+<appearance travel="70"><face L="50" a="45" b="20"/><flop L="12" a="15" b="6"/></appearance></paint>
 </paints>
 """
 SHAPE = 16 / 10  # of a picture
@@ -20,7 +22,8 @@ LIGHTS = ("--lights", "30,45,60", "--views", "as15:105:15")
 def drawn(run, light, paint, width):
     """Draws a planted paint; (picture, buffers)."""
     picture, buffers = run.work / "sketch.png", run.work / "sketch.exr"
-    words = ("--mesh", run.data / "speed-shape.obj", "--paint", f"{run.work / 'planted-fitted.xml'}#{paint}", *light, "--size", f"{width}x{int(width / SHAPE)}", "--samples", 1)
+    words = ("--mesh", run.data / "speed-shape.obj", "--paint", f"{run.work / 'planted-fitted.xml'}#{paint}", *light,
+             "--size", f"{width}x{int(width / SHAPE)}", "--samples", 1)
     run.tool("render-osmesa", *words, "-o", picture)
     run.tool("render-osmesa", *words, "--aov", "normal,aspecular,lambert,mask,part", "-o", buffers)
     return picture, buffers
@@ -40,22 +43,29 @@ def sketches(run):
         for (name, (light, told)), paint, width in itertools.product(lights.items(), ("steel", "ruby"), widths):
             picture, buffers = drawn(run, light, paint, width)
             results, best, raw = run.repeated("sketch-fit", "--image", picture, "--buffers", buffers, *told, "-o", found)
-            match = run.tool("colorsnap", found, "--library", planted, "--metric", "de00", "-k", 2, "-o", run.work / "match.tsv")[0]["queries"][0]["matches"]
+            snapped, _ = run.tool("colorsnap", found, "--library", planted, "--metric", "de00", "-k", 2,
+                                  "-o", run.work / "match.tsv")
+            match = snapped["queries"][0]["matches"]
             error = next(m["mean_de"] for m in match if m["name"] == paint)
+            numbers = {"n": width * int(width / SHAPE), "used": results["pixels_used"], "fit_s": results["fit_s"],
+                       "model": results["model"], "light": name}
             readings.append(Reading(f"{paint}, {name}, {width} pixels wide", best, error, f"{paint}, {name}", raw_s=raw,
-                                    numbers={"n": width * int(width / SHAPE), "used": results["pixels_used"], "fit_s": results["fit_s"], "model": results["model"], "light": name}))
+                                    numbers=numbers))
         run.kept["sketches"] = readings
     return run.kept["sketches"]
 
 
 def hidden(run, vary, objective, *mode):
     """A reading of trompe-fit for the whole library, its panels turned by ANGLE_DEG."""
-    words = ("trompe-fit", run.paints, "--angle", ANGLE_DEG, *LIGHTS, "--vary", vary, "--objective", objective, "--mode", *mode, "-o", run.work / "hidden.xml")
+    words = ("trompe-fit", run.paints, "--angle", ANGLE_DEG, *LIGHTS, "--vary", vary, "--objective", objective,
+             "--mode", *mode, "-o", run.work / "hidden.xml")
     results, best, raw = run.repeated(*words)
     fits = [fit for fit in results.get("fits", [results]) if fit["status"] != "failed"]
     paints = len({fit.get("name", "").partition(".light")[0] for fit in fits})  # --mode rows has a fit for each light
-    left, largest, before = (statistics.mean(fit[when][what] for fit in fits) for when, what in (("after", "rms"), ("after", "max"), ("before", "rms")))
-    return Reading(f"{vary}; {objective}; {' '.join(mode)}", best / paints, left, objective, raw_s=tuple(s / paints for s in raw), numbers={"before": before, "largest": largest},
+    left, largest, before = (statistics.mean(fit[when][what] for fit in fits)
+                             for when, what in (("after", "rms"), ("after", "max"), ("before", "rms")))
+    return Reading(f"{vary}; {objective}; {' '.join(mode)}", best / paints, left, objective,
+                   raw_s=tuple(s / paints for s in raw), numbers={"before": before, "largest": largest},
                    again=lambda: run.tool(*words)[1] / paints)
 
 
@@ -66,17 +76,24 @@ def study(run):
     modes = [hidden(run, VARIED[-1], "rms", *mode) for mode in (("all",), ("single", "--at", "45,0"), ("rows",))]
     for reading, name in zip(modes, ("one paint for all", "one paint for one geometry", "a paint for each light")):
         reading.method = name
-    figures = [Figure("sketch", "sketch-fit: dE00 to the paint that was drawn against the size of the picture", seen, "pixels of the picture", "dE00, mean", front=False,
-                      x=lambda r: r.numbers["n"], note="No front: the size is no knob of sketch-fit. Times are in the table, and in the study of growth."),
-               Figure("trompe", f"trompe-fit: difference left between panels turned by {ANGLE_DEG} deg against time", panels, "time for a paint (s)", "dE76, RMS over the geometries",
+    figures = [Figure("sketch", "sketch-fit: dE00 to the paint that was drawn against the size of the picture", seen,
+                      "pixels of the picture", "dE00, mean", front=False, x=lambda r: r.numbers["n"],
+                      note="No front: the size is no knob of sketch-fit. Times are in the table, and in the study of growth."),
+               Figure("trompe", f"trompe-fit: difference left between panels turned by {ANGLE_DEG} deg against time", panels,
+                      "time for a paint (s)", "dE76, RMS over the geometries",
                       note="Points: what may change, from the face's L* alone to all five parameters."),
-               Figure("trompe-modes", "The same for its modes", modes, "time for a paint (s)", "dE76, RMS over the geometries", front=False,
-                      note="No front: one paint for all geometries, for one of them, and one for each light are different answers.")]
+               Figure("trompe-modes", "The same for its modes", modes,
+                      "time for a paint (s)", "dE76, RMS over the geometries", front=False,
+                      note="No front: one paint for all geometries, for one of them, and one for each light are different "
+                      "answers.")]
     sketch_rows = [(r.setting, r.numbers["used"], r.time_s, r.numbers["fit_s"], r.error, r.numbers["model"]) for r in seen]
     trompe_rows = [(r.setting, 1e3 * r.time_s, r.numbers["before"], r.error, r.numbers["largest"]) for r in panels + modes[1:]]
-    text = ("Two paints with known colors are drawn under a lamp and in the environment, as PNG, and sketch-fit looks for them in pictures of several sizes; the error is the mean dE00 of the "
-            "paint found at the export angles. trompe-fit looks for the paint of the second panel for every paint of the library, under lights at 30, 45 and 60 deg and viewers from 15 to 105 deg "
-            "beside their mirror directions; what is left is the difference of the two panels.")
+    text = ("Two paints with known colors are drawn under a lamp and in the environment, as PNG, and sketch-fit looks for them "
+            "in pictures of several sizes; the error is the mean dE00 of the paint found at the export angles. trompe-fit looks "
+            "for the paint of the second panel for every paint of the library, under lights at 30, 45 and 60 deg and viewers "
+            "from 15 to 105 deg beside their mirror directions; what is left is the difference of the two panels.")
     return Study("Paints looked for", text, figures,
-                 [("sketch-fit", ("paint, light, picture", "pixels used", "time (s)", "fit alone (s)", "dE00", "model"), sketch_rows),
-                  ("trompe-fit", ("may change; objective; mode", "time (ms)", "before, RMS", "left, RMS", "left, largest"), trompe_rows)])
+                 [("sketch-fit",
+                   ("paint, light, picture", "pixels used", "time (s)", "fit alone (s)", "dE00", "model"), sketch_rows),
+                  ("trompe-fit",
+                   ("may change; objective; mode", "time (ms)", "before, RMS", "left, RMS", "left, largest"), trompe_rows)])

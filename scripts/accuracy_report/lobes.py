@@ -11,7 +11,8 @@ from .study import Failed, Figure, Reading, Study
 PAINTS = ("silver_black_flop", "candy_red")
 DEFAULT = "b7, all lobes"
 SIZE = ("--size", "640x360")
-UNSEEN = "No front: a lobe that no reading of this paint needs still shapes its colors between the readings, which this error does not see."
+UNSEEN = ("No front: a lobe that no reading of this paint needs still shapes its colors between the readings, "
+          "which this error does not see.")
 
 
 def settings(run):
@@ -46,20 +47,29 @@ def study(run):
         if not set(names) <= set(paints):
             raise Failed(f"{run.paints}: {', '.join(set(names) - set(paints))} cannot be fitted")
         left = statistics.mean(p["active_lobes"] for p in paints.values())
-        library.append(Reading(setting, best, results["de00_mean"], series, setting == DEFAULT, raw, {"lobes": left, "p95": results["de00_p95"], "prefilter_s": filter_s}))
+        numbers = {"lobes": left, "p95": results["de00_p95"], "prefilter_s": filter_s}
+        library.append(Reading(setting, best, results["de00_mean"], series, setting == DEFAULT, raw, numbers))
         for name in names:
-            shading = functools.partial(run.shading, "--mesh", run.mesh, "--paint", f"{fitted}#{name}", "--env", env, *SIZE, *CAMERA[2:], "--effects", "all", "-o", run.work / "lobes.exr")
-            by_paint[name].append(Reading(setting, error=paints[name]["de00_mean"], method=series, default=setting == DEFAULT, **run.timed(shading),
-                                          numbers={"lobes": paints[name]["active_lobes"]}))
+            shading = functools.partial(run.shading, "--mesh", run.mesh, "--paint", f"{fitted}#{name}", "--env", env,
+                                        *SIZE, *CAMERA[2:], "--effects", "all", "-o", run.work / "lobes.exr")
+            by_paint[name].append(Reading(setting, error=paints[name]["de00_mean"], method=series, default=setting == DEFAULT,
+                                          **run.timed(shading), numbers={"lobes": paints[name]["active_lobes"]}))
         shading = [1e3 * by_paint[name][-1].time_s for name in names]
         rows.append((setting, left, results["de00_mean"], results["de00_p95"], filter_s, *shading))
-    figures = [Figure("lobes", "The library: mean dE00 at the readings against the lobes left", library, "lobes left, mean over the paints", "dE00, mean", front=False,
-                      x=lambda r: r.numbers["lobes"], logarithmic="y", note="No front: the axis is a number, not a time.")]
-    figures += [Figure(f"lobes-{name}", f"{name}: dE00 at its readings with fewer of the lobes of b7 against the time of shading it", [r for r in readings if r.method != "fit-basis"],
-                       "time of shading every pixel once (s)", "dE00 of the fit, mean", front=False, note=UNSEEN) for name, readings in by_paint.items()]
-    own = [dataclasses.replace(r, method=name, default=False) for name, readings in by_paint.items() for r in readings if r.method == "fit-basis"]
-    figures.append(Figure("lobes-own", "The same with bases that fit-basis chose for the library", own, "time of shading every pixel once (s)", "dE00 of the fit, mean", apart=True,
-                          note="From left to right: bases of more lobes. Beside the figures above, these lobes serve the readings alone; b7 has two sharp ones for gloss."))
-    return Study("Fewer lobes", "fit-paint with fewer lobes, in three ways: a basis that fit-basis chose for so many, the best so many of the seven of b7 (--lobes), and those without which no color moves "
-                 "by more than so much dE00 (--prune). All effects of the picture are drawn.", figures,
-                 [("What the lobes cost", ("setting", "lobes left", "library, dE00 mean", "95 %", "prefilter (s)", *(f"{name}, shading (ms)" for name in names)), rows)])
+    figures = [Figure("lobes", "The library: mean dE00 at the readings against the lobes left", library,
+                      "lobes left, mean over the paints", "dE00, mean", front=False, x=lambda r: r.numbers["lobes"],
+                      logarithmic="y", note="No front: the axis is a number, not a time.")]
+    x_label, y_label = "time of shading every pixel once (s)", "dE00 of the fit, mean"
+    figures += [Figure(f"lobes-{name}",
+                       f"{name}: dE00 at its readings with fewer of the lobes of b7 against the time of shading it",
+                       [r for r in readings if r.method != "fit-basis"], x_label, y_label, front=False, note=UNSEEN)
+                for name, readings in by_paint.items()]
+    own = [dataclasses.replace(r, method=name, default=False)
+           for name, readings in by_paint.items() for r in readings if r.method == "fit-basis"]
+    figures.append(Figure("lobes-own", "The same with bases that fit-basis chose for the library", own, x_label, y_label,
+                          apart=True, note="From left to right: bases of more lobes. Beside the figures above, these lobes serve "
+                          "the readings alone; b7 has two sharp ones for gloss."))
+    head = ("setting", "lobes left", "library, dE00 mean", "95 %", "prefilter (s)", *(f"{name}, shading (ms)" for name in names))
+    return Study("Fewer lobes", "fit-paint with fewer lobes, in three ways: a basis that fit-basis chose for so many, the best "
+                 "so many of the seven of b7 (--lobes), and those without which no color moves by more than so much dE00 "
+                 "(--prune). All effects of the picture are drawn.", figures, [("What the lobes cost", head, rows)])

@@ -16,10 +16,12 @@ table{border-collapse:collapse;margin:1rem 0;font-size:.85rem;line-height:1.35}
 th,td{padding:.2rem .5rem;text-align:right;border-bottom:1px solid #ddd;vertical-align:bottom}
 .text{text-align:left}caption{text-align:left;font-weight:bold;padding:.3rem 0}
 figure{margin:1.5rem 0}figcaption{color:#444;font-size:.9em}svg{max-width:100%;height:auto}
-@media print{body{max-width:none;margin:0;font-size:10pt}nav{display:none}table{font-size:8pt}h2{break-after:avoid}figure,tr{break-inside:avoid}}
+@media print{body{max-width:none;margin:0;font-size:10pt}nav{display:none}\
+table{font-size:8pt}h2{break-after:avoid}figure,tr{break-inside:avoid}}
 """
-READING = ("Each point of a plot is a setting: lower is truer, farther left is faster. The dashed line joins the settings that no other one beats in both; "
-           "a ring is the default. Where there is no dashed line, the plot has different jobs in it, or an axis that is no time.")
+READING = ("Each point of a plot is a setting: lower is truer, farther left is faster. The dashed line joins the settings that "
+           "no other one beats in both; a ring is the default. Where there is no dashed line, the plot has different jobs in it, "
+           "or an axis that is no time.")
 
 
 def processor():
@@ -100,14 +102,18 @@ def write(run, studies, seconds):
         for study in studies:
             for figure in study.figures:
                 for r in figure.readings:
-                    writer.writerow((study.title, figure.name, r.method, r.setting, int(r.default), f"{r.time_s:.6g}", f"{r.error:.6g}",
-                                     " ".join(f"{s:.6g}" for s in r.raw_s), " ".join(f"{k}={number(v)}" for k, v in r.numbers.items())))
+                    times = " ".join(f"{s:.6g}" for s in r.raw_s)
+                    numbers = " ".join(f"{k}={number(v)}" for k, v in r.numbers.items())
+                    writer.writerow((study.title, figure.name, r.method, r.setting, int(r.default),
+                                     f"{r.time_s:.6g}", f"{r.error:.6g}", times, numbers))
     parts = [chapter(run, study) for study in studies]
     contents = " ".join(f'<a href="#{anchor(study)}">{html.escape(study.title)}</a>' for study in studies)
     inputs = ", ".join(p.name for p in (run.paints, run.probe, run.mesh))
     (run.output / "index.html").write_text(
         f"<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>What accuracy costs</title>\n"
-        f"<meta name=\"viewport\" content=\"width=device-width\"><style>{STYLE}</style></head>\n<body><h1>What accuracy costs</h1>\n"
-        f"<p>Measured with {html.escape(inputs)} on {html.escape(machine())}, in {seconds:.0f} s{', quick' if run.quick else ''}. "
+        f"<meta name=\"viewport\" content=\"width=device-width\"><style>{STYLE}</style></head>\n"
+        "<body><h1>What accuracy costs</h1>\n"
+        f"<p>Measured with {html.escape(inputs)} on {html.escape(machine())}, "
+        f"in {seconds:.0f} s{', quick' if run.quick else ''}. "
         f"Every reading, with every repetition, is in <a href=\"readings.csv\">readings.csv</a>.</p>\n<p>{READING}</p>\n"
         f"<nav>{contents}</nav>\n{''.join(parts)}</body></html>\n")

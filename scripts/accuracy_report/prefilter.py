@@ -51,8 +51,8 @@ def benchmark(run, pattern):
     program = run.folder / "envmap_bench"
     if not os.access(program, os.X_OK):
         return []
-    done = subprocess.run([str(program), f"--benchmark_filter={pattern}", "--benchmark_format=json"], capture_output=True, text=True,
-                          env={**os.environ, "GONIOCHROME_PROBE": str(run.probe)})
+    done = subprocess.run([str(program), f"--benchmark_filter={pattern}", "--benchmark_format=json"], capture_output=True,
+                          text=True, env={**os.environ, "GONIOCHROME_PROBE": str(run.probe)})
     if done.returncode:
         raise Failed(f"{program}: {done.stderr.strip() or done.returncode}")
     return json.loads(done.stdout)["benchmarks"]
@@ -101,27 +101,31 @@ def study(run):
         for reading in sweep[size]:
             spread.append(dataclasses.replace(reading, method=f"{size} texels", default=False))
     all_sizes = Figure("prefilter-sizes", "The same for every size: what a texel of the file errs", spread, x_label="time (s)",
-                       y_label="largest relative error", front=False, note="No front: more texels are another job; what they are good for is below.")
+                       y_label="largest relative error", front=False,
+                       note="No front: more texels are another job; what they are good for is below.")
     auto = [ours(run, "auto", t, verify) for t in few[: 2 if run.quick else None]]
-    lookup = [looked_up(r, f"tolerance {r.numbers['tolerance']:g}") for t in few for size in sizes for r in sweep[size] if r.numbers["tolerance"] == t]
+    lookup = [looked_up(r, f"tolerance {r.numbers['tolerance']:g}")
+              for t in few for size in sizes for r in sweep[size] if r.numbers["tolerance"] == t]
     lookup += [looked_up(r, "--size auto") for r in auto]
     lookup[-len(auto) + few.index(DEFAULT_TOLERANCE)].default = True
-    fetched = Figure("prefilter-lookup", "What a texel and a bilinear lookup err for the sharpest lobe, size by size", lookup, x_label="time (s)",
-                     y_label="error of texel and lookup")
+    fetched = Figure("prefilter-lookup", "What a texel and a bilinear lookup err for the sharpest lobe, size by size", lookup,
+                     x_label="time (s)", y_label="error of texel and lookup")
     tables = [(f"Lobe by lobe at {SIZE} texels, tolerance {DEFAULT_TOLERANCE:g}",
-               ("exponent", "method", "degree", "predicted (ms)", "took (ms)", "predicted error", "largest error", "lookup error", "energy - 1"),
+               ("exponent", "method", "degree", "predicted (ms)", "took (ms)",
+                "predicted error", "largest error", "lookup error", "energy - 1"),
                by_lobe(next(r for r in main if r.default)))]
     for reading in spread + lookup:
         reading.numbers = {k: v for k, v in reading.numbers.items() if k != "lobes"}
     for reading in main:
         reading.numbers = {k: v for k, v in reading.numbers.items() if k != "lobes"}
     finest, before = (min(r.time_s for r in main if r.numbers["tolerance"] == t) for t in (tolerances[-1], 1e-4))
-    text = (f"Exponents 1,{EXPONENTS} of {run.probe.name}. Errors are the largest of {verify} random texels of each lobe and of the brightest "
-            "and darkest, relative to the texel or a thousandth of the mean, against the sum in double precision over every texel as a constant "
-            "patch. Half floats hold 5e-4, so tolerances of 1e-1 to 1e-3 write the same file; below, the file is float"
-            + (f", and a tolerance of {tolerances[-1]:g} takes {finest / before:.0f} times as long as one of 1e-4: the cliff to know about"
-               if tolerances[-1] < 1e-4 else "") +
-            ". The sum over all pairs takes texels as points at their centers, which costs it the sharp lobes; the naive mip chain averages the "
-            "source first, which moves the sun: below 32 texels it is the faster and errs by all there is. Times are processor time shared by "
-            "the cores; ours have reading and writing in them, the others not.")
+    text = (f"Exponents 1,{EXPONENTS} of {run.probe.name}. Errors are the largest of {verify} random texels of each lobe and of "
+            "the brightest and darkest, relative to the texel or a thousandth of the mean, against the sum in double precision "
+            "over every texel as a constant patch. Half floats hold 5e-4, so tolerances of 1e-1 to 1e-3 write the same file; "
+            "below, the file is float"
+            + (f", and a tolerance of {tolerances[-1]:g} takes {finest / before:.0f} times as long as one of 1e-4: "
+               "the cliff to know about" if tolerances[-1] < 1e-4 else "") +
+            ". The sum over all pairs takes texels as points at their centers, which costs it the sharp lobes; the naive mip "
+            "chain averages the source first, which moves the sun: below 32 texels it is the faster and errs by all there is. "
+            "Times are processor time shared by the cores; ours have reading and writing in them, the others not.")
     return Study("Prefiltering", text, [against, all_sizes, fetched], tables)

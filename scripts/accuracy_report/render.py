@@ -26,21 +26,26 @@ def words(choice):
 def reading(run, method, choice, numbers, shading, default):
     """Of what a check found, and a function that takes the seconds of shading once more."""
     kept = sum(1 for row in numbers["plan"] if row["decision"] == "drawn")
-    return Reading(f"{method}, {choice}", error=numbers["render_de00"], method=method, default=default, **run.timed(shading, 1e-3 * numbers["shading_ms"]),
-                   numbers={"p95": numbers["render_p95"], "effects": kept})
+    return Reading(f"{method}, {choice}", error=numbers["render_de00"], method=method, default=default,
+                   **run.timed(shading, 1e-3 * numbers["shading_ms"]), numbers={"p95": numbers["render_p95"], "effects": kept})
 
 
 def probed(scene, method, choice, *more, default=False):
     """A paint under the probe."""
     settings = Settings("b7", "l1", False, 1e-3, choice)
     numbers = scene.error(settings, *more)
-    return reading(scene.run, method, choice, numbers, lambda: 1e-3 * scene.error(settings, *more, checks=1)["shading_ms"], default)
+
+    def shading():
+        return 1e-3 * scene.error(settings, *more, checks=1)["shading_ms"]
+
+    return reading(scene.run, method, choice, numbers, shading, default)
 
 
 def plain(run, paint):
     """A paint under the probe by each engine at every tolerance, and for budgets of the faster one."""
     scene = Scene(run, paint)
-    readings = [probed(scene, engine, choice, "--engine", engine, default=(engine, choice) == ("cpu", DEFAULT)) for engine in ("gl", "cpu") for choice in choices(run)]
+    readings = [probed(scene, engine, choice, "--engine", engine, default=(engine, choice) == ("cpu", DEFAULT))
+                for engine in ("gl", "cpu") for choice in choices(run)]
     all_ms = 1e3 * readings[-1].time_s
     for share in (0.5,) if run.quick else SHARES:
         budget = f"{share * all_ms:.3g}"
@@ -54,8 +59,11 @@ def staged(run, stage, scene, method, *more):
     for choice in ("none", "2", DEFAULT, "0.1", "all"):
         drawn = (scene, *words(choice), *more)
         results = stage.picture(*drawn)
-        numbers = {"render_de00": results["error"]["de00_mean"], "render_p95": results["error"]["de00_p95"], "plan": results["plan"], "shading_ms": results["left_out"]["shading_ms"]}
-        yield reading(run, method, choice, numbers, functools.partial(stage.shading, *drawn), (method, choice) in (("cubes", DEFAULT), ("brushed", DEFAULT)))
+        error = results["error"]
+        numbers = {"render_de00": error["de00_mean"], "render_p95": error["de00_p95"], "plan": results["plan"],
+                   "shading_ms": results["left_out"]["shading_ms"]}
+        default = (method, choice) in (("cubes", DEFAULT), ("brushed", DEFAULT))
+        yield reading(run, method, choice, numbers, functools.partial(stage.shading, *drawn), default)
 
 
 def textured(run):
@@ -63,7 +71,8 @@ def textured(run):
     basis = run.work / "quarters.basis.xml"
     basis.write_bytes(bases.basis_xml("quarters", QUARTERS))
     stage = Stage(run, basis)
-    return [r for maps in ("cubes", "mip") for r in staged(run, stage, ("jet_black", "texture", "studio"), maps, "--texture-maps", maps)]
+    return [r for maps in ("cubes", "mip")
+            for r in staged(run, stage, ("jet_black", "texture", "studio"), maps, "--texture-maps", maps)]
 
 
 def study(run):
@@ -73,9 +82,14 @@ def study(run):
         scenes["silver_fine, brushed"] = list(staged(run, Stage(run), ("silver_fine", "brushed", "orange lamp"), "brushed"))
     figures, rows = [], []
     for name, readings in scenes.items():
-        figures.append(Figure(f"render-{name.split(',')[0].split(' ')[0]}", f"{name}: mean dE00 to the reference integrator against time", readings, "time of shading every pixel once (s)", "dE00, mean"))
+        figures.append(Figure(f"render-{name.split(',')[0].split(' ')[0]}",
+                              f"{name}: mean dE00 to the reference integrator against time", readings,
+                              "time of shading every pixel once (s)", "dE00, mean"))
         rows += [(name, r.setting, r.numbers["effects"], 1e3 * r.time_s, r.error, r.numbers["p95"]) for r in readings]
-    return Study("Rendering", "Each point is a tolerance of render-osmesa: effects whose estimated worth stays below it are left out. "
-                 "The time is that of shading every pixel once, which is all that effects change; the error is that of random visible pixels against the exact lobe model under the whole environment. "
-                 "The texture looks into a cube for each exponent or into the levels of one (--texture-maps); the brushed paint, under a lamp, is drawn about tilted normals.", figures,
-                 [("What is left out, and what that costs", ("scene", "method, effects to dE00", "drawn", "shading (ms)", "dE00 mean", "95 %"), rows)])
+    return Study("Rendering", "Each point is a tolerance of render-osmesa: effects whose estimated worth stays below it are left "
+                 "out. The time is that of shading every pixel once, which is all that effects change; the error is that of "
+                 "random visible pixels against the exact lobe model under the whole environment. The texture looks into a cube "
+                 "for each exponent or into the levels of one (--texture-maps); the brushed paint, under a lamp, is drawn about "
+                 "tilted normals.", figures,
+                 [("What is left out, and what that costs",
+                   ("scene", "method, effects to dE00", "drawn", "shading (ms)", "dE00 mean", "95 %"), rows)])

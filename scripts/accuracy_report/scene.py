@@ -35,8 +35,11 @@ class Settings:
         return ("--effects", self.effects) if self.effects in ("all", "none") else ("--tolerance", self.effects)
 
     def __str__(self):
-        plain = self.effects in ("all", "none")
-        effects = self.effects if plain else f"integral to {self.integral()} dE00" if self.integral() else f"effects to {self.effects} dE00"
+        limit = self.integral()
+        if self.effects in ("all", "none"):
+            effects = self.effects
+        else:
+            effects = f"integral to {limit} dE00" if limit else f"effects to {self.effects} dE00"
         return f"{self.basis}, {self.method}{', views' if self.views else ''}, prefilter {self.prefilter:g}, {effects}"
 
     def commands(self):
@@ -105,8 +108,8 @@ class Scene:
             results, taken = self.run.tool("render-osmesa", *self.words(settings), *more)
             frames.append(results["frame_ms"])
             seconds.append(taken)
-        return {"fit_s": self.fit(settings)[2], "prefilter_s": self.environment(settings)[1], "render_s": min(seconds), "frame_ms": min(frames),
-                "all_render_s": tuple(seconds)}
+        return {"fit_s": self.fit(settings)[2], "prefilter_s": self.environment(settings)[1], "render_s": min(seconds),
+                "frame_ms": min(frames), "all_render_s": tuple(seconds)}
 
     def error(self, settings, *more, checks=None):
         """dE00 of the fit to the readings and of the picture to the reference integrator, the time of shading, and the plan."""

@@ -21,7 +21,8 @@ QUICK = (0, 4, 8)
 LEAST = 0.01  # of the differences in the plot: below, nobody sees them
 
 # Each effect in the scene (of the list above) where it matters.
-MATTERS = {"diffuse": 0, "lobes": 3, "gloss": 3, "mirror": 2, "fresnel": 2, "horizon": 3, "travel": 7, "operator": 4, "anisotropy": 8, "lights": 8}
+MATTERS = {"diffuse": 0, "lobes": 3, "gloss": 3, "mirror": 2, "fresnel": 2, "horizon": 3, "travel": 7, "operator": 4,
+           "anisotropy": 8, "lights": 8}
 MEASURED = {"overcast": "uffizi.hdr", "studio": "studio_small_03_1k.hdr", "sunset": "venice_sunset_1k.hdr"}
 
 
@@ -36,7 +37,8 @@ def sky(zenith, horizon, ground, width=256):
     return exr.exr_file(rows, exr.FLOAT, "an even sky between two colors")
 
 
-MADE = {"overcast": ((1, 1, 1), (0.25, 0.25, 0.25), (0.2, 0.2, 0.2)), "sunset": ((0.2, 0.3, 0.6), (2.5, 0.9, 0.3), (0.15, 0.1, 0.06))}
+MADE = {"overcast": ((1, 1, 1), (0.25, 0.25, 0.25), (0.2, 0.2, 0.2)),
+        "sunset": ((0.2, 0.3, 0.6), (2.5, 0.9, 0.3), (0.15, 0.1, 0.06))}
 
 
 class Stage:
@@ -81,7 +83,8 @@ class Stage:
         paint, wears, light = scene
         if wears == "texture":
             wears, more = "fitted", (*more, "--texture", f"Hood={self.run.data / 'nameplate.sbrdf.exr'}")
-        return ("--mesh", self.run.mesh, *SIZE, "--effects", effects, *self.light(light), "--paint", self.paint(paint, wears), *more, "-o", self.run.work / "picture.exr")
+        return ("--mesh", self.run.mesh, *SIZE, "--effects", effects, *self.light(light), "--paint", self.paint(paint, wears),
+                *more, "-o", self.run.work / "picture.exr")
 
     def picture(self, scene, effects, *more):
         """The report of a scene with these effects, checked."""
@@ -103,17 +106,21 @@ def scene_readings(stage, scene):
     readings = []
     for effects, results in (("auto", planned), ("all", full)):
         times = stage.run.timed(functools.partial(stage.shading, scene, effects), 1e-3 * results["left_out"]["shading_ms"])
-        readings.append(Reading(f"{named(scene)}, effects {effects}", error=results["error"]["de00_p95"], method=named(scene), default=effects == "auto", **times, numbers=
-                                {"mean": results["error"]["de00_mean"], "to_all": results["left_out"]["de00_p95"], "predicted": results["plan_de00_p95"]}))
+        numbers = {"mean": results["error"]["de00_mean"], "to_all": results["left_out"]["de00_p95"],
+                   "predicted": results["plan_de00_p95"]}
+        readings.append(Reading(f"{named(scene)}, effects {effects}", error=results["error"]["de00_p95"], method=named(scene),
+                                default=effects == "auto", **times, numbers=numbers))
     ms = [1e3 * reading.time_s for reading in readings]
-    return (named(scene), " ".join(gone) or "nothing", planned["plan_de00_p95"], left["de00_p95"], planned["error"]["de00_p95"], full["error"]["de00_p95"],
-            *ms, left["predicted_ms"], planned["plan_ms"]), readings
+    return (named(scene), " ".join(gone) or "nothing", planned["plan_de00_p95"], left["de00_p95"],
+            planned["error"]["de00_p95"], full["error"]["de00_p95"], *ms, left["predicted_ms"], planned["plan_ms"]), readings
 
 
 def effect_row(stage, effect, scene):
     without = stage.picture(scene, f"all,-{effect}", "--explain")
-    truth = [row["truth_de00_p95"] for row in without["plan"] if row["effect"] == effect and row.get("truth_de00_p95") is not None]
-    return (effect, named(scene), without["plan_de00_p95"], without["left_out"]["de00_p95"], without["error"]["de00_p95"], truth[0] if truth else math.nan)
+    truth = [row["truth_de00_p95"] for row in without["plan"]
+             if row["effect"] == effect and row.get("truth_de00_p95") is not None]
+    return (effect, named(scene), without["plan_de00_p95"], without["left_out"]["de00_p95"], without["error"]["de00_p95"],
+            truth[0] if truth else math.nan)
 
 
 def study(run):
@@ -125,11 +132,18 @@ def study(run):
         readings += pair
     effects = [effect_row(stage, effect, SCENES[i]) for effect, i in MATTERS.items() if not run.quick or i in QUICK]
     within = all(predicted / 2 < checked < 2 * predicted for _, _, predicted, _, checked, _ in effects)
-    run.say(f"scenes: {sum(1 for r in scenes if r[3] <= 0.5)} of {len(scenes)} within the tolerance; every effect {'' if within else 'NOT '}within a factor 2")
-    figure = Figure("scenes", "As planned, and with all effects: dE00 to the exact integral against time", readings, "time of shading every pixel once (s)", "dE00, 95 % of the pixels", apart=True,
-                    y=lambda r: max(r.error, LEAST), note=f"Each line is a scene, its left end as planned (--effects auto), its right end with all effects. Errors below {LEAST} are drawn at {LEAST}.")
-    return Study("Scenes", "What --effects auto leaves out of ten scenes at a tolerance of 0.5 dE00, and how far the picture is then from that of all effects and from the exact integral; "
-                 "and, for every effect, what the plan says that it is worth beside the error of the picture without it. "
-                 "All differences are 95th percentiles of CIEDE2000; those to the exact integral are of random pixels, the others of all.", [figure],
-                 [("What is left out", ("scene", "left out", "predicted", "to all effects", "check, planned", "check, all", "shading (ms)", "all effects (ms)", "predicted (ms)", "planning (ms)"), scenes),
-                  ("Each effect forced off where it matters", ("effect", "scene", "predicted", "to all effects", "check", "exact, alone"), effects)])
+    run.say(f"scenes: {sum(1 for r in scenes if r[3] <= 0.5)} of {len(scenes)} within the tolerance; "
+            f"every effect {'' if within else 'NOT '}within a factor 2")
+    figure = Figure("scenes", "As planned, and with all effects: dE00 to the exact integral against time", readings,
+                    "time of shading every pixel once (s)", "dE00, 95 % of the pixels", apart=True,
+                    y=lambda r: max(r.error, LEAST),
+                    note="Each line is a scene, its left end as planned (--effects auto), its right end with all effects. "
+                    f"Errors below {LEAST} are drawn at {LEAST}.")
+    return Study("Scenes", "What --effects auto leaves out of ten scenes at a tolerance of 0.5 dE00, and how far the picture is "
+                 "then from that of all effects and from the exact integral; and, for every effect, what the plan says that it "
+                 "is worth beside the error of the picture without it. All differences are 95th percentiles of CIEDE2000; those "
+                 "to the exact integral are of random pixels, the others of all.", [figure],
+                 [("What is left out", ("scene", "left out", "predicted", "to all effects", "check, planned", "check, all",
+                                        "shading (ms)", "all effects (ms)", "predicted (ms)", "planning (ms)"), scenes),
+                  ("Each effect forced off where it matters",
+                   ("effect", "scene", "predicted", "to all effects", "check", "exact, alone"), effects)])

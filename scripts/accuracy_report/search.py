@@ -35,11 +35,13 @@ def study(run):
         for metric in ("de76", "de00"):
             by_method = {}
             for method in ("scan", "tree"):
-                words = ("colorsnap", queries, "--library", library, "--metric", metric, "-k", 5, "--method", method, "-o", run.work / "out.tsv")
+                words = ("colorsnap", queries, "--library", library, "--metric", metric, "-k", 5, "--method", method,
+                         "-o", run.work / "out.tsv")
                 runs = [run.tool(*words)[0] for _ in range(1 if run.quick else 2)]
                 by_method[method] = distances(runs[0])
                 times = tuple(1e-6 * results["query_us"] for results in runs)
-                readings.append(Reading(setting=f"{size} paints", time_s=min(times), error=0.0, method=f"{metric} {method}", raw_s=times, numbers={"size": size}))
+                readings.append(Reading(setting=f"{size} paints", time_s=min(times), error=0.0, method=f"{metric} {method}",
+                                        raw_s=times, numbers={"size": size}))
             if by_method["scan"] != by_method["tree"]:
                 raise AssertionError(f"tree and scan differ at {size} paints in {metric}")
             scan, tree = (r.time_s for r in readings[-2:])
@@ -47,5 +49,6 @@ def study(run):
     figure = Figure("search", "Time of a query against library size, both methods exact", readings, x_label="paints",
                     y_label="time of a query (s)", front=False, x=lambda r: r.numbers["size"], y=lambda r: r.time_s,
                     note="No front: there is no error to trade.")
-    return Study("Nearest paint", "Tree and scan give the same distances to the last bit; only time differs. colorsnap takes the faster one by itself.",
-                 [figure], [("Time of a query", ("metric", "paints", "scan (us)", "tree (us)", "scan / tree"), rows)])
+    return Study("Nearest paint", "Tree and scan give the same distances to the last bit; only time differs. "
+                 "colorsnap takes the faster one by itself.", [figure],
+                 [("Time of a query", ("metric", "paints", "scan (us)", "tree (us)", "scan / tree"), rows)])

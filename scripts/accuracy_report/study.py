@@ -90,7 +90,10 @@ class Study:
     ROUNDS = 12
 
     def settle(self):
-        """Takes the times of defaults that seem dominated, and of what dominates them, again in turn: no verdict on one busy moment."""
+        """Takes the times of defaults that seem dominated, and of what dominates them, again in turn.
+
+        So no verdict rests on one busy moment.
+        """
         for figure in self.figures:
             for _ in range(self.ROUNDS):
                 doubted = [r for pair in figure.dominations(self.SCATTER) for r in pair]

@@ -60,7 +60,8 @@ class Answer:
 
 def fits(job, basis):
     """Every fit to a basis, cheapest first: (settings, dE00 of the fit in each scene)."""
-    every = [Settings(basis, method, views, MAXIMAL.prefilter, "all") for method, views in itertools.product(METHODS, (False, True))]
+    every = [Settings(basis, method, views, MAXIMAL.prefilter, "all")
+             for method, views in itertools.product(METHODS, (False, True))]
     return [(s, [scene.fit(s)[1] for scene in job.scenes]) for s in sorted(every, key=lambda s: job.scenes[0].fit(s)[2])]
 
 
@@ -127,11 +128,13 @@ def told(scene, target):
     dearest = scene.picture(MAXIMAL)
     answer = found(Job([scene]), target)
     if answer.de00() > target:
-        print(f"{name}: dE00 {target:g} is not reached: {total_de00(dearest):.2f} (fit {dearest['fit_de00']:.2f}, picture {dearest['render_de00']:.2f}) with {MAXIMAL}", flush=True)
+        print(f"{name}: dE00 {target:g} is not reached: {total_de00(dearest):.2f} (fit {dearest['fit_de00']:.2f}, "
+              f"picture {dearest['render_de00']:.2f}) with {MAXIMAL}", flush=True)
         return False
     settings, proof = answer.settings, answer.errors[0]
     seconds, most = total_s(scene.cost(settings)), total_s(dearest)
-    print(f"{name}: dE00 {total_de00(proof):.2f} (fit {proof['fit_de00']:.2f}, picture {proof['render_de00']:.2f}, {PROVING} pixels) in {seconds:.2f} s; "
+    print(f"{name}: dE00 {total_de00(proof):.2f} (fit {proof['fit_de00']:.2f}, picture {proof['render_de00']:.2f}, "
+          f"{PROVING} pixels) in {seconds:.2f} s; "
           f"everything at its dearest: {total_de00(dearest):.2f} in {most:.2f} s, {most / seconds:.1f} times as long")
     if settings.basis in STEEP:
         print(f"  {settings.basis}.basis.xml: exponents {', '.join(map(str, STEEP[settings.basis]))} and a mirror")
