@@ -16,7 +16,8 @@ JOB_S = 0.5  # what an engine and Python add to a shard
 
 
 # Seconds on one core of a server of 2020, for the plan that is printed before anything is measured.
-TYPICAL = {"clean_s": 0.0001, "environment_s": 1.0, "stream_s": 0.0005, "picture_s": 0.25, "integral_s": 2.0, "check_pixel_s": 0.01, "start_s": 0.1}
+TYPICAL = {"clean_s": 0.0001, "environment_s": 1.0, "stream_s": 0.0005, "picture_s": 0.25, "integral_s": 2.0,
+           "check_pixel_s": 0.01, "start_s": 0.1}
 
 
 def roughly_counted(path):
@@ -33,8 +34,10 @@ def announce(options):
     """Prints what is going to be done, with a time from typical costs; the measured one follows the preparation."""
     paints = roughly_counted(options.library)
     scenes = len(options.env) * len(options.mesh) * len(options.view)
-    probed_s = min(PROBE, paints) * 2 * TYPICAL["stream_s"] + min(PICTURED, paints) * scenes * TYPICAL["picture_s"] + 2 * TYPICAL["start_s"]
-    prepare_s = paints * TYPICAL["clean_s"] + sum(not env.endswith(".env.exr") for env in options.env) * TYPICAL["environment_s"] + probed_s
+    pictured_s = min(PICTURED, paints) * scenes * TYPICAL["picture_s"]
+    probed_s = min(PROBE, paints) * 2 * TYPICAL["stream_s"] + pictured_s + 2 * TYPICAL["start_s"]
+    unfiltered = sum(not env.endswith(".env.exr") for env in options.env)
+    prepare_s = paints * TYPICAL["clean_s"] + unfiltered * TYPICAL["environment_s"] + probed_s
     picture_s, choice, checked = TYPICAL["picture_s"], "", ""
     if options.target_de00:
         picture_s += options.check * TYPICAL["check_pixel_s"]
@@ -59,7 +62,8 @@ def clean_library(options, out):
         converted, reports = out / "converted.paints.xml", [out / "convert.tmp.json", out / "clean.tmp.json"]
         tools.run("paint-convert", "-q", "-k", "--report", reports[0], "--to", "xml", options.library, "-o", converted)
         tools.run("paint-stats", "-q", "-k", "-f", "paints", "--report", reports[1], converted, "-o", clean)
-        files.write_json(rejected, [warning for report in reports for warning in files.read_json(report)["results"].get("warnings", [])])
+        files.write_json(rejected, [warning for report in reports
+                                    for warning in files.read_json(report)["results"].get("warnings", [])])
         for file in [converted, *reports]:
             file.unlink()
 

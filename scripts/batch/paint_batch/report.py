@@ -55,8 +55,8 @@ class Verdict:
         if self.missed:
             lines.append(f"  not within, worst first; {found['missed_by_fit']} of these {len(self.missed)} by their fit alone:")
         for row in self.missed[: self.NAMED]:
-            lines.append(f"    {row['name']} {row['total_de00']:.2f} (fit {row['de00_mean']:.2f}, picture {row['picture_de00']:.2f}, "
-                         f"{row['worst_scene']})")
+            lines.append(f"    {row['name']} {row['total_de00']:.2f} (fit {row['de00_mean']:.2f}, "
+                         f"picture {row['picture_de00']:.2f}, {row['worst_scene']})")
         if len(self.missed) > self.NAMED:
             lines.append(f"    and {len(self.missed) - self.NAMED} more: see not_within in report.json")
         return "".join(f"{line}\n" for line in lines)
@@ -124,7 +124,8 @@ def book(out, chapter):
     places = list(library.places(out / "fitted.paints.xml"))
     page = out / f"book-{chapter + 1:03d}.html"
     if not numbers:
-        files.write(page, f"<!DOCTYPE html><title>Paints {first + 1} to {min(last, plan['paints'])}</title><p>No paint of this chapter could be drawn; see report.json.\n")
+        files.write(page, f"<!DOCTYPE html><title>Paints {first + 1} to {min(last, plan['paints'])}</title>"
+                    "<p>No paint of this chapter could be drawn; see report.json.\n")
         return
     with tempfile.TemporaryDirectory(prefix="paint-batch-") as scratch:
         folder = pathlib.Path(scratch)
@@ -137,6 +138,5 @@ def book(out, chapter):
         width, height = plan["size"].split("x")
         fitted = ["--fitted"] if "target" in plan else []  # as --basis alone would not fit them
         subprocess.run([program, folder / "chapter.paints.xml", "--quiet", "--jobs", "1", "--basis", plan["basis"], *fitted,
-                        "--mesh", scene["mesh"], "--env", scene["env"], "--size", f"{width}x{height}", "--pictures", folder, "--title",
-                        f"Paints {first + 1} to {min(last, plan['paints'])}", "-o", page], check=True,
-                       cwd=folder)
+                        "--mesh", scene["mesh"], "--env", scene["env"], "--size", f"{width}x{height}", "--pictures", folder,
+                        "--title", f"Paints {first + 1} to {min(last, plan['paints'])}", "-o", page], check=True, cwd=folder)
