@@ -19,6 +19,9 @@ namespace goniochrome {
 struct SketchLimits {
   double median_de76 = 10;     // half of the pixels may differ by more than the found paint explains
   double least_span_deg = 20;  // of aspecular angles
+  // The standard error of a face that no pixel shows. More is more than measured paints differ from their mean at 15
+  // deg, RMS, and tells less of the face than no picture does.
+  double face_error_de76 = 50;
 };
 
 struct SketchFit {

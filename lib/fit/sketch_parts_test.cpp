@@ -177,5 +177,24 @@ TEST(SketchSolve, the_search_puts_outliers_aside_and_stays_in_its_domain) {
   EXPECT_LE(found.values[0], 1.5);
 }
 
+// Textbook: the slope of a line through points of spread s has the error s / sqrt(sum (x - mean)^2); a value that
+// nothing depends on may be anything. The bound is three times 1/sqrt(1200), to which 600 differences tell s.
+TEST(SketchSolve, the_errors_of_values_are_those_of_a_line) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> noise(0, 0.1);
+  std::vector<double> ys(600);
+  for (double& y : ys) y = noise(random);
+  const auto residuals = [&](const std::vector<double>& v, std::vector<double>& out) {
+    for (std::size_t i = 0; i < ys.size(); ++i) out[i] = v[0] * static_cast<double>(i / 3) / 10 + v[1] - ys[i];
+  };
+  const auto found = robust_search({{1, 0.1, -10, 10}, {1, 0.1, -10, 10}, {1, 0.1, -10, 10}},
+                                   std::vector<double>(200, 1.0), residuals);
+  double squares = 0;
+  for (int i = 0; i < 200; ++i) squares += 3 * (i / 10.0 - 9.95) * (i / 10.0 - 9.95);
+  ASSERT_EQ(found.error.size(), 3U);
+  EXPECT_NEAR(found.error[0] / (0.1 / std::sqrt(squares)), 1, 0.1);
+  EXPECT_GT(found.error[2], 1e9);
+}
+
 }  // namespace
 }  // namespace goniochrome

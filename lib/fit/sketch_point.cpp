@@ -144,6 +144,20 @@ bool is_as_good(double search_cost, double curve_cost, bool extrapolates) {
   return search_cost <= 1.15 * curve_cost + 0.02 || (curve_cost > kNoisy && search_cost <= 1.6 * curve_cost);
 }
 
+// Why the paint found or, where it is not as good, the curve is no answer; "" where it is one. Free lobes hold
+// themselves to what is seen.
+std::string match_problem(const std::vector<SketchCell>& cells, const FoundPaint& found, bool free_lobes,
+                          const SketchFit& fit, const SketchLimits& limits) {
+  if (fit.median_de76 > limits.median_de76) return poor_match(fit);
+  const std::vector<double>& error = found.search.error;  // begins with the face's
+  if (free_lobes || is_seen(cells, kFace_deg) || std::hypot(error[0], error[1], error[2]) <= limits.face_error_de76)
+    return "";
+  return fmt::format(
+      "the pixels show aspecular angles from {:.1f} to {:.1f} deg, which leave the color at {} deg open by more than "
+      "{} dE76",
+      fit.seen_from_deg, fit.seen_to_deg, kFace_deg, limits.face_error_de76);
+}
+
 SketchCurve curve_of(const FoundPaint& found, const Basis& basis) {
   SketchCurve curve;
   curve.exponents = basis.exponents;
@@ -234,8 +248,9 @@ SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, con
   const bool as_good = is_as_good(found.search.cost, better.cost, !is_seen(cells, kFace_deg));
   curve = as_good ? curve_of(found, basis) : better.curve;
   judge();
-  if (fit.median_de76 > limits.median_de76) {
-    fall_back(matt, poor_match(fit), fit);
+  const bool free_lobes = !as_good && better.curve.travel_deg == 0;
+  if (const std::string problem = match_problem(cells, found, free_lobes, fit, limits); !problem.empty()) {
+    fall_back(matt, problem, fit);
     curve = {}, curve.diffuse = matt;
     judge();
     return fit;

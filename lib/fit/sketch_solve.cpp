@@ -64,11 +64,16 @@ Derivatives weighted(const Eigen::MatrixXd& j, const std::vector<double>& r, con
   return d;
 }
 
-double condition_of(const Eigen::MatrixXd& gram) {
+// The condition, and the standard errors where residuals of this variance are left: what it becomes by the inverse of
+// the gram matrix. A value that no residual feels may be anything.
+void take_errors(const Eigen::MatrixXd& gram, double variance, SearchResult& result) {
   const Eigen::VectorXd length = gram.diagonal().cwiseSqrt().cwiseMax(1e-12);
   const Eigen::MatrixXd scaled = length.cwiseInverse().asDiagonal() * gram * length.cwiseInverse().asDiagonal();
-  const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(scaled).eigenvalues();
-  return std::sqrt(values[values.size() - 1] / std::max(values[0], 1e-24));
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scaled);
+  const Eigen::VectorXd values = solver.eigenvalues().cwiseMax(1e-24);
+  const Eigen::VectorXd inverse = solver.eigenvectors().cwiseAbs2() * values.cwiseInverse();  // its diagonal
+  result.condition = std::sqrt(values[values.size() - 1] / values[0]);
+  for (Eigen::Index k = 0; k < length.size(); ++k) result.error.push_back(std::sqrt(variance * inverse[k]) / length[k]);
 }
 
 }  // namespace
@@ -162,7 +167,8 @@ SearchResult robust_search(const std::vector<SearchParameter>& start, const std:
     if (!(gained > 1e-7 * before)) break;
   }
   result.cost = robust_cost(r, importance);
-  result.condition = condition_of(d.gram);
+  const double freedoms = static_cast<double>(r.size()) - static_cast<double>(start.size());
+  take_errors(d.gram, weighted_squares(r, robust_weights(r, importance)) / std::max(freedoms, 1.0), result);
   return result;
 }
 

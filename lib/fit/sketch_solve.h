@@ -31,6 +31,7 @@ struct SearchResult {
   double cost = 0;       // robust_cost() at the end
   double condition = 0;  // of the derivatives at the end, each column of length 1
   int iterations = 0;
+  std::vector<double> error = {};  // of each value, its standard error by the residuals at the end
 };
 
 // Least robust squares by Levenberg and Marquardt's damped steps with central differences. residuals(values, out) fills

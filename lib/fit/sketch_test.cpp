@@ -293,6 +293,48 @@ TEST(Sketch, HardCase_sketch_rank_one_angle_and_few_pixels_fall_back_to_the_matt
                             .unit = "dE00"});
 }
 
+// Fifteen pixels seen far from specular, as a display has them, to half a code of eight bits: they show the flop, of
+// which any face may be the other end. The control: what the search answers there is mostly no color at all, at the end
+// of its domain or far above the brightest paints.
+TEST(Sketch, HardCase_sketch_rank_pixels_far_from_specular_fall_back_to_the_matt_color) {
+  std::mt19937_64 random(17);
+  AovFile ball = sphere(120, kLamp);
+  Image mask{120, 120, 1, std::vector<float>(120 * 120, 0), {}};
+  std::vector<std::size_t> far;
+  for (std::size_t i = 0; i < mask.data.size(); ++i)
+    if (const float* p = &ball.image.data[11 * i]; p[6] > 0 && p[4] > 97 && p[4] < 143 && p[5] > 0.1F) far.push_back(i);
+  for (std::size_t i = 0; i < 15; ++i) mask.data[far[i * far.size() / 15]] = 1;
+  int no_color = 0;
+  for (int i = 0; i < 10; ++i) {
+    const Paint paint = random_paint(random);
+    shade(ball, lobes(paint));
+    Picture p = picture(ball);
+    p.scene_linear = false;
+    for (float& value : p.rgb.data) value = std::pow(std::round(255 * std::pow(value, 1 / 2.2F)) / 255, 2.2F);
+    SketchInput in = input(ball, p);
+    in.mask = &mask, in.rule = PixelRule::kAll;
+    const SketchFit found = fit(in);
+    EXPECT_EQ(found.status, "diffuse_fallback") << i;
+    EXPECT_THAT(found.reason, HasSubstr("leave the color at 15 deg open")) << i;
+    EXPECT_LE(delta_e_76(found.appearance.face, paint.appearance->flop), 10) << i;  // what was seen
+    SketchLimits any;
+    any.face_error_de76 = INFINITY;
+    const Lab face = sketch_point(in, *sketch_pixels(in), basis(), any, false).appearance.face;
+    no_color += face.L < 1 || face.L > 150 || std::hypot(face.a, face.b) > 150;
+  }
+  EXPECT_GE(no_color, 3);
+
+  // A wedge of the same picture up to 25 deg tells the face.
+  const Paint paint = designed({70, 20, -10}, {25, 8, -4}, 70);
+  shade(ball, lobes(paint));
+  const Picture p = picture(ball);
+  for (std::size_t i = 0; i < mask.data.size(); ++i) mask.data[i] = ball.image.data[11 * i + 4] > 25 ? 1 : 0;
+  SketchInput in = input(ball, p);
+  in.mask = &mask;
+  EXPECT_EQ(fit(in).status, "fitted");
+  EXPECT_LE(worst_de00(fit(in), *paint.appearance), 1);
+}
+
 TEST(Sketch, HardCase_sketch_rank_all_clipped_leaves_no_pixel_and_says_so) {
   AovFile ball = sphere(60, kLamp);
   shade(ball, lobes(designed({60, 0, 0}, {20, 0, 0}, 60)));
