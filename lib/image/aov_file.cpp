@@ -114,7 +114,9 @@ Result<AovFile> read_aov_file(const std::string& path) {
     if (!effect.is_object() || !effect.contains("effect") || !effect["effect"].is_string()) continue;
     const std::string decision =
         effect.value("decision", Json()).is_string() ? effect["decision"].get<std::string>() : "";
-    if (decision == "drawn" || decision == "forced on") file.drawn.push_back(effect["effect"].get<std::string>());
+    const auto name = effect["effect"].get<std::string>();
+    if (decision == "drawn" || decision == "forced on") file.drawn.push_back(name);
+    if (decision == "dropped" || decision == "forced off" || decision == "over budget") file.left_out.push_back(name);
   }
   file.image = std::move(read.front().image);
   return file;

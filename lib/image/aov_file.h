@@ -30,6 +30,7 @@ struct AovFile {
   std::vector<std::string> parts, materials;           // one material for each part, "" where the mesh named none
   std::string command;                                 // that made the file
   std::vector<std::string> drawn;                      // effects of the picture, by render-osmesa's names
+  std::vector<std::string> left_out;                   // and those that the scene has and the picture does not
   ReflectionOperator reflection = iso_rgb_operator();  // by which the effect "operator" was drawn
 
   // The channel's place in a pixel. Error: the file lacks it, with the command that makes it.

@@ -56,6 +56,19 @@ void warn_of_effects(const AovFile& buffers, cli::Session& session) {
                     buffers.path, unknown));
 }
 
+// What the picture lacks of the paint that it was drawn with.
+void warn_of_left_out(const AovFile& buffers, cli::Session& session) {
+  std::vector<std::string> light;
+  for (const std::string& name : buffers.left_out)
+    if (name == "diffuse" || name == "mirror" || name.starts_with("lobe-") || name.starts_with("gloss-"))
+      light.push_back(name);
+  if (light.empty()) return;
+  session.warn(
+      fmt::format("{} was drawn without {}, so that the paint found lacks it too, most of all near specular: render "
+                  "picture and buffers with --effects all",
+                  buffers.path, fmt::join(light, ", ")));
+}
+
 Result<void> gather(const Options& options, Material& material) {
   if (!options.shift.empty() && options.shift.size() != 2)
     return usage_error("--shift is given {} numbers: write X,Y", options.shift.size());
@@ -193,8 +206,9 @@ std::string plan_text(const Options& options) {
                       options.env.empty()
                           ? fmt::format(", light below 0.05, the {} deg about specular", shortest(options.glare_deg))
                           : "");
-  return text + fmt::format("fallback: the matt color, where half of the pixels differ by more than {} dE76\n",
-                            shortest(options.most_de76));
+  return text + fmt::format("fallback: the matt color, where half of the pixels differ by more than {} dE76{}\n",
+                            shortest(options.most_de76),
+                            options.env.empty() ? ", or where all are too far from specular" : "");
 }
 
 }  // namespace
@@ -206,6 +220,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   const SketchInput& input = material.input;
   for (const std::string& warning : material.picture.warnings) session.warn(warning);
   if (!options.env.empty()) warn_of_effects(material.buffers, session);
+  warn_of_left_out(material.buffers, session);
   const Stopwatch clock;
   GONIO_ASSIGN(const SketchPixels pixels, sketch_pixels(input));
   GONIO_TRY(check_usable(pixels, options));

@@ -153,6 +153,17 @@ planted() {
   [[ $output == *"wood.exr was drawn with effects that the search does not know"*"--effects auto,-texture"* ]] || { echo "$output"; return 1; }
 }
 
+@test "light that the picture was drawn without is told with its remedy" {
+  scene="--mesh $TESTDATA/speed-shape.obj --light 35,45 --paint fitted.xml#steel --size 320x200 --samples 1 --aov normal,aspecular,lambert,mask,part"
+  render-osmesa -q $scene --effects all,-lobe-20 -o without.exr
+  run sketch-fit -i without.exr -b without.exr -o found.xml
+  [ "$status" -eq 0 ]
+  [[ $output == *"without.exr was drawn without lobe-20, "*"--effects all"* ]] || { echo "$output"; return 1; }
+  render-osmesa -q $scene --effects all -o with.exr
+  run sketch-fit -i with.exr -b with.exr -o found.xml
+  [[ $output != *"drawn without"* ]] || { echo "$output"; return 1; }
+}
+
 @test "every format: 16 bits, gray, alpha" {
   oiiotool steel.png -d uint16 -o deep.png
   oiiotool steel.png -d uint16 -o deep.tif
@@ -236,6 +247,13 @@ EOF
   grep -q 'class="solid"' found.xml
   fit -i ruby.exr -b steel.exr --max-de 0 --pixels all
   [ "$(result status)" = diffuse_fallback ]
+  # Of so small a car nothing is seen nearer to specular than 69 deg.
+  small="--mesh $TESTDATA/speed-shape.obj --light 35,45 --paint fitted.xml#steel --size 40x25 --samples 1"
+  render-osmesa -q $small -o small.png
+  render-osmesa -q $small --aov normal,aspecular,lambert,mask,part -o small.exr
+  fit -i small.png -b small.exr
+  [ "$(result status)" = diffuse_fallback ]
+  [[ $(result reason) == *"deg, which leave the color at 15 deg open by more than 50 dE76" ]]
 }
 
 @test "a moved picture is told with the shift that mends it" {
