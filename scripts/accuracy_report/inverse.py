@@ -89,8 +89,8 @@ def study(run):
     sketch_rows = [(r.setting, r.numbers["used"], r.time_s, r.numbers["fit_s"], r.error, r.numbers["model"]) for r in seen]
     trompe_rows = [(r.setting, 1e3 * r.time_s, r.numbers["before"], r.error, r.numbers["largest"]) for r in panels + modes[1:]]
     text = ("Two paints with known colors are drawn whole under a lamp and in the environment, as PNG, and sketch-fit looks for "
-            "them in pictures of several sizes; the error is the mean dE00 of the paint found at the export angles. trompe-fit looks "
-            "for the paint of the second panel for every paint of the library, under lights at 30, 45 and 60 deg and viewers "
+            "them in pictures of several sizes; the error is the mean dE00 of the paint found at the export angles. trompe-fit "
+            "looks for the paint of the second panel for every paint of the library, under lights at 30, 45 and 60 deg and viewers "
             "from 15 to 105 deg beside their mirror directions; what is left is the difference of the two panels.")
     return Study("Paints looked for", text, figures,
                  [("sketch-fit",
