@@ -39,6 +39,12 @@ inline Rgb as_displayed(const Rgb& rgb, const SketchInput& input) {
   return input.edited->scene_linear ? rgb : in_display_gamut(rgb);
 }
 
+// Whether a paint of weights >= 0 can have a color within that distance of this reflectance factor.
+inline bool is_paint_color(const Rgb& rgb, double within_de76) {
+  const Rgb nearest{std::max(rgb.x, 0.0), std::max(rgb.y, 0.0), std::max(rgb.z, 0.0)};
+  return delta_e_76(paint_lab(rgb), paint_lab(nearest)) <= within_de76;
+}
+
 // Turns `fit` into the matt color, of which `color` is the reflectance factor.
 void fall_back(const Rgb& color, const std::string& reason, SketchFit& fit);
 std::string poor_match(const SketchFit& fit);

@@ -8,6 +8,7 @@
 
 #include "brdf/gloss.h"
 #include "brdf/lobe_model.h"
+#include "fit/sketch_common.h"
 #include "fit/sketch_gloss.h"
 #include "fit/sketch_icc.h"
 #include "fit/sketch_picture.h"
@@ -194,6 +195,16 @@ TEST(SketchSolve, the_errors_of_values_are_those_of_a_line) {
   ASSERT_EQ(found.error.size(), 3U);
   EXPECT_NEAR(found.error[0] / (0.1 / std::sqrt(squares)), 1, 0.1);
   EXPECT_GT(found.error[2], 1e9);
+}
+
+TEST(SketchSolve, a_color_beyond_all_light_is_no_color_of_a_paint) {
+  const auto rgb = [](const Lab& lab) { return rgb_from_lab(lab, *white_point({})); };
+  EXPECT_TRUE(is_paint_color(rgb({75, -5, -20}), 0.01));
+  EXPECT_TRUE(is_paint_color(rgb({130, 10, 30}), 0.01));  // brighter than white, as metal is
+  EXPECT_FALSE(is_paint_color(rgb({71, -202, -28}), 10));
+  const Rgb outside{-0.001, 0.4, 0.4};
+  EXPECT_FALSE(is_paint_color(outside, 0.01));
+  EXPECT_TRUE(is_paint_color(outside, 10));
 }
 
 }  // namespace

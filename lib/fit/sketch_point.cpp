@@ -144,18 +144,24 @@ bool is_as_good(double search_cost, double curve_cost, bool extrapolates) {
   return search_cost <= 1.15 * curve_cost + 0.02 || (curve_cost > kNoisy && search_cost <= 1.6 * curve_cost);
 }
 
-// Why the paint found or, where it is not as good, the curve is no answer; "" where it is one. Free lobes hold
-// themselves to what is seen.
-std::string match_problem(const std::vector<SketchCell>& cells, const FoundPaint& found, bool free_lobes,
-                          const SketchFit& fit, const SketchLimits& limits) {
-  if (fit.median_de76 > limits.median_de76) return poor_match(fit);
-  const std::vector<double>& error = found.search.error;  // begins with the face's
-  if (free_lobes || is_seen(cells, kFace_deg) || std::hypot(error[0], error[1], error[2]) <= limits.face_error_de76)
-    return "";
-  return fmt::format(
-      "the pixels show aspecular angles from {:.1f} to {:.1f} deg, which leave the color at {} deg open by more than "
-      "{} dE76",
-      fit.seen_from_deg, fit.seen_to_deg, kFace_deg, limits.face_error_de76);
+// Why a paint found, or a quadratic, is no answer: "" where it is one, or where its face was seen. `face` is its
+// reflectance factor there, `error` the standard errors of the search, which begin with the face's.
+std::string face_problem(const std::vector<SketchCell>& cells, const Rgb& face, const std::vector<double>& error,
+                         const SketchFit& fit, const SketchLimits& limits) {
+  if (is_seen(cells, kFace_deg)) return "";
+  const bool open = std::hypot(error[0], error[1], error[2]) > limits.face_error_de76;
+  if (!open && is_paint_color(face, limits.median_de76)) return "";
+  const std::string problem =
+      open ? fmt::format("leave the color at {} deg open by more than {} dE76", kFace_deg, limits.face_error_de76)
+           : fmt::format("lead to a color at {} deg that no paint can have", kFace_deg);
+  return fmt::format("the pixels show aspecular angles from {:.1f} to {:.1f} deg, which {}", fit.seen_from_deg,
+                     fit.seen_to_deg, problem);
+}
+
+Rgb face_of(const FoundPaint& found) {
+  static const Xyz white = *white_point({});
+  const std::vector<double>& v = found.search.values;
+  return rgb_from_lab({v[0], v[1], v[2]}, white);
 }
 
 SketchCurve curve_of(const FoundPaint& found, const Basis& basis) {
@@ -220,7 +226,6 @@ SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, con
   if (!cells.empty()) fit.seen_from_deg = cells.front().aspecular_deg, fit.seen_to_deg = cells.back().aspecular_deg;
 
   SketchCurve curve;
-  curve.diffuse = mean_diffuse(cells);
   const auto judge = [&] {
     judge_sketch(
         samples.size(), with_differences,
@@ -232,13 +237,14 @@ SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, con
         },
         fit);
   };
-  if (const std::string problem = rank_problem(cells, fit, limits); !problem.empty()) {
+  const auto give_up = [&](const std::string& problem) {
+    curve = {}, curve.diffuse = mean_diffuse(cells);
     fall_back(curve.diffuse, problem, fit);
     judge();
     return fit;
-  }
+  };
+  if (const std::string problem = rank_problem(cells, fit, limits); !problem.empty()) return give_up(problem);
   const CurveFit quadratic = fit_quadratic(cells), lobes = fit_lobes(cells);
-  const Rgb matt = curve.diffuse;
   const CurveFit& better = lobes.cost <= quadratic.cost ? lobes : quadratic;
   const bool display = !input.edited->scene_linear;
   const SearchFitters fitters(basis);
@@ -248,13 +254,12 @@ SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, con
   const bool as_good = is_as_good(found.search.cost, better.cost, !is_seen(cells, kFace_deg));
   curve = as_good ? curve_of(found, basis) : better.curve;
   judge();
-  const bool free_lobes = !as_good && better.curve.travel_deg == 0;
-  if (const std::string problem = match_problem(cells, found, free_lobes, fit, limits); !problem.empty()) {
-    fall_back(matt, problem, fit);
-    curve = {}, curve.diffuse = matt;
-    judge();
-    return fit;
-  }
+  if (fit.median_de76 > limits.median_de76) return give_up(poor_match(fit));
+  std::string problem;
+  if (as_good || better.curve.travel_deg > 0)  // lobes of any weight hold to what is seen
+    problem =
+        face_problem(cells, as_good ? face_of(found) : curve.reflectance(kFace_deg), found.search.error, fit, limits);
+  if (!problem.empty()) return give_up(problem);
   take_curve(curve, fit);
   if (as_good) take_found(found, fit);
   fit.condition = quadratic.condition;

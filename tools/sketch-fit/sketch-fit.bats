@@ -254,6 +254,15 @@ EOF
   fit -i small.png -b small.exr
   [ "$(result status)" = diffuse_fallback ]
   [[ $(result reason) == *"deg, which leave the color at 15 deg open by more than 50 dE76" ]]
+  # In this one the search arrives at (71, -202, -28), which is no light.
+  echo '<paints xmlns="urn:goniochrome:paint:1" version="1"><paint name="jade"><gloss angle="60">85.7</gloss>
+    <appearance travel="63"><face L="76.8" a="-50.4" b="-12.47"/><flop L="31.23" a="-34.67" b="-0.55"/></appearance></paint></paints>' >jade.xml
+  fit-paint -q --basis "$TESTDATA/b7.basis.xml" jade.xml -o jade-fitted.xml
+  small="--mesh $TESTDATA/speed-shape.obj --light 60,25 --paint jade-fitted.xml#jade --size 72x45 --samples 1 --effects all"
+  render-osmesa -q $small -o small.png
+  render-osmesa -q $small --aov normal,aspecular,lambert,mask,part -o small.exr
+  fit -i small.png -b small.exr --basis "$TESTDATA/b7.basis.xml"
+  below "$(distance "$(lab 45as15 found.xml)" "76.8 -50.4 -12.47")" 100
 }
 
 @test "a moved picture is told with the shift that mends it" {
