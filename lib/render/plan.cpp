@@ -107,12 +107,20 @@ class Prober {
   // threads does not count.
   double seconds_per_point() const {
     if (points_.empty()) return 0;
-    constexpr double kLong_s = 2e-4, kSlow_s = 2e-3;
+    constexpr double kLong_s = 2e-4, kSlow_s = 2e-3, kEnough_s = 2e-2;
     std::vector<VisiblePoint> many = points_;
     const Stopwatch clock_once;
     const auto first = engine_.shade(points_);
     const double once_s = clock_once.elapsed_s();
-    if (once_s > kSlow_s) return once_s / static_cast<double>(points_.size());
+    if (once_s > kSlow_s) {  // again nevertheless: the machine may have been busy
+      double least_s = once_s, all_s = once_s;
+      for (int i = 0; i < 2 && (i == 0 || all_s < kEnough_s); ++i) {
+        const Stopwatch clock;
+        const auto again = engine_.shade(points_);
+        least_s = std::min(least_s, clock.elapsed_s()), all_s += clock.elapsed_s();
+      }
+      return least_s / static_cast<double>(points_.size());
+    }
     for (double s = once_s; s < kLong_s && many.size() < 8192; s += once_s)
       many.insert(many.end(), points_.begin(), points_.end());
     double best = std::numeric_limits<double>::infinity();
