@@ -218,6 +218,18 @@ in_300_mb() {
   each_writer in_300_mb
 }
 
+@test "whatever little memory there is, drawing ends by itself" {
+  if ldd "$(command -v paint-convert)" | grep -q libasan; then skip "built with a sanitizer"; fi
+  draw=$(grep '^render-osmesa' "$BATS_FILE_TMPDIR/writers")
+  for kilobytes in $(seq 350000 50000 900000); do
+    status=0
+    # shellcheck disable=SC2086
+    (ulimit -v "$kilobytes"; exec $draw -o drawn.exr) 2>err || status=$?
+    echo "$kilobytes: exit $status: $(cat err)"
+    [ "$status" -eq 0 ] || { [ "$status" -eq 3 ] && grep -qE "memory|map segment" err; }
+  done
+}
+
 localized() {
   local target=$1
   shift

@@ -2,6 +2,7 @@
 
 #include <GL/osmesa.h>
 #include <dlfcn.h>
+#include <sys/mman.h>
 
 #include <cstdlib>
 
@@ -47,6 +48,13 @@ Result<const OSMesa*> osmesa() {
                      reason);
 }
 
+// Whether as much address space is to be had as Mesa takes beside its libraries: short of it, it crashes.
+bool has_room() {
+  constexpr std::size_t kRoom = std::size_t{448} << 20;
+  void* room = mmap(nullptr, kRoom, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  return room != MAP_FAILED && munmap(room, kRoom) == 0;
+}
+
 void destroy(void* context) {
   (*osmesa())->destroy(static_cast<OSMesaContext>(context));
 }
@@ -70,6 +78,8 @@ Result<GlContext> GlContext::create() {
                         3,
                         0};
   GONIO_ASSIGN(const OSMesa* library, osmesa());
+  if (!has_room())
+    return input_error("OpenGL takes some 450 MB of address space, which are not there: give more memory");
   void* context = library->create(wanted, nullptr);
   if (context == nullptr) {
     return input_error("OSMesa makes no OpenGL 3.3 core context: install libosmesa6 of Mesa 22 or later");
