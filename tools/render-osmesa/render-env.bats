@@ -110,6 +110,19 @@ number() { sed -n '/"error": {/,/}/p' r.json | grep -m1 "\"$1\"" | sed -E 's/.*:
   [ ! -e none.exr ]
 }
 
+@test "an environment that was turned is checked, and summed, as it stands" {
+  for change in "--rotate 90" "--exposure 1"; do
+    prefilter-envmap -q small.exr --basis "$TESTDATA/b7.basis.xml" $change -o changed.env.exr
+    for engine in cpu integral; do
+      run render-osmesa --mesh "$shape" -p paints.xml#matt --env changed.env.exr $small --engine $engine --check 60 \
+        -o out.exr --report r.json
+      [ "$status" -eq 0 ]
+      [[ "$output" =~ 'the source "small.exr" of changed.env.exr is turned, brightened or cut there' ]]
+      awk -v mean="$(number de00_mean)" 'BEGIN { exit !(mean < 0.5) }'
+    done
+  done
+}
+
 @test "a file that is no environment is refused" {
   run render-osmesa --mesh "$shape" --env small.exr $small -o none.exr
   [ "$status" -eq 3 ]

@@ -7,6 +7,7 @@
 
 #include "base/text.h"
 #include "envmap/environment.h"
+#include "envmap/lobe_tree.h"
 #include "mesh/mesh.h"
 #include "paints.h"
 #include "plan_text.h"
@@ -139,28 +140,52 @@ struct Source {
   std::string name;
 };
 
-// The image that the environment was made from: as named, or beside the environment; else its mirror part.
+// Whether the image holds the light of the environment, which may have been turned, brightened or cut since: their
+// irradiance agrees about the middle of each face.
+bool is_same_light(const Environment& image, const PrefilteredEnvironment& env) {
+  constexpr double kApart = 0.03;  // of the largest; the tolerance of the diffuse map is at most a tenth in use
+  const CubeMap& map = env.diffuse.map;
+  if (map.size == 0) return true;  // nothing to tell by
+  const LobeTree exact(image);
+  const int middle = map.size / 2;
+  double largest = 0, apart = 0;
+  for (int face = 0; face < 6; ++face) {
+    const Vec3 truth = exact.lobe(cube_direction(face, middle + 0.5, middle + 0.5, map.size), 1, 1e-3);
+    for (int c = 0; c < 3; ++c) {
+      largest = std::max(largest, truth[c]);
+      apart = std::max(apart, std::abs(truth[c] - map.at(face, middle, middle)[c]));
+    }
+  }
+  return apart <= (kApart + env.diffuse.tolerance) * largest;
+}
+
+// The image that the environment was made from: as named, or beside the environment, if
+// it holds the same light; else its mirror part.
 Result<Source> source_of(const Options& options, const Scene& scene, cli::Session& session) {
   if (scene.env == nullptr) return Source{};
   std::vector<std::string> candidates = {options.check_source};
   if (options.check_source.empty()) {
     candidates = {scene.env->source, (std::filesystem::path(options.env).parent_path() / scene.env->source).string()};
   }
+  std::string missing = "is not there";
   for (const std::string& path : candidates) {
     std::error_code status;
     const bool is_pattern = path.find("{face}") != std::string::npos;
     const bool there = is_pattern ? face_paths(path).ok() : std::filesystem::is_regular_file(path, status);
     if (!there && options.check_source.empty()) continue;
     GONIO_ASSIGN(Environment environment, Environment::read(path, Environment::BadPixels::kZero));
-    return Source{std::move(environment), path};
+    if (is_same_light(environment, *scene.env)) return Source{std::move(environment), path};
+    missing = "is turned, brightened or cut there";
+    break;
   }
   if (scene.env->mirror.map.size == 0) {
     return input_error(
-        "{}: its source \"{}\" is not there, and it has no mirror part: name the image by --check-source", options.env,
-        scene.env->source);
+        "{}: its source \"{}\" {}, and it has no mirror part: name the image by --check-source, or make it with a "
+        "mirror",
+        options.env, scene.env->source, missing);
   }
-  session.warn(fmt::format("the source \"{}\" of {} is not there: its mirror part takes its place", scene.env->source,
-                           options.env));
+  session.warn(fmt::format("the source \"{}\" of {} {}: its mirror part takes its place", scene.env->source,
+                           options.env, missing));
   return Source{Environment::from_cube(scene.env->mirror.map, options.env), options.env + " (mirror part)"};
 }
 
