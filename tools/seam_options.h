@@ -4,12 +4,12 @@
 #include <vector>
 
 #include "cli/options.h"
-#include "fit/goniogeom_sets.h"
-#include "render/seam_view.h"
+#include "panels/goniogeom_sets.h"
+#include "panels/seam_view.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
-inline std::vector<cli::Option> geometry_options(GeometryTexts& geometries, double& seam_deg) {
+inline std::vector<cli::Option> geometry_options(panels::GeometryTexts& geometries, double& seam_deg) {
   return {
       {.name = "lights",
        .value = "LIST",
@@ -34,7 +34,7 @@ inline std::vector<cli::Option> geometry_options(GeometryTexts& geometries, doub
   };
 }
 
-inline std::vector<cli::Option> seam_options(SeamTexts& seam) {
+inline std::vector<cli::Option> seam_options(panels::SeamTexts& seam) {
   return {
       {.name = "mesh", .value = "FILE", .help = "take the panels from a seam of this mesh (OBJ)", .target = &seam.mesh},
       {.name = "seam", .value = "A,B", .help = "the two parts of the mesh", .target = &seam.seam},
@@ -64,4 +64,4 @@ inline std::vector<cli::Option> seam_options(SeamTexts& seam) {
   };
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string>
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 enum class Format { kTable, kJson, kPaints };
 
@@ -23,4 +23,4 @@ inline std::string table_field(std::string text) {
   return text;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 
 ColorMap color_map_of_size(int size, double index) {
   return {size, index, std::vector<float>(static_cast<std::size_t>(size) * size * 6)};
@@ -26,23 +26,24 @@ MapPlace map_place(const InPlane& pair, int size) {
   return {pair.cos_far * size, pair.same_side ? (2 - pair.cos_near) * size : pair.cos_near * size};
 }
 
-Rgb fetched(const ColorMap& map, const MapPlace& place) {
+color::Rgb fetched(const ColorMap& map, const MapPlace& place) {
   const double x = std::clamp(place.x - 0.5, 0.0, map.size - 1.0),
                y = std::clamp(place.y - 0.5, 0.0, 2.0 * map.size - 1);
   const int left = std::min(static_cast<int>(x), std::max(map.size - 2, 0));
   const int top = std::min(static_cast<int>(y), 2 * map.size - 2);
   const int right = std::min(left + 1, map.size - 1);
   const double u = x - left, v = y - top;
-  Rgb result;
+  color::Rgb result;
   for (int c = 0; c < 3; ++c)
     result[c] = (1 - v) * ((1 - u) * map.texel(left, top)[c] + u * map.texel(right, top)[c]) +
                 v * ((1 - u) * map.texel(left, top + 1)[c] + u * map.texel(right, top + 1)[c]);
   return result;
 }
 
-Rgb reflectance_factor(const ColorMap& map, const Vec3& to_light, const Vec3& to_viewer, CriticalAngle treatment) {
+color::Rgb reflectance_factor(const ColorMap& map, const Vec3& to_light, const Vec3& to_viewer,
+                              CriticalAngle treatment) {
   if (to_light.z <= 0 || to_viewer.z <= 0) return {};
   return fetched(map, map_place(equivalent_in_plane(to_light, to_viewer, map.index, treatment), map.size));
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::brdf

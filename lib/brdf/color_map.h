@@ -7,7 +7,7 @@
 #include "brdf/isoline.h"
 #include "color/color.h"
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 
 // Reflectance factors (pi f, 1 = perfect diffuser) in the working space, gloss left out, negative where a color is
 // outside it, over the cosines of both angles in air: `size` columns, cosine of one direction from 0 (90 deg) to 1; 2
@@ -40,10 +40,11 @@ struct MapPlace {
 MapPlace map_place(const InPlane& pair, int size);
 
 // The bilinear fetch.
-Rgb fetched(const ColorMap& map, const MapPlace& place);
+color::Rgb fetched(const ColorMap& map, const MapPlace& place);
 
 // The reflectance factor for unit directions in the frame z = normal, in plane or not; 0 where one is below the
 // surface.
-Rgb reflectance_factor(const ColorMap& map, const Vec3& to_light, const Vec3& to_viewer, CriticalAngle treatment);
+color::Rgb reflectance_factor(const ColorMap& map, const Vec3& to_light, const Vec3& to_viewer,
+                              CriticalAngle treatment);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::brdf

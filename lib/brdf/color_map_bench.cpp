@@ -9,11 +9,11 @@
 
 #include "brdf/color_map.h"
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 namespace {
 
 // Reflectance factors of a paint that follows its isolines exactly.
-Rgb flake_paint(const Vec3& wi, const Vec3& wo) {
+color::Rgb flake_paint(const Vec3& wi, const Vec3& wo) {
   const FlakeAngles f = flake_angles(wi, wo, 1.5);
   const double flop = std::exp(-std::pow(f.flake_rad / 0.25, 2));
   return {0.05 + flop * (0.4 + 0.5 * f.incidence_rad), 0.04 + flop * (0.9 - f.incidence_rad), 0.05 + 0.6 * flop};
@@ -49,11 +49,11 @@ class Table3 {
         for (int k = 0; k < n; ++k) {
           const double zi = i / (n - 1.0), zo = j / (n - 1.0), c = 2 * k / (n - 1.0) - 1;
           const double si = std::sqrt(1 - zi * zi), so = std::sqrt(1 - zo * zo);
-          const Rgb value = flake_paint({si, 0, zi}, {so * c, so * std::sqrt(1 - c * c), zo});
+          const color::Rgb value = flake_paint({si, 0, zi}, {so * c, so * std::sqrt(1 - c * c), zo});
           for (int channel = 0; channel < 3; ++channel) at(i, j, k)[channel] = static_cast<float>(value[channel]);
         }
   }
-  Rgb value(const Vec3& wi, const Vec3& wo) const {
+  color::Rgb value(const Vec3& wi, const Vec3& wo) const {
     const double s2 = (wi.x * wi.x + wi.y * wi.y) * (wo.x * wo.x + wo.y * wo.y);
     const double c = s2 > 0 ? (wi.x * wo.x + wi.y * wo.y) / std::sqrt(s2) : 1;
     const double x[3] = {wi.z * (n_ - 1), wo.z * (n_ - 1), 0.5 * (c + 1) * (n_ - 1)};
@@ -63,7 +63,7 @@ class Table3 {
       low[axis] = std::clamp(static_cast<int>(x[axis]), 0, n_ - 2);
       t[axis] = x[axis] - low[axis];
     }
-    Rgb sum;
+    color::Rgb sum;
     for (int corner = 0; corner < 8; ++corner) {
       const int i = corner & 1, j = corner >> 1 & 1, k = corner >> 2;
       const double w = (i ? t[0] : 1 - t[0]) * (j ? t[1] : 1 - t[1]) * (k ? t[2] : 1 - t[2]);
@@ -86,7 +86,7 @@ void measure(benchmark::State& state, const Lookup& lookup, double texels) {
   const std::vector<Pair> pairs = random_pairs(4096);
   double error = 0, size = 0;
   for (const Pair& pair : pairs) {
-    const Rgb exact = flake_paint(pair.wi, pair.wo);
+    const color::Rgb exact = flake_paint(pair.wi, pair.wo);
     error += length(lookup(pair) - exact), size += length(exact);
   }
   if (!(error < 0.2 * size)) state.SkipWithError("the lookup is off");
@@ -102,7 +102,7 @@ void color_map_2d(benchmark::State& state) {
   for (int row = 0; row < 2 * size; ++row)
     for (int column = 0; column < size; ++column) {
       const MapDirections d = map_directions(size, column, row);
-      const Rgb value = flake_paint(d.light, d.view);
+      const color::Rgb value = flake_paint(d.light, d.view);
       for (int c = 0; c < 3; ++c) map.texel(column, row)[c] = static_cast<float>(value[c]);
     }
   measure(
@@ -120,4 +120,4 @@ void table_3d(benchmark::State& state) {
 BENCHMARK(table_3d)->Arg(16)->Arg(32)->Arg(64)->Arg(128);
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::brdf

@@ -7,7 +7,7 @@
 
 #include "base/hard_case_for_test.h"
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 namespace {
 
 TEST(ColorMap, TexelsStandForTheirDirections) {
@@ -42,19 +42,19 @@ TEST(ColorMap, FetchIsBilinear) {
       float* t = map.texel(column, row);
       t[0] = static_cast<float>(column + 0.5), t[1] = static_cast<float>(row + 0.5), t[2] = 1;
     }
-  const Rgb value = fetched(map, {3.3, 9.75});
+  const color::Rgb value = fetched(map, {3.3, 9.75});
   EXPECT_NEAR(value.x, 3.3, 1e-6);
   EXPECT_NEAR(value.y, 9.75, 1e-6);
   EXPECT_NEAR(value.z, 1, 1e-6);
-  EXPECT_EQ(fetched(map, {-4, 99}), (Rgb{0.5, 15.5, 1}));
-  EXPECT_EQ(fetched(color_map_of_size(1, 1.5), {0.4, 1.7}), Rgb{});
-  EXPECT_EQ(reflectance_factor(map, {0, 0, -1}, {0, 0, 1}, CriticalAngle::kClip), Rgb{});
+  EXPECT_EQ(fetched(map, {-4, 99}), (color::Rgb{0.5, 15.5, 1}));
+  EXPECT_EQ(fetched(color_map_of_size(1, 1.5), {0.4, 1.7}), color::Rgb{});
+  EXPECT_EQ(reflectance_factor(map, {0, 0, -1}, {0, 0, 1}, CriticalAngle::kClip), color::Rgb{});
   EXPECT_GT(reflectance_factor(map, {0, 0, 1}, {0, 0, 1}, CriticalAngle::kClip).x, 7);
 }
 
 // An extreme interference paint: green where flakes are met steeply, blue and purple where they are met at grazing
 // angles, red where they stand. Its map is filled from the function itself.
-Lab traveling_paint(const FlakeAngles& f) {
+color::Lab traveling_paint(const FlakeAngles& f) {
   const double flop = std::exp(-std::pow(f.flake_rad / 0.3, 2)),
                hue = (140 + 230 * f.incidence_rad - 200 * f.flake_rad) * M_PI / 180;
   const double chroma = 20 + 30 * flop;
@@ -62,13 +62,13 @@ Lab traveling_paint(const FlakeAngles& f) {
 }
 
 ColorMap interference_map(int size, double index) {
-  const Xyz white = *white_point({"D65", 10});
+  const color::Xyz white = *color::white_point({"D65", 10});
   ColorMap map = color_map_of_size(size, index);
   for (int row = 0; row < 2 * size; ++row)
     for (int column = 0; column < size; ++column) {
       const MapDirections d = map_directions(size, column, row);
       // The colors are those of the coat whatever index the isolines are followed with.
-      const Rgb color = rgb_from_lab(traveling_paint(flake_angles(d.light, d.view, 1.5)), white);
+      const color::Rgb color = color::rgb_from_lab(traveling_paint(flake_angles(d.light, d.view, 1.5)), white);
       for (int c = 0; c < 3; ++c) map.texel(column, row)[c] = static_cast<float>(color[c]);
     }
   return map;
@@ -103,7 +103,7 @@ bool printed_equations_answer(const Vec3& wi, const Vec3& wo) {
 }
 
 TEST(HardCase, IsolineCriticalSphereHasNoErrorPixels) {
-  const Xyz white = *white_point({"D65", 10});
+  const color::Xyz white = *color::white_point({"D65", 10});
   int all_broken = 0, all_undefined = 0;
   for (const double from_viewer_deg : {10.0, 45.0, 75.0}) {
     const Vec3 light = {std::sin(from_viewer_deg * M_PI / 180), 0, std::cos(from_viewer_deg * M_PI / 180)};
@@ -111,17 +111,17 @@ TEST(HardCase, IsolineCriticalSphereHasNoErrorPixels) {
       const ColorMap map = interference_map(64, treatment == CriticalAngle::kIndexOne ? 1 : 1.5);
       int lit = 0, broken = 0, control = 0;
       double least_hue = 360, most_hue = 0, largest_step = 0;
-      Lab left{};
+      color::Lab left{};
       int left_x = -2;
       each_lit_point(light, 128, [&](int x, int, const Vec3& wi, const Vec3& wo) {
-        const Rgb color = reflectance_factor(map, wi, wo, treatment);
-        const Lab lab = lab_from_rgb(color, white);
+        const color::Rgb color = reflectance_factor(map, wi, wo, treatment);
+        const color::Lab lab = color::lab_from_rgb(color, white);
         ++lit;
         broken += !std::isfinite(color.x + color.y + color.z) || lab.L < 20;
         control += !printed_equations_answer(wi, wo);
-        least_hue = std::min(least_hue, hue_deg(lab)), most_hue = std::max(most_hue, hue_deg(lab));
+        least_hue = std::min(least_hue, color::hue_deg(lab)), most_hue = std::max(most_hue, color::hue_deg(lab));
         // Away from the outline, where a pixel turns the normal by a few degrees only.
-        if (x == left_x + 1 && wo.z > 0.5) largest_step = std::max(largest_step, delta_e_76(lab, left));
+        if (x == left_x + 1 && wo.z > 0.5) largest_step = std::max(largest_step, color::delta_e_76(lab, left));
         left = lab, left_x = x;
       });
       EXPECT_GT(lit, 4000);
@@ -139,4 +139,4 @@ TEST(HardCase, IsolineCriticalSphereHasNoErrorPixels) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::brdf

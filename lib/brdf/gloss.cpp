@@ -20,7 +20,7 @@
 #include "math/least_squares.h"
 #include "math/quadrature.h"
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 
 namespace {
 
@@ -60,11 +60,11 @@ double versine(const Sample& a, const Sample& b) {
 }
 
 // The quadrature points of one axis: panels around `center` clipped to [-half, half].
-std::vector<QuadraturePoint> panels(double center, double half, double exponent) {
-  static const std::vector<QuadraturePoint> rule = gauss_legendre(5);
+std::vector<math::QuadraturePoint> panels(double center, double half, double exponent) {
+  static const std::vector<math::QuadraturePoint> rule = math::gauss_legendre(5);
   constexpr std::array<double, 5> kCuts = {-6.5, -2.5, 0, 2.5, 6.5};
   const double deviation = 1 / std::sqrt(exponent + 1);
-  std::vector<QuadraturePoint> points;
+  std::vector<math::QuadraturePoint> points;
   for (std::size_t k = 0; k + 1 < kCuts.size(); ++k) {
     const double low = std::max(-half, center + kCuts[k] * deviation);
     const double high = std::min(half, center + kCuts[k + 1] * deviation);
@@ -75,7 +75,7 @@ std::vector<QuadraturePoint> panels(double center, double half, double exponent)
 }
 
 std::vector<Sample> source_samples(double angle_deg) {
-  const std::vector<QuadraturePoint> rule = gauss_legendre(3);
+  const std::vector<math::QuadraturePoint> rule = math::gauss_legendre(3);
   const Aperture source = aperture(kSourcePar_deg, kSourcePerp_deg);
   std::vector<Sample> samples;
   for (const auto& [x, wx] : rule)
@@ -108,8 +108,8 @@ LobeReading lobe_integrals(const Meter& meter, const std::vector<Sample>& source
   return sum;
 }
 
-double luminance(const Rgb& rgb) {
-  return xyz_d65_from_rgb(rgb).Y;
+double luminance(const color::Rgb& rgb) {
+  return color::xyz_d65_from_rgb(rgb).Y;
 }
 
 // K_G and mirror for one reading of `gu`, already free of flake light; weights ordered as the basis, the mirror last.
@@ -170,9 +170,9 @@ Result<const GlossColumns*> GlossTable::at(double angle_deg) const {
   return input_error("gloss angle {} deg: gloss meters have 20, 60 or 85", angle_deg);
 }
 
-double gloss_units(const GlossTable& table, const GlossColumns& meter, const LobeFit& fit) {
+double gloss_units(const GlossTable& table, const GlossColumns& meter, const paint::LobeFit& fit) {
   double gu = meter.diffuse * luminance(fit.diffuse);
-  for (const Lobe& lobe : fit.lobes) {
+  for (const paint::Lobe& lobe : fit.lobes) {
     if (std::isinf(lobe.exponent)) {
       gu += meter.mirror * luminance(lobe.gloss);
       continue;
@@ -185,15 +185,15 @@ double gloss_units(const GlossTable& table, const GlossColumns& meter, const Lob
   return gu;
 }
 
-Result<std::vector<double>> set_gloss(const GlossTable& table, const std::vector<GlossReading>& readings,
-                                      LobeFit& fit) {
+Result<std::vector<double>> set_gloss(const GlossTable& table, const std::vector<paint::GlossReading>& readings,
+                                      paint::LobeFit& fit) {
   const std::size_t lobes = table.exponents().size();
   const bool has_mirror = fit.lobes.size() > lobes;
-  for (Lobe& lobe : fit.lobes) lobe.gloss = {};
+  for (paint::Lobe& lobe : fit.lobes) lobe.gloss = {};
 
   std::vector<const GlossColumns*> meters;
   std::vector<double> wanted;
-  for (const GlossReading& reading : readings) {
+  for (const paint::GlossReading& reading : readings) {
     GONIO_ASSIGN(const GlossColumns* meter, table.at(reading.angle_deg));
     if (!(reading.gloss_units >= 0)) return input_error("gloss {} GU: a reading is 0 or more", reading.gloss_units);
     meters.push_back(meter);
@@ -204,11 +204,11 @@ Result<std::vector<double>> set_gloss(const GlossTable& table, const std::vector
   if (readings.size() == 1) {
     weights = one_reading(table, *meters[0], wanted[0], has_mirror);
   } else if (!readings.empty()) {
-    Matrix m(static_cast<int>(readings.size()), static_cast<int>(lobes + (has_mirror ? 1 : 0)));
+    math::Matrix m(static_cast<int>(readings.size()), static_cast<int>(lobes + (has_mirror ? 1 : 0)));
     for (int i = 0; i < m.rows; ++i)
       for (int j = 0; j < m.columns; ++j)
         m(i, j) = j < static_cast<int>(lobes) ? meters[i]->gloss[j] : meters[i]->mirror;
-    const NonNegativeFit best = nnls(m, wanted);
+    const math::NonNegativeFit best = math::nnls(m, wanted);
     std::copy(best.x.begin(), best.x.end(), weights.begin());
   }
   for (std::size_t j = 0; j < fit.lobes.size(); ++j) fit.lobes[j].gloss = {weights[j], weights[j], weights[j]};
@@ -219,4 +219,4 @@ Result<std::vector<double>> set_gloss(const GlossTable& table, const std::vector
   return misfit_gu;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::brdf

@@ -8,7 +8,7 @@
 #include "brdf/lobe_model.h"
 #include "paint/paint.h"
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 
 constexpr double kBlackGlassIndex = 1.567;  // the standard that reads 100 GU
 
@@ -39,7 +39,7 @@ class GlossTable {
 
 // The reading in GU of a whole paint: diffuse, flake, gloss lobes and mirror, by luminance. Exponents of `fit` that the
 // table does not hold count as 0.
-double gloss_units(const GlossTable& table, const GlossColumns& meter, const LobeFit& fit);
+double gloss_units(const GlossTable& table, const GlossColumns& meter, const paint::LobeFit& fit);
 
 // Sets K_G and the mirror weight of `fit` (lobes: those of the table in its order, the mirror last if there is one) so
 // that the whole paint reads `readings`. Gloss lobes are gray. Returns simulated minus stated GU for each reading.
@@ -48,6 +48,7 @@ double gloss_units(const GlossTable& table, const GlossColumns& meter, const Lob
 // over its two neighbors in the basis; at and beyond the smooth limit the mirror alone, scaled up to 100 GU. Several:
 // non-negative least squares over the readings. What diffuse and flake light already reads is taken off first; where
 // that is more than the reading, nothing is set. Error: an angle that no meter has, or a reading below 0.
-Result<std::vector<double>> set_gloss(const GlossTable& table, const std::vector<GlossReading>& readings, LobeFit& fit);
+Result<std::vector<double>> set_gloss(const GlossTable& table, const std::vector<paint::GlossReading>& readings,
+                                      paint::LobeFit& fit);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::brdf

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 namespace {
 
 const std::vector<double> kBasis = {1.3, 6, 20, 70, 250, 900, 3000};
@@ -18,7 +18,7 @@ BENCHMARK(gloss_table)->Unit(benchmark::kMicrosecond);
 
 void gloss_inverse(benchmark::State& state) {
   const GlossTable table(kBasis);
-  LobeFit fit;
+  paint::LobeFit fit;
   for (const double e : kBasis) fit.lobes.push_back({e, {}, {}});
   fit.lobes.push_back({std::numeric_limits<double>::infinity(), {}, {}});
   double worst = 0;
@@ -30,6 +30,4 @@ void gloss_inverse(benchmark::State& state) {
 BENCHMARK(gloss_inverse);
 
 }  // namespace
-}  // namespace goniochrome
-
-BENCHMARK_MAIN();
+}  // namespace goniochrome::brdf

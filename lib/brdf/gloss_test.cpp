@@ -8,14 +8,14 @@
 #include "base/hard_case_for_test.h"
 #include "math/quadrature.h"
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 namespace {
 
 const std::vector<double> kBasis = {1.3, 6, 20, 70, 250, 900, 3000};
 constexpr double kMirror = std::numeric_limits<double>::infinity();
 
-LobeFit empty_fit(bool mirror = true) {
-  LobeFit fit;
+paint::LobeFit empty_fit(bool mirror = true) {
+  paint::LobeFit fit;
   for (const double e : kBasis) fit.lobes.push_back({e, {}, {}});
   if (mirror) fit.lobes.push_back({kMirror, {}, {}});
   return fit;
@@ -42,8 +42,8 @@ double brute_force_gloss(const Angles& meter, double exponent, int source_points
   const auto window = [&](double par_deg, double perp_deg, int n) {
     std::vector<Point> points;
     const double a = std::tan(par_deg / 2 * M_PI / 180), b = std::tan(perp_deg / 2 * M_PI / 180);
-    for (const auto& [x, wx] : gauss_legendre(n))
-      for (const auto& [y, wy] : gauss_legendre(n)) {
+    for (const auto& [x, wx] : math::gauss_legendre(n))
+      for (const auto& [y, wy] : math::gauss_legendre(n)) {
         const Vec3 d = s + (a * x) * u + (b * y) * v;
         points.push_back({normalized(d), wx * wy * a * b / std::pow(length(d), 3)});
       }
@@ -123,11 +123,11 @@ TEST(HardCase, GlossLimitsSmoothCoatReadsThePublishedValues) {
 TEST(HardCase, GlossLimitsEndPointsAreExact) {
   double ours = 0, clipped = 0;
   for (const double angle : {20.0, 60.0, 85.0}) {
-    LobeFit fit = empty_fit();
+    paint::LobeFit fit = empty_fit();
     // 0 GU: nothing at all.
     auto misfit = set_gloss(table(), {{angle, 0}}, fit);
     ASSERT_TRUE(misfit.ok());
-    for (const Lobe& lobe : fit.lobes) EXPECT_EQ(lobe.gloss, Rgb{});
+    for (const paint::Lobe& lobe : fit.lobes) EXPECT_EQ(lobe.gloss, color::Rgb{});
     EXPECT_EQ((*misfit)[0], 0);
     // The smooth limit: the mirror alone with weight 1.
     const double smooth = (*table().at(angle))->mirror;
@@ -152,12 +152,12 @@ TEST(HardCase, GlossLimitsAnySingleReadingIsMet) {
   for (const bool mirror : {true, false})
     for (const double angle : {20.0, 60.0, 85.0})
       for (double gu = 0.01; gu <= 100; gu *= 1.17) {
-        LobeFit fit = empty_fit(mirror);
+        paint::LobeFit fit = empty_fit(mirror);
         const auto misfit = set_gloss(table(), {{angle, gu}}, fit);
         ASSERT_TRUE(misfit.ok());
         ours = worst_of(ours, std::abs((*misfit)[0]) / gu);
         int used = 0;
-        for (const Lobe& lobe : fit.lobes) {
+        for (const paint::Lobe& lobe : fit.lobes) {
           EXPECT_GE(lobe.gloss.x, 0);
           EXPECT_EQ(lobe.gloss.x, lobe.gloss.z);
           used += lobe.gloss.x > 0;
@@ -170,8 +170,8 @@ TEST(HardCase, GlossLimitsAnySingleReadingIsMet) {
   for (double gu = 1; gu < 89; ++gu) {
     double nearest = INFINITY;
     for (std::size_t j = 0; j < kBasis.size(); ++j) {
-      LobeFit fit = empty_fit();
-      fit.lobes[j].gloss = (energy * (kBasis[j] + 1) / (2 * M_PI)) * Rgb{1, 1, 1};
+      paint::LobeFit fit = empty_fit();
+      fit.lobes[j].gloss = (energy * (kBasis[j] + 1) / (2 * M_PI)) * color::Rgb{1, 1, 1};
       nearest = std::min(nearest, std::abs(gloss_units(table(), **table().at(60), fit) - gu));
     }
     worst = worst_of(worst, nearest / gu);
@@ -184,7 +184,7 @@ TEST(HardCase, GlossLimitsAnySingleReadingIsMet) {
 }
 
 TEST(HardCase, GlossLimitsImpossibleTriplesAreTold) {
-  LobeFit fit = empty_fit();
+  paint::LobeFit fit = empty_fit();
   // A smooth coat is possible, and found.
   auto misfit = set_gloss(table(), {{20, 82.1}, {60, 89.1}, {85, 99.0}}, fit);
   ASSERT_TRUE(misfit.ok());
@@ -196,7 +196,7 @@ TEST(HardCase, GlossLimitsImpossibleTriplesAreTold) {
   double worst = 0;
   for (const double m : *misfit) worst = worst_of(worst, std::abs(m));
   EXPECT_GT(worst, 10);
-  for (const Lobe& lobe : fit.lobes) EXPECT_TRUE(std::isfinite(lobe.gloss.x) && lobe.gloss.x >= 0);
+  for (const paint::Lobe& lobe : fit.lobes) EXPECT_TRUE(std::isfinite(lobe.gloss.x) && lobe.gloss.x >= 0);
   // No such meter; no such reading.
   EXPECT_FALSE(set_gloss(table(), {{45, 50}}, fit).ok());
   EXPECT_FALSE(set_gloss(table(), {{60, -1}}, fit).ok());
@@ -204,8 +204,8 @@ TEST(HardCase, GlossLimitsImpossibleTriplesAreTold) {
 }
 
 TEST(Gloss, DiffuseAndFlakeLightCountInTheReading) {
-  LobeFit white = empty_fit();
-  white.diffuse = (1 / M_PI) * Rgb{1, 1, 1};
+  paint::LobeFit white = empty_fit();
+  white.diffuse = (1 / M_PI) * color::Rgb{1, 1, 1};
   const double alone = gloss_units(table(), **table().at(60), white);
   EXPECT_NEAR(alone, 2.5, 0.2);  // cos x receptor / (pi F): a white card is not at 0
   const auto misfit = set_gloss(table(), {{60, 91.4}}, white);
@@ -216,13 +216,13 @@ TEST(Gloss, DiffuseAndFlakeLightCountInTheReading) {
 }
 
 TEST(Gloss, NoReadingNoGloss) {
-  LobeFit fit = empty_fit();
+  paint::LobeFit fit = empty_fit();
   fit.lobes[2].gloss = {1, 1, 1};
   const auto misfit = set_gloss(table(), {}, fit);
   ASSERT_TRUE(misfit.ok());
   EXPECT_TRUE(misfit->empty());
-  for (const Lobe& lobe : fit.lobes) EXPECT_EQ(lobe.gloss, Rgb{});
+  for (const paint::Lobe& lobe : fit.lobes) EXPECT_EQ(lobe.gloss, color::Rgb{});
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::brdf

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 
 namespace {
 
@@ -159,4 +159,4 @@ InPlaneAngles equivalent_in_plane_angles(const Vec3& to_light, const Vec3& to_vi
   return near_rad >= 0 ? InPlaneAngles{near_rad, far_rad} : InPlaneAngles{-near_rad, -far_rad};
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::brdf

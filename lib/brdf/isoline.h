@@ -7,7 +7,7 @@
 
 #include "base/vec3.h"
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 
 // The flakes that mirror one direction of a pair into the other, seen inside the coat. Radians.
 struct FlakeAngles {
@@ -52,4 +52,4 @@ struct InPlaneAngles {
 InPlaneAngles equivalent_in_plane_angles(const Vec3& to_light, const Vec3& to_viewer, double index,
                                          CriticalAngle treatment);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::brdf

@@ -10,7 +10,7 @@
 
 #include "base/hard_case_for_test.h"
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
@@ -272,4 +272,4 @@ TEST(Isoline, NamesOfTreatments) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::brdf

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 
 // pow(x, n) overflows or vanishes before its factor can bring it back, and inf * 0 is no number. log x near 1 is good
 // to an ulp of itself, being exact in its argument; n log x + log scale is at most 745 in size where the result is not
@@ -19,15 +19,15 @@ double scaled_power(double scale, double x, double exponent) {
 
 namespace {
 
-Rgb scaled_color(const Rgb& scale, double x, double exponent) {
+color::Rgb scaled_color(const color::Rgb& scale, double x, double exponent) {
   return {scaled_power(scale.x, x, exponent), scaled_power(scale.y, x, exponent), scaled_power(scale.z, x, exponent)};
 }
 
 }  // namespace
 
-Rgb brdf(const Lafortune& surface, const Vec3& to_light, const Vec3& to_viewer) {
+color::Rgb brdf(const Lafortune& surface, const Vec3& to_light, const Vec3& to_viewer) {
   if (to_light.z <= 0 || to_viewer.z <= 0) return {};
-  Rgb f = surface.diffuse;
+  color::Rgb f = surface.diffuse;
   for (const LafortuneLobe& lobe : surface.lobes)
     f += scaled_color(lobe.albedo, dot(lobe.axes * to_viewer, to_light), lobe.exponent);
   return f;
@@ -52,4 +52,4 @@ ExponentBlend exponent_blend(double exponent, const std::vector<double>& stored)
   return {lower, std::log(exponent / low) / std::log(*upper / low)};
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::brdf

@@ -7,17 +7,17 @@
 #include "base/vec3.h"
 #include "color/color.h"
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 
 // rho_s (axes . wi wo)^n in the frame x = tangent, y = bitangent, z = normal. Axes (-1,-1,1) make a Phong lobe.
 struct LafortuneLobe {
-  Rgb albedo;  // rho_s, 1/sr
+  color::Rgb albedo;  // rho_s, 1/sr
   Vec3 axes = {-1, -1, 1};
   double exponent = 1;  // n >= 0
 };
 
 struct Lafortune {
-  Rgb diffuse;  // rho_d, 1/sr
+  color::Rgb diffuse;  // rho_d, 1/sr
   std::vector<LafortuneLobe> lobes;
 };
 
@@ -26,12 +26,12 @@ struct Lafortune {
 double scaled_power(double scale, double x, double exponent);
 
 // f(wi,wo) in 1/sr; 0 where a direction is below the surface.
-Rgb brdf(const Lafortune& surface, const Vec3& to_light, const Vec3& to_viewer);
+color::Rgb brdf(const Lafortune& surface, const Vec3& to_light, const Vec3& to_viewer);
 
 // What a lobe asks of a prefiltered environment: L = weight * P_n(direction), P_n of theory PREFILTERING.
 struct LobeFetch {
   Vec3 direction = {0, 0, 1};  // unit, in the frame of the surface
-  Rgb weight;                  // rho_s |p|^n max(0, n.p/|p|) 2 pi/(n+1); 0 where the lobe's peak is below the surface
+  color::Rgb weight;           // rho_s |p|^n max(0, n.p/|p|) 2 pi/(n+1); 0 where the lobe's peak is below the surface
 };
 LobeFetch environment_fetch(const LafortuneLobe& lobe, const Vec3& to_viewer);
 
@@ -43,4 +43,4 @@ struct ExponentBlend {
 };
 ExponentBlend exponent_blend(double exponent, const std::vector<double>& stored);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::brdf

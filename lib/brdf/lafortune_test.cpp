@@ -8,7 +8,7 @@
 #include "base/hard_case_for_test.h"
 #include "brdf/lobe_model.h"
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 namespace {
 
 Vec3 direction(double polar_rad, double azimuth_rad) {
@@ -31,7 +31,7 @@ TEST(HardCase, LafortunePowerStaysInRange) {
                                 .unit = "relative"});
 
   const LafortuneLobe flat = {{1, 1, 1}, {-2, -2, 0}, 1500};  // the peak lies in the surface: inf * 0 by pow
-  EXPECT_EQ(environment_fetch(flat, viewer).weight, Rgb{});
+  EXPECT_EQ(environment_fetch(flat, viewer).weight, color::Rgb{});
   EXPECT_TRUE(std::isnan(std::pow(2.0, 1500) * std::max(0.0, 0.0)));
 
   // Overflow that nothing brings back stays finite.
@@ -49,9 +49,9 @@ TEST(HardCase, LafortunePowerStaysInRange) {
 
   // p = 0 has no direction.
   const LafortuneLobe nothing = {{1, 1, 1}, {0, 0, 0}, 0.2};
-  EXPECT_EQ(environment_fetch(nothing, viewer).weight, Rgb{});
+  EXPECT_EQ(environment_fetch(nothing, viewer).weight, color::Rgb{});
   EXPECT_EQ(environment_fetch(nothing, viewer).direction, (Vec3{0, 0, 1}));
-  EXPECT_EQ(brdf({{}, {nothing}}, viewer, viewer), Rgb{});
+  EXPECT_EQ(brdf({{}, {nothing}}, viewer, viewer), color::Rgb{});
 }
 
 TEST(HardCase, LafortunePowerSmallExponents) {
@@ -67,13 +67,13 @@ TEST(HardCase, LafortunePowerSmallExponents) {
 TEST(Lafortune, PhongAxesAreACosineLobe) {
   const Lafortune surface = {{0.1, 0.2, 0.3}, {{{1, 0.5, 0.25}, {-1, -1, 1}, 20}}};
   const Vec3 wi = direction(0.6, 0.3), wo = direction(0.5, 3.2);
-  LobeFit fit;
+  paint::LobeFit fit;
   fit.diffuse = surface.diffuse;
   fit.lobes = {{20, surface.lobes[0].albedo, {}}};
-  const Rgb expected = brdf(fit, wi, wo, {0, 0, 1}), got = brdf(surface, wi, wo);
+  const color::Rgb expected = brdf(fit, wi, wo, {0, 0, 1}), got = brdf(surface, wi, wo);
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(got[c], expected[c], 1e-14);
-  EXPECT_EQ(brdf(surface, {0, 0, -1}, wo), Rgb{});
-  EXPECT_EQ(brdf(surface, wi, {1, 0, 0}), Rgb{});
+  EXPECT_EQ(brdf(surface, {0, 0, -1}, wo), color::Rgb{});
+  EXPECT_EQ(brdf(surface, wi, {1, 0, 0}), color::Rgb{});
 }
 
 TEST(Lafortune, IsReciprocal) {
@@ -112,4 +112,4 @@ TEST(Lafortune, BlendsBetweenStoredExponents) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::brdf

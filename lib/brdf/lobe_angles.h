@@ -6,7 +6,7 @@
 #include "color/color.h"
 #include "paint/paint.h"
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 
 // cos_power() of many exponents at one angle: the logarithm of the cosine, minus infinity from 90 deg on, and its
 // power.
@@ -17,6 +17,6 @@ inline double power_of_cosine(double log_cosine, double exponent) {
 
 // f in 1/sr of a viewer `view_deg` from the normal; `gloss_scale` is what a K_G of 1 counts: 1/cos_i, and under a coat
 // times coat_fresnel().
-Rgb brdf_by_angles(const LobeFit& fit, double aspecular_rad, double view_deg, double gloss_scale);
+color::Rgb brdf_by_angles(const paint::LobeFit& fit, double aspecular_rad, double view_deg, double gloss_scale);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::brdf

@@ -6,7 +6,7 @@
 
 #include "brdf/lobe_angles.h"
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 
 // pow(cos x, E) multiplies the relative error of cos x, half an ulp, by E: 1e-10 at E = 1e6. exp(E log cos x) needs
 // log cos x to a few ulp of ITSELF: below 45 deg by log1p(-sin^2)/2, where sin^2 <= 1/2 keeps its digits; above, cos x
@@ -49,40 +49,42 @@ namespace {
 
 // The two views around an angle and the share of the upper one.
 struct ViewPair {
-  const ViewLobes *low, *high;
+  const paint::ViewLobes *low, *high;
   double share;
 };
 
-ViewPair views_around(const std::vector<ViewLobes>& views, double view_deg) {
-  const auto above = std::ranges::upper_bound(views, view_deg, {}, &ViewLobes::view_deg);
+ViewPair views_around(const std::vector<paint::ViewLobes>& views, double view_deg) {
+  const auto above = std::ranges::upper_bound(views, view_deg, {}, &paint::ViewLobes::view_deg);
   if (above == views.begin()) return {&views.front(), &views.front(), 0};
   if (above == views.end()) return {&views.back(), &views.back(), 0};
-  const ViewLobes &low = above[-1], &high = above[0];
+  const paint::ViewLobes &low = above[-1], &high = above[0];
   return {&low, &high, (view_deg - low.view_deg) / (high.view_deg - low.view_deg)};
 }
 
 // `gloss_scale` is what a gloss weight of 1 shows.
-Rgb lobes_at(const Rgb& diffuse, const std::vector<Lobe>& lobes, double angle_rad, double gloss_scale) {
-  Rgb f = diffuse;
+color::Rgb lobes_at(const color::Rgb& diffuse, const std::vector<paint::Lobe>& lobes, double angle_rad,
+                    double gloss_scale) {
+  color::Rgb f = diffuse;
   const double log_cos = log_cosine(angle_rad);
-  for (const Lobe& lobe : lobes)
+  for (const paint::Lobe& lobe : lobes)
     if (std::isfinite(lobe.exponent))
       f += power_of_cosine(log_cos, lobe.exponent) * (lobe.directional_diffuse + gloss_scale * lobe.gloss);
   return f;
 }
 
-Rgb brdf(const LobeFit& fit, const Vec3& to_light, const Vec3& to_viewer, const Vec3& normal, double fresnel) {
+color::Rgb brdf(const paint::LobeFit& fit, const Vec3& to_light, const Vec3& to_viewer, const Vec3& normal,
+                double fresnel) {
   const double cos_i = dot(normal, to_light), cos_o = dot(normal, to_viewer);
   if (cos_i <= 0 || cos_o <= 0) return {};
   const double view_rad = fit.views.empty() ? 0 : std::atan2(length(cross(normal, to_viewer)), cos_o);
-  return brdf_by_angles(fit, aspecular_angle_rad(to_light, to_viewer, normal), view_rad * (180 / M_PI),
+  return brdf_by_angles(fit, paint::aspecular_angle_rad(to_light, to_viewer, normal), view_rad * (180 / M_PI),
                         fresnel / cos_i);
 }
 
-void add_scaled(const ViewLobes& view, double scale, LobeFit& sum) {
+void add_scaled(const paint::ViewLobes& view, double scale, paint::LobeFit& sum) {
   sum.diffuse += scale * view.diffuse;
-  for (const Lobe& lobe : view.lobes) {
-    auto at = std::ranges::lower_bound(sum.lobes, lobe.exponent, {}, &Lobe::exponent);
+  for (const paint::Lobe& lobe : view.lobes) {
+    auto at = std::ranges::lower_bound(sum.lobes, lobe.exponent, {}, &paint::Lobe::exponent);
     if (at == sum.lobes.end() || at->exponent != lobe.exponent) at = sum.lobes.insert(at, {lobe.exponent, {}, {}});
     at->directional_diffuse += scale * lobe.directional_diffuse;
     at->gloss += scale * lobe.gloss;
@@ -91,8 +93,8 @@ void add_scaled(const ViewLobes& view, double scale, LobeFit& sum) {
 
 }  // namespace
 
-LobeFit at_view(const LobeFit& fit, double view_deg) {
-  LobeFit result = fit;
+paint::LobeFit at_view(const paint::LobeFit& fit, double view_deg) {
+  paint::LobeFit result = fit;
   result.views.clear();
   if (fit.views.empty()) return result;
   result.diffuse = {};
@@ -103,15 +105,15 @@ LobeFit at_view(const LobeFit& fit, double view_deg) {
   return result;
 }
 
-Rgb brdf_by_angles(const LobeFit& fit, double aspecular_rad, double view_deg, double gloss_scale) {
+color::Rgb brdf_by_angles(const paint::LobeFit& fit, double aspecular_rad, double view_deg, double gloss_scale) {
   if (fit.views.empty()) return lobes_at(fit.diffuse, fit.lobes, aspecular_rad, gloss_scale);
   const auto [low, high, share] = views_around(fit.views, view_deg);
-  Rgb f = (1 - share) * lobes_at(low->diffuse, low->lobes, aspecular_rad, gloss_scale);
+  color::Rgb f = (1 - share) * lobes_at(low->diffuse, low->lobes, aspecular_rad, gloss_scale);
   if (share > 0) f += share * lobes_at(high->diffuse, high->lobes, aspecular_rad, gloss_scale);
   return f;
 }
 
-Rgb brdf(const LobeFit& fit, const Vec3& to_light, const Vec3& to_viewer, const Vec3& normal) {
+color::Rgb brdf(const paint::LobeFit& fit, const Vec3& to_light, const Vec3& to_viewer, const Vec3& normal) {
   return brdf(fit, to_light, to_viewer, normal, 1);
 }
 
@@ -120,12 +122,13 @@ double coat_fresnel(double cos_half, double gloss_deg) {
          fresnel_dielectric(std::cos(gloss_deg * (M_PI / 180)), kCoatIndex);
 }
 
-Rgb coated_brdf(const LobeFit& fit, const Vec3& to_light, const Vec3& to_viewer, const Vec3& normal, double gloss_deg) {
+color::Rgb coated_brdf(const paint::LobeFit& fit, const Vec3& to_light, const Vec3& to_viewer, const Vec3& normal,
+                       double gloss_deg) {
   return brdf(fit, to_light, to_viewer, normal, coat_fresnel(length(to_light + to_viewer) / 2, gloss_deg));
 }
 
-Rgb flake_reflectance_factor(const LobeFit& fit, double aspecular_deg) {
+color::Rgb flake_reflectance_factor(const paint::LobeFit& fit, double aspecular_deg) {
   return M_PI * lobes_at(fit.diffuse, fit.lobes, aspecular_deg * (M_PI / 180), 0);
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::brdf

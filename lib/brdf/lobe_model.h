@@ -6,7 +6,7 @@
 #include "color/color.h"
 #include "paint/paint.h"
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 
 // cos(angle)^exponent for 0 <= angle_rad <= pi/2 (0 beyond), exponent 0..1e6, relative error <= 1e-12: the log of the
 // cosine comes from log1p(-sin^2)/2 near 0, where cos itself has already lost the digits.
@@ -22,11 +22,11 @@ constexpr double kCoatIndex = 1.5;
 
 // The weights that hold for a viewer at that angle from the normal: `fit` itself without its views, or the linear
 // interpolation between two of them, constant beyond the ends. Exponents ascending, as in the views.
-LobeFit at_view(const LobeFit& fit, double view_deg);
+paint::LobeFit at_view(const paint::LobeFit& fit, double view_deg);
 
 // f(wi,wo) in 1/sr without its mirror lobe (that is a delta: see render/reference.h). 0 where either direction is below
 // the horizon.
-Rgb brdf(const LobeFit& fit, const Vec3& to_light, const Vec3& to_viewer, const Vec3& normal);
+color::Rgb brdf(const paint::LobeFit& fit, const Vec3& to_light, const Vec3& to_viewer, const Vec3& normal);
 
 // The incidence at which K_G holds where no gloss meter's angle says so.
 constexpr double kGlossIncidence_deg = 45;
@@ -36,11 +36,11 @@ constexpr double kGlossIncidence_deg = 45;
 double coat_fresnel(double cos_half, double gloss_deg = kGlossIncidence_deg);
 
 // As brdf(), with gloss lobes times coat_fresnel().
-Rgb coated_brdf(const LobeFit& fit, const Vec3& to_light, const Vec3& to_viewer, const Vec3& normal,
-                double gloss_deg = kGlossIncidence_deg);
+color::Rgb coated_brdf(const paint::LobeFit& fit, const Vec3& to_light, const Vec3& to_viewer, const Vec3& normal,
+                       double gloss_deg = kGlossIncidence_deg);
 
 // The reflectance factor pi f without conventional gloss at an aspecular angle: what a multi-angle instrument reads,
 // by the weights for all views.
-Rgb flake_reflectance_factor(const LobeFit& fit, double aspecular_deg);
+color::Rgb flake_reflectance_factor(const paint::LobeFit& fit, double aspecular_deg);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::brdf

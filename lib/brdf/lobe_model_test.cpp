@@ -7,7 +7,7 @@
 
 #include "base/hard_case_for_test.h"
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 namespace {
 
 // cos^E of the double `angle`, whose cosine is taken in long double: sin^2 by the half angle keeps 1 - cos.
@@ -97,8 +97,8 @@ TEST(LobeModel, FresnelOfMatchedIndexVanishesSmoothly) {
   EXPECT_NEAR(fresnel_dielectric(1, 1 - tiny) / (tiny * tiny / 4), 1, 1e-11);
 }
 
-LobeFit sample_fit() {
-  LobeFit fit;
+paint::LobeFit sample_fit() {
+  paint::LobeFit fit;
   fit.diffuse = {0.1, 0.05, 0.02};
   fit.lobes = {{20, {0.5, 0.4, 0.3}, {0, 0, 0}},
                {900, {0, 0.1, 0}, {2, 2, 2}},
@@ -107,20 +107,20 @@ LobeFit sample_fit() {
 }
 
 TEST(LobeModel, BrdfAddsItsParts) {
-  const LobeFit fit = sample_fit();
+  const paint::LobeFit fit = sample_fit();
   const Vec3 normal = {0, 0, 1};
   const double ti = 45 * M_PI / 180, to = 30 * M_PI / 180;  // 15 deg aspecular, in plane
   const Vec3 light = {-std::sin(ti), 0, std::cos(ti)}, view = {std::sin(to), 0, std::cos(to)};
   const double c20 = std::pow(std::cos(15 * M_PI / 180), 20), c900 = std::pow(std::cos(15 * M_PI / 180), 900);
-  const Rgb f = brdf(fit, light, view, normal);
+  const color::Rgb f = brdf(fit, light, view, normal);
   EXPECT_NEAR(f.x, 0.1 + 0.5 * c20 + 2 * c900 / std::cos(ti), 1e-14);
   EXPECT_NEAR(f.y, 0.05 + 0.4 * c20 + 0.1 * c900 + 2 * c900 / std::cos(ti), 1e-14);
-  EXPECT_EQ(brdf(fit, {0, 0, -1}, view, normal), Rgb{});
-  EXPECT_EQ(brdf(fit, light, {0, 1, 0}, normal), Rgb{});
+  EXPECT_EQ(brdf(fit, {0, 0, -1}, view, normal), color::Rgb{});
+  EXPECT_EQ(brdf(fit, light, {0, 1, 0}, normal), color::Rgb{});
 }
 
 TEST(LobeModel, ViewsAreInterpolatedAndHeldAtTheEnds) {
-  LobeFit fit = sample_fit();
+  paint::LobeFit fit = sample_fit();
   fit.views = {{0, {0.1, 0, 0}, {{20, {1, 0, 0}, {}}}},
                {40, {0.3, 0, 0}, {{20, {0, 0, 0}, {2, 0, 0}}, {50, {4, 0, 0}, {}}}}};
   const auto at = [](double deg) { return Vec3{std::sin(deg * M_PI / 180), 0, std::cos(deg * M_PI / 180)}; };
@@ -136,7 +136,7 @@ TEST(LobeModel, ViewsAreInterpolatedAndHeldAtTheEnds) {
     EXPECT_NEAR(brdf(fit, light, at(side * 10), normal).x,
                 0.75 * (0.1 + lobe(as, 20)) + 0.25 * (0.3 + gloss * lobe(as, 20) + 4 * lobe(as, 50)), 1e-12);
   }
-  const LobeFit quarter = at_view(fit, 10);
+  const paint::LobeFit quarter = at_view(fit, 10);
   EXPECT_TRUE(quarter.views.empty());
   ASSERT_EQ(quarter.lobes.size(), 2u);
   EXPECT_NEAR(brdf(quarter, light, at(10), normal).x, brdf(fit, light, at(10), normal).x, 1e-14);
@@ -144,7 +144,7 @@ TEST(LobeModel, ViewsAreInterpolatedAndHeldAtTheEnds) {
 }
 
 TEST(LobeModel, ReflectanceFactorLeavesGlossOut) {
-  const LobeFit fit = sample_fit();
+  const paint::LobeFit fit = sample_fit();
   const double c20 = std::pow(std::cos(15 * M_PI / 180), 20);
   EXPECT_NEAR(flake_reflectance_factor(fit, 15).x, M_PI * (0.1 + 0.5 * c20), 1e-14);
   EXPECT_NEAR(flake_reflectance_factor(fit, 0).y, M_PI * (0.05 + 0.4 + 0.1), 1e-14);
@@ -152,4 +152,4 @@ TEST(LobeModel, ReflectanceFactorLeavesGlossOut) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::brdf

@@ -6,9 +6,9 @@
 
 #include "base/file.h"
 #include "base/text.h"
-#include "brdf/measured_formats.h"
+#include "brdf/internal/measured_formats.h"
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 
 namespace {
 
@@ -46,7 +46,7 @@ double disagreement(double there, double back) {
 
 std::vector<Swapped> swapped_pairs(const MeasuredBrdf& brdf) {
   std::vector<Swapped> pairs;
-  for (const DirectionPair& pair : brdf.probes()) {
+  for (const paint::DirectionPair& pair : brdf.probes()) {
     const MeasuredValue there = brdf.value(pair.light, pair.view), back = brdf.value(pair.view, pair.light);
     if (!there.measured || !back.measured || there.outside_deg > 0 || back.outside_deg > 0) continue;
     pairs.push_back({mean_of(there.f), mean_of(back.f), pair.view.z, pair.light.z});
@@ -76,7 +76,7 @@ double albedo_without_gloss(const MeasuredBrdf& brdf) {
     for (int j = 0; j < kSpokes; ++j) {
       const double sine = std::sqrt((i + 0.5) / kRings), azimuth = 2 * std::numbers::pi * (j + 0.5) / kSpokes;
       const Vec3 view = {sine * std::cos(azimuth), sine * std::sin(azimuth), std::sqrt(1 - sine * sine)};
-      if (aspecular_angle_rad(light, view, {0, 0, 1}) < 10 * kDegree) continue;
+      if (paint::aspecular_angle_rad(light, view, {0, 0, 1}) < 10 * kDegree) continue;
       sum += mean_of(brdf.value(light, view).f);
     }
   return sum * std::numbers::pi / (kRings * kSpokes);
@@ -98,32 +98,32 @@ double azimuth_between(const Vec3& a, const Vec3& b) {
   return std::atan2(std::abs(a.x * b.y - a.y * b.x), a.x * b.x + a.y * b.y);
 }
 
-std::vector<DirectionPair> MeasuredBrdf::probes() const {
+std::vector<paint::DirectionPair> MeasuredBrdf::probes() const {
   constexpr int kProbes = 1000;
   const double most = std::sin(75 * kDegree);
-  std::vector<DirectionPair> result;
+  std::vector<paint::DirectionPair> result;
   for (int k = 1; k <= kProbes; ++k) {
     const auto direction = [&](int polar_base, int azimuth_base) -> Vec3 {
       const double sine = most * std::sqrt(radical_inverse(polar_base, k));
       const double azimuth = 2 * std::numbers::pi * radical_inverse(azimuth_base, k);
       return {sine * std::cos(azimuth), sine * std::sin(azimuth), std::sqrt(1 - sine * sine)};
     };
-    const DirectionPair pair{direction(2, 3), direction(5, 7)};
-    if (aspecular_angle_rad(pair.light, pair.view, {0, 0, 1}) > 15 * kDegree) result.push_back(pair);
+    const paint::DirectionPair pair{direction(2, 3), direction(5, 7)};
+    if (paint::aspecular_angle_rad(pair.light, pair.view, {0, 0, 1}) > 15 * kDegree) result.push_back(pair);
   }
   return result;
 }
 
-std::vector<DirectionPair> MeasuredBrdf::samples() const {
+std::vector<paint::DirectionPair> MeasuredBrdf::samples() const {
   constexpr double kCones_deg[] = {0,  1,  2,  3.5, 5,  7,  9,  11, 13, 15, 17.5, 20, 22.5, 25,  27.5,
                                    30, 35, 40, 45,  50, 55, 60, 65, 70, 75, 80,   90, 100,  110, 120};
   constexpr double kLightStep_deg = 10, kSteepestLight_deg = 70, kSteepestView_deg = 80, kTurn_deg = 22.5;
-  std::vector<DirectionPair> result;
+  std::vector<paint::DirectionPair> result;
   for (double light = 0; light <= kSteepestLight_deg; light += kLightStep_deg)
     for (const double cone : kCones_deg)
       for (double turn = 0; turn <= 180; turn += kTurn_deg) {
-        const DirectionPair pair =
-            directions({.incidence_deg = light, .aspecular_deg = cone, .out_of_plane = true, .azimuth_deg = turn});
+        const paint::DirectionPair pair = paint::directions(
+            {.incidence_deg = light, .aspecular_deg = cone, .out_of_plane = true, .azimuth_deg = turn});
         // About the normal every turn of the cone is the same pair, and so is every turn of a cone without width.
         if ((cone == 0 || light == 0) && turn > 0) break;
         if (polar_angle(pair.view) <= kSteepestView_deg * kDegree) result.push_back(pair);
@@ -188,4 +188,4 @@ MeasuredChecks checks(const MeasuredBrdf& brdf) {
   return result;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::brdf

@@ -16,7 +16,7 @@
 #include "color/spectrum.h"
 #include "paint/geometry.h"
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 
 // What the file says of itself and of its samples.
 struct MeasuredTraits {
@@ -50,12 +50,12 @@ class MeasuredBrdf {
 
   // Pairs of directions at which to ask for reciprocity: a fixed set spread over both hemispheres, to 75 deg from the
   // normal and at least 15 deg from specular.
-  virtual std::vector<DirectionPair> probes() const;
+  virtual std::vector<paint::DirectionPair> probes() const;
 
   // Pairs of directions to fit a model to: the measured ones where the file holds scattered ones. Else lights at 0, 10,
-  // ..., 70 deg from the normal and, for each, views to 80 deg from the normal on cones about its mirror direction, dense
-  // near it, one side of the plane of incidence.
-  virtual std::vector<DirectionPair> samples() const;
+  // ..., 70 deg from the normal and, for each, views to 80 deg from the normal on cones about its mirror direction,
+  // dense near it, one side of the plane of incidence.
+  virtual std::vector<paint::DirectionPair> samples() const;
 
  protected:
   explicit MeasuredBrdf(MeasuredTraits traits) : traits_(std::move(traits)) {}
@@ -89,34 +89,34 @@ MeasuredChecks checks(const MeasuredBrdf& brdf);
 class ChannelColorimeter {
  public:
   // Error: an illuminant or observer the data cannot be seen under (RGB knows D65/2 alone).
-  static Result<ChannelColorimeter> make(const MeasuredTraits& traits, const ViewingCondition& condition);
-  Xyz xyz(const std::vector<double>& reflectance) const;
-  Xyz white() const { return meter_ ? meter_->white() : xyz({1, 1, 1}); }
+  static Result<ChannelColorimeter> make(const MeasuredTraits& traits, const color::ViewingCondition& condition);
+  color::Xyz xyz(const std::vector<double>& reflectance) const;
+  color::Xyz white() const { return meter_ ? meter_->white() : xyz({1, 1, 1}); }
   double held_share() const { return meter_ ? meter_->held_share() : 0; }
 
  private:
-  std::optional<SpectralColorimeter> meter_;
+  std::optional<color::SpectralColorimeter> meter_;
 };
 
 // What a multi-angle instrument reads.
 struct MeasuredReading {
-  Geometry geometry;
-  Lab lab;
+  paint::Geometry geometry;
+  color::Lab lab;
   double gap_deg = 0, outside_deg = 0;  // of the value it came from
   bool negative = false;                // a channel was below 0 and was taken as 0
   bool noise = false;                   // Y is below the noise floor
 };
 
 struct MeasuredColor {
-  ViewingCondition condition;
+  color::ViewingCondition condition;
   double held_share = 0;  // of X, Y or Z from beyond the spectrum's ends (color/spectrum.h)
   std::vector<MeasuredReading> readings;
-  std::vector<Geometry> unmeasured;  // geometries the file has nothing for
+  std::vector<paint::Geometry> unmeasured;  // geometries the file has nothing for
 };
 
 struct MeasuredColorOptions {
-  std::vector<Geometry> geometries;
-  ViewingCondition condition;
+  std::vector<paint::Geometry> geometries;
+  color::ViewingCondition condition;
   double aperture_deg = 0;  // full angle of the detector's cone, averaged over; 0: one direction
   double noise_floor = 0;   // of checks()
 };
@@ -125,4 +125,4 @@ struct MeasuredColorOptions {
 // geometry with a direction below the surface.
 Result<MeasuredColor> measured_color(const MeasuredBrdf& brdf, const MeasuredColorOptions& options);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::brdf

@@ -6,7 +6,7 @@
 
 #include "brdf/measured.h"
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 
 namespace {
 
@@ -30,12 +30,12 @@ std::vector<ApertureSample> aperture_samples(const Vec3& view, double aperture_d
 }
 
 // The aperture's mean value; `measured` is false where any of it is not.
-Result<MeasuredValue> seen_value(const MeasuredBrdf& brdf, const Geometry& geometry, double aperture_deg) {
-  const DirectionPair pair = directions(geometry);
+Result<MeasuredValue> seen_value(const MeasuredBrdf& brdf, const paint::Geometry& geometry, double aperture_deg) {
+  const paint::DirectionPair pair = paint::directions(geometry);
   MeasuredValue mean;
   for (const ApertureSample& sample : aperture_samples(pair.view, aperture_deg)) {
     if (pair.light.z <= 0 || sample.view.z <= 0)
-      return input_error("geometry {} looks from below the surface{}", geometry_name(geometry),
+      return input_error("geometry {} looks from below the surface{}", paint::geometry_name(geometry),
                          aperture_deg > 0 ? ", at least with a part of its aperture" : "");
     const MeasuredValue value = brdf.value(pair.light, sample.view);
     mean.f.resize(value.f.size());
@@ -49,27 +49,28 @@ Result<MeasuredValue> seen_value(const MeasuredBrdf& brdf, const Geometry& geome
 
 }  // namespace
 
-Result<ChannelColorimeter> ChannelColorimeter::make(const MeasuredTraits& traits, const ViewingCondition& condition) {
+Result<ChannelColorimeter> ChannelColorimeter::make(const MeasuredTraits& traits,
+                                                    const color::ViewingCondition& condition) {
   ChannelColorimeter result;
   if (traits.wavelengths_nm.empty()) {
-    if (condition != ViewingCondition{"D65", 2})
+    if (condition != color::ViewingCondition{"D65", 2})
       return input_error("its RGB is what the 2 deg observer sees under D65: {}/{} would need spectra",
                          condition.illuminant, condition.observer_deg);
     return result;
   }
-  GONIO_ASSIGN(result.meter_, SpectralColorimeter::make(traits.wavelengths_nm, condition));
+  GONIO_ASSIGN(result.meter_, color::SpectralColorimeter::make(traits.wavelengths_nm, condition));
   return result;
 }
 
-Xyz ChannelColorimeter::xyz(const std::vector<double>& reflectance) const {
+color::Xyz ChannelColorimeter::xyz(const std::vector<double>& reflectance) const {
   if (meter_) return meter_->xyz(reflectance);
-  return xyz_d65_from_rgb(rec2020_from_rec709({reflectance[0], reflectance[1], reflectance[2]}));
+  return color::xyz_d65_from_rgb(color::rec2020_from_rec709({reflectance[0], reflectance[1], reflectance[2]}));
 }
 
 Result<MeasuredColor> measured_color(const MeasuredBrdf& brdf, const MeasuredColorOptions& options) {
   GONIO_ASSIGN(const ChannelColorimeter color, ChannelColorimeter::make(brdf.traits(), options.condition));
   MeasuredColor result{options.condition, color.held_share(), {}, {}};
-  for (const Geometry& geometry : options.geometries) {
+  for (const paint::Geometry& geometry : options.geometries) {
     GONIO_ASSIGN(MeasuredValue value, seen_value(brdf, geometry, options.aperture_deg));
     if (!value.measured) {
       result.unmeasured.push_back(geometry);
@@ -80,14 +81,14 @@ Result<MeasuredColor> measured_color(const MeasuredBrdf& brdf, const MeasuredCol
       reading.negative = reading.negative || f < 0;
       f = std::numbers::pi * std::max(f, 0.0);
     }
-    const Xyz xyz = color.xyz(value.f);
+    const color::Xyz xyz = color.xyz(value.f);
     reading.noise = xyz.Y < options.noise_floor;
-    reading.lab = lab_from_xyz(xyz, color.white());
+    reading.lab = color::lab_from_xyz(xyz, color.white());
     if (!std::isfinite(reading.lab.L + reading.lab.a + reading.lab.b))
-      return input_error("its data give no finite value at {}: the file is damaged", geometry_name(geometry));
+      return input_error("its data give no finite value at {}: the file is damaged", paint::geometry_name(geometry));
     result.readings.push_back(reading);
   }
   return result;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::brdf

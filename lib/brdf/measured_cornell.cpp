@@ -5,9 +5,9 @@
 #include <numbers>
 
 #include "base/text.h"
-#include "brdf/measured_formats.h"
+#include "brdf/internal/measured_formats.h"
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 
 namespace {
 
@@ -126,7 +126,7 @@ double unroot(double r) {
 class CornellBrdf final : public MeasuredBrdf {
  public:
   struct Row {
-    DirectionPair pair;
+    paint::DirectionPair pair;
     std::vector<double> f;
   };
 
@@ -166,15 +166,15 @@ class CornellBrdf final : public MeasuredBrdf {
     return result;
   }
 
-  std::vector<DirectionPair> samples() const override {
-    std::vector<DirectionPair> result;
+  std::vector<paint::DirectionPair> samples() const override {
+    std::vector<paint::DirectionPair> result;
     for (const Row& row : rows_) result.push_back(row.pair);
     return result;
   }
 
   // The measured rows themselves, away from specular and grazing.
-  std::vector<DirectionPair> probes() const override {
-    std::vector<DirectionPair> result;
+  std::vector<paint::DirectionPair> probes() const override {
+    std::vector<paint::DirectionPair> result;
     for (const Row& row : rows_) {
       const Offset offset = aspecular_offset(row.pair.light, row.pair.view);
       const double steepest = std::max(polar_angle(row.pair.light), polar_angle(row.pair.view));
@@ -315,4 +315,4 @@ Result<MeasuredPointer> read_cornell(const std::string& path, std::string_view t
   return CornellParser(path, text).parse();
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::brdf

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "brdf/measured_formats.h"
+#include "brdf/internal/measured_formats.h"
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 
 namespace {
 
@@ -115,4 +115,4 @@ Result<MeasuredPointer> read_mbsdf(const std::string& path, std::string_view byt
   return MeasuredPointer(std::make_unique<MbsdfBrdf>(std::move(traits), std::move(grid)));
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::brdf

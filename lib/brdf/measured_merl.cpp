@@ -3,9 +3,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "brdf/measured_formats.h"
+#include "brdf/internal/measured_formats.h"
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 
 namespace {
 
@@ -114,4 +114,4 @@ Result<MeasuredPointer> read_merl(const std::string& path, std::string_view byte
   return MeasuredPointer(std::make_unique<MerlBrdf>(std::move(traits), std::move(bins)));
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::brdf

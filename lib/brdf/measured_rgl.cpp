@@ -4,9 +4,9 @@
 #include <map>
 #include <numbers>
 
-#include "brdf/measured_formats.h"
+#include "brdf/internal/measured_formats.h"
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 
 namespace {
 
@@ -239,4 +239,4 @@ Result<MeasuredPointer> read_rgl(const std::string& path, std::string_view bytes
   return MeasuredPointer(std::make_unique<RglBrdf>(std::move(traits), std::move(tables)));
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::brdf

@@ -16,7 +16,7 @@
 #include "base/file.h"
 #include "base/text.h"
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 namespace {
 
 using testing::HasSubstr;
@@ -60,7 +60,7 @@ void put(std::string& bytes, Number value) {
 
 // A flake-like lobe: reciprocal, isotropic, smooth.
 double lobe(const Vec3& light, const Vec3& view) {
-  return 0.02 + 0.3 * std::exp(-3 * aspecular_angle_rad(light, view, {0, 0, 1}));
+  return 0.02 + 0.3 * std::exp(-3 * paint::aspecular_angle_rad(light, view, {0, 0, 1}));
 }
 using Model = std::function<double(const Vec3&, const Vec3&)>;
 
@@ -102,7 +102,7 @@ TEST_F(Measured, cornell_interpolates_between_and_says_so) {
     for (double polar = 3; polar < 70; polar += 11)
       for (double azimuth = 5; azimuth < 360; azimuth += 25) {
         const Vec3 light = direction(incidence, 20), view = direction(polar, 20 + azimuth);
-        if (aspecular_angle_rad(light, view, {0, 0, 1}) < 15 * kDegree) continue;
+        if (paint::aspecular_angle_rad(light, view, {0, 0, 1}) < 15 * kDegree) continue;
         const MeasuredValue value = brdf->value(light, view);
         EXPECT_GT(value.gap_deg, 0);
         if (value.outside_deg == 0) worst = std::max(worst, std::abs(value.f[0] / lobe(light, view) - 1));
@@ -144,7 +144,7 @@ TEST_F(Measured, cornell_is_fitted_at_its_own_rows_and_grids_on_cones) {
   ASSERT_TRUE(scattered);
   const auto rows = scattered->samples();
   EXPECT_EQ(rows.size(), 7u * 11 * 16);
-  for (const DirectionPair& pair : rows) EXPECT_EQ(scattered->value(pair.light, pair.view).gap_deg, 0);
+  for (const paint::DirectionPair& pair : rows) EXPECT_EQ(scattered->value(pair.light, pair.view).gap_deg, 0);
   // Any other format: every cone has its angle, and no direction is steep or comes twice.
   class Plain final : public MeasuredBrdf {
    public:
@@ -153,8 +153,9 @@ TEST_F(Measured, cornell_is_fitted_at_its_own_rows_and_grids_on_cones) {
   };
   const auto cones = Plain().samples();
   EXPECT_GT(cones.size(), 1000u);
-  for (const DirectionPair& pair : cones) EXPECT_GT(std::min(pair.light.z, pair.view.z), std::cos(80.001 * kDegree));
-  EXPECT_EQ(std::ranges::count_if(cones, [](const DirectionPair& p) { return p.light.z > 1 - 1e-12; }), 26);
+  for (const paint::DirectionPair& pair : cones)
+    EXPECT_GT(std::min(pair.light.z, pair.view.z), std::cos(80.001 * kDegree));
+  EXPECT_EQ(std::ranges::count_if(cones, [](const paint::DirectionPair& p) { return p.light.z > 1 - 1e-12; }), 26);
 }
 
 // --- MERL ------------------------------------------------------------------------------------------------------------
@@ -193,7 +194,7 @@ TEST_F(Measured, merl_table_is_the_function_it_was_made_from) {
         ASSERT_TRUE(value.measured);
         // One bin is at most 2 deg of half angle, 4 of aspecular: the tip of the lobe, where its slope breaks, loses
         // most.
-        const double near_tip = aspecular_angle_rad(light, view, {0, 0, 1}) < 5 * kDegree ? 0.1 : 0.01;
+        const double near_tip = paint::aspecular_angle_rad(light, view, {0, 0, 1}) < 5 * kDegree ? 0.1 : 0.01;
         for (const double f : value.f) EXPECT_NEAR(f, lobe(light, view), near_tip * lobe(light, view));
       }
   const MeasuredChecks told = checks(*brdf);
@@ -236,7 +237,7 @@ TEST_F(Measured, mbsdf_grid_is_the_function_it_was_made_from) {
   for (double polar = 3; polar < 75; polar += 7.3)
     for (double azimuth = 1; azimuth < 360; azimuth += 30) {
       const Vec3 light = direction(52, 0), view = direction(polar, azimuth);
-      if (aspecular_angle_rad(light, view, {0, 0, 1}) < 10 * kDegree) continue;
+      if (paint::aspecular_angle_rad(light, view, {0, 0, 1}) < 10 * kDegree) continue;
       const MeasuredValue value = brdf->value(light, view);
       EXPECT_NEAR(value.f[1], lobe(light, view) / 2, 0.005 * lobe(light, view));
       EXPECT_EQ(value.gap_deg, 2);
@@ -412,9 +413,9 @@ TEST_F(Measured, albedo_of_the_perfect_diffuser_and_of_too_much) {
 
 TEST_F(Measured, gray_reads_gray_at_every_geometry) {
   const auto gray = [](const Vec3&, const Vec3&) { return 0.184186518 / std::numbers::pi; };  // L* = 50
-  std::vector<Geometry> geometries;
+  std::vector<paint::Geometry> geometries;
   for (const char* name : {"45as15", "45as110", "15as45", "45as25az90", "r45as15"}) {
-    auto geometry = parse_geometry(name);
+    auto geometry = paint::parse_geometry(name);
     ASSERT_TRUE(geometry.ok());
     geometries.push_back(*geometry);
   }
@@ -434,7 +435,7 @@ TEST_F(Measured, gray_reads_gray_at_every_geometry) {
       for (int azimuth : {0, 90, 180})
         text += fmt::format("{} 0 {} {} {} {}\n", incidence * kDegree, polar * kDegree, azimuth * kDegree, gray({}, {}),
                             gray({}, {}));
-  for (const ViewingCondition& condition : {ViewingCondition{"A", 2}, {"D50", 10}}) {
+  for (const color::ViewingCondition& condition : {color::ViewingCondition{"A", 2}, {"D50", 10}}) {
     const auto spectral = measured_color(*read("a.brdf", text), {geometries, condition});
     ASSERT_TRUE(spectral.ok());
     for (const auto& reading : spectral->readings) {
@@ -446,7 +447,7 @@ TEST_F(Measured, gray_reads_gray_at_every_geometry) {
 
 TEST_F(Measured, color_refusals) {
   const auto brdf = read("a.mbsdf", mbsdf_bytes(10, 10, lobe));
-  const auto error = [&](const Geometry& geometry, const ViewingCondition& condition, double aperture) {
+  const auto error = [&](const paint::Geometry& geometry, const color::ViewingCondition& condition, double aperture) {
     const auto color = measured_color(*brdf, {{geometry}, condition, aperture});
     return color.ok() ? "" : color.error().message;
   };
@@ -463,8 +464,8 @@ std::string data_path(const std::string& relative) {
 }
 
 // sample -> geometry -> Lab of the published table.
-std::map<std::string, std::map<std::string, Lab>> measured_table() {
-  std::map<std::string, std::map<std::string, Lab>> table;
+std::map<std::string, std::map<std::string, color::Lab>> measured_table() {
+  std::map<std::string, std::map<std::string, color::Lab>> table;
   const auto text = file_content(data_path("lab/measured-multiangle.csv"));
   EXPECT_TRUE(text.ok());
   for (const auto line : split(*text, '\n')) {
@@ -480,15 +481,15 @@ std::map<std::string, std::map<std::string, Lab>> measured_table() {
 std::vector<double> distances_to_table(const std::string& sample, const std::string& file) {
   auto brdf = read_measured(data_path(file));
   EXPECT_TRUE(brdf.ok()) << (brdf.ok() ? "" : brdf.error().message);
-  std::vector<Geometry> geometries;
+  std::vector<paint::Geometry> geometries;
   for (const char* name : {"45as15", "45as25", "45as45", "45as75", "45as110"})
-    geometries.push_back(parse_geometry(name).value());
+    geometries.push_back(paint::parse_geometry(name).value());
   const auto color = measured_color(**brdf, {geometries, {"D65", 2}});
   EXPECT_TRUE(color.ok());
   std::vector<double> result;
   auto table = measured_table()[sample];
   for (const auto& reading : color->readings)
-    result.push_back(delta_e_76(reading.lab, table.at(geometry_name(reading.geometry))));
+    result.push_back(color::delta_e_76(reading.lab, table.at(paint::geometry_name(reading.geometry))));
   EXPECT_EQ(result.size(), 5u);
   return result;
 }
@@ -526,4 +527,4 @@ TEST_F(Measured, nvidia_checks_tell_its_flawsRealData) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::brdf

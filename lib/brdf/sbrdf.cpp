@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 
 SbrdfTexel sbrdf_texel(const SbrdfTexture& texture, int column, int row) {
   const float* at = texture.texel(column, row);
@@ -54,11 +54,11 @@ namespace {
 struct LobeSums {
   double weight = 0, log_exponent = 0, even = 0, normal = 0;
   std::array<double, 2> odd{};
-  Rgb energy;
+  color::Rgb energy;
 
   void add(const float* lobe, const float* frame, double share) {
     const double scale = share / (lobe[6] + 1.0), size = std::hypot(frame[0], frame[1]);
-    const Rgb here = scale * Rgb{lobe[0], lobe[1], lobe[2]};
+    const color::Rgb here = scale * color::Rgb{lobe[0], lobe[1], lobe[2]};
     const double w = std::max(here.x + here.y + here.z, 1e-30), half = 0.5 * (lobe[3] - lobe[4]);
     energy += here;
     weight += w;
@@ -75,10 +75,10 @@ SbrdfTexture mean_texture(const SbrdfTexture& texture) {
   const auto texels = static_cast<std::size_t>(texture.width) * static_cast<std::size_t>(texture.height);
   const double share = 1 / static_cast<double>(texels);
   std::vector<LobeSums> sums(static_cast<std::size_t>(texture.lobes));
-  Rgb diffuse;
+  color::Rgb diffuse;
   for (std::size_t i = 0; i < texels; ++i) {
     const float* at = &texture.values[i * static_cast<std::size_t>(texture.stride())];
-    diffuse += share * Rgb{at[0], at[1], at[2]};
+    diffuse += share * color::Rgb{at[0], at[1], at[2]};
     for (std::size_t lobe = 0; lobe < sums.size(); ++lobe) sums[lobe].add(at + 5 + 7 * lobe, at + 3, share);
   }
   double c = 0, s = 0;
@@ -98,4 +98,4 @@ SbrdfTexture mean_texture(const SbrdfTexture& texture) {
   return mean;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::brdf

@@ -8,7 +8,7 @@
 
 #include "brdf/lafortune.h"
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 
 // Texels row by row from the top, each: diffuse RGB; cos and sin of twice the angle from the tangent to the texel's own
 // x axis (turned by 180 deg a lobe is the same); then for each lobe albedo RGB, axes XYZ, exponent.
@@ -52,4 +52,4 @@ std::array<TextureTap, 4> texture_taps(int width, int height, double u, double v
 // texels.
 SbrdfTexture mean_texture(const SbrdfTexture& texture);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::brdf

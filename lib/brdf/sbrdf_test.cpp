@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 namespace {
 
 SbrdfTexture two_by_one() {
@@ -45,4 +45,4 @@ TEST(Sbrdf, TapsRepeatAndBlend) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::brdf

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 
 // With h = (wi+wo)/|wi+wo|, c_h = h.n and c = h.wi,
 //
@@ -19,7 +19,7 @@ namespace goniochrome {
 // max(0, cos_i)/c_h over G, and cos_i/c_h = 2 c - cos_o/c_h. For h and its twin (-h.x, -h.y), equally likely, c is
 // c_h cos_o +- x with x^2 <= (1-c_h^2)(1-cos_o^2). Their mean is cos_o (2 c_h - 1/c_h) <= 1 where both count, and where
 // one counts at most half of 2 c - cos_o/c_h <= 2.
-double ward(const Vec3& to_light, const Vec3& to_viewer, const Anisotropy& alpha) {
+double ward(const Vec3& to_light, const Vec3& to_viewer, const paint::Anisotropy& alpha) {
   if (to_light.z <= 0 || to_viewer.z <= 0) return 0;
   const Vec3 sum = to_light + to_viewer;
   const double size = std::hypot(sum.x, sum.y, sum.z), x = sum.x / size / alpha.alpha_x,
@@ -85,7 +85,7 @@ Vec3 tilted(double t, bool along_x) {
 
 }  // namespace
 
-Result<TiltSet> ward_tilts(const Anisotropy& alpha, double narrow_alpha, double tolerance, int max_count) {
+Result<TiltSet> ward_tilts(const paint::Anisotropy& alpha, double narrow_alpha, double tolerance, int max_count) {
   if (!(alpha.alpha_x > 0) || !(alpha.alpha_y > 0) || std::isinf(alpha.alpha_x) || std::isinf(alpha.alpha_y))
     return input_error("anisotropy alphaX={} alphaY={}: both must be positive numbers", alpha.alpha_x, alpha.alpha_y);
   const double wide = std::max(alpha.alpha_x, alpha.alpha_y);
@@ -110,4 +110,4 @@ Result<TiltSet> ward_tilts(const Anisotropy& alpha, double narrow_alpha, double 
   return set;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::brdf

@@ -7,7 +7,7 @@
 
 #include "base/hard_case_for_test.h"
 
-namespace goniochrome {
+namespace goniochrome::brdf {
 namespace {
 
 Vec3 direction(double polar_rad, double azimuth_rad) {
@@ -16,7 +16,7 @@ Vec3 direction(double polar_rad, double azimuth_rad) {
 }
 
 // The control: [Ward1992] 5a with the square root of both cosines.
-double textbook(const Vec3& wi, const Vec3& wo, const Anisotropy& a) {
+double textbook(const Vec3& wi, const Vec3& wo, const paint::Anisotropy& a) {
   const Vec3 h = normalized(wi + wo);
   const double exponent = -2 * (std::pow(h.x / a.alpha_x, 2) + std::pow(h.y / a.alpha_y, 2)) / (1 + h.z);
   return std::exp(exponent) / std::sqrt(wi.z * wo.z) / (4 * M_PI * a.alpha_x * a.alpha_y);
@@ -25,7 +25,7 @@ double textbook(const Vec3& wi, const Vec3& wo, const Anisotropy& a) {
 // The integral of f cos_i over the hemisphere of h, mapped from the equal-area plane: midpoint rule in polar angle of
 // u, stretched by the widths, so that narrow lobes are resolved.
 template <class F>
-double albedo(const F& f, const Vec3& wo, const Anisotropy& a) {
+double albedo(const F& f, const Vec3& wo, const paint::Anisotropy& a) {
   constexpr int kRadii = 300, kTurns = 360;
   double sum = 0;
   for (int i = 0; i < kRadii; ++i) {
@@ -50,7 +50,8 @@ TEST(HardCase, WardGrazingIsFiniteAndSendsBackNoMoreThanItGot) {
   double most = 0, textbook_most = 0;
   for (const double polar_deg : {0.0, 30.0, 60.0, 80.0, 89.0, 89.99, 89.9999999}) {
     const Vec3 wo = direction(polar_deg * M_PI / 180, 0.4);
-    for (const Anisotropy a : {Anisotropy{1e-4, 0.1}, {0.05, 0.3}, {0.3, 0.3}, {0.2, 1.0}, {1.0, 1e-3}, {3, 3}}) {
+    for (const paint::Anisotropy a :
+         {paint::Anisotropy{1e-4, 0.1}, {0.05, 0.3}, {0.3, 0.3}, {0.2, 1.0}, {1.0, 1e-3}, {3, 3}}) {
       most = worst_of(most, albedo(ward, wo, a));
       textbook_most = worst_of(textbook_most, albedo(textbook, wo, a));
     }
@@ -65,7 +66,7 @@ TEST(HardCase, WardGrazingIsFiniteAndSendsBackNoMoreThanItGot) {
 
   for (const double tiny : {1e-8, 1e-160, 1e-300}) {
     const Vec3 grazing = {1, 0, tiny}, steep = direction(0.5, 1), opposite = {-1, 0, tiny};
-    for (const Anisotropy a : {Anisotropy{1e-4, 0.1}, {1, 1}}) {
+    for (const paint::Anisotropy a : {paint::Anisotropy{1e-4, 0.1}, {1, 1}}) {
       EXPECT_TRUE(std::isfinite(ward(grazing, steep, a)));
       EXPECT_TRUE(std::isfinite(ward(grazing, opposite, a) * tiny));
       EXPECT_LE(ward(grazing, opposite, a) * tiny, 1 / (4 * M_PI * a.alpha_x * a.alpha_y) * (1 + 1e-12));
@@ -84,7 +85,7 @@ TEST(Ward, AlbedoOfNarrowLobesIsTheCosine) {
 }
 
 TEST(Ward, IsReciprocalAndAgreesWithThePrintedFormAtMirrorPairs) {
-  const Anisotropy a = {0.1, 0.4};
+  const paint::Anisotropy a = {0.1, 0.4};
   const Vec3 wi = direction(0.7, 0.2), wo = direction(0.9, 2.8);
   EXPECT_EQ(ward(wi, wo, a), ward(wo, wi, a));
   const Vec3 mirror = {-wi.x, -wi.y, wi.z};
@@ -173,4 +174,4 @@ TEST(Ward, TiltsOfExtremeAndSwappedAxes) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::brdf

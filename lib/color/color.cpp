@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace goniochrome {
+namespace goniochrome::color {
 
 namespace {
 
@@ -151,4 +151,4 @@ double lightness_slope(double lightness) {
   return 116.0 / 3 / (cube_root * cube_root);
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::color

@@ -8,7 +8,7 @@
 #include "base/result.h"
 #include "base/vec3.h"
 
-namespace goniochrome {
+namespace goniochrome::color {
 
 // CIELAB relative to the perfect diffuser. L above 100 is legal close to specular.
 struct Lab {
@@ -69,4 +69,4 @@ double lightness_slope(double lightness);
 double hue_deg(const Lab& lab);
 double chroma(const Lab& lab);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::color

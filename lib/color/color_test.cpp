@@ -11,7 +11,7 @@
 #include "base/hard_case_for_test.h"
 #include "base/text.h"
 
-namespace goniochrome {
+namespace goniochrome::color {
 namespace {
 
 const Xyz kD65_10 = *white_point({"D65", 10});
@@ -190,4 +190,4 @@ TEST(HardCase, LabExtremes) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::color

@@ -3,7 +3,7 @@
 
 #include "color/color.h"
 
-namespace goniochrome {
+namespace goniochrome::color {
 
 namespace {
 
@@ -103,4 +103,4 @@ double chroma(const Lab& lab) {
   return std::hypot(lab.a, lab.b);
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::color

@@ -8,7 +8,7 @@
 #include "base/hard_case_for_test.h"
 #include "color/color.h"
 
-namespace goniochrome {
+namespace goniochrome::color {
 namespace {
 
 struct Pair {
@@ -160,4 +160,4 @@ TEST(Difference, VectorHasTheLengthOfTheDifference) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::color

@@ -5,9 +5,9 @@
 #include <limits>
 #include <vector>
 
-#include "color/cie_tables.h"
+#include "color/internal/cie_tables.h"
 
-namespace goniochrome {
+namespace goniochrome::color {
 
 ReflectionOperator component_wise() {
   ReflectionOperator op;
@@ -179,4 +179,4 @@ Result<ReflectionOperator> estimated_operator(std::span<const Rgb> color_matchin
   return nearest_coherent(op);
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::color

@@ -8,7 +8,7 @@
 #include "base/result.h"
 #include "color/color.h"
 
-namespace goniochrome {
+namespace goniochrome::color {
 
 // The 27 coefficients of C_c = sum_d sum_e k[c][d][e] A_d B_e. Two properties are kept by everything here: k is
 // symmetric in d and e, so that light and reflectance may trade places, and coherent, sum_e k[c][d][e] = (c == d), so
@@ -76,4 +76,4 @@ ReflectionOperator nearest_coherent(const ReflectionOperator& op);
 // sum 1. Error: fewer than three samples, or functions that depend on each other.
 Result<ReflectionOperator> estimated_operator(std::span<const Rgb> color_matching);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::color

@@ -5,7 +5,7 @@
 #include "base/file.h"
 #include "base/json.h"
 
-namespace goniochrome {
+namespace goniochrome::color {
 
 std::string reflection_json(const ReflectionOperator& op) {
   return Json{{"k", op.k}}.dump() + "\n";
@@ -51,4 +51,4 @@ Result<ReflectionOperator> read_reflection_operator(const std::string& path) {
   return nearest_coherent(op);
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::color

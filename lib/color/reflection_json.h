@@ -5,7 +5,7 @@
 
 #include "color/reflection.h"
 
-namespace goniochrome {
+namespace goniochrome::color {
 
 // Shortest digits that read back as the same numbers, and a line feed.
 std::string reflection_json(const ReflectionOperator& op);
@@ -14,4 +14,4 @@ std::string reflection_json(const ReflectionOperator& op);
 // refused with its row.
 Result<ReflectionOperator> read_reflection_operator(const std::string& path);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::color

@@ -10,10 +10,10 @@
 
 #include "base/file.h"
 #include "base/hard_case_for_test.h"
-#include "color/cie_tables.h"
+#include "color/internal/cie_tables.h"
 #include "color/reflection_json.h"
 
-namespace goniochrome {
+namespace goniochrome::color {
 namespace {
 
 double largest_difference(const ReflectionOperator& a, const ReflectionOperator& b) {
@@ -226,4 +226,4 @@ TEST(Reflection, EstimationIsExactForSensorsThatDoNotOverlap) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::color

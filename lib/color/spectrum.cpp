@@ -6,9 +6,9 @@
 #include <functional>
 #include <optional>
 
-#include "color/cie_tables.h"
+#include "color/internal/cie_tables.h"
 
-namespace goniochrome {
+namespace goniochrome::color {
 
 namespace {
 
@@ -114,4 +114,4 @@ Xyz SpectralColorimeter::xyz(std::span<const double> reflectance) const {
   return sum;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::color

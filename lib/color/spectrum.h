@@ -8,7 +8,7 @@
 #include "base/result.h"
 #include "color/color.h"
 
-namespace goniochrome {
+namespace goniochrome::color {
 
 // Turns reflectance factors at fixed wavelengths into XYZ under one viewing condition. The perfect diffuser gives its
 // own white exactly, so Lab needs no second table.
@@ -35,4 +35,4 @@ class SpectralColorimeter {
   double held_share_ = 0;
 };
 
-}  // namespace goniochrome
+}  // namespace goniochrome::color

@@ -8,9 +8,9 @@
 
 #include "base/file.h"
 #include "base/text.h"
-#include "color/cie_tables.h"
+#include "color/internal/cie_tables.h"
 
-namespace goniochrome {
+namespace goniochrome::color {
 namespace {
 
 std::vector<double> wavelengths(double first, double last, double step) {
@@ -158,4 +158,4 @@ TEST(Spectrum, tables_every_5_nm_are_enoughRealData) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::color

@@ -7,7 +7,7 @@
 #include "base/parallel.h"
 #include "envmap/patch.h"
 
-namespace goniochrome {
+namespace goniochrome::envmap {
 
 namespace {
 
@@ -108,4 +108,4 @@ BlockTree::Block BlockTree::block_of_texels(const Sheet& sheet, int column, int 
   return block;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::envmap

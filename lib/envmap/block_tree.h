@@ -8,7 +8,7 @@
 
 #include "envmap/environment.h"
 
-namespace goniochrome {
+namespace goniochrome::envmap {
 
 class BlockTree {
  public:
@@ -69,4 +69,4 @@ class BlockTree {
   std::vector<Sheet> sheets_;
 };
 
-}  // namespace goniochrome
+}  // namespace goniochrome::envmap

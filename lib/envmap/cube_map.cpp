@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace goniochrome {
+namespace goniochrome::envmap {
 
 // OpenGL 4.5 core, table 8.19: a face with its axes s (columns) and t (rows), both from -1 to 1. Read backwards:
 //   +X: (1,-t,-s)  -X: (-1,-t,s)  +Y: (s,1,t)  -Y: (s,-1,-t)  +Z: (s,-t,1)  -Z: (-s,-t,-1)
@@ -91,4 +91,4 @@ Vec3 bilinear(const CubeMap& map, const Vec3& direction) {
   return (1 - fy) * ((1 - fx) * corner[0][0] + fx * corner[0][1]) + fy * ((1 - fx) * corner[1][0] + fx * corner[1][1]);
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::envmap

@@ -7,7 +7,7 @@
 
 #include "base/vec3.h"
 
-namespace goniochrome {
+namespace goniochrome::envmap {
 
 // Six faces of N x N RGB texels, faces from the top, rows from the top: index ((face*N + row)*N + column)*3 + channel.
 struct CubeMap {
@@ -41,4 +41,4 @@ double cube_cell_solid_angle(double s0, double s1, double t0, double t1);
 // three texels that meet there are averaged for the missing fourth).
 Vec3 bilinear(const CubeMap& map, const Vec3& direction);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::envmap

@@ -7,7 +7,7 @@
 
 #include "base/hard_case_for_test.h"
 
-namespace goniochrome {
+namespace goniochrome::envmap {
 namespace {
 
 Vec3 random_direction(std::mt19937_64& random) {
@@ -90,4 +90,4 @@ TEST(CubeMap, lookup_of_one_texel_faces_is_finite) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::envmap

@@ -5,7 +5,7 @@
 
 #include "base/parallel.h"
 
-namespace goniochrome {
+namespace goniochrome::envmap {
 
 // A cube with texel centers on its edges has cells of 2/(N-1), half as wide at the edges of a face: on a grid of
 // 2(N-1) equal cells its cell i covers 2i-1 and 2i. In every other layout texels are cut where they are.
@@ -72,4 +72,4 @@ Vec3 Environment::flux(const Clip& clip) const {
   return sum;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::envmap

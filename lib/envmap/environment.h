@@ -15,7 +15,7 @@
 #include "envmap/sphere_grid.h"
 #include "image/image.h"
 
-namespace goniochrome {
+namespace goniochrome::envmap {
 
 // What is left of a texel when its excess is taken away: one above `most` in some channel is scaled so that its largest
 // channel is `to`.
@@ -52,10 +52,10 @@ class Environment {
   static Result<Environment> read_faces(const std::vector<std::string>& paths, BadPixels bad_pixels);
 
   // From pixels that are in the working space already.
-  static Result<Environment> from_lat_long(Image rgb, BadPixels bad_pixels, const std::string& name);
-  static Result<Environment> from_angular(Image rgb, BadPixels bad_pixels, const std::string& name);
+  static Result<Environment> from_lat_long(image::Image rgb, BadPixels bad_pixels, const std::string& name);
+  static Result<Environment> from_angular(image::Image rgb, BadPixels bad_pixels, const std::string& name);
   static Environment from_cube(const CubeMap& map, const std::string& name);
-  static Result<Environment> from_cube_edges(Image strip, BadPixels bad_pixels, const std::string& name);
+  static Result<Environment> from_cube_edges(image::Image strip, BadPixels bad_pixels, const std::string& name);
 
   // The same radiance on finer texels, none wider or higher than `most_rad`: each texel is cut into equal parts, so
   // nothing changes on the sphere. What is that fine already comes back as it is.
@@ -110,4 +110,4 @@ class Environment {
 // px.., posx.., right.., +x.., 0.. whose first file exists. Error: what was tried.
 Result<std::vector<std::string>> face_paths(const std::string& pattern);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::envmap

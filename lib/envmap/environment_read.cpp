@@ -5,10 +5,10 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "envmap/color_space.h"
 #include "envmap/environment.h"
+#include "image/color_space.h"
 
-namespace goniochrome {
+namespace goniochrome::envmap {
 
 namespace {
 
@@ -16,7 +16,7 @@ using BadPixels = Environment::BadPixels;
 using Counts = Environment::Counts;
 
 // Finds texels that are not finite or are negative in the first three channels, as stored. Error: the first by name.
-Result<Counts> checked(Image& image, BadPixels bad_pixels, const std::string& name) {
+Result<Counts> checked(image::Image& image, BadPixels bad_pixels, const std::string& name) {
   Counts counts;
   const int channels = std::min(image.channels, 3);
   const std::size_t texels = static_cast<std::size_t>(image.width) * image.height;
@@ -39,7 +39,7 @@ Result<Counts> checked(Image& image, BadPixels bad_pixels, const std::string& na
 }
 
 // A wider gamut than Rec.2020 leaves negative values there.
-int clip_to_gamut(Image& rgb) {
+int clip_to_gamut(image::Image& rgb) {
   int clipped = 0;
   for (std::size_t i = 0; i < rgb.data.size(); i += 3) {
     bool outside = false;
@@ -55,8 +55,8 @@ struct Placement {
   int x = 0, y = 0;
   bool flip_columns = false, flip_rows = false;
 };
-Image strip_of(const Image& image, int n, const std::array<Placement, 6>& faces) {
-  Image strip = {n, 6 * n, 3, {}, {}};
+image::Image strip_of(const image::Image& image, int n, const std::array<Placement, 6>& faces) {
+  image::Image strip = {n, 6 * n, 3, {}, {}};
   strip.data.resize(static_cast<std::size_t>(n) * n * 18);
   for (int f = 0; f < 6; ++f)
     for (int row = 0; row < n; ++row)
@@ -83,7 +83,7 @@ std::array<Placement, 6> openexr_placements(int n) {
 }
 
 // The disc of an angular probe alone: what lies beyond the rim sees nothing.
-Image without_corners(Image square) {
+image::Image without_corners(image::Image square) {
   const SphereGrid grid(SphereGrid::Layout::kAngular, square.width, square.height);
   for (int row = 0; row < square.height; ++row)
     for (int column = 0; column < square.width; ++column)
@@ -91,7 +91,7 @@ Image without_corners(Image square) {
   return square;
 }
 
-std::string envmap_attribute(const ImagePart& part) {
+std::string envmap_attribute(const image::ImagePart& part) {
   const auto found = part.attributes.find("envmap");
   const auto* value = found == part.attributes.end() ? nullptr : std::get_if<std::string>(&found->second);
   return value ? *value : "";
@@ -101,7 +101,7 @@ std::string envmap_attribute(const ImagePart& part) {
 
 class EnvironmentReader {
  public:
-  static Environment make(Environment::Layout layout, Image rgb, const Counts& counts, const std::string& name) {
+  static Environment make(Environment::Layout layout, image::Image rgb, const Counts& counts, const std::string& name) {
     Environment env;
     env.grid_ = SphereGrid(layout, rgb.width, rgb.height);
     env.rgb_ = std::move(rgb.data);
@@ -110,16 +110,16 @@ class EnvironmentReader {
     return env;
   }
 
-  static Result<Environment> from_part(ImagePart part, BadPixels bad_pixels, const std::string& name) {
+  static Result<Environment> from_part(image::ImagePart part, BadPixels bad_pixels, const std::string& name) {
     GONIO_ASSIGN(Counts counts, checked(part.image, bad_pixels, name));
     const std::string envmap = envmap_attribute(part);
-    GONIO_ASSIGN(Image rgb, working_space_rgb(std::move(part), name));
+    GONIO_ASSIGN(image::Image rgb, image::working_space_rgb(std::move(part), name));
     counts.out_of_gamut = clip_to_gamut(rgb);
     return arranged(std::move(rgb), envmap, counts, name);
   }
 
  private:
-  static Result<Environment> arranged(Image rgb, const std::string& envmap, const Counts& counts,
+  static Result<Environment> arranged(image::Image rgb, const std::string& envmap, const Counts& counts,
                                       const std::string& name) {
     using Layout = Environment::Layout;
     const int w = rgb.width, h = rgb.height;
@@ -161,7 +161,7 @@ Result<Environment> Environment::read(const std::string& path, BadPixels bad_pix
     env.source_ = path;
     return env;
   }
-  GONIO_ASSIGN(ImagePart part, read_image(path));
+  GONIO_ASSIGN(image::ImagePart part, image::read_image(path));
   return EnvironmentReader::from_part(std::move(part), bad_pixels, path == "-" ? "standard input" : path);
 }
 
@@ -169,13 +169,13 @@ Result<Environment> Environment::read_faces(const std::vector<std::string>& path
   if (paths.size() != 6)
     return usage_error("{} files were given: a cube takes six, +X -X +Y -Y +Z -Z; another map is one file",
                        paths.size());
-  Image strip;
+  image::Image strip;
   Counts counts;
   for (int face = 0; face < 6; ++face) {
     const std::string& path = paths[face];
-    GONIO_ASSIGN(ImagePart part, read_image(path));
+    GONIO_ASSIGN(image::ImagePart part, image::read_image(path));
     GONIO_ASSIGN(const Counts bad, checked(part.image, bad_pixels, path));
-    GONIO_ASSIGN(const Image rgb, working_space_rgb(std::move(part), path));
+    GONIO_ASSIGN(const image::Image rgb, image::working_space_rgb(std::move(part), path));
     const int n = rgb.width;
     if (face == 0) strip = {n, 6 * n, 3, {}, {}};
     if (rgb.height != n || n != strip.width)
@@ -188,14 +188,14 @@ Result<Environment> Environment::read_faces(const std::vector<std::string>& path
   return EnvironmentReader::make(Layout::kCube, std::move(strip), counts, paths.front());
 }
 
-Result<Environment> Environment::from_lat_long(Image rgb, BadPixels bad_pixels, const std::string& name) {
+Result<Environment> Environment::from_lat_long(image::Image rgb, BadPixels bad_pixels, const std::string& name) {
   GONIO_ASSIGN(const Counts counts, checked(rgb, bad_pixels, name));
   if (rgb.channels != 3 || rgb.width < 2 || std::abs(rgb.width - 2 * rgb.height) > 1)
     return input_error("{}: {} x {} is no lat-long map: it must be twice as wide as high", name, rgb.width, rgb.height);
   return EnvironmentReader::make(Layout::kLatLong, std::move(rgb), counts, name);
 }
 
-Result<Environment> Environment::from_angular(Image rgb, BadPixels bad_pixels, const std::string& name) {
+Result<Environment> Environment::from_angular(image::Image rgb, BadPixels bad_pixels, const std::string& name) {
   GONIO_ASSIGN(const Counts counts, checked(rgb, bad_pixels, name));
   if (rgb.channels != 3 || rgb.width < 2 || rgb.width != rgb.height)
     return input_error("{}: {} x {} is no angular probe: it must be square", name, rgb.width, rgb.height);
@@ -206,7 +206,7 @@ Environment Environment::from_cube(const CubeMap& map, const std::string& name) 
   return EnvironmentReader::make(Layout::kCube, {map.size, 6 * map.size, 3, map.texels, {}}, {}, name);
 }
 
-Result<Environment> Environment::from_cube_edges(Image strip, BadPixels bad_pixels, const std::string& name) {
+Result<Environment> Environment::from_cube_edges(image::Image strip, BadPixels bad_pixels, const std::string& name) {
   GONIO_ASSIGN(const Counts counts, checked(strip, bad_pixels, name));
   if (strip.channels != 3 || strip.height != 6 * strip.width || strip.width < 2)
     return input_error("{}: {} x {} is no strip of six faces of at least 2 x 2", name, strip.width, strip.height);
@@ -236,4 +236,4 @@ Result<std::vector<std::string>> face_paths(const std::string& pattern) {
   return input_error("{}: none of {} exists", pattern, tried);
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::envmap

@@ -14,7 +14,7 @@
 #include "base/hard_case_for_test.h"
 #include "color/color.h"
 
-namespace goniochrome {
+namespace goniochrome::envmap {
 namespace {
 
 using testing::HasSubstr;
@@ -30,18 +30,19 @@ class EnvironmentFile : public testing::Test {
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
   // Writes a working-space image and returns its path.
-  std::string written(const std::string& name, const Image& image, const std::string& envmap = "") {
-    ImagePart part = {"", image, {{"colorInteropID", std::string("lin_rec2020_scene")}}, PixelType::kFloat};
+  std::string written(const std::string& name, const image::Image& image, const std::string& envmap = "") {
+    image::ImagePart part = {
+        "", image, {{"colorInteropID", std::string("lin_rec2020_scene")}}, image::PixelType::kFloat};
     if (!envmap.empty()) part.attributes["envmap"] = envmap;
-    EXPECT_TRUE(write_exr((folder_ / name).string(), {part}).ok());
+    EXPECT_TRUE(image::write_exr((folder_ / name).string(), {part}).ok());
     return (folder_ / name).string();
   }
 
   std::filesystem::path folder_;
 };
 
-Image filled(int width, int height, const std::function<Vec3(double, double)>& value) {
-  Image image = {width, height, 3, {}, {}};
+image::Image filled(int width, int height, const std::function<Vec3(double, double)>& value) {
+  image::Image image = {width, height, 3, {}, {}};
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       const Vec3 rgb = value(x + 0.5, y + 0.5);
@@ -55,14 +56,14 @@ Vec3 scene(const Vec3& d) {
   return {2 + d.x + 0.3 * d.y * d.z, 1.5 + d.y - 0.4 * d.x, 3 + 0.8 * d.z + 0.5 * d.x * d.y};
 }
 
-Image lat_long_scene(int height) {
+image::Image lat_long_scene(int height) {
   return filled(2 * height, height, [&](double x, double y) {
     const double theta = M_PI * y / height, longitude = 2 * M_PI * (0.5 - x / (2 * height));
     return scene({std::sin(theta) * std::sin(longitude), std::cos(theta), std::sin(theta) * std::cos(longitude)});
   });
 }
 
-Image gl_strip_scene(int n) {
+image::Image gl_strip_scene(int n) {
   return filled(n, 6 * n, [&](double x, double y) {
     const int face = static_cast<int>(y) / n;
     return scene(cube_direction(face, x, y - face * n, n));
@@ -70,9 +71,9 @@ Image gl_strip_scene(int n) {
 }
 
 // OpenEXR's own functions say where its texels look.
-Image openexr_scene(int n) {
+image::Image openexr_scene(int n) {
   const Imath::Box2i window(Imath::V2i(0, 0), Imath::V2i(n - 1, 6 * n - 1));
-  Image image = {n, 6 * n, 3, std::vector<float>(static_cast<std::size_t>(n) * n * 18), {}};
+  image::Image image = {n, 6 * n, 3, std::vector<float>(static_cast<std::size_t>(n) * n * 18), {}};
   for (int face = 0; face < 6; ++face)
     for (int a = 0; a < n; ++a)
       for (int b = 0; b < n; ++b) {
@@ -116,9 +117,9 @@ TEST_F(EnvironmentFile, HardCase_PrefilterConventionEveryLayoutOfOneSceneAgrees)
   };
   expect_scene(read(written("latlong.exr", lat_long_scene(200))), lat_long_step);
 
-  const Image strip = gl_strip_scene(kSize);
+  const image::Image strip = gl_strip_scene(kSize);
   expect_scene(read(written("strip.exr", strip)), cube_step);
-  const auto block = [&](Image& to, int face, int x, int y, bool turned) {
+  const auto block = [&](image::Image& to, int face, int x, int y, bool turned) {
     for (int row = 0; row < kSize; ++row)
       for (int column = 0; column < kSize; ++column) {
         const float* from =
@@ -126,20 +127,20 @@ TEST_F(EnvironmentFile, HardCase_PrefilterConventionEveryLayoutOfOneSceneAgrees)
         std::copy(from, from + 3, to.pixel(x * kSize + column, y * kSize + row));
       }
   };
-  const auto blank = [](int w, int h) { return Image{w, h, 3, std::vector<float>(std::size_t(w) * h * 3), {}}; };
-  Image wide = blank(6 * kSize, kSize);
+  const auto blank = [](int w, int h) { return image::Image{w, h, 3, std::vector<float>(std::size_t(w) * h * 3), {}}; };
+  image::Image wide = blank(6 * kSize, kSize);
   for (int f = 0; f < 6; ++f) block(wide, f, f, 0, false);
   expect_scene(read(written("wide.exr", wide)), cube_step);
-  Image cross = blank(4 * kSize, 3 * kSize);
+  image::Image cross = blank(4 * kSize, 3 * kSize);
   const int cells[6][2] = {{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}};
   for (int f = 0; f < 6; ++f) block(cross, f, cells[f][0], cells[f][1], false);
   expect_scene(read(written("cross.exr", cross)), cube_step);
-  Image upright = blank(3 * kSize, 4 * kSize);
+  image::Image upright = blank(3 * kSize, 4 * kSize);
   for (int f = 0; f < 5; ++f) block(upright, f, cells[f][0], cells[f][1], false);
   block(upright, 5, 1, 3, true);
   expect_scene(read(written("upright.exr", upright)), cube_step);
   for (int f = 0; f < 6; ++f) {
-    Image face = blank(kSize, kSize);
+    image::Image face = blank(kSize, kSize);
     std::copy(strip.pixel(0, f * kSize), strip.pixel(0, f * kSize) + kSize * kSize * 3, face.data.begin());
     written(fmt::format("sky-{}.exr", std::array{"px", "nx", "py", "ny", "pz", "nz"}[f]), face);
   }
@@ -203,48 +204,48 @@ TEST_F(EnvironmentFile, cells_cover_the_sphere_and_directions_lie_in_them) {
 }
 
 TEST_F(EnvironmentFile, untagged_is_rec709_and_tags_are_honored) {
-  const auto first_texel = [&](const Attributes& attributes) {
-    ImagePart part = {"",
-                      filled(4, 2,
-                             [](double, double) {
-                               return Vec3{0.2, 0.5, 0.7};
-                             }),
-                      attributes, PixelType::kFloat};
+  const auto first_texel = [&](const image::Attributes& attributes) {
+    image::ImagePart part = {"",
+                             filled(4, 2,
+                                    [](double, double) {
+                                      return Vec3{0.2, 0.5, 0.7};
+                                    }),
+                             attributes, image::PixelType::kFloat};
     const std::string path = (folder_ / "tag.exr").string();
-    EXPECT_TRUE(write_exr(path, {part}).ok());
+    EXPECT_TRUE(image::write_exr(path, {part}).ok());
     const auto env = Environment::read(path, BadPixels::kError);
     EXPECT_TRUE(env.ok()) << env.error().message;
     const float* rgb = env->radiance(0, 0);
     return Vec3{rgb[0], rgb[1], rgb[2]};
   };
-  const Vec3 from_709 = rec2020_from_rec709({0.2, 0.5, 0.7});
+  const Vec3 from_709 = color::rec2020_from_rec709({0.2, 0.5, 0.7});
   EXPECT_LT(length(first_texel({}) - from_709), 1e-6);
   EXPECT_LT(length(first_texel({{"colorInteropID", std::string("lin_rec709_scene")}}) - from_709), 1e-6);
   EXPECT_LT(length(first_texel({{"colorInteropID", std::string("lin_rec2020_scene")}}) - Vec3{.2, .5, .7}), 1e-7);
   const std::vector<float> rec2020 = {.708F, .292F, .17F, .797F, .131F, .046F, .3127F, .329F};
   EXPECT_LT(length(first_texel({{"chromaticities", rec2020}}) - Vec3{.2, .5, .7}), 1e-6);
   // White stays white when the file's white is not D65 (ACES).
-  ImagePart white = {"",
-                     filled(4, 2,
-                            [](double, double) {
-                              return Vec3{1, 1, 1};
-                            }),
-                     {{"colorInteropID", std::string("lin_ap1_scene")}},
-                     PixelType::kFloat};
+  image::ImagePart white = {"",
+                            filled(4, 2,
+                                   [](double, double) {
+                                     return Vec3{1, 1, 1};
+                                   }),
+                            {{"colorInteropID", std::string("lin_ap1_scene")}},
+                            image::PixelType::kFloat};
   const std::string path = (folder_ / "white.exr").string();
-  ASSERT_TRUE(write_exr(path, {white}).ok());
+  ASSERT_TRUE(image::write_exr(path, {white}).ok());
   const auto env = Environment::read(path, BadPixels::kError);
   ASSERT_TRUE(env.ok());
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(env->radiance(0, 0)[c], 1, 1e-6);
   white.attributes["colorInteropID"] = std::string("log_film");
-  ASSERT_TRUE(write_exr(path, {white}).ok());
+  ASSERT_TRUE(image::write_exr(path, {white}).ok());
   const auto refused = Environment::read(path, BadPixels::kError);
   ASSERT_FALSE(refused.ok());
   EXPECT_THAT(refused.error().message, HasSubstr("white.exr: colorInteropID is \"log_film\", which is not known"));
 }
 
 TEST_F(EnvironmentFile, HardCase_PrefilterBadTexelsAreRefusedByNameOrZeroedWithACount) {
-  Image image = lat_long_scene(8);
+  image::Image image = lat_long_scene(8);
   image.pixel(3, 5)[1] = std::numeric_limits<float>::quiet_NaN();
   image.pixel(9, 5)[0] = std::numeric_limits<float>::infinity();
   image.pixel(0, 7)[2] = -0.25F;
@@ -258,7 +259,7 @@ TEST_F(EnvironmentFile, HardCase_PrefilterBadTexelsAreRefusedByNameOrZeroedWithA
   EXPECT_EQ(zeroed->replaced().infinite, 1);
   EXPECT_EQ(zeroed->replaced().negative, 1);
   EXPECT_EQ(zeroed->radiance(3, 5)[0], 0);
-  Image repaired = image;
+  image::Image repaired = image;
   for (float* texel : {repaired.pixel(3, 5), repaired.pixel(9, 5), repaired.pixel(0, 7)}) std::fill_n(texel, 3, 0.0F);
   const Vec3 flux = Environment::from_lat_long(repaired, BadPixels::kError, "x.hdr")->flux();
   // The textbook sum is poisoned.
@@ -337,4 +338,4 @@ TEST_F(EnvironmentFile, faces_of_different_size_are_refused) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::envmap

@@ -14,7 +14,7 @@
 #include "base/file.h"
 #include "base/text.h"
 
-namespace goniochrome {
+namespace goniochrome::envmap {
 
 namespace {
 
@@ -56,7 +56,7 @@ std::vector<float> level_values(const std::vector<PrefilteredLobe>& levels, std:
 
 std::string encoded(const std::vector<PrefilteredLobe>& levels, const std::string& source, const std::string& command) {
   const bool as_float = std::any_of(levels.begin(), levels.end(), [](const PrefilteredLobe& level) {
-    return storage_type(level) == PixelType::kFloat;
+    return storage_type(level) == image::PixelType::kFloat;
   });
   const Imf::PixelType type = as_float ? Imf::FLOAT : Imf::HALF;
   Imf::StdOSStream stream;
@@ -108,4 +108,4 @@ Result<void> write_mip(const std::string& path, const std::vector<PrefilteredLob
   }
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::envmap

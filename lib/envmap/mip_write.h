@@ -8,7 +8,7 @@
 #include "base/result.h"
 #include "envmap/prefiltered.h"
 
-namespace goniochrome {
+namespace goniochrome::envmap {
 
 // The exponent of every level of a cube of `size` (a power of two) down to one texel a face: the given ones, sharpest
 // first, then each a quarter of the one before, as wide for its texels; below 1/4 it is 0. Error: more exponents than
@@ -19,4 +19,4 @@ Result<std::vector<double>> mip_exponents(std::vector<double> given, int size);
 Result<void> write_mip(const std::string& path, const std::vector<PrefilteredLobe>& levels, const std::string& source,
                        const std::string& command);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::envmap

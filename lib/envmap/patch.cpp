@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "envmap/gauss_rule.h"
+#include "math/gauss_rule.h"
 
-namespace goniochrome {
+namespace goniochrome::envmap {
 
 namespace {
 
@@ -15,7 +15,7 @@ constexpr double kHorizon = std::numbers::pi / 2;
 constexpr double kNothing = 1e-20;  // of the lobe's peak; a sun may outshine the mean by 1e6 and the floor is 1e-3
 
 template <class Integrand>
-auto over_cell(const Environment& env, const Cell& cell, const GaussPoints& rule, const Integrand& integrand) {
+auto over_cell(const Environment& env, const Cell& cell, const math::GaussPoints& rule, const Integrand& integrand) {
   decltype(integrand(Vec3{})) sum{};
   const double width = cell.column1 - cell.column0, height = cell.row1 - cell.row0;
   for (int j = 0; j < rule.count; ++j)
@@ -89,7 +89,7 @@ double integrate(const Task& task, const Cell& cell, int depth) {
   const int points = rule_for(2 * radius * std::max(std::sqrt(task.exponent), steep), task.relative, most);
   // A lat-long cell that is large itself bends; its density must be smooth over it, too.
   if (radius > 0.5 || (points == 0 && depth < kDeepest)) return split();
-  return over_cell(task.env, cell, kGaussPoints[std::max(points, radius > 0.05 ? 4 : 2) - 1], lobe);
+  return over_cell(task.env, cell, math::kGaussPoints[std::max(points, radius > 0.05 ? 4 : 2) - 1], lobe);
 }
 
 }  // namespace
@@ -128,7 +128,7 @@ Vec3 moment_of_cell(const Environment& env, const Cell& cell) {
     for (const Cell& quarter : quarters(cell)) sum += moment_of_cell(env, quarter);
     return sum;
   }
-  return over_cell(env, cell, kGaussPoints[radius > 0.01 ? 3 : 1], [](const Vec3& w) { return w; });
+  return over_cell(env, cell, math::kGaussPoints[radius > 0.01 ? 3 : 1], [](const Vec3& w) { return w; });
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::envmap

@@ -5,7 +5,7 @@
 #include "base/vec3.h"
 #include "envmap/environment.h"
 
-namespace goniochrome {
+namespace goniochrome::envmap {
 
 // A part of one texel in continuous columns and rows.
 struct Cell {
@@ -33,4 +33,4 @@ inline double angle_between(const Vec3& a, const Vec3& b) {
   return std::atan2(length(cross(a, b)), dot(a, b));
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::envmap

@@ -8,9 +8,9 @@
 #include <cstdint>
 
 #include "base/parallel.h"
-#include "envmap/mip_read.h"
+#include "envmap/internal/mip_read.h"
 
-namespace goniochrome {
+namespace goniochrome::envmap {
 
 namespace {
 
@@ -56,9 +56,9 @@ std::vector<float> openexr_faces(const CubeMap& map) {
   return std::move(turned.texels);
 }
 
-ImagePart part_of(const std::string& name, const PrefilteredLobe& lobe, const std::string& source,
-                  const std::string& command) {
-  ImagePart part;
+image::ImagePart part_of(const std::string& name, const PrefilteredLobe& lobe, const std::string& source,
+                         const std::string& command) {
+  image::ImagePart part;
   part.name = name;
   part.type = storage_type(lobe);
   using Layout = SphereGrid::Layout;
@@ -84,7 +84,7 @@ ImagePart part_of(const std::string& name, const PrefilteredLobe& lobe, const st
   return part;
 }
 
-double number_attribute(const ImagePart& part, const std::string& name) {
+double number_attribute(const image::ImagePart& part, const std::string& name) {
   const auto found = part.attributes.find(name);
   if (found == part.attributes.end()) return 0;
   if (const auto* number = std::get_if<float>(&found->second)) return *number;
@@ -92,17 +92,17 @@ double number_attribute(const ImagePart& part, const std::string& name) {
   return whole ? *whole : 0;
 }
 
-std::string text_attribute(const ImagePart& part, const std::string& name) {
+std::string text_attribute(const image::ImagePart& part, const std::string& name) {
   const auto found = part.attributes.find(name);
   const auto* text = found == part.attributes.end() ? nullptr : std::get_if<std::string>(&found->second);
   return text ? *text : "";
 }
 
-Result<PrefilteredLobe> lobe_of(ImagePart part, const std::string& path) {
+Result<PrefilteredLobe> lobe_of(image::ImagePart part, const std::string& path) {
   const auto refused = [&](const std::string& why) {
     return input_error("{}: part {}: {}: write it with prefilter-envmap, in its own layout", path, part.name, why);
   };
-  const Image& image = part.image;
+  const image::Image& image = part.image;
   if (image.height != 6 * image.width)
     return refused(fmt::format("is {} x {}, not a strip of six faces", image.width, image.height));
   if (image.channels != 3) return refused(fmt::format("has {} channels, not 3", image.channels));
@@ -131,19 +131,20 @@ SphereGrid map_grid(SphereGrid::Layout layout, int n) {
   return {layout, n, 6 * n};
 }
 
-PixelType storage_type(const PrefilteredLobe& lobe) {
-  if (lobe.tolerance < 2 * kHalfError * 0.999) return PixelType::kFloat;
+image::PixelType storage_type(const PrefilteredLobe& lobe) {
+  if (lobe.tolerance < 2 * kHalfError * 0.999) return image::PixelType::kFloat;
   const double floor = kFloor * mean_value(lobe.map);
   for (const float value : lobe.map.texels) {
     const double size = std::fabs(value);
-    if (size > kMostHalf) return PixelType::kFloat;
-    if (size < 0x1p-14 && kHalfSubnormal > kHalfError * std::max(size, floor) && size > 0) return PixelType::kFloat;
+    if (size > kMostHalf) return image::PixelType::kFloat;
+    if (size < 0x1p-14 && kHalfSubnormal > kHalfError * std::max(size, floor) && size > 0)
+      return image::PixelType::kFloat;
   }
-  return PixelType::kHalf;
+  return image::PixelType::kHalf;
 }
 
 void round_to_storage(PrefilteredLobe& lobe) {
-  const bool as_half = storage_type(lobe) == PixelType::kHalf;
+  const bool as_half = storage_type(lobe) == image::PixelType::kHalf;
   const int bits = fraction_bits(lobe.tolerance);
   std::vector<float>& texels = lobe.map.texels;
   parallel_for(texels.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
@@ -163,11 +164,11 @@ const PrefilteredLobe* PrefilteredEnvironment::lobe(double exponent) const {
 }
 
 Result<PrefilteredEnvironment> read_env(const std::string& path) {
-  GONIO_ASSIGN(std::vector<ImagePart> parts, read_exr(path));
+  GONIO_ASSIGN(std::vector<image::ImagePart> parts, image::read_exr(path));
   if (!text_attribute(parts.front(), "goniochrome:exponents").empty()) return read_mip(path);
   PrefilteredEnvironment env;
   env.mirror.exponent = kMirrorExponent;
-  for (ImagePart& part : parts) {
+  for (image::ImagePart& part : parts) {
     const std::string name = part.name;
     if (name != "diffuse" && name != "mirror" && !name.starts_with("lobe-")) continue;
     if (env.source.empty()) env.source = text_attribute(part, "goniochrome:source");
@@ -188,11 +189,11 @@ Result<PrefilteredEnvironment> read_env(const std::string& path) {
 }
 
 Result<void> write_env(const std::string& path, const PrefilteredEnvironment& env, const std::string& command) {
-  std::vector<ImagePart> parts = {part_of("diffuse", env.diffuse, env.source, command)};
+  std::vector<image::ImagePart> parts = {part_of("diffuse", env.diffuse, env.source, command)};
   for (std::size_t i = 0; i < env.lobes.size(); ++i)
     parts.push_back(part_of(fmt::format("lobe-{:03}", i), env.lobes[i], env.source, command));
   if (env.mirror.map.size > 0) parts.push_back(part_of("mirror", env.mirror, env.source, command));
-  return write_exr(path, parts);
+  return image::write_exr(path, parts);
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::envmap

@@ -11,7 +11,7 @@
 #include "envmap/sphere_grid.h"
 #include "image/image.h"
 
-namespace goniochrome {
+namespace goniochrome::envmap {
 
 constexpr double kMirrorExponent = std::numeric_limits<double>::infinity();
 
@@ -32,7 +32,7 @@ struct PrefilteredLobe {
 SphereGrid map_grid(SphereGrid::Layout layout, int n);
 
 // How write_env() stores a lobe: halves where every value keeps half the tolerance, else floats.
-PixelType storage_type(const PrefilteredLobe& lobe);
+image::PixelType storage_type(const PrefilteredLobe& lobe);
 
 // Rounds every value to what the file will hold, so that memory and file agree: to a half, or to as many bits of a
 // float as 1/64 of the tolerance needs (the zero bits left over compress well).
@@ -55,4 +55,4 @@ Result<PrefilteredEnvironment> read_env(const std::string& path);
 // maps and cubes with texel centers on the edges are written by OpenEXR's own conventions, tagged `envmap`.
 Result<void> write_env(const std::string& path, const PrefilteredEnvironment& env, const std::string& command);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::envmap

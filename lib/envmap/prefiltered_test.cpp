@@ -11,7 +11,7 @@
 
 #include "envmap/mip_write.h"
 
-namespace goniochrome {
+namespace goniochrome::envmap {
 namespace {
 
 using testing::HasSubstr;
@@ -77,7 +77,7 @@ TEST_F(EnvFile, storage_keeps_the_tolerance) {
     PrefilteredLobe lobe = random_lobe(6, 16, tolerance, .1, 10);
     const CubeMap before = lobe.map;
     round_to_storage(lobe);
-    EXPECT_EQ(storage_type(lobe), tolerance >= 1e-3 ? PixelType::kHalf : PixelType::kFloat);
+    EXPECT_EQ(storage_type(lobe), tolerance >= 1e-3 ? image::PixelType::kHalf : image::PixelType::kFloat);
     double worst = 0, worst_half = 0;
     for (std::size_t i = 0; i < before.texels.size(); ++i) {
       worst = std::max(worst, std::fabs(lobe.map.texels[i] / double(before.texels[i]) - 1));
@@ -90,9 +90,9 @@ TEST_F(EnvFile, storage_keeps_the_tolerance) {
 }
 
 TEST_F(EnvFile, HardCase_prefilter_sun_storage_never_overflows_or_loses_the_dark) {
-  EXPECT_EQ(storage_type(random_lobe(6, 4, 1e-2, 1, 1e9)), PixelType::kFloat);
-  EXPECT_EQ(storage_type(random_lobe(6, 4, 1e-2, 1e-9, 1e-8)), PixelType::kFloat);  // halves end at 6e-8
-  EXPECT_EQ(storage_type(random_lobe(6, 4, 1e-2, 1, 60000)), PixelType::kHalf);
+  EXPECT_EQ(storage_type(random_lobe(6, 4, 1e-2, 1, 1e9)), image::PixelType::kFloat);
+  EXPECT_EQ(storage_type(random_lobe(6, 4, 1e-2, 1e-9, 1e-8)), image::PixelType::kFloat);  // halves end at 6e-8
+  EXPECT_EQ(storage_type(random_lobe(6, 4, 1e-2, 1, 60000)), image::PixelType::kHalf);
 }
 
 TEST_F(EnvFile, mip_mapped_cubes_come_back_as_lobes) {
@@ -120,16 +120,18 @@ TEST_F(EnvFile, mip_mapped_cubes_come_back_as_lobes) {
 }
 
 TEST_F(EnvFile, other_files_are_refused_by_part) {
-  ASSERT_TRUE(write_exr(path("p.exr"), {{"", {2, 2, 3, std::vector<float>(12, 1.0F), {}}, {}, PixelType::kHalf}}).ok());
+  ASSERT_TRUE(
+      image::write_exr(path("p.exr"), {{"", {2, 2, 3, std::vector<float>(12, 1.0F), {}}, {}, image::PixelType::kHalf}})
+          .ok());
   EXPECT_THAT(read_env(path("p.exr")).error().message, HasSubstr("p.exr: has no part `diffuse`"));
-  ImagePart part = {"diffuse", {2, 12, 3, std::vector<float>(72, 1.0F), {}}, {}, PixelType::kHalf};
-  ASSERT_TRUE(write_exr(path("q.exr"), {part}).ok());
+  image::ImagePart part = {"diffuse", {2, 12, 3, std::vector<float>(72, 1.0F), {}}, {}, image::PixelType::kHalf};
+  ASSERT_TRUE(image::write_exr(path("q.exr"), {part}).ok());
   EXPECT_THAT(read_env(path("q.exr")).error().message, HasSubstr("q.exr: part diffuse: attribute goniochrome:texels"));
   part.image.height = 6;
   part.image.width = 4;
-  ASSERT_TRUE(write_exr(path("r.exr"), {part}).ok());
+  ASSERT_TRUE(image::write_exr(path("r.exr"), {part}).ok());
   EXPECT_THAT(read_env(path("r.exr")).error().message, HasSubstr("is 4 x 6, not a strip of six faces"));
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::envmap

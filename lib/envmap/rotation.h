@@ -5,7 +5,7 @@
 
 #include "base/vec3.h"
 
-namespace goniochrome {
+namespace goniochrome::envmap {
 
 class Rotation {
  public:
@@ -36,4 +36,4 @@ class Rotation {
   bool identity_ = true;
 };
 
-}  // namespace goniochrome
+}  // namespace goniochrome::envmap

@@ -5,9 +5,9 @@
 #include <numbers>
 
 #include "envmap/cube_map.h"
-#include "envmap/gauss_rule.h"
+#include "math/gauss_rule.h"
 
-namespace goniochrome {
+namespace goniochrome::envmap {
 
 namespace {
 constexpr double kPi = std::numbers::pi;
@@ -40,8 +40,8 @@ double SphereGrid::disc_solid_angle(double column0, double row0, double column1,
   double sum = 0;
   for (int j = 0; j < parts; ++j)
     for (int i = 0; i < parts; ++i)
-      for (const double x : kGaussPair)
-        for (const double y : kGaussPair)
+      for (const double x : math::kGaussPair)
+        for (const double y : math::kGaussPair)
           sum += solid_angle_density(column0 + (i + x) * width, row0 + (j + y) * height) / 4;
   return sum * width * height;
 }
@@ -155,4 +155,4 @@ int SphereGrid::texel(const Vec3& d) const {
   return inside(p.row, height_) * width_ + inside(p.column, width_);
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::envmap

@@ -4,7 +4,7 @@
 
 #include "base/vec3.h"
 
-namespace goniochrome {
+namespace goniochrome::envmap {
 
 // Continuous columns and rows: integers are texel edges, a texel's center is at +.5.
 struct GridPosition {
@@ -59,4 +59,4 @@ class SphereGrid {
   int width_ = 0, height_ = 0;
 };
 
-}  // namespace goniochrome
+}  // namespace goniochrome::envmap

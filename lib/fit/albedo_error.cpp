@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace goniochrome {
+namespace goniochrome::fit {
 
 namespace {
 
@@ -28,9 +28,9 @@ Patch patch_of(const Vec3& light, int ring, int spoke) {
 
 }  // namespace
 
-Result<std::optional<double>> albedo_error(const MeasuredBrdf& measured, const BrdfModel& model) {
+Result<std::optional<double>> albedo_error(const brdf::MeasuredBrdf& measured, const BrdfModel& model) {
   if (measured.traits().format == "cornell") return std::optional<double>();
-  GONIO_ASSIGN(const ChannelColorimeter meter, ChannelColorimeter::make(measured.traits(), {"D65", 2}));
+  GONIO_ASSIGN(const brdf::ChannelColorimeter meter, brdf::ChannelColorimeter::make(measured.traits(), {"D65", 2}));
   double sum = 0;
   for (int k = 0; k < kLights; ++k) {
     const Vec3 light = {std::sin(k * kLightStep_rad), 0, std::cos(k * kLightStep_rad)};
@@ -39,14 +39,15 @@ Result<std::optional<double>> albedo_error(const MeasuredBrdf& measured, const B
         const Patch patch = patch_of(light, ring, spoke);
         constexpr double kHorizon = 0.01;  // files divide by this cosine
         if (patch.view.z < kHorizon) continue;
-        const MeasuredValue there = measured.value(light, patch.view);
+        const brdf::MeasuredValue there = measured.value(light, patch.view);
         if (!there.measured || there.outside_deg > 0) continue;
-        const Rgb f = rec709_from_rec2020(rgb_from_lab(lab_from_xyz(meter.xyz(there.f), meter.white()), meter.white()));
-        const Rgb g = rec709_from_rec2020(model(light, patch.view));
+        const color::Rgb f = color::rec709_from_rec2020(
+            color::rgb_from_lab(color::lab_from_xyz(meter.xyz(there.f), meter.white()), meter.white()));
+        const color::Rgb g = color::rec709_from_rec2020(model(light, patch.view));
         for (int c = 0; c < 3; ++c) sum += std::abs(g[c] - std::max(f[c], 0.0)) * patch.view.z * patch.solid_angle_sr;
       }
   }
   return std::optional(sum / (3 * kLights));
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::fit

@@ -9,11 +9,11 @@
 #include "base/parallel.h"
 #include "brdf/lobe_angles.h"
 #include "brdf/lobe_model.h"
-#include "fit/basis_lm.h"
+#include "fit/internal/basis_lm.h"
 #include "fit/paint_fit.h"
 #include "math/least_squares.h"
 
-namespace goniochrome {
+namespace goniochrome::fit {
 
 namespace {
 
@@ -27,13 +27,14 @@ SquaredError squared_error(const std::vector<double>& exponents, const BasisTarg
   const int lobes = static_cast<int>(exponents.size());
   const int rows = static_cast<int>(target.angles_deg.size());
   SquaredError result{0, std::vector<double>(with_gradient ? exponents.size() : 0, 0.0)};
-  Matrix shape(rows, lobes);
+  math::Matrix shape(rows, lobes);
   for (int j = 0; j < lobes; ++j)
-    for (int r = 0; r < rows; ++r) shape(r, j) = cos_power(target.angles_deg[r] * kRadiansPerDegree, exponents[j]);
+    for (int r = 0; r < rows; ++r)
+      shape(r, j) = brdf::cos_power(target.angles_deg[r] * kRadiansPerDegree, exponents[j]);
 
   std::size_t count = 0;
   for (int c = 0; c < 3; ++c) {
-    Matrix m(rows, lobes + 1);
+    math::Matrix m(rows, lobes + 1);
     std::vector<double> b(rows);
     for (int r = 0; r < rows; ++r) {
       const double w = target.weight[c][r];
@@ -41,7 +42,7 @@ SquaredError squared_error(const std::vector<double>& exponents, const BasisTarg
       for (int j = 0; j < lobes; ++j) m(r, j + 1) = w * shape(r, j);
       b[r] = w * target.value[c][r];
     }
-    const NonNegativeFit fit = nnls(m, b);
+    const math::NonNegativeFit fit = math::nnls(m, b);
     for (int r = 0; r < rows; ++r) {
       double residual = -b[r];
       for (int j = 0; j <= lobes; ++j) residual += m(r, j) * fit.x[j];
@@ -237,7 +238,7 @@ std::vector<std::vector<double>> starting_points(const std::vector<double>& smal
 double sharpest_seen(const std::vector<BasisTarget>& targets) {
   double first_deg = 90;
   for (const BasisTarget& target : targets) first_deg = std::min(first_deg, target.angles_deg.front());
-  return std::log(kSeenPart) / log_cosine(first_deg * (M_PI / 180));
+  return std::log(kSeenPart) / brdf::log_cosine(first_deg * (M_PI / 180));
 }
 
 }  // namespace
@@ -297,4 +298,4 @@ BasisSearch search_basis(const std::vector<BasisTarget>& targets, const BasisSea
   return search;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::fit

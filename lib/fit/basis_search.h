@@ -11,7 +11,7 @@
 #include "base/clock.h"
 #include "base/result.h"
 
-namespace goniochrome {
+namespace goniochrome::fit {
 
 // One paint (or measured BRDF) as the search sees it: BRDF values times weights
 // at sample angles, channel by channel.
@@ -80,4 +80,4 @@ struct BasisSearch {
 // never rises with m.
 BasisSearch search_basis(const std::vector<BasisTarget>& targets, const BasisSearchOptions& options);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::fit

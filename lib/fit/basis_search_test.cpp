@@ -11,7 +11,7 @@
 #include "brdf/lobe_model.h"
 #include "fit/basis_targets.h"
 
-namespace goniochrome {
+namespace goniochrome::fit {
 namespace {
 
 // Paints that are sums of lobes with random weights, at 40 angles from 15 to 90 deg.
@@ -29,7 +29,7 @@ std::vector<BasisTarget> planted(const std::vector<double>& exponents, int paint
       for (const double angle : target.angles_deg) {
         double value = 0.1 * weights[0];
         for (std::size_t j = 0; j < exponents.size(); ++j)
-          value += weights[j + 1] * cos_power(angle * std::numbers::pi / 180, exponents[j]);
+          value += weights[j + 1] * brdf::cos_power(angle * std::numbers::pi / 180, exponents[j]);
         target.value[c].push_back(value + noise * unit(random));
         target.weight[c].push_back(1);
       }
@@ -99,7 +99,7 @@ TEST(BasisSearch, NoLobeIsSharperThanTheTargetsSee) {
   options.first = 4, options.last = 4, options.starts = 2;
   const double first_rad = targets.front().angles_deg.front() * M_PI / 180;
   for (const FoundBasis& set : search_basis(targets, options).sets)
-    EXPECT_GE(cos_power(first_rad, set.exponents.back()), 0.999e-3) << set.exponents.size();
+    EXPECT_GE(brdf::cos_power(first_rad, set.exponents.back()), 0.999e-3) << set.exponents.size();
   // The control: such a lobe lowers the error.
   const std::vector<double> three = {1.2, 5, 25};
   EXPECT_LT(basis_error({1.2, 5, 25, 6000}, targets).mean, basis_error(three, targets).mean);
@@ -137,7 +137,7 @@ TEST(BasisTargets, MeasuredBrdfIsAveragedByAspecularAngle) {
   brdf.paint.name = "one lobe";
   for (int i = 0; i < 2000; ++i) {
     const double angle = 5 + 0.055 * i;
-    const double value = 0.1 + cos_power(angle * std::numbers::pi / 180, 12);
+    const double value = 0.1 + brdf::cos_power(angle * std::numbers::pi / 180, 12);
     brdf.samples.push_back({angle * std::numbers::pi / 180, 30, 30, {value, value / 2, value / 4}});
     brdf.samples.push_back({angle * std::numbers::pi / 180, 30, 80, {9, 9, 9}});  // too steep to count
   }
@@ -151,14 +151,14 @@ TEST(BasisTargets, MeasuredBrdfIsAveragedByAspecularAngle) {
 }
 
 TEST(BasisTargets, SolidPaintNeedsNoLobe) {
-  Paint paint;
+  paint::Paint paint;
   paint.name = "gray";
-  paint.appearance = Appearance{{50, 0, 0}, {50, 0, 0}, 60, {}};
-  const auto target = basis_target(paint, {.target = TargetCurve::Kind::kCurve});
+  paint.appearance = paint::Appearance{{50, 0, 0}, {50, 0, 0}, 60, {}};
+  const auto target = basis_target(paint, {.target = paint::TargetCurve::Kind::kCurve});
   ASSERT_TRUE(target.ok());
   EXPECT_LT(basis_error({10}, *target), 1e-9);
   EXPECT_LT(basis_de00({10}, *target), 1e-6);
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::fit

@@ -7,11 +7,11 @@
 #include "fit/paint_fit.h"
 #include "math/least_squares.h"
 
-namespace goniochrome {
+namespace goniochrome::fit {
 
-Result<BasisTarget> basis_target(const Paint& paint, const BasisTargetOptions& options) {
-  GONIO_ASSIGN(const TargetCurve curve, TargetCurve::make(paint, options.target));
-  GONIO_ASSIGN(const Xyz white, white_point(condition_of(paint)));
+Result<BasisTarget> basis_target(const paint::Paint& paint, const BasisTargetOptions& options) {
+  GONIO_ASSIGN(const paint::TargetCurve curve, paint::TargetCurve::make(paint, options.target));
+  GONIO_ASSIGN(const color::Xyz white, color::white_point(paint::condition_of(paint)));
   const auto& known = curve.known_angles_deg();
   const double first = std::max(known.front(), kGlareAngle_deg), last = std::min(known.back(), 110.0);
   if (last <= first) return input_error("paint \"{}\" has one angle: a basis needs at least two", paint.name);
@@ -20,12 +20,12 @@ Result<BasisTarget> basis_target(const Paint& paint, const BasisTargetOptions& o
   target.name = paint.name;
   for (int i = 0; i < options.angles; ++i) {
     const double angle = first + (last - first) * i / (options.angles - 1);
-    const Lab lab = curve.at(angle);
-    const Rgb rgb = rgb_from_lab(lab, white);
+    const color::Lab lab = curve.at(angle);
+    const color::Rgb rgb = color::rgb_from_lab(lab, white);
     target.angles_deg.push_back(angle);
     for (int c = 0; c < 3; ++c) {
       target.value[c].push_back(std::max(rgb[c], 0.0));
-      target.weight[c].push_back(options.perceptual_weights ? lightness_slope(lab.L) : 1);
+      target.weight[c].push_back(options.perceptual_weights ? color::lightness_slope(lab.L) : 1);
     }
   }
   return target;
@@ -36,7 +36,7 @@ Result<BasisTarget> basis_target(const BrdfTarget& brdf, const BasisTargetOption
   constexpr auto kBins = static_cast<std::size_t>((kLast_deg - kGlareAngle_deg) / kStep_deg);
   struct Bin {
     double count = 0, angle_deg = 0;
-    Rgb sum;
+    color::Rgb sum;
   };
   std::vector<Bin> bins(kBins);
   for (const BrdfSample& sample : brdf.samples) {
@@ -47,16 +47,17 @@ Result<BasisTarget> basis_target(const BrdfTarget& brdf, const BasisTargetOption
     Bin& bin = bins[static_cast<std::size_t>(at)];
     ++bin.count, bin.angle_deg += angle_deg, bin.sum += sample.value;
   }
-  GONIO_ASSIGN(const Xyz white, white_point({"D65", 2}));
+  GONIO_ASSIGN(const color::Xyz white, color::white_point({"D65", 2}));
   BasisTarget target;
   target.name = brdf.paint.name;
   for (const Bin& bin : bins) {
     if (bin.count == 0) continue;
-    const Rgb mean = (1 / bin.count) * bin.sum;
+    const color::Rgb mean = (1 / bin.count) * bin.sum;
     target.angles_deg.push_back(bin.angle_deg / bin.count);
     for (int c = 0; c < 3; ++c) {
       target.value[c].push_back(std::max(mean[c], 0.0));
-      target.weight[c].push_back(options.perceptual_weights ? lightness_slope(lab_from_rgb(mean, white).L) : 1);
+      target.weight[c].push_back(options.perceptual_weights ? color::lightness_slope(color::lab_from_rgb(mean, white).L)
+                                                            : 1);
     }
   }
   if (target.angles_deg.size() < 2)
@@ -66,29 +67,30 @@ Result<BasisTarget> basis_target(const BrdfTarget& brdf, const BasisTargetOption
 
 double basis_de00(const std::vector<double>& exponents, const BasisTarget& target) {
   const int rows = static_cast<int>(target.angles_deg.size()), columns = static_cast<int>(exponents.size()) + 1;
-  std::vector<Rgb> fitted(static_cast<std::size_t>(rows));
+  std::vector<color::Rgb> fitted(static_cast<std::size_t>(rows));
   for (int c = 0; c < 3; ++c) {
-    Matrix m(rows, columns), weighted(rows, columns);
+    math::Matrix m(rows, columns), weighted(rows, columns);
     std::vector<double> b(static_cast<std::size_t>(rows));
     for (int r = 0; r < rows; ++r) {
       const double w = target.weight[c][r];
       b[r] = w * target.value[c][r];
       for (int j = 0; j < columns; ++j) {
-        m(r, j) = j == 0 ? 1 : cos_power(target.angles_deg[r] * std::numbers::pi / 180, exponents[j - 1]);
+        m(r, j) = j == 0 ? 1 : brdf::cos_power(target.angles_deg[r] * std::numbers::pi / 180, exponents[j - 1]);
         weighted(r, j) = w * m(r, j);
       }
     }
-    const NonNegativeFit fit = nnls(weighted, b);
+    const math::NonNegativeFit fit = math::nnls(weighted, b);
     for (int r = 0; r < rows; ++r)
       for (int j = 0; j < columns; ++j) fitted[r][c] += m(r, j) * fit.x[j];
   }
-  const Xyz white = *white_point({"D65", 2});
+  const color::Xyz white = *color::white_point({"D65", 2});
   double worst = 0;
   for (int r = 0; r < rows; ++r)
-    worst =
-        std::max(worst, delta_e_2000(lab_from_rgb({target.value[0][r], target.value[1][r], target.value[2][r]}, white),
-                                     lab_from_rgb(fitted[r], white)));
+    worst = std::max(
+        worst,
+        color::delta_e_2000(color::lab_from_rgb({target.value[0][r], target.value[1][r], target.value[2][r]}, white),
+                            color::lab_from_rgb(fitted[r], white)));
   return worst;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::fit

@@ -8,18 +8,18 @@
 
 #include "brdf/lobe_model.h"
 #include "fit/albedo_error.h"
-#include "fit/ggx_for_test.h"
+#include "fit/internal/ggx_for_test.h"
 #include "fit/paint_fit.h"
 
-namespace goniochrome {
+namespace goniochrome::fit {
 namespace {
 
 constexpr double kSteepest_deg = 75.001;  // angles in files are rounded
 constexpr const char* kFiles[] = {"rgl/vch_golden_yellow_rgb.bsdf", "rgl/satin_rosaline_rgb.bsdf",
                                   "rgl/cc_ibiza_sunset_rgb.bsdf", "cornell/garnet_red.brdf"};
 
-Basis basis(int lobes) {
-  Basis b{"bench", {}, false};
+formats::Basis basis(int lobes) {
+  formats::Basis b{"bench", {}, false};
   for (int j = 0; j < lobes; ++j) b.exponents.push_back(std::pow(3000.0, j / (lobes - 1.0)));
   return b;
 }
@@ -41,7 +41,7 @@ void lobes(benchmark::State& state) {
   state.SetLabel(kFiles[state.range(0)]);
   state.counters["relative_error"] = fit.report.brdf->relative_error_median;
   const auto misplaced = *albedo_error(*brdf->source, [&](const Vec3& light, const Vec3& view) {
-    return coated_brdf(fit.lobes, light, view, {0, 0, 1});
+    return brdf::coated_brdf(fit.lobes, light, view, {0, 0, 1});
   });
   if (misplaced) state.counters["albedo_error"] = *misplaced;
   state.counters["directions"] = static_cast<double>(fit.report.brdf->fitted);
@@ -61,12 +61,12 @@ void ggx(benchmark::State& state) {
   for (const BrdfSample& s : brdf->samples)
     if (std::max(s.light_deg, s.view_deg) <= kSteepest_deg) samples.push_back(s);
   GgxModel model;
-  for (auto _ : state) model = fitted_ggx(samples, kKinds[state.range(1)], *white_point({"D65", 2}));
+  for (auto _ : state) model = fitted_ggx(samples, kKinds[state.range(1)], *color::white_point({"D65", 2}));
   const auto f = [&](const Vec3& light, const Vec3& view) { return model.f(light, view); };
   std::vector<double> errors;
   for (const BrdfSample& s : samples) {
     if (s.aspecular_rad < kGlareAngle_deg * (M_PI / 180)) continue;
-    const DirectionPair pair = directions_of(s);
+    const paint::DirectionPair pair = directions_of(s);
     errors.push_back(length(M_PI * f(pair.light, pair.view) - s.value) / length(s.value));
   }
   std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2), errors.end());
@@ -78,4 +78,4 @@ void ggx(benchmark::State& state) {
 BENCHMARK(ggx)->ArgNames({"file", "kind"})->ArgsProduct({{0, 1, 2, 3}, {0, 1, 2, 3}})->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::fit

@@ -7,13 +7,13 @@
 
 #include "brdf/isoline.h"
 #include "brdf/lobe_model.h"
-#include "fit/brdf_target.h"
+#include "fit/internal/brdf_target.h"
 #include "fit/paint_fit.h"
 
-namespace goniochrome {
+namespace goniochrome::fit {
 namespace {
 
-const Basis kBasis = {"b7", {1.3, 6, 20, 70, 250, 900, 3000}, true};
+const formats::Basis kBasis = {"b7", {1.3, 6, 20, 70, 250, 900, 3000}, true};
 constexpr double kRadian = M_PI / 180;
 
 Vec3 direction(double polar_deg, double azimuth_deg) {
@@ -22,21 +22,21 @@ Vec3 direction(double polar_deg, double azimuth_deg) {
 }
 
 // What a goniometer would see of known lobes, every 5 deg of the view and every 20 of its azimuth.
-BrdfTarget measured_from(const LobeFit& lobes) {
+BrdfTarget measured_from(const paint::LobeFit& lobes) {
   BrdfTarget target;
   target.paint.name = "test";
   for (double light = 0; light <= 80; light += 10)
     for (double view = 0; view <= 80; view += 5)
       for (double azimuth = 0; azimuth <= 180; azimuth += 20) {
         const Vec3 in = direction(light, 0), out = direction(view, azimuth);
-        target.samples.push_back(
-            {aspecular_angle_rad(in, out, {0, 0, 1}), light, view, M_PI * coated_brdf(lobes, in, out, {0, 0, 1})});
+        target.samples.push_back({paint::aspecular_angle_rad(in, out, {0, 0, 1}), light, view,
+                                  M_PI * brdf::coated_brdf(lobes, in, out, {0, 0, 1})});
       }
   return target;
 }
 
-LobeFit metallic() {
-  LobeFit fit;
+paint::LobeFit metallic() {
+  paint::LobeFit fit;
   fit.diffuse = {0.02, 0.03, 0.06};
   fit.lobes = {{6, {0.05, 0.06, 0.1}, {}}, {20, {0.3, 0.2, 0.5}, {}}};
   return fit;
@@ -61,7 +61,7 @@ TEST(BrdfFit, RecoversKnownLobesByEveryMethod) {
 }
 
 TEST(BrdfFit, TheSpikeOfTheCoatIsNotTakenForFlake) {
-  LobeFit coated = metallic();
+  paint::LobeFit coated = metallic();
   coated.lobes.push_back({3000, {}, {20, 20, 20}});
   const PaintFit fit = fit_of(measured_from(coated), {});
   // Against the same paint without its coat: the flake has not moved.
@@ -70,7 +70,7 @@ TEST(BrdfFit, TheSpikeOfTheCoatIsNotTakenForFlake) {
   ASSERT_FALSE(fit.lobes.lobes.empty());
   EXPECT_EQ(fit.lobes.lobes.back().exponent, 3000);
   EXPECT_NEAR(fit.lobes.lobes.back().gloss.y, 20, 1);
-  EXPECT_EQ(fit.lobes.lobes.back().directional_diffuse, Rgb{});
+  EXPECT_EQ(fit.lobes.lobes.back().directional_diffuse, color::Rgb{});
   // The control: with the glare among the rows, least squares gives flake lobes to the spike.
   BrdfTarget taken_in = measured_from(coated);
   for (BrdfSample& sample : taken_in.samples)
@@ -98,7 +98,7 @@ TEST(BrdfFit, SteepDirectionsAndColorsOutOfGamutAreCounted) {
 
 // Weights that really change with the view: they are found, and the weights for all views cannot do it.
 TEST(BrdfFit, ViewsFollowColorThatTurns) {
-  LobeFit turning = metallic();
+  paint::LobeFit turning = metallic();
   turning.views = {{0, {0.02, 0.03, 0.06}, {{20, {0.5, 0.1, 0.1}, {}}}},
                    {75, {0.02, 0.03, 0.06}, {{20, {0.1, 0.1, 0.5}, {}}}}};
   const BrdfTarget target = measured_from(turning);
@@ -118,11 +118,11 @@ TEST(BrdfFit, ViewsFollowColorThatTurns) {
 }
 
 TEST(BrdfFit, ViewsTellTheSidesOfSpecularApart) {
-  const Lab near = {70, 40, -20}, far = {75, 5, 45};
-  Paint paint;
+  const color::Lab near = {70, 40, -20}, far = {75, 5, 45};
+  paint::Paint paint;
   paint.name = "two sides";
   paint.measurement.emplace();
-  for (const auto& [angle, lab] : std::vector<std::pair<double, Lab>>{
+  for (const auto& [angle, lab] : std::vector<std::pair<double, color::Lab>>{
            {15, near}, {-15, far}, {25, {60, 20, 5}}, {45, {30, 15, 5}}, {75, {15, 8, 3}}, {110, {12, 8, 2}}})
     paint.measurement->rows.push_back({{.aspecular_deg = angle}, lab});
   const auto together = PaintFitter(kBasis, {}).fit(paint);
@@ -134,7 +134,7 @@ TEST(BrdfFit, ViewsTellTheSidesOfSpecularApart) {
 }
 
 TEST(BrdfFit, ErrorNeverRisesWithALobe) {
-  LobeFit hidden = metallic();
+  paint::LobeFit hidden = metallic();
   hidden.lobes = {{3, {0.1, 0.1, 0.1}, {}}, {11, {0.05, 0.06, 0.1}, {}}, {40, {0.3, 0.2, 0.5}, {}}};
   const BrdfTarget target = measured_from(hidden);
   double before = std::numeric_limits<double>::infinity();
@@ -159,12 +159,12 @@ TEST(BrdfFit, PruningMovesNoColorByMoreThanAllowed) {
     const PaintFit lean = fit_of(target, {.method = FitMethod::kL2, .prune_de00 = limit});
     EXPECT_GT(lean.report.dropped.size(), before);
     before = lean.report.dropped.size();
-    const Xyz white = *white_point({"D65", 2});
+    const color::Xyz white = *color::white_point({"D65", 2});
     for (const BrdfSample& sample : target.samples) {
       const double angle = sample.aspecular_rad / kRadian;
       if (angle < kGlareAngle_deg || std::max(sample.light_deg, sample.view_deg) > 75) continue;
-      EXPECT_LE(delta_e_2000(lab_from_rgb(flake_reflectance_factor(lean.lobes, angle), white),
-                             lab_from_rgb(flake_reflectance_factor(full.lobes, angle), white)),
+      EXPECT_LE(color::delta_e_2000(color::lab_from_rgb(brdf::flake_reflectance_factor(lean.lobes, angle), white),
+                                    color::lab_from_rgb(brdf::flake_reflectance_factor(full.lobes, angle), white)),
                 limit + 1e-9);
     }
   }
@@ -183,7 +183,7 @@ TEST(BrdfFit, ATimeLimitLeavesTheBestSoFar) {
 TEST(BrdfFit, CornellPaintsRealData) {
   const char* folder = std::getenv("GONIOCHROME_DATA");
   if (!folder) GTEST_SKIP() << "GONIOCHROME_DATA is not set";
-  Basis wide{"b12", {}, false};
+  formats::Basis wide{"b12", {}, false};
   for (int j = 0; j < 12; ++j) wide.exponents.push_back(0.3 * std::pow(1e4, j / 11.0));
   const struct {
     const char* name;
@@ -214,7 +214,7 @@ TEST(BrdfFit, CornellPaintsRealData) {
 TEST(BrdfFit, MedianNeverRisesWithALobeRealData) {
   const char* folder = std::getenv("GONIOCHROME_DATA");
   if (!folder) GTEST_SKIP() << "GONIOCHROME_DATA is not set";
-  Basis wide{"b24", {}, false};
+  formats::Basis wide{"b24", {}, false};
   for (int j = 0; j < 24; ++j) wide.exponents.push_back(std::pow(2000.0, j / 23.0));
   for (const char* name : {"cayman", "garnet_red", "krylon_blue"}) {
     auto file = InputFile::open(std::string(folder) + "/brdf/cornell/" + name + ".brdf");
@@ -256,7 +256,7 @@ TEST(BrdfFit, FiveAnglesPredictTheRestRealData) {
     for (const FitMethod method : {FitMethod::kL1, FitMethod::kL2}) {
       const auto measured = fit_of(*target, {.method = method}).report.brdf->from_five_angles;
       const auto curve =
-          fit_of(*target, {.method = method, .target = TargetCurve::Kind::kCurve}).report.brdf->from_five_angles;
+          fit_of(*target, {.method = method, .target = paint::TargetCurve::Kind::kCurve}).report.brdf->from_five_angles;
       ASSERT_TRUE(measured && curve);
       EXPECT_GT(measured->directions, 500u);
       if (bound > 0) {
@@ -276,25 +276,26 @@ TEST(BrdfFit, FlakesAreSeenThroughTheCoat) {
   const double light_in_coat = std::asin(std::sqrt(0.5) / kIndex);
   const auto color = [&](const Vec3& in, const Vec3& out) {
     // exp(-t/20), t the aspecular angle of light at 45 deg in plane.
-    const double flake = flake_angles(in, out, kIndex).flake_rad;
+    const double flake = brdf::flake_angles(in, out, kIndex).flake_rad;
     const double t = 45 + std::asin(std::min(1.0, kIndex * std::sin(2 * flake - light_in_coat))) / kRadian;
-    return Rgb{0.02, 0.03, 0.05} + std::exp(-t / 20) * Rgb{1, 0.6, 0.3};
+    return color::Rgb{0.02, 0.03, 0.05} + std::exp(-t / 20) * color::Rgb{1, 0.6, 0.3};
   };
   BrdfTarget target;
   target.paint.name = "flakes";
-  const Xyz white = *white_point({"D65", 2});
-  Measurement& readings = target.paint.measurement.emplace();
+  const color::Xyz white = *color::white_point({"D65", 2});
+  paint::Measurement& readings = target.paint.measurement.emplace();
   readings.condition = {"D65", 2};
-  for (const double angle : kExportAngles_deg) {
-    const Geometry geometry{.aspecular_deg = angle};
+  for (const double angle : paint::kExportAngles_deg) {
+    const paint::Geometry geometry{.aspecular_deg = angle};
     readings.rows.push_back(
-        {geometry, lab_from_rgb(color(directions(geometry).light, directions(geometry).view), white)});
+        {geometry,
+         color::lab_from_rgb(color(paint::directions(geometry).light, paint::directions(geometry).view), white)});
   }
   for (double light = 0; light <= 60; light += 10)
     for (double view = 0; view <= 60; view += 10)
       for (double azimuth = 0; azimuth <= 180; azimuth += 20) {
         const Vec3 in = direction(light, 0), out = direction(view, azimuth);
-        target.samples.push_back({aspecular_angle_rad(in, out, {0, 0, 1}), light, view, color(in, out)});
+        target.samples.push_back({paint::aspecular_angle_rad(in, out, {0, 0, 1}), light, view, color(in, out)});
       }
   const auto figures = fit_of(target, {.method = FitMethod::kL2}).report.brdf->from_five_angles;
   ASSERT_TRUE(figures);
@@ -303,4 +304,4 @@ TEST(BrdfFit, FlakesAreSeenThroughTheCoat) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::fit

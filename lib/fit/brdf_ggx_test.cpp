@@ -6,26 +6,26 @@
 
 #include "brdf/lobe_model.h"
 #include "fit/albedo_error.h"
-#include "fit/ggx_for_test.h"
+#include "fit/internal/ggx_for_test.h"
 #include "fit/paint_fit.h"
 
-namespace goniochrome {
+namespace goniochrome::fit {
 namespace {
 
-const Basis kSeven = {"b7", {1.3, 6, 20, 70, 250, 900, 3000}, true};
+const formats::Basis kSeven = {"b7", {1.3, 6, 20, 70, 250, 900, 3000}, true};
 
 // The same in all directions.
-class Gray final : public MeasuredBrdf {
+class Gray final : public brdf::MeasuredBrdf {
  public:
-  explicit Gray(double reflectance) : MeasuredBrdf({.format = "test"}), f_(reflectance / M_PI) {}
-  MeasuredValue value(const Vec3&, const Vec3&) const override { return {.f = {f_, f_, f_}}; }
+  explicit Gray(double reflectance) : brdf::MeasuredBrdf({.format = "test"}), f_(reflectance / M_PI) {}
+  brdf::MeasuredValue value(const Vec3&, const Vec3&) const override { return {.f = {f_, f_, f_}}; }
 
  private:
   double f_;
 };
 
 TEST(AlbedoError, OfConstantsIsTheirDifference) {
-  const auto model = [](const Vec3&, const Vec3&) { return Rgb{0.3 / M_PI, 0.3 / M_PI, 0.3 / M_PI}; };
+  const auto model = [](const Vec3&, const Vec3&) { return color::Rgb{0.3 / M_PI, 0.3 / M_PI, 0.3 / M_PI}; };
   EXPECT_NEAR(**albedo_error(Gray(0.3), model), 0, 1e-12);
   EXPECT_NEAR(**albedo_error(Gray(0.5), model), 0.2, 0.2 * 0.02);
   EXPECT_NEAR(**albedo_error(Gray(0.1), model), 0.2, 0.2 * 0.02);
@@ -36,13 +36,13 @@ TEST(AlbedoError, OfConstantsIsTheirDifference) {
 TEST(AlbedoError, OfASharpLobeIsItsAlbedo) {
   // cos^E/cos_i reflects 2 pi/(E+1) up to the change of cos_o across it and what is below the horizon.
   constexpr double kExponent = 2000;
-  LobeFit lobe;
+  paint::LobeFit lobe;
   lobe.lobes = {{kExponent, {}, {1, 1, 1}}};
-  const auto model = [&](const Vec3& light, const Vec3& view) { return brdf(lobe, light, view, {0, 0, 1}); };
+  const auto model = [&](const Vec3& light, const Vec3& view) { return brdf::brdf(lobe, light, view, {0, 0, 1}); };
   EXPECT_NEAR(**albedo_error(Gray(0), model), 2 * M_PI / (kExponent + 1), 0.02 * 2 * M_PI / (kExponent + 1));
 }
 
-double median_error(const std::vector<BrdfSample>& samples, const std::function<Rgb(const BrdfSample&)>& shown) {
+double median_error(const std::vector<BrdfSample>& samples, const std::function<color::Rgb(const BrdfSample&)>& shown) {
   std::vector<double> errors;
   for (const BrdfSample& s : samples)
     if (length(s.value) > 0) errors.push_back(length(shown(s) - s.value) / length(s.value));
@@ -56,7 +56,7 @@ double median_error(const std::vector<BrdfSample>& samples, const std::function<
 struct Errors {
   double albedo = INFINITY, median = INFINITY;
 };
-Errors best_ggx(const BrdfTarget& target, const std::vector<BrdfSample>& samples, const Xyz& white) {
+Errors best_ggx(const BrdfTarget& target, const std::vector<BrdfSample>& samples, const color::Xyz& white) {
   Errors best;
   for (const GgxKind kind : {GgxKind{false, true, true}, GgxKind{true, true, true}, GgxKind{true, true, false},
                              GgxKind{true, false, false}}) {
@@ -64,7 +64,7 @@ Errors best_ggx(const BrdfTarget& target, const std::vector<BrdfSample>& samples
     const auto f = [&](const Vec3& light, const Vec3& view) { return ggx.f(light, view); };
     best.albedo = std::min(best.albedo, **albedo_error(*target.source, f));
     best.median = std::min(best.median, median_error(samples, [&](const BrdfSample& s) {
-                             const DirectionPair pair = directions_of(s);
+                             const paint::DirectionPair pair = directions_of(s);
                              return M_PI * f(pair.light, pair.view);
                            }));
   }
@@ -76,7 +76,7 @@ Errors best_ggx(const BrdfTarget& target, const std::vector<BrdfSample>& samples
 TEST(BrdfFit, RglFilesComeOutBetterThanAGgxLobeRealData) {
   const char* folder = std::getenv("GONIOCHROME_DATA");
   if (!folder) GTEST_SKIP() << "GONIOCHROME_DATA is not set";
-  const Xyz white = *white_point({"D65", 2});
+  const color::Xyz white = *color::white_point({"D65", 2});
   for (const char* name : {"vch_golden_yellow_rgb", "satin_rosaline_rgb", "cc_ibiza_sunset_rgb"}) {
     auto file = InputFile::open(std::string(folder) + "/brdf/rgl/" + name + ".bsdf");
     ASSERT_TRUE(file.ok());
@@ -91,11 +91,11 @@ TEST(BrdfFit, RglFilesComeOutBetterThanAGgxLobeRealData) {
         const auto fit = PaintFitter(kSeven, {.method = method, .views_where_needed = by_view}).fit(*target);
         ASSERT_TRUE(fit.ok());
         const auto f = [&](const Vec3& light, const Vec3& view) {
-          return coated_brdf(fit->lobes, light, view, {0, 0, 1});
+          return brdf::coated_brdf(fit->lobes, light, view, {0, 0, 1});
         };
         const double albedo = **albedo_error(*target->source, f);
         const double median = median_error(samples, [&](const BrdfSample& s) {
-          const DirectionPair pair = directions_of(s);
+          const paint::DirectionPair pair = directions_of(s);
           return M_PI * f(pair.light, pair.view);
         });
         EXPECT_LT(albedo, ggx.albedo) << name << " " << fit_method_name(method) << " " << by_view;
@@ -108,4 +108,4 @@ TEST(BrdfFit, RglFilesComeOutBetterThanAGgxLobeRealData) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::fit

@@ -10,7 +10,7 @@
 
 #include "base/parallel.h"
 
-namespace goniochrome {
+namespace goniochrome::fit {
 
 namespace {
 
@@ -22,7 +22,7 @@ constexpr double kSamePlace_deg = 0.2;
 struct Place {
   double aspecular_deg, incidence_deg;
 };
-Place place_of(const FlakeAngles& angles) {
+Place place_of(const brdf::FlakeAngles& angles) {
   return {2 * angles.flake_rad / kDegree, angles.incidence_rad / kDegree};
 }
 double distance(const Place& a, const Place& b) {
@@ -31,7 +31,7 @@ double distance(const Place& a, const Place& b) {
 
 struct Knot {
   Place place;
-  Lab lab;
+  color::Lab lab;
 };
 
 // The smoothest surface through scattered colors that does not overshoot far from them: a constant plus a cone at each
@@ -45,7 +45,7 @@ class Cones {
     for (Eigen::Index i = 0; i < n; ++i) {
       for (Eigen::Index j = 0; j < n; ++j) system(i, j) = distance(place(i), place(j));
       system(i, n) = system(n, i) = 1;
-      const Lab& lab = knots_[static_cast<std::size_t>(i)].lab;
+      const color::Lab& lab = knots_[static_cast<std::size_t>(i)].lab;
       colors.row(i) << lab.L, lab.a, lab.b;
     }
     const Eigen::MatrixXd inverse = system.partialPivLu().inverse();
@@ -55,7 +55,7 @@ class Cones {
       held_out_ += weights_.row(i).norm() / std::abs(inverse(i, i)) / static_cast<double>(n);
   }
 
-  Lab at(const Place& p) const {
+  color::Lab at(const Place& p) const {
     const Eigen::Index n = static_cast<Eigen::Index>(knots_.size());
     Eigen::RowVector3d sum = weights_.row(n);
     for (Eigen::Index i = 0; i < n; ++i) sum += distance(place(i), p) * weights_.row(i);
@@ -90,16 +90,16 @@ std::vector<Knot> merged(const std::vector<Knot>& knots) {
 }
 
 // Fills the map, and returns the share of texels with a negative channel.
-double fill(ColorMap& map, const Cones& cones, const Xyz& white) {
+double fill(brdf::ColorMap& map, const Cones& cones, const color::Xyz& white) {
   const std::size_t rows = static_cast<std::size_t>(map.size) * 2;
   std::vector<int> negative(rows, 0);
   parallel_for(rows, 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row) {
       for (int column = 0; column < map.size; ++column) {
-        const MapDirections d = map_directions(map.size, column, static_cast<int>(row));
-        Lab lab = cones.at(place_of(flake_angles(d.light, d.view, map.index)));
+        const brdf::MapDirections d = brdf::map_directions(map.size, column, static_cast<int>(row));
+        color::Lab lab = cones.at(place_of(brdf::flake_angles(d.light, d.view, map.index)));
         lab.L = std::max(lab.L, 0.0);
-        const Rgb rgb = rgb_from_lab(lab, white);
+        const color::Rgb rgb = color::rgb_from_lab(lab, white);
         for (int c = 0; c < 3; ++c) map.texel(column, static_cast<int>(row))[c] = static_cast<float>(rgb[c]);
         negative[row] += rgb.x < 0 || rgb.y < 0 || rgb.z < 0;
       }
@@ -110,18 +110,18 @@ double fill(ColorMap& map, const Cones& cones, const Xyz& white) {
 
 }  // namespace
 
-Result<ColorMapFit> fit_color_map(const std::vector<ColorMapRow>& rows, const Xyz& white,
+Result<ColorMapFit> fit_color_map(const std::vector<ColorMapRow>& rows, const color::Xyz& white,
                                   const ColorMapOptions& options) {
   ColorMapFit fit;
   std::vector<Knot> knots;
   const double lowest = std::cos(kGrazing_deg * kDegree);
   for (const ColorMapRow& row : rows) {
-    if (aspecular_angle_rad(row.light, row.view, {0, 0, 1}) < kGlare_deg * kDegree) {
+    if (paint::aspecular_angle_rad(row.light, row.view, {0, 0, 1}) < kGlare_deg * kDegree) {
       ++fit.glare_rows;
     } else if (row.light.z < lowest || row.view.z < lowest) {
       ++fit.grazing_rows;
     } else {
-      knots.push_back({place_of(flake_angles(row.light, row.view, options.index)), row.lab});
+      knots.push_back({place_of(brdf::flake_angles(row.light, row.view, options.index)), row.lab});
       ++fit.rows;
     }
   }
@@ -136,35 +136,35 @@ Result<ColorMapFit> fit_color_map(const std::vector<ColorMapRow>& rows, const Xy
         kGlare_deg, kGrazing_deg, distinct.size(), fit.illuminations);
   const Cones cones(distinct);
   fit.held_out_de76 = cones.held_out_de76();
-  fit.map = color_map_of_size(options.size, options.index);
+  fit.map = brdf::color_map_of_size(options.size, options.index);
   fit.negative_share = fill(fit.map, cones, white);
   return fit;
 }
 
-Result<ColorMapFit> fit_color_map(const Measurement& measurement, const ColorMapOptions& options) {
-  GONIO_ASSIGN(const Xyz white, white_point(measurement.condition));
+Result<ColorMapFit> fit_color_map(const paint::Measurement& measurement, const ColorMapOptions& options) {
+  GONIO_ASSIGN(const color::Xyz white, color::white_point(measurement.condition));
   std::vector<ColorMapRow> rows;
-  for (const LabReading& reading : measurement.rows) {
-    const DirectionPair pair = directions(reading.geometry);
+  for (const paint::LabReading& reading : measurement.rows) {
+    const paint::DirectionPair pair = paint::directions(reading.geometry);
     if (pair.light.z > 0 && pair.view.z > 0) rows.push_back({pair.light, pair.view, reading.lab});
   }
   return fit_color_map(rows, white, options);
 }
 
-Result<ColorMapFit> fit_color_map(const MeasuredBrdf& brdf, const ViewingCondition& condition,
+Result<ColorMapFit> fit_color_map(const brdf::MeasuredBrdf& brdf, const color::ViewingCondition& condition,
                                   const ColorMapOptions& options) {
   constexpr double kStep_deg = 5, kSurelyMeasured_deg = 2.5;
-  MeasuredColorOptions asked{{}, condition, 0, 0};
+  brdf::MeasuredColorOptions asked{{}, condition, 0, 0};
   for (double light_deg = kStep_deg; light_deg <= kGrazing_deg; light_deg += kStep_deg)
     for (double view_deg = -kGrazing_deg; view_deg <= kGrazing_deg; view_deg += kStep_deg) {
       const double aspecular_deg = light_deg + view_deg;  // the mirror direction is at -light
       if (std::abs(aspecular_deg) >= kGlare_deg) asked.geometries.push_back({light_deg, aspecular_deg});
     }
-  GONIO_ASSIGN(const MeasuredColor color, measured_color(brdf, asked));
-  Measurement measurement{condition, "", {}};
-  for (const MeasuredReading& reading : color.readings)
+  GONIO_ASSIGN(const brdf::MeasuredColor color, brdf::measured_color(brdf, asked));
+  paint::Measurement measurement{condition, "", {}};
+  for (const brdf::MeasuredReading& reading : color.readings)
     if (reading.outside_deg <= kSurelyMeasured_deg) measurement.rows.push_back({reading.geometry, reading.lab});
   return fit_color_map(measurement, options);
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::fit

@@ -13,25 +13,25 @@
 
 #include "color/spectrum.h"
 
-namespace goniochrome {
+namespace goniochrome::fit {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
-constexpr std::array kTreatments = {CriticalAngle::kClip, CriticalAngle::kSlide, CriticalAngle::kSlideMap,
-                                    CriticalAngle::kIndexOne};
+constexpr std::array kTreatments = {brdf::CriticalAngle::kClip, brdf::CriticalAngle::kSlide,
+                                    brdf::CriticalAngle::kSlideMap, brdf::CriticalAngle::kIndexOne};
 
 Vec3 direction(double polar_rad, double azimuth_rad) {
   return {std::sin(polar_rad) * std::cos(azimuth_rad), std::sin(polar_rad) * std::sin(azimuth_rad),
           std::cos(polar_rad)};
 }
 
-Xyz white() {
-  return *white_point({"D65", 10});
+color::Xyz white() {
+  return *color::white_point({"D65", 10});
 }
 
 // A flake paint whose color is a function of its two flake angles alone, smooth in both.
-Lab flake_paint(const Vec3& wi, const Vec3& wo) {
-  const FlakeAngles f = flake_angles(wi, wo, 1.5);
+color::Lab flake_paint(const Vec3& wi, const Vec3& wo) {
+  const brdf::FlakeAngles f = brdf::flake_angles(wi, wo, 1.5);
   const double flop = std::exp(-std::pow(f.flake_rad / 0.25, 2));
   const double hue = 1 + 2 * f.incidence_rad;
   return {20 + 60 * flop, 40 * std::cos(hue), 40 * std::sin(hue)};
@@ -58,11 +58,11 @@ TEST(ColorMapFit, OutOfPlaneFollowsFromInPlane) {
       for (double view = 8; view < 70; view += 7)
         for (double azimuth = 20; azimuth < 180; azimuth += 23) {
           const Vec3 wi = direction(light * kDegree, 0), wo = direction(view * kDegree, azimuth * kDegree);
-          const FlakeAngles f = flake_angles(wi, wo, 1.5);
+          const brdf::FlakeAngles f = brdf::flake_angles(wi, wo, 1.5);
           const double steepest = std::asin(1 / 1.5) - f.flake_rad - f.incidence_rad;
-          if (steepest < 0.02 || aspecular_angle_rad(wi, wo, {0, 0, 1}) < 12 * kDegree) continue;
-          const Rgb got = reflectance_factor(fit->map, wi, wo, CriticalAngle::kClip);
-          mean += delta_e_76(lab_from_rgb(got, white()), flake_paint(wi, wo));
+          if (steepest < 0.02 || paint::aspecular_angle_rad(wi, wo, {0, 0, 1}) < 12 * kDegree) continue;
+          const color::Rgb got = brdf::reflectance_factor(fit->map, wi, wo, brdf::CriticalAngle::kClip);
+          mean += color::delta_e_76(color::lab_from_rgb(got, white()), flake_paint(wi, wo));
           ++count;
         }
     mean /= count;
@@ -81,11 +81,11 @@ TEST(ColorMapFit, PassesThroughItsRowsAndIsReciprocal) {
   EXPECT_EQ(fit->grazing_rows, 0);
   double worst = 0;
   for (const ColorMapRow& row : rows) {
-    if (aspecular_angle_rad(row.light, row.view, {0, 0, 1}) < 10 * kDegree) continue;
+    if (paint::aspecular_angle_rad(row.light, row.view, {0, 0, 1}) < 10 * kDegree) continue;
     if (std::max(row.light.z, row.view.z) > 0.99) continue;  // the map is coarse in angle next to the normal
-    const Rgb got = reflectance_factor(fit->map, row.light, row.view, CriticalAngle::kClip);
-    const Rgb back = reflectance_factor(fit->map, row.view, row.light, CriticalAngle::kClip);
-    worst = std::max(worst, delta_e_76(lab_from_rgb(got, white()), row.lab));
+    const color::Rgb got = brdf::reflectance_factor(fit->map, row.light, row.view, brdf::CriticalAngle::kClip);
+    const color::Rgb back = brdf::reflectance_factor(fit->map, row.view, row.light, brdf::CriticalAngle::kClip);
+    worst = std::max(worst, color::delta_e_76(color::lab_from_rgb(got, white()), row.lab));
     EXPECT_NEAR(got.y, back.y, 1e-12);
   }
   EXPECT_LT(worst, 0.5);  // halves of texels of 1/512 in the cosine
@@ -110,23 +110,23 @@ TEST(ColorMapFit, ColorsOutsideTheWorkingSpaceAreKeptAndCounted) {
   const auto fit = fit_color_map(rows, white(), {16, 1.5});
   ASSERT_TRUE(fit.ok());
   EXPECT_EQ(fit->negative_share, 1);
-  const Lab back = lab_from_rgb(fetched(fit->map, {8, 8}), white());
-  EXPECT_LT(delta_e_76(back, {30, -150, 40}), 1e-3);  // rounding to float
+  const color::Lab back = color::lab_from_rgb(brdf::fetched(fit->map, {8, 8}), white());
+  EXPECT_LT(color::delta_e_76(back, {30, -150, 40}), 1e-3);  // rounding to float
 }
 
 // What was measured in plane, and what is to be predicted from it: aspecular > 12 deg, viewer < 70 deg.
 struct MeasuredRows {
   std::vector<ColorMapRow> in_plane, beside;
-  Xyz white;
+  color::Xyz white;
 };
 
 // Every measured row of a Cornell file.
 MeasuredRows cornell_rows(const std::string& path) {
   MeasuredRows rows{{}, {}, white()};
-  const auto brdf = read_measured(path);
+  const auto brdf = brdf::read_measured(path);
   EXPECT_TRUE(brdf.ok()) << brdf.error().message;
   const auto& wavelengths = (*brdf)->traits().wavelengths_nm;
-  const auto meter = SpectralColorimeter::make(wavelengths, {"D65", 10});
+  const auto meter = color::SpectralColorimeter::make(wavelengths, {"D65", 10});
   std::ifstream file(path);
   std::string line;
   std::vector<double> numbers;
@@ -141,7 +141,7 @@ MeasuredRows cornell_rows(const std::string& path) {
     for (std::size_t k = 0; k < wavelengths.size(); ++k) factors.push_back(M_PI * std::max(row[4 + k], 0.0));
     const ColorMapRow color = {direction(row[0], row[1]), direction(row[2], row[3]), meter->lab(factors)};
     const bool in_plane = std::abs(std::sin(row[3] - row[1])) < 1e-3 || row[2] < 1e-3;
-    const double aspecular_deg = aspecular_angle_rad(color.light, color.view, {0, 0, 1}) / kDegree;
+    const double aspecular_deg = paint::aspecular_angle_rad(color.light, color.view, {0, 0, 1}) / kDegree;
     if (in_plane) rows.in_plane.push_back(color);
     if (!in_plane && aspecular_deg > 12 && row[2] < 70 * kDegree) rows.beside.push_back(color);
   }
@@ -154,10 +154,10 @@ double aspecular_only_de76(const MeasuredRows& rows) {
   for (const double bandwidth_deg : {1.0, 2.0, 3.0, 4.0, 6.0, 8.0}) {
     double sum = 0;
     for (const ColorMapRow& target : rows.beside) {
-      const double at = aspecular_angle_rad(target.light, target.view, {0, 0, 1}) / kDegree;
+      const double at = paint::aspecular_angle_rad(target.light, target.view, {0, 0, 1}) / kDegree;
       double w0 = 0, w1 = 0, w2 = 0, y0[3] = {}, y1[3] = {};
       for (const ColorMapRow& row : rows.in_plane) {
-        const double x = aspecular_angle_rad(row.light, row.view, {0, 0, 1}) / kDegree - at;
+        const double x = paint::aspecular_angle_rad(row.light, row.view, {0, 0, 1}) / kDegree - at;
         if (x + at < 10) continue;
         const double w = std::exp(-0.5 * std::pow(x / bandwidth_deg, 2)) + 1e-12;
         const double lab[3] = {row.lab.L, row.lab.a, row.lab.b};
@@ -166,7 +166,7 @@ double aspecular_only_de76(const MeasuredRows& rows) {
       }
       double got[3];
       for (int c = 0; c < 3; ++c) got[c] = (w2 * y0[c] - w1 * y1[c]) / (w0 * w2 - w1 * w1);
-      sum += delta_e_76({got[0], got[1], got[2]}, target.lab);
+      sum += color::delta_e_76({got[0], got[1], got[2]}, target.lab);
     }
     best = std::min(best, sum / static_cast<double>(rows.beside.size()));
   }
@@ -174,22 +174,23 @@ double aspecular_only_de76(const MeasuredRows& rows) {
 }
 
 // The dense files of other makers, as an instrument with seven lights and seventeen viewers in plane would read them.
-MeasuredRows sampled_rows(const MeasuredBrdf& brdf) {
-  const auto meter = ChannelColorimeter::make(brdf.traits(), {"D65", 2});
+MeasuredRows sampled_rows(const brdf::MeasuredBrdf& brdf) {
+  const auto meter = brdf::ChannelColorimeter::make(brdf.traits(), {"D65", 2});
   EXPECT_TRUE(meter.ok());
   MeasuredRows rows{{}, {}, meter->white()};
   const auto row = [&](double light_deg, double view_deg, double azimuth_deg) {
     const Vec3 wi = direction(light_deg * kDegree, 0), wo = direction(view_deg * kDegree, azimuth_deg * kDegree);
     std::vector<double> factors = brdf.value(wi, wo).f;
     for (double& f : factors) f = M_PI * std::max(f, 0.0);
-    return ColorMapRow{wi, wo, lab_from_xyz(meter->xyz(factors), meter->white())};
+    return ColorMapRow{wi, wo, color::lab_from_xyz(meter->xyz(factors), meter->white())};
   };
   for (double light = 10; light <= 70; light += 10) {
     for (double view = -70; view <= 70; view += 8.75) rows.in_plane.push_back(row(light, view, 0));
     for (double view = 10; view < 70; view += 8)
       for (double azimuth = 15; azimuth < 180; azimuth += 15) {
         const ColorMapRow beside = row(light, view, azimuth);
-        if (aspecular_angle_rad(beside.light, beside.view, {0, 0, 1}) > 12 * kDegree) rows.beside.push_back(beside);
+        if (paint::aspecular_angle_rad(beside.light, beside.view, {0, 0, 1}) > 12 * kDegree)
+          rows.beside.push_back(beside);
       }
   }
   return rows;
@@ -206,16 +207,16 @@ Comparison compared(const std::string& name, const MeasuredRows& rows) {
   double* const means[] = {&result.clip, &result.slide, &result.slide_map, &result.index};
   for (std::size_t k = 0; k < kTreatments.size(); ++k) {
     // Index 1 all through: the map itself has no coat either.
-    const double index = kTreatments[k] == CriticalAngle::kIndexOne ? 1 : 1.5;
+    const double index = kTreatments[k] == brdf::CriticalAngle::kIndexOne ? 1 : 1.5;
     const auto fit = fit_color_map(rows.in_plane, rows.white, {256, index});
     EXPECT_TRUE(fit.ok()) << fit.error().message;
     double sum = 0, sum_inside = 0;
     int within = 0;
     for (const ColorMapRow& row : rows.beside) {
-      const Rgb got = reflectance_factor(fit->map, row.light, row.view, kTreatments[k]);
-      const double de = delta_e_76(lab_from_rgb(got, rows.white), row.lab);
+      const color::Rgb got = brdf::reflectance_factor(fit->map, row.light, row.view, kTreatments[k]);
+      const double de = color::delta_e_76(color::lab_from_rgb(got, rows.white), row.lab);
       sum += de;
-      const FlakeAngles f = flake_angles(row.light, row.view, 1.5);
+      const brdf::FlakeAngles f = brdf::flake_angles(row.light, row.view, 1.5);
       if (f.flake_rad + f.incidence_rad < std::asin(1 / 1.5)) sum_inside += de, ++within;
     }
     *means[k] = sum / static_cast<double>(rows.beside.size());
@@ -254,7 +255,7 @@ TEST(ColorMapFit, OtherMeasurementsAgreeRealData) {
   for (const std::string name :
        {"rgl/cc_ibiza_sunset_rgb.bsdf", "rgl/satin_rosaline_rgb.bsdf", "rgl/vch_golden_yellow_rgb.bsdf",
         "nvidia/carpaint_blue.mbsdf", "nvidia/carpaint_red.mbsdf"}) {
-    const auto brdf = read_measured(std::string(data) + "/brdf/" + name);
+    const auto brdf = brdf::read_measured(std::string(data) + "/brdf/" + name);
     ASSERT_TRUE(brdf.ok()) << brdf.error().message;
     const Comparison c = compared(name.substr(name.find('/') + 1, 22), sampled_rows(**brdf));
     for (const double mean : {c.clip, c.slide, c.index})
@@ -266,9 +267,9 @@ TEST(ColorMapFit, MeasuredBrdfsRealData) {
   const char* data = std::getenv("GONIOCHROME_DATA");
   if (data == nullptr) GTEST_SKIP() << "GONIOCHROME_DATA is not set";
   for (const std::string name : {"cornell/cayman.brdf", "rgl/cc_ibiza_sunset_rgb.bsdf"}) {
-    const auto brdf = read_measured(std::string(data) + "/brdf/" + name);
+    const auto brdf = brdf::read_measured(std::string(data) + "/brdf/" + name);
     if (!brdf.ok()) continue;
-    const ViewingCondition condition = {"D65", (*brdf)->traits().wavelengths_nm.empty() ? 2 : 10};
+    const color::ViewingCondition condition = {"D65", (*brdf)->traits().wavelengths_nm.empty() ? 2 : 10};
     const auto fit = fit_color_map(**brdf, condition, {64, 1.5});
     ASSERT_TRUE(fit.ok()) << fit.error().message;
     EXPECT_GT(fit->rows, 200);
@@ -277,4 +278,4 @@ TEST(ColorMapFit, MeasuredBrdfsRealData) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::fit

@@ -7,15 +7,15 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "brdf/lobe_model.h"
-#include "fit/brdf_rows.h"
-#include "fit/brdf_spike.h"
-#include "fit/fit_limit.h"
-#include "fit/flake_fit.h"
-#include "fit/lobe_choice.h"
-#include "fit/target_rows.h"
-#include "fit/twins.h"
+#include "fit/internal/brdf_rows.h"
+#include "fit/internal/brdf_spike.h"
+#include "fit/internal/fit_limit.h"
+#include "fit/internal/flake_fit.h"
+#include "fit/internal/lobe_choice.h"
+#include "fit/internal/target_rows.h"
+#include "fit/internal/twins.h"
 
-namespace goniochrome {
+namespace goniochrome::fit {
 
 namespace {
 
@@ -23,7 +23,7 @@ namespace {
 std::vector<double> seen_exponents(const std::vector<double>& exponents, double first_rad) {
   std::vector<double> seen;
   for (const double e : exponents)
-    if (cos_power(first_rad, e) >= kSeenPart) seen.push_back(e);
+    if (brdf::cos_power(first_rad, e) >= kSeenPart) seen.push_back(e);
   return seen;
 }
 
@@ -35,10 +35,11 @@ std::vector<double> difference(const std::vector<double>& all, const std::vector
 }
 
 // The columns were fitted to reflectance factors; the model is in 1/sr. `lobes` are those of the basis.
-void set_weights(const std::vector<double>& exponents, const Rgb* x, Rgb& diffuse, std::vector<Lobe>& lobes) {
+void set_weights(const std::vector<double>& exponents, const color::Rgb* x, color::Rgb& diffuse,
+                 std::vector<paint::Lobe>& lobes) {
   diffuse = (1 / M_PI) * x[0];
   std::size_t next = 0;
-  for (Lobe& lobe : lobes)
+  for (paint::Lobe& lobe : lobes)
     if (next < exponents.size() && lobe.exponent == exponents[next]) lobe.directional_diffuse = (1 / M_PI) * x[++next];
 }
 
@@ -72,8 +73,8 @@ void fit_flake(const FitOptions& options, const FlakeTarget& together, const Fla
   model.views_deg = views_deg;
   const FlakeFit each = flake_fit(options.method, by_view, model, deadline);
   for (std::size_t v = 0; v < model.views_deg.size(); ++v) {
-    ViewLobes view{model.views_deg[v], {}, out.lobes.lobes};
-    for (Lobe& lobe : view.lobes) lobe.directional_diffuse = {};
+    paint::ViewLobes view{model.views_deg[v], {}, out.lobes.lobes};
+    for (paint::Lobe& lobe : view.lobes) lobe.directional_diffuse = {};
     set_weights(model.exponents, &each.x[v * static_cast<std::size_t>(model.columns_per_view())], view.diffuse,
                 view.lobes);
     out.lobes.views.push_back(std::move(view));
@@ -83,28 +84,31 @@ void fit_flake(const FitOptions& options, const FlakeTarget& together, const Fla
   if (deadline.passed()) report.status = FitStatus::kTimeLimit;
 }
 
-FlakeTarget flake_target(const FitOptions& options, const Target& target, const Xyz& white) {
+FlakeTarget flake_target(const FitOptions& options, const Target& target, const color::Xyz& white) {
   FlakeTarget flake{white, {}, {}};
   for (const TargetRow& row : target.rows)
     flake.rows.push_back({{row.angle_deg * (M_PI / 180), row.view_deg},
                           row.reflectance_factor,
-                          row.importance * (options.perceptual_weights ? lightness_slope(row.lightness) : 1),
+                          row.importance * (options.perceptual_weights ? color::lightness_slope(row.lightness) : 1),
                           row.importance < 1});
-  for (const LabReading& reading : target.readings)
+  for (const paint::LabReading& reading : target.readings)
     flake.readings.push_back(
-        {{aspecular_angle_deg(reading.geometry) * (M_PI / 180), view_angle_deg(reading.geometry)}, reading.lab});
+        {{paint::aspecular_angle_deg(reading.geometry) * (M_PI / 180), view_angle_deg(reading.geometry)}, reading.lab});
   return flake;
 }
 
 // The color differences at the readings.
-std::vector<GeometryError> errors_at(const std::vector<LabReading>& readings, const Xyz& white, const LobeFit& fit) {
+std::vector<GeometryError> errors_at(const std::vector<paint::LabReading>& readings, const color::Xyz& white,
+                                     const paint::LobeFit& fit) {
   std::vector<GeometryError> errors;
-  for (const LabReading& reading : readings) {
-    const double angle_deg = aspecular_angle_deg(reading.geometry);
-    const Rgb predicted = fit.views.empty()
-                              ? flake_reflectance_factor(fit, angle_deg)
-                              : flake_reflectance_factor(at_view(fit, view_angle_deg(reading.geometry)), angle_deg);
-    errors.push_back({geometry_name(reading.geometry), delta_e_2000(reading.lab, lab_from_rgb(predicted, white))});
+  for (const paint::LabReading& reading : readings) {
+    const double angle_deg = paint::aspecular_angle_deg(reading.geometry);
+    const color::Rgb predicted =
+        fit.views.empty()
+            ? brdf::flake_reflectance_factor(fit, angle_deg)
+            : brdf::flake_reflectance_factor(brdf::at_view(fit, view_angle_deg(reading.geometry)), angle_deg);
+    errors.push_back({paint::geometry_name(reading.geometry),
+                      color::delta_e_2000(reading.lab, color::lab_from_rgb(predicted, white))});
   }
   return errors;
 }
@@ -127,21 +131,23 @@ std::vector<double> spike_exponents(const FitOptions& options, const std::vector
   return options.most_lobes > 0 ? difference(left, report.unseen) : left;
 }
 
-bool has_flake(const std::vector<Lobe>& lobes, double exponent) {
-  const auto at = std::ranges::find(lobes, exponent, &Lobe::exponent);
-  return at != lobes.end() && at->directional_diffuse != Rgb{};
+bool has_flake(const std::vector<paint::Lobe>& lobes, double exponent) {
+  const auto at = std::ranges::find(lobes, exponent, &paint::Lobe::exponent);
+  return at != lobes.end() && at->directional_diffuse != color::Rgb{};
 }
 
 // Its gloss as a coat shows it to a meter of that angle.
-LobeFit with_gloss_at(LobeFit lobes, double incidence_deg) {
-  const double fresnel = coat_fresnel(std::cos(incidence_deg * (M_PI / 180)));
-  for (Lobe& lobe : lobes.lobes)
+paint::LobeFit with_gloss_at(paint::LobeFit lobes, double incidence_deg) {
+  const double fresnel = brdf::coat_fresnel(std::cos(incidence_deg * (M_PI / 180)));
+  for (paint::Lobe& lobe : lobes.lobes)
     if (std::isfinite(lobe.exponent)) lobe.gloss = fresnel * lobe.gloss;
   return lobes;
 }
 
-void drop_unused(std::vector<Lobe>& lobes) {
-  std::erase_if(lobes, [](const Lobe& lobe) { return lobe.directional_diffuse == Rgb{} && lobe.gloss == Rgb{}; });
+void drop_unused(std::vector<paint::Lobe>& lobes) {
+  std::erase_if(lobes, [](const paint::Lobe& lobe) {
+    return lobe.directional_diffuse == color::Rgb{} && lobe.gloss == color::Rgb{};
+  });
 }
 
 }  // namespace
@@ -170,7 +176,7 @@ const char* fit_status_name(FitStatus status) {
   return "time_limit";
 }
 
-PaintFitter::PaintFitter(Basis basis, FitOptions options)
+PaintFitter::PaintFitter(formats::Basis basis, FitOptions options)
     : basis_(std::move(basis)), options_(std::move(options)), gloss_(basis_.exponents) {}
 
 // Every lobe of the basis without weight.
@@ -184,10 +190,10 @@ PaintFit PaintFitter::started() const {
 }
 
 // Gives every view the gloss, drops unused lobes, and compares with the readings.
-void PaintFitter::finish(const std::vector<LabReading>& readings, const Xyz& white, PaintFit& out) const {
-  LobeFit& fit = out.lobes;
+void PaintFitter::finish(const std::vector<paint::LabReading>& readings, const color::Xyz& white, PaintFit& out) const {
+  paint::LobeFit& fit = out.lobes;
   PaintFitReport& report = out.report;
-  for (ViewLobes& view : fit.views) {
+  for (paint::ViewLobes& view : fit.views) {
     for (std::size_t j = 0; j < view.lobes.size(); ++j) view.lobes[j].gloss = fit.lobes[j].gloss;
     drop_unused(view.lobes);
   }
@@ -200,16 +206,16 @@ void PaintFitter::finish(const std::vector<LabReading>& readings, const Xyz& whi
   if (report.de00_max > kVisible_de00)
     report.limit = fit_limit(readings, report.de00_by_geometry, white, !fit.views.empty());
   if (fit.views.empty()) return;
-  LobeFit together = fit;
+  paint::LobeFit together = fit;
   together.views.clear();
   const auto errors = errors_at(readings, white, together);
   report.views = ViewFigures{report.de00_mean, mean_de00(errors)};
 }
 
-Result<PaintFit> PaintFitter::fit(const Paint& paint) const {
+Result<PaintFit> PaintFitter::fit(const paint::Paint& paint) const {
   const Stopwatch clock;
   PaintFit out = started();
-  GONIO_ASSIGN(const Xyz white, white_point(condition_of(paint)));
+  GONIO_ASSIGN(const color::Xyz white, color::white_point(paint::condition_of(paint)));
   GONIO_ASSIGN(const Target target, target_rows(paint, options_.target, white, basis_.exponents));
   const FlakeTarget together = flake_target(options_, target, white);
   const double first_rad = target.first_deg * (M_PI / 180);
@@ -226,12 +232,12 @@ Result<PaintFit> PaintFitter::fit(const Paint& paint) const {
   out.report.gamut_de00 = target.gamut_de00;
   out.report.glare_rows = target.glare_rows;
 
-  const std::vector<GlossReading>& readings = paint.gloss.empty() ? options_.assumed_gloss : paint.gloss;
-  GONIO_TRY(set_gloss(gloss_, readings, out.lobes));
-  for (const double angle : kGlossAngles_deg) {
-    const auto stated = std::ranges::find(readings, angle, &GlossReading::angle_deg);
-    GONIO_ASSIGN(const GlossColumns* meter, gloss_.at(angle));
-    out.report.gloss.push_back({angle, gloss_units(gloss_, *meter, out.lobes),
+  const std::vector<paint::GlossReading>& readings = paint.gloss.empty() ? options_.assumed_gloss : paint.gloss;
+  GONIO_TRY(brdf::set_gloss(gloss_, readings, out.lobes));
+  for (const double angle : brdf::kGlossAngles_deg) {
+    const auto stated = std::ranges::find(readings, angle, &paint::GlossReading::angle_deg);
+    GONIO_ASSIGN(const brdf::GlossColumns* meter, gloss_.at(angle));
+    out.report.gloss.push_back({angle, brdf::gloss_units(gloss_, *meter, out.lobes),
                                 stated == readings.end() ? std::nullopt : std::optional(stated->gloss_units)});
   }
   finish(target.readings, white, out);
@@ -242,7 +248,7 @@ Result<PaintFit> PaintFitter::fit(const Paint& paint) const {
 Result<PaintFit> PaintFitter::fit(const BrdfTarget& brdf) const {
   const Stopwatch clock;
   PaintFit out = started();
-  GONIO_ASSIGN(const Xyz white, white_point({"D65", 2}));
+  GONIO_ASSIGN(const color::Xyz white, color::white_point({"D65", 2}));
   GONIO_ASSIGN(const BrdfRows rows, brdf_rows(brdf, white, options_, basis_.exponents));
   static const std::vector<double> kEvery15_deg = {0, 15, 30, 45, 60, 75};
   fit_flake(options_, rows.flake, rows.flake, options_.views_where_needed ? kEvery15_deg : options_.views_deg,
@@ -251,11 +257,11 @@ Result<PaintFit> PaintFitter::fit(const BrdfTarget& brdf) const {
   out.report.brdf = BrdfFigures{.fitted = rows.fitted.size(), .glare = rows.glare.size(), .steep = rows.steep};
   add_spike(rows, spike_exponents(options_, basis_.exponents, out.report), out);
   std::erase_if(out.report.unseen, [&](double e) { return has_flake(out.lobes.lobes, e); });
-  for (const double angle : kGlossAngles_deg) {
-    GONIO_ASSIGN(const GlossColumns* meter, gloss_.at(angle));
-    out.report.gloss.push_back({angle, gloss_units(gloss_, *meter, with_gloss_at(out.lobes, angle)), {}});
+  for (const double angle : brdf::kGlossAngles_deg) {
+    GONIO_ASSIGN(const brdf::GlossColumns* meter, gloss_.at(angle));
+    out.report.gloss.push_back({angle, brdf::gloss_units(gloss_, *meter, with_gloss_at(out.lobes, angle)), {}});
   }
-  finish(brdf.paint.measurement ? brdf.paint.measurement->rows : std::vector<LabReading>(), white, out);
+  finish(brdf.paint.measurement ? brdf.paint.measurement->rows : std::vector<paint::LabReading>(), white, out);
   compare(rows, white, out);
   if (brdf.paint.measurement) {
     GONIO_ASSIGN(out.report.brdf->from_five_angles, from_five_angles(brdf));
@@ -267,14 +273,14 @@ Result<PaintFit> PaintFitter::fit(const BrdfTarget& brdf) const {
 // Without views, which five readings know nothing of, and without gloss, which no direction beyond glare shows.
 Result<FiveAngleFigures> PaintFitter::from_five_angles(const BrdfTarget& brdf) const {
   PaintFit five = started();
-  GONIO_ASSIGN(const Xyz white, white_point(condition_of(brdf.paint)));
+  GONIO_ASSIGN(const color::Xyz white, color::white_point(paint::condition_of(brdf.paint)));
   GONIO_ASSIGN(const Target target, target_rows(brdf.paint, options_.target, white, basis_.exponents));
   const FlakeTarget flake = flake_target(options_, target, white);
   fit_flake(options_, flake, flake, {}, basis_.exponents, target.first_deg * (M_PI / 180), five);
   return five_angle_figures(brdf, five.lobes);
 }
 
-std::vector<Result<PaintFit>> fits(const PaintFitter& fitter, const std::vector<Paint>& paints) {
+std::vector<Result<PaintFit>> fits(const PaintFitter& fitter, const std::vector<paint::Paint>& paints) {
   std::vector<std::optional<Result<PaintFit>>> slots(paints.size());
   parallel_for(paints.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) slots[i] = fitter.fit(paints[i]);
@@ -285,4 +291,4 @@ std::vector<Result<PaintFit>> fits(const PaintFitter& fitter, const std::vector<
   return results;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::fit

@@ -8,13 +8,13 @@
 
 #include "base/result.h"
 #include "brdf/gloss.h"
-#include "fit/brdf_target.h"
-#include "fit/fit_status.h"
-#include "paint/basis.h"
+#include "fit/internal/brdf_target.h"
+#include "fit/internal/fit_status.h"
+#include "formats/basis.h"
 #include "paint/curve.h"
 #include "paint/paint.h"
 
-namespace goniochrome {
+namespace goniochrome::fit {
 
 // kDeltaE starts from both others and then makes the color differences at the readings least.
 enum class FitMethod { kL1, kL2, kDeltaE };
@@ -24,16 +24,16 @@ const char* fit_method_name(FitMethod method);
 
 struct FitOptions {
   FitMethod method = FitMethod::kL1;
-  TargetCurve::Kind target = TargetCurve::Kind::kMeasured;
-  bool perceptual_weights = true;                // rows weighted by dL*/dY of the target
-  std::vector<GlossReading> assumed_gloss = {};  // for paints that state no gloss
-  int most_lobes = 0;                            // flake lobes to use, the best subset of the basis; 0: all
-  double prune_de00 = 0;                         // lobes that move no color by more than this are dropped; 0: none are
-  std::vector<double> views_deg = {};            // weights at these angles of the viewer too; empty: none
-  bool views_where_needed = false;               // those of readings that differ at one aspecular angle, else none; of
-                                                 // a measured BRDF every 15 deg
-  double steepest_deg = 75;                      // measured BRDFs: directions farther from the normal are left out
-  double time_limit_s = 0;                       // for one paint; 0: none
+  paint::TargetCurve::Kind target = paint::TargetCurve::Kind::kMeasured;
+  bool perceptual_weights = true;                       // rows weighted by dL*/dY of the target
+  std::vector<paint::GlossReading> assumed_gloss = {};  // for paints that state no gloss
+  int most_lobes = 0;                                   // flake lobes to use, the best subset of the basis; 0: all
+  double prune_de00 = 0;               // lobes that move no color by more than this are dropped; 0: none are
+  std::vector<double> views_deg = {};  // weights at these angles of the viewer too; empty: none
+  bool views_where_needed = false;     // those of readings that differ at one aspecular angle, else none; of
+                                       // a measured BRDF every 15 deg
+  double steepest_deg = 75;            // measured BRDFs: directions farther from the normal are left out
+  double time_limit_s = 0;             // for one paint; 0: none
 };
 
 // Readings nearer to specular than this hold conventional glare and belong to the gloss meter.
@@ -113,38 +113,38 @@ struct PaintFitReport {
 };
 
 struct PaintFit {
-  LobeFit lobes;  // only lobes with weight, exponents ascending, the mirror last
+  paint::LobeFit lobes;  // only lobes with weight, exponents ascending, the mirror last
   PaintFitReport report;
 };
 
 // Fits paints to one basis. Immutable: many threads may share one.
 class PaintFitter {
  public:
-  PaintFitter(Basis basis, FitOptions options);
+  PaintFitter(formats::Basis basis, FitOptions options);
 
   // Error: the paint has no rows beyond glare and no appearance, its illuminant is unknown, or no gloss meter has the
   // angle of a reading.
-  Result<PaintFit> fit(const Paint& paint) const;
+  Result<PaintFit> fit(const paint::Paint& paint) const;
 
   // The same for a measured BRDF: the flake lobes from all directions beyond glare and not steeper than the options
-  // say, then the gloss of a clear coat and the sharp part of the flake from what is left near specular. Its gloss holds
-  // at kGlossIncidence_deg. Error: no direction is left.
+  // say, then the gloss of a clear coat and the sharp part of the flake from what is left near specular. Its gloss
+  // holds at kGlossIncidence_deg. Error: no direction is left.
   Result<PaintFit> fit(const BrdfTarget& brdf) const;
 
-  const Basis& basis() const { return basis_; }
+  const formats::Basis& basis() const { return basis_; }
   const FitOptions& options() const { return options_; }
 
  private:
   PaintFit started() const;
   Result<FiveAngleFigures> from_five_angles(const BrdfTarget& brdf) const;
-  void finish(const std::vector<LabReading>& readings, const Xyz& white, PaintFit& fit) const;
+  void finish(const std::vector<paint::LabReading>& readings, const color::Xyz& white, PaintFit& fit) const;
 
-  Basis basis_;
+  formats::Basis basis_;
   FitOptions options_;
-  GlossTable gloss_;
+  brdf::GlossTable gloss_;
 };
 
 // Fits every paint on all cores; results stand in the order of the paints and do not depend on the number of threads.
-std::vector<Result<PaintFit>> fits(const PaintFitter& fitter, const std::vector<Paint>& paints);
+std::vector<Result<PaintFit>> fits(const PaintFitter& fitter, const std::vector<paint::Paint>& paints);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::fit

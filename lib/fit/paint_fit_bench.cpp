@@ -8,7 +8,7 @@
 #include <cmath>
 #include <ctime>
 
-namespace goniochrome {
+namespace goniochrome::fit {
 namespace {
 
 double thread_us() {
@@ -17,8 +17,8 @@ double thread_us() {
   return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
 }
 
-std::vector<Paint> metallics(int count) {
-  std::vector<Paint> paints(count);
+std::vector<paint::Paint> metallics(int count) {
+  std::vector<paint::Paint> paints(count);
   for (int i = 0; i < count; ++i) {
     const double t = i / static_cast<double>(count);
     paints[i].measurement.emplace();
@@ -33,12 +33,12 @@ std::vector<Paint> metallics(int count) {
 }
 
 void fit_paint(benchmark::State& state) {
-  const Basis basis = {"b8", {1.3, 3, 6, 20, 70, 250, 900, 3000}, true};
+  const formats::Basis basis = {"b8", {1.3, 3, 6, 20, 70, 250, 900, 3000}, true};
   const auto method = static_cast<FitMethod>(state.range(0));
   const PaintFitter fitter(basis, {.method = method});
-  const std::vector<Paint> paints = metallics(1000);
+  const std::vector<paint::Paint> paints = metallics(1000);
   double gap = 0, mean = 0;
-  for (const Paint& paint : paints) {
+  for (const paint::Paint& paint : paints) {
     const auto fit = fitter.fit(paint);
     if (!fit.ok()) return state.SkipWithError("a paint cannot be fitted");
     gap = std::max(gap, fit->report.optimality_gap);
@@ -65,6 +65,4 @@ void fit_paint(benchmark::State& state) {
 BENCHMARK(fit_paint)->ArgName("method")->DenseRange(0, 2)->Iterations(5000)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
-}  // namespace goniochrome
-
-BENCHMARK_MAIN();
+}  // namespace goniochrome::fit

@@ -10,17 +10,17 @@
 #include "base/hard_case_for_test.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "formats/xml.h"
 #include "math/least_squares.h"
-#include "paint/xml.h"
 
-namespace goniochrome {
+namespace goniochrome::fit {
 namespace {
 
-const Basis kBasis = {"b7", {1.3, 6, 20, 70, 250, 900, 3000}, true};
+const formats::Basis kBasis = {"b7", {1.3, 6, 20, 70, 250, 900, 3000}, true};
 constexpr FitMethod kMethods[] = {FitMethod::kL1, FitMethod::kL2};
 
-Paint paint_with(const std::vector<std::pair<double, Lab>>& rows) {
-  Paint paint;
+paint::Paint paint_with(const std::vector<std::pair<double, color::Lab>>& rows) {
+  paint::Paint paint;
   paint.name = "test";
   paint.measurement.emplace();
   for (const auto& [angle, lab] : rows) paint.measurement->rows.push_back({{.aspecular_deg = angle}, lab});
@@ -28,29 +28,29 @@ Paint paint_with(const std::vector<std::pair<double, Lab>>& rows) {
 }
 
 // What an instrument would read off known lobes.
-Paint paint_from(const LobeFit& lobes, const std::vector<double>& angles_deg) {
-  const Xyz white = *white_point({});
-  std::vector<std::pair<double, Lab>> rows;
+paint::Paint paint_from(const paint::LobeFit& lobes, const std::vector<double>& angles_deg) {
+  const color::Xyz white = *color::white_point({});
+  std::vector<std::pair<double, color::Lab>> rows;
   for (const double angle : angles_deg)
-    rows.emplace_back(angle, lab_from_rgb(flake_reflectance_factor(lobes, angle), white));
+    rows.emplace_back(angle, color::lab_from_rgb(brdf::flake_reflectance_factor(lobes, angle), white));
   return paint_with(rows);
 }
 
 const std::vector<double> kFive = {15, 25, 45, 75, 110};
 
-Paint metallic_blue() {
+paint::Paint metallic_blue() {
   return paint_with(
       {{15, {78, -2, -38}}, {25, {60, 0, -42}}, {45, {34, 6, -40}}, {75, {17, 11, -33}}, {110, {11, 12, -28}}});
 }
 
-PaintFitReport report_of(const Paint& paint, FitOptions options = {}) {
+PaintFitReport report_of(const paint::Paint& paint, FitOptions options = {}) {
   auto fit = PaintFitter(kBasis, options).fit(paint);
   EXPECT_TRUE(fit.ok()) << fit.error().message;
   return fit->report;
 }
 
 TEST(PaintFit, RecoversTheColorOfKnownLobes) {
-  LobeFit truth;
+  paint::LobeFit truth;
   truth.diffuse = {0.02, 0.03, 0.06};
   truth.lobes = {{6, {0.05, 0.06, 0.1}, {}}, {70, {0.5, 0.4, 0.6}, {}}};
   for (const FitMethod method : kMethods) {
@@ -67,12 +67,12 @@ TEST(PaintFit, RecoversTheColorOfKnownLobes) {
 }
 
 TEST(PaintFit, SolidColorIsItsConstant) {
-  const Paint solid = paint_with({{15, {52, 40, -12}}, {45, {52, 40, -12}}, {110, {52, 40, -12}}});
+  const paint::Paint solid = paint_with({{15, {52, 40, -12}}, {45, {52, 40, -12}}, {110, {52, 40, -12}}});
   for (const FitMethod method : kMethods) {
     const auto fit = PaintFitter(kBasis, {.method = method}).fit(solid);
     ASSERT_TRUE(fit.ok());
     EXPECT_LE(fit->report.de00_max, 1e-6);
-    const Rgb wanted = (1 / M_PI) * rgb_from_lab({52, 40, -12}, *white_point({}));
+    const color::Rgb wanted = (1 / M_PI) * color::rgb_from_lab({52, 40, -12}, *color::white_point({}));
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(fit->lobes.diffuse[c], wanted[c], 1e-9);
   }
 }
@@ -82,7 +82,7 @@ TEST(PaintFit, OneReadingBlackAndNonMonotoneStayFinite) {
     EXPECT_LE(report_of(paint_with({{45, {30, 5, 5}}}), {.method = method}).de00_max, 1e-6);
     const auto black = PaintFitter(kBasis, {.method = method}).fit(paint_with({{15, {}}, {45, {}}, {110, {}}}));
     ASSERT_TRUE(black.ok());
-    EXPECT_EQ(black->lobes.diffuse, Rgb{});
+    EXPECT_EQ(black->lobes.diffuse, color::Rgb{});
     EXPECT_TRUE(black->lobes.lobes.empty());
     // Brighter toward the flop than at 45 deg: no non-negative lobes do that; the residual tells.
     const PaintFitReport rising = report_of(
@@ -99,17 +99,17 @@ TEST(HardCase, FitUnseenLobesAreLeftOutAndNamed) {
   ASSERT_TRUE(fit.ok());
   EXPECT_EQ(fit->report.unseen, (std::vector<double>{250, 900, 3000}));
   double largest = 0;
-  for (const Lobe& lobe : fit->lobes.lobes) {
+  for (const paint::Lobe& lobe : fit->lobes.lobes) {
     EXPECT_LE(lobe.exponent, 70);
     for (int c = 0; c < 3; ++c) largest = worst_of(largest, lobe.directional_diffuse[c]);
   }
   // The control: every column at the readings alone. What the other lobes miss at 15 deg goes to one that is 1e-4 of
   // its peak there, and the peak becomes absurd.
   const std::vector<double> target = {1.0, 0.2, 0.1, 0.05, 0.04};
-  Matrix m(5, 8);
+  math::Matrix m(5, 8);
   for (int i = 0; i < 5; ++i)
-    for (int j = 0; j < 8; ++j) m(i, j) = j == 0 ? 1 : cos_power(kFive[i] * M_PI / 180, kBasis.exponents[j - 1]);
-  const NonNegativeFit textbook = nnls(m, target);
+    for (int j = 0; j < 8; ++j) m(i, j) = j == 0 ? 1 : brdf::cos_power(kFive[i] * M_PI / 180, kBasis.exponents[j - 1]);
+  const math::NonNegativeFit textbook = math::nnls(m, target);
   hard_case("fit-unseen", {.what = "largest peak of a lobe",
                            .textbook = *std::max_element(textbook.x.begin(), textbook.x.end()),
                            .ours = largest,
@@ -121,39 +121,40 @@ TEST(PaintFit, HighlightGoesOnRisingAndStaysBounded) {
   for (const FitMethod method : kMethods)
     for (const double drop : {1.5, 3.0, 8.0, 30.0, 1000.0}) {
       const double face = 120, next = std::max(116 * std::cbrt(std::pow((face + 16) / 116, 3) / drop) - 16, 1.0);
-      const Paint paint =
+      const paint::Paint paint =
           paint_with({{15, {face, 0, 0}}, {25, {next, 0, 0}}, {45, {next * 0.6, 0, 0}}, {110, {next * 0.4, 0, 0}}});
       const auto fit = PaintFitter(kBasis, {.method = method}).fit(paint);
       ASSERT_TRUE(fit.ok());
       double before = 0;
       for (double angle = 30; angle >= 0; angle -= 1) {
-        const double now = flake_reflectance_factor(fit->lobes, angle).y;
+        const double now = brdf::flake_reflectance_factor(fit->lobes, angle).y;
         EXPECT_GE(now, before);
         before = now;
       }
       // No more than the sharpest seen lobe alone makes of it.
       const double limit = std::pow(std::cos(15 * M_PI / 180), -70);
-      EXPECT_LE(before, flake_reflectance_factor(fit->lobes, 15).y * limit * (1 + 1e-9));
+      EXPECT_LE(before, brdf::flake_reflectance_factor(fit->lobes, 15).y * limit * (1 + 1e-9));
     }
 }
 
 // Both sides of specular share one unsigned angle. Magenta on one side and gold on the other cannot both be met; the
 // fit takes the mean of the colors, not one channel from each side.
 TEST(PaintFit, TwoSidesOfSpecularAreAveraged) {
-  const Lab near = {70, 40, -20}, far = {75, 5, 45}, mean = {72.5, 22.5, 12.5};
+  const color::Lab near = {70, 40, -20}, far = {75, 5, 45}, mean = {72.5, 22.5, 12.5};
   for (const FitMethod method : kMethods) {
     const auto fit = PaintFitter(kBasis, {.method = method})
                          .fit(paint_with({{15, near}, {-15, far}, {45, {30, 15, 5}}, {110, {12, 8, 2}}}));
     ASSERT_TRUE(fit.ok());
     EXPECT_EQ(fit->report.de00_by_geometry.size(), 4u);
-    const Lab at_15 = lab_from_rgb(flake_reflectance_factor(fit->lobes, 15), *white_point({}));
-    EXPECT_LT(delta_e_2000(at_15, mean), 1);
+    const color::Lab at_15 =
+        color::lab_from_rgb(brdf::flake_reflectance_factor(fit->lobes, 15), *color::white_point({}));
+    EXPECT_LT(color::delta_e_2000(at_15, mean), 1);
     EXPECT_GT(fit->report.de00_max, 10);
   }
 }
 
 TEST(PaintFit, GlareIsLeftOutAndCounted) {
-  Paint paint = metallic_blue();
+  paint::Paint paint = metallic_blue();
   paint.measurement->rows.push_back({{.aspecular_deg = 5}, {300, 0, 0}});
   const PaintFitReport report = report_of(paint);
   EXPECT_EQ(report.glare_rows, 1);
@@ -169,7 +170,7 @@ TEST(PaintFit, GamutLossIsReported) {
 
 TEST(PaintFit, TellsWhatLimitsIt) {
   EXPECT_EQ(report_of(metallic_blue(), {.method = FitMethod::kDeltaE}).limit, "");
-  const auto limit = [](const Paint& paint) { return report_of(paint).limit; };
+  const auto limit = [](const paint::Paint& paint) { return report_of(paint).limit; };
   EXPECT_NE(limit(paint_with({{15, {60, -90, 10}}, {45, {40, -80, 10}}, {110, {30, -70, 10}}})).find("outside the"),
             std::string::npos);
   EXPECT_NE(limit(paint_with({{15, {70, 40, -20}}, {-15, {75, 5, 45}}, {45, {30, 15, 5}}})).find("two sides"),
@@ -187,11 +188,11 @@ TEST(PaintFit, TellsWhatLimitsIt) {
 // Two readings at one aspecular angle: no weights for all views do better than the floor, whatever the method, and
 // weights for the two views do.
 TEST(PaintFit, NoFitForAllViewsComesBelowTheFloor) {
-  const Paint paint =
+  const paint::Paint paint =
       paint_with({{15, {70, 40, -20}}, {-15, {75, 5, 45}}, {45, {30, 15, 5}}, {75, {15, 8, 3}}, {110, {12, 8, 2}}});
   for (const FitMethod method : kMethods) {
     const PaintFitReport together = report_of(paint, {.method = method});
-    const double apart = delta_e_2000({70, 40, -20}, {75, 5, 45});
+    const double apart = color::delta_e_2000({70, 40, -20}, {75, 5, 45});
     EXPECT_EQ(together.floor.apart_de00, apart);
     ASSERT_EQ(together.floor.largest_de00.size(), 1u);
     const double floor = together.floor.largest_de00[0];
@@ -217,9 +218,9 @@ TEST(PaintFit, NoFitForAllViewsComesBelowTheFloor) {
 }
 
 TEST(PaintFit, CurveTargetFollowsTheDesign) {
-  Paint designed;
-  designed.appearance = Appearance{{70, 10, -30}, {25, 12, -20}, 60, {}};
-  for (const TargetCurve::Kind kind : {TargetCurve::Kind::kCurve, TargetCurve::Kind::kMeasured}) {
+  paint::Paint designed;
+  designed.appearance = paint::Appearance{{70, 10, -30}, {25, 12, -20}, 60, {}};
+  for (const paint::TargetCurve::Kind kind : {paint::TargetCurve::Kind::kCurve, paint::TargetCurve::Kind::kMeasured}) {
     const PaintFitReport report = report_of(designed, {.target = kind});
     ASSERT_EQ(report.de00_by_geometry.size(), 3u);
     EXPECT_EQ(report.de00_by_geometry[2].geometry, "45as110");
@@ -227,11 +228,11 @@ TEST(PaintFit, CurveTargetFollowsTheDesign) {
   }
   // On measured readings the curve is a poorer target than the readings themselves.
   const double measured = report_of(metallic_blue()).de00_mean;
-  EXPECT_GT(report_of(metallic_blue(), {.target = TargetCurve::Kind::kCurve}).de00_mean, measured);
+  EXPECT_GT(report_of(metallic_blue(), {.target = paint::TargetCurve::Kind::kCurve}).de00_mean, measured);
 }
 
 TEST(PaintFit, PerceptualWeightsSaveTheDarkFlop) {
-  const Paint paint =
+  const paint::Paint paint =
       paint_with({{15, {120, 0, 0}}, {25, {90, 0, 0}}, {45, {40, 0, 0}}, {75, {12, 2, -4}}, {110, {4, 1, -3}}});
   for (const FitMethod method : kMethods) {
     const PaintFitReport weighted = report_of(paint, {.method = method});
@@ -243,7 +244,7 @@ TEST(PaintFit, PerceptualWeightsSaveTheDarkFlop) {
 }
 
 TEST(PaintFit, GlossIsMetAndAssumedOnlyWhereNoneIsStated) {
-  Paint paint = metallic_blue();
+  paint::Paint paint = metallic_blue();
   for (const GlossMisfit& matt : report_of(paint).gloss) EXPECT_FALSE(matt.stated_gu);
   const PaintFitReport assumed = report_of(paint, {.assumed_gloss = {{60, 90}}});
   ASSERT_EQ(assumed.gloss.size(), 3u);
@@ -260,23 +261,23 @@ TEST(PaintFit, GlossIsMetAndAssumedOnlyWhereNoneIsStated) {
 
 TEST(PaintFit, ErrorsSayWhatIsMissing) {
   const PaintFitter fitter(kBasis, {});
-  EXPECT_FALSE(fitter.fit(Paint{}).ok());
+  EXPECT_FALSE(fitter.fit(paint::Paint{}).ok());
   const auto glare_only = fitter.fit(paint_with({{5, {90, 0, 0}}}));
   ASSERT_FALSE(glare_only.ok());
   EXPECT_NE(glare_only.error().message.find("10 deg or more from specular"), std::string::npos);
-  Paint unknown = metallic_blue();
+  paint::Paint unknown = metallic_blue();
   unknown.measurement->condition.illuminant = "moonlight";
   EXPECT_FALSE(fitter.fit(unknown).ok());
-  Paint odd_meter = metallic_blue();
+  paint::Paint odd_meter = metallic_blue();
   odd_meter.gloss = {{45, 80}};
   EXPECT_FALSE(fitter.fit(odd_meter).ok());
 }
 
 TEST(HardCase, ThreadsFitsAreBitIdentical) {
-  std::vector<Paint> paints;
+  std::vector<paint::Paint> paints;
   for (int i = 0; i < 100; ++i) {
     paints.push_back(metallic_blue());
-    for (LabReading& reading : paints.back().measurement->rows) reading.lab.L += 0.1 * i;
+    for (paint::LabReading& reading : paints.back().measurement->rows) reading.lab.L += 0.1 * i;
   }
   const PaintFitter fitter(kBasis, {});
   set_threads(1);
@@ -297,8 +298,8 @@ TEST(HardCase, ThreadsFitsAreBitIdentical) {
 }
 
 // The paints of a table of readings of the data folder; nothing where there is none.
-std::vector<Paint> paints_of_data(const std::string& name) {
-  std::vector<Paint> paints;
+std::vector<paint::Paint> paints_of_data(const std::string& name) {
+  std::vector<paint::Paint> paints;
   const auto text = file_content(std::getenv("GONIOCHROME_DATA") + ("/lab/" + name));
   EXPECT_TRUE(text.ok());
   if (!text.ok()) return paints;
@@ -311,7 +312,8 @@ std::vector<Paint> paints_of_data(const std::string& name) {
       paints.back().measurement->condition = {std::string(cells[2]), static_cast<int>(*parse_integer(cells[3]))};
     }
     paints.back().measurement->rows.push_back(
-        {*parse_geometry(cells[1]), {*parse_number(cells[4]), *parse_number(cells[5]), *parse_number(cells[6])}});
+        {*paint::parse_geometry(cells[1]),
+         {*parse_number(cells[4]), *parse_number(cells[5]), *parse_number(cells[6])}});
   }
   return paints;
 }
@@ -319,7 +321,7 @@ std::vector<Paint> paints_of_data(const std::string& name) {
 // Ten measured paints, papers and wraps, five angles.
 TEST(PaintFit, MeasuredPaintsWithinFourRealData) {
   if (!std::getenv("GONIOCHROME_DATA")) GTEST_SKIP() << "GONIOCHROME_DATA is not set";
-  const std::vector<Paint> paints = paints_of_data("measured-multiangle.csv");
+  const std::vector<paint::Paint> paints = paints_of_data("measured-multiangle.csv");
   ASSERT_EQ(paints.size(), 10u);
   for (const FitMethod method : kMethods) {
     double sum = 0;
@@ -337,7 +339,7 @@ TEST(PaintFit, MeasuredPaintsWithinFourRealData) {
 // are met where the two sides have weights of their own, and out of reach of any weights for all views.
 TEST(PaintFit, BothSidesOfSpecularRealData) {
   if (!std::getenv("GONIOCHROME_DATA")) GTEST_SKIP() << "GONIOCHROME_DATA is not set";
-  const std::vector<Paint> paints = paints_of_data("reconstructed-multiangle.csv");
+  const std::vector<paint::Paint> paints = paints_of_data("reconstructed-multiangle.csv");
   ASSERT_EQ(paints.size(), 80u);
   for (const FitMethod method : kMethods) {
     double floor = 0, together = 0;
@@ -360,7 +362,7 @@ TEST(PaintFit, BothSidesOfSpecularRealData) {
 
 // Every search ends where no weight can move and gain, by the cosine of its column to the residual.
 TEST(PaintFit, DeltaEIsStationary) {
-  const auto paints = read_paints(GONIOCHROME_TESTDATA "/paints.paints.xml");
+  const auto paints = formats::read_paints(GONIOCHROME_TESTDATA "/paints.paints.xml");
   ASSERT_TRUE(paints.ok());
   for (const auto& fit : fits(PaintFitter(kBasis, {.method = FitMethod::kDeltaE}), *paints)) {
     ASSERT_TRUE(fit.ok());
@@ -372,8 +374,8 @@ TEST(PaintFit, DeltaEIsStationary) {
 // The color differences at the readings are never larger, in the mean square, than those of the better linear fit: the
 // search starts there. The inferred rows may trade a little, hence the 1 %.
 TEST(PaintFit, DeltaEIsNotWorseThanItsStarts) {
-  const auto paints = read_paints(GONIOCHROME_TESTDATA "/paints.paints.xml");
-  const auto basis = read_basis(GONIOCHROME_TESTDATA "/b7.basis.xml");
+  const auto paints = formats::read_paints(GONIOCHROME_TESTDATA "/paints.paints.xml");
+  const auto basis = formats::read_basis(GONIOCHROME_TESTDATA "/b7.basis.xml");
   ASSERT_TRUE(paints.ok() && basis.ok());
   double sums[3] = {};
   for (const FitMethod method : {FitMethod::kL1, FitMethod::kL2, FitMethod::kDeltaE}) {
@@ -391,4 +393,4 @@ TEST(PaintFit, DeltaEIsNotWorseThanItsStarts) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::fit

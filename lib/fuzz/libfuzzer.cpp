@@ -12,11 +12,11 @@ std::unique_ptr<goniochrome::FuzzRun> run;
 
 extern "C" int LLVMFuzzerInitialize(int*, char*** arguments) {
   const std::string program = std::filesystem::path((*arguments)[0]).filename().string();
-  for (const goniochrome::FuzzTarget& target : goniochrome::fuzz_targets())
+  for (const goniochrome::fuzz::FuzzTarget& target : goniochrome::fuzz::fuzz_targets())
     if (program == "fuzz-" + std::string(target.name)) run = std::make_unique<goniochrome::FuzzRun>(target);
   if (run) return 0;
   std::fprintf(stderr, "%s: call it fuzz-TARGET, where TARGET is one of:", program.c_str());
-  for (const goniochrome::FuzzTarget& target : goniochrome::fuzz_targets())
+  for (const goniochrome::fuzz::FuzzTarget& target : goniochrome::fuzz::fuzz_targets())
     std::fprintf(stderr, " %s", std::string(target.name).c_str());
   std::fprintf(stderr, "\n");
   std::exit(2);

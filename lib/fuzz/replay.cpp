@@ -17,7 +17,7 @@
 
 #include "fuzz/targets.h"
 
-namespace goniochrome {
+namespace goniochrome::fuzz {
 namespace {
 
 using Corpus = std::vector<std::string>;
@@ -134,14 +134,14 @@ int replay(const FuzzTarget& target, const std::string& folder, long inputs, std
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::fuzz
 
 int main(int count, char** arguments) {
   if (count == 5)
-    for (const goniochrome::FuzzTarget& target : goniochrome::fuzz_targets())
+    for (const goniochrome::fuzz::FuzzTarget& target : goniochrome::fuzz::fuzz_targets())
       if (target.name == arguments[1])
-        return goniochrome::replay(target, arguments[2], std::atol(arguments[3]),
-                                   std::strtoull(arguments[4], nullptr, 10));
+        return goniochrome::fuzz::replay(target, arguments[2], std::atol(arguments[3]),
+                                         std::strtoull(arguments[4], nullptr, 10));
   std::fprintf(stderr, "usage: fuzz_replay TARGET CORPUS INPUTS SEED\n");
   return 2;
 }

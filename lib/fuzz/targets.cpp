@@ -12,16 +12,16 @@
 #include "brdf/measured.h"
 #include "color/reflection_json.h"
 #include "envmap/prefiltered.h"
+#include "formats/basis.h"
+#include "formats/cgats.h"
+#include "formats/csv.h"
+#include "formats/cxf.h"
+#include "formats/xml.h"
 #include "image/hdr.h"
+#include "library/library_index.h"
 #include "mesh/mesh.h"
-#include "paint/basis.h"
-#include "paint/cgats.h"
-#include "paint/csv.h"
-#include "paint/cxf.h"
-#include "paint/library_index.h"
-#include "paint/xml.h"
 
-namespace goniochrome {
+namespace goniochrome::fuzz {
 
 namespace {
 
@@ -37,10 +37,10 @@ void demand_message(const Error& error) {
   demand(error.kind != ErrorKind::kBug, "an error that calls itself a bug");
 }
 
-void demand_paint(const Paint& paint) {
+void demand_paint(const paint::Paint& paint) {
   demand(!paint.name.empty(), "a paint without a name");
   if (!paint.measurement) return;
-  for (const LabReading& row : paint.measurement->rows)
+  for (const paint::LabReading& row : paint.measurement->rows)
     demand(std::isfinite(row.lab.L + row.lab.a + row.lab.b + row.geometry.aspecular_deg),
            "a reading that is no number");
 }
@@ -62,67 +62,67 @@ void drain(Reader& reader, std::size_t most) {
 }
 
 void read_paint_xml(const std::string& path) {
-  auto reader = PaintReader::open(path);
+  auto reader = formats::PaintReader::open(path);
   if (!reader.ok()) return demand_message(reader.error());
   drain(*reader, std::filesystem::file_size(path) + 2);
 }
 
 void read_basis_xml(const std::string& path) {
-  const auto basis = read_basis(path);
+  const auto basis = formats::read_basis(path);
   if (!basis.ok()) return demand_message(basis.error());
   for (const double e : basis->exponents) demand(std::isfinite(e) && e >= 0, "an exponent that is none");
 }
 
 void read_csv(const std::string& path) {
-  auto reader = CsvPaintReader::open(path);
+  auto reader = formats::CsvPaintReader::open(path);
   if (!reader.ok()) return demand_message(reader.error());
   drain(*reader, std::filesystem::file_size(path) + 2);
 }
 
-template <Result<ImportedPaints> (*import)(InputFile, const ImportOptions&)>
+template <Result<formats::ImportedPaints> (*import)(InputFile, const formats::ImportOptions&)>
 void read_imported(const std::string& path) {
   auto input = InputFile::open(path);
   if (!input.ok()) return demand_message(input.error());
   const auto imported = import(std::move(*input), {});
   if (!imported.ok()) return demand_message(imported.error());
-  for (const Paint& paint : imported->paints) demand_paint(paint);
+  for (const paint::Paint& paint : imported->paints) demand_paint(paint);
 }
 
 void read_measured_file(const std::string& path) {
-  const auto brdf = read_measured(path);
+  const auto brdf = brdf::read_measured(path);
   if (!brdf.ok()) return demand_message(brdf.error());
-  checks(**brdf);
+  brdf::checks(**brdf);
   for (const double aspecular : {15.0, 110.0})
-    for (const ViewingCondition& condition : {ViewingCondition{"D65", 2}, {"A", 10}}) {
-      const auto color = measured_color(**brdf, {{{45, aspecular}}, condition});
+    for (const color::ViewingCondition& condition : {color::ViewingCondition{"D65", 2}, {"A", 10}}) {
+      const auto color = brdf::measured_color(**brdf, {{{45, aspecular}}, condition});
       if (!color.ok()) {
         demand_message(color.error());
         continue;
       }
-      for (const MeasuredReading& reading : color->readings)
+      for (const brdf::MeasuredReading& reading : color->readings)
         demand(std::isfinite(reading.lab.L + reading.lab.a + reading.lab.b), "a color that is no number");
     }
 }
 
 void read_env_file(const std::string& path) {
-  const auto env = read_env(path);
+  const auto env = envmap::read_env(path);
   if (!env.ok()) demand_message(env.error());
 }
 
 void read_probe(const std::string& path) {
-  const auto probe = decoded_hdr(file_content(path).value(), path);
+  const auto probe = image::decoded_hdr(file_content(path).value(), path);
   if (!probe.ok()) return demand_message(probe.error());
   if (!*probe) return;  // of a kind that another library reads
   for (const float value : (*probe)->image.data) demand(std::isfinite(value), "a radiance that is no number");
 }
 
 void read_obj(const std::string& path) {
-  const auto mesh = read_mesh(path);
+  const auto mesh = mesh::read_mesh(path);
   if (!mesh.ok()) demand_message(mesh.error());
 }
 
 void read_operator(const std::string& path) {
-  const auto op = read_reflection_operator(path);
+  const auto op = color::read_reflection_operator(path);
   if (!op.ok()) demand_message(op.error());
 }
 
@@ -133,8 +133,8 @@ const std::vector<FuzzTarget>& fuzz_targets() {
       {"paint-xml", "a.paints.xml", read_paint_xml},
       {"basis-xml", "a.basis.xml", read_basis_xml},
       {"csv", "a.csv", read_csv},
-      {"cxf", "a.cxf", read_imported<read_cxf>},
-      {"cgats", "a.txt", read_imported<read_cgats>},
+      {"cxf", "a.cxf", read_imported<formats::read_cxf>},
+      {"cgats", "a.txt", read_imported<formats::read_cgats>},
       {"measured", "a.brdf", read_measured_file},
       {"env-exr", "a.env.exr", read_env_file},
       {"obj", "a.obj", read_obj},
@@ -162,4 +162,4 @@ void FuzzRun::operator()(std::string_view bytes) const {
   target_.read(path_);
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::fuzz

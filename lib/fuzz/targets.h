@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace goniochrome {
+namespace goniochrome::fuzz {
 
 struct FuzzTarget {
   std::string_view name;       // also the folder of its corpus
@@ -33,4 +33,4 @@ class FuzzRun {
   std::string folder_, path_;
 };
 
-}  // namespace goniochrome
+}  // namespace goniochrome::fuzz

@@ -5,7 +5,7 @@
 #include "base/json.h"
 #include "base/text.h"
 
-namespace goniochrome {
+namespace goniochrome::image {
 
 namespace {
 
@@ -122,4 +122,4 @@ Result<AovFile> read_aov_file(const std::string& path) {
   return file;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::image

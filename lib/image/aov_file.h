@@ -9,7 +9,7 @@
 #include "color/reflection.h"
 #include "image/image.h"
 
-namespace goniochrome {
+namespace goniochrome::image {
 
 // A directional light as the file tells it: the way to it, and what a white diffuser that faces it shows.
 struct AovLight {
@@ -27,11 +27,11 @@ struct AovFile {
   std::string environment;       // "" for none
   bool has_rays = false;
   Vec3 corner, right, down;  // the ray through the point (x, y), pixels from the upper left: corner + x right + y down
-  std::vector<std::string> parts, materials;           // one material for each part, "" where the mesh named none
-  std::string command;                                 // that made the file
-  std::vector<std::string> drawn;                      // effects of the picture, by render-osmesa's names
-  std::vector<std::string> left_out;                   // and those that the scene has and the picture does not
-  ReflectionOperator reflection = iso_rgb_operator();  // by which the effect "operator" was drawn
+  std::vector<std::string> parts, materials;  // one material for each part, "" where the mesh named none
+  std::string command;                        // that made the file
+  std::vector<std::string> drawn;             // effects of the picture, by render-osmesa's names
+  std::vector<std::string> left_out;          // and those that the scene has and the picture does not
+  color::ReflectionOperator reflection = color::iso_rgb_operator();  // by which the effect "operator" was drawn
 
   // The channel's place in a pixel. Error: the file lacks it, with the command that makes it.
   Result<int> channel(const std::string& name) const;
@@ -44,4 +44,4 @@ struct AovFile {
 // Error: not an EXR, or a header that says something else than render-osmesa writes.
 Result<AovFile> read_aov_file(const std::string& path);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::image

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-namespace goniochrome {
+namespace goniochrome::image {
 
-Result<ColorMap> read_color_map(const std::string& path) {
+Result<brdf::ColorMap> read_color_map(const std::string& path) {
   GONIO_ASSIGN(const std::vector<ImagePart> parts, read_exr(path));
   const Image& image = parts.front().image;
   if (image.width < 1 || image.height != 2 * image.width || image.channels < 3)
@@ -18,7 +18,7 @@ Result<ColorMap> read_color_map(const std::string& path) {
       return input_error("{}: goniochrome:index must be a number from 1 to 4", path);
     index = std::round(*stated * 1e6) * 1e-6;  // a decimal number that went through a float
   }
-  ColorMap map = color_map_of_size(image.width, index);
+  brdf::ColorMap map = brdf::color_map_of_size(image.width, index);
   for (int row = 0; row < image.height; ++row) {
     for (int column = 0; column < image.width; ++column) {
       for (int c = 0; c < 3; ++c) {
@@ -33,7 +33,7 @@ Result<ColorMap> read_color_map(const std::string& path) {
   return map;
 }
 
-Result<void> write_color_map(const std::string& path, const ColorMap& map, const Attributes& attributes) {
+Result<void> write_color_map(const std::string& path, const brdf::ColorMap& map, const Attributes& attributes) {
   ImagePart part{"color-map", {map.size, 2 * map.size, 3, map.factors, {"R", "G", "B"}}, attributes, PixelType::kHalf};
   part.attributes["goniochrome:colorMap"] = std::string("cos(theta_i), cos(theta_o)");
   part.attributes["goniochrome:index"] = static_cast<float>(map.index);
@@ -41,4 +41,4 @@ Result<void> write_color_map(const std::string& path, const ColorMap& map, const
   return write_exr(path, {part});
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::image

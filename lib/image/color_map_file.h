@@ -7,13 +7,13 @@
 #include "brdf/color_map.h"
 #include "image/image.h"
 
-namespace goniochrome {
+namespace goniochrome::image {
 
 // Reads a map of RGB reflectance factors, twice as high as wide; its index is the file's, 1.5 where it tells none.
 // Error: path and reason: another shape or an infinite value.
-Result<ColorMap> read_color_map(const std::string& path);
+Result<brdf::ColorMap> read_color_map(const std::string& path);
 
 // Writes the map with `attributes` (provenance) besides its own: goniochrome:colorMap and goniochrome:index.
-Result<void> write_color_map(const std::string& path, const ColorMap& map, const Attributes& attributes);
+Result<void> write_color_map(const std::string& path, const brdf::ColorMap& map, const Attributes& attributes);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::image

@@ -4,12 +4,12 @@
 
 #include <filesystem>
 
-namespace goniochrome {
+namespace goniochrome::image {
 namespace {
 
 TEST(ColorMapFile, RoundTrip) {
   const std::string path = testing::TempDir() + "map.exr";
-  ColorMap map = color_map_of_size(4, 1.45);
+  brdf::ColorMap map = brdf::color_map_of_size(4, 1.45);
   for (std::size_t i = 0; i < map.factors.size(); ++i) map.factors[i] = 0.25f * static_cast<float>(i) - 1;
   ASSERT_TRUE(write_color_map(path, map, {{"made", std::string("here")}}).ok());
   const auto back = read_color_map(path);
@@ -36,4 +36,4 @@ TEST(ColorMapFile, RefusesWhatIsNoMap) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::image

@@ -7,7 +7,7 @@
 
 #include "image/image.h"
 
-namespace goniochrome {
+namespace goniochrome::image {
 
 // Whether a file that begins so may be a Radiance picture.
 bool is_radiance(std::string_view head);
@@ -17,4 +17,4 @@ bool is_radiance(std::string_view head);
 // that ends early or whose runs are wrong; `name` is what errors call the file.
 Result<std::optional<ImagePart>> decoded_hdr(const std::string& content, const std::string& name);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::image

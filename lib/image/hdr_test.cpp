@@ -10,7 +10,7 @@
 
 #include "base/file.h"
 
-namespace goniochrome {
+namespace goniochrome::image {
 namespace {
 
 using testing::HasSubstr;
@@ -144,4 +144,4 @@ TEST_F(HdrFile, the_other_formats_are_not_loaded) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::image

@@ -10,7 +10,7 @@
 
 #include "base/result.h"
 
-namespace goniochrome {
+namespace goniochrome::image {
 
 // Interleaved float pixels, row 0 at the top.
 struct Image {
@@ -57,4 +57,4 @@ Result<void> write_png(const std::string& path, const Image& image, const Attrib
 // The bytes of that PNG; `name` is what errors call it.
 Result<std::string> png_content(const std::string& name, const Image& image, const Attributes& text = {});
 
-}  // namespace goniochrome
+}  // namespace goniochrome::image

@@ -17,7 +17,7 @@
 #include "base/file.h"
 #include "base/hard_case_for_test.h"
 
-namespace goniochrome {
+namespace goniochrome::image {
 namespace {
 
 using testing::HasSubstr;
@@ -225,4 +225,4 @@ TEST_F(ImageFile, HardCase_InterruptedAFullDiskLeavesTheOldFile) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::image

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-namespace goniochrome {
+namespace goniochrome::image {
 
 namespace {
 
@@ -105,4 +105,4 @@ void draw_label(Image& image, int x, int y, const std::string& text, int scale, 
   }
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::image

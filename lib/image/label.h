@@ -6,7 +6,7 @@
 
 #include "image/image.h"
 
-namespace goniochrome {
+namespace goniochrome::image {
 
 // Writes `text` with its upper left corner at (x, y), letters of 5 x 7 dots of scale x scale pixels, one dot apart.
 // Small letters become capitals. What lies outside the image is cut off.
@@ -19,4 +19,4 @@ int label_height(int scale);
 // A filled rectangle, cut off at the borders of the image.
 void fill_box(Image& image, int x, int y, int width, int height, const std::array<float, 3>& color);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::image

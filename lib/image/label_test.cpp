@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace goniochrome {
+namespace goniochrome::image {
 namespace {
 
 int lit(const Image& image) {
@@ -34,4 +34,4 @@ TEST(Label, SmallLettersAreCapitalsAndMissingOnesAreSeen) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::image

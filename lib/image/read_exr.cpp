@@ -22,9 +22,9 @@
 
 #include "base/file.h"
 #include "base/parallel.h"
-#include "image/exr.h"
+#include "image/internal/exr.h"
 
-namespace goniochrome {
+namespace goniochrome::image {
 
 namespace {
 
@@ -199,4 +199,4 @@ Result<std::vector<ImagePart>> read_exr(const std::string& path) {
   return decoded_exr(content, name);
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::image

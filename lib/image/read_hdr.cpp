@@ -5,8 +5,8 @@
 
 #include "base/parallel.h"
 #include "base/text.h"
-#include "image/exr.h"
 #include "image/hdr.h"
+#include "image/internal/exr.h"
 
 // After lines of text, ended by an empty one and "-Y height +X width", come rows of pixels: three mantissas and an
 // exponent, value = mantissa 2^(exponent - 136). A row of 8 to 32767 pixels may begin 2, 2, high and low byte of its
@@ -16,7 +16,7 @@
 // Probes come in this format more than in any other, and to load OpenImageIO takes ten times longer than to read one.
 // The small readers in use elsewhere give black where a file is cut short.
 
-namespace goniochrome {
+namespace goniochrome::image {
 
 namespace {
 
@@ -156,4 +156,4 @@ Result<std::optional<ImagePart>> decoded_hdr(const std::string& content, const s
   return part;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::image

@@ -7,12 +7,12 @@
 #include <filesystem>
 
 #include "base/file.h"
-#include "image/exr.h"
 #include "image/hdr.h"
 #include "image/image.h"
-#include "image/oiio_module.h"
+#include "image/internal/exr.h"
+#include "image/internal/oiio_module.h"
 
-namespace goniochrome {
+namespace goniochrome::image {
 
 namespace {
 
@@ -135,4 +135,4 @@ Result<ImagePart> read_image(const std::string& path) {
   return std::move(parts.front());
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::image

@@ -5,7 +5,7 @@
 
 #include "image/image.h"
 
-namespace goniochrome {
+namespace goniochrome::image {
 
 namespace {
 
@@ -65,10 +65,10 @@ Result<std::vector<int>> sources(const std::vector<std::string>& wanted, const s
 
 }  // namespace
 
-Result<SbrdfTexture> read_sbrdf(const std::string& path) {
+Result<brdf::SbrdfTexture> read_sbrdf(const std::string& path) {
   GONIO_ASSIGN(const std::vector<ImagePart> parts, read_exr(path));
   GONIO_ASSIGN(const Image image, joined(parts, path));
-  SbrdfTexture texture{image.width, image.height, 0, {}};
+  brdf::SbrdfTexture texture{image.width, image.height, 0, {}};
   const auto& given = image.channel_names;
   while (texture.lobes < 16 && std::ranges::find(given, fmt::format("lobe{}.n", texture.lobes)) != given.end())
     ++texture.lobes;
@@ -90,4 +90,4 @@ Result<SbrdfTexture> read_sbrdf(const std::string& path) {
   return texture;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::image

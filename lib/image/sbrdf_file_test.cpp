@@ -8,7 +8,7 @@
 
 #include "image/image.h"
 
-namespace goniochrome {
+namespace goniochrome::image {
 namespace {
 
 const std::vector<std::string> kChannels = {"diffuse.R", "diffuse.G", "diffuse.B", "lobe0.R", "lobe0.G",
@@ -17,7 +17,7 @@ const std::vector<std::string> kChannels = {"diffuse.R", "diffuse.G", "diffuse.B
 class SbrdfFile : public testing::Test {
  protected:
   // What reading says of a 1x1 texture with these channels.
-  Result<SbrdfTexture> read(const std::vector<std::string>& channels, const std::vector<float>& values) {
+  Result<brdf::SbrdfTexture> read(const std::vector<std::string>& channels, const std::vector<float>& values) {
     const Image image{1, 1, static_cast<int>(channels.size()), values, channels};
     EXPECT_TRUE(write_exr(path_, {{"", image, {}, PixelType::kFloat}}).ok());
     return read_sbrdf(path_);
@@ -83,9 +83,10 @@ TEST_F(SbrdfFile, TheTexturesOfTheTestData) {
     double most = 0;
     for (int row = 0; row < texture->height; ++row)
       for (int column = 0; column < texture->width; ++column) {
-        const SbrdfTexel texel = sbrdf_texel(*texture, column, row);
+        const brdf::SbrdfTexel texel = brdf::sbrdf_texel(*texture, column, row);
         double albedo = M_PI * texel.surface.diffuse.x;
-        for (const LafortuneLobe& lobe : texel.surface.lobes) albedo += environment_fetch(lobe, {0, 0, 1}).weight.x;
+        for (const brdf::LafortuneLobe& lobe : texel.surface.lobes)
+          albedo += brdf::environment_fetch(lobe, {0, 0, 1}).weight.x;
         most = std::max(most, albedo);
       }
     EXPECT_LE(most, 1) << name;
@@ -94,4 +95,4 @@ TEST_F(SbrdfFile, TheTexturesOfTheTestData) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::image

@@ -22,7 +22,7 @@
 #include "base/parallel.h"
 #include "image/image.h"
 
-namespace goniochrome {
+namespace goniochrome::image {
 
 namespace {
 
@@ -175,4 +175,4 @@ Result<void> write_exr(const std::string& path, const std::vector<ImagePart>& pa
   }
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::image

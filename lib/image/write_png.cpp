@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "image/image.h"
 
-namespace goniochrome {
+namespace goniochrome::image {
 
 namespace {
 
@@ -86,4 +86,4 @@ Result<void> write_png(const std::string& path, const Image& image, const Attrib
   return write_file(path, file);
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::image

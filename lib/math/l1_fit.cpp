@@ -16,7 +16,7 @@
 
 #include "math/least_squares.h"
 
-namespace goniochrome {
+namespace goniochrome::math {
 
 namespace {
 
@@ -327,4 +327,4 @@ NonNegativeFit l1_fit(const Matrix& m, const std::vector<double>& b) {
   return workspace.fit(m, b);
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::math

@@ -7,10 +7,10 @@
 #include <random>
 
 #include "base/hard_case_for_test.h"
+#include "math/internal/problems_for_test.h"
 #include "math/least_squares.h"
-#include "math/problems_for_test.h"
 
-namespace goniochrome {
+namespace goniochrome::math {
 namespace {
 
 using problems::Problem;
@@ -220,4 +220,4 @@ TEST(L1Fit, IgnoresOutliersThatPullLeastSquares) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::math

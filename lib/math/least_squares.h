@@ -6,7 +6,7 @@
 
 #include "base/result.h"
 
-namespace goniochrome {
+namespace goniochrome::math {
 
 // Dense, column-major.
 struct Matrix {
@@ -36,4 +36,4 @@ NonNegativeFit nnls(const Matrix& m, const std::vector<double>& b);
 // as proof. Scale-free and deterministic as nnls(), which answers in its stead (converged = false) should it fail.
 NonNegativeFit l1_fit(const Matrix& m, const std::vector<double>& b);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::math

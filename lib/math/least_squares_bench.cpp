@@ -6,10 +6,10 @@
 #include <cstdlib>
 #include <random>
 
+#include "math/internal/problems_for_test.h"
 #include "math/least_squares.h"
-#include "math/problems_for_test.h"
 
-namespace goniochrome {
+namespace goniochrome::math {
 namespace {
 
 template <NonNegativeFit (*solve)(const Matrix&, const std::vector<double>&)>
@@ -39,6 +39,4 @@ BENCHMARK(fit_lobes<nnls>)->Args({5, 8})->Args({25, 9})->Args({1400, 12});
 BENCHMARK(fit_lobes<l1_fit>)->Args({5, 8})->Args({25, 9})->Args({1400, 12});
 
 }  // namespace
-}  // namespace goniochrome
-
-BENCHMARK_MAIN();
+}  // namespace goniochrome::math

@@ -15,7 +15,7 @@
 
 #include "math/least_squares.h"
 
-namespace goniochrome {
+namespace goniochrome::math {
 
 namespace {
 
@@ -248,4 +248,4 @@ NonNegativeFit nnls(const Matrix& m, const std::vector<double>& b) {
   return workspace.fit(m, b);
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::math

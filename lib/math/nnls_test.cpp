@@ -6,10 +6,10 @@
 #include <random>
 
 #include "base/hard_case_for_test.h"
+#include "math/internal/problems_for_test.h"
 #include "math/least_squares.h"
-#include "math/problems_for_test.h"
 
-namespace goniochrome {
+namespace goniochrome::math {
 namespace {
 
 using problems::Problem;
@@ -255,4 +255,4 @@ TEST(Nnls, ErrorNeverRisesWithAnotherLobe) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::math

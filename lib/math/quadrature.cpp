@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace goniochrome {
+namespace goniochrome::math {
 
 // The points are the roots of the Legendre polynomial P_n, by Newton's method from Tricomi's approximation; with
 // P_n' at a root the weight is 2 / ((1 - x^2) P_n'(x)^2). P_n comes from its three-term recurrence.
@@ -28,4 +28,4 @@ std::vector<QuadraturePoint> gauss_legendre(int n) {
   return points;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::math

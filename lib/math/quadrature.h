@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace goniochrome {
+namespace goniochrome::math {
 
 struct QuadraturePoint {
   double position, weight;
@@ -12,4 +12,4 @@ struct QuadraturePoint {
 // The n points (ascending) and weights on [-1,1] that integrate polynomials of degree 2n-1 exactly, to rounding.
 std::vector<QuadraturePoint> gauss_legendre(int n);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::math

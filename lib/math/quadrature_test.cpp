@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace goniochrome {
+namespace goniochrome::math {
 namespace {
 
 TEST(Quadrature, GaussLegendreIsExactToItsDegree) {
@@ -27,4 +27,4 @@ TEST(Quadrature, GaussLegendreConvergesOnSmoothFunctions) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::math

@@ -5,9 +5,9 @@
 #include <numbers>
 #include <unordered_map>
 
-#include "mesh/polygons.h"
+#include "mesh/internal/polygons.h"
 
-namespace goniochrome {
+namespace goniochrome::mesh {
 
 namespace {
 
@@ -166,4 +166,4 @@ Result<Mesh> mesh_from_polygons(const Polygons& polygons, const std::string& pat
   return mesh;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::mesh

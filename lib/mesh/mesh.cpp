@@ -5,9 +5,9 @@
 
 #include "base/file.h"
 #include "base/text.h"
-#include "mesh/polygons.h"
+#include "mesh/internal/polygons.h"
 
-namespace goniochrome {
+namespace goniochrome::mesh {
 
 Box bounding_box(const Mesh& mesh) {
   if (mesh.positions.empty()) return {};
@@ -37,4 +37,4 @@ Result<Mesh> read_mesh(const std::string& path) {
                      extension);
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::mesh

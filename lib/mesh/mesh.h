@@ -9,7 +9,7 @@
 #include "base/result.h"
 #include "base/vec3.h"
 
-namespace goniochrome {
+namespace goniochrome::mesh {
 
 // Triangles of one part are contiguous: [first, first + count). The material is that of the part's first face.
 struct MeshPart {
@@ -45,4 +45,4 @@ Box bounding_box(const Mesh& mesh);
 // dropped, both counted. Errors name file, line and remedy.
 Result<Mesh> read_mesh(const std::string& path);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::mesh

@@ -9,9 +9,9 @@
 #include <numbers>
 
 #include "base/file.h"
-#include "mesh/polygons.h"
+#include "mesh/internal/polygons.h"
 
-namespace goniochrome {
+namespace goniochrome::mesh {
 namespace {
 
 using testing::HasSubstr;
@@ -249,4 +249,4 @@ TEST(Mesh, VehicleRealData) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::mesh

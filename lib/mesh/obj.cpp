@@ -7,9 +7,9 @@
 #include <unordered_map>
 
 #include "base/text.h"
-#include "mesh/polygons.h"
+#include "mesh/internal/polygons.h"
 
-namespace goniochrome {
+namespace goniochrome::mesh {
 
 namespace {
 
@@ -201,4 +201,4 @@ Result<Polygons> polygons_from_obj(const std::string& text, const std::string& p
   return ObjParser(text, path).parse();
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::mesh

@@ -4,9 +4,9 @@
 
 #include <filesystem>
 
-#include "mesh/polygons.h"
+#include "mesh/internal/polygons.h"
 
-namespace goniochrome {
+namespace goniochrome::mesh {
 
 Result<Polygons> polygons_from_file(const std::string& path, const std::string& part_name) {
   using Point = CGAL::Simple_cartesian<double>::Point_3;
@@ -48,4 +48,4 @@ Result<Polygons> polygons_from_file(const std::string& path, const std::string& 
   return polygons;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::mesh

@@ -11,9 +11,9 @@
 #include <cmath>
 #include <limits>
 
-#include "mesh/seam_rim.h"
+#include "mesh/internal/seam_rim.h"
 
-namespace goniochrome {
+namespace goniochrome::mesh {
 
 namespace {
 
@@ -278,4 +278,4 @@ Result<Seam> seam_between(const Mesh& mesh, const std::string& part_a, const std
   return seam;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::mesh

@@ -8,7 +8,7 @@
 #include "base/result.h"
 #include "mesh/mesh.h"
 
-namespace goniochrome {
+namespace goniochrome::mesh {
 
 // One place at the seam, on an edge of the first part and at the nearest point of an edge of the second. World axes.
 struct SeamPoint {
@@ -50,4 +50,4 @@ struct SeamOptions {
 Result<Seam> seam_between(const Mesh& mesh, const std::string& part_a, const std::string& part_b,
                           const SeamOptions& options = {});
 
-}  // namespace goniochrome
+}  // namespace goniochrome::mesh

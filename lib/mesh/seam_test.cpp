@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace goniochrome {
+namespace goniochrome::mesh {
 namespace {
 
 using ::testing::HasSubstr;
@@ -148,4 +148,4 @@ TEST(Seam, TheBumperOfTheSpeedShapeIsEightDegreesOut) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::mesh

@@ -1,8 +1,8 @@
 #include <cmath>
 
-#include "mesh/polygons.h"
+#include "mesh/internal/polygons.h"
 
-namespace goniochrome {
+namespace goniochrome::mesh {
 
 namespace {
 
@@ -68,4 +68,4 @@ std::vector<std::array<std::uint32_t, 3>> triangulated(const std::vector<Vec3>& 
   return triangles;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::mesh

@@ -5,7 +5,7 @@
 
 #include "base/text.h"
 
-namespace goniochrome {
+namespace goniochrome::paint {
 
 namespace {
 
@@ -17,10 +17,10 @@ double face_weight(double travel_deg, double aspecular_deg) {
 }
 
 using Channels = std::array<double, 3>;
-Channels channels(const Lab& lab) {
+Channels channels(const color::Lab& lab) {
   return {lab.L, lab.a, lab.b};
 }
-Lab lab_of(const Channels& c) {
+color::Lab lab_of(const Channels& c) {
   return {c[0], c[1], c[2]};
 }
 
@@ -174,7 +174,7 @@ Fit nearest(const std::vector<Sample>& samples) {
 
 }  // namespace
 
-Lab lab_at(const Appearance& appearance, double aspecular_deg) {
+color::Lab lab_at(const Appearance& appearance, double aspecular_deg) {
   const double w = face_weight(appearance.travel_deg, aspecular_deg);
   const Channels face = channels(appearance.face), flop = channels(appearance.flop);
   Channels value;
@@ -234,7 +234,7 @@ Result<AppearanceFit> appearance_from_rows(const std::vector<LabReading>& rows) 
   AppearanceFit result;
   result.appearance = {lab_of(fit.face), lab_of(fit.flop), fit.travel_deg, 0.0};
   for (const LabReading& row : rows) {
-    const double de00 = delta_e_2000(row.lab, lab_at(result.appearance, aspecular_angle_deg(row.geometry)));
+    const double de00 = color::delta_e_2000(row.lab, lab_at(result.appearance, aspecular_angle_deg(row.geometry)));
     result.de00.push_back(de00);
     if (is_fitted(row)) result.appearance.residual_de00 = std::max(*result.appearance.residual_de00, de00);
   }
@@ -247,4 +247,4 @@ std::vector<LabReading> rows_of(const Appearance& appearance) {
   return rows;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::paint

@@ -8,13 +8,13 @@
 #include "base/result.h"
 #include "paint/paint.h"
 
-namespace goniochrome {
+namespace goniochrome::paint {
 
 constexpr double kFaceAngle_deg = 15;
 
 // Lab at an unsigned aspecular angle (deg, 0..180) by the clamped quadratic in vertex form:
 // flop + (face - flop) ((travel - t)/(travel - 15))^2 for t < travel, flop beyond. Exactly constant for a solid color.
-Lab lab_at(const Appearance& appearance, double aspecular_deg);
+color::Lab lab_at(const Appearance& appearance, double aspecular_deg);
 
 // Refuses a travel outside (15,180]; the message names it.
 Result<void> check(const Appearance& appearance);
@@ -66,7 +66,7 @@ class TargetCurve {
   // appearance, or one out of its domain.
   static Result<TargetCurve> make(const Paint& paint, Kind kind);
   Kind kind() const { return kind_; }
-  Lab at(double aspecular_deg) const;
+  color::Lab at(double aspecular_deg) const;
   // The aspecular angles (deg, ascending, unsigned) at which the target is known and not interpolated: the rows', or
   // the export angles of a designed paint.
   const std::vector<double>& known_angles_deg() const { return known_deg_; }
@@ -78,4 +78,4 @@ class TargetCurve {
   std::array<std::vector<double>, 3> value_, slope_;  // per channel at the known angles
 };
 
-}  // namespace goniochrome
+}  // namespace goniochrome::paint

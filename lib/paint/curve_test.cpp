@@ -8,10 +8,10 @@
 
 #include "base/hard_case_for_test.h"
 
-namespace goniochrome {
+namespace goniochrome::paint {
 namespace {
 
-double difference(const Lab& x, const Lab& y) {
+double difference(const color::Lab& x, const color::Lab& y) {
   return std::max({std::abs(x.L - y.L), std::abs(x.a - y.a), std::abs(x.b - y.b)});
 }
 
@@ -54,7 +54,7 @@ TEST(Curve, passes_face_at_15_and_flop_from_the_travel_on) {
 }
 
 TEST(HardCase, CurveSolid) {
-  const Lab lab{41.87, -0.3, 0.1};
+  const color::Lab lab{41.87, -0.3, 0.1};
   double ours = 0;
   for (const double travel : {15.0001, 16.0, 60.0, 180.0}) {
     const Appearance solid{lab, lab, travel, {}};
@@ -211,8 +211,8 @@ TEST(Curve, open_travel_extrapolates_least) {
   EXPECT_EQ(two->appearance.travel_deg, 45);
   EXPECT_NEAR(two->appearance.flop.L, 30, 1e-12);
   const auto one = appearance_from_rows({{{.aspecular_deg = 45}, {30, 1, 2}}});
-  EXPECT_EQ(one->appearance.face, (Lab{30, 1, 2}));
-  EXPECT_EQ(one->appearance.flop, (Lab{30, 1, 2}));
+  EXPECT_EQ(one->appearance.face, (color::Lab{30, 1, 2}));
+  EXPECT_EQ(one->appearance.flop, (color::Lab{30, 1, 2}));
   EXPECT_FALSE(appearance_from_rows({}).ok());
 }
 
@@ -230,10 +230,10 @@ TEST(Curve, designed_paint_has_rows_at_both_export_sets) {
   ASSERT_EQ(rows.size(), 5u);
   EXPECT_EQ(geometry_name(rows.front().geometry), "45as15");
   EXPECT_EQ(geometry_name(rows.back().geometry), "45as110");
-  EXPECT_EQ(rows.back().lab, (Lab{30, 0, 0}));
+  EXPECT_EQ(rows.back().lab, (color::Lab{30, 0, 0}));
 }
 
-Paint measured(const std::vector<std::pair<Geometry, Lab>>& rows) {
+Paint measured(const std::vector<std::pair<Geometry, color::Lab>>& rows) {
   Paint paint;
   paint.name = "p";
   paint.measurement.emplace();
@@ -255,14 +255,14 @@ TEST(TargetCurve, passes_through_every_row_and_stays_between_neighbors) {
     const auto& known = curve->known_angles_deg();
     const double low = *std::prev(std::ranges::upper_bound(known, std::clamp(t, 15.0, 109.99)));
     const double high = *std::ranges::upper_bound(known, std::clamp(t, 15.0, 109.99));
-    const Lab x = curve->at(low), y = curve->at(high), at = curve->at(t);
+    const color::Lab x = curve->at(low), y = curve->at(high), at = curve->at(t);
     const auto between = [](double v, double p, double q) {
       return v >= std::min(p, q) - 1e-12 && v <= std::max(p, q) + 1e-12;
     };
     EXPECT_TRUE(between(at.L, x.L, y.L) && between(at.a, x.a, y.a) && between(at.b, x.b, y.b)) << t;
   }
-  EXPECT_EQ(curve->at(0), (Lab{80, 10, -4}));
-  EXPECT_EQ(curve->at(180), (Lab{22, 3, 1}));
+  EXPECT_EQ(curve->at(0), (color::Lab{80, 10, -4}));
+  EXPECT_EQ(curve->at(180), (color::Lab{22, 3, 1}));
 }
 
 TEST(TargetCurve, straight_rows_give_a_straight_line) {
@@ -282,14 +282,14 @@ TEST(TargetCurve, both_sides_of_specular_are_averaged_and_out_of_plane_left_out)
                                   {{.aspecular_deg = 25, .out_of_plane = true, .azimuth_deg = 90}, {20, 0, 0}}}),
                         TargetCurve::Kind::kMeasured);
   EXPECT_EQ(curve->known_angles_deg(), (std::vector<double>{15, 45}));
-  EXPECT_EQ(curve->at(15), (Lab{82, 1, 0}));
+  EXPECT_EQ(curve->at(15), (color::Lab{82, 1, 0}));
   EXPECT_NEAR(curve->at(30).L, 56, 1e-12);
 }
 
 // Each channel travels on its own, as the common travel of face and flop cannot, and is met where it is a quadratic.
 TEST(TargetCurve, channels_travel_on_their_own) {
   const ChannelCurve L{80, 20, 60, true}, a{-10, 30, 120, true}, b{5, -40, 45, true};
-  std::vector<std::pair<Geometry, Lab>> rows;
+  std::vector<std::pair<Geometry, color::Lab>> rows;
   for (const double t : {15.0, 25.0, 45.0, 75.0, 110.0})
     rows.push_back({{.aspecular_deg = t}, {L.at(t), a.at(t), b.at(t)}});
   const Paint paint = measured(rows);
@@ -306,7 +306,7 @@ TEST(TargetCurve, channels_travel_on_their_own) {
 // Readings close together near specular count no more than the one whose place they take.
 TEST(TargetCurve, close_readings_do_not_outvote_the_flop) {
   const auto rows = [](const std::vector<double>& angles) {
-    std::vector<std::pair<Geometry, Lab>> r;
+    std::vector<std::pair<Geometry, color::Lab>> r;
     for (const double t : angles) r.push_back({{.aspecular_deg = t}, {100 * std::exp(-t / 30), 0, 0}});
     return measured(r);
   };
@@ -348,4 +348,4 @@ TEST(TargetCurve, falls_back_on_what_the_paint_has) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::paint

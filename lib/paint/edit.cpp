@@ -9,20 +9,20 @@
 #include "paint/curve.h"
 #include "paint/metrics.h"
 
-namespace goniochrome {
+namespace goniochrome::paint {
 
 namespace {
 
 constexpr std::array kAverageAngles_deg = {15.0, 45.0, 110.0};
 constexpr double kHighestGloss = 100;
 
-Lab operator+(const Lab& x, const Lab& y) {
+color::Lab operator+(const color::Lab& x, const color::Lab& y) {
   return {x.L + y.L, x.a + y.a, x.b + y.b};
 }
-Lab operator-(const Lab& x, const Lab& y) {
+color::Lab operator-(const color::Lab& x, const color::Lab& y) {
   return {x.L - y.L, x.a - y.a, x.b - y.b};
 }
-Lab mixed(const Lab& x, const Lab& y, double fraction) {
+color::Lab mixed(const color::Lab& x, const color::Lab& y, double fraction) {
   return {std::lerp(x.L, y.L, fraction), std::lerp(x.a, y.a, fraction), std::lerp(x.b, y.b, fraction)};
 }
 
@@ -97,7 +97,7 @@ void move_travel(Locus& locus, const Edit& edit, Edited& result) {
                     shortest(locus.appearance.travel_deg), shortest(target.travel_deg)));
 }
 
-void clip(Lab& lab, const std::string& what, Edited& result) {
+void clip(color::Lab& lab, const std::string& what, Edited& result) {
   if (lab.L >= 0) return;
   result.clipped.push_back(fmt::format("{}: L* {:.2f} to 0", what, lab.L));
   lab.L = 0;
@@ -110,7 +110,8 @@ double worst_de00(const Locus& locus) {
   double worst = 0;
   for (const LabReading& row : locus.rows)
     if (in_plane(row) || !any)
-      worst = std::max(worst, delta_e_2000(row.lab, lab_at(locus.appearance, aspecular_angle_deg(row.geometry))));
+      worst =
+          std::max(worst, color::delta_e_2000(row.lab, lab_at(locus.appearance, aspecular_angle_deg(row.geometry))));
   return worst;
 }
 
@@ -223,18 +224,18 @@ std::vector<GlossReading> gloss_between(const Paint& from, const Paint& to, doub
 
 AverageColor average_color(const Appearance& appearance) {
   AverageColor average;
-  Lab sum;
+  color::Lab sum;
   for (const double angle : kAverageAngles_deg) {
-    const Lab lab = lab_at(appearance, angle);
+    const color::Lab lab = lab_at(appearance, angle);
     average.L += lab.L / kAverageAngles_deg.size();
-    average.chroma += chroma(lab) / kAverageAngles_deg.size();
+    average.chroma += color::chroma(lab) / kAverageAngles_deg.size();
     sum = sum + lab;
   }
-  average.hue_deg = hue_deg(sum);
+  average.hue_deg = color::hue_deg(sum);
   return average;
 }
 
-Lab tweaked(const Lab& lab, const Tweak& tweak) {
+color::Lab tweaked(const color::Lab& lab, const Tweak& tweak) {
   const double turn_rad = tweak.hue_deg * std::numbers::pi / 180;
   const double c = tweak.chroma_factor * std::cos(turn_rad);
   const double s = tweak.chroma_factor * std::sin(turn_rad);
@@ -247,7 +248,7 @@ double face_share(const Appearance& appearance, double aspecular_deg) {
 
 bool moves_color(const Edit& edit) {
   return edit.average_hue_deg || edit.average_chroma || edit.average_lightness || edit.tweak != Tweak() || edit.face ||
-         edit.flop || edit.face_shift != Lab() || edit.flop_shift != Lab() || edit.travel_deg ||
+         edit.flop || edit.face_shift != color::Lab() || edit.flop_shift != color::Lab() || edit.travel_deg ||
          edit.travel_shift_deg != 0;
 }
 
@@ -269,7 +270,7 @@ std::vector<Neighbor> neighbors(Variation variation, double step) {
   std::vector<Neighbor> result;
   if (variation == Variation::kFace || variation == Variation::kFlop) {
     const bool is_face = variation == Variation::kFace;
-    const auto add = [&](const char* name, const Lab& shift) {
+    const auto add = [&](const char* name, const color::Lab& shift) {
       Neighbor neighbor{fmt::format("{}-{}", is_face ? "face" : "flop", name), {}};
       (is_face ? neighbor.edit.face_shift : neighbor.edit.flop_shift) = shift;
       result.push_back(neighbor);
@@ -298,7 +299,7 @@ Result<Paint> between(const Paint& from, const Paint& to, double fraction) {
     if (!has_color(*paint))
       return input_error("paint \"{}\" has neither measured rows nor an appearance: a gradient needs its color",
                          paint->name);
-  const ViewingCondition a = condition_of(from), b = condition_of(to);
+  const color::ViewingCondition a = condition_of(from), b = condition_of(to);
   if (a != b)
     return input_error("paint \"{}\" is stated for {}/{} and \"{}\" for {}/{}: convert one of them first", from.name,
                        a.illuminant, a.observer_deg, to.name, b.illuminant, b.observer_deg);
@@ -318,10 +319,10 @@ Result<Paint> between(const Paint& from, const Paint& to, double fraction) {
                                   std::lerp(from.anisotropy->alpha_y, to.anisotropy->alpha_y, fraction)};
   if (from.measurement && to.measurement) locus.rows = rows_between(*from.measurement, *to.measurement, fraction);
   // Only a measurement states a condition: under any but the default one a paint without rows gets those of its curve.
-  if (locus.rows.empty() && a != ViewingCondition()) locus.rows = rows_of(locus.appearance);
+  if (locus.rows.empty() && a != color::ViewingCondition()) locus.rows = rows_of(locus.appearance);
   if (!locus.rows.empty()) paint.measurement = Measurement{a, "", {}};
   put_back(paint, std::move(locus));
   return paint;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::paint

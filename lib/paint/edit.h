@@ -9,7 +9,7 @@
 #include "base/result.h"
 #include "paint/paint.h"
 
-namespace goniochrome {
+namespace goniochrome::paint {
 
 // What a designer calls the color of a paint as a whole: means over the curve at 15, 45 and 110 deg of L*, of chroma,
 // and of a* and b*, whose direction is the average hue in [0,360). Below kLeastChroma a paint has no hue to set and no
@@ -25,7 +25,7 @@ struct Tweak {
   double lightness = 0, chroma_factor = 1, hue_deg = 0;
   friend bool operator==(const Tweak&, const Tweak&) = default;
 };
-Lab tweaked(const Lab& lab, const Tweak& tweak);
+color::Lab tweaked(const color::Lab& lab, const Tweak& tweak);
 
 // R: how much of a change at an aspecular angle (deg) is the face's: 1 at 15 deg and nearer, 0 from the travel on,
 // linear between. The flop's part is 1 - R. [Shimizu2009] 3.6.4, corrected
@@ -36,8 +36,8 @@ struct Edit {
   std::optional<double> average_hue_deg, average_chroma, average_lightness;  // to be reached by the whole paint
   Tweak tweak;                   // of the whole paint, or where at_deg is set
   std::optional<double> at_deg;  // of face and flop by face_share at this aspecular angle
-  std::optional<Lab> face, flop;
-  Lab face_shift, flop_shift;
+  std::optional<color::Lab> face, flop;
+  color::Lab face_shift, flop_shift;
   std::optional<double> travel_deg;
   double travel_shift_deg = 0;
   double gloss_angle_deg = 60;
@@ -82,4 +82,4 @@ std::vector<Neighbor> neighbors(Variation variation, double step);
 // no color.
 Result<Paint> between(const Paint& from, const Paint& to, double fraction);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::paint

@@ -10,7 +10,7 @@
 #include "base/hard_case_for_test.h"
 #include "paint/curve.h"
 
-namespace goniochrome {
+namespace goniochrome::paint {
 namespace {
 
 using testing::ElementsAre;
@@ -20,7 +20,7 @@ using testing::HasSubstr;
 // room for some seventy of them.
 constexpr double kRounding = 1e-12;
 
-void expect_near(const Lab& x, const Lab& y, double bound = kRounding) {
+void expect_near(const color::Lab& x, const color::Lab& y, double bound = kRounding) {
   EXPECT_NEAR(x.L, y.L, bound);
   EXPECT_NEAR(x.a, y.a, bound);
   EXPECT_NEAR(x.b, y.b, bound);
@@ -30,7 +30,7 @@ Appearance blue() {
   return {{62, -13.5, -51}, {12, 17, -38}, 72, std::nullopt};
 }
 
-LabReading reading(const char* geometry, const Lab& lab) {
+LabReading reading(const char* geometry, const color::Lab& lab) {
   return {*parse_geometry(geometry), lab};
 }
 
@@ -67,14 +67,14 @@ Paint done(const Paint& paint, const Edit& edit) {
 }
 
 TEST(Tweak, identity_changes_no_bit) {
-  const Lab lab{41.3, -0.1, 17.7};
+  const color::Lab lab{41.3, -0.1, 17.7};
   EXPECT_EQ(tweaked(lab, {}), lab);
 }
 
 TEST(Tweak, turns_scales_and_lifts) {
   expect_near(tweaked({50, 30, -10}, {4, 2, 90}), {54, 20, 60});
-  EXPECT_NEAR(chroma(tweaked({50, 30, -10}, {0, 1, 37})), std::hypot(30, 10), kRounding);
-  EXPECT_EQ(chroma(tweaked({50, 30, -10}, {0, 0, 0})), 0);
+  EXPECT_NEAR(color::chroma(tweaked({50, 30, -10}, {0, 1, 37})), std::hypot(30, 10), kRounding);
+  EXPECT_EQ(color::chroma(tweaked({50, 30, -10}, {0, 0, 0})), 0);
 }
 
 TEST(FaceShare, is_one_at_the_face_and_zero_at_the_flop) {
@@ -144,7 +144,7 @@ Edit random_edit(std::mt19937& random) {
       edit.at_deg = uniform(0, 180);
       break;
     case 2:
-      edit.face = Lab{uniform(60, 120), uniform(-60, 60), uniform(-60, 60)};
+      edit.face = color::Lab{uniform(60, 120), uniform(-60, 60), uniform(-60, 60)};
       break;
     case 3:
       edit.flop_shift = {uniform(0, 40), uniform(-30, 30), uniform(-30, 30)};
@@ -192,8 +192,8 @@ TEST(Edit, what_the_curve_does_not_explain_stays) {
   EXPECT_EQ(after.travel_deg, fit->appearance.travel_deg + 12);
   for (std::size_t i = 0; i < paint.measurement->rows.size(); ++i) {
     const double t = aspecular_angle_deg(paint.measurement->rows[i].geometry);
-    const Lab before = paint.measurement->rows[i].lab, now = result->paint.measurement->rows[i].lab;
-    const Lab was = lab_at(fit->appearance, t), is = lab_at(after, t);
+    const color::Lab before = paint.measurement->rows[i].lab, now = result->paint.measurement->rows[i].lab;
+    const color::Lab was = lab_at(fit->appearance, t), is = lab_at(after, t);
     EXPECT_NEAR(before.L - was.L, now.L - is.L, kRounding);
     EXPECT_NEAR(before.a - was.a, now.a - is.a, kRounding);
     EXPECT_NEAR(before.b - was.b, now.b - is.b, kRounding);
@@ -326,7 +326,7 @@ TEST(Edit, paint_without_color_takes_gloss_only) {
 
 // The form that divides by the quadratic's first coefficient has 0/0 for a solid: the vertex form keeps it constant.
 TEST(HardCase, CurveSolidEdited) {
-  const Lab gray{50, 0, 0};
+  const color::Lab gray{50, 0, 0};
   Paint paint = on_curve({gray, gray, 60, std::nullopt});
   paint.appearance.reset();
   for (LabReading& row : paint.measurement->rows) row.lab = gray;
@@ -335,7 +335,7 @@ TEST(HardCase, CurveSolidEdited) {
   edit.travel_deg = 140;
   const Paint now = done(paint, edit);
   double ours = 0;
-  for (const LabReading& row : now.measurement->rows) ours = worst_of(ours, delta_e_76(row.lab, {57, 0, 0}));
+  for (const LabReading& row : now.measurement->rows) ours = worst_of(ours, color::delta_e_76(row.lab, {57, 0, 0}));
   EXPECT_EQ(now.appearance->face, now.appearance->flop);
   const double textbook_a = (gray.L - gray.L) / ((15 - 60.0) * (15 - 60.0)), textbook_b = -2 * textbook_a * 60;
   const double textbook = -textbook_b / (2 * textbook_a);
@@ -351,8 +351,8 @@ TEST(Neighbors, are_eight_distinct_ones_at_the_step) {
     for (const Neighbor& neighbor : neighbors(variation, 2)) {
       names.insert(neighbor.name);
       const Paint now = done(paint, neighbor.edit);
-      const double face = delta_e_76(now.appearance->face, blue().face);
-      const double flop = delta_e_76(now.appearance->flop, blue().flop);
+      const double face = color::delta_e_76(now.appearance->face, blue().face);
+      const double flop = color::delta_e_76(now.appearance->flop, blue().flop);
       EXPECT_NEAR(face, variation == Variation::kFace ? 2 : 0, kRounding) << neighbor.name;
       EXPECT_NEAR(flop, variation == Variation::kFlop ? 2 : 0, kRounding) << neighbor.name;
       EXPECT_EQ(now.appearance->travel_deg != 72, variation == Variation::kTravel) << neighbor.name;
@@ -395,7 +395,7 @@ TEST(Between, half_way_is_half_way) {
 }
 
 TEST(Between, solid_end_has_no_travel_of_its_own) {
-  const Lab white{90, 0, 0};
+  const color::Lab white{90, 0, 0};
   const auto paint = between(on_curve(blue()), on_curve({white, white, 170, std::nullopt}), 0.25);
   ASSERT_TRUE(paint.ok());
   EXPECT_EQ(paint->appearance->travel_deg, 72);
@@ -428,4 +428,4 @@ TEST(Between, keeps_the_condition_without_common_geometries) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::paint

@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "base/text.h"
-#include "paint/utf8.h"
+#include "base/utf8.h"
 
-namespace goniochrome {
+namespace goniochrome::paint {
 
 namespace {
 
@@ -147,4 +147,4 @@ double aspecular_angle_rad(const Vec3& to_light, const Vec3& to_viewer, const Ve
   return std::atan2(std::hypot(cross_part(1, 2), cross_part(2, 0), cross_part(0, 1)), along);
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::paint

@@ -8,7 +8,7 @@
 #include "base/result.h"
 #include "base/vec3.h"
 
-namespace goniochrome {
+namespace goniochrome::paint {
 
 // `45as15`: light 45 deg from the normal, detector 15 deg from specular, toward the normal. In plane the aspecular
 // angle is signed; with an azimuth it is unsigned and azimuth 0 lies on the grazing side.
@@ -40,4 +40,4 @@ double aspecular_angle_deg(const Geometry& geometry);
 // angle(r(wi), wo) in radians, 0..pi, within 4 ulp for any nonzero vectors, whose lengths cancel.
 double aspecular_angle_rad(const Vec3& to_light, const Vec3& to_viewer, const Vec3& normal);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::paint

@@ -9,7 +9,7 @@
 
 #include "base/hard_case_for_test.h"
 
-namespace goniochrome {
+namespace goniochrome::paint {
 namespace {
 
 void expect_near(const Vec3& v, const Vec3& expected, double tolerance) {
@@ -205,4 +205,4 @@ TEST(HardCase, AngleAcosOfUnitVectors) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::paint

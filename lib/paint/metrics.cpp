@@ -8,7 +8,7 @@
 
 #include "paint/curve.h"
 
-namespace goniochrome {
+namespace goniochrome::paint {
 
 namespace {
 
@@ -19,7 +19,7 @@ double signed_flop(double difference, double L45) {
 }
 
 // The distance of the origin from the step between two points of the a*b* plane.
-double least_chroma(const Lab& from, const Lab& to) {
+double least_chroma(const color::Lab& from, const color::Lab& to) {
   const double da = to.a - from.a, db = to.b - from.b;
   const double length2 = da * da + db * db;
   const double along = length2 > 0 ? std::clamp(-(from.a * da + from.b * db) / length2, 0.0, 1.0) : 0;
@@ -42,17 +42,18 @@ std::vector<LabReading> path_rows(const Paint& paint) {
   return rows;
 }
 
-std::optional<Lab> row_at(std::span<const LabReading> rows, double aspecular_deg) {
+std::optional<color::Lab> row_at(std::span<const LabReading> rows, double aspecular_deg) {
   for (const LabReading& row : rows)
     if (row.geometry.aspecular_deg == aspecular_deg) return row.lab;
   return std::nullopt;
 }
 
 // dE00 between a color and what is left of it when negative channels of the working space are cut off.
-double gamut_loss(const Lab& lab, const Xyz& white) {
-  const Rgb rgb = rgb_from_lab(lab, white);
+double gamut_loss(const color::Lab& lab, const color::Xyz& white) {
+  const color::Rgb rgb = color::rgb_from_lab(lab, white);
   if (rgb.x >= 0 && rgb.y >= 0 && rgb.z >= 0) return 0;
-  return delta_e_2000(lab, lab_from_rgb({std::max(rgb.x, 0.0), std::max(rgb.y, 0.0), std::max(rgb.z, 0.0)}, white));
+  return color::delta_e_2000(
+      lab, color::lab_from_rgb({std::max(rgb.x, 0.0), std::max(rgb.y, 0.0), std::max(rgb.z, 0.0)}, white));
 }
 
 void add_gloss(const Paint& paint, PaintMetrics& result) {
@@ -64,7 +65,7 @@ void add_gloss(const Paint& paint, PaintMetrics& result) {
 }
 
 // What rests on face, middle and flop.
-void add_indices(const std::array<Lab, 3>& at, PaintMetrics& result) {
+void add_indices(const std::array<color::Lab, 3>& at, PaintMetrics& result) {
   const FlopIndex flop = flop_index(at[0].L, at[1].L, at[2].L);
   result.flop_index = flop.value;
   result.flop_sensitivity = flop.sensitivity;
@@ -72,9 +73,9 @@ void add_indices(const std::array<Lab, 3>& at, PaintMetrics& result) {
   result.chroma_index = chroma_index(at[0], at[2]);
   result.hue_shift_index = hue_shift_index(at[0], at[2]);
   result.L15 = at[0].L, result.L45 = at[1].L, result.L110 = at[2].L;
-  result.chroma15 = chroma(at[0]);
+  result.chroma15 = color::chroma(at[0]);
   if (result.chroma15 >= kLeastChroma)
-    result.hue15_deg = hue_deg(at[0]);
+    result.hue15_deg = color::hue_deg(at[0]);
   else
     result.flags.push_back("achromatic");
 }
@@ -95,22 +96,22 @@ FlopIndex flop_index(double L15, double L45, double L110) {
   return {plain.value, sensitivity};
 }
 
-double chroma_index(const Lab& at_15, const Lab& at_110) {
-  return std::abs(chroma(at_15) - chroma(at_110));
+double chroma_index(const color::Lab& at_15, const color::Lab& at_110) {
+  return std::abs(color::chroma(at_15) - color::chroma(at_110));
 }
 
-double hue_shift_index(const Lab& at_15, const Lab& at_110) {
-  const double face = chroma(at_15);
+double hue_shift_index(const color::Lab& at_15, const color::Lab& at_110) {
+  const double face = color::chroma(at_15);
   if (face < kLeastChroma) return kNone;
   return std::abs(at_110.a * at_15.b - at_15.a * at_110.b) / face;
 }
 
-HueTravel hue_travel(std::span<const Lab> path) {
-  if (path.size() < 2 || chroma(path.front()) < kLeastChroma || chroma(path.back()) < kLeastChroma)
+HueTravel hue_travel(std::span<const color::Lab> path) {
+  if (path.size() < 2 || color::chroma(path.front()) < kLeastChroma || color::chroma(path.back()) < kLeastChroma)
     return {kNone, false};
   HueTravel travel;
   for (std::size_t i = 1; i < path.size(); ++i) {
-    const Lab &from = path[i - 1], &to = path[i];
+    const color::Lab &from = path[i - 1], &to = path[i];
     travel.degrees +=
         std::atan2(from.a * to.b - from.b * to.a, from.a * to.a + from.b * to.b) * (180 / std::numbers::pi);
     if (least_chroma(from, to) < kLeastChroma) travel.through_gray = true;
@@ -133,7 +134,7 @@ Result<PaintMetrics> metrics(const Paint& paint, CurveFit fit) {
       result.residual_de00 = 0;
     for (const LabReading& row : rows)
       result.residual_de00 =
-          std::max(result.residual_de00, delta_e_2000(row.lab, lab_at(*curve, row.geometry.aspecular_deg)));
+          std::max(result.residual_de00, color::delta_e_2000(row.lab, lab_at(*curve, row.geometry.aspecular_deg)));
   } else if (rows.size() >= 2 && (fit == CurveFit::kAlways || !complete)) {
     if (const auto nearest = appearance_from_rows(rows); nearest.ok()) {
       curve = nearest->appearance;
@@ -143,7 +144,7 @@ Result<PaintMetrics> metrics(const Paint& paint, CurveFit fit) {
   }
   if (curve) result.travel_deg = curve->travel_deg;
 
-  std::vector<Lab> path;
+  std::vector<color::Lab> path;
   if (complete) {
     result.source = PaintMetrics::Source::kRows;
     add_indices({*measured[0], *measured[1], *measured[2]}, result);
@@ -160,9 +161,9 @@ Result<PaintMetrics> metrics(const Paint& paint, CurveFit fit) {
   result.hue_travel_deg = travel.degrees;
   if (travel.through_gray) result.flags.push_back("through_gray");
 
-  GONIO_ASSIGN(const Xyz white, white_point(condition_of(paint)));
+  GONIO_ASSIGN(const color::Xyz white, color::white_point(condition_of(paint)));
   result.gamut_de00 = 0;
-  for (const Lab& lab : path) result.gamut_de00 = std::max(result.gamut_de00, gamut_loss(lab, white));
+  for (const color::Lab& lab : path) result.gamut_de00 = std::max(result.gamut_de00, gamut_loss(lab, white));
   if (result.gamut_de00 > 1) result.flags.push_back("gamut");
   return result;
 }
@@ -212,4 +213,4 @@ const MetricColumn* find_metric(std::string_view name) {
   return nullptr;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::paint

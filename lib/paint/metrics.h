@@ -12,7 +12,7 @@
 #include "base/result.h"
 #include "paint/paint.h"
 
-namespace goniochrome {
+namespace goniochrome::paint {
 
 // Below this chroma a hue is noise, and what rests on a hue is not applicable.
 constexpr double kLeastChroma = 1;
@@ -30,11 +30,11 @@ struct FlopIndex {
 FlopIndex flop_index(double L15, double L45, double L110);
 
 // Change of chroma from face to flop, CIELAB units, >= 0. [Shimizu2009] 5.3.2
-double chroma_index(const Lab& at_15, const Lab& at_110);
+double chroma_index(const color::Lab& at_15, const color::Lab& at_110);
 
 // Distance of the flop's a*b* from the line through the origin and the face's a*b*, CIELAB units. NaN where the face is
 // achromatic. Blind to a hue turned by 180 deg. [Shimizu2009] 5.3.3, with its domain
-double hue_shift_index(const Lab& at_15, const Lab& at_110);
+double hue_shift_index(const color::Lab& at_15, const color::Lab& at_110);
 
 // The angle (deg, signed, counterclockwise positive, beyond 180 where the path winds on) by which the hue turns along
 // straight steps through the a*b* of `path`. NaN where either end is achromatic or the path has fewer than two colors.
@@ -43,7 +43,7 @@ struct HueTravel {
   double degrees = 0;
   bool through_gray = false;
 };
-HueTravel hue_travel(std::span<const Lab> path);
+HueTravel hue_travel(std::span<const color::Lab> path);
 
 // Everything at once. NaN is "not applicable"; `flags` says why where it is not plain.
 struct PaintMetrics {
@@ -81,4 +81,4 @@ std::span<const MetricColumn> metric_columns_without_fit();
 // The column of that name, or null.
 const MetricColumn* find_metric(std::string_view name);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::paint

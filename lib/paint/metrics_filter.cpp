@@ -7,7 +7,7 @@
 
 #include "base/text.h"
 
-namespace goniochrome {
+namespace goniochrome::paint {
 
 namespace {
 
@@ -258,4 +258,4 @@ std::string metric_advice(std::string_view unknown) {
   return fmt::format("; there are {}", fmt::join(names, ", "));
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::paint

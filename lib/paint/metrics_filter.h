@@ -9,7 +9,7 @@
 #include "base/result.h"
 #include "paint/metrics.h"
 
-namespace goniochrome {
+namespace goniochrome::paint {
 
 // An expression over the numbers of metric_columns() and the texts name, code, class, source and flags.
 // Comparisons: < <= > >= == !=. A text is compared by == and != alone, with a bare word or a quoted text; flags==dark
@@ -40,4 +40,4 @@ Result<MetricRange> parse_metric_range(std::string_view text);
 // "; did you mean flop_index?" or the list of all, for a metric that does not exist.
 std::string metric_advice(std::string_view unknown);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::paint

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-namespace goniochrome {
+namespace goniochrome::paint {
 namespace {
 
 using testing::HasSubstr;
@@ -114,4 +114,4 @@ TEST(MetricRange, bounds_and_errors) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::paint

@@ -8,10 +8,10 @@
 #include "base/hard_case_for_test.h"
 #include "paint/curve.h"
 
-namespace goniochrome {
+namespace goniochrome::paint {
 namespace {
 
-Paint measured(const std::vector<std::pair<double, Lab>>& rows) {
+Paint measured(const std::vector<std::pair<double, color::Lab>>& rows) {
   Paint paint;
   paint.name = "test";
   paint.measurement = Measurement{};
@@ -20,7 +20,7 @@ Paint measured(const std::vector<std::pair<double, Lab>>& rows) {
   return paint;
 }
 
-Lab polar(double L, double C, double hue_deg) {
+color::Lab polar(double L, double C, double hue_deg) {
   const double h = hue_deg * std::numbers::pi / 180;
   return {L, C * std::cos(h), C * std::sin(h)};
 }
@@ -85,12 +85,12 @@ TEST(Metrics, flop_sensitivity_is_the_worst_case) {
   }
 }
 
-double textbook_hue_shift(const Lab& f, const Lab& g) {
+double textbook_hue_shift(const color::Lab& f, const color::Lab& g) {
   return std::abs(g.a * f.b - f.a * g.b) / std::sqrt(f.a * f.a + f.b * f.b);
 }
 
 TEST(Metrics, hue_shift_and_chroma) {
-  const Lab face = polar(60, 50, 30), flop = polar(20, 20, 60);
+  const color::Lab face = polar(60, 50, 30), flop = polar(20, 20, 60);
   EXPECT_NEAR(hue_shift_index(face, flop), 20 * std::sin(std::numbers::pi / 6), 1e-12);
   EXPECT_DOUBLE_EQ(hue_shift_index(face, flop), textbook_hue_shift(face, flop));
   EXPECT_NEAR(chroma_index(face, flop), 30, 1e-12);
@@ -125,10 +125,10 @@ TEST(HardCase, HueShiftAchromatic) {
   EXPECT_FALSE(has_flag(turned, "through_gray"));
 
   // Beyond a full turn it goes on counting.
-  std::vector<std::pair<double, Lab>> winding;
+  std::vector<std::pair<double, color::Lab>> winding;
   for (int i = 0; i <= 10; ++i) winding.emplace_back(15 + 9.5 * i, polar(50, 30, 45 * i));
   EXPECT_NEAR(hue_travel([&] {
-                std::vector<Lab> path;
+                std::vector<color::Lab> path;
                 for (const auto& row : winding) path.push_back(row.second);
                 return path;
               }())
@@ -170,7 +170,8 @@ TEST(Metrics, from_rows_curve_and_fit) {
   with_rows.appearance = appearance;
   with_rows.appearance->flop.L += 5;
   const auto missed = *metrics(with_rows);
-  EXPECT_DOUBLE_EQ(missed.residual_de00, delta_e_2000(lab_at(appearance, 110), lab_at(*with_rows.appearance, 110)));
+  EXPECT_DOUBLE_EQ(missed.residual_de00,
+                   color::delta_e_2000(lab_at(appearance, 110), lab_at(*with_rows.appearance, 110)));
 
   const auto quick =
       *metrics(measured({{15, {50, 1, 2}}, {45, {40, 1, 2}}, {110, {30, 1, 2}}}), CurveFit::kWhereNeeded);
@@ -204,4 +205,4 @@ TEST(Metrics, columns_have_distinct_names) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::paint

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace goniochrome {
+namespace goniochrome::paint {
 
 namespace {
 
@@ -21,8 +21,8 @@ std::optional<PaintClass> paint_class_of(std::string_view name) {
   return static_cast<PaintClass>(found - kClassNames.begin());
 }
 
-ViewingCondition condition_of(const Paint& paint) {
-  return paint.measurement ? paint.measurement->condition : ViewingCondition{};
+color::ViewingCondition condition_of(const Paint& paint) {
+  return paint.measurement ? paint.measurement->condition : color::ViewingCondition{};
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::paint

@@ -10,18 +10,18 @@
 #include "color/color.h"
 #include "paint/geometry.h"
 
-namespace goniochrome {
+namespace goniochrome::paint {
 
 enum class PaintClass { kUnknown, kSolid, kMetallic, kPearl, kInterference };
 
 struct LabReading {
   Geometry geometry;
-  Lab lab;
+  color::Lab lab;
 };
 
 // What an instrument or a designer stated: Lab at several geometries, all under one viewing condition.
 struct Measurement {
-  ViewingCondition condition;
+  color::ViewingCondition condition;
   std::string instrument;
   std::vector<LabReading> rows;
 };
@@ -33,7 +33,7 @@ struct GlossReading {
 
 // Face at 15 deg, flop, and the aspecular angle where the color stops changing (15 < travel <= 180).
 struct Appearance {
-  Lab face, flop;
+  color::Lab face, flop;
   double travel_deg = 60;
   std::optional<double> residual_de00;  // of the fit that made it, where it came from a measurement
 };
@@ -50,14 +50,14 @@ struct ColorMapReference {
 // One lobe's weights, in 1/sr per working-space channel; an infinite exponent is the mirror (weight times Fresnel).
 struct Lobe {
   double exponent = 1;
-  Rgb directional_diffuse;
-  Rgb gloss;
+  color::Rgb directional_diffuse;
+  color::Rgb gloss;
 };
 
 // The weights at one angle of the viewer from the normal.
 struct ViewLobes {
   double view_deg = 0;  // 0..90
-  Rgb diffuse;
+  color::Rgb diffuse;
   std::vector<Lobe> lobes;
 };
 
@@ -65,11 +65,11 @@ struct ViewLobes {
 struct LobeFit {
   std::string basis, method;
   double max_de00 = 0, mean_de00 = 0;
-  Rgb diffuse;  // K_D, 1/sr
+  color::Rgb diffuse;  // K_D, 1/sr
   std::vector<Lobe> lobes;
-  // Weights that change with the view, ascending in view_deg, each set complete; linear between two of them and constant
-  // beyond the ends. Where there are none, `diffuse` and `lobes` hold for every view; where there are, these remain the
-  // best weights for all views together.
+  // Weights that change with the view, ascending in view_deg, each set complete; linear between two of them and
+  // constant beyond the ends. Where there are none, `diffuse` and `lobes` hold for every view; where there are, these
+  // remain the best weights for all views together.
   std::vector<ViewLobes> views = {};
 };
 
@@ -93,6 +93,6 @@ const char* paint_class_name(PaintClass paint_class);
 std::optional<PaintClass> paint_class_of(std::string_view name);
 
 // The condition the Lab values of `paint` are relative to: its measurement's, or the default D65/10.
-ViewingCondition condition_of(const Paint& paint);
+color::ViewingCondition condition_of(const Paint& paint);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::paint

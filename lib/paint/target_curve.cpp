@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/utf8.h"
 #include "paint/curve.h"
-#include "paint/utf8.h"
 
-namespace goniochrome {
+namespace goniochrome::paint {
 
 namespace {
 
@@ -111,7 +111,7 @@ Result<TargetCurve> TargetCurve::make(const Paint& paint, Kind kind) {
 }
 
 // Hermite's cubic on the interval that holds the angle.
-Lab TargetCurve::at(double aspecular_deg) const {
+color::Lab TargetCurve::at(double aspecular_deg) const {
   if (kind_ == Kind::kCurve)
     return {quadratic_[0].at(aspecular_deg), quadratic_[1].at(aspecular_deg), quadratic_[2].at(aspecular_deg)};
   const double t = std::clamp(aspecular_deg, known_deg_.front(), known_deg_.back());
@@ -128,4 +128,4 @@ Lab TargetCurve::at(double aspecular_deg) const {
   return {value[0], value[1], value[2]};
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::paint

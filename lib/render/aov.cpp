@@ -7,7 +7,7 @@
 
 #include "paint/geometry.h"
 
-namespace goniochrome {
+namespace goniochrome::render {
 
 namespace {
 
@@ -29,7 +29,7 @@ const std::vector<Aov>& aovs() {
        {"aspecular"},
        180,
        [](const Gbuffer& g, int x, int y, const Vec3& to_light, float* value) {
-         const double angle_rad = aspecular_angle_rad(to_light, g.to_viewer(x, y), g.normal(x, y));
+         const double angle_rad = paint::aspecular_angle_rad(to_light, g.to_viewer(x, y), g.normal(x, y));
          *value = static_cast<float>(angle_rad * 180 / std::numbers::pi);
        }},
       {"lambert",
@@ -51,7 +51,7 @@ const std::vector<Aov>& aovs() {
 
 }  // namespace
 
-Result<void> add_aov(Image& picture, const Gbuffer& gbuffer, const std::string& name, const Vec3& to_light) {
+Result<void> add_aov(image::Image& picture, const Gbuffer& gbuffer, const std::string& name, const Vec3& to_light) {
   const auto aov = std::find_if(aovs().begin(), aovs().end(), [&](const Aov& a) { return a.name == name; });
   if (aov == aovs().end()) {
     std::string known;
@@ -59,7 +59,7 @@ Result<void> add_aov(Image& picture, const Gbuffer& gbuffer, const std::string& 
     return usage_error("there is no buffer \"{}\": there are {}", name, known);
   }
   const int old_channels = picture.channels, added = static_cast<int>(aov->channels.size());
-  Image wider{picture.width, picture.height, old_channels + added, {}, picture.channel_names};
+  image::Image wider{picture.width, picture.height, old_channels + added, {}, picture.channel_names};
   wider.channel_names.insert(wider.channel_names.end(), aov->channels.begin(), aov->channels.end());
   wider.data.resize(static_cast<std::size_t>(wider.width) * wider.height * wider.channels);
   for (int y = 0; y < picture.height; ++y) {
@@ -76,7 +76,7 @@ Result<void> add_aov(Image& picture, const Gbuffer& gbuffer, const std::string& 
   return {};
 }
 
-Result<Gbuffer> gbuffer_of(const AovFile& buffers) {
+Result<Gbuffer> gbuffer_of(const image::AovFile& buffers) {
   constexpr double kUnit = 1e-3;  // a normal kept in halves is 5e-4 off unit length
   GONIO_ASSIGN(const int normal_x, buffers.channel("normal.X"));
   GONIO_ASSIGN(const int normal_y, buffers.channel("normal.Y"));
@@ -85,7 +85,7 @@ Result<Gbuffer> gbuffer_of(const AovFile& buffers) {
   if (!buffers.has_rays || buffers.parts.empty())
     return input_error("{}: its header lacks goniochrome:{}: render the buffers again", buffers.path,
                        buffers.has_rays ? "parts" : "rays");
-  const Image& image = buffers.image;
+  const image::Image& image = buffers.image;
   Gbuffer gbuffer{image.width, image.height, {}, {buffers.corner, buffers.right, buffers.down}};
   gbuffer.data.resize(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 4);
   float* to = gbuffer.data.data();
@@ -109,4 +109,4 @@ Result<Gbuffer> gbuffer_of(const AovFile& buffers) {
   return gbuffer;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::render

@@ -9,7 +9,7 @@
 #include "image/image.h"
 #include "render/renderer.h"
 
-namespace goniochrome {
+namespace goniochrome::render {
 
 // Adds the channels of one buffer to a picture; 0 where nothing is seen (aspecular: 180).
 //   normal     normal.X normal.Y normal.Z, unit, world axes, turned to the viewer
@@ -18,10 +18,10 @@ namespace goniochrome {
 //   mask       1 on the mesh
 //   part       the number of the part, from 1
 // Error (usage): the names there are.
-Result<void> add_aov(Image& picture, const Gbuffer& gbuffer, const std::string& name, const Vec3& to_light);
+Result<void> add_aov(image::Image& picture, const Gbuffer& gbuffer, const std::string& name, const Vec3& to_light);
 
 // The G-buffer back from the channels normal and part, bit for bit, but for which parts were seen from inside.
 // Error: what the file lacks, with the command that makes it; or the pixel that holds no normal or no part.
-Result<Gbuffer> gbuffer_of(const AovFile& buffers);
+Result<Gbuffer> gbuffer_of(const image::AovFile& buffers);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::render

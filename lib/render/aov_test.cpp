@@ -7,7 +7,7 @@
 
 #include "render/scenes_for_test.h"
 
-namespace goniochrome {
+namespace goniochrome::render {
 namespace {
 
 using testing::HasSubstr;
@@ -16,16 +16,16 @@ constexpr int kWidth = 48, kHeight = 32;
 
 // Two panels under an environment and a light, in flakes, gloss and mirror; seen at a slant.
 struct World {
-  Mesh mesh = panels_mesh(2);
-  PrefilteredEnvironment env = constant_env({1, 0.8, 0.6}, {6, 40});
+  mesh::Mesh mesh = panels_mesh(2);
+  envmap::PrefilteredEnvironment env = constant_env({1, 0.8, 0.6}, {6, 40});
   Scene scene;
   View view{{{0.7, 0.4, 3}, {0, 0, 0}, {0, 1, 0}, 40}, kWidth, kHeight, 1, false};
 
   World() {
     env.lobes[1].map = cube_of(8, [](const Vec3& d) { return Vec3{1 + d.x, 1 + d.y, 1 + d.z}; });
-    LobeFit paint = matt({0.1, 0.2, 0.05});
+    paint::LobeFit paint = matt({0.1, 0.2, 0.05});
     paint.lobes = {
-        {6, {0.05, 0.1, 0.02}, {}}, {40, {0.2, 0.3, 0.1}, {0.1, 0.1, 0.1}}, {kMirrorExponent, {}, {1, 1, 1}}};
+        {6, {0.05, 0.1, 0.02}, {}}, {40, {0.2, 0.3, 0.1}, {0.1, 0.1, 0.1}}, {envmap::kMirrorExponent, {}, {1, 1, 1}}};
     scene.mesh = &mesh, scene.env = &env, scene.paints = {paint, matt({0.5, 0.1, 0.1})};
     scene.lights = {{normalized({1, 2, 3}), {1, 0.9, 0.8}}};
     scene.background = Background::kEnvironment;
@@ -33,14 +33,15 @@ struct World {
 };
 
 // The picture with the buffers, as read back from a file.
-AovFile buffers_of(const Frame& frame, const Mesh& mesh) {
-  AovFile file;
+image::AovFile buffers_of(const Frame& frame, const mesh::Mesh& mesh) {
+  image::AovFile file;
   file.path = "view.exr";
   file.image = frame.picture;
   for (const char* name : {"normal", "part"}) EXPECT_TRUE(add_aov(file.image, *frame.gbuffer, name, {}).ok());
   const Rays& rays = frame.gbuffer->rays;
   file.corner = rays.corner, file.right = rays.right, file.down = rays.down, file.has_rays = true;
-  for (const MeshPart& part : mesh.parts) file.parts.push_back(part.name), file.materials.push_back(part.material);
+  for (const mesh::MeshPart& part : mesh.parts)
+    file.parts.push_back(part.name), file.materials.push_back(part.material);
   return file;
 }
 
@@ -58,7 +59,7 @@ TEST(GbufferOf, shades_the_same_picture_without_the_mesh) {
   auto gbuffer = gbuffer_of(buffers_of(frame, world.mesh));
   ASSERT_TRUE(gbuffer.ok()) << gbuffer.error().message;
   EXPECT_EQ(gbuffer->data, frame.gbuffer->data);
-  Mesh parts_alone;
+  mesh::Mesh parts_alone;
   parts_alone.parts = world.mesh.parts;
   world.scene.mesh = &parts_alone;
   Renderer renderer = Renderer::shading(std::make_shared<const Gbuffer>(*std::move(gbuffer)));
@@ -75,16 +76,16 @@ TEST(GbufferOf, shades_the_same_picture_without_the_mesh) {
 
 TEST(GbufferOf, needs_normal_part_rays_and_the_names_of_parts) {
   const World world;
-  const AovFile good = buffers_of(drawn(world), world.mesh);
+  const image::AovFile good = buffers_of(drawn(world), world.mesh);
   for (const char* name : {"normal.Y", "part"}) {
-    AovFile bad = good;
+    image::AovFile bad = good;
     std::ranges::replace(bad.image.channel_names, std::string(name), std::string("other"));
     const auto gbuffer = gbuffer_of(bad);
     ASSERT_FALSE(gbuffer.ok());
     EXPECT_THAT(gbuffer.error().message, HasSubstr("view.exr: has no channel \"" + std::string(name)));
     EXPECT_THAT(gbuffer.error().message, HasSubstr("render-osmesa ... --aov"));
   }
-  AovFile bad = good;
+  image::AovFile bad = good;
   bad.has_rays = false;
   EXPECT_THAT(gbuffer_of(bad).error().message, HasSubstr("goniochrome:rays"));
   bad = good, bad.parts.clear();
@@ -93,17 +94,17 @@ TEST(GbufferOf, needs_normal_part_rays_and_the_names_of_parts) {
 
 TEST(GbufferOf, names_the_pixel_that_holds_no_normal_or_no_part) {
   const World world;
-  const AovFile good = buffers_of(drawn(world), world.mesh);
+  const image::AovFile good = buffers_of(drawn(world), world.mesh);
   const int x = kWidth / 2, y = kHeight / 2, normal = 4, part = 7;
   ASSERT_GT(good.image.pixel(x, y)[part], 0);
   for (const float value : {0.5F, 3.0F, -1.0F, std::numeric_limits<float>::quiet_NaN()}) {
-    AovFile bad = good;
+    image::AovFile bad = good;
     bad.image.pixel(x, y)[part] = value;
     const auto gbuffer = gbuffer_of(bad);
     ASSERT_FALSE(gbuffer.ok()) << value;
     EXPECT_THAT(gbuffer.error().message, HasSubstr("at pixel 24,16: the header names 2 parts"));
   }
-  AovFile bad = good;
+  image::AovFile bad = good;
   bad.image.pixel(x, y)[normal + 2] = 0.5F;
   EXPECT_THAT(gbuffer_of(bad).error().message, HasSubstr("the normal at pixel 24,16 has the length 0.5"));
 }
@@ -119,4 +120,4 @@ TEST(RendererShading, refuses_what_needs_the_mesh) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::render

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace goniochrome {
+namespace goniochrome::render {
 
 namespace {
 
@@ -35,9 +35,9 @@ Vec3 orbit_direction(double azimuth_deg, double elevation_deg) {
 // The mesh is enclosed by the upright cylinder about the middle of its box, so that the distance does not breathe while
 // the camera goes around. A point at (x, y) across and z toward the eye is in the picture where
 // distance >= z + max(|x|/(aspect t), |y|/t), t = tan(fov/2).
-Camera Camera::orbit(const Mesh& mesh, double azimuth_deg, double elevation_deg, double distance, double fov_deg,
+Camera Camera::orbit(const mesh::Mesh& mesh, double azimuth_deg, double elevation_deg, double distance, double fov_deg,
                      double aspect) {
-  const Box box = bounding_box(mesh);
+  const mesh::Box box = mesh::bounding_box(mesh);
   const Vec3 middle = 0.5 * (box.low + box.high);
   double radius = 0;
   for (const Vec3& p : mesh.positions) radius = std::max(radius, std::hypot(p.x - middle.x, p.z - middle.z));
@@ -76,7 +76,7 @@ Result<Rays> rays(const Camera& camera, int width, int height) {
 
 // With u = p - eye, d = u.forward and pixel size q: x = u.right/(d q) + width/2 pixels. Clip coordinates are
 // (2 x/width - 1) d and likewise for y (down), so a shift of the sampled point by s pixels moves the image by -s.
-std::array<float, 16> clip_matrix(const Camera& camera, const Rays& rays, int width, int height, const Box& box,
+std::array<float, 16> clip_matrix(const Camera& camera, const Rays& rays, int width, int height, const mesh::Box& box,
                                   double shift_x, double shift_y) {
   const Axes axes = axes_of(camera);
   const double pixel = length(rays.right);
@@ -101,4 +101,4 @@ std::array<float, 16> clip_matrix(const Camera& camera, const Rays& rays, int wi
           f(-dot(w, e))};
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::render

@@ -7,7 +7,7 @@
 #include "base/vec3.h"
 #include "mesh/mesh.h"
 
-namespace goniochrome {
+namespace goniochrome::render {
 
 // The direction of azimuth and elevation: azimuth 0 is +Z, growing toward +X; elevation 90 is +Y. Cameras and lights
 // use it alike.
@@ -20,7 +20,7 @@ struct Camera {
 
   // The camera on the orbit about the middle of the mesh's bounding box. At distance 1 the mesh just fits into a
   // picture of this aspect (width/height) from every azimuth; the distance is a factor.
-  static Camera orbit(const Mesh& mesh, double azimuth_deg, double elevation_deg, double distance, double fov_deg,
+  static Camera orbit(const mesh::Mesh& mesh, double azimuth_deg, double elevation_deg, double distance, double fov_deg,
                       double aspect);
 };
 
@@ -38,7 +38,7 @@ Result<Rays> rays(const Camera& camera, int width, int height);
 // The matrix, column by column, that takes a world point to OpenGL's clip space with y DOWN, so that window coordinates
 // are those of `rays`. `shift_x` and `shift_y` (pixels) move the sampled point of every pixel. Near and far enclose the
 // box.
-std::array<float, 16> clip_matrix(const Camera& camera, const Rays& rays, int width, int height, const Box& box,
+std::array<float, 16> clip_matrix(const Camera& camera, const Rays& rays, int width, int height, const mesh::Box& box,
                                   double shift_x, double shift_y);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::render

@@ -4,7 +4,7 @@
 
 #include "render/scenes_for_test.h"
 
-namespace goniochrome {
+namespace goniochrome::render {
 namespace {
 
 TEST(Camera, OrbitTurnsFromFrontToRightAndUp) {
@@ -60,7 +60,7 @@ TEST(Camera, UpperLeftIsUpperLeft) {
 
 // A car-like box: at distance 1 it is inside from everywhere, and from the side it nearly fills the picture.
 TEST(Camera, OrbitFitsFromEveryAzimuthAtOneDistance) {
-  Mesh mesh;
+  mesh::Mesh mesh;
   for (int corner = 0; corner < 8; ++corner) {
     mesh.positions.push_back(
         {(corner & 1) != 0 ? 2.0 : -2.0, (corner & 2) != 0 ? 1.4 : 0.0, (corner & 4) != 0 ? 0.8 : -0.8});
@@ -74,7 +74,7 @@ TEST(Camera, OrbitFitsFromEveryAzimuthAtOneDistance) {
       EXPECT_NEAR(length(camera.eye - camera.target), distance, 1e-9) << "must not breathe";
       const auto seen = rays(camera, 160, 90);
       ASSERT_TRUE(seen.ok());
-      const auto m = clip_matrix(camera, *seen, 160, 90, bounding_box(mesh), 0, 0);
+      const auto m = clip_matrix(camera, *seen, 160, 90, mesh::bounding_box(mesh), 0, 0);
       for (const Vec3& p : mesh.positions) {
         const double w = m[3] * p.x + m[7] * p.y + m[11] * p.z + m[15];
         const double x = (m[0] * p.x + m[4] * p.y + m[8] * p.z + m[12]) / w;
@@ -102,4 +102,4 @@ TEST(Camera, SilliesAreRefused) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::render

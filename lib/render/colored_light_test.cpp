@@ -7,16 +7,16 @@
 
 #include "render/renderer.h"
 
-namespace goniochrome {
+namespace goniochrome::render {
 namespace {
 
-Image box_picture(Renderer& renderer, const Mesh& mesh, const Rgb& light, const ReflectionOperator& reflection,
-                  Engine engine) {
+image::Image box_picture(Renderer& renderer, const mesh::Mesh& mesh, const color::Rgb& light,
+                         const color::ReflectionOperator& reflection, Engine engine) {
   Scene scene;
   scene.mesh = &mesh;
-  for (const MeshPart& part : mesh.parts) {
-    LobeFit paint;
-    paint.diffuse = (1 / M_PI) * (part.name == "Red" ? Rgb{0.55, 0.04, 0.03} : Rgb{0.7, 0.7, 0.7});
+  for (const mesh::MeshPart& part : mesh.parts) {
+    paint::LobeFit paint;
+    paint.diffuse = (1 / M_PI) * (part.name == "Red" ? color::Rgb{0.55, 0.04, 0.03} : color::Rgb{0.7, 0.7, 0.7});
     scene.paints.push_back(paint);
   }
   scene.lights = {{orbit_direction(30, 45), light}};
@@ -30,20 +30,22 @@ Image box_picture(Renderer& renderer, const Mesh& mesh, const Rgb& light, const 
 }
 
 TEST(ColoredLight, ARedWallStaysRedInCyanLight) {
-  const auto mesh = read_mesh(GONIOCHROME_TESTDATA "/box.obj");
+  const auto mesh = mesh::read_mesh(GONIOCHROME_TESTDATA "/box.obj");
   ASSERT_TRUE(mesh.ok()) << mesh.error().message;
   auto renderer = Renderer::create();
   ASSERT_TRUE(renderer.ok()) << renderer.error().message;
   for (const Engine engine : {Engine::kGl, Engine::kCpu}) {
-    const auto picture = [&](const Rgb& light, const ReflectionOperator& op) {
+    const auto picture = [&](const color::Rgb& light, const color::ReflectionOperator& op) {
       return box_picture(*renderer, *mesh, light, op, engine);
     };
-    const Image white = picture({1, 1, 1}, component_wise()), same = picture({1, 1, 1}, iso_rgb_operator());
+    const image::Image white = picture({1, 1, 1}, color::component_wise()),
+                       same = picture({1, 1, 1}, color::iso_rgb_operator());
     float largest = 0;
     for (std::size_t i = 0; i < white.data.size(); ++i)
       largest = std::max(largest, std::abs(white.data[i] - same.data[i]));
     EXPECT_LE(largest, 1e-6F);  // single precision
-    const Image plain = picture({0, 0.9, 1}, component_wise()), ours = picture({0, 0.9, 1}, iso_rgb_operator());
+    const image::Image plain = picture({0, 0.9, 1}, color::component_wise()),
+                       ours = picture({0, 0.9, 1}, color::iso_rgb_operator());
     const float *lost = plain.pixel(8, 32), *kept = ours.pixel(8, 32);  // on the left wall
     EXPECT_EQ(lost[0], 0);
     EXPECT_GT(kept[0], 3 * std::max(kept[1], kept[2]));
@@ -52,4 +54,4 @@ TEST(ColoredLight, ARedWallStaysRedInCyanLight) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::render

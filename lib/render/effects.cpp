@@ -6,10 +6,10 @@
 #include <numbers>
 
 #include "brdf/lobe_model.h"
-#include "render/lobe_curves.h"
-#include "render/surface_layer.h"
+#include "render/internal/lobe_curves.h"
+#include "render/textures/surface_layer.h"
 
-namespace goniochrome {
+namespace goniochrome::render {
 
 namespace {
 
@@ -26,12 +26,13 @@ class SlotValues {
 
   SlotValues(const WeightTable& table, const Effects& effects, double gloss_deg)
       : table_(table), effects_(effects), values_(static_cast<std::size_t>(table.slots)) {
-    if (effects.fresnel) fresnel_scale_ = 1 / fresnel_dielectric(std::cos(gloss_deg * kPi / 180), kCoatIndex);
+    if (effects.fresnel)
+      fresnel_scale_ = 1 / brdf::fresnel_dielectric(std::cos(gloss_deg * kPi / 180), brdf::kCoatIndex);
   }
 
   // `lit` is what lights meet. `node` counts the ends of the segments; a table of one segment has the view cos_o = 0 at
   // its start and 1 at its end.
-  const std::vector<Texel>& at(const LobeFit& paint, const LobeFit& lit, double cos_o, int node) {
+  const std::vector<Texel>& at(const paint::LobeFit& paint, const paint::LobeFit& lit, double cos_o, int node) {
     std::fill(values_.begin(), values_.end(), Texel{});
     if (effects_.diffuse) {
       set(WeightTable::diffuse_slot(), kPi * paint.diffuse);
@@ -39,13 +40,14 @@ class SlotValues {
     }
     for (std::size_t j = 0; j < effects_.lobes.size(); ++j) {
       const Effects::LobeUse& use = effects_.lobes[j];
-      const Lobe* lobe = find_lobe(paint, use.exponent);
+      const paint::Lobe* lobe = find_lobe(paint, use.exponent);
       if (lobe == nullptr) continue;
-      const Rgb flake = use.directional_diffuse ? lobe->directional_diffuse : Rgb{};
-      const Rgb gloss = use.gloss ? fresnel_scale_ * lobe->gloss : Rgb{};
+      const color::Rgb flake = use.directional_diffuse ? lobe->directional_diffuse : color::Rgb{};
+      const color::Rgb gloss = use.gloss ? fresnel_scale_ * lobe->gloss : color::Rgb{};
       const LobeIntegrals seen = table_.segments > 1 ? lobe_curve(use.exponent, table_.segments, effects_.horizon)[node]
                                                      : lobe_integrals(use.exponent, cos_o, false);
-      const Rgb by_flake = seen.cosine * flake, by_gloss = (effects_.fresnel ? seen.fresnel : seen.plain) * gloss;
+      const color::Rgb by_flake = seen.cosine * flake,
+                       by_gloss = (effects_.fresnel ? seen.fresnel : seen.plain) * gloss;
       set(WeightTable::lobe_slot(j), by_flake + by_gloss);
       if (is_shifted(effects_, use.exponent)) {
         const double f = sum(by_flake), g = sum(by_gloss);
@@ -53,22 +55,23 @@ class SlotValues {
         const double shift = seen.cosine_shift + share * (seen.plain_shift - seen.cosine_shift);
         values_[static_cast<std::size_t>(table_.shift_slot(j))][j % 4] = shift;
       }
-      const Lobe* met = find_lobe(lit, use.exponent);
+      const paint::Lobe* met = find_lobe(lit, use.exponent);
       if (met == nullptr) continue;
       if (use.directional_diffuse) set(table_.directional_diffuse_slot(j), met->directional_diffuse);
       if (use.gloss) set(table_.gloss_slot(j), fresnel_scale_ * met->gloss);
     }
-    const Lobe* mirror = effects_.mirror ? find_lobe(paint, kMirrorExponent) : nullptr;
+    const paint::Lobe* mirror = effects_.mirror ? find_lobe(paint, envmap::kMirrorExponent) : nullptr;
     const double seen_cos = effects_.fresnel ? cos_o : std::numbers::sqrt2 / 2;
-    if (mirror != nullptr) set(table_.mirror_slot(), fresnel_dielectric(seen_cos, kCoatIndex) * mirror->gloss);
+    if (mirror != nullptr)
+      set(table_.mirror_slot(), brdf::fresnel_dielectric(seen_cos, brdf::kCoatIndex) * mirror->gloss);
     return values_;
   }
 
  private:
-  void set(int slot, const Rgb& value) {
+  void set(int slot, const color::Rgb& value) {
     for (std::size_t c = 0; c < 3; ++c) values_[static_cast<std::size_t>(slot)][c] = value[static_cast<int>(c)];
   }
-  static double sum(const Rgb& c) { return std::abs(c.x) + std::abs(c.y) + std::abs(c.z); }
+  static double sum(const color::Rgb& c) { return std::abs(c.x) + std::abs(c.y) + std::abs(c.z); }
 
   const WeightTable& table_;
   const Effects& effects_;
@@ -77,13 +80,13 @@ class SlotValues {
 };
 
 void fill_part(const Scene& scene, const Effects& effects, std::size_t part, const WeightTable& table, float* rows) {
-  const LobeFit& paint = scene.paints[part];
+  const paint::LobeFit& paint = scene.paints[part];
   const bool with_views = effects.views && !paint.views.empty();
   SlotValues values(table, effects, gloss_deg_of(scene, part));
   std::vector<SlotValues::Texel> before;
   for (int node = 0; node <= table.segments; ++node) {
     const double x = static_cast<double>(node) / table.segments, cos_o = table.segments > 1 ? x * x : x;
-    const LobeFit here_paint = with_views ? at_view(paint, std::acos(cos_o) * 180 / kPi) : paint;
+    const paint::LobeFit here_paint = with_views ? brdf::at_view(paint, std::acos(cos_o) * 180 / kPi) : paint;
     const std::vector<SlotValues::Texel>& here = values.at(here_paint, effects.maps ? paint : here_paint, cos_o, node);
     if (node > 0) {
       for (std::size_t slot = 0; slot < here.size(); ++slot, rows += 8) {
@@ -97,29 +100,29 @@ void fill_part(const Scene& scene, const Effects& effects, std::size_t part, con
   }
 }
 
-bool is_anisotropic(const Anisotropy& alpha) {
+bool is_anisotropic(const paint::Anisotropy& alpha) {
   return alpha.alpha_x > 0 && alpha.alpha_x != alpha.alpha_y;
 }
 
-bool same_lobes(const std::vector<Lobe>& a, const std::vector<Lobe>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Lobe& x, const Lobe& y) {
+bool same_lobes(const std::vector<paint::Lobe>& a, const std::vector<paint::Lobe>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const paint::Lobe& x, const paint::Lobe& y) {
     return x.exponent == y.exponent && x.directional_diffuse == y.directional_diffuse && x.gloss == y.gloss;
   });
 }
 
-Anisotropy anisotropy_of(const Scene& scene, std::size_t part) {
-  return part < scene.anisotropy.size() ? scene.anisotropy[part] : Anisotropy{};
+paint::Anisotropy anisotropy_of(const Scene& scene, std::size_t part) {
+  return part < scene.anisotropy.size() ? scene.anisotropy[part] : paint::Anisotropy{};
 }
 
 }  // namespace
 
 bool same_wear(const Scene& scene, std::size_t a, std::size_t b) {
-  const LobeFit &x = scene.paints[a], &y = scene.paints[b];
-  const Anisotropy brushed_x = anisotropy_of(scene, a), brushed_y = anisotropy_of(scene, b);
+  const paint::LobeFit &x = scene.paints[a], &y = scene.paints[b];
+  const paint::Anisotropy brushed_x = anisotropy_of(scene, a), brushed_y = anisotropy_of(scene, b);
   return x.diffuse == y.diffuse && same_lobes(x.lobes, y.lobes) && gloss_deg_of(scene, a) == gloss_deg_of(scene, b) &&
          brushed_x.alpha_x == brushed_y.alpha_x && brushed_x.alpha_y == brushed_y.alpha_y &&
          std::equal(x.views.begin(), x.views.end(), y.views.begin(), y.views.end(),
-                    [](const ViewLobes& v, const ViewLobes& w) {
+                    [](const paint::ViewLobes& v, const paint::ViewLobes& w) {
                       return v.view_deg == w.view_deg && v.diffuse == w.diffuse && same_lobes(v.lobes, w.lobes);
                     });
 }
@@ -133,34 +136,34 @@ Effects effects_of(const Scene& scene) {
   bool gloss = effects.mirror;
   for (const double exponent : lobe_exponents(scene.paints)) {
     Effects::LobeUse use{exponent, false, false};
-    for (const LobeFit& paint : scene.paints) {
-      const Lobe* lobe = find_lobe(paint, exponent);
+    for (const paint::LobeFit& paint : scene.paints) {
+      const paint::Lobe* lobe = find_lobe(paint, exponent);
       if (lobe == nullptr) continue;
-      use.directional_diffuse |= lobe->directional_diffuse != Rgb{};
-      use.gloss |= lobe->gloss != Rgb{};
+      use.directional_diffuse |= lobe->directional_diffuse != color::Rgb{};
+      use.gloss |= lobe->gloss != color::Rgb{};
     }
     gloss |= use.gloss;
     effects.lobes.push_back(use);
   }
   effects.fresnel = gloss;
   effects.horizon = effects.environment && !effects.lobes.empty();
-  effects.views =
-      std::any_of(scene.paints.begin(), scene.paints.end(), [](const LobeFit& paint) { return !paint.views.empty(); });
+  effects.views = std::any_of(scene.paints.begin(), scene.paints.end(),
+                              [](const paint::LobeFit& paint) { return !paint.views.empty(); });
   effects.anisotropy =
       !effects.lobes.empty() && std::any_of(scene.anisotropy.begin(), scene.anisotropy.end(), is_anisotropic);
   effects.texture = scene.layer != nullptr && scene.layer->textured();
   effects.maps = scene.layer != nullptr && scene.layer->mapped();
-  effects.reflection = scene.reflection.k != component_wise().k;
+  effects.reflection = scene.reflection.k != color::component_wise().k;
   return effects;
 }
 
-LobeFit with_effects(const LobeFit& paint, const Effects& effects) {
-  LobeFit result = paint;
+paint::LobeFit with_effects(const paint::LobeFit& paint, const Effects& effects) {
+  paint::LobeFit result = paint;
   if (!effects.views) result.views.clear();
-  const auto strip = [&](Rgb& diffuse, std::vector<Lobe>& lobes) {
+  const auto strip = [&](color::Rgb& diffuse, std::vector<paint::Lobe>& lobes) {
     if (!effects.diffuse) diffuse = {};
-    std::erase_if(lobes, [&](Lobe& lobe) {
-      if (lobe.exponent == kMirrorExponent) return !effects.mirror;
+    std::erase_if(lobes, [&](paint::Lobe& lobe) {
+      if (lobe.exponent == envmap::kMirrorExponent) return !effects.mirror;
       const auto use = std::find_if(effects.lobes.begin(), effects.lobes.end(),
                                     [&](const Effects::LobeUse& u) { return u.exponent == lobe.exponent; });
       if (use == effects.lobes.end()) return true;
@@ -170,28 +173,30 @@ LobeFit with_effects(const LobeFit& paint, const Effects& effects) {
     });
   };
   strip(result.diffuse, result.lobes);
-  for (ViewLobes& view : result.views) strip(view.diffuse, view.lobes);
+  for (paint::ViewLobes& view : result.views) strip(view.diffuse, view.lobes);
   return result;
 }
 
-std::vector<std::vector<Tilt>> tilts_of(const Scene& scene, const Effects& effects) {
-  std::vector<std::vector<Tilt>> tilts(scene.paints.size(), {{{0, 0, 1}, 1}});
+std::vector<std::vector<brdf::Tilt>> tilts_of(const Scene& scene, const Effects& effects) {
+  std::vector<std::vector<brdf::Tilt>> tilts(scene.paints.size(), {{{0, 0, 1}, 1}});
   for (std::size_t part = 0; part < scene.anisotropy.size(); ++part) {
-    const Anisotropy& alpha = scene.anisotropy[part];
+    const paint::Anisotropy& alpha = scene.anisotropy[part];
     if (!(alpha.alpha_x > 0) || effects.lobes.empty()) continue;
     double sharpest = 0;
     for (const Effects::LobeUse& use : effects.lobes) {
-      const Lobe* lobe = find_lobe(scene.paints[part], use.exponent);
-      if (lobe != nullptr && (lobe->directional_diffuse != Rgb{} || lobe->gloss != Rgb{})) sharpest = use.exponent;
+      const paint::Lobe* lobe = find_lobe(scene.paints[part], use.exponent);
+      if (lobe != nullptr && (lobe->directional_diffuse != color::Rgb{} || lobe->gloss != color::Rgb{}))
+        sharpest = use.exponent;
     }
     if (sharpest == 0) continue;
     // The tilts must be close enough for the sharpest lobe, which may be narrower than the surface's narrow side: the
     // same spread, wide^2 - narrow^2, about that lobe.
     const double low = std::min(alpha.alpha_x, alpha.alpha_y), high = std::max(alpha.alpha_x, alpha.alpha_y);
-    const double narrow = std::min(low, lobe_alpha(sharpest)),
+    const double narrow = std::min(low, brdf::lobe_alpha(sharpest)),
                  wide = std::sqrt(high * high - low * low + narrow * narrow);
-    const Anisotropy fine = alpha.alpha_x < alpha.alpha_y ? Anisotropy{narrow, wide} : Anisotropy{wide, narrow};
-    auto set = ward_tilts(fine, narrow, effects.tilt_tolerance, effects.most_tilts);
+    const paint::Anisotropy fine =
+        alpha.alpha_x < alpha.alpha_y ? paint::Anisotropy{narrow, wide} : paint::Anisotropy{wide, narrow};
+    auto set = brdf::ward_tilts(fine, narrow, effects.tilt_tolerance, effects.most_tilts);
     if (set.ok()) tilts[part] = std::move(set->tilts);
   }
   return tilts;
@@ -222,4 +227,4 @@ WeightTable weight_table(const Scene& scene, const Effects& effects) {
   return table;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::render

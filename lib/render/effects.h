@@ -8,7 +8,7 @@
 #include "brdf/ward.h"
 #include "render/scene.h"
 
-namespace goniochrome {
+namespace goniochrome::render {
 
 // kGl and kCpu fetch prefiltered maps; kIntegral sums the environment itself.
 enum class Engine { kGl, kCpu, kIntegral };
@@ -47,10 +47,10 @@ Effects effects_of(const Scene& scene);
 bool same_wear(const Scene& scene, std::size_t a, std::size_t b);
 
 // A paint with the diffuse part, lobes, mirror and views that are on alone.
-LobeFit with_effects(const LobeFit& paint, const Effects& effects);
+paint::LobeFit with_effects(const paint::LobeFit& paint, const Effects& effects);
 
 // The tilted normals that each part's lobes are drawn about; a single one where the part is isotropic.
-std::vector<std::vector<Tilt>> tilts_of(const Scene& scene, const Effects& effects);
+std::vector<std::vector<brdf::Tilt>> tilts_of(const Scene& scene, const Effects& effects);
 
 // Weights are piecewise linear in the view: W = a + b t. Where no effect depends on the view there is one segment, with
 // t = n.wo itself; else kViewSegments of them, even in x = sqrt(n.wo), with t the part of a segment. Each part of the
@@ -88,4 +88,4 @@ struct WeightTable {
 WeightTable slots_of(const Effects& effects);
 WeightTable weight_table(const Scene& scene, const Effects& effects);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::render

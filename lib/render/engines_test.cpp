@@ -4,16 +4,16 @@
 
 #include "brdf/lobe_model.h"
 #include "color/color.h"
-#include "render/lobe_curves.h"
+#include "render/internal/lobe_curves.h"
 #include "render/renderer.h"
 #include "render/scenes_for_test.h"
 
-namespace goniochrome {
+namespace goniochrome::render {
 namespace {
 
 // Maps of many sizes, smooth but far from constant, so that wrong faces, seams, weights and classes all show.
-PrefilteredEnvironment uneven_env(const std::vector<double>& exponents, const std::vector<int>& sizes) {
-  PrefilteredEnvironment env = constant_env({1, 1, 1}, exponents);
+envmap::PrefilteredEnvironment uneven_env(const std::vector<double>& exponents, const std::vector<int>& sizes) {
+  envmap::PrefilteredEnvironment env = constant_env({1, 1, 1}, exponents);
   const auto radiance = [](double k) {
     return [k](const Vec3& d) {
       return Vec3{1 + 0.5 * std::sin(k * d.x), 0.7 + 0.3 * d.y * d.z + 0.2 * std::cos(k * d.z), 0.5 + 0.3 * d.x * d.y};
@@ -26,19 +26,20 @@ PrefilteredEnvironment uneven_env(const std::vector<double>& exponents, const st
   return env;
 }
 
-LobeFit rich_paint() {
-  LobeFit paint = matt({0.05, 0.1, 0.2});
+paint::LobeFit rich_paint() {
+  paint::LobeFit paint = matt({0.05, 0.1, 0.2});
   paint.lobes = {{1.3, {0.02, 0.01, 0.03}, {}},
                  {6, {0.05, 0.1, 0.2}, {0.01, 0.01, 0.01}},
                  {40, {0.3, 0.2, 0.1}, {0.2, 0.2, 0.2}},
                  {300, {0.5, 0.6, 0.1}, {}},
                  {3000, {}, {9, 9, 9}},
-                 {kMirrorExponent, {}, {0.6, 0.6, 0.6}}};
+                 {envmap::kMirrorExponent, {}, {0.6, 0.6, 0.6}}};
   return paint;
 }
 
-Lab lab_of(const float* pixel) {
-  return lab_from_xyz(xyz_d65_from_rgb({pixel[0], pixel[1], pixel[2]}), xyz_d65_from_rgb({1, 1, 1}));
+color::Lab lab_of(const float* pixel) {
+  return color::lab_from_xyz(color::xyz_d65_from_rgb({pixel[0], pixel[1], pixel[2]}),
+                             color::xyz_d65_from_rgb({1, 1, 1}));
 }
 
 // Draws with both engines and returns the largest dE00 of any pixel.
@@ -56,7 +57,7 @@ double disagreement(const Scene& scene, const Effects& effects, int samples) {
   for (int y = 0; y < 80; ++y) {
     for (int x = 0; x < 120; ++x) {
       const float *gl = frames[0].picture.pixel(x, y), *cpu = frames[1].picture.pixel(x, y);
-      worst = std::max(worst, delta_e_2000(lab_of(gl), lab_of(cpu)));
+      worst = std::max(worst, color::delta_e_2000(lab_of(gl), lab_of(cpu)));
       EXPECT_NEAR(gl[3], cpu[3], 1e-6);
       alpha = std::max<double>(alpha, gl[3]);
     }
@@ -69,16 +70,16 @@ double disagreement(const Scene& scene, const Effects& effects, int samples) {
 constexpr double kAgreed = 0.05;
 
 TEST(Engines, AgreeOnEveryEffectAlone) {
-  const Mesh mesh = sphere_mesh(96);
+  const mesh::Mesh mesh = sphere_mesh(96);
   const std::vector<double> exponents = {1.3, 6, 40, 300, 3000};
-  const PrefilteredEnvironment env = uneven_env(exponents, {32, 20, 44, 100, 64});
+  const envmap::PrefilteredEnvironment env = uneven_env(exponents, {32, 20, 44, 100, 64});
   const std::vector<Light> lights = {{normalized({1, 2, 3}), {1, 1, 1}}, {normalized({-3, -1, 2.5}), {0.4, 0.1, 0.6}}};
   Scene scene{&mesh, {rich_paint()}, &env, lights, Background::kNone, {}};
   const Effects all = effects_of(scene);
   Effects none;
   none.environment = true, none.diffuse = false;
   scene.anisotropy = {{0.05, 0.3}};
-  scene.reflection = working_space_operator();
+  scene.reflection = color::working_space_operator();
   std::vector<Effects> cases(13, none);
   cases[0].diffuse = true;
   cases[1].lobes = {{1.3, true, false}};
@@ -100,8 +101,8 @@ TEST(Engines, AgreeOnEveryEffectAlone) {
 }
 
 TEST(Engines, AgreeOnSamplesBackgroundsAndParts) {
-  const Mesh mesh = panels_mesh(3);
-  const PrefilteredEnvironment env = uneven_env({1.3, 6, 40, 300, 3000}, {32, 20, 44, 100, 64});
+  const mesh::Mesh mesh = panels_mesh(3);
+  const envmap::PrefilteredEnvironment env = uneven_env({1.3, 6, 40, 300, 3000}, {32, 20, 44, 100, 64});
   Scene scene{&mesh, {rich_paint(), matt({1, 0.5, 0.2}), only_mirror()}, &env, {Light{}}, Background::kNone, {}};
   for (const Background background : {Background::kNone, Background::kColor, Background::kEnvironment}) {
     scene.background = background;
@@ -112,11 +113,11 @@ TEST(Engines, AgreeOnSamplesBackgroundsAndParts) {
 
 // Operators of four forms and of six, with the environment behind the mesh, which must come out of its forms again.
 TEST(Engines, AgreeOnEveryOperator) {
-  const Mesh mesh = sphere_mesh(96);
-  const PrefilteredEnvironment env = uneven_env({1.3, 6, 40, 300, 3000}, {32, 20, 44, 100, 64});
+  const mesh::Mesh mesh = sphere_mesh(96);
+  const envmap::PrefilteredEnvironment env = uneven_env({1.3, 6, 40, 300, 3000}, {32, 20, 44, 100, 64});
   Scene scene{&mesh, {rich_paint()}, &env, {{normalized({1, 2, 3}), {1, 0.5, 0.2}}}, Background::kEnvironment, {}};
   scene.anisotropy = {{0.05, 0.3}};
-  for (const ReflectionOperator& op : {iso_rgb_operator(), five_form_operator()}) {
+  for (const color::ReflectionOperator& op : {color::iso_rgb_operator(), five_form_operator()}) {
     scene.reflection = op;
     EXPECT_LT(disagreement(scene, effects_of(scene), 1), kAgreed);
     scene.anisotropy.clear();
@@ -138,7 +139,7 @@ LobeIntegrals summed(double exponent, double cos_o) {
       const double power = std::pow(std::max(0.0, dot(r, w)), exponent) * 2 * std::numbers::pi / kRings / kAround;
       sum.cosine += power * z;
       sum.plain += power;
-      sum.fresnel += power * fresnel_dielectric(length(w + wo) / 2, kCoatIndex);
+      sum.fresnel += power * brdf::fresnel_dielectric(length(w + wo) / 2, brdf::kCoatIndex);
     }
   }
   return sum;
@@ -160,8 +161,8 @@ TEST(LobeCurves, HorizonIntegralsAreThoseOfTheHemisphere) {
 }
 
 TEST(Renderer, KeptViewsAndEditedPaintsDrawWhatFreshOnesDo) {
-  const Mesh mesh = sphere_mesh(64);
-  const PrefilteredEnvironment env = uneven_env({1.3, 6, 40, 300, 3000}, {32, 20, 44, 100, 64});
+  const mesh::Mesh mesh = sphere_mesh(64);
+  const envmap::PrefilteredEnvironment env = uneven_env({1.3, 6, 40, 300, 3000}, {32, 20, 44, 100, 64});
   Scene scene{&mesh, {rich_paint()}, &env, {}, Background::kNone, {}};
   const View view{Camera::orbit(mesh, 30, 20, 1, 30, 1), 64, 64, 4, true};
   for (const Engine engine : {Engine::kGl, Engine::kCpu}) {
@@ -183,4 +184,4 @@ TEST(Renderer, KeptViewsAndEditedPaintsDrawWhatFreshOnesDo) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::render

@@ -3,16 +3,16 @@
 #include <gtest/gtest.h>
 
 #include "envmap/environment.h"
-#include "render/reference.h"
+#include "render/exact.h"
 #include "render/renderer.h"
 #include "render/scenes_for_test.h"
 
-namespace goniochrome {
+namespace goniochrome::render {
 namespace {
 
 // A room: a bright strip in the ceiling, a blue window, a dark floor.
-Environment room() {
-  Image image{64, 32, 3, {}, {}};
+envmap::Environment room() {
+  image::Image image{64, 32, 3, {}, {}};
   for (int row = 0; row < 32; ++row) {
     for (int column = 0; column < 64; ++column) {
       const bool strip = row >= 4 && row < 8 && column % 32 > 6, window = row >= 10 && row < 16 && column < 12;
@@ -21,12 +21,12 @@ Environment room() {
       for (int c = 0; c < 3; ++c) image.data.push_back(static_cast<float>(light[c]));
     }
   }
-  return *Environment::from_lat_long(std::move(image), Environment::BadPixels::kError, "room");
+  return *envmap::Environment::from_lat_long(std::move(image), envmap::Environment::BadPixels::kError, "room");
 }
 
 struct Room {
   // The mean of the light, by cos^E about each direction: texels are points, no wider than a lobe.
-  CubeMap filtered(double exponent, int size) const {
+  envmap::CubeMap filtered(double exponent, int size) const {
     return cube_of(size, [&](const Vec3& d) {
       Vec3 sum;
       double whole = 0;
@@ -44,9 +44,9 @@ struct Room {
     });
   }
 
-  Environment source = room();
-  PrefilteredEnvironment env;
-  Mesh mesh = sphere_mesh(64);
+  envmap::Environment source = room();
+  envmap::PrefilteredEnvironment env;
+  mesh::Mesh mesh = sphere_mesh(64);
   View view{Camera::orbit(mesh, 30, 20, 1, 30, 1), 96, 96, 1, true};
   Room() {
     env = constant_env({0, 0, 0}, {1.3, 6, 60});
@@ -64,27 +64,27 @@ const Room& shared_room() {
   return room;
 }
 
-LobeFit wide_flakes() {
-  LobeFit paint = matt({0.02, 0.02, 0.03});
+paint::LobeFit wide_flakes() {
+  paint::LobeFit paint = matt({0.02, 0.02, 0.03});
   paint.lobes = {{1.3, {0.03, 0.03, 0.03}, {}}, {6, {0.12, 0.12, 0.13}, {}}, {60, {0.3, 0.3, 0.3}, {}}};
   return paint;
 }
 
-LobeFit coated(const Rgb& color) {
-  LobeFit paint = matt(color);
-  paint.lobes = {{60, {}, {0.5, 0.5, 0.5}}, {kMirrorExponent, {}, {1, 1, 1}}};
+paint::LobeFit coated(const color::Rgb& color) {
+  paint::LobeFit paint = matt(color);
+  paint.lobes = {{60, {}, {0.5, 0.5, 0.5}}, {envmap::kMirrorExponent, {}, {1, 1, 1}}};
   return paint;
 }
 
-LobeFit brushed_metal() {
-  LobeFit paint = matt({0.02, 0.02, 0.02});
+paint::LobeFit brushed_metal() {
+  paint::LobeFit paint = matt({0.02, 0.02, 0.02});
   paint.lobes = {{60, {3, 3, 3}, {}}};
   return paint;
 }
 
 // Blue seen straight on, red from the side.
-LobeFit traveling() {
-  LobeFit paint = matt({0.05, 0.05, 0.05});
+paint::LobeFit traveling() {
+  paint::LobeFit paint = matt({0.05, 0.05, 0.05});
   paint.lobes = {{6, {0.1, 0.1, 0.1}, {}}};
   paint.views = {{0, paint.diffuse, {{6, {0.02, 0.06, 0.2}, {}}}}, {70, paint.diffuse, {{6, {0.2, 0.05, 0.03}, {}}}}};
   return paint;
@@ -92,14 +92,14 @@ LobeFit traveling() {
 
 struct Matter {
   const char* effect;
-  LobeFit paint;
-  Anisotropy brushed = {};
-  ReflectionOperator reflection = component_wise();
+  paint::LobeFit paint;
+  paint::Anisotropy brushed = {};
+  color::ReflectionOperator reflection = color::component_wise();
   friend void PrintTo(const Matter& matter, std::ostream* out) { *out << matter.effect; }
 };
 
 std::vector<Matter> where_it_matters() {
-  const LobeFit red = matt({0.6, 0.05, 0.03}), flakes = wide_flakes();
+  const paint::LobeFit red = matt({0.6, 0.05, 0.03}), flakes = wide_flakes();
   return {{"diffuse", red},
           {"lobes", flakes},
           {"horizon", flakes},
@@ -108,7 +108,7 @@ std::vector<Matter> where_it_matters() {
           {"fresnel", coated({0.02, 0.02, 0.1})},
           {"anisotropy", brushed_metal(), {0.1, 0.3}},
           {"travel", traveling()},
-          {"operator", red, {}, working_space_operator()}};
+          {"operator", red, {}, color::working_space_operator()}};
 }
 
 class Estimates : public testing::TestWithParam<Matter> {};
@@ -171,4 +171,4 @@ TEST(HorizonAndCosine, LightComesFromWhereTheLobeGathersIt) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::render

@@ -2,10 +2,10 @@
 
 #include <cmath>
 
-#include "render/gl.h"
-#include "render/shader.h"
+#include "render/gl/gl.h"
+#include "render/gl/shader.h"
 
-namespace goniochrome {
+namespace goniochrome::render {
 
 int Gbuffer::part(int x, int y) const {
   return static_cast<int>(std::abs(at(x, y)[3])) - 1;
@@ -38,7 +38,7 @@ Result<Rasterizer> Rasterizer::create(const GlContext& gl) {
   return rasterizer;
 }
 
-void Rasterizer::upload(const Mesh& mesh) {
+void Rasterizer::upload(const mesh::Mesh& mesh) {
   const GlContext& gl = *gl_;
   const auto attribute = [&](GLuint buffer, GLuint index, const std::vector<Vec3>& values) {
     std::vector<float> floats;
@@ -53,7 +53,7 @@ void Rasterizer::upload(const Mesh& mesh) {
     gl.EnableVertexAttribArray(index);
   };
   mesh_ = &mesh;
-  box_ = bounding_box(mesh);
+  box_ = mesh::bounding_box(mesh);
   gl.BindVertexArray(vertex_array_);
   attribute(positions_, 0, mesh.positions);
   attribute(normals_, 1, mesh.normals);
@@ -95,7 +95,7 @@ void Rasterizer::draw(const Camera& camera, const Rays& rays, double shift_x, do
   gl.BindVertexArray(vertex_array_);
   const GLint part_location = gl.GetUniformLocation(program_, "part");
   for (std::size_t part = 0; part < mesh_->parts.size(); ++part) {
-    const MeshPart& range = mesh_->parts[part];
+    const mesh::MeshPart& range = mesh_->parts[part];
     gl.Uniform1i(part_location, static_cast<GLint>(part));
     gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * range.count), GL_UNSIGNED_INT,
                     reinterpret_cast<const void*>(range.first * sizeof(mesh_->triangles[0])));
@@ -110,4 +110,4 @@ void Rasterizer::read(Gbuffer& gbuffer) const {
   gl_->ReadPixels(0, 0, width_, height_, GL_RGBA, GL_FLOAT, gbuffer.data.data());
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::render

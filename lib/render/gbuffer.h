@@ -10,7 +10,7 @@
 #include "mesh/mesh.h"
 #include "render/camera.h"
 
-namespace goniochrome {
+namespace goniochrome::render {
 
 class GlContext;
 
@@ -38,7 +38,7 @@ class Rasterizer {
   static Result<Rasterizer> create(const GlContext& gl);
 
   // The mesh must outlive the drawing.
-  void upload(const Mesh& mesh);
+  void upload(const mesh::Mesh& mesh);
   Result<void> resize(int width, int height);
 
   // Draws the points of all pixels that `rays`, without their shift, and the shift (in pixels) name. The result stays
@@ -54,12 +54,12 @@ class Rasterizer {
   explicit Rasterizer(const GlContext& gl) : gl_(&gl) {}
 
   const GlContext* gl_;
-  const Mesh* mesh_ = nullptr;
+  const mesh::Mesh* mesh_ = nullptr;
   Rays drawn_;
   unsigned program_ = 0, vertex_array_ = 0, positions_ = 0, normals_ = 0, indices_ = 0;
   unsigned texture_ = 0, depth_ = 0, target_ = 0;
   int width_ = 0, height_ = 0;
-  Box box_;
+  mesh::Box box_;
 };
 
-}  // namespace goniochrome
+}  // namespace goniochrome::render

@@ -6,20 +6,20 @@
 #include <cstdlib>
 #include <string>
 
-#include "render/left_out.h"
-#include "render/reference.h"
+#include "render/exact.h"
+#include "render/internal/seen.h"
+#include "render/plan/left_out.h"
 #include "render/renderer.h"
 #include "render/scenes_for_test.h"
-#include "render/seen.h"
 
-namespace goniochrome {
+namespace goniochrome::render {
 namespace {
 
 constexpr double kExponents[] = {1.3, 6, 20, 70, 250, 900, 3000};
 
 struct BenchScene {
-  Mesh mesh;
-  PrefilteredEnvironment env;
+  mesh::Mesh mesh;
+  envmap::PrefilteredEnvironment env;
   Scene scene;
 };
 
@@ -27,15 +27,16 @@ struct BenchScene {
 std::unique_ptr<BenchScene> bench_scene(int lobes) {
   auto bench = std::make_unique<BenchScene>();
   const char* data = std::getenv("GONIOCHROME_DATA");  // the vehicle of 51k triangles, where there is one
-  auto mesh =
-      read_mesh(data != nullptr ? std::string(data) + "/mesh/vehicle.obj" : GONIOCHROME_TESTDATA "/speed-shape.obj");
+  auto mesh = mesh::read_mesh(data != nullptr ? std::string(data) + "/mesh/vehicle.obj"
+                                              : GONIOCHROME_TESTDATA "/speed-shape.obj");
   bench->mesh = mesh.ok() ? *std::move(mesh) : sphere_mesh();
   bench->env = constant_env({1, 1, 1}, {kExponents, kExponents + lobes});
-  for (PrefilteredLobe& lobe : bench->env.lobes) lobe.map = cube_of(128, [](const Vec3&) { return Vec3{1, 1, 1}; });
-  LobeFit paint;
+  for (envmap::PrefilteredLobe& lobe : bench->env.lobes)
+    lobe.map = cube_of(128, [](const Vec3&) { return Vec3{1, 1, 1}; });
+  paint::LobeFit paint;
   for (int j = 0; j < lobes; ++j) {
     const double weight = (kExponents[j] + 1) / (4 * std::numbers::pi);
-    paint.lobes.push_back({kExponents[j], weight * Rgb{1, 1, 1}, weight * Rgb{1, 1, 1}});
+    paint.lobes.push_back({kExponents[j], weight * color::Rgb{1, 1, 1}, weight * color::Rgb{1, 1, 1}});
   }
   bench->scene.mesh = &bench->mesh;
   bench->scene.env = &bench->env;
@@ -76,7 +77,7 @@ void time_frames(benchmark::State& state, bool view_moves) {
   double azimuth_deg = 35, gbuffer_ms = 0;
   for (auto _ : state) {
     if (view_moves) azimuth_deg += 3;
-    for (LobeFit& paint : bench->scene.paints) paint.diffuse.x += 1e-4;
+    for (paint::LobeFit& paint : bench->scene.paints) paint.diffuse.x += 1e-4;
     renderer->load_paints(bench->scene);
     if (!renderer->draw(bench_view(*bench, azimuth_deg, samples), frame).ok())
       return state.SkipWithError("nothing drawn");
@@ -161,7 +162,7 @@ void BM_Operator(benchmark::State& state) {
   double least_ms[2] = {1e9, 1e9};
   std::vector<Renderer> renderers;
   for (const bool bilinear : {false, true}) {
-    bench->scene.reflection = bilinear ? working_space_operator() : component_wise();
+    bench->scene.reflection = bilinear ? color::working_space_operator() : color::component_wise();
     if (disagreement(*bench, view) > 1e-3) return state.SkipWithError("the engines disagree");
     auto renderer = Renderer::create();
     if (!renderer.ok() || !renderer->load(bench->scene, engine).ok()) return state.SkipWithError("no renderer");
@@ -210,14 +211,15 @@ BENCHMARK(BM_Plan)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 // Points a second against an environment of 1024 x 512.
 void BM_Reference(benchmark::State& state) {
-  Image image{1024, 512, 3, std::vector<float>(1024 * 512 * 3, 1.0F), {}};
-  const auto env = Environment::from_lat_long(std::move(image), Environment::BadPixels::kError, "constant");
+  image::Image image{1024, 512, 3, std::vector<float>(1024 * 512 * 3, 1.0F), {}};
+  const auto env =
+      envmap::Environment::from_lat_long(std::move(image), envmap::Environment::BadPixels::kError, "constant");
   const auto bench = bench_scene(static_cast<int>(state.range(0)));
   const Vec3 n = normalized({1, 2, 3});
   const std::vector<SurfacePoint> points(64, {n, n, &bench->scene.paints.front()});
   double wanted = 0;
   for (int j = 0; j < state.range(0); ++j) wanted += 0.5 * (1 + (kExponents[j] + 1) / (kExponents[j] + 2));
-  std::vector<Rgb> radiance;
+  std::vector<color::Rgb> radiance;
   for (auto _ : state) radiance = reference_radiance(points, &*env, {});
   state.counters["rel_error"] = std::abs(radiance.front().x / wanted - 1);
   state.counters["points_per_s"] = benchmark::Counter(64, benchmark::Counter::kIsIterationInvariantRate);
@@ -225,6 +227,4 @@ void BM_Reference(benchmark::State& state) {
 BENCHMARK(BM_Reference)->Arg(1)->Arg(7)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
-}  // namespace goniochrome
-
-BENCHMARK_MAIN();
+}  // namespace goniochrome::render

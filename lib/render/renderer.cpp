@@ -4,14 +4,14 @@
 #include <optional>
 
 #include "base/clock.h"
-#include "render/cpu_engine.h"
-#include "render/gl.h"
-#include "render/gl_engine.h"
-#include "render/integral_engine.h"
-#include "render/shader.h"
-#include "render/surface_layer.h"
+#include "render/cpu/cpu_engine.h"
+#include "render/gl/gl.h"
+#include "render/gl/gl_engine.h"
+#include "render/gl/shader.h"
+#include "render/integral/integral_engine.h"
+#include "render/textures/surface_layer.h"
 
-namespace goniochrome {
+namespace goniochrome::render {
 
 namespace {
 
@@ -50,7 +50,7 @@ struct Renderer::State {
   Engine engine = Engine::kGl;
   Scene scene;
   Effects effects;
-  const Mesh* uploaded = nullptr;
+  const mesh::Mesh* uploaded = nullptr;
   std::size_t uploaded_triangles = 0;
 
   // The view drawn last: its G-buffers by sample (the first is that of the centers), and which one is in the texture.
@@ -67,12 +67,12 @@ struct Renderer::State {
   }
   Result<void> can_shade(const Scene& wanted, Engine by) const;
   Effects mapped() const;
-  void show(const Mesh& mesh);
+  void show(const mesh::Mesh& mesh);
   Result<void> look_at(const View& wanted);
   void rasterize(int sample);
   std::shared_ptr<const Gbuffer> gbuffer(int sample);
   const std::vector<TexturePlace>& places(int sample);
-  void shade(int sample, bool add, int samples, Image& rgba);
+  void shade(int sample, bool add, int samples, image::Image& rgba);
 };
 
 // What a G-buffer alone does not allow.
@@ -95,7 +95,7 @@ Effects Renderer::State::mapped() const {
   return behind;
 }
 
-void Renderer::State::show(const Mesh& mesh) {
+void Renderer::State::show(const mesh::Mesh& mesh) {
   if (!gl || (uploaded == &mesh && uploaded_triangles == mesh.triangles.size())) return;
   gl->rasterizer->upload(mesh);
   uploaded = &mesh, uploaded_triangles = mesh.triangles.size();
@@ -111,7 +111,7 @@ Result<void> Renderer::State::look_at(const View& wanted) {
   }
   GONIO_TRY(gl->rasterizer->resize(wanted.width, wanted.height));
   if (!view || !same_view(*view, wanted) || view->samples != wanted.samples) {
-    GONIO_ASSIGN(rays, goniochrome::rays(wanted.camera, wanted.width, wanted.height));
+    GONIO_ASSIGN(rays, goniochrome::render::rays(wanted.camera, wanted.width, wanted.height));
     in_texture = -1;
     for (std::shared_ptr<Gbuffer>& old : kept) {
       if (old.use_count() > 1) old.reset();  // a frame still has it
@@ -162,7 +162,7 @@ const std::vector<TexturePlace>& Renderer::State::places(int sample) {
   return placed[place];
 }
 
-void Renderer::State::shade(int sample, bool add, int samples, Image& rgba) {
+void Renderer::State::shade(int sample, bool add, int samples, image::Image& rgba) {
   if (engine != Engine::kGl) {
     const std::shared_ptr<const Gbuffer> of = gbuffer(sample);
     const float gain = 1.0F / static_cast<float>(samples);
@@ -263,7 +263,7 @@ void Renderer::load_paints(const Scene& scene) {
   s.gl->engine.load_paints(scene, table);
 }
 
-Result<std::shared_ptr<const Gbuffer>> Renderer::look(const Mesh& mesh, const View& view) {
+Result<std::shared_ptr<const Gbuffer>> Renderer::look(const mesh::Mesh& mesh, const View& view) {
   State& s = *state_;
   s.begin();
   s.show(mesh);
@@ -281,13 +281,13 @@ Result<void> Renderer::draw(const View& view, Frame& frame) {
   if (s.engine == Engine::kGl) GONIO_TRY(s.gl->engine.resize(view.width, view.height));
   frame.gbuffer = s.gbuffer(0);
   frame.gbuffer_ms = s.rasterization_ms;
-  const auto add_layer = [&](Image& image, int first, int count) {
+  const auto add_layer = [&](image::Image& image, int first, int count) {
     if (s.scene.layer == nullptr || s.engine == Engine::kIntegral) return;
     for (int i = first; i < first + count; ++i) {
       s.scene.layer->add(*s.gbuffer(i), s.places(i), s.effects, 1.0F / static_cast<float>(count), image);
     }
   };
-  const auto read = [&](Image& image, int samples) {
+  const auto read = [&](image::Image& image, int samples) {
     if (s.engine == Engine::kGl) {
       s.gl->engine.read(image);
       for (float& value : image.data) value /= static_cast<float>(samples);
@@ -298,7 +298,7 @@ Result<void> Renderer::draw(const View& view, Frame& frame) {
     s.shade(0, false, 1, frame.picture);
     read(frame.picture, 1);
     add_layer(frame.picture, 0, 1);
-    frame.centers = view.with_centers ? frame.picture : Image{};
+    frame.centers = view.with_centers ? frame.picture : image::Image{};
   }
   if (view.samples > 1) {
     for (int i = 1; i <= view.samples; ++i) s.shade(i, i > 1, view.samples, frame.picture);
@@ -315,4 +315,4 @@ Result<Frame> Renderer::draw(const Camera& camera, int width, int height, int sa
   return frame;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::render

@@ -11,10 +11,10 @@
 #include "render/camera.h"
 #include "render/effects.h"
 #include "render/gbuffer.h"
-#include "render/plan.h"
+#include "render/plan/plan.h"
 #include "render/scene.h"
 
-namespace goniochrome {
+namespace goniochrome::render {
 
 // What a picture is taken of: from where, and how finely.
 struct View {
@@ -25,8 +25,8 @@ struct View {
 };
 
 struct Frame {
-  Image picture;                           // R G B A, scene-linear radiance, premultiplied
-  Image centers;                           // the same, of the pixel centers alone; empty unless asked for
+  image::Image picture;                    // R G B A, scene-linear radiance, premultiplied
+  image::Image centers;                    // the same, of the pixel centers alone; empty unless asked for
   std::shared_ptr<const Gbuffer> gbuffer;  // of the pixel centers
   double gbuffer_ms = 0;                   // one rasterization; 0 where the view was seen before
   double frame_ms = 0;                     // everything but uploads
@@ -61,7 +61,7 @@ class Renderer {
   Result<Frame> draw(const Camera& camera, int width, int height, int samples, bool with_centers = false);
 
   // The mesh as it will be seen, before anything is shaded.
-  Result<std::shared_ptr<const Gbuffer>> look(const Mesh& mesh, const View& view);
+  Result<std::shared_ptr<const Gbuffer>> look(const mesh::Mesh& mesh, const View& view);
 
   // "llvmpipe (LLVM 15.0.6, 256 bits)"; "" without OpenGL
   std::string opengl() const;
@@ -74,4 +74,4 @@ class Renderer {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace goniochrome
+}  // namespace goniochrome::render

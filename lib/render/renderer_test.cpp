@@ -7,7 +7,7 @@
 #include "render/aov.h"
 #include "render/scenes_for_test.h"
 
-namespace goniochrome {
+namespace goniochrome::render {
 namespace {
 
 using testing::HasSubstr;
@@ -41,7 +41,7 @@ Frame drawn(const Scene& scene, const Camera& camera, int width, int height, int
 }
 
 double fresnel_share(double cos_o) {
-  return fresnel_dielectric(cos_o, kCoatIndex) / fresnel_dielectric(std::sqrt(0.5), kCoatIndex);
+  return brdf::fresnel_dielectric(cos_o, brdf::kCoatIndex) / brdf::fresnel_dielectric(std::sqrt(0.5), brdf::kCoatIndex);
 }
 
 template <class Body>
@@ -58,8 +58,8 @@ int for_each_visible(const Frame& frame, Body body) {
 }
 
 TEST(Renderer, WhiteMattPaintShowsTheConstantEnvironment) {
-  const Mesh mesh = sphere_mesh();
-  const PrefilteredEnvironment env = constant_env({0.25, 0.5, 2}, {});
+  const mesh::Mesh mesh = sphere_mesh();
+  const envmap::PrefilteredEnvironment env = constant_env({0.25, 0.5, 2}, {});
   Scene scene{&mesh, {matt({1, 1, 1})}, &env, {}, Background::kNone, {}};
   const Frame frame = drawn(scene, front(), 64, 64);
   const int visible = for_each_visible(frame, [](int x, int y, const float* pixel) {
@@ -73,13 +73,13 @@ TEST(Renderer, WhiteMattPaintShowsTheConstantEnvironment) {
 
 // The closed form of theory, RENDERING, in a constant environment: every P_E is 1.
 TEST(Renderer, FurnaceFollowsTheClosedForm) {
-  const Mesh mesh = sphere_mesh();
-  const PrefilteredEnvironment env = constant_env({1, 1, 1}, {2.5, 40, 3000});
-  LobeFit paint = matt({0.1, 0.2, 0.3});
+  const mesh::Mesh mesh = sphere_mesh();
+  const envmap::PrefilteredEnvironment env = constant_env({1, 1, 1}, {2.5, 40, 3000});
+  paint::LobeFit paint = matt({0.1, 0.2, 0.3});
   paint.lobes.push_back({2.5, {0.01, 0.02, 0.03}, {}});
   paint.lobes.push_back({40, {0.3, 0.2, 0.1}, {0.5, 0.5, 0.5}});
   paint.lobes.push_back({3000, {}, {20, 20, 20}});
-  paint.lobes.push_back({kMirrorExponent, {}, {0.9, 0.9, 0.9}});
+  paint.lobes.push_back({envmap::kMirrorExponent, {}, {0.9, 0.9, 0.9}});
   Scene scene{&mesh, {paint}, &env, {}, Background::kNone, {}};
   Effects effects = effects_of(scene);
   effects.horizon = false;
@@ -87,16 +87,16 @@ TEST(Renderer, FurnaceFollowsTheClosedForm) {
   const int visible = for_each_visible(frame, [&](int x, int y, const float* pixel) {
     const double c = dot(frame.gbuffer->normal(x, y), frame.gbuffer->to_viewer(x, y));
     for (int channel = 0; channel < 3; ++channel) {
-      double wanted = std::numbers::pi * paint.diffuse[channel] + 0.9 * fresnel_dielectric(c, kCoatIndex);
+      double wanted = std::numbers::pi * paint.diffuse[channel] + 0.9 * brdf::fresnel_dielectric(c, brdf::kCoatIndex);
       double pieces = 0.9 * kPieces;  // the cosine c = x^2 bends less
       for (int j = 0; j < 3; ++j) {
-        const Lobe& lobe = paint.lobes[static_cast<std::size_t>(j)];
+        const paint::Lobe& lobe = paint.lobes[static_cast<std::size_t>(j)];
         const double solid_angle = 2 * std::numbers::pi / (lobe.exponent + 1);
         wanted += (c * lobe.directional_diffuse[channel] + fresnel_share(c) * lobe.gloss[channel]) * solid_angle;
-        pieces +=
-            kPieces *
-            (lobe.directional_diffuse[channel] + lobe.gloss[channel] / fresnel_dielectric(std::sqrt(0.5), kCoatIndex)) *
-            solid_angle;
+        pieces += kPieces *
+                  (lobe.directional_diffuse[channel] +
+                   lobe.gloss[channel] / brdf::fresnel_dielectric(std::sqrt(0.5), brdf::kCoatIndex)) *
+                  solid_angle;
       }
       EXPECT_NEAR(pixel[channel], wanted, pieces + 1e-5 * wanted) << x << " " << y;
     }
@@ -107,9 +107,9 @@ TEST(Renderer, FurnaceFollowsTheClosedForm) {
 // Random texels show every mistake in the order, the turning or the flipping of faces, in the texel rule, at edges and
 // at corners.
 TEST(Renderer, MirrorShowsTheEnvironmentAsTheCubeMapHasIt) {
-  const Mesh mesh = sphere_mesh();
+  const mesh::Mesh mesh = sphere_mesh();
   TestNumbers random(7);
-  PrefilteredEnvironment env = constant_env({0, 0, 0}, {});
+  envmap::PrefilteredEnvironment env = constant_env({0, 0, 0}, {});
   env.mirror.map = cube_of(8, [&](const Vec3&) { return Vec3{random(), random(), random()}; });
   Scene scene{&mesh, {only_mirror()}, &env, {}, Background::kEnvironment, {}};
   int compared = 0;
@@ -120,8 +120,8 @@ TEST(Renderer, MirrorShowsTheEnvironmentAsTheCubeMapHasIt) {
         const bool seen = frame.gbuffer->part(x, y) >= 0;
         const Vec3 n = frame.gbuffer->normal(x, y), wo = frame.gbuffer->to_viewer(x, y);
         const Vec3 direction = seen ? 2 * dot(n, wo) * n - wo : -wo;
-        const Vec3 wanted =
-            (seen ? fresnel_dielectric(dot(n, wo), kCoatIndex) : 1) * bilinear(env.mirror.map, direction);
+        const Vec3 wanted = (seen ? brdf::fresnel_dielectric(dot(n, wo), brdf::kCoatIndex) : 1) *
+                            envmap::bilinear(env.mirror.map, direction);
         for (int c = 0; c < 3; ++c)
           EXPECT_NEAR(frame.centers.pixel(x, y)[c], wanted[c], 1e-4 + kPieces) << x << " " << y;
         ++compared;
@@ -133,13 +133,13 @@ TEST(Renderer, MirrorShowsTheEnvironmentAsTheCubeMapHasIt) {
 
 // One bright direction, and where a person would look for its reflection: half way between it and the viewer.
 TEST(Renderer, OneBrightTexelIsSeenOnItsOwnSide) {
-  const Mesh mesh = sphere_mesh();
+  const mesh::Mesh mesh = sphere_mesh();
   struct Case {
     Vec3 direction;
     int right, up;  // of the sphere's middle in the picture
   };
   for (const Case& one : {Case{{1, 0, 0}, 1, 0}, {{-1, 0, 0}, -1, 0}, {{0, 1, 0}, 0, 1}, {{0, -1, 0}, 0, -1}}) {
-    PrefilteredEnvironment env = constant_env({0, 0, 0}, {});
+    envmap::PrefilteredEnvironment env = constant_env({0, 0, 0}, {});
     env.mirror.map = cube_of(15, [&](const Vec3& d) {
       return dot(d, one.direction) > 0.9999 ? Vec3{1, 1, 1} : Vec3{};
     });
@@ -157,8 +157,8 @@ TEST(Renderer, OneBrightTexelIsSeenOnItsOwnSide) {
 }
 
 TEST(Renderer, LightsFollowTheExactBrdf) {
-  const Mesh mesh = sphere_mesh();
-  LobeFit paint = matt({0.1, 0.2, 0.3});
+  const mesh::Mesh mesh = sphere_mesh();
+  paint::LobeFit paint = matt({0.1, 0.2, 0.3});
   paint.lobes.push_back({0.3, {0.05, 0.02, 0.03}, {}});
   paint.lobes.push_back({25, {0.3, 0.2, 0.1}, {0.5, 0.5, 0.5}});
   paint.lobes.push_back({4000, {}, {200, 200, 200}});
@@ -172,14 +172,14 @@ TEST(Renderer, LightsFollowTheExactBrdf) {
   double brightest = 0;
   for_each_visible(frame, [&](int x, int y, const float* pixel) {
     const Vec3 n = frame.gbuffer->normal(x, y), wo = frame.gbuffer->to_viewer(x, y);
-    Rgb wanted;
+    color::Rgb wanted;
     for (const Light& light : scene.lights) {
       const double cos_i = std::max(0.0, dot(n, light.direction));
-      LobeFit here = paint;
-      for (Lobe& lobe : here.lobes) {
+      paint::LobeFit here = paint;
+      for (paint::Lobe& lobe : here.lobes) {
         lobe.gloss = fresnel_share(length(light.direction + wo) / 2) * lobe.gloss;
       }
-      wanted += std::numbers::pi * cos_i * (light.white * brdf(here, light.direction, wo, n));
+      wanted += std::numbers::pi * cos_i * (light.white * brdf::brdf(here, light.direction, wo, n));
     }
     brightest = std::max(brightest, wanted.x);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(pixel[c], wanted[c], 2e-4 * wanted[c] + 1e-6) << x << " " << y;
@@ -190,7 +190,7 @@ TEST(Renderer, LightsFollowTheExactBrdf) {
 // The normal of the ideal sphere that the pixel's ray meets. Interpolating exact normals over triangles of size h errs
 // by h^2/8 = 2e-5 rad at the middle, and the flat triangle moves the point by as much over the cosine.
 TEST(Renderer, SphereNormalsAreExact) {
-  const Mesh mesh = sphere_mesh();
+  const mesh::Mesh mesh = sphere_mesh();
   Scene scene{&mesh, {matt({1, 1, 1})}, nullptr, {Light{}}, Background::kNone, {}};
   const Camera camera = Camera::orbit(mesh, 30, 20, 1, 30, 1);
   const Frame frame = drawn(scene, camera, 128, 128);
@@ -207,8 +207,8 @@ TEST(Renderer, SphereNormalsAreExact) {
 }
 
 TEST(Renderer, EachPartWearsItsPaint) {
-  const Mesh mesh = panels_mesh(3);
-  const PrefilteredEnvironment env = constant_env({1, 1, 1}, {});
+  const mesh::Mesh mesh = panels_mesh(3);
+  const envmap::PrefilteredEnvironment env = constant_env({1, 1, 1}, {});
   Scene scene{
       &mesh, {matt({1, 0, 0}), matt({0, 1, 0}), matt({0, 0, 1})}, &env, {}, Background::kColor, {0.5, 0.25, 0.125}};
   const Frame frame = drawn(scene, front(4, 30), 120, 60);
@@ -224,9 +224,9 @@ TEST(Renderer, EachPartWearsItsPaint) {
 
 // Panels that share an edge leave no gap and no line between them, however the picture is turned and sampled.
 TEST(Renderer, PartsMeetWithoutASeam) {
-  const Mesh mesh = panels_mesh(7);
-  const PrefilteredEnvironment env = constant_env({1, 1, 1}, {});
-  Scene scene{&mesh, std::vector<LobeFit>(7, matt({0.5, 0.5, 0.5})), &env, {}, Background::kNone, {}};
+  const mesh::Mesh mesh = panels_mesh(7);
+  const envmap::PrefilteredEnvironment env = constant_env({1, 1, 1}, {});
+  Scene scene{&mesh, std::vector<paint::LobeFit>(7, matt({0.5, 0.5, 0.5})), &env, {}, Background::kNone, {}};
   for (const int samples : {1, 4, 16}) {
     Camera camera = front(1.2, 25);
     camera.eye = {0.3, 0.05, 1.2};
@@ -244,9 +244,9 @@ TEST(Renderer, PartsMeetWithoutASeam) {
 
 // An upright edge at a known place: coverage is resolved in as many steps as there are samples.
 TEST(Renderer, SamplesResolveCoverage) {
-  const Mesh mesh = panels_mesh(2);
-  const PrefilteredEnvironment env = constant_env({1, 1, 1}, {});
-  Scene scene{&mesh, std::vector<LobeFit>(2, matt({1, 1, 1})), &env, {}, Background::kNone, {}};
+  const mesh::Mesh mesh = panels_mesh(2);
+  const envmap::PrefilteredEnvironment env = constant_env({1, 1, 1}, {});
+  Scene scene{&mesh, std::vector<paint::LobeFit>(2, matt({1, 1, 1})), &env, {}, Background::kNone, {}};
   for (const int samples : {4, 16}) {
     for (const double part : {0.1, 0.3, 0.55, 0.9}) {
       Camera camera = front(1, 30);
@@ -264,7 +264,7 @@ TEST(Renderer, SamplesResolveCoverage) {
 }
 
 TEST(Renderer, BackSidesAreTurnedAndMarked) {
-  const Mesh mesh = sphere_mesh(32);
+  const mesh::Mesh mesh = sphere_mesh(32);
   Scene scene{&mesh, {matt({1, 1, 1})}, nullptr, {Light{}}, Background::kNone, {}};
   Camera camera;
   camera.eye = {0.1, 0, 0};
@@ -280,10 +280,10 @@ TEST(Renderer, BackSidesAreTurnedAndMarked) {
 }
 
 TEST(Renderer, MissingLobeNamesExponentAndCommand) {
-  const Mesh mesh = sphere_mesh(8);
-  PrefilteredEnvironment env = constant_env({1, 1, 1}, {6});
+  const mesh::Mesh mesh = sphere_mesh(8);
+  envmap::PrefilteredEnvironment env = constant_env({1, 1, 1}, {6});
   env.source = "hall.hdr";
-  LobeFit paint;
+  paint::LobeFit paint;
   paint.lobes.push_back({6, {1, 1, 1}, {}});
   paint.lobes.push_back({12.5, {}, {1, 1, 1}});
   paint.lobes.push_back({70, {}, {}});  // no weight: not needed
@@ -302,15 +302,15 @@ TEST(Renderer, MissingLobeNamesExponentAndCommand) {
 }
 
 TEST(Renderer, ShaderHoldsOnlyWhatTheSceneUses) {
-  const Mesh mesh = sphere_mesh(8);
-  const PrefilteredEnvironment env = constant_env({1, 1, 1}, {6, 20});
+  const mesh::Mesh mesh = sphere_mesh(8);
+  const envmap::PrefilteredEnvironment env = constant_env({1, 1, 1}, {6, 20});
   auto renderer = Renderer::create();
   ASSERT_TRUE(renderer.ok());
   ASSERT_TRUE(renderer->load({&mesh, {matt({1, 1, 1})}, &env, {}, Background::kNone, {}}).ok());
   for (const char* word : {"lobe_", "fresnel", "light", "cos_power", "mirror"}) {
     EXPECT_EQ(renderer->shader().find(word), std::string::npos) << word;
   }
-  LobeFit paint = only_mirror();
+  paint::LobeFit paint = only_mirror();
   paint.lobes.insert(paint.lobes.begin(), {20, {1, 1, 1}, {1, 1, 1}});
   ASSERT_TRUE(renderer->load({&mesh, {paint}, &env, {Light{}}, Background::kNone, {}}).ok());
   for (const char* word : {"lobe_0", "fresnel", "light", "cos_power", "mirror", "E = 20"}) {
@@ -320,9 +320,9 @@ TEST(Renderer, ShaderHoldsOnlyWhatTheSceneUses) {
 }
 
 TEST(Renderer, OneRendererDrawsManyScenesAndSizes) {
-  const Mesh mesh = sphere_mesh(64), panels = panels_mesh(2);
-  const PrefilteredEnvironment env = constant_env({1, 1, 1}, {6});
-  LobeFit paint = matt({0.5, 0.5, 0.5});
+  const mesh::Mesh mesh = sphere_mesh(64), panels = panels_mesh(2);
+  const envmap::PrefilteredEnvironment env = constant_env({1, 1, 1}, {6});
+  paint::LobeFit paint = matt({0.5, 0.5, 0.5});
   paint.lobes.push_back({6, {0.1, 0.1, 0.1}, {}});
   auto renderer = Renderer::create();
   ASSERT_TRUE(renderer.ok());
@@ -339,10 +339,10 @@ TEST(Renderer, OneRendererDrawsManyScenesAndSizes) {
 }
 
 TEST(Aov, BuffersHoldWhatWasSeen) {
-  const Mesh mesh = panels_mesh(1);
+  const mesh::Mesh mesh = panels_mesh(1);
   Scene scene{&mesh, {matt({1, 1, 1})}, nullptr, {{normalized({0, 1, 1}), {1, 1, 1}}}, Background::kNone, {}};
   const Frame frame = drawn(scene, front(4, 30), 41, 41);
-  Image picture = frame.picture;
+  image::Image picture = frame.picture;
   for (const char* name : {"normal", "aspecular", "lambert", "mask", "part"}) {
     ASSERT_TRUE(add_aov(picture, *frame.gbuffer, name, scene.lights[0].direction).ok());
   }
@@ -361,4 +361,4 @@ TEST(Aov, BuffersHoldWhatWasSeen) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::render

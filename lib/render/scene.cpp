@@ -5,24 +5,24 @@
 
 #include "color/color.h"
 
-namespace goniochrome {
+namespace goniochrome::render {
 
 namespace {
 
-bool has_weight(const Lobe& lobe) {
-  return lobe.directional_diffuse != Rgb{} || lobe.gloss != Rgb{};
+bool has_weight(const paint::Lobe& lobe) {
+  return lobe.directional_diffuse != color::Rgb{} || lobe.gloss != color::Rgb{};
 }
 
-double luminance(const Rgb& rgb) {
-  return xyz_d65_from_rgb(rgb).Y;
+double luminance(const color::Rgb& rgb) {
+  return color::xyz_d65_from_rgb(rgb).Y;
 }
 
 }  // namespace
 
-std::vector<double> lobe_exponents(const std::vector<LobeFit>& paints) {
+std::vector<double> lobe_exponents(const std::vector<paint::LobeFit>& paints) {
   std::vector<double> exponents;
-  for (const LobeFit& paint : paints) {
-    for (const Lobe& lobe : paint.lobes) {
+  for (const paint::LobeFit& paint : paints) {
+    for (const paint::Lobe& lobe : paint.lobes) {
       if (std::isfinite(lobe.exponent) && has_weight(lobe)) exponents.push_back(lobe.exponent);
     }
   }
@@ -31,20 +31,20 @@ std::vector<double> lobe_exponents(const std::vector<LobeFit>& paints) {
   return exponents;
 }
 
-bool has_mirror(const std::vector<LobeFit>& paints) {
-  return std::any_of(paints.begin(), paints.end(), [](const LobeFit& paint) {
-    const Lobe* mirror = find_lobe(paint, kMirrorExponent);
+bool has_mirror(const std::vector<paint::LobeFit>& paints) {
+  return std::any_of(paints.begin(), paints.end(), [](const paint::LobeFit& paint) {
+    const paint::Lobe* mirror = find_lobe(paint, envmap::kMirrorExponent);
     return mirror != nullptr && has_weight(*mirror);
   });
 }
 
-const Lobe* find_lobe(const LobeFit& paint, double exponent) {
-  const auto at =
-      std::find_if(paint.lobes.begin(), paint.lobes.end(), [&](const Lobe& lobe) { return lobe.exponent == exponent; });
+const paint::Lobe* find_lobe(const paint::LobeFit& paint, double exponent) {
+  const auto at = std::find_if(paint.lobes.begin(), paint.lobes.end(),
+                               [&](const paint::Lobe& lobe) { return lobe.exponent == exponent; });
   return at == paint.lobes.end() ? nullptr : &*at;
 }
 
-DiffuseWhite diffuse_white(const PrefilteredEnvironment* env, const std::vector<Light>& lights) {
+DiffuseWhite diffuse_white(const envmap::PrefilteredEnvironment* env, const std::vector<Light>& lights) {
   DiffuseWhite white;
   const int n = env != nullptr ? env->diffuse.map.size : 0;
   for (int face = 0; face < 6; ++face) {
@@ -53,7 +53,7 @@ DiffuseWhite diffuse_white(const PrefilteredEnvironment* env, const std::vector<
         const float* texel = env->diffuse.map.at(face, row, column);
         const double y = luminance({texel[0], texel[1], texel[2]});
         if (y <= white.luminance) continue;
-        white = {y, cube_direction(face, column + 0.5, row + 0.5, n)};
+        white = {y, envmap::cube_direction(face, column + 0.5, row + 0.5, n)};
       }
     }
   }
@@ -61,4 +61,4 @@ DiffuseWhite diffuse_white(const PrefilteredEnvironment* env, const std::vector<
   return white;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::render

@@ -6,13 +6,14 @@
 #include <functional>
 #include <numbers>
 
+#include "base/random_for_test.h"
 #include "render/scene.h"
 
-namespace goniochrome {
+namespace goniochrome::render {
 
 // A sphere of radius 1 with exact normals. The chord between two rows bends away by h^2/8, h = pi/rows.
-inline Mesh sphere_mesh(int rows = 256) {
-  Mesh mesh;
+inline mesh::Mesh sphere_mesh(int rows = 256) {
+  mesh::Mesh mesh;
   const int columns = 2 * rows;
   for (int i = 0; i <= rows; ++i) {
     for (int j = 0; j <= columns; ++j) {
@@ -33,8 +34,8 @@ inline Mesh sphere_mesh(int rows = 256) {
 }
 
 // Squares side by side along x from -n/2 to n/2, -.5 to .5 in y, facing +Z; one part each, "panel-0" ...
-inline Mesh panels_mesh(int n) {
-  Mesh mesh;
+inline mesh::Mesh panels_mesh(int n) {
+  mesh::Mesh mesh;
   for (int i = 0; i <= n; ++i) {
     for (const double y : {-0.5, 0.5}) {
       mesh.positions.push_back({i - 0.5 * n, y, 0});
@@ -50,12 +51,12 @@ inline Mesh panels_mesh(int n) {
   return mesh;
 }
 
-inline CubeMap cube_of(int size, const std::function<Vec3(const Vec3& direction)>& radiance) {
-  CubeMap map(size);
+inline envmap::CubeMap cube_of(int size, const std::function<Vec3(const Vec3& direction)>& radiance) {
+  envmap::CubeMap map(size);
   for (int face = 0; face < 6; ++face) {
     for (int row = 0; row < size; ++row) {
       for (int column = 0; column < size; ++column) {
-        const Vec3 value = radiance(cube_direction(face, column + 0.5, row + 0.5, size));
+        const Vec3 value = radiance(envmap::cube_direction(face, column + 0.5, row + 0.5, size));
         for (int c = 0; c < 3; ++c) map.at(face, row, column)[c] = static_cast<float>(value[c]);
       }
     }
@@ -64,11 +65,11 @@ inline CubeMap cube_of(int size, const std::function<Vec3(const Vec3& direction)
 }
 
 // The same everywhere, for these exponents: prefiltering leaves it alone.
-inline PrefilteredEnvironment constant_env(const Vec3& radiance, const std::vector<double>& exponents) {
-  const CubeMap map = cube_of(4, [&](const Vec3&) { return radiance; });
-  PrefilteredEnvironment env;
+inline envmap::PrefilteredEnvironment constant_env(const Vec3& radiance, const std::vector<double>& exponents) {
+  const envmap::CubeMap map = cube_of(4, [&](const Vec3&) { return radiance; });
+  envmap::PrefilteredEnvironment env;
   env.diffuse.map = env.mirror.map = map;
-  env.mirror.exponent = kMirrorExponent;
+  env.mirror.exponent = envmap::kMirrorExponent;
   for (const double exponent : exponents) {
     env.lobes.emplace_back();
     env.lobes.back().exponent = exponent;
@@ -78,45 +79,32 @@ inline PrefilteredEnvironment constant_env(const Vec3& radiance, const std::vect
   return env;
 }
 
-inline LobeFit matt(const Rgb& reflectance) {
-  LobeFit paint;
+inline paint::LobeFit matt(const color::Rgb& reflectance) {
+  paint::LobeFit paint;
   paint.diffuse = (1 / std::numbers::pi) * reflectance;
   return paint;
 }
 
-inline LobeFit only_mirror(double weight = 1) {
-  LobeFit paint;
-  paint.lobes.push_back({kMirrorExponent, {}, {weight, weight, weight}});
+inline paint::LobeFit only_mirror(double weight = 1) {
+  paint::LobeFit paint;
+  paint.lobes.push_back({envmap::kMirrorExponent, {}, {weight, weight, weight}});
   return paint;
 }
 
 // The product of polynomials in s up to s^2, with s^3 = 0, needs five forms; in coordinates where 1 is white.
-inline ReflectionOperator five_form_operator() {
-  const Matrix3 to_rgb = {{{1, 0, 0}, {1, 1, 0}, {1, 0, 1}}}, from_rgb = {{{1, 0, 0}, {-1, 1, 0}, {-1, 0, 1}}};
-  ReflectionOperator op;
+inline color::ReflectionOperator five_form_operator() {
+  const color::Matrix3 to_rgb = {{{1, 0, 0}, {1, 1, 0}, {1, 0, 1}}}, from_rgb = {{{1, 0, 0}, {-1, 1, 0}, {-1, 0, 1}}};
+  color::ReflectionOperator op;
   for (std::size_t d = 0; d < 3; ++d) {
     for (std::size_t e = 0; e < 3; ++e) {
-      Rgb polynomial;
+      color::Rgb polynomial;
       for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t j = 0; i + j < 3; ++j) polynomial[static_cast<int>(i + j)] += from_rgb[i][d] * from_rgb[j][e];
-      const Rgb color = product(to_rgb, polynomial);
+      const color::Rgb color = color::product(to_rgb, polynomial);
       for (std::size_t c = 0; c < 3; ++c) op.k[c][d][e] = color[static_cast<int>(c)];
     }
   }
   return op;
 }
 
-// Evenly distributed numbers in [0,1), the same on every machine.
-class TestNumbers {
- public:
-  explicit TestNumbers(std::uint64_t seed) : state_(seed) {}
-  double operator()() {
-    state_ = state_ * 6364136223846793005U + 1442695040888963407U;
-    return static_cast<double>(state_ >> 11) * 0x1p-53;
-  }
-
- private:
-  std::uint64_t state_;
-};
-
-}  // namespace goniochrome
+}  // namespace goniochrome::render

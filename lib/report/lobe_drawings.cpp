@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace goniochrome {
+namespace goniochrome::report {
 
 namespace {
 
@@ -170,4 +170,4 @@ Vec3 hemisphere_direction(double x, double y) {
   return {sine * std::cos(azimuth), sine * std::sin(azimuth), z};
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::report

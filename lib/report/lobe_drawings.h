@@ -8,7 +8,7 @@
 #include "base/vec3.h"
 #include "report/plot.h"
 
-namespace goniochrome {
+namespace goniochrome::report {
 
 // Values over the angle from the normal in one plane, -90 deg at the left to 90 deg at the right.
 struct PolarSeries {
@@ -35,4 +35,4 @@ Drawing square_drawing(const std::string& title, int n, const std::function<Vec3
 // the hemisphere by equal areas): the normal in the middle, grazing directions on the border.
 Vec3 hemisphere_direction(double x, double y);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::report

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace goniochrome {
+namespace goniochrome::report {
 
 namespace {
 
@@ -37,7 +37,7 @@ class Scale {
     const double part = logarithmic_ ? std::log(v / low_) / std::log(high_ / low_) : (v - low_) / (high_ - low_);
     return from_ + (to_ - from_) * part;
   }
-  std::vector<double> ticks(int count) const { return goniochrome::ticks(low_, high_, logarithmic_, count); }
+  std::vector<double> ticks(int count) const { return goniochrome::report::ticks(low_, high_, logarithmic_, count); }
 
  private:
   // A little air around the data, and room where all values are one.
@@ -262,4 +262,4 @@ std::string svg(const Plot& plot) {
   return svg(std::vector<Plot>{plot}, 1);
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::report

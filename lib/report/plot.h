@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace goniochrome {
+namespace goniochrome::report {
 
 struct Axis {
   std::string label;                          // with its unit: "aspecular angle (deg)"
@@ -52,4 +52,4 @@ std::string escaped(const std::string& text);
 // logarithmic axis the powers of ten, and 2 and 5 times them where those alone would be few.
 std::vector<double> ticks(double low, double high, bool logarithmic, int count);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::report

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace goniochrome {
+namespace goniochrome::report {
 namespace {
 
 TEST(Plot, TicksAreRoundNumbersInsideTheAxis) {
@@ -78,4 +78,4 @@ TEST(Plot, SheetHoldsEveryPlot) {
 }
 
 }  // namespace
-}  // namespace goniochrome
+}  // namespace goniochrome::report

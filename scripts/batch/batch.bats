@@ -36,7 +36,7 @@ setup() {
   [ "$(jq .pictures one/report.json)" -eq 8 ]
   [ "$(find one/pictures -name '*.png' | wc -l)" -eq 8 ]
   file one/pictures/*/000000.png | grep -q '64 x 48'
-  xmllint --noout --schema "$TESTDATA/../lib/paint/paint.xsd" one/fitted.paints.xml
+  xmllint --noout --schema "$TESTDATA/../lib/formats/paint.xsd" one/fitted.paints.xml
 }
 
 @test "bad paints are reported by name and are not fatal" {

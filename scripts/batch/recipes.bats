@@ -10,7 +10,7 @@ setup_file() {
   cd "$BATS_FILE_TMPDIR"
   mkdir data
   ln -s "$TESTDATA" data/testdata
-  cp "$TESTDATA/../lib/paint/paint.xsd" data
+  cp "$TESTDATA/../lib/formats/paint.xsd" data
   paint-stats -q -f paints -w 'class==solid' "$TESTDATA/paints.paints.xml" >library.paints.xml
   check references
 }

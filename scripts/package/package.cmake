@@ -2,7 +2,7 @@
 
 # The tools' own files are the component "tools", which the package holds; the library for other programs is
 # "development", which `cmake --install` adds.
-set(modules base math color paint brdf image envmap mesh fit render report)
+set(modules base math color paint formats library brdf image display envmap prefilter mesh fit render panels sketch report)
 foreach(module ${modules})
   set_target_properties(goniochrome_${module} PROPERTIES EXPORT_NAME ${module})
   target_include_directories(goniochrome_${module} PUBLIC $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/goniochrome>)

@@ -6,25 +6,26 @@
 #include "base/clock.h"
 #include "paint/metrics.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
 // CIELAB hue difference, signed: what remains of the distance in the a*b* plane when the chroma difference is taken
 // off.
-double hue_difference(const Lab& x, const Lab& y) {
+double hue_difference(const color::Lab& x, const color::Lab& y) {
   const double turn = std::atan2(y.a * x.b - y.b * x.a, x.a * y.a + x.b * y.b);
-  return 2 * std::sqrt(chroma(x) * chroma(y)) * std::sin(turn / 2);
+  return 2 * std::sqrt(color::chroma(x) * color::chroma(y)) * std::sin(turn / 2);
 }
 
-Neighbor neighbor_of(LibraryMatch match, const SearchPlan& plan, ColorMetric metric) {
+Neighbor neighbor_of(library::LibraryMatch match, const library::SearchPlan& plan, library::ColorMetric metric) {
   Neighbor neighbor;
   double weight = 0;
   for (std::size_t i = 0; i < plan.terms.size(); ++i) {
-    const Lab &query = plan.terms[i].lab, &found = match.lab[i];
-    neighbor.de.push_back(metric == ColorMetric::kDe76 ? delta_e_76(query, found) : delta_e_2000(query, found));
+    const color::Lab &query = plan.terms[i].lab, &found = match.lab[i];
+    neighbor.de.push_back(metric == library::ColorMetric::kDe76 ? color::delta_e_76(query, found)
+                                                                : color::delta_e_2000(query, found));
     neighbor.dL += query.L - found.L;
-    neighbor.dC += chroma(query) - chroma(found);
+    neighbor.dC += color::chroma(query) - color::chroma(found);
     neighbor.dH += hue_difference(query, found);
     weight += plan.terms[i].weight;
   }
@@ -47,26 +48,26 @@ double signed_hue_shift(double hue_shift_index, double hue_travel_deg) {
   return std::copysign(hue_shift_index, std::sin(hue_travel_deg * (std::numbers::pi / 180)));
 }
 
-Finding finding_of(const Paint& query, SearchPlan plan, const LibrarySearch& search, const LibraryIndex& index,
-                   ColorMetric metric, const FindingLimits& limits) {
+Finding finding_of(const paint::Paint& query, library::SearchPlan plan, const library::LibrarySearch& search,
+                   const library::LibraryIndex& index, library::ColorMetric metric, const FindingLimits& limits) {
   Finding finding;
   finding.query = query.name;
   const Stopwatch searching;
-  std::vector<LibraryMatch> matches = search.nearest(plan);
+  std::vector<library::LibraryMatch> matches = search.nearest(plan);
   finding.search_s = searching.elapsed_s();
-  for (LibraryMatch& match : matches) finding.neighbors.push_back(neighbor_of(std::move(match), plan, metric));
+  for (library::LibraryMatch& match : matches) finding.neighbors.push_back(neighbor_of(std::move(match), plan, metric));
   finding.plan = std::move(plan);
-  finding.hue_shift = finding.matched_hue_shift = PaintMetrics::kNone;
+  finding.hue_shift = finding.matched_hue_shift = paint::PaintMetrics::kNone;
   if (finding.no_match()) return finding;
 
   const Neighbor& nearest = finding.neighbors.front();
   finding.outside = nearest.mean_de > limits.outside;
-  if (const auto numbers = metrics(query, CurveFit::kWhereNeeded); numbers.ok())
+  if (const auto numbers = paint::metrics(query, paint::CurveFit::kWhereNeeded); numbers.ok())
     finding.hue_shift = signed_hue_shift(numbers->hue_shift_index, numbers->hue_travel_deg);
-  const auto of_match = [&](const char* name) { return index.metric(nearest.match.paint, *find_metric(name)); };
+  const auto of_match = [&](const char* name) { return index.metric(nearest.match.paint, *paint::find_metric(name)); };
   finding.matched_hue_shift = signed_hue_shift(of_match("hue_shift_index"), of_match("hue_travel_deg"));
   finding.off_radial = std::abs(finding.hue_shift - finding.matched_hue_shift) > limits.off_radial;
   return finding;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

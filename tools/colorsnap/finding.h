@@ -4,13 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "paint/search_library.h"
+#include "library/search_library.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 // One library paint beside the query. Differences are query less match, means over the geometries.
 struct Neighbor {
-  LibraryMatch match;
+  library::LibraryMatch match;
   double mean_de = 0;             // distance per unit of weight
   double dL = 0, dC = 0, dH = 0;  // CIELAB lightness, chroma and hue difference
   std::vector<double> de;         // at each geometry, without weight
@@ -18,7 +18,7 @@ struct Neighbor {
 
 struct Finding {
   std::string query;
-  SearchPlan plan;
+  library::SearchPlan plan;
   std::vector<Neighbor> neighbors;              // nearest first
   double hue_shift = 0, matched_hue_shift = 0;  // NaN where there is none
   bool outside = false, off_radial = false;
@@ -39,7 +39,7 @@ struct FindingLimits {
 };
 
 // Searches and judges. `query` must be the paint of the plan. Safe to call from several threads.
-Finding finding_of(const Paint& query, SearchPlan plan, const LibrarySearch& search, const LibraryIndex& index,
-                   ColorMetric metric, const FindingLimits& limits);
+Finding finding_of(const paint::Paint& query, library::SearchPlan plan, const library::LibrarySearch& search,
+                   const library::LibraryIndex& index, library::ColorMetric metric, const FindingLimits& limits);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

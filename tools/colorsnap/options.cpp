@@ -5,20 +5,20 @@
 #include "base/text.h"
 #include "paint/metrics_filter.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
-Result<Geometry> geometry_of(const char* option, std::string_view text) {
-  auto geometry = parse_geometry(trimmed(text));
+Result<paint::Geometry> geometry_of(const char* option, std::string_view text) {
+  auto geometry = paint::parse_geometry(trimmed(text));
   if (!geometry.ok()) return usage_error("{}: {}", option, geometry.error().message);
   return geometry;
 }
 
-Result<std::vector<PaintClass>> classes_of(std::string_view text) {
-  std::vector<PaintClass> classes;
+Result<std::vector<paint::PaintClass>> classes_of(std::string_view text) {
+  std::vector<paint::PaintClass> classes;
   for (const std::string_view word : split(text, ',')) {
-    const auto found = paint_class_of(trimmed(word));
+    const auto found = paint::paint_class_of(trimmed(word));
     if (!found)
       return usage_error(
           "filter \"class={}\": there is no class \"{}\": use solid, metallic, pearl, interference or "
@@ -29,10 +29,10 @@ Result<std::vector<PaintClass>> classes_of(std::string_view text) {
   return classes;
 }
 
-Result<MetricRange> range_of(std::string_view text) {
-  GONIO_ASSIGN(MetricRange range, parse_metric_range(text));
-  const auto kept = metric_columns_without_fit();
-  if (std::ranges::find(kept, std::string_view(range.column->name), &MetricColumn::name) == kept.end())
+Result<paint::MetricRange> range_of(std::string_view text) {
+  GONIO_ASSIGN(paint::MetricRange range, paint::parse_metric_range(text));
+  const auto kept = paint::metric_columns_without_fit();
+  if (std::ranges::find(kept, std::string_view(range.column->name), &paint::MetricColumn::name) == kept.end())
     return usage_error(
         "filter \"{}\": {} takes a curve fit and is not in the index: pick the library's paints by it with "
         "paint-stats --where first",
@@ -42,14 +42,16 @@ Result<MetricRange> range_of(std::string_view text) {
 
 }  // namespace
 
-Result<LibrarySearchOptions> search_options(const Options& o) {
-  LibrarySearchOptions search{.count = static_cast<std::size_t>(o.count),
-                              .metric = o.metric == "de00" ? ColorMetric::kDe00 : ColorMetric::kDe76,
-                              .mix_conditions = o.mix_observers};
-  if (o.method != "auto") search.method = o.method == "tree" ? SearchMethod::kTree : SearchMethod::kScan;
+Result<library::LibrarySearchOptions> search_options(const Options& o) {
+  library::LibrarySearchOptions search{
+      .count = static_cast<std::size_t>(o.count),
+      .metric = o.metric == "de00" ? library::ColorMetric::kDe00 : library::ColorMetric::kDe76,
+      .mix_conditions = o.mix_observers};
+  if (o.method != "auto")
+    search.method = o.method == "tree" ? library::SearchMethod::kTree : library::SearchMethod::kScan;
   for (const std::string& list : o.geometries)
     for (const std::string_view text : split(list, ',')) {
-      GONIO_ASSIGN(const Geometry geometry, geometry_of("--geometry", text));
+      GONIO_ASSIGN(const paint::Geometry geometry, geometry_of("--geometry", text));
       if (std::ranges::find(search.geometries, geometry) == search.geometries.end())
         search.geometries.push_back(geometry);
     }
@@ -60,7 +62,7 @@ Result<LibrarySearchOptions> search_options(const Options& o) {
       if (!weight || *weight < 0 || *weight > 1e6)
         return usage_error("--weight is \"{}\": write GEOMETRY=NUMBER with a number from 0 to 1e6, as in 45as15=2",
                            text);
-      GONIO_ASSIGN(const Geometry geometry, geometry_of("--weight", text.substr(0, equals)));
+      GONIO_ASSIGN(const paint::Geometry geometry, geometry_of("--weight", text.substr(0, equals)));
       search.weights.emplace_back(geometry, *weight);
     }
   for (const std::string& text : o.filters) {
@@ -68,7 +70,7 @@ Result<LibrarySearchOptions> search_options(const Options& o) {
       GONIO_ASSIGN(search.classes, classes_of(std::string_view(text).substr(6)));
       continue;
     }
-    GONIO_ASSIGN(const MetricRange range, range_of(text));
+    GONIO_ASSIGN(const paint::MetricRange range, range_of(text));
     search.ranges.push_back(range);
   }
   return search;
@@ -203,4 +205,4 @@ cli::ToolSpec tool_spec(Options& o) {
   return spec;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

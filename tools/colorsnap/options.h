@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "cli/options.h"
-#include "paint/search_library.h"
+#include "library/search_library.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 struct Options {
   cli::CommonOptions common;
@@ -30,6 +30,6 @@ struct Options {
 cli::ToolSpec tool_spec(Options& options);
 
 // What the options ask of a search. Error: a text that cannot be understood.
-Result<LibrarySearchOptions> search_options(const Options& options);
+Result<library::LibrarySearchOptions> search_options(const Options& options);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

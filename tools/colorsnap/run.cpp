@@ -6,28 +6,29 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "finding.h"
-#include "paint/batches.h"
+#include "formats/batches.h"
 #include "sink.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
 constexpr std::size_t kWarningsShown = 10;
 
-std::string names_of(const std::vector<Geometry>& geometries) {
+std::string names_of(const std::vector<paint::Geometry>& geometries) {
   std::string names;
-  for (const Geometry& geometry : geometries) names += (names.empty() ? "" : ",") + geometry_name(geometry);
+  for (const paint::Geometry& geometry : geometries)
+    names += (names.empty() ? "" : ",") + paint::geometry_name(geometry);
   return names;
 }
 
-const char* origin_name(LibraryIndex::Origin origin) {
+const char* origin_name(library::LibraryIndex::Origin origin) {
   switch (origin) {
-    case LibraryIndex::Origin::kMapped:
+    case library::LibraryIndex::Origin::kMapped:
       return "mapped";
-    case LibraryIndex::Origin::kBuilt:
+    case library::LibraryIndex::Origin::kBuilt:
       return "built";
-    case LibraryIndex::Origin::kInMemory:
+    case library::LibraryIndex::Origin::kInMemory:
       break;
   }
   return "in_memory";
@@ -36,7 +37,8 @@ const char* origin_name(LibraryIndex::Origin origin) {
 // One run: queries in, findings out.
 class Run {
  public:
-  Run(const Options& options, cli::Session& session, const LibraryIndex& index, LibrarySearchOptions search)
+  Run(const Options& options, cli::Session& session, const library::LibraryIndex& index,
+      library::LibrarySearchOptions search)
       : options_(options),
         session_(session),
         index_(index),
@@ -46,12 +48,12 @@ class Run {
 
   Result<cli::Verdict> operator()() {
     session_.explain(plan_text());
-    GONIO_ASSIGN(PaintBatches batches, PaintBatches::open(options_.inputs));
+    GONIO_ASSIGN(formats::PaintBatches batches, formats::PaintBatches::open(options_.inputs));
     GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
     GONIO_ASSIGN(Sink sink, Sink::begin(format_of(options_.format, options_.output), std::move(file)));
     session_.begin_list("queries");
     for (;;) {
-      GONIO_ASSIGN(const std::vector<Paint> batch, batches.next(left_out()));
+      GONIO_ASSIGN(const std::vector<paint::Paint> batch, batches.next(left_out()));
       if (batch.empty()) break;
       GONIO_TRY(answer(batch, sink));
       session_.progress(fmt::format("{}: {} paints", session_.tool(), searched_));
@@ -72,9 +74,9 @@ class Run {
     ++left_out_;
   }
 
-  Result<void> answer(const std::vector<Paint>& batch, Sink& sink) {
-    std::vector<std::pair<const Paint*, SearchPlan>> queries;
-    for (const Paint& paint : batch) {
+  Result<void> answer(const std::vector<paint::Paint>& batch, Sink& sink) {
+    std::vector<std::pair<const paint::Paint*, library::SearchPlan>> queries;
+    for (const paint::Paint& paint : batch) {
       auto plan = search_.plan(paint);
       if (plan.ok()) {
         tell_once(*plan);
@@ -125,9 +127,9 @@ class Run {
   }
 
   // Paints that are left out and conditions that are mixed, once for each set of geometries.
-  void tell_once(const SearchPlan& plan) {
+  void tell_once(const library::SearchPlan& plan) {
     const std::string names = names_of(plan.geometries);
-    for (const Geometry& geometry : plan.geometries) compared_.insert(geometry_name(geometry));
+    for (const paint::Geometry& geometry : plan.geometries) compared_.insert(paint::geometry_name(geometry));
     if ((plan.left_out == 0 && !plan.mixed) || !told_.insert(names).second) return;
     if (plan.left_out > 0)
       session_.warn(
@@ -140,7 +142,7 @@ class Run {
   std::string method_names() const {
     std::set<std::string> names;
     for (std::size_t i = 0; i < index_.sections().size(); ++i)
-      names.insert(search_.method(i) == SearchMethod::kTree ? "tree" : "scan");
+      names.insert(search_.method(i) == library::SearchMethod::kTree ? "tree" : "scan");
     return fmt::format("{}", fmt::join(names, ","));
   }
 
@@ -150,8 +152,8 @@ class Run {
                                    index_.note().empty() ? "" : " (" + index_.note() + ")",
                                    static_cast<double>(index_.bytes()) / 1048576, index_.build_s());
     for (std::size_t i = 0; i < index_.sections().size(); ++i) {
-      const LibrarySection& section = index_.sections()[i];
-      const bool tree = search_.method(i) == SearchMethod::kTree;
+      const library::LibrarySection& section = index_.sections()[i];
+      const bool tree = search_.method(i) == library::SearchMethod::kTree;
       text += fmt::format("  {} paints, {}/{} at {}: {}\n", section.tree.size, section.condition.illuminant,
                           section.condition.observer_deg, names_of(section.geometries), tree ? "tree" : "scan");
     }
@@ -162,10 +164,10 @@ class Run {
                "metric {}: {}\n"
                "compared at {}; every answer is exact, ties in the library's order\n"
                "left out: paints without a color\n",
-               options_.method, options_.method == "auto" ? "as measured" : "as told", kLeafSize + 1, kScanFraction,
-               options_.metric,
-               metric_ == ColorMetric::kDe76 ? "sum of CIE 1976 differences"
-                                             : "sum of CIEDE2000 differences, pruned by a proven lower bound",
+               options_.method, options_.method == "auto" ? "as measured" : "as told", library::kLeafSize + 1,
+               library::kScanFraction, options_.metric,
+               metric_ == library::ColorMetric::kDe76 ? "sum of CIE 1976 differences"
+                                                      : "sum of CIEDE2000 differences, pruned by a proven lower bound",
                options_.geometries.empty() ? "the geometries that query and library share"
                                            : "the geometries asked for");
   }
@@ -187,9 +189,9 @@ class Run {
     results["no_match"] = no_match_;
     results["left_out"] = left_out_;
     for (const auto& [geometry, weight] : weights_)
-      if (searched_ > 0 && !compared_.contains(geometry_name(geometry)))
+      if (searched_ > 0 && !compared_.contains(paint::geometry_name(geometry)))
         session_.warn(
-            fmt::format("the weight of {} has no effect: nothing was compared there", geometry_name(geometry)));
+            fmt::format("the weight of {} has no effect: nothing was compared there", paint::geometry_name(geometry)));
     if (problems_ > kWarningsShown)
       session_.warn(fmt::format("{} more designs with problems", problems_ - kWarningsShown));
     std::string line = fmt::format("{}: {} paints against {}", session_.tool(), searched_, index_.size());
@@ -203,10 +205,10 @@ class Run {
 
   const Options& options_;
   cli::Session& session_;
-  const LibraryIndex& index_;
-  ColorMetric metric_;
-  std::vector<std::pair<Geometry, double>> weights_;
-  LibrarySearch search_;
+  const library::LibraryIndex& index_;
+  library::ColorMetric metric_;
+  std::vector<std::pair<paint::Geometry, double>> weights_;
+  library::LibrarySearch search_;
   std::set<std::string> told_, compared_;
   std::size_t searched_ = 0, outside_ = 0, off_radial_ = 0, no_match_ = 0, left_out_ = 0, problems_ = 0;
   double search_s_ = 0, wall_s_ = 0;
@@ -215,15 +217,16 @@ class Run {
 }  // namespace
 
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
-  GONIO_ASSIGN(LibrarySearchOptions search, search_options(options));
-  GONIO_ASSIGN(const LibraryIndex index, LibraryIndex::open(options.library, [&](std::size_t paints) {
+  GONIO_ASSIGN(library::LibrarySearchOptions search, search_options(options));
+  GONIO_ASSIGN(const library::LibraryIndex index, library::LibraryIndex::open(options.library, [&](std::size_t paints) {
                  session.progress(fmt::format("{}: indexing {}: {} paints", session.tool(), options.library, paints));
                }));
-  if (index.origin() == LibraryIndex::Origin::kBuilt && index.note() != "there was none")
-    session.say(fmt::format("{}: {}: made anew, {}", session.tool(), index_path(options.library), index.note()));
-  if (index.origin() == LibraryIndex::Origin::kInMemory)
+  if (index.origin() == library::LibraryIndex::Origin::kBuilt && index.note() != "there was none")
+    session.say(
+        fmt::format("{}: {}: made anew, {}", session.tool(), library::index_path(options.library), index.note()));
+  if (index.origin() == library::LibraryIndex::Origin::kInMemory)
     session.warn(fmt::format("the index stays in memory and is made again by every run: {}", index.note()));
   return Run(options, session, index, std::move(search))();
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

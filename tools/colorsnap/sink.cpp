@@ -4,14 +4,14 @@
 
 #include "base/text.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
 constexpr const char* kTableHead =
     "query\trank\tname\tcode\tclass\tdistance\tmean_de\tdL\tdC\tdH\tstatus\tde_by_geometry\n";
 
-std::string table_lines(const Finding& finding, const LibraryIndex& index) {
+std::string table_lines(const Finding& finding, const library::LibraryIndex& index) {
   const std::string query = table_field(finding.query), status = finding.status();
   if (finding.no_match()) return query + "\t0\t\t\t\tn/a\tn/a\tn/a\tn/a\tn/a\t" + status + "\t-\n";
   std::string text;
@@ -19,12 +19,12 @@ std::string table_lines(const Finding& finding, const LibraryIndex& index) {
   for (const Neighbor& neighbor : finding.neighbors) {
     const std::size_t paint = neighbor.match.paint;
     text += fmt::format("{}\t{}\t{}\t{}\t{}", query, ++rank, table_field(std::string(index.name(paint))),
-                        table_field(std::string(index.code(paint))), paint_class_name(index.paint_class(paint)));
+                        table_field(std::string(index.code(paint))), paint::paint_class_name(index.paint_class(paint)));
     for (const double value : {neighbor.match.distance, neighbor.mean_de, neighbor.dL, neighbor.dC, neighbor.dH})
       text += "\t" + shortest(value);
     text += "\t" + status + "\t";
     for (std::size_t i = 0; i < neighbor.de.size(); ++i)
-      text += (i ? "," : "") + geometry_name(finding.plan.geometries[i]) + "=" + shortest(neighbor.de[i]);
+      text += (i ? "," : "") + paint::geometry_name(finding.plan.geometries[i]) + "=" + shortest(neighbor.de[i]);
     text += "\n";
   }
   return text;
@@ -32,17 +32,17 @@ std::string table_lines(const Finding& finding, const LibraryIndex& index) {
 
 }  // namespace
 
-Json finding_json(const Finding& finding, const LibraryIndex& index) {
+Json finding_json(const Finding& finding, const library::LibraryIndex& index) {
   Json geometries = Json::array(), matches = Json::array();
-  for (const Geometry& geometry : finding.plan.geometries) geometries.push_back(geometry_name(geometry));
+  for (const paint::Geometry& geometry : finding.plan.geometries) geometries.push_back(paint::geometry_name(geometry));
   for (const Neighbor& neighbor : finding.neighbors) {
     const std::size_t paint = neighbor.match.paint;
     Json differences = Json::object();
     for (std::size_t i = 0; i < neighbor.de.size(); ++i)
-      differences[geometry_name(finding.plan.geometries[i])] = json_number(neighbor.de[i]);
+      differences[paint::geometry_name(finding.plan.geometries[i])] = json_number(neighbor.de[i]);
     matches.push_back({{"name", index.name(paint)},
                        {"code", index.code(paint)},
-                       {"class", paint_class_name(index.paint_class(paint))},
+                       {"class", paint::paint_class_name(index.paint_class(paint))},
                        {"distance", json_number(neighbor.match.distance)},
                        {"mean_de", json_number(neighbor.mean_de)},
                        {"dL", json_number(neighbor.dL)},
@@ -64,7 +64,7 @@ Result<Sink> Sink::begin(Format format, OutputFile file) {
   return sink;
 }
 
-Result<void> Sink::write(const Finding& finding, const LibraryIndex& index) {
+Result<void> Sink::write(const Finding& finding, const library::LibraryIndex& index) {
   switch (format_) {
     case Format::kTable:
       return file_.write(table_lines(finding, index));
@@ -78,24 +78,24 @@ Result<void> Sink::write(const Finding& finding, const LibraryIndex& index) {
   return {};
 }
 
-Result<void> Sink::finish(const std::string& library_path, const Processing& step) {
+Result<void> Sink::finish(const std::string& library_path, const formats::Processing& step) {
   return format_ == Format::kPaints ? write_paints(library_path, step) : file_.commit();
 }
 
-Result<void> Sink::write_paints(const std::string& library_path, const Processing& step) {
-  GONIO_ASSIGN(PaintReader reader, PaintReader::open(library_path));
+Result<void> Sink::write_paints(const std::string& library_path, const formats::Processing& step) {
+  GONIO_ASSIGN(formats::PaintReader reader, formats::PaintReader::open(library_path));
   reader.read_prolog();
-  std::vector<Processing> history = reader.processing();
+  std::vector<formats::Processing> history = reader.processing();
   history.push_back(step);
-  std::unordered_map<std::uint32_t, Paint> paints;
+  std::unordered_map<std::uint32_t, paint::Paint> paints;
   for (std::uint32_t place = 0; paints.size() < wanted_.size(); ++place) {
-    GONIO_ASSIGN(std::optional<Paint> paint, reader.next());
+    GONIO_ASSIGN(std::optional<paint::Paint> paint, reader.next());
     if (!paint) return input_error("{}: it was changed while it was searched: run again", library_path);
     if (met_.contains(place)) paints.emplace(place, std::move(*paint));
   }
-  GONIO_ASSIGN(PaintWriter writer, PaintWriter::begin(std::move(file_), history, reader.foreign()));
+  GONIO_ASSIGN(formats::PaintWriter writer, formats::PaintWriter::begin(std::move(file_), history, reader.foreign()));
   for (const std::uint32_t place : wanted_) GONIO_TRY(writer.write(paints.at(place)));
   return writer.finish();
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -10,23 +10,23 @@
 #include "base/file.h"
 #include "base/json.h"
 #include "finding.h"
-#include "paint/xml.h"
+#include "formats/xml.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
-Json finding_json(const Finding& finding, const LibraryIndex& index);
+Json finding_json(const Finding& finding, const library::LibraryIndex& index);
 
 class Sink {
  public:
   static Result<Sink> begin(Format format, OutputFile file);
-  Result<void> write(const Finding& finding, const LibraryIndex& index);
+  Result<void> write(const Finding& finding, const library::LibraryIndex& index);
   Result<void> flush() { return file_.flush(); }
   // Ends the output. The paints are read from the library, whose place in it the index knows; `step` joins its history.
-  Result<void> finish(const std::string& library_path, const Processing& step);
+  Result<void> finish(const std::string& library_path, const formats::Processing& step);
 
  private:
   explicit Sink(Format format, OutputFile file) : format_(format), file_(std::move(file)) {}
-  Result<void> write_paints(const std::string& library_path, const Processing& step);
+  Result<void> write_paints(const std::string& library_path, const formats::Processing& step);
 
   Format format_;
   OutputFile file_;
@@ -34,4 +34,4 @@ class Sink {
   std::unordered_set<std::uint32_t> met_;
 };
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -9,15 +9,15 @@
 #include "base/text.h"
 #include "report/plot.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
-const std::map<std::string_view, Series::Style> kStyles = {{"line", Series::Style::kLine},
-                                                           {"points", Series::Style::kPoints},
-                                                           {"both", Series::Style::kLineAndPoints},
-                                                           {"dashed", Series::Style::kDashed},
-                                                           {"rings", Series::Style::kRings}};
+const std::map<std::string_view, report::Series::Style> kStyles = {{"line", report::Series::Style::kLine},
+                                                                   {"points", report::Series::Style::kPoints},
+                                                                   {"both", report::Series::Style::kLineAndPoints},
+                                                                   {"dashed", report::Series::Style::kDashed},
+                                                                   {"rings", report::Series::Style::kRings}};
 
 // Where each heading stands among the words of a row; style and color may be missing.
 struct Columns {
@@ -52,10 +52,10 @@ Result<std::string> color(const std::string& name, int line, std::string_view te
   return input_error("{}:{}: color is \"{}\": give #rrggbb such as #0072b2, or nothing", name, line, text);
 }
 
-Result<std::vector<Series>> read_table(const std::string& path) {
+Result<std::vector<report::Series>> read_table(const std::string& path) {
   const std::string name = path == "-" ? "standard input" : path;
   GONIO_ASSIGN(const std::string text, file_content(path));
-  std::vector<Series> all;
+  std::vector<report::Series> all;
   std::optional<Columns> columns;
   int line = 0;
   for (const std::string_view raw : split(text, '\n')) {
@@ -69,7 +69,7 @@ Result<std::vector<Series>> read_table(const std::string& path) {
     if (words.size() != columns->count)
       return input_error("{}:{}: {} cells where the headings are {}", name, line, words.size(), columns->count);
     const std::string label(trimmed(words[columns->series]));
-    auto series = std::ranges::find(all, label, &Series::label);
+    auto series = std::ranges::find(all, label, &report::Series::label);
     if (series == all.end()) {
       series = all.insert(series, {.label = label, .x = {}, .y = {}});
       if (columns->style) {
@@ -91,7 +91,7 @@ Result<std::vector<Series>> read_table(const std::string& path) {
 }
 
 // Points with both numbers that an axis cannot show.
-int left_out(const Series& series, const Plot& plot) {
+int left_out(const report::Series& series, const report::Plot& plot) {
   int count = 0;
   for (std::size_t i = 0; i < series.x.size(); ++i)
     if (std::isfinite(series.x[i]) && std::isfinite(series.y[i]))
@@ -102,14 +102,14 @@ int left_out(const Series& series, const Plot& plot) {
 }  // namespace
 
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
-  Plot plot;
+  report::Plot plot;
   plot.title = options.title;
   plot.x = {options.x_label, options.logarithmic == "x" || options.logarithmic == "both"};
   plot.y = {options.y_label, options.logarithmic == "y" || options.logarithmic == "both"};
   plot.width = options.width, plot.height = options.height;
   GONIO_ASSIGN(plot.series, read_table(options.table.empty() ? "-" : options.table.front()));
   session.results()["series"] = Json::array();
-  for (const Series& series : plot.series) {
+  for (const report::Series& series : plot.series) {
     const int out = left_out(series, plot);
     if (out > 0)
       session.warn(fmt::format("{} points of \"{}\" are not above 0 and have no place on a logarithmic axis", out,
@@ -117,9 +117,9 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
     session.results()["series"].push_back({{"label", series.label}, {"points", series.x.size()}, {"left_out", out}});
   }
   GONIO_ASSIGN(OutputFile file, OutputFile::create(options.output));
-  GONIO_TRY(file.write(svg(plot)));
+  GONIO_TRY(file.write(report::svg(plot)));
   GONIO_TRY(file.commit());
   return cli::Verdict::kDone;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -1,6 +1,6 @@
 #include "options.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 cli::ToolSpec tool_spec(Options& o) {
   cli::ToolSpec spec{
@@ -116,4 +116,4 @@ cli::ToolSpec tool_spec(Options& o) {
   return spec;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -10,11 +10,11 @@
 #include "base/text.h"
 #include "fit/basis_search.h"
 #include "fit/basis_targets.h"
-#include "paint/basis.h"
-#include "paint/xml.h"
+#include "formats/basis.h"
+#include "formats/xml.h"
 #include "report/plot.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
@@ -33,25 +33,25 @@ Result<Range> lobe_range(const std::string& text) {
   return Range{static_cast<int>(*first), static_cast<int>(*last)};
 }
 
-Result<std::vector<BasisTarget>> read_targets(const Options& options, cli::Session& session) {
-  const BasisTargetOptions target_options{
-      options.target == "curve" ? TargetCurve::Kind::kCurve : TargetCurve::Kind::kMeasured, options.angles,
-      options.weights == "perceptual"};
-  std::vector<BasisTarget> targets;
+Result<std::vector<fit::BasisTarget>> read_targets(const Options& options, cli::Session& session) {
+  const fit::BasisTargetOptions target_options{
+      options.target == "curve" ? paint::TargetCurve::Kind::kCurve : paint::TargetCurve::Kind::kMeasured,
+      options.angles, options.weights == "perceptual"};
+  std::vector<fit::BasisTarget> targets;
   for (const std::string& path : options.paints.empty() ? std::vector<std::string>{"-"} : options.paints) {
     GONIO_ASSIGN(InputFile file, InputFile::open(path));
     GONIO_ASSIGN(const std::string_view head, file.peek());
-    if (looks_measured(path, head)) {
-      GONIO_ASSIGN(const BrdfTarget brdf, read_brdf_target(file));
-      GONIO_ASSIGN(BasisTarget target, basis_target(brdf, target_options));
+    if (brdf::looks_measured(path, head)) {
+      GONIO_ASSIGN(const fit::BrdfTarget brdf, fit::read_brdf_target(file));
+      GONIO_ASSIGN(fit::BasisTarget target, fit::basis_target(brdf, target_options));
       targets.push_back(std::move(target));
       continue;
     }
-    PaintReader reader(std::move(file));
+    formats::PaintReader reader(std::move(file));
     for (;;) {
-      GONIO_ASSIGN(const std::optional<Paint> paint, reader.next());
+      GONIO_ASSIGN(const std::optional<paint::Paint> paint, reader.next());
       if (!paint) break;
-      auto target = basis_target(*paint, target_options);
+      auto target = fit::basis_target(*paint, target_options);
       if (target.ok())
         targets.push_back(std::move(*target));
       else
@@ -69,11 +69,11 @@ std::string list(const std::vector<double>& exponents) {
 }
 
 // dE00 of the worst paint at its worst angle, per set.
-std::vector<double> visible_errors(const BasisSearch& search, const std::vector<BasisTarget>& targets) {
+std::vector<double> visible_errors(const fit::BasisSearch& search, const std::vector<fit::BasisTarget>& targets) {
   std::vector<double> errors;
-  for (const FoundBasis& set : search.sets) {
+  for (const fit::FoundBasis& set : search.sets) {
     double worst = 0;
-    for (const BasisTarget& target : targets) worst = std::max(worst, basis_de00(set.exponents, target));
+    for (const fit::BasisTarget& target : targets) worst = std::max(worst, fit::basis_de00(set.exponents, target));
     errors.push_back(worst);
   }
   return errors;
@@ -96,7 +96,7 @@ double log_regularity(const std::vector<double>& exponents) {
 
 // The first number of lobes from which on the worst color changes by less than
 // `visible` with every further lobe; 0 where the largest set still gains.
-int enough_lobes(const BasisSearch& search, const std::vector<double>& de00, double visible) {
+int enough_lobes(const fit::BasisSearch& search, const std::vector<double>& de00, double visible) {
   for (std::size_t i = 0; i + 1 < de00.size(); ++i) {
     const double best_later = *std::min_element(de00.begin() + static_cast<std::ptrdiff_t>(i), de00.end());
     if (de00[i] - best_later < visible) return static_cast<int>(search.sets[i].exponents.size());
@@ -104,10 +104,10 @@ int enough_lobes(const BasisSearch& search, const std::vector<double>& de00, dou
   return 0;
 }
 
-std::string table_csv(const BasisSearch& search, const std::vector<double>& de00) {
+std::string table_csv(const fit::BasisSearch& search, const std::vector<double>& de00) {
   std::string text = "lobes,max_error,mean_error,de00_max,log_regularity,time_s,exponents\n";
   for (std::size_t i = 0; i < search.sets.size(); ++i) {
-    const FoundBasis& set = search.sets[i];
+    const fit::FoundBasis& set = search.sets[i];
     text += fmt::format("{},{},{},{},{:.4f},{:.4f},{}\n", set.exponents.size(), shortest(set.error.max),
                         shortest(set.error.mean), shortest(de00[i]), log_regularity(set.exponents), set.time_s,
                         list(set.exponents));
@@ -115,41 +115,42 @@ std::string table_csv(const BasisSearch& search, const std::vector<double>& de00
   return text;
 }
 
-std::string plot_svg(const BasisSearch& search, const std::vector<double>& de00) {
-  Plot exponents{
+std::string plot_svg(const fit::BasisSearch& search, const std::vector<double>& de00) {
+  report::Plot exponents{
       .title = "Chosen exponents", .x = {.label = "exponent", .logarithmic = true}, .y = {.label = "number of lobes"}};
-  Plot errors{
+  report::Plot errors{
       .title = "Error of the library", .x = {.label = "number of lobes"}, .y = {.label = "error", .logarithmic = true}};
-  Series max{"largest", {}, {}, Series::Style::kLineAndPoints}, mean{"mean", {}, {}, Series::Style::kLineAndPoints},
-      color{"worst dE00", {}, {}, Series::Style::kLineAndPoints};
+  report::Series max{"largest", {}, {}, report::Series::Style::kLineAndPoints},
+      mean{"mean", {}, {}, report::Series::Style::kLineAndPoints},
+      color{"worst dE00", {}, {}, report::Series::Style::kLineAndPoints};
   for (std::size_t i = 0; i < search.sets.size(); ++i) {
-    const FoundBasis& set = search.sets[i];
+    const fit::FoundBasis& set = search.sets[i];
     const double lobes = static_cast<double>(set.exponents.size());
     exponents.series.push_back({"", set.exponents, std::vector<double>(set.exponents.size(), lobes),
-                                Series::Style::kLineAndPoints, "#0072b2"});
-    for (Series* s : {&max, &mean, &color}) s->x.push_back(lobes);
+                                report::Series::Style::kLineAndPoints, "#0072b2"});
+    for (report::Series* s : {&max, &mean, &color}) s->x.push_back(lobes);
     max.y.push_back(set.error.max), mean.y.push_back(set.error.mean), color.y.push_back(de00[i]);
   }
   errors.series = {max, mean, color};
-  return svg({exponents, errors}, 1);
+  return report::svg({exponents, errors}, 1);
 }
 
-Basis basis_of(const Options& options, const BasisSearch& search, const FoundBasis& found) {
-  Basis basis{options.name.empty() ? fmt::format("b{}", found.exponents.size()) : options.name,
-              found.exponents,
-              options.mirror,
-              {}};
-  for (const FoundBasis& each : search.sets)
+formats::Basis basis_of(const Options& options, const fit::BasisSearch& search, const fit::FoundBasis& found) {
+  formats::Basis basis{options.name.empty() ? fmt::format("b{}", found.exponents.size()) : options.name,
+                       found.exponents,
+                       options.mirror,
+                       {}};
+  for (const fit::FoundBasis& each : search.sets)
     basis.sets.push_back(
         {static_cast<int>(each.exponents.size()), each.error.max, each.error.mean, each.error.objective()});
   return basis;
 }
 
-void report(const BasisSearch& search, const std::vector<BasisTarget>& targets, const std::vector<double>& de00,
-            cli::Session& session) {
+void report(const fit::BasisSearch& search, const std::vector<fit::BasisTarget>& targets,
+            const std::vector<double>& de00, cli::Session& session) {
   Json sets = Json::array();
   for (std::size_t i = 0; i < search.sets.size(); ++i) {
-    const FoundBasis& set = search.sets[i];
+    const fit::FoundBasis& set = search.sets[i];
     const auto worst = std::ranges::max_element(set.error.each) - set.error.each.begin();
     sets.push_back({{"lobes", set.exponents.size()},
                     {"exponents", set.exponents},
@@ -173,9 +174,9 @@ void report(const BasisSearch& search, const std::vector<BasisTarget>& targets, 
 
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   GONIO_ASSIGN(const Range range, lobe_range(options.lobes));
-  GONIO_ASSIGN(const std::vector<BasisTarget> targets, read_targets(options, session));
-  BasisSearchOptions search_options;
-  search_options.method = options.method == "lm" ? BasisMethod::kLevenbergMarquardt : BasisMethod::kPowerMean;
+  GONIO_ASSIGN(const std::vector<fit::BasisTarget> targets, read_targets(options, session));
+  fit::BasisSearchOptions search_options;
+  search_options.method = options.method == "lm" ? fit::BasisMethod::kLevenbergMarquardt : fit::BasisMethod::kPowerMean;
   search_options.first = range.first, search_options.last = range.last;
   search_options.starts = options.starts;
   search_options.seed = options.common.seed;
@@ -187,7 +188,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
                   "sees; directions out of plane\n",
                   targets.size(), options.angles, options.starts, range.first, range.last, options.method));
 
-  const BasisSearch search = search_basis(targets, search_options);
+  const fit::BasisSearch search = fit::search_basis(targets, search_options);
   const std::vector<double> de00 = visible_errors(search, targets);
   report(search, targets, de00, session);
   const int enough = enough_lobes(search, de00, options.visible_de00);
@@ -200,11 +201,11 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   if (!options.table.empty()) GONIO_TRY(write_file(options.table, table_csv(search, de00)));
   if (!options.plot.empty()) GONIO_TRY(write_file(options.plot, plot_svg(search, de00)));
   if (!options.each.empty())
-    for (const FoundBasis& set : search.sets)
-      GONIO_TRY(write_basis(fmt::format("{}{}.basis.xml", options.each, set.exponents.size()),
-                            basis_of(options, search, set)));
-  GONIO_TRY(write_basis(options.output, basis_of(options, search, search.sets.back())));
+    for (const fit::FoundBasis& set : search.sets)
+      GONIO_TRY(formats::write_basis(fmt::format("{}{}.basis.xml", options.each, set.exponents.size()),
+                                     basis_of(options, search, set)));
+  GONIO_TRY(formats::write_basis(options.output, basis_of(options, search, search.sets.back())));
   return search.stopped ? cli::Verdict::kStopped : cli::Verdict::kDone;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

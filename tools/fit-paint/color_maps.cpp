@@ -6,7 +6,7 @@
 
 #include "image/color_map_file.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
@@ -25,10 +25,11 @@ std::filesystem::path folder_from_output(const Options& options) {
   return failed ? std::filesystem::path(options.color_map) : relative;
 }
 
-Result<ColorMapFit> fitted(const Paint& paint, const MeasuredBrdf* brdf, const ColorMapOptions& options) {
-  if (brdf != nullptr) return fit_color_map(*brdf, {"D65", 2}, options);
+Result<fit::ColorMapFit> fitted(const paint::Paint& paint, const brdf::MeasuredBrdf* brdf,
+                                const fit::ColorMapOptions& options) {
+  if (brdf != nullptr) return fit::fit_color_map(*brdf, {"D65", 2}, options);
   if (!paint.measurement) return input_error("it has no readings");
-  return fit_color_map(*paint.measurement, options);
+  return fit::fit_color_map(*paint.measurement, options);
 }
 
 }  // namespace
@@ -55,9 +56,9 @@ std::string ColorMaps::file_name(const std::string& paint) {
   return name + ".exr";
 }
 
-Result<void> ColorMaps::add(Paint& paint, const MeasuredBrdf* brdf, const std::string& where) {
+Result<void> ColorMaps::add(paint::Paint& paint, const brdf::MeasuredBrdf* brdf, const std::string& where) {
   if (options_.color_map.empty()) return {};
-  ColorMapOptions asked;
+  fit::ColorMapOptions asked;
   if (paint.color_map) asked.index = paint.color_map->index;
   const auto fit = fitted(paint, brdf, asked);
   if (!fit.ok()) {
@@ -67,10 +68,11 @@ Result<void> ColorMaps::add(Paint& paint, const MeasuredBrdf* brdf, const std::s
   }
   const std::string name = file_name(paint.name);
   const std::string path = (std::filesystem::path(options_.color_map) / name).string();
-  GONIO_TRY(write_color_map(path, fit->map,
-                            {{"goniochrome:command", fmt::format("{} {}: {}", session_.tool(), cli::Session::version(),
-                                                                 session_.command_line())}}));
-  paint.color_map = ColorMapReference{(folder_from_output(options_) / name).generic_string(), asked.index};
+  GONIO_TRY(image::write_color_map(
+      path, fit->map,
+      {{"goniochrome:command",
+        fmt::format("{} {}: {}", session_.tool(), cli::Session::version(), session_.command_line())}}));
+  paint.color_map = paint::ColorMapReference{(folder_from_output(options_) / name).generic_string(), asked.index};
   ++made_;
   sum_held_out_ += fit->held_out_de76;
   session_.add("color_maps", [&] {
@@ -95,4 +97,4 @@ void ColorMaps::finish() {
                            session_.tool(), made_, made_ > 0 ? sum_held_out_ / made_ : 0));
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -9,7 +9,7 @@
 #include "fit/color_map_fit.h"
 #include "options.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 class ColorMaps {
  public:
@@ -20,7 +20,7 @@ class ColorMaps {
 
   // Makes the map of a paint from its readings or, where it has one, from its measured BRDF, and names it in the paint.
   // A paint that cannot have one is told and left as it is. Error: the file cannot be written.
-  Result<void> add(Paint& paint, const MeasuredBrdf* brdf, const std::string& where);
+  Result<void> add(paint::Paint& paint, const brdf::MeasuredBrdf* brdf, const std::string& where);
 
   // How many there are, into the report and the summary.
   void finish();
@@ -35,4 +35,4 @@ class ColorMaps {
   double sum_held_out_ = 0;
 };
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

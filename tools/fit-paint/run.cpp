@@ -10,12 +10,12 @@
 #include "color_maps.h"
 #include "fit/albedo_error.h"
 #include "fit/paint_fit.h"
-#include "paint/name_ledger.h"
-#include "paint/xml.h"
+#include "formats/name_ledger.h"
+#include "formats/xml.h"
 #include "settings.h"
 #include "tally.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
@@ -25,7 +25,7 @@ constexpr std::size_t kLargestBatch = 256;
 // A file of paints, open, or a measured BRDF, read when its turn comes.
 struct Input {
   std::string name;
-  std::optional<PaintReader> reader;
+  std::optional<formats::PaintReader> reader;
   std::optional<InputFile> measured;
 };
 
@@ -33,8 +33,8 @@ Result<Input> opened(const std::string& path) {
   GONIO_ASSIGN(InputFile file, InputFile::open(path));
   const std::string name = file.name();
   GONIO_ASSIGN(const std::string_view head, file.peek());
-  if (looks_measured(path, head)) return Input{name, std::nullopt, std::move(file)};
-  PaintReader reader(std::move(file));
+  if (brdf::looks_measured(path, head)) return Input{name, std::nullopt, std::move(file)};
+  formats::PaintReader reader(std::move(file));
   reader.read_prolog();
   return Input{name, std::move(reader), std::nullopt};
 }
@@ -53,7 +53,7 @@ Result<std::vector<Input>> open_all(std::vector<std::string> paths) {
 class NamesOfAll {
  public:
   explicit NamesOfAll(const std::vector<Input>& inputs) : inputs_(inputs) {}
-  Result<void> note(const Paint& paint, std::size_t input, int line) {
+  Result<void> note(const paint::Paint& paint, std::size_t input, int line) {
     if (inputs_.size() == 1) return {};
     const auto before = ledger_.note(paint.name, static_cast<int>(input) + 1);
     if (!before) return {};
@@ -63,14 +63,14 @@ class NamesOfAll {
 
  private:
   const std::vector<Input>& inputs_;
-  NameLedger ledger_;
+  formats::NameLedger ledger_;
 };
 
 // One run over all inputs.
 class Run {
  public:
-  Run(const PaintFitter& fitter, std::vector<Input>& inputs, PaintWriter& writer, Tally& tally, ColorMaps& maps,
-      const cli::Session& session)
+  Run(const fit::PaintFitter& fitter, std::vector<Input>& inputs, formats::PaintWriter& writer, Tally& tally,
+      ColorMaps& maps, const cli::Session& session)
       : fitter_(fitter),
         inputs_(inputs),
         writer_(writer),
@@ -86,13 +86,13 @@ class Run {
 
  private:
   Result<void> library(std::size_t k) {
-    std::vector<Paint> batch;
+    std::vector<paint::Paint> batch;
     std::vector<int> lines;
     bool more = true;
     for (std::size_t size = 1; more; size = std::min(2 * size, kLargestBatch)) {
       batch.clear(), lines.clear();
       while (more && batch.size() < size) {
-        GONIO_ASSIGN(std::optional<Paint> paint, inputs_[k].reader->next());
+        GONIO_ASSIGN(std::optional<paint::Paint> paint, inputs_[k].reader->next());
         more = paint.has_value();
         if (!more) break;
         lines.push_back(inputs_[k].reader->line());
@@ -106,9 +106,9 @@ class Run {
   }
 
   // Fits one batch and writes it on.
-  Result<void> finish_batch(std::vector<Paint>& batch, const std::vector<int>& lines, const std::string& name) {
+  Result<void> finish_batch(std::vector<paint::Paint>& batch, const std::vector<int>& lines, const std::string& name) {
     const Stopwatch clock;
-    std::vector<Result<PaintFit>> results = fits(fitter_, batch);
+    std::vector<Result<fit::PaintFit>> results = fit::fits(fitter_, batch);
     tally_.add_time(clock.elapsed_s());
     for (std::size_t i = 0; i < batch.size(); ++i) {
       if (results[i].ok()) {
@@ -125,16 +125,16 @@ class Run {
 
   Result<void> measured(std::size_t k) {
     Input& input = inputs_[k];
-    GONIO_ASSIGN(BrdfTarget target, read_brdf_target(*input.measured));
+    GONIO_ASSIGN(fit::BrdfTarget target, fit::read_brdf_target(*input.measured));
     input.measured.reset();
     GONIO_TRY(names_.note(target.paint, k, 1));
     const Stopwatch clock;
-    Result<PaintFit> fit = fitter_.fit(target);
+    Result<fit::PaintFit> fit = fitter_.fit(target);
     tally_.add_time(clock.elapsed_s());
     if (fit.ok()) {
       GONIO_ASSIGN(fit->report.brdf->albedo_error,
-                   albedo_error(*target.source, [&](const Vec3& light, const Vec3& view) {
-                     return coated_brdf(fit->lobes, light, view, {0, 0, 1});
+                   fit::albedo_error(*target.source, [&](const Vec3& light, const Vec3& view) {
+                     return brdf::coated_brdf(fit->lobes, light, view, {0, 0, 1});
                    }));
       tally_.add(target.paint, *fit);
       target.paint.lobes = std::move(fit->lobes);
@@ -145,9 +145,9 @@ class Run {
     return writer_.write(target.paint);
   }
 
-  const PaintFitter& fitter_;
+  const fit::PaintFitter& fitter_;
   std::vector<Input>& inputs_;
-  PaintWriter& writer_;
+  formats::PaintWriter& writer_;
   Tally& tally_;
   ColorMaps& maps_;
   const cli::Session& session_;
@@ -157,13 +157,13 @@ class Run {
 }  // namespace
 
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
-  GONIO_ASSIGN(FitOptions fit, fit_options(options));
-  GONIO_ASSIGN(Basis basis, read_basis(options.basis));
+  GONIO_ASSIGN(fit::FitOptions fit, fit_options(options));
+  GONIO_ASSIGN(formats::Basis basis, formats::read_basis(options.basis));
   session.explain(plan(options, fit, basis));
-  const PaintFitter fitter(std::move(basis), std::move(fit));
+  const fit::PaintFitter fitter(std::move(basis), std::move(fit));
 
   GONIO_ASSIGN(std::vector<Input> inputs, open_all(options.paints));
-  std::vector<Processing> history;
+  std::vector<formats::Processing> history;
   std::vector<std::string> foreign;
   for (const Input& input : inputs) {
     if (!input.reader) continue;
@@ -173,7 +173,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   history.push_back({session.tool(), cli::Session::version(), session.command_line()});
 
   GONIO_ASSIGN(OutputFile file, OutputFile::create(options.output));
-  GONIO_ASSIGN(PaintWriter writer, PaintWriter::begin(std::move(file), history, foreign));
+  GONIO_ASSIGN(formats::PaintWriter writer, formats::PaintWriter::begin(std::move(file), history, foreign));
   Tally tally(options, session);
   ColorMaps maps(options, session);
   GONIO_TRY(maps.begin());
@@ -183,4 +183,4 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   return tally.finish();
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -5,13 +5,13 @@
 
 #include "base/text.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
 // "90", "60:90" or "20:80,60:90".
-Result<std::vector<GlossReading>> gloss_readings(const std::string& text) {
-  std::vector<GlossReading> readings;
+Result<std::vector<paint::GlossReading>> gloss_readings(const std::string& text) {
+  std::vector<paint::GlossReading> readings;
   for (const std::string_view part : split(text, ',')) {
     const auto colon = part.find(':');
     const bool has_angle = colon != std::string_view::npos;
@@ -19,9 +19,9 @@ Result<std::vector<GlossReading>> gloss_readings(const std::string& text) {
     const auto units = parse_number(has_angle ? part.substr(colon + 1) : part);
     if (!angle || !units || *units < 0 || *units > 100)
       return usage_error("--gloss \"{}\": give gloss units from 0 to 100, or ANGLE:GU, as in 20:80,60:90", text);
-    if (std::ranges::find(kGlossAngles_deg, *angle) == std::end(kGlossAngles_deg))
+    if (std::ranges::find(brdf::kGlossAngles_deg, *angle) == std::end(brdf::kGlossAngles_deg))
       return usage_error("--gloss \"{}\": gloss meters have 20, 60 and 85 deg", text);
-    if (std::ranges::find(readings, *angle, &GlossReading::angle_deg) != readings.end())
+    if (std::ranges::find(readings, *angle, &paint::GlossReading::angle_deg) != readings.end())
       return usage_error("--gloss \"{}\": {} deg is given twice", text, *angle);
     readings.push_back({*angle, *units});
   }
@@ -51,32 +51,32 @@ std::string list(const std::vector<double>& values) {
   return text.empty() ? " none" : text;
 }
 
-const char* method_plan(FitMethod method) {
+const char* method_plan(fit::FitMethod method) {
   switch (method) {
-    case FitMethod::kL1:
+    case fit::FitMethod::kL1:
       return "least absolute error; about 20 us a paint, leaves an outlier aside";
-    case FitMethod::kL2:
+    case fit::FitMethod::kL2:
       return "least squares; about 15 us a paint, 7-12 % worse in absolute error";
-    case FitMethod::kDeltaE:
+    case fit::FitMethod::kDeltaE:
       break;
   }
   return "least color difference at the readings, started from l1 and l2; some ms a paint";
 }
 
-std::string gloss_plan(const std::vector<GlossReading>& readings) {
+std::string gloss_plan(const std::vector<paint::GlossReading>& readings) {
   std::string text = "as stated, else";
-  for (const GlossReading& r : readings) text += fmt::format(" {} GU at {} deg", r.gloss_units, r.angle_deg);
+  for (const paint::GlossReading& r : readings) text += fmt::format(" {} GU at {} deg", r.gloss_units, r.angle_deg);
   return readings.empty() ? text + " matt" : text;
 }
 
 }  // namespace
 
-Result<FitOptions> fit_options(const Options& options) {
-  FitOptions fit;
-  fit.method = options.method == "l2"       ? FitMethod::kL2
-               : options.method == "deltae" ? FitMethod::kDeltaE
-                                            : FitMethod::kL1;
-  fit.target = options.target == "curve" ? TargetCurve::Kind::kCurve : TargetCurve::Kind::kMeasured;
+Result<fit::FitOptions> fit_options(const Options& options) {
+  fit::FitOptions fit;
+  fit.method = options.method == "l2"       ? fit::FitMethod::kL2
+               : options.method == "deltae" ? fit::FitMethod::kDeltaE
+                                            : fit::FitMethod::kL1;
+  fit.target = options.target == "curve" ? paint::TargetCurve::Kind::kCurve : paint::TargetCurve::Kind::kMeasured;
   fit.perceptual_weights = options.weights == "perceptual";
   fit.most_lobes = options.lobes;
   fit.prune_de00 = options.prune_de00;
@@ -90,9 +90,10 @@ Result<FitOptions> fit_options(const Options& options) {
   return fit;
 }
 
-std::string plan(const Options& options, const FitOptions& fit, const Basis& basis) {
+std::string plan(const Options& options, const fit::FitOptions& fit, const formats::Basis& basis) {
   std::vector<double> seen, unseen;
-  for (const double e : basis.exponents) (cos_power(15 * M_PI / 180, e) >= kSeenPart ? seen : unseen).push_back(e);
+  for (const double e : basis.exponents)
+    (brdf::cos_power(15 * M_PI / 180, e) >= fit::kSeenPart ? seen : unseen).push_back(e);
   std::string text = fmt::format(
       "basis {}: {} lobes{}\n"
       "  flake lobes at a first reading of 15 deg:{}\n"
@@ -105,7 +106,7 @@ std::string plan(const Options& options, const FitOptions& fit, const Basis& bas
       options.target,
       options.target == "curve" ? "quadratic of face, flop and travel; misses 5-angle readings by some dE00"
                                 : "the readings, a monotone cubic between them at 3 % of their weight",
-      options.method, method_plan(fit.method), gloss_plan(fit.assumed_gloss), kGlareAngle_deg);
+      options.method, method_plan(fit.method), gloss_plan(fit.assumed_gloss), fit::kGlareAngle_deg);
   text += fmt::format("measured BRDFs: directions to {} deg from the normal; some ms each\n", fit.steepest_deg);
   if (fit.most_lobes > 0) text += fmt::format("lobes: the best subset of {}\n", fit.most_lobes);
   if (fit.prune_de00 > 0) text += fmt::format("lobes that move no color by dE00 {} are dropped\n", fit.prune_de00);
@@ -117,4 +118,4 @@ std::string plan(const Options& options, const FitOptions& fit, const Basis& bas
   return text;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -7,12 +7,12 @@
 #include "fit/paint_fit.h"
 #include "options.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 // Error: a gloss or a list of views that makes no sense.
-Result<FitOptions> fit_options(const Options& options);
+Result<fit::FitOptions> fit_options(const Options& options);
 
 // What will be done, left out, and what it costs.
-std::string plan(const Options& options, const FitOptions& fit, const Basis& basis);
+std::string plan(const Options& options, const fit::FitOptions& fit, const formats::Basis& basis);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <functional>
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
@@ -12,9 +12,9 @@ constexpr std::size_t kWorstShown = 5;
 constexpr double kBad_de00 = 2;  // paints above are named
 constexpr double kSpreadStep = 0.01;
 
-Json by_geometry(const std::vector<GeometryError>& errors) {
+Json by_geometry(const std::vector<fit::GeometryError>& errors) {
   Json object = Json::object();
-  for (const GeometryError& g : errors) {
+  for (const fit::GeometryError& g : errors) {
     // Two readings of one geometry: the worse one counts.
     const double before = object.value(g.geometry, 0.0);
     object[g.geometry] = json_number(std::max(before, g.de00));
@@ -22,9 +22,9 @@ Json by_geometry(const std::vector<GeometryError>& errors) {
   return object;
 }
 
-Json gloss_of(const std::vector<GlossMisfit>& gloss) {
+Json gloss_of(const std::vector<fit::GlossMisfit>& gloss) {
   Json array = Json::array();
-  for (const GlossMisfit& g : gloss) {
+  for (const fit::GlossMisfit& g : gloss) {
     Json reading = {{"angle_deg", g.angle_deg}, {"simulated_gu", json_number(g.simulated_gu)}};
     if (g.stated_gu) {
       reading["stated_gu"] = *g.stated_gu;
@@ -35,11 +35,11 @@ Json gloss_of(const std::vector<GlossMisfit>& gloss) {
   return array;
 }
 
-Json report_of(const Paint& paint, const PaintFit& fit) {
-  const PaintFitReport& r = fit.report;
+Json report_of(const paint::Paint& paint, const fit::PaintFit& fit) {
+  const fit::PaintFitReport& r = fit.report;
   Json report = {{"name", paint.name},
                  {"method", fit.lobes.method},
-                 {"status", fit_status_name(r.status)},
+                 {"status", fit::fit_status_name(r.status)},
                  {"time_us", r.time_us},
                  {"objective", json_number(r.objective)},
                  {"plain_objective", json_number(r.plain_objective)},
@@ -103,22 +103,22 @@ Tally::Tally(const Options& options, cli::Session& session) : options_(options),
   session.begin_list("paints");
 }
 
-void Tally::add_worst(const Paint& paint, const PaintFitReport& r) {
+void Tally::add_worst(const paint::Paint& paint, const fit::PaintFitReport& r) {
   if (r.de00_by_geometry.empty()) return;
-  const auto at = std::ranges::max_element(r.de00_by_geometry, {}, &GeometryError::de00);
+  const auto at = std::ranges::max_element(r.de00_by_geometry, {}, &fit::GeometryError::de00);
   const auto place = std::ranges::upper_bound(worst_, at->de00, std::greater<>(), &Bad::de00);
   worst_.insert(place, {paint.name, at->geometry, r.limit, at->de00});
   if (worst_.size() > kWorstShown) worst_.pop_back();
 }
 
-void Tally::add(const Paint& paint, const PaintFit& fit) {
-  const PaintFitReport& r = fit.report;
+void Tally::add(const paint::Paint& paint, const fit::PaintFit& fit) {
+  const fit::PaintFitReport& r = fit.report;
   ++fitted_;
-  not_converged_ += r.status == FitStatus::kNotConverged;
-  stopped_ += r.status == FitStatus::kTimeLimit;
-  for (const GeometryError& error : r.de00_by_geometry) errors_.add(error.de00);
+  not_converged_ += r.status == fit::FitStatus::kNotConverged;
+  stopped_ += r.status == fit::FitStatus::kTimeLimit;
+  for (const fit::GeometryError& error : r.de00_by_geometry) errors_.add(error.de00);
   add_worst(paint, r);
-  contradicting_ += r.floor.apart_de00 > kVisible_de00;
+  contradicting_ += r.floor.apart_de00 > fit::kVisible_de00;
   sum_floor_ += r.floor.de00_mean * static_cast<double>(r.de00_by_geometry.size());
   for (const double floor : r.floor.largest_de00) floors_.add(floor);
   if (r.views) sum_gain_ += r.views->gain_de00();
@@ -130,7 +130,7 @@ void Tally::add(const Paint& paint, const PaintFit& fit) {
   session_.add("paints", [&] { return report_of(paint, fit); });
 }
 
-void Tally::add_failure(const Paint& paint, const std::string& where, const std::string& message) {
+void Tally::add_failure(const paint::Paint& paint, const std::string& where, const std::string& message) {
   if (++failed_ <= kWarningsShown)
     session_.warn(fmt::format("{}: paint \"{}\" is passed on unfitted: {}", where, paint.name, message));
   session_.add("paints", [&] {
@@ -201,4 +201,4 @@ cli::Verdict Tally::finish() {
   return failed_ > 0 || not_converged_ > 0 ? cli::Verdict::kNegative : cli::Verdict::kDone;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

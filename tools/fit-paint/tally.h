@@ -8,7 +8,7 @@
 #include "fit/paint_fit.h"
 #include "options.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 // Color differences in constant memory, in steps of 0.01.
 class Spread {
@@ -29,8 +29,8 @@ class Tally {
  public:
   Tally(const Options& options, cli::Session& session);
 
-  void add(const Paint& paint, const PaintFit& fit);
-  void add_failure(const Paint& paint, const std::string& where, const std::string& message);
+  void add(const paint::Paint& paint, const fit::PaintFit& fit);
+  void add_failure(const paint::Paint& paint, const std::string& where, const std::string& message);
   void add_time(double seconds) { fit_s_ += seconds; }
   std::size_t done() const { return fitted_ + failed_; }
 
@@ -43,7 +43,7 @@ class Tally {
     double de00 = 0;
   };
 
-  void add_worst(const Paint& paint, const PaintFitReport& report);
+  void add_worst(const paint::Paint& paint, const fit::PaintFitReport& report);
   std::string summary() const;
   std::string floor() const;
 
@@ -59,4 +59,4 @@ class Tally {
   std::vector<Bad> worst_;         // the worst paints, worst first
 };
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

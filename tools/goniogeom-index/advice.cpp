@@ -5,7 +5,7 @@
 
 #include "base/text.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
@@ -20,50 +20,55 @@ struct Rms {
 };
 
 // The RMS difference that the best paint for the second panel leaves over these views.
-std::optional<double> best_left(const Appearance& a, const Paint& paint, const std::vector<PanelView>& views) {
+std::optional<double> best_left(const paint::Appearance& a, const paint::Paint& paint,
+                                const std::vector<panels::PanelView>& views) {
   if (views.empty()) return std::nullopt;
-  std::vector<PanelView> some;
-  for (const std::size_t i : spread_places(views.size(), kMostFitted)) some.push_back(views[i]);
-  const auto fit = trompe_fit(a, paint.paint_class == PaintClass::kSolid, some, {});
+  std::vector<panels::PanelView> some;
+  for (const std::size_t i : panels::spread_places(views.size(), kMostFitted)) some.push_back(views[i]);
+  const auto fit = panels::trompe_fit(a, paint.paint_class == paint::PaintClass::kSolid, some, {});
   return fit.ok() ? std::optional<double>(fit->after.rms) : std::nullopt;
 }
 
-double largest_solid_difference(const Appearance& a, const std::vector<PanelView>& views, DifferenceMetric metric) {
-  const Lab solid = lab_at(a, 45);
+double largest_solid_difference(const paint::Appearance& a, const std::vector<panels::PanelView>& views,
+                                panels::DifferenceMetric metric) {
+  const color::Lab solid = paint::lab_at(a, 45);
   double most = 0;
-  for (const PanelView& view : views)
-    most = std::max(most, difference(metric, panel_color(solid, view.cos_a), panel_color(solid, view.cos_b)));
+  for (const panels::PanelView& view : views)
+    most = std::max(most, panels::difference(metric, panels::panel_color(solid, view.cos_a),
+                                             panels::panel_color(solid, view.cos_b)));
   return most;
 }
 
 }  // namespace
 
-std::vector<std::string> advice(const Paint& paint, const SeamRequest& request, const Seam& seam,
-                                const std::vector<SeamView>& views, const std::vector<double>& de) {
-  const auto appearance = appearance_of(paint);
+std::vector<std::string> advice(const paint::Paint& paint, const SeamRequest& request, const mesh::Seam& seam,
+                                const std::vector<panels::SeamView>& views, const std::vector<double>& de) {
+  const auto appearance = panels::appearance_of(paint);
   if (!appearance.ok()) return {};
-  const FlakeCurve curve(*appearance);
+  const panels::FlakeCurve curve(*appearance);
   std::vector<double> folds;
-  for (const SeamPoint& p : seam.points) folds.push_back(std::abs(p.fold_deg));
+  for (const mesh::SeamPoint& p : seam.points) folds.push_back(std::abs(p.fold_deg));
   std::ranges::sort(folds);
   const double fold = folds[folds.size() * 95 / 100];
 
   // Under lights of the environment the views of an instrument stand in: there is no one aspecular angle to name.
   const bool has_lights = !views.empty() && views.front().light.has_value();
-  std::vector<PanelView> seen, near_side, far_side;
+  std::vector<panels::PanelView> seen, near_side, far_side;
   Rms low, high;
   for (std::size_t i = 0; has_lights && i < views.size(); ++i) {
-    const PanelView view = panel_view(seam, views[i]);
+    const panels::PanelView view = panels::panel_view(seam, views[i]);
     seen.push_back(view);
     (view.aspecular_a_deg <= kLowAspecular_deg ? low : high).add(de[i], view.weight);
     // Where the second panel is turned toward the highlight, against where it is turned away from it.
     (view.aspecular_b_deg < view.aspecular_a_deg ? near_side : far_side).push_back(view);
   }
   double index = std::numeric_limits<double>::infinity();
-  const GeometryList set = has_lights && !request.world.in_world ? request.geometries : *geometry_list({});
-  for (const LightView& g : set.pairs)
+  const panels::GeometryList set =
+      has_lights && !request.world.in_world ? request.geometries : *panels::geometry_list({});
+  for (const panels::LightView& g : set.pairs)
     index = std::min(index,
-                     geometry_index(curve, TiltedPair::make(g, 90), request.threshold, request.metric).smallest_deg());
+                     panels::geometry_index(curve, panels::TiltedPair::make(g, 90), request.threshold, request.metric)
+                         .smallest_deg());
   const double most = *std::ranges::max_element(de);
   const std::string shown = shortest(request.threshold);
   const auto verdict = [](bool applies) { return applies ? "applies" : "is met"; };
@@ -101,4 +106,4 @@ std::vector<std::string> advice(const Paint& paint, const SeamRequest& request, 
   return lines;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -4,13 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "fit/goniogeom_seam.h"
 #include "options.h"
+#include "panels/goniogeom_seam.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 // One line for each of the five guidelines: whether it applies, and why. `de` has the difference for every view.
-std::vector<std::string> advice(const Paint& paint, const SeamRequest& request, const Seam& seam,
-                                const std::vector<SeamView>& views, const std::vector<double>& de);
+std::vector<std::string> advice(const paint::Paint& paint, const SeamRequest& request, const mesh::Seam& seam,
+                                const std::vector<panels::SeamView>& views, const std::vector<double>& de);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -4,22 +4,22 @@
 #include <string>
 #include <vector>
 
-#include "fit/goniogeom.h"
+#include "panels/goniogeom.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 struct DifferenceCurves {
   std::string paint;
   double seam_deg = 90, threshold = 2.3;
-  DifferenceMetric metric = DifferenceMetric::kDe76;
+  panels::DifferenceMetric metric = panels::DifferenceMetric::kDe76;
   std::vector<double> lights_deg, misalignments_deg;
 };
 
 // Rows light_deg, view_deg, aspecular_deg, misalignment_deg, de for viewers all across the panel, in whole degrees.
 // Glare, and viewers who do not see the second panel, are left out.
-std::string csv(const DifferenceCurves& what, const FlakeCurve& curve);
+std::string csv(const DifferenceCurves& what, const panels::FlakeCurve& curve);
 
 // The same as a plot for each light, with the threshold.
-std::string svg(const DifferenceCurves& what, const FlakeCurve& curve);
+std::string svg(const DifferenceCurves& what, const panels::FlakeCurve& curve);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

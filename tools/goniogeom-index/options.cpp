@@ -5,15 +5,15 @@
 #include "../seam_options.h"
 #include "base/text.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
 std::string sets_text() {
   std::string text = "Named sets are";
-  for (const GeometrySet& set : geometry_sets())
-    text += fmt::format("{} set:{} (lights {}, views {}: {})", &set == &geometry_sets().front() ? "" : ";", set.name,
-                        set.lights, set.views, set.meaning);
+  for (const panels::GeometrySet& set : panels::geometry_sets())
+    text += fmt::format("{} set:{} (lights {}, views {}: {})", &set == &panels::geometry_sets().front() ? "" : ";",
+                        set.name, set.lights, set.views, set.meaning);
   return text + ".";
 }
 
@@ -37,19 +37,20 @@ Result<IndexRequest> request_of(const Options& options) {
   for (const std::string& curve : options.curves)
     if (!curve.ends_with(".csv") && !curve.ends_with(".svg"))
       return usage_error("--curve is \"{}\": give a name that ends in .csv or .svg", curve);
-  request.metric = options.metric == "de00" ? DifferenceMetric::kDe00 : DifferenceMetric::kDe76;
-  request.target = options.target == "curve" ? TargetCurve::Kind::kCurve : TargetCurve::Kind::kMeasured;
+  request.metric = options.metric == "de00" ? panels::DifferenceMetric::kDe00 : panels::DifferenceMetric::kDe76;
+  request.target = options.target == "curve" ? paint::TargetCurve::Kind::kCurve : paint::TargetCurve::Kind::kMeasured;
   request.one_row = options.worst || request.tolerance_deg;
-  GONIO_ASSIGN(GeometryList list, geometry_list(options.geometries));
+  GONIO_ASSIGN(panels::GeometryList list, panels::geometry_list(options.geometries));
   request.glare = list.glare, request.below_horizon = list.below_horizon;
-  for (const LightView& geometry : list.pairs) request.pairs.push_back(TiltedPair::make(geometry, options.seam_deg));
+  for (const panels::LightView& geometry : list.pairs)
+    request.pairs.push_back(panels::TiltedPair::make(geometry, options.seam_deg));
   request.geometries = std::move(list.pairs);
   return request;
 }
 
 Result<SeamRequest> seam_request_of(const Options& options) {
   SeamRequest request;
-  GONIO_ASSIGN(request.world, seam_world(options.seam));
+  GONIO_ASSIGN(request.world, panels::seam_world(options.seam));
   if (!options.tolerance_for_deg.empty() || !options.curves.empty())
     return usage_error("--tolerance-for and --curve are for panels without a mesh: leave out --mesh");
   if (!options.picture.empty() && !options.picture.ends_with(".png"))
@@ -57,9 +58,9 @@ Result<SeamRequest> seam_request_of(const Options& options) {
   if (!(options.threshold > 0))
     return usage_error("--threshold is {}: give a color difference above 0", shortest(options.threshold));
   request.threshold = options.threshold;
-  request.metric = options.metric == "de00" ? DifferenceMetric::kDe00 : DifferenceMetric::kDe76;
-  request.target = options.target == "curve" ? TargetCurve::Kind::kCurve : TargetCurve::Kind::kMeasured;
-  GONIO_ASSIGN(request.geometries, geometry_list(options.geometries));
+  request.metric = options.metric == "de00" ? panels::DifferenceMetric::kDe00 : panels::DifferenceMetric::kDe76;
+  request.target = options.target == "curve" ? paint::TargetCurve::Kind::kCurve : paint::TargetCurve::Kind::kMeasured;
+  GONIO_ASSIGN(request.geometries, panels::geometry_list(options.geometries));
   return request;
 }
 
@@ -190,4 +191,4 @@ cli::ToolSpec tool_spec(Options& o) {
   return spec;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

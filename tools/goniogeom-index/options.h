@@ -5,17 +5,17 @@
 #include <vector>
 
 #include "cli/options.h"
-#include "fit/goniogeom.h"
-#include "fit/goniogeom_sets.h"
-#include "render/seam_view.h"
+#include "panels/goniogeom.h"
+#include "panels/goniogeom_sets.h"
+#include "panels/seam_view.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 struct Options {
   cli::CommonOptions common;
   std::vector<std::string> inputs, only;
   std::string output = "-";
-  GeometryTexts geometries;
+  panels::GeometryTexts geometries;
   double seam_deg = 90;
   double threshold = 2.3;
   std::string metric = "de76", target = "curve";
@@ -23,7 +23,7 @@ struct Options {
   std::vector<double> tolerance_for_deg;  // empty: not asked
   std::vector<std::string> curves;
   std::vector<double> misalignments_deg = {1, 2, 3, 5};
-  SeamTexts seam;
+  panels::SeamTexts seam;
   std::string picture;
   bool advise = false;
 };
@@ -32,11 +32,11 @@ cli::ToolSpec tool_spec(Options& options);
 
 // What the words mean, checked.
 struct IndexRequest {
-  std::vector<LightView> geometries;
-  int glare = 0, below_horizon = 0;  // pairs left out
-  std::vector<TiltedPair> pairs;     // one for each geometry
-  DifferenceMetric metric = DifferenceMetric::kDe76;
-  TargetCurve::Kind target = TargetCurve::Kind::kCurve;
+  std::vector<panels::LightView> geometries;
+  int glare = 0, below_horizon = 0;       // pairs left out
+  std::vector<panels::TiltedPair> pairs;  // one for each geometry
+  panels::DifferenceMetric metric = panels::DifferenceMetric::kDe76;
+  paint::TargetCurve::Kind target = paint::TargetCurve::Kind::kCurve;
   double threshold = 2.3;
   std::optional<double> tolerance_deg;
   bool one_row = false;  // for each paint: its worst geometry
@@ -45,12 +45,12 @@ Result<IndexRequest> request_of(const Options& options);
 
 // The same for a seam of a mesh.
 struct SeamRequest {
-  SeamWorld world;
-  GeometryList geometries;  // at every place of the seam, where the world says nothing
-  DifferenceMetric metric = DifferenceMetric::kDe76;
-  TargetCurve::Kind target = TargetCurve::Kind::kCurve;
+  panels::SeamWorld world;
+  panels::GeometryList geometries;  // at every place of the seam, where the world says nothing
+  panels::DifferenceMetric metric = panels::DifferenceMetric::kDe76;
+  paint::TargetCurve::Kind target = paint::TargetCurve::Kind::kCurve;
   double threshold = 2.3;
 };
 Result<SeamRequest> seam_request_of(const Options& options);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -8,10 +8,10 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "curve.h"
-#include "paint/batches.h"
+#include "formats/batches.h"
 #include "seam_run.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
@@ -19,7 +19,7 @@ constexpr double kTold_deg[] = {1, 2, 5};
 constexpr int kNamesShown = 20;
 
 struct GeometryRow {
-  GeometryIndex index;
+  panels::GeometryIndex index;
   double de[std::size(kTold_deg)];
 };
 
@@ -32,16 +32,16 @@ struct PaintIndex {
   double smallest_deg = std::numeric_limits<double>::infinity();
 };
 
-PaintIndex paint_index(const Paint& paint, const IndexRequest& request) {
+PaintIndex paint_index(const paint::Paint& paint, const IndexRequest& request) {
   PaintIndex result;
-  const auto curve = FlakeCurve::make(paint, request.target);
+  const auto curve = panels::FlakeCurve::make(paint, request.target);
   if (!curve.ok()) return {curve.error().message, {}, {}, 0, 0};
   result.residual_de00 = curve->residual_de00();
   for (std::size_t i = 0; i < request.pairs.size(); ++i) {
-    const TiltedPair& pair = request.pairs[i];
-    GeometryRow row{geometry_index(*curve, pair, request.threshold, request.metric), {}};
+    const panels::TiltedPair& pair = request.pairs[i];
+    GeometryRow row{panels::geometry_index(*curve, pair, request.threshold, request.metric), {}};
     for (std::size_t k = 0; k < std::size(kTold_deg); ++k)
-      row.de[k] = larger_difference(*curve, pair, kTold_deg[k], request.metric);
+      row.de[k] = panels::larger_difference(*curve, pair, kTold_deg[k], request.metric);
     if (row.index.smallest_deg() < result.smallest_deg)
       result.smallest_deg = row.index.smallest_deg(), result.worst = i;
     result.rows.push_back(row);
@@ -57,12 +57,12 @@ std::string verdict_of(const PaintIndex& index, double tolerance_deg) {
   return index.smallest_deg > tolerance_deg ? "pass" : "fail";
 }
 
-std::string table_rows(const Paint& paint, const PaintIndex& index, const IndexRequest& request) {
+std::string table_rows(const paint::Paint& paint, const PaintIndex& index, const IndexRequest& request) {
   std::string text;
   const std::size_t first = request.one_row ? index.worst : 0;
   const std::size_t last = request.one_row ? first + 1 : index.rows.size();
   for (std::size_t i = first; i < last; ++i) {
-    const LightView& g = request.geometries[i];
+    const panels::LightView& g = request.geometries[i];
     const GeometryRow& row = index.rows[i];
     fmt::format_to(std::back_inserter(text), "{}\t{}\t{}\t{}\t{:.9g}\t{}\t{}", table_field(paint.name), g.light_deg,
                    g.view_deg, g.azimuth_deg, request.pairs[i].at(0).aspecular_deg, angle_text(row.index.plus_deg),
@@ -81,11 +81,11 @@ std::string table_head(const IndexRequest& request) {
       request.tolerance_deg ? "\tverdict" : "");
 }
 
-Json paint_json(const Paint& paint, const PaintIndex& index, const IndexRequest& request) {
+Json paint_json(const paint::Paint& paint, const PaintIndex& index, const IndexRequest& request) {
   Json geometries = Json::array();
   const auto angle = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
   for (std::size_t i = 0; i < index.rows.size(); ++i) {
-    const LightView& g = request.geometries[i];
+    const panels::LightView& g = request.geometries[i];
     const GeometryRow& row = index.rows[i];
     geometries.push_back({{"light_deg", g.light_deg},
                           {"view_deg", g.view_deg},
@@ -110,10 +110,10 @@ std::string plan(const Options& options, const IndexRequest& request) {
       "below the horizon\n"
       "difference {} to {}, first crossing for + and -; about 5 us a pair and paint\n"
       "seam at {} deg from the plane of incidence\n",
-      request.pairs.size(), request.glare, kIndexGlare_deg, request.below_horizon, options.metric,
+      request.pairs.size(), request.glare, panels::kIndexGlare_deg, request.below_horizon, options.metric,
       shortest(request.threshold), shortest(options.seam_deg));
   text +=
-      request.target == TargetCurve::Kind::kCurve
+      request.target == paint::TargetCurve::Kind::kCurve
           ? "color: face, flop and travel; a fit of some 20 us where a paint has only rows, residual in the report\n"
           : "color: monotone cubics through the rows, constant below the first and beyond the last\n";
   return text;
@@ -125,12 +125,12 @@ class Run {
       : options_(options), request_(request), session_(session) {}
 
   Result<cli::Verdict> operator()() {
-    GONIO_ASSIGN(PaintBatches paints, PaintBatches::open(options_.inputs, options_.only));
+    GONIO_ASSIGN(formats::PaintBatches paints, formats::PaintBatches::open(options_.inputs, options_.only));
     GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
     GONIO_TRY(file.write(table_head(request_)));
     session_.begin_list("paints");
     for (;;) {
-      GONIO_ASSIGN(std::vector<Paint> batch, paints.next());
+      GONIO_ASSIGN(std::vector<paint::Paint> batch, paints.next());
       if (batch.empty()) break;
       GONIO_TRY(take(batch, file));
       session_.progress(fmt::format("{} paints", done_));
@@ -140,7 +140,7 @@ class Run {
   }
 
  private:
-  Result<void> take(const std::vector<Paint>& batch, OutputFile& file) {
+  Result<void> take(const std::vector<paint::Paint>& batch, OutputFile& file) {
     std::vector<PaintIndex> indices(batch.size());
     std::vector<std::string> rows(batch.size());
     parallel_for(batch.size(), 8, [&](std::size_t begin, std::size_t end) {
@@ -156,7 +156,7 @@ class Run {
     return file.flush();
   }
 
-  Result<void> note(const Paint& paint, const PaintIndex& index) {
+  Result<void> note(const paint::Paint& paint, const PaintIndex& index) {
     if (!index.failure.empty()) {
       if (++failed_ <= kNamesShown) session_.warn(fmt::format("left out: {}", index.failure));
       session_.add("paints", [&] {
@@ -167,7 +167,7 @@ class Run {
     ++done_;
     if (index.smallest_deg < smallest_deg_ || done_ == 1) {
       smallest_deg_ = index.smallest_deg;
-      const LightView& g = request_.geometries[index.worst];
+      const panels::LightView& g = request_.geometries[index.worst];
       worst_ = fmt::format("{} at light {}, view {}", paint.name, shortest(g.light_deg), shortest(g.view_deg));
     }
     if (request_.tolerance_deg && verdict_of(index, *request_.tolerance_deg) == "fail") failing_.push_back(paint.name);
@@ -175,11 +175,11 @@ class Run {
     return options_.curves.empty() ? Result<void>() : write_curves(paint);
   }
 
-  Result<void> write_curves(const Paint& paint) {
+  Result<void> write_curves(const paint::Paint& paint) {
     if (done_ > 1)
       return usage_error("--curve draws one paint and there is another, \"{}\": choose one by --only", paint.name);
-    GONIO_ASSIGN(const FlakeCurve curve, FlakeCurve::make(paint, request_.target));
-    GONIO_ASSIGN(const std::vector<double> lights, light_angles(options_.geometries.lights));
+    GONIO_ASSIGN(const panels::FlakeCurve curve, panels::FlakeCurve::make(paint, request_.target));
+    GONIO_ASSIGN(const std::vector<double> lights, panels::light_angles(options_.geometries.lights));
     const DifferenceCurves what{paint.name, options_.seam_deg,         request_.threshold, request_.metric,
                                 lights,     options_.misalignments_deg};
     for (const std::string& path : options_.curves)
@@ -224,4 +224,4 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   return Run(options, request, session)();
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

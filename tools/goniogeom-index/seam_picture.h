@@ -5,21 +5,22 @@
 #include <vector>
 
 #include "base/result.h"
-#include "fit/goniogeom_seam.h"
 #include "image/image.h"
 #include "mesh/mesh.h"
 #include "options.h"
+#include "panels/goniogeom_seam.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 struct SeamPicture {
   std::string title;
   double threshold = 2.3;
-  std::vector<SeamDifference> places;  // of the seam
+  std::vector<panels::SeamDifference> places;  // of the seam
 };
 
 // The mesh in gray, both panels lighter than the rest, every place of the seam as a dot in the color of its largest
 // difference, and a scale. Error: no OpenGL on this machine.
-Result<Image> seam_picture(const Mesh& mesh, const SeamRequest& request, const Seam& seam, const SeamPicture& picture);
+Result<image::Image> seam_picture(const mesh::Mesh& mesh, const SeamRequest& request, const mesh::Seam& seam,
+                                  const SeamPicture& picture);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -8,19 +8,19 @@
 #include "base/file.h"
 #include "base/parallel.h"
 #include "base/text.h"
-#include "paint/batches.h"
+#include "formats/batches.h"
 #include "seam_picture.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
 struct Spread {
   double low = 0, median = 0, high = 0;
 };
-Spread spread(const Seam& seam, double SeamPoint::*value) {
+Spread spread(const mesh::Seam& seam, double mesh::SeamPoint::*value) {
   std::vector<double> values;
-  for (const SeamPoint& p : seam.points) values.push_back(p.*value);
+  for (const mesh::SeamPoint& p : seam.points) values.push_back(p.*value);
   std::ranges::sort(values);
   return {values.front(), values[values.size() / 2], values.back()};
 }
@@ -28,9 +28,9 @@ Json spread_json(const Spread& s) {
   return {{"low", s.low}, {"median", s.median}, {"high", s.high}};
 }
 
-std::string seam_line(const SeamRequest& request, const Seam& seam) {
-  const Spread fold = spread(seam, &SeamPoint::fold_deg), gap = spread(seam, &SeamPoint::gap_mm),
-               flush = spread(seam, &SeamPoint::flush_mm);
+std::string seam_line(const SeamRequest& request, const mesh::Seam& seam) {
+  const Spread fold = spread(seam, &mesh::SeamPoint::fold_deg), gap = spread(seam, &mesh::SeamPoint::gap_mm),
+               flush = spread(seam, &mesh::SeamPoint::flush_mm);
   std::string line = fmt::format(
       "seam {} | {}: {:.2f} m, misalignment {:+.1f} to {:+.1f} deg (median {:+.1f}), gap {:.1f} mm ({:.1f} to {:.1f}), "
       "flush {:+.1f} to {:+.1f} mm",
@@ -40,7 +40,7 @@ std::string seam_line(const SeamRequest& request, const Seam& seam) {
   return line;
 }
 
-void tell_repairs(const Seam& seam, const Mesh& mesh, cli::Session& session) {
+void tell_repairs(const mesh::Seam& seam, const mesh::Mesh& mesh, cli::Session& session) {
   const auto tell = [&](int count, const char* what) {
     if (count > 0) session.say(fmt::format("  {} {}", count, what));
   };
@@ -59,14 +59,14 @@ class SeamRun {
 
   Result<cli::Verdict> operator()() {
     GONIO_TRY(prepare());
-    GONIO_ASSIGN(PaintBatches paints, PaintBatches::open(options_.inputs, options_.only));
+    GONIO_ASSIGN(formats::PaintBatches paints, formats::PaintBatches::open(options_.inputs, options_.only));
     GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
     GONIO_TRY(
         file.write("name\trun\tdistance_m\tx\ty\tz\tgap_mm\tflush_mm\tangle_deg\tfold_deg\tde_max\tde_rms\tviews\n"));
     for (;;) {
-      GONIO_ASSIGN(std::vector<Paint> batch, paints.next());
+      GONIO_ASSIGN(std::vector<paint::Paint> batch, paints.next());
       if (batch.empty()) break;
-      for (const Paint& paint : batch) GONIO_TRY(take(paint, file));
+      for (const paint::Paint& paint : batch) GONIO_TRY(take(paint, file));
     }
     GONIO_TRY(file.commit());
     return failed_ > 0 ? cli::Verdict::kNegative : cli::Verdict::kDone;
@@ -74,16 +74,16 @@ class SeamRun {
 
  private:
   Result<void> prepare() {
-    GONIO_ASSIGN(stage_, seam_stage(options_.seam, request_.world, request_.geometries, options_.seam_deg));
-    const Seam& seam = stage_.seam;
+    GONIO_ASSIGN(stage_, panels::seam_stage(options_.seam, request_.world, request_.geometries, options_.seam_deg));
+    const mesh::Seam& seam = stage_.seam;
     session_.say(seam_line(request_, seam));
     tell_repairs(seam, stage_.mesh, session_);
     Json& results = session_.results();
     results["seam_length_m"] = seam.length_m;
     results["unit_m"] = seam.unit_m;
-    results["misalignment_deg"] = spread_json(spread(seam, &SeamPoint::fold_deg));
-    results["gap_mm"] = spread_json(spread(seam, &SeamPoint::gap_mm));
-    results["flush_mm"] = spread_json(spread(seam, &SeamPoint::flush_mm));
+    results["misalignment_deg"] = spread_json(spread(seam, &mesh::SeamPoint::fold_deg));
+    results["gap_mm"] = spread_json(spread(seam, &mesh::SeamPoint::gap_mm));
+    results["flush_mm"] = spread_json(spread(seam, &mesh::SeamPoint::flush_mm));
     results["repairs"] = {{"duplicate_faces", seam.repairs.duplicate_faces},
                           {"non_manifold_edges", seam.repairs.non_manifold_edges},
                           {"turned", seam.repairs.turned},
@@ -93,35 +93,38 @@ class SeamRun {
   }
 
   // The difference of the panels for every view.
-  Result<std::vector<double>> differences(const Paint& paint) {
+  Result<std::vector<double>> differences(const paint::Paint& paint) {
     std::vector<double> de(stage_.views.size());
     if (!options_.seam.environment.empty()) {
-      GONIO_ASSIGN(const Appearance appearance, appearance_of(paint));
-      GONIO_ASSIGN(const EnvironmentPanels panels, EnvironmentPanels::make(stage_.env, condition_of(paint)));
-      GONIO_ASSIGN(const auto a, seam_colors(panels, stage_.seam, stage_.views, SeamSide::kA)(appearance));
-      GONIO_ASSIGN(const auto b, seam_colors(panels, stage_.seam, stage_.views, SeamSide::kB)(appearance));
-      for (std::size_t i = 0; i < de.size(); ++i) de[i] = difference(request_.metric, a[i], b[i]);
+      GONIO_ASSIGN(const paint::Appearance appearance, panels::appearance_of(paint));
+      GONIO_ASSIGN(const panels::EnvironmentPanels panels,
+                   panels::EnvironmentPanels::make(stage_.env, paint::condition_of(paint)));
+      GONIO_ASSIGN(const auto a,
+                   panels::seam_colors(panels, stage_.seam, stage_.views, panels::SeamSide::kA)(appearance));
+      GONIO_ASSIGN(const auto b,
+                   panels::seam_colors(panels, stage_.seam, stage_.views, panels::SeamSide::kB)(appearance));
+      for (std::size_t i = 0; i < de.size(); ++i) de[i] = panels::difference(request_.metric, a[i], b[i]);
       return de;
     }
-    GONIO_ASSIGN(const FlakeCurve curve, FlakeCurve::make(paint, request_.target));
+    GONIO_ASSIGN(const panels::FlakeCurve curve, panels::FlakeCurve::make(paint, request_.target));
     parallel_for(de.size(), 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        const PanelView view = panel_view(stage_.seam, stage_.views[i]);
-        de[i] = difference(request_.metric, panel_color(curve.at(view.aspecular_a_deg), view.cos_a),
-                           panel_color(curve.at(view.aspecular_b_deg), view.cos_b));
+        const panels::PanelView view = panels::panel_view(stage_.seam, stage_.views[i]);
+        de[i] = panels::difference(request_.metric, panels::panel_color(curve.at(view.aspecular_a_deg), view.cos_a),
+                                   panels::panel_color(curve.at(view.aspecular_b_deg), view.cos_b));
       }
     });
     return de;
   }
 
-  Result<void> take(const Paint& paint, OutputFile& file) {
+  Result<void> take(const paint::Paint& paint, OutputFile& file) {
     const auto de = differences(paint);
     if (!de.ok()) {
       session_.warn(fmt::format("left out: {}: {}", paint.name, de.error().message));
       ++failed_;
       return {};
     }
-    const std::vector<SeamDifference> places = by_place(stage_.seam, stage_.views, *de);
+    const std::vector<panels::SeamDifference> places = panels::by_place(stage_.seam, stage_.views, *de);
     GONIO_TRY(write_rows(paint, places, file));
     report(paint, places);
     if (options_.advise)
@@ -134,13 +137,14 @@ class SeamRun {
       return usage_error("--picture draws one paint and there is another, \"{}\": choose one by --only", paint.name);
     const SeamPicture picture{fmt::format("{}: {} | {}", paint.name, request_.world.part_a, request_.world.part_b),
                               request_.threshold, places};
-    GONIO_ASSIGN(const Image image, seam_picture(stage_.mesh, request_, stage_.seam, picture));
-    return write_png(
+    GONIO_ASSIGN(const image::Image image, seam_picture(stage_.mesh, request_, stage_.seam, picture));
+    return image::write_png(
         options_.picture, image,
         {{"Software", session_.tool() + " " + cli::Session::version()}, {"Comment", session_.command_line()}});
   }
 
-  Result<void> write_rows(const Paint& paint, const std::vector<SeamDifference>& places, OutputFile& file) {
+  Result<void> write_rows(const paint::Paint& paint, const std::vector<panels::SeamDifference>& places,
+                          OutputFile& file) {
     std::size_t first = 0, last = places.size();
     if (options_.worst) {
       // NaN compares false: places without views are never the worst.
@@ -150,7 +154,7 @@ class SeamRun {
     }
     std::string text;
     for (std::size_t i = first; i < last; ++i) {
-      const SeamPoint& p = stage_.seam.points[i];
+      const mesh::SeamPoint& p = stage_.seam.points[i];
       fmt::format_to(std::back_inserter(text),
                      "{}\t{}\t{:.6g}\t{:.6g}\t{:.6g}\t{:.6g}\t{:.4f}\t{:.4f}\t{:.4f}\t{:.4f}\t",
                      table_field(paint.name), p.run, p.distance_m, p.a.x, p.a.y, p.a.z, p.gap_mm, p.flush_mm,
@@ -161,12 +165,12 @@ class SeamRun {
     return file.write(text);
   }
 
-  void report(const Paint& paint, const std::vector<SeamDifference>& places) {
+  void report(const paint::Paint& paint, const std::vector<panels::SeamDifference>& places) {
     double most = 0, squares = 0;
     std::size_t seen = 0, over = 0;
     Json rows = Json::array();
     for (std::size_t i = 0; i < places.size(); ++i) {
-      const SeamPoint& p = stage_.seam.points[i];
+      const mesh::SeamPoint& p = stage_.seam.points[i];
       rows.push_back({{"run", p.run},
                       {"distance_m", p.distance_m},
                       {"x", p.a.x},
@@ -197,14 +201,14 @@ class SeamRun {
   const Options& options_;
   const SeamRequest& request_;
   cli::Session& session_;
-  SeamStage stage_;
+  panels::SeamStage stage_;
   int failed_ = 0, pictures_ = 0;
 };
 
 std::string plan(const Options& options, const SeamRequest& request) {
   return fmt::format("seam of {} and {} in {}: places a thousandth of the mesh's size apart\n{}", request.world.part_a,
                      request.world.part_b, options.seam.mesh,
-                     seam_light_text(options.seam, request.world, request.geometries));
+                     panels::seam_light_text(options.seam, request.world, request.geometries));
 }
 
 }  // namespace
@@ -215,4 +219,4 @@ Result<cli::Verdict> run_on_seam(const Options& options, cli::Session& session) 
   return SeamRun(options, request, session)();
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

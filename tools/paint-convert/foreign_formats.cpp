@@ -3,11 +3,11 @@
 #include <filesystem>
 
 #include "brdf/measured.h"
-#include "paint/cgats.h"
+#include "formats/cgats.h"
+#include "formats/cxf.h"
 #include "paint/curve.h"
-#include "paint/cxf.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
@@ -17,18 +17,18 @@ using SinkPointer = std::unique_ptr<PaintSink>;
 // A format that is read as a whole, at the first call of next(): paints, and what was left out.
 class ImportedSource : public PaintSource {
  public:
-  using Read = Result<ImportedPaints> (*)(InputFile input, const ImportOptions& options);
-  ImportedSource(InputFile input, const ImportOptions& options, Read read, std::string format)
+  using Read = Result<formats::ImportedPaints> (*)(InputFile input, const formats::ImportOptions& options);
+  ImportedSource(InputFile input, const formats::ImportOptions& options, Read read, std::string format)
       : name_(input.name()), format_(std::move(format)), options_(options), read_(read), input_(std::move(input)) {}
 
-  Result<std::optional<Paint>> next() override {
+  Result<std::optional<paint::Paint>> next() override {
     if (input_) {
       InputFile input = std::move(*input_);
       input_.reset();
       GONIO_ASSIGN(imported_, read_(std::move(input), options_));
     }
     if (skipped_ < imported_.skipped.size()) return input_error("{}", imported_.skipped[skipped_++]);
-    if (given_ == imported_.paints.size()) return std::optional<Paint>();
+    if (given_ == imported_.paints.size()) return std::optional<paint::Paint>();
     return std::optional(std::move(imported_.paints[given_++]));
   }
   std::string place() const override { return name_; }
@@ -42,15 +42,15 @@ class ImportedSource : public PaintSource {
 
  private:
   std::string name_, format_;
-  ImportOptions options_;
+  formats::ImportOptions options_;
   Read read_;
   std::optional<InputFile> input_;
-  ImportedPaints imported_;
+  formats::ImportedPaints imported_;
   std::size_t skipped_ = 0, given_ = 0;
 };
 
-Json as_json(const std::string& name, const MeasuredTraits& traits, const MeasuredChecks& told,
-             const MeasuredColor& color) {
+Json as_json(const std::string& name, const brdf::MeasuredTraits& traits, const brdf::MeasuredChecks& told,
+             const brdf::MeasuredColor& color) {
   Json json = {{"name", name},
                {"format", traits.format},
                {"description", traits.description},
@@ -66,8 +66,8 @@ Json as_json(const std::string& name, const MeasuredTraits& traits, const Measur
                {"albedo_45", told.albedo_45},
                {"held_share", color.held_share},
                {"geometries", Json::array()}};
-  for (const MeasuredReading& reading : color.readings)
-    json["geometries"].push_back({{"geometry", geometry_name(reading.geometry)},
+  for (const brdf::MeasuredReading& reading : color.readings)
+    json["geometries"].push_back({{"geometry", paint::geometry_name(reading.geometry)},
                                   {"gap_deg", reading.gap_deg},
                                   {"outside_deg", reading.outside_deg},
                                   {"negative", reading.negative},
@@ -76,12 +76,12 @@ Json as_json(const std::string& name, const MeasuredTraits& traits, const Measur
 }
 
 // The readings to be wary of, one line for each reason.
-std::vector<std::string> cautions(const MeasuredColor& color) {
+std::vector<std::string> cautions(const brdf::MeasuredColor& color) {
   constexpr double kWideGap_deg = 15;
   std::string gaps, outside, negative, noise, unmeasured;
   const auto append = [](std::string& list, const std::string& item) { list += (list.empty() ? "" : ", ") + item; };
-  for (const MeasuredReading& reading : color.readings) {
-    const std::string name = geometry_name(reading.geometry);
+  for (const brdf::MeasuredReading& reading : color.readings) {
+    const std::string name = paint::geometry_name(reading.geometry);
     if (reading.outside_deg > 0)
       append(outside, fmt::format("{} by {:.0f} deg", name, reading.outside_deg));
     else if (reading.gap_deg > kWideGap_deg)
@@ -89,7 +89,7 @@ std::vector<std::string> cautions(const MeasuredColor& color) {
     if (reading.negative) append(negative, name);
     if (reading.noise) append(noise, name);
   }
-  for (const Geometry& geometry : color.unmeasured) append(unmeasured, geometry_name(geometry));
+  for (const paint::Geometry& geometry : color.unmeasured) append(unmeasured, paint::geometry_name(geometry));
   std::vector<std::string> lines;
   if (!gaps.empty()) lines.push_back("interpolated between samples far apart: " + gaps);
   if (!outside.empty()) lines.push_back("beyond the measured directions, the nearest sample was taken: " + outside);
@@ -105,32 +105,32 @@ class MeasuredSource : public PaintSource {
   MeasuredSource(InputFile input, const SourceSetup& setup)
       : name_(input.name()), setup_(setup), input_(std::move(input)) {}
 
-  Result<std::optional<Paint>> next() override {
-    if (!input_) return std::optional<Paint>();
+  Result<std::optional<paint::Paint>> next() override {
+    if (!input_) return std::optional<paint::Paint>();
     InputFile input = std::move(*input_);
     input_.reset();
     constexpr std::size_t kLargestFile = std::size_t{1} << 30;
-    GONIO_ASSIGN(const std::string bytes, whole_content(input, kLargestFile));
-    GONIO_ASSIGN(const auto brdf, read_measured(name_, bytes));
+    GONIO_ASSIGN(const std::string bytes, formats::whole_content(input, kLargestFile));
+    GONIO_ASSIGN(const auto brdf, brdf::read_measured(name_, bytes));
     const bool is_rgb = brdf->traits().wavelengths_nm.empty();
-    const MeasuredChecks told = checks(*brdf);
-    MeasuredColorOptions options{setup_.geometries, {}, setup_.aperture_deg, told.noise_floor};
+    const brdf::MeasuredChecks told = brdf::checks(*brdf);
+    brdf::MeasuredColorOptions options{setup_.geometries, {}, setup_.aperture_deg, told.noise_floor};
     if (is_rgb) options.condition.observer_deg = 2;
     if (!setup_.import.illuminant.empty()) options.condition.illuminant = setup_.import.illuminant;
     if (setup_.import.observer_deg) options.condition.observer_deg = setup_.import.observer_deg;
     if (options.geometries.empty())
-      for (const LabReading& row : rows_of({})) options.geometries.push_back(row.geometry);
-    const auto color = measured_color(*brdf, options);
+      for (const paint::LabReading& row : paint::rows_of({})) options.geometries.push_back(row.geometry);
+    const auto color = brdf::measured_color(*brdf, options);
     if (!color.ok()) return input_error("{}: {}", name_, color.error().message);
 
     for (const std::string& warning : told.warnings) tell(warning);
     for (const std::string& caution : cautions(*color)) tell(caution);
     if (is_rgb && setup_.import.observer_deg == 0)
       tell("its RGB is what the 2 deg observer sees under D65: Lab is D65/2");
-    Paint paint;
+    paint::Paint paint;
     paint.name = name_ == "standard input" ? "measured" : std::filesystem::path(name_).stem().string();
-    paint.measurement = Measurement{color->condition, "", {}};
-    for (const MeasuredReading& reading : color->readings)
+    paint.measurement = paint::Measurement{color->condition, "", {}};
+    for (const brdf::MeasuredReading& reading : color->readings)
       paint.measurement->rows.push_back({reading.geometry, reading.lab});
     figures_ = as_json(paint.name, brdf->traits(), told, *color);
     return std::optional(std::move(paint));
@@ -154,11 +154,12 @@ class MeasuredSource : public PaintSource {
 }  // namespace
 
 Result<SourcePointer> open_cxf(InputFile input, const SourceSetup& setup) {
-  return SourcePointer(std::make_unique<ImportedSource>(std::move(input), setup.import, read_cxf, "CxF3"));
+  return SourcePointer(std::make_unique<ImportedSource>(std::move(input), setup.import, formats::read_cxf, "CxF3"));
 }
 
 Result<SourcePointer> open_cgats(InputFile input, const SourceSetup& setup) {
-  return SourcePointer(std::make_unique<ImportedSource>(std::move(input), setup.import, read_cgats, "CGATS text"));
+  return SourcePointer(
+      std::make_unique<ImportedSource>(std::move(input), setup.import, formats::read_cgats, "CGATS text"));
 }
 
 Result<SourcePointer> open_measured(InputFile input, const SourceSetup& setup) {
@@ -166,14 +167,16 @@ Result<SourcePointer> open_measured(InputFile input, const SourceSetup& setup) {
 }
 
 Result<SinkPointer> begin_cxf(OutputFile file, const SinkSetup& setup) {
-  GONIO_ASSIGN(CxfWriter writer,
-               CxfWriter::begin(std::move(file), {setup.creator, setup.command, setup.created, setup.cxf_compat}));
-  return SinkPointer(std::make_unique<SinkOf<CxfWriter>>(std::move(writer)));
+  GONIO_ASSIGN(
+      formats::CxfWriter writer,
+      formats::CxfWriter::begin(std::move(file), {setup.creator, setup.command, setup.created, setup.cxf_compat}));
+  return SinkPointer(std::make_unique<SinkOf<formats::CxfWriter>>(std::move(writer)));
 }
 
 Result<SinkPointer> begin_cgats(OutputFile file, const SinkSetup& setup) {
-  GONIO_ASSIGN(CgatsWriter writer, CgatsWriter::begin(std::move(file), setup.creator, setup.created.substr(0, 10)));
-  return SinkPointer(std::make_unique<SinkOf<CgatsWriter>>(std::move(writer)));
+  GONIO_ASSIGN(formats::CgatsWriter writer,
+               formats::CgatsWriter::begin(std::move(file), setup.creator, setup.created.substr(0, 10)));
+  return SinkPointer(std::make_unique<SinkOf<formats::CgatsWriter>>(std::move(writer)));
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

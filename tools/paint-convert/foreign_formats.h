@@ -6,7 +6,7 @@
 
 #include "formats.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 Result<std::unique_ptr<PaintSource>> open_cxf(InputFile input, const SourceSetup& setup);
 Result<std::unique_ptr<PaintSource>> open_cgats(InputFile input, const SourceSetup& setup);
@@ -15,4 +15,4 @@ Result<std::unique_ptr<PaintSource>> open_measured(InputFile input, const Source
 Result<std::unique_ptr<PaintSink>> begin_cxf(OutputFile file, const SinkSetup& setup);
 Result<std::unique_ptr<PaintSink>> begin_cgats(OutputFile file, const SinkSetup& setup);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

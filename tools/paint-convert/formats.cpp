@@ -6,17 +6,17 @@
 #include "base/text.h"
 #include "brdf/measured.h"
 #include "foreign_formats.h"
-#include "paint/cgats.h"
-#include "paint/cxf.h"
+#include "formats/cgats.h"
+#include "formats/cxf.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
 class XmlSource : public PaintSource {
  public:
   explicit XmlSource(InputFile input) : name_(input.name()), reader_(std::move(input)) {}
-  Result<std::optional<Paint>> next() override { return reader_.next(); }
+  Result<std::optional<paint::Paint>> next() override { return reader_.next(); }
   std::string place() const override { return fmt::format("{}:{}", name_, reader_.line()); }
   std::string format() const override { return "paint XML"; }
   Prolog prolog() override {
@@ -26,20 +26,20 @@ class XmlSource : public PaintSource {
 
  private:
   std::string name_;
-  PaintReader reader_;
+  formats::PaintReader reader_;
 };
 
 class CsvSource : public PaintSource {
  public:
-  CsvSource(std::string name, CsvPaintReader reader) : name_(std::move(name)), reader_(std::move(reader)) {}
-  Result<std::optional<Paint>> next() override { return reader_.next(); }
+  CsvSource(std::string name, formats::CsvPaintReader reader) : name_(std::move(name)), reader_(std::move(reader)) {}
+  Result<std::optional<paint::Paint>> next() override { return reader_.next(); }
   std::string place() const override { return fmt::format("{}:{}", name_, reader_.line()); }
   std::string format() const override { return reader_.is_wide() ? "wide table" : "long table"; }
   std::vector<std::string> warnings() const override { return reader_.warnings(); }
 
  private:
   std::string name_;
-  CsvPaintReader reader_;
+  formats::CsvPaintReader reader_;
 };
 
 using SourcePointer = std::unique_ptr<PaintSource>;
@@ -57,11 +57,11 @@ bool looks_xml(std::string_view, std::string_view head) {
 }
 
 bool looks_cxf_document(std::string_view, std::string_view head) {
-  return looks_cxf(head);
+  return formats::looks_cxf(head);
 }
 
 bool looks_cgats_text(std::string_view, std::string_view head) {
-  return looks_cgats(head);
+  return formats::looks_cgats(head);
 }
 
 bool looks_table(std::string_view, std::string_view head) {
@@ -75,18 +75,19 @@ Result<SourcePointer> open_xml(InputFile input, const SourceSetup&) {
 
 Result<SourcePointer> open_csv(InputFile input, const SourceSetup&) {
   std::string name = input.name();
-  GONIO_ASSIGN(CsvPaintReader reader, CsvPaintReader::open(std::move(input)));
+  GONIO_ASSIGN(formats::CsvPaintReader reader, formats::CsvPaintReader::open(std::move(input)));
   return SourcePointer(std::make_unique<CsvSource>(std::move(name), std::move(reader)));
 }
 
 Result<SinkPointer> begin_xml(OutputFile file, const SinkSetup& setup) {
-  GONIO_ASSIGN(PaintWriter writer, PaintWriter::begin(std::move(file), setup.prolog.processing, setup.prolog.foreign));
-  return SinkPointer(std::make_unique<SinkOf<PaintWriter>>(std::move(writer)));
+  GONIO_ASSIGN(formats::PaintWriter writer,
+               formats::PaintWriter::begin(std::move(file), setup.prolog.processing, setup.prolog.foreign));
+  return SinkPointer(std::make_unique<SinkOf<formats::PaintWriter>>(std::move(writer)));
 }
 
 Result<SinkPointer> begin_csv(OutputFile file, const SinkSetup& setup) {
-  GONIO_ASSIGN(CsvPaintWriter writer, CsvPaintWriter::begin(std::move(file), setup.layout));
-  return SinkPointer(std::make_unique<SinkOf<CsvPaintWriter>>(std::move(writer)));
+  GONIO_ASSIGN(formats::CsvPaintWriter writer, formats::CsvPaintWriter::begin(std::move(file), setup.layout));
+  return SinkPointer(std::make_unique<SinkOf<formats::CsvPaintWriter>>(std::move(writer)));
 }
 
 struct InputFormat {
@@ -96,7 +97,7 @@ struct InputFormat {
 };
 // In the order in which they are tried.
 constexpr std::array kInputs = {
-    InputFormat{"measured", looks_measured, open_measured},
+    InputFormat{"measured", brdf::looks_measured, open_measured},
     InputFormat{"cxf", looks_cxf_document, open_cxf},
     InputFormat{"xml", looks_xml, open_xml},
     InputFormat{"cgats", looks_cgats_text, open_cgats},
@@ -157,4 +158,4 @@ Result<const OutputFormat*> output_format(const std::string& path, const std::st
   return known;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

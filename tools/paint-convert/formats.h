@@ -11,15 +11,15 @@
 #include "base/input.h"
 #include "base/json.h"
 #include "base/result.h"
-#include "paint/csv.h"
-#include "paint/imported.h"
-#include "paint/xml.h"
+#include "formats/csv.h"
+#include "formats/imported.h"
+#include "formats/xml.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 // What stood in front of the first paint.
 struct Prolog {
-  std::vector<Processing> processing;
+  std::vector<formats::Processing> processing;
   std::vector<std::string> foreign;
 };
 
@@ -27,7 +27,7 @@ class PaintSource {
  public:
   virtual ~PaintSource() = default;
   // The next paint, or nothing at the end. After an error next() goes on with what can still be read.
-  virtual Result<std::optional<Paint>> next() = 0;
+  virtual Result<std::optional<paint::Paint>> next() = 0;
   // Where the paint last returned began: `file:line`.
   virtual std::string place() const = 0;
   // "paint XML", "long table", ...
@@ -44,15 +44,15 @@ class PaintSource {
 
 // What a source may need to know.
 struct SourceSetup {
-  ImportOptions import;
-  std::vector<Geometry> geometries;  // where to read a measured BRDF; none: at both sets of the industry
+  formats::ImportOptions import;
+  std::vector<paint::Geometry> geometries;  // where to read a measured BRDF; none: at both sets of the industry
   double aperture_deg = 0;
 };
 
 class PaintSink {
  public:
   virtual ~PaintSink() = default;
-  virtual Result<void> write(const Paint& paint) = 0;
+  virtual Result<void> write(const paint::Paint& paint) = 0;
   // Puts the file in place.
   virtual Result<void> finish() = 0;
 };
@@ -62,7 +62,7 @@ template <class Writer>
 class SinkOf : public PaintSink {
  public:
   explicit SinkOf(Writer writer) : writer_(std::move(writer)) {}
-  Result<void> write(const Paint& paint) override { return writer_.write(paint); }
+  Result<void> write(const paint::Paint& paint) override { return writer_.write(paint); }
   Result<void> finish() override { return writer_.finish(); }
 
  private:
@@ -72,7 +72,7 @@ class SinkOf : public PaintSink {
 // What a sink needs to begin.
 struct SinkSetup {
   Prolog prolog;
-  CsvLayout layout;
+  formats::CsvLayout layout;
   std::string creator, command, created;  // tool and version, command line, date and time
   bool cxf_compat = false;                // one object per angle
 };
@@ -98,4 +98,4 @@ Result<std::unique_ptr<PaintSource>> open_source(const std::string& path, const 
 // path and what to do.
 Result<const OutputFormat*> output_format(const std::string& path, const std::string& format);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -2,7 +2,7 @@
 
 #include "formats.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 cli::ToolSpec tool_spec(Options& o) {
   cli::ToolSpec spec;
@@ -124,4 +124,4 @@ cli::ToolSpec tool_spec(Options& o) {
   return spec;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

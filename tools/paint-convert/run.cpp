@@ -6,10 +6,10 @@
 
 #include "base/text.h"
 #include "formats.h"
-#include "paint/name_ledger.h"
+#include "formats/name_ledger.h"
 #include "selection.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
@@ -72,7 +72,7 @@ class Conversion {
   int read = 0, written = 0, skipped = 0;
 
  private:
-  Result<void> pass(Paint paint, const PaintSource& source);
+  Result<void> pass(paint::Paint paint, const PaintSource& source);
   Result<void> skip(const Error& error);
 
   const Options& options_;
@@ -80,8 +80,8 @@ class Conversion {
   const Selection& selection_;
   PaintSink& sink_;
   cli::Session& session_;
-  Remarks remarks_;
-  NameLedger names_;
+  formats::Remarks remarks_;
+  formats::NameLedger names_;
   std::vector<std::string> inputs_;
 };
 
@@ -93,7 +93,7 @@ Result<void> Conversion::skip(const Error& error) {
   return {};
 }
 
-Result<void> Conversion::pass(Paint paint, const PaintSource& source) {
+Result<void> Conversion::pass(paint::Paint paint, const PaintSource& source) {
   ++read;
   if (const auto other = names_.note(paint.name, static_cast<int>(inputs_.size())))
     if (*other != static_cast<int>(inputs_.size()))
@@ -174,4 +174,4 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   return conversion.skipped ? cli::Verdict::kNegative : cli::Verdict::kDone;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -5,8 +5,8 @@
 #include "cli/tool.h"
 #include "options.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 Result<cli::Verdict> run(const Options& options, cli::Session& session);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -5,18 +5,19 @@
 #include "base/text.h"
 #include "paint/curve.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
 // The geometries of common five- and six-angle instruments: the columns of a wide table unless --geometry says
 // otherwise.
-const std::vector<Geometry> kUsual = {{.aspecular_deg = -15}, {.aspecular_deg = 15}, {.aspecular_deg = 25},
-                                      {.aspecular_deg = 45},  {.aspecular_deg = 75}, {.aspecular_deg = 110}};
+const std::vector<paint::Geometry> kUsual = {{.aspecular_deg = -15}, {.aspecular_deg = 15}, {.aspecular_deg = 25},
+                                             {.aspecular_deg = 45},  {.aspecular_deg = 75}, {.aspecular_deg = 110}};
 
-std::string listed(const std::vector<Geometry>& geometries) {
+std::string listed(const std::vector<paint::Geometry>& geometries) {
   std::string text;
-  for (const Geometry& geometry : geometries) text += (text.empty() ? "" : ", ") + geometry_name(geometry);
+  for (const paint::Geometry& geometry : geometries)
+    text += (text.empty() ? "" : ", ") + paint::geometry_name(geometry);
   return text;
 }
 
@@ -26,41 +27,41 @@ Result<Selection> Selection::make(const Options& options, const OutputFormat& fo
   Selection selection(options, format);
   for (const std::string& list : options.geometry)
     for (const std::string_view text : split(list, ',')) {
-      const auto geometry = parse_geometry(text);
+      const auto geometry = paint::parse_geometry(text);
       if (!geometry.ok()) return usage_error("--geometry: {}", geometry.error().message);
       if (std::ranges::find(selection.chosen_, *geometry) != selection.chosen_.end())
-        return usage_error("--geometry names {} twice: give it once", geometry_name(*geometry));
+        return usage_error("--geometry names {} twice: give it once", paint::geometry_name(*geometry));
       selection.chosen_.push_back(*geometry);
     }
   if (selection.chosen_.empty() && format.is_wide) selection.chosen_ = kUsual;
   return selection;
 }
 
-CsvLayout Selection::layout() const {
-  return {format_.is_wide ? chosen_ : std::vector<Geometry>(), options_.columns == "all"};
+formats::CsvLayout Selection::layout() const {
+  return {format_.is_wide ? chosen_ : std::vector<paint::Geometry>(), options_.columns == "all"};
 }
 
-std::vector<Geometry> Selection::requested() const {
-  return options_.geometry.empty() ? std::vector<Geometry>() : chosen_;
+std::vector<paint::Geometry> Selection::requested() const {
+  return options_.geometry.empty() ? std::vector<paint::Geometry>() : chosen_;
 }
 
 // Leaves the rows at the chosen geometries, in the order of the choice.
-void Selection::keep_chosen(Paint& paint, Remarks& remarks) const {
-  std::vector<LabReading> kept;
+void Selection::keep_chosen(paint::Paint& paint, formats::Remarks& remarks) const {
+  std::vector<paint::LabReading> kept;
   std::size_t chosen_rows = 0;
-  for (const Geometry& geometry : chosen_) {
-    const auto row = std::ranges::find(paint.measurement->rows, geometry, &LabReading::geometry);
+  for (const paint::Geometry& geometry : chosen_) {
+    const auto row = std::ranges::find(paint.measurement->rows, geometry, &paint::LabReading::geometry);
     if (row != paint.measurement->rows.end())
       kept.push_back(*row), ++chosen_rows;
     else if (!options_.geometry.empty())
-      remarks.note(fmt::format("{} is not measured", geometry_name(geometry)), paint.name);
+      remarks.note(fmt::format("{} is not measured", paint::geometry_name(geometry)), paint.name);
   }
   if (options_.geometry.empty() && chosen_rows < paint.measurement->rows.size())
     remarks.note("rows beside the usual six geometries are left out: name the columns with --geometry", paint.name);
   paint.measurement->rows = std::move(kept);
 }
 
-void Selection::note_losses(const Paint& paint, bool designed, Remarks& remarks) const {
+void Selection::note_losses(const paint::Paint& paint, bool designed, formats::Remarks& remarks) const {
   const auto lost = [&](bool there, const char* what) {
     if (there) remarks.note(fmt::format("{} left out: only paint XML holds them", what), paint.name);
   };
@@ -68,29 +69,30 @@ void Selection::note_losses(const Paint& paint, bool designed, Remarks& remarks)
   lost(paint.appearance.has_value() && !designed, "face, flop and travel are");
   lost(paint.anisotropy || paint.color_map, "anisotropy and color maps are");
   lost(!paint.foreign.empty(), "elements of other vocabularies are");
-  const bool more = !paint.gloss.empty() || !paint.code.empty() || paint.paint_class != PaintClass::kUnknown ||
+  const bool more = !paint.gloss.empty() || !paint.code.empty() || paint.paint_class != paint::PaintClass::kUnknown ||
                     (paint.measurement && !paint.measurement->instrument.empty());
   if (more && !format_.has_gloss && options_.columns != "all")
     remarks.note("gloss, class, code and instrument are left out: --columns all keeps them", paint.name);
 }
 
-Result<void> Selection::apply(Paint& paint, Remarks& remarks) const {
+Result<void> Selection::apply(paint::Paint& paint, formats::Remarks& remarks) const {
   const bool measured = paint.measurement && !paint.measurement->rows.empty();
   const bool needs_rows = format_.only_rows || !options_.geometry.empty();
   if (measured && options_.fit_appearance) {
-    GONIO_ASSIGN(AppearanceFit fit, appearance_from_rows(paint.measurement->rows));
-    if (extrapolation_at_specular(fit.appearance) > 4)
+    GONIO_ASSIGN(paint::AppearanceFit fit, paint::appearance_from_rows(paint.measurement->rows));
+    if (paint::extrapolation_at_specular(fit.appearance) > 4)
       remarks.note("the fitted travel is below 30 deg: nearer to specular than 15 deg the curve is a guess",
                    paint.name);
     paint.appearance = fit.appearance;
   }
   if (needs_rows && measured && !chosen_.empty()) keep_chosen(paint, remarks);
   if (needs_rows && !measured && paint.appearance) {
-    paint.measurement = Measurement{condition_of(paint), "", rows_of(*paint.appearance)};
+    paint.measurement = paint::Measurement{paint::condition_of(paint), "", paint::rows_of(*paint.appearance)};
     if (!options_.geometry.empty()) {
       paint.measurement->rows.clear();
-      for (const Geometry& geometry : chosen_)
-        paint.measurement->rows.push_back({geometry, lab_at(*paint.appearance, aspecular_angle_deg(geometry))});
+      for (const paint::Geometry& geometry : chosen_)
+        paint.measurement->rows.push_back(
+            {geometry, paint::lab_at(*paint.appearance, paint::aspecular_angle_deg(geometry))});
     }
   }
   if (!format_.only_rows) return {};
@@ -121,4 +123,4 @@ std::string Selection::explanation() const {
   return text;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

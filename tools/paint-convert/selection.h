@@ -6,10 +6,10 @@
 
 #include "base/result.h"
 #include "formats.h"
+#include "formats/imported.h"
 #include "options.h"
-#include "paint/imported.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 class Selection {
  public:
@@ -17,25 +17,25 @@ class Selection {
   static Result<Selection> make(const Options& options, const OutputFormat& format);
 
   // The columns of a table.
-  CsvLayout layout() const;
+  formats::CsvLayout layout() const;
 
   // The geometries of --geometry; none where it was not given.
-  std::vector<Geometry> requested() const;
+  std::vector<paint::Geometry> requested() const;
 
   // Fits, selects and adds rows. What is lost on the way goes to `remarks`. Error: the paint has nothing to write.
-  Result<void> apply(Paint& paint, Remarks& remarks) const;
+  Result<void> apply(paint::Paint& paint, formats::Remarks& remarks) const;
 
   // For --explain.
   std::string explanation() const;
 
  private:
   Selection(const Options& options, const OutputFormat& format) : options_(options), format_(format) {}
-  void keep_chosen(Paint& paint, Remarks& remarks) const;
-  void note_losses(const Paint& paint, bool designed, Remarks& remarks) const;
+  void keep_chosen(paint::Paint& paint, formats::Remarks& remarks) const;
+  void note_losses(const paint::Paint& paint, bool designed, formats::Remarks& remarks) const;
 
   const Options& options_;
   const OutputFormat& format_;
-  std::vector<Geometry> chosen_;  // of --geometry, or of a wide table's usual columns
+  std::vector<paint::Geometry> chosen_;  // of --geometry, or of a wide table's usual columns
 };
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -8,11 +8,11 @@
 #include "brdf/gloss.h"
 #include "image/aov_file.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
-Result<SeenPixel> seen(const AovFile& file, const std::string& option, const std::vector<double>& place) {
+Result<SeenPixel> seen(const image::AovFile& file, const std::string& option, const std::vector<double>& place) {
   const bool whole = place.size() == 2 && std::floor(place[0]) == place[0] && std::floor(place[1]) == place[1];
   if (!whole) return usage_error("{} takes a pixel: write {} X,Y, whole numbers from the upper left", option, option);
   SeenPixel pixel{option, static_cast<int>(place[0]), static_cast<int>(place[1]), 0};
@@ -65,13 +65,13 @@ Result<double> gloss_of_edge(double edge_deg, double meter_deg) {
   const double sine = std::sin(radians);
   const double minus_log_cos = -0.5 * std::log1p(-sine * sine);
   const double exponent = std::min(kSharpest, std::numbers::ln2 / std::max(minus_log_cos, 1e-12));
-  const double energy = fresnel_dielectric(std::cos(meter_deg * std::numbers::pi / 180), kCoatIndex);
+  const double energy = brdf::fresnel_dielectric(std::cos(meter_deg * std::numbers::pi / 180), brdf::kCoatIndex);
   const double weight = energy * (exponent + 1) / (2 * std::numbers::pi);
-  const GlossTable table({exponent});
-  GONIO_ASSIGN(const GlossColumns* meter, table.at(meter_deg));
-  LobeFit lobe;
+  const brdf::GlossTable table({exponent});
+  GONIO_ASSIGN(const brdf::GlossColumns* meter, table.at(meter_deg));
+  paint::LobeFit lobe;
   lobe.lobes.push_back({exponent, {}, {weight, weight, weight}});
-  return std::clamp(gloss_units(table, *meter, lobe), 0.0, 100.0);
+  return std::clamp(brdf::gloss_units(table, *meter, lobe), 0.0, 100.0);
 }
 
 Result<PlacedOptions> placed(const Options& options) {
@@ -79,7 +79,7 @@ Result<PlacedOptions> placed(const Options& options) {
   PlacedOptions result{options, {}};
   if (options.image.empty()) return result;
   Options& o = result.options;
-  GONIO_ASSIGN(const AovFile file, read_aov_file(options.image));
+  GONIO_ASSIGN(const image::AovFile file, image::read_aov_file(options.image));
   const auto look = [&](const char* option, const std::vector<double>& place) -> Result<double> {
     GONIO_ASSIGN(const SeenPixel pixel, seen(file, option, place));
     result.pixels.push_back(pixel);
@@ -106,4 +106,4 @@ Result<PlacedOptions> placed(const Options& options) {
   return result;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

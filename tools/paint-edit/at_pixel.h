@@ -8,7 +8,7 @@
 #include "base/result.h"
 #include "options.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 // A pixel that an option names, and the aspecular angle (deg) seen there.
 struct SeenPixel {
@@ -30,4 +30,4 @@ Result<PlacedOptions> placed(const Options& options);
 // The reading of a gloss meter (GU) on the lobe whose brightness is half its peak at this aspecular angle (deg, 0..90).
 Result<double> gloss_of_edge(double edge_deg, double meter_deg);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

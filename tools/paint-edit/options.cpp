@@ -2,7 +2,7 @@
 
 #include "base/text.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
@@ -12,18 +12,18 @@ Result<std::optional<double>> one(const char* option, const std::vector<double>&
   return usage_error("{} is given {} numbers: give one", option, numbers.size());
 }
 
-Result<std::optional<Lab>> triple(const char* option, const std::vector<double>& numbers) {
-  if (numbers.empty()) return std::optional<Lab>();
-  if (numbers.size() == 3) return std::optional<Lab>(Lab{numbers[0], numbers[1], numbers[2]});
+Result<std::optional<color::Lab>> triple(const char* option, const std::vector<double>& numbers) {
+  if (numbers.empty()) return std::optional<color::Lab>();
+  if (numbers.size() == 3) return std::optional<color::Lab>(color::Lab{numbers[0], numbers[1], numbers[2]});
   return usage_error("{} is given {} numbers: give three, as in {}=50,12.5,-3", option, numbers.size(), option);
 }
 
-Result<void> check_contradictions(const Options& o, const Edit& edit) {
-  const bool edits = moves_color(edit) || moves_gloss(edit);
+Result<void> check_contradictions(const Options& o, const paint::Edit& edit) {
+  const bool edits = paint::moves_color(edit) || paint::moves_gloss(edit);
   const bool averages = edit.average_hue_deg || edit.average_chroma || edit.average_lightness;
   if (edit.at_deg && averages)
     return usage_error("--at takes shifts: use --lightness-shift, --chroma-factor and --hue-shift with it");
-  if (edit.at_deg && edit.tweak == Tweak())
+  if (edit.at_deg && edit.tweak == paint::Tweak())
     return usage_error("--at lacks its move: add --lightness-shift, --chroma-factor or --hue-shift");
   if (edit.face && edit.face->L < 0) return usage_error("--face has L* {}: give 0 or more", shortest(edit.face->L));
   if (edit.flop && edit.flop->L < 0) return usage_error("--flop has L* {}: give 0 or more", shortest(edit.flop->L));
@@ -44,8 +44,8 @@ Result<void> check_contradictions(const Options& o, const Edit& edit) {
 
 }  // namespace
 
-Result<Edit> edit_of(const Options& o) {
-  Edit edit;
+Result<paint::Edit> edit_of(const Options& o) {
+  paint::Edit edit;
   GONIO_ASSIGN(edit.average_hue_deg, one("--hue", o.hue_deg));
   GONIO_ASSIGN(edit.average_chroma, one("--chroma", o.chroma));
   GONIO_ASSIGN(edit.average_lightness, one("--lightness", o.lightness));
@@ -57,8 +57,8 @@ Result<Edit> edit_of(const Options& o) {
   GONIO_ASSIGN(edit.travel_deg, one("--travel", o.travel_deg));
   GONIO_ASSIGN(edit.gloss, one("--gloss", o.gloss));
   edit.tweak = {o.lightness_shift, o.chroma_factor, o.hue_shift_deg};
-  edit.face_shift = face_shift.value_or(Lab());
-  edit.flop_shift = flop_shift.value_or(Lab());
+  edit.face_shift = face_shift.value_or(color::Lab());
+  edit.flop_shift = flop_shift.value_or(color::Lab());
   edit.travel_shift_deg = o.travel_shift_deg;
   edit.gloss_angle_deg = *parse_number(o.gloss_angle_deg);
   edit.gloss_shift = o.gloss_shift;
@@ -258,4 +258,4 @@ cli::ToolSpec tool_spec(Options& o) {
   return spec;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

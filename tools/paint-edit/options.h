@@ -7,7 +7,7 @@
 #include "cli/options.h"
 #include "paint/edit.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 // A list is empty where the option is not given.
 struct Options {
@@ -30,6 +30,6 @@ struct Options {
 cli::ToolSpec tool_spec(Options& options);
 
 // The moves that the options ask for. Error (usage): options that contradict each other or lack a number.
-Result<Edit> edit_of(const Options& options);
+Result<paint::Edit> edit_of(const Options& options);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -8,44 +8,44 @@
 #include "paint/curve.h"
 #include "source.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
-Variation variation_of(const std::string& word) {
-  if (word == "face") return Variation::kFace;
-  if (word == "flop") return Variation::kFlop;
-  return word == "travel" ? Variation::kTravel : Variation::kGloss;
+paint::Variation variation_of(const std::string& word) {
+  if (word == "face") return paint::Variation::kFace;
+  if (word == "flop") return paint::Variation::kFlop;
+  return word == "travel" ? paint::Variation::kTravel : paint::Variation::kGloss;
 }
 
-Json lab_json(const Lab& lab) {
+Json lab_json(const color::Lab& lab) {
   return {json_number(lab.L), json_number(lab.a), json_number(lab.b)};
 }
 
 // Face, flop, travel and gloss as the report has them.
-Json state_json(const std::optional<Appearance>& appearance, const std::vector<GlossReading>& gloss) {
+Json state_json(const std::optional<paint::Appearance>& appearance, const std::vector<paint::GlossReading>& gloss) {
   Json json = Json::object();
   if (appearance) {
     json["face"] = lab_json(appearance->face);
     json["flop"] = lab_json(appearance->flop);
     json["travel_deg"] = appearance->travel_deg;
   }
-  for (const GlossReading& reading : gloss)
+  for (const paint::GlossReading& reading : gloss)
     json[fmt::format("gloss_{}_deg", shortest(reading.angle_deg))] = reading.gloss_units;
   return json;
 }
 
-double de00_max(const Appearance& before, const Appearance& after) {
+double de00_max(const paint::Appearance& before, const paint::Appearance& after) {
   double worst = 0;
   for (const double angle : {15.0, 45.0, 110.0})
-    worst = std::max(worst, delta_e_2000(lab_at(before, angle), lab_at(after, angle)));
+    worst = std::max(worst, color::delta_e_2000(paint::lab_at(before, angle), paint::lab_at(after, angle)));
   return worst;
 }
 
 // One run: paints in, moves, paints out.
 class Run {
  public:
-  Run(const Options& options, Edit edit, cli::Session& session)
+  Run(const Options& options, paint::Edit edit, cli::Session& session)
       : options_(options),
         edit_(std::move(edit)),
         session_(session),
@@ -56,10 +56,10 @@ class Run {
     GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
     auto history = source.processing();
     history.push_back({session_.tool(), cli::Session::version(), session_.command_line()});
-    GONIO_ASSIGN(PaintWriter opened, PaintWriter::begin(std::move(file), history, source.foreign()));
+    GONIO_ASSIGN(formats::PaintWriter opened, formats::PaintWriter::begin(std::move(file), history, source.foreign()));
     writer_.emplace(std::move(opened));
     for (;;) {
-      GONIO_ASSIGN(std::optional<Paint> paint, source.next());
+      GONIO_ASSIGN(std::optional<paint::Paint> paint, source.next());
       if (!paint) break;
       ++read_;
       GONIO_TRY(take(std::move(*paint)));
@@ -69,21 +69,21 @@ class Run {
   }
 
  private:
-  Result<void> take(Paint paint) {
+  Result<void> take(paint::Paint paint) {
     if (options_.gradient > 0) return lead_to(std::move(paint));
     if (!wanted_.empty() && !wanted_.contains(paint.name)) return write(paint);
     met_.insert(paint.name);
     if (!options_.variations.empty()) return vary(paint);
-    GONIO_ASSIGN(Edited done, edited(paint, edit_));
+    GONIO_ASSIGN(paint::Edited done, paint::edited(paint, edit_));
     done.paint.name += options_.suffix;
     tell(paint, done);
     return write(done.paint);
   }
 
-  Result<void> vary(const Paint& paint) {
+  Result<void> vary(const paint::Paint& paint) {
     GONIO_TRY(write(paint));
-    for (const Neighbor& neighbor : neighbors(variation_of(options_.variations), options_.step)) {
-      GONIO_ASSIGN(Edited done, edited(paint, neighbor.edit));
+    for (const paint::Neighbor& neighbor : paint::neighbors(variation_of(options_.variations), options_.step)) {
+      GONIO_ASSIGN(paint::Edited done, paint::edited(paint, neighbor.edit));
       done.paint.name += "." + neighbor.name;
       tell(paint, done);
       // A neighbor beyond the domain would be a copy of the paint itself.
@@ -93,10 +93,10 @@ class Run {
   }
 
   // The paints between the one before and this one, then this one.
-  Result<void> lead_to(Paint paint) {
+  Result<void> lead_to(paint::Paint paint) {
     for (int i = 1; last_ && i <= options_.gradient; ++i) {
       const double fraction = i / (options_.gradient + 1.0);
-      GONIO_ASSIGN(Paint step, between(*last_, paint, fraction));
+      GONIO_ASSIGN(paint::Paint step, paint::between(*last_, paint, fraction));
       step.name = fmt::format("{}-{}.{}", last_->name, paint.name, i);
       if (i == 1) tell_rows(*last_, paint);
       note({{"name", step.name},
@@ -109,20 +109,20 @@ class Run {
     return write(*last_);
   }
 
-  Result<void> write(const Paint& paint) {
+  Result<void> write(const paint::Paint& paint) {
     ++written_;
     if (written_ % 1000 == 0) session_.progress(fmt::format("{} paints", written_));
     return writer_->write(paint);
   }
 
   // Rows that only one end of a gradient has cannot be carried along it.
-  void tell_rows(const Paint& from, const Paint& to) {
-    const auto rows = [](const Paint& paint) {
-      return paint.measurement ? paint.measurement->rows : std::vector<LabReading>();
+  void tell_rows(const paint::Paint& from, const paint::Paint& to) {
+    const auto rows = [](const paint::Paint& paint) {
+      return paint.measurement ? paint.measurement->rows : std::vector<paint::LabReading>();
     };
     const auto a = rows(from), b = rows(to);
-    const auto common = std::ranges::count_if(a, [&](const LabReading& row) {
-      return std::ranges::any_of(b, [&](const LabReading& other) { return other.geometry == row.geometry; });
+    const auto common = std::ranges::count_if(a, [&](const paint::LabReading& row) {
+      return std::ranges::any_of(b, [&](const paint::LabReading& other) { return other.geometry == row.geometry; });
     });
     if (static_cast<std::size_t>(common) < std::max(a.size(), b.size()))
       session_.warn(fmt::format("{} to {}: {} of {} and {} measured geometries are common to both and kept", from.name,
@@ -134,7 +134,7 @@ class Run {
     session_.add("changes", [&] { return std::move(change); });
   }
 
-  void tell(const Paint& from, const Edited& done) {
+  void tell(const paint::Paint& from, const paint::Edited& done) {
     for (const std::string& skipped : done.skipped) session_.warn(fmt::format("{}: left out: {}", from.name, skipped));
     for (const std::string& clipped : done.clipped)
       session_.warn(fmt::format("{}: clipped: {}", done.paint.name, clipped));
@@ -176,16 +176,16 @@ class Run {
   }
 
   const Options& options_;
-  const Edit edit_;
+  const paint::Edit edit_;
   cli::Session& session_;
   const std::set<std::string> wanted_;
-  std::optional<PaintWriter> writer_;
-  std::optional<Paint> last_;
+  std::optional<formats::PaintWriter> writer_;
+  std::optional<paint::Paint> last_;
   std::set<std::string> met_, dropped_;
   std::size_t read_ = 0, written_ = 0, changes_ = 0, skipped_ = 0;
 };
 
-std::string plan_text(const Options& options, const Edit& edit) {
+std::string plan_text(const Options& options, const paint::Edit& edit) {
   std::string text;
   const auto line = [&](const std::string& sentence) { text += sentence + "\n"; };
   if (options.gradient > 0)
@@ -193,7 +193,7 @@ std::string plan_text(const Options& options, const Edit& edit) {
   if (!options.variations.empty())
     line(
         fmt::format("each paint and its eight neighbors in {}, {} a step", options.variations, shortest(options.step)));
-  if (moves_color(edit)) {
+  if (paint::moves_color(edit)) {
     line("color: rows and appearance move together; the appearance is fitted where a paint has only rows");
     line("       (the costly part: the fit scans the whole domain of the travel)");
     line("dropped: lobes and color maps, which hold the old color; run fit-paint afterwards");
@@ -201,7 +201,7 @@ std::string plan_text(const Options& options, const Edit& edit) {
   if (edit.at_deg)
     line(fmt::format("at {} deg: face and flop move by R and 1 - R, R = (travel - {}) / (travel - 15) within 0 and 1",
                      shortest(*edit.at_deg), shortest(*edit.at_deg)));
-  if (moves_gloss(edit))
+  if (paint::moves_gloss(edit))
     line(fmt::format("gloss: the reading at {} deg is moved, readings at other angles and the lobes are dropped",
                      options.gloss_angle_deg));
   if (!options.only.empty()) line(fmt::format("left as they are: all paints but {}", fmt::join(options.only, ", ")));
@@ -213,7 +213,7 @@ std::string plan_text(const Options& options, const Edit& edit) {
 Result<cli::Verdict> run(const Options& stated, cli::Session& session) {
   GONIO_ASSIGN(const PlacedOptions place, placed(stated));
   const Options& options = place.options;
-  GONIO_ASSIGN(const Edit edit, edit_of(options));
+  GONIO_ASSIGN(const paint::Edit edit, edit_of(options));
   for (const SeenPixel& pixel : place.pixels) {
     session.results()["pixels"].push_back(
         {{"option", pixel.option}, {"x", pixel.x}, {"y", pixel.y}, {"aspecular_deg", pixel.aspecular_deg}});
@@ -224,4 +224,4 @@ Result<cli::Verdict> run(const Options& stated, cli::Session& session) {
   return Run(options, edit, session)();
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -2,14 +2,14 @@
 
 #include <utility>
 
-#include "paint/reference.h"
+#include "formats/paint_choice.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
-Result<std::optional<Paint>> PaintSource::Input::next() {
+Result<std::optional<paint::Paint>> PaintSource::Input::next() {
   if (first) return std::exchange(first, std::nullopt);
   for (;;) {
-    GONIO_ASSIGN(std::optional<Paint> paint, reader.next());
+    GONIO_ASSIGN(std::optional<paint::Paint> paint, reader.next());
     if (!paint || !name || paint->name == *name) return paint;
   }
 }
@@ -17,8 +17,8 @@ Result<std::optional<Paint>> PaintSource::Input::next() {
 Result<PaintSource> PaintSource::open(const std::vector<std::string>& inputs) {
   PaintSource source;
   for (const std::string& input : inputs.empty() ? std::vector<std::string>{"-"} : inputs) {
-    const auto [path, name] = paint_reference(input);
-    GONIO_ASSIGN(PaintReader reader, PaintReader::open(path));
+    const auto [path, name] = formats::paint_reference(input);
+    GONIO_ASSIGN(formats::PaintReader reader, formats::PaintReader::open(path));
     Input opened{path, name, std::move(reader), std::nullopt};
     GONIO_ASSIGN(opened.first, opened.next());
     if (name && !opened.first)
@@ -28,16 +28,16 @@ Result<PaintSource> PaintSource::open(const std::vector<std::string>& inputs) {
   return source;
 }
 
-Result<std::optional<Paint>> PaintSource::next() {
+Result<std::optional<paint::Paint>> PaintSource::next() {
   for (; current_ < inputs_.size(); ++current_) {
-    GONIO_ASSIGN(std::optional<Paint> paint, inputs_[current_].next());
+    GONIO_ASSIGN(std::optional<paint::Paint> paint, inputs_[current_].next());
     if (paint) return paint;
   }
-  return std::optional<Paint>();
+  return std::optional<paint::Paint>();
 }
 
-std::vector<Processing> PaintSource::processing() const {
-  std::vector<Processing> all;
+std::vector<formats::Processing> PaintSource::processing() const {
+  std::vector<formats::Processing> all;
   for (const Input& input : inputs_)
     all.insert(all.end(), input.reader.processing().begin(), input.reader.processing().end());
   return all;
@@ -50,4 +50,4 @@ std::vector<std::string> PaintSource::foreign() const {
   return all;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "paint/xml.h"
+#include "formats/xml.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 // Reads FILE, FILE#NAME and - one after the other, in constant memory. The first paint of each is read when the source
 // is opened, so that the history of all is known before anything is written.
@@ -16,23 +16,23 @@ class PaintSource {
   // Error: a file that cannot be read, or a NAME that it does not have.
   static Result<PaintSource> open(const std::vector<std::string>& inputs);
 
-  Result<std::optional<Paint>> next();
+  Result<std::optional<paint::Paint>> next();
 
-  std::vector<Processing> processing() const;
+  std::vector<formats::Processing> processing() const;
   std::vector<std::string> foreign() const;
 
  private:
   struct Input {
     std::string path;
     std::optional<std::string> name;  // the only paint wanted
-    PaintReader reader;
-    std::optional<Paint> first;  // read already
+    formats::PaintReader reader;
+    std::optional<paint::Paint> first;  // read already
 
     // The next paint that is wanted.
-    Result<std::optional<Paint>> next();
+    Result<std::optional<paint::Paint>> next();
   };
   std::vector<Input> inputs_;
   std::size_t current_ = 0;
 };
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

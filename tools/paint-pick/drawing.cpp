@@ -5,13 +5,13 @@
 #include <numbers>
 #include <utility>
 
+#include "display/display.h"
 #include "envmap/prefiltered.h"
 #include "fit/paint_fit.h"
-#include "fit/sketch.h"
-#include "render/display.h"
 #include "render/renderer.h"
+#include "sketch/sketch.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
@@ -20,9 +20,9 @@ constexpr double kDistance = 0.87;  // of the camera; at 1 a mesh just fits from
 constexpr float kBackdrop = 0.3F;
 
 // A unit ball: the simplest body that shows face and flop at once.
-Mesh ball() {
+mesh::Mesh ball() {
   constexpr std::uint32_t kRings = 96, kSegments = 192;
-  Mesh mesh;
+  mesh::Mesh mesh;
   for (std::uint32_t ring = 0; ring <= kRings; ++ring)
     for (std::uint32_t segment = 0; segment <= kSegments; ++segment) {
       const double t = std::numbers::pi * ring / kRings, p = 2 * std::numbers::pi * segment / kSegments;
@@ -39,10 +39,10 @@ Mesh ball() {
   return mesh;
 }
 
-Basis basis_of(const PrefilteredEnvironment& env) {
-  Basis basis;
+formats::Basis basis_of(const envmap::PrefilteredEnvironment& env) {
+  formats::Basis basis;
   basis.name = "environment", basis.mirror = env.mirror.map.size > 0;
-  for (const PrefilteredLobe& lobe : env.lobes) basis.exponents.push_back(lobe.exponent);
+  for (const envmap::PrefilteredLobe& lobe : env.lobes) basis.exponents.push_back(lobe.exponent);
   return basis;
 }
 
@@ -50,12 +50,12 @@ Basis basis_of(const PrefilteredEnvironment& env) {
 
 struct PaintDrawing::State {
   std::string description;
-  Mesh mesh;
-  PrefilteredEnvironment env;
-  std::optional<PaintFitter> fitter;
-  std::optional<Renderer> renderer;
-  std::optional<Display> display;
-  Scene scene;
+  mesh::Mesh mesh;
+  envmap::PrefilteredEnvironment env;
+  std::optional<fit::PaintFitter> fitter;
+  std::optional<render::Renderer> renderer;
+  std::optional<display::Display> display;
+  render::Scene scene;
   double stops = 0;
 };
 
@@ -69,46 +69,48 @@ std::string PaintDrawing::described() const {
 
 Result<PaintDrawing> PaintDrawing::make(const Options& options) {
   auto state = std::make_unique<State>();
-  Basis basis = sketch_basis();
+  formats::Basis basis = sketch::sketch_basis();
   state->mesh = ball();
   if (!options.mesh.empty()) {
-    GONIO_ASSIGN(state->mesh, read_mesh(options.mesh));
+    GONIO_ASSIGN(state->mesh, mesh::read_mesh(options.mesh));
   }
   if (!options.env.empty()) {
-    GONIO_ASSIGN(state->env, read_env(options.env));
+    GONIO_ASSIGN(state->env, envmap::read_env(options.env));
     basis = basis_of(state->env);
     state->scene.env = &state->env;
   } else {
     if (!options.basis.empty()) {
-      GONIO_ASSIGN(basis, read_basis(options.basis));
+      GONIO_ASSIGN(basis, formats::read_basis(options.basis));
     }
-    state->scene.lights = {{orbit_direction(25, 45), {1, 1, 1}}, {orbit_direction(-60, 20), {0.35, 0.35, 0.35}}};
+    state->scene.lights = {{render::orbit_direction(25, 45), {1, 1, 1}},
+                           {render::orbit_direction(-60, 20), {0.35, 0.35, 0.35}}};
   }
   const auto file = [](const std::string& path) { return std::filesystem::path(path).filename().string(); };
   state->description = fmt::format("on {} under {}", options.mesh.empty() ? "a ball" : file(options.mesh),
                                    options.env.empty() ? "two lamps" : file(options.env));
-  state->fitter.emplace(basis, FitOptions{});
-  GONIO_ASSIGN(Renderer renderer, Renderer::create());
+  state->fitter.emplace(basis, fit::FitOptions{});
+  GONIO_ASSIGN(render::Renderer renderer, render::Renderer::create());
   state->renderer.emplace(std::move(renderer));
-  GONIO_ASSIGN(Display display, Display::make(""));
+  GONIO_ASSIGN(display::Display display, display::Display::make(""));
   state->display.emplace(std::move(display));
   state->scene.mesh = &state->mesh;
-  state->scene.background = Background::kColor;
-  const double white = diffuse_white(state->scene.env, state->scene.lights).luminance;
+  state->scene.background = render::Background::kColor;
+  const double white = render::diffuse_white(state->scene.env, state->scene.lights).luminance;
   state->stops = white > 0 ? -std::log2(white) : 0;
   const double gray = kBackdrop * (white > 0 ? white : 1);
   state->scene.background_color = {gray, gray, gray};
   return PaintDrawing(std::move(state));
 }
 
-Result<std::string> PaintDrawing::png(const Paint& paint) {
-  GONIO_ASSIGN(const PaintFit fit, state_->fitter->fit(paint));
+Result<std::string> PaintDrawing::png(const paint::Paint& paint) {
+  GONIO_ASSIGN(const fit::PaintFit fit, state_->fitter->fit(paint));
   state_->scene.paints.assign(state_->mesh.parts.size(), fit.lobes);
   GONIO_TRY(state_->renderer->load(state_->scene));
-  const Camera camera = Camera::orbit(state_->mesh, 35, 12, kDistance, 30, static_cast<double>(kWidth) / kHeight);
-  GONIO_ASSIGN(const Frame frame, state_->renderer->draw(camera, kWidth, kHeight, kSamples));
-  GONIO_ASSIGN(const Image shown, state_->display->image(frame.picture, state_->stops));
-  return png_content(paint.name, shown);
+  const render::Camera camera =
+      render::Camera::orbit(state_->mesh, 35, 12, kDistance, 30, static_cast<double>(kWidth) / kHeight);
+  GONIO_ASSIGN(const render::Frame frame, state_->renderer->draw(camera, kWidth, kHeight, kSamples));
+  GONIO_ASSIGN(const image::Image shown, state_->display->image(frame.picture, state_->stops));
+  return image::png_content(paint.name, shown);
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -8,7 +8,7 @@
 #include "options.h"
 #include "paint/paint.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 // Draws one paint after another on the mesh and under the light of the options.
 class PaintDrawing {
@@ -18,7 +18,7 @@ class PaintDrawing {
   ~PaintDrawing();
 
   // A PNG of the paint.
-  Result<std::string> png(const Paint& paint);
+  Result<std::string> png(const paint::Paint& paint);
 
   // "on car.obj under studio.env.exr"
   std::string described() const;
@@ -29,4 +29,4 @@ class PaintDrawing {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

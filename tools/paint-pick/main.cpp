@@ -5,6 +5,7 @@
 
 int main(int argc, char** argv) {
   using namespace goniochrome;
+  using namespace goniochrome::tool;
   Options options;
   const cli::ToolSpec spec = tool_spec(options);
   return cli::tool_main(argc, argv, spec, options.common, [&](cli::Session& s) { return run(options, s); });

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fit/sketch_gloss.h"
-#include "fit/sketch_picture.h"
 #include "paint/curve.h"
+#include "sketch/sketch_gloss.h"
+#include "sketch/sketch_picture.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
@@ -81,36 +81,38 @@ std::string embedded(const std::string& png) {
 }
 
 // Each channel's signal on an sRGB display, what lies outside its gamut mixed with its gray.
-Rgb signals(const Rgb& light) {
-  const Rgb shown = rec709_from_rec2020(in_display_gamut(light));
-  return {display_brightness(shown.x), display_brightness(shown.y), display_brightness(shown.z)};
+color::Rgb signals(const color::Rgb& light) {
+  const color::Rgb shown = color::rec709_from_rec2020(sketch::in_display_gamut(light));
+  return {sketch::display_brightness(shown.x), sketch::display_brightness(shown.y),
+          sketch::display_brightness(shown.z)};
 }
 
-std::string css_color(const Lab& lab) {
-  const Rgb s = signals(rgb_from_lab(lab, *white_point({})));
+std::string css_color(const color::Lab& lab) {
+  const color::Rgb s = signals(color::rgb_from_lab(lab, *color::white_point({})));
   const auto byte = [](double v) { return static_cast<int>(std::lround(255 * v)); };
   return fmt::format("#{:02x}{:02x}{:02x}", byte(s.x), byte(s.y), byte(s.z));
 }
 
 // The picture for the page: no wider than kWidest, each pixel the mean light of those it stands for.
 Result<std::string> page_png(const PageImage& image) {
-  GONIO_ASSIGN(const Picture picture, picture_of(image.content, image.image.path, PictureView::kPlain));
-  const Image& from = picture.rgb;
+  GONIO_ASSIGN(const sketch::Picture picture,
+               sketch::picture_of(image.content, image.image.path, sketch::PictureView::kPlain));
+  const image::Image& from = picture.rgb;
   const int step = (from.width + kWidest - 1) / kWidest;
-  Image to{(from.width + step - 1) / step, (from.height + step - 1) / step, 3, {}, {}};
+  image::Image to{(from.width + step - 1) / step, (from.height + step - 1) / step, 3, {}, {}};
   for (int y = 0; y < to.height; ++y)
     for (int x = 0; x < to.width; ++x) {
-      Rgb sum;
+      color::Rgb sum;
       double count = 0;
       for (int j = y * step; j < std::min((y + 1) * step, from.height); ++j)
         for (int i = x * step; i < std::min((x + 1) * step, from.width); ++i, ++count) {
           const float* p = from.pixel(i, j);
           sum += {p[0], p[1], p[2]};
         }
-      const Rgb s = signals((1 / count) * sum);
+      const color::Rgb s = signals((1 / count) * sum);
       for (int c = 0; c < 3; ++c) to.data.push_back(static_cast<float>(s[c]));
     }
-  return png_content(image.image.path, to);
+  return image::png_content(image.image.path, to);
 }
 
 // A dropper as two rings, which show on light and on dark, and a tag with the paint's name.
@@ -138,7 +140,7 @@ std::string figure(double value) {
   return text == "-0.0" ? "0.0" : text;
 }
 
-std::string color_row(const char* name, const Lab& lab) {
+std::string color_row(const char* name, const color::Lab& lab) {
   return fmt::format(
       "<tr><th scope=\"row\"><span class=\"swatch\" style=\"background:{}\"></span>{}</th>"
       "<td class=\"number\">L* {}</td><td class=\"number\">a* {}</td><td class=\"number\">b* {}</td></tr>",
@@ -146,11 +148,12 @@ std::string color_row(const char* name, const Lab& lab) {
 }
 
 std::string paint_card(const PageOfPaint& paint) {
-  const Paint& p = paint.picked.paint;
-  const Appearance& a = *p.appearance;
+  const paint::Paint& p = paint.picked.paint;
+  const paint::Appearance& a = *p.appearance;
   std::string stops;
   for (int angle = 15; angle <= 110; angle += 5)
-    stops += fmt::format("{}{} {:.1f}%", stops.empty() ? "" : ",", css_color(lab_at(a, angle)), (angle - 15) / 0.95);
+    stops +=
+        fmt::format("{}{} {:.1f}%", stops.empty() ? "" : ",", css_color(paint::lab_at(a, angle)), (angle - 15) / 0.95);
   std::string text = fmt::format(
       "<article class=\"paint\"><img alt=\"{0}, drawn\" src=\"{1}\">"
       "<span class=\"strip\" title=\"color from 15 to 110 degrees from specular\" "
@@ -169,7 +172,7 @@ std::string paint_card(const PageOfPaint& paint) {
 
 }  // namespace
 
-Result<std::string> board_page(const Board& board, const std::vector<PageImage>& images,
+Result<std::string> board_page(const sketch::Board& board, const std::vector<PageImage>& images,
                                const std::vector<PageOfPaint>& paints, const std::string& lit_by) {
   const std::string title = escaped(board.title.empty() ? "Mood board" : board.title);
   std::string page = fmt::format(
@@ -191,4 +194,4 @@ Result<std::string> board_page(const Board& board, const std::vector<PageImage>&
   return page + "</main>\n</div>\n</body>\n</html>\n";
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -5,24 +5,24 @@
 #include <vector>
 
 #include "base/result.h"
-#include "fit/pick.h"
+#include "sketch/pick.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 // What the page shows of one paint.
 struct PageOfPaint {
-  PickedPaint picked;
-  std::vector<std::pair<std::string, PickSample>> samples;  // "face", "flop", "gloss"
-  std::string picture;                                      // PNG
+  sketch::PickedPaint picked;
+  std::vector<std::pair<std::string, sketch::PickSample>> samples;  // "face", "flop", "gloss"
+  std::string picture;                                              // PNG
 };
 
 struct PageImage {
-  BoardImage image;
-  ImagePart content;
+  sketch::BoardImage image;
+  image::ImagePart content;
 };
 
 // One HTML page that needs nothing beside itself. `lit_by` says how the paints were drawn.
-Result<std::string> board_page(const Board& board, const std::vector<PageImage>& images,
+Result<std::string> board_page(const sketch::Board& board, const std::vector<PageImage>& images,
                                const std::vector<PageOfPaint>& paints, const std::string& lit_by);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

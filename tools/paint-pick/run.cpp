@@ -4,33 +4,34 @@
 
 #include "base/text.h"
 #include "drawing.h"
-#include "fit/pick.h"
+#include "formats/xml.h"
 #include "page.h"
-#include "paint/xml.h"
+#include "sketch/pick.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
 // Every picture is read once, whatever the number of droppers on it.
 class Shelf {
  public:
-  Result<const ImagePart*> image(const std::string& path) {
+  Result<const image::ImagePart*> image(const std::string& path) {
     const auto found = images_.find(path);
     if (found != images_.end()) return &found->second;
-    GONIO_ASSIGN(images_[path], read_image(path));
+    GONIO_ASSIGN(images_[path], image::read_image(path));
     return &images_[path];
   }
 
  private:
-  std::map<std::string, ImagePart> images_;
+  std::map<std::string, image::ImagePart> images_;
 };
 
-Json lab_json(const Lab& lab) {
+Json lab_json(const color::Lab& lab) {
   return {json_number(lab.L), json_number(lab.a), json_number(lab.b)};
 }
 
-void tell_sample(const std::string& kind, const std::string& paint, const PickSample& s, cli::Session& session) {
+void tell_sample(const std::string& kind, const std::string& paint, const sketch::PickSample& s,
+                 cli::Session& session) {
   session.results()["samples"].push_back({{"dropper", kind},
                                           {"paint", paint},
                                           {"image", s.path},
@@ -49,9 +50,9 @@ void tell_sample(const std::string& kind, const std::string& paint, const PickSa
                     kind, paint, s.clipped, s.pixels));
 }
 
-void tell_paint(const PickedPaint& picked, cli::Session& session) {
-  const Paint& paint = picked.paint;
-  const Appearance& a = *paint.appearance;
+void tell_paint(const sketch::PickedPaint& picked, cli::Session& session) {
+  const paint::Paint& paint = picked.paint;
+  const paint::Appearance& a = *paint.appearance;
   session.results()["paints"].push_back(
       {{"name", paint.name},
        {"face", lab_json(a.face)},
@@ -70,15 +71,15 @@ void tell_paint(const PickedPaint& picked, cli::Session& session) {
 
 // Puts a paint's droppers on their pictures; path_of() tells the path of a dropper's image.
 template <class PathOf>
-Result<PageOfPaint> picked(const PaintPick& wanted, Shelf& shelf, PathOf&& path_of, cli::Session& session) {
+Result<PageOfPaint> picked(const sketch::PaintPick& wanted, Shelf& shelf, PathOf&& path_of, cli::Session& session) {
   PageOfPaint page;
-  std::optional<Lab> face, flop;
+  std::optional<color::Lab> face, flop;
   std::optional<double> gloss;
-  const auto take = [&](const char* kind, const std::optional<Dropper>& dropper) -> Result<void> {
+  const auto take = [&](const char* kind, const std::optional<sketch::Dropper>& dropper) -> Result<void> {
     if (!dropper) return {};
     const std::string path = path_of(dropper->image);
-    GONIO_ASSIGN(const ImagePart* image, shelf.image(path));
-    GONIO_ASSIGN(PickSample sample, pick(*image, path, *dropper));
+    GONIO_ASSIGN(const image::ImagePart* image, shelf.image(path));
+    GONIO_ASSIGN(sketch::PickSample sample, sketch::pick(*image, path, *dropper));
     tell_sample(kind, wanted.name, sample, session);
     page.samples.emplace_back(kind, std::move(sample));
     return {};
@@ -89,7 +90,7 @@ Result<PageOfPaint> picked(const PaintPick& wanted, Shelf& shelf, PathOf&& path_
   if (wanted.flop) flop = page.samples.back().second.lab;
   GONIO_TRY(take("gloss", wanted.gloss));
   if (wanted.gloss) gloss = page.samples.back().second.gloss;
-  page.picked = picked_paint(wanted, face, flop, gloss);
+  page.picked = sketch::picked_paint(wanted, face, flop, gloss);
   tell_paint(page.picked, session);
   return page;
 }
@@ -97,23 +98,23 @@ Result<PageOfPaint> picked(const PaintPick& wanted, Shelf& shelf, PathOf&& path_
 Result<void> write_paints(const std::string& path, const std::vector<PageOfPaint>& paints,
                           const cli::Session& session) {
   GONIO_ASSIGN(OutputFile file, OutputFile::create(path));
-  GONIO_ASSIGN(
-      PaintWriter writer,
-      PaintWriter::begin(std::move(file), {{session.tool(), cli::Session::version(), session.command_line()}}));
+  GONIO_ASSIGN(formats::PaintWriter writer,
+               formats::PaintWriter::begin(std::move(file),
+                                           {{session.tool(), cli::Session::version(), session.command_line()}}));
   for (const PageOfPaint& paint : paints) GONIO_TRY(writer.write(paint.picked.paint));
   return writer.finish();
 }
 
 Result<cli::Verdict> run_board(const Options& options, bool as_page, cli::Session& session) {
-  GONIO_ASSIGN(const Board board, read_board(options.board));
+  GONIO_ASSIGN(const sketch::Board board, sketch::read_board(options.board));
   Shelf shelf;
   const auto path_of = [&](const std::string& name) {
-    for (const BoardImage& image : board.images)
+    for (const sketch::BoardImage& image : board.images)
       if (image.name == name) return image.path;
     return name;
   };
   std::vector<PageOfPaint> paints;
-  for (const PaintPick& wanted : board.paints) {
+  for (const sketch::PaintPick& wanted : board.paints) {
     GONIO_ASSIGN(PageOfPaint paint, picked(wanted, shelf, path_of, session));
     paints.push_back(std::move(paint));
   }
@@ -126,8 +127,8 @@ Result<cli::Verdict> run_board(const Options& options, bool as_page, cli::Sessio
     GONIO_ASSIGN(paint.picture, drawing.png(paint.picked.paint));
   }
   std::vector<PageImage> images;
-  for (const BoardImage& image : board.images) {
-    GONIO_ASSIGN(const ImagePart* content, shelf.image(image.path));
+  for (const sketch::BoardImage& image : board.images) {
+    GONIO_ASSIGN(const image::ImagePart* content, shelf.image(image.path));
     images.push_back({image, *content});
   }
   GONIO_ASSIGN(const std::string page, board_page(board, images, paints, drawing.described()));
@@ -136,14 +137,14 @@ Result<cli::Verdict> run_board(const Options& options, bool as_page, cli::Sessio
 }
 
 Result<cli::Verdict> run_palette(const Options& options, cli::Session& session) {
-  GONIO_ASSIGN(const ImagePart image, read_image(options.images.front()));
-  GONIO_ASSIGN(const auto pairs, palette(image, options.images.front(), options.palette));
+  GONIO_ASSIGN(const image::ImagePart image, image::read_image(options.images.front()));
+  GONIO_ASSIGN(const auto pairs, sketch::palette(image, options.images.front(), options.palette));
   std::vector<PageOfPaint> paints;
-  for (const PalettePair& pair : pairs) {
-    PaintPick wanted;
+  for (const sketch::PalettePair& pair : pairs) {
+    sketch::PaintPick wanted;
     wanted.name = fmt::format("{}_{}", options.name, paints.size() + 1);
     wanted.travel_deg = options.travel_deg;
-    paints.push_back({picked_paint(wanted, pair.face, pair.flop, std::nullopt), {}, {}});
+    paints.push_back({sketch::picked_paint(wanted, pair.face, pair.flop, std::nullopt), {}, {}});
     tell_paint(paints.back().picked, session);
     session.results()["paints"].back()["share"] = pair.share;
   }
@@ -155,11 +156,12 @@ Result<cli::Verdict> run_palette(const Options& options, cli::Session& session) 
 }
 
 Result<cli::Verdict> run_droppers(const Options& options, cli::Session& session) {
-  PaintPick wanted;
+  sketch::PaintPick wanted;
   wanted.name = options.name, wanted.travel_deg = options.travel_deg, wanted.retro = options.retro;
-  const auto parse = [&](const char* option, const std::string& text, std::optional<Dropper>& to) -> Result<void> {
+  const auto parse = [&](const char* option, const std::string& text,
+                         std::optional<sketch::Dropper>& to) -> Result<void> {
     if (text.empty()) return {};
-    GONIO_ASSIGN(to, parse_dropper(text, option));
+    GONIO_ASSIGN(to, sketch::parse_dropper(text, option));
     return {};
   };
   GONIO_TRY(parse("--face", options.face, wanted.face));
@@ -199,4 +201,4 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   return run_palette(options, session);
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -2,15 +2,15 @@
 
 #include "paint/metrics.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
 // The columns as the manual lists them: their names come from the table that makes them.
 std::string column_list() {
   std::string text = "The metrics:";
-  for (const MetricColumn& column : metric_columns())
-    text += std::string(&column == metric_columns().data() ? " " : "; ") + column.name + ", " + column.meaning;
+  for (const paint::MetricColumn& column : paint::metric_columns())
+    text += std::string(&column == paint::metric_columns().data() ? " " : "; ") + column.name + ", " + column.meaning;
   return text + ".";
 }
 
@@ -73,7 +73,7 @@ cli::ToolSpec tool_spec(Options& o) {
       {"paint-stats -w 'flags==through_gray' -o turning.paints.xml testdata/paints.paints.xml",
        "Collects the paints that change their hue by way of gray; the ending says that paints are wanted."}};
   spec.report = {{"paints[].name", "name of the paint; also code, class, source and flags[]"}};
-  for (const MetricColumn& column : metric_columns())
+  for (const paint::MetricColumn& column : paint::metric_columns())
     spec.report.push_back({std::string("paints[].") + column.name, column.meaning});
   spec.report.insert(spec.report.end(), {{"read", "paints read"},
                                          {"matched", "paints written"},
@@ -85,4 +85,4 @@ cli::ToolSpec tool_spec(Options& o) {
   return spec;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

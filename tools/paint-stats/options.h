@@ -6,7 +6,7 @@
 
 #include "cli/options.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 struct Options {
   cli::CommonOptions common;
@@ -19,4 +19,4 @@ struct Options {
 
 cli::ToolSpec tool_spec(Options& options);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -9,10 +9,10 @@
 #include "base/file.h"
 #include "base/parallel.h"
 #include "base/text.h"
-#include "paint/batches.h"
+#include "formats/batches.h"
 #include "paint/metrics_filter.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
@@ -21,38 +21,39 @@ std::string number_field(double value) {
   return std::isinf(value) ? (value < 0 ? "-inf" : "inf") : shortest(value);
 }
 
-Json as_json(const Paint& paint, const PaintMetrics& numbers) {
-  Json json = {{"name", paint.name}, {"code", paint.code}, {"class", paint_class_name(paint.paint_class)}};
-  for (const MetricColumn& column : metric_columns()) json[column.name] = json_number(numbers.*column.value);
-  json["source"] = source_name(numbers.source);
+Json as_json(const paint::Paint& paint, const paint::PaintMetrics& numbers) {
+  Json json = {{"name", paint.name}, {"code", paint.code}, {"class", paint::paint_class_name(paint.paint_class)}};
+  for (const paint::MetricColumn& column : paint::metric_columns())
+    json[column.name] = json_number(numbers.*column.value);
+  json["source"] = paint::source_name(numbers.source);
   json["flags"] = numbers.flags;
   return json;
 }
 
 std::string table_head() {
   std::string text = "name\tcode\tclass";
-  for (const MetricColumn& column : metric_columns()) text += std::string("\t") + column.name;
+  for (const paint::MetricColumn& column : paint::metric_columns()) text += std::string("\t") + column.name;
   return text + "\tsource\tflags\n";
 }
 
-std::string table_line(const Paint& paint, const PaintMetrics& numbers) {
+std::string table_line(const paint::Paint& paint, const paint::PaintMetrics& numbers) {
   std::string text =
-      table_field(paint.name) + "\t" + table_field(paint.code) + "\t" + paint_class_name(paint.paint_class);
-  for (const MetricColumn& column : metric_columns()) text += "\t" + number_field(numbers.*column.value);
+      table_field(paint.name) + "\t" + table_field(paint.code) + "\t" + paint::paint_class_name(paint.paint_class);
+  for (const paint::MetricColumn& column : paint::metric_columns()) text += "\t" + number_field(numbers.*column.value);
   std::string flags;
   for (const char* flag : numbers.flags) flags += (flags.empty() ? "" : ",") + std::string(flag);
-  return text + "\t" + source_name(numbers.source) + "\t" + (flags.empty() ? "-" : flags) + "\n";
+  return text + "\t" + paint::source_name(numbers.source) + "\t" + (flags.empty() ? "-" : flags) + "\n";
 }
 
 // Where matching paints go, in one of the three formats.
 class Sink {
  public:
-  static Result<Sink> begin(Format format, OutputFile file, const std::vector<Processing>& history,
+  static Result<Sink> begin(Format format, OutputFile file, const std::vector<formats::Processing>& history,
                             const std::vector<std::string>& foreign) {
     Sink sink;
     sink.format_ = format;
     if (format == Format::kPaints) {
-      GONIO_ASSIGN(PaintWriter writer, PaintWriter::begin(std::move(file), history, foreign));
+      GONIO_ASSIGN(formats::PaintWriter writer, formats::PaintWriter::begin(std::move(file), history, foreign));
       sink.writer_.emplace(std::move(writer));
       return sink;
     }
@@ -61,7 +62,7 @@ class Sink {
     return sink;
   }
 
-  Result<void> write(const Paint& paint, const PaintMetrics& numbers) {
+  Result<void> write(const paint::Paint& paint, const paint::PaintMetrics& numbers) {
     switch (format_) {
       case Format::kPaints:
         return writer_->write(paint);
@@ -78,7 +79,7 @@ class Sink {
  private:
   Format format_ = Format::kTable;
   std::optional<OutputFile> file_;
-  std::optional<PaintWriter> writer_;
+  std::optional<formats::PaintWriter> writer_;
 };
 
 // One run: paints in, figures or paints out.
@@ -88,14 +89,14 @@ class Run {
 
   Result<cli::Verdict> operator()() {
     if (!options_.where.empty()) {
-      GONIO_ASSIGN(PaintFilter filter, PaintFilter::parse(options_.where));
+      GONIO_ASSIGN(paint::PaintFilter filter, paint::PaintFilter::parse(options_.where));
       filter_.emplace(std::move(filter));
     }
-    GONIO_ASSIGN(PaintBatches batches, PaintBatches::open(options_.inputs));
+    GONIO_ASSIGN(formats::PaintBatches batches, formats::PaintBatches::open(options_.inputs));
     GONIO_TRY(open_output(batches.processing(), batches.foreign()));
     session_.begin_list("paints");
     for (;;) {
-      GONIO_ASSIGN(const std::vector<Paint> batch, batches.next(left_out()));
+      GONIO_ASSIGN(const std::vector<paint::Paint> batch, batches.next(left_out()));
       if (batch.empty()) break;
       GONIO_TRY(measure(batch));
       session_.progress(fmt::format("{}: {} paints", session_.tool(), read_));
@@ -105,7 +106,7 @@ class Run {
   }
 
  private:
-  Result<void> open_output(std::vector<Processing> history, const std::vector<std::string>& foreign) {
+  Result<void> open_output(std::vector<formats::Processing> history, const std::vector<std::string>& foreign) {
     history.push_back({session_.tool(), cli::Session::version(), session_.command_line()});
     GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
     GONIO_ASSIGN(Sink sink,
@@ -123,11 +124,11 @@ class Run {
     };
   }
 
-  Result<void> measure(const std::vector<Paint>& batch) {
+  Result<void> measure(const std::vector<paint::Paint>& batch) {
     const Stopwatch measuring;
-    std::vector<std::optional<Result<PaintMetrics>>> numbers(batch.size());
+    std::vector<std::optional<Result<paint::PaintMetrics>>> numbers(batch.size());
     parallel_for(batch.size(), 16, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) numbers[i] = metrics(batch[i]);
+      for (std::size_t i = begin; i < end; ++i) numbers[i] = paint::metrics(batch[i]);
     });
     measuring_s_ += measuring.elapsed_s();
     read_ += batch.size();
@@ -138,7 +139,7 @@ class Run {
     return sink_->flush();
   }
 
-  Result<void> take(const Paint& paint, const PaintMetrics& numbers) {
+  Result<void> take(const paint::Paint& paint, const paint::PaintMetrics& numbers) {
     if (filter_ && !filter_->matches(paint, numbers)) return {};
     ++matched_;
     session_.add("paints", [&] { return as_json(paint, numbers); });
@@ -160,7 +161,7 @@ class Run {
 
   const Options& options_;
   cli::Session& session_;
-  std::optional<PaintFilter> filter_;
+  std::optional<paint::PaintFilter> filter_;
   std::optional<Sink> sink_;
   std::size_t read_ = 0, matched_ = 0, left_out_ = 0;
   double measuring_s_ = 0;
@@ -187,4 +188,4 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   return Run(options, session)();
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

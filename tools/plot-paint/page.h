@@ -7,18 +7,18 @@
 #include "paint/paint.h"
 #include "report/plot.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 struct PageInput {
-  const Paint& paint;
-  const MeasuredBrdf* brdf = nullptr;  // what the squares are held against, where there is one
+  const paint::Paint& paint;
+  const brdf::MeasuredBrdf* brdf = nullptr;  // what the squares are held against, where there is one
   std::vector<double> incidence_deg;
 };
 
 // A page of 1080 px. Error: the paint has neither readings nor an appearance nor lobes, or its illuminant is unknown.
-Result<Drawing> page_of(const PageInput& input);
+Result<report::Drawing> page_of(const PageInput& input);
 
 // The same in one row: L*, a* and b*, and the squares.
-Result<Drawing> row_of_sheet(const PageInput& input);
+Result<report::Drawing> row_of_sheet(const PageInput& input);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -13,7 +13,7 @@
 
 extern char** environ;
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
@@ -86,4 +86,4 @@ Result<std::string> png_of(const std::string& svg) {
   return png;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

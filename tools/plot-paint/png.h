@@ -5,9 +5,9 @@
 
 #include "base/result.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 // The PNG of an SVG document. Error: rsvg-convert is not installed, or it failed.
 Result<std::string> png_of(const std::string& svg);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

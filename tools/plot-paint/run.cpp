@@ -6,32 +6,32 @@
 
 #include "base/file.h"
 #include "base/text.h"
+#include "formats/xml.h"
 #include "page.h"
-#include "paint/xml.h"
 #include "png.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
-using Brdfs = std::map<std::string, std::unique_ptr<MeasuredBrdf>>;
+using Brdfs = std::map<std::string, std::unique_ptr<brdf::MeasuredBrdf>>;
 
 Result<Brdfs> read_brdfs(const std::vector<std::string>& paths) {
   Brdfs brdfs;
   for (const std::string& path : paths) {
-    GONIO_ASSIGN(auto brdf, read_measured(path));
+    GONIO_ASSIGN(auto brdf, brdf::read_measured(path));
     brdfs[std::filesystem::path(path).stem().string()] = std::move(brdf);
   }
   return brdfs;
 }
 
 // The paints asked for, in the order of the libraries.
-Result<std::vector<Paint>> chosen_paints(const Options& options) {
-  std::vector<Paint> chosen;
+Result<std::vector<paint::Paint>> chosen_paints(const Options& options) {
+  std::vector<paint::Paint> chosen;
   std::vector<std::string> missing = options.names;
   for (const std::string& path : options.libraries.empty() ? std::vector<std::string>{"-"} : options.libraries) {
-    GONIO_ASSIGN(std::vector<Paint> paints, read_paints(path));
-    for (Paint& paint : paints) {
+    GONIO_ASSIGN(std::vector<paint::Paint> paints, formats::read_paints(path));
+    for (paint::Paint& paint : paints) {
       const bool named = std::ranges::find(options.names, paint.name) != options.names.end();
       if (!options.names.empty() && !named) continue;
       std::erase(missing, paint.name);
@@ -43,8 +43,8 @@ Result<std::vector<Paint>> chosen_paints(const Options& options) {
   return chosen;
 }
 
-Result<void> write_drawing(const std::string& path, bool png, const Drawing& drawing) {
-  const std::string document = svg(std::vector<Drawing>{drawing}, 1);
+Result<void> write_drawing(const std::string& path, bool png, const report::Drawing& drawing) {
+  const std::string document = report::svg(std::vector<report::Drawing>{drawing}, 1);
   if (!png) return write_file(path, document);
   GONIO_ASSIGN(const std::string bytes, png_of(document));
   return write_file(path, bytes);
@@ -58,7 +58,7 @@ std::string file_name(std::string name) {
 }
 
 void report(const PageInput& input, const std::string& file, cli::Session& session) {
-  const Paint& paint = input.paint;
+  const paint::Paint& paint = input.paint;
   const char* target = input.brdf ? "measured BRDF" : paint.measurement || paint.appearance ? "curve" : "none";
   session.results()["paints"].push_back({{"name", paint.name},
                                          {"file", file},
@@ -71,21 +71,21 @@ void report(const PageInput& input, const std::string& file, cli::Session& sessi
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   if (!options.pages.empty() && !std::filesystem::is_directory(options.pages))
     return input_error("{}: is no folder: make it first", options.pages);
-  GONIO_ASSIGN(const std::vector<Paint> paints, chosen_paints(options));
+  GONIO_ASSIGN(const std::vector<paint::Paint> paints, chosen_paints(options));
   GONIO_ASSIGN(const Brdfs brdfs, read_brdfs(options.brdfs));
   for (const auto& [name, brdf] : brdfs)
-    if (std::ranges::find(paints, name, &Paint::name) == paints.end())
+    if (std::ranges::find(paints, name, &paint::Paint::name) == paints.end())
       session.warn(fmt::format("no paint is named \"{}\" as the measured BRDF is: it is not used", name));
   session.results()["paints"] = Json::array();
 
-  std::vector<Drawing> rows;
+  std::vector<report::Drawing> rows;
   std::size_t unfitted = 0;
-  for (const Paint& paint : paints) {
+  for (const paint::Paint& paint : paints) {
     const auto brdf = brdfs.find(paint.name);
     const PageInput input{paint, brdf == brdfs.end() ? nullptr : brdf->second.get(), options.incidence_deg};
     unfitted += !paint.lobes;
     const bool as_page = !options.pages.empty() || paints.size() == 1;
-    GONIO_ASSIGN(Drawing drawing, as_page ? page_of(input) : row_of_sheet(input));
+    GONIO_ASSIGN(report::Drawing drawing, as_page ? page_of(input) : row_of_sheet(input));
     std::string file = options.output;
     if (!options.pages.empty()) {
       file = fmt::format("{}/{}.{}", options.pages, file_name(paint.name), options.format);
@@ -97,11 +97,11 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
     session.progress(fmt::format("{}: {}", session.tool(), paint.name));
   }
   if (options.pages.empty())
-    GONIO_TRY(write_drawing(options.output, lower(options.output).ends_with(".png"), column_of(rows)));
+    GONIO_TRY(write_drawing(options.output, lower(options.output).ends_with(".png"), report::column_of(rows)));
   session.say(
       fmt::format("{}: {} paints drawn{}", session.tool(), paints.size(),
                   unfitted > 0 ? fmt::format(", {} of them without lobes: fit-paint makes them", unfitted) : ""));
   return cli::Verdict::kDone;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -8,13 +8,13 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "base/text.h"
-#include "envmap/lobe_cache.h"
 #include "envmap/mip_write.h"
-#include "envmap/prefilter.h"
-#include "envmap/reference.h"
+#include "prefilter/exact_lobe.h"
+#include "prefilter/lobe_cache.h"
+#include "prefilter/prefilter.h"
 #include "wanted.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
@@ -22,31 +22,33 @@ std::string exponent_name(double exponent) {
   return std::isinf(exponent) ? "mirror" : shortest(exponent);
 }
 
-const char* layout_name(Environment::Layout layout) {
+const char* layout_name(envmap::Environment::Layout layout) {
   switch (layout) {
-    case Environment::Layout::kLatLong:
+    case envmap::Environment::Layout::kLatLong:
       return "lat-long";
-    case Environment::Layout::kCube:
+    case envmap::Environment::Layout::kCube:
       return "cube";
-    case Environment::Layout::kCubeEdges:
+    case envmap::Environment::Layout::kCubeEdges:
       return "cube with texel centers on the edges";
-    case Environment::Layout::kAngular:
+    case envmap::Environment::Layout::kAngular:
       return "angular probe";
   }
   return "";
 }
 
-Result<Environment> read_environment(const Options& options, const Rotation& turn) {
-  const auto bad = options.bad_pixels == "zero" ? Environment::BadPixels::kZero : Environment::BadPixels::kError;
-  auto read = options.images.size() > 1 ? Environment::read_faces(options.images, bad)
-                                        : Environment::read(options.images.empty() ? "-" : options.images.front(), bad);
+Result<envmap::Environment> read_environment(const Options& options, const envmap::Rotation& turn) {
+  const auto bad =
+      options.bad_pixels == "zero" ? envmap::Environment::BadPixels::kZero : envmap::Environment::BadPixels::kError;
+  auto read = options.images.size() > 1
+                  ? envmap::Environment::read_faces(options.images, bad)
+                  : envmap::Environment::read(options.images.empty() ? "-" : options.images.front(), bad);
   if (read.ok() && options.exposure != 0) read = read->scaled(std::exp2(options.exposure));
   if (read.ok() && options.horizon > -90) read = read->above(options.horizon * std::numbers::pi / 180, turn);
   return read;
 }
 
-void tell_source(const Environment& env, cli::Session& session) {
-  const Environment::Counts& n = env.replaced();
+void tell_source(const envmap::Environment& env, cli::Session& session) {
+  const envmap::Environment::Counts& n = env.replaced();
   session.results()["source"] = {{"path", env.source()},   {"layout", layout_name(env.layout())},
                                  {"width", env.width()},   {"height", env.height()},
                                  {"nan", n.nan},           {"infinite", n.infinite},
@@ -59,9 +61,9 @@ void tell_source(const Environment& env, cli::Session& session) {
 }
 
 // The plan, before the work.
-std::string plan_text(const Environment& env, const Wanted& wanted, const Options& options,
-                      const std::vector<LobePlan>& plan, const LobeSource& known) {
-  const PrefilterRequest& request = wanted.request;
+std::string plan_text(const envmap::Environment& env, const Wanted& wanted, const Options& options,
+                      const std::vector<prefilter::LobePlan>& plan, const prefilter::LobeSource& known) {
+  const prefilter::PrefilterRequest& request = wanted.request;
   std::string text = fmt::format("{}: {}, {} x {} texels, each a constant patch\n", env.source(),
                                  layout_name(env.layout()), env.width(), env.height());
   for (const LeftOut& lobe : wanted.left_out)
@@ -71,12 +73,12 @@ std::string plan_text(const Environment& env, const Wanted& wanted, const Option
     text += "left out: the diffuse lobe and the mirror, which a mip-mapped cube has no level for\n";
   text += "exponent  size  method            degree  error    lookup   time\n";
   double total = 0;
-  for (const LobePlan& lobe : plan) {
+  for (const prefilter::LobePlan& lobe : plan) {
     const bool there = known && known(lobe);
-    text +=
-        fmt::format("{:<9} {:<5} {:<17} {:<7} {:<8.1e} {:<8.1e} {:.3f} s\n", exponent_name(lobe.exponent), lobe.size,
-                    there ? "cache" : method_name(lobe.method), lobe.degree > 0 ? std::to_string(lobe.degree) : "-",
-                    lobe.predicted_error, lobe.lookup_error, there ? 0 : lobe.predicted_time_s);
+    text += fmt::format("{:<9} {:<5} {:<17} {:<7} {:<8.1e} {:<8.1e} {:.3f} s\n", exponent_name(lobe.exponent),
+                        lobe.size, there ? "cache" : prefilter::method_name(lobe.method),
+                        lobe.degree > 0 ? std::to_string(lobe.degree) : "-", lobe.predicted_error, lobe.lookup_error,
+                        there ? 0 : lobe.predicted_time_s);
     total += there ? 0 : lobe.predicted_time_s;
   }
   text += fmt::format("about {:.2f} s on {} threads, and reading and writing\n", total, threads());
@@ -92,14 +94,15 @@ struct Timing {
   bool cached = false;
 };
 
-Json report_of(const LobePlan& plan, const PrefilteredLobe& lobe, const Timing& timing, double ratio) {
+Json report_of(const prefilter::LobePlan& plan, const envmap::PrefilteredLobe& lobe, const Timing& timing,
+               double ratio) {
   const bool verified = lobe.verified_texels > 0;
   return {{"exponent", std::isinf(lobe.exponent) ? Json("mirror") : Json(lobe.exponent)},
           {"size", lobe.map.size},
           {"method", lobe.method},
           {"cached", timing.cached},
           {"degree", plan.degree},
-          {"storage", storage_type(lobe) == PixelType::kHalf ? "half" : "float"},
+          {"storage", envmap::storage_type(lobe) == image::PixelType::kHalf ? "half" : "float"},
           {"predicted_time_s", plan.predicted_time_s},
           {"time_s", timing.time_s},
           {"predicted_error", plan.predicted_error},
@@ -110,22 +113,22 @@ Json report_of(const LobePlan& plan, const PrefilteredLobe& lobe, const Timing& 
           {"energy_ratio", json_number(ratio)}};
 }
 
-std::vector<PrefilteredLobe*> all_lobes(PrefilteredEnvironment& env) {
-  std::vector<PrefilteredLobe*> lobes;
+std::vector<envmap::PrefilteredLobe*> all_lobes(envmap::PrefilteredEnvironment& env) {
+  std::vector<envmap::PrefilteredLobe*> lobes;
   if (env.diffuse.map.size > 0) lobes.push_back(&env.diffuse);
-  for (PrefilteredLobe& lobe : env.lobes) lobes.push_back(&lobe);
+  for (envmap::PrefilteredLobe& lobe : env.lobes) lobes.push_back(&lobe);
   if (env.mirror.map.size > 0) lobes.push_back(&env.mirror);
   return lobes;
 }
 
 // Measures every lobe against the reference. Returns whether all keep the tolerance.
-bool verify(const Options& options, const Environment& env, const Rotation& turn, PrefilteredEnvironment& result,
-            cli::Session& session) {
+bool verify(const Options& options, const envmap::Environment& env, const envmap::Rotation& turn,
+            envmap::PrefilteredEnvironment& result, cli::Session& session) {
   bool within = true;
-  for (PrefilteredLobe* lobe : all_lobes(result)) {
+  for (envmap::PrefilteredLobe* lobe : all_lobes(result)) {
     session.progress(fmt::format("{}: verifying {}", session.tool(), exponent_name(lobe->exponent)));
-    const LobeError error =
-        lobe_error(env, *lobe, options.verify, (options.verify + 9) / 10, options.common.seed, turn);
+    const prefilter::LobeError error =
+        prefilter::lobe_error(env, *lobe, options.verify, (options.verify + 9) / 10, options.common.seed, turn);
     lobe->max_error = error.max;
     lobe->mean_error = error.mean;
     lobe->verified_texels = error.texels;
@@ -137,10 +140,10 @@ bool verify(const Options& options, const Environment& env, const Rotation& turn
   return within;
 }
 
-Result<void> write(const Options& options, const PrefilteredEnvironment& result, const cli::Session& session) {
+Result<void> write(const Options& options, const envmap::PrefilteredEnvironment& result, const cli::Session& session) {
   const std::string command = fmt::format("{} {}: {}", session.tool(), cli::Session::version(), session.command_line());
-  if (options.layout == "mip") return write_mip(options.output, result.lobes, result.source, command);
-  return write_env(options.output, result, command);
+  if (options.layout == "mip") return envmap::write_mip(options.output, result.lobes, result.source, command);
+  return envmap::write_env(options.output, result, command);
 }
 
 void tell_wanted(const Options& options, const Wanted& wanted, cli::Session& session) {
@@ -152,26 +155,28 @@ void tell_wanted(const Options& options, const Wanted& wanted, cli::Session& ses
 }
 
 // The maps, and how long each took. Lobes that the cache has not are put into it.
-Result<PrefilteredEnvironment> filter(const Environment& env, const PrefilterRequest& request,
-                                      const std::vector<LobePlan>& plan, const std::optional<LobeCache>& cache,
-                                      cli::Session& session, std::vector<Timing>& timings) {
+Result<envmap::PrefilteredEnvironment> filter(const envmap::Environment& env,
+                                              const prefilter::PrefilterRequest& request,
+                                              const std::vector<prefilter::LobePlan>& plan,
+                                              const std::optional<prefilter::LobeCache>& cache, cli::Session& session,
+                                              std::vector<Timing>& timings) {
   std::vector<bool> found;
   Result<void> kept = {};
-  const auto done = [&](const PrefilteredLobe& lobe, double time_s) {
+  const auto done = [&](const envmap::PrefilteredLobe& lobe, double time_s) {
     const bool cached = cache && found[timings.size()];
     timings.push_back({time_s, cached});
     if (cache && !cached && kept.ok()) kept = cache->keep(lobe);
     session.progress(fmt::format("{}: {} of {} lobes, {}", session.tool(), timings.size(), plan.size(),
                                  exponent_name(lobe.exponent)));
   };
-  LobeSource known;
+  prefilter::LobeSource known;
   if (cache)
-    known = [&](const LobePlan& lobe) {
+    known = [&](const prefilter::LobePlan& lobe) {
       auto there = cache->find(lobe);
       found.push_back(there.has_value());
       return there;
     };
-  PrefilteredEnvironment result = prefiltered(env, request, plan, done, known);
+  envmap::PrefilteredEnvironment result = prefilter::prefiltered(env, request, plan, done, known);
   GONIO_TRY(kept);
   return result;
 }
@@ -180,26 +185,26 @@ Result<PrefilteredEnvironment> filter(const Environment& env, const PrefilterReq
 
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   GONIO_ASSIGN(const Wanted wanted, wanted_lobes(options));
-  const PrefilterRequest& request = wanted.request;
+  const prefilter::PrefilterRequest& request = wanted.request;
   const Stopwatch read_clock;
-  GONIO_ASSIGN(const Environment env, read_environment(options, request.turn));
+  GONIO_ASSIGN(const envmap::Environment env, read_environment(options, request.turn));
   session.results()["read_s"] = read_clock.elapsed_s();
   tell_wanted(options, wanted, session);
   tell_source(env, session);
-  std::optional<LobeCache> cache;
+  std::optional<prefilter::LobeCache> cache;
   if (!options.cache.empty()) {
-    GONIO_ASSIGN(cache, LobeCache::open(options.cache, env, request, cli::Session::version()));
+    GONIO_ASSIGN(cache, prefilter::LobeCache::open(options.cache, env, request, cli::Session::version()));
   }
-  const std::vector<LobePlan> plan = prefilter_plan(env, request);
+  const std::vector<prefilter::LobePlan> plan = prefilter::prefilter_plan(env, request);
   if (options.common.explain) {
-    LobeSource known;
-    if (cache) known = [&](const LobePlan& lobe) { return cache->find(lobe); };
+    prefilter::LobeSource known;
+    if (cache) known = [&](const prefilter::LobePlan& lobe) { return cache->find(lobe); };
     session.explain(plan_text(env, wanted, options, plan, known));
   }
 
   const Stopwatch filter_clock;
   std::vector<Timing> timings;
-  GONIO_ASSIGN(PrefilteredEnvironment result, filter(env, request, plan, cache, session, timings));
+  GONIO_ASSIGN(envmap::PrefilteredEnvironment result, filter(env, request, plan, cache, session, timings));
   const double filter_s = filter_clock.elapsed_s();
   session.results()["filter_s"] = filter_s;
 
@@ -209,10 +214,11 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
 
   const Vec3 flux = env.flux();
   double worst = 0;
-  std::vector<PrefilteredLobe*> lobes = all_lobes(result);
+  std::vector<envmap::PrefilteredLobe*> lobes = all_lobes(result);
   for (std::size_t i = 0; i < lobes.size(); ++i) {
     worst = std::max(worst, lobes[i]->max_error);
-    session.results()["lobes"].push_back(report_of(plan[i], *lobes[i], timings[i], energy_ratio(flux, *lobes[i])));
+    session.results()["lobes"].push_back(
+        report_of(plan[i], *lobes[i], timings[i], prefilter::energy_ratio(flux, *lobes[i])));
   }
   const Stopwatch write_clock;
   GONIO_TRY(write(options, result, session));
@@ -226,4 +232,4 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   return within ? cli::Verdict::kDone : cli::Verdict::kNegative;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

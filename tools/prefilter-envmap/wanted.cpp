@@ -8,49 +8,49 @@
 
 #include "base/text.h"
 #include "envmap/mip_write.h"
-#include "paint/basis.h"
-#include "paint/xml.h"
+#include "formats/basis.h"
+#include "formats/xml.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kLeastTolerance = 1e-6;  // floats hold 6e-8, the reference 1e-8
 
-double largest(const Rgb& weights) {
+double largest(const color::Rgb& weights) {
   return std::max({weights[0], weights[1], weights[2]});
 }
 
 // What a lobe reflects of a constant environment at normal incidence: its weight times 2 pi/(E+1); the mirror, its
 // weight.
-double reflectance(const Lobe& lobe) {
+double reflectance(const paint::Lobe& lobe) {
   const double weight = largest(lobe.directional_diffuse) + largest(lobe.gloss);
   return std::isinf(lobe.exponent) ? weight : weight * 2 * kPi / (lobe.exponent + 1);
 }
 
 // The largest share of a paint's reflectance that each exponent has, over paints and views.
-void add_shares(const Rgb& diffuse, const std::vector<Lobe>& lobes, std::map<double, double>& shares) {
+void add_shares(const color::Rgb& diffuse, const std::vector<paint::Lobe>& lobes, std::map<double, double>& shares) {
   double all = kPi * largest(diffuse);
-  for (const Lobe& lobe : lobes) all += reflectance(lobe);
-  for (const Lobe& lobe : lobes) {
+  for (const paint::Lobe& lobe : lobes) all += reflectance(lobe);
+  for (const paint::Lobe& lobe : lobes) {
     double& share = shares[lobe.exponent];
     if (all > 0) share = std::max(share, reflectance(lobe) / all);
   }
 }
 
 Result<void> want_those_of_paints(const Options& options, Wanted& wanted) {
-  GONIO_ASSIGN(PaintReader reader, PaintReader::open(options.paints));
+  GONIO_ASSIGN(formats::PaintReader reader, formats::PaintReader::open(options.paints));
   std::map<double, double> shares;
   for (;;) {
-    GONIO_ASSIGN(const std::optional<Paint> paint, reader.next());
+    GONIO_ASSIGN(const std::optional<paint::Paint> paint, reader.next());
     if (!paint) break;
     ++wanted.paints;
     if (!paint->lobes)
       return input_error("{}:{}: paint {} has no lobes: fit it with fit-paint", options.paints, reader.line(),
                          paint->name);
     add_shares(paint->lobes->diffuse, paint->lobes->lobes, shares);
-    for (const ViewLobes& view : paint->lobes->views) add_shares(view.diffuse, view.lobes, shares);
+    for (const paint::ViewLobes& view : paint->lobes->views) add_shares(view.diffuse, view.lobes, shares);
   }
   if (wanted.paints == 0) return input_error("{}: holds no paint: name paints that have lobes", options.paints);
   wanted.request.mirror = false;
@@ -65,8 +65,8 @@ Result<void> want_those_of_paints(const Options& options, Wanted& wanted) {
   return {};
 }
 
-Result<void> set_geometry(const Options& options, PrefilterRequest& request) {
-  using Layout = SphereGrid::Layout;
+Result<void> set_geometry(const Options& options, prefilter::PrefilterRequest& request) {
+  using Layout = envmap::SphereGrid::Layout;
   if (options.size != "auto") {
     const auto size = parse_integer(options.size);
     if (!size || *size < 1 || *size > 8192)
@@ -82,18 +82,19 @@ Result<void> set_geometry(const Options& options, PrefilterRequest& request) {
   if (turn.size() > 3)
     return usage_error("--rotate has {} angles: give one to three, about +Y, +X and +Z", turn.size());
   const auto angle = [&](std::size_t i) { return i < turn.size() ? turn[i] * kPi / 180 : 0; };
-  request.turn = Rotation::about_axes(angle(0), angle(1), angle(2));
+  request.turn = envmap::Rotation::about_axes(angle(0), angle(1), angle(2));
   return {};
 }
 
 // The levels of the mip-mapped cube, in place of diffuse lobe, lobes and mirror.
-Result<void> set_levels(PrefilterRequest& request) {
+Result<void> set_levels(prefilter::PrefilterRequest& request) {
   if (request.exponents.empty()) return usage_error("--layout mip without an exponent: give --exponents or --basis");
   const double sharpest = *std::max_element(request.exponents.begin(), request.exponents.end());
-  int size = request.size > 0
-                 ? request.size
-                 : static_cast<int>(std::bit_ceil(static_cast<unsigned>(own_size(sharpest, request.tolerance))));
-  GONIO_ASSIGN(request.exponents, mip_exponents(request.exponents, size));
+  int size =
+      request.size > 0
+          ? request.size
+          : static_cast<int>(std::bit_ceil(static_cast<unsigned>(prefilter::own_size(sharpest, request.tolerance))));
+  GONIO_ASSIGN(request.exponents, envmap::mip_exponents(request.exponents, size));
   for (std::size_t i = 0; i < request.exponents.size(); ++i, size /= 2) request.sizes.push_back(size);
   request.diffuse = request.mirror = false;
   return {};
@@ -105,14 +106,14 @@ Result<Wanted> wanted_lobes(const Options& options) {
   if (int(options.basis.empty()) + int(options.exponents.empty()) + int(options.paints.empty()) != 2)
     return usage_error("give one of --basis FILE, --exponents LIST and --for PAINTS");
   Wanted wanted;
-  PrefilterRequest& request = wanted.request;
+  prefilter::PrefilterRequest& request = wanted.request;
   request.tolerance = options.common.tolerance;
   if (!(request.tolerance >= kLeastTolerance && request.tolerance < 1))
     return usage_error("--tolerance is {}: give {} to 1", shortest(request.tolerance), shortest(kLeastTolerance));
   GONIO_TRY(set_geometry(options, request));
   request.exponents = options.exponents;
   if (!options.basis.empty()) {
-    GONIO_ASSIGN(const Basis basis, read_basis(options.basis));
+    GONIO_ASSIGN(const formats::Basis basis, formats::read_basis(options.basis));
     request.exponents = basis.exponents;
   } else if (!options.paints.empty()) {
     GONIO_TRY(want_those_of_paints(options, wanted));
@@ -130,4 +131,4 @@ Result<Wanted> wanted_lobes(const Options& options) {
   return wanted;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "base/result.h"
-#include "envmap/prefilter.h"
 #include "options.h"
+#include "prefilter/prefilter.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 // An exponent that paints name but do not need.
 struct LeftOut {
@@ -16,7 +16,7 @@ struct LeftOut {
 };
 
 struct Wanted {
-  PrefilterRequest request;
+  prefilter::PrefilterRequest request;
   std::vector<LeftOut> left_out;
   int paints = 0;
 };
@@ -24,4 +24,4 @@ struct Wanted {
 // The request that the options make. Errors: usage, or the basis or the paints.
 Result<Wanted> wanted_lobes(const Options& options);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -5,11 +5,11 @@
 #include "base/file.h"
 #include "base/text.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
-Result<std::vector<Rgb>> read_matching_table(const std::string& path) {
+Result<std::vector<color::Rgb>> read_matching_table(const std::string& path) {
   GONIO_ASSIGN(const std::string text, file_content(path));
-  std::vector<Rgb> table;
+  std::vector<color::Rgb> table;
   std::vector<double> wavelengths;
   int number = 0;
   for (const std::string_view raw : split(text, '\n')) {
@@ -37,4 +37,4 @@ Result<std::vector<Rgb>> read_matching_table(const std::string& path) {
   return table;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -7,10 +7,10 @@
 #include "base/result.h"
 #include "color/color.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 // Reads CSV rows of a wavelength and three values, at equal steps; a first line of names is passed over. Error: file,
 // line and value.
-Result<std::vector<Rgb>> read_matching_table(const std::string& path);
+Result<std::vector<color::Rgb>> read_matching_table(const std::string& path);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -5,23 +5,23 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "color/reflection_json.h"
-#include "envmap/color_space.h"
+#include "image/color_space.h"
 #include "matching_table.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
 // R,G,B or the name of an illuminant.
-Result<Rgb> illuminant(const std::string& option, const std::string& text) {
+Result<color::Rgb> illuminant(const std::string& option, const std::string& text) {
   if (text.empty()) return usage_error("--{} is missing: give R,G,B or D65, D50, A", option);
   const auto words = split(text, ',');
   if (words.size() == 1 && !parse_number(text)) {
-    const auto white = white_point({text, 2});
+    const auto white = color::white_point({text, 2});
     if (!white.ok()) return usage_error("--{} {}: give R,G,B or D65, D50, A", option, text);
-    return rgb_from_xyz_d65(*white);
+    return color::rgb_from_xyz_d65(*white);
   }
-  Rgb rgb;
+  color::Rgb rgb;
   for (int c = 0; c < 3; ++c) {
     const auto value = words.size() == 3 ? parse_number(trimmed(words[static_cast<std::size_t>(c)])) : std::nullopt;
     if (!value || *value < 0)
@@ -31,20 +31,21 @@ Result<Rgb> illuminant(const std::string& option, const std::string& text) {
   return rgb;
 }
 
-Result<ReflectionOperator> chosen_operator(const Options& options) {
-  ReflectionOperator op = working_space_operator();
-  if (options.op == "iso") op = iso_rgb_operator();
-  if (options.op == "plain") op = component_wise();
+Result<color::ReflectionOperator> chosen_operator(const Options& options) {
+  color::ReflectionOperator op = color::working_space_operator();
+  if (options.op == "iso") op = color::iso_rgb_operator();
+  if (options.op == "plain") op = color::component_wise();
   if (options.op != "working" && options.op != "iso" && options.op != "plain") {
-    GONIO_ASSIGN(op, read_reflection_operator(options.op));
+    GONIO_ASSIGN(op, color::read_reflection_operator(options.op));
   }
   if (options.transfer.empty()) return op;
   if (options.transfer.size() != 3)
     return usage_error("--transfer has {} values: give three, for red, green and blue", options.transfer.size());
-  return with_transfer(op, {options.transfer[0], options.transfer[1], options.transfer[2]});
+  return color::with_transfer(op, {options.transfer[0], options.transfer[1], options.transfer[2]});
 }
 
-std::string plan_text(const Options& options, const Rgb& from, const Rgb& to, const Relighting& change) {
+std::string plan_text(const Options& options, const color::Rgb& from, const color::Rgb& to,
+                      const color::Relighting& change) {
   std::string text = fmt::format("illuminant {} {} {} to {} {} {}, operator {}\n", shortest(from.x), shortest(from.y),
                                  shortest(from.z), shortest(to.x), shortest(to.y), shortest(to.z), options.op);
   text += fmt::format("condition number {:.4g}: relative errors of the image grow by at most that\n", change.condition);
@@ -53,12 +54,13 @@ std::string plan_text(const Options& options, const Rgb& from, const Rgb& to, co
 }
 
 // Changes every pixel, and returns how many have a negative channel. Error: the first that is not finite.
-Result<std::size_t> relit(Image& image, const Matrix3& matrix, bool keep_negative, const std::string& name) {
+Result<std::size_t> relit(image::Image& image, const color::Matrix3& matrix, bool keep_negative,
+                          const std::string& name) {
   std::size_t negative = 0;
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
       float* pixel = image.pixel(x, y);
-      const Rgb color = product(matrix, {pixel[0], pixel[1], pixel[2]});
+      const color::Rgb color = color::product(matrix, {pixel[0], pixel[1], pixel[2]});
       negative += color.x < 0 || color.y < 0 || color.z < 0;
       for (int c = 0; c < 3; ++c) {
         pixel[c] = static_cast<float>(keep_negative ? color[c] : std::max(color[c], 0.0));
@@ -72,11 +74,11 @@ Result<std::size_t> relit(Image& image, const Matrix3& matrix, bool keep_negativ
 Result<cli::Verdict> estimate(const Options& options, cli::Session& session) {
   if (!options.image.empty() || !options.from.empty() || !options.to.empty() || !options.transfer.empty())
     return usage_error("--estimate makes an operator: it takes no image, --from, --to or --transfer");
-  GONIO_ASSIGN(const std::vector<Rgb> table, read_matching_table(options.estimate));
-  GONIO_ASSIGN(const ReflectionOperator op, estimated_operator(table));
+  GONIO_ASSIGN(const std::vector<color::Rgb> table, read_matching_table(options.estimate));
+  GONIO_ASSIGN(const color::ReflectionOperator op, color::estimated_operator(table));
   session.results()["operator"] = op.k;
   session.results()["condition"] = nullptr;
-  GONIO_TRY(write_file(options.output, reflection_json(op)));
+  GONIO_TRY(write_file(options.output, color::reflection_json(op)));
   session.say(fmt::format("{}: each channel keeps {:.4f} {:.4f} {:.4f} of itself", session.tool(), op.k[0][0][0],
                           op.k[1][1][1], op.k[2][2][2]));
   return cli::Verdict::kDone;
@@ -86,16 +88,16 @@ Result<cli::Verdict> estimate(const Options& options, cli::Session& session) {
 
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   if (!options.estimate.empty()) return estimate(options, session);
-  GONIO_ASSIGN(const Rgb from, illuminant("from", options.from));
-  GONIO_ASSIGN(const Rgb to, illuminant("to", options.to));
-  GONIO_ASSIGN(const ReflectionOperator op, chosen_operator(options));
-  auto change = relighting(op, from, to);
+  GONIO_ASSIGN(const color::Rgb from, illuminant("from", options.from));
+  GONIO_ASSIGN(const color::Rgb to, illuminant("to", options.to));
+  GONIO_ASSIGN(const color::ReflectionOperator op, chosen_operator(options));
+  auto change = color::relighting(op, from, to);
   if (!change.ok()) return usage_error("--from {}: {}", options.from, change.error().message);
   if (options.common.explain) session.explain(plan_text(options, from, to, *change));
 
   const std::string path = options.image.empty() ? "-" : options.image.front();
-  GONIO_ASSIGN(const ImagePart part, read_image(path));
-  GONIO_ASSIGN(Image image, working_space_rgb(part, path));
+  GONIO_ASSIGN(const image::ImagePart part, image::read_image(path));
+  GONIO_ASSIGN(image::Image image, image::working_space_rgb(part, path));
   GONIO_ASSIGN(const std::size_t negative, relit(image, change->matrix, options.negative == "keep", path));
   const double pixels = static_cast<double>(image.width) * image.height, share = static_cast<double>(negative) / pixels;
 
@@ -107,16 +109,16 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   if (negative > 0)
     session.warn(fmt::format("{}: {} pixels of {} have a negative channel, {}", path, negative, pixels,
                              options.negative == "keep" ? "written as it is" : "set to zero"));
-  ImagePart out{"", std::move(image), {}, PixelType::kHalf};
+  image::ImagePart out{"", std::move(image), {}, image::PixelType::kHalf};
   out.attributes["goniochrome:command"] =
       fmt::format("{} {}: {}", session.tool(), cli::Session::version(), session.command_line());
   out.attributes["colorInteropID"] = std::string("lin_rec2020_scene");
   if (const auto envmap = part.attributes.find("envmap"); envmap != part.attributes.end())
     out.attributes["envmap"] = envmap->second;
-  GONIO_TRY(write_exr(options.output, {out}));
+  GONIO_TRY(image::write_exr(options.output, {out}));
   session.say(fmt::format("{}: {} pixels, condition number {:.3g}, {:.2g} % with a negative channel", session.tool(),
                           pixels, change->condition, 100 * share));
   return cli::Verdict::kDone;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

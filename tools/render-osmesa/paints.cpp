@@ -6,12 +6,12 @@
 #include <numbers>
 
 #include "base/text.h"
+#include "formats/paint_choice.h"
+#include "formats/xml.h"
 #include "image/color_map_file.h"
 #include "image/sbrdf_file.h"
-#include "paint/reference.h"
-#include "paint/xml.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
@@ -39,14 +39,14 @@ std::string nearest_of(const std::string& wanted, const std::vector<std::string>
 class PaintShelf {
  public:
   // `reference` is FILE or FILE#NAME.
-  Result<Paint> paint(const std::string& reference) {
-    const auto [file, name] = paint_reference(reference);
+  Result<paint::Paint> paint(const std::string& reference) {
+    const auto [file, name] = formats::paint_reference(reference);
     if (!files_.contains(file)) {
-      GONIO_ASSIGN(files_[file], read_paints(file));
+      GONIO_ASSIGN(files_[file], formats::read_paints(file));
     }
-    const std::vector<Paint>& paints = files_[file];
+    const std::vector<paint::Paint>& paints = files_[file];
     std::vector<std::string> names;
-    for (const Paint& paint : paints) names.push_back(paint.name);
+    for (const paint::Paint& paint : paints) names.push_back(paint.name);
     if (!name) {
       if (paints.size() == 1) return with_lobes(paints.front(), file);
       return usage_error("{} holds {} paints: write {}#NAME: it holds {}", file, paints.size(), file, listed(names));
@@ -59,33 +59,33 @@ class PaintShelf {
   }
 
   // The color map that the paint of a reference names, relative to its file; null where it names none.
-  Result<const ColorMap*> color_map(const std::string& reference, const Paint& paint) {
-    if (!paint.color_map) return static_cast<const ColorMap*>(nullptr);
-    const std::filesystem::path file = paint_reference(reference).file;
+  Result<const brdf::ColorMap*> color_map(const std::string& reference, const paint::Paint& paint) {
+    if (!paint.color_map) return static_cast<const brdf::ColorMap*>(nullptr);
+    const std::filesystem::path file = formats::paint_reference(reference).file;
     const std::string path = (file.parent_path() / paint.color_map->href).string();
     if (!maps_.contains(path)) {
-      GONIO_ASSIGN(ColorMap map, read_color_map(path));
+      GONIO_ASSIGN(brdf::ColorMap map, image::read_color_map(path));
       map.index = paint.color_map->index;
-      maps_[path] = std::make_shared<ColorMap>(std::move(map));
+      maps_[path] = std::make_shared<brdf::ColorMap>(std::move(map));
     }
     return maps_[path].get();
   }
-  std::vector<std::shared_ptr<const ColorMap>> color_maps() const {
-    std::vector<std::shared_ptr<const ColorMap>> all;
+  std::vector<std::shared_ptr<const brdf::ColorMap>> color_maps() const {
+    std::vector<std::shared_ptr<const brdf::ColorMap>> all;
     for (const auto& [path, map] : maps_) all.push_back(map);
     return all;
   }
 
  private:
-  static Result<Paint> with_lobes(const Paint& paint, const std::string& file) {
+  static Result<paint::Paint> with_lobes(const paint::Paint& paint, const std::string& file) {
     if (paint.lobes) return paint;
     return input_error(
         "{}: the paint \"{}\" has no lobes: fit it first, as in `fit-paint {} --basis BASIS.xml -o FITTED.xml`", file,
         paint.name, file);
   }
 
-  std::map<std::string, std::vector<Paint>> files_;
-  std::map<std::string, std::shared_ptr<const ColorMap>> maps_;
+  std::map<std::string, std::vector<paint::Paint>> files_;
+  std::map<std::string, std::shared_ptr<const brdf::ColorMap>> maps_;
 };
 
 struct Assignment {
@@ -105,7 +105,7 @@ Result<std::vector<Assignment>> assignments(const std::vector<std::string>& opti
 }
 
 // The parts that a word means: the part of that name, or all of that material.
-Result<std::vector<std::size_t>> parts_meant(const Mesh& mesh, const std::string& word) {
+Result<std::vector<std::size_t>> parts_meant(const mesh::Mesh& mesh, const std::string& word) {
   std::vector<std::size_t> named, made_of;
   for (std::size_t i = 0; i < mesh.parts.size(); ++i) {
     if (mesh.parts[i].name == word) named.push_back(i);
@@ -114,7 +114,7 @@ Result<std::vector<std::size_t>> parts_meant(const Mesh& mesh, const std::string
   if (!named.empty()) return named;
   if (!made_of.empty()) return made_of;
   std::vector<std::string> parts, materials;
-  for (const MeshPart& part : mesh.parts) {
+  for (const mesh::MeshPart& part : mesh.parts) {
     parts.push_back(part.name);
     const bool is_new = std::find(materials.begin(), materials.end(), part.material) == materials.end();
     if (is_new && !part.material.empty()) materials.push_back(part.material);
@@ -126,7 +126,7 @@ Result<std::vector<std::size_t>> parts_meant(const Mesh& mesh, const std::string
 }
 
 // --texture, part by part: FILE, or FILE*N.
-Result<void> lay_textures(const Mesh& mesh, const Options& options, DressedMesh& result) {
+Result<void> lay_textures(const mesh::Mesh& mesh, const Options& options, DressedMesh& result) {
   for (const std::string& option : options.textures) {
     const auto equals = option.find('=');
     if (equals == 0 || equals == std::string::npos || equals + 1 == option.size())
@@ -140,8 +140,8 @@ Result<void> lay_textures(const Mesh& mesh, const Options& options, DressedMesh&
       file.resize(star);
     }
     GONIO_ASSIGN(const std::vector<std::size_t> parts, parts_meant(mesh, option.substr(0, equals)));
-    GONIO_ASSIGN(SbrdfTexture texture, read_sbrdf(file));
-    result.textures.push_back(std::make_shared<SbrdfTexture>(std::move(texture)));
+    GONIO_ASSIGN(brdf::SbrdfTexture texture, image::read_sbrdf(file));
+    result.textures.push_back(std::make_shared<brdf::SbrdfTexture>(std::move(texture)));
     for (const std::size_t part : parts) {
       result.paints[part] = {};
       result.anisotropy[part] = {};
@@ -154,10 +154,10 @@ Result<void> lay_textures(const Mesh& mesh, const Options& options, DressedMesh&
 
 }  // namespace
 
-Result<DressedMesh> dressed(const Mesh& mesh, const Options& options) {
+Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options) {
   PaintShelf shelf;
-  LobeFit gray;
-  gray.diffuse = (kUnpaintedReflectance / std::numbers::pi) * Rgb{1, 1, 1};
+  paint::LobeFit gray;
+  gray.diffuse = (kUnpaintedReflectance / std::numbers::pi) * color::Rgb{1, 1, 1};
   const std::size_t parts_there = mesh.parts.size();
   DressedMesh result;
   result.paints.assign(parts_there, gray);
@@ -165,16 +165,16 @@ Result<DressedMesh> dressed(const Mesh& mesh, const Options& options) {
   result.anisotropy.resize(parts_there);
   result.surfaces.resize(parts_there);
   result.names.resize(parts_there);
-  const auto wear = [&](std::size_t part, const Paint& paint, const ColorMap* map) {
+  const auto wear = [&](std::size_t part, const paint::Paint& paint, const brdf::ColorMap* map) {
     result.paints[part] = *paint.lobes;
     result.gloss_deg[part] = paint.gloss.empty() ? kUnreadGlossDeg : paint.gloss.front().angle_deg;
-    result.anisotropy[part] = paint.anisotropy.value_or(Anisotropy{});
+    result.anisotropy[part] = paint.anisotropy.value_or(paint::Anisotropy{});
     result.surfaces[part] = {nullptr, 1, map};
     result.names[part] = paint.name;
   };
   if (!options.paint.empty()) {
-    GONIO_ASSIGN(const Paint paint, shelf.paint(options.paint));
-    GONIO_ASSIGN(const ColorMap* map, shelf.color_map(options.paint, paint));
+    GONIO_ASSIGN(const paint::Paint paint, shelf.paint(options.paint));
+    GONIO_ASSIGN(const brdf::ColorMap* map, shelf.color_map(options.paint, paint));
     for (std::size_t part = 0; part < mesh.parts.size(); ++part) wear(part, paint, map);
   }
   // A part's own name is meant before its material, wherever it stands on the command line.
@@ -183,8 +183,8 @@ Result<DressedMesh> dressed(const Mesh& mesh, const Options& options) {
     for (const Assignment& assignment : all) {
       GONIO_ASSIGN(const std::vector<std::size_t> parts, parts_meant(mesh, assignment.part));
       if ((mesh.parts[parts.front()].name == assignment.part) != by_name) continue;
-      GONIO_ASSIGN(const Paint paint, shelf.paint(assignment.reference));
-      GONIO_ASSIGN(const ColorMap* map, shelf.color_map(assignment.reference, paint));
+      GONIO_ASSIGN(const paint::Paint paint, shelf.paint(assignment.reference));
+      GONIO_ASSIGN(const brdf::ColorMap* map, shelf.color_map(assignment.reference, paint));
       for (const std::size_t part : parts) wear(part, paint, map);
     }
   }
@@ -196,9 +196,9 @@ Result<DressedMesh> dressed(const Mesh& mesh, const Options& options) {
   return result;
 }
 
-Result<DressedMesh> dressed_in(const Mesh& mesh, Options options, const std::string& paint) {
+Result<DressedMesh> dressed_in(const mesh::Mesh& mesh, Options options, const std::string& paint) {
   options.paint = paint;
   return dressed(mesh, options);
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

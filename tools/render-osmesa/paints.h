@@ -9,25 +9,25 @@
 #include "mesh/mesh.h"
 #include "options.h"
 #include "paint/paint.h"
-#include "render/surface_layer.h"
+#include "render/textures/surface_layer.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 struct DressedMesh {
-  std::vector<LobeFit> paints;         // for each part of the mesh
-  std::vector<double> gloss_deg;       // at which their gloss was read; 45 where it was not
-  std::vector<Anisotropy> anisotropy;  // alpha 0 where there is none
-  std::vector<PartSurface> surfaces;   // textures and color maps, held by the two below
-  std::vector<std::shared_ptr<const SbrdfTexture>> textures;
-  std::vector<std::shared_ptr<const ColorMap>> color_maps;
+  std::vector<paint::LobeFit> paints;         // for each part of the mesh
+  std::vector<double> gloss_deg;              // at which their gloss was read; 45 where it was not
+  std::vector<paint::Anisotropy> anisotropy;  // alpha 0 where there is none
+  std::vector<render::PartSurface> surfaces;  // textures and color maps, held by the two below
+  std::vector<std::shared_ptr<const brdf::SbrdfTexture>> textures;
+  std::vector<std::shared_ptr<const brdf::ColorMap>> color_maps;
   std::vector<std::string> names;      // of those paints; "" where none was given
   std::vector<std::string> unpainted;  // names of the parts that wear the gray of unpainted parts
 };
 
 // Resolves --part and --paint. Error: an unknown part, paint or file, or a paint without lobes, with what there is.
-Result<DressedMesh> dressed(const Mesh& mesh, const Options& options);
+Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options);
 
 // The same with another paint in the place of --paint.
-Result<DressedMesh> dressed_in(const Mesh& mesh, Options options, const std::string& paint);
+Result<DressedMesh> dressed_in(const mesh::Mesh& mesh, Options options, const std::string& paint);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

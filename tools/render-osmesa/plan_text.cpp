@@ -4,26 +4,26 @@
 
 #include <fmt/format.h>
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
-const char* engine_name(Engine engine) {
-  return engine == Engine::kCpu ? "cpu" : engine == Engine::kGl ? "gl" : "integral";
+const char* engine_name(render::Engine engine) {
+  return engine == render::Engine::kCpu ? "cpu" : engine == render::Engine::kGl ? "gl" : "integral";
 }
 
 namespace {
 
-std::string cost_text(const PlanItem& item) {
+std::string cost_text(const render::PlanItem& item) {
   return std::isnan(item.cost_ms) ? "-" : fmt::format("{:.2f}", item.cost_ms);
 }
 
 }  // namespace
 
-std::string plan_table(const Plan& plan) {
+std::string plan_table(const render::Plan& plan) {
   bool truth = false;
-  for (const PlanItem& item : plan.items) truth |= item.truth_de00_p95.has_value();
+  for (const render::PlanItem& item : plan.items) truth |= item.truth_de00_p95.has_value();
   std::string text = fmt::format("{:<13} {:<6} {:>7} {}{:>7}  {:<16} {}\n", "effect", "needed", "dE00",
                                  truth ? "  truth " : "", "ms", "decision", "why");
-  for (const PlanItem& item : plan.items) {
+  for (const render::PlanItem& item : plan.items) {
     const std::string exact = item.truth_de00_p95 ? fmt::format("{:7.2f} ", *item.truth_de00_p95)
                               : truth             ? "        "
                                                   : "";
@@ -36,9 +36,9 @@ std::string plan_table(const Plan& plan) {
                             plan.de00_p95, plan.time_ms, engine_name(plan.engine), plan.engine_reason);
 }
 
-Json plan_rows(const Plan& plan, bool times) {
+Json plan_rows(const render::Plan& plan, bool times) {
   Json rows = Json::array();
-  for (const PlanItem& item : plan.items) {
+  for (const render::PlanItem& item : plan.items) {
     Json row = {{"effect", item.effect},
                 {"needed", item.needed},
                 {"reason", item.reason},
@@ -51,4 +51,4 @@ Json plan_rows(const Plan& plan, bool times) {
   return rows;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -4,17 +4,17 @@
 #include <string>
 
 #include "base/json.h"
-#include "render/plan.h"
+#include "render/plan/plan.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
-const char* engine_name(Engine engine);
+const char* engine_name(render::Engine engine);
 
 // A row for each effect: effect, needed, dE00, ms, decision, why; then the engine.
-std::string plan_table(const Plan& plan);
+std::string plan_table(const render::Plan& plan);
 
 // Rows of the report: effect, needed, reason, de00_p95, cost_ms, decision, and truth_de00_p95 where it was measured.
 // Without `times` nothing in them changes from run to run: for the header of a file.
-Json plan_rows(const Plan& plan, bool times);
+Json plan_rows(const render::Plan& plan, bool times);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

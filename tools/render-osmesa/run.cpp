@@ -6,20 +6,20 @@
 #include <filesystem>
 
 #include "base/text.h"
+#include "display/display.h"
 #include "envmap/environment.h"
-#include "envmap/lobe_tree.h"
 #include "mesh/mesh.h"
 #include "paints.h"
 #include "plan_text.h"
+#include "prefilter/lobe_tree.h"
 #include "render/aov.h"
-#include "render/display.h"
-#include "render/left_out.h"
-#include "render/reference.h"
+#include "render/exact.h"
+#include "render/plan/left_out.h"
 #include "render/renderer.h"
-#include "render/surface_layer.h"
+#include "render/textures/surface_layer.h"
 #include "setup.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
@@ -30,16 +30,16 @@ constexpr int kMostTruth = 100;
 struct Request {
   PictureSize size;  // with --gbuffer, that of the file
   int samples = 1;
-  std::vector<Light> lights;
+  std::vector<render::Light> lights;
   std::optional<double> stops;
   std::vector<std::string> aovs;
   bool png = false;
-  ReflectionOperator reflection;
-  PlanRequest plan;
+  color::ReflectionOperator reflection;
+  render::PlanRequest plan;
 };
 
-Engine engine_of(const std::string& name) {
-  return name == "cpu" ? Engine::kCpu : name == "gl" ? Engine::kGl : Engine::kIntegral;
+render::Engine engine_of(const std::string& name) {
+  return name == "cpu" ? render::Engine::kCpu : name == "gl" ? render::Engine::kGl : render::Engine::kIntegral;
 }
 
 Result<Request> request_of(const Options& options) {
@@ -47,7 +47,7 @@ Result<Request> request_of(const Options& options) {
   GONIO_TRY(check_surfaces(options));
   GONIO_ASSIGN(request.size, parse_size(options.size));
   for (const std::string& text : options.lights) {
-    GONIO_ASSIGN(const Light light, parse_light(text));
+    GONIO_ASSIGN(const render::Light light, parse_light(text));
     request.lights.push_back(light);
   }
   GONIO_ASSIGN(request.stops, parse_exposure(options.exposure));
@@ -63,26 +63,26 @@ Result<Request> request_of(const Options& options) {
     return usage_error("--samples is {}: give 1, 4 or 16", options.samples);
   }
   GONIO_ASSIGN(request.reflection, parse_operator(options.reflection));
-  GONIO_TRY(check_effects(options.effects));
+  GONIO_TRY(render::check_effects(options.effects));
   request.plan.effects = options.effects;
   request.plan.budget_ms = options.budget_ms;
   request.samples = !options.gbuffer.empty() ? 1 : options.samples > 0 ? options.samples : 4;
   request.plan.samples = request.samples;
   if (options.engine != "auto") request.plan.engine = engine_of(options.engine);
-  if (request.plan.engine == Engine::kIntegral && options.budget_ms > 0)
+  if (request.plan.engine == render::Engine::kIntegral && options.budget_ms > 0)
     return usage_error("--budget chooses effects of prefiltered maps: leave it out, or --engine integral");
   if (!options.split.empty() && options.check > 0) return usage_error("--split and --check exclude each other");
   if (options.print_shader && options.output == "-")
     return usage_error("--print-shader and a picture both want standard output");
   if (request.png && !request.aovs.empty()) return usage_error("a PNG holds no --aov buffers: write an .exr");
   if (!request.png && !options.view.empty()) return usage_error("--view is for a PNG: an EXR stays scene-linear");
-  Image unused{0, 0, 0, {}, {}};
-  for (const std::string& aov : request.aovs) GONIO_TRY(add_aov(unused, {}, aov, {}));
+  image::Image unused{0, 0, 0, {}, {}};
+  for (const std::string& aov : request.aovs) GONIO_TRY(render::add_aov(unused, {}, aov, {}));
   return request;
 }
 
-void tell_repairs(const Mesh& mesh, cli::Session& session) {
-  const Mesh::Repairs& repairs = mesh.repairs;
+void tell_repairs(const mesh::Mesh& mesh, cli::Session& session) {
+  const mesh::Mesh::Repairs& repairs = mesh.repairs;
   session.results()["triangles"] = mesh.triangles.size();
   session.results()["repairs"] = {{"normals_made", repairs.normals_made},
                                   {"degenerate_dropped", repairs.degenerate_dropped},
@@ -93,7 +93,7 @@ void tell_repairs(const Mesh& mesh, cli::Session& session) {
   }
 }
 
-void tell_parts(const Mesh& mesh, const DressedMesh& dress, cli::Session& session) {
+void tell_parts(const mesh::Mesh& mesh, const DressedMesh& dress, cli::Session& session) {
   Json& results = session.results();
   for (std::size_t i = 0; i < mesh.parts.size(); ++i) {
     const Json paint = dress.names[i].empty() ? Json(nullptr) : Json(dress.names[i]);
@@ -110,7 +110,7 @@ void tell_parts(const Mesh& mesh, const DressedMesh& dress, cli::Session& sessio
 }
 
 // A camera that sees the mesh from inside, or not at all, is legal and hardly ever meant.
-void tell_visibility(const Gbuffer& gbuffer, cli::Session& session) {
+void tell_visibility(const render::Gbuffer& gbuffer, cli::Session& session) {
   std::size_t seen = 0, from_inside = 0;
   for (std::size_t i = 3; i < gbuffer.data.size(); i += 4) {
     seen += gbuffer.data[i] != 0;
@@ -125,7 +125,7 @@ void tell_visibility(const Gbuffer& gbuffer, cli::Session& session) {
   }
 }
 
-std::string explanation(const Options& options, const Mesh& mesh, const DressedMesh& dress) {
+std::string explanation(const Options& options, const mesh::Mesh& mesh, const DressedMesh& dress) {
   std::string text = options.gbuffer.empty()
                          ? fmt::format("mesh: {} triangles, {} parts\n", mesh.triangles.size(), mesh.parts.size())
                          : fmt::format("buffers of {}: {} parts\n", options.gbuffer, mesh.parts.size());
@@ -136,21 +136,21 @@ std::string explanation(const Options& options, const Mesh& mesh, const DressedM
 }
 
 struct Source {
-  std::optional<Environment> environment;
+  std::optional<envmap::Environment> environment;
   std::string name;
 };
 
 // Whether the image holds the light of the environment, which may have been turned, brightened or cut since: their
 // irradiance agrees about the middle of each face.
-bool is_same_light(const Environment& image, const PrefilteredEnvironment& env) {
+bool is_same_light(const envmap::Environment& image, const envmap::PrefilteredEnvironment& env) {
   constexpr double kApart = 0.03;  // of the largest; the tolerance of the diffuse map is at most a tenth in use
-  const CubeMap& map = env.diffuse.map;
+  const envmap::CubeMap& map = env.diffuse.map;
   if (map.size == 0) return true;  // nothing to tell by
-  const LobeTree exact(image);
+  const prefilter::LobeTree exact(image);
   const int middle = map.size / 2;
   double largest = 0, apart = 0;
   for (int face = 0; face < 6; ++face) {
-    const Vec3 truth = exact.lobe(cube_direction(face, middle + 0.5, middle + 0.5, map.size), 1, 1e-3);
+    const Vec3 truth = exact.lobe(envmap::cube_direction(face, middle + 0.5, middle + 0.5, map.size), 1, 1e-3);
     for (int c = 0; c < 3; ++c) {
       largest = std::max(largest, truth[c]);
       apart = std::max(apart, std::abs(truth[c] - map.at(face, middle, middle)[c]));
@@ -161,7 +161,7 @@ bool is_same_light(const Environment& image, const PrefilteredEnvironment& env) 
 
 // The image that the environment was made from: as named, or beside the environment, if
 // it holds the same light; else its mirror part.
-Result<Source> source_of(const Options& options, const Scene& scene, cli::Session& session) {
+Result<Source> source_of(const Options& options, const render::Scene& scene, cli::Session& session) {
   if (scene.env == nullptr) return Source{};
   std::vector<std::string> candidates = {options.check_source};
   if (options.check_source.empty()) {
@@ -171,9 +171,10 @@ Result<Source> source_of(const Options& options, const Scene& scene, cli::Sessio
   for (const std::string& path : candidates) {
     std::error_code status;
     const bool is_pattern = path.find("{face}") != std::string::npos;
-    const bool there = is_pattern ? face_paths(path).ok() : std::filesystem::is_regular_file(path, status);
+    const bool there = is_pattern ? envmap::face_paths(path).ok() : std::filesystem::is_regular_file(path, status);
     if (!there && options.check_source.empty()) continue;
-    GONIO_ASSIGN(Environment environment, Environment::read(path, Environment::BadPixels::kZero));
+    GONIO_ASSIGN(envmap::Environment environment,
+                 envmap::Environment::read(path, envmap::Environment::BadPixels::kZero));
     if (is_same_light(environment, *scene.env)) return Source{std::move(environment), path};
     missing = "is turned, brightened or cut there";
     break;
@@ -186,14 +187,15 @@ Result<Source> source_of(const Options& options, const Scene& scene, cli::Sessio
   }
   session.warn(fmt::format("the source \"{}\" of {} {}: its mirror part takes its place", scene.env->source,
                            options.env, missing));
-  return Source{Environment::from_cube(scene.env->mirror.map, options.env), options.env + " (mirror part)"};
+  return Source{envmap::Environment::from_cube(scene.env->mirror.map, options.env), options.env + " (mirror part)"};
 }
 
-void check(const Options& options, const Frame& frame, const Scene& scene, const Source& source, double white,
-           cli::Session& session) {
+void check(const Options& options, const render::Frame& frame, const render::Scene& scene, const Source& source,
+           double white, cli::Session& session) {
   session.progress(fmt::format("checking {} pixels", options.check));
-  const Environment* environment = source.environment ? &*source.environment : nullptr;
-  const PictureError error = picture_error(frame, scene, environment, white, options.check, session.common().seed);
+  const envmap::Environment* environment = source.environment ? &*source.environment : nullptr;
+  const render::PictureError error =
+      render::picture_error(frame, scene, environment, white, options.check, session.common().seed);
   session.results()["error"] = {{"de00_mean", json_number(error.de00_mean)},
                                 {"de00_p95", json_number(error.de00_p95)},
                                 {"de00_max", json_number(error.de00_max)},
@@ -208,9 +210,9 @@ void check(const Options& options, const Frame& frame, const Scene& scene, const
 }
 
 // Beside the plan's estimates, what they are worth here: how far the picture is from that of all effects, and its time.
-Result<void> measure_plan(Renderer& renderer, const Scene& scene, const Plan& plan, const View& view, double white,
-                          cli::Session& session) {
-  GONIO_ASSIGN(const LeftOut measured, left_out(renderer, scene, plan, view, white));
+Result<void> measure_plan(render::Renderer& renderer, const render::Scene& scene, const render::Plan& plan,
+                          const render::View& view, double white, cli::Session& session) {
+  GONIO_ASSIGN(const render::LeftOut measured, render::left_out(renderer, scene, plan, view, white));
   const double predicted_ms = plan.predicted_ms();
   session.results()["left_out"] = {
       {"de00_mean", json_number(measured.de00_mean)}, {"de00_p95", json_number(measured.de00_p95)},
@@ -223,7 +225,7 @@ Result<void> measure_plan(Renderer& renderer, const Scene& scene, const Plan& pl
   return {};
 }
 
-Attributes provenance(const cli::Session& session) {
+image::Attributes provenance(const cli::Session& session) {
   return {{"goniochrome:tool", session.tool()},
           {"goniochrome:version", std::string(cli::Session::version())},
           {"goniochrome:command", session.command_line()}};
@@ -234,18 +236,19 @@ std::string spelled(const Vec3& v) {
 }
 
 // What one must know to shade the buffers again: the rays through the pixels, and the light.
-void describe_view(const Options& options, const Rays& rays, const std::vector<Light>& lights, Attributes& attributes) {
+void describe_view(const Options& options, const render::Rays& rays, const std::vector<render::Light>& lights,
+                   image::Attributes& attributes) {
   attributes["goniochrome:rays"] =
       fmt::format("{};{};{}", spelled(rays.corner), spelled(rays.right), spelled(rays.down));
   std::string all;
-  for (const Light& light : lights)
+  for (const render::Light& light : lights)
     all += fmt::format("{}{},{}", all.empty() ? "" : ";", spelled(light.direction), spelled(light.white));
   attributes["goniochrome:lights"] = all;
   attributes["goniochrome:environment"] = options.env;
 }
 
 // The 27 coefficients, the last index running fastest.
-std::string spelled(const ReflectionOperator& reflection) {
+std::string spelled(const color::ReflectionOperator& reflection) {
   std::string all;
   for (const auto& matrix : reflection.k)
     for (const auto& row : matrix)
@@ -253,10 +256,10 @@ std::string spelled(const ReflectionOperator& reflection) {
   return all;
 }
 
-Result<void> write_exr_picture(const Options& options, const Request& request, const Shot& shot, const Frame& frame,
-                               const Scene& scene, const Plan& plan, const DiffuseWhite& white, double stops,
-                               const cli::Session& session) {
-  ImagePart part{"picture", frame.picture, provenance(session), PixelType::kHalf};
+Result<void> write_exr_picture(const Options& options, const Request& request, const Shot& shot,
+                               const render::Frame& frame, const render::Scene& scene, const render::Plan& plan,
+                               const render::DiffuseWhite& white, double stops, const cli::Session& session) {
+  image::ImagePart part{"picture", frame.picture, provenance(session), image::PixelType::kHalf};
   part.attributes["goniochrome:plan"] = plan_rows(plan, false).dump(-1, ' ', false, Json::error_handler_t::replace);
   part.attributes["goniochrome:engine"] = std::string(engine_name(plan.engine));
   const float gain = static_cast<float>(std::exp2(stops));
@@ -268,43 +271,43 @@ Result<void> write_exr_picture(const Options& options, const Request& request, c
   part.attributes["goniochrome:whiteLuminance"] = static_cast<float>(white.luminance);
   if (!request.aovs.empty()) {
     const Vec3 to_light = scene.lights.empty() ? white.direction : scene.lights.front().direction;
-    for (const std::string& aov : request.aovs) GONIO_TRY(add_aov(part.image, *frame.gbuffer, aov, to_light));
-    part.type = PixelType::kFloat;
+    for (const std::string& aov : request.aovs) GONIO_TRY(render::add_aov(part.image, *frame.gbuffer, aov, to_light));
+    part.type = image::PixelType::kFloat;
     part.attributes["goniochrome:aovLight"] = spelled(to_light);
     describe_view(options, frame.gbuffer->rays, scene.lights, part.attributes);
     part.attributes["goniochrome:operator"] = spelled(scene.reflection);
     part.attributes["goniochrome:samples"] = request.samples;
     Json names = Json::array(), materials = Json::array();
-    for (const MeshPart& mesh_part : scene.mesh->parts) {
+    for (const mesh::MeshPart& mesh_part : scene.mesh->parts) {
       names.push_back(mesh_part.name);
       materials.push_back(mesh_part.material);
     }
     part.attributes["goniochrome:parts"] = names.dump(-1, ' ', false, Json::error_handler_t::replace);
     part.attributes["goniochrome:materials"] = materials.dump(-1, ' ', false, Json::error_handler_t::replace);
   }
-  return write_exr(shot.output, {part});
+  return image::write_exr(shot.output, {part});
 }
 
 // Everything that a picture is made from; the scene points into it.
 struct Stage {
-  Mesh mesh;                               // of its parts alone where there are buffers of it
-  std::shared_ptr<const Gbuffer> gbuffer;  // of --gbuffer, or none
-  std::vector<DressedMesh> dresses;        // one, or those of --split
-  PrefilteredEnvironment env;
-  Scene scene;
-  std::optional<MipCube> mip;
-  std::unique_ptr<SurfaceLayer> layer;
-  Source source;                    // where the picture is checked, or sums it
-  std::optional<BlockTree> texels;  // of the source
+  mesh::Mesh mesh;                                 // of its parts alone where there are buffers of it
+  std::shared_ptr<const render::Gbuffer> gbuffer;  // of --gbuffer, or none
+  std::vector<DressedMesh> dresses;                // one, or those of --split
+  envmap::PrefilteredEnvironment env;
+  render::Scene scene;
+  std::optional<render::MipCube> mip;
+  std::unique_ptr<render::SurfaceLayer> layer;
+  Source source;                            // where the picture is checked, or sums it
+  std::optional<envmap::BlockTree> texels;  // of the source
 };
 
 void wear(const DressedMesh& dress, const Options& options, Stage& stage) {
-  Scene& scene = stage.scene;
+  render::Scene& scene = stage.scene;
   scene.paints = dress.paints;
   scene.gloss_deg = dress.gloss_deg;
   scene.anisotropy = dress.anisotropy;
-  stage.layer = std::make_unique<SurfaceLayer>(
-      scene, dress.surfaces, critical_angle_of(options.critical_angle).value_or(CriticalAngle::kSlide),
+  stage.layer = std::make_unique<render::SurfaceLayer>(
+      scene, dress.surfaces, brdf::critical_angle_of(options.critical_angle).value_or(brdf::CriticalAngle::kSlide),
       stage.mip ? &*stage.mip : nullptr);
   scene.layer = stage.layer->empty() ? nullptr : stage.layer.get();
 }
@@ -330,9 +333,9 @@ Result<void> dress_stage(const Options& options, Stage& stage) {
 
 // The buffers of --gbuffer, and a mesh that has their parts.
 Result<void> set_gbuffer(const Options& options, Stage& stage) {
-  GONIO_ASSIGN(const AovFile buffers, read_aov_file(options.gbuffer));
-  GONIO_ASSIGN(Gbuffer gbuffer, gbuffer_of(buffers));
-  stage.gbuffer = std::make_shared<const Gbuffer>(std::move(gbuffer));
+  GONIO_ASSIGN(const image::AovFile buffers, image::read_aov_file(options.gbuffer));
+  GONIO_ASSIGN(render::Gbuffer gbuffer, render::gbuffer_of(buffers));
+  stage.gbuffer = std::make_shared<const render::Gbuffer>(std::move(gbuffer));
   for (std::size_t i = 0; i < buffers.parts.size(); ++i)
     stage.mesh.parts.push_back({buffers.parts[i], buffers.materials[i], 0, 0});
   return {};
@@ -340,26 +343,26 @@ Result<void> set_gbuffer(const Options& options, Stage& stage) {
 
 Result<void> set_stage(const Options& options, const Request& request, Stage& stage, cli::Session& session) {
   if (options.gbuffer.empty()) {
-    GONIO_ASSIGN(stage.mesh, read_mesh(options.mesh));
+    GONIO_ASSIGN(stage.mesh, mesh::read_mesh(options.mesh));
     tell_repairs(stage.mesh, session);
   } else {
     GONIO_TRY(set_gbuffer(options, stage));
   }
   GONIO_TRY(dress_stage(options, stage));
   tell_parts(stage.mesh, stage.dresses.front(), session);
-  Scene& scene = stage.scene;
+  render::Scene& scene = stage.scene;
   scene.mesh = &stage.mesh;
   scene.lights = request.lights;
   scene.reflection = request.reflection;
   if (!options.env.empty()) {
-    GONIO_ASSIGN(stage.env, read_env(options.env));
+    GONIO_ASSIGN(stage.env, envmap::read_env(options.env));
     scene.env = &stage.env;
     if (options.texture_maps == "mip") {
-      GONIO_ASSIGN(stage.mip, mip_cube(stage.env));
+      GONIO_ASSIGN(stage.mip, render::mip_cube(stage.env));
     }
   }
   wear(stage.dresses.front(), options, stage);
-  const bool summed = request.plan.engine == Engine::kIntegral;
+  const bool summed = request.plan.engine == render::Engine::kIntegral;
   if (options.check > 0 || summed) {
     GONIO_ASSIGN(stage.source, source_of(options, scene, session));
   }
@@ -368,7 +371,7 @@ Result<void> set_stage(const Options& options, const Request& request, Stage& st
 }
 
 // The right half of `other` takes the place of the picture's.
-void put_right_half(const Frame& other, Frame& frame) {
+void put_right_half(const render::Frame& other, render::Frame& frame) {
   for (int y = 0; y < frame.picture.height; ++y) {
     for (int x = frame.picture.width / 2; x < frame.picture.width; ++x) {
       std::copy_n(other.picture.pixel(x, y), 4, frame.picture.pixel(x, y));
@@ -382,51 +385,51 @@ class Shooting {
   Shooting(const Options& options, Request request, Stage& stage, cli::Session& session)
       : options_(options), request_(std::move(request)), stage_(stage), session_(session) {}
 
-  Result<void> shoot(const std::optional<Display>& display);
+  Result<void> shoot(const std::optional<display::Display>& display);
 
  private:
-  View view(const Shot& shot, int shrink) const {
+  render::View view(const Shot& shot, int shrink) const {
     return {shot.camera, std::max(1, request_.size.width / shrink), std::max(1, request_.size.height / shrink),
             shrink > 1 ? 1 : request_.samples, shrink == 1 && options_.check > 0};
   }
-  Result<void> look(Renderer& renderer);
-  Result<Plan> load(Renderer& renderer, const DressedMesh& dress);
-  Result<void> draw(Renderer& renderer, const Shot& shot, bool first);
-  Result<void> write(const Shot& shot, const std::optional<Display>& display, double stops);
-  void tell_plan(Plan plan, const std::string& shader);
+  Result<void> look(render::Renderer& renderer);
+  Result<render::Plan> load(render::Renderer& renderer, const DressedMesh& dress);
+  Result<void> draw(render::Renderer& renderer, const Shot& shot, bool first);
+  Result<void> write(const Shot& shot, const std::optional<display::Display>& display, double stops);
+  void tell_plan(render::Plan plan, const std::string& shader);
 
   const Options& options_;
   Request request_;
   Stage& stage_;
   cli::Session& session_;
   std::vector<Shot> shots_;
-  std::vector<std::shared_ptr<const Gbuffer>> looks_;
-  DiffuseWhite white_;
-  Plan plan_;
-  Frame frame_;
+  std::vector<std::shared_ptr<const render::Gbuffer>> looks_;
+  render::DiffuseWhite white_;
+  render::Plan plan_;
+  render::Frame frame_;
 };
 
 // A sequence is planned on small pictures from some of its places, a single picture on itself.
-Result<void> Shooting::look(Renderer& renderer) {
+Result<void> Shooting::look(render::Renderer& renderer) {
   constexpr std::size_t kLooks = 8;
   const int shrink = shots_.size() > 1 ? 4 : 1;
   const std::size_t step = (shots_.size() + kLooks - 1) / kLooks;
   for (std::size_t i = 0; i < shots_.size(); i += step) {
-    GONIO_ASSIGN(std::shared_ptr<const Gbuffer> seen, renderer.look(stage_.mesh, view(shots_[i], shrink)));
+    GONIO_ASSIGN(std::shared_ptr<const render::Gbuffer> seen, renderer.look(stage_.mesh, view(shots_[i], shrink)));
     looks_.push_back(std::move(seen));
     if (options_.turntable == 0) break;
   }
   return {};
 }
 
-Result<Plan> Shooting::load(Renderer& renderer, const DressedMesh& dress) {
+Result<render::Plan> Shooting::load(render::Renderer& renderer, const DressedMesh& dress) {
   wear(dress, options_, stage_);
   auto plan = renderer.load(stage_.scene, looks_, request_.plan);
   if (plan.ok()) return plan;
   return Error{plan.error().kind, (options_.env.empty() ? "" : options_.env + ": ") + plan.error().message};
 }
 
-void Shooting::tell_plan(Plan plan, const std::string& shader) {
+void Shooting::tell_plan(render::Plan plan, const std::string& shader) {
   Json& results = session_.results();
   for (Json& row : plan_rows(plan, true)) results["plan"].push_back(std::move(row));
   results["plan_de00_p95"] = json_number(plan.de00_p95);
@@ -438,17 +441,17 @@ void Shooting::tell_plan(Plan plan, const std::string& shader) {
   plan_ = std::move(plan);
 }
 
-Result<void> Shooting::draw(Renderer& renderer, const Shot& shot, bool first) {
+Result<void> Shooting::draw(render::Renderer& renderer, const Shot& shot, bool first) {
   stage_.scene.lights = shot.lights;
   for (std::size_t i = 0; i < stage_.dresses.size(); ++i) {
-    Frame other;
+    render::Frame other;
     if (stage_.dresses.size() > 1 || first) {
-      GONIO_ASSIGN(Plan plan, load(renderer, stage_.dresses[i]));
+      GONIO_ASSIGN(render::Plan plan, load(renderer, stage_.dresses[i]));
       if (first && options_.check > 0 && session_.common().explain) {
-        const Environment* environment = stage_.source.environment ? &*stage_.source.environment : nullptr;
-        const auto sample =
-            sampled_pixels(*looks_.front(), stage_.scene, std::min(options_.check, kMostTruth), session_.common().seed);
-        add_truth(plan, seen_scene(stage_.scene, looks_), sample.points, environment, white_.luminance);
+        const envmap::Environment* environment = stage_.source.environment ? &*stage_.source.environment : nullptr;
+        const auto sample = render::sampled_pixels(*looks_.front(), stage_.scene, std::min(options_.check, kMostTruth),
+                                                   session_.common().seed);
+        render::add_truth(plan, render::seen_scene(stage_.scene, looks_), sample.points, environment, white_.luminance);
       }
       if (first) tell_plan(std::move(plan), renderer.shader());
     } else {
@@ -461,20 +464,21 @@ Result<void> Shooting::draw(Renderer& renderer, const Shot& shot, bool first) {
   return {};
 }
 
-Result<void> Shooting::write(const Shot& shot, const std::optional<Display>& display, double stops) {
+Result<void> Shooting::write(const Shot& shot, const std::optional<display::Display>& display, double stops) {
   if (!display) {
     return write_exr_picture(options_, request_, shot, frame_, stage_.scene, plan_, white_, stops, session_);
   }
-  GONIO_ASSIGN(const Image shown, display->image(frame_.picture, stops));
-  return write_png(shot.output, shown, provenance(session_));
+  GONIO_ASSIGN(const image::Image shown, display->image(frame_.picture, stops));
+  return image::write_png(shot.output, shown, provenance(session_));
 }
 
-Result<void> Shooting::shoot(const std::optional<Display>& display) {
+Result<void> Shooting::shoot(const std::optional<display::Display>& display) {
   GONIO_ASSIGN(shots_, shots_of(options_, stage_.mesh, request_.size, request_.lights));
-  GONIO_ASSIGN(Renderer renderer, stage_.gbuffer ? Renderer::shading(stage_.gbuffer) : Renderer::create());
+  GONIO_ASSIGN(render::Renderer renderer,
+               stage_.gbuffer ? render::Renderer::shading(stage_.gbuffer) : render::Renderer::create());
   GONIO_TRY(look(renderer));
   tell_visibility(*looks_.front(), session_);
-  white_ = diffuse_white(stage_.scene.env, stage_.scene.lights);
+  white_ = render::diffuse_white(stage_.scene.env, stage_.scene.lights);
   request_.plan.white_luminance = white_.luminance;
   request_.plan.tolerance_de00 = session_.common().tolerance;
   request_.plan.frames = static_cast<int>(shots_.size());
@@ -504,8 +508,8 @@ Result<void> Shooting::shoot(const std::optional<Display>& display) {
       display ? ", " + display->name() : ""));
   if (options_.check > 0) {
     check(options_, frame_, stage_.scene, stage_.source, white_.luminance, session_);
-    GONIO_TRY(measure_plan(renderer, seen_scene(stage_.scene, looks_), plan_, view(shots_.back(), 1), white_.luminance,
-                           session_));
+    GONIO_TRY(measure_plan(renderer, render::seen_scene(stage_.scene, looks_), plan_, view(shots_.back(), 1),
+                           white_.luminance, session_));
   }
   return {};
 }
@@ -514,9 +518,9 @@ Result<void> Shooting::shoot(const std::optional<Display>& display) {
 
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   GONIO_ASSIGN(Request request, request_of(options));
-  std::optional<Display> display;
+  std::optional<display::Display> display;
   if (request.png) {
-    GONIO_ASSIGN(Display made, Display::make(options.view));
+    GONIO_ASSIGN(display::Display made, display::Display::make(options.view));
     display.emplace(std::move(made));
     session.results()["view"] = display->name();
   }
@@ -527,4 +531,4 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   return cli::Verdict::kDone;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -4,9 +4,9 @@
 #include "cli/tool.h"
 #include "options.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 // Reads, draws, checks and writes one picture.
 Result<cli::Verdict> run(const Options& options, cli::Session& session);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

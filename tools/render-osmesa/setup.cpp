@@ -7,7 +7,7 @@
 
 #include "base/text.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
@@ -59,16 +59,16 @@ Result<PictureSize> parse_size(const std::string& text) {
   return usage_error("--size is \"{}\": write WIDTHxHEIGHT in pixels, 1x1 to {}x{}, or auto", text, kMost, kMost);
 }
 
-Result<Light> parse_light(const std::string& text) {
+Result<render::Light> parse_light(const std::string& text) {
   const auto error = [&](const char* what) { return usage_error("--light is \"{}\": {}", text, what); };
   const auto values = numbers(text);
   if (!values || values->size() < 2 || values->size() == 4 || values->size() > 6) {
     return error("write AZ,EL or X,Y,Z, and after it R,G,B if the light is not 1,1,1");
   }
   const std::vector<double>& v = *values;
-  Light light;
+  render::Light light;
   const bool angles = v.size() == 2 || v.size() == 5;
-  light.direction = angles ? orbit_direction(v[0], v[1]) : Vec3{v[0], v[1], v[2]};
+  light.direction = angles ? render::orbit_direction(v[0], v[1]) : Vec3{v[0], v[1], v[2]};
   if (!(length(light.direction) > 0)) return error("the vector to the light has no length");
   light.direction = normalized(light.direction);
   if (v.size() >= 5) light.white = {v[v.size() - 3], v[v.size() - 2], v[v.size() - 1]};
@@ -76,14 +76,14 @@ Result<Light> parse_light(const std::string& text) {
   return light;
 }
 
-Result<Camera> camera_of(const Options& options, const Mesh& mesh, const PictureSize& size) {
+Result<render::Camera> camera_of(const Options& options, const mesh::Mesh& mesh, const PictureSize& size) {
   const std::vector<double>& c = options.camera;
   if (!c.empty()) {
     if (c.size() != 6 && c.size() != 7) {
       return usage_error("--camera has {} numbers: write EX,EY,EZ,TX,TY,TZ and, if wanted, the field of view",
                          c.size());
     }
-    Camera camera;
+    render::Camera camera;
     camera.eye = {c[0], c[1], c[2]};
     camera.target = {c[3], c[4], c[5]};
     camera.fov_deg = c.size() == 7 ? c[6] : options.fov_deg;
@@ -97,28 +97,29 @@ Result<Camera> camera_of(const Options& options, const Mesh& mesh, const Picture
   if (std::abs(o[1]) > 90)
     return usage_error("--orbit has the elevation {}: it goes from -90 to 90 degrees", shortest(o[1]));
   if (!(distance > 0)) return usage_error("--orbit has the distance {}: it must be above 0", shortest(distance));
-  return Camera::orbit(mesh, o[0], o[1], distance, options.fov_deg, static_cast<double>(size.width) / size.height);
+  return render::Camera::orbit(mesh, o[0], o[1], distance, options.fov_deg,
+                               static_cast<double>(size.width) / size.height);
 }
 
-Result<ReflectionOperator> parse_operator(const std::string& text) {
+Result<color::ReflectionOperator> parse_operator(const std::string& text) {
   const auto words = split(text, ',');
   const std::string name(trimmed(words[0]));
   const auto wrong = [&] {
     return usage_error(
         "--operator is \"{}\": write iso, rec2020 or none, and if wanted a share from 0 to 1 after a comma", text);
   };
-  if (name == "none" && words.size() == 1) return component_wise();
+  if (name == "none" && words.size() == 1) return color::component_wise();
   if ((name != "rec2020" && name != "iso") || words.size() > 2) return wrong();
-  const ReflectionOperator full = name == "iso" ? iso_rgb_operator() : working_space_operator();
+  const color::ReflectionOperator full = name == "iso" ? color::iso_rgb_operator() : color::working_space_operator();
   if (words.size() == 1) return full;
   const auto share = parse_number(trimmed(words[1]));
   if (!share || *share < 0 || *share > 1) return wrong();
-  return with_transfer(full, {*share, *share, *share});
+  return color::with_transfer(full, {*share, *share, *share});
 }
 
-Result<std::vector<Shot>> shots_of(const Options& options, const Mesh& mesh, const PictureSize& size,
-                                   const std::vector<Light>& lights) {
-  Camera camera;  // of --gbuffer it is not meant
+Result<std::vector<Shot>> shots_of(const Options& options, const mesh::Mesh& mesh, const PictureSize& size,
+                                   const std::vector<render::Light>& lights) {
+  render::Camera camera;  // of --gbuffer it is not meant
   if (options.gbuffer.empty()) {
     GONIO_ASSIGN(camera, camera_of(options, mesh, size));
   }
@@ -143,16 +144,16 @@ Result<std::vector<Shot>> shots_of(const Options& options, const Mesh& mesh, con
   return shots;
 }
 
-Result<void> set_background(Scene& scene, const std::string& text) {
+Result<void> set_background(render::Scene& scene, const std::string& text) {
   if (text == "none") return {};
   if (text == "env") {
     if (scene.env == nullptr) return usage_error("--background env needs --env");
-    scene.background = Background::kEnvironment;
+    scene.background = render::Background::kEnvironment;
     return {};
   }
   const auto color = numbers(text);
   if (!color || color->size() != 3) return usage_error("--background is \"{}\": write none, env or R,G,B", text);
-  scene.background = Background::kColor;
+  scene.background = render::Background::kColor;
   scene.background_color = {(*color)[0], (*color)[1], (*color)[2]};
   return {};
 }
@@ -176,4 +177,4 @@ std::vector<std::string> aov_names(const std::vector<std::string>& options) {
   return names;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

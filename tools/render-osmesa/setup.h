@@ -11,7 +11,7 @@
 #include "render/camera.h"
 #include "render/scene.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 // Whether there are surfaces to draw: --mesh, or --gbuffer with nothing that would need the mesh. Error (usage): what
 // is missing, or what excludes each other.
@@ -25,27 +25,27 @@ struct PictureSize {
 Result<PictureSize> parse_size(const std::string& text);
 
 // AZ,EL or X,Y,Z, then R,G,B if the light is not 1,1,1.
-Result<Light> parse_light(const std::string& text);
+Result<render::Light> parse_light(const std::string& text);
 
 // --camera or --orbit.
-Result<Camera> camera_of(const Options& options, const Mesh& mesh, const PictureSize& size);
+Result<render::Camera> camera_of(const Options& options, const mesh::Mesh& mesh, const PictureSize& size);
 
 // The operator of --operator. Error (usage): the names there are.
-Result<ReflectionOperator> parse_operator(const std::string& text);
+Result<color::ReflectionOperator> parse_operator(const std::string& text);
 
 // One picture of a sequence.
 struct Shot {
-  Camera camera;
-  std::vector<Light> lights;
+  render::Camera camera;
+  std::vector<render::Light> lights;
   std::string output;
 };
 // The pictures that --turntable or --light-sweep ask for, else the one. Error: a sequence on standard output, both at
 // once, or a sweep without a light.
-Result<std::vector<Shot>> shots_of(const Options& options, const Mesh& mesh, const PictureSize& size,
-                                   const std::vector<Light>& lights);
+Result<std::vector<Shot>> shots_of(const Options& options, const mesh::Mesh& mesh, const PictureSize& size,
+                                   const std::vector<render::Light>& lights);
 
 // The background of `scene` as --background has it.
-Result<void> set_background(Scene& scene, const std::string& text);
+Result<void> set_background(render::Scene& scene, const std::string& text);
 
 // --exposure in stops, or nothing for "auto".
 Result<std::optional<double>> parse_exposure(const std::string& text);
@@ -53,4 +53,4 @@ Result<std::optional<double>> parse_exposure(const std::string& text);
 // The names of --aov, each given once.
 std::vector<std::string> aov_names(const std::vector<std::string>& options);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -1,6 +1,6 @@
 #include "options.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 cli::ToolSpec tool_spec(Options& o) {
   cli::ToolSpec spec;
@@ -139,4 +139,4 @@ cli::ToolSpec tool_spec(Options& o) {
   return spec;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

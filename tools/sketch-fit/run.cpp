@@ -5,23 +5,23 @@
 
 #include "base/clock.h"
 #include "base/text.h"
-#include "fit/sketch.h"
-#include "paint/xml.h"
-#include "render/sketch_light.h"
+#include "formats/xml.h"
 #include "residual.h"
+#include "sketch/sketch.h"
+#include "sketch/sketch_light.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
 // Everything that the fit looks at; `input` points into it.
 struct Material {
-  AovFile buffers;
-  Picture picture;
-  Image mask;
-  PrefilteredEnvironment env;
-  Basis basis;
-  SketchInput input;
+  image::AovFile buffers;
+  sketch::Picture picture;
+  image::Image mask;
+  envmap::PrefilteredEnvironment env;
+  formats::Basis basis;
+  sketch::SketchInput input;
 };
 
 Result<double> gain_of(const Options& options, const Material& material) {
@@ -34,7 +34,7 @@ Result<double> gain_of(const Options& options, const Material& material) {
   return material.picture.scene_linear ? std::exp2(-material.buffers.exposure_stops) : material.buffers.white_luminance;
 }
 
-Result<void> check_light(const Options& options, const AovFile& buffers) {
+Result<void> check_light(const Options& options, const image::AovFile& buffers) {
   if (!options.env.empty()) return {};
   if (!buffers.environment.empty())
     return usage_error("{} was rendered under the environment {}: give --env {}", buffers.path, buffers.environment,
@@ -46,9 +46,9 @@ Result<void> check_light(const Options& options, const AovFile& buffers) {
 }
 
 // What an environment's picture shows and the search does not know.
-void warn_of_effects(const AovFile& buffers, cli::Session& session) {
+void warn_of_effects(const image::AovFile& buffers, cli::Session& session) {
   std::string unknown;
-  for (const std::string& effect : effects_without_light(buffers)) unknown += ",-" + effect;
+  for (const std::string& effect : sketch::effects_without_light(buffers)) unknown += ",-" + effect;
   if (!unknown.empty())
     session.warn(
         fmt::format("{} was drawn with effects that the search does not know, and the paint will be off: render "
@@ -57,7 +57,7 @@ void warn_of_effects(const AovFile& buffers, cli::Session& session) {
 }
 
 // What the picture lacks of the paint that it was drawn with.
-void warn_of_left_out(const AovFile& buffers, cli::Session& session) {
+void warn_of_left_out(const image::AovFile& buffers, cli::Session& session) {
   std::vector<std::string> light;
   for (const std::string& name : buffers.left_out)
     if (name == "diffuse" || name == "mirror" || name.starts_with("lobe-") || name.starts_with("gloss-"))
@@ -76,11 +76,11 @@ Result<void> gather(const Options& options, Material& material) {
     return usage_error("--basis is for a point light: an environment brings its own");
   if (!options.residual.empty() && !options.residual.ends_with(".png"))
     return usage_error("--residual is \"{}\": give a name that ends in .png", options.residual);
-  SketchInput& input = material.input;
+  sketch::SketchInput& input = material.input;
   // One after the other: the module of other formats, loaded beside other work, crashes where memory runs out.
-  const auto view = options.view == "plain" ? PictureView::kPlain : PictureView::kPaint;
-  Result<Picture> picture = read_picture(options.image, view);
-  Result<AovFile> buffers = read_aov_file(options.buffers);
+  const auto view = options.view == "plain" ? sketch::PictureView::kPlain : sketch::PictureView::kPaint;
+  Result<sketch::Picture> picture = sketch::read_picture(options.image, view);
+  Result<image::AovFile> buffers = image::read_aov_file(options.buffers);
   GONIO_ASSIGN(material.buffers, std::move(buffers));
   GONIO_TRY(check_light(options, material.buffers));
   for (const std::string& name : options.parts) {
@@ -89,44 +89,44 @@ Result<void> gather(const Options& options, Material& material) {
   }
   GONIO_ASSIGN(material.picture, std::move(picture));
   if (!options.mask.empty()) {
-    GONIO_ASSIGN(ImagePart mask, read_image(options.mask));
+    GONIO_ASSIGN(image::ImagePart mask, image::read_image(options.mask));
     material.mask = std::move(mask.image);
     input.mask = &material.mask;
   }
   GONIO_ASSIGN(input.gain, gain_of(options, material));
   input.buffers = &material.buffers, input.edited = &material.picture;
-  input.rule = options.pixels == "all"       ? PixelRule::kAll
-               : options.pixels == "changed" ? PixelRule::kChanged
-                                             : PixelRule::kAuto;
+  input.rule = options.pixels == "all"       ? sketch::PixelRule::kAll
+               : options.pixels == "changed" ? sketch::PixelRule::kChanged
+                                             : sketch::PixelRule::kAuto;
   if (!options.shift.empty())
     input.shift_x = static_cast<int>(std::lround(options.shift[0])),
     input.shift_y = static_cast<int>(std::lround(options.shift[1]));
   if (options.env.empty()) {
     input.least_cosine = 0.05, input.glare_deg = options.glare_deg;
-    material.basis = sketch_basis();
+    material.basis = sketch::sketch_basis();
     if (options.basis.empty()) return {};
-    GONIO_ASSIGN(material.basis, read_basis(options.basis));
+    GONIO_ASSIGN(material.basis, formats::read_basis(options.basis));
     return {};
   }
-  GONIO_ASSIGN(material.env, read_env(options.env));
+  GONIO_ASSIGN(material.env, envmap::read_env(options.env));
   return {};
 }
 
-void report_pixels(const SketchPixels& pixels, Json& results) {
+void report_pixels(const sketch::SketchPixels& pixels, Json& results) {
   results["pixels_used"] = pixels.used.size();
   results["pixels_changed"] = pixels.changed;
   results["pixels_rule"] = pixels.changed_only ? "changed" : "all";
   results["pixels_left_out"] = Json::object();
-  for (int use = 1; use < static_cast<int>(PixelUse::kCount); ++use)
-    results["pixels_left_out"][pixel_use_name(static_cast<PixelUse>(use))] =
+  for (int use = 1; use < static_cast<int>(sketch::PixelUse::kCount); ++use)
+    results["pixels_left_out"][sketch::pixel_use_name(static_cast<sketch::PixelUse>(use))] =
         pixels.count[static_cast<std::size_t>(use)];
 }
 
-Json lab_json(const Lab& lab) {
+Json lab_json(const color::Lab& lab) {
   return {json_number(lab.L), json_number(lab.a), json_number(lab.b)};
 }
 
-void report_fit(const SketchFit& fit, bool environment, Json& results) {
+void report_fit(const sketch::SketchFit& fit, bool environment, Json& results) {
   const bool fitted = fit.status == "fitted";
   results["status"] = fit.status;
   results["reason"] = fitted ? Json(nullptr) : Json(fit.reason);
@@ -138,9 +138,9 @@ void report_fit(const SketchFit& fit, bool environment, Json& results) {
   results["face"] = lab_json(fit.appearance.face);
   results["flop"] = lab_json(fit.appearance.flop);
   results["rows"] = Json::array();
-  for (const LabReading& row : fit.rows)
+  for (const paint::LabReading& row : fit.rows)
     results["rows"].push_back(
-        {{"geometry", geometry_name(row.geometry)}, {"L", row.lab.L}, {"a", row.lab.a}, {"b", row.lab.b}});
+        {{"geometry", paint::geometry_name(row.geometry)}, {"L", row.lab.L}, {"a", row.lab.a}, {"b", row.lab.b}});
   results["extrapolated_deg"] = fit.extrapolated_deg;
   results["gloss_60_gu"] = fit.gloss_from.empty() ? Json(nullptr) : Json(fit.gloss_60_gu);
   results["gloss_from"] = fit.gloss_from.empty() ? Json(nullptr) : Json(fit.gloss_from);
@@ -150,13 +150,14 @@ void report_fit(const SketchFit& fit, bool environment, Json& results) {
 }
 
 // What a reader should know beside the paint.
-void tell(const Options& options, const SketchPixels& pixels, const SketchFit& fit, cli::Session& session) {
+void tell(const Options& options, const sketch::SketchPixels& pixels, const sketch::SketchFit& fit,
+          cli::Session& session) {
   if (fit.status != "fitted")
     session.warn(fmt::format("{}: the answer is the matt color that explains them best", fit.reason));
   if (!fit.extrapolated_deg.empty())
     session.warn(fmt::format("no pixel shows {} deg from specular: the color there is extrapolated",
                              fmt::join(fit.extrapolated_deg, ", ")));
-  const Appearance& a = fit.appearance;
+  const paint::Appearance& a = fit.appearance;
   const std::string gloss =
       fit.gloss_from.empty() ? "" : fmt::format(", gloss {:.0f} GU by {}", fit.gloss_60_gu, fit.gloss_from);
   session.say(fmt::format(
@@ -166,27 +167,28 @@ void tell(const Options& options, const SketchPixels& pixels, const SketchFit& f
       fit.rms_de76, pixels.used.size(), pixels.changed_only ? "edited " : ""));
 }
 
-Result<void> write_paint(const Options& options, const SketchFit& fit, const cli::Session& session) {
+Result<void> write_paint(const Options& options, const sketch::SketchFit& fit, const cli::Session& session) {
   GONIO_ASSIGN(OutputFile file, OutputFile::create(options.output));
-  GONIO_ASSIGN(
-      PaintWriter writer,
-      PaintWriter::begin(std::move(file), {{session.tool(), cli::Session::version(), session.command_line()}}));
-  GONIO_TRY(writer.write(sketch_paint(fit, options.name)));
+  GONIO_ASSIGN(formats::PaintWriter writer,
+               formats::PaintWriter::begin(std::move(file),
+                                           {{session.tool(), cli::Session::version(), session.command_line()}}));
+  GONIO_TRY(writer.write(sketch::sketch_paint(fit, options.name)));
   return writer.finish();
 }
 
-Result<void> check_usable(const SketchPixels& pixels, const Options& options) {
+Result<void> check_usable(const sketch::SketchPixels& pixels, const Options& options) {
   if (!pixels.used.empty()) return {};
   std::string reasons;
-  for (int use = 1; use < static_cast<int>(PixelUse::kCount); ++use)
+  for (int use = 1; use < static_cast<int>(sketch::PixelUse::kCount); ++use)
     if (const auto count = pixels.count[static_cast<std::size_t>(use)]; count > 0)
-      reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, pixel_use_name(static_cast<PixelUse>(use)));
+      reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count,
+                             sketch::pixel_use_name(static_cast<sketch::PixelUse>(use)));
   return input_error("{}: no pixel is left to fit ({}): check --mask, --part, --pixels and the exposure", options.image,
                      reasons);
 }
 
-void tell_shift(const SketchInput& input, cli::Session& session) {
-  const SketchShift shift = sketch_shift(input);
+void tell_shift(const sketch::SketchInput& input, cli::Session& session) {
+  const sketch::SketchShift shift = sketch::sketch_shift(input);
   session.results()["suggested_shift"] = {shift.x, shift.y};
   if (shift.x != input.shift_x || shift.y != input.shift_y)
     session.warn(fmt::format("the picture seems moved by {},{} pixels against the buffers: try --shift {},{}", shift.x,
@@ -217,23 +219,23 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   session.explain(plan_text(options));
   Material material;
   GONIO_TRY(gather(options, material));
-  const SketchInput& input = material.input;
+  const sketch::SketchInput& input = material.input;
   for (const std::string& warning : material.picture.warnings) session.warn(warning);
   if (!options.env.empty()) warn_of_effects(material.buffers, session);
   warn_of_left_out(material.buffers, session);
   const Stopwatch clock;
-  GONIO_ASSIGN(const SketchPixels pixels, sketch_pixels(input));
+  GONIO_ASSIGN(const sketch::SketchPixels pixels, sketch::sketch_pixels(input));
   GONIO_TRY(check_usable(pixels, options));
-  SketchLimits limits;
+  sketch::SketchLimits limits;
   limits.median_de76 = options.most_de76;
   const bool differences = !options.residual.empty();
   const bool environment = !options.env.empty();
-  SketchFit fit;
+  sketch::SketchFit fit;
   if (environment) {
-    GONIO_ASSIGN(const SketchLight light, sketch_light(material.buffers, material.env));
-    fit = sketch_environment(input, pixels, light, limits, differences);
+    GONIO_ASSIGN(const sketch::SketchLight light, sketch::sketch_light(material.buffers, material.env));
+    fit = sketch::sketch_environment(input, pixels, light, limits, differences);
   } else {
-    fit = sketch_point(input, pixels, material.basis, limits, differences);
+    fit = sketch::sketch_point(input, pixels, material.basis, limits, differences);
   }
   Json& results = session.results();
   report_fit(fit, environment, results);
@@ -247,4 +249,4 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   return cli::Verdict::kDone;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

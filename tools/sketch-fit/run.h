@@ -4,8 +4,8 @@
 #include "cli/tool.h"
 #include "options.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 Result<cli::Verdict> run(const Options& options, cli::Session& session);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -2,22 +2,22 @@
 
 #include <cmath>
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
-Json errors_json(const TrompeErrors& errors) {
+Json errors_json(const panels::TrompeErrors& errors) {
   return {{"rms", json_number(errors.rms)}, {"max", json_number(errors.max)}};
 }
 
 }  // namespace
 
-Paint painted(const Paint& paint, const Answer& answer) {
-  Paint b = paint;
+paint::Paint painted(const paint::Paint& paint, const Answer& answer) {
+  paint::Paint b = paint;
   b.name = answer.name;
   b.code.clear();
   b.appearance = answer.fit.b;
-  b.measurement = Measurement{condition_of(paint), "", rows_of(answer.fit.b)};
+  b.measurement = paint::Measurement{paint::condition_of(paint), "", paint::rows_of(answer.fit.b)};
   b.lobes.reset(), b.color_map.reset();
   return b;
 }
@@ -28,8 +28,8 @@ Json answer_json(const Answer& answer) {
   json["status"] = answer.fit.converged ? "converged" : "not_converged";
   json["before"] = errors_json(answer.before);
   json["after"] = errors_json(answer.after);
-  const TrompeValues from = values_of(answer.a), to = values_of(answer.fit.b);
-  for (int p = 0; p < kTrompeParameters; ++p) json["delta"][parameter_name(p)] = to[p] - from[p];
+  const panels::TrompeValues from = panels::values_of(answer.a), to = panels::values_of(answer.fit.b);
+  for (int p = 0; p < panels::kTrompeParameters; ++p) json["delta"][panels::parameter_name(p)] = to[p] - from[p];
   json["geometries"] = Json::array();
   for (std::size_t i = 0; i < answer.judged.size(); ++i) {
     const TrompeGeometry& g = *answer.judged[i];
@@ -53,11 +53,11 @@ Json answer_json(const Answer& answer) {
 std::string answer_line(const Answer& answer) {
   std::string line = fmt::format("{}: dE rms {:.2f} to {:.2f}, max {:.2f} to {:.2f}", answer.name, answer.before.rms,
                                  answer.after.rms, answer.before.max, answer.after.max);
-  const TrompeValues from = values_of(answer.a), to = values_of(answer.fit.b);
+  const panels::TrompeValues from = panels::values_of(answer.a), to = panels::values_of(answer.fit.b);
   std::string changes;
-  for (int p = 0; p < kTrompeParameters; ++p)
+  for (int p = 0; p < panels::kTrompeParameters; ++p)
     if (std::abs(to[p] - from[p]) >= 0.005)
-      changes += fmt::format("{}{} {:+.2f}", changes.empty() ? "; " : ", ", parameter_name(p), to[p] - from[p]);
+      changes += fmt::format("{}{} {:+.2f}", changes.empty() ? "; " : ", ", panels::parameter_name(p), to[p] - from[p]);
   line += changes;
   if (!answer.fit.undetermined.empty())
     line += fmt::format("; not determined by these views: {}", fmt::join(answer.fit.undetermined, ", "));
@@ -70,9 +70,9 @@ Json results_of(const std::vector<Json>& fits) {
   return fits.size() == 1 ? fits.front() : Json{{"fits", fits}};
 }
 
-bool is_improved(const Answer& answer, const TrompeOptions& options) {
+bool is_improved(const Answer& answer, const panels::TrompeOptions& options) {
   return options.least_maximum ? answer.fit.after.max < answer.fit.before.max
                                : answer.fit.after.rms < answer.fit.before.rms;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -9,19 +9,19 @@
 #include "options.h"
 #include "paint/paint.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 struct Answer {
   std::string name;
-  Appearance a;                     // of the first panel
+  paint::Appearance a;              // of the first panel
   std::optional<double> light_deg;  // of --mode rows
-  TrompeFit fit;
+  panels::TrompeFit fit;
   std::vector<const TrompeGeometry*> judged;  // empty on a mesh
-  TrompeErrors before, after;                 // over all that is judged
+  panels::TrompeErrors before, after;         // over all that is judged
 };
 
 // The paint of an answer: what an instrument would read of it; gloss, class and foreign elements as they were.
-Paint painted(const Paint& paint, const Answer& answer);
+paint::Paint painted(const paint::Paint& paint, const Answer& answer);
 
 // Its part of the report.
 Json answer_json(const Answer& answer);
@@ -33,6 +33,6 @@ Json results_of(const std::vector<Json>& fits);
 std::string answer_line(const Answer& answer);
 
 // Whether the paint found is better by what was asked to be least.
-bool is_improved(const Answer& answer, const TrompeOptions& options);
+bool is_improved(const Answer& answer, const panels::TrompeOptions& options);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -6,24 +6,24 @@
 #include "../seam_options.h"
 #include "base/text.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
-Result<std::array<bool, kTrompeParameters>> parse_vary(const std::string& text) {
-  std::array<bool, kTrompeParameters> vary{};
+Result<std::array<bool, panels::kTrompeParameters>> parse_vary(const std::string& text) {
+  std::array<bool, panels::kTrompeParameters> vary{};
   for (const std::string_view piece : split(text, ',')) {
     const std::string_view name = trimmed(piece);
     if (name == "face_l") {
-      vary[kFaceL] = true;
+      vary[panels::kFaceL] = true;
     } else if (name == "face_ab") {
-      vary[kFaceA] = vary[kFaceB] = true;
+      vary[panels::kFaceA] = vary[panels::kFaceB] = true;
     } else if (name == "flop_l") {
-      vary[kFlopL] = true;
+      vary[panels::kFlopL] = true;
     } else if (name == "flop_ab") {
-      vary[kFlopA] = vary[kFlopB] = true;
+      vary[panels::kFlopA] = vary[panels::kFlopB] = true;
     } else if (name == "travel") {
-      vary[kTravel] = true;
+      vary[panels::kTravel] = true;
     } else {
       return usage_error("--vary has \"{}\": choose of face_l, face_ab, flop_l, flop_ab, travel", name);
     }
@@ -32,7 +32,7 @@ Result<std::array<bool, kTrompeParameters>> parse_vary(const std::string& text) 
 }
 
 // NAME=LOW:HIGH; face_ab and flop_ab bound both coordinates.
-Result<void> parse_bound(const std::string& text, TrompeOptions& fit) {
+Result<void> parse_bound(const std::string& text, panels::TrompeOptions& fit) {
   const auto error = [&] {
     return usage_error("--bounds is \"{}\": write NAME=LOW:HIGH, with NAME of face_l, face_ab, flop_l, flop_ab, travel",
                        text);
@@ -45,13 +45,13 @@ Result<void> parse_bound(const std::string& text, TrompeOptions& fit) {
   if (!low || !high || trimmed(sides[0]).find(',') != std::string_view::npos) return error();
   const auto bounded = parse_vary(std::string(trimmed(sides[0])));
   if (!bounded.ok()) return error();
-  for (int p = 0; p < kTrompeParameters; ++p)
+  for (int p = 0; p < panels::kTrompeParameters; ++p)
     if ((*bounded)[p]) fit.low[p] = *low, fit.high[p] = *high;
   return {};
 }
 
 // --vary, --bounds, --objective and --picture.
-Result<void> parse_fit(const Options& options, TrompeOptions& fit) {
+Result<void> parse_fit(const Options& options, panels::TrompeOptions& fit) {
   GONIO_ASSIGN(fit.vary, parse_vary(options.vary));
   for (const std::string& bound : options.bounds) GONIO_TRY(parse_bound(bound, fit));
   fit.least_maximum = options.objective == "max";
@@ -66,11 +66,11 @@ Result<std::optional<TrompeGeometry>> parse_single(const Options& options, doubl
     return std::optional<TrompeGeometry>();
   }
   if (options.at.size() != 2) return usage_error("--mode single needs --at LIGHT,VIEW");
-  const LightView geometry{options.at[0], options.at[1], 0};
+  const panels::LightView geometry{options.at[0], options.at[1], 0};
   if (geometry.light_deg < 0 || geometry.light_deg >= 90 || std::abs(geometry.view_deg) >= 90)
     return usage_error("--at is {},{}: light and viewer must be above the panel, 0 to 90 and -90 to 90",
                        shortest(geometry.light_deg), shortest(geometry.view_deg));
-  const auto view = panel_view(geometry, options.seam_deg, angle_deg);
+  const auto view = panels::panel_view(geometry, options.seam_deg, angle_deg);
   if (!view) return usage_error("--at names a viewer who does not see the second panel: change the view");
   return std::optional<TrompeGeometry>({geometry, *view});
 }
@@ -89,10 +89,10 @@ Result<TrompeRequest> request_of(const Options& options) {
                  : options.mode == "single" ? TrompeMode::kSingle
                                             : TrompeMode::kRows;
   GONIO_ASSIGN(request.single, parse_single(options, request.angle_deg));
-  GONIO_ASSIGN(const GeometryList list, geometry_list(options.geometries));
+  GONIO_ASSIGN(const panels::GeometryList list, panels::geometry_list(options.geometries));
   request.glare = list.glare, request.below_horizon = list.below_horizon;
   for (std::size_t i = 0; i < list.pairs.size(); ++i) {
-    auto view = panel_view(list.pairs[i], options.seam_deg, request.angle_deg);
+    auto view = panels::panel_view(list.pairs[i], options.seam_deg, request.angle_deg);
     if (!view) {
       ++request.hidden;
       continue;
@@ -108,12 +108,12 @@ Result<TrompeRequest> request_of(const Options& options) {
 
 Result<TrompeSeamRequest> seam_request_of(const Options& options) {
   TrompeSeamRequest request;
-  GONIO_ASSIGN(request.world, seam_world(options.seam));
+  GONIO_ASSIGN(request.world, panels::seam_world(options.seam));
   if (!options.angle_deg.empty()) return usage_error("--angle is for panels without a mesh: the seam has its own");
   if (options.mode != "all" || !options.at.empty())
     return usage_error("--mode and --at are for panels without a mesh: leave out --mesh");
   GONIO_TRY(parse_fit(options, request.fit));
-  GONIO_ASSIGN(request.geometries, geometry_list(options.geometries));
+  GONIO_ASSIGN(request.geometries, panels::geometry_list(options.geometries));
   if (!options.picture.empty() && !request.world.in_world)
     return usage_error(
         "a picture of the mesh wants its light and viewer: give --light-from or --environment, and "
@@ -239,4 +239,4 @@ cli::ToolSpec tool_spec(Options& o) {
   return spec;
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -5,30 +5,30 @@
 
 #include "answer.h"
 #include "base/result.h"
-#include "fit/goniogeom_seam.h"
 #include "image/image.h"
 #include "mesh/mesh.h"
+#include "panels/goniogeom_seam.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 // Flat panels: a row for each geometry, the first panel above the second, on the left in one paint and on the right
 // with the paint found, and the differences beside. [Shimizu2009] figure 4.4. Error: an illuminant without a known
 // white.
-Result<Image> swatches(const ViewingCondition& condition, const std::vector<Answer>& answers);
+Result<image::Image> swatches(const color::ViewingCondition& condition, const std::vector<Answer>& answers);
 
 // The mesh in its light: on the left all in paint A, on the right the second part in paint B, the differences along the
 // seam below. [Shimizu2009] figure 4.6. `env` may be null. Error: no OpenGL, or a part of `dark` that is not there.
 struct SeamPair {
-  const Mesh* mesh = nullptr;
-  const Seam* seam = nullptr;
-  const PrefilteredEnvironment* env = nullptr;
+  const mesh::Mesh* mesh = nullptr;
+  const mesh::Seam* seam = nullptr;
+  const envmap::PrefilteredEnvironment* env = nullptr;
   std::vector<Vec3> lights;
   Vec3 viewer;
   std::string part_b;
   std::vector<std::string> dark;  // parts drawn black
-  Paint a;
+  paint::Paint a;
   Answer answer;
 };
-Result<Image> seam_pair(const SeamPair& pair);
+Result<image::Image> seam_pair(const SeamPair& pair);
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -6,11 +6,11 @@
 #include "answer.h"
 #include "base/parallel.h"
 #include "base/text.h"
-#include "paint/batches.h"
+#include "formats/batches.h"
 #include "picture.h"
 #include "seam_run.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
@@ -18,32 +18,33 @@ constexpr int kNamesShown = 20;
 
 using Answers = std::vector<Answer>;
 
-std::vector<PanelView> views_of(const std::vector<const TrompeGeometry*>& geometries) {
-  std::vector<PanelView> views;
+std::vector<panels::PanelView> views_of(const std::vector<const TrompeGeometry*>& geometries) {
+  std::vector<panels::PanelView> views;
   for (const TrompeGeometry* geometry : geometries) views.push_back(geometry->view);
   return views;
 }
 
-Result<Answer> answer(const Paint& paint, const Appearance& a, const std::vector<PanelView>& fitted,
-                      std::vector<const TrompeGeometry*> judged, const TrompeRequest& request) {
+Result<Answer> answer(const paint::Paint& paint, const paint::Appearance& a,
+                      const std::vector<panels::PanelView>& fitted, std::vector<const TrompeGeometry*> judged,
+                      const TrompeRequest& request) {
   Answer result;
   result.a = a;
-  GONIO_ASSIGN(result.fit, trompe_fit(a, paint.paint_class == PaintClass::kSolid, fitted, request.fit));
-  const std::vector<PanelView> views = views_of(judged);
-  result.before = trompe_errors(a, a, views);
-  result.after = trompe_errors(a, result.fit.b, views);
+  GONIO_ASSIGN(result.fit, panels::trompe_fit(a, paint.paint_class == paint::PaintClass::kSolid, fitted, request.fit));
+  const std::vector<panels::PanelView> views = views_of(judged);
+  result.before = panels::trompe_errors(a, a, views);
+  result.after = panels::trompe_errors(a, result.fit.b, views);
   result.judged = std::move(judged);
   return result;
 }
 
 // The paints for the second panel, by the mode asked.
-Result<Answers> answers_for(const Paint& paint, const TrompeRequest& request, const std::string& suffix) {
-  GONIO_ASSIGN(const Appearance a, appearance_of(paint));
+Result<Answers> answers_for(const paint::Paint& paint, const TrompeRequest& request, const std::string& suffix) {
+  GONIO_ASSIGN(const paint::Appearance a, panels::appearance_of(paint));
   Answers answers;
   std::vector<const TrompeGeometry*> all;
   for (const TrompeGeometry& geometry : request.geometries) all.push_back(&geometry);
   if (request.mode != TrompeMode::kRows) {
-    const auto fitted = request.single ? std::vector<PanelView>{request.single->view} : views_of(all);
+    const auto fitted = request.single ? std::vector<panels::PanelView>{request.single->view} : views_of(all);
     GONIO_ASSIGN(Answer one, answer(paint, a, fitted, all, request));
     one.name = paint.name + suffix;
     answers.push_back(std::move(one));
@@ -69,7 +70,7 @@ std::string plan(const Options& options, const TrompeRequest& request) {
       "{} pairs of light and viewer; left out: {} within {} deg of the mirror direction, {} below the horizon, {} that "
       "do not see the second panel\n"
       "minimized: {} of dE76 over {}, by {}, from several starts; some milliseconds a paint\n",
-      request.geometries.size(), request.glare, kIndexGlare_deg, request.below_horizon, request.hidden,
+      request.geometries.size(), request.glare, panels::kIndexGlare_deg, request.below_horizon, request.hidden,
       options.objective,
       request.mode == TrompeMode::kAll      ? "all of them"
       : request.mode == TrompeMode::kSingle ? "the one geometry of --at; the others only judge"
@@ -85,13 +86,13 @@ class Run {
       : options_(options), request_(request), session_(session) {}
 
   Result<cli::Verdict> operator()() {
-    GONIO_ASSIGN(PaintBatches paints, PaintBatches::open(options_.inputs, options_.only));
+    GONIO_ASSIGN(formats::PaintBatches paints, formats::PaintBatches::open(options_.inputs, options_.only));
     GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
     auto history = paints.processing();
     history.push_back({session_.tool(), cli::Session::version(), session_.command_line()});
-    GONIO_ASSIGN(PaintWriter writer, PaintWriter::begin(std::move(file), history, paints.foreign()));
+    GONIO_ASSIGN(formats::PaintWriter writer, formats::PaintWriter::begin(std::move(file), history, paints.foreign()));
     for (;;) {
-      GONIO_ASSIGN(std::vector<Paint> batch, paints.next());
+      GONIO_ASSIGN(std::vector<paint::Paint> batch, paints.next());
       if (batch.empty()) break;
       GONIO_TRY(take(batch, writer));
       session_.progress(fmt::format("{} paints", fits_.size()));
@@ -101,7 +102,7 @@ class Run {
   }
 
  private:
-  Result<void> take(const std::vector<Paint>& batch, PaintWriter& writer) {
+  Result<void> take(const std::vector<paint::Paint>& batch, formats::PaintWriter& writer) {
     std::vector<std::optional<Result<Answers>>> found(batch.size());
     parallel_for(batch.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) found[i] = answers_for(batch[i], request_, options_.suffix);
@@ -124,11 +125,11 @@ class Run {
     return {};
   }
 
-  Result<void> draw(const Paint& paint, const Answers& answers) {
+  Result<void> draw(const paint::Paint& paint, const Answers& answers) {
     if (++pictures_ > 1)
       return usage_error("--picture shows one paint and there is another, \"{}\": choose one by --only", paint.name);
-    GONIO_ASSIGN(const Image image, swatches(condition_of(paint), answers));
-    return write_png(
+    GONIO_ASSIGN(const image::Image image, swatches(paint::condition_of(paint), answers));
+    return image::write_png(
         options_.picture, image,
         {{"Software", session_.tool() + " " + cli::Session::version()}, {"Comment", session_.command_line()}});
   }
@@ -169,4 +170,4 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   return Run(options, request, session)();
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

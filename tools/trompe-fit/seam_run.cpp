@@ -4,25 +4,25 @@
 #include <cmath>
 
 #include "answer.h"
-#include "fit/goniogeom_seam.h"
-#include "paint/batches.h"
+#include "formats/batches.h"
+#include "panels/goniogeom_seam.h"
 #include "picture.h"
 
-namespace goniochrome {
+namespace goniochrome::tool {
 
 namespace {
 
 constexpr std::size_t kMostFitted = 400;  // views that a fit looks at; all views judge it
 
-std::vector<PanelView> panel_views(const Seam& seam, const std::vector<SeamView>& views) {
-  std::vector<PanelView> seen;
-  for (const SeamView& view : views) seen.push_back(panel_view(seam, view));
+std::vector<panels::PanelView> panel_views(const mesh::Seam& seam, const std::vector<panels::SeamView>& views) {
+  std::vector<panels::PanelView> seen;
+  for (const panels::SeamView& view : views) seen.push_back(panels::panel_view(seam, view));
   return seen;
 }
 
-std::vector<double> weights_of(const std::vector<SeamView>& views) {
+std::vector<double> weights_of(const std::vector<panels::SeamView>& views) {
   std::vector<double> weights;
-  for (const SeamView& view : views) weights.push_back(view.weight);
+  for (const panels::SeamView& view : views) weights.push_back(view.weight);
   return weights;
 }
 
@@ -33,15 +33,15 @@ class SeamRun {
 
   Result<cli::Verdict> operator()() {
     GONIO_TRY(prepare());
-    GONIO_ASSIGN(PaintBatches paints, PaintBatches::open(options_.inputs, options_.only));
+    GONIO_ASSIGN(formats::PaintBatches paints, formats::PaintBatches::open(options_.inputs, options_.only));
     GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
     auto history = paints.processing();
     history.push_back({session_.tool(), cli::Session::version(), session_.command_line()});
-    GONIO_ASSIGN(PaintWriter writer, PaintWriter::begin(std::move(file), history, paints.foreign()));
+    GONIO_ASSIGN(formats::PaintWriter writer, formats::PaintWriter::begin(std::move(file), history, paints.foreign()));
     for (;;) {
-      GONIO_ASSIGN(std::vector<Paint> batch, paints.next());
+      GONIO_ASSIGN(std::vector<paint::Paint> batch, paints.next());
       if (batch.empty()) break;
-      for (const Paint& paint : batch) GONIO_TRY(take(paint, writer));
+      for (const paint::Paint& paint : batch) GONIO_TRY(take(paint, writer));
     }
     GONIO_TRY(writer.finish());
     session_.results().update(results_of(fits_));
@@ -50,10 +50,11 @@ class SeamRun {
 
  private:
   Result<void> prepare() {
-    GONIO_ASSIGN(stage_, seam_stage(options_.seam, request_.world, request_.geometries, options_.seam_deg));
-    for (const std::size_t i : spread_places(stage_.views.size(), kMostFitted)) fitted_.push_back(stage_.views[i]);
+    GONIO_ASSIGN(stage_, panels::seam_stage(options_.seam, request_.world, request_.geometries, options_.seam_deg));
+    for (const std::size_t i : panels::spread_places(stage_.views.size(), kMostFitted))
+      fitted_.push_back(stage_.views[i]);
     std::vector<double> folds;
-    for (const SeamPoint& p : stage_.seam.points) folds.push_back(p.fold_deg);
+    for (const mesh::SeamPoint& p : stage_.seam.points) folds.push_back(p.fold_deg);
     std::ranges::sort(folds);
     session_.say(fmt::format("seam {} | {}: {:.2f} m, misalignment {:+.1f} to {:+.1f} deg (median {:+.1f})",
                              request_.world.part_a, request_.world.part_b, stage_.seam.length_m, folds.front(),
@@ -63,34 +64,37 @@ class SeamRun {
     return {};
   }
 
-  Result<Answer> answer_for(const Paint& paint) const {
+  Result<Answer> answer_for(const paint::Paint& paint) const {
     Answer answer;
     answer.name = paint.name + options_.suffix;
-    GONIO_ASSIGN(answer.a, appearance_of(paint));
-    const bool solid = paint.paint_class == PaintClass::kSolid;
+    GONIO_ASSIGN(answer.a, panels::appearance_of(paint));
+    const bool solid = paint.paint_class == paint::PaintClass::kSolid;
     if (options_.seam.environment.empty()) {
-      GONIO_ASSIGN(answer.fit, trompe_fit(answer.a, solid, panel_views(stage_.seam, fitted_), request_.fit));
-      const std::vector<PanelView> all = panel_views(stage_.seam, stage_.views);
-      answer.before = trompe_errors(answer.a, answer.a, all);
-      answer.after = trompe_errors(answer.a, answer.fit.b, all);
+      GONIO_ASSIGN(answer.fit, panels::trompe_fit(answer.a, solid, panel_views(stage_.seam, fitted_), request_.fit));
+      const std::vector<panels::PanelView> all = panel_views(stage_.seam, stage_.views);
+      answer.before = panels::trompe_errors(answer.a, answer.a, all);
+      answer.after = panels::trompe_errors(answer.a, answer.fit.b, all);
       return answer;
     }
-    GONIO_ASSIGN(const EnvironmentPanels panels, EnvironmentPanels::make(stage_.env, condition_of(paint)));
-    const auto colors = [&](const std::vector<SeamView>& views, SeamSide side, const Appearance& appearance) {
-      return seam_colors(panels, stage_.seam, views, side)(appearance);
+    GONIO_ASSIGN(const panels::EnvironmentPanels panels,
+                 panels::EnvironmentPanels::make(stage_.env, paint::condition_of(paint)));
+    const auto colors = [&](const std::vector<panels::SeamView>& views, panels::SeamSide side,
+                            const paint::Appearance& appearance) {
+      return panels::seam_colors(panels, stage_.seam, views, side)(appearance);
     };
-    GONIO_ASSIGN(const std::vector<Lab> target, colors(fitted_, SeamSide::kA, answer.a));
-    GONIO_ASSIGN(answer.fit, trompe_fit(answer.a, solid, target, weights_of(fitted_),
-                                        seam_colors(panels, stage_.seam, fitted_, SeamSide::kB), request_.fit));
-    GONIO_ASSIGN(const std::vector<Lab> first, colors(stage_.views, SeamSide::kA, answer.a));
-    GONIO_ASSIGN(const std::vector<Lab> before, colors(stage_.views, SeamSide::kB, answer.a));
-    GONIO_ASSIGN(const std::vector<Lab> after, colors(stage_.views, SeamSide::kB, answer.fit.b));
-    answer.before = trompe_errors(first, before, weights_of(stage_.views));
-    answer.after = trompe_errors(first, after, weights_of(stage_.views));
+    GONIO_ASSIGN(const std::vector<color::Lab> target, colors(fitted_, panels::SeamSide::kA, answer.a));
+    GONIO_ASSIGN(answer.fit, panels::trompe_fit(answer.a, solid, target, weights_of(fitted_),
+                                                panels::seam_colors(panels, stage_.seam, fitted_, panels::SeamSide::kB),
+                                                request_.fit));
+    GONIO_ASSIGN(const std::vector<color::Lab> first, colors(stage_.views, panels::SeamSide::kA, answer.a));
+    GONIO_ASSIGN(const std::vector<color::Lab> before, colors(stage_.views, panels::SeamSide::kB, answer.a));
+    GONIO_ASSIGN(const std::vector<color::Lab> after, colors(stage_.views, panels::SeamSide::kB, answer.fit.b));
+    answer.before = panels::trompe_errors(first, before, weights_of(stage_.views));
+    answer.after = panels::trompe_errors(first, after, weights_of(stage_.views));
     return answer;
   }
 
-  Result<void> take(const Paint& paint, PaintWriter& writer) {
+  Result<void> take(const paint::Paint& paint, formats::PaintWriter& writer) {
     const Result<Answer> answer = answer_for(paint);
     if (!answer.ok()) {
       if (answer.error().kind == ErrorKind::kUsage) return answer.error();
@@ -111,8 +115,8 @@ class SeamRun {
   }
 
   Json places_json(const Answer& answer) const {
-    const auto before = by_place(stage_.seam, stage_.views, answer.before.de),
-               after = by_place(stage_.seam, stage_.views, answer.after.de);
+    const auto before = panels::by_place(stage_.seam, stage_.views, answer.before.de),
+               after = panels::by_place(stage_.seam, stage_.views, answer.after.de);
     Json places = Json::array();
     for (std::size_t i = 0; i < stage_.seam.points.size(); ++i)
       places.push_back({{"run", stage_.seam.points[i].run},
@@ -123,7 +127,7 @@ class SeamRun {
     return places;
   }
 
-  Result<void> draw(const Paint& paint, const Answer& answer) {
+  Result<void> draw(const paint::Paint& paint, const Answer& answer) {
     if (++pictures_ > 1)
       return usage_error("--picture shows one paint and there is another, \"{}\": choose one by --only", paint.name);
     SeamPair pair;
@@ -132,8 +136,8 @@ class SeamRun {
     pair.lights = request_.world.lights, pair.viewer = request_.world.viewers.front();
     pair.part_b = request_.world.part_b, pair.dark = options_.dark;
     pair.a = paint, pair.answer = answer;
-    GONIO_ASSIGN(const Image image, seam_pair(pair));
-    return write_png(
+    GONIO_ASSIGN(const image::Image image, seam_pair(pair));
+    return image::write_png(
         options_.picture, image,
         {{"Software", session_.tool() + " " + cli::Session::version()}, {"Comment", session_.command_line()}});
   }
@@ -141,8 +145,8 @@ class SeamRun {
   const Options& options_;
   const TrompeSeamRequest& request_;
   cli::Session& session_;
-  SeamStage stage_;
-  std::vector<SeamView> fitted_;
+  panels::SeamStage stage_;
+  std::vector<panels::SeamView> fitted_;
   std::vector<Json> fits_;
   int pictures_ = 0;
   bool negative_ = false;
@@ -153,7 +157,8 @@ std::string plan(const Options& options, const TrompeSeamRequest& request) {
       "seam of {} and {} in {}; paint B goes to {}\n{}"
       "minimized: {} of dE76 over at most {} views spread along the seam, by {}; judged by all\n",
       request.world.part_a, request.world.part_b, options.seam.mesh, request.world.part_b,
-      seam_light_text(options.seam, request.world, request.geometries), options.objective, kMostFitted, options.vary);
+      panels::seam_light_text(options.seam, request.world, request.geometries), options.objective, kMostFitted,
+      options.vary);
 }
 
 }  // namespace
@@ -164,4 +169,4 @@ Result<cli::Verdict> run_on_seam(const Options& options, cli::Session& session) 
   return SeamRun(options, request, session)();
 }
 
-}  // namespace goniochrome
+}  // namespace goniochrome::tool

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "image/exr.h"
-#include "image/oiio_module.h"
+#include "image/internal/exr.h"
+#include "image/internal/oiio_module.h"
 
 namespace {
 
@@ -27,7 +27,7 @@ void read(const char* path, void* context, GoniochromeOiioTake take, Goniochrome
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.depth > 1 || spec.deep) return fail(context, "volumes and deep images are not read");
   const OIIO::imagesize_t samples = spec.image_pixels() * static_cast<OIIO::imagesize_t>(spec.nchannels);
-  if (spec.image_pixels() > goniochrome::kMostSamples || samples > goniochrome::kMostSamples)
+  if (spec.image_pixels() > goniochrome::image::kMostSamples || samples > goniochrome::image::kMostSamples)
     return fail(context, "its header says more pixels than fit into 8 GB: is it damaged?");
   std::vector<float> pixels(samples);
   if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data()))

@@ -1,0 +1,19 @@
+// The CIE tables in use, every 5 nm: color-matching functions of both standard observers and three illuminants.
+#pragma once
+
+#include <array>
+
+namespace goniochrome::color {
+
+struct CieRow {
+  double wavelength_nm;
+  std::array<double, 3> observer_2;   // CIE 1931
+  std::array<double, 3> observer_10;  // CIE 1964
+  std::array<double, 3> illuminants;  // D65, D50, A, relative
+};
+
+constexpr int kCieRows = 85;
+constexpr double kCieStart_nm = 360, kCieStep_nm = 5;  // to 780 nm
+extern const std::array<CieRow, kCieRows> kCieTable;
+
+}  // namespace goniochrome::color

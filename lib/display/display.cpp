@@ -1,0 +1,187 @@
+// The one place that knows OpenColorIO.
+#include "display/display.h"
+
+#include <OpenColorIO/OpenColorIO.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "base/parallel.h"
+#include "base/text.h"
+
+namespace goniochrome::display {
+
+namespace ocio = OCIO_NAMESPACE;
+
+namespace {
+
+constexpr const char* kSrgb = "sRGB";
+constexpr const char* kPaint = "Paint";
+constexpr const char* kPlain = "Un-tone-mapped";
+constexpr const char* kAces = "ACES SDR";
+constexpr color::Rgb kBackdrop{0.18, 0.18, 0.18};
+constexpr const char* kApToXyz = "UTILITY - ACES-AP0_to_CIE-XYZ-D65_BFD";
+
+ocio::BuiltinTransformRcPtr builtin(const char* style, ocio::TransformDirection direction) {
+  auto transform = ocio::BuiltinTransform::Create();
+  transform->setStyle(style);
+  transform->setDirection(direction);
+  return transform;
+}
+
+// OpenColorIO 2.1 brings no configuration: one display with two views, from its built-in transforms.
+ocio::ConfigRcPtr built_in_config() {
+  auto config = ocio::Config::Create();
+  config->setMajorVersion(2);
+  auto scene = ocio::ColorSpace::Create(ocio::REFERENCE_SPACE_SCENE);
+  scene->setName("ACES2065-1");
+  config->addColorSpace(scene);
+  config->setRole("aces_interchange", "ACES2065-1");
+  config->setRole(ocio::ROLE_DEFAULT, "ACES2065-1");
+  auto display = ocio::ColorSpace::Create(ocio::REFERENCE_SPACE_DISPLAY);
+  display->setName(kSrgb);
+  display->setTransform(builtin("DISPLAY - CIE-XYZ-D65_to_sRGB", ocio::TRANSFORM_DIR_FORWARD),
+                        ocio::COLORSPACE_DIR_FROM_REFERENCE);
+  config->addColorSpace(display);
+  const auto add_view = [&](const char* name, const char* style) {
+    auto view = ocio::ViewTransform::Create(ocio::REFERENCE_SPACE_SCENE);
+    view->setName(name);
+    view->setTransform(builtin(style, ocio::TRANSFORM_DIR_FORWARD), ocio::VIEWTRANSFORM_DIR_FROM_REFERENCE);
+    config->addViewTransform(view);
+    config->addDisplayView(kSrgb, name, name, kSrgb, "", "", "");
+  };
+  add_view(kPlain, kApToXyz);
+  add_view(kAces, "ACES-OUTPUT - ACES2065-1_to_CIE-XYZ-D65 - SDR-VIDEO_1.0");
+  config->setDefaultViewTransformName(kPlain);
+  return config;
+}
+
+// Working space -> CIE XYZ (D65) -> ACES2065-1, the space that every configuration of version 2 can be entered by ->
+// display.
+ocio::ConstCPUProcessorRcPtr processor(const ocio::ConstConfigRcPtr& config, const char* display, const char* view) {
+  auto matrix = ocio::MatrixTransform::Create();
+  const color::Xyz r = color::xyz_d65_from_rgb({1, 0, 0}), g = color::xyz_d65_from_rgb({0, 1, 0}),
+                   b = color::xyz_d65_from_rgb({0, 0, 1});
+  const double to_xyz[16] = {r.X, g.X, b.X, 0, r.Y, g.Y, b.Y, 0, r.Z, g.Z, b.Z, 0, 0, 0, 0, 1};
+  matrix->setMatrix(to_xyz);
+  auto to_display = ocio::DisplayViewTransform::Create();
+  to_display->setSrc("aces_interchange");
+  to_display->setDisplay(display);
+  to_display->setView(view);
+  auto group = ocio::GroupTransform::Create();
+  group->appendTransform(matrix);
+  group->appendTransform(builtin(kApToXyz, ocio::TRANSFORM_DIR_INVERSE));
+  group->appendTransform(to_display);
+  return config->getProcessor(group)->getDefaultCPUProcessor();
+}
+
+struct Choice {
+  std::string display, view;
+};
+
+std::vector<Choice> choices(const ocio::ConstConfigRcPtr& config) {
+  std::vector<Choice> all;
+  const char* first = config->getDefaultDisplay();
+  for (int v = 0; v < config->getNumViews(first); ++v) all.push_back({first, config->getView(first, v)});
+  for (int d = 0; d < config->getNumDisplays(); ++d) {
+    const std::string display = config->getDisplay(d);
+    if (display == first) continue;
+    for (int v = 0; v < config->getNumViews(display.c_str()); ++v) {
+      all.push_back({display, config->getView(display.c_str(), v)});
+    }
+  }
+  return all;
+}
+
+Result<Choice> find_view(const std::vector<Choice>& all, const std::string& wanted) {
+  if (wanted.empty()) return all.front();
+  std::string known;
+  for (const Choice& choice : all) {
+    const std::string full = choice.display + "/" + choice.view;
+    if (lower(wanted) == lower(full)) return choice;
+    if (lower(wanted) == lower(choice.view)) return choice;  // the default display's come first
+    known += (known.empty() ? "\"" : ", \"") + (choice.display == all.front().display ? choice.view : full) + "\"";
+  }
+  return usage_error("there is no view \"{}\": there are {}", wanted, known);
+}
+
+}  // namespace
+
+color::Rgb paint_view(const color::Rgb& rec709) {
+  color::Rgb c = rec709;
+  const double lowest = std::min({c.x, c.y, c.z});
+  if (lowest < 0) {
+    const double gray = std::max(0.0, color::xyz_d65_from_rgb(color::rec2020_from_rec709(c)).Y);
+    const double keep = gray / (gray - lowest);
+    c = keep * c + (1 - keep) * color::Rgb{gray, gray, gray};
+  }
+  // The shoulder k + (1-k) x/(1+x), x = (m-k)/(1-k), leaves the line with slope 1 and ends at white.
+  const double m = std::max({c.x, c.y, c.z});
+  if (m <= kKnee) return c;
+  const double x = (m - kKnee) / (1 - kKnee);
+  return ((kKnee + (1 - kKnee) * x / (1 + x)) / m) * c;
+}
+
+struct Display::State {
+  std::string name;
+  bool paint = false;  // paint_view() first
+  ocio::ConstCPUProcessorRcPtr processor;
+};
+
+Display::Display(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Display::Display(Display&&) noexcept = default;
+Display::~Display() = default;
+
+const std::string& Display::name() const {
+  return state_->name;
+}
+
+Result<Display> Display::make(const std::string& view) {
+  const char* path = std::getenv("OCIO");
+  const bool own = path != nullptr && *path != '\0';
+  try {
+    ocio::SetLoggingLevel(ocio::LOGGING_LEVEL_NONE);
+    const ocio::ConstConfigRcPtr config = own ? ocio::Config::CreateFromFile(path) : built_in_config();
+    std::vector<Choice> all = choices(config);
+    if (!own) all.insert(all.begin(), {kSrgb, kPaint});
+    if (all.empty()) return input_error("{}: the OpenColorIO configuration of $OCIO has no displays", path);
+    GONIO_ASSIGN(const Choice choice, find_view(all, view));
+    auto state = std::make_unique<State>();
+    state->name = choice.display + " / " + choice.view;
+    state->paint = !own && choice.view == kPaint;
+    state->processor = processor(config, choice.display.c_str(), state->paint ? kPlain : choice.view.c_str());
+    return Display(std::move(state));
+  } catch (const ocio::Exception& refused) {
+    if (!own) return Error{ErrorKind::kBug, fmt::format("OpenColorIO: {}", refused.what())};
+    return input_error(
+        "{}: OpenColorIO: {}: $OCIO must name a configuration of version 2 with an aces_interchange role; unset it for "
+        "the built-in views",
+        path, refused.what());
+  }
+}
+
+Result<image::Image> Display::image(const image::Image& picture, double stops) const {
+  image::Image shown{picture.width, picture.height, 3, {}, {"R", "G", "B"}};
+  const std::size_t pixels = static_cast<std::size_t>(picture.width) * picture.height;
+  shown.data.resize(3 * pixels);
+  const double gain = std::exp2(stops);
+  try {
+    parallel_for(pixels, 1 << 14, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const float* p = &picture.data[4 * i];
+        color::Rgb c = gain * color::Rgb{p[0], p[1], p[2]} + (1 - p[3]) * kBackdrop;
+        if (state_->paint) c = color::rec2020_from_rec709(paint_view(color::rec709_from_rec2020(c)));
+        for (int channel = 0; channel < 3; ++channel) shown.data[3 * i + channel] = static_cast<float>(c[channel]);
+      }
+      ocio::PackedImageDesc run(&shown.data[3 * begin], static_cast<long>(end - begin), 1, 3);
+      state_->processor->apply(run);
+      for (std::size_t i = 3 * begin; i < 3 * end; ++i) shown.data[i] = std::clamp(shown.data[i], 0.0F, 1.0F);
+    });
+  } catch (const ocio::Exception& refused) {
+    return input_error("OpenColorIO: {}", refused.what());
+  }
+  return shown;
+}
+
+}  // namespace goniochrome::display

@@ -1,0 +1,21 @@
+// Fewer lobes: the best subset of a given size, and the lobes that somebody can see. Internal to lib/fit.
+// goniochrome-theory(7), FITTING.
+#pragma once
+
+#include <vector>
+
+#include "fit/internal/flake_fit.h"
+
+namespace goniochrome::fit {
+
+// At most `count` of the exponents, those with the least objective: of all subsets where there are few, else by adding
+// one lobe at a time and exchanging lobes while that gains. Stops with the best so far at the deadline.
+std::vector<double> best_exponents(FitMethod method, const FlakeTarget& target, const std::vector<double>& exponents,
+                                   int count, const Deadline& deadline);
+
+// The exponents that are left when lobes are dropped one by one, the least visible first, as long as no row's color
+// moves by more than `de00` from where all of them together put it.
+std::vector<double> pruned_exponents(FitMethod method, const FlakeTarget& target, const std::vector<double>& exponents,
+                                     double de00, const Deadline& deadline);
+
+}  // namespace goniochrome::fit

@@ -1,0 +1,37 @@
+// The paints of several inputs in batches, for tools that work on many at once and still keep up with a slow pipe.
+#pragma once
+
+#include <functional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "formats/xml.h"
+
+namespace goniochrome::formats {
+
+class PaintBatches {
+ public:
+  // Opens all inputs, `-` or none being standard input, and reads each as far as its first paint. With `only`, paints
+  // of other names are passed over. Error: the first that cannot be opened.
+  static Result<PaintBatches> open(std::vector<std::string> paths, const std::vector<std::string>& only = {});
+
+  // What stood before the first paint of each input, in their order.
+  std::vector<Processing> processing() const;
+  std::vector<std::string> foreign() const;
+
+  // The next paints, in order; none at the end. A batch holds one paint at first and doubles up to 1024 while paints
+  // arrive quickly. `left_out`, if given, is told of each paint that cannot be read, and reading goes on behind it;
+  // without it, such a paint is the error. Error at the end: a name of `only` that no paint has.
+  Result<std::vector<paint::Paint>> next(const std::function<void(const Error&)>& left_out = {});
+
+ private:
+  bool is_wanted(const std::string& name);
+
+  std::vector<PaintReader> readers_;
+  std::set<std::string> only_, unmet_;
+  std::size_t current_ = 0, size_ = 1;
+};
+
+}  // namespace goniochrome::formats

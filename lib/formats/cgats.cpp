@@ -1,0 +1,508 @@
+#include "formats/cgats.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "base/text.h"
+#include "base/utf8.h"
+
+namespace goniochrome::formats {
+
+namespace {
+
+constexpr std::size_t kLargestFile = std::size_t{1} << 30;
+
+std::string upper(std::string_view text) {
+  std::string result(text);
+  for (char& c : result)
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+  return result;
+}
+
+std::string utf8_from_latin1(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x80) {
+      result += c;
+    } else {
+      result += static_cast<char>(0xC0 | byte >> 6);
+      result += static_cast<char>(0x80 | (byte & 0x3F));
+    }
+  }
+  return result;
+}
+
+// The words of a line: between white space, or in quotation marks (doubled inside), up to a comment.
+std::vector<std::string> words_of(std::string_view line) {
+  std::vector<std::string> words;
+  for (std::size_t i = 0; i < line.size();) {
+    if (line[i] == ' ' || line[i] == '\t' || line[i] == '\r') {
+      ++i;
+    } else if (line[i] == '#') {
+      break;
+    } else if (line[i] == '"') {
+      std::string word;
+      for (++i; i < line.size(); ++i) {
+        if (line[i] != '"') {
+          word += line[i];
+        } else if (i + 1 < line.size() && line[i + 1] == '"') {
+          word += line[++i];
+        } else {
+          break;
+        }
+      }
+      ++i;
+      words.push_back(std::move(word));
+    } else {
+      const auto end = std::min(line.find_first_of(" \t\r", i), line.size());
+      words.emplace_back(line.substr(i, end - i));
+      i = end;
+    }
+  }
+  return words;
+}
+
+std::string unquoted(std::string_view text) {
+  text = trimmed(text);
+  while (text.starts_with('"')) text.remove_prefix(1);
+  while (text.ends_with('"')) text.remove_suffix(1);
+  return std::string(trimmed(text));
+}
+
+// The first word of `text` that names an illuminant; "" if none does.
+std::string illuminant_in(std::string_view text) {
+  static constexpr std::array kKnown = {"A", "C",  "D50", "D55", "D60", "D65", "D75",
+                                        "E", "F2", "F7",  "F11", "F12", "TL84"};
+  std::string word;
+  for (const char c : upper(text) + " ") {
+    const bool alphanumeric = (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (alphanumeric) {
+      word += c;
+      continue;
+    }
+    if (std::ranges::find(kKnown, word) != kKnown.end()) return word;
+    word.clear();
+  }
+  return "";
+}
+
+// 2 or 10 where `text` begins with such a number of degrees (`10 degree`, `2`); 0 otherwise.
+int observer_in(std::string_view text) {
+  text = trimmed(text);
+  const auto digits = text.substr(0, std::min(text.find_first_not_of("0123456789"), text.size()));
+  return digits == "2" ? 2 : digits == "10" ? 10 : 0;
+}
+
+// What follows `key` in `text`, up to white space.
+std::string_view after(std::string_view text, std::string_view key) {
+  const auto at = text.find(key);
+  if (at == std::string_view::npos) return {};
+  text.remove_prefix(at + key.size());
+  return text.substr(0, std::min(text.find_first_of(" \t\""), text.size()));
+}
+
+constexpr int kNone = -1;
+
+// Which column holds what. Three numbers of a color share an ending, which may name their geometry.
+struct ColorColumns {
+  std::optional<paint::Geometry> geometry;
+  std::array<int, 3> at = {kNone, kNone, kNone};
+  bool xyz = false;
+};
+struct Columns {
+  std::vector<std::string> fields;
+  int name = kNone, id = kNone, geometry = kNone, illuminant = kNone, observer = kNone;
+  int instrument = kNone, paint_class = kNone, code = kNone;
+  std::vector<ColorColumns> colors;
+  std::vector<std::pair<double, int>> gloss;  // angle, column
+};
+
+class CgatsParser {
+ public:
+  CgatsParser(std::string name, std::string_view text, const ImportOptions& options)
+      : name_(std::move(name)), text_(text), options_(options) {}
+
+  Result<ImportedPaints> parse() {
+    bool tables = false;
+    while (next_line()) {
+      const std::string first = words_.empty() ? "" : upper(words_[0]);
+      if (first == "BEGIN_DATA_FORMAT") {
+        GONIO_TRY(format());
+      } else if (first == "BEGIN_DATA") {
+        tables = true;
+        GONIO_TRY(data());
+      } else if (!words_.empty()) {
+        keyword(first);
+      }
+    }
+    if (!tables) return input_error("{}: has no BEGIN_DATA: it is no CGATS table, or was cut off", name_);
+    finish_paint();
+    result_.warnings = remarks_.lines();
+    return std::move(result_);
+  }
+
+ private:
+  bool next_line() {
+    if (text_.empty()) return false;
+    const auto end = std::min(text_.find('\n'), text_.size());
+    current_ = text_.substr(0, end);
+    text_.remove_prefix(std::min(end + 1, text_.size()));
+    ++line_;
+    words_ = words_of(current_);
+    return true;
+  }
+
+  Error error(const std::string& what) const { return input_error("{}:{}: {}", name_, line_, what); }
+
+  void keyword(const std::string& key) {
+    const auto rest = trimmed(current_).substr(std::min(words_[0].size(), trimmed(current_).size()));
+    const std::string value = unquoted(rest.substr(0, rest.find('#')));
+    if (key == "NUMBER_OF_SETS") {
+      announced_ = parse_integer(value);
+    } else if (key == "INSTRUMENTATION") {
+      instrument_ = value;
+    } else if (key == "MEASUREMENT_GEOMETRY") {
+      stated_geometry_ = value;
+    } else if (key == "ILLUMINANT" || key == "ILLUMINATION_NAME") {
+      if (const auto found = illuminant_in(value); !found.empty()) stated_.illuminant = found;
+    } else if (key == "OBSERVER" || key == "OBSERVER_ANGLE") {
+      if (const int found = observer_in(value)) stated_.observer_deg = found;
+    } else if (key == "WEIGHTING_FUNCTION") {
+      const auto comma = value.find(',');
+      const std::string kind = upper(trimmed(value.substr(0, comma)));
+      const std::string what = comma == std::string::npos ? "" : value.substr(comma + 1);
+      if (kind == "ILLUMINANT" && !illuminant_in(what).empty()) stated_.illuminant = illuminant_in(what);
+      if (kind == "OBSERVER" && observer_in(what)) stated_.observer_deg = observer_in(what);
+    } else if (key == "MEASUREMENT_SOURCE") {
+      if (stated_.illuminant.empty()) stated_.illuminant = illuminant_in(after(value, "Illumination="));
+      if (stated_.observer_deg == 0) stated_.observer_deg = observer_in(after(value, "ObserverAngle="));
+    }
+  }
+
+  Result<void> format() {
+    columns_ = {};
+    std::vector<std::string> words(words_.begin() + 1, words_.end());
+    const int begun = line_;
+    for (;;) {
+      for (const std::string& word : words) {
+        if (upper(word) == "END_DATA_FORMAT") return sort_columns();
+        columns_.fields.push_back(word);
+      }
+      if (!next_line())
+        return input_error("{}:{}: BEGIN_DATA_FORMAT has no END_DATA_FORMAT: the file was cut off", name_, begun);
+      words = words_;
+    }
+  }
+
+  Result<void> sort_columns() {
+    for (int i = 0; i < static_cast<int>(columns_.fields.size()); ++i) {
+      const std::string field = upper(columns_.fields[static_cast<std::size_t>(i)]);
+      if (field == "SAMPLE_NAME" || field == "SAMPLENAME" || field == "NAME") columns_.name = i;
+      if (field == "SAMPLE_ID" || field == "SAMPLEID") columns_.id = i;
+      if (field == "GEOMETRY") columns_.geometry = i;
+      if (field == "ILLUMINANT") columns_.illuminant = i;
+      if (field == "OBSERVER") columns_.observer = i;
+      if (field == "INSTRUMENT") columns_.instrument = i;
+      if (field == "PAINT_CLASS") columns_.paint_class = i;
+      if (field == "PAINT_CODE") columns_.code = i;
+      if (field == "GLOSS") columns_.gloss.push_back({60, i});
+      if (field.starts_with("GLOSS_"))
+        if (const auto angle = parse_number(field.substr(6))) columns_.gloss.push_back({*angle, i});
+    }
+    if (!find_colors("LAB_", "LAB", false)) find_colors("XYZ_", "XYZ", true);
+    if (columns_.colors.empty())
+      return error("the fields hold neither LAB_L LAB_A LAB_B nor XYZ_X XYZ_Y XYZ_Z: export one of them");
+    return {};
+  }
+
+  bool find_colors(std::string_view prefix, std::string_view letters, bool xyz) {
+    const auto column_of = [&](const std::string& field) {
+      for (std::size_t i = 0; i < columns_.fields.size(); ++i)
+        if (upper(columns_.fields[i]) == field) return static_cast<int>(i);
+      return kNone;
+    };
+    for (const std::string& field : columns_.fields) {
+      const std::string first = std::string(prefix) + letters[0];
+      if (!upper(field).starts_with(first)) continue;
+      const std::string ending = upper(field).substr(first.size());
+      ColorColumns color;
+      color.xyz = xyz;
+      for (std::size_t k = 0; k < 3; ++k) color.at[k] = column_of(std::string(prefix) + letters[k] + ending);
+      if (!ending.empty()) {
+        const auto geometry = paint::parse_geometry(lower(ending.substr(ending[0] == '_' ? 1 : 0)));
+        if (!geometry) continue;
+        color.geometry = *geometry;
+      }
+      if (std::ranges::find(color.at, kNone) == color.at.end()) columns_.colors.push_back(color);
+    }
+    return !columns_.colors.empty();
+  }
+
+  Result<void> data() {
+    if (columns_.fields.empty())
+      return error("BEGIN_DATA stands before any BEGIN_DATA_FORMAT: the columns have no names");
+    std::int64_t rows = 0;
+    const int begun = line_;
+    for (;;) {
+      if (!next_line()) return input_error("{}:{}: BEGIN_DATA has no END_DATA: the file was cut off", name_, begun);
+      if (words_.empty()) continue;
+      if (upper(words_[0]) == "END_DATA") break;
+      ++rows;
+      const auto read = row();
+      if (read) continue;
+      if (!options_.keep_going) return read.error();
+      result_.skipped.push_back(read.error().message);
+    }
+    if (announced_ && *announced_ != rows)
+      remarks_.note("NUMBER_OF_SETS does not count the rows there are", fmt::format("{} for {}", *announced_, rows));
+    announced_.reset();
+    return {};
+  }
+
+  // The cells of the current line; sample names with bare spaces are told by tabs.
+  Result<void> cells() {
+    if (words_.size() == columns_.fields.size()) return {};
+    const std::size_t by_space = words_.size();
+    words_.clear();
+    for (const auto cell : split(current_, '\t')) words_.push_back(unquoted(cell));
+    if (words_.size() == columns_.fields.size() + 1 && words_.back().empty()) words_.pop_back();
+    if (words_.size() != columns_.fields.size())
+      return error(fmt::format("{} cells where the format has {} fields: {}", by_space, columns_.fields.size(),
+                               by_space > columns_.fields.size() ? "put names with spaces in quotation marks"
+                                                                 : "fill empty cells with \"\""));
+    return {};
+  }
+
+  const std::string& cell(int column) const {
+    static const std::string kNothing;
+    return column == kNone ? kNothing : words_[static_cast<std::size_t>(column)];
+  }
+
+  Result<double> number(int column) {
+    const std::string& text = cell(column);
+    if (const auto value = parse_number(text)) return *value;
+    if (std::ranges::count(text, ',') == 1 && text.find('.') == std::string::npos) {
+      std::string pointed = text;
+      std::ranges::replace(pointed, ',', '.');
+      if (const auto value = parse_number(pointed)) {
+        remarks_.note("decimal commas were read as points", fmt::format("line {}", line_));
+        return *value;
+      }
+    }
+    return error(fmt::format("{} is \"{}\": write a number", columns_.fields[static_cast<std::size_t>(column)], text));
+  }
+
+  Result<void> row() {
+    GONIO_TRY(cells());
+    GONIO_ASSIGN(const color::ViewingCondition condition, condition_of_row());
+    std::string name = cell(columns_.name).empty() ? cell(columns_.id) : cell(columns_.name);
+    if (name.empty()) name = fmt::format("sample {}", result_.paints.size() + 1);
+    std::vector<SeenReading> readings;
+    for (const ColorColumns& color : columns_.colors) {
+      if (color.geometry && cell(color.at[0]).empty()) continue;  // a wide table may have gaps
+      std::array<double, 3> values{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        GONIO_ASSIGN(values[k], number(color.at[k]));
+      }
+      color::Lab lab{values[0], values[1], values[2]};
+      if (color.xyz) {
+        GONIO_ASSIGN(const color::Xyz white, color::white_point(condition));
+        lab = color::lab_from_xyz({values[0] / 100, values[1] / 100, values[2] / 100}, white);
+      }
+      GONIO_ASSIGN(const auto geometry, geometry_of_row(color));
+      if (geometry) readings.push_back({condition, {*geometry, lab}});
+    }
+    std::vector<paint::GlossReading> gloss;
+    for (const auto& [angle, column] : columns_.gloss) {
+      if (cell(column).empty()) continue;
+      GONIO_ASSIGN(const double units, number(column));
+      gloss.push_back({angle, units});
+    }
+    if (columns_.geometry == kNone || name != paint_.name) {
+      finish_paint();
+      paint_.name = std::move(name);
+      paint_.gloss = std::move(gloss);
+      paint_.code = cell(columns_.code);
+      paint_.paint_class = paint::paint_class_of(cell(columns_.paint_class)).value_or(paint::PaintClass::kUnknown);
+      paint_instrument_ = columns_.instrument == kNone ? instrument_ : cell(columns_.instrument);
+    }
+    readings_.insert(readings_.end(), readings.begin(), readings.end());
+    return {};
+  }
+
+  // From the row, else the header, else what the options mean, else the standard's D50/2.
+  Result<color::ViewingCondition> condition_of_row() {
+    color::ViewingCondition condition = stated_;
+    if (!cell(columns_.illuminant).empty()) condition.illuminant = cell(columns_.illuminant);
+    if (!cell(columns_.observer).empty()) {
+      condition.observer_deg = observer_in(cell(columns_.observer));
+      if (condition.observer_deg == 0)
+        return error(fmt::format("OBSERVER is \"{}\": write 2 or 10", cell(columns_.observer)));
+    }
+    if (condition.illuminant.empty() && condition.observer_deg == 0 && options_.illuminant.empty() &&
+        options_.observer_deg == 0)
+      remarks_.note("states neither illuminant nor observer: taken as D50/2; give --illuminant and --observer if not",
+                    "");
+    if (condition.illuminant.empty()) condition.illuminant = options_.illuminant.empty() ? "D50" : options_.illuminant;
+    if (condition.observer_deg == 0) condition.observer_deg = options_.observer_deg ? options_.observer_deg : 2;
+    return condition;
+  }
+
+  // Nothing where the header names a geometry without an aspecular angle, such as a sphere.
+  Result<std::optional<paint::Geometry>> geometry_of_row(const ColorColumns& color) {
+    if (color.geometry) return color.geometry;
+    if (columns_.geometry != kNone) {
+      const auto geometry = paint::parse_geometry(cell(columns_.geometry));
+      if (!geometry) return error(geometry.error().message);
+      return std::optional(*geometry);
+    }
+    const paint::Geometry forty_five_zero{45, 45};
+    if (stated_geometry_.empty()) {
+      remarks_.note("states no geometry: taken as 45/0, that is 45as45", "");
+      return std::optional(forty_five_zero);
+    }
+    const auto mark = stated_geometry_.find_first_of("/:");
+    const auto leading = [](std::string_view text) {
+      return std::string(text.substr(0, text.find_first_not_of("0123456789")));
+    };
+    if (mark != std::string::npos) {
+      const std::string from = leading(stated_geometry_), to = leading(trimmed(stated_geometry_).substr(mark + 1));
+      if ((from == "45" && to == "0") || (from == "0" && to == "45")) return std::optional(forty_five_zero);
+    }
+    if (const auto geometry = paint::parse_geometry(stated_geometry_)) return std::optional(*geometry);
+    remarks_.note(
+        fmt::format("the geometry \"{}\" has no aspecular angle: its readings were left out", stated_geometry_), "");
+    return std::optional<paint::Geometry>();
+  }
+
+  void finish_paint() {
+    if (paint_.name.empty()) return;
+    paint_.measurement = measurement_of(readings_, options_, paint_.name, remarks_);
+    if (paint_.measurement) paint_.measurement->instrument = paint_instrument_;
+    paint_.name = names_.own(paint_.name, remarks_);
+    if (paint_.measurement || !paint_.gloss.empty()) result_.paints.push_back(std::move(paint_));
+    paint_ = {};
+    readings_.clear();
+  }
+
+  std::string name_;
+  std::string_view text_, current_;
+  const ImportOptions& options_;
+  int line_ = 0;
+  std::vector<std::string> words_;
+
+  std::optional<std::int64_t> announced_;
+  std::string instrument_, stated_geometry_;
+  color::ViewingCondition stated_{"", 0};
+  Columns columns_;
+
+  paint::Paint paint_;  // gathering rows; no name while there is none
+  std::string paint_instrument_;
+  std::vector<SeenReading> readings_;
+  UniqueNames names_;
+  Remarks remarks_;
+  ImportedPaints result_;
+};
+
+// A value in quotation marks, on one line.
+std::string quoted(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"') result += '"';
+    result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  }
+  return result + '"';
+}
+
+}  // namespace
+
+bool looks_cgats(std::string_view head) {
+  return head.find("BEGIN_DATA_FORMAT") != std::string_view::npos || head.starts_with("CGATS") ||
+         head.find("NUMBER_OF_FIELDS") != std::string_view::npos;
+}
+
+Result<ImportedPaints> read_cgats(InputFile input, const ImportOptions& options) {
+  GONIO_ASSIGN(std::string text, whole_content(input, kLargestFile));
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+    return input_error("{}: is UTF-16: save it as UTF-8", input.name());
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  std::erase_if(text,
+                [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' && c != '\r'; });
+  const bool latin1 = !is_plain_utf8(text);
+  if (latin1) text = utf8_from_latin1(text);
+  GONIO_ASSIGN(ImportedPaints paints, CgatsParser(input.name(), text, options).parse());
+  if (latin1) paints.warnings.push_back("is not UTF-8: read as Latin-1");
+  return paints;
+}
+
+Result<CgatsWriter> CgatsWriter::begin(OutputFile file, const std::string& creator, const std::string& created) {
+  return CgatsWriter(std::move(file),
+                     fmt::format("CGATS.17\n\nORIGINATOR\t{}\nFILE_DESCRIPTOR\t\"multi-angle CIELAB\"\nCREATED\t{}\n",
+                                 quoted(creator), quoted(created)));
+}
+
+Result<void> CgatsWriter::write(const paint::Paint& paint) {
+  if (!paint.measurement || paint.measurement->rows.empty())
+    return input_error("paint \"{}\" has no readings: CGATS holds readings only", paint.name);
+  paint::Paint kept;  // what the table has columns for
+  kept.name = paint.name, kept.code = paint.code, kept.paint_class = paint.paint_class;
+  kept.measurement = paint.measurement, kept.gloss = paint.gloss;
+  paints_.push_back(std::move(kept));
+  return {};
+}
+
+Result<void> CgatsWriter::finish() {
+  std::set<double> angles;
+  std::size_t rows = 0;
+  bool classes = false, codes = false, instruments = false, one_condition = true;
+  for (const paint::Paint& paint : paints_) {
+    rows += paint.measurement->rows.size();
+    for (const paint::GlossReading& gloss : paint.gloss) angles.insert(gloss.angle_deg);
+    classes = classes || paint.paint_class != paint::PaintClass::kUnknown;
+    codes = codes || !paint.code.empty();
+    instruments = instruments || !paint.measurement->instrument.empty();
+    one_condition = one_condition && paint::condition_of(paint) == paint::condition_of(paints_.front());
+  }
+  std::vector<std::string> own = {"GEOMETRY", "ILLUMINANT", "OBSERVER"};
+  for (const double angle : angles) own.push_back("GLOSS_" + shortest(angle));
+  if (classes) own.push_back("PAINT_CLASS");
+  if (codes) own.push_back("PAINT_CODE");
+  if (instruments) own.push_back("INSTRUMENT");
+
+  std::string text = head_;
+  if (!paints_.empty() && one_condition) {
+    const color::ViewingCondition condition = paint::condition_of(paints_.front());
+    text += fmt::format("WEIGHTING_FUNCTION\t{}\nWEIGHTING_FUNCTION\t\"OBSERVER, {} degree\"\n",
+                        quoted("ILLUMINANT, " + condition.illuminant), condition.observer_deg);
+  }
+  for (const std::string& field : own) text += fmt::format("KEYWORD\t\"{}\"\n", field);
+  text += fmt::format("\nNUMBER_OF_FIELDS\t{}\nBEGIN_DATA_FORMAT\nSAMPLE_ID\tSAMPLE_NAME\tLAB_L\tLAB_A\tLAB_B",
+                      own.size() + 5);
+  for (const std::string& field : own) text += '\t' + field;
+  text += fmt::format("\nEND_DATA_FORMAT\n\nNUMBER_OF_SETS\t{}\nBEGIN_DATA\n", rows);
+  GONIO_TRY(file_.write(text));
+
+  std::size_t id = 0;
+  for (const paint::Paint& paint : paints_) {
+    std::string tail =
+        fmt::format("\t{}\t{}", quoted(paint::condition_of(paint).illuminant), paint::condition_of(paint).observer_deg);
+    for (const double angle : angles) {
+      const auto found = std::ranges::find(paint.gloss, angle, &paint::GlossReading::angle_deg);
+      tail += '\t' + (found == paint.gloss.end() ? "\"\"" : shortest(found->gloss_units));
+    }
+    if (classes) tail += fmt::format("\t{}", paint::paint_class_name(paint.paint_class));
+    if (codes) tail += '\t' + quoted(paint.code);
+    if (instruments) tail += '\t' + quoted(paint.measurement->instrument);
+    for (const paint::LabReading& row : paint.measurement->rows)
+      GONIO_TRY(
+          file_.write(fmt::format("{}\t{}\t{}\t{}\t{}\t{}{}\n", ++id, quoted(paint.name), shortest(row.lab.L),
+                                  shortest(row.lab.a), shortest(row.lab.b), paint::geometry_name(row.geometry), tail)));
+  }
+  GONIO_TRY(file_.write("END_DATA\n"));
+  return file_.commit();
+}
+
+}  // namespace goniochrome::formats

@@ -1,0 +1,40 @@
+// CGATS.17 text: a header of keywords, then a table. One row per reading; our own columns are announced by KEYWORD, as
+// the standard asks. goniochrome-paint(5).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/file.h"
+#include "base/result.h"
+#include "formats/imported.h"
+#include "paint/paint.h"
+
+namespace goniochrome::formats {
+
+// Whether a file that begins with `head` is CGATS text.
+bool looks_cgats(std::string_view head);
+
+// Takes LAB_ or XYZ_ columns; names from SAMPLE_NAME or SAMPLE_ID; the geometry
+// from GEOMETRY, from column endings (LAB_L_45as15) or from MEASUREMENT_GEOMETRY; the viewing condition from columns or
+// from any of the keywords in use. What the file does not say is assumed and told: D50/2 and 45/0, as ISO 13655.
+// Errors name file, line and cell.
+Result<ImportedPaints> read_cgats(InputFile input, const ImportOptions& options);
+
+// Writes paints as one table. The header counts the rows, so they are held until finish().
+class CgatsWriter {
+ public:
+  // `creator` and `created` (a date) go into the header.
+  static Result<CgatsWriter> begin(OutputFile file, const std::string& creator, const std::string& created);
+  // Error: a paint without readings.
+  Result<void> write(const paint::Paint& paint);
+  Result<void> finish();
+
+ private:
+  CgatsWriter(OutputFile file, std::string head) : file_(std::move(file)), head_(std::move(head)) {}
+  OutputFile file_;
+  std::string head_;
+  std::vector<paint::Paint> paints_;
+};
+
+}  // namespace goniochrome::formats

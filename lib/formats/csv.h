@@ -1,0 +1,69 @@
+// Paints as tables in text, read and written as a stream. Long: one row per sample and geometry,
+// `sample,geometry,illuminant,observer,L,a,b`. Wide: one row per sample, `sample,illuminant,observer,L15,a15,b15,...`.
+// goniochrome-paint(5), TABLES.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/file.h"
+#include "base/input.h"
+#include "base/result.h"
+#include "paint/paint.h"
+
+namespace goniochrome::formats {
+
+class CsvPaintReader {
+ public:
+  // Opens `path` ("-" is standard input), or goes on with an open file, and reads the header. Error: file, line, and
+  // what a header is.
+  static Result<CsvPaintReader> open(const std::string& path);
+  static Result<CsvPaintReader> open(InputFile input);
+  CsvPaintReader(CsvPaintReader&&) noexcept;
+  ~CsvPaintReader();
+
+  // The next paint, or nothing at the end. An error loses one row: next() goes on behind it, with the other rows of the
+  // same sample. The rows of a long table that belong to one sample must stand together.
+  Result<std::optional<paint::Paint>> next();
+
+  // The line (from 1) of the first row of the paint last returned.
+  int line() const;
+  // Whether the table is a wide one.
+  bool is_wide() const;
+  // What the header left open: columns that are not read, a viewing condition that is assumed.
+  const std::vector<std::string>& warnings() const;
+
+ private:
+  struct State;
+  explicit CsvPaintReader(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+struct CsvLayout {
+  // The geometries of a wide table, in order; a long one where there is none.
+  std::vector<paint::Geometry> wide;
+  // Also the columns class, code, instrument, gloss20, gloss60 and gloss85.
+  bool all_columns = false;
+};
+
+class CsvPaintWriter {
+ public:
+  // Begins a table on `file`.
+  static Result<CsvPaintWriter> begin(OutputFile file, const CsvLayout& layout);
+  // Writes the rows of one paint and hands them on at once where the output is standard output or a pipe. Error: a
+  // paint without rows, or with one that the layout has no column for.
+  Result<void> write(const paint::Paint& paint);
+  // Puts the file in place.
+  Result<void> finish();
+
+ private:
+  CsvPaintWriter(OutputFile file, CsvLayout layout)
+      : file_(std::move(file)), layout_(std::move(layout)), is_stream_(file_.scratch_path().empty()) {}
+  OutputFile file_;
+  CsvLayout layout_;
+  bool is_stream_;
+};
+
+}  // namespace goniochrome::formats

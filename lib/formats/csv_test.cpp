@@ -1,0 +1,301 @@
+#include "formats/csv.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "formats/internal/csv_records.h"
+#include "formats/scratch_for_test.h"
+#include "formats/xml.h"
+
+namespace goniochrome::formats {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const std::string kHeader = "sample,geometry,illuminant,observer,L,a,b\n";
+
+struct Reading {
+  std::vector<paint::Paint> paints;
+  std::vector<int> lines;
+  std::vector<std::string> errors, warnings;
+};
+
+Reading reading_of(const std::string& path) {
+  Reading reading;
+  const auto named = [](const std::string& message) {
+    const auto at = message.find("/p.csv");
+    return at == std::string::npos ? message : message.substr(at + 1);
+  };
+  auto reader = CsvPaintReader::open(path);
+  if (!reader.ok()) {
+    reading.errors.push_back(named(reader.error().message));
+    return reading;
+  }
+  for (const std::string& warning : reader->warnings()) reading.warnings.push_back(named(warning));
+  for (;;) {
+    auto paint = reader->next();
+    if (!paint.ok()) {
+      reading.errors.push_back(named(paint.error().message));
+      continue;
+    }
+    if (!*paint) return reading;
+    reading.paints.push_back(std::move(**paint));
+    reading.lines.push_back(reader->line());
+  }
+}
+
+Reading reading_of_text(const std::string& text) {
+  const ScratchFolder folder;
+  return reading_of(folder.file("p.csv", text));
+}
+
+std::string written(const std::vector<paint::Paint>& paints, const CsvLayout& layout) {
+  const ScratchFolder folder;
+  auto writer = CsvPaintWriter::begin(*OutputFile::create(folder.path("p.csv")), layout);
+  for (const paint::Paint& paint : paints) {
+    const auto done = writer->write(paint);
+    if (!done.ok()) return done.error().message;
+  }
+  EXPECT_TRUE(writer->finish().ok());
+  return folder.content("p.csv");
+}
+
+void expect_two_paints(const Reading& reading) {
+  EXPECT_THAT(reading.errors, ElementsAre());
+  ASSERT_EQ(reading.paints.size(), 2u);
+  const paint::Paint& first = reading.paints[0];
+  EXPECT_EQ(first.name, "RM331");
+  EXPECT_EQ(first.measurement->condition, (color::ViewingCondition{"A", 2}));
+  ASSERT_EQ(first.measurement->rows.size(), 2u);
+  EXPECT_EQ(paint::geometry_name(first.measurement->rows[0].geometry), "45as-15");
+  EXPECT_EQ(first.measurement->rows[0].lab, (color::Lab{41.87, -45.99, -21.5}));
+  EXPECT_EQ(first.measurement->rows[1].lab, (color::Lab{1, 2, 3}));
+  EXPECT_EQ(reading.paints[1].name, "b");
+  EXPECT_EQ(reading.paints[1].measurement->rows[0].lab, (color::Lab{4, 5, 6}));
+}
+
+TEST(PaintCsv, long_tables_in_every_dress) {
+  const std::string body = "RM331,45as-15,A,2,41.87,-45.99,-21.5\nRM331,45,A,2,1,2,3\nb,45as15,A,2,4,5,6\n";
+  const Reading plain = reading_of_text(kHeader + body);
+  expect_two_paints(plain);
+  EXPECT_THAT(plain.lines, ElementsAre(2, 4));
+  EXPECT_THAT(plain.warnings, ElementsAre());
+  expect_two_paints(reading_of_text("\xef\xbb\xbf" + kHeader + body));
+  expect_two_paints(reading_of_text("Sample,Geometry,Illuminant,Observer,L*,a*,b*\n" + body));
+  std::string semicolons = kHeader + body;
+  for (char& c : semicolons) c = c == ',' ? ';' : c == '.' ? ',' : c;
+  expect_two_paints(reading_of_text(semicolons));
+  std::string tabs = kHeader + body;
+  for (char& c : tabs) c = c == ',' ? '\t' : c == '.' ? ',' : c;
+  expect_two_paints(reading_of_text(tabs));
+  for (const char* end : {"\r\n", "\r"}) {
+    std::string lines;
+    for (const char c : kHeader + body) lines += c == '\n' ? end : std::string(1, c);
+    expect_two_paints(reading_of_text(lines));
+  }
+  expect_two_paints(reading_of_text("\n\n" + kHeader + "\n  \n" + body.substr(0, body.size() - 1)));
+  expect_two_paints(
+      reading_of_text("L , a, b ,observer,\"sample\",illuminant,geometry\n41.87,-45.99,-21.5,2,\"RM331\",A,45as-15\n"
+                      " 1 , +2 ,3e0,2, \"RM331\" ,A,45\n4,5,6,2,b,A,15\n"));
+}
+
+TEST(PaintCsv, wide_tables_leave_out_empty_geometries) {
+  const std::string header = "sample,illuminant,observer,L-15,a-15,b-15,L*45as45,a*45as45,b*45as45\n";
+  expect_two_paints(reading_of_text(header + "RM331,A,2,41.87,-45.99,-21.5,1,2,3\nb,A,2,,,,4,5,6\n"));
+  expect_two_paints(
+      reading_of_text("sample;illuminant;observer;L_Minus15;a_Minus15;b_Minus15;L (45);a (45);b (45)\n"
+                      "RM331;A;2;41,87;-45,99;-21,5;1;2;3\nb;A;2;;;;4;5;6\n"));
+  EXPECT_THAT(reading_of_text(header + "x,A,2,,,,,,\n").errors, ElementsAre("p.csv:2: sample \"x\" has no Lab values"));
+  EXPECT_THAT(reading_of_text(header + "x,A,2,1,,3,,,\n").errors,
+              ElementsAre("p.csv:2: a-15 is empty: write a number"));
+}
+
+TEST(PaintCsv, the_sample_tables_agree_with_the_sample_library) {
+  const std::string data = GONIOCHROME_TESTDATA;
+  const auto library = read_paints(data + "/paints.paints.xml");
+  ASSERT_TRUE(library.ok());
+  for (const char* name : {"/paints.csv", "/paints-wide.csv"}) {
+    const Reading reading = reading_of(data + name);
+    EXPECT_THAT(reading.errors, ElementsAre());
+    std::size_t i = 0;
+    for (const paint::Paint& paint : *library) {
+      if (!paint.measurement) continue;
+      ASSERT_LT(i, reading.paints.size());
+      const paint::Paint& row = reading.paints[i++];
+      EXPECT_EQ(row.name, paint.name);
+      EXPECT_EQ(row.measurement->condition, paint.measurement->condition);
+      ASSERT_EQ(row.measurement->rows.size(), paint.measurement->rows.size()) << name << paint.name;
+      for (const paint::LabReading& wanted : paint.measurement->rows) {
+        const auto found = std::ranges::find(row.measurement->rows, wanted.geometry, &paint::LabReading::geometry);
+        ASSERT_NE(found, row.measurement->rows.end());
+        EXPECT_EQ(found->lab, wanted.lab);
+      }
+    }
+    EXPECT_EQ(i, reading.paints.size());
+  }
+}
+
+TEST(PaintCsv, quoted_cells) {
+  const Reading reading =
+      reading_of_text(kHeader + "\"a, \"\"b\"\"\nc\",45as15,D65,10,1,2,3\n\"  d \",45as15,D65,10,1,2,3\n");
+  EXPECT_THAT(reading.errors, ElementsAre());
+  ASSERT_EQ(reading.paints.size(), 2u);
+  EXPECT_EQ(reading.paints[0].name, "a, \"b\"\nc");
+  EXPECT_EQ(reading.paints[1].name, "  d ");
+  EXPECT_THAT(reading.lines, ElementsAre(2, 4));
+  for (const std::string name : {"plain", "a, \"b\"\nc", "  d ", "\"", "\"\"", "", ";"}) {
+    const ScratchFolder folder;
+    CsvRecords records(*InputFile::open(folder.file("t", csv_cell(name) + ",x\n")));
+    std::vector<std::string> cells;
+    ASSERT_TRUE(records.next(cells).ok());
+    EXPECT_THAT(cells, ElementsAre(name, "x"));
+  }
+}
+
+TEST(PaintCsv, optional_columns) {
+  const Reading reading = reading_of_text(
+      "name,geometry,illuminant,observer,L,a,b,class,code,instrument,gloss20,gloss60,gloss85\n"
+      "m,15,D65,10,1,2,3,Metallic,RM,goni,80.5,92,\nm,45,D65,10,1,2,3,,,,,,\n");
+  EXPECT_THAT(reading.errors, ElementsAre());
+  const paint::Paint& paint = reading.paints.at(0);
+  EXPECT_EQ(paint.paint_class, paint::PaintClass::kMetallic);
+  EXPECT_EQ(paint.code, "RM");
+  EXPECT_EQ(paint.measurement->instrument, "goni");
+  ASSERT_EQ(paint.gloss.size(), 2u);
+  EXPECT_EQ(paint.gloss[0].gloss_units, 80.5);
+  EXPECT_EQ(paint.gloss[1].angle_deg, 60);
+}
+
+TEST(PaintCsv, what_the_header_leaves_open_is_told) {
+  const Reading reading = reading_of_text("sample,geometry,L,a,b,operator\nx,15,1,2,3,Ann\n");
+  EXPECT_EQ(reading.paints.at(0).measurement->condition, (color::ViewingCondition{"D65", 10}));
+  EXPECT_THAT(reading.warnings,
+              ElementsAre(HasSubstr("the columns \"operator\" are not read"), HasSubstr("taken as D65 and 10 deg")));
+}
+
+TEST(PaintCsv, headers_that_are_none) {
+  const auto error = [](const std::string& text) { return reading_of_text(text).errors.at(0); };
+  EXPECT_EQ(error(""), "p.csv: is empty: begin with sample,geometry,illuminant,observer,L,a,b");
+  EXPECT_THAT(error("hello world\n"), HasSubstr("p.csv:1: the header has no column \"sample\": begin with"));
+  EXPECT_THAT(error("sample,geometry,L,a\n"), HasSubstr("the header has no column \"b\""));
+  EXPECT_THAT(error("sample,x,y\n"), HasSubstr("neither a column \"geometry\" nor columns like L15, a15, b15"));
+  EXPECT_THAT(error("sample,L15,a15\n"), HasSubstr("the header has no column b45as15"));
+  EXPECT_THAT(error("sample,L15,a15,b15,L45as15\n"), HasSubstr("two columns are named L45as15: keep one"));
+  EXPECT_THAT(error("sample,sample,L15,a15,b15\n"), HasSubstr("two columns are named sample: keep one"));
+  EXPECT_THAT(error("\xff\xfes\0a\0"), HasSubstr("the table is UTF-16: save it as CSV UTF-8"));
+  EXPECT_THAT(error(kHeader + "\"open\n"), HasSubstr("p.csv:2: a quotation mark is left open"));
+}
+
+TEST(PaintCsv, wrong_cells_lose_a_row_and_name_line_column_value_and_remedy) {
+  const Reading reading = reading_of_text(kHeader +
+                                          "a,15,D65,10,1,2,3\n"
+                                          "a,25,D65,10,1,\"12,5\",3\n"
+                                          "a,45,D65,10,1,two,3\n"
+                                          "a,75,D65,10,,2,3\n"
+                                          "a,45xx,D65,10,1,2,3\n"
+                                          "a,15,D65,10,1,2,3\n"
+                                          "a,110,A,10,1,2,3\n"
+                                          "a,110,D65,4,1,2,3\n"
+                                          "a,110,D65,10,1,5,2,3\n"
+                                          "a,110,D65,10,1,2\n"
+                                          ",110,D65,10,1,2,3\n"
+                                          "b,15,D65,10,nan,2,3\n"
+                                          "b,25,,10,1,2,3\n"
+                                          "c\xe9,15,D65,10,1,2,3\n"
+                                          "d,15,D65,10,1,2,3\n");
+  EXPECT_THAT(
+      reading.errors,
+      ElementsAre("p.csv:3: a is \"12,5\": write a decimal point", "p.csv:4: a is \"two\": write a number such as 12.5",
+                  "p.csv:5: L is empty: write a number",
+                  "p.csv:6: geometry \"45xx\" is not understood: write it like 45as15, 45as-15, r45as15, "
+                  "45as25az90 or 15",
+                  "p.csv:7: geometry 45as15 of sample \"a\" is already at line 2: keep one, or give the mean",
+                  "p.csv:8: sample \"a\" has another illuminant or observer than on line 2: a paint has one; "
+                  "give the others names of their own",
+                  "p.csv:9: observer is \"4\": write 2 or 10 (degrees)",
+                  "p.csv:10: the row has 8 cells and the header 7: write decimal points, or separate the cells by ;",
+                  "p.csv:11: the row has 6 cells and the header 7: fill or remove cells",
+                  "p.csv:12: sample is empty: name every row", "p.csv:13: L is \"nan\": write a finite number",
+                  "p.csv:14: illuminant is empty: write D65, A, ...",
+                  "p.csv:15: a character is not valid UTF-8: save the table as CSV UTF-8"));
+  // The good rows are there; a sample without any is not.
+  ASSERT_EQ(reading.paints.size(), 2u);
+  EXPECT_EQ(reading.paints[0].name, "a");
+  EXPECT_EQ(reading.paints[0].measurement->rows.size(), 1u);
+  EXPECT_EQ(reading.paints[1].name, "d");
+}
+
+TEST(PaintCsv, duplicate_names_are_told_with_both_lines) {
+  const Reading reading = reading_of_text(kHeader +
+                                          "a,15,D65,10,1,2,3\nb,15,D65,10,1,2,3\nb,45,D65,10,1,2,3\n"
+                                          "a,25,D65,10,1,2,3\na,45,D65,10,1,2,3\nc,15,D65,10,1,2,3\n");
+  EXPECT_THAT(reading.errors,
+              ElementsAre("p.csv:5: sample \"a\" is already at line 2: put its rows together, or rename it"));
+  EXPECT_EQ(reading.paints.size(), 3u);
+  EXPECT_THAT(reading_of_text("sample,L15,a15,b15\na,1,2,3\na,1,2,3\n").errors,
+              ElementsAre("p.csv:3: sample \"a\" is already at line 2: rename one of them"));
+}
+
+paint::Paint paint_with(const std::string& name, const std::vector<std::pair<const char*, color::Lab>>& rows) {
+  paint::Paint paint;
+  paint.name = name;
+  paint.measurement.emplace();
+  for (const auto& [geometry, lab] : rows) paint.measurement->rows.push_back({*paint::parse_geometry(geometry), lab});
+  return paint;
+}
+
+TEST(PaintCsv, written_as_the_contract_says) {
+  paint::Paint paint = paint_with("a, b", {{"15", {41.87, -45.99, 1.0 / 3}}, {"45as25az90", {1, 2, 3}}});
+  EXPECT_EQ(written({paint}, {}), kHeader +
+                                      "\"a, b\",45as15,D65,10,41.87,-45.99,0.3333333333333333\n"
+                                      "\"a, b\",45as25az90,D65,10,1,2,3\n");
+  paint.paint_class = paint::PaintClass::kPearl;
+  paint.gloss = {{60, 92.1}};
+  EXPECT_EQ(written({paint}, {{}, true}),
+            "sample,geometry,illuminant,observer,L,a,b,class,code,instrument,gloss20,gloss60,gloss85\n"
+            "\"a, b\",45as15,D65,10,41.87,-45.99,0.3333333333333333,pearl,,,,92.1,\n"
+            "\"a, b\",45as25az90,D65,10,1,2,3,pearl,,,,92.1,\n");
+  const CsvLayout wide{
+      {*paint::parse_geometry("-15"), *paint::parse_geometry("15"), *paint::parse_geometry("45as25az90")}, false};
+  EXPECT_EQ(written({paint}, wide),
+            "sample,illuminant,observer,L-15,a-15,b-15,L15,a15,b15,L45as25az90,a45as25az90,b45as25az90\n"
+            "\"a, b\",D65,10,,,,41.87,-45.99,0.3333333333333333,1,2,3\n");
+  EXPECT_THAT(written({paint}, {{*paint::parse_geometry("15")}, false}), HasSubstr("the table has no columns for"));
+  paint.measurement.reset();
+  EXPECT_THAT(written({paint}, {}), HasSubstr("has no Lab values"));
+}
+
+TEST(PaintCsv, both_forms_come_back_to_the_last_bit) {
+  const ScratchFolder folder;
+  paint::Paint paint = paint_with("x", {{"-15", {160.0 / 3, -1e-17, 1e5 / 7}}, {"15", {0.1 + 0.2, -0.0, 5e-324}}});
+  paint.gloss = {{20, 1.0 / 3}};
+  paint.code = "c";
+  paint.measurement->instrument = "i \"1\"";
+  for (const CsvLayout& layout :
+       {CsvLayout{{}, true}, CsvLayout{{*paint::parse_geometry("-15"), *paint::parse_geometry("15")}, true}}) {
+    const Reading back = reading_of_text(written({paint}, layout));
+    EXPECT_THAT(back.errors, ElementsAre());
+    const paint::Paint& read = back.paints.at(0);
+    for (int i = 0; i < 2; ++i) EXPECT_EQ(read.measurement->rows.at(i).lab, paint.measurement->rows[i].lab);
+    EXPECT_EQ(read.gloss.at(0).gloss_units, 1.0 / 3);
+    EXPECT_EQ(read.code, "c");
+    EXPECT_EQ(read.measurement->instrument, "i \"1\"");
+  }
+}
+
+TEST(PaintCsv, measured_paints_RealData) {
+  const char* data = std::getenv("GONIOCHROME_DATA");
+  if (!data) GTEST_SKIP() << "GONIOCHROME_DATA is not set";
+  const Reading measured = reading_of(std::string(data) + "/lab/measured-multiangle.csv");
+  EXPECT_THAT(measured.errors, ElementsAre());
+  EXPECT_EQ(measured.paints.size(), 10u);
+  const Reading reconstructed = reading_of(std::string(data) + "/lab/reconstructed-multiangle.csv");
+  EXPECT_THAT(reconstructed.errors, ElementsAre());
+  EXPECT_EQ(reconstructed.paints.size(), 80u);
+}
+
+}  // namespace
+}  // namespace goniochrome::formats

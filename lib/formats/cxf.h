@@ -1,0 +1,57 @@
+// CxF3 (ISO 17972-1): colors of objects, each under a color specification that says illuminant, observer and geometry.
+// A paint is an object; each of its angles has a specification of its own, MultiAngle with one BRDFAngle.
+// goniochrome-paint(5).
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/file.h"
+#include "base/result.h"
+#include "formats/imported.h"
+#include "paint/paint.h"
+
+namespace goniochrome::formats {
+
+// Whether a file that begins with `head` is CxF.
+bool looks_cxf(std::string_view head);
+
+// Reads objects with CIELAB, CIELCh or reflectance spectra at angles; spectra are integrated under their
+// specification's illuminant and observer, or those of `options`. One value under a specification of several angles
+// stands for all of them. The specifications stand last in the file, so what was read of the objects is held till then.
+// What cannot be placed is left out with a warning. Errors name file and line.
+Result<ImportedPaints> read_cxf(InputFile input, const ImportOptions& options);
+
+// Writes paints as they come.
+class CxfWriter {
+ public:
+  struct Info {
+    std::string creator, description;   // who made the file, and how
+    std::string created;                // date and time as in 2026-11-21T10:00:00Z
+    bool one_object_per_angle = false;  // for readers that take only the first Lab of an object
+  };
+  static Result<CxfWriter> begin(OutputFile file, const Info& info);
+  // Error: a paint without readings, or an L* below 0, which CxF3 does not allow.
+  Result<void> write(const paint::Paint& paint);
+  Result<void> finish();
+
+ private:
+  struct Specification {
+    color::ViewingCondition condition;
+    std::string instrument;
+    paint::Geometry geometry;
+    friend bool operator==(const Specification&, const Specification&) = default;
+  };
+  CxfWriter(OutputFile file, Info info) : file_(std::move(file)), info_(std::move(info)) {}
+  std::size_t number_of(const Specification& specification);
+  std::string object(const paint::Paint& paint, const std::vector<paint::LabReading>& rows, const std::string& part,
+                     bool first);
+
+  OutputFile file_;
+  Info info_;
+  std::vector<Specification> specifications_;  // in the order of first use; a library has few
+  std::size_t objects_ = 0;
+};
+
+}  // namespace goniochrome::formats

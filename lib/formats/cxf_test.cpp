@@ -1,0 +1,303 @@
+#include "formats/cxf.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "formats/internal/import_for_test.h"
+
+namespace goniochrome::formats {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class Cxf : public ImportTest<read_cxf> {
+ protected:
+  void write(const std::vector<paint::Paint>& paints, bool one_object_per_angle) const {
+    auto writer = CxfWriter::begin(OutputFile::create(path()).value(),
+                                   {"test <1>", "made & tried", "2026-01-02T03:04:05Z", one_object_per_angle});
+    ASSERT_TRUE(writer.ok());
+    for (const paint::Paint& paint : paints) ASSERT_TRUE(writer->write(paint).ok());
+    ASSERT_TRUE(writer->finish().ok());
+  }
+};
+
+paint::Geometry geometry(const char* name) {
+  return paint::parse_geometry(name).value();
+}
+
+std::vector<paint::Paint> two_paints() {
+  paint::Paint a;
+  a.name = "blue \"night\" & <7>", a.code = "B-7", a.paint_class = paint::PaintClass::kMetallic;
+  a.measurement = paint::Measurement{{"D65", 10},
+                                     "MA-T12",
+                                     {{geometry("45as15"), {41.87, -45.99, -21.73 / 3}},
+                                      {geometry("45as-15"), {1.0 / 3, 1e-17, -1e30}},
+                                      {geometry("45as25az-76"), {130.5, 0, -0.1}},
+                                      {geometry("45as15az0"), {30, 1, 2}},
+                                      {geometry("r45as45"), {0, 0, 0}}}};
+  a.gloss = {{20, 1.0 / 7}, {60, 92.1}};
+  paint::Paint b;
+  b.name = "plain";
+  b.measurement = paint::Measurement{{"LED-B3", 2}, "", {{geometry("45as15"), {2, 3, 4}}}};
+  return {a, b};
+}
+
+void expect_same(const std::vector<paint::Paint>& was, const std::vector<paint::Paint>& is) {
+  ASSERT_EQ(is.size(), was.size());
+  for (std::size_t p = 0; p < was.size(); ++p) {
+    EXPECT_EQ(is[p].name, was[p].name);
+    EXPECT_EQ(is[p].code, was[p].code);
+    EXPECT_EQ(is[p].paint_class, was[p].paint_class);
+    EXPECT_EQ(is[p].measurement->condition, was[p].measurement->condition);
+    EXPECT_EQ(is[p].measurement->instrument, was[p].measurement->instrument);
+    ASSERT_EQ(is[p].measurement->rows.size(), was[p].measurement->rows.size());
+    for (std::size_t i = 0; i < was[p].measurement->rows.size(); ++i) {
+      EXPECT_EQ(is[p].measurement->rows[i].geometry, was[p].measurement->rows[i].geometry);
+      EXPECT_EQ(is[p].measurement->rows[i].lab, was[p].measurement->rows[i].lab);
+    }
+    ASSERT_EQ(is[p].gloss.size(), was[p].gloss.size());
+    for (std::size_t i = 0; i < was[p].gloss.size(); ++i) {
+      EXPECT_EQ(is[p].gloss[i].angle_deg, was[p].gloss[i].angle_deg);
+      EXPECT_EQ(is[p].gloss[i].gloss_units, was[p].gloss[i].gloss_units);
+    }
+  }
+}
+
+TEST_F(Cxf, round_trip_keeps_every_bit) {
+  for (const bool one_object_per_angle : {false, true}) {
+    write(two_paints(), one_object_per_angle);
+    const auto read = read_file(path());
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    EXPECT_THAT(read->warnings, IsEmpty());
+    expect_same(two_paints(), read->paints);
+  }
+}
+
+TEST_F(Cxf, one_object_per_angle_puts_one_lab_into_each) {
+  write(two_paints(), true);
+  const std::string text = file_content(path()).value();
+  std::size_t objects = 0, colors = 0;
+  for (std::size_t at = 0; (at = text.find("<cc:Object ", at)) != std::string::npos; ++at) ++objects;
+  for (std::size_t at = 0; (at = text.find("<cc:ColorCIELab", at)) != std::string::npos; ++at) ++colors;
+  EXPECT_EQ(objects, 6u);
+  EXPECT_EQ(colors, 6u);
+  EXPECT_THAT(text, HasSubstr("Name=\"plain 45as15\""));
+}
+
+TEST_F(Cxf, writer_refuses_what_the_format_cannot_hold) {
+  auto writer = CxfWriter::begin(OutputFile::create(path()).value(), {});
+  paint::Paint paint;
+  paint.name = "empty";
+  EXPECT_THAT(writer->write(paint).error().message, HasSubstr("\"empty\" has no readings"));
+  paint.measurement = paint::Measurement{{}, "", {{geometry("45as110"), {-0.5, 0, 0}}}};
+  EXPECT_THAT(writer->write(paint).error().message, HasSubstr("at 45as110: L* is -0.5"));
+}
+
+// --- files of others
+// -----------------------------------------------------------------------------------------------------
+
+std::string cxf(const std::string& objects, const std::string& specifications) {
+  return "<CxF xmlns=\"http://colorexchangeformat.com/CxF3-core\"><Resources><ObjectCollection>" + objects +
+         "</ObjectCollection>\n<ColorSpecificationCollection>" + specifications +
+         "</ColorSpecificationCollection></Resources></CxF>";
+}
+std::string object(const std::string& name, const std::string& colors, const std::string& more = "") {
+  return "<Object ObjectType=\"Standard\" Name=\"" + name +
+         "\" Id=\"x1\"><CreationDate>2026-01-01T00:00:00Z</CreationDate><ColorValues>" + colors + "</ColorValues>" +
+         more + "</Object>";
+}
+std::string lab(const std::string& specification, const char* values = "<L>50</L><A>1</A><B>2</B>") {
+  return "<ColorCIELab ColorSpecification=\"" + specification + "\">" + values + "</ColorCIELab>";
+}
+std::string specification(const std::string& id, const std::string& geometries, const std::string& more = "",
+                          const std::string& condition = "<Illuminant>A</Illuminant><Observer>10_Degree</Observer>") {
+  return "<ColorSpecification Id=\"" + id + "\"><TristimulusSpec>" + condition +
+         "<Method>unknown</Method></TristimulusSpec><MeasurementSpec><MeasurementType>Spectrum_Reflectance</"
+         "MeasurementType>"
+         "<GeometryChoice>" +
+         geometries + "</GeometryChoice>" + more + "</MeasurementSpec></ColorSpecification>";
+}
+std::string angles(std::initializer_list<std::pair<int, const char*>> list) {
+  std::string text = "<MultiAngle>";
+  for (const auto& [aspecular, rest] : list)
+    text += "<BRDFAngle Notation=\"" + std::to_string(aspecular) +
+            "as\"><IlluminationAngle>45</IlluminationAngle><Aspecular>" + std::to_string(aspecular) + "</Aspecular>" +
+            rest + "</BRDFAngle>";
+  return text + "</MultiAngle>";
+}
+
+TEST_F(Cxf, values_find_their_angles) {
+  const auto paints = good(cxf(
+      object("one for all", lab("m")) + object("one each", lab("m") + lab("m", "<L>60</L><A>3</A><B>4</B>")) +
+          object("too many", lab("m") + lab("m") + lab("m")) + object("nowhere", lab("gone")) +
+          object("flat", lab("f") + "<ColorCIELCh ColorSpecification=\"z\"><L>5</L><C>10</C><H>90</H></ColorCIELCh>"),
+      specification("m", angles({{15, ""}, {25, "<Azimuth>60</Azimuth>"}})) +
+          specification(
+              "f",
+              "<SingleAngle><SingleAngleConfiguration>Annular</SingleAngleConfiguration>"
+              "<IlluminationAngle>45.0</IlluminationAngle><MeasurementAngle>0.0</MeasurementAngle></SingleAngle>") +
+          specification("z", angles({{75, "<Azimuth>0</Azimuth>"}}), "<Device><Model>meter</Model></Device>")));
+  ASSERT_EQ(paints.paints.size(), 3u);
+  const auto& all = paints.paints[0].measurement->rows;
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[0].lab, all[1].lab);
+  EXPECT_EQ(all[1].geometry, geometry("45as25az60"));
+  EXPECT_EQ(paints.paints[0].measurement->condition, (color::ViewingCondition{"A", 10}));
+  const auto& each = paints.paints[1].measurement->rows;
+  ASSERT_EQ(each.size(), 2u);
+  EXPECT_EQ(each[0].lab.L, 50);
+  EXPECT_EQ(each[1].lab.L, 60);
+  const auto& flat = paints.paints[2].measurement->rows;
+  EXPECT_EQ(flat[0].geometry, geometry("45as45"));
+  EXPECT_EQ(flat[1].geometry, geometry("45as75"));
+  EXPECT_NEAR(flat[1].lab.b, 10, 1e-12);
+  EXPECT_EQ(paints.paints[2].measurement->instrument, "meter");
+  EXPECT_THAT(paints.warnings, Contains(HasSubstr("one value stands for several angles (one for all)")));
+  EXPECT_THAT(paints.warnings,
+              Contains(HasSubstr("3 values under a specification of 2 angles were left out (too many and 2 more)")));
+  EXPECT_THAT(paints.warnings, Contains(HasSubstr("\"gone\" is not in the file")));
+}
+
+TEST_F(Cxf, objects_without_a_name_get_one) {
+  const std::string bare = "<Object ObjectType=\"Standard\"><ColorValues>" + lab("m") + "</ColorValues></Object>";
+  const auto paints = good(cxf(bare + bare, specification("m", angles({{15, ""}}))));
+  ASSERT_EQ(paints.paints.size(), 2u);
+  EXPECT_THAT(paints.paints[0].name, HasSubstr("line "));
+  EXPECT_NE(paints.paints[0].name, paints.paints[1].name);
+  EXPECT_THAT(paints.warnings, Contains(HasSubstr("called by their line")));
+}
+
+TEST_F(Cxf, spectra_become_lab_under_their_specification) {
+  std::string ones;
+  for (int i = 0; i < 41; ++i) ones += " 0.5";
+  const std::string spectrum = "<ReflectanceSpectrum ColorSpecification=\"s\">" + ones + "</ReflectanceSpectrum>";
+  const std::string text =
+      cxf(object("gray", spectrum),
+          specification("s", angles({{15, ""}}), "<WavelengthRange StartWL=\"380\" Increment=\"10\"/>"));
+  const auto paints = good(text);
+  ASSERT_EQ(paints.paints.size(), 1u);
+  const color::Lab gray = paints.paints[0].measurement->rows[0].lab;
+  EXPECT_NEAR(gray.L, 116 * std::cbrt(0.5) - 16, 1e-9);
+  EXPECT_NEAR(gray.a, 0, 1e-9);
+  EXPECT_NEAR(gray.b, 0, 1e-9);
+  EXPECT_THAT(paints.warnings, IsEmpty());
+  // The file's own Lab goes before.
+  const auto own =
+      good(cxf(object("gray", spectrum + lab("s")),
+               specification("s", angles({{15, ""}}), "<WavelengthRange StartWL=\"380\" Increment=\"10\"/>")));
+  EXPECT_EQ(own.paints[0].measurement->rows[0].lab.L, 50);
+}
+
+TEST_F(Cxf, conditions_are_chosen_or_assumed) {
+  const std::string text =
+      cxf(object("p", lab("a") + lab("b", "<L>10</L><A>0</A><B>0</B>"),
+                 "<PhysicalAttributes><Gloss>80</Gloss></PhysicalAttributes>"),
+          specification("a", angles({{15, ""}})) +
+              specification("b", angles({{15, ""}}), "", "<Illuminant>D50</Illuminant><Observer>2_Degree</Observer>"));
+  const auto first = good(text);
+  EXPECT_EQ(first.paints[0].measurement->rows[0].lab.L, 50);
+  EXPECT_EQ(first.paints[0].gloss[0].angle_deg, 60);
+  EXPECT_THAT(first.warnings,
+              ElementsAre(HasSubstr("gloss without its angle"), HasSubstr("--illuminant and --observer")));
+  EXPECT_EQ(good(text, {"D50", 2, false}).paints[0].measurement->rows[0].lab.L, 10);
+  const auto silent = good(cxf(object("p", lab("a")), specification("a", angles({{15, ""}}), "", "")));
+  EXPECT_EQ(silent.paints[0].measurement->condition, (color::ViewingCondition{"D65", 10}));
+  EXPECT_THAT(silent.warnings, ElementsAre(HasSubstr("taken as D65/10")));
+}
+
+TEST_F(Cxf, refusals_name_the_line) {
+  EXPECT_THAT(refusal(cxf("\n" + object("p", lab("a", "\n<L>12,5</L><A>1</A><B>2</B>")), "")),
+              HasSubstr(":3: L is \"12,5\": write a number with a decimal point"));
+  EXPECT_THAT(refusal("<CxF xmlns=\"http://colorexchangeformat.com/v2\"/>"), HasSubstr("export CxF3"));
+  EXPECT_THAT(refusal("<html/>"), HasSubstr("no CxF file"));
+  EXPECT_THAT(refusal(""), HasSubstr("is empty"));
+  const auto kept = good(cxf(object("p", lab("a", "<L>x</L><A>1</A><B>2</B>")) + object("q", lab("a")),
+                             specification("a", angles({{15, ""}}))),
+                         {"", 0, true});
+  ASSERT_EQ(kept.paints.size(), 1u);
+  EXPECT_EQ(kept.paints[0].name, "q");
+  EXPECT_THAT(kept.skipped, ElementsAre(HasSubstr("L is \"x\"")));
+}
+
+TEST_F(Cxf, hostile_files_are_refused) {
+  const std::string good_file = cxf(object("p", lab("a")), specification("a", angles({{15, ""}})));
+  EXPECT_THAT(refusal("<!DOCTYPE CxF [<!ENTITY a \"aaaaaaaaaa\"><!ENTITY b \"&a;&a;&a;\">]>" + good_file),
+              HasSubstr("<!DOCTYPE"));
+  EXPECT_THAT(refusal("<!DOCTYPE CxF SYSTEM \"file:///etc/passwd\">" + good_file), HasSubstr("<!DOCTYPE"));
+  EXPECT_THAT(refusal(std::string_view(good_file).substr(0, good_file.size() / 2)), HasSubstr("cut off"));
+  EXPECT_THAT(refusal(cxf(object(std::string(3 << 20, 'x'), lab("a")), "")), HasSubstr("longer than"));
+  EXPECT_THAT(refusal(cxf(object("\xFF", lab("a")), "")), HasSubstr("UTF-8"));
+  std::string deep = "<CxF xmlns=\"http://colorexchangeformat.com/CxF3-core\">";
+  for (int i = 0; i < 2000; ++i) deep += "<a>";
+  EXPECT_FALSE(read(deep).ok());
+}
+
+// --- the published schema and samples
+// ------------------------------------------------------------------------------------
+
+std::string data_path(const std::string& relative) {
+  return std::string(std::getenv("GONIOCHROME_DATA")) + "/cxf/" + relative;
+}
+
+TEST_F(Cxf, output_is_valid_under_the_published_schemaRealData) {
+  if (!std::getenv("GONIOCHROME_DATA")) GTEST_SKIP() << "GONIOCHROME_DATA is not set";
+  if (std::system("xmllint --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "xmllint is not installed";
+  for (const bool one_object_per_angle : {false, true}) {
+    write(two_paints(), one_object_per_angle);
+    EXPECT_EQ(
+        std::system(fmt::format("xmllint --noout --schema {} {} 2>&1", data_path("CxF3_Core.xsd"), path()).c_str()), 0);
+  }
+  write({}, false);
+  EXPECT_EQ(std::system(fmt::format("xmllint --noout --schema {} {} 2>&1", data_path("CxF3_Core.xsd"), path()).c_str()),
+            0);
+}
+
+TEST_F(Cxf, published_samples_are_readRealData) {
+  if (!std::getenv("GONIOCHROME_DATA")) GTEST_SKIP() << "GONIOCHROME_DATA is not set";
+  for (const char* empty : {"minimal_cxf.cxf", "empty_sections.cxf", "multiple_objects.cxf"}) {
+    const auto read = read_file(data_path(empty));
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    EXPECT_THAT(read->paints, IsEmpty());
+    EXPECT_EQ(read->warnings.size(), 1u);
+  }
+  const auto target = read_file(data_path("sample.cxf"));
+  ASSERT_TRUE(target.ok());
+  ASSERT_EQ(target->paints.size(), 144u);
+  EXPECT_EQ(target->paints[0].measurement->condition, (color::ViewingCondition{"D50", 2}));
+  EXPECT_EQ(target->paints[0].measurement->rows[0].lab, (color::Lab{17.64167, 1.076669, 0.3338588}));
+
+  const auto edges = read_file(data_path("geometry_edge_cases.cxf"));
+  ASSERT_TRUE(edges.ok());
+  ASSERT_EQ(edges->paints.size(), 2u);
+  std::vector<std::string> names;
+  for (const paint::Paint& paint : edges->paints)
+    for (const paint::LabReading& row : paint.measurement->rows) names.push_back(paint::geometry_name(row.geometry));
+  EXPECT_THAT(names, ElementsAre("45as15", "45as25", "45as45", "45as15az30", "45as25az60"));
+  EXPECT_EQ(edges->warnings.size(), 5u);
+}
+
+// The sample holds its Lab and its spectra: ours from the spectra against its own, both D50/2.
+TEST_F(Cxf, spectra_of_the_sample_give_its_labRealData) {
+  if (!std::getenv("GONIOCHROME_DATA")) GTEST_SKIP() << "GONIOCHROME_DATA is not set";
+  const auto stated = read_file(data_path("sample.cxf"));
+  std::string text = file_content(data_path("sample.cxf")).value();
+  for (std::size_t at = 0; (at = text.find("<cc:ColorCIELab", at)) != std::string::npos;) {
+    const auto end = text.find("</cc:ColorCIELab>", at);
+    text.erase(at, end - at + 17);
+  }
+  const auto integrated = good(text);
+  ASSERT_EQ(integrated.paints.size(), stated->paints.size());
+  double sum = 0;
+  for (std::size_t i = 0; i < stated->paints.size(); ++i)
+    sum += color::delta_e_76(stated->paints[i].measurement->rows[0].lab, integrated.paints[i].measurement->rows[0].lab);
+  // Its maker summed 10 nm weights; ours interpolate to 1 nm and hold 680 nm for the rest.
+  EXPECT_LT(sum / static_cast<double>(stated->paints.size()), 0.6);
+}
+
+}  // namespace
+}  // namespace goniochrome::formats

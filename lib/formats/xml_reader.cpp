@@ -1,0 +1,515 @@
+#include <algorithm>
+#include <array>
+#include <deque>
+#include <limits>
+
+#include "base/text.h"
+#include "base/utf8.h"
+#include "formats/internal/schemas.h"
+#include "formats/internal/xml_copy.h"
+#include "formats/internal/xml_stream.h"
+#include "formats/internal/xml_values.h"
+#include "formats/name_ledger.h"
+#include "formats/xml.h"
+#include "paint/curve.h"
+
+namespace goniochrome::formats {
+
+namespace {
+
+enum class Node {
+  kDocument,
+  kPaints,
+  kProcessing,
+  kPaint,
+  kMeasurement,
+  kLab,
+  kGloss,
+  kAppearance,
+  kFace,
+  kFlop,
+  kAnisotropy,
+  kColorMap,
+  kLobes,
+  kDiffuse,
+  kLobe,
+  kView,
+  kViewDiffuse,
+  kViewLobe
+};
+
+// The elements of paint XML: where each stands and what attributes it takes ("?" marks those that may be missing). The
+// schema says the same; this table says it in words that help.
+struct ElementRule {
+  Node node, parent;
+  std::string_view name, attributes;
+};
+constexpr std::array kRules = {
+    ElementRule{Node::kPaints, Node::kDocument, "paints", "version"},
+    ElementRule{Node::kProcessing, Node::kPaints, "processing", "tool version command"},
+    ElementRule{Node::kPaint, Node::kPaints, "paint", "name class? code?"},
+    ElementRule{Node::kMeasurement, Node::kPaint, "measurement", "illuminant observer instrument?"},
+    ElementRule{Node::kLab, Node::kMeasurement, "lab", "geometry L a b"},
+    ElementRule{Node::kGloss, Node::kPaint, "gloss", "angle"},
+    ElementRule{Node::kAppearance, Node::kPaint, "appearance", "travel residual_de00?"},
+    ElementRule{Node::kFace, Node::kAppearance, "face", "L a b"},
+    ElementRule{Node::kFlop, Node::kAppearance, "flop", "L a b"},
+    ElementRule{Node::kAnisotropy, Node::kPaint, "anisotropy", "alphaX alphaY"},
+    ElementRule{Node::kColorMap, Node::kPaint, "colorMap", "href index?"},
+    ElementRule{Node::kLobes, Node::kPaint, "lobes", "space basis method max_de00 mean_de00"},
+    ElementRule{Node::kDiffuse, Node::kLobes, "diffuse", "r g b"},
+    ElementRule{Node::kLobe, Node::kLobes, "lobe", "exponent ddr ddg ddb gr gg gb"},
+    ElementRule{Node::kView, Node::kLobes, "view", "angle"},
+    ElementRule{Node::kViewDiffuse, Node::kView, "diffuse", "r g b"},
+    ElementRule{Node::kViewLobe, Node::kView, "lobe", "exponent ddr ddg ddb gr gg gb"},
+};
+
+std::string_view name_of(Node node) {
+  return std::ranges::find(kRules, node, &ElementRule::node)->name;
+}
+
+std::string children_of(Node parent) {
+  std::string names;
+  for (const ElementRule& rule : kRules)
+    if (rule.parent == parent) names += fmt::format("{}<{}>", names.empty() ? "" : ", ", rule.name);
+  return names.empty() ? "nothing" : names;
+}
+
+constexpr const char* kRoot = "<paints xmlns=\"urn:goniochrome:paint:1\" version=\"1\">";
+
+// What the stream has found: a paint or what is wrong with it.
+struct Found {
+  Result<paint::Paint> paint;
+  int line;
+};
+
+// Turns elements into paints. A wrong value inside a paint ends up in its place; all else ends the document.
+class PaintHandler : public XmlHandler {
+ public:
+  explicit PaintHandler(std::string file) : file_(std::move(file)) {}
+
+  Result<void> start(const XmlTag& tag) override;
+  Result<void> end(int line) override;
+  Result<void> text(std::string_view text, int line) override;
+  Result<void> invalid(int line, const std::string& why) override;
+  // The document broke off: what was already known to be wrong with the open paint is told first.
+  void break_off() {
+    if (lost_) found.push_back({*lost_, paint_line_});
+  }
+
+  std::deque<Found> found;
+  std::vector<Processing> processing;
+  std::vector<std::string> foreign;
+  bool in_paints = false;      // the first paint has begun
+  std::size_t bytes_read = 0;  // of the whole input, kept up to date by the reader
+
+ private:
+  Result<void> element(const XmlTag& tag);
+  Result<void> foreign_element(const XmlTag& tag);
+  Result<void> begin(Node node, const XmlValues& values);
+  Result<void> begin_document(const XmlTag& tag, const XmlValues& values);
+  Result<void> begin_paint(const XmlValues& values);
+  Result<void> begin_measurement(const XmlValues& values);
+  Result<void> begin_lab(const XmlValues& values);
+  Result<void> begin_gloss(const XmlValues& values);
+  Result<void> begin_appearance(const XmlValues& values);
+  Result<void> begin_lobes(const XmlValues& values);
+  Result<void> begin_lobe(const XmlValues& values, std::vector<paint::Lobe>& lobes);
+  Result<void> begin_view(const XmlValues& values);
+  Result<void> finish(Node node, int line);
+  Result<void> once(bool seen, const XmlValues& values) const;
+  Result<void> lose_paint(const Error& error);
+  Node current() const { return open_.empty() ? Node::kDocument : open_.back(); }
+  bool in_paint() const { return depth_ >= 2 && in_paints; }
+
+  std::string file_;
+  NameLedger names_;
+  std::vector<Node> open_;
+  int depth_ = 0;                  // elements open, ours or not
+  std::vector<XmlScope> scope_;    // of <paints> and of the open <paint>
+  XmlCopy copy_{kPaintNamespace};  // of the foreign element that is open
+  std::optional<Error> lost_;      // what is wrong with the open paint; the rest of it is skipped
+  paint::Paint paint_;
+  int paint_line_ = 0;
+  std::size_t paint_bytes_ = 0;
+  bool has_face_ = false, has_flop_ = false, has_diffuse_ = false, has_view_diffuse_ = false;
+  std::string gloss_text_;
+  int gloss_line_ = 0;
+};
+
+Result<void> PaintHandler::lose_paint(const Error& error) {
+  if (!in_paint()) return error;
+  if (!lost_) lost_ = error;
+  return {};
+}
+
+Result<void> PaintHandler::start(const XmlTag& tag) {
+  ++depth_;
+  if (lost_) return {};
+  if (in_paint() && bytes_read - paint_bytes_ > kLargestPaint_bytes)
+    return input_error("{}:{}: paint \"{}\" is longer than {} MB: split it", file_, tag.line, shown(paint_.name),
+                       kLargestPaint_bytes >> 20);
+  if (copy_.active()) return copy_.start(tag, {}), Result<void>();
+  // A paint that is refused as a whole counts as begun, so that it alone is lost.
+  in_paints = in_paints || (depth_ == 2 && tag.name == "paint" && tag.space == kPaintNamespace);
+  const auto done = element(tag);
+  return done.ok() ? done : lose_paint(done.error());
+}
+
+Result<void> PaintHandler::element(const XmlTag& tag) {
+  const Node parent = current();
+  if (tag.space != kPaintNamespace && parent != Node::kDocument) return foreign_element(tag);
+  const auto* rule =
+      std::ranges::find_if(kRules, [&](const ElementRule& r) { return r.parent == parent && r.name == tag.name; });
+  if (parent == Node::kDocument && (rule == kRules.end() || tag.space != kPaintNamespace))
+    return input_error("{}:{}: this begins with <{}>, not with paints: the first element must be {}", file_, tag.line,
+                       tag.name, kRoot);
+  if (rule == kRules.end())
+    return input_error("{}:{}: <{}> is not known inside <{}>: it holds {}", file_, tag.line, tag.name, name_of(parent),
+                       children_of(parent));
+  const XmlValues values(file_, tag);
+  GONIO_TRY(values.check_names(rule->attributes));
+  if (rule->node == Node::kProcessing && in_paints)
+    return values.error("<processing> stands behind a paint: move it to the front");
+  if (rule->node == Node::kPaints) GONIO_TRY(begin_document(tag, values));
+  if (rule->node == Node::kPaint) {
+    scope_.resize(1);
+    scope_.push_back(scope_.front());
+    for (const XmlNamespace& s : tag.namespaces)
+      scope_.back().insert_or_assign(std::string(s.prefix), std::string(s.uri));
+  }
+  open_.push_back(rule->node);
+  return begin(rule->node, values);
+}
+
+Result<void> PaintHandler::foreign_element(const XmlTag& tag) {
+  const Node parent = current();
+  if (tag.space.empty())
+    return input_error("{}:{}: <{}> has no namespace: declare one with xmlns=\"...\"", file_, tag.line, tag.name);
+  if (parent == Node::kPaints && in_paints)
+    return input_error("{}:{}: <{}> stands behind a paint: move it in front of the first paint, or into one", file_,
+                       tag.line, tag.name);
+  if (parent != Node::kPaint && parent != Node::kPaints)
+    return input_error("{}:{}: <{}> of another vocabulary stands inside <{}>: move it up into <paint>", file_, tag.line,
+                       tag.name, name_of(parent));
+  copy_.start(tag, scope_.back());
+  return {};
+}
+
+Result<void> PaintHandler::begin_document(const XmlTag& tag, const XmlValues& values) {
+  if (values.text("version") != "1")
+    return values.error("version", "this program reads version 1: convert the file with the program that wrote it");
+  XmlScope scope;
+  for (const XmlNamespace& space : tag.namespaces)
+    scope.insert_or_assign(std::string(space.prefix), std::string(space.uri));
+  scope_ = {std::move(scope)};
+  return {};
+}
+
+Result<void> PaintHandler::begin(Node node, const XmlValues& values) {
+  switch (node) {
+    case Node::kProcessing:
+      processing.push_back(
+          {std::string(values.text("tool")), std::string(values.text("version")), std::string(values.text("command"))});
+      return {};
+    case Node::kPaint:
+      return begin_paint(values);
+    case Node::kMeasurement:
+      return begin_measurement(values);
+    case Node::kLab:
+      return begin_lab(values);
+    case Node::kGloss:
+      return begin_gloss(values);
+    case Node::kAppearance:
+      return begin_appearance(values);
+    case Node::kFace:
+      GONIO_TRY(once(std::exchange(has_face_, true), values));
+      return values.lab(paint_.appearance->face);
+    case Node::kFlop:
+      GONIO_TRY(once(std::exchange(has_flop_, true), values));
+      return values.lab(paint_.appearance->flop);
+    case Node::kAnisotropy:
+      GONIO_TRY(once(paint_.anisotropy.has_value(), values));
+      paint_.anisotropy.emplace();
+      GONIO_TRY(values.number("alphaX", paint_.anisotropy->alpha_x, Domain::kPositive));
+      return values.number("alphaY", paint_.anisotropy->alpha_y, Domain::kPositive);
+    case Node::kColorMap:
+      GONIO_TRY(once(paint_.color_map.has_value(), values));
+      paint_.color_map.emplace();
+      GONIO_TRY(values.name("href", paint_.color_map->href));
+      return values.has("index") ? values.number("index", paint_.color_map->index, Domain::kRefractiveIndex)
+                                 : Result<void>();
+    case Node::kLobes:
+      return begin_lobes(values);
+    case Node::kDiffuse:
+      GONIO_TRY(once(std::exchange(has_diffuse_, true), values));
+      return values.rgb("", paint_.lobes->diffuse);
+    case Node::kLobe:
+      return begin_lobe(values, paint_.lobes->lobes);
+    case Node::kView:
+      return begin_view(values);
+    case Node::kViewDiffuse:
+      GONIO_TRY(once(std::exchange(has_view_diffuse_, true), values));
+      return values.rgb("", paint_.lobes->views.back().diffuse);
+    case Node::kViewLobe:
+      return begin_lobe(values, paint_.lobes->views.back().lobes);
+    default:
+      return {};
+  }
+}
+
+Result<void> PaintHandler::once(bool seen, const XmlValues& values) const {
+  if (!seen) return {};
+  return values.error(fmt::format("a second <{}> in paint \"{}\": keep one", values.tag().name, shown(paint_.name)));
+}
+
+Result<void> PaintHandler::begin_paint(const XmlValues& values) {
+  paint_ = {};
+  paint_line_ = values.tag().line;
+  paint_bytes_ = bytes_read;
+  GONIO_TRY(values.name("name", paint_.name));
+  paint_.code = values.text("code");
+  if (values.has("class")) {
+    const auto paint_class = paint::paint_class_of(values.text("class"));
+    if (!paint_class) return values.error("class", "write solid, metallic, pearl, interference or unknown");
+    paint_.paint_class = *paint_class;
+  }
+  if (const auto line = names_.note(paint_.name, paint_line_))
+    return values.error(
+        fmt::format("paint \"{}\" is already at line {}: rename one of them", shown(paint_.name), *line));
+  return {};
+}
+
+Result<void> PaintHandler::begin_measurement(const XmlValues& values) {
+  GONIO_TRY(once(paint_.measurement.has_value(), values));
+  paint::Measurement& measurement = paint_.measurement.emplace();
+  GONIO_TRY(values.name("illuminant", measurement.condition.illuminant));
+  const std::string_view observer = values.text("observer");
+  if (observer != "2" && observer != "10") return values.error("observer", "write 2 or 10 (degrees)");
+  measurement.condition.observer_deg = observer == "2" ? 2 : 10;
+  measurement.instrument = values.text("instrument");
+  return {};
+}
+
+Result<void> PaintHandler::begin_lab(const XmlValues& values) {
+  auto& rows = paint_.measurement->rows;
+  auto geometry = paint::parse_geometry(values.text("geometry"));
+  if (!geometry.ok()) return values.error(geometry.error().message);
+  for (const paint::LabReading& row : rows)
+    if (row.geometry == *geometry)
+      return values.error(
+          fmt::format("geometry {} is given twice: keep one, or give the mean", paint::geometry_name(*geometry)));
+  if (rows.size() >= kMostRows) return values.error(fmt::format("more than {} rows in one paint: split it", kMostRows));
+  rows.push_back({*geometry, {}});
+  return values.lab(rows.back().lab);
+}
+
+Result<void> PaintHandler::begin_gloss(const XmlValues& values) {
+  const std::string_view angle = values.text("angle");
+  if (angle != "20" && angle != "60" && angle != "85")
+    return values.error("angle", "a gloss meter reads at 20, 60 or 85 (degrees)");
+  const double angle_deg = *parse_number(angle);
+  if (std::ranges::find(paint_.gloss, angle_deg, &paint::GlossReading::angle_deg) != paint_.gloss.end())
+    return values.error(fmt::format("a second gloss at {} deg: keep one", angle));
+  paint_.gloss.push_back({angle_deg, 0});
+  gloss_text_.clear();
+  gloss_line_ = values.tag().line;
+  return {};
+}
+
+Result<void> PaintHandler::begin_appearance(const XmlValues& values) {
+  GONIO_TRY(once(paint_.appearance.has_value(), values));
+  paint::Appearance& appearance = paint_.appearance.emplace();
+  has_face_ = has_flop_ = false;
+  GONIO_TRY(values.number("travel", appearance.travel_deg));
+  if (const auto checked = paint::check(appearance); !checked.ok()) return values.error(checked.error().message);
+  if (!values.has("residual_de00")) return {};
+  return values.number("residual_de00", appearance.residual_de00.emplace(), Domain::kNotNegative);
+}
+
+Result<void> PaintHandler::begin_lobes(const XmlValues& values) {
+  GONIO_TRY(once(paint_.lobes.has_value(), values));
+  paint::LobeFit& lobes = paint_.lobes.emplace();
+  has_diffuse_ = false;
+  if (values.text("space") != "lin_rec2020_scene")
+    return values.error("space", "weights must be in lin_rec2020_scene: fit the paint again");
+  lobes.basis = values.text("basis");
+  lobes.method = values.text("method");
+  GONIO_TRY(values.number("max_de00", lobes.max_de00, Domain::kNotNegative));
+  return values.number("mean_de00", lobes.mean_de00, Domain::kNotNegative);
+}
+
+Result<void> PaintHandler::begin_view(const XmlValues& values) {
+  auto& views = paint_.lobes->views;
+  if (views.size() >= kMostRows) return values.error(fmt::format("more than {} views in one paint", kMostRows));
+  has_view_diffuse_ = false;
+  paint::ViewLobes view;
+  GONIO_TRY(values.number("angle", view.view_deg, Domain::kNotNegative));
+  if (view.view_deg > 90) return values.error("angle", "give degrees from the normal, 0 to 90");
+  if (!views.empty() && view.view_deg <= views.back().view_deg)
+    return values.error("angle", "views stand in the order of their angles, each once");
+  views.push_back(std::move(view));
+  return {};
+}
+
+Result<void> PaintHandler::begin_lobe(const XmlValues& values, std::vector<paint::Lobe>& lobes) {
+  if (lobes.size() >= kMostRows) return values.error(fmt::format("more than {} lobes in one paint", kMostRows));
+  paint::Lobe& lobe = lobes.emplace_back();
+  if (values.text("exponent") == "mirror")
+    lobe.exponent = std::numeric_limits<double>::infinity();
+  else
+    GONIO_TRY(values.number("exponent", lobe.exponent, Domain::kNotNegative));
+  GONIO_TRY(values.rgb("dd", lobe.directional_diffuse));
+  return values.rgb("g", lobe.gloss);
+}
+
+Result<void> PaintHandler::text(std::string_view text, int line) {
+  if (lost_) return {};
+  if (copy_.active()) return copy_.text(text), Result<void>();
+  if (current() == Node::kGloss) return gloss_text_ += text, Result<void>();
+  const std::string_view words = trimmed(text);
+  if (words.empty()) return {};
+  return lose_paint(input_error("{}:{}: text \"{}\" stands between elements: remove it", file_, line, shown(words)));
+}
+
+Result<void> PaintHandler::end(int line) {
+  --depth_;
+  if (lost_) {
+    if (depth_ > 1) return {};
+    open_.resize(1);
+    copy_ = XmlCopy(kPaintNamespace);
+    found.push_back({*std::exchange(lost_, std::nullopt), paint_line_});
+    return {};
+  }
+  if (copy_.active()) {
+    if (copy_.end()) (current() == Node::kPaint ? paint_.foreign : foreign).push_back(copy_.take());
+    return {};
+  }
+  const Node node = open_.back();
+  open_.pop_back();
+  const auto done = finish(node, line);
+  if (!done.ok()) lost_ = done.error();
+  return {};
+}
+
+Result<void> PaintHandler::finish(Node node, int line) {
+  const auto lacks = [&](const char* child) {
+    return input_error("{}:{}: <{}> of paint \"{}\" has no <{}>: add it", file_, line, name_of(node),
+                       shown(paint_.name), child);
+  };
+  switch (node) {
+    case Node::kMeasurement:
+      if (paint_.measurement->rows.empty()) return lacks("lab");
+      break;
+    case Node::kAppearance:
+      if (!has_face_) return lacks("face");
+      if (!has_flop_) return lacks("flop");
+      break;
+    case Node::kLobes:
+      if (!has_diffuse_) return lacks("diffuse");
+      break;
+    case Node::kView:
+      if (!has_view_diffuse_) return lacks("diffuse");
+      break;
+    case Node::kGloss: {
+      auto gloss = number_in(gloss_text_, Domain::kNotNegative);
+      if (!gloss.ok()) return input_error("{}:{}: gloss {}", file_, gloss_line_, gloss.error().message);
+      paint_.gloss.back().gloss_units = *gloss;
+      break;
+    }
+    case Node::kPaint:
+      found.push_back({std::move(paint_), paint_line_});
+      break;
+    default:
+      break;
+  }
+  return {};
+}
+
+// All that the schema forbids is refused above, in better words; this is the net below.
+Result<void> PaintHandler::invalid(int line, const std::string& why) {
+  if (lost_) return {};
+  if (depth_ == 1 && !found.empty() && !found.back().paint.ok()) return {};
+  const Error error = input_error("{}:{}: against the schema: {}", file_, line, why);
+  if (depth_ == 1 && !found.empty()) return found.back().paint = error, Result<void>();
+  return lose_paint(error);
+}
+
+}  // namespace
+
+struct PaintReader::State {
+  explicit State(InputFile input) : handler(input.name()), stream(std::move(input), kPaintSchema, handler) {}
+
+  // Reads on until a paint or the end is found.
+  bool more() {
+    if (at_end) return false;
+    const auto advanced = stream.advance();
+    handler.bytes_read = stream.bytes();
+    at_end = !advanced.ok() || !*advanced;
+    if (!advanced.ok()) {
+      handler.break_off();
+      failure = advanced.error();
+    }
+    return !at_end;
+  }
+
+  PaintHandler handler;
+  XmlStream stream;
+  std::optional<Error> failure;  // told when the paints before it are taken
+  bool at_end = false;
+  int line = 0;
+};
+
+Result<PaintReader> PaintReader::open(const std::string& path) {
+  GONIO_ASSIGN(InputFile input, InputFile::open(path));
+  return PaintReader(std::move(input));
+}
+
+PaintReader::PaintReader(InputFile input) : state_(std::make_unique<State>(std::move(input))) {}
+PaintReader::PaintReader(PaintReader&&) noexcept = default;
+PaintReader& PaintReader::operator=(PaintReader&&) noexcept = default;
+PaintReader::~PaintReader() = default;
+
+Result<std::optional<paint::Paint>> PaintReader::next() {
+  auto& found = state_->handler.found;
+  while (found.empty() && state_->more()) {
+  }
+  if (found.empty()) {
+    if (state_->failure) return *std::exchange(state_->failure, std::nullopt);
+    return std::optional<paint::Paint>();
+  }
+  Found first = std::move(found.front());
+  found.pop_front();
+  state_->line = first.line;
+  if (!first.paint.ok()) return first.paint.error();
+  return std::optional<paint::Paint>(std::move(*first.paint));
+}
+
+int PaintReader::line() const {
+  return state_->line;
+}
+
+void PaintReader::read_prolog() {
+  while (!state_->handler.in_paints && state_->more()) {
+  }
+}
+
+const std::vector<Processing>& PaintReader::processing() const {
+  return state_->handler.processing;
+}
+
+const std::vector<std::string>& PaintReader::foreign() const {
+  return state_->handler.foreign;
+}
+
+Result<std::vector<paint::Paint>> read_paints(const std::string& path) {
+  GONIO_ASSIGN(PaintReader reader, PaintReader::open(path));
+  std::vector<paint::Paint> paints;
+  for (;;) {
+    GONIO_ASSIGN(std::optional<paint::Paint> paint, reader.next());
+    if (!paint) return paints;
+    paints.push_back(std::move(*paint));
+  }
+}
+
+}  // namespace goniochrome::formats

@@ -1,0 +1,367 @@
+#include "formats/xml.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "formats/basis.h"
+#include "formats/scratch_for_test.h"
+
+namespace goniochrome::formats {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const std::string kHead = "<?xml version=\"1.0\"?>\n<paints xmlns=\"urn:goniochrome:paint:1\" version=\"1\">\n";
+
+std::string document(const std::string& body) {
+  return kHead + body + "</paints>\n";
+}
+
+std::string measured(const std::string& name, const std::string& lab) {
+  return "<paint name=\"" + name + "\">\n<measurement illuminant=\"D65\" observer=\"10\">\n" + lab +
+         "</measurement>\n</paint>\n";
+}
+
+// What a document gives, paint by paint.
+struct Reading {
+  std::vector<paint::Paint> paints;
+  std::vector<std::string> errors;
+  std::vector<int> lines;
+  std::vector<Processing> processing;
+  std::vector<std::string> foreign;
+};
+
+Reading reading_of(const std::string& path) {
+  Reading reading;
+  auto reader = PaintReader::open(path);
+  if (!reader.ok()) {
+    reading.errors.push_back(reader.error().message);
+    return reading;
+  }
+  for (;;) {
+    auto paint = reader->next();
+    if (!paint.ok()) {
+      reading.errors.push_back(paint.error().message.substr(paint.error().message.rfind('/') + 1));
+      continue;
+    }
+    if (!*paint) break;
+    reading.paints.push_back(std::move(**paint));
+    reading.lines.push_back(reader->line());
+  }
+  reading.processing = reader->processing();
+  reading.foreign = reader->foreign();
+  return reading;
+}
+
+Reading reading_of_text(const std::string& text) {
+  const ScratchFolder folder;
+  return reading_of(folder.file("p.xml", text));
+}
+
+std::string only_error(const std::string& text) {
+  const Reading reading = reading_of_text(text);
+  EXPECT_EQ(reading.errors.size(), 1u) << text;
+  // A message may hold a '/' itself; only what follows the folder matters.
+  return reading.errors.empty() ? "" : reading.errors.front();
+}
+
+Result<void> write_all(const std::string& path, const std::vector<paint::Paint>& paints,
+                       const std::vector<Processing>& history = {}, const std::vector<std::string>& foreign = {}) {
+  GONIO_ASSIGN(OutputFile file, OutputFile::create(path));
+  GONIO_ASSIGN(PaintWriter writer, PaintWriter::begin(std::move(file), history, foreign));
+  for (const paint::Paint& paint : paints) GONIO_TRY(writer.write(paint));
+  return writer.finish();
+}
+
+paint::Paint full_paint() {
+  paint::Paint paint;
+  paint.name = "a \"quoted\" <name> & 'more', \xc3\xa9\n";
+  paint.code = "R&D";
+  paint.paint_class = paint::PaintClass::kInterference;
+  paint.measurement = paint::Measurement{{"A", 2}, "goniometer \"7\"", {}};
+  for (const char* name : {"45as15", "45as-15", "r45as-15", "15as-45", "45as25az90", "45as110"})
+    paint.measurement->rows.push_back({*paint::parse_geometry(name), {160.1 / 3, -1e-17, 1e5 / 7}});
+  paint.gloss = {{20, 81.7}, {60, 0}, {85, 1999.5}};
+  paint.appearance = paint::Appearance{{95, 1, 2}, {0.1 + 0.2, -5e-324, 2}, std::nextafter(15.0, 16.0), 0.41};
+  paint.anisotropy = paint::Anisotropy{0.05, 0.3};
+  paint.color_map = paint::ColorMapReference{"maps/x y.exr", 1.5};
+  paint.lobes = paint::LobeFit{"b7", "l1", 1.25, 0.5, {0.1, 0.2, 0.3}, {}};
+  paint.lobes->lobes = {{12.5, {1, 2, 3}, {4, 5, 6}}, {INFINITY, {0, 0, 0}, {1e-300, 1e300, 0.1}}};
+  paint.lobes->views = {{0, {0.1, 0.2, 0.3}, {{12.5, {1, 2, 3}, {}}}}, {90, {0.3, 0.2, 0.1}, {}}};
+  paint.foreign = {"<x:note xmlns:x=\"urn:x\" k=\"1\">a<x:b/>c &amp; d</x:note>", "<y xmlns=\"urn:y\"/>"};
+  return paint;
+}
+
+void expect_same(const paint::Paint& x, const paint::Paint& y) {
+  EXPECT_EQ(x.name, y.name);
+  EXPECT_EQ(x.code, y.code);
+  EXPECT_EQ(x.paint_class, y.paint_class);
+  ASSERT_EQ(x.measurement.has_value(), y.measurement.has_value());
+  if (x.measurement) {
+    EXPECT_EQ(x.measurement->condition, y.measurement->condition);
+    EXPECT_EQ(x.measurement->instrument, y.measurement->instrument);
+    ASSERT_EQ(x.measurement->rows.size(), y.measurement->rows.size());
+    for (std::size_t i = 0; i < x.measurement->rows.size(); ++i) {
+      EXPECT_EQ(x.measurement->rows[i].geometry, y.measurement->rows[i].geometry);
+      EXPECT_EQ(x.measurement->rows[i].lab, y.measurement->rows[i].lab);
+    }
+  }
+  ASSERT_EQ(x.gloss.size(), y.gloss.size());
+  for (std::size_t i = 0; i < x.gloss.size(); ++i) {
+    EXPECT_EQ(x.gloss[i].angle_deg, y.gloss[i].angle_deg);
+    EXPECT_EQ(x.gloss[i].gloss_units, y.gloss[i].gloss_units);
+  }
+  ASSERT_EQ(x.appearance.has_value(), y.appearance.has_value());
+  if (x.appearance) {
+    EXPECT_EQ(x.appearance->face, y.appearance->face);
+    EXPECT_EQ(x.appearance->flop, y.appearance->flop);
+    EXPECT_EQ(x.appearance->travel_deg, y.appearance->travel_deg);
+    EXPECT_EQ(x.appearance->residual_de00, y.appearance->residual_de00);
+  }
+  EXPECT_EQ(x.foreign, y.foreign);
+}
+
+TEST(PaintXml, every_part_survives_to_the_last_bit) {
+  const ScratchFolder folder;
+  const paint::Paint paint = full_paint();
+  const std::string path = folder.path("p.xml");
+  const std::vector<std::string> foreign = {"<z:top xmlns:z=\"urn:z\"/>"};
+  ASSERT_TRUE(write_all(path, {paint}, {{"fit-paint", "0.1.0", "fit-paint 'a b' < x & y"}}, foreign).ok());
+  const Reading reading = reading_of(path);
+  ASSERT_THAT(reading.errors, ElementsAre());
+  ASSERT_EQ(reading.paints.size(), 1u);
+  const paint::Paint& back = reading.paints.front();
+  expect_same(back, paint);
+  EXPECT_EQ(back.anisotropy->alpha_x, 0.05);
+  EXPECT_EQ(back.anisotropy->alpha_y, 0.3);
+  EXPECT_EQ(back.color_map->href, "maps/x y.exr");
+  EXPECT_EQ(back.lobes->diffuse, paint.lobes->diffuse);
+  ASSERT_EQ(back.lobes->lobes.size(), 2u);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(back.lobes->lobes[i].exponent, paint.lobes->lobes[i].exponent);
+    EXPECT_EQ(back.lobes->lobes[i].directional_diffuse, paint.lobes->lobes[i].directional_diffuse);
+    EXPECT_EQ(back.lobes->lobes[i].gloss, paint.lobes->lobes[i].gloss);
+  }
+  ASSERT_EQ(back.lobes->views.size(), 2u);
+  EXPECT_EQ(back.lobes->views[0].view_deg, 0);
+  ASSERT_EQ(back.lobes->views[0].lobes.size(), 1u);
+  EXPECT_EQ(back.lobes->views[0].lobes[0].directional_diffuse, (color::Rgb{1, 2, 3}));
+  EXPECT_EQ(back.lobes->views[1].view_deg, 90);
+  EXPECT_EQ(back.lobes->views[1].diffuse, (color::Rgb{0.3, 0.2, 0.1}));
+  EXPECT_EQ(reading.foreign, foreign);
+  ASSERT_EQ(reading.processing.size(), 1u);
+  EXPECT_EQ(reading.processing[0].command, "fit-paint 'a b' < x & y");
+  // Written again it is the same file.
+  ASSERT_TRUE(write_all(folder.path("q.xml"), reading.paints, reading.processing, reading.foreign).ok());
+  EXPECT_EQ(folder.content("q.xml"), folder.content("p.xml"));
+}
+
+TEST(PaintXml, reads_the_sample_library_in_order_with_its_lines) {
+  const Reading reading = reading_of(std::string(GONIOCHROME_TESTDATA) + "/paints.paints.xml");
+  EXPECT_THAT(reading.errors, ElementsAre());
+  ASSERT_GT(reading.paints.size(), 35u);
+  EXPECT_EQ(reading.paints[0].name, "arctic_white");
+  EXPECT_EQ(reading.paints[0].measurement->rows[1].lab, (color::Lab{95.03, -0.82, 2.07}));
+  EXPECT_EQ(reading.lines[0], 4);
+  EXPECT_EQ(reading.lines[1], 12);
+}
+
+TEST(PaintXml, parts_come_in_any_order_and_an_empty_library_is_one) {
+  const Reading reading = reading_of_text(document(
+      "<paint name=\"p\"><gloss angle=\"60\"> 92.1 </gloss><appearance travel=\"63\"><flop L=\"1\" a=\"2\" "
+      "b=\"3\"/><face "
+      "L=\"4\" a=\"5\" b=\"+6e0\"/></appearance><measurement observer=\"2\" illuminant=\"D50\"><lab b=\"3\" a=\"2\" "
+      "L=\" 1 \" geometry=\"15\"/></measurement></paint>"));
+  EXPECT_THAT(reading.errors, ElementsAre());
+  ASSERT_EQ(reading.paints.size(), 1u);
+  EXPECT_EQ(reading.paints[0].appearance->face, (color::Lab{4, 5, 6}));
+  EXPECT_EQ(reading.paints[0].measurement->condition, (color::ViewingCondition{"D50", 2}));
+  EXPECT_EQ(reading.paints[0].gloss[0].gloss_units, 92.1);
+  const Reading none = reading_of_text(document(""));
+  EXPECT_TRUE(none.errors.empty() && none.paints.empty());
+}
+
+TEST(PaintXml, foreign_elements_mean_the_same_wherever_they_are_written) {
+  const ScratchFolder folder;
+  const std::string text =
+      "<p:paints xmlns:p=\"urn:goniochrome:paint:1\" xmlns:x=\"urn:x\" xmlns=\"urn:default\" version=\"1\">"
+      "<x:head/><p:paint name=\"a\" xmlns:y=\"urn:y\"><x:one y:k=\"&lt;&amp;&quot;\">t<![CDATA[<&]]><!-- gone "
+      "--></x:one>"
+      "<two>&#10;<p:lab/></two></p:paint></p:paints>";
+  const Reading first = reading_of(folder.file("p.xml", text));
+  ASSERT_THAT(first.errors, ElementsAre());
+  EXPECT_THAT(first.foreign,
+              ElementsAre("<x:head xmlns=\"urn:default\" xmlns:p=\"urn:goniochrome:paint:1\" xmlns:x=\"urn:x\"/>"));
+  const std::string scope =
+      " xmlns=\"urn:default\" xmlns:p=\"urn:goniochrome:paint:1\" xmlns:x=\"urn:x\" xmlns:y=\"urn:y\"";
+  EXPECT_THAT(first.paints[0].foreign, ElementsAre("<x:one" + scope + " y:k=\"&lt;&amp;&quot;\">t&lt;&amp;</x:one>",
+                                                   "<two" + scope + ">\n<p:lab/></two>"));
+  ASSERT_TRUE(write_all(folder.path("q.xml"), first.paints, {}, first.foreign).ok());
+  const Reading second = reading_of(folder.path("q.xml"));
+  EXPECT_THAT(second.errors, ElementsAre());
+  EXPECT_EQ(second.paints[0].foreign, first.paints[0].foreign);
+  EXPECT_EQ(second.foreign, first.foreign);
+}
+
+TEST(PaintXml, one_wrong_value_loses_one_paint) {
+  const Reading reading =
+      reading_of_text(document(measured("a", "<lab geometry=\"45as15\" L=\"1\" a=\"2\" b=\"3\"/>\n") +
+                               measured("b", "<lab geometry=\"45as15\" L=\"1\" a=\"two\" b=\"3\"/>\n") +
+                               measured("c", "<lab geometry=\"45as15\" L=\"1\" a=\"2\" b=\"3\"/>\n")));
+  ASSERT_EQ(reading.paints.size(), 2u);
+  EXPECT_EQ(reading.paints[0].name, "a");
+  EXPECT_EQ(reading.paints[1].name, "c");
+  EXPECT_THAT(reading.errors, ElementsAre("p.xml:10: a is \"two\": write a number such as 12.5"));
+}
+
+TEST(PaintXml, wrong_values_are_named_with_line_and_remedy) {
+  const auto lab = [](const std::string& row) { return only_error(document(measured("p", row + "\n"))); };
+  const auto paint = [](const std::string& body) {
+    return only_error(document("<paint name=\"p\">\n" + body + "</paint>\n"));
+  };
+  EXPECT_EQ(lab("<lab geometry=\"45as15\" L=\"12,5\" a=\"2\" b=\"3\"/>"),
+            "p.xml:5: L is \"12,5\": write a decimal point");
+  EXPECT_EQ(lab("<lab\ngeometry=\"45as15\"\nL=\"12\"\na=\"\" b=\"3\"/>"), "p.xml:8: a is empty: write a number");
+  EXPECT_EQ(lab("<lab geometry=\"45as15\" L=\"NaN\" a=\"2\" b=\"3\"/>"),
+            "p.xml:5: L is \"NaN\": write a finite number");
+  EXPECT_EQ(lab("<lab geometry=\"45as15\" L=\"1e999\" a=\"2\" b=\"3\"/>"),
+            "p.xml:5: L is \"1e999\": write a number such as 12.5");
+  EXPECT_EQ(lab("<lab geometry=\"45as15\" L=\"64abc\" a=\"2\" b=\"3\"/>"),
+            "p.xml:5: L is \"64abc\": write a number such as 12.5");
+  EXPECT_EQ(lab("<lab geometry=\"45as15\" L=\"64\" b=\"3\"/>"), "p.xml:5: <lab> has no a: write a=\"...\"");
+  EXPECT_EQ(lab("<lab geometry=\"45as15\" L=\"64\" a=\"1\" b=\"3\" c=\"4\"/>"),
+            "p.xml:5: <lab> takes no attribute \"c\": it takes geometry, L, a, b");
+  EXPECT_EQ(lab("<lab geometry=\"45xx15\" L=\"64\" a=\"1\" b=\"3\"/>"),
+            "p.xml:5: geometry \"45xx15\" is not understood: write it like 45as15, 45as-15, r45as15, 45as25az90 or 15");
+  EXPECT_EQ(lab("<lab geometry=\"45as15\" L=\"1\" a=\"1\" b=\"3\"/>\n<lab geometry=\"15\" L=\"1\" a=\"1\" b=\"3\"/>"),
+            "p.xml:6: geometry 45as15 is given twice: keep one, or give the mean");
+  EXPECT_EQ(lab(""), "p.xml:6: <measurement> of paint \"p\" has no <lab>: add it");
+  EXPECT_EQ(paint("<gloss angle=\"60\">shiny</gloss>"), "p.xml:4: gloss is \"shiny\": write a number such as 12.5");
+  EXPECT_EQ(paint("<gloss angle=\"60\">-1</gloss>"), "p.xml:4: gloss is -1: write 0 or more");
+  EXPECT_EQ(paint("<gloss angle=\"45\">1</gloss>"),
+            "p.xml:4: angle is \"45\": a gloss meter reads at 20, 60 or 85 (degrees)");
+  EXPECT_EQ(paint("<appearance travel=\"12\"><face L=\"1\" a=\"1\" b=\"1\"/></appearance>"),
+            "p.xml:4: travel is 12: give an angle above 15 and up to 180 deg");
+  EXPECT_EQ(paint("<appearance travel=\"50\">\n<face L=\"1\" a=\"1\" b=\"1\"/></appearance>"),
+            "p.xml:5: <appearance> of paint \"p\" has no <flop>: add it");
+  EXPECT_EQ(paint("<measurement illuminant=\"D65\" observer=\"4\"></measurement>"),
+            "p.xml:4: observer is \"4\": write 2 or 10 (degrees)");
+  EXPECT_EQ(paint("<colour/>"),
+            "p.xml:4: <colour> is not known inside <paint>: it holds <measurement>, <gloss>, <appearance>, "
+            "<anisotropy>, <colorMap>, <lobes>");
+  EXPECT_EQ(paint("<anisotropy alphaX=\"0\" alphaY=\"1\"/>"), "p.xml:4: alphaX is 0: write a number above 0");
+  EXPECT_EQ(paint("<colorMap href=\"x.exr\" index=\"0.9\"/>"), "p.xml:4: index is 0.9: write 1 or more");
+  EXPECT_EQ(paint("some words"), "p.xml:4: text \"some words\" stands between elements: remove it");
+  EXPECT_EQ(paint("<anisotropy alphaX=\"1\" alphaY=\"1\"/><anisotropy alphaX=\"1\" alphaY=\"1\"/>"),
+            "p.xml:4: a second <anisotropy> in paint \"p\": keep one");
+  EXPECT_EQ(paint("<note xmlns=\"\"/>"), "p.xml:4: <note> has no namespace: declare one with xmlns=\"...\"");
+  EXPECT_EQ(paint("<lobes space=\"lin_rec709\" basis=\"b\" method=\"l1\" max_de00=\"1\" mean_de00=\"1\"/>"),
+            "p.xml:4: space is \"lin_rec709\": weights must be in lin_rec2020_scene: fit the paint again");
+  const auto lobes = [&](const std::string& views) {
+    return paint(
+        "<lobes space=\"lin_rec2020_scene\" basis=\"b\" method=\"l1\" max_de00=\"1\" mean_de00=\"1\">"
+        "<diffuse r=\"1\" g=\"1\" b=\"1\"/>" +
+        views + "</lobes>");
+  };
+  const std::string diffuse = "<diffuse r=\"1\" g=\"1\" b=\"1\"/></view>";
+  EXPECT_EQ(lobes("<view angle=\"91\">" + diffuse), "p.xml:4: angle is \"91\": give degrees from the normal, 0 to 90");
+  EXPECT_EQ(lobes("<view angle=\"15\">" + diffuse + "<view angle=\"15\">" + diffuse),
+            "p.xml:4: angle is \"15\": views stand in the order of their angles, each once");
+  EXPECT_EQ(lobes("<view angle=\"15\"/>"), "p.xml:4: <view> of paint \"p\" has no <diffuse>: add it");
+  EXPECT_EQ(only_error(document("<paint name=\"\"/>\n")), "p.xml:3: name is empty: write something");
+  EXPECT_EQ(only_error(document("<paint/>\n")), "p.xml:3: <paint> has no name: write name=\"...\"");
+  EXPECT_EQ(only_error(document("<paint name=\"p\" class=\"shiny\"/>\n")),
+            "p.xml:3: class is \"shiny\": write solid, metallic, pearl, interference or unknown");
+}
+
+TEST(PaintXml, messages_stay_on_one_line) {
+  const std::string error =
+      only_error(document("<paint name=\"p\">\none\ntwo " + std::string(100, 'x') + "</paint>\n"));
+  EXPECT_EQ(error, "p.xml:5: text \"one two " + std::string(52, 'x') + "...\" stands between elements: remove it");
+}
+
+TEST(PaintXml, other_documents_are_refused_by_name) {
+  EXPECT_THAT(only_error("<CxF xmlns=\"urn:x\"/>"), HasSubstr("p.xml:1: this begins with <CxF>, not with paints"));
+  EXPECT_THAT(only_error("<paints version=\"1\"/>"), HasSubstr("xmlns=\"urn:goniochrome:paint:1\""));
+  EXPECT_EQ(only_error("<paints xmlns=\"urn:goniochrome:paint:1\" version=\"2\"/>"),
+            "p.xml:1: version is \"2\": this program reads version 1: convert the file with the program that wrote it");
+  EXPECT_EQ(only_error(""), "p.xml: is empty: give it a document");
+  EXPECT_EQ(only_error("sample,geometry\n"),
+            "p.xml:1: this is not XML: it must begin with < and an element (paint-convert makes XML of paint tables)");
+  EXPECT_EQ(only_error(document("") + kHead),
+            "p.xml:4: there is more after the end of the document: give several documents as several files");
+  EXPECT_THAT(only_error(document("<paint name=\"p\"></pain></paint>")), HasSubstr("p.xml:3: the closing tag"));
+  EXPECT_THAT(only_error(document("<paint name=\"a & b\"/>")), HasSubstr("write &amp; or &lt;"));
+  EXPECT_THAT(only_error(document("<x:note/>")), HasSubstr("p.xml:3: a prefix has no namespace"));
+  EXPECT_EQ(only_error(document("<paint name=\"p\"/><x:n xmlns:x=\"urn:x\"/>")),
+            "p.xml:3: <n> stands behind a paint: move it in front of the first paint, or into one");
+  EXPECT_FALSE(PaintReader::open("/no/such/file.xml").ok());
+}
+
+TEST(PaintXml, the_schema_refuses_what_the_reader_refuses) {
+  // Each body through the schema alone (by way of the reader's net below its own words) is covered by
+  // wrong_values_are_named_with_line_and_remedy; here the schema is shown to accept what the writer writes.
+  const ScratchFolder folder;
+  ASSERT_TRUE(write_all(folder.path("p.xml"), {full_paint()}).ok());
+  for (const std::string& error : reading_of(folder.path("p.xml")).errors) EXPECT_THAT(error, Not(HasSubstr("schema")));
+}
+
+TEST(PaintXml, writer_refuses_what_xml_cannot_hold) {
+  const ScratchFolder folder;
+  paint::Paint paint = full_paint();
+  paint.name = "bell\a";
+  EXPECT_EQ(write_all(folder.path("p.xml"), {paint}).error().message,
+            "paint \"bell?\" holds a text that is not valid UTF-8 or has a control character: \"bell?\"");
+  paint.name = "latin-1 \xe9";
+  EXPECT_FALSE(write_all(folder.path("p.xml"), {paint}).ok());
+  EXPECT_FALSE(std::filesystem::exists(folder.path("p.xml")));
+}
+
+TEST(BasisXml, survives_with_its_error_table) {
+  const ScratchFolder folder;
+  const Basis basis{"b\"7\"", {0.3, 1.3, 1e6}, true, {{1, 9.5, 2.25, 11.75}, {2, 1.0 / 3, 0.1, 0.5}}};
+  ASSERT_TRUE(write_basis(folder.path("b.xml"), basis).ok());
+  const auto back = read_basis(folder.path("b.xml"));
+  ASSERT_TRUE(back.ok()) << back.error().message;
+  EXPECT_EQ(back->name, basis.name);
+  EXPECT_EQ(back->exponents, basis.exponents);
+  EXPECT_TRUE(back->mirror);
+  ASSERT_EQ(back->sets.size(), 2u);
+  EXPECT_EQ(back->sets[1].lobes, 2);
+  EXPECT_EQ(back->sets[1].max_error, 1.0 / 3);
+  EXPECT_EQ(back->sets[1].objective, 0.5);
+  const auto sample = read_basis(std::string(GONIOCHROME_TESTDATA) + "/b7.basis.xml");
+  ASSERT_TRUE(sample.ok());
+  EXPECT_EQ(sample->exponents, (std::vector<double>{1.3, 6, 20, 70, 250, 900, 3000}));
+  EXPECT_TRUE(sample->mirror);
+}
+
+TEST(BasisXml, wrong_values_are_named_with_line_and_remedy) {
+  const ScratchFolder folder;
+  const auto error = [&](const std::string& body) {
+    const auto basis = read_basis(
+        folder.file("b.xml", "<basis xmlns=\"urn:goniochrome:basis:1\" name=\"b\">\n" + body + "\n</basis>\n"));
+    EXPECT_FALSE(basis.ok()) << body;
+    return basis.ok() ? "" : basis.error().message.substr(basis.error().message.rfind("b.xml"));
+  };
+  EXPECT_EQ(error("<exponent>1,5</exponent>"), "b.xml:2: exponent is \"1,5\": write a decimal point");
+  EXPECT_EQ(error("<exponent>5</exponent>\n<exponent>5</exponent>"),
+            "b.xml:3: exponent 5 follows 5: write them in ascending order, each once");
+  EXPECT_EQ(error("<exponent>-1</exponent>"), "b.xml:2: exponent is -1: write 0 or more");
+  EXPECT_EQ(error("<exponent>inf</exponent>"), "b.xml:2: exponent is \"inf\": write a finite number");
+  EXPECT_THAT(error("<mirror/>"), HasSubstr("the basis has no <exponent>"));
+  EXPECT_THAT(error("<exponent>1</exponent><lobe/>"), HasSubstr("<lobe> is not known inside <basis>"));
+  EXPECT_THAT(error("<exponent>1</exponent><set lobes=\"1.5\" max=\"1\" mean=\"1\" objective=\"1\"/>"),
+              HasSubstr("write a whole number"));
+  EXPECT_EQ(error("<exponent>1</exponent><mirror/><exponent>2</exponent>"),
+            "b.xml:2: <exponent> stands behind <mirror> or <set>: write the exponents first");
+  EXPECT_THAT(error(""), HasSubstr("the basis has no <exponent>: give it at least one"));
+  EXPECT_THAT(read_basis(std::string(GONIOCHROME_TESTDATA) + "/paints.paints.xml").error().message,
+              HasSubstr("this begins with <paints>, not with a basis"));
+}
+
+}  // namespace
+}  // namespace goniochrome::formats

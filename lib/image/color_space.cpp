@@ -1,0 +1,148 @@
+#include "image/color_space.h"
+
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "base/parallel.h"
+#include "base/text.h"
+#include "color/color.h"
+
+namespace goniochrome::image {
+
+namespace {
+
+using Primaries = std::array<double, 8>;  // x y of red, green, blue and white
+
+constexpr Primaries kRec709 = {.64, .33, .3, .6, .15, .06, .3127, .329};
+constexpr Primaries kRec2020 = {.708, .292, .17, .797, .131, .046, .3127, .329};
+constexpr Primaries kP3D65 = {.68, .32, .265, .69, .15, .06, .3127, .329};
+constexpr Primaries kAp0 = {.7347, .2653, 0, 1, .0001, -.077, .32168, .33767};
+constexpr Primaries kAp1 = {.713, .293, .165, .83, .128, .044, .32168, .33767};
+constexpr Primaries kAdobeRgb = {.64, .33, .21, .71, .15, .06, .3127, .329};
+
+enum class Curve { kLinear, kSrgb, kGamma };
+struct Space {
+  Primaries primaries = kRec709;
+  Curve curve = Curve::kLinear;
+  double gamma = 1;
+};
+
+// IEC 61966-2-1, to linear.
+double linear_from_srgb(double v) {
+  return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+}
+
+// Names as the Color Interop Forum and OpenImageIO spell them, in lower case.
+std::optional<Space> named_space(std::string name) {
+  name = lower(name);
+  if (name == "lin_rec709_scene" || name == "lin_srgb" || name == "linear" || name == "scene_linear" ||
+      name == "lin_rec709" || name == "rec709" || name == "linear rec.709 (srgb)")
+    return Space{};
+  if (name == "lin_rec2020_scene" || name == "lin_rec2020") return Space{kRec2020};
+  if (name == "lin_p3d65_scene" || name == "lin_p3d65") return Space{kP3D65};
+  if (name == "lin_ap0_scene" || name == "lin_ap0" || name == "aces2065-1") return Space{kAp0};
+  if (name == "lin_ap1_scene" || name == "lin_ap1" || name == "acescg") return Space{kAp1};
+  if (name == "lin_adobergb_scene") return Space{kAdobeRgb};
+  if (name == "srgb" || name == "srgb_rec709_scene" || name == "srgb_rec709_display")
+    return Space{kRec709, Curve::kSrgb};
+  if (name.starts_with("gamma"))
+    if (const auto gamma = parse_number(std::string_view(name).substr(5)); gamma && *gamma > 0)
+      return Space{kRec709, Curve::kGamma, *gamma};
+  return std::nullopt;
+}
+
+Result<Space> space_of(const ImagePart& part, const std::string& file) {
+  const auto text = [&](const char* name) -> std::string {
+    const auto found = part.attributes.find(name);
+    const auto* value = found == part.attributes.end() ? nullptr : std::get_if<std::string>(&found->second);
+    return value ? *value : "";
+  };
+  const auto unknown = [&](const char* attribute, const std::string& value) {
+    return input_error("{}: {} is \"{}\", which is not known: convert it to linear Rec.709 and tag it lin_rec709_scene",
+                       file, attribute, value);
+  };
+  if (const std::string id = text("colorInteropID"); !id.empty()) {
+    if (const auto space = named_space(id)) return *space;
+    return unknown("colorInteropID", id);
+  }
+  if (const auto found = part.attributes.find("chromaticities"); found != part.attributes.end())
+    if (const auto* xy = std::get_if<std::vector<float>>(&found->second); xy && xy->size() == 8) {
+      Space space;
+      std::copy(xy->begin(), xy->end(), space.primaries.begin());
+      return space;
+    }
+  if (const std::string name = text("oiio:ColorSpace"); !name.empty()) {
+    if (const auto space = named_space(name)) return *space;
+    return unknown("its color space", name);
+  }
+  return Space{};
+}
+
+bool same(const Primaries& a, const Primaries& b) {
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if (std::fabs(a[i] - b[i]) > 2e-4) return false;
+  return true;
+}
+
+using Columns = std::array<Vec3, 3>;
+
+// Columns of the matrix from RGB of `p` to the working space: each primary, scaled so that they add up to the white,
+// adapted to D65.
+Result<Columns> to_working_space(const Primaries& p, const std::string& file) {
+  const auto xyz = [&](int i) { return Vec3{p[i], p[i + 1], 1 - p[i] - p[i + 1]}; };
+  const Vec3 r = xyz(0), g = xyz(2), b = xyz(4), w = xyz(6);
+  const double det = dot(r, cross(g, b));
+  if (!(std::fabs(det) > 1e-6) || !(w.y > 0))
+    return input_error("{}: its chromaticities span no color space: retag the file", file);
+  const Vec3 white = (1 / w.y) * w;
+  const Vec3 scale = {dot(white, cross(g, b)) / det, dot(white, cross(b, r)) / det, dot(white, cross(r, g)) / det};
+  const Vec3 d65 = {.3127 / .329, 1, (1 - .3127 - .329) / .329};
+  const auto column = [&](double s, const Vec3& c) {
+    const color::Xyz there =
+        color::adapted({s * c.x, s * c.y, s * c.z}, {white.x, white.y, white.z}, {d65.x, d65.y, d65.z});
+    return color::rgb_from_xyz_d65(there);
+  };
+  return Columns{column(scale.x, r), column(scale.y, g), column(scale.z, b)};
+}
+
+double decoded(double value, const Space& space) {
+  switch (space.curve) {
+    case Curve::kLinear:
+      return value;
+    case Curve::kSrgb:
+      return linear_from_srgb(value);
+    case Curve::kGamma:
+      return value > 0 ? std::pow(value, space.gamma) : value;
+  }
+  return value;
+}
+
+}  // namespace
+
+Result<Image> working_space_rgb(ImagePart part, const std::string& name) {
+  GONIO_ASSIGN(const Space space, space_of(part, name));
+  GONIO_ASSIGN(const Columns columns, to_working_space(space.primaries, name));
+  const bool convert = !same(space.primaries, kRec2020);
+  Image& from = part.image;
+  const int green = from.channels < 3 ? 0 : 1, blue = from.channels < 3 ? 0 : 2;
+  Image to = {from.width, from.height, 3, {}, {}};
+  // Three channels are converted where they are.
+  if (from.channels == 3)
+    to.data.swap(from.data);
+  else
+    to.data.resize(static_cast<std::size_t>(from.width) * from.height * 3);
+  const float* source = from.channels == 3 ? to.data.data() : from.data.data();
+  parallel_for(static_cast<std::size_t>(from.height), 16, [&](std::size_t begin, std::size_t end) {
+    const std::size_t width = static_cast<std::size_t>(from.width);
+    for (std::size_t i = begin * width; i < end * width; ++i) {
+      const float* in = &source[i * from.channels];
+      Vec3 rgb = {decoded(in[0], space), decoded(in[green], space), decoded(in[blue], space)};
+      if (convert) rgb = rgb.x * columns[0] + rgb.y * columns[1] + rgb.z * columns[2];
+      for (int c = 0; c < 3; ++c) to.data[3 * i + c] = static_cast<float>(rgb[c]);
+    }
+  });
+  return to;
+}
+
+}  // namespace goniochrome::image

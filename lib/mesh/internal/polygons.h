@@ -1,0 +1,51 @@
+// What a mesh file says, before it becomes a Mesh: polygons whose corners may lack normals. Internal to lib/mesh.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "mesh/mesh.h"
+
+namespace goniochrome::mesh {
+
+constexpr std::int32_t kNoNormal = -1, kNoTexture = -1;
+
+struct Polygons {
+  struct Corner {
+    std::uint32_t position = 0;
+    std::int32_t normal = kNoNormal;
+    std::int32_t texture = kNoTexture;
+  };
+  struct Face {
+    std::size_t first = 0;  // of its corners
+    std::uint32_t count = 0;
+    std::uint32_t part = 0;
+  };
+  struct Part {
+    std::string name, material;
+  };
+  std::vector<Vec3> positions;
+  std::vector<Vec3> normals;                  // unit
+  std::vector<std::array<float, 2>> texture;  // u v
+  std::vector<Corner> corners;
+  std::vector<Face> faces;
+  std::vector<Part> parts;
+};
+
+// The polygons of an OBJ text; `path` is for messages, which name the line.
+Result<Polygons> polygons_from_obj(const std::string& text, const std::string& path);
+
+// The polygons of an OFF, PLY or STL file, as one part of that name. Normals in such files are not read.
+Result<Polygons> polygons_from_file(const std::string& path, const std::string& part_name);
+
+// Triangulates, drops what has no area, makes missing normals and turns triangles to their normals.
+// Error: nothing is left.
+Result<Mesh> mesh_from_polygons(const Polygons& polygons, const std::string& path);
+
+// The n-2 triangles of a simple polygon, as indices into `ring`, by ear clipping; concave ones included. A polygon that
+// crosses itself still gives n-2 triangles.
+std::vector<std::array<std::uint32_t, 3>> triangulated(const std::vector<Vec3>& ring);
+
+}  // namespace goniochrome::mesh

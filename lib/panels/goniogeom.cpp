@@ -1,0 +1,194 @@
+#include "panels/goniogeom.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "panels/internal/goniogeom_shading.h"
+
+namespace goniochrome::panels {
+
+namespace {
+
+constexpr double kRadians = M_PI / 180;
+color::Lab shaded(const color::Lab& reflectance, double c, double k) {
+  const auto lab = shaded_lab<double>({reflectance.L, reflectance.a, reflectance.b}, c, k);
+  return {lab[0], lab[1], lab[2]};
+}
+
+// No color changes by more than this when its cosine goes from c to another and cbrt of it by one, as long as cbrt
+// stays above `least_k`. On the cube root d Lab'/dk is (L + 16, a, b); below the knee L' changes more slowly still, and
+// a', b' at most three times as fast (see goniochrome-theory(7)).
+double shading_reach(const color::Lab& reflectance, double least_k) {
+  const double f = (reflectance.L + 16) / 116;
+  const double darkest = least_k * std::min({f, f + reflectance.a / 500, f - reflectance.b / 200});
+  const double w = darkest > kResponseKnee ? 1 : 3;
+  const double lightness = std::max(std::abs(reflectance.L) + 16, -3 * reflectance.L);
+  return std::sqrt(lightness * lightness + w * w * (reflectance.a * reflectance.a + reflectance.b * reflectance.b));
+}
+
+// CIEDE2000 is no metric. Up to some 10 units it is at most kStretch times as steep as the distance in Lab: the a* axis
+// is stretched by up to 1.5 and the weights S are at least 1, but move with the mean of both colors. Between colors of
+// opposite hue it even jumps; there the steps are short.
+constexpr double kStretch = 2.5;
+constexpr double kOppositeStep_deg = 0.02;
+
+bool may_be_opposite(const color::Lab& x, const color::Lab& y) {
+  return x.a * y.a + x.b * y.b < 0;
+}
+
+// A root of `over` in [low,high], over(low) < 0 <= over(high), to 1e-10 deg, from above: regula falsi with halving of
+// the stale end (Illinois).
+template <class Function>
+double root_between(double low, double high, double at_low, double at_high, const Function& over) {
+  for (int i = 0; i < 100 && high - low > 1e-10; ++i) {
+    double middle = low - at_low * (high - low) / (at_high - at_low);
+    if (!(middle > low && middle < high)) middle = low + (high - low) / 2;
+    const double value = over(middle);
+    if (value >= 0) {
+      high = middle, at_high = value, at_low /= 2;
+    } else {
+      low = middle, at_low = value, at_high /= 2;
+    }
+  }
+  return high;
+}
+
+}  // namespace
+
+double difference(DifferenceMetric metric, const color::Lab& x, const color::Lab& y) {
+  return metric == DifferenceMetric::kDe76 ? color::delta_e_76(x, y) : color::delta_e_2000(x, y);
+}
+
+color::Lab panel_color(const color::Lab& reflectance, double cos_light) {
+  const double c = std::max(0.0, cos_light);
+  return shaded(reflectance, c, std::cbrt(c));
+}
+
+paint::DirectionPair directions(const LightView& g) {
+  const double light = g.light_deg * kRadians, view = g.view_deg * kRadians, azimuth = g.azimuth_deg * kRadians;
+  return {{-std::sin(light), 0, std::cos(light)},
+          {std::sin(view) * std::cos(azimuth), std::sin(view) * std::sin(azimuth), std::cos(view)}};
+}
+
+// With u the seam and m = u x n, the panel at b has the normal n cos b + m sin b. Seen along the seam, the light has
+// the radius p and the phase q from n toward m, so that cos_light = p cos(q - b).
+//
+// Mirrored at the turning panel, the light keeps its radius, turns by 2b, and its part along the seam changes sign.
+// With s and S the parts of light and view along the seam, p and P their radii and d the angle between mirrored light
+// and view seen along the seam,
+//   |r - v|^2 = (s + S)^2 + (p - P)^2 + 4 p P sin^2(d/2),    |r + v|^2 = (s - S)^2 + (p - P)^2 + 4 p P cos^2(d/2),
+// and the aspecular angle is 2 atan2(|r - v|, |r + v|): sums of squares, nothing cancels. In plane, s = S = 0 and p = P
+// = 1, so that it is |d| = |d0 - 2b|.
+TiltedPair::TiltedPair(const Vec3& light, const Vec3& view, const Vec3& normal, const Vec3& axis) {
+  const Vec3 m = cross(axis, normal);
+  const double light_phase = std::atan2(dot(light, m), dot(light, normal));
+  const double view_phase = std::atan2(dot(view, m), dot(view, normal));
+  const double view_radius = std::hypot(dot(view, m), dot(view, normal));
+  light_radius_ = std::hypot(dot(light, m), dot(light, normal));
+  cos_phase_ = std::cos(light_phase), sin_phase_ = std::sin(light_phase);
+  light_phase_deg_ = light_phase / kRadians, view_phase_deg_ = view_phase / kRadians;
+  const double s = dot(light, axis), S = dot(view, axis), radii = light_radius_ - view_radius;
+  across_ = 4 * light_radius_ * view_radius;
+  difference_ = (s + S) * (s + S) + radii * radii;
+  sum_ = (s - S) * (s - S) + radii * radii;
+  // The mirrored light has the phase -q at b = 0 and 2b - q at b; the view has its own.
+  const double half = (view_phase + light_phase) / 2;
+  cos_half_ = std::cos(half), sin_half_ = std::sin(half);
+  if (difference_ + sum_ < 1e-30) in_plane_deg_ = 2 * half / kRadians;
+}
+
+TiltedPair TiltedPair::make(const LightView& geometry, double seam_deg) {
+  const paint::DirectionPair pair = directions(geometry);
+  const double seam = seam_deg * kRadians;
+  return TiltedPair(pair.light, pair.view, {0, 0, 1}, {std::cos(seam), -std::sin(seam), 0});
+}
+
+TiltedPair::State TiltedPair::at(double b_deg) const {
+  const double b = b_deg * kRadians, cos_b = std::cos(b), sin_b = std::sin(b);
+  const double cos_light = std::max(0.0, light_radius_ * (cos_phase_ * cos_b + sin_phase_ * sin_b));
+  if (in_plane_deg_) {
+    const double d = std::abs(*in_plane_deg_ - 2 * b_deg);  // below 540
+    return {d <= 180 ? d : std::abs(360 - d), cos_light};
+  }
+  const double sin_d = sin_half_ * cos_b - cos_half_ * sin_b, cos_d = cos_half_ * cos_b + sin_half_ * sin_b;
+  const double apart = std::sqrt(difference_ + across_ * sin_d * sin_d);
+  const double together = std::sqrt(sum_ + across_ * cos_d * cos_d);
+  return {2 * std::atan2(apart, together) / kRadians, cos_light};
+}
+
+double difference_at(const FlakeCurve& curve, const TiltedPair& pair, double b_deg, DifferenceMetric metric) {
+  const auto color = [&](double b) {
+    const TiltedPair::State state = pair.at(b);
+    return panel_color(curve.at(state.aspecular_deg), state.cos_light);
+  };
+  return difference(metric, color(0), color(b_deg));
+}
+
+// dE(b) rises and falls, so no bisection is safe. From b a step h is safe if nothing on it can reach the threshold:
+// the color moves by at most
+//   2 h V k  for the curve (the aspecular angle changes by at most 2h; V its steepest slope there; shading by k =
+//            cbrt(cos) <= 1 never stretches a difference by more than k) plus
+//   M |dk|   for the shading.
+// Steps of at least kShortestExcursion_deg end the approach to a crossing; the crossing is then bracketed by that step.
+std::optional<double> first_crossing(const FlakeCurve& curve, const TiltedPair& pair, int sign, double threshold,
+                                     DifferenceMetric metric) {
+  struct Point {
+    TiltedPair::State state;
+    double k = 0;
+  };
+  const double stretch = metric == DifferenceMetric::kDe76 ? 1 : kStretch;
+  const double range = pair.range_deg(sign), brightest = sign * pair.brightest_deg(),
+               top_k = std::cbrt(pair.largest_cos());
+  const auto point = [&](double b) {
+    const TiltedPair::State state = pair.at(sign * b);
+    return Point{state, std::cbrt(state.cos_light)};
+  };
+  const auto color = [&](const Point& p, const color::Lab& reflectance) {
+    return shaded(reflectance, p.state.cos_light, p.k);
+  };
+  Point here = point(0), next;
+  color::Lab reflectance = curve.at(here.state.aspecular_deg);
+  const color::Lab first = color(here, reflectance);
+  double b = 0, step = 1, longest = range, room = threshold;
+  while (b < range) {
+    step = std::min({2 * step, longest, range - b});
+    for (;;) {
+      next = point(b + step);
+      // Within the step the cosine has no minimum, and its maximum at an end or at `brightest`.
+      const double most_k = b < brightest && brightest < b + step ? top_k : std::max(here.k, next.k);
+      const double least_k = std::min(here.k, next.k), as = here.state.aspecular_deg;
+      const double move = 2 * step * curve.steepest(as - 2 * step, as + 2 * step) * most_k +
+                          std::max(most_k - here.k, here.k - least_k) * shading_reach(reflectance, least_k);
+      if (stretch * move < room) break;
+      if (step <= kShortestExcursion_deg) break;
+      step = std::max(kShortestExcursion_deg, step * std::clamp(0.98 * room / (stretch * move), 0.02, 0.9));
+    }
+    reflectance = curve.at(next.state.aspecular_deg);
+    const color::Lab shown = color(next, reflectance);
+    if (metric == DifferenceMetric::kDe00) longest = may_be_opposite(first, shown) ? kOppositeStep_deg : range;
+    const double next_room = threshold - difference(metric, first, shown);
+    if (next_room <= 0) {
+      const auto over = [&](double x) {
+        const Point p = point(x);
+        return difference(metric, first, color(p, curve.at(p.state.aspecular_deg))) - threshold;
+      };
+      return root_between(b, b + step, -room, -next_room, over);
+    }
+    b += step, here = next, room = next_room;
+  }
+  return std::nullopt;
+}
+
+GeometryIndex geometry_index(const FlakeCurve& curve, const TiltedPair& pair, double threshold,
+                             DifferenceMetric metric) {
+  return {first_crossing(curve, pair, 1, threshold, metric), first_crossing(curve, pair, -1, threshold, metric)};
+}
+
+double larger_difference(const FlakeCurve& curve, const TiltedPair& pair, double b_deg, DifferenceMetric metric) {
+  double most = std::numeric_limits<double>::quiet_NaN();
+  for (const int sign : {1, -1})
+    if (b_deg < pair.range_deg(sign)) most = std::fmax(most, difference_at(curve, pair, sign * b_deg, metric));
+  return most;
+}
+
+}  // namespace goniochrome::panels

@@ -1,0 +1,85 @@
+// Two panels of one paint that meet at an angle: what color each shows, and the angle at which the difference is seen.
+// [Shimizu2009] 4.3; goniochrome-theory(7), GONIOGEOMETRIC INDEX.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "base/result.h"
+#include "panels/internal/goniogeom_curve.h"
+
+namespace goniochrome::panels {
+
+enum class DifferenceMetric { kDe76, kDe00 };
+double difference(DifferenceMetric metric, const color::Lab& x, const color::Lab& y);
+
+// The color of a panel whose reflectance factor is `reflectance` (Lab, any white), lit at an angle of this cosine,
+// against a white that faces the light. Without gloss. Cosines below 0 are black.
+color::Lab panel_color(const color::Lab& reflectance, double cos_light);
+
+// One light and one viewer, relative to the first panel: polar angles in degrees, the light's from the normal, the
+// viewer's positive on the far side of the normal from the light. `azimuth_deg` turns the viewer about the normal.
+struct LightView {
+  double light_deg = 45, view_deg = 0, azimuth_deg = 0;
+};
+// Unit directions in the frame x = away from the light in the plane of incidence, z = normal of the first panel.
+paint::DirectionPair directions(const LightView& geometry);
+
+// A second panel turned about the seam by b degrees, light and viewer at rest.
+class TiltedPair {
+ public:
+  // `axis` is the seam: positive b turns the second panel by the right hand about it. All are unit, the axis lies in
+  // the panel, light and viewer above it.
+  TiltedPair(const Vec3& light, const Vec3& view, const Vec3& normal, const Vec3& axis);
+
+  // The seam at `seam_deg` from the plane of incidence (90: across it), so oriented that positive b turns the second
+  // panel toward the light.
+  static TiltedPair make(const LightView& geometry, double seam_deg);
+
+  // What the panel at b sees: its aspecular angle (deg) and the cosine to the light (0 where it is in its own shadow).
+  struct State {
+    double aspecular_deg = 0, cos_light = 0;
+  };
+  State at(double b_deg) const;
+
+  // The largest |b| (deg) of this sign at which the second panel still faces the viewer: above 0, below 180.
+  double range_deg(int sign) const { return sign > 0 ? 90 + view_phase_deg_ : 90 - view_phase_deg_; }
+
+  // The b (deg) at which the second panel is lit at the largest cosine, and that cosine.
+  double brightest_deg() const { return light_phase_deg_; }
+  double largest_cos() const { return light_radius_; }
+
+ private:
+  double light_radius_, cos_phase_, sin_phase_;  // the light across the seam, and its phase from the normal
+  double light_phase_deg_, view_phase_deg_;
+  double across_, sum_, difference_;  // see at()
+  double cos_half_, sin_half_;
+  std::optional<double>
+      in_plane_deg_;  // the aspecular angle at b = 0, signed toward the light, where all lie in one plane
+};
+
+// How the two panels differ at b, 0 at b = 0.
+double difference_at(const FlakeCurve& curve, const TiltedPair& pair, double b_deg, DifferenceMetric metric);
+
+// The smallest |b| (deg) of this sign at which the difference reaches `threshold` (> 0), within 1e-9 deg; none where it
+// is not reached before the second panel turns away from the viewer. An excursion above the threshold is missed only
+// where it is shorter than kShortestExcursion_deg.
+constexpr double kShortestExcursion_deg = 1e-6;
+std::optional<double> first_crossing(const FlakeCurve& curve, const TiltedPair& pair, int sign, double threshold,
+                                     DifferenceMetric metric);
+
+// Both signs, and the larger difference of the two at a given |b| (NaN where the panel faces away in both).
+struct GeometryIndex {
+  std::optional<double> plus_deg, minus_deg;
+  // The smaller of the two, or infinity.
+  double smallest_deg() const {
+    constexpr double kNever = std::numeric_limits<double>::infinity();
+    return std::min(plus_deg.value_or(kNever), minus_deg.value_or(kNever));
+  }
+};
+GeometryIndex geometry_index(const FlakeCurve& curve, const TiltedPair& pair, double threshold,
+                             DifferenceMetric metric);
+double larger_difference(const FlakeCurve& curve, const TiltedPair& pair, double b_deg, DifferenceMetric metric);
+
+}  // namespace goniochrome::panels

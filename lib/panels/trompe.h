@@ -1,0 +1,80 @@
+// Inverse trompe l'oeil: the paint for the second panel that hides its misalignment. [Shimizu2009] 4.4
+// goniochrome-theory(7), INVERSE TROMPE L'OEIL.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "panels/goniogeom.h"
+
+namespace goniochrome::panels {
+
+// What one viewer sees of both panels under one light: the aspecular angles, and the cosines to the light.
+struct PanelView {
+  double aspecular_a_deg = 45, cos_a = 1;
+  double aspecular_b_deg = 45, cos_b = 1;
+  double weight = 1;
+};
+// A light and a viewer at a panel turned by b (deg). None where the second panel is not seen.
+std::optional<PanelView> panel_view(const LightView& geometry, double seam_deg, double b_deg);
+
+// The seven numbers of an appearance, in this order.
+enum TrompeParameter { kFaceL, kFaceA, kFaceB, kFlopL, kFlopA, kFlopB, kTravel, kTrompeParameters };
+using TrompeValues = std::array<double, kTrompeParameters>;
+const char* parameter_name(int parameter);  // "face_l", ..., "travel"
+TrompeValues values_of(const paint::Appearance& appearance);
+paint::Appearance appearance_of(const TrompeValues& values);
+
+struct TrompeOptions {
+  std::array<bool, kTrompeParameters> vary = {true, true, true, true, true, true, true};
+  TrompeValues low = {0, -150, -150, 0, -150, -150, 15.5}, high = {160, 150, 150, 160, 150, 150, 180};
+  bool least_maximum = false;  // minimize the largest difference, else the weighted RMS
+};
+
+// A difference below this between face and flop leaves the travel to noise: such a paint is solid, its face and flop
+// move together and its travel stays.
+constexpr double kSolidContrast = 1;
+
+// A parameter that may move by one unit (Lab or degree) while the others make up for it to within this RMS difference
+// is not determined by the views.
+constexpr double kDeterminedBy = 0.02;
+
+struct TrompeErrors {
+  std::vector<double> de;  // dE76 for each view
+  double rms = 0, max = 0;
+};
+
+struct TrompeFit {
+  paint::Appearance b;
+  TrompeErrors before, after;             // both panels in paint A; the second one in paint B
+  std::vector<std::string> undetermined;  // parameters that the views leave open; they stay near those of paint A
+  std::vector<std::string> at_bound;      // parameters that a bound holds back
+  bool solid = false;                     // face and flop were moved together
+  bool converged = true;                  // from every start
+  int starts = 0;
+  double time_ms = 0;
+};
+
+// The paint for the second panel. Color differences are CIE 1976. Deterministic. Error: no views, nothing to vary, a
+// bound that excludes every value, or paint A outside its domain.
+Result<TrompeFit> trompe_fit(const paint::Appearance& a, bool is_solid, const std::vector<PanelView>& views,
+                             const TrompeOptions& options);
+
+// The same where colors come from anywhere, such as an image light: `colors` gives what the second panel shows in every
+// view for an appearance, `target` what the first panel shows in paint A. Derivatives are differences.
+using PanelColors = std::function<Result<std::vector<color::Lab>>(const paint::Appearance&)>;
+Result<TrompeFit> trompe_fit(const paint::Appearance& a, bool is_solid, const std::vector<color::Lab>& target,
+                             const std::vector<double>& weights, const PanelColors& colors,
+                             const TrompeOptions& options);
+
+// The differences between what both panels show; `weights` for the RMS.
+TrompeErrors trompe_errors(const std::vector<color::Lab>& a, const std::vector<color::Lab>& b,
+                           const std::vector<double>& weights);
+
+// The differences that any paint B leaves.
+TrompeErrors trompe_errors(const paint::Appearance& a, const paint::Appearance& b, const std::vector<PanelView>& views);
+
+}  // namespace goniochrome::panels

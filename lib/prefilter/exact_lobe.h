@@ -1,0 +1,32 @@
+// The yardstick of every prefilter: the double-precision sum over all texels, each a constant patch.
+// goniochrome-theory(7), PREFILTERING, The reference.
+#pragma once
+
+#include <cstdint>
+
+#include "base/vec3.h"
+#include "envmap/environment.h"
+#include "envmap/prefiltered.h"
+
+namespace goniochrome::prefilter {
+
+// P_E(d) per channel, summed texel by texel. An infinite exponent is the texel that d falls in.
+Vec3 reference_lobe(const envmap::Environment& env, const Vec3& d, double exponent);
+
+// The mean radiance over a texel of a grid in the scene that `turn` brings the environment to, found by looking alone,
+// cut where texels meet: what the mirror part of a prefiltered environment holds.
+Vec3 reference_mirror(const envmap::Environment& env, const envmap::SphereGrid& grid, const envmap::Rotation& turn,
+                      int column, int row);
+
+// How far a lobe's map, in the scene that `turn` brings the environment to, is from the reference on `count` random
+// texels, `extremes` of its brightest and as many of its darkest: relative, per channel, to the larger of the local
+// value and 1e-3 of the channel's mean over the map (1e-6 of the largest channel's mean, where a channel is almost
+// empty).
+struct LobeError {
+  double max = 0, mean = 0;
+  int texels = 0;
+};
+LobeError lobe_error(const envmap::Environment& env, const envmap::PrefilteredLobe& lobe, int count, int extremes,
+                     std::uint64_t seed, const envmap::Rotation& turn = {});
+
+}  // namespace goniochrome::prefilter

@@ -1,0 +1,49 @@
+// The few texels that outshine the rest (a sun, lamps), convolved one by one, so that what is left has no peaks.
+// goniochrome-theory(7), PREFILTERING, Bright texels.
+#pragma once
+
+#include <vector>
+
+#include "envmap/environment.h"
+
+namespace goniochrome::prefilter {
+
+constexpr int kMostBright = 1024;
+
+// How many texels outshine the mean 50 times, at most kMostBright.
+std::size_t bright_count(const envmap::Environment& env);
+
+// A map split in two: rest() leaves the mean of the others in the place of every bright texel, in its color, and the
+// bright texels are what exceeds that.
+class BrightTexels {
+ public:
+  // Splits off at most `most` texels, those above 50 times the mean.
+  BrightTexels(const envmap::Environment& env, int most);
+
+  std::size_t count() const { return texels_.size(); }
+  const envmap::Clip& rest() const { return rest_; }
+
+  // Their part of P_E(d), each a constant patch.
+  Vec3 lobe(const Vec3& d, double exponent) const;
+
+ private:
+  struct Texel {
+    Vec3 flux;                    // of the excess
+    Vec3 centroid, across, down;  // mean direction, and how it changes from side to side
+    double radius_rad;
+  };
+  envmap::Clip rest_;
+  std::vector<Texel> texels_;
+  double largest_radius_ = 0;
+  // A texel as points, their flux as floats: its centroid, which is exact for E = 1 above the horizon, and four Gauss
+  // points.
+  struct Points {
+    std::size_t per_texel = 1;
+    std::vector<float> flux;
+    std::vector<double> x, y, z;
+    void add(const Vec3& at, const Vec3& rgb);
+  };
+  Points centroids_, gauss_;
+};
+
+}  // namespace goniochrome::prefilter

@@ -1,0 +1,34 @@
+// Lobes already made, kept in a folder under a key of all that shapes them: the radiance of the environment, the turn,
+// the exponent, the size, the layout, the tolerance and the version of the program.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "base/result.h"
+#include "prefilter/prefilter.h"
+
+namespace goniochrome::prefilter {
+
+class LobeCache {
+ public:
+  // Opens a folder, making it where it is not there. Error: it cannot be made or is no folder.
+  static Result<LobeCache> open(const std::string& folder, const envmap::Environment& env,
+                                const PrefilterRequest& request, const std::string& version);
+
+  // A lobe with its errors and method as they were, or nothing; a file that is not what it should be is as none.
+  std::optional<envmap::PrefilteredLobe> find(const LobePlan& plan) const;
+
+  // Writes a lobe into the folder, whole or not at all. Error: the file and the system's reason.
+  Result<void> keep(const envmap::PrefilteredLobe& lobe) const;
+
+ private:
+  LobeCache(std::string folder, std::string key, envmap::SphereGrid::Layout layout)
+      : folder_(std::move(folder)), key_(std::move(key)), layout_(layout) {}
+  std::string path(double exponent, int size) const;
+
+  std::string folder_, key_;
+  envmap::SphereGrid::Layout layout_;
+};
+
+}  // namespace goniochrome::prefilter

@@ -1,0 +1,438 @@
+#include "prefilter/prefilter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <numeric>
+#include <optional>
+
+#include "base/clock.h"
+#include "base/parallel.h"
+#include "prefilter/internal/arc_sums.h"
+#include "prefilter/internal/bright_texels.h"
+#include "prefilter/internal/harmonic_grid.h"
+#include "prefilter/internal/harmonics.h"
+#include "prefilter/internal/mirror.h"
+#include "prefilter/internal/prefilter_cost.h"
+#include "prefilter/lobe_tree.h"
+
+namespace goniochrome::prefilter {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kFloor = 1e-3;       // errors are relative to no less than this of the mean
+constexpr int kMostDegree = 1024;     // of harmonics: beyond, their grids take more than 400 MB
+constexpr int kWideDegree = 512;      // of the harmonics for lobes whose kernel bends at the horizon
+constexpr double kSharpestWide = 20;  // such lobes have exponents below this
+constexpr double kArcs = 2e-5;        // tolerance below which so many degrees do not serve exponent 1
+constexpr double kArcsOfSteps = 5e-5;
+constexpr double kFlatLobes = 5e-4;  // tolerance above which they serve exponents between
+constexpr double kFlatTexel = 0.03;  // rad: larger texels are cut: t is not linear enough on them for BrightTexels
+constexpr int kSketch = 12;          // texels along a face of the cube that finds the darkest texels
+constexpr double kHalfError = 0x1p-11;
+constexpr double kCoherence = 1.0 / 16;  // see WideLobe
+
+using Method = LobePlan::Method;
+
+// Whether arc_sums() can stand in for harmonics: the step of exponent 0 leaves it an error of some 1e-5.
+bool arcs_serve(const envmap::Environment& env, double exponent, double tolerance) {
+  return env.layout() == envmap::Environment::Layout::kLatLong &&
+         (exponent == 1 || (exponent == 0 && tolerance > kArcsOfSteps));
+}
+
+// What the method may err by: the tolerance less what the file's rounding takes.
+double method_tolerance(double tolerance) {
+  return tolerance >= 2 * kHalfError * 0.999 ? tolerance - kHalfError : tolerance * (1 - 1.0 / 64);
+}
+
+double rounding_error(double tolerance) {
+  return tolerance - method_tolerance(tolerance);
+}
+
+double lookup_error(double exponent, int size) {
+  const double h = kPi / (2 * size);
+  return std::max(exponent, 1.0) * h * h / 8;
+}
+
+// As fine as the environment at its middle.
+int mirror_size(const envmap::Environment& env) {
+  if (env.grid().is_cube()) return env.width();
+  return std::clamp((env.width() + 3) / 4, 16, 2048);
+}
+
+LobePlan lobe_plan(const envmap::Environment& env, const PrefilterRequest& request, double exponent, int size) {
+  LobePlan plan;
+  plan.exponent = exponent;
+  plan.size = size > 0 ? size : own_size(exponent, request.tolerance);
+  plan.lookup_error = lookup_error(exponent, plan.size);
+  const double tolerance = method_tolerance(request.tolerance);
+  // Half of the method's share goes to the degrees left out, relative to the floor.
+  plan.degree = sufficient_degree(exponent, 0.5 * tolerance * kFloor, kMostDegree);
+  plan.predicted_error = rounding_error(request.tolerance) + tolerance;
+  const bool arcs = arcs_serve(env, exponent, tolerance);
+  if (plan.degree >= 0) return plan;
+  plan.degree = 0;
+  if (arcs && tolerance < kArcs) {
+    plan.method = Method::kArcs;
+  } else if ((exponent >= 1 || arcs || tolerance > kFlatLobes) && exponent < kSharpestWide) {
+    plan.method = Method::kBrightHarmonics;
+    plan.degree = kWideDegree;
+  } else {
+    plan.method = Method::kBlocks;
+  }
+  return plan;
+}
+
+// What the harmonics up to each degree leave of a clipped map: its root mean square, per channel, by Parseval.
+std::vector<Vec3> residual_rms(const envmap::Environment& env, const envmap::Clip& clip, const Harmonics& harmonics) {
+  std::vector<Vec3> rows(static_cast<std::size_t>(env.height()));
+  parallel_for(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row) {
+      const int y = static_cast<int>(row);
+      double area = env.solid_angle(0, y);  // of every texel of a lat-long row
+      for (int column = 0; column < env.width(); ++column) {
+        if (env.layout() != envmap::Environment::Layout::kLatLong) area = env.solid_angle(column, y);
+        const std::array<float, 3> rgb = clip.left_of(env.radiance(column, y));
+        const Vec3 value = {rgb[0], rgb[1], rgb[2]};
+        rows[row] += area * (value * value);
+      }
+    }
+  });
+  std::vector<Vec3> left(static_cast<std::size_t>(harmonics.degree) + 1);
+  for (int m = 0; m <= harmonics.degree; ++m) {
+    const double* a = harmonics.order(m);
+    for (int l = m; l <= harmonics.degree; ++l, a += 6)
+      for (int c = 0; c < 3; ++c) left[l][c] -= (m == 0 ? 1 : 2) * (a[c] * a[c] + a[3 + c] * a[3 + c]);
+  }
+  Vec3 square;
+  for (const Vec3& row : rows) square += row;
+  for (Vec3& value : left) {
+    square += value;
+    for (int c = 0; c < 3; ++c) value[c] = std::sqrt(std::max(0.0, square[c]) / (4 * kPi));
+  }
+  return left;
+}
+
+float largest_value(const envmap::Environment& env) {
+  float most = 0;
+  for (int row = 0; row < env.height(); ++row) {
+    const float* rgb = env.radiance(0, row);
+    most = std::max(most, *std::max_element(rgb, rgb + 3 * static_cast<std::size_t>(env.width())));
+  }
+  return most;
+}
+
+// Sums that wait for the first lobe that needs them.
+class Workshop {
+ public:
+  Workshop(const envmap::Environment& env, const PrefilterRequest& request, const std::vector<LobePlan>& plan)
+      : env_(env), turn_(request.turn), layout_(request.layout), flux_(env.flux()), largest_(largest_value(env)) {
+    for (const LobePlan& lobe : plan) {
+      if (lobe.method == Method::kHarmonics && lobe.degree > degree_) degree_ = lobe.degree, sharpest_ = lobe.exponent;
+      if (lobe.method == Method::kBrightHarmonics)
+        widest_ = std::min(widest_, lobe.exponent);  // its k_l are the largest
+    }
+  }
+
+  const Vec3& flux() const { return flux_; }
+  float largest() const { return largest_; }
+  const Harmonics& harmonics() {
+    if (!harmonics_) harmonics_.emplace(harmonics_of(env_, zonal_multipliers(sharpest_, degree_)));
+    return *harmonics_;
+  }
+  const LobeTree& tree() {
+    if (!tree_) tree_.emplace(fine());
+    return *tree_;
+  }
+  const BrightTexels& bright() {
+    if (!bright_) bright_ = std::make_unique<BrightTexels>(fine(), kMostBright);
+    return *bright_;
+  }
+  const Harmonics& rest() {
+    if (!rest_) rest_.emplace(harmonics_of(fine(), zonal_multipliers(widest_, kWideDegree), bright().rest()));
+    return *rest_;
+  }
+  const std::vector<Vec3>& rest_rms() {
+    if (rest_rms_.empty()) rest_rms_ = residual_rms(fine(), bright().rest(), rest());
+    return rest_rms_;
+  }
+  // The environment, its texels cut where they are large.
+  const envmap::Environment& fine() {
+    if (env_.largest_texel_rad() <= kFlatTexel) return env_;
+    if (!fine_) fine_.emplace(env_.cut_to(kFlatTexel));
+    return *fine_;
+  }
+  const envmap::Environment& environment() const { return env_; }
+  envmap::SphereGrid grid(int size) const { return envmap::map_grid(layout_, size); }
+  const GridAngles& angles(int size) {
+    if (size != angles_size_) angles_.emplace(grid(size), turn_);
+    angles_size_ = size;
+    return *angles_;
+  }
+  const envmap::Rotation& turn() const { return turn_; }
+
+ private:
+  const envmap::Environment& env_;
+  std::optional<envmap::Environment> fine_;
+  envmap::Rotation turn_;
+  envmap::SphereGrid::Layout layout_;
+  Vec3 flux_;
+  float largest_;
+  int degree_ = -1, angles_size_ = 0;
+  double sharpest_ = 0, widest_ = kSharpestWide;
+  std::optional<Harmonics> harmonics_, rest_;
+  std::vector<Vec3> rest_rms_;
+  std::optional<LobeTree> tree_;
+  std::unique_ptr<BrightTexels> bright_;
+  std::optional<GridAngles> angles_;
+};
+
+// The texels of a grid, in parallel: body(direction in the environment's frame, rgb).
+template <class Body>
+void for_each_texel(const envmap::SphereGrid& grid, const envmap::Rotation& turn, std::vector<float>& values,
+                    const Body& body) {
+  const std::size_t width = static_cast<std::size_t>(grid.width());
+  parallel_for(values.size() / 3, 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      body(turn.to_environment(grid.direction(static_cast<int>(i % width), static_cast<int>(i / width))),
+           &values[3 * i]);
+  });
+}
+
+// How many taps keep the interpolation below a tenth of the tolerance at the floor: the largest value of a lobe map is
+// at most that of the environment and of all its flux in the middle of the lobe.
+int taps(const Vec3& flux, double most, double exponent, double tolerance) {
+  const double mean = std::max({flux.x, flux.y, flux.z}) / (4 * kPi);
+  if (!(mean > 0)) return taps_for(1);
+  const double peak = std::min(most / mean, 2 * (exponent + 1));
+  return taps_for(0.1 * tolerance * kFloor / std::max(peak, 1.0));
+}
+
+// sqrt(sum over l > degree of (2l+1) k_l^2): by Cauchy and Schwarz, times the root mean square of what the harmonics
+// leave of the map, a bound on the error.
+double residual_norm(double exponent, int degree) {
+  const int end = degree + 20000;
+  const std::vector<double> k = zonal_multipliers(exponent, end);
+  double sum = 0;
+  for (int l = degree + 1; l <= end; ++l) sum += (2.0 * l + 1) * k[l] * k[l];
+  return std::sqrt(sum);
+}
+
+// A lobe whose kernel bends at the horizon: harmonics of the rest to the degree that the darkest texels need, and the
+// bright texels one by one.
+//
+// What the harmonics of the rest leave out is at most residual_norm() times residual_rms(), reached only by a map whose
+// every degree peaks in phase at one point. Maps come nowhere near: the worst texels of measured maps reach a thirtieth
+// to a fiftieth of it, so a sixteenth is allowed for. A texel that could be off by more than its tolerance all the same
+// (it is dark, or the map is black and white) is done by blocks.
+class WideLobe {
+ public:
+  WideLobe(const LobePlan& plan, double tolerance, Workshop& shop)
+      : plan_(plan), tolerance_(tolerance), shop_(shop), mean_((1 / (4 * kPi)) * shop.flux()) {}
+
+  std::vector<float> values() {
+    if (plan_.method == Method::kArcs) {
+      const envmap::SphereGrid grid = shop_.grid(plan_.size);
+      std::vector<std::size_t> all(static_cast<std::size_t>(grid.width()) * static_cast<std::size_t>(grid.height()));
+      std::iota(all.begin(), all.end(), std::size_t{0});
+      std::vector<float> texels(3 * all.size());
+      one_by_one(all, texels);
+      return texels;
+    }
+    const envmap::SphereGrid coarse(envmap::SphereGrid::Layout::kCube, kSketch, 6 * kSketch);
+    const std::vector<float> sketch = sum(32, coarse, GridAngles(coarse, shop_.turn()));
+    Vec3 darkest = {1e300, 1e300, 1e300};
+    for (std::size_t i = 0; i < sketch.size(); ++i) {
+      double& channel = darkest[static_cast<int>(i % 3)];
+      channel = std::min<double>(channel, sketch[i]);
+    }
+    const std::vector<int> degrees = {64, 96, 128, 192, 256, 384, kWideDegree};
+    Vec3 bound;
+    int degree = 0;
+    for (const int candidate : degrees) {
+      degree = candidate;
+      bound = kCoherence * residual_norm(plan_.exponent, degree) * shop_.rest_rms()[degree];
+      if (fits(0.9 * darkest, bound)) break;
+    }
+    std::vector<float> texels = sum(degree, shop_.grid(plan_.size), shop_.angles(plan_.size));
+    patch_up(texels, bound);
+    return texels;
+  }
+
+ private:
+  bool fits(const Vec3& value, const Vec3& bound) const {
+    const double gray = kFloor * kFloor * std::max({mean_.x, mean_.y, mean_.z});
+    for (int c = 0; c < 3; ++c)
+      if (bound[c] > 0.8 * tolerance_ * std::max({value[c], kFloor * mean_[c], gray})) return false;
+    return true;
+  }
+
+  std::vector<float> sum(int degree, const envmap::SphereGrid& grid, const GridAngles& angles) {
+    const BrightTexels& bright = shop_.bright();
+    std::vector<float> texels = lobe_values(shop_.rest(), zonal_multipliers(plan_.exponent, degree), angles,
+                                            taps(shop_.flux(), shop_.largest(), plan_.exponent, tolerance_));
+    if (bright.count() > 0)
+      for_each_texel(grid, shop_.turn(), texels, [&](const Vec3& d, float* rgb) {
+        const Vec3 extra = bright.lobe(d, plan_.exponent);
+        for (int c = 0; c < 3; ++c) rgb[c] += static_cast<float>(extra[c]);
+      });
+    return texels;
+  }
+
+  // The texels that the bound does not serve, once more.
+  void patch_up(std::vector<float>& texels, const Vec3& bound) {
+    std::vector<std::size_t> unfit;
+    for (std::size_t i = 0; i < texels.size() / 3; ++i)
+      if (!fits({texels[3 * i], texels[3 * i + 1], texels[3 * i + 2]}, bound)) unfit.push_back(i);
+    if (!unfit.empty()) one_by_one(unfit, texels);
+  }
+
+  void one_by_one(const std::vector<std::size_t>& chosen, std::vector<float>& texels) {
+    const envmap::SphereGrid grid = shop_.grid(plan_.size);
+    const std::size_t width = static_cast<std::size_t>(grid.width());
+    std::vector<Vec3> directions;
+    for (const std::size_t i : chosen)
+      directions.push_back(
+          shop_.turn().to_environment(grid.direction(static_cast<int>(i % width), static_cast<int>(i / width))));
+    const bool by_arcs = arcs_serve(shop_.environment(), plan_.exponent, tolerance_);
+    const LobeTree* tree = by_arcs ? nullptr : &shop_.tree();
+    std::vector<Vec3> values(chosen.size());
+    if (by_arcs) values = arc_sums(shop_.fine(), shop_.bright().rest(), plan_.exponent, directions, tolerance_);
+    parallel_for(chosen.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        values[i] += tree ? tree->lobe(directions[i], plan_.exponent, tolerance_)
+                          : shop_.bright().lobe(directions[i], plan_.exponent);
+        for (int c = 0; c < 3; ++c) texels[3 * chosen[i] + c] = static_cast<float>(std::max(0.0, values[i][c]));
+      }
+    });
+  }
+
+  const LobePlan& plan_;
+  double tolerance_;
+  Workshop& shop_;
+  Vec3 mean_;
+};
+
+std::vector<float> lobe_by_plan(const LobePlan& plan, double tolerance, Workshop& shop) {
+  switch (plan.method) {
+    case Method::kMirror:
+      return mirror_values(shop.environment(), shop.grid(plan.size), shop.turn());
+    case Method::kHarmonics:
+      return lobe_values(shop.harmonics(), zonal_multipliers(plan.exponent, plan.degree), shop.angles(plan.size),
+                         taps(shop.flux(), shop.largest(), plan.exponent, tolerance));
+    case Method::kBrightHarmonics:
+    case Method::kArcs:
+      return WideLobe(plan, tolerance, shop).values();
+    case Method::kBlocks:
+      break;
+  }
+  const envmap::SphereGrid grid = shop.grid(plan.size);
+  std::vector<float> values(3 * static_cast<std::size_t>(grid.width()) * grid.height());
+  const LobeTree& tree = shop.tree();
+  for_each_texel(grid, shop.turn(), values, [&](const Vec3& d, float* rgb) {
+    const Vec3 value = tree.lobe(d, plan.exponent, tolerance);
+    for (int c = 0; c < 3; ++c) rgb[c] = static_cast<float>(value[c]);
+  });
+  return values;
+}
+
+}  // namespace
+
+const char* method_name(Method method) {
+  switch (method) {
+    case Method::kHarmonics:
+      return "harmonics";
+    case Method::kBrightHarmonics:
+      return "harmonics+bright";
+    case Method::kArcs:
+      return "arcs+bright";
+    case Method::kBlocks:
+      return "blocks";
+    case Method::kMirror:
+      return "overlaps";
+  }
+  return "";
+}
+
+// Bilinear lookup between texels 2/N apart errs by E h^2/8 with h = pi/(2N): the face that keeps ten times the
+// tolerance. [theory: Lookup]
+int own_size(double exponent, double tolerance) {
+  const double wanted = kPi / 2 * std::sqrt(std::max(exponent, 1.0) / (8 * 10 * tolerance));
+  const int least = exponent < 8 ? 32 : 16;  // kinks of a wide lobe at the horizon of a sun
+  return std::clamp((static_cast<int>(std::ceil(wanted)) + 3) / 4 * 4, least, 1024);
+}
+
+std::vector<LobePlan> prefilter_plan(const envmap::Environment& env, const PrefilterRequest& request) {
+  std::vector<LobePlan> plan;
+  if (request.diffuse) plan.push_back(lobe_plan(env, request, 1, request.size));
+  for (std::size_t i = 0; i < request.exponents.size(); ++i)
+    plan.push_back(
+        lobe_plan(env, request, request.exponents[i], request.sizes.empty() ? request.size : request.sizes[i]));
+  if (request.mirror) {
+    LobePlan mirror;
+    mirror.exponent = envmap::kMirrorExponent;
+    mirror.method = Method::kMirror;
+    mirror.size = request.size > 0 ? request.size : mirror_size(env);
+    mirror.predicted_error = rounding_error(request.tolerance);
+    plan.push_back(mirror);
+  }
+  predict_times(env, request, plan);
+  return plan;
+}
+
+envmap::PrefilteredEnvironment prefiltered(
+    const envmap::Environment& env, const PrefilterRequest& request, const std::vector<LobePlan>& plan,
+    const std::function<void(const envmap::PrefilteredLobe&, double time_s)>& done, const LobeSource& known) {
+  envmap::PrefilteredEnvironment result;
+  result.source = env.source();
+  result.mirror.exponent = envmap::kMirrorExponent;
+  const double tolerance = method_tolerance(request.tolerance);
+  std::vector<std::optional<envmap::PrefilteredLobe>> there(plan.size());
+  std::vector<LobePlan> missing;
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    if (known) there[i] = known(plan[i]);
+    if (!there[i]) missing.push_back(plan[i]);
+  }
+  Workshop shop(env, request, missing);
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    const Stopwatch clock;
+    envmap::PrefilteredLobe lobe;
+    if (there[i]) {
+      lobe = std::move(*there[i]);
+      lobe.tolerance = request.tolerance;
+    } else {
+      lobe.exponent = plan[i].exponent;
+      lobe.layout = request.layout;
+      lobe.tolerance = request.tolerance;
+      lobe.predicted_error = plan[i].predicted_error;
+      lobe.lookup_error = plan[i].lookup_error;
+      lobe.method = method_name(plan[i].method);
+      lobe.map.size = plan[i].size;
+      lobe.map.texels = lobe_by_plan(plan[i], tolerance, shop);
+      envmap::round_to_storage(lobe);
+    }
+    done(lobe, clock.elapsed_s());
+    if (i == 0 && request.diffuse)
+      result.diffuse = std::move(lobe);
+    else if (plan[i].method == Method::kMirror)
+      result.mirror = std::move(lobe);
+    else
+      result.lobes.push_back(std::move(lobe));
+  }
+  return result;
+}
+
+double energy_ratio(const Vec3& flux, const envmap::PrefilteredLobe& lobe) {
+  const envmap::SphereGrid grid = envmap::map_grid(lobe.layout, lobe.map.size);
+  const float* rgb = lobe.map.texels.data();
+  Vec3 sum;
+  for (int row = 0; row < grid.height(); ++row)
+    for (int column = 0; column < grid.width(); ++column, rgb += 3)
+      sum += grid.solid_angle(column, row) * Vec3{rgb[0], rgb[1], rgb[2]};
+  const double all = flux.x + flux.y + flux.z;
+  return all > 0 ? (sum.x + sum.y + sum.z) / all : 1;
+}
+
+}  // namespace goniochrome::prefilter

@@ -1,0 +1,280 @@
+#include "render/cpu/cpu_engine.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/parallel.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+constexpr std::size_t kBlock = 8;  // floats of a texel: two maps of four forms, or one of six
+
+std::size_t floats_of(const ProductForms& forms) {
+  return forms.count > 4 ? kBlock : kBlock / 2;
+}
+
+std::size_t blocks_of(std::size_t maps, const ProductForms& forms) {
+  return (maps * floats_of(forms) + kBlock - 1) / kBlock;
+}
+
+void put_forms(const ProductForms& forms, const float* rgb, float* to) {
+  const color::Rgb color{rgb[0], rgb[1], rgb[2]};
+  for (int form = 0; form < forms.count; ++form) to[form] = static_cast<float>(forms.of(form, color));
+}
+
+std::vector<float> interleaved(const std::vector<envmap::CubeMap>& maps, const ProductForms& forms,
+                               std::size_t stride) {
+  const std::size_t wide = static_cast<std::size_t>(maps.front().size) + 2, texels = wide * wide;
+  std::vector<float> data(6 * texels * stride + kBlock, 0.0F);  // the last texel is read by the block
+  parallel_for(6 * maps.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t job = begin; job < end; ++job) {
+      const std::size_t face = job / maps.size(), map = job % maps.size();
+      const std::vector<float> texel = bordered_face(maps[map], static_cast<int>(face));
+      float* to = &data[face * texels * stride + floats_of(forms) * map];
+      for (std::size_t i = 0; i < texels; ++i) put_forms(forms, &texel[3 * i], to + i * stride);
+    }
+  });
+  return data;
+}
+
+// Points that are gathered until there are enough for the kernel, and where their colors go.
+class Batch {
+ public:
+  explicit Batch(const CpuShading& shading) : shading_(shading) {
+    PointArrays& p = points_;
+    std::fill_n(p.nx, kPointsAtOnce, 0.0F), std::fill_n(p.ny, kPointsAtOnce, 0.0F),
+        std::fill_n(p.nz, kPointsAtOnce, 1.0F);
+    std::fill_n(p.vx, kPointsAtOnce, 0.0F), std::fill_n(p.vy, kPointsAtOnce, 0.0F),
+        std::fill_n(p.vz, kPointsAtOnce, 1.0F);
+    std::fill_n(p.part, kPointsAtOnce, 0);
+  }
+
+  bool full() const { return count_ == kPointsAtOnce; }
+  int count() const { return count_; }
+  std::size_t index(int i) const { return index_[i]; }
+  const float* rgba(int i) const { return rgba_ + 4 * i; }
+
+  void add(std::size_t index, const float* normal, const float* to_viewer, int part) {
+    PointArrays& p = points_;
+    p.nx[count_] = normal[0], p.ny[count_] = normal[1], p.nz[count_] = normal[2];
+    p.vx[count_] = to_viewer[0], p.vy[count_] = to_viewer[1], p.vz[count_] = to_viewer[2];
+    p.part[count_] = part;
+    index_[count_++] = index;
+  }
+  void shade() { shade_points(shading_, points_, count_, rgba_); }
+  void look_up(const InterleavedMaps& map) { look_up_background(map, points_, count_, rgba_); }
+  void clear() { count_ = 0; }
+
+ private:
+  const CpuShading& shading_;
+  PointArrays points_;
+  std::size_t index_[kPointsAtOnce];
+  int count_ = 0;
+  alignas(64) float rgba_[4 * kPointsAtOnce];
+};
+
+}  // namespace
+
+InterleavedMaps CpuEngine::Stack::maps() const {
+  return {shape.size, blocks, texel_floats, texels.data()};
+}
+
+CpuEngine::Stack CpuEngine::interleaved(const MapClass& maps, MapUse use, const ProductForms& forms) {
+  const std::size_t blocks = blocks_of(maps.maps.size(), forms);
+  const std::size_t stride = maps.maps.size() == 1 ? floats_of(forms) : blocks * kBlock;
+  return {{maps.size, maps.slots, {}, maps.shifted},
+          use,
+          static_cast<int>(blocks),
+          static_cast<int>(stride),
+          render::interleaved(maps.maps, forms, stride)};
+}
+
+void CpuEngine::interleave(const MapClass& maps, MapUse use) {
+  if (maps.size > 0) stacks_.push_back(interleaved(maps, use, forms_));
+}
+
+Result<void> CpuEngine::load(const Scene& scene, const Effects& effects, const SceneMaps& maps) {
+  stacks_.clear();
+  background_map_ = {};
+  forms_ = effects.reflection ? product_forms(scene.reflection) : ProductForms{};
+  interleave(maps.diffuse, MapUse::kNormal);
+  for (const MapClass& lobes : maps.lobes) interleave(lobes, MapUse::kTilted);
+  if (effects.mirror) interleave(maps.mirror, MapUse::kMirror);
+  if (effects.background == Background::kEnvironment) {
+    background_map_ = interleaved(maps.mirror, MapUse::kMirror, {});
+  }
+  int tilted_blocks = 0;
+  for (const Stack& stack : stacks_) tilted_blocks += stack.use == MapUse::kTilted ? stack.blocks : 0;
+  if (stacks_.size() > kMostClasses || tilted_blocks > kMostBlocks || effects.lobes.size() > kMostLobes) {
+    return input_error("the paints use {} lobes of {} very different face sizes: fit them to one common basis",
+                       effects.lobes.size(), stacks_.size());
+  }
+  shading_ = {};
+  for (const Stack& stack : stacks_) {
+    shading_.use[shading_.classes] = stack.use;
+    shading_.shifted[shading_.classes] = stack.shape.shifted;
+    shading_.maps[shading_.classes++] = stack.maps();
+  }
+  colors_of_forms_.assign(4 * kBlock, 0.0F);
+  for (std::size_t form = 0; form < static_cast<std::size_t>(forms_.count); ++form) {
+    for (int c = 0; c < 3; ++c)
+      colors_of_forms_[4 * form + static_cast<std::size_t>(c)] = static_cast<float>(forms_.out[form][c]);
+  }
+  shading_.map_floats = static_cast<int>(floats_of(forms_));
+  shading_.colors_of_forms = colors_of_forms_.data();
+  load_paints(scene, effects, weight_table(scene, effects));
+  return {};
+}
+
+void CpuEngine::load_paints(const Scene& scene, const Effects& effects, const WeightTable& table) {
+  std::size_t blocks = 0;
+  for (const Stack& stack : stacks_) blocks += static_cast<std::size_t>(stack.blocks);
+  const int light_slots = effects.lights > 0 ? table.shift_slot(0) - table.light_slot() : 0;
+  shading_.segments = table.segments;
+  shading_.light_offset = 2 * kBlock * blocks;
+  shading_.shift_offset = shading_.light_offset + 8 * static_cast<std::size_t>(light_slots);
+  const std::size_t shift_floats = (2 * stacks_.size() + kBlock - 1) / kBlock * kBlock;
+  shading_.segment_floats = shading_.shift_offset + shift_floats;
+  weights_.assign(shading_.segment_floats * static_cast<std::size_t>(table.segments * table.parts), 0.0F);
+  float* to = weights_.data();
+  for (int row = 0; row < table.parts * table.segments; ++row) {
+    const auto texel = [&](int slot) { return table.at(row / table.segments, row % table.segments, slot); };
+    for (const Stack& stack : stacks_) {
+      for (std::size_t i = 0; i < stack.shape.slots.size(); ++i) {
+        const std::size_t at = i * floats_of(forms_);
+        float* ends = to + 2 * kBlock * (at / kBlock) + at % kBlock;
+        for (const std::size_t end : {0, 1})
+          put_forms(forms_, texel(stack.shape.slots[i]) + 4 * end, ends + kBlock * end);
+      }
+      to += 2 * kBlock * static_cast<std::size_t>(stack.blocks);
+    }
+    for (int slot = 0; slot < light_slots; ++slot, to += 8) std::copy_n(texel(table.light_slot() + slot), 8, to);
+    for (std::size_t k = 0; k < stacks_.size(); ++k) {
+      if (!stacks_[k].shape.shifted) continue;
+      const auto lobe = static_cast<std::size_t>(stacks_[k].shape.slots.front() - WeightTable::lobe_slot(0));
+      const float* shift = texel(table.shift_slot(lobe)) + lobe % 4;
+      to[2 * k] = shift[0], to[2 * k + 1] = shift[4];
+    }
+    to += shift_floats;
+  }
+  shading_.weights = weights_.data();
+  set_lights(scene, effects);
+  set_tilts(scene, effects);
+  background_ = effects.background;
+  background_color_ = scene.background_color;
+}
+
+void CpuEngine::set_lights(const Scene& scene, const Effects& effects) {
+  lights_.clear(), exponents_.clear();
+  for (const Light& light : effects.lights > 0 ? scene.lights : std::vector<Light>()) {
+    for (int c = 0; c < 3; ++c) lights_.push_back(static_cast<float>(light.direction[c]));
+    lights_.push_back(0);
+    const color::Matrix3 product = color::reflection_matrix(
+        effects.reflection ? scene.reflection : color::component_wise(), std::numbers::pi * light.white);
+    for (std::size_t column = 0; column < 3; ++column) {
+      for (std::size_t row = 0; row < 3; ++row) lights_.push_back(static_cast<float>(product[row][column]));
+      lights_.push_back(0);
+    }
+  }
+  for (const Effects::LobeUse& lobe : effects.lobes) exponents_.push_back(static_cast<float>(lobe.exponent));
+  shading_.lights = static_cast<int>(lights_.size() / 16);
+  shading_.light = lights_.data();
+  shading_.lobes = static_cast<int>(exponents_.size());
+  shading_.exponents = exponents_.data();
+  shading_.lit_diffuse = effects.diffuse;
+  shading_.fresnel = effects.fresnel;
+}
+
+void CpuEngine::set_tilts(const Scene& scene, const Effects& effects) {
+  tilts_.clear(), first_tilt_ = {0};
+  shading_.tilts = nullptr, shading_.most_tilts = 1;
+  if (!effects.anisotropy) return;
+  for (const std::vector<brdf::Tilt>& tilts : tilts_of(scene, effects)) {
+    for (const brdf::Tilt& tilt : tilts) {
+      for (int c = 0; c < 3; ++c) tilts_.push_back(static_cast<float>(tilt.normal[c]));
+      tilts_.push_back(static_cast<float>(tilt.weight));
+    }
+    first_tilt_.push_back(first_tilt_.back() + static_cast<int>(tilts.size()));
+    shading_.most_tilts = std::max(shading_.most_tilts, static_cast<int>(tilts.size()));
+  }
+  shading_.tilts = tilts_.data();
+  shading_.first_tilt = first_tilt_.data();
+}
+
+void CpuEngine::shade_row(const Gbuffer& gbuffer, int y, float gain, bool add, float* rgba) const {
+  const auto put = [&](std::size_t x, const float* color, float alpha) {
+    float* pixel = rgba + 4 * x;
+    for (int c = 0; c < 3; ++c) pixel[c] = gain * color[c] + (add ? pixel[c] : 0);
+    pixel[3] = gain * alpha + (add ? pixel[3] : 0);
+  };
+  Batch seen(shading_), missed(shading_);
+  const InterleavedMaps sky = background_map_.maps();
+  const auto flush = [&](Batch& batch) {
+    if (batch.count() == 0) return;
+    if (&batch == &seen) {
+      batch.shade();
+    } else {
+      batch.look_up(sky);
+    }
+    for (int i = 0; i < batch.count(); ++i) put(batch.index(i), batch.rgba(i), 1);
+    batch.clear();
+  };
+  const Rays& rays = gbuffer.rays;
+  const Vec3 first = rays.corner + (y + 0.5) * rays.down;
+  const float plain[4] = {static_cast<float>(background_color_.x), static_cast<float>(background_color_.y),
+                          static_cast<float>(background_color_.z), 0};
+  const float nothing[4] = {0, 0, 0, 0};
+  for (int x = 0; x < gbuffer.width; ++x) {
+    const float* point = gbuffer.at(x, y);
+    if (point[3] == 0 && background_ != Background::kEnvironment) {
+      const bool colored = background_ == Background::kColor;
+      put(static_cast<std::size_t>(x), colored ? plain : nothing, colored ? 1 : 0);
+      continue;
+    }
+    const double across = x + 0.5;
+    const float to_viewer[3] = {static_cast<float>(-(first.x + across * rays.right.x)),
+                                static_cast<float>(-(first.y + across * rays.right.y)),
+                                static_cast<float>(-(first.z + across * rays.right.z))};
+    Batch& batch = point[3] == 0 ? missed : seen;
+    batch.add(static_cast<std::size_t>(x), point, to_viewer, std::max(0, static_cast<int>(std::abs(point[3])) - 1));
+    if (batch.full()) flush(batch);
+  }
+  flush(seen), flush(missed);
+}
+
+void CpuEngine::shade(const Gbuffer& gbuffer, float gain, bool add, image::Image& rgba) const {
+  rgba.width = gbuffer.width, rgba.height = gbuffer.height, rgba.channels = 4;
+  rgba.data.resize(static_cast<std::size_t>(gbuffer.width) * static_cast<std::size_t>(gbuffer.height) * 4);
+  parallel_for(static_cast<std::size_t>(gbuffer.height), 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t y = begin; y < end; ++y) {
+      shade_row(gbuffer, static_cast<int>(y), gain, add, rgba.pixel(0, static_cast<int>(y)));
+    }
+  });
+}
+
+std::vector<color::Rgb> CpuEngine::shade(const std::vector<VisiblePoint>& points) const {
+  std::vector<color::Rgb> colors(points.size());
+  parallel_for(points.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
+    Batch batch(shading_);
+    for (std::size_t i = begin; i < end; ++i) {
+      const VisiblePoint& point = points[i];
+      float normal[3], to_viewer[3];
+      for (int c = 0; c < 3; ++c) {
+        normal[c] = static_cast<float>(point.normal[c]);
+        to_viewer[c] = static_cast<float>(point.to_viewer[c]);
+      }
+      batch.add(i, normal, to_viewer, point.part);
+    }
+    batch.shade();
+    for (int i = 0; i < batch.count(); ++i) {
+      const float* rgb = batch.rgba(i);
+      colors[batch.index(i)] = {rgb[0], rgb[1], rgb[2]};
+    }
+  });
+  return colors;
+}
+
+}  // namespace goniochrome::render

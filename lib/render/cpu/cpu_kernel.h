@@ -1,0 +1,73 @@
+// The arithmetic of the CPU engine, compiled for several instruction sets and chosen at run time. Internal to
+// lib/render.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace goniochrome::render {
+
+// So many points are shaded at a time: their addresses stay in the first cache.
+constexpr int kPointsAtOnce = 64;
+
+// Maps that one direction meets, their texels interleaved: for each texel, blocks of two maps, the four forms of the
+// product of each (R G B 0 where it is component-wise); or of one map with six forms. A single map of four forms is
+// kept in half a block, which halves what the cache has to hold: the other half of what is read is the next texel,
+// which has no weight.
+struct InterleavedMaps {
+  int size = 0;          // of a face, without its border of one texel
+  int blocks = 0;        // of 8 floats that are read at a texel
+  int texel_floats = 0;  // from one texel to the next
+  const float* texels = nullptr;
+};
+
+// What direction meets them: the normal; the mirror direction; or the mirror directions about tilted normals.
+enum class MapUse { kNormal, kMirror, kTilted };
+
+constexpr int kMostClasses = 16;
+constexpr int kMostBlocks = 32;  // of all maps met by the mirror direction together
+constexpr int kMostLobes = 2 * kMostBlocks;
+
+// What the kernel shades with. Weights of a part and segment: for each class of maps in order, for each block, 8 floats
+// a and 8 floats b (W = a + b t), in the forms of the maps. Then, for each light slot, 4 floats a and 4 floats b. Then,
+// for each class, a and b of the shift s of its direction, r + s n.
+struct CpuShading {
+  int classes = 0;
+  InterleavedMaps maps[kMostClasses];
+  MapUse use[kMostClasses] = {};
+  bool shifted[kMostClasses] = {};
+  int map_floats = 4;                      // of a texel of one map, 4 or 8
+  const float* colors_of_forms = nullptr;  // R G B 0 of each
+  int segments = 1;
+  const float* weights = nullptr;
+  std::size_t segment_floats = 0;
+  std::size_t light_offset = 0, shift_offset = 0;  // of the light slots and of the shifts, within a segment
+
+  // Tilts of the normal, 4 floats each (in the frame of the surface, then the share); part p has those from
+  // first_tilt[p] to first_tilt[p + 1]. Null where no part has more than one.
+  const float* tilts = nullptr;
+  const int* first_tilt = nullptr;
+  int most_tilts = 1;
+
+  int lights = 0;
+  const float* light =
+      nullptr;  // 16 a light: direction, 0, and the columns (4 floats) of pi times its product's matrix
+  int lobes = 0;
+  const float* exponents = nullptr;
+  bool lit_diffuse = false, fresnel = false;
+};
+
+// Points as separate arrays, of kPointsAtOnce each; `count` of them are meant, the others must hold numbers.
+struct PointArrays {
+  float nx[kPointsAtOnce], ny[kPointsAtOnce], nz[kPointsAtOnce];
+  float vx[kPointsAtOnce], vy[kPointsAtOnce], vz[kPointsAtOnce];  // toward the viewer, of any length
+  std::int32_t part[kPointsAtOnce];
+};
+
+// rgba: 4 floats a point; the fourth is not meant.
+void shade_points(const CpuShading& shading, PointArrays& points, int count, float* rgba);
+
+// Looks up one class of maps (a single map) in the directions toward which the points' v point, reversed.
+void look_up_background(const InterleavedMaps& map, PointArrays& points, int count, float* rgba);
+
+}  // namespace goniochrome::render

@@ -1,0 +1,127 @@
+// Lookups in cube maps, many points side by side; for the kernels, once per instruction set. Internal to lib/render.
+#if defined(GONIOCHROME_RENDER_CUBE_LOOKUP_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef GONIOCHROME_RENDER_CUBE_LOOKUP_INL_H_
+#undef GONIOCHROME_RENDER_CUBE_LOOKUP_INL_H_
+#else
+#define GONIOCHROME_RENDER_CUBE_LOOKUP_INL_H_
+#endif
+
+#include <hwy/highway.h>
+// After highway.h:
+#include <hwy/contrib/math/math-inl.h>
+
+#include "render/cpu/cpu_kernel.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace goniochrome::render {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using D = hn::CappedTag<float, 16>;  // points side by side
+using V = hn::Vec<D>;
+
+struct Direction {
+  V x, y, z;
+};
+
+HWY_INLINE V dot(const Direction& a, const Direction& b) {
+  return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
+}
+
+// Four texels and their shares, for each point.
+struct Taps {
+  HWY_ALIGN std::int32_t offset[kPointsAtOnce];  // of the upper left texel, in texels
+  HWY_ALIGN float across[kPointsAtOnce], down[kPointsAtOnce];
+};
+
+// The face that a direction meets, its coordinates s and t there, and the length of the direction's largest component:
+// s and t over it go from -1 to 1. OpenGL 4.5, table 8.19.
+struct OnFace {
+  V face, s, t, axis;
+};
+HWY_INLINE OnFace on_face(const Direction& d) {
+  const D f;
+  const V x = hn::Abs(d.x), y = hn::Abs(d.y), z = hn::Abs(d.z), zero = hn::Zero(f);
+  const auto on_x = hn::And(hn::Ge(x, y), hn::Ge(x, z));
+  const auto on_y = hn::AndNot(on_x, hn::Ge(y, z));
+  const V axis = hn::IfThenElse(on_x, d.x, hn::IfThenElse(on_y, d.y, d.z));
+  const auto back = hn::Lt(axis, zero);
+  const V s_of_z = hn::IfThenElse(back, hn::Neg(d.x), d.x);
+  const V s_of_x = hn::IfThenElse(back, d.z, hn::Neg(d.z));
+  const V t_of_y = hn::IfThenElse(back, hn::Neg(d.z), d.z);
+  const V s = hn::IfThenElse(on_x, s_of_x, hn::IfThenElse(on_y, d.x, s_of_z));
+  const V t = hn::IfThenElse(on_y, t_of_y, hn::Neg(d.y));
+  const V face = hn::Add(hn::IfThenElse(on_x, zero, hn::IfThenElse(on_y, hn::Set(f, 2.0F), hn::Set(f, 4.0F))),
+                         hn::IfThenElse(back, hn::Set(f, 1.0F), zero));
+  return {face, s, t, hn::Abs(axis)};
+}
+
+// The four texels there in maps with so many texels along a face, for the points from i on.
+HWY_INLINE void address(const OnFace& at, hn::Vec<hn::RebindToSigned<D>> size, std::size_t i, Taps& taps) {
+  const D f;
+  const hn::RebindToSigned<D> n;
+  const V texels = hn::ConvertTo(f, size), half = hn::Mul(hn::Set(f, 0.5F), texels);
+  const V scale = hn::Div(half, at.axis);
+  // In texels of the face with its border; centers are at whole numbers.
+  const V middle = hn::Add(half, hn::Set(f, 0.5F));
+  const V most = hn::Add(texels, hn::Set(f, 0.999F)), zero = hn::Zero(f);
+  const V column = hn::Min(hn::Max(hn::MulAdd(at.s, scale, middle), zero), most);
+  const V row = hn::Min(hn::Max(hn::MulAdd(at.t, scale, middle), zero), most);
+  const auto i_column = hn::ConvertTo(n, column), i_row = hn::ConvertTo(n, row);
+  const auto wide = hn::Add(size, hn::Set(n, 2));
+  const auto offset = hn::Add(hn::Mul(hn::Add(hn::Mul(hn::ConvertTo(n, at.face), wide), i_row), wide), i_column);
+  hn::Store(offset, n, taps.offset + i);
+  hn::Store(hn::Sub(column, hn::ConvertTo(f, i_column)), f, taps.across + i);
+  hn::Store(hn::Sub(row, hn::ConvertTo(f, i_row)), f, taps.down + i);
+}
+HWY_INLINE void address(const Direction& d, int size, std::size_t i, Taps& taps) {
+  address(on_face(d), hn::Set(hn::RebindToSigned<D>(), size), i, taps);
+}
+
+// n floats, in as many registers as they need.
+template <std::size_t n>
+struct Pack {
+  using Tag = hn::CappedTag<float, n>;
+  static constexpr std::size_t kLanes = hn::MaxLanes(Tag()), kRegisters = n / kLanes;
+  hn::Vec<Tag> v[kRegisters];
+
+  static HWY_INLINE Pack load(const float* from) {
+    Pack pack;
+    for (std::size_t i = 0; i < kRegisters; ++i) pack.v[i] = hn::LoadU(Tag(), from + i * kLanes);
+    return pack;
+  }
+  static HWY_INLINE Pack filled(float value) {
+    Pack pack;
+    for (std::size_t i = 0; i < kRegisters; ++i) pack.v[i] = hn::Set(Tag(), value);
+    return pack;
+  }
+  HWY_INLINE void store(float* to) const {
+    for (std::size_t i = 0; i < kRegisters; ++i) hn::StoreU(v[i], Tag(), to + i * kLanes);
+  }
+};
+template <std::size_t n>
+HWY_INLINE Pack<n> mul_add(const Pack<n>& a, const Pack<n>& b, const Pack<n>& c) {
+  Pack<n> pack;
+  for (std::size_t i = 0; i < Pack<n>::kRegisters; ++i) pack.v[i] = hn::MulAdd(a.v[i], b.v[i], c.v[i]);
+  return pack;
+}
+
+using Quad = Pack<4>;  // one R G B 0
+
+// log cos from 1 - cos, which is exact where cos is 1 but for the last digits.
+HWY_INLINE V log_cos_of(V versine) {
+  const D f;
+  const V s = versine;
+  const V series =
+      hn::Mul(hn::Neg(s),
+              hn::MulAdd(s, hn::MulAdd(s, hn::MulAdd(s, hn::Set(f, 0.25F), hn::Set(f, 0.33333333F)), hn::Set(f, 0.5F)),
+                         hn::Set(f, 1.0F)));
+  const V direct = hn::Log(f, hn::Max(hn::Sub(hn::Set(f, 1.0F), s), hn::Set(f, 1e-30F)));
+  return hn::IfThenElse(hn::Lt(s, hn::Set(f, 0.02F)), series, direct);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace goniochrome::render
+HWY_AFTER_NAMESPACE();
+
+#endif  // GONIOCHROME_RENDER_CUBE_LOOKUP_INL_H_

@@ -1,0 +1,274 @@
+#include "render/exact.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/clock.h"
+#include "base/parallel.h"
+#include "render/integral/gatherer.h"
+#include "render/internal/seen.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+// Tilts of the truth: of an anisotropic lobe's peak.
+constexpr double kTiltTolerance = 1e-3;
+
+// A run of texels is set up once for so many points: directions cost more than lobes.
+constexpr std::size_t kPointsTogether = 16;
+
+// The piece (i, j) of a texel cut into k x k.
+Patch piece(const envmap::Environment& env, int column, int row, int i, int j, int k) {
+  const double step = 1.0 / k, left = column + i * step, top = row + j * step;
+  return {env.direction_at(left + 0.5 * step, top + 0.5 * step), env.solid_angle(left, top, left + step, top + step)};
+}
+
+template <class AnyGatherer>
+void gather_texel(const envmap::Environment& env, int column, int row, const Patch& whole, const color::Rgb& radiance,
+                  AnyGatherer& point) {
+  const int k = point.grain().pieces(whole.direction);
+  if (k == 1) return point.add(whole, radiance);
+  for (int j = 0; j < k; ++j) {
+    for (int i = 0; i < k; ++i) point.add(piece(env, column, row, i, j, k), radiance);
+  }
+}
+
+template <class AnyGatherer>
+void gather_texels(const envmap::Environment& env, std::vector<AnyGatherer>& points) {
+  for (int row = 0; row < env.height(); ++row) {
+    for (int column = 0; column < env.width(); ++column) {
+      const float* texel = env.radiance(column, row);
+      const color::Rgb radiance{texel[0], texel[1], texel[2]};
+      if (radiance == color::Rgb{}) continue;
+      const Patch whole{env.direction(column, row), env.solid_angle(column, row)};
+      for (AnyGatherer& point : points) gather_texel(env, column, row, whole, radiance, point);
+    }
+  }
+}
+
+// Of a disc of even light that fills the cap.
+double even_variance(const envmap::BlockTree::Block& block) {
+  return 0.25 * block.sine * block.sine;
+}
+
+// The mean direction of a block's light, all channels together, and its variance along each axis about it.
+struct Beam {
+  Vec3 direction;
+  double variance;
+};
+Beam beam_of(const envmap::BlockTree::Block& block) {
+  Vec3 moment;
+  double flux = 0;
+  for (int c = 0; c < 3; ++c) {
+    moment += Vec3{block.moment[c][0], block.moment[c][1], block.moment[c][2]};
+    flux += block.flux[c];
+  }
+  const double size = length(moment);
+  // Floats hold the moments to some 1e-6: narrower blocks are taken as even.
+  constexpr double kRounded = 1e-5;
+  const double variance = 1 - size / flux, even = even_variance(block);
+  return {(1 / size) * moment, variance < kRounded ? std::min(even, kRounded) : variance};
+}
+
+template <class AnyGatherer>
+void gather_blocks(const envmap::BlockTree& tree, AnyGatherer& point) {
+  const envmap::Environment& env = tree.environment();
+  tree.walk(
+      [&](const envmap::BlockTree::Block& block) {
+        const color::Rgb flux{block.flux[0], block.flux[1], block.flux[2]};
+        if (flux == color::Rgb{}) return false;
+        if (point.ends_at_horizon()) {
+          const double above = dot(point.normal(), {block.axis[0], block.axis[1], block.axis[2]});
+          if (block.cosine > 0 && above < -block.sine) return false;
+          if (above < block.sine && point.grain().opens_at_horizon(block)) return true;
+        }
+        const Beam beam = beam_of(block);
+        // A strip's variance lies along one axis: the cap's own bounds it.
+        if (point.grain().opens(block, std::max(beam.variance, even_variance(block)))) return true;
+        point.add({beam.direction, 1, beam.variance}, flux);
+        return false;
+      },
+      [&](int column, int row) {
+        const float* texel = env.radiance(column, row);
+        const color::Rgb radiance{texel[0], texel[1], texel[2]};
+        if (radiance == color::Rgb{}) return;
+        gather_texel(env, column, row, {env.direction(column, row), env.solid_angle(column, row)}, radiance, point);
+      });
+}
+
+template <class AnyGatherer>
+void gather(const Surroundings& around, std::vector<AnyGatherer>& points) {
+  if (around.blocks != nullptr) {
+    for (AnyGatherer& point : points) gather_blocks(*around.blocks, point);
+  } else if (around.texels != nullptr) {
+    gather_texels(*around.texels, points);
+  }
+}
+
+// `count` of the n numbers 0..n-1, evenly drawn, in ascending order (Fisher-Yates on splitmix64).
+std::vector<std::size_t> drawn(std::size_t n, std::size_t count, std::uint64_t seed) {
+  std::vector<std::size_t> all(n);
+  for (std::size_t i = 0; i < n; ++i) all[i] = i;
+  for (std::size_t i = 0; i < std::min(count, n); ++i) {
+    std::uint64_t z = (seed += 0x9E3779B97F4A7C15U);
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9U;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBU;
+    z ^= z >> 31;
+    std::swap(all[i], all[i + z % (n - i)]);
+  }
+  all.resize(std::min(count, n));
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+}  // namespace
+
+std::vector<color::Rgb> reference_radiance(const std::vector<SurfacePoint>& points, const Surroundings& around,
+                                           const std::vector<Light>& lights) {
+  std::vector<color::Rgb> radiance(points.size());
+  const envmap::Environment* env = around.texels;
+  const double texel_rad = env != nullptr ? env->largest_texel_rad() : 0;
+  parallel_for(points.size(), kPointsTogether, [&](std::size_t begin, std::size_t end) {
+    std::vector<Gatherer> gatherers;
+    for (std::size_t i = begin; i < end; ++i) gatherers.emplace_back(points[i], texel_rad, around.most_spread);
+    gather(around, gatherers);
+    for (std::size_t i = begin; i < end; ++i) {
+      Gatherer& gatherer = gatherers[i - begin];
+      for (const Light& light : lights) gatherer.add_light(light);
+      if (env != nullptr) {
+        const float* texel = env->lookup(gatherer.reflected());
+        gatherer.add_mirror({texel[0], texel[1], texel[2]});
+      }
+      radiance[i] = gatherer.sum();
+    }
+  });
+  return radiance;
+}
+
+std::vector<color::Rgb> textured_radiance(const std::vector<TexturedPoint>& points, const Surroundings& around,
+                                          const std::vector<Light>& lights,
+                                          const color::ReflectionOperator* reflection) {
+  std::vector<color::Rgb> radiance(points.size());
+  const envmap::Environment* env = around.texels;
+  const double texel_rad = env != nullptr ? env->largest_texel_rad() : 0;
+  parallel_for(points.size(), kPointsTogether, [&](std::size_t begin, std::size_t end) {
+    std::vector<TextureGatherer> gatherers;
+    for (std::size_t i = begin; i < end; ++i)
+      gatherers.emplace_back(points[i], reflection, texel_rad, around.most_spread);
+    gather(around, gatherers);
+    for (std::size_t i = begin; i < end; ++i) {
+      for (const Light& light : lights) gatherers[i - begin].add_light(light);
+      radiance[i] = gatherers[i - begin].sum();
+    }
+  });
+  return radiance;
+}
+
+namespace {
+
+bool is_textured(const Scene& scene, int part) {
+  return scene.layer != nullptr && scene.layer->surface(part).texture != nullptr;
+}
+
+// The colors of the textured ones of these points take the place of what is there.
+void put_textured(const Scene& scene, const std::vector<VisiblePoint>& points, const Effects& effects,
+                  const Surroundings& around, std::vector<color::Rgb>& colors) {
+  std::vector<TexturedPoint> textured;
+  std::vector<std::size_t> numbers;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!is_textured(scene, points[i].part)) continue;
+    textured.push_back({points[i].normal, points[i].to_viewer, scene.layer->place(points[i], i, effects)});
+    numbers.push_back(i);
+  }
+  const std::vector<color::Rgb> shown = textured_radiance(
+      textured, effects.environment ? around : Surroundings(nullptr),
+      effects.lights > 0 ? scene.lights : std::vector<Light>(), effects.reflection ? &scene.reflection : nullptr);
+  for (std::size_t i = 0; i < shown.size(); ++i) colors[numbers[i]] = shown[i];
+}
+
+}  // namespace
+
+std::vector<color::Rgb> exact_radiance(const std::vector<VisiblePoint>& points, const Scene& scene,
+                                       const Effects& effects, const Surroundings& around) {
+  std::vector<paint::LobeFit> paints;
+  std::vector<ExactModel> models(scene.paints.size());
+  Effects dense = effects;
+  if (around.blocks == nullptr) dense.tilt_tolerance = kTiltTolerance;
+  const auto tilts =
+      effects.anisotropy ? tilts_of(scene, dense) : std::vector<std::vector<brdf::Tilt>>(scene.paints.size());
+  for (std::size_t part = 0; part < scene.paints.size(); ++part) {
+    paints.push_back(with_effects(scene.paints[part], effects));
+    ExactModel& model = models[part];
+    if (effects.maps) paints.back().views.clear();  // the maps are told apart from the weights for all views
+    model.fresnel = effects.fresnel;
+    if (part < scene.gloss_deg.size()) model.gloss_deg = scene.gloss_deg[part];
+    model.horizon = effects.horizon || effects.lobes.empty() || !effects.environment;
+    if (tilts[part].size() > 1) model.tilts = tilts[part];
+    if (effects.reflection) model.reflection = &scene.reflection;
+  }
+  std::vector<SurfacePoint> surface;
+  std::vector<std::size_t> numbers;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto part = static_cast<std::size_t>(points[i].part);
+    if (is_textured(scene, points[i].part)) continue;
+    surface.push_back({points[i].normal, points[i].to_viewer, &paints[part], &models[part]});
+    numbers.push_back(i);
+  }
+  const std::vector<color::Rgb> plain =
+      reference_radiance(surface, effects.environment ? around : Surroundings(nullptr),
+                         effects.lights > 0 ? scene.lights : std::vector<Light>());
+  std::vector<color::Rgb> colors(points.size());
+  for (std::size_t i = 0; i < plain.size(); ++i) colors[numbers[i]] = plain[i];
+  if (effects.maps) scene.layer->add_mapped(points, colors);
+  put_textured(scene, points, effects, around, colors);
+  return colors;
+}
+
+PixelSample sampled_pixels(const Gbuffer& g, const Scene& scene, int count, std::uint64_t seed) {
+  std::vector<std::array<int, 2>> visible;
+  for (int y = 0; y < g.height; ++y) {
+    for (int x = 0; x < g.width; ++x) {
+      if (g.part(x, y) >= 0) visible.push_back({x, y});
+    }
+  }
+  std::vector<TexturePlace> places;
+  if (scene.layer != nullptr) places = scene.layer->places(g);
+  PixelSample sample;
+  for (const std::size_t i : drawn(visible.size(), static_cast<std::size_t>(count), seed)) {
+    const auto [x, y] = visible[i];
+    sample.places.push_back(visible[i]);
+    sample.points.push_back({g.normal(x, y), g.to_viewer(x, y), g.part(x, y)});
+    if (places.empty()) continue;
+    sample.points.back().placed = true;
+    sample.points.back().place = places[static_cast<std::size_t>(y) * g.width + x];
+  }
+  return sample;
+}
+
+PictureError picture_error(const Frame& frame, const Scene& scene, const envmap::Environment* env,
+                           double white_luminance, int count, std::uint64_t seed) {
+  const Stopwatch clock;
+  const double white = white_luminance > 0 ? white_luminance : 1;  // in the dark all is black
+  const PixelSample sample = sampled_pixels(*frame.gbuffer, scene, count, seed);
+  const std::vector<std::array<int, 2>>& chosen = sample.places;
+  const std::vector<color::Rgb> truth = exact_radiance(sample.points, scene, effects_of(scene), env);
+
+  PictureError error;
+  error.checked_pixels = static_cast<int>(chosen.size());
+  std::vector<double> de00;
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    const float* pixel = frame.centers.pixel(chosen[i][0], chosen[i][1]);
+    de00.push_back(seen_difference({pixel[0], pixel[1], pixel[2]}, truth[i], white));
+    error.de00_mean += de00.back() / static_cast<double>(chosen.size());
+    if (de00.back() <= error.de00_max) continue;
+    error.de00_max = de00.back();
+    error.worst_x = chosen[i][0], error.worst_y = chosen[i][1];
+  }
+  error.de00_p95 = percentile_95(std::move(de00));
+  error.time_s = clock.elapsed_s();
+  return error;
+}
+
+}  // namespace goniochrome::render

@@ -1,0 +1,107 @@
+// OpenGL on OSMesa: one off-screen context and the entry points in use. Internal to lib/render.
+#pragma once
+
+#include <GL/glcorearb.h>
+
+#include <memory>
+#include <string>
+
+#include "base/result.h"
+#include "render/camera.h"
+
+// Every OpenGL function in use. libepoxy aborts under OSMesa, so they are looked up here, by name.
+#define GONIO_GL_FUNCTIONS(X)                                  \
+  X(PFNGLACTIVETEXTUREPROC, ActiveTexture)                     \
+  X(PFNGLATTACHSHADERPROC, AttachShader)                       \
+  X(PFNGLBINDBUFFERPROC, BindBuffer)                           \
+  X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)                 \
+  X(PFNGLBINDRENDERBUFFERPROC, BindRenderbuffer)               \
+  X(PFNGLBINDTEXTUREPROC, BindTexture)                         \
+  X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)                 \
+  X(PFNGLBLENDFUNCPROC, BlendFunc)                             \
+  X(PFNGLBUFFERDATAPROC, BufferData)                           \
+  X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus)   \
+  X(PFNGLCLEARPROC, Clear)                                     \
+  X(PFNGLCLEARCOLORPROC, ClearColor)                           \
+  X(PFNGLCOMPILESHADERPROC, CompileShader)                     \
+  X(PFNGLCREATEPROGRAMPROC, CreateProgram)                     \
+  X(PFNGLCREATESHADERPROC, CreateShader)                       \
+  X(PFNGLDELETEFRAMEBUFFERSPROC, DeleteFramebuffers)           \
+  X(PFNGLDELETEPROGRAMPROC, DeleteProgram)                     \
+  X(PFNGLDELETERENDERBUFFERSPROC, DeleteRenderbuffers)         \
+  X(PFNGLDELETESHADERPROC, DeleteShader)                       \
+  X(PFNGLDELETETEXTURESPROC, DeleteTextures)                   \
+  X(PFNGLDISABLEPROC, Disable)                                 \
+  X(PFNGLDRAWARRAYSPROC, DrawArrays)                           \
+  X(PFNGLDRAWELEMENTSPROC, DrawElements)                       \
+  X(PFNGLENABLEPROC, Enable)                                   \
+  X(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray) \
+  X(PFNGLFINISHPROC, Finish)                                   \
+  X(PFNGLFRAMEBUFFERRENDERBUFFERPROC, FramebufferRenderbuffer) \
+  X(PFNGLFRAMEBUFFERTEXTURE2DPROC, FramebufferTexture2D)       \
+  X(PFNGLFRONTFACEPROC, FrontFace)                             \
+  X(PFNGLGENBUFFERSPROC, GenBuffers)                           \
+  X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers)                 \
+  X(PFNGLGENRENDERBUFFERSPROC, GenRenderbuffers)               \
+  X(PFNGLGENTEXTURESPROC, GenTextures)                         \
+  X(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays)                 \
+  X(PFNGLGETERRORPROC, GetError)                               \
+  X(PFNGLGETINTEGERVPROC, GetIntegerv)                         \
+  X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog)             \
+  X(PFNGLGETPROGRAMIVPROC, GetProgramiv)                       \
+  X(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog)               \
+  X(PFNGLGETSHADERIVPROC, GetShaderiv)                         \
+  X(PFNGLGETSTRINGPROC, GetString)                             \
+  X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)           \
+  X(PFNGLLINKPROGRAMPROC, LinkProgram)                         \
+  X(PFNGLREADPIXELSPROC, ReadPixels)                           \
+  X(PFNGLRENDERBUFFERSTORAGEPROC, RenderbufferStorage)         \
+  X(PFNGLSHADERSOURCEPROC, ShaderSource)                       \
+  X(PFNGLTEXIMAGE2DPROC, TexImage2D)                           \
+  X(PFNGLTEXPARAMETERIPROC, TexParameteri)                     \
+  X(PFNGLUNIFORM1IPROC, Uniform1i)                             \
+  X(PFNGLUNIFORM3FPROC, Uniform3f)                             \
+  X(PFNGLUNIFORM4FPROC, Uniform4f)                             \
+  X(PFNGLUNIFORMMATRIX4FVPROC, UniformMatrix4fv)               \
+  X(PFNGLUSEPROGRAMPROC, UseProgram)                           \
+  X(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer)         \
+  X(PFNGLVIEWPORTPROC, Viewport)
+
+namespace goniochrome::render {
+
+// A core profile context without a window. Everything made in it goes with it.
+class GlContext {
+ public:
+  // Error: OSMesa cannot make one, or lacks a function.
+  static Result<GlContext> create();
+
+  void make_current() const;
+
+  // A linked program. Error (a bug of the generator): the compiler's message and the text.
+  Result<GLuint> program(const std::string& vertex, const std::string& fragment) const;
+
+  // Error: the first OpenGL error since the last call, after `doing`.
+  Result<void> status(const char* doing) const;
+
+  int integer(GLenum name) const;
+
+  // A texture of RGBA floats, fetched by texel; null leaves it undefined. And one to draw into, with its framebuffer.
+  GLuint float_texture(int columns, int rows, const float* rgba) const;
+  void float_target(int columns, int rows, GLuint& texture, GLuint& framebuffer) const;
+
+  // Sets the uniforms corner, right and down of a program.
+  void set_rays(GLuint program, const Rays& rays) const;
+  void set(GLuint program, const std::string& name, const Vec3& value) const;
+  // "llvmpipe (LLVM 15.0.6, 256 bits)"
+  std::string engine() const;
+
+#define GONIO_GL_MEMBER(type, name) type name = nullptr;
+  GONIO_GL_FUNCTIONS(GONIO_GL_MEMBER)
+#undef GONIO_GL_MEMBER
+
+ private:
+  explicit GlContext(void* context);
+  std::unique_ptr<void, void (*)(void*)> context_;
+};
+
+}  // namespace goniochrome::render

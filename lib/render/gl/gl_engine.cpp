@@ -1,0 +1,147 @@
+#include "render/gl/gl_engine.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "render/gl/shader.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+// The four forms of colors that lie `step` floats apart.
+std::vector<float> in_forms(const ProductForms& forms, const float* colors, std::size_t count, std::size_t step) {
+  std::vector<float> result(4 * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const color::Rgb color{colors[step * i], colors[step * i + 1], colors[step * i + 2]};
+    for (int form = 0; form < 4; ++form)
+      result[4 * i + static_cast<std::size_t>(form)] = static_cast<float>(forms.of(form, color));
+  }
+  return result;
+}
+
+}  // namespace
+
+// Float texels: a half would have to be rounded first, since llvmpipe truncates, and is no faster to fetch.
+void GlEngine::upload(const envmap::CubeMap& map, const std::string& sampler) {
+  GLuint texture = 0;
+  gl_->GenTextures(1, &texture);
+  gl_->BindTexture(GL_TEXTURE_CUBE_MAP, texture);
+  const auto texels = static_cast<std::size_t>(map.size) * static_cast<std::size_t>(map.size);
+  for (int face = 0; face < 6; ++face) {
+    const GLenum target = GL_TEXTURE_CUBE_MAP_POSITIVE_X + static_cast<GLenum>(face);
+    if (forms_.count == 4) {
+      gl_->TexImage2D(target, 0, GL_RGBA32F, map.size, map.size, 0, GL_RGBA, GL_FLOAT,
+                      in_forms(forms_, map.at(face, 0, 0), texels, 3).data());
+    } else {
+      gl_->TexImage2D(target, 0, GL_RGB32F, map.size, map.size, 0, GL_RGB, GL_FLOAT, map.at(face, 0, 0));
+    }
+  }
+  gl_->TexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  gl_->TexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  cubes_.emplace_back(sampler, texture);
+}
+
+Result<void> GlEngine::load(const Scene& scene, const Effects& effects, const SceneMaps& maps) {
+  const std::string text = shading_fragment_shader(effects, scene.reflection);
+  if (text != text_) {
+    if (program_ != 0) gl_->DeleteProgram(program_);
+    GONIO_ASSIGN(program_, gl_->program(shading_vertex_shader(), text));
+    text_ = text;
+  }
+  forms_ = effects.reflection ? product_forms(scene.reflection) : ProductForms{};
+  if (no_vertices_ == 0) gl_->GenVertexArrays(1, &no_vertices_);
+  gl_->BlendFunc(GL_ONE, GL_ONE);
+  for (const auto& [sampler, texture] : cubes_) gl_->DeleteTextures(1, &texture);
+  cubes_.clear();
+  if (maps.diffuse.size > 0) upload(maps.diffuse.maps[0], "diffuse");
+  for (const MapClass& lobes : maps.lobes) {
+    for (std::size_t i = 0; i < lobes.slots.size(); ++i)
+      upload(lobes.maps[i], fmt::format("lobe_{}", lobes.slots[i] - 1));
+  }
+  if (maps.mirror.size > 0) upload(maps.mirror.maps[0], "mirror");
+  const int units = gl_->integer(GL_MAX_TEXTURE_IMAGE_UNITS);
+  if (static_cast<int>(cubes_.size()) + 3 > units) {
+    return input_error("the paints use {} lobes, but OpenGL has only {} texture units: fit them to one common basis",
+                       effects.lobes.size(), units);
+  }
+  effects_ = effects;
+  load_paints(scene, weight_table(scene, effects));
+  return gl_->status("uploading the scene");
+}
+
+void GlEngine::upload_tilts(const std::vector<std::vector<brdf::Tilt>>& tilts) {
+  std::size_t most = 1;
+  for (const std::vector<brdf::Tilt>& part : tilts) most = std::max(most, part.size());
+  std::vector<float> texels(4 * most * tilts.size(), 0.0F);
+  for (std::size_t part = 0; part < tilts.size(); ++part) {
+    float* to = &texels[4 * most * part];
+    for (const brdf::Tilt& tilt : tilts[part]) {
+      for (int c = 0; c < 3; ++c) *to++ = static_cast<float>(tilt.normal[c]);
+      *to++ = static_cast<float>(tilt.weight);
+    }
+  }
+  tilts_ = gl_->float_texture(static_cast<int>(most), static_cast<int>(tilts.size()), texels.data());
+}
+
+void GlEngine::load_paints(const Scene& scene, const WeightTable& table) {
+  gl_->DeleteTextures(1, &weights_);
+  std::vector<float> weights = table.rgba;
+  if (forms_.count == 4) {  // those that meet maps
+    const auto met = static_cast<std::size_t>(table.light_slot()) * 8,
+               slots = static_cast<std::size_t>(table.slots) * 8;
+    for (std::size_t at = 0; at < weights.size(); at += slots)
+      std::ranges::copy(in_forms(forms_, &table.rgba[at], met / 4, 4), &weights[at]);
+  }
+  weights_ = gl_->float_texture(2 * table.slots * table.segments, table.parts, weights.data());
+  gl_->DeleteTextures(1, &tilts_);
+  tilts_ = 0;
+  if (effects_.anisotropy) upload_tilts(tilts_of(scene, effects_));
+  lights_ = effects_.lights > 0 ? scene.lights : std::vector<Light>();
+  background_color_ = scene.background_color;
+}
+
+Result<void> GlEngine::resize(int width, int height) {
+  if (width == width_ && height == height_) return {};
+  gl_->float_target(width, height, texture_, target_);
+  width_ = width, height_ = height;
+  return gl_->status("making the framebuffer");
+}
+
+void GlEngine::shade(GLuint gbuffer_texture, const Rays& rays, bool add) {
+  gl_->BindFramebuffer(GL_FRAMEBUFFER, target_);
+  gl_->Viewport(0, 0, width_, height_);
+  gl_->Disable(GL_DEPTH_TEST);
+  if (add) gl_->Enable(GL_BLEND);
+  gl_->UseProgram(program_);
+  gl_->set_rays(program_, rays);
+  GLint unit = 0;
+  const auto bind = [&](const std::string& sampler, GLenum kind, GLuint texture) {
+    gl_->ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    gl_->BindTexture(kind, texture);
+    gl_->Uniform1i(gl_->GetUniformLocation(program_, sampler.c_str()), unit++);
+  };
+  bind("gbuffer", GL_TEXTURE_2D, gbuffer_texture);
+  bind("weights", GL_TEXTURE_2D, weights_);
+  if (effects_.anisotropy) bind("tilts", GL_TEXTURE_2D, tilts_);
+  for (const auto& [sampler, texture] : cubes_) bind(sampler, GL_TEXTURE_CUBE_MAP, texture);
+  gl_->ActiveTexture(GL_TEXTURE0);
+  for (std::size_t i = 0; i < lights_.size(); ++i) {
+    gl_->set(program_, fmt::format("light_direction[{}]", i), lights_[i].direction);
+    gl_->set(program_, fmt::format("light_white[{}]", i), lights_[i].white);
+  }
+  if (effects_.background == Background::kColor) gl_->set(program_, "background", background_color_);
+  gl_->BindVertexArray(no_vertices_);
+  gl_->DrawArrays(GL_TRIANGLES, 0, 3);
+  gl_->Disable(GL_BLEND);
+}
+
+void GlEngine::read(image::Image& rgba) const {
+  rgba.width = width_, rgba.height = height_, rgba.channels = 4;
+  rgba.data.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * 4);
+  gl_->BindFramebuffer(GL_FRAMEBUFFER, target_);
+  gl_->ReadPixels(0, 0, width_, height_, GL_RGBA, GL_FLOAT, rgba.data.data());
+}
+
+}  // namespace goniochrome::render

@@ -1,0 +1,20 @@
+// The shading program, written for one scene: only the effects and lobes that it uses. goniochrome-theory(7),
+// RENDERING.
+#pragma once
+
+#include <string>
+
+#include "render/effects.h"
+
+namespace goniochrome::render {
+
+// Draws the G-buffer: unit normal, turned to the viewer, and part + 1 (negative where a surface is seen from inside).
+std::string gbuffer_vertex_shader();
+std::string gbuffer_fragment_shader();
+
+// Covers the picture, and shades each point of the G-buffer.
+std::string shading_vertex_shader();
+// The operator is written into it where the effects have it.
+std::string shading_fragment_shader(const Effects& effects, const color::ReflectionOperator& op);
+
+}  // namespace goniochrome::render

@@ -1,0 +1,235 @@
+#include "render/integral/gatherer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace goniochrome::render {
+
+namespace {
+
+// cos^E below exp(-kTail) is left out: 4e-18 of the peak.
+constexpr double kTail = 40;
+// A texel is cut into pieces of at most this many standard deviations (1/sqrt E) of the sharpest lobe that reaches it.
+// The midpoint rule then errs by (1/4)^2/24 of the value on a patch, and far less in the sum over smooth radiance.
+constexpr double kPiece = 0.25;
+constexpr double kLargestLog = 700;  // exp of it is finite
+// A square is this many standard deviations of one of its coordinates wide.
+const double kSquare = std::sqrt(12.0);
+
+const ExactModel& model_of(const SurfacePoint& point) {
+  static const ExactModel bare;
+  return point.model != nullptr ? *point.model : bare;
+}
+
+double view_deg(const SurfacePoint& point) {
+  return std::atan2(length(cross(point.normal, point.to_viewer)), dot(point.normal, point.to_viewer)) * 180 /
+         std::numbers::pi;
+}
+
+Vec3 vec(const float* v) {
+  return {v[0], v[1], v[2]};
+}
+
+// The most that a lobe exp(-q) bends, over all that is farther from its middle than q, relative to its bend there:
+// (1 + 2q) exp(-q), in steps.
+double bend_beyond(double q) {
+  constexpr double kSteps[][2] = {{1.5, 1}, {3, 0.9}, {5, 0.36}, {8, 0.08}, {12, 0.006}};
+  for (const auto& [end, bend] : kSteps) {
+    if (q < end) return bend;
+  }
+  return 0;
+}
+
+}  // namespace
+
+Grain::Grain(double texel_rad, double most_spread)
+    : texel_rad_(texel_rad), most_spread_(most_spread), piece_(std::max(kPiece, kSquare * most_spread)) {}
+
+void Grain::add(std::vector<Vec3> middles, const std::vector<double>& exponents) {
+  Bundle bundle{std::move(middles), {}, 0, {}};
+  for (const Vec3& middle : bundle.middles) bundle.axis += middle;
+  bundle.axis = length(bundle.axis) > 0 ? normalized(bundle.axis) : Vec3{0, 1, 0};
+  for (const Vec3& middle : bundle.middles) bundle.radius = std::max(bundle.radius, length(middle - bundle.axis));
+  if (bundle.middles.size() > 1) {
+    // Evenly over the cap they stand radius sqrt(pi / n) apart; a quarter of it, since they lie closer in its middle.
+    const double apart =
+        0.25 * bundle.radius * std::sqrt(std::numbers::pi / static_cast<double>(bundle.middles.size()));
+    apart2_ = apart * apart;
+  }
+  for (const double exponent : exponents) {
+    const double pieces = std::max(1.0, std::ceil(texel_rad_ * std::sqrt(exponent) / piece_));
+    // cos^E = exp(-kTail) at this angle; a texel whose center is that far and its own extent has nothing to give.
+    const double reach_rad = std::acos(std::exp(-kTail / exponent)) + texel_rad_;
+    const double chord = 2 * std::sin(0.5 * std::min(reach_rad, std::numbers::pi));
+    bundle.reaches.push_back({1 / (1 / exponent + apart2_), static_cast<int>(pieces), chord * chord});
+  }
+  bundles_.push_back(std::move(bundle));
+}
+
+int Grain::pieces(const Vec3& direction) const {
+  int most = 1;
+  for (const Bundle& bundle : bundles_) {
+    if (bundle.reaches.empty() || bundle.reaches.front().pieces <= most) continue;
+    double chord2 = 4;
+    for (const Vec3& middle : bundle.middles) chord2 = std::min(chord2, dot(middle - direction, middle - direction));
+    for (const Reach& reach : bundle.reaches) {
+      if (reach.pieces <= most) break;
+      if (chord2 < reach.chord2) most = reach.pieces;
+    }
+  }
+  return most;
+}
+
+bool Grain::opens(const envmap::BlockTree::Block& block, double variance) const {
+  const double most = most_spread_ * most_spread_;
+  if (variance > most) return true;    // the cosine law is a lobe of exponent 1 whose middle may be anywhere
+  constexpr double kHalfSphere = 0.5;  // of wider caps the sine is no measure
+  if (block.cosine < kHalfSphere) return true;
+  const double extent = 1.2 * block.sine;  // at least the chord of the cap's radius
+  for (const Bundle& bundle : bundles_) {
+    const double nearest = std::max(0.0, length(bundle.axis - vec(block.axis)) - bundle.radius - extent);
+    for (const Reach& reach : bundle.reaches) {
+      if (variance * reach.exponent <= most) break;
+      if (variance * reach.exponent * bend_beyond(0.5 * reach.exponent * nearest * nearest) > most) return true;
+    }
+  }
+  return false;
+}
+
+Gatherer::Gatherer(const SurfacePoint& point, double texel_rad, double most_spread)
+    : point_(point),
+      model_(model_of(point)),
+      paint_(brdf::at_view(*point.paint, view_deg(point))),
+      cos_o_(dot(point.normal, point.to_viewer)),
+      grain_(texel_rad, most_spread) {
+  set_mirror_directions();
+  for (const paint::Lobe& lobe : paint_.lobes) {
+    if (std::isfinite(lobe.exponent)) lobes_.push_back(lobe);
+  }
+  std::sort(lobes_.begin(), lobes_.end(),
+            [](const paint::Lobe& a, const paint::Lobe& b) { return a.exponent < b.exponent; });
+  if (model_.fresnel) {
+    const double share =
+        1 / brdf::fresnel_dielectric(std::cos(model_.gloss_deg * std::numbers::pi / 180), brdf::kCoatIndex);
+    for (paint::Lobe& lobe : lobes_) lobe.gloss = share * lobe.gloss;
+  }
+  std::vector<Vec3> middles;
+  for (const Mirrored& m : mirrored_) middles.push_back(m.direction);
+  std::vector<double> exponents;
+  for (auto lobe = lobes_.rbegin(); lobe != lobes_.rend(); ++lobe) exponents.push_back(lobe->exponent);
+  grain_.add(std::move(middles), exponents);
+}
+
+// About the normal, and about each tilted normal: the tangent runs level around +Y, on a level surface along +X.
+void Gatherer::set_mirror_directions() {
+  const Vec3& n = point_.normal;
+  reflected_ = 2 * cos_o_ * n - point_.to_viewer;
+  if (model_.tilts.empty()) {
+    mirrored_ = {{reflected_, 1}};
+    return;
+  }
+  const double level2 = n.x * n.x + n.z * n.z;
+  const Vec3 x = level2 > 1e-12 ? normalized({n.z, 0, -n.x}) : Vec3{1, 0, 0}, y = cross(n, x);
+  for (const brdf::Tilt& tilt : model_.tilts) {
+    const Vec3 m = tilt.normal.x * x + tilt.normal.y * y + tilt.normal.z * n;
+    const double cos_m = dot(m, point_.to_viewer);
+    const Vec3 r = 2 * cos_m * m - point_.to_viewer;
+    if (cos_m > 0 && dot(r, n) > 0) mirrored_.push_back({r, tilt.weight});
+  }
+}
+
+void Gatherer::add_light(const Light& light) {
+  add({light.direction, std::numbers::pi}, light.white, true);
+}
+
+void Gatherer::add(const Patch& patch, const color::Rgb& radiance, bool horizon) {
+  const double above = (1 - patch.variance) * dot(point_.normal, patch.direction), cos_i = horizon ? above : cos_o_;
+  color::Rgb f = above > 0 ? above * paint_.diffuse : color::Rgb{};
+  if (above > 0 || !horizon) f += lobes_toward(patch, cos_i);
+  const color::Rgb product =
+      model_.reflection != nullptr ? goniochrome::color::reflected(*model_.reflection, f, radiance) : f * radiance;
+  sum_ += patch.solid_angle_sr * product;
+}
+
+void Gatherer::add_mirror(const color::Rgb& radiance) {
+  const paint::Lobe* mirror = find_lobe(paint_, envmap::kMirrorExponent);
+  if (mirror == nullptr) return;
+  const bool fresnel = point_.model == nullptr || model_.fresnel;
+  const color::Rgb k =
+      brdf::fresnel_dielectric(fresnel ? cos_o_ : std::numbers::sqrt2 / 2, brdf::kCoatIndex) * mirror->gloss;
+  sum_ += model_.reflection != nullptr ? goniochrome::color::reflected(*model_.reflection, k, radiance) : k * radiance;
+}
+
+color::Rgb Gatherer::lobes_toward(const Patch& patch, double cos_i) const {
+  const Vec3& direction = patch.direction;
+  color::Rgb f;
+  const double cos_half = 0.5 * length(direction + point_.to_viewer);
+  const double fresnel = model_.fresnel ? brdf::fresnel_dielectric(std::min(1.0, cos_half), brdf::kCoatIndex) : 1;
+  for (const Mirrored& m : mirrored_) {
+    const Vec3 apart = m.direction - direction;
+    const double versine = 0.5 * dot(apart, apart);
+    if (versine >= 1) continue;
+    const double log_cos = std::log1p(-versine);
+    for (const paint::Lobe& lobe : lobes_) {
+      const double lowered = grain_.lowered(lobe.exponent, patch.variance), exponent = lobe.exponent * lowered;
+      if (exponent * -log_cos > kTail) break;
+      const double power = m.share * lowered * std::exp(exponent * log_cos);
+      f += power * (cos_i * lobe.directional_diffuse + fresnel * lobe.gloss);
+    }
+  }
+  return f;
+}
+
+TextureGatherer::TextureGatherer(const TexturedPoint& point, const color::ReflectionOperator* reflection,
+                                 double texel_rad, double most_spread)
+    : point_(point), reflection_(reflection), grain_(texel_rad, most_spread) {
+  const Vec3& n = point.normal;
+  for (const SurfaceLayer::Piece& piece : point.place.pieces) {
+    const brdf::SurfaceFrame frame = brdf::surface_frame(piece.texel, n, point.place.tangent);
+    const Vec3 viewer = frame.local(point.to_viewer);
+    diffuse_ += piece.share * piece.texel.surface.diffuse;
+    for (const brdf::LafortuneLobe& lobe : piece.texel.surface.lobes)
+      add_lobe(frame.world(lobe.axes * viewer), lobe.exponent, piece.share * lobe.albedo);
+  }
+  for (const TexelLobe& lobe : lobes_) {
+    if (lobe.exponent > 0) grain_.add({lobe.middle}, {lobe.exponent});
+  }
+}
+
+// Neighboring texels often hold the same lobe in another color.
+void TextureGatherer::add_lobe(const Vec3& axis, double exponent, const color::Rgb& albedo) {
+  const double size = length(axis);
+  if (albedo == color::Rgb{} || !(size > 0)) return;
+  for (TexelLobe& lobe : lobes_) {
+    if (lobe.axis == axis && lobe.exponent == exponent) {
+      lobe.color += albedo;
+      return;
+    }
+  }
+  TexelLobe lobe{axis, (1 / size) * axis, exponent, exponent * std::log(size), albedo};
+  if (exponent > 0) lobe.least_cosine = std::exp(-kTail / exponent);
+  lobes_.push_back(lobe);
+}
+
+void TextureGatherer::add(const Patch& patch, const color::Rgb& radiance) {
+  const double cos_i = (1 - patch.variance) * dot(point_.normal, patch.direction);
+  if (cos_i <= 0) return;
+  color::Rgb f = diffuse_;
+  for (const TexelLobe& lobe : lobes_) {
+    if (dot(lobe.middle, patch.direction) < lobe.least_cosine) continue;
+    const Vec3 apart = lobe.middle - patch.direction;
+    const double log_cos = std::log1p(-0.5 * dot(apart, apart));
+    const double lowered = grain_.lowered(lobe.exponent, patch.variance);
+    f += lowered * std::exp(std::min(lobe.log_peak + lowered * lobe.exponent * log_cos, kLargestLog)) * lobe.color;
+  }
+  const color::Rgb product =
+      reflection_ != nullptr ? goniochrome::color::reflected(*reflection_, f, radiance) : f * radiance;
+  sum_ += patch.solid_angle_sr * cos_i * product;
+}
+
+void TextureGatherer::add_light(const Light& light) {
+  add({light.direction, std::numbers::pi}, light.white);
+}
+
+}  // namespace goniochrome::render

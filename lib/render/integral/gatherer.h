@@ -1,0 +1,133 @@
+// What one point gathers from the light around it, patch by patch: the integrand of reference.h.
+#pragma once
+
+#include <vector>
+
+#include "brdf/lobe_model.h"
+#include "color/color.h"
+#include "envmap/block_tree.h"
+#include "render/exact.h"
+
+namespace goniochrome::render {
+
+// The piece of a texel, or all that a block of texels holds as if it came from one direction.
+struct Patch {
+  Vec3 direction;  // unit
+  double solid_angle_sr;
+  double variance = 0;  // of its directions, along each axis (rad^2)
+};
+
+// How finely a point must see the light around it: no patch wider than a part of the lobes that reach it.
+class Grain {
+ public:
+  // Texels are at most `texel_rad` across. `most_spread`: the standard deviation of the directions of a block's light,
+  // in those of a lobe (1/sqrt E), up to which the block is a single patch; 0 where no blocks are asked for.
+  Grain(double texel_rad, double most_spread);
+
+  // Lobes of these exponents, the sharpest first, each about every one of these directions. Many directions in one cap
+  // soften each other: blocks need not be much narrower than the directions stand apart.
+  void add(std::vector<Vec3> middles, const std::vector<double>& exponents);
+
+  // Into how many pieces, across and down, a texel about this direction is to be cut.
+  int pieces(const Vec3& direction) const;
+  // Whether the light of a block is too wide to come from one direction. `variance` of its directions, along each axis.
+  bool opens(const envmap::BlockTree::Block& block, double variance) const;
+  // What a lobe falls to at its peak where it is averaged over a patch of this variance: a Gaussian over a Gaussian,
+  // wider by the variance and lower as its area grows. 1 far from the lobe, where wide patches were let through.
+  double lowered(double exponent, double variance) const {
+    const double most = most_spread_ * most_spread_ * (1 / exponent + apart2_);
+    return variance <= most ? 1 / (1 + exponent * variance) : 1;
+  }
+  // Whether a block that the horizon cuts is too wide for its mean direction to stand on one side of it.
+  bool opens_at_horizon(const envmap::BlockTree::Block& block) const { return block.sine > 0.5 * most_spread_; }
+
+ private:
+  struct Reach {
+    double exponent;  // softened
+    int pieces;       // that a texel is cut into
+    double chord2;    // within this squared distance of a middle
+  };
+  struct Bundle {
+    std::vector<Vec3> middles;
+    Vec3 axis;          // of the cap that holds them
+    double radius = 0;  // its chord
+    std::vector<Reach> reaches;
+  };
+  double texel_rad_, most_spread_, piece_;
+  double apart2_ = 0;  // squared distance of the middles of a bundle, as far as it softens their lobes
+  std::vector<Bundle> bundles_;
+};
+
+// The reflected radiance of one point in a paint.
+class Gatherer {
+ public:
+  Gatherer(const SurfacePoint& point, double texel_rad, double most_spread);
+
+  const Vec3& reflected() const { return reflected_; }
+  const Grain& grain() const { return grain_; }
+  // Whether only what is above the horizon counts.
+  bool ends_at_horizon() const { return model_.horizon; }
+  const Vec3& normal() const { return point_.normal; }
+
+  // Adds f L cos_i dw, with cos_i multiplied into f so that the gloss term needs no division.
+  void add(const Patch& patch, const color::Rgb& radiance) { add(patch, radiance, model_.horizon); }
+  void add_light(const Light& light);
+  // The mirror lobe, which sees this radiance.
+  void add_mirror(const color::Rgb& radiance);
+
+  const color::Rgb& sum() const { return sum_; }
+
+ private:
+  struct Mirrored {
+    Vec3 direction;
+    double share;
+  };
+  void set_mirror_directions();
+  // With `horizon`, the direction's own cosine, and nothing from below.
+  void add(const Patch& patch, const color::Rgb& radiance, bool horizon);
+  color::Rgb lobes_toward(const Patch& patch, double cos_i) const;
+
+  const SurfacePoint& point_;
+  const ExactModel& model_;
+  paint::LobeFit paint_;
+  double cos_o_ = 1;
+  Vec3 reflected_;
+  std::vector<Mirrored> mirrored_;
+  std::vector<paint::Lobe> lobes_;  // finite exponents, ascending
+  Grain grain_;
+  color::Rgb sum_;
+};
+
+// The reflected radiance of one point of a texture: the exact lobes of the texels around it.
+class TextureGatherer {
+ public:
+  TextureGatherer(const TexturedPoint& point, const color::ReflectionOperator* reflection, double texel_rad,
+                  double most_spread);
+
+  const Grain& grain() const { return grain_; }
+  bool ends_at_horizon() const { return true; }
+  const Vec3& normal() const { return point_.normal; }
+  void add(const Patch& patch, const color::Rgb& radiance);
+  void add_light(const Light& light);
+
+  const color::Rgb& sum() const { return sum_; }
+
+ private:
+  struct TexelLobe {
+    Vec3 axis;    // p = C wo, in the world
+    Vec3 middle;  // of length 1
+    double exponent = 1, log_peak = 0;
+    color::Rgb color;
+    double least_cosine = 0;  // below it, nothing that counts
+  };
+  void add_lobe(const Vec3& axis, double exponent, const color::Rgb& albedo);
+
+  const TexturedPoint& point_;
+  const color::ReflectionOperator* reflection_;
+  color::Rgb diffuse_;
+  std::vector<TexelLobe> lobes_;
+  Grain grain_;
+  color::Rgb sum_;
+};
+
+}  // namespace goniochrome::render

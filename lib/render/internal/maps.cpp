@@ -1,0 +1,120 @@
+#include "render/internal/maps.h"
+
+#include <algorithm>
+
+#include "base/parallel.h"
+#include "base/text.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+// A class holds maps down to this share of its face size.
+constexpr double kSmallest = 0.4;
+
+// Whether the lobe is there; else an error with the command that adds it.
+Result<void> check_lobe(const envmap::PrefilteredEnvironment& env, double exponent, const Effects& effects) {
+  if (env.lobe(exponent) != nullptr) return {};
+  std::string list;
+  for (const Effects::LobeUse& use : effects.lobes) list += (list.empty() ? "" : ",") + shortest(use.exponent);
+  return input_error(
+      "the environment has no lobe of exponent {}, which a paint needs: make it with `prefilter-envmap {} --exponents "
+      "{} -o ENV.env.exr`, or fit the paints to the basis it was made for",
+      shortest(exponent), env.source.empty() ? "SOURCE" : env.source, list);
+}
+
+envmap::CubeMap resized(const envmap::CubeMap& map, int size) {
+  if (map.size == size) return map;
+  envmap::CubeMap result(size);
+  parallel_for(static_cast<std::size_t>(6 * size), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const int face = static_cast<int>(i) / size, row = static_cast<int>(i) % size;
+      for (int column = 0; column < size; ++column) {
+        const Vec3 value = envmap::bilinear(map, envmap::cube_direction(face, column + 0.5, row + 0.5, size));
+        for (int c = 0; c < 3; ++c) result.at(face, row, column)[c] = static_cast<float>(value[c]);
+      }
+    }
+  });
+  return result;
+}
+
+MapClass single(int slot, const envmap::CubeMap& map) {
+  return {map.size, {slot}, {map}, false};
+}
+
+}  // namespace
+
+std::vector<LobeClass> lobe_classes(const envmap::PrefilteredEnvironment& env, const Effects& effects) {
+  std::vector<LobeClass> shifted, shared;
+  std::vector<std::size_t> members;
+  for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
+    if (env.lobe(effects.lobes[j].exponent) == nullptr) continue;
+    if (is_shifted(effects, effects.lobes[j].exponent)) {
+      shifted.push_back({{j}, true});
+    } else {
+      members.push_back(j);
+    }
+  }
+  const auto size = [&](std::size_t j) { return env.lobe(effects.lobes[j].exponent)->map.size; };
+  std::ranges::stable_sort(members, [&](std::size_t a, std::size_t b) { return size(a) > size(b); });
+  for (const std::size_t j : members) {
+    if (shared.empty() || size(j) < kSmallest * size(shared.back().lobes.front())) shared.push_back({{}, false});
+    shared.back().lobes.push_back(j);
+  }
+  std::ranges::reverse(shared);
+  shifted.insert(shifted.end(), shared.begin(), shared.end());
+  return shifted;
+}
+
+Result<SceneMaps> scene_maps(const Scene& scene, const Effects& effects) {
+  SceneMaps maps;
+  if (!effects.environment) return maps;
+  const envmap::PrefilteredEnvironment& env = *scene.env;
+  if (effects.diffuse) maps.diffuse = single(WeightTable::diffuse_slot(), env.diffuse.map);
+  for (const Effects::LobeUse& use : effects.lobes) GONIO_TRY(check_lobe(env, use.exponent, effects));
+  for (const LobeClass& of : lobe_classes(env, effects)) {
+    MapClass into{env.lobe(effects.lobes[of.lobes.front()].exponent)->map.size, {}, {}, of.shifted};
+    for (const std::size_t j : of.lobes) {
+      into.slots.push_back(WeightTable::lobe_slot(j));
+      into.maps.push_back(resized(env.lobe(effects.lobes[j].exponent)->map, into.size));
+    }
+    maps.lobes.push_back(std::move(into));
+  }
+  if (effects.mirror || effects.background == Background::kEnvironment) {
+    if (env.mirror.map.size == 0) {
+      return input_error(
+          "the environment has no mirror part, which {} needs: make it with a basis that holds <mirror/>",
+          effects.mirror ? "a paint with a mirror lobe" : "--background env");
+    }
+    maps.mirror = single(1 + static_cast<int>(effects.lobes.size()), env.mirror.map);
+  }
+  return maps;
+}
+
+std::vector<float> bordered_face(const envmap::CubeMap& map, int face) {
+  const int n = map.size, wide = n + 2;
+  std::vector<float> texels(static_cast<std::size_t>(wide) * static_cast<std::size_t>(wide) * 3);
+  const auto at = [&](int column, int row) {
+    return &texels[(static_cast<std::size_t>(row + 1) * wide + column + 1) * 3];
+  };
+  // The center of a texel beside the face, in the plane of the face, lies less than half a texel from the center of the
+  // neighbor's first texel, so the direction finds it.
+  const auto across = [&](int column, int row) {
+    const envmap::CubePosition p = envmap::cube_position(envmap::cube_direction(face, column + 0.5, row + 0.5, n), n);
+    const auto inside = [&](double x) { return std::clamp(static_cast<int>(x), 0, n - 1); };
+    std::copy_n(map.at(p.face, inside(p.row), inside(p.column)), 3, at(column, row));
+  };
+  for (int i = 0; i < n; ++i) {
+    std::copy_n(map.at(face, i, 0), 3 * static_cast<std::size_t>(n), at(0, i));
+    across(-1, i), across(n, i), across(i, -1), across(i, n);
+  }
+  for (const int row : {-1, n}) {
+    for (const int column : {-1, n}) {
+      const int x = std::clamp(column, 0, n - 1), y = std::clamp(row, 0, n - 1);
+      for (int c = 0; c < 3; ++c) at(column, row)[c] = (at(x, row)[c] + at(column, y)[c] + at(x, y)[c]) / 3;
+    }
+  }
+  return texels;
+}
+
+}  // namespace goniochrome::render

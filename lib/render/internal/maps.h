@@ -1,0 +1,44 @@
+// The environment's maps as both engines sample them: those met by one direction in few face sizes, so that one set of
+// texel addresses serves many lobes. goniochrome-theory(7), RENDERING.
+#pragma once
+
+#include <vector>
+
+#include "base/result.h"
+#include "envmap/prefiltered.h"
+#include "render/effects.h"
+
+namespace goniochrome::render {
+
+// Maps that are sampled together, all with faces of one size.
+struct MapClass {
+  int size = 0;
+  std::vector<int> slots;             // of the weight table, ascending
+  std::vector<envmap::CubeMap> maps;  // one for each slot
+  bool shifted = false;               // a single lobe, met by r + s n
+};
+
+struct SceneMaps {
+  MapClass diffuse;             // met by the normal
+  std::vector<MapClass> lobes;  // met by the mirror direction; small faces first
+  MapClass mirror;              // met by the mirror direction, and by rays that miss the mesh
+};
+
+// The lobes of the effects (by number) that share one direction and one face size; small faces first, after those that
+// have a direction of their own. Lobes that the environment lacks are in none.
+struct LobeClass {
+  std::vector<std::size_t> lobes;
+  bool shifted = false;
+};
+std::vector<LobeClass> lobe_classes(const envmap::PrefilteredEnvironment& env, const Effects& effects);
+
+// What the effects need of the scene's environment. A lobe's map is brought to the size of its class by bilinear
+// interpolation between its own texels. Error: a lobe or the mirror part that the environment lacks, with the command
+// that makes it.
+Result<SceneMaps> scene_maps(const Scene& scene, const Effects& effects);
+
+// A face with the texels of its neighbors around it, as seamless filtering has them (a corner is the mean of the three
+// texels that meet there): (size + 2)^2 RGB triples.
+std::vector<float> bordered_face(const envmap::CubeMap& map, int face);
+
+}  // namespace goniochrome::render

@@ -1,0 +1,25 @@
+// The bilinear product of two colors as a few plain ones, so that sums over many maps cost what the component-wise
+// product costs. goniochrome-theory(7), COLORED LIGHT.
+#pragma once
+
+#include <array>
+
+#include "color/reflection.h"
+
+namespace goniochrome::render {
+
+// A (x) B = out ((in A) * (in B)), where * takes each of the `count` forms by itself. White goes back: A = out ((in A)
+// * (in white)).
+struct ProductForms {
+  int count = 3;
+  std::array<Vec3, 6> in = {Vec3{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  std::array<Vec3, 6> out = in;  // columns
+
+  double of(int form, const color::Rgb& a) const { return dot(in[static_cast<std::size_t>(form)], a); }
+};
+
+// Three forms for the component-wise product, four for nearly every other operator, six for one that four would not
+// make within single precision.
+ProductForms product_forms(const color::ReflectionOperator& op);
+
+}  // namespace goniochrome::render

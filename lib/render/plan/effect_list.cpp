@@ -1,0 +1,170 @@
+#include "render/plan/effect_list.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.h"
+#include "color/color.h"
+#include "render/textures/surface_layer.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+constexpr double kGrazingCos = 0.5;  // beyond 60 deg the reflectance of a coat leaves 4 %
+
+constexpr double kWhiteChroma = 1e-3;  // of light kept in single precision
+
+// The share of the points (percent) for which it holds.
+template <class Condition>
+double percent(const std::vector<VisiblePoint>& points, Condition holds) {
+  const auto count = std::count_if(points.begin(), points.end(), holds);
+  return points.empty() ? 0 : 100.0 * static_cast<double>(count) / static_cast<double>(points.size());
+}
+
+double cos_o(const VisiblePoint& point) {
+  return dot(point.normal, point.to_viewer);
+}
+
+void remove_weight(Effects& effects, double exponent, bool gloss) {
+  for (Effects::LobeUse& use : effects.lobes) {
+    if (use.exponent == exponent) (gloss ? use.gloss : use.directional_diffuse) = false;
+  }
+}
+
+int wearing(const Scene& scene, double exponent, bool gloss) {
+  return static_cast<int>(std::count_if(scene.paints.begin(), scene.paints.end(), [&](const paint::LobeFit& paint) {
+    const paint::Lobe* lobe = find_lobe(paint, exponent);
+    return lobe != nullptr && (gloss ? lobe->gloss : lobe->directional_diffuse) != color::Rgb{};
+  }));
+}
+
+void add_lobes(const Scene& scene, const Effects& all, bool gloss, std::vector<EffectSwitch>& list) {
+  const std::string group = gloss ? "gloss" : "lobes";
+  const std::size_t before = list.size();
+  for (const Effects::LobeUse& use : all.lobes) {
+    if (!(gloss ? use.gloss : use.directional_diffuse)) continue;
+    const double exponent = use.exponent;
+    const int parts = wearing(scene, exponent, gloss);
+    list.push_back({fmt::format("{}-{}", gloss ? "gloss" : "lobe", shortest(exponent)), group, true,
+                    fmt::format("{} on {} visible part{}", gloss ? "gloss" : "flake", parts, parts == 1 ? "" : "s"),
+                    [=](Effects& e) { remove_weight(e, exponent, gloss); }});
+  }
+  if (list.size() == before) {
+    list.push_back({group, group, false, gloss ? "no visible paint has gloss lobes" : "solid paints: no flake lobes",
+                    [](Effects&) {}});
+  }
+}
+
+// Half of a lobe's peak is left at this angle; the share of points where it reaches below the horizon.
+std::string horizon_reason(const Effects& all, const std::vector<VisiblePoint>& seen) {
+  if (!all.horizon) return all.lobes.empty() ? "no lobes" : "no image light: lights are exact";
+  const double widest = all.lobes.front().exponent;
+  const double half_rad = std::acos(std::pow(0.5, 1 / std::max(widest, 1.0)));
+  return fmt::format("the lobe of exponent {} reaches below the horizon in {:.0f} % of what is seen", shortest(widest),
+                     percent(seen, [&](const VisiblePoint& p) { return cos_o(p) < std::sin(half_rad); }));
+}
+
+std::string anisotropy_reason(const Scene& scene, const Effects& all) {
+  if (!all.anisotropy) return "no visible paint is brushed";
+  std::size_t most = 0;
+  for (const auto& tilts : tilts_of(scene, all)) most = std::max(most, tilts.size());
+  return fmt::format("brushed paint: {} tilted normals", most);
+}
+
+// The chroma of the colors of light, as of a white diffuser in it.
+double light_chroma(const Scene& scene, const Effects& all) {
+  double most = 0;
+  const auto meet = [&](const color::Rgb& rgb) {
+    const double y = color::xyz_d65_from_rgb(rgb).Y;
+    if (y > 0)
+      most = std::max(most, color::chroma(color::lab_from_rgb((1 / y) * rgb, color::xyz_d65_from_rgb({1, 1, 1}))));
+  };
+  if (all.environment) {
+    const envmap::CubeMap& map = scene.env->diffuse.map;
+    for (std::size_t i = 0; i + 2 < map.texels.size(); i += 3)
+      meet({map.texels[i], map.texels[i + 1], map.texels[i + 2]});
+  }
+  if (all.lights > 0) {
+    for (const Light& light : scene.lights) meet(light.white);
+  }
+  return most;
+}
+
+std::string reflection_reason(const Scene& scene, const Effects& all) {
+  if (!all.reflection) return "the operator is the component-wise product";
+  const double most = light_chroma(scene, all);
+  if (most <= kWhiteChroma) return "white light: the operator changes nothing";
+  return fmt::format("colored light, up to C* {:.2g} on a white diffuser", most);
+}
+
+std::string texture_reason(const Scene& scene, const Effects& all, const std::vector<VisiblePoint>& seen) {
+  if (!all.texture) return "no part has a texture";
+  return fmt::format("{:.0f} % of what is seen is textured: beside its mean texel",
+                     percent(seen, [&](const auto& p) { return scene.layer->surface(p.part).texture != nullptr; }));
+}
+
+// The lobes of textures by number, those of all textures together.
+void add_texture_lobes(const Scene& scene, const Effects& all, std::vector<EffectSwitch>& list) {
+  const int lobes = all.texture ? scene.layer->lobes() : 0;
+  for (int lobe = 0; lobe < lobes; ++lobe) {
+    list.push_back({fmt::format("texture-{}", lobe), "texture-lobes", true, fmt::format("lobe{} of the textures", lobe),
+                    [=](Effects& e) { e.texture_lobes &= ~(1U << lobe); }});
+  }
+  if (lobes == 0) list.push_back({"texture-lobes", "texture-lobes", false, "no texture has lobes", [](Effects&) {}});
+}
+
+}  // namespace
+
+const std::vector<std::string>& effect_groups() {
+  static const std::vector<std::string> groups = {"diffuse", "lobes",         "gloss",      "mirror",
+                                                  "fresnel", "horizon",       "anisotropy", "travel",
+                                                  "texture", "texture-lobes", "operator",   "lights"};
+  return groups;
+}
+
+std::vector<EffectSwitch> effect_switches(const Scene& scene, const Effects& all,
+                                          const std::vector<VisiblePoint>& seen) {
+  std::vector<EffectSwitch> list;
+  const auto add = [&](const char* name, bool needed, const std::string& reason, std::function<void(Effects&)> off) {
+    list.push_back({name, name, needed, reason, std::move(off)});
+  };
+  const bool diffuse = std::any_of(scene.paints.begin(), scene.paints.end(),
+                                   [](const paint::LobeFit& p) { return p.diffuse != color::Rgb{}; });
+  add("diffuse", diffuse, diffuse ? "paints have a constant part" : "no visible paint has a constant part",
+      [](Effects& e) { e.diffuse = false; });
+  add_lobes(scene, all, false, list);
+  add_lobes(scene, all, true, list);
+  add("mirror", all.mirror,
+      all.mirror ? "a smooth coat mirrors the environment"
+                 : (all.environment ? "no visible paint has a mirror lobe" : "no image light to mirror"),
+      [](Effects& e) { e.mirror = false; });
+  const double grazing = percent(seen, [](const VisiblePoint& p) { return cos_o(p) < kGrazingCos; });
+  add("fresnel", all.fresnel,
+      !all.fresnel  ? "neither gloss lobes nor mirror"
+      : grazing > 0 ? fmt::format("{:.0f} % of what is seen lies beyond 60 deg", grazing)
+                    : "nothing is seen beyond 60 deg",
+      [](Effects& e) { e.fresnel = false; });
+  add("horizon", all.horizon, horizon_reason(all, seen), [](Effects& e) { e.horizon = false; });
+  add("anisotropy", all.anisotropy, anisotropy_reason(scene, all), [](Effects& e) { e.anisotropy = false; });
+  add("travel", all.views || all.maps,
+      all.views && all.maps ? "weights change with the view, and a color map under lights"
+      : all.views           ? "weights change with the view"
+      : all.maps            ? "a color map under lights"
+                            : "no visible paint has a color map or weights for several views",
+      [](Effects& e) { e.views = e.maps = false; });
+  add("texture", all.texture, texture_reason(scene, all, seen), [](Effects& e) { e.texture = false; });
+  add_texture_lobes(scene, all, list);
+  add("operator", all.reflection && light_chroma(scene, all) > kWhiteChroma, reflection_reason(scene, all),
+      [](Effects& e) { e.reflection = false; });
+  add("lights", all.lights > 0, fmt::format("{} directional light{}", all.lights, all.lights == 1 ? "" : "s"),
+      [](Effects& e) {
+        e.lights = 0;
+        e.maps = false;
+      });
+  return list;
+}
+
+}  // namespace goniochrome::render

@@ -1,0 +1,228 @@
+// The plan: what it asks for, what it leaves out, and whether its estimates are those of the pictures.
+#include "render/plan/plan.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "color/color.h"
+#include "envmap/environment.h"
+#include "render/internal/seen.h"
+#include "render/renderer.h"
+#include "render/scenes_for_test.h"
+
+namespace goniochrome::render {
+namespace {
+
+using testing::HasSubstr;
+
+struct World {
+  mesh::Mesh mesh = sphere_mesh(64);
+  envmap::PrefilteredEnvironment env = constant_env({1, 1, 1}, {6, 40, 900});
+  Scene scene;
+  View view;
+  explicit World(paint::LobeFit paint) {
+    scene.mesh = &mesh;
+    scene.paints = {std::move(paint)};
+    scene.env = &env;
+    view = {Camera::orbit(mesh, 30, 20, 1, 30, 1), 96, 96, 1, false};
+  }
+};
+
+paint::LobeFit flake_paint() {
+  paint::LobeFit paint = matt({0.1, 0.2, 0.05});
+  paint.lobes = {{6, {0.05, 0.1, 0.02}, {}}, {40, {0.2, 0.3, 0.1}, {}}, {900, {}, {5, 5, 5}}};
+  return paint;
+}
+
+struct Planned {
+  Plan plan;
+  std::vector<color::Rgb> colors;  // of every visible pixel
+};
+
+Planned planned(const World& world, PlanRequest request = {}) {
+  auto renderer = Renderer::create();
+  EXPECT_TRUE(renderer.ok());
+  const auto seen = renderer->look(world.mesh, world.view);
+  EXPECT_TRUE(seen.ok());
+  auto plan = renderer->load(world.scene, {*seen}, request);
+  EXPECT_TRUE(plan.ok()) << plan.error().message;
+  Frame frame;
+  EXPECT_TRUE(renderer->draw(world.view, frame).ok());
+  Planned result{*std::move(plan), {}};
+  for (int y = 0; y < 96; ++y) {
+    for (int x = 0; x < 96; ++x) {
+      const float* p = frame.picture.pixel(x, y);
+      if (frame.gbuffer->part(x, y) >= 0) result.colors.push_back({p[0], p[1], p[2]});
+    }
+  }
+  return result;
+}
+
+double p95(const std::vector<color::Rgb>& a, const std::vector<color::Rgb>& b) {
+  std::vector<double> de00;
+  for (std::size_t i = 0; i < a.size(); ++i) de00.push_back(seen_difference(a[i], b[i], 1));
+  return percentile_95(std::move(de00));
+}
+
+const PlanItem& item(const Plan& plan, const std::string& effect) {
+  const auto found =
+      std::find_if(plan.items.begin(), plan.items.end(), [&](const PlanItem& i) { return i.effect == effect; });
+  EXPECT_NE(found, plan.items.end()) << effect;
+  return *found;
+}
+
+PlanRequest with_effects_of(const std::string& effects) {
+  PlanRequest request;
+  request.effects = effects;
+  return request;
+}
+
+TEST(Plan, AsksOnlyForWhatTheSceneCallsFor) {
+  World solid(matt({0.5, 0.2, 0.1}));
+  solid.scene.reflection = color::working_space_operator();
+  const Plan plan = planned(solid).plan;
+  EXPECT_TRUE(item(plan, "diffuse").on);
+  for (const char* name :
+       {"lobes", "gloss", "mirror", "fresnel", "horizon", "anisotropy", "travel", "lights", "operator"}) {
+    EXPECT_FALSE(item(plan, name).needed) << name;
+    EXPECT_EQ(item(plan, name).decision, "not in the scene") << name;
+  }
+  EXPECT_THAT(item(plan, "lobes").reason, HasSubstr("solid"));
+  EXPECT_THAT(item(plan, "operator").reason, HasSubstr("white light"));
+  EXPECT_FALSE(plan.effects.reflection);
+}
+
+TEST(Plan, ColoredLightCallsForTheOperator) {
+  World world(matt({0.6, 0.1, 0.1}));
+  world.scene.reflection = color::working_space_operator();
+  world.env.diffuse.map = cube_of(4, [](const Vec3&) { return Vec3{0.1, 0.9, 1}; });
+  const Plan plan = planned(world).plan;
+  EXPECT_TRUE(item(plan, "operator").on);
+  EXPECT_GT(item(plan, "operator").de00_p95, 2);
+  EXPECT_THAT(item(plan, "operator").reason, HasSubstr("colored light"));
+}
+
+// In light that is nearly white the operator cannot be seen; in four forms it saves nothing to leave it out.
+TEST(Plan, WhatCostsNothingIsDrawn) {
+  World world(flake_paint());
+  world.scene.reflection = color::working_space_operator();
+  world.env.diffuse.map = cube_of(4, [](const Vec3&) { return Vec3{1, 1, 0.97}; });
+  const PlanRequest request;
+  const Plan plan = planned(world, request).plan;
+  const PlanItem& op = item(plan, "operator");
+  EXPECT_GT(op.de00_p95, 0);
+  EXPECT_LT(op.de00_p95, 0.5 * request.tolerance_de00);
+  EXPECT_EQ(op.decision, "drawn");
+  EXPECT_THAT(op.reason, HasSubstr("costs nothing"));
+  for (const PlanItem& i : plan.items) EXPECT_FALSE(i.decision == "dropped" && i.cost_ms == 0) << i.effect;
+}
+
+// Every effect forced off changes the picture by what the plan said it would: the same percentile of 512 points and of
+// all. For a smooth distribution of n = 512 points the 95th percentile wanders between the 92.5th and the 97.5th.
+TEST(Plan, EstimatesAreTheChangesOfThePicture) {
+  World world(flake_paint());
+  world.scene.lights = {{normalized({1, 2, 3}), {0.4, 0.4, 0.4}}};
+  world.scene.anisotropy = {{0.05, 0.4}};
+  world.env.lobes[1].map = cube_of(16, [](const Vec3& d) { return Vec3{1 + d.x, 1 + d.x, 1 - 0.5 * d.y}; });
+  const Planned all = planned(world, with_effects_of("all"));
+  int priced = 0;
+  for (const PlanItem& i : all.plan.items) {
+    if (!i.needed) continue;
+    const Planned without = planned(world, with_effects_of("all,-" + i.effect));
+    EXPECT_EQ(item(without.plan, i.effect).decision, "forced off");
+    EXPECT_NEAR(p95(all.colors, without.colors), i.de00_p95, 0.2 * i.de00_p95 + 0.02) << i.effect;
+    EXPECT_GE(i.cost_ms, 0) << i.effect;
+    priced += i.de00_p95 > 0.1 ? 1 : 0;
+  }
+  EXPECT_GE(priced, 6);
+}
+
+TEST(Plan, WhatIsLeftOutStaysWithinTheTolerance) {
+  World world(flake_paint());
+  world.scene.lights = {{normalized({1, 2, 3}), {0.02, 0.02, 0.02}}};
+  const Planned all = planned(world, with_effects_of("all"));
+  int dropped = 0;
+  for (const double tolerance : {0.05, 0.5, 2.0, 8.0}) {
+    PlanRequest request;
+    request.tolerance_de00 = tolerance;
+    const Planned some = planned(world, request);
+    EXPECT_LE(some.plan.de00_p95, tolerance);
+    EXPECT_LE(p95(all.colors, some.colors), tolerance);
+    int here = 0;
+    for (const PlanItem& i : some.plan.items) here += i.decision == "dropped" ? 1 : 0;
+    EXPECT_GE(here, dropped) << "a larger tolerance leaves out no less";
+    dropped = here;
+  }
+  EXPECT_GE(dropped, 3);
+}
+
+TEST(Plan, BudgetKeepsWhatIsWorthMost) {
+  World world(flake_paint());
+  const Plan free = planned(world, with_effects_of("all")).plan;
+  PlanRequest request;
+  request.effects = "all";
+  request.engine = Engine::kCpu;
+  // Every plan measures the speed of the machine anew, and a busy one changes: several budgets, one of which bites.
+  int cut = 0;
+  for (const double share : {0.8, 0.6, 0.4, 0.2}) {
+    request.budget_ms = share * free.cpu_ms;
+    double lost = 1e9, kept = 0;
+    for (const PlanItem& i : planned(world, request).plan.items) {
+      if (i.decision == "over budget") lost = std::min(lost, i.de00_p95);
+      if (i.on) kept = std::max(kept, i.de00_p95);
+    }
+    if (lost == 1e9 || kept == 0) continue;
+    ++cut;
+    EXPECT_GT(kept, lost) << share;
+  }
+  EXPECT_GT(cut, 0) << "something had to go";
+  request.budget_ms = 1e-9;
+  for (const PlanItem& i : planned(world, request).plan.items) EXPECT_FALSE(i.on && i.cost_ms > 0) << i.effect;
+}
+
+TEST(Plan, LobesNobodySeesAreNotLoaded) {
+  World world(matt({0.5, 0.5, 0.5}));
+  world.mesh = panels_mesh(2);
+  paint::LobeFit hidden = flake_paint();
+  hidden.lobes.push_back({33, {1, 1, 1}, {}});  // the environment has no such map
+  world.scene.paints = {matt({0.5, 0.5, 0.5}), hidden};
+  world.view.camera.eye = {-0.5, 0, 0.5};
+  world.view.camera.target = {-0.5, 0, 0};
+  const Planned result = planned(world);
+  EXPECT_TRUE(result.plan.effects.lobes.empty());
+}
+
+TEST(Plan, WordsAreCheckedAndForced) {
+  EXPECT_TRUE(check_effects("auto").ok());
+  EXPECT_TRUE(check_effects("none,+diffuse,+lobe-20").ok());
+  EXPECT_THAT(check_effects("fast").error().message, HasSubstr("auto, all or none"));
+  EXPECT_THAT(check_effects("all,-shine").error().message, HasSubstr("there are diffuse, lobes, gloss"));
+  World world(flake_paint());
+  const Plan plan = planned(world, with_effects_of("none,+lobe-40")).plan;
+  for (const PlanItem& i : plan.items) EXPECT_EQ(i.on, i.effect == "lobe-40") << i.effect;
+  ASSERT_EQ(plan.effects.lobes.size(), 1U);
+  EXPECT_EQ(plan.effects.lobes[0].exponent, 40);
+}
+
+TEST(Plan, TruthStandsBesideTheEstimate) {
+  World world(flake_paint());
+  Planned result = planned(world, with_effects_of("all"));
+  image::Image image{64, 32, 3, std::vector<float>(64 * 32 * 3, 1.0F), {}};
+  const auto env =
+      envmap::Environment::from_lat_long(std::move(image), envmap::Environment::BadPixels::kError, "constant");
+  auto renderer = Renderer::create();
+  const auto seen = renderer->look(world.mesh, world.view);
+  add_truth(result.plan, world.scene, probe_points({*seen}, 60), &*env, 1);
+  int compared = 0;
+  for (const PlanItem& i : result.plan.items) {
+    EXPECT_EQ(i.truth_de00_p95.has_value(), i.needed);
+    if (!i.needed || i.de00_p95 < 0.3) continue;
+    EXPECT_LT(*i.truth_de00_p95, 2 * i.de00_p95) << i.effect;
+    EXPECT_GT(*i.truth_de00_p95, 0.5 * i.de00_p95) << i.effect;
+    ++compared;
+  }
+  EXPECT_GE(compared, 5);
+}
+
+}  // namespace
+}  // namespace goniochrome::render

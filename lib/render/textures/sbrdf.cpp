@@ -1,0 +1,234 @@
+#include "render/textures/sbrdf.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "base/parallel.h"
+#include "render/internal/lobe_curves.h"
+#include "render/internal/maps.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+constexpr int kHorizonSegments = 64;
+constexpr double kHorizonStep = std::numbers::sqrt2;  // from exponent to exponent of the horizon table
+
+// The faces with their borders, R G B 0 a texel.
+std::vector<float> quads(const envmap::CubeMap& map) {
+  const std::size_t wide = static_cast<std::size_t>(map.size) + 2, texels = wide * wide;
+  std::vector<float> data(6 * texels * 4, 0.0F);
+  parallel_for(6, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t face = begin; face < end; ++face) {
+      const std::vector<float> texel = bordered_face(map, static_cast<int>(face));
+      for (std::size_t i = 0; i < texels; ++i) std::copy_n(&texel[3 * i], 3, &data[4 * (face * texels + i)]);
+    }
+  });
+  return data;
+}
+
+}  // namespace
+
+Result<MipCube> mip_cube(const envmap::PrefilteredEnvironment& env) {
+  if (env.lobes.empty()) return input_error("{}: holds no lobes", env.source);
+  MipCube mip;
+  mip.finest_exponent = env.lobes.back().exponent;
+  int size = env.lobes.back().map.size;
+  for (double exponent = mip.finest_exponent; exponent > 0.9; exponent /= 4) {
+    const envmap::PrefilteredLobe* lobe = std::abs(exponent - 1) < 1e-6 ? &env.diffuse : env.lobe(exponent);
+    if (lobe == nullptr)
+      return input_error(
+          "{}: lacks the lobe of exponent {:g}: prefilter with quarters of the sharpest, such as --exponents "
+          "4,16,64,256",
+          env.source, exponent);
+    envmap::CubeMap level(size);
+    for (int face = 0; face < 6; ++face)
+      for (int row = 0; row < size; ++row)
+        for (int column = 0; column < size; ++column) {
+          const Vec3 value = envmap::bilinear(lobe->map, envmap::cube_direction(face, column + 0.5, row + 0.5, size));
+          for (int c = 0; c < 3; ++c) level.at(face, row, column)[c] = static_cast<float>(value[c]);
+        }
+    mip.levels.push_back(std::move(level));
+    size = std::max(size / 2, 1);
+  }
+  return mip;
+}
+
+SbrdfShader::SbrdfShader(const envmap::PrefilteredEnvironment* env, const MipCube* mip,
+                         const std::vector<const brdf::SbrdfTexture*>& textures) {
+  double low = std::numeric_limits<double>::infinity(), high = 0;
+  for (const brdf::SbrdfTexture* texture : textures) {
+    for (std::size_t i = 0; i < texture->values.size(); i += static_cast<std::size_t>(texture->stride())) {
+      for (int lobe = 0; lobe < texture->lobes; ++lobe) {
+        const double exponent = texture->values[i + 11 + 7 * static_cast<std::size_t>(lobe)];
+        low = std::min(low, exponent), high = std::max(high, exponent);
+      }
+    }
+  }
+  low = std::min(low, high);
+  if (env != nullptr) {
+    make_maps(*env, mip, low, high);
+    make_horizon(low, high);
+  }
+  for (const brdf::SbrdfTexture* texture : textures) textures_.push_back(packed(*texture));
+}
+
+// Of the exponents there are, those between which the textures' lie.
+void SbrdfShader::make_maps(const envmap::PrefilteredEnvironment& env, const MipCube* mip, double low, double high) {
+  std::vector<const envmap::CubeMap*> all;
+  const auto add = [&](double exponent, const envmap::CubeMap& map) {
+    exponents_.push_back(exponent), all.push_back(&map);
+  };
+  if (mip != nullptr) {
+    double exponent = mip->finest_exponent / std::pow(4.0, static_cast<double>(mip->levels.size()) - 1);
+    for (auto level = mip->levels.rbegin(); level != mip->levels.rend(); ++level, exponent *= 4) add(exponent, *level);
+  } else {
+    bool diffuse = false;  // the diffuse map is the lobe of exponent 1
+    for (const envmap::PrefilteredLobe& lobe : env.lobes) {
+      if (!diffuse && lobe.exponent > 1) add(1, env.diffuse.map), diffuse = true;
+      if (lobe.exponent == 1) diffuse = true;
+      add(lobe.exponent, lobe.map);
+    }
+    if (!diffuse) add(1, env.diffuse.map);
+  }
+  const auto first = static_cast<std::size_t>(brdf::exponent_blend(low, exponents_).lower);
+  const brdf::ExponentBlend top = brdf::exponent_blend(high, exponents_);
+  const std::size_t last = static_cast<std::size_t>(top.lower) + (top.upper_weight > 0 ? 1 : 0);
+  for (std::size_t i = first; i <= last; ++i) texels_.push_back(quads(*all[i]));
+  texels_.push_back(quads(env.diffuse.map));
+  for (std::size_t i = first; i <= last; ++i) maps_.push_back({all[i]->size, texels_[i - first].data()});
+  diffuse_ = {env.diffuse.map.size, texels_.back().data()};
+  exponents_ = {exponents_.begin() + static_cast<std::ptrdiff_t>(first),
+                exponents_.begin() + static_cast<std::ptrdiff_t>(last) + 1};
+}
+
+// The mean of n.w over the part of a lobe above the surface, relative to the whole lobe, and where that light comes
+// from.
+void SbrdfShader::make_horizon(double low, double high) {
+  for (double exponent = std::max(low, 0.1);; exponent *= kHorizonStep) {
+    horizon_exponents_.push_back(exponent);
+    for (const LobeIntegrals& lobe : lobe_curve(exponent, kHorizonSegments, true)) {
+      horizon_.push_back(static_cast<float>(lobe.cosine * (exponent + 1) / (2 * std::numbers::pi)));
+      horizon_.push_back(static_cast<float>(lobe.cosine_shift));
+    }
+    if (exponent >= high) return;
+  }
+}
+
+void SbrdfShader::pack_lobe(const brdf::LafortuneLobe& lobe, float* to) const {
+  const double largest = std::max({lobe.albedo.x, lobe.albedo.y, lobe.albedo.z});
+  to[kLobeEnergy] = to[kLobeAlbedo] = kNoLobe;
+  if (largest > 0) {
+    for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(lobe.albedo[c] / largest);
+    to[kLobeAlbedo] = static_cast<float>(std::log(largest));
+    to[kLobeEnergy] = static_cast<float>(std::log(2 * std::numbers::pi / (lobe.exponent + 1) * largest));
+  }
+  for (int k = 0; k < 3; ++k) to[kLobeAxes + static_cast<std::size_t>(k)] = static_cast<float>(lobe.axes[k]);
+  to[kLobeExponent] = static_cast<float>(lobe.exponent);
+  if (exponents_.empty()) return;
+  const brdf::ExponentBlend map = brdf::exponent_blend(lobe.exponent, exponents_);
+  const brdf::ExponentBlend horizon = brdf::exponent_blend(lobe.exponent, horizon_exponents_);
+  to[kLobeMap] = static_cast<float>(map.lower), to[kLobeMap + 1] = static_cast<float>(map.upper_weight);
+  to[kLobeHorizon] = static_cast<float>(horizon.lower);
+  to[kLobeHorizon + 1] = static_cast<float>(horizon.upper_weight);
+}
+
+SbrdfShader::Packed SbrdfShader::packed(const brdf::SbrdfTexture& texture) const {
+  Packed result{texture.width, texture.height, texture.lobes, {}};
+  const std::size_t size = kTexelFloats + kTexelLobeFloats * static_cast<std::size_t>(texture.lobes);
+  const auto texels = static_cast<std::size_t>(texture.width) * static_cast<std::size_t>(texture.height);
+  result.texels.assign(size * texels, 0.0F);
+  parallel_for(texels, 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto wide = static_cast<std::size_t>(texture.width);
+      const brdf::SbrdfTexel texel = brdf::sbrdf_texel(texture, static_cast<int>(i % wide), static_cast<int>(i / wide));
+      float* to = &result.texels[size * i];
+      for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(texel.surface.diffuse[c]);
+      to[4] = static_cast<float>(texel.x_tangent), to[5] = static_cast<float>(texel.x_bitangent);
+      to += kTexelFloats;
+      for (const brdf::LafortuneLobe& lobe : texel.surface.lobes) pack_lobe(lobe, to), to += kTexelLobeFloats;
+    }
+  });
+  return result;
+}
+
+SbrdfShader::Batch::Batch(const SbrdfShader& shader, std::size_t texture, const SbrdfLight& light)
+    : shader_(shader), texture_(texture) {
+  const Packed& packed = shader.textures_[texture];
+  shading_.lobes = packed.lobes;
+  shading_.lobes_on = light.lobes;
+  if (light.environment) {
+    shading_.diffuse = shader.diffuse_;
+    shading_.maps = shader.maps_.data();
+    if (light.horizon && !shader.horizon_.empty()) shading_.horizon = shader.horizon_.data();
+    shading_.horizon_segments = kHorizonSegments;
+  }
+  for (const Light& l : light.lights) {
+    for (int c = 0; c < 3; ++c) lights_.push_back(static_cast<float>(l.direction[c]));
+    lights_.push_back(0);
+    for (int c = 0; c < 3; ++c) lights_.push_back(static_cast<float>(std::numbers::pi * l.white[c]));
+    lights_.push_back(0);
+  }
+  shading_.lights = static_cast<int>(light.lights.size());
+  shading_.light = lights_.data();
+  if (light.reflection.k != color::component_wise().k) {
+    for (const auto& plane : light.reflection.k)
+      for (const auto& row : plane)
+        for (const double k : row) reflection_.push_back(static_cast<float>(k));
+    shading_.reflection = reflection_.data();
+  }
+  points_.taps = packed.width * packed.height > 1 ? 4 : 1;
+  constexpr float kUp[3] = {0, 0, 1};
+  for (int i = 0; i < kPointsAtOnce; ++i) put(kUp, kUp, {}, 1);
+  count_ = 0;
+}
+
+void SbrdfShader::Batch::put(const float* normal, const float* to_viewer, const TexturePlace& place, double repeat) {
+  SbrdfPoints& p = points_;
+  p.nx[count_] = normal[0], p.ny[count_] = normal[1], p.nz[count_] = normal[2];
+  p.vx[count_] = to_viewer[0], p.vy[count_] = to_viewer[1], p.vz[count_] = to_viewer[2];
+  p.tx[count_] = place.tangent[0], p.ty[count_] = place.tangent[1], p.tz[count_] = place.tangent[2];
+  const Packed& packed = shader_.textures_[texture_];
+  if (p.taps == 1) {
+    p.texel[0][count_] = packed.texels.data();
+    p.share[0][count_++] = 1;
+    return;
+  }
+  const auto taps = brdf::texture_taps(packed.width, packed.height, repeat * place.u, repeat * place.v);
+  for (std::size_t k = 0; k < taps.size(); ++k) {
+    p.texel[k][count_] = packed.at(taps[k].column, taps[k].row);
+    p.share[k][count_] = static_cast<float>(taps[k].weight);
+  }
+  ++count_;
+}
+
+const float* SbrdfShader::Batch::shade() {
+  shade_texels(shading_, points_, count_, rgba_);
+  count_ = 0;
+  return rgba_;
+}
+
+std::vector<color::Rgb> SbrdfShader::shade(std::size_t texture, const SbrdfLight& light,
+                                           const std::vector<VisiblePoint>& points) const {
+  std::vector<color::Rgb> colors;
+  Batch batch(*this, texture, light);
+  const auto flush = [&] {
+    const int count = batch.count();
+    const float* rgba = batch.shade();
+    for (int i = 0; i < count; ++i) colors.push_back({rgba[4 * i], rgba[4 * i + 1], rgba[4 * i + 2]});
+  };
+  for (const VisiblePoint& point : points) {
+    float normal[3], to_viewer[3];
+    for (int c = 0; c < 3; ++c) {
+      normal[c] = static_cast<float>(point.normal[c]), to_viewer[c] = static_cast<float>(point.to_viewer[c]);
+    }
+    batch.put(normal, to_viewer, point.place, 1);
+    if (batch.full()) flush();
+  }
+  if (batch.count() > 0) flush();
+  return colors;
+}
+
+}  // namespace goniochrome::render

@@ -1,0 +1,95 @@
+// Shading of spatially varying surfaces under lights and a prefiltered environment. goniochrome-theory(7), SPATIALLY
+// VARYING SURFACES; [McAllister2002] 4.1 and 6.1
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/result.h"
+#include "brdf/sbrdf.h"
+#include "envmap/prefiltered.h"
+#include "render/internal/visible_point.h"
+#include "render/scene.h"
+#include "render/textures/sbrdf_kernel.h"
+
+namespace goniochrome::render {
+
+// Lobe maps in one cube with levels: a quarter of the exponent and half the texels at each step from the finest.
+struct MipCube {
+  double finest_exponent = 1;
+  std::vector<envmap::CubeMap> levels;  // sharpest first
+};
+
+// Made from an environment that holds such a chain of exponents. Error: the exponents that are missing, and the command
+// that makes them.
+Result<MipCube> mip_cube(const envmap::PrefilteredEnvironment& env);
+
+// What textures are seen in, and how much of them.
+struct SbrdfLight {
+  bool environment = true;  // as far as there is one
+  std::vector<Light> lights = {};
+  color::ReflectionOperator reflection = color::component_wise();
+  bool horizon = true;        // lobes under the environment end at the horizon
+  std::uint32_t lobes = ~0U;  // by bits
+};
+
+// Textures packed for the kernel, and the maps that their lobes need.
+class SbrdfShader {
+ public:
+  // With `mip` lobes are fetched there (trilinearly), else from the environment's own maps, two neighbors in exponent
+  // blended. Both may be null, and all but the textures must outlive the shader.
+  SbrdfShader(const envmap::PrefilteredEnvironment* env, const MipCube* mip,
+              const std::vector<const brdf::SbrdfTexture*>& textures);
+
+  // Radiance in the working space of points on one texture, at their places; 0 seen from below. The four texels around
+  // a place are shaded one by one, and their colors blended. Single precision; the same for any company of points.
+  std::vector<color::Rgb> shade(std::size_t texture, const SbrdfLight& light,
+                                const std::vector<VisiblePoint>& points) const;
+
+  // Shades up to kPointsAtOnce points that were put.
+  class Batch {
+   public:
+    Batch(const SbrdfShader& shader, std::size_t texture, const SbrdfLight& light);
+    Batch(const Batch&) = delete;  // the kernel's tables point into it
+    Batch& operator=(const Batch&) = delete;
+    // `normal` and `to_viewer` on the same side, the first unit.
+    void put(const float* normal, const float* to_viewer, const TexturePlace& place, double repeat);
+    int count() const { return count_; }
+    bool full() const { return count_ == kPointsAtOnce; }
+    // The colors of all, 4 floats each; the batch is empty again.
+    const float* shade();
+
+   private:
+    const SbrdfShader& shader_;
+    std::size_t texture_;
+    SbrdfShading shading_;
+    std::vector<float> lights_, reflection_;
+    SbrdfPoints points_;
+    int count_ = 0;
+    alignas(64) float rgba_[4 * kPointsAtOnce];
+  };
+
+ private:
+  struct Packed {
+    int width = 0, height = 0, lobes = 0;
+    std::vector<float> texels;
+    const float* at(int column, int row) const {
+      return &texels[(static_cast<std::size_t>(row) * width + column) *
+                     (kTexelFloats + kTexelLobeFloats * static_cast<std::size_t>(lobes))];
+    }
+  };
+  void make_maps(const envmap::PrefilteredEnvironment& env, const MipCube* mip, double low, double high);
+  void make_horizon(double low, double high);
+  Packed packed(const brdf::SbrdfTexture& texture) const;
+  void pack_lobe(const brdf::LafortuneLobe& lobe, float* to) const;
+
+  std::vector<Packed> textures_;
+  std::vector<double> exponents_;  // of the maps, ascending
+  std::vector<LobeMap> maps_;
+  LobeMap diffuse_;
+  std::vector<std::vector<float>> texels_;  // of the maps and of the diffuse one
+  std::vector<double> horizon_exponents_;
+  std::vector<float> horizon_;
+};
+
+}  // namespace goniochrome::render

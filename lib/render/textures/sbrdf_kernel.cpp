@@ -1,0 +1,323 @@
+#include "render/textures/sbrdf_kernel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/textures/sbrdf_kernel.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+// After highway.h:
+#include "render/cpu/cube_lookup-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace goniochrome::render {
+namespace HWY_NAMESPACE {
+
+// The frames of all points, and the viewer in them.
+struct SurfaceFrames {
+  HWY_ALIGN float tx[kPointsAtOnce], ty[kPointsAtOnce], tz[kPointsAtOnce];
+  HWY_ALIGN float bx[kPointsAtOnce], by[kPointsAtOnce], bz[kPointsAtOnce];
+  HWY_ALIGN float vt[kPointsAtOnce], vb[kPointsAtOnce], vn[kPointsAtOnce];
+};
+
+HWY_INLINE Direction scaled(V s, const Direction& d) {
+  return {hn::Mul(s, d.x), hn::Mul(s, d.y), hn::Mul(s, d.z)};
+}
+HWY_INLINE Direction loaded(const float* x, const float* y, const float* z, std::size_t i) {
+  const D f;
+  return {hn::LoadU(f, x + i), hn::LoadU(f, y + i), hn::LoadU(f, z + i)};
+}
+HWY_INLINE Direction cross_product(const Direction& a, const Direction& b) {
+  return {hn::MulSub(a.y, b.z, hn::Mul(a.z, b.y)), hn::MulSub(a.z, b.x, hn::Mul(a.x, b.z)),
+          hn::MulSub(a.x, b.y, hn::Mul(a.y, b.x))};
+}
+
+// The tangent made perpendicular to the normal and unit. One along the normal says nothing: any direction in the
+// surface will do.
+HWY_INLINE Direction level_tangent(const Direction& n, const Direction& t) {
+  const D f;
+  const auto level = [&](const Direction& d) HWY_ATTR {
+    const V along = hn::Neg(dot(d, n));
+    return Direction{hn::MulAdd(along, n.x, d.x), hn::MulAdd(along, n.y, d.y), hn::MulAdd(along, n.z, d.z)};
+  };
+  const V zero = hn::Zero(f), one = hn::Set(f, 1.0F);
+  const auto on_x = hn::Lt(hn::Abs(n.x), hn::Set(f, 0.7F));
+  const Direction other = level({hn::IfThenElse(on_x, one, zero), hn::IfThenElse(on_x, zero, one), zero});
+  Direction x = level(t);
+  const auto none = hn::Lt(dot(x, x), hn::Set(f, 1e-12F));
+  x = {hn::IfThenElse(none, other.x, x.x), hn::IfThenElse(none, other.y, x.y), hn::IfThenElse(none, other.z, x.z)};
+  return scaled(hn::Div(one, hn::Sqrt(dot(x, x))), x);
+}
+
+HWY_INLINE void set_up_frames(const SbrdfPoints& p, SurfaceFrames& frames) {
+  const D f;
+  for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
+    const Direction n = loaded(p.nx, p.ny, p.nz, i), toward = loaded(p.vx, p.vy, p.vz, i);
+    const Direction v = scaled(hn::Div(hn::Set(f, 1.0F), hn::Sqrt(dot(toward, toward))), toward);
+    const Direction t = level_tangent(n, loaded(p.tx, p.ty, p.tz, i)), b = cross_product(n, t);
+    hn::Store(t.x, f, frames.tx + i), hn::Store(t.y, f, frames.ty + i), hn::Store(t.z, f, frames.tz + i);
+    hn::Store(b.x, f, frames.bx + i), hn::Store(b.y, f, frames.by + i), hn::Store(b.z, f, frames.bz + i);
+    hn::Store(dot(v, t), f, frames.vt + i), hn::Store(dot(v, b), f, frames.vb + i);
+    hn::Store(dot(v, n), f, frames.vn + i);
+  }
+}
+
+// One lobe of one texel for each point, its values side by side.
+struct LobeValues {
+  HWY_ALIGN float cos_x[kPointsAtOnce], sin_x[kPointsAtOnce];  // of the texel's frame
+  HWY_ALIGN float ax[kPointsAtOnce], ay[kPointsAtOnce], az[kPointsAtOnce], exponent[kPointsAtOnce];
+  HWY_ALIGN float energy[kPointsAtOnce], albedo[kPointsAtOnce];  // logarithms
+  const float* lobe[kPointsAtOnce];
+};
+
+HWY_INLINE void gather_lobe(const SbrdfPoints& p, int tap, int lobe, LobeValues& values) {
+  for (int i = 0; i < kPointsAtOnce; ++i) {
+    const float* texel = p.texel[tap][i];
+    const float* l = texel + kTexelFloats + kTexelLobeFloats * static_cast<std::size_t>(lobe);
+    values.cos_x[i] = texel[4], values.sin_x[i] = texel[5];
+    values.ax[i] = l[kLobeAxes], values.ay[i] = l[kLobeAxes + 1], values.az[i] = l[kLobeAxes + 2];
+    values.exponent[i] = l[kLobeExponent];
+    values.energy[i] = l[kLobeEnergy], values.albedo[i] = l[kLobeAlbedo];
+    values.lobe[i] = l;
+  }
+}
+
+// The middle of each lobe, p/|p| of p = C wo, in the texel's frame, and log |p|^n.
+struct LobeMiddles {
+  HWY_ALIGN float x[kPointsAtOnce], y[kPointsAtOnce], z[kPointsAtOnce];
+  HWY_ALIGN float log_power[kPointsAtOnce];
+};
+
+// |p|^2 - 1 is taken from the axes, (C^2 - 1) wo^2 summed, which is exact where a lobe mirrors.
+HWY_INLINE void find_middles(const SurfaceFrames& frames, const LobeValues& l, LobeMiddles& middles) {
+  const D f;
+  const V one = hn::Set(f, 1.0F);
+  for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
+    const V c = hn::Load(f, l.cos_x + i), s = hn::Load(f, l.sin_x + i);
+    const V vt = hn::Load(f, frames.vt + i), vb = hn::Load(f, frames.vb + i);
+    const Direction v = {hn::MulAdd(c, vt, hn::Mul(s, vb)), hn::MulSub(c, vb, hn::Mul(s, vt)),
+                         hn::Load(f, frames.vn + i)};
+    const Direction axes = loaded(l.ax, l.ay, l.az, i);
+    const Direction p = {hn::Mul(axes.x, v.x), hn::Mul(axes.y, v.y), hn::Mul(axes.z, v.z)};
+    const auto beyond_one = [&](V axis, V cosine) HWY_ATTR {
+      return hn::Mul(hn::Mul(hn::Sub(axis, one), hn::Add(axis, one)), hn::Mul(cosine, cosine));
+    };
+    const V excess = hn::Add(beyond_one(axes.x, v.x), hn::Add(beyond_one(axes.y, v.y), beyond_one(axes.z, v.z)));
+    const V size2 = hn::Max(dot(p, p), hn::Set(f, 1e-30F)), half = hn::Set(f, 0.5F);
+    const V near_one = hn::Log1p(f, hn::Max(excess, hn::Neg(half)));
+    const V log_size2 = hn::IfThenElse(hn::Lt(size2, half), hn::Log(f, size2), near_one);
+    const V inverse = hn::Div(one, hn::Sqrt(size2));
+    hn::Store(hn::Mul(p.x, inverse), f, middles.x + i), hn::Store(hn::Mul(p.y, inverse), f, middles.y + i);
+    hn::Store(hn::Mul(p.z, inverse), f, middles.z + i);
+    hn::Store(hn::Mul(hn::Mul(half, hn::Load(f, l.exponent + i)), log_size2), f, middles.log_power + i);
+  }
+}
+
+// exp, within what a float holds; 0 instead of numbers below the normal ones, which processors take long for.
+HWY_INLINE V bounded_exp(V x) {
+  const D f;
+  const V least = hn::Set(f, -80.0F);
+  return hn::IfThenElseZero(hn::Gt(x, least), hn::Exp(f, hn::Min(hn::Max(x, least), hn::Set(f, 87.0F))));
+}
+
+HWY_INLINE Quad fetched(const LobeMap& map, const Taps& taps, int i) {
+  const std::size_t row = 4 * static_cast<std::size_t>(map.size + 2);
+  const float* upper = map.texels + 4 * static_cast<std::size_t>(taps.offset[i]);
+  const float u = taps.across[i], lower = taps.down[i];
+  const Quad left = mul_add(Quad::filled(1 - lower), Quad::load(upper),
+                            mul_add(Quad::filled(lower), Quad::load(upper + row), Quad::filled(0)));
+  const Quad right = mul_add(Quad::filled(1 - lower), Quad::load(upper + 4),
+                             mul_add(Quad::filled(lower), Quad::load(upper + row + 4), Quad::filled(0)));
+  return mul_add(Quad::filled(1 - u), left, mul_add(Quad::filled(u), right, Quad::filled(0)));
+}
+
+// Sums of light times color: channel by channel, or each channel of the light with all of the color's.
+template <bool reflection>
+HWY_INLINE void add_product(const Quad& light, const Quad& color, float* sums) {
+  if constexpr (!reflection) {
+    mul_add(light, color, Quad::load(sums)).store(sums);
+  } else {
+    float lanes[4];
+    light.store(lanes);
+    for (int d = 0; d < 3; ++d) mul_add(Quad::filled(lanes[d]), color, Quad::load(sums + 4 * d)).store(sums + 4 * d);
+  }
+}
+
+// The cosine of a lobe's middle, or the mean cosine of what lies above the surface and the shift of the direction.
+struct Seen {
+  float cosine, shift;
+};
+HWY_INLINE Seen seen_of(const SbrdfShading& s, const float* lobe, float cosine) {
+  if (s.horizon == nullptr || !(cosine > 0)) return {cosine, 0};
+  const float x = std::sqrt(std::min(cosine, 1.0F)) * static_cast<float>(s.horizon_segments);
+  const int at = std::min(static_cast<int>(x), s.horizon_segments - 1);
+  const float t = x - static_cast<float>(at), share = lobe[kLobeHorizon + 1];
+  const std::size_t wide = 2 * static_cast<std::size_t>(s.horizon_segments + 1);
+  const float* row = s.horizon + static_cast<std::size_t>(lobe[kLobeHorizon]) * wide + 2 * at;
+  const float* next = share > 0 ? row + wide : row;
+  const auto between = [&](int k) {
+    return (1 - share) * ((1 - t) * row[k] + t * row[2 + k]) + share * ((1 - t) * next[k] + t * next[2 + k]);
+  };
+  return {between(0), between(1)};
+}
+
+// Adds what one lobe of one texel shows of the environment.
+template <bool reflection>
+HWY_INLINE void add_filtered(const SbrdfShading& s, const SbrdfPoints& p, const SurfaceFrames& frames,
+                             const LobeValues& l, const LobeMiddles& middles, int tap, int count, float* sums) {
+  const D f;
+  const hn::RebindToSigned<D> whole;
+  HWY_ALIGN std::int32_t sizes[2][kPointsAtOnce];
+  HWY_ALIGN float weight[kPointsAtOnce], cosine[kPointsAtOnce], shift[kPointsAtOnce];
+  for (int i = 0; i < kPointsAtOnce; ++i) {
+    const Seen seen = seen_of(s, l.lobe[i], middles.z[i]);
+    cosine[i] = seen.cosine, shift[i] = seen.shift;
+    const auto map = static_cast<std::size_t>(l.lobe[i][kLobeMap]);
+    sizes[0][i] = s.maps[map].size;
+    sizes[1][i] = l.lobe[i][kLobeMap + 1] > 0 ? s.maps[map + 1].size : sizes[0][i];
+  }
+  Taps taps[2];
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(f)) {
+    const V c = hn::Load(f, l.cos_x + i), q = hn::Load(f, l.sin_x + i);
+    const Direction m = loaded(middles.x, middles.y, middles.z, i);
+    const V along_t = hn::MulSub(c, m.x, hn::Mul(q, m.y)), along_b = hn::MulAdd(q, m.x, hn::Mul(c, m.y));
+    const V along_n = hn::Add(m.z, hn::Load(f, shift + i));
+    const auto turned = [&](const float* t, const float* b, const float* n) HWY_ATTR {
+      return hn::MulAdd(along_t, hn::Load(f, t + i),
+                        hn::MulAdd(along_b, hn::Load(f, b + i), hn::Mul(along_n, hn::LoadU(f, n + i))));
+    };
+    const OnFace face = on_face(
+        {turned(frames.tx, frames.bx, p.nx), turned(frames.ty, frames.by, p.ny), turned(frames.tz, frames.bz, p.nz)});
+    for (const int k : {0, 1}) address(face, hn::Load(whole, sizes[k] + i), i, taps[k]);
+    const V power = bounded_exp(hn::Add(hn::Load(f, l.energy + i), hn::Load(f, middles.log_power + i)));
+    const auto seen = hn::And(hn::Gt(m.z, hn::Zero(f)), hn::Gt(hn::Load(f, frames.vn + i), hn::Zero(f)));
+    const V share = hn::Mul(hn::Load(f, cosine + i), hn::LoadU(f, p.share[tap] + i));
+    hn::Store(hn::IfThenElseZero(seen, hn::Mul(power, share)), f, weight + i);
+  }
+  for (int i = 0; i < count; ++i) {
+    const float* lobe = l.lobe[i];
+    const float w = weight[i];
+    if (!(w > 0)) continue;
+    const auto map = static_cast<std::size_t>(lobe[kLobeMap]);
+    const float upper = lobe[kLobeMap + 1];
+    Quad light = fetched(s.maps[map], taps[0], i);
+    if (upper > 0) {
+      light = mul_add(Quad::filled(1 - upper), light,
+                      mul_add(Quad::filled(upper), fetched(s.maps[map + 1], taps[1], i), Quad::filled(0)));
+    }
+    add_product<reflection>(light, mul_add(Quad::filled(w), Quad::load(lobe), Quad::filled(0)), sums + 12 * i);
+  }
+}
+
+// Adds what one lobe of one texel sends of a light to the viewer: the exact BRDF. With m the middle of the lobe,
+// (p.wi)^n = |p|^n (m.wi)^n, the second from 1 - m.wi = |m - wi|^2/2.
+template <bool reflection>
+HWY_INLINE void add_lit(const float* light, const SbrdfPoints& p, const SurfaceFrames& frames, const LobeValues& l,
+                        const LobeMiddles& middles, int tap, int count, float* sums) {
+  const D f;
+  HWY_ALIGN float weight[kPointsAtOnce];
+  const Direction to_light = {hn::Set(f, light[0]), hn::Set(f, light[1]), hn::Set(f, light[2])};
+  const V zero = hn::Zero(f), half = hn::Set(f, 0.5F);
+  for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
+    const V lt = dot(to_light, loaded(frames.tx, frames.ty, frames.tz, i));
+    const V lb = dot(to_light, loaded(frames.bx, frames.by, frames.bz, i));
+    const V cos_i = dot(to_light, loaded(p.nx, p.ny, p.nz, i));
+    const V c = hn::Load(f, l.cos_x + i), q = hn::Load(f, l.sin_x + i);
+    const Direction m = loaded(middles.x, middles.y, middles.z, i);
+    const Direction apart = {hn::Sub(m.x, hn::MulAdd(c, lt, hn::Mul(q, lb))),
+                             hn::Sub(m.y, hn::MulSub(c, lb, hn::Mul(q, lt))), hn::Sub(m.z, cos_i)};
+    const V versine = hn::Mul(half, dot(apart, apart));
+    const V log_lobe = hn::MulAdd(hn::Load(f, l.exponent + i), log_cos_of(versine), hn::Load(f, middles.log_power + i));
+    const V power = bounded_exp(hn::Add(log_lobe, hn::Load(f, l.albedo + i)));
+    const auto seen = hn::And(hn::And(hn::Gt(cos_i, zero), hn::Gt(hn::Load(f, frames.vn + i), zero)),
+                              hn::Lt(versine, hn::Set(f, 1.0F)));
+    hn::Store(hn::IfThenElseZero(seen, hn::Mul(hn::Mul(power, cos_i), hn::LoadU(f, p.share[tap] + i))), f, weight + i);
+  }
+  for (int i = 0; i < count; ++i) {
+    if (!(weight[i] > 0)) continue;
+    add_product<reflection>(Quad::load(light + 4),
+                            mul_add(Quad::filled(weight[i]), Quad::load(l.lobe[i]), Quad::filled(0)), sums + 12 * i);
+  }
+}
+
+// The diffuse part: the texels' colors blended, in the irradiance and in the lights.
+template <bool reflection>
+HWY_INLINE void add_diffuse(const SbrdfShading& s, const SbrdfPoints& p, const SurfaceFrames& frames, int count,
+                            float* sums) {
+  const D f;
+  Taps taps;
+  if (s.diffuse.texels != nullptr) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(f))
+      address(loaded(p.nx, p.ny, p.nz, i), s.diffuse.size, i, taps);
+  }
+  for (int i = 0; i < count; ++i) {
+    if (!(frames.vn[i] > 0)) continue;
+    Quad color = Quad::filled(0);
+    for (int tap = 0; tap < p.taps; ++tap)
+      color = mul_add(Quad::filled(p.share[tap][i]), Quad::load(p.texel[tap][i]), color);
+    Quad light = Quad::filled(0);
+    if (s.diffuse.texels != nullptr)
+      light = mul_add(Quad::filled(std::numbers::pi_v<float>), fetched(s.diffuse, taps, i), light);
+    for (int k = 0; k < s.lights; ++k) {
+      const float* l = s.light + 8 * k;
+      const float cos_i = l[0] * p.nx[i] + l[1] * p.ny[i] + l[2] * p.nz[i];
+      if (cos_i > 0) light = mul_add(Quad::filled(cos_i), Quad::load(l + 4), light);
+    }
+    add_product<reflection>(light, color, sums + 12 * i);
+  }
+}
+
+template <bool reflection>
+HWY_INLINE void add_all(const SbrdfShading& s, const SbrdfPoints& p, int count, float* sums) {
+  SurfaceFrames frames;
+  LobeValues values;
+  LobeMiddles middles;
+  set_up_frames(p, frames);
+  add_diffuse<reflection>(s, p, frames, count, sums);
+  for (int tap = 0; tap < p.taps; ++tap) {
+    for (int lobe = 0; lobe < s.lobes; ++lobe) {
+      if ((s.lobes_on >> lobe & 1U) == 0) continue;
+      gather_lobe(p, tap, lobe, values);
+      find_middles(frames, values, middles);
+      if (s.diffuse.texels != nullptr) add_filtered<reflection>(s, p, frames, values, middles, tap, count, sums);
+      for (int k = 0; k < s.lights; ++k)
+        add_lit<reflection>(s.light + 8 * k, p, frames, values, middles, tap, count, sums);
+    }
+  }
+}
+
+void ShadeTexels(const SbrdfShading& s, const SbrdfPoints& p, int count, float* rgba) {
+  HWY_ALIGN float sums[12 * kPointsAtOnce] = {};
+  if (s.reflection == nullptr) {
+    add_all<false>(s, p, count, sums);
+    for (int i = 0; i < count; ++i) std::copy_n(sums + 12 * i, 4, rgba + 4 * i);
+    return;
+  }
+  add_all<true>(s, p, count, sums);
+  for (int i = 0; i < count; ++i) {
+    for (int c = 0; c < 3; ++c) {
+      float sum = 0;
+      for (int d = 0; d < 3; ++d)
+        for (int e = 0; e < 3; ++e) sum += s.reflection[9 * c + 3 * d + e] * sums[12 * i + 4 * d + e];
+      rgba[4 * i + c] = sum;
+    }
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace goniochrome::render
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace goniochrome::render {
+
+HWY_EXPORT(ShadeTexels);
+
+void shade_texels(const SbrdfShading& shading, const SbrdfPoints& points, int count, float* rgba) {
+  HWY_DYNAMIC_DISPATCH(ShadeTexels)(shading, points, count, rgba);
+}
+
+}  // namespace goniochrome::render
+#endif

@@ -1,0 +1,56 @@
+// The arithmetic of textures of lobes, compiled for several instruction sets and chosen at run time. Internal to
+// lib/render.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "render/cpu/cpu_kernel.h"
+
+namespace goniochrome::render {
+
+// A packed texel: 8 floats (diffuse RGB 0; the cosine and sine of the angle from the tangent to its x axis; 0 0), then
+// 16 for each lobe: its color RGB 0, the largest channel 1; axes X Y Z and exponent n; the logarithms of its largest
+// albedo, times 2 pi/(n+1) and as it is; the map of the exponent at or below n and the share of the next; the row of
+// the horizon table likewise; 0 0.
+constexpr std::size_t kTexelFloats = 8, kTexelLobeFloats = 16;
+constexpr std::size_t kLobeAxes = 4, kLobeExponent = 7, kLobeEnergy = 8, kLobeAlbedo = 9, kLobeMap = 10,
+                      kLobeHorizon = 12;
+constexpr float kNoLobe = -1e4F;  // the logarithm of an albedo of 0
+
+// P_n on a cube, faces with a border of one texel, R G B 0 a texel.
+struct LobeMap {
+  int size = 0;
+  const float* texels = nullptr;
+};
+
+struct SbrdfShading {
+  LobeMap diffuse;                // P_1; null where there is no environment
+  const LobeMap* maps = nullptr;  // ascending exponents
+  // Rows of so many segments, and one pair more: the mean cosine above the surface over a lobe whose middle m is at the
+  // cosine (i/segments)^2, and s, where m + s n is the mean direction of the light that it gathers there. Null: the
+  // cosine of the middle itself, and 0.
+  const float* horizon = nullptr;
+  int horizon_segments = 0;
+  int lobes = 0;                 // of a packed texel
+  std::uint32_t lobes_on = ~0U;  // by bits
+  int lights = 0;
+  const float* light = nullptr;       // 8 a light: direction 0, pi times its white 0
+  const float* reflection = nullptr;  // k[c][d][e]; null: the component-wise product
+};
+
+// Points as separate arrays; `count` of them are meant, the others must hold numbers and texels. Each shows `taps`
+// texels.
+struct SbrdfPoints {
+  float nx[kPointsAtOnce], ny[kPointsAtOnce], nz[kPointsAtOnce];
+  float vx[kPointsAtOnce], vy[kPointsAtOnce], vz[kPointsAtOnce];  // toward the viewer, of any length
+  float tx[kPointsAtOnce], ty[kPointsAtOnce], tz[kPointsAtOnce];  // tangent, of any length and not yet level
+  int taps = 0;
+  const float* texel[4][kPointsAtOnce];
+  float share[4][kPointsAtOnce];
+};
+
+// rgba: 4 floats a point, the fourth not meant; 0 for a point seen from below.
+void shade_texels(const SbrdfShading& shading, const SbrdfPoints& points, int count, float* rgba);
+
+}  // namespace goniochrome::render

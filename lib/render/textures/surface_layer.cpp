@@ -1,0 +1,221 @@
+#include "render/textures/surface_layer.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "base/parallel.h"
+#include "brdf/lobe_model.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+std::uint64_t next_id() {
+  static std::atomic<std::uint64_t> last = 0;
+  return ++last;
+}
+
+}  // namespace
+
+SurfaceLayer::SurfaceLayer(const Scene& scene, std::vector<PartSurface> surfaces, brdf::CriticalAngle treatment,
+                           const MipCube* mip)
+    : scene_(scene), surfaces_(std::move(surfaces)), treatment_(treatment), id_(next_id()) {
+  surfaces_.resize(scene.mesh->parts.size());
+  std::vector<bool> parts;
+  for (const PartSurface& surface : surfaces_) {
+    parts.push_back(surface.texture != nullptr);
+    mapped_ = mapped_ || (surface.color_map != nullptr && !scene.lights.empty());
+    if (surface.texture == nullptr) continue;
+    textured_ = true;
+    if (std::ranges::find(textures_, surface.texture) == textures_.end()) textures_.push_back(surface.texture);
+  }
+  if (!textured_) return;
+  for (const brdf::SbrdfTexture* texture : textures_) means_.push_back(brdf::mean_texture(*texture));
+  std::vector<const brdf::SbrdfTexture*> all = textures_;
+  for (const brdf::SbrdfTexture& mean : means_) all.push_back(&mean);
+  shader_ = std::make_unique<const SbrdfShader>(scene.env, mip, all);
+  layout_ = std::make_unique<const TextureLayout>(*scene.mesh, parts);
+}
+
+SurfaceLayer::~SurfaceLayer() = default;
+
+int SurfaceLayer::lobes() const {
+  int most = 0;
+  for (const brdf::SbrdfTexture* texture : textures_) most = std::max(most, texture->lobes);
+  return most;
+}
+
+std::vector<TexturePlace> SurfaceLayer::places(const Gbuffer& gbuffer) const {
+  return textured_ ? layout_->places(gbuffer) : std::vector<TexturePlace>();
+}
+
+namespace {
+
+// The frame of isolines needs only the normal: they do not change when both directions turn about it.
+struct LocalPair {
+  Vec3 light, viewer;
+};
+LocalPair about_normal(const Vec3& normal, const Vec3& light, const Vec3& viewer) {
+  const Vec3 other = std::abs(normal.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  const Vec3 x = normalized(cross(other, normal)), y = cross(normal, x);
+  return {{dot(light, x), dot(light, y), dot(light, normal)}, {dot(viewer, x), dot(viewer, y), dot(viewer, normal)}};
+}
+
+}  // namespace
+
+// The lobe model under a light is pi W f cos_i; the flakes' part of f, K_D and K_DD, is taken out and the map's
+// reflectance factor, pi f by definition, put in.
+color::Rgb SurfaceLayer::mapped_difference(int part, const Vec3& normal, const Vec3& to_viewer) const {
+  color::Rgb sum;
+  const auto at = static_cast<std::size_t>(part);
+  for (const Light& light : scene_.lights) {
+    const auto [wi, wo] = about_normal(normal, light.direction, to_viewer);
+    if (wi.z <= 0 || wo.z <= 0) continue;
+    const double aspecular_rad = paint::aspecular_angle_rad(wi, wo, {0, 0, 1});
+    const color::Rgb map = brdf::reflectance_factor(*surfaces_[at].color_map, wi, wo, treatment_);
+    const color::Rgb lobes = brdf::flake_reflectance_factor(scene_.paints[at], aspecular_rad * 180 / std::numbers::pi);
+    sum += wi.z * color::reflected(scene_.reflection, light.white, map - lobes);
+  }
+  return sum;
+}
+
+namespace {
+
+SbrdfLight light_of(const Scene& scene, const Effects& effects) {
+  return {effects.environment, effects.lights > 0 ? scene.lights : std::vector<Light>(),
+          effects.reflection ? scene.reflection : color::component_wise(), true, effects.texture_lobes};
+}
+
+}  // namespace
+
+std::size_t SurfaceLayer::shading_of(int part, const Effects& effects) const {
+  const auto which = static_cast<std::size_t>(std::ranges::find(textures_, surface(part).texture) - textures_.begin());
+  return effects.texture ? which : textures_.size() + which;
+}
+
+// Steps of the golden section cover a texture evenly.
+TexturePlace SurfaceLayer::placed(const VisiblePoint& point, std::size_t number) const {
+  const double repeat = surface(point.part).repeat;
+  const auto step = [&](double share) {
+    const double at = share * static_cast<double>(number);
+    return static_cast<float>(at - std::floor(at));
+  };
+  if (!point.placed) {
+    const Vec3 level = cross({0, 1, 0}, point.normal);
+    return {step(0.61803398875),
+            step(0.7548776662),
+            {static_cast<float>(level.x), static_cast<float>(level.y), static_cast<float>(level.z)}};
+  }
+  TexturePlace place = point.place;
+  place.u = static_cast<float>(repeat * place.u), place.v = static_cast<float>(repeat * place.v);
+  return place;
+}
+
+SurfaceLayer::Place SurfaceLayer::place(const VisiblePoint& point, std::size_t number, const Effects& effects) const {
+  const std::size_t which = shading_of(point.part, effects);
+  const brdf::SbrdfTexture& texture = which < textures_.size() ? *textures_[which] : means_[which - textures_.size()];
+  const TexturePlace at = placed(point, number);
+  Place result{{at.tangent[0], at.tangent[1], at.tangent[2]}, {}};
+  for (const brdf::TextureTap& tap : brdf::texture_taps(texture.width, texture.height, at.u, at.v)) {
+    if (tap.weight == 0) continue;
+    Piece piece{brdf::sbrdf_texel(texture, tap.column, tap.row), tap.weight};
+    std::vector<brdf::LafortuneLobe>& lobes = piece.texel.surface.lobes;
+    for (std::size_t i = 0; i < lobes.size(); ++i)
+      if ((effects.texture_lobes >> i & 1U) == 0) lobes[i].albedo = {};
+    result.pieces.push_back(std::move(piece));
+  }
+  return result;
+}
+
+void SurfaceLayer::add_mapped(const std::vector<VisiblePoint>& points, std::vector<color::Rgb>& colors) const {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const VisiblePoint& p = points[i];
+    if (surface(p.part).color_map != nullptr) colors[i] += mapped_difference(p.part, p.normal, p.to_viewer);
+  }
+}
+
+void SurfaceLayer::add(const std::vector<VisiblePoint>& points, const Effects& effects,
+                       std::vector<color::Rgb>& colors) const {
+  if (effects.maps) add_mapped(points, colors);
+  std::vector<std::vector<VisiblePoint>> by_texture(2 * textures_.size());
+  std::vector<std::vector<std::size_t>> numbers(by_texture.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (surface(points[i].part).texture == nullptr) continue;
+    const std::size_t which = shading_of(points[i].part, effects);
+    by_texture[which].push_back(points[i]);
+    by_texture[which].back().place = placed(points[i], i);
+    numbers[which].push_back(i);
+  }
+  const SbrdfLight light = light_of(scene_, effects);
+  for (std::size_t which = 0; which < by_texture.size(); ++which) {
+    if (by_texture[which].empty()) continue;
+    const std::vector<color::Rgb> shown = shader_->shade(which, light, by_texture[which]);
+    for (std::size_t i = 0; i < shown.size(); ++i) colors[numbers[which][i]] += shown[i];
+  }
+}
+
+// The textured points of one row of a picture, gathered until the kernel has enough of one texture.
+class SurfaceLayer::Row {
+ public:
+  Row(const SbrdfShader& shader, const SbrdfLight& light, float weight, image::Image& rgba)
+      : shader_(shader), light_(light), weight_(weight), rgba_(rgba) {}
+
+  void put(std::size_t texture, int x, int y, const float* normal, const Vec3& to_viewer, const TexturePlace& place,
+           double repeat) {
+    if (batch_ && (texture != texture_ || batch_->full())) flush();
+    if (!batch_ || texture != texture_) batch_.emplace(shader_, texture, light_), texture_ = texture;
+    const float toward[3] = {static_cast<float>(to_viewer.x), static_cast<float>(to_viewer.y),
+                             static_cast<float>(to_viewer.z)};
+    pixels_[batch_->count()] = rgba_.pixel(x, y);
+    batch_->put(normal, toward, place, repeat);
+  }
+  void flush() {
+    if (!batch_) return;
+    const int count = batch_->count();
+    if (count == 0) return;
+    const float* shown = batch_->shade();
+    for (int i = 0; i < count; ++i)
+      for (int c = 0; c < 3; ++c) pixels_[i][c] += weight_ * shown[4 * i + c];
+  }
+
+ private:
+  const SbrdfShader& shader_;
+  const SbrdfLight& light_;
+  float weight_;
+  image::Image& rgba_;
+  std::size_t texture_ = 0;
+  std::optional<SbrdfShader::Batch> batch_;
+  float* pixels_[kPointsAtOnce] = {};
+};
+
+void SurfaceLayer::add(const Gbuffer& gbuffer, const std::vector<TexturePlace>& places, const Effects& effects,
+                       float weight, image::Image& rgba) const {
+  if (!textured_ && !(mapped_ && effects.maps)) return;
+  const SbrdfLight light = light_of(scene_, effects);
+  parallel_for(static_cast<std::size_t>(gbuffer.height), 8, [&](std::size_t begin, std::size_t end) {
+    std::optional<Row> textured;
+    if (textured_) textured.emplace(*shader_, light, weight, rgba);
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      const Rays& rays = gbuffer.rays;
+      const Vec3 first = rays.corner + (y + 0.5) * rays.down;
+      for (int x = 0; x < gbuffer.width; ++x) {
+        const int part = gbuffer.part(x, y);
+        if (part < 0) continue;
+        const PartSurface& surface = surfaces_[static_cast<std::size_t>(part)];
+        if (surface.texture != nullptr) {
+          textured->put(shading_of(part, effects), x, y, gbuffer.at(x, y), -(first + (x + 0.5) * rays.right),
+                        places[static_cast<std::size_t>(y) * gbuffer.width + x], surface.repeat);
+        } else if (effects.maps && surface.color_map != nullptr) {
+          const color::Rgb color = mapped_difference(part, gbuffer.normal(x, y), gbuffer.to_viewer(x, y));
+          for (int c = 0; c < 3; ++c) rgba.pixel(x, y)[c] += weight * static_cast<float>(color[c]);
+        }
+      }
+    }
+    if (textured) textured->flush();
+  });
+}
+
+}  // namespace goniochrome::render

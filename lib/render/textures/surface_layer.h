@@ -1,0 +1,93 @@
+// What the lobe model of a part cannot show, added to a picture pixel by pixel on the processor, whatever engine drew
+// the rest: textures of generalized cosine lobes, and under lights the colors of a color map. goniochrome-theory(7),
+// RENDERING.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "brdf/color_map.h"
+#include "brdf/sbrdf.h"
+#include "image/image.h"
+#include "render/effects.h"
+#include "render/gbuffer.h"
+#include "render/internal/visible_point.h"
+#include "render/scene.h"
+#include "render/textures/sbrdf.h"
+#include "render/textures/texture_places.h"
+
+namespace goniochrome::render {
+
+// The surface of a part beyond its paint. A part with a texture has a paint without weights.
+struct PartSurface {
+  const brdf::SbrdfTexture* texture = nullptr;
+  double repeat = 1;  // how many times the texture is laid where its coordinates run from 0 to 1
+  const brdf::ColorMap* color_map = nullptr;
+};
+
+class SurfaceLayer {
+ public:
+  // One surface for each part of the scene's mesh; none where there are fewer. All must outlive the layer. With `mip`
+  // the lobes of textures are fetched from there, else from the maps of the scene's environment.
+  SurfaceLayer(const Scene& scene, std::vector<PartSurface> surfaces, brdf::CriticalAngle treatment,
+               const MipCube* mip = nullptr);
+  ~SurfaceLayer();
+
+  // Whether there is nothing to add, and what there is: textures, and color maps under lights.
+  bool empty() const { return !textured_ && !mapped_; }
+  bool textured() const { return textured_; }
+  bool mapped() const { return mapped_; }
+  const PartSurface& surface(int part) const { return surfaces_[static_cast<std::size_t>(part)]; }
+  // No other layer has it.
+  std::uint64_t id() const { return id_; }
+  // The most lobes of a texture.
+  int lobes() const;
+
+  // Where the textured parts of a G-buffer's pixels lie on their textures; empty without textures.
+  std::vector<TexturePlace> places(const Gbuffer& gbuffer) const;
+
+  // Adds `weight` times the layer, as far as the effects have it, to the RGB of every pixel; a part whose texture is
+  // left out shows its mean texel. `places` are those of the G-buffer. Of a color map it adds the difference to what
+  // the lobe model shows of the same light, gloss apart. Bit-identical for any number of threads.
+  void add(const Gbuffer& gbuffer, const std::vector<TexturePlace>& places, const Effects& effects, float weight,
+           image::Image& rgba) const;
+
+  // The color map's part at one point: radiance under the scene's lights less that of the paint's flake lobes.
+  color::Rgb mapped_difference(int part, const Vec3& normal, const Vec3& to_viewer) const;
+
+  // Adds to the colors of these points what color maps change under the scene's lights.
+  void add_mapped(const std::vector<VisiblePoint>& points, std::vector<color::Rgb>& colors) const;
+
+  // Adds the layer to the colors of these points. One whose place on its texture is not known takes another place for
+  // each, which is enough to tell what a texture is worth.
+  void add(const std::vector<VisiblePoint>& points, const Effects& effects, std::vector<color::Rgb>& colors) const;
+
+  // Texels, in the frame of normal and tangent, and their shares: what a textured point consists of.
+  struct Piece {
+    brdf::SbrdfTexel texel;
+    double share = 1;
+  };
+  struct Place {
+    Vec3 tangent;
+    std::vector<Piece> pieces;
+  };
+  // Of the point of this number; its lobes that the effects have.
+  Place place(const VisiblePoint& point, std::size_t number, const Effects& effects) const;
+
+ private:
+  class Row;
+  std::size_t shading_of(int part, const Effects& effects) const;
+  TexturePlace placed(const VisiblePoint& point, std::size_t number) const;
+
+  const Scene& scene_;
+  std::vector<PartSurface> surfaces_;
+  brdf::CriticalAngle treatment_;
+  std::uint64_t id_;
+  bool textured_ = false, mapped_ = false;
+  std::vector<const brdf::SbrdfTexture*> textures_;  // each once
+  std::vector<brdf::SbrdfTexture> means_;            // of the same
+  std::unique_ptr<const SbrdfShader> shader_;        // of the textures, then of the means
+  std::unique_ptr<const TextureLayout> layout_;
+};
+
+}  // namespace goniochrome::render

@@ -1,0 +1,258 @@
+// Pictures of textured parts: both engines, the certificate, and what the plan says of them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "render/exact.h"
+#include "render/integral/integral_engine.h"
+#include "render/internal/seen.h"
+#include "render/renderer.h"
+#include "render/scenes_for_test.h"
+#include "render/textures/surface_layer.h"
+
+namespace goniochrome::render {
+namespace {
+
+// 1 + k d in every channel, each along an axis of its own: P_n of it is known.
+Vec3 sloping(const Vec3& d, double k) {
+  return {1 + 0.6 * k * d.x, 1 + 0.6 * k * d.y, 1 - 0.6 * k * d.z};
+}
+
+envmap::PrefilteredEnvironment sloping_env() {
+  envmap::PrefilteredEnvironment env;
+  const auto filtered = [](double n) {
+    return cube_of(32, [n](const Vec3& d) { return sloping(d, (n + 1) / (n + 2)); });
+  };
+  env.diffuse.map = filtered(1);
+  for (const double n : {4.0, 16.0, 64.0, 256.0}) {
+    env.lobes.emplace_back();
+    env.lobes.back().exponent = n;
+    env.lobes.back().map = filtered(n);
+  }
+  env.source = "sloping.exr";
+  return env;
+}
+
+envmap::Environment sloping_source() {
+  image::Image image{256, 128, 3, std::vector<float>(std::size_t{256} * 128 * 3, 0.0F), {}};
+  const auto plain = envmap::Environment::from_lat_long(image, envmap::Environment::BadPixels::kError, "plain");
+  for (int row = 0; row < 128; ++row) {
+    for (int column = 0; column < 256; ++column) {
+      const Vec3 value = sloping(plain->direction(column, row), 1);
+      for (int c = 0; c < 3; ++c) image.pixel(column, row)[c] = static_cast<float>(value[c]);
+    }
+  }
+  return *envmap::Environment::from_lat_long(std::move(image), envmap::Environment::BadPixels::kError, "sloping");
+}
+
+// Metal brushed in a direction that turns across, darker in every other row; its last lobe is next to nothing.
+brdf::SbrdfTexture brushed_texture() {
+  brdf::SbrdfTexture texture{8, 4, 3, {}};
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 8; ++column) {
+      const double angle = 2 * std::numbers::pi * column / 8;
+      const float share = row % 2 == 0 ? 1.0F : 0.5F;
+      for (const float value : {0.02F,
+                                0.02F,
+                                0.02F,
+                                static_cast<float>(std::cos(angle)),
+                                static_cast<float>(std::sin(angle)),
+                                0.8F * share,
+                                0.7F * share,
+                                0.5F * share,
+                                -1.0F,
+                                -0.3F,
+                                1.0F,
+                                12.0F,  //
+                                2.0F * share,
+                                1.8F * share,
+                                1.4F * share,
+                                -1.0F,
+                                -0.9F,
+                                1.0F,
+                                80.0F,  //
+                                1e-5F,
+                                1e-5F,
+                                1e-5F,
+                                -1.0F,
+                                -1.0F,
+                                1.0F,
+                                30.0F})
+        texture.values.push_back(value);
+    }
+  }
+  return texture;
+}
+
+class TexturedScene : public testing::Test {
+ protected:
+  TexturedScene() {
+    scene.mesh = &mesh;
+    scene.paints = {{}};
+    scene.env = &env;
+    view = {Camera::orbit(mesh, 30, 20, 1, 30, 1), 96, 96, 1, true};
+  }
+  void dress() {
+    layer = std::make_unique<SurfaceLayer>(scene, std::vector<PartSurface>{{&texture, 6, nullptr}},
+                                           brdf::CriticalAngle::kSlide);
+    scene.layer = layer.get();
+  }
+  Frame drawn(Engine engine, const Effects& effects) const {
+    auto renderer = Renderer::create();
+    EXPECT_TRUE(renderer.ok());
+    const auto loaded = renderer->load(scene, effects, engine);
+    EXPECT_TRUE(loaded.ok()) << loaded.error().message;
+    Frame frame;
+    EXPECT_TRUE(renderer->draw(view, frame).ok());
+    return frame;
+  }
+  Plan planned(PlanRequest request, Frame& frame) const {
+    auto renderer = Renderer::create();
+    EXPECT_TRUE(renderer.ok());
+    const auto seen = renderer->look(mesh, view);
+    EXPECT_TRUE(seen.ok());
+    auto plan = renderer->load(scene, {*seen}, request);
+    EXPECT_TRUE(plan.ok()) << plan.error().message;
+    EXPECT_TRUE(renderer->draw(view, frame).ok());
+    return *std::move(plan);
+  }
+  static double difference(const Frame& a, const Frame& b) {
+    std::vector<double> de00;
+    for (int y = 0; y < a.picture.height; ++y) {
+      for (int x = 0; x < a.picture.width; ++x) {
+        if (a.gbuffer->part(x, y) < 0) continue;
+        const float *p = a.picture.pixel(x, y), *q = b.picture.pixel(x, y);
+        de00.push_back(seen_difference({p[0], p[1], p[2]}, {q[0], q[1], q[2]}, 1));
+      }
+    }
+    return percentile_95(std::move(de00));
+  }
+  static const PlanItem& item(const Plan& plan, const std::string& name) {
+    for (const PlanItem& item : plan.items)
+      if (item.effect == name) return item;
+    ADD_FAILURE() << name << " is not in the plan";
+    return plan.items.front();
+  }
+
+  mesh::Mesh mesh = sphere_mesh(64);
+  envmap::PrefilteredEnvironment env = sloping_env();
+  brdf::SbrdfTexture texture = brushed_texture();
+  Scene scene;
+  View view;
+  std::unique_ptr<SurfaceLayer> layer;
+};
+
+TEST_F(TexturedScene, EnginesAgree) {
+  scene.lights = {{normalized({0.4, 0.5, 1}), {1, 0.8, 0.6}}};
+  scene.reflection = color::iso_rgb_operator();
+  dress();
+  for (const int samples : {1, 4}) {
+    view.samples = samples;
+    const Frame gl = drawn(Engine::kGl, effects_of(scene)), cpu = drawn(Engine::kCpu, effects_of(scene));
+    double worst = 0;
+    for (std::size_t i = 0; i < gl.picture.data.size(); i += 4) {
+      const float *a = &gl.picture.data[i], *b = &cpu.picture.data[i];
+      worst = std::max(worst, seen_difference({a[0], a[1], a[2]}, {b[0], b[1], b[2]}, 1));
+    }
+    EXPECT_LT(worst, 0.05) << samples;
+  }
+}
+
+// Lights are exact: what is left is single precision.
+TEST_F(TexturedScene, CertificateUnderLights) {
+  scene.env = nullptr;
+  scene.lights = {{normalized({0.4, 0.5, 1}), {1, 0.8, 0.6}}, {normalized({1, 0.2, 0.1}), {0.1, 0.2, 0.5}}};
+  scene.reflection = color::iso_rgb_operator();
+  dress();
+  const Frame frame = drawn(Engine::kCpu, effects_of(scene));
+  const PictureError error = picture_error(frame, scene, nullptr, 1, 2000, 5);
+  EXPECT_EQ(error.checked_pixels, 2000);
+  EXPECT_LT(error.de00_max, 0.02) << error.worst_x << ',' << error.worst_y;
+}
+
+// Under a sloping environment a lobe shows the value at its middle, but for the slope of the cosine and what the
+// horizon cuts off: together within a small difference in color. The wrong texels are the control.
+TEST_F(TexturedScene, CertificateUnderAnEnvironment) {
+  dress();
+  const Frame frame = drawn(Engine::kCpu, effects_of(scene));
+  const envmap::Environment source = sloping_source();
+  const PictureError error = picture_error(frame, scene, &source, 1, 60, 5);
+  EXPECT_EQ(error.checked_pixels, 60);
+  EXPECT_LT(error.de00_p95, 1.0);
+  EXPECT_LT(error.de00_mean, 0.5);
+  for (std::size_t i = 0; i < texture.values.size(); i += 29) std::swap(texture.values[i + 3], texture.values[i + 4]);
+  EXPECT_GT(picture_error(frame, scene, &source, 1, 60, 5).de00_mean, 3 * error.de00_mean) << "the control";
+}
+
+TEST_F(TexturedScene, ThePlanPricesTextureAndLobes) {
+  dress();
+  Frame all, without;
+  PlanRequest request;
+  request.effects = "all";
+  const Plan plan = planned(request, all);
+  for (const char* name : {"texture", "texture-0", "texture-1", "texture-2"})
+    EXPECT_TRUE(item(plan, name).needed) << name;
+  EXPECT_GT(item(plan, "texture").cost_ms, item(plan, "texture-0").cost_ms);
+  EXPECT_GT(item(plan, "texture-0").cost_ms, 0);
+  for (const char* name : {"texture", "texture-0", "texture-1"}) {
+    request.effects = std::string("all,-") + name;
+    const Plan left = planned(request, without);
+    EXPECT_EQ(item(left, name).decision, "forced off");
+    const double real = difference(all, without), estimate = item(plan, name).de00_p95;
+    // The texels of the probe are not those of the picture; they are as many of each.
+    EXPECT_NEAR(std::log2(estimate / real), 0, 0.5) << name << ": " << estimate << " for " << real;
+  }
+  // Nobody sees the third lobe.
+  request.effects = "auto";
+  const Plan chosen = planned(request, without);
+  EXPECT_EQ(item(chosen, "texture-2").decision, "dropped");
+  EXPECT_EQ(item(chosen, "texture-1").decision, "drawn");
+  EXPECT_EQ(item(chosen, "texture").decision, "drawn");
+  EXPECT_LE(difference(all, without), request.tolerance_de00);
+}
+
+TEST_F(TexturedScene, TheIntegralIsWithinWhatIsAsked) {
+  dress();
+  const envmap::Environment source = sloping_source();
+  const envmap::BlockTree blocks(source);
+  scene.texels = &blocks;
+  Effects effects = effects_of(scene);
+  for (const double tolerance : {0.5, 0.1}) {
+    effects.spread = spread_for(tolerance);
+    EXPECT_LT(picture_error(drawn(Engine::kIntegral, effects), scene, &source, 1, 60, 5).de00_p95, tolerance);
+  }
+}
+
+TEST_F(TexturedScene, TruthStandsBesideTheEstimate) {
+  dress();
+  Frame frame;
+  PlanRequest request;
+  request.effects = "all";
+  Plan plan = planned(request, frame);
+  const envmap::Environment source = sloping_source();
+  const PixelSample sample = sampled_pixels(*frame.gbuffer, scene, 60, 3);
+  add_truth(plan, scene, sample.points, &source, 1);
+  for (const char* name : {"texture", "texture-0", "texture-1"}) {
+    const PlanItem& priced = item(plan, name);
+    ASSERT_TRUE(priced.truth_de00_p95.has_value()) << name;
+    EXPECT_NEAR(std::log2(priced.de00_p95 / *priced.truth_de00_p95), 0, 1) << name;
+  }
+}
+
+// A texture of one texel is a paint: both ways of drawing it, and both certificates, are one.
+TEST_F(TexturedScene, OneTexelIsAPaint) {
+  texture = {1, 1, 1, {0.1F, 0.05F, 0.02F, 1, 0, 0.5F, 0.4F, 0.3F, -1, -1, 1, 16}};
+  scene.lights = {{normalized({0.4, 0.5, 1}), {1, 1, 1}}};
+  dress();
+  const Frame textured = drawn(Engine::kCpu, effects_of(scene));
+  const envmap::Environment source = sloping_source();
+  const double error = picture_error(textured, scene, &source, 1, 40, 5).de00_mean;
+  scene.layer = nullptr;
+  scene.paints[0].diffuse = {0.1, 0.05, 0.02};
+  scene.paints[0].lobes = {{16, {0.5, 0.4, 0.3}, {}}};
+  const Frame painted = drawn(Engine::kCpu, effects_of(scene));
+  EXPECT_NEAR(picture_error(painted, scene, &source, 1, 40, 5).de00_mean, error, 0.1);
+  EXPECT_LT(difference(textured, painted), 0.3);
+}
+
+}  // namespace
+}  // namespace goniochrome::render

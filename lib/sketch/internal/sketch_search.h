@@ -1,0 +1,70 @@
+// Paints whose lobes make given lights look as a picture shows them. Internal to lib/fit.
+// [Shimizu2009] 3.7.5, goniochrome-theory(7), SKETCH FITTING.
+#pragma once
+
+#include <vector>
+
+#include "fit/paint_fit.h"
+#include "sketch/internal/sketch_lobes.h"
+#include "sketch/internal/sketch_samples.h"
+#include "sketch/internal/sketch_solve.h"
+#include "sketch/sketch.h"
+
+namespace goniochrome::sketch {
+
+// A paint found: eight numbers (face, flop, travel, gloss), ten (Lab at 15, 45 and 110 deg, gloss), or sixteen (Lab at
+// the export angles, gloss), which are read off lobes of any weight.
+struct FoundPaint {
+  SearchResult search;
+  std::vector<color::Rgb> weights;  // of its lobes, in the order of the columns
+  paint::Paint paint() const;
+  const char* model() const;
+};
+
+// The ways from a paint to its lobes: least squares, whose weights follow a paint smoothly, and least absolute error.
+struct SearchFitters {
+  explicit SearchFitters(const formats::Basis& basis);
+  brdf::GlossTable gloss;
+  fit::PaintFitter smooth, exact;
+};
+
+class LobeSearch {
+ public:
+  // The fitters must outlive it.
+  LobeSearch(const SearchFitters& fitters, SearchSamples samples);
+
+  // For light from everywhere, which tells each lobe. The lobes of any weight that explain the samples best; then, from
+  // there, face, flop and travel, which are the answer where they explain the samples as well, or else the colors at
+  // three angles, or else those lobes. Ways are found in the samples of `first`, a part of these.
+  FoundPaint find(const LobeSearch& first) const;
+
+  // For one lamp, whose glare is left out, so that wide gloss passes for flake: face, flop and travel, from that start
+  // and more until one explains the samples exactly, or the colors at three angles where they explain them better.
+  FoundPaint find_plain(const LobeSearch& first) const;
+
+  // The cost of a paint found, with another gloss (gloss units).
+  double cost_with_gloss(const FoundPaint& found, double gloss) const;
+
+  // The matt reflectance factor that explains the samples best.
+  color::Rgb matt() const;
+
+ private:
+  std::vector<color::Rgb> weights(const fit::PaintFitter& fitter, const std::vector<double>& values) const;
+  double cost(const std::vector<color::Rgb>& weights) const;
+  SearchResult run(const fit::PaintFitter& fitter, const std::vector<SearchParameter>& start) const;
+  struct Way {
+    SearchResult result;
+    const fit::PaintFitter* fitter = nullptr;
+  };
+  Way way(const std::vector<double>& start) const;
+  Way best_way() const;
+  void scan_gloss(std::vector<double>& start) const;
+  FreeLobeFit free_lobes() const { return {basis_, fitters_.gloss, samples_, target_}; }
+
+  const SearchFitters& fitters_;
+  const formats::Basis& basis_;
+  SearchSamples samples_;
+  std::vector<color::Lab> target_;
+};
+
+}  // namespace goniochrome::sketch

@@ -1,0 +1,163 @@
+#include "sketch/sketch_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "brdf/lobe_model.h"
+#include "render/effects.h"
+#include "render/gbuffer.h"
+
+namespace goniochrome::sketch {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kGloss_deg = 60;  // of the reading that a paint found carries
+constexpr int kMostSamples = 4;    // of a pixel; sixteen have its mean within their spread, 3 %
+
+bool drawn(const image::AovFile& buffers, const char* effect) {
+  return std::ranges::find(buffers.drawn, effect) != buffers.drawn.end();
+}
+
+formats::Basis basis_of(const envmap::PrefilteredEnvironment& env) {
+  formats::Basis basis;
+  basis.name = "environment";
+  for (const envmap::PrefilteredLobe& lobe : env.lobes) basis.exponents.push_back(lobe.exponent);
+  basis.mirror = env.mirror.map.size > 0;
+  return basis;
+}
+
+// One paint for each column, with weight 1 in it and nowhere else. All have all lobes, so that each of them is drawn.
+std::vector<paint::LobeFit> unit_paints(const formats::Basis& basis) {
+  paint::LobeFit blank;
+  for (const double exponent : basis.exponents) blank.lobes.push_back({exponent, {}, {}});
+  blank.lobes.push_back({envmap::kMirrorExponent, {}, {}});
+  std::vector<paint::LobeFit> paints(search_columns(basis), blank);
+  const color::Rgb one{1, 1, 1};
+  paints.front().diffuse = one;
+  for (std::size_t j = 0; j < basis.exponents.size(); ++j)
+    paints[1 + 2 * j].lobes[j].directional_diffuse = one, paints[2 + 2 * j].lobes[j].gloss = one;
+  if (basis.mirror) paints.back().lobes.back().gloss = one;
+  return paints;
+}
+
+class Shading {
+ public:
+  Shading(const image::AovFile& buffers, const envmap::PrefilteredEnvironment& env, int normal, int part)
+      : buffers_(buffers), env_(env), basis_(basis_of(env)), normal_(normal), part_(part) {
+    if (buffers.samples > 1) shifts_ = render::sample_shifts(std::min(buffers.samples, kMostSamples));
+    render::Scene scene;
+    scene.paints = unit_paints(basis_);
+    scene.env = &env;
+    for (const image::AovLight& light : buffers.lights) scene.lights.push_back({light.direction, light.white});
+    scene.gloss_deg.assign(scene.paints.size(), kGloss_deg);
+    render::Effects effects = render::effects_of(scene);
+    effects.fresnel = fresnel_ = drawn(buffers, "fresnel");
+    effects.horizon = drawn(buffers, "horizon");
+    table_ = render::weight_table(scene, effects);
+  }
+
+  const formats::Basis& basis() const { return basis_; }
+
+  // The mean over the samples of the pixel, whose normals follow from those of the pixels around.
+  void shade(std::uint32_t place, Vec3* column) const {
+    const int x = static_cast<int>(place) % buffers_.image.width, y = static_cast<int>(place) / buffers_.image.width;
+    const Vec3 n = normal(x, y), right = change(x - 1, y, x + 1, y), down = change(x, y - 1, x, y + 1);
+    const std::size_t columns = search_columns(basis_);
+    std::fill_n(column, columns, Vec3{});
+    const double share = 1 / (buffers_.white_luminance * static_cast<double>(shifts_.size()));
+    for (const auto& [dx, dy] : shifts_)
+      add_sample(normalized(n + dx * right + dy * down), buffers_.to_viewer(x + dx, y + dy), share, column);
+  }
+
+ private:
+  struct View {
+    Vec3 normal, to_viewer, mirrored;
+    double cos_o;
+  };
+
+  Vec3 normal(int x, int y) const {
+    const float* pixel = buffers_.image.pixel(x, y) + normal_;
+    return {pixel[0], pixel[1], pixel[2]};
+  }
+
+  // Of the normal for each pixel, from one to the other beyond a pixel; none where they lie on two parts.
+  Vec3 change(int x0, int y0, int x1, int y1) const {
+    if (shifts_.size() == 1 || x0 < 0 || y0 < 0 || x1 >= buffers_.image.width || y1 >= buffers_.image.height) return {};
+    if (buffers_.image.pixel(x0, y0)[part_] != buffers_.image.pixel(x1, y1)[part_]) return {};
+    return 0.5 * (normal(x1, y1) - normal(x0, y0));
+  }
+
+  void add_sample(const Vec3& n, const Vec3& wo, double scale, Vec3* column) const {
+    const View view{n, wo, 2 * dot(n, wo) * n - wo, std::clamp(dot(n, wo), 0.0, 1.0)};
+    const int last = static_cast<int>(search_columns(basis_)) - 1;
+    column[0] +=
+        scale * weight(0, render::WeightTable::diffuse_slot(), view.cos_o, 0) * envmap::bilinear(env_.diffuse.map, n);
+    for (int k = 1; k < last; ++k) {
+      const auto lobe = static_cast<std::size_t>((k - 1) / 2);
+      const int slot = render::WeightTable::lobe_slot(lobe);
+      const Vec3 toward =
+          view.mirrored + weight(k, table_.shift_slot(lobe), view.cos_o, static_cast<int>(lobe % 4)) * n;
+      column[k] += scale * weight(k, slot, view.cos_o, 0) * envmap::bilinear(env_.lobes[lobe].map, toward);
+    }
+    if (basis_.mirror)
+      column[last] +=
+          scale * weight(last, table_.mirror_slot(), view.cos_o, 0) * envmap::bilinear(env_.mirror.map, view.mirrored);
+    for (const image::AovLight& light : buffers_.lights) add_light(light, view, scale, column);
+  }
+
+  // A slot's channel of the paint of this number.
+  double weight(int paint, int slot, double cos_o, int channel) const {
+    const double x = table_.segments > 1 ? std::sqrt(cos_o) * table_.segments : cos_o;
+    const int segment = std::min(static_cast<int>(x), table_.segments - 1);
+    const float* w = table_.at(paint, segment, slot);
+    return w[channel] + w[4 + channel] * (x - segment);
+  }
+
+  void add_light(const image::AovLight& light, const View& view, double scale, Vec3* column) const {
+    const double cos_i = dot(view.normal, light.direction), c = view.cos_o;
+    if (cos_i <= 0) return;
+    const Vec3 apart = view.mirrored - light.direction, white = scale * kPi * light.white;
+    const double cos_half = std::sqrt(0.5 + 0.5 * dot(light.direction, view.to_viewer));
+    const double coat = fresnel_ ? brdf::fresnel_dielectric(cos_half, brdf::kCoatIndex) : 1;
+    column[0] += cos_i * weight(0, table_.light_slot(), c, 0) * white;
+    for (std::size_t j = 0; j < basis_.exponents.size(); ++j) {
+      const double power = brdf::cos_power_from_versine(0.5 * dot(apart, apart), basis_.exponents[j]);
+      const int flake = static_cast<int>(1 + 2 * j), gloss = flake + 1;
+      column[flake] += cos_i * power * weight(flake, table_.directional_diffuse_slot(j), c, 0) * white;
+      column[gloss] += coat * power * weight(gloss, table_.gloss_slot(j), c, 0) * white;
+    }
+  }
+
+  const image::AovFile& buffers_;
+  const envmap::PrefilteredEnvironment& env_;
+  formats::Basis basis_;
+  int normal_, part_;                                     // channels
+  std::vector<std::array<double, 2>> shifts_ = {{0, 0}};  // of the samples of a pixel from its center
+  bool fresnel_ = false;
+  render::WeightTable table_;
+};
+
+}  // namespace
+
+Result<SketchLight> sketch_light(const image::AovFile& buffers, const envmap::PrefilteredEnvironment& env) {
+  GONIO_ASSIGN(const int normal, buffers.channel("normal.X"));
+  GONIO_ASSIGN(const int part, buffers.channel("part"));
+  if (!buffers.has_rays)
+    return input_error("{}: its header lacks goniochrome:rays: render the buffers again", buffers.path);
+  const auto shading = std::make_shared<const Shading>(buffers, env, normal, part);
+  SketchLight light{shading->basis(), {}, [shading](std::uint32_t place, Vec3* out) { shading->shade(place, out); }};
+  if (drawn(buffers, "operator")) light.reflection = buffers.reflection;
+  return light;
+}
+
+std::vector<std::string> effects_without_light(const image::AovFile& buffers) {
+  std::vector<std::string> missing;
+  for (const char* effect : {"anisotropy", "travel", "texture"})
+    if (drawn(buffers, effect)) missing.emplace_back(effect);
+  return missing;
+}
+
+}  // namespace goniochrome::sketch

@@ -1,0 +1,147 @@
+// The light that the search of a picture's paint sees, against what the renderer draws.
+#include "sketch/sketch_light.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "render/aov.h"
+#include "render/effects.h"
+#include "render/renderer.h"
+#include "render/scenes_for_test.h"
+
+namespace goniochrome::sketch {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const std::vector<double> kExponents = {2, 20, 300};
+
+envmap::PrefilteredEnvironment uneven_env() {
+  envmap::PrefilteredEnvironment env = render::constant_env({1, 1, 1}, kExponents);
+  const auto smooth = [](const Vec3& d) { return Vec3{1 + 0.4 * d.y, 0.8 + 0.2 * d.x, 0.7 + 0.3 * d.z}; };
+  env.diffuse.map = env.mirror.map = render::cube_of(16, smooth);
+  for (envmap::PrefilteredLobe& lobe : env.lobes) lobe.map = render::cube_of(16, smooth);
+  return env;
+}
+
+paint::LobeFit paint() {
+  paint::LobeFit fit = render::matt({0.1, 0.2, 0.3});
+  fit.lobes = {{2, {0.04, 0.02, 0.03}, {}},
+               {20, {}, {0.2, 0.2, 0.2}},
+               {300, {0.4, 0.3, 0.2}, {}},
+               {envmap::kMirrorExponent, {}, {1, 1, 1}}};
+  return fit;
+}
+
+struct Drawing {
+  image::AovFile buffers;
+  image::Image picture;
+};
+
+// A sphere of that paint with these effects alone, and its buffers.
+Drawing draw(const envmap::PrefilteredEnvironment& env, const std::vector<std::string>& drawn, int samples = 1) {
+  const auto has = [&](const char* name) { return std::ranges::find(drawn, name) != drawn.end(); };
+  const mesh::Mesh mesh = render::sphere_mesh(64);
+  render::Scene scene;
+  scene.mesh = &mesh, scene.paints = {paint()}, scene.env = &env;
+  scene.lights = {{normalized(Vec3{1, 1, 2}), {0.5, 0.6, 0.7}}};
+  scene.gloss_deg = {60}, scene.reflection = color::iso_rgb_operator();
+  render::Effects effects = render::effects_of(scene);
+  effects.fresnel = has("fresnel"), effects.horizon = has("horizon"), effects.reflection = has("operator");
+  auto renderer = render::Renderer::create();
+  EXPECT_TRUE(renderer.ok());
+  EXPECT_TRUE(renderer->load(scene, effects, render::Engine::kCpu).ok());
+  render::Camera camera;
+  camera.eye = {0, 0, 5};
+  const render::Frame frame = *renderer->draw(camera, 40, 40, samples, true);
+  Drawing result{{}, frame.picture};
+  image::AovFile& buffers = result.buffers;
+  buffers.path = "scene.exr", buffers.image = frame.picture, buffers.drawn = drawn, buffers.has_rays = true;
+  buffers.samples = samples;
+  buffers.image.channel_names = {"R", "G", "B", "A"};
+  for (const char* aov : {"normal", "part"})
+    EXPECT_TRUE(render::add_aov(buffers.image, *frame.gbuffer, aov, scene.lights.front().direction).ok());
+  buffers.lights = {{scene.lights.front().direction, scene.lights.front().white}};
+  const render::Rays& rays = frame.gbuffer->rays;
+  buffers.corner = rays.corner, buffers.right = rays.right, buffers.down = rays.down;
+  return result;
+}
+
+// The largest difference of a channel, relative to the brightest, where the sphere is seen within that angle from its
+// normal.
+double difference(const Drawing& drawing, const SketchLight& light, double steepest_deg = 80) {
+  const paint::LobeFit fit = paint();
+  std::vector<color::Rgb> weights(search_columns(light.basis));
+  weights.front() = fit.diffuse, weights.back() = fit.lobes.back().gloss;
+  for (std::size_t j = 0; j < 3; ++j)
+    weights[1 + 2 * j] = fit.lobes[j].directional_diffuse, weights[2 + 2 * j] = fit.lobes[j].gloss;
+  std::vector<Vec3> columns(weights.size());
+  double apart = 0, brightest = 0;
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 40; ++x) {
+      const float* pixel = drawing.buffers.image.pixel(x, y);
+      const Vec3 normal{pixel[4], pixel[5], pixel[6]};
+      if (dot(normal, drawing.buffers.to_viewer(x, y)) < std::cos(steepest_deg * std::numbers::pi / 180)) continue;
+      light.shade(static_cast<std::uint32_t>(40 * y + x), columns.data());
+      color::Rgb sum;
+      const color::ReflectionOperator op = light.reflection.value_or(color::component_wise());
+      for (std::size_t k = 0; k < columns.size(); ++k) sum += color::reflected(op, columns[k], weights[k]);
+      for (int c = 0; c < 3; ++c)
+        apart = std::max(apart, std::abs(sum[c] - pixel[c])), brightest = std::max<double>(brightest, pixel[c]);
+    }
+  return apart / brightest;
+}
+
+// The engine's arithmetic is single precision, its cosine powers good to 1e-3 of a lobe's peak. The control: light that
+// does not know what was drawn.
+TEST(SketchLight, is_what_the_renderer_draws_with_the_same_effects) {
+  const envmap::PrefilteredEnvironment env = uneven_env();
+  const std::vector<std::vector<std::string>> all = {
+      {}, {"fresnel"}, {"horizon"}, {"operator"}, {"fresnel", "horizon", "operator"}};
+  for (const auto& drawn : all) {
+    Drawing drawing = draw(env, drawn);
+    const auto light = sketch_light(drawing.buffers, env);
+    ASSERT_TRUE(light.ok());
+    EXPECT_EQ(light->reflection.has_value(), std::ranges::find(drawn, "operator") != drawn.end());
+    EXPECT_LT(difference(drawing, *light), 2e-3) << testing::PrintToString(drawn);
+    if (drawn.empty()) continue;
+    drawing.buffers.drawn.clear();
+    EXPECT_GT(difference(drawing, *sketch_light(drawing.buffers, env)), 5e-3) << testing::PrintToString(drawn);
+  }
+}
+
+// Light that changes within a pixel. The control: light of the centers of the pixels alone.
+TEST(SketchLight, is_the_mean_over_the_samples_of_a_pixel) {
+  envmap::PrefilteredEnvironment env = render::constant_env({1, 1, 1}, kExponents);
+  const auto stripes = [](const Vec3& d) { return (1 + 0.9 * std::sin(4 * (d.x + d.y))) * Vec3{1, 1, 1}; };
+  env.mirror.map = render::cube_of(64, stripes);
+  for (envmap::PrefilteredLobe& lobe : env.lobes) lobe.map = env.mirror.map;
+  Drawing drawing = draw(env, {}, 4);
+  const double apart = difference(drawing, *sketch_light(drawing.buffers, env), 45);
+  drawing.buffers.samples = 1;
+  EXPECT_LT(apart, 0.3 * difference(drawing, *sketch_light(drawing.buffers, env), 45));
+}
+
+TEST(SketchLight, wants_normals_and_rays) {
+  const envmap::PrefilteredEnvironment env = uneven_env();
+  Drawing drawing = draw(env, {});
+  drawing.buffers.has_rays = false;
+  auto light = sketch_light(drawing.buffers, env);
+  ASSERT_FALSE(light.ok());
+  EXPECT_THAT(light.error().message, HasSubstr("goniochrome:rays"));
+  drawing.buffers.image.channel_names[4] = "other";
+  light = sketch_light(drawing.buffers, env);
+  ASSERT_FALSE(light.ok());
+  EXPECT_THAT(light.error().message, HasSubstr("no channel \"normal.X\""));
+  EXPECT_THAT(light.error().message, HasSubstr("--aov normal,aspecular,lambert,mask,part"));
+}
+
+TEST(SketchLight, tells_the_effects_that_it_lacks) {
+  image::AovFile buffers;
+  buffers.drawn = {"diffuse", "lobe-20", "fresnel", "horizon", "texture", "operator", "anisotropy"};
+  EXPECT_THAT(effects_without_light(buffers), ElementsAre("anisotropy", "texture"));
+}
+
+}  // namespace
+}  // namespace goniochrome::sketch

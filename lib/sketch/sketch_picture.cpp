@@ -1,0 +1,158 @@
+#include "sketch/sketch_picture.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "image/color_space.h"
+#include "sketch/internal/sketch_icc.h"
+
+namespace goniochrome::sketch {
+
+namespace {
+
+constexpr double kKnee = 0.8;          // of the view "Paint": where its shoulder begins
+constexpr float kClip = 254.5F / 255;  // a signal from here on may have been any brighter one
+constexpr float kOpaque = 0.999F;
+constexpr std::size_t kRows = 16;
+
+std::string text_of(const image::ImagePart& part, const char* name) {
+  const auto found = part.attributes.find(name);
+  const auto* text = found == part.attributes.end() ? nullptr : std::get_if<std::string>(&found->second);
+  return text ? *text : "";
+}
+
+bool holds_integers(const image::ImagePart& part) {
+  const auto found = part.attributes.find("goniochrome:integer");
+  const int* value = found == part.attributes.end() ? nullptr : std::get_if<int>(&found->second);
+  return value && *value != 0;
+}
+
+// The alpha channel's place in a pixel, or -1.
+int alpha_channel(const image::Image& image) {
+  const auto& names = image.channel_names;
+  const auto found = std::find(names.begin(), names.end(), "A");
+  if (found != names.end()) return static_cast<int>(found - names.begin());
+  return names.empty() && (image.channels == 2 || image.channels == 4) ? image.channels - 1 : -1;
+}
+
+std::vector<std::uint8_t> states(const image::Image& image, bool display) {
+  const int alpha = alpha_channel(image), colors = image.channels < 3 ? 1 : 3;
+  std::vector<std::uint8_t> state(static_cast<std::size_t>(image.width) * image.height, Picture::kGood);
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    const float* pixel = &image.data[i * image.channels];
+    bool clipped = false;
+    for (int c = 0; c < colors; ++c) clipped |= !std::isfinite(pixel[c]) || (display && pixel[c] >= kClip);
+    if (clipped) state[i] = Picture::kClipped;
+    if (alpha >= 0 && pixel[alpha] < kOpaque) state[i] = Picture::kTransparent;
+  }
+  return state;
+}
+
+// Gray as three equal channels, so that a color space finds what it expects.
+void drop_to_gray(image::Image& image) {
+  if (image.channels >= 3) return;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(image.width) * image.height; ++i)
+    image.data[i] = image.data[i * image.channels];
+  image.data.resize(static_cast<std::size_t>(image.width) * image.height);
+  image.channels = 1;
+  image.channel_names = {"Y"};
+}
+
+template <class Function>
+void for_pixels(image::Image& image, Function&& change) {
+  parallel_for(static_cast<std::size_t>(image.height), kRows, [&](std::size_t begin, std::size_t end) {
+    const std::size_t width = static_cast<std::size_t>(image.width);
+    for (std::size_t i = begin * width; i < end * width; ++i) change(&image.data[3 * i]);
+  });
+}
+
+Result<image::Image> through_profile(const image::ImagePart& part, const std::string& name) {
+  GONIO_ASSIGN(const IccProfile profile, parse_icc(text_of(part, "ICCProfile"), name));
+  const image::Image& from = part.image;
+  const int green = from.channels < 3 ? 0 : 1, blue = from.channels < 3 ? 0 : 2;
+  image::Image to = {from.width, from.height, 3, {}, {}};
+  to.data.resize(static_cast<std::size_t>(from.width) * from.height * 3);
+  parallel_for(static_cast<std::size_t>(from.height), kRows, [&](std::size_t begin, std::size_t end) {
+    const std::size_t width = static_cast<std::size_t>(from.width);
+    for (std::size_t i = begin * width; i < end * width; ++i) {
+      const float* in = &from.data[i * from.channels];
+      const color::Rgb rgb = profile.rgb(in[0], in[green], in[blue]);
+      for (int c = 0; c < 3; ++c) to.data[3 * i + c] = static_cast<float>(rgb[c]);
+    }
+  });
+  return to;
+}
+
+// What the file is taken for where it says nothing.
+void tag_untagged(image::ImagePart& part, bool integer, bool is_exr) {
+  if (!text_of(part, "colorInteropID").empty() || part.attributes.contains("chromaticities")) return;
+  if (!text_of(part, "oiio:ColorSpace").empty() && !is_exr) return;
+  part.attributes["colorInteropID"] = std::string(integer  ? "srgb_rec709_display"
+                                                  : is_exr ? "lin_rec2020_scene"
+                                                           : "lin_rec709_scene");
+}
+
+}  // namespace
+
+// The shoulder k + (1-k) x/(1+x), x = (m-k)/(1-k), solved for m.
+color::Rgb paint_view_undone(const color::Rgb& shown) {
+  const double s = std::max({shown.x, shown.y, shown.z});
+  if (s <= kKnee) return shown;
+  const double y = std::min((s - kKnee) / (1 - kKnee), 0.999);
+  return ((kKnee + (1 - kKnee) * y / (1 - y)) / s) * shown;
+}
+
+// dv/dcode of v = ((c + .055)/1.055)^2.4 is below 2.3 sqrt(v) for v in 0..1; the line near black adds the constant. The
+// shoulder flattens by 1/(1+x)^2.
+double code_width(double linear, double brightest) {
+  const double x = std::max(brightest - kKnee, 0.0) / (1 - kKnee);
+  return 5.0 / 255 * (2.3 * std::sqrt(std::max(linear, 0.0)) + 0.08) * (1 + x) * (1 + x);
+}
+
+color::Rgb in_display_gamut(const color::Rgb& rgb) {
+  const color::Rgb c = color::rec709_from_rec2020(rgb);
+  const double lowest = std::min({c.x, c.y, c.z});
+  if (lowest >= 0) return rgb;
+  const double gray = std::max(0.0, color::xyz_d65_from_rgb(rgb).Y);
+  const double keep = gray / (gray - lowest);
+  return color::rec2020_from_rec709(keep * c + (1 - keep) * color::Rgb{gray, gray, gray});
+}
+
+Result<Picture> read_picture(const std::string& path, PictureView view) {
+  GONIO_ASSIGN(image::ImagePart part, image::read_image(path));
+  return picture_of(std::move(part), path == "-" ? "standard input" : path, view);
+}
+
+Result<Picture> picture_of(image::ImagePart part, const std::string& name, PictureView view) {
+  const bool integer = holds_integers(part), is_exr = !part.attributes.contains("goniochrome:integer");
+  Picture picture;
+  picture.scene_linear = !integer;
+  if (const auto stored = text_of(part, "jpeg:ColorSpace"); stored == "CMYK" || stored == "YCbCrK") {
+    picture.warnings.push_back(fmt::format(
+        "{} is a {} JPEG, converted without regard to its inks: for exact color save it as sRGB", name, stored));
+    part.attributes.erase("ICCProfile");
+  }
+  if (part.image.channels == 0) return input_error("{}: has no channels", name);
+  picture.state = states(part.image, integer);
+  drop_to_gray(part.image);
+  if (!text_of(part, "ICCProfile").empty() && integer) {
+    GONIO_ASSIGN(picture.rgb, through_profile(part, name));
+    picture.space = "its ICC profile";
+  } else {
+    tag_untagged(part, integer, is_exr);
+    GONIO_ASSIGN(picture.rgb, image::working_space_rgb(part, name));
+    picture.space = integer ? "sRGB" : "linear light";
+    if (const auto id = text_of(part, "colorInteropID"); !id.empty()) picture.space = id;
+  }
+  if (integer && view == PictureView::kPaint)
+    for_pixels(picture.rgb, [](float* pixel) {
+      const color::Rgb shown = color::rec709_from_rec2020({pixel[0], pixel[1], pixel[2]});
+      if (std::max({shown.x, shown.y, shown.z}) <= kKnee) return;
+      const color::Rgb light = color::rec2020_from_rec709(paint_view_undone(shown));
+      for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(light[c]);
+    });
+  return picture;
+}
+
+}  // namespace goniochrome::sketch

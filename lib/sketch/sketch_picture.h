@@ -1,0 +1,50 @@
+// Pictures that people made or edited, as light: any file format, display-referred or scene-linear, into the working
+// space. goniochrome-theory(7), SKETCH FITTING.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "color/color.h"
+#include "image/image.h"
+
+namespace goniochrome::sketch {
+
+// What the numbers of a display picture went through on the way from light.
+enum class PictureView {
+  kPaint,  // render-osmesa's default: exact up to 80 % of white, then a shoulder that is undone here
+  kPlain,  // nothing but the display's own curve: what a photograph or a drawing is taken for
+};
+
+struct Picture {
+  image::Image rgb;  // three channels, working space; 1 is the white of the display, or as stored where scene-linear
+  // Where a pixel says nothing of its light: clipped in a channel, or seen through.
+  enum State : std::uint8_t { kGood, kClipped, kTransparent };
+  std::vector<std::uint8_t> state;
+  bool scene_linear = false;  // EXR, HDR: light itself
+  std::string space;          // "sRGB", "ICC profile", "linear Rec.2020": what the file was taken for
+  std::vector<std::string> warnings;
+
+  const float* pixel(int x, int y) const { return rgb.pixel(x, y); }
+};
+
+// Reads any image. Tagged files are what they say (ICC profile, color space, chromaticities); untagged whole numbers
+// are sRGB, untagged EXR is in the working space as render-osmesa writes it, other floats linear Rec.709. Error: not an
+// image, a CMYK or table profile, or an unknown color space, with the remedy.
+Result<Picture> read_picture(const std::string& path, PictureView view);
+// The same of an image that was read, or of a piece of one; `name` is what errors call it.
+Result<Picture> picture_of(image::ImagePart part, const std::string& name, PictureView view);
+
+// The view "Paint" undone for linear Rec.709 values below 1 in every channel.
+color::Rgb paint_view_undone(const color::Rgb& shown);
+
+// How much light five codes of an 8-bit sRGB display are about a linear value, one way through the view "Paint":
+// `brightest` is the largest channel there.
+double code_width(double linear, double brightest);
+
+// What is left of a working-space color on an sRGB display: mixed with its gray until no channel is negative.
+color::Rgb in_display_gamut(const color::Rgb& rgb);
+
+}  // namespace goniochrome::sketch
