@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "base/angles.h"
 #include "brdf/color_map.h"
 
 namespace goniochrome::brdf {
@@ -28,7 +29,7 @@ std::vector<Pair> random_pairs(int count) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> uniform(0, 1);
   const auto direction = [&] {
-    const double r = std::sqrt(uniform(random)), phi = 2 * M_PI * uniform(random);
+    const double r = std::sqrt(uniform(random)), phi = 2 * kPi * uniform(random);
     return Vec3{r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - r * r)};
   };
   std::vector<Pair> pairs;

@@ -12,11 +12,13 @@
 // what is left is a smooth function of the source point, and 3 x 3 points on half the source are enough: the source is
 // narrower than the receptor by more than it would take to see an edge.
 #include "brdf/gloss.h"
+#include "base/angles.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "math/cosine_power.h"
 #include "math/least_squares.h"
 #include "math/quadrature.h"
 
@@ -24,13 +26,11 @@ namespace goniochrome::brdf {
 
 namespace {
 
-constexpr double kRadian = M_PI / 180;
-
 struct Aperture {
   double half_par, half_perp;  // in the tangent plane
 };
 Aperture aperture(double par_deg, double perp_deg) {
-  return {std::tan(par_deg / 2 * kRadian), std::tan(perp_deg / 2 * kRadian)};
+  return {std::tan(par_deg / 2 * kDegree), std::tan(perp_deg / 2 * kDegree)};
 }
 
 struct Meter {
@@ -46,7 +46,7 @@ struct Sample {
 
 Sample sample(double p, double q, double weight, double angle_deg) {
   const double length = std::sqrt(1 + p * p + q * q);
-  const double cos_normal = (std::cos(angle_deg * kRadian) - p * std::sin(angle_deg * kRadian)) / length;
+  const double cos_normal = (std::cos(angle_deg * kDegree) - p * std::sin(angle_deg * kDegree)) / length;
   return {p, q, weight / (length * length * length), cos_normal};
 }
 
@@ -99,7 +99,7 @@ LobeReading lobe_integrals(const Meter& meter, const std::vector<Sample>& source
     for (const auto& [p, wp] : panels(in.p, receptor.half_par, exponent)) {
       for (const auto& [q, wq] : across) {
         const Sample out = sample(p, q, wp * wq, meter.angle_deg);
-        received += out.weight * out.cos_normal * cos_power_from_versine(versine(in, out), exponent);
+        received += out.weight * out.cos_normal * math::cos_power_from_versine(versine(in, out), exponent);
       }
     }
     sum.directional_diffuse += in.weight * in.cos_normal * received;
@@ -118,9 +118,9 @@ std::vector<double> one_reading(const GlossTable& table, const GlossColumns& met
   std::vector<double> weights(lobes + 1, 0.0);
   if (gu <= 0) return weights;
   // Each column with the energy of the smooth coat, in the order of rising readings.
-  const double energy = fresnel_dielectric(std::cos(meter.angle_deg * kRadian), kCoatIndex);
+  const double energy = fresnel_dielectric(std::cos(meter.angle_deg * kDegree), kCoatIndex);
   const auto full_weight = [&](std::size_t j) {
-    return j == lobes ? 1.0 : energy * (table.exponents()[j] + 1) / (2 * M_PI);
+    return j == lobes ? 1.0 : energy * (table.exponents()[j] + 1) / (2 * kPi);
   };
   const auto full_reading = [&](std::size_t j) {
     return full_weight(j) * (j == lobes ? meter.mirror : meter.gloss[j]);

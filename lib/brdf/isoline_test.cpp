@@ -8,12 +8,12 @@
 #include <random>
 #include <vector>
 
+#include "base/angles.h"
 #include "base/hard_case_for_test.h"
 
 namespace goniochrome::brdf {
 namespace {
 
-constexpr double kDegree = M_PI / 180;
 constexpr std::array kTreatments = {CriticalAngle::kClip, CriticalAngle::kSlide, CriticalAngle::kSlideMap,
                                     CriticalAngle::kIndexOne};
 
@@ -53,12 +53,11 @@ TEST(HardCase, IsolineDegenerateFlakeAnglesToRounding) {
   double worst = 0, printed = 0;
   int coincident = 0;
   for (int i = 0; i < 200000; ++i) {
-    const double ti = uniform(random) * M_PI / 2;
-    double to = uniform(random) * M_PI / 2, azimuth = uniform(random) * 2 * M_PI;
+    const double ti = uniform(random) * kPi / 2;
+    double to = uniform(random) * kPi / 2, azimuth = uniform(random) * 2 * kPi;
     // A third each: near retro-reflection (incidence -> 0), near specular (flake -> 0), anywhere.
     const double near = std::pow(10.0, -16 * uniform(random));
-    if (i % 3 != 2)
-      to = std::min(std::abs(ti + near), M_PI / 2), azimuth = near + (i % 3 == 0 ? 0 : M_PI), ++coincident;
+    if (i % 3 != 2) to = std::min(std::abs(ti + near), kPi / 2), azimuth = near + (i % 3 == 0 ? 0 : kPi), ++coincident;
     const Exact exact = exact_angles(ti, to, azimuth, 1.5L);
     const Vec3 wi = direction(ti, 0), wo = direction(to, azimuth);
     const FlakeAngles ours = flake_angles(wi, wo, 1.5), theirs = printed_angles(wi, wo, 1.5);
@@ -91,7 +90,7 @@ TEST(HardCase, IsolineDegenerateInPlaneMapsToItself) {
   double worst = 0, printed = 0;
   std::vector<double> polar;
   for (double t = 0; t < 90.01; t += 2.5) polar.push_back(std::min(t, 90.0) * kDegree);
-  for (const double tiny : {1e-12, 1e-9, 1e-6, 1e-3}) polar.insert(polar.end(), {tiny, M_PI / 2 - tiny});
+  for (const double tiny : {1e-12, 1e-9, 1e-6, 1e-3}) polar.insert(polar.end(), {tiny, kPi / 2 - tiny});
   int broken = 0;
   for (const CriticalAngle treatment : kTreatments) {
     for (const double ti : polar) {
@@ -122,7 +121,7 @@ TEST(Isoline, KeepsBothFlakeAngles) {
   int kept = 0, beyond = 0;
   for (int i = 0; i < 20000; ++i) {
     const Vec3 wi = direction(std::acos(uniform(random)), 0);
-    const Vec3 wo = direction(std::acos(uniform(random)), 2 * M_PI * uniform(random));
+    const Vec3 wo = direction(std::acos(uniform(random)), 2 * kPi * uniform(random));
     const FlakeAngles angles = flake_angles(wi, wo, 1.5);
     if (angles.flake_rad + angles.incidence_rad > std::asin(1 / 1.5)) {
       ++beyond;
@@ -177,7 +176,7 @@ TEST(HardCase, IsolineCriticalTreatmentsAreContinuous) {
           const FlakeAngles f = flake_angles(direction(ti * kDegree, 0), direction(to * kDegree, azimuth), 1.5);
           return f.flake_rad + f.incidence_rad > std::asin(1 / 1.5);
         };
-        double low = 0, high = M_PI / 2;
+        double low = 0, high = kPi / 2;
         if (beyond(low) || !beyond(high)) continue;
         while (high - low > 1e-15) (beyond(0.5 * (low + high)) ? high : low) = 0.5 * (low + high);
         ++crossings;
@@ -257,7 +256,7 @@ TEST(Isoline, SlideKeepsTheFlakeAngle) {
   const FlakeAngles given = flake_angles(wi, wo, 1.5);
   ASSERT_GT(given.flake_rad + given.incidence_rad, std::asin(1 / 1.5));
   const InPlaneAngles slid = equivalent_in_plane_angles(wi, wo, 1.5, CriticalAngle::kSlide);
-  EXPECT_NEAR(slid.light_rad, M_PI / 2, 1e-15);
+  EXPECT_NEAR(slid.light_rad, kPi / 2, 1e-15);
   const FlakeAngles kept = flake_angles({1, 0, 0}, {std::sin(slid.view_rad), 0, std::cos(slid.view_rad)}, 1.5);
   EXPECT_NEAR(kept.flake_rad, given.flake_rad, 1e-15);
   // Clipping keeps the other in-coat angle instead.

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
+
+#include "base/angles.h"
 
 namespace goniochrome::brdf {
 
@@ -37,7 +38,7 @@ LobeFetch environment_fetch(const LafortuneLobe& lobe, const Vec3& to_viewer) {
   const Vec3 p = lobe.axes * to_viewer;
   const double size = std::hypot(p.x, p.y, p.z);
   if (!(size > 0) || p.z <= 0) return {};
-  const double cosine = p.z / size, energy = 2 * std::numbers::pi / (lobe.exponent + 1);
+  const double cosine = p.z / size, energy = 2 * kPi / (lobe.exponent + 1);
   return {{p.x / size, p.y / size, cosine}, scaled_color((cosine * energy) * lobe.albedo, size, lobe.exponent)};
 }
 

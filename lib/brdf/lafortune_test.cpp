@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/angles.h"
 #include "base/hard_case_for_test.h"
 #include "brdf/lobe_model.h"
 
@@ -21,9 +22,9 @@ TEST(HardCase, LafortunePowerStaysInRange) {
   const LafortuneLobe strong = {{1e-300, 1e-300, 1e-300}, {-2, -2, 2}, 1500};
   const Vec3 viewer = direction(0.4, 0);
   const LobeFetch fetch = environment_fetch(strong, viewer);
-  const long double expected = std::exp(1500 * std::log(2.0L) + std::log(1e-300L)) * std::cos(0.4L) * 2 * M_PI / 1501;
+  const long double expected = std::exp(1500 * std::log(2.0L) + std::log(1e-300L)) * std::cos(0.4L) * 2 * kPi / 1501;
   // The control takes |p|^n by pow.
-  const double by_pow = std::pow(2.0, 1500) * 1e-300 * std::cos(0.4) * 2 * M_PI / 1501;
+  const double by_pow = std::pow(2.0, 1500) * 1e-300 * std::cos(0.4) * 2 * kPi / 1501;
   hard_case("lafortune-power", {.what = "rho |p|^n of 2^1500 and 1e-300",
                                 .textbook = static_cast<double>(by_pow / expected - 1),
                                 .ours = static_cast<double>(std::abs(fetch.weight.x / expected - 1)),
@@ -91,12 +92,12 @@ TEST(Lafortune, FetchHasTheEnergyOfTheLobe) {
   constexpr int kSteps = 1200;
   for (int i = 0; i < kSteps; ++i) {
     for (int j = 0; j < kSteps; ++j) {
-      const double polar = M_PI / 2 * (i + 0.5) / kSteps;
-      const Vec3 wi = direction(polar, 2 * M_PI * (j + 0.5) / kSteps);
+      const double polar = kPi / 2 * (i + 0.5) / kSteps;
+      const Vec3 wi = direction(polar, 2 * kPi * (j + 0.5) / kSteps);
       sum += brdf({{}, {lobe}}, wi, viewer).x * wi.z * std::sin(polar);
     }
   }
-  sum *= M_PI / 2 / kSteps * 2 * M_PI / kSteps;
+  sum *= kPi / 2 / kSteps * 2 * kPi / kSteps;
   EXPECT_NEAR(environment_fetch(lobe, viewer).weight.x / sum, 1, 1.0 / 400);
 }
 

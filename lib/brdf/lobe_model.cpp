@@ -4,30 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "brdf/lobe_angles.h"
+#include "base/angles.h"
+#include "math/cosine_power.h"
 
 namespace goniochrome::brdf {
-
-// pow(cos x, E) multiplies the relative error of cos x, half an ulp, by E: 1e-10 at E = 1e6. exp(E log cos x) needs
-// log cos x to a few ulp of ITSELF: below 45 deg by log1p(-sin^2)/2, where sin^2 <= 1/2 keeps its digits; above, cos x
-// is at most 0.71 and its logarithm is well conditioned. Where the power is not 0 in double precision the exponent is
-// at most 745 in size, so that the few ulp become at most 5e-13.
-double log_cosine(double angle_rad) {
-  const double angle = std::abs(angle_rad);
-  if (angle >= M_PI / 2) return -std::numeric_limits<double>::infinity();
-  const double s = std::sin(angle);
-  return s * s <= 0.5 ? 0.5 * std::log1p(-s * s) : std::log(std::cos(angle));
-}
-
-double cos_power(double angle_rad, double exponent) {
-  return power_of_cosine(log_cosine(angle_rad), exponent);
-}
-
-double cos_power_from_versine(double versine, double exponent) {
-  if (versine >= 1) return 0;
-  if (exponent == 0) return 1;
-  return std::exp(exponent * std::log1p(-versine));
-}
 
 // With g = n cos_t = sqrt(n^2 - 1 + c^2) the amplitude ratios are
 //
@@ -65,10 +45,10 @@ ViewPair views_around(const std::vector<paint::ViewLobes>& views, double view_de
 color::Rgb lobes_at(const color::Rgb& diffuse, const std::vector<paint::Lobe>& lobes, double angle_rad,
                     double gloss_scale) {
   color::Rgb f = diffuse;
-  const double log_cos = log_cosine(angle_rad);
+  const double log_cos = math::log_cosine(angle_rad);
   for (const paint::Lobe& lobe : lobes)
     if (std::isfinite(lobe.exponent))
-      f += power_of_cosine(log_cos, lobe.exponent) * (lobe.directional_diffuse + gloss_scale * lobe.gloss);
+      f += math::power_of_cosine(log_cos, lobe.exponent) * (lobe.directional_diffuse + gloss_scale * lobe.gloss);
   return f;
 }
 
@@ -77,7 +57,7 @@ color::Rgb brdf(const paint::LobeFit& fit, const Vec3& to_light, const Vec3& to_
   const double cos_i = dot(normal, to_light), cos_o = dot(normal, to_viewer);
   if (cos_i <= 0 || cos_o <= 0) return {};
   const double view_rad = fit.views.empty() ? 0 : std::atan2(length(cross(normal, to_viewer)), cos_o);
-  return brdf_by_angles(fit, paint::aspecular_angle_rad(to_light, to_viewer, normal), view_rad * (180 / M_PI),
+  return brdf_by_angles(fit, paint::aspecular_angle_rad(to_light, to_viewer, normal), view_rad * (180 / kPi),
                         fresnel / cos_i);
 }
 
@@ -119,7 +99,7 @@ color::Rgb brdf(const paint::LobeFit& fit, const Vec3& to_light, const Vec3& to_
 
 double coat_fresnel(double cos_half, double gloss_deg) {
   return fresnel_dielectric(std::min(cos_half, 1.0), kCoatIndex) /
-         fresnel_dielectric(std::cos(gloss_deg * (M_PI / 180)), kCoatIndex);
+         fresnel_dielectric(std::cos(gloss_deg * kDegree), kCoatIndex);
 }
 
 color::Rgb coated_brdf(const paint::LobeFit& fit, const Vec3& to_light, const Vec3& to_viewer, const Vec3& normal,
@@ -128,7 +108,7 @@ color::Rgb coated_brdf(const paint::LobeFit& fit, const Vec3& to_light, const Ve
 }
 
 color::Rgb flake_reflectance_factor(const paint::LobeFit& fit, double aspecular_deg) {
-  return M_PI * lobes_at(fit.diffuse, fit.lobes, aspecular_deg * (M_PI / 180), 0);
+  return kPi * lobes_at(fit.diffuse, fit.lobes, aspecular_deg * kDegree, 0);
 }
 
 }  // namespace goniochrome::brdf

@@ -8,13 +8,6 @@
 
 namespace goniochrome::brdf {
 
-// cos(angle)^exponent for 0 <= angle_rad <= pi/2 (0 beyond), exponent 0..1e6, relative error <= 1e-12: the log of the
-// cosine comes from log1p(-sin^2)/2 near 0, where cos itself has already lost the digits.
-double cos_power(double angle_rad, double exponent);
-
-// Same, from s = |r - d|^2 / 2 = 1 - cos, which two nearly parallel unit vectors give without cancellation.
-double cos_power_from_versine(double versine, double exponent);
-
 // Unpolarized Fresnel reflectance of a smooth dielectric of relative index n for cos_i in [0,1].
 double fresnel_dielectric(double cos_i, double index);
 
@@ -38,6 +31,10 @@ double coat_fresnel(double cos_half, double gloss_deg = kGlossIncidence_deg);
 // As brdf(), with gloss lobes times coat_fresnel().
 color::Rgb coated_brdf(const paint::LobeFit& fit, const Vec3& to_light, const Vec3& to_viewer, const Vec3& normal,
                        double gloss_deg = kGlossIncidence_deg);
+
+// f in 1/sr of a viewer `view_deg` from the normal; `gloss_scale` is what a K_G of 1 counts: 1/cos_i, and under a coat
+// times coat_fresnel().
+color::Rgb brdf_by_angles(const paint::LobeFit& fit, double aspecular_rad, double view_deg, double gloss_scale);
 
 // The reflectance factor pi f without conventional gloss at an aspecular angle: what a multi-angle instrument reads,
 // by the weights for all views.

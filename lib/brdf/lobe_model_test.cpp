@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "base/angles.h"
 #include "base/hard_case_for_test.h"
+#include "math/cosine_power.h"
 
 namespace goniochrome::brdf {
 namespace {
@@ -23,9 +25,9 @@ TEST(HardCase, PowCosWithin1e12OfLongDouble) {
   int compared = 0, vanished = 0;
   for (double exponent : {0.3, 1.0, 7.5, 150.0, 3000.0, 1e4, 1e5, 1e6}) {
     for (double angle_deg = 1e-8; angle_deg < 89.9991; angle_deg *= 1.003) {
-      const double angle = angle_deg * M_PI / 180;
+      const double angle = angle_deg * kPi / 180;
       const long double reference = reference_power(angle, exponent);
-      const double ours = cos_power(angle, exponent);
+      const double ours = math::cos_power(angle, exponent);
       EXPECT_TRUE(std::isfinite(ours));
       if (reference < std::numeric_limits<double>::min()) {  // below the normal range there is no relative error
         EXPECT_LE(ours, 2 * std::numeric_limits<double>::min());
@@ -36,9 +38,9 @@ TEST(HardCase, PowCosWithin1e12OfLongDouble) {
       worst = worst_of(worst, static_cast<double>(std::abs(ours / reference - 1)));
       textbook = worst_of(textbook, static_cast<double>(std::abs(std::pow(std::cos(angle), exponent) / reference - 1)));
     }
-    const double last = 89.999 * M_PI / 180;
+    const double last = 89.999 * kPi / 180;
     if (exponent >= 60) continue;
-    EXPECT_NEAR(cos_power(last, exponent) / static_cast<double>(reference_power(last, exponent)), 1, 1e-12);
+    EXPECT_NEAR(math::cos_power(last, exponent) / static_cast<double>(reference_power(last, exponent)), 1, 1e-12);
   }
   EXPECT_GT(compared, 10000);
   EXPECT_GT(vanished, 100);
@@ -57,30 +59,30 @@ TEST(HardCase, PowCosFromVersine) {
       const long double reference = std::exp(exponent * std::log1p(-static_cast<long double>(versine)));
       if (reference < 1e-300L) continue;
       const auto error = [&](double value) { return static_cast<double>(std::abs(value / reference - 1)); };
-      ours = worst_of(ours, error(cos_power_from_versine(versine, exponent)));
+      ours = worst_of(ours, error(math::cos_power_from_versine(versine, exponent)));
       textbook = worst_of(textbook, error(std::pow(1 - versine, exponent)));
     }
   hard_case("pow-cos",
             {.what = "cos^E from 1 - cos", .textbook = textbook, .ours = ours, .bound = 1e-12, .unit = "relative"});
-  EXPECT_EQ(cos_power_from_versine(1, 3), 0);
-  EXPECT_EQ(cos_power_from_versine(1.7, 0), 0);
+  EXPECT_EQ(math::cos_power_from_versine(1, 3), 0);
+  EXPECT_EQ(math::cos_power_from_versine(1.7, 0), 0);
 }
 
 TEST(LobeModel, PowerAtTheEndsOfItsDomain) {
-  EXPECT_EQ(cos_power(0, 1e6), 1);
-  EXPECT_EQ(cos_power(0.5, 0), 1);
-  EXPECT_EQ(cos_power(M_PI / 2, 0), 0);
-  EXPECT_EQ(cos_power(2, 3), 0);
-  EXPECT_EQ(cos_power(-0.3, 20), cos_power(0.3, 20));
+  EXPECT_EQ(math::cos_power(0, 1e6), 1);
+  EXPECT_EQ(math::cos_power(0.5, 0), 1);
+  EXPECT_EQ(math::cos_power(kPi / 2, 0), 0);
+  EXPECT_EQ(math::cos_power(2, 3), 0);
+  EXPECT_EQ(math::cos_power(-0.3, 20), math::cos_power(0.3, 20));
 }
 
 TEST(LobeModel, FresnelKnownValues) {
   const double at_normal = std::pow((1.5 - 1) / (1.5 + 1), 2);
   EXPECT_NEAR(fresnel_dielectric(1, 1.5), at_normal, 1e-16);
   // The three values the gloss standard is built on (ASTM D523 prints four digits).
-  EXPECT_NEAR(fresnel_dielectric(std::cos(20 * M_PI / 180), 1.567), 0.0491, 5e-5);
-  EXPECT_NEAR(fresnel_dielectric(std::cos(60 * M_PI / 180), 1.567), 0.1001, 1e-4);
-  EXPECT_NEAR(fresnel_dielectric(std::cos(85 * M_PI / 180), 1.567), 0.6192, 1e-4);
+  EXPECT_NEAR(fresnel_dielectric(std::cos(20 * kPi / 180), 1.567), 0.0491, 5e-5);
+  EXPECT_NEAR(fresnel_dielectric(std::cos(60 * kPi / 180), 1.567), 0.1001, 1e-4);
+  EXPECT_NEAR(fresnel_dielectric(std::cos(85 * kPi / 180), 1.567), 0.6192, 1e-4);
   EXPECT_NEAR(fresnel_dielectric(0, 1.5), 1, 1e-15);
   // Brewster's angle: half of r_s^2 alone, ((n^2-1)/(n^2+1))^2 / 2.
   const double n2 = 2.25;
@@ -109,9 +111,9 @@ paint::LobeFit sample_fit() {
 TEST(LobeModel, BrdfAddsItsParts) {
   const paint::LobeFit fit = sample_fit();
   const Vec3 normal = {0, 0, 1};
-  const double ti = 45 * M_PI / 180, to = 30 * M_PI / 180;  // 15 deg aspecular, in plane
+  const double ti = 45 * kPi / 180, to = 30 * kPi / 180;  // 15 deg aspecular, in plane
   const Vec3 light = {-std::sin(ti), 0, std::cos(ti)}, view = {std::sin(to), 0, std::cos(to)};
-  const double c20 = std::pow(std::cos(15 * M_PI / 180), 20), c900 = std::pow(std::cos(15 * M_PI / 180), 900);
+  const double c20 = std::pow(std::cos(15 * kPi / 180), 20), c900 = std::pow(std::cos(15 * kPi / 180), 900);
   const color::Rgb f = brdf(fit, light, view, normal);
   EXPECT_NEAR(f.x, 0.1 + 0.5 * c20 + 2 * c900 / std::cos(ti), 1e-14);
   EXPECT_NEAR(f.y, 0.05 + 0.4 * c20 + 0.1 * c900 + 2 * c900 / std::cos(ti), 1e-14);
@@ -123,11 +125,11 @@ TEST(LobeModel, ViewsAreInterpolatedAndHeldAtTheEnds) {
   paint::LobeFit fit = sample_fit();
   fit.views = {{0, {0.1, 0, 0}, {{20, {1, 0, 0}, {}}}},
                {40, {0.3, 0, 0}, {{20, {0, 0, 0}, {2, 0, 0}}, {50, {4, 0, 0}, {}}}}};
-  const auto at = [](double deg) { return Vec3{std::sin(deg * M_PI / 180), 0, std::cos(deg * M_PI / 180)}; };
-  const auto lobe = [](double deg, double e) { return std::pow(std::cos(deg * M_PI / 180), e); };
+  const auto at = [](double deg) { return Vec3{std::sin(deg * kPi / 180), 0, std::cos(deg * kPi / 180)}; };
+  const auto lobe = [](double deg, double e) { return std::pow(std::cos(deg * kPi / 180), e); };
   const Vec3 light = at(-45), normal = {0, 0, 1};
   EXPECT_NEAR(brdf(fit, light, at(0), normal).x, 0.1 + lobe(45, 20), 1e-14);
-  const double gloss = 2 / std::cos(45 * M_PI / 180);
+  const double gloss = 2 / std::cos(45 * kPi / 180);
   EXPECT_NEAR(brdf(fit, light, at(40), normal).x, 0.3 + gloss * lobe(5, 20) + 4 * lobe(5, 50), 1e-12);
   EXPECT_NEAR(brdf(fit, light, at(60), normal).x, 0.3 + gloss * lobe(15, 20) + 4 * lobe(15, 50), 1e-12);
   // A quarter of the way, on either side of the normal.
@@ -145,10 +147,10 @@ TEST(LobeModel, ViewsAreInterpolatedAndHeldAtTheEnds) {
 
 TEST(LobeModel, ReflectanceFactorLeavesGlossOut) {
   const paint::LobeFit fit = sample_fit();
-  const double c20 = std::pow(std::cos(15 * M_PI / 180), 20);
-  EXPECT_NEAR(flake_reflectance_factor(fit, 15).x, M_PI * (0.1 + 0.5 * c20), 1e-14);
-  EXPECT_NEAR(flake_reflectance_factor(fit, 0).y, M_PI * (0.05 + 0.4 + 0.1), 1e-14);
-  EXPECT_NEAR(flake_reflectance_factor(fit, 110).z, M_PI * 0.02, 1e-16);
+  const double c20 = std::pow(std::cos(15 * kPi / 180), 20);
+  EXPECT_NEAR(flake_reflectance_factor(fit, 15).x, kPi * (0.1 + 0.5 * c20), 1e-14);
+  EXPECT_NEAR(flake_reflectance_factor(fit, 0).y, kPi * (0.05 + 0.4 + 0.1), 1e-14);
+  EXPECT_NEAR(flake_reflectance_factor(fit, 110).z, kPi * 0.02, 1e-16);
 }
 
 }  // namespace

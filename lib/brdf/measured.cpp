@@ -2,29 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "base/angles.h"
 #include "base/file.h"
 #include "base/text.h"
 #include "brdf/internal/measured_formats.h"
+#include "math/statistics.h"
 
 namespace goniochrome::brdf {
 
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
-
-double mean_of(const std::vector<double>& f) {
-  double sum = 0;
-  for (const double x : f) sum += x;
-  return sum / static_cast<double>(f.size());
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // The k-th point of van der Corput's sequence in a base: even coverage without chance.
 double radical_inverse(int base, int k) {
@@ -49,7 +36,7 @@ std::vector<Swapped> swapped_pairs(const MeasuredBrdf& brdf) {
   for (const paint::DirectionPair& pair : brdf.probes()) {
     const MeasuredValue there = brdf.value(pair.light, pair.view), back = brdf.value(pair.view, pair.light);
     if (!there.measured || !back.measured || there.outside_deg > 0 || back.outside_deg > 0) continue;
-    pairs.push_back({mean_of(there.f), mean_of(back.f), pair.view.z, pair.light.z});
+    pairs.push_back({math::mean(there.f), math::mean(back.f), pair.view.z, pair.light.z});
   }
   return pairs;
 }
@@ -74,12 +61,12 @@ double albedo_without_gloss(const MeasuredBrdf& brdf) {
   double sum = 0;
   for (int i = 0; i < kRings; ++i)
     for (int j = 0; j < kSpokes; ++j) {
-      const double sine = std::sqrt((i + 0.5) / kRings), azimuth = 2 * std::numbers::pi * (j + 0.5) / kSpokes;
+      const double sine = std::sqrt((i + 0.5) / kRings), azimuth = 2 * kPi * (j + 0.5) / kSpokes;
       const Vec3 view = {sine * std::cos(azimuth), sine * std::sin(azimuth), std::sqrt(1 - sine * sine)};
       if (paint::aspecular_angle_rad(light, view, {0, 0, 1}) < 10 * kDegree) continue;
-      sum += mean_of(brdf.value(light, view).f);
+      sum += math::mean(brdf.value(light, view).f);
     }
-  return sum * std::numbers::pi / (kRings * kSpokes);
+  return sum * kPi / (kRings * kSpokes);
 }
 
 }  // namespace
@@ -105,7 +92,7 @@ std::vector<paint::DirectionPair> MeasuredBrdf::probes() const {
   for (int k = 1; k <= kProbes; ++k) {
     const auto direction = [&](int polar_base, int azimuth_base) -> Vec3 {
       const double sine = most * std::sqrt(radical_inverse(polar_base, k));
-      const double azimuth = 2 * std::numbers::pi * radical_inverse(azimuth_base, k);
+      const double azimuth = 2 * kPi * radical_inverse(azimuth_base, k);
       return {sine * std::cos(azimuth), sine * std::sin(azimuth), std::sqrt(1 - sine * sine)};
     };
     const paint::DirectionPair pair{direction(2, 3), direction(5, 7)};
@@ -163,13 +150,13 @@ MeasuredChecks checks(const MeasuredBrdf& brdf) {
     as_f_cos.push_back(disagreement(pair.there / pair.cos_there, pair.back / pair.cos_back));
   }
   if (!pairs.empty()) {
-    result.reciprocity_error = median(as_f);
-    result.reciprocity_if_f_cos = median(as_f_cos);
+    result.reciprocity_error = math::median(as_f);
+    result.reciprocity_if_f_cos = math::median(as_f_cos);
   }
   result.values = traits.symmetric                                          ? "symmetric"
                   : result.reciprocity_error <= result.reciprocity_if_f_cos ? "f"
                                                                             : "f_cos";
-  result.noise_floor = std::numbers::pi * std::max(traits.negative_rms, traits.symmetric ? 0.0 : dark_noise(pairs));
+  result.noise_floor = kPi * std::max(traits.negative_rms, traits.symmetric ? 0.0 : dark_noise(pairs));
   result.albedo_45 = albedo_without_gloss(brdf);
 
   if (traits.negative > 0)

@@ -2,8 +2,8 @@
 // BRDFS.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "base/angles.h"
 #include "brdf/measured.h"
 
 namespace goniochrome::brdf {
@@ -18,12 +18,12 @@ struct ApertureSample {
 };
 std::vector<ApertureSample> aperture_samples(const Vec3& view, double aperture_deg) {
   if (aperture_deg == 0) return {{view, 1}};
-  const double radius = std::tan(aperture_deg / 2 * std::numbers::pi / 180) * std::sqrt(2.0 / 3);
+  const double radius = std::tan(aperture_deg / 2 * kPi / 180) * std::sqrt(2.0 / 3);
   const Vec3 other = std::abs(view.y) < 0.9 ? Vec3{0, 1, 0} : Vec3{1, 0, 0};
   const Vec3 across = normalized(cross(other, view)), up = cross(view, across);
   std::vector<ApertureSample> samples = {{view, 0.25}};
   for (int k = 0; k < 6; ++k) {
-    const double turn = k * std::numbers::pi / 3;
+    const double turn = k * kPi / 3;
     samples.push_back({normalized(view + (radius * std::cos(turn)) * across + (radius * std::sin(turn)) * up), 0.125});
   }
   return samples;
@@ -79,7 +79,7 @@ Result<MeasuredColor> measured_color(const MeasuredBrdf& brdf, const MeasuredCol
     MeasuredReading reading{geometry, {}, value.gap_deg, value.outside_deg};
     for (double& f : value.f) {
       reading.negative = reading.negative || f < 0;
-      f = std::numbers::pi * std::max(f, 0.0);
+      f = kPi * std::max(f, 0.0);
     }
     const color::Xyz xyz = color.xyz(value.f);
     reading.noise = xyz.Y < options.noise_floor;

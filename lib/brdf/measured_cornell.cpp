@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "base/angles.h"
 #include "base/text.h"
 #include "brdf/internal/measured_formats.h"
 
@@ -11,7 +11,6 @@ namespace goniochrome::brdf {
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kSameDirection_deg = 0.05;  // nearer is the sample itself
 
 // A viewing direction as seen from the mirror direction of its light, in degrees: `toward` the normal (signed, the
@@ -68,7 +67,7 @@ std::vector<Share> delaunay_shares(const std::vector<Offset>& points, const Offs
       const double x = points[i].toward - at.toward, y = points[i].across - at.across;
       return {x, y, x * x + y * y};
     }
-    const double turn = 2 * std::numbers::pi / 3 * static_cast<double>(i - n) + 0.1;
+    const double turn = 2 * kPi / 3 * static_cast<double>(i - n) + 0.1;
     return {kFar_deg * std::cos(turn), kFar_deg * std::sin(turn), kFarCost};
   };
   std::array<std::size_t, 3> basis = {n, n + 1, n + 2};
@@ -287,7 +286,7 @@ class CornellParser {
       GONIO_ASSIGN(angles[k], number(words_[k]));
     }
     for (const std::size_t k : {std::size_t{0}, std::size_t{2}})
-      if (angles[k] < 0 || angles[k] > std::numbers::pi / 2 + 1e-6)
+      if (angles[k] < 0 || angles[k] > kPi / 2 + 1e-6)
         return error(fmt::format("theta is {}: give radians from the normal, 0 to 1.5708", words_[k]));
     CornellBrdf::Row row{{direction(angles[0], angles[1]), direction(angles[2], angles[3])}, {}};
     for (std::size_t k = 0; k < channels; ++k) {

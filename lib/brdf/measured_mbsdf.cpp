@@ -1,8 +1,8 @@
 // NVIDIA MBSDF: a line of text, then a regular grid over both polar angles and the azimuth between them.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "base/angles.h"
 #include "brdf/internal/measured_formats.h"
 
 namespace goniochrome::brdf {
@@ -31,10 +31,10 @@ class MbsdfBrdf final : public MeasuredBrdf {
 
   MeasuredValue value(const Vec3& light, const Vec3& view) const override {
     const auto theta_index = [&](const Vec3& direction) {
-      return polar_angle(direction) / (std::numbers::pi / 2) * static_cast<double>(grid_.theta) - 0.5;
+      return polar_angle(direction) / (kPi / 2) * static_cast<double>(grid_.theta) - 0.5;
     };
     const double light_index = theta_index(light), view_index = theta_index(view);
-    const double azimuth_index = azimuth_between(light, view) / std::numbers::pi * static_cast<double>(grid_.phi) - 0.5;
+    const double azimuth_index = azimuth_between(light, view) / kPi * static_cast<double>(grid_.phi) - 0.5;
     const Cell l = cell_at(light_index, grid_.theta), v = cell_at(view_index, grid_.theta);
     const Cell a = cell_at(azimuth_index, grid_.phi);
     MeasuredValue result{.f = {0, 0, 0}};

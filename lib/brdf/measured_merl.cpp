@@ -1,8 +1,8 @@
 // MERL 100 tables: 90 x 90 x 180 bins of half and difference angles, red, green and blue one after the other.
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "base/angles.h"
 #include "brdf/internal/measured_formats.h"
 
 namespace goniochrome::brdf {
@@ -28,7 +28,7 @@ HalfDifference half_difference(const Vec3& light, const Vec3& view) {
   const Vec3 half = normalized(sum);
   const Vec3 down = half.z * ahead - Vec3{0, 0, std::hypot(half.x, half.y)};
   double azimuth = std::atan2(dot(across, beside), dot(across, down));
-  if (azimuth < 0) azimuth += std::numbers::pi;
+  if (azimuth < 0) azimuth += kPi;
   return {std::atan2(horizontal, sum.z), std::atan2(length(across), length(sum)), azimuth};
 }
 
@@ -39,7 +39,7 @@ class MerlBrdf final : public MeasuredBrdf {
   MeasuredValue value(const Vec3& light, const Vec3& view) const override {
     HalfDifference angles = half_difference(light, view);
     MeasuredValue result = interpolated(angles);
-    angles.azimuth = std::numbers::pi - angles.azimuth;  // the mirror image
+    angles.azimuth = kPi - angles.azimuth;  // the mirror image
     const MeasuredValue mirrored = interpolated(angles);
     if (!result.measured) return mirrored;
     if (mirrored.measured)
@@ -51,10 +51,10 @@ class MerlBrdf final : public MeasuredBrdf {
   // Bin i covers [i, i+1) of its angle's index, so its value stands at i + 1/2; the half angle's index grows with the
   // square root. A negative bin marks a pair that was not measured and takes no part.
   MeasuredValue interpolated(const HalfDifference& angles) const {
-    constexpr double kQuarter = std::numbers::pi / 2;
+    constexpr double kQuarter = kPi / 2;
     const double half_index = std::sqrt(angles.half / kQuarter) * kHalf - 0.5;
     const double difference_index = angles.difference / kQuarter * kDifference - 0.5;
-    const double azimuth_index = angles.azimuth / std::numbers::pi * kAzimuth - 0.5;
+    const double azimuth_index = angles.azimuth / kPi * kAzimuth - 0.5;
     const Cell half = cell_at(half_index, kHalf), difference = cell_at(difference_index, kDifference);
     const double turn = azimuth_index - std::floor(azimuth_index);
     const auto first = static_cast<std::size_t>(std::floor(azimuth_index) + kAzimuth) % kAzimuth;

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 
+#include "base/angles.h"
 #include "brdf/internal/measured_formats.h"
 
 namespace goniochrome::brdf {
@@ -11,7 +11,6 @@ namespace goniochrome::brdf {
 namespace {
 
 constexpr std::string_view kMagic{"tensor_file\0", 12};
-constexpr double kPi = std::numbers::pi;
 
 struct Tensor {
   std::vector<std::size_t> shape = {};

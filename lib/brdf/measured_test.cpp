@@ -11,8 +11,8 @@
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <numbers>
 
+#include "base/angles.h"
 #include "base/file.h"
 #include "base/text.h"
 
@@ -20,7 +20,6 @@ namespace goniochrome::brdf {
 namespace {
 
 using testing::HasSubstr;
-constexpr double kDegree = std::numbers::pi / 180;
 
 class Measured : public testing::Test {
  protected:
@@ -254,8 +253,8 @@ TEST_F(Measured, mbsdf_tells_negatives_noise_and_copied_rows) {
   ASSERT_TRUE(brdf);
   const MeasuredChecks told = checks(*brdf);
   EXPECT_GT(told.negative_share, 0.2);
-  EXPECT_GT(told.noise_floor, 0.3 * std::numbers::pi * sigma);
-  EXPECT_LT(told.noise_floor, 3 * std::numbers::pi * sigma);
+  EXPECT_GT(told.noise_floor, 0.3 * kPi * sigma);
+  EXPECT_LT(told.noise_floor, 3 * kPi * sigma);
   EXPECT_THAT(told.warnings, testing::Contains(HasSubstr("negative")));
   EXPECT_THAT(told.warnings, testing::Contains(HasSubstr("to 88.5 deg, repeat those at 85.5 deg")));
 }
@@ -327,11 +326,11 @@ TEST_F(Measured, rgl_divides_by_the_viewer_cosine) {
         const Vec3 light = direction(incidence, 50), view = direction(polar, 50 + azimuth),
                    half = normalized(light + view);
         const MeasuredValue value = brdf->value(light, view);
-        const double u = std::sqrt(std::acos(half.z) * 2 / std::numbers::pi);
+        const double u = std::sqrt(std::acos(half.z) * 2 / kPi);
         double turn = std::atan2(half.y, half.x) - 50 * kDegree;
-        turn = std::abs(std::remainder(turn, 2 * std::numbers::pi));
+        turn = std::abs(std::remainder(turn, 2 * kPi));
         EXPECT_NEAR(value.f[0] * view.z, u, 1e-6);
-        EXPECT_NEAR(value.f[1] * view.z, turn / (2 * std::numbers::pi), 1e-6);
+        EXPECT_NEAR(value.f[1] * view.z, turn / (2 * kPi), 1e-6);
         EXPECT_NEAR(value.f[2] * view.z, incidence * kDegree, 1e-6);
       }
 }
@@ -349,11 +348,11 @@ TEST_F(Measured, rgl_flattens_the_density_of_normals) {
   for (double incidence = 5; incidence < 80; incidence += 14)
     for (double polar = 1; polar < 80; polar += 17) {
       const Vec3 light = direction(incidence, 0), view = direction(polar, 60), half = normalized(light + view);
-      const double u = std::sqrt(std::acos(half.z) * 2 / std::numbers::pi);
+      const double u = std::sqrt(std::acos(half.z) * 2 / kPi);
       EXPECT_NEAR(brdf->value(light, view).f[0] * view.z, (u + u * u) / 2, 1e-6);
       // v and its mirror image 1 - v are averaged; t(v) = (v + v^2/2) / 1.5, and green is |t - 1/2| on nodes 1/8 apart,
       // of which one is at its kink.
-      const double v = std::atan2(half.y, half.x) / (2 * std::numbers::pi) + 0.5;
+      const double v = std::atan2(half.y, half.x) / (2 * kPi) + 0.5;
       const auto green = [](double x) { return std::abs((x + x * x / 2) / 1.5 - 0.5); };
       EXPECT_NEAR(brdf->value(light, view).f[1] * view.z, (green(v) + green(1 - v)) / 2, 1e-6);
     }
@@ -401,9 +400,7 @@ TEST_F(Measured, checks_tell_f_from_f_cos) {
 }
 
 TEST_F(Measured, albedo_of_the_perfect_diffuser_and_of_too_much) {
-  const auto white = [](double albedo) {
-    return [albedo](const Vec3&, const Vec3&) { return albedo / std::numbers::pi; };
-  };
+  const auto white = [](double albedo) { return [albedo](const Vec3&, const Vec3&) { return albedo / kPi; }; };
   // The 10 deg cap about specular, cos 45 deg of sin^2(10 deg), is left out.
   const auto brdf = read("a.mbsdf", mbsdf_bytes(10, 10, white(1), {1, 1, 1}));
   EXPECT_NEAR(checks(*brdf).albedo_45, 1 - std::sqrt(0.5) * std::pow(std::sin(10 * kDegree), 2), 0.003);
@@ -412,7 +409,7 @@ TEST_F(Measured, albedo_of_the_perfect_diffuser_and_of_too_much) {
 }
 
 TEST_F(Measured, gray_reads_gray_at_every_geometry) {
-  const auto gray = [](const Vec3&, const Vec3&) { return 0.184186518 / std::numbers::pi; };  // L* = 50
+  const auto gray = [](const Vec3&, const Vec3&) { return 0.184186518 / kPi; };  // L* = 50
   std::vector<paint::Geometry> geometries;
   for (const char* name : {"45as15", "45as110", "15as45", "45as25az90", "r45as15"}) {
     auto geometry = paint::parse_geometry(name);

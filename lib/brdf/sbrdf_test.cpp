@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
+
+#include "base/angles.h"
 
 namespace goniochrome::brdf {
 namespace {
@@ -34,10 +35,10 @@ TEST(Sbrdf, TapsRepeatAndBlend) {
       EXPECT_GE(tap.row, 0);
       EXPECT_LT(tap.row, 4);
       sum += tap.weight;
-      x += tap.weight * std::cos(2 * std::numbers::pi * (tap.column + 0.5) / 8);
+      x += tap.weight * std::cos(2 * kPi * (tap.column + 0.5) / 8);
     }
     EXPECT_NEAR(sum, 1, 1e-12);
-    EXPECT_NEAR(x, std::cos(2 * std::numbers::pi * u), 0.08) << u;  // linear between samples 45 deg apart
+    EXPECT_NEAR(x, std::cos(2 * kPi * u), 0.08) << u;  // linear between samples 45 deg apart
   }
   // v is up: the top row holds v near 1.
   EXPECT_EQ(texture_taps(8, 4, 1.0 / 16, 7.0 / 8)[0].row, 0);

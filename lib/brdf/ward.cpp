@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/angles.h"
+
 namespace goniochrome::brdf {
 
 // With h = (wi+wo)/|wi+wo|, c_h = h.n and c = h.wi,
@@ -25,7 +27,7 @@ double ward(const Vec3& to_light, const Vec3& to_viewer, const paint::Anisotropy
   const double size = std::hypot(sum.x, sum.y, sum.z), x = sum.x / size / alpha.alpha_x,
                y = sum.y / size / alpha.alpha_y;
   const double exponent = 2 * (x * x + y * y) / (1 + sum.z / size);
-  return std::exp(-exponent) / (2 * std::numbers::pi * alpha.alpha_x * alpha.alpha_y * sum.z);
+  return std::exp(-exponent) / (2 * kPi * alpha.alpha_x * alpha.alpha_y * sum.z);
 }
 
 double lobe_alpha(double exponent) {
@@ -47,7 +49,7 @@ struct Sampling {
   double spread() const { return std::sqrt((wide - narrow) * (wide + narrow)); }
 
   double missed(double step) const {
-    const double q = std::exp(-std::pow(std::numbers::pi * spread() * narrow / (wide * step), 2));
+    const double q = std::exp(-std::pow(kPi * spread() * narrow / (wide * step), 2));
     return 2 * q / (1 - q);
   }
   double beyond(double reach) const { return 2 * (wide / spread()) * std::exp(-std::pow(reach / spread(), 2)); }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.h"
 #include "base/hard_case_for_test.h"
 
 namespace goniochrome::brdf {
@@ -19,7 +20,7 @@ Vec3 direction(double polar_rad, double azimuth_rad) {
 double textbook(const Vec3& wi, const Vec3& wo, const paint::Anisotropy& a) {
   const Vec3 h = normalized(wi + wo);
   const double exponent = -2 * (std::pow(h.x / a.alpha_x, 2) + std::pow(h.y / a.alpha_y, 2)) / (1 + h.z);
-  return std::exp(exponent) / std::sqrt(wi.z * wo.z) / (4 * M_PI * a.alpha_x * a.alpha_y);
+  return std::exp(exponent) / std::sqrt(wi.z * wo.z) / (4 * kPi * a.alpha_x * a.alpha_y);
 }
 
 // The integral of f cos_i over the hemisphere of h, mapped from the equal-area plane: midpoint rule in polar angle of
@@ -30,7 +31,7 @@ double albedo(const F& f, const Vec3& wo, const paint::Anisotropy& a) {
   double sum = 0;
   for (int i = 0; i < kRadii; ++i) {
     for (int j = 0; j < kTurns; ++j) {
-      const double r = 6 * (i + 0.5) / kRadii, phi = 2 * M_PI * (j + 0.5) / kTurns;
+      const double r = 6 * (i + 0.5) / kRadii, phi = 2 * kPi * (j + 0.5) / kTurns;
       const double ux = a.alpha_x * r * std::cos(phi), uy = a.alpha_y * r * std::sin(phi), u2 = ux * ux + uy * uy;
       if (u2 >= 2) continue;
       const double scale = std::sqrt(1 - u2 / 4);
@@ -39,7 +40,7 @@ double albedo(const F& f, const Vec3& wo, const paint::Anisotropy& a) {
       if (c <= 0) continue;
       const Vec3 wi = 2 * c * h - wo;
       if (wi.z <= 0) continue;
-      const double area = a.alpha_x * a.alpha_y * r * (6.0 / kRadii) * (2 * M_PI / kTurns);
+      const double area = a.alpha_x * a.alpha_y * r * (6.0 / kRadii) * (2 * kPi / kTurns);
       sum += f(wi, wo, a) * wi.z * 4 * c * area;
     }
   }
@@ -49,7 +50,7 @@ double albedo(const F& f, const Vec3& wo, const paint::Anisotropy& a) {
 TEST(HardCase, WardGrazingIsFiniteAndSendsBackNoMoreThanItGot) {
   double most = 0, textbook_most = 0;
   for (const double polar_deg : {0.0, 30.0, 60.0, 80.0, 89.0, 89.99, 89.9999999}) {
-    const Vec3 wo = direction(polar_deg * M_PI / 180, 0.4);
+    const Vec3 wo = direction(polar_deg * kPi / 180, 0.4);
     for (const paint::Anisotropy a :
          {paint::Anisotropy{1e-4, 0.1}, {0.05, 0.3}, {0.3, 0.3}, {0.2, 1.0}, {1.0, 1e-3}, {3, 3}}) {
       most = worst_of(most, albedo(ward, wo, a));
@@ -69,7 +70,7 @@ TEST(HardCase, WardGrazingIsFiniteAndSendsBackNoMoreThanItGot) {
     for (const paint::Anisotropy a : {paint::Anisotropy{1e-4, 0.1}, {1, 1}}) {
       EXPECT_TRUE(std::isfinite(ward(grazing, steep, a)));
       EXPECT_TRUE(std::isfinite(ward(grazing, opposite, a) * tiny));
-      EXPECT_LE(ward(grazing, opposite, a) * tiny, 1 / (4 * M_PI * a.alpha_x * a.alpha_y) * (1 + 1e-12));
+      EXPECT_LE(ward(grazing, opposite, a) * tiny, 1 / (4 * kPi * a.alpha_x * a.alpha_y) * (1 + 1e-12));
     }
   }
   EXPECT_FALSE(std::isfinite(textbook({1, 0, 1e-200}, {-1, 0, 1e-200}, {1, 1})));
@@ -78,7 +79,7 @@ TEST(HardCase, WardGrazingIsFiniteAndSendsBackNoMoreThanItGot) {
 
 TEST(Ward, AlbedoOfNarrowLobesIsTheCosine) {
   for (const double polar_deg : {0.0, 45.0, 75.0}) {
-    const Vec3 wo = direction(polar_deg * M_PI / 180, 1.1);
+    const Vec3 wo = direction(polar_deg * kPi / 180, 1.1);
     // The first correction is of the order alpha^2.
     EXPECT_NEAR(albedo(ward, wo, {0.01, 0.03}), wo.z, 5 * 0.03 * 0.03);
   }

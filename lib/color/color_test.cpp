@@ -8,6 +8,7 @@
 #include <fstream>
 #include <random>
 
+#include "base/angles.h"
 #include "base/hard_case_for_test.h"
 #include "base/text.h"
 
@@ -134,7 +135,7 @@ double textbook_lightness(double Y) {
   return 116 * std::pow(Y, 1.0 / 3.0) - 16;
 }
 double textbook_hue_deg(double a, double b) {
-  return std::atan(b / a) * 180 / M_PI;
+  return std::atan(b / a) * 180 / kPi;
 }
 
 // Lab has magnitudes up to 160 and, in a*, differences of two numbers near 1.5 times 500: an ulp of those is 1.7e-13,

@@ -1,6 +1,6 @@
 #include <cmath>
-#include <numbers>
 
+#include "base/angles.h"
 #include "color/color.h"
 
 namespace goniochrome::color {
@@ -13,13 +13,13 @@ constexpr double kNoHue = 1e-9;
 // atan2 turned into [0,360); 0 where there is no hue.
 double hue_of(double a, double b) {
   if (std::hypot(a, b) < kNoHue) return 0;
-  const double degrees = std::atan2(b, a) * (180 / std::numbers::pi);
+  const double degrees = std::atan2(b, a) * (180 / kPi);
   if (degrees >= 0) return degrees;
   return degrees + 360 < 360 ? degrees + 360 : 0;
 }
 
 constexpr double radians(double degrees) {
-  return degrees * (std::numbers::pi / 180);
+  return degrees * kDegree;
 }
 
 // sqrt(C^7/(C^7 + 25^7)), which pulls gray axes together and turns blues.

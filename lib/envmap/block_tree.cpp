@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "base/angles.h"
 #include "base/parallel.h"
 #include "envmap/patch.h"
 
@@ -18,7 +18,7 @@ Vec3 vec(const float* v) {
 }
 
 void set_cap(const Vec3& axis, double radius_rad, BlockTree::Block& block) {
-  const double radius = std::min(radius_rad, std::numbers::pi);
+  const double radius = std::min(radius_rad, kPi);
   for (int k = 0; k < 3; ++k) block.axis[k] = static_cast<float>(axis[k]);
   block.cosine = static_cast<float>(std::cos(radius)) - kRounding;
   block.sine = static_cast<float>(std::sin(radius)) + kRounding;

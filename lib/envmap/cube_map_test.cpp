@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "base/angles.h"
 #include "base/hard_case_for_test.h"
 
 namespace goniochrome::envmap {
@@ -37,7 +38,7 @@ TEST(CubeMap, solid_angles_sum_to_the_sphere) {
     for (int row = 0; row < n; ++row)
       for (int column = 0; column < n; ++column)
         sum += cube_cell_solid_angle(edge(column), edge(column + 1), edge(row), edge(row + 1));
-    EXPECT_NEAR(6 * sum / (4 * M_PI), 1, 1e-13 * n) << n;  // n^2 texels, each off by some 1e-16 absolute
+    EXPECT_NEAR(6 * sum / (4 * kPi), 1, 1e-13 * n) << n;  // n^2 texels, each off by some 1e-16 absolute
   }
 }
 

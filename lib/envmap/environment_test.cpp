@@ -11,6 +11,7 @@
 #include <limits>
 #include <random>
 
+#include "base/angles.h"
 #include "base/hard_case_for_test.h"
 #include "color/color.h"
 
@@ -58,7 +59,7 @@ Vec3 scene(const Vec3& d) {
 
 image::Image lat_long_scene(int height) {
   return filled(2 * height, height, [&](double x, double y) {
-    const double theta = M_PI * y / height, longitude = 2 * M_PI * (0.5 - x / (2 * height));
+    const double theta = kPi * y / height, longitude = 2 * kPi * (0.5 - x / (2 * height));
     return scene({std::sin(theta) * std::sin(longitude), std::cos(theta), std::sin(theta) * std::cos(longitude)});
   });
 }
@@ -94,7 +95,7 @@ Vec3 random_direction(std::mt19937_64& random) {
 }
 
 // The flux of the scene in closed form: the odd terms vanish.
-const Vec3 kFlux = {4 * M_PI * 2, 4 * M_PI * 1.5, 4 * M_PI * 3};
+const Vec3 kFlux = {4 * kPi * 2, 4 * kPi * 1.5, 4 * kPi * 3};
 
 void expect_scene(const Environment& env, double slope_tolerance) {
   std::mt19937_64 random(1);
@@ -109,7 +110,7 @@ void expect_scene(const Environment& env, double slope_tolerance) {
 TEST_F(EnvironmentFile, HardCase_PrefilterConventionEveryLayoutOfOneSceneAgrees) {
   // A lookup finds a texel whose center is within half its diagonal: slope 1.5 * angle * 0.71.
   constexpr int kSize = 96;
-  const double cube_step = 1.5 * 2.0 / kSize * 0.71, lat_long_step = 1.5 * M_PI / 200 * 0.71;
+  const double cube_step = 1.5 * 2.0 / kSize * 0.71, lat_long_step = 1.5 * kPi / 200 * 0.71;
   const auto read = [&](const std::string& path) {
     auto env = Environment::read(path, BadPixels::kError);
     EXPECT_TRUE(env.ok()) << env.error().message;
@@ -198,8 +199,8 @@ TEST_F(EnvironmentFile, cells_cover_the_sphere_and_directions_lie_in_them) {
         EXPECT_EQ(env.lookup(env.direction(column, row)), env.radiance(column, row));
         EXPECT_EQ(env.lookup(env.direction_at(column + 0.1, row + 0.9)), env.radiance(column, row));
       }
-    EXPECT_NEAR(sum, 4 * M_PI, 1e-12);
-    EXPECT_NEAR(parts, 4 * M_PI, 1e-12);
+    EXPECT_NEAR(sum, 4 * kPi, 1e-12);
+    EXPECT_NEAR(parts, 4 * kPi, 1e-12);
   }
 }
 
@@ -292,7 +293,7 @@ TEST_F(EnvironmentFile, HardCase_PrefilterBadShapesAreRefusedAndOddOnesRead) {
   for (const auto& [w, h] : {std::pair{2, 1}, {7, 3}, {5, 3}, {1, 6}, {18, 3}, {4, 3}, {3, 4}}) {
     const auto env = read(w, h);
     ASSERT_TRUE(env.ok()) << w << " x " << h;
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(env->flux()[c], 4 * M_PI, 1e-5) << w << " x " << h;
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(env->flux()[c], 4 * kPi, 1e-5) << w << " x " << h;
   }
   EXPECT_THAT(Environment::read((folder_ / "sea-{face}.exr").string(), BadPixels::kError).error().message,
               HasSubstr("sea-px.exr"));

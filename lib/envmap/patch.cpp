@@ -3,15 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "base/angles.h"
+#include "math/cosine_power.h"
 #include "math/gauss_rule.h"
 
 namespace goniochrome::envmap {
 
 namespace {
 
-constexpr double kHorizon = std::numbers::pi / 2;
+constexpr double kHorizon = kPi / 2;
 constexpr double kNothing = 1e-20;  // of the lobe's peak; a sun may outshine the mean by 1e6 and the floor is 1e-3
 
 template <class Integrand>
@@ -73,9 +74,9 @@ double integrate(const Task& task, const Cell& cell, int depth) {
   const double theta = angle_between(task.env.direction_at(column, row), task.d);
   const double radius = task.env.radius_rad(cell.column0, cell.row0, cell.column1, cell.row1);
   if (theta - radius >= kHorizon) return 0;
-  const double most = cosine_power(std::cos(std::max(0.0, theta - radius)), task.exponent);
+  const double most = math::cosine_power(std::cos(std::max(0.0, theta - radius)), task.exponent);
   if (most < kNothing) return 0;
-  const auto lobe = [&](const Vec3& w) { return cosine_power(dot(task.d, w), task.exponent); };
+  const auto lobe = [&](const Vec3& w) { return math::cosine_power(dot(task.d, w), task.exponent); };
   const auto split = [&] {
     double sum = 0;
     for (const Cell& quarter : quarters(cell)) sum += integrate(task, quarter, depth + 1);
@@ -94,11 +95,6 @@ double integrate(const Task& task, const Cell& cell, int depth) {
 
 }  // namespace
 
-double cosine_power(double t, double exponent) {
-  if (t <= 0) return 0;
-  return exponent == 0 ? 1 : exponent == 1 ? t : std::exp(exponent * std::log(std::min(t, 1.0)));
-}
-
 // The mean of max(0, t)^E over a cell on which t is linear: t0 in the middle, changing by a and b from side to side.
 // With F the second antiderivative of the power that is (F(++) - F(+-) - F(-+) + F(--)) / (a b); where t hardly changes
 // one way, the first antiderivative's difference.
@@ -106,7 +102,7 @@ double linear_mean(double t0, double a, double b, double exponent) {
   a = std::fabs(a), b = std::fabs(b);
   if (a < b) std::swap(a, b);
   const auto above = [&](double t, double power) { return t > 0 ? std::pow(t, power) : 0.0; };
-  if (a < 1e-14) return cosine_power(t0, exponent);
+  if (a < 1e-14) return math::cosine_power(t0, exponent);
   if (b < 1e-5 * a) return (above(t0 + a / 2, exponent + 1) - above(t0 - a / 2, exponent + 1)) / ((exponent + 1) * a);
   const auto corner = [&](double i, double j) { return above(t0 + (i * a + j * b) / 2, exponent + 2); };
   return (corner(1, 1) - corner(1, -1) - corner(-1, 1) + corner(-1, -1)) / ((exponent + 1) * (exponent + 2) * a * b);

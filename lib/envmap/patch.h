@@ -12,9 +12,6 @@ struct Cell {
   double column0 = 0, row0 = 0, column1 = 0, row1 = 0;
 };
 
-// max(0,t)^E for t = cos(angle) in [-1,1]; E = 0 is 1 above the horizon and 0 below.
-double cosine_power(double t, double exponent);
-
 // The integral of max(0, d.w)^E over the cell (sr), to about `relative` of itself: Gauss-Legendre where the lobe is
 // smooth over the cell, quarters where it is narrower than the cell. A cell that the horizon cuts is taken to about
 // `at_horizon` of itself, as pieces on which the cosine is linear.

@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "base/angles.h"
 #include "envmap/cube_map.h"
 #include "math/gauss_rule.h"
 
 namespace goniochrome::envmap {
 
-namespace {
-constexpr double kPi = std::numbers::pi;
-}
+namespace {}
 
 // A cube whose texel centers lie on the face edges has its cell edges half way between them, at (i-.5)/(N-1), and at
 // the face edges.

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.h"
+
 namespace goniochrome::fit {
 
 namespace {
 
 constexpr int kLights = 9, kRings = 60, kSpokes = 30;
-constexpr double kLightStep_rad = M_PI / 18;
+constexpr double kLightStep_rad = kPi / 18;
 
 // A direction of the viewer and the solid angle it stands for, both sides of the plane of incidence.
 struct Patch {
@@ -19,11 +21,11 @@ struct Patch {
 // Rings about the mirror direction, dense near it: the n-th begins at pi (n/rings)^2.
 Patch patch_of(const Vec3& light, int ring, int spoke) {
   const double low = static_cast<double>(ring) / kRings, high = static_cast<double>(ring + 1) / kRings;
-  const double begin = M_PI * low * low, end = M_PI * high * high, polar = (begin + end) / 2;
-  const double azimuth = M_PI * (spoke + 0.5) / kSpokes;
+  const double begin = kPi * low * low, end = kPi * high * high, polar = (begin + end) / 2;
+  const double azimuth = kPi * (spoke + 0.5) / kSpokes;
   const Vec3 mirror = {-light.x, 0, light.z}, up = {light.z, 0, light.x}, across = {0, 1, 0};
   return {std::cos(polar) * mirror + std::sin(polar) * (std::cos(azimuth) * up + std::sin(azimuth) * across),
-          2 * M_PI / kSpokes * (std::cos(begin) - std::cos(end))};
+          2 * kPi / kSpokes * (std::cos(begin) - std::cos(end))};
 }
 
 }  // namespace

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <random>
 
+#include "base/angles.h"
 #include "base/parallel.h"
-#include "brdf/lobe_angles.h"
 #include "brdf/lobe_model.h"
 #include "fit/internal/basis_lm.h"
 #include "fit/paint_fit.h"
+#include "math/cosine_power.h"
 #include "math/least_squares.h"
 
 namespace goniochrome::fit {
@@ -18,7 +18,6 @@ namespace goniochrome::fit {
 namespace {
 
 constexpr double kPolishGain = 1e-5;
-constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
 // At the inner optimum x the residual's dependence on x drops out (envelope
 // theorem: x_j is either stationary or held at 0), so d err^2 / d log E_j = 2/n
@@ -29,8 +28,7 @@ SquaredError squared_error(const std::vector<double>& exponents, const BasisTarg
   SquaredError result{0, std::vector<double>(with_gradient ? exponents.size() : 0, 0.0)};
   math::Matrix shape(rows, lobes);
   for (int j = 0; j < lobes; ++j)
-    for (int r = 0; r < rows; ++r)
-      shape(r, j) = brdf::cos_power(target.angles_deg[r] * kRadiansPerDegree, exponents[j]);
+    for (int r = 0; r < rows; ++r) shape(r, j) = math::cos_power(target.angles_deg[r] * kDegree, exponents[j]);
 
   std::size_t count = 0;
   for (int c = 0; c < 3; ++c) {
@@ -48,7 +46,7 @@ SquaredError squared_error(const std::vector<double>& exponents, const BasisTarg
       for (int j = 0; j <= lobes; ++j) residual += m(r, j) * fit.x[j];
       result.value += residual * residual;
       if (!with_gradient) continue;
-      const double log_cos = std::log(std::max(std::cos(target.angles_deg[r] * kRadiansPerDegree), 1e-300));
+      const double log_cos = std::log(std::max(std::cos(target.angles_deg[r] * kDegree), 1e-300));
       for (int j = 0; j < lobes; ++j)
         result.gradient[j] += 2 * residual * m(r, j + 1) * fit.x[j + 1] * exponents[j] * log_cos;
     }
@@ -238,7 +236,7 @@ std::vector<std::vector<double>> starting_points(const std::vector<double>& smal
 double sharpest_seen(const std::vector<BasisTarget>& targets) {
   double first_deg = 90;
   for (const BasisTarget& target : targets) first_deg = std::min(first_deg, target.angles_deg.front());
-  return std::log(kSeenPart) / brdf::log_cosine(first_deg * (M_PI / 180));
+  return std::log(kSeenPart) / math::log_cosine(first_deg * kDegree);
 }
 
 }  // namespace

@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <random>
 
+#include "base/angles.h"
 #include "base/parallel.h"
 #include "brdf/lobe_model.h"
 #include "fit/basis_targets.h"
+#include "math/cosine_power.h"
 
 namespace goniochrome::fit {
 namespace {
@@ -29,7 +30,7 @@ std::vector<BasisTarget> planted(const std::vector<double>& exponents, int paint
       for (const double angle : target.angles_deg) {
         double value = 0.1 * weights[0];
         for (std::size_t j = 0; j < exponents.size(); ++j)
-          value += weights[j + 1] * brdf::cos_power(angle * std::numbers::pi / 180, exponents[j]);
+          value += weights[j + 1] * math::cos_power(angle * kPi / 180, exponents[j]);
         target.value[c].push_back(value + noise * unit(random));
         target.weight[c].push_back(1);
       }
@@ -97,9 +98,9 @@ TEST(BasisSearch, NoLobeIsSharperThanTheTargetsSee) {
   const auto targets = planted({1.2, 5, 25}, 8, 0.05);
   BasisSearchOptions options;
   options.first = 4, options.last = 4, options.starts = 2;
-  const double first_rad = targets.front().angles_deg.front() * M_PI / 180;
+  const double first_rad = targets.front().angles_deg.front() * kPi / 180;
   for (const FoundBasis& set : search_basis(targets, options).sets)
-    EXPECT_GE(brdf::cos_power(first_rad, set.exponents.back()), 0.999e-3) << set.exponents.size();
+    EXPECT_GE(math::cos_power(first_rad, set.exponents.back()), 0.999e-3) << set.exponents.size();
   // The control: such a lobe lowers the error.
   const std::vector<double> three = {1.2, 5, 25};
   EXPECT_LT(basis_error({1.2, 5, 25, 6000}, targets).mean, basis_error(three, targets).mean);
@@ -137,9 +138,9 @@ TEST(BasisTargets, MeasuredBrdfIsAveragedByAspecularAngle) {
   brdf.paint.name = "one lobe";
   for (int i = 0; i < 2000; ++i) {
     const double angle = 5 + 0.055 * i;
-    const double value = 0.1 + brdf::cos_power(angle * std::numbers::pi / 180, 12);
-    brdf.samples.push_back({angle * std::numbers::pi / 180, 30, 30, {value, value / 2, value / 4}});
-    brdf.samples.push_back({angle * std::numbers::pi / 180, 30, 80, {9, 9, 9}});  // too steep to count
+    const double value = 0.1 + math::cos_power(angle * kPi / 180, 12);
+    brdf.samples.push_back({angle * kPi / 180, 30, 30, {value, value / 2, value / 4}});
+    brdf.samples.push_back({angle * kPi / 180, 30, 80, {9, 9, 9}});  // too steep to count
   }
   const auto target = basis_target(brdf, {});
   ASSERT_TRUE(target.ok());

@@ -1,10 +1,11 @@
 #include "fit/basis_targets.h"
 
 #include <algorithm>
-#include <numbers>
 
+#include "base/angles.h"
 #include "brdf/lobe_model.h"
 #include "fit/paint_fit.h"
+#include "math/cosine_power.h"
 #include "math/least_squares.h"
 
 namespace goniochrome::fit {
@@ -40,7 +41,7 @@ Result<BasisTarget> basis_target(const BrdfTarget& brdf, const BasisTargetOption
   };
   std::vector<Bin> bins(kBins);
   for (const BrdfSample& sample : brdf.samples) {
-    const double angle_deg = sample.aspecular_rad * (180 / std::numbers::pi);
+    const double angle_deg = sample.aspecular_rad * (180 / kPi);
     const double at = (angle_deg - kGlareAngle_deg) / kStep_deg;
     if (at < 0 || at >= static_cast<double>(kBins)) continue;
     if (std::max(sample.light_deg, sample.view_deg) > kSteepest_deg) continue;
@@ -75,7 +76,7 @@ double basis_de00(const std::vector<double>& exponents, const BasisTarget& targe
       const double w = target.weight[c][r];
       b[r] = w * target.value[c][r];
       for (int j = 0; j < columns; ++j) {
-        m(r, j) = j == 0 ? 1 : brdf::cos_power(target.angles_deg[r] * std::numbers::pi / 180, exponents[j - 1]);
+        m(r, j) = j == 0 ? 1 : math::cos_power(target.angles_deg[r] * kPi / 180, exponents[j - 1]);
         weighted(r, j) = w * m(r, j);
       }
     }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "base/angles.h"
 #include "brdf/lobe_model.h"
 #include "fit/albedo_error.h"
 #include "fit/internal/ggx_for_test.h"
@@ -65,9 +66,9 @@ void ggx(benchmark::State& state) {
   const auto f = [&](const Vec3& light, const Vec3& view) { return model.f(light, view); };
   std::vector<double> errors;
   for (const BrdfSample& s : samples) {
-    if (s.aspecular_rad < kGlareAngle_deg * (M_PI / 180)) continue;
+    if (s.aspecular_rad < kGlareAngle_deg * kDegree) continue;
     const paint::DirectionPair pair = directions_of(s);
-    errors.push_back(length(M_PI * f(pair.light, pair.view) - s.value) / length(s.value));
+    errors.push_back(length(kPi * f(pair.light, pair.view) - s.value) / length(s.value));
   }
   std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2), errors.end());
   state.SetLabel(kFiles[state.range(0)]);

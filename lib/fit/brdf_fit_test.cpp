@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include "base/angles.h"
 #include "brdf/isoline.h"
 #include "brdf/lobe_model.h"
 #include "fit/internal/brdf_target.h"
@@ -14,10 +15,9 @@ namespace goniochrome::fit {
 namespace {
 
 const formats::Basis kBasis = {"b7", {1.3, 6, 20, 70, 250, 900, 3000}, true};
-constexpr double kRadian = M_PI / 180;
 
 Vec3 direction(double polar_deg, double azimuth_deg) {
-  const double t = polar_deg * kRadian, p = azimuth_deg * kRadian;
+  const double t = polar_deg * kDegree, p = azimuth_deg * kDegree;
   return {std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)};
 }
 
@@ -30,7 +30,7 @@ BrdfTarget measured_from(const paint::LobeFit& lobes) {
       for (double azimuth = 0; azimuth <= 180; azimuth += 20) {
         const Vec3 in = direction(light, 0), out = direction(view, azimuth);
         target.samples.push_back({paint::aspecular_angle_rad(in, out, {0, 0, 1}), light, view,
-                                  M_PI * brdf::coated_brdf(lobes, in, out, {0, 0, 1})});
+                                  kPi * brdf::coated_brdf(lobes, in, out, {0, 0, 1})});
       }
   return target;
 }
@@ -66,7 +66,7 @@ TEST(BrdfFit, TheSpikeOfTheCoatIsNotTakenForFlake) {
   const PaintFit fit = fit_of(measured_from(coated), {});
   // Against the same paint without its coat: the flake has not moved.
   EXPECT_LT(fit.report.brdf->relative_error_median, 1e-6);
-  EXPECT_NEAR(fit.report.brdf->spike_albedo_45, 20 * 2 * M_PI / 3001, 0.002);
+  EXPECT_NEAR(fit.report.brdf->spike_albedo_45, 20 * 2 * kPi / 3001, 0.002);
   ASSERT_FALSE(fit.lobes.lobes.empty());
   EXPECT_EQ(fit.lobes.lobes.back().exponent, 3000);
   EXPECT_NEAR(fit.lobes.lobes.back().gloss.y, 20, 1);
@@ -74,7 +74,7 @@ TEST(BrdfFit, TheSpikeOfTheCoatIsNotTakenForFlake) {
   // The control: with the glare among the rows, least squares gives flake lobes to the spike.
   BrdfTarget taken_in = measured_from(coated);
   for (BrdfSample& sample : taken_in.samples)
-    if (sample.aspecular_rad < kGlareAngle_deg * kRadian) sample.aspecular_rad += kGlareAngle_deg * kRadian;
+    if (sample.aspecular_rad < kGlareAngle_deg * kDegree) sample.aspecular_rad += kGlareAngle_deg * kDegree;
   const PaintFit fooled = fit_of(taken_in, {.method = FitMethod::kL2});
   EXPECT_GT(fooled.report.brdf->relative_error_p95, 10 * fit.report.brdf->relative_error_p95 + 0.1);
 }
@@ -161,7 +161,7 @@ TEST(BrdfFit, PruningMovesNoColorByMoreThanAllowed) {
     before = lean.report.dropped.size();
     const color::Xyz white = *color::white_point({"D65", 2});
     for (const BrdfSample& sample : target.samples) {
-      const double angle = sample.aspecular_rad / kRadian;
+      const double angle = sample.aspecular_rad / kDegree;
       if (angle < kGlareAngle_deg || std::max(sample.light_deg, sample.view_deg) > 75) continue;
       EXPECT_LE(color::delta_e_2000(color::lab_from_rgb(brdf::flake_reflectance_factor(lean.lobes, angle), white),
                                     color::lab_from_rgb(brdf::flake_reflectance_factor(full.lobes, angle), white)),
@@ -277,7 +277,7 @@ TEST(BrdfFit, FlakesAreSeenThroughTheCoat) {
   const auto color = [&](const Vec3& in, const Vec3& out) {
     // exp(-t/20), t the aspecular angle of light at 45 deg in plane.
     const double flake = brdf::flake_angles(in, out, kIndex).flake_rad;
-    const double t = 45 + std::asin(std::min(1.0, kIndex * std::sin(2 * flake - light_in_coat))) / kRadian;
+    const double t = 45 + std::asin(std::min(1.0, kIndex * std::sin(2 * flake - light_in_coat))) / kDegree;
     return color::Rgb{0.02, 0.03, 0.05} + std::exp(-t / 20) * color::Rgb{1, 0.6, 0.3};
   };
   BrdfTarget target;

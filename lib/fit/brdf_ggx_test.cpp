@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 
+#include "base/angles.h"
 #include "brdf/lobe_model.h"
 #include "fit/albedo_error.h"
 #include "fit/internal/ggx_for_test.h"
@@ -17,7 +18,7 @@ const formats::Basis kSeven = {"b7", {1.3, 6, 20, 70, 250, 900, 3000}, true};
 // The same in all directions.
 class Gray final : public brdf::MeasuredBrdf {
  public:
-  explicit Gray(double reflectance) : brdf::MeasuredBrdf({.format = "test"}), f_(reflectance / M_PI) {}
+  explicit Gray(double reflectance) : brdf::MeasuredBrdf({.format = "test"}), f_(reflectance / kPi) {}
   brdf::MeasuredValue value(const Vec3&, const Vec3&) const override { return {.f = {f_, f_, f_}}; }
 
  private:
@@ -25,7 +26,7 @@ class Gray final : public brdf::MeasuredBrdf {
 };
 
 TEST(AlbedoError, OfConstantsIsTheirDifference) {
-  const auto model = [](const Vec3&, const Vec3&) { return color::Rgb{0.3 / M_PI, 0.3 / M_PI, 0.3 / M_PI}; };
+  const auto model = [](const Vec3&, const Vec3&) { return color::Rgb{0.3 / kPi, 0.3 / kPi, 0.3 / kPi}; };
   EXPECT_NEAR(**albedo_error(Gray(0.3), model), 0, 1e-12);
   EXPECT_NEAR(**albedo_error(Gray(0.5), model), 0.2, 0.2 * 0.02);
   EXPECT_NEAR(**albedo_error(Gray(0.1), model), 0.2, 0.2 * 0.02);
@@ -39,7 +40,7 @@ TEST(AlbedoError, OfASharpLobeIsItsAlbedo) {
   paint::LobeFit lobe;
   lobe.lobes = {{kExponent, {}, {1, 1, 1}}};
   const auto model = [&](const Vec3& light, const Vec3& view) { return brdf::brdf(lobe, light, view, {0, 0, 1}); };
-  EXPECT_NEAR(**albedo_error(Gray(0), model), 2 * M_PI / (kExponent + 1), 0.02 * 2 * M_PI / (kExponent + 1));
+  EXPECT_NEAR(**albedo_error(Gray(0), model), 2 * kPi / (kExponent + 1), 0.02 * 2 * kPi / (kExponent + 1));
 }
 
 double median_error(const std::vector<BrdfSample>& samples, const std::function<color::Rgb(const BrdfSample&)>& shown) {
@@ -65,7 +66,7 @@ Errors best_ggx(const BrdfTarget& target, const std::vector<BrdfSample>& samples
     best.albedo = std::min(best.albedo, **albedo_error(*target.source, f));
     best.median = std::min(best.median, median_error(samples, [&](const BrdfSample& s) {
                              const paint::DirectionPair pair = directions_of(s);
-                             return M_PI * f(pair.light, pair.view);
+                             return kPi * f(pair.light, pair.view);
                            }));
   }
   return best;
@@ -96,7 +97,7 @@ TEST(BrdfFit, RglFilesComeOutBetterThanAGgxLobeRealData) {
         const double albedo = **albedo_error(*target->source, f);
         const double median = median_error(samples, [&](const BrdfSample& s) {
           const paint::DirectionPair pair = directions_of(s);
-          return M_PI * f(pair.light, pair.view);
+          return kPi * f(pair.light, pair.view);
         });
         EXPECT_LT(albedo, ggx.albedo) << name << " " << fit_method_name(method) << " " << by_view;
         // The color of cc_ibiza_sunset travels, which no weights for all views follow: there the lobe with Schlick's

@@ -4,17 +4,16 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <numeric>
 #include <utility>
 
+#include "base/angles.h"
 #include "base/parallel.h"
 
 namespace goniochrome::fit {
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kGlare_deg = 10, kGrazing_deg = 75;
 constexpr double kSamePlace_deg = 0.2;
 

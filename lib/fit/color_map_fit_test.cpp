@@ -11,12 +11,12 @@
 #include <sstream>
 #include <string>
 
+#include "base/angles.h"
 #include "color/spectrum.h"
 
 namespace goniochrome::fit {
 namespace {
 
-constexpr double kDegree = M_PI / 180;
 constexpr std::array kTreatments = {brdf::CriticalAngle::kClip, brdf::CriticalAngle::kSlide,
                                     brdf::CriticalAngle::kSlideMap, brdf::CriticalAngle::kIndexOne};
 
@@ -138,7 +138,7 @@ MeasuredRows cornell_rows(const std::string& path) {
        i += 4 + wavelengths.size()) {
     const double* row = &numbers[i];
     std::vector<double> factors;
-    for (std::size_t k = 0; k < wavelengths.size(); ++k) factors.push_back(M_PI * std::max(row[4 + k], 0.0));
+    for (std::size_t k = 0; k < wavelengths.size(); ++k) factors.push_back(kPi * std::max(row[4 + k], 0.0));
     const ColorMapRow color = {direction(row[0], row[1]), direction(row[2], row[3]), meter->lab(factors)};
     const bool in_plane = std::abs(std::sin(row[3] - row[1])) < 1e-3 || row[2] < 1e-3;
     const double aspecular_deg = paint::aspecular_angle_rad(color.light, color.view, {0, 0, 1}) / kDegree;
@@ -181,7 +181,7 @@ MeasuredRows sampled_rows(const brdf::MeasuredBrdf& brdf) {
   const auto row = [&](double light_deg, double view_deg, double azimuth_deg) {
     const Vec3 wi = direction(light_deg * kDegree, 0), wo = direction(view_deg * kDegree, azimuth_deg * kDegree);
     std::vector<double> factors = brdf.value(wi, wo).f;
-    for (double& f : factors) f = M_PI * std::max(f, 0.0);
+    for (double& f : factors) f = kPi * std::max(f, 0.0);
     return ColorMapRow{wi, wo, color::lab_from_xyz(meter->xyz(factors), meter->white())};
   };
   for (double light = 10; light <= 70; light += 10) {

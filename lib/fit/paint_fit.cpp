@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/angles.h"
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "brdf/lobe_model.h"
@@ -14,6 +15,7 @@
 #include "fit/internal/lobe_choice.h"
 #include "fit/internal/target_rows.h"
 #include "fit/internal/twins.h"
+#include "math/cosine_power.h"
 
 namespace goniochrome::fit {
 
@@ -23,7 +25,7 @@ namespace {
 std::vector<double> seen_exponents(const std::vector<double>& exponents, double first_rad) {
   std::vector<double> seen;
   for (const double e : exponents)
-    if (brdf::cos_power(first_rad, e) >= kSeenPart) seen.push_back(e);
+    if (math::cos_power(first_rad, e) >= kSeenPart) seen.push_back(e);
   return seen;
 }
 
@@ -37,10 +39,10 @@ std::vector<double> difference(const std::vector<double>& all, const std::vector
 // The columns were fitted to reflectance factors; the model is in 1/sr. `lobes` are those of the basis.
 void set_weights(const std::vector<double>& exponents, const color::Rgb* x, color::Rgb& diffuse,
                  std::vector<paint::Lobe>& lobes) {
-  diffuse = (1 / M_PI) * x[0];
+  diffuse = (1 / kPi) * x[0];
   std::size_t next = 0;
   for (paint::Lobe& lobe : lobes)
-    if (next < exponents.size() && lobe.exponent == exponents[next]) lobe.directional_diffuse = (1 / M_PI) * x[++next];
+    if (next < exponents.size() && lobe.exponent == exponents[next]) lobe.directional_diffuse = (1 / kPi) * x[++next];
 }
 
 // The lobes that a fit may use.
@@ -87,13 +89,13 @@ void fit_flake(const FitOptions& options, const FlakeTarget& together, const Fla
 FlakeTarget flake_target(const FitOptions& options, const Target& target, const color::Xyz& white) {
   FlakeTarget flake{white, {}, {}};
   for (const TargetRow& row : target.rows)
-    flake.rows.push_back({{row.angle_deg * (M_PI / 180), row.view_deg},
+    flake.rows.push_back({{row.angle_deg * kDegree, row.view_deg},
                           row.reflectance_factor,
                           row.importance * (options.perceptual_weights ? color::lightness_slope(row.lightness) : 1),
                           row.importance < 1});
   for (const paint::LabReading& reading : target.readings)
     flake.readings.push_back(
-        {{paint::aspecular_angle_deg(reading.geometry) * (M_PI / 180), view_angle_deg(reading.geometry)}, reading.lab});
+        {{paint::aspecular_angle_deg(reading.geometry) * kDegree, view_angle_deg(reading.geometry)}, reading.lab});
   return flake;
 }
 
@@ -138,7 +140,7 @@ bool has_flake(const std::vector<paint::Lobe>& lobes, double exponent) {
 
 // Its gloss as a coat shows it to a meter of that angle.
 paint::LobeFit with_gloss_at(paint::LobeFit lobes, double incidence_deg) {
-  const double fresnel = brdf::coat_fresnel(std::cos(incidence_deg * (M_PI / 180)));
+  const double fresnel = brdf::coat_fresnel(std::cos(incidence_deg * kDegree));
   for (paint::Lobe& lobe : lobes.lobes)
     if (std::isfinite(lobe.exponent)) lobe.gloss = fresnel * lobe.gloss;
   return lobes;
@@ -218,7 +220,7 @@ Result<PaintFit> PaintFitter::fit(const paint::Paint& paint) const {
   GONIO_ASSIGN(const color::Xyz white, color::white_point(paint::condition_of(paint)));
   GONIO_ASSIGN(const Target target, target_rows(paint, options_.target, white, basis_.exponents));
   const FlakeTarget together = flake_target(options_, target, white);
-  const double first_rad = target.first_deg * (M_PI / 180);
+  const double first_rad = target.first_deg * kDegree;
   const Twins twins = twins_of(target.readings);
   const std::vector<double>& views = options_.views_where_needed ? twins.views_deg : options_.views_deg;
   if (views.empty()) {
@@ -276,7 +278,7 @@ Result<FiveAngleFigures> PaintFitter::from_five_angles(const BrdfTarget& brdf) c
   GONIO_ASSIGN(const color::Xyz white, color::white_point(paint::condition_of(brdf.paint)));
   GONIO_ASSIGN(const Target target, target_rows(brdf.paint, options_.target, white, basis_.exponents));
   const FlakeTarget flake = flake_target(options_, target, white);
-  fit_flake(options_, flake, flake, {}, basis_.exponents, target.first_deg * (M_PI / 180), five);
+  fit_flake(options_, flake, flake, {}, basis_.exponents, target.first_deg * kDegree, five);
   return five_angle_figures(brdf, five.lobes);
 }
 

@@ -6,11 +6,13 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "base/angles.h"
 #include "base/file.h"
 #include "base/hard_case_for_test.h"
 #include "base/parallel.h"
 #include "base/text.h"
 #include "formats/xml.h"
+#include "math/cosine_power.h"
 #include "math/least_squares.h"
 
 namespace goniochrome::fit {
@@ -72,7 +74,7 @@ TEST(PaintFit, SolidColorIsItsConstant) {
     const auto fit = PaintFitter(kBasis, {.method = method}).fit(solid);
     ASSERT_TRUE(fit.ok());
     EXPECT_LE(fit->report.de00_max, 1e-6);
-    const color::Rgb wanted = (1 / M_PI) * color::rgb_from_lab({52, 40, -12}, *color::white_point({}));
+    const color::Rgb wanted = (1 / kPi) * color::rgb_from_lab({52, 40, -12}, *color::white_point({}));
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(fit->lobes.diffuse[c], wanted[c], 1e-9);
   }
 }
@@ -108,7 +110,7 @@ TEST(HardCase, FitUnseenLobesAreLeftOutAndNamed) {
   const std::vector<double> target = {1.0, 0.2, 0.1, 0.05, 0.04};
   math::Matrix m(5, 8);
   for (int i = 0; i < 5; ++i)
-    for (int j = 0; j < 8; ++j) m(i, j) = j == 0 ? 1 : brdf::cos_power(kFive[i] * M_PI / 180, kBasis.exponents[j - 1]);
+    for (int j = 0; j < 8; ++j) m(i, j) = j == 0 ? 1 : math::cos_power(kFive[i] * kPi / 180, kBasis.exponents[j - 1]);
   const math::NonNegativeFit textbook = math::nnls(m, target);
   hard_case("fit-unseen", {.what = "largest peak of a lobe",
                            .textbook = *std::max_element(textbook.x.begin(), textbook.x.end()),
@@ -132,7 +134,7 @@ TEST(PaintFit, HighlightGoesOnRisingAndStaysBounded) {
         before = now;
       }
       // No more than the sharpest seen lobe alone makes of it.
-      const double limit = std::pow(std::cos(15 * M_PI / 180), -70);
+      const double limit = std::pow(std::cos(15 * kPi / 180), -70);
       EXPECT_LE(before, brdf::flake_reflectance_factor(fit->lobes, 15).y * limit * (1 + 1e-9));
     }
 }

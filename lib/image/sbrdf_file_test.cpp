@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "base/angles.h"
 #include "image/image.h"
 
 namespace goniochrome::image {
@@ -84,7 +85,7 @@ TEST_F(SbrdfFile, TheTexturesOfTheTestData) {
     for (int row = 0; row < texture->height; ++row)
       for (int column = 0; column < texture->width; ++column) {
         const brdf::SbrdfTexel texel = brdf::sbrdf_texel(*texture, column, row);
-        double albedo = M_PI * texel.surface.diffuse.x;
+        double albedo = kPi * texel.surface.diffuse.x;
         for (const brdf::LafortuneLobe& lobe : texel.surface.lobes)
           albedo += brdf::environment_fetch(lobe, {0, 0, 1}).weight.x;
         most = std::max(most, albedo);

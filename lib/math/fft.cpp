@@ -7,8 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
+
+#include "base/angles.h"
 
 // Stockham's self-sorting passes: with `length` = n r split off as s groups, pass r reads x[q + s (p + m k)], k < r,
 // m = n/r, and writes y[q + s (r p + j)] = w^(p j) sum over k of x_k exp(sign 2 pi i j k / r), w = exp(sign 2 pi i /
@@ -149,8 +150,8 @@ HWY_EXPORT(RunPass);
 
 Fft::Fft(std::size_t length) : length_(length), cosine_(length), sine_(length) {
   for (std::size_t k = 0; k < length; ++k) {
-    cosine_[k] = std::cos(2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(length));
-    sine_[k] = std::sin(2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(length));
+    cosine_[k] = std::cos(2 * kPi * static_cast<double>(k) / static_cast<double>(length));
+    sine_[k] = std::sin(2 * kPi * static_cast<double>(k) / static_cast<double>(length));
   }
   std::size_t rest = length;
   for (const std::size_t r : {4, 2, 3, 5})

@@ -7,7 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "base/angles.h"
 
 // P_l = a_l x P_(l-1) - b_l P_(l-2), a_l^2 = (4 l^2 - 1)/(l^2 - m^2), b_l = a_l / a_(l-1): the recursion upward in l is
 // stable. P_mm = sqrt((2m+1)/(4 pi) (1 - 1/2)(1 - 1/4)...(1 - 1/2m)) sin^m; where that is below 1e-280 every P_lm of a
@@ -117,7 +118,7 @@ legendre::Steps steps_of(const Rings& rings, int m, int degree) {
     steps.a.push_back(l > m ? a(l) : 0);
     steps.b.push_back(l > m + 1 ? a(l) / a(l - 1) : 0);
   }
-  double log_scale = 0.5 * std::log((2.0 * m + 1) / (4 * std::numbers::pi));
+  double log_scale = 0.5 * std::log((2.0 * m + 1) / (4 * kPi));
   for (int k = 1; k <= m; ++k) log_scale += 0.5 * std::log1p(-0.5 / k);
   steps.start.resize(rings.count);
   for (std::size_t i = 0; i < rings.count; ++i) {

@@ -5,6 +5,7 @@
 #include <map>
 #include <random>
 
+#include "base/angles.h"
 #include "base/hard_case_for_test.h"
 #include "math/internal/problems_for_test.h"
 #include "math/least_squares.h"
@@ -114,7 +115,7 @@ Matrix lobe_columns(const std::vector<double>& exponents) {
   Matrix m(static_cast<int>(angles.size()), static_cast<int>(exponents.size()));
   for (int i = 0; i < m.rows; ++i)
     for (int j = 0; j < m.columns; ++j)
-      m(i, j) = std::pow(std::max(0.0, std::cos(angles[i] * M_PI / 180)), exponents[j]);
+      m(i, j) = std::pow(std::max(0.0, std::cos(angles[i] * kPi / 180)), exponents[j]);
   return m;
 }
 

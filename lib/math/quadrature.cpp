@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.h"
+
 namespace goniochrome::math {
 
 // The points are the roots of the Legendre polynomial P_n, by Newton's method from Tricomi's approximation; with
@@ -10,7 +12,7 @@ namespace goniochrome::math {
 std::vector<QuadraturePoint> gauss_legendre(int n) {
   std::vector<QuadraturePoint> points(static_cast<std::size_t>(std::max(n, 0)));
   for (int k = 0; k < n; ++k) {
-    double x = -std::cos(M_PI * (k + 0.75) / (n + 0.5)), slope = 1;
+    double x = -std::cos(kPi * (k + 0.75) / (n + 0.5)), slope = 1;
     if (2 * k + 1 == n) x = 0;
     for (int step = 0; step < 20; ++step) {
       double p = 1, before = 0;

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numbers>
 #include <unordered_map>
 
+#include "base/angles.h"
 #include "mesh/internal/polygons.h"
 
 namespace goniochrome::mesh {
@@ -12,7 +12,7 @@ namespace goniochrome::mesh {
 namespace {
 
 // Faces that meet at a sharper edge than this do not share a made normal.
-const double kCreaseCosine = std::cos(60 * std::numbers::pi / 180);
+const double kCreaseCosine = std::cos(60 * kPi / 180);
 
 // A triangle whose height is less than this part of its longest edge has no area: its direction is rounding noise.
 constexpr double kFlatness = 1e-10;

@@ -6,8 +6,8 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <numbers>
 
+#include "base/angles.h"
 #include "base/file.h"
 #include "mesh/internal/polygons.h"
 
@@ -181,7 +181,7 @@ TEST_F(MeshFiles, MadeNormalsAreSmoothButKeepCreases) {
   std::string text;
   for (int i = 0; i <= kRows; ++i) {
     for (int j = 0; j < kColumns; ++j) {
-      const double t = std::numbers::pi * i / kRows, p = 2 * std::numbers::pi * j / kColumns;
+      const double t = kPi * i / kRows, p = 2 * kPi * j / kColumns;
       const double sine = i % kRows == 0 ? 0 : std::sin(t);  // the poles are one point, whatever the number of vertices
       text += fmt::format("v {} {} {}\n", sine * std::cos(p), std::cos(t), sine * std::sin(p));
     }

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/angles.h"
 #include "mesh/internal/seam_rim.h"
 
 namespace goniochrome::mesh {
@@ -118,7 +119,7 @@ Pair best_pair(const RimEdge& a, const Vec3& at_a, const RimEdge& b, const Vec3&
   return best;
 }
 
-const double kLeastCosine = std::cos(30 * M_PI / 180);  // sides further apart are not meant to be one surface
+const double kLeastCosine = std::cos(30 * kPi / 180);  // sides further apart are not meant to be one surface
 constexpr double kFacing = 0.7;  // of the way from edge to edge, across the first one; less is around a corner
 
 void measure(SeamPoint& p, double unit_m) {
@@ -126,8 +127,8 @@ void measure(SeamPoint& p, double unit_m) {
   const double flush = dot(apart, p.normal_a);
   p.flush_mm = flush * unit_m * 1e3;
   p.gap_mm = length(apart - flush * p.normal_a) * unit_m * 1e3;
-  p.angle_deg = std::atan2(length(cross(p.normal_a, p.normal_b)), dot(p.normal_a, p.normal_b)) * 180 / M_PI;
-  p.fold_deg = std::atan2(dot(p.normal_b, p.across), dot(p.normal_b, p.normal_a)) * 180 / M_PI;
+  p.angle_deg = std::atan2(length(cross(p.normal_a, p.normal_b)), dot(p.normal_a, p.normal_b)) * 180 / kPi;
+  p.fold_deg = std::atan2(dot(p.normal_b, p.across), dot(p.normal_b, p.normal_a)) * 180 / kPi;
 }
 
 // Points in the order in which one meets them along the seam: from an end, always on to the nearest one left; a leap

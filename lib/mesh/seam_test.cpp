@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.h"
+
 namespace goniochrome::mesh {
 namespace {
 
 using ::testing::HasSubstr;
-
-constexpr double kRadians = M_PI / 180;
 
 void add_quad(Mesh& mesh, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, bool flipped = false) {
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
@@ -42,7 +42,7 @@ struct Plates {
 // about x so that the two form a ridge.
 Mesh plates(const Plates& p) {
   Mesh mesh;
-  const double s = p.scale, f = p.fold_deg * kRadians;
+  const double s = p.scale, f = p.fold_deg * kDegree;
   begin_part(mesh, "left");
   for (int i = 0; i < (p.duplicate ? 2 : 1); ++i)
     add_quad(mesh, {0, 0, 0}, {s, 0, 0}, {s, 0, -0.4 * s}, {0, 0, -0.4 * s});

@@ -2,9 +2,9 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
+#include "base/angles.h"
 #include "base/text.h"
 #include "base/utf8.h"
 
@@ -13,7 +13,7 @@ namespace goniochrome::paint {
 namespace {
 
 constexpr double radians(double degrees) {
-  return degrees * (std::numbers::pi / 180);
+  return degrees * kDegree;
 }
 
 // Takes `prefix` off the front of `text`, if it stands there.

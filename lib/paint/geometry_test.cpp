@@ -4,9 +4,9 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <random>
 
+#include "base/angles.h"
 #include "base/hard_case_for_test.h"
 
 namespace goniochrome::paint {
@@ -90,7 +90,7 @@ TEST(Geometry, out_of_plane_directions) {
 TEST(Geometry, in_plane_positive_is_toward_the_normal_and_azimuth_0_away_from_it) {
   const auto polar_deg = [](const char* name) {
     const Vec3 v = directions(*parse_geometry(name)).view;
-    return std::atan2(v.x, v.z) * 180 / std::numbers::pi;
+    return std::atan2(v.x, v.z) * 180 / kPi;
   };
   EXPECT_NEAR(polar_deg("45as0"), 45, 1e-13);
   EXPECT_NEAR(polar_deg("45as15"), 30, 1e-13);
@@ -114,9 +114,7 @@ TEST(Geometry, angle_of_the_directions_is_the_angle_of_the_name) {
     const Geometry geometry = *parse_geometry(name);
     const auto [light, view] = directions(geometry);
     EXPECT_NEAR(length(view), 1, 4e-16);
-    EXPECT_NEAR(aspecular_angle_rad(light, view, {0, 0, 1}) * 180 / std::numbers::pi, aspecular_angle_deg(geometry),
-                1e-12)
-        << name;
+    EXPECT_NEAR(aspecular_angle_rad(light, view, {0, 0, 1}) * 180 / kPi, aspecular_angle_deg(geometry), 1e-12) << name;
   }
 }
 

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "base/angles.h"
 #include "base/hard_case_for_test.h"
 #include "paint/curve.h"
 
@@ -21,7 +21,7 @@ Paint measured(const std::vector<std::pair<double, color::Lab>>& rows) {
 }
 
 color::Lab polar(double L, double C, double hue_deg) {
-  const double h = hue_deg * std::numbers::pi / 180;
+  const double h = hue_deg * kPi / 180;
   return {L, C * std::cos(h), C * std::sin(h)};
 }
 
@@ -91,7 +91,7 @@ double textbook_hue_shift(const color::Lab& f, const color::Lab& g) {
 
 TEST(Metrics, hue_shift_and_chroma) {
   const color::Lab face = polar(60, 50, 30), flop = polar(20, 20, 60);
-  EXPECT_NEAR(hue_shift_index(face, flop), 20 * std::sin(std::numbers::pi / 6), 1e-12);
+  EXPECT_NEAR(hue_shift_index(face, flop), 20 * std::sin(kPi / 6), 1e-12);
   EXPECT_DOUBLE_EQ(hue_shift_index(face, flop), textbook_hue_shift(face, flop));
   EXPECT_NEAR(chroma_index(face, flop), 30, 1e-12);
   EXPECT_NEAR(hue_travel(std::array{face, flop}).degrees, 30, 1e-12);
@@ -118,7 +118,7 @@ TEST(HardCase, HueShiftAchromatic) {
   EXPECT_NEAR(turned.hue_shift_index, 0, 1e-9);
   const double seen = textbook_hue_shift(polar(60, 40, 20), polar(30, 30, 200));
   hard_case("hue-shift-achromatic", {.what = "hue turned by 180 deg",
-                                     .textbook = 180 - std::asin(seen / 30) * 180 / std::numbers::pi,
+                                     .textbook = 180 - std::asin(seen / 30) * 180 / kPi,
                                      .ours = std::abs(turned.hue_travel_deg - 180),
                                      .bound = 1e-9,
                                      .unit = "deg"});

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.h"
 #include "panels/internal/goniogeom_shading.h"
 
 namespace goniochrome::panels {
 
 namespace {
 
-constexpr double kRadians = M_PI / 180;
 color::Lab shaded(const color::Lab& reflectance, double c, double k) {
   const auto lab = shaded_lab<double>({reflectance.L, reflectance.a, reflectance.b}, c, k);
   return {lab[0], lab[1], lab[2]};
@@ -65,7 +65,7 @@ color::Lab panel_color(const color::Lab& reflectance, double cos_light) {
 }
 
 paint::DirectionPair directions(const LightView& g) {
-  const double light = g.light_deg * kRadians, view = g.view_deg * kRadians, azimuth = g.azimuth_deg * kRadians;
+  const double light = g.light_deg * kDegree, view = g.view_deg * kDegree, azimuth = g.azimuth_deg * kDegree;
   return {{-std::sin(light), 0, std::cos(light)},
           {std::sin(view) * std::cos(azimuth), std::sin(view) * std::sin(azimuth), std::cos(view)}};
 }
@@ -86,7 +86,7 @@ TiltedPair::TiltedPair(const Vec3& light, const Vec3& view, const Vec3& normal, 
   const double view_radius = std::hypot(dot(view, m), dot(view, normal));
   light_radius_ = std::hypot(dot(light, m), dot(light, normal));
   cos_phase_ = std::cos(light_phase), sin_phase_ = std::sin(light_phase);
-  light_phase_deg_ = light_phase / kRadians, view_phase_deg_ = view_phase / kRadians;
+  light_phase_deg_ = light_phase / kDegree, view_phase_deg_ = view_phase / kDegree;
   const double s = dot(light, axis), S = dot(view, axis), radii = light_radius_ - view_radius;
   across_ = 4 * light_radius_ * view_radius;
   difference_ = (s + S) * (s + S) + radii * radii;
@@ -94,17 +94,17 @@ TiltedPair::TiltedPair(const Vec3& light, const Vec3& view, const Vec3& normal, 
   // The mirrored light has the phase -q at b = 0 and 2b - q at b; the view has its own.
   const double half = (view_phase + light_phase) / 2;
   cos_half_ = std::cos(half), sin_half_ = std::sin(half);
-  if (difference_ + sum_ < 1e-30) in_plane_deg_ = 2 * half / kRadians;
+  if (difference_ + sum_ < 1e-30) in_plane_deg_ = 2 * half / kDegree;
 }
 
 TiltedPair TiltedPair::make(const LightView& geometry, double seam_deg) {
   const paint::DirectionPair pair = directions(geometry);
-  const double seam = seam_deg * kRadians;
+  const double seam = seam_deg * kDegree;
   return TiltedPair(pair.light, pair.view, {0, 0, 1}, {std::cos(seam), -std::sin(seam), 0});
 }
 
 TiltedPair::State TiltedPair::at(double b_deg) const {
-  const double b = b_deg * kRadians, cos_b = std::cos(b), sin_b = std::sin(b);
+  const double b = b_deg * kDegree, cos_b = std::cos(b), sin_b = std::sin(b);
   const double cos_light = std::max(0.0, light_radius_ * (cos_phase_ * cos_b + sin_phase_ * sin_b));
   if (in_plane_deg_) {
     const double d = std::abs(*in_plane_deg_ - 2 * b_deg);  // below 540
@@ -113,7 +113,7 @@ TiltedPair::State TiltedPair::at(double b_deg) const {
   const double sin_d = sin_half_ * cos_b - cos_half_ * sin_b, cos_d = cos_half_ * cos_b + sin_half_ * sin_b;
   const double apart = std::sqrt(difference_ + across_ * sin_d * sin_d);
   const double together = std::sqrt(sum_ + across_ * cos_d * cos_d);
-  return {2 * std::atan2(apart, together) / kRadians, cos_light};
+  return {2 * std::atan2(apart, together) / kDegree, cos_light};
 }
 
 double difference_at(const FlakeCurve& curve, const TiltedPair& pair, double b_deg, DifferenceMetric metric) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.h"
 #include "envmap/cube_map.h"
 #include "fit/paint_fit.h"
 
@@ -10,7 +11,6 @@ namespace goniochrome::panels {
 
 namespace {
 
-constexpr double kRadians = M_PI / 180;
 constexpr double kEdgeOn = 0.02;  // cosine; a panel nearer to edge on is not seen
 
 bool sees_both(const mesh::SeamPoint& p, const Vec3& view) {
@@ -18,7 +18,7 @@ bool sees_both(const mesh::SeamPoint& p, const Vec3& view) {
 }
 
 bool is_glare(const Vec3& light, const Vec3& view, const Vec3& normal) {
-  return paint::aspecular_angle_rad(light, view, normal) < kIndexGlare_deg * kRadians - 1e-9;
+  return paint::aspecular_angle_rad(light, view, normal) < kIndexGlare_deg * kDegree - 1e-9;
 }
 
 double luminance(const float* rgb) {
@@ -31,7 +31,7 @@ double luminance(const float* rgb) {
 // that plane x is `across` where the light comes from the first panel's side, and its opposite for the second's.
 std::vector<SeamView> views_at_seam(const mesh::Seam& seam, const GeometryList& geometries, double seam_deg) {
   std::vector<SeamView> views;
-  const double turn = (90 - seam_deg) * kRadians;
+  const double turn = (90 - seam_deg) * kDegree;
   for (std::size_t i = 0; i < seam.points.size(); ++i) {
     const mesh::SeamPoint& p = seam.points[i];
     for (const double side : {1.0, -1.0}) {
@@ -78,9 +78,7 @@ std::vector<std::size_t> spread_places(std::size_t count, std::size_t most) {
 
 PanelView panel_view(const mesh::Seam& seam, const SeamView& view) {
   const mesh::SeamPoint& p = seam.points[view.point];
-  const auto aspecular = [&](const Vec3& n) {
-    return paint::aspecular_angle_rad(*view.light, view.view, n) / kRadians;
-  };
+  const auto aspecular = [&](const Vec3& n) { return paint::aspecular_angle_rad(*view.light, view.view, n) / kDegree; };
   const auto cosine = [&](const Vec3& n) { return std::max(0.0, dot(n, *view.light)); };
   return {aspecular(p.normal_a), cosine(p.normal_a), aspecular(p.normal_b), cosine(p.normal_b), view.weight};
 }
@@ -141,9 +139,9 @@ Result<EnvironmentPanels> EnvironmentPanels::make(const envmap::PrefilteredEnvir
 // 2 pi/(E + 1) P_E(r) the light in a lobe of exponent E.
 EnvironmentPanels::Light EnvironmentPanels::light(const Vec3& normal, const Vec3& view) const {
   const Vec3 mirrored = 2 * dot(normal, view) * normal - view;
-  Light light{M_PI * envmap::bilinear(env_->diffuse.map, normal), {}, std::max(0.0, dot(normal, mirrored))};
+  Light light{kPi * envmap::bilinear(env_->diffuse.map, normal), {}, std::max(0.0, dot(normal, mirrored))};
   for (const envmap::PrefilteredLobe& lobe : env_->lobes)
-    light.lobes.push_back((2 * M_PI / (lobe.exponent + 1)) * envmap::bilinear(lobe.map, mirrored));
+    light.lobes.push_back((2 * kPi / (lobe.exponent + 1)) * envmap::bilinear(lobe.map, mirrored));
   return light;
 }
 

@@ -5,17 +5,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.h"
+
 namespace goniochrome::panels {
 namespace {
-
-constexpr double kRadians = M_PI / 180;
 
 // One place of a seam along x: the first panel faces up, the second one falls away beyond it by `fold_deg`.
 mesh::Seam one_place(double fold_deg) {
   mesh::Seam seam;
   mesh::SeamPoint p;
   p.normal_a = {0, 1, 0};
-  p.normal_b = {0, std::cos(fold_deg * kRadians), std::sin(fold_deg * kRadians)};
+  p.normal_b = {0, std::cos(fold_deg * kDegree), std::sin(fold_deg * kDegree)};
   p.along = {1, 0, 0}, p.across = {0, 0, 1};
   p.fold_deg = fold_deg;
   seam.points.push_back(p);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.h"
 #include "base/text.h"
 
 namespace goniochrome::panels {
@@ -102,7 +103,7 @@ Result<std::vector<double>> light_angles(const std::string& text) {
 
 double aspecular_deg(const LightView& geometry) {
   const paint::DirectionPair pair = directions(geometry);
-  return paint::aspecular_angle_rad(pair.light, pair.view, {0, 0, 1}) * (180 / M_PI);
+  return paint::aspecular_angle_rad(pair.light, pair.view, {0, 0, 1}) * (180 / kPi);
 }
 
 Result<GeometryList> geometry_list(const GeometryTexts& texts) {

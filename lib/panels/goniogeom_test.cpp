@@ -6,26 +6,26 @@
 #include <cmath>
 #include <random>
 
+#include "base/angles.h"
 #include "base/hard_case_for_test.h"
 #include "panels/goniogeom_sets.h"
 
 namespace goniochrome::panels {
 namespace {
 
-constexpr double kRadians = M_PI / 180;
 constexpr DifferenceMetric k76 = DifferenceMetric::kDe76, k00 = DifferenceMetric::kDe00;
 
 const paint::Appearance kSilver{{75, -0.5, -1}, {22, -0.3, -2}, 75, {}};
 
 Vec3 random_direction(std::mt19937_64& random, double least_z) {
-  std::uniform_real_distribution<double> height(least_z, 1), turn(0, 2 * M_PI);
+  std::uniform_real_distribution<double> height(least_z, 1), turn(0, 2 * kPi);
   const double z = height(random), a = turn(random), r = std::sqrt(1 - z * z);
   return {r * std::cos(a), r * std::sin(a), z};
 }
 
 // Rodrigues' formula.
 Vec3 turned(const Vec3& v, const Vec3& axis, double b_deg) {
-  const double b = b_deg * kRadians;
+  const double b = b_deg * kDegree;
   return std::cos(b) * v + std::sin(b) * cross(axis, v) + (1 - std::cos(b)) * dot(axis, v) * axis;
 }
 
@@ -34,7 +34,7 @@ double difference_by_vectors(const FlakeCurve& curve, const Vec3& light, const V
                              DifferenceMetric metric) {
   const color::Xyz white = *color::white_point({"D65", 10});
   const auto color = [&](const Vec3& normal) {
-    color::Xyz xyz = color::xyz_from_lab(curve.at(paint::aspecular_angle_rad(light, view, normal) / kRadians), white);
+    color::Xyz xyz = color::xyz_from_lab(curve.at(paint::aspecular_angle_rad(light, view, normal) / kDegree), white);
     const double c = std::max(0.0, dot(normal, light));
     return color::lab_from_xyz({xyz.X * c, xyz.Y * c, xyz.Z * c}, white);
   };
@@ -89,7 +89,7 @@ TEST(TiltedPair, AgreesWithVectorsInAndOutOfPlane) {
   std::uniform_real_distribution<double> angle(0, 360);
   for (int i = 0; i < 2000; ++i) {
     const Vec3 light = random_direction(random, 0.02), view = random_direction(random, 0.02), normal{0, 0, 1};
-    const double turn = angle(random) * kRadians;
+    const double turn = angle(random) * kDegree;
     const Vec3 axis{std::cos(turn), std::sin(turn), 0};
     const TiltedPair pair(light, view, normal, axis);
     for (const int sign : {1, -1}) {
@@ -100,7 +100,7 @@ TEST(TiltedPair, AgreesWithVectorsInAndOutOfPlane) {
         const Vec3 n = turned(normal, axis, b);
         const TiltedPair::State state = pair.at(b);
         // 2 atan2(x, y) of sums of squares: an absolute error of some units in the last place of pi.
-        EXPECT_NEAR(state.aspecular_deg, paint::aspecular_angle_rad(light, view, n) / kRadians, 1e-12);
+        EXPECT_NEAR(state.aspecular_deg, paint::aspecular_angle_rad(light, view, n) / kDegree, 1e-12);
         EXPECT_NEAR(state.cos_light, std::max(0.0, dot(n, light)), 1e-15);
       }
     }
@@ -115,7 +115,7 @@ TEST(HardCase, AngleAcosOfTiltedPair) {
     const double b = (45 - as) / 2;  // the mirror turns by 2b, from 45 deg to `as`
     const double got = pair.at(b).aspecular_deg;
     ours = worst_of(ours, std::abs(got - as));
-    control = worst_of(control, std::abs(std::acos(std::cos(as * kRadians)) / kRadians - as));
+    control = worst_of(control, std::abs(std::acos(std::cos(as * kDegree)) / kDegree - as));
   }
   hard_case(
       "angle-acos",
@@ -127,13 +127,13 @@ TEST(TiltedPair, InPlaneTheAspecularAngleFallsByTwiceTheTiltTowardTheLight) {
   EXPECT_NEAR(pair.at(0).aspecular_deg, 60, 1e-13);
   EXPECT_NEAR(pair.at(2).aspecular_deg, 56, 1e-13);
   EXPECT_NEAR(pair.at(-2).aspecular_deg, 64, 1e-13);
-  EXPECT_NEAR(pair.at(2).cos_light, std::cos(43 * kRadians), 1e-15);
+  EXPECT_NEAR(pair.at(2).cos_light, std::cos(43 * kDegree), 1e-15);
   const paint::DirectionPair directions_of = directions(LightView{45, -15, 0});
   for (double b = -74; b < 105; b += 0.5)
-    EXPECT_NEAR(pair.at(b).aspecular_deg,
-                paint::aspecular_angle_rad(directions_of.light, directions_of.view, turned({0, 0, 1}, {0, -1, 0}, b)) /
-                    kRadians,
-                1e-12);
+    EXPECT_NEAR(
+        pair.at(b).aspecular_deg,
+        paint::aspecular_angle_rad(directions_of.light, directions_of.view, turned({0, 0, 1}, {0, -1, 0}, b)) / kDegree,
+        1e-12);
   EXPECT_NEAR(pair.range_deg(1), 105, 1e-12);
   EXPECT_NEAR(pair.range_deg(-1), 75, 1e-12);
 }
@@ -141,9 +141,9 @@ TEST(TiltedPair, InPlaneTheAspecularAngleFallsByTwiceTheTiltTowardTheLight) {
 // A solid paint changes by the cosine alone: |k(b) - k(0)| M = threshold with k = cbrt(cos), M = |(L + 16, a, b)|.
 double closed_form(const color::Lab& lab, double light_deg, int sign, double threshold) {
   const double M = std::sqrt((lab.L + 16) * (lab.L + 16) + lab.a * lab.a + lab.b * lab.b);
-  const double k0 = std::cbrt(std::cos(light_deg * kRadians));
+  const double k0 = std::cbrt(std::cos(light_deg * kDegree));
   const double k = light_deg == 0 || sign < 0 ? k0 - threshold / M : k0 + threshold / M;
-  return std::abs(light_deg - std::acos(k * k * k) / kRadians);
+  return std::abs(light_deg - std::acos(k * k * k) / kDegree);
 }
 
 TEST(SolidPaint, MeetsTheClosedFormOfTheCosine) {
@@ -250,7 +250,7 @@ TEST(Index, OutOfPlaneAgreesWithVectors) {
     const LightView geometry{40, 10 + i * 0.5, i * 3.6};
     const paint::DirectionPair pair = directions(geometry);
     const double seam = i * 1.8;
-    const Vec3 axis{std::cos(seam * kRadians), -std::sin(seam * kRadians), 0};
+    const Vec3 axis{std::cos(seam * kDegree), -std::sin(seam * kDegree), 0};
     for (const double b : {-7.0, 0.3, 12.0})
       EXPECT_NEAR(difference_at(curve, TiltedPair::make(geometry, seam), b, k76),
                   difference_by_vectors(curve, pair.light, pair.view, axis, b, k76), 1e-10);

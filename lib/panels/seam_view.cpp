@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.h"
 #include "base/text.h"
 
 namespace goniochrome::panels {
@@ -89,7 +90,7 @@ render::Camera seam_camera_from(const mesh::Seam& seam, const Vec3& direction, d
   const Vec3 middle = 0.5 * (box.low + box.high);
   double radius = 0;
   for (const mesh::SeamPoint& p : seam.points) radius = std::max(radius, length(p.a - middle));
-  const double half = fov_deg / 2 * M_PI / 180;
+  const double half = fov_deg / 2 * kPi / 180;
   const double narrow = aspect < 1 ? std::atan(std::tan(half) * aspect) : half;
   render::Camera camera;
   camera.target = middle;

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <random>
 
+#include "base/angles.h"
 #include "base/parallel.h"
 #include "envmap/patch.h"
 #include "math/gauss_rule.h"
@@ -15,7 +15,6 @@ namespace goniochrome::prefilter {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kRelative = 1e-8;       // of the pieces that need recursion
 constexpr double kHorizonShare = 1e-10;  // of the flux; some 1e3 texels on a horizon err at random
 constexpr double kCoarse = 0.05;         // rad: texels beyond this are no small patches

@@ -6,7 +6,9 @@
 #include <functional>
 #include <random>
 
+#include "base/angles.h"
 #include "envmap/patch.h"
+#include "math/cosine_power.h"
 
 namespace goniochrome::prefilter {
 namespace {
@@ -85,7 +87,7 @@ TEST(Reference, rows_equal_the_recursion_texel_by_texel) {
           const envmap::Cell cell = {double(column), double(row), column + 1.0, row + 1.0};
           sum += envmap::lobe_over_cell(*env, cell, d, exponent, 1e-8, 1e-5) * Vec3{rgb[0], rgb[1], rgb[2]};
         }
-      sum = (exponent + 1) / (2 * M_PI) * sum;
+      sum = (exponent + 1) / (2 * kPi) * sum;
       const Vec3 got = reference_lobe(*env, d, exponent);
       // Texels of 2.8 deg and 2.4 deg, the largest that the rows take.
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(got[c] / sum[c], 1, 2e-6) << env->width() << " " << exponent;
@@ -103,10 +105,10 @@ TEST(Reference, one_texel_map_is_the_cosine_power) {
     for (int i = 0; i < 20; ++i) {
       const Vec3 d = normalized(texel + (i * 0.02) * random_direction(random));
       const double want =
-          5 * env.solid_angle(100, 60) * (exponent + 1) / (2 * M_PI) * envmap::cosine_power(dot(d, texel), exponent);
+          5 * env.solid_angle(100, 60) * (exponent + 1) / (2 * kPi) * math::cosine_power(dot(d, texel), exponent);
       const double angle = envmap::angle_between(d, texel);
       // The patch against its center: E h^2/24 (1 + E tan^2) with h = 1 deg, two ways.
-      const double h = M_PI / 180, spread = exponent * h * h / 6 * (1 + exponent * std::pow(std::tan(angle), 2)) + 1e-4;
+      const double h = kPi / 180, spread = exponent * h * h / 6 * (1 + exponent * std::pow(std::tan(angle), 2)) + 1e-4;
       if (spread < 0.5) {
         EXPECT_NEAR(reference_lobe(env, d, exponent).y / want, 1, spread) << exponent << " " << i;
       }
@@ -117,9 +119,9 @@ TEST(Reference, one_texel_map_is_the_cosine_power) {
 // Light from z > 0 alone, closed forms: E = 0: 1 - angle/pi; E = 1: (1 + cos)/2; E = 2: for a half-space, by parts.
 TEST(Reference, half_sphere_map_is_the_published_integral) {
   const envmap::Environment env = lat_long(90, [](const Vec3& d) { return d.x > 0 ? Vec3{1, 1, 1} : Vec3{0, 0, 0}; });
-  for (double angle = 0; angle <= M_PI + 1e-9; angle += M_PI / 12) {
+  for (double angle = 0; angle <= kPi + 1e-9; angle += kPi / 12) {
     const Vec3 d = {std::cos(angle), std::sin(angle), 0};
-    EXPECT_NEAR(reference_lobe(env, d, 0).x, 1 - angle / M_PI, 1e-6);
+    EXPECT_NEAR(reference_lobe(env, d, 0).x, 1 - angle / kPi, 1e-6);
     EXPECT_NEAR(reference_lobe(env, d, 1).x, (1 + std::cos(angle)) / 2, 1e-7);
   }
 }

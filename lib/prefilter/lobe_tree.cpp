@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "base/angles.h"
 #include "envmap/patch.h"
+#include "math/cosine_power.h"
 
 // Over a block in front of the horizon the kernel K(t) = t^E is taken to first order around the block's axis, which
 // integrates exactly with the block's flux F and moment M:
@@ -19,7 +20,6 @@ namespace goniochrome::prefilter {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kFloor = 1e-3;            // errors are relative to no less than this of the mean
 constexpr double kCoarseTolerance = 0.05;  // of the first walk
 
@@ -35,7 +35,7 @@ struct LobeTree::Walk {
   double tolerance;
   Vec3 per_flux;  // 1 / C, per channel
 
-  double power(double t) const { return envmap::cosine_power(t, exponent); }
+  double power(double t) const { return math::cosine_power(t, exponent); }
 };
 
 // Adds what a block gives, where that is known well enough; else says that its parts are wanted.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "base/angles.h"
 #include "base/hard_case_for_test.h"
 #include "prefilter/exact_lobe.h"
 #include "prefilter/internal/mirror.h"
@@ -57,7 +58,7 @@ TEST(LobeTree, HardCase_prefilter_exponent_every_exponent_is_within_its_toleranc
   std::mt19937_64 random(9);
   for (const envmap::Environment& env : environments()) {
     const LobeTree tree(env);
-    const Vec3 mean = (1 / (4 * M_PI)) * env.flux();
+    const Vec3 mean = (1 / (4 * kPi)) * env.flux();
     for (const double exponent : {0.0, 0.3, 1.0, 1.3, 6.0, 250.0, 1e5})
       for (const double tolerance : {1e-2, 1e-4})
         for (int i = 0; i < 3; ++i) {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <numeric>
 #include <optional>
 
+#include "base/angles.h"
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "prefilter/internal/arc_sums.h"
@@ -21,7 +21,6 @@ namespace goniochrome::prefilter {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kFloor = 1e-3;       // errors are relative to no less than this of the mean
 constexpr int kMostDegree = 1024;     // of harmonics: beyond, their grids take more than 400 MB
 constexpr int kWideDegree = 512;      // of the harmonics for lobes whose kernel bends at the horizon

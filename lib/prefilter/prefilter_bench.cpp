@@ -1,5 +1,6 @@
 // What prefiltering costs, each time beside its error, against the project's own vectorised sum over all pairs of
 // texels. GONIOCHROME_PROBE names the environment in place of a drawn sky.
+#include "base/angles.h"
 #include "prefilter/prefilter.h"
 
 #include <benchmark/benchmark.h>
@@ -57,7 +58,7 @@ const envmap::Environment& environment(int height) {
 // Of some of the directions, relative as the tolerance.
 double largest_error_of_sums(const envmap::Environment& env, const std::vector<Vec3>& directions,
                              const std::vector<float>& values) {
-  const Vec3 mean = (1 / (4 * M_PI)) * env.flux();
+  const Vec3 mean = (1 / (4 * kPi)) * env.flux();
   const std::size_t lobes = AllPairs::kExponents.size();
   double worst = 0;
   for (std::size_t i = 0; i < directions.size(); i += std::max<std::size_t>(1, directions.size() / 20))

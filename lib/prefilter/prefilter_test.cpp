@@ -8,8 +8,10 @@
 #include <functional>
 #include <random>
 
+#include "base/angles.h"
 #include "base/parallel.h"
 #include "envmap/patch.h"
+#include "math/cosine_power.h"
 #include "prefilter/exact_lobe.h"
 #include "prefilter/internal/bright_texels.h"
 #include "prefilter/internal/mirror.h"
@@ -96,15 +98,15 @@ TEST(Prefilter, one_texel_map_is_the_cosine_power) {
     return x == 77 && y == 50 ? Vec3{3, 3, 3} : Vec3{};
   });
   const Vec3 texel = env.direction(77, 50);
-  const double flux = 3 * env.solid_angle(77, 50), mean = flux / (4 * M_PI);
+  const double flux = 3 * env.solid_angle(77, 50), mean = flux / (4 * kPi);
   const envmap::PrefilteredEnvironment result = run(env, {{2, 6, 20}, false, 16, 1e-4});
   for (const envmap::PrefilteredLobe* lobe : all_of(result))
     each_texel(lobe->map, [&](const Vec3& d, const float* rgb) {
       const double e = lobe->exponent, t = dot(d, texel);
-      const double want = flux * (e + 1) / (2 * M_PI) * envmap::cosine_power(t, e);
+      const double want = flux * (e + 1) / (2 * kPi) * math::cosine_power(t, e);
       // A patch of 1 deg against its center: E h^2/24 (1 + E tan^2) two ways; at the horizon half a texel of flank.
-      const double h = M_PI / 180, bend = t > 0.1 ? e * h * h / 12 * (1 + e * (1 - t * t) / (t * t)) : 0;
-      const double flank = t > -h && t <= 0.1 ? flux * (e + 1) / (2 * M_PI) * std::pow(0.1 + h, e) * h * e : 0;
+      const double h = kPi / 180, bend = t > 0.1 ? e * h * h / 12 * (1 + e * (1 - t * t) / (t * t)) : 0;
+      const double flank = t > -h && t <= 0.1 ? flux * (e + 1) / (2 * kPi) * std::pow(0.1 + h, e) * h * e : 0;
       EXPECT_NEAR(rgb[1], want, (1e-4 + bend) * std::max(want, 1e-3 * mean) + flank) << e;
     });
 }
@@ -120,7 +122,7 @@ TEST(Prefilter, half_sphere_map_is_the_published_integral) {
       EXPECT_NEAR(rgb[0], want, tolerance * std::max(want, 0.5e-3));
     });
     each_texel(result.lobes[0].map, [&](const Vec3& d, const float* rgb) {
-      const double want = 1 - std::acos(d.x) / M_PI;
+      const double want = 1 - std::acos(d.x) / kPi;
       EXPECT_NEAR(rgb[0], want, tolerance * std::max(want, 0.5e-3));
     });
   }
@@ -200,7 +202,7 @@ TEST(Prefilter, HardCase_prefilter_exponent_the_center_rule_fails) {
     double sum = 0, norm = 0;
     for (int y = 0; y < env.height(); ++y)
       for (int x = 0; x < env.width(); ++x) {
-        const double k = env.solid_angle(x, y) * envmap::cosine_power(dot(d, env.direction(x, y)), 1e4);
+        const double k = env.solid_angle(x, y) * math::cosine_power(dot(d, env.direction(x, y)), 1e4);
         sum += k * env.radiance(x, y)[0], norm += k;
       }
     worst = std::max(worst, std::fabs(sum / norm / reference_lobe(env, d, 1e4).x - 1));

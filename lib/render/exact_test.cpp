@@ -6,6 +6,7 @@
 #include "base/hard_case_for_test.h"
 #include "base/parallel.h"
 #include "brdf/lobe_model.h"
+#include "math/cosine_power.h"
 #include "render/scenes_for_test.h"
 
 namespace goniochrome::render {
@@ -51,7 +52,7 @@ TEST(Reference, ConstantEnvironmentHasAClosedForm) {
   for (int row = 0; row < 64; ++row) {
     for (int column = 0; column < 128; ++column) {
       const Vec3 apart = env.direction(column, row) - n;
-      centers += env.solid_angle(column, row) * brdf::cos_power_from_versine(0.5 * dot(apart, apart), 1e5);
+      centers += env.solid_angle(column, row) * math::cos_power_from_versine(0.5 * dot(apart, apart), 1e5);
     }
   }
   EXPECT_GT(std::abs(centers * (1e5 + 1) / (2 * std::numbers::pi) - 1), 0.1);
@@ -96,7 +97,7 @@ TEST(Reference, SharpLobeSeesTexelsAsPatches) {
     for (int j = 0; j < kFine; ++j) {
       for (int i = 0; i < kFine; ++i) {
         const Vec3 d = env.direction_at(40 + (i + 0.5) / kFine, 30 + (j + 0.5) / kFine);
-        wanted += brdf::cos_power_from_versine(0.5 * dot(d - n, d - n), 1e4);
+        wanted += math::cos_power_from_versine(0.5 * dot(d - n, d - n), 1e4);
       }
     }
     wanted *= env.solid_angle(40, 30) / (kFine * kFine);

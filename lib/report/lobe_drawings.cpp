@@ -6,11 +6,11 @@
 #include <array>
 #include <cmath>
 
+#include "base/angles.h"
+
 namespace goniochrome::report {
 
 namespace {
-
-constexpr double kRadian = M_PI / 180;
 
 std::string title_text(const std::string& title) {
   return fmt::format("<text class=\"title\" x=\"12\" y=\"20\">{}</text>\n", escaped(title));
@@ -52,14 +52,14 @@ Drawing polar_drawing(const std::string& title, const std::vector<PolarSeries>& 
   for (int angle = -90; angle <= 90; angle += 30)
     out +=
         fmt::format("<path class=\"grid\" d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\"/>\n", x0, y0,
-                    x0 + largest * scale * std::sin(angle * kRadian), y0 - largest * scale * std::cos(angle * kRadian));
+                    x0 + largest * scale * std::sin(angle * kDegree), y0 - largest * scale * std::cos(angle * kDegree));
   double line = 40;
   for (const PolarSeries& s : series) {
     std::string path;
     for (std::size_t i = 0; i < s.radius.size(); ++i) {
       if (!std::isfinite(s.radius[i])) continue;
-      const double x = x0 + scale * s.radius[i] * std::sin(s.angle_deg[i] * kRadian);
-      const double y = y0 - scale * s.radius[i] * std::cos(s.angle_deg[i] * kRadian);
+      const double x = x0 + scale * s.radius[i] * std::sin(s.angle_deg[i] * kDegree);
+      const double y = y0 - scale * s.radius[i] * std::cos(s.angle_deg[i] * kDegree);
       if (s.points)
         out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"{}\"/>", x, y, s.color);
       else
@@ -80,14 +80,14 @@ Drawing surface_drawing(const std::string& title, const std::string& color,
   double largest = 0;
   for (int i = 0; i <= kRings; ++i)
     for (int j = 0; j <= kSpokes; ++j) {
-      const double t = 0.5 * M_PI * i / kRings, p = 2 * M_PI * j / kSpokes;
+      const double t = 0.5 * kPi * i / kRings, p = 2 * kPi * j / kSpokes;
       const Vec3 w = {std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)};
       const double r = std::max(0.0, radius(w));
       grid[i][j] = r * w;
       largest = std::max(largest, r);
     }
   if (largest <= 0) largest = 1;
-  const double tilt = 25 * kRadian;
+  const double tilt = 25 * kDegree;
   const double scale = std::min(width / 2.0 - 16, (height - 52.0) / (std::cos(tilt) + std::sin(tilt))) / largest;
   const double x0 = width / 2.0, y0 = height - 14 - scale * largest * std::sin(tilt);
   // Orthographic, from y = -infinity and 25 deg up; `depth` grows away from the eye.
@@ -162,9 +162,9 @@ Vec3 hemisphere_direction(double x, double y) {
   double r = 0, azimuth = 0;
   if (x != 0 || y != 0) {
     if (std::abs(x) > std::abs(y))
-      r = x, azimuth = M_PI / 4 * (y / x);
+      r = x, azimuth = kPi / 4 * (y / x);
     else
-      r = y, azimuth = M_PI / 2 - M_PI / 4 * (x / y);
+      r = y, azimuth = kPi / 2 - kPi / 4 * (x / y);
   }
   const double z = 1 - r * r, sine = r * std::sqrt(std::max(0.0, 2 - r * r));
   return {sine * std::cos(azimuth), sine * std::sin(azimuth), z};

@@ -1,6 +1,6 @@
 #include <cmath>
-#include <numbers>
 
+#include "base/angles.h"
 #include "base/parallel.h"
 #include "sketch/internal/sketch_common.h"
 #include "sketch/internal/sketch_search.h"
@@ -54,7 +54,7 @@ SketchFit sketch_environment(const SketchInput& input, const SketchPixels& pixel
   const auto give_up = [&](const std::string& reason) {
     const color::Rgb matt = search.matt();
     fall_back(matt, reason, fit);
-    weights.assign(weights.size(), color::Rgb{}), weights[0] = (1 / std::numbers::pi) * matt;
+    weights.assign(weights.size(), color::Rgb{}), weights[0] = (1 / kPi) * matt;
     judge();
     return fit;
   };

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
+#include "base/angles.h"
 #include "brdf/gloss.h"
 #include "brdf/lobe_model.h"
+#include "math/cosine_power.h"
 #include "math/least_squares.h"
+#include "math/statistics.h"
 
 namespace goniochrome::sketch {
 
@@ -21,16 +23,6 @@ constexpr double kLeastReading = 0.5;  // gloss units; less is noise
 const std::vector<double>& highlight_exponents() {
   static const std::vector<double> all = {32, 64, 128, 256, 512, 1024, 2048, 4096};
   return all;
-}
-
-double mean(const double* first, std::size_t count) {
-  return std::accumulate(first, first + count, 0.0) / static_cast<double>(count);
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // Median excess and mean angle of each bin that has samples.
@@ -48,7 +40,7 @@ std::vector<HighlightSample> binned(const std::vector<HighlightSample>& samples)
     std::vector<double> excess;
     for (const HighlightSample& s : bin) m.aspecular_deg += s.aspecular_deg, excess.push_back(s.excess);
     m.aspecular_deg /= static_cast<double>(bin.size());
-    m.excess = median(excess);
+    m.excess = math::median(excess);
     means.push_back(m);
   }
   return means;
@@ -68,9 +60,9 @@ double contrast_gloss(std::vector<double>& brightness) {
     std::nth_element(brightness.begin(), brightness.begin() + static_cast<std::ptrdiff_t>(at), brightness.end());
   };
   split(tenth);
-  const double darkest = mean(brightness.data(), tenth);
+  const double darkest = math::mean({brightness.data(), tenth});
   split(brightness.size() - tenth);
-  const double brightest = mean(brightness.data() + brightness.size() - tenth, tenth);
+  const double brightest = math::mean({brightness.data() + brightness.size() - tenth, tenth});
   return std::min(100.0, 100 * (brightest - darkest) / kFullContrast);
 }
 
@@ -81,14 +73,13 @@ std::optional<double> highlight_gloss(const std::vector<HighlightSample>& sample
   math::Matrix m(static_cast<int>(means.size()), static_cast<int>(exponents.size()));
   std::vector<double> excess;
   for (int i = 0; i < m.rows; ++i) {
-    for (int j = 0; j < m.columns; ++j)
-      m(i, j) = brdf::cos_power(means[i].aspecular_deg * std::numbers::pi / 180, exponents[j]);
+    for (int j = 0; j < m.columns; ++j) m(i, j) = math::cos_power(means[i].aspecular_deg * kPi / 180, exponents[j]);
     excess.push_back(means[i].excess);
   }
   const math::NonNegativeFit fit = math::nnls(m, excess);
   paint::LobeFit lobes;
   for (std::size_t j = 0; j < exponents.size(); ++j) {
-    const double weight = fit.x[j] / std::numbers::pi;  // what is seen is pi times the BRDF's gloss term
+    const double weight = fit.x[j] / kPi;  // what is seen is pi times the BRDF's gloss term
     lobes.lobes.push_back({exponents[j], {}, {weight, weight, weight}});
   }
   const brdf::GlossTable table(exponents);

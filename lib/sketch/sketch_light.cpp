@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numbers>
 
+#include "base/angles.h"
 #include "brdf/lobe_model.h"
+#include "math/cosine_power.h"
 #include "render/effects.h"
 #include "render/gbuffer.h"
 
@@ -13,7 +14,6 @@ namespace goniochrome::sketch {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kGloss_deg = 60;  // of the reading that a paint found carries
 constexpr int kMostSamples = 4;    // of a pixel; sixteen have its mean within their spread, 3 %
 
@@ -124,7 +124,7 @@ class Shading {
     const double coat = fresnel_ ? brdf::fresnel_dielectric(cos_half, brdf::kCoatIndex) : 1;
     column[0] += cos_i * weight(0, table_.light_slot(), c, 0) * white;
     for (std::size_t j = 0; j < basis_.exponents.size(); ++j) {
-      const double power = brdf::cos_power_from_versine(0.5 * dot(apart, apart), basis_.exponents[j]);
+      const double power = math::cos_power_from_versine(0.5 * dot(apart, apart), basis_.exponents[j]);
       const int flake = static_cast<int>(1 + 2 * j), gloss = flake + 1;
       column[flake] += cos_i * power * weight(flake, table_.directional_diffuse_slot(j), c, 0) * white;
       column[gloss] += coat * power * weight(gloss, table_.gloss_slot(j), c, 0) * white;

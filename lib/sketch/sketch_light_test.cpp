@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/angles.h"
 #include "render/aov.h"
 #include "render/effects.h"
 #include "render/renderer.h"
@@ -82,7 +83,7 @@ double difference(const Drawing& drawing, const SketchLight& light, double steep
     for (int x = 0; x < 40; ++x) {
       const float* pixel = drawing.buffers.image.pixel(x, y);
       const Vec3 normal{pixel[4], pixel[5], pixel[6]};
-      if (dot(normal, drawing.buffers.to_viewer(x, y)) < std::cos(steepest_deg * std::numbers::pi / 180)) continue;
+      if (dot(normal, drawing.buffers.to_viewer(x, y)) < std::cos(steepest_deg * kPi / 180)) continue;
       light.shade(static_cast<std::uint32_t>(40 * y + x), columns.data());
       color::Rgb sum;
       const color::ReflectionOperator op = light.reflection.value_or(color::component_wise());

@@ -3,11 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <random>
 
+#include "base/angles.h"
 #include "brdf/gloss.h"
 #include "brdf/lobe_model.h"
+#include "math/cosine_power.h"
 #include "sketch/internal/sketch_common.h"
 #include "sketch/internal/sketch_icc.h"
 #include "sketch/internal/sketch_solve.h"
@@ -40,10 +41,10 @@ TEST(SketchGloss, display_brightness_is_the_srgb_signal) {
 // fit's, whose mixture differs by some percent.
 TEST(SketchGloss, a_highlight_reads_like_its_lobe) {
   for (const double exponent : {90.0, 400.0, 1500.0}) {
-    const double weight = 0.04 * (exponent + 1) / (2 * std::numbers::pi);
+    const double weight = 0.04 * (exponent + 1) / (2 * kPi);
     std::vector<HighlightSample> samples;
     for (double t = 0.1; t < 15; t += 0.05)
-      samples.push_back({t, std::numbers::pi * weight * brdf::cos_power(t * std::numbers::pi / 180, exponent)});
+      samples.push_back({t, kPi * weight * math::cos_power(t * kPi / 180, exponent)});
     const brdf::GlossTable table({exponent});
     paint::LobeFit lobe;
     lobe.lobes.push_back({exponent, {}, {weight, weight, weight}});

@@ -1,11 +1,12 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <optional>
 
+#include "base/angles.h"
 #include "base/parallel.h"
 #include "brdf/lobe_model.h"
+#include "math/cosine_power.h"
 #include "paint/curve.h"
 #include "sketch/internal/sketch_common.h"
 #include "sketch/internal/sketch_curve.h"
@@ -106,10 +107,10 @@ SearchSamples search_samples(const std::vector<SketchCell>& cells, const formats
   samples.display = display;
   for (std::size_t i = 0; i < cells.size(); i += step) {
     const SketchCell& cell = cells[i];
-    const auto light = [&](double value) { samples.light.push_back(value * std::numbers::pi * Vec3{1, 1, 1}); };
+    const auto light = [&](double value) { samples.light.push_back(value * kPi * Vec3{1, 1, 1}); };
     light(cell.cos_i);
     for (const double exponent : basis.exponents) {
-      const double power = brdf::cos_power(cell.aspecular_deg * std::numbers::pi / 180, exponent);
+      const double power = math::cos_power(cell.aspecular_deg * kPi / 180, exponent);
       light(cell.cos_i * power), light(power);
     }
     light(0);  // the mirror image of a lamp is a point
@@ -168,10 +169,10 @@ color::Rgb face_of(const FoundPaint& found) {
 SketchCurve curve_of(const FoundPaint& found, const formats::Basis& basis) {
   SketchCurve curve;
   curve.exponents = basis.exponents;
-  curve.diffuse = std::numbers::pi * found.weights.front();
+  curve.diffuse = kPi * found.weights.front();
   for (std::size_t j = 0; j < basis.exponents.size(); ++j) {
-    curve.flake.push_back(std::numbers::pi * found.weights[1 + 2 * j]);
-    curve.glare.push_back(std::numbers::pi * found.weights[2 + 2 * j]);
+    curve.flake.push_back(kPi * found.weights[1 + 2 * j]);
+    curve.glare.push_back(kPi * found.weights[2 + 2 * j]);
   }
   return curve;
 }

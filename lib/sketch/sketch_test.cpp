@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/angles.h"
 #include "base/hard_case_for_test.h"
 #include "envmap/prefiltered.h"
 #include "sketch/internal/sketch_curve.h"
@@ -72,7 +73,7 @@ envmap::PrefilteredEnvironment glowing() {
 
 // The light of each part of the lobe model, without the view's effects.
 SketchLight light_of(const image::AovFile& file, const envmap::PrefilteredEnvironment& env) {
-  const double pi = std::numbers::pi, scale = 1 / file.white_luminance;
+  const double pi = kPi, scale = 1 / file.white_luminance;
   const auto shade = [&file, &env, pi, scale](std::uint32_t place, Vec3* column) {
     const int x = static_cast<int>(place) % file.image.width, y = static_cast<int>(place) / file.image.width;
     const Vec3 n = normal(file, x, y), wo = file.to_viewer(x, y);

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "brdf/lobe_model.h"
+#include "math/cosine_power.h"
 #include "paint/curve.h"
 #include "report/lobe_drawings.h"
 
@@ -121,7 +122,7 @@ report::Plot parts_plot(const paint::LobeFit& fit) {
   for (const paint::Lobe& lobe : fit.lobes) {
     if (std::isinf(lobe.exponent)) continue;
     const auto curve_of = [&](const color::Rgb& weight) {
-      return [&lobe, y = M_PI * luminance(weight)](double t) { return y * brdf::cos_power(t, lobe.exponent); };
+      return [&lobe, y = M_PI * luminance(weight)](double t) { return y * math::cos_power(t, lobe.exponent); };
     };
     if (lobe.directional_diffuse != color::Rgb{})
       add(fmt::format("E {:.3g}", lobe.exponent), curve_of(lobe.directional_diffuse), report::Series::Style::kLine);

@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.h"
 #include "brdf/isoline.h"
 #include "brdf/lobe_model.h"
 #include "fit/internal/brdf_spike.h"
 #include "fit/internal/target_rows.h"
+#include "math/statistics.h"
 
 namespace goniochrome::fit {
 
 namespace {
-
-constexpr double kRadian = M_PI / 180;
 
 // Angles in files are rounded to 1e-6 rad.
 constexpr double kSlack_deg = 1e-3;
@@ -30,7 +30,7 @@ bool mean_between(const std::vector<FlakeRow>& rows, double from_deg, double to_
   double count = 0;
   angle_deg = 0, color = {};
   for (const FlakeRow& row : rows) {
-    const double angle = row.at.aspecular_rad / kRadian;
+    const double angle = row.at.aspecular_rad / kDegree;
     if (angle < from_deg || angle >= to_deg) continue;
     ++count, angle_deg += angle, color += row.value;
   }
@@ -50,16 +50,16 @@ void add_extension(const FitOptions& options, const std::vector<double>& exponen
   const double importance = kShare * static_cast<double>(rows.fitted.size());
   for (const TargetRow& row :
        extension_to_specular(end, steepest_seen(exponents, rows.first_rad), rows.flake.white, importance))
-    rows.flake.rows.push_back({{row.angle_deg * kRadian, row.view_deg},
+    rows.flake.rows.push_back({{row.angle_deg * kDegree, row.view_deg},
                                row.reflectance_factor,
                                importance * (options.perceptual_weights ? color::lightness_slope(row.lightness) : 1),
                                true});
 }
 
+// The value below which that part of the others lies.
 double at_part(std::vector<double> values, double part) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+  const auto rank = static_cast<std::size_t>(part * static_cast<double>(values.size() - 1));
+  return math::ranked(std::move(values), rank);
 }
 
 std::vector<double> relative_errors(const BrdfRows& rows, const paint::LobeFit& fit) {
@@ -79,20 +79,14 @@ std::vector<double> color_errors(const BrdfRows& rows, const color::Xyz& white, 
   return errors;
 }
 
-double mean_of(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double v : values) sum += v;
-  return sum / static_cast<double>(values.size());
-}
-
 // The aspecular angle at which light at 45 deg shows, in plane, the flakes that mirror the light of a sample to its
 // viewer: those whose normal is as far from the coat's, seen in the coat. goniochrome-theory(7), ISOCHROMATIC LINES
 double aspecular_of_flakes_deg(const BrdfSample& sample) {
   const paint::DirectionPair pair = directions_of(sample);
   const double flake = brdf::flake_angles(pair.light, pair.view, brdf::kCoatIndex).flake_rad;
-  const double light_in_coat = std::asin(std::sin(45 * kRadian) / brdf::kCoatIndex);
+  const double light_in_coat = std::asin(std::sin(45 * kDegree) / brdf::kCoatIndex);
   const double sine = brdf::kCoatIndex * std::sin(2 * flake - light_in_coat);
-  return 45 + std::asin(std::clamp(sine, -1.0, 1.0)) / kRadian;
+  return 45 + std::asin(std::clamp(sine, -1.0, 1.0)) / kDegree;
 }
 
 }  // namespace
@@ -103,12 +97,12 @@ FiveAngleFigures five_angle_figures(const BrdfTarget& brdf, const paint::LobeFit
   for (const BrdfSample& sample : brdf.samples) {
     const double size = length(sample.value);
     if (std::max(sample.light_deg, sample.view_deg) > kSteepest_deg ||
-        sample.aspecular_rad < kGlareAngle_deg * kRadian || size <= 0)
+        sample.aspecular_rad < kGlareAngle_deg * kDegree || size <= 0)
       continue;
     const auto error = [&](double angle_deg) {
       return length(brdf::flake_reflectance_factor(lobes, angle_deg) - sample.value) / size;
     };
-    by_aspecular.push_back(error(sample.aspecular_rad / kRadian));
+    by_aspecular.push_back(error(sample.aspecular_rad / kDegree));
     by_flake.push_back(error(aspecular_of_flakes_deg(sample)));
   }
   if (by_flake.empty()) return {};
@@ -119,13 +113,13 @@ Result<BrdfRows> brdf_rows(const BrdfTarget& brdf, const color::Xyz& white, cons
                            const std::vector<double>& exponents) {
   BrdfRows rows;
   rows.flake.white = white;
-  rows.first_rad = M_PI;
+  rows.first_rad = kPi;
   for (const BrdfSample& sample : brdf.samples) {
     if (std::max(sample.light_deg, sample.view_deg) > options.steepest_deg + kSlack_deg) {
       ++rows.steep;
       continue;
     }
-    if (sample.aspecular_rad < kGlareAngle_deg * kRadian) {
+    if (sample.aspecular_rad < kGlareAngle_deg * kDegree) {
       rows.glare.push_back(sample);
       continue;
     }
@@ -157,7 +151,7 @@ void compare(const BrdfRows& rows, const color::Xyz& white, PaintFit& out) {
   if (out.lobes.views.empty()) return;
   paint::LobeFit together = out.lobes;
   together.views.clear();
-  out.report.views = ViewFigures{mean_of(de00), mean_of(color_errors(rows, white, together))};
+  out.report.views = ViewFigures{math::mean(de00), math::mean(color_errors(rows, white, together))};
 }
 
 }  // namespace goniochrome::fit

@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "brdf/lobe_angles.h"
+#include "base/angles.h"
 #include "brdf/lobe_model.h"
+#include "math/cosine_power.h"
 
 namespace goniochrome::fit {
 
 namespace {
-
-constexpr double kRadian = M_PI / 180;
 
 // A sharp lobe falls to half its peak or less where glare ends.
 constexpr double kSharpPart = 0.5;
@@ -20,14 +19,14 @@ constexpr double kReach = 0.01;
 
 // What a gloss weight of 1 counts there.
 double coat_scale(const BrdfSample& sample) {
-  return brdf::coat_fresnel(half_angle_cosine(sample)) / std::cos(sample.light_deg * kRadian);
+  return brdf::coat_fresnel(half_angle_cosine(sample)) / std::cos(sample.light_deg * kDegree);
 }
 
 // Positions of the sharp lobes, ascending.
 std::vector<std::size_t> sharp_lobes(const std::vector<paint::Lobe>& lobes) {
   std::vector<std::size_t> sharp;
   for (std::size_t j = 0; j < lobes.size(); ++j)
-    if (std::isfinite(lobes[j].exponent) && brdf::cos_power(kGlareAngle_deg * kRadian, lobes[j].exponent) <= kSharpPart)
+    if (std::isfinite(lobes[j].exponent) && math::cos_power(kGlareAngle_deg * kDegree, lobes[j].exponent) <= kSharpPart)
       sharp.push_back(j);
   return sharp;
 }
@@ -36,7 +35,7 @@ std::vector<std::size_t> sharp_lobes(const std::vector<paint::Lobe>& lobes) {
 std::vector<BrdfSample> samples_reached(const BrdfRows& rows, double widest_exponent) {
   std::vector<BrdfSample> reached = rows.glare;
   for (const BrdfSample& sample : rows.fitted)
-    if (brdf::cos_power(sample.aspecular_rad, widest_exponent) >= kReach) reached.push_back(sample);
+    if (math::cos_power(sample.aspecular_rad, widest_exponent) >= kReach) reached.push_back(sample);
   return reached;
 }
 
@@ -59,9 +58,9 @@ math::NonNegativeFit solved(const BrdfRows& rows, const std::vector<BrdfSample>&
     const double weight = color::lightness_slope(color::lab_from_rgb(sample.value, rows.flake.white).L);
     const double coat = coat_scale(sample);
     const color::Rgb rest = sample.value - shown_at(flake, sample);
-    const double log_cos = brdf::log_cosine(sample.aspecular_rad);
+    const double log_cos = math::log_cosine(sample.aspecular_rad);
     for (std::size_t j = 0; j < flake.lobes.size(); ++j)
-      power[j] = weight * brdf::power_of_cosine(log_cos, flake.lobes[j].exponent);
+      power[j] = weight * math::power_of_cosine(log_cos, flake.lobes[j].exponent);
     for (int c = 0; c < 3; ++c) {
       const int row = c * n + i;
       left[static_cast<std::size_t>(row)] = weight * rest[c];
@@ -76,7 +75,7 @@ math::NonNegativeFit solved(const BrdfRows& rows, const std::vector<BrdfSample>&
 }  // namespace
 
 color::Rgb shown_at(const paint::LobeFit& lobes, const BrdfSample& sample) {
-  return M_PI * brdf::brdf_by_angles(lobes, sample.aspecular_rad, sample.view_deg, coat_scale(sample));
+  return kPi * brdf::brdf_by_angles(lobes, sample.aspecular_rad, sample.view_deg, coat_scale(sample));
 }
 
 void add_spike(const BrdfRows& rows, const std::vector<double>& flake_too, PaintFit& out) {
@@ -92,17 +91,17 @@ void add_spike(const BrdfRows& rows, const std::vector<double>& flake_too, Paint
     for (std::size_t j = 0; j < columns.colored.size(); ++j)
       for (int c = 0; c < 3; ++c)
         to[columns.colored[j]].directional_diffuse[c] +=
-            spike.x[static_cast<std::size_t>(columns.colored_column(c, j))] / M_PI;
+            spike.x[static_cast<std::size_t>(columns.colored_column(c, j))] / kPi;
   };
   add_flake(lobes);
   for (paint::ViewLobes& view : out.lobes.views) add_flake(view.lobes);
   double albedo = 0;
   for (std::size_t j = 0; j < columns.gray.size(); ++j) {
     paint::Lobe& lobe = lobes[columns.gray[j]];
-    const double weight = spike.x[j] / M_PI;
+    const double weight = spike.x[j] / kPi;
     lobe.gloss = {weight, weight, weight};
     // Sharp lobes reflect 2 pi/(E+1) times the weight, since the cosines of light and viewer are equal across them.
-    albedo += 2 * M_PI / (lobe.exponent + 1) * weight;
+    albedo += 2 * kPi / (lobe.exponent + 1) * weight;
   }
   out.report.brdf->spike_albedo_45 = albedo;
 }

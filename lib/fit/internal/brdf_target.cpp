@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "base/angles.h"
 #include "paint/curve.h"
 
 namespace goniochrome::fit {
@@ -14,14 +15,14 @@ namespace {
 const color::ViewingCondition kWorkingCondition = {"D65", 2};
 
 double from_normal_deg(const Vec3& direction) {
-  return std::atan2(std::hypot(direction.x, direction.y), direction.z) * (180 / M_PI);
+  return std::atan2(std::hypot(direction.x, direction.y), direction.z) * (180 / kPi);
 }
 
 }  // namespace
 
 // The spherical triangle of mirror direction, viewer and normal gives the azimuth between light and viewer.
 paint::DirectionPair directions_of(const BrdfSample& sample) {
-  const double light = sample.light_deg * (M_PI / 180), view = sample.view_deg * (M_PI / 180);
+  const double light = sample.light_deg * kDegree, view = sample.view_deg * kDegree;
   const double across = std::sin(light) * std::sin(view);
   const double cosine = across > 0 ? (std::cos(light) * std::cos(view) - std::cos(sample.aspecular_rad)) / across : 1;
   const double azimuth = std::acos(std::clamp(cosine, -1.0, 1.0));
@@ -31,7 +32,7 @@ paint::DirectionPair directions_of(const BrdfSample& sample) {
 
 // r(wi).wo = 2 (n.wi)(n.wo) - wi.wo, and wi.wo = 2 cos^2 - 1 of half the angle.
 double half_angle_cosine(const BrdfSample& sample) {
-  const double normals = std::cos(sample.light_deg * (M_PI / 180)) * std::cos(sample.view_deg * (M_PI / 180));
+  const double normals = std::cos(sample.light_deg * kDegree) * std::cos(sample.view_deg * kDegree);
   return std::sqrt(std::clamp((1 + 2 * normals - std::cos(sample.aspecular_rad)) / 2, 0.0, 1.0));
 }
 
@@ -43,7 +44,7 @@ Result<BrdfTarget> brdf_target(const std::string& name, const brdf::MeasuredBrdf
   for (const paint::DirectionPair& pair : brdf.samples()) {
     brdf::MeasuredValue value = brdf.value(pair.light, pair.view);
     if (!value.measured || value.outside_deg > 0) continue;
-    for (double& f : value.f) f *= M_PI;
+    for (double& f : value.f) f *= kPi;
     const color::Lab lab = color::lab_from_xyz(meter.xyz(value.f), white);
     if (!std::isfinite(lab.L + lab.a + lab.b))
       return input_error("{}: its data give a value that is not finite: the file is damaged", name);

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "brdf/lobe_angles.h"
+#include "brdf/lobe_model.h"
 #include "fit/internal/deltae_fit.h"
+#include "math/cosine_power.h"
 
 namespace goniochrome::fit {
 
@@ -71,10 +72,10 @@ Norm norm_of(FitMethod method) {
 
 void FlakeModel::shape(const FlakePoint& at, double* columns) const {
   const int width = columns_per_view();
-  const double log_cos = brdf::log_cosine(at.aspecular_rad);
+  const double log_cos = math::log_cosine(at.aspecular_rad);
   const auto lobes = [&](double* first, double share) {
     first[0] = share;
-    for (int j = 1; j < width; ++j) first[j] = share * brdf::power_of_cosine(log_cos, exponents[j - 1]);
+    for (int j = 1; j < width; ++j) first[j] = share * math::power_of_cosine(log_cos, exponents[j - 1]);
   };
   if (views_deg.empty()) return lobes(columns, 1);
   std::fill(columns, columns + this->columns(), 0.0);

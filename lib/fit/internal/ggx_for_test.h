@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/angles.h"
 #include "fit/ceres_options.h"
 #include "fit/internal/brdf_target.h"
 
@@ -25,7 +26,7 @@ struct GgxModel {
     const Vec3 half = normalized(light + view);
     const double a2 = roughness * roughness, d = half.z * half.z * (a2 - 1) + 1;
     const auto g1 = [&](double c) { return 2 / (1 + std::sqrt(1 + a2 * (1 / (c * c) - 1))); };
-    return a2 / (M_PI * d * d) * g1(light.z) * g1(view.z) / (4 * light.z * view.z);
+    return a2 / (kPi * d * d) * g1(light.z) * g1(view.z) / (4 * light.z * view.z);
   }
   double grazing(const Vec3& light, const Vec3& view) const {
     return kind.schlick ? std::pow(1 - std::min(1.0, length(light + view) / 2), 5) : 0;
@@ -44,7 +45,7 @@ struct GgxCost final : public ceres::CostFunction {
     mutable_parameter_block_sizes()->push_back(7);
     for (const BrdfSample& sample : s) {
       pairs.push_back(directions_of(sample));
-      weight.push_back(k.logarithmic ? 1 : M_PI * color::lightness_slope(color::lab_from_rgb(sample.value, white).L));
+      weight.push_back(k.logarithmic ? 1 : kPi * color::lightness_slope(color::lab_from_rgb(sample.value, white).L));
     }
   }
   bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
@@ -59,7 +60,7 @@ struct GgxCost final : public ceres::CostFunction {
                            (2 * kStep);
       const color::Rgb predicted = m.f(light, view);
       for (int c = 0; c < 3; ++c) {
-        const double wanted = std::max(samples[i].value[c], 0.0) / M_PI;
+        const double wanted = std::max(samples[i].value[c], 0.0) / kPi;
         const double w = model.kind.logarithmic ? 1 / ((1 + predicted[c]) * std::log(10)) : weight[i];
         residuals[3 * i + c] =
             model.kind.logarithmic ? std::log10((1 + predicted[c]) / (1 + wanted)) : w * (predicted[c] - wanted);

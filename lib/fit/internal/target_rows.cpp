@@ -3,15 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.h"
 #include "brdf/lobe_model.h"
 #include "fit/paint_fit.h"
+#include "math/cosine_power.h"
 
 namespace goniochrome::fit {
 
 namespace {
 
 constexpr double kStep_deg = 5;
-constexpr double kRadian = M_PI / 180;
 
 // Inferred rows steer the weights between and below the readings without competing with them: all of them together
 // weigh about half as much as one reading.
@@ -66,13 +67,13 @@ void add_readings(const color::Xyz& white, bool by_view, Target& target) {
 
 double view_angle_deg(const paint::Geometry& geometry) {
   const Vec3 view = paint::directions(geometry).view;
-  return std::atan2(std::hypot(view.x, view.y), view.z) / kRadian;
+  return std::atan2(std::hypot(view.x, view.y), view.z) / kDegree;
 }
 
 double steepest_seen(const std::vector<double>& exponents, double first_rad) {
   double steepest = 0;
   for (const double e : exponents)
-    if (brdf::cos_power(first_rad, e) >= kSeenPart) steepest = std::max(steepest, e);
+    if (math::cos_power(first_rad, e) >= kSeenPart) steepest = std::max(steepest, e);
   return steepest;
 }
 
@@ -82,7 +83,7 @@ double steepest_seen(const std::vector<double>& exponents, double first_rad) {
 // lobes can have, and it leaves no reason for a sharp lobe with an arbitrary weight.
 std::vector<TargetRow> extension_to_specular(const HighlightEnd& end, double steepest, const color::Xyz& white,
                                              double importance) {
-  const double cos_a = std::cos(end.a_deg * kRadian), cos_b = std::cos(end.b_deg * kRadian);
+  const double cos_a = std::cos(end.a_deg * kDegree), cos_b = std::cos(end.b_deg * kDegree);
   color::Rgb exponent;
   for (int c = 0; c < 3; ++c) {
     if (end.at_a[c] <= end.at_b[c] || cos_b <= 0) continue;
@@ -92,7 +93,7 @@ std::vector<TargetRow> extension_to_specular(const HighlightEnd& end, double ste
   std::vector<TargetRow> rows;
   for (double t = 0; t < end.a_deg - kStep_deg / 2; t += kStep_deg) {
     TargetRow row = {t, usual_view_deg(t), end.at_a, importance, 0};
-    for (int c = 0; c < 3; ++c) row.reflectance_factor[c] *= std::pow(std::cos(t * kRadian) / cos_a, exponent[c]);
+    for (int c = 0; c < 3; ++c) row.reflectance_factor[c] *= std::pow(std::cos(t * kDegree) / cos_a, exponent[c]);
     row.lightness = color::lab_from_rgb(row.reflectance_factor, white).L;
     rows.push_back(row);
   }
@@ -140,7 +141,7 @@ Result<Target> target_rows(const paint::Paint& paint, paint::TargetCurve::Kind k
   };
   end.at_a = color_at(end.a_deg), end.at_b = color_at(end.b_deg);
   std::ranges::move(
-      extension_to_specular(end, steepest_seen(exponents, target.first_deg * kRadian), white, kExtendedImportance),
+      extension_to_specular(end, steepest_seen(exponents, target.first_deg * kDegree), white, kExtendedImportance),
       std::back_inserter(target.rows));
   return target;
 }

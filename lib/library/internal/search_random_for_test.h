@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "base/angles.h"
 #include "paint/paint.h"
 
 namespace goniochrome::library::random_paints {
@@ -18,7 +18,7 @@ inline std::vector<color::Lab> colors(std::mt19937_64& random, const std::vector
     return std::uniform_real_distribution<double>(low, high)(random);
   };
   const auto normal = [&](double sigma) { return std::normal_distribution<double>(0, sigma)(random); };
-  const double chroma = std::abs(normal(30)), hue = uniform(0, 2 * std::numbers::pi), L = uniform(10, 110);
+  const double chroma = std::abs(normal(30)), hue = uniform(0, 2 * kPi), L = uniform(10, 110);
   const double flop_L = L * uniform(0.05, 1), flop_chroma = chroma * uniform(0.1, 1.1), flop_hue = hue + normal(0.15);
   const double travel = uniform(45, 110);
   std::vector<color::Lab> result;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "base/angles.h"
 #include "base/parallel.h"
 #include "library/internal/search_bound.h"
 #include "library/internal/search_random_for_test.h"
@@ -193,14 +194,14 @@ class Bound : public testing::Test {
   // Colors as they come, and those that strain the formula: grays, near grays, blues where hue and chroma are coupled,
   // hues half a turn apart, far outside of any paint, on the axes.
   color::Lab color() {
-    const double L = uniform(-5, 160), hue = uniform(0, 2 * std::numbers::pi);
+    const double L = uniform(-5, 160), hue = uniform(0, 2 * kPi);
     switch (random_() % 8) {
       case 0:
         return {L, 0, 0};
       case 1:
         return {L, uniform(-1e-9, 1e-9), uniform(-1e-9, 1e-9)};
       case 2:
-        return polar(L, uniform(0, 150), (275 + uniform(-40, 40)) * std::numbers::pi / 180);
+        return polar(L, uniform(0, 150), (275 + uniform(-40, 40)) * kPi / 180);
       case 3:
         return {uniform(49.9, 50.1), uniform(-1, 1), uniform(-1, 1)};
       case 4:

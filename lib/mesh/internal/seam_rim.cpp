@@ -7,13 +7,15 @@
 #include <numeric>
 #include <set>
 
+#include "base/angles.h"
+
 namespace goniochrome::mesh {
 
 namespace {
 
-constexpr double kFold_rad = 30 * M_PI / 180;
-constexpr double kFlat_rad = 2 * M_PI / 180;  // less is rounding of the file, whatever the size of the faces
-constexpr double kLeastPatch = 0.01;          // of the part's area
+constexpr double kFold_rad = 30 * kPi / 180;
+constexpr double kFlat_rad = 2 * kPi / 180;  // less is rounding of the file, whatever the size of the faces
+constexpr double kLeastPatch = 0.01;         // of the part's area
 
 using Index = std::uint32_t;
 

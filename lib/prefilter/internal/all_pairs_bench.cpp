@@ -6,12 +6,12 @@
 #include <hwy/highway.h>
 
 #include <array>
-#include <numbers>
 
 #if HWY_ARCH_X86
 #include <xmmintrin.h>
 #endif
 
+#include "base/angles.h"
 #include "base/parallel.h"
 
 // Powers by repeated squaring: twelve squares serve every exponent, and each takes a product for each further bit.
@@ -128,7 +128,7 @@ std::vector<float> AllPairs::lobes(const std::vector<Vec3>& directions) const {
       float* rgb = &values[3 * kExponents.size() * i];
       HWY_DYNAMIC_DISPATCH(SumSeven)(texels, d, rgb);
       for (std::size_t k = 0; k < 3 * kExponents.size(); ++k)
-        rgb[k] *= static_cast<float>((kExponents[k / 3] + 1) / (2 * std::numbers::pi));
+        rgb[k] *= static_cast<float>((kExponents[k / 3] + 1) / (2 * kPi));
     }
   });
   return values;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "base/angles.h"
 #include "base/parallel.h"
 #include "math/gauss_rule.h"
 
@@ -18,7 +18,6 @@ namespace goniochrome::prefilter {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kRowsAtOnce = 16;
 
 // A_j of the three running sums, and L_j; per channel.

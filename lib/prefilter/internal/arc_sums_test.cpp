@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "base/angles.h"
 #include "prefilter/exact_lobe.h"
 #include "prefilter/internal/bright_texels.h"
 
@@ -42,11 +43,11 @@ double largest_error(const envmap::Environment& env, double exponent, double tol
 // by at most h^3/72 of its jump at two points (E = 1) and by h^2/4 over the points (E = 0), of a sum of pi.
 TEST(ArcSums, noise_keeps_the_tolerance) {
   const envmap::Environment env = noise(60, 2);
-  const double h = M_PI / 60;
+  const double h = kPi / 60;
   EXPECT_LE(largest_error(env, 1, 1e-4), std::sqrt(120) * h * h * h / 72);
   EXPECT_LE(largest_error(env, 1, 1e-6), 0.5 * std::sqrt(120) * h * h * h / 72);
-  EXPECT_LE(largest_error(env, 0, 1e-3), std::sqrt(120) * h * h / 4 / M_PI / 4);
-  EXPECT_LE(largest_error(env, 0, 1e-4), std::sqrt(120) * h * h / 4 / M_PI / 16);
+  EXPECT_LE(largest_error(env, 0, 1e-3), std::sqrt(120) * h * h / 4 / kPi / 4);
+  EXPECT_LE(largest_error(env, 0, 1e-4), std::sqrt(120) * h * h / 4 / kPi / 16);
 }
 
 // The textbook sum over texel centers is the control: a center is above the horizon or it is not.
@@ -58,7 +59,7 @@ TEST(ArcSums, texel_centers_fail) {
     for (int y = 0; y < env.height(); ++y)
       for (int x = 0; x < env.width(); ++x)
         sum += (dot(d, env.direction(x, y)) > 0 ? 1 : 0) * env.solid_angle(x, y) * env.radiance(x, y)[1];
-    worst = std::max(worst, std::fabs(sum / (2 * M_PI) / reference_lobe(env, d, 0).y - 1));
+    worst = std::max(worst, std::fabs(sum / (2 * kPi) / reference_lobe(env, d, 0).y - 1));
   }
   EXPECT_GT(worst, 2e-4);
   EXPECT_LT(largest_error(env, 0, 1e-4), worst / 3);

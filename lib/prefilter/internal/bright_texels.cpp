@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <numeric>
 
+#include "base/angles.h"
 #include "base/parallel.h"
 #include "envmap/patch.h"
+#include "math/cosine_power.h"
 #include "math/gauss_rule.h"
 #include "prefilter/internal/lobe_rows.h"
 
@@ -15,7 +16,6 @@ namespace goniochrome::prefilter {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kBright = 50;  // times the mean
 
 float bright_limit(const envmap::Environment& env) {
@@ -111,7 +111,7 @@ Vec3 BrightTexels::lobe(const Vec3& d, double exponent) const {
     const double t = dot(d, texel.centroid);
     if (std::fabs(t) > reach * texel.radius_rad) continue;
     for (std::size_t k = points.per_texel * i; k < points.per_texel * (i + 1); ++k) {
-      const double power = envmap::cosine_power(dot(d, {points.x[k], points.y[k], points.z[k]}), exponent);
+      const double power = math::cosine_power(dot(d, {points.x[k], points.y[k], points.z[k]}), exponent);
       for (int c = 0; c < 3; ++c) total[c] -= power * points.flux[3 * k + c];
     }
     total += envmap::linear_mean(t, dot(d, texel.across), dot(d, texel.down), exponent) * texel.flux;

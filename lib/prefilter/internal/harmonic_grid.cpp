@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "base/angles.h"
 #include "base/parallel.h"
 #include "math/fft.h"
 #include "math/gauss_rule.h"
@@ -123,7 +123,6 @@ namespace {
 using harmonic_grid::Bump;
 using harmonic_grid::Grid;
 
-constexpr double kPi = std::numbers::pi;
 constexpr std::size_t kOrdersAtOnce = 8;
 constexpr std::size_t kRowsAtOnce = 16;
 

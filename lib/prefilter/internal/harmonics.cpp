@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "base/angles.h"
 #include "base/parallel.h"
 #include "math/fft.h"
 #include "math/legendre.h"
@@ -21,7 +21,6 @@ namespace goniochrome::prefilter {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr std::size_t kRowsAtOnce = 16;   // 48 real series, two to a complex one
 constexpr std::size_t kOrdersAtOnce = 8;  // 24 complex series
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "base/angles.h"
 #include "base/parallel.h"
 #include "envmap/cube_map.h"
 #include "prefilter/internal/overlap.h"
@@ -12,8 +12,6 @@
 namespace goniochrome::prefilter {
 
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 // The cell of a cube.
 SphereQuad cube_cell(const envmap::SphereGrid& grid, int column, int line) {

@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "base/angles.h"
 #include "envmap/cube_map.h"
 #include "math/gauss_rule.h"
 
 namespace goniochrome::prefilter {
 
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 double azimuth_of(const Vec3& d) {
   return std::atan2(d.x, -d.z);

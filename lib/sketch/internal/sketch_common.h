@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "math/statistics.h"
 #include "sketch/internal/sketch_search.h"
 #include "sketch/sketch.h"
 
@@ -23,9 +24,7 @@ void judge_sketch(std::size_t count, bool all, Difference&& difference, SketchFi
   for (const float value : values) squares += static_cast<double>(value) * value;
   fit.rms_de76 = std::sqrt(squares / static_cast<double>(values.size()));
   if (all) fit.de76 = values;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  fit.median_de76 = *middle;
+  fit.median_de76 = math::median(std::move(values));
 }
 
 // Lab of a working-space color relative to white 1, as paints carry it.

@@ -4,10 +4,12 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "base/angles.h"
 #include "base/parallel.h"
 #include "brdf/lobe_model.h"
+#include "math/cosine_power.h"
+#include "math/statistics.h"
 #include "sketch/internal/sketch_solve.h"
 
 namespace goniochrome::sketch {
@@ -24,12 +26,6 @@ constexpr double kDarkest = 0.004;         // of a channel, for its weight; L* 4
 constexpr int kIterations = 12;
 constexpr std::size_t kScannedCells = 500;  // for the travel alone
 
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // The mean of the samples within three deviations of the median in every channel.
 SketchCell robust_mean(const SketchSample* samples, std::size_t count) {
   const std::size_t step = (count + kMostPerCell - 1) / kMostPerCell;
@@ -38,9 +34,9 @@ SketchCell robust_mean(const SketchSample* samples, std::size_t count) {
   for (int c = 0; c < 3; ++c) {
     values.clear(), apart.clear();
     for (std::size_t i = 0; i < count; i += step) values.push_back(samples[i].seen[c] / samples[i].cos_i);
-    const double middle = median(values);
+    const double middle = math::median(values);
     for (const double value : values) apart.push_back(std::abs(value - middle));
-    const double reach = 3 * kSigmas * median(apart) + 1e-3 * std::abs(middle) + 1e-6;
+    const double reach = 3 * kSigmas * math::median(apart) + 1e-3 * std::abs(middle) + 1e-6;
     low[c] = middle - reach, high[c] = middle + reach;
   }
   SketchCell cell;
@@ -83,12 +79,9 @@ struct Weighing {
   // first, then Cauchy's. Returns the cost, sum of count log(1 + (r/s)^2) with s fixed, over the sum of counts.
   template <class Light>
   double reweigh(const std::vector<SketchCell>& cells, Light&& light, bool absolute) {
-    std::vector<double> residual(cells.size()), sorted;
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      residual[i] = length(lightness[i] * (light(i) - cells[i].seen));
-      sorted.push_back(residual[i]);
-    }
-    const double scale = kTuning * std::max(kSigmas * median(sorted), kLeastScale);
+    std::vector<double> residual(cells.size());
+    for (std::size_t i = 0; i < cells.size(); ++i) residual[i] = length(lightness[i] * (light(i) - cells[i].seen));
+    const double scale = kTuning * std::max(kSigmas * math::median(residual), kLeastScale);
     double cost = 0, all = 0;
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const double r = residual[i] / scale, fixed = residual[i];
@@ -167,9 +160,9 @@ constexpr double kMostGrowth = 2;      // of a lobe from the first angle seen to
 // Whether the angles seen tell of a lobe this sharp. One that has all but vanished there would take any weight, and
 // follow the noise of the first cells up into any color.
 bool is_lobe_seen(double exponent, double from_deg) {
-  const double asked = std::min(from_deg, kShownFrom_deg) * std::numbers::pi / 180;
-  const double seen = from_deg * std::numbers::pi / 180;
-  return kMostGrowth * brdf::cos_power(seen, exponent) >= brdf::cos_power(asked, exponent);
+  const double asked = std::min(from_deg, kShownFrom_deg) * kPi / 180;
+  const double seen = from_deg * kPi / 180;
+  return kMostGrowth * math::cos_power(seen, exponent) >= math::cos_power(asked, exponent);
 }
 
 // `from_deg`: the first angle of all cells.
@@ -178,7 +171,7 @@ std::array<double, kLobeColumns> lobe_row(const SketchCell& cell, double from_de
   std::array<double, kLobeColumns> row{cell.cos_i};
   for (std::size_t j = 0; j < exponents.size(); ++j) {
     if (!is_lobe_seen(exponents[j], from_deg)) continue;
-    const double power = brdf::cos_power(cell.aspecular_deg * std::numbers::pi / 180, exponents[j]);
+    const double power = math::cos_power(cell.aspecular_deg * kPi / 180, exponents[j]);
     row[1 + j] = cell.cos_i * power;
     if (j >= kFirstGloss) row[10 + j - kFirstGloss] = power;
   }
@@ -225,15 +218,14 @@ color::Rgb SketchCurve::reflectance(double aspecular_deg) const {
   }
   color::Rgb sum = diffuse;
   for (std::size_t j = 0; j < exponents.size(); ++j)
-    sum += brdf::cos_power(aspecular_deg * std::numbers::pi / 180, exponents[j]) * flake[j];
+    sum += math::cos_power(aspecular_deg * kPi / 180, exponents[j]) * flake[j];
   return sum;
 }
 
 color::Rgb SketchCurve::gloss(double aspecular_deg) const {
   color::Rgb sum;
   for (std::size_t j = 0; j < glare.size(); ++j)
-    if (glare[j] != color::Rgb{})
-      sum += brdf::cos_power(aspecular_deg * std::numbers::pi / 180, exponents[j]) * glare[j];
+    if (glare[j] != color::Rgb{}) sum += math::cos_power(aspecular_deg * kPi / 180, exponents[j]) * glare[j];
   return sum;
 }
 

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "base/angles.h"
 #include "brdf/lobe_model.h"
 #include "envmap/prefiltered.h"
 #include "fit/paint_fit.h"
+#include "math/cosine_power.h"
 #include "paint/curve.h"
 #include "sketch/internal/sketch_common.h"
 #include "sketch/internal/sketch_solve.h"
@@ -61,7 +62,7 @@ FreeLobeFit::FreeLobeFit(const formats::Basis& basis, const brdf::GlossTable& gl
                          const std::vector<color::Lab>& target)
     : basis_(basis), gloss_(gloss), samples_(samples), target_(target) {
   for (const double exponent : basis.exponents)
-    flake_lobes_ += brdf::cos_power(paint::kFaceAngle_deg * std::numbers::pi / 180, exponent) >= fit::kSeenPart ? 1 : 0;
+    flake_lobes_ += math::cos_power(paint::kFaceAngle_deg * kPi / 180, exponent) >= fit::kSeenPart ? 1 : 0;
 }
 
 std::vector<FreeLobeFit::Unknown> FreeLobeFit::unknowns(bool free_gloss) const {

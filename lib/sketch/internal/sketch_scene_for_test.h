@@ -2,9 +2,9 @@
 #pragma once
 
 #include <cmath>
-#include <numbers>
 #include <random>
 
+#include "base/angles.h"
 #include "brdf/lobe_model.h"
 #include "fit/paint_fit.h"
 #include "paint/geometry.h"
@@ -20,7 +20,7 @@ inline const formats::Basis& basis() {
 // Designed metallics: lighter and mostly more chromatic at the face, travel 35 to 110 deg, any gloss.
 inline paint::Paint random_paint(std::mt19937_64& random) {
   const auto in = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
-  const double hue = in(0, 2 * std::numbers::pi), chroma = in(5, 55), light = in(45, 110), dark = in(12, 0.75 * light);
+  const double hue = in(0, 2 * kPi), chroma = in(5, 55), light = in(45, 110), dark = in(12, 0.75 * light);
   const double flop_chroma = in(0.3, 0.9) * chroma * std::min(1.0, dark / 30), flop_hue = hue + in(-0.4, 0.4);
   paint::Paint paint;
   paint.appearance = paint::Appearance{{light, chroma * std::cos(hue), chroma * std::sin(hue)},
@@ -64,8 +64,7 @@ inline image::AovFile sphere(int size, const Vec3& to_light) {
       if (z2 <= 0) continue;
       const Vec3 n{u, v, std::sqrt(z2)};
       p[3] = 1;
-      p[4] =
-          static_cast<float>(paint::aspecular_angle_rad(file.light, file.to_viewer(x, y), n) * 180 / std::numbers::pi);
+      p[4] = static_cast<float>(paint::aspecular_angle_rad(file.light, file.to_viewer(x, y), n) * 180 / kPi);
       p[5] = static_cast<float>(std::max(0.0, dot(n, file.light)));
       p[6] = 1;
       for (int c = 0; c < 3; ++c) p[7 + c] = static_cast<float>(n[c]);
@@ -88,7 +87,7 @@ inline void shade(image::AovFile& file, const paint::LobeFit& fit) {
     for (int x = 0; x < file.image.width; ++x) {
       if (file.image.pixel(x, y)[6] == 0) continue;
       const Vec3 n = normal(file, x, y);
-      const double scale = std::numbers::pi * std::max(0.0, dot(n, file.light));
+      const double scale = kPi * std::max(0.0, dot(n, file.light));
       set(file, x, y, scale * brdf::brdf(fit, file.light, file.to_viewer(x, y), n));
     }
 }

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <span>
 
+#include "base/angles.h"
 #include "base/parallel.h"
 #include "brdf/lobe_model.h"
 #include "paint/curve.h"
@@ -150,7 +150,7 @@ color::Rgb LobeSearch::matt() const {
     up += samples_.importance[i] * (samples_.seen[i] * d), down += samples_.importance[i] * (d * d);
   }
   color::Rgb color;
-  for (int c = 0; c < 3; ++c) color[c] = down[c] > 0 ? std::numbers::pi * up[c] / down[c] : 0;
+  for (int c = 0; c < 3; ++c) color[c] = down[c] > 0 ? kPi * up[c] / down[c] : 0;
   return color;
 }
 

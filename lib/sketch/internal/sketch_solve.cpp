@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "math/least_squares.h"
+#include "math/statistics.h"
 
 namespace goniochrome::sketch {
 
@@ -81,10 +82,7 @@ void take_errors(const Eigen::MatrixXd& gram, double variance, SearchResult& res
 std::vector<double> robust_weights(const std::vector<double>& r, const std::vector<double>& importance) {
   std::vector<double> lengths(r.size() / 3);
   for (std::size_t i = 0; i < lengths.size(); ++i) lengths[i] = group_length(r, i);
-  std::vector<double> sorted = lengths;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  const double scale = kTuning * std::max(kSigmas * *middle, kLeastScale);
+  const double scale = kTuning * std::max(kSigmas * math::median(lengths), kLeastScale);
   std::vector<double> weights = importance;
   for (std::size_t i = 0; i < weights.size(); ++i) weights[i] /= 1 + (lengths[i] / scale) * (lengths[i] / scale);
   return weights;
