@@ -37,14 +37,14 @@ refused() {
 }
 
 @test "verdicts, numbers and pictures" {
-  python3 "$BATS_TEST_DIRNAME/accuracy_test.py"
+  /usr/bin/python3 "$BATS_TEST_DIRNAME/accuracy_test.py"
 }
 
 @test "two studies: a page that holds together, and every time" {
   run report search basis --quick --bin "$(dirname "$(command -v draw-plot)")" -o out
   echo "$output"
   [ "$status" -eq 0 ]
-  python3 - out <<'PY'
+  /usr/bin/python3 - out <<'PY'
 import csv, html.parser, pathlib, sys
 
 out = pathlib.Path(sys.argv[1])

@@ -1,7 +1,7 @@
-"""How numbers are written."""
+"""How the test data write numbers."""
 
 
 def shortest(value):
-    """The shortest decimal that reads back as `value`, without a trailing `.0`."""
+    """The shortest decimal that is read back as `value`, without `.0` at its end."""
     text = repr(value)
     return text[:-2] if text.endswith(".0") else text
