@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# scripts/accuracy-report from outside: its options, the page, the readings, and when it fails.
+# scripts/accuracy-report from outside: its options, its page and its readings.
 
 bats_require_minimum_version 1.5.0
 
@@ -11,7 +11,7 @@ setup() {
   cd "$BATS_TEST_TMPDIR" || exit 1
 }
 
-# refused STATUS MESSAGE OPTION...: told why, and nothing is written.
+# refused STATUS MESSAGE OPTION...: the options are refused with this message, and nothing is written.
 refused() {
   local wanted=$1 message=$2
   shift 2
@@ -40,7 +40,7 @@ refused() {
   /usr/bin/python3 "$BATS_TEST_DIRNAME/accuracy_test.py"
 }
 
-@test "two studies: a page that holds together, and every time" {
+@test "two studies make a consistent page with the time of every run" {
   run report search basis --quick --bin "$(dirname "$(command -v draw-plot)")" -o out
   echo "$output"
   [ "$status" -eq 0 ]

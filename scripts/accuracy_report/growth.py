@@ -3,12 +3,11 @@
 import math
 import statistics
 
-from .scene import CAMERA
 from .inverse import sketches
+from .prefilter import EXPONENTS
+from .scene import CAMERA
 from .search import write_library
 from .study import Figure, Reading, Study
-
-EXPONENTS = "6,20,70,250,900,3000"  # The diffuse lobe, whose exponent is 1, is always there.
 
 
 def write_probe(path, height):

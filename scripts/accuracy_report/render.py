@@ -2,7 +2,7 @@
 
 import functools
 
-from make_testdata import bases
+from shared.basis import basis_xml
 
 from .scene import Scene, Settings
 from .scenes import Stage
@@ -69,7 +69,7 @@ def staged(run, stage, scene, method, *more):
 def textured(run):
     """Readings of a texture whose lobes look into a cube for each exponent, or into the levels of one cube."""
     basis = run.work / "quarters.basis.xml"
-    basis.write_bytes(bases.basis_xml("quarters", QUARTERS))
+    basis.write_bytes(basis_xml("quarters", QUARTERS))
     stage = Stage(run, basis)
     return [r for maps in ("cubes", "mip")
             for r in staged(run, stage, ("jet_black", "texture", "studio"), maps, "--texture-maps", maps)]

@@ -2,6 +2,7 @@
 
 import dataclasses
 
+from shared.basis import basis_xml
 from shared.tools import Failed
 
 # Bases beside those of testdata. What a picture misses most is light that changes across the part of a lobe above the horizon.
@@ -50,12 +51,6 @@ class Settings:
                 f"render-osmesa {' '.join(self.render_words())}")
 
 
-def write_steep(path, name):
-    """Writes one of the bases of STEEP."""
-    exponents = "".join(f"<exponent>{e}</exponent>" for e in STEEP[name])
-    path.write_text(f'<basis xmlns="urn:goniochrome:basis:1" name="{name}">{exponents}<mirror/></basis>\n')
-
-
 class Scene:
     """A paint on a mesh under a probe.
 
@@ -74,7 +69,7 @@ class Scene:
         if settings.basis not in STEEP:
             return self.run.data / f"{settings.basis}.basis.xml"
         path = self.run.work / f"{settings.basis}.basis.xml"
-        write_steep(path, settings.basis)
+        path.write_bytes(basis_xml(settings.basis, STEEP[settings.basis]))
         return path
 
     def fit(self, settings):

@@ -6,7 +6,7 @@ It is 2 m wide, high and deep and open toward +Z, and its floor is at y = 0. Eac
 
 import math
 
-from make_testdata.numbers import shortest
+from shared.numbers import shortest
 from make_testdata.vectors import between, cross, unit
 
 

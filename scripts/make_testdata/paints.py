@@ -2,7 +2,7 @@
 
 import collections
 
-from make_testdata.numbers import shortest
+from shared.numbers import shortest
 from make_testdata.paint_table import TABLE
 
 Paint = collections.namedtuple("Paint", "name paint_class gloss_60 rows")  # rows: [(geometry, (L, a, b))]

@@ -1,4 +1,4 @@
-"""How the test data write numbers."""
+"""How scripts write numbers into files."""
 
 
 def shortest(value):
