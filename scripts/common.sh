@@ -1,5 +1,5 @@
-# Shared by the scripts beside it: installs what the build needs, builds. Source it.
-# Plain Debian 12; root, or a user with sudo, only where a package is missing.
+# What the scripts beside it share: it installs the packages that the build needs, and builds. Source it.
+# It runs on plain Debian 12. Only if a package is missing, it has to be run by root or by a user with sudo.
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
@@ -10,7 +10,7 @@ build_packages=(
 )
 test_packages=(
   bats coinor-libclp-dev file jq librsvg2-bin libbenchmark-dev libgmock-dev libgtest-dev libxml2-utils locales make mandoc
-  openexr openimageio-tools python3
+  openexr openimageio-tools python3 python3-numpy python3-openimageio
 )
 demo_packages=(fonts-dejavu-core openimageio-tools python3)
 
@@ -21,7 +21,7 @@ die() {
   exit 3
 }
 
-# install PACKAGE...: installs those that are missing, by name.
+# install PACKAGE...: installs those of the packages that are missing, and names them.
 install() {
   local missing=() package
   for package in "$@"; do

@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# scripts/accuracy-report from outside: its options, the page, the readings, and when it fails.
+# scripts/accuracy-report from outside: its options, its page and its readings.
 
 bats_require_minimum_version 1.5.0
 
@@ -11,7 +11,7 @@ setup() {
   cd "$BATS_TEST_TMPDIR" || exit 1
 }
 
-# refused STATUS MESSAGE OPTION...: told why, and nothing is written.
+# refused STATUS MESSAGE OPTION...: the options are refused with this message, and nothing is written.
 refused() {
   local wanted=$1 message=$2
   shift 2
@@ -37,14 +37,14 @@ refused() {
 }
 
 @test "verdicts, numbers and pictures" {
-  python3 "$BATS_TEST_DIRNAME/accuracy_test.py"
+  /usr/bin/python3 "$BATS_TEST_DIRNAME/accuracy_test.py"
 }
 
-@test "two studies: a page that holds together, and every time" {
+@test "two studies make a consistent page with the time of every run" {
   run report search basis --quick --bin "$(dirname "$(command -v draw-plot)")" -o out
   echo "$output"
   [ "$status" -eq 0 ]
-  python3 - out <<'PY'
+  /usr/bin/python3 - out <<'PY'
 import csv, html.parser, pathlib, sys
 
 out = pathlib.Path(sys.argv[1])

@@ -1,24 +1,26 @@
-"""What the report decides and writes, without any tool: python3 accuracy_test.py"""
+"""What the report decides and writes, without any tool: /usr/bin/python3 accuracy_test.py"""
 
 import contextlib
 import io
 import pathlib
-import struct
 import sys
 import tempfile
 import types
 import unittest
+
+import numpy
+import OpenImageIO
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 
 from accuracy_report import command, page  # noqa: E402
 from accuracy_report.study import Figure, Reading, Study  # noqa: E402
-from make_testdata import exr  # noqa: E402
+from shared import pictures  # noqa: E402
 
 
 def figure(*rows, **more):
-    """Of (name, time, error) and, if wanted, True for a default and a method."""
+    """A figure of rows (name, time, error), which may go on with True for a default and with a method."""
     def reading(name, time_s, error, default=False, *method):
         return Reading(name, time_s, error, raw_s=(time_s,), default=bool(default), method="".join(method))
     return Figure("f", "A figure", [reading(*row) for row in rows], **more)
@@ -91,20 +93,37 @@ class Words(unittest.TestCase):
 class Pictures(unittest.TestCase):
     def test_an_exr_is_read_as_it_was_written(self):
         rows = [[(x / 7 - y, x * y, 0.5, 1.0) for x in range(37)] for y in range(35)]
+        names = ("lobe0.n", "B", "A", "R")  # EXR stores channels by name, in another order
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "p.exr"
-            for kind, code in ((exr.FLOAT, "f"), (exr.HALF, "e")):
-                path.write_bytes(exr.exr_file(rows, kind, "", ("R", "G", "B", "A")))
-                read = exr.channels_of(path)
-                for i, name in enumerate("RGBA"):
-                    rounded = [struct.unpack(f"<37{code}", struct.pack(f"<37{code}", *(texel[i] for texel in row)))
-                               for row in rows]
-                    self.assertEqual(read[name], rounded)
-            deep = bytearray(path.read_bytes())
-            deep[5] |= 0x08  # says that its pixels are deep
-            path.write_bytes(deep)
-            with self.assertRaisesRegex(ValueError, "give an EXR of one part"):
-                exr.channels_of(path)
+            for stored_as in (numpy.float32, numpy.float16):
+                path.write_bytes(pictures.exr_file(rows, stored_as, "", names))
+                read = pictures.channels(path)
+                for i, name in enumerate(names):
+                    expected = [[float(stored_as(texel[i])) for texel in row] for row in rows]
+                    self.assertEqual(read[name].tolist(), expected)
+
+    def test_the_same_pixels_give_the_same_file(self):
+        once = pictures.exr_file([[(1, 2, 3)]], numpy.float32, "")
+        self.assertNotIn(b"capDate", once)  # the time of writing, which OpenImageIO adds by itself
+
+    def test_what_is_no_picture_is_named(self):
+        with self.assertRaisesRegex(ValueError, "accuracy_test.py"):
+            pictures.channels(__file__)
+        with self.assertRaisesRegex(ValueError, "nowhere.exr"):
+            pictures.channels("nowhere.exr")
+
+    def test_colors_are_not_multiplied_by_alpha(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "p.png"
+            spec = OpenImageIO.ImageSpec(1, 1, 4, "uint8")
+            spec.attribute("oiio:UnassociatedAlpha", 1)
+            file = OpenImageIO.ImageOutput.create(str(path))
+            self.assertTrue(file.open(str(path), spec) and file.write_image(numpy.array([[[255, 51, 0, 51]]], numpy.uint8)))
+            file.close()
+            read = pictures.channels(path)
+        for name, value in (("R", 1), ("G", 0.2), ("B", 0), ("A", 0.2)):
+            self.assertAlmostEqual(float(read[name][0, 0]), value, places=6)
 
 
 if __name__ == "__main__":

@@ -1,17 +1,17 @@
-"""Choosing a basis: starts, sample angles and method of fit-basis against how near its lobes bring the library."""
+"""Choosing a basis: the starts, sample angles and method of fit-basis against the fits that its lobes allow."""
 
 import statistics
 
 from .study import Figure, Reading, Study
 
 LOBES = 5
-METHOD, STARTS, ANGLES = "power-mean", 6, 40  # the defaults
+METHOD, STARTS, ANGLES = "power-mean", 6, 40  # the defaults of fit-basis
 
 
 def error(run, basis):
-    """(the largest plus the mean RMS error of a paint in L*, mean dE00 of the library)
+    """(the largest plus the mean RMS error of a paint in L*, the mean dE00 of the library)
 
-    The first is what fit-basis makes least, here by fit-paint's own rows.
+    The first is what fit-basis minimizes; here it is computed at the readings that fit-paint uses.
     """
     squares, _ = run.tool("fit-paint", run.paints, "--basis", basis, "--method", "l2", "-o", run.work / "fitted.xml")
     errors = [paint["objective"] for paint in squares["paints"] if paint["status"] != "failed"]
@@ -39,10 +39,11 @@ def study(run):
     figures = [Figure("basis-angles", f"{LOBES} lobes: error of the library against the time of finding them, "
                       "by the sample angles of a paint", angles, "time of fit-basis (s)", aim),
                Figure("basis-starts", "The same by the starts of the search", starts, "time of fit-basis (s)", aim, front=False,
-                      note="No front: starts are a precaution against a poor local minimum, and a library in which two find "
-                      "what twelve find does not tell what another one wants.")]
+                      note="There is no dashed line here: more starts are a precaution against a poor local minimum. That two "
+                      "of them are enough for this library does not mean that they are enough for another one.")]
     rows = [(r.setting, r.time_s, r.numbers["evaluations"], r.error, r.numbers["de00"]) for r in angles + starts]
-    return Study("Choosing a basis", f"fit-basis looks for {LOBES} exponents for the whole library, one knob moved at a time. "
-                 "The error is what it makes least, taken from the least squares of fit-paint, whose rows do not depend on the "
-                 "angles; the mean dE00 in the table is that of the fits of least color difference.",
+    return Study("Choosing a basis", f"fit-basis looks for {LOBES} exponents for the whole library; one of its settings is "
+                 "varied at a time. The error is the figure that fit-basis minimizes, but computed from the least squares of "
+                 "fit-paint, which do not depend on the sample angles. The mean dE00 in the table is that of the fits of least "
+                 "color difference.",
                  figures, [("Angles, starts and method", ("settings", "time (s)", "evaluations", aim, "dE00 mean"), rows)])

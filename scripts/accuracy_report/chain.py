@@ -1,4 +1,4 @@
-"""The whole chain: measured paint and HDR light to a picture, every stage's knob at once."""
+"""The whole chain from measured paint and HDR light to a picture: the settings of all stages together."""
 
 import itertools
 
@@ -10,7 +10,7 @@ TARGETS = (5, 2, 1, 0.5, 0.1)
 
 
 def ladder(quick):
-    """The settings looked at."""
+    """The settings that are tried."""
     bases = ("b5",) if quick else ("b5", "b7", "steep")
     fits = (("l1", False), ("l1", True)) if quick else (("l1", False), ("l1", True), ("deltae", True))
     tolerances, effects = ((1e-1, 1e-3), ("none", "0.5")) if quick else ((1e-1, 1e-2, 1e-3), ("none", "0.5", "all"))
@@ -37,17 +37,17 @@ def study(run):
     for target in TARGETS:
         meeting = sorted((r for r in readings if r.error <= target), key=lambda r: r.time_s)
         rows.append((target, meeting[0].setting, meeting[0].time_s, meeting[0].error) if meeting else
-                    (target, "not reached: the best are " + best.setting, best.time_s, best.error))
+                    (target, "not reached; the best settings are " + best.setting, best.time_s, best.error))
     parts = [(r.setting, r.numbers["fit_de00"], r.numbers["render_de00"],
               r.numbers["fit_s"] * 1e3, r.numbers["prefilter_s"], r.numbers["render_s"]) for r in figure.pareto()]
-    text = ("The error of a picture is at most the sum of what the fit misses of the measured colors and what the picture misses "
-            "of the fitted paint under the whole environment; times are processor time of all stages, and what a frame's effects "
-            "take is small beside reading the mesh. Views (fit-paint --views auto) take up two sides of specular that differ, "
-            "which is most of what a fit misses. Finer maps soon change nothing: what a picture then misses is light that "
-            "changes unevenly within the part of a broad lobe above the horizon, which maps that know one direction only "
-            f"cannot tell. The basis steep ({', '.join(map(str, STEEP['steep']))}) has narrower lobes, which miss less of it "
-            "under a sun; render-osmesa --engine integral does without maps and reaches any error, at some hundred times the "
-            "shading.")
+    text = ("The error of a picture is at most the sum of two errors: that of the fit to the measured colors, and that of the "
+            "picture to the fitted paint under the whole environment. Times are processor time of all stages; the effects of a "
+            "frame take little of it, compared with reading the mesh. Most of the error of a fit comes from readings that differ "
+            "on the two sides of specular, and weights for several views (fit-paint --views auto) take it away. Finer maps soon "
+            "change nothing: the error that is left comes from light that changes unevenly within the part of a broad lobe above "
+            "the horizon, which a map that depends on one direction cannot represent. The basis steep "
+            f"({', '.join(map(str, STEEP['steep']))}) has narrower lobes and therefore less of this error under a sun. "
+            "render-osmesa --engine integral uses no maps and reaches any error, but takes some hundred times as long to shade.")
     return Study("The whole chain", text,
                  [figure], [("For a mean dE00 of", ("at most", "use", "time (s)", "dE00"), rows),
                             ("Where the error and the time of the best settings come from",

@@ -1,28 +1,28 @@
-"""The command line: which studies run, on what, and where the page goes."""
+"""The command line: which studies run, with which files, and where the page goes."""
 
 import argparse
 import importlib
 import os
 import pathlib
-import shutil
 import sys
 import time
 
+from shared import packages
+from shared.tools import DATA, Failed, tools_folder
+
 from . import page, target
-from .study import Failed, Run
+from .study import Run
 
-TOP = pathlib.Path(__file__).resolve().parents[2]
-
-# In the order of the page. Each is a module beside this one with study(run) -> Study.
+# The studies in the order of the page. Each is a module beside this one with study(run) -> Study.
 STUDIES = {
     "prefilter": "prefiltering: tolerance and size against the exact sum",
     "basis": "choosing a basis: starts, sample angles and method against what its lobes can do",
     "fit": "fitting: method, lobes and target against the measured colors",
-    "lobes": "fewer lobes: smaller bases, the best of a basis, and pruning, against the time of shading",
+    "lobes": "fewer lobes: smaller bases, the best lobes of a basis, and pruning, against the time of shading",
     "render": "rendering: effects, engine, textures and brushes against the reference integrator",
-    "edges": "edges: samples of a pixel against hundreds",
+    "edges": "edges: few samples in a pixel against hundreds",
     "scenes": "ten scenes: what the plan leaves out, and what it says that each effect is worth",
-    "inverse": "paints looked for: sketches by their size, and panels that hide a misalignment",
+    "inverse": "paints that are searched for: sketches by their size, and panels that hide a misalignment",
     "search": "search: library size, tree and scan against brute force",
     "growth": "growth of times with probes, maps, paints, pixels and lights, and where it is steepest",
     "chain": "the whole chain: where the error of a picture comes from, and what it costs to lower it",
@@ -32,26 +32,28 @@ STUDIES = {
 def parse(arguments):
     parser = argparse.ArgumentParser(
         prog="accuracy-report",
-        description="Sweep the knobs of the tools against exact references; write one HTML page, a CSV of every raw "
-        "reading, and the plots as SVG. Exit status 1: a default setting is dominated.",
+        description="Vary the settings of the tools, hold each result against an exact reference, and write an HTML page, a "
+        "CSV of every reading, and the plots as SVG. The exit status is 1 if a default setting is dominated: if another setting "
+        "is better in time or error and not worse in the other.",
     )
     listed = "; ".join(f"{n} ({STUDIES[n]})" for n in STUDIES)
-    parser.add_argument("studies", nargs="*", metavar="STUDY", help="of: " + listed + "; default: all")
+    parser.add_argument("studies", nargs="*", metavar="STUDY", help="the studies to run, by default all: " + listed)
     parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("accuracy"), metavar="DIR",
-                        help="folder to write [accuracy]")
-    parser.add_argument("--quick", action="store_true", help="fewer settings, in about a minute")
-    parser.add_argument("--bin", type=pathlib.Path, metavar="DIR", help="folder of the tools [PATH, then build/release/bin]")
-    parser.add_argument("--paints", type=pathlib.Path, default=TOP / "testdata/paints.paints.xml", metavar="FILE",
-                        help="library to use [testdata]")
-    parser.add_argument("--probe", type=pathlib.Path, default=TOP / "testdata/studio.exr", metavar="FILE",
-                        help="HDR panorama to use [testdata]")
-    parser.add_argument("--mesh", type=pathlib.Path, default=TOP / "testdata/speed-shape.obj", metavar="FILE",
-                        help="mesh to use [testdata]")
+                        help="the folder to write to [accuracy]")
+    parser.add_argument("--quick", action="store_true", help="try fewer settings, which takes about a minute")
+    parser.add_argument("--bin", type=pathlib.Path, metavar="DIR",
+                        help="the folder of the tools [PATH, then build/release/bin]")
+    parser.add_argument("--paints", type=pathlib.Path, default=DATA / "paints.paints.xml", metavar="FILE",
+                        help="the library to use [that of testdata]")
+    parser.add_argument("--probe", type=pathlib.Path, default=DATA / "studio.exr", metavar="FILE",
+                        help="the HDR panorama to use [the studio of testdata]")
+    parser.add_argument("--mesh", type=pathlib.Path, default=DATA / "speed-shape.obj", metavar="FILE",
+                        help="the mesh to use [the speed shape of testdata]")
     parser.add_argument("--target-de00", type=float, metavar="X",
-                        help="instead: find and prove the cheapest settings that bring scenes within a mean of X")
+                        help="instead of studies, find and prove the cheapest settings that bring scenes within a mean dE00 of X")
     parser.add_argument("--scene", action="append", metavar="PAINT[,PROBE]",
-                        help="with --target-de00: a paint, and a probe if not that of --probe; repeat for more "
-                        "[three of testdata]")
+                        help="with --target-de00: a paint, and its probe if it is not that of --probe; may be given several "
+                        "times [three scenes of testdata]")
     options = parser.parse_intermixed_args(arguments)
     if options.target_de00 is not None and not options.target_de00 > 0:
         parser.error(f"--target-de00 is {options.target_de00:g}: give a color difference above 0")
@@ -67,16 +69,10 @@ def parse(arguments):
     return options
 
 
-def bin_folder(options):
-    if options.bin:
-        return options.bin
-    found = shutil.which("render-osmesa")
-    return pathlib.Path(found).parent if found else TOP / "build/release/bin"
-
 
 def main(arguments=None):
     options = parse(arguments)
-    folder = bin_folder(options)
+    folder = options.bin or tools_folder()
     if not os.access(folder / "render-osmesa", os.X_OK):
         print(f"accuracy-report: {folder}: the tools are not there: build them (cmake --preset release && "
               "cmake --build --preset release), or name their folder with --bin", file=sys.stderr)
@@ -89,20 +85,21 @@ def main(arguments=None):
 
 
 def work(folder, options):
-    """Runs what was asked for; the exit status."""
+    """Runs what the options ask for and returns the exit status."""
     if options.target_de00 is not None:
         with Run(folder.resolve(), options) as run:
             return 0 if target.report(run, options.target_de00, options.scene) else 1
     options.output.mkdir(parents=True, exist_ok=True)
     start = time.monotonic()
     studies = []
+    packages.install_modules("numpy", "OpenImageIO")
     modules = {name: importlib.import_module(f".{name}", __package__) for name in options.studies or STUDIES}
     with Run(folder.resolve(), options) as run:
         for name, module in modules.items():
             run.say(f"{name}: {STUDIES[name]}")
             studies.append(module.study(run))
             studies[-1].settle()
-            page.write(run, studies, time.monotonic() - start)  # a run that is ended early leaves what it has
+            page.write(run, studies, time.monotonic() - start)  # A run that is ended early leaves the page of its studies so far.
     dominated = [text for study in studies for text in study.dominated_defaults()]
     for text in dominated:
         print(f"accuracy-report: dominated default: {text}", file=sys.stderr)

@@ -1,24 +1,18 @@
-"""Fitting: method, number of lobes and target against the measured colors."""
+"""Fitting: the method, the number of lobes and the target, held against the measured colors."""
 
 import statistics
+
+from shared.quantile import quantile
 
 from .study import Figure, Reading, Study
 
 METHODS = ("l1", "l2", "deltae")
 TARGETS = ("measured", "curve")
-DEFAULT = ("l1", "measured", 7)  # as many lobes as the basis b7
-
-
-def part(values, share):
-    ordered = sorted(values)
-    return ordered[min(len(ordered) - 1, int(share * len(ordered)))]
+DEFAULT = ("l1", "measured", 7)  # 7 lobes, as the basis b7 has
 
 
 def bases(run, sizes):
-    """A basis for every number of lobes, chosen for the library itself: the most that so many lobes can do.
-
-    Made once for all studies.
-    """
+    """{number of lobes: a basis of so many lobes that fit-basis chose for the library}, made once for all studies."""
     if "bases" not in run.kept:
         most = 7 if run.quick else 11
         run.tool("fit-basis", run.paints, "--lobes", f"1..{most}", "--starts", 2 if run.quick else 4, "--mirror",
@@ -28,7 +22,7 @@ def bases(run, sizes):
 
 
 def fitted(run, basis, method, target):
-    """(time of a paint in s, every repetition, the color differences at the readings)."""
+    """(the seconds that a paint takes, those of every repetition, the color differences at the readings)"""
     times = []
     for _ in range(1 if run.quick else 3):
         results, _ = run.tool("fit-paint", run.paints, "--basis", basis, "--method", method, "--target", target,
@@ -47,7 +41,7 @@ def study(run):
         for method in METHODS:
             for size, basis in by_size.items():
                 time_s, all_s, errors = fitted(run, basis, method, target)
-                numbers = {"lobes": size, "p95": part(errors, 0.95), "max": max(errors)}
+                numbers = {"lobes": size, "p95": quantile(errors, 0.95), "max": max(errors)}
                 readings.append(Reading(f"{method}, {size} lobes, {target}", time_s, statistics.mean(errors),
                                         method=f"{method} {target}", default=(method, target, size) == DEFAULT,
                                         raw_s=all_s, numbers=numbers))
@@ -56,13 +50,13 @@ def study(run):
                   "time for a paint (s)", "dE00, mean")
     p95 = Figure("fit-p95", "The same, 95 % of the readings", readings, "time for a paint (s)", "dE00, 95 %",
                  front=False, y=lambda r: r.numbers["p95"],
-                 note="No front of its own: methods are held to their mean, above.")
+                 note="There is no dashed line here: methods are judged by their mean, above.")
     lobes = Figure("fit-lobes", "Mean dE00 against the number of lobes", readings, "lobes", "dE00, mean",
                    front=False, x=lambda r: r.numbers["lobes"], logarithmic="y",
-                   note="No front: the axis is a number, not a time.")
-    return Study("Fitting", f"Every paint of the library is fitted to bases of {sizes[0]} to {sizes[-1]} lobes that fit-basis "
-                 "chose for it, on one thread; the error is that of the color that the lobes predict at the readings. What no "
-                 "number of lobes takes away are two sides of specular that differ, and colors outside the working space: "
-                 "fit-paint names them as the limit of a paint.",
+                   note="There is no dashed line here: the axis is a number of lobes, not a time.")
+    return Study("Fitting", f"Every paint of the library is fitted, on one thread, to bases of {sizes[0]} to {sizes[-1]} lobes "
+                 "that fit-basis chose for the library. The error is that of the color that the lobes predict at the readings. "
+                 "Two causes of error remain with any number of lobes: readings that differ on the two sides of specular, and "
+                 "colors outside the working space. fit-paint names them as the limit of a paint.",
                  [mean, p95, lobes],
                  [("Method, target and lobes", ("method", "target", "lobes", "time (us)", "dE00 mean", "95 %", "largest"), rows)])

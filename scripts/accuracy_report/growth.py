@@ -1,17 +1,17 @@
-"""How times grow with the size of the job: exponents, and the steps that are steeper than the rest."""
+"""How times grow with the size of the job: the exponents, and the steps that are steeper than the others."""
 
 import math
+import statistics
 
-from .scene import CAMERA
 from .inverse import sketches
+from .prefilter import EXPONENTS
+from .scene import CAMERA
 from .search import write_library
 from .study import Figure, Reading, Study
 
-EXPONENTS = "6,20,70,250,900,3000"  # and 1, the diffuse lobe
-
 
 def write_probe(path, height):
-    """A flat Radiance file of 2:1: a sky that brightens upward, and one lamp."""
+    """Writes an uncompressed Radiance file, twice as wide as high: a sky that gets brighter upward, and a lamp."""
     with path.open("wb") as file:
         file.write(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n" + f"-Y {height} +X {2 * height}\n".encode())
         for row in range(height):
@@ -22,13 +22,11 @@ def write_probe(path, height):
 
 
 def curve(readings):
-    """(exponent over the larger half, steepest step and its exponent) of times against sizes."""
+    """(the exponent over the larger half of the sizes, the steepest step, its exponent) of times against sizes."""
     points = [(math.log(r.numbers["n"]), math.log(r.time_s)) for r in readings]
     steps = [(y1 - y0) / (x1 - x0) for (x0, y0), (x1, y1) in zip(points, points[1:])]
     steepest = max(range(len(steps)), key=steps.__getitem__)
-    half = points[(len(points) - 1) // 2:]
-    mean_x, mean_y = (sum(p[i] for p in half) / len(half) for i in (0, 1))
-    slope = sum((x - mean_x) * (y - mean_y) for x, y in half) / sum((x - mean_x) ** 2 for x, _ in half)
+    slope = statistics.linear_regression(*zip(*points[(len(points) - 1) // 2:])).slope
     return slope, f"{readings[steepest].numbers['n']} to {readings[steepest + 1].numbers['n']}", steps[steepest]
 
 
@@ -62,7 +60,7 @@ def rendering(run):
     fitted, env = run.work / "fitted.xml", run.work / "studio.env.exr"
     run.tool("fit-paint", "--basis", run.data / "b7.basis.xml", run.paints, "-o", fitted)
     run.tool("prefilter-envmap", run.probe, "--basis", run.data / "b7.basis.xml", "-o", env)
-    # Without the first words, the size; all effects, so that every size draws the same.
+    # CAMERA[2:] leaves the size out. With all effects, every size draws the same ones.
     words = ("--mesh", run.mesh, "--paint", f"{fitted}#silver_black_flop", "--effects", "all", *CAMERA[2:],
              "-o", run.work / "p.exr")
     def frame(*more):
@@ -90,13 +88,15 @@ def study(run):
     readings = [r for rs in kinds.values() for r in rs]
     figure = Figure("growth", "Time against the size of the job", readings,
                     x_label="size: rows, texels, paints, pixels or lights", y_label="time (s)", front=False,
-                    x=lambda r: r.numbers["n"], y=lambda r: r.time_s, note="No front: times of different jobs.")
+                    x=lambda r: r.numbers["n"], y=lambda r: r.time_s,
+                    note="There is no dashed line here: these are the times of different jobs.")
     rows = [(kind, f"{rs[0].numbers['n']} to {rs[-1].numbers['n']}", rs[0].time_s, rs[-1].time_s, *curve(rs))
             for kind, rs in kinds.items()]
-    text = ("Exponents are of the time against the size, over the larger half of the sizes, where start-up counts least: 1 is "
-            "proportional. The steepest step is the cliff to know about: an exponent far above the others there says that "
-            "doubling the job at that point costs more than elsewhere. Growing probes are filtered to 128 texels a face, "
-            "growing faces from a probe of 1024 x 512; growing lights shine on 640 x 360 pixels, and growing pictures stand in "
-            "the probe. Times of render-osmesa are of a frame, all others are processor time of the whole tool.")
+    text = ("An exponent of 1 means that the time is proportional to the size. Exponents are taken over the larger half of the "
+            "sizes, where the start of the tool counts least. If the exponent of the steepest step is far above the others, "
+            "doubling the job costs more there than elsewhere. Probes of growing size are filtered to 128 texels along a face, "
+            "and faces of growing size from a probe of 1024 x 512 texels; lights in growing numbers shine on 640 x 360 pixels, "
+            "and pictures of growing size are lit by the probe. Times of render-osmesa are those of a frame, all others are "
+            "processor time of the whole tool.")
     head = ("what grows", "sizes", "least (s)", "most (s)", "exponent", "steepest step", "its exponent")
     return Study("Growth", text, [figure], [("Growth", head, rows)])

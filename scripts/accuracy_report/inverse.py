@@ -1,11 +1,11 @@
-"""Paints that are looked for: sketch-fit against the paint that a picture was drawn in, trompe-fit against two flush panels."""
+"""Paints that are searched for: sketch-fit against the paint in which a picture was drawn, trompe-fit against flush panels."""
 
 import itertools
 import statistics
 
 from .study import Figure, Reading, Study
 
-# Paints with known colors at every angle. At 45 deg the curve has 0.29 of the way from flop to face.
+# Paints whose colors are known at every angle. At 45 deg their curves are at 0.29 of the way from the flop to the face.
 PLANTED = """<paints xmlns="urn:goniochrome:paint:1" version="1">
 <paint name="steel"><gloss angle="60">85</gloss>\
 <appearance travel="80"><face L="75" a="-5" b="-20"/><flop L="25" a="-2" b="-10"/></appearance></paint>
@@ -13,14 +13,17 @@ PLANTED = """<paints xmlns="urn:goniochrome:paint:1" version="1">
 <appearance travel="70"><face L="50" a="45" b="20"/><flop L="12" a="15" b="6"/></appearance></paint>
 </paints>
 """
-SHAPE = 16 / 10  # of a picture
+SHAPE = 16 / 10  # the width of a picture, divided by its height
 ANGLE_DEG = 2
 VARIED = ("face_l", "face_l,travel", "face_l,flop_l,travel", "face_l,face_ab,flop_l,flop_ab,travel")
 LIGHTS = ("--lights", "30,45,60", "--views", "as15:105:15")
 
 
 def drawn(run, light, paint, width):
-    """Draws all of a planted paint, for a lobe that the picture lacks is not found; (picture, buffers)."""
+    """Draws a planted paint and returns (picture, buffers).
+
+    All effects are drawn, since a lobe that the picture leaves out cannot be found in it.
+    """
     picture, buffers = run.work / "sketch.png", run.work / "sketch.exr"
     words = ("--mesh", run.data / "speed-shape.obj", "--paint", f"{run.work / 'planted-fitted.xml'}#{paint}", *light,
              "--size", f"{width}x{int(width / SHAPE)}", "--samples", 1, "--effects", "all")
@@ -30,7 +33,7 @@ def drawn(run, light, paint, width):
 
 
 def sketches(run):
-    """Readings of sketch-fit by the size of the picture, under a lamp and in an environment; made once for all studies."""
+    """Readings of sketch-fit by the size of the picture, under a lamp and in an environment, made once for all studies."""
     if "sketches" not in run.kept:
         planted, env, found = run.work / "planted.xml", run.work / "planted.env.exr", run.work / "found.xml"
         planted.write_text(PLANTED)
@@ -56,12 +59,12 @@ def sketches(run):
 
 
 def hidden(run, vary, objective, *mode):
-    """A reading of trompe-fit for the whole library, its panels turned by ANGLE_DEG."""
+    """A reading of trompe-fit for the whole library, with panels that are turned by ANGLE_DEG."""
     words = ("trompe-fit", run.paints, "--angle", ANGLE_DEG, *LIGHTS, "--vary", vary, "--objective", objective,
              "--mode", *mode, "-o", run.work / "hidden.xml")
     results, best, raw = run.repeated(*words)
     fits = [fit for fit in results.get("fits", [results]) if fit["status"] != "failed"]
-    paints = len({fit.get("name", "").partition(".light")[0] for fit in fits})  # --mode rows has a fit for each light
+    paints = len({fit.get("name", "").partition(".light")[0] for fit in fits})  # --mode rows makes a fit for each light.
     left, largest, before = (statistics.mean(fit[when][what] for fit in fits)
                              for when, what in (("after", "rms"), ("after", "max"), ("before", "rms")))
     return Reading(f"{vary}; {objective}; {' '.join(mode)}", best / paints, left, objective,
@@ -78,21 +81,23 @@ def study(run):
         reading.method = name
     figures = [Figure("sketch", "sketch-fit: dE00 to the paint that was drawn against the size of the picture", seen,
                       "pixels of the picture", "dE00, mean", front=False, x=lambda r: r.numbers["n"],
-                      note="No front: the size is no knob of sketch-fit. Times are in the table, and in the study of growth."),
+                      note="There is no dashed line here: the size is not a setting of sketch-fit. Its times are in the table "
+                      "and in the study of growth."),
                Figure("trompe", f"trompe-fit: difference left between panels turned by {ANGLE_DEG} deg against time", panels,
                       "time for a paint (s)", "dE76, RMS over the geometries",
-                      note="Points: what may change, from the face's L* alone to all five parameters."),
+                      note="The points differ in what may change, from only L* of the face to all five parameters."),
                Figure("trompe-modes", "The same for its modes", modes,
                       "time for a paint (s)", "dE76, RMS over the geometries", front=False,
-                      note="No front: one paint for all geometries, for one of them, and one for each light are different "
-                      "answers.")]
+                      note="There is no dashed line here: one paint for all geometries, one paint for a single geometry, and "
+                      "a paint for each light are answers to different questions.")]
     sketch_rows = [(r.setting, r.numbers["used"], r.time_s, r.numbers["fit_s"], r.error, r.numbers["model"]) for r in seen]
     trompe_rows = [(r.setting, 1e3 * r.time_s, r.numbers["before"], r.error, r.numbers["largest"]) for r in panels + modes[1:]]
-    text = ("Two paints with known colors are drawn whole under a lamp and in the environment, as PNG, and sketch-fit looks for "
-            "them in pictures of several sizes; the error is the mean dE00 of the paint found at the export angles. trompe-fit "
-            "looks for the paint of the second panel for every paint of the library, under lights at 30, 45 and 60 deg and viewers "
-            "from 15 to 105 deg beside their mirror directions; what is left is the difference of the two panels.")
-    return Study("Paints looked for", text, figures,
+    text = ("Two paints with known colors are drawn with all effects under a lamp and in the environment, as PNG, and sketch-fit "
+            "looks for them in pictures of several sizes. The error is the mean dE00, at the export angles, of the paint that it "
+            "finds. trompe-fit looks for the paint of the second panel, for every paint of the library, under lights at 30, 45 "
+            "and 60 deg and for viewers from 15 to 105 deg beside their mirror directions. Its error is the difference that is "
+            "left between the two panels.")
+    return Study("Paints that are searched for", text, figures,
                  [("sketch-fit",
                    ("paint, light, picture", "pixels used", "time (s)", "fit alone (s)", "dE00", "model"), sketch_rows),
                   ("trompe-fit",

@@ -1,22 +1,24 @@
-"""Fewer lobes: smaller bases, --lobes and --prune against the color of the paint and the time of shading it."""
+"""Fewer lobes: what smaller bases, --lobes and --prune do to the color of a paint and to the time of shading it."""
 
 import dataclasses
 import functools
 import statistics
 
+from shared.tools import Failed
+
 from .fit import bases
 from .scene import CAMERA
-from .study import Failed, Figure, Reading, Study
+from .study import Figure, Reading, Study
 
 PAINTS = ("silver_black_flop", "candy_red")
 DEFAULT = "b7, all lobes"
 SIZE = ("--size", "640x360")
-UNSEEN = ("No front: a lobe that no reading of this paint needs still shapes its colors between the readings, "
-          "which this error does not see.")
+UNSEEN = ("There is no dashed line here: a lobe that no reading of this paint needs still shapes its colors between the "
+          "readings, and this error does not show that.")
 
 
 def settings(run):
-    """(series, setting, basis, more words for fit-paint); the default first."""
+    """(series, setting, basis, more words for fit-paint) of every setting; the default comes first."""
     b7 = run.data / "b7.basis.xml"
     yield "b7, --prune", DEFAULT, b7, ()
     for de00 in (1,) if run.quick else (0.2, 1, 2, 5):
@@ -28,7 +30,7 @@ def settings(run):
 
 
 def environment(run, basis):
-    """The probe filtered by a basis, and the seconds that took; made once for each."""
+    """(the probe filtered by a basis, the seconds that this took); it is done once for each basis."""
     key = ("lobes", basis)
     if key not in run.kept:
         out = run.work / f"lobes-{basis.stem}.env.exr"
@@ -58,7 +60,7 @@ def study(run):
         rows.append((setting, left, results["de00_mean"], results["de00_p95"], filter_s, *shading))
     figures = [Figure("lobes", "The library: mean dE00 at the readings against the lobes left", library,
                       "lobes left, mean over the paints", "dE00, mean", front=False, x=lambda r: r.numbers["lobes"],
-                      logarithmic="y", note="No front: the axis is a number, not a time.")]
+                      logarithmic="y", note="There is no dashed line here: the axis is a number of lobes, not a time.")]
     x_label, y_label = "time of shading every pixel once (s)", "dE00 of the fit, mean"
     figures += [Figure(f"lobes-{name}",
                        f"{name}: dE00 at its readings with fewer of the lobes of b7 against the time of shading it",
@@ -67,9 +69,10 @@ def study(run):
     own = [dataclasses.replace(r, method=name, default=False)
            for name, readings in by_paint.items() for r in readings if r.method == "fit-basis"]
     figures.append(Figure("lobes-own", "The same with bases that fit-basis chose for the library", own, x_label, y_label,
-                          apart=True, note="From left to right: bases of more lobes. Beside the figures above, these lobes serve "
-                          "the readings alone; b7 has two sharp ones for gloss."))
+                          apart=True, note="The bases have more lobes from left to right. Unlike those of b7, which has two "
+                          "sharp ones for gloss, these lobes serve the readings only."))
     head = ("setting", "lobes left", "library, dE00 mean", "95 %", "prefilter (s)", *(f"{name}, shading (ms)" for name in names))
-    return Study("Fewer lobes", "fit-paint with fewer lobes, in three ways: a basis that fit-basis chose for so many, the best "
-                 "so many of the seven of b7 (--lobes), and those without which no color moves by more than so much dE00 "
-                 "(--prune). All effects of the picture are drawn.", figures, [("What the lobes cost", head, rows)])
+    return Study("Fewer lobes", "There are three ways to fit a paint with fewer lobes: a smaller basis that fit-basis chose, the "
+                 "best few of the seven lobes of b7 (fit-paint --lobes), and leaving out lobes as long as no color moves by more "
+                 "than a given dE00 (fit-paint --prune). All effects of the picture are drawn.",
+                 figures, [("What the lobes cost", head, rows)])

@@ -7,7 +7,7 @@ import pathlib
 import platform
 import subprocess
 
-FRONT = "#222222"  # of the dashed line, and of the rings around defaults
+FRONT = "#222222"  # the color of the dashed line and of the rings around defaults
 
 STYLE = """
 body{font:16px/1.5 sans-serif;color:#1c1c1c;background:#fff;max-width:62rem;margin:2rem auto;padding:0 1rem}
@@ -19,9 +19,9 @@ figure{margin:1.5rem 0}figcaption{color:#444;font-size:.9em}svg{max-width:100%;h
 @media print{body{max-width:none;margin:0;font-size:10pt}nav{display:none}\
 table{font-size:8pt}h2{break-after:avoid}figure,tr{break-inside:avoid}}
 """
-READING = ("Each point of a plot is a setting: lower is truer, farther left is faster. The dashed line joins the settings that "
-           "no other one beats in both; a ring is the default. Where there is no dashed line, the plot has different jobs in it, "
-           "or an axis that is no time.")
+READING = ("Each point of a plot is a setting: the lower it lies, the smaller its error, and the farther left, the faster it is. "
+           "The dashed line joins the settings that no other one beats in both. A ring marks a default setting. A plot without a "
+           "dashed line shows different jobs, or one of its axes is not a time.")
 
 
 def processor():
@@ -37,7 +37,7 @@ def machine():
 
 
 def number(value):
-    """Three digits; powers of ten only where a number is very small."""
+    """A value with three digits, and with a power of ten only if it is very small."""
     if not isinstance(value, float):
         return str(value)
     if value != value:
@@ -61,7 +61,7 @@ def table(caption, head, rows):
 
 
 def plot(run, figure):
-    """Draws a figure with draw-plot(1) and returns its SVG; the file is kept beside the page."""
+    """Draws a figure with draw-plot(1) and returns its SVG, which is also kept as a file beside the page."""
     rows = []
     if figure.front and not figure.apart:
         rows += [("best known", *figure.point(r), "dashed", FRONT) for r in figure.pareto()]

@@ -1,23 +1,23 @@
-"""Prefiltering: tolerance and size against the exact sum, beside the sum over all pairs and a naive mip chain."""
+"""Prefiltering: tolerance and size against the exact sum, compared with the sum over all pairs and with a naive mip chain."""
 
 import dataclasses
 import json
 import os
-import resource
 import subprocess
 
-from .study import Failed, Figure, Reading, Study
+from shared.tools import Failed
 
-EXPONENTS = "6,20,70,250,900,3000"  # and 1, the diffuse lobe
+from .study import Figure, Reading, Study, processor_s
+
+EXPONENTS = "6,20,70,250,900,3000"  # The diffuse lobe, whose exponent is 1, is always there.
 SIZE = 128
 DEFAULT_TOLERANCE = 1e-3
-ENOUGH_S = 1  # after so much of its time, a setting is not repeated
+ENOUGH_S = 1  # When its runs have taken so long, a setting is not repeated again.
 
 
 def shared_processor_s():
-    """Processor time of all tools so far, shared by the cores: other work on the machine does not count."""
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return (used.ru_utime + used.ru_stime) / (os.cpu_count() or 1)
+    """The processor time of all tools so far, divided by the cores. Other work on the machine does not count."""
+    return processor_s() / (os.cpu_count() or 1)
 
 
 def size_name(size):
@@ -25,7 +25,7 @@ def size_name(size):
 
 
 def ours(run, size, tolerance, verify):
-    """One setting of prefilter-envmap: reading, filtering and writing, and the verified error."""
+    """The reading of a setting of prefilter-envmap: the time to read, filter and write, and the verified error."""
     name = f"{size_name(size)}, tolerance {tolerance:g}"
     words = (run.probe, "-e", EXPONENTS, "--no-mirror", "--size", size, "--tolerance", tolerance, "-o", run.work / "out.env.exr")
 
@@ -47,7 +47,7 @@ def ours(run, size, tolerance, verify):
 
 
 def benchmark(run, pattern):
-    """Readings of the benchmark on the same probe, or none where it was not built."""
+    """The results of the benchmark on the same probe; none if it was not built."""
     program = run.folder / "envmap_bench"
     if not os.access(program, os.X_OK):
         return []
@@ -59,7 +59,7 @@ def benchmark(run, pattern):
 
 
 def rivals(run):
-    """The sum over all pairs and the naive mip chain; their processor time, shared by the cores."""
+    """Readings of the sum over all pairs and of the naive mip chain; their processor time is divided by the cores."""
     cores = os.cpu_count() or 1
     readings = []
     for b in benchmark(run, f"BM_AgainstAllPairs/size:{SIZE}"):
@@ -73,12 +73,12 @@ def rivals(run):
 
 
 def looked_up(reading, method):
-    """The same with the error of a lookup between texels."""
+    """The same reading, to whose error that of a lookup between texels is added."""
     return dataclasses.replace(reading, error=reading.error + reading.numbers["lookup_error"], method=method, default=False)
 
 
 def by_lobe(reading):
-    """Rows of a table: what each lobe of one reading took and how far it is off."""
+    """The rows of a table: the time and the errors of each lobe of a reading."""
     return [(f"{lobe['exponent']:g}", lobe["method"], lobe["degree"], lobe["predicted_time_s"] * 1e3, lobe["time_s"] * 1e3,
              lobe["predicted_error"], lobe["max_rel_error"], lobe["lookup_error"], lobe["energy_ratio"] - 1)
             for lobe in reading.numbers["lobes"]]
@@ -100,32 +100,32 @@ def study(run):
     for size in sizes:
         for reading in sweep[size]:
             spread.append(dataclasses.replace(reading, method=f"{size} texels", default=False))
-    all_sizes = Figure("prefilter-sizes", "The same for every size: what a texel of the file errs", spread, x_label="time (s)",
+    all_sizes = Figure("prefilter-sizes", "The same for every size: the error of a texel of the file", spread, x_label="time (s)",
                        y_label="largest relative error", front=False,
-                       note="No front: more texels are another job; what they are good for is below.")
+                       note="There is no dashed line here: to filter more texels is a different job. The plot below shows what "
+                       "they are good for.")
     auto = [ours(run, "auto", t, verify) for t in few[: 2 if run.quick else None]]
     lookup = [looked_up(r, f"tolerance {r.numbers['tolerance']:g}")
               for t in few for size in sizes for r in sweep[size] if r.numbers["tolerance"] == t]
     lookup += [looked_up(r, "--size auto") for r in auto]
     lookup[-len(auto) + few.index(DEFAULT_TOLERANCE)].default = True
-    fetched = Figure("prefilter-lookup", "What a texel and a bilinear lookup err for the sharpest lobe, size by size", lookup,
-                     x_label="time (s)", y_label="error of texel and lookup")
+    fetched = Figure("prefilter-lookup", "The error of a texel plus that of a bilinear lookup, for the sharpest lobe, by size",
+                     lookup, x_label="time (s)", y_label="error of texel and lookup")
     tables = [(f"Lobe by lobe at {SIZE} texels, tolerance {DEFAULT_TOLERANCE:g}",
                ("exponent", "method", "degree", "predicted (ms)", "took (ms)",
                 "predicted error", "largest error", "lookup error", "energy - 1"),
                by_lobe(next(r for r in main if r.default)))]
-    for reading in spread + lookup:
-        reading.numbers = {k: v for k, v in reading.numbers.items() if k != "lobes"}
-    for reading in main:
+    for reading in main + spread + lookup:
         reading.numbers = {k: v for k, v in reading.numbers.items() if k != "lobes"}
     finest, before = (min(r.time_s for r in main if r.numbers["tolerance"] == t) for t in (tolerances[-1], 1e-4))
-    text = (f"Exponents 1,{EXPONENTS} of {run.probe.name}. Errors are the largest of {verify} random texels of each lobe and of "
-            "the brightest and darkest, relative to the texel or a thousandth of the mean, against the sum in double precision "
-            "over every texel as a constant patch. Half floats hold 5e-4, so tolerances of 1e-1 to 1e-3 write the same file; "
-            "below, the file is float"
-            + (f", and a tolerance of {tolerances[-1]:g} takes {finest / before:.0f} times as long as one of 1e-4: "
-               "the cliff to know about" if tolerances[-1] < 1e-4 else "") +
-            ". The sum over all pairs takes texels as points at their centers, which costs it the sharp lobes; the naive mip "
-            "chain averages the source first, which moves the sun: below 32 texels it is the faster and errs by all there is. "
-            "Times are processor time shared by the cores; ours have reading and writing in them, the others not.")
+    text = (f"{run.probe.name} is filtered by the exponents 1,{EXPONENTS}. The reference is the sum in double precision over "
+            f"every texel of the probe as a patch of constant radiance. An error is the largest of {verify} random texels of each "
+            "lobe and of its brightest and darkest ones, relative to the texel or to a thousandth of the mean, whichever is larger. "
+            "Half floats are exact to 5e-4, so tolerances of 1e-1 to 1e-3 write the same file; below that, the file has floats"
+            + (f", and a tolerance of {tolerances[-1]:g} takes {finest / before:.0f} times as long as one of 1e-4"
+               if tolerances[-1] < 1e-4 else "") +
+            ". The sum over all pairs takes texels as points at their centers and therefore misses the sharp lobes. The naive "
+            "mip chain averages the probe first, which moves the sun: below 32 texels it is faster, but its error is as "
+            "large as the values. Times are processor time divided by the cores; ours include reading and writing, the others "
+            "do not.")
     return Study("Prefiltering", text, [against, all_sizes, fetched], tables)

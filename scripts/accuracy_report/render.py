@@ -1,21 +1,21 @@
-"""Rendering: what the plan leaves out against what that is worth, the two engines, and where textures and brushes look."""
+"""Rendering: what the plan leaves out and what that costs in color, the engines, and the maps of textures and brushes."""
 
 import functools
 
-from make_testdata import bases
+from shared.basis import basis_xml
 
 from .scene import Scene, Settings
 from .scenes import Stage
 from .study import Figure, Reading, Study
 
 PAINTS = ("signal_red", "silver_black_flop", "blue_to_purple")
-QUARTERS = (2.9296875, 11.71875, 46.875, 187.5, 750, 3000)  # what one cube with all lobes in its levels wants
+QUARTERS = (2.9296875, 11.71875, 46.875, 187.5, 750, 3000)  # These exponents let one cube hold all lobes in its levels.
 DEFAULT = "0.5"
-SHARES = (0.5, 0.7, 0.85)  # of the time that all effects take, as a budget
+SHARES = (0.5, 0.7, 0.85)  # budgets, as shares of the time that all effects take
 
 
 def choices(run):
-    """What --tolerance is, or none or all of --effects."""
+    """The settings that are tried: a value of --tolerance, or none or all as a value of --effects."""
     return ("none", "2", "0.5", "all") if run.quick else ("none", "5", "2", "1", "0.5", "0.2", "0.1", "all")
 
 
@@ -24,14 +24,14 @@ def words(choice):
 
 
 def reading(run, method, choice, numbers, shading, default):
-    """Of what a check found, and a function that takes the seconds of shading once more."""
+    """A reading of what a check found; `shading` is a function that measures the seconds of shading once more."""
     kept = sum(1 for row in numbers["plan"] if row["decision"] == "drawn")
     return Reading(f"{method}, {choice}", error=numbers["render_de00"], method=method, default=default,
                    **run.timed(shading, 1e-3 * numbers["shading_ms"]), numbers={"p95": numbers["render_p95"], "effects": kept})
 
 
 def probed(scene, method, choice, *more, default=False):
-    """A paint under the probe."""
+    """A reading of a paint under the probe."""
     settings = Settings("b7", "l1", False, 1e-3, choice)
     numbers = scene.error(settings, *more)
 
@@ -42,7 +42,7 @@ def probed(scene, method, choice, *more, default=False):
 
 
 def plain(run, paint):
-    """A paint under the probe by each engine at every tolerance, and for budgets of the faster one."""
+    """Readings of a paint under the probe: every tolerance with each engine, and some budgets with the faster engine."""
     scene = Scene(run, paint)
     readings = [probed(scene, engine, choice, "--engine", engine, default=(engine, choice) == ("cpu", DEFAULT))
                 for engine in ("gl", "cpu") for choice in choices(run)]
@@ -55,7 +55,7 @@ def plain(run, paint):
 
 
 def staged(run, stage, scene, method, *more):
-    """A scene of another study at every tolerance."""
+    """Readings of a scene of the study of ten scenes, at every tolerance."""
     for choice in ("none", "2", DEFAULT, "0.1", "all"):
         drawn = (scene, *words(choice), *more)
         results = stage.picture(*drawn)
@@ -67,9 +67,9 @@ def staged(run, stage, scene, method, *more):
 
 
 def textured(run):
-    """A texture whose lobes look into a cube for each exponent, or into the levels of one."""
+    """Readings of a texture whose lobes look into a cube for each exponent, or into the levels of one cube."""
     basis = run.work / "quarters.basis.xml"
-    basis.write_bytes(bases.basis_xml("quarters", QUARTERS))
+    basis.write_bytes(basis_xml("quarters", QUARTERS))
     stage = Stage(run, basis)
     return [r for maps in ("cubes", "mip")
             for r in staged(run, stage, ("jet_black", "texture", "studio"), maps, "--texture-maps", maps)]
@@ -86,10 +86,10 @@ def study(run):
                               f"{name}: mean dE00 to the reference integrator against time", readings,
                               "time of shading every pixel once (s)", "dE00, mean"))
         rows += [(name, r.setting, r.numbers["effects"], 1e3 * r.time_s, r.error, r.numbers["p95"]) for r in readings]
-    return Study("Rendering", "Each point is a tolerance of render-osmesa: effects whose estimated worth stays below it are left "
-                 "out. The time is that of shading every pixel once, which is all that effects change; the error is that of "
+    return Study("Rendering", "Each point is a tolerance of render-osmesa, which leaves out the effects whose estimated worth is "
+                 "smaller. The time is that of shading every pixel once, since effects change nothing else; the error is that of "
                  "random visible pixels against the exact lobe model under the whole environment. The texture looks into a cube "
-                 "for each exponent or into the levels of one (--texture-maps); the brushed paint, under a lamp, is drawn about "
-                 "tilted normals.", figures,
+                 "for each exponent or into the levels of one cube (--texture-maps). The brushed paint is lit by a lamp and "
+                 "drawn with tilted normals.", figures,
                  [("What is left out, and what that costs",
                    ("scene", "method, effects to dE00", "drawn", "shading (ms)", "dE00 mean", "95 %"), rows)])

@@ -1,11 +1,13 @@
-"""One picture through all stages at chosen settings: what it costs, and how far it is from the exact one."""
+"""A picture that goes through all stages at chosen settings: what it costs, and how far it is from the exact picture."""
 
 import dataclasses
 
-from .study import Failed
+from shared.basis import basis_xml
+from shared.tools import Failed
 
-# Bases beside those of testdata. Lobes narrower than a paint's flop reach less below the horizon, where light that
-# changes across a lobe is what a picture misses most; views take up what the fit then lacks.
+# Bases beside those of testdata. What a picture misses most is light that changes across the part of a lobe above the horizon.
+# Lobes that are narrower than the flop of a paint reach less below the horizon, so that they miss less of it; fitting for several
+# views takes up what the fit then lacks.
 STEEP = {"steep": (4, 15, 60, 300, 1500)}
 
 CAMERA = ("--size", "320x180", "--samples", "1", "--camera", "3.6,1.75,4.6,0,0.5,0.1", "--fov", "25")
@@ -15,17 +17,17 @@ CAMERA = ("--size", "320x180", "--samples", "1", "--camera", "3.6,1.75,4.6,0,0.5
 class Settings:
     """The knobs of the three stages."""
 
-    basis: str  # of testdata, b5 or b7, or one above
-    method: str  # of fit-paint
-    views: bool  # fitted for several angles of the viewer, where the readings call for it
-    prefilter: float  # tolerance of prefilter-envmap
-    effects: str  # tolerance of render-osmesa in dE00, or all, or none; "integral X" sums the probe itself, to X
+    basis: str  # b5 or b7 of testdata, or one of STEEP
+    method: str  # the method of fit-paint
+    views: bool  # whether paints whose readings call for it are fitted for several angles of the viewer
+    prefilter: float  # the tolerance of prefilter-envmap
+    effects: str  # the tolerance of render-osmesa in dE00, or all, or none; "integral X" sums the probe itself, to X dE00
 
     def fit_words(self):
         return ("--method", self.method, *(("--views", "auto") if self.views else ()))
 
     def integral(self):
-        """The tolerance of the integral, or nothing where maps are looked up."""
+        """The tolerance of the integral, or an empty text if maps are looked up instead."""
         engine, _, tolerance = self.effects.partition(" ")
         return tolerance if engine == "integral" else ""
 
@@ -43,25 +45,22 @@ class Settings:
         return f"{self.basis}, {self.method}{', views' if self.views else ''}, prefilter {self.prefilter:g}, {effects}"
 
     def commands(self):
-        """What to type for these settings, without files in and out."""
+        """The commands of these settings, without the files that go in and out."""
         return (f"fit-paint --basis {self.basis}.basis.xml {' '.join(self.fit_words())}",
                 f"prefilter-envmap --basis {self.basis}.basis.xml --tolerance {self.prefilter:g}",
                 f"render-osmesa {' '.join(self.render_words())}")
 
 
-def write_steep(path, name):
-    """Writes one of the bases above."""
-    exponents = "".join(f"<exponent>{e}</exponent>" for e in STEEP[name])
-    path.write_text(f'<basis xmlns="urn:goniochrome:basis:1" name="{name}">{exponents}<mirror/></basis>\n')
-
-
 class Scene:
-    """A paint on a mesh under a probe. Stages that two settings share run once, for all scenes of a run, and count for each."""
+    """A paint on a mesh under a probe.
+
+    A stage that several settings share runs once for all scenes of a run; its time counts for each of them.
+    """
 
     def __init__(self, run, paint, probe=None, frame=CAMERA, checks=40, *, mesh=None, basis=None, fitting=()):
         self.run, self.paint, self.probe = run, paint, probe or run.probe
         self.mesh, self.frame, self.checks = mesh or run.mesh, frame, checks
-        self.basis = basis  # the file of the only one, in place of those that Settings name
+        self.basis = basis  # the file of the only basis, instead of those that Settings name
         self.fitting = fitting  # more words for fit-paint
 
     def basis_file(self, settings):
@@ -70,11 +69,11 @@ class Scene:
         if settings.basis not in STEEP:
             return self.run.data / f"{settings.basis}.basis.xml"
         path = self.run.work / f"{settings.basis}.basis.xml"
-        write_steep(path, settings.basis)
+        path.write_bytes(basis_xml(settings.basis, STEEP[settings.basis]))
         return path
 
     def fit(self, settings):
-        """(the fitted library, the paint's mean dE00 at its readings, seconds for one paint)"""
+        """(the fitted library, the mean dE00 of the paint at its readings, the seconds for one paint)"""
         key = (settings.basis, *settings.fit_words(), *self.fitting)
         if key not in self.run.kept:
             out = self.run.work / f"{'-'.join(key)}.xml"
@@ -87,10 +86,10 @@ class Scene:
         return out, de00[self.paint], seconds
 
     def environment(self, settings):
-        """(the prefiltered probe, seconds)"""
+        """(the prefiltered probe, the seconds that this took)"""
         key = (self.probe, settings.basis, settings.prefilter)
         if key not in self.run.kept:
-            out = self.run.work / f"{len(self.run.kept)}-{self.probe.stem}.env.exr"  # probes of two folders may share a name
+            out = self.run.work / f"{len(self.run.kept)}-{self.probe.stem}.env.exr"  # Probes of two folders may share a name.
             words = ("--basis", self.basis_file(settings), "--tolerance", settings.prefilter, "--verify", 0, "-o", out)
             _, seconds, _ = self.run.repeated("prefilter-envmap", self.probe, *words)
             self.run.kept[key] = out, seconds
@@ -102,7 +101,7 @@ class Scene:
                 "-o", self.run.work / "picture.exr")
 
     def cost(self, settings, *more):
-        """Seconds by stage, all those of the last, and the least milliseconds of a frame."""
+        """The seconds of each stage, every repetition of the last one, and the least milliseconds of a frame."""
         frames, seconds = [], []
         for _ in range(self.run.repeats):
             results, taken = self.run.tool("render-osmesa", *self.words(settings), *more)
@@ -112,7 +111,7 @@ class Scene:
                 "frame_ms": min(frames), "all_render_s": tuple(seconds)}
 
     def error(self, settings, *more, checks=None):
-        """dE00 of the fit to the readings and of the picture to the reference integrator, the time of shading, and the plan."""
+        """dE00 of the fit to the readings, dE00 of the picture to the reference integrator, the time of shading, and the plan."""
         results, _ = self.run.tool("render-osmesa", *self.words(settings), *more, "--check", checks or self.checks)
         error = results["error"]
         if not error["checked_pixels"]:
@@ -121,15 +120,15 @@ class Scene:
                 "shading_ms": results["left_out"]["shading_ms"], "plan": results.get("plan", [])}
 
     def picture(self, settings, *more):
-        """Both."""
+        """What cost() and error() return, together."""
         return self.cost(settings, *more) | self.error(settings, *more)
 
 
 def total_s(numbers):
-    """Seconds of all stages for one picture."""
+    """The seconds of all stages for a picture."""
     return numbers["fit_s"] + numbers["prefilter_s"] + numbers["render_s"]
 
 
 def total_de00(numbers):
-    """Mean dE00 of the picture to the measured paint: at most what the fit and the picture are off together."""
+    """The mean dE00 of the picture to the measured paint, which is at most that of the fit plus that of the picture."""
     return numbers["fit_de00"] + numbers["render_de00"]

@@ -1,40 +1,46 @@
-"""Ten scenes: what the plan leaves out, whether that is seen, what it saves; and what it says that each effect is worth."""
+"""Ten scenes: what the plan leaves out, whether that can be seen, and what it saves; and what it says each effect is worth."""
 
 import functools
 import math
 import os
 import pathlib
 
-from make_testdata import exr
+import numpy
+
+from shared import pictures
 
 from .study import Figure, Reading, Study
 
 SIZE = ("--size", "480x270")
 
-# paint, what it wears, light; a light is a probe (testdata's, made here, or measured where there are measurements) or a lamp
+# Each scene has a paint, what the paint has beside its color, and a light: a lamp, or a probe that comes from testdata, is made
+# here or, if there are measurements, is measured.
 SCENES = (("signal_red", "fitted", "overcast"), ("signal_white", "fitted", "studio"), ("navy_blue", "fitted", "sun"),
           ("silver_black_flop", "fitted", "overcast"), ("candy_red", "fitted", "sunset"), ("candy_red", "fitted", "blue lamp"),
           ("blue_to_purple", "views", "studio"), ("cyan_to_violet", "views", "sunset"),
           ("silver_fine", "brushed", "orange lamp"), ("jet_black", "texture", "studio"))
-LAMPS = {"blue lamp": "40,50,0.2,0.6,1", "orange lamp": "40,50,1,0.5,0.2"}  # as --light has them
+LAMPS = {"blue lamp": "40,50,0.2,0.6,1", "orange lamp": "40,50,1,0.5,0.2"}  # values of --light
 QUICK = (0, 4, 8)
-LEAST = 0.01  # of the differences in the plot: below, nobody sees them
+LEAST = 0.01  # the least difference of the plot; nobody sees a smaller one
 
-# Each effect in the scene (of the list above) where it matters.
+# Each effect, and the scene of the list above in which it matters.
 MATTERS = {"diffuse": 0, "lobes": 3, "gloss": 3, "mirror": 2, "fresnel": 2, "horizon": 3, "travel": 7, "operator": 4,
            "anisotropy": 8, "lights": 8}
 MEASURED = {"overcast": "uffizi.hdr", "studio": "studio_small_03_1k.hdr", "sunset": "venice_sunset_1k.hdr"}
 
 
 def sky(zenith, horizon, ground, width=256):
-    """A lat-long sky between two colors over even ground, after CIE's overcast sky: (1 + 2 sin e)/3 of the zenith."""
+    """The bytes of an EXR: a lat-long sky between two colors over ground of one color.
+
+    At the elevation e, the share of the zenith's color is (1 + 2 sin e)/3, as in the overcast sky of the CIE.
+    """
     rows = []
     for row in range(width // 2):
-        up = exr.direction(0.5, row + 0.5, width, width // 2)[1]
+        up = pictures.direction(0.5, row + 0.5, width, width // 2)[1]
         share = (1 + 2 * up) / 3
         texel = tuple(share * z + (1 - share) * h for z, h in zip(zenith, horizon)) if up > 0 else ground
         rows.append([texel] * width)
-    return exr.exr_file(rows, exr.FLOAT, "an even sky between two colors")
+    return pictures.exr_file(rows, numpy.float32, "an even sky between two colors")
 
 
 MADE = {"overcast": ((1, 1, 1), (0.25, 0.25, 0.25), (0.2, 0.2, 0.2)),
@@ -42,14 +48,14 @@ MADE = {"overcast": ((1, 1, 1), (0.25, 0.25, 0.25), (0.2, 0.2, 0.2)),
 
 
 class Stage:
-    """The lights and paints of the scenes, each made once."""
+    """The lights and paints of the scenes; each of them is made once."""
 
     def __init__(self, run, basis=None):
         self.run, self.lights = run, {}
         self.basis = ("--basis", basis or run.data / "b7.basis.xml")
 
     def paint(self, name, wears):
-        """A paint as --paint takes it: fitted, fitted for several views, or fitted and brushed."""
+        """A paint, as a value of --paint: fitted, fitted for several views, or fitted and brushed."""
         path = self.run.work / f"{self.basis[1].stem}-{wears}.xml"
         if not path.exists() and wears == "brushed":
             fitted = pathlib.Path(self.paint(name, "fitted").partition("#")[0]).read_text()
@@ -79,7 +85,7 @@ class Stage:
         return self.lights[name]
 
     def words(self, scene, effects, *more):
-        """What render-osmesa draws a scene with."""
+        """The options with which render-osmesa draws a scene."""
         paint, wears, light = scene
         if wears == "texture":
             wears, more = "fitted", (*more, "--texture", f"Hood={self.run.data / 'nameplate.sbrdf.exr'}")
@@ -87,7 +93,7 @@ class Stage:
                 *more, "-o", self.run.work / "picture.exr")
 
     def picture(self, scene, effects, *more):
-        """The report of a scene with these effects, checked."""
+        """The report of a scene that is drawn with these effects and checked."""
         return self.run.tool("render-osmesa", *self.words(scene, effects, *more), "--check", 40 if self.run.quick else 100)[0]
 
     def shading(self, *drawn):
@@ -99,7 +105,7 @@ def named(scene):
 
 
 def scene_readings(stage, scene):
-    """(a row of the table, the scene as planned and with all effects)"""
+    """(a row of the table, the readings of the scene as planned and with all effects)"""
     planned, full = stage.picture(scene, "auto"), stage.picture(scene, "all")
     gone = [row["effect"] for row in planned["plan"] if row["decision"] == "dropped"]
     left = planned["left_out"]
@@ -137,12 +143,14 @@ def study(run):
     figure = Figure("scenes", "As planned, and with all effects: dE00 to the exact integral against time", readings,
                     "time of shading every pixel once (s)", "dE00, 95 % of the pixels", apart=True,
                     y=lambda r: max(r.error, LEAST),
-                    note="Each line is a scene, its left end as planned (--effects auto), its right end with all effects. "
-                    f"Errors below {LEAST} are drawn at {LEAST}.")
-    return Study("Scenes", "What --effects auto leaves out of ten scenes at a tolerance of 0.5 dE00, and how far the picture is "
-                 "then from that of all effects and from the exact integral; and, for every effect, what the plan says that it "
-                 "is worth beside the error of the picture without it. All differences are 95th percentiles of CIEDE2000; those "
-                 "to the exact integral are of random pixels, the others of all.", [figure],
+                    note="Each line is a scene; its left end is the picture as planned (--effects auto), its right end the "
+                    f"picture with all effects. Errors below {LEAST} are drawn at {LEAST}.")
+    return Study("Scenes", "The first table shows what --effects auto leaves out of ten scenes at a tolerance of 0.5 dE00, and "
+                 "how far the picture then is from the picture with all effects and from the exact integral. The second table "
+                 "shows, for every effect, what the plan says that it is worth, and the error of the picture without it. All "
+                 "differences are 95th percentiles of CIEDE2000; those to the exact integral are of random pixels, the others of "
+                 "all pixels.",
+                 [figure],
                  [("What is left out", ("scene", "left out", "predicted", "to all effects", "check, planned", "check, all",
                                         "shading (ms)", "all effects (ms)", "predicted (ms)", "planning (ms)"), scenes),
                   ("Each effect forced off where it matters",

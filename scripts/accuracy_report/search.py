@@ -1,13 +1,15 @@
-"""Nearest paints: library size, metric, and the two exact methods side by side."""
+"""Nearest paints: library size, metric, and the two exact methods beside each other."""
 
 import csv
 import random
+
+from shared.tools import Failed
 
 from .study import Figure, Reading, Study
 
 
 def write_library(path, count, seed):
-    """A table of random metallics, three angles each."""
+    """Writes a table of random metallics with three angles each."""
     draw = random.Random(seed)
     with path.open("w", newline="") as file:
         rows = csv.writer(file, lineterminator="\n")
@@ -43,12 +45,12 @@ def study(run):
                 readings.append(Reading(setting=f"{size} paints", time_s=min(times), error=0.0, method=f"{metric} {method}",
                                         raw_s=times, numbers={"size": size}))
             if by_method["scan"] != by_method["tree"]:
-                raise AssertionError(f"tree and scan differ at {size} paints in {metric}")
+                raise Failed(f"tree and scan differ at {size} paints in {metric}")
             scan, tree = (r.time_s for r in readings[-2:])
             rows.append((metric, size, scan * 1e6, tree * 1e6, scan / tree))
     figure = Figure("search", "Time of a query against library size, both methods exact", readings, x_label="paints",
                     y_label="time of a query (s)", front=False, x=lambda r: r.numbers["size"], y=lambda r: r.time_s,
-                    note="No front: there is no error to trade.")
-    return Study("Nearest paint", "Tree and scan give the same distances to the last bit; only time differs. "
-                 "colorsnap takes the faster one by itself.", [figure],
+                    note="There is no dashed line here: both methods are exact.")
+    return Study("Nearest paint", "The tree and the scan find the same distances to the last bit; only their times differ. "
+                 "colorsnap chooses the faster one by itself.", [figure],
                  [("Time of a query", ("metric", "paints", "scan (us)", "tree (us)", "scan / tree"), rows)])

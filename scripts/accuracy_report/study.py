@@ -1,32 +1,29 @@
-"""What a study is made of, and how it runs tools: readings of error and time, and which of them are worth having."""
+"""The parts of a study, which readings of it no other one beats, and how a study runs the tools."""
 
 import dataclasses
 import json
 import pathlib
 import resource
 import shutil
-import subprocess
 import sys
 import tempfile
 import xml.etree.ElementTree
 
-
-class Failed(Exception):
-    """A tool failed; the text is what it printed."""
+from shared.tools import DATA, run_tool
 
 
 @dataclasses.dataclass
 class Reading:
-    """One setting, what it costs and how far it is off."""
+    """A setting, the time that it takes and its error."""
 
     setting: str
     time_s: float  # the least of the repetitions
     error: float
-    method: str = ""  # readings of one method make one line of the plot
+    method: str = ""  # The readings of one method are one line of the plot.
     default: bool = False
-    raw_s: tuple = ()  # every repetition
+    raw_s: tuple = ()  # the seconds of every repetition
     numbers: dict = dataclasses.field(default_factory=dict)  # whatever else was measured
-    again: object = None  # () -> seconds: takes the time once more
+    again: object = None  # () -> seconds: measures the time once more
 
     def retime(self):
         self.raw_s = (*self.raw_s, self.again())
@@ -35,26 +32,26 @@ class Reading:
 
 @dataclasses.dataclass
 class Figure:
-    """Readings on one pair of axes. `front`: error against time, where less of both is better."""
+    """Readings on one pair of axes. With `front` these are time and error, and less of both is better."""
 
-    name: str  # of the SVG file
+    name: str  # the name of the SVG file
     title: str
     readings: list
     x_label: str = "time (s)"
     y_label: str = "error"
     front: bool = True
-    apart: bool = False  # methods are different jobs: a default is held against its own method alone, and no front is drawn
-    note: str = ""  # below the plot
-    x: object = None  # reading -> x; default: its time
-    y: object = None  # reading -> y; default: its error
+    apart: bool = False  # The methods are different jobs: a default competes only with its own method, and no front is drawn.
+    note: str = ""  # the text below the plot
+    x: object = None  # reading -> x; without it, x is the time
+    y: object = None  # reading -> y; without it, y is the error
     logarithmic: str = "both"
-    joined: bool = True  # the readings of one method by a line
+    joined: bool = True  # A line joins the readings of a method.
 
     def point(self, reading):
         return (self.x(reading) if self.x else reading.time_s, self.y(reading) if self.y else reading.error)
 
     def dominations(self, scatter):
-        """Each default that is dominated, with the first reading that does so."""
+        """Each default that is dominated, with the first reading that dominates it."""
         for one in (r for r in self.readings if r.default and self.front):
             for other in self.readings:
                 if other is one or (self.apart and other.method != one.method):
@@ -66,7 +63,7 @@ class Figure:
                     break
 
     def pareto(self):
-        """The readings that no other one beats in both, by time."""
+        """The readings that no other reading beats in both time and error, in the order of their times."""
         best, front = float("inf"), []
         for reading in sorted(self.readings, key=lambda r: (r.time_s, r.error)):
             if reading.error < best:
@@ -77,22 +74,22 @@ class Figure:
 
 @dataclasses.dataclass
 class Study:
-    """One chapter of the page: prose, figures and tables, all from readings."""
+    """A chapter of the page: its text, its figures and its tables."""
 
     title: str
     text: str
     figures: list = dataclasses.field(default_factory=list)
     tables: list = dataclasses.field(default_factory=list)  # (caption, head, rows)
 
-    # A default is dominated where another reading is better by more than this factor in one and no worse in the other:
-    # times of one machine scatter by so much.
+    # A default is dominated if another reading is better by more than this factor in time or error and not worse in the other.
+    # The times of one machine scatter by about as much.
     SCATTER = 1.25
     ROUNDS = 12
 
     def settle(self):
-        """Takes the times of defaults that seem dominated, and of what dominates them, again in turn.
+        """Measures the times of defaults that seem dominated, and of what dominates them, again and in turn.
 
-        So no verdict rests on one busy moment.
+        A verdict therefore does not rest on one moment in which the machine was busy.
         """
         for figure in self.figures:
             for _ in range(self.ROUNDS):
@@ -108,7 +105,7 @@ class Study:
 
 
 def processor_s():
-    """Processor time of all tools so far: other work on the machine does not count, and threads count each."""
+    """The processor time of all tools so far. Other work on the machine does not count, and every thread does."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
@@ -116,17 +113,16 @@ def processor_s():
 class Run:
     """The tools, a folder to work in, and what the user asked for."""
 
-    SHORT_S, ENOUGH_S = 0.2, 4  # shorter runs are repeated more often; after so many seconds none is repeated
+    SHORT_S, ENOUGH_S = 0.2, 4  # Runs below SHORT_S are repeated more often; after ENOUGH_S seconds no run is repeated.
 
     def __init__(self, folder, options):
         self.folder, self.options = folder, options
         self.quick = options.quick
         self.repeats = 1 if options.quick else 3
-        self.kept = {}  # results of stages that several pictures share
+        self.kept = {}  # the results of stages that several pictures share
         self.paints, self.probe, self.mesh = (p.resolve() for p in (options.paints, options.probe, options.mesh))
         self.output = options.output
-        self.data = pathlib.Path(__file__).resolve().parents[2] / "testdata"
-        self.raw = []  # rows of the CSV
+        self.data = DATA
 
     def __enter__(self):
         self.work = pathlib.Path(tempfile.mkdtemp(prefix="accuracy-"))
@@ -139,32 +135,29 @@ class Run:
         print(f"accuracy-report: {text}", file=sys.stderr, flush=True)
 
     def named(self, wanted):
-        """Those of these paints that the library has; of a library that has none, as many from its beginning."""
+        """The wanted paints that the library has; if it has none of them, its first paints, as many as are wanted."""
         names = [paint.get("name") for _, paint in xml.etree.ElementTree.iterparse(self.paints) if paint.tag.endswith("}paint")]
         return [name for name in wanted if name in names] or names[: len(wanted)]
 
     def tool(self, name, *words):
-        """Runs a tool and returns (results of its report, seconds of processor time of the whole process)."""
+        """Runs a tool and returns (the results of its report, the seconds of processor time of the whole process)."""
         report = self.work / "report.json"
         before = processor_s()
-        done = subprocess.run([str(self.folder / name), *map(str, words), "--report", str(report), "--quiet"],
-                              cwd=self.work, capture_output=True, text=True)
-        seconds = processor_s() - before
-        if done.returncode not in (0, 1):
-            raise Failed(f"{name} {' '.join(map(str, words))}: {done.stderr.strip() or done.returncode}")
-        return json.loads(report.read_text())["results"], seconds
+        run_tool(self.folder / name, *words, "--report", report, "--quiet", cwd=self.work,
+                 command=" ".join(map(str, (name, *words))))
+        return json.loads(report.read_text())["results"], processor_s() - before
 
     def timed(self, once, *seconds):
-        """What a Reading wants of time: the seconds known, and those of several calls of `once`."""
+        """The times of a Reading, as its arguments: the seconds that are known, and those of several calls of `once`."""
         all_s = (*seconds, *(once() for _ in range(self.repeats)))
         return {"time_s": min(all_s), "raw_s": all_s, "again": once}
 
     def shading(self, *words):
-        """The seconds that render-osmesa needs to shade every pixel once."""
+        """The seconds that render-osmesa takes to shade every pixel once."""
         return 1e-3 * self.tool("render-osmesa", *words, "--check", 1)[0]["left_out"]["shading_ms"]
 
     def repeated(self, name, *words):
-        """The same several times, short ones more often: (results of the last, the least seconds, all seconds)."""
+        """Runs a tool several times, a short one more often: (the results of the last run, the least seconds, all seconds)."""
         all_s = []
         while len(all_s) < self.repeats * (2 if min(all_s, default=0) < self.SHORT_S else 1) and sum(all_s) < self.ENOUGH_S:
             results, seconds = self.tool(name, *words)

@@ -1,4 +1,4 @@
-"""The cheapest settings of all stages together that bring a picture within a wanted error, proven by the check."""
+"""The cheapest settings of all stages that bring a picture within a wanted error; a check proves that they do."""
 
 import dataclasses
 import itertools
@@ -8,15 +8,15 @@ from .scene import STEEP, Scene, Settings, total_de00, total_s
 
 SCENES = ("signal_red,studio", "candy_red,outdoor", "silver_fine,studio")
 BASES, METHODS = ("b5", "b7", "steep"), ("l1", "l2", "deltae")
-TOLERANCES, EFFECTS = (1e-1, 3e-2, 1e-2, 1e-3), ("2", "0.5")  # and all effects
-INTEGRALS = ("integral 2", "integral 0.5", "integral 0.1")  # for what no map reaches
+TOLERANCES, EFFECTS = (1e-1, 3e-2, 1e-2, 1e-3), ("2", "0.5")  # All effects are tried as well.
+INTEGRALS = ("integral 2", "integral 0.5", "integral 0.1")  # for errors that no maps reach
 MAXIMAL = Settings("b7", "deltae", True, 1e-4, "all")
-WORTH_IT = 0.99  # fewer effects are looked at where they bring the time of all stages below this part
-CHOOSING, PROVING = 100, 500  # random pixels, of two seeds
+WORTH_IT = 0.99  # Fewer effects are tried only if they bring the time of all stages below this part of it.
+CHOOSING, PROVING = 100, 500  # numbers of random pixels; the two sets have different seeds
 
 
 def scene_of(run, text):
-    """PAINT or PAINT,PROBE; the probe is a file, or studio or outdoor of the test data."""
+    """The scene of PAINT or PAINT,PROBE; the probe is a file, or studio or outdoor of the test data."""
     paint, _, probe = text.partition(",")
     if not probe:
         return Scene(run, paint, checks=CHOOSING)
@@ -26,15 +26,15 @@ def scene_of(run, text):
 
 @dataclasses.dataclass
 class Job:
-    """What shares its settings: paints of a library, each in the same scenes, of which a few paints stand for all."""
+    """All that shares its settings: the paints of a library, each in the same scenes. A few paints stand for all."""
 
-    scenes: list  # of all these paints
-    paints: int = 1  # in the library
-    bases: tuple = BASES  # to choose from
-    proving: int = PROVING
+    scenes: list  # those of the few paints
+    paints: int = 1  # how many paints the library has
+    bases: tuple = BASES  # the bases to choose from
+    proving: int = PROVING  # the random pixels of the last check
 
     def seconds(self, settings):
-        """Processor time of all stages: every paint is fitted, and drawn in its scenes; every probe is filtered once."""
+        """The processor time of all stages: every paint is fitted and drawn in its scenes, and every probe is filtered once."""
         costs = [scene.cost(settings) for scene in self.scenes]
         shown = len({scene.paint for scene in self.scenes})
         filtered = {scene.probe: cost["prefilter_s"] for scene, cost in zip(self.scenes, costs)}
@@ -46,7 +46,7 @@ class Job:
 
 @dataclasses.dataclass
 class Answer:
-    """Settings, and what a check of every scene found."""
+    """Settings, and the errors that a check of every scene found."""
 
     settings: Settings
     errors: list
@@ -59,28 +59,28 @@ class Answer:
 
 
 def fits(job, basis):
-    """Every fit to a basis, cheapest first: (settings, dE00 of the fit in each scene)."""
+    """(settings, dE00 of the fit in each scene) for every fit to a basis, the cheapest first."""
     every = [Settings(basis, method, views, MAXIMAL.prefilter, "all")
              for method, views in itertools.product(METHODS, (False, True))]
     return [(s, [scene.fit(s)[1] for scene in job.scenes]) for s in sorted(every, key=lambda s: job.scenes[0].fit(s)[2])]
 
 
 def with_all_effects(job, basis):
-    """(time of all stages, settings) for every tolerance of the prefilter, with the truest fit, cheapest first."""
+    """(time of all stages, settings) for every tolerance of the prefilter with the most accurate fit, the cheapest first."""
     fit = min(fits(job, basis), key=lambda f: max(f[1]))[0]
     every = [dataclasses.replace(fit, prefilter=tolerance) for tolerance in TOLERANCES]
     return sorted(((job.seconds(settings), settings) for settings in every), key=lambda row: row[0])
 
 
 def with_integral(job, basis):
-    """(time, settings) of the sums over the probe itself: maps are for the plan alone, and the coarsest will do."""
+    """(time, settings) of the sums over the probe itself; only the plan uses maps then, so the coarsest are good enough."""
     fit = min(fits(job, basis), key=lambda f: max(f[1]))[0]
     every = [dataclasses.replace(fit, prefilter=TOLERANCES[0], effects=effects) for effects in INTEGRALS]
     return [(job.seconds(settings), settings) for settings in every]
 
 
 def with_fewer_effects(job, settings):
-    """Settings with the tolerances of render-osmesa that are worth their error, cheapest first."""
+    """The settings with fewer effects that save enough time to be tried, the cheapest first."""
     if settings.integral():
         return []
     whole = job.seconds(settings)
@@ -90,8 +90,10 @@ def with_fewer_effects(job, settings):
 
 
 def proven(job, settings, target):
-    """The first check, at a few pixels, with the cheapest fit that leaves room for what the picture misses; then another
-    at many other pixels, which is the Answer. None where no fit leaves room."""
+    """The Answer of a check at many pixels; None if no fit leaves room for the error of the picture.
+
+    A first check, at a few other pixels, finds that error; then the cheapest fit that leaves room for it is taken.
+    """
     missed = [error["render_de00"] for error in job.errors(settings)]
     enough = [s for s, de00 in fits(job, settings.basis) if all(fit + picture <= target for fit, picture in zip(de00, missed))]
     if not enough:
@@ -101,9 +103,11 @@ def proven(job, settings, target):
 
 
 def found(job, target):
-    """The Answer of the cheapest settings within the target; where none are, of those that came nearest. From the
-    cheapest upward; first, though, whether the most exact maps of a basis are within the target at all, and whether its
-    fit leaves room for the integral. Fewer effects are looked at where all were enough."""
+    """The Answer of the cheapest settings within the target; if there are none, that of the settings that came nearest.
+
+    A basis is considered only if its most exact maps are within the target, or if its fit leaves room for the integral. Settings
+    are then tried from the cheapest upward. If all effects of a setting are within the target, fewer effects are tried too.
+    """
     table, firsts, proofs = [], [], []
     for basis in job.bases:
         rows = with_all_effects(job, basis)
@@ -145,7 +149,7 @@ def told(scene, target):
 
 
 def report(run, target, scenes):
-    """Tells of each scene; returns whether all were brought within the target."""
+    """Prints what was found for each scene; returns whether all were brought within the target."""
     run.repeats = 2
     reached = [told(scene_of(run, text), target) for text in scenes or SCENES]
     return all(reached)

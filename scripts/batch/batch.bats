@@ -1,11 +1,11 @@
 #!/usr/bin/env bats
-# scripts/batch without a workflow engine: what a batch makes, whatever the shards, and what it says of bad paints.
+# scripts/batch without a workflow engine: what a batch makes, that the shards do not matter, and what it says about bad paints.
 
 batch() {
   "$BATS_TEST_DIRNAME/paint-batch" "$@"
 }
 
-# whole OUT OPTION...: a batch of ten paints, one unreadable and one without a color.
+# whole OUT OPTION...: a whole batch of ten paints, of which one cannot be read and one has no color.
 whole() {
   local out=$1 n
   shift
@@ -39,7 +39,7 @@ setup() {
   xmllint --noout --schema "$TESTDATA/../lib/formats/paint.xsd" one/fitted.paints.xml
 }
 
-@test "bad paints are reported by name and are not fatal" {
+@test "bad paints are reported by name and do not end the batch" {
   jq -r '.rejected[]' one/report.json | grep -q '12,5'
   [ "$(jq -r '.failed[].name' one/report.json)" = no_color ]
   [ -n "$(jq -r '.failed[0].fit' one/report.json)" ]
@@ -56,7 +56,7 @@ setup() {
   done
 }
 
-@test "a shard that was done is not done again, one that was interrupted keeps its pictures" {
+@test "a shard that is done is not done again, and one that was interrupted keeps its pictures" {
   cp -r one again
   sed -i "s|$PWD/one|$PWD/again|g" again/plan.json
   batch shard again 0
@@ -70,12 +70,12 @@ setup() {
   cmp one/report.tsv again/report.tsv
 }
 
-@test "the plan tells its estimate, the merged report the time beside it" {
+@test "the plan tells its estimate, and the merged report tells the time beside it" {
   run batch plan library.paints.xml --out told --env --explain --basis "$TESTDATA/b5.basis.xml"
   [ "$status" -eq 0 ]
   [[ ${lines[0]} == 'plan: library.paints.xml, about 10 paints' ]]
   [[ $output == *'in shards: '*' s of work'*'measured: '*'estimate: '*' s of work'* ]]
-  # What is announced stands there before anything is prepared, so also before what fails.
+  # The plan is announced before anything is prepared, and therefore also before the preparation fails.
   run batch plan nowhere.xml --out nothing --env --explain
   [ "$status" -eq 3 ]
   [[ ${lines[0]} == 'plan: nowhere.xml, about 0 paints' ]]

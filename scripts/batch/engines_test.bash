@@ -1,10 +1,10 @@
-# Shared by snakemake.bats and slurm.bats.
+# What snakemake.bats and slurm.bats share.
 
 batch() {
   "$BATS_TEST_DIRNAME/paint-batch" "$@"
 }
 
-# local_run OUT: the workflow on two cores of this machine.
+# local_run OUT: runs the workflow on two cores of this machine.
 local_run() {
   snakemake -s "$BATS_TEST_DIRNAME/Snakefile" --config "out=$1" --cores 2 --keep-going --rerun-incomplete --nolock --quiet all
 }
@@ -13,7 +13,7 @@ slurm_run() {
   timeout -k 5 200 snakemake -s "$BATS_TEST_DIRNAME/Snakefile" --config "out=$1" --profile "$BATS_TEST_DIRNAME/slurm" --nolock
 }
 
-# plan OUT [N]: shards of N paints, small pictures.
+# plan OUT [N]: plans shards of N paints with small pictures.
 plan() {
   batch plan library.paints.xml --out "$1" --size 64x48 --env-size 16 --basis "$TESTDATA/b5.basis.xml" --shard-paints "${2:-4}"
 }
@@ -25,7 +25,7 @@ same_as_undisturbed() {
   diff -r undisturbed/pictures "$1/pictures"
 }
 
-# until_done OUT N: waits for N shards that are done.
+# until_done OUT N: waits until N shards are done.
 until_done() {
   for _ in {1..600}; do
     [ "$(find "$1/shards" -name done.json 2>/dev/null | wc -l)" -ge "$2" ] && return
@@ -34,9 +34,18 @@ until_done() {
   return 1
 }
 
-# undisturbed: the batch that the others are held against.
+# undisturbed: makes the batch with which the others are compared.
 undisturbed() {
   cp "$TESTDATA/paints.paints.xml" library.paints.xml
   plan undisturbed
   local_run undisturbed
+}
+
+setup_file() {
+  cd "$BATS_FILE_TMPDIR"
+  undisturbed
+}
+
+setup() {
+  cd "$BATS_FILE_TMPDIR"
 }

@@ -5,7 +5,7 @@ batch() {
   "$BATS_TEST_DIRNAME/paint-batch" "$@"
 }
 
-# A solid paint is far below 3 dE00, a coarse silver in a studio at about 1.
+# A solid paint is far below 3 dE00, and a coarse silver in a studio is at about 1.
 small=(--basis "$TESTDATA/b5.basis.xml" --mesh "$TESTDATA/box.obj" --size 64x48 --check 25 --shard-paints 1)
 
 setup_file() {
@@ -23,13 +23,13 @@ setup() {
   cd "$BATS_FILE_TMPDIR"
 }
 
-# copy OUT [FILTER]: the plan for another folder, its plan.json through a filter of jq.
+# copy OUT [FILTER]: copies the plan to another folder, with its plan.json changed by a filter of jq.
 copy() {
   cp -r planned "$1"
   jq "${2:-.}" planned/plan.json | sed "s|$PWD/planned|$PWD/$1|g" >"$1/plan.json"
 }
 
-# finish OUT: the rest of a batch.
+# finish OUT: runs the rest of a batch.
 finish() {
   local n
   for n in $(batch list "$1"); do batch shard "$1" "$n"; done
@@ -41,7 +41,7 @@ cells() {
   awk -F '\t' -v name="$2" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) at = i; next } { print $at }' "$1/report.tsv"
 }
 
-@test "the plan tells what it chose, what proves it, and what the checks take" {
+@test "the plan tells what it chose, what proves it, and how long the checks take" {
   cat told
   grep -qE '^  choose, once, for a mean dE00 of 3: the cheapest of 1 basis, .* for 3 paints spread over the library: about [0-9]+ s$' told
   grep -qE '1 pictures a paint, each checked at 25 pixels: about' told
@@ -51,7 +51,7 @@ cells() {
   jq -e '.target | .de00 == 3 and .proof.total_de00 <= 3' planned/plan.json
 }
 
-@test "every step goes by what was chosen, and every picture is within the target" {
+@test "every step uses the settings that were chosen, and every picture is within the target" {
   copy whole
   finish whole
   cat whole/said
@@ -60,7 +60,7 @@ cells() {
     awk '$1 != "n/a" { n++; if ($2 <= 0 || ($1 + $2 - $3) ^ 2 > 1e-12 || $3 > 3) exit 1 } END { exit n != 2 }'
   grep -qE '^target dE00 3: 2 of 2 drawn paints within it, by a check of 25 pixels a picture, with b5, ' whole/said
   jq -e '.target | .within == 2 and .paints == 2 and .not_within == [] and .total_de00.max <= 3' whole/report.json
-  # What a picture tells of its command has the words that were chosen, and its own pixels.
+  # The command that a picture contains has the options that were chosen and the seed of this picture.
   words=$(jq -r '.target.render | join(" ")' planned/plan.json)
   strings whole/pictures/*/000001.png | grep -qF -- "$words --check 25 --check-source $PWD/light.exr --seed 4"
 }
@@ -74,7 +74,7 @@ cells() {
   [ "$(grep -oE 'data:image/png;base64' bound/book-001.html | wc -l)" -ge 2 ]
 }
 
-@test "other pixels find the same; without effects they do not" {
+@test "a check at other pixels is within the target too, but not without effects" {
   copy other
   finish other
   settings=$(jq -r '.target.render | join(" ")' other/plan.json)
@@ -119,14 +119,14 @@ cells() {
   batch shard cut 0
   [ "$(find cut/pictures -name '*.png' -newermt 2001-01-01 | wc -l)" -eq 0 ]
   rm cut/shards/0000/done.json
-  truncate -s -3 cut/shards/0000/checks # the last check is cut short
+  truncate -s -3 cut/shards/0000/checks # The last check is cut off.
   batch shard cut 0
   [ "$(find cut/pictures -name '*.png' -newermt 2001-01-01 | wc -l)" -eq 1 ]
   batch merge cut
   cmp before.tsv cut/report.tsv
 }
 
-@test "a target that is not reached: the nearest is told, nothing is planned" {
+@test "if a target is not reached, the nearest settings are told and nothing is planned" {
   run batch plan library.paints.xml --out never --target-de00 0.001 --env light.exr "${small[@]}"
   echo "$output"
   [ "$status" -eq 1 ]
@@ -154,7 +154,7 @@ cells() {
   [[ $output == *'nowhere.exr'* ]]
 }
 
-@test "a plan that is there is kept, and refused for another target" {
+@test "a plan that is already there is kept, and it is refused for another target" {
   batch plan library.paints.xml --out planned --target-de00 3
   run batch plan library.paints.xml --out planned --target-de00 2
   [ "$status" -eq 3 ]

@@ -1,1 +1,1 @@
-"""What scripts/make-testdata makes, one module for each kind of file."""
+"""What scripts/make-testdata makes; each kind of file has its module."""

@@ -1,21 +1,22 @@
-"""box.obj: an open box with a red and a green wall and two blocks, for the look of colored light.
+"""box.obj: an open box with a red and a green wall and two blocks, which shows the look of colored light.
 
-2 m wide, high and deep, open toward +Z, floor at y = 0. One part for each color: White, Red (left), Green (right), Gray
-(the blocks, the tall one turned). Normals are the faces' own; the walls face inward.
+It is 2 m wide, high and deep and open toward +Z, and its floor is at y = 0. Each color is a part: White, Red (on the left), Green
+(on the right) and Gray (the blocks, both of them turned). Every face has its own normal, and the walls face inward.
 """
 
 import math
 
-from make_testdata.numbers import shortest
+from shared.numbers import shortest
+from make_testdata.vectors import between, cross, unit
 
 
 def quad(corners):
-    """A quadrilateral, counter-clockwise as seen."""
+    """A quadrilateral; its corners are counterclockwise as they are seen."""
     return [tuple(float(c) for c in corner) for corner in corners]
 
 
 def room():
-    """(part, quadrilaterals) of the walls."""
+    """(part, quadrilaterals) of each color of the walls."""
     left, right, floor, top, back, front = -1, 1, 0, 2, -1, 1
     white = [
         quad([(left, floor, front), (right, floor, front), (right, floor, back), (left, floor, back)]),
@@ -28,7 +29,7 @@ def room():
 
 
 def block(x, z, half, height, turn_deg):
-    """Sides and top of a block that stands on the floor."""
+    """The sides and the top of a block that stands on the floor and is turned about the vertical axis."""
     turn = math.radians(turn_deg)
     ground = [(x + half * (a * math.cos(turn) - b * math.sin(turn)), z + half * (a * math.sin(turn) + b * math.cos(turn)))
               for a, b in ((-1, 1), (1, 1), (1, -1), (-1, -1))]
@@ -41,11 +42,7 @@ def block(x, z, half, height, turn_deg):
 
 def normal(corners):
     """The unit normal of a quadrilateral."""
-    a = [p - q for p, q in zip(corners[1], corners[0])]
-    b = [p - q for p, q in zip(corners[3], corners[0])]
-    n = (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
-    size = math.sqrt(sum(c * c for c in n))
-    return tuple(c / size for c in n)
+    return unit(cross(between(corners[0], corners[1]), between(corners[0], corners[3])))
 
 
 def box_obj():

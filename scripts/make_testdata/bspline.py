@@ -1,13 +1,13 @@
 """A uniform bicubic B-spline surface over a net of control rings, closed at both ends by a pole.
 
 A ring is a closed loop of control points around the body; the rings follow one another from the rear pole to the front
-pole. Beyond a pole the net goes on as the rings before it, turned by half a loop, so curves run over the pole without
-a kink. The surface is C2 everywhere but at the poles, where its tangent plane is continuous.
+pole. Beyond a pole the net continues with the rings before it, turned by half a loop, so that curves cross the pole without
+a kink. The surface is C2 everywhere except at the poles, where its tangent plane is continuous.
 """
 
 
 def blending(t):
-    """The four uniform cubic B-spline weights at t in 0..1 and their derivatives."""
+    """The four weights of a uniform cubic B-spline at t from 0 to 1, and their derivatives."""
     s = 1 - t
     weights = (s * s * s / 6, (3 * t * t * t - 6 * t * t + 4) / 6,
                (3 * s * s * s - 6 * s * s + 4) / 6, t * t * t / 6)
@@ -16,17 +16,17 @@ def blending(t):
 
 
 class ClosedSurface:
-    """`rings`: lists of (x, y, z), all of the same even length; the first and the last are poles."""
+    """The surface over `rings`, which are lists of (x, y, z) of one even length; the first and the last are poles."""
 
     def __init__(self, rings):
         self.around = len(rings[0])
         self.along = len(rings) - 1
         half = self.around // 2
-        # one ring more at each end, over the pole; the first and last u columns repeat for the periodic look-up
+        # Each end gets one more ring, which lies beyond the pole.
         self.net = [rings[1][half:] + rings[1][:half], *rings, rings[-2][half:] + rings[-2][:half]]
 
     def point_and_tangents(self, u, v):
-        """(point, dP/du, dP/dv) at u (any number, period `around`) and v in 0..`along`."""
+        """(point, dP/du, dP/dv) at u, which has the period `around`, and at v from 0 to `along`."""
         column, row = int(u // 1), min(int(v), self.along - 1)
         weights_u, slopes_u = blending(u - column)
         weights_v, slopes_v = blending(v - row)

@@ -1,16 +1,16 @@
-"""The designed paints: what a colorist would expect on the meter, written down angle by angle.
+"""The designed paints: the readings that a colorist would expect of the meter, angle by angle.
 
-One line per paint: name, class, gloss at 60 deg in gloss units, then one `L a b` (D65, 10 deg observer) for each
-angle, separated by `|`. Three angles are 45as15, 45as45, 45as110; six are 45as-15, 45as15, 45as25, 45as45, 45as75,
-45as110. What the shapes follow:
+Each line has a paint: its name, its class, its gloss at 60 deg in gloss units, and an `L a b` (D65, 10 deg observer) for each
+angle, separated by `|`. Three angles are 45as15, 45as45 and 45as110; six are 45as-15, 45as15, 45as25, 45as45, 45as75 and
+45as110. The classes differ as follows:
 
-- solid: almost no travel; a slight rise toward the gloss, none at all in `reference_gray`;
-- metallic: lightness falls steeply and evenly from 45as15 to 45as110, 45as-15 reads a little above 45as15 because its
-  light meets the flakes at a wider angle; a tinted coat gains depth and often saturation toward the flop;
-- pearl: softer travel over a colored or a white ground, which shows through at the flop;
-- interference: the hue itself travels, since the flakes' film looks thinner at a wider angle: 45as-15 leads the travel
-  and the ground takes over past 45as75;
-- `trial_mix_07` is a mix gone wrong, darkest at 45as45: no clamped curve fits it, and its class is unknown.
+- solid: there is almost no travel, only a slight rise toward the gloss; `reference_gray` has not even that;
+- metallic: the lightness falls steeply and evenly from 45as15 to 45as110, and 45as-15 reads a little more than 45as15 because its
+  light meets the flakes at a wider angle; a tinted coat gains depth, and often saturation, toward the flop;
+- pearl: the travel is softer, over a colored or a white ground that shows through at the flop;
+- interference: the hue itself travels, since the film of the flakes looks thinner at a wider angle; 45as-15 leads the travel, and
+  the ground takes over beyond 45as75;
+- unknown: `trial_mix_07` is a mix that went wrong; it is darkest at 45as45, so that no clamped curve fits it.
 """
 
 TABLE = """

@@ -1,8 +1,8 @@
-"""The paints as paint XML, long CSV and wide CSV, from the one table."""
+"""The paints as paint XML, as long CSV and as wide CSV, all from one table."""
 
 import collections
 
-from make_testdata.numbers import shortest
+from shared.numbers import shortest
 from make_testdata.paint_table import TABLE
 
 Paint = collections.namedtuple("Paint", "name paint_class gloss_60 rows")  # rows: [(geometry, (L, a, b))]
@@ -41,7 +41,7 @@ def paint_xml():
 
 
 def long_csv():
-    """The bytes of the long table: a row for each angle."""
+    """The bytes of the long table, which has a row for each angle."""
     lines = ["sample,geometry,illuminant,observer,L,a,b"]
     for paint in paints():
         for geometry, lab in paint.rows:
@@ -50,7 +50,7 @@ def long_csv():
 
 
 def wide_csv():
-    """The bytes of the wide table: a row for each paint; angles that were not read are empty cells."""
+    """The bytes of the wide table, which has a row for each paint; the cells of angles that were not read are empty."""
     columns = [geometry.removeprefix("45as") for geometry in SIX_ANGLES]
     lines = [",".join(["sample", "illuminant", "observer"] + [c + angle for angle in columns for c in "Lab"])]
     for paint in paints():

@@ -1,38 +1,38 @@
-"""speed-shape.obj: the speed shape's body cut into panels, its front bumper turned 8 degrees out of flush."""
+"""speed-shape.obj: the body of the speed shape, cut into panels, with a front bumper that is turned 8 degrees out of flush."""
 
 import functools
 import math
 
 from make_testdata import patch
-from make_testdata.patch import (Part, add_grid, add_rolled_edge, add_seam, along, between, cross, dot, insets, spread,
-                                 unit)
+from make_testdata.patch import Part, add_grid, add_rolled_edge, add_seam, insets, spread
 from make_testdata.speed_shape import body
+from make_testdata.vectors import along, between, cross, dot, unit
 
 BODY = body()
 AROUND, FRONT_POLE = BODY.around, BODY.along
-POLE_MARGIN = 1e-4  # the tangents vanish at the very pole
+POLE_MARGIN = 1e-4  # At the pole itself the tangents vanish.
 
-ROOF_EDGE, BELT, SILL = 4.6, 8.0, 15.4  # u of the cuts that run lengthwise (the last about)
+ROOF_EDGE, BELT, SILL = 4.6, 8.0, 15.4  # u of the cuts that run lengthwise; the cut along the sill only lies near its u.
 SILL_HEIGHT = 0.21
 AXLES, ARCH_RADIUS, ARCH_CENTER = (1.36, -1.45), 0.385, 0.255
 ARCH_STEEPEST = math.radians(80)
 SILL_ROUNDING = 0.06
-RECESS, LINER_EDGE = 0.018, 12.1  # the underbody lies so far in, and reaches up to this u
+RECESS, LINER_EDGE = 0.018, 12.1  # The underbody lies so many meters behind the surface, and it reaches up to this u.
 INSET = patch.GAP / 2 + patch.ROLL_RADIUS
-PAINTED, HIDDEN = (0.085, 8.5), (0.12, 14)  # mesh sizes: metres and degrees
+PAINTED, HIDDEN = (0.085, 8.5), (0.12, 14)  # mesh sizes in meters and degrees
 
-MISALIGNMENT_DEG = 8.0  # of Bumper_F, about the axis parallel to x through the seam's top
+MISALIGNMENT_DEG = 8.0  # the turn of Bumper_F about the axis that is parallel to x and goes through the top of its seam
 
 
 def on_body(u, v):
-    """(point, unit normal) of the body."""
+    """(point, unit normal) of the body at u and v."""
     v = min(max(v, POLE_MARGIN), FRONT_POLE - POLE_MARGIN)
     point, along_u, along_v = BODY.point_and_tangents(u % AROUND, v)
     return tuple(point), unit(cross(along_v, along_u))
 
 
 def solved(function, low, high):
-    """Where the rising `function` passes 0 between low and high."""
+    """The argument between low and high at which the rising `function` passes 0."""
     for _ in range(40):
         middle = (low + high) / 2
         low, high = (low, middle) if function(middle) > 0 else (middle, high)
@@ -45,7 +45,7 @@ def v_at(z):
 
 
 def lower_cut_height(z):
-    """Height of the cut along the sills, with an arch over each axle."""
+    """The height of the cut along the sills, which has an arch over each axle."""
     base = SILL_HEIGHT + 1.1 * max(0.0, -1.75 - z) ** 2 + 0.5 * max(0.0, z - 1.5) ** 2
     foot = ARCH_RADIUS * math.sin(ARCH_STEEPEST)
     for axle in AXLES:
@@ -57,7 +57,7 @@ def lower_cut_height(z):
 
 
 class LowerCut:
-    """u of the cut along the sills at any v between the ends, from a fine table."""
+    """The u of the cut along the sills at any v between the ends, from a fine table."""
 
     COUNT = 1600
 
@@ -68,7 +68,7 @@ class LowerCut:
 
     @staticmethod
     def solved_at(v):
-        """u where the section at v comes down to the cut's height."""
+        """The u at which the section at v comes down to the height of the cut."""
         def below_cut(u):
             _, y, z = BODY.point_and_tangents(u, v)[0]
             return lower_cut_height(z) - y
@@ -89,7 +89,7 @@ def mix(a, b, t):
 
 
 def crosswise_cut(z_middle, z_side):
-    """v, as a function of u, of a cut over the top: bowed, at z_middle on the middle line and z_side at the belt."""
+    """The v of a bowed cut over the top, as a function of u: it passes z_middle on the middle line and z_side at the belt."""
     middle, side = v_at(z_middle), v_at(z_side)
     return lambda u: mix(middle, side, (u / BELT) ** 2)
 
@@ -98,7 +98,7 @@ FRONT, REAR = v_at(2.06), v_at(-2.02)
 LINER_FRONT, LINER_REAR = v_at(2.035), v_at(-1.995)
 COWL, DECK = crosswise_cut(0.98, 0.60), crosswise_cut(-1.66, -1.40)
 ROOF_FRONT, ROOF_REAR = crosswise_cut(0.28, 0.02), crosswise_cut(-0.86, -0.70)
-DOOR_FRONT, DOOR_REAR = (v_at(0.80), v_at(0.76)), (v_at(-0.66), v_at(-0.78))  # at the belt and at the sill
+DOOR_FRONT, DOOR_REAR = (v_at(0.80), v_at(0.76)), (v_at(-0.66), v_at(-0.78))  # v at the belt and at the sill
 
 
 def top_patch(left, right, rear, front):
@@ -110,24 +110,27 @@ def top_patch(left, right, rear, front):
 
 
 def side_patch(rear, front):
-    """The surface from the belt to the lower cut, between two cuts given by their v at the belt and at the sill."""
+    """The surface from the belt to the lower cut, between two cuts that are given by their v at the belt and at the sill."""
     def surface(s, t):
         v = mix(mix(*rear, s), mix(*front, s), t)
-        # the arches bend the mesh lines most near the cut and hardly at the shoulder
+        # The arches bend the lines of the mesh strongly near the cut and hardly at the shoulder.
         return on_body(mix(BELT, SILL, s) + (LOWER_CUT(v) - SILL) * s ** 2, v)
     return surface
 
 
 def underbody_patch(s, t):
-    """The surface below the waist, set in, so that it closes the arches and lies behind the sides."""
+    """The surface below the waist. It is set in, so that it closes the arches and lies behind the sides."""
     point, normal = on_body(mix(LINER_EDGE, AROUND - LINER_EDGE, s), mix(LINER_REAR, LINER_FRONT, t))
     return along(point, normal, -RECESS), normal
 
 
 def cut_panel(part, surface, symmetric=False, open_high=False):
-    """Mesh a four-sided panel with rolled edges into part. Return the innermost rows along its borders, each a list
-    of (point, normal): `low` and `high` in s, running along t, `rear` and `front` in t, running along s. open_high:
-    the border at the high s has no neighbor across a gap and reaches in to the underbody."""
+    """Adds the mesh of a panel with four sides and rolled edges to a part, and returns the innermost rows along its borders.
+
+    Each row is a list of (point, normal). `low` and `high` are the borders in s, which run along t; `rear` and `front` are those
+    in t, which run along s. With `open_high`, the border at the high s has no neighbor across a gap and reaches in to the
+    underbody.
+    """
     rows = add_grid(part, surface, (INSET, 0.0 if open_high else INSET, INSET), PAINTED, symmetric)
     low, high = rows[0], rows[-1]
     rear, front = [row[0] for row in rows], [row[-1] for row in rows]
@@ -139,7 +142,7 @@ def cut_panel(part, surface, symmetric=False, open_high=False):
 
 
 def set_in_underbody(part):
-    """Mesh the underbody into part. Return its rows of (point, normal) at its `rear` and `front`, below the lower cut."""
+    """Adds the mesh of the underbody to a part; returns its rows of (point, normal) at `rear` and `front`, below the lower cut."""
     rows = add_grid(part, underbody_patch, (0.0, 0.0, 0.0), HIDDEN, symmetric=True)
 
     def below_the_cut(indices):
@@ -150,7 +153,7 @@ def set_in_underbody(part):
 
 
 def other_side(edge):
-    """An edge mirrored to the other side, run in the same sense across the car."""
+    """An edge that is mirrored to the other side and runs in the same sense across the car."""
     return [((-x, y, z), (-a, b, c)) for (x, y, z), (a, b, c) in reversed(edge)]
 
 
@@ -160,8 +163,10 @@ def across(side, middle):
 
 
 def cut_cap(part, cap, pole_is_front):
-    """Mesh an end with a rolled edge into part: `cap` takes w (0 at the cut, 1 at the pole) and the turn s (0..1) to
-    (point, normal). Return the innermost row of the edge, [(turn, (point, normal))]."""
+    """Adds the mesh of an end with a rolled edge to a part, and returns the innermost row of the edge: (turn, (point, normal)).
+
+    `cap` maps w, which is 0 at the cut and 1 at the pole, and the turn s from 0 to 1 to (point, normal).
+    """
     turns = spread([lambda s, w=w: cap(w, s) for w in (0.02, 0.3, 0.6)], PAINTED, symmetric=True)[:-1]
     depths = spread([lambda w, s=s: cap(w, s) for s in (0.0, 0.125, 0.25, 0.375, 0.5)], PAINTED)
     drawn_back = [insets(cap, s, 0, INSET) for s in turns]
@@ -186,8 +191,10 @@ def tail_cap(w, s):
 
 
 class TurnedNose:
-    """The surface before the front cut, turned as one piece about the top of the seam, its lower edge drawn in, and cut
-    anew where it meets the old seam, so that the gap stays even and the normals tell the misalignment."""
+    """The surface before the front cut, turned as one piece about the top of the seam, with its lower edge drawn in.
+
+    It is cut anew where it meets the old seam, so that the gap keeps its width and only the normals show the misalignment.
+    """
 
     def __init__(self):
         self.pivot = on_body(0.0, FRONT)[0]
@@ -195,17 +202,17 @@ class TurnedNose:
         self.cosine, self.sine = math.cos(angle), math.sin(angle)
 
     def turned(self, vector, sense=1):
-        """A direction turned with the bumper, or back (sense -1)."""
+        """A direction turned with the bumper, or turned back if `sense` is -1."""
         x, y, z = vector
         return (x, self.cosine * y - sense * self.sine * z, sense * self.sine * y + self.cosine * z)
 
     def moved(self, point, sense=1):
-        """A point moved with the bumper, or back (sense -1)."""
+        """A point moved with the bumper, or moved back if `sense` is -1."""
         return along(self.pivot, self.turned(between(self.pivot, point), sense), 1)
 
     @functools.lru_cache(maxsize=None)
     def new_cut(self, s):
-        """(u, v) of the body's point that the turn brings nearest to the seam's point at turn s."""
+        """(u, v) of that point of the body which the turn brings nearest to the point of the seam at s."""
         u, v = AROUND * s, FRONT
         goal = self.moved(on_body(u, v)[0], -1)
         for _ in range(12):
@@ -249,7 +256,7 @@ def speed_shape():
     nose = cut_cap(parts["Bumper_F"], TurnedNose(), pole_is_front=True)
     tail = cut_cap(parts["Rear"], tail_cap, pole_is_front=False)
 
-    half = Part("Seams")  # the seams of the left side
+    half = Part("Seams")  # of the left side
     add_seam(half, quarter["low"] + door["low"] + fender["low"], deck["high"] + window["high"] + hood["high"])
     add_seam(half, window["low"], backlight["high"] + roof["high"] + windshield["high"])
     add_seam(half, quarter["front"], door["rear"])
@@ -270,17 +277,17 @@ def speed_shape():
 
 
 def upper_half(edge, last):
-    """The part of a loop's edge, [(turn, vertex)], above the turn `last` on the left, from right to left."""
+    """The vertices of a loop of (turn, vertex) above the turn `last` on the left, from right to left."""
     return [vertex for turn, vertex in edge if turn > 1 - last] + [vertex for turn, vertex in edge if turn < last]
 
 
 def lower_half(edge, first):
-    """The part of a loop's edge, [(turn, vertex)], below the turn `first` on the left, from left to right."""
+    """The vertices of a loop of (turn, vertex) below the turn `first` on the left, from left to right."""
     return [vertex for turn, vertex in edge if first <= turn <= 1 - first]
 
 
 def number(value):
-    """Six significant digits, nothing below a micrometre."""
+    """A length with six significant digits, rounded to a micrometer."""
     return f"{round(value, 6) + 0.0:.6g}"
 
 

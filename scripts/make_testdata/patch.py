@@ -1,68 +1,41 @@
-"""Panels cut from a smooth surface: sampled where it bends, drawn back from the cut, with a rolled edge."""
+"""Panels that are cut from a smooth surface.
+
+Their mesh is dense where the surface bends, ends a little before the cut and has a rolled edge there. Lengths are meters.
+"""
 
 import bisect
 import math
 
-GAP = 0.004  # between neighboring panels
+from make_testdata.vectors import along, angle, between, cross, dot, unit
+
+GAP = 0.004  # the distance of neighboring panels
 ROLL_RADIUS = 0.0025
 ROLL_ANGLES = (math.radians(45), math.radians(90))
-FLANGE_DEPTH = 0.008  # how far a rolled edge goes in behind the surface, where nothing else is said
-SHORTEST_STEP = 0.009  # however tight the bend
-PROBES = 256  # samples along a line when its bends are measured
-
-
-def cross(a, b):
-    """The vector product."""
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
-
-
-def dot(a, b):
-    """The scalar product."""
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-def along(point, direction, distance):
-    """point + distance * direction."""
-    return tuple(p + distance * d for p, d in zip(point, direction))
-
-
-def between(a, b):
-    """b - a."""
-    return tuple(q - p for p, q in zip(a, b))
-
-
-def unit(a):
-    """a with length 1."""
-    length = math.sqrt(dot(a, a))
-    return tuple(c / length for c in a)
-
-
-def angle(a, b):
-    """The angle between a and b in radians."""
-    return math.atan2(math.hypot(*cross(a, b)), dot(a, b))
+FLANGE_DEPTH = 0.008  # how far a rolled edge reaches in behind the surface, unless a caller asks for another depth
+SHORTEST_STEP = 0.009  # No edge of the mesh is shorter, however tight the bend is.
+PROBES = 256  # the samples of a line by which its bends are measured
 
 
 class Part:
-    """A named triangle mesh with a normal for each vertex."""
+    """A triangle mesh with a name and with a normal for each vertex."""
 
     def __init__(self, name):
         self.name = name
         self.points, self.normals, self.triangles = [], [], []
 
     def add(self, point, normal):
-        """Add a vertex and return its index."""
+        """Adds a vertex and returns its index."""
         self.points.append(tuple(point))
         self.normals.append(tuple(normal))
         return len(self.points) - 1
 
     def add_strip(self, upper, lower):
-        """Triangles between two rows of as many vertices, seen from outside with the lower row on the right of the
-        upper."""
+        """Adds triangles between two rows of equally many vertices. Seen from outside, the lower row is on the right."""
         for a, b, c, d in zip(upper, upper[1:], lower, lower[1:]):
             self.triangles += [(a, c, b), (b, c, d)]
 
     def append(self, other):
-        """Take in the vertices and triangles of another part."""
+        """Adds the vertices and triangles of another part."""
         offset = len(self.points)
         self.points += other.points
         self.normals += other.normals
@@ -78,8 +51,11 @@ class Part:
 
 
 def spread(lines, mesh_size, symmetric=False):
-    """Parameters from 0 to 1, dense where any of `lines` (parameter -> point, normal) is long or bends.
-    mesh_size: (step, turn): a mesh edge is about this many metres long, or turns by this many degrees, at most."""
+    """Parameters from 0 to 1 that are dense where any of the `lines` is long or bends.
+
+    A line maps a parameter to (point, normal). `mesh_size` is (step, turn): an edge of the mesh is at most about `step` meters
+    long and turns by at most about `turn` degrees.
+    """
     step, turn = mesh_size[0], math.radians(mesh_size[1])
     share = [0.0] * PROBES
     for line in lines:
@@ -104,7 +80,7 @@ def spread(lines, mesh_size, symmetric=False):
 
 
 def insets(surface, t, edge, inset):
-    """How far, in s, the border s = edge (0 or 1) is drawn back at t so that it ends `inset` from the cut."""
+    """How far, in s, the border s = `edge` (0 or 1) is drawn back at t so that it ends `inset` meters before the cut."""
     h = 1e-4
     inside = h if edge == 0 else 1 - h
     here = surface(edge, t)[0]
@@ -115,13 +91,16 @@ def insets(surface, t, edge, inset):
 
 
 def drawn_in(s, low, high):
-    """s moved in by `low` at 0 and by `high` at 1, and hardly at all far from both."""
+    """s, moved inward by `low` at 0 and by `high` at 1, and hardly moved far from both."""
     return s + low * (1 - s) ** 3 - high * s ** 3
 
 
 def add_grid(part, surface, inset, mesh_size, symmetric=False):
-    """Mesh `surface` (s, t in 0..1 -> point, normal) into part. inset: how far from the cut the borders end at s = 0,
-    at s = 1 and at both t. Return the rows of vertex indices, rows[i][j] at the i-th s and j-th t."""
+    """Adds the mesh of a `surface` to a part and returns the indices of its vertices: rows[i][j] is at the i-th s and j-th t.
+
+    The surface maps s and t, both from 0 to 1, to (point, normal). `inset` has the distances at which the borders end before the
+    cut: at s = 0, at s = 1, and at both ends of t.
+    """
     lines = (0, 0.25, 0.5, 0.75, 1)
     s_values = spread([lambda s, t=t: surface(s, t) for t in lines], mesh_size, symmetric)
     t_values = spread([lambda t, s=s: surface(s, t) for s in lines], mesh_size)
@@ -143,15 +122,18 @@ def add_grid(part, surface, inset, mesh_size, symmetric=False):
 
 
 def add_rolled_edge(part, loop, deeper=None):
-    """Roll the closed border `loop` (vertex indices, counterclockwise from outside) inward. deeper: {vertex: depth of
-    the edge}. Return the innermost row, [(point, normal of the surface above)], one for each vertex of the loop."""
+    """Rolls a closed border inward and returns its innermost row: (point, normal of the surface above) for each vertex.
+
+    The border `loop` has the indices of its vertices, counterclockwise if seen from outside. `deeper` maps some of them to a
+    depth of their own.
+    """
     outward, stretch = [], []
     for before, here, after in zip(loop[-1:] + loop[:-1], loop, loop[1:] + loop[:1]):
         normal = part.normals[here]
         first, second = (unit(cross(unit(between(part.points[a], part.points[b])), normal))
                          for a, b in ((before, here), (here, after)))
         outward.append(unit(tuple(a + b for a, b in zip(first, second))))
-        stretch.append(1 / max(0.5, dot(outward[-1], first)))  # a mitre at the corners
+        stretch.append(1 / max(0.5, dot(outward[-1], first)))  # Corners are mitered.
     profile = [(ROLL_RADIUS * math.sin(a), ROLL_RADIUS * (1 - math.cos(a)), a) for a in ROLL_ANGLES]
     profile.append((ROLL_RADIUS, None, ROLL_ANGLES[-1]))
     upper = loop + loop[:1]
@@ -168,7 +150,7 @@ def add_rolled_edge(part, loop, deeper=None):
 
 
 def add_seam(part, left, right):
-    """Close a gap between two borders, lists of (point, normal) that run the same way with `left` on the left."""
+    """Closes the gap between two borders, which are lists of (point, normal) that run the same way, `left` on the left."""
     left_indices = [part.add(*vertex) for vertex in left]
     right_indices = [part.add(*vertex) for vertex in right]
     i = j = 0

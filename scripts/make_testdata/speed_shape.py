@@ -1,16 +1,16 @@
-"""The speed shape's body: a smooth, car-like sculpture, as the net of a closed bicubic B-spline.
+"""The body of the speed shape: a smooth sculpture that resembles a car, as the net of a closed bicubic B-spline.
 
-Metres, +Y up, +Z forward, +X to the car's left, ground at y = 0.
+Lengths are meters; +Y is up, +Z is forward, +X is to the left of the car, and the ground is at y = 0.
 """
 
 import math
 
 from make_testdata.bspline import ClosedSurface
 
-# The lines of the design, ring by ring from the tail to the nose: z, sweep (how far the ring trails at 0.8 m from the
-# middle), rake (dz per metre of height), then: height of the middle; roof edge x y r; belt x y r; shoulder x y r;
-# waist x y; swell x y; sill x y; height of the floor. r is the distance of the neighboring control points: a small one
-# makes a tight edge, a large one a soft one.
+# The lines of the design, a ring in each row, from the tail to the nose. Before the bar: z, sweep (how far the ring trails at
+# 0.8 m from the middle) and rake (dz for a meter of height). Behind it: the height of the middle; x, y and r of the roof edge,
+# the belt and the shoulder; x and y of the waist, the swell and the sill; the height of the floor. r is the distance of the
+# neighboring control points: a small distance makes a tight edge, a large one a soft edge.
 LINES = """
 # z    sweep rake | top    roof edge        belt             shoulder         waist      swell      sill      floor
 -2.16  .10   -.05 | .885   .50  .88  .06    .62  .872 .05    .735 .84  .040   .735 .64   .69  .43   .60  .33  .31
@@ -29,8 +29,8 @@ LINES = """
 2.15   .22   .18  | .58    .30  .573 .06    .43  .55  .05    .63  .545 .045   .665 .43   .65  .32   .56  .22  .19
 """
 
-# The rings inside the ends turn a scaled copy of the outermost line into an ellipse: z, middle, scale, share of the
-# ellipse (half width, half height below). Then the pole.
+# The rings inside the ends turn a scaled copy of the outermost line into an ellipse. Each has its z, its middle, its scale and
+# the share of the ellipse, whose half width and half height stand below. The last one is the pole.
 TAIL = [(-2.185, 0.60, 0.94, 0.05), (-2.155, 0.60, 0.84, 0.3), (-2.14, 0.60, 0.45, 1.0), (-2.14, 0.60, 0.0, 1.0)]
 NOSE = [(2.20, 0.40, 0.86, 0.15), (2.215, 0.39, 0.5, 1.0), (2.215, 0.39, 0.0, 1.0)]
 TAIL_ELLIPSE, NOSE_ELLIPSE = (0.80, 0.28), (0.68, 0.19)
@@ -38,13 +38,13 @@ MIDDLE_OF_RAKE = 0.5
 
 
 def toward(a, b, distance):
-    """The point at `distance` from a on the way to b, but not nearly half way."""
+    """The point at `distance` from a on the way to b, or at 0.4 of the way if that is nearer."""
     share = min(distance / math.dist(a, b), 0.4)
     return tuple(p + (q - p) * share for p, q in zip(a, b))
 
 
 def half_section(numbers):
-    """The left half of a ring's control points (x, y) from top to bottom, from the numbers of one line."""
+    """The left half of the control points (x, y) of a ring, from top to bottom, from the numbers of one row."""
     top, rx, ry, rr, bx, by, br, sx, sy, sr, wx, wy, ex, ey, kx, ky, floor = numbers
     roof, belt, shoulder, waist, swell, sill = (rx, ry), (bx, by), (sx, sy), (wx, wy), (ex, ey), (kx, ky)
     crown = top - ry
@@ -58,14 +58,17 @@ def half_section(numbers):
 
 
 def whole_ring(half, place):
-    """A closed ring from its left half; `place` gives z for (x, y)."""
+    """A closed ring, made of its left half; `place` gives z for (x, y)."""
     loop = half + [(-x, y) for x, y in half[-2:0:-1]]
     return [(x, y, place(x, y)) for x, y in loop]
 
 
 def end_rings(half, place, ends, radii):
-    """The rings from the outermost line to the pole. A full ellipse is level and even above and below its middle, so
-    that the tangent plane at the pole is one."""
+    """The rings from the outermost line to the pole.
+
+    Near the pole they are full ellipses, which are level and symmetric about their middle, so that the surface has one tangent
+    plane at the pole.
+    """
     rings = []
     for z, middle, scale, roundness in ends:
         blended = []
@@ -80,7 +83,7 @@ def end_rings(half, place, ends, radii):
 
 
 def body():
-    """The body's surface: u runs over the top (0), down the left side to the underside and up the right side."""
+    """The surface of the body: u runs from the top (0) down the left side to the underside and up the right side."""
     rings, halves, places = [], [], []
     for line in LINES.splitlines():
         if line and not line.startswith("#"):

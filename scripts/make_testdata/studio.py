@@ -1,16 +1,19 @@
 """studio.exr: a photographer's studio for cars, built for long, smooth reflections.
 
-Seen from the middle of the car, 0.7 m above a dark floor that runs through a cove into a lit cyclorama. Radiance is
-linear Rec.709 in arbitrary units: the room 0.05 to 0.6, the lights 10 to 60. Lengths are metres from the eye.
+It is seen from the middle of the car, 0.7 m above a dark floor that runs through a cove into a lit cyclorama. Radiance is
+linear Rec.709 in arbitrary units: 0.05 to 0.6 for the room, 10 to 60 for the lights. Lengths are meters from the eye.
 """
 
 import collections
 import math
 
-from make_testdata import exr
-from make_testdata.blend import mix, smooth_step
+import numpy
 
-WIDTH, HEIGHT, SAMPLES = 512, 256, 2  # SAMPLES x SAMPLES points are averaged in each texel
+from make_testdata.blend import mix, smooth_step
+from make_testdata.vectors import cross, dot
+from shared import pictures
+
+WIDTH, HEIGHT, SAMPLES = 512, 256, 2  # SAMPLES x SAMPLES points are averaged in each texel.
 
 # A lamp lies in the plane through `center`, spanned by the unit vectors `across` and `along`.
 Lamp = collections.namedtuple("Lamp", "center across along half_width half_length soft glow color")
@@ -21,7 +24,7 @@ STRIP_RIGHT = Lamp((-4.4, 1.95, 0.1), (0, 1, 0), (0, 0, 1), 0.28, 4.0, 0.18, 0.2
 BACK_LIGHT = Lamp((-0.6, 2.5, -5.6), (1, 0, 0), (0, 0.94, 0.342), 1.7, 0.42, 0.24, 0.2, (58.0, 55.5, 51.0))
 LAMPS = (OVERHEAD, STRIP_LEFT, STRIP_RIGHT, BACK_LIGHT)
 
-# The window: its plane's unit normal (to the front left, level), distance, sill, size, panes and bar width.
+# The window: the unit normal of its plane (level, toward the front left), its distance, sill, size, panes and bars.
 WINDOW_NORMAL = (math.sin(math.radians(38)), 0.0, math.cos(math.radians(38)))
 WINDOW_DISTANCE, WINDOW_SILL, WINDOW_WIDTH, WINDOW_HEIGHT = 5.4, 0.15, 2.5, 2.3
 PANES_ACROSS, PANES_UP, BAR, BAR_SOFT = 3, 2, 0.09, 0.05
@@ -31,7 +34,7 @@ def room(d):
     """Radiance of floor, cove, cyclorama and ceiling in direction d."""
     x, y, z = d
     elevation = math.degrees(math.asin(max(-1.0, min(1.0, y))))
-    # the cyclorama is lit from below the cove, most behind the car and on its left; the left is warm, the right cool
+    # The cyclorama is lit from below the cove, most strongly behind the car and on its left. Its left is warm, its right cool.
     side = 0.5 + 0.5 * x
     level = 0.62 + 0.28 * smooth_step(-0.4, 1.0, -z) + 0.10 * x
     tint = mix((0.93, 0.99, 1.09), (1.07, 1.0, 0.90), side)
@@ -39,7 +42,7 @@ def room(d):
     wall = tuple(level * (0.05 + 0.58 * fall) * c for c in tint)
     ceiling = (0.058, 0.060, 0.064)
     upper = mix(wall, ceiling, smooth_step(34, 70, elevation))
-    # the floor: a pool of light under the softbox, darker toward the cove
+    # The floor has a pool of light under the softbox and gets darker toward the cove.
     reach = 0.7 / max(1e-3, -y) if y < 0 else 1e3
     pool = 1.0 / (1.0 + (reach / 2.6) ** 2)
     floor = tuple(c * (0.62 + 0.9 * pool) for c in (0.094, 0.092, 0.089))
@@ -47,17 +50,13 @@ def room(d):
 
 
 def lamp_light(lamp, d):
-    """The share of the lamp in direction d, 0 to about 1: soft edges, brightest in the middle."""
-    normal = (lamp.across[1] * lamp.along[2] - lamp.across[2] * lamp.along[1],
-              lamp.across[2] * lamp.along[0] - lamp.across[0] * lamp.along[2],
-              lamp.across[0] * lamp.along[1] - lamp.across[1] * lamp.along[0])
-    distance = sum(n * c for n, c in zip(normal, lamp.center))
-    facing = sum(n * c for n, c in zip(normal, d))
+    """The share of the lamp in direction d, from 0 to about 1. A lamp has soft edges and is brightest in the middle."""
+    normal = cross(lamp.across, lamp.along)
+    distance, facing = dot(normal, lamp.center), dot(normal, d)
     if facing * distance <= 0:
         return 0.0
     hit = [c * distance / facing - m for c, m in zip(d, lamp.center)]
-    u = abs(sum(h * a for h, a in zip(hit, lamp.across)))
-    v = abs(sum(h * a for h, a in zip(hit, lamp.along)))
+    u, v = abs(dot(hit, lamp.across)), abs(dot(hit, lamp.along))
     edge = (1 - smooth_step(lamp.half_width - lamp.soft, lamp.half_width, u)) \
         * (1 - smooth_step(lamp.half_length - 2 * lamp.soft, lamp.half_length, v))
     middle = 1 - lamp.glow * ((u / lamp.half_width) ** 2 + (v / lamp.half_length) ** 2) / 2
@@ -66,7 +65,7 @@ def lamp_light(lamp, d):
 
 def window(d):
     """(share of clear glass, radiance of the daylight) in direction d."""
-    facing = sum(n * c for n, c in zip(WINDOW_NORMAL, d))
+    facing = dot(WINDOW_NORMAL, d)
     if facing <= 0.05:
         return 0.0, (0, 0, 0)
     across = (d[0] * WINDOW_NORMAL[2] - d[2] * WINDOW_NORMAL[0]) * WINDOW_DISTANCE / facing
@@ -79,7 +78,7 @@ def window(d):
         pitch = size / panes
         to_bar = min(position % pitch, pitch - position % pitch)
         clear *= smooth_step(BAR / 2, BAR / 2 + BAR_SOFT, to_bar)
-    # outside: a bright horizon haze under a blue sky
+    # Outside, a bright haze lies on the horizon under a blue sky.
     sky = mix((10.6, 12.4, 14.6), (6.9, 10.1, 15.8), smooth_step(0.2, WINDOW_HEIGHT, up))
     outside = mix((3.1, 3.5, 3.4), sky, smooth_step(0.12, 0.34, up))
     return clear, outside
@@ -106,8 +105,8 @@ def studio_exr():
             total = [0.0, 0.0, 0.0]
             for dy in offsets:
                 for dx in offsets:
-                    sample = radiance(exr.direction(column + dx, row + dy, WIDTH, HEIGHT))
+                    sample = radiance(pictures.direction(column + dx, row + dy, WIDTH, HEIGHT))
                     total = [t + s for t, s in zip(total, sample)]
             texels.append(tuple(t / SAMPLES ** 2 for t in total))
         rows.append(texels)
-    return exr.exr_file(rows, exr.HALF, "designed photo studio, lat-long, linear Rec.709")
+    return pictures.exr_file(rows, numpy.float16, "designed photo studio, lat-long, linear Rec.709")

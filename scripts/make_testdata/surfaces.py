@@ -1,20 +1,22 @@
 """Spatially varying surfaces (*.sbrdf.exr): brushed metal, a nameplate, wood.
 
 Each texel is a sum of generalized cosine lobes, f = diffuse + sum albedo (x wo.x wi.x + y wo.y wi.y + z wo.z wi.z)^n in
-1/sr, linear Rec.2020, in a frame whose x axis (along the brush or the grain) is turned by half the angle of (frame.c,
-frame.s). goniochrome-theory(7), SPATIALLY VARYING SURFACES.
+1/sr and linear Rec.2020. Its frame has an x axis along the brush or the grain, which is turned by half the angle of
+(frame.c, frame.s). The equations are in goniochrome-theory(7), SPATIALLY VARYING SURFACES.
 """
 
 import math
 
-from make_testdata import exr
+import numpy
+
 from make_testdata.blend import mix, smooth_step
+from shared import pictures
 
 SIZE = 128
 
 
 def noise(*integers):
-    """A number 0..1 that looks random, from a hash of integers."""
+    """A number from 0 to 1 that looks random: a hash of the integers."""
     state = 0x9E3779B9
     for value in integers:
         state = (state ^ (value & 0xFFFFFFFF)) * 0x85EBCA6B & 0xFFFFFFFF
@@ -25,7 +27,7 @@ def noise(*integers):
 
 
 def soft_noise(x, y, period_x, period_y, seed):
-    """Noise that is smooth between whole numbers and repeats after the periods."""
+    """Noise that is smooth between whole numbers and repeats itself after the periods."""
     column, row = math.floor(x), math.floor(y)
     s, t = smooth_step(0, 1, x - column), smooth_step(0, 1, y - row)
     at = [[noise((column + i) % period_x, (row + j) % period_y, seed) for i in (0, 1)] for j in (0, 1)]
@@ -34,13 +36,16 @@ def soft_noise(x, y, period_x, period_y, seed):
 
 
 def lobe_energy(exponent):
-    """The albedo (1/sr) that gives a lobe about the mirror direction a total of 1."""
+    """The albedo (1/sr) with which a lobe about the mirror direction reflects all light."""
     return (exponent + 1) / (2 * math.pi)
 
 
 def metal(tint, strength):
-    """Three lobes of a metal brushed along x. The sharp one is a mirror's; the wider ones follow the view less and less
-    across the brush (y), as the mean direction of grooves does, and so draw the highlight long across it."""
+    """Three lobes of a metal that is brushed along x.
+
+    The sharp one lies about the mirror direction. The wider a lobe is, the less it follows the view across the brush (along y),
+    as the mean normal of the grooves does; together they draw the highlight long across the brush.
+    """
     fan = ((18, 0.0, 0.40), (56, 0.80, 0.30), (184, 1.0, 0.15))
     values = []
     for exponent, across, share in fan:
@@ -50,7 +55,7 @@ def metal(tint, strength):
 
 
 def names(lobes):
-    """The channels of a texel, in its order."""
+    """The names of a texel's channels, in the order of its values."""
     result = ["diffuse.R", "diffuse.G", "diffuse.B", "frame.c", "frame.s"]
     for lobe in range(lobes):
         result += [f"lobe{lobe}.{channel}" for channel in "RGBxyzn"]
@@ -58,7 +63,7 @@ def names(lobes):
 
 
 def frame(angle):
-    """The direction of a texel's x axis, as it is stored."""
+    """The direction of a texel's x axis, turned by `angle`, as it is stored."""
     return [math.cos(2 * angle), math.sin(2 * angle)]
 
 
@@ -66,7 +71,7 @@ STEEL, BRASS = (0.80, 0.82, 0.84), (0.86, 0.68, 0.36)
 
 
 def brushed(column, row):
-    """Steel whose brush direction turns once (half a turn of its axis twice) across the texture, with fine streaks."""
+    """Steel with fine streaks, whose brush direction makes one full turn across the texture."""
     angle = 2 * math.pi * (column + 0.5) / SIZE
     along = math.cos(angle) * column + math.sin(angle) * row
     across = -math.sin(angle) * column + math.cos(angle) * row
@@ -74,7 +79,7 @@ def brushed(column, row):
     return [0.012 * c for c in STEEL] + frame(angle) + metal(STEEL, streak)
 
 
-# 5 x 7 letters, a row of bits each.
+# Letters of 5 x 7 dots; each number is the bits of a row.
 LETTERS = {
     "G": (14, 17, 16, 23, 17, 17, 15), "O": (14, 17, 17, 17, 17, 17, 14), "N": (17, 25, 21, 19, 17, 17, 17),
     "I": (14, 4, 4, 4, 4, 4, 14), "C": (14, 17, 16, 16, 16, 17, 14), "H": (17, 17, 17, 31, 17, 17, 17),
@@ -84,7 +89,7 @@ LINES, DOT = ("GONIO", "CHROME"), 3
 
 
 def lettered(column, row):
-    """Whether the texel is inside the lettering: two lines, centered."""
+    """Whether the texel is inside the lettering, which is two centered lines."""
     for number, word in enumerate(LINES):
         width, top = (6 * len(word) - 1) * DOT, SIZE // 2 - 26 + 30 * number
         x, y = column - (SIZE - width) // 2, row - top
@@ -95,8 +100,10 @@ def lettered(column, row):
 
 
 def nameplate(column, row):
-    """Brass brushed across, its letters brushed upright: the same metal, told by its highlights alone, and a little
-    darkened."""
+    """Brass that is brushed across, with letters that are brushed upright.
+
+    The letters are the same metal, only a little darker; what makes them readable is the direction of their highlights.
+    """
     inside = lettered(column, row)
     angle = math.pi / 2 if inside else 0.0
     along, across = (row, column) if inside else (column, row)
@@ -105,8 +112,11 @@ def nameplate(column, row):
 
 
 def wood(column, row):
-    """Varnished wood: rings cut along the trunk. The grain is wide (exponent about 10), the wood between it glossier (about
-    150), and both reflect more at grazing angles, where |p| is above 1."""
+    """Varnished wood: rings that are cut along the trunk.
+
+    The lobe is wide on the grain (an exponent of about 10) and glossier between (about 150). Both reflect more at grazing
+    angles, where the length of p is above 1.
+    """
     x, y = (column + 0.5) / SIZE, (row + 0.5) / SIZE
     bend = 0.12 * math.sin(2 * math.pi * x) + 0.05 * soft_noise(4 * x, 4 * y, 4, 4, 3)
     ring = 6 * (y + bend) + 0.35 * soft_noise(8 * x, 24 * y, 8, 24, 4)
@@ -122,7 +132,7 @@ def wood(column, row):
 def surface_exr(texel, lobes, comments):
     """The bytes of one texture."""
     rows = [[texel(column, row) for column in range(SIZE)] for row in range(SIZE)]
-    return exr.exr_file(rows, exr.HALF, comments, names(lobes))
+    return pictures.exr_file(rows, numpy.float16, comments, names(lobes))
 
 
 def brushed_exr():

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs a build into a folder of its own and builds and runs a program of another project against it.
+# Installs a build into a folder of its own, and builds and runs a program of another project against it.
 #
 #   consumer_test.sh BUILD [CXX]
 set -euo pipefail
@@ -9,7 +9,7 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
 DESTDIR= cmake --install "$build" --prefix "$folder/prefix" >/dev/null
-# Nothing of the build folder may be needed: the prefix is moved before it is used.
+# The prefix is moved before it is used, so that a path of the build folder or of the prefix would be found out.
 mv "$folder/prefix" "$folder/moved"
 cmake -S "$here/consumer" -B "$folder/build" -G Ninja -DCMAKE_PREFIX_PATH="$folder/moved" ${2:+-DCMAKE_CXX_COMPILER="$2"} \
   -DCMAKE_CXX_FLAGS="${CXXFLAGS:-}" >"$folder/log" 2>&1 || {
@@ -18,6 +18,8 @@ cmake -S "$here/consumer" -B "$folder/build" -G Ninja -DCMAKE_PREFIX_PATH="$fold
 }
 cmake --build "$folder/build"
 "$folder/build/consumer" "$folder/moved/share/goniochrome/testdata/b7.basis.xml"
+"$folder/moved/share/goniochrome/scripts/paint-book" --help >/dev/null
+"$folder/moved/share/goniochrome/scripts/batch/paint-batch" --help >/dev/null
 for file in bin/fit-paint lib/goniochrome/goniochrome-oiio.so share/man/man1/fit-paint.1 share/man/man5/goniochrome-paint.5 \
   share/bash-completion/completions/fit-paint share/goniochrome/paint.xsd share/goniochrome/testdata/studio.exr; do
   [ -s "$folder/moved/$file" ] || {

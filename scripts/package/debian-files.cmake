@@ -1,4 +1,4 @@
-# Run by cpack on the staged tree: what Debian policy wants of a package and no install rule writes.
+# cpack runs this on the staged tree. It writes what Debian policy demands of a package and no install rule writes.
 set(share ${CPACK_TEMPORARY_INSTALL_DIRECTORY}/usr/share)
 if(NOT EXISTS ${share})
   file(GLOB share ${CPACK_TEMPORARY_DIRECTORY}/*/usr/share)
@@ -6,7 +6,7 @@ endif()
 set(folder ${share}/doc/${CPACK_PACKAGE_NAME})
 file(MAKE_DIRECTORY ${folder})
 
-# The copyright file is the head of LICENSE; the license itself stands in every Debian system.
+# The copyright file is the head of LICENSE, since every Debian system has the text of the license itself.
 file(READ ${CPACK_GONIOCHROME_LICENSE} license)
 string(REGEX REPLACE "\n---------.*" "\n" head "${license}")
 file(WRITE ${folder}/copyright
@@ -19,7 +19,7 @@ file(WRITE ${folder}/changelog
      "  * Version ${CPACK_PACKAGE_VERSION}.\n\n"
      " -- ${CPACK_PACKAGE_CONTACT}  ${now}\n")
 
-# Whoever builds with a umask of 002 has a tree that the group may write.
+# With a umask of 002, the group may write to the tree that a build makes, but a package must not have such files.
 execute_process(COMMAND chmod -R go-w ${share} COMMAND_ERROR_IS_FATAL ANY)
 
 file(GLOB pages ${share}/man/man*/*.[1-9])

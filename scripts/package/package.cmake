@@ -1,7 +1,7 @@
-# What is installed beside the tools, and the Debian package. Included by the top CMakeLists.txt.
+# What is installed beside the tools, and the Debian package. The top CMakeLists.txt includes this file.
 
-# The tools' own files are the component "tools", which the package holds; the library for other programs is
-# "development", which `cmake --install` adds.
+# The files of the tools are the component "tools", which is all that the package holds. The library for other programs is the
+# component "development", which `cmake --install` adds.
 set(modules base math color paint formats library brdf image display envmap prefilter mesh fit render panels sketch report)
 foreach(module ${modules})
   set_target_properties(goniochrome_${module} PROPERTIES EXPORT_NAME ${module})
@@ -26,19 +26,21 @@ install(EXPORT goniochrome NAMESPACE goniochrome:: FILE GoniochromeTargets.cmake
 install(FILES ${PROJECT_BINARY_DIR}/GoniochromeConfig.cmake ${PROJECT_BINARY_DIR}/GoniochromeConfigVersion.cmake
         DESTINATION ${config_folder} COMPONENT development)
 
-# Scripts that work on an installed toolchain; they find the sample data beside them.
+# The scripts that work on an installed toolchain, with the modules that they import; they find the sample data beside them.
 install(
-  DIRECTORY ${PROJECT_SOURCE_DIR}/scripts/batch ${PROJECT_SOURCE_DIR}/scripts/paint_book
+  DIRECTORY ${PROJECT_SOURCE_DIR}/scripts/batch ${PROJECT_SOURCE_DIR}/scripts/paint_book ${PROJECT_SOURCE_DIR}/scripts/shared
+            ${PROJECT_SOURCE_DIR}/scripts/accuracy_report
   DESTINATION ${CMAKE_INSTALL_DATADIR}/goniochrome/scripts
   USE_SOURCE_PERMISSIONS
   PATTERN "__pycache__" EXCLUDE
   PATTERN "*.bats" EXCLUDE
+  PATTERN "*_test.py" EXCLUDE
   PATTERN "*_test.bash" EXCLUDE)
 install(PROGRAMS ${PROJECT_SOURCE_DIR}/scripts/paint-book DESTINATION ${CMAKE_INSTALL_DATADIR}/goniochrome/scripts)
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME goniochrome)
-# The field has to hold an address; .invalid is the domain that says there is none (RFC 2606).
+# The field has to hold an address; the domain .invalid says that there is none (RFC 2606).
 set(CPACK_PACKAGE_CONTACT "The Goniochrome project <goniochrome@goniochrome.invalid>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "computer-aided color appearance design of effect paints")
 string(CONCAT CPACK_PACKAGE_DESCRIPTION
@@ -55,16 +57,16 @@ set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_DEPENDS "libosmesa6") # opened at run time, so no program names it
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "libosmesa6") # It is opened at run time, so that no program names it.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3")
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "snakemake, parallel, openimageio-tools")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "snakemake, parallel, openimageio-tools, python3-numpy, python3-openimageio")
 set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_LIST_DIR}/debian-files.cmake)
 set(CPACK_GONIOCHROME_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 include(CPack)
 
 if(GONIOCHROME_TESTS)
   add_test(NAME project.consumer COMMAND ${CMAKE_CURRENT_LIST_DIR}/consumer_test.sh ${PROJECT_BINARY_DIR} ${CMAKE_CXX_COMPILER})
-  # As the libraries were compiled: sanitizers want it.
+  # The program is compiled with the flags of the libraries, which sanitizers demand.
   string(TOUPPER "${CMAKE_BUILD_TYPE}" type)
   set_tests_properties(project.consumer PROPERTIES TIMEOUT 300 ENVIRONMENT "CXXFLAGS=${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${type}}")
 endif()

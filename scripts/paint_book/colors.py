@@ -1,10 +1,10 @@
-"""Lab as the colors of a screen, for swatches and strips; pictures come from the renderer."""
+"""Lab as the colors of a screen, for swatches, dots and strips. The pictures come from the renderer."""
 
 D65 = (0.95047, 1.0, 1.08883)
 
 
 def srgb(lab):
-    """`#rrggbb` of a Lab triple, its white put on the screen's white, out-of-gamut channels clipped."""
+    """`#rrggbb` of a Lab triple. The white of Lab becomes the white of the screen, and channels outside its gamut are clipped."""
     fy = (lab[0] + 16) / 116
     x, y, z = (white * cube(f) for white, f in zip(D65, (fy + lab[1] / 500, fy, fy - lab[2] / 200)))
     linear = (3.2404542 * x - 1.5371385 * y - 0.4985314 * z,
@@ -23,6 +23,6 @@ def encoded(linear):
 
 
 def strip(paint, last_deg=110, steps=12):
-    """A CSS gradient: the paint's color from 15 degrees (left) to `last_deg`."""
+    """A CSS gradient of the colors of the paint from 15 degrees (left) to `last_deg`."""
     angles = [15 + (last_deg - 15) * i / (steps - 1) for i in range(steps)]
     return f"linear-gradient(90deg,{','.join(srgb(paint.lab_at(angle)) for angle in angles)})"

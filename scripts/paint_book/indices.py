@@ -1,16 +1,19 @@
-"""The figures of every paint, from paint-stats."""
+"""The indices of every paint, which paint-stats computes."""
 
 import json
 
-# What a paint's flags mean to the reader of its card.
+# The flags of a paint, and what the card of the paint says about each.
 FLAGS = {"dark": "so dark that the flop index says nothing",
          "achromatic": "the face has no hue",
-         "through_gray": "the color passes gray, so the sense of the hue travel is open",
+         "through_gray": "the color passes through gray, so the direction of the hue travel is not defined",
          "gamut": "some of its color lies outside the working space of the picture"}
 
 
 def put_into(paints, tools, path, gloss):
-    """Sets `indices` and `flags` of the paints that were read from `path`, in its order; `gloss` was assumed, if any."""
+    """Sets `indices` and `flags` of the paints, which were read from `path`.
+
+    `gloss` is what was assumed for paints without a gloss reading, or None.
+    """
     glossless = f"no gloss reading, drawn with {gloss} units" if gloss else "no gloss reading, drawn matt"
     for paint, line in zip(paints, tools.run("paint-stats", path, "--format", "json").decode().splitlines(), strict=True):
         paint.indices = json.loads(line)

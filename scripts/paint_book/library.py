@@ -1,4 +1,4 @@
-"""The paints of a library: what paint XML says of them, and where they stand in the book."""
+"""The paints of a library: what paint XML says about them, and their places in the book."""
 
 import dataclasses
 import math
@@ -10,23 +10,22 @@ tree.register_namespace("", NAMESPACE)
 
 CLASSES = ["solid", "metallic", "pearl", "interference", "unknown"]
 
-# The groups of a book and the sets they make. Metallics and pearls stand together, since the eye alone often cannot
-# tell one from the other.
+# The sets of a book and their groups. Metallics and pearls are in one set, since the eye often cannot distinguish them.
 SETS = {"solids": ("Solids", ["solid"]),
         "effects": ("Metallics, pearls and interference colors", ["metallic", "pearl", "interference"]),
         "unknown": ("Not classified", ["unknown"])}
 CHROMATIC = ["red", "yellow", "green", "blue"]
 NEUTRAL = ["light", "medium", "dark"]
 
-# Chromatic groups end halfway between the hues (CIELAB, degrees) that most people call pure: 25, 93, 165 and 246.
+# A chromatic group ends halfway between two of the hues (CIELAB, degrees) that most people call pure: 25, 93, 165 and 246.
 HUE_ENDS = [(59, "red"), (129, "yellow"), (205, "green"), (315.5, "blue"), (360, "red")]
-NEUTRAL_CHROMA = 7  # below this average chroma a paint is filed by its lightness
+NEUTRAL_CHROMA = 7  # A paint whose average chroma is smaller is grouped by its lightness.
 LIGHT_L, MEDIUM_L = 66, 33
 
 
 @dataclasses.dataclass
 class Row:
-    """One reading: a geometry, its aspecular angle (signed in plane), and Lab."""
+    """A reading: its geometry, its aspecular angle, which has a sign in plane, and Lab."""
     geometry: str
     angle_deg: float
     in_plane: bool
@@ -41,14 +40,14 @@ class Paint:
     condition: str
     rows: list
     gloss: dict
-    appearance: dict  # face, flop, travel, residual; empty where there is none
+    appearance: dict  # face, flop, travel and residual; empty if the paint has no appearance
     element: tree.Element
-    fit: dict  # how far the lobes of the picture are from the readings, dE00: max, mean
+    fit: dict  # the dE00 of the lobes to the readings, max and mean; empty if the paint has no lobes
     indices: dict = dataclasses.field(default_factory=dict)
     flags: list = dataclasses.field(default_factory=list)
 
     def lab_at(self, angle_deg):
-        """Lab at an unsigned aspecular angle: the reading at 45as<angle>, else the curve, else between readings."""
+        """Lab at an unsigned aspecular angle: that of the reading at 45as<angle>, else of the curve, else between readings."""
         for row in self.rows:
             if row.in_plane and row.angle_deg == angle_deg:
                 return row.lab
@@ -57,19 +56,19 @@ class Paint:
         return between_rows([row for row in self.rows if row.in_plane and row.angle_deg >= 0] or self.rows, angle_deg)
 
     def curve_at(self, angle_deg):
-        """The clamped quadratic of face, flop and travel: goniochrome-theory(7), paint representations."""
+        """Lab by the clamped quadratic of face, flop and travel: goniochrome-theory(7), PAINT REPRESENTATIONS."""
         face, flop, travel = (self.appearance[key] for key in ("face", "flop", "travel"))
         share = ((travel - min(angle_deg, travel)) / (travel - 15)) ** 2
         return tuple(o + (f - o) * share for f, o in zip(face, flop))
 
     def average(self):
-        """Lab over 15, 45 and 110 degrees: L*, chroma, hue in degrees."""
+        """(L*, chroma, hue in degrees), averaged over 15, 45 and 110 degrees."""
         labs = [self.lab_at(angle) for angle in (15, 45, 110)]
         lightness, a, b = (sum(values) / 3 for values in zip(*labs))
         return lightness, sum(math.hypot(lab[1], lab[2]) for lab in labs) / 3, math.degrees(math.atan2(b, a)) % 360
 
     def place(self):
-        """(set, group) of the hierarchy."""
+        """(set, group): where the paint stands in the book."""
         in_set = next((key for key, (_, classes) in SETS.items() if self.paint_class in classes), "unknown")
         lightness, chroma, hue = self.average()
         if chroma < NEUTRAL_CHROMA:
@@ -77,21 +76,21 @@ class Paint:
         return in_set, next(group for end, group in HUE_ENDS if hue <= end)
 
     def order(self):
-        """Sorts a group: neutrals from light to dark, colors round the hue circle from magenta on."""
+        """The key that sorts a group: neutrals go from light to dark, colors around the hue circle from magenta on."""
         lightness, chroma, hue = self.average()
         if chroma < NEUTRAL_CHROMA:
             return (-lightness, self.name)
         return ((hue - HUE_ENDS[-2][0]) % 360, self.name)
 
     def document(self):
-        """Paint XML that holds this paint alone."""
+        """Paint XML with this paint only."""
         return (f'<?xml version="1.0" encoding="UTF-8"?>\n<paints xmlns="{NAMESPACE}" version="1">\n  '
                 + tree.tostring(self.element, encoding="unicode").replace(f' xmlns="{NAMESPACE}"', "", 1).strip()
                 + "\n</paints>\n")
 
 
 def between_rows(rows, angle_deg):
-    """Straight lines between readings, constant beyond the ends."""
+    """Lab on straight lines between readings, and that of the last reading beyond them."""
     rows = sorted(rows, key=lambda row: abs(row.angle_deg))
     if angle_deg <= abs(rows[0].angle_deg):
         return rows[0].lab
@@ -139,7 +138,7 @@ def paint_of(element):
 
 
 def read(path):
-    """The paints of a paint XML file. ValueError: a paint that has no color to show."""
+    """The paints of a paint XML file. A paint that has no color to show is a ValueError."""
     paints = []
     for element in tree.parse(path).getroot().iter(f"{{{NAMESPACE}}}paint"):
         paint = paint_of(element)

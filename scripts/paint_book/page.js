@@ -1,6 +1,6 @@
 "use strict";
-// Whether a paint is among those wanted: its class is checked, each word searched for is in its name or code, and each
-// index lies within its slider. A slider that stands at both ends lets pass even a paint that has no such index.
+// Whether a paint is to be shown: its class is checked, its name or code has every word of the search, and each of its indices
+// lies within its slider. If a slider reaches from end to end, it also lets pass a paint that does not have the index.
 function matches(paint, wanted) {
   if (!wanted.classes.has(paint.class)) return false;
   const text = (paint.name + " " + paint.code).toLowerCase();
@@ -17,7 +17,7 @@ const tiles = all(".tiles li");
 const form = byId("filters");
 const search = byId("search");
 const card = byId("card");
-let visible = [];  // the paints shown, in the order of the page
+let visible = [];  // the paints that are shown, in the order of the page
 
 function rangeOf(fieldset) {
   const [low, high] = all("input", fieldset);
@@ -38,7 +38,7 @@ function showRanges() {
     const { low, high, whole } = rangeOf(fieldset);
     const [first] = all("input", fieldset);
     fieldset.querySelector("output").textContent = whole ? "all" : `${low} to ${high}`;
-    // Where both thumbs meet at the far end, the lower one must stay within reach.
+    // If both thumbs are at the far end, the lower one must lie on top, since only it can move.
     first.style.zIndex = low > (+first.min + +first.max) / 2 ? 2 : 1;
   }
 }
@@ -64,7 +64,7 @@ function filter() {
   showRanges();
 }
 
-// Moving one thumb past the other pushes the other along.
+// A thumb that is moved past the other one takes it along.
 form.addEventListener("input", (event) => {
   const fieldset = event.target.closest(".range");
   if (fieldset) {
@@ -84,7 +84,7 @@ byId("again").addEventListener("click", () => {
   search.focus();
 });
 
-// The card of one paint.
+// The card of a paint.
 let opened = -1;
 
 function download(name, type, text) {
@@ -143,7 +143,7 @@ card.addEventListener("close", () => {
   if (tile) tile.focus();
 });
 
-// On a narrow screen the paints come first.
+// On a narrow screen the filters are closed at first, so that the paints come first.
 if (matchMedia("(max-width: 760px)").matches) byId("tools").open = false;
 filter();
 const named = /^#paint=(.*)$/.exec(location.hash);

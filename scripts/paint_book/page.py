@@ -1,4 +1,4 @@
-"""The book as one HTML page that needs nothing beside itself."""
+"""The book as an HTML page that needs no other file."""
 
 import base64
 import html
@@ -13,7 +13,7 @@ from paint_book.plot import plot
 
 HERE = pathlib.Path(__file__).parent
 
-# index: its name, what it tells
+# Each index, its name, and what it tells.
 INDICES = {"flop_index": ("Flop index", "how much lightness travels"),
            "chroma_index": ("Chroma index", "how much chroma travels"),
            "hue_shift_index": ("Hue-shift index", "how far the flop leaves the hue of the face")}
@@ -31,7 +31,7 @@ def number(value, digits=1):
 
 
 def page(title, summary, paints, pictures, documents, size):
-    """The HTML. `pictures[i]` are the bytes of a PNG, `documents[i]` the texts of FILES, `size` the pixels of a picture."""
+    """The HTML. `pictures[i]` is a PNG, as bytes; `documents[i]` has the texts of FILES; `size` is that of a picture in pixels."""
     filed = {}
     for index, paint in enumerate(paints):
         filed.setdefault(paint.place(), []).append(index)
@@ -50,7 +50,7 @@ def page(title, summary, paints, pictures, documents, size):
 
 
 def data(paints, documents):
-    """What the script needs of each paint, as JSON that cannot end its own element."""
+    """What page.js needs of each paint, as JSON that contains no "<" and therefore cannot end its own element."""
     rows = [{"name": paint.name, "code": paint.code, "class": paint.paint_class,
              **{index: paint.indices[index] for index in INDICES},
              "files": [{"name": f"{file_stem(paint.name)}.{ending}", "type": kind, "text": document}
@@ -74,7 +74,7 @@ def class_boxes(paints):
 
 
 def nice_step(span):
-    """About a hundredth of `span`: 1, 2 or 5 times a power of ten, at least 0.1."""
+    """The smallest step of at least a hundredth of `span` that is 1, 2 or 5 times a power of ten."""
     step = 10 ** math.floor(math.log10(max(span, 1) / 100))
     return next(step * factor for factor in (1, 2, 5, 10) if step * factor * 100 >= span or factor == 10)
 
@@ -156,7 +156,7 @@ def lab_cells(lab):
 
 
 def card(index, paint, size):
-    """The card of a paint, without its picture, which the script takes from the tile."""
+    """The card of a paint. Its picture is missing here: page.js takes it from the tile."""
     heading = ", ".join(filter(None, [paint.code and f"code {paint.code}", paint.paint_class, paint.condition]))
     rows = [(row.geometry, row.lab) for row in paint.rows]
     if paint.appearance:

@@ -1,4 +1,13 @@
-"""L*, a* and b* against aspecular angle, as inline SVG."""
+"""L*, a* and b* against aspecular angle, as inline SVG.
+
+The tool draw-plot could draw these plots, but not as well. For the 59 paints of testdata, three runs for each paint (one for
+each channel) take 0.4 s of processor time in all, and the page of 4.0 MB becomes 0.3 MB larger; this module takes 0.01 s, and
+the whole book 20 s. Time and size would therefore allow it, but the picture does not. If three panels are to fit beside the
+picture of the paint, draw-plot labels one value or none on the vertical axis of each. A dot has a color of its own only as a
+series of its own, and the legend of these series takes a third of the width. The horizontal axis is labeled at round numbers
+instead of the angles that were measured, and nothing marks the specular direction. plot-paint draws the channels of all paints
+in one run of 1.4 s, but always together with its other drawings, which take 0.9 MB for each paint.
+"""
 
 import math
 
@@ -9,7 +18,7 @@ CHANNELS = ("L*", "a*", "b*")
 
 
 def ticks(low, high):
-    """Two to four round numbers within low..high."""
+    """Round numbers from low to high, at least two and usually not more than four; low and high if there are none."""
     span = high - low
     step = 10 ** math.floor(math.log10(span))
     for factor in (5, 2, 1, 0.5, 0.2):
@@ -21,7 +30,7 @@ def ticks(low, high):
 
 
 class Axis:
-    """One panel's vertical scale."""
+    """The vertical scale of a panel."""
 
     def __init__(self, values, top):
         low, high = min(values), max(values)
@@ -33,7 +42,7 @@ class Axis:
 
 
 def plot(paint):
-    """The three panels: readings as dots in their own color (open where out of plane), the curve as a line."""
+    """The three panels of a paint. Readings are dots in their own color, hollow if out of plane; the curve is a line."""
     angles = [row.angle_deg for row in paint.rows]
     left_deg = min([0] + angles)
     right_deg = max([115] + [angle + 5 for angle in angles])
@@ -67,7 +76,7 @@ def plot(paint):
 
 
 def angle_labels(angles, x):
-    """Those of the angles whose labels leave each other room, from the left."""
+    """The angles that are labeled: from the left, those whose label does not touch the one before."""
     kept = []
     for angle in angles:
         if not kept or x(angle) - x(kept[-1]) >= 22:

@@ -1,1 +1,1 @@
-"""The steps of a batch over a paint library."""
+"""The parts of paint-batch: planning, the steps of a shard, and the merged report."""

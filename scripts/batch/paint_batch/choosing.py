@@ -1,4 +1,4 @@
-"""The settings of all stages for a wanted color difference, by the search that serves scripts/demo --target-de00."""
+"""The settings of all stages for a wanted color difference, found by the search of scripts/demo --target-de00."""
 
 import argparse
 import pathlib
@@ -7,44 +7,42 @@ import shutil
 import tempfile
 
 from accuracy_report.scene import Scene
-from accuracy_report.study import Failed, Run
+from accuracy_report.study import Run
 from accuracy_report.target import BASES, CHOOSING, EFFECTS, INTEGRALS, METHODS, TOLERANCES, Job, found
+from shared.tools import DATA, Failed, tools_folder
 
 from . import library
 from .steps import Shard, frame_words, scene_name
-from .tools import ToolError
 
-DATA = pathlib.Path(__file__).resolve().parents[3] / "testdata"
-
-PROBED = 50  # paints, spread over the library, by which fits are timed
-SAMPLES = 8  # of them, those whose pictures are proven
-PROVING = 200  # random pixels of each of these
-SEED = 3  # of the first paint's; 1 and 2 are those of the search
+PROBED = 50  # paints, spread over the library, by which the fits are timed
+SAMPLES = 8  # those of them whose pictures are checked
+PROVING = 200  # the random pixels at which such a picture is checked
+SEED = 3  # the seed of the first paint's check; the search uses the seeds 1 and 2
 
 
 class NotReached(Exception):
-    """No settings bring the samples within the target."""
+    """There are no settings that bring the samples within the target."""
 
 
 def probed(options, out, places, folder):
-    """Paints that can be fitted, spread over the library: (name, text)."""
+    """(name, text) of paints that can be fitted, spread over the library."""
     given = library.spread(out / "library.paints.xml", places, PROBED)
     work = Shard({"basis": options.basis or DATA / f"{BASES[0]}.basis.xml", "gloss": options.gloss}, out)
     fits = work.tools.lines(work.fit, given, folder)
     known = [(fit[1]["name"], text) for text, fit in zip(given, fits)
-             if not isinstance(fit, ToolError) and fit[1].get("de00_mean") is not None]
+             if not isinstance(fit, Failed) and fit[1].get("de00_mean") is not None]
     if not known:
-        raise ToolError(f"{options.library}: none of {len(given)} paints spread over it can be fitted, to choose settings by")
+        raise Failed(f"{options.library}: none of {len(given)} paints spread over it can be fitted, to choose settings by")
     return known
 
 
 def renamed(text, name):
-    """A paint of another name: what follows a # in a name is lost in FILE#NAME."""
+    """The text of a paint with another name. FILE#NAME could not name a paint that has a # in its name."""
     return re.sub(r"""(<paint\b[^>]*?\bname=)("[^"]*"|'[^']*')""", rf'\1"{name}"', text, count=1)
 
 
 def job_of(run, options, names, paints):
-    """Every sample in every scene of the batch."""
+    """The Job of every sample in every scene of the batch."""
     basis = options.basis and options.basis.absolute()
     scenes = [Scene(run, name, pathlib.Path(env).absolute(), frame_words(view, options.size), CHOOSING,
                     mesh=pathlib.Path(mesh).absolute(), basis=basis, fitting=("--gloss", options.gloss) if options.gloss else ())
@@ -53,27 +51,27 @@ def job_of(run, options, names, paints):
 
 
 def choose(options, out, places):
-    """The basis, and what plan.json tells of the target: words of the stages, and what proves them."""
+    """(the basis, what plan.json tells of the target: the options of the stages, and the errors that prove them)"""
     with tempfile.TemporaryDirectory(prefix="paint-batch-") as scratch:
         folder = pathlib.Path(scratch)
         known = probed(options, out, places, folder)
         count = min(SAMPLES, len(known))
-        samples = [i * len(known) // count for i in range(count)]  # which is also what each is called
+        samples = [i * len(known) // count for i in range(count)]  # The number of a sample is also its name.
         paints = folder / "probed.paints.xml"
         paints.write_text(library.document([renamed(text, i) for i, (_, text) in enumerate(known)]), encoding="utf-8")
         given = argparse.Namespace(quick=True, paints=paints, probe=pathlib.Path(options.env[0]),
                                    mesh=pathlib.Path(options.mesh[0]), output=None)
-        with Run(pathlib.Path(shutil.which("render-osmesa") or "render-osmesa").parent, given) as run:
+        with Run(tools_folder(), given) as run:
             job = job_of(run, options, map(str, samples), len(places))
             try:
                 answer = found(job, options.target_de00)
             except Failed as failure:
-                raise ToolError(said_by_tool(str(failure))) from None
+                raise Failed(failure.said) from None  # without the command, whose files are those of the search
             proof = {"paints": count, "pixels": PROVING, **worst_of(job, answer, known)}
             if answer.de00() > options.target_de00:
                 raise NotReached(f"a mean dE00 of {options.target_de00:g} is not reached by {count} paint{'s' * (count > 1)} "
                                  f"of the library: at best {told(proof)} with {answer.settings}; "
-                                 "nothing is planned: give a larger one")
+                                 "nothing is planned: give a larger target")
             basis = job.scenes[0].basis_file(answer.settings)
             if basis.parent == run.work:
                 basis = pathlib.Path(shutil.copy(basis, out))
@@ -83,14 +81,9 @@ def choose(options, out, places):
                    "proof": proof}
 
 
-def said_by_tool(text):
-    """What a tool said, without its command, which names files of the search."""
-    tool = text.split()[0]
-    return text.partition(f": {tool}: ")[2] or text
-
 
 def worst_of(job, answer, known):
-    """The paint and scene that are farthest off."""
+    """The paint and the scene with the largest error."""
     scene, error = job.scenes[answer.worst()], answer.errors[answer.worst()]
     return {"paint": known[int(scene.paint)][0], "scene": scene_name(scene.probe, scene.mesh, scene.frame[1]),
             "fit_de00": error["fit_de00"], "picture_de00": error["render_de00"], "total_de00": answer.de00()}
@@ -102,12 +95,12 @@ def told(proof):
 
 
 def announced(options, paints, scenes, typical):
-    """What the search will do, with a time from typical costs."""
+    """The text that tells what the search will do, with a time from typical costs."""
     samples, bases = min(SAMPLES, paints), 1 if options.basis else len(BASES)
     pictures = samples * scenes
     timed_s = bases * len(TOLERANCES) * (len(options.env) * typical["environment_s"] + pictures * typical["picture_s"])
     timed_s += bases * len(INTEGRALS) * pictures * typical["integral_s"]
-    pixels = (bases + 3) * CHOOSING + 2 * PROVING  # of the bases, of the cheapest, and of what it is proven by
+    pixels = (bases + 3) * CHOOSING + 2 * PROVING  # the checks of the bases, of the cheapest settings, and of what proves them
     checks_s = pictures * (pixels * typical["check_pixel_s"] + (bases + 5) * typical["picture_s"])
     return (f"  choose, once, for a mean dE00 of {options.target_de00:g}: "
             f"the cheapest of {bases} bas{'es' if bases > 1 else 'is'}, {len(METHODS)} methods with and without views, "

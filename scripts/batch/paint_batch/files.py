@@ -1,20 +1,15 @@
-"""Files that are whole or not there."""
+"""JSON files, and folders that one process at a time works in."""
 
 import contextlib
 import fcntl
 import json
-import os
 import pathlib
 
-
-def write(path, text):
-    partial = pathlib.Path(f"{path}.{os.getpid()}.partial")
-    partial.write_text(text, encoding="utf-8")
-    os.replace(partial, path)
+from shared.files import write_whole
 
 
 def write_json(path, value):
-    write(path, json.dumps(value, indent=1) + "\n")
+    write_whole(path, json.dumps(value, indent=1) + "\n")
 
 
 def read_json(path):
@@ -23,7 +18,7 @@ def read_json(path):
 
 @contextlib.contextmanager
 def locked(folder):
-    """Keeps a second process out of a folder; the lock goes with the process, however that ends."""
+    """Keeps other processes out of a folder; the lock ends with this process, however the process ends."""
     folder.mkdir(parents=True, exist_ok=True)
     with open(folder / "lock", "w", encoding="utf-8") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)

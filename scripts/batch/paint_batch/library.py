@@ -1,4 +1,4 @@
-"""Paint XML cut into paints and put together again, as text: every element stays as it came."""
+"""Cuts paint XML into paints and puts it together again, as text, so that every element stays as it is."""
 
 HEAD = '<?xml version="1.0" encoding="UTF-8"?>\n<paints xmlns="urn:goniochrome:paint:1" version="1">\n'
 TAIL = "</paints>\n"
@@ -7,7 +7,7 @@ BLOCK = 1 << 20
 
 
 def places(path):
-    """Start and length in bytes of every paint of a file that a tool wrote, in constant memory."""
+    """(start, length) in bytes of every paint in a file that a tool wrote; this takes constant memory."""
     with open(path, "rb") as file:
         held, base = b"", 0
         while block := file.read(BLOCK):
@@ -21,7 +21,7 @@ def places(path):
 
 
 def paints_at(path, first, last):
-    """The text of the paints whose places are first..last (each start, length)."""
+    """The texts of the paints from the place `first` to the place `last`; a place is (start, length)."""
     with open(path, "rb") as file:
         file.seek(first[0])
         text = file.read(last[0] + last[1] - first[0]).decode()
@@ -29,14 +29,14 @@ def paints_at(path, first, last):
 
 
 def spread(path, places, count):
-    """The text of at most `count` paints, evenly over a library."""
+    """The texts of at most `count` paints, spread evenly over a library."""
     count = min(count, len(places))
     chosen = [places[i * len(places) // count] for i in range(count)]
     return [paints_at(path, place, place)[0] for place in chosen]
 
 
 def cut(text):
-    """The paints of a text, each an element of its own."""
+    """The elements of the paints in a text."""
     parts = text.split("<paint ")[1:]
     return ["<paint " + part[:part.index("</paint>")] + "</paint>" for part in parts]
 

@@ -1,4 +1,4 @@
-"""Prepares what every shard shares, measures what a paint costs, and cuts the library into shards of like time."""
+"""Prepares what all shards share, measures what a paint costs, and cuts the library into shards of about equal time."""
 
 import contextlib
 import pathlib
@@ -6,22 +6,23 @@ import sys
 import tempfile
 import time
 
+from shared.tools import Failed
+
 from . import choosing, files, library
 from .steps import Shard, scene_name
-from .tools import ToolError, Tools
+from .tools import Tools
 
-PROBE = 400  # paints whose cost is measured, spread over the library
-PICTURED = 3  # of them, those that are drawn
-JOB_S = 0.5  # what an engine and Python add to a shard
+PROBE = 400  # paints, spread over the library, whose cost is measured
+PICTURED = 3  # those of them that are drawn
+JOB_S = 0.5  # the seconds that a workflow engine and Python add to a shard
 
-
-# Seconds on one core of a server of 2020, for the plan that is printed before anything is measured.
+# Seconds on a core of a server of 2020, for the plan that is printed before anything is measured.
 TYPICAL = {"clean_s": 0.0001, "environment_s": 1.0, "stream_s": 0.0005, "picture_s": 0.25, "integral_s": 2.0,
            "check_pixel_s": 0.01, "start_s": 0.1}
 
 
 def roughly_counted(path):
-    """Paints in a library before it is read: exact for paint XML, by the size of a reading for tables."""
+    """The number of paints in a library: exact for paint XML, estimated from the size of the file for tables."""
     if path == "-" or not pathlib.Path(path).is_file():
         return 0
     with open(path, "rb") as file:
@@ -31,7 +32,7 @@ def roughly_counted(path):
 
 
 def announce(options):
-    """Prints what is going to be done, with a time from typical costs; the measured one follows the preparation."""
+    """Prints what will be done, with a time from typical costs. The measured time follows after the preparation."""
     paints = roughly_counted(options.library)
     scenes = len(options.env) * len(options.mesh) * len(options.view)
     pictured_s = min(PICTURED, paints) * scenes * TYPICAL["picture_s"]
@@ -53,7 +54,7 @@ def announce(options):
 
 
 def clean_library(options, out):
-    """Writes the cleaned library, and what could not be read."""
+    """Writes the paints that can be read, and the messages about those that cannot."""
     tools = Tools()
     out.mkdir(parents=True, exist_ok=True)
     clean = out / "library.paints.xml"
@@ -69,23 +70,23 @@ def clean_library(options, out):
 
 
 def filtered(options, out, source, basis, target):
-    """The environment of a source, filtered into the batch unless it is so already."""
+    """The filtered environment of a source, which is made in the folder of the batch unless the source is one already."""
     if source.endswith(".env.exr"):
         return pathlib.Path(source).absolute()
     name = pathlib.Path(source).stem
     words = ["--size", options.env_size]
-    if target:  # chosen anew after an interruption, settings may differ
+    if target:  # The name has the settings, because a plan that was interrupted may choose others.
         name = f"{name}-{pathlib.Path(basis).name.split('.')[0]}-{target['prefilter']:g}"
         words, source = ["--tolerance", target["prefilter"]], pathlib.Path(source).absolute()
     made = out / "environments" / f"{name}.env.exr"
     made.parent.mkdir(exist_ok=True)
     if not made.exists():
         Tools().run("prefilter-envmap", "-q", *words, "--basis", basis, source, "-o", made)
-    return pathlib.Path("out") / made.relative_to(out)  # a scratch folder's link to the batch
+    return pathlib.Path("out") / made.relative_to(out)  # Every scratch folder has a link "out" to the batch.
 
 
 def prepared_scenes(options, out, basis, target):
-    """Every mesh and view in every environment."""
+    """The scenes of the batch: every mesh and view in every environment."""
     scenes = []
     for source in options.env:
         env = filtered(options, out, source, basis, target)
@@ -97,7 +98,7 @@ def prepared_scenes(options, out, basis, target):
 
 
 def stream_seconds(work, paints, folder):
-    """Seconds of all steps but the pictures."""
+    """The seconds of all steps except the pictures."""
     work.tools.seconds = {}
     for step in (work.fit, work.stats, work.index, work.snap):
         work.tools.lines(step, paints, folder)
@@ -105,15 +106,15 @@ def stream_seconds(work, paints, folder):
 
 
 def measured(plan, out, places):
-    """Seconds of a paint, a picture and a start of all tools, from PROBE paints, of which PICTURED are drawn."""
+    """The seconds of a paint, of a picture and of a start of all tools, from PROBE paints, of which PICTURED are drawn."""
     paints = library.spread(out / "library.paints.xml", places, PROBE)
     with tempfile.TemporaryDirectory(prefix="paint-batch-") as scratch:
         folder = pathlib.Path(scratch)
         work = Shard(plan, out)
-        work.tools.lines(work.snap, paints[:1], folder)  # makes the index that all shards map
+        work.tools.lines(work.snap, paints[:1], folder)  # This makes the index that all shards share.
         start_s = stream_seconds(work, paints[:1], folder)
         stream_s = max(0, stream_seconds(work, paints, folder) - start_s) / max(1, len(paints) - 1)
-        fitted = [fit[0] for fit in work.tools.lines(work.fit, paints, folder) if not isinstance(fit, ToolError)]
+        fitted = [fit[0] for fit in work.tools.lines(work.fit, paints, folder) if not isinstance(fit, Failed)]
         cost = {"picture_s": picture_seconds(plan, work, fitted, lambda scene, paint: work.draw(scene, paint, folder, "p.png"))}
         if work.target:
             checked_s = picture_seconds(plan, work, fitted, lambda scene, paint: work.checked(scene, 0, paint, folder, "p.png"))
@@ -122,32 +123,35 @@ def measured(plan, out, places):
 
 
 def picture_seconds(plan, work, fitted, draw):
-    """Seconds of a picture, from PICTURED of the fitted paints."""
+    """The seconds of a picture, from PICTURED of the fitted paints."""
     work.tools.seconds = {}
     drawn = 0
     for paint in fitted[:PICTURED]:
         for scene in plan["scenes"]:
-            with contextlib.suppress(ToolError):
+            with contextlib.suppress(Failed):
                 draw(scene, paint)
                 drawn += 1
     return work.tools.seconds.get("render-osmesa", 0) / max(1, drawn)
 
 
 def make(options):
-    """Writes plan.json into options.out; a plan that is there is kept, so that a batch taken up again has the same shards."""
+    """Writes plan.json into options.out and returns (the plan, the seconds that this took).
+
+    A plan that is already there is kept, so that a batch that is continued has the same shards.
+    """
     out = options.out.absolute()
     if (out / "plan.json").exists():
         plan = files.read_json(out / "plan.json")
         held = plan.get("target", {}).get("de00")
         if held != options.target_de00:
             made = f"for a mean dE00 of {held:g}" if held else "without --target-de00"
-            raise ToolError(f"{out / 'plan.json'} was made {made}: give another --out, or the same again")
+            raise Failed(f"{out / 'plan.json'} was made {made}: give another --out, or the same target again")
         return plan, 0.0
     started = time.monotonic()
     clean_library(options, out)
     places = list(library.places(out / "library.paints.xml"))
     if not places:
-        raise ToolError(f"{options.library}: there is no paint in it that can be read")
+        raise Failed(f"{options.library}: there is no paint in it that can be read")
     basis, target = choosing.choose(options, out, places) if options.target_de00 else (options.basis.absolute(), None)
     scenes = prepared_scenes(options, out, basis, target)
     plan = {"library": str(options.library), "basis": str(basis), "gloss": options.gloss, "size": options.size,
@@ -155,7 +159,7 @@ def make(options):
             "chapter": options.chapter, "paints": len(places), "cores": options.cores, **({"target": target} if target else {})}
     cost = measured(plan, out, places)
     paint_s = cost["stream_s"] + cost["picture_s"] * len(scenes)
-    # A shard lasts about shard_s, and every core has two at least where that leaves a shard 20 times its overhead.
+    # A shard takes about shard_s. Every core gets at least two shards, if a shard then still takes 20 times its overhead.
     wanted = max(len(places) * paint_s / options.shard_s, min(2 * options.cores, len(places) * paint_s / (20 * cost["start_s"])))
     size = options.shard_paints or max(1, round(len(places) / max(1, wanted)))
     cuts = range(0, len(places), size)
@@ -167,7 +171,7 @@ def make(options):
 
 
 def explain(plan, took_s):
-    """Prints the estimate from measured costs."""
+    """Prints the estimate that follows from measured costs."""
     e, target = plan["estimate"], plan.get("target")
     chosen = f"{choosing.explained(target)}\n" if target else ""
     checked = f", of which its check at {target['check']} pixels takes {e['check_s'] * 1000:.0f} ms" if target else ""

@@ -1,4 +1,4 @@
-"""The merged report: what it holds depends on library and options alone, not on shards, times or restarts."""
+"""The merged report: its content depends only on the library and the options, not on shards, times or restarts."""
 
 import os
 import pathlib
@@ -6,6 +6,9 @@ import shutil
 import subprocess
 import sys
 import tempfile
+
+from shared.files import write_whole
+from shared.quantile import quantile
 
 from . import files, library
 from .steps import TARGETED, columns, picture_path
@@ -16,16 +19,14 @@ def shard_folders(out, plan):
 
 
 def spread(values):
-    """Median, 95th percentile and largest."""
-    values = sorted(values)
-    return {name: values[int(share * (len(values) - 1))] if values else None
-            for name, share in (("median", 0.5), ("p95", 0.95), ("max", 1))}
+    """The median, the 95th percentile and the largest value."""
+    return {name: quantile(values, share) for name, share in (("median", 0.5), ("p95", 0.95), ("max", 1))}
 
 
 class Verdict:
-    """Which paints --target-de00 holds for: those whose fit and worst picture are within it together."""
+    """Which paints are within --target-de00: those of which the fit and the worst picture together are."""
 
-    NAMED = 10  # the worst, on standard error
+    NAMED = 10  # how many of the worst paints are named on standard error
 
     def __init__(self, target):
         self.target, self.totals, self.missed = target, [], []
@@ -45,7 +46,7 @@ class Verdict:
                 "total_de00": spread(self.totals), "not_within": self.missed}
 
     def told(self):
-        """Lines for who comes back in the morning: how many, and what to look at first."""
+        """The text that says how many paints are within the target, and which of the others to look at first."""
         found = self.summary()
         lines = [f"target dE00 {found['de00']:g}: {found['within']} of {found['paints']} drawn paints within it, by a check of "
                  f"{found['check']} pixels a picture, with {found['settings']}"]
@@ -63,7 +64,7 @@ class Verdict:
 
 
 def merge(out):
-    """Writes report.tsv (a line a paint), report.json (summary and failures), fitted.paints.xml and times.json."""
+    """Writes report.tsv (a line for each paint), report.json (summary and failures), fitted.paints.xml and times.json."""
     plan = files.read_json(out / "plan.json")
     summary = {"paints": 0, "fitted": 0, "pictures": 0, "rejected": files.read_json(out / "rejected.json"), "failed": []}
     errors, seconds, named = [], {}, columns(plan)
@@ -115,7 +116,7 @@ def cell(value):
 
 
 def book(out, chapter):
-    """Writes chapter `chapter` of the paint book, from the pictures of the first scene."""
+    """Writes a chapter of the paint book, with the pictures of the first scene."""
     plan = files.read_json(out / "plan.json")
     first, last = chapter * plan["chapter"], (chapter + 1) * plan["chapter"]
     scene = plan["scenes"][0]
@@ -124,19 +125,19 @@ def book(out, chapter):
     places = list(library.places(out / "fitted.paints.xml"))
     page = out / f"book-{chapter + 1:03d}.html"
     if not numbers:
-        files.write(page, f"<!DOCTYPE html><title>Paints {first + 1} to {min(last, plan['paints'])}</title>"
+        write_whole(page, f"<!DOCTYPE html><title>Paints {first + 1} to {min(last, plan['paints'])}</title>"
                     "<p>No paint of this chapter could be drawn; see report.json.\n")
         return
     with tempfile.TemporaryDirectory(prefix="paint-batch-") as scratch:
         folder = pathlib.Path(scratch)
         paints = [library.paints_at(out / "fitted.paints.xml", places[n], places[n])[0] for n in numbers]
-        files.write(folder / "chapter.paints.xml", library.document(paints))
+        write_whole(folder / "chapter.paints.xml", library.document(paints))
         (folder / "out").symlink_to(out, target_is_directory=True)
         for index, number in enumerate(numbers):
             shutil.copy(picture_path(out, scene, number), folder / f"{index}.png")
         program = pathlib.Path(__file__).resolve().parents[2] / "paint-book"
         width, height = plan["size"].split("x")
-        fitted = ["--fitted"] if "target" in plan else []  # as --basis alone would not fit them
+        fitted = ["--fitted"] if "target" in plan else []  # With only --basis, paint-book would fit the paints anew.
         subprocess.run([program, folder / "chapter.paints.xml", "--quiet", "--jobs", "1", "--basis", plan["basis"], *fitted,
                         "--mesh", scene["mesh"], "--env", scene["env"], "--size", f"{width}x{height}", "--pictures", folder,
                         "--title", f"Paints {first + 1} to {min(last, plan['paints'])}", "-o", page], check=True, cwd=folder)

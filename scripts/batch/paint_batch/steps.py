@@ -1,15 +1,18 @@
-"""What is done with a shard: fit, indices, panel check, nearest paint, pictures, one row a paint."""
+"""What is done with a shard: the fit, indices, panel check, nearest paint and pictures of every paint, and its row."""
 
 import json
 import pathlib
 import tempfile
 
+from shared.files import write_whole
+from shared.tools import Failed
+
 from . import files, library
-from .tools import ToolError, Tools, json_lines
+from .tools import Tools, json_lines
 
 COLUMNS = ["paint", "name", "class", "fit", "de00_max", "de00_mean", "gamut_de00", "flop_index", "chroma_index",
            "hue_shift_index", "worst_deg", "nearest", "nearest_distance", "pictures", "failed"]
-TARGETED = ["worst_scene", "picture_de00", "total_de00", "within"]  # with --target-de00
+TARGETED = ["worst_scene", "picture_de00", "total_de00", "within"]  # more columns with --target-de00
 
 
 def columns(plan):
@@ -17,7 +20,7 @@ def columns(plan):
 
 
 def frame_words(view, size):
-    """What the pictures of a scene have in common, for render-osmesa."""
+    """The options of render-osmesa that the pictures of a scene have in common."""
     return ["--orbit", view, "--size", size, "--background", "0.3,0.3,0.3"]
 
 
@@ -26,7 +29,7 @@ def scene_name(source, mesh, view):
 
 
 class Checks:
-    """What the checks of pictures found, kept as each is drawn, so that an interrupted shard draws none of them again."""
+    """The results of the checks of pictures, written as each is drawn, so that an interrupted shard draws none of them again."""
 
     def __init__(self, path):
         self.path, self.found = path, {}
@@ -35,7 +38,7 @@ class Checks:
                 picture, de00 = json.loads(line)
                 self.found[picture] = de00
             except ValueError:
-                pass  # cut off by a kill
+                pass  # The shard was killed while it wrote this line.
 
     def add(self, picture, de00):
         self.found[picture] = de00
@@ -56,7 +59,7 @@ class Shard:
         return list(zip(library.cut(fitted.read_text(encoding="utf-8")), files.read_json(report)["results"]["paints"]))
 
     def chosen(self, stage):
-        """The words of a stage that --target-de00 chose."""
+        """The options that --target-de00 chose for a stage."""
         return self.target[stage] if self.target else []
 
     def stats(self, given, folder):
@@ -75,11 +78,11 @@ class Shard:
         return json_lines(out)
 
     def draw(self, scene, paint, folder, picture, *more):
-        """Draws one picture, whole or not at all; `picture` is seen from `folder`, in which out is a link to the batch.
+        """Draws a picture, whole or not at all. The path `picture` is relative to `folder`, where "out" is a link to the batch.
 
-        A picture tells the command that made it, so the paths in it are the same for any shard and folder.
+        A picture contains the command that made it. With this link the paths in it are the same for any shard and any folder.
         """
-        files.write(folder / "alone.paints.xml", library.document([paint]))
+        write_whole(folder / "alone.paints.xml", library.document([paint]))
         if not (folder / "out").exists():
             (folder / "out").symlink_to(self.out, target_is_directory=True)
         self.tools.run("render-osmesa", "-q", "--threads", 1, "--mesh", scene["mesh"], "--env", scene["env"], "--paint",
@@ -87,16 +90,16 @@ class Shard:
                        "-o", picture, cwd=folder)
 
     def checked(self, scene, number, paint, folder, picture):
-        """Draws one picture; gives back its mean dE00 to the reference integrator, at pixels drawn anew for every paint."""
+        """Draws a picture; returns its mean dE00 to the reference integrator, at random pixels that differ for every paint."""
         self.draw(scene, paint, folder, picture, "--check", self.target["check"], "--check-source", scene["source"],
                   "--seed", self.target["seed"] + number, "--report", "check.json")
         error = files.read_json(folder / "check.json")["results"]["error"]
         if not error["checked_pixels"]:
-            raise ToolError(f"{scene['name']}: not a pixel of the mesh is in the picture")
+            raise Failed(f"{scene['name']}: not a pixel of the mesh is in the picture")
         return error["de00_mean"]
 
     def pictures(self, number, paint, folder):
-        """Draws what is not there yet; gives back the mean dE00 of each, where there is a target."""
+        """Draws the pictures of a paint that are not there yet; returns {scene: mean dE00} if there is a target, else {}."""
         found = {}
         for scene in self.plan["scenes"]:
             picture = picture_path("out", scene, number)
@@ -110,13 +113,13 @@ class Shard:
         return found
 
     def rows(self, first, paints, folder):
-        """The row of each paint and its fitted text; a paint that fails keeps the message and goes no further."""
+        """[(row, fitted text)] of the paints; the row of a paint that fails has the message, and its pictures are not drawn."""
         steps = {"fit": self.fit, "stats": self.stats, "index": self.index, "snap": self.snap}
         results = {name: self.tools.lines(step, paints, folder) for name, step in steps.items()}
         rows = []
         for i, paint in enumerate(paints):
             got = {name: result[i] for name, result in results.items()}
-            fitted = paint if isinstance(got["fit"], ToolError) else got["fit"][0]
+            fitted = paint if isinstance(got["fit"], Failed) else got["fit"][0]
             row = row_of(first + i, got) | dict.fromkeys(TARGETED if self.target else ())
             if "fit" not in row["failed"]:
                 try:
@@ -124,7 +127,7 @@ class Shard:
                     row["pictures"] = len(self.plan["scenes"])
                     if found and row["de00_mean"] is not None:
                         row |= verdict(row["de00_mean"], found, self.target["de00"])
-                except ToolError as error:
+                except Failed as error:
                     row["failed"]["picture"] = without(error, folder)
             row["failed"] = {step: without(message, folder) for step, message in row["failed"].items()}
             rows.append((row, fitted))
@@ -132,7 +135,7 @@ class Shard:
 
 
 def verdict(fit_de00, pictures, target):
-    """What a row tells of the target: at most so far is the worst picture from the measured paint."""
+    """The columns about the target. The worst picture is at most `total_de00` from the measured paint."""
     scene = max(pictures, key=pictures.get)
     total = fit_de00 + pictures[scene]
     return {"worst_scene": scene, "picture_de00": pictures[scene], "total_de00": round(total, 9),
@@ -144,13 +147,13 @@ def picture_path(out, scene, number):
 
 
 def without(message, folder):
-    """A message without the folder of this run and the line of its scratch file, so that sharding does not show in it."""
+    """A message without the folder of this run, so that it is the same for any shards."""
     return str(message).replace(f"{folder}/", "")
 
 
 def row_of(number, got):
-    """One row from what the steps gave. Missing values are None."""
-    failed = {name: str(result) for name, result in got.items() if isinstance(result, ToolError)}
+    """The row of a paint, made of the results of the steps. Missing values are None."""
+    failed = {name: str(result) for name, result in got.items() if isinstance(result, Failed)}
     fit = {} if "fit" in failed else got["fit"][1]
     stats, index, snap = ({} if name in failed else got[name] for name in ("stats", "index", "snap"))
     if fit.get("status") == "failed":
@@ -167,7 +170,7 @@ def row_of(number, got):
 
 
 def run_shard(out, number):
-    """Does shard `number` of the plan in `out`, unless it is done; says so by done.json, written last."""
+    """Does shard `number` of the plan in `out`, unless it is done. It is done when done.json is there, which is written last."""
     plan = files.read_json(out / "plan.json")
     shard = plan["shards"][number]
     folder = out / "shards" / f"{number:04d}"
@@ -182,7 +185,7 @@ def run_shard(out, number):
         with tempfile.TemporaryDirectory(prefix="paint-batch-") as scratch:
             paints = library.paints_at(out / "library.paints.xml", *shard["places"])
             rows = work.rows(shard["first"], paints, pathlib.Path(scratch))
-        files.write(folder / "fitted.txt", "".join(f"  {fitted}\n" for _, fitted in rows))
+        write_whole(folder / "fitted.txt", "".join(f"  {fitted}\n" for _, fitted in rows))
         files.write_json(folder / "rows.json", [row for row, _ in rows])
         with open(folder / "log", "a", encoding="utf-8") as log:
             print("finished", file=log)

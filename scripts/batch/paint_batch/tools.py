@@ -1,46 +1,41 @@
-"""Runs the tools, keeps their times, and halves a list of paints until the one that fails stands alone."""
+"""Runs the tools, measures their times, and halves a list of paints until a paint that fails stands alone."""
 
 import json
-import subprocess
 import time
 
-from . import files, library
+from shared.files import write_whole
+from shared.tools import Failed, run_tool
 
-DONE = (0, 1, 4)  # exit statuses with a result: done, negative verdict, stopped by a limit
+from . import library
 
-
-class ToolError(Exception):
-    """What a tool said when it failed."""
+DONE = (0, 1, 4)  # the exit statuses with a result: done, done with a negative verdict, stopped by a limit
 
 
 class Tools:
     def __init__(self):
         self.seconds = {}
 
-    def run(self, tool, *arguments, cwd=None):
+    def run(self, tool, *words, cwd=None):
         started = time.monotonic()
         try:
-            done = subprocess.run([tool, *map(str, arguments)], capture_output=True, check=False, stdin=subprocess.DEVNULL,
-                                  cwd=cwd)
+            run_tool(tool, *words, done=DONE, cwd=cwd)
         except FileNotFoundError:
             raise SystemExit(f"paint-batch: {tool} is not in PATH") from None
-        self.seconds[tool] = self.seconds.get(tool, 0) + time.monotonic() - started
-        if done.returncode not in DONE:
-            said = done.stderr.decode(errors="replace").strip().splitlines()
-            raise ToolError(said[0] if said else f"{tool} ended with status {done.returncode}")
+        finally:
+            self.seconds[tool] = self.seconds.get(tool, 0) + time.monotonic() - started
 
     def lines(self, step, paints, folder):
-        """step(input, output) on all paints; the result of each, or the ToolError of one that failed."""
+        """Runs step(input, output) on all paints and returns a list: the result of each paint, or why it failed, as a Failed."""
         if not paints:
             return []
         try:
             given = folder / "given.paints.xml"
-            files.write(given, library.document(paints))
+            write_whole(given, library.document(paints))
             results = step(given, folder)
             if len(results) != len(paints):
-                raise ToolError(f"{len(results)} results for {len(paints)} paints")
+                raise Failed(f"{len(results)} results for {len(paints)} paints")
             return results
-        except ToolError as error:
+        except Failed as error:
             if len(paints) == 1:
                 return [error]
             half = len(paints) // 2

@@ -1,4 +1,4 @@
-// Reads a paint through the installed library, fits it and says how far the fit is; exit status 1 where it is far.
+// Fits a paint with the installed library and prints how far the fit is from the paint. The exit status is 1 if that is far.
 #include <cstdio>
 
 #include "fit/paint_fit.h"

@@ -1,0 +1,17 @@
+#!/usr/bin/env bats
+# scripts/make-testdata: the files of testdata/ can be made again.
+
+@test "every file is made again, byte for byte" {
+  "$BATS_TEST_DIRNAME/../make-testdata" --out "$BATS_TEST_TMPDIR/made"
+  for made in "$BATS_TEST_TMPDIR"/made/*; do
+    cmp "$made" "$TESTDATA/${made##*/}"
+  done
+  # Only what PROVENANCE.md says is not among them.
+  [ "$(ls "$TESTDATA" | grep -vxF "$(ls "$BATS_TEST_TMPDIR/made")" | xargs)" = 'PROVENANCE.md contact-sheet.jpg' ]
+}
+
+@test "a folder that cannot be written is named" {
+  run "$BATS_TEST_DIRNAME/../make-testdata" --out /dev/null/none --only b5.basis.xml
+  [ "$status" -eq 3 ]
+  [[ $output == *'make-testdata: /dev/null'* ]]
+}

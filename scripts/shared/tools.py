@@ -1,0 +1,35 @@
+"""Where the tools of the toolchain are, and how a script runs them."""
+
+import pathlib
+import shutil
+import subprocess
+
+SCRIPTS = pathlib.Path(__file__).resolve().parents[1]
+DATA = SCRIPTS.parent / "testdata"  # It stands beside the scripts in a checkout and also where the project is installed.
+
+
+class Failed(Exception):
+    """A tool or a script failed: `said` tells why, and `status` is the exit status. The text begins with `command` if given."""
+
+    def __init__(self, said, status=3, command=""):
+        super().__init__(f"{command}: {said}" if command else said)
+        self.said, self.status = said, status
+
+
+def tools_folder():
+    """The folder of the tools that are in PATH; if there are none, the folder of this checkout's release build."""
+    found = shutil.which("render-osmesa")
+    return pathlib.Path(found).parent.absolute() if found else SCRIPTS.parent / "build/release/bin"
+
+
+def run_tool(program, *words, done=(0, 1), given=b"", cwd=None, command=""):
+    """Runs a program with `given` as its standard input and returns its standard output, as bytes.
+
+    An exit status that is not in `done` raises Failed with the first line that the program said, behind `command`.
+    """
+    ended = subprocess.run([program, *map(str, words)], input=given, capture_output=True, check=False, cwd=cwd)
+    if ended.returncode not in done:
+        said = ended.stderr.decode(errors="replace").strip().splitlines()
+        raise Failed(said[0] if said else f"{pathlib.Path(program).name} ended with exit status {ended.returncode}",
+                        ended.returncode, command)
+    return ended.stdout
