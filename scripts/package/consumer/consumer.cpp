@@ -2,23 +2,24 @@
 #include <cstdio>
 
 #include "fit/paint_fit.h"
+#include "formats/basis.h"
 #include "image/image.h"
 #include "render/renderer.h"
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
-  const auto basis = goniochrome::read_basis(argv[1]);
+  const auto basis = goniochrome::formats::read_basis(argv[1]);
   if (!basis) return 3;
-  goniochrome::Paint paint;
+  goniochrome::paint::Paint paint;
   paint.name = "gray";
-  goniochrome::Appearance appearance;
+  goniochrome::paint::Appearance appearance;
   appearance.face = {60, 0, 0};
   appearance.flop = {20, 0, 0};
   appearance.travel_deg = 70;
   paint.appearance = appearance;
-  const auto fit = goniochrome::PaintFitter(*basis, {}).fit(paint);
+  const auto fit = goniochrome::fit::PaintFitter(*basis, {}).fit(paint);
   if (!fit) return 3;
   std::printf("dE00 mean %.3f, renderer %s\n", fit->report.de00_mean,
-              goniochrome::Renderer::create() ? "works" : "is missing");
+              goniochrome::render::Renderer::create() ? "works" : "is missing");
   return fit->report.de00_mean < 5 ? 0 : 1;
 }
