@@ -1,4 +1,4 @@
-#include "panels/goniogeom_sets.h"
+#include "panels/geometry_sets.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// Sets of lights and viewers: lists, ranges and names, as the command line spells them.
+// Which lights and viewers look at two panels: the lists, ranges and names that a command line spells.
 // goniochrome-theory(7), GONIOGEOMETRIC INDEX.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace goniochrome::panels {
 
-// Viewers nearer to the mirror direction than this see gloss, which panels need not share; the index leaves them out.
+// Viewers nearer to the mirror direction than this see gloss, in which panels may differ; the index leaves them out.
 constexpr double kIndexGlare_deg = 10;
 
 // A set with a name: typical lights and viewers.
@@ -30,9 +30,9 @@ struct GeometryTexts {
   std::vector<double> light_weights = {}, view_weights = {};  // one for each, or none: all 1
 };
 
-// All lights with all viewers, in the order given. Pairs within kIndexGlare_deg of the mirror direction, and aspecular
-// viewers below the horizon of their light's panel, are left out and counted. Error (usage): what is wrong with which
-// text, or nothing is left.
+// All lights with all viewers, in the order given. Pairs within kIndexGlare_deg of the mirror direction, and viewers
+// given by an aspecular angle that lie below the horizon, are left out and counted. Error (usage): a text cannot be
+// read, or nothing is left.
 struct GeometryList {
   std::vector<LightView> pairs;
   std::vector<double> weights;       // of the pairs: the light's times the view's
@@ -40,7 +40,7 @@ struct GeometryList {
 };
 Result<GeometryList> geometry_list(const GeometryTexts& texts);
 
-// Just the lights, in degrees.
+// The lights alone, in degrees.
 Result<std::vector<double>> light_angles(const std::string& text);
 
 // The unsigned aspecular angle (deg) at the first panel.

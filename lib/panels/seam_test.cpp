@@ -1,4 +1,4 @@
-#include "panels/goniogeom_seam.h"
+#include "panels/seam.h"
 
 #include <gtest/gtest.h>
 
@@ -96,7 +96,7 @@ envmap::PrefilteredEnvironment uniform(double radiance) {
 
 // In uniform light a matt panel looks the same whichever way it faces, and like its own color, since white is what the
 // same light makes of a white diffuser.
-TEST(EnvironmentPanels, UniformLightShowsAMattPaintAsItIs) {
+TEST(EnvironmentPanels, ShowAMattPaintAsItIsInUniformLight) {
   const envmap::PrefilteredEnvironment env = uniform(7);
   const EnvironmentPanels panels = *EnvironmentPanels::make(env, {});
   const color::Lab gray{50, 4, -3};
@@ -110,7 +110,7 @@ TEST(EnvironmentPanels, UniformLightShowsAMattPaintAsItIs) {
   EXPECT_FALSE(EnvironmentPanels::make(uniform(0), {}).ok());
 }
 
-TEST(EnvironmentPanels, ATrompeFitInLightFromAboveHelps) {
+TEST(EnvironmentPanels, AreHelpedByATrompeFitInLightFromAbove) {
   envmap::PrefilteredEnvironment env = uniform(0.2);
   for (envmap::PrefilteredLobe* lobe : {&env.diffuse, &env.lobes[0], &env.lobes[1], &env.lobes[2]})
     for (int i = 0; i < 16 * 3; ++i) lobe->map.texels[static_cast<std::size_t>(2 * 16 * 3 + i)] = 5;  // +Y

@@ -1,4 +1,4 @@
-// The color of a reflectance under a cosine, for numbers and for derivatives alike. Internal to lib/fit.
+// The color of a reflectance under a cosine, for numbers and for derivatives (Ceres' Jets) alike.
 // goniochrome-theory(7), GONIOGEOMETRIC INDEX.
 #pragma once
 
