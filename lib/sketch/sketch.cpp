@@ -1,3 +1,5 @@
+#include "sketch/sketch.h"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -5,12 +7,12 @@
 
 #include "base/angles.h"
 #include "base/parallel.h"
-#include "brdf/lobe_model.h"
-#include "math/cosine_power.h"
+#include "display/paint_view.h"
+#include "math/statistics.h"
 #include "paint/curve.h"
-#include "sketch/internal/sketch_common.h"
 #include "sketch/internal/sketch_curve.h"
-#include "sketch/sketch_gloss.h"
+#include "sketch/internal/sketch_gloss.h"
+#include "sketch/internal/sketch_search.h"
 
 namespace goniochrome::sketch {
 
@@ -22,6 +24,57 @@ constexpr double kFace_deg = 15;                              // the least of th
 constexpr double kReach_deg = 2;                              // an angle this close to one seen counts as seen
 constexpr std::size_t kSearchCells = 700, kFirstCells = 400;  // that the answer and the way to it look at
 constexpr double kSameCost = 1.05, kSameCostBy = 0.005;  // costs of two values of gloss that the pixels cannot tell
+
+constexpr std::size_t kMostPixels = 6000;   // of an environment's picture, looked at for the answer; more change it by
+                                            // less than 0.05 dE
+constexpr std::size_t kFirstPixels = 1000;  // and on the way to it
+constexpr std::size_t kFewestPixels = 30;
+
+// How well a paint explains the pixels: RMS and median of the differences, and all of them where asked for.
+// difference(i) is that of the i-th used pixel. The figures come from some kJudged pixels.
+template <class Difference>
+void judge_sketch(std::size_t count, bool all, Difference&& difference, SketchFit& fit) {
+  constexpr std::size_t kJudged = 20000;
+  const std::size_t step = all ? 1 : std::max<std::size_t>(1, count / kJudged);
+  std::vector<float> values;
+  for (std::size_t i = 0; i < count; i += step) values.push_back(static_cast<float>(difference(i)));
+  if (values.empty()) return;
+  double squares = 0;
+  for (const float value : values) squares += static_cast<double>(value) * value;
+  fit.rms_de76 = std::sqrt(squares / static_cast<double>(values.size()));
+  if (all) fit.de76 = values;
+  fit.median_de76 = math::median(std::move(values));
+}
+
+// What of a color the edited picture could show.
+color::Rgb as_displayed(const color::Rgb& rgb, const SketchInput& input) {
+  return input.edited->scene_linear ? rgb : display::in_display_gamut(rgb);
+}
+
+std::string poor_match(const SketchFit& fit) {
+  return fmt::format("half of the pixels differ by more than {:.1f} dE76 from the best paint", fit.median_de76);
+}
+
+// Turns `fit` into the matt color, of which `color` is the reflectance factor.
+void fall_back(const color::Rgb& color, const std::string& reason, SketchFit& fit) {
+  fit.status = "diffuse_fallback", fit.reason = reason, fit.model = "diffuse";
+  const color::Lab lab = paint_lab(color);
+  fit.appearance = {lab, lab, 60, std::nullopt};
+  fit.rows = paint::rows_of(fit.appearance);
+  fit.extrapolated_deg.clear();
+}
+
+// Rows, face, flop, travel, gloss and condition of a search.
+void take_found(const FoundPaint& found, SketchFit& fit) {
+  const paint::Paint paint = found.paint();
+  fit.model = found.model();
+  fit.appearance =
+      paint.appearance ? *paint.appearance : paint::appearance_from_rows(paint.measurement->rows)->appearance;
+  fit.rows = paint.appearance ? paint::rows_of(fit.appearance) : paint.measurement->rows;
+  fit.gloss_60_gu = paint.gloss.front().gloss_units;
+  fit.gloss_from = "search";
+  fit.condition = found.search.condition;
+}
 
 // What the buffers and the picture have at each pixel, relative to the light.
 class Seen {
@@ -69,7 +122,7 @@ Highlight highlight_of(const SketchInput& input, const SketchPixels& pixels, con
     const SketchSample s = seen.at(place);
     if (s.aspecular_deg >= kContrastRegion_deg) return;
     const double y = luminance(s.seen);
-    brightness.push_back(display_brightness(y));
+    brightness.push_back(display::srgb_signal(y));
     const auto shifted = static_cast<std::size_t>(static_cast<int>(place) + input.shift_y * width + input.shift_x);
     if (input.edited->state[shifted] == Picture::kClipped) {
       ++clipped;
@@ -86,8 +139,8 @@ Highlight highlight_of(const SketchInput& input, const SketchPixels& pixels, con
   return found;
 }
 
-// The highlight's gloss, by shape or else by contrast; `allows`, where there is one, says whether the pixels farther
-// from specular, which show the flanks of wide lobes, agree. Where they do not, that of the search stays.
+// Takes the highlight's gloss, by shape or else by contrast. Where there is `allows`, it says whether the pixels
+// farther from specular, which show the flanks of wide lobes, agree; where they do not, the gloss of the search stays.
 void take_gloss(const Highlight& highlight, const std::function<bool(double)>& allows, SketchFit& fit) {
   const auto take = [&](double gloss, const char* from) {
     if (allows && !allows(gloss)) return false;
@@ -110,7 +163,7 @@ SearchSamples search_samples(const std::vector<SketchCell>& cells, const formats
     const auto light = [&](double value) { samples.light.push_back(value * kPi * Vec3{1, 1, 1}); };
     light(cell.cos_i);
     for (const double exponent : basis.exponents) {
-      const double power = math::cos_power(cell.aspecular_deg * kPi / 180, exponent);
+      const double power = lobe_at(cell.aspecular_deg, exponent);
       light(cell.cos_i * power), light(power);
     }
     light(0);  // the mirror image of a lamp is a point
@@ -137,17 +190,17 @@ void take_curve(const SketchCurve& curve, SketchFit& fit) {
   fit.appearance = paint::appearance_from_rows(designed)->appearance;
 }
 
-// Whether the search, which has a paint's few degrees of freedom, explains the cells as well as a free curve: nearly,
-// in a clean picture; in a noisy one the curve's gain may be the noise's, and the more so where no pixel holds the
-// curve at the angles asked for.
+// Whether the search, which has a paint's few degrees of freedom, explains the cells as well as a free curve. In a
+// clean picture its cost must be nearly the same. In a noisy one the curve may gain by following the noise, and it may
+// do so the more where no pixel holds it at the angles asked for, so the search may cost more.
 bool is_as_good(double search_cost, double curve_cost, bool extrapolates) {
   constexpr double kNoisy = 0.2;  // of log(1 + dE^2): about half a dE
   if (extrapolates && search_cost <= kNoisy + 1.6 * curve_cost) return true;
   return search_cost <= 1.15 * curve_cost + 0.02 || (curve_cost > kNoisy && search_cost <= 1.6 * curve_cost);
 }
 
-// Why a paint found, or a quadratic, is no answer: "" where it is one, or where its face was seen. `face` is its
-// reflectance factor there, `error` the standard errors of the search, which begin with the face's.
+// Why a paint found, or a quadratic, is no answer; "" where it is one, or where a pixel shows its face. `face` is its
+// reflectance factor there, and `error` has the standard errors of the search, which begin with the face's.
 std::string face_problem(const std::vector<SketchCell>& cells, const color::Rgb& face, const std::vector<double>& error,
                          const SketchFit& fit, const SketchLimits& limits) {
   if (is_seen(cells, kFace_deg)) return "";
@@ -161,9 +214,8 @@ std::string face_problem(const std::vector<SketchCell>& cells, const color::Rgb&
 }
 
 color::Rgb face_of(const FoundPaint& found) {
-  static const color::Xyz white = *color::white_point({});
   const std::vector<double>& v = found.search.values;
-  return color::rgb_from_lab({v[0], v[1], v[2]}, white);
+  return color::rgb_from_lab({v[0], v[1], v[2]}, *color::white_point({}));
 }
 
 SketchCurve curve_of(const FoundPaint& found, const formats::Basis& basis) {
@@ -186,7 +238,31 @@ std::string rank_problem(const std::vector<SketchCell>& cells, const SketchFit& 
   return "";
 }
 
+SearchSamples samples_of(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light,
+                         std::size_t most) {
+  const std::size_t step = std::max<std::size_t>(1, pixels.used.size() / most);
+  std::vector<std::uint32_t> places;
+  for (std::size_t i = 0; i < pixels.used.size(); i += step) places.push_back(pixels.used[i]);
+  SearchSamples samples;
+  samples.columns = search_columns(light.basis);
+  samples.reflection = light.reflection;
+  samples.display = !input.edited->scene_linear;
+  samples.light.resize(places.size() * samples.columns);
+  samples.importance.assign(places.size(), 1.0);
+  parallel_for(places.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) light.shade(places[i], &samples.light[i * samples.columns]);
+  });
+  const double scale = 1 / input.buffers->white_luminance;
+  for (const std::uint32_t place : places) samples.seen.push_back(scale * edited_light(input, place));
+  return samples;
+}
+
 }  // namespace
+
+bool is_paint_color(const color::Rgb& rgb, double within_de76) {
+  const color::Rgb nearest{std::max(rgb.x, 0.0), std::max(rgb.y, 0.0), std::max(rgb.z, 0.0)};
+  return color::delta_e_76(paint_lab(rgb), paint_lab(nearest)) <= within_de76;
+}
 
 formats::Basis sketch_basis() {
   formats::Basis basis;
@@ -194,31 +270,9 @@ formats::Basis sketch_basis() {
   return basis;
 }
 
-std::string poor_match(const SketchFit& fit) {
-  return fmt::format("half of the pixels differ by more than {:.1f} dE76 from the best paint", fit.median_de76);
-}
-
-void take_found(const FoundPaint& found, SketchFit& fit) {
-  const paint::Paint paint = found.paint();
-  fit.model = found.model();
-  fit.appearance =
-      paint.appearance ? *paint.appearance : paint::appearance_from_rows(paint.measurement->rows)->appearance;
-  fit.rows = paint.appearance ? paint::rows_of(fit.appearance) : paint.measurement->rows;
-  fit.gloss_60_gu = paint.gloss.front().gloss_units;
-  fit.gloss_from = "search";
-  fit.condition = found.search.condition;
-}
-
-void fall_back(const color::Rgb& color, const std::string& reason, SketchFit& fit) {
-  fit.status = "diffuse_fallback", fit.reason = reason, fit.model = "diffuse";
-  const color::Lab lab = paint_lab(color);
-  fit.appearance = {lab, lab, 60, std::nullopt};
-  fit.rows = paint::rows_of(fit.appearance);
-  fit.extrapolated_deg.clear();
-}
-
 SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, const formats::Basis& basis,
                        const SketchLimits& limits, bool with_differences) {
+  // What the pixels show, sorted into cells.
   const Seen seen(input);
   std::vector<SketchSample> samples(pixels.used.size());
   parallel_for(samples.size(), kChunk, [&](std::size_t begin, std::size_t end) {
@@ -228,6 +282,7 @@ SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, con
   SketchFit fit;
   if (!cells.empty()) fit.seen_from_deg = cells.front().aspecular_deg, fit.seen_to_deg = cells.back().aspecular_deg;
 
+  // How the curve that was found is judged, and what is answered where none will do.
   SketchCurve curve;
   const auto judge = [&] {
     judge_sketch(
@@ -246,6 +301,7 @@ SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, con
     judge();
     return fit;
   };
+  // A free curve, and a paint by search; the paint is the answer where it explains the cells as well.
   if (const std::string problem = rank_problem(cells, fit, limits); !problem.empty()) return give_up(problem);
   const CurveFit quadratic = fit_quadratic(cells), lobes = fit_lobes(cells);
   const CurveFit& better = lobes.cost <= quadratic.cost ? lobes : quadratic;
@@ -263,6 +319,7 @@ SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, con
     problem =
         face_problem(cells, as_good ? face_of(found) : curve.reflectance(kFace_deg), found.search.error, fit, limits);
   if (!problem.empty()) return give_up(problem);
+  // The answer: rows, face, flop and travel, and gloss.
   take_curve(curve, fit);
   if (as_good) take_found(found, fit);
   fit.condition = quadratic.condition;
@@ -272,6 +329,41 @@ SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, con
     return search.cost_with_gloss(found, gloss) <= kSameCost * found.search.cost + kSameCostBy;
   };
   take_gloss(highlight_of(input, pixels, seen, curve), as_good ? allows : std::function<bool(double)>(), fit);
+  return fit;
+}
+
+SketchFit sketch_environment(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light,
+                             const SketchLimits& limits, bool with_differences) {
+  const SearchFitters fitters(light.basis);
+  const LobeSearch search(fitters, samples_of(input, pixels, light, kMostPixels));
+  SketchFit fit;
+  std::vector<color::Rgb> weights(search_columns(light.basis));
+  const auto judge = [&] {
+    std::vector<Vec3> columns(weights.size());
+    const double scale = 1 / input.buffers->white_luminance;
+    const auto difference = [&](std::size_t i) {
+      light.shade(pixels.used[i], columns.data());
+      const color::Rgb seen = scale * edited_light(input, pixels.used[i]);
+      return color::delta_e_76(paint_lab(seen),
+                               paint_lab(as_displayed(shown_light(columns.data(), weights, light.reflection), input)));
+    };
+    judge_sketch(pixels.used.size(), with_differences, difference, fit);
+  };
+  const auto give_up = [&](const std::string& reason) {
+    const color::Rgb matt = search.matt();
+    fall_back(matt, reason, fit);
+    weights.assign(weights.size(), color::Rgb{}), weights[0] = (1 / kPi) * matt;
+    judge();
+    return fit;
+  };
+  if (pixels.used.size() < kFewestPixels)
+    return give_up(fmt::format("{} pixels are too few for a search", pixels.used.size()));
+  const LobeSearch first(fitters, samples_of(input, pixels, light, kFirstPixels));
+  const FoundPaint found = search.find(first);
+  take_found(found, fit);
+  weights = found.weights;
+  judge();
+  if (fit.median_de76 > limits.median_de76) return give_up(poor_match(fit));
   return fit;
 }
 

@@ -1,9 +1,10 @@
-#include "sketch/internal/sketch_pixels.h"
+#include "sketch/sketch_pixels.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/parallel.h"
+#include "display/paint_view.h"
 
 namespace goniochrome::sketch {
 
@@ -78,14 +79,14 @@ class Sorter {
     const float* pixel = image_.pixel(x, y);
     const float* edited = input_.edited->pixel(x + input_.shift_x, y + input_.shift_y);
     color::Rgb was = original_gain_ * color::Rgb{pixel[0], pixel[1], pixel[2]};
-    if (!input_.edited->scene_linear) was = in_display_gamut(was);
+    if (!input_.edited->scene_linear) was = display::in_display_gamut(was);
     const double scale = 1 / input_.buffers->white_luminance;
     was = scale * was;
     const color::Rgb is = (scale * input_.gain) * color::Rgb{edited[0], edited[1], edited[2]};
     const double brightest = std::max({was.x, was.y, was.z, is.x, is.y, is.z});
     double most = 0;
     for (int c = 0; c < 3; ++c)
-      most = std::max(most, std::abs(is[c] - was[c]) / code_width(std::max(was[c], is[c]), brightest));
+      most = std::max(most, std::abs(is[c] - was[c]) / display::code_width(std::max(was[c], is[c]), brightest));
     const double touched = input_.edited->scene_linear ? 0.01 : 0.3;  // floats come back as they were
     return most > 1 ? kEdited : most > touched ? kTouched : kSame;
   }
@@ -138,6 +139,23 @@ void drop_scattered(const image::Image& image, std::vector<std::uint8_t>& change
   });
 }
 
+constexpr int kShiftReach = 8;            // pixels
+constexpr std::size_t kMostEdges = 8000;  // looked at
+constexpr double kBetter = 1.1;           // than no shift; else none is suggested
+
+// How strong the edge at a pixel is: the larger difference of the square roots of luminance to its neighbors. It counts
+// at most 0.3, so that one glaring edge does not outvote all others.
+template <class Luminance>
+float edge(const Luminance& luminance, int x, int y) {
+  const float here = luminance(x, y);
+  return std::min(0.3F, std::max(std::abs(luminance(x + 1, y) - here), std::abs(luminance(x, y + 1) - here)));
+}
+
+struct Edge {
+  float strength;
+  int x, y;
+};
+
 }  // namespace
 
 const char* pixel_use_name(PixelUse use) {
@@ -183,6 +201,41 @@ color::Rgb edited_light(const SketchInput& input, std::uint32_t place) {
   const int x = static_cast<int>(place % width) + input.shift_x, y = static_cast<int>(place / width) + input.shift_y;
   const float* pixel = input.edited->pixel(x, y);
   return {input.gain * pixel[0], input.gain * pixel[1], input.gain * pixel[2]};
+}
+
+// Shifts the strongest edges of the original over the edited picture, and adds up how strong its edges are there.
+SketchShift sketch_shift(const SketchInput& input) {
+  const image::Image &buffers = input.buffers->image, &edited = input.edited->rgb;
+  const double white = input.buffers->white_luminance;
+  const double gain_was = std::exp2(-input.buffers->exposure_stops) / white, gain_is = input.gain / white;
+  const auto root = [](const float* p, double gain) {
+    return std::sqrt(static_cast<float>(gain) * std::max(0.0F, 0.26F * p[0] + 0.68F * p[1] + 0.06F * p[2]));
+  };
+  const auto was = [&](int x, int y) { return root(buffers.pixel(x, y), gain_was); };
+  const auto is = [&](int x, int y) { return root(edited.pixel(x, y), gain_is); };
+  std::vector<Edge> edges;
+  const int border = kShiftReach + 1;
+  for (int y = border; y < buffers.height - border; y += 2)
+    for (int x = border + (y & 2) / 2; x < buffers.width - border; x += 2)
+      if (const float strength = edge(was, x, y); strength > 0.03F) edges.push_back({strength, x, y});
+  if (edges.size() > kMostEdges) {
+    std::nth_element(edges.begin(), edges.begin() + kMostEdges, edges.end(),
+                     [](const Edge& a, const Edge& b) { return a.strength > b.strength; });
+    edges.resize(kMostEdges);
+  }
+  constexpr int kSide = 2 * kShiftReach + 1;
+  std::vector<double> agreement(kSide * kSide, 0);
+  parallel_for(agreement.size(), kSide, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const int dx = static_cast<int>(i % kSide) - kShiftReach, dy = static_cast<int>(i / kSide) - kShiftReach;
+      for (const Edge& e : edges) agreement[i] += e.strength * edge(is, e.x + dx, e.y + dy);
+    }
+  });
+  SketchShift best;
+  double most = kBetter * agreement[kShiftReach * kSide + kShiftReach];
+  for (int i = 0; i < kSide * kSide; ++i)
+    if (agreement[i] > most) most = agreement[i], best = {i % kSide - kShiftReach, i / kSide - kShiftReach};
+  return best;
 }
 
 }  // namespace goniochrome::sketch

@@ -1,15 +1,13 @@
-#include "sketch/sketch_gloss.h"
+#include "sketch/internal/sketch_gloss.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "base/angles.h"
 #include "brdf/gloss.h"
-#include "brdf/lobe_model.h"
-#include "math/cosine_power.h"
 #include "math/least_squares.h"
 #include "math/statistics.h"
+#include "sketch/internal/sketch_lobes.h"
 
 namespace goniochrome::sketch {
 
@@ -48,11 +46,6 @@ std::vector<HighlightSample> binned(const std::vector<HighlightSample>& samples)
 
 }  // namespace
 
-double display_brightness(double luminance) {
-  const double v = std::clamp(luminance, 0.0, 1.0);
-  return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
-}
-
 double contrast_gloss(std::vector<double>& brightness) {
   if (brightness.size() < 2) return 0;
   const std::size_t tenth = std::max<std::size_t>(1, brightness.size() / 10);
@@ -73,7 +66,7 @@ std::optional<double> highlight_gloss(const std::vector<HighlightSample>& sample
   math::Matrix m(static_cast<int>(means.size()), static_cast<int>(exponents.size()));
   std::vector<double> excess;
   for (int i = 0; i < m.rows; ++i) {
-    for (int j = 0; j < m.columns; ++j) m(i, j) = math::cos_power(means[i].aspecular_deg * kPi / 180, exponents[j]);
+    for (int j = 0; j < m.columns; ++j) m(i, j) = lobe_at(means[i].aspecular_deg, exponents[j]);
     excess.push_back(means[i].excess);
   }
   const math::NonNegativeFit fit = math::nnls(m, excess);
