@@ -333,8 +333,8 @@ std::vector<std::vector<double>> starting_points(const std::vector<double>& smal
   return starts;
 }
 
-// The sharpest lobe that some target sees. A sharper one, fitted, would have an absurd weight for what it gives the
-// first angle alone.
+// The sharpest lobe that some target sees. A sharper one would be fitted to the first angle alone, with a weight that
+// means nothing anywhere else.
 double sharpest_seen(const std::vector<BasisTarget>& targets) {
   double first_deg = 90;
   for (const BasisTarget& target : targets) first_deg = std::min(first_deg, target.rows.front().angle_deg);

@@ -107,8 +107,8 @@ double max_de00(const std::vector<GeometryError>& errors) {
   return errors.empty() ? 0 : std::ranges::max_element(errors, {}, &GeometryError::de00)->de00;
 }
 
-// The lobes whose flake may have a sharp part: all but those left out, where their number was limited by what the flake
-// beyond glare wants.
+// The exponents whose flake may have a sharp part: all but those that the fit dropped. Where the number of lobes is
+// limited, those that no sample sees are left out too.
 std::vector<double> spike_exponents(const FitOptions& options, const std::vector<double>& exponents,
                                     const PaintFitReport& report) {
   const std::vector<double> left = difference(exponents, report.dropped);

@@ -30,7 +30,7 @@ class FlakeCurve {
   // The largest dE00 between the curve and the rows it was fitted to, where that is known.
   std::optional<double> residual_de00() const { return residual_de00_; }
 
-  // No stretch of the curve between these angles (deg, cut to 0..180) changes by more than this, in Lab units a degree.
+  // A bound of how fast the curve changes between these angles (deg, cut to 0..180), in Lab units a degree.
   double steepest(double low_deg, double high_deg) const;
 
  private:
@@ -67,11 +67,11 @@ struct LightView {
 // Unit directions in the frame x = away from the light in the plane of incidence, z = normal of the first panel.
 paint::DirectionPair directions(const LightView& geometry);
 
-// A second panel turned about the seam by b degrees, light and viewer at rest.
+// A second panel that is turned about the seam by b degrees while light and viewer stay where they are.
 class TiltedPair {
  public:
-  // `axis` is the seam: positive b turns the second panel by the right hand about it. All are unit, the axis lies in
-  // the panel, light and viewer above it.
+  // `axis` is the seam, about which positive b turns the second panel by the right hand. All are unit vectors; the axis
+  // lies in the panel, and light and viewer stand above it.
   TiltedPair(const Vec3& light, const Vec3& view, const Vec3& normal, const Vec3& axis);
 
   // The seam at `seam_deg` from the plane of incidence (90: across it), so oriented that positive b turns the second

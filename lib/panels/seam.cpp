@@ -225,7 +225,7 @@ Result<SeamStage> seam_stage(const SeamTexts& texts, const SeamWorld& world, con
     return input_error("{}: no viewer sees both panels in any light: change --views or --view-from", texts.mesh);
   if (texts.environment.empty()) return stage;
   GONIO_ASSIGN(stage.env, envmap::read_env(texts.environment));
-  // Told once, by the file's name, and not for every paint.
+  // An environment that cannot be used is refused here once, by the name of its file, and not for every paint.
   if (auto panels = EnvironmentPanels::make(stage.env, {}); !panels.ok())
     return input_error("{}: {}", texts.environment, panels.error().message);
   return stage;

@@ -19,7 +19,7 @@ namespace goniochrome::sketch {
 
 // Beyond these limits the answer is the matt color that explains the pixels best.
 struct SketchLimits {
-  double median_de76 = 10;     // half of the pixels may differ by more than this from the paint found
+  double median_de76 = 10;     // the median difference between the pixels and the paint found
   double least_span_deg = 20;  // of aspecular angles
   // The standard error of the color at 15 deg where no pixel shows that angle. Measured paints differ from their mean
   // color there by less than this (RMS), so that a face with a larger error would be worse than one guessed without a
@@ -42,16 +42,16 @@ struct SketchFit {
   std::vector<float> de76;  // of every used pixel, in the order of SketchPixels::used; where asked for
 };
 
-// The paint under one directional light, of which the picture is exact. The answer is the lobe curve or the clamped
-// quadratic, whichever explains the pixels better; or the result of a search for face, flop, travel and gloss in lobes
-// of `basis`, where that explains them as well.
+// The paint under one directional light, whose effect at each pixel is computed exactly. The answer is the lobe curve
+// or the clamped quadratic, whichever explains the pixels better; or the result of a search for face, flop, travel and
+// gloss in lobes of `basis`, where that explains them as well.
 SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, const formats::Basis& basis,
                        const SketchLimits& limits, bool with_differences);
 
 // The basis for one directional light where the user names none: seven lobes and the mirror.
 formats::Basis sketch_basis();
 
-// What a light makes of the lobe model, by the renderer's equations.
+// A light of any kind, by what the renderer's equations make of it.
 struct SketchLight {
   formats::Basis basis;
   std::optional<color::ReflectionOperator> reflection;  // of light and paint, in place of the component-wise product

@@ -49,8 +49,8 @@ bool mean_between(const std::vector<FlakeRow>& rows, double from_deg, double to_
   return true;
 }
 
-// The flake within glare is not seen, for the spike covers it: it goes on as from readings. All of these rows together
-// weigh about one part in a hundred of the measured ones.
+// Within glare the spike covers the flake, so the flake goes on toward specular as it does from readings. All of these
+// rows together weigh about one part in a hundred of the measured ones.
 void add_extension(const FitOptions& options, const std::vector<double>& exponents, BrdfRows& rows) {
   constexpr double kShare = 0.004;
   HighlightEnd end;

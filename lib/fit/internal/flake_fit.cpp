@@ -272,11 +272,11 @@ FlakeFit deltae_fit(const DeltaEProblem& problem, const std::vector<std::vector<
   return best;
 }
 
-// A squared norm feels many small rows more than the sum of absolute values does, so the inferred ones steer the color
-// search with less weight than the linear fits.
+// Many small rows count more in a squared norm than in a sum of absolute values, so inferred rows have less weight in
+// the search for color differences than in the linear fits.
 constexpr double kGuideShare = 0.1;
 
-// How much it counts, in each row, that the next view shows something else.
+// The weight, in each row, of the difference between what one view shows and what the next one does.
 constexpr double kSmoothnessShare = 0.1;
 
 // Rows that ask two neighboring views to show the same, at the angles of the target's rows, no closer than about 9 deg.

@@ -155,8 +155,8 @@ constexpr int kLobeColumns = 1 + 9 + 6;
 constexpr double kShownFrom_deg = 15;  // the curve is asked for from here on
 constexpr double kMostGrowth = 2;      // of a lobe from the first angle seen to the first asked for
 
-// Whether the angles seen tell of a lobe this sharp. One that has all but vanished there would take any weight, and
-// follow the noise of the first cells up into any color.
+// Whether the angles seen tell the weight of a lobe this sharp. A lobe that is nearly 0 at all of them could take any
+// weight, and would follow the noise of the first cells up to any color.
 bool is_lobe_seen(double exponent, double from_deg) {
   return kMostGrowth * lobe_at(from_deg, exponent) >= lobe_at(std::min(from_deg, kShownFrom_deg), exponent);
 }
