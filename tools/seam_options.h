@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "cli/options.h"
-#include "panels/goniogeom_sets.h"
-#include "panels/seam_view.h"
+#include "panels/geometry_sets.h"
+#include "panels/seam.h"
 
 namespace goniochrome::tool {
 

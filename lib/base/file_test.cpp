@@ -94,7 +94,7 @@ TEST_F(Files, HardCase_InterruptedDiskFullIsAnError) {
   // The control asks the stream after writing and before its buffer reaches the disk.
   std::ofstream control("/dev/full");
   control << "x";
-  hard_case("interrupted", {.what = "full disks that go untold",
+  hard_case("interrupted", {.what = "full disks that no error reports",
                             .textbook = control.good() ? 1.0 : 0.0,
                             .ours = written.ok() ? 1.0 : 0.0,
                             .bound = 0,

@@ -1,4 +1,4 @@
-// The one place that knows OpenColorIO.
+// The one place that knows OpenColorIO. Whoever links it pays for its start-up time.
 #include "display/display.h"
 
 #include <OpenColorIO/OpenColorIO.h>
@@ -9,6 +9,7 @@
 
 #include "base/parallel.h"
 #include "base/text.h"
+#include "display/paint_view.h"
 
 namespace goniochrome::display {
 
@@ -107,21 +108,6 @@ Result<Choice> find_view(const std::vector<Choice>& all, const std::string& want
 }
 
 }  // namespace
-
-color::Rgb paint_view(const color::Rgb& rec709) {
-  color::Rgb c = rec709;
-  const double lowest = std::min({c.x, c.y, c.z});
-  if (lowest < 0) {
-    const double gray = std::max(0.0, color::xyz_d65_from_rgb(color::rec2020_from_rec709(c)).Y);
-    const double keep = gray / (gray - lowest);
-    c = keep * c + (1 - keep) * color::Rgb{gray, gray, gray};
-  }
-  // The shoulder k + (1-k) x/(1+x), x = (m-k)/(1-k), leaves the line with slope 1 and ends at white.
-  const double m = std::max({c.x, c.y, c.z});
-  if (m <= kKnee) return c;
-  const double x = (m - kKnee) / (1 - kKnee);
-  return ((kKnee + (1 - kKnee) * x / (1 + x)) / m) * c;
-}
 
 struct Display::State {
   std::string name;

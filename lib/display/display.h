@@ -1,4 +1,5 @@
-// From scene-linear radiance to a display, by a named view. goniochrome-theory(7), RENDERING.
+// Pictures of scene-linear light as a display shows them, by a view that has a name. Whoever uses it loads
+// OpenColorIO; paint_view.h has the arithmetic of the default view without it. goniochrome-theory(7), RENDERING.
 #pragma once
 
 #include <memory>
@@ -6,27 +7,23 @@
 #include <vector>
 
 #include "base/result.h"
-#include "color/color.h"
 #include "image/image.h"
 
 namespace goniochrome::display {
 
-// The default view: exact colors up to kKnee of display white, then a shoulder on the largest channel, so that a
-// highlight grows brighter without changing hue. Takes and gives linear Rec.709; what lies outside its gamut is mixed
-// with the gray of its luminance until it does not.
-constexpr double kKnee = 0.8;
-color::Rgb paint_view(const color::Rgb& rec709);
-
-// A way to a display: the built-in sRGB one with the views "Paint", "ACES SDR" and "Un-tone-mapped", or, where $OCIO is
-// set, the views of that configuration ("View" on its default display, or "Display/View"). Loads OpenColorIO.
+// The way from light to one display by one view. Built in is an sRGB display with the views "Paint", "ACES SDR" and
+// "Un-tone-mapped". Where $OCIO is set, the displays and views are those of that configuration; "View" names a view of
+// its default display, and "Display/View" one of any display.
 class Display {
  public:
-  // `view` may be empty for the default, and is matched without regard to case. Error: the views there are.
+  // An empty `view` is the default one. Upper and lower case are the same. Error: there is no such view, and the
+  // message lists those there are.
   static Result<Display> make(const std::string& view);
   Display(Display&&) noexcept;
   ~Display();
 
-  // The picture (R G B A, working space, premultiplied) times 2^stops as RGB in 0..1, before a backdrop of 18 % gray.
+  // The picture (R G B A, working space, premultiplied) times 2^stops in front of a backdrop of 18 % gray, as RGB
+  // signals in 0..1.
   Result<image::Image> image(const image::Image& picture, double stops) const;
 
   // "sRGB / Paint"

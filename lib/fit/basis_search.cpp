@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <random>
 
 #include "base/angles.h"
+#include "base/clock.h"
 #include "base/parallel.h"
-#include "brdf/lobe_model.h"
-#include "fit/internal/basis_lm.h"
-#include "fit/paint_fit.h"
+#include "fit/ceres_options.h"
+#include "fit/internal/flake_fit.h"
 #include "math/cosine_power.h"
 #include "math/least_squares.h"
 
@@ -19,46 +20,106 @@ namespace {
 
 constexpr double kPolishGain = 1e-5;
 
-// At the inner optimum x the residual's dependence on x drops out (envelope
-// theorem: x_j is either stationary or held at 0), so d err^2 / d log E_j = 2/n
-// sum w^2 r x_j E_j log(cos t) cos^E_j t.
+double row_weight(const BasisTargetOptions& options, double lightness) {
+  return options.perceptual_weights ? color::lightness_slope(lightness) : 1;
+}
+
+// At the inner optimum x the residual's dependence on x drops out (envelope theorem: x_j is either stationary or held
+// at 0), so d err^2 / d log E_j = 2/n sum w^2 r x_j E_j log(cos t) cos^E_j t.
 SquaredError squared_error(const std::vector<double>& exponents, const BasisTarget& target, bool with_gradient) {
   const int lobes = static_cast<int>(exponents.size());
-  const int rows = static_cast<int>(target.angles_deg.size());
+  const int rows = static_cast<int>(target.rows.size());
   SquaredError result{0, std::vector<double>(with_gradient ? exponents.size() : 0, 0.0)};
-  math::Matrix shape(rows, lobes);
+  // The weighted constant and lobes are the same for all channels.
+  math::Matrix m(rows, lobes + 1);
+  for (int r = 0; r < rows; ++r) m(r, 0) = target.rows[r].weight;
   for (int j = 0; j < lobes; ++j)
-    for (int r = 0; r < rows; ++r) shape(r, j) = math::cos_power(target.angles_deg[r] * kDegree, exponents[j]);
+    for (int r = 0; r < rows; ++r)
+      m(r, j + 1) = target.rows[r].weight * math::cos_power(target.rows[r].angle_deg * kDegree, exponents[j]);
 
-  std::size_t count = 0;
+  std::vector<double> b(rows);
   for (int c = 0; c < 3; ++c) {
-    math::Matrix m(rows, lobes + 1);
-    std::vector<double> b(rows);
-    for (int r = 0; r < rows; ++r) {
-      const double w = target.weight[c][r];
-      m(r, 0) = w;
-      for (int j = 0; j < lobes; ++j) m(r, j + 1) = w * shape(r, j);
-      b[r] = w * target.value[c][r];
-    }
+    for (int r = 0; r < rows; ++r) b[r] = target.rows[r].weight * target.rows[r].value[c];
     const math::NonNegativeFit fit = math::nnls(m, b);
     for (int r = 0; r < rows; ++r) {
       double residual = -b[r];
       for (int j = 0; j <= lobes; ++j) residual += m(r, j) * fit.x[j];
       result.value += residual * residual;
       if (!with_gradient) continue;
-      const double log_cos = std::log(std::max(std::cos(target.angles_deg[r] * kDegree), 1e-300));
+      const double log_cos = std::log(std::max(std::cos(target.rows[r].angle_deg * kDegree), 1e-300));
       for (int j = 0; j < lobes; ++j)
         result.gradient[j] += 2 * residual * m(r, j + 1) * fit.x[j + 1] * exponents[j] * log_cos;
     }
-    count += rows;
   }
-  const double scale = 1.0 / static_cast<double>(std::max<std::size_t>(count, 1));
+  const double scale = 1.0 / std::max(3 * rows, 1);
   result.value *= scale;
   for (double& g : result.gradient) g *= scale;
   return result;
 }
 
 }  // namespace
+
+Result<BasisTarget> basis_target(const paint::Paint& paint, const BasisTargetOptions& options) {
+  GONIO_ASSIGN(const paint::TargetCurve curve, paint::TargetCurve::make(paint, options.target));
+  GONIO_ASSIGN(const color::Xyz white, color::white_point(paint::condition_of(paint)));
+  const auto& known = curve.known_angles_deg();
+  const double first = std::max(known.front(), kGlareAngle_deg), last = std::min(known.back(), 110.0);
+  if (last <= first) return input_error("paint \"{}\" has one angle: a basis needs at least two", paint.name);
+
+  BasisTarget target{paint.name, {}};
+  for (int i = 0; i < options.angles; ++i) {
+    const double angle = first + (last - first) * i / (options.angles - 1);
+    const color::Lab lab = curve.at(angle);
+    target.rows.push_back({angle, non_negative(color::rgb_from_lab(lab, white)), row_weight(options, lab.L)});
+  }
+  return target;
+}
+
+Result<BasisTarget> basis_target(const BrdfTarget& brdf, const BasisTargetOptions& options) {
+  constexpr double kStep_deg = 2.5, kLast_deg = 110, kSteepest_deg = 75;
+  constexpr auto kBins = static_cast<std::size_t>((kLast_deg - kGlareAngle_deg) / kStep_deg);
+  struct Bin {
+    double count = 0, angle_deg = 0;
+    color::Rgb sum;
+  };
+  std::vector<Bin> bins(kBins);
+  for (const BrdfSample& sample : brdf.samples) {
+    const double angle_deg = sample.aspecular_rad * (180 / kPi);
+    const double at = (angle_deg - kGlareAngle_deg) / kStep_deg;
+    if (at < 0 || at >= static_cast<double>(kBins)) continue;
+    if (std::max(sample.light_deg, sample.view_deg) > kSteepest_deg) continue;
+    Bin& bin = bins[static_cast<std::size_t>(at)];
+    ++bin.count, bin.angle_deg += angle_deg, bin.sum += sample.value;
+  }
+  GONIO_ASSIGN(const color::Xyz white, color::white_point({"D65", 2}));
+  BasisTarget target{brdf.paint.name, {}};
+  for (const Bin& bin : bins) {
+    if (bin.count == 0) continue;
+    const color::Rgb mean = (1 / bin.count) * bin.sum;
+    target.rows.push_back(
+        {bin.angle_deg / bin.count, non_negative(mean), row_weight(options, color::lab_from_rgb(mean, white).L)});
+  }
+  if (target.rows.size() < 2)
+    return input_error("{}: has directions at less than two aspecular angles: a basis needs more", target.name);
+  return target;
+}
+
+double basis_de00(const std::vector<double>& exponents, const BasisTarget& target) {
+  LinearProblem problem{math::Matrix(static_cast<int>(target.rows.size()), static_cast<int>(exponents.size()) + 1)};
+  for (int r = 0; r < problem.rows(); ++r) {
+    const BasisRow& row = target.rows[r];
+    problem.shape(r, 0) = 1;
+    for (std::size_t j = 0; j < exponents.size(); ++j)
+      problem.shape(r, static_cast<int>(j) + 1) = math::cos_power(row.angle_deg * kPi / 180, exponents[j]);
+    problem.weight.push_back(row.weight), problem.value.push_back(row.value);
+  }
+  const std::vector<color::Rgb> fitted = predictions(problem, linear_fit(Norm::kL2, problem).x);
+  const color::Xyz white = *color::white_point({"D65", 2});
+  double worst = 0;
+  for (std::size_t r = 0; r < fitted.size(); ++r)
+    worst = std::max(worst, color_difference(target.rows[r].value, fitted[r], white));
+  return worst;
+}
 
 std::vector<SquaredError> squared_basis_errors(const std::vector<double>& exponents,
                                                const std::vector<BasisTarget>& targets, bool with_gradient) {
@@ -92,8 +153,7 @@ struct Problem {
     return basis_error(exponents_of(logs), targets).objective();
   }
 
-  // S_P = (mean err^P)^(1/P) + mean err, which tends to max + mean from below,
-  // and its gradient by log E.
+  // S_P = (mean err^P)^(1/P) + mean err, which tends to max + mean from below, and its gradient by log E.
   double smoothed(const std::vector<double>& logs, double power, std::vector<double>& gradient) {
     ++evaluations;
     const auto errors = squared_basis_errors(exponents_of(logs), targets, true);
@@ -120,9 +180,7 @@ struct Problem {
 };
 
 double inner(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
+  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
 // BFGS with backtracking on the box [low, high]^m.
@@ -178,8 +236,52 @@ void minimize_smoothed(Problem& problem, std::vector<double>& x, double power) {
   }
 }
 
-// Coordinate steps on the true objective, halved when none helps: what is left
-// after the smooth search rounds off its corner.
+// The residuals of Levenberg and Marquardt's method: the RMS error of each target, with its derivative by log E.
+class TargetErrors final : public ceres::CostFunction {
+ public:
+  TargetErrors(const std::vector<BasisTarget>& targets, std::size_t lobes, int& evaluations)
+      : targets_(targets), evaluations_(evaluations) {
+    set_num_residuals(static_cast<int>(targets.size()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(lobes));
+  }
+
+  bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
+    ++evaluations_;
+    const auto lobes = static_cast<std::size_t>(parameter_block_sizes()[0]);
+    const std::vector<double> exponents = exponents_of({parameters[0], parameters[0] + lobes});
+    const bool with_gradient = jacobians && jacobians[0];
+    const auto errors = squared_basis_errors(exponents, targets_, with_gradient);
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+      residuals[i] = std::sqrt(errors[i].value);
+      if (!with_gradient) continue;
+      for (std::size_t j = 0; j < lobes; ++j)
+        jacobians[0][i * lobes + j] = residuals[i] > 0 ? errors[i].gradient[j] / (2 * residuals[i]) : 0;
+    }
+    return true;
+  }
+
+ private:
+  const std::vector<BasisTarget>& targets_;
+  int& evaluations_;
+};
+
+// The source's choice: a local minimum of sum err^2 over the targets, on the box [low, high]^m. [Shimizu2009] 2.3.2
+void minimize_by_levenberg_marquardt(Problem& search, std::vector<double>& logs) {
+  ceres::Problem problem;
+  problem.AddResidualBlock(new TargetErrors(search.targets, logs.size(), search.evaluations), nullptr, logs.data());
+  for (std::size_t j = 0; j < logs.size(); ++j) {
+    problem.SetParameterLowerBound(logs.data(), static_cast<int>(j), search.low);
+    problem.SetParameterUpperBound(logs.data(), static_cast<int>(j), search.high);
+  }
+  ceres::Solver::Options options = quiet_solver_options();
+  options.max_num_iterations = 100;
+  if (search.deadline.limit_s() > 0) options.max_solver_time_in_seconds = std::max(0.01, search.deadline.left_s());
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+}
+
+// Coordinate steps on the true objective, which shrink where none helps. The smooth searches round off the corner at
+// which the largest error changes from one paint to another; these steps do not.
 void polish(Problem& problem, std::vector<double>& x, double& value) {
   for (double step = 0.08; step > 2e-3 && !problem.deadline.passed();) {
     bool moved = false;
@@ -198,8 +300,8 @@ void polish(Problem& problem, std::vector<double>& x, double& value) {
   }
 }
 
-// Where a search with m lobes begins: the best smaller set with a lobe in each
-// of its widest gaps, regular spacing, random.
+// Where a search with m lobes begins: at the best smaller set with a lobe in each of its widest gaps, at regular
+// spacing, and at random.
 std::vector<std::vector<double>> starting_points(const std::vector<double>& smaller, int m, const Problem& problem,
                                                  const BasisSearchOptions& options) {
   std::vector<std::vector<double>> starts;
@@ -208,7 +310,7 @@ std::vector<std::vector<double>> starting_points(const std::vector<double>& smal
     fence.insert(fence.end(), smaller.begin(), smaller.end());
     fence.push_back(problem.high);
     std::vector<std::size_t> gaps(fence.size() - 1);
-    for (std::size_t i = 0; i < gaps.size(); ++i) gaps[i] = i;
+    std::iota(gaps.begin(), gaps.end(), std::size_t{0});
     std::ranges::stable_sort(gaps, std::greater<>{}, [&](std::size_t i) { return fence[i + 1] - fence[i]; });
     for (std::size_t i = 0; i < gaps.size() && static_cast<int>(starts.size()) < std::max(1, options.starts / 2); ++i) {
       std::vector<double> start = smaller;
@@ -231,11 +333,11 @@ std::vector<std::vector<double>> starting_points(const std::vector<double>& smal
   return starts;
 }
 
-// The sharpest lobe that some target sees. A sharper one, fitted, would have an absurd weight for what it gives the
-// first angle alone.
+// The sharpest lobe that some target sees. A sharper one would be fitted to the first angle alone, with a weight that
+// means nothing anywhere else.
 double sharpest_seen(const std::vector<BasisTarget>& targets) {
   double first_deg = 90;
-  for (const BasisTarget& target : targets) first_deg = std::min(first_deg, target.angles_deg.front());
+  for (const BasisTarget& target : targets) first_deg = std::min(first_deg, target.rows.front().angle_deg);
   return std::log(kSeenPart) / math::log_cosine(first_deg * kDegree);
 }
 
@@ -271,13 +373,13 @@ BasisSearch search_basis(const std::vector<BasisTarget>& targets, const BasisSea
       if (options.method == BasisMethod::kPowerMean)
         for (const double power : {4.0, 12.0, 40.0}) minimize_smoothed(problem, x, power);
       else
-        problem.evaluations += minimize_by_levenberg_marquardt(targets, problem.low, problem.high, deadline, x);
+        minimize_by_levenberg_marquardt(problem, x);
       double value = problem.objective(x);
-      // Only a start that can still win is worth the polish.
+      // A start that is far behind the best one cannot win by the polish.
       if (value < 1.1 * best_value) polish(problem, x, value);
       if (value < best_value) best = x, best_value = value;
     }
-    // A lobe more can always be left unused, so the larger set is never worse.
+    // Where no start is as good as the smaller set, that set with one more lobe is, for a lobe can be left unused.
     if (!smaller.empty() && best_value > search.sets.back().error.objective()) {
       best = starting_points(smaller, m, problem, options).front();
       best_value = problem.objective(best);

@@ -1,32 +1,50 @@
-// The basis that serves a whole database of paints best: m exponents such that
-// max + mean of the paints' errors after the inner non-negative fit is least.
-// [Shimizu2009] 2.3.4. goniochrome-theory(7), CHOOSING THE BASIS.
+// The basis that serves a whole database of paints best: the m exponents with which max + mean of the paints' errors is
+// least, each paint fitted to them with non-negative weights. [Shimizu2009] 2.3.4. goniochrome-theory(7), CHOOSING THE
+// BASIS.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "base/clock.h"
 #include "base/result.h"
+#include "color/color.h"
+#include "fit/brdf_target.h"
+#include "paint/curve.h"
+#include "paint/paint.h"
 
 namespace goniochrome::fit {
 
-// One paint (or measured BRDF) as the search sees it: BRDF values times weights
-// at sample angles, channel by channel.
+// One paint or measured BRDF as the search sees it.
+struct BasisRow {
+  double angle_deg = 0;  // aspecular, 0..90 and more
+  color::Rgb value;      // reflectance factor, channels >= 0
+  double weight = 1;     // of the error of each channel
+};
 struct BasisTarget {
   std::string name;
-  std::vector<double> angles_deg;             // aspecular, 0..90
-  std::array<std::vector<double>, 3> value;   // pi f per channel at those angles
-  std::array<std::vector<double>, 3> weight;  // of each value's residual
+  std::vector<BasisRow> rows;  // by ascending angle
 };
 
-// err(E, B): weighted RMS over all angles and channels after the non-negative
-// fit of a constant and the lobes.
+struct BasisTargetOptions {
+  paint::TargetCurve::Kind target = paint::TargetCurve::Kind::kMeasured;
+  int angles = 40;                 // sample angles of a paint, evenly from the first known angle to the last
+  bool perceptual_weights = true;  // rows weighted by dL*/dY, as fit-paint does
+};
+
+// The reflectance factors of a paint at evenly spaced aspecular angles. Error: the paint has neither rows beyond glare
+// nor an appearance, it has one angle only, or its illuminant is unknown.
+Result<BasisTarget> basis_target(const paint::Paint& paint, const BasisTargetOptions& options);
+
+// The means of a measured BRDF over all directions up to 75 deg from the normal, in steps of 2.5 deg of the aspecular
+// angle from 10 to 110. Error: fewer than two steps hold a direction.
+Result<BasisTarget> basis_target(const BrdfTarget& brdf, const BasisTargetOptions& options);
+
+// The weighted RMS error over all angles and channels of a target after the non-negative fit of a constant and lobes of
+// these exponents.
 double basis_error(const std::vector<double>& exponents, const BasisTarget& target);
 
-// err^2 of every target and its gradient by log E_j.
+// The square of that error and its gradient by log E_j, for every target.
 struct SquaredError {
   double value = 0;
   std::vector<double> gradient;
@@ -34,6 +52,7 @@ struct SquaredError {
 std::vector<SquaredError> squared_basis_errors(const std::vector<double>& exponents,
                                                const std::vector<BasisTarget>& targets, bool with_gradient);
 
+// The error over all targets, which the search makes least.
 struct BasisError {
   double max = 0, mean = 0;
   double objective() const { return max + mean; }
@@ -41,19 +60,20 @@ struct BasisError {
 };
 BasisError basis_error(const std::vector<double>& exponents, const std::vector<BasisTarget>& targets);
 
+// The largest dE00 over the sample angles between a target and its best fit with these exponents.
+double basis_de00(const std::vector<double>& exponents, const BasisTarget& target);
+
 enum class BasisMethod {
-  kPowerMean,           // quasi-Newton on the power mean of the errors, P = 4, 12, 40,
-                        // then a pattern search on the objective
-  kLevenbergMarquardt,  // Ceres on the residual norms, as in [Shimizu2009], then
-                        // the same pattern search
+  kPowerMean,  // quasi-Newton on the power mean of the errors, P = 4, 12, 40, then a pattern search on max + mean
+  kLevenbergMarquardt,  // Ceres on the targets' errors, as in [Shimizu2009] 2.3.2, then the same pattern search
 };
 
 struct BasisSearchOptions {
   BasisMethod method = BasisMethod::kPowerMean;
   int first = 1, last = 11;  // numbers of lobes
   int starts = 6;            // for each number of lobes
-  // Domain of the exponents, up to the sharpest lobe that the targets see. Below 1 a lobe falls to 0 at 90 deg with
-  // infinite slope, which shows as an edge.
+  // The domain of the exponents. The search also stays below the sharpest lobe that the targets see. A lobe of an
+  // exponent below 1 falls to 0 at 90 deg with infinite slope, which shows as an edge.
   double low = 1, high = 2e4;
   std::uint64_t seed = 1;
   double time_limit_s = 0;  // for the whole search; 0 is none
@@ -62,22 +82,20 @@ struct BasisSearchOptions {
 // The best set found for one number of lobes.
 struct FoundBasis {
   std::vector<double> exponents;  // ascending
-  BasisError error;               // the exact max and mean
+  BasisError error;
   int starts = 0;
   int evaluations = 0;  // of the objective
   double time_s = 0;
 };
 
 struct BasisSearch {
-  std::vector<FoundBasis> sets;  // by number of lobes, from `first`; fewer where
-                                 // the time limit struck
-  bool stopped = false;
+  std::vector<FoundBasis> sets;  // by number of lobes, from `first`; fewer where the time limit struck
+  bool stopped = false;          // by the time limit
 };
 
-// One lobe at a time: every set starts from the best smaller one with a lobe
-// put into each wide gap, from exponents regular in log space, and from random
-// ones. Deterministic for a seed, whatever the number of threads. The objective
-// never rises with m.
+// Searches with one more lobe at a time. Every set starts from the best smaller one with a lobe put into each wide gap,
+// from exponents that are regular in log space, and from random ones. The objective never rises with the number of
+// lobes. The result depends on the seed, and not on the number of threads.
 BasisSearch search_basis(const std::vector<BasisTarget>& targets, const BasisSearchOptions& options);
 
 }  // namespace goniochrome::fit

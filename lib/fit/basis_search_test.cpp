@@ -8,8 +8,6 @@
 
 #include "base/angles.h"
 #include "base/parallel.h"
-#include "brdf/lobe_model.h"
-#include "fit/basis_targets.h"
 #include "math/cosine_power.h"
 
 namespace goniochrome::fit {
@@ -23,16 +21,15 @@ std::vector<BasisTarget> planted(const std::vector<double>& exponents, int paint
   for (int p = 0; p < paints; ++p) {
     BasisTarget target;
     target.name = "paint" + std::to_string(p);
-    for (int i = 0; i < 40; ++i) target.angles_deg.push_back(15 + 75.0 * i / 39);
+    for (int i = 0; i < 40; ++i) target.rows.push_back({15 + 75.0 * i / 39, {}, 1});
     for (int c = 0; c < 3; ++c) {
       std::vector<double> weights;
       for (std::size_t j = 0; j <= exponents.size(); ++j) weights.push_back(unit(random));
-      for (const double angle : target.angles_deg) {
+      for (BasisRow& row : target.rows) {
         double value = 0.1 * weights[0];
         for (std::size_t j = 0; j < exponents.size(); ++j)
-          value += weights[j + 1] * math::cos_power(angle * kPi / 180, exponents[j]);
-        target.value[c].push_back(value + noise * unit(random));
-        target.weight[c].push_back(1);
+          value += weights[j + 1] * math::cos_power(row.angle_deg * kDegree, exponents[j]);
+        row.value[c] = value + noise * unit(random);
       }
     }
     targets.push_back(target);
@@ -53,7 +50,7 @@ TEST(BasisSearch, FindsPlantedExponents) {
 }
 
 // The control: every pair (triple) of a grid in log E. The search must be at least as good as the best of them.
-TEST(BasisSearch, NotWorseThanAnExhaustiveGrid) {
+TEST(BasisSearch, IsNotWorseThanAnExhaustiveGrid) {
   const auto targets = planted({1.5, 9, 70}, 10, 0.02);
   BasisSearchOptions options;
   options.low = 0.5, options.high = 500, options.last = 3;
@@ -98,7 +95,7 @@ TEST(BasisSearch, NoLobeIsSharperThanTheTargetsSee) {
   const auto targets = planted({1.2, 5, 25}, 8, 0.05);
   BasisSearchOptions options;
   options.first = 4, options.last = 4, options.starts = 2;
-  const double first_rad = targets.front().angles_deg.front() * kPi / 180;
+  const double first_rad = targets.front().rows.front().angle_deg * kDegree;
   for (const FoundBasis& set : search_basis(targets, options).sets)
     EXPECT_GE(math::cos_power(first_rad, set.exponents.back()), 0.999e-3) << set.exponents.size();
   // The control: such a lobe lowers the error.
@@ -123,7 +120,7 @@ TEST(BasisSearch, GradientMatchesDifferences) {
   }
 }
 
-TEST(BasisSearch, TimeLimitKeepsTheBestSoFar) {
+TEST(BasisSearch, KeepsTheBestSoFarAtItsTimeLimit) {
   const auto targets = planted({2, 30}, 40, 0.1);
   BasisSearchOptions options;
   options.time_limit_s = 0.02;
@@ -133,25 +130,25 @@ TEST(BasisSearch, TimeLimitKeepsTheBestSoFar) {
   EXPECT_LT(search.sets.size(), 11u);
 }
 
-TEST(BasisTargets, MeasuredBrdfIsAveragedByAspecularAngle) {
+TEST(BasisTarget, OfAMeasuredBrdfIsItsMeanByAspecularAngle) {
   BrdfTarget brdf;
   brdf.paint.name = "one lobe";
   for (int i = 0; i < 2000; ++i) {
     const double angle = 5 + 0.055 * i;
-    const double value = 0.1 + math::cos_power(angle * kPi / 180, 12);
-    brdf.samples.push_back({angle * kPi / 180, 30, 30, {value, value / 2, value / 4}});
-    brdf.samples.push_back({angle * kPi / 180, 30, 80, {9, 9, 9}});  // too steep to count
+    const double value = 0.1 + math::cos_power(angle * kDegree, 12);
+    brdf.samples.push_back({angle * kDegree, 30, 30, {value, value / 2, value / 4}});
+    brdf.samples.push_back({angle * kDegree, 30, 80, {9, 9, 9}});  // too steep to count
   }
   const auto target = basis_target(brdf, {});
   ASSERT_TRUE(target.ok());
-  EXPECT_EQ(target->angles_deg.size(), 40u);
+  EXPECT_EQ(target->rows.size(), 40u);
   EXPECT_LT(basis_error({12}, *target), 0.2) << "means over 2.5 deg of a lobe that bends";
   EXPECT_GT(basis_error({3}, *target), 1);
   brdf.samples.resize(2);
   EXPECT_FALSE(basis_target(brdf, {}).ok());
 }
 
-TEST(BasisTargets, SolidPaintNeedsNoLobe) {
+TEST(BasisTarget, OfASolidPaintNeedsNoLobe) {
   paint::Paint paint;
   paint.name = "gray";
   paint.appearance = paint::Appearance{{50, 0, 0}, {50, 0, 0}, 60, {}};

@@ -8,7 +8,7 @@
 
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
-#include "fit/albedo_error.h"
+#include "fit/brdf_target.h"
 #include "fit/internal/ggx_for_test.h"
 #include "fit/paint_fit.h"
 

@@ -8,26 +8,14 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "brdf/lobe_model.h"
-#include "fit/internal/brdf_rows.h"
-#include "fit/internal/brdf_spike.h"
-#include "fit/internal/fit_limit.h"
+#include "fit/internal/brdf_fit.h"
 #include "fit/internal/flake_fit.h"
 #include "fit/internal/lobe_choice.h"
 #include "fit/internal/target_rows.h"
-#include "fit/internal/twins.h"
-#include "math/cosine_power.h"
 
 namespace goniochrome::fit {
 
 namespace {
-
-// The exponents that the samples see.
-std::vector<double> seen_exponents(const std::vector<double>& exponents, double first_rad) {
-  std::vector<double> seen;
-  for (const double e : exponents)
-    if (math::cos_power(first_rad, e) >= kSeenPart) seen.push_back(e);
-  return seen;
-}
 
 // Those of `all` that are not in `part`.
 std::vector<double> difference(const std::vector<double>& all, const std::vector<double>& part) {
@@ -88,11 +76,7 @@ void fit_flake(const FitOptions& options, const FlakeTarget& together, const Fla
 
 FlakeTarget flake_target(const FitOptions& options, const Target& target, const color::Xyz& white) {
   FlakeTarget flake{white, {}, {}};
-  for (const TargetRow& row : target.rows)
-    flake.rows.push_back({{row.angle_deg * kDegree, row.view_deg},
-                          row.reflectance_factor,
-                          row.importance * (options.perceptual_weights ? color::lightness_slope(row.lightness) : 1),
-                          row.importance < 1});
+  for (const TargetRow& row : target.rows) flake.rows.push_back(flake_row(row, options, row.importance < 1));
   for (const paint::LabReading& reading : target.readings)
     flake.readings.push_back(
         {{paint::aspecular_angle_deg(reading.geometry) * kDegree, view_angle_deg(reading.geometry)}, reading.lab});
@@ -106,9 +90,7 @@ std::vector<GeometryError> errors_at(const std::vector<paint::LabReading>& readi
   for (const paint::LabReading& reading : readings) {
     const double angle_deg = paint::aspecular_angle_deg(reading.geometry);
     const color::Rgb predicted =
-        fit.views.empty()
-            ? brdf::flake_reflectance_factor(fit, angle_deg)
-            : brdf::flake_reflectance_factor(brdf::at_view(fit, view_angle_deg(reading.geometry)), angle_deg);
+        brdf::flake_reflectance_factor(brdf::at_view(fit, view_angle_deg(reading.geometry)), angle_deg);
     errors.push_back({paint::geometry_name(reading.geometry),
                       color::delta_e_2000(reading.lab, color::lab_from_rgb(predicted, white))});
   }
@@ -125,8 +107,8 @@ double max_de00(const std::vector<GeometryError>& errors) {
   return errors.empty() ? 0 : std::ranges::max_element(errors, {}, &GeometryError::de00)->de00;
 }
 
-// The lobes whose flake may have a sharp part: all but those left out, where their number was limited by what the flake
-// beyond glare wants.
+// The exponents whose flake may have a sharp part: all but those that the fit dropped. Where the number of lobes is
+// limited, those that no sample sees are left out too.
 std::vector<double> spike_exponents(const FitOptions& options, const std::vector<double>& exponents,
                                     const PaintFitReport& report) {
   const std::vector<double> left = difference(exponents, report.dropped);
@@ -155,27 +137,13 @@ void drop_unused(std::vector<paint::Lobe>& lobes) {
 }  // namespace
 
 const char* fit_method_name(FitMethod method) {
-  switch (method) {
-    case FitMethod::kL1:
-      return "l1";
-    case FitMethod::kL2:
-      return "l2";
-    case FitMethod::kDeltaE:
-      break;
-  }
-  return "deltae";
+  constexpr const char* kNames[] = {"l1", "l2", "deltae"};
+  return kNames[static_cast<int>(method)];
 }
 
 const char* fit_status_name(FitStatus status) {
-  switch (status) {
-    case FitStatus::kOptimal:
-      return "optimal";
-    case FitStatus::kNotConverged:
-      return "not_converged";
-    case FitStatus::kTimeLimit:
-      break;
-  }
-  return "time_limit";
+  constexpr const char* kNames[] = {"optimal", "not_converged", "time_limit"};
+  return kNames[static_cast<int>(status)];
 }
 
 PaintFitter::PaintFitter(formats::Basis basis, FitOptions options)

@@ -1,5 +1,5 @@
-// Fitting paints to a basis of cosine lobes. [ShimizuMeyer] 4, [Shimizu2009] 2.4
-// goniochrome-theory(7), FITTING.
+// Paints and measured BRDFs fitted to a basis of cosine lobes: the weights, how well they meet what was measured, and
+// the proof that no other weights do better. [ShimizuMeyer] 4, [Shimizu2009] 2.4, goniochrome-theory(7), FITTING.
 #pragma once
 
 #include <optional>
@@ -8,15 +8,15 @@
 
 #include "base/result.h"
 #include "brdf/gloss.h"
-#include "fit/internal/brdf_target.h"
-#include "fit/internal/fit_status.h"
+#include "fit/brdf_target.h"
 #include "formats/basis.h"
 #include "paint/curve.h"
 #include "paint/paint.h"
 
 namespace goniochrome::fit {
 
-// kDeltaE starts from both others and then makes the color differences at the readings least.
+// kL1 and kL2 make the weighted error of the reflectance factors least in that norm. kDeltaE starts from both and then
+// makes the color differences at the readings least.
 enum class FitMethod { kL1, kL2, kDeltaE };
 
 // "l1" | "l2" | "deltae"
@@ -30,19 +30,19 @@ struct FitOptions {
   int most_lobes = 0;                                   // flake lobes to use, the best subset of the basis; 0: all
   double prune_de00 = 0;               // lobes that move no color by more than this are dropped; 0: none are
   std::vector<double> views_deg = {};  // weights at these angles of the viewer too; empty: none
-  bool views_where_needed = false;     // those of readings that differ at one aspecular angle, else none; of
-                                       // a measured BRDF every 15 deg
+  bool views_where_needed = false;     // in place of views_deg, the views of readings that differ at one aspecular
+                                       // angle; of a measured BRDF, views every 15 deg
   double steepest_deg = 75;            // measured BRDFs: directions farther from the normal are left out
   double time_limit_s = 0;             // for one paint; 0: none
 };
 
-// Readings nearer to specular than this hold conventional glare and belong to the gloss meter.
+// Readings nearer to specular than this hold conventional glare, which the gloss meter measures.
 constexpr double kGlareAngle_deg = 10;
 
-// A difference below this is not seen.
+// A color difference below this is not seen.
 constexpr double kVisible_de00 = 0.5;
 
-// A lobe that gives every sample less than this part of its peak is not seen by the samples.
+// Samples do not see a lobe that gives each of them less than this part of its peak.
 constexpr double kSeenPart = 1e-3;
 
 struct GeometryError {
@@ -52,19 +52,19 @@ struct GeometryError {
 
 struct GlossMisfit {
   double angle_deg = 60;
-  double simulated_gu = 0;               // what the fit reads in the simulated meter
-  std::optional<double> stated_gu = {};  // by the paint; the fit was to meet it
+  double simulated_gu = 0;               // the reading of the simulated meter on the fit
+  std::optional<double> stated_gu = {};  // the reading that the paint states, which the fit was to meet
 };
 
-// How well lobes that were fitted to the five usual readings alone predict a measured BRDF, over its directions beyond
-// glare and at most 60 deg from the normal: medians of the relative error as below.
+// How well lobes that were fitted to the five usual readings alone predict a measured BRDF: medians of the relative
+// error (see BrdfFigures) over its directions beyond glare and at most 60 deg from the normal.
 struct FiveAngleFigures {
   std::size_t directions = 0;
   double by_aspecular = 0;  // the lobes at the aspecular angle of each direction
-  double by_flake = 0;      // at that which shows the same flakes, seen through the coat, to a light at 45 deg
+  double by_flake = 0;      // the lobes at the angle that shows a light at 45 deg the same flakes, through the coat
 };
 
-// How well a measured BRDF is met, over the directions that were fitted, by all that the lobes show there.
+// How well all that the lobes show meets a measured BRDF, over the directions that were fitted.
 struct BrdfFigures {
   std::size_t fitted = 0;            // directions
   std::size_t glare = 0, steep = 0;  // left out of the flake: near specular, near grazing
@@ -73,23 +73,33 @@ struct BrdfFigures {
   double de00_median = 0, de00_p95 = 0;
   double spike_albedo_45 = 0;                             // what the coat's spike reflects of light at 45 deg
   std::optional<FiveAngleFigures> from_five_angles = {};  // where it has readings
-  std::optional<double> albedo_error = {};                // see albedo_error.h; left to the caller
+  std::optional<double> albedo_error = {};                // see brdf_target.h; the caller may fill it in
 };
 
-// What weights for each view are worth: the mean color difference at the readings, or over the fitted directions of a
-// measured BRDF, with them and by the weights for all views.
+// What weights for each view gain: the mean color difference at the readings, or over the fitted directions of a
+// measured BRDF, with these weights and with the weights for all views.
 struct ViewFigures {
   double de00_mean = 0, de00_mean_without = 0;
   double gain_de00() const { return de00_mean_without - de00_mean; }
 };
 
-// What fits for all views cannot come below: readings at one aspecular angle, as on both sides of specular, that
-// differ. All 0 where none do.
+// The differences below which no fit for all views can come, because readings at one aspecular angle, such as those on
+// both sides of specular, have different colors. All are 0 where no such readings differ.
 struct ViewFloor {
   double apart_de00 = 0;             // the largest difference of two such readings
   double de00_mean = 0;              // over all readings
   std::vector<double> largest_de00;  // for each shared angle, at the worse of its readings
 };
+
+// How a fit ended.
+enum class FitStatus {
+  kOptimal,
+  kNotConverged,  // a solver gave up: the weights are the best it found
+  kTimeLimit      // the paint's time was up: the weights are the best found until then
+};
+
+// "optimal" | "not_converged" | "time_limit"
+const char* fit_status_name(FitStatus status);
 
 // How good a fit is, and the proof.
 struct PaintFitReport {
@@ -103,7 +113,7 @@ struct PaintFitReport {
   ViewFloor floor;
   std::string limit;               // why the worst reading is not met any better, in words; empty where all are met
   double gamut_de00 = 0;           // the largest color change from negative working-space channels of the target
-  std::vector<double> unseen;      // exponents that no sample sees: K_DD left at 0
+  std::vector<double> unseen;      // exponents that no sample sees, whose K_DD is 0
   std::vector<double> dropped;     // exponents that a limit on lobes or visibility left out
   int glare_rows = 0;              // readings left out for being within kGlareAngle_deg of specular
   std::vector<GlossMisfit> gloss;  // at 20, 60 and 85 deg
@@ -122,13 +132,13 @@ class PaintFitter {
  public:
   PaintFitter(formats::Basis basis, FitOptions options);
 
-  // Error: the paint has no rows beyond glare and no appearance, its illuminant is unknown, or no gloss meter has the
-  // angle of a reading.
+  // Error: the paint has neither rows beyond glare nor an appearance, its illuminant is unknown, or no gloss meter has
+  // the angle of a reading.
   Result<PaintFit> fit(const paint::Paint& paint) const;
 
-  // The same for a measured BRDF: the flake lobes from all directions beyond glare and not steeper than the options
-  // say, then the gloss of a clear coat and the sharp part of the flake from what is left near specular. Its gloss
-  // holds at kGlossIncidence_deg. Error: no direction is left.
+  // The same for a measured BRDF. The flake lobes are fitted to all directions beyond glare and not steeper than the
+  // options say; then the gloss of a clear coat and the sharp part of the flake to what is left near specular. The
+  // gloss holds at brdf::kGlossIncidence_deg. Error: no direction is left.
   Result<PaintFit> fit(const BrdfTarget& brdf) const;
 
   const formats::Basis& basis() const { return basis_; }

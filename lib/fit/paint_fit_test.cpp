@@ -110,7 +110,7 @@ TEST(HardCase, FitUnseenLobesAreLeftOutAndNamed) {
   const std::vector<double> target = {1.0, 0.2, 0.1, 0.05, 0.04};
   math::Matrix m(5, 8);
   for (int i = 0; i < 5; ++i)
-    for (int j = 0; j < 8; ++j) m(i, j) = j == 0 ? 1 : math::cos_power(kFive[i] * kPi / 180, kBasis.exponents[j - 1]);
+    for (int j = 0; j < 8; ++j) m(i, j) = j == 0 ? 1 : math::cos_power(kFive[i] * kDegree, kBasis.exponents[j - 1]);
   const math::NonNegativeFit textbook = math::nnls(m, target);
   hard_case("fit-unseen", {.what = "largest peak of a lobe",
                            .textbook = *std::max_element(textbook.x.begin(), textbook.x.end()),
@@ -134,7 +134,7 @@ TEST(PaintFit, HighlightGoesOnRisingAndStaysBounded) {
         before = now;
       }
       // No more than the sharpest seen lobe alone makes of it.
-      const double limit = std::pow(std::cos(15 * kPi / 180), -70);
+      const double limit = std::pow(std::cos(15 * kDegree), -70);
       EXPECT_LE(before, brdf::flake_reflectance_factor(fit->lobes, 15).y * limit * (1 + 1e-9));
     }
 }

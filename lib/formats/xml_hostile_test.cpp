@@ -174,7 +174,7 @@ class EndlessPipe {
 TEST(HardCase, XmlHostileGiantAttribute) {
   const std::string giant = kRoot + "<paint name=\"" + std::string(20 << 20, 'x') + "\"/></paints>";
   const bool taken = TextbookDocument(giant, XML_PARSE_HUGE).paints() == 1;
-  hard_case("xml-hostile", {.what = "MB in one attribute that is taken",
+  hard_case("xml-hostile", {.what = "size of one attribute that is read without an error",
                             .textbook = taken ? 20.0 : 0,
                             .ours = outcome_of_text(giant).errors.empty() ? 20.0 : 0,
                             .bound = 1,
@@ -236,7 +236,7 @@ TEST(HardCase, XmlHostileBadUtf8) {
     ASSERT_EQ(outcome.errors.size(), 1u) << name;
     EXPECT_THAT(outcome.errors[0], HasSubstr("p.xml:2: a character is not valid UTF-8: save the file as UTF-8"));
   }
-  hard_case("xml-hostile", {.what = "files with bytes that are no UTF-8, taken",
+  hard_case("xml-hostile", {.what = "files read without an error though their bytes are not UTF-8",
                             .textbook = static_cast<double>(TextbookDocument(latin1, XML_PARSE_RECOVER).paints()),
                             .ours = static_cast<double>(untold),
                             .bound = 0,
@@ -251,7 +251,7 @@ TEST(HardCase, XmlHostileDuplicateNames) {
     text += std::string("<paint name=\"") + name + "\">" + kLab + "</paint>\n";
   text += "</paints>\n";
   const Outcome outcome = outcome_of_text(text);
-  hard_case("xml-hostile", {.what = "paints of a name that another has",
+  hard_case("xml-hostile", {.what = "paints read though another paint of the file has their name",
                             .textbook = TextbookDocument(text, 0).paints() - 3.0,
                             .ours = outcome.paints - 3.0,
                             .bound = 0,

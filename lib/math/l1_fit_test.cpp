@@ -178,7 +178,7 @@ TEST(HardCase, FitDegenerateLpWideColumnsFoolAutomaticScaling) {
     EXPECT_LE(fit.objective, clp + 1e-9 * norm_1(p.b));
     if (status == 0) worst = worst_of(worst, clp / std::max(fit.objective, 1e-9 * norm_1(p.b)));
   }
-  hard_case("fit-degenerate-lp", {.what = "objective above the optimum, lobes that all but vanish",
+  hard_case("fit-degenerate-lp", {.what = "objective above the optimum, with lobes nearly 0 at all samples",
                                   .textbook = worst - 1,
                                   .ours = gap,
                                   .bound = 1e-11,

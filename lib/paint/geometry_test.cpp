@@ -187,7 +187,7 @@ TEST(HardCase, AngleAcosOfUnitVectors) {
     }
   EXPECT_GT(textbook_nan, 0);
   EXPECT_GT(textbook_wrong, 200);
-  hard_case("angle-acos", {.what = "angle between unit directions 1e-14 to 1e-3 apart, where it is a number",
+  hard_case("angle-acos", {.what = "angle between unit directions that are 1e-14 to 1e-3 apart",
                            .textbook = control,
                            .ours = worst,
                            .bound = 5e-16,

@@ -54,7 +54,7 @@ TEST(HardCase, FlopIndexDark) {
   // It explodes in the dark without a word: 0.1 in one L*, within any instrument's repeatability, moves it a lot.
   const double moved = textbook_flop_index(3, 0.2, 0.2) - textbook_flop_index(3, 0.3, 0.2);
   const FlopIndex dark = flop_index(3, 0.2, 0.2);
-  hard_case("flop-index-dark", {.what = "change by 0.1 L* in the dark that goes untold",
+  hard_case("flop-index-dark", {.what = "change by 0.1 L* in the dark of which no warning tells",
                                 .textbook = moved,
                                 .ours = dark.unstable() ? std::max(0.0, moved - dark.sensitivity) : moved,
                                 .bound = 0,

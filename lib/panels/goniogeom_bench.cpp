@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "panels/goniogeom_sets.h"
+#include "panels/geometry_sets.h"
 #include "panels/trompe.h"
 
 namespace goniochrome::panels {

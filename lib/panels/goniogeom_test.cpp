@@ -8,7 +8,7 @@
 
 #include "base/angles.h"
 #include "base/hard_case_for_test.h"
-#include "panels/goniogeom_sets.h"
+#include "panels/geometry_sets.h"
 
 namespace goniochrome::panels {
 namespace {
@@ -108,7 +108,7 @@ TEST(TiltedPair, AgreesWithVectorsInAndOutOfPlane) {
 }
 
 // [hard case] Near the mirror direction and opposite to it acos(dot) keeps eight digits at most.
-TEST(HardCase, AngleAcosOfTiltedPair) {
+TEST(HardCase, AngleAcosOfATiltedPairKeepsItsDigits) {
   double ours = 0, control = 0;
   for (const double as : {1e-9, 1e-6, 1e-3, 179.999999}) {
     const TiltedPair pair = TiltedPair::make({45, 0, 0}, 90);
@@ -146,7 +146,7 @@ double closed_form(const color::Lab& lab, double light_deg, int sign, double thr
   return std::abs(light_deg - std::acos(k * k * k) / kDegree);
 }
 
-TEST(SolidPaint, MeetsTheClosedFormOfTheCosine) {
+TEST(FirstCrossing, OfASolidPaintMeetsTheClosedFormOfTheCosine) {
   for (const color::Lab& lab : {color::Lab{50, 0, 0}, color::Lab{44, 52, 30}, color::Lab{90, -2, 60}}) {
     const FlakeCurve curve(paint::Appearance{lab, lab, 60, {}});
     for (const double light : {10.0, 45.0, 70.0}) {
@@ -175,7 +175,7 @@ double brute_force(const FlakeCurve& curve, const TiltedPair& pair, int sign, do
 
 // A pearl seen 15 deg from the mirror: turned toward the light, the panel passes the mirror at 7.5 deg and shows the
 // same flake color again at 15 deg, darker and lighter by the cosine alone.
-TEST(HardCase, IndexCrossing) {
+TEST(HardCase, IndexCrossingIsTheFirstOfThree) {
   const FlakeCurve curve(paint::Appearance{{60, 30, 20}, {25, -25, -10}, 70, {}});
   const TiltedPair pair = TiltedPair::make({30, 15, 0}, 90);
   const double threshold = 8;
@@ -207,7 +207,7 @@ TEST(HardCase, IndexCrossing) {
   EXPECT_FALSE(first_crossing(black, pair, -1, 2.3, k76)) << "a black panel in shadow is 2 L* away";
 }
 
-TEST(Index, NoneIsMissedOnRandomPaintsAndGeometries) {
+TEST(FirstCrossing, IsNeverMissedOnRandomPaintsAndGeometries) {
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> unit(0, 1);
   int found = 0, none = 0, early = 0;
@@ -243,7 +243,7 @@ TEST(Index, NoneIsMissedOnRandomPaintsAndGeometries) {
   EXPECT_LT(early, 20);
 }
 
-TEST(Index, OutOfPlaneAgreesWithVectors) {
+TEST(FirstCrossing, AgreesWithVectorsOutOfPlane) {
   std::mt19937_64 random(5);
   const FlakeCurve curve(kSilver);
   for (int i = 0; i < 100; ++i) {
@@ -258,7 +258,7 @@ TEST(Index, OutOfPlaneAgreesWithVectors) {
 }
 
 // The step of the search rests on |dE00(x,y) - dE00(x,z)| <= 2.5 |y - z| for colors that are not of opposite hue.
-TEST(Index, StretchOfDe00IsWithinItsBound) {
+TEST(FirstCrossing, StretchOfDe00IsWithinItsBound) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> unit(-1, 1);
   double most = 0;
@@ -272,39 +272,6 @@ TEST(Index, StretchOfDe00IsWithinItsBound) {
   }
   EXPECT_LT(most, 2.5);
   EXPECT_GT(most, 1) << "dE00 is steeper than dE76 somewhere: the stretch is needed";
-}
-
-TEST(GeometrySets, ListsRangesNamesAndAspecularViews) {
-  const GeometryList list = *geometry_list({.lights = "0:60:30,45", .views = "as25,-10", .azimuths = "0,90"});
-  EXPECT_EQ(list.pairs.size(), 16u);
-  EXPECT_EQ(list.pairs[0].view_deg, -25);
-  for (const GeometrySet& set : geometry_sets()) {
-    const auto named =
-        geometry_list({.lights = std::string("set:") + set.name, .views = std::string("set:") + set.name});
-    ASSERT_TRUE(named.ok()) << set.name;
-    EXPECT_GE(named->pairs.size(), 5u);
-  }
-  const GeometryList some = *geometry_list({.lights = "45", .views = "45,40,as80,as140", .azimuths = "0"});
-  EXPECT_EQ(some.glare, 2);
-  EXPECT_EQ(some.below_horizon, 1);
-  EXPECT_EQ(some.pairs.size(), 1u);
-  const GeometryList heavy = *geometry_list(
-      {.lights = "30,45", .views = "as25,as45", .azimuths = "0", .light_weights = {1, 3}, .view_weights = {2, 1}});
-  EXPECT_EQ(heavy.weights, (std::vector<double>{2, 1, 6, 3}));
-}
-
-TEST(GeometrySets, ErrorsNameOptionValueAndRemedy) {
-  const auto message = [](const GeometryTexts& texts) { return geometry_list(texts).error().message; };
-  EXPECT_THAT(message({.lights = "95"}), ::testing::HasSubstr("--lights has 95: that light is below the horizon"));
-  EXPECT_THAT(message({.lights = "-5"}), ::testing::HasSubstr("0 up to less than 90"));
-  EXPECT_THAT(message({.views = "90"}), ::testing::HasSubstr("--views has 90"));
-  EXPECT_THAT(message({.lights = "1,x"}), ::testing::HasSubstr("--lights has \"x\""));
-  EXPECT_THAT(message({.lights = "0:45"}), ::testing::HasSubstr("FIRST:LAST:STEP"));
-  EXPECT_THAT(message({.lights = "0:45:0"}), ::testing::HasSubstr("step 0"));
-  EXPECT_THAT(message({.views = "set:garage"}), ::testing::HasSubstr("instrument, showroom, outdoor"));
-  EXPECT_THAT(message({.light_weights = {1, 2}}), ::testing::HasSubstr("2 weights for 1 angles"));
-  EXPECT_THAT(message({.view_weights = {1, 1, 0, 1, 1}}), ::testing::HasSubstr("the weight 0"));
-  EXPECT_THAT(message({.lights = "45", .views = "45"}), ::testing::HasSubstr("no pair of light and viewer is left"));
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ struct PanelView {
   double aspecular_b_deg = 45, cos_b = 1;
   double weight = 1;
 };
-// A light and a viewer at a panel turned by b (deg). None where the second panel is not seen.
+// What a viewer sees where the second panel is turned by b (deg); none where that panel is not seen.
 std::optional<PanelView> panel_view(const LightView& geometry, double seam_deg, double b_deg);
 
 // The seven numbers of an appearance, in this order.
@@ -34,12 +34,12 @@ struct TrompeOptions {
   bool least_maximum = false;  // minimize the largest difference, else the weighted RMS
 };
 
-// A difference below this between face and flop leaves the travel to noise: such a paint is solid, its face and flop
-// move together and its travel stays.
+// Where face and flop differ by less than this, noise would decide the travel. Such a paint counts as solid: its face
+// and flop move together, and its travel stays.
 constexpr double kSolidContrast = 1;
 
-// A parameter that may move by one unit (Lab or degree) while the others make up for it to within this RMS difference
-// is not determined by the views.
+// The views leave a parameter open where it may move by one unit (Lab or degree) and the others make up for it to
+// within this RMS difference.
 constexpr double kDeterminedBy = 0.02;
 
 struct TrompeErrors {
@@ -49,7 +49,7 @@ struct TrompeErrors {
 
 struct TrompeFit {
   paint::Appearance b;
-  TrompeErrors before, after;             // both panels in paint A; the second one in paint B
+  TrompeErrors before, after;             // with both panels in paint A, and with the second one in paint B
   std::vector<std::string> undetermined;  // parameters that the views leave open; they stay near those of paint A
   std::vector<std::string> at_bound;      // parameters that a bound holds back
   bool solid = false;                     // face and flop were moved together
@@ -63,18 +63,18 @@ struct TrompeFit {
 Result<TrompeFit> trompe_fit(const paint::Appearance& a, bool is_solid, const std::vector<PanelView>& views,
                              const TrompeOptions& options);
 
-// The same where colors come from anywhere, such as an image light: `colors` gives what the second panel shows in every
-// view for an appearance, `target` what the first panel shows in paint A. Derivatives are differences.
+// The same where colors come from anywhere, such as an environment: `colors` gives what the second panel shows in every
+// view for an appearance, and `target` is what the first panel shows in paint A. Derivatives are found by differences.
 using PanelColors = std::function<Result<std::vector<color::Lab>>(const paint::Appearance&)>;
 Result<TrompeFit> trompe_fit(const paint::Appearance& a, bool is_solid, const std::vector<color::Lab>& target,
                              const std::vector<double>& weights, const PanelColors& colors,
                              const TrompeOptions& options);
 
-// The differences between what both panels show; `weights` for the RMS.
+// The differences between what both panels show. The RMS is weighted.
 TrompeErrors trompe_errors(const std::vector<color::Lab>& a, const std::vector<color::Lab>& b,
                            const std::vector<double>& weights);
 
-// The differences that any paint B leaves.
+// The differences that a paint B leaves.
 TrompeErrors trompe_errors(const paint::Appearance& a, const paint::Appearance& b, const std::vector<PanelView>& views);
 
 }  // namespace goniochrome::panels

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "base/hard_case_for_test.h"
-#include "panels/goniogeom_sets.h"
+#include "panels/geometry_sets.h"
 
 namespace goniochrome::panels {
 namespace {
@@ -36,7 +36,7 @@ const paint::Appearance kPearl{{75, 20, 30}, {30, -15, 5}, 80, {}};
 // A silver with black flop, 2 deg: face L* and travel alone hide it. The aspecular angle of the second panel is 2b
 // smaller where it turns toward the light, so its curve must be the first one's moved by 2b: the travel falls by 2b, or
 // grows by 2b for a panel that turns away.
-TEST(Trompe, SilverWithBlackFlopByFaceAndTravel) {
+TEST(Trompe, HidesTheTiltOfSilverWithBlackFlopByFaceAndTravel) {
   for (const double b : {2.0, -2.0}) {
     const auto fit = trompe_fit(kSilverBlackFlop, false, views_of("45", "as15:105:10", b), varying({kFaceL, kTravel}));
     ASSERT_TRUE(fit.ok()) << fit.error().message;
@@ -51,7 +51,7 @@ TEST(Trompe, SilverWithBlackFlopByFaceAndTravel) {
 }
 
 // Where the shading is the same for both panels, the shifted curve is an exact answer for a black flop of L* 0.
-TEST(Trompe, TheShiftedCurveIsFound) {
+TEST(Trompe, FindsTheShiftedCurve) {
   std::vector<PanelView> views;
   for (double as = 15; as <= 105; as += 5) views.push_back({as, 1, as - 4, 1, 1});
   const paint::Appearance a{{60, 0, 0}, {0, 0, 0}, 75, {}};
@@ -62,7 +62,7 @@ TEST(Trompe, TheShiftedCurveIsFound) {
   EXPECT_LT(fit->after.rms, 1e-3);
 }
 
-TEST(Trompe, AllSevenAreFoundFromTheirOwnColors) {
+TEST(Trompe, FindsAllSevenFromTheirOwnColors) {
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> unit(-1, 1);
   for (int i = 0; i < 20; ++i) {
@@ -86,7 +86,7 @@ TEST(Trompe, AllSevenAreFoundFromTheirOwnColors) {
   }
 }
 
-TEST(Trompe, TheLeastMaximumIsBelowThatOfTheLeastRms) {
+TEST(Trompe, LeastMaximumIsBelowThatOfTheLeastRms) {
   const auto views = views_of("15,30,45,60", "-60:60:10", 3);
   TrompeOptions options;
   const auto rms = trompe_fit(kPearl, false, views, options);
@@ -105,7 +105,7 @@ TEST(Trompe, TheLeastMaximumIsBelowThatOfTheLeastRms) {
 }
 
 // [hard case] A solid paint, one geometry and mirrored geometries make the normal equations singular.
-TEST(HardCase, TrompeFlat) {
+TEST(HardCase, TrompeFlatFitsEndAtTheirOptimum) {
   const paint::Appearance solid{{45, 30, 20}, {45, 30, 20}, 60, {}};
   const auto views = views_of("45", "as15:105:10", 3);
   // The textbook Newton step for all seven: G = J'J of a solid is singular, its Cholesky factor fails.
@@ -155,7 +155,7 @@ TEST(HardCase, TrompeFlat) {
   EXPECT_NEAR(both->b.travel_deg, kPearl.travel_deg, 12);
 }
 
-TEST(Trompe, BoundsHoldAndAreTold) {
+TEST(Trompe, KeepsItsBoundsAndTellsThem) {
   TrompeOptions options = varying({kFaceL, kTravel});
   options.high[kFaceL] = 71;
   const auto fit = trompe_fit(kSilverBlackFlop, false, views_of("45", "as15:105:10", -2), options);
@@ -166,7 +166,7 @@ TEST(Trompe, BoundsHoldAndAreTold) {
   EXPECT_LE(trompe_fit(kSilverBlackFlop, false, views_of("45", "as15:105:10", -2), options)->b.face.L, 40 + 1e-12);
 }
 
-TEST(Trompe, BadProblemsAreRefusedByName) {
+TEST(Trompe, RefusesBadProblemsByName) {
   const auto views = views_of("45", "as45", 2);
   TrompeOptions options = varying({});
   EXPECT_THAT(trompe_fit(kPearl, false, views, options).error().message, HasSubstr("nothing to vary"));

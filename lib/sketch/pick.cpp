@@ -2,36 +2,202 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <random>
 
+#include "base/file.h"
 #include "base/text.h"
+#include "display/paint_view.h"
 #include "paint/curve.h"
-#include "sketch/sketch_gloss.h"
+#include "sketch/internal/sketch_gloss.h"
 #include "sketch/sketch_picture.h"
 
 namespace goniochrome::sketch {
 
 namespace {
 
-// The part of an image that a disc may touch, and where it begins.
-struct Window {
-  int x = 0, y = 0;
-  image::ImagePart part;
+constexpr std::size_t kMostPixels = 20000;  // looked at
+constexpr double kLightnessPart = 0.35;     // of L* against a* and b*: a color's shadow is that color
+constexpr double kEnd = 0.15;               // the part of a group's pixels that is its light, and its dark, end
+constexpr double kGlint = 0.02;             // the lightest pixels are reflections
+constexpr int kRounds = 25;
+
+// Every step-th pixel of every step-th row from (x0, y0) up to (x1, y1), exclusive.
+image::ImagePart piece_of(const image::ImagePart& image, int x0, int y0, int x1, int y1, int step) {
+  const image::Image& all = image.image;
+  image::ImagePart part{image.name, {}, image.attributes, image.type};
+  image::Image& piece = part.image;
+  piece.width = (x1 - x0 + step - 1) / step, piece.height = (y1 - y0 + step - 1) / step;
+  piece.channels = all.channels, piece.channel_names = all.channel_names;
+  for (int y = y0; y < y1; y += step)
+    for (int x = x0; x < x1; x += step)
+      piece.data.insert(piece.data.end(), all.pixel(x, y), all.pixel(x, y) + all.channels);
+  return part;
+}
+
+struct Pixel {
+  color::Rgb light;
+  color::Lab lab;
+  int group = 0;
 };
 
-Window window_about(const image::ImagePart& image, const Dropper& d) {
-  const image::Image& all = image.image;
-  const int reach = static_cast<int>(std::ceil(d.radius));
-  const int x0 = std::max(0, d.x - reach), x1 = std::min(all.width - 1, d.x + reach);
-  const int y0 = std::max(0, d.y - reach), y1 = std::min(all.height - 1, d.y + reach);
-  Window window{x0, y0, {image.name, {}, image.attributes, image.type}};
-  image::Image& piece = window.part.image;
-  piece.width = x1 - x0 + 1, piece.height = y1 - y0 + 1, piece.channels = all.channels;
-  piece.channel_names = all.channel_names;
-  for (int y = y0; y <= y1; ++y)
-    piece.data.insert(piece.data.end(), all.pixel(x0, y),
-                      all.pixel(x0, y) + static_cast<std::ptrdiff_t>(piece.width) * all.channels);
-  return window;
+double apart(const color::Lab& x, const color::Lab& y) {
+  const double l = kLightnessPart * (x.L - y.L);
+  return l * l + (x.a - y.a) * (x.a - y.a) + (x.b - y.b) * (x.b - y.b);
 }
+
+std::vector<Pixel> pixels_of(const Picture& picture) {
+  std::vector<Pixel> pixels;
+  const color::Xyz white = *color::white_point({});
+  for (std::size_t i = 0; i < picture.state.size(); ++i) {
+    if (picture.state[i] == Picture::kTransparent) continue;
+    const color::Rgb light{picture.rgb.data[3 * i], picture.rgb.data[3 * i + 1], picture.rgb.data[3 * i + 2]};
+    if (std::isfinite(light.x + light.y + light.z)) pixels.push_back({light, color::lab_from_rgb(light, white)});
+  }
+  return pixels;
+}
+
+// Every n-th pixel of every n-th row, so that kMostPixels are not passed by much.
+image::ImagePart thinned(const image::ImagePart& image) {
+  const image::Image& all = image.image;
+  const double count = static_cast<double>(all.width) * all.height;
+  return piece_of(image, 0, 0, all.width, all.height,
+                  std::max(1, static_cast<int>(std::ceil(std::sqrt(count / kMostPixels)))));
+}
+
+// k-means. The first centers are spread by distance, from a fixed seed.
+std::vector<color::Lab> centers_of(std::vector<Pixel>& pixels, int count) {
+  std::mt19937_64 random(1);
+  std::vector<color::Lab> centers = {pixels[pixels.size() / 2].lab};
+  std::vector<double> nearest(pixels.size(), 1e300);
+  while (static_cast<int>(centers.size()) < count) {
+    double sum = 0;
+    for (std::size_t i = 0; i < pixels.size(); ++i)
+      nearest[i] = std::min(nearest[i], apart(pixels[i].lab, centers.back())), sum += nearest[i];
+    if (sum < 1e-6 * static_cast<double>(pixels.size())) break;
+    double place = static_cast<double>(random() >> 11) * 0x1p-53 * sum;
+    std::size_t chosen = 0;
+    while (chosen + 1 < pixels.size() && (place -= nearest[chosen]) > 0) ++chosen;
+    centers.push_back(pixels[chosen].lab);
+  }
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<color::Lab> sum(centers.size());
+    std::vector<double> members(centers.size(), 0);
+    for (Pixel& pixel : pixels) {
+      for (std::size_t k = 0; k < centers.size(); ++k)
+        if (apart(pixel.lab, centers[k]) < apart(pixel.lab, centers[pixel.group])) pixel.group = static_cast<int>(k);
+      color::Lab& s = sum[pixel.group];
+      s.L += pixel.lab.L, s.a += pixel.lab.a, s.b += pixel.lab.b, ++members[pixel.group];
+    }
+    for (std::size_t k = 0; k < centers.size(); ++k)
+      if (members[k] > 0) centers[k] = {sum[k].L / members[k], sum[k].a / members[k], sum[k].b / members[k]};
+  }
+  return centers;
+}
+
+// The mean light of the members from rank `from` to `to`, 0..1 from the darkest.
+color::Lab mean_between(const std::vector<const Pixel*>& sorted, double from, double to) {
+  const auto rank = [&](double part) { return static_cast<std::size_t>(part * static_cast<double>(sorted.size())); };
+  const std::size_t first = std::min(rank(from), sorted.size() - 1), last = std::max(rank(to), first + 1);
+  color::Rgb sum;
+  for (std::size_t i = first; i < last; ++i) sum += sorted[i]->light;
+  return color::lab_from_rgb((1 / static_cast<double>(last - first)) * sum, *color::white_point({}));
+}
+
+// One board as it is read line by line.
+class BoardReader {
+ public:
+  explicit BoardReader(const std::string& path) : path_(path), folder_(std::filesystem::path(path).parent_path()) {}
+
+  Result<Board> read(const std::string& content) {
+    for (const std::string_view text : split(content, '\n')) {
+      ++line_;
+      const std::string_view stated = trimmed(text);
+      if (stated.empty() || stated.front() == '#') continue;
+      const auto space = stated.find_first_of(" \t");
+      const std::string word(stated.substr(0, space));
+      const std::string rest(space == std::string_view::npos ? "" : trimmed(stated.substr(space)));
+      GONIO_TRY(take(word, rest));
+    }
+    if (board_.paints.empty())
+      return input_error("{}: has no paint: add a line \"paint NAME\" and its droppers", path_);
+    for (const PaintPick& paint : board_.paints)
+      if (!paint.face && !paint.flop)
+        return input_error("{}: the paint {} has neither face nor flop: add a line \"face IMAGE@x,y\"", path_,
+                           paint.name);
+    return board_;
+  }
+
+ private:
+  template <class... Args>
+  Error error(fmt::format_string<Args...> text, Args&&... args) const {
+    return input_error("{}:{}: {}", path_, line_, fmt::format(text, std::forward<Args>(args)...));
+  }
+
+  Result<void> take(const std::string& word, const std::string& rest) {
+    const bool alone = word == "retro";
+    if (alone && !rest.empty()) return error("\"retro\" stands alone");
+    if (!alone && rest.empty()) return error("\"{}\" lacks what it says", word);
+    if (word == "title") return void(board_.title = rest), Result<void>();
+    if (word == "image") return take_image(rest);
+    if (word == "paint") return take_paint(rest);
+    constexpr const char* kOfPaint[] = {"face", "flop", "gloss", "travel", "retro"};
+    if (std::find(std::begin(kOfPaint), std::end(kOfPaint), word) == std::end(kOfPaint))
+      return error("\"{}\" is none of title, image, paint, face, flop, gloss, travel, retro", word);
+    if (board_.paints.empty()) return error("\"{}\" belongs below a line \"paint NAME\"", word);
+    PaintPick& paint = board_.paints.back();
+    if (word == "retro") return void(paint.retro = true), Result<void>();
+    if (word == "travel") return take_travel(rest, paint);
+    return take_dropper(word, rest, word == "face" ? paint.face : word == "flop" ? paint.flop : paint.gloss);
+  }
+
+  Result<void> take_image(const std::string& rest) {
+    const auto space = rest.find_first_of(" \t");
+    if (space == std::string::npos) return error("image is \"{}\": write image NAME PATH", rest);
+    const std::string name = rest.substr(0, space);
+    if (find_image(name)) return error("there are two images named {}", name);
+    const std::filesystem::path file(std::string(trimmed(std::string_view(rest).substr(space))));
+    board_.images.push_back({name, file.is_absolute() ? file.string() : (folder_ / file).string()});
+    return {};
+  }
+
+  Result<void> take_paint(const std::string& name) {
+    const bool known =
+        std::any_of(board_.paints.begin(), board_.paints.end(), [&](const auto& p) { return p.name == name; });
+    if (known) return error("there are two paints named {}", name);
+    board_.paints.push_back({});
+    board_.paints.back().name = name;
+    return {};
+  }
+
+  Result<void> take_travel(const std::string& rest, PaintPick& paint) {
+    const auto travel = parse_number(rest);
+    if (!travel || *travel <= 15 || *travel > 180)
+      return error("travel is \"{}\": it lies above 15 and up to 180 degrees", rest);
+    paint.travel_deg = *travel;
+    return {};
+  }
+
+  Result<void> take_dropper(const std::string& word, const std::string& rest, std::optional<Dropper>& to) {
+    if (to) return error("the paint {} has two droppers for its {}", board_.paints.back().name, word);
+    const auto dropper = parse_dropper(rest, word);
+    if (!dropper.ok()) return error("{}", dropper.error().message);
+    if (!find_image(dropper->image))
+      return error("{} names the image \"{}\", which no line \"image NAME PATH\" above has", word, dropper->image);
+    to = *dropper;
+    return {};
+  }
+
+  bool find_image(const std::string& name) const {
+    return std::any_of(board_.images.begin(), board_.images.end(),
+                       [&](const auto& image) { return image.name == name; });
+  }
+
+  std::string path_;
+  std::filesystem::path folder_;
+  int line_ = 0;
+  Board board_;
+};
 
 }  // namespace
 
@@ -56,14 +222,17 @@ Result<PickSample> pick(const image::ImagePart& image, const std::string& path, 
   if (dropper.x >= image.image.width || dropper.y >= image.image.height)
     return input_error("{}: the point {},{} lies outside its {} x {} pixels", path, dropper.x, dropper.y,
                        image.image.width, image.image.height);
-  Window window = window_about(image, dropper);
-  GONIO_ASSIGN(const Picture picture, picture_of(std::move(window.part), path, PictureView::kPlain));
+  // The part of the image that the disc touches.
+  const int reach = static_cast<int>(std::ceil(dropper.radius));
+  const int x0 = std::max(0, dropper.x - reach), x1 = std::min(image.image.width, dropper.x + reach + 1);
+  const int y0 = std::max(0, dropper.y - reach), y1 = std::min(image.image.height, dropper.y + reach + 1);
+  GONIO_ASSIGN(const Picture picture, picture_of(piece_of(image, x0, y0, x1, y1, 1), path, PictureView::kPlain));
   PickSample sample{dropper, path, 0, 0, 0, {}, 0, picture.warnings};
   color::Rgb sum;
   std::vector<double> brightness;
   for (int y = 0; y < picture.rgb.height; ++y)
     for (int x = 0; x < picture.rgb.width; ++x) {
-      if (std::hypot(window.x + x - dropper.x, window.y + y - dropper.y) > dropper.radius) continue;
+      if (std::hypot(x0 + x - dropper.x, y0 + y - dropper.y) > dropper.radius) continue;
       const auto state = picture.state[static_cast<std::size_t>(y) * picture.rgb.width + x];
       if (state == Picture::kTransparent) {
         ++sample.transparent;
@@ -74,7 +243,7 @@ Result<PickSample> pick(const image::ImagePart& image, const std::string& path, 
       if (!std::isfinite(light.x + light.y + light.z)) continue;
       sample.clipped += state == Picture::kClipped;
       ++sample.pixels, sum += light;
-      brightness.push_back(display_brightness(color::xyz_d65_from_rgb(light).Y));
+      brightness.push_back(display::srgb_signal(color::xyz_d65_from_rgb(light).Y));
     }
   if (sample.pixels == 0)
     return input_error("{}: every pixel about {},{} is transparent: move the dropper", path, dropper.x, dropper.y);
@@ -98,6 +267,31 @@ PickedPaint picked_paint(const PaintPick& pick, const std::optional<color::Lab>&
   paint.measurement = paint::Measurement{{}, "", paint::rows_of(a)};
   if (gloss) paint.gloss.push_back({60, *gloss});
   return picked;
+}
+
+Result<std::vector<PalettePair>> palette(const image::ImagePart& image, const std::string& path, int count) {
+  GONIO_ASSIGN(const Picture picture, picture_of(thinned(image), path, PictureView::kPlain));
+  std::vector<Pixel> pixels = pixels_of(picture);
+  if (pixels.empty()) return input_error("{}: every pixel is transparent: there is no color to propose", path);
+  const std::size_t groups = centers_of(pixels, count).size();
+  std::vector<PalettePair> pairs;
+  for (std::size_t k = 0; k < groups; ++k) {
+    std::vector<const Pixel*> members;
+    for (const Pixel& pixel : pixels)
+      if (pixel.group == static_cast<int>(k)) members.push_back(&pixel);
+    if (members.empty()) continue;
+    std::stable_sort(members.begin(), members.end(),
+                     [](const Pixel* a, const Pixel* b) { return a->lab.L < b->lab.L; });
+    pairs.push_back({mean_between(members, 1 - kEnd - kGlint, 1 - kGlint), mean_between(members, 0, kEnd),
+                     static_cast<double>(members.size()) / static_cast<double>(pixels.size())});
+  }
+  std::stable_sort(pairs.begin(), pairs.end(), [](const auto& a, const auto& b) { return a.share > b.share; });
+  return pairs;
+}
+
+Result<Board> read_board(const std::string& path) {
+  GONIO_ASSIGN(const std::string content, file_content(path));
+  return BoardReader(path).read(content);
 }
 
 }  // namespace goniochrome::sketch

@@ -1,5 +1,5 @@
-// Paints from pictures: droppers for face, flop and gloss, palettes, and boards of both. [Shimizu2009] 3.5
-// goniochrome-theory(7), MOOD BOARDS.
+// Paints picked from pictures: by droppers for face, flop and gloss, by palettes of a whole picture, and by mood
+// boards, text files that name pictures and droppers. [Shimizu2009] 3.5, goniochrome-theory(7), MOOD BOARDS.
 #pragma once
 
 #include <optional>
@@ -22,7 +22,7 @@ struct Dropper {
   double radius = kPickRadius;
 };
 
-// "img.jpg@x,y[,r]"; `option` is what errors call it.
+// Reads "img.jpg@x,y[,r]". Errors call the text by the name `option`.
 Result<Dropper> parse_dropper(const std::string& text, const std::string& option);
 
 // What a dropper found.
@@ -35,8 +35,8 @@ struct PickSample {
   std::vector<std::string> warnings;
 };
 
-// The mean in linear light of the disc's pixels, transparent ones left out, and their contrast. Error: the disc's
-// center lies outside the picture, or no pixel is left.
+// The mean light of the disc's pixels without the transparent ones, and their contrast. Error: the center of the disc
+// lies outside the picture, or no pixel is left.
 Result<PickSample> pick(const image::ImagePart& image, const std::string& path, const Dropper& dropper);
 
 // A paint to be picked.
@@ -44,27 +44,27 @@ struct PaintPick {
   std::string name;
   std::optional<Dropper> face, flop, gloss;
   double travel_deg = kPickTravel_deg;
-  bool retro = false;  // a flop lighter than the face is meant
+  bool retro = false;  // the flop may be lighter than the face; else the lighter color becomes the face
 };
 
 struct PickedPaint {
   paint::Paint paint;
-  bool swapped = false;  // face and flop, for the flop was the lighter one
+  bool swapped = false;  // whether face and flop traded places because the flop was the lighter one
 };
 
-// One color is taken for both where only one is given.
+// The paint of these colors, of which one is enough: it is then both face and flop.
 PickedPaint picked_paint(const PaintPick& pick, const std::optional<color::Lab>& face,
                          const std::optional<color::Lab>& flop, std::optional<double> gloss);
 
-// Face and flop of `count` colors of a picture, the largest first: pixels are grouped by hue and chroma, and each
-// group's light and dark ends are its face and flop. Fewer where the picture has fewer colors.
+// Face and flop of `count` colors of a picture, the largest first. Pixels are grouped by hue and chroma, and the light
+// and dark ends of each group are its face and flop. There are fewer where the picture has fewer colors.
 struct PalettePair {
   color::Lab face, flop;
   double share = 0;  // of the picture's pixels
 };
 Result<std::vector<PalettePair>> palette(const image::ImagePart& image, const std::string& path, int count);
 
-// A mood board, as its text file has it.
+// A mood board as it stands in its text file.
 struct BoardImage {
   std::string name, path;
 };
@@ -74,8 +74,8 @@ struct Board {
   std::vector<PaintPick> paints;
 };
 // Lines of `title TEXT`, `image NAME PATH`, `paint NAME`, and below a paint `face IMAGE@x,y[,r]`, `flop ...`,
-// `gloss ...`, `travel DEG`, `retro`; # begins a comment. Paths are relative to the board's folder. Error: file, line,
-// what stands there and what may.
+// `gloss ...`, `travel DEG`, `retro`; # begins a comment. Paths are relative to the board's folder. Errors name the
+// file, the line, what stands there and what may stand there.
 Result<Board> read_board(const std::string& path);
 
 }  // namespace goniochrome::sketch

@@ -24,7 +24,7 @@ color::Lab lab_of(const color::Rgb& rgb) {
   return color::lab_from_rgb(rgb, *color::white_point({}));
 }
 
-TEST(Pick, droppers_are_read_whole_or_refused) {
+TEST(Pick, DroppersAreReadWholeOrRefused) {
   const auto d = parse_dropper("a@b/c.png@12,7,2.5", "--face");
   ASSERT_TRUE(d.ok());
   EXPECT_EQ(d->image, "a@b/c.png");
@@ -41,7 +41,7 @@ TEST(Pick, droppers_are_read_whole_or_refused) {
 }
 
 // Half of the disc at each of two lights: the mean of the lights. The control is the mean of the Lab values.
-TEST(Pick, colors_are_averaged_in_light) {
+TEST(Pick, ColorsAreAveragedInLight) {
   image::ImagePart image = flat(40, 40, {0.9, 0.9, 0.9});
   for (int y = 0; y < 20; ++y)
     for (int x = 0; x < 40; ++x)
@@ -55,7 +55,7 @@ TEST(Pick, colors_are_averaged_in_light) {
   EXPECT_GT(std::abs(sample->lab.L - mean_L), 10);
 }
 
-TEST(Pick, a_disc_at_the_border_is_cut_and_a_point_outside_is_refused) {
+TEST(Pick, ADiscAtTheBorderIsCutAndAPointOutsideIsRefused) {
   const image::ImagePart image = flat(10, 8, {0.2, 0.3, 0.4});
   const auto corner = pick(image, "a", {"a", 0, 0, 3}), single = pick(image, "a", {"a", 9, 7, 0});
   ASSERT_TRUE(corner.ok() && single.ok());
@@ -68,7 +68,7 @@ TEST(Pick, a_disc_at_the_border_is_cut_and_a_point_outside_is_refused) {
   EXPECT_THAT(outside.error().message, HasSubstr("a.exr: the point 10,0 lies outside its 10 x 8 pixels"));
 }
 
-TEST(Pick, one_color_makes_a_solid_and_two_trade_places) {
+TEST(Pick, OneColorMakesASolidAndTwoTradePlaces) {
   const color::Lab light{80, 1, 2}, dark{20, 3, 4};
   PaintPick wanted;
   wanted.name = "x";
@@ -82,7 +82,7 @@ TEST(Pick, one_color_makes_a_solid_and_two_trade_places) {
   EXPECT_EQ(picked_paint(wanted, dark, light, {}).paint.appearance->face, dark);
 }
 
-TEST(Pick, a_palette_pairs_the_light_and_the_dark_of_each_color) {
+TEST(Pick, APalettePairsTheLightAndTheDarkOfEachColor) {
   image::ImagePart image = flat(90, 60, {0, 0, 0});
   const auto shade = [&](int x, int y) {
     const double s = 0.2 + 0.8 * y / 59.0;

@@ -1,4 +1,5 @@
-// From an edited picture of a painted mesh back to the paint. [Shimizu2009] 3.7, goniochrome-theory(7), SKETCH FITTING.
+// From an edited picture of a painted mesh back to the paint: under one directional light, and under any other light.
+// [Shimizu2009] 3.7, goniochrome-theory(7), SKETCH FITTING.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +13,17 @@
 #include "color/reflection.h"
 #include "formats/basis.h"
 #include "paint/paint.h"
-#include "sketch/internal/sketch_pixels.h"
+#include "sketch/sketch_pixels.h"
 
 namespace goniochrome::sketch {
 
+// Beyond these limits the answer is the matt color that explains the pixels best.
 struct SketchLimits {
-  double median_de76 = 10;     // half of the pixels may differ by more than the found paint explains
+  double median_de76 = 10;     // the median difference between the pixels and the paint found
   double least_span_deg = 20;  // of aspecular angles
-  // The standard error of a face that no pixel shows. More is more than measured paints differ from their mean at 15
-  // deg, RMS, and tells less of the face than no picture does.
+  // The standard error of the color at 15 deg where no pixel shows that angle. Measured paints differ from their mean
+  // color there by less than this (RMS), so that a face with a larger error would be worse than one guessed without a
+  // picture.
   double face_error_de76 = 50;
 };
 
@@ -39,15 +42,16 @@ struct SketchFit {
   std::vector<float> de76;  // of every used pixel, in the order of SketchPixels::used; where asked for
 };
 
-// One directional light, exactly: the lobe curve or the clamped quadratic, whichever explains the pixels better. The
-// search for face, flop, travel and gloss in lobes of `basis` is preferred where it explains them as well.
+// The paint under one directional light, whose effect at each pixel is computed exactly. The answer is the lobe curve
+// or the clamped quadratic, whichever explains the pixels better; or the result of a search for face, flop, travel and
+// gloss in lobes of `basis`, where that explains them as well.
 SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, const formats::Basis& basis,
                        const SketchLimits& limits, bool with_differences);
 
-// Seven lobes and the mirror: the basis of point light where none is named.
+// The basis for one directional light where the user names none: seven lobes and the mirror.
 formats::Basis sketch_basis();
 
-// What any light makes of the lobe model. The renderer's equations stand behind it.
+// A light of any kind, by what the renderer's equations make of it.
 struct SketchLight {
   formats::Basis basis;
   std::optional<color::ReflectionOperator> reflection;  // of light and paint, in place of the component-wise product
@@ -55,20 +59,18 @@ struct SketchLight {
   // K_DD and K_G of every lobe, then the mirror.
   std::function<void(std::uint32_t place, Vec3* columns)> shade;
 };
+
+// The number of those parts.
 std::size_t search_columns(const formats::Basis& basis);
 
-// Face, flop, travel and gloss by nonlinear search under this light.
+// The paint under this light: face, flop, travel and gloss by a nonlinear search.
 SketchFit sketch_environment(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light,
                              const SketchLimits& limits, bool with_differences);
 
-// The found paint as it is written: rows, face, flop, travel and gloss; a fallback is solid.
+// The paint found as it is written to a file: rows, face, flop, travel and gloss. A fallback is a solid paint.
 paint::Paint sketch_paint(const SketchFit& fit, const std::string& name);
 
-// By how many pixels the edited picture seems to lie to the right of and below the buffers' own: the shift, up to 8
-// pixels either way, at which the edges of both meet best.
-struct SketchShift {
-  int x = 0, y = 0;
-};
-SketchShift sketch_shift(const SketchInput& input);
+// Whether a paint of weights >= 0 can have a color within that distance of this reflectance factor.
+bool is_paint_color(const color::Rgb& rgb, double within_de76);
 
 }  // namespace goniochrome::sketch

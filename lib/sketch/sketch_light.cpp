@@ -15,7 +15,7 @@ namespace goniochrome::sketch {
 namespace {
 
 constexpr double kGloss_deg = 60;  // of the reading that a paint found carries
-constexpr int kMostSamples = 4;    // of a pixel; sixteen have its mean within their spread, 3 %
+constexpr int kMostSamples = 4;    // of a pixel; their mean lies within the spread of sixteen, 3 %
 
 bool drawn(const image::AovFile& buffers, const char* effect) {
   return std::ranges::find(buffers.drawn, effect) != buffers.drawn.end();

@@ -1,5 +1,4 @@
-// The renderer's equations for the search of lib/fit that finds the paint of a picture. goniochrome-theory(7), SKETCH
-// FITTING.
+// The renderer's equations as the search for the paint of a picture needs them. goniochrome-theory(7), SKETCH FITTING.
 #pragma once
 
 #include "base/result.h"
@@ -9,12 +8,13 @@
 
 namespace goniochrome::sketch {
 
-// The light of every lobe of the environment, and of the lamps of the buffers, as render-osmesa drew it: with the
-// effects `fresnel`, `horizon` and `operator` where the buffers' header says they were drawn. Both must outlive the
-// result. Error: buffers without normals or rays.
+// The light of the environment and of the lamps of the buffers in every lobe, as render-osmesa drew it: with the
+// effects `fresnel`, `horizon` and `operator` where the buffers' header says that they were drawn. Both arguments must
+// outlive the result. Error: the buffers lack normals or rays.
 Result<SketchLight> sketch_light(const image::AovFile& buffers, const envmap::PrefilteredEnvironment& env);
 
-// Those effects of the buffers' picture that the light does not have; names of render-osmesa, in its order.
+// The effects that the buffers' picture was drawn with and that sketch_light() does not have, by render-osmesa's names
+// and in its order.
 std::vector<std::string> effects_without_light(const image::AovFile& buffers);
 
 }  // namespace goniochrome::sketch

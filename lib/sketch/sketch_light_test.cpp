@@ -83,7 +83,7 @@ double difference(const Drawing& drawing, const SketchLight& light, double steep
     for (int x = 0; x < 40; ++x) {
       const float* pixel = drawing.buffers.image.pixel(x, y);
       const Vec3 normal{pixel[4], pixel[5], pixel[6]};
-      if (dot(normal, drawing.buffers.to_viewer(x, y)) < std::cos(steepest_deg * kPi / 180)) continue;
+      if (dot(normal, drawing.buffers.to_viewer(x, y)) < std::cos(steepest_deg * kDegree)) continue;
       light.shade(static_cast<std::uint32_t>(40 * y + x), columns.data());
       color::Rgb sum;
       const color::ReflectionOperator op = light.reflection.value_or(color::component_wise());
@@ -96,7 +96,7 @@ double difference(const Drawing& drawing, const SketchLight& light, double steep
 
 // The engine's arithmetic is single precision, its cosine powers good to 1e-3 of a lobe's peak. The control: light that
 // does not know what was drawn.
-TEST(SketchLight, is_what_the_renderer_draws_with_the_same_effects) {
+TEST(SketchLight, IsWhatTheRendererDrawsWithTheSameEffects) {
   const envmap::PrefilteredEnvironment env = uneven_env();
   const std::vector<std::vector<std::string>> all = {
       {}, {"fresnel"}, {"horizon"}, {"operator"}, {"fresnel", "horizon", "operator"}};
@@ -113,7 +113,7 @@ TEST(SketchLight, is_what_the_renderer_draws_with_the_same_effects) {
 }
 
 // Light that changes within a pixel. The control: light of the centers of the pixels alone.
-TEST(SketchLight, is_the_mean_over_the_samples_of_a_pixel) {
+TEST(SketchLight, IsTheMeanOverTheSamplesOfAPixel) {
   envmap::PrefilteredEnvironment env = render::constant_env({1, 1, 1}, kExponents);
   const auto stripes = [](const Vec3& d) { return (1 + 0.9 * std::sin(4 * (d.x + d.y))) * Vec3{1, 1, 1}; };
   env.mirror.map = render::cube_of(64, stripes);
@@ -124,7 +124,7 @@ TEST(SketchLight, is_the_mean_over_the_samples_of_a_pixel) {
   EXPECT_LT(apart, 0.3 * difference(drawing, *sketch_light(drawing.buffers, env), 45));
 }
 
-TEST(SketchLight, wants_normals_and_rays) {
+TEST(SketchLight, WantsNormalsAndRays) {
   const envmap::PrefilteredEnvironment env = uneven_env();
   Drawing drawing = draw(env, {});
   drawing.buffers.has_rays = false;
@@ -138,7 +138,7 @@ TEST(SketchLight, wants_normals_and_rays) {
   EXPECT_THAT(light.error().message, HasSubstr("--aov normal,aspecular,lambert,mask,part"));
 }
 
-TEST(SketchLight, tells_the_effects_that_it_lacks) {
+TEST(SketchLight, TellsTheEffectsThatItLacks) {
   image::AovFile buffers;
   buffers.drawn = {"diffuse", "lobe-20", "fresnel", "horizon", "texture", "operator", "anisotropy"};
   EXPECT_THAT(effects_without_light(buffers), ElementsAre("anisotropy", "texture"));

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "display/paint_view.h"
 #include "image/color_space.h"
 #include "sketch/internal/sketch_icc.h"
 
@@ -11,7 +12,6 @@ namespace goniochrome::sketch {
 
 namespace {
 
-constexpr double kKnee = 0.8;          // of the view "Paint": where its shoulder begins
 constexpr float kClip = 254.5F / 255;  // a signal from here on may have been any brighter one
 constexpr float kOpaque = 0.999F;
 constexpr std::size_t kRows = 16;
@@ -95,30 +95,6 @@ void tag_untagged(image::ImagePart& part, bool integer, bool is_exr) {
 
 }  // namespace
 
-// The shoulder k + (1-k) x/(1+x), x = (m-k)/(1-k), solved for m.
-color::Rgb paint_view_undone(const color::Rgb& shown) {
-  const double s = std::max({shown.x, shown.y, shown.z});
-  if (s <= kKnee) return shown;
-  const double y = std::min((s - kKnee) / (1 - kKnee), 0.999);
-  return ((kKnee + (1 - kKnee) * y / (1 - y)) / s) * shown;
-}
-
-// dv/dcode of v = ((c + .055)/1.055)^2.4 is below 2.3 sqrt(v) for v in 0..1; the line near black adds the constant. The
-// shoulder flattens by 1/(1+x)^2.
-double code_width(double linear, double brightest) {
-  const double x = std::max(brightest - kKnee, 0.0) / (1 - kKnee);
-  return 5.0 / 255 * (2.3 * std::sqrt(std::max(linear, 0.0)) + 0.08) * (1 + x) * (1 + x);
-}
-
-color::Rgb in_display_gamut(const color::Rgb& rgb) {
-  const color::Rgb c = color::rec709_from_rec2020(rgb);
-  const double lowest = std::min({c.x, c.y, c.z});
-  if (lowest >= 0) return rgb;
-  const double gray = std::max(0.0, color::xyz_d65_from_rgb(rgb).Y);
-  const double keep = gray / (gray - lowest);
-  return color::rec2020_from_rec709(keep * c + (1 - keep) * color::Rgb{gray, gray, gray});
-}
-
 Result<Picture> read_picture(const std::string& path, PictureView view) {
   GONIO_ASSIGN(image::ImagePart part, image::read_image(path));
   return picture_of(std::move(part), path == "-" ? "standard input" : path, view);
@@ -148,8 +124,8 @@ Result<Picture> picture_of(image::ImagePart part, const std::string& name, Pictu
   if (integer && view == PictureView::kPaint)
     for_pixels(picture.rgb, [](float* pixel) {
       const color::Rgb shown = color::rec709_from_rec2020({pixel[0], pixel[1], pixel[2]});
-      if (std::max({shown.x, shown.y, shown.z}) <= kKnee) return;
-      const color::Rgb light = color::rec2020_from_rec709(paint_view_undone(shown));
+      if (std::max({shown.x, shown.y, shown.z}) <= display::kKnee) return;
+      const color::Rgb light = color::rec2020_from_rec709(display::paint_view_undone(shown));
       for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(light[c]);
     });
   return picture;

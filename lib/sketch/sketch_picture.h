@@ -1,5 +1,5 @@
-// Pictures that people made or edited, as light: any file format, display-referred or scene-linear, into the working
-// space. goniochrome-theory(7), SKETCH FITTING.
+// Pictures that people made or edited, as light in the working space. They come in any file format, with the signals of
+// a display or with linear light. goniochrome-theory(7), SKETCH FITTING.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +14,13 @@ namespace goniochrome::sketch {
 
 // What the numbers of a display picture went through on the way from light.
 enum class PictureView {
-  kPaint,  // render-osmesa's default: exact up to 80 % of white, then a shoulder that is undone here
-  kPlain,  // nothing but the display's own curve: what a photograph or a drawing is taken for
+  kPaint,  // render-osmesa's default, display::paint_view(), which is undone here
+  kPlain,  // nothing but the display's own curve, as in a photograph or a drawing
 };
 
 struct Picture {
   image::Image rgb;  // three channels, working space; 1 is the white of the display, or as stored where scene-linear
-  // Where a pixel says nothing of its light: clipped in a channel, or seen through.
+  // A pixel that is clipped in a channel, or transparent, does not tell its light.
   enum State : std::uint8_t { kGood, kClipped, kTransparent };
   std::vector<std::uint8_t> state;
   bool scene_linear = false;  // EXR, HDR: light itself
@@ -36,15 +36,5 @@ struct Picture {
 Result<Picture> read_picture(const std::string& path, PictureView view);
 // The same of an image that was read, or of a piece of one; `name` is what errors call it.
 Result<Picture> picture_of(image::ImagePart part, const std::string& name, PictureView view);
-
-// The view "Paint" undone for linear Rec.709 values below 1 in every channel.
-color::Rgb paint_view_undone(const color::Rgb& shown);
-
-// How much light five codes of an 8-bit sRGB display are about a linear value, one way through the view "Paint":
-// `brightest` is the largest channel there.
-double code_width(double linear, double brightest);
-
-// What is left of a working-space color on an sRGB display: mixed with its gray until no channel is negative.
-color::Rgb in_display_gamut(const color::Rgb& rgb);
 
 }  // namespace goniochrome::sketch

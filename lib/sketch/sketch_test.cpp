@@ -19,7 +19,7 @@ const Vec3 kLamp{0.3, 0.5, 1};
 
 // The whole way back: paint, lobes, picture, paint. What the lobes could not hold of a short travel never was in the
 // picture, and comes on top. In both series a paint of short travel has gloss that passes for flake.
-TEST(Sketch, planted_paints_return_under_a_lamp) {
+TEST(Sketch, PlantedPaintsReturnUnderALamp) {
   image::AovFile ball = sphere(120, kLamp);
   double sum = 0;
   std::mt19937_64 random;
@@ -143,7 +143,7 @@ paint::Paint measured_paint(std::mt19937_64& random) {
 
 // Every second paint through the operator, and every second of those measured. An exact picture leaves the search no
 // excuse: what is found is what was planted, to a tenth of what is just seen.
-TEST(Sketch, planted_paints_return_under_an_environment) {
+TEST(Sketch, PlantedPaintsReturnUnderAnEnvironment) {
   std::mt19937_64 random(12);
   const envmap::PrefilteredEnvironment env = glowing();
   image::AovFile ball = sphere(80, kLamp);
@@ -202,7 +202,7 @@ color::Lab least_squares_lab(const image::AovFile& file, const Picture& p, doubl
   return color::lab_from_rgb(result, *color::white_point({}));
 }
 
-TEST(Sketch, HardCase_sketch_rank_a_third_of_outliers_does_not_move_the_paint) {
+TEST(HardCase, SketchRankAThirdOfOutliersDoesNotMoveThePaint) {
   std::mt19937_64 random(13);
   image::AovFile ball = sphere(160, kLamp);
   paint::Paint paint = random_paint(random);
@@ -227,7 +227,7 @@ TEST(Sketch, HardCase_sketch_rank_a_third_of_outliers_does_not_move_the_paint) {
 }
 
 // Weights are not negative, and each lobe grows at most twofold from the first angle seen to 15 deg: so does the curve.
-TEST(Sketch, noise_of_the_first_angles_seen_never_becomes_the_face) {
+TEST(Sketch, NoiseOfTheFirstAnglesSeenNeverBecomesTheFace) {
   std::vector<SketchCell> cells;
   for (double t = 20; t < 110; t += 0.25) {
     const double blue = t < 20.5 ? 0.06 : 0.02;
@@ -241,7 +241,7 @@ TEST(Sketch, noise_of_the_first_angles_seen_never_becomes_the_face) {
 // Noise of a code of eight bits in blocks, as compression leaves it: 0.6 in L* and 1.2 in a* and b*, 1.8 in all. Where
 // no pixel shows the face, a paint's few degrees of freedom hold it and a free curve does not; on the way up from 20
 // deg an error may double, as a lobe does.
-TEST(Sketch, a_face_that_no_pixel_shows_is_held_in_a_noisy_picture) {
+TEST(Sketch, AFaceThatNoPixelShowsIsHeldInANoisyPicture) {
   std::mt19937_64 random(15);
   image::AovFile ball = sphere(160, kLamp);
   for (int i = 0; i < 6; ++i) {
@@ -264,7 +264,7 @@ TEST(Sketch, a_face_that_no_pixel_shows_is_held_in_a_noisy_picture) {
   }
 }
 
-TEST(Sketch, HardCase_sketch_rank_one_angle_and_few_pixels_fall_back_to_the_matt_color) {
+TEST(HardCase, SketchRankOneAngleAndFewPixelsFallBackToTheMattColor) {
   std::mt19937_64 random(14);
   image::AovFile ball = sphere(120, kLamp);
   const paint::Paint paint = random_paint(random);
@@ -301,7 +301,7 @@ TEST(Sketch, HardCase_sketch_rank_one_angle_and_few_pixels_fall_back_to_the_matt
 // Fifteen pixels seen far from specular, as a display has them, to half a code of eight bits: they show the flop, of
 // which any face may be the other end. The control: what the search answers there is mostly no color at all, at the end
 // of its domain or far above the brightest paints.
-TEST(Sketch, HardCase_sketch_rank_pixels_far_from_specular_fall_back_to_the_matt_color) {
+TEST(HardCase, SketchRankPixelsFarFromSpecularFallBackToTheMattColor) {
   std::mt19937_64 random(17);
   image::AovFile ball = sphere(120, kLamp);
   image::Image mask{120, 120, 1, std::vector<float>(120 * 120, 0), {}};
@@ -340,7 +340,7 @@ TEST(Sketch, HardCase_sketch_rank_pixels_far_from_specular_fall_back_to_the_matt
   EXPECT_LE(worst_de00(fit(in), *paint.appearance), 1);
 }
 
-TEST(Sketch, HardCase_sketch_rank_all_clipped_leaves_no_pixel_and_says_so) {
+TEST(HardCase, SketchRankAllClippedLeavesNoPixelAndSaysSo) {
   image::AovFile ball = sphere(60, kLamp);
   shade(ball, lobes(designed({60, 0, 0}, {20, 0, 0}, 60)));
   Picture p = picture(ball);
@@ -351,7 +351,7 @@ TEST(Sketch, HardCase_sketch_rank_all_clipped_leaves_no_pixel_and_says_so) {
 }
 
 // One flat color, as of a marker, has no shading: half of the pixels disagree with every paint.
-TEST(Sketch, flat_strokes_fall_back_and_say_so) {
+TEST(Sketch, FlatStrokesFallBackAndSaySo) {
   image::AovFile ball = sphere(120, kLamp);
   shade(ball, lobes(designed({60, 0, 0}, {20, 0, 0}, 60)));
   Picture p = picture(ball);
@@ -378,7 +378,7 @@ Picture moved(const Picture& from, int dx, int dy) {
   return to;
 }
 
-TEST(Sketch, a_moved_picture_is_told_and_fits_again_with_its_shift) {
+TEST(Sketch, AMovedPictureIsToldAndFitsAgainWithItsShift) {
   std::mt19937_64 random(15);
   image::AovFile ball = sphere(160, kLamp);
   const paint::Paint paint = random_paint(random);
@@ -399,7 +399,7 @@ TEST(Sketch, a_moved_picture_is_told_and_fits_again_with_its_shift) {
   EXPECT_GT(unshifted, shifted);
 }
 
-TEST(Sketch, only_the_pixels_that_were_edited_count) {
+TEST(Sketch, OnlyThePixelsThatWereEditedCount) {
   image::AovFile ball = sphere(160, kLamp);
   const paint::Paint before = designed({60, 10, 0}, {20, 5, 0}, 60), after = designed({60, -30, 20}, {20, -10, 5}, 60);
   image::AovFile other = ball;
@@ -419,7 +419,7 @@ TEST(Sketch, only_the_pixels_that_were_edited_count) {
   EXPECT_FALSE(sketch_pixels(input(other, repainted))->changed_only);
 }
 
-TEST(Sketch, sizes_that_differ_are_both_named) {
+TEST(Sketch, SizesThatDifferAreBothNamed) {
   const image::AovFile ball = sphere(40, kLamp), larger = sphere(50, kLamp);
   const Picture p = picture(larger), own = picture(ball);
   auto pixels = sketch_pixels(input(ball, p));
@@ -466,7 +466,7 @@ double rms_of(const SketchPixels& pixels, const Picture& edited, const image::Ao
 
 // The whole loop: render, edit, fit, render, compare. The bound is the source's figure for a hue turned, 2 dE
 // [Shimizu2009] 3.7.4; single burns, which bend a curve as no paint does, reach three times that.
-TEST(Sketch, an_edit_comes_back_in_the_picture_of_the_paint_found) {
+TEST(Sketch, AnEditComesBackInThePictureOfThePaintFound) {
   std::mt19937_64 random(16);
   image::AovFile ball = sphere(80, kLamp), again = ball;
   std::array<double, 3> sum{}, most{};
@@ -484,6 +484,16 @@ TEST(Sketch, an_edit_comes_back_in_the_picture_of_the_paint_found) {
     sum[kind] += rms / 34, most[kind] = std::max(most[kind], rms);
   }
   for (int kind = 0; kind < 3; ++kind) EXPECT_LE(sum[kind], 2) << kind << ", at most " << most[kind];
+}
+
+TEST(IsPaintColor, RefusesAColorBeyondAllLight) {
+  const auto rgb = [](const color::Lab& lab) { return color::rgb_from_lab(lab, *color::white_point({})); };
+  EXPECT_TRUE(is_paint_color(rgb({75, -5, -20}), 0.01));
+  EXPECT_TRUE(is_paint_color(rgb({130, 10, 30}), 0.01));  // brighter than white, as metal is
+  EXPECT_FALSE(is_paint_color(rgb({71, -202, -28}), 10));
+  const color::Rgb outside{-0.001, 0.4, 0.4};
+  EXPECT_FALSE(is_paint_color(outside, 0.01));
+  EXPECT_TRUE(is_paint_color(outside, 10));
 }
 
 }  // namespace

@@ -9,7 +9,6 @@
 #include "base/input.h"
 #include "base/text.h"
 #include "fit/basis_search.h"
-#include "fit/basis_targets.h"
 #include "formats/basis.h"
 #include "formats/xml.h"
 #include "report/plot.h"

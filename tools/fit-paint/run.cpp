@@ -8,7 +8,7 @@
 #include "base/input.h"
 #include "brdf/lobe_model.h"
 #include "color_maps.h"
-#include "fit/albedo_error.h"
+#include "fit/brdf_target.h"
 #include "fit/paint_fit.h"
 #include "formats/name_ledger.h"
 #include "formats/xml.h"

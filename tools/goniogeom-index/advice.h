@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "options.h"
-#include "panels/goniogeom_seam.h"
+#include "panels/seam.h"
 
 namespace goniochrome::tool {
 

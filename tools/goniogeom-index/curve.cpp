@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "base/text.h"
-#include "panels/goniogeom_sets.h"
+#include "panels/geometry_sets.h"
 #include "report/plot.h"
 
 namespace goniochrome::tool {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "cli/options.h"
+#include "panels/geometry_sets.h"
 #include "panels/goniogeom.h"
-#include "panels/goniogeom_sets.h"
-#include "panels/seam_view.h"
+#include "panels/seam.h"
 
 namespace goniochrome::tool {
 

@@ -7,7 +7,7 @@
 #include "base/text.h"
 #include "display/display.h"
 #include "image/label.h"
-#include "panels/seam_view.h"
+#include "panels/seam.h"
 #include "render/renderer.h"
 #include "report/plot.h"
 

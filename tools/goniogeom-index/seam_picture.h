@@ -8,7 +8,7 @@
 #include "image/image.h"
 #include "mesh/mesh.h"
 #include "options.h"
-#include "panels/goniogeom_seam.h"
+#include "panels/seam.h"
 
 namespace goniochrome::tool {
 

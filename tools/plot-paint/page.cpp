@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "brdf/lobe_model.h"
+#include "display/paint_view.h"
 #include "math/cosine_power.h"
 #include "paint/curve.h"
 #include "report/lobe_drawings.h"
@@ -268,13 +269,9 @@ class Slices {
         width, height);
   }
 
-  // sRGB, IEC 61966-2-1.
   static Vec3 displayed(const color::Rgb& scene) {
     color::Rgb rgb = color::rec709_from_rec2020(scene);
-    for (int c = 0; c < 3; ++c) {
-      const double v = std::clamp(rgb[c], 0.0, 1.0);
-      rgb[c] = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
-    }
+    for (int c = 0; c < 3; ++c) rgb[c] = display::srgb_signal(rgb[c]);
     return rgb;
   }
 

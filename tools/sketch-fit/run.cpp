@@ -9,6 +9,8 @@
 #include "residual.h"
 #include "sketch/sketch.h"
 #include "sketch/sketch_light.h"
+#include "sketch/sketch_picture.h"
+#include "sketch/sketch_pixels.h"
 
 namespace goniochrome::tool {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "cli/options.h"
-#include "panels/goniogeom_sets.h"
-#include "panels/seam_view.h"
+#include "panels/geometry_sets.h"
+#include "panels/seam.h"
 #include "panels/trompe.h"
 
 namespace goniochrome::tool {

@@ -8,7 +8,7 @@
 #include "display/display.h"
 #include "fit/paint_fit.h"
 #include "image/label.h"
-#include "panels/seam_view.h"
+#include "panels/seam.h"
 #include "render/renderer.h"
 
 namespace goniochrome::tool {

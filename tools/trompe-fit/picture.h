@@ -7,7 +7,7 @@
 #include "base/result.h"
 #include "image/image.h"
 #include "mesh/mesh.h"
-#include "panels/goniogeom_seam.h"
+#include "panels/seam.h"
 
 namespace goniochrome::tool {
 

@@ -5,7 +5,7 @@
 
 #include "answer.h"
 #include "formats/batches.h"
-#include "panels/goniogeom_seam.h"
+#include "panels/seam.h"
 #include "picture.h"
 
 namespace goniochrome::tool {

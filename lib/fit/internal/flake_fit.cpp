@@ -3,19 +3,280 @@
 #include <algorithm>
 #include <cmath>
 
-#include "brdf/lobe_model.h"
-#include "fit/internal/deltae_fit.h"
 #include "math/cosine_power.h"
 
 namespace goniochrome::fit {
 
+Norm norm_of(FitMethod method) {
+  return method == FitMethod::kL1 ? Norm::kL1 : Norm::kL2;
+}
+
+LinearFit linear_fit(Norm norm, const LinearProblem& problem) {
+  math::Matrix weighted = problem.shape;
+  for (int j = 0; j < problem.columns(); ++j)
+    for (int i = 0; i < problem.rows(); ++i) weighted(i, j) *= problem.weight[i];
+  LinearFit fit;
+  fit.x.resize(static_cast<std::size_t>(problem.columns()));
+  std::vector<double> b(problem.weight.size());
+  double sum = 0;
+  for (int c = 0; c < 3; ++c) {
+    for (std::size_t i = 0; i < b.size(); ++i) b[i] = problem.weight[i] * problem.value[i][c];
+    const math::NonNegativeFit solved = norm == Norm::kL1 ? math::l1_fit(weighted, b) : math::nnls(weighted, b);
+    fit.converged = fit.converged && solved.converged;
+    fit.optimality_gap = std::max(fit.optimality_gap, solved.optimality_gap);
+    sum += norm == Norm::kL1 ? solved.objective : solved.objective * solved.objective;
+    for (std::size_t j = 0; j < fit.x.size(); ++j) fit.x[j][c] = solved.x[j];
+  }
+  fit.objective = norm == Norm::kL1 ? sum : std::sqrt(sum);
+  return fit;
+}
+
+LinearProblem with_columns(const LinearProblem& problem, const std::vector<int>& columns) {
+  LinearProblem part{math::Matrix(problem.rows(), static_cast<int>(columns.size())), problem.weight, problem.value};
+  for (std::size_t j = 0; j < columns.size(); ++j)
+    std::copy_n(problem.shape.column(columns[j]), problem.rows(), &part.shape(0, static_cast<int>(j)));
+  return part;
+}
+
+std::vector<color::Rgb> predictions(const LinearProblem& problem, const std::vector<color::Rgb>& x) {
+  std::vector<color::Rgb> shown(static_cast<std::size_t>(problem.rows()));
+  for (int j = 0; j < problem.columns(); ++j) {
+    if (x[j] == color::Rgb{}) continue;
+    for (int i = 0; i < problem.rows(); ++i) shown[i] += problem.shape(i, j) * x[j];
+  }
+  return shown;
+}
+
 namespace {
 
-// A squared norm feels many small rows more than the sum of absolute values does, so the inferred ones steer the color
-// search with less weight than the linear fits.
+// |W(Mx-b)| as LinearFit has it; with all weights 1 where `plain`.
+double error_norm(Norm norm, const LinearProblem& problem, const std::vector<color::Rgb>& x, bool plain = false) {
+  const std::vector<color::Rgb> shown = predictions(problem, x);
+  double sum = 0;
+  for (std::size_t i = 0; i < shown.size(); ++i)
+    for (int c = 0; c < 3; ++c) {
+      const double r = (plain ? 1 : problem.weight[i]) * (problem.value[i][c] - shown[i][c]);
+      sum += norm == Norm::kL1 ? std::abs(r) : r * r;
+    }
+  return norm == Norm::kL1 ? sum : std::sqrt(sum);
+}
+
+// The last polish of a fit: weights that make the CIEDE2000 differences at the readings least. The color that is
+// predicted where a shape stands is sum_j shape[j] x[j], x[j] >= 0 a working-space triple per column.
+struct DeltaEProblem {
+  int columns = 0;
+  color::Xyz white;  // that the Lab values are relative to
+  struct Reading {
+    std::vector<double> shape;
+    color::Lab lab;
+  };
+  std::vector<Reading> readings;
+  // Inferred rows, which steer where no reading is: residual weight * (prediction - value), in L*.
+  struct Guide {
+    std::vector<double> shape;
+    color::Rgb value;
+    double weight = 0;
+  };
+  std::vector<Guide> guides;
+};
+
+// The residuals are three for each reading (a vector of length dE00) and three for each guide; the unknowns are x,
+// column by column.
+class Residuals {
+ public:
+  explicit Residuals(const DeltaEProblem& problem) : problem_(problem) {}
+
+  int rows() const { return static_cast<int>(3 * (problem_.readings.size() + problem_.guides.size())); }
+  int unknowns() const { return 3 * problem_.columns; }
+
+  double sum_of_squares(const std::vector<double>& x) const {
+    double sum = 0;
+    for (const auto& reading : problem_.readings) {
+      const Vec3 e = difference(reading.lab, prediction(reading.shape, x));
+      sum += dot(e, e);
+    }
+    for (const auto& guide : problem_.guides) {
+      const color::Rgb e = guide.weight * (prediction(guide.shape, x) - guide.value);
+      sum += dot(e, e);
+    }
+    return sum;
+  }
+
+  // The residuals and, in the leading rows of `jacobian`, their derivative.
+  void linearize(const std::vector<double>& x, std::vector<double>& residuals, math::Matrix& jacobian) const {
+    residuals.resize(static_cast<std::size_t>(rows()));
+    int row = 0;
+    for (const auto& reading : problem_.readings) {
+      const color::Rgb rgb = prediction(reading.shape, x);
+      const Vec3 e = difference(reading.lab, rgb);
+      for (int k = 0; k < 3; ++k) residuals[row + k] = e[k];
+      for (int c = 0; c < 3; ++c) {
+        const Vec3 slope = derivative(reading.lab, rgb, c);
+        for (int j = 0; j < problem_.columns; ++j)
+          for (int k = 0; k < 3; ++k) jacobian(row + k, 3 * j + c) = slope[k] * reading.shape[j];
+      }
+      row += 3;
+    }
+    for (const auto& guide : problem_.guides) {
+      const color::Rgb rgb = prediction(guide.shape, x);
+      for (int c = 0; c < 3; ++c) {
+        residuals[row + c] = guide.weight * (rgb[c] - guide.value[c]);
+        for (int j = 0; j < problem_.columns; ++j) jacobian(row + c, 3 * j + c) = guide.weight * guide.shape[j];
+      }
+      row += 3;
+    }
+  }
+
+ private:
+  static color::Rgb prediction(const std::vector<double>& shape, const std::vector<double>& x) {
+    color::Rgb rgb;
+    for (std::size_t j = 0; j < shape.size(); ++j) rgb += shape[j] * color::Rgb{x[3 * j], x[3 * j + 1], x[3 * j + 2]};
+    return rgb;
+  }
+  Vec3 difference(const color::Lab& lab, const color::Rgb& rgb) const {
+    return color::delta_e_2000_vector(lab, color::lab_from_rgb(rgb, problem_.white));
+  }
+  // By channel c, by central differences: their error of about 1e-10 moves the steps, not the minimum.
+  Vec3 derivative(const color::Lab& lab, const color::Rgb& rgb, int c) const {
+    const double step = 1e-5 * std::max(std::abs(rgb[c]), 1e-4);
+    color::Rgb up = rgb, down = rgb;
+    up[c] += step, down[c] -= step;
+    return (1 / (2 * step)) * (difference(lab, up) - difference(lab, down));
+  }
+
+  const DeltaEProblem& problem_;
+};
+
+double column_norm(const math::Matrix& m, int column, int rows) {
+  double sum = 0;
+  for (int i = 0; i < rows; ++i) sum += m(i, column) * m(i, column);
+  return std::sqrt(sum);
+}
+
+// How far x is from stationary: for each column of the derivative its cosine to the residual, where x may still move
+// that way.
+double stationarity(const Residuals& residuals, const std::vector<double>& x) {
+  std::vector<double> r;
+  math::Matrix j(residuals.rows(), residuals.unknowns());
+  residuals.linearize(x, r, j);
+  double size = 0;
+  for (const double v : r) size += v * v;
+  if (size < 1e-20) return 0;
+  double worst = 0;
+  for (int k = 0; k < j.columns; ++k) {
+    double gradient = 0;
+    for (int i = 0; i < j.rows; ++i) gradient += j(i, k) * r[i];
+    const double norm = column_norm(j, k, j.rows);
+    if (norm == 0 || (x[k] <= 0 && gradient > 0)) continue;
+    worst = std::max(worst, std::abs(gradient) / (norm * std::sqrt(size)));
+  }
+  return worst;
+}
+
+// Levenberg and Marquardt's method on x >= 0. Each step z is the exact minimum of the linearized problem under the
+// bounds, a non-negative least-squares problem of its own:
+//
+//   minimize |J (z - x) + r|^2 + damping |D (z - x)|^2   over z >= 0,   D = the lengths of J's columns
+//
+// so that weights enter and leave the bounds many at a time. It is stationary to rounding after 10 to 30 steps; Ceres'
+// trust region, whose steps are projected onto the bounds, was still on its way after 400.
+class Search {
+ public:
+  Search(const Residuals& residuals, const Deadline& deadline)
+      : residuals_(residuals),
+        deadline_(deadline),
+        rows_(residuals.rows()),
+        unknowns_(residuals.unknowns()),
+        system_(rows_ + unknowns_, unknowns_),
+        right_(static_cast<std::size_t>(rows_ + unknowns_)),
+        scale_(static_cast<std::size_t>(unknowns_)) {}
+
+  FitStatus run(std::vector<double>& x, double& value) {
+    constexpr int kMostSteps = 200;
+    value = residuals_.sum_of_squares(x);
+    double damping = 1e-3;
+    int small_gains = 0;
+    for (int step = 0; step < kMostSteps; ++step) {
+      if (deadline_.passed()) return FitStatus::kTimeLimit;
+      linearize(x);
+      double next_value = value;
+      std::vector<double> next;
+      for (;; damping *= 8) {
+        next = solved(x, damping);
+        next_value = residuals_.sum_of_squares(next);
+        if (next_value < value) break;
+        constexpr double kNoStepLeft = 1e8;
+        if (damping > kNoStepLeft) return FitStatus::kOptimal;
+        if (deadline_.passed()) return FitStatus::kTimeLimit;
+      }
+      const double gain = value - next_value;
+      x = std::move(next), value = next_value;
+      damping = std::max(damping / 10, 1e-12);
+      constexpr double kSmallGain = 1e-8;  // of the sum of squares: 1e-9 dE00 of a typical one
+      // Where all differences together are unseen, hues of nearly gray colors jump and steps are short: the search ends
+      // where their length falls by less than 1e-4 dE00.
+      constexpr double kUnseen = 0.06, kUnseenGain = 2e-4;
+      const double least_gain = value < kUnseen ? kUnseenGain * std::sqrt(value) : kSmallGain * value;
+      small_gains = gain < least_gain ? small_gains + 1 : 0;
+      if (small_gains >= 2 || value < 1e-16) return FitStatus::kOptimal;
+    }
+    return FitStatus::kNotConverged;
+  }
+
+ private:
+  void linearize(const std::vector<double>& x) {
+    residuals_.linearize(x, r_, system_);
+    for (int k = 0; k < unknowns_; ++k) scale_[k] = std::max(column_norm(system_, k, rows_), 1e-12);
+    for (int i = 0; i < rows_; ++i) {
+      right_[i] = -r_[i];
+      for (int k = 0; k < unknowns_; ++k)
+        if (x[k] != 0) right_[i] += system_(i, k) * x[k];
+    }
+  }
+
+  std::vector<double> solved(const std::vector<double>& x, double damping) {
+    const double root = std::sqrt(damping);
+    for (int k = 0; k < unknowns_; ++k) {
+      system_(rows_ + k, k) = root * scale_[k];
+      right_[rows_ + k] = root * scale_[k] * x[k];
+    }
+    return math::nnls(system_, right_).x;
+  }
+
+  const Residuals& residuals_;
+  const Deadline& deadline_;
+  int rows_, unknowns_;
+  math::Matrix system_;
+  std::vector<double> r_, right_, scale_;
+};
+
+// The best of the local minima reached from each start, which is never worse than a start.
+FlakeFit deltae_fit(const DeltaEProblem& problem, const std::vector<std::vector<color::Rgb>>& starts,
+                    const Deadline& deadline) {
+  FlakeFit best;
+  const Residuals residuals(problem);
+  Search search(residuals, deadline);
+  std::vector<double> best_x;
+  double best_value = 0;
+  for (const std::vector<color::Rgb>& start : starts) {
+    std::vector<double> x;
+    for (const color::Rgb& rgb : start)
+      for (int c = 0; c < 3; ++c) x.push_back(std::max(rgb[c], 0.0));
+    double value = 0;
+    const FitStatus status = search.run(x, value);
+    if (!best_x.empty() && value >= best_value) continue;
+    best_value = value, best.status = status, best_x = std::move(x);
+  }
+  best.optimality_gap = stationarity(residuals, best_x);
+  for (std::size_t j = 0; j < best_x.size(); j += 3) best.x.push_back({best_x[j], best_x[j + 1], best_x[j + 2]});
+  return best;
+}
+
+// Many small rows count more in a squared norm than in a sum of absolute values, so inferred rows have less weight in
+// the search for color differences than in the linear fits.
 constexpr double kGuideShare = 0.1;
 
-// How much it counts, in each row, that the next view shows something else.
+// The weight, in each row, of the difference between what one view shows and what the next one does.
 constexpr double kSmoothnessShare = 0.1;
 
 // Rows that ask two neighboring views to show the same, at the angles of the target's rows, no closer than about 9 deg.
@@ -66,10 +327,6 @@ DeltaEProblem deltae_problem(const FlakeTarget& target, const FlakeModel& model,
 
 }  // namespace
 
-Norm norm_of(FitMethod method) {
-  return method == FitMethod::kL1 ? Norm::kL1 : Norm::kL2;
-}
-
 void FlakeModel::shape(const FlakePoint& at, double* columns) const {
   const int width = columns_per_view();
   const double log_cos = math::log_cosine(at.aspecular_rad);
@@ -96,7 +353,7 @@ color::Rgb shown(const FlakeModel& model, const std::vector<color::Rgb>& x, cons
 }
 
 LinearProblem linear_problem(const FlakeTarget& target, const FlakeModel& model) {
-  LinearProblem problem(math::Matrix(static_cast<int>(target.rows.size()), model.columns()), {}, {});
+  LinearProblem problem{math::Matrix(static_cast<int>(target.rows.size()), model.columns())};
   std::vector<double> shape(static_cast<std::size_t>(model.columns()));
   for (int i = 0; i < problem.rows(); ++i) {
     model.shape(target.rows[i].at, shape.data());
@@ -114,10 +371,7 @@ FlakeFit flake_fit(FitMethod method, const FlakeTarget& target, const FlakeModel
   if (method == FitMethod::kDeltaE) {
     const std::vector<std::vector<color::Rgb>> starts = {linear_fit(Norm::kL1, problem).x,
                                                          linear_fit(Norm::kL2, problem).x};
-    DeltaEFit best = deltae_fit(deltae_problem(target, model, problem), starts, deadline);
-    fit.x = std::move(best.x);
-    fit.optimality_gap = best.optimality_gap;
-    fit.status = best.status;
+    fit = deltae_fit(deltae_problem(target, model, problem), starts, deadline);
   } else {
     LinearFit best = linear_fit(norm_of(method), problem);
     fit.x = std::move(best.x);

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "base/angles.h"
+#include "fit/brdf_target.h"
 #include "fit/ceres_options.h"
-#include "fit/internal/brdf_target.h"
 
 namespace goniochrome::fit {
 

@@ -108,8 +108,7 @@ double largest_change(const FlakeTarget& target, const FlakeModel& full, const s
                       const FlakeModel& part, const std::vector<color::Rgb>& part_x) {
   double worst = 0;
   for (const FlakeRow& row : target.rows)
-    worst = std::max(worst, color::delta_e_2000(color::lab_from_rgb(shown(full, x, row.at), target.white),
-                                                color::lab_from_rgb(shown(part, part_x, row.at), target.white)));
+    worst = std::max(worst, color_difference(shown(full, x, row.at), shown(part, part_x, row.at), target.white));
   return worst;
 }
 

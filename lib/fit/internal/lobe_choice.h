@@ -1,4 +1,4 @@
-// Fewer lobes: the best subset of a given size, and the lobes that somebody can see. Internal to lib/fit.
+// Fits with fewer lobes: the best subset of a given size, and the lobes whose absence would be seen.
 // goniochrome-theory(7), FITTING.
 #pragma once
 
@@ -8,8 +8,9 @@
 
 namespace goniochrome::fit {
 
-// At most `count` of the exponents, those with the least objective: of all subsets where there are few, else by adding
-// one lobe at a time and exchanging lobes while that gains. Stops with the best so far at the deadline.
+// At most `count` of the exponents, those with the least objective. Where there are few subsets, all are tried; else
+// one lobe at a time is added, and lobes are exchanged as long as that gains. At the deadline the best so far is
+// returned.
 std::vector<double> best_exponents(FitMethod method, const FlakeTarget& target, const std::vector<double>& exponents,
                                    int count, const Deadline& deadline);
 

@@ -4,8 +4,6 @@
 #include <cmath>
 
 #include "base/angles.h"
-#include "brdf/lobe_model.h"
-#include "fit/paint_fit.h"
 #include "math/cosine_power.h"
 
 namespace goniochrome::fit {
@@ -27,12 +25,16 @@ double usual_view_deg(double aspecular_deg) {
 // Adds the row of `lab` and notes the gamut loss.
 void add_row(const color::Lab& lab, const color::Xyz& white, double angle_deg, double view_deg, double importance,
              Target& target) {
-  color::Rgb rgb = color::rgb_from_lab(lab, white);
-  if (rgb.x < 0 || rgb.y < 0 || rgb.z < 0) {
-    for (int c = 0; c < 3; ++c) rgb[c] = std::max(rgb[c], 0.0);
-    target.gamut_de00 = std::max(target.gamut_de00, color::delta_e_2000(lab, color::lab_from_rgb(rgb, white)));
-  }
-  target.rows.push_back({angle_deg, view_deg, rgb, importance, lab.L});
+  const color::Rgb rgb = color::rgb_from_lab(lab, white);
+  target.gamut_de00 = std::max(target.gamut_de00, gamut_loss(lab, rgb, white));
+  target.rows.push_back({angle_deg, view_deg, non_negative(rgb), importance, lab.L});
+}
+
+color::Lab mean_of(const std::vector<color::Lab>& colors) {
+  const auto count = static_cast<double>(colors.size());
+  color::Lab mean;
+  for (const color::Lab& lab : colors) mean = {mean.L + lab.L / count, mean.a + lab.a / count, mean.b + lab.b / count};
+  return mean;
 }
 
 // One row per unsigned aspecular angle: readings that share it (45as15 and 45as-15) are averaged and count together.
@@ -54,13 +56,72 @@ void add_readings(const color::Xyz& white, bool by_view, Target& target) {
   });
   for (auto first = sorted.begin(); first != sorted.end();) {
     const auto last = std::find_if(first, sorted.end(), [&](const Seen& s) { return !s.with(*first, by_view); });
-    const auto count = static_cast<double>(last - first);
-    color::Lab mean;
-    for (auto s = first; s != last; ++s)
-      mean = {mean.L + s->lab.L / count, mean.a + s->lab.a / count, mean.b + s->lab.b / count};
-    add_row(mean, white, first->angle_deg, first->view_deg, count, target);
+    std::vector<color::Lab> same;
+    std::transform(first, last, std::back_inserter(same), [](const Seen& s) { return s.lab; });
+    add_row(mean_of(same), white, first->angle_deg, first->view_deg, static_cast<double>(same.size()), target);
     first = last;
   }
+}
+
+// The least cost of a color that a search by coordinate steps finds from x.
+template <class Cost>
+double least(color::Lab x, double step, const Cost& cost) {
+  constexpr double kSmallestStep = 1e-3;
+  double value = cost(x);
+  while (step > kSmallestStep) {
+    bool moved = false;
+    for (double color::Lab::*const channel : {&color::Lab::L, &color::Lab::a, &color::Lab::b})
+      for (const double move : {step, -step}) {
+        color::Lab next = x;
+        next.*channel += move;
+        const double next_value = cost(next);
+        if (!(next_value < value)) continue;
+        x = next, value = next_value, moved = true;
+        break;
+      }
+    if (!moved) step /= 4;
+  }
+  return value;
+}
+
+// One angle's readings: the least sum of their differences to one color, and the least of the largest, both by a search
+// from their mean and from each of them.
+void add_floor(const std::vector<color::Lab>& same, double apart, Twins& twins) {
+  const auto sum_to = [&](const color::Lab& x) {
+    double sum = 0;
+    for (const color::Lab& lab : same) sum += color::delta_e_2000(lab, x);
+    return sum;
+  };
+  const auto largest_to = [&](const color::Lab& x) {
+    double largest = 0;
+    for (const color::Lab& lab : same) largest = std::max(largest, color::delta_e_2000(lab, x));
+    return largest;
+  };
+  const double step = apart / 4;
+  const color::Lab mean = mean_of(same);
+  double sum = least(mean, step, sum_to), largest = least(mean, step, largest_to);
+  for (const color::Lab& lab : same)
+    sum = std::min(sum, least(lab, step, sum_to)), largest = std::min(largest, least(lab, step, largest_to));
+  twins.sum_de00 += sum;
+  twins.largest_de00.push_back(largest);
+}
+
+// The channel that grows most from a smaller aspecular angle to that of `at`, or from there to a larger one, and by
+// which part of itself it grows. Sums of lobes never grow so.
+std::pair<int, double> steepest_rise(const std::vector<paint::LabReading>& readings, const paint::LabReading& at,
+                                     const color::Xyz& white) {
+  std::pair<int, double> most = {0, 0};
+  const double angle = paint::aspecular_angle_deg(at.geometry);
+  const color::Rgb here = color::rgb_from_lab(at.lab, white);
+  for (const paint::LabReading& other : readings) {
+    const double step = paint::aspecular_angle_deg(other.geometry) - angle;
+    const color::Rgb there = color::rgb_from_lab(other.lab, white);
+    for (int c = 0; c < 3; ++c) {
+      const double low = step > 0 ? here[c] : there[c], high = step > 0 ? there[c] : here[c];
+      if (std::abs(step) > 0.5 && low > 0 && high / low - 1 > most.second) most = {c, high / low - 1};
+    }
+  }
+  return most;
 }
 
 }  // namespace
@@ -70,11 +131,28 @@ double view_angle_deg(const paint::Geometry& geometry) {
   return std::atan2(std::hypot(view.x, view.y), view.z) / kDegree;
 }
 
-double steepest_seen(const std::vector<double>& exponents, double first_rad) {
-  double steepest = 0;
+std::vector<double> seen_exponents(const std::vector<double>& exponents, double first_rad) {
+  std::vector<double> seen;
   for (const double e : exponents)
-    if (math::cos_power(first_rad, e) >= kSeenPart) steepest = std::max(steepest, e);
-  return steepest;
+    if (math::cos_power(first_rad, e) >= kSeenPart) seen.push_back(e);
+  return seen;
+}
+
+double steepest_seen(const std::vector<double>& exponents, double first_rad) {
+  const std::vector<double> seen = seen_exponents(exponents, first_rad);
+  return seen.empty() ? 0 : std::ranges::max(seen);
+}
+
+double gamut_loss(const color::Lab& lab, const color::Rgb& rgb, const color::Xyz& white) {
+  const color::Rgb shown = non_negative(rgb);
+  return shown == rgb ? 0 : color::delta_e_2000(lab, color::lab_from_rgb(shown, white));
+}
+
+FlakeRow flake_row(const TargetRow& row, const FitOptions& options, bool inferred) {
+  return {{row.angle_deg * kDegree, row.view_deg},
+          row.reflectance_factor,
+          row.importance * (options.perceptual_weights ? color::lightness_slope(row.lightness) : 1),
+          inferred};
 }
 
 // Below the first known angle a the color goes on as f(t) = f(a) (cos t / cos a)^e, with the e that the curve has
@@ -102,6 +180,7 @@ std::vector<TargetRow> extension_to_specular(const HighlightEnd& end, double ste
 
 Result<Target> target_rows(const paint::Paint& paint, paint::TargetCurve::Kind kind, const color::Xyz& white,
                            const std::vector<double>& exponents, bool by_view) {
+  // The readings beyond glare, or what a designed paint would read.
   Target target;
   if (paint.measurement) {
     for (const paint::LabReading& reading : paint.measurement->rows) {
@@ -118,6 +197,7 @@ Result<Target> target_rows(const paint::Paint& paint, paint::TargetCurve::Kind k
       target.readings.push_back({{.aspecular_deg = angle}, paint::lab_at(*paint.appearance, angle)});
   }
 
+  // The rows that are known, and those of the curve between them.
   std::vector<double> known;
   for (const paint::LabReading& reading : target.readings)
     known.push_back(paint::aspecular_angle_deg(reading.geometry));
@@ -133,17 +213,64 @@ Result<Target> target_rows(const paint::Paint& paint, paint::TargetCurve::Kind k
       add_row(curve.at(t), white, t, usual_view_deg(t), is_curve ? 1 : kInterpolatedImportance, target);
   }
 
-  HighlightEnd end{target.first_deg, target.first_deg + 10, {}, {}};
-  const auto color_at = [&](double angle_deg) {
-    color::Rgb rgb = color::rgb_from_lab(curve.at(angle_deg), white);
-    for (int c = 0; c < 3; ++c) rgb[c] = std::max(rgb[c], 0.0);
-    return rgb;
-  };
-  end.at_a = color_at(end.a_deg), end.at_b = color_at(end.b_deg);
+  // The rows toward specular.
+  const auto color_at = [&](double angle_deg) { return non_negative(color::rgb_from_lab(curve.at(angle_deg), white)); };
+  const double a_deg = target.first_deg, b_deg = target.first_deg + 10;
+  const HighlightEnd end{a_deg, b_deg, color_at(a_deg), color_at(b_deg)};
   std::ranges::move(
       extension_to_specular(end, steepest_seen(exponents, target.first_deg * kDegree), white, kExtendedImportance),
       std::back_inserter(target.rows));
   return target;
+}
+
+Twins twins_of(const std::vector<paint::LabReading>& readings) {
+  constexpr double kSame_deg = 1e-6;
+  Twins twins;
+  std::vector<char> taken(readings.size(), 0);
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    const double angle = paint::aspecular_angle_deg(readings[i].geometry);
+    std::vector<const paint::LabReading*> same;
+    for (std::size_t k = i; k < readings.size(); ++k)
+      if (!taken[k] && std::abs(paint::aspecular_angle_deg(readings[k].geometry) - angle) <= kSame_deg)
+        same.push_back(&readings[k]), taken[k] = 1;
+    double apart = 0;
+    for (const paint::LabReading* a : same)
+      for (const paint::LabReading* b : same) {
+        const double de00 = color::delta_e_2000(a->lab, b->lab);
+        apart = std::max(apart, de00);
+        if (de00 > kVisible_de00) twins.views_deg.push_back(std::round(1e6 * view_angle_deg(a->geometry)) / 1e6);
+      }
+    twins.apart_de00 = std::max(twins.apart_de00, apart);
+    if (apart == 0) continue;
+    std::vector<color::Lab> colors;
+    for (const paint::LabReading* reading : same) colors.push_back(reading->lab);
+    add_floor(colors, apart, twins);
+  }
+  std::ranges::sort(twins.views_deg);
+  twins.views_deg.erase(std::ranges::unique(twins.views_deg).begin(), twins.views_deg.end());
+  return twins;
+}
+
+std::string fit_limit(const std::vector<paint::LabReading>& readings, const std::vector<GeometryError>& errors,
+                      const color::Xyz& white, bool by_view) {
+  const auto worst = std::ranges::max_element(errors, {}, &GeometryError::de00) - errors.begin();
+  const paint::LabReading& reading = readings[static_cast<std::size_t>(worst)];
+  const double error = errors[static_cast<std::size_t>(worst)].de00,
+               angle = paint::aspecular_angle_deg(reading.geometry);
+  const double outside = gamut_loss(reading.lab, color::rgb_from_lab(reading.lab, white), white);
+  if (outside >= error / 2) return fmt::format("outside the working space by dE00 {:.2f}", outside);
+  double apart = 0;
+  for (const paint::LabReading& other : readings)
+    if (std::abs(paint::aspecular_angle_deg(other.geometry) - angle) < 0.5)
+      apart = std::max(apart, color::delta_e_2000(other.lab, reading.lab));
+  if (!by_view && apart >= error) return fmt::format("its two sides of specular differ by dE00 {:.2f}", apart);
+  constexpr double kClearRise = 0.02;
+  const auto [channel, rise] = steepest_rise(readings, reading, white);
+  constexpr const char* kChannels[] = {"red", "green", "blue"};
+  if (rise > kClearRise)
+    return fmt::format("its {} grows by {:.0f} % away from specular, which no lobes do", kChannels[channel],
+                       100 * rise);
+  return "its curve is not one of the basis's lobes";
 }
 
 }  // namespace goniochrome::fit

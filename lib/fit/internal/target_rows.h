@@ -1,11 +1,15 @@
-// The rows a paint is fitted to: what is known, what lies between, and how the flake highlight goes on to specular.
+// What a paint asks of a fit, and what it leaves undone: the rows that are known, those between them and those toward
+// specular; the readings that no weights for all views can tell apart; and why a reading is not met any better.
 // goniochrome-theory(7), FITTING.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "base/result.h"
 #include "color/color.h"
+#include "fit/internal/flake_fit.h"
+#include "fit/paint_fit.h"
 #include "paint/curve.h"
 #include "paint/paint.h"
 
@@ -20,6 +24,9 @@ struct TargetRow {
   double lightness = 0;           // L*, for the perceptual weight
 };
 
+// That row as the fit has it.
+FlakeRow flake_row(const TargetRow& row, const FitOptions& options, bool inferred);
+
 struct Target {
   std::vector<TargetRow> rows;
   double first_deg = 15;                    // the smallest angle at which the color is known
@@ -28,14 +35,14 @@ struct Target {
   std::vector<paint::LabReading> readings;  // what the fit is judged by
 };
 
-// Readings at one aspecular angle make one row, unless `by_view`: then those from other views stand alone.
-// Error: no color beyond glare. `white` is that of the paint's viewing condition. The highlight below first_deg rises
-// no steeper than the sharpest of `exponents` that the samples see.
+// The rows of a paint. Readings at one aspecular angle make one row; where `by_view` is true, those from different
+// views stand alone. The highlight below first_deg rises no steeper than the sharpest of `exponents` that the samples
+// see. `white` is that of the paint's viewing condition. Error: the paint has no color beyond glare.
 Result<Target> target_rows(const paint::Paint& paint, paint::TargetCurve::Kind kind, const color::Xyz& white,
                            const std::vector<double>& exponents, bool by_view = false);
 
 // How the flake highlight goes on from the angle a toward specular, in rows every 5 deg from 0, by its color there and
-// at b > a (reflectance factors, at least 0): no steeper than a lobe of the exponent `steepest`.
+// at b > a (reflectance factors, at least 0). It rises no steeper than a lobe of the exponent `steepest`.
 struct HighlightEnd {
   double a_deg = 0, b_deg = 0;
   color::Rgb at_a, at_b;
@@ -43,10 +50,36 @@ struct HighlightEnd {
 std::vector<TargetRow> extension_to_specular(const HighlightEnd& end, double steepest, const color::Xyz& white,
                                              double importance);
 
-// The sharpest exponent that is seen from that angle on.
+// The exponents whose lobes are seen from that angle on.
+std::vector<double> seen_exponents(const std::vector<double>& exponents, double first_rad);
+
+// The sharpest of them; 0 where there is none.
 double steepest_seen(const std::vector<double>& exponents, double first_rad);
 
 // The angle of the viewer of a geometry from the normal.
 double view_angle_deg(const paint::Geometry& geometry);
+
+// How far a color is from what weights >= 0 can show: dE00 between `lab`, which is `rgb` relative to `white`, and
+// non_negative(rgb). It is 0 where no channel is negative.
+double gamut_loss(const color::Lab& lab, const color::Rgb& rgb, const color::Xyz& white);
+
+// Readings at one aspecular angle, on both sides of specular or out of plane, may have different colors. A color that
+// depends on the aspecular angle alone cannot come closer to them than this.
+struct Twins {
+  double apart_de00 = 0;  // the largest difference of two readings at one angle
+  double sum_de00 = 0;    // the least sum of the differences between all readings that share an angle and one
+                          // color for each angle
+  std::vector<double> largest_de00;  // by angle: the least that the largest difference to one color can be
+  std::vector<double> views_deg;     // of the readings that differ visibly from a twin, ascending
+};
+
+// All 0 and empty where no two readings at one unsigned aspecular angle differ.
+Twins twins_of(const std::vector<paint::LabReading>& readings);
+
+// What limits the worst reading of a fit, in words: its color is outside the working space, its twin on the other side
+// of specular has another color (of a fit for all views), or a channel grows away from specular; where none of these is
+// true, it is the exponents of the basis. `errors` are those of the readings, in their order; at least one.
+std::string fit_limit(const std::vector<paint::LabReading>& readings, const std::vector<GeometryError>& errors,
+                      const color::Xyz& white, bool by_view);
 
 }  // namespace goniochrome::fit

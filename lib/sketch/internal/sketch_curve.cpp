@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/angles.h"
 #include "base/parallel.h"
-#include "brdf/lobe_model.h"
-#include "math/cosine_power.h"
 #include "math/statistics.h"
+#include "sketch/internal/sketch_lobes.h"
 #include "sketch/internal/sketch_solve.h"
 
 namespace goniochrome::sketch {
@@ -157,12 +155,10 @@ constexpr int kLobeColumns = 1 + 9 + 6;
 constexpr double kShownFrom_deg = 15;  // the curve is asked for from here on
 constexpr double kMostGrowth = 2;      // of a lobe from the first angle seen to the first asked for
 
-// Whether the angles seen tell of a lobe this sharp. One that has all but vanished there would take any weight, and
-// follow the noise of the first cells up into any color.
+// Whether the angles seen tell the weight of a lobe this sharp. A lobe that is nearly 0 at all of them could take any
+// weight, and would follow the noise of the first cells up to any color.
 bool is_lobe_seen(double exponent, double from_deg) {
-  const double asked = std::min(from_deg, kShownFrom_deg) * kPi / 180;
-  const double seen = from_deg * kPi / 180;
-  return kMostGrowth * math::cos_power(seen, exponent) >= math::cos_power(asked, exponent);
+  return kMostGrowth * lobe_at(from_deg, exponent) >= lobe_at(std::min(from_deg, kShownFrom_deg), exponent);
 }
 
 // `from_deg`: the first angle of all cells.
@@ -171,7 +167,7 @@ std::array<double, kLobeColumns> lobe_row(const SketchCell& cell, double from_de
   std::array<double, kLobeColumns> row{cell.cos_i};
   for (std::size_t j = 0; j < exponents.size(); ++j) {
     if (!is_lobe_seen(exponents[j], from_deg)) continue;
-    const double power = math::cos_power(cell.aspecular_deg * kPi / 180, exponents[j]);
+    const double power = lobe_at(cell.aspecular_deg, exponents[j]);
     row[1 + j] = cell.cos_i * power;
     if (j >= kFirstGloss) row[10 + j - kFirstGloss] = power;
   }
@@ -217,15 +213,14 @@ color::Rgb SketchCurve::reflectance(double aspecular_deg) const {
     return u * u * quadratic[0] + u * quadratic[1] + quadratic[2];
   }
   color::Rgb sum = diffuse;
-  for (std::size_t j = 0; j < exponents.size(); ++j)
-    sum += math::cos_power(aspecular_deg * kPi / 180, exponents[j]) * flake[j];
+  for (std::size_t j = 0; j < exponents.size(); ++j) sum += lobe_at(aspecular_deg, exponents[j]) * flake[j];
   return sum;
 }
 
 color::Rgb SketchCurve::gloss(double aspecular_deg) const {
   color::Rgb sum;
   for (std::size_t j = 0; j < glare.size(); ++j)
-    if (glare[j] != color::Rgb{}) sum += math::cos_power(aspecular_deg * kPi / 180, exponents[j]) * glare[j];
+    if (glare[j] != color::Rgb{}) sum += lobe_at(aspecular_deg, exponents[j]) * glare[j];
   return sum;
 }
 

@@ -1,4 +1,4 @@
-// The color of a paint against aspecular angle from the pixels of a picture under one point light. Internal to lib/fit.
+// The color of a paint against aspecular angle, from the pixels of a picture under one point light.
 // [Shimizu2009] 3.7.3, goniochrome-theory(7), SKETCH FITTING.
 #pragma once
 
@@ -9,18 +9,18 @@
 
 namespace goniochrome::sketch {
 
-// What many pixels of nearly the same angles show, outliers among them put aside.
+// What many pixels of nearly the same angles show, without the outliers among them.
 struct SketchCell {
   double aspecular_deg = 0, cos_i = 0, count = 0;
   color::Rgb seen;  // light relative to a white that faces the lamp
 };
 
-// How much a cell counts, 0..1: the root of its samples' number, so that the few pixels near specular are heard beside
-// the many of a flat roof; 64 samples have their full say.
+// How much a cell counts, 0..1: the root of its number of samples over 64, at most 1, so that the few pixels near
+// specular count beside the many of a flat roof.
 double cell_importance(const SketchCell& cell);
 
-// Every how many-th of `count` cells to take for about `most` of them. Cells stand in rows of twelve cosines, of which
-// all are to be met: the step shares no factor with twelve.
+// The step between cells that takes about `most` of `count` cells. Cells stand in rows of twelve cosines, and the step
+// shares no factor with twelve, so that all cosines are met.
 std::size_t sketch_step(std::size_t count, std::size_t most);
 
 struct SketchSample {
@@ -51,8 +51,8 @@ struct CurveFit {
   double condition = 0;  // of the quadratic's columns, each of length 1
 };
 
-// The clamped quadratic whose travel, scanned, costs least; channels by weighted least squares, cells reweighted by how
-// well they agree. At least three cells.
+// The clamped quadratic whose travel costs least. Channels are fitted by weighted least squares, and cells reweighted
+// by how well they agree. There must be at least three cells.
 CurveFit fit_quadratic(const std::vector<SketchCell>& cells);
 
 // Non-negative cosine lobes, for flake light times cos_i and for gloss without it, likewise reweighted.

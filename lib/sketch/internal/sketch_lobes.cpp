@@ -6,12 +6,13 @@
 
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
+#include "display/paint_view.h"
 #include "envmap/prefiltered.h"
 #include "fit/paint_fit.h"
 #include "math/cosine_power.h"
 #include "paint/curve.h"
-#include "sketch/internal/sketch_common.h"
 #include "sketch/internal/sketch_solve.h"
+#include "sketch/sketch.h"
 
 namespace goniochrome::sketch {
 
@@ -38,6 +39,42 @@ std::array<Vec3, 3> slopes(const SearchSamples& samples, const color::Rgb& at) {
 
 }  // namespace
 
+double lobe_at(double aspecular_deg, double exponent) {
+  return math::cos_power(aspecular_deg * kPi / 180, exponent);
+}
+
+color::Lab paint_lab(const color::Rgb& rgb) {
+  static const color::Xyz white = *color::white_point({});
+  return color::lab_from_rgb(rgb, white);
+}
+
+color::Lab SearchSamples::shown(const color::Rgb& rgb) const {
+  return paint_lab(display ? display::in_display_gamut(rgb) : rgb);
+}
+
+color::Rgb shown_light(const Vec3* columns, const std::vector<color::Rgb>& weights,
+                       const std::optional<color::ReflectionOperator>& reflection) {
+  color::Rgb sum;
+  for (std::size_t k = 0; k < weights.size(); ++k) sum += weights[k] * columns[k];
+  if (!reflection) return sum;
+  std::array<color::Rgb, 3> pairs;  // light of channel d on weights of channel e
+  for (std::size_t k = 0; k < weights.size(); ++k)
+    for (int d = 0; d < 3; ++d) pairs[d] += columns[k][d] * weights[k];
+  sum = {};
+  for (int c = 0; c < 3; ++c)
+    for (int d = 0; d < 3; ++d)
+      for (int e = 0; e < 3; ++e) sum[c] += reflection->k[c][d][e] * pairs[d][e];
+  return sum;
+}
+
+void differences(const SearchSamples& samples, const std::vector<color::Lab>& target,
+                 const std::vector<color::Rgb>& weights, std::vector<double>& out) {
+  for (std::size_t i = 0; i < target.size(); ++i) {
+    const color::Lab lab = samples.shown(shown_light(samples.columns_of(i), weights, samples.reflection));
+    out[3 * i] = lab.L - target[i].L, out[3 * i + 1] = lab.a - target[i].a, out[3 * i + 2] = lab.b - target[i].b;
+  }
+}
+
 paint::LobeFit lobes_of(const formats::Basis& basis, const std::vector<color::Rgb>& weights) {
   paint::LobeFit fit;
   fit.diffuse = weights.front();
@@ -62,7 +99,7 @@ FreeLobeFit::FreeLobeFit(const formats::Basis& basis, const brdf::GlossTable& gl
                          const std::vector<color::Lab>& target)
     : basis_(basis), gloss_(gloss), samples_(samples), target_(target) {
   for (const double exponent : basis.exponents)
-    flake_lobes_ += math::cos_power(paint::kFaceAngle_deg * kPi / 180, exponent) >= fit::kSeenPart ? 1 : 0;
+    flake_lobes_ += lobe_at(paint::kFaceAngle_deg, exponent) >= fit::kSeenPart ? 1 : 0;
 }
 
 std::vector<FreeLobeFit::Unknown> FreeLobeFit::unknowns(bool free_gloss) const {

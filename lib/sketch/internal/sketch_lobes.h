@@ -1,14 +1,45 @@
-// The lobes that a picture shows, whatever curve they make. Internal to lib/fit. goniochrome-theory(7), SKETCH FITTING.
+// What a search for a picture's paint looks at, and the lobes that explain it best, whatever curve they make.
+// goniochrome-theory(7), SKETCH FITTING.
 #pragma once
 
 #include <optional>
 #include <vector>
 
 #include "brdf/gloss.h"
+#include "color/color.h"
+#include "color/reflection.h"
 #include "formats/basis.h"
-#include "sketch/internal/sketch_samples.h"
 
 namespace goniochrome::sketch {
+
+// A lobe of peak 1 at an aspecular angle.
+double lobe_at(double aspecular_deg, double exponent);
+
+// Lab of a working-space color relative to white 1, as paints carry it.
+color::Lab paint_lab(const color::Rgb& rgb);
+
+// What was seen, and the light of each part of the lobe model with weight 1 (1/sr) there, all relative to white.
+struct SearchSamples {
+  std::size_t columns = 0;  // K_D, then K_DD and K_G of every lobe of the basis, then the mirror
+  std::vector<Vec3> light;  // `columns` for each sample
+  std::vector<color::Rgb> seen;
+  std::vector<double> importance;                            // of each sample; more than 0
+  std::optional<color::ReflectionOperator> reflection = {};  // as that of a SketchLight
+  bool display = false;  // seen on an sRGB display, whose gamut is then part of the picture
+
+  std::size_t size() const { return seen.size(); }
+  const Vec3* columns_of(std::size_t sample) const { return &light[sample * columns]; }
+  // The light of a sample as the picture could show it.
+  color::Lab shown(const color::Rgb& rgb) const;
+};
+
+// The light that weights make of one sample's columns.
+color::Rgb shown_light(const Vec3* columns, const std::vector<color::Rgb>& weights,
+                       const std::optional<color::ReflectionOperator>& reflection);
+
+// Writes, for each sample, the difference in Lab of what these weights show from `target`.
+void differences(const SearchSamples& samples, const std::vector<color::Lab>& target,
+                 const std::vector<color::Rgb>& weights, std::vector<double>& out);
 
 struct FreeLobes {
   std::vector<color::Rgb> weights;  // in the order of the samples' columns
@@ -16,21 +47,22 @@ struct FreeLobes {
   double cost = 0;  // as robust_cost()
 };
 
-// A picture is linear in the weights of its lobes, so that the best weights are found from any start: flake weights
-// channel by channel, gloss as a meter's reading makes it of the basis.
+// Finds the weights that explain the samples best. A picture is linear in the weights of its lobes, so that any start
+// leads to them. Flake weights are free channel by channel; the gloss weights are those that the basis gives a meter's
+// reading.
 class FreeLobeFit {
  public:
-  // All outlive it; `target` has the Lab of every sample.
+  // The arguments must outlive it; `target` has the Lab of every sample.
   FreeLobeFit(const formats::Basis& basis, const brdf::GlossTable& gloss, const SearchSamples& samples,
               const std::vector<color::Lab>& target);
 
   // With gray gloss lobes of any weight.
   FreeLobes with_any_gloss() const;
 
-  // Over all values of gloss: the best of some, one of them read off gray gloss lobes of any weight, refined.
+  // The best over all values of gloss: the best of twenty, one of which with_any_gloss() finds, refined by sections.
   FreeLobes find() const;
 
-  // From there, with gloss as it is.
+  // The best from that start, with its gloss.
   FreeLobes refined(const FreeLobes& start) const;
 
  private:

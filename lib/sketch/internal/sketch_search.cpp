@@ -10,7 +10,6 @@
 #include "base/parallel.h"
 #include "brdf/lobe_model.h"
 #include "paint/curve.h"
-#include "sketch/internal/sketch_common.h"
 
 namespace goniochrome::sketch {
 

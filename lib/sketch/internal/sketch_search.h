@@ -6,7 +6,6 @@
 
 #include "fit/paint_fit.h"
 #include "sketch/internal/sketch_lobes.h"
-#include "sketch/internal/sketch_samples.h"
 #include "sketch/internal/sketch_solve.h"
 #include "sketch/sketch.h"
 

@@ -1,0 +1,380 @@
+#include "sketch/sketch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+
+#include "base/angles.h"
+#include "base/parallel.h"
+#include "display/paint_view.h"
+#include "math/statistics.h"
+#include "paint/curve.h"
+#include "sketch/internal/sketch_curve.h"
+#include "sketch/internal/sketch_gloss.h"
+#include "sketch/internal/sketch_search.h"
+
+namespace goniochrome::sketch {
+
+namespace {
+
+constexpr double kContrastRegion_deg = 15;  // [Shimizu2009] 3.7.3
+constexpr std::size_t kFewestCells = 8, kChunk = 8192;
+constexpr double kFace_deg = 15;                              // the least of the export angles
+constexpr double kReach_deg = 2;                              // an angle this close to one seen counts as seen
+constexpr std::size_t kSearchCells = 700, kFirstCells = 400;  // that the answer and the way to it look at
+constexpr double kSameCost = 1.05, kSameCostBy = 0.005;  // costs of two values of gloss that the pixels cannot tell
+
+constexpr std::size_t kMostPixels = 6000;   // of an environment's picture, looked at for the answer; more change it by
+                                            // less than 0.05 dE
+constexpr std::size_t kFirstPixels = 1000;  // and on the way to it
+constexpr std::size_t kFewestPixels = 30;
+
+// How well a paint explains the pixels: RMS and median of the differences, and all of them where asked for.
+// difference(i) is that of the i-th used pixel. The figures come from some kJudged pixels.
+template <class Difference>
+void judge_sketch(std::size_t count, bool all, Difference&& difference, SketchFit& fit) {
+  constexpr std::size_t kJudged = 20000;
+  const std::size_t step = all ? 1 : std::max<std::size_t>(1, count / kJudged);
+  std::vector<float> values;
+  for (std::size_t i = 0; i < count; i += step) values.push_back(static_cast<float>(difference(i)));
+  if (values.empty()) return;
+  double squares = 0;
+  for (const float value : values) squares += static_cast<double>(value) * value;
+  fit.rms_de76 = std::sqrt(squares / static_cast<double>(values.size()));
+  if (all) fit.de76 = values;
+  fit.median_de76 = math::median(std::move(values));
+}
+
+// What of a color the edited picture could show.
+color::Rgb as_displayed(const color::Rgb& rgb, const SketchInput& input) {
+  return input.edited->scene_linear ? rgb : display::in_display_gamut(rgb);
+}
+
+std::string poor_match(const SketchFit& fit) {
+  return fmt::format("half of the pixels differ by more than {:.1f} dE76 from the best paint", fit.median_de76);
+}
+
+// Turns `fit` into the matt color, of which `color` is the reflectance factor.
+void fall_back(const color::Rgb& color, const std::string& reason, SketchFit& fit) {
+  fit.status = "diffuse_fallback", fit.reason = reason, fit.model = "diffuse";
+  const color::Lab lab = paint_lab(color);
+  fit.appearance = {lab, lab, 60, std::nullopt};
+  fit.rows = paint::rows_of(fit.appearance);
+  fit.extrapolated_deg.clear();
+}
+
+// Rows, face, flop, travel, gloss and condition of a search.
+void take_found(const FoundPaint& found, SketchFit& fit) {
+  const paint::Paint paint = found.paint();
+  fit.model = found.model();
+  fit.appearance =
+      paint.appearance ? *paint.appearance : paint::appearance_from_rows(paint.measurement->rows)->appearance;
+  fit.rows = paint.appearance ? paint::rows_of(fit.appearance) : paint.measurement->rows;
+  fit.gloss_60_gu = paint.gloss.front().gloss_units;
+  fit.gloss_from = "search";
+  fit.condition = found.search.condition;
+}
+
+// What the buffers and the picture have at each pixel, relative to the light.
+class Seen {
+ public:
+  explicit Seen(const SketchInput& input) : input_(input), image_(input.buffers->image) {
+    aspecular_ = *input.buffers->channel("aspecular");
+    lambert_ = *input.buffers->channel("lambert");
+    if (input.buffers->lights.empty()) return;
+    const color::Rgb white = input.buffers->lights.front().white;
+    for (int c = 0; c < 3; ++c) scale_[c] = white[c] > 0 ? 1 / white[c] : 0;
+  }
+
+  SketchSample at(std::uint32_t place) const {
+    const float* pixel = &image_.data[static_cast<std::size_t>(place) * image_.channels];
+    const color::Rgb light = scale_ * edited_light(input_, place);
+    return {pixel[aspecular_],
+            pixel[lambert_],
+            {static_cast<float>(light.x), static_cast<float>(light.y), static_cast<float>(light.z)}};
+  }
+
+ private:
+  const SketchInput& input_;
+  const image::Image& image_;
+  int aspecular_ = 0, lambert_ = 0;
+  color::Rgb scale_{1, 1, 1};
+};
+
+double luminance(const std::array<float, 3>& rgb) {
+  return color::xyz_d65_from_rgb({rgb[0], rgb[1], rgb[2]}).Y;
+}
+
+// What the pixels within 15 deg of specular say of gloss.
+struct Highlight {
+  std::optional<double> by_shape;
+  double by_contrast = 0;
+};
+
+Highlight highlight_of(const SketchInput& input, const SketchPixels& pixels, const Seen& seen,
+                       const SketchCurve& curve) {
+  std::vector<double> brightness;
+  std::vector<HighlightSample> highlight;
+  std::size_t clipped = 0;
+  const int width = input.buffers->image.width;
+  const auto look = [&](std::uint32_t place) {
+    const SketchSample s = seen.at(place);
+    if (s.aspecular_deg >= kContrastRegion_deg) return;
+    const double y = luminance(s.seen);
+    brightness.push_back(display::srgb_signal(y));
+    const auto shifted = static_cast<std::size_t>(static_cast<int>(place) + input.shift_y * width + input.shift_x);
+    if (input.edited->state[shifted] == Picture::kClipped) {
+      ++clipped;
+      return;
+    }
+    const color::Rgb matt = static_cast<double>(s.cos_i) * curve.reflectance(s.aspecular_deg);
+    highlight.push_back({s.aspecular_deg, y - color::xyz_d65_from_rgb(matt).Y});
+  };
+  for (const std::uint32_t place : pixels.glare) look(place);
+  for (const std::uint32_t place : pixels.used) look(place);
+  Highlight found;
+  if (clipped == 0) found.by_shape = highlight_gloss(highlight);
+  found.by_contrast = contrast_gloss(brightness);
+  return found;
+}
+
+// Takes the highlight's gloss, by shape or else by contrast. Where there is `allows`, it says whether the pixels
+// farther from specular, which show the flanks of wide lobes, agree; where they do not, the gloss of the search stays.
+void take_gloss(const Highlight& highlight, const std::function<bool(double)>& allows, SketchFit& fit) {
+  const auto take = [&](double gloss, const char* from) {
+    if (allows && !allows(gloss)) return false;
+    fit.gloss_60_gu = gloss, fit.gloss_from = from;
+    return true;
+  };
+  if (highlight.by_shape && take(*highlight.by_shape, "highlight")) return;
+  take(highlight.by_contrast, "contrast");
+}
+
+// The same cells as light on lobes: about `most` of them, of all angles and cosines alike.
+SearchSamples search_samples(const std::vector<SketchCell>& cells, const formats::Basis& basis, bool display,
+                             std::size_t most) {
+  const std::size_t step = sketch_step(cells.size(), most);
+  SearchSamples samples;
+  samples.columns = search_columns(basis);
+  samples.display = display;
+  for (std::size_t i = 0; i < cells.size(); i += step) {
+    const SketchCell& cell = cells[i];
+    const auto light = [&](double value) { samples.light.push_back(value * kPi * Vec3{1, 1, 1}); };
+    light(cell.cos_i);
+    for (const double exponent : basis.exponents) {
+      const double power = lobe_at(cell.aspecular_deg, exponent);
+      light(cell.cos_i * power), light(power);
+    }
+    light(0);  // the mirror image of a lamp is a point
+    samples.seen.push_back(cell.seen);
+    samples.importance.push_back(cell_importance(cell));
+  }
+  return samples;
+}
+
+bool is_seen(const std::vector<SketchCell>& cells, double angle_deg) {
+  return std::any_of(cells.begin(), cells.end(),
+                     [&](const SketchCell& cell) { return std::abs(cell.aspecular_deg - angle_deg) <= kReach_deg; });
+}
+
+// Rows, face, flop and travel of a curve.
+void take_curve(const SketchCurve& curve, SketchFit& fit) {
+  fit.model = curve.travel_deg > 0 ? "quadratic" : "lobes";
+  std::vector<paint::LabReading> designed;  // [Shimizu2009] 3.7.3 evaluates at these three
+  for (const double angle : paint::kExportAngles_deg) {
+    const paint::LabReading row{{45, angle}, paint_lab(curve.reflectance(angle))};
+    fit.rows.push_back(row);
+    if (angle == 15 || angle == 45 || angle == 110) designed.push_back(row);
+  }
+  fit.appearance = paint::appearance_from_rows(designed)->appearance;
+}
+
+// Whether the search, which has a paint's few degrees of freedom, explains the cells as well as a free curve. In a
+// clean picture its cost must be nearly the same. In a noisy one the curve may gain by following the noise, and it may
+// do so the more where no pixel holds it at the angles asked for, so the search may cost more.
+bool is_as_good(double search_cost, double curve_cost, bool extrapolates) {
+  constexpr double kNoisy = 0.2;  // of log(1 + dE^2): about half a dE
+  if (extrapolates && search_cost <= kNoisy + 1.6 * curve_cost) return true;
+  return search_cost <= 1.15 * curve_cost + 0.02 || (curve_cost > kNoisy && search_cost <= 1.6 * curve_cost);
+}
+
+// Why a paint found, or a quadratic, is no answer; "" where it is one, or where a pixel shows its face. `face` is its
+// reflectance factor there, and `error` has the standard errors of the search, which begin with the face's.
+std::string face_problem(const std::vector<SketchCell>& cells, const color::Rgb& face, const std::vector<double>& error,
+                         const SketchFit& fit, const SketchLimits& limits) {
+  if (is_seen(cells, kFace_deg)) return "";
+  const bool open = std::hypot(error[0], error[1], error[2]) > limits.face_error_de76;
+  if (!open && is_paint_color(face, limits.median_de76)) return "";
+  const std::string problem =
+      open ? fmt::format("leave the color at {} deg open by more than {} dE76", kFace_deg, limits.face_error_de76)
+           : fmt::format("lead to a color at {} deg that no paint can have", kFace_deg);
+  return fmt::format("the pixels show aspecular angles from {:.1f} to {:.1f} deg, which {}", fit.seen_from_deg,
+                     fit.seen_to_deg, problem);
+}
+
+color::Rgb face_of(const FoundPaint& found) {
+  const std::vector<double>& v = found.search.values;
+  return color::rgb_from_lab({v[0], v[1], v[2]}, *color::white_point({}));
+}
+
+SketchCurve curve_of(const FoundPaint& found, const formats::Basis& basis) {
+  SketchCurve curve;
+  curve.exponents = basis.exponents;
+  curve.diffuse = kPi * found.weights.front();
+  for (std::size_t j = 0; j < basis.exponents.size(); ++j) {
+    curve.flake.push_back(kPi * found.weights[1 + 2 * j]);
+    curve.glare.push_back(kPi * found.weights[2 + 2 * j]);
+  }
+  return curve;
+}
+
+std::string rank_problem(const std::vector<SketchCell>& cells, const SketchFit& fit, const SketchLimits& limits) {
+  if (cells.size() < kFewestCells)
+    return fmt::format("the pixels show {} different views of the paint, too few for a curve", cells.size());
+  if (fit.seen_to_deg - fit.seen_from_deg < limits.least_span_deg)
+    return fmt::format("the pixels show aspecular angles from {:.1f} to {:.1f} deg only", fit.seen_from_deg,
+                       fit.seen_to_deg);
+  return "";
+}
+
+SearchSamples samples_of(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light,
+                         std::size_t most) {
+  const std::size_t step = std::max<std::size_t>(1, pixels.used.size() / most);
+  std::vector<std::uint32_t> places;
+  for (std::size_t i = 0; i < pixels.used.size(); i += step) places.push_back(pixels.used[i]);
+  SearchSamples samples;
+  samples.columns = search_columns(light.basis);
+  samples.reflection = light.reflection;
+  samples.display = !input.edited->scene_linear;
+  samples.light.resize(places.size() * samples.columns);
+  samples.importance.assign(places.size(), 1.0);
+  parallel_for(places.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) light.shade(places[i], &samples.light[i * samples.columns]);
+  });
+  const double scale = 1 / input.buffers->white_luminance;
+  for (const std::uint32_t place : places) samples.seen.push_back(scale * edited_light(input, place));
+  return samples;
+}
+
+}  // namespace
+
+bool is_paint_color(const color::Rgb& rgb, double within_de76) {
+  const color::Rgb nearest{std::max(rgb.x, 0.0), std::max(rgb.y, 0.0), std::max(rgb.z, 0.0)};
+  return color::delta_e_76(paint_lab(rgb), paint_lab(nearest)) <= within_de76;
+}
+
+formats::Basis sketch_basis() {
+  formats::Basis basis;
+  basis.name = "sketch", basis.exponents = {1.3, 6, 20, 70, 250, 900, 3000}, basis.mirror = true;
+  return basis;
+}
+
+SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, const formats::Basis& basis,
+                       const SketchLimits& limits, bool with_differences) {
+  // What the pixels show, sorted into cells.
+  const Seen seen(input);
+  std::vector<SketchSample> samples(pixels.used.size());
+  parallel_for(samples.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) samples[i] = seen.at(pixels.used[i]);
+  });
+  const std::vector<SketchCell> cells = sketch_cells(samples);
+  SketchFit fit;
+  if (!cells.empty()) fit.seen_from_deg = cells.front().aspecular_deg, fit.seen_to_deg = cells.back().aspecular_deg;
+
+  // How the curve that was found is judged, and what is answered where none will do.
+  SketchCurve curve;
+  const auto judge = [&] {
+    judge_sketch(
+        samples.size(), with_differences,
+        [&](std::size_t i) {
+          const SketchSample& s = samples[i];
+          const color::Rgb shown =
+              static_cast<double>(s.cos_i) * curve.reflectance(s.aspecular_deg) + curve.gloss(s.aspecular_deg);
+          return color::delta_e_76(paint_lab({s.seen[0], s.seen[1], s.seen[2]}), paint_lab(as_displayed(shown, input)));
+        },
+        fit);
+  };
+  const auto give_up = [&](const std::string& problem) {
+    curve = {}, curve.diffuse = mean_diffuse(cells);
+    fall_back(curve.diffuse, problem, fit);
+    judge();
+    return fit;
+  };
+  // A free curve, and a paint by search; the paint is the answer where it explains the cells as well.
+  if (const std::string problem = rank_problem(cells, fit, limits); !problem.empty()) return give_up(problem);
+  const CurveFit quadratic = fit_quadratic(cells), lobes = fit_lobes(cells);
+  const CurveFit& better = lobes.cost <= quadratic.cost ? lobes : quadratic;
+  const bool display = !input.edited->scene_linear;
+  const SearchFitters fitters(basis);
+  const LobeSearch first(fitters, search_samples(cells, basis, display, kFirstCells));
+  const LobeSearch search(fitters, search_samples(cells, basis, display, kSearchCells));
+  const FoundPaint found = search.find_plain(first);
+  const bool as_good = is_as_good(found.search.cost, better.cost, !is_seen(cells, kFace_deg));
+  curve = as_good ? curve_of(found, basis) : better.curve;
+  judge();
+  if (fit.median_de76 > limits.median_de76) return give_up(poor_match(fit));
+  std::string problem;
+  if (as_good || better.curve.travel_deg > 0)  // lobes of any weight hold to what is seen
+    problem =
+        face_problem(cells, as_good ? face_of(found) : curve.reflectance(kFace_deg), found.search.error, fit, limits);
+  if (!problem.empty()) return give_up(problem);
+  // The answer: rows, face, flop and travel, and gloss.
+  take_curve(curve, fit);
+  if (as_good) take_found(found, fit);
+  fit.condition = quadratic.condition;
+  for (const paint::LabReading& row : fit.rows)
+    if (!is_seen(cells, row.geometry.aspecular_deg)) fit.extrapolated_deg.push_back(row.geometry.aspecular_deg);
+  const auto allows = [&](double gloss) {
+    return search.cost_with_gloss(found, gloss) <= kSameCost * found.search.cost + kSameCostBy;
+  };
+  take_gloss(highlight_of(input, pixels, seen, curve), as_good ? allows : std::function<bool(double)>(), fit);
+  return fit;
+}
+
+SketchFit sketch_environment(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light,
+                             const SketchLimits& limits, bool with_differences) {
+  const SearchFitters fitters(light.basis);
+  const LobeSearch search(fitters, samples_of(input, pixels, light, kMostPixels));
+  SketchFit fit;
+  std::vector<color::Rgb> weights(search_columns(light.basis));
+  const auto judge = [&] {
+    std::vector<Vec3> columns(weights.size());
+    const double scale = 1 / input.buffers->white_luminance;
+    const auto difference = [&](std::size_t i) {
+      light.shade(pixels.used[i], columns.data());
+      const color::Rgb seen = scale * edited_light(input, pixels.used[i]);
+      return color::delta_e_76(paint_lab(seen),
+                               paint_lab(as_displayed(shown_light(columns.data(), weights, light.reflection), input)));
+    };
+    judge_sketch(pixels.used.size(), with_differences, difference, fit);
+  };
+  const auto give_up = [&](const std::string& reason) {
+    const color::Rgb matt = search.matt();
+    fall_back(matt, reason, fit);
+    weights.assign(weights.size(), color::Rgb{}), weights[0] = (1 / kPi) * matt;
+    judge();
+    return fit;
+  };
+  if (pixels.used.size() < kFewestPixels)
+    return give_up(fmt::format("{} pixels are too few for a search", pixels.used.size()));
+  const LobeSearch first(fitters, samples_of(input, pixels, light, kFirstPixels));
+  const FoundPaint found = search.find(first);
+  take_found(found, fit);
+  weights = found.weights;
+  judge();
+  if (fit.median_de76 > limits.median_de76) return give_up(poor_match(fit));
+  return fit;
+}
+
+paint::Paint sketch_paint(const SketchFit& fit, const std::string& name) {
+  paint::Paint paint;
+  paint.name = name;
+  paint.paint_class = fit.status == "fitted" ? paint::PaintClass::kUnknown : paint::PaintClass::kSolid;
+  paint.measurement = paint::Measurement{{}, "", fit.rows};
+  paint.appearance = fit.appearance;
+  if (!fit.gloss_from.empty()) paint.gloss.push_back({60, fit.gloss_60_gu});
+  return paint;
+}
+
+}  // namespace goniochrome::sketch
