@@ -6,6 +6,8 @@
 
 namespace goniochrome::prefilter {
 
+class ZonalKernel;
+
 class LobeTree {
  public:
   // The environment must outlive the tree.
@@ -13,6 +15,8 @@ class LobeTree {
 
   // P_E(d) per channel, within about `tolerance` of the larger of its value and 1e-3 of the channel's mean.
   Vec3 lobe(const Vec3& d, double exponent, double tolerance) const;
+  // The same of any kernel (internal/kernel.h).
+  Vec3 lobe(const Vec3& d, const ZonalKernel& kernel, double tolerance) const;
 
  private:
   struct Walk;

@@ -12,8 +12,8 @@
 #include "base/angles.h"
 #include "base/parallel.h"
 #include "math/fft.h"
-#include "math/gauss_rule.h"
 #include "math/legendre.h"
+#include "math/quadrature.h"
 
 // On the full circle of the polar angle a function of degree L is a trigonometric polynomial of degree L in both
 // angles. Its coefficients, divided by the transform of a narrow bump and taken to a grid twice as fine as they need,

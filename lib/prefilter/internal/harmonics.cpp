@@ -196,24 +196,13 @@ Harmonics harmonics_of(const envmap::Environment& env, const std::vector<double>
   return harmonics_from(moments, degree);
 }
 
-// From the recursion of integrals of t^E P_l over 0..1: k_l = k_(l-2) (E-l+2)/(E+l+1).
-std::vector<double> zonal_multipliers(double exponent, int degree) {
-  std::vector<double> k(static_cast<std::size_t>(std::max(degree, 1)) + 1);
-  k[0] = 1;
-  k[1] = (exponent + 1) / (exponent + 2);
-  for (int l = 2; l <= degree; ++l) k[l] = k[l - 2] * (exponent - l + 2) / (exponent + l + 1);
-  k.resize(static_cast<std::size_t>(degree) + 1);
-  return k;
-}
-
 namespace {
 
-// The sums over l > degree of (2l+1)|k_l|, for degree = 0..most; past the end of the table |k_l| falls as l^-(E+3/2).
-std::vector<double> truncation_bounds(double exponent, int most) {
+// The sums over l > degree of (2l+1)|k_l|, for degree = 0..most.
+std::vector<double> truncation_bounds(const ZonalKernel& kernel, int most) {
   const int end = most + 2000;
-  const std::vector<double> k = zonal_multipliers(exponent, end);
-  const double power = exponent - 0.5;  // of the tail of (2l+1)|k_l| ~ l^-(E+1/2), summed
-  double tail = power > 0 ? (2.0 * end + 1) * std::max(std::fabs(k[end]), std::fabs(k[end - 1])) * end / power : 1e300;
+  const std::vector<double> k = kernel.multipliers(end);
+  double tail = kernel.tail(k);
   std::vector<double> bounds(static_cast<std::size_t>(most) + 1);
   for (int l = end; l >= 0; --l) {
     if (l <= most) bounds[l] = tail;
@@ -224,12 +213,12 @@ std::vector<double> truncation_bounds(double exponent, int most) {
 
 }  // namespace
 
-double truncation_bound(double exponent, int degree) {
-  return truncation_bounds(exponent, degree).back();
+double truncation_bound(const ZonalKernel& kernel, int degree) {
+  return truncation_bounds(kernel, degree).back();
 }
 
-int sufficient_degree(double exponent, double error, int most) {
-  const std::vector<double> bounds = truncation_bounds(exponent, most);
+int sufficient_degree(const ZonalKernel& kernel, double error, int most) {
+  const std::vector<double> bounds = truncation_bounds(kernel, most);
   for (int l = 0; l <= most; ++l)
     if (bounds[l] <= error) return l;
   return -1;
