@@ -115,7 +115,7 @@ class EdgeRow {
   Vec3 sum_;
 };
 
-// Everything that does not depend on the direction.
+// The sum over all texels at any direction; the nodes and their directions are made once.
 class Summation {
  public:
   Summation(const envmap::Environment& env, const ZonalKernel& kernel)
@@ -145,6 +145,8 @@ class Summation {
     }
   }
 
+  // Row by row. Step 1: rows beyond the support add nothing. Step 2: the texels that the edge spoils, one by one. Step
+  // 3: the rest of the row, summed at every node of the quadrature across its texels.
   Vec3 at(const Vec3& d) const {
     Vec3 sum;
     const bool flat = env_.layout() == envmap::Environment::Layout::kLatLong;
@@ -251,7 +253,9 @@ class MirrorSearch {
   MirrorSearch(const envmap::Environment& env, const envmap::SphereGrid& grid, const envmap::Rotation& turn)
       : env_(env), grid_(grid), turn_(turn) {}
 
-  // The integral over columns s0..s1 and rows t0..t1 within one texel.
+  // The integral over columns s0..s1 and rows t0..t1 within one texel. Step 1: what the middle and the corners see.
+  // Step 2: all the same, or so deep that it does not matter: the part is done. Step 3: one line through it: both sides
+  // by their areas. Step 4: else its quarters.
   Vec3 integral(double s0, double t0, double s1, double t1, int depth) const {
     // A texel's corner may lie unseen between the five points of a larger part, and edges bend.
     constexpr int kLeast = 7, kMost = 20;

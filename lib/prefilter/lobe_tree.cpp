@@ -7,8 +7,8 @@
 #include "prefilter/internal/kernel.h"
 #include "prefilter/internal/lobe_patch.h"
 
-// Over a block in front of the horizon the kernel K(t) = t^E is taken to first order around the block's axis, which
-// integrates exactly with the block's flux F and moment M:
+// Over a block inside the edge the kernel K(t) is taken to first order around the block's axis, which integrates
+// exactly with the block's flux F and moment M:
 //   F K(t0) + K'(t0) (d.M - t0 F),   off by at most F max|K''| (t - t0)^2 / 2.
 // A block is opened where that exceeds its share of the tolerance. All terms are positive, so an error relative to a
 // block's own contribution is one relative to the sum; and a block may also err by its share of the whole sum C, the

@@ -1,5 +1,5 @@
-// One lobe at one direction by a walk over a tree of texel blocks: right for any exponent and any environment, and fast
-// where the lobe is narrow. goniochrome-theory(7), PREFILTERING, Blocks.
+// Filters an environment at single directions by a walk over a tree of texel blocks: right for any kernel and any
+// environment, and fast where the lobe is narrow. goniochrome-theory(7), PREFILTERING, Blocks.
 #pragma once
 
 #include "envmap/block_tree.h"

@@ -29,7 +29,9 @@ HWY_INLINE hn::Vec<Tag> power(Tag d, hn::Vec<Tag> t, double exponent) {
   return hn::IfThenElseZero(hn::And(above, hn::Gt(x, hn::Set(d, -600.0))), hn::Exp(d, x));
 }
 
-// Walks over a row; `kernel(d, j)` gives the weights of texels j, j+1, ...
+// Adds a row to `sum`; `kernel(d, j)` gives the weights of texels j, j+1, ... Step 1: as many texels at a time as a
+// vector has lanes, each channel in a vector of its own. Step 2: the lanes are added up. Step 3: the texels left over,
+// one by one.
 template <class Kernel>
 HWY_INLINE void add_row(const float* rgb, std::size_t columns, const Kernel& kernel, double sum[3]) {
   const D d;
