@@ -173,7 +173,7 @@ Result<const GlossColumns*> GlossTable::at(double angle_deg) const {
 double gloss_units(const GlossTable& table, const GlossColumns& meter, const paint::LobeFit& fit) {
   double gu = meter.diffuse * luminance(fit.diffuse);
   for (const paint::Lobe& lobe : fit.lobes) {
-    if (std::isinf(lobe.exponent)) {
+    if (lobe.is_mirror()) {
       gu += meter.mirror * luminance(lobe.gloss);
       continue;
     }

@@ -20,7 +20,7 @@ void gloss_inverse(benchmark::State& state) {
   const GlossTable table(kBasis);
   paint::LobeFit fit;
   for (const double e : kBasis) fit.lobes.push_back({e, {}, {}});
-  fit.lobes.push_back({std::numeric_limits<double>::infinity(), {}, {}});
+  fit.lobes.push_back({paint::kMirrorExponent, {}, {}});
   double worst = 0;
   for (double gu = 1; gu <= 100; ++gu) worst = std::max(worst, std::abs((*set_gloss(table, {{60, gu}}, fit))[0]));
   if (worst > 1e-9) state.SkipWithError("readings are not met");

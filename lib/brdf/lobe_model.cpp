@@ -47,7 +47,7 @@ color::Rgb lobes_at(const color::Rgb& diffuse, const std::vector<paint::Lobe>& l
   color::Rgb f = diffuse;
   const double log_cos = math::log_cosine(angle_rad);
   for (const paint::Lobe& lobe : lobes)
-    if (std::isfinite(lobe.exponent))
+    if (!lobe.is_mirror())
       f += math::power_of_cosine(log_cos, lobe.exponent) * (lobe.directional_diffuse + gloss_scale * lobe.gloss);
   return f;
 }

@@ -119,7 +119,8 @@ std::vector<paint::DirectionPair> MeasuredBrdf::samples() const {
 }
 
 bool looks_measured(std::string_view path, std::string_view head) {
-  return looks_rgl(head) || looks_mbsdf(head) || looks_merl(head) || lower(path).ends_with(".brdf");
+  return std::ranges::any_of(kMeasuredFormats,
+                             [&](const MeasuredFormat* format) { return format->recognizes(path, head); });
 }
 
 Result<std::unique_ptr<MeasuredBrdf>> read_measured(const std::string& path) {
@@ -128,12 +129,13 @@ Result<std::unique_ptr<MeasuredBrdf>> read_measured(const std::string& path) {
 }
 
 Result<std::unique_ptr<MeasuredBrdf>> read_measured(const std::string& name, std::string_view bytes) {
-  if (looks_rgl(bytes)) return read_rgl(name, bytes);
-  if (looks_mbsdf(bytes)) return read_mbsdf(name, bytes);
-  if (looks_merl(bytes)) return read_merl(name, bytes);
-  if (bytes.find('\0') != std::string_view::npos)
-    return input_error("{}: is none of MERL .binary, Cornell .brdf, NVIDIA .mbsdf and RGL _rgb.bsdf", name);
-  return read_cornell(name, bytes);
+  for (const MeasuredFormat* format : kMeasuredFormats)
+    if (format != kMeasuredFormats.back() && format->recognizes(name, bytes)) return format->read(name, bytes);
+  if (bytes.find('\0') == std::string_view::npos) return kMeasuredFormats.back()->read(name, bytes);
+  std::string known;
+  for (const MeasuredFormat* format : kMeasuredFormats)
+    known += (known.empty() ? "" : format == kMeasuredFormats.back() ? " and " : ", ") + std::string(format->name);
+  return input_error("{}: is none of {}", name, known);
 }
 
 MeasuredChecks checks(const MeasuredBrdf& brdf) {

@@ -1,6 +1,6 @@
-// Measured BRDFs as files of other people: MERL tables, Cornell spectra, NVIDIA MBSDF, RGL tensor files; what they say
-// at a pair of directions, how far they can be trusted, and what a multi-angle instrument would have read.
-// goniochrome-theory(7), MEASURED BRDFS.
+// Measured BRDFs in the file formats of the laboratories that measured them: MERL tables, Cornell spectra, NVIDIA MBSDF
+// and RGL tensor files. This header tells what a file says at a pair of directions, how far it can be trusted, and what
+// a multi-angle instrument would have read. goniochrome-theory(7), MEASURED BRDFS.
 #pragma once
 
 #include <cstddef>
@@ -68,8 +68,8 @@ class MeasuredBrdf {
 // name's ending `.brdf`.
 bool looks_measured(std::string_view path, std::string_view head);
 
-// Reads a file of any of the four formats, told apart by content. Errors name file, line or field. `bytes` are the
-// whole content of a file that errors call `name`.
+// Reads a file of any of these formats, which are told apart by content. Errors name file, line or field. `bytes` are
+// the whole content of a file that errors call `name`.
 Result<std::unique_ptr<MeasuredBrdf>> read_measured(const std::string& path);
 Result<std::unique_ptr<MeasuredBrdf>> read_measured(const std::string& name, std::string_view bytes);
 

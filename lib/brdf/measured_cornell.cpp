@@ -308,10 +308,16 @@ class CornellParser {
   std::vector<CornellBrdf::Row> rows_;
 };
 
-}  // namespace
+bool looks_cornell(std::string_view path, std::string_view) {
+  return lower(path).ends_with(".brdf");
+}
 
 Result<MeasuredPointer> read_cornell(const std::string& path, std::string_view text) {
   return CornellParser(path, text).parse();
 }
+
+}  // namespace
+
+const MeasuredFormat kCornell = {looks_cornell, read_cornell, "Cornell .brdf"};
 
 }  // namespace goniochrome::brdf

@@ -77,9 +77,7 @@ void find_copied_rows(const Grid& grid, MeasuredTraits& traits) {
   }
 }
 
-}  // namespace
-
-bool looks_mbsdf(std::string_view head) {
+bool looks_mbsdf(std::string_view, std::string_view head) {
   return head.starts_with(kMagic);
 }
 
@@ -114,5 +112,9 @@ Result<MeasuredPointer> read_mbsdf(const std::string& path, std::string_view byt
   find_copied_rows(grid, traits);
   return MeasuredPointer(std::make_unique<MbsdfBrdf>(std::move(traits), std::move(grid)));
 }
+
+}  // namespace
+
+const MeasuredFormat kMbsdf = {looks_mbsdf, read_mbsdf, "NVIDIA .mbsdf"};
 
 }  // namespace goniochrome::brdf

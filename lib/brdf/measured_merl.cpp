@@ -90,9 +90,7 @@ class MerlBrdf final : public MeasuredBrdf {
   std::vector<double> bins_;
 };
 
-}  // namespace
-
-bool looks_merl(std::string_view head) {
+bool looks_merl(std::string_view, std::string_view head) {
   ByteReader reader(head);
   return reader.next<std::int32_t>() == 90 && reader.next<std::int32_t>() == 90 && reader.next<std::int32_t>() == 180;
 }
@@ -113,5 +111,9 @@ Result<MeasuredPointer> read_merl(const std::string& path, std::string_view byte
   if (traits.negative == traits.samples) return input_error("{}: every value is negative: nothing was measured", path);
   return MeasuredPointer(std::make_unique<MerlBrdf>(std::move(traits), std::move(bins)));
 }
+
+}  // namespace
+
+const MeasuredFormat kMerl = {looks_merl, read_merl, "MERL .binary"};
 
 }  // namespace goniochrome::brdf

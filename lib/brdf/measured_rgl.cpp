@@ -196,9 +196,7 @@ class RglBrdf final : public MeasuredBrdf {
   RglTables tables_;
 };
 
-}  // namespace
-
-bool looks_rgl(std::string_view head) {
+bool looks_rgl(std::string_view, std::string_view head) {
   return head.starts_with(kMagic);
 }
 
@@ -237,5 +235,9 @@ Result<MeasuredPointer> read_rgl(const std::string& path, std::string_view bytes
   for (const double value : rgb->values) count_sample(value, traits, negative_square);
   return MeasuredPointer(std::make_unique<RglBrdf>(std::move(traits), std::move(tables)));
 }
+
+}  // namespace
+
+const MeasuredFormat kRgl = {looks_rgl, read_rgl, "RGL _rgb.bsdf"};
 
 }  // namespace goniochrome::brdf

@@ -77,7 +77,7 @@ std::string cornell_text(const Model& f) {
   return text;
 }
 
-TEST_F(Measured, cornell_gives_its_own_samples_back) {
+TEST_F(Measured, CornellGivesItsOwnSamplesBack) {
   const auto brdf = read("a.brdf", cornell_text(lobe));
   ASSERT_TRUE(brdf);
   EXPECT_EQ(brdf->traits().format, "cornell");
@@ -93,7 +93,7 @@ TEST_F(Measured, cornell_gives_its_own_samples_back) {
   }
 }
 
-TEST_F(Measured, cornell_interpolates_between_and_says_so) {
+TEST_F(Measured, CornellInterpolatesBetweenAndSaysSo) {
   const auto brdf = read("a.brdf", cornell_text(lobe));
   ASSERT_TRUE(brdf);
   double worst = 0;
@@ -115,7 +115,7 @@ TEST_F(Measured, cornell_interpolates_between_and_says_so) {
 }
 
 // In plane, only samples in plane take part, whatever stands beside the plane.
-TEST_F(Measured, cornell_in_plane_stays_in_plane) {
+TEST_F(Measured, CornellInPlaneStaysInPlane) {
   const auto brdf = read("a.brdf", cornell_text([](const Vec3& light, const Vec3& view) {
                            return std::abs(light.x * view.y) > 1e-4 ? 100.0 : lobe(light, view);
                          }));
@@ -126,7 +126,7 @@ TEST_F(Measured, cornell_in_plane_stays_in_plane) {
   }
 }
 
-TEST_F(Measured, cornell_refusals_name_the_line) {
+TEST_F(Measured, CornellRefusalsNameTheLine) {
   EXPECT_THAT(refusal("a.brdf", "2\n400 500\n0.1 0 0.2 0 1\n"), HasSubstr(":3: 5 numbers where 4 angles and 2"));
   EXPECT_THAT(refusal("a.brdf", "2\n400 500\n0.1 0 0.2 0 1 1,5\n"), HasSubstr(":3: \"1,5\" is not a number"));
   EXPECT_THAT(refusal("a.brdf", "2\n400 500\n45 0 0.2 0 1 1\n"), HasSubstr(":3: theta is 45: give radians"));
@@ -138,7 +138,7 @@ TEST_F(Measured, cornell_refusals_name_the_line) {
   EXPECT_THAT(refusal("a.brdf", std::string("\x01\0\x02", 3)), HasSubstr("none of MERL"));
 }
 
-TEST_F(Measured, cornell_is_fitted_at_its_own_rows_and_grids_on_cones) {
+TEST_F(Measured, CornellIsFittedAtItsOwnRowsAndGridsOnCones) {
   const auto scattered = read("a.brdf", cornell_text(lobe));
   ASSERT_TRUE(scattered);
   const auto rows = scattered->samples();
@@ -180,7 +180,7 @@ std::string merl_bytes(const Model& f) {
   return bytes;
 }
 
-TEST_F(Measured, merl_table_is_the_function_it_was_made_from) {
+TEST_F(Measured, MerlTableIsTheFunctionItWasMadeFrom) {
   const auto brdf = read("a.binary", merl_bytes(lobe));
   ASSERT_TRUE(brdf);
   EXPECT_EQ(brdf->traits().format, "merl");
@@ -202,7 +202,7 @@ TEST_F(Measured, merl_table_is_the_function_it_was_made_from) {
   EXPECT_GT(told.negative_share, 0);
 }
 
-TEST_F(Measured, merl_refusals) {
+TEST_F(Measured, MerlRefusals) {
   std::string bytes = merl_bytes([](const Vec3&, const Vec3&) { return 0.1; });
   EXPECT_THAT(refusal("a.binary", std::string_view(bytes).substr(0, 1000)), HasSubstr("is cut or not MERL"));
   const double nan = std::nan("");
@@ -226,7 +226,7 @@ std::string mbsdf_bytes(std::uint32_t theta, std::uint32_t phi, const Model& f,
   return bytes;
 }
 
-TEST_F(Measured, mbsdf_grid_is_the_function_it_was_made_from) {
+TEST_F(Measured, MbsdfGridIsTheFunctionItWasMadeFrom) {
   const auto brdf = read("a.mbsdf", mbsdf_bytes(45, 90, lobe));
   ASSERT_TRUE(brdf);
   EXPECT_EQ(brdf->traits().format, "mbsdf");
@@ -243,7 +243,7 @@ TEST_F(Measured, mbsdf_grid_is_the_function_it_was_made_from) {
     }
 }
 
-TEST_F(Measured, mbsdf_tells_negatives_noise_and_copied_rows) {
+TEST_F(Measured, MbsdfTellsNegativesNoiseAndCopiedRows) {
   const double sigma = 0.004;
   int k = 0;
   const auto brdf = read("a.mbsdf", mbsdf_bytes(30, 36, [&](const Vec3&, const Vec3& view) {
@@ -259,7 +259,7 @@ TEST_F(Measured, mbsdf_tells_negatives_noise_and_copied_rows) {
   EXPECT_THAT(told.warnings, testing::Contains(HasSubstr("to 88.5 deg, repeat those at 85.5 deg")));
 }
 
-TEST_F(Measured, mbsdf_refusals) {
+TEST_F(Measured, MbsdfRefusals) {
   const std::string good = mbsdf_bytes(4, 4, lobe);
   EXPECT_THAT(refusal("a.mbsdf", std::string_view(good).substr(0, good.size() - 1)), HasSubstr("the file is cut"));
   EXPECT_THAT(refusal("a.mbsdf", "NVIDIA ARC MBSDF V1\n"), HasSubstr("no MBSDF_DATA_REFLECTION"));
@@ -316,7 +316,7 @@ std::vector<Field> plain_fields() {
           rgb};
 }
 
-TEST_F(Measured, rgl_divides_by_the_viewer_cosine) {
+TEST_F(Measured, RglDividesByTheViewerCosine) {
   const auto brdf = read("a_rgb.bsdf", tensor_bytes(plain_fields()));
   ASSERT_TRUE(brdf);
   EXPECT_EQ(brdf->traits().format, "rgl");
@@ -336,7 +336,7 @@ TEST_F(Measured, rgl_divides_by_the_viewer_cosine) {
 }
 
 // A density that grows along u and v: the marginal and conditional integrals have closed forms.
-TEST_F(Measured, rgl_flattens_the_density_of_normals) {
+TEST_F(Measured, RglFlattensTheDensityOfNormals) {
   auto fields = plain_fields();
   Field& density = fields[4];
   density.values.clear();
@@ -358,7 +358,7 @@ TEST_F(Measured, rgl_flattens_the_density_of_normals) {
     }
 }
 
-TEST_F(Measured, rgl_of_no_finite_value_gives_no_color) {
+TEST_F(Measured, RglOfNoFiniteValueGivesNoColor) {
   auto fields = plain_fields();
   fields[2].values.assign(4, 0.0f);  // no projected area
   const auto color = measured_color(*read("a_rgb.bsdf", tensor_bytes(fields)), {{{45, 15}}, {"D65", 2}});
@@ -366,7 +366,7 @@ TEST_F(Measured, rgl_of_no_finite_value_gives_no_color) {
   EXPECT_THAT(color.error().message, HasSubstr("no finite value at 45as15"));
 }
 
-TEST_F(Measured, rgl_refusals) {
+TEST_F(Measured, RglRefusals) {
   const std::string good = tensor_bytes(plain_fields());
   for (std::size_t length : {std::size_t{13}, std::size_t{20}, std::size_t{60}, good.size() - 1})
     EXPECT_THAT(refusal("a_rgb.bsdf", std::string_view(good).substr(0, length)), HasSubstr("cut")) << length;
@@ -386,7 +386,7 @@ TEST_F(Measured, rgl_refusals) {
 // --- checks and colors
 // ---------------------------------------------------------------------------------------------------
 
-TEST_F(Measured, checks_tell_f_from_f_cos) {
+TEST_F(Measured, ChecksTellFFromFCos) {
   const auto f = read("f.mbsdf", mbsdf_bytes(45, 30, lobe));
   const auto f_cos =
       read("fcos.mbsdf",
@@ -399,7 +399,7 @@ TEST_F(Measured, checks_tell_f_from_f_cos) {
   EXPECT_THAT(checks(*f_cos).warnings, testing::Contains(HasSubstr("f cos(theta_o) better than f")));
 }
 
-TEST_F(Measured, albedo_of_the_perfect_diffuser_and_of_too_much) {
+TEST_F(Measured, AlbedoOfThePerfectDiffuserAndOfTooMuch) {
   const auto white = [](double albedo) { return [albedo](const Vec3&, const Vec3&) { return albedo / kPi; }; };
   // The 10 deg cap about specular, cos 45 deg of sin^2(10 deg), is left out.
   const auto brdf = read("a.mbsdf", mbsdf_bytes(10, 10, white(1), {1, 1, 1}));
@@ -408,7 +408,7 @@ TEST_F(Measured, albedo_of_the_perfect_diffuser_and_of_too_much) {
               testing::Contains(HasSubstr("more than there is")));
 }
 
-TEST_F(Measured, gray_reads_gray_at_every_geometry) {
+TEST_F(Measured, GrayReadsGrayAtEveryGeometry) {
   const auto gray = [](const Vec3&, const Vec3&) { return 0.184186518 / kPi; };  // L* = 50
   std::vector<paint::Geometry> geometries;
   for (const char* name : {"45as15", "45as110", "15as45", "45as25az90", "r45as15"}) {
@@ -442,7 +442,7 @@ TEST_F(Measured, gray_reads_gray_at_every_geometry) {
   }
 }
 
-TEST_F(Measured, color_refusals) {
+TEST_F(Measured, ColorRefusals) {
   const auto brdf = read("a.mbsdf", mbsdf_bytes(10, 10, lobe));
   const auto error = [&](const paint::Geometry& geometry, const color::ViewingCondition& condition, double aperture) {
     const auto color = measured_color(*brdf, {{geometry}, condition, aperture});
@@ -494,7 +494,7 @@ std::vector<double> distances_to_table(const std::string& sample, const std::str
 // The table averaged the 40 and 50 deg incidences, each interpolated along straight lines in f; ours are straight in
 // the root of f, which follows a falling lobe better. They part where samples are far apart: 43 deg at 75 deg aspecular
 // for light at 40 deg (the detector would have stood before the lamp).
-TEST_F(Measured, cornell_cayman_agrees_with_the_tableRealData) {
+TEST_F(Measured, CornellCaymanAgreesWithTheTableRealData) {
   if (!std::getenv("GONIOCHROME_DATA")) GTEST_SKIP() << "GONIOCHROME_DATA is not set";
   for (const double de : distances_to_table("cayman", "brdf/cornell/cayman.brdf")) EXPECT_LT(de, 1.5);
   // Their saturated blue and red ends are steep in f: the same reason, twice as large.
@@ -503,7 +503,7 @@ TEST_F(Measured, cornell_cayman_agrees_with_the_tableRealData) {
       EXPECT_LT(de, 2) << other;
 }
 
-TEST_F(Measured, nvidia_and_rgl_agree_with_the_tableRealData) {
+TEST_F(Measured, NvidiaAndRglAgreeWithTheTableRealData) {
   if (!std::getenv("GONIOCHROME_DATA")) GTEST_SKIP() << "GONIOCHROME_DATA is not set";
   // Same data, same rule: the table's three decimals and its matrix' digits are left.
   for (const char* sample : {"carpaint_blue", "carpaint_red"})
@@ -512,7 +512,7 @@ TEST_F(Measured, nvidia_and_rgl_agree_with_the_tableRealData) {
     for (const double de : distances_to_table(sample, fmt::format("brdf/rgl/{}.bsdf", sample))) EXPECT_LT(de, 0.02);
 }
 
-TEST_F(Measured, nvidia_checks_tell_its_flawsRealData) {
+TEST_F(Measured, NvidiaChecksTellItsFlawsRealData) {
   if (!std::getenv("GONIOCHROME_DATA")) GTEST_SKIP() << "GONIOCHROME_DATA is not set";
   const auto blue = read_measured(data_path("brdf/nvidia/carpaint_blue.mbsdf"));
   ASSERT_TRUE(blue.ok());

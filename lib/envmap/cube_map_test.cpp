@@ -16,7 +16,7 @@ Vec3 random_direction(std::mt19937_64& random) {
   return normalized({normal(random), normal(random), normal(random)});
 }
 
-TEST(CubeMap, position_undoes_direction) {
+TEST(CubeMap, PositionUndoesDirection) {
   std::mt19937_64 random(1);
   for (int i = 0; i < 20000; ++i) {
     const Vec3 d = random_direction(random);
@@ -26,12 +26,12 @@ TEST(CubeMap, position_undoes_direction) {
   }
 }
 
-TEST(CubeMap, faces_point_along_their_axes) {
+TEST(CubeMap, FacesPointAlongTheirAxes) {
   const Vec3 axes[] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   for (int face = 0; face < 6; ++face) EXPECT_EQ(cube_direction(face, 2, 2, 4), axes[face]);
 }
 
-TEST(CubeMap, solid_angles_sum_to_the_sphere) {
+TEST(CubeMap, SolidAnglesSumToTheSphere) {
   for (const int n : {1, 2, 3, 16, 255, 1024}) {
     const auto edge = [n](int i) { return 2.0 * i / n - 1; };
     double sum = 0;
@@ -43,7 +43,7 @@ TEST(CubeMap, solid_angles_sum_to_the_sphere) {
 }
 
 // A smooth function is met within h^2/8 of its curvature everywhere, across edges and corners too.
-TEST(CubeMap, HardCase_prefilter_seam_lookup_is_continuous_across_edges_and_corners) {
+TEST(HardCase, PrefilterSeamLookupIsContinuousAcrossEdgesAndCorners) {
   constexpr int kSize = 32;
   const auto scene = [](const Vec3& d) { return 2 + d.x + 0.5 * d.y - 0.25 * d.z; };
   CubeMap map(kSize);
@@ -83,7 +83,7 @@ TEST(CubeMap, HardCase_prefilter_seam_lookup_is_continuous_across_edges_and_corn
                                .unit = "radiance"});
 }
 
-TEST(CubeMap, lookup_of_one_texel_faces_is_finite) {
+TEST(CubeMap, LookupOfOneTexelFacesIsFinite) {
   CubeMap map(1);
   for (float& v : map.texels) v = 3;
   std::mt19937_64 random(3);

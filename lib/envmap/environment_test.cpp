@@ -175,7 +175,7 @@ TEST_F(EnvironmentFile, HardCase_PrefilterConventionEveryLayoutOfOneSceneAgrees)
                                      .unit = "radiance"});
 }
 
-TEST_F(EnvironmentFile, cells_cover_the_sphere_and_directions_lie_in_them) {
+TEST_F(EnvironmentFile, CellsCoverTheSphereAndDirectionsLieInThem) {
   std::vector<Environment> all;
   all.push_back(Environment::from_lat_long(lat_long_scene(9), BadPixels::kError, "a").value());
   all.push_back(Environment::from_lat_long(filled(7, 3,
@@ -204,7 +204,7 @@ TEST_F(EnvironmentFile, cells_cover_the_sphere_and_directions_lie_in_them) {
   }
 }
 
-TEST_F(EnvironmentFile, untagged_is_rec709_and_tags_are_honored) {
+TEST_F(EnvironmentFile, UntaggedIsRec709AndTagsAreHonored) {
   const auto first_texel = [&](const image::Attributes& attributes) {
     image::ImagePart part = {"",
                              filled(4, 2,
@@ -299,7 +299,7 @@ TEST_F(EnvironmentFile, HardCase_PrefilterBadShapesAreRefusedAndOddOnesRead) {
               HasSubstr("sea-px.exr"));
 }
 
-TEST_F(EnvironmentFile, finer_texels_show_the_same_radiance_everywhere) {
+TEST_F(EnvironmentFile, FinerTexelsShowTheSameRadianceEverywhere) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> unit(0, 1);
   std::normal_distribution<double> normal;
@@ -325,7 +325,7 @@ TEST_F(EnvironmentFile, finer_texels_show_the_same_radiance_everywhere) {
   }
 }
 
-TEST_F(EnvironmentFile, faces_of_different_size_are_refused) {
+TEST_F(EnvironmentFile, FacesOfDifferentSizeAreRefused) {
   std::vector<std::string> paths;
   for (int f = 0; f < 6; ++f) {
     const int n = f == 4 ? 5 : 4;

@@ -1,29 +1,53 @@
-// The integral of a cosine lobe over a part of a texel: the constant patch that every method here means.
-// goniochrome-theory(7), PREFILTERING, The reference.
+// A part of one texel, and quadrature over it: radiance is constant there, so whatever is summed over an environment is
+// summed over such parts.
 #pragma once
+
+#include <array>
+#include <cmath>
 
 #include "base/vec3.h"
 #include "envmap/environment.h"
+#include "math/quadrature.h"
 
 namespace goniochrome::envmap {
 
-// A part of one texel in continuous columns and rows.
+// In continuous columns and rows.
 struct Cell {
   double column0 = 0, row0 = 0, column1 = 0, row1 = 0;
 };
 
-// The integral of max(0, d.w)^E over the cell (sr), to about `relative` of itself: Gauss-Legendre where the lobe is
-// smooth over the cell, quarters where it is narrower than the cell. A cell that the horizon cuts is taken to about
-// `at_horizon` of itself, as pieces on which the cosine is linear.
-double lobe_over_cell(const Environment& env, const Cell& cell, const Vec3& d, double exponent, double relative,
-                      double at_horizon);
+// The integral of integrand(direction) over a cell, in sr, at the points of a rule each way.
+template <class Integrand>
+auto over_cell(const Environment& env, const Cell& cell, const math::GaussPoints& rule, const Integrand& integrand) {
+  decltype(integrand(Vec3{})) sum{};
+  const double width = cell.column1 - cell.column0, height = cell.row1 - cell.row0;
+  for (int j = 0; j < rule.count; ++j)
+    for (int i = 0; i < rule.count; ++i) {
+      const double column = cell.column0 + rule.at[i] * width, row = cell.row0 + rule.at[j] * height;
+      const double weight = rule.weight[i] * rule.weight[j] * width * height * env.solid_angle_density(column, row);
+      sum += weight * integrand(env.direction_at(column, row));
+    }
+  return sum;
+}
 
-// The mean of max(0, t)^E over a parallelogram on which t is linear: t0 in the middle, changing by a and b from side to
-// side.
-double linear_mean(double t0, double a, double b, double exponent);
+inline std::array<Cell, 4> quarters(const Cell& c) {
+  const double column = (c.column0 + c.column1) / 2, row = (c.row0 + c.row1) / 2;
+  return {{{c.column0, c.row0, column, row},
+           {column, c.row0, c.column1, row},
+           {c.column0, row, column, c.row1},
+           {column, row, c.column1, c.row1}}};
+}
 
-// The integral of w over the cell.
-Vec3 moment_of_cell(const Environment& env, const Cell& cell);
+// The integral of the direction over a cell, in sr.
+inline Vec3 moment_of_cell(const Environment& env, const Cell& cell) {
+  const double radius = env.radius_rad(cell.column0, cell.row0, cell.column1, cell.row1);
+  if (radius > 0.2) {
+    Vec3 sum;
+    for (const Cell& quarter : quarters(cell)) sum += moment_of_cell(env, quarter);
+    return sum;
+  }
+  return over_cell(env, cell, math::kGaussPoints[radius > 0.01 ? 3 : 1], [](const Vec3& w) { return w; });
+}
 
 // The angle between two unit vectors, to the last digits for any two. Radians.
 inline double angle_between(const Vec3& a, const Vec3& b) {

@@ -8,7 +8,7 @@
 #include <cstdint>
 
 #include "base/parallel.h"
-#include "envmap/internal/mip_read.h"
+#include "envmap/mip.h"
 
 namespace goniochrome::envmap {
 
@@ -157,7 +157,7 @@ const PrefilteredLobe* PrefilteredEnvironment::lobe(double exponent) const {
   const auto same = [exponent](const PrefilteredLobe& l) {
     return l.exponent == exponent || std::fabs(l.exponent - exponent) <= 1e-6 * std::fabs(exponent);
   };
-  if (std::isinf(exponent)) return mirror.map.size > 0 ? &mirror : nullptr;
+  if (paint::is_mirror(exponent)) return mirror.map.size > 0 ? &mirror : nullptr;
   for (const PrefilteredLobe& l : lobes)
     if (same(l)) return &l;
   return same(diffuse) && diffuse.map.size > 0 ? &diffuse : nullptr;

@@ -2,7 +2,6 @@
 // goniochrome-theory(7), PREFILTERING; the file format is in goniochrome-paint(5).
 #pragma once
 
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -10,10 +9,11 @@
 #include "envmap/cube_map.h"
 #include "envmap/sphere_grid.h"
 #include "image/image.h"
+#include "paint/paint.h"
 
 namespace goniochrome::envmap {
 
-constexpr double kMirrorExponent = std::numeric_limits<double>::infinity();
+using paint::kMirrorExponent;
 
 // P_E = (E+1)/(2 pi) * integral of L(w) max(0, d.w)^E dw: a constant map stays itself.
 struct PrefilteredLobe {
@@ -26,6 +26,8 @@ struct PrefilteredLobe {
   double predicted_error = 0;  // of the stored texels; relative
   double lookup_error = 0;     // what a bilinear lookup between them adds; relative
   std::string method;          // how it was computed
+
+  bool is_mirror() const { return paint::is_mirror(exponent); }
 };
 
 // The texels of a map: N along a face, or N rows of a lat-long map.

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <random>
 
-#include "envmap/mip_write.h"
+#include "envmap/mip.h"
 
 namespace goniochrome::envmap {
 namespace {
@@ -49,7 +49,7 @@ PrefilteredEnvironment small_env() {
   return env;
 }
 
-TEST_F(EnvFile, an_environment_returns_as_rounded) {
+TEST_F(EnvFile, EnvironmentReturnsAsRounded) {
   PrefilteredEnvironment env = small_env();
   for (PrefilteredLobe* lobe : {&env.diffuse, &env.lobes[0], &env.lobes[1], &env.mirror}) round_to_storage(*lobe);
   ASSERT_TRUE(write_env(path("x.env.exr"), env, "prefilter-envmap hall.hdr").ok());
@@ -72,7 +72,7 @@ TEST_F(EnvFile, an_environment_returns_as_rounded) {
 }
 
 // Halves are kept where they meet the tolerance; the textbook writer always stores them.
-TEST_F(EnvFile, storage_keeps_the_tolerance) {
+TEST_F(EnvFile, StorageKeepsTheTolerance) {
   for (const double tolerance : {1e-2, 1e-3, 3e-4, 1e-5}) {
     PrefilteredLobe lobe = random_lobe(6, 16, tolerance, .1, 10);
     const CubeMap before = lobe.map;
@@ -89,13 +89,13 @@ TEST_F(EnvFile, storage_keeps_the_tolerance) {
   }
 }
 
-TEST_F(EnvFile, HardCase_prefilter_sun_storage_never_overflows_or_loses_the_dark) {
+TEST_F(EnvFile, HardCase_PrefilterSunStorageNeverOverflowsOrLosesTheDark) {
   EXPECT_EQ(storage_type(random_lobe(6, 4, 1e-2, 1, 1e9)), image::PixelType::kFloat);
   EXPECT_EQ(storage_type(random_lobe(6, 4, 1e-2, 1e-9, 1e-8)), image::PixelType::kFloat);  // halves end at 6e-8
   EXPECT_EQ(storage_type(random_lobe(6, 4, 1e-2, 1, 60000)), image::PixelType::kHalf);
 }
 
-TEST_F(EnvFile, mip_mapped_cubes_come_back_as_lobes) {
+TEST_F(EnvFile, MipMappedCubesComeBackAsLobes) {
   std::vector<PrefilteredLobe> levels;
   const auto exponents = mip_exponents({16}, 16);
   ASSERT_TRUE(exponents.ok());
@@ -119,7 +119,7 @@ TEST_F(EnvFile, mip_mapped_cubes_come_back_as_lobes) {
   EXPECT_THAT(read_env(path("n.exr")).error().message, HasSubstr("no level has the exponent 1"));
 }
 
-TEST_F(EnvFile, other_files_are_refused_by_part) {
+TEST_F(EnvFile, OtherFilesAreRefusedByPart) {
   ASSERT_TRUE(
       image::write_exr(path("p.exr"), {{"", {2, 2, 3, std::vector<float>(12, 1.0F), {}}, {}, image::PixelType::kHalf}})
           .ok());

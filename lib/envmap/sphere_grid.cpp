@@ -5,7 +5,7 @@
 
 #include "base/angles.h"
 #include "envmap/cube_map.h"
-#include "math/gauss_rule.h"
+#include "math/quadrature.h"
 
 namespace goniochrome::envmap {
 

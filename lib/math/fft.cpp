@@ -35,6 +35,7 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using fft::Pass;
 
+// x_0 + x_1, and x_0 - x_1 times its twiddle.
 void Radix2(const Pass& f) {
   const hn::ScalableTag<double> d;
   for (std::size_t p = 0; p < f.m; ++p) {
@@ -52,6 +53,8 @@ void Radix2(const Pass& f) {
   }
 }
 
+// Two layers of sums and differences in registers; a factor of i is a swap of real and imaginary parts. Then the
+// twiddles of the outputs 1 to 3.
 void Radix4(const Pass& f) {
   const hn::ScalableTag<double> d;
   const auto sign = hn::Set(d, f.sign);
@@ -160,6 +163,7 @@ Fft::Fft(std::size_t length) : length_(length), cosine_(length), sine_(length) {
     for (; rest % r == 0; rest /= r) radices_.push_back(r);
 }
 
+// One pass for each factor, from one pair of arrays to the other; what ends in the scratch arrays is copied back.
 void Fft::transform(int sign, std::size_t lanes, double* re, double* im, double* scratch_re, double* scratch_im) const {
   double *from_re = re, *from_im = im, *to_re = scratch_re, *to_im = scratch_im;
   std::size_t n = length_, s = 1;

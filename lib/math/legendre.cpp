@@ -50,6 +50,7 @@ HWY_INLINE void ForEachDegree(const Rings& rings, const legendre::Steps& steps, 
   }
 }
 
+// For every degree: six sums over the rings, in registers, of what the recursion yields vector by vector.
 void Sums(const Rings& rings, const legendre::Steps& steps, std::size_t degrees, const double* even, const double* odd,
           double* out) {
   const hn::ScalableTag<double> d;
@@ -77,6 +78,7 @@ void Sums(const Rings& rings, const legendre::Steps& steps, std::size_t degrees,
   });
 }
 
+// For every degree: what the recursion yields, times the six coefficients, added to the values on the rings.
 void Values(const Rings& rings, const legendre::Steps& steps, std::size_t degrees, const double* in, double* even,
             double* odd) {
   const hn::ScalableTag<double> d;
@@ -110,6 +112,7 @@ namespace {
 constexpr std::size_t kPadding = 8;
 constexpr double kSmallestLog = -644.0;  // ln 1e-280
 
+// The factors of the recursion for one order, and P_mm by its logarithm, since sin^m leaves the range of doubles.
 legendre::Steps steps_of(const Rings& rings, int m, int degree) {
   legendre::Steps steps;
   const double mm = static_cast<double>(m) * m;

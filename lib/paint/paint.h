@@ -2,6 +2,7 @@
 // goniochrome-theory(7), PAINT REPRESENTATIONS; goniochrome-paint(5) has the file format.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -47,11 +48,20 @@ struct ColorMapReference {
   double index = 1.5;
 };
 
-// One lobe's weights, in 1/sr per working-space channel; an infinite exponent is the mirror (weight times Fresnel).
+// The exponent that stands for the mirror: a lobe without width, whose weight is a share of what Fresnel's equations
+// reflect.
+inline constexpr double kMirrorExponent = std::numeric_limits<double>::infinity();
+constexpr bool is_mirror(double exponent) {
+  return exponent == kMirrorExponent;
+}
+
+// One lobe's weights, in 1/sr per working-space channel; of the mirror, the weight times Fresnel.
 struct Lobe {
   double exponent = 1;
   color::Rgb directional_diffuse;
   color::Rgb gloss;
+
+  bool is_mirror() const { return paint::is_mirror(exponent); }
 };
 
 // The weights at one angle of the viewer from the normal.

@@ -7,33 +7,27 @@
 
 #include "base/angles.h"
 #include "base/parallel.h"
-#include "envmap/patch.h"
-#include "math/gauss_rule.h"
-#include "prefilter/internal/lobe_rows.h"
+#include "math/quadrature.h"
+#include "prefilter/internal/kernel.h"
+#include "prefilter/internal/lobe_patch.h"
 
 namespace goniochrome::prefilter {
 
 namespace {
 
-constexpr double kRelative = 1e-8;       // of the pieces that need recursion
-constexpr double kHorizonShare = 1e-10;  // of the flux; some 1e3 texels on a horizon err at random
-constexpr double kCoarse = 0.05;         // rad: texels beyond this are no small patches
-constexpr double kFloor = 1e-3;          // of the mean: see LobeError
+constexpr double kRelative = 1e-8;    // of the pieces that need recursion
+constexpr double kEdgeShare = 1e-10;  // of the flux; some 1e3 texels on an edge err at random
+constexpr double kCoarse = 0.05;      // rad: texels beyond this are no small patches
+constexpr double kFloor = 1e-3;       // of the mean: see LobeError
 
 // As many nodes across a texel as a lobe sqrt(E) times narrower than a radian wants: with v = texel sqrt(E), two points
 // err by v^4/4320, three by v^6/2e6, four by v^8/1.8e9 times Hermite polynomials of the distance in lobe widths; 5
 // widths out (e^-12 of the peak) that is 1e-7 of the value there at the limits below.
-math::GaussRule nodes_for(double texel_rad, double exponent) {
-  const double v = texel_rad * std::sqrt(std::max(exponent, 1.0));
+math::GaussRule nodes_for(double texel_rad, double sharpness) {
+  const double v = texel_rad * sharpness;
   if (v <= 0.03) return math::gauss_rule(2, 1);
   if (v <= 0.15) return math::gauss_rule(3, 1);
   return math::gauss_rule(4, std::max(1, static_cast<int>(std::ceil(v / 0.4))));
-}
-
-// Nothing of cos^E beyond this angle, in radians: below 1e-30 of the peak.
-double support_rad(double exponent) {
-  const double cosine = exponent > 0 ? std::exp(-69.0 / exponent) : 0;
-  return std::acos(cosine);
 }
 
 // d.w at the middles of a row of texels, quickly: a turn from column to column on a lat-long map, a line on a face.
@@ -72,41 +66,40 @@ class RowCosines {
   int row_ = 0;
 };
 
-// The part of itself that a texel cut by the horizon may be off by, so that no more flux than `allowed` is; no
-// less than `least`.
-double at_horizon(const envmap::Environment& env, const envmap::Cell& cell, const float* rgb, double exponent,
-                  double allowed, double least) {
+// The part of itself that a texel which the edge cuts may be off by, so that no more flux than `allowed` is; no less
+// than `least`.
+double at_edge(const envmap::Environment& env, const envmap::Cell& cell, const float* rgb, const ZonalKernel& kernel,
+               double allowed, double least) {
   const double radius = env.radius_rad(cell.column0, cell.row0, cell.column1, cell.row1);
   const double share = std::max({rgb[0], rgb[1], rgb[2]}) *
-                       env.solid_angle(cell.column0, cell.row0, cell.column1, cell.row1) *
-                       std::pow(std::min(1.0, 2 * radius), exponent);
+                       env.solid_angle(cell.column0, cell.row0, cell.column1, cell.row1) * kernel.near_edge(2 * radius);
   return std::clamp(allowed / share, least, 0.1);
 }
 
-// The texels whose quadrature the horizon spoils, done one by one; `done` tells the row sum to leave them out.
-class HorizonRow {
+// The texels of a row whose quadrature the edge of the kernel spoils, summed one by one; rest() is the row without
+// them.
+class EdgeRow {
  public:
   // `allowed` is the flux that a texel may be off by.
-  HorizonRow(const envmap::Environment& env, const Vec3& d, double exponent, int row, double allowed) {
-    // The band along the horizon is this part of the whole: of a sharp lobe, nothing.
+  EdgeRow(const envmap::Environment& env, const Vec3& d, const ZonalKernel& kernel, int row, double allowed) {
+    // The band along the edge is this part of the whole: of a sharp cosine lobe, nothing.
     const double radius = env.largest_texel_rad();
-    if (std::pow(2 * radius, exponent + 1) < 1e-11) return;
-    // A power below 2 also bends next to the horizon.
-    const double margin = exponent < 2 && exponent != 0 && exponent != 1 ? 4 : 1;
+    if (!kernel.edge().exists() || 2 * radius * kernel.near_edge(2 * radius) < 1e-11) return;
+    const double margin = kernel.bends_beside_edge() ? 4 : 1, edge = kernel.edge().angle_rad;
     RowCosines cosine(env, d, row);
     for (int column = 0; column < env.width(); ++column) {
       const double t = cosine.at(column);
-      if (std::fabs(t) > margin * radius) continue;
+      if (std::fabs(t - kernel.edge().cosine) > margin * radius) continue;
       const double cell = env.radius_rad(column, row, column + 1, row + 1);
       const double theta = envmap::angle_between(d, env.direction(column, row));
-      if (theta - cell >= kPi / 2 || theta + margin * cell <= kPi / 2) continue;
+      if (theta - cell >= edge || theta + margin * cell <= edge) continue;
       if (rgb_.empty())
         rgb_.assign(env.radiance(0, row), env.radiance(0, row) + 3 * static_cast<std::size_t>(env.width()));
       float* rgb = &rgb_[3 * static_cast<std::size_t>(column)];
       if (rgb[0] == 0 && rgb[1] == 0 && rgb[2] == 0) continue;
       const envmap::Cell whole = {double(column), double(row), double(column + 1), double(row + 1)};
-      const double k = envmap::lobe_over_cell(env, whole, d, exponent, kRelative,
-                                              at_horizon(env, whole, rgb, exponent, allowed, 10 * kRelative));
+      const double k =
+          lobe_over_cell(env, whole, d, kernel, kRelative, at_edge(env, whole, rgb, kernel, allowed, 10 * kRelative));
       sum_ += k * Vec3{rgb[0], rgb[1], rgb[2]};
       std::fill(rgb, rgb + 3, 0.0F);
     }
@@ -122,18 +115,18 @@ class HorizonRow {
   Vec3 sum_;
 };
 
-// Everything that does not depend on the direction.
+// The sum over all texels at any direction; the nodes and their directions are made once.
 class Summation {
  public:
-  Summation(const envmap::Environment& env, double exponent)
+  Summation(const envmap::Environment& env, const ZonalKernel& kernel)
       : env_(env),
-        exponent_(exponent),
+        kernel_(kernel),
         coarse_(env.layout() == envmap::Environment::Layout::kAngular ||
-                env.largest_texel_rad() > std::min(kCoarse, 2 / std::sqrt(std::max(exponent, 1.0)))) {
+                env.largest_texel_rad() > std::min(kCoarse, 2 / kernel.sharpness())) {
     const Vec3 flux = env.flux();
-    allowed_ = kHorizonShare * std::max({flux.x, flux.y, flux.z, 1e-300}) / (exponent + 1);
+    allowed_ = kEdgeShare * std::max({flux.x, flux.y, flux.z, 1e-300}) / (2 * kPi * kernel.scale());
     if (coarse_) return;
-    nodes_ = nodes_for(env.largest_texel_rad(), exponent);
+    nodes_ = nodes_for(env.largest_texel_rad(), kernel.sharpness());
     const std::size_t n = static_cast<std::size_t>(env.width());
     for (std::size_t k = 0; k < nodes_.at.size(); ++k) {
       std::vector<double> a(n), b(n);
@@ -152,22 +145,24 @@ class Summation {
     }
   }
 
+  // Row by row. Step 1: rows beyond the support add nothing. Step 2: the texels that the edge spoils, one by one. Step
+  // 3: the rest of the row, summed at every node of the quadrature across its texels.
   Vec3 at(const Vec3& d) const {
     Vec3 sum;
     const bool flat = env_.layout() == envmap::Environment::Layout::kLatLong;
-    const double support = support_rad(exponent_), theta_d = std::atan2(std::hypot(d.x, d.z), d.y);
+    const double support = kernel_.support_rad(), theta_d = std::atan2(std::hypot(d.x, d.z), d.y);
     for (int row = 0; row < env_.height(); ++row) {
       if (flat && std::fabs((row + 0.5) * kPi / env_.height() - theta_d) > support + kPi / env_.height()) continue;
       if (coarse_) {
         sum += recursive_row(d, row);
         continue;
       }
-      const HorizonRow horizon(env_, d, exponent_, row, allowed_);
-      sum += horizon.sum();
+      const EdgeRow edge(env_, d, kernel_, row, allowed_);
+      sum += edge.sum();
       for (std::size_t j = 0; j < nodes_.at.size(); ++j)
-        sum += flat ? lat_long_row(d, row, horizon.rest(env_, row), j) : cube_row(d, row, horizon.rest(env_, row), j);
+        sum += flat ? lat_long_row(d, row, edge.rest(env_, row), j) : cube_row(d, row, edge.rest(env_, row), j);
     }
-    return (exponent_ + 1) / (2 * kPi) * sum;
+    return kernel_.scale() * sum;
   }
 
  private:
@@ -177,8 +172,8 @@ class Summation {
       const float* rgb = env_.radiance(column, row);
       if (rgb[0] == 0 && rgb[1] == 0 && rgb[2] == 0) continue;
       const envmap::Cell cell = {double(column), double(row), column + 1.0, row + 1.0};
-      sum += envmap::lobe_over_cell(env_, cell, d, exponent_, kRelative,
-                                    at_horizon(env_, cell, rgb, exponent_, allowed_, 100 * kRelative)) *
+      sum += lobe_over_cell(env_, cell, d, kernel_, kRelative,
+                            at_edge(env_, cell, rgb, kernel_, allowed_, 100 * kRelative)) *
              Vec3{rgb[0], rgb[1], rgb[2]};
     }
     return sum;
@@ -190,8 +185,8 @@ class Summation {
     Vec3 sum;
     for (std::size_t i = 0; i < nodes_.at.size(); ++i) {
       double rgb_sum[3] = {0, 0, 0};
-      add_lat_long_row(rgb, static_cast<std::size_t>(env_.width()), first_[i].data(), second_[i].data(),
-                       d.y * std::cos(theta), d.x * ring, d.z * ring, exponent_, rgb_sum);
+      kernel_.add_lat_long_row(rgb, static_cast<std::size_t>(env_.width()), first_[i].data(), second_[i].data(),
+                               d.y * std::cos(theta), d.x * ring, d.z * ring, rgb_sum);
       sum += weight * nodes_.weight[i] * Vec3{rgb_sum[0], rgb_sum[1], rgb_sum[2]};
     }
     return sum;
@@ -208,17 +203,17 @@ class Summation {
     Vec3 sum;
     for (std::size_t i = 0; i < nodes_.at.size(); ++i) {
       double rgb_sum[3] = {0, 0, 0};
-      add_cube_row(rgb, static_cast<std::size_t>(n), first_[i].data(), second_[i].data(), dot(d, middle + t * t_axis),
-                   dot(d, s_axis), 1 + t * t, exponent_, rgb_sum);
+      kernel_.add_cube_row(rgb, static_cast<std::size_t>(n), first_[i].data(), second_[i].data(),
+                           dot(d, middle + t * t_axis), dot(d, s_axis), 1 + t * t, rgb_sum);
       sum += weight * nodes_.weight[i] * Vec3{rgb_sum[0], rgb_sum[1], rgb_sum[2]};
     }
     return sum;
   }
 
   const envmap::Environment& env_;
-  double exponent_;
+  const ZonalKernel& kernel_;
   bool coarse_;         // texels so large or odd, or a lobe so narrow, that every texel is done by recursion
-  double allowed_ = 0;  // flux that a texel on the horizon may be off by
+  double allowed_ = 0;  // flux that a texel on the edge may be off by
   math::GaussRule nodes_;
   std::vector<std::vector<double>> first_, second_;  // lat-long: sin and cos of the longitude; cube: s and ds/dcolumn
 };
@@ -258,7 +253,9 @@ class MirrorSearch {
   MirrorSearch(const envmap::Environment& env, const envmap::SphereGrid& grid, const envmap::Rotation& turn)
       : env_(env), grid_(grid), turn_(turn) {}
 
-  // The integral over columns s0..s1 and rows t0..t1 within one texel.
+  // The integral over columns s0..s1 and rows t0..t1 within one texel. Step 1: what the middle and the corners see.
+  // Step 2: all the same, or so deep that it does not matter: the part is done. Step 3: one line through it: both sides
+  // by their areas. Step 4: else its quarters.
   Vec3 integral(double s0, double t0, double s1, double t1, int depth) const {
     // A texel's corner may lie unseen between the five points of a larger part, and edges bend.
     constexpr int kLeast = 7, kMost = 20;
@@ -334,38 +331,20 @@ class MirrorSearch {
   const envmap::Rotation& turn_;
 };
 
-}  // namespace
-
-Vec3 reference_lobe(const envmap::Environment& env, const Vec3& d, double exponent) {
-  if (std::isinf(exponent)) {
-    const float* rgb = env.lookup(d);
-    return {rgb[0], rgb[1], rgb[2]};
-  }
-  return Summation(env, exponent).at(d);
-}
-
-Vec3 reference_mirror(const envmap::Environment& env, const envmap::SphereGrid& grid, const envmap::Rotation& turn,
-                      int column, int row) {
-  return (1 / grid.solid_angle(column, row)) *
-         MirrorSearch(env, grid, turn).integral(column, row, column + 1, row + 1, 0);
-}
-
-LobeError lobe_error(const envmap::Environment& env, const envmap::PrefilteredLobe& lobe, int count, int extremes,
-                     std::uint64_t seed, const envmap::Rotation& turn) {
+// The error of some texels of a map against truth(column, row).
+template <class Truth>
+LobeError map_error(const envmap::PrefilteredLobe& lobe, const envmap::SphereGrid& grid, int count, int extremes,
+                    std::uint64_t seed, const Truth& truth) {
   const envmap::CubeMap& map = lobe.map;
-  const envmap::SphereGrid grid = envmap::map_grid(lobe.layout, map.size);
   const std::vector<std::size_t> texels = chosen_texels(map, count, extremes, seed);
   const Vec3 mean = mean_of(grid, map.texels);
   const double gray = std::max({mean.x, mean.y, mean.z});
-  const bool mirror = std::isinf(lobe.exponent);
-  const Summation summation(env, mirror ? 1 : lobe.exponent);
   std::vector<double> errors(texels.size());
   parallel_for(texels.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t index = texels[i], width = static_cast<std::size_t>(grid.width());
       const int column = static_cast<int>(index % width), row = static_cast<int>(index / width);
-      const Vec3 wanted = mirror ? reference_mirror(env, grid, turn, column, row)
-                                 : summation.at(turn.to_environment(grid.direction(column, row)));
+      const Vec3 wanted = truth(column, row);
       for (int c = 0; c < 3; ++c) {
         const double scale = std::max({wanted[c], kFloor * mean[c], kFloor * kFloor * gray, 1e-300});
         errors[i] = std::max(errors[i], std::fabs(map.texels[3 * index + c] - wanted[c]) / scale);
@@ -379,6 +358,40 @@ LobeError lobe_error(const envmap::Environment& env, const envmap::PrefilteredLo
     result.mean += error / static_cast<double>(errors.size());
   }
   return result;
+}
+
+}  // namespace
+
+Vec3 reference_lobe(const envmap::Environment& env, const Vec3& d, double exponent) {
+  if (!paint::is_mirror(exponent)) return reference_lobe(env, d, CosineKernel(exponent));
+  const float* rgb = env.lookup(d);
+  return {rgb[0], rgb[1], rgb[2]};
+}
+
+Vec3 reference_lobe(const envmap::Environment& env, const Vec3& d, const ZonalKernel& kernel) {
+  return Summation(env, kernel).at(d);
+}
+
+Vec3 reference_mirror(const envmap::Environment& env, const envmap::SphereGrid& grid, const envmap::Rotation& turn,
+                      int column, int row) {
+  return (1 / grid.solid_angle(column, row)) *
+         MirrorSearch(env, grid, turn).integral(column, row, column + 1, row + 1, 0);
+}
+
+LobeError lobe_error(const envmap::Environment& env, const envmap::PrefilteredLobe& lobe, int count, int extremes,
+                     std::uint64_t seed, const envmap::Rotation& turn) {
+  if (!lobe.is_mirror()) return lobe_error(env, lobe, CosineKernel(lobe.exponent), count, extremes, seed, turn);
+  const envmap::SphereGrid grid = envmap::map_grid(lobe.layout, lobe.map.size);
+  return map_error(lobe, grid, count, extremes, seed,
+                   [&](int column, int row) { return reference_mirror(env, grid, turn, column, row); });
+}
+
+LobeError lobe_error(const envmap::Environment& env, const envmap::PrefilteredLobe& lobe, const ZonalKernel& kernel,
+                     int count, int extremes, std::uint64_t seed, const envmap::Rotation& turn) {
+  const envmap::SphereGrid grid = envmap::map_grid(lobe.layout, lobe.map.size);
+  const Summation summation(env, kernel);
+  return map_error(lobe, grid, count, extremes, seed,
+                   [&](int column, int row) { return summation.at(turn.to_environment(grid.direction(column, row))); });
 }
 
 }  // namespace goniochrome::prefilter

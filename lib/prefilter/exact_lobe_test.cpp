@@ -7,8 +7,8 @@
 #include <random>
 
 #include "base/angles.h"
-#include "envmap/patch.h"
 #include "math/cosine_power.h"
+#include "prefilter/internal/lobe_patch.h"
 
 namespace goniochrome::prefilter {
 namespace {
@@ -45,7 +45,7 @@ Vec3 random_direction(std::mt19937_64& random) {
 }
 
 // A constant map stays itself, for every exponent and layout; only the pieces along the horizon are not exact.
-TEST(Reference, constant_map_is_one) {
+TEST(ExactLobe, OfAConstantMapIsOne) {
   std::vector<envmap::Environment> all;
   for (const int height : {1, 3, 64}) all.push_back(lat_long(height, [](const Vec3&) { return Vec3{1, 1, 1}; }));
   all.push_back(lat_long(
@@ -68,7 +68,7 @@ TEST(Reference, constant_map_is_one) {
 }
 
 // The rows of many texels at a time against the recursion, texel by texel.
-TEST(Reference, rows_equal_the_recursion_texel_by_texel) {
+TEST(ExactLobe, RowsEqualTheRecursionTexelByTexel) {
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> unit(0, 1);
   const envmap::Environment flat = lat_long(64, [&](const Vec3&) {
@@ -85,7 +85,7 @@ TEST(Reference, rows_equal_the_recursion_texel_by_texel) {
         for (int column = 0; column < env->width(); ++column) {
           const float* rgb = env->radiance(column, row);
           const envmap::Cell cell = {double(column), double(row), column + 1.0, row + 1.0};
-          sum += envmap::lobe_over_cell(*env, cell, d, exponent, 1e-8, 1e-5) * Vec3{rgb[0], rgb[1], rgb[2]};
+          sum += lobe_over_cell(*env, cell, d, CosineKernel(exponent), 1e-8, 1e-5) * Vec3{rgb[0], rgb[1], rgb[2]};
         }
       sum = (exponent + 1) / (2 * kPi) * sum;
       const Vec3 got = reference_lobe(*env, d, exponent);
@@ -95,7 +95,7 @@ TEST(Reference, rows_equal_the_recursion_texel_by_texel) {
 }
 
 // One texel far from the middle of the lobe is its solid angle times (E+1)/2pi cos^E.
-TEST(Reference, one_texel_map_is_the_cosine_power) {
+TEST(ExactLobe, OfOneTexelIsTheCosinePower) {
   image::Image image = {360, 180, 3, std::vector<float>(360 * 180 * 3), {}};
   for (int c = 0; c < 3; ++c) image.pixel(100, 60)[c] = 5;
   const envmap::Environment env = envmap::Environment::from_lat_long(image, BadPixels::kError, "one").value();
@@ -117,7 +117,7 @@ TEST(Reference, one_texel_map_is_the_cosine_power) {
 }
 
 // Light from z > 0 alone, closed forms: E = 0: 1 - angle/pi; E = 1: (1 + cos)/2; E = 2: for a half-space, by parts.
-TEST(Reference, half_sphere_map_is_the_published_integral) {
+TEST(ExactLobe, OfAHalfSphereIsThePublishedIntegral) {
   const envmap::Environment env = lat_long(90, [](const Vec3& d) { return d.x > 0 ? Vec3{1, 1, 1} : Vec3{0, 0, 0}; });
   for (double angle = 0; angle <= kPi + 1e-9; angle += kPi / 12) {
     const Vec3 d = {std::cos(angle), std::sin(angle), 0};
@@ -127,16 +127,16 @@ TEST(Reference, half_sphere_map_is_the_published_integral) {
 }
 
 // Convergence: what the recursion answers at a coarse and at a fine setting agrees; cells of 15 deg.
-TEST(Patch, recursion_converges) {
+TEST(ExactLobe, RecursionConverges) {
   const envmap::Environment env = lat_long(12, [](const Vec3&) { return Vec3{1, 1, 1}; });
   std::mt19937_64 random(4);
   for (const double exponent : {0.0, 0.3, 1.0, 6.0, 300.0, 1e5})
     for (int i = 0; i < 30; ++i) {
       const envmap::Cell cell = {double(i % 24), double(i % 12), i % 24 + 1.0, i % 12 + 1.0};
       const Vec3 d = normalized(env.direction(i % 24, i % 12) + 0.3 * random_direction(random));
-      const double fine = envmap::lobe_over_cell(env, cell, d, exponent, 1e-12, 1e-6);
+      const double fine = lobe_over_cell(env, cell, d, CosineKernel(exponent), 1e-12, 1e-6);
       const double area = env.solid_angle(i % 24, i % 12);
-      EXPECT_NEAR(envmap::lobe_over_cell(env, cell, d, exponent, 1e-8, 1e-4), fine, 1e-4 * area / (exponent + 1))
+      EXPECT_NEAR(lobe_over_cell(env, cell, d, CosineKernel(exponent), 1e-8, 1e-4), fine, 1e-4 * area / (exponent + 1))
           << exponent;
     }
 }

@@ -11,7 +11,8 @@ namespace goniochrome::prefilter {
 
 namespace {
 
-// 128 bits of a stream of words: two multiplicative hashes with different odd factors. Not meant against an adversary.
+// 128 bits that stand for a stream of words: two multiplicative hashes with different odd factors. They tell maps apart
+// that differ by accident, not those that somebody made alike on purpose.
 class Digest {
  public:
   void add(std::uint64_t word) {

@@ -1,5 +1,6 @@
-// Lobes already made, kept in a folder under a key of all that shapes them: the radiance of the environment, the turn,
-// the exponent, the size, the layout, the tolerance and the version of the program.
+// Keeps the maps of lobes in a folder, so that a later run with the same environment need not filter it again. The name
+// of a file is made of all that shapes the map: the radiance of the environment, the turn, the exponent, the size, the
+// layout, the tolerance and the version of the program.
 #pragma once
 
 #include <optional>
@@ -12,11 +13,12 @@ namespace goniochrome::prefilter {
 
 class LobeCache {
  public:
-  // Opens a folder, making it where it is not there. Error: it cannot be made or is no folder.
+  // Opens a folder, and makes it if it is not there. Error: it cannot be made, or it is no folder.
   static Result<LobeCache> open(const std::string& folder, const envmap::Environment& env,
                                 const PrefilterRequest& request, const std::string& version);
 
-  // A lobe with its errors and method as they were, or nothing; a file that is not what it should be is as none.
+  // A lobe with the errors and the method that it was kept with, or nothing; a file that does not fit counts as
+  // nothing.
   std::optional<envmap::PrefilteredLobe> find(const LobePlan& plan) const;
 
   // Writes a lobe into the folder, whole or not at all. Error: the file and the system's reason.

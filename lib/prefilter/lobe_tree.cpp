@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "base/angles.h"
-#include "envmap/patch.h"
-#include "math/cosine_power.h"
+#include "prefilter/internal/kernel.h"
+#include "prefilter/internal/lobe_patch.h"
 
-// Over a block in front of the horizon the kernel K(t) = t^E is taken to first order around the block's axis, which
-// integrates exactly with the block's flux F and moment M:
+// Over a block inside the edge the kernel K(t) is taken to first order around the block's axis, which integrates
+// exactly with the block's flux F and moment M:
 //   F K(t0) + K'(t0) (d.M - t0 F),   off by at most F max|K''| (t - t0)^2 / 2.
 // A block is opened where that exceeds its share of the tolerance. All terms are positive, so an error relative to a
 // block's own contribution is one relative to the sum; and a block may also err by its share of the whole sum C, the
@@ -31,11 +31,9 @@ Vec3 vec(const float* v) {
 
 struct LobeTree::Walk {
   Vec3 d;
-  double exponent;
+  const ZonalKernel& kernel;
   double tolerance;
   Vec3 per_flux;  // 1 / C, per channel
-
-  double power(double t) const { return math::cosine_power(t, exponent); }
 };
 
 // Adds what a block gives, where that is known well enough; else says that its parts are wanted.
@@ -48,22 +46,23 @@ bool LobeTree::opens(const Walk& walk, const envmap::BlockTree::Block& block, Ve
   const double t0 = dot(walk.d, vec(block.axis)), s0 = std::sqrt(std::max(0.0, 1 - t0 * t0));
   const double cosine = block.cosine, sine = block.sine;
   const double high = t0 >= cosine ? 1 : t0 * cosine + s0 * sine;
-  if (high <= 0) return false;
+  const ZonalKernel& kernel = walk.kernel;
+  const double edge = kernel.edge().cosine;
+  if (high <= edge) return false;
   const double low = t0 <= -cosine || cosine < 0 ? -1 : t0 * cosine - s0 * sine;
-  const double share = block.area / (4 * kPi), most = walk.power(high);
+  const double share = block.area / (4 * kPi), most = kernel.value(high);
   const double budget = walk.tolerance * share;
   if (weight * most <= 0.1 * budget) return false;  // all of them together: a tenth of the tolerance
-  if (low <= 0) {
+  if (low <= edge) {
     if (!(cosine > 0.8 && weight * most <= budget / std::max(sine, 1e-9))) return true;
-    // On average half of the block is above the horizon.
-    sum += 0.5 * most / (walk.exponent + 1) * vec(block.flux);
+    // On average half of the block is inside the edge.
+    sum += 0.5 * kernel.mean_to_edge(most) * vec(block.flux);
     return false;
   }
-  const double e = walk.exponent, least = walk.power(low);
-  const double bend = e * std::fabs(e - 1) * std::max(least / (low * low), most / (high * high));
-  const double step = std::max(high - t0, t0 - low), error = 0.5 * bend * step * step;
+  const double least = kernel.value(low);
+  const double step = std::max(high - t0, t0 - low), error = 0.5 * kernel.bend(low, high, least, most) * step * step;
   if (error > walk.tolerance * least && weight * error > budget) return true;
-  const double k = walk.power(t0), slope = e * k / t0;
+  const double k = kernel.value(t0), slope = kernel.slope(t0, k);
   for (int c = 0; c < 3; ++c)
     sum[c] += block.flux[c] * k + slope * (dot(walk.d, vec(block.moment[c])) - t0 * block.flux[c]);
   return false;
@@ -79,11 +78,11 @@ void LobeTree::add_texel(const Walk& walk, int column, int row, Vec3& sum) const
   // do so at random.
   const double allowed = 1e-3 * walk.tolerance / weight;
   const double relative = std::clamp(allowed, 0.1 * walk.tolerance, 1e-2);
-  const double cut = std::pow(std::min(1.0, 2 * env.largest_texel_rad()), walk.exponent);
+  const double cut = walk.kernel.near_edge(2 * env.largest_texel_rad());
   const envmap::Cell cell = {double(column), double(row), column + 1.0, row + 1.0};
-  sum += envmap::lobe_over_cell(env, cell, walk.d, walk.exponent, relative,
-                                std::clamp(allowed / cut, 0.1 * walk.tolerance, 0.1)) *
-         vec(rgb);
+  sum +=
+      lobe_over_cell(env, cell, walk.d, walk.kernel, relative, std::clamp(allowed / cut, 0.1 * walk.tolerance, 0.1)) *
+      vec(rgb);
 }
 
 Vec3 LobeTree::walked(const Walk& walk) const {
@@ -94,14 +93,18 @@ Vec3 LobeTree::walked(const Walk& walk) const {
 }
 
 Vec3 LobeTree::lobe(const Vec3& d, double exponent, double tolerance) const {
-  const double scale = (exponent + 1) / (2 * kPi);
+  return lobe(d, CosineKernel(exponent), tolerance);
+}
+
+Vec3 LobeTree::lobe(const Vec3& d, const ZonalKernel& kernel, double tolerance) const {
+  const double scale = kernel.scale();
   // The least C that matters: P = scale C at the floor of the mean.
   Vec3 floor;
   for (int c = 0; c < 3; ++c)
     floor[c] = std::max({kFloor * flux_[c], kFloor * kFloor * std::max({flux_.x, flux_.y, flux_.z}), 1e-300}) /
                (4 * kPi * scale);
   const auto inverse = [](const Vec3& c) { return Vec3{1 / c.x, 1 / c.y, 1 / c.z}; };
-  Walk walk = {d, exponent, kCoarseTolerance, inverse(floor)};
+  Walk walk = {d, kernel, kCoarseTolerance, inverse(floor)};
   if (tolerance < kCoarseTolerance) {
     const Vec3 coarse = walked(walk);
     Vec3 c;

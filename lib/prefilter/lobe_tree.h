@@ -1,10 +1,12 @@
-// One lobe at one direction by a walk over a tree of texel blocks: right for any exponent and any environment, and fast
-// where the lobe is narrow. goniochrome-theory(7), PREFILTERING, Blocks.
+// Filters an environment at single directions by a walk over a tree of texel blocks: right for any kernel and any
+// environment, and fast where the lobe is narrow. goniochrome-theory(7), PREFILTERING, Blocks.
 #pragma once
 
 #include "envmap/block_tree.h"
 
 namespace goniochrome::prefilter {
+
+class ZonalKernel;
 
 class LobeTree {
  public:
@@ -13,6 +15,8 @@ class LobeTree {
 
   // P_E(d) per channel, within about `tolerance` of the larger of its value and 1e-3 of the channel's mean.
   Vec3 lobe(const Vec3& d, double exponent, double tolerance) const;
+  // The same of any kernel (internal/kernel.h).
+  Vec3 lobe(const Vec3& d, const ZonalKernel& kernel, double tolerance) const;
 
  private:
   struct Walk;

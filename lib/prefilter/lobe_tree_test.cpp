@@ -8,7 +8,6 @@
 #include "base/angles.h"
 #include "base/hard_case_for_test.h"
 #include "prefilter/exact_lobe.h"
-#include "prefilter/internal/mirror.h"
 
 namespace goniochrome::prefilter {
 namespace {
@@ -53,7 +52,7 @@ double truncated_error(const envmap::Environment& env, double exponent) {
   return worst;
 }
 
-TEST(LobeTree, HardCase_prefilter_exponent_every_exponent_is_within_its_tolerance) {
+TEST(HardCase, PrefilterExponentBlocksKeepTheTolerance) {
   double ours = 0, textbook = INFINITY;
   std::mt19937_64 random(9);
   for (const envmap::Environment& env : environments()) {
@@ -75,41 +74,6 @@ TEST(LobeTree, HardCase_prefilter_exponent_every_exponent_is_within_its_toleranc
                                    .ours = ours,
                                    .bound = 1,
                                    .unit = "ratio"});
-}
-
-envmap::CubeMap mirror_map(const envmap::Environment& env, int n) {
-  envmap::CubeMap map(n);
-  map.texels = mirror_values(env, envmap::map_grid(envmap::SphereGrid::Layout::kCube, n), {});
-  return map;
-}
-
-TEST(Mirror, keeps_flux_and_constants_and_copies_an_equal_cube) {
-  for (const envmap::Environment& env : environments())
-    for (const int n : {1, 2, 7, 16, 45}) {
-      const envmap::Environment mirror = envmap::Environment::from_cube(mirror_map(env, n), "mirror");
-      for (int c = 0; c < 3; ++c) EXPECT_NEAR(mirror.flux()[c] / env.flux()[c], 1, 1e-4) << n;
-    }
-  const envmap::Environment cube = environments().back();
-  const envmap::CubeMap same = mirror_map(cube, 45);
-  for (int row = 0; row < 6 * 45; ++row)
-    for (int column = 0; column < 45; ++column)
-      EXPECT_FLOAT_EQ(same.at(row / 45, row % 45, column)[1], cube.radiance(column, row)[1]);
-  image::Image one = {33, 16, 3, std::vector<float>(33 * 16 * 3, 2.5F), {}};
-  const envmap::Environment constant =
-      envmap::Environment::from_lat_long(one, envmap::Environment::BadPixels::kError, "one").value();
-  for (const float v : mirror_map(constant, 9).texels) EXPECT_FLOAT_EQ(v, 2.5F);
-}
-
-TEST(Mirror, equals_a_search_along_the_edges) {
-  for (const envmap::Environment& env : environments()) {
-    envmap::PrefilteredLobe lobe;
-    lobe.exponent = envmap::kMirrorExponent;
-    lobe.map = mirror_map(env, 12);
-    const LobeError error = lobe_error(env, lobe, 24, 3, 3);
-    // The search takes edges as straight over 1/128 of a texel, and a sun outshines the rest of its texel by 1e5.
-    EXPECT_LT(error.max, 1e-3);
-    EXPECT_LT(error.mean, 2e-5);
-  }
 }
 
 }  // namespace

@@ -36,9 +36,10 @@ constexpr double kCoherence = 1.0 / 16;  // see WideLobe
 using Method = LobePlan::Method;
 
 // Whether arc_sums() can stand in for harmonics: the step of exponent 0 leaves it an error of some 1e-5.
-bool arcs_serve(const envmap::Environment& env, double exponent, double tolerance) {
+bool arcs_serve(const envmap::Environment& env, const ZonalKernel& kernel, double tolerance) {
+  using Shape = ZonalKernel::Shape;
   return env.layout() == envmap::Environment::Layout::kLatLong &&
-         (exponent == 1 || (exponent == 0 && tolerance > kArcsOfSteps));
+         (kernel.shape() == Shape::kCosine || (kernel.shape() == Shape::kStep && tolerance > kArcsOfSteps));
 }
 
 // What the method may err by: the tolerance less what the file's rounding takes.
@@ -61,21 +62,23 @@ int mirror_size(const envmap::Environment& env) {
   return std::clamp((env.width() + 3) / 4, 16, 2048);
 }
 
-LobePlan lobe_plan(const envmap::Environment& env, const PrefilterRequest& request, double exponent, int size) {
+LobePlan lobe_plan(const envmap::Environment& env, const PrefilterRequest& request, KernelPointer kernel, int size) {
   LobePlan plan;
-  plan.exponent = exponent;
-  plan.size = size > 0 ? size : own_size(exponent, request.tolerance);
-  plan.lookup_error = lookup_error(exponent, plan.size);
+  plan.exponent = kernel->exponent();
+  plan.kernel = std::move(kernel);
+  plan.size = size > 0 ? size : own_size(plan.exponent, request.tolerance);
+  plan.lookup_error = lookup_error(plan.exponent, plan.size);
   const double tolerance = method_tolerance(request.tolerance);
   // Half of the method's share goes to the degrees left out, relative to the floor.
-  plan.degree = sufficient_degree(exponent, 0.5 * tolerance * kFloor, kMostDegree);
+  plan.degree = sufficient_degree(*plan.kernel, 0.5 * tolerance * kFloor, kMostDegree);
   plan.predicted_error = rounding_error(request.tolerance) + tolerance;
-  const bool arcs = arcs_serve(env, exponent, tolerance);
+  const bool arcs = arcs_serve(env, *plan.kernel, tolerance);
   if (plan.degree >= 0) return plan;
   plan.degree = 0;
   if (arcs && tolerance < kArcs) {
     plan.method = Method::kArcs;
-  } else if ((exponent >= 1 || arcs || tolerance > kFlatLobes) && exponent < kSharpestWide) {
+  } else if (plan.kernel->edge().exists() && (plan.exponent >= 1 || arcs || tolerance > kFlatLobes) &&
+             plan.exponent < kSharpestWide) {
     plan.method = Method::kBrightHarmonics;
     plan.degree = kWideDegree;
   } else {
@@ -123,22 +126,23 @@ float largest_value(const envmap::Environment& env) {
   return most;
 }
 
-// Sums that wait for the first lobe that needs them.
+// What the lobes of a plan share: harmonics, bright texels, the tree of blocks, angles. Each of them is made when the
+// first lobe asks for it.
 class Workshop {
  public:
   Workshop(const envmap::Environment& env, const PrefilterRequest& request, const std::vector<LobePlan>& plan)
       : env_(env), turn_(request.turn), layout_(request.layout), flux_(env.flux()), largest_(largest_value(env)) {
     for (const LobePlan& lobe : plan) {
-      if (lobe.method == Method::kHarmonics && lobe.degree > degree_) degree_ = lobe.degree, sharpest_ = lobe.exponent;
-      if (lobe.method == Method::kBrightHarmonics)
-        widest_ = std::min(widest_, lobe.exponent);  // its k_l are the largest
+      if (lobe.method == Method::kHarmonics && lobe.degree > degree_) degree_ = lobe.degree, sharpest_ = lobe.kernel;
+      if (lobe.method == Method::kBrightHarmonics && (!widest_ || lobe.exponent < widest_->exponent()))
+        widest_ = lobe.kernel;  // its k_l are the largest
     }
   }
 
   const Vec3& flux() const { return flux_; }
   float largest() const { return largest_; }
   const Harmonics& harmonics() {
-    if (!harmonics_) harmonics_.emplace(harmonics_of(env_, zonal_multipliers(sharpest_, degree_)));
+    if (!harmonics_) harmonics_.emplace(harmonics_of(env_, sharpest_->multipliers(degree_)));
     return *harmonics_;
   }
   const LobeTree& tree() {
@@ -150,7 +154,7 @@ class Workshop {
     return *bright_;
   }
   const Harmonics& rest() {
-    if (!rest_) rest_.emplace(harmonics_of(fine(), zonal_multipliers(widest_, kWideDegree), bright().rest()));
+    if (!rest_) rest_.emplace(harmonics_of(fine(), widest_->multipliers(kWideDegree), bright().rest()));
     return *rest_;
   }
   const std::vector<Vec3>& rest_rms() {
@@ -180,7 +184,7 @@ class Workshop {
   Vec3 flux_;
   float largest_;
   int degree_ = -1, angles_size_ = 0;
-  double sharpest_ = 0, widest_ = kSharpestWide;
+  KernelPointer sharpest_, widest_;
   std::optional<Harmonics> harmonics_, rest_;
   std::vector<Vec3> rest_rms_;
   std::optional<LobeTree> tree_;
@@ -202,30 +206,21 @@ void for_each_texel(const envmap::SphereGrid& grid, const envmap::Rotation& turn
 
 // How many taps keep the interpolation below a tenth of the tolerance at the floor: the largest value of a lobe map is
 // at most that of the environment and of all its flux in the middle of the lobe.
-int taps(const Vec3& flux, double most, double exponent, double tolerance) {
+int taps(const Vec3& flux, double most, const ZonalKernel& kernel, double tolerance) {
   const double mean = std::max({flux.x, flux.y, flux.z}) / (4 * kPi);
   if (!(mean > 0)) return taps_for(1);
-  const double peak = std::min(most / mean, 2 * (exponent + 1));
+  const double peak = std::min(most / mean, 4 * kPi * kernel.scale());
   return taps_for(0.1 * tolerance * kFloor / std::max(peak, 1.0));
 }
 
-// sqrt(sum over l > degree of (2l+1) k_l^2): by Cauchy and Schwarz, times the root mean square of what the harmonics
-// leave of the map, a bound on the error.
-double residual_norm(double exponent, int degree) {
-  const int end = degree + 20000;
-  const std::vector<double> k = zonal_multipliers(exponent, end);
-  double sum = 0;
-  for (int l = degree + 1; l <= end; ++l) sum += (2.0 * l + 1) * k[l] * k[l];
-  return std::sqrt(sum);
-}
-
-// A lobe whose kernel bends at the horizon: harmonics of the rest to the degree that the darkest texels need, and the
+// A lobe whose kernel bends at its edge: harmonics of the rest to the degree that the darkest texels need, and the
 // bright texels one by one.
 //
-// What the harmonics of the rest leave out is at most residual_norm() times residual_rms(), reached only by a map whose
-// every degree peaks in phase at one point. Maps come nowhere near: the worst texels of measured maps reach a thirtieth
-// to a fiftieth of it, so a sixteenth is allowed for. A texel that could be off by more than its tolerance all the same
-// (it is dark, or the map is black and white) is done by blocks.
+// What the harmonics of the rest leave out is, by Cauchy and Schwarz, at most norm_beyond() of the kernel times
+// residual_rms() of the map, reached only by a map whose every degree peaks in phase at one point. Maps come nowhere
+// near: the worst texels of measured maps reach a thirtieth to a fiftieth of it, so a sixteenth is allowed for. A texel
+// that could be off by more than its tolerance all the same (it is dark, or the map is black and white) is done by
+// blocks.
 class WideLobe {
  public:
   WideLobe(const LobePlan& plan, double tolerance, Workshop& shop)
@@ -252,7 +247,7 @@ class WideLobe {
     int degree = 0;
     for (const int candidate : degrees) {
       degree = candidate;
-      bound = kCoherence * residual_norm(plan_.exponent, degree) * shop_.rest_rms()[degree];
+      bound = kCoherence * plan_.kernel->norm_beyond(degree) * shop_.rest_rms()[degree];
       if (fits(0.9 * darkest, bound)) break;
     }
     std::vector<float> texels = sum(degree, shop_.grid(plan_.size), shop_.angles(plan_.size));
@@ -270,11 +265,11 @@ class WideLobe {
 
   std::vector<float> sum(int degree, const envmap::SphereGrid& grid, const GridAngles& angles) {
     const BrightTexels& bright = shop_.bright();
-    std::vector<float> texels = lobe_values(shop_.rest(), zonal_multipliers(plan_.exponent, degree), angles,
-                                            taps(shop_.flux(), shop_.largest(), plan_.exponent, tolerance_));
+    std::vector<float> texels = lobe_values(shop_.rest(), plan_.kernel->multipliers(degree), angles,
+                                            taps(shop_.flux(), shop_.largest(), *plan_.kernel, tolerance_));
     if (bright.count() > 0)
       for_each_texel(grid, shop_.turn(), texels, [&](const Vec3& d, float* rgb) {
-        const Vec3 extra = bright.lobe(d, plan_.exponent);
+        const Vec3 extra = bright.lobe(d, *plan_.kernel);
         for (int c = 0; c < 3; ++c) rgb[c] += static_cast<float>(extra[c]);
       });
     return texels;
@@ -295,14 +290,14 @@ class WideLobe {
     for (const std::size_t i : chosen)
       directions.push_back(
           shop_.turn().to_environment(grid.direction(static_cast<int>(i % width), static_cast<int>(i / width))));
-    const bool by_arcs = arcs_serve(shop_.environment(), plan_.exponent, tolerance_);
+    const bool by_arcs = arcs_serve(shop_.environment(), *plan_.kernel, tolerance_);
     const LobeTree* tree = by_arcs ? nullptr : &shop_.tree();
     std::vector<Vec3> values(chosen.size());
-    if (by_arcs) values = arc_sums(shop_.fine(), shop_.bright().rest(), plan_.exponent, directions, tolerance_);
+    if (by_arcs) values = arc_sums(shop_.fine(), shop_.bright().rest(), *plan_.kernel, directions, tolerance_);
     parallel_for(chosen.size(), 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        values[i] += tree ? tree->lobe(directions[i], plan_.exponent, tolerance_)
-                          : shop_.bright().lobe(directions[i], plan_.exponent);
+        values[i] += tree ? tree->lobe(directions[i], *plan_.kernel, tolerance_)
+                          : shop_.bright().lobe(directions[i], *plan_.kernel);
         for (int c = 0; c < 3; ++c) texels[3 * chosen[i] + c] = static_cast<float>(std::max(0.0, values[i][c]));
       }
     });
@@ -314,13 +309,17 @@ class WideLobe {
   Vec3 mean_;
 };
 
+bool is_named_by_exponent(const LobePlan& plan) {
+  return !plan.kernel || dynamic_cast<const CosineKernel*>(plan.kernel.get());
+}
+
 std::vector<float> lobe_by_plan(const LobePlan& plan, double tolerance, Workshop& shop) {
   switch (plan.method) {
     case Method::kMirror:
       return mirror_values(shop.environment(), shop.grid(plan.size), shop.turn());
     case Method::kHarmonics:
-      return lobe_values(shop.harmonics(), zonal_multipliers(plan.exponent, plan.degree), shop.angles(plan.size),
-                         taps(shop.flux(), shop.largest(), plan.exponent, tolerance));
+      return lobe_values(shop.harmonics(), plan.kernel->multipliers(plan.degree), shop.angles(plan.size),
+                         taps(shop.flux(), shop.largest(), *plan.kernel, tolerance));
     case Method::kBrightHarmonics:
     case Method::kArcs:
       return WideLobe(plan, tolerance, shop).values();
@@ -331,7 +330,7 @@ std::vector<float> lobe_by_plan(const LobePlan& plan, double tolerance, Workshop
   std::vector<float> values(3 * static_cast<std::size_t>(grid.width()) * grid.height());
   const LobeTree& tree = shop.tree();
   for_each_texel(grid, shop.turn(), values, [&](const Vec3& d, float* rgb) {
-    const Vec3 value = tree.lobe(d, plan.exponent, tolerance);
+    const Vec3 value = tree.lobe(d, *plan.kernel, tolerance);
     for (int c = 0; c < 3; ++c) rgb[c] = static_cast<float>(value[c]);
   });
   return values;
@@ -365,10 +364,13 @@ int own_size(double exponent, double tolerance) {
 
 std::vector<LobePlan> prefilter_plan(const envmap::Environment& env, const PrefilterRequest& request) {
   std::vector<LobePlan> plan;
-  if (request.diffuse) plan.push_back(lobe_plan(env, request, 1, request.size));
+  const auto add = [&](KernelPointer kernel, int size) {
+    plan.push_back(lobe_plan(env, request, std::move(kernel), size));
+  };
+  if (request.diffuse) add(std::make_shared<CosineKernel>(1), request.size);
   for (std::size_t i = 0; i < request.exponents.size(); ++i)
-    plan.push_back(
-        lobe_plan(env, request, request.exponents[i], request.sizes.empty() ? request.size : request.sizes[i]));
+    add(std::make_shared<CosineKernel>(request.exponents[i]), request.sizes.empty() ? request.size : request.sizes[i]);
+  for (const KernelPointer& kernel : request.kernels) add(kernel, request.size);
   if (request.mirror) {
     LobePlan mirror;
     mirror.exponent = envmap::kMirrorExponent;
@@ -391,7 +393,7 @@ envmap::PrefilteredEnvironment prefiltered(
   std::vector<std::optional<envmap::PrefilteredLobe>> there(plan.size());
   std::vector<LobePlan> missing;
   for (std::size_t i = 0; i < plan.size(); ++i) {
-    if (known) there[i] = known(plan[i]);
+    if (known && is_named_by_exponent(plan[i])) there[i] = known(plan[i]);
     if (!there[i]) missing.push_back(plan[i]);
   }
   Workshop shop(env, request, missing);

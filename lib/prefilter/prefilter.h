@@ -1,8 +1,9 @@
-// An environment filtered by every lobe of a basis, each by the cheapest method that keeps the tolerance.
-// goniochrome-theory(7), PREFILTERING.
+// Filters an environment by every lobe of a basis, each by the cheapest method that keeps the tolerance. The lobes are
+// cosine powers, because paints are, and any other zonal kernel on request. goniochrome-theory(7), PREFILTERING.
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,16 +14,20 @@
 
 namespace goniochrome::prefilter {
 
+class ZonalKernel;  // internal/kernel.h
+using KernelPointer = std::shared_ptr<const ZonalKernel>;
+
 struct PrefilterRequest {
   std::vector<double> exponents;  // finite, >= 0; the diffuse lobe (1) comes by itself
   bool mirror = true;
   int size = 0;             // of every face; 0 chooses each lobe's own
   double tolerance = 1e-3;  // relative to the larger of the local value and 1e-3 of the mean
   envmap::SphereGrid::Layout layout =
-      envmap::SphereGrid::Layout::kCube;  // of the maps: a cube of either kind, or lat-long
-  envmap::Rotation turn = {};             // of the environment
-  std::vector<int> sizes = {};            // of each exponent's map; empty: `size` says it
-  bool diffuse = true;                    // false: not by itself
+      envmap::SphereGrid::Layout::kCube;    // of the maps: a cube of either kind, or lat-long
+  envmap::Rotation turn = {};               // of the environment
+  std::vector<int> sizes = {};              // of each exponent's map; empty: `size` says it
+  bool diffuse = true;                      // false: not by itself
+  std::vector<KernelPointer> kernels = {};  // more lobes, which follow those of the exponents
 };
 
 // How a lobe will be computed.
@@ -34,7 +39,8 @@ struct LobePlan {
     kBlocks,           // the tree of texel blocks
     kMirror,           // exact overlaps
   };
-  double exponent = 1;
+  double exponent = 1;        // of the kernel; of one that is no cosine power, of the power that is as sharp
+  KernelPointer kernel = {};  // none: the mirror
   int size = 0;
   Method method = Method::kHarmonics;
   int degree = 0;              // of the harmonics
@@ -47,10 +53,11 @@ const char* method_name(LobePlan::Method method);
 // The size of face that a bilinear lookup of a lobe needs to err by no more than ten times the tolerance.
 int own_size(double exponent, double tolerance);
 
-// The plan of a request: diffuse first, then the exponents as given, then the mirror.
+// The plan of a request: diffuse first, then the exponents and the other kernels as given, then the mirror.
 std::vector<LobePlan> prefilter_plan(const envmap::Environment& env, const PrefilterRequest& request);
 
-// The lobe of a plan that is there already, or nothing.
+// The lobe of a plan that is there already, or nothing. It is asked for cosine powers and the mirror alone, since a
+// file names a lobe by its exponent.
 using LobeSource = std::function<std::optional<envmap::PrefilteredLobe>(const LobePlan&)>;
 
 // Carries a plan out, but for the lobes that `known` has. `done` is called after each lobe with the time that it took,

@@ -10,7 +10,6 @@
 
 #include "base/angles.h"
 #include "base/parallel.h"
-#include "envmap/patch.h"
 #include "math/cosine_power.h"
 #include "prefilter/exact_lobe.h"
 #include "prefilter/internal/bright_texels.h"
@@ -75,7 +74,7 @@ void each_texel(const envmap::CubeMap& map, const Body& body) {
         body(envmap::cube_direction(face, column + 0.5, row + 0.5, map.size), map.at(face, row, column));
 }
 
-TEST(Prefilter, HardCase_prefilter_seam_a_constant_map_stays_itself) {
+TEST(HardCase, PrefilterSeamAConstantMapStaysItself) {
   const envmap::Environment env = lat_long(64, [](int, int, const Vec3&) { return Vec3{1, 2, 0.25}; });
   // The textbook weighs every texel of the image alike: the poles count too much.
   double even = 0, all = 0;
@@ -93,7 +92,7 @@ TEST(Prefilter, HardCase_prefilter_seam_a_constant_map_stays_itself) {
     });
 }
 
-TEST(Prefilter, one_texel_map_is_the_cosine_power) {
+TEST(Prefilter, OfOneTexelIsTheCosinePower) {
   const envmap::Environment env = lat_long(180, [](int x, int y, const Vec3&) {
     return x == 77 && y == 50 ? Vec3{3, 3, 3} : Vec3{};
   });
@@ -111,7 +110,7 @@ TEST(Prefilter, one_texel_map_is_the_cosine_power) {
     });
 }
 
-TEST(Prefilter, half_sphere_map_is_the_published_integral) {
+TEST(Prefilter, OfAHalfSphereIsThePublishedIntegral) {
   const envmap::Environment env = lat_long(64, [](int, int, const Vec3& d) {
     return d.x > 0 ? Vec3{1, 1, 1} : Vec3{};
   });
@@ -128,7 +127,7 @@ TEST(Prefilter, half_sphere_map_is_the_published_integral) {
   }
 }
 
-TEST(Prefilter, HardCase_prefilter_sun_keeps_its_energy_and_spoils_nothing) {
+TEST(HardCase, PrefilterSunKeepsItsEnergyAndSpoilsNothing) {
   const auto lonely = [](float value) {
     return lat_long(64, [value](int x, int y, const Vec3&) {
       return x == 40 && y == 20 ? Vec3{value, value, value} : Vec3{};
@@ -146,7 +145,7 @@ TEST(Prefilter, HardCase_prefilter_sun_keeps_its_energy_and_spoils_nothing) {
 }
 
 // The textbook averages the source down to the size of the output first, which moves the sun.
-TEST(Prefilter, HardCase_prefilter_sun_the_textbook_form_fails) {
+TEST(HardCase, PrefilterSunTheTextbookFormFails) {
   const envmap::Environment env = lat_long(64, [](int x, int y, const Vec3&) {
     return x == 40 && y == 20 ? Vec3{1e9, 1e9, 1e9} : Vec3{};
   });
@@ -167,16 +166,16 @@ void expect_every_lobe_within(double tolerance) {
     EXPECT_LE(lobe_error(env, *lobe, 15, 5, 1).max, tolerance) << lobe->exponent;
 }
 
-TEST(Prefilter, HardCase_prefilter_exponent_every_lobe_keeps_a_loose_tolerance) {
+TEST(HardCase, PrefilterExponentEveryLobeKeepsALooseTolerance) {
   expect_every_lobe_within(1e-2);
 }
 
-TEST(Prefilter, HardCase_prefilter_exponent_every_lobe_keeps_a_tight_tolerance) {
+TEST(HardCase, PrefilterExponentEveryLobeKeepsATightTolerance) {
   expect_every_lobe_within(1e-4);
 }
 
 // Texels of 11 degrees, one of them a sun: a wide lobe bends at the horizon within them.
-TEST(Prefilter, HardCase_prefilter_exponent_coarse_probes_keep_the_tolerance) {
+TEST(HardCase, PrefilterExponentCoarseProbesKeepTheTolerance) {
   const envmap::Environment flat = outdoors(16);
   envmap::CubeMap map(10);
   map.texels = mirror_values(flat, envmap::map_grid(Layout::kCube, 10), {});
@@ -192,7 +191,7 @@ TEST(Prefilter, HardCase_prefilter_exponent_coarse_probes_keep_the_tolerance) {
 }
 
 // Centers of texels in place of patches: 15 % and more off for a sharp lobe.
-TEST(Prefilter, HardCase_prefilter_exponent_the_center_rule_fails) {
+TEST(HardCase, PrefilterExponentTheCenterRuleFails) {
   const envmap::Environment env = outdoors(80);
   double worst = 0;
   std::mt19937 random(2);
@@ -211,7 +210,7 @@ TEST(Prefilter, HardCase_prefilter_exponent_the_center_rule_fails) {
 }
 
 // A quarter turn of the map is a quarter turn of the result: the four side faces change places.
-TEST(Prefilter, turns_with_the_map) {
+TEST(Prefilter, TurnsWithTheMap) {
   const envmap::Environment env = outdoors(64);
   const envmap::Environment turned = lat_long(64, [&](int x, int y, const Vec3&) {
     const float* rgb = env.radiance((x + 32) % 128, y);
@@ -231,7 +230,7 @@ TEST(Prefilter, turns_with_the_map) {
     }
 }
 
-TEST(Prefilter, HardCase_threads_bits_do_not_depend_on_their_number) {
+TEST(HardCase, ThreadsBitsDoNotDependOnTheirNumber) {
   const envmap::Environment env = outdoors(64);
   const PrefilterRequest request = {{0.3, 1.3, 70, 1e5}, true, 2, 1e-3};
   set_threads(1);
@@ -251,7 +250,7 @@ TEST(Prefilter, HardCase_threads_bits_do_not_depend_on_their_number) {
 }
 
 // A turned probe is a turned scene, whatever its layout and whatever the maps' layout.
-TEST(Prefilter, turns_by_any_angle_and_into_any_layout) {
+TEST(Prefilter, TurnsByAnyAngleAndIntoAnyLayout) {
   const envmap::Environment flat = outdoors(64);
   envmap::CubeMap map(24);
   map.texels = mirror_values(flat, envmap::map_grid(Layout::kCube, 24), {});
@@ -263,7 +262,7 @@ TEST(Prefilter, turns_by_any_angle_and_into_any_layout) {
       const envmap::PrefilteredEnvironment result = run(env, request);
       for (const envmap::PrefilteredLobe* lobe : {&result.lobes[0], &result.mirror}) {
         EXPECT_EQ(lobe->layout, layout);
-        const bool mirror = std::isinf(lobe->exponent);
+        const bool mirror = lobe->is_mirror();
         // The search for the mirror's mean takes edges as straight over 1/128 of a texel, and the overlaps of a probe
         // take the density as even over a texel (h^2 pi^2/24 = 1e-4); that counts by the contrast of 40.
         EXPECT_LE(lobe_error(env, *lobe, 3, 1, 1, request.turn).max, mirror ? 4e-3 : request.tolerance)
@@ -280,7 +279,7 @@ TEST(Prefilter, turns_by_any_angle_and_into_any_layout) {
 
 // Vectors of every width the machine has give the same sums but for their order: 1e-12 in double precision, then
 // rounded to a float.
-TEST(Prefilter, vectors_of_any_width_agree) {
+TEST(Prefilter, VectorsOfAnyWidthAgree) {
   const envmap::Environment env = outdoors(64);
   const PrefilterRequest request = {{20, 250, 1e4}, true, 2, 1e-4, Layout::kCube, {}, {}, false};
   const BrightTexels bright(env, 2);
@@ -291,7 +290,8 @@ TEST(Prefilter, vectors_of_any_width_agree) {
     for (const envmap::PrefilteredLobe& lobe : maps.lobes)
       values.insert(values.end(), lobe.map.texels.begin(), lobe.map.texels.end());
     for (int row = 0; row < env.height(); ++row)
-      for (const double exponent : {1.0, 1.3}) values.push_back(1 + bright.lobe(env.direction(row, row), exponent).x);
+      for (const double exponent : {1.0, 1.3})
+        values.push_back(1 + bright.lobe(env.direction(row, row), CosineKernel(exponent)).x);
     values.push_back(reference_lobe(env, {0, 0, 1}, 6).y);
     return values;
   };
@@ -310,7 +310,7 @@ TEST(Prefilter, vectors_of_any_width_agree) {
 }
 
 // Cubes go the same way, whichever convention they came in.
-TEST(Prefilter, HardCase_prefilter_convention_one_scene_in_three_layouts) {
+TEST(HardCase, PrefilterConventionOneSceneInThreeLayouts) {
   const auto scene = [](const Vec3& d) { return Vec3{1 + 0.5 * d.x, 1 + 0.3 * d.y * d.z, 1 - 0.4 * d.z}; };
   const envmap::Environment flat = lat_long(128, [&](int, int, const Vec3& d) { return scene(d); });
   constexpr int kSize = 64;
@@ -340,7 +340,7 @@ TEST(Prefilter, HardCase_prefilter_convention_one_scene_in_three_layouts) {
 }
 
 // Measured light, one probe with a sun of 8e4.
-TEST(Prefilter, probes_keep_tolerance_and_energy_RealData) {
+TEST(Prefilter, ProbesKeepToleranceAndEnergyRealData) {
   const char* data = std::getenv("GONIOCHROME_DATA");
   if (!data) GTEST_SKIP() << "GONIOCHROME_DATA is not set";
   for (const char* name : {"rooitou_park_1k", "uffizi"}) {

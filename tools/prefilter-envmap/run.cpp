@@ -8,7 +8,7 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "base/text.h"
-#include "envmap/mip_write.h"
+#include "envmap/mip.h"
 #include "prefilter/exact_lobe.h"
 #include "prefilter/lobe_cache.h"
 #include "prefilter/prefilter.h"

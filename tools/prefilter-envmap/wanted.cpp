@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "base/text.h"
-#include "envmap/mip_write.h"
+#include "envmap/mip.h"
 #include "formats/basis.h"
 #include "formats/xml.h"
 

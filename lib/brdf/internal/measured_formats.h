@@ -1,6 +1,8 @@
-// The readers behind read_measured(), one per format, from a file's bytes. Internal to lib/brdf.
+// The formats that read_measured() knows, and what their readers share. A format is a measured_NAME.cpp that defines
+// its entry of the table below.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -15,14 +17,18 @@
 namespace goniochrome::brdf {
 
 using MeasuredPointer = std::unique_ptr<MeasuredBrdf>;
-Result<MeasuredPointer> read_cornell(const std::string& path, std::string_view text);
-Result<MeasuredPointer> read_merl(const std::string& path, std::string_view bytes);
-Result<MeasuredPointer> read_mbsdf(const std::string& path, std::string_view bytes);
-Result<MeasuredPointer> read_rgl(const std::string& path, std::string_view bytes);
 
-bool looks_merl(std::string_view head);
-bool looks_mbsdf(std::string_view head);
-bool looks_rgl(std::string_view head);
+struct MeasuredFormat {
+  // Whether a file of this name that begins with `head` (200 bytes are enough) is of this format.
+  bool (*recognizes)(std::string_view path, std::string_view head);
+  Result<MeasuredPointer> (*read)(const std::string& path, std::string_view bytes);
+  const char* name;  // for people, with the ending of its files
+};
+extern const MeasuredFormat kMerl, kMbsdf, kRgl, kCornell;
+
+// The first that recognizes a file reads it. Cornell's text has no mark but the name of its file, so it comes last, and
+// is tried where no format recognizes the file.
+inline constexpr std::array<const MeasuredFormat*, 4> kMeasuredFormats = {&kMerl, &kMbsdf, &kRgl, &kCornell};
 
 // Little-endian numbers out of bytes, in order; nothing past the end.
 class ByteReader {

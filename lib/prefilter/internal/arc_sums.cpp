@@ -6,7 +6,7 @@
 
 #include "base/angles.h"
 #include "base/parallel.h"
-#include "math/gauss_rule.h"
+#include "math/quadrature.h"
 
 // At the polar angle t the cosine to the direction d is a + b cos(p - p_d) with a = d.y cos t, b = sin t
 // hypot(d.x,d.z): above 0 for |p - p_d| < acos(-a/b). On that arc
@@ -98,14 +98,15 @@ Vec3 along(const Row& row, const Direction& to, double sin_t, double cos_t, bool
 
 // The kink of exponent 1, and the step of exponent 0, move along the row as fast as it is high at most: the error of a
 // row is random, a part of h^3 and h^2 of a texel, and falls with the points as much.
-int arc_points(double exponent, double tolerance) {
-  if (exponent == 0) return tolerance < 2e-4 ? 16 : 4;
+int arc_points(bool step, double tolerance) {
+  if (step) return tolerance < 2e-4 ? 16 : 4;
   return tolerance < 2e-5 ? 4 : 2;
 }
 
-std::vector<Vec3> arc_sums(const envmap::Environment& env, const envmap::Clip& clip, double exponent,
+std::vector<Vec3> arc_sums(const envmap::Environment& env, const envmap::Clip& clip, const ZonalKernel& kernel,
                            const std::vector<Vec3>& directions, double tolerance) {
-  const math::GaussRule rule = math::gauss_rule(2, arc_points(exponent, tolerance) / 2);
+  const bool step = kernel.shape() == ZonalKernel::Shape::kStep;
+  const math::GaussRule rule = math::gauss_rule(2, arc_points(step, tolerance) / 2);
   std::vector<Direction> to(directions.size());
   std::transform(directions.begin(), directions.end(), to.begin(), direction_of);
   std::vector<Vec3> sums(directions.size());
@@ -119,13 +120,11 @@ std::vector<Vec3> arc_sums(const envmap::Environment& env, const envmap::Clip& c
         for (std::size_t k = 0; k < rule.at.size(); ++k) {
           const double t = kPi * (first + static_cast<double>(i) + rule.at[k]) / env.height();
           const double sin_t = std::sin(t), cos_t = std::cos(t), weight = rule.weight[k] * sin_t * kPi / env.height();
-          for (std::size_t j = begin; j < end; ++j)
-            sums[j] += weight * along(rows[i], to[j], sin_t, cos_t, exponent == 0);
+          for (std::size_t j = begin; j < end; ++j) sums[j] += weight * along(rows[i], to[j], sin_t, cos_t, step);
         }
     });
   }
-  const double scale = (exponent + 1) / (2 * kPi);
-  for (Vec3& sum : sums) sum = scale * sum;
+  for (Vec3& sum : sums) sum = kernel.scale() * sum;
   return sums;
 }
 

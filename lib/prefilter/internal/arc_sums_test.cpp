@@ -30,7 +30,7 @@ std::vector<Vec3> directions(int count) {
 }
 
 double largest_error(const envmap::Environment& env, double exponent, double tolerance) {
-  const std::vector<Vec3> to = directions(1), sums = arc_sums(env, {}, exponent, to, tolerance);
+  const std::vector<Vec3> to = directions(1), sums = arc_sums(env, {}, CosineKernel(exponent), to, tolerance);
   double worst = 0;
   for (std::size_t i = 0; i < to.size(); ++i) {
     const Vec3 want = reference_lobe(env, to[i], exponent);
@@ -41,7 +41,7 @@ double largest_error(const envmap::Environment& env, double exponent, double tol
 
 // White noise, the worst of maps, on texels of h = 0.052 rad: N = 2 x 60 rows and columns are cut at random, each off
 // by at most h^3/72 of its jump at two points (E = 1) and by h^2/4 over the points (E = 0), of a sum of pi.
-TEST(ArcSums, noise_keeps_the_tolerance) {
+TEST(ArcSums, OfNoiseKeepTheTolerance) {
   const envmap::Environment env = noise(60, 2);
   const double h = kPi / 60;
   EXPECT_LE(largest_error(env, 1, 1e-4), std::sqrt(120) * h * h * h / 72);
@@ -51,7 +51,7 @@ TEST(ArcSums, noise_keeps_the_tolerance) {
 }
 
 // The textbook sum over texel centers is the control: a center is above the horizon or it is not.
-TEST(ArcSums, texel_centers_fail) {
+TEST(ArcSums, TexelCentersFail) {
   const envmap::Environment env = noise(60, 2);
   double worst = 0;
   for (const Vec3& d : directions(4)) {
@@ -65,25 +65,25 @@ TEST(ArcSums, texel_centers_fail) {
   EXPECT_LT(largest_error(env, 0, 1e-4), worst / 3);
 }
 
-TEST(ArcSums, a_constant_map_stays_itself) {
+TEST(ArcSums, LeaveAConstantMapAsItIs) {
   image::Image image = {64, 32, 3, std::vector<float>(64 * 32 * 3, 0.25F), {}};
   const envmap::Environment env =
       envmap::Environment::from_lat_long(image, envmap::Environment::BadPixels::kError, "gray").value();
   for (const double exponent : {0.0, 1.0})
     // Two points across rows of 0.1 rad leave the sine h^4/4320, and its root where the horizon touches a row.
-    for (const Vec3& sum : arc_sums(env, {}, exponent, directions(40), 1e-4))
+    for (const Vec3& sum : arc_sums(env, {}, CosineKernel(exponent), directions(40), 1e-4))
       EXPECT_NEAR(sum.x, 0.25, 2e-5) << exponent;
 }
 
 // What is split off by a clip is left out.
-TEST(ArcSums, leaves_out_what_is_clipped) {
+TEST(ArcSums, LeaveOutWhatIsClipped) {
   image::Image image = {64, 32, 3, std::vector<float>(64 * 32 * 3, 1.0F), {}};
   std::fill_n(image.pixel(20, 9), 3, 1e5F);
   const envmap::Environment env =
       envmap::Environment::from_lat_long(image, envmap::Environment::BadPixels::kError, "sun").value();
   const Vec3 sun = env.direction(20, 9);
-  EXPECT_NEAR(arc_sums(env, {1000, 1}, 1, {sun}, 1e-4)[0].x, 1, 5e-5);  // rows of 0.1 rad, as above
-  EXPECT_GT(arc_sums(env, {}, 1, {sun}, 1e-4)[0].x, 100);
+  EXPECT_NEAR(arc_sums(env, {1000, 1}, CosineKernel(1), {sun}, 1e-4)[0].x, 1, 5e-5);  // rows of 0.1 rad, as above
+  EXPECT_GT(arc_sums(env, {}, CosineKernel(1), {sun}, 1e-4)[0].x, 100);
 }
 
 }  // namespace

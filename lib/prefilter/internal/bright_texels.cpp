@@ -8,8 +8,7 @@
 #include "base/angles.h"
 #include "base/parallel.h"
 #include "envmap/patch.h"
-#include "math/cosine_power.h"
-#include "math/gauss_rule.h"
+#include "math/quadrature.h"
 #include "prefilter/internal/lobe_rows.h"
 
 namespace goniochrome::prefilter {
@@ -90,33 +89,38 @@ void BrightTexels::Points::add(const Vec3& at, const Vec3& rgb) {
   for (int c = 0; c < 3; ++c) flux.push_back(static_cast<float>(rgb[c]));
 }
 
-// The centroid is exact for E = 1 alone; elsewhere it errs by E |E-1| h^2/(24 t^2) of the texel, much near the horizon.
-Vec3 BrightTexels::lobe(const Vec3& d, double exponent) const {
-  const Points& points = exponent == 1 ? centroids_ : gauss_;
+// The centroid is exact for the cosine alone; for cos^E it errs by E |E-1| h^2/(24 t^2) of the texel, much near the
+// horizon.
+Vec3 BrightTexels::lobe(const Vec3& d, const ZonalKernel& kernel) const {
+  const bool linear = kernel.shape() == ZonalKernel::Shape::kCosine;
+  const Points& points = linear ? centroids_ : gauss_;
+  // Step 1: every texel as points.
   const double direction[3] = {d.x, d.y, d.z};
   double sum[3] = {0, 0, 0};
-  add_points(points.flux.data(), points.x.size(), points.x.data(), points.y.data(), points.z.data(), direction,
-             exponent, sum);
+  kernel.add_points(points.flux.data(), points.x.size(), points.x.data(), points.y.data(), points.z.data(), direction,
+                    sum);
   Vec3 total = {sum[0], sum[1], sum[2]};
-  // Where the horizon cuts a texel, or t^E bends beside it, its points are replaced by the patch, on which t is linear
-  // but for r/5 of its change; a texel of radius r counts there r^E at most, so that is little.
-  const double reach = exponent == 1 ? 1 : 4;
+  if (!kernel.edge().exists()) return kernel.scale() * total;
+  // Step 2: where the edge cuts a texel, or the kernel bends beside it, the points are replaced by the patch, on which
+  // t is linear but for r/5 of its change; of cos^E a texel of radius r counts there r^E at most, so that is little.
+  const double reach = linear ? 1 : 4, edge = kernel.edge().cosine;
   thread_local std::vector<std::size_t> near;
   near.resize(texels_.size());
-  const std::size_t count = points_near_horizon(texels_.size(), centroids_.x.data(), centroids_.y.data(),
-                                                centroids_.z.data(), direction, reach * largest_radius_, near.data());
+  const std::size_t count =
+      rows::points_near(texels_.size(), centroids_.x.data(), centroids_.y.data(), centroids_.z.data(), direction, edge,
+                        reach * largest_radius_, near.data());
   for (std::size_t n = 0; n < count; ++n) {
     const std::size_t i = near[n];
     const Texel& texel = texels_[i];
     const double t = dot(d, texel.centroid);
-    if (std::fabs(t) > reach * texel.radius_rad) continue;
+    if (std::fabs(t - edge) > reach * texel.radius_rad) continue;
     for (std::size_t k = points.per_texel * i; k < points.per_texel * (i + 1); ++k) {
-      const double power = math::cosine_power(dot(d, {points.x[k], points.y[k], points.z[k]}), exponent);
-      for (int c = 0; c < 3; ++c) total[c] -= power * points.flux[3 * k + c];
+      const double value = kernel.value(dot(d, {points.x[k], points.y[k], points.z[k]}));
+      for (int c = 0; c < 3; ++c) total[c] -= value * points.flux[3 * k + c];
     }
-    total += envmap::linear_mean(t, dot(d, texel.across), dot(d, texel.down), exponent) * texel.flux;
+    total += kernel.linear_mean(t, dot(d, texel.across), dot(d, texel.down)) * texel.flux;
   }
-  return (exponent + 1) / (2 * kPi) * total;
+  return kernel.scale() * total;
 }
 
 }  // namespace goniochrome::prefilter

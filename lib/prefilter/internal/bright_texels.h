@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "envmap/environment.h"
+#include "prefilter/internal/kernel.h"
 
 namespace goniochrome::prefilter {
 
@@ -23,8 +24,8 @@ class BrightTexels {
   std::size_t count() const { return texels_.size(); }
   const envmap::Clip& rest() const { return rest_; }
 
-  // Their part of P_E(d), each a constant patch.
-  Vec3 lobe(const Vec3& d, double exponent) const;
+  // Their part of the map at d, each texel a constant patch.
+  Vec3 lobe(const Vec3& d, const ZonalKernel& kernel) const;
 
  private:
   struct Texel {

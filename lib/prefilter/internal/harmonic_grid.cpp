@@ -12,8 +12,8 @@
 #include "base/angles.h"
 #include "base/parallel.h"
 #include "math/fft.h"
-#include "math/gauss_rule.h"
 #include "math/legendre.h"
+#include "math/quadrature.h"
 
 // On the full circle of the polar angle a function of degree L is a trigonometric polynomial of degree L in both
 // angles. Its coefficients, divided by the transform of a narrow bump and taken to a grid twice as fine as they need,
@@ -65,6 +65,9 @@ HWY_INLINE std::ptrdiff_t Weights(const harmonic_grid::Bump& bump, double x, dou
   return static_cast<std::ptrdiff_t>(first);
 }
 
+// The value of the three planes at each point. Step 1: the weights of the taps down and across. Step 2: each row of
+// taps is multiplied by its weight and added up, a vector of columns at a time. Step 3: the columns are weighed and
+// added.
 void Gather(const harmonic_grid::Grid& grid, const harmonic_grid::Bump& bump, const double* theta, const double* phi,
             std::size_t count, float* rgb) {
   const hn::ScalableTag<double> d;
@@ -89,7 +92,7 @@ void Gather(const harmonic_grid::Grid& grid, const harmonic_grid::Bump& bump, co
   }
 }
 
-// Adds `weight[i]` around each point to one plane.
+// Adds `weight[i]` around each point to one plane: Gather() the other way round.
 void Spread(const harmonic_grid::Bump& bump, const double* theta, const double* phi, const double* weight,
             std::size_t count, harmonic_grid::Grid& grid, std::size_t channel) {
   const hn::ScalableTag<double> d;
@@ -178,7 +181,7 @@ std::vector<double> corrections(const Bump& bump, int degree, double step) {
   return result;
 }
 
-// F_m on the fine rows: [row][m][re R G B im R G B].
+// F_m on the fine rows: [row][m][re R G B im R G B], some orders at a time.
 std::vector<double> fine_rows(const Harmonics& harmonics, const std::vector<double>& k, const Grid& grid,
                               std::size_t fine, const Bump& bump) {
   const int degree = static_cast<int>(k.size()) - 1;
@@ -195,6 +198,8 @@ std::vector<double> fine_rows(const Harmonics& harmonics, const std::vector<doub
     constexpr std::size_t kLanes = 3 * kOrdersAtOnce;
     math::Block coarse(circle, kLanes), refined(fine, kLanes);
     std::vector<double> even(6 * rings.count), odd(6 * rings.count), scaled;
+    // Step 1: the values of k_l a_lm P_lm, summed over l, on the rings of the northern hemisphere; parity gives the
+    // southern rings, and P_lm beyond the poles is (-1)^m times itself, which fills the circle.
     for (std::size_t m = begin; m < end; ++m) {
       const double* a = harmonics.order(static_cast<int>(m));
       scaled.clear();
@@ -213,6 +218,8 @@ std::vector<double> fine_rows(const Harmonics& harmonics, const std::vector<doub
           part[(half + i) * kLanes + j] = fold * (e - o);
         }
     }
+    // Step 2: the coefficients along the circle. The rings lie half a step off the pole, which a phase undoes, and each
+    // coefficient is divided by the transform of the bump.
     coarse.transform(coarse_fft, -1);
     const int steps = static_cast<int>(circle), fine_steps = static_cast<int>(fine);
     for (int n = -degree; n <= degree; ++n) {
@@ -225,6 +232,7 @@ std::vector<double> fine_rows(const Harmonics& harmonics, const std::vector<doub
         refined.im[to + j] = cosine * coarse.im[from + j] + sine * coarse.re[from + j];
       }
     }
+    // Step 3: back to samples on the fine circle, of which the rows of the grid are a part.
     refined.transform(fine_fft, 1);
     for (std::size_t row = 0; row < grid.rows; ++row) {
       const std::ptrdiff_t on_circle = static_cast<std::ptrdiff_t>(row) + grid.first_row;
@@ -251,6 +259,7 @@ Grid blank_grid(int degree, const Bump& bump) {
   return grid;
 }
 
+// Samples of the sum over l, m of k[l] a_lm Y_lm divided by the bump's transform, ready for Gather().
 Grid make_grid(const Harmonics& harmonics, const std::vector<double>& k, const Bump& bump) {
   const int degree = static_cast<int>(k.size()) - 1;
   const std::size_t orders = static_cast<std::size_t>(degree) + 1;
@@ -262,7 +271,7 @@ Grid make_grid(const Harmonics& harmonics, const std::vector<double>& k, const B
   parallel_for(grid.rows, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     constexpr std::size_t kSeries = 3 * kRowsAtOnce;
     math::Block block(fine, kSeries / 2);
-    // Two real series X and Y as one complex one: Z_m = X_m + i Y_m, and their conjugates at -m.
+    // Step 1: two real series X and Y as one complex one: Z_m = X_m + i Y_m, and their conjugates at -m.
     for (std::size_t m = 0; m < orders; ++m)
       for (std::size_t lane = 0; lane < block.lanes; ++lane) {
         const auto series = [&](std::size_t s) {
@@ -279,6 +288,7 @@ Grid make_grid(const Harmonics& harmonics, const std::vector<double>& k, const B
         block.re[(fine - m) * block.lanes + lane] = xr + yi;
         block.im[(fine - m) * block.lanes + lane] = yr - xi;
       }
+    // Step 2: samples along each row; the first and the last columns are copied beyond the ends, where taps reach.
     block.transform(fft, 1);
     for (std::size_t row = begin; row < end; ++row)
       for (std::size_t c = 0; c < 3; ++c) {
@@ -380,7 +390,8 @@ ScatteredMoments scattered_moments(const envmap::Environment& env, const std::ve
   Grid grid = blank_grid(degree + 1, bump);
   const std::size_t fine = grid.columns, orders = static_cast<std::size_t>(degree) + 1;
   const math::GaussRule rule = rule_for(k, env.largest_texel_rad());
-  constexpr int kRowsAtATime = 64;  // points take memory
+  // Step 1: the texels as weighted points, spread onto the grid; some rows at a time, because points take memory.
+  constexpr int kRowsAtATime = 64;
   for (int first = 0; first < env.height(); first += kRowsAtATime) {
     std::vector<Points> rows(static_cast<std::size_t>(std::min(kRowsAtATime, env.height() - first)));
     parallel_for(rows.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -392,6 +403,7 @@ ScatteredMoments scattered_moments(const envmap::Environment& env, const std::ve
           HWY_DYNAMIC_DISPATCH(Spread)(bump, p.theta.data(), p.phi.data(), p.weight[c].data(), p.theta.size(), grid, c);
     });
   }
+  // Step 2: the copied columns are folded back and every row is transformed.
   ScatteredMoments moments;
   moments.rows = grid.rows;
   moments.circle = fine;

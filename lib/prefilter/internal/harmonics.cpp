@@ -38,7 +38,7 @@ Complex turn(double angle) {
   return {std::cos(angle), std::sin(angle)};
 }
 
-// f_m of every row: [m][row][re R G B im R G B].
+// f_m of every row: [m][row][re R G B im R G B], some rows at a time.
 std::vector<double> row_moments(const envmap::Environment& env, int degree, const envmap::Clip& clip) {
   const std::size_t width = static_cast<std::size_t>(env.width()), height = static_cast<std::size_t>(env.height());
   std::vector<double> moments(static_cast<std::size_t>(degree + 1) * height * 6);
@@ -46,6 +46,7 @@ std::vector<double> row_moments(const envmap::Environment& env, int degree, cons
   parallel_for(height, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     constexpr std::size_t kReals = 3 * kRowsAtOnce;
     math::Block block(width, kReals / 2);
+    // Step 1: the channels of the rows, two to a complex series.
     for (std::size_t row = begin; row < end; ++row)
       for (std::size_t j = 0; j < width; ++j) {
         const std::array<float, 3> rgb = clip.left_of(env.radiance(static_cast<int>(j), static_cast<int>(row)));
@@ -55,6 +56,7 @@ std::vector<double> row_moments(const envmap::Environment& env, int degree, cons
           part[j * block.lanes + series / 2] = rgb[c];
         }
       }
+    // Step 2: transforms; the frequency m beyond the width is an alias that the sinc weighs.
     block.transform(fft, -1);
     for (int m = 0; m <= degree; ++m) {
       const double angle = kPi * m / static_cast<double>(width);
@@ -134,6 +136,7 @@ struct RowMoments {
   bool by_angle = false;             // a density in angles, not in solid angle
 };
 
+// The coefficients from the moments along the rows, some orders at a time.
 Harmonics harmonics_from(const RowMoments& moments, int degree) {
   const RingCircle on(degree);
   const math::Fft down(moments.circle), back(on.circle);
@@ -142,6 +145,7 @@ Harmonics harmonics_from(const RowMoments& moments, int degree) {
     constexpr std::size_t kLanes = 3 * kOrdersAtOnce;
     math::Block column(moments.circle, kLanes), low(on.circle, kLanes);
     const int steps = static_cast<int>(moments.circle), rings = static_cast<int>(on.circle);
+    // Step 1: the rows where they lie on the full circle of the polar angle.
     for (std::size_t m = begin; m < end; ++m)
       for (std::size_t row = 0; row < moments.rows; ++row) {
         const std::size_t at =
@@ -152,7 +156,9 @@ Harmonics harmonics_from(const RowMoments& moments, int degree) {
           column.im[at + 3 * (m - begin) + c] += from[3 + c];
         }
       }
+    // Step 2: c_mn, the moments along the columns.
     column.transform(down, -1);
+    // Step 3: the low-pass g_m on the circle of rings.
     const int last = degree + 1;
     for (int n = -last; n <= last; ++n) {
       const Complex factor = turn(kPi * n / rings - 2 * kPi * n * moments.offset / steps);
@@ -166,6 +172,7 @@ Harmonics harmonics_from(const RowMoments& moments, int degree) {
       }
     }
     low.transform(back, 1);
+    // Step 4: sums of g_m P_lm over the rings.
     for (std::size_t m = begin; m < end; ++m)
       sum_order(on, low, 3 * (m - begin), static_cast<int>(m), moments.by_angle, harmonics);
   });
@@ -196,24 +203,13 @@ Harmonics harmonics_of(const envmap::Environment& env, const std::vector<double>
   return harmonics_from(moments, degree);
 }
 
-// From the recursion of integrals of t^E P_l over 0..1: k_l = k_(l-2) (E-l+2)/(E+l+1).
-std::vector<double> zonal_multipliers(double exponent, int degree) {
-  std::vector<double> k(static_cast<std::size_t>(std::max(degree, 1)) + 1);
-  k[0] = 1;
-  k[1] = (exponent + 1) / (exponent + 2);
-  for (int l = 2; l <= degree; ++l) k[l] = k[l - 2] * (exponent - l + 2) / (exponent + l + 1);
-  k.resize(static_cast<std::size_t>(degree) + 1);
-  return k;
-}
-
 namespace {
 
-// The sums over l > degree of (2l+1)|k_l|, for degree = 0..most; past the end of the table |k_l| falls as l^-(E+3/2).
-std::vector<double> truncation_bounds(double exponent, int most) {
+// The sums over l > degree of (2l+1)|k_l|, for degree = 0..most.
+std::vector<double> truncation_bounds(const ZonalKernel& kernel, int most) {
   const int end = most + 2000;
-  const std::vector<double> k = zonal_multipliers(exponent, end);
-  const double power = exponent - 0.5;  // of the tail of (2l+1)|k_l| ~ l^-(E+1/2), summed
-  double tail = power > 0 ? (2.0 * end + 1) * std::max(std::fabs(k[end]), std::fabs(k[end - 1])) * end / power : 1e300;
+  const std::vector<double> k = kernel.multipliers(end);
+  double tail = kernel.tail(k);
   std::vector<double> bounds(static_cast<std::size_t>(most) + 1);
   for (int l = end; l >= 0; --l) {
     if (l <= most) bounds[l] = tail;
@@ -224,12 +220,12 @@ std::vector<double> truncation_bounds(double exponent, int most) {
 
 }  // namespace
 
-double truncation_bound(double exponent, int degree) {
-  return truncation_bounds(exponent, degree).back();
+double truncation_bound(const ZonalKernel& kernel, int degree) {
+  return truncation_bounds(kernel, degree).back();
 }
 
-int sufficient_degree(double exponent, double error, int most) {
-  const std::vector<double> bounds = truncation_bounds(exponent, most);
+int sufficient_degree(const ZonalKernel& kernel, double error, int most) {
+  const std::vector<double> bounds = truncation_bounds(kernel, most);
   for (int l = 0; l <= most; ++l)
     if (bounds[l] <= error) return l;
   return -1;

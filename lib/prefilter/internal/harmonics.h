@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "envmap/environment.h"
+#include "prefilter/internal/kernel.h"
 
 namespace goniochrome::prefilter {
 
@@ -32,14 +33,11 @@ struct Harmonics {
 // it will meet. Azimuth runs with the columns of a lat-long map: x = sin t sin p, y = cos t, z = -sin t cos p.
 Harmonics harmonics_of(const envmap::Environment& env, const std::vector<double>& k, const envmap::Clip& clip = {});
 
-// k_l, l = 0..degree: what convolution with (E+1)/(2 pi) max(0, cos)^E multiplies degree l by.
-std::vector<double> zonal_multipliers(double exponent, int degree);
-
 // The largest relative error (to the mean of the map, for any non-negative environment) that leaving out the degrees
 // above `degree` can make: the sum over l > degree of (2l+1) |k_l|.
-double truncation_bound(double exponent, int degree);
+double truncation_bound(const ZonalKernel& kernel, int degree);
 
 // The smallest degree whose truncation_bound() is at most `error`, or -1 where none up to `most` is.
-int sufficient_degree(double exponent, double error, int most);
+int sufficient_degree(const ZonalKernel& kernel, double error, int most);
 
 }  // namespace goniochrome::prefilter

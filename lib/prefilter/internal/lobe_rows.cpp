@@ -10,7 +10,7 @@
 #include <hwy/contrib/math/math-inl.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace goniochrome::prefilter {
+namespace goniochrome::prefilter::rows {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -29,7 +29,9 @@ HWY_INLINE hn::Vec<Tag> power(Tag d, hn::Vec<Tag> t, double exponent) {
   return hn::IfThenElseZero(hn::And(above, hn::Gt(x, hn::Set(d, -600.0))), hn::Exp(d, x));
 }
 
-// Walks over a row; `kernel(d, j)` gives the weights of texels j, j+1, ...
+// Adds a row to `sum`; `kernel(d, j)` gives the weights of texels j, j+1, ... Step 1: as many texels at a time as a
+// vector has lanes, each channel in a vector of its own. Step 2: the lanes are added up. Step 3: the texels left over,
+// one by one.
 template <class Kernel>
 HWY_INLINE void add_row(const float* rgb, std::size_t columns, const Kernel& kernel, double sum[3]) {
   const D d;
@@ -93,44 +95,47 @@ void Points(const float* rgb, std::size_t points, const double* x, const double*
       sum);
 }
 
-std::size_t NearHorizon(std::size_t points, const double* x, const double* y, const double* z,
-                        const double direction[3], double margin, std::size_t* found) {
+// Step 1: a vector of points at a time, which mostly has none near. Step 2: those of a vector that has, one by one.
+// Step 3: the last points, by a vector that reaches back, or one by one where they do not fill a vector.
+std::size_t Near(std::size_t points, const double* x, const double* y, const double* z, const double direction[3],
+                 double cosine, double margin, std::size_t* found) {
   const D d;
   const std::size_t lanes = hn::Lanes(d);
   std::size_t count = 0;
   const auto dx = hn::Set(d, direction[0]), dy = hn::Set(d, direction[1]), dz = hn::Set(d, direction[2]);
+  const auto middle = hn::Set(d, cosine);
   std::size_t j = 0;
   for (; j < points; j += lanes) {
     // The last vector reaches back over points that were looked at.
     const std::size_t at = j + lanes <= points || points < lanes ? j : points - lanes;
     if (points < lanes) break;
-    const auto t =
-        hn::MulAdd(dx, hn::LoadU(d, x + at), hn::MulAdd(dy, hn::LoadU(d, y + at), hn::Mul(dz, hn::LoadU(d, z + at))));
+    const auto t = hn::MulAdd(dx, hn::LoadU(d, x + at),
+                              hn::MulAdd(dy, hn::LoadU(d, y + at), hn::MulSub(dz, hn::LoadU(d, z + at), middle)));
     const auto near = hn::Le(hn::Abs(t), hn::Set(d, margin));
     if (hn::AllFalse(d, near)) continue;
     for (std::size_t i = j; i < at + lanes; ++i) {
-      const double one = direction[0] * x[i] + (direction[1] * y[i] + direction[2] * z[i]);
+      const double one = direction[0] * x[i] + (direction[1] * y[i] + direction[2] * z[i]) - cosine;
       if (std::fabs(one) <= margin) found[count++] = i;
     }
   }
   for (; j < points && points < lanes; ++j) {
-    const double one = direction[0] * x[j] + (direction[1] * y[j] + direction[2] * z[j]);
+    const double one = direction[0] * x[j] + (direction[1] * y[j] + direction[2] * z[j]) - cosine;
     if (std::fabs(one) <= margin) found[count++] = j;
   }
   return count;
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace goniochrome::prefilter
+}  // namespace goniochrome::prefilter::rows
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace goniochrome::prefilter {
+namespace goniochrome::prefilter::rows {
 
 HWY_EXPORT(LatLongRow);
 HWY_EXPORT(CubeRow);
 HWY_EXPORT(Points);
-HWY_EXPORT(NearHorizon);
+HWY_EXPORT(Near);
 
 void add_lat_long_row(const float* rgb, std::size_t columns, const double* sine, const double* cosine, double a,
                       double b, double c, double exponent, double sum[3]) {
@@ -147,10 +152,10 @@ void add_points(const float* rgb, std::size_t points, const double* x, const dou
   HWY_DYNAMIC_DISPATCH(Points)(rgb, points, x, y, z, d, exponent, sum);
 }
 
-std::size_t points_near_horizon(std::size_t points, const double* x, const double* y, const double* z,
-                                const double d[3], double margin, std::size_t* found) {
-  return HWY_DYNAMIC_DISPATCH(NearHorizon)(points, x, y, z, d, margin, found);
+std::size_t points_near(std::size_t points, const double* x, const double* y, const double* z, const double d[3],
+                        double cosine, double margin, std::size_t* found) {
+  return HWY_DYNAMIC_DISPATCH(Near)(points, x, y, z, d, cosine, margin, found);
 }
 
-}  // namespace goniochrome::prefilter
+}  // namespace goniochrome::prefilter::rows
 #endif

@@ -1,9 +1,10 @@
-// One cosine lobe summed over many texels or points at a time, in double precision.
+// Powers of the cosine summed over many texels or points at a time, in double precision, by the widest vectors that the
+// machine has. CosineKernel sums by these.
 #pragma once
 
 #include <cstddef>
 
-namespace goniochrome::prefilter {
+namespace goniochrome::prefilter::rows {
 
 // A row of a lat-long map at polar angle theta: adds the sum over columns of rgb[3j+c] max(0, a + b sine[j] +
 // c cosine[j])^exponent to sum[c].
@@ -18,8 +19,9 @@ void add_cube_row(const float* rgb, std::size_t columns, const double* s, const 
 void add_points(const float* rgb, std::size_t points, const double* x, const double* y, const double* z,
                 const double d[3], double exponent, double sum[3]);
 
-// The points with |d.(x,y,z)| <= margin: their indices in order to `found`, which has room for all. Returns how many.
-std::size_t points_near_horizon(std::size_t points, const double* x, const double* y, const double* z,
-                                const double d[3], double margin, std::size_t* found);
+// The points whose cosine to d is within `margin` of `cosine`: their indices in order to `found`, which has room for
+// all. Returns how many.
+std::size_t points_near(std::size_t points, const double* x, const double* y, const double* z, const double d[3],
+                        double cosine, double margin, std::size_t* found);
 
-}  // namespace goniochrome::prefilter
+}  // namespace goniochrome::prefilter::rows

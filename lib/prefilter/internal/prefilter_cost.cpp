@@ -49,7 +49,7 @@ double bright_time_s(double bright, double exponent, double texels) {
 }
 
 double arcs_time_s(const envmap::Environment& env, double exponent, double tolerance, double texels) {
-  return 4.8e-8 * arc_points(exponent, tolerance) * env.height() * texels;
+  return 4.8e-8 * arc_points(exponent == 0, tolerance) * env.height() * texels;
 }
 
 // A sharp lobe cuts few texels into many cells, a wide one walks along its horizon.

@@ -19,7 +19,7 @@ double total(const std::vector<LobePlan>& plan) {
   return sum;
 }
 
-TEST(PrefilterCost, the_first_lobe_that_needs_a_table_pays_for_it) {
+TEST(PrefilterCost, FirstLobeThatNeedsATablePaysForIt) {
   const envmap::Environment env = gray(128);
   const std::vector<LobePlan> both = prefilter_plan(env, {{250, 900}, false, 32, 1e-3});
   const std::vector<LobePlan> sharp = prefilter_plan(env, {{900}, false, 32, 1e-3});
@@ -29,7 +29,7 @@ TEST(PrefilterCost, the_first_lobe_that_needs_a_table_pays_for_it) {
   EXPECT_LT(total(both), total(sharp) + total(prefilter_plan(env, {{250}, false, 32, 1e-3})));
 }
 
-TEST(PrefilterCost, grows_with_what_each_step_counts) {
+TEST(PrefilterCost, GrowsWithWhatEachStepCounts) {
   const PrefilterRequest request = {{6, 70, 900}, true, 64, 1e-3};
   PrefilterRequest larger = request, tighter = request;
   larger.size = 128;
@@ -49,7 +49,7 @@ TEST(PrefilterCost, grows_with_what_each_step_counts) {
 }
 
 // An eighth of a cube serves all of it, but not when the scene is turned.
-TEST(PrefilterCost, a_turned_mirror_costs_twelve_times_as_much) {
+TEST(PrefilterCost, TurnedMirrorCostsTwelveTimesAsMuch) {
   const envmap::Environment env = gray(64);
   PrefilterRequest request = {{}, true, 32, 1e-3};
   const double straight = prefilter_plan(env, request).back().predicted_time_s;
@@ -57,7 +57,7 @@ TEST(PrefilterCost, a_turned_mirror_costs_twelve_times_as_much) {
   EXPECT_NEAR(prefilter_plan(env, request).back().predicted_time_s, 12 * straight, 1e-9);
 }
 
-TEST(PrefilterCost, threads_share_the_time) {
+TEST(PrefilterCost, ThreadsShareTheTime) {
   const envmap::Environment env = gray(64);
   const int before = threads();
   set_threads(1);
@@ -69,7 +69,7 @@ TEST(PrefilterCost, threads_share_the_time) {
 }
 
 // The methods that are dear say so: narrower and wider than harmonics reach.
-TEST(PrefilterCost, every_method_has_its_price) {
+TEST(PrefilterCost, EveryMethodHasItsPrice) {
   const envmap::Environment env = gray(256);
   const auto plan = prefilter_plan(env, {{0, 0.3, 250, 1e5}, true, 32, 1e-4});
   using Method = LobePlan::Method;

@@ -1,4 +1,4 @@
-// One mip-mapped cube with a lobe in every level, for paints whose exponent varies from point to point.
+// Files of one mip-mapped cube with a lobe in every level, for paints whose exponent varies from point to point.
 // [McAllister2002] 6.2; goniochrome-theory(7), PREFILTERING, Mip-mapped lobes.
 #pragma once
 
@@ -18,5 +18,10 @@ Result<std::vector<double>> mip_exponents(std::vector<double> given, int size);
 // Writes the levels (cubes of halving sizes) as one tiled EXR; attributes say exponent, error and texels of each.
 Result<void> write_mip(const std::string& path, const std::vector<PrefilteredLobe>& levels, const std::string& source,
                        const std::string& command);
+
+// Reads what write_mip() writes: the levels as lobes, without those of exponent 0; the level of exponent 1 is the
+// diffuse map as well. Error: the file is no mip-mapped cube, its attributes do not fit its levels, or none has the
+// exponent 1, with what makes one.
+Result<PrefilteredEnvironment> read_mip(const std::string& path);
 
 }  // namespace goniochrome::envmap

@@ -1,0 +1,16 @@
+// The integral of a kernel over a part of a texel, which every method of this room means: each texel is a patch of
+// constant radiance. goniochrome-theory(7), PREFILTERING, The reference.
+#pragma once
+
+#include "envmap/patch.h"
+#include "prefilter/internal/kernel.h"
+
+namespace goniochrome::prefilter {
+
+// The integral of K(angle between d and w) dw over the cell, in sr, to about `relative` of itself: by Gauss points
+// where the kernel is smooth over the cell, by quarters where it is narrower than the cell. A cell that the kernel's
+// edge cuts is taken to about `at_edge` of itself, in pieces on which the cosine is linear.
+double lobe_over_cell(const envmap::Environment& env, const envmap::Cell& cell, const Vec3& d,
+                      const ZonalKernel& kernel, double relative, double at_edge);
+
+}  // namespace goniochrome::prefilter
