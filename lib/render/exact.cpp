@@ -239,10 +239,7 @@ PixelSample sampled_pixels(const Gbuffer& g, const Scene& scene, int count, std:
   for (const std::size_t i : drawn(visible.size(), static_cast<std::size_t>(count), seed)) {
     const auto [x, y] = visible[i];
     sample.places.push_back(visible[i]);
-    sample.points.push_back({g.normal(x, y), g.to_viewer(x, y), g.part(x, y)});
-    if (places.empty()) continue;
-    sample.points.back().placed = true;
-    sample.points.back().place = places[static_cast<std::size_t>(y) * g.width + x];
+    sample.points.push_back(g.point(x, y, places));
   }
   return sample;
 }

@@ -9,10 +9,10 @@
 #include "envmap/block_tree.h"
 #include "envmap/environment.h"
 #include "image/image.h"
-#include "render/internal/visible_point.h"
+#include "render/gbuffer.h"
 #include "render/renderer.h"
 #include "render/scene.h"
-#include "render/textures/surface_layer.h"
+#include "render/surface_layer.h"
 
 namespace goniochrome::render {
 

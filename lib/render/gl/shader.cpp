@@ -258,9 +258,11 @@ void main() {
 }
 
 std::string gbuffer_fragment_shader() {
-  return std::string("#version 330 core\n") + kRays + R"(uniform int part;
+  return std::string("#version 330 core\n") + kRays +
+         R"(uniform int part, first;  // first: the number of the part's first triangle
 in vec3 normal;
 layout(location = 0) out vec4 gbuffer;
+layout(location = 1) out uint triangle;
 void main() {
   float side = gl_FrontFacing ? 1.0 : -1.0;
   vec3 n = side * normalize(normal), wo = -ray();
@@ -268,6 +270,7 @@ void main() {
   float cos_o = dot(n, wo);
   if (cos_o < 1e-3) n = normalize(n + (1e-3 - cos_o) * wo);
   gbuffer = vec4(n, side * float(part + 1));
+  triangle = uint(first + gl_PrimitiveID);
 }
 )";
 }

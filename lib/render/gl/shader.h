@@ -8,7 +8,8 @@
 
 namespace goniochrome::render {
 
-// Draws the G-buffer: unit normal, turned to the viewer, and part + 1 (negative where a surface is seen from inside).
+// Draws the G-buffer: unit normal, turned to the viewer, and part + 1 (negative where a surface is seen from inside);
+// and, as a second picture, the number of the triangle.
 std::string gbuffer_vertex_shader();
 std::string gbuffer_fragment_shader();
 

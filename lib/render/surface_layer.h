@@ -11,7 +11,6 @@
 #include "image/image.h"
 #include "render/effects.h"
 #include "render/gbuffer.h"
-#include "render/internal/visible_point.h"
 #include "render/scene.h"
 #include "render/textures/sbrdf.h"
 #include "render/textures/texture_places.h"
