@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "render/renderer.h"
 #include "render/scenes_for_test.h"
 
@@ -13,8 +15,8 @@ View slanted_view(const mesh::Mesh& mesh, int samples = 1) {
 }
 
 // OpenGL rounds corners to 1/256 of a pixel, so that a pixel whose center is that close to an edge may have the
-// neighbor; on this sphere that is less than 1 % of the pixels. The rays through the pixels are the truth. The control
-// is another view.
+// neighbor; on this sphere that is less than 1 % of what is seen. The rays through the pixels are the truth. The
+// control is another view.
 TEST(Gbuffer, HoldsTheTrianglesThatRaysMeet) {
   const mesh::Mesh mesh = sphere_mesh(24);
   auto renderer = Renderer::create();
@@ -28,8 +30,11 @@ TEST(Gbuffer, HoldsTheTrianglesThatRaysMeet) {
     for (std::size_t i = 0; i < met.triangles.size(); ++i) count += met.triangles[i] != (*drawn)->triangles[i];
     return count;
   };
-  EXPECT_LE(differing(view.camera), 96 * 64 / 100);
-  EXPECT_GT(differing(Camera::orbit(mesh, 34, 21, 1, 30, 1.5)), 96 * 64 / 10);
+  const auto seen =
+      std::ranges::count_if((*drawn)->triangles, [](std::uint32_t triangle) { return triangle != kNoTriangle; });
+  EXPECT_GT(seen, 1000);
+  EXPECT_LE(differing(view.camera), seen / 100);
+  EXPECT_GT(differing(Camera::orbit(mesh, 34, 21, 1, 30, 1.5)), seen / 5);
 }
 
 // The numbers count through all parts, and what shows no triangle shows no part.
@@ -81,7 +86,7 @@ TEST(MeshPoint, IsWhereTheRayMeetsTheTriangle) {
       ++inside;
     }
   }
-  EXPECT_GT(inside, 1500);
+  EXPECT_GT(inside, 1200);
 }
 
 TEST(MeshPoint, StaysOnTheTriangleThatTheRayMissesOrRunsAlong) {

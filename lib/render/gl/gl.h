@@ -1,4 +1,4 @@
-// OpenGL on OSMesa: one off-screen context and the entry points in use.
+// OpenGL on OSMesa, the software renderer of Mesa: one context without a window, and the functions that are used.
 #pragma once
 
 #include <GL/glcorearb.h>

@@ -287,6 +287,7 @@ std::string shading_fragment_shader(const Effects& effects, const color::Reflect
   const bool lit_lobes = effects.lights > 0 && !effects.lobes.empty();
   const ProductForms forms = effects.reflection ? product_forms(op) : ProductForms{};
   const Product product = product_of(effects, forms);
+  // 1. What the program is given, and the functions that it needs.
   std::string text = "#version 330 core\n// goniochrome-theory(7), RENDERING\n";
   text += uniforms(effects) + kRays + "layout(location = 0) out vec4 color;\n" + kWeight;
   if (effects.reflection && (product == Product::kOperator || effects.lights > 0)) text += reflection_function(op);
@@ -295,6 +296,7 @@ std::string shading_fragment_shader(const Effects& effects, const color::Reflect
   if (lit_gloss(effects)) text += fresnel_function();
   if (lit_lobes) text += kCosPower;
   if (!effects.lobes.empty()) text += lobe_functions(effects, product);
+  // 2. Where nothing is seen the program shows the background; else it finds the view and the row of weights.
   text += fmt::format(R"(
 void main() {{
   vec4 point = texelFetch(gbuffer, ivec2(gl_FragCoord.xy), 0);
@@ -310,6 +312,7 @@ void main() {{
 {}  vec3 radiance = vec3(0.0);
 )",
                       background_color(effects.background, product), row_of_view(effects));
+  // 3. The sum of what the environment and the lights show.
   if (effects.anisotropy) {
     text += R"(  int tilt_count = textureSize(tilts, 0).x;
   vec3 x = dot(n.xz, n.xz) > 1e-12 ? normalize(vec3(n.z, 0.0, -n.x)) : vec3(1.0, 0.0, 0.0), y = cross(n, x);

@@ -1,5 +1,5 @@
-// The shading program, written for one scene: only the effects and lobes that it uses. goniochrome-theory(7),
-// RENDERING.
+// The programs of OpenGL. The shading program is written for one scene and contains only the effects and lobes that the
+// scene uses. goniochrome-theory(7), RENDERING.
 #pragma once
 
 #include <string>
