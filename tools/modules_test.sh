@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Holds the order of the rooms that lib/README.md states:
 #   - an #include under lib/ names the same room or one before it, and `cli` stands on `base` alone;
-#   - what lies in a private folder (internal/, and the engines' folders of `render`) is included by its own room alone;
+#   - what lies in a private folder (internal/, and every folder of `render`) is included by its own room alone;
 #   - a public header stands at the top of its room because somebody outside the room includes it;
 #   - no third-party type shows in a public header;
 #   - the code of a room stands in the namespace of that name; that of `base` stands in goniochrome itself;
@@ -21,7 +21,7 @@ complain() {
   wrong=1
 }
 
-private='^[a-z]+/internal/|^render/(gl|cpu|integral)/'
+private='^[a-z]+/internal/|^render/[a-z]+/'
 while IFS=: read -r file _ include; do
   file=${file#./}
   header=${include#\#include \"}
@@ -54,11 +54,11 @@ while read -r header; do
   case $room in base | cli | fuzz) continue ;; esac
   grep -rqF "#include \"$header\"" --include='*.h' --include='*.cpp' $(printf '%s\n' */ | grep -v "^$room/") ../tools ||
     complain "$header is public, and nobody outside $room includes it: it belongs into $room/internal"
-done < <(find . -name '*.h' | grep -vE "^\./([a-z]+/internal|render/(gl|cpu|integral)|image/oiio)/" | sort)
+done < <(find . -name '*.h' | grep -vE "^\./([a-z]+/internal|render/[a-z]+|image/oiio)/" | sort)
 
 # fit/ceres_options.h is for the two rooms that solve by Ceres.
 while read -r line; do complain "$line: belongs into a .cpp or into internal/"; done < <(
-  grep -rlE --include='*.h' '' . | grep -vE '/internal/|^\./render/(gl|cpu|integral)/|^\./fit/ceres_options\.h$|_for_test\.h$' |
+  grep -rlE --include='*.h' '' . | grep -vE '/internal/|^\./render/[a-z]+/|^\./fit/ceres_options\.h$|_for_test\.h$' |
     xargs grep -nE '^#include <(Eigen|ceres|CGAL|Clp|Coin|OpenImageIO|OpenColorIO|libxml|lcms2|embree|GL/|CLI)' || true)
 
 for room in "${order[@]}"; do

@@ -47,13 +47,13 @@ image::AovFile buffers_of(const Frame& frame, const mesh::Mesh& mesh) {
 
 Frame drawn(const World& world) {
   auto renderer = Renderer::create();
-  EXPECT_TRUE(renderer->load(world.scene, Engine::kCpu).ok());
+  EXPECT_TRUE(renderer->load(world.scene, "cpu").ok());
   Frame frame;
   EXPECT_TRUE(renderer->draw(world.view, frame).ok());
   return frame;
 }
 
-TEST(GbufferOf, shades_the_same_picture_without_the_mesh) {
+TEST(GbufferOf, ShadesTheSamePictureWithoutTheMesh) {
   World world;
   const Frame frame = drawn(world);
   auto gbuffer = gbuffer_of(buffers_of(frame, world.mesh));
@@ -63,7 +63,7 @@ TEST(GbufferOf, shades_the_same_picture_without_the_mesh) {
   parts_alone.parts = world.mesh.parts;
   world.scene.mesh = &parts_alone;
   Renderer renderer = Renderer::shading(std::make_shared<const Gbuffer>(*std::move(gbuffer)));
-  ASSERT_TRUE(renderer.load(world.scene, Engine::kCpu).ok());
+  ASSERT_TRUE(renderer.load(world.scene, "cpu").ok());
   Frame again;
   ASSERT_TRUE(renderer.draw(world.view, again).ok());
   EXPECT_EQ(again.picture.data, frame.picture.data);
@@ -71,10 +71,10 @@ TEST(GbufferOf, shades_the_same_picture_without_the_mesh) {
   EXPECT_EQ(renderer.opengl(), "");
   const auto plan = renderer.load(world.scene, {again.gbuffer}, {});
   ASSERT_TRUE(plan.ok());
-  EXPECT_EQ(plan->engine, Engine::kCpu);
+  EXPECT_EQ(plan->engine, "cpu");
 }
 
-TEST(GbufferOf, needs_normal_part_rays_and_the_names_of_parts) {
+TEST(GbufferOf, NeedsNormalPartRaysAndTheNamesOfParts) {
   const World world;
   const image::AovFile good = buffers_of(drawn(world), world.mesh);
   for (const char* name : {"normal.Y", "part"}) {
@@ -92,7 +92,7 @@ TEST(GbufferOf, needs_normal_part_rays_and_the_names_of_parts) {
   EXPECT_THAT(gbuffer_of(bad).error().message, HasSubstr("goniochrome:parts"));
 }
 
-TEST(GbufferOf, names_the_pixel_that_holds_no_normal_or_no_part) {
+TEST(GbufferOf, NamesThePixelThatHoldsNoNormalOrNoPart) {
   const World world;
   const image::AovFile good = buffers_of(drawn(world), world.mesh);
   const int x = kWidth / 2, y = kHeight / 2, normal = 4, part = 7;
@@ -109,14 +109,30 @@ TEST(GbufferOf, names_the_pixel_that_holds_no_normal_or_no_part) {
   EXPECT_THAT(gbuffer_of(bad).error().message, HasSubstr("the normal at pixel 24,16 has the length 0.5"));
 }
 
-TEST(RendererShading, refuses_what_needs_the_mesh) {
-  World world;
-  Renderer renderer = Renderer::shading(drawn(world).gbuffer);
-  EXPECT_THAT(renderer.load(world.scene, Engine::kGl).error().message, HasSubstr("engine gl"));
-  ASSERT_TRUE(renderer.load(world.scene, Engine::kCpu).ok());
-  world.view.samples = 4;
-  Frame frame;
-  EXPECT_THAT(renderer.draw(world.view, frame).error().message, HasSubstr("1 sample a pixel, not 4"));
+TEST(Aov, BuffersHoldWhatWasSeen) {
+  const mesh::Mesh mesh = panels_mesh(1);
+  Scene scene{&mesh, {matt({1, 1, 1})}, nullptr, {{normalized({0, 1, 1}), {1, 1, 1}}}, Background::kNone, {}};
+  Camera camera;
+  camera.eye = {0, 0, 4};
+  auto renderer = Renderer::create();
+  ASSERT_TRUE(renderer->load(scene).ok());
+  const Frame frame = *renderer->draw(camera, 41, 41, 1);
+  image::Image picture = frame.picture;
+  for (const char* name : {"normal", "aspecular", "lambert", "mask", "part"}) {
+    ASSERT_TRUE(add_aov(picture, *frame.gbuffer, name, scene.lights[0].direction).ok());
+  }
+  EXPECT_EQ(picture.channel_names, (std::vector<std::string>{"R", "G", "B", "A", "normal.X", "normal.Y", "normal.Z",
+                                                             "aspecular", "lambert", "mask", "part"}));
+  const float* middle = picture.pixel(20, 20);
+  EXPECT_NEAR(middle[6], 1, 1e-6);
+  EXPECT_NEAR(middle[7], 45, 1e-4);  // the panel sends light from 45 deg above to 45 deg below; the viewer is in front
+  EXPECT_NEAR(middle[8], std::sqrt(0.5), 1e-6);
+  EXPECT_EQ(middle[9], 1);
+  EXPECT_EQ(middle[10], 1);
+  const float* corner = picture.pixel(0, 0);
+  EXPECT_EQ(corner[7], 180);
+  EXPECT_EQ(corner[9] + corner[10] + corner[4], 0);
+  EXPECT_THAT(add_aov(picture, *frame.gbuffer, "depth", {}).error().message, HasSubstr("normal, aspecular, lambert"));
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Where the picture is taken from. World axes: +Y up. goniochrome-theory(7), RENDERING.
+// A camera says where a picture is taken from, and gives the rays through its pixels. In the world's axes +Y is up.
+// goniochrome-theory(7), RENDERING, Cameras.
 #pragma once
 
 #include <array>

@@ -7,7 +7,7 @@
 
 #include "brdf/lobe_model.h"
 #include "render/internal/lobe_curves.h"
-#include "render/textures/surface_layer.h"
+#include "render/surface_layer.h"
 
 namespace goniochrome::render {
 

@@ -1,4 +1,5 @@
-// What a scene is shaded with, and the weights that both engines read. goniochrome-theory(7), RENDERING.
+// The effects that a scene is shaded with, and the table of weights that all engines with prefiltered maps read.
+// goniochrome-theory(7), RENDERING.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +11,7 @@
 
 namespace goniochrome::render {
 
-// kGl and kCpu fetch prefiltered maps; kIntegral sums the environment itself.
-enum class Engine { kGl, kCpu, kIntegral };
-
-// The effects that are on.
+// The effects that are on, and how accurate they are.
 struct Effects {
   struct LobeUse {
     double exponent = 1;
@@ -32,8 +30,8 @@ struct Effects {
   bool anisotropy = false;
   double tilt_tolerance = 0.005;  // of the lobes drawn about tilted normals, relative to their peak
   int most_tilts = 1024;
-  double spread = 0.3;      // of the blocks that kIntegral sums; render/integral_engine.h
-  bool reflection = false;  // the scene's reflection operator in place of the component-wise product
+  double tolerance_de00 = 0.3;  // of engines that sum light instead of looking it up: p95 over the visible pixels
+  bool reflection = false;      // the scene's reflection operator in place of the component-wise product
   std::size_t lights = 0;
   Background background = Background::kNone;
 

@@ -135,7 +135,7 @@ TEST_P(Estimates, AreTheErrorsOfTheCheck) {
   ASSERT_TRUE(plan.ok()) << plan.error().message;
   Frame without, with;
   ASSERT_TRUE(renderer->draw(room.view, without).ok());
-  ASSERT_TRUE(renderer->load(scene, Engine::kCpu).ok());
+  ASSERT_TRUE(renderer->load(scene, "cpu").ok());
   ASSERT_TRUE(renderer->draw(room.view, with).ok());
   const double missed = picture_error(without, scene, &room.source, white, kChecked, 1).de00_p95;
   const double left = picture_error(with, scene, &room.source, white, kChecked, 1).de00_p95;
@@ -161,7 +161,7 @@ TEST(HorizonAndCosine, LightComesFromWhereTheLobeGathersIt) {
     Effects effects = effects_of(scene);
     effects.horizon = horizon;
     auto renderer = Renderer::create();
-    ASSERT_TRUE(renderer->load(scene, effects, Engine::kCpu).ok());
+    ASSERT_TRUE(renderer->load(scene, effects, "cpu").ok());
     Frame frame;
     ASSERT_TRUE(renderer->draw(room.view, frame).ok());
     error[horizon] = picture_error(frame, scene, &room.source, white, kChecked, 1).de00_mean;

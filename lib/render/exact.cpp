@@ -13,10 +13,10 @@ namespace goniochrome::render {
 
 namespace {
 
-// Tilts of the truth: of an anisotropic lobe's peak.
+// In the reference, the tilted normals of an anisotropic lobe reproduce it to this share of its peak.
 constexpr double kTiltTolerance = 1e-3;
 
-// A run of texels is set up once for so many points: directions cost more than lobes.
+// The direction of a texel costs more than a lobe. It is therefore computed once for so many points.
 constexpr std::size_t kPointsTogether = 16;
 
 // The piece (i, j) of a texel cut into k x k.
@@ -48,7 +48,7 @@ void gather_texels(const envmap::Environment& env, std::vector<AnyGatherer>& poi
   }
 }
 
-// Of a disc of even light that fills the cap.
+// The variance along one axis of even light that fills the cap of a block.
 double even_variance(const envmap::BlockTree::Block& block) {
   return 0.25 * block.sine * block.sine;
 }
@@ -239,10 +239,7 @@ PixelSample sampled_pixels(const Gbuffer& g, const Scene& scene, int count, std:
   for (const std::size_t i : drawn(visible.size(), static_cast<std::size_t>(count), seed)) {
     const auto [x, y] = visible[i];
     sample.places.push_back(visible[i]);
-    sample.points.push_back({g.normal(x, y), g.to_viewer(x, y), g.part(x, y)});
-    if (places.empty()) continue;
-    sample.points.back().placed = true;
-    sample.points.back().place = places[static_cast<std::size_t>(y) * g.width + x];
+    sample.points.push_back(g.point(x, y, places));
   }
   return sample;
 }

@@ -1,5 +1,5 @@
-// The yardstick: the exact BRDF against the full-resolution environment, summed directly in double precision, without
-// any prefiltering. goniochrome-theory(7), REFERENCE INTEGRATOR.
+// The reference integrator is the yardstick of every picture: it sums the exact BRDF times the environment in its full
+// resolution, in double precision and without prefiltering. goniochrome-theory(7), REFERENCE INTEGRATOR.
 #pragma once
 
 #include <array>
@@ -9,14 +9,14 @@
 #include "envmap/block_tree.h"
 #include "envmap/environment.h"
 #include "image/image.h"
-#include "render/internal/visible_point.h"
+#include "render/gbuffer.h"
 #include "render/renderer.h"
 #include "render/scene.h"
-#include "render/textures/surface_layer.h"
+#include "render/surface_layer.h"
 
 namespace goniochrome::render {
 
-// What the exact BRDF of a point holds beside its paint's diffuse and lobes.
+// How the BRDF of a point is evaluated beyond the weights of its paint.
 struct ExactModel {
   bool fresnel = false;  // of gloss lobes, relative to gloss_deg, and of the mirror
   double gloss_deg = 45;
@@ -31,7 +31,7 @@ struct SurfacePoint {
   const ExactModel* model = nullptr;  // null: that of a bare lobe model, the mirror with its Fresnel reflectance
 };
 
-// The light around, and how finely it is summed.
+// The light from all around, and how finely it is summed.
 struct Surroundings {
   // Texel by texel: the yardstick. `env` may be null: none.
   Surroundings(const envmap::Environment* env) : texels(env) {}  // NOLINT(google-explicit-constructor)

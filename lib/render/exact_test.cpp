@@ -38,7 +38,7 @@ color::Rgb at(const paint::LobeFit& paint, const Vec3& normal, const Vec3& to_vi
 
 // In a constant environment, seen along the normal: K_D pi, K_DD 2 pi/(E+2), K_G 2 pi/(E+1). Texels of h = 2.8 deg err
 // by h^2/24 E or so, until the lobe is narrower and they are cut.
-TEST(Reference, ConstantEnvironmentHasAClosedForm) {
+TEST(ReferenceRadiance, ConstantEnvironmentHasAClosedForm) {
   const envmap::Environment env = lat_long(128, 64, [](int, int) { return Vec3{2, 1, 0.5}; });
   const Vec3 n = normalized({0.3, 0.5, -0.8});
   EXPECT_NEAR(at(matt({0.5, 0.5, 0.5}), n, n, env).x, 1, 1e-3);
@@ -59,7 +59,7 @@ TEST(Reference, ConstantEnvironmentHasAClosedForm) {
 }
 
 // Against the definition, with brdf/lobe_model's f and its aspecular angle by atan2.
-TEST(Reference, IsTheSumOverTexelsOfTheExactBrdf) {
+TEST(ReferenceRadiance, IsTheSumOverTexelsOfTheExactBrdf) {
   TestNumbers random(11);
   const envmap::Environment env = lat_long(32, 16, [&](int, int) { return Vec3{random(), random(), random()}; });
   for (int trial = 0; trial < 50; ++trial) {
@@ -85,7 +85,7 @@ TEST(Reference, IsTheSumOverTexelsOfTheExactBrdf) {
 }
 
 // A patch is a patch, not a point: a lobe of E = 1e4 over one bright texel of 2.8 deg, against a fine brute-force sum.
-TEST(Reference, SharpLobeSeesTexelsAsPatches) {
+TEST(ReferenceRadiance, SharpLobeSeesTexelsAsPatches) {
   const envmap::Environment env = lat_long(128, 64, [](int column, int row) {
     return column == 40 && row == 30 ? Vec3{1, 1, 1} : Vec3{};
   });
@@ -105,7 +105,7 @@ TEST(Reference, SharpLobeSeesTexelsAsPatches) {
   }
 }
 
-TEST(Reference, NothingComesFromBelowTheHorizon) {
+TEST(ReferenceRadiance, NothingComesFromBelowTheHorizon) {
   const envmap::Environment env = lat_long(64, 32, [](int, int row) {
     return row >= 16 ? Vec3{1, 1, 1} : Vec3{};
   });  // -Y half
@@ -123,7 +123,7 @@ TEST(Reference, NothingComesFromBelowTheHorizon) {
   EXPECT_GT(below, 0.1);
 }
 
-TEST(Reference, MirrorIsFresnelTimesTheTexelSeen) {
+TEST(ReferenceRadiance, MirrorIsFresnelTimesTheTexelSeen) {
   const envmap::Environment env = lat_long(8, 4, [](int column, int row) { return Vec3{1.0 * column, 1.0 * row, 1}; });
   const Vec3 n{0, 0, 1}, wo = normalized({0.4, 0.2, 0.7});
   const float* texel = env.lookup(2 * dot(n, wo) * n - wo);
@@ -132,7 +132,7 @@ TEST(Reference, MirrorIsFresnelTimesTheTexelSeen) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(seen[c], 0.5 * fresnel * texel[c], 1e-15);
 }
 
-TEST(Reference, LightsAreIrradianceOverPi) {
+TEST(ReferenceRadiance, LightsAreIrradianceOverPi) {
   paint::LobeFit paint = one_lobe(30, 0.3, 0.1);
   paint.diffuse = {0.1, 0.2, 0.3};
   const Light light{normalized({1, 1, 3}), {2, 1, 0.5}};
@@ -144,7 +144,7 @@ TEST(Reference, LightsAreIrradianceOverPi) {
   }
 }
 
-TEST(Reference, HardCase_threads_give_the_same_bits) {
+TEST(ReferenceRadiance, HardCase_ThreadsGiveTheSameBits) {
   TestNumbers random(5);
   const envmap::Environment env = lat_long(64, 32, [&](int, int) { return Vec3{random(), random(), random()}; });
   paint::LobeFit paint = one_lobe(500, 0.1, 3);

@@ -1,5 +1,6 @@
 #include "render/gbuffer.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "render/gl/gl.h"
@@ -14,6 +15,35 @@ int Gbuffer::part(int x, int y) const {
 Vec3 Gbuffer::normal(int x, int y) const {
   const float* n = at(x, y);
   return normalized({n[0], n[1], n[2]});
+}
+
+VisiblePoint Gbuffer::point(int x, int y, const std::vector<TexturePlace>& places) const {
+  VisiblePoint point{normal(x, y), to_viewer(x, y), part(x, y)};
+  if (!places.empty()) point.placed = true, point.place = places[index(x, y)];
+  return point;
+}
+
+// By Cramer's rule from the origin's place beside the first corner: in the edges a and b, the ray meets the plane at
+// (share of a, share of b) = (d x b . s, d . s x a)/(d x b . a).
+MeshPoint mesh_point(const mesh::Mesh& mesh, std::uint32_t triangle, const Vec3& origin, const Vec3& direction) {
+  const auto& corners = mesh.triangles[triangle];
+  const Vec3 &p = mesh.positions[corners[0]], &q = mesh.positions[corners[1]], &r = mesh.positions[corners[2]];
+  const Vec3 a = q - p, b = r - p, s = origin - p, across = cross(direction, b);
+  const double determinant = dot(across, a);
+  MeshPoint point{triangle, {1.0 / 3, 1.0 / 3, 1.0 / 3}, {}, normalized(cross(a, b))};
+  if (determinant != 0) {
+    const double v = dot(across, s) / determinant, w = dot(direction, cross(s, a)) / determinant;
+    point.shares = {std::max(0.0, 1 - v - w), std::max(0.0, v), std::max(0.0, w)};
+    const double sum = point.shares[0] + point.shares[1] + point.shares[2];
+    for (double& share : point.shares) share /= sum;
+  }
+  point.position = p + point.shares[1] * a + point.shares[2] * b;
+  return point;
+}
+
+MeshPoint mesh_point(const mesh::Mesh& mesh, const Gbuffer& gbuffer, int x, int y) {
+  return mesh_point(mesh, gbuffer.triangles[gbuffer.index(x, y)], gbuffer.rays.eye,
+                    gbuffer.rays.direction(x + 0.5, y + 0.5));
 }
 
 std::vector<std::array<double, 2>> sample_shifts(int samples) {
@@ -66,6 +96,13 @@ Result<void> Rasterizer::resize(int width, int height) {
   if (width == width_ && height == height_) return {};
   const GlContext& gl = *gl_;
   gl.float_target(width, height, texture_, target_);
+  gl.DeleteTextures(1, &triangles_);
+  gl.GenTextures(1, &triangles_);
+  gl.BindTexture(GL_TEXTURE_2D, triangles_);
+  gl.TexImage2D(GL_TEXTURE_2D, 0, GL_R32UI, width, height, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+  gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT1, GL_TEXTURE_2D, triangles_, 0);
+  constexpr GLenum kTargets[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+  gl.DrawBuffers(2, kTargets);
   gl.DeleteRenderbuffers(1, &depth_);
   gl.GenRenderbuffers(1, &depth_);
   gl.BindRenderbuffer(GL_RENDERBUFFER, depth_);
@@ -87,16 +124,21 @@ void Rasterizer::draw(const Camera& camera, const Rays& rays, double shift_x, do
   gl.BindFramebuffer(GL_FRAMEBUFFER, target_);
   gl.Viewport(0, 0, width_, height_);
   gl.Enable(GL_DEPTH_TEST);
-  gl.ClearColor(0, 0, 0, 0);
-  gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  constexpr GLfloat kNothing[4] = {0, 0, 0, 0};
+  constexpr GLuint kNone[4] = {kNoTriangle, 0, 0, 0};
+  gl.ClearBufferfv(GL_COLOR, 0, kNothing);
+  gl.ClearBufferuiv(GL_COLOR, 1, kNone);
+  gl.Clear(GL_DEPTH_BUFFER_BIT);
   gl.UseProgram(program_);
   gl.UniformMatrix4fv(gl.GetUniformLocation(program_, "clip"), 1, GL_FALSE, matrix.data());
   gl.set_rays(program_, drawn_);
   gl.BindVertexArray(vertex_array_);
-  const GLint part_location = gl.GetUniformLocation(program_, "part");
+  const GLint part_location = gl.GetUniformLocation(program_, "part"),
+              first_location = gl.GetUniformLocation(program_, "first");
   for (std::size_t part = 0; part < mesh_->parts.size(); ++part) {
     const mesh::MeshPart& range = mesh_->parts[part];
     gl.Uniform1i(part_location, static_cast<GLint>(part));
+    gl.Uniform1i(first_location, static_cast<GLint>(range.first));
     gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * range.count), GL_UNSIGNED_INT,
                     reinterpret_cast<const void*>(range.first * sizeof(mesh_->triangles[0])));
   }
@@ -105,9 +147,14 @@ void Rasterizer::draw(const Camera& camera, const Rays& rays, double shift_x, do
 void Rasterizer::read(Gbuffer& gbuffer) const {
   gbuffer.width = width_, gbuffer.height = height_;
   gbuffer.rays = drawn_;
-  gbuffer.data.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * 4);
+  const std::size_t pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+  gbuffer.data.resize(pixels * 4);
+  gbuffer.triangles.resize(pixels);
   gl_->BindFramebuffer(GL_FRAMEBUFFER, target_);
+  gl_->ReadBuffer(GL_COLOR_ATTACHMENT0);
   gl_->ReadPixels(0, 0, width_, height_, GL_RGBA, GL_FLOAT, gbuffer.data.data());
+  gl_->ReadBuffer(GL_COLOR_ATTACHMENT1);
+  gl_->ReadPixels(0, 0, width_, height_, GL_RED_INTEGER, GL_UNSIGNED_INT, gbuffer.triangles.data());
 }
 
 }  // namespace goniochrome::render

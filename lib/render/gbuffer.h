@@ -1,8 +1,12 @@
-// What is visible: rasterized once for a view, then shaded by either engine. goniochrome-theory(7), RENDERING.
+// A G-buffer holds what is visible at one point of every pixel. It is rasterized once for a view; then every engine
+// shades it. What it does not store of a point on the mesh follows from the triangle and the ray through the pixel.
+// goniochrome-theory(7), RENDERING.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "base/result.h"
@@ -14,18 +18,56 @@ namespace goniochrome::render {
 
 class GlContext;
 
-// What is visible at one point of every pixel; row 0 at the top.
+// Where a point lies on its texture.
+struct TexturePlace {
+  float u = 0, v = 0;
+  float tangent[3] = {0, 0, 0};  // world, along growing u; of about unit length, or 0 where it is not known
+};
+
+// A visible point that is shaded alone.
+struct VisiblePoint {
+  Vec3 normal, to_viewer;  // unit, on the same side
+  int part = 0;
+  bool placed = false;  // whether its place on a texture is known
+  TexturePlace place = {};
+};
+
+// What a G-buffer has in the place of a triangle's number where the mesh is not seen.
+constexpr std::uint32_t kNoTriangle = std::numeric_limits<std::uint32_t>::max();
+
+// What is visible at one point of every pixel; row 0 is at the top.
 struct Gbuffer {
   int width = 0, height = 0;
   std::vector<float> data;  // 4 a pixel: unit normal turned to the viewer, part + 1 (negative: seen from inside), or 0
-  Rays rays;                // of the points: their shift within the pixel is in the corner
+  Rays rays;                // through the points: their shift within the pixel is in the corner
+  std::vector<std::uint32_t> triangles = {};  // of the mesh, one a pixel; empty where the buffer comes from a file
 
-  const float* at(int x, int y) const { return &data[(static_cast<std::size_t>(y) * width + x) * 4]; }
+  std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * width + x; }
+  const float* at(int x, int y) const { return &data[index(x, y) * 4]; }
   // The part seen, or -1.
   int part(int x, int y) const;
   Vec3 normal(int x, int y) const;
   Vec3 to_viewer(int x, int y) const { return -rays.direction(x + 0.5, y + 0.5); }
+  // What is seen at this pixel, with its place on a texture unless `places` is empty.
+  VisiblePoint point(int x, int y, const std::vector<TexturePlace>& places = {}) const;
 };
+
+// A point of a mesh, in the mesh's own coordinates.
+struct MeshPoint {
+  std::uint32_t triangle = kNoTriangle;
+  std::array<double, 3> shares = {};  // barycentric: of the triangle's corners, none below 0, together 1
+  Vec3 position;
+  Vec3 face;  // the unit normal of the triangle, to the side from which its corners run counter-clockwise
+};
+
+// Where a ray meets the plane of a triangle of the mesh. If that is outside of the triangle, as it is by a part of a
+// pixel where a rasterizer rounds, it is the nearest place within by shares of the corners; if the ray runs along the
+// plane, the middle of the triangle.
+MeshPoint mesh_point(const mesh::Mesh& mesh, std::uint32_t triangle, const Vec3& origin, const Vec3& direction);
+
+// What a pixel of the G-buffer shows of the mesh that it was rasterized from. It must show something, and the G-buffer
+// must have triangles.
+MeshPoint mesh_point(const mesh::Mesh& mesh, const Gbuffer& gbuffer, int x, int y);
 
 // Where the samples of a pixel lie, from its center: a grid turned so that no two share a row or a column, which
 // resolves edges that are nearly upright or level in as many steps as there are samples.
@@ -47,8 +89,10 @@ class Rasterizer {
   // Reads back what was drawn last.
   void read(Gbuffer& gbuffer) const;
 
-  unsigned texture() const { return texture_; }
+  unsigned texture() const { return texture_; }  // of Gbuffer::data
   const Rays& drawn_rays() const { return drawn_; }
+  int width() const { return width_; }
+  int height() const { return height_; }
 
  private:
   explicit Rasterizer(const GlContext& gl) : gl_(&gl) {}
@@ -57,7 +101,7 @@ class Rasterizer {
   const mesh::Mesh* mesh_ = nullptr;
   Rays drawn_;
   unsigned program_ = 0, vertex_array_ = 0, positions_ = 0, normals_ = 0, indices_ = 0;
-  unsigned texture_ = 0, depth_ = 0, target_ = 0;
+  unsigned texture_ = 0, triangles_ = 0, depth_ = 0, target_ = 0;
   int width_ = 0, height_ = 0;
   mesh::Box box_;
 };

@@ -123,7 +123,7 @@ double relative(const color::Rgb& a, const color::Rgb& b) {
 
 // Flake light, Ward's lobe, generalized cosine lobes and isolines know no difference between light and viewer; gloss
 // lobes, divided by the light's cosine alone, do.
-TEST_F(Property, light_and_viewer_trade_places) {
+TEST_F(Property, LightAndViewerTradePlaces) {
   for (int trial = 0; trial < 20000; ++trial) {
     const Vec3 i = above_horizon(), o = above_horizon(), normal = {0, 0, 1};
     const paint::LobeFit flakes = paint(1, false);
@@ -150,7 +150,7 @@ TEST_F(Property, light_and_viewer_trade_places) {
 }
 
 // A furnace: where all light is 1, nothing that reflects all it gets at most shows more than 1.
-TEST_F(Property, nothing_reflects_more_than_it_gets) {
+TEST_F(Property, NothingReflectsMoreThanItGets) {
   const envmap::Environment furnace = environment(16, 8, std::vector<float>(3 * 16 * 8, 1.0F));
   std::vector<paint::LobeFit> all = paints(200, 0.6, true);
   for (paint::LobeFit& fit : all) fit.lobes.push_back({envmap::kMirrorExponent, {}, {0.4, 0.4, 0.4}});
@@ -162,7 +162,7 @@ TEST_F(Property, nothing_reflects_more_than_it_gets) {
 }
 
 // The picture of two lights is the sum of their pictures, in the reference and in the prefiltered maps.
-TEST_F(Property, light_adds_up) {
+TEST_F(Property, LightAddsUp) {
   constexpr int kWidth = 64, kHeight = 32;
   const std::vector<float> a = radiances(kWidth, kHeight), b = radiances(kWidth, kHeight);
   std::vector<float> sum(a.size());
@@ -197,7 +197,7 @@ TEST_F(Property, light_adds_up) {
 }
 
 // What turns with its light looks the same. A quarter turn about the vertical moves every texel onto another.
-TEST_F(Property, turning_everything_changes_nothing) {
+TEST_F(Property, TurningEverythingChangesNothing) {
   constexpr int kWidth = 64, kHeight = 32;
   const std::vector<float> rgb = radiances(kWidth, kHeight);
   const std::vector<paint::LobeFit> all = paints(50, 0.9, true);
@@ -231,7 +231,7 @@ TEST_F(Property, turning_everything_changes_nothing) {
 
 // A lobe more can stay at weight 0: the objective never rises. The sharpest lobe comes first, for the target between
 // the face and specular depends on it.
-TEST_F(Property, more_lobes_never_fit_worse) {
+TEST_F(Property, MoreLobesNeverFitWorse) {
   for (int trial = 0; trial < 40; ++trial) {
     paint::Paint designed;
     designed.name = "random";
@@ -260,7 +260,7 @@ TEST_F(Property, more_lobes_never_fit_worse) {
 }
 
 // A paint read back is the paint written, to the last bit of every number.
-TEST_F(Property, paint_xml_keeps_every_bit) {
+TEST_F(Property, PaintXmlKeepsEveryBit) {
   const formats::ScratchFolder scratch;
   std::vector<paint::Paint> written;
   for (int i = 0; i < 200; ++i) {

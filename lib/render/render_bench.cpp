@@ -8,7 +8,7 @@
 
 #include "render/exact.h"
 #include "render/internal/seen.h"
-#include "render/plan/left_out.h"
+#include "render/left_out.h"
 #include "render/renderer.h"
 #include "render/scenes_for_test.h"
 
@@ -46,11 +46,11 @@ std::unique_ptr<BenchScene> bench_scene(int lobes) {
 
 // The largest relative difference of any pixel between the two engines.
 double disagreement(const BenchScene& bench, const View& view) {
-  Frame frames[2];
-  for (const Engine engine : {Engine::kGl, Engine::kCpu}) {
+  Frame frames[2], *frame = frames;
+  for (const char* engine : {"gl", "cpu"}) {
     auto renderer = Renderer::create();
     if (!renderer.ok() || !renderer->load(bench.scene, engine).ok()) return 1;
-    if (!renderer->draw(view, frames[engine == Engine::kCpu]).ok()) return 1;
+    if (!renderer->draw(view, *frame++).ok()) return 1;
   }
   double worst = 0;
   for (std::size_t i = 0; i < frames[0].picture.data.size(); ++i) {
@@ -65,7 +65,7 @@ View bench_view(const BenchScene& bench, double azimuth_deg, int samples) {
 }
 
 void time_frames(benchmark::State& state, bool view_moves) {
-  const auto engine = static_cast<Engine>(state.range(0));
+  const char* engine = state.range(0) == 0 ? "gl" : "cpu";
   const int lobes = static_cast<int>(state.range(1)), samples = static_cast<int>(state.range(2));
   const auto bench = bench_scene(lobes);
   const double error = disagreement(*bench, bench_view(*bench, 35, samples));
@@ -89,7 +89,7 @@ void time_frames(benchmark::State& state, bool view_moves) {
   state.counters["gbuffer_ms"] = gbuffer_ms;
   state.counters["seen"] = static_cast<double>(seen);
   state.counters["triangles"] = static_cast<double>(bench->mesh.triangles.size());
-  state.SetLabel(engine == Engine::kCpu ? "cpu" : "gl");
+  state.SetLabel(engine);
 }
 
 // 1280 x 720, diffuse, flake and gloss in every lobe, all effects; arguments: engine (0 gl, 1 cpu), lobes, samples.
@@ -126,10 +126,10 @@ void BM_Tilts(benchmark::State& state) {
   auto renderer = Renderer::create();
   Frame truth, frame;
   effects.most_tilts = 400;
-  if (!renderer.ok() || !renderer->load(bench->scene, effects, Engine::kCpu).ok() || !renderer->draw(view, truth).ok())
+  if (!renderer.ok() || !renderer->load(bench->scene, effects, "cpu").ok() || !renderer->draw(view, truth).ok())
     return state.SkipWithError("no renderer");
   effects.most_tilts = static_cast<int>(state.range(0));
-  if (!renderer->load(bench->scene, effects, Engine::kCpu).ok()) return state.SkipWithError("not loaded");
+  if (!renderer->load(bench->scene, effects, "cpu").ok()) return state.SkipWithError("not loaded");
   for (auto _ : state) {
     if (!renderer->draw(view, frame).ok()) return state.SkipWithError("nothing drawn");
   }
@@ -155,7 +155,7 @@ BENCHMARK(BM_Tilts)
 // Colored light through the operator in its forms beside the component-wise product, frame by frame in turns; the least
 // of each. Argument: engine.
 void BM_Operator(benchmark::State& state) {
-  const auto engine = static_cast<Engine>(state.range(0));
+  const char* engine = state.range(0) == 0 ? "gl" : "cpu";
   const auto bench = bench_scene(5);
   bench->env.diffuse.map = cube_of(32, [](const Vec3& d) { return Vec3{1, 1 + 0.5 * d.x, 1 + 0.5 * d.y}; });
   const View view = bench_view(*bench, 35, 1);
@@ -178,7 +178,7 @@ void BM_Operator(benchmark::State& state) {
   state.counters["plain_ms"] = least_ms[0];
   state.counters["bilinear_ms"] = least_ms[1];
   state.counters["over_percent"] = 100 * (least_ms[1] / least_ms[0] - 1);
-  state.SetLabel(engine == Engine::kCpu ? "cpu" : "gl");
+  state.SetLabel(engine);
 }
 BENCHMARK(BM_Operator)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime();
 
@@ -204,7 +204,7 @@ void BM_Plan(benchmark::State& state) {
   state.counters["plan_ms"] = plan_ms;
   state.counters["frame_ms"] = left->planned_ms;
   state.counters["frame_all_ms"] = left->full_ms;
-  state.counters["predicted_ms"] = plan.engine == Engine::kCpu ? plan.cpu_ms : plan.gl_ms;
+  state.counters["predicted_ms"] = plan.predicted_ms();
   state.counters["de00_p95"] = left->de00_p95;
 }
 BENCHMARK(BM_Plan)->Unit(benchmark::kMillisecond)->UseRealTime();

@@ -1,5 +1,6 @@
-// Draws scenes in float: OpenGL on OSMesa rasterizes normals and parts, then one of two engines shades them.
-// goniochrome-theory(7), RENDERING.
+// The renderer draws scenes into pictures of scene-linear radiance. OpenGL on OSMesa rasterizes what a view shows; then
+// one of the engines shades it. The renderer keeps what the next picture can use again: the mesh in OpenGL, the
+// G-buffers of the last view, and the engines. goniochrome-theory(7), RENDERING.
 #pragma once
 
 #include <memory>
@@ -10,8 +11,9 @@
 #include "image/image.h"
 #include "render/camera.h"
 #include "render/effects.h"
+#include "render/engine.h"
 #include "render/gbuffer.h"
-#include "render/plan/plan.h"
+#include "render/plan.h"
 #include "render/scene.h"
 
 namespace goniochrome::render {
@@ -36,27 +38,29 @@ class Renderer {
  public:
   // Error: no OpenGL on this machine.
   static Result<Renderer> create();
-  // Shades one G-buffer, again and again, without mesh and OpenGL. It is what every view shows, whose camera is not
-  // meant; of the scene's mesh only the parts are. Error of the others: the engine gl, or more than one sample.
+  // A renderer without mesh and OpenGL, which shades this G-buffer again and again. Every view that it draws shows the
+  // G-buffer, and the camera of the view is ignored; of the mesh of the scene only the parts are used. Its other
+  // functions fail for engines that need the mesh, for textures, and for more than one sample.
   static Renderer shading(std::shared_ptr<const Gbuffer> gbuffer);
   Renderer(Renderer&&) noexcept;
   ~Renderer();
 
-  // Uploads what the scene needs, with the effects given, else all that it calls for. The scene must outlive the
-  // drawing. Error: a lobe or the mirror part that the environment lacks, with the command that makes it.
-  Result<void> load(const Scene& scene, Engine engine = Engine::kGl);
-  Result<void> load(const Scene& scene, const Effects& effects, Engine engine);
+  // Uploads what the scene needs for the engine of that name, with the effects given or, without them, with all that
+  // it calls for. The scene must outlive the drawing. Error: no such engine; what the engine cannot shade; a lobe or
+  // the mirror part that the environment lacks, with the command that makes it.
+  Result<void> load(const Scene& scene, const std::string& engine = "gl");
+  Result<void> load(const Scene& scene, const Effects& effects, const std::string& engine);
 
-  // Decides what to shade with, and by which engine, for views like those of the G-buffers (of one mesh); loads it.
-  // Error: as load(), and a word of request.effects that is none.
+  // Decides what to shade with, and by which engine, for views like those of the G-buffers (of one mesh), and loads it.
+  // Error: as above, and a word of request.effects that names no effect.
   Result<Plan> load(const Scene& scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers,
                     const PlanRequest& request);
 
-  // Other paints or lights for the scene and the effects that were loaded: what an edit of a paint costs.
+  // Takes other paints or lights for the scene and the effects that were loaded: what an edit of a paint costs.
   void load_paints(const Scene& scene);
 
   // Draws into `frame`, whose storage is used again. G-buffers of the view drawn last are kept, as far as they are
-  // small enough.
+  // small enough. Error: nothing was loaded, or as rays().
   Result<void> draw(const View& view, Frame& frame);
   Result<Frame> draw(const Camera& camera, int width, int height, int samples, bool with_centers = false);
 
@@ -65,7 +69,7 @@ class Renderer {
 
   // "llvmpipe (LLVM 15.0.6, 256 bits)"; "" without OpenGL
   std::string opengl() const;
-  // The shading program of the GL engine for the effects loaded.
+  // The program by which the engine gl shades the scene and effects loaded, whatever engine they were loaded for.
   std::string shader() const;
 
  private:

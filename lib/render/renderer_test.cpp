@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "brdf/lobe_model.h"
-#include "render/aov.h"
 #include "render/scenes_for_test.h"
 
 namespace goniochrome::render {
@@ -29,7 +28,7 @@ Camera front(double distance = 8, double fov_deg = 20) {
 Frame drawn(const Scene& scene, const Effects& effects, const Camera& camera, int width, int height, int samples = 1) {
   auto renderer = Renderer::create();
   EXPECT_TRUE(renderer.ok());
-  const auto loaded = renderer->load(scene, effects, Engine::kGl);
+  const auto loaded = renderer->load(scene, effects, "gl");
   EXPECT_TRUE(loaded.ok()) << loaded.error().message;
   auto frame = renderer->draw(camera, width, height, samples, true);
   EXPECT_TRUE(frame.ok()) << frame.error().message;
@@ -338,26 +337,38 @@ TEST(Renderer, OneRendererDrawsManyScenesAndSizes) {
   }
 }
 
-TEST(Aov, BuffersHoldWhatWasSeen) {
-  const mesh::Mesh mesh = panels_mesh(1);
-  Scene scene{&mesh, {matt({1, 1, 1})}, nullptr, {{normalized({0, 1, 1}), {1, 1, 1}}}, Background::kNone, {}};
-  const Frame frame = drawn(scene, front(4, 30), 41, 41);
-  image::Image picture = frame.picture;
-  for (const char* name : {"normal", "aspecular", "lambert", "mask", "part"}) {
-    ASSERT_TRUE(add_aov(picture, *frame.gbuffer, name, scene.lights[0].direction).ok());
+TEST(Renderer, KeptViewsAndEditedPaintsDrawWhatFreshOnesDo) {
+  const mesh::Mesh mesh = sphere_mesh(64);
+  const envmap::PrefilteredEnvironment env = uneven_env({1.3, 6, 40, 300, 3000}, {32, 20, 44, 100, 64});
+  Scene scene{&mesh, {rich_paint()}, &env, {}, Background::kNone, {}};
+  const View view{Camera::orbit(mesh, 30, 20, 1, 30, 1), 64, 64, 4, true};
+  for (const char* engine : {"gl", "cpu"}) {
+    auto renderer = Renderer::create();
+    ASSERT_TRUE(renderer->load(scene, engine).ok());
+    Frame first, edited, fresh;
+    ASSERT_TRUE(renderer->draw(view, first).ok());
+    Scene other = scene;
+    other.paints[0].diffuse = {0.2, 0.05, 0.01};
+    renderer->load_paints(other);
+    ASSERT_TRUE(renderer->draw(view, edited).ok());
+    EXPECT_NE(first.picture.data, edited.picture.data);
+    auto again = Renderer::create();
+    ASSERT_TRUE(again->load(other, engine).ok());
+    ASSERT_TRUE(again->draw(view, fresh).ok());
+    EXPECT_EQ(fresh.picture.data, edited.picture.data);
+    EXPECT_EQ(fresh.centers.data, edited.centers.data);
   }
-  EXPECT_EQ(picture.channel_names, (std::vector<std::string>{"R", "G", "B", "A", "normal.X", "normal.Y", "normal.Z",
-                                                             "aspecular", "lambert", "mask", "part"}));
-  const float* middle = picture.pixel(20, 20);
-  EXPECT_NEAR(middle[6], 1, 1e-6);
-  EXPECT_NEAR(middle[7], 45, 1e-4);  // the panel sends light from 45 deg above to 45 deg below; the viewer is in front
-  EXPECT_NEAR(middle[8], std::sqrt(0.5), 1e-6);
-  EXPECT_EQ(middle[9], 1);
-  EXPECT_EQ(middle[10], 1);
-  const float* corner = picture.pixel(0, 0);
-  EXPECT_EQ(corner[7], 180);
-  EXPECT_EQ(corner[9] + corner[10] + corner[4], 0);
-  EXPECT_THAT(add_aov(picture, *frame.gbuffer, "depth", {}).error().message, HasSubstr("normal, aspecular, lambert"));
+}
+
+TEST(Renderer, ShadingRefusesWhatNeedsTheMesh) {
+  const mesh::Mesh mesh = panels_mesh(2);
+  const Scene scene{&mesh, std::vector<paint::LobeFit>(2, matt({1, 1, 1})), nullptr, {Light{}}, Background::kNone, {}};
+  Renderer renderer = Renderer::shading(drawn(scene, front(4, 30), 32, 32).gbuffer);
+  EXPECT_THAT(renderer.load(scene, "gl").error().message, HasSubstr("engine gl"));
+  ASSERT_TRUE(renderer.load(scene, "cpu").ok());
+  Frame frame;
+  EXPECT_THAT(renderer.draw({front(4, 30), 32, 32, 4, false}, frame).error().message,
+              HasSubstr("1 sample a pixel, not 4"));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What is to be seen: a mesh, a paint for each part, light, and what stands behind it.
+// A scene is what a picture shows: a mesh, a paint for each of its parts, the light, and the background.
 #pragma once
 
 #include <optional>
@@ -34,7 +34,7 @@ struct Scene {
   std::vector<paint::Anisotropy> anisotropy = {};  // for each part; alpha 0 is none. The tangent runs level around +Y
   color::ReflectionOperator reflection = color::component_wise();
   const SurfaceLayer* layer = nullptr;        // textures and color maps of parts, if there are any
-  const envmap::BlockTree* texels = nullptr;  // of the image that env was made from, for Engine::kIntegral
+  const envmap::BlockTree* texels = nullptr;  // of the image that env was made from, for engines that sum it
 };
 
 // The exponents (finite, ascending) of the lobes with any weight, over all paints.

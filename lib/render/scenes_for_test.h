@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "base/random_for_test.h"
+#include "render/gbuffer.h"
 #include "render/scene.h"
 
 namespace goniochrome::render {
@@ -51,6 +52,46 @@ inline mesh::Mesh panels_mesh(int n) {
   return mesh;
 }
 
+// What a camera sees, by the nearest triangle that the ray through each pixel meets: a plain search through all of
+// them, without OpenGL.
+inline Gbuffer seen_by_rays(const mesh::Mesh& mesh, const Camera& camera, int width, int height) {
+  Gbuffer g{width, height, {}, *rays(camera, width, height)};
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const Vec3 ray = g.rays.direction(x + 0.5, y + 0.5);
+      std::uint32_t nearest = kNoTriangle;
+      double distance = std::numeric_limits<double>::infinity();
+      for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+        // Seen from the eye the ray is within a triangle if it is on the same side of all three edges.
+        Vec3 corner[3];
+        for (std::size_t k = 0; k < 3; ++k) corner[k] = mesh.positions[mesh.triangles[i][k]] - camera.eye;
+        const double a = dot(ray, cross(corner[0], corner[1])), b = dot(ray, cross(corner[1], corner[2])),
+                     c = dot(ray, cross(corner[2], corner[0]));
+        if (!((a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0)) || a + b + c == 0) continue;
+        const Vec3 met = (1 / (a + b + c)) * (b * corner[0] + c * corner[1] + a * corner[2]);
+        const double along = dot(met, ray);
+        if (along > 0 && along < distance) distance = along, nearest = i;
+      }
+      g.triangles.push_back(nearest);
+      if (nearest == kNoTriangle) {
+        g.data.insert(g.data.end(), 4, 0.0F);
+        continue;
+      }
+      int part = 0;
+      while (nearest >=
+             mesh.parts[static_cast<std::size_t>(part)].first + mesh.parts[static_cast<std::size_t>(part)].count)
+        ++part;
+      Vec3 normal;
+      const MeshPoint point = mesh_point(mesh, nearest, camera.eye, ray);
+      for (std::size_t k = 0; k < 3; ++k) normal += point.shares[k] * mesh.normals[mesh.triangles[nearest][k]];
+      normal = normalized(dot(normal, ray) < 0 ? normal : -normal);
+      for (int c = 0; c < 3; ++c) g.data.push_back(static_cast<float>(normal[c]));
+      g.data.push_back(static_cast<float>(part + 1));
+    }
+  }
+  return g;
+}
+
 inline envmap::CubeMap cube_of(int size, const std::function<Vec3(const Vec3& direction)>& radiance) {
   envmap::CubeMap map(size);
   for (int face = 0; face < 6; ++face) {
@@ -88,6 +129,32 @@ inline paint::LobeFit matt(const color::Rgb& reflectance) {
 inline paint::LobeFit only_mirror(double weight = 1) {
   paint::LobeFit paint;
   paint.lobes.push_back({envmap::kMirrorExponent, {}, {weight, weight, weight}});
+  return paint;
+}
+
+// Maps of many sizes, smooth but far from constant, so that wrong faces, seams, weights and classes all show.
+inline envmap::PrefilteredEnvironment uneven_env(const std::vector<double>& exponents, const std::vector<int>& sizes) {
+  envmap::PrefilteredEnvironment env = constant_env({1, 1, 1}, exponents);
+  const auto radiance = [](double k) {
+    return [k](const Vec3& d) {
+      return Vec3{1 + 0.5 * std::sin(k * d.x), 0.7 + 0.3 * d.y * d.z + 0.2 * std::cos(k * d.z), 0.5 + 0.3 * d.x * d.y};
+    };
+  };
+  env.diffuse.map = cube_of(12, radiance(1));
+  env.mirror.map = cube_of(40, radiance(9));
+  for (std::size_t i = 0; i < exponents.size(); ++i)
+    env.lobes[i].map = cube_of(sizes[i], radiance(2.0 + static_cast<double>(i)));
+  return env;
+}
+
+inline paint::LobeFit rich_paint() {
+  paint::LobeFit paint = matt({0.05, 0.1, 0.2});
+  paint.lobes = {{1.3, {0.02, 0.01, 0.03}, {}},
+                 {6, {0.05, 0.1, 0.2}, {0.01, 0.01, 0.01}},
+                 {40, {0.3, 0.2, 0.1}, {0.2, 0.2, 0.2}},
+                 {300, {0.5, 0.6, 0.1}, {}},
+                 {3000, {}, {9, 9, 9}},
+                 {envmap::kMirrorExponent, {}, {0.6, 0.6, 0.6}}};
   return paint;
 }
 

@@ -52,7 +52,7 @@ Drawing draw(const envmap::PrefilteredEnvironment& env, const std::vector<std::s
   effects.fresnel = has("fresnel"), effects.horizon = has("horizon"), effects.reflection = has("operator");
   auto renderer = render::Renderer::create();
   EXPECT_TRUE(renderer.ok());
-  EXPECT_TRUE(renderer->load(scene, effects, render::Engine::kCpu).ok());
+  EXPECT_TRUE(renderer->load(scene, effects, "cpu").ok());
   render::Camera camera;
   camera.eye = {0, 0, 5};
   const render::Frame frame = *renderer->draw(camera, 40, 40, samples, true);

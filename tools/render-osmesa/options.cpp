@@ -1,5 +1,7 @@
 #include "options.h"
 
+#include "render/engine.h"
+
 namespace goniochrome::tool {
 
 cli::ToolSpec tool_spec(Options& o) {
@@ -140,7 +142,7 @@ cli::ToolSpec tool_spec(Options& o) {
        .value = "NAME",
        .help = "what shades",
        .target = &o.engine,
-       .choices = {"auto", "cpu", "gl", "integral"}},
+       .choices = render::engine_choices()},
       {.name = "operator",
        .value = "NAME[,SHARE]",
        .help = "how colored light and paint multiply: iso, rec2020 or none",

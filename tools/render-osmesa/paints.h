@@ -9,7 +9,7 @@
 #include "mesh/mesh.h"
 #include "options.h"
 #include "paint/paint.h"
-#include "render/textures/surface_layer.h"
+#include "render/surface_layer.h"
 
 namespace goniochrome::tool {
 

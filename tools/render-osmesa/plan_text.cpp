@@ -6,10 +6,6 @@
 
 namespace goniochrome::tool {
 
-const char* engine_name(render::Engine engine) {
-  return engine == render::Engine::kCpu ? "cpu" : engine == render::Engine::kGl ? "gl" : "integral";
-}
-
 namespace {
 
 std::string cost_text(const render::PlanItem& item) {
@@ -28,12 +24,12 @@ std::string plan_table(const render::Plan& plan) {
                               : truth             ? "        "
                                                   : "";
     text += item.needed ? fmt::format("{:<13} {:<6} {:>7.2f} {}{:>7}  {:<16} {}\n", item.effect, "yes", item.de00_p95,
-                                      exact, cost_text(item), item.decision, item.reason)
+                                      exact, cost_text(item), spelled(item.decision), item.reason)
                         : fmt::format("{:<13} {:<6} {:>7} {}{:>7}  {:<16} {}\n", item.effect, "no", "-",
-                                      truth ? "        " : "", "-", item.decision, item.reason);
+                                      truth ? "        " : "", "-", spelled(item.decision), item.reason);
   }
   return text + fmt::format("left out together: dE00 {:.2f} (p95); planned in {:.1f} ms\nengine {}: {}\n",
-                            plan.de00_p95, plan.time_ms, engine_name(plan.engine), plan.engine_reason);
+                            plan.de00_p95, plan.time_ms, plan.engine, plan.engine_reason);
 }
 
 Json plan_rows(const render::Plan& plan, bool times) {
@@ -43,7 +39,7 @@ Json plan_rows(const render::Plan& plan, bool times) {
                 {"needed", item.needed},
                 {"reason", item.reason},
                 {"de00_p95", item.needed ? json_number(item.de00_p95) : Json(nullptr)},
-                {"decision", item.decision}};
+                {"decision", spelled(item.decision)}};
     if (times) row["cost_ms"] = item.needed ? json_number(item.cost_ms) : Json(nullptr);
     if (item.truth_de00_p95) row["truth_de00_p95"] = json_number(*item.truth_de00_p95);
     rows.push_back(std::move(row));

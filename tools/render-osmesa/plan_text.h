@@ -4,11 +4,9 @@
 #include <string>
 
 #include "base/json.h"
-#include "render/plan/plan.h"
+#include "render/plan.h"
 
 namespace goniochrome::tool {
-
-const char* engine_name(render::Engine engine);
 
 // A row for each effect: effect, needed, dE00, ms, decision, why; then the engine.
 std::string plan_table(const render::Plan& plan);

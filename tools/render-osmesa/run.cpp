@@ -13,10 +13,11 @@
 #include "plan_text.h"
 #include "prefilter/lobe_tree.h"
 #include "render/aov.h"
+#include "render/engine.h"
 #include "render/exact.h"
-#include "render/plan/left_out.h"
+#include "render/left_out.h"
 #include "render/renderer.h"
-#include "render/textures/surface_layer.h"
+#include "render/surface_layer.h"
 #include "setup.h"
 
 namespace goniochrome::tool {
@@ -36,11 +37,8 @@ struct Request {
   bool png = false;
   color::ReflectionOperator reflection;
   render::PlanRequest plan;
+  const render::EngineInfo* engine = nullptr;  // null: the plan chooses
 };
-
-render::Engine engine_of(const std::string& name) {
-  return name == "cpu" ? render::Engine::kCpu : name == "gl" ? render::Engine::kGl : render::Engine::kIntegral;
-}
 
 Result<Request> request_of(const Options& options) {
   Request request;
@@ -68,9 +66,12 @@ Result<Request> request_of(const Options& options) {
   request.plan.budget_ms = options.budget_ms;
   request.samples = !options.gbuffer.empty() ? 1 : options.samples > 0 ? options.samples : 4;
   request.plan.samples = request.samples;
-  if (options.engine != "auto") request.plan.engine = engine_of(options.engine);
-  if (request.plan.engine == render::Engine::kIntegral && options.budget_ms > 0)
-    return usage_error("--budget chooses effects of prefiltered maps: leave it out, or --engine integral");
+  if (options.engine != "auto") {
+    GONIO_ASSIGN(request.engine, render::engine_named(options.engine));
+    request.plan.engine = options.engine;
+    if (!request.engine->is_planned && options.budget_ms > 0)
+      return usage_error("--budget chooses effects of prefiltered maps: leave it out, or --engine {}", options.engine);
+  }
   if (!options.split.empty() && options.check > 0) return usage_error("--split and --check exclude each other");
   if (options.print_shader && options.output == "-")
     return usage_error("--print-shader and a picture both want standard output");
@@ -261,7 +262,7 @@ Result<void> write_exr_picture(const Options& options, const Request& request, c
                                const render::DiffuseWhite& white, double stops, const cli::Session& session) {
   image::ImagePart part{"picture", frame.picture, provenance(session), image::PixelType::kHalf};
   part.attributes["goniochrome:plan"] = plan_rows(plan, false).dump(-1, ' ', false, Json::error_handler_t::replace);
-  part.attributes["goniochrome:engine"] = std::string(engine_name(plan.engine));
+  part.attributes["goniochrome:engine"] = plan.engine;
   const float gain = static_cast<float>(std::exp2(stops));
   for (std::size_t i = 0; i < part.image.data.size(); ++i) part.image.data[i] *= i % 4 == 3 ? 1 : gain;
   part.attributes["colorInteropID"] = "lin_rec2020_scene";
@@ -362,7 +363,7 @@ Result<void> set_stage(const Options& options, const Request& request, Stage& st
     }
   }
   wear(stage.dresses.front(), options, stage);
-  const bool summed = request.plan.engine == render::Engine::kIntegral;
+  const bool summed = request.engine != nullptr && request.engine->needs_texels;
   if (options.check > 0 || summed) {
     GONIO_ASSIGN(stage.source, source_of(options, scene, session));
   }
@@ -434,7 +435,7 @@ void Shooting::tell_plan(render::Plan plan, const std::string& shader) {
   for (Json& row : plan_rows(plan, true)) results["plan"].push_back(std::move(row));
   results["plan_de00_p95"] = json_number(plan.de00_p95);
   results["plan_ms"] = plan.time_ms;
-  results["engine"] = engine_name(plan.engine);
+  results["engine"] = plan.engine;
   results["engine_reason"] = plan.engine_reason;
   session_.explain(plan_table(plan));
   if (options_.print_shader) std::fputs(shader.c_str(), stdout);
@@ -504,7 +505,7 @@ Result<void> Shooting::shoot(const std::optional<display::Display>& display) {
   session_.say(fmt::format(
       "{}{}: {} x {}, {} samples a pixel, drawn in {:.0f} ms by {} (one rasterization {:.0f} ms), exposure {:+.2f}{}",
       name, shots_.size() > 1 ? fmt::format(" and {} more", shots_.size() - 1) : "", request_.size.width,
-      request_.size.height, request_.samples, frame_ms, engine_name(plan_.engine), frame_.gbuffer_ms, stops,
+      request_.size.height, request_.samples, frame_ms, plan_.engine, frame_.gbuffer_ms, stops,
       display ? ", " + display->name() : ""));
   if (options_.check > 0) {
     check(options_, frame_, stage_.scene, stage_.source, white_.luminance, session_);

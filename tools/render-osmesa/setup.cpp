@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "base/text.h"
+#include "render/engine.h"
 
 namespace goniochrome::tool {
 
@@ -42,8 +43,14 @@ Result<void> check_surfaces(const Options& options) {
   }
   if (options.samples != 0 && options.samples != 1)
     return usage_error("--samples is {}: --gbuffer holds pixel centers, 1 sample each", options.samples);
-  if (options.engine == "gl") return usage_error("--engine gl draws a mesh: --gbuffer is shaded by cpu");
-  return {};
+  std::string others;
+  bool fits = true;
+  for (const render::EngineInfo* engine : render::engines()) {
+    if (!engine->needs_mesh) others += (others.empty() ? "" : " or ") + std::string(engine->name);
+    if (engine->needs_mesh && options.engine == engine->name) fits = false;
+  }
+  if (fits) return {};
+  return usage_error("--engine {} draws a mesh: --gbuffer is shaded by {}", options.engine, others);
 }
 
 Result<PictureSize> parse_size(const std::string& text) {

@@ -5,10 +5,15 @@
 #include <numbers>
 
 #include "base/parallel.h"
+#include "render/internal/map_cost.h"
 
 namespace goniochrome::render {
 
 namespace {
+
+// Measured by BM_PaintEdited and BM_Tilts.
+constexpr MapCost kCost = {
+    .pixel = 2.5, .point = 6, .block = 3, .direction = 6, .light = 12, .lit_lobe = 5, .view = 2, .pairs = true};
 
 constexpr std::size_t kBlock = 8;  // floats of a texel: two maps of four forms, or one of six
 
@@ -78,6 +83,15 @@ class Batch {
 
 }  // namespace
 
+const EngineInfo CpuEngine::kInfo = {
+    .name = "cpu",
+    .sentence = "shades by prefiltered maps on the processor, and reads all lobes of a texel at once",
+    .where = "on the processor",
+    .is_planned = true,
+    .needs_texels = false,
+    .needs_mesh = false,
+    .make = [](Sight&) -> std::unique_ptr<Engine> { return std::make_unique<CpuEngine>(); }};
+
 InterleavedMaps CpuEngine::Stack::maps() const {
   return {shape.size, blocks, texel_floats, texels.data()};
 }
@@ -96,7 +110,9 @@ void CpuEngine::interleave(const MapClass& maps, MapUse use) {
   if (maps.size > 0) stacks_.push_back(interleaved(maps, use, forms_));
 }
 
-Result<void> CpuEngine::load(const Scene& scene, const Effects& effects, const SceneMaps& maps) {
+Result<void> CpuEngine::load(const Scene& scene, const Effects& effects) {
+  GONIO_ASSIGN(const SceneMaps maps, scene_maps(scene, effects));
+  effects_ = effects;
   stacks_.clear();
   background_map_ = {};
   forms_ = effects.reflection ? product_forms(scene.reflection) : ProductForms{};
@@ -125,11 +141,12 @@ Result<void> CpuEngine::load(const Scene& scene, const Effects& effects, const S
   }
   shading_.map_floats = static_cast<int>(floats_of(forms_));
   shading_.colors_of_forms = colors_of_forms_.data();
-  load_paints(scene, effects, weight_table(scene, effects));
+  load_paints(scene, effects);
   return {};
 }
 
-void CpuEngine::load_paints(const Scene& scene, const Effects& effects, const WeightTable& table) {
+void CpuEngine::load_paints(const Scene& scene, const Effects& effects) {
+  const WeightTable table = weight_table(scene, effects);
   std::size_t blocks = 0;
   for (const Stack& stack : stacks_) blocks += static_cast<std::size_t>(stack.blocks);
   const int light_slots = effects.lights > 0 ? table.shift_slot(0) - table.light_slot() : 0;
@@ -255,7 +272,24 @@ void CpuEngine::shade(const Gbuffer& gbuffer, float gain, bool add, image::Image
   });
 }
 
-std::vector<color::Rgb> CpuEngine::shade(const std::vector<VisiblePoint>& points) const {
+Result<void> CpuEngine::shade(Sight& sight, int sample, float gain, bool add, image::Image& rgba) {
+  shade(*sight.gbuffer(sample), gain, add, rgba);
+  return {};
+}
+
+Result<std::vector<color::Rgb>> CpuEngine::shade(const std::vector<VisiblePoint>& points) const {
+  return colors(points);
+}
+
+Price CpuEngine::price(const Workload& work, const Effects& effects) const {
+  return {.frame_ms = frame_ms(work, effects, kCost)};
+}
+
+double CpuEngine::counted_point_ns(const Workload& work, const Effects& effects) {
+  return point_ns(work, effects, kCost);
+}
+
+std::vector<color::Rgb> CpuEngine::colors(const std::vector<VisiblePoint>& points) const {
   std::vector<color::Rgb> colors(points.size());
   parallel_for(points.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
     Batch batch(shading_);

@@ -1,33 +1,44 @@
-// Shades G-buffers on the processor, without OpenGL: the maps that one direction meets lie interleaved, so that one set
-// of addresses and one bilinear fetch serve all of their lobes. goniochrome-theory(7), RENDERING.
+// The engine cpu shades G-buffers on the processor, without OpenGL. Maps that are looked up in one direction lie
+// interleaved in memory, so that one set of addresses and one bilinear fetch serve all of their lobes.
+// goniochrome-theory(7), RENDERING, Engines.
 #pragma once
 
 #include <vector>
 
 #include "image/image.h"
 #include "render/cpu/cpu_kernel.h"
-#include "render/effects.h"
-#include "render/gbuffer.h"
+#include "render/engine.h"
 #include "render/internal/maps.h"
 #include "render/internal/product_forms.h"
-#include "render/internal/visible_point.h"
 
 namespace goniochrome::render {
 
-class CpuEngine {
+class CpuEngine : public Engine {
  public:
+  static const EngineInfo kInfo;
+
   CpuEngine() = default;
   CpuEngine(const CpuEngine&) = delete;  // the kernel's tables point into it
   CpuEngine& operator=(const CpuEngine&) = delete;
 
-  // Interleaves the maps. Error: more face sizes than there is room for.
-  Result<void> load(const Scene& scene, const Effects& effects, const SceneMaps& maps);
-  // Other paints, or other lights, for the effects loaded.
-  void load_paints(const Scene& scene, const Effects& effects, const WeightTable& table);
+  const EngineInfo& info() const override { return kInfo; }
+  Result<void> can_shade(const Scene&) const override { return {}; }
+  // Interleaves the maps. Error: as scene_maps(), and more face sizes than there is room for.
+  Result<void> load(const Scene& scene, const Effects& effects) override;
+  void load_paints(const Scene& scene) override { load_paints(scene, effects_); }
+  Result<void> shade(Sight& sight, int sample, float gain, bool add, image::Image& rgba) override;
+  Result<std::vector<color::Rgb>> shade(const std::vector<VisiblePoint>& points) const override;
+  Price price(const Workload& work, const Effects& effects) const override;
 
-  // Shades all pixels, radiance times `gain`; `add` adds to what is there. Bit-identical for any number of threads.
+  // Takes other paints and some of the effects that were loaded: lobes and effects whose weights are 0 cost time, but
+  // are not drawn.
+  void load_paints(const Scene& scene, const Effects& effects);
+  // Shades all pixels of a G-buffer, as shade() above. Bit-identical for any number of threads.
   void shade(const Gbuffer& gbuffer, float gain, bool add, image::Image& rgba) const;
-  std::vector<color::Rgb> shade(const std::vector<VisiblePoint>& points) const;
+  std::vector<color::Rgb> colors(const std::vector<VisiblePoint>& points) const;
+
+  // The nanoseconds that a visible point of this work is counted with; Workload::speed is relative to them.
+  static double counted_point_ns(const Workload& work, const Effects& effects);
 
  private:
   struct Stack {
@@ -43,6 +54,7 @@ class CpuEngine {
   void set_tilts(const Scene& scene, const Effects& effects);
   void shade_row(const Gbuffer& gbuffer, int y, float gain, bool add, float* rgba) const;
 
+  Effects effects_;
   std::vector<Stack> stacks_;
   Stack background_map_;
   ProductForms forms_;

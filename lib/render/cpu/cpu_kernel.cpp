@@ -158,6 +158,8 @@ HWY_INLINE void tilt(const CpuShading& s, const PointArrays& points, int which, 
     tilted.share[i] = which < count ? t[3] : 0;
   }
   const V zero = hn::Zero(f), one = hn::Set(f, 1.0F);
+  // Each tilted normal m = a x + b y + c n is taken into the world, the viewer is mirrored about it, and tilts that
+  // turn away from the viewer or mirror below the surface get no share.
   for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
     const Direction n = normal_of(points, i), v = viewer_of(points, i);
     const V level2 = hn::MulAdd(n.x, n.x, hn::Mul(n.z, n.z));
@@ -213,7 +215,9 @@ HWY_INLINE void add_environment(const CpuShading& s, const PointArrays& points, 
   const D f;
   Taps taps[kMostClasses];
   HWY_ALIGN float gathered[kPointsAtOnce * kMostBlocks * 8];
+  // 1. Brushed parts: their maps are averaged over the tilted normals first.
   if (s.tilts != nullptr) gather_tilted(s, points, frame, count, gathered);
+  // 2. The addresses of all points in every other class of maps, side by side.
   for (int k = 0; k < s.classes; ++k) {
     if (s.use[k] == MapUse::kTilted && s.tilts != nullptr) continue;
     Shifts shifts;
@@ -224,6 +228,7 @@ HWY_INLINE void add_environment(const CpuShading& s, const PointArrays& points, 
       address(d, s.maps[k].size, i, taps[k]);
     }
   }
+  // 3. Point by point, each block of texels is interpolated and weighed, and the sum is turned into a color.
   for (int i = 0; i < count; ++i) {
     const float* weight = frame.weights(s, points, i);
     const Block t = filled(frame.t[i]);
@@ -286,12 +291,15 @@ HWY_INLINE void add_light(const CpuShading& s, const float* light, const PointAr
   HWY_ALIGN float cos_i[kPointsAtOnce], fresnel[kPointsAtOnce];
   HWY_ALIGN float powers[kMostLobes * kPointsAtOnce];
   const Direction l = {hn::Set(f, light[0]), hn::Set(f, light[1]), hn::Set(f, light[2])};
+  // 1. The cosine at the surface and the Fresnel reflectance at half the angle between light and viewer.
   for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
     hn::Store(hn::Max(dot(normal_of(points, i), l), hn::Zero(f)), f, cos_i + i);
     const V half = hn::Set(f, 0.5F), cos_half2 = hn::MulAdd(half, dot(viewer_of(points, i), l), half);
     hn::Store(s.fresnel ? fresnel_of(hn::Sqrt(hn::Max(cos_half2, hn::Zero(f)))) : hn::Set(f, 1.0F), f, fresnel + i);
   }
+  // 2. What each lobe sends to the viewer.
   lobe_powers(s, l, points, frame, cos_i, powers);
+  // 3. Point by point, the weighted sum of diffuse part and lobes, times the light through the product's matrix.
   for (int i = 0; i < count; ++i) {
     if (!(cos_i[i] > 0)) continue;
     const float* weight = frame.weights(s, points, i) + s.light_offset;
@@ -320,6 +328,7 @@ HWY_INLINE void add_light(const CpuShading& s, const float* light, const PointAr
   }
 }
 
+// A point's view and segment of weights; the environment by prefiltered maps; then the lights, one by one.
 void ShadePoints(const CpuShading& s, PointArrays& points, int count, float* rgba) {
   Frame frame;
   set_up(s, points, frame);

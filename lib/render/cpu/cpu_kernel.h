@@ -1,5 +1,5 @@
-// The arithmetic of the CPU engine, compiled for several instruction sets and chosen at run time. Internal to
-// lib/render.
+// The kernel of the engine cpu. It is compiled for several instruction sets, of which the best that the processor has
+// is chosen at run time.
 #pragma once
 
 #include <cstddef>
@@ -57,14 +57,15 @@ struct CpuShading {
   bool lit_diffuse = false, fresnel = false;
 };
 
-// Points as separate arrays, of kPointsAtOnce each; `count` of them are meant, the others must hold numbers.
+// Points as separate arrays of kPointsAtOnce each. The first `count` of them are shaded; the others must hold any
+// finite numbers, since the kernel computes with them as well.
 struct PointArrays {
   float nx[kPointsAtOnce], ny[kPointsAtOnce], nz[kPointsAtOnce];
   float vx[kPointsAtOnce], vy[kPointsAtOnce], vz[kPointsAtOnce];  // toward the viewer, of any length
   std::int32_t part[kPointsAtOnce];
 };
 
-// rgba: 4 floats a point; the fourth is not meant.
+// rgba: 4 floats a point, of which the fourth has no meaning.
 void shade_points(const CpuShading& shading, PointArrays& points, int count, float* rgba);
 
 // Looks up one class of maps (a single map) in the directions toward which the points' v point, reversed.

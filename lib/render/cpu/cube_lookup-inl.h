@@ -1,4 +1,4 @@
-// Lookups in cube maps, many points side by side; for the kernels, once per instruction set. Internal to lib/render.
+// Lookups in cube maps for many points side by side. The kernels include this file once for each instruction set.
 #if defined(GONIOCHROME_RENDER_CUBE_LOOKUP_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef GONIOCHROME_RENDER_CUBE_LOOKUP_INL_H_
 #undef GONIOCHROME_RENDER_CUBE_LOOKUP_INL_H_

@@ -1,4 +1,4 @@
-// OpenGL on OSMesa: one off-screen context and the entry points in use. Internal to lib/render.
+// OpenGL on OSMesa, the software renderer of Mesa: one context without a window, and the functions that are used.
 #pragma once
 
 #include <GL/glcorearb.h>
@@ -22,7 +22,8 @@
   X(PFNGLBUFFERDATAPROC, BufferData)                           \
   X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus)   \
   X(PFNGLCLEARPROC, Clear)                                     \
-  X(PFNGLCLEARCOLORPROC, ClearColor)                           \
+  X(PFNGLCLEARBUFFERFVPROC, ClearBufferfv)                     \
+  X(PFNGLCLEARBUFFERUIVPROC, ClearBufferuiv)                   \
   X(PFNGLCOMPILESHADERPROC, CompileShader)                     \
   X(PFNGLCREATEPROGRAMPROC, CreateProgram)                     \
   X(PFNGLCREATESHADERPROC, CreateShader)                       \
@@ -33,6 +34,7 @@
   X(PFNGLDELETETEXTURESPROC, DeleteTextures)                   \
   X(PFNGLDISABLEPROC, Disable)                                 \
   X(PFNGLDRAWARRAYSPROC, DrawArrays)                           \
+  X(PFNGLDRAWBUFFERSPROC, DrawBuffers)                         \
   X(PFNGLDRAWELEMENTSPROC, DrawElements)                       \
   X(PFNGLENABLEPROC, Enable)                                   \
   X(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray) \
@@ -54,6 +56,7 @@
   X(PFNGLGETSTRINGPROC, GetString)                             \
   X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)           \
   X(PFNGLLINKPROGRAMPROC, LinkProgram)                         \
+  X(PFNGLREADBUFFERPROC, ReadBuffer)                           \
   X(PFNGLREADPIXELSPROC, ReadPixels)                           \
   X(PFNGLRENDERBUFFERSTORAGEPROC, RenderbufferStorage)         \
   X(PFNGLSHADERSOURCEPROC, ShaderSource)                       \

@@ -5,10 +5,16 @@
 #include <algorithm>
 
 #include "render/gl/shader.h"
+#include "render/internal/map_cost.h"
 
 namespace goniochrome::render {
 
 namespace {
+
+// Measured by BM_PaintEdited and BM_Tilts. The pixel includes reading it back from OpenGL.
+constexpr MapCost kCost = {
+    .pixel = 12, .point = 30, .block = 42, .direction = 0, .light = 40, .lit_lobe = 30, .view = 12, .pairs = false};
+constexpr double kCompileMs = 110;
 
 // The four forms of colors that lie `step` floats apart.
 std::vector<float> in_forms(const ProductForms& forms, const float* colors, std::size_t count, std::size_t step) {
@@ -22,6 +28,24 @@ std::vector<float> in_forms(const ProductForms& forms, const float* colors, std:
 }
 
 }  // namespace
+
+const EngineInfo GlEngine::kInfo = {
+    .name = "gl",
+    .sentence = "shades by prefiltered maps in OpenGL, where each map is a cube texture",
+    .where = "in OpenGL",
+    .is_planned = true,
+    .needs_texels = false,
+    .needs_mesh = true,
+    .make = [](Sight& sight) -> std::unique_ptr<Engine> { return std::make_unique<GlEngine>(sight.gl()); }};
+
+Result<void> GlEngine::can_shade(const Scene&) const {
+  if (gl_ != nullptr) return {};
+  return usage_error("the engine gl draws the mesh: a G-buffer that is given is shaded by cpu");
+}
+
+Price GlEngine::price(const Workload& work, const Effects& effects) const {
+  return {frame_ms(work, effects, kCost), kCompileMs, "to compile"};
+}
 
 // Float texels: a half would have to be rounded first, since llvmpipe truncates, and is no faster to fetch.
 void GlEngine::upload(const envmap::CubeMap& map, const std::string& sampler) {
@@ -43,7 +67,8 @@ void GlEngine::upload(const envmap::CubeMap& map, const std::string& sampler) {
   cubes_.emplace_back(sampler, texture);
 }
 
-Result<void> GlEngine::load(const Scene& scene, const Effects& effects, const SceneMaps& maps) {
+Result<void> GlEngine::load(const Scene& scene, const Effects& effects) {
+  GONIO_ASSIGN(const SceneMaps maps, scene_maps(scene, effects));
   const std::string text = shading_fragment_shader(effects, scene.reflection);
   if (text != text_) {
     if (program_ != 0) gl_->DeleteProgram(program_);
@@ -67,7 +92,7 @@ Result<void> GlEngine::load(const Scene& scene, const Effects& effects, const Sc
                        effects.lobes.size(), units);
   }
   effects_ = effects;
-  load_paints(scene, weight_table(scene, effects));
+  load_paints(scene);
   return gl_->status("uploading the scene");
 }
 
@@ -85,7 +110,8 @@ void GlEngine::upload_tilts(const std::vector<std::vector<brdf::Tilt>>& tilts) {
   tilts_ = gl_->float_texture(static_cast<int>(most), static_cast<int>(tilts.size()), texels.data());
 }
 
-void GlEngine::load_paints(const Scene& scene, const WeightTable& table) {
+void GlEngine::load_paints(const Scene& scene) {
+  const WeightTable table = weight_table(scene, effects_);
   gl_->DeleteTextures(1, &weights_);
   std::vector<float> weights = table.rgba;
   if (forms_.count == 4) {  // those that meet maps
@@ -109,20 +135,23 @@ Result<void> GlEngine::resize(int width, int height) {
   return gl_->status("making the framebuffer");
 }
 
-void GlEngine::shade(GLuint gbuffer_texture, const Rays& rays, bool add) {
+Result<void> GlEngine::shade(Sight& sight, int sample, float gain, bool add, image::Image&) {
+  const Rasterizer& seen = *sight.rasterized(sample);
+  GONIO_TRY(resize(seen.width(), seen.height()));
+  gain_ = gain;
   gl_->BindFramebuffer(GL_FRAMEBUFFER, target_);
   gl_->Viewport(0, 0, width_, height_);
   gl_->Disable(GL_DEPTH_TEST);
   if (add) gl_->Enable(GL_BLEND);
   gl_->UseProgram(program_);
-  gl_->set_rays(program_, rays);
+  gl_->set_rays(program_, seen.drawn_rays());
   GLint unit = 0;
   const auto bind = [&](const std::string& sampler, GLenum kind, GLuint texture) {
     gl_->ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
     gl_->BindTexture(kind, texture);
     gl_->Uniform1i(gl_->GetUniformLocation(program_, sampler.c_str()), unit++);
   };
-  bind("gbuffer", GL_TEXTURE_2D, gbuffer_texture);
+  bind("gbuffer", GL_TEXTURE_2D, seen.texture());
   bind("weights", GL_TEXTURE_2D, weights_);
   if (effects_.anisotropy) bind("tilts", GL_TEXTURE_2D, tilts_);
   for (const auto& [sampler, texture] : cubes_) bind(sampler, GL_TEXTURE_CUBE_MAP, texture);
@@ -135,13 +164,15 @@ void GlEngine::shade(GLuint gbuffer_texture, const Rays& rays, bool add) {
   gl_->BindVertexArray(no_vertices_);
   gl_->DrawArrays(GL_TRIANGLES, 0, 3);
   gl_->Disable(GL_BLEND);
+  return {};
 }
 
-void GlEngine::read(image::Image& rgba) const {
+void GlEngine::finish(image::Image& rgba) {
   rgba.width = width_, rgba.height = height_, rgba.channels = 4;
   rgba.data.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * 4);
   gl_->BindFramebuffer(GL_FRAMEBUFFER, target_);
   gl_->ReadPixels(0, 0, width_, height_, GL_RGBA, GL_FLOAT, rgba.data.data());
+  for (float& value : rgba.data) value *= gain_;
 }
 
 }  // namespace goniochrome::render

@@ -1,35 +1,38 @@
-// Shades G-buffers with OpenGL, by a program written for the scene. goniochrome-theory(7), RENDERING.
+// The engine gl shades G-buffers with OpenGL, by a program that is written for the scene. goniochrome-theory(7),
+// RENDERING, Engines.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "image/image.h"
-#include "render/effects.h"
+#include "render/engine.h"
 #include "render/gl/gl.h"
 #include "render/internal/maps.h"
 #include "render/internal/product_forms.h"
 
 namespace goniochrome::render {
 
-class GlEngine {
+class GlEngine : public Engine {
  public:
-  // The context must outlive it.
-  explicit GlEngine(const GlContext& gl) : gl_(&gl) {}
+  static const EngineInfo kInfo;
 
-  // Uploads maps and weights, and compiles the program if it is another. Error: more maps than texture units.
-  Result<void> load(const Scene& scene, const Effects& effects, const SceneMaps& maps);
-  // Other paints, or other lights of the same number, for the effects loaded.
-  void load_paints(const Scene& scene, const WeightTable& table);
+  // The context must outlive the engine. Where it is null the engine can shade nothing.
+  explicit GlEngine(const GlContext* gl) : gl_(gl) {}
 
-  Result<void> resize(int width, int height);
-  // Shades the texture of a G-buffer; `add` adds to what was shaded before.
-  void shade(GLuint gbuffer_texture, const Rays& rays, bool add);
-  void read(image::Image& rgba) const;
-
-  const std::string& program() const { return text_; }
+  const EngineInfo& info() const override { return kInfo; }
+  // Error: there is no OpenGL, because the renderer was given a G-buffer.
+  Result<void> can_shade(const Scene& scene) const override;
+  // Uploads maps and weights, and compiles the program if it is another. Error: as scene_maps(), and more maps than
+  // there are texture units.
+  Result<void> load(const Scene& scene, const Effects& effects) override;
+  void load_paints(const Scene& scene) override;
+  // Samples are summed in OpenGL; finish() reads their sum back and applies the gain.
+  Result<void> shade(Sight& sight, int sample, float gain, bool add, image::Image& rgba) override;
+  void finish(image::Image& rgba) override;
+  Price price(const Workload& work, const Effects& effects) const override;
 
  private:
+  Result<void> resize(int width, int height);
   void upload_tilts(const std::vector<std::vector<brdf::Tilt>>& tilts);
   void upload(const envmap::CubeMap& map, const std::string& sampler);
 
@@ -42,6 +45,7 @@ class GlEngine {
   std::vector<Light> lights_;
   color::Rgb background_color_;
   int width_ = 0, height_ = 0;
+  float gain_ = 1;
 };
 
 }  // namespace goniochrome::render

@@ -258,9 +258,11 @@ void main() {
 }
 
 std::string gbuffer_fragment_shader() {
-  return std::string("#version 330 core\n") + kRays + R"(uniform int part;
+  return std::string("#version 330 core\n") + kRays +
+         R"(uniform int part, first;  // first: the number of the part's first triangle
 in vec3 normal;
 layout(location = 0) out vec4 gbuffer;
+layout(location = 1) out uint triangle;
 void main() {
   float side = gl_FrontFacing ? 1.0 : -1.0;
   vec3 n = side * normalize(normal), wo = -ray();
@@ -268,6 +270,7 @@ void main() {
   float cos_o = dot(n, wo);
   if (cos_o < 1e-3) n = normalize(n + (1e-3 - cos_o) * wo);
   gbuffer = vec4(n, side * float(part + 1));
+  triangle = uint(first + gl_PrimitiveID);
 }
 )";
 }
@@ -284,6 +287,7 @@ std::string shading_fragment_shader(const Effects& effects, const color::Reflect
   const bool lit_lobes = effects.lights > 0 && !effects.lobes.empty();
   const ProductForms forms = effects.reflection ? product_forms(op) : ProductForms{};
   const Product product = product_of(effects, forms);
+  // 1. What the program is given, and the functions that it needs.
   std::string text = "#version 330 core\n// goniochrome-theory(7), RENDERING\n";
   text += uniforms(effects) + kRays + "layout(location = 0) out vec4 color;\n" + kWeight;
   if (effects.reflection && (product == Product::kOperator || effects.lights > 0)) text += reflection_function(op);
@@ -292,6 +296,7 @@ std::string shading_fragment_shader(const Effects& effects, const color::Reflect
   if (lit_gloss(effects)) text += fresnel_function();
   if (lit_lobes) text += kCosPower;
   if (!effects.lobes.empty()) text += lobe_functions(effects, product);
+  // 2. Where nothing is seen the program shows the background; else it finds the view and the row of weights.
   text += fmt::format(R"(
 void main() {{
   vec4 point = texelFetch(gbuffer, ivec2(gl_FragCoord.xy), 0);
@@ -307,6 +312,7 @@ void main() {{
 {}  vec3 radiance = vec3(0.0);
 )",
                       background_color(effects.background, product), row_of_view(effects));
+  // 3. The sum of what the environment and the lights show.
   if (effects.anisotropy) {
     text += R"(  int tilt_count = textureSize(tilts, 0).x;
   vec3 x = dot(n.xz, n.xz) > 1e-12 ? normalize(vec3(n.z, 0.0, -n.x)) : vec3(1.0, 0.0, 0.0), y = cross(n, x);

@@ -1,5 +1,5 @@
-// The shading program, written for one scene: only the effects and lobes that it uses. goniochrome-theory(7),
-// RENDERING.
+// The programs of OpenGL. The shading program is written for one scene and contains only the effects and lobes that the
+// scene uses. goniochrome-theory(7), RENDERING.
 #pragma once
 
 #include <string>
@@ -8,7 +8,8 @@
 
 namespace goniochrome::render {
 
-// Draws the G-buffer: unit normal, turned to the viewer, and part + 1 (negative where a surface is seen from inside).
+// Draws the G-buffer: unit normal, turned to the viewer, and part + 1 (negative where a surface is seen from inside);
+// and, as a second picture, the number of the triangle.
 std::string gbuffer_vertex_shader();
 std::string gbuffer_fragment_shader();
 

@@ -1,4 +1,5 @@
-// What one point gathers from the light around it, patch by patch: the integrand of reference.h.
+// A gatherer sums, patch by patch, the light from all around that one point reflects to the viewer. It holds the
+// integrand of exact.h and decides how finely the light must be divided.
 #pragma once
 
 #include <vector>
@@ -17,7 +18,8 @@ struct Patch {
   double variance = 0;  // of its directions, along each axis (rad^2)
 };
 
-// How finely a point must see the light around it: no patch wider than a part of the lobes that reach it.
+// The grain is how finely the light around a point must be divided: no patch may be wider than a given part of the
+// lobes that reach it.
 class Grain {
  public:
   // Texels are at most `texel_rad` across. `most_spread`: the standard deviation of the directions of a block's light,

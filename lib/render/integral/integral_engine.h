@@ -1,27 +1,39 @@
-// Shades G-buffers without prefiltered maps: at every visible point the environment itself is summed, by blocks of
-// texels as coarse as the lobes there allow. goniochrome-theory(7), RENDERING, The integral.
+// The engine integral shades G-buffers without prefiltered maps: at every visible point it sums the environment itself,
+// by blocks of texels that are as coarse as the lobes there allow. goniochrome-theory(7), REFERENCE INTEGRATOR, Sums
+// over blocks.
 #pragma once
 
 #include <vector>
 
-#include "image/image.h"
-#include "render/effects.h"
-#include "render/gbuffer.h"
-#include "render/internal/visible_point.h"
-#include "render/scene.h"
+#include "render/cpu/cpu_engine.h"
+#include "render/engine.h"
 
 namespace goniochrome::render {
 
-// The spread of blocks (render/reference.h) whose sums are within this color difference, 95 of 100 points; CIEDE2000.
+// The spread of blocks (see Surroundings) whose sums are within this color difference at 95 of 100 points; CIEDE2000.
 double spread_for(double tolerance_de00);
 
-// Seconds that one of these points takes on all cores together. Where the effects have an environment, the scene has
-// its texels.
-double integral_seconds_per_point(const std::vector<VisiblePoint>& points, const Scene& scene, const Effects& effects);
+class IntegralEngine : public Engine {
+ public:
+  static const EngineInfo kInfo;
 
-// Adds the radiance of all visible points times `gain` to the picture. `places` are those of the G-buffer on textures,
-// or empty. Bit-identical for any number of threads.
-void add_integral(const Gbuffer& gbuffer, const std::vector<TexturePlace>& places, const Scene& scene,
-                  const Effects& effects, float gain, image::Image& rgba);
+  const EngineInfo& info() const override { return kInfo; }
+  // Error: an environment without the image that it was made from.
+  Result<void> can_shade(const Scene& scene) const override;
+  // The blocks are as coarse as Effects::tolerance_de00 lets them be. Error: a background without a mirror part.
+  Result<void> load(const Scene& scene, const Effects& effects) override;
+  void load_paints(const Scene& scene) override;
+  // Bit-identical for any number of threads.
+  Result<void> shade(Sight& sight, int sample, float gain, bool add, image::Image& rgba) override;
+  Result<std::vector<color::Rgb>> shade(const std::vector<VisiblePoint>& points) const override;
+  bool shades_layer() const override { return true; }
+  // Times some points of the probe.
+  Price price(const Workload& work, const Effects& effects) const override;
+
+ private:
+  CpuEngine behind_;  // the mesh: it draws the background alone
+  Scene scene_;
+  Effects effects_;
+};
 
 }  // namespace goniochrome::render

@@ -46,10 +46,10 @@ struct World {
                              {envmap::kMirrorExponent, {}, {1, 1, 1}}};
   }
   Result<Frame> drawn(Effects effects, double tolerance, int size = 48) const {
-    effects.spread = spread_for(tolerance);
+    effects.tolerance_de00 = tolerance;
     auto renderer = Renderer::create();
     if (!renderer.ok()) return renderer.error();
-    if (auto loaded = renderer->load(scene, effects, Engine::kIntegral); !loaded.ok()) return loaded.error();
+    if (auto loaded = renderer->load(scene, effects, "integral"); !loaded.ok()) return loaded.error();
     return renderer->draw(Camera::orbit(mesh, 30, 20, 1, 30, 1), size, size, 1, true);
   }
   Result<Frame> drawn(double tolerance) const { return drawn(effects_of(scene), tolerance); }
@@ -127,7 +127,7 @@ TEST(IntegralEngine, LightsAloneAreThoseOfTheProcessor) {
   const auto frame = world.drawn(0.5);
   ASSERT_TRUE(frame.ok()) << frame.error().message;
   auto renderer = Renderer::create();
-  ASSERT_TRUE(renderer->load(world.scene, Engine::kCpu).ok());
+  ASSERT_TRUE(renderer->load(world.scene, "cpu").ok());
   const auto mapped = renderer->draw(Camera::orbit(world.mesh, 30, 20, 1, 30, 1), 48, 48, 1);
   ASSERT_TRUE(mapped.ok());
   for (std::size_t i = 0; i < frame->picture.data.size(); ++i)
@@ -137,9 +137,9 @@ TEST(IntegralEngine, LightsAloneAreThoseOfTheProcessor) {
 TEST(IntegralEngine, SamplesAreAveraged) {
   const World world(hall());
   Effects effects = effects_of(world.scene);
-  effects.spread = 1;
+  effects.tolerance_de00 = 4;  // the coarsest
   auto renderer = Renderer::create();
-  ASSERT_TRUE(renderer->load(world.scene, effects, Engine::kIntegral).ok());
+  ASSERT_TRUE(renderer->load(world.scene, effects, "integral").ok());
   const Camera camera = Camera::orbit(world.mesh, 30, 20, 1, 30, 1);
   const auto one = renderer->draw(camera, 32, 32, 1), four = renderer->draw(camera, 32, 32, 4);
   ASSERT_TRUE(one.ok() && four.ok());
@@ -174,11 +174,11 @@ TEST(IntegralEngine, ThePlanKeepsEverythingAndForetellsItsTime) {
   const auto seen = renderer->look(world.mesh, view);
   ASSERT_TRUE(seen.ok());
   PlanRequest request;
-  request.engine = Engine::kIntegral;
+  request.engine = "integral";
   const auto plan = renderer->load(world.scene, {*seen}, request);
   ASSERT_TRUE(plan.ok()) << plan.error().message;
   for (const PlanItem& item : plan->items) EXPECT_EQ(item.on, item.needed) << item.effect;
-  EXPECT_EQ(plan->effects.spread, spread_for(request.tolerance_de00));
+  EXPECT_EQ(plan->effects.tolerance_de00, request.tolerance_de00);
   Frame frame;
   ASSERT_TRUE(renderer->draw(view, frame).ok());
   EXPECT_GT(plan->predicted_ms(), frame.frame_ms / 5);

@@ -1,5 +1,5 @@
-// What a lobe about the mirror direction sends to a viewer under uniform light of 1, as a function of the view.
-// goniochrome-theory(7), RENDERING.
+// Under uniform light of 1, a lobe about the mirror direction sends to the viewer an amount of light that depends on
+// the view alone. These are its integrals. goniochrome-theory(7), RENDERING, Horizon.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
-// The environment's maps as both engines sample them: those met by one direction in few face sizes, so that one set of
-// texel addresses serves many lobes. goniochrome-theory(7), RENDERING.
+// The maps of the environment as engines look them up. Maps that are looked up in one direction are brought to few face
+// sizes, so that one set of texel addresses serves many lobes. goniochrome-theory(7), RENDERING, Engines.
 #pragma once
 
 #include <vector>
@@ -32,9 +32,9 @@ struct LobeClass {
 };
 std::vector<LobeClass> lobe_classes(const envmap::PrefilteredEnvironment& env, const Effects& effects);
 
-// What the effects need of the scene's environment. A lobe's map is brought to the size of its class by bilinear
-// interpolation between its own texels. Error: a lobe or the mirror part that the environment lacks, with the command
-// that makes it.
+// The maps of the scene's environment that the effects need. A lobe's map is brought to the size of its class by
+// bilinear interpolation between its own texels. Error: a lobe or the mirror part that the environment lacks, with the
+// command that makes it.
 Result<SceneMaps> scene_maps(const Scene& scene, const Effects& effects);
 
 // A face with the texels of its neighbors around it, as seamless filtering has them (a corner is the mean of the three

@@ -1,4 +1,4 @@
-// Differences of radiance as a viewer sees them, who takes the scene's diffuse white for white.
+// Differences between radiances are measured as a viewer sees them who takes the diffuse white of the scene for white.
 #pragma once
 
 #include <vector>

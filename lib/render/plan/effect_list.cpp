@@ -7,7 +7,7 @@
 
 #include "base/text.h"
 #include "color/color.h"
-#include "render/textures/surface_layer.h"
+#include "render/surface_layer.h"
 
 namespace goniochrome::render {
 
@@ -50,7 +50,7 @@ void add_lobes(const Scene& scene, const Effects& all, bool gloss, std::vector<E
     const int parts = wearing(scene, exponent, gloss);
     list.push_back({fmt::format("{}-{}", gloss ? "gloss" : "lobe", shortest(exponent)), group, true,
                     fmt::format("{} on {} visible part{}", gloss ? "gloss" : "flake", parts, parts == 1 ? "" : "s"),
-                    [=](Effects& e) { remove_weight(e, exponent, gloss); }});
+                    [=](Effects& e) { remove_weight(e, exponent, gloss); }, gloss});
   }
   if (list.size() == before) {
     list.push_back({group, group, false, gloss ? "no visible paint has gloss lobes" : "solid paints: no flake lobes",
@@ -111,18 +111,27 @@ void add_texture_lobes(const Scene& scene, const Effects& all, std::vector<Effec
   const int lobes = all.texture ? scene.layer->lobes() : 0;
   for (int lobe = 0; lobe < lobes; ++lobe) {
     list.push_back({fmt::format("texture-{}", lobe), "texture-lobes", true, fmt::format("lobe{} of the textures", lobe),
-                    [=](Effects& e) { e.texture_lobes &= ~(1U << lobe); }});
+                    [=](Effects& e) { e.texture_lobes &= ~(1U << lobe); }, true});
   }
   if (lobes == 0) list.push_back({"texture-lobes", "texture-lobes", false, "no texture has lobes", [](Effects&) {}});
 }
 
 }  // namespace
 
+// An empty scene calls for nothing, so that its list has each group once.
 const std::vector<std::string>& effect_groups() {
-  static const std::vector<std::string> groups = {"diffuse", "lobes",         "gloss",      "mirror",
-                                                  "fresnel", "horizon",       "anisotropy", "travel",
-                                                  "texture", "texture-lobes", "operator",   "lights"};
+  static const std::vector<std::string> groups = [] {
+    std::vector<std::string> names;
+    for (const EffectSwitch& effect : effect_switches({}, {}, {})) names.push_back(effect.group);
+    return names;
+  }();
   return groups;
+}
+
+bool is_effect_name(const std::string& name) {
+  if (std::ranges::find(effect_groups(), name) != effect_groups().end()) return true;
+  const bool lobe = name.starts_with("lobe-") || name.starts_with("gloss-") || name.starts_with("texture-");
+  return lobe && parse_number(name.substr(name.find('-') + 1)).has_value();
 }
 
 std::vector<EffectSwitch> effect_switches(const Scene& scene, const Effects& all,

@@ -1,4 +1,4 @@
-// The effects that can be left out one by one, with the reason why a scene calls for each. Internal to lib/render.
+// The effects that can be left out one by one, with the reason why a scene calls for each of them.
 #pragma once
 
 #include <functional>
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "render/effects.h"
-#include "render/internal/visible_point.h"
+#include "render/gbuffer.h"
 
 namespace goniochrome::render {
 
@@ -16,10 +16,14 @@ struct EffectSwitch {
   bool needed = false;
   std::string reason;
   std::function<void(Effects&)> turn_off;
+  bool is_highlight = false;  // It may be bright between the points at which a plan looks.
 };
 
 // The groups, in the order of the list.
 const std::vector<std::string>& effect_groups();
+
+// Whether --effects may name it: a group, or a single lobe such as lobe-20, gloss-900 or texture-0.
+bool is_effect_name(const std::string& name);
 
 // One switch for each lobe with flake weight, each with gloss weight, and for each other effect. `seen` are visible
 // points of the scene.

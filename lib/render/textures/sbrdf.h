@@ -8,7 +8,7 @@
 #include "base/result.h"
 #include "brdf/sbrdf.h"
 #include "envmap/prefiltered.h"
-#include "render/internal/visible_point.h"
+#include "render/gbuffer.h"
 #include "render/scene.h"
 #include "render/textures/sbrdf_kernel.h"
 

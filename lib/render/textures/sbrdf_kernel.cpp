@@ -171,6 +171,7 @@ HWY_INLINE void add_filtered(const SbrdfShading& s, const SbrdfPoints& p, const 
   const hn::RebindToSigned<D> whole;
   HWY_ALIGN std::int32_t sizes[2][kPointsAtOnce];
   HWY_ALIGN float weight[kPointsAtOnce], cosine[kPointsAtOnce], shift[kPointsAtOnce];
+  // 1. The cosine and shift that the horizon gives each lobe, and the sizes of the two maps around its exponent.
   for (int i = 0; i < kPointsAtOnce; ++i) {
     const Seen seen = seen_of(s, l.lobe[i], middles.z[i]);
     cosine[i] = seen.cosine, shift[i] = seen.shift;
@@ -179,6 +180,7 @@ HWY_INLINE void add_filtered(const SbrdfShading& s, const SbrdfPoints& p, const 
     sizes[1][i] = l.lobe[i][kLobeMap + 1] > 0 ? s.maps[map + 1].size : sizes[0][i];
   }
   Taps taps[2];
+  // 2. The middle of each lobe in the world, its addresses in both maps, and its weight.
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); i += hn::Lanes(f)) {
     const V c = hn::Load(f, l.cos_x + i), q = hn::Load(f, l.sin_x + i);
     const Direction m = loaded(middles.x, middles.y, middles.z, i);
@@ -196,6 +198,7 @@ HWY_INLINE void add_filtered(const SbrdfShading& s, const SbrdfPoints& p, const 
     const V share = hn::Mul(hn::Load(f, cosine + i), hn::LoadU(f, p.share[tap] + i));
     hn::Store(hn::IfThenElseZero(seen, hn::Mul(power, share)), f, weight + i);
   }
+  // 3. Point by point, the light from both maps, blended, times the color of the lobe.
   for (int i = 0; i < count; ++i) {
     const float* lobe = l.lobe[i];
     const float w = weight[i];
@@ -269,6 +272,7 @@ HWY_INLINE void add_diffuse(const SbrdfShading& s, const SbrdfPoints& p, const S
   }
 }
 
+// The diffuse part, and then each lobe of each texel under the environment and under the lights.
 template <bool reflection>
 HWY_INLINE void add_all(const SbrdfShading& s, const SbrdfPoints& p, int count, float* sums) {
   SurfaceFrames frames;

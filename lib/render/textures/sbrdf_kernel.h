@@ -1,5 +1,5 @@
-// The arithmetic of textures of lobes, compiled for several instruction sets and chosen at run time. Internal to
-// lib/render.
+// The kernel that shades textures of lobes. It is compiled for several instruction sets, of which the best that the
+// processor has is chosen at run time.
 #pragma once
 
 #include <cstddef>
@@ -39,8 +39,8 @@ struct SbrdfShading {
   const float* reflection = nullptr;  // k[c][d][e]; null: the component-wise product
 };
 
-// Points as separate arrays; `count` of them are meant, the others must hold numbers and texels. Each shows `taps`
-// texels.
+// Points as separate arrays. The first `count` of them are shaded; the others must hold any finite numbers and texels,
+// since the kernel computes with them as well. Each shows `taps` texels.
 struct SbrdfPoints {
   float nx[kPointsAtOnce], ny[kPointsAtOnce], nz[kPointsAtOnce];
   float vx[kPointsAtOnce], vy[kPointsAtOnce], vz[kPointsAtOnce];  // toward the viewer, of any length
@@ -50,7 +50,7 @@ struct SbrdfPoints {
   float share[4][kPointsAtOnce];
 };
 
-// rgba: 4 floats a point, the fourth not meant; 0 for a point seen from below.
+// rgba: 4 floats a point, of which the fourth has no meaning; 0 for a point that is seen from below.
 void shade_texels(const SbrdfShading& shading, const SbrdfPoints& points, int count, float* rgba);
 
 }  // namespace goniochrome::render

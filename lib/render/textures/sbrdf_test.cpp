@@ -9,7 +9,6 @@
 
 #include "brdf/lobe_model.h"
 #include "render/scenes_for_test.h"
-#include "render/textures/texture_places.h"
 
 namespace goniochrome::render {
 namespace {
@@ -248,7 +247,7 @@ TEST(SbrdfShader, TheSameInAnyCompany) {
   for (std::size_t i = 0; i < points.size(); i += 7) EXPECT_EQ(shader.shade(0, {}, {points[i]}).front(), together[i]);
 }
 
-TEST(MeanTexture, KeepsEnergyAndTheCommonDirection) {
+TEST(SbrdfShader, AMeanTexelKeepsEnergyAndTheCommonDirection) {
   brdf::SbrdfTexel a, b;
   a.surface.lobes = {{{0.2, 0.1, 0.1}, {-1, -0.6, 1}, 9}}, b.surface.lobes = {{{0.4, 0.2, 0.2}, {-1, -0.6, 1}, 9}};
   a.surface.diffuse = {0.1, 0, 0}, b.surface.diffuse = {0.3, 0, 0};
@@ -269,51 +268,6 @@ TEST(MeanTexture, KeepsEnergyAndTheCommonDirection) {
   const brdf::SbrdfTexel mean = brdf::sbrdf_texel(brdf::mean_texture(texture_of({a, a, a})), 0, 0);
   const SbrdfLight lit = lights_alone({{normalized({0.5, 1, 0.2}), {1, 1, 1}}});
   EXPECT_NEAR(shade(mean, nullptr, lit).x / shade(a, nullptr, lit).x, 1, kFloat);
-}
-
-// A G-buffer that shows the first part of a mesh everywhere.
-Gbuffer all_of_part_one(const Camera& camera, int size) {
-  Gbuffer g;
-  g.width = g.height = size;
-  g.rays = *rays(camera, size, size);
-  for (int i = 0; i < size * size; ++i)
-    for (const float value : {0.0F, 0.0F, 1.0F, 1.0F}) g.data.push_back(value);
-  return g;
-}
-
-TEST(TexturePlaces, OwnCoordinatesAndThoseMadeAroundTheAxis) {
-  mesh::Mesh mesh = sphere_mesh(64);
-  Camera camera;
-  camera.eye = {0, 0, 6};
-  const Gbuffer g = all_of_part_one(camera, 64);
-  const auto made = TextureLayout(mesh, {true}).places(g);
-  const TexturePlace& middle = made[32 * 64 + 32];  // half a pixel right and down of the middle
-  EXPECT_NEAR(middle.u, 0, 0.02);
-  EXPECT_NEAR(middle.v, 1 / (2 * std::numbers::pi), 0.02);
-  EXPECT_NEAR(middle.tangent[0], 1, 0.05);
-  EXPECT_NEAR(middle.tangent[1], 0, 0.05);
-  // Across the sphere u runs through a half turn, its own coordinates likewise.
-  EXPECT_NEAR(made[32 * 64 + 40].u, std::asin((8.5 / 32) * std::tan(15 * M_PI / 180) * 5 / 1) / (2 * M_PI), 0.02);
-  for (const Vec3& p : mesh.positions)
-    mesh.texture.push_back({static_cast<float>(3 * p.x), static_cast<float>(3 * p.y)});
-  const auto own = TextureLayout(mesh, {true}).places(g);
-  EXPECT_NEAR(own[32 * 64 + 32].u, 0, 0.15);
-  EXPECT_NEAR(own[20 * 64 + 40].tangent[0], 1, 0.4);
-  EXPECT_GT(own[20 * 64 + 40].u, 0.3);
-  EXPECT_GT(own[20 * 64 + 40].v, 0.3);
-}
-
-// The left panel alone has a texture; where the G-buffer shows the other part, or the panel is not, there is no place.
-TEST(TexturePlaces, FollowTheGbuffer) {
-  mesh::Mesh mesh = panels_mesh(2);
-  for (std::size_t i = 2; i < mesh.positions.size(); ++i) mesh.positions[i].z = -1e-3 * static_cast<double>(i / 2);
-  mesh.texture.assign(mesh.positions.size(), {0.25F, 0.75F});
-  Camera camera;
-  camera.eye = {0, 0, 3};
-  Gbuffer g = all_of_part_one(camera, 32);
-  for (int i = 0; i < 32 * 32; ++i) g.data[4 * i + 3] = static_cast<float>(1 + i % 2);
-  const auto places = TextureLayout(mesh, {true, false}).places(g);
-  for (std::size_t i = 0; i < 32; ++i) EXPECT_EQ(places[16 * 32 + i].u, i % 2 == 0 && i < 16 ? 0.25F : 0) << i;
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include "render/exact.h"
 #include "render/renderer.h"
 #include "render/scenes_for_test.h"
-#include "render/textures/surface_layer.h"
+#include "render/surface_layer.h"
 
 namespace goniochrome::render {
 namespace {
@@ -62,7 +62,7 @@ void BM_Texture(benchmark::State& state) {
   const SurfaceLayer layer(scene, {{&texture, 4, nullptr}}, brdf::CriticalAngle::kSlide);
   scene.layer = &layer;
   auto renderer = Renderer::create();
-  if (!renderer.ok() || !renderer->load(scene, Engine::kCpu).ok()) return state.SkipWithError("no renderer");
+  if (!renderer.ok() || !renderer->load(scene, "cpu").ok()) return state.SkipWithError("no renderer");
   double azimuth_deg = 35;
   View view{Camera::orbit(mesh, azimuth_deg, 12, 0.6, 30, 16.0 / 9), 1280, 720, 1, true};
   Frame frame;

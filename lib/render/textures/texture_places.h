@@ -1,12 +1,12 @@
-// Where on its texture each pixel lies, for the surfaces that have one. goniochrome-theory(7), SPATIALLY VARYING
-// SURFACES.
+// Where on its texture each pixel lies, for the parts that have one. goniochrome-theory(7), SPATIALLY VARYING SURFACES,
+// Drawing.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "mesh/mesh.h"
 #include "render/gbuffer.h"
-#include "render/internal/visible_point.h"
 
 namespace goniochrome::render {
 
@@ -18,24 +18,17 @@ class TextureLayout {
   // For these parts of the mesh, which must outlive it.
   TextureLayout(const mesh::Mesh& mesh, const std::vector<bool>& parts);
 
-  // The places of what a G-buffer of the mesh shows, pixel by pixel; of other parts, and of nothing, they mean nothing.
-  // Bit-identical for any number of threads.
+  // The places of what a G-buffer of the mesh shows, pixel by pixel; those of other parts, and of nothing, are left at
+  // 0. The G-buffer must have triangles. Bit-identical for any number of threads.
   std::vector<TexturePlace> places(const Gbuffer& gbuffer) const;
 
  private:
-  struct Corner {
-    float u = 0, v = 0;
-  };
-  struct Face {
-    std::uint32_t vertex[3];
-    Corner uv[3];
-    int part = 0;
-  };
-  class Canvas;
+  using Corners = std::array<std::array<float, 2>, 3>;  // u and v of each corner
+  TexturePlace place(const MeshPoint& point, const Corners& corners) const;
 
   const mesh::Mesh& mesh_;
-  std::vector<Face> faces_;
-  std::vector<Vec3> tangents_;  // of the vertices
+  std::vector<std::vector<Corners>> faces_;  // of the triangles of each part, in order; none of parts without a texture
+  std::vector<Vec3> tangents_;               // of the vertices
 };
 
 }  // namespace goniochrome::render

@@ -7,7 +7,7 @@
 #include "render/internal/seen.h"
 #include "render/renderer.h"
 #include "render/scenes_for_test.h"
-#include "render/textures/surface_layer.h"
+#include "render/surface_layer.h"
 
 namespace goniochrome::render {
 namespace {
@@ -96,7 +96,7 @@ class TexturedScene : public testing::Test {
                                            brdf::CriticalAngle::kSlide);
     scene.layer = layer.get();
   }
-  Frame drawn(Engine engine, const Effects& effects) const {
+  Frame drawn(const char* engine, const Effects& effects) const {
     auto renderer = Renderer::create();
     EXPECT_TRUE(renderer.ok());
     const auto loaded = renderer->load(scene, effects, engine);
@@ -147,7 +147,7 @@ TEST_F(TexturedScene, EnginesAgree) {
   dress();
   for (const int samples : {1, 4}) {
     view.samples = samples;
-    const Frame gl = drawn(Engine::kGl, effects_of(scene)), cpu = drawn(Engine::kCpu, effects_of(scene));
+    const Frame gl = drawn("gl", effects_of(scene)), cpu = drawn("cpu", effects_of(scene));
     double worst = 0;
     for (std::size_t i = 0; i < gl.picture.data.size(); i += 4) {
       const float *a = &gl.picture.data[i], *b = &cpu.picture.data[i];
@@ -163,7 +163,7 @@ TEST_F(TexturedScene, CertificateUnderLights) {
   scene.lights = {{normalized({0.4, 0.5, 1}), {1, 0.8, 0.6}}, {normalized({1, 0.2, 0.1}), {0.1, 0.2, 0.5}}};
   scene.reflection = color::iso_rgb_operator();
   dress();
-  const Frame frame = drawn(Engine::kCpu, effects_of(scene));
+  const Frame frame = drawn("cpu", effects_of(scene));
   const PictureError error = picture_error(frame, scene, nullptr, 1, 2000, 5);
   EXPECT_EQ(error.checked_pixels, 2000);
   EXPECT_LT(error.de00_max, 0.02) << error.worst_x << ',' << error.worst_y;
@@ -173,7 +173,7 @@ TEST_F(TexturedScene, CertificateUnderLights) {
 // horizon cuts off: together within a small difference in color. The wrong texels are the control.
 TEST_F(TexturedScene, CertificateUnderAnEnvironment) {
   dress();
-  const Frame frame = drawn(Engine::kCpu, effects_of(scene));
+  const Frame frame = drawn("cpu", effects_of(scene));
   const envmap::Environment source = sloping_source();
   const PictureError error = picture_error(frame, scene, &source, 1, 60, 5);
   EXPECT_EQ(error.checked_pixels, 60);
@@ -196,7 +196,7 @@ TEST_F(TexturedScene, ThePlanPricesTextureAndLobes) {
   for (const char* name : {"texture", "texture-0", "texture-1"}) {
     request.effects = std::string("all,-") + name;
     const Plan left = planned(request, without);
-    EXPECT_EQ(item(left, name).decision, "forced off");
+    EXPECT_EQ(item(left, name).decision, Decision::kForcedOff);
     const double real = difference(all, without), estimate = item(plan, name).de00_p95;
     // The texels of the probe are not those of the picture; they are as many of each.
     EXPECT_NEAR(std::log2(estimate / real), 0, 0.5) << name << ": " << estimate << " for " << real;
@@ -204,9 +204,9 @@ TEST_F(TexturedScene, ThePlanPricesTextureAndLobes) {
   // Nobody sees the third lobe.
   request.effects = "auto";
   const Plan chosen = planned(request, without);
-  EXPECT_EQ(item(chosen, "texture-2").decision, "dropped");
-  EXPECT_EQ(item(chosen, "texture-1").decision, "drawn");
-  EXPECT_EQ(item(chosen, "texture").decision, "drawn");
+  EXPECT_EQ(item(chosen, "texture-2").decision, Decision::kDropped);
+  EXPECT_EQ(item(chosen, "texture-1").decision, Decision::kDrawn);
+  EXPECT_EQ(item(chosen, "texture").decision, Decision::kDrawn);
   EXPECT_LE(difference(all, without), request.tolerance_de00);
 }
 
@@ -217,8 +217,8 @@ TEST_F(TexturedScene, TheIntegralIsWithinWhatIsAsked) {
   scene.texels = &blocks;
   Effects effects = effects_of(scene);
   for (const double tolerance : {0.5, 0.1}) {
-    effects.spread = spread_for(tolerance);
-    EXPECT_LT(picture_error(drawn(Engine::kIntegral, effects), scene, &source, 1, 60, 5).de00_p95, tolerance);
+    effects.tolerance_de00 = tolerance;
+    EXPECT_LT(picture_error(drawn("integral", effects), scene, &source, 1, 60, 5).de00_p95, tolerance);
   }
 }
 
@@ -243,13 +243,13 @@ TEST_F(TexturedScene, OneTexelIsAPaint) {
   texture = {1, 1, 1, {0.1F, 0.05F, 0.02F, 1, 0, 0.5F, 0.4F, 0.3F, -1, -1, 1, 16}};
   scene.lights = {{normalized({0.4, 0.5, 1}), {1, 1, 1}}};
   dress();
-  const Frame textured = drawn(Engine::kCpu, effects_of(scene));
+  const Frame textured = drawn("cpu", effects_of(scene));
   const envmap::Environment source = sloping_source();
   const double error = picture_error(textured, scene, &source, 1, 40, 5).de00_mean;
   scene.layer = nullptr;
   scene.paints[0].diffuse = {0.1, 0.05, 0.02};
   scene.paints[0].lobes = {{16, {0.5, 0.4, 0.3}, {}}};
-  const Frame painted = drawn(Engine::kCpu, effects_of(scene));
+  const Frame painted = drawn("cpu", effects_of(scene));
   EXPECT_NEAR(picture_error(painted, scene, &source, 1, 40, 5).de00_mean, error, 0.1);
   EXPECT_LT(difference(textured, painted), 0.3);
 }

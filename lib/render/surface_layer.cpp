@@ -1,4 +1,4 @@
-#include "render/textures/surface_layer.h"
+#include "render/surface_layer.h"
 
 #include <algorithm>
 #include <atomic>

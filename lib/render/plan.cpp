@@ -1,4 +1,4 @@
-#include "render/plan/plan.h"
+#include "render/plan.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,13 +8,12 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "render/cpu/cpu_engine.h"
 #include "render/exact.h"
-#include "render/integral/integral_engine.h"
 #include "render/internal/product_forms.h"
 #include "render/internal/seen.h"
-#include "render/plan/cost.h"
 #include "render/plan/effect_list.h"
-#include "render/textures/surface_layer.h"
+#include "render/surface_layer.h"
 
 namespace goniochrome::render {
 
@@ -23,17 +22,25 @@ namespace {
 // The probe sees 95 % of some hundred points; the picture's own percentile is that far off at most times.
 constexpr double kSafety = 0.8;
 
+// Visible points that a plan is made from.
+constexpr std::size_t kProbe = 512;
+
+// The words of --effects: what is on to begin with, and the effects that are forced on or off.
+enum class Start { kAuto, kAll, kNone };
 struct Words {
-  std::string base = "auto";
+  Start start = Start::kAuto;
   std::vector<std::pair<std::string, bool>> forced;  // name, on
 };
 
 Result<Words> words_of(const std::string& text) {
+  static constexpr std::pair<const char*, Start> kStarts[] = {
+      {"auto", Start::kAuto}, {"all", Start::kAll}, {"none", Start::kNone}};
   Words words;
   for (const std::string_view piece : split(text, ',')) {
     const std::string word(trimmed(piece));
-    if (word == "auto" || word == "all" || word == "none") {
-      words.base = word;
+    const auto start = std::ranges::find(kStarts, word, [](const auto& known) { return known.first; });
+    if (start != std::end(kStarts)) {
+      words.start = start->second;
     } else if (word.size() > 1 && (word[0] == '+' || word[0] == '-')) {
       words.forced.emplace_back(word.substr(1), word[0] == '+');
     } else {
@@ -42,12 +49,9 @@ Result<Words> words_of(const std::string& text) {
     }
   }
   for (const auto& [name, on] : words.forced) {
-    const auto& groups = effect_groups();
-    const bool lobe = name.starts_with("lobe-") || name.starts_with("gloss-") || name.starts_with("texture-");
-    if (lobe && parse_number(name.substr(name.find('-') + 1))) continue;
-    if (std::find(groups.begin(), groups.end(), name) != groups.end()) continue;
+    if (is_effect_name(name)) continue;
     std::string known;
-    for (const std::string& group : groups) known += (known.empty() ? "" : ", ") + group;
+    for (const std::string& group : effect_groups()) known += (known.empty() ? "" : ", ") + group;
     return usage_error("--effects names \"{}\": there are {}, and single lobes such as lobe-20 or gloss-900", name,
                        known);
   }
@@ -80,8 +84,8 @@ class Prober {
   std::vector<color::Rgb> colors(const std::vector<bool>& on) {
     const Effects chosen = effects(on);
     CpuEngine& engine = chosen.reflection ? engine_ : component_wise_;
-    engine.load_paints(scene_, chosen, weight_table(scene_, chosen));
-    std::vector<color::Rgb> colors = engine.shade(points_);
+    engine.load_paints(scene_, chosen);
+    std::vector<color::Rgb> colors = engine.colors(points_);
     if (scene_.layer != nullptr) scene_.layer->add(seen_, chosen, colors);
     return colors;
   }
@@ -110,13 +114,13 @@ class Prober {
     constexpr double kLong_s = 2e-4, kSlow_s = 2e-3, kEnough_s = 2e-2;
     std::vector<VisiblePoint> many = points_;
     const Stopwatch clock_once;
-    const auto first = engine_.shade(points_);
+    const auto first = engine_.colors(points_);
     const double once_s = clock_once.elapsed_s();
     if (once_s > kSlow_s) {  // again nevertheless: the machine may have been busy
       double least_s = once_s, all_s = once_s;
       for (int i = 0; i < 2 && (i == 0 || all_s < kEnough_s); ++i) {
         const Stopwatch clock;
-        const auto again = engine_.shade(points_);
+        const auto again = engine_.colors(points_);
         least_s = std::min(least_s, clock.elapsed_s()), all_s += clock.elapsed_s();
       }
       return least_s / static_cast<double>(points_.size());
@@ -126,7 +130,7 @@ class Prober {
     double best = std::numeric_limits<double>::infinity();
     for (int i = 0; i < 3; ++i) {
       const Stopwatch clock;
-      const auto colors = engine_.shade(many);
+      const auto colors = engine_.colors(many);
       best = std::min(best, clock.elapsed_s());
     }
     return best / static_cast<double>(many.size());
@@ -169,30 +173,34 @@ void tidy(Effects& effects) {
   effects.anisotropy = effects.anisotropy && !effects.lobes.empty();
 }
 
-// What one frame's shading takes, in ms.
-struct CostModel {
-  const Scene& scene;
-  PointCounts counts;
-  double points = 0, pixels = 0, speed = 1;  // speed: measured over counted
-  double textured = 0, mapped = 0;           // of the points
-  int texture_lobes = 0;
+// What one frame of such pictures consists of.
+Workload workload_of(const Scene& scene, const Effects& all, const std::vector<VisiblePoint>& probe,
+                     const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers, const PlanRequest& request) {
+  double visible = 0, pixels = 0;
+  for (const auto& g : gbuffers) {
+    for (std::size_t i = 3; i < g->data.size(); i += 4) visible += g->data[i] != 0 ? 1 : 0;
+    pixels += static_cast<double>(g->data.size() / 4);
+  }
+  // The G-buffers may be smaller than the frame.
+  const double of_frame =
+      request.pixels > 0 ? request.pixels : pixels / static_cast<double>(std::max<std::size_t>(1, gbuffers.size()));
+  Workload work;
+  work.scene = &scene, work.probe = &probe;
+  work.pixels = of_frame * request.samples;
+  work.points = (pixels > 0 ? of_frame * visible / pixels : 0) * request.samples;
+  work.textured = work.points * share_of(scene, probe, [](const PartSurface& s) { return s.texture != nullptr; });
+  work.mapped = work.points * share_of(scene, probe, [](const PartSurface& s) { return s.color_map != nullptr; });
+  work.tilts = mean_tilts(scene, all, probe);
+  work.forms = all.reflection ? product_forms(scene.reflection).count : 3;
+  work.texture_lobes = scene.layer != nullptr ? scene.layer->lobes() : 0;
+  return work;
+}
 
-  CostModel(const Scene& of, const Effects& all, const std::vector<VisiblePoint>& probe, double visible_pixels,
-            const PlanRequest& request)
-      : scene(of), points(visible_pixels * request.samples), pixels(request.pixels * request.samples) {
-    counts = {mean_tilts(of, all, probe), all.reflection ? product_forms(of.reflection).count : 3};
-    textured = points * share_of(scene, probe, [](const PartSurface& s) { return s.texture != nullptr; });
-    mapped = points * share_of(scene, probe, [](const PartSurface& s) { return s.color_map != nullptr; });
-    texture_lobes = scene.layer != nullptr ? scene.layer->lobes() : 0;
-  }
-  double ms(Effects effects, Engine engine) const {
-    tidy(effects);
-    const double texture_ns = textured > 0 ? textured_point_ns(effects, texture_lobes) : 0;
-    const double ns = pixels * pixel_ns(engine) + points * point_ns(scene, effects, engine, counts) +
-                      textured * texture_ns + mapped * mapped_point_ns(effects);
-    return 1e-6 * speed * ns / threads();
-  }
-};
+// The shading of one frame with these effects.
+double shading_ms(const Engine& engine, const Workload& work, Effects effects) {
+  tidy(effects);
+  return engine.price(work, effects).frame_ms;
+}
 
 // The scene with each paint once, and the points' parts renumbered.
 struct Compact {
@@ -226,7 +234,7 @@ struct Choice {
 Choice forced_choice(const Words& words, const std::vector<EffectSwitch>& switches) {
   Choice choice{std::vector<bool>(switches.size()), std::vector<bool>(switches.size(), false)};
   for (std::size_t i = 0; i < switches.size(); ++i) {
-    choice.on[i] = switches[i].needed && words.base != "none";
+    choice.on[i] = switches[i].needed && words.start != Start::kNone;
     for (const auto& [name, on] : words.forced) {
       if (name != switches[i].name && name != switches[i].group) continue;
       choice.on[i] = switches[i].needed && on;
@@ -238,10 +246,11 @@ Choice forced_choice(const Words& words, const std::vector<EffectSwitch>& switch
 
 // Leaves out, cheapest to miss first, what all together cannot be seen. The gloss of a lamp stays: its highlight may
 // lie between the points, and is the first thing that is seen.
-void drop_unseen(Prober& prober, const std::vector<PlanItem>& items, bool lamps, double tolerance, Choice& choice) {
+void drop_unseen(Prober& prober, const std::vector<EffectSwitch>& switches, const std::vector<PlanItem>& items,
+                 bool lamps, double tolerance, Choice& choice) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < items.size(); ++i) {
-    if (lamps && (items[i].effect.starts_with("gloss-") || items[i].effect.starts_with("texture-"))) continue;
+    if (lamps && switches[i].is_highlight) continue;
     if (choice.on[i] && !choice.forced[i] && items[i].de00_p95 <= tolerance) order.push_back(i);
   }
   std::stable_sort(order.begin(), order.end(),
@@ -257,16 +266,16 @@ void drop_unseen(Prober& prober, const std::vector<PlanItem>& items, bool lamps,
 constexpr double kFree = 0.02;
 
 // Takes back what was left out for nothing, whatever is worth most first: what is drawn with the rest at no price.
-void take_back_free(const Prober& prober, const CostModel& cost, Engine engine, std::vector<PlanItem>& items,
+void take_back_free(const Prober& prober, const Workload& work, const Engine& engine, std::vector<PlanItem>& items,
                     Choice& choice) {
   std::vector<std::size_t> gone;
   for (std::size_t i = 0; i < items.size(); ++i)
     if (items[i].needed && !choice.on[i] && !choice.forced[i]) gone.push_back(i);
   std::ranges::stable_sort(gone, [&](std::size_t a, std::size_t b) { return items[a].de00_p95 > items[b].de00_p95; });
   for (const std::size_t i : gone) {
-    const double without_ms = cost.ms(prober.effects(choice.on), engine);
+    const double without_ms = shading_ms(engine, work, prober.effects(choice.on));
     choice.on[i] = true;
-    const double with_ms = cost.ms(prober.effects(choice.on), engine);
+    const double with_ms = shading_ms(engine, work, prober.effects(choice.on));
     if (with_ms - without_ms <= kFree * without_ms) {
       items[i].reason += "; costs nothing";
     } else {
@@ -277,18 +286,18 @@ void take_back_free(const Prober& prober, const CostModel& cost, Engine engine, 
 
 // Leaves out what is worth least for its time until the rest fits, and takes back what fits after all; returns those
 // left out.
-std::set<std::size_t> keep_affordable(Prober& prober, const CostModel& cost, Engine engine, double budget_ms,
+std::set<std::size_t> keep_affordable(Prober& prober, const Workload& work, const Engine& engine, double budget_ms,
                                       Choice& choice) {
+  const auto now = [&] { return shading_ms(engine, work, prober.effects(choice.on)); };
   std::set<std::size_t> gone;
   const std::vector<color::Rgb> wanted = prober.colors(choice.on);
-  while (cost.ms(prober.effects(choice.on), engine) > budget_ms) {
-    const double now_ms = cost.ms(prober.effects(choice.on), engine);
+  for (double now_ms = now(); now_ms > budget_ms; now_ms = now()) {
     std::size_t worst = choice.on.size();
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < choice.on.size(); ++i) {
       if (!choice.on[i] || choice.forced[i]) continue;
       choice.on[i] = false;
-      const double saved_ms = now_ms - cost.ms(prober.effects(choice.on), engine);
+      const double saved_ms = now_ms - now();
       const double lost = prober.difference(wanted, prober.colors(choice.on)) / std::max(saved_ms, 1e-9);
       choice.on[i] = true;
       if (lost < least) least = lost, worst = i;
@@ -299,46 +308,100 @@ std::set<std::size_t> keep_affordable(Prober& prober, const CostModel& cost, Eng
   }
   std::erase_if(gone, [&](std::size_t i) {
     choice.on[i] = true;
-    const bool fits = cost.ms(prober.effects(choice.on), engine) <= budget_ms;
+    const bool fits = now() <= budget_ms;
     choice.on[i] = fits;
     return fits;
   });
   return gone;
 }
 
-// Points that the integral is timed at.
-constexpr std::size_t kTimed = 256;
+// An engine and what it is predicted to take.
+struct Priced {
+  const Engine* engine = nullptr;
+  Price price;
+  double total_ms(int frames) const { return price.frame_ms * frames + price.once_ms; }
+};
 
-void choose_engine(const PlanRequest& request, Plan& plan) {
-  if (request.engine == Engine::kIntegral) {
-    plan.engine = Engine::kIntegral;
-    plan.engine_reason = fmt::format("as asked: predicted {:.0f} ms a frame; prefiltered maps would take {:.1f} ms",
-                                     plan.integral_ms, std::min(plan.cpu_ms, plan.gl_ms));
-    return;
+// Those that plans may choose; or the single one that was asked for and that plans may not choose, last.
+std::vector<Priced> priced(const std::vector<const Engine*>& engines, const Engine* wanted, const Workload& work,
+                           Effects effects) {
+  tidy(effects);
+  std::vector<Priced> result;
+  for (const Engine* engine : engines) {
+    if (engine->info().is_planned) result.push_back({engine, engine->price(work, effects)});
   }
-  const double cpu = plan.cpu_ms * request.frames, gl = plan.gl_ms * request.frames + kCompileMs;
-  plan.engine = request.engine.value_or(cpu <= gl ? Engine::kCpu : Engine::kGl);
-  plan.engine_reason =
-      fmt::format("{}: predicted {:.1f} ms a frame on the processor, {:.1f} ms in OpenGL and {:.0f} ms to compile",
-                  request.engine ? "as asked" : "the faster", plan.cpu_ms, plan.gl_ms, kCompileMs);
+  if (wanted != nullptr && !wanted->info().is_planned) result.push_back({wanted, wanted->price(work, effects)});
+  return result;
 }
 
-// At most `count` of the points, evenly spread.
-std::vector<VisiblePoint> thinned(const std::vector<VisiblePoint>& points, std::size_t count) {
-  std::vector<VisiblePoint> few;
-  const std::size_t step = std::max<std::size_t>(1, points.size() / count);
-  for (std::size_t i = 0; i < points.size(); i += step) few.push_back(points[i]);
-  return few;
+// The engine that was asked for or, of those that plans may choose, the fastest over all frames.
+const Priced& chosen_of(const std::vector<Priced>& all, const Engine* wanted, int frames) {
+  if (wanted != nullptr) return *std::ranges::find(all, wanted, &Priced::engine);
+  return *std::ranges::min_element(all, {}, [&](const Priced& p) { return p.total_ms(frames); });
 }
 
-std::string decision_of(const EffectSwitch& effect, bool on, bool forced, bool over_budget) {
-  if (!effect.needed) return "not in the scene";
-  if (forced) return on ? "forced on" : "forced off";
-  if (over_budget) return "over budget";
-  return on ? "drawn" : "dropped";
+std::string reason_of(const std::vector<Priced>& all, const Priced& chosen, bool asked) {
+  std::string planned;
+  double least_ms = std::numeric_limits<double>::infinity();
+  std::size_t count = 0;
+  for (const auto& [engine, price] : all) {
+    if (!engine->info().is_planned) continue;
+    planned += fmt::format("{}{:.1f} ms{} {}", count == 0 ? "" : ", ", price.frame_ms, count == 0 ? " a frame" : "",
+                           engine->info().where);
+    if (price.once_ms > 0) planned += fmt::format(" and {:.0f} ms {}", price.once_ms, price.once);
+    least_ms = std::min(least_ms, price.frame_ms), ++count;
+  }
+  if (!chosen.engine->info().is_planned)
+    return fmt::format("as asked: predicted {:.0f} ms a frame; prefiltered maps would take {:.1f} ms",
+                       chosen.price.frame_ms, least_ms);
+  return fmt::format("{}: predicted {}", asked ? "as asked" : count > 1 ? "the faster" : "the only one here", planned);
 }
+
+Decision decision_of(const EffectSwitch& effect, bool on, bool forced, bool over_budget) {
+  if (!effect.needed) return Decision::kNotInScene;
+  if (forced) return on ? Decision::kForcedOn : Decision::kForcedOff;
+  if (over_budget) return Decision::kOverBudget;
+  return on ? Decision::kDrawn : Decision::kDropped;
+}
+
+// The engine cpu with all effects of a scene, by which effects are tried out; and a second one for the plain product of
+// colors, if the scene has another.
+struct Probers {
+  CpuEngine all, plain;
+  CpuEngine& component_wise(const Effects& effects) { return effects.reflection ? plain : all; }
+  Result<void> load(const Scene& scene, const Effects& effects) {
+    GONIO_TRY(all.load(scene, effects));
+    if (!effects.reflection) return {};
+    Effects without = effects;
+    without.reflection = false;
+    return plain.load(scene, without);
+  }
+};
 
 }  // namespace
+
+const char* spelled(Decision decision) {
+  switch (decision) {
+    case Decision::kNotInScene:
+      return "not in the scene";
+    case Decision::kDrawn:
+      return "drawn";
+    case Decision::kDropped:
+      return "dropped";
+    case Decision::kForcedOn:
+      return "forced on";
+    case Decision::kForcedOff:
+      return "forced off";
+    case Decision::kOverBudget:
+      break;
+  }
+  return "over budget";
+}
+
+double Plan::predicted_ms() const {
+  const auto of = std::ranges::find(prices, engine, &EnginePrice::engine);
+  return of == prices.end() ? 0 : of->frame_ms;
+}
 
 Result<void> check_effects(const std::string& effects) {
   GONIO_ASSIGN(const Words words, words_of(effects));
@@ -358,7 +421,7 @@ std::vector<VisiblePoint> probe_points(const std::vector<std::shared_ptr<const G
     for (std::size_t i = 0; 4 * i + 3 < g->data.size(); ++i) {
       if (g->data[4 * i + 3] == 0 || ++met % stride != 0) continue;
       const int x = static_cast<int>(i) % g->width, y = static_cast<int>(i) / g->width;
-      points.push_back({g->normal(x, y), g->to_viewer(x, y), g->part(x, y)});
+      points.push_back(g->point(x, y));
     }
   }
   return points;
@@ -380,61 +443,72 @@ Scene seen_scene(const Scene& scene, const std::vector<std::shared_ptr<const Gbu
   return result;
 }
 
-Result<Plan> make_plan(const Scene& scene, const std::vector<VisiblePoint>& probe, double visible_pixels,
-                       const PlanRequest& request, CpuEngine& engine, CpuEngine& component_wise) {
-  const Stopwatch clock;
+Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers,
+                       const PlanRequest& request, const std::vector<const Engine*>& engines) {
   GONIO_ASSIGN(const Words words, words_of(request.effects));
-  const Effects all = effects_of(scene);
+  Effects all = effects_of(scene);
+  all.tolerance_de00 = request.tolerance_de00;
+  Probers probers;
+  GONIO_TRY(probers.load(scene, all));
+  const std::vector<VisiblePoint> probe = probe_points(gbuffers, kProbe);
+  const Stopwatch clock;
+
+  // What each effect is worth.
   const std::vector<EffectSwitch> switches = effect_switches(scene, all, probe);
   const Compact compact = compacted(scene, probe);
-  Prober prober(compact.scene, all, switches, compact.points, probe, request.white_luminance, engine, component_wise);
+  Prober prober(compact.scene, all, switches, compact.points, probe, request.white_luminance, probers.all,
+                probers.component_wise(all));
   const std::vector<bool> everything(switches.size(), true);
-  const std::vector<color::Rgb> full = prober.colors(everything);
-
-  CostModel cost(scene, all, probe, visible_pixels, request);
-  const double counted_s = 1e-9 * point_ns(scene, all, Engine::kCpu, cost.counts) / threads();
-  if (!probe.empty()) cost.speed = prober.seconds_per_point() / counted_s;
-  Plan plan;
-  for (std::size_t i = 0; i < switches.size(); ++i) {
-    PlanItem item{switches[i].name, switches[i].needed, switches[i].reason, 0, 0, false, "", {}};
-    if (item.needed) {
-      std::vector<bool> without = everything;
-      without[i] = false;
-      item.de00_p95 = prober.difference(full, prober.colors(without));
-    }
-    plan.items.push_back(std::move(item));
-  }
-  Choice choice = forced_choice(words, switches);
-  const bool summed = request.engine == Engine::kIntegral;
-  if (words.base == "auto" && !summed)
-    drop_unseen(prober, plan.items, !scene.lights.empty(), request.tolerance_de00, choice);
-  plan.cpu_ms = cost.ms(prober.effects(choice.on), Engine::kCpu);
-  plan.gl_ms = cost.ms(prober.effects(choice.on), Engine::kGl);
-  if (summed) {
-    const std::vector<VisiblePoint> timed = thinned(probe, kTimed);
-    Effects effects = prober.effects(choice.on);
-    effects.spread = spread_for(request.tolerance_de00);
-    plan.integral_ms = 1000 * integral_seconds_per_point(timed, scene, effects) * cost.points;
-  }
-  choose_engine(request, plan);
-  if (words.base == "auto" && !summed) take_back_free(prober, cost, plan.engine, plan.items, choice);
-  std::set<std::size_t> gone;
-  if (request.budget_ms > 0 && !summed) gone = keep_affordable(prober, cost, plan.engine, request.budget_ms, choice);
-  plan.de00_p95 = prober.difference(full, prober.colors(choice.on));
-  plan.effects = prober.effects(choice.on);
-  plan.effects.spread = spread_for(request.tolerance_de00);
-  plan.cpu_ms = cost.ms(plan.effects, Engine::kCpu), plan.gl_ms = cost.ms(plan.effects, Engine::kGl);
-  for (std::size_t i = 0; i < switches.size(); ++i) {
-    PlanItem& item = plan.items[i];
+  const auto all_but = [&](std::size_t i) {
     std::vector<bool> without = everything;
     without[i] = false;
+    return without;
+  };
+  const std::vector<color::Rgb> full = prober.colors(everything);
+  Workload work = workload_of(scene, all, probe, gbuffers, request);
+  if (!probe.empty())
+    work.speed = prober.seconds_per_point() / (1e-9 * CpuEngine::counted_point_ns(work, all) / threads());
+  Plan plan;
+  for (std::size_t i = 0; i < switches.size(); ++i) {
+    PlanItem item;
+    item.effect = switches[i].name, item.needed = switches[i].needed, item.reason = switches[i].reason;
+    if (item.needed) item.de00_p95 = prober.difference(full, prober.colors(all_but(i)));
+    plan.items.push_back(std::move(item));
+  }
+
+  // Which of them are drawn, and by which engine.
+  Choice choice = forced_choice(words, switches);
+  const auto wanted = std::ranges::find_if(
+      engines, [&](const Engine* engine) { return request.engine && *request.engine == engine->info().name; });
+  const Engine* asked = wanted == engines.end() ? nullptr : *wanted;
+  const bool may_leave_out = asked == nullptr || asked->info().is_planned;
+  const bool automatic = words.start == Start::kAuto && may_leave_out;
+  if (automatic) drop_unseen(prober, switches, plan.items, !scene.lights.empty(), request.tolerance_de00, choice);
+  std::vector<Priced> prices = priced(engines, asked, work, prober.effects(choice.on));
+  const Engine& engine = *chosen_of(prices, asked, request.frames).engine;
+  plan.engine = engine.info().name;
+  plan.engine_reason = reason_of(prices, chosen_of(prices, asked, request.frames), asked != nullptr);
+  if (automatic) take_back_free(prober, work, engine, plan.items, choice);
+  std::set<std::size_t> gone;
+  if (request.budget_ms > 0 && may_leave_out) gone = keep_affordable(prober, work, engine, request.budget_ms, choice);
+
+  // What that comes to.
+  plan.de00_p95 = prober.difference(full, prober.colors(choice.on));
+  plan.effects = prober.effects(choice.on);
+  tidy(plan.effects);
+  for (const auto& [of, price] : prices) {
+    const Price now = of->info().is_planned ? of->price(work, plan.effects) : price;
+    plan.prices.push_back({of->info().name, now.frame_ms, now.once_ms});
+  }
+  for (std::size_t i = 0; i < switches.size(); ++i) {
+    PlanItem& item = plan.items[i];
     if (item.needed)
-      item.cost_ms = summed ? std::numeric_limits<double>::quiet_NaN()
-                            : cost.ms(all, plan.engine) - cost.ms(prober.effects(without), plan.engine);
+      item.cost_ms = may_leave_out
+                         ? shading_ms(engine, work, all) - shading_ms(engine, work, prober.effects(all_but(i)))
+                         : std::numeric_limits<double>::quiet_NaN();
     item.on = choice.on[i];
     item.decision = decision_of(switches[i], item.on, choice.forced[i], gone.contains(i));
   }
-  tidy(plan.effects);
   plan.time_ms = 1000 * clock.elapsed_s();
   return plan;
 }

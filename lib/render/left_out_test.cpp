@@ -1,4 +1,4 @@
-#include "render/plan/left_out.h"
+#include "render/left_out.h"
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ struct World {
   }
   image::Image draw(const Effects& effects) const {
     auto renderer = Renderer::create();
-    EXPECT_TRUE(renderer->load(scene, effects, Engine::kCpu).ok());
+    EXPECT_TRUE(renderer->load(scene, effects, "cpu").ok());
     Frame frame;
     EXPECT_TRUE(renderer->draw(view, frame).ok());
     return frame.picture;
@@ -44,7 +44,7 @@ Measured measured(const World& world, const std::string& effects) {
   EXPECT_TRUE(renderer.ok()) << renderer.error().message;
   result.seen = *renderer->look(world.mesh, world.view);
   PlanRequest request;
-  request.effects = effects, request.engine = Engine::kCpu;
+  request.effects = effects, request.engine = "cpu";
   const auto plan = renderer->load(world.scene, {result.seen}, request);
   EXPECT_TRUE(plan.ok());
   const auto left = left_out(*renderer, world.scene, *plan, world.view, 1);

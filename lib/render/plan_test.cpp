@@ -1,5 +1,5 @@
 // The plan: what it asks for, what it leaves out, and whether its estimates are those of the pictures.
-#include "render/plan/plan.h"
+#include "render/plan.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -85,7 +85,7 @@ TEST(Plan, AsksOnlyForWhatTheSceneCallsFor) {
   for (const char* name :
        {"lobes", "gloss", "mirror", "fresnel", "horizon", "anisotropy", "travel", "lights", "operator"}) {
     EXPECT_FALSE(item(plan, name).needed) << name;
-    EXPECT_EQ(item(plan, name).decision, "not in the scene") << name;
+    EXPECT_EQ(item(plan, name).decision, Decision::kNotInScene) << name;
   }
   EXPECT_THAT(item(plan, "lobes").reason, HasSubstr("solid"));
   EXPECT_THAT(item(plan, "operator").reason, HasSubstr("white light"));
@@ -112,9 +112,9 @@ TEST(Plan, WhatCostsNothingIsDrawn) {
   const PlanItem& op = item(plan, "operator");
   EXPECT_GT(op.de00_p95, 0);
   EXPECT_LT(op.de00_p95, 0.5 * request.tolerance_de00);
-  EXPECT_EQ(op.decision, "drawn");
+  EXPECT_EQ(op.decision, Decision::kDrawn);
   EXPECT_THAT(op.reason, HasSubstr("costs nothing"));
-  for (const PlanItem& i : plan.items) EXPECT_FALSE(i.decision == "dropped" && i.cost_ms == 0) << i.effect;
+  for (const PlanItem& i : plan.items) EXPECT_FALSE(i.decision == Decision::kDropped && i.cost_ms == 0) << i.effect;
 }
 
 // Every effect forced off changes the picture by what the plan said it would: the same percentile of 512 points and of
@@ -129,7 +129,7 @@ TEST(Plan, EstimatesAreTheChangesOfThePicture) {
   for (const PlanItem& i : all.plan.items) {
     if (!i.needed) continue;
     const Planned without = planned(world, with_effects_of("all,-" + i.effect));
-    EXPECT_EQ(item(without.plan, i.effect).decision, "forced off");
+    EXPECT_EQ(item(without.plan, i.effect).decision, Decision::kForcedOff);
     EXPECT_NEAR(p95(all.colors, without.colors), i.de00_p95, 0.2 * i.de00_p95 + 0.02) << i.effect;
     EXPECT_GE(i.cost_ms, 0) << i.effect;
     priced += i.de00_p95 > 0.1 ? 1 : 0;
@@ -149,7 +149,7 @@ TEST(Plan, WhatIsLeftOutStaysWithinTheTolerance) {
     EXPECT_LE(some.plan.de00_p95, tolerance);
     EXPECT_LE(p95(all.colors, some.colors), tolerance);
     int here = 0;
-    for (const PlanItem& i : some.plan.items) here += i.decision == "dropped" ? 1 : 0;
+    for (const PlanItem& i : some.plan.items) here += i.decision == Decision::kDropped ? 1 : 0;
     EXPECT_GE(here, dropped) << "a larger tolerance leaves out no less";
     dropped = here;
   }
@@ -161,14 +161,14 @@ TEST(Plan, BudgetKeepsWhatIsWorthMost) {
   const Plan free = planned(world, with_effects_of("all")).plan;
   PlanRequest request;
   request.effects = "all";
-  request.engine = Engine::kCpu;
+  request.engine = "cpu";
   // Every plan measures the speed of the machine anew, and a busy one changes: several budgets, one of which bites.
   int cut = 0;
   for (const double share : {0.8, 0.6, 0.4, 0.2}) {
-    request.budget_ms = share * free.cpu_ms;
+    request.budget_ms = share * free.predicted_ms();
     double lost = 1e9, kept = 0;
     for (const PlanItem& i : planned(world, request).plan.items) {
-      if (i.decision == "over budget") lost = std::min(lost, i.de00_p95);
+      if (i.decision == Decision::kOverBudget) lost = std::min(lost, i.de00_p95);
       if (i.on) kept = std::max(kept, i.de00_p95);
     }
     if (lost == 1e9 || kept == 0) continue;

@@ -1,6 +1,6 @@
-// What the lobe model of a part cannot show, added to a picture pixel by pixel on the processor, whatever engine drew
-// the rest: textures of generalized cosine lobes, and under lights the colors of a color map. goniochrome-theory(7),
-// RENDERING.
+// The surface layer holds what the lobe model of a part cannot show: textures of generalized cosine lobes, and the
+// colors of a color map under directional lights. It is added to a picture pixel by pixel on the processor, whatever
+// engine drew the rest. goniochrome-theory(7), SPATIALLY VARYING SURFACES, Drawing.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,6 @@
 #include "image/image.h"
 #include "render/effects.h"
 #include "render/gbuffer.h"
-#include "render/internal/visible_point.h"
 #include "render/scene.h"
 #include "render/textures/sbrdf.h"
 #include "render/textures/texture_places.h"

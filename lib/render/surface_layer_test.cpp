@@ -1,4 +1,4 @@
-#include "render/textures/surface_layer.h"
+#include "render/surface_layer.h"
 
 #include <gtest/gtest.h>
 
@@ -96,11 +96,7 @@ TEST(SurfaceLayer, BitsDoNotDependOnTheThreads) {
   const SurfaceLayer layer(stage.scene, {{&texture, 2, nullptr}}, brdf::CriticalAngle::kClip);
   Camera camera;
   camera.eye = {0, 0, 5};
-  Gbuffer g;
-  g.width = g.height = 16;
-  g.rays = *rays(camera, 16, 16);
-  for (int i = 0; i < 256; ++i)
-    for (const float value : {0.0F, 0.0F, 1.0F, 1.0F}) g.data.push_back(value);
+  const Gbuffer g = seen_by_rays(stage.mesh, camera, 16, 16);
   std::vector<std::vector<float>> pictures;
   for (const int n : {1, 2, 7}) {
     set_threads(n);

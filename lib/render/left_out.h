@@ -1,5 +1,5 @@
-// What a plan left out, measured: the picture as planned beside that of every effect, drawn by the same engine.
-// goniochrome-theory(7), PLAN.
+// This header measures what a plan left out: it compares the picture as planned with the picture of all effects, both
+// drawn by the engine of the plan. goniochrome-theory(7), PLAN, Check.
 #pragma once
 
 #include "base/result.h"

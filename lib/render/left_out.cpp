@@ -1,4 +1,4 @@
-#include "render/plan/left_out.h"
+#include "render/left_out.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,0 +1,112 @@
+// An engine turns what is visible into radiance. This header states what every engine can do, and names the table in
+// which all engines are registered. Plans, options, help and reports take their engines from that table, so that a new
+// engine is its own two files and one line in engines.cpp. goniochrome-theory(7), RENDERING.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "image/image.h"
+#include "render/effects.h"
+#include "render/gbuffer.h"
+#include "render/scene.h"
+
+namespace goniochrome::render {
+
+class Engine;
+class GlContext;
+
+// A view as the renderer offers it to its engines. Sample 0 is the pixel centers; the samples of a picture are counted
+// from 1.
+class Sight {
+ public:
+  virtual ~Sight() = default;
+  // What is visible at this sample of every pixel. It is rasterized when it is first asked for, and kept if there is
+  // room. Positions on the mesh follow from it by mesh_point().
+  virtual std::shared_ptr<const Gbuffer> gbuffer(int sample) = 0;
+  // Where the pixels of that G-buffer lie on the textures of the scene; empty where the scene has none.
+  virtual const std::vector<TexturePlace>& places(int sample) = 0;
+  // The OpenGL context of the renderer; null where the renderer was given a G-buffer and has no mesh.
+  virtual const GlContext* gl() const = 0;
+  // Rasterizes the sample and returns the rasterizer, which holds the G-buffer as a texture; null without OpenGL.
+  virtual const Rasterizer* rasterized(int sample) = 0;
+};
+
+// What an engine is called, and what may be asked of it before it is made.
+struct EngineInfo {
+  const char* name;      // of --engine, in plans and in reports
+  const char* sentence;  // what it does, for help
+  const char* where;     // where it shades, as in "12 ms on the processor"
+  // Whether plans may choose it and leave effects out for it. Otherwise it is used when it is asked for by name, and
+  // it draws all effects, because leaving one out saves no time.
+  bool is_planned;
+  bool needs_texels;  // It sums the image that the environment was made from: Scene::texels.
+  bool needs_mesh;    // It cannot shade a G-buffer that comes from a file.
+  std::unique_ptr<Engine> (*make)(Sight& sight);
+};
+
+// All engines, in the order in which they are listed. Of two that are predicted equally fast, the first is chosen.
+const std::vector<const EngineInfo*>& engines();
+
+// The engine of that name. Error (usage): the names that there are.
+Result<const EngineInfo*> engine_named(const std::string& name);
+
+// The names that an option takes: "auto", which lets the plan choose, and those of all engines.
+std::vector<std::string> engine_choices();
+
+// What one frame consists of, as far as it takes time.
+struct Workload {
+  const Scene* scene = nullptr;
+  const std::vector<VisiblePoint>* probe = nullptr;  // some of the visible points, evenly spread over the picture
+  double pixels = 0;                                 // samples of all pixels, whether the mesh is seen there or not
+  double points = 0;                                 // those of them that show the mesh
+  double textured = 0;                               // those points that show a texture
+  double mapped = 0;                                 // those points that show a color map
+  double tilts = 1;                                  // normals that lobes are drawn about, the mean over the points
+  int forms = 3;          // in which the product of colors is taken; internal/product_forms.h
+  int texture_lobes = 0;  // of the texture that has most
+  double speed = 1;       // nanoseconds on this machine for each nanosecond that was counted
+};
+
+// What an engine is predicted to take.
+struct Price {
+  double frame_ms = 0;    // shading of one frame
+  double once_ms = 0;     // what comes once, before the first frame
+  const char* once = "";  // and what that is, as in "to compile"
+};
+
+class Engine {
+ public:
+  virtual ~Engine() = default;
+
+  virtual const EngineInfo& info() const = 0;
+
+  // Whether it can shade this scene. Error: what stands against it, with the remedy.
+  virtual Result<void> can_shade(const Scene& scene) const = 0;
+
+  // Takes in a scene with these effects: maps, programs, trees. What the scene points to must outlive the drawing.
+  // Error: a lobe or the mirror part that the environment lacks, with the command that makes it; too many lobes.
+  virtual Result<void> load(const Scene& scene, const Effects& effects) = 0;
+
+  // Takes other paints, or other lights of the same number, for the scene and the effects that were loaded.
+  virtual void load_paints(const Scene& scene) = 0;
+
+  // Shades one sample of every pixel: radiance times `gain` in R G B, and coverage times `gain` in A. With `add` the
+  // result is added to what the samples before made. The picture may be incomplete until finish().
+  virtual Result<void> shade(Sight& sight, int sample, float gain, bool add, image::Image& rgba) = 0;
+  // Completes the picture after its last sample.
+  virtual void finish(image::Image&) {}
+
+  // The radiance of single points. Error: an engine that shades whole pictures only.
+  virtual Result<std::vector<color::Rgb>> shade(const std::vector<VisiblePoint>& points) const;
+
+  // Whether shade() includes textures and color maps. Otherwise the renderer adds them, see SurfaceLayer.
+  virtual bool shades_layer() const { return false; }
+
+  // Predicts its time for such frames with these effects.
+  virtual Price price(const Workload& work, const Effects& effects) const = 0;
+};
+
+}  // namespace goniochrome::render

@@ -1,0 +1,103 @@
+// What holds for every engine that is registered, by its name alone.
+#include "render/engine.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "render/exact.h"
+#include "render/renderer.h"
+#include "render/scenes_for_test.h"
+
+namespace goniochrome::render {
+namespace {
+
+using testing::HasSubstr;
+
+// A sphere in flakes and gloss, under even light and a lamp.
+struct World {
+  mesh::Mesh mesh = sphere_mesh(48);
+  envmap::PrefilteredEnvironment env = constant_env({1, 0.9, 0.8}, {6, 40});
+  envmap::Environment source = *envmap::Environment::from_lat_long(
+      [] {
+        image::Image image{32, 16, 3, {}, {}};
+        for (int i = 0; i < 32 * 16; ++i)
+          for (const float value : {1.0F, 0.9F, 0.8F}) image.data.push_back(value);
+        return image;
+      }(),
+      envmap::Environment::BadPixels::kError, "even");
+  envmap::BlockTree blocks{source};
+  Scene scene;
+  View view{Camera::orbit(mesh, 30, 20, 1, 30, 1), 40, 40, 1, false};
+
+  World() {
+    paint::LobeFit paint = matt({0.1, 0.2, 0.05});
+    paint.lobes = {{6, {0.05, 0.1, 0.02}, {}}, {40, {0.2, 0.3, 0.1}, {0.1, 0.1, 0.1}}};
+    scene.mesh = &mesh, scene.env = &env, scene.texels = &blocks, scene.paints = {paint};
+    scene.lights = {{normalized({1, 2, 3}), {1, 0.9, 0.8}}};
+  }
+};
+
+TEST(Engines, HaveNamesOfTheirOwnAndASentence) {
+  std::set<std::string> names = {"auto"};
+  for (const EngineInfo* engine : engines()) {
+    EXPECT_TRUE(names.insert(engine->name).second) << engine->name;
+    EXPECT_GT(std::string(engine->sentence).size(), 20U) << engine->name;
+    EXPECT_EQ(*engine_named(engine->name), engine);
+  }
+  EXPECT_EQ(engine_choices().size(), engines().size() + 1);
+  EXPECT_EQ(engine_choices().front(), "auto");
+  EXPECT_THAT(engine_named("vulkan").error().message, HasSubstr("there is no engine \"vulkan\": there are cpu, gl"));
+}
+
+// The closed form is what the reference integrates: even light leaves each engine its own approximation of the horizon,
+// which is some tenths. Twice the light is the control.
+TEST(Engines, DrawTheSceneThatTheReferenceIntegrates) {
+  const World world;
+  for (const EngineInfo* engine : engines()) {
+    auto renderer = Renderer::create();
+    ASSERT_TRUE(renderer.ok());
+    ASSERT_TRUE(renderer->load(world.scene, engine->name).ok()) << engine->name;
+    View view = world.view;
+    view.with_centers = true;
+    Frame frame;
+    ASSERT_TRUE(renderer->draw(view, frame).ok()) << engine->name;
+    EXPECT_LT(picture_error(frame, world.scene, &world.source, 1, 60, 3).de00_p95, 0.5) << engine->name;
+    for (float& value : frame.centers.data) value *= 2;
+    EXPECT_GT(picture_error(frame, world.scene, &world.source, 1, 60, 3).de00_p95, 5) << engine->name;
+  }
+}
+
+// An engine that shades single points gives them the colors of their pixels; the others say that they cannot.
+TEST(Engines, ShadePointsAsPixels) {
+  struct Nowhere : Sight {
+    std::shared_ptr<const Gbuffer> seen;
+    std::vector<TexturePlace> none;
+    std::shared_ptr<const Gbuffer> gbuffer(int) override { return seen; }
+    const std::vector<TexturePlace>& places(int) override { return none; }
+    const GlContext* gl() const override { return nullptr; }
+    const Rasterizer* rasterized(int) override { return nullptr; }
+  } sight;
+  const World world;
+  sight.seen = std::make_shared<const Gbuffer>(seen_by_rays(world.mesh, world.view.camera, 40, 40));
+  int able = 0;
+  for (const EngineInfo* info : engines()) {
+    const auto engine = info->make(sight);
+    EXPECT_EQ(&engine->info(), info);
+    EXPECT_EQ(engine->can_shade(world.scene).ok(), !info->needs_mesh) << info->name;
+    if (info->needs_mesh) continue;
+    ASSERT_TRUE(engine->load(world.scene, effects_of(world.scene)).ok());
+    image::Image picture;
+    ASSERT_TRUE(engine->shade(sight, 0, 1, false, picture).ok());
+    engine->finish(picture);
+    const auto colors = engine->shade({sight.seen->point(20, 20)});
+    ASSERT_TRUE(colors.ok()) << info->name;
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(colors->front()[c], picture.pixel(20, 20)[c], 1e-6) << info->name;
+    ++able;
+  }
+  EXPECT_GE(able, 2);
+}
+
+}  // namespace
+}  // namespace goniochrome::render

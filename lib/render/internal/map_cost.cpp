@@ -1,0 +1,50 @@
+#include "render/internal/map_cost.h"
+
+#include <bit>
+
+#include "base/parallel.h"
+#include "render/internal/maps.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+// The colors of a color map under the scene's lights.
+double mapped_point_ns(const Effects& effects) {
+  constexpr double kMapped = 300;
+  return effects.maps ? kMapped * static_cast<double>(effects.lights) : 0;
+}
+
+// Four texels around a place, each with its lobes, or the mean texel. Measured by BM_Texture: a point, a lobe of a
+// texel, its two fetches, its light.
+double textured_point_ns(const Effects& effects, int lobes) {
+  constexpr double kPoint = 30, kLobe = 6, kFetches = 10, kLit = 3;
+  const std::uint32_t on = effects.texture_lobes & ((1U << lobes) - 1);
+  const double lobe = kLobe + (effects.environment ? kFetches : 0) + static_cast<double>(effects.lights) * kLit;
+  return kPoint + (effects.texture ? 4 : 1) * std::popcount(on) * lobe;
+}
+
+}  // namespace
+
+double point_ns(const Workload& work, const Effects& effects, const MapCost& c) {
+  const double spread = effects.anisotropy ? work.tilts : 1;
+  double ns = c.point + (effects.depends_on_view() ? c.view : 0);
+  if (effects.environment) {
+    const bool pairs = c.pairs && !(effects.reflection && work.forms > 4);
+    const double single = (effects.diffuse ? 1 : 0) + (effects.mirror ? 1 : 0);
+    ns += single * (c.block + c.direction);
+    for (const LobeClass& of : lobe_classes(*work.scene->env, effects))
+      ns += spread * (c.direction + c.block * static_cast<double>(pairs ? (of.lobes.size() + 1) / 2 : of.lobes.size()));
+  }
+  return ns + static_cast<double>(effects.lights) *
+                  (c.light + spread * static_cast<double>(effects.lobes.size()) * c.lit_lobe);
+}
+
+double frame_ms(const Workload& work, const Effects& effects, const MapCost& cost) {
+  const double texture_ns = work.textured > 0 ? textured_point_ns(effects, work.texture_lobes) : 0;
+  const double ns = work.pixels * cost.pixel + work.points * point_ns(work, effects, cost) +
+                    work.textured * texture_ns + work.mapped * mapped_point_ns(effects);
+  return 1e-6 * work.speed * ns / threads();
+}
+
+}  // namespace goniochrome::render

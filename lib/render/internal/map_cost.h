@@ -1,0 +1,27 @@
+// What it takes to shade by prefiltered maps: the arithmetic of a frame, counted, times nanoseconds that each engine
+// measured for itself. goniochrome-theory(7), PLAN, The cost of an effect.
+#pragma once
+
+#include "render/engine.h"
+
+namespace goniochrome::render {
+
+// Nanoseconds on one core of the machine that they were measured on (2.6 GHz, AVX-512).
+struct MapCost {
+  double pixel;      // a pixel of the picture, which is written and maybe read back, whether it shows the mesh or not
+  double point;      // what every visible point takes
+  double block;      // one block of maps more
+  double direction;  // one direction more in which maps are looked up
+  double light;      // one light more
+  double lit_lobe;   // one lobe in a light
+  double view;       // weights that depend on the view
+  bool pairs;        // whether a block holds two maps as long as the product of colors has at most four forms
+};
+
+// Of one visible point, textures and color maps apart.
+double point_ns(const Workload& work, const Effects& effects, const MapCost& cost);
+
+// Of the shading of one frame on all cores, textures and color maps included.
+double frame_ms(const Workload& work, const Effects& effects, const MapCost& cost);
+
+}  // namespace goniochrome::render

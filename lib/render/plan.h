@@ -1,0 +1,89 @@
+// A plan decides, before a picture is drawn, with which effects and by which engine it is shaded. It measures on a
+// sample of the visible points what each effect is worth and what it costs, and leaves out what is not seen or not
+// affordable. goniochrome-theory(7), PLAN.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "render/effects.h"
+#include "render/gbuffer.h"
+#include "render/scene.h"
+
+namespace goniochrome::envmap {
+class Environment;
+}
+
+namespace goniochrome::render {
+
+class Engine;
+
+struct PlanRequest {
+  double tolerance_de00 = 0.5;        // what leaving effects out may change, p95 over visible pixels, all together
+  double budget_ms = 0;               // of one frame's shading; 0 is none
+  std::string effects = "auto";       // auto, all or none, then +NAME and -NAME, separated by commas
+  std::optional<std::string> engine;  // by name; none: the one predicted fastest
+  double white_luminance = 1;         // what color differences are relative to
+  int samples = 1, frames = 1;
+  double pixels = 0;  // of one frame, seen or not; 0: those of the G-buffers
+};
+
+// What became of an effect.
+enum class Decision { kNotInScene, kDrawn, kDropped, kForcedOn, kForcedOff, kOverBudget };
+
+// As plans, reports and the headers of pictures spell it. image::read_aov_file() reads it back.
+const char* spelled(Decision decision);
+
+struct PlanItem {
+  std::string effect;
+  bool needed = false;  // the scene calls for it
+  std::string reason;
+  double de00_p95 = 0;  // what leaving it out alone changes
+  double cost_ms = 0;   // what it adds to a frame's shading; NaN of engines that draw all effects at once
+  bool on = false;
+  Decision decision = Decision::kNotInScene;
+  std::optional<double> truth_de00_p95;  // the same as de00_p95, by the reference integrator
+};
+
+// The shading of a frame by one engine, predicted.
+struct EnginePrice {
+  std::string engine;
+  double frame_ms = 0, once_ms = 0;
+};
+
+struct Plan {
+  std::vector<PlanItem> items;
+  Effects effects;
+  std::string engine;  // that was chosen
+  std::string engine_reason;
+  std::vector<EnginePrice> prices;  // of the engines that could be chosen, and of the one that was asked for
+  double de00_p95 = 0;              // predicted for all that is left out together
+  double time_ms = 0;               // that planning took
+
+  // Of the engine that was chosen.
+  double predicted_ms() const;
+};
+
+// Error (usage): a word of --effects that names no effect, with the names that there are.
+Result<void> check_effects(const std::string& effects);
+
+// Up to `count` visible points, evenly spread over those of all G-buffers.
+std::vector<VisiblePoint> probe_points(const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers, std::size_t count);
+
+// The scene as far as it is seen: paints of parts that no G-buffer shows are bare, so that nothing is loaded for them.
+Scene seen_scene(const Scene& scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers);
+
+// Plans the drawing of `scene`, as seen_scene() has it, by one of these engines, of which there is at least one. The
+// engine that is asked for must be among them. The effects are tried out by the engine cpu. Error: as for loading that
+// engine with all effects of the scene, and as check_effects().
+Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers,
+                       const PlanRequest& request, const std::vector<const Engine*>& engines);
+
+// Fills in the truth of every effect that is needed: the change of the exact picture without it, at these points.
+void add_truth(Plan& plan, const Scene& scene, const std::vector<VisiblePoint>& points, const envmap::Environment* env,
+               double white_luminance);
+
+}  // namespace goniochrome::render
