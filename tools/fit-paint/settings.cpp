@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/text.h"
+#include "fitting.h"
 
 namespace goniochrome::tool {
 
@@ -76,7 +77,7 @@ Result<fit::FitOptions> fit_options(const Options& options) {
   fit.method = options.method == "l2"       ? fit::FitMethod::kL2
                : options.method == "deltae" ? fit::FitMethod::kDeltaE
                                             : fit::FitMethod::kL1;
-  fit.target = options.target == "curve" ? paint::TargetCurve::Kind::kCurve : paint::TargetCurve::Kind::kMeasured;
+  fit.target = target_kind(options.target);
   fit.perceptual_weights = options.weights == "perceptual";
   fit.most_lobes = options.lobes;
   fit.prune_de00 = options.prune_de00;

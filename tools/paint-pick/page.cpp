@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "paint/curve.h"
+#include "report/plot.h"
 #include "sketch/sketch_gloss.h"
 #include "sketch/sketch_picture.h"
 
@@ -11,9 +12,11 @@ namespace goniochrome::tool {
 
 namespace {
 
+using report::escaped;
+
 constexpr int kWidest = 720;  // pixels of a picture on the page
 
-// Neutral grays only: the paints are the color on this page.
+// The page has only neutral grays, so that the paints are its only color.
 constexpr const char* kStyle = R"(
 :root { font: 15px/1.45 system-ui, "DejaVu Sans", "Helvetica Neue", Arial, sans-serif; color: #1c1c1c; background: #dcdcdc; }
 *, *::before, *::after { box-sizing: border-box; }
@@ -46,24 +49,6 @@ td.number { text-align: right; }
 @media print { :root { background: #fff; } }
 )";
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&') {
-      out += "&amp;";
-    } else if (c == '<') {
-      out += "&lt;";
-    } else if (c == '>') {
-      out += "&gt;";
-    } else if (c == '"') {
-      out += "&quot;";
-    } else {
-      out += c;
-    }
-  }
-  return out;
-}
-
 std::string base64(const std::string& bytes) {
   constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
@@ -80,7 +65,7 @@ std::string embedded(const std::string& png) {
   return "data:image/png;base64," + base64(png);
 }
 
-// Each channel's signal on an sRGB display, what lies outside its gamut mixed with its gray.
+// The signal of each channel on an sRGB display. Light outside its gamut is mixed with its gray.
 color::Rgb signals(const color::Rgb& light) {
   const color::Rgb shown = color::rec709_from_rec2020(sketch::in_display_gamut(light));
   return {sketch::display_brightness(shown.x), sketch::display_brightness(shown.y),
@@ -93,7 +78,7 @@ std::string css_color(const color::Lab& lab) {
   return fmt::format("#{:02x}{:02x}{:02x}", byte(s.x), byte(s.y), byte(s.z));
 }
 
-// The picture for the page: no wider than kWidest, each pixel the mean light of those it stands for.
+// The picture for the page. It is no wider than kWidest, and each pixel is the mean light of those it stands for.
 Result<std::string> page_png(const PageImage& image) {
   GONIO_ASSIGN(const sketch::Picture picture,
                sketch::picture_of(image.content, image.image.path, sketch::PictureView::kPlain));
