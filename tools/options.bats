@@ -8,14 +8,14 @@ setup() {
   tools=$(cd "$top/tools" && printf '%s\n' */ | tr -d /)
 }
 
-# options TOOL: one line for each option that takes a value: its name, `required` or `-`, `checked` where the table
-# knows its choices or its domain, else `free`.
+# options TOOL: one line for each option that takes a value: its name; `required` or `-`; and `bounded` where it is a
+# number with two bounds, `checked` where it is another number or a choice, else `free`.
 options() {
   "$1" --generate=man | sed 's/\\-/-/g; s/\\f[BIR]//g' | awk '
     /^\.TP/ { head = 1; next }
     head && /^(-[a-z], )?--[a-z]/ { name = $0; sub(/^-., /, "", name); split(name, word, " "); name = word[1]; value = word[2]; head = 0; next }
     name != "" && value != "" {
-      print name, /The option is required/ ? "required" : "-", / is one of | from -?[0-9.e+]+ to | or more\.| or less\./ ? "checked" : "free"
+      print name, /The option is required/ ? "required" : "-", /The value is [^.]*from -?[0-9.]+ to / ? "bounded" : /The value is (one of |.* or more\.|.* or less\.)/ ? "checked" : "free"
     }
     { name = ""; head = 0 }'
 }
@@ -38,8 +38,10 @@ options() {
   for tool in $tools; do
     required=$(options "$tool" | awk '$2 == "required" { print $1 "=x" }')
     while read -r option _ kind; do
-      [ "$kind" = checked ] || continue
-      for value in wrong 1e299 ''; do
+      [ "$kind" != free ] || continue
+      values=(wrong '')
+      [ "$kind" = checked ] || values+=(1e299 -1e299)
+      for value in "${values[@]}"; do
         run "$tool" $required "$option=$value"
         [ "$status" -eq 2 ] || { echo "$tool $option=$value: $status"; false; }
         [[ "$output" == "$tool: $option "*": give "* || "$output" == *"needs a value"* || "$output" == *"too large"* ]] || { echo "$output"; false; }
