@@ -1,12 +1,31 @@
-// What the tools that write tables share: the choice of --format, and texts that stay in their field.
+// What the tools that write tables share: the options --output and --format, and texts that stay in their field.
 #pragma once
 
 #include <algorithm>
 #include <string>
 
+#include "cli/options.h"
+
 namespace goniochrome::tool {
 
 enum class Format { kTable, kJson, kPaints };
+
+// `paints` says which paints the format of that name writes, `json` what a line of JSON stands for.
+inline void add_table_options(cli::ToolSpec& spec, std::string& output, std::string& format, const std::string& paints,
+                              const std::string& json) {
+  spec.option("output,o", "FILE", "found.tsv", &output, "where the result goes; - is standard output");
+  spec.option("format,f", "FORMAT", "json", &format, "what is written")
+      .one_of({"auto", "tsv", "json", "paints"})
+      .more("tsv is a table, json has one JSON object for each " + json + " on a line of its own, and paints writes " +
+            paints +
+            ". auto goes by the ending of the output's name: .xml is paints, .json and .jsonl are json, and "
+            "all else is tsv.");
+}
+
+inline void add_keep_going(cli::ToolSpec& spec, const std::string& names, bool& keep_going, const std::string& what) {
+  spec.flag(names, &keep_going, "leave out " + what + ", with a warning each")
+      .more("Where something was left out, the exit status is 1.");
+}
 
 // The format that --format names: "tsv", "json" or "paints", or with "auto" by the ending of the output's name.
 inline Format format_of(const std::string& name, const std::string& output) {

@@ -1,4 +1,4 @@
-// One table of options per tool. The parser, --help, the man page and the shell completion are all made from it.
+// One table of options for each tool. The parser, --help, the man page and the shell completion are all made from it.
 #pragma once
 
 #include <cstdint>
@@ -9,34 +9,44 @@
 
 namespace goniochrome::cli {
 
-// Where a parsed value goes. The value already there is the default and is shown in the help.
+// Where a parsed value goes. The value that is already there is the default, and the help shows it.
+// A vector<string> collects a repeated option; a vector<double> takes a comma-separated list, or repeats.
 using Target =
     std::variant<bool*, std::string*, double*, int*, std::uint64_t*, std::vector<std::string>*, std::vector<double>*>;
 
 struct Option {
-  std::string name = {};   // long name without dashes: "basis"
-  char letter = 0;         // short name: 'o', or 0
-  std::string value = {};  // what stands for the value in the help: "FILE"; empty for a flag
-  std::string help = {};   // one sentence, lower case, no full stop
+  std::string name = {}, alias = {};  // without dashes; alias is another long name that means the same
+  char letter = 0;                    // 0 where there is none
+  std::string value = {};             // what stands for the value in the help: "FILE"; empty for a flag
+  std::string example = {};           // a value that a reader may try
   Target target = {};
-  std::vector<std::string> choices = {};  // the words it takes, if it is a choice
-  double low = -1e300, high = 1e300;      // the domain of a number, both ends included
+  std::string help = {};                  // one line: lower case, no full stop
+  std::string category = {};              // the heading under which help and man page show the option
+  std::string unit = {};                  // "degrees"; empty where the value's name tells it, as DEG does
+  std::string details = {};               // whole sentences for the man page, where the help line is not enough
+  std::vector<std::string> choices = {};  // the words that the option takes, if it is a choice
+  double low = -1e300, high = 1e300;      // the domain of a number; both ends belong to it
   bool required = false;
-  std::string alias = {};  // another long name that means the same
+
+  // These complete an option where it is added: spec.option(...).from(0, 90).more("...").
+  Option& from(double lowest, double highest = 1e300);
+  Option& one_of(std::vector<std::string> words);
+  Option& in(std::string its_unit);
+  Option& more(std::string sentences);
+  Option& needed();
 };
-// A vector<string> target collects a repeated option; a vector<double> target takes a comma-separated list, or repeats.
 
 // The words that are not options.
 struct Positional {
   std::string value = {};  // "PAINTS"
   std::string help = {};
   std::vector<std::string>* target = nullptr;
-  int low = 0, high = 1000000;  // how many; 0 means standard input where none is given
+  int low = 0, high = 1000000;  // how many there may be; low = 0 means standard input where none is given
 };
 
 struct Example {
   std::string command = {};  // runs as it stands in a folder with testdata/
-  std::string effect = {};   // what it does, one sentence
+  std::string effect = {};   // what it does: one sentence
 };
 
 struct ReportKey {
@@ -52,11 +62,18 @@ struct ToolSpec {
   std::vector<Option> options = {};
   std::optional<Positional> inputs = {};
   std::vector<Example> examples = {};
-  std::vector<ReportKey> report = {};      // keys of results in --report
+  std::vector<ReportKey> report = {};      // keys of `results` in --report
   std::vector<std::string> see_also = {};  // "fit-basis(1)"
+
+  std::string heading = {};  // of the options that are added next
+
+  // Adds an option. `names` are its long name and, after commas, a letter or another long name: "output,o". The
+  // reference holds until the next one is added.
+  Option& option(const std::string& names, std::string value, std::string example, Target target, std::string help);
+  Option& flag(const std::string& names, bool* target, std::string help);
 };
 
-// The options that mean the same in every tool. A tool lists those that do something for it.
+// The options that mean the same in every tool.
 struct CommonOptions {
   bool quiet = false;
   bool explain = false;
@@ -66,13 +83,26 @@ struct CommonOptions {
   int threads = 0;
   std::uint64_t seed = 1;
 };
-// Every tool has --quiet, --report, --threads, --help, --version and --generate; these are the others.
-enum class Common { kExplain, kTolerance, kTimeLimit, kSeed };
-void add_common_options(ToolSpec& spec, CommonOptions& common, const std::vector<Common>& which);
+
+// Every tool has --quiet, --report, --threads, --help, --version and --generate. It has the options below only where
+// they do something in it, and says what that is; an empty text leaves an option out.
+struct CommonTexts {
+  bool explain = false;
+  std::string time_limit = {};  // "the search"
+  std::string seed = {};        // "the starting points of the search"
+};
+void add_common_options(ToolSpec& spec, CommonOptions& common, const CommonTexts& texts = {});
+
+// --tolerance, under the heading of the tool's choice. `of_what` says what it is a tolerance of.
+Option& add_tolerance(ToolSpec& spec, CommonOptions& common, const std::string& value, const std::string& of_what);
 
 // The texts made from the table.
 std::string help_text(const ToolSpec& spec);
 std::string man_page(const ToolSpec& spec);
 std::string bash_completion(const ToolSpec& spec);
+
+// Returns one sentence for each fault of the table: an option without a heading, a unit or an example, an example that
+// the option itself refuses, a help line that is not one. It parses the examples into the targets.
+std::vector<std::string> table_faults(const ToolSpec& spec);
 
 }  // namespace goniochrome::cli

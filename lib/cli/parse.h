@@ -9,8 +9,8 @@
 
 namespace goniochrome::cli {
 
-// Writes the values of `arguments` (without the program's name) into the table's targets. Error (kUsage): the option,
-// its value and what it takes; an unknown option names the nearest known one.
+// Writes the values of `arguments` (without the program's name) into the table's targets. The error, of kind kUsage,
+// names the option, its value and what it takes; for an unknown option it names the nearest known one.
 Result<void> parse(const ToolSpec& spec, const std::vector<std::string>& arguments);
 
 }  // namespace goniochrome::cli

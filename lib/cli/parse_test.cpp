@@ -25,15 +25,15 @@ ToolSpec table(Values& v) {
   spec.name = "sample-tool";
   spec.summary = "do nothing, for a test";
   spec.description = {"One paragraph."};
-  spec.options = {
-      {.name = "output", .letter = 'o', .value = "FILE", .help = "where to write", .target = &v.output},
-      {.name = "method", .value = "M", .help = "how", .target = &v.method, .choices = {"l1", "l2"}},
-      {.name = "tolerance", .value = "X", .help = "error", .target = &v.tolerance, .low = 0, .high = 1},
-      {.name = "size", .value = "N", .help = "texels", .target = &v.size, .low = 1},
-      {.name = "quiet", .help = "silence", .target = &v.quiet},
-      {.name = "part", .value = "NAME=PAINT", .help = "paint of a part", .target = &v.parts},
-      {.name = "exponents", .value = "LIST", .help = "exponents", .target = &v.exponents},
-  };
+  spec.heading = "output";
+  spec.option("output,o", "FILE", "x", &v.output, "where to write");
+  spec.heading = "method";
+  spec.option("method", "M", "l1", &v.method, "how").one_of({"l1", "l2"});
+  spec.option("tolerance", "DE", "0.1", &v.tolerance, "error").from(0, 1).in("units").more("It is relative.");
+  spec.option("size", "N", "64", &v.size, "texels").from(1);
+  spec.flag("quiet", &v.quiet, "silence");
+  spec.option("part", "NAME=PAINT", "A=b", &v.parts, "paint of a part");
+  spec.option("exponents", "N,...", "1,2.5", &v.exponents, "exponents");
   spec.inputs = Positional{"FILE", "files to read", &v.inputs, 0, 2};
   spec.examples = {{"sample-tool -o x", "writes x"}};
   spec.report = {{"lobes[].time_s", "seconds"}};
@@ -50,7 +50,7 @@ std::string message(const std::vector<std::string>& arguments) {
   return result.ok() ? "" : result.error().message;
 }
 
-TEST(Parse, ValuesReachTheirTargets) {
+TEST(Parse, values_reach_their_targets) {
   EXPECT_EQ(message({"--quiet", "-"}), "");
   EXPECT_EQ(message({"in", "-"}), "");
   EXPECT_EQ(message({"--tolerance", "1e-3"}), "");
@@ -70,13 +70,13 @@ TEST(Parse, ValuesReachTheirTargets) {
   EXPECT_EQ(v.inputs, (std::vector<std::string>{"in", "-"}));
 }
 
-TEST(Parse, NegativeNumbersAreValues) {
+TEST(Parse, negative_numbers_are_values) {
   Values v;
   ASSERT_TRUE(parsed(v, {"--exponents", "-1,-2"}).ok());
   EXPECT_EQ(v.exponents, (std::vector<double>{-1, -2}));
 }
 
-TEST(Parse, MistakesNameOptionValueAndRemedy) {
+TEST(Parse, a_mistake_is_told_with_option_value_and_remedy) {
   EXPECT_EQ(message({"--size", "64abc"}), "--size is \"64abc\": give a whole number of 1 or more");
   EXPECT_EQ(message({"--size", "0"}), "--size is \"0\": give a whole number of 1 or more");
   EXPECT_EQ(message({"--tolerance", "1,5"}), "--tolerance is \"1,5\": give a number from 0 to 1");
@@ -88,7 +88,7 @@ TEST(Parse, MistakesNameOptionValueAndRemedy) {
   EXPECT_EQ(message({"a", "b", "c"}), "3 inputs are given: sample-tool takes at most 2");
 }
 
-TEST(Parse, AnAliasIsTheSameOption) {
+TEST(Parse, an_alias_is_the_same_option) {
   Values v;
   ToolSpec spec = table(v);
   std::ranges::find(spec.options, "size", &Option::name)->alias = "width";
@@ -98,7 +98,7 @@ TEST(Parse, AnAliasIsTheSameOption) {
   EXPECT_NE(help_text(spec).find("; also --width"), std::string::npos);
 }
 
-TEST(Parse, RequiredOptionIsAskedFor) {
+TEST(Parse, a_required_option_is_asked_for) {
   Values v;
   ToolSpec spec = table(v);
   spec.options[0].required = true;
@@ -108,7 +108,7 @@ TEST(Parse, RequiredOptionIsAskedFor) {
   EXPECT_EQ(exit_status(result.error()), 2);
 }
 
-TEST(Texts, EveryOptionIsInHelpManAndCompletion) {
+TEST(Texts, every_option_is_in_help_man_page_and_completion) {
   Values v;
   const ToolSpec spec = table(v);
   std::string man = man_page(spec);
@@ -118,6 +118,39 @@ TEST(Texts, EveryOptionIsInHelpManAndCompletion) {
     EXPECT_NE(man.find("--" + option.name), std::string::npos);
     EXPECT_NE(bash_completion(spec).find("--" + option.name), std::string::npos);
   }
+}
+
+TEST(Texts, options_stand_under_their_headings) {
+  Values v;
+  const std::string help = help_text(table(v)), man = man_page(table(v));
+  EXPECT_LT(help.find("\nmethod:\n"), help.find("--tolerance"));
+  EXPECT_GT(help.find("\nmethod:\n"), help.find("--output"));
+  EXPECT_LT(man.find(".SS Method\n"), man.find("tolerance"));
+}
+
+TEST(Texts, the_man_page_tells_unit_domain_default_and_example) {
+  Values v;
+  EXPECT_NE(man_page(table(v)).find("Error. It is relative. The value is in units, from 0 to 1. The default is 0.5. "
+                                    "Example: \\-\\-tolerance 0.1"),
+            std::string::npos);
+}
+
+// The controls: a table without a fault, and one fault at a time.
+TEST(Texts, what_a_table_lacks_is_told) {
+  Values v;
+  EXPECT_EQ(table_faults(table(v)), std::vector<std::string>());
+  const auto fault = [&](void (*spoil)(Option&)) {
+    ToolSpec spec = table(v);
+    spoil(*std::ranges::find(spec.options, "tolerance", &Option::name));
+    const std::vector<std::string> faults = table_faults(spec);
+    return faults.size() == 1 ? faults[0] : "";
+  };
+  EXPECT_EQ(fault([](Option& o) { o.category = ""; }), "sample-tool --tolerance: stands under no heading");
+  EXPECT_EQ(fault([](Option& o) { o.unit = ""; }), "sample-tool --tolerance: its unit is not told");
+  EXPECT_EQ(fault([](Option& o) { o.help = "error."; }),
+            "sample-tool --tolerance: its help is not one line without a full stop");
+  EXPECT_EQ(fault([](Option& o) { o.example = "2"; }),
+            "sample-tool --tolerance: refuses its own example: --tolerance is \"2\": give a number from 0 to 1");
 }
 
 int run_tool(const std::vector<std::string>& words, const std::function<Result<Verdict>(Session&)>& run) {
@@ -130,7 +163,7 @@ int run_tool(const std::vector<std::string>& words, const std::function<Result<V
   return tool_main(static_cast<int>(argv.size()), argv.data(), table(v), common, run);
 }
 
-TEST(Tool, ExitStatusFollowsTheOutcome) {
+TEST(Tool, the_exit_status_follows_the_outcome) {
   EXPECT_EQ(run_tool({}, [](Session&) { return Verdict::kDone; }), 0);
   EXPECT_EQ(run_tool({}, [](Session&) { return Verdict::kNegative; }), 1);
   EXPECT_EQ(run_tool({"--nonsense"}, [](Session&) { return Verdict::kDone; }), 2);

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kIndent = 2;
 
-// `value` as it stands `depth` levels deep in a document; its first line goes behind a key.
+// The text of `value` as it stands `depth` levels deep in a document. Its first line follows a key and has no margin.
 std::string text_at(const Json& value, int depth) {
   // Strings hold no raw newline, so each one here begins a line of the document.
   const std::string margin = "\n" + std::string(depth * kIndent, ' ');

@@ -19,8 +19,8 @@ class Report {
   // A list of `results`, empty at first.
   void begin_list(const std::string& list) { results_[list] = Json::array(); }
 
-  // Appends to a list of `results`. Its elements wait in a file without a name, so a library of any size takes constant
-  // memory; where that file cannot be written, write() tells.
+  // Appends to a list of `results`. The elements wait in a file without a name, so that a library of any size takes
+  // constant memory. Where that file cannot be written, write() returns the error.
   void add(const std::string& list, const Json& element);
 
   // Writes the members of `head`, then `results`, to `path`, whole or not at all.

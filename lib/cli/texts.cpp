@@ -4,6 +4,7 @@
 
 #include "base/text.h"
 #include "cli/options.h"
+#include "cli/parse.h"
 
 namespace goniochrome::cli {
 
@@ -26,15 +27,78 @@ struct DefaultText {
   }
 };
 
+std::string default_of(const Option& option) {
+  return std::visit(DefaultText{}, option.target);
+}
+
 std::string option_help(const Option& option) {
   std::string text = option.help;
   if (!option.choices.empty()) text += fmt::format(": {}", fmt::join(option.choices, ", "));
   if (!option.alias.empty()) text += fmt::format("; also --{}", option.alias);
-  const std::string value = std::visit(DefaultText{}, option.target);
+  const std::string value = default_of(option);
   if (option.required)
     text += " (required)";
   else if (!value.empty())
     text += fmt::format(" [{}]", value);
+  return text;
+}
+
+// Names of values that tell their unit.
+constexpr std::pair<const char*, const char*> kUnits[] = {
+    {"DEG", "degrees"},    {"S", "seconds"},   {"MS", "milliseconds"},         {"MM", "millimeters"}, {"PX", "pixels"},
+    {"GU", "gloss units"}, {"STOPS", "stops"}, {"DE00", "units of CIEDE2000"}, {"X,Y", "pixels"},
+};
+
+std::string unit_of(const Option& option) {
+  if (!option.unit.empty()) return option.unit;
+  for (const auto& [value, unit] : kUnits)
+    if (option.value == value) return unit;
+  return "";
+}
+
+bool is_number(const Option& option) {
+  return !std::holds_alternative<bool*>(option.target) && !std::holds_alternative<std::string*>(option.target) &&
+         !std::holds_alternative<std::vector<std::string>*>(option.target);
+}
+
+// The domain of a value in whole sentences: "The value is in degrees, from 0 to 90."
+std::string domain_sentences(const Option& option) {
+  std::string text;
+  if (const std::string unit = unit_of(option); !unit.empty()) text = " in " + unit;
+  const auto add = [&](const std::string& more) { text += (text.empty() ? " " : ", ") + more; };
+  const bool has_low = option.low > -1e300, has_high = option.high < 1e300;
+  if (has_low && has_high)
+    add(fmt::format("from {:.15g} to {:.15g}", option.low, option.high));
+  else if (has_low)
+    add(fmt::format("{:.15g} or more", option.low));
+  else if (has_high)
+    add(fmt::format("{:.15g} or less", option.high));
+  if (!text.empty()) text = " The value is" + text + ".";
+  if (std::holds_alternative<std::vector<std::string>*>(option.target))
+    text += " The option may be given several times.";
+  return text;
+}
+
+// A help line as a sentence.
+std::string sentence(std::string text) {
+  if (text.empty()) return text;
+  if (text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text + (text.back() == '.' ? "" : ".");
+}
+
+// The option's paragraph in the man page.
+std::string paragraph(const Option& option) {
+  std::string text = sentence(option.help);
+  if (!option.choices.empty()) text += fmt::format(" The value is one of {}.", fmt::join(option.choices, ", "));
+  if (!option.details.empty()) text += " " + option.details;
+  if (option.choices.empty()) text += domain_sentences(option);
+  const std::string value = default_of(option);
+  if (option.required)
+    text += " The option is required.";
+  else if (!value.empty())
+    text += fmt::format(" The default is {}.", value);
+  if (!option.alias.empty()) text += fmt::format(" The option may also be written --{}.", option.alias);
+  if (!option.example.empty()) text += fmt::format(" Example: --{} {}", option.name, option.example);
   return text;
 }
 
@@ -81,13 +145,21 @@ std::string roff(std::string_view text) {
   return result;
 }
 
+// A category as the heading of a section.
+std::string heading(const std::string& category) {
+  std::string text = sentence(category);
+  text.pop_back();
+  return text;
+}
+
 }  // namespace
 
 std::string help_text(const ToolSpec& spec) {
   std::string text = fmt::format("{} - {}\n\nusage: {}\n", spec.name, spec.summary, usage(spec));
   if (spec.inputs) text += fmt::format("\n  {}\n      {}\n", spec.inputs->value, wrapped(spec.inputs->help, 6, 100));
-  text += "\noptions:\n";
+  std::string category;
   for (const Option& option : spec.options) {
+    if (option.category != category) text += fmt::format("\n{}:\n", category = option.category);
     const std::string names =
         option.letter ? fmt::format("-{}, --{}", option.letter, option.name) : "    --" + option.name;
     const std::string head = fmt::format("  {}{}{}", names, option.value.empty() ? "" : " ", option.value);
@@ -98,7 +170,7 @@ std::string help_text(const ToolSpec& spec) {
   }
   if (!spec.examples.empty()) text += "\nexamples:\n";
   for (const Example& example : spec.examples)
-    text += fmt::format("  {}\n      {}\n", example.command, wrapped(example.effect, 6, 100));
+    text += fmt::format("  {}\n      {}\n", example.command, wrapped(sentence(example.effect), 6, 100));
   text += fmt::format("\nThe whole story: man {}\n", spec.name);
   return text;
 }
@@ -114,24 +186,28 @@ std::string man_page(const ToolSpec& spec) {
   for (std::size_t i = 0; i < spec.description.size(); ++i)
     text += (i ? ".PP\n" : "") + roff(spec.description[i]) + "\n";
   text += ".SH OPTIONS\n";
-  if (spec.inputs) text += fmt::format(".TP\n.I {}\n{}\n", roff(spec.inputs->value), roff(spec.inputs->help));
+  if (spec.inputs) text += fmt::format(".TP\n.I {}\n{}\n", roff(spec.inputs->value), roff(sentence(spec.inputs->help)));
+  std::string category;
   for (const Option& option : spec.options) {
+    if (option.category != category) text += fmt::format(".SS {}\n", roff(heading(category = option.category)));
     const std::string letter = option.letter ? fmt::format("\\fB\\-{}\\fR, ", option.letter) : "";
     const std::string value = option.value.empty() ? "" : " \\fI" + roff(option.value) + "\\fR";
-    text += fmt::format(".TP\n{}\\fB\\-\\-{}\\fR{}\n{}\n", letter, roff(option.name), value, roff(option_help(option)));
+    text += fmt::format(".TP\n{}\\fB\\-\\-{}\\fR{}\n{}\n", letter, roff(option.name), value, roff(paragraph(option)));
   }
   if (!spec.report.empty()) {
-    text += ".SH REPORT\nThe object\n.I results\nof\n.B \\-\\-report\nholds, beside the keys common to all tools:\n";
-    for (const ReportKey& key : spec.report) text += fmt::format(".TP\n.B {}\n{}\n", roff(key.key), roff(key.meaning));
+    text += ".SH REPORT\nThe object\n.I results\nof\n.B \\-\\-report\nholds these keys:\n";
+    for (const ReportKey& key : spec.report)
+      text += fmt::format(".TP\n.B {}\n{}\n", roff(key.key), roff(sentence(key.meaning)));
   }
   text +=
       ".SH EXIT STATUS\n"
-      "0 done; 1 done, with a negative verdict; 2 usage; 3 bad input or I/O; 4 stopped by a limit, best result "
-      "written; 70 a bug.\n";
+      "0: the work is done. 1: it is done, and its verdict is negative. 2: the command line is wrong. 3: an input is "
+      "wrong, or a file cannot be read or written. 4: a limit stopped the work, and the best result is written. 70: "
+      "the tool has a bug.\n";
   if (!spec.examples.empty()) text += ".SH EXAMPLES\n";
   for (std::size_t i = 0; i < spec.examples.size(); ++i)
-    text += fmt::format("{}{}\n.PP\n.nf\n.RS\n{}\n.RE\n.fi\n", i ? ".PP\n" : "", roff(spec.examples[i].effect),
-                        roff(spec.examples[i].command));
+    text += fmt::format("{}{}\n.PP\n.nf\n.RS\n{}\n.RE\n.fi\n", i ? ".PP\n" : "",
+                        roff(sentence(spec.examples[i].effect)), roff(spec.examples[i].command));
   text += ".SH SEE ALSO\n";
   for (const std::string& page : spec.see_also) {
     const auto open = page.find('(');
@@ -161,6 +237,28 @@ std::string bash_completion(const ToolSpec& spec) {
       "  case $word in\n    -*) COMPREPLY=($(compgen -W \"{}\" -- \"$word\")) ;;\n"
       "    *) COMPREPLY=($(compgen -f -- \"$word\")) ;;\n  esac\n}}\ncomplete -o filenames -F {} {}\n",
       function, cases, fmt::join(words, " "), function, spec.name);
+}
+
+std::vector<std::string> table_faults(const ToolSpec& spec) {
+  std::vector<std::string> faults;
+  const auto fault = [&](const Option& option, const std::string& what) {
+    faults.push_back(fmt::format("{} --{}: {}", spec.name, option.name, what));
+  };
+  for (const Option& option : spec.options) {
+    if (option.category.empty()) fault(option, "stands under no heading");
+    if (option.help.empty() || option.help.back() == '.') fault(option, "its help is not one line without a full stop");
+    if (!option.details.empty() && option.details.back() != '.') fault(option, "its details are not whole sentences");
+    if (option.value.empty()) continue;
+    // N is a count, K a factor and X a ratio: they have no unit.
+    const bool is_pure = std::string("NKX").find(option.value[0]) != std::string::npos;
+    if (is_number(option) && !is_pure && unit_of(option).empty()) fault(option, "its unit is not told");
+    if (option.example.empty()) fault(option, "has no example");
+    ToolSpec alone{.name = spec.name, .options = {option}};
+    alone.options[0].required = false;
+    const auto parsed = parse(alone, {fmt::format("--{}={}", option.name, option.example)});
+    if (!parsed.ok()) fault(option, "refuses its own example: " + parsed.error().message);
+  }
+  return faults;
 }
 
 }  // namespace goniochrome::cli

@@ -36,7 +36,7 @@ std::string command_line(const std::string& name, const std::vector<std::string>
   return text;
 }
 
-// Where messages cannot be written, the exit status still tells; fmt::print would throw.
+// Where messages cannot be written, the exit status still tells what happened; fmt::print would throw.
 void tell(const std::string& text) {
   std::fputs(text.c_str(), stderr);
 }
@@ -53,11 +53,19 @@ Result<void> close_output() {
   return input_error("standard output: cannot be written");
 }
 
-// The exit status after `text` as the whole of standard output.
+// Writes `text` as the whole of standard output, and returns the exit status.
 int answer(const ToolSpec& spec, const std::string& text) {
   std::fputs(text.c_str(), stdout);
   const auto closed = close_output();
   return closed.ok() ? 0 : fail(spec.name, closed.error());
+}
+
+// Writes the man page or the completion. A table with faults is a bug.
+int generate(const ToolSpec& spec, const std::string& what) {
+  const std::string text = what == "man" ? man_page(spec) : bash_completion(spec);
+  const std::vector<std::string> faults = table_faults(spec);
+  if (!faults.empty()) return fail(spec.name, {ErrorKind::kBug, fmt::format("{}", fmt::join(faults, "\n"))});
+  return answer(spec, text);
 }
 
 }  // namespace
@@ -78,6 +86,10 @@ int exit_status(const Error& error) {
 
 const char* Session::version() {
   return GONIOCHROME_VERSION;
+}
+
+std::string Session::provenance() const {
+  return fmt::format("{} {}: {}", tool_, version(), command_line_);
 }
 
 void Session::say(const std::string& line) const {
@@ -118,27 +130,22 @@ int tool_main(int argc, char** argv, const ToolSpec& table, const CommonOptions&
               const std::function<Result<Verdict>(Session&)>& run) {
   Requests requests;
   ToolSpec spec = table;
-  spec.options.push_back({.name = "help", .letter = 'h', .help = "print this help", .target = &requests.help});
-  spec.options.push_back({.name = "version", .help = "print the version", .target = &requests.version});
-  spec.options.push_back({.name = "generate",
-                          .value = "TEXT",
-                          .help = "print a text made from the option table",
-                          .target = &requests.generate,
-                          .choices = {"man", "completion"}});
+  spec.flag("help,h", &requests.help, "print this help");
+  spec.flag("version", &requests.version, "print the version");
+  spec.option("generate", "TEXT", "man", &requests.generate, "print a text made from the table of options")
+      .one_of({"man", "completion"});
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   // These three answer whatever else is on the line, and even where a required option is missing.
   for (const std::string& word : arguments) {
     if (word == "--") break;
     if (word == "--help" || word == "-h") return answer(spec, help_text(spec));
     if (word == "--version") return answer(spec, fmt::format("{} {}\n", spec.name, Session::version()));
-    if (word == "--generate=man") return answer(spec, man_page(spec));
-    if (word == "--generate=completion") return answer(spec, bash_completion(spec));
+    if (word == "--generate=man" || word == "--generate=completion") return generate(spec, word.substr(11));
   }
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond its limit is a writing error, which names the file
   try {
     if (const auto parsed = parse(spec, arguments); !parsed.ok()) return fail(spec.name, parsed.error());
-    if (requests.generate == "man") return answer(spec, man_page(spec));
-    if (requests.generate == "completion") return answer(spec, bash_completion(spec));
+    if (!requests.generate.empty()) return generate(spec, requests.generate);
     set_threads(common.threads);
     Session session(spec.name, command_line(spec.name, arguments), common);
     const auto verdict = run(session);

@@ -1,5 +1,5 @@
-// What every tool does around its work: parse, run, report, exit. See the contract in goniochrome-paint(5), EXIT
-// STATUS.
+// What every tool does around its work: it parses, runs, reports and exits. The exit statuses are a contract, which
+// every man page states.
 #pragma once
 
 #include <functional>
@@ -29,18 +29,19 @@ class Session {
   Session(std::string tool, std::string command_line, const CommonOptions& common)
       : tool_(std::move(tool)), command_line_(std::move(command_line)), common_(common) {}
 
-  // The command as given, for provenance.
-  const std::string& command_line() const { return command_line_; }
+  const std::string& command_line() const { return command_line_; }  // the command as it was given
   const std::string& tool() const { return tool_; }
   static const char* version();
+  // `tool version: command line`, for the header of a file.
+  std::string provenance() const;
   const CommonOptions& common() const { return common_; }
   double elapsed_s() const { return clock_.elapsed_s(); }
 
-  // `results` of --report.
+  // The object `results` of --report.
   Json& results() { return report_.results(); }
 
-  // A list of `results` that grows with the library: empty at first, then an element for each add(), which is what
-  // `element` returns; it is not asked without --report.
+  // A list of `results` that grows with the library. It is empty at first, and add() appends what `element` returns.
+  // Without --report, `element` is not called.
   void begin_list(const std::string& list) { report_.begin_list(list); }
   template <class Element>
   void add(const std::string& list, const Element& element) {
@@ -51,9 +52,9 @@ class Session {
   void say(const std::string& line) const;
   // `tool: warning: ...`, also collected under results.warnings.
   void warn(const std::string& line);
-  // A progress line, only on a terminal and only after 0.5 s; overwritten by the next line.
+  // A progress line, which the next line overwrites. It appears only on a terminal, and only after 0.5 s.
   void progress(const std::string& line) const;
-  // The plan of --explain: standard error, so that data can still go through a pipe.
+  // The plan of --explain. It goes to standard error, so that data can still go through a pipe.
   void explain(const std::string& text) const;
 
   Result<void> write_report() const;
@@ -66,9 +67,9 @@ class Session {
   mutable bool progress_shown_ = false;
 };
 
-// The main() of a tool: parses argv by the table (which writes into the caller's options), answers --help, --version
-// and --generate, sets the threads, runs, writes the report, prints an error as `tool: message`, and returns the exit
-// status.
+// What main() does in a tool: parses argv by the table, which writes into the caller's options; answers --help,
+// --version and --generate; sets the number of threads; runs; writes the report; prints an error as `tool: message`.
+// Returns the exit status.
 int tool_main(int argc, char** argv, const ToolSpec& spec, const CommonOptions& common,
               const std::function<Result<Verdict>(Session&)>& run);
 

@@ -2,14 +2,14 @@ _colorsnap() {
   local word=${COMP_WORDS[COMP_CWORD]}
   case ${COMP_WORDS[COMP_CWORD-1]} in
     --library|-l) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --filter) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --count|-k) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --metric|-m) COMPREPLY=($(compgen -W "de76 de00" -- "$word")); return ;;
     --geometry|-g) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --weight|-w) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --filter) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --method) COMPREPLY=($(compgen -W "auto tree scan" -- "$word")); return ;;
     --threshold) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --off-radial) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --method) COMPREPLY=($(compgen -W "auto tree scan" -- "$word")); return ;;
     --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --format|-f) COMPREPLY=($(compgen -W "auto tsv json paints" -- "$word")); return ;;
     --report) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -17,7 +17,7 @@ _colorsnap() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--library --count --metric --geometry --weight --filter --threshold --off-radial --method --mix-observers --keep-going --output --format --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--library --filter --count --metric --geometry --weight --mix-observers --method --threshold --off-radial --output --format --keep-going --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

@@ -1,19 +1,19 @@
 _draw_plot() {
   local word=${COMP_WORDS[COMP_CWORD]}
   case ${COMP_WORDS[COMP_CWORD-1]} in
-    --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --title) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --x-label) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --y-label) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --logarithmic) COMPREPLY=($(compgen -W "none x y both" -- "$word")); return ;;
     --width) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --height) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --report) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --threads) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--output --title --x-label --y-label --logarithmic --width --height --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--title --x-label --y-label --logarithmic --width --height --output --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

@@ -1,15 +1,15 @@
 _fit_basis() {
   local word=${COMP_WORDS[COMP_CWORD]}
   case ${COMP_WORDS[COMP_CWORD-1]} in
-    --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --lobes|-n) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --name) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --method|-m) COMPREPLY=($(compgen -W "power-mean lm" -- "$word")); return ;;
     --starts) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --angles) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --visible) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --target|-t) COMPREPLY=($(compgen -W "measured curve" -- "$word")); return ;;
     --weights|-w) COMPREPLY=($(compgen -W "perceptual plain" -- "$word")); return ;;
-    --visible) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --angles) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --name) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --each) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --table) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --plot) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -20,7 +20,7 @@ _fit_basis() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--output --lobes --name --mirror --method --starts --angles --target --weights --visible --each --table --plot --explain --time-limit --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--lobes --method --starts --visible --target --weights --angles --output --name --mirror --each --table --plot --explain --time-limit --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

@@ -1,20 +1,20 @@
 _paint_convert() {
   local word=${COMP_WORDS[COMP_CWORD]}
   case ${COMP_WORDS[COMP_CWORD-1]} in
-    --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --from) COMPREPLY=($(compgen -W "auto measured cxf xml cgats csv" -- "$word")); return ;;
-    --to) COMPREPLY=($(compgen -W "auto xml csv wide cxf cgats" -- "$word")); return ;;
-    --geometry) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --illuminant) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --observer) COMPREPLY=($(compgen -W "auto 2 10" -- "$word")); return ;;
     --aperture) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --geometry) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --to) COMPREPLY=($(compgen -W "auto xml csv wide cxf cgats" -- "$word")); return ;;
     --columns) COMPREPLY=($(compgen -W "core all" -- "$word")); return ;;
     --report) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --threads) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--output --from --to --geometry --illuminant --observer --aperture --cxf-compat --columns --fit-appearance --keep-going --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--from --illuminant --observer --aperture --keep-going --geometry --fit-appearance --output --to --columns --cxf-compat --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

@@ -1,9 +1,6 @@
 _paint_edit() {
   local word=${COMP_WORDS[COMP_CWORD]}
   case ${COMP_WORDS[COMP_CWORD-1]} in
-    --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --only) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --suffix) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --hue) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --chroma) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --lightness) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -14,26 +11,29 @@ _paint_edit() {
     --image) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --at-pixel) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --lighter) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --travel-to) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --gloss-to) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --face) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --face-shift) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --flop) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --flop-shift) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --travel) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --travel-shift) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --travel-to) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --gloss) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --gloss-shift) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --gloss-to) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --gloss-angle) COMPREPLY=($(compgen -W "20 60 85" -- "$word")); return ;;
     --variations) COMPREPLY=($(compgen -W "face flop travel gloss" -- "$word")); return ;;
     --step) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --gradient) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --only) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --suffix) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --report) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --threads) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--output --only --suffix --hue --chroma --lightness --hue-shift --chroma-factor --lightness-shift --at --image --at-pixel --lighter --face --face-shift --flop --flop-shift --travel --travel-shift --travel-to --gloss --gloss-shift --gloss-to --gloss-angle --variations --step --gradient --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--hue --chroma --lightness --hue-shift --chroma-factor --lightness-shift --at --image --at-pixel --lighter --travel-to --gloss-to --face --face-shift --flop --flop-shift --travel --travel-shift --gloss --gloss-shift --gloss-angle --variations --step --gradient --only --suffix --output --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

@@ -5,19 +5,19 @@ _paint_pick() {
     --flop) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --gloss) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --travel) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --name) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --palette) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --board|-b) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --mesh|-m) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --env|-e) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --basis) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --name) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --report) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --threads) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--face --flop --gloss --travel --retro --name --palette --board --mesh --env --basis --output --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--face --flop --gloss --travel --retro --palette --board --mesh --env --basis --name --output --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

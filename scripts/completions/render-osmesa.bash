@@ -3,40 +3,40 @@ _render_osmesa() {
   case ${COMP_WORDS[COMP_CWORD-1]} in
     --mesh|-m) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --gbuffer) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --part) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --paint|-p) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --part) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --split) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --texture) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --texture-maps) COMPREPLY=($(compgen -W "cubes mip" -- "$word")); return ;;
     --env|-e) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --light) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --size|-s) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --operator) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --critical-angle) COMPREPLY=($(compgen -W "clip slide slide-map index" -- "$word")); return ;;
+    --exposure) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --background) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --orbit) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --camera) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --fov) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --size|-s) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --samples) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --background) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --exposure) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --view) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --aov) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --effects) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --budget) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --engine) COMPREPLY=($(compgen -W "auto cpu gl integral" -- "$word")); return ;;
-    --operator) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --critical-angle) COMPREPLY=($(compgen -W "clip slide slide-map index" -- "$word")); return ;;
-    --split) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --turntable) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --light-sweep) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --effects) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --tolerance) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --budget) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --engine) COMPREPLY=($(compgen -W "auto cpu gl integral" -- "$word")); return ;;
     --check) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --check-source) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --tolerance) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --view) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --aov) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --seed) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --report) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --threads) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--mesh --gbuffer --part --paint --texture --texture-maps --env --light --size --orbit --camera --fov --samples --background --exposure --view --aov --effects --budget --engine --operator --critical-angle --print-shader --split --turntable --light-sweep --check --check-source --output --explain --tolerance --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--mesh --gbuffer --paint --part --split --texture --texture-maps --env --light --operator --critical-angle --exposure --background --orbit --camera --fov --size --samples --turntable --light-sweep --effects --tolerance --budget --engine --print-shader --check --check-source --output --view --aov --explain --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

@@ -3,14 +3,14 @@ _sketch_fit() {
   case ${COMP_WORDS[COMP_CWORD-1]} in
     --image|-i) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --buffers|-b) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --view) COMPREPLY=($(compgen -W "paint plain" -- "$word")); return ;;
+    --exposure) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --shift) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --env|-e) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --basis) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --mask|-m) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --part) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --pixels) COMPREPLY=($(compgen -W "auto changed all" -- "$word")); return ;;
-    --shift) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --view) COMPREPLY=($(compgen -W "paint plain" -- "$word")); return ;;
-    --exposure) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --glare) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --max-de) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --name) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -21,7 +21,7 @@ _sketch_fit() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--image --buffers --env --basis --mask --part --pixels --shift --view --exposure --glare --max-de --name --residual --output --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--image --buffers --view --exposure --shift --env --basis --mask --part --pixels --glare --max-de --name --residual --output --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

@@ -37,7 +37,7 @@ column() {
   awk -F'\t' -v name="$1" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = i; next } { print $c }' | paste -sd' '
 }
 
-@test "nearest first, ties in the library's order, with the difference at each geometry" {
+@test "matches come nearest first, ties in the library's order, with the difference at each geometry" {
   run --separate-stderr colorsnap --library lib.xml -k 3 wish.xml
   [ "$status" -eq 0 ]
   [ "$stderr" = "colorsnap: 1 paints against 5" ]
@@ -86,7 +86,7 @@ column() {
   [ "$(jq -r .results.index r.json)" = in_memory ]
 }
 
-@test "--library missing, unreadable, a stream, broken" {
+@test "a --library that is missing, unreadable, a stream or broken is refused" {
   run --separate-stderr colorsnap wish.xml
   [ "$status" -eq 2 ]
   [[ "$stderr" == *"--library"* ]]
@@ -105,7 +105,7 @@ column() {
   [ ! -e bad.xml.snapindex ]
 }
 
-@test "both metrics and both methods; the same answer from tree and scan" {
+@test "tree and scan give the same answer in both metrics" {
   cp "$TESTDATA/paints.paints.xml" all.xml
   for metric in de76 de00; do
     for method in auto tree scan; do
@@ -123,7 +123,7 @@ column() {
   [ "$status" -eq 2 ]
 }
 
-@test "-k: all there are, and nonsense" {
+@test "-k beyond the library gives all there are, and nonsense is refused" {
   [ "$(colorsnap -q -l lib.xml -k 100 wish.xml | column rank)" = "1 2 3 4 5" ]
   for k in 0 -1 x 1.5; do
     run colorsnap -l lib.xml wish.xml -k $k
@@ -131,7 +131,7 @@ column() {
   done
 }
 
-@test "--geometry and --weight" {
+@test "--geometry and --weight change what is compared; wrong ones are refused" {
   [ "$(colorsnap -q -l lib.xml -k 1 -g 45as45,45as110 wish.xml | column de_by_geometry)" = "45as45=0,45as110=0" ]
   [ "$(colorsnap -q -l lib.xml -k 1 -w 45as15=3 wish.xml | column distance)" = 3 ]
   [ "$(colorsnap -q -l lib.xml -k 1 -w 45as15=0,45as110=2 wish.xml | column distance)" = 0 ]
@@ -153,7 +153,7 @@ column() {
   [[ "$output" == *"45az"* ]]
 }
 
-@test "--filter by metric and by class" {
+@test "--filter leaves library paints out by metric and by class" {
   [ "$(colorsnap -q -l lib.xml -k 9 --filter class=metallic wish.xml | column name)" = "R1 G1" ]
   [ "$(colorsnap -q -l lib.xml -k 9 --filter class=metallic,solid --filter L15=85: wish.xml | column name)" = "R1 R2" ]
   run --separate-stderr colorsnap -l lib.xml --filter flop_index=1000: wish.xml
@@ -169,7 +169,7 @@ column() {
   [[ "$stderr" == *"paint-stats --where"* ]]
 }
 
-@test "a design outside the library: told, to which side, exit 1" {
+@test "a design outside the library is told, with its side, and exits 1" {
   paint deep 40,95,45 30,80,40 20,60,30 | sed "s|^|$head|; s|\$|</paints>|" >deep.xml
   run --separate-stderr colorsnap -l lib.xml -k 1 deep.xml
   [ "$status" -eq 1 ]
@@ -237,7 +237,7 @@ column() {
   [ "$(colorsnap -q -l lib.xml -k 1 d.xml | column name)" = R1 ]
 }
 
-@test "standard input to standard output" {
+@test "standard input goes to standard output" {
   [ "$(colorsnap -q -l lib.xml -k 1 <wish.xml | column name)" = R1 ]
   [ "$(colorsnap -q -l lib.xml -k 1 - wish.xml <wish.xml | column query)" = "wish wish" ]
 }
@@ -291,7 +291,7 @@ column() {
   cmp 1.tsv 7.tsv
 }
 
-@test "--explain says which method and why; --quiet, --help, --version" {
+@test "--explain says which method and why; --quiet, --help and --version do what they say" {
   run --separate-stderr colorsnap -q -l lib.xml wish.xml --explain
   [[ "$stderr" == *"5 paints, D65/10 at 45as15,45as45,45as110: scan"*"measured"*"left out"* ]]
   [ -z "$(colorsnap --quiet -l lib.xml wish.xml 2>&1 >/dev/null)" ]

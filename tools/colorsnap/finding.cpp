@@ -10,8 +10,7 @@ namespace goniochrome::tool {
 
 namespace {
 
-// CIELAB hue difference, signed: what remains of the distance in the a*b* plane when the chroma difference is taken
-// off.
+// The signed CIELAB hue difference: what remains of the distance in the a*b* plane without the chroma difference.
 double hue_difference(const color::Lab& x, const color::Lab& y) {
   const double turn = std::atan2(y.a * x.b - y.b * x.a, x.a * y.a + x.b * y.b);
   return 2 * std::sqrt(color::chroma(x) * color::chroma(y)) * std::sin(turn / 2);

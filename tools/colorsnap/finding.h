@@ -8,7 +8,8 @@
 
 namespace goniochrome::tool {
 
-// One library paint beside the query. Differences are query less match, means over the geometries.
+// One library paint beside the query. dL, dC and dH are the values of the query minus those of the match, as means
+// over the geometries.
 struct Neighbor {
   library::LibraryMatch match;
   double mean_de = 0;             // distance per unit of weight
@@ -29,8 +30,8 @@ struct Finding {
   std::string status() const;
 };
 
-// How far and to which side the flop leaves the line through the origin and the face's a*b*: the hue-shift index,
-// negative where the hue turns clockwise.
+// Tells how far the flop leaves the line through the origin and the face's a*b*, and to which side: it is the hue-shift
+// index, with a negative sign where the hue turns clockwise.
 double signed_hue_shift(double hue_shift_index, double hue_travel_deg);
 
 struct FindingLimits {
@@ -38,7 +39,8 @@ struct FindingLimits {
   double off_radial = 5;  // difference of hue shifts
 };
 
-// Searches and judges. `query` must be the paint of the plan. Safe to call from several threads.
+// Searches the library and judges the design. `query` must be the paint of the plan. Several threads may call it at
+// once.
 Finding finding_of(const paint::Paint& query, library::SearchPlan plan, const library::LibrarySearch& search,
                    const library::LibraryIndex& index, library::ColorMetric metric, const FindingLimits& limits);
 

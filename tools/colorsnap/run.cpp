@@ -1,4 +1,4 @@
-#include "run.h"
+#include "tool.h"
 
 #include <functional>
 #include <set>
@@ -6,7 +6,7 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "finding.h"
-#include "formats/batches.h"
+#include "paint_stream.h"
 #include "sink.h"
 
 namespace goniochrome::tool {
@@ -34,7 +34,7 @@ const char* origin_name(library::LibraryIndex::Origin origin) {
   return "in_memory";
 }
 
-// One run: queries in, findings out.
+// One run, which turns a stream of queries into findings.
 class Run {
  public:
   Run(const Options& options, cli::Session& session, const library::LibraryIndex& index,
@@ -52,13 +52,9 @@ class Run {
     GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
     GONIO_ASSIGN(Sink sink, Sink::begin(format_of(options_.format, options_.output), std::move(file)));
     session_.begin_list("queries");
-    for (;;) {
-      GONIO_ASSIGN(const std::vector<paint::Paint> batch, batches.next(left_out()));
-      if (batch.empty()) break;
-      GONIO_TRY(answer(batch, sink));
-      session_.progress(fmt::format("{}: {} paints", session_.tool(), searched_));
-    }
-    GONIO_TRY(sink.finish(options_.library, {session_.tool(), cli::Session::version(), session_.command_line()}));
+    GONIO_TRY(for_each_batch(
+        batches, session_, [&](const std::vector<paint::Paint>& batch) { return answer(batch, sink); }, left_out()));
+    GONIO_TRY(sink.finish(options_.library, session_));
     return finish();
   }
 
@@ -126,7 +122,7 @@ class Run {
                       finding.query, finding.hue_shift, name, finding.matched_hue_shift));
   }
 
-  // Paints that are left out and conditions that are mixed, once for each set of geometries.
+  // Tells of library paints that are left out and of conditions that are mixed, once for each set of geometries.
   void tell_once(const library::SearchPlan& plan) {
     const std::string names = names_of(plan.geometries);
     for (const paint::Geometry& geometry : plan.geometries) compared_.insert(paint::geometry_name(geometry));

@@ -3,6 +3,7 @@
 #include <unordered_map>
 
 #include "base/text.h"
+#include "paint_stream.h"
 
 namespace goniochrome::tool {
 
@@ -78,22 +79,22 @@ Result<void> Sink::write(const Finding& finding, const library::LibraryIndex& in
   return {};
 }
 
-Result<void> Sink::finish(const std::string& library_path, const formats::Processing& step) {
-  return format_ == Format::kPaints ? write_paints(library_path, step) : file_.commit();
+Result<void> Sink::finish(const std::string& library_path, const cli::Session& session) {
+  return format_ == Format::kPaints ? write_paints(library_path, session) : file_.commit();
 }
 
-Result<void> Sink::write_paints(const std::string& library_path, const formats::Processing& step) {
+Result<void> Sink::write_paints(const std::string& library_path, const cli::Session& session) {
   GONIO_ASSIGN(formats::PaintReader reader, formats::PaintReader::open(library_path));
   reader.read_prolog();
-  std::vector<formats::Processing> history = reader.processing();
-  history.push_back(step);
+  Prolog prolog;
+  prolog.take(reader);
   std::unordered_map<std::uint32_t, paint::Paint> paints;
   for (std::uint32_t place = 0; paints.size() < wanted_.size(); ++place) {
     GONIO_ASSIGN(std::optional<paint::Paint> paint, reader.next());
     if (!paint) return input_error("{}: it was changed while it was searched: run again", library_path);
     if (met_.contains(place)) paints.emplace(place, std::move(*paint));
   }
-  GONIO_ASSIGN(formats::PaintWriter writer, formats::PaintWriter::begin(std::move(file_), history, reader.foreign()));
+  GONIO_ASSIGN(formats::PaintWriter writer, begin_paints(std::move(file_), std::move(prolog), session));
   for (const std::uint32_t place : wanted_) GONIO_TRY(writer.write(paints.at(place)));
   return writer.finish();
 }

@@ -6,11 +6,11 @@
 #include <unordered_set>
 #include <vector>
 
-#include "../table_output.h"
 #include "base/file.h"
 #include "base/json.h"
+#include "cli/tool.h"
 #include "finding.h"
-#include "formats/xml.h"
+#include "table_output.h"
 
 namespace goniochrome::tool {
 
@@ -21,12 +21,13 @@ class Sink {
   static Result<Sink> begin(Format format, OutputFile file);
   Result<void> write(const Finding& finding, const library::LibraryIndex& index);
   Result<void> flush() { return file_.flush(); }
-  // Ends the output. The paints are read from the library, whose place in it the index knows; `step` joins its history.
-  Result<void> finish(const std::string& library_path, const formats::Processing& step);
+  // Ends the output. The matched paints are read from the library; the index knows their places in it. The run joins
+  // the library's history.
+  Result<void> finish(const std::string& library_path, const cli::Session& session);
 
  private:
   explicit Sink(Format format, OutputFile file) : format_(format), file_(std::move(file)) {}
-  Result<void> write_paints(const std::string& library_path, const formats::Processing& step);
+  Result<void> write_paints(const std::string& library_path, const cli::Session& session);
 
   Format format_;
   OutputFile file_;

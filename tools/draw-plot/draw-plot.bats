@@ -19,7 +19,7 @@ setup() {
   [ "$(grep -o '<circle' p.svg | wc -l)" -eq 6 ]
 }
 
-@test "standard input to standard output" {
+@test "standard input goes to standard output" {
   draw-plot <t.csv | xmllint --noout -
 }
 
@@ -66,7 +66,7 @@ refused() {
   refused 3 'none.csv' draw-plot none.csv
 }
 
-@test "options are checked" {
+@test "wrong values are refused by name" {
   refused 2 '--logarithmic is "z": give none, x, y, both' draw-plot t.csv --logarithmic z
   refused 2 '--width is "10"' draw-plot t.csv --width 10
   run --separate-stderr draw-plot t.csv -o none.svg --title

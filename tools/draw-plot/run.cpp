@@ -1,4 +1,4 @@
-#include "run.h"
+#include "tool.h"
 
 #include <algorithm>
 #include <cmath>
@@ -90,7 +90,7 @@ Result<std::vector<report::Series>> read_table(const std::string& path) {
   return all;
 }
 
-// Points with both numbers that an axis cannot show.
+// The number of points that have both numbers and that an axis cannot show.
 int left_out(const report::Series& series, const report::Plot& plot) {
   int count = 0;
   for (std::size_t i = 0; i < series.x.size(); ++i)

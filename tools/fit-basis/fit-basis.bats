@@ -38,7 +38,7 @@ quick=(--lobes 2 --starts 1 --angles 12)
   diff 1.xml 2.xml && diff 1.xml 7.xml
 }
 
-@test "both methods, both targets, both weights" {
+@test "both methods, targets and weights give a basis" {
   for choice in "--method lm" "--method power-mean" "--target curve" "--weights plain" "--name mine"; do
     fit-basis "${quick[@]}" $choice --quiet "$TESTDATA/paints.paints.xml" -o b.basis.xml
   done
@@ -79,7 +79,7 @@ quick=(--lobes 2 --starts 1 --angles 12)
   [ ! -e b.basis.xml ]
 }
 
-@test "a missing file, an empty library, a full disk: exit 3 and no basis" {
+@test "a missing file, an empty library and a full disk exit 3 and leave no basis" {
   run fit-basis "${quick[@]}" nothing.xml -o b.basis.xml
   [ "$status" -eq 3 ]
   echo '<paints xmlns="urn:goniochrome:paint:1" version="1"/>' >empty.xml

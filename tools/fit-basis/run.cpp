@@ -1,4 +1,4 @@
-#include "run.h"
+#include "tool.h"
 
 #include <fmt/format.h>
 
@@ -6,11 +6,10 @@
 #include <cmath>
 
 #include "base/file.h"
-#include "base/input.h"
 #include "base/text.h"
 #include "fit/basis_search.h"
+#include "fitting.h"
 #include "formats/basis.h"
-#include "formats/xml.h"
 #include "report/plot.h"
 
 namespace goniochrome::tool {
@@ -33,28 +32,25 @@ Result<Range> lobe_range(const std::string& text) {
 }
 
 Result<std::vector<fit::BasisTarget>> read_targets(const Options& options, cli::Session& session) {
-  const fit::BasisTargetOptions target_options{
-      options.target == "curve" ? paint::TargetCurve::Kind::kCurve : paint::TargetCurve::Kind::kMeasured,
-      options.angles, options.weights == "perceptual"};
+  const fit::BasisTargetOptions target_options{target_kind(options.target), options.angles,
+                                               options.weights == "perceptual"};
   std::vector<fit::BasisTarget> targets;
   for (const std::string& path : options.paints.empty() ? std::vector<std::string>{"-"} : options.paints) {
-    GONIO_ASSIGN(InputFile file, InputFile::open(path));
-    GONIO_ASSIGN(const std::string_view head, file.peek());
-    if (brdf::looks_measured(path, head)) {
-      GONIO_ASSIGN(const fit::BrdfTarget brdf, fit::read_brdf_target(file));
+    GONIO_ASSIGN(FitInput input, FitInput::open(path));
+    if (input.measured) {
+      GONIO_ASSIGN(const fit::BrdfTarget brdf, fit::read_brdf_target(*input.measured));
       GONIO_ASSIGN(fit::BasisTarget target, fit::basis_target(brdf, target_options));
       targets.push_back(std::move(target));
       continue;
     }
-    formats::PaintReader reader(std::move(file));
     for (;;) {
-      GONIO_ASSIGN(const std::optional<paint::Paint> paint, reader.next());
+      GONIO_ASSIGN(const std::optional<paint::Paint> paint, input.reader->next());
       if (!paint) break;
       auto target = fit::basis_target(*paint, target_options);
       if (target.ok())
         targets.push_back(std::move(*target));
       else
-        session.warn(fmt::format("{}:{}: left out: {}", path, reader.line(), target.error().message));
+        session.warn(fmt::format("{}:{}: left out: {}", path, input.reader->line(), target.error().message));
     }
   }
   if (targets.empty()) return input_error("no paint to choose a basis for: give a library with at least one");
@@ -67,7 +63,7 @@ std::string list(const std::vector<double>& exponents) {
   return fmt::format("{}", fmt::join(texts, " "));
 }
 
-// dE00 of the worst paint at its worst angle, per set.
+// The dE00 of the worst paint at its worst angle, for each set.
 std::vector<double> visible_errors(const fit::BasisSearch& search, const std::vector<fit::BasisTarget>& targets) {
   std::vector<double> errors;
   for (const fit::FoundBasis& set : search.sets) {
@@ -78,8 +74,8 @@ std::vector<double> visible_errors(const fit::BasisSearch& search, const std::ve
   return errors;
 }
 
-// How regular exponents are in log space: the squared correlation of log E with its rank; 1 where there are fewer
-// than 3.
+// Tells how evenly the exponents are spaced in log space: the squared correlation of log E with its rank. It is 1 where
+// there are fewer than 3 exponents.
 double log_regularity(const std::vector<double>& exponents) {
   const auto n = static_cast<double>(exponents.size());
   if (exponents.size() < 3) return 1;

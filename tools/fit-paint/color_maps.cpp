@@ -16,7 +16,7 @@ bool is_plain(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
 }
 
-// The folder as seen from the paint file, or from here where the paints go to standard output.
+// The path of the folder relative to the paint file, or to the current folder where the paints go to standard output.
 std::filesystem::path folder_from_output(const Options& options) {
   const std::filesystem::path output = options.output == "-" ? "" : options.output;
   const auto base = output.has_parent_path() ? output.parent_path() : std::filesystem::path(".");
@@ -46,7 +46,7 @@ Result<void> ColorMaps::begin() const {
   return {};
 }
 
-// Letters, digits, - and _ of the paint's name; a number where two names become one.
+// The letters, digits, - and _ of the paint's name. A number follows where two names would become the same.
 std::string ColorMaps::file_name(const std::string& paint) {
   std::string plain = paint;
   std::ranges::replace_if(
@@ -68,10 +68,7 @@ Result<void> ColorMaps::add(paint::Paint& paint, const brdf::MeasuredBrdf* brdf,
   }
   const std::string name = file_name(paint.name);
   const std::string path = (std::filesystem::path(options_.color_map) / name).string();
-  GONIO_TRY(image::write_color_map(
-      path, fit->map,
-      {{"goniochrome:command",
-        fmt::format("{} {}: {}", session_.tool(), cli::Session::version(), session_.command_line())}}));
+  GONIO_TRY(image::write_color_map(path, fit->map, {{"goniochrome:command", session_.provenance()}}));
   paint.color_map = paint::ColorMapReference{(folder_from_output(options_) / name).generic_string(), asked.index};
   ++made_;
   sum_held_out_ += fit->held_out_de76;

@@ -7,7 +7,7 @@
 #include "brdf/measured.h"
 #include "cli/tool.h"
 #include "fit/color_map_fit.h"
-#include "options.h"
+#include "tool.h"
 
 namespace goniochrome::tool {
 
@@ -19,10 +19,10 @@ class ColorMaps {
   Result<void> begin() const;
 
   // Makes the map of a paint from its readings or, where it has one, from its measured BRDF, and names it in the paint.
-  // A paint that cannot have one is told and left as it is. Error: the file cannot be written.
+  // A paint that cannot have one is left as it is, and a warning says so. Error: the file cannot be written.
   Result<void> add(paint::Paint& paint, const brdf::MeasuredBrdf* brdf, const std::string& where);
 
-  // How many there are, into the report and the summary.
+  // Puts the number of maps into the report and the summary.
   void finish();
 
  private:

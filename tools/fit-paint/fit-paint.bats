@@ -32,7 +32,7 @@ number() { grep -m1 "\"$1\"" r.json | sed -E 's/.*: ([-0-9.e+]+),?$/\1/'; }
   diff <(grep -o '<lab [^>]*>' "$paints") <(grep -o '<lab [^>]*>' out.xml)
 }
 
-@test "standard input to standard output, the report to a file" {
+@test "standard input goes to standard output, and the report to a file" {
   run --separate-stderr bash -c "echo '$head$one</paints>' | fit-paint -b '$basis' --report r.json"
   [ "$status" -eq 0 ]
   [[ "$output" =~ '<lobes space="lin_rec2020_scene" basis="b7" method="l1"' ]]
@@ -121,7 +121,7 @@ number() { grep -m1 "\"$1\"" r.json | sed -E 's/.*: ([-0-9.e+]+),?$/\1/'; }
   grep -q '"status": "failed"' r.json
 }
 
-@test "a missing basis is a usage error, an absent one is bad input" {
+@test "a missing --basis is a usage error, and a file that is not there is bad input" {
   run fit-paint "$paints"
   [ "$status" -eq 2 ]
   [[ "$output" =~ "--basis" ]]
@@ -203,7 +203,7 @@ cornell() {
   [ "$(grep -c albedo_error r.json)" -eq 0 ]
 }
 
-@test "measured BRDFs and libraries in one run; their names must differ" {
+@test "measured BRDFs and libraries pass in one run, and their names must differ" {
   cornell one.brdf
   echo "$head${one/\"one\"/\"two\"}</paints>" >two.xml
   run fit-paint -b "$basis" one.brdf two.xml -o out.xml
@@ -320,7 +320,7 @@ cornell() {
   done
 }
 
-@test "--color-map: missing, wrong, right" {
+@test "--color-map writes a map of each paint; missing and wrong folders are refused" {
   run fit-paint -b "$basis" "$paints" -o out.xml --color-map
   [ "$status" -eq 2 ]
   touch file

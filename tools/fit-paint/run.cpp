@@ -1,17 +1,17 @@
-#include "run.h"
+#include "tool.h"
 
 #include <algorithm>
 #include <optional>
 #include <utility>
 
 #include "base/clock.h"
-#include "base/input.h"
 #include "brdf/lobe_model.h"
 #include "color_maps.h"
 #include "fit/brdf_target.h"
 #include "fit/paint_fit.h"
+#include "fitting.h"
 #include "formats/name_ledger.h"
-#include "formats/xml.h"
+#include "paint_stream.h"
 #include "settings.h"
 #include "tally.h"
 
@@ -22,37 +22,21 @@ namespace {
 // Paints are fitted in batches that grow, so that the first ones of a slow pipe come through at once.
 constexpr std::size_t kLargestBatch = 256;
 
-// A file of paints, open, or a measured BRDF, read when its turn comes.
-struct Input {
-  std::string name;
-  std::optional<formats::PaintReader> reader;
-  std::optional<InputFile> measured;
-};
-
-Result<Input> opened(const std::string& path) {
-  GONIO_ASSIGN(InputFile file, InputFile::open(path));
-  const std::string name = file.name();
-  GONIO_ASSIGN(const std::string_view head, file.peek());
-  if (brdf::looks_measured(path, head)) return Input{name, std::nullopt, std::move(file)};
-  formats::PaintReader reader(std::move(file));
-  reader.read_prolog();
-  return Input{name, std::move(reader), std::nullopt};
-}
-
-Result<std::vector<Input>> open_all(std::vector<std::string> paths) {
+Result<std::vector<FitInput>> open_all(std::vector<std::string> paths) {
   if (paths.empty()) paths = {"-"};
-  std::vector<Input> inputs;
+  std::vector<FitInput> inputs;
   for (const std::string& path : paths) {
-    GONIO_ASSIGN(Input input, opened(path));
+    GONIO_ASSIGN(FitInput input, FitInput::open(path));
+    if (input.reader) input.reader->read_prolog();
     inputs.push_back(std::move(input));
   }
   return inputs;
 }
 
-// Names must stay unique in the output. A reader sees to that within one file; this does between files.
+// Names must stay unique in the output. A reader makes sure of that within one file, and this class between files.
 class NamesOfAll {
  public:
-  explicit NamesOfAll(const std::vector<Input>& inputs) : inputs_(inputs) {}
+  explicit NamesOfAll(const std::vector<FitInput>& inputs) : inputs_(inputs) {}
   Result<void> note(const paint::Paint& paint, std::size_t input, int line) {
     if (inputs_.size() == 1) return {};
     const auto before = ledger_.note(paint.name, static_cast<int>(input) + 1);
@@ -62,14 +46,14 @@ class NamesOfAll {
   }
 
  private:
-  const std::vector<Input>& inputs_;
+  const std::vector<FitInput>& inputs_;
   formats::NameLedger ledger_;
 };
 
 // One run over all inputs.
 class Run {
  public:
-  Run(const fit::PaintFitter& fitter, std::vector<Input>& inputs, formats::PaintWriter& writer, Tally& tally,
+  Run(const fit::PaintFitter& fitter, std::vector<FitInput>& inputs, formats::PaintWriter& writer, Tally& tally,
       ColorMaps& maps, const cli::Session& session)
       : fitter_(fitter),
         inputs_(inputs),
@@ -124,7 +108,7 @@ class Run {
   }
 
   Result<void> measured(std::size_t k) {
-    Input& input = inputs_[k];
+    FitInput& input = inputs_[k];
     GONIO_ASSIGN(fit::BrdfTarget target, fit::read_brdf_target(*input.measured));
     input.measured.reset();
     GONIO_TRY(names_.note(target.paint, k, 1));
@@ -146,7 +130,7 @@ class Run {
   }
 
   const fit::PaintFitter& fitter_;
-  std::vector<Input>& inputs_;
+  std::vector<FitInput>& inputs_;
   formats::PaintWriter& writer_;
   Tally& tally_;
   ColorMaps& maps_;
@@ -162,18 +146,11 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   session.explain(plan(options, fit, basis));
   const fit::PaintFitter fitter(std::move(basis), std::move(fit));
 
-  GONIO_ASSIGN(std::vector<Input> inputs, open_all(options.paints));
-  std::vector<formats::Processing> history;
-  std::vector<std::string> foreign;
-  for (const Input& input : inputs) {
-    if (!input.reader) continue;
-    history.insert(history.end(), input.reader->processing().begin(), input.reader->processing().end());
-    foreign.insert(foreign.end(), input.reader->foreign().begin(), input.reader->foreign().end());
-  }
-  history.push_back({session.tool(), cli::Session::version(), session.command_line()});
-
-  GONIO_ASSIGN(OutputFile file, OutputFile::create(options.output));
-  GONIO_ASSIGN(formats::PaintWriter writer, formats::PaintWriter::begin(std::move(file), history, foreign));
+  GONIO_ASSIGN(std::vector<FitInput> inputs, open_all(options.paints));
+  Prolog prolog;
+  for (const FitInput& input : inputs)
+    if (input.reader) prolog.take(*input.reader);
+  GONIO_ASSIGN(formats::PaintWriter writer, begin_paints(options.output, std::move(prolog), session));
   Tally tally(options, session);
   ColorMaps maps(options, session);
   GONIO_TRY(maps.begin());

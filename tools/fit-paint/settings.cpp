@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/text.h"
+#include "fitting.h"
 #include "math/cosine_power.h"
 
 namespace goniochrome::tool {
@@ -77,7 +78,7 @@ Result<fit::FitOptions> fit_options(const Options& options) {
   fit.method = options.method == "l2"       ? fit::FitMethod::kL2
                : options.method == "deltae" ? fit::FitMethod::kDeltaE
                                             : fit::FitMethod::kL1;
-  fit.target = options.target == "curve" ? paint::TargetCurve::Kind::kCurve : paint::TargetCurve::Kind::kMeasured;
+  fit.target = target_kind(options.target);
   fit.perceptual_weights = options.weights == "perceptual";
   fit.most_lobes = options.lobes;
   fit.prune_de00 = options.prune_de00;
@@ -94,7 +95,7 @@ Result<fit::FitOptions> fit_options(const Options& options) {
 std::string plan(const Options& options, const fit::FitOptions& fit, const formats::Basis& basis) {
   std::vector<double> seen, unseen;
   for (const double e : basis.exponents)
-    (math::cos_power(15 * M_PI / 180, e) >= fit::kSeenPart ? seen : unseen).push_back(e);
+    (brdf::cos_power(15 * M_PI / 180, e) >= fit::kSeenPart ? seen : unseen).push_back(e);
   std::string text = fmt::format(
       "basis {}: {} lobes{}\n"
       "  flake lobes at a first reading of 15 deg:{}\n"

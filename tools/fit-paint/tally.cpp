@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kWarningsShown = 10;
 constexpr std::size_t kWorstShown = 5;
-constexpr double kBad_de00 = 2;  // paints above are named
+constexpr double kBad_de00 = 2;  // the summary names paints that are worse
 constexpr double kSpreadStep = 0.01;
 
 Json by_geometry(const std::vector<fit::GeometryError>& errors) {
@@ -164,8 +164,8 @@ std::string Tally::summary() const {
   return line + fmt::format("; {:.0f} fits/s", rate);
 }
 
-// The mean, and what 95 % of the readings cannot all be below: of each two that contradict each other one is at least
-// as far off as the least of the larger difference, whatever the fit.
+// The least mean, and the least difference that 95 % of the readings can be below. Of two readings that contradict each
+// other, no fit meets both: the worse one is off by at least the smallest value that the larger difference can have.
 std::string Tally::floor() const {
   const auto readings = static_cast<double>(std::max<std::size_t>(errors_.count(), 1));
   return fmt::format("dE00 mean {:.2f}, 95 % below {:.2f}", sum_floor_ / readings, floors_.all_but(0.05 * readings));

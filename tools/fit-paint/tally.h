@@ -6,17 +6,17 @@
 
 #include "cli/tool.h"
 #include "fit/paint_fit.h"
-#include "options.h"
+#include "tool.h"
 
 namespace goniochrome::tool {
 
-// Color differences in constant memory, in steps of 0.01.
+// The distribution of color differences in steps of 0.01, which takes constant memory.
 class Spread {
  public:
   void add(double de00);
   std::size_t count() const { return count_; }
   double mean() const { return count_ > 0 ? sum_ / static_cast<double>(count_) : 0; }
-  // What no more than `most` values exceed, rounded down to a step.
+  // The difference that no more than `most` values exceed, rounded down to a step.
   double all_but(double most) const;
 
  private:

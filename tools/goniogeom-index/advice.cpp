@@ -9,7 +9,7 @@ namespace goniochrome::tool {
 
 namespace {
 
-constexpr double kLowAspecular_deg = 45;  // the highlight's side of the curve
+constexpr double kLowAspecular_deg = 45;  // smaller angles are on the highlight's side of the curve
 constexpr std::size_t kMostFitted = 600;  // views for the trial fits
 
 struct Rms {
@@ -51,7 +51,7 @@ std::vector<std::string> advice(const paint::Paint& paint, const SeamRequest& re
   std::ranges::sort(folds);
   const double fold = folds[folds.size() * 95 / 100];
 
-  // Under lights of the environment the views of an instrument stand in: there is no one aspecular angle to name.
+  // Under an environment there is no single aspecular angle, so that the views of an instrument are used instead.
   const bool has_lights = !views.empty() && views.front().light.has_value();
   std::vector<panels::PanelView> seen, near_side, far_side;
   Rms low, high;
@@ -59,7 +59,7 @@ std::vector<std::string> advice(const paint::Paint& paint, const SeamRequest& re
     const panels::PanelView view = panels::panel_view(seam, views[i]);
     seen.push_back(view);
     (view.aspecular_a_deg <= kLowAspecular_deg ? low : high).add(de[i], view.weight);
-    // Where the second panel is turned toward the highlight, against where it is turned away from it.
+    // Views where the second panel is turned toward the highlight, and views where it is turned away from it.
     (view.aspecular_b_deg < view.aspecular_a_deg ? near_side : far_side).push_back(view);
   }
   double index = std::numeric_limits<double>::infinity();

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kLastView_deg = 85;
 
-// The difference at a misalignment, or NaN where it is not looked at.
+// The difference at a misalignment. It is NaN in glare, and where the viewer does not see the second panel.
 double value(const DifferenceCurves& what, const panels::FlakeCurve& curve, const panels::LightView& geometry,
              double b_deg) {
   const panels::TiltedPair pair = panels::TiltedPair::make(geometry, what.seam_deg);

@@ -1,4 +1,4 @@
-// The picture of a paint's index: color difference against viewing angle. [Shimizu2009] figure 4.3
+// The picture of a paint's index, as in [Shimizu2009] figure 4.3: color difference against viewing angle.
 #pragma once
 
 #include <string>

@@ -129,7 +129,7 @@ column() { sed -n 2p | cut -f "$1"; }
   [ "$status" -eq 3 ]
 }
 
-@test "standard input, any number of threads, the same bytes; --explain tells the plan" {
+@test "standard input gives the same bytes for any number of threads, and --explain tells the plan" {
   goniogeom-index -q --threads 1 <"$paints" >a.tsv
   goniogeom-index -q --threads 7 "$paints" -o b.tsv
   cmp a.tsv b.tsv
@@ -137,7 +137,7 @@ column() { sed -n 2p | cut -f "$1"; }
   [[ "$stderr" =~ "1 pairs of light and viewer; left out: 1 within 10 deg of the mirror direction" ]]
 }
 
-@test "a seam of the speed shape: bumper 8 degrees out, door in line" {
+@test "on the speed shape the bumper is 8 degrees out and the door in line" {
   shape="--mesh $TESTDATA/speed-shape.obj"
   run --separate-stderr goniogeom-index "$paints" --only silver_fine $shape --seam Hood,Bumper_F --report r.json -o s.tsv
   [ "$status" -eq 0 ]
@@ -159,7 +159,7 @@ column() { sed -n 2p | cut -f "$1"; }
   [ "$(head -c 4 s.png | tail -c 3)" = PNG ]
 }
 
-@test "lights, viewers and an environment in the world" {
+@test "lights, viewers and an environment may stand in the world" {
   shape="--mesh $TESTDATA/speed-shape.obj --seam Hood,Bumper_F"
   near=$(goniogeom-index "$paints" --only silver_fine $shape --light-from 0,75 --view-from 25,20 --worst -q | column 11)
   far=$(goniogeom-index "$paints" --only silver_fine $shape --light-from 180,60 --view-from 180,70 --worst -q | column 11)
@@ -169,7 +169,7 @@ column() { sed -n 2p | cut -f "$1"; }
   awk -v a="$env" 'BEGIN { exit !(a > 2 && a < 40) }'
 }
 
-@test "units and gaps" {
+@test "--unit and --max-gap decide what is a seam" {
   awk '$1 == "v" { printf "v %.9g %.9g %.9g\n", $2 * 1000, $3 * 1000, $4 * 1000; next } { print }' \
     "$TESTDATA/speed-shape.obj" >mm.obj
   run --separate-stderr goniogeom-index "$paints" --only silver_fine --mesh mm.obj --seam Hood,Bumper_F --worst

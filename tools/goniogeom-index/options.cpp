@@ -1,20 +1,31 @@
-#include "options.h"
+#include "tool.h"
 
-#include <iterator>
-
-#include "../seam_options.h"
 #include "base/text.h"
+#include "paint_stream.h"
+#include "panels.h"
 
 namespace goniochrome::tool {
 
 namespace {
 
 std::string sets_text() {
-  std::string text = "Named sets are";
+  std::string text =
+      "Lights are polar angles from the normal of the first panel. Views are polar angles, positive on the far side of "
+      "the normal from the light, or aspecular angles where they begin with as. Both are lists of numbers, ranges "
+      "FIRST:LAST:STEP and named sets. The named sets are";
   for (const panels::GeometrySet& set : panels::geometry_sets())
     text += fmt::format("{} set:{} (lights {}, views {}: {})", &set == &panels::geometry_sets().front() ? "" : ";",
                         set.name, set.lights, set.views, set.meaning);
   return text + ".";
+}
+
+Result<DifferenceRequest> difference_of(const Options& options) {
+  if (!(options.threshold > 0))
+    return usage_error("--threshold is {}: give a color difference above 0", shortest(options.threshold));
+  return DifferenceRequest{
+      options.metric == "de00" ? panels::DifferenceMetric::kDe00 : panels::DifferenceMetric::kDe76,
+      options.target == "curve" ? paint::TargetCurve::Kind::kCurve : paint::TargetCurve::Kind::kMeasured,
+      options.threshold};
 }
 
 }  // namespace
@@ -24,9 +35,7 @@ Result<IndexRequest> request_of(const Options& options) {
   if (options.seam.names_anything_but_mesh() || !options.picture.empty() || options.advise)
     return usage_error(
         "--seam, --light-from, --view-from, --environment, --picture and --advise are for a mesh: give --mesh");
-  if (!(options.threshold > 0))
-    return usage_error("--threshold is {}: give a color difference above 0", shortest(options.threshold));
-  request.threshold = options.threshold;
+  GONIO_ASSIGN(static_cast<DifferenceRequest&>(request), difference_of(options));
   if (options.tolerance_for_deg.size() > 1)
     return usage_error("--tolerance-for is given {} angles: give one", options.tolerance_for_deg.size());
   if (!options.tolerance_for_deg.empty()) {
@@ -37,8 +46,6 @@ Result<IndexRequest> request_of(const Options& options) {
   for (const std::string& curve : options.curves)
     if (!curve.ends_with(".csv") && !curve.ends_with(".svg"))
       return usage_error("--curve is \"{}\": give a name that ends in .csv or .svg", curve);
-  request.metric = options.metric == "de00" ? panels::DifferenceMetric::kDe00 : panels::DifferenceMetric::kDe76;
-  request.target = options.target == "curve" ? paint::TargetCurve::Kind::kCurve : paint::TargetCurve::Kind::kMeasured;
   request.one_row = options.worst || request.tolerance_deg;
   GONIO_ASSIGN(panels::GeometryList list, panels::geometry_list(options.geometries));
   request.glare = list.glare, request.below_horizon = list.below_horizon;
@@ -55,139 +62,115 @@ Result<SeamRequest> seam_request_of(const Options& options) {
     return usage_error("--tolerance-for and --curve are for panels without a mesh: leave out --mesh");
   if (!options.picture.empty() && !options.picture.ends_with(".png"))
     return usage_error("--picture is \"{}\": give a name that ends in .png", options.picture);
-  if (!(options.threshold > 0))
-    return usage_error("--threshold is {}: give a color difference above 0", shortest(options.threshold));
-  request.threshold = options.threshold;
-  request.metric = options.metric == "de00" ? panels::DifferenceMetric::kDe00 : panels::DifferenceMetric::kDe76;
-  request.target = options.target == "curve" ? paint::TargetCurve::Kind::kCurve : paint::TargetCurve::Kind::kMeasured;
+  GONIO_ASSIGN(static_cast<DifferenceRequest&>(request), difference_of(options));
   GONIO_ASSIGN(request.geometries, panels::geometry_list(options.geometries));
   return request;
 }
 
-cli::ToolSpec tool_spec(Options& o) {
-  cli::ToolSpec spec;
-  spec.name = "goniogeom-index";
-  spec.summary = "the angle at which two panels of one paint stop matching";
-  spec.description = {
-      "goniogeom-index takes two panels of one paint that meet at a seam, one turned about the seam against the other, "
-      "with light and viewer at rest. Each panel shows its color at its own aspecular angle, times the cosine of its "
-      "light. The goniogeometric index is the smallest angle at which the color difference reaches --threshold: for "
-      "positive angles, which turn the second panel toward the light, and for negative ones. Gloss is left out: "
-      "highlights need not line up for panels to match, and pairs of light and viewer within 10 degrees of the mirror "
-      "direction are passed over.",
-      "The difference rises and falls with the angle. The index is its first crossing, found in steps that cannot jump "
-      "over one, and bracketed to 1e-9 degrees; it reads none where the threshold is not reached before the second "
-      "panel turns its back to the viewer.",
-      "One row of tab-separated values is written for each paint and pair: name, light, view, azimuth, aspecular "
-      "angle, index for + and for -, and the difference at 1, 2 and 5 degrees (the larger of both signs; - where "
-      "neither panel is seen). With --worst and --tolerance-for there is one row for each paint, that of its smallest "
-      "index.",
-      "Lights are polar angles from the normal of the first panel. Views are polar angles, positive on the far side of "
-      "the normal from the light, or aspecular angles where they start with as. Both are lists of numbers, ranges "
-      "FIRST:LAST:STEP and named sets. " +
-          sets_text(),
-      "With --mesh and --seam A,B the panels are two parts of a mesh. They meet where their skins end: at open edges, "
-      "folds and tight bends, so that a rolled border belongs to the gap. Gap, flush, the angle between the smooth "
-      "normals and its part about the seam (positive for a ridge) are written for every place along the seam, with the "
-      "largest and the RMS difference over the lights and viewers, which stand to the first panel at every place as "
-      "they would to a flat one, the light from either side of the seam. --light-from and --view-from put them into "
-      "the world instead, and --environment takes the light of a prefiltered environment. Shadows and reflections of "
-      "the mesh on itself are left out. Meshes of more than 30 units are taken as millimeters.",
-      "--tolerance-for DEG answers for a whole library which paints stay under the threshold at every angle up to DEG: "
-      "the verdict stands in the last column, those that fail are listed on standard error, and the exit status is 1 "
-      "if there are any."};
-  spec.inputs = {.value = "PAINTS", .help = "paint XML files; standard input where none is given", .target = &o.inputs};
-  spec.options = {
-      {.name = "output", .letter = 'o', .value = "FILE", .help = "table to write", .target = &o.output},
-      {.name = "only", .value = "NAME", .help = "take the paints of this name; repeatable", .target = &o.only},
-  };
-  std::ranges::move(geometry_options(o.geometries, o.seam_deg), std::back_inserter(spec.options));
-  spec.options.insert(
-      spec.options.end(),
-      {
-          {.name = "threshold",
-           .letter = 't',
-           .value = "DE",
-           .help = "color difference that is seen",
-           .target = &o.threshold,
-           .low = 0,
-           .high = 1000},
-          {.name = "metric",
-           .value = "METRIC",
-           .help = "color difference formula",
-           .target = &o.metric,
-           .choices = {"de76", "de00"}},
-          {.name = "target",
-           .value = "KIND",
-           .help = "face, flop and travel (fitted where the paint has only rows), or a monotone curve through the rows",
-           .target = &o.target,
-           .choices = {"curve", "measured"}},
-          {.name = "worst", .help = "one row for each paint: the smallest index", .target = &o.worst},
-          {.name = "tolerance-for",
-           .value = "DEG",
-           .help = "tell the paints that stay under the threshold at every angle up to this",
-           .target = &o.tolerance_for_deg,
-           .low = 0,
-           .high = 90},
-          {.name = "curve",
-           .value = "FILE",
-           .help =
-               "write the difference of one paint against viewing angle, for each light and misalignment, as .csv or "
-               ".svg; repeatable",
-           .target = &o.curves},
-          {.name = "misalignments",
-           .value = "LIST",
-           .help = "angles of --curve in degrees, positive toward the light",
-           .target = &o.misalignments_deg,
-           .low = -90,
-           .high = 90},
-      });
-  std::ranges::move(seam_options(o.seam), std::back_inserter(spec.options));
-  spec.options.insert(spec.options.end(), {
-                                              {.name = "picture",
-                                               .value = "FILE",
-                                               .help = "PNG of the seam, colored by the difference of one paint",
-                                               .target = &o.picture},
-                                              {.name = "advise",
-                                               .help = "tell which styling guidelines apply to the seam, with figures",
-                                               .target = &o.advise},
-                                          });
+namespace {
+
+void add_options(cli::ToolSpec& spec, Options& o) {
+  spec.heading = "difference";
+  spec.option("threshold,t", "DE", "1", &o.threshold, "color difference that is seen")
+      .from(0, 1000)
+      .in("units of the metric");
+  spec.option("metric", "METRIC", "de00", &o.metric, "color difference: CIE 1976 (de76) or CIEDE2000 (de00)")
+      .one_of({"de76", "de00"});
+  spec.option("target", "KIND", "measured", &o.target, "color that a panel shows")
+      .one_of({"curve", "measured"})
+      .more(
+          "curve is face, flop and travel, which are fitted where the paint has only rows. measured is a monotone "
+          "curve "
+          "through the rows.");
+  spec.heading = "verdict";
+  spec.flag("worst", &o.worst, "write one row for each paint: its smallest index");
+  spec.option("tolerance-for", "DEG", "1", &o.tolerance_for_deg, "judge the paints by every angle up to this one")
+      .from(0, 90)
+      .more(
+          "The last column tells for a whole library which paints stay under the threshold. Those that fail are also "
+          "listed on standard error, and if there are any, the exit status is 1.");
+  add_seam_options(spec, o.seam);
+  spec.flag("advise", &o.advise, "tell which styling guidelines apply to the seam, with figures");
+  spec.heading = "input and output";
+  add_only_option(spec, o.only, "take only the paints of this name");
+  spec.option("output,o", "FILE", "index.tsv", &o.output, "table to write; - is standard output");
+  spec.option("curve", "FILE", "curve.svg", &o.curves, "difference of one paint against viewing angle, .csv or .svg")
+      .more("There is a curve for each light and misalignment.");
+  spec.option("misalignments", "LIST", "1,2,3,5", &o.misalignments_deg, "angles of --curve, positive toward the light")
+      .from(-90, 90)
+      .in("degrees");
+  spec.option("picture", "FILE", "seam.png", &o.picture, "PNG of the seam, colored by the difference of one paint");
+  cli::add_common_options(spec, o.common, {.explain = true});
+}
+
+// The examples, the keys of --report, and the pages to see.
+void add_report(cli::ToolSpec& spec) {
   spec.examples = {
       {"goniogeom-index testdata/paints.paints.xml --worst -o index.tsv",
-       "The angle at which each paint of a library shows a panel gap, in the geometries of an instrument."},
+       "find the angle at which each paint of a library shows a panel gap, in the geometries of an instrument"},
       {"goniogeom-index testdata/paints.paints.xml --only silver_fine --lights set:showroom --views set:showroom",
-       "One paint under the lights of a showroom."},
+       "judge one paint under the lights of a showroom"},
       {"goniogeom-index testdata/paints.paints.xml --only silver_fine --lights 30,45 --curve curve.svg --curve "
        "curve.csv -o index.tsv",
-       "How far panels differ from every side, for misalignments of 1, 2, 3 and 5 degrees."},
+       "show how far panels differ from every side, for misalignments of 1, 2, 3 and 5 degrees"},
       {"goniogeom-index testdata/paints.paints.xml --only silver_fine --mesh testdata/speed-shape.obj --seam "
        "Hood,Bumper_F --picture seam.png --advise -o seam.tsv",
-       "The seam between hood and bumper in one silver: a table, a picture and advice."},
-  };
+       "judge the seam between hood and bumper in one silver by a table, a picture and advice"}};
   spec.report = {
       {"paints[].name", "the paint"},
       {"paints[].status", "done, or failed with a message: the paint has no color"},
-      {"paints[].residual_de00", "worst row of the curve that was fitted; null where it was stated"},
+      {"paints[].residual_de00", "worst row of the curve that was fitted; null where the paint states its curve"},
       {"paints[].geometries[].light_deg", "the light, from the normal of the first panel"},
       {"paints[].geometries[].view_deg", "the viewer, positive on the far side of the normal from the light"},
-      {"paints[].geometries[].azimuth_deg", "of the viewer about the normal"},
+      {"paints[].geometries[].azimuth_deg", "azimuth of the viewer about the normal"},
       {"paints[].geometries[].aspecular_deg", "aspecular angle at the first panel"},
-      {"paints[].geometries[].index_plus_deg", "first crossing for turns toward the light; null: none"},
-      {"paints[].geometries[].index_minus_deg", "first crossing for turns away from the light; null: none"},
+      {"paints[].geometries[].index_plus_deg", "first crossing for turns toward the light; null where there is none"},
+      {"paints[].geometries[].index_minus_deg",
+       "first crossing for turns away from the light; null where there is none"},
       {"paints[].geometries[].de_at_1deg",
-       "difference at 1 degree, the larger of both signs; also de_at_2deg, "
-       "de_at_5deg"},
-      {"paints[].worst_deg", "the smallest index; null: none"},
-      {"worst_deg", "the smallest index of all paints"},
-      {"seam_length_m", "with --mesh; also unit_m, misalignment_deg, gap_mm and flush_mm (low, median, high), repairs"},
-      {"paints[].de_max", "with --mesh: the largest difference along the seam; de_rms: of all places and views"},
-      {"paints[].over_threshold", "with --mesh: the part of the seam that reaches the threshold"},
-      {"paints[].seam[]", "with --mesh: the rows of the table"},
+       "difference at 1 degree, the larger one of both signs; de_at_2deg and de_at_5deg stand beside it"},
+      {"paints[].worst_deg", "smallest index of the paint; null where there is none"},
+      {"worst_deg", "smallest index of all paints"},
+      {"seam_length_m",
+       "with --mesh; beside it stand unit_m, misalignment_deg, gap_mm and flush_mm (low, median, high), and repairs"},
+      {"paints[].de_max", "with --mesh: largest difference along the seam; de_rms is that over all places and views"},
+      {"paints[].over_threshold", "with --mesh: part of the seam that reaches the threshold"},
+      {"paints[].seam[]", "with --mesh: rows of the table"},
       {"paints[].advice[]", "with --advise: one line for each guideline"},
-      {"failing", "with --tolerance-for: the names of the paints that do not stay under the threshold"},
-  };
+      {"failing", "with --tolerance-for: names of the paints that do not stay under the threshold"}};
   spec.see_also = {"trompe-fit(1)", "paint-stats(1)", "goniochrome-theory(7)"};
-  cli::add_common_options(spec, o.common, {cli::Common::kExplain});
+}
+
+}  // namespace
+
+cli::ToolSpec tool_spec(Options& o) {
+  cli::ToolSpec spec{.name = "goniogeom-index", .summary = "the angle at which two panels of one paint stop matching"};
+  spec.description = {
+      "goniogeom-index takes two panels of one paint that meet at a seam. One of them is turned about the seam against "
+      "the other, with light and viewer at rest. Each panel shows its color at its own aspecular angle, times the "
+      "cosine of its light. The goniogeometric index is the smallest angle at which the color difference reaches "
+      "--threshold. There is one for positive angles, which turn the second panel toward the light, and one for "
+      "negative angles. Gloss is left out, because highlights need not line up for panels to match, and pairs of light "
+      "and viewer within 10 degrees of the mirror direction are passed over.",
+      "The difference rises and falls with the angle. The index is its first crossing, which is found in steps that "
+      "cannot jump over one, and bracketed to 1e-9 degrees. It reads none where the threshold is not reached before "
+      "the second panel turns its back to the viewer.",
+      "One row of tab-separated values is written for each paint and pair: name, light, view, azimuth, aspecular "
+      "angle, index for + and for -, and the difference at 1, 2 and 5 degrees. This is the larger one of both signs, "
+      "and - where neither panel is seen. With --worst and --tolerance-for there is one row for each paint, that of "
+      "its smallest index.",
+      sets_text(),
+      "With --mesh and --seam A,B, the panels are two parts of a mesh. They meet where their skins end: at open edges, "
+      "folds and tight bends, so that a rolled border belongs to the gap. For every place along the seam, the table "
+      "has the gap, the flush, the angle between the smooth normals and its part about the seam (positive for a "
+      "ridge), and the largest and the RMS difference over the lights and viewers. These stand to the first panel at "
+      "every place as they would to a flat one, with the light from either side of the seam. --light-from and "
+      "--view-from put them into the world instead, and --environment takes the light of a prefiltered environment. "
+      "Shadows and reflections of the mesh on itself are left out."};
+  spec.inputs = {"PAINTS", "paint XML files; standard input where none is given", &o.inputs};
+  add_geometry_options(spec, o.geometries, o.seam_deg);
+  add_options(spec, o);
+  add_report(spec);
   return spec;
 }
 

@@ -1,15 +1,15 @@
-#include "run.h"
+#include "tool.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "../table_output.h"
 #include "base/file.h"
 #include "base/parallel.h"
 #include "base/text.h"
 #include "curve.h"
-#include "formats/batches.h"
-#include "seam_run.h"
+#include "paint_stream.h"
+#include "panels.h"
+#include "table_output.h"
 
 namespace goniochrome::tool {
 
@@ -129,12 +129,8 @@ class Run {
     GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
     GONIO_TRY(file.write(table_head(request_)));
     session_.begin_list("paints");
-    for (;;) {
-      GONIO_ASSIGN(std::vector<paint::Paint> batch, paints.next());
-      if (batch.empty()) break;
-      GONIO_TRY(take(batch, file));
-      session_.progress(fmt::format("{} paints", done_));
-    }
+    GONIO_TRY(
+        for_each_batch(paints, session_, [&](const std::vector<paint::Paint>& batch) { return take(batch, file); }));
     GONIO_TRY(file.commit());
     return finish();
   }
@@ -176,8 +172,7 @@ class Run {
   }
 
   Result<void> write_curves(const paint::Paint& paint) {
-    if (done_ > 1)
-      return usage_error("--curve draws one paint and there is another, \"{}\": choose one by --only", paint.name);
+    GONIO_TRY(check_only_paint(static_cast<int>(done_), "--curve draws", paint.name));
     GONIO_ASSIGN(const panels::FlakeCurve curve, panels::FlakeCurve::make(paint, request_.target));
     GONIO_ASSIGN(const std::vector<double> lights, panels::light_angles(options_.geometries.lights));
     const DifferenceCurves what{paint.name, options_.seam_deg,         request_.threshold, request_.metric,

@@ -7,8 +7,8 @@
 #include "base/result.h"
 #include "image/image.h"
 #include "mesh/mesh.h"
-#include "options.h"
 #include "panels/seam.h"
+#include "tool.h"
 
 namespace goniochrome::tool {
 
@@ -18,8 +18,8 @@ struct SeamPicture {
   std::vector<panels::SeamDifference> places;  // of the seam
 };
 
-// The mesh in gray, both panels lighter than the rest, every place of the seam as a dot in the color of its largest
-// difference, and a scale. Error: no OpenGL on this machine.
+// Draws the mesh in gray, with both panels lighter than the rest. Every place of the seam is a dot in the color of its
+// largest difference, and a scale explains the colors. Error: this machine has no OpenGL.
 Result<image::Image> seam_picture(const mesh::Mesh& mesh, const SeamRequest& request, const mesh::Seam& seam,
                                   const SeamPicture& picture);
 

@@ -1,15 +1,16 @@
-#include "seam_run.h"
+#include "tool.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "../table_output.h"
 #include "advice.h"
 #include "base/file.h"
 #include "base/parallel.h"
 #include "base/text.h"
-#include "formats/batches.h"
+#include "paint_stream.h"
+#include "panels.h"
 #include "seam_picture.h"
+#include "table_output.h"
 
 namespace goniochrome::tool {
 
@@ -63,11 +64,11 @@ class SeamRun {
     GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
     GONIO_TRY(
         file.write("name\trun\tdistance_m\tx\ty\tz\tgap_mm\tflush_mm\tangle_deg\tfold_deg\tde_max\tde_rms\tviews\n"));
-    for (;;) {
-      GONIO_ASSIGN(std::vector<paint::Paint> batch, paints.next());
-      if (batch.empty()) break;
+    const auto take_all = [&](const std::vector<paint::Paint>& batch) -> Result<void> {
       for (const paint::Paint& paint : batch) GONIO_TRY(take(paint, file));
-    }
+      return {};
+    };
+    GONIO_TRY(for_each_batch(paints, session_, take_all));
     GONIO_TRY(file.commit());
     return failed_ > 0 ? cli::Verdict::kNegative : cli::Verdict::kDone;
   }
@@ -133,21 +134,18 @@ class SeamRun {
         session_.results()["paints"].back()["advice"].push_back(line);
       }
     if (options_.picture.empty()) return {};
-    if (++pictures_ > 1)
-      return usage_error("--picture draws one paint and there is another, \"{}\": choose one by --only", paint.name);
+    GONIO_TRY(check_only_paint(++pictures_, "--picture draws", paint.name));
     const SeamPicture picture{fmt::format("{}: {} | {}", paint.name, request_.world.part_a, request_.world.part_b),
                               request_.threshold, places};
     GONIO_ASSIGN(const image::Image image, seam_picture(stage_.mesh, request_, stage_.seam, picture));
-    return image::write_png(
-        options_.picture, image,
-        {{"Software", session_.tool() + " " + cli::Session::version()}, {"Comment", session_.command_line()}});
+    return write_picture(options_.picture, image, session_);
   }
 
   Result<void> write_rows(const paint::Paint& paint, const std::vector<panels::SeamDifference>& places,
                           OutputFile& file) {
     std::size_t first = 0, last = places.size();
     if (options_.worst) {
-      // NaN compares false: places without views are never the worst.
+      // A comparison with NaN is false, so that a place without views is never the worst.
       for (std::size_t i = 0; i < places.size(); ++i)
         if (places[i].views > 0 && (places[first].views == 0 || places[i].max > places[first].max)) first = i;
       last = first + 1;

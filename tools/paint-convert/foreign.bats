@@ -27,7 +27,7 @@ brdf() {
   }'
 }
 
-@test "XML, table, CxF and CGATS in a circle: every Lab, name, gloss and observer as before" {
+@test "XML, table, CxF and CGATS in a circle keep every Lab, name, gloss and observer" {
   paint-convert -q paints.csv -o 1.xml
   paint-convert -q 1.xml --to csv --columns all -o 2.csv
   cmp paints.csv 2.csv
@@ -40,7 +40,7 @@ brdf() {
   paint-convert -q 6.cxf --to csv --columns all | cmp - paints.csv
 }
 
-@test "the sample library through CxF and CGATS" {
+@test "the sample library passes through CxF and CGATS unchanged" {
   paint-convert -q "$TESTDATA/paints.csv" --to cxf | paint-convert -q --to cgats | paint-convert -q --to csv | cmp - "$TESTDATA/paints.csv"
 }
 
@@ -51,7 +51,7 @@ brdf() {
   grep -q '<cc:CreationDate>2023-11-14T22:13:20Z</cc:CreationDate>' a.cxf
 }
 
-@test "CGATS of another program: names with spaces, decimal commas, what it leaves open" {
+@test "CGATS of another program is read: names with spaces, decimal commas, what it leaves open" {
   printf 'ECI2002\nBEGIN_DATA_FORMAT\nSampleID\tSAMPLE_NAME\tLAB_L\tLAB_A\tLAB_B\nEND_DATA_FORMAT\nBEGIN_DATA\n1\tPaper white\t95,5\t-0.2\t1.5\nEND_DATA\n' >other.txt
   run --separate-stderr paint-convert other.txt --to csv
   [ "$status" -eq 0 ]
@@ -62,7 +62,7 @@ brdf() {
   [ "${lines[1]}" = "Paper white,45as45,D65,10,95.5,-0.2,1.5" ]
 }
 
-@test "bad CGATS: line and cell are named; --keep-going keeps the good rows" {
+@test "bad CGATS is told by line and cell, and --keep-going keeps the good rows" {
   printf "${head}BEGIN_DATA_FORMAT\nSAMPLE_NAME GEOMETRY LAB_L LAB_A LAB_B\nEND_DATA_FORMAT\nBEGIN_DATA\np 15 1 2 x\nq 15 4 5 6\nEND_DATA\n" >bad.cgats
   run --separate-stderr paint-convert bad.cgats -o out.xml
   [ "$status" -eq 3 ]
@@ -91,7 +91,7 @@ brdf() {
   [[ "$stderr" == *'L is "1,5": write a number with a decimal point'* ]]
 }
 
-@test "what the formats cannot hold" {
+@test "what CxF and CGATS cannot hold is named" {
   printf '%s\n' sample,geometry,illuminant,observer,L,a,b dark,45as110,D65,10,-0.5,0,0 >dark.csv
   run --separate-stderr paint-convert dark.csv --to cxf -o dark.cxf
   [ "$status" -eq 3 ]
@@ -121,7 +121,7 @@ brdf() {
   [[ "${lines[1]}" =~ ^measured,45as15 ]]
 }
 
-@test "measured BRDFs that are none, or asked for the impossible" {
+@test "files that are no measured BRDFs are refused, and so are impossible requests" {
   brdf 7 | sed 's/^0.6[0-9]* 0/0.6/' >short.brdf
   run --separate-stderr paint-convert short.brdf
   [ "$status" -eq 3 ]
@@ -140,7 +140,7 @@ brdf() {
   [ "$status" -eq 2 ]
 }
 
-@test "cayman metallic against the published table" {
+@test "the cayman metallic reads as the published table says" {
   real_data
   run --separate-stderr paint-convert "$GONIOCHROME_DATA/brdf/cornell/cayman.brdf" --to csv --observer 2 \
     --geometry 45as15,45as25,45as45,45as75,45as110

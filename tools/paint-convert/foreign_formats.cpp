@@ -14,7 +14,7 @@ namespace {
 using SourcePointer = std::unique_ptr<PaintSource>;
 using SinkPointer = std::unique_ptr<PaintSink>;
 
-// A format that is read as a whole, at the first call of next(): paints, and what was left out.
+// A format that is read as a whole at the first call of next(). It gives paints, and tells what was left out.
 class ImportedSource : public PaintSource {
  public:
   using Read = Result<formats::ImportedPaints> (*)(InputFile input, const formats::ImportOptions& options);
@@ -99,7 +99,7 @@ std::vector<std::string> cautions(const brdf::MeasuredColor& color) {
   return lines;
 }
 
-// A measured BRDF is one paint, named for its file.
+// A measured BRDF is one paint, which has the name of its file.
 class MeasuredSource : public PaintSource {
  public:
   MeasuredSource(InputFile input, const SourceSetup& setup)

@@ -1,4 +1,4 @@
-// Formats of other people as sources and sinks of paint-convert: CxF3, CGATS.17 and measured BRDFs.
+// The formats of other programs as sources and sinks of paint-convert: CxF3, CGATS.17 and measured BRDFs.
 #pragma once
 
 #include <memory>

@@ -13,15 +13,9 @@
 #include "base/result.h"
 #include "formats/csv.h"
 #include "formats/imported.h"
-#include "formats/xml.h"
+#include "paint_stream.h"
 
 namespace goniochrome::tool {
-
-// What stood in front of the first paint.
-struct Prolog {
-  std::vector<formats::Processing> processing;
-  std::vector<std::string> foreign;
-};
 
 class PaintSource {
  public:

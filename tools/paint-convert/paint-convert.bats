@@ -33,7 +33,7 @@ lab() { grep -oE '<(paint name|lab) [^>]*' "$1"; }
   done
 }
 
-@test "standard input to standard output, found by the first bytes" {
+@test "standard input is recognized by its first bytes and goes to standard output" {
   run --separate-stderr bash -c 'paint-convert <ab.csv'
   [ "$status" -eq 0 ]
   [[ "$output" == '<?xml'*'<paint name="a">'*'</paints>' ]]
@@ -137,7 +137,7 @@ END
   [ "$(grep -c '<paint ' <<<"$output")" -eq 2 ]
 }
 
-@test "a wrong value: exit 3, one line that names it, the old file stays" {
+@test "a wrong value exits 3 with one line that names it, and the old file stays" {
   sed -i 's/-28/minus/' ab.csv
   echo old >out.xml
   run --separate-stderr paint-convert ab.csv -o out.xml
@@ -173,7 +173,7 @@ END
   [[ "$stderr" == *'x.xml:1: paint "x" has neither readings nor face and flop: a long table cannot hold it' ]]
 }
 
-@test "inputs that are none" {
+@test "inputs that hold no paints are refused" {
   run --separate-stderr paint-convert missing.csv -o out.xml
   [ "$status" -eq 3 ]
   [[ "$stderr" == "paint-convert: missing.csv: cannot be read: No such file or directory" ]]
@@ -195,7 +195,7 @@ END
   [[ "$stderr" == *"ab.csv:1: this is not XML"* ]]
 }
 
-@test "formats: right, wrong and missing" {
+@test "--from and --to choose the formats; wrong and missing ones are refused" {
   run --separate-stderr paint-convert --from csv --to xml ab.csv
   [ "$status" -eq 0 ]
   run --separate-stderr paint-convert --to wide ab.csv -o out.dat
@@ -219,7 +219,7 @@ END
   [[ "$stderr" == *"did you mean --from?"* ]]
 }
 
-@test "the report: to a file, to standard output, and not among the data" {
+@test "the report goes to a file or to standard output, and never among the data" {
   run --separate-stderr paint-convert ab.csv -o out.xml --report -
   [ "$status" -eq 0 ]
   [[ "$output" == *'"tool": "paint-convert"'*'"read": 2'*'"warnings": []'* ]]
@@ -236,7 +236,7 @@ END
   [[ "$stderr" == *"rows: only 45as15"*"fitted to the rows"* ]]
 }
 
-@test "output that cannot be written" {
+@test "an output that cannot be written is an error, and the old file stays" {
   run --separate-stderr paint-convert ab.csv -o no/such/folder/out.xml
   [ "$status" -eq 3 ]
   run --separate-stderr bash -c 'paint-convert ab.csv >/dev/full'

@@ -1,4 +1,4 @@
-#include "run.h"
+#include "tool.h"
 
 #include <cstdlib>
 #include <ctime>
@@ -19,8 +19,8 @@ struct Input {
   std::unique_ptr<PaintSource> source;
 };
 
-// Opens each input once to see that it is there and what stood before its first paint. Files are closed again, since
-// there may be more of them than can be open; what cannot be opened twice stays open.
+// Opens each input once, to make sure that it is there and to read what stands before its first paint. Files are closed
+// again, since there may be more of them than can be open at once. An input that cannot be opened twice stays open.
 Result<std::vector<Input>> surveyed(const Options& options, const SourceSetup& source_setup, SinkSetup& setup,
                                     cli::Session& session) {
   std::vector<std::string> paths = options.inputs;
@@ -29,9 +29,9 @@ Result<std::vector<Input>> surveyed(const Options& options, const SourceSetup& s
   for (const std::string& path : paths) {
     GONIO_ASSIGN(auto source, open_source(path, options.from, source_setup));
     session.explain(fmt::format("{}: {}\n", path == "-" ? "standard input" : path, source->format()));
-    Prolog prolog = source->prolog();
-    std::ranges::move(prolog.processing, std::back_inserter(setup.prolog.processing));
-    std::ranges::move(prolog.foreign, std::back_inserter(setup.prolog.foreign));
+    const Prolog prolog = source->prolog();
+    setup.prolog.processing.insert(setup.prolog.processing.end(), prolog.processing.begin(), prolog.processing.end());
+    setup.prolog.foreign.insert(setup.prolog.foreign.end(), prolog.foreign.begin(), prolog.foreign.end());
     const bool reopens = paths.size() > 1 && path != "-" && std::filesystem::is_regular_file(path);
     inputs.push_back({path, reopens ? nullptr : std::move(source)});
   }
@@ -48,7 +48,8 @@ SourceSetup source_setup_of(const Options& options, const Selection& selection) 
   return setup;
 }
 
-// 2026-11-21T10:00:00Z; SOURCE_DATE_EPOCH, as usual, sets the clock where files are to be the same again.
+// The time as 2026-11-21T10:00:00Z. As usual, SOURCE_DATE_EPOCH sets the clock, so that files can be made again byte by
+// byte.
 std::string now_utc() {
   const char* epoch = std::getenv("SOURCE_DATE_EPOCH");
   const auto seconds = epoch ? parse_integer(epoch) : std::nullopt;
@@ -85,7 +86,7 @@ class Conversion {
   std::vector<std::string> inputs_;
 };
 
-// Bad input stops the run, or is told and counted under --keep-going.
+// Bad input stops the run. With --keep-going it is told and counted instead.
 Result<void> Conversion::skip(const Error& error) {
   if (!options_.keep_going || error.kind != ErrorKind::kInput) return error;
   ++skipped;
@@ -162,7 +163,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
     return usage_error("--cxf-compat is for CxF, and the output is {}: give --to cxf", format->title);
   GONIO_ASSIGN(std::vector<Input> inputs, surveyed(options, source_setup, setup, session));
   session.explain(selection.explanation());
-  setup.prolog.processing.push_back({session.tool(), cli::Session::version(), session.command_line()});
+  setup.prolog.processing.push_back(step_of(session));
   GONIO_ASSIGN(OutputFile file, OutputFile::create(options.output));
   GONIO_ASSIGN(const auto sink, format->begin(std::move(file), setup));
 

@@ -7,7 +7,7 @@
 #include "base/result.h"
 #include "formats.h"
 #include "formats/imported.h"
-#include "options.h"
+#include "tool.h"
 
 namespace goniochrome::tool {
 
@@ -22,7 +22,7 @@ class Selection {
   // The geometries of --geometry; none where it was not given.
   std::vector<paint::Geometry> requested() const;
 
-  // Fits, selects and adds rows. What is lost on the way goes to `remarks`. Error: the paint has nothing to write.
+  // Fits, selects and adds rows. `remarks` gets what is lost on the way. Error: the paint has nothing to write.
   Result<void> apply(paint::Paint& paint, formats::Remarks& remarks) const;
 
   // For --explain.

@@ -40,7 +40,7 @@ Result<void> check_places(const Options& o) {
   return {};
 }
 
-// At a place, chroma is a factor and hue a turn: nothing else can be meant there.
+// At a place, --chroma is a factor and --hue is a turn, because a color at one angle has no average to set.
 Result<void> place_tweak(Options& o) {
   if ((!o.chroma.empty() && o.chroma_factor != 1) || (!o.hue_deg.empty() && o.hue_shift_deg != 0) ||
       (o.lighter != 0 && o.lightness_shift != 0))
@@ -58,7 +58,8 @@ Result<void> place_tweak(Options& o) {
 
 }  // namespace
 
-// cos^e(edge) = 1/2 gives the exponent; the lobe's total energy is the Fresnel reflectance of the coat, as in GLOSS.
+// The equation cos^e(edge) = 1/2 gives the exponent e. The total energy of the lobe is the Fresnel reflectance of the
+// coat; see goniochrome-theory(7), GLOSS.
 Result<double> gloss_of_edge(double edge_deg, double meter_deg) {
   constexpr double kSharpest = 1e6;
   const double radians = std::clamp(edge_deg, 0.0, 89.0) * std::numbers::pi / 180;

@@ -1,4 +1,4 @@
-// Moves at a place in a picture of the painted mesh: the aspecular angle under a pixel. [Shimizu2009] 3.6
+// Moves at a place in a picture of the painted mesh, by the aspecular angle under a pixel. See [Shimizu2009] 3.6 and
 // goniochrome-theory(7), DESIGN MOVES.
 #pragma once
 
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "options.h"
+#include "tool.h"
 
 namespace goniochrome::tool {
 
@@ -17,10 +17,10 @@ struct SeenPixel {
   double aspecular_deg = 0;
 };
 
-// The options with the places of --at-pixel, --travel-to and --gloss-to in --image put into --at, --travel and --gloss,
-// and what --lighter, --chroma and --hue say there into the shifts. Options without a place come back as they are.
-// Error: what is missing, an image without the buffer, a pixel outside or beside the mesh, or one so near specular that
-// no travel ends there.
+// Returns the options with every place in --image replaced by an angle: --at-pixel becomes --at, --travel-to becomes
+// --travel, and --gloss-to becomes --gloss. --lighter, --chroma and --hue become the shifts at that place. Options
+// without a place come back as they are. Error: what is missing, an image without the buffer, a pixel outside or beside
+// the mesh, or one so near specular that no travel ends there.
 struct PlacedOptions {
   Options options;
   std::vector<SeenPixel> pixels;

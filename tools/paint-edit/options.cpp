@@ -1,6 +1,7 @@
-#include "options.h"
+#include "tool.h"
 
 #include "base/text.h"
+#include "paint_stream.h"
 
 namespace goniochrome::tool {
 
@@ -66,195 +67,134 @@ Result<paint::Edit> edit_of(const Options& o) {
   return edit;
 }
 
-cli::ToolSpec tool_spec(Options& o) {
-  cli::ToolSpec spec;
-  spec.name = "paint-edit";
-  spec.summary = "change the color, travel and gloss of paints, or make variations and gradients of them";
-  spec.description = {
-      "paint-edit reads paints, makes the moves it is told and writes them on. Moves are made in the order of the "
-      "options below, whatever their order on the command line: first the average of the whole paint, then tweaks, "
-      "face, flop, travel and gloss. Where an end is both set and shifted, it is set first.",
-      "Hue, chroma and lightness are averages over the paint's curve at 15, 45 and 110 degrees. --at DEG makes the "
-      "three shifts where a viewer sees that aspecular angle: at 15 degrees they fall on the face alone, from the "
-      "travel on the flop alone, and between on both in proportion.",
-      "On a picture of the paint the place is a pixel instead: --image names the buffers that render-osmesa(1) wrote "
-      "with it, and --at-pixel X,Y makes the moves of --lighter, --chroma (a factor) and --hue (a turn) at the "
-      "aspecular angle under that pixel; --travel-to X,Y ends the travel and --gloss-to X,Y the highlight there.",
-      "A paint is edited in every form it has. Measured rows move by what the curve moves at their angle, so that what "
-      "the curve did not explain of a measurement stays. A paint that has only rows is fitted first and carries face, "
-      "flop and travel from then on. Lobes and color maps no longer hold after a move of the color, nor lobes after a "
-      "move of the gloss: they are dropped with a word on standard error, and fit-paint makes new ones. Name, code and "
-      "class stay.",
-      "--variations writes each paint followed by its eight neighbors, named after the change: for face and flop "
-      "lighter, darker, red, yellow, green, cyan, blue and magenta, each --step away in CIE 1976 color difference; for "
-      "travel and gloss one to four steps either way. --gradient N writes the paints with N between each and the next, "
-      "equally spaced in Lab at face, flop and every measured geometry that both have.",
-      "A move that a paint cannot take, such as a hue for a gray, is left out with a warning; the other moves are made "
-      "and the exit status is 1."};
-  spec.inputs = {.value = "PAINTS",
-                 .help = "paint XML files, or FILE#NAME for one paint of a file; standard input where none is given",
-                 .target = &o.inputs};
-  spec.options = {
-      {.name = "output", .letter = 'o', .value = "FILE", .help = "paint XML to write", .target = &o.output},
-      {.name = "only",
-       .value = "NAME",
-       .help = "edit the paints of this name, pass the others on; repeatable",
-       .target = &o.only},
-      {.name = "suffix", .value = "TEXT", .help = "appended to the name of every paint edited", .target = &o.suffix},
-      {.name = "hue",
-       .value = "DEG",
-       .help = "average CIELAB hue to reach",
-       .target = &o.hue_deg,
-       .low = -360,
-       .high = 360},
-      {.name = "chroma", .value = "C", .help = "average chroma to reach", .target = &o.chroma, .low = 0, .high = 300},
-      {.name = "lightness", .value = "L", .help = "average L* to reach", .target = &o.lightness, .low = 0, .high = 300},
-      {.name = "hue-shift",
-       .value = "DEG",
-       .help = "hue turned by this, counterclockwise in a*b*",
-       .target = &o.hue_shift_deg,
-       .low = -360,
-       .high = 360},
-      {.name = "chroma-factor",
-       .value = "K",
-       .help = "chroma times this",
-       .target = &o.chroma_factor,
-       .low = 0,
-       .high = 100},
-      {.name = "lightness-shift",
-       .value = "D",
-       .help = "L* plus this",
-       .target = &o.lightness_shift,
-       .low = -300,
-       .high = 300},
-      {.name = "at",
-       .value = "DEG",
-       .help = "make the three shifts above at this aspecular angle, not everywhere",
-       .target = &o.at_deg,
-       .low = 0,
-       .high = 180},
-      {.name = "image",
-       .value = "FILE",
-       .help = "buffers of a picture of the paint, of render-osmesa --aov aspecular,mask",
-       .target = &o.image},
-      {.name = "at-pixel",
-       .value = "X,Y",
-       .help = "make the shifts at the aspecular angle under this pixel; --chroma is then a factor, --hue a turn",
-       .target = &o.at_pixel,
-       .low = 0,
-       .high = 1048576},
-      {.name = "lighter",
-       .value = "D",
-       .help = "L* plus this under the pixel of --at-pixel",
-       .target = &o.lighter,
-       .low = -300,
-       .high = 300},
-      {.name = "face", .value = "L,A,B", .help = "color at 15 degrees", .target = &o.face, .low = -300, .high = 300},
-      {.name = "face-shift",
-       .value = "L,A,B",
-       .help = "added to the face",
-       .target = &o.face_shift,
-       .low = -300,
-       .high = 300},
-      {.name = "flop",
-       .value = "L,A,B",
-       .help = "color from the travel on",
-       .target = &o.flop,
-       .low = -300,
-       .high = 300},
-      {.name = "flop-shift",
-       .value = "L,A,B",
-       .help = "added to the flop",
-       .target = &o.flop_shift,
-       .low = -300,
-       .high = 300},
-      {.name = "travel",
-       .value = "DEG",
-       .help = "aspecular angle where the color stops changing",
-       .target = &o.travel_deg,
-       .low = 15,
-       .high = 180},
-      {.name = "travel-shift",
-       .value = "DEG",
-       .help = "added to the travel",
-       .target = &o.travel_shift_deg,
-       .low = -165,
-       .high = 165},
-      {.name = "travel-to",
-       .value = "X,Y",
-       .help = "let the color stop changing where this pixel of --image is",
-       .target = &o.travel_to,
-       .low = 0,
-       .high = 1048576},
-      {.name = "gloss", .value = "GU", .help = "gloss units to reach", .target = &o.gloss, .low = 0, .high = 100},
-      {.name = "gloss-shift",
-       .value = "GU",
-       .help = "added to the gloss",
-       .target = &o.gloss_shift,
-       .low = -100,
-       .high = 100},
-      {.name = "gloss-to",
-       .value = "X,Y",
-       .help = "let the highlight fall to half its brightness at this pixel of --image",
-       .target = &o.gloss_to,
-       .low = 0,
-       .high = 1048576},
-      {.name = "gloss-angle",
-       .value = "DEG",
-       .help = "which gloss reading is meant",
-       .target = &o.gloss_angle_deg,
-       .choices = {"20", "60", "85"}},
-      {.name = "variations",
-       .value = "WHAT",
-       .help = "write each paint and its eight neighbors",
-       .target = &o.variations,
-       .choices = {"face", "flop", "travel", "gloss"}},
-      {.name = "step",
-       .value = "X",
-       .help = "how far the variations go: color difference, degrees or gloss units",
-       .target = &o.step,
-       .low = 0,
-       .high = 165},
-      {.name = "gradient",
-       .value = "N",
-       .help = "write N new paints between each paint and the next; 0 for none",
-       .target = &o.gradient,
-       .low = 0,
-       .high = 100000}};
+namespace {
+
+void add_options(cli::ToolSpec& spec, Options& o) {
+  const auto lab = [&](const char* name, const char* example, std::vector<double>& target, const char* help) {
+    spec.option(name, "L,A,B", example, &target, help).from(-300, 300).in("CIELAB units");
+  };
+  const auto pixel = [&](const char* name, std::vector<double>& target, const char* help) -> cli::Option& {
+    return spec.option(name, "X,Y", "250,200", &target, help).from(0, 1048576);
+  };
+  spec.heading = "average of the whole paint";
+  spec.option("hue", "DEG", "200", &o.hue_deg, "average CIELAB hue to reach")
+      .from(-360, 360)
+      .more("Averages are taken over the paint's curve at 15, 45 and 110 degrees.");
+  spec.option("chroma", "C", "40", &o.chroma, "average chroma to reach").from(0, 300).in("CIELAB units");
+  spec.option("lightness", "L", "60", &o.lightness, "average L* to reach").from(0, 300).in("CIELAB units");
+  spec.heading = "shifts, of the whole paint or at one angle";
+  spec.option("hue-shift", "DEG", "-10", &o.hue_shift_deg, "angle to turn the hue by, counterclockwise in a*b*")
+      .from(-360, 360);
+  spec.option("chroma-factor", "K", "1.1", &o.chroma_factor, "factor for the chroma").from(0, 100);
+  spec.option("lightness-shift", "D", "4", &o.lightness_shift, "what is added to L*")
+      .from(-300, 300)
+      .in("CIELAB units");
+  spec.option("at", "DEG", "45", &o.at_deg, "make the three shifts at this aspecular angle, not everywhere")
+      .from(0, 180)
+      .more(
+          "At 15 degrees the shifts fall on the face alone, from the travel on they fall on the flop alone, and "
+          "between "
+          "these on both in proportion.");
+  spec.heading = "moves at a place in a picture";
+  spec.option("image", "FILE", "scene.exr", &o.image, "buffers of a picture of the paint")
+      .more("render-osmesa(1) writes them with --aov aspecular,mask.");
+  pixel("at-pixel", o.at_pixel, "make shifts at the aspecular angle under this pixel")
+      .more("The shifts are --lighter, --chroma, which is a factor then, and --hue, which is a turn then.");
+  spec.option("lighter", "D", "3", &o.lighter, "what is added to L* under the pixel of --at-pixel")
+      .from(-300, 300)
+      .in("CIELAB units");
+  pixel("travel-to", o.travel_to, "let the color stop changing at this pixel of --image");
+  pixel("gloss-to", o.gloss_to, "let the highlight fall to half its brightness at this pixel of --image");
+  spec.heading = "face, flop, travel and gloss";
+  lab("face", "70,5,12", o.face, "color at 15 degrees");
+  lab("face-shift", "5,0,0", o.face_shift, "what is added to the face");
+  lab("flop", "20,2,-8", o.flop, "color from the travel on");
+  lab("flop-shift", "-5,0,0", o.flop_shift, "what is added to the flop");
+  spec.option("travel", "DEG", "60", &o.travel_deg, "aspecular angle where the color stops changing").from(15, 180);
+  spec.option("travel-shift", "DEG", "10", &o.travel_shift_deg, "what is added to the travel").from(-165, 165);
+  spec.option("gloss", "GU", "90", &o.gloss, "gloss to reach").from(0, 100);
+  spec.option("gloss-shift", "GU", "-5", &o.gloss_shift, "what is added to the gloss").from(-100, 100);
+  spec.option("gloss-angle", "DEG", "20", &o.gloss_angle_deg, "angle of the gloss reading that is moved")
+      .one_of({"20", "60", "85"});
+  spec.heading = "many paints from one or two";
+  spec.option("variations", "WHAT", "flop", &o.variations, "write each paint and its eight neighbors")
+      .one_of({"face", "flop", "travel", "gloss"})
+      .more(
+          "Neighbors are named after their change. Those of face and flop are lighter, darker, red, yellow, green, "
+          "cyan, blue and magenta, each one --step away. Those of travel and gloss are one to four steps away, either "
+          "way.");
+  spec.option("step", "X", "6", &o.step, "how far the variations go")
+      .from(0, 165)
+      .in("units of CIE 1976 color difference, in degrees or in gloss units");
+  spec.option("gradient", "N", "6", &o.gradient, "write N new paints between each paint and the next; 0 for none")
+      .from(0, 100000)
+      .more("They are equally spaced in Lab at face, flop and every measured geometry that both paints have.");
+  spec.heading = "input and output";
+  add_only_option(spec, o.only, "edit the paints of this name, and pass the others on");
+  spec.option("suffix", "TEXT", "_green", &o.suffix, "text to append to the name of every paint that is edited");
+  spec.option("output,o", "FILE", "edited.paints.xml", &o.output, "paint XML to write; - is standard output");
+  cli::add_common_options(spec, o.common, {.explain = true});
+}
+
+// The examples, the keys of --report, and the pages to see.
+void add_report(cli::ToolSpec& spec) {
   spec.examples = {
       {"paint-edit testdata/paints.paints.xml --only candy_blue --hue 200 --suffix _green -o greener.paints.xml",
-       "Turns a blue metallic toward green and keeps its travel."},
+       "turn a blue metallic toward green and keep its travel"},
       {"paint-edit testdata/paints.paints.xml --at 45 --lightness-shift 4 --chroma-factor 1.1 -o brighter.paints.xml",
-       "Lightens every paint where it is seen at 45 degrees, and face and flop each by its share."},
+       "lighten every paint where it is seen at 45 degrees: face and flop each by its share"},
       {"render-osmesa --mesh testdata/speed-shape.obj --light 30,50 --size 640x400 --aov aspecular,mask -o scene.exr "
        "&& paint-edit testdata/paints.paints.xml#candy_red --image scene.exr --at-pixel 250,200 --lighter 3 --chroma "
        "1.1 -o tweaked.paints.xml",
-       "Lightens a red where the pixel shows it."},
+       "lighten a red where the pixel shows it"},
       {"paint-edit testdata/paints.paints.xml#silver_fine --variations flop --step 6 -o nine.paints.xml",
-       "Writes a silver and the eight paints around it for a variations sheet."},
+       "write a silver and the eight paints around it, for a variations sheet"},
       {"paint-edit testdata/paints.paints.xml#ice_blue testdata/paints.paints.xml#candy_blue --gradient 6 -o "
        "facade.paints.xml",
-       "Writes a sequence of eight metallics for a facade."}};
+       "write a sequence of eight metallics, for a facade"}};
   spec.report = {
-      {"read", "paints read"},
-      {"written", "paints written"},
-      {"pixels[].option", "an option that names a place in --image"},
-      {"pixels[].x", "the place, in pixels from the left"},
-      {"pixels[].y", "and from the top"},
-      {"pixels[].aspecular_deg", "aspecular angle seen there"},
+      {"read", "number of paints read"},
+      {"written", "number of paints written"},
+      {"pixels[].option", "option that names a place in --image"},
+      {"pixels[].x", "pixels from the left"},
+      {"pixels[].y", "pixels from the top"},
+      {"pixels[].aspecular_deg", "aspecular angle that is seen there"},
       {"changes[].name", "name of a paint that was edited or made"},
-      {"changes[].from", "name of the paint it was made from; of both for a gradient"},
-      {"changes[].fraction", "place in a gradient, 0 to 1"},
+      {"changes[].from", "name of the paint that it was made from; for a gradient, the names of both"},
+      {"changes[].fraction", "place in a gradient, from 0 to 1"},
       {"changes[].before",
-       "face, flop (L*, a*, b*), travel_deg and gloss (gloss_60_deg and so on) before; for a gradient absent"},
-      {"changes[].after", "the same after"},
-      {"changes[].de00_max", "largest CIEDE2000 between before and after at 15, 45 and 110 degrees"},
+       "face, flop (L*, a*, b*), travel_deg and gloss (gloss_60_deg and so on) before the moves; absent for a "
+       "gradient"},
+      {"changes[].after", "the same after the moves"},
+      {"changes[].de00_max", "largest CIEDE2000 difference between before and after at 15, 45 and 110 degrees"},
       {"changes[].fitted_de00", "worst row of the fit, where the paint had only rows"},
       {"changes[].dropped[]", "what no longer holds and was left out"},
-      {"changes[].clipped[]", "values that a move took out of their domain and that were put at its edge"},
-      {"changes[].skipped[]", "moves this paint cannot take, and why"}};
+      {"changes[].clipped[]", "values that a move took out of their domain, and that were put at its edge"},
+      {"changes[].skipped[]", "moves that this paint cannot take, and why"}};
   spec.see_also = {"fit-paint(1)", "paint-convert(1)", "render-osmesa(1)"};
-  cli::add_common_options(spec, o.common, {cli::Common::kExplain});
+}
+
+}  // namespace
+
+cli::ToolSpec tool_spec(Options& o) {
+  cli::ToolSpec spec{
+      .name = "paint-edit",
+      .summary = "change the color, travel and gloss of paints, or make variations and gradients of them"};
+  spec.description = {
+      "paint-edit reads paints, makes the moves that it is told and writes the paints on. Whatever their order on the "
+      "command line, moves are made in this order: first the average of the whole paint, then shifts, face, flop, "
+      "travel and gloss. Where one of these is both set and shifted, it is set first.",
+      "A paint is edited in every form that it has. Measured rows move by as much as the curve moves at their angle, "
+      "so that what the curve did not explain of a measurement stays. A paint that has only rows is fitted first and "
+      "carries face, flop and travel from then on. Lobes and color maps no longer hold after a move of the color, and "
+      "lobes no longer hold after a move of the gloss. They are dropped, a message says so, and fit-paint(1) makes new "
+      "ones. Name, code and class stay.",
+      "Some paints cannot take a move: a gray, for example, has no hue to turn. Such a move is left out with a "
+      "warning, the other moves are made, and the exit status is 1."};
+  spec.inputs = {"PAINTS", "paint XML files, or FILE#NAME for one paint; standard input where none is given",
+                 &o.inputs};
+  add_options(spec, o);
+  add_report(spec);
   return spec;
 }
 

@@ -1,4 +1,4 @@
-#include "run.h"
+#include "tool.h"
 
 #include <algorithm>
 #include <set>
@@ -16,10 +16,6 @@ paint::Variation variation_of(const std::string& word) {
   if (word == "face") return paint::Variation::kFace;
   if (word == "flop") return paint::Variation::kFlop;
   return word == "travel" ? paint::Variation::kTravel : paint::Variation::kGloss;
-}
-
-Json lab_json(const color::Lab& lab) {
-  return {json_number(lab.L), json_number(lab.a), json_number(lab.b)};
 }
 
 // Face, flop, travel and gloss as the report has them.
@@ -42,7 +38,7 @@ double de00_max(const paint::Appearance& before, const paint::Appearance& after)
   return worst;
 }
 
-// One run: paints in, moves, paints out.
+// One run, which makes moves on a stream of paints.
 class Run {
  public:
   Run(const Options& options, paint::Edit edit, cli::Session& session)
@@ -53,10 +49,7 @@ class Run {
 
   Result<cli::Verdict> operator()() {
     GONIO_ASSIGN(PaintSource source, PaintSource::open(options_.inputs));
-    GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
-    auto history = source.processing();
-    history.push_back({session_.tool(), cli::Session::version(), session_.command_line()});
-    GONIO_ASSIGN(formats::PaintWriter opened, formats::PaintWriter::begin(std::move(file), history, source.foreign()));
+    GONIO_ASSIGN(formats::PaintWriter opened, begin_paints(options_.output, source.prolog(), session_));
     writer_.emplace(std::move(opened));
     for (;;) {
       GONIO_ASSIGN(std::optional<paint::Paint> paint, source.next());

@@ -36,17 +36,9 @@ Result<std::optional<paint::Paint>> PaintSource::next() {
   return std::optional<paint::Paint>();
 }
 
-std::vector<formats::Processing> PaintSource::processing() const {
-  std::vector<formats::Processing> all;
-  for (const Input& input : inputs_)
-    all.insert(all.end(), input.reader.processing().begin(), input.reader.processing().end());
-  return all;
-}
-
-std::vector<std::string> PaintSource::foreign() const {
-  std::vector<std::string> all;
-  for (const Input& input : inputs_)
-    all.insert(all.end(), input.reader.foreign().begin(), input.reader.foreign().end());
+Prolog PaintSource::prolog() const {
+  Prolog all;
+  for (const Input& input : inputs_) all.take(input.reader);
   return all;
 }
 

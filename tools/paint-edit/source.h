@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "formats/xml.h"
+#include "paint_stream.h"
 
 namespace goniochrome::tool {
 
@@ -18,8 +18,7 @@ class PaintSource {
 
   Result<std::optional<paint::Paint>> next();
 
-  std::vector<formats::Processing> processing() const;
-  std::vector<std::string> foreign() const;
+  Prolog prolog() const;
 
  private:
   struct Input {

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "base/result.h"
-#include "options.h"
 #include "paint/paint.h"
+#include "tool.h"
 
 namespace goniochrome::tool {
 

@@ -3,17 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
-#include "display/paint_view.h"
 #include "paint/curve.h"
+#include "report/plot.h"
 #include "sketch/sketch_picture.h"
 
 namespace goniochrome::tool {
 
 namespace {
 
+using report::escaped;
+
 constexpr int kWidest = 720;  // pixels of a picture on the page
 
-// Neutral grays only: the paints are the color on this page.
+// The page has only neutral grays, so that the paints are its only color.
 constexpr const char* kStyle = R"(
 :root { font: 15px/1.45 system-ui, "DejaVu Sans", "Helvetica Neue", Arial, sans-serif; color: #1c1c1c; background: #dcdcdc; }
 *, *::before, *::after { box-sizing: border-box; }
@@ -46,24 +48,6 @@ td.number { text-align: right; }
 @media print { :root { background: #fff; } }
 )";
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&') {
-      out += "&amp;";
-    } else if (c == '<') {
-      out += "&lt;";
-    } else if (c == '>') {
-      out += "&gt;";
-    } else if (c == '"') {
-      out += "&quot;";
-    } else {
-      out += c;
-    }
-  }
-  return out;
-}
-
 std::string base64(const std::string& bytes) {
   constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
@@ -80,10 +64,11 @@ std::string embedded(const std::string& png) {
   return "data:image/png;base64," + base64(png);
 }
 
-// Each channel's signal on an sRGB display, what lies outside its gamut mixed with its gray.
+// The signal of each channel on an sRGB display. Light outside its gamut is mixed with its gray.
 color::Rgb signals(const color::Rgb& light) {
-  const color::Rgb shown = color::rec709_from_rec2020(display::in_display_gamut(light));
-  return {display::srgb_signal(shown.x), display::srgb_signal(shown.y), display::srgb_signal(shown.z)};
+  const color::Rgb shown = color::rec709_from_rec2020(sketch::in_display_gamut(light));
+  return {sketch::display_brightness(shown.x), sketch::display_brightness(shown.y),
+          sketch::display_brightness(shown.z)};
 }
 
 std::string css_color(const color::Lab& lab) {
@@ -92,7 +77,7 @@ std::string css_color(const color::Lab& lab) {
   return fmt::format("#{:02x}{:02x}{:02x}", byte(s.x), byte(s.y), byte(s.z));
 }
 
-// The picture for the page: no wider than kWidest, each pixel the mean light of those it stands for.
+// The picture for the page. It is no wider than kWidest, and each pixel is the mean light of those it stands for.
 Result<std::string> page_png(const PageImage& image) {
   GONIO_ASSIGN(const sketch::Picture picture,
                sketch::picture_of(image.content, image.image.path, sketch::PictureView::kPlain));

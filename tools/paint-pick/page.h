@@ -21,7 +21,7 @@ struct PageImage {
   image::ImagePart content;
 };
 
-// One HTML page that needs nothing beside itself. `lit_by` says how the paints were drawn.
+// Returns one HTML page that needs no other file. `lit_by` says how the paints were drawn.
 Result<std::string> board_page(const sketch::Board& board, const std::vector<PageImage>& images,
                                const std::vector<PageOfPaint>& paints, const std::string& lit_by);
 

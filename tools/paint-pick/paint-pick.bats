@@ -40,7 +40,7 @@ near() { awk -v x="$1" -v y="$2" -v d="$3" 'BEGIN { exit !(x - y <= d && y - x <
   near "$(result 'paints[0].face[0]')" 12.6 0.1
 }
 
-@test "gloss_limits: a flat spot has none, a hard contrast has 100" {
+@test "gloss_limits: a flat spot has no gloss, a hard contrast has 100" {
   paint-pick -q --face two.png@20,30 --gloss two.png@20,30,6 -o out.xml --report r.json
   near "$(result 'paints[0].gloss_60_gu')" 0 1e-6
   oiiotool --create 40x40 3 --fill:color=1,1,1 20x40+0+0 -o hard.png
@@ -148,7 +148,7 @@ board_error() { # TEXT LINE...
   [[ $output == *'bad.txt: has no paint'* ]]
 }
 
-@test "every format: gray, alpha, 8 bits, light, CMYK" {
+@test "pictures of every format are read: gray, alpha, 8 bits, light, CMYK" {
   oiiotool two.png --ch R -o gray.png
   oiiotool two.png --ch R,G,B,A=1 -o alpha.png
   oiiotool two.png -d uint8 -o eight.tif

@@ -1,18 +1,18 @@
-#include "run.h"
+#include "tool.h"
 
 #include <map>
 
 #include "base/text.h"
 #include "drawing.h"
-#include "formats/xml.h"
 #include "page.h"
+#include "paint_stream.h"
 #include "sketch/pick.h"
 
 namespace goniochrome::tool {
 
 namespace {
 
-// Every picture is read once, whatever the number of droppers on it.
+// Reads every picture once, whatever the number of droppers on it.
 class Shelf {
  public:
   Result<const image::ImagePart*> image(const std::string& path) {
@@ -25,10 +25,6 @@ class Shelf {
  private:
   std::map<std::string, image::ImagePart> images_;
 };
-
-Json lab_json(const color::Lab& lab) {
-  return {json_number(lab.L), json_number(lab.a), json_number(lab.b)};
-}
 
 void tell_sample(const std::string& kind, const std::string& paint, const sketch::PickSample& s,
                  cli::Session& session) {
@@ -95,14 +91,10 @@ Result<PageOfPaint> picked(const sketch::PaintPick& wanted, Shelf& shelf, PathOf
   return page;
 }
 
-Result<void> write_paints(const std::string& path, const std::vector<PageOfPaint>& paints,
-                          const cli::Session& session) {
-  GONIO_ASSIGN(OutputFile file, OutputFile::create(path));
-  GONIO_ASSIGN(formats::PaintWriter writer,
-               formats::PaintWriter::begin(std::move(file),
-                                           {{session.tool(), cli::Session::version(), session.command_line()}}));
-  for (const PageOfPaint& paint : paints) GONIO_TRY(writer.write(paint.picked.paint));
-  return writer.finish();
+Result<void> write(const std::string& path, const std::vector<PageOfPaint>& pages, const cli::Session& session) {
+  std::vector<paint::Paint> paints;
+  for (const PageOfPaint& page : pages) paints.push_back(page.picked.paint);
+  return write_paints(path, paints, session);
 }
 
 Result<cli::Verdict> run_board(const Options& options, bool as_page, cli::Session& session) {
@@ -119,7 +111,7 @@ Result<cli::Verdict> run_board(const Options& options, bool as_page, cli::Sessio
     paints.push_back(std::move(paint));
   }
   if (!as_page) {
-    GONIO_TRY(write_paints(options.output, paints, session));
+    GONIO_TRY(write(options.output, paints, session));
     return cli::Verdict::kDone;
   }
   GONIO_ASSIGN(PaintDrawing drawing, PaintDrawing::make(options));
@@ -151,7 +143,7 @@ Result<cli::Verdict> run_palette(const Options& options, cli::Session& session) 
   if (static_cast<int>(pairs.size()) < options.palette)
     session.say(fmt::format("{}: {} of {} paints: the picture has no more colors", options.images.front(), pairs.size(),
                             options.palette));
-  GONIO_TRY(write_paints(options.output, paints, session));
+  GONIO_TRY(write(options.output, paints, session));
   return cli::Verdict::kDone;
 }
 
@@ -170,7 +162,7 @@ Result<cli::Verdict> run_droppers(const Options& options, cli::Session& session)
   Shelf shelf;
   GONIO_ASSIGN(PageOfPaint paint, picked(
                                       wanted, shelf, [](const std::string& path) { return path; }, session));
-  GONIO_TRY(write_paints(options.output, {std::move(paint)}, session));
+  GONIO_TRY(write(options.output, {std::move(paint)}, session));
   return cli::Verdict::kDone;
 }
 

@@ -1,6 +1,7 @@
-#include "options.h"
+#include "tool.h"
 
 #include "paint/metrics.h"
+#include "table_output.h"
 
 namespace goniochrome::tool {
 
@@ -8,7 +9,7 @@ namespace {
 
 // The columns as the manual lists them: their names come from the table that makes them.
 std::string column_list() {
-  std::string text = "The metrics:";
+  std::string text = "The metrics are";
   for (const paint::MetricColumn& column : paint::metric_columns())
     text += std::string(&column == paint::metric_columns().data() ? " " : "; ") + column.name + ", " + column.meaning;
   return text + ".";
@@ -17,71 +18,56 @@ std::string column_list() {
 }  // namespace
 
 cli::ToolSpec tool_spec(Options& o) {
-  cli::ToolSpec spec;
-  spec.name = "paint-stats";
-  spec.summary = "tell flop, chroma and hue-shift index and other figures of paints, and pick paints by them";
+  cli::ToolSpec spec{
+      .name = "paint-stats",
+      .summary = "tell flop, chroma and hue-shift index and other figures of paints, and pick paints by them"};
   spec.description = {
-      "paint-stats reads paints and writes a table: one line a paint, with its name, code and class, its metrics, "
-      "where the colors behind them come from, and flags. With --where it writes only the paints for which a condition "
-      "holds; with --format paints it writes those paints themselves, every element kept, so that it stands as a "
-      "filter between other tools. Paints go out in the order they came, as soon as they are done, in constant memory.",
+      "paint-stats reads paints and writes a table. Each paint has one line with its name, code and class, its "
+      "metrics, the source of the colors behind them, and flags. With --where, only the paints for which a condition "
+      "holds are written. With --format paints, the paints themselves are written, so that the tool stands as a filter "
+      "between other tools. Paints go out in the order in which they came, each as soon as it is done, in constant "
+      "memory.",
       column_list(),
-      "The indices rest on the colors at 15, 45 and 110 degrees: the measured rows where all three are there (source "
-      "rows), else the curve the paint states (curve), else a curve fitted to its rows (fitted). A figure that does "
-      "not apply is n/a, in JSON null: a hue shift without a hue, a residual without both rows and curve. A flop "
-      "lighter than the face has a negative flop index.",
-      "Flags: dark, the flop index moves by more than 1 when the L* behind it move by 0.1, so it says nothing; "
-      "achromatic, the face has a chroma below 1 and no hue; through_gray, the color passes so close to gray that the "
-      "sense of the hue travel is noise; gamut, the working space loses more than 1 dE00 of some color; no_color, "
-      "neither rows nor a curve.",
-      "A condition compares metrics, numbers and the texts name, code, class, source and flags by < <= > >= == !=, "
-      "joined by && || ! (or: and, or, not) and parentheses: \"flop_index>=17 && chroma_index<5\", \"class==metallic "
-      "and not flags==dark\". A figure that does not apply makes a comparison false; hue_shift_index==na asks for it. "
-      "When no paint matches the exit status is 1.",
-      "With --format json each paint is one JSON object on a line of its own. The report holds the same figures in one "
-      "object, and takes memory for it."};
-  spec.inputs = {.value = "PAINTS", .help = "paint XML files; standard input where none is given", .target = &o.inputs};
-  spec.options = {
-      {.name = "output",
-       .letter = 'o',
-       .value = "FILE",
-       .help = "where to write, - is standard output",
-       .target = &o.output},
-      {.name = "format",
-       .letter = 'f',
-       .value = "FORMAT",
-       .help = "a table (tsv), JSON lines (json), the paints themselves (paints), or by the output's ending: .xml is "
-               "paints, .json or .jsonl is json, all else tsv (auto)",
-       .target = &o.format,
-       .choices = {"auto", "tsv", "json", "paints"}},
-      {.name = "where",
-       .letter = 'w',
-       .value = "CONDITION",
-       .help = "write only the paints for which this holds",
-       .target = &o.where},
-      {.name = "keep-going",
-       .letter = 'k',
-       .help = "leave out paints that cannot be read, with a warning each; the exit status is then 1",
-       .target = &o.keep_going}};
+      "The indices rest on the colors at 15, 45 and 110 degrees. The source of these colors is rows where all three "
+      "are measured, curve where the paint states a curve, and fitted where a curve is fitted to its rows. A figure "
+      "that does not apply is n/a, in JSON null: a hue shift of a paint without hue, or a residual where rows or curve "
+      "are missing. A flop that is lighter than the face has a negative flop index.",
+      "The flags are: dark, where the flop index moves by more than 1 when the L* behind it move by 0.1, so that it "
+      "says nothing; achromatic, where the face has a chroma below 1 and so no hue; through_gray, where the color "
+      "passes so close to gray that the sense of the hue travel is noise; gamut, where the working space loses more "
+      "than 1 dE00 of some color; no_color, where there are neither rows nor a curve.",
+      "The report holds the same figures as the table in one object."};
+  spec.inputs = {"PAINTS", "paint XML files; standard input where none is given", &o.inputs};
+  spec.heading = "selection";
+  spec.option("where,w", "CONDITION", "'flop_index>=17 && chroma_index<5'", &o.where,
+              "write only the paints for which this holds")
+      .more(
+          "A condition compares metrics, numbers and the texts name, code, class, source and flags by < <= > >= == !=. "
+          "Comparisons are joined by && || ! (or by the words and, or, not) and parentheses, as in \"class==metallic "
+          "and not flags==dark\". A figure that does not apply makes a comparison false; hue_shift_index==na asks for "
+          "it. Where no paint matches, the exit status is 1.");
+  add_keep_going(spec, "keep-going,k", o.keep_going, "paints that cannot be read");
+  spec.heading = "output";
+  add_table_options(spec, o.output, o.format, "the paints themselves, with every element kept", "paint");
+  cli::add_common_options(spec, o.common, {.explain = true});
   spec.examples = {
-      {"paint-stats testdata/paints.paints.xml", "Prints the table of a library."},
+      {"paint-stats testdata/paints.paints.xml", "print the table of a library"},
       {"paint-stats --where 'flop_index>=17 && chroma_index<5' testdata/paints.paints.xml",
-       "Lists bright flops of constant color."},
+       "list bright flops of constant color"},
       {"paint-stats -w 'class==metallic and L15>60' -f paints testdata/paints.paints.xml | fit-paint -q --basis "
        "testdata/b5.basis.xml -o light.paints.xml",
-       "Fits the light metallics of a library and leaves the rest out."},
+       "fit the light metallics of a library and leave the rest out"},
       {"paint-stats -w 'flags==through_gray' -o turning.paints.xml testdata/paints.paints.xml",
-       "Collects the paints that change their hue by way of gray; the ending says that paints are wanted."}};
-  spec.report = {{"paints[].name", "name of the paint; also code, class, source and flags[]"}};
+       "collect the paints that change their hue by way of gray; the ending says that paints are wanted"}};
+  spec.report = {{"paints[].name", "name of the paint; beside it stand code, class, source and flags[]"}};
   for (const paint::MetricColumn& column : paint::metric_columns())
     spec.report.push_back({std::string("paints[].") + column.name, column.meaning});
-  spec.report.insert(spec.report.end(), {{"read", "paints read"},
-                                         {"matched", "paints written"},
-                                         {"left_out", "paints left out by --keep-going"},
+  spec.report.insert(spec.report.end(), {{"read", "number of paints read"},
+                                         {"matched", "number of paints written"},
+                                         {"left_out", "number of paints that --keep-going left out"},
                                          {"paints_per_s", "paints a second, without reading and writing"},
                                          {"warnings[]", "messages about paints left out"}});
   spec.see_also = {"colorsnap(1)", "paint-convert(1)", "paint-edit(1)"};
-  cli::add_common_options(spec, o.common, {cli::Common::kExplain});
   return spec;
 }
 

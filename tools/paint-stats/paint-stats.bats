@@ -27,7 +27,7 @@ column() {
   awk -F'\t' -v name="$1" 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) c = i; next } { print $c }'
 }
 
-@test "a line a paint, in order, under a head" {
+@test "every paint has a line, in order, under a head" {
   run --separate-stderr paint-stats "$paints"
   [ "$status" -eq 0 ]
   [ "${#lines[@]}" -eq $((count + 1)) ]
@@ -36,7 +36,7 @@ column() {
   diff <(paint-stats -q "$paints" | column name) <(sed -n 's/.*<paint name="\([^"]*\)".*/\1/p' "$paints")
 }
 
-@test "the flop index of a known paint" {
+@test "the flop index of a known paint is 12.05" {
   echo "$head$metallic</paints>" | paint-stats -q >t.tsv
   [[ "$(column flop_index <t.tsv)" == 12.05* ]]
   [ "$(column chroma_index <t.tsv)" = 8 ]
@@ -68,7 +68,7 @@ column() {
   [ "$(column flags <t.tsv)" = no_color ]
 }
 
-@test "--where picks, and no match is exit 1" {
+@test "--where picks paints, and exits 1 where none matches" {
   run --separate-stderr paint-stats --where 'flop_index>=17 && chroma_index<5' "$paints"
   [ "$status" -eq 0 ]
   [[ "$stderr" =~ "$count paints, "[1-9][0-9]*" match" ]]
@@ -78,7 +78,7 @@ column() {
   [ "${#lines[@]}" -eq 1 ]
 }
 
-@test "--where: classes, names, flags and n/a" {
+@test "--where compares classes, names, flags and n/a" {
   [ "$(paint-stats -q -w 'class==solid' "$paints" | column class | sort -u)" = solid ]
   [ "$(paint-stats -q -w 'name=="arctic_white"' "$paints" | column name)" = arctic_white ]
   [ "$(paint-stats -q -w 'hue_shift_index==na' "$paints" | column hue_shift_index | sort -u)" = n/a ]
@@ -87,7 +87,7 @@ column() {
   [ $((a + b)) -eq $((count + 2)) ]
 }
 
-@test "--where: errors say where and what" {
+@test "a --where that cannot be read is told with its place" {
   for case in 'flop_idx>3|did you mean flop_index?' 'flop_index>|ends where a name or a number is needed' \
     'flop_index=3|write "=="' '(gloss>3|")"' 'class==metalic|there is no class "metalic"'; do
     condition=${case%%|*}
@@ -111,7 +111,7 @@ column() {
   xmllint --noout out.xml
 }
 
-@test "--format json is one object a line" {
+@test "--format json writes one object a line" {
   paint-stats -q -f json "$paints" >t.json
   [ "$(wc -l <t.json)" -eq "$count" ]
   jq -es 'map(select(.name == "reference_gray"))[0] | .hue_shift_index == null and .flags == ["achromatic"]' t.json
@@ -225,7 +225,7 @@ column() {
   [ "$status" -eq 2 ]
 }
 
-@test "--explain, --quiet, --help, --version, an unknown option" {
+@test "--explain, --quiet, --help and --version do what they say, and an unknown option is refused" {
   run --separate-stderr paint-stats -q --explain -w 'gloss>1' "$paints"
   [[ "$stderr" == *"only paints with gloss>1"*"left out:"* ]]
   [ -z "$(paint-stats --quiet "$paints" 2>&1 >/dev/null)" ]

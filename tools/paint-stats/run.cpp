@@ -1,16 +1,16 @@
-#include "run.h"
+#include "tool.h"
 
 #include <cmath>
 #include <functional>
 #include <optional>
 
-#include "../table_output.h"
 #include "base/clock.h"
 #include "base/file.h"
 #include "base/parallel.h"
 #include "base/text.h"
-#include "formats/batches.h"
 #include "paint/metrics_filter.h"
+#include "paint_stream.h"
+#include "table_output.h"
 
 namespace goniochrome::tool {
 
@@ -48,12 +48,11 @@ std::string table_line(const paint::Paint& paint, const paint::PaintMetrics& num
 // Where matching paints go, in one of the three formats.
 class Sink {
  public:
-  static Result<Sink> begin(Format format, OutputFile file, const std::vector<formats::Processing>& history,
-                            const std::vector<std::string>& foreign) {
+  static Result<Sink> begin(Format format, OutputFile file, Prolog prolog, const cli::Session& session) {
     Sink sink;
     sink.format_ = format;
     if (format == Format::kPaints) {
-      GONIO_ASSIGN(formats::PaintWriter writer, formats::PaintWriter::begin(std::move(file), history, foreign));
+      GONIO_ASSIGN(formats::PaintWriter writer, begin_paints(std::move(file), std::move(prolog), session));
       sink.writer_.emplace(std::move(writer));
       return sink;
     }
@@ -82,7 +81,7 @@ class Sink {
   std::optional<formats::PaintWriter> writer_;
 };
 
-// One run: paints in, figures or paints out.
+// One run, which turns a stream of paints into figures or picks paints of it.
 class Run {
  public:
   Run(const Options& options, cli::Session& session) : options_(options), session_(session) {}
@@ -93,28 +92,20 @@ class Run {
       filter_.emplace(std::move(filter));
     }
     GONIO_ASSIGN(formats::PaintBatches batches, formats::PaintBatches::open(options_.inputs));
-    GONIO_TRY(open_output(batches.processing(), batches.foreign()));
+    Prolog prolog;
+    prolog.take(batches);
+    GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
+    GONIO_ASSIGN(Sink sink, Sink::begin(format_of(options_.format, options_.output), std::move(file), std::move(prolog),
+                                        session_));
+    sink_.emplace(std::move(sink));
     session_.begin_list("paints");
-    for (;;) {
-      GONIO_ASSIGN(const std::vector<paint::Paint> batch, batches.next(left_out()));
-      if (batch.empty()) break;
-      GONIO_TRY(measure(batch));
-      session_.progress(fmt::format("{}: {} paints", session_.tool(), read_));
-    }
+    GONIO_TRY(for_each_batch(
+        batches, session_, [&](const std::vector<paint::Paint>& batch) { return measure(batch); }, left_out()));
     GONIO_TRY(sink_->finish());
     return finish();
   }
 
  private:
-  Result<void> open_output(std::vector<formats::Processing> history, const std::vector<std::string>& foreign) {
-    history.push_back({session_.tool(), cli::Session::version(), session_.command_line()});
-    GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
-    GONIO_ASSIGN(Sink sink,
-                 Sink::begin(format_of(options_.format, options_.output), std::move(file), history, foreign));
-    sink_.emplace(std::move(sink));
-    return {};
-  }
-
   // What becomes of a paint that cannot be read.
   std::function<void(const Error&)> left_out() {
     if (!options_.keep_going) return {};

@@ -58,7 +58,7 @@ report::Plot lab_plot(const Subject& s, int channel, int width, int height) {
                     .y = {.label = ""},
                     .width = width,
                     .height = height};
-  // The rise toward specular would hide the rest: the axis follows the readings.
+  // The axis follows the readings, because the rise toward specular would make the rest too small to see.
   double low = std::numeric_limits<double>::infinity(), high = -low;
   const auto note = [&](double v) { low = std::min(low, v), high = std::max(high, v); };
   if (s.input.paint.measurement) {
@@ -134,7 +134,7 @@ report::Plot parts_plot(const paint::LobeFit& fit) {
   return plot;
 }
 
-// In the plane of incidence with light from 45 deg on the left; readings are placed where they were taken.
+// The plane of incidence with light from 45 deg on the left. Readings stand where they were taken.
 report::Drawing polar_plot(const Subject& s) {
   std::vector<report::PolarSeries> series;
   double highest = 0;
@@ -162,7 +162,7 @@ report::Drawing polar_plot(const Subject& s) {
   return report::polar_drawing("Reflectance factor, light at 45 deg", series, kThird, kColumnHeight);
 }
 
-// What the numbers say.
+// A table of the fit in numbers.
 report::Drawing facts(const Subject& s) {
   std::vector<std::string> lines = {
       fmt::format("basis {}, method {}", s.lobes->basis, s.lobes->method),
@@ -241,7 +241,7 @@ class Slices {
                                     gloss.empty() ? brdf::kGlossIncidence_deg : gloss.front().angle_deg);
   }
 
-  // The brightest twentieth may burn out.
+  // The exposure at which only the brightest twentieth of the views is clipped.
   double exposure() const {
     std::vector<double> values;
     for (int i = 0; i < kCells; ++i)

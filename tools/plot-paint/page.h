@@ -11,7 +11,7 @@ namespace goniochrome::tool {
 
 struct PageInput {
   const paint::Paint& paint;
-  const brdf::MeasuredBrdf* brdf = nullptr;  // what the squares are held against, where there is one
+  const brdf::MeasuredBrdf* brdf = nullptr;  // what the squares compare with, where there is one
   std::vector<double> incidence_deg;
 };
 

@@ -22,7 +22,7 @@ setup() {
   grep -q '"target": "curve"' r.json
 }
 
-@test "several paints make a sheet, --pages a page each" {
+@test "several paints make a sheet, and --pages makes a page for each" {
   plot-paint -q --paint candy_red --paint jet_black fitted.xml -o sheet.svg
   xmllint --noout sheet.svg
   [ "$(grep -c '>L\*<' sheet.svg)" -eq 2 ]
@@ -41,13 +41,13 @@ setup() {
   ! grep -q '10 deg, fit' page.svg
 }
 
-@test "standard input to standard output" {
+@test "standard input goes to standard output" {
   run --separate-stderr bash -c "plot-paint -q --paint candy_red <fitted.xml"
   [ "$status" -eq 0 ]
   [[ "$output" =~ "<svg " ]]
 }
 
-@test "PNG by the ending and by --format, where rsvg-convert is there" {
+@test "a PNG is made by the ending or --format, where rsvg-convert is there" {
   mkdir pages
   if command -v rsvg-convert >/dev/null; then
     plot-paint -q --paint candy_red fitted.xml -o page.png

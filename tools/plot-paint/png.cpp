@@ -34,7 +34,7 @@ struct Pipe {
   }
 };
 
-// Feeds `input` and collects what comes back, whichever is ready.
+// Writes `input` to one pipe and collects what comes back from the other, whichever of them is ready.
 std::string exchanged(const std::string& input, Pipe& to, Pipe& from) {
   std::string output;
   std::size_t sent = 0;

@@ -36,7 +36,7 @@ within() { awk -v limit="$1" '$1 > limit { bad = 1 } { n++ } END { exit bad || !
   grep -q "goniochrome:source.*outdoor.exr" header
 }
 
-@test "standard input to standard output" {
+@test "standard input goes to standard output" {
   prefilter-envmap -q -e 20 --size 8 <"$sky" >a.env.exr
   prefilter-envmap -q -e 20 --size 8 - -o - <"$sky" >b.env.exr
   [ -s a.env.exr ]
@@ -66,7 +66,7 @@ within() { awk -v limit="$1" '$1 > limit { bad = 1 } { n++ } END { exit bad || !
   [[ "$stderr" =~ 1e\+05\ +4\ +blocks ]]
 }
 
-@test "usage errors" {
+@test "usage errors name the option and the remedy" {
   run prefilter-envmap "$sky" -o x.env.exr
   [ "$status" -eq 2 ]
   [[ "$output" =~ "give one of --basis FILE, --exponents LIST and --for PAINTS" ]]
@@ -85,7 +85,7 @@ within() { awk -v limit="$1" '$1 > limit { bad = 1 } { n++ } END { exit bad || !
   [ ! -e x.env.exr ]
 }
 
-@test "bad input" {
+@test "bad input is told by name" {
   run prefilter-envmap -e 6 absent.exr -o x.env.exr
   [ "$status" -eq 3 ]
   [[ "$output" =~ "prefilter-envmap: absent.exr: cannot be read: No such file" ]]
@@ -155,7 +155,7 @@ lobes_paint() {
   printf '</lobes></paint></paints>'
 }
 
-@test "only the lobes that paints need, and which were left out" {
+@test "--for filters only the lobes that paints need, and tells which were left out" {
   lobes_paint 6:0.2 70:0.00001 900:5 >p.paints.xml
   run --separate-stderr prefilter-envmap --for p.paints.xml --size 8 --explain --report r.json "$sky" -o out.env.exr
   [ "$status" -eq 0 ]
@@ -200,7 +200,7 @@ lobes_paint() {
   [ "$status" -eq 2 ]
 }
 
-@test "other layouts, with their exponents, by their own conventions" {
+@test "other layouts follow their own conventions and hold their exponents" {
   command -v exrheader >/dev/null || skip "no exrheader"
   prefilter-envmap -q -e 70 --size 8 --layout latlong --verify 5 --report r.json "$sky" -o flat.exr
   values max_rel_error | within 1e-3
@@ -231,7 +231,7 @@ lobes_paint() {
   [ ! -e x.exr ]
 }
 
-@test "a turn, an exposure and a horizon" {
+@test "--rotate, --exposure and --horizon change the environment; wrong ones are refused" {
   prefilter-envmap -q -e 6 --size 8 --verify 5 --rotate 30,20,-100 --exposure 2 --report r.json "$sky" -o a.env.exr
   values max_rel_error | within 1e-3
   prefilter-envmap -q -e 6 --size 8 --horizon 0 --verify 5 --report r.json "$sky" -o b.env.exr

@@ -1,4 +1,4 @@
-#include "run.h"
+#include "tool.h"
 
 #include <algorithm>
 #include <cmath>
@@ -60,7 +60,7 @@ void tell_source(const envmap::Environment& env, cli::Session& session) {
     session.warn(fmt::format("{}: {} texels beyond Rec.2020 clipped to it", env.source(), n.out_of_gamut));
 }
 
-// The plan, before the work.
+// The text of --explain.
 std::string plan_text(const envmap::Environment& env, const Wanted& wanted, const Options& options,
                       const std::vector<prefilter::LobePlan>& plan, const prefilter::LobeSource& known) {
   const prefilter::PrefilterRequest& request = wanted.request;
@@ -141,7 +141,7 @@ bool verify(const Options& options, const envmap::Environment& env, const envmap
 }
 
 Result<void> write(const Options& options, const envmap::PrefilteredEnvironment& result, const cli::Session& session) {
-  const std::string command = fmt::format("{} {}: {}", session.tool(), cli::Session::version(), session.command_line());
+  const std::string command = session.provenance();
   if (options.layout == "mip") return envmap::write_mip(options.output, result.lobes, result.source, command);
   return envmap::write_env(options.output, result, command);
 }
@@ -154,7 +154,7 @@ void tell_wanted(const Options& options, const Wanted& wanted, cli::Session& ses
                         {"share", json_number(lobe.share)}});
 }
 
-// The maps, and how long each took. Lobes that the cache has not are put into it.
+// Returns the maps, and appends to `timings` how long each of them took. Lobes that the cache lacks are put into it.
 Result<envmap::PrefilteredEnvironment> filter(const envmap::Environment& env,
                                               const prefilter::PrefilterRequest& request,
                                               const std::vector<prefilter::LobePlan>& plan,

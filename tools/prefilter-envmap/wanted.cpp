@@ -16,14 +16,14 @@ namespace goniochrome::tool {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kLeastTolerance = 1e-6;  // floats hold 6e-8, the reference 1e-8
+constexpr double kLeastTolerance = 1e-6;  // a float is rounded by 6e-8, and the reference is good to 1e-8
 
 double largest(const color::Rgb& weights) {
   return std::max({weights[0], weights[1], weights[2]});
 }
 
-// What a lobe reflects of a constant environment at normal incidence: its weight times 2 pi/(E+1); the mirror, its
-// weight.
+// What a lobe reflects of a constant environment at normal incidence: its weight times 2 pi/(E+1), and for the mirror
+// its weight alone.
 double reflectance(const paint::Lobe& lobe) {
   const double weight = largest(lobe.directional_diffuse) + largest(lobe.gloss);
   return std::isinf(lobe.exponent) ? weight : weight * 2 * kPi / (lobe.exponent + 1);
@@ -118,7 +118,7 @@ Result<Wanted> wanted_lobes(const Options& options) {
   } else if (!options.paints.empty()) {
     GONIO_TRY(want_those_of_paints(options, wanted));
   }
-  // Ascending, each once; the diffuse lobe stands for exponent 1.
+  // The exponents ascend, and each is there once. Exponent 1 is dropped, because the diffuse lobe has it.
   std::vector<double>& e = request.exponents;
   std::sort(e.begin(), e.end());
   e.erase(std::unique(e.begin(), e.end()), e.end());

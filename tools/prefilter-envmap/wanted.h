@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "base/result.h"
-#include "options.h"
 #include "prefilter/prefilter.h"
+#include "tool.h"
 
 namespace goniochrome::tool {
 

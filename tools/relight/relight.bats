@@ -32,7 +32,7 @@ sensors() { printf 'nm,r,g,b\n400,0,0,2\n450,0,.5,2\n500,.2,1,.5\n550,.8,2,0\n60
   done
 }
 
-@test "standard input to standard output" {
+@test "standard input goes to standard output" {
   relight -q --from D65 --to A <"$sky" >a.exr
   relight -q --from D65 --to A - -o - <"$sky" >b.exr
   [ -s a.exr ] && [ -s b.exr ]
@@ -48,7 +48,7 @@ sensors() { printf 'nm,r,g,b\n400,0,0,2\n450,0,.5,2\n500,.2,1,.5\n550,.8,2,0\n60
   relight -q --from 1,0,0 --to D65 "$sky" -o out.exr
 }
 
-@test "--from and --to: missing, wrong, right" {
+@test "--from and --to take values and names; missing and wrong ones are refused" {
   run --separate-stderr relight --to D65 "$sky" -o out.exr
   [ "$status" -eq 2 ]
   [[ "$stderr" == *"--from is missing"* ]]
@@ -62,7 +62,7 @@ sensors() { printf 'nm,r,g,b\n400,0,0,2\n450,0,.5,2\n500,.2,1,.5\n550,.8,2,0\n60
   relight -q --from D50 --to 1,1,0.5 "$sky" -o out.exr
 }
 
-@test "--operator: missing, wrong, right" {
+@test "--operator takes names and files; missing and wrong ones are refused" {
   run --separate-stderr relight --from D65 --to A "$sky" -o out.exr --operator
   [ "$status" -eq 2 ]
   run --separate-stderr relight --from D65 --to A --operator nowhere.json "$sky" -o out.exr
@@ -75,7 +75,7 @@ sensors() { printf 'nm,r,g,b\n400,0,0,2\n450,0,.5,2\n500,.2,1,.5\n550,.8,2,0\n60
   relight -q --from D65 --to A --operator good.json "$sky" -o out.exr
 }
 
-@test "--transfer: missing, wrong, right" {
+@test "--transfer takes three shares; missing and wrong ones are refused" {
   run --separate-stderr relight --from D65 --to A "$sky" -o out.exr --transfer
   [ "$status" -eq 2 ]
   for wrong in 0,1 2,0,0 a; do
@@ -92,7 +92,7 @@ sensors() { printf 'nm,r,g,b\n400,0,0,2\n450,0,.5,2\n500,.2,1,.5\n550,.8,2,0\n60
   tr -d ' \n' <r.json | grep -vq '"matrix":\[\[[0-9.]*,0.0,0.0\],\[0.0,[0-9.]*,0.0\],\[0.0,0.0,'
 }
 
-@test "--negative: missing, wrong, right; negatives are counted and told" {
+@test "--negative keeps or zeroes what is counted; missing and wrong words are refused" {
   run --separate-stderr relight --from D65 --to A "$sky" -o out.exr --negative
   [ "$status" -eq 2 ]
   run --separate-stderr relight --from D65 --to A --negative drop "$sky" -o out.exr
@@ -104,7 +104,7 @@ sensors() { printf 'nm,r,g,b\n400,0,0,2\n450,0,.5,2\n500,.2,1,.5\n550,.8,2,0\n60
   [[ "$stderr" == *"negative channel"* ]]
 }
 
-@test "--estimate: missing, wrong, right" {
+@test "--estimate makes an operator; missing and wrong tables are refused" {
   run --separate-stderr relight --estimate
   [ "$status" -eq 2 ]
   run --separate-stderr relight --estimate nowhere.csv

@@ -1,4 +1,4 @@
-#include "run.h"
+#include "tool.h"
 
 #include <cmath>
 
@@ -6,7 +6,6 @@
 #include "base/text.h"
 #include "color/reflection_json.h"
 #include "image/color_space.h"
-#include "matching_table.h"
 
 namespace goniochrome::tool {
 
@@ -53,7 +52,7 @@ std::string plan_text(const Options& options, const color::Rgb& from, const colo
   return text;
 }
 
-// Changes every pixel, and returns how many have a negative channel. Error: the first that is not finite.
+// Changes every pixel, and returns how many of them have a negative channel. Error: the first pixel that is not finite.
 Result<std::size_t> relit(image::Image& image, const color::Matrix3& matrix, bool keep_negative,
                           const std::string& name) {
   std::size_t negative = 0;
@@ -69,6 +68,38 @@ Result<std::size_t> relit(image::Image& image, const color::Matrix3& matrix, boo
     }
   }
   return negative;
+}
+
+// Reads color-matching functions: CSV rows of a wavelength and three values, at equal steps. A first line of names is
+// passed over. Error: the file, the line and the value.
+Result<std::vector<color::Rgb>> read_matching_table(const std::string& path) {
+  GONIO_ASSIGN(const std::string text, file_content(path));
+  std::vector<color::Rgb> table;
+  std::vector<double> wavelengths;
+  int number = 0;
+  for (const std::string_view raw : split(text, '\n')) {
+    ++number;
+    const std::string_view line = trimmed(raw);
+    if (line.empty() || line.front() == '#') continue;
+    const auto words = split(line, ',');
+    if (table.empty() && !parse_number(trimmed(words.front()))) continue;  // the names of the columns
+    if (words.size() != 4)
+      return input_error("{}:{}: {} columns: give a wavelength and three values", path, number, words.size());
+    double values[4];
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto value = parse_number(trimmed(words[k]));
+      if (!value) return input_error("{}:{}: \"{}\" is not a number", path, number, words[k]);
+      values[k] = *value;
+    }
+    const std::size_t n = wavelengths.size();
+    wavelengths.push_back(values[0]);
+    table.push_back({values[1], values[2], values[3]});
+    if (n < 1) continue;
+    const double step = wavelengths[1] - wavelengths[0];
+    if (!(step > 0) || std::abs(wavelengths[n] - wavelengths[n - 1] - step) > 1e-6 * step)
+      return input_error("{}:{}: wavelength {} breaks the equal steps of {}", path, number, values[0], step);
+  }
+  return table;
 }
 
 Result<cli::Verdict> estimate(const Options& options, cli::Session& session) {
@@ -110,8 +141,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
     session.warn(fmt::format("{}: {} pixels of {} have a negative channel, {}", path, negative, pixels,
                              options.negative == "keep" ? "written as it is" : "set to zero"));
   image::ImagePart out{"", std::move(image), {}, image::PixelType::kHalf};
-  out.attributes["goniochrome:command"] =
-      fmt::format("{} {}: {}", session.tool(), cli::Session::version(), session.command_line());
+  out.attributes["goniochrome:command"] = session.provenance();
   out.attributes["colorInteropID"] = std::string("lin_rec2020_scene");
   if (const auto envmap = part.attributes.find("envmap"); envmap != part.attributes.end())
     out.attributes["envmap"] = envmap->second;

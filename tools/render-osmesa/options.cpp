@@ -1,237 +1,230 @@
-#include "options.h"
-
 #include "render/engine.h"
+#include "tool.h"
 
 namespace goniochrome::tool {
 
-cli::ToolSpec tool_spec(Options& o) {
-  cli::ToolSpec spec;
-  spec.name = "render-osmesa";
-  spec.summary = "draw painted meshes under image light and directional lights";
-  spec.description = {
-      "Draws a mesh whose parts wear paints fitted by fit-paint(1), lit by an environment prefiltered by "
-      "prefilter-envmap(1), by directional lights, or by both, with OpenGL on the processor: no window, no graphics "
-      "card. The result is scene-linear radiance (OpenEXR, linear Rec.2020) or a display picture (PNG).",
-      "A PAINT is FILE[#NAME], a paint of a paint XML file; NAME may be left out where the file holds only one. --part "
-      "paints the part of that name, or, where no part has it, every part of that material (the material of a part's "
-      "first face); --paint paints the others. A part without a paint is matt gray of 18 %, and the tool says so. "
-      "World axes are those of the environment: +Y is up, azimuth 0 is +Z and grows toward +X.",
-      "A light is AZIMUTH,ELEVATION or a vector X,Y,Z toward it, then, if wanted, R,G,B: what a perfect white diffuser "
-      "facing it shows (1,1,1). Its mirror image is a point without extent and is not drawn.",
-      "--exposure auto leaves an EXR as it is, and in a PNG brings the brightest that a white diffuser can be in this "
-      "light to 1. The view Paint keeps colors exact up to 80 % of display white and the hue of every highlight; ACES "
-      "SDR is the film-like rendering of ACES 1.0; Un-tone-mapped clips. Where $OCIO is set, the views are those of "
-      "its configuration.",
-      "--aov adds buffers of the pixel centers to an EXR: normal (normal.X .Y .Z, turned to the viewer), aspecular "
-      "(the angle in degrees between the view and the mirror direction of the first light), lambert (the cosine "
-      "between normal and that light), mask (1 on the mesh) and part (numbered from 1; the attribute goniochrome:parts "
-      "names them). Without --light, the light of these two is the direction in which the environment's irradiance is "
-      "largest; goniochrome:aovLight holds it. goniochrome:rays (corner;right;down, the ray through the point x,y "
-      "being their sum with the second times x and the third times y, in pixels from the upper left), "
-      "goniochrome:lights (direction and white of each), goniochrome:operator (the 27 coefficients k[c][d][e] of "
-      "colored light, e running fastest), goniochrome:samples (of a pixel of the picture) and goniochrome:environment "
-      "say what is needed to shade the buffers again.",
-      "--gbuffer shades such an EXR again, in other paints or light, without the mesh and without rasterizing: its "
-      "buffers normal and part, and goniochrome:rays, parts and materials, hold all that the engine cpu needs. The "
-      "picture is that of --samples 1, bit for bit; view and size are the file's. Textures need the mesh.",
-      "Before drawing, the effects that the scene calls for are priced: what each changes in the picture (CIEDE2000, "
-      "the 95th percentile over visible pixels) and what it costs. What all together changes less than --tolerance is "
-      "left out; with --budget, what is worth least for its time as well. --effects overrides: auto, all or none, then "
-      "+NAME and -NAME, as in auto,-fresnel. The names are diffuse, lobes, gloss, mirror, fresnel, horizon, "
-      "anisotropy, travel, texture, texture-lobes, operator and lights; lobe-20, gloss-900 and texture-0 (lobe0 of the "
-      "textures) are single lobes. --explain prints the table, which is in the report and in the header of an EXR as "
-      "well.",
-      "Two engines draw the same picture: gl, in OpenGL, and cpu, which reads all lobes of a texel at once; auto takes "
-      "the one predicted faster. Maps that know one direction cannot tell light that changes within the part of a "
-      "broad lobe above the horizon: some 0.5 to 1 in the mean, and more at single points. The engine integral does "
-      "without them: at every visible point it sums the image that the environment was made from (--check-source, "
-      "where that has moved), by blocks as coarse as --tolerance lets 95 of 100 points be. It draws every effect, "
-      "takes some 300 times as long at the default tolerance, and a brushed paint another 50 times; --explain "
-      "foretells it.",
-      "--operator says how colored light and paint multiply: iso, a bilinear product by the published table for camera "
-      "sensors; rec2020, by one estimated from color-matching functions, which can make saturated colors negative; or "
-      "none, each channel by itself. A number from 0 to 1 after a comma says how much the channels share, as in "
-      "iso,0.1.",
-      "Under lights, a paint with a color map shows the map's own colors; under an environment, its weights for "
-      "several views. --texture gives a part a spatially varying surface of generalized cosine lobes (EXR) in the "
-      "place of a paint; it is laid by the mesh's texture coordinates, or around the vertical axis where it has none. "
-      "Without the effect texture, a part shows the mean texel of its texture. Exponents between those of the "
-      "environment are blended: from a cube for each (--texture-maps cubes), or from one whose coarser levels hold "
-      "wider lobes (mip), which needs the sharpest exponent and its quarters, or the layout mip of "
-      "prefilter-envmap(1).",
-      "--split draws the picture twice, its left half in the first paint and its right half in the second, both in the "
-      "place of --paint. --turntable and --light-sweep write a sequence, NAME-0001.exr and so on: the camera, or the "
-      "first light, goes once around the vertical axis.",
-      "--check compares that many random pixel centers with the reference integrator: the exact lobe model against "
-      "every texel of the environment's source, without prefiltering. The differences are CIEDE2000 relative to the "
-      "brightest that a white diffuser can be in this light, whatever the exposure.",
-  };
-  spec.options = {
-      {.name = "mesh",
-       .letter = 'm',
-       .value = "FILE",
-       .help = "mesh: OBJ with parts, or OFF, PLY, STL",
-       .target = &o.mesh},
-      {.name = "gbuffer",
-       .value = "FILE",
-       .help = "shade the buffers of an EXR made with --aov normal,part, instead of --mesh",
-       .target = &o.gbuffer},
-      {.name = "part",
-       .value = "PART=PAINT",
-       .help = "paint of a part or material; repeat for more",
-       .target = &o.parts},
-      {.name = "paint", .letter = 'p', .value = "PAINT", .help = "paint of all other parts", .target = &o.paint},
-      {.name = "texture",
-       .value = "PART=FILE",
-       .help = "texture of lobes of a part or material; repeat for more; FILE*N lays it N times",
-       .target = &o.textures},
-      {.name = "texture-maps",
-       .value = "WHAT",
-       .help = "where the lobes of textures look: cubes, one for each exponent, or mip, one with all in its levels",
-       .target = &o.texture_maps,
-       .choices = {"cubes", "mip"}},
-      {.name = "env", .letter = 'e', .value = "FILE", .help = "prefiltered environment (*.env.exr)", .target = &o.env},
-      {.name = "light",
-       .value = "DIR[,RGB]",
-       .help = "directional light: AZ,EL or X,Y,Z, then R,G,B; repeat for more",
-       .target = &o.lights},
-      {.name = "size",
-       .letter = 's',
-       .value = "WxH",
-       .help = "picture size in pixels; auto is 1280x720, or that of --gbuffer",
-       .target = &o.size},
-      {.name = "orbit",
-       .value = "AZ,EL[,DIST]",
-       .help = "camera around the mesh, in degrees; at distance 1 the mesh just fits from every azimuth",
-       .target = &o.orbit},
-      {.name = "camera",
-       .value = "EYE,TARGET[,FOV]",
-       .help = "camera at EX,EY,EZ looking at TX,TY,TZ, with its field of view, instead of --orbit",
-       .target = &o.camera},
-      {.name = "fov", .value = "DEG", .help = "vertical field of view", .target = &o.fov_deg, .low = 1, .high = 150},
-      {.name = "samples",
-       .value = "N",
-       .help = "samples a pixel: 1, 4 or 16; 0 is 4, or 1 with --gbuffer",
-       .target = &o.samples,
-       .low = 0,
-       .high = 16},
-      {.name = "background",
-       .value = "WHAT",
-       .help = "none (transparent; 18 % gray in a PNG), env, or a color R,G,B",
-       .target = &o.background},
-      {.name = "exposure", .value = "STOPS", .help = "brightens by 2^STOPS, or auto", .target = &o.exposure},
-      {.name = "view",
-       .value = "NAME",
-       .help = "display view of a PNG: Paint, ACES SDR or Un-tone-mapped",
-       .target = &o.view},
-      {.name = "aov",
-       .value = "NAMES",
-       .help = "buffers to add to an EXR: normal, aspecular, lambert, mask, part",
-       .target = &o.aovs},
-      {.name = "effects",
-       .value = "WORDS",
-       .help = "auto, all or none, then +NAME and -NAME, separated by commas",
-       .target = &o.effects},
-      {.name = "budget",
-       .value = "MS",
-       .help = "most time for the shading of a frame, in ms; 0 is no limit",
-       .target = &o.budget_ms,
-       .low = 0,
-       .high = 1e6},
-      {.name = "engine",
-       .value = "NAME",
-       .help = "what shades",
-       .target = &o.engine,
-       .choices = render::engine_choices()},
-      {.name = "operator",
-       .value = "NAME[,SHARE]",
-       .help = "how colored light and paint multiply: iso, rec2020 or none",
-       .target = &o.reflection},
-      {.name = "critical-angle",
-       .value = "NAME",
-       .help = "what color maps do beyond the critical angle under lights",
-       .target = &o.critical_angle,
-       .choices = {"clip", "slide", "slide-map", "index"}},
-      {.name = "print-shader",
-       .help = "print the OpenGL program of the scene on standard output",
-       .target = &o.print_shader},
-      {.name = "split",
-       .value = "PAINT,PAINT",
-       .help = "left and right half of the picture in two paints",
-       .target = &o.split},
-      {.name = "turntable",
-       .value = "N",
-       .help = "write N pictures from all around",
-       .target = &o.turntable,
-       .low = 0,
-       .high = 9999},
-      {.name = "light-sweep",
-       .value = "N",
-       .help = "write N pictures with the first light from all around",
-       .target = &o.light_sweep,
-       .low = 0,
-       .high = 9999},
-      {.name = "check",
-       .value = "N",
-       .help = "compare N random visible pixels with the reference integrator",
-       .target = &o.check,
-       .low = 0,
-       .high = 1e8},
-      {.name = "check-source",
-       .value = "FILE",
-       .help = "image that the environment was made from, where it has moved",
-       .target = &o.check_source},
-      {.name = "output",
-       .letter = 'o',
-       .value = "FILE",
-       .help = "picture to write: .exr or .png; - is EXR on standard output",
-       .target = &o.output,
-       .required = true},
-  };
+namespace {
+
+void add_surfaces(cli::ToolSpec& spec, Options& o) {
+  spec.heading = "surfaces";
+  spec.option("mesh,m", "FILE", "testdata/speed-shape.obj", &o.mesh, "mesh: OBJ with parts, or OFF, PLY, STL");
+  spec.option("gbuffer", "FILE", "view.exr", &o.gbuffer, "shade the buffers of an earlier picture instead of a mesh")
+      .more(
+          "The file is an EXR that was made with --aov normal,part. Its buffers and its attributes goniochrome:rays, "
+          "parts and materials hold all that the engine cpu needs, so that other paints or other light are shown "
+          "without the mesh and without rasterizing. The picture is that of --samples 1, bit for bit; view and size "
+          "are "
+          "the file's. Textures need the mesh.");
+  spec.option("paint,p", "PAINT", "fitted.xml#candy_red", &o.paint, "paint of all parts that --part does not name");
+  spec.option("part", "PART=PAINT", "Glass=fitted.xml#silver_fine", &o.parts, "paint of a part or material")
+      .more(
+          "The part of that name is painted, or, where no part has it, every part of that material. The material of a "
+          "part is that of its first face.");
+  spec.option("split", "PAINT,PAINT", "a.xml#red,a.xml#blue", &o.split, "draw the halves of the picture in two paints")
+      .more("Both stand in the place of --paint: the first on the left, the second on the right.");
+  spec.option("texture", "PART=FILE", "Hood=flakes.exr*4", &o.textures, "surface that varies over a part or material")
+      .more(
+          "The texture is an EXR of generalized cosine lobes and stands in the place of a paint. FILE*N repeats it N "
+          "times. It is laid by the texture coordinates of the mesh, or around the vertical axis where there are none. "
+          "Without the effect texture, the part shows the mean texel.");
+  spec.option("texture-maps", "WHAT", "mip", &o.texture_maps, "where the lobes of textures are looked up")
+      .one_of({"cubes", "mip"})
+      .more(
+          "The exponents of a texture lie between those of the environment, and are blended. cubes blends maps that "
+          "have one exponent each. mip blends the levels of one cube, of which coarser ones hold wider lobes; it needs "
+          "the sharpest exponent and its quarters, or the layout mip of prefilter-envmap(1).");
+}
+
+void add_light(cli::ToolSpec& spec, Options& o) {
+  spec.heading = "light";
+  spec.option("env,e", "FILE", "studio.env.exr", &o.env, "prefiltered environment (*.env.exr)");
+  spec.option("light", "DIR[,RGB]", "-60,20,0.5,0.5,0.6", &o.lights, "directional light")
+      .in("degrees where the direction is given by angles")
+      .more(
+          "The direction is AZIMUTH,ELEVATION, or a vector X,Y,Z toward the light. R,G,B may follow; it is what a "
+          "perfect white diffuser shows that faces the light, and 1,1,1 if not given. The mirror image of such a light "
+          "is a point without extent and is not drawn.");
+  spec.option("operator", "NAME[,SHARE]", "iso,0.1", &o.reflection, "how colored light and paint multiply")
+      .more(
+          "iso is a bilinear product by the published table for camera sensors. rec2020 is one that is estimated from "
+          "color-matching functions, which can make saturated colors negative. none multiplies each channel by itself. "
+          "A number from 0 to 1 after a comma says how much the channels share.");
+  spec.option("critical-angle", "NAME", "clip", &o.critical_angle, "what color maps do beyond the critical angle")
+      .one_of({"clip", "slide", "slide-map", "index"})
+      .more(
+          "A color map shows its own colors under lights. Under an environment, a paint that has one is shown by its "
+          "weights for several views.");
+  spec.option("exposure", "STOPS", "-1", &o.exposure, "power of two that brightens the picture, or auto")
+      .more(
+          "auto leaves an EXR as it is. In a PNG it brings the brightest that a white diffuser can be in this light to "
+          "1.");
+  spec.option("background", "WHAT", "env", &o.background, "what is seen beside the mesh: none, env or R,G,B")
+      .more("none is transparent, and in a PNG a gray of 18 %. env shows the environment.");
+}
+
+void add_camera(cli::ToolSpec& spec, Options& o) {
+  spec.heading = "camera";
+  spec.option("orbit", "AZ,EL[,DIST]", "60,20,0.9", &o.orbit, "camera around the mesh")
+      .in("degrees for the angles")
+      .more("At distance 1, which is the default, the mesh just fits from every azimuth.");
+  spec.option("camera", "EYE,TARGET[,FOV]", "4,1,4,0,0,0", &o.camera, "camera anywhere, instead of --orbit")
+      .in("units of the mesh, and in degrees for the field of view")
+      .more("EYE and TARGET are three numbers each: where the camera stands and what it looks at.");
+  spec.option("fov", "DEG", "50", &o.fov_deg, "vertical field of view").from(1, 150);
+  spec.option("size,s", "WxH", "640x400", &o.size, "size of the picture; auto is 1280x720, or that of --gbuffer")
+      .in("pixels");
+  spec.option("samples", "N", "16", &o.samples, "samples in each pixel: 1, 4 or 16")
+      .from(0, 16)
+      .more("0 takes 4, or 1 with --gbuffer.");
+  spec.option("turntable", "N", "36", &o.turntable, "write N pictures with the camera going once around")
+      .from(0, 9999)
+      .more("The camera goes around the vertical axis. The pictures are NAME-0001.exr and so on.");
+  spec.option("light-sweep", "N", "12", &o.light_sweep, "write N pictures with the first light going once around")
+      .from(0, 9999);
+}
+
+void add_effects(cli::ToolSpec& spec, Options& o) {
+  spec.heading = "effects";
+  spec.option("effects", "WORDS", "auto,-fresnel", &o.effects,
+              "effects to draw: auto, all or none, and then +NAME and -NAME")
+      .more(
+          "The names are diffuse, lobes, gloss, mirror, fresnel, horizon, anisotropy, travel, texture, texture-lobes, "
+          "operator and lights. lobe-20, gloss-900 and texture-0 (lobe0 of the textures) are single lobes. auto leaves "
+          "out the effects that change too little, as --tolerance and --budget say.");
   o.common.tolerance = 0.5;
-  cli::add_common_options(spec, o.common, {cli::Common::kExplain, cli::Common::kTolerance, cli::Common::kSeed});
+  cli::add_tolerance(spec, o.common, "DE00", "largest change by all effects that are left out")
+      .more(
+          "Before drawing, each effect that the scene calls for is priced: what it changes in the picture (the 95th "
+          "percentile of the difference over visible pixels), and what it costs. What changes less than the tolerance, "
+          "all together, is left out. --explain prints the table, which is also in the report and in the header of an "
+          "EXR. The engine integral makes its sums as coarse as this tolerance allows at 95 of 100 points.");
+  spec.option("budget", "MS", "20", &o.budget_ms, "longest time for shading a frame; 0 is no limit")
+      .from(0, 1e6)
+      .more("Where the time is not enough, the effects that are worth least for their time are left out as well.");
+}
+
+void add_engines(cli::ToolSpec& spec, Options& o) {
+  spec.heading = "engines";
+  spec.option("engine", "NAME", "cpu", &o.engine, "what shades the picture")
+      .one_of(render::engine_choices())
+      .more(
+          "Three engines draw a scene. gl shades in OpenGL, and cpu reads all lobes of a texel at once; their pictures "
+          "are the same, and auto takes the one that is predicted to be faster. Both use prefiltered maps, which know "
+          "one direction at each point. They cannot tell light that changes within that part of a broad lobe that is "
+          "above the horizon, and differ from the truth by some 0.5 to 1 dE00 in the mean, and by more at single "
+          "points. integral does without such maps: at every visible point it sums the image that the environment was "
+          "made from, in blocks as coarse as --tolerance allows. It draws every effect. At the default tolerance it "
+          "takes several hundred times as long as the others, and a brushed paint takes another 50 times as long; "
+          "--explain predicts the time.");
+  spec.flag("print-shader", &o.print_shader, "print the OpenGL program of the scene on standard output");
+}
+
+void add_checking(cli::ToolSpec& spec, Options& o) {
+  spec.heading = "checking";
+  spec.option("check", "N", "100", &o.check, "compare N random visible pixels with the reference integrator")
+      .from(0, 1e8)
+      .more(
+          "The reference applies the exact lobe model to every texel of the environment's source, without "
+          "prefiltering. Differences are CIEDE2000, relative to the brightest that a white diffuser can be in this "
+          "light, whatever the exposure is.");
+  spec.option("check-source", "FILE", "testdata/studio.exr", &o.check_source, "image the environment was made from")
+      .more("It is needed where that image is no longer where the environment says. The engine integral uses it too.");
+}
+
+void add_output(cli::ToolSpec& spec, Options& o) {
+  spec.heading = "output";
+  spec.option("output,o", "FILE", "candy.png", &o.output, "picture to write: .exr or .png; - is EXR on standard output")
+      .needed();
+  spec.option("view", "NAME", "'ACES SDR'", &o.view, "display view of a PNG: Paint, ACES SDR or Un-tone-mapped")
+      .more(
+          "Paint, the default, keeps colors exact up to 80 % of display white, and the hue of every highlight. ACES "
+          "SDR "
+          "is the film-like rendering of ACES 1.0. Un-tone-mapped clips. Where $OCIO is set, the views are those of "
+          "its "
+          "configuration.");
+  spec.option("aov", "NAMES", "normal,part", &o.aovs,
+              "buffers to add to an EXR: normal, aspecular, lambert, mask, part")
+      .more(
+          "They hold the pixel centers. normal is turned to the viewer (normal.X .Y .Z). aspecular is the angle in "
+          "degrees between the view and the mirror direction of the first light, and lambert the cosine between normal "
+          "and that light; without --light, it is the direction in which the environment's irradiance is largest, and "
+          "goniochrome:aovLight holds it. mask is 1 on the mesh. part is a number from 1, and the attribute "
+          "goniochrome:parts names the parts. More attributes say what is needed to shade the buffers again: "
+          "goniochrome:rays (corner;right;down: the ray through the point x,y is the sum of the first, x times the "
+          "second and y times the third, in pixels from the upper left), goniochrome:lights (direction and white of "
+          "each), goniochrome:operator (the 27 coefficients k[c][d][e] of colored light, with e running fastest), "
+          "goniochrome:samples (those of a pixel of the picture) and goniochrome:environment.");
+}
+
+// The examples, the keys of --report, and the pages to see.
+void add_report(cli::ToolSpec& spec) {
   spec.examples = {
       {"render-osmesa --mesh testdata/speed-shape.obj --light 30,50 -o shape.png",
-       "draws the bare shape under one light."},
+       "draw the bare shape under one light"},
       {"fit-paint --basis testdata/b7.basis.xml testdata/paints.paints.xml -o fitted.xml && render-osmesa --mesh "
        "testdata/speed-shape.obj --paint fitted.xml#candy_red --part Glass=fitted.xml#silver_black_flop --light 30,50 "
        "--light -60,20,0.5,0.5,0.6 --samples 16 -o candy.png",
-       "dresses it in a fitted paint, its windows in another."},
+       "draw it in a fitted paint, and its windows in another one"},
       {"prefilter-envmap testdata/studio.exr --basis testdata/b7.basis.xml -o studio.env.exr && "
        "fit-paint --basis testdata/b7.basis.xml testdata/paints.paints.xml -o fitted.xml && "
        "render-osmesa --mesh testdata/speed-shape.obj --paint fitted.xml#candy_red --env studio.env.exr --check 100 -o "
        "studio.png",
-       "draws it in a photo studio, and tells how far the picture is from the reference integrator."},
+       "draw it in a photo studio, and tell how far the picture is from the reference integrator"},
       {"render-osmesa --mesh testdata/speed-shape.obj --light 30,50 --aov aspecular,lambert,mask,part -o buffers.exr",
-       "writes the buffers that a sketch is fitted from."},
+       "write the buffers that a sketch is fitted from"},
       {"render-osmesa --mesh testdata/speed-shape.obj --light 30,50 --aov normal,part -o view.exr && "
        "render-osmesa --gbuffer view.exr --light 30,50 --light-sweep 12 -o sweep.png",
-       "rasterizes the mesh once, and moves the light around it."},
-  };
+       "rasterize the mesh once, and move the light around it"}};
   spec.report = {
       {"plan[]: effect, needed, reason, de00_p95, cost_ms, decision",
-       "what each effect is worth, and whether it is drawn; with --check and --explain truth_de00_p95 as well"},
-      {"plan_de00_p95, plan_ms", "what all that is left out changes together, and the time that planning took"},
-      {"engine, engine_reason", "what shaded, gl or cpu, and why"},
+       "what each effect is worth, and whether it is drawn; with --check and --explain, truth_de00_p95 stands beside "
+       "it"},
+      {"plan_de00_p95, plan_ms", "change by all effects that are left out together, and the time that planning took"},
+      {"engine, engine_reason", "what shaded the picture (gl, cpu or integral), and why"},
       {"opengl", "the OpenGL renderer; null with --gbuffer"},
-      {"frames", "pictures written"},
+      {"frames", "number of pictures written"},
       {"gbuffer_ms", "time to rasterize the mesh once; 0 with --gbuffer"},
-      {"frame_ms", "time to draw the picture, all samples, without reading and uploading"},
-      {"triangles", "triangles of the mesh, where it was read"},
-      {"parts[]: name, material, paint", "the parts of the mesh and what they wear"},
+      {"frame_ms", "time to draw the picture with all samples, without reading and uploading"},
+      {"triangles", "number of triangles of the mesh, where it was read"},
+      {"parts[]: name, material, paint", "parts of the mesh and what they wear"},
       {"exposure_stops", "exposure in force"},
       {"view", "display and view of a PNG"},
       {"white_luminance", "the brightest that a white diffuser can be in this light"},
       {"repairs: normals_made, degenerate_dropped, polygons_split, triangles_turned", "what was mended in the mesh"},
       {"error: de00_mean, de00_p95, de00_max", "CIEDE2000 of the checked pixels against the reference integrator"},
-      {"error: checked_pixels, worst_x, worst_y, time_s", "how many, where it is worst, and how long the check took"},
-      {"error: source", "the image that the reference integrator used"},
+      {"error: checked_pixels, worst_x, worst_y, time_s",
+       "how many pixels were checked, where the worst one is, and how long the check took"},
+      {"error: source", "image that the reference integrator used"},
       {"left_out: de00_mean, de00_p95, de00_max",
-       "with --check, how far the picture is from that of all effects, over all visible pixels"},
+       "with --check: how far the picture is from that with all effects, over all visible pixels"},
       {"left_out: shading_ms, shading_all_ms, predicted_ms",
-       "the time of one sample of each pixel as planned, that with all effects, and what the plan expected"},
-  };
+       "with --check: the time of one sample of each pixel as planned, the same with all effects, and what the plan "
+       "expected"}};
   spec.see_also = {"fit-paint(1)", "prefilter-envmap(1)", "goniochrome-paint(5)", "goniochrome-theory(7)"};
+}
+
+}  // namespace
+
+cli::ToolSpec tool_spec(Options& o) {
+  cli::ToolSpec spec{.name = "render-osmesa",
+                     .summary = "draw painted meshes under image light and directional lights"};
+  spec.description = {
+      "render-osmesa draws a mesh whose parts wear paints that were fitted by fit-paint(1). The light is an "
+      "environment that was prefiltered by prefilter-envmap(1), or directional lights, or both. The tool draws on the "
+      "processor and needs neither a window nor a graphics card. The result is scene-linear radiance (OpenEXR, linear "
+      "Rec.2020) or a display picture (PNG).",
+      "A PAINT is FILE[#NAME], which is a paint of a paint XML file; NAME may be left out where the file holds only "
+      "one. A part without a paint is matt gray of 18 %, and a warning says so. World axes are those of the "
+      "environment: +Y is up, and the azimuth is 0 at +Z and grows toward +X."};
+  add_surfaces(spec, o);
+  add_light(spec, o);
+  add_camera(spec, o);
+  add_effects(spec, o);
+  add_engines(spec, o);
+  add_checking(spec, o);
+  add_output(spec, o);
+  cli::add_common_options(spec, o.common, {.explain = true, .seed = "the pixels to check"});
+  add_report(spec);
   return spec;
 }
 

@@ -7,9 +7,9 @@
 
 #include "base/result.h"
 #include "mesh/mesh.h"
-#include "options.h"
 #include "paint/paint.h"
 #include "render/surface_layer.h"
+#include "tool.h"
 
 namespace goniochrome::tool {
 

@@ -131,7 +131,7 @@ number() { sed -n '/"error": {/,/}/p' r.json | grep -m1 "\"$1\"" | sed -E 's/.*:
   [ "$status" -eq 3 ]
 }
 
-@test "--texture-maps: lobes of textures from a cube for each exponent, or from the levels of one" {
+@test "--texture-maps looks lobes up in a cube for each exponent, or in the levels of one" {
   texture="$TESTDATA/wood.sbrdf.exr"
   part=$(sed -n 's/^[og] //p' "$shape" | head -1)
   prefilter-envmap -q small.exr -e 64 --size 64 --layout mip -o mip.env.exr

@@ -69,7 +69,7 @@ near() {
   near "$(pixel b.exr 67 30)" "0.8 0.1 0.1 1"
 }
 
-@test "parts without a paint are gray, told once" {
+@test "parts without a paint are gray, which is told once" {
   run render-osmesa --mesh panels.obj --light 0,0 $front -o out.exr
   [ "$status" -eq 0 ]
   [[ "$output" =~ "3 of 3 parts have no paint and are matt gray: left, middle, right: give --paint or --part" ]]
@@ -138,7 +138,7 @@ near() {
   [ ! -e out.exr ]
 }
 
-@test "EXR on standard output" {
+@test "an EXR goes to standard output" {
   render-osmesa --mesh panels.obj --light 0,0 $front -o - 2>messages >out.exr
   near "$(pixel out.exr 45 30)" "0.18 0.18 0.18 1"
   grep -q 'standard output' messages
@@ -260,7 +260,7 @@ refused() {
   [[ "$(exrheader out.exr)" =~ goniochrome:plan ]]
 }
 
-@test "--effects and --engine choose, and both engines draw the same" {
+@test "--effects and --engine choose, and gl and cpu draw the same" {
   render-osmesa -q --mesh "$shape" $light $small --engine gl -o gl.exr --report r.json
   grep -q '"engine": "gl"' r.json
   render-osmesa -q --mesh "$shape" $light $small --engine cpu -o cpu.exr

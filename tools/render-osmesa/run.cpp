@@ -1,4 +1,4 @@
-#include "run.h"
+#include "tool.h"
 
 #include <algorithm>
 #include <cmath>

@@ -33,7 +33,7 @@ scene() {
 # decided EFFECT DECISION: as the report of the last scene has it.
 decided() { grep -A4 "\"effect\": \"$1\"" auto.json | grep -q "\"decision\": \"$2\""; }
 
-@test "solid paint" {
+@test "a solid paint is planned and checked" {
   scene fitted.xml#signal_white --env outdoor.env.exr
   decided anisotropy "not in the scene"
   scene fitted.xml#signal_white --env studio.env.exr
@@ -42,7 +42,7 @@ decided() { grep -A4 "\"effect\": \"$1\"" auto.json | grep -q "\"decision\": \"$
   decided operator "not in the scene"
 }
 
-@test "metallic paint" {
+@test "a metallic paint is planned and checked" {
   scene fitted.xml#candy_red --env outdoor.env.exr
   scene fitted.xml#candy_red --env studio.env.exr
   decided fresnel drawn
@@ -51,7 +51,7 @@ decided() { grep -A4 "\"effect\": \"$1\"" auto.json | grep -q "\"decision\": \"$
   decided operator drawn
 }
 
-@test "brushed metal" {
+@test "a brushed metal is planned and checked" {
   scene brushed.xml#silver_black_flop --light 40,50
   decided anisotropy drawn
   scene brushed.xml#silver_black_flop --light 40,50,1,0.5,0.2

@@ -7,9 +7,9 @@
 
 #include "base/result.h"
 #include "color/reflection.h"
-#include "options.h"
 #include "render/camera.h"
 #include "render/scene.h"
+#include "tool.h"
 
 namespace goniochrome::tool {
 

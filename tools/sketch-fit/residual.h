@@ -1,4 +1,4 @@
-// The picture of what a fit leaves.
+// The picture of the differences that a fit leaves.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace goniochrome::tool {
 
-// A PNG of the buffers' size: differences from black through red and yellow to white at 20 dE76, pixels left out in
-// dark blue, what is not the mesh in gray, with a scale at the lower left.
+// Writes a PNG of the buffers' size. Differences go from black through red and yellow to white at 20 dE76. Pixels that
+// were left out are dark blue, and what is not the mesh is gray. A scale stands at the lower left.
 Result<void> write_residual(const std::string& path, const image::AovFile& buffers, const sketch::SketchPixels& pixels,
                             const sketch::SketchFit& fit);
 

@@ -1,11 +1,11 @@
-#include "run.h"
+#include "tool.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/clock.h"
 #include "base/text.h"
-#include "formats/xml.h"
+#include "paint_stream.h"
 #include "residual.h"
 #include "sketch/sketch.h"
 #include "sketch/sketch_light.h"
@@ -47,7 +47,7 @@ Result<void> check_light(const Options& options, const image::AovFile& buffers) 
   return {};
 }
 
-// What an environment's picture shows and the search does not know.
+// Warns of effects that a picture under an environment shows and that the search does not know.
 void warn_of_effects(const image::AovFile& buffers, cli::Session& session) {
   std::string unknown;
   for (const std::string& effect : sketch::effects_without_light(buffers)) unknown += ",-" + effect;
@@ -58,7 +58,7 @@ void warn_of_effects(const image::AovFile& buffers, cli::Session& session) {
                     buffers.path, unknown));
 }
 
-// What the picture lacks of the paint that it was drawn with.
+// Warns of light that the paint has and that the picture was drawn without.
 void warn_of_left_out(const image::AovFile& buffers, cli::Session& session) {
   std::vector<std::string> light;
   for (const std::string& name : buffers.left_out)
@@ -79,7 +79,8 @@ Result<void> gather(const Options& options, Material& material) {
   if (!options.residual.empty() && !options.residual.ends_with(".png"))
     return usage_error("--residual is \"{}\": give a name that ends in .png", options.residual);
   sketch::SketchInput& input = material.input;
-  // One after the other: the module of other formats, loaded beside other work, crashes where memory runs out.
+  // The files are read one after the other. OpenImageIO, when it is loaded while another thread works, crashes where
+  // memory runs out.
   const auto view = options.view == "plain" ? sketch::PictureView::kPlain : sketch::PictureView::kPaint;
   Result<sketch::Picture> picture = sketch::read_picture(options.image, view);
   Result<image::AovFile> buffers = image::read_aov_file(options.buffers);
@@ -124,10 +125,6 @@ void report_pixels(const sketch::SketchPixels& pixels, Json& results) {
         pixels.count[static_cast<std::size_t>(use)];
 }
 
-Json lab_json(const color::Lab& lab) {
-  return {json_number(lab.L), json_number(lab.a), json_number(lab.b)};
-}
-
 void report_fit(const sketch::SketchFit& fit, bool environment, Json& results) {
   const bool fitted = fit.status == "fitted";
   results["status"] = fit.status;
@@ -151,7 +148,7 @@ void report_fit(const sketch::SketchFit& fit, bool environment, Json& results) {
   results["aspecular_to_deg"] = environment ? Json(nullptr) : Json(fit.seen_to_deg);
 }
 
-// What a reader should know beside the paint.
+// Tells what a reader should know beside the paint.
 void tell(const Options& options, const sketch::SketchPixels& pixels, const sketch::SketchFit& fit,
           cli::Session& session) {
   if (fit.status != "fitted")
@@ -167,15 +164,6 @@ void tell(const Options& options, const sketch::SketchPixels& pixels, const sket
       "pixels",
       options.name, a.face.L, a.face.a, a.face.b, a.flop.L, a.flop.a, a.flop.b, a.travel_deg, gloss, fit.median_de76,
       fit.rms_de76, pixels.used.size(), pixels.changed_only ? "edited " : ""));
-}
-
-Result<void> write_paint(const Options& options, const sketch::SketchFit& fit, const cli::Session& session) {
-  GONIO_ASSIGN(OutputFile file, OutputFile::create(options.output));
-  GONIO_ASSIGN(formats::PaintWriter writer,
-               formats::PaintWriter::begin(std::move(file),
-                                           {{session.tool(), cli::Session::version(), session.command_line()}}));
-  GONIO_TRY(writer.write(sketch::sketch_paint(fit, options.name)));
-  return writer.finish();
 }
 
 Result<void> check_usable(const sketch::SketchPixels& pixels, const Options& options) {
@@ -246,7 +234,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   results["color_space"] = material.picture.space;
   results["fit_s"] = clock.elapsed_s();
   if (differences) GONIO_TRY(write_residual(options.residual, material.buffers, pixels, fit));
-  GONIO_TRY(write_paint(options, fit, session));
+  GONIO_TRY(write_paints(options.output, {sketch::sketch_paint(fit, options.name)}, session));
   tell(options, pixels, fit, session);
   return cli::Verdict::kDone;
 }

@@ -164,7 +164,7 @@ planted() {
   [[ $output != *"drawn without"* ]] || { echo "$output"; return 1; }
 }
 
-@test "every format: 16 bits, gray, alpha" {
+@test "pictures of 16 bits, in gray or with alpha are read" {
   oiiotool steel.png -d uint16 -o deep.png
   oiiotool steel.png -d uint16 -o deep.tif
   oiiotool steel.png --ch G -o gray.png
@@ -283,7 +283,7 @@ EOF
   [[ $output == *"--residual is \"residual.exr\": give a name that ends in .png"* ]]
 }
 
-@test "options: parts, basis, view, exposure, glare" {
+@test "parts, basis, view, exposure and glare change what is fitted" {
   fit -i steel.exr -b steel.exr --part Hood --part Roof
   [ "$(result pixels_left_out.other_part)" -gt 1000 ]
   fit -i steel.exr -b steel.exr --basis "$TESTDATA/b5.basis.xml" --glare 20

@@ -1,4 +1,4 @@
-// One answer of trompe-fit: the paint for the second panel, how it does, and how it is told.
+// One answer of trompe-fit: the paint for the second panel, how well it matches, and the texts that tell so.
 #pragma once
 
 #include <optional>
@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "base/json.h"
-#include "options.h"
 #include "paint/paint.h"
+#include "tool.h"
 
 namespace goniochrome::tool {
 
@@ -20,19 +20,21 @@ struct Answer {
   panels::TrompeErrors before, after;         // over all that is judged
 };
 
-// The paint of an answer: what an instrument would read of it; gloss, class and foreign elements as they were.
+// The paint of an answer, with the rows that an instrument would read. Gloss, class and foreign elements are those of
+// `paint`.
 paint::Paint painted(const paint::Paint& paint, const Answer& answer);
 
 // Its part of the report.
 Json answer_json(const Answer& answer);
 
-// The report's results from the parts of all answers: the only one itself, or the list `fits`.
+// Makes the report's results of the parts of all answers: a single part is taken as it is, several become the list
+// `fits`.
 Json results_of(const std::vector<Json>& fits);
 
 // "silver_b: dE rms 4.30 to 0.07, max 9.06 to 0.10; face_l +11.0, travel +4.3"
 std::string answer_line(const Answer& answer);
 
-// Whether the paint found is better by what was asked to be least.
+// Whether the paint found has a smaller difference than the first paint, by the measure that was asked for.
 bool is_improved(const Answer& answer, const panels::TrompeOptions& options);
 
 }  // namespace goniochrome::tool

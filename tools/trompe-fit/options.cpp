@@ -1,10 +1,10 @@
-#include "options.h"
+#include "tool.h"
 
 #include <cmath>
-#include <iterator>
 
-#include "../seam_options.h"
 #include "base/text.h"
+#include "paint_stream.h"
+#include "panels.h"
 
 namespace goniochrome::tool {
 
@@ -121,121 +121,98 @@ Result<TrompeSeamRequest> seam_request_of(const Options& options) {
   return request;
 }
 
-cli::ToolSpec tool_spec(Options& o) {
-  cli::ToolSpec spec;
-  spec.name = "trompe-fit";
-  spec.summary = "the paint for a misaligned panel that hides the misalignment";
-  spec.description = {
-      "trompe-fit takes a paint and the angle by which a second panel is turned against the first, and finds the paint "
-      "for the second panel that looks most like the first one, over a set of lights and viewers. Positive angles turn "
-      "the second panel toward the light. Paints are written with the face, flop and travel found and with the rows "
-      "an instrument would read; gloss and class stay; lobes and color maps are dropped.",
-      "Lights, views and named sets are those of goniogeom-index(1), and so are the colors: the clamped quadratic of "
-      "face, flop and travel at the aspecular angle of each panel, times the cosine of its light, without gloss. "
-      "Differences are CIE 1976.",
-      "The match can be made perfect for one light and viewer (--mode single), and is then poor elsewhere; the table "
-      "of all geometries in the report says how poor. --mode all, the default, minimizes over the whole set. --mode "
-      "rows finds one paint for each light.",
-      "A panel turned by b shows an aspecular angle 2b smaller in the plane of incidence. The first guess is therefore "
-      "a curve moved by 2b: a travel that much longer for a panel turned away from the light, with a brighter face. "
-      "Viewers on both sides of the mirror direction ask for opposite changes, which no paint can make.",
-      "With --mesh and --seam A,B the misalignment is that of every place along the seam of two parts, as "
-      "goniogeom-index(1) finds it, and B gets the paint found. Lights and viewers stand to the first panel at every "
-      "place as they would to a flat one, the light from either side, which no one paint can serve; or, by "
-      "--light-from and --view-from, in the world; or the light is that of a prefiltered environment, in which paints "
-      "are fitted to the environment's own lobes.",
-      "A solid paint (by its class, or with face and flop closer than 1) has no travel: its face and flop move "
-      "together. Parameters that the views do not determine stay near those of the paint given and are named. The exit "
-      "status is 1 where a paint is not improved."};
-  spec.inputs = {.value = "PAINTS", .help = "paint XML files; standard input where none is given", .target = &o.inputs};
-  spec.options = {
-      {.name = "output", .letter = 'o', .value = "FILE", .help = "paint XML to write", .target = &o.output},
-      {.name = "only", .value = "NAME", .help = "take the paints of this name; repeatable", .target = &o.only},
-      {.name = "angle",
-       .letter = 'a',
-       .value = "DEG",
-       .help = "how far the second panel is turned, positive toward the light",
-       .target = &o.angle_deg,
-       .low = -45,
-       .high = 45},
-  };
-  std::ranges::move(geometry_options(o.geometries, o.seam_deg), std::back_inserter(spec.options));
-  spec.options.insert(
-      spec.options.end(),
-      {
-          {.name = "light-weights",
-           .value = "LIST",
-           .help = "weight of each light",
-           .target = &o.geometries.light_weights},
-          {.name = "view-weights",
-           .value = "LIST",
-           .help = "weight of each view",
-           .target = &o.geometries.view_weights},
-          {.name = "vary",
-           .value = "LIST",
-           .help = "what may change: face_l, face_ab, flop_l, flop_ab, travel",
-           .target = &o.vary},
-          {.name = "objective",
-           .value = "NAME",
-           .help = "minimize the weighted RMS difference or the largest one",
-           .target = &o.objective,
-           .choices = {"rms", "max"}},
-          {.name = "mode",
-           .value = "MODE",
-           .help = "one paint for all geometries, for the one of --at, or one for each light",
-           .target = &o.mode,
-           .choices = {"all", "single", "rows"}},
-          {.name = "at", .value = "LIGHT,VIEW", .help = "the geometry of --mode single", .target = &o.at},
-          {.name = "bounds",
-           .value = "NAME=LOW:HIGH",
-           .help = "keep a parameter of --vary within; repeatable",
-           .target = &o.bounds},
-      });
-  std::ranges::move(seam_options(o.seam), std::back_inserter(spec.options));
-  spec.options.insert(
-      spec.options.end(),
-      {
-          {.name = "picture",
-           .value = "FILE",
-           .help = "PNG of before and after: flat panels, or the mesh as the first --view-from sees it",
-           .target = &o.picture},
-          {.name = "dark",
-           .value = "PART",
-           .help = "a part that the picture shows black; repeatable",
-           .target = &o.dark},
-          {.name = "suffix", .value = "TEXT", .help = "appended to the name of the paint", .target = &o.suffix},
-      });
+namespace {
+
+void add_options(cli::ToolSpec& spec, Options& o) {
+  spec.heading = "panels";
+  spec.option("angle,a", "DEG", "-2", &o.angle_deg, "how far the second panel is turned, positive toward the light")
+      .from(-45, 45);
+  add_geometry_options(spec, o.geometries, o.seam_deg);
+  spec.option("light-weights", "K,...", "1,1,2", &o.geometries.light_weights, "weight of each light");
+  spec.option("view-weights", "K,...", "1,2,1", &o.geometries.view_weights, "weight of each view");
+  spec.heading = "match";
+  spec.option("mode", "MODE", "rows", &o.mode, "what one paint has to match")
+      .one_of({"all", "single", "rows"})
+      .more(
+          "all is the whole set of lights and viewers. single is the one geometry of --at, where the match can be made "
+          "perfect; it is then poor elsewhere, and the table of all geometries in the report says how poor. rows finds "
+          "one paint for each light.");
+  spec.option("at", "LIGHT,VIEW", "45,20", &o.at, "geometry of --mode single").in("degrees from the normal");
+  spec.option("objective", "NAME", "max", &o.objective, "difference that is made least")
+      .one_of({"rms", "max"})
+      .more("rms is the weighted root mean square, max the largest difference.");
+  spec.option("vary", "LIST", "face_l,travel", &o.vary, "what may change: face_l, face_ab, flop_l, flop_ab, travel");
+  spec.option("bounds", "NAME=LOW:HIGH", "travel=30:80", &o.bounds, "limits of a parameter of --vary");
+  add_seam_options(spec, o.seam);
+  spec.heading = "input and output";
+  add_only_option(spec, o.only, "take only the paints of this name");
+  spec.option("suffix", "TEXT", "_panel", &o.suffix, "text to append to the name of the paint");
+  spec.option("output,o", "FILE", "b.paints.xml", &o.output, "paint XML to write; - is standard output");
+  spec.option("picture", "FILE", "pair.png", &o.picture, "PNG of before and after")
+      .more("It shows flat panels, or the mesh as the first --view-from sees it.");
+  spec.option("dark", "PART", "Glass", &o.dark, "a part that the picture shows black");
+  cli::add_common_options(spec, o.common, {.explain = true});
+}
+
+// The examples, the keys of --report, and the pages to see.
+void add_report(cli::ToolSpec& spec) {
   spec.examples = {
       {"trompe-fit testdata/paints.paints.xml --only silver_black_flop --angle -2 --views as15:105:10 --vary "
        "face_l,travel -o b.paints.xml",
-       "The silver for a panel turned 2 degrees away from the light, by its face L* and travel alone."},
+       "find the silver for a panel turned 2 degrees away from the light, by its face L* and travel alone"},
       {"trompe-fit testdata/paints.paints.xml --only signal_red --angle 3 --lights 0,15.5,29.1,39.8,45,52 --views 0 "
        "--mode rows -o rows.paints.xml",
-       "A solid paint under six lights, one answer for each."},
+       "find one answer for each of six lights, for a solid paint"},
       {"trompe-fit testdata/paints.paints.xml --only silver_fine --mesh testdata/speed-shape.obj --seam Hood,Bumper_F "
        "--light-from 0,75 --view-from 25,20 --dark Glass --dark Seams --dark Underbody --picture pair.png -o "
        "b.paints.xml",
-       "The silver that hides a bumper 8 degrees out of flush, before and after."},
-  };
+       "find the silver that hides a bumper 8 degrees out of flush, and draw before and after"}};
   spec.report = {
       {"before.rms, before.max", "difference of the panels in the same paint, over all geometries"},
       {"after.rms, after.max", "difference with the paint found"},
       {"delta.face_l ... delta.travel", "change of each parameter"},
-      {"geometries[].light_deg", "also view_deg, azimuth_deg, aspecular_deg, aspecular_b_deg, weight"},
-      {"geometries[].de_before", "difference there in the same paint; de_after: with the paint found"},
+      {"geometries[].light_deg", "beside it stand view_deg, azimuth_deg, aspecular_deg, aspecular_b_deg and weight"},
+      {"geometries[].de_before", "difference there in the same paint; de_after is that with the paint found"},
       {"undetermined[]", "parameters that the views leave open"},
       {"at_bound[]", "parameters that a bound holds back"},
       {"solid", "whether face and flop were moved together"},
       {"status", "converged, not_converged, or failed with a message"},
-      {"time_ms", "of the fit; starts: how many it was begun from"},
-      {"misalignment_deg", "with --mesh: of the seam, low, median and high"},
+      {"time_ms", "time of the fit; starts tells from how many points it was begun"},
+      {"misalignment_deg", "with --mesh: low, median and high misalignment of the seam"},
       {"seam[].rms_before",
-       "with --mesh, for each place: also rms_after, run, distance_m, fold_deg; geometries[] is left "
-       "out; views counts all"},
-      {"fits[]", "where there is more than one: all of these, with name and light_deg, for each"},
-  };
+       "with --mesh, for each place; beside it stand rms_after, run, distance_m and fold_deg. geometries[] is left out "
+       "then, and views counts all of them"},
+      {"fits[]", "where there is more than one answer: all of these for each, with name and light_deg"}};
   spec.see_also = {"goniogeom-index(1)", "paint-edit(1)", "fit-paint(1)", "goniochrome-theory(7)"};
-  cli::add_common_options(spec, o.common, {cli::Common::kExplain});
+}
+
+}  // namespace
+
+cli::ToolSpec tool_spec(Options& o) {
+  cli::ToolSpec spec{.name = "trompe-fit", .summary = "the paint for a misaligned panel that hides the misalignment"};
+  spec.description = {
+      "trompe-fit takes a paint, and the angle by which a second panel is turned against the first one. It finds the "
+      "paint for the second panel that looks most like the first one over a set of lights and viewers. Paints are "
+      "written with the face, flop and travel found, and with the rows that an instrument would read. Gloss and class "
+      "stay; lobes and color maps are dropped.",
+      "Lights, views and named sets are those of goniogeom-index(1). So are the colors: the clamped quadratic of face, "
+      "flop and travel at the aspecular angle of each panel, times the cosine of its light, without gloss. Differences "
+      "are CIE 1976.",
+      "In the plane of incidence, a panel that is turned by b shows an aspecular angle that is smaller by 2b. The "
+      "first guess is therefore a curve moved by 2b: for a panel that is turned away from the light, the travel is "
+      "longer by as much and the face is brighter. Viewers on both sides of the mirror direction ask for opposite "
+      "changes, which no paint can make.",
+      "With --mesh and --seam A,B, the misalignment is that of every place along the seam of two parts, as "
+      "goniogeom-index(1) finds it, and B gets the paint found. At every place, lights and viewers stand to the first "
+      "panel as they would to a flat one, with the light from either side, which no single paint can serve. By "
+      "--light-from and --view-from they stand in the world instead. With --environment the light is that of a "
+      "prefiltered environment, and paints are fitted to its own lobes.",
+      "A solid paint has no travel, and its face and flop move together. A paint counts as solid by its class, or "
+      "where face and flop are closer than 1. Parameters that the views do not determine stay near those of the paint "
+      "given, and are named. The exit status is 1 where a paint is not improved."};
+  spec.inputs = {"PAINTS", "paint XML files; standard input where none is given", &o.inputs};
+  add_options(spec, o);
+  add_report(spec);
   return spec;
 }
 

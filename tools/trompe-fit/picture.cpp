@@ -27,7 +27,7 @@ std::string figures(double de_before, double de_after) {
   return fmt::format("dE {:.1f} > {:.1f}", de_before, de_after);
 }
 
-// The highest luminance that shall still be shown as it is.
+// The exposure, in stops, at which this luminance is still shown as it is.
 double stops_for(double luminance) {
   return luminance > 0.7 ? std::log2(0.7 / luminance) : 0;
 }
@@ -117,8 +117,8 @@ namespace {
 
 constexpr int kHalfWidth = 760, kHalfHeight = 620, kSeamFoot = 110, kBetween = 10;
 
-// The mesh all in paint A, and with paint B on the second part. Without gloss: highlights need not line up and would
-// only hide what is to be compared.
+// Draws the mesh all in paint A, and with paint B on the second part. There is no gloss, because highlights need not
+// line up and would only hide what is to be compared.
 Result<std::array<image::Image, 2>> seam_halves(const SeamPair& pair) {
   std::vector<double> exponents = {1.5, 3, 6, 12, 25, 50, 100, 200};
   if (pair.env != nullptr) {

@@ -1,4 +1,4 @@
-// Before and after, to look at.
+// Pictures of before and after.
 #pragma once
 
 #include <vector>
@@ -11,13 +11,14 @@
 
 namespace goniochrome::tool {
 
-// Flat panels: a row for each geometry, the first panel above the second, on the left in one paint and on the right
-// with the paint found, and the differences beside. [Shimizu2009] figure 4.4. Error: an illuminant without a known
-// white.
+// Draws flat panels as in [Shimizu2009] figure 4.4. There is a row for each geometry, in which the first panel stands
+// above the second one: on the left in one paint, on the right with the paint found, and the differences beside them.
+// Error: an illuminant without a known white.
 Result<image::Image> swatches(const color::ViewingCondition& condition, const std::vector<Answer>& answers);
 
-// The mesh in its light: on the left all in paint A, on the right the second part in paint B, the differences along the
-// seam below. [Shimizu2009] figure 4.6. `env` may be null. Error: no OpenGL, or a part of `dark` that is not there.
+// Draws the mesh in its light as in [Shimizu2009] figure 4.6: on the left all in paint A, on the right the second part
+// in paint B, and below them the differences along the seam. `env` may be null. Error: this machine has no OpenGL, or a
+// part of `dark` is not there.
 struct SeamPair {
   const mesh::Mesh* mesh = nullptr;
   const mesh::Seam* seam = nullptr;

@@ -1,4 +1,4 @@
-#include "run.h"
+#include "tool.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 #include "answer.h"
 #include "base/parallel.h"
 #include "base/text.h"
-#include "formats/batches.h"
+#include "paint_stream.h"
+#include "panels.h"
 #include "picture.h"
-#include "seam_run.h"
 
 namespace goniochrome::tool {
 
@@ -86,18 +86,9 @@ class Run {
       : options_(options), request_(request), session_(session) {}
 
   Result<cli::Verdict> operator()() {
-    GONIO_ASSIGN(formats::PaintBatches paints, formats::PaintBatches::open(options_.inputs, options_.only));
-    GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
-    auto history = paints.processing();
-    history.push_back({session_.tool(), cli::Session::version(), session_.command_line()});
-    GONIO_ASSIGN(formats::PaintWriter writer, formats::PaintWriter::begin(std::move(file), history, paints.foreign()));
-    for (;;) {
-      GONIO_ASSIGN(std::vector<paint::Paint> batch, paints.next());
-      if (batch.empty()) break;
-      GONIO_TRY(take(batch, writer));
-      session_.progress(fmt::format("{} paints", fits_.size()));
-    }
-    GONIO_TRY(writer.finish());
+    GONIO_TRY(stream_paints(
+        options_.inputs, options_.only, options_.output, session_,
+        [&](const std::vector<paint::Paint>& batch, formats::PaintWriter& writer) { return take(batch, writer); }));
     return finish();
   }
 
@@ -126,12 +117,9 @@ class Run {
   }
 
   Result<void> draw(const paint::Paint& paint, const Answers& answers) {
-    if (++pictures_ > 1)
-      return usage_error("--picture shows one paint and there is another, \"{}\": choose one by --only", paint.name);
+    GONIO_TRY(check_only_paint(++pictures_, "--picture shows", paint.name));
     GONIO_ASSIGN(const image::Image image, swatches(paint::condition_of(paint), answers));
-    return image::write_png(
-        options_.picture, image,
-        {{"Software", session_.tool() + " " + cli::Session::version()}, {"Comment", session_.command_line()}});
+    return write_picture(options_.picture, image, session_);
   }
 
   void note(const Answer& answer) {

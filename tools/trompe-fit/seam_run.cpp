@@ -1,10 +1,11 @@
-#include "seam_run.h"
+#include "tool.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "answer.h"
-#include "formats/batches.h"
+#include "paint_stream.h"
+#include "panels.h"
 #include "panels/seam.h"
 #include "picture.h"
 
@@ -33,17 +34,11 @@ class SeamRun {
 
   Result<cli::Verdict> operator()() {
     GONIO_TRY(prepare());
-    GONIO_ASSIGN(formats::PaintBatches paints, formats::PaintBatches::open(options_.inputs, options_.only));
-    GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
-    auto history = paints.processing();
-    history.push_back({session_.tool(), cli::Session::version(), session_.command_line()});
-    GONIO_ASSIGN(formats::PaintWriter writer, formats::PaintWriter::begin(std::move(file), history, paints.foreign()));
-    for (;;) {
-      GONIO_ASSIGN(std::vector<paint::Paint> batch, paints.next());
-      if (batch.empty()) break;
+    const auto take_all = [&](const std::vector<paint::Paint>& batch, formats::PaintWriter& writer) -> Result<void> {
       for (const paint::Paint& paint : batch) GONIO_TRY(take(paint, writer));
-    }
-    GONIO_TRY(writer.finish());
+      return {};
+    };
+    GONIO_TRY(stream_paints(options_.inputs, options_.only, options_.output, session_, take_all));
     session_.results().update(results_of(fits_));
     return negative_ ? cli::Verdict::kNegative : cli::Verdict::kDone;
   }
@@ -128,8 +123,7 @@ class SeamRun {
   }
 
   Result<void> draw(const paint::Paint& paint, const Answer& answer) {
-    if (++pictures_ > 1)
-      return usage_error("--picture shows one paint and there is another, \"{}\": choose one by --only", paint.name);
+    GONIO_TRY(check_only_paint(++pictures_, "--picture shows", paint.name));
     SeamPair pair;
     pair.mesh = &stage_.mesh, pair.seam = &stage_.seam;
     pair.env = options_.seam.environment.empty() ? nullptr : &stage_.env;
@@ -137,9 +131,7 @@ class SeamRun {
     pair.part_b = request_.world.part_b, pair.dark = options_.dark;
     pair.a = paint, pair.answer = answer;
     GONIO_ASSIGN(const image::Image image, seam_pair(pair));
-    return image::write_png(
-        options_.picture, image,
-        {{"Software", session_.tool() + " " + cli::Session::version()}, {"Comment", session_.command_line()}});
+    return write_picture(options_.picture, image, session_);
   }
 
   const Options& options_;

@@ -8,7 +8,7 @@ setup() {
   silver="$paints --only silver_black_flop"
 }
 
-@test "a silver with black flop at 2 deg: five times better by face L and travel, the travel moves by twice the angle" {
+@test "a silver with black flop at 2 deg gets five times better by face L and travel, which moves by twice the angle" {
   for angle in 2 -2; do
     trompe-fit $silver --angle $angle --views as15:105:10 --vary face_l,travel --report r.json -q -o b.xml
     jq -e --argjson b $angle '.results | .before.rms > 5 * .after.rms and .status == "converged" and
@@ -26,7 +26,7 @@ setup() {
   [ "$status" -eq 0 ]
 }
 
-@test "a solid paint under six lights: one answer for all, and one for each which is perfect" {
+@test "a solid paint under six lights has one answer for all, and a perfect one for each" {
   red="$paints --only signal_red --angle 3 --lights 0,15.5,29.1,39.8,45,52 --views -20"
   trompe-fit $red --report all.json -q -o all.xml
   trompe-fit $red --mode rows --report rows.json -q -o rows.xml
@@ -60,7 +60,7 @@ setup() {
   jq -e '.results.geometries | length == 20 and .[19].weight == 2' c.json
 }
 
-@test "a whole library, the same bytes for any number of threads" {
+@test "a whole library gives the same bytes for any number of threads" {
   trompe-fit "$paints" --angle 2 -q --threads 1 | grep -v '<processing' >a.xml
   trompe-fit "$paints" --angle 2 -q --threads 7 | grep -v '<processing' >b.xml
   cmp a.xml b.xml
@@ -106,7 +106,7 @@ setup() {
   [ ! -e n.xml ]
 }
 
-@test "the bumper of the speed shape, 8 degrees out: seen, and then not" {
+@test "the bumper of the speed shape, 8 degrees out, is seen at first and then not" {
   shape="--mesh $TESTDATA/speed-shape.obj --seam Hood,Bumper_F"
   run --separate-stderr trompe-fit "$paints" --only silver_fine $shape --light-from 0,75 --view-from 25,20 \
     --dark Glass --dark Seams --dark Underbody --picture p.png --report r.json -o b.xml
@@ -117,7 +117,7 @@ setup() {
   grep -q 'paint name="silver_fine_b"' b.xml
 }
 
-@test "in an environment" {
+@test "a seam in an environment is improved" {
   prefilter-envmap -e 2,8,32 --size 8 "$TESTDATA/studio.exr" -o e.env.exr -q
   trompe-fit "$paints" --only silver_fine --mesh "$TESTDATA/speed-shape.obj" --seam Hood,Bumper_F --environment e.env.exr \
     --view-from 25,20 --view-from 0,30 --report r.json -q -o b.xml

@@ -1,12 +1,12 @@
-// What goniogeom-index takes.
+// goniogeom-index finds the misalignment at which two panels of one paint stop matching.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "cli/options.h"
-#include "panels/geometry_sets.h"
+#include "cli/tool.h"
 #include "panels/goniogeom.h"
+#include "panels/geometry_sets.h"
 #include "panels/seam.h"
 
 namespace goniochrome::tool {
@@ -29,27 +29,32 @@ struct Options {
 };
 
 cli::ToolSpec tool_spec(Options& options);
+Result<cli::Verdict> run(const Options& options, cli::Session& session);
 
-// What the words mean, checked.
-struct IndexRequest {
-  std::vector<panels::LightView> geometries;
-  int glare = 0, below_horizon = 0;       // pairs left out
-  std::vector<panels::TiltedPair> pairs;  // one for each geometry
+// What run() does where --mesh is given: the panels meet at a seam of that mesh.
+Result<cli::Verdict> run_on_seam(const Options& options, cli::Session& session);
+
+// What counts as a difference.
+struct DifferenceRequest {
   panels::DifferenceMetric metric = panels::DifferenceMetric::kDe76;
   paint::TargetCurve::Kind target = paint::TargetCurve::Kind::kCurve;
   double threshold = 2.3;
+};
+
+// What the options mean, checked.
+struct IndexRequest : DifferenceRequest {
+  std::vector<panels::LightView> geometries;
+  int glare = 0, below_horizon = 0;       // pairs left out
+  std::vector<panels::TiltedPair> pairs;  // one for each geometry
   std::optional<double> tolerance_deg;
   bool one_row = false;  // for each paint: its worst geometry
 };
 Result<IndexRequest> request_of(const Options& options);
 
 // The same for a seam of a mesh.
-struct SeamRequest {
+struct SeamRequest : DifferenceRequest {
   panels::SeamWorld world;
   panels::GeometryList geometries;  // at every place of the seam, where the world says nothing
-  panels::DifferenceMetric metric = panels::DifferenceMetric::kDe76;
-  paint::TargetCurve::Kind target = paint::TargetCurve::Kind::kCurve;
-  double threshold = 2.3;
 };
 Result<SeamRequest> seam_request_of(const Options& options);
 

@@ -1,10 +1,10 @@
-// The options of relight.
+// relight turns an HDR image from one illuminant to another.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "cli/options.h"
+#include "cli/tool.h"
 
 namespace goniochrome::tool {
 
@@ -20,5 +20,6 @@ struct Options {
 };
 
 cli::ToolSpec tool_spec(Options& options);
+Result<cli::Verdict> run(const Options& options, cli::Session& session);
 
 }  // namespace goniochrome::tool

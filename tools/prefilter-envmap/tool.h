@@ -1,10 +1,10 @@
-// The options of prefilter-envmap.
+// prefilter-envmap filters an HDR environment by every lobe of a basis.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "cli/options.h"
+#include "cli/tool.h"
 
 namespace goniochrome::tool {
 
@@ -27,5 +27,6 @@ struct Options {
 };
 
 cli::ToolSpec tool_spec(Options& options);
+Result<cli::Verdict> run(const Options& options, cli::Session& session);
 
 }  // namespace goniochrome::tool

@@ -1,10 +1,10 @@
-// The options of colorsnap.
+// colorsnap finds the paints of a library that are nearest to a paint.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "cli/options.h"
+#include "cli/tool.h"
 #include "library/search_library.h"
 
 namespace goniochrome::tool {
@@ -28,6 +28,7 @@ struct Options {
 };
 
 cli::ToolSpec tool_spec(Options& options);
+Result<cli::Verdict> run(const Options& options, cli::Session& session);
 
 // What the options ask of a search. Error: a text that cannot be understood.
 Result<library::LibrarySearchOptions> search_options(const Options& options);

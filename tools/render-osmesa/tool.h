@@ -1,10 +1,10 @@
-// What render-osmesa takes.
+// render-osmesa draws a mesh in its paints under image light and lamps, on the processor.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "cli/options.h"
+#include "cli/tool.h"
 
 namespace goniochrome::tool {
 
@@ -35,5 +35,6 @@ struct Options {
 };
 
 cli::ToolSpec tool_spec(Options& options);
+Result<cli::Verdict> run(const Options& options, cli::Session& session);
 
 }  // namespace goniochrome::tool

@@ -1,10 +1,10 @@
-// What sketch-fit takes.
+// sketch-fit goes from an edited picture of a painted mesh back to the paint.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "cli/options.h"
+#include "cli/tool.h"
 
 namespace goniochrome::tool {
 
@@ -19,5 +19,6 @@ struct Options {
 };
 
 cli::ToolSpec tool_spec(Options& options);
+Result<cli::Verdict> run(const Options& options, cli::Session& session);
 
 }  // namespace goniochrome::tool

@@ -1,10 +1,10 @@
-// What paint-edit takes.
+// paint-edit makes a designer's moves on a stream of paints.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "cli/options.h"
+#include "cli/tool.h"
 #include "paint/edit.h"
 
 namespace goniochrome::tool {
@@ -28,6 +28,7 @@ struct Options {
 };
 
 cli::ToolSpec tool_spec(Options& options);
+Result<cli::Verdict> run(const Options& options, cli::Session& session);
 
 // The moves that the options ask for. Error (usage): options that contradict each other or lack a number.
 Result<paint::Edit> edit_of(const Options& options);

@@ -1,11 +1,11 @@
-// What trompe-fit takes.
+// trompe-fit finds the paint that hides a misaligned panel.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "cli/options.h"
+#include "cli/tool.h"
 #include "panels/geometry_sets.h"
 #include "panels/seam.h"
 #include "panels/trompe.h"
@@ -29,8 +29,12 @@ struct Options {
 };
 
 cli::ToolSpec tool_spec(Options& options);
+Result<cli::Verdict> run(const Options& options, cli::Session& session);
 
-// A light and viewer with what both panels show there.
+// What run() does where --mesh is given: the panels meet at a seam of that mesh.
+Result<cli::Verdict> run_on_seam(const Options& options, cli::Session& session);
+
+// A light and a viewer, with what both panels show there.
 struct TrompeGeometry {
   panels::LightView geometry;
   panels::PanelView view;
@@ -38,11 +42,12 @@ struct TrompeGeometry {
 
 enum class TrompeMode { kAll, kSingle, kRows };
 
-// What the words mean, checked.
+// What the options mean, checked.
 struct TrompeRequest {
   double angle_deg = 0;
   std::vector<TrompeGeometry> geometries;
-  int glare = 0, below_horizon = 0, hidden = 0;  // pairs left out; hidden: the second panel faces away
+  int glare = 0, below_horizon = 0,
+      hidden = 0;  // pairs left out; hidden are those whose viewer does not see the second panel
   TrompeMode mode = TrompeMode::kAll;
   std::optional<TrompeGeometry> single;
   panels::TrompeOptions fit;

@@ -1,10 +1,10 @@
-// The options of plot-paint.
+// plot-paint draws paints and their lobes.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "cli/options.h"
+#include "cli/tool.h"
 
 namespace goniochrome::tool {
 
@@ -20,5 +20,6 @@ struct Options {
 };
 
 cli::ToolSpec tool_spec(Options& options);
+Result<cli::Verdict> run(const Options& options, cli::Session& session);
 
 }  // namespace goniochrome::tool

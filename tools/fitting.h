@@ -1,0 +1,49 @@
+// What fit-basis and fit-paint share: their inputs, and two options that say what is fitted.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "base/input.h"
+#include "brdf/measured.h"
+#include "cli/options.h"
+#include "formats/xml.h"
+#include "paint/curve.h"
+
+namespace goniochrome::tool {
+
+inline void add_target_options(cli::ToolSpec& spec, std::string& target, std::string& weights) {
+  spec.option("target,t", "TARGET", "curve", &target, "color that the lobes follow")
+      .one_of({"measured", "curve"})
+      .more(
+          "measured takes the readings, with a monotone curve between them. curve takes the quadratic curve of face, "
+          "flop and travel.");
+  spec.option("weights,w", "WEIGHTS", "plain", &weights, "how errors count")
+      .one_of({"perceptual", "plain"})
+      .more(
+          "perceptual weighs an error by its effect on lightness, so that a dark flop counts as much as a bright face. "
+          "plain weighs all errors alike.");
+}
+
+inline paint::TargetCurve::Kind target_kind(const std::string& target) {
+  return target == "curve" ? paint::TargetCurve::Kind::kCurve : paint::TargetCurve::Kind::kMeasured;
+}
+
+// A file of paints, open, or a measured BRDF, to be read when its turn comes.
+struct FitInput {
+  std::string name;
+  std::optional<formats::PaintReader> reader;
+  std::optional<InputFile> measured;
+
+  // Error: the file cannot be opened.
+  static Result<FitInput> open(const std::string& path) {
+    GONIO_ASSIGN(InputFile file, InputFile::open(path));
+    const std::string name = file.name();
+    GONIO_ASSIGN(const std::string_view head, file.peek());
+    if (brdf::looks_measured(path, head)) return FitInput{name, std::nullopt, std::move(file)};
+    formats::PaintReader reader(std::move(file));
+    return FitInput{name, std::move(reader), std::nullopt};
+  }
+};
+
+}  // namespace goniochrome::tool
