@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "cli/tool.h"
-#include "panels/goniogeom.h"
 #include "panels/geometry_sets.h"
+#include "panels/goniogeom.h"
 #include "panels/seam.h"
 
 namespace goniochrome::tool {

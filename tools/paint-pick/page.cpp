@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "display/paint_view.h"
 #include "paint/curve.h"
 #include "report/plot.h"
 #include "sketch/sketch_picture.h"
@@ -66,9 +67,8 @@ std::string embedded(const std::string& png) {
 
 // The signal of each channel on an sRGB display. Light outside its gamut is mixed with its gray.
 color::Rgb signals(const color::Rgb& light) {
-  const color::Rgb shown = color::rec709_from_rec2020(sketch::in_display_gamut(light));
-  return {sketch::display_brightness(shown.x), sketch::display_brightness(shown.y),
-          sketch::display_brightness(shown.z)};
+  const color::Rgb shown = color::rec709_from_rec2020(display::in_display_gamut(light));
+  return {display::srgb_signal(shown.x), display::srgb_signal(shown.y), display::srgb_signal(shown.z)};
 }
 
 std::string css_color(const color::Lab& lab) {
