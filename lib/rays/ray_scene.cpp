@@ -6,7 +6,7 @@
 #include <cmath>
 #include <mutex>
 
-#include "rays/vertex_tree.h"
+#include "rays/internal/vertex_tree.h"
 
 namespace goniochrome::rays {
 
@@ -33,8 +33,8 @@ struct Placing {
 };
 
 // The power of two that brings the largest half extent of the box between 1/2 and 1.
-Placing placing_of(const Mesh& mesh) {
-  const Box box = bounding_box(mesh);
+Placing placing_of(const mesh::Mesh& mesh) {
+  const mesh::Box box = bounding_box(mesh);
   const Vec3 half = 0.5 * (box.high - box.low);
   int exponent = 0;
   std::frexp(std::max({half.x, half.y, half.z}), &exponent);
@@ -45,7 +45,7 @@ bool is_finite(const Vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-Result<void> check(const Mesh& mesh, const std::optional<Floor>& floor) {
+Result<void> check(const mesh::Mesh& mesh, const std::optional<Floor>& floor) {
   if (mesh.triangles.empty()) return input_error("a mesh without triangles: there is nothing that a ray could meet");
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     const Vec3& p = mesh.positions[i];
@@ -58,7 +58,7 @@ Result<void> check(const Mesh& mesh, const std::optional<Floor>& floor) {
         return input_error("triangle {} of the mesh refers to vertex {} of {}", i, vertex, mesh.positions.size());
   }
   std::size_t covered = 0;
-  for (const MeshPart& part : mesh.parts) {
+  for (const mesh::MeshPart& part : mesh.parts) {
     if (part.first != covered) break;
     covered += part.count;
   }
@@ -158,7 +158,7 @@ struct RayScene::State {
   }
 };
 
-Result<RayScene> RayScene::create(const Mesh& mesh, const std::optional<Floor>& floor) {
+Result<RayScene> RayScene::create(const mesh::Mesh& mesh, const std::optional<Floor>& floor) {
   GONIO_TRY(check(mesh, floor));
   auto state = std::make_unique<State>();
   state->placing = placing_of(mesh);

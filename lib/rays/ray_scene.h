@@ -69,7 +69,7 @@ class RayScene {
  public:
   // Error: a vertex that is not finite, a triangle that refers to no vertex, parts that do not cover the triangles, no
   // triangle at all, a floor whose height is not finite, or Embree's own word where it fails.
-  static Result<RayScene> create(const Mesh& mesh, const std::optional<Floor>& floor = {});
+  static Result<RayScene> create(const mesh::Mesh& mesh, const std::optional<Floor>& floor = {});
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;
   ~RayScene();

@@ -7,19 +7,17 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <numbers>
 
+#include "base/angles.h"
 #include "base/hard_case_for_test.h"
 #include "base/parallel.h"
 
 namespace goniochrome::rays {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 // A sphere with its exact normals; triangles bend away from it by (pi/rows)^2/8 of the radius.
-Mesh sphere(int rows, double radius = 1, const Vec3& middle = {}) {
-  Mesh mesh;
+mesh::Mesh sphere(int rows, double radius = 1, const Vec3& middle = {}) {
+  mesh::Mesh mesh;
   const int columns = 2 * rows;
   for (int i = 0; i <= rows; ++i) {
     for (int j = 0; j <= columns; ++j) {
@@ -40,8 +38,8 @@ Mesh sphere(int rows, double radius = 1, const Vec3& middle = {}) {
   return mesh;
 }
 
-Mesh single_triangle(double size = 1) {
-  Mesh mesh;
+mesh::Mesh single_triangle(double size = 1) {
+  mesh::Mesh mesh;
   mesh.positions = {{0, 0, 0}, {size, 0, 0}, {0, size, 0}};
   mesh.normals.assign(3, {0, 0, 1});
   mesh.triangles = {{0, 1, 2}};
@@ -73,7 +71,7 @@ double sphere_distance(const Vec3& origin, const Vec3& direction, double radius)
 TEST(RayScene, MeetsASphereWhereTheClosedFormSays) {
   constexpr int kRows = 512;
   const double sagitta = std::pow(kPi / kRows, 2) / 8;
-  const Mesh mesh = sphere(kRows);
+  const mesh::Mesh mesh = sphere(kRows);
   const auto scene = RayScene::create(mesh);
   ASSERT_TRUE(scene.ok());
   Numbers next;
@@ -109,7 +107,7 @@ TEST(RayScene, MeetsASphereWhereTheClosedFormSays) {
 }
 
 TEST(RayScene, SeesTheBackOfATurnedSurface) {
-  const Mesh mesh = sphere(64);
+  const mesh::Mesh mesh = sphere(64);
   const auto scene = RayScene::create(mesh);
   ASSERT_TRUE(scene.ok());
   const auto point = scene->closest(Vec3{}, Vec3{0, 0, 1});
@@ -120,7 +118,7 @@ TEST(RayScene, SeesTheBackOfATurnedSurface) {
 }
 
 TEST(RayScene, FansMeetWhatSingleRaysMeet) {
-  const Mesh mesh = sphere(40);
+  const mesh::Mesh mesh = sphere(40);
   const auto scene = RayScene::create(mesh, Floor{-1.2});
   ASSERT_TRUE(scene.ok());
   Numbers next;
@@ -151,7 +149,7 @@ TEST(RayScene, FansMeetWhatSingleRaysMeet) {
 }
 
 TEST(RayScene, AFloorLiesWhereItIsSaidAndReachesTheHorizon) {
-  const Mesh mesh = sphere(32, 2.0, {100, 5, -3});
+  const mesh::Mesh mesh = sphere(32, 2.0, {100, 5, -3});
   const auto scene = RayScene::create(mesh, Floor{3.0});
   ASSERT_TRUE(scene.ok());
   EXPECT_EQ(scene->parts(), 2);
@@ -176,7 +174,7 @@ double self_blocked_share(double size, bool from_surface) {
   int blocked = 0, rays = 0;
   Numbers next;
   for (int k = 0; k < 200; ++k) {
-    Mesh mesh = single_triangle(size);
+    mesh::Mesh mesh = single_triangle(size);
     const Vec3 x = next.direction(), y = normalized(cross(x, next.direction()));
     const Vec3 shift = (10 * size * next()) * next.direction();
     for (Vec3& p : mesh.positions) p = shift + p.x * x + p.y * y;
@@ -208,7 +206,7 @@ TEST(HardCase, RaysLeaveTheirOwnTriangleAtEveryScale) {
 // starts on the flat triangles.
 TEST(HardCase, ASmoothSphereOfFewTrianglesDoesNotShadeItself) {
   const auto blocked_share = [](double size, bool flat) {
-    const Mesh mesh = sphere(12, size);
+    const mesh::Mesh mesh = sphere(12, size);
     const auto scene = RayScene::create(mesh);
     Numbers next;
     int blocked = 0, rays = 0;
@@ -232,7 +230,7 @@ TEST(HardCase, ASmoothSphereOfFewTrianglesDoesNotShadeItself) {
 }
 
 TEST(RayScene, DuplicateAndCoplanarFacesDoNotBlockWhatStartsOnThem) {
-  Mesh mesh = single_triangle();
+  mesh::Mesh mesh = single_triangle();
   mesh.positions.push_back({0.6, 0.6, 0});  // overlaps the first triangle in its plane
   mesh.normals.push_back({0, 0, 1});
   mesh.triangles = {{0, 1, 2}, {0, 1, 2}, {0, 1, 3}, {0, 2, 1}};
@@ -254,7 +252,7 @@ TEST(RayScene, DuplicateAndCoplanarFacesDoNotBlockWhatStartsOnThem) {
 }
 
 TEST(RayScene, TellsWhetherAPointSeesItsWholeHemisphere) {
-  const auto free_share = [](const Mesh& mesh) {
+  const auto free_share = [](const mesh::Mesh& mesh) {
     const auto scene = RayScene::create(mesh);
     Numbers next;
     int free = 0;
@@ -267,8 +265,8 @@ TEST(RayScene, TellsWhetherAPointSeesItsWholeHemisphere) {
     return free / 2000.0;
   };
   EXPECT_GT(free_share(sphere(48)), 0.999);
-  Mesh two = sphere(48);
-  const Mesh other = sphere(48, 0.3, {0, 1.3, 0});
+  mesh::Mesh two = sphere(48);
+  const mesh::Mesh other = sphere(48, 0.3, {0, 1.3, 0});
   const auto shift = static_cast<std::uint32_t>(two.positions.size());
   two.positions.insert(two.positions.end(), other.positions.begin(), other.positions.end());
   two.normals.insert(two.normals.end(), other.normals.begin(), other.normals.end());
@@ -279,7 +277,7 @@ TEST(RayScene, TellsWhetherAPointSeesItsWholeHemisphere) {
 }
 
 TEST(RayScene, IsTheSameForAnyNumberOfThreads) {
-  Mesh mesh = sphere(300);
+  mesh::Mesh mesh = sphere(300);
   const std::size_t single = mesh.triangles.size();
   for (std::size_t i = 0; i < single; ++i) mesh.triangles.push_back(mesh.triangles[i]);  // ties everywhere
   mesh.parts[0].count = mesh.triangles.size();
@@ -304,7 +302,7 @@ TEST(RayScene, IsTheSameForAnyNumberOfThreads) {
 }
 
 TEST(RayScene, RefusesMeshesThatAreNone) {
-  Mesh mesh = single_triangle();
+  mesh::Mesh mesh = single_triangle();
   mesh.positions[1].y = std::nan("");
   auto scene = RayScene::create(mesh);
   ASSERT_FALSE(scene.ok());
@@ -315,7 +313,7 @@ TEST(RayScene, RefusesMeshesThatAreNone) {
   mesh = single_triangle();
   mesh.parts.clear();
   EXPECT_FALSE(RayScene::create(mesh).ok());
-  EXPECT_FALSE(RayScene::create(Mesh{}).ok());
+  EXPECT_FALSE(RayScene::create(mesh::Mesh{}).ok());
   EXPECT_FALSE(RayScene::create(single_triangle(), Floor{std::nan("")}).ok());
 }
 
@@ -323,7 +321,7 @@ TEST(RayScene, VerticesThatAreNoNumbersAreRefusedByTheReader) {
   const auto path = std::filesystem::temp_directory_path() / "goniochrome-nan-vertex.obj";
   for (const char* word : {"nan", "inf"}) {
     std::ofstream(path) << "v 0 0 0\nv 1 0 0\nv 0 " << word << " 0\nf 1 2 3\n";
-    const auto mesh = read_mesh(path.string());
+    const auto mesh = mesh::read_mesh(path.string());
     ASSERT_FALSE(mesh.ok());
     EXPECT_NE(mesh.error().message.find(":3:"), std::string::npos) << mesh.error().message;
   }

@@ -9,7 +9,7 @@ namespace {
 
 using rays::Float3;
 
-double mean_of(const Rgb& c) {
+double mean_of(const color::Rgb& c) {
   return (c.x + c.y + c.z) / 3;
 }
 
@@ -20,12 +20,12 @@ Vec3 doubled_area(const std::array<Float3, 3>& corner) {
 
 }  // namespace
 
-Result<Emitters> Emitters::create(const rays::RayScene& scene, std::vector<Rgb> radiance) {
+Result<Emitters> Emitters::create(const rays::RayScene& scene, std::vector<color::Rgb> radiance) {
   Emitters emitters;
   emitters.scene_ = &scene;
   std::vector<double> part_area(radiance.size(), 0.0);
   for (std::size_t part = 0; part < radiance.size(); ++part) {
-    const Rgb& light = radiance[part];
+    const color::Rgb& light = radiance[part];
     for (int c = 0; c < 3; ++c)
       if (!(light[c] >= 0) || std::isinf(light[c]))
         return input_error("part {} emits ({}, {}, {}): a radiance must be finite and not negative", part, light.x,

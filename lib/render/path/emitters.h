@@ -14,7 +14,7 @@ struct EmitterSample {
   rays::Float3 direction;  // to it, unit
   float distance = 0;      // local
   float pdf = 0;           // 1/sr; 0: nothing was drawn
-  Rgb radiance;
+  color::Rgb radiance;
 };
 
 // The shining triangles, drawn by their area times the mean of the channels of their radiance. Both sides shine.
@@ -23,11 +23,11 @@ class Emitters {
   Emitters() = default;
   // `radiance` for each part of the scene; none where there are fewer. The scene must outlive the emitters. Error: a
   // radiance that is negative or not finite, or a part that shines and has no area.
-  static Result<Emitters> create(const rays::RayScene& scene, std::vector<Rgb> radiance);
+  static Result<Emitters> create(const rays::RayScene& scene, std::vector<color::Rgb> radiance);
 
   bool empty() const { return cumulative_.empty(); }
-  const Rgb& radiance(int part) const {
-    static constexpr Rgb kDark;
+  const color::Rgb& radiance(int part) const {
+    static constexpr color::Rgb kDark;
     return static_cast<std::size_t>(part) < radiance_.size() ? radiance_[static_cast<std::size_t>(part)] : kDark;
   }
 
@@ -40,7 +40,7 @@ class Emitters {
   double part_density(int part) const;  // by area
 
   const rays::RayScene* scene_ = nullptr;
-  std::vector<Rgb> radiance_;
+  std::vector<color::Rgb> radiance_;
   std::vector<std::uint32_t> triangles_;
   std::vector<double> cumulative_;  // share of the triangles up to each
   double total_ = 0;

@@ -1,7 +1,8 @@
 #include "render/path/environment_table.h"
 
 #include <algorithm>
-#include <numbers>
+
+#include "base/angles.h"
 
 namespace goniochrome::render {
 
@@ -9,7 +10,7 @@ namespace {
 
 using rays::Float3;
 
-Rgb texel_radiance(const Environment& environment, int column, int row) {
+color::Rgb texel_radiance(const envmap::Environment& environment, int column, int row) {
   const float* rgb = environment.radiance(column, row);
   return {rgb[0], rgb[1], rgb[2]};
 }
@@ -36,7 +37,7 @@ void add_guide(const Number* edges, int count, int steps, std::vector<std::uint1
 
 }  // namespace
 
-EnvironmentTable::EnvironmentTable(const Environment& environment)
+EnvironmentTable::EnvironmentTable(const envmap::Environment& environment)
     : environment_(&environment), width_(environment.width()), height_(environment.height()) {
   rows_.assign(static_cast<std::size_t>(height_) + 1, 0.0);
   columns_.assign(static_cast<std::size_t>(height_) * (static_cast<std::size_t>(width_) + 1), 0.0F);
@@ -44,7 +45,7 @@ EnvironmentTable::EnvironmentTable(const Environment& environment)
   double squares = 0, sphere = 0;
   for (int row = 0; row < height_; ++row) {
     for (int column = 0; column < width_; ++column) {
-      const Rgb light = texel_radiance(environment, column, row);
+      const color::Rgb light = texel_radiance(environment, column, row);
       const double mean = (light.x + light.y + light.z) / 3, solid_angle = environment.solid_angle(column, row);
       const auto at = static_cast<std::size_t>(column);
       sums[at + 1] = sums[at] + mean * solid_angle;
@@ -52,7 +53,7 @@ EnvironmentTable::EnvironmentTable(const Environment& environment)
       sphere += solid_angle;
     }
     row_solid_angle_.push_back(environment.solid_angle(0, row));
-    row_cosine_.push_back(std::cos(std::numbers::pi * row / height_));
+    row_cosine_.push_back(std::cos(kPi * row / height_));
     const double sum = sums.back();
     float* cumulative = &columns_[static_cast<std::size_t>(row) * (static_cast<std::size_t>(width_) + 1)];
     for (std::size_t i = 0; i < sums.size(); ++i) cumulative[i] = sum > 0 ? static_cast<float>(sums[i] / sum) : 0.0F;
@@ -77,8 +78,9 @@ double EnvironmentTable::texel_share(int column, int row) const {
 }
 
 double EnvironmentTable::density_at(double column, double at_row, int row) const {
-  return environment_->layout() == Environment::Layout::kLatLong ? row_solid_angle_[static_cast<std::size_t>(row)]
-                                                                 : environment_->solid_angle_density(column, at_row);
+  return environment_->layout() == envmap::Environment::Layout::kLatLong
+             ? row_solid_angle_[static_cast<std::size_t>(row)]
+             : environment_->solid_angle_density(column, at_row);
 }
 
 // Of a lat-long map directions are even in solid angle within a texel: in longitude and in the cosine from the pole.
@@ -92,10 +94,10 @@ EnvironmentTable::Place EnvironmentTable::place(double u, double v) const {
   const double down = std::clamp((u - rows_[r]) / (rows_[r + 1] - rows_[r]), 0.0, 1.0);
   const double right = std::clamp(
       (v - cumulative[column]) / (static_cast<double>(cumulative[column + 1]) - cumulative[column]), 0.0, 1.0);
-  if (environment_->layout() == Environment::Layout::kLatLong) {
+  if (environment_->layout() == envmap::Environment::Layout::kLatLong) {
     const double cosine = row_cosine_[r] + down * (row_cosine_[r + 1] - row_cosine_[r]);
     const auto ring = static_cast<float>(std::sqrt(std::max(0.0, 1 - cosine * cosine)));
-    const auto longitude = static_cast<float>(2 * std::numbers::pi * (0.5 - (column + right) / width_));
+    const auto longitude = static_cast<float>(2 * kPi * (0.5 - (column + right) / width_));
     return {{ring * std::sin(longitude), static_cast<float>(cosine), ring * std::cos(longitude)},
             column,
             row,
@@ -112,7 +114,7 @@ LightSample EnvironmentTable::light(const Place& place) const {
 }
 
 LightSample EnvironmentTable::at(const Float3& direction) const {
-  const GridPosition at = environment_->grid().position(rays::vec3(direction));
+  const envmap::GridPosition at = environment_->grid().position(rays::vec3(direction));
   const int column = std::clamp(static_cast<int>(at.column), 0, width_ - 1);
   const int row = std::clamp(static_cast<int>(at.row), 0, height_ - 1);
   const double density = density_at(at.column, at.row, row);
@@ -120,7 +122,7 @@ LightSample EnvironmentTable::at(const Float3& direction) const {
           texel_radiance(*environment_, column, row)};
 }
 
-Rgb EnvironmentTable::radiance(const Float3& direction) const {
+color::Rgb EnvironmentTable::radiance(const Float3& direction) const {
   const float* rgb = environment_->lookup(rays::vec3(direction));
   return {rgb[0], rgb[1], rgb[2]};
 }

@@ -14,7 +14,7 @@ namespace goniochrome::render {
 struct LightSample {
   rays::Float3 direction;
   float pdf = 0;  // 0: nothing was drawn
-  Rgb radiance;
+  color::Rgb radiance;
 };
 
 // The environment's texels with the sum over their channels times their solid angle as weight. Within a texel
@@ -22,7 +22,7 @@ struct LightSample {
 class EnvironmentTable {
  public:
   // The environment must outlive the table.
-  explicit EnvironmentTable(const Environment& environment);
+  explicit EnvironmentTable(const envmap::Environment& environment);
 
   // A direction drawn by numbers in [0,1); its density and light are looked up apart, since most rays need neither.
   struct Place {
@@ -36,7 +36,7 @@ class EnvironmentTable {
   // The probability density by which drawn() gives this direction, and the radiance that comes from there: that of the
   // texel that the direction falls in.
   LightSample at(const rays::Float3& direction) const;
-  Rgb radiance(const rays::Float3& direction) const;
+  color::Rgb radiance(const rays::Float3& direction) const;
 
   bool dark() const { return !(total_ > 0); }
   // (integral L)^2 / integral L^2, sr, of the mean over channels: 4 pi for an even environment, a lamp's own size where
@@ -47,7 +47,7 @@ class EnvironmentTable {
   double texel_share(int column, int row) const;
   double density_at(double column, double at_row, int row) const;
 
-  const Environment* environment_;
+  const envmap::Environment* environment_;
   int width_ = 0, height_ = 0;
   double total_ = 0, extent_sr_ = 0;
   std::vector<double> row_solid_angle_, row_cosine_;  // of a lat-long map: of a texel, and of the rows' upper edges

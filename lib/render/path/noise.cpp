@@ -11,9 +11,9 @@ namespace {
 const std::array<Vec3, 3>& relative_xyz_rows() {
   static const std::array<Vec3, 3> rows = [] {
     std::array<Vec3, 3> result;
-    const Xyz white = xyz_d65_from_rgb({1, 1, 1});
+    const color::Xyz white = color::xyz_d65_from_rgb({1, 1, 1});
     for (int c = 0; c < 3; ++c) {
-      const Xyz xyz = xyz_d65_from_rgb({c == 0 ? 1.0 : 0.0, c == 1 ? 1.0 : 0.0, c == 2 ? 1.0 : 0.0});
+      const color::Xyz xyz = color::xyz_d65_from_rgb({c == 0 ? 1.0 : 0.0, c == 1 ? 1.0 : 0.0, c == 2 ? 1.0 : 0.0});
       result[0][c] = xyz.X / white.X, result[1][c] = xyz.Y / white.Y, result[2][c] = xyz.Z / white.Z;
     }
     return result;
@@ -41,7 +41,7 @@ double variance_along(const Vec3& v, const Covariance& c) {
 
 // L, a and b are linear in the error to first order: dL = 116 f'(Y) dY and so on. CIEDE2000 weighs it along L, chroma
 // and hue by the S functions; its a' = (1 + G) a stretches grays.
-double noise_de00(const Rgb& radiance, const Covariance& covariance, double white_luminance) {
+double noise_de00(const color::Rgb& radiance, const Covariance& covariance, double white_luminance) {
   const auto& rows = relative_xyz_rows();
   const double scale = 1 / white_luminance;
   Curve f[3];

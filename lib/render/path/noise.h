@@ -13,6 +13,6 @@ using Covariance = std::array<double, 6>;
 // The root mean square CIEDE2000 difference between a radiance and the same with a small random error of this
 // covariance, as seen before a diffuse white of this luminance. To first order in the error; without the rotation term
 // of blues, which is worth a few percent.
-double noise_de00(const Rgb& radiance, const Covariance& covariance, double white_luminance);
+double noise_de00(const color::Rgb& radiance, const Covariance& covariance, double white_luminance);
 
 }  // namespace goniochrome::render

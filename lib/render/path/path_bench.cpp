@@ -7,20 +7,21 @@
 #include <filesystem>
 #include <memory>
 
+#include "base/angles.h"
 #include "base/clock.h"
 #include "render/camera.h"
+#include "render/exact.h"
+#include "render/internal/seen.h"
 #include "render/path/path_tracer.h"
-#include "render/reference.h"
 #include "render/scenes_for_test.h"
-#include "render/seen.h"
 
 namespace goniochrome::render {
 namespace {
 
 struct BenchScene {
-  Mesh mesh;
-  std::optional<Environment> environment;
-  std::optional<BlockTree> blocks;
+  mesh::Mesh mesh;
+  std::optional<envmap::Environment> environment;
+  std::optional<envmap::BlockTree> blocks;
   Scene scene;
   std::optional<Transport> transport;
   VisibleSurface surface;
@@ -28,16 +29,16 @@ struct BenchScene {
 };
 
 // A silver of seven lobes: half of its light in flakes, a tenth diffuse, and a coat.
-LobeFit silver() {
-  LobeFit paint;
-  paint.diffuse = 0.1 / std::numbers::pi * Rgb{1, 1, 1};
+paint::LobeFit silver() {
+  paint::LobeFit paint;
+  paint.diffuse = 0.1 / kPi * color::Rgb{1, 1, 1};
   const double exponents[] = {1.3, 6, 20, 70, 250, 900}, shares[] = {0.1, 0.12, 0.12, 0.08, 0.04, 0};
   for (std::size_t j = 0; j < 6; ++j) {
-    const double unit = (exponents[j] + 1) / (2 * std::numbers::pi);
+    const double unit = (exponents[j] + 1) / (2 * kPi);
     paint.lobes.push_back(
-        {exponents[j], shares[j] * unit * Rgb{1, 0.99, 0.97}, (j == 5 ? 0.02 : 0) * unit * Rgb{1, 1, 1}});
+        {exponents[j], shares[j] * unit * color::Rgb{1, 0.99, 0.97}, (j == 5 ? 0.02 : 0) * unit * color::Rgb{1, 1, 1}});
   }
-  paint.lobes.push_back({kMirrorExponent, {}, {0.5, 0.5, 0.5}});
+  paint.lobes.push_back({envmap::kMirrorExponent, {}, {0.5, 0.5, 0.5}});
   return paint;
 }
 
@@ -55,9 +56,9 @@ std::vector<std::string> probes() {
 std::unique_ptr<BenchScene> bench_scene(const std::string& probe, int width, int height) {
   auto bench = std::make_unique<BenchScene>();
   const char* data = std::getenv("GONIOCHROME_DATA");
-  auto mesh =
-      read_mesh(data != nullptr ? std::string(data) + "/mesh/vehicle.obj" : GONIOCHROME_TESTDATA "/speed-shape.obj");
-  auto environment = Environment::read(probe, Environment::BadPixels::kZero);
+  auto mesh = mesh::read_mesh(data != nullptr ? std::string(data) + "/mesh/vehicle.obj"
+                                              : GONIOCHROME_TESTDATA "/speed-shape.obj");
+  auto environment = envmap::Environment::read(probe, envmap::Environment::BadPixels::kZero);
   if (!mesh.ok() || !environment.ok()) return nullptr;
   bench->mesh = *std::move(mesh);
   bench->environment.emplace(*std::move(environment));
@@ -71,17 +72,17 @@ std::unique_ptr<BenchScene> bench_scene(const std::string& probe, int width, int
   if (!transport.ok()) return nullptr;
   bench->transport.emplace(*std::move(transport));
   const Camera camera = Camera::orbit(bench->mesh, 35, 12, 1, 30, static_cast<double>(width) / height);
-  bench->surface = visible_surface(bench->transport->rays(), *rays_of(camera, width, height), width, height);
+  bench->surface = visible_surface(bench->transport->rays(), *rays(camera, width, height), width, height);
   // The brightest that a white diffuser is here: what noise is seen before.
   const Vec3 flux = bench->environment->flux();
-  bench->white = xyz_d65_from_rgb((1 / (2 * std::numbers::pi)) * flux).Y;
+  bench->white = color::xyz_d65_from_rgb((1 / (2 * kPi)) * flux).Y;
   return bench;
 }
 
 // Of the open light, point by point, as the engine `integral` sums it.
-Image open_light(const BenchScene& bench) {
+image::Image open_light(const BenchScene& bench) {
   const Gbuffer& g = bench.surface.gbuffer;
-  Image image{g.width, g.height, 4, std::vector<float>(static_cast<std::size_t>(g.width) * g.height * 4), {}};
+  image::Image image{g.width, g.height, 4, std::vector<float>(static_cast<std::size_t>(g.width) * g.height * 4), {}};
   std::vector<SurfacePoint> points;
   std::vector<std::size_t> places;
   ExactModel model;
@@ -93,7 +94,7 @@ Image open_light(const BenchScene& bench) {
       places.push_back(static_cast<std::size_t>(y) * static_cast<std::size_t>(g.width) + static_cast<std::size_t>(x));
     }
   }
-  const std::vector<Rgb> light = reference_radiance(points, Surroundings(*bench.blocks, 0.4), {});
+  const std::vector<color::Rgb> light = reference_radiance(points, Surroundings(*bench.blocks, 0.4), {});
   for (std::size_t i = 0; i < light.size(); ++i)
     for (int c = 0; c < 3; ++c)
       image.data[4 * places[i] + static_cast<std::size_t>(c)] = static_cast<float>(light[i][c]);
@@ -107,7 +108,7 @@ void BM_Noise(benchmark::State& state) {
   if (number >= paths.size()) return state.SkipWithError("no such probe");
   const auto bench = bench_scene(paths[number], 1280, 720);
   if (!bench) return state.SkipWithError("no scene");
-  const Image open = open_light(*bench);
+  const image::Image open = open_light(*bench);
   PathRequest request;
   request.options.correction = state.range(1) != 0;
   request.options.bounces = static_cast<int>(state.range(2));
@@ -136,7 +137,7 @@ void BM_VisibleSurface(benchmark::State& state) {
   const auto bench = bench_scene(probes()[0], 64, 36);
   if (!bench) return state.SkipWithError("no scene");
   const Camera camera = Camera::orbit(bench->mesh, 35, 12, 1, 30, 16.0 / 9);
-  const Rays rays = *rays_of(camera, 1280, 720);
+  const Rays rays = *render::rays(camera, 1280, 720);
   for (auto _ : state) benchmark::DoNotOptimize(visible_surface(bench->transport->rays(), rays, 1280, 720));
 }
 BENCHMARK(BM_VisibleSurface)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();

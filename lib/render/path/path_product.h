@@ -14,15 +14,15 @@ namespace goniochrome::render {
 class PathProduct {
  public:
   // `op` null: channel by channel.
-  explicit PathProduct(const ReflectionOperator* op) : op_(op) {}
+  explicit PathProduct(const color::ReflectionOperator* op) : op_(op) {}
 
-  void reflect(const Rgb& paint) {
+  void reflect(const color::Rgb& paint) {
     if (op_ == nullptr) {
       diagonal_ = diagonal_ * paint;
       return;
     }
-    const Matrix3 next = reflection_matrix(*op_, paint);
-    Matrix3 result{};
+    const color::Matrix3 next = reflection_matrix(*op_, paint);
+    color::Matrix3 result{};
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t j = 0; j < 3; ++j)
         for (std::size_t k = 0; k < 3; ++k) result[i][j] += matrix_[i][k] * next[k][j];
@@ -33,7 +33,9 @@ class PathProduct {
     for (auto& row : matrix_)
       for (double& element : row) element *= factor;
   }
-  Rgb shown(const Rgb& light) const { return op_ == nullptr ? diagonal_ * light : product(matrix_, light); }
+  color::Rgb shown(const color::Rgb& light) const {
+    return op_ == nullptr ? diagonal_ * light : color::product(matrix_, light);
+  }
   // The most that any channel of light of 1 can show: what chance a path has to go on is taken from.
   double size() const {
     if (op_ == nullptr) return std::max({std::abs(diagonal_.x), std::abs(diagonal_.y), std::abs(diagonal_.z)});
@@ -43,9 +45,9 @@ class PathProduct {
   }
 
  private:
-  const ReflectionOperator* op_;
-  Rgb diagonal_{1, 1, 1};
-  Matrix3 matrix_ = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  const color::ReflectionOperator* op_;
+  color::Rgb diagonal_{1, 1, 1};
+  color::Matrix3 matrix_ = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 };
 
 }  // namespace goniochrome::render

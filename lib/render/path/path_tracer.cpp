@@ -6,7 +6,7 @@
 
 #include "base/clock.h"
 #include "base/parallel.h"
-#include "render/seen.h"
+#include "render/internal/seen.h"
 
 namespace goniochrome::render {
 
@@ -22,18 +22,18 @@ constexpr int kReach = 2;  // pixels to each side of the neighborhood
 
 // Sums over independent estimates, for their mean and its covariance. Shifted by the first, so that nothing cancels.
 struct Sums {
-  Rgb first, sum;
+  color::Rgb first, sum;
   Covariance squares{};
   int count = 0;
 
-  void add(const Rgb& value) {
+  void add(const color::Rgb& value) {
     if (count++ == 0) first = value;
-    const Rgb d = value - first;
+    const color::Rgb d = value - first;
     sum += d;
     squares[0] += d.x * d.x, squares[1] += d.y * d.y, squares[2] += d.z * d.z;
     squares[3] += d.x * d.y, squares[4] += d.x * d.z, squares[5] += d.y * d.z;
   }
-  Rgb mean() const { return count > 0 ? first + (1.0 / count) * sum : Rgb{}; }
+  color::Rgb mean() const { return count > 0 ? first + (1.0 / count) * sum : color::Rgb{}; }
   // Of a single estimate; needs two.
   Covariance covariance() const {
     Covariance result{};
@@ -53,7 +53,8 @@ std::uint64_t seed_of(std::uint64_t seed, std::uint64_t point, int batch) {
 
 class Picture {
  public:
-  Picture(const Transport& transport, const VisibleSurface& surface, const Image* base, const PathRequest& request)
+  Picture(const Transport& transport, const VisibleSurface& surface, const image::Image* base,
+          const PathRequest& request)
       : transport_(transport), surface_(surface), base_(base), request_(request), deadline_(request.time_limit_s) {
     const Gbuffer& g = surface.gbuffer;
     number_.assign(static_cast<std::size_t>(g.width) * g.height, -1);
@@ -96,7 +97,7 @@ class Picture {
  private:
   struct State {
     Sums sums;
-    Rgb sure;
+    color::Rgb sure;
     double needed = 0;  // batches that bring the noise of the neighborhood to the tolerance
     bool certain = false;
   };
@@ -173,7 +174,7 @@ class Picture {
     const int n = state.sums.count;
     if (n < 2) return;
     Covariance around{};
-    Rgb light;
+    color::Rgb light;
     int count = 0;
     for (int y = std::max(0, point.y - kReach); y <= std::min(surface_.gbuffer.height - 1, point.y + kReach); ++y) {
       for (int x = std::max(0, point.x - kReach); x <= std::min(surface_.gbuffer.width - 1, point.x + kReach); ++x) {
@@ -197,10 +198,10 @@ class Picture {
     state.needed = excess * excess;
   }
 
-  double noise_of(std::size_t i, Rgb radiance, const Covariance& covariance) const {
+  double noise_of(std::size_t i, color::Rgb radiance, const Covariance& covariance) const {
     if (base_ != nullptr) {
       const float* rgb = base_->pixel(points_[i].x, points_[i].y);
-      radiance += Rgb{rgb[0], rgb[1], rgb[2]};
+      radiance += color::Rgb{rgb[0], rgb[1], rgb[2]};
     }
     return noise_de00(radiance, covariance, request_.white_luminance);
   }
@@ -230,7 +231,7 @@ class Picture {
 
   const Transport& transport_;
   const VisibleSurface& surface_;
-  const Image* base_;
+  const image::Image* base_;
   const PathRequest& request_;
   Deadline deadline_;
   Stopwatch clock_;
@@ -241,7 +242,7 @@ class Picture {
 
 }  // namespace
 
-PathPicture path_picture(const Transport& transport, const VisibleSurface& surface, const Image* base,
+PathPicture path_picture(const Transport& transport, const VisibleSurface& surface, const image::Image* base,
                          const PathRequest& request) {
   return Picture(transport, surface, base, request).draw();
 }

@@ -26,7 +26,7 @@ struct PathRequest {
 // Of one visible point.
 struct PathPoint {
   int x = 0, y = 0;
-  Rgb radiance;           // with PathOptions::correction: what to add to the radiance without the mesh in the way
+  color::Rgb radiance;    // with PathOptions::correction: what to add to the radiance without the mesh in the way
   Covariance covariance;  // of the error of `radiance`; smoothed with that of its neighbors while samples are few
   double noise_de00 = 0;  // of one standard deviation
   int samples = 0;        // 0 where none were needed
@@ -45,12 +45,12 @@ struct PathPicture {
 // `base`: with PathOptions::correction what the points show without the mesh in the way, R G B in the first channels of
 // each pixel; it tells how visible noise is, and is not added. Null: black. Bit-identical for any number of threads
 // while no time limit ends it.
-PathPicture path_picture(const Transport& transport, const VisibleSurface& surface, const Image* base,
+PathPicture path_picture(const Transport& transport, const VisibleSurface& surface, const image::Image* base,
                          const PathRequest& request);
 
 // One point: the mean of so many batches and the covariance of its error.
 struct PathEstimate {
-  Rgb radiance;
+  color::Rgb radiance;
   Covariance covariance{};
 };
 PathEstimate path_estimate(const Transport& transport, const PathOptions& options, const rays::Spot& spot,

@@ -8,27 +8,27 @@
 #include "base/hard_case_for_test.h"
 #include "base/parallel.h"
 #include "render/camera.h"
+#include "render/internal/seen.h"
 #include "render/path/scenes_for_paths_for_test.h"
-#include "render/seen.h"
 
 namespace goniochrome::render {
 namespace {
 
-LobeFit glossy() {
-  LobeFit paint = matt({0.3, 0.2, 0.1});
-  paint.lobes = {{20, {0.5, 0.5, 0.5}, {0.1, 0.1, 0.1}}, {kMirrorExponent, {}, {0.6, 0.6, 0.6}}};
+paint::LobeFit glossy() {
+  paint::LobeFit paint = matt({0.3, 0.2, 0.1});
+  paint.lobes = {{20, {0.5, 0.5, 0.5}, {0.1, 0.1, 0.1}}, {envmap::kMirrorExponent, {}, {0.6, 0.6, 0.6}}};
   return paint;
 }
 
 // A ball in a cup, in uneven light.
 std::unique_ptr<PathStage> ball_in_a_cup() {
-  Mesh mesh = box_mesh(false);
+  mesh::Mesh mesh = box_mesh(false);
   add_mesh(mesh, sphere_mesh(32), 0.5, {0.1, -0.5, 0});
-  auto stage = std::make_unique<PathStage>(std::move(mesh), std::vector<LobeFit>{matt({0.7, 0.6, 0.5})});
+  auto stage = std::make_unique<PathStage>(std::move(mesh), std::vector<paint::LobeFit>{matt({0.7, 0.6, 0.5})});
   stage->scene.paints.back() = glossy();
   stage->environment = environment_of(32, 16, [](int x, int y) {
     const double lamp = x > 10 && x < 14 && y > 2 && y < 5 ? 10 : 0;
-    return Rgb{0.5 + lamp, 0.5 + 0.02 * y + lamp, 0.7 + lamp};
+    return color::Rgb{0.5 + lamp, 0.5 + 0.02 * y + lamp, 0.7 + lamp};
   });
   stage->build();
   return stage;
@@ -38,7 +38,7 @@ VisibleSurface seen_from_above(const PathStage& stage, int width, int height) {
   Camera camera;
   camera.eye = {0.5, 4, 2};
   camera.fov_deg = 36;
-  return visible_surface(stage.transport->rays(), *rays_of(camera, width, height), width, height);
+  return visible_surface(stage.transport->rays(), *rays(camera, width, height), width, height);
 }
 
 TEST(PathPicture, IsTheSameForAnyNumberOfThreads) {
@@ -109,12 +109,12 @@ TEST(PathPicture, ItsMeanIsTheTruthWhateverIsSampledMore) {
   PathRequest request;
   request.options.bounces = 3;
   const auto mean_of = [&](double tolerance, std::uint64_t first, int pictures, double& variance) {
-    Rgb sum;
+    color::Rgb sum;
     double squares = 0;
     request.tolerance_de00 = tolerance;
     for (int k = 0; k < pictures; ++k) {
       request.seed = first + static_cast<std::uint64_t>(k);
-      Rgb total;
+      color::Rgb total;
       for (const PathPoint& point : path_picture(*stage->transport, surface, nullptr, request).points)
         total += point.radiance;
       sum += total, squares += total.y * total.y;
@@ -142,7 +142,7 @@ TEST(PathPicture, AConvexShapeIsDrawnWithoutASample) {
   EXPECT_GT(picture.points.size(), 50U);
   EXPECT_EQ(picture.free_share, 1);
   EXPECT_EQ(picture.noise_p95_de00, 0);
-  for (const PathPoint& point : picture.points) EXPECT_EQ(point.radiance, Rgb{});
+  for (const PathPoint& point : picture.points) EXPECT_EQ(point.radiance, color::Rgb{});
 }
 
 TEST(PathPicture, StopsWhenItsTimeIsUpAndSaysHowFarItCame) {
@@ -170,7 +170,7 @@ TEST(PathPicture, StopsWhenItsTimeIsUpAndSaysHowFarItCame) {
 TEST(HardCase, SmoothBallsAreLitSmoothlyAtAnyScale) {
   constexpr int kWidth = 96, kHeight = 72, kBall = 2;
   for (const double size : {1e-6, 1.0, 1e6}) {
-    Mesh mesh;
+    mesh::Mesh mesh;
     for (const char* name : {"plane", "again"})
       add_rectangle(mesh, name, {-3 * size, 0, -3 * size}, {0, 0, 6 * size}, {6 * size, 0, 0});
     add_mesh(mesh, sphere_mesh(12), size, {0, 1.5 * size, 0});
@@ -182,8 +182,7 @@ TEST(HardCase, SmoothBallsAreLitSmoothlyAtAnyScale) {
     camera.eye = size * Vec3{2, 4, 7};
     camera.target = size * Vec3{0, 1.2, 0};
     camera.fov_deg = 25;
-    const VisibleSurface surface =
-        visible_surface(transport.rays(), *rays_of(camera, kWidth, kHeight), kWidth, kHeight);
+    const VisibleSurface surface = visible_surface(transport.rays(), *rays(camera, kWidth, kHeight), kWidth, kHeight);
     PathOptions options;
     options.bounces = 0;
     double ours = 0, textbook = 0;
@@ -217,8 +216,8 @@ TEST(HardCase, SmoothBallsAreLitSmoothlyAtAnyScale) {
 TEST(Noise, IsTheSpreadOfSmallErrors) {
   TestNumbers next(2);
   const auto normal = [&] { return std::sqrt(-2 * std::log(1 - next())) * std::cos(6.283185307179586 * next()); };
-  for (const Rgb& color :
-       {Rgb{0.2, 0.2, 0.2}, Rgb{0.5, 0.1, 0.05}, Rgb{0.02, 0.3, 0.1}, Rgb{0.003, 0.004, 0.002}, Rgb{2, 2, 1.5}}) {
+  for (const color::Rgb& color : {color::Rgb{0.2, 0.2, 0.2}, color::Rgb{0.5, 0.1, 0.05}, color::Rgb{0.02, 0.3, 0.1},
+                                  color::Rgb{0.003, 0.004, 0.002}, color::Rgb{2, 2, 1.5}}) {
     // Errors in brightness, and a third of that in each channel alone.
     const double common = 0.01, own = 0.003;
     Covariance covariance{};
@@ -232,7 +231,8 @@ TEST(Noise, IsTheSpreadOfSmallErrors) {
     constexpr int kCount = 20000;
     for (int i = 0; i < kCount; ++i) {
       const double all = common * normal();
-      const Rgb off = color * Rgb{1 + all + own * normal(), 1 + all + own * normal(), 1 + all + own * normal()};
+      const color::Rgb off =
+          color * color::Rgb{1 + all + own * normal(), 1 + all + own * normal(), 1 + all + own * normal()};
       squares += std::pow(seen_difference(off, color, 1), 2) / kCount;
     }
     EXPECT_NEAR(noise_de00(color, covariance, 1) / std::sqrt(squares), 1, 0.05);

@@ -3,9 +3,9 @@
 
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <vector>
 
+#include "base/angles.h"
 #include "brdf/lobe_model.h"
 #include "render/path/emitters.h"
 #include "render/path/environment_table.h"
@@ -17,8 +17,6 @@ namespace {
 
 using rays::Float3;
 using rays::float3;
-
-constexpr double kPi = std::numbers::pi;
 
 // Bins of equal solid angle, even in azimuth and in the cosine from an axis.
 class SphereBins {
@@ -85,20 +83,21 @@ double excess(const SphereBins& bins, int draws, const std::function<std::option
   return (chi2 - freedom) / std::sqrt(2.0 * freedom);
 }
 
-Environment lat_long(int width, int height, const std::function<Rgb(int, int)>& radiance) {
+envmap::Environment lat_long(int width, int height, const std::function<color::Rgb(int, int)>& radiance) {
   std::vector<float> rgb;
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
       for (int c = 0; c < 3; ++c) rgb.push_back(static_cast<float>(radiance(x, y)[c]));
-  return Environment::from_lat_long({width, height, 3, rgb, {}}, Environment::BadPixels::kError, "made").value();
+  return envmap::Environment::from_lat_long({width, height, 3, rgb, {}}, envmap::Environment::BadPixels::kError, "made")
+      .value();
 }
 
-Rgb uneven(int x, int y) {
+color::Rgb uneven(int x, int y) {
   const double sun = x == 5 && y == 3 ? 4 : 0;
   return {0.2 + 0.1 * x + sun, y == 7 ? 0.0 : 0.3, 0.05 * ((x * 7 + y * 3) % 11) + sun};
 }
 
-double excess_of(const Environment& environment, double wrong_factor = 1) {
+double excess_of(const envmap::Environment& environment, double wrong_factor = 1) {
   const EnvironmentTable table(environment);
   const SphereBins bins({0, 1, 0}, 16, 32);
   return excess(
@@ -118,15 +117,18 @@ double excess_of(const Environment& environment, double wrong_factor = 1) {
 TEST(Samplers, TheEnvironmentIsDrawnAsItsDensitySays) {
   EXPECT_LT(excess_of(lat_long(32, 16, uneven)), 5);
   EXPECT_GT(excess_of(lat_long(32, 16, uneven), 1.05), 5);  // control
-  const CubeMap cube = cube_of(8, [](const Vec3& d) { return Vec3{1.1 + d.x, d.y > 0.5 ? 5.0 : 0.2, 1 + d.z * d.z}; });
-  EXPECT_LT(excess_of(Environment::from_cube(cube, "cube")), 5);
-  Image disc{24, 24, 3, std::vector<float>(24 * 24 * 3, 0.5F), {}};
+  const envmap::CubeMap cube = cube_of(8, [](const Vec3& d) {
+    return Vec3{1.1 + d.x, d.y > 0.5 ? 5.0 : 0.2, 1 + d.z * d.z};
+  });
+  EXPECT_LT(excess_of(envmap::Environment::from_cube(cube, "cube")), 5);
+  image::Image disc{24, 24, 3, std::vector<float>(24 * 24 * 3, 0.5F), {}};
   for (std::size_t i = 0; i < disc.data.size(); i += 7) disc.data[i] = 2;
-  EXPECT_LT(excess_of(Environment::from_angular(disc, Environment::BadPixels::kError, "disc").value()), 5);
+  EXPECT_LT(excess_of(envmap::Environment::from_angular(disc, envmap::Environment::BadPixels::kError, "disc").value()),
+            5);
 }
 
 TEST(Samplers, TheEnvironmentsDensityAgreesWithWhatIsDrawn) {
-  const Environment environment = lat_long(64, 32, uneven);
+  const envmap::Environment environment = lat_long(64, 32, uneven);
   const EnvironmentTable table(environment);
   TestNumbers next(3);
   int neighbors = 0;
@@ -147,17 +149,18 @@ TEST(Samplers, TheEnvironmentsDensityAgreesWithWhatIsDrawn) {
   EXPECT_NEAR(integral / environment.flux().x, 1, 0.02);  // relative spread of the ratio .7: five deviations are .025
 }
 
-LobeFit glossy() {
-  LobeFit paint;
+paint::LobeFit glossy() {
+  paint::LobeFit paint;
   paint.diffuse = {0.1, 0.05, 0.02};
   paint.lobes = {{2, {0.05, 0.1, 0.1}, {}}, {30, {0.3, 0.2, 0.1}, {0.5, 0.5, 0.5}}, {900, {}, {20, 20, 20}}};
   return paint;
 }
 
-double excess_of(const LobeFit& paint, double view_deg, std::vector<Tilt> tilts = {}, double wrong_exponent = 1) {
+double excess_of(const paint::LobeFit& paint, double view_deg, std::vector<brdf::Tilt> tilts = {},
+                 double wrong_exponent = 1) {
   const auto traced = TracedPaint::create(paint, 45, std::move(tilts));
-  LobeFit other = paint;
-  for (Lobe& lobe : other.lobes) lobe.exponent *= wrong_exponent;
+  paint::LobeFit other = paint;
+  for (paint::Lobe& lobe : other.lobes) lobe.exponent *= wrong_exponent;
   const auto stated = TracedPaint::create(other, 45, {});
   const Vec3 normal = normalized({0.2, 0.9, -0.3}), side = normalized(cross(normal, {1, 0, 0}));
   const double t = view_deg * kPi / 180;
@@ -183,14 +186,14 @@ TEST(Samplers, LobesAreDrawnAsTheirDensitySays) {
 }
 
 TEST(Samplers, BrushedLobesAreDrawnAsTheirDensitySays) {
-  const TiltSet set = ward_tilts({0.1, 0.4}, 0.1, 0.01).value();
+  const brdf::TiltSet set = brdf::ward_tilts({0.1, 0.4}, 0.1, 0.01).value();
   ASSERT_GT(set.tilts.size(), 3U);
   for (const double view_deg : {10.0, 60.0}) EXPECT_LT(excess_of(glossy(), view_deg, set.tilts), 5);
 }
 
 TEST(Samplers, EmittersAreDrawnAsTheirDensitySays) {
   // A dim and a bright panel, seen from above and from the side.
-  Mesh mesh = panels_mesh(2);
+  mesh::Mesh mesh = panels_mesh(2);
   const auto scene = rays::RayScene::create(mesh);
   ASSERT_TRUE(scene.ok());
   const auto emitters = Emitters::create(*scene, {{1, 1, 1}, {2, 5, 2}});
@@ -215,7 +218,7 @@ TEST(Samplers, EmittersAreDrawnAsTheirDensitySays) {
 }
 
 TEST(Samplers, EmittersWithoutAreaOrWithoutAnEndAreRefused) {
-  Mesh mesh = panels_mesh(2);
+  mesh::Mesh mesh = panels_mesh(2);
   mesh.positions[4] = mesh.positions[5] = mesh.positions[2];
   mesh.positions[3] = mesh.positions[2];  // the second panel is a point
   const auto scene = rays::RayScene::create(mesh);
@@ -229,7 +232,7 @@ TEST(Samplers, EmittersWithoutAreaOrWithoutAnEndAreRefused) {
 
 // What is evaluated in floats is the model that the reference integrator has in doubles.
 TEST(TracedPaint, IsTheModelOfTheReference) {
-  LobeFit paint = glossy();
+  paint::LobeFit paint = glossy();
   paint.views = {{15, paint.diffuse, paint.lobes}, {60, {0.2, 0.1, 0.1}, {{30, {1, 2, 3}, {}}, {200, {}, {4, 4, 5}}}}};
   const auto traced = TracedPaint::create(paint, 60, {});
   ASSERT_TRUE(traced.ok());
@@ -241,11 +244,11 @@ TEST(TracedPaint, IsTheModelOfTheReference) {
   for (int i = 0; i < 2000; ++i) {
     const Vec3 viewer = direction(), mirrored{-viewer.x, -viewer.y, viewer.z};
     const Vec3 light = i % 2 == 0 ? direction() : normalized(mirrored + 0.05 * direction());
-    const Rgb expected = light.z * coated_brdf(paint, light, viewer, {0, 0, 1}, 60);
+    const color::Rgb expected = light.z * brdf::coated_brdf(paint, light, viewer, {0, 0, 1}, 60);
     const PaintedPoint point(*traced, {0, 0, 1}, float3(viewer));
-    const Rgb f = rays::vec3(point.at(float3(light)).f_cos);
+    const color::Rgb f = rays::vec3(point.at(float3(light)).f_cos);
     const PaintedPoint::Parts parts = point.parts(float3(light));
-    const Rgb sum = rays::vec3(parts.diffuse + parts.lobes);
+    const color::Rgb sum = rays::vec3(parts.diffuse + parts.lobes);
     // A float direction is off by 6e-8, which the sharpest lobe (E = 900) at its flank makes 40 sqrt(900) times more.
     for (int c = 0; c < 3; ++c) {
       EXPECT_NEAR(f[c], expected[c], 1e-4 * expected[c] + 1e-9);
@@ -255,13 +258,13 @@ TEST(TracedPaint, IsTheModelOfTheReference) {
 }
 
 TEST(TracedPaint, TellsWhetherItGainsLight) {
-  const auto gains = [](const LobeFit& paint) { return TracedPaint::create(paint, 45, {})->gains_light(); };
+  const auto gains = [](const paint::LobeFit& paint) { return TracedPaint::create(paint, 45, {})->gains_light(); };
   EXPECT_FALSE(gains(matt({1, 1, 1})));
   EXPECT_TRUE(gains(matt({1.0000001, 0.5, 0.5})));
-  LobeFit lobe;
-  lobe.lobes = {{20, 0.9 * 21 / (2 * kPi) * Rgb{1, 1, 1}, {}}};
+  paint::LobeFit lobe;
+  lobe.lobes = {{20, 0.9 * 21 / (2 * kPi) * color::Rgb{1, 1, 1}, {}}};
   EXPECT_FALSE(gains(lobe));
-  lobe.diffuse = 0.2 / kPi * Rgb{1, 1, 1};
+  lobe.diffuse = 0.2 / kPi * color::Rgb{1, 1, 1};
   EXPECT_TRUE(gains(lobe));
 }
 

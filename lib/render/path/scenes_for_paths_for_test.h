@@ -11,7 +11,7 @@
 namespace goniochrome::render {
 
 // Adds the rectangle corner + s a + t b, 0 <= s, t <= 1, as a part that faces a x b.
-inline void add_rectangle(Mesh& mesh, const std::string& name, const Vec3& corner, const Vec3& a, const Vec3& b) {
+inline void add_rectangle(mesh::Mesh& mesh, const std::string& name, const Vec3& corner, const Vec3& a, const Vec3& b) {
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
   for (const Vec3& p : {corner, corner + a, corner + a + b, corner + b}) mesh.positions.push_back(p);
   mesh.normals.insert(mesh.normals.end(), 4, normalized(cross(a, b)));
@@ -21,11 +21,11 @@ inline void add_rectangle(Mesh& mesh, const std::string& name, const Vec3& corne
 }
 
 // Adds all of another mesh, as one part more for each of its own.
-inline void add_mesh(Mesh& mesh, const Mesh& other, double scale, const Vec3& shift) {
+inline void add_mesh(mesh::Mesh& mesh, const mesh::Mesh& other, double scale, const Vec3& shift) {
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
   for (const Vec3& p : other.positions) mesh.positions.push_back(shift + scale * p);
   mesh.normals.insert(mesh.normals.end(), other.normals.begin(), other.normals.end());
-  for (MeshPart part : other.parts) {
+  for (mesh::MeshPart part : other.parts) {
     part.first += mesh.triangles.size();
     mesh.parts.push_back(part);
   }
@@ -33,8 +33,8 @@ inline void add_mesh(Mesh& mesh, const Mesh& other, double scale, const Vec3& sh
 }
 
 // The walls of the box from -1 to 1, facing inward; without its lid (+Y) it is a cup. One part each.
-inline Mesh box_mesh(bool with_lid) {
-  Mesh mesh;
+inline mesh::Mesh box_mesh(bool with_lid) {
+  mesh::Mesh mesh;
   add_rectangle(mesh, "bottom", {-1, -1, -1}, {0, 0, 2}, {2, 0, 0});
   add_rectangle(mesh, "left", {-1, -1, -1}, {0, 2, 0}, {0, 0, 2});
   add_rectangle(mesh, "right", {1, -1, -1}, {0, 0, 2}, {0, 2, 0});
@@ -44,27 +44,29 @@ inline Mesh box_mesh(bool with_lid) {
   return mesh;
 }
 
-inline Environment environment_of(int width, int height, const std::function<Rgb(int column, int row)>& radiance) {
+inline envmap::Environment environment_of(int width, int height,
+                                          const std::function<color::Rgb(int column, int row)>& radiance) {
   std::vector<float> rgb;
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
       for (int c = 0; c < 3; ++c) rgb.push_back(static_cast<float>(radiance(x, y)[c]));
-  return Environment::from_lat_long({width, height, 3, rgb, {}}, Environment::BadPixels::kError, "made").value();
+  return envmap::Environment::from_lat_long({width, height, 3, rgb, {}}, envmap::Environment::BadPixels::kError, "made")
+      .value();
 }
 
-inline Environment even_environment(const Rgb& radiance = {1, 1, 1}) {
+inline envmap::Environment even_environment(const color::Rgb& radiance = {1, 1, 1}) {
   return environment_of(16, 8, [&](int, int) { return radiance; });
 }
 
 // A scene that owns what it refers to.
 struct PathStage {
-  Mesh mesh;
+  mesh::Mesh mesh;
   Scene scene;
-  std::optional<Environment> environment;
-  std::vector<Rgb> emission;
+  std::optional<envmap::Environment> environment;
+  std::vector<color::Rgb> emission;
   std::optional<Transport> transport;
 
-  PathStage(Mesh m, std::vector<LobeFit> paints) : mesh(std::move(m)) {
+  PathStage(mesh::Mesh m, std::vector<paint::LobeFit> paints) : mesh(std::move(m)) {
     scene.mesh = &mesh;
     scene.paints = std::move(paints);
     scene.paints.resize(mesh.parts.size(), scene.paints.back());

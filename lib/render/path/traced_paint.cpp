@@ -5,6 +5,7 @@
 #include <numbers>
 #include <set>
 
+#include "base/angles.h"
 #include "brdf/lobe_model.h"
 #include "render/scene.h"
 
@@ -23,13 +24,13 @@ float mean_size(const Float3& c) {
   return (std::abs(c.x) + std::abs(c.y) + std::abs(c.z)) / 3;
 }
 
-bool is_finite(const Rgb& c) {
+bool is_finite(const color::Rgb& c) {
   return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z);
 }
 
 // fresnel_dielectric() of kCoatIndex, in floats.
 float coat_reflectance(float cosine) {
-  constexpr float kN2 = static_cast<float>(kCoatIndex * kCoatIndex), kContrast = kN2 - 1;
+  constexpr float kN2 = static_cast<float>(brdf::kCoatIndex * brdf::kCoatIndex), kContrast = kN2 - 1;
   const float g = std::sqrt(kContrast + cosine * cosine), s = cosine + g, p = kN2 * cosine + g;
   const float r_s = kContrast / (s * s), r_p = kContrast * ((kN2 + 1) * cosine * cosine - 1) / (p * p);
   return 0.5F * (r_s * r_s + r_p * r_p);
@@ -41,42 +42,42 @@ Float3 blend(const Float3& a, const Float3& b, float share) {
 
 }  // namespace
 
-Result<TracedPaint> TracedPaint::create(const LobeFit& paint, double gloss_deg, std::vector<Tilt> tilts) {
+Result<TracedPaint> TracedPaint::create(const paint::LobeFit& paint, double gloss_deg, std::vector<brdf::Tilt> tilts) {
   std::set<double> exponents;
-  const auto gather = [&](const std::vector<goniochrome::Lobe>& lobes) -> Result<void> {
-    for (const goniochrome::Lobe& lobe : lobes) {
+  const auto gather = [&](const std::vector<paint::Lobe>& lobes) -> Result<void> {
+    for (const paint::Lobe& lobe : lobes) {
       if (!(lobe.exponent >= 0)) return input_error("a lobe of exponent {}: it must be 0 or more", lobe.exponent);
       if (!is_finite(lobe.directional_diffuse) || !is_finite(lobe.gloss))
         return input_error("a weight of the lobe of exponent {} is not finite", lobe.exponent);
-      if (std::isfinite(lobe.exponent) && (lobe.directional_diffuse != Rgb{} || lobe.gloss != Rgb{}))
+      if (std::isfinite(lobe.exponent) && (lobe.directional_diffuse != color::Rgb{} || lobe.gloss != color::Rgb{}))
         exponents.insert(lobe.exponent);
     }
     return {};
   };
-  std::vector<ViewLobes> views = paint.views;
+  std::vector<paint::ViewLobes> views = paint.views;
   if (views.empty()) views.push_back({0, paint.diffuse, paint.lobes});
-  for (const ViewLobes& view : views) {
+  for (const paint::ViewLobes& view : views) {
     GONIO_TRY(gather(view.lobes));
     if (!is_finite(view.diffuse)) return input_error("a diffuse weight is not finite");
   }
-  if (exponents.size() > kMostLobes)
+  if (exponents.size() > kMostTracedLobes)
     return input_error("a paint of {} lobes: paths trace at most {}; fit it to a smaller basis", exponents.size(),
-                       kMostLobes);
+                       kMostTracedLobes);
   TracedPaint traced;
   if (tilts.size() > 1) traced.tilts_ = std::move(tilts);
-  const double gloss_scale = 1 / fresnel_dielectric(std::cos(gloss_deg * std::numbers::pi / 180), kCoatIndex);
-  for (const ViewLobes& view : views) {
+  const double gloss_scale = 1 / brdf::fresnel_dielectric(std::cos(gloss_deg * kPi / 180), brdf::kCoatIndex);
+  for (const paint::ViewLobes& view : views) {
     Weights weights{static_cast<float>(view.view_deg), float3(view.diffuse), {}, {}};
     for (const double exponent : exponents) {
-      Lobe lobe{static_cast<float>(exponent), static_cast<float>((exponent + 1) / (2 * std::numbers::pi)), {}, {}};
-      for (const goniochrome::Lobe& given : view.lobes) {
+      Lobe lobe{static_cast<float>(exponent), static_cast<float>((exponent + 1) / (2 * kPi)), {}, {}};
+      for (const paint::Lobe& given : view.lobes) {
         if (given.exponent != exponent) continue;
         lobe.directional_diffuse = float3(given.directional_diffuse);
         lobe.gloss = float3(gloss_scale * given.gloss);
       }
       weights.lobes.push_back(lobe);
     }
-    for (const goniochrome::Lobe& given : view.lobes)
+    for (const paint::Lobe& given : view.lobes)
       if (std::isinf(given.exponent)) weights.mirror = float3(given.gloss);
     traced.views_.push_back(std::move(weights));
   }
@@ -86,7 +87,7 @@ Result<TracedPaint> TracedPaint::create(const LobeFit& paint, double gloss_deg, 
 // The share of even light that comes to the viewer: diffuse part, lobes and mirror.
 bool TracedPaint::gains_light() const {
   constexpr int kViews = 12, kRows = 96, kColumns = 48;
-  constexpr double kQuadratureError = 0.01, kRounding = 3e-8, kTwoPi = 2 * std::numbers::pi;
+  constexpr double kQuadratureError = 0.01, kRounding = 3e-8, kTwoPi = 2 * kPi;
   for (int view = 0; view < kViews; ++view) {
     const double cos_o = (view + 0.5) / kViews;
     const PaintedPoint point(*this, {0, 0, 1}, float3({std::sqrt(1 - cos_o * cos_o), 0, cos_o}));
@@ -147,13 +148,13 @@ PaintedPoint::PaintedPoint(const TracedPaint& paint, const Float3& normal, const
 }
 
 // The frame of Gatherer::set_mirror_directions(): the tangent runs level around +Y, on a level surface along +X.
-void PaintedPoint::set_axes(const std::vector<Tilt>& tilts) {
+void PaintedPoint::set_axes(const std::vector<brdf::Tilt>& tilts) {
   if (tilts.empty()) return;
   const Vec3 n = rays::vec3(normal_), viewer = rays::vec3(viewer_);
   const double level2 = n.x * n.x + n.z * n.z;
   const Vec3 x = level2 > 1e-12 ? normalized({n.z, 0, -n.x}) : Vec3{1, 0, 0}, y = cross(n, x);
   axes_total_ = 0;
-  for (const Tilt& tilt : tilts) {
+  for (const brdf::Tilt& tilt : tilts) {
     const Vec3 m = tilt.normal.x * x + tilt.normal.y * y + tilt.normal.z * n;
     const double cos_m = dot(m, viewer);
     const Vec3 r = 2 * cos_m * m - viewer;
@@ -184,7 +185,7 @@ float PaintedPoint::narrow_share(double light_sr) const {
 // Calls visit(lobe, sum over axes of share cos^E).
 template <class Visit>
 void PaintedPoint::visit_lobes(const Float3& to_light, const Visit& visit) const {
-  float powers[kMostLobes] = {};
+  float powers[kMostTracedLobes] = {};
   const auto add = [&](const Float3& axis, float share) {
     const Float3 apart = axis - to_light;
     const float versine = 0.5F * rays::dot(apart, apart);

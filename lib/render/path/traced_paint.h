@@ -12,16 +12,16 @@
 namespace goniochrome::render {
 
 // The most lobes of a paint, the mirror apart.
-constexpr int kMostLobes = 24;
+constexpr int kMostTracedLobes = 24;
 
 // A paint laid out for tracing. What it shows is ExactModel's (render/reference.h) with the Fresnel reflectance on:
 //   f cos_i = cos_i (K_D + sum K_DD cos^E) + F(theta_h)/F(gloss_deg) sum K_G cos^E,  mirror K_M F(theta_o)
 // above the horizon, nothing below it. Of an anisotropic paint each lobe is the mean over tilted normals.
 class TracedPaint {
  public:
-  // `tilts`: as ward_tilts() returns them; one or none: isotropic. Error: more than kMostLobes lobes, a weight that is
-  // not finite, an exponent below 0.
-  static Result<TracedPaint> create(const LobeFit& paint, double gloss_deg, std::vector<Tilt> tilts);
+  // `tilts`: as ward_tilts() returns them; one or none: isotropic. Error: more than kMostTracedLobes lobes, a weight
+  // that is not finite, an exponent below 0.
+  static Result<TracedPaint> create(const paint::LobeFit& paint, double gloss_deg, std::vector<brdf::Tilt> tilts);
 
   // Whether it sends back more light than it gets, in some channel to some viewer. Its diffuse part is known exactly,
   // that of its lobes by quadrature to 1 %: a paint is told whose sum is beyond 1 by more than that.
@@ -38,8 +38,8 @@ class TracedPaint {
     rays::Float3 diffuse, mirror;
     std::vector<Lobe> lobes;  // those of all views, ascending exponents
   };
-  std::vector<Weights> views_;  // one, or ascending in view_deg
-  std::vector<Tilt> tilts_;     // none: isotropic
+  std::vector<Weights> views_;     // one, or ascending in view_deg
+  std::vector<brdf::Tilt> tilts_;  // none: isotropic
 };
 
 // A direction that light may have come from, with f cos_i and the probability density that drawn() gives it.
@@ -92,7 +92,7 @@ class PaintedPoint {
     float share;
   };
   static rays::Float3 drawn_about(const rays::Float3& axis, float exponent, float u, float v);
-  void set_axes(const std::vector<Tilt>& tilts);
+  void set_axes(const std::vector<brdf::Tilt>& tilts);
   template <class Visit>
   void visit_lobes(const rays::Float3& to_light, const Visit& visit) const;
 
@@ -100,7 +100,7 @@ class PaintedPoint {
   rays::Frame frame_;
   float cos_o_ = 1, diffuse_chance_ = 0, total_ = 0;
   int count_ = 0;
-  Lobe lobes_[kMostLobes];
+  Lobe lobes_[kMostTracedLobes];
   std::vector<Axis> axes_;  // of tilts; none: mirrored_ alone
   float axes_total_ = 1;
 };

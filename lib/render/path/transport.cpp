@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "base/angles.h"
 #include "brdf/lobe_model.h"
 #include "render/effects.h"
-#include "render/surface_layer.h"
+#include "render/textures/surface_layer.h"
 
 namespace goniochrome::render {
 
@@ -25,15 +25,15 @@ constexpr double kEndlessChance = 0.9, kLeastChance = 0.05;
 // The most and least chance that a direction is drawn from the environment where there is one.
 constexpr float kLeastLightChance = 0.1F, kMostLightChance = 0.75F;
 
-Rgb rgb(const Float3& c) {
+color::Rgb rgb(const Float3& c) {
   return rays::vec3(c);
 }
 
 // The tilts that draw each part's lobes, as render/reference.h has them for the truth.
-std::vector<std::vector<Tilt>> tilts_for(const PathScene& scene) {
+std::vector<std::vector<brdf::Tilt>> tilts_for(const PathScene& scene) {
   Effects effects = effects_of(*scene.scene);
   effects.tilt_tolerance = scene.tilt_tolerance;
-  if (!effects.anisotropy) return std::vector<std::vector<Tilt>>(scene.scene->paints.size());
+  if (!effects.anisotropy) return std::vector<std::vector<brdf::Tilt>>(scene.scene->paints.size());
   return tilts_of(*scene.scene, effects);
 }
 
@@ -53,13 +53,13 @@ Result<Transport> Transport::create(const PathScene& path_scene) {
   Transport transport(std::move(rays));
   const auto tilts = tilts_for(path_scene);
   for (std::size_t part = 0; part < scene.paints.size(); ++part) {
-    const double gloss_deg = part < scene.gloss_deg.size() ? scene.gloss_deg[part] : kGlossIncidence_deg;
+    const double gloss_deg = part < scene.gloss_deg.size() ? scene.gloss_deg[part] : brdf::kGlossIncidence_deg;
     auto paint = TracedPaint::create(scene.paints[part], gloss_deg, tilts[part]);
     if (!paint.ok()) return input_error("part {}: {}", scene.mesh->parts[part].name, paint.error().message);
     transport.paints_.push_back(*std::move(paint));
   }
   if (path_scene.floor) {
-    auto paint = TracedPaint::create(path_scene.floor_paint, kGlossIncidence_deg, {});
+    auto paint = TracedPaint::create(path_scene.floor_paint, brdf::kGlossIncidence_deg, {});
     if (!paint.ok()) return input_error("floor: {}", paint.error().message);
     transport.paints_.push_back(*std::move(paint));
   }
@@ -69,7 +69,7 @@ Result<Transport> Transport::create(const PathScene& path_scene) {
   }
   GONIO_ASSIGN(transport.emitters_, Emitters::create(*transport.rays_, path_scene.emission));
   transport.lights_ = scene.lights;
-  if (scene.reflection.k != component_wise().k) transport.reflection_ = &scene.reflection;
+  if (scene.reflection.k != color::component_wise().k) transport.reflection_ = &scene.reflection;
   return transport;
 }
 
@@ -102,10 +102,10 @@ struct Transport::Next {
 
 // Light that is drawn at a vertex, weighed against the same light found by the next ray (the balance heuristic,
 // [Veach1995] 3.1): together they count it once.
-Rgb Transport::direct_light(const Vertex& vertex, const PathProduct& path, const std::array<double, 4>& numbers,
-                            double choice) const {
-  Rgb sum;
-  const auto add = [&](const Float3& f_cos, double scale, const Rgb& light) {
+color::Rgb Transport::direct_light(const Vertex& vertex, const PathProduct& path, const std::array<double, 4>& numbers,
+                                   double choice) const {
+  color::Rgb sum;
+  const auto add = [&](const Float3& f_cos, double scale, const color::Rgb& light) {
     PathProduct here = path;
     here.reflect(scale * rgb(f_cos));
     sum += here.shown(light);
@@ -116,8 +116,7 @@ Rgb Transport::direct_light(const Vertex& vertex, const PathProduct& path, const
     const Light& light = lights_[std::min(lights_.size() - 1, static_cast<std::size_t>(numbers[2] * count))];
     const Float3 direction = rays::float3(light.direction);
     const Reflection reflection = vertex.painted.at(direction);
-    if (reflection.pdf > 0 && !rays_->blocked(start, direction))
-      add(reflection.f_cos, count * std::numbers::pi, light.white);
+    if (reflection.pdf > 0 && !rays_->blocked(start, direction)) add(reflection.f_cos, count * kPi, light.white);
   }
   if (environment_) {
     const LightSample light = environment_->drawn(numbers[0], numbers[1]);
@@ -158,23 +157,23 @@ Transport::Next Transport::next_ray(const Vertex& vertex, PathProduct& path,
 }
 
 // The environment or an emitter that the next ray found.
-Rgb Transport::light_at_end(const Next& next, const PathProduct& path) const {
+color::Rgb Transport::light_at_end(const Next& next, const PathProduct& path) const {
   const auto share = [&](double light_pdf) { return std::isinf(next.pdf) ? 1 : next.pdf / (next.pdf + light_pdf); };
   if (!next.hit.any()) {
     if (!environment_) return {};
     const LightSample light = environment_->at(next.direction);
     return share(light.pdf) * path.shown(light.radiance);
   }
-  const Rgb& emission = emitters_.radiance(rays_->part(next.hit.triangle));
-  if (emission == Rgb{}) return {};
+  const color::Rgb& emission = emitters_.radiance(rays_->part(next.hit.triangle));
+  if (emission == color::Rgb{}) return {};
   return share(emitters_.pdf(next.hit.triangle, next.direction, next.hit.distance)) * path.shown(emission);
 }
 
 // What the surface at `hit` sends back along the ray, its own emission apart.
-Rgb Transport::bounced(Hit hit, Float3 origin, Float3 direction, const PathOptions& options, const Sequence& sequence,
-                       std::uint32_t index, std::uint32_t set) const {
+color::Rgb Transport::bounced(Hit hit, Float3 origin, Float3 direction, const PathOptions& options,
+                              const Sequence& sequence, std::uint32_t index, std::uint32_t set) const {
   PathProduct path(reflection_);
-  Rgb sum;
+  color::Rgb sum;
   const int most = std::min(options.bounces, kMostBounces);
   for (int bounce = 1; bounce <= most; ++bounce) {
     const Vertex vertex(*this, rays_->spot(hit, origin, direction), -direction);
@@ -224,9 +223,8 @@ PointTransport::PointTransport(const Transport& transport, const PathOptions& op
   certain_ = free || (!(painted_.lobes_weight() > 0) && mirror_samples_ == 0);
 }
 
-Rgb PointTransport::reflect(const Float3& f, const Rgb& light) const {
-  return transport_.reflection_ != nullptr ? goniochrome::reflected(*transport_.reflection_, rgb(f), light)
-                                           : rgb(f) * light;
+color::Rgb PointTransport::reflect(const Float3& f, const color::Rgb& light) const {
+  return transport_.reflection_ != nullptr ? color::reflected(*transport_.reflection_, rgb(f), light) : rgb(f) * light;
 }
 
 void PointTransport::add_lights() {
@@ -235,8 +233,7 @@ void PointTransport::add_lights() {
     const Reflection reflection = painted_.at(direction);
     if (!(reflection.pdf > 0)) continue;
     const bool blocked = transport_.rays_->blocked(spot_.start, direction);
-    if (blocked == options_.correction)
-      sure_ += (blocked ? -std::numbers::pi : std::numbers::pi) * reflect(reflection.f_cos, light.white);
+    if (blocked == options_.correction) sure_ += (blocked ? -kPi : kPi) * reflect(reflection.f_cos, light.white);
   }
 }
 
@@ -245,7 +242,8 @@ void PointTransport::add_mirror() {
   const float weight = painted_.mirror_weight();
   if (!(weight > 0)) return;
   mirror_hit_ = transport_.rays_->closest(spot_.start, painted_.mirrored());
-  const Rgb open = transport_.environment_ ? transport_.environment_->radiance(painted_.mirrored()) : Rgb{};
+  const color::Rgb open =
+      transport_.environment_ ? transport_.environment_->radiance(painted_.mirrored()) : color::Rgb{};
   if (!mirror_hit_.any()) {
     if (!options_.correction) sure_ += reflect(mirror, open);
     return;
@@ -272,7 +270,7 @@ PointTransport::Ray PointTransport::drawn_ray(const std::array<double, 4>& numbe
 
 // What a drawn direction is worth. One set of directions serves every lobe and the environment: each is weighed by the
 // density that the mixture gives it, which is the balance heuristic.
-Rgb PointTransport::shown(const Ray& ray, bool blocked, const Sequence& sequence, std::uint32_t index) const {
+color::Rgb PointTransport::shown(const Ray& ray, bool blocked, const Sequence& sequence, std::uint32_t index) const {
   const Reflection reflection = painted_.at(ray.direction);
   LightSample light;
   if (!(reflection.pdf > 0)) return {};
@@ -286,17 +284,17 @@ Rgb PointTransport::shown(const Ray& ray, bool blocked, const Sequence& sequence
   const auto scaled = static_cast<float>(1 / pdf);
   if (!blocked) return reflect(scaled * reflection.f_cos, light.radiance);
 
-  Rgb arriving = options_.correction ? -1.0 * light.radiance : Rgb{};
-  Rgb sum;
+  color::Rgb arriving = options_.correction ? -1.0 * light.radiance : color::Rgb{};
+  color::Rgb sum;
   if (options_.bounces > 0 || !transport_.emitters_.empty()) {
     const Hit hit = transport_.rays_->closest(spot_.start, ray.direction);
     if (hit.any()) {
-      const Rgb& emission = transport_.emitters_.radiance(transport_.rays_->part(hit.triangle));
-      if (emission != Rgb{})
+      const color::Rgb& emission = transport_.emitters_.radiance(transport_.rays_->part(hit.triangle));
+      if (emission != color::Rgb{})
         arriving += pdf / (pdf + transport_.emitters_.pdf(hit.triangle, ray.direction, hit.distance)) * emission;
       const bool all = options_.into_lobes && options_.into_diffuse;
       if (options_.bounces > 0 && (options_.into_lobes || options_.into_diffuse)) {
-        const Rgb sent = transport_.bounced(hit, spot_.start, ray.direction, options_, sequence, index, 4);
+        const color::Rgb sent = transport_.bounced(hit, spot_.start, ray.direction, options_, sequence, index, 4);
         if (all) {
           arriving += sent;
         } else {
@@ -309,7 +307,7 @@ Rgb PointTransport::shown(const Ray& ray, bool blocked, const Sequence& sequence
   return sum + reflect(scaled * reflection.f_cos, arriving);
 }
 
-Rgb PointTransport::emitter_sample(const std::array<double, 4>& numbers) const {
+color::Rgb PointTransport::emitter_sample(const std::array<double, 4>& numbers) const {
   const EmitterSample light = transport_.emitters_.drawn(spot_.start, numbers[0], numbers[1], numbers[2]);
   if (!(light.pdf > 0)) return {};
   const Reflection reflection = painted_.at(light.direction);
@@ -320,10 +318,10 @@ Rgb PointTransport::emitter_sample(const std::array<double, 4>& numbers) const {
   return reflect(static_cast<float>(1 / pdf) * reflection.f_cos, light.radiance);
 }
 
-Rgb PointTransport::batch(std::uint64_t seed) const {
+color::Rgb PointTransport::batch(std::uint64_t seed) const {
   if (certain_) return {};
   const Sequence sequence(seed, kBatch);
-  Rgb sum;
+  color::Rgb sum;
   if (painted_.lobes_weight() > 0) {
     for (std::uint32_t first = 0; first < kBatch; first += 8) {
       Ray rays[8];
@@ -344,7 +342,7 @@ Rgb PointTransport::batch(std::uint64_t seed) const {
     if (!transport_.emitters_.empty())
       for (std::uint32_t i = 0; i < kBatch; ++i) sum += emitter_sample(sequence.point(i, 1));
   }
-  Rgb mirrored;
+  color::Rgb mirrored;
   for (int i = 0; i < mirror_samples_; ++i)
     mirrored += transport_.bounced(mirror_hit_, spot_.start, painted_.mirrored(), options_,
                                    Sequence(mixed(seed, 0x4D), kBatch), static_cast<std::uint32_t>(i), 4);

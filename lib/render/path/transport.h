@@ -17,11 +17,11 @@ namespace goniochrome::render {
 
 // What paths meet.
 struct PathScene {
-  const Scene* scene = nullptr;              // its mesh, paints, lights and product of colors; its maps are not used
-  const Environment* environment = nullptr;  // none: dark
-  std::vector<Rgb> emission = {};            // radiance of each part; none where there are fewer
+  const Scene* scene = nullptr;  // its mesh, paints, lights and product of colors; its maps are not used
+  const envmap::Environment* environment = nullptr;  // none: dark
+  std::vector<color::Rgb> emission = {};             // radiance of each part; none where there are fewer
   std::optional<rays::Floor> floor = {};
-  LobeFit floor_paint = {};
+  paint::LobeFit floor_paint = {};
   double tilt_tolerance = 1e-3;  // of the tilted normals of brushed paints, relative to the lobe's peak
 };
 
@@ -57,21 +57,21 @@ class Transport {
  private:
   friend class PointTransport;
   explicit Transport(rays::RayScene rays) : rays_(std::make_unique<const rays::RayScene>(std::move(rays))) {}
-  Rgb bounced(rays::Hit hit, rays::Float3 origin, rays::Float3 direction, const PathOptions& options,
-              const Sequence& sequence, std::uint32_t index, std::uint32_t set) const;
+  color::Rgb bounced(rays::Hit hit, rays::Float3 origin, rays::Float3 direction, const PathOptions& options,
+                     const Sequence& sequence, std::uint32_t index, std::uint32_t set) const;
   struct Vertex;
   struct Next;
-  Rgb direct_light(const Vertex& vertex, const PathProduct& path, const std::array<double, 4>& numbers,
-                   double choice) const;
+  color::Rgb direct_light(const Vertex& vertex, const PathProduct& path, const std::array<double, 4>& numbers,
+                          double choice) const;
   Next next_ray(const Vertex& vertex, PathProduct& path, const std::array<double, 4>& numbers) const;
-  Rgb light_at_end(const Next& next, const PathProduct& path) const;
+  color::Rgb light_at_end(const Next& next, const PathProduct& path) const;
 
   std::unique_ptr<const rays::RayScene> rays_;  // stays where it is when the transport is moved
   std::vector<TracedPaint> paints_;             // of the parts, then of the floor
   std::optional<EnvironmentTable> environment_;
   Emitters emitters_;
   std::vector<Light> lights_;
-  const ReflectionOperator* reflection_ = nullptr;  // null: channel by channel
+  const color::ReflectionOperator* reflection_ = nullptr;  // null: channel by channel
 };
 
 // One visible point.
@@ -83,20 +83,20 @@ class PointTransport {
 
   // What needs no samples: directional lights, the point's own emission, and what the mirror lobe sees without
   // bounces.
-  const Rgb& sure() const { return sure_; }
+  const color::Rgb& sure() const { return sure_; }
   // Whether that is all: then every batch() is 0.
   bool certain() const { return certain_; }
   // The mean of kBatch samples of the rest, drawn from a sequence of this seed. Its expectation is the rest, exactly.
-  Rgb batch(std::uint64_t seed) const;
+  color::Rgb batch(std::uint64_t seed) const;
 
  private:
   struct Ray;
   void add_lights();
   void add_mirror();
   Ray drawn_ray(const std::array<double, 4>& numbers) const;
-  Rgb shown(const Ray& ray, bool blocked, const Sequence& sequence, std::uint32_t index) const;
-  Rgb emitter_sample(const std::array<double, 4>& numbers) const;
-  Rgb reflect(const rays::Float3& f, const Rgb& light) const;
+  color::Rgb shown(const Ray& ray, bool blocked, const Sequence& sequence, std::uint32_t index) const;
+  color::Rgb emitter_sample(const std::array<double, 4>& numbers) const;
+  color::Rgb reflect(const rays::Float3& f, const color::Rgb& light) const;
 
   const Transport& transport_;
   const PathOptions& options_;
@@ -106,7 +106,7 @@ class PointTransport {
   float light_chance_ = 0;  // of a direction that is drawn from the environment
   rays::Hit mirror_hit_;
   int mirror_samples_ = 0;  // in a batch
-  Rgb sure_;
+  color::Rgb sure_;
   bool certain_ = false;
 };
 

@@ -4,17 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "base/angles.h"
 #include "base/hard_case_for_test.h"
 #include "brdf/lobe_model.h"
+#include "render/exact.h"
 #include "render/path/scenes_for_paths_for_test.h"
-#include "render/reference.h"
 
 namespace goniochrome::render {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 // Beyond so many standard errors of some ten independent figures an estimate is wrong; the errors are of 64 batches and
 // more, so that their own spread is a tenth.
 constexpr double kMostErrors = 5;
@@ -23,7 +22,7 @@ struct Worst {
   double errors = 0;    // in standard errors
   double relative = 0;  // to the truth
 };
-void judge(const PathEstimate& estimate, const Rgb& truth, Worst& worst) {
+void judge(const PathEstimate& estimate, const color::Rgb& truth, Worst& worst) {
   for (int c = 0; c < 3; ++c) {
     const double off = std::abs(estimate.radiance[c] - truth[c]);
     // Floats round to 1e-6 where there is no noise at all.
@@ -62,7 +61,7 @@ TEST(HardCase, WhiteSurfacesInEvenLightShowThatLight) {
         options.bounces = 100;
         options.correction = true;
         PathEstimate estimate = stage->seen(options, {0.02, 0.6, 0.01}, 0.999 * target, 200);
-        estimate.radiance += Rgb{1, 1, 1};
+        estimate.radiance += color::Rgb{1, 1, 1};
         judge(estimate, {1, 1, 1}, ours);
       }
     }
@@ -77,7 +76,7 @@ TEST(Transport, AClosedBoxShowsTheGeometricSeries) {
     PathStage box(box_mesh(true), {matt({albedo, 0.5 * albedo, 0.2})});
     box.emission.assign(6, {1, 0.5, 0.25});
     box.build();
-    const Rgb truth{1 / (1 - albedo), 0.5 / (1 - 0.5 * albedo), 0.25 / 0.8};
+    const color::Rgb truth{1 / (1 - albedo), 0.5 / (1 - 0.5 * albedo), 0.25 / 0.8};
     Worst ours, cut;
     for (const int bounces : {1000, 3}) {
       PathOptions options;
@@ -93,28 +92,28 @@ TEST(Transport, AClosedBoxShowsTheGeometricSeries) {
 
 // In colored light paints act as matrices: L = e + R L, so that L = (1 - R)^-1 e.
 TEST(Transport, AClosedBoxShowsTheSeriesOfColoredLight) {
-  const ReflectionOperator op = iso_rgb_operator();
+  const color::ReflectionOperator op = color::iso_rgb_operator();
   PathStage box(box_mesh(true), {matt({0.6, 0.3, 0.2})});
-  const Rgb light{1, 0.2, 0.1};
+  const color::Rgb light{1, 0.2, 0.1};
   box.emission.assign(6, light);
   box.scene.reflection = op;
   box.build();
-  Matrix3 system = reflection_matrix(op, {0.6, 0.3, 0.2});
+  color::Matrix3 system = reflection_matrix(op, {0.6, 0.3, 0.2});
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j) system[i][j] = (i == j ? 1.0 : 0.0) - system[i][j];
-  const Rgb truth = product(inverse(system).matrix, light);
+  const color::Rgb truth = color::product(color::inverse(system).matrix, light);
   Worst ours, plain;
   PathOptions options;
   options.bounces = 1000;
   judge(box.seen(options, {0.1, 0.2, 0}, {0, -1, 0}, 400), truth, ours);
   EXPECT_LT(ours.errors, kMostErrors);
-  judge(box.seen(options, {0.1, 0.2, 0}, {0, -1, 0}, 400), light * Rgb{1 / 0.4, 1 / 0.7, 1 / 0.8}, plain);
+  judge(box.seen(options, {0.1, 0.2, 0}, {0, -1, 0}, 400), light * color::Rgb{1 / 0.4, 1 / 0.7, 1 / 0.8}, plain);
   EXPECT_GT(plain.errors, kMostErrors);  // control: channel by channel
 }
 
 // Half a sky would be too easy: the plane sees a black ball that hides (R/d)^2 cos t of its cosine-weighted sky.
 TEST(Transport, ABallHidesItsFormFactorFromAPlane) {
-  Mesh mesh;
+  mesh::Mesh mesh;
   add_rectangle(mesh, "plane", {-20, 0, -20}, {0, 0, 40}, {40, 0, 0});
   add_mesh(mesh, sphere_mesh(192), 0.7, {0.2, 1.5, -0.1});
   PathStage stage(std::move(mesh), {matt({0.9, 0.6, 0.3}), matt({0, 0, 0})});
@@ -124,7 +123,7 @@ TEST(Transport, ABallHidesItsFormFactorFromAPlane) {
   for (const Vec3& target : {Vec3{0.2, 0, -0.1}, Vec3{1, 0, 0.4}, Vec3{-2, 0, 1}, Vec3{4, 0, 3}}) {
     const Vec3 toward = Vec3{0.2, 1.5, -0.1} - target;
     const double d = length(toward), hidden = 0.49 / (d * d) * toward.y / d;
-    const Rgb open = Rgb{0.9, 0.6, 0.3} * Rgb{1, 2, 0.5};
+    const color::Rgb open = color::Rgb{0.9, 0.6, 0.3} * color::Rgb{1, 2, 0.5};
     for (const bool correction : {false, true}) {
       PathOptions options;
       options.bounces = 0;
@@ -157,7 +156,7 @@ TEST(Transport, RectanglesShineByTheirFormFactors) {
   const double c = 0.8, a = 1.1, b = 0.6;
   for (const Case& each : {Case{{0, 0, c}, {a, 0, 0}, {0, b, 0}, parallel(a / c, b / c)},
                            Case{{c, 0, 0}, {0, b, 0}, {0, 0, a}, perpendicular(a / b, c / b)}}) {
-    Mesh mesh;
+    mesh::Mesh mesh;
     add_rectangle(mesh, "element", {-1e-3, -1e-3, 0}, {2e-3, 0, 0}, {0, 2e-3, 0});
     add_rectangle(mesh, "lamp", each.corner, each.a, each.b);
     PathStage stage(std::move(mesh), {matt({1, 1, 1}), matt({0, 0, 0})});
@@ -166,8 +165,8 @@ TEST(Transport, RectanglesShineByTheirFormFactors) {
     Worst ours, wrong;
     PathOptions options;
     const PathEstimate estimate = stage.seen(options, {-0.1, -0.1, 0.3}, {0, 0, 0}, 400);
-    judge(estimate, each.factor * Rgb{3, 2, 1}, ours);
-    judge(estimate, 1.03 * each.factor * Rgb{3, 2, 1}, wrong);
+    judge(estimate, each.factor * color::Rgb{3, 2, 1}, ours);
+    judge(estimate, 1.03 * each.factor * color::Rgb{3, 2, 1}, wrong);
     EXPECT_LT(ours.errors, kMostErrors);
     EXPECT_LT(ours.relative, 0.01);
     EXPECT_GT(wrong.errors, kMostErrors);  // control
@@ -177,16 +176,16 @@ TEST(Transport, RectanglesShineByTheirFormFactors) {
 // The product along a path from the eye is the product from the light outward. The control multiplies the paints from
 // the eye.
 TEST(HardCase, ColoredLightIsReflectedFromTheLightOutward) {
-  const ReflectionOperator op = iso_rgb_operator();
+  const color::ReflectionOperator op = color::iso_rgb_operator();
   TestNumbers next(4);
-  const auto color = [&] { return Rgb{next(), next(), next()}; };
+  const auto color = [&] { return color::Rgb{next(), next(), next()}; };
   double ours = 0, textbook = 0;
   for (int i = 0; i < 1000; ++i) {
-    const Rgb light = color(), paints[3] = {color(), color(), color()};
+    const color::Rgb light = color(), paints[3] = {color(), color(), color()};
     PathProduct path(&op);
-    for (const Rgb& paint : paints) path.reflect(paint);
-    const Rgb truth = reflected(op, reflected(op, reflected(op, light, paints[2]), paints[1]), paints[0]);
-    const Rgb eyeward = reflected(op, reflected(op, reflected(op, paints[0], paints[1]), paints[2]), light);
+    for (const color::Rgb& paint : paints) path.reflect(paint);
+    const color::Rgb truth = reflected(op, reflected(op, reflected(op, light, paints[2]), paints[1]), paints[0]);
+    const color::Rgb eyeward = reflected(op, reflected(op, reflected(op, paints[0], paints[1]), paints[2]), light);
     for (int c = 0; c < 3; ++c) {
       ours = worst_of(ours, std::abs(path.shown(light)[c] - truth[c]));
       textbook = worst_of(textbook, std::abs(eyeward[c] - truth[c]));
@@ -195,34 +194,34 @@ TEST(HardCase, ColoredLightIsReflectedFromTheLightOutward) {
   hard_case("transport-order", {"light that three paints reflect", textbook, ours, 1e-12, "absolute"});
 }
 
-LobeFit coated() {
-  LobeFit paint;
+paint::LobeFit coated() {
+  paint::LobeFit paint;
   paint.diffuse = {0.08, 0.05, 0.02};
   paint.lobes = {{3, {0.05, 0.1, 0.1}, {}},
                  {40, {0.3, 0.2, 0.1}, {0.5, 0.5, 0.5}},
                  {700, {}, {9, 9, 9}},
-                 {kMirrorExponent, {}, {0.8, 0.8, 0.8}}};
+                 {envmap::kMirrorExponent, {}, {0.8, 0.8, 0.8}}};
   return paint;
 }
 
-Environment studio() {
+envmap::Environment studio() {
   return environment_of(64, 32, [](int x, int y) {
     const double lamp = x > 20 && x < 26 && y > 6 && y < 11 ? 12 : 0;
-    return Rgb{0.2 + 0.01 * x + lamp, 0.3 + 0.02 * y + lamp, 0.4 + 0.5 * lamp};
+    return color::Rgb{0.2 + 0.01 * x + lamp, 0.3 + 0.02 * y + lamp, 0.4 + 0.5 * lamp};
   });
 }
 
 // A convex shape blocks nothing: paths show what the reference integrator sums, and there is nothing to correct.
 TEST(Transport, AConvexShapeShowsTheReferenceIntegral) {
   for (const bool brushed : {false, true}) {
-    LobeFit paint = coated();
+    paint::LobeFit paint = coated();
     if (!brushed)
       paint.views = {{20, paint.diffuse, paint.lobes}, {70, 2.0 * paint.diffuse, {{40, {1, 1, 1}, {0.1, 0, 0}}}}};
     PathStage stage(sphere_mesh(96), {paint});
     stage.environment = studio();
     stage.scene.lights = {{normalized({1, 2, 1}), {0.5, 0.4, 0.3}}};
     stage.scene.gloss_deg = {20};
-    stage.scene.reflection = iso_rgb_operator();
+    stage.scene.reflection = color::iso_rgb_operator();
     if (brushed) stage.scene.anisotropy = {{0.15, 0.5}};
     const Transport& transport = stage.build();
     ExactModel model;
@@ -244,7 +243,7 @@ TEST(Transport, AConvexShapeShowsTheReferenceIntegral) {
         const rays::Hit hit = rays.closest(rays.local(eye), rays::float3(toward));
         const rays::Spot spot = rays.spot(hit, rays.local(eye), rays::float3(toward));
         const Vec3 normal = normalized(rays::vec3(spot.shading));
-        const Rgb truth =
+        const color::Rgb truth =
             reference_radiance({{normal, -toward, &paint, &model}}, &*stage.environment, stage.scene.lights)[0];
         PathOptions options;
         const PathEstimate estimate = path_estimate(transport, options, spot, -toward, 800, 3);
@@ -255,7 +254,7 @@ TEST(Transport, AConvexShapeShowsTheReferenceIntegral) {
         options.correction = true;
         const PointTransport at(transport, options, spot, rays::float3(-toward));
         EXPECT_TRUE(at.certain());
-        EXPECT_EQ(at.sure(), Rgb{});
+        EXPECT_EQ(at.sure(), color::Rgb{});
       }
     }
     EXPECT_LT(ours.errors, kMostErrors) << brushed;
@@ -267,7 +266,7 @@ TEST(Transport, AConvexShapeShowsTheReferenceIntegral) {
 // Where a mesh blocks and bounces, the correction is the whole less what the reference integrator sums without it, for
 // every share of what is gathered.
 TEST(Transport, TheCorrectionIsTheWholeLessTheOpenLight) {
-  Mesh mesh = box_mesh(false);
+  mesh::Mesh mesh = box_mesh(false);
   add_mesh(mesh, sphere_mesh(48), 0.4, {0.2, -0.5, 0.1});
   PathStage stage(std::move(mesh), {coated()});
   stage.scene.paints[1] = matt({0.8, 0.2, 0.1});
@@ -284,8 +283,8 @@ TEST(Transport, TheCorrectionIsTheWholeLessTheOpenLight) {
     const rays::Spot spot =
         rays.spot(rays.closest(rays.local(eye), rays::float3(toward)), rays.local(eye), rays::float3(toward));
     const Vec3 normal = normalized(rays::vec3(spot.shading));
-    const LobeFit& paint = stage.scene.paints[static_cast<std::size_t>(spot.part)];
-    const Rgb open =
+    const paint::LobeFit& paint = stage.scene.paints[static_cast<std::size_t>(spot.part)];
+    const color::Rgb open =
         reference_radiance({{normal, -toward, &paint, &model}}, &*stage.environment, stage.scene.lights)[0];
     for (const int bounces : {0, 4}) {
       PathOptions options;
@@ -320,7 +319,7 @@ TEST(Transport, TheCorrectionIsTheWholeLessTheOpenLight) {
 // A sun of 1e8 in one texel, found by a path from a matt floor by way of a mirror only. Its light is known: the mirror
 // shows the sun's image. The control cuts samples at a hundred times the open sky, as renderers do against fireflies.
 TEST(HardCase, ASunInAMirrorIsFoundAndItsErrorTold) {
-  Mesh mesh;
+  mesh::Mesh mesh;
   add_rectangle(mesh, "floor", {-3, 0, -3}, {0, 0, 6}, {6, 0, 0});
   add_rectangle(mesh, "mirror", {1, 0, -40}, {0, 0, 80}, {0, 40, 0});  // faces -X
   PathStage stage(std::move(mesh), {matt({0.5, 0.5, 0.5}), only_mirror(0.9)});
@@ -329,7 +328,7 @@ TEST(HardCase, ASunInAMirrorIsFoundAndItsErrorTold) {
   stage.scene.paints.push_back(matt({0, 0, 0}));
   constexpr int kWidth = 64, kHeight = 32, kColumn = 48, kRow = 10;
   stage.environment = environment_of(kWidth, kHeight, [](int x, int y) {
-    return x == kColumn && y == kRow ? Rgb{1e8, 1e8, 1e8} : Rgb{1, 1, 1};
+    return x == kColumn && y == kRow ? color::Rgb{1e8, 1e8, 1e8} : color::Rgb{1, 1, 1};
   });
   ASSERT_LT(stage.environment->direction(kColumn, kRow).x, -0.7);
   stage.build();
@@ -347,7 +346,7 @@ TEST(HardCase, ASunInAMirrorIsFoundAndItsErrorTold) {
         const double way = (1 - point.x) / toward.x, height = point.y + way * toward.y;
         if (height + 4 / toward.x * toward.y < 3.02) continue;
         const double omega = stage.environment->solid_angle(c0, r0, c0 + 1.0 / kGrid, r0 + 1.0 / kGrid);
-        sum += 0.5 / kPi * d.y * 1e8 * 0.9 * fresnel_dielectric(toward.x, kCoatIndex) * omega;
+        sum += 0.5 / kPi * d.y * 1e8 * 0.9 * brdf::fresnel_dielectric(toward.x, brdf::kCoatIndex) * omega;
       }
     }
     return sum;
@@ -383,7 +382,7 @@ TEST(HardCase, ASunInAMirrorIsFoundAndItsErrorTold) {
 // 97 % of 1,000 hold the truth (three standard deviations of the count are 2.1 %). The control takes one standard error
 // for two.
 TEST(Transport, StatedErrorsCoverTheTrueOnes) {
-  Mesh mesh;
+  mesh::Mesh mesh;
   add_rectangle(mesh, "plane", {-20, 0, -20}, {0, 0, 40}, {40, 0, 0});
   add_mesh(mesh, sphere_mesh(128), 0.7, {0, 1.2, 0});
   PathStage stage(std::move(mesh), {matt({0.9, 0.6, 0.3}), matt({0, 0, 0})});

@@ -1,4 +1,4 @@
-#include "rays/vertex_tree.h"
+#include "rays/internal/vertex_tree.h"
 
 #include <algorithm>
 #include <limits>
