@@ -1,0 +1,381 @@
+#include "rays/ray_scene.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "rays/internal/vertex_tree.h"
+
+namespace goniochrome::rays {
+
+namespace {
+
+constexpr float kInfinite = std::numeric_limits<float>::infinity();
+// From this many triangles on Embree builds its compact tree, which takes a third less memory and is a tenth slower.
+constexpr std::size_t kCompactFrom = 1000000;
+// How far a point may be lifted above its triangle, in its longest edges: see lifted().
+constexpr float kMostLift = 0.25F;
+
+struct DeviceRelease {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct SceneRelease {
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+using Device = std::unique_ptr<RTCDeviceTy, DeviceRelease>;
+using EmbreeScene = std::unique_ptr<RTCSceneTy, SceneRelease>;
+
+struct Placing {
+  Vec3 middle;
+  double scale = 1;
+};
+
+// The power of two that brings the largest half extent of the box between 1/2 and 1.
+Placing placing_of(const mesh::Mesh& mesh) {
+  const mesh::Box box = bounding_box(mesh);
+  const Vec3 half = 0.5 * (box.high - box.low);
+  int exponent = 0;
+  std::frexp(std::max({half.x, half.y, half.z}), &exponent);
+  return {0.5 * (box.low + box.high), std::ldexp(1.0, -exponent)};
+}
+
+bool is_finite(const Vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+Result<void> check(const mesh::Mesh& mesh, const std::optional<Floor>& floor) {
+  if (mesh.triangles.empty()) return input_error("a mesh without triangles: there is nothing that a ray could meet");
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    const Vec3& p = mesh.positions[i];
+    if (!is_finite(p))
+      return input_error("vertex {} of the mesh is at ({}, {}, {}): its coordinates must be finite", i, p.x, p.y, p.z);
+  }
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    for (const std::uint32_t vertex : mesh.triangles[i])
+      if (vertex >= mesh.positions.size() || vertex >= mesh.normals.size())
+        return input_error("triangle {} of the mesh refers to vertex {} of {}", i, vertex, mesh.positions.size());
+  }
+  std::size_t covered = 0;
+  for (const mesh::MeshPart& part : mesh.parts) {
+    if (part.first != covered) break;
+    covered += part.count;
+  }
+  if (covered != mesh.triangles.size())
+    return input_error("the parts of the mesh hold {} of its {} triangles: every triangle must belong to one part",
+                       covered, mesh.triangles.size());
+  if (floor && !std::isfinite(floor->height)) return input_error("a floor at height {}: write a number", floor->height);
+  return {};
+}
+
+RTCIntersectContext incoherent() {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  return context;
+}
+
+RTCRay ray_of(const Float3& origin, const Float3& direction, float distance) {
+  RTCRay ray{};
+  ray.org_x = origin.x, ray.org_y = origin.y, ray.org_z = origin.z;
+  ray.dir_x = direction.x, ray.dir_y = direction.y, ray.dir_z = direction.z;
+  ray.tfar = distance;
+  ray.mask = ~0U;
+  return ray;
+}
+
+// A point of a triangle lies below a smooth convex surface through its vertices, so that its neighbors block light that
+// the smooth surface would see. Here it is moved to the mean of its projections on the vertices' tangent planes, each
+// taken where the point lies below it: above a sphere's surface by as much as it was below. Where the surface is hollow
+// it stays. The idea is [Hanika2021]'s.
+Float3 lifted(const Float3& p, const std::array<Float3, 3>& corner, const std::array<Float3, 3>& normal,
+              const std::array<float, 3>& share) {
+  float longest2 = 0;
+  Float3 lift;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Float3 edge = corner[(k + 1) % 3] - corner[k];
+    longest2 = std::max(longest2, dot(edge, edge));
+    const float below = -dot(p - corner[k], normal[k]);
+    if (below > 0) lift = lift + (share[k] * below) * normal[k];
+  }
+  const float most = kMostLift * std::sqrt(longest2), size = length(lift);
+  return size > most ? p + (most / size) * lift : p + lift;
+}
+
+// The normal that shades, never turned away from where the ray came from: the nearest that is not.
+Float3 facing(const Float3& normal, const Float3& toward) {
+  constexpr float kLeast = 1e-3F;
+  const float cosine = dot(normal, toward);
+  return cosine < kLeast ? normalized(normal + (kLeast - cosine) * toward) : normal;
+}
+
+}  // namespace
+
+struct RayScene::State {
+  Device device;
+  EmbreeScene scene;
+  Placing placing;
+  std::vector<Float3> positions, normals;  // local, with one more element: Embree reads 16 bytes of each
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::uint32_t> part_of;
+  std::vector<std::array<float, 2>> texture;
+  int parts = 0;
+  std::optional<float> floor;  // local height
+  mutable std::once_flag tree_made;
+  mutable std::unique_ptr<const VertexTree> tree;
+
+  // Infinite where the ray does not meet the floor.
+  float floor_distance(const Float3& origin, const Float3& direction) const {
+    if (!floor) return kInfinite;
+    const float distance = (*floor - origin.y) / direction.y;
+    return distance > 0 ? distance : kInfinite;  // NaN where the ray lies in the floor
+  }
+
+  Result<void> build() {
+    device.reset(rtcNewDevice(nullptr));
+    if (!device)
+      return input_error("Embree cannot be started: its error is {}", static_cast<int>(rtcGetDeviceError(nullptr)));
+    scene.reset(rtcNewScene(device.get()));
+    const bool compact = triangles.size() >= kCompactFrom;
+    rtcSetSceneFlags(scene.get(), compact ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT : RTC_SCENE_FLAG_ROBUST);
+    // Spatial splits (quality high) were no faster here.
+    rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_MEDIUM);
+    RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions.data(), 0,
+                               sizeof(Float3), positions.size() - 1);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
+                               sizeof(triangles[0]), triangles.size());
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene.get(), geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene.get());
+    const RTCError error = rtcGetDeviceError(device.get());
+    if (error == RTC_ERROR_OUT_OF_MEMORY)
+      return input_error("Embree needs more memory for a mesh of {} triangles", triangles.size());
+    if (error != RTC_ERROR_NONE)
+      return input_error("Embree's error {} while building its tree", static_cast<int>(error));
+    return {};
+  }
+};
+
+Result<RayScene> RayScene::create(const mesh::Mesh& mesh, const std::optional<Floor>& floor) {
+  GONIO_TRY(check(mesh, floor));
+  auto state = std::make_unique<State>();
+  state->placing = placing_of(mesh);
+  const auto local = [&](const Vec3& p) { return float3(state->placing.scale * (p - state->placing.middle)); };
+  state->positions.reserve(mesh.positions.size() + 1);
+  for (const Vec3& p : mesh.positions) state->positions.push_back(local(p));
+  state->positions.push_back({});
+  state->normals.reserve(mesh.normals.size());
+  for (const Vec3& n : mesh.normals) state->normals.push_back(float3(n));
+  state->triangles = mesh.triangles;
+  state->texture = mesh.texture;
+  state->parts = static_cast<int>(mesh.parts.size());
+  for (std::size_t part = 0; part < mesh.parts.size(); ++part)
+    state->part_of.insert(state->part_of.end(), mesh.parts[part].count, static_cast<std::uint32_t>(part));
+  if (floor) state->floor = local({0, floor->height, 0}).y;
+  GONIO_TRY(state->build());
+  return RayScene(std::move(state));
+}
+
+RayScene::RayScene(std::unique_ptr<State> state) : state_(std::move(state)) {}
+RayScene::RayScene(RayScene&&) noexcept = default;
+RayScene& RayScene::operator=(RayScene&&) noexcept = default;
+RayScene::~RayScene() = default;
+
+int RayScene::parts() const {
+  return state_->parts + (state_->floor ? 1 : 0);
+}
+bool RayScene::has_floor() const {
+  return state_->floor.has_value();
+}
+std::size_t RayScene::triangles() const {
+  return state_->triangles.size();
+}
+double RayScene::scale() const {
+  return state_->placing.scale;
+}
+const Vec3& RayScene::middle() const {
+  return state_->placing.middle;
+}
+int RayScene::part(std::uint32_t triangle) const {
+  return triangle == kFloor ? state_->parts : static_cast<int>(state_->part_of[triangle]);
+}
+std::array<Float3, 3> RayScene::corners(std::uint32_t triangle) const {
+  const auto& [a, b, c] = state_->triangles[triangle];
+  return {state_->positions[a], state_->positions[b], state_->positions[c]};
+}
+
+Hit RayScene::closest(const Float3& origin, const Float3& direction) const {
+  RTCIntersectContext context = incoherent();
+  RTCRayHit query{};
+  const float floor = state_->floor_distance(origin, direction);
+  query.ray = ray_of(origin, direction, floor);
+  query.hit.geomID = query.hit.primID = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(state_->scene.get(), &context, &query);
+  if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID) return {query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar};
+  if (floor < kInfinite) return {kFloor, 0, 0, floor};
+  return {};
+}
+
+bool RayScene::blocked(const Float3& origin, const Float3& direction, float distance) const {
+  if (state_->floor_distance(origin, direction) < distance) return true;
+  RTCIntersectContext context = incoherent();
+  RTCRay ray = ray_of(origin, direction, distance);
+  rtcOccluded1(state_->scene.get(), &context, &ray);
+  return ray.tfar < 0;
+}
+
+unsigned RayScene::blocked(const Fan& fan) const {
+  RTCIntersectContext context = incoherent();
+  RTCRay8 rays{};
+  alignas(32) int valid[8];
+  unsigned result = 0;
+  for (unsigned i = 0; i < 8; ++i) {
+    bool trace = (fan.wanted >> i & 1U) != 0;
+    if (trace && state_->floor_distance(fan.origin, {fan.x[i], fan.y[i], fan.z[i]}) < kInfinite) {
+      result |= 1U << i;
+      trace = false;
+    }
+    valid[i] = trace ? -1 : 0;
+    rays.org_x[i] = fan.origin.x, rays.org_y[i] = fan.origin.y, rays.org_z[i] = fan.origin.z;
+    rays.dir_x[i] = fan.x[i], rays.dir_y[i] = fan.y[i], rays.dir_z[i] = fan.z[i];
+    rays.tfar[i] = kInfinite;
+    rays.mask[i] = ~0U;
+  }
+  rtcOccluded8(valid, state_->scene.get(), &context, &rays);
+  for (unsigned i = 0; i < 8; ++i)
+    if (valid[i] != 0 && rays.tfar[i] < 0) result |= 1U << i;
+  return result;
+}
+
+void RayScene::closest(const Fan& fan, Hit* hits) const {
+  RTCIntersectContext context = incoherent();
+  RTCRayHit8 rays{};
+  alignas(32) int valid[8];
+  for (unsigned i = 0; i < 8; ++i) {
+    valid[i] = (fan.wanted >> i & 1U) != 0 ? -1 : 0;
+    rays.ray.org_x[i] = fan.origin.x, rays.ray.org_y[i] = fan.origin.y, rays.ray.org_z[i] = fan.origin.z;
+    rays.ray.dir_x[i] = fan.x[i], rays.ray.dir_y[i] = fan.y[i], rays.ray.dir_z[i] = fan.z[i];
+    rays.ray.tfar[i] = state_->floor_distance(fan.origin, {fan.x[i], fan.y[i], fan.z[i]});
+    rays.ray.mask[i] = ~0U;
+    rays.hit.geomID[i] = rays.hit.primID[i] = RTC_INVALID_GEOMETRY_ID;
+  }
+  rtcIntersect8(valid, state_->scene.get(), &context, &rays);
+  for (unsigned i = 0; i < 8; ++i) {
+    if (valid[i] == 0) continue;
+    if (rays.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID) {
+      hits[i] = {rays.hit.primID[i], rays.hit.u[i], rays.hit.v[i], rays.ray.tfar[i]};
+    } else {
+      hits[i] = rays.ray.tfar[i] < kInfinite ? Hit{kFloor, 0, 0, rays.ray.tfar[i]} : Hit{};
+    }
+  }
+}
+
+Spot RayScene::spot(const Hit& hit, const Float3& origin, const Float3& direction) const {
+  Spot spot;
+  spot.triangle = hit.triangle;
+  spot.part = part(hit.triangle);
+  if (hit.triangle == kFloor) {
+    spot.position = origin + hit.distance * direction;
+    spot.position.y = *state_->floor;
+    spot.inside = direction.y > 0;
+    spot.geometric = spot.shading = {0, spot.inside ? -1.0F : 1.0F, 0};
+    spot.start = spot.position + kLift * spot.geometric;
+    return spot;
+  }
+  const auto& vertex = state_->triangles[hit.triangle];
+  const std::array<Float3, 3> corner = corners(hit.triangle);
+  const Float3 e1 = corner[1] - corner[0], e2 = corner[2] - corner[0];
+  const std::array<float, 3> share = {1 - hit.u - hit.v, hit.u, hit.v};
+  spot.position = corner[0] + hit.u * e1 + hit.v * e2;
+  // In doubles: the cross product of a sliver's edges has few digits in floats.
+  const Vec3 area = goniochrome::cross(vec3(e1), vec3(e2));
+  const double size = goniochrome::length(area);
+  Float3 geometric = size > 0 ? float3((1 / size) * area) : -direction;
+  spot.inside = dot(geometric, direction) > 0;
+  const float side = spot.inside ? -1.0F : 1.0F;
+  spot.geometric = side * geometric;
+  std::array<Float3, 3> normal;
+  Float3 sum;
+  for (std::size_t k = 0; k < 3; ++k) {
+    normal[k] = side * state_->normals[vertex[k]];
+    sum = sum + share[k] * normal[k];
+  }
+  const float length_of_sum = length(sum);
+  spot.shading = facing(length_of_sum > 0 ? (1 / length_of_sum) * sum : spot.geometric, -direction);
+  spot.start = lifted(spot.position, corner, normal, share) + kLift * spot.geometric;
+  return spot;
+}
+
+Vec3 RayScene::tangent(const Hit& hit) const {
+  if (hit.triangle >= kFloor || state_->texture.empty()) return {};
+  const auto& vertex = state_->triangles[hit.triangle];
+  const std::array<Float3, 3> corner = corners(hit.triangle);
+  const auto& t0 = state_->texture[vertex[0]];
+  const auto& t1 = state_->texture[vertex[1]];
+  const auto& t2 = state_->texture[vertex[2]];
+  const Vec3 e1 = vec3(corner[1] - corner[0]), e2 = vec3(corner[2] - corner[0]);
+  const double u1 = t1[0] - t0[0], v1 = t1[1] - t0[1], u2 = t2[0] - t0[0], v2 = t2[1] - t0[1];
+  const Vec3 way = u1 * v2 > u2 * v1 ? v2 * e1 - v1 * e2 : v1 * e2 - v2 * e1;
+  const double size = goniochrome::length(way);
+  return size > 0 ? (1 / size) * way : Vec3{};
+}
+
+bool RayScene::any_above(const Float3& point, const Float3& normal, float margin) const {
+  std::call_once(state_->tree_made, [this] {
+    std::vector<Float3> points(state_->positions.begin(), state_->positions.end() - 1);
+    state_->tree = std::make_unique<const VertexTree>(std::move(points));
+  });
+  return state_->tree->any_above(point, normal, margin);
+}
+
+namespace {
+
+SurfacePoint surface_point(const RayScene& scene, const Hit& hit, const Float3& origin, const Float3& direction) {
+  if (!hit.any()) return {};
+  const Spot spot = scene.spot(hit, origin, direction);
+  return {hit.triangle,
+          hit.u,
+          hit.v,
+          spot.part,
+          spot.inside,
+          hit.distance / scene.scale(),
+          scene.world(spot.position),
+          vec3(spot.geometric),
+          goniochrome::normalized(vec3(spot.shading)),
+          scene.tangent(hit)};
+}
+
+}  // namespace
+
+std::optional<SurfacePoint> RayScene::closest(const Vec3& origin, const Vec3& direction) const {
+  const Float3 from = local(origin), toward = float3(direction);
+  const Hit hit = closest(from, toward);
+  if (!hit.any()) return std::nullopt;
+  return surface_point(*this, hit, from, toward);
+}
+
+void RayScene::closest(const Vec3& origin, std::span<const Vec3> directions, std::span<SurfacePoint> points) const {
+  const Float3 from = local(origin);
+  for (std::size_t first = 0; first < directions.size(); first += 8) {
+    const std::size_t count = std::min<std::size_t>(8, directions.size() - first);
+    Fan fan;
+    fan.origin = from;
+    fan.wanted = (1U << count) - 1;
+    for (std::size_t i = 0; i < 8; ++i) {
+      const Float3 d = float3(directions[first + std::min(i, count - 1)]);
+      fan.x[i] = d.x, fan.y[i] = d.y, fan.z[i] = d.z;
+    }
+    Hit hits[8];
+    closest(fan, hits);
+    for (std::size_t i = 0; i < count; ++i)
+      points[first + i] = surface_point(*this, hits[i], from, {fan.x[i], fan.y[i], fan.z[i]});
+  }
+}
+
+bool RayScene::blocked(const Vec3& origin, const Vec3& direction, double distance) const {
+  return blocked(local(origin), float3(direction), static_cast<float>(distance * scale()));
+}
+
+}  // namespace goniochrome::rays

@@ -1,0 +1,126 @@
+// What rays meet: a mesh and, on request, a level floor under it. Embree is inside. goniochrome-theory(7), RAYS.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/result.h"
+#include "mesh/mesh.h"
+#include "rays/float3.h"
+
+namespace goniochrome::rays {
+
+// A floor that reaches to the horizon: the plane y = height, in the units of the mesh.
+struct Floor {
+  double height = 0;
+};
+
+// The numbers that a hit has in place of a triangle's.
+constexpr std::uint32_t kNothing = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kFloor = kNothing - 1;
+
+// Where a ray meets the scene. The point is (1 - u - v) a + u b + v c of the triangle's corners a, b, c.
+struct Hit {
+  std::uint32_t triangle = kNothing;
+  float u = 0, v = 0;
+  float distance = std::numeric_limits<float>::infinity();  // in local units
+  bool any() const { return triangle != kNothing; }
+};
+
+// A point of the surface as a ray meets it. Both normals are unit and look to the side that the ray came from.
+struct Spot {
+  Float3 position;            // local
+  Float3 start;               // local; where rays that leave the surface begin
+  Float3 geometric, shading;  // normals: of the triangle, and interpolated between its vertices
+  std::uint32_t triangle = kNothing;
+  int part = 0;         // of the mesh; the floor is the part after the last
+  bool inside = false;  // whether it was met from its back
+};
+
+// The same for callers outside of the kernels, in the units of the mesh.
+struct SurfacePoint {
+  std::uint32_t triangle = kNothing;
+  float u = 0, v = 0;
+  int part = 0;
+  bool inside = false;
+  double distance = 0;
+  Vec3 position, geometric, shading;
+  Vec3 tangent;  // unit, along growing u of the texture; 0 where the mesh has no texture coordinates
+};
+
+// Eight rays from one point. Rays whose bit of `wanted` is 0 are not traced.
+struct Fan {
+  Float3 origin;
+  alignas(32) float x[8], y[8], z[8];  // directions, unit
+  unsigned wanted = 0;
+};
+
+// Immutable; every function may be called from any thread, and what it returns does not depend on the number of threads
+// that built the scene.
+//
+// Kernels work in local coordinates: the mesh, moved and scaled by a power of two so that the larger half of its box is
+// between 1/2 and 1. All tolerances are thereby relative to the size of the mesh. Directions are the same in both.
+class RayScene {
+ public:
+  // Error: a vertex that is not finite, a triangle that refers to no vertex, parts that do not cover the triangles, no
+  // triangle at all, a floor whose height is not finite, or Embree's own word where it fails.
+  static Result<RayScene> create(const mesh::Mesh& mesh, const std::optional<Floor>& floor = {});
+  RayScene(RayScene&&) noexcept;
+  RayScene& operator=(RayScene&&) noexcept;
+  ~RayScene();
+
+  // The nearest point of the surface on the ray, or nothing. `direction` is unit.
+  std::optional<SurfacePoint> closest(const Vec3& origin, const Vec3& direction) const;
+  // The same for many rays from one point, nothing where triangle == kNothing.
+  void closest(const Vec3& origin, std::span<const Vec3> directions, std::span<SurfacePoint> points) const;
+  // Whether anything lies between the origin and the distance.
+  bool blocked(const Vec3& origin, const Vec3& direction,
+               double distance = std::numeric_limits<double>::infinity()) const;
+
+  int parts() const;  // of the mesh, and the floor as one more
+  bool has_floor() const;
+  std::size_t triangles() const;
+
+  // Local coordinates = scale * (world - middle).
+  double scale() const;
+  const Vec3& middle() const;
+  Float3 local(const Vec3& world) const { return float3(scale() * (world - middle())); }
+  Vec3 world(const Float3& at) const { return middle() + (1 / scale()) * vec3(at); }
+
+  // In local coordinates.
+  Hit closest(const Float3& origin, const Float3& direction) const;
+  bool blocked(const Float3& origin, const Float3& direction,
+               float distance = std::numeric_limits<float>::infinity()) const;
+  // The bits of those wanted rays of the fan that meet anything.
+  unsigned blocked(const Fan& fan) const;
+  // The nearest hits of those wanted rays of the fan; the others are left alone.
+  void closest(const Fan& fan, Hit* hits) const;
+
+  // The surface at a hit that `direction` led to. Vertices of the triangle are read, so that the point does not depend
+  // on the distance's rounding.
+  Spot spot(const Hit& hit, const Float3& origin, const Float3& direction) const;
+  // The corners of a triangle, local.
+  std::array<Float3, 3> corners(std::uint32_t triangle) const;
+  int part(std::uint32_t triangle) const;
+  // Of a point of a triangle, unit, or 0: see SurfacePoint.
+  Vec3 tangent(const Hit& hit) const;
+  // Whether any vertex of the mesh lies more than `margin` above the plane through the point. A point from which none
+  // does sees its whole hemisphere, the floor apart.
+  bool any_above(const Float3& point, const Float3& normal, float margin) const;
+
+ private:
+  struct State;
+  explicit RayScene(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+// What rays that leave a surface start above it, in local units: more than four roundings of a float between 1 and 2,
+// which bound the error of a distance from a triangle's plane; less than a hundred thousandth of the mesh.
+constexpr float kLift = 0x1p-19F;
+
+}  // namespace goniochrome::rays

@@ -1,0 +1,130 @@
+#include "render/path/environment_table.h"
+
+#include <algorithm>
+
+#include "base/angles.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+using rays::Float3;
+
+color::Rgb texel_radiance(const envmap::Environment& environment, int column, int row) {
+  const float* rgb = environment.radiance(column, row);
+  return {rgb[0], rgb[1], rgb[2]};
+}
+
+constexpr int kRowGuide = 1024, kColumnGuide = 256;
+
+// The number of the interval of ascending `edges` that holds u, never an empty one, from where the guide says.
+template <class Number>
+int interval(const Number* edges, int count, double u, const std::uint16_t* guide, int steps) {
+  int i = guide[static_cast<int>(u * steps)];
+  while (i + 1 < count && static_cast<double>(edges[i + 1]) <= u) ++i;
+  while (i > 0 && !(edges[i + 1] > edges[i])) --i;
+  return i;
+}
+
+template <class Number>
+void add_guide(const Number* edges, int count, int steps, std::vector<std::uint16_t>& guide) {
+  int i = 0;
+  for (int step = 0; step < steps; ++step) {
+    while (i + 1 < count && static_cast<double>(edges[i + 1]) <= static_cast<double>(step) / steps) ++i;
+    guide.push_back(static_cast<std::uint16_t>(i));
+  }
+}
+
+}  // namespace
+
+EnvironmentTable::EnvironmentTable(const envmap::Environment& environment)
+    : environment_(&environment), width_(environment.width()), height_(environment.height()) {
+  rows_.assign(static_cast<std::size_t>(height_) + 1, 0.0);
+  columns_.assign(static_cast<std::size_t>(height_) * (static_cast<std::size_t>(width_) + 1), 0.0F);
+  std::vector<double> sums(static_cast<std::size_t>(width_) + 1, 0.0);
+  double squares = 0, sphere = 0;
+  for (int row = 0; row < height_; ++row) {
+    for (int column = 0; column < width_; ++column) {
+      const color::Rgb light = texel_radiance(environment, column, row);
+      const double mean = (light.x + light.y + light.z) / 3, solid_angle = environment.solid_angle(column, row);
+      const auto at = static_cast<std::size_t>(column);
+      sums[at + 1] = sums[at] + mean * solid_angle;
+      squares += mean * mean * solid_angle;
+      sphere += solid_angle;
+    }
+    row_solid_angle_.push_back(environment.solid_angle(0, row));
+    row_cosine_.push_back(std::cos(kPi * row / height_));
+    const double sum = sums.back();
+    float* cumulative = &columns_[static_cast<std::size_t>(row) * (static_cast<std::size_t>(width_) + 1)];
+    for (std::size_t i = 0; i < sums.size(); ++i) cumulative[i] = sum > 0 ? static_cast<float>(sums[i] / sum) : 0.0F;
+    rows_[static_cast<std::size_t>(row) + 1] = rows_[static_cast<std::size_t>(row)] + sum;
+  }
+  total_ = rows_.back();
+  extent_sr_ = squares > 0 ? total_ * total_ / squares : sphere;
+  if (total_ > 0)
+    for (double& row : rows_) row /= total_;
+  row_cosine_.push_back(-1);
+  add_guide(rows_.data(), height_, kRowGuide, row_guide_);
+  for (int row = 0; row < height_; ++row)
+    add_guide(&columns_[static_cast<std::size_t>(row) * (static_cast<std::size_t>(width_) + 1)], width_, kColumnGuide,
+              column_guide_);
+}
+
+// As the tables have it, whose floats round: what is drawn and what at() says are the same.
+double EnvironmentTable::texel_share(int column, int row) const {
+  const auto r = static_cast<std::size_t>(row);
+  const float* cumulative = &columns_[r * (static_cast<std::size_t>(width_) + 1)] + column;
+  return (rows_[r + 1] - rows_[r]) * (static_cast<double>(cumulative[1]) - cumulative[0]);
+}
+
+double EnvironmentTable::density_at(double column, double at_row, int row) const {
+  return environment_->layout() == envmap::Environment::Layout::kLatLong
+             ? row_solid_angle_[static_cast<std::size_t>(row)]
+             : environment_->solid_angle_density(column, at_row);
+}
+
+// Of a lat-long map directions are even in solid angle within a texel: in longitude and in the cosine from the pole.
+// Elsewhere they are even in column and row, for the density hardly changes over a texel.
+EnvironmentTable::Place EnvironmentTable::place(double u, double v) const {
+  if (dark()) return {};
+  const int row = interval(rows_.data(), height_, u, row_guide_.data(), kRowGuide);
+  const auto r = static_cast<std::size_t>(row);
+  const float* cumulative = &columns_[r * (static_cast<std::size_t>(width_) + 1)];
+  const int column = interval(cumulative, width_, v, &column_guide_[r * kColumnGuide], kColumnGuide);
+  const double down = std::clamp((u - rows_[r]) / (rows_[r + 1] - rows_[r]), 0.0, 1.0);
+  const double right = std::clamp(
+      (v - cumulative[column]) / (static_cast<double>(cumulative[column + 1]) - cumulative[column]), 0.0, 1.0);
+  if (environment_->layout() == envmap::Environment::Layout::kLatLong) {
+    const double cosine = row_cosine_[r] + down * (row_cosine_[r + 1] - row_cosine_[r]);
+    const auto ring = static_cast<float>(std::sqrt(std::max(0.0, 1 - cosine * cosine)));
+    const auto longitude = static_cast<float>(2 * kPi * (0.5 - (column + right) / width_));
+    return {{ring * std::sin(longitude), static_cast<float>(cosine), ring * std::cos(longitude)},
+            column,
+            row,
+            row_solid_angle_[r]};
+  }
+  return {rays::float3(environment_->direction_at(column + right, row + down)), column, row,
+          environment_->solid_angle_density(column + right, row + down)};
+}
+
+LightSample EnvironmentTable::light(const Place& place) const {
+  if (!(place.density > 0)) return {};
+  return {place.direction, static_cast<float>(texel_share(place.column, place.row) / place.density),
+          texel_radiance(*environment_, place.column, place.row)};
+}
+
+LightSample EnvironmentTable::at(const Float3& direction) const {
+  const envmap::GridPosition at = environment_->grid().position(rays::vec3(direction));
+  const int column = std::clamp(static_cast<int>(at.column), 0, width_ - 1);
+  const int row = std::clamp(static_cast<int>(at.row), 0, height_ - 1);
+  const double density = density_at(at.column, at.row, row);
+  return {direction, density > 0 ? static_cast<float>(texel_share(column, row) / density) : 0.0F,
+          texel_radiance(*environment_, column, row)};
+}
+
+color::Rgb EnvironmentTable::radiance(const Float3& direction) const {
+  const float* rgb = environment_->lookup(rays::vec3(direction));
+  return {rgb[0], rgb[1], rgb[2]};
+}
+
+}  // namespace goniochrome::render

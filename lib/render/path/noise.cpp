@@ -1,0 +1,72 @@
+#include "render/path/noise.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace goniochrome::render {
+
+namespace {
+
+// The rows of working space to XYZ, each divided by that of white.
+const std::array<Vec3, 3>& relative_xyz_rows() {
+  static const std::array<Vec3, 3> rows = [] {
+    std::array<Vec3, 3> result;
+    const color::Xyz white = color::xyz_d65_from_rgb({1, 1, 1});
+    for (int c = 0; c < 3; ++c) {
+      const color::Xyz xyz = color::xyz_d65_from_rgb({c == 0 ? 1.0 : 0.0, c == 1 ? 1.0 : 0.0, c == 2 ? 1.0 : 0.0});
+      result[0][c] = xyz.X / white.X, result[1][c] = xyz.Y / white.Y, result[2][c] = xyz.Z / white.Z;
+    }
+    return result;
+  }();
+  return rows;
+}
+
+// f of CIELAB and its derivative.
+struct Curve {
+  double value, slope;
+};
+Curve lab_curve(double t) {
+  constexpr double kKnee = 216.0 / 24389;
+  if (t <= kKnee) return {t * (841.0 / 108) + 4.0 / 29, 841.0 / 108};
+  const double root = std::cbrt(t);
+  return {root, root / (3 * t)};
+}
+
+double variance_along(const Vec3& v, const Covariance& c) {
+  return v.x * v.x * c[0] + v.y * v.y * c[1] + v.z * v.z * c[2] +
+         2 * (v.x * v.y * c[3] + v.x * v.z * c[4] + v.y * v.z * c[5]);
+}
+
+}  // namespace
+
+// L, a and b are linear in the error to first order: dL = 116 f'(Y) dY and so on. CIEDE2000 weighs it along L, chroma
+// and hue by the S functions; its a' = (1 + G) a stretches grays.
+double noise_de00(const color::Rgb& radiance, const Covariance& covariance, double white_luminance) {
+  const auto& rows = relative_xyz_rows();
+  const double scale = 1 / white_luminance;
+  Curve f[3];
+  Vec3 gradient[3];
+  for (std::size_t i = 0; i < 3; ++i) {
+    f[i] = lab_curve(scale * dot(rows[i], radiance));
+    gradient[i] = (scale * f[i].slope) * rows[i];
+  }
+  const double lightness = 116 * f[1].value - 16, a = 500 * (f[0].value - f[1].value),
+               b = 200 * (f[1].value - f[2].value), c7 = std::pow(std::hypot(a, b), 7);
+  const double stretch = 1.5 - 0.5 * std::sqrt(c7 / (c7 + 6103515625.0)), a_prime = stretch * a,
+               chroma = std::hypot(a_prime, b);
+  const Vec3 d_lightness = 116.0 * gradient[1], d_a = (500 * stretch) * (gradient[0] - gradient[1]),
+             d_b = 200.0 * (gradient[1] - gradient[2]);
+  const double hue = std::atan2(b, a_prime), l50 = (lightness - 50) * (lightness - 50);
+  const double t = 1 - 0.17 * std::cos(hue - 0.5235987755982988) + 0.24 * std::cos(2 * hue) +
+                   0.32 * std::cos(3 * hue + 0.10471975511965978) - 0.2 * std::cos(4 * hue - 1.0995574287564276);
+  const double s_l = 1 + 0.015 * l50 / std::sqrt(20 + l50), s_c = 1 + 0.045 * chroma, s_h = 1 + 0.015 * chroma * t;
+  // Without chroma every direction is both.
+  const double cosine = chroma > 1e-9 ? a_prime / chroma : 1, sine = chroma > 1e-9 ? b / chroma : 0;
+  const Vec3 d_chroma = cosine * d_a + sine * d_b, d_hue = cosine * d_b - sine * d_a;
+  const double variance = variance_along(d_lightness, covariance) / (s_l * s_l) +
+                          variance_along(d_chroma, covariance) / (s_c * s_c) +
+                          variance_along(d_hue, covariance) / (s_h * s_h);
+  return std::sqrt(std::max(0.0, variance));
+}
+
+}  // namespace goniochrome::render

@@ -1,0 +1,261 @@
+#include "render/path/path_tracer.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "base/clock.h"
+#include "base/parallel.h"
+#include "render/internal/seen.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+// Points that one thread takes at a time.
+constexpr std::size_t kTogether = 64;
+// The batches of the first round: two are the fewest that tell a variance.
+constexpr int kFirstBatches = 2;
+// A point's own variance counts as its batches less one, that of its neighborhood as so many.
+constexpr double kNeighborhood = 4;
+constexpr int kReach = 2;  // pixels to each side of the neighborhood
+
+// Sums over independent estimates, for their mean and its covariance. Shifted by the first, so that nothing cancels.
+struct Sums {
+  color::Rgb first, sum;
+  Covariance squares{};
+  int count = 0;
+
+  void add(const color::Rgb& value) {
+    if (count++ == 0) first = value;
+    const color::Rgb d = value - first;
+    sum += d;
+    squares[0] += d.x * d.x, squares[1] += d.y * d.y, squares[2] += d.z * d.z;
+    squares[3] += d.x * d.y, squares[4] += d.x * d.z, squares[5] += d.y * d.z;
+  }
+  color::Rgb mean() const { return count > 0 ? first + (1.0 / count) * sum : color::Rgb{}; }
+  // Of a single estimate; needs two.
+  Covariance covariance() const {
+    Covariance result{};
+    if (count < 2) return result;
+    const double n = count;
+    const double products[6] = {sum.x * sum.x, sum.y * sum.y, sum.z * sum.z,
+                                sum.x * sum.y, sum.x * sum.z, sum.y * sum.z};
+    for (std::size_t i = 0; i < 6; ++i) result[i] = (squares[i] - products[i] / n) / (n - 1);
+    for (std::size_t i = 0; i < 3; ++i) result[i] = std::max(result[i], 0.0);
+    return result;
+  }
+};
+
+std::uint64_t seed_of(std::uint64_t seed, std::uint64_t point, int batch) {
+  return mixed(mixed(seed, point), static_cast<std::uint64_t>(batch));
+}
+
+class Picture {
+ public:
+  Picture(const Transport& transport, const VisibleSurface& surface, const image::Image* base,
+          const PathRequest& request)
+      : transport_(transport), surface_(surface), base_(base), request_(request), deadline_(request.time_limit_s) {
+    const Gbuffer& g = surface.gbuffer;
+    number_.assign(static_cast<std::size_t>(g.width) * g.height, -1);
+    for (int y = 0; y < g.height; ++y) {
+      for (int x = 0; x < g.width; ++x) {
+        if (!surface.hits[place(x, y)].any()) continue;
+        number_[place(x, y)] = static_cast<std::int32_t>(points_.size());
+        points_.push_back({x, y, {}, {}, 0, 0});
+      }
+    }
+    states_.resize(points_.size());
+  }
+
+  PathPicture draw() {
+    std::vector<int> more(points_.size(), kFirstBatches);
+    double noise = 0;
+    bool reached = false;
+    while (true) {
+      sample(more);
+      noise = judge();
+      if (request_.progress) request_.progress(noise, clock_.elapsed_s());
+      reached = request_.tolerance_de00 > 0 && noise <= request_.tolerance_de00;
+      if (reached || deadline_.passed() || !plan(noise, more)) break;
+    }
+    PathPicture picture;
+    picture.reached = reached;
+    picture.noise_p95_de00 = noise;
+    const double count = std::max<double>(1, static_cast<double>(points_.size()));
+    for (const PathPoint& point : points_) {
+      picture.noise_mean_de00 += point.noise_de00;
+      picture.samples_mean += point.samples;
+      picture.free_share += point.samples == 0 ? 1 : 0;
+    }
+    picture.noise_mean_de00 /= count, picture.samples_mean /= count, picture.free_share /= count;
+    picture.points = std::move(points_);
+    picture.time_s = clock_.elapsed_s();
+    return picture;
+  }
+
+ private:
+  struct State {
+    Sums sums;
+    color::Rgb sure;
+    double needed = 0;  // batches that bring the noise of the neighborhood to the tolerance
+    bool certain = false;
+  };
+
+  std::size_t place(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(surface_.gbuffer.width) + static_cast<std::size_t>(x);
+  }
+
+  // Chunks are taken in a scattered order, so that a picture that time cut short is noisy evenly.
+  void sample(const std::vector<int>& more) {
+    std::vector<std::uint32_t> wanted;
+    for (std::size_t i = 0; i < more.size(); ++i)
+      if (more[i] > 0) wanted.push_back(static_cast<std::uint32_t>(i));
+    const std::size_t chunks = (wanted.size() + kTogether - 1) / kTogether;
+    const std::size_t step = scattering(chunks);
+    parallel_for(chunks, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (deadline_.passed()) return;
+        const std::size_t chunk = i * step % chunks;
+        for (std::size_t k = chunk * kTogether; k < std::min(wanted.size(), (chunk + 1) * kTogether); ++k)
+          sample(wanted[k], more[wanted[k]]);
+      }
+    });
+  }
+
+  // A step near the golden section of n that shares no factor with it.
+  static std::size_t scattering(std::size_t n) {
+    auto step = static_cast<std::size_t>(0.6180339887 * static_cast<double>(n)) + 1;
+    const auto common = [](std::size_t a, std::size_t b) {
+      while (b != 0) a %= b, std::swap(a, b);
+      return a;
+    };
+    while (n > 1 && common(step, n) != 1) ++step;
+    return step;
+  }
+
+  void sample(std::size_t i, int batches) {
+    State& state = states_[i];
+    PathPoint& point = points_[i];
+    const Gbuffer& g = surface_.gbuffer;
+    const rays::Spot spot = spot_at(transport_.rays(), surface_, point.x, point.y);
+    const PointTransport at(transport_, request_.options, spot, rays::float3(g.to_viewer(point.x, point.y)));
+    state.certain = at.certain();
+    state.sure = at.sure();
+    if (state.certain) return;
+    for (int k = 0; k < batches; ++k) state.sums.add(at.batch(seed_of(request_.seed, i, state.sums.count)));
+  }
+
+  // Radiance, error and noise of every point from its sums; the 95th percentile of the noise.
+  double judge() {
+    std::vector<Covariance> own(points_.size());
+    parallel_for(points_.size(), 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        own[i] = states_[i].sums.covariance();
+        points_[i].radiance = states_[i].sure + states_[i].sums.mean();
+        points_[i].samples = kBatch * states_[i].sums.count;
+      }
+    });
+    parallel_for(points_.size(), 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) judge(i, own);
+    });
+    std::vector<double> noise(points_.size());
+    for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = points_[i].noise_de00;
+    return percentile_95(std::move(noise));
+  }
+
+  // Few estimates tell little of their variance, and a point none of whose rays was blocked knows nothing of its
+  // neighbor's shadow: the mean over the neighborhood stands in.
+  void judge(std::size_t i, const std::vector<Covariance>& own) {
+    PathPoint& point = points_[i];
+    State& state = states_[i];
+    point.covariance = {};
+    point.noise_de00 = state.needed = 0;
+    const int n = state.sums.count;
+    if (n < 2) return;
+    Covariance around{};
+    color::Rgb light;
+    int count = 0;
+    for (int y = std::max(0, point.y - kReach); y <= std::min(surface_.gbuffer.height - 1, point.y + kReach); ++y) {
+      for (int x = std::max(0, point.x - kReach); x <= std::min(surface_.gbuffer.width - 1, point.x + kReach); ++x) {
+        const std::int32_t number = number_[place(x, y)];
+        const auto other = static_cast<std::size_t>(number);
+        if (number < 0 || other == i || states_[other].sums.count < 2) continue;
+        ++count;
+        light += points_[other].radiance;
+        for (std::size_t k = 0; k < 6; ++k) around[k] += own[other][k];
+      }
+    }
+    for (std::size_t k = 0; k < 6; ++k)
+      point.covariance[k] =
+          ((n - 1) * own[i][k] + kNeighborhood * (around[k] + own[i][k]) / (count + 1)) / (n - 1 + kNeighborhood) / n;
+    point.noise_de00 = noise_of(i, point.radiance, point.covariance);
+    // How many samples a point is to get is decided by its neighbors alone: were its own sums asked, it would stop
+    // where they happen to be bright, and the mean would be too.
+    if (count == 0) around = own[i], light = point.radiance, count = 1;
+    for (double& element : around) element /= count;
+    const double excess = noise_of(i, (1.0 / count) * light, around) / tolerance();
+    state.needed = excess * excess;
+  }
+
+  double noise_of(std::size_t i, color::Rgb radiance, const Covariance& covariance) const {
+    if (base_ != nullptr) {
+      const float* rgb = base_->pixel(points_[i].x, points_[i].y);
+      radiance += color::Rgb{rgb[0], rgb[1], rgb[2]};
+    }
+    return noise_de00(radiance, covariance, request_.white_luminance);
+  }
+
+  double tolerance() const { return request_.tolerance_de00 > 0 ? request_.tolerance_de00 : 1e-9; }
+
+  // How many batches each point is to get next: as many as its neighborhood's noise asks for, at most as many as it
+  // has. The twentieth part of the points that would need most get no more than the rest. Where the neighborhoods are
+  // content but the picture is not, all is scaled by what it lacks. Whether there are any.
+  bool plan(double noise, std::vector<int>& more) const {
+    std::vector<double> needed;
+    for (const State& state : states_) needed.push_back(state.needed);
+    const double limit = request_.most_samples / kBatch, lacking = noise / tolerance();
+    for (double scale = 1;; scale *= 1.1 * std::max(1.0, lacking * lacking)) {
+      const double most = std::min(std::ceil(1.05 * scale * percentile_95(needed)), limit);
+      bool any = false, limited = true;
+      for (std::size_t i = 0; i < points_.size(); ++i) {
+        const double n = states_[i].sums.count, wanted = std::min(std::ceil(scale * needed[i]), most) - n;
+        more[i] = static_cast<int>(std::clamp(wanted, 0.0, n));
+        any = any || more[i] > 0;
+        limited = limited && (n == 0 || needed[i] == 0 || n >= limit);
+      }
+      if (any) return true;
+      if (limited || scale > 1e6) return false;
+    }
+  }
+
+  const Transport& transport_;
+  const VisibleSurface& surface_;
+  const image::Image* base_;
+  const PathRequest& request_;
+  Deadline deadline_;
+  Stopwatch clock_;
+  std::vector<std::int32_t> number_;  // of the point of each pixel, or -1
+  std::vector<PathPoint> points_;
+  std::vector<State> states_;
+};
+
+}  // namespace
+
+PathPicture path_picture(const Transport& transport, const VisibleSurface& surface, const image::Image* base,
+                         const PathRequest& request) {
+  return Picture(transport, surface, base, request).draw();
+}
+
+PathEstimate path_estimate(const Transport& transport, const PathOptions& options, const rays::Spot& spot,
+                           const Vec3& to_viewer, int batches, std::uint64_t seed) {
+  const PointTransport at(transport, options, spot, rays::float3(to_viewer));
+  if (at.certain()) return {at.sure(), {}};
+  Sums sums;
+  for (int k = 0; k < batches; ++k) sums.add(at.batch(seed_of(seed, 0, k)));
+  Covariance covariance = sums.covariance();
+  for (double& element : covariance) element /= batches;
+  return {at.sure() + sums.mean(), covariance};
+}
+
+}  // namespace goniochrome::render

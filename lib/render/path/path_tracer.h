@@ -1,0 +1,59 @@
+// Pictures by paths: samples go where the picture is noisy, until its noise is below a tolerance or the time is up.
+// goniochrome-theory(7), PATHS.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "image/image.h"
+#include "render/path/noise.h"
+#include "render/path/transport.h"
+#include "render/path/visible_surface.h"
+
+namespace goniochrome::render {
+
+struct PathRequest {
+  PathOptions options = {};
+  double tolerance_de00 = 0.5;  // of the picture's noise; 0: until another limit ends it
+  double time_limit_s = 0;      // 0: none
+  int most_samples = 1 << 16;   // of a pixel
+  double white_luminance = 1;   // what noise is seen before
+  std::uint64_t seed = 1;
+  // Told after each round: the noise so far, and the seconds.
+  std::function<void(double noise_de00, double seconds)> progress = {};
+};
+
+// Of one visible point.
+struct PathPoint {
+  int x = 0, y = 0;
+  color::Rgb radiance;    // with PathOptions::correction: what to add to the radiance without the mesh in the way
+  Covariance covariance;  // of the error of `radiance`; smoothed with that of its neighbors while samples are few
+  double noise_de00 = 0;  // of one standard deviation
+  int samples = 0;        // 0 where none were needed
+};
+
+struct PathPicture {
+  std::vector<PathPoint> points;  // of the visible surface, row by row
+  double noise_p95_de00 = 0;      // the 95th percentile over all points
+  double noise_mean_de00 = 0;
+  double samples_mean = 0;  // of all points
+  double free_share = 0;    // of points that needed no samples
+  double time_s = 0;
+  bool reached = false;  // whether the noise is within the tolerance
+};
+
+// `base`: with PathOptions::correction what the points show without the mesh in the way, R G B in the first channels of
+// each pixel; it tells how visible noise is, and is not added. Null: black. Bit-identical for any number of threads
+// while no time limit ends it.
+PathPicture path_picture(const Transport& transport, const VisibleSurface& surface, const image::Image* base,
+                         const PathRequest& request);
+
+// One point: the mean of so many batches and the covariance of its error.
+struct PathEstimate {
+  color::Rgb radiance;
+  Covariance covariance{};
+};
+PathEstimate path_estimate(const Transport& transport, const PathOptions& options, const rays::Spot& spot,
+                           const Vec3& to_viewer, int batches, std::uint64_t seed);
+
+}  // namespace goniochrome::render

@@ -1,0 +1,243 @@
+// Whole pictures by paths: the same for any number of threads, as noisy as they say, stopped where they are told to.
+#include "render/path/path_tracer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/hard_case_for_test.h"
+#include "base/parallel.h"
+#include "render/camera.h"
+#include "render/internal/seen.h"
+#include "render/path/scenes_for_paths_for_test.h"
+
+namespace goniochrome::render {
+namespace {
+
+paint::LobeFit glossy() {
+  paint::LobeFit paint = matt({0.3, 0.2, 0.1});
+  paint.lobes = {{20, {0.5, 0.5, 0.5}, {0.1, 0.1, 0.1}}, {envmap::kMirrorExponent, {}, {0.6, 0.6, 0.6}}};
+  return paint;
+}
+
+// A ball in a cup, in uneven light.
+std::unique_ptr<PathStage> ball_in_a_cup() {
+  mesh::Mesh mesh = box_mesh(false);
+  add_mesh(mesh, sphere_mesh(32), 0.5, {0.1, -0.5, 0});
+  auto stage = std::make_unique<PathStage>(std::move(mesh), std::vector<paint::LobeFit>{matt({0.7, 0.6, 0.5})});
+  stage->scene.paints.back() = glossy();
+  stage->environment = environment_of(32, 16, [](int x, int y) {
+    const double lamp = x > 10 && x < 14 && y > 2 && y < 5 ? 10 : 0;
+    return color::Rgb{0.5 + lamp, 0.5 + 0.02 * y + lamp, 0.7 + lamp};
+  });
+  stage->build();
+  return stage;
+}
+
+VisibleSurface seen_from_above(const PathStage& stage, int width, int height) {
+  Camera camera;
+  camera.eye = {0.5, 4, 2};
+  camera.fov_deg = 36;
+  return visible_surface(stage.transport->rays(), *rays(camera, width, height), width, height);
+}
+
+TEST(PathPicture, IsTheSameForAnyNumberOfThreads) {
+  const auto stage = ball_in_a_cup();
+  const VisibleSurface surface = seen_from_above(*stage, 24, 18);
+  PathRequest request;
+  request.tolerance_de00 = 4;
+  PathPicture first;
+  for (const int count : {1, 2, 5}) {
+    set_threads(count);
+    const PathPicture picture = path_picture(*stage->transport, surface, nullptr, request);
+    if (first.points.empty()) first = picture;
+    ASSERT_EQ(picture.points.size(), first.points.size());
+    EXPECT_EQ(picture.noise_p95_de00, first.noise_p95_de00);
+    for (std::size_t i = 0; i < first.points.size(); ++i) {
+      EXPECT_EQ(picture.points[i].radiance, first.points[i].radiance);
+      EXPECT_EQ(picture.points[i].covariance, first.points[i].covariance);
+    }
+  }
+  set_threads(0);
+  // The surface as well.
+  set_threads(1);
+  const VisibleSurface again = seen_from_above(*stage, 24, 18);
+  set_threads(0);
+  EXPECT_EQ(again.gbuffer.data, surface.gbuffer.data);
+}
+
+// The picture against one of 25 times the samples: the root mean square difference in CIEDE2000 is the stated noise,
+// and 95 % of the points are within two of theirs.
+TEST(PathPicture, IsAsNoisyAsItSays) {
+  const auto stage = ball_in_a_cup();
+  const VisibleSurface surface = seen_from_above(*stage, 32, 24);
+  PathRequest request;
+  request.options.bounces = 4;
+  request.tolerance_de00 = 1.5;
+  request.white_luminance = 1.2;
+  const PathPicture picture = path_picture(*stage->transport, surface, nullptr, request);
+  ASSERT_TRUE(picture.reached);
+  EXPECT_LE(picture.noise_p95_de00, 1.5);
+  request.tolerance_de00 = 1.5 / 5;
+  request.seed = 99;
+  const PathPicture truth = path_picture(*stage->transport, surface, nullptr, request);
+  ASSERT_TRUE(truth.reached);
+  double stated2 = 0, true2 = 0, count = 0;
+  int within = 0;
+  std::vector<double> differences;
+  for (std::size_t i = 0; i < picture.points.size(); ++i) {
+    const PathPoint &a = picture.points[i], &b = truth.points[i];
+    const double difference = seen_difference(a.radiance, b.radiance, request.white_luminance);
+    differences.push_back(difference);
+    stated2 += a.noise_de00 * a.noise_de00 + b.noise_de00 * b.noise_de00, true2 += difference * difference, ++count;
+    within += difference <= 2 * std::hypot(a.noise_de00, b.noise_de00);
+  }
+  // Of some 500 points in neighborhoods that share variances; the rotation term of CIEDE2000 is left out.
+  EXPECT_NEAR(std::sqrt(true2 / stated2), 1, 0.1);
+  EXPECT_GT(within, 0.92 * count);
+  // The 95th percentile of differences is that of a spread, whose standard deviation is the noise; three channels, in
+  // part together, lie between 1 and 2 of it.
+  const double p95 = percentile_95(differences);
+  EXPECT_GT(p95, 1.0 * picture.noise_p95_de00);
+  EXPECT_LT(p95, 2.2 * picture.noise_p95_de00);
+}
+
+// Adaptive sampling decides by what it has drawn, which could bend the mean: over many pictures it does not.
+TEST(PathPicture, ItsMeanIsTheTruthWhateverIsSampledMore) {
+  const auto stage = ball_in_a_cup();
+  const VisibleSurface surface = seen_from_above(*stage, 12, 9);
+  PathRequest request;
+  request.options.bounces = 3;
+  const auto mean_of = [&](double tolerance, std::uint64_t first, int pictures, double& variance) {
+    color::Rgb sum;
+    double squares = 0;
+    request.tolerance_de00 = tolerance;
+    for (int k = 0; k < pictures; ++k) {
+      request.seed = first + static_cast<std::uint64_t>(k);
+      color::Rgb total;
+      for (const PathPoint& point : path_picture(*stage->transport, surface, nullptr, request).points)
+        total += point.radiance;
+      sum += total, squares += total.y * total.y;
+    }
+    const double mean = sum.y / pictures;
+    variance = (squares / pictures - mean * mean) / (pictures - 1);
+    return mean;
+  };
+  double rough_variance = 0, fine_variance = 0;
+  const double rough = mean_of(3, 1000, 150, rough_variance), fine = mean_of(0.5, 5, 6, fine_variance);
+  const double sigma = std::sqrt(rough_variance + fine_variance);
+  EXPECT_LT(std::abs(rough - fine), 4 * sigma + 0.002 * fine) << rough << " " << fine << " " << sigma;
+  EXPECT_LT(sigma, 0.005 * fine);
+}
+
+TEST(PathPicture, AConvexShapeIsDrawnWithoutASample) {
+  PathStage stage(sphere_mesh(64), {glossy()});
+  stage.environment = even_environment();
+  stage.build();
+  const VisibleSurface surface = seen_from_above(stage, 32, 24);
+  PathRequest request;
+  request.options.correction = true;
+  const PathPicture picture = path_picture(*stage.transport, surface, nullptr, request);
+  EXPECT_TRUE(picture.reached);
+  EXPECT_GT(picture.points.size(), 50U);
+  EXPECT_EQ(picture.free_share, 1);
+  EXPECT_EQ(picture.noise_p95_de00, 0);
+  for (const PathPoint& point : picture.points) EXPECT_EQ(point.radiance, color::Rgb{});
+}
+
+TEST(PathPicture, StopsWhenItsTimeIsUpAndSaysHowFarItCame) {
+  const auto stage = ball_in_a_cup();
+  const VisibleSurface surface = seen_from_above(*stage, 64, 48);
+  PathRequest request;
+  request.tolerance_de00 = 0.001;
+  request.time_limit_s = 0.3;
+  int told = 0;
+  request.progress = [&](double noise, double seconds) {
+    ++told;
+    EXPECT_GT(noise, 0);
+    EXPECT_GT(seconds, 0);
+  };
+  const PathPicture picture = path_picture(*stage->transport, surface, nullptr, request);
+  EXPECT_FALSE(picture.reached);
+  EXPECT_GT(picture.noise_p95_de00, 0.001);
+  EXPECT_LT(picture.time_s, 3);  // of a busy machine
+  EXPECT_GT(told, 0);
+}
+
+// Where light grazes a smooth ball of few triangles its facets would shade each other, and the border of light and
+// shadow would be jagged. Over a plane that is there twice, at three sizes, every pixel of the lit side shows the
+// cosine of its smooth normal. The control starts its rays on the flat triangles.
+TEST(HardCase, SmoothBallsAreLitSmoothlyAtAnyScale) {
+  constexpr int kWidth = 96, kHeight = 72, kBall = 2;
+  for (const double size : {1e-6, 1.0, 1e6}) {
+    mesh::Mesh mesh;
+    for (const char* name : {"plane", "again"})
+      add_rectangle(mesh, name, {-3 * size, 0, -3 * size}, {0, 0, 6 * size}, {6 * size, 0, 0});
+    add_mesh(mesh, sphere_mesh(12), size, {0, 1.5 * size, 0});
+    PathStage stage(std::move(mesh), {matt({0.5, 0.5, 0.5})});
+    const Vec3 to_light = normalized({1, 0.3, 0.2});
+    stage.scene.lights = {{to_light, {1, 1, 1}}};
+    const Transport& transport = stage.build();
+    Camera camera;
+    camera.eye = size * Vec3{2, 4, 7};
+    camera.target = size * Vec3{0, 1.2, 0};
+    camera.fov_deg = 25;
+    const VisibleSurface surface = visible_surface(transport.rays(), *rays(camera, kWidth, kHeight), kWidth, kHeight);
+    PathOptions options;
+    options.bounces = 0;
+    double ours = 0, textbook = 0;
+    int lit = 0, plane = 0, plane_lit = 0;
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        const int part = surface.gbuffer.part(x, y);
+        if (part < 0) continue;
+        rays::Spot spot = spot_at(transport.rays(), surface, x, y);
+        const rays::Float3 viewer = rays::float3(surface.gbuffer.to_viewer(x, y));
+        const double shown = PointTransport(transport, options, spot, viewer).sure().y;
+        if (part != kBall) {
+          plane_lit += std::abs(shown - 0.5 * to_light.y) < 1e-6, ++plane;
+          EXPECT_TRUE(shown == 0 || std::abs(shown - 0.5 * to_light.y) < 1e-6);
+          continue;
+        }
+        const double truth = 0.5 * std::max(0.0, dot(rays::vec3(spot.shading), to_light));
+        lit += truth > 0;
+        ours = worst_of(ours, std::abs(shown - truth));
+        spot.start = spot.position + rays::kLift * spot.geometric;
+        textbook = worst_of(textbook, std::abs(PointTransport(transport, options, spot, viewer).sure().y - truth));
+      }
+    }
+    EXPECT_GT(lit, 300);
+    EXPECT_GT(plane_lit, 100);
+    EXPECT_GT(plane - plane_lit, 100);  // the ball's shadow
+    hard_case("transport-self", {"light on a smooth ball of few triangles, off by", textbook, ours, 1e-5, "absolute"});
+  }
+}
+
+TEST(Noise, IsTheSpreadOfSmallErrors) {
+  TestNumbers next(2);
+  const auto normal = [&] { return std::sqrt(-2 * std::log(1 - next())) * std::cos(6.283185307179586 * next()); };
+  for (const color::Rgb& color : {color::Rgb{0.2, 0.2, 0.2}, color::Rgb{0.5, 0.1, 0.05}, color::Rgb{0.02, 0.3, 0.1},
+                                  color::Rgb{0.003, 0.004, 0.002}, color::Rgb{2, 2, 1.5}}) {
+    // Errors in brightness, and a third of that in each channel alone.
+    const double common = 0.01, own = 0.003;
+    Covariance covariance{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double c = color[static_cast<int>(i)];
+      covariance[i] = c * c * (common * common + own * own);
+    }
+    covariance[3] = color.x * color.y * common * common, covariance[4] = color.x * color.z * common * common,
+    covariance[5] = color.y * color.z * common * common;
+    double squares = 0;
+    constexpr int kCount = 20000;
+    for (int i = 0; i < kCount; ++i) {
+      const double all = common * normal();
+      const color::Rgb off =
+          color * color::Rgb{1 + all + own * normal(), 1 + all + own * normal(), 1 + all + own * normal()};
+      squares += std::pow(seen_difference(off, color, 1), 2) / kCount;
+    }
+    EXPECT_NEAR(noise_de00(color, covariance, 1) / std::sqrt(squares), 1, 0.05);
+  }
+}
+
+}  // namespace
+}  // namespace goniochrome::render

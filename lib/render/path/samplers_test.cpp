@@ -1,0 +1,272 @@
+// Chi-square tests of every sampler: what is drawn falls into bins as the density that the sampler states.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "base/angles.h"
+#include "brdf/lobe_model.h"
+#include "render/path/emitters.h"
+#include "render/path/environment_table.h"
+#include "render/path/traced_paint.h"
+#include "render/scenes_for_test.h"
+
+namespace goniochrome::render {
+namespace {
+
+using rays::Float3;
+using rays::float3;
+
+// Bins of equal solid angle, even in azimuth and in the cosine from an axis.
+class SphereBins {
+ public:
+  SphereBins(const Vec3& axis, int rows, int columns) : z_(axis), rows_(rows), columns_(columns) {
+    const rays::Frame frame = rays::frame_about(float3(axis));
+    x_ = rays::vec3(frame.x), y_ = rays::vec3(frame.y);
+  }
+  std::size_t count() const { return static_cast<std::size_t>(rows_) * static_cast<std::size_t>(columns_); }
+  std::size_t bin(const Vec3& d) const {
+    const int row = std::clamp(static_cast<int>((1 - dot(d, z_)) / 2 * rows_), 0, rows_ - 1);
+    const double azimuth = std::atan2(dot(d, y_), dot(d, x_)) / (2 * kPi) + 0.5;
+    return static_cast<std::size_t>(row * columns_ + std::clamp(static_cast<int>(azimuth * columns_), 0, columns_ - 1));
+  }
+  // The direction at a part (a, b) of a bin.
+  Vec3 direction(std::size_t bin, double a, double b) const {
+    const double c = 1 - 2 * (static_cast<double>(bin / static_cast<std::size_t>(columns_)) + a) / rows_;
+    const double p = 2 * kPi * ((static_cast<double>(bin % static_cast<std::size_t>(columns_)) + b) / columns_ - 0.5);
+    const double s = std::sqrt(1 - c * c);
+    return s * std::cos(p) * x_ + s * std::sin(p) * y_ + c * z_;
+  }
+  double solid_angle() const { return 4 * kPi / static_cast<double>(count()); }
+
+ private:
+  Vec3 x_, y_, z_;
+  int rows_, columns_;
+};
+
+// `grid`: points a side by which the density is summed over a bin: many where it jumps inside.
+// Standard deviations by which the bins' chi-square exceeds its mean: below 5 in all but one of a million cases. A draw
+// may come to nothing; so may the density be less than 1 in sum.
+double excess(const SphereBins& bins, int draws, const std::function<std::optional<Vec3>(double, double, double)>& draw,
+              const std::function<double(const Vec3&)>& density, int grid = 24) {
+  TestNumbers next(5);
+  std::vector<double> seen(bins.count() + 1), expected(bins.count() + 1);
+  for (int i = 0; i < draws; ++i) {
+    const double a = next(), b = next(), c = next();
+    const auto direction = draw(a, b, c);
+    seen[direction ? bins.bin(*direction) : bins.count()] += 1;
+  }
+  expected.back() = draws;
+  for (std::size_t bin = 0; bin < bins.count(); ++bin) {
+    double sum = 0;
+    for (int i = 0; i < grid; ++i)
+      for (int j = 0; j < grid; ++j) sum += density(bins.direction(bin, (i + 0.5) / grid, (j + 0.5) / grid));
+    expected[bin] = draws * sum / (grid * grid) * bins.solid_angle();
+    expected.back() -= expected[bin];
+  }
+  expected.back() = std::max(expected.back(), 0.0);
+  // Bins that expect fewer than ten are put together.
+  double chi2 = 0, few_seen = 0, few_expected = 0;
+  int freedom = -1;
+  for (std::size_t bin = 0; bin < seen.size(); ++bin) {
+    if (expected[bin] < 10) {
+      few_seen += seen[bin], few_expected += expected[bin];
+      continue;
+    }
+    chi2 += (seen[bin] - expected[bin]) * (seen[bin] - expected[bin]) / expected[bin];
+    ++freedom;
+  }
+  if (few_expected > 10) chi2 += (few_seen - few_expected) * (few_seen - few_expected) / few_expected, ++freedom;
+  EXPECT_GT(freedom, 3);
+  EXPECT_LT(few_seen, few_expected + 10 + 6 * std::sqrt(few_expected + 10));
+  return (chi2 - freedom) / std::sqrt(2.0 * freedom);
+}
+
+envmap::Environment lat_long(int width, int height, const std::function<color::Rgb(int, int)>& radiance) {
+  std::vector<float> rgb;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      for (int c = 0; c < 3; ++c) rgb.push_back(static_cast<float>(radiance(x, y)[c]));
+  return envmap::Environment::from_lat_long({width, height, 3, rgb, {}}, envmap::Environment::BadPixels::kError, "made")
+      .value();
+}
+
+color::Rgb uneven(int x, int y) {
+  const double sun = x == 5 && y == 3 ? 4 : 0;
+  return {0.2 + 0.1 * x + sun, y == 7 ? 0.0 : 0.3, 0.05 * ((x * 7 + y * 3) % 11) + sun};
+}
+
+double excess_of(const envmap::Environment& environment, double wrong_factor = 1) {
+  const EnvironmentTable table(environment);
+  const SphereBins bins({0, 1, 0}, 16, 32);
+  return excess(
+      bins, 400000,
+      [&](double, double u, double v) -> std::optional<Vec3> {
+        const LightSample light = table.drawn(u, v);
+        if (!(light.pdf > 0)) return std::nullopt;
+        return rays::vec3(light.direction);
+      },
+      [&](const Vec3& d) {
+        const double pdf = table.at(float3(d)).pdf;
+        return d.y > 0 ? wrong_factor * pdf : pdf;
+      },
+      120);
+}
+
+TEST(Samplers, TheEnvironmentIsDrawnAsItsDensitySays) {
+  EXPECT_LT(excess_of(lat_long(32, 16, uneven)), 5);
+  EXPECT_GT(excess_of(lat_long(32, 16, uneven), 1.05), 5);  // control
+  const envmap::CubeMap cube = cube_of(8, [](const Vec3& d) {
+    return Vec3{1.1 + d.x, d.y > 0.5 ? 5.0 : 0.2, 1 + d.z * d.z};
+  });
+  EXPECT_LT(excess_of(envmap::Environment::from_cube(cube, "cube")), 5);
+  image::Image disc{24, 24, 3, std::vector<float>(24 * 24 * 3, 0.5F), {}};
+  for (std::size_t i = 0; i < disc.data.size(); i += 7) disc.data[i] = 2;
+  EXPECT_LT(excess_of(envmap::Environment::from_angular(disc, envmap::Environment::BadPixels::kError, "disc").value()),
+            5);
+}
+
+TEST(Samplers, TheEnvironmentsDensityAgreesWithWhatIsDrawn) {
+  const envmap::Environment environment = lat_long(64, 32, uneven);
+  const EnvironmentTable table(environment);
+  TestNumbers next(3);
+  int neighbors = 0;
+  double integral = 0;
+  constexpr int kCount = 20000;
+  for (int i = 0; i < kCount; ++i) {
+    const LightSample light = table.drawn(next(), next());
+    const LightSample again = table.at(light.direction);
+    // A direction in floats may fall across the edge of a texel.
+    if (again.radiance != light.radiance) {
+      ++neighbors;
+    } else {
+      EXPECT_NEAR(again.pdf / light.pdf, 1, 1e-4);
+    }
+    integral += light.radiance.x / light.pdf / kCount;
+  }
+  EXPECT_LT(neighbors, kCount / 1000);
+  EXPECT_NEAR(integral / environment.flux().x, 1, 0.02);  // relative spread of the ratio .7: five deviations are .025
+}
+
+paint::LobeFit glossy() {
+  paint::LobeFit paint;
+  paint.diffuse = {0.1, 0.05, 0.02};
+  paint.lobes = {{2, {0.05, 0.1, 0.1}, {}}, {30, {0.3, 0.2, 0.1}, {0.5, 0.5, 0.5}}, {900, {}, {20, 20, 20}}};
+  return paint;
+}
+
+double excess_of(const paint::LobeFit& paint, double view_deg, std::vector<brdf::Tilt> tilts = {},
+                 double wrong_exponent = 1) {
+  const auto traced = TracedPaint::create(paint, 45, std::move(tilts));
+  paint::LobeFit other = paint;
+  for (paint::Lobe& lobe : other.lobes) lobe.exponent *= wrong_exponent;
+  const auto stated = TracedPaint::create(other, 45, {});
+  const Vec3 normal = normalized({0.2, 0.9, -0.3}), side = normalized(cross(normal, {1, 0, 0}));
+  const double t = view_deg * kPi / 180;
+  const Vec3 viewer = std::cos(t) * normal + std::sin(t) * side;
+  const PaintedPoint point(*traced, float3(normal), float3(viewer));
+  const PaintedPoint told(wrong_exponent == 1 ? *traced : *stated, float3(normal), float3(viewer));
+  // Bins about the mirror direction, fine enough for the sharpest lobe.
+  const SphereBins bins(rays::vec3(point.mirrored()), 400, 12);
+  return excess(
+      bins, 400000,
+      [&](double choice, double u, double v) -> std::optional<Vec3> {
+        const Reflection drawn = point.drawn(choice, u, v);
+        if (!(drawn.pdf > 0)) return std::nullopt;
+        return rays::vec3(drawn.direction);
+      },
+      [&](const Vec3& d) { return told.at(float3(d)).pdf; });
+}
+
+TEST(Samplers, LobesAreDrawnAsTheirDensitySays) {
+  for (const double view_deg : {0.0, 30.0, 75.0, 88.0}) EXPECT_LT(excess_of(glossy(), view_deg), 5) << view_deg;
+  EXPECT_LT(excess_of(matt({0.5, 0.4, 0.3}), 40), 5);
+  EXPECT_GT(excess_of(glossy(), 30, {}, 1.3), 5);  // control
+}
+
+TEST(Samplers, BrushedLobesAreDrawnAsTheirDensitySays) {
+  const brdf::TiltSet set = brdf::ward_tilts({0.1, 0.4}, 0.1, 0.01).value();
+  ASSERT_GT(set.tilts.size(), 3U);
+  for (const double view_deg : {10.0, 60.0}) EXPECT_LT(excess_of(glossy(), view_deg, set.tilts), 5);
+}
+
+TEST(Samplers, EmittersAreDrawnAsTheirDensitySays) {
+  // A dim and a bright panel, seen from above and from the side.
+  mesh::Mesh mesh = panels_mesh(2);
+  const auto scene = rays::RayScene::create(mesh);
+  ASSERT_TRUE(scene.ok());
+  const auto emitters = Emitters::create(*scene, {{1, 1, 1}, {2, 5, 2}});
+  ASSERT_TRUE(emitters.ok());
+  const Float3 from = scene->local({0.3, 0.2, 0.6});
+  for (const double wrong : {1.0, 1.05}) {
+    const double found = excess(
+        SphereBins({0, 0, -1}, 60, 12), 400000,
+        [&](double choice, double u, double v) { return rays::vec3(emitters->drawn(from, choice, u, v).direction); },
+        [&](const Vec3& d) {
+          const rays::Hit hit = scene->closest(from, float3(d));
+          const double pdf = hit.any() ? emitters->pdf(hit.triangle, float3(d), hit.distance) : 0.0;
+          return d.x > 0 ? wrong * pdf : pdf;
+        },
+        96);
+    if (wrong == 1) {
+      EXPECT_LT(found, 5);
+    } else {
+      EXPECT_GT(found, 5);
+    }
+  }
+}
+
+TEST(Samplers, EmittersWithoutAreaOrWithoutAnEndAreRefused) {
+  mesh::Mesh mesh = panels_mesh(2);
+  mesh.positions[4] = mesh.positions[5] = mesh.positions[2];
+  mesh.positions[3] = mesh.positions[2];  // the second panel is a point
+  const auto scene = rays::RayScene::create(mesh);
+  ASSERT_TRUE(scene.ok());
+  const auto flat = Emitters::create(*scene, {{0, 0, 0}, {1, 1, 1}});
+  ASSERT_FALSE(flat.ok());
+  EXPECT_NE(flat.error().message.find("no area"), std::string::npos);
+  EXPECT_FALSE(Emitters::create(*scene, {{-1, 0, 0}}).ok());
+  EXPECT_FALSE(Emitters::create(*scene, {{std::numeric_limits<double>::infinity(), 0, 0}}).ok());
+}
+
+// What is evaluated in floats is the model that the reference integrator has in doubles.
+TEST(TracedPaint, IsTheModelOfTheReference) {
+  paint::LobeFit paint = glossy();
+  paint.views = {{15, paint.diffuse, paint.lobes}, {60, {0.2, 0.1, 0.1}, {{30, {1, 2, 3}, {}}, {200, {}, {4, 4, 5}}}}};
+  const auto traced = TracedPaint::create(paint, 60, {});
+  ASSERT_TRUE(traced.ok());
+  TestNumbers next(9);
+  const auto direction = [&] {
+    const double z = 0.02 + 0.98 * next(), p = 2 * kPi * next(), s = std::sqrt(1 - z * z);
+    return Vec3{s * std::cos(p), s * std::sin(p), z};
+  };
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 viewer = direction(), mirrored{-viewer.x, -viewer.y, viewer.z};
+    const Vec3 light = i % 2 == 0 ? direction() : normalized(mirrored + 0.05 * direction());
+    const color::Rgb expected = light.z * brdf::coated_brdf(paint, light, viewer, {0, 0, 1}, 60);
+    const PaintedPoint point(*traced, {0, 0, 1}, float3(viewer));
+    const color::Rgb f = rays::vec3(point.at(float3(light)).f_cos);
+    const PaintedPoint::Parts parts = point.parts(float3(light));
+    const color::Rgb sum = rays::vec3(parts.diffuse + parts.lobes);
+    // A float direction is off by 6e-8, which the sharpest lobe (E = 900) at its flank makes 40 sqrt(900) times more.
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(f[c], expected[c], 1e-4 * expected[c] + 1e-9);
+      EXPECT_NEAR(f[c], sum[c], 1e-5 * expected[c] + 1e-9);
+    }
+  }
+}
+
+TEST(TracedPaint, TellsWhetherItGainsLight) {
+  const auto gains = [](const paint::LobeFit& paint) { return TracedPaint::create(paint, 45, {})->gains_light(); };
+  EXPECT_FALSE(gains(matt({1, 1, 1})));
+  EXPECT_TRUE(gains(matt({1.0000001, 0.5, 0.5})));
+  paint::LobeFit lobe;
+  lobe.lobes = {{20, 0.9 * 21 / (2 * kPi) * color::Rgb{1, 1, 1}, {}}};
+  EXPECT_FALSE(gains(lobe));
+  lobe.diffuse = 0.2 / kPi * color::Rgb{1, 1, 1};
+  EXPECT_TRUE(gains(lobe));
+}
+
+}  // namespace
+}  // namespace goniochrome::render

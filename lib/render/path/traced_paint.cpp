@@ -1,0 +1,259 @@
+#include "render/path/traced_paint.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "base/angles.h"
+#include "brdf/lobe_model.h"
+#include "render/scene.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+using rays::Float3;
+using rays::float3;
+
+constexpr float kPi = std::numbers::pi_v<float>;
+// cos^E below exp(-kTail) is left out: 4e-18 of the peak.
+constexpr float kTail = 40;
+
+float mean_size(const Float3& c) {
+  return (std::abs(c.x) + std::abs(c.y) + std::abs(c.z)) / 3;
+}
+
+bool is_finite(const color::Rgb& c) {
+  return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z);
+}
+
+// fresnel_dielectric() of kCoatIndex, in floats.
+float coat_reflectance(float cosine) {
+  constexpr float kN2 = static_cast<float>(brdf::kCoatIndex * brdf::kCoatIndex), kContrast = kN2 - 1;
+  const float g = std::sqrt(kContrast + cosine * cosine), s = cosine + g, p = kN2 * cosine + g;
+  const float r_s = kContrast / (s * s), r_p = kContrast * ((kN2 + 1) * cosine * cosine - 1) / (p * p);
+  return 0.5F * (r_s * r_s + r_p * r_p);
+}
+
+Float3 blend(const Float3& a, const Float3& b, float share) {
+  return (1 - share) * a + share * b;
+}
+
+}  // namespace
+
+Result<TracedPaint> TracedPaint::create(const paint::LobeFit& paint, double gloss_deg, std::vector<brdf::Tilt> tilts) {
+  std::set<double> exponents;
+  const auto gather = [&](const std::vector<paint::Lobe>& lobes) -> Result<void> {
+    for (const paint::Lobe& lobe : lobes) {
+      if (!(lobe.exponent >= 0)) return input_error("a lobe of exponent {}: it must be 0 or more", lobe.exponent);
+      if (!is_finite(lobe.directional_diffuse) || !is_finite(lobe.gloss))
+        return input_error("a weight of the lobe of exponent {} is not finite", lobe.exponent);
+      if (std::isfinite(lobe.exponent) && (lobe.directional_diffuse != color::Rgb{} || lobe.gloss != color::Rgb{}))
+        exponents.insert(lobe.exponent);
+    }
+    return {};
+  };
+  std::vector<paint::ViewLobes> views = paint.views;
+  if (views.empty()) views.push_back({0, paint.diffuse, paint.lobes});
+  for (const paint::ViewLobes& view : views) {
+    GONIO_TRY(gather(view.lobes));
+    if (!is_finite(view.diffuse)) return input_error("a diffuse weight is not finite");
+  }
+  if (exponents.size() > kMostTracedLobes)
+    return input_error("a paint of {} lobes: paths trace at most {}; fit it to a smaller basis", exponents.size(),
+                       kMostTracedLobes);
+  TracedPaint traced;
+  if (tilts.size() > 1) traced.tilts_ = std::move(tilts);
+  const double gloss_scale = 1 / brdf::fresnel_dielectric(std::cos(gloss_deg * kPi / 180), brdf::kCoatIndex);
+  for (const paint::ViewLobes& view : views) {
+    Weights weights{static_cast<float>(view.view_deg), float3(view.diffuse), {}, {}};
+    for (const double exponent : exponents) {
+      Lobe lobe{static_cast<float>(exponent), static_cast<float>((exponent + 1) / (2 * kPi)), {}, {}};
+      for (const paint::Lobe& given : view.lobes) {
+        if (given.exponent != exponent) continue;
+        lobe.directional_diffuse = float3(given.directional_diffuse);
+        lobe.gloss = float3(gloss_scale * given.gloss);
+      }
+      weights.lobes.push_back(lobe);
+    }
+    for (const paint::Lobe& given : view.lobes)
+      if (std::isinf(given.exponent)) weights.mirror = float3(given.gloss);
+    traced.views_.push_back(std::move(weights));
+  }
+  return traced;
+}
+
+// The share of even light that comes to the viewer: diffuse part, lobes and mirror.
+bool TracedPaint::gains_light() const {
+  constexpr int kViews = 12, kRows = 96, kColumns = 48;
+  constexpr double kQuadratureError = 0.01, kRounding = 3e-8, kTwoPi = 2 * kPi;
+  for (int view = 0; view < kViews; ++view) {
+    const double cos_o = (view + 0.5) / kViews;
+    const PaintedPoint point(*this, {0, 0, 1}, float3({std::sqrt(1 - cos_o * cos_o), 0, cos_o}));
+    const rays::Frame frame = rays::frame_about(point.mirrored());
+    Vec3 lobes;
+    // Rows about the mirror direction lie even in the sixth root of 1 - cos, which suits lobes up to 1e4.
+    for (int i = 0; i < kRows; ++i) {
+      const double x = (i + 0.5) / kRows, versine = 2 * std::pow(x, 6), step = 12 * std::pow(x, 5) / kRows,
+                   sine = std::sqrt(versine * (2 - versine));
+      for (int j = 0; j < kColumns; ++j) {
+        const double phi = kTwoPi * (j + 0.5) / kColumns;
+        const Float3 d = static_cast<float>(sine * std::cos(phi)) * frame.x +
+                         static_cast<float>(sine * std::sin(phi)) * frame.y +
+                         static_cast<float>(1 - versine) * point.mirrored();
+        lobes += (step * kTwoPi / kColumns) * rays::vec3(point.parts(d).lobes);
+      }
+    }
+    const Vec3 rest = rays::vec3(kPi * point.diffuse() + point.mirror());
+    for (int c = 0; c < 3; ++c)
+      if (rest[c] + (1 - kQuadratureError) * lobes[c] > 1 + kRounding) return true;
+  }
+  return false;
+}
+
+PaintedPoint::PaintedPoint(const TracedPaint& paint, const Float3& normal, const Float3& to_viewer)
+    : normal_(normal), viewer_(to_viewer), frame_(rays::frame_about(normal)) {
+  cos_o_ = std::max(rays::dot(normal, to_viewer), 1e-6F);
+  mirrored_ = 2 * cos_o_ * normal - to_viewer;
+  const TracedPaint::Weights *low = &paint.views_.front(), *high = low;
+  float share = 0;
+  if (paint.views_.size() > 1) {
+    const Float3 across = rays::cross(normal, to_viewer);
+    const float view_deg = std::atan2(rays::length(across), cos_o_) * (180 / kPi);
+    const auto above = std::ranges::upper_bound(paint.views_, view_deg, {}, &TracedPaint::Weights::view_deg);
+    high = above == paint.views_.end() ? &paint.views_.back() : &*above;
+    low = above == paint.views_.begin() ? high : &above[-1];
+    if (high != low && high->view_deg > low->view_deg)
+      share = std::clamp((view_deg - low->view_deg) / (high->view_deg - low->view_deg), 0.0F, 1.0F);
+  }
+  diffuse_ = blend(low->diffuse, high->diffuse, share);
+  const float fresnel = coat_reflectance(cos_o_);
+  mirror_ = fresnel * blend(low->mirror, high->mirror, share);
+  diffuse_chance_ = kPi * mean_size(diffuse_);
+  total_ = diffuse_chance_;
+  for (std::size_t j = 0; j < low->lobes.size(); ++j) {
+    Lobe& lobe = lobes_[count_];
+    lobe.exponent = low->lobes[j].exponent, lobe.normalization = low->lobes[j].normalization;
+    lobe.directional_diffuse = blend(low->lobes[j].directional_diffuse, high->lobes[j].directional_diffuse, share);
+    lobe.gloss = blend(low->lobes[j].gloss, high->lobes[j].gloss, share);
+    // A wide lobe looks where cosines are larger than that of the mirror direction.
+    const float wide = 1 / std::sqrt(lobe.exponent + 2), cosine = cos_o_ + (1 - cos_o_) * wide;
+    lobe.chance = (cosine * mean_size(lobe.directional_diffuse) + fresnel * mean_size(lobe.gloss)) / lobe.normalization;
+    if (!(lobe.chance > 0)) continue;
+    total_ += lobe.chance;
+    ++count_;
+  }
+  set_axes(paint.tilts_);
+}
+
+// The frame of Gatherer::set_mirror_directions(): the tangent runs level around +Y, on a level surface along +X.
+void PaintedPoint::set_axes(const std::vector<brdf::Tilt>& tilts) {
+  if (tilts.empty()) return;
+  const Vec3 n = rays::vec3(normal_), viewer = rays::vec3(viewer_);
+  const double level2 = n.x * n.x + n.z * n.z;
+  const Vec3 x = level2 > 1e-12 ? normalized({n.z, 0, -n.x}) : Vec3{1, 0, 0}, y = cross(n, x);
+  axes_total_ = 0;
+  for (const brdf::Tilt& tilt : tilts) {
+    const Vec3 m = tilt.normal.x * x + tilt.normal.y * y + tilt.normal.z * n;
+    const double cos_m = dot(m, viewer);
+    const Vec3 r = 2 * cos_m * m - viewer;
+    if (cos_m <= 0 || dot(r, n) <= 0) continue;
+    axes_.push_back({float3(r), static_cast<float>(tilt.weight)});
+    axes_total_ += static_cast<float>(tilt.weight);
+  }
+  if (axes_.empty()) {  // every tilt looks down: the lobes show nothing
+    count_ = 0;
+    total_ = diffuse_chance_;
+  }
+}
+
+float PaintedPoint::mirror_weight() const {
+  return mean_size(mirror_);
+}
+
+float PaintedPoint::narrow_share(double light_sr) const {
+  if (!(total_ > 0)) return 0;
+  const auto narrow = [light_sr](float normalization) {
+    return static_cast<float>(light_sr / (light_sr + 1 / normalization));
+  };
+  float sum = diffuse_chance_ * narrow(1 / kPi);
+  for (int j = 0; j < count_; ++j) sum += lobes_[j].chance * narrow(lobes_[j].normalization);
+  return sum / total_;
+}
+
+// Calls visit(lobe, sum over axes of share cos^E).
+template <class Visit>
+void PaintedPoint::visit_lobes(const Float3& to_light, const Visit& visit) const {
+  float powers[kMostTracedLobes] = {};
+  const auto add = [&](const Float3& axis, float share) {
+    const Float3 apart = axis - to_light;
+    const float versine = 0.5F * rays::dot(apart, apart);
+    if (versine >= 1) return;
+    const float log_cos = std::log1p(-versine);
+    for (int j = 0; j < count_; ++j) {
+      const float power = lobes_[j].exponent * log_cos;
+      if (power < -kTail) break;
+      powers[j] += share * std::exp(power);
+    }
+  };
+  if (axes_.empty()) add(mirrored_, 1);
+  for (const Axis& axis : axes_) add(axis.direction, axis.share);
+  for (int j = 0; j < count_; ++j)
+    if (powers[j] > 0) visit(lobes_[j], powers[j]);
+}
+
+PaintedPoint::Parts PaintedPoint::parts(const Float3& to_light) const {
+  Parts parts;
+  const float cos_i = rays::dot(normal_, to_light);
+  if (!(cos_i > 0)) return parts;
+  parts.diffuse = cos_i * diffuse_;
+  if (count_ == 0) return parts;
+  const float fresnel = coat_reflectance(std::min(1.0F, 0.5F * rays::length(to_light + viewer_)));
+  visit_lobes(to_light, [&](const Lobe& lobe, float power) {
+    parts.lobes = parts.lobes + (power * cos_i) * lobe.directional_diffuse + (power * fresnel) * lobe.gloss;
+  });
+  return parts;
+}
+
+Reflection PaintedPoint::at(const Float3& to_light) const {
+  const float cos_i = rays::dot(normal_, to_light);
+  if (!(cos_i > 0) || !(total_ > 0)) return {to_light, {}, 0};
+  Float3 f_cos = cos_i * diffuse_;
+  float pdf = diffuse_chance_ * cos_i / kPi;
+  if (count_ > 0) {
+    const float fresnel = coat_reflectance(std::min(1.0F, 0.5F * rays::length(to_light + viewer_)));
+    visit_lobes(to_light, [&](const Lobe& lobe, float power) {
+      f_cos = f_cos + (power * cos_i) * lobe.directional_diffuse + (power * fresnel) * lobe.gloss;
+      pdf += lobe.chance * lobe.normalization * power / axes_total_;
+    });
+  }
+  return {to_light, f_cos, pdf / total_};
+}
+
+// cos = u^(1/(E+1)); 1 - cos without cancellation, so that lobes of any sharpness keep their shape.
+Float3 PaintedPoint::drawn_about(const Float3& axis, float exponent, float u, float v) {
+  const float versine = u > 0 ? -std::expm1(std::log(u) / (exponent + 1)) : 1;
+  const float sine = std::sqrt(std::max(0.0F, versine * (2 - versine))), phi = 2 * kPi * v;
+  const rays::Frame frame = rays::frame_about(axis);
+  return (sine * std::cos(phi)) * frame.x + (sine * std::sin(phi)) * frame.y + (1 - versine) * axis;
+}
+
+Float3 PaintedPoint::direction(double choice, double u, double v) const {
+  const auto a = static_cast<float>(u), b = static_cast<float>(v);
+  double left = choice * total_;
+  if (left < diffuse_chance_ || count_ == 0) {
+    const float r = std::sqrt(a), phi = 2 * kPi * b;
+    return (r * std::cos(phi)) * frame_.x + (r * std::sin(phi)) * frame_.y + std::sqrt(1 - a) * normal_;
+  }
+  left -= diffuse_chance_;
+  int j = 0;
+  while (j + 1 < count_ && left >= lobes_[j].chance) left -= lobes_[j++].chance;
+  if (axes_.empty()) return drawn_about(mirrored_, lobes_[j].exponent, a, b);
+  double at_axis = std::clamp(left / lobes_[j].chance, 0.0, 1.0) * axes_total_;
+  std::size_t k = 0;
+  while (k + 1 < axes_.size() && at_axis >= axes_[k].share) at_axis -= axes_[k++].share;
+  return drawn_about(axes_[k].direction, lobes_[j].exponent, a, b);
+}
+
+}  // namespace goniochrome::render

@@ -1,0 +1,354 @@
+#include "render/path/transport.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/angles.h"
+#include "brdf/lobe_model.h"
+#include "render/effects.h"
+#include "render/textures/surface_layer.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+using rays::Float3;
+using rays::Hit;
+using rays::Spot;
+
+// A ray to a point of an emitter ends this part of the way short of it.
+constexpr float kShort = 1 - 1e-4F;
+// From the third surface on a path goes on by chance; so many surfaces later never with more than this chance, so that
+// paths end between walls that send back everything.
+constexpr int kRouletteFrom = 3, kEndlessFrom = 64, kMostBounces = 4096;
+constexpr double kEndlessChance = 0.9, kLeastChance = 0.05;
+// The most and least chance that a direction is drawn from the environment where there is one.
+constexpr float kLeastLightChance = 0.1F, kMostLightChance = 0.75F;
+
+color::Rgb rgb(const Float3& c) {
+  return rays::vec3(c);
+}
+
+// The tilts that draw each part's lobes, as render/reference.h has them for the truth.
+std::vector<std::vector<brdf::Tilt>> tilts_for(const PathScene& scene) {
+  Effects effects = effects_of(*scene.scene);
+  effects.tilt_tolerance = scene.tilt_tolerance;
+  if (!effects.anisotropy) return std::vector<std::vector<brdf::Tilt>>(scene.scene->paints.size());
+  return tilts_of(*scene.scene, effects);
+}
+
+}  // namespace
+
+Result<Transport> Transport::create(const PathScene& path_scene) {
+  const Scene& scene = *path_scene.scene;
+  if (scene.mesh == nullptr) return input_error("a scene without a mesh: there is nothing to trace");
+  if (scene.layer != nullptr && scene.layer->textured())
+    return input_error("paths do not trace textures: take another engine for parts that wear one");
+  if (scene.layer != nullptr && scene.layer->mapped())
+    return input_error("paths do not trace color maps: take another engine for parts that wear one");
+  if (scene.paints.size() != scene.mesh->parts.size())
+    return input_error("{} paints for {} parts of the mesh: each part needs one", scene.paints.size(),
+                       scene.mesh->parts.size());
+  GONIO_ASSIGN(rays::RayScene rays, rays::RayScene::create(*scene.mesh, path_scene.floor));
+  Transport transport(std::move(rays));
+  const auto tilts = tilts_for(path_scene);
+  for (std::size_t part = 0; part < scene.paints.size(); ++part) {
+    const double gloss_deg = part < scene.gloss_deg.size() ? scene.gloss_deg[part] : brdf::kGlossIncidence_deg;
+    auto paint = TracedPaint::create(scene.paints[part], gloss_deg, tilts[part]);
+    if (!paint.ok()) return input_error("part {}: {}", scene.mesh->parts[part].name, paint.error().message);
+    transport.paints_.push_back(*std::move(paint));
+  }
+  if (path_scene.floor) {
+    auto paint = TracedPaint::create(path_scene.floor_paint, brdf::kGlossIncidence_deg, {});
+    if (!paint.ok()) return input_error("floor: {}", paint.error().message);
+    transport.paints_.push_back(*std::move(paint));
+  }
+  if (path_scene.environment != nullptr) {
+    transport.environment_.emplace(*path_scene.environment);
+    if (transport.environment_->dark()) transport.environment_.reset();
+  }
+  GONIO_ASSIGN(transport.emitters_, Emitters::create(*transport.rays_, path_scene.emission));
+  transport.lights_ = scene.lights;
+  if (scene.reflection.k != color::component_wise().k) transport.reflection_ = &scene.reflection;
+  return transport;
+}
+
+std::vector<int> Transport::gaining_parts() const {
+  std::vector<int> parts;
+  for (std::size_t part = 0; part < paints_.size(); ++part)
+    if (paints_[part].gains_light()) parts.push_back(static_cast<int>(part));
+  return parts;
+}
+
+// A surface on the way of a path.
+struct Transport::Vertex {
+  Spot spot;
+  PaintedPoint painted;
+  double mirror_chance;  // that the path goes on along the mirror direction
+
+  Vertex(const Transport& transport, const Spot& at, const Float3& to_viewer)
+      : spot(at), painted(transport.paints_[static_cast<std::size_t>(at.part)], at.shading, to_viewer) {
+    const double mirror = painted.mirror_weight(), lobes = painted.lobes_weight();
+    mirror_chance = mirror > 0 ? mirror / (mirror + lobes) : 0;
+  }
+};
+
+// Where a path goes on.
+struct Transport::Next {
+  Float3 direction;
+  double pdf = 0;  // 0: nowhere; infinite along the mirror direction
+  Hit hit;
+};
+
+// Light that is drawn at a vertex, weighed against the same light found by the next ray (the balance heuristic,
+// [Veach1995] 3.1): together they count it once.
+color::Rgb Transport::direct_light(const Vertex& vertex, const PathProduct& path, const std::array<double, 4>& numbers,
+                                   double choice) const {
+  color::Rgb sum;
+  const auto add = [&](const Float3& f_cos, double scale, const color::Rgb& light) {
+    PathProduct here = path;
+    here.reflect(scale * rgb(f_cos));
+    sum += here.shown(light);
+  };
+  const Float3& start = vertex.spot.start;
+  if (!lights_.empty()) {
+    const auto count = static_cast<double>(lights_.size());
+    const Light& light = lights_[std::min(lights_.size() - 1, static_cast<std::size_t>(numbers[2] * count))];
+    const Float3 direction = rays::float3(light.direction);
+    const Reflection reflection = vertex.painted.at(direction);
+    if (reflection.pdf > 0 && !rays_->blocked(start, direction)) add(reflection.f_cos, count * kPi, light.white);
+  }
+  if (environment_) {
+    const LightSample light = environment_->drawn(numbers[0], numbers[1]);
+    if (light.pdf > 0) {
+      const Reflection reflection = vertex.painted.at(light.direction);
+      if (reflection.pdf > 0 && !rays_->blocked(start, light.direction))
+        add(reflection.f_cos, 1 / (light.pdf + (1 - vertex.mirror_chance) * reflection.pdf), light.radiance);
+    }
+  }
+  if (!emitters_.empty()) {
+    const EmitterSample light = emitters_.drawn(start, choice, numbers[2], numbers[3]);
+    if (light.pdf > 0) {
+      const Reflection reflection = vertex.painted.at(light.direction);
+      if (reflection.pdf > 0 && !rays_->blocked(start, light.direction, kShort * light.distance))
+        add(reflection.f_cos, 1 / (light.pdf + (1 - vertex.mirror_chance) * reflection.pdf), light.radiance);
+    }
+  }
+  return sum;
+}
+
+Transport::Next Transport::next_ray(const Vertex& vertex, PathProduct& path,
+                                    const std::array<double, 4>& numbers) const {
+  Next next;
+  if (numbers[0] < vertex.mirror_chance) {
+    path.reflect((1 / vertex.mirror_chance) * rgb(vertex.painted.mirror()));
+    next.direction = vertex.painted.mirrored();
+    next.pdf = std::numeric_limits<double>::infinity();
+  } else {
+    const double others = 1 - vertex.mirror_chance;
+    const Reflection drawn = vertex.painted.drawn((numbers[0] - vertex.mirror_chance) / others, numbers[1], numbers[2]);
+    if (!(drawn.pdf > 0)) return next;
+    next.direction = drawn.direction;
+    next.pdf = others * drawn.pdf;
+    path.reflect((1 / next.pdf) * rgb(drawn.f_cos));
+  }
+  next.hit = rays_->closest(vertex.spot.start, next.direction);
+  return next;
+}
+
+// The environment or an emitter that the next ray found.
+color::Rgb Transport::light_at_end(const Next& next, const PathProduct& path) const {
+  const auto share = [&](double light_pdf) { return std::isinf(next.pdf) ? 1 : next.pdf / (next.pdf + light_pdf); };
+  if (!next.hit.any()) {
+    if (!environment_) return {};
+    const LightSample light = environment_->at(next.direction);
+    return share(light.pdf) * path.shown(light.radiance);
+  }
+  const color::Rgb& emission = emitters_.radiance(rays_->part(next.hit.triangle));
+  if (emission == color::Rgb{}) return {};
+  return share(emitters_.pdf(next.hit.triangle, next.direction, next.hit.distance)) * path.shown(emission);
+}
+
+// What the surface at `hit` sends back along the ray, its own emission apart.
+color::Rgb Transport::bounced(Hit hit, Float3 origin, Float3 direction, const PathOptions& options,
+                              const Sequence& sequence, std::uint32_t index, std::uint32_t set) const {
+  PathProduct path(reflection_);
+  color::Rgb sum;
+  const int most = std::min(options.bounces, kMostBounces);
+  for (int bounce = 1; bounce <= most; ++bounce) {
+    const Vertex vertex(*this, rays_->spot(hit, origin, direction), -direction);
+    if (vertex.painted.black()) break;
+    const std::array<double, 4> to_light = sequence.point(index, set++), onward = sequence.point(index, set++);
+    sum += direct_light(vertex, path, to_light, onward[3]);
+    const Next next = next_ray(vertex, path, onward);
+    if (!(next.pdf > 0)) break;
+    sum += light_at_end(next, path);
+    if (!next.hit.any() || bounce == most) break;
+    if (bounce >= kRouletteFrom) {
+      const double most_chance = bounce >= kEndlessFrom ? kEndlessChance : 1;
+      const double chance = std::clamp(path.size(), kLeastChance, most_chance);
+      if (sequence.point(index, set++)[0] >= chance) break;
+      path.scale(1 / chance);
+    }
+    hit = next.hit, origin = vertex.spot.start, direction = next.direction;
+  }
+  return sum;
+}
+
+// A direction at the visible point.
+struct PointTransport::Ray {
+  Float3 direction;
+  bool above = false;
+  std::optional<EnvironmentTable::Place> place;  // where the direction was drawn from the environment
+};
+
+PointTransport::PointTransport(const Transport& transport, const PathOptions& options, const Spot& spot,
+                               const Float3& to_viewer)
+    : transport_(transport),
+      options_(options),
+      spot_(spot),
+      to_viewer_(to_viewer),
+      painted_(transport.paints_[static_cast<std::size_t>(spot.part)], spot.shading, to_viewer) {
+  sure_ = transport.emitters_.radiance(spot.part);
+  if (transport.environment_) {
+    const float wide = 1 - painted_.narrow_share(transport.environment_->extent_sr());
+    light_chance_ = std::clamp(kMostLightChance * wide, kLeastLightChance, kMostLightChance);
+  }
+  const bool free =
+      !transport.rays_->has_floor() && !transport.rays_->any_above(spot.start, spot.shading, 0) && options.correction;
+  if (!free) {
+    add_lights();
+  }
+  if (!free) add_mirror();
+  certain_ = free || (!(painted_.lobes_weight() > 0) && mirror_samples_ == 0);
+}
+
+color::Rgb PointTransport::reflect(const Float3& f, const color::Rgb& light) const {
+  return transport_.reflection_ != nullptr ? color::reflected(*transport_.reflection_, rgb(f), light) : rgb(f) * light;
+}
+
+void PointTransport::add_lights() {
+  for (const Light& light : transport_.lights_) {
+    const Float3 direction = rays::float3(light.direction);
+    const Reflection reflection = painted_.at(direction);
+    if (!(reflection.pdf > 0)) continue;
+    const bool blocked = transport_.rays_->blocked(spot_.start, direction);
+    if (blocked == options_.correction) sure_ += (blocked ? -kPi : kPi) * reflect(reflection.f_cos, light.white);
+  }
+}
+
+void PointTransport::add_mirror() {
+  const Float3& mirror = painted_.mirror();
+  const float weight = painted_.mirror_weight();
+  if (!(weight > 0)) return;
+  mirror_hit_ = transport_.rays_->closest(spot_.start, painted_.mirrored());
+  const color::Rgb open =
+      transport_.environment_ ? transport_.environment_->radiance(painted_.mirrored()) : color::Rgb{};
+  if (!mirror_hit_.any()) {
+    if (!options_.correction) sure_ += reflect(mirror, open);
+    return;
+  }
+  if (options_.correction) sure_ += -1.0 * reflect(mirror, open);
+  sure_ += reflect(mirror, transport_.emitters_.radiance(transport_.rays_->part(mirror_hit_.triangle)));
+  if (options_.bounces == 0 || !options_.into_lobes) return;
+  const double share = weight / (weight + painted_.lobes_weight());
+  mirror_samples_ = std::clamp(static_cast<int>(std::lround(kBatch * share)), 1, kBatch);
+}
+
+PointTransport::Ray PointTransport::drawn_ray(const std::array<double, 4>& numbers) const {
+  Ray ray;
+  if (numbers[0] < light_chance_) {
+    ray.place = transport_.environment_->place(numbers[1], numbers[2]);
+    if (!(ray.place->density > 0)) return ray;
+    ray.direction = ray.place->direction;
+  } else {
+    ray.direction = painted_.direction((numbers[0] - light_chance_) / (1 - light_chance_), numbers[1], numbers[2]);
+  }
+  ray.above = rays::dot(ray.direction, spot_.shading) > 0;
+  return ray;
+}
+
+// What a drawn direction is worth. One set of directions serves every lobe and the environment: each is weighed by the
+// density that the mixture gives it, which is the balance heuristic.
+color::Rgb PointTransport::shown(const Ray& ray, bool blocked, const Sequence& sequence, std::uint32_t index) const {
+  const Reflection reflection = painted_.at(ray.direction);
+  LightSample light;
+  if (!(reflection.pdf > 0)) return {};
+  if (ray.place) {
+    light = transport_.environment_->light(*ray.place);
+  } else if (transport_.environment_) {
+    light = transport_.environment_->at(ray.direction);
+  }
+  const double pdf = light_chance_ * light.pdf + (1 - light_chance_) * reflection.pdf;
+  if (!(pdf > 0)) return {};
+  const auto scaled = static_cast<float>(1 / pdf);
+  if (!blocked) return reflect(scaled * reflection.f_cos, light.radiance);
+
+  color::Rgb arriving = options_.correction ? -1.0 * light.radiance : color::Rgb{};
+  color::Rgb sum;
+  if (options_.bounces > 0 || !transport_.emitters_.empty()) {
+    const Hit hit = transport_.rays_->closest(spot_.start, ray.direction);
+    if (hit.any()) {
+      const color::Rgb& emission = transport_.emitters_.radiance(transport_.rays_->part(hit.triangle));
+      if (emission != color::Rgb{})
+        arriving += pdf / (pdf + transport_.emitters_.pdf(hit.triangle, ray.direction, hit.distance)) * emission;
+      const bool all = options_.into_lobes && options_.into_diffuse;
+      if (options_.bounces > 0 && (options_.into_lobes || options_.into_diffuse)) {
+        const color::Rgb sent = transport_.bounced(hit, spot_.start, ray.direction, options_, sequence, index, 4);
+        if (all) {
+          arriving += sent;
+        } else {
+          const PaintedPoint::Parts parts = painted_.parts(ray.direction);
+          sum = reflect(scaled * (options_.into_lobes ? parts.lobes : parts.diffuse), sent);
+        }
+      }
+    }
+  }
+  return sum + reflect(scaled * reflection.f_cos, arriving);
+}
+
+color::Rgb PointTransport::emitter_sample(const std::array<double, 4>& numbers) const {
+  const EmitterSample light = transport_.emitters_.drawn(spot_.start, numbers[0], numbers[1], numbers[2]);
+  if (!(light.pdf > 0)) return {};
+  const Reflection reflection = painted_.at(light.direction);
+  if (!(reflection.pdf > 0) || transport_.rays_->blocked(spot_.start, light.direction, kShort * light.distance))
+    return {};
+  const double open_pdf = transport_.environment_ ? transport_.environment_->at(light.direction).pdf : 0;
+  const double pdf = light.pdf + light_chance_ * open_pdf + (1 - light_chance_) * reflection.pdf;
+  return reflect(static_cast<float>(1 / pdf) * reflection.f_cos, light.radiance);
+}
+
+color::Rgb PointTransport::batch(std::uint64_t seed) const {
+  if (certain_) return {};
+  const Sequence sequence(seed, kBatch);
+  color::Rgb sum;
+  if (painted_.lobes_weight() > 0) {
+    for (std::uint32_t first = 0; first < kBatch; first += 8) {
+      Ray rays[8];
+      rays::Fan fan;
+      fan.origin = spot_.start;
+      for (std::uint32_t i = 0; i < 8; ++i) {
+        rays[i] = drawn_ray(sequence.point(first + i, 0));
+        fan.x[i] = rays[i].direction.x, fan.y[i] = rays[i].direction.y, fan.z[i] = rays[i].direction.z;
+        if (rays[i].above) fan.wanted |= 1U << i;
+      }
+      const unsigned blocked = transport_.rays_->blocked(fan);
+      for (std::uint32_t i = 0; i < 8; ++i) {
+        const bool is_blocked = (blocked >> i & 1U) != 0;
+        if (!rays[i].above || (!is_blocked && (options_.correction || !transport_.environment_))) continue;
+        sum += shown(rays[i], is_blocked, sequence, first + i);
+      }
+    }
+    if (!transport_.emitters_.empty())
+      for (std::uint32_t i = 0; i < kBatch; ++i) sum += emitter_sample(sequence.point(i, 1));
+  }
+  color::Rgb mirrored;
+  for (int i = 0; i < mirror_samples_; ++i)
+    mirrored += transport_.bounced(mirror_hit_, spot_.start, painted_.mirrored(), options_,
+                                   Sequence(mixed(seed, 0x4D), kBatch), static_cast<std::uint32_t>(i), 4);
+  if (mirror_samples_ > 0)
+    sum += (static_cast<double>(kBatch) / mirror_samples_) * reflect(painted_.mirror(), mirrored);
+  return (1.0 / kBatch) * sum;
+}
+
+}  // namespace goniochrome::render

@@ -1,0 +1,113 @@
+// Light on its way through a scene: what one point shows, by rays. goniochrome-theory(7), PATHS.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "base/result.h"
+#include "render/path/emitters.h"
+#include "render/path/environment_table.h"
+#include "render/path/path_product.h"
+#include "render/path/sequence.h"
+#include "render/path/traced_paint.h"
+#include "render/scene.h"
+
+namespace goniochrome::render {
+
+// What paths meet.
+struct PathScene {
+  const Scene* scene = nullptr;  // its mesh, paints, lights and product of colors; its maps are not used
+  const envmap::Environment* environment = nullptr;  // none: dark
+  std::vector<color::Rgb> emission = {};             // radiance of each part; none where there are fewer
+  std::optional<rays::Floor> floor = {};
+  paint::LobeFit floor_paint = {};
+  double tilt_tolerance = 1e-3;  // of the tilted normals of brushed paints, relative to the lobe's peak
+};
+
+// What is asked of them.
+struct PathOptions {
+  // How many surfaces may pass light on before it reaches the point that is seen: 0 lets a surface that is met be
+  // black, apart from what it emits.
+  int bounces = 8;
+  // Whether the light that surfaces pass on reaches the lobes and the mirror of the point that is seen, and whether it
+  // reaches its diffuse part.
+  bool into_lobes = true, into_diffuse = true;
+  // Only what the mesh changes: the radiance with the mesh in the way less the radiance without it. That is 0 without
+  // any noise where no ray is blocked.
+  bool correction = false;
+};
+
+// How many samples are drawn together from one sequence. Their mean is one independent estimate.
+constexpr int kBatch = 16;
+
+// Immutable: for any number of threads at once.
+class Transport {
+ public:
+  // All that the scene refers to must outlive it. Error: as RayScene, TracedPaint and Emitters have them; textures and
+  // color maps, which paths do not trace.
+  static Result<Transport> create(const PathScene& scene);
+
+  const rays::RayScene& rays() const { return *rays_; }
+  const Emitters& emitters() const { return emitters_; }
+  // The parts whose paint sends back more light than it gets, by number: paths between such walls gain light for ever
+  // and are ended by chance alone.
+  std::vector<int> gaining_parts() const;
+
+ private:
+  friend class PointTransport;
+  explicit Transport(rays::RayScene rays) : rays_(std::make_unique<const rays::RayScene>(std::move(rays))) {}
+  color::Rgb bounced(rays::Hit hit, rays::Float3 origin, rays::Float3 direction, const PathOptions& options,
+                     const Sequence& sequence, std::uint32_t index, std::uint32_t set) const;
+  struct Vertex;
+  struct Next;
+  color::Rgb direct_light(const Vertex& vertex, const PathProduct& path, const std::array<double, 4>& numbers,
+                          double choice) const;
+  Next next_ray(const Vertex& vertex, PathProduct& path, const std::array<double, 4>& numbers) const;
+  color::Rgb light_at_end(const Next& next, const PathProduct& path) const;
+
+  std::unique_ptr<const rays::RayScene> rays_;  // stays where it is when the transport is moved
+  std::vector<TracedPaint> paints_;             // of the parts, then of the floor
+  std::optional<EnvironmentTable> environment_;
+  Emitters emitters_;
+  std::vector<Light> lights_;
+  const color::ReflectionOperator* reflection_ = nullptr;  // null: channel by channel
+};
+
+// One visible point.
+class PointTransport {
+ public:
+  // `to_viewer` is unit. The transport must outlive the point.
+  PointTransport(const Transport& transport, const PathOptions& options, const rays::Spot& spot,
+                 const rays::Float3& to_viewer);
+
+  // What needs no samples: directional lights, the point's own emission, and what the mirror lobe sees without
+  // bounces.
+  const color::Rgb& sure() const { return sure_; }
+  // Whether that is all: then every batch() is 0.
+  bool certain() const { return certain_; }
+  // The mean of kBatch samples of the rest, drawn from a sequence of this seed. Its expectation is the rest, exactly.
+  color::Rgb batch(std::uint64_t seed) const;
+
+ private:
+  struct Ray;
+  void add_lights();
+  void add_mirror();
+  Ray drawn_ray(const std::array<double, 4>& numbers) const;
+  color::Rgb shown(const Ray& ray, bool blocked, const Sequence& sequence, std::uint32_t index) const;
+  color::Rgb emitter_sample(const std::array<double, 4>& numbers) const;
+  color::Rgb reflect(const rays::Float3& f, const color::Rgb& light) const;
+
+  const Transport& transport_;
+  const PathOptions& options_;
+  rays::Spot spot_;
+  rays::Float3 to_viewer_;
+  PaintedPoint painted_;
+  float light_chance_ = 0;  // of a direction that is drawn from the environment
+  rays::Hit mirror_hit_;
+  int mirror_samples_ = 0;  // in a batch
+  color::Rgb sure_;
+  bool certain_ = false;
+};
+
+}  // namespace goniochrome::render

@@ -1,0 +1,58 @@
+#include "render/path/visible_surface.h"
+
+#include <algorithm>
+
+#include "base/parallel.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+constexpr std::size_t kRowsAtOnce = 8;
+
+rays::Float3 pixel_direction(const Rays& rays, int x, int y) {
+  return rays::float3(rays.direction(x + 0.5, y + 0.5));
+}
+
+}  // namespace
+
+VisibleSurface visible_surface(const rays::RayScene& scene, const Rays& rays, int width, int height) {
+  VisibleSurface surface;
+  Gbuffer& g = surface.gbuffer;
+  g.width = width, g.height = height, g.rays = rays;
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  g.data.assign(4 * pixels, 0.0F);
+  surface.hits.resize(pixels);
+  const rays::Float3 eye = scene.local(rays.eye);
+  parallel_for(static_cast<std::size_t>(height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      for (int x = 0; x < width; x += 8) {
+        rays::Fan fan;
+        fan.origin = eye;
+        for (int i = 0; i < 8; ++i) {
+          const rays::Float3 d = pixel_direction(rays, std::min(x + i, width - 1), y);
+          fan.x[i] = d.x, fan.y[i] = d.y, fan.z[i] = d.z;
+          if (x + i < width) fan.wanted |= 1U << i;
+        }
+        rays::Hit* hits = &surface.hits[static_cast<std::size_t>(y) * width + x];
+        scene.closest(fan, hits);
+        for (int i = 0; i < 8 && x + i < width; ++i) {
+          if (!hits[i].any()) continue;
+          const rays::Spot spot = scene.spot(hits[i], eye, {fan.x[i], fan.y[i], fan.z[i]});
+          float* data = &g.data[(static_cast<std::size_t>(y) * width + x + i) * 4];
+          data[0] = spot.shading.x, data[1] = spot.shading.y, data[2] = spot.shading.z;
+          data[3] = static_cast<float>(spot.inside ? -(spot.part + 1) : spot.part + 1);
+        }
+      }
+    }
+  });
+  return surface;
+}
+
+rays::Spot spot_at(const rays::RayScene& scene, const VisibleSurface& surface, int x, int y) {
+  const Gbuffer& g = surface.gbuffer;
+  return scene.spot(surface.hits[static_cast<std::size_t>(y) * g.width + x], scene.local(g.rays.eye),
+                    pixel_direction(g.rays, x, y));
+}
+
+}  // namespace goniochrome::render
