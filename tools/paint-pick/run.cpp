@@ -18,7 +18,7 @@ class Shelf {
   Result<const ImagePart*> image(const std::string& path) {
     const auto found = images_.find(path);
     if (found != images_.end()) return &found->second;
-    GONIO_ASSIGN(images_[path], read_image(path));
+    GONIO_ASSIGN(images_[path], read_image(path, Inks::kKept));
     return &images_[path];
   }
 
@@ -136,7 +136,7 @@ Result<cli::Verdict> run_board(const Options& options, bool as_page, cli::Sessio
 }
 
 Result<cli::Verdict> run_palette(const Options& options, cli::Session& session) {
-  GONIO_ASSIGN(const ImagePart image, read_image(options.images.front()));
+  GONIO_ASSIGN(const ImagePart image, read_image(options.images.front(), Inks::kKept));
   GONIO_ASSIGN(const auto pairs, palette(image, options.images.front(), options.palette));
   std::vector<PageOfPaint> paints;
   for (const PalettePair& pair : pairs) {

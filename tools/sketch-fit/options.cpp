@@ -18,10 +18,10 @@ cli::ToolSpec tool_spec(Options& o) {
       "the effects that were drawn: Fresnel reflectance, the horizon and the operator of colored light. Brushed paint, "
       "travel of color maps and textures it does not know; it warns where the buffers have them.",
       "The picture may be of any format. Whole numbers (PNG, JPEG, TIFF) are what a display shows: sRGB, or what an "
-      "embedded profile says, after the view and the exposure of render-osmesa; floats (EXR) are light. Pixels are "
-      "left out at edges, at grazing light, near specular, where clipped or transparent, and outside the mask. Where a "
-      "part of the picture was edited, the pixels that changed are taken; where none or more than half of them "
-      "changed, all.",
+      "embedded ICC profile says, be it of RGB, of gray or, in TIFF and JPEG, of CMYK, after the view and the exposure "
+      "of render-osmesa; floats (EXR) are light. Pixels are left out at edges, at grazing light, near specular, where "
+      "clipped or transparent, and outside the mask. Where a part of the picture was edited, the pixels that changed "
+      "are taken; where none or more than half of them changed, all.",
       "Where the pixels show too few angles, or half of them differ by more than --max-de from the best paint, the "
       "answer is the matt color that explains them best; the report and a warning say so, and the exit status stays 0. "
       "A picture that seems to be moved against the buffers is told with the shift to give.",
