@@ -44,11 +44,14 @@ Result<std::vector<ImagePart>> read_exr(const std::string& path);
 // a value that a half cannot hold makes its part float. NaN and Inf are refused. Unnamed parts are named by number.
 Result<void> write_exr(const std::string& path, const std::vector<ImagePart>& parts);
 
+// What a CMYK JPEG or TIFF becomes: RGB without regard to its profile, or four channels C, M, Y and K, 1 being full
+// ink.
+enum class Inks { kAsRgb, kKept };
+
 // An image of any format (EXR and Radiance HDR here, others through OpenImageIO), first part, as stored ("-" is
-// standard input); `attributes` has `oiio:ColorSpace`, `chromaticities`, `colorInteropID`, `ICCProfile`,
-// `jpeg:ColorSpace`, `envmap`
+// standard input); `attributes` has `oiio:ColorSpace`, `chromaticities`, `colorInteropID`, `ICCProfile` and `envmap`
 // ("latlong" or "cube"), as the file has them, and `goniochrome:integer`: 1 where it held whole numbers, now 0..1.
-Result<ImagePart> read_image(const std::string& path);
+Result<ImagePart> read_image(const std::string& path, Inks inks = Inks::kAsRgb);
 
 // 8-bit RGB PNG of display-referred values 0..1 (rounded, clamped), with text entries for provenance; "-" is standard
 // output. One channel is gray; channels after the third are left out.

@@ -13,8 +13,9 @@
 // width; then its four components follow one after the other, each in runs: n > 128 means the next byte n - 128 times,
 // n <= 128 that many bytes as they are. Other rows are plain. [Ward, the Radiance picture format]
 //
-// Probes come in this format more than in any other, and to load OpenImageIO takes ten times longer than to read one.
-// The small readers in use elsewhere give black where a file is cut short.
+// OpenImageIO reads such files as well and tells a cut one, but probes come in this format more than in any other, and
+// to load that library costs far more than to read one: a picture of 256 x 128 pixels takes 290 ms of processor time
+// and 123 MB with it, 4 ms and 5 MB here, and one of 2048 x 1024 takes 366 ms and 170 MB against 38 ms and 36 MB.
 
 namespace goniochrome::image {
 

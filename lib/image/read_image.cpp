@@ -66,7 +66,6 @@ void take(void* context, const GoniochromeOiioImage* image) {
   keep("oiio:ColorSpace", image->color_space);
   keep("colorInteropID", image->interop_id);
   keep("envmap", image->envmap);
-  keep("jpeg:ColorSpace", image->stored_space);
   if (image->icc_profile) keep("ICCProfile", std::string(image->icc_profile, image->icc_size));
   part.attributes["goniochrome:integer"] = image->is_integer;
   if (image->chromaticities)
@@ -79,16 +78,16 @@ void fail(void* context, const char* reason) {
   static_cast<Decoded*>(context)->failure = text;
 }
 
-Result<ImagePart> read_through_module(const std::string& path, const std::string& shown) {
+Result<ImagePart> read_through_module(const std::string& path, const std::string& shown, Inks inks) {
   GONIO_ASSIGN(const Module module, loaded_module());
   Decoded decoded;
-  module.read(path.c_str(), &decoded, take, fail);
+  module.read(path.c_str(), inks == Inks::kKept, &decoded, take, fail);
   if (!decoded.failure.empty()) return input_error("{}: cannot be read as an image: {}", shown, decoded.failure);
   return std::move(decoded.part);
 }
 
 // Standard input as a file in memory, for a library that wants a name.
-Result<ImagePart> read_content_through_module(const std::string& content) {
+Result<ImagePart> read_content_through_module(const std::string& content, Inks inks) {
   const int fd = memfd_create("goniochrome", MFD_CLOEXEC);
   if (fd < 0) return input_error("standard input: cannot be kept in memory");
   std::size_t done = 0;
@@ -97,7 +96,7 @@ Result<ImagePart> read_content_through_module(const std::string& content) {
     if (count <= 0) break;
     done += static_cast<std::size_t>(count);
   }
-  auto part = done == content.size() ? read_through_module(fmt::format("/proc/self/fd/{}", fd), "standard input")
+  auto part = done == content.size() ? read_through_module(fmt::format("/proc/self/fd/{}", fd), "standard input", inks)
                                      : Result<ImagePart>(input_error("standard input: cannot be kept in memory"));
   close(fd);
   return part;
@@ -118,7 +117,7 @@ Result<std::string> file_head(const std::string& path) {
 
 }  // namespace
 
-Result<ImagePart> read_image(const std::string& path) {
+Result<ImagePart> read_image(const std::string& path, Inks inks) {
   GONIO_ASSIGN(const std::string head, path == "-" ? file_content(path) : file_head(path));
   const std::string shown = path == "-" ? "standard input" : path;
   if (head.empty()) return input_error("{}: is empty or a folder: name an image", shown);
@@ -130,7 +129,8 @@ Result<ImagePart> read_image(const std::string& path) {
     GONIO_ASSIGN(auto part, decoded_hdr(path == "-" ? head : content, shown));
     if (part) return std::move(*part);
   }
-  if (!is_exr(head)) return path == "-" ? read_content_through_module(head) : read_through_module(path, shown);
+  if (!is_exr(head))
+    return path == "-" ? read_content_through_module(head, inks) : read_through_module(path, shown, inks);
   GONIO_ASSIGN(auto parts, path == "-" ? decoded_exr(head, shown) : read_exr(path));
   return std::move(parts.front());
 }

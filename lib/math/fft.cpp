@@ -11,6 +11,11 @@
 
 #include "base/angles.h"
 
+// FFTW 3.3.10 was measured on 24 transforms that lie side by side as they do here, of lengths from 512 to 4096. With
+// the plans of FFTW_ESTIMATE it takes 1.5 to 3.2 times as long as this code. With those of FFTW_MEASURE it takes 0.8
+// to 1.6 times as long, but one plan then costs 0.2 to 0.7 s of processor time, as much as one to three maps of degree
+// 511, and since the clock chooses between plans, the last bits of the result may change from run to run.
+//
 // Stockham's self-sorting passes: with `length` = n r split off as s groups, pass r reads x[q + s (p + m k)], k < r,
 // m = n/r, and writes y[q + s (r p + j)] = w^(p j) sum over k of x_k exp(sign 2 pi i j k / r), w = exp(sign 2 pi i /
 // n).

@@ -9,6 +9,13 @@
 // variables by the two-pass ratio test of [Harris1973] (among the nearly blocking ones the largest pivot), and after
 // a run of steps without gain Bland's smallest-index rule takes over, which cannot cycle. At the end the vertex is
 // solved anew from the data as given (partial pivoting, one refinement), and the duality gap proves what was reached.
+//
+// Clp 1.17 solves the same programs, and the tests hold this solver against it. It was measured on 10,912 problems of
+// the kinds in problems_for_test.h. With its defaults it calls 1,382 answers optimal that are above the optimum by more
+// than 1e-6 of |b|_1, since its tolerances are absolute. With columns and target scaled to largest entry 1, its own
+// scaling off and tolerances of 1e-10 it is right, but it takes 127 us for 5 samples and 8 lobes, 172 us for 25 and 9,
+// and 109 ms for 1400 and 12, where this solver takes 5, 13 and 3,400 us. Given the dual program instead, which has
+// fewer rows, Clp takes 120 us, 95 us and 16 ms, and 3 of the answers are wrong by up to 5 % of |b|_1.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

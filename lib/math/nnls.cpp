@@ -8,6 +8,13 @@
 //
 // The gradient of a waiting column is then the inner product of the rows below the triangle, where the residual lives,
 // without the squared condition number of normal equations: 12 lobes have condition 1e3 after scaling and 1e16 before.
+//
+// Eigen 3.4, which Debian 12 has, contains no such solver. The NNLS of Eigen 5 was measured on the problems of the
+// kinds in problems_for_test.h. It stops at an absolute gradient of the normal equations: of 6,715 problems with at
+// least as many rows as columns it calls 463 solved that are above the optimum by more than 1e-6 of |b|. With columns
+// and target of length 1 it comes within 5e-9 of |b| in all of them, in 2.4 us for 5 rows and 8 columns and 5.8 us for
+// 25 and 9, against 1.6 and 5.0 us here, but in 0.11 against 0.23 ms for 1400 and 12. It does not tell how far an
+// answer is from the optimum.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

@@ -36,14 +36,19 @@ int alpha_channel(const image::Image& image) {
   return names.empty() && (image.channels == 2 || image.channels == 4) ? image.channels - 1 : -1;
 }
 
+// Whether a pixel may have been any brighter: a channel that is full, or paper without any ink.
+bool is_clipped(const float* pixel, int colors) {
+  if (colors == 4) return std::all_of(pixel, pixel + 4, [](float ink) { return ink <= 1 - kClip; });
+  return std::any_of(pixel, pixel + colors, [](float signal) { return signal >= kClip; });
+}
+
 std::vector<std::uint8_t> states(const image::Image& image, bool display) {
-  const int alpha = alpha_channel(image), colors = image.channels < 3 ? 1 : 3;
+  const int alpha = alpha_channel(image), colors = image::color_channels(image);
   std::vector<std::uint8_t> state(static_cast<std::size_t>(image.width) * image.height, Picture::kGood);
   for (std::size_t i = 0; i < state.size(); ++i) {
     const float* pixel = &image.data[i * image.channels];
-    bool clipped = false;
-    for (int c = 0; c < colors; ++c) clipped |= !std::isfinite(pixel[c]) || (display && pixel[c] >= kClip);
-    if (clipped) state[i] = Picture::kClipped;
+    const bool finite = std::all_of(pixel, pixel + colors, [](float signal) { return std::isfinite(signal); });
+    if (!finite || (display && is_clipped(pixel, colors))) state[i] = Picture::kClipped;
     if (alpha >= 0 && pixel[alpha] < kOpaque) state[i] = Picture::kTransparent;
   }
   return state;
@@ -67,21 +72,17 @@ void for_pixels(image::Image& image, Function&& change) {
   });
 }
 
-Result<image::Image> through_profile(const image::ImagePart& part, const std::string& name) {
-  GONIO_ASSIGN(const IccProfile profile, parse_icc(text_of(part, "ICCProfile"), name));
-  const image::Image& from = part.image;
-  const int green = from.channels < 3 ? 0 : 1, blue = from.channels < 3 ? 0 : 2;
-  image::Image to = {from.width, from.height, 3, {}, {}};
-  to.data.resize(static_cast<std::size_t>(from.width) * from.height * 3);
-  parallel_for(static_cast<std::size_t>(from.height), kRows, [&](std::size_t begin, std::size_t end) {
-    const std::size_t width = static_cast<std::size_t>(from.width);
-    for (std::size_t i = begin * width; i < end * width; ++i) {
-      const float* in = &from.data[i * from.channels];
-      const color::Rgb rgb = profile.rgb(in[0], in[green], in[blue]);
-      for (int c = 0; c < 3; ++c) to.data[3 * i + c] = static_cast<float>(rgb[c]);
-    }
-  });
-  return to;
+// Inks as RGB signals where nothing tells their colors: each ink takes all light of its channel.
+void take_inks_for_filters(image::Image& image) {
+  const std::size_t count = static_cast<std::size_t>(image.width) * image.height;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float* inks = &image.data[i * image.channels];
+    const float paper = 1 - inks[3];
+    const float rgb[] = {(1 - inks[0]) * paper, (1 - inks[1]) * paper, (1 - inks[2]) * paper};
+    std::copy_n(rgb, 3, &image.data[3 * i]);
+  }
+  image.data.resize(3 * count);
+  image.channels = 3, image.channel_names = {"R", "G", "B"};
 }
 
 // What the file is taken for where it says nothing.
@@ -96,7 +97,7 @@ void tag_untagged(image::ImagePart& part, bool integer, bool is_exr) {
 }  // namespace
 
 Result<Picture> read_picture(const std::string& path, PictureView view) {
-  GONIO_ASSIGN(image::ImagePart part, image::read_image(path));
+  GONIO_ASSIGN(image::ImagePart part, image::read_image(path, image::Inks::kKept));
   return picture_of(std::move(part), path == "-" ? "standard input" : path, view);
 }
 
@@ -104,16 +105,19 @@ Result<Picture> picture_of(image::ImagePart part, const std::string& name, Pictu
   const bool integer = holds_integers(part), is_exr = !part.attributes.contains("goniochrome:integer");
   Picture picture;
   picture.scene_linear = !integer;
-  if (const auto stored = text_of(part, "jpeg:ColorSpace"); stored == "CMYK" || stored == "YCbCrK") {
-    picture.warnings.push_back(fmt::format(
-        "{} is a {} JPEG, converted without regard to its inks: for exact color save it as sRGB", name, stored));
-    part.attributes.erase("ICCProfile");
-  }
   if (part.image.channels == 0) return input_error("{}: has no channels", name);
   picture.state = states(part.image, integer);
   drop_to_gray(part.image);
+  if (image::color_channels(part.image) == 4 && text_of(part, "ICCProfile").empty()) {
+    picture.warnings.push_back(fmt::format(
+        "{} is CMYK without a profile, converted without regard to its inks: for exact color save it with its profile "
+        "or as sRGB",
+        name));
+    take_inks_for_filters(part.image);
+    part.attributes["oiio:ColorSpace"] = std::string("sRGB");
+  }
   if (!text_of(part, "ICCProfile").empty() && integer) {
-    GONIO_ASSIGN(picture.rgb, through_profile(part, name));
+    GONIO_ASSIGN(picture.rgb, image_through_icc(part.image, text_of(part, "ICCProfile"), name));
     picture.space = "its ICC profile";
   } else {
     tag_untagged(part, integer, is_exr);

@@ -18,7 +18,7 @@ class Shelf {
   Result<const image::ImagePart*> image(const std::string& path) {
     const auto found = images_.find(path);
     if (found != images_.end()) return &found->second;
-    GONIO_ASSIGN(images_[path], image::read_image(path));
+    GONIO_ASSIGN(images_[path], image::read_image(path, image::Inks::kKept));
     return &images_[path];
   }
 
@@ -129,7 +129,7 @@ Result<cli::Verdict> run_board(const Options& options, bool as_page, cli::Sessio
 }
 
 Result<cli::Verdict> run_palette(const Options& options, cli::Session& session) {
-  GONIO_ASSIGN(const image::ImagePart image, image::read_image(options.images.front()));
+  GONIO_ASSIGN(const image::ImagePart image, image::read_image(options.images.front(), image::Inks::kKept));
   GONIO_ASSIGN(const auto pairs, sketch::palette(image, options.images.front(), options.palette));
   std::vector<PageOfPaint> paints;
   for (const sketch::PalettePair& pair : pairs) {

@@ -108,7 +108,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "the operator of colored light. It does not know brushed paint, the travel of color maps, and textures; it warns "
       "where the buffers have them.",
       "The picture may be of any format. Whole numbers (PNG, JPEG, TIFF) are what a display shows: sRGB, or what an "
-      "embedded profile says, after the view and the exposure of render-osmesa. Floats (EXR) are light. Pixels are "
+      "embedded ICC profile says, be it of RGB, of gray or of CMYK, after the view and the exposure of render-osmesa. "
+      "Floats (EXR) are light. Pixels are "
       "left out at edges, at grazing light, near specular, where they are clipped or transparent, and outside the "
       "mask.",
       "Gloss comes from the shape of the highlight where it is seen unclipped, and else from its contrast. With --env, "

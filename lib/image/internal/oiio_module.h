@@ -14,17 +14,18 @@ struct GoniochromeOiioImage {
   const float* chromaticities;       // 8 values, or null
   const char* icc_profile;           // the bytes of an embedded ICC profile, or null
   unsigned long icc_size;
-  const char* stored_space;  // what a JPEG was stored in, as in "CMYK", or ""
-  int is_integer;            // whether the file holds whole numbers, which 0..1 stand for here
+  int is_integer;  // whether the file holds whole numbers, which 0..1 stand for here
 };
 
-// Decodes `path` and calls take(context, image) once, or fail(context, reason) once.
+// Decodes `path` and calls take(context, image) once, or fail(context, reason) once. Where `keep_inks` is not 0, a CMYK
+// JPEG or TIFF comes as four channels C, M, Y and K, of which 1 is full ink; else as the RGB that OpenImageIO makes of
+// it.
 using GoniochromeOiioTake = void (*)(void* context, const GoniochromeOiioImage* image);
 using GoniochromeOiioFail = void (*)(void* context, const char* reason);
-using GoniochromeOiioRead = void (*)(const char* path, void* context, GoniochromeOiioTake take,
+using GoniochromeOiioRead = void (*)(const char* path, int keep_inks, void* context, GoniochromeOiioTake take,
                                      GoniochromeOiioFail fail);
 
 }  // extern "C"
 
 // The name under which the module exports its GoniochromeOiioRead.
-constexpr const char* kGoniochromeOiioReadName = "goniochrome_oiio_read_2";
+constexpr const char* kGoniochromeOiioReadName = "goniochrome_oiio_read_3";

@@ -6,6 +6,13 @@
 
 #include "base/parallel.h"
 
+// CGAL 5.5 and nanoflann 1.4 were measured with 10^6 paints at three geometries, CIE 1976 and five nearest of 500
+// queries. CGAL::K_neighbor_search, given the same distance and the same bound for a box, finds the same paints in 282
+// us, against 63 us here; its tree takes 2.0 s to build, against 0.9 s, and consists of nodes that point at each other,
+// so that it cannot be mapped from a file and every program would build it again. nanoflann wants a distance that is a
+// sum over channels, which a sum of color differences is not: by the root of the sum of all squares, the nearest it can
+// do, it takes 193 us and answers 360 of the 500 queries with other paints. Neither has a bound for CIEDE2000.
+
 namespace goniochrome::library {
 
 namespace {

@@ -13,6 +13,10 @@
 //   integral of L dp,  L sin p dp,  L cos p dp
 // are differences of running sums along the row, and they are all that exponents 0 and 1 need. Within texel j a running
 // sum is A_j + L_j f(p), with f = p, -cos p, sin p.
+//
+// A library of spherical harmonics does not replace these sums. The horizon is a kink of the lobe of exponent 1 and a
+// step of that of exponent 0, so that the coefficients fall slowly: truncation_bound() is 0.35 of the mean for exponent
+// 1 at degree 127, still 0.12 at degree 2000, and infinite for exponent 0.
 
 namespace goniochrome::prefilter {
 

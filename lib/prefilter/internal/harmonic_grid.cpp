@@ -19,6 +19,12 @@
 // angles. Its coefficients, divided by the transform of a narrow bump and taken to a grid twice as fine as they need,
 // give samples whose sum weighted by the bump is the function again [Barnett2019]. The bump is exp(b (sqrt(1-z^2) - 1))
 // over `taps` grid steps; each tap's weight is a polynomial of the place between two grid points.
+//
+// Debian 12 has no library for this. The Python packages of two were measured at 98,304 directions and three channels
+// to an error of 1e-6. FINUFFT 2.5 does the last step alone, from the Fourier coefficients on, for complex values: it
+// takes 35, 54 and 130 ms at the degrees 127, 255 and 511, where all of lobe_values() takes 24, 64 and 215 ms. ducc0
+// 0.42 does all of it in 14, 31 and 76 ms: it is the faster by far at high degrees, and costs a library that users
+// would have to build themselves.
 
 #ifndef GONIOCHROME_HARMONIC_GRID_TYPES
 #define GONIOCHROME_HARMONIC_GRID_TYPES

@@ -1,131 +1,216 @@
+// Little CMS evaluates the profile in single precision, without bounds, so that colors outside of a gamut stay as they
+// are. The rendering intent is relative colorimetric, without black point compensation: the light is what the medium
+// sends back relative to its own white.
+//
+// The float pipeline of Little CMS 2.14 takes 170 to 320 ns a pixel for a matrix profile. Such a profile is additive,
+// since each signal passes its own curve and a matrix follows. Therefore the curve of each channel is tabulated once,
+// at 4097 signals, and a pixel is the sum of three look-ups times their colors: 13 ns. A picture with a table profile
+// passes Little CMS pixel by pixel.
 #include "sketch/internal/sketch_icc.h"
 
+#include <lcms2.h>
+
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
-#include <cstdint>
-#include <optional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "base/parallel.h"
+#include "color/color.h"
 
 namespace goniochrome::sketch {
 
 namespace {
 
-constexpr color::Xyz kD50{0.9642, 1, 0.8249};  // of the profile connection space, ICC.1:2010 6.3.4.3
-constexpr int kCurveSteps = 4096;
+constexpr color::Xyz kD50{0.9642, 1, 0.8249};  // the white of the profile connection space, ICC.1:2010 6.3.4.3
+constexpr int kTableSteps = 4096;
+constexpr std::size_t kRows = 16;
 
-// Big-endian numbers of a profile; what lies beyond its end reads as nothing.
-class Bytes {
+struct CloseProfile {
+  void operator()(void* profile) const { cmsCloseProfile(profile); }
+};
+struct DeleteTransform {
+  void operator()(void* transform) const { cmsDeleteTransform(transform); }
+};
+using Profile = std::unique_ptr<void, CloseProfile>;
+using Transform = std::unique_ptr<void, DeleteTransform>;
+
+// Whether each signal passes a curve and a matrix follows. Tables come first where a profile has both.
+bool is_additive(const Profile& profile) {
+  if (cmsGetColorSpace(profile.get()) == cmsSigCmykData) return false;
+  constexpr cmsTagSignature kTables[] = {cmsSigAToB0Tag, cmsSigAToB1Tag, cmsSigAToB2Tag, cmsSigDToB0Tag,
+                                         cmsSigDToB1Tag, cmsSigDToB2Tag, cmsSigDToB3Tag};
+  return std::ranges::none_of(kTables, [&](cmsTagSignature tag) { return cmsIsTag(profile.get(), tag); });
+}
+
+// From signals to the working space. `channels` is 1, 3 or 4.
+class SignalsToLight {
  public:
-  explicit Bytes(const std::string& bytes) : bytes_(bytes) {}
-  bool holds(std::size_t at, std::size_t count) const { return at <= bytes_.size() && count <= bytes_.size() - at; }
-  std::uint32_t u32(std::size_t at) const { return u16(at) << 16 | u16(at + 2); }
-  std::uint32_t u16(std::size_t at) const {
-    return holds(at, 2) ? static_cast<std::uint32_t>(byte(at) << 8 | byte(at + 1)) : 0;
+  SignalsToLight(Transform to_pcs, std::size_t channels) : to_pcs_(std::move(to_pcs)), channels_(channels) {
+    const color::Xyz white = color::xyz_d65_from_rgb({1, 1, 1});
+    const color::Xyz axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (int k = 0; k < 3; ++k) columns_[k] = color::rgb_from_xyz_d65(adapted(axes[k], kD50, white));
   }
-  double fixed(std::size_t at) const { return static_cast<std::int32_t>(u32(at)) / 65536.0; }
-  std::string text(std::size_t at) const { return holds(at, 4) ? bytes_.substr(at, 4) : ""; }
+  std::size_t channels() const { return channels_; }
+
+  // Writes three numbers to `light` for each group of channels() signals, which are changed.
+  void operator()(std::span<float> signals, float* light) const {
+    if (channels_ == 4)
+      for (float& signal : signals) signal *= 100;  // Little CMS takes percents of ink
+    const std::size_t count = signals.size() / channels_;
+    cmsDoTransform(to_pcs_.get(), signals.data(), light, static_cast<cmsUInt32Number>(count));
+    for (std::size_t i = 0; i < count; ++i, light += 3) {
+      const color::Rgb rgb = static_cast<double>(light[0]) * columns_[0] + static_cast<double>(light[1]) * columns_[1] +
+                             static_cast<double>(light[2]) * columns_[2];
+      for (int c = 0; c < 3; ++c) light[c] = static_cast<float>(rgb[c]);
+    }
+  }
 
  private:
-  int byte(std::size_t at) const { return static_cast<unsigned char>(bytes_[at]); }
-  const std::string& bytes_;
+  Transform to_pcs_;
+  std::size_t channels_;
+  std::array<color::Rgb, 3> columns_;  // of the matrix from XYZ relative to D50 to the working space
 };
 
-// Where the tag's data begins, or nothing.
-std::optional<std::size_t> find_tag(const Bytes& profile, const std::string& signature) {
-  const std::size_t count = std::min<std::size_t>(profile.u32(128), 1000);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t entry = 132 + 12 * i;
-    const std::size_t at = profile.u32(entry + 4);
-    if (profile.text(entry) == signature && profile.holds(at, 8)) return at;
+// What a channel of an additive profile adds to the light of black: a curve, tabulated at evenly spaced signals, times
+// a color.
+struct Channel {
+  std::vector<float> curve;
+  std::array<float, 3> color{};
+
+  float value(float signal) const {
+    const float place = std::clamp(signal, 0.0F, 1.0F) * kTableSteps;
+    const int i = std::min(static_cast<int>(place), kTableSteps - 1);
+    return curve[i] + (place - static_cast<float>(i)) * (curve[i + 1] - curve[i]);
   }
-  return std::nullopt;
+};
+
+// Of light at evenly spaced signals, three numbers each: the number that changes most tells the curve, and the place
+// where it changes most tells the color.
+Channel channel_of(const std::vector<float>& light) {
+  const auto change = [&](std::size_t i) { return light[i] - light[i % 3]; };
+  std::size_t most = 0;
+  for (std::size_t i = 0; i < light.size(); ++i)
+    if (std::abs(change(i)) > std::abs(change(most))) most = i;
+  Channel channel;
+  channel.curve.resize(light.size() / 3);
+  if (change(most) == 0) return channel;
+  for (std::size_t k = 0; k < 3; ++k) channel.color[k] = change(most - most % 3 + k);
+  for (std::size_t i = 0; i < channel.curve.size(); ++i) channel.curve[i] = change(3 * i + most % 3) / change(most);
+  return channel;
 }
 
-// parametricCurveType, ICC.1:2010 10.16: g a b c d e f, by function type.
-double parametric(int type, const std::array<double, 7>& p, double x) {
-  const auto [g, a, b, c, d, e, f] = p;
-  const auto power = [&](double base) { return std::pow(std::max(base, 0.0), g); };
-  switch (type) {
-    case 0:
-      return power(x);
-    case 1:
-      return a * x + b >= 0 ? power(a * x + b) : 0;
-    case 2:
-      return a * x + b >= 0 ? power(a * x + b) + c : c;
-    case 3:
-      return x >= d ? power(a * x + b) : c * x;
-    default:
-      return x >= d ? power(a * x + b) + e : c * x + f;
+template <std::size_t kChannels>
+struct AdditiveLight {
+  std::array<Channel, kChannels> channels;
+  std::array<float, 3> black{};
+
+  explicit AdditiveLight(const SignalsToLight& to_light) {
+    for (std::size_t c = 0; c < kChannels; ++c) {
+      std::vector<float> signals(kChannels * (kTableSteps + 1), 0.0F), light(3 * (kTableSteps + 1));
+      for (std::size_t i = 0; i <= kTableSteps; ++i)
+        signals[i * kChannels + c] = static_cast<float>(i) / static_cast<float>(kTableSteps);
+      to_light(signals, light.data());
+      std::copy_n(light.begin(), 3, black.begin());
+      channels[c] = channel_of(light);
+    }
   }
+
+  // Writes the light of one pixel, whose signals stand `step` apart.
+  void operator()(const float* signals, std::size_t step, float* light) const {
+    std::array<float, 3> sum = black;
+    for (std::size_t c = 0; c < kChannels; ++c) {
+      const float value = channels[c].value(signals[c * step]);
+      for (int k = 0; k < 3; ++k) sum[k] += value * channels[c].color[k];
+    }
+    std::copy_n(sum.begin(), 3, light);
+  }
+};
+
+// Calls row(signals, light) for each row of the image.
+template <class Row>
+image::Image rows_converted(const image::Image& from, const Row& row) {
+  const auto width = static_cast<std::size_t>(from.width), channels = static_cast<std::size_t>(from.channels);
+  image::Image to = {from.width, from.height, 3, {}, {}};
+  to.data.resize(width * from.height * 3);
+  parallel_for(static_cast<std::size_t>(from.height), kRows, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t y = begin; y < end; ++y) row(&from.data[y * width * channels], &to.data[y * width * 3]);
+  });
+  return to;
 }
 
-std::optional<std::vector<float>> curve_at(const Bytes& profile, std::size_t at) {
-  std::vector<float> curve(kCurveSteps + 1);
-  const auto fill = [&](auto&& value) {
-    for (int i = 0; i <= kCurveSteps; ++i) curve[i] = static_cast<float>(value(i / double(kCurveSteps)));
-    return curve;
-  };
-  if (profile.text(at) == "para") {
-    const int type = static_cast<int>(profile.u16(at + 8));
-    constexpr int kCount[] = {1, 3, 4, 5, 7};
-    if (type > 4 || !profile.holds(at + 12, 4 * kCount[type])) return std::nullopt;
-    std::array<double, 7> p{};
-    for (int i = 0; i < kCount[type]; ++i) p[i] = profile.fixed(at + 12 + 4 * i);
-    return fill([&](double x) { return parametric(type, p, x); });
-  }
-  if (profile.text(at) != "curv") return std::nullopt;
-  const std::size_t count = profile.u32(at + 8);
-  if (count > 65536 || !profile.holds(at + 12, 2 * count)) return std::nullopt;
-  if (count == 0) return fill([](double x) { return x; });
-  if (count == 1) return fill([g = profile.u16(at + 12) / 256.0](double x) { return std::pow(x, g); });
-  return fill([&](double x) {
-    const double place = x * static_cast<double>(count - 1);
-    const std::size_t i = std::min(static_cast<std::size_t>(place), count - 2);
-    const double low = profile.u16(at + 12 + 2 * i), high = profile.u16(at + 14 + 2 * i);
-    return (low + (place - static_cast<double>(i)) * (high - low)) / 65535;
+// The signals of a gray image stand for all channels of the profile.
+std::size_t signal_step(const image::Image& image) {
+  return image::color_channels(image) == 1 ? 0 : 1;
+}
+
+template <std::size_t kChannels>
+image::Image through_curves(const image::Image& from, const SignalsToLight& to_light) {
+  const AdditiveLight<kChannels> light_of(to_light);
+  const std::size_t step = signal_step(from);
+  return rows_converted(from, [&](const float* signals, float* light) {
+    for (int x = 0; x < from.width; ++x, signals += from.channels, light += 3) light_of(signals, step, light);
   });
 }
 
-float looked_up(const std::vector<float>& curve, float value) {
-  const float place = std::clamp(value, 0.0F, 1.0F) * kCurveSteps;
-  const int i = std::min(static_cast<int>(place), kCurveSteps - 1);
-  return curve[i] + (place - static_cast<float>(i)) * (curve[i + 1] - curve[i]);
+image::Image pixel_by_pixel(const image::Image& from, const SignalsToLight& to_light) {
+  const std::size_t step = signal_step(from);
+  return rows_converted(from, [&](const float* pixel, float* light) {
+    std::vector<float> signals;
+    for (int x = 0; x < from.width; ++x, pixel += from.channels)
+      for (std::size_t c = 0; c < to_light.channels(); ++c) signals.push_back(pixel[c * step]);
+    to_light(signals, light);
+  });
+}
+
+image::Image converted(const image::Image& from, const Profile& profile, const SignalsToLight& to_light) {
+  if (!is_additive(profile)) return pixel_by_pixel(from, to_light);
+  return to_light.channels() == 1 ? through_curves<1>(from, to_light) : through_curves<3>(from, to_light);
+}
+
+const char* pixels_name(int channels) {
+  return channels == 1 ? "gray" : channels == 3 ? "RGB" : "CMYK";
 }
 
 }  // namespace
 
-color::Rgb IccProfile::rgb(float r, float g, float b) const {
-  return static_cast<double>(looked_up(curves[0], r)) * columns[0] +
-         static_cast<double>(looked_up(curves[1], g)) * columns[1] +
-         static_cast<double>(looked_up(curves[2], b)) * columns[2];
+int image::color_channels(const image::Image& image) {
+  const auto& names = image.channel_names;
+  constexpr const char* kInks[] = {"C", "M", "Y", "K"};
+  if (names.size() >= 4 && std::equal(std::begin(kInks), std::end(kInks), names.begin())) return 4;
+  return image.channels < 3 ? 1 : 3;
 }
 
-Result<IccProfile> parse_icc(const std::string& bytes, const std::string& name) {
-  const Bytes profile(bytes);
-  const auto broken = [&] { return input_error("{}: its ICC profile is damaged: convert the image to sRGB", name); };
-  if (!profile.holds(0, 132) || profile.text(36) != "acsp") return broken();
-  const std::string space = profile.text(16);
-  if (space != "RGB " && space != "GRAY")
+Result<image::Image> image_through_icc(const image::Image& image, const std::string& bytes, const std::string& name) {
+  const auto damaged = [&] { return input_error("{}: its ICC profile is damaged: convert the image to sRGB", name); };
+  const Profile profile(cmsOpenProfileFromMem(bytes.data(), static_cast<cmsUInt32Number>(bytes.size())));
+  if (!profile || bytes.size() < 20) return damaged();
+  const std::string space = bytes.substr(16, 4);
+  const cmsColorSpaceSignature signature = cmsGetColorSpace(profile.get());
+  const int channels = signature == cmsSigGrayData   ? 1
+                       : signature == cmsSigRgbData  ? 3
+                       : signature == cmsSigCmykData ? 4
+                                                     : 0;
+  if (channels == 0) {
+    if (!std::ranges::all_of(space, [](unsigned char c) { return std::isprint(c); })) return damaged();
     return input_error("{}: its ICC profile is for {}: convert the image to sRGB", name, space);
-  IccProfile result;
-  result.gray = space == "GRAY";
-  const char* const curves[] = {"rTRC", "gTRC", "bTRC"};
-  const char* const colorants[] = {"rXYZ", "gXYZ", "bXYZ"};
-  for (int c = 0; c < 3; ++c) {
-    const auto trc = find_tag(profile, result.gray ? "kTRC" : curves[c]);
-    const auto xyz = find_tag(profile, result.gray ? "wtpt" : colorants[c]);
-    if (!trc || (!xyz && !result.gray))
-      return input_error("{}: its ICC profile maps by tables, which are not read: convert the image to sRGB", name);
-    const auto curve = curve_at(profile, *trc);
-    if (!curve || (xyz && !profile.holds(*xyz, 20))) return broken();
-    result.curves[c] = *curve;
-    if (result.gray) {
-      result.columns[c] = color::Rgb{1, 1, 1} * color::Rgb{c == 0 ? 1.0 : 0.0, c == 1 ? 1.0 : 0.0, c == 2 ? 1.0 : 0.0};
-      continue;
-    }
-    const color::Xyz pcs{profile.fixed(*xyz + 8), profile.fixed(*xyz + 12), profile.fixed(*xyz + 16)};
-    result.columns[c] = color::rgb_from_xyz_d65(color::adapted(pcs, kD50, color::xyz_d65_from_rgb({1, 1, 1})));
   }
-  return result;
+  const int pixels = image::color_channels(image);
+  if (pixels != channels && !(pixels == 1 && channels == 3))
+    return input_error("{}: its ICC profile is for {} and its pixels are read as {}: convert the image to sRGB", name,
+                       pixels_name(channels), pixels_name(pixels));
+  constexpr cmsUInt32Number kFormats[] = {0, TYPE_GRAY_FLT, 0, TYPE_RGB_FLT, TYPE_CMYK_FLT};
+  const Profile pcs(cmsCreateXYZProfile());
+  Transform transform(cmsCreateTransform(profile.get(), kFormats[channels], pcs.get(), TYPE_XYZ_FLT,
+                                         INTENT_RELATIVE_COLORIMETRIC, cmsFLAGS_NOCACHE));  // rows run side by side
+  if (!transform) return damaged();
+  image::Image light =
+      converted(image, profile, SignalsToLight(std::move(transform), static_cast<std::size_t>(channels)));
+  if (!std::ranges::all_of(light.data, [](float v) { return std::isfinite(v); })) return damaged();
+  return light;
 }
 
 }  // namespace goniochrome::sketch

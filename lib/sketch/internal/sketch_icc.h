@@ -1,26 +1,20 @@
-// Internal to lib/fit: embedded ICC profiles of the kind that cameras and editors write for RGB and gray.
+// Pictures with an embedded ICC profile, brought to light. Internal to lib/fit. goniochrome-theory(7), SKETCH FITTING.
 #pragma once
 
-#include <array>
 #include <string>
-#include <vector>
 
 #include "base/result.h"
-#include "color/color.h"
+#include "image/image.h"
 
 namespace goniochrome::sketch {
 
-// A matrix profile: each channel through its curve, then a matrix. Gray has three equal curves.
-struct IccProfile {
-  // One curve: device 0..1 to linear 0..1, evenly spaced.
-  std::array<std::vector<float>, 3> curves;
-  std::array<color::Rgb, 3> columns;  // the working-space color of each channel's full signal
-  bool gray = false;
+// How many of the first channels hold color: 1 is gray, 3 is RGB, and 4 is CMYK, whose channels are named so.
+int image::color_channels(const image::Image& image);
 
-  color::Rgb rgb(float r, float g, float b) const;
-};
-
-// `name` is what errors call the image. Error: CMYK and table profiles, with the remedy, and cut or forged bytes.
-Result<IccProfile> parse_icc(const std::string& bytes, const std::string& name);
+// The picture as light: three channels in the working space, where 1 is the white of the profile's medium, which is
+// paper for CMYK. The signals of `image` are 0..1, and 1 is full ink. `profile` holds the bytes of the ICC profile, and
+// `name` is what errors call the image. Error, with the remedy: a damaged profile, a profile of another color space
+// than gray, RGB and CMYK, or one that does not fit the channels of the image; a gray image may have an RGB profile.
+Result<image::Image> image_through_icc(const image::Image& image, const std::string& profile, const std::string& name);
 
 }  // namespace goniochrome::sketch

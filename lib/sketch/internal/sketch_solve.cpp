@@ -127,6 +127,15 @@ double robust_cost(const std::vector<double>& residuals, const std::vector<doubl
   return all > 0 ? sum / all : 0;
 }
 
+// Ceres 2.1 solves the same problem, with CauchyLoss on groups of three residuals, bounds on the values, and an
+// EvaluationCallback that shares the derivatives. It was tried in the place of this function and found the same paints
+// at a higher cost. The mean CIEDE2000 from the planted paints is 0.011 with both for 200 paints under a lamp, 0.091
+// here and 0.086 there for 100 paints with 30 % of the pixels painted over, and 0.025 and 0.023 for 16 paints under an
+// environment. CauchyLoss, however, keeps its scale during a solve, whereas the scale here follows the median of the
+// residuals in every iteration; so Ceres has to solve several times. In 6,900 searches it evaluated the residuals 1.0
+// million times, and 2.5 million times with the line search that it makes by default where there are bounds, against
+// 0.77 million times here, and each evaluation fits a paint and shades every sample. A picture that is painted over
+// took 0.14 s of processor time (0.27 s with the line search) against 0.10 s here.
 SearchResult robust_search(const std::vector<SearchParameter>& start, const std::vector<double>& importance,
                            const SearchResiduals& residuals) {
   const std::size_t count = importance.size();

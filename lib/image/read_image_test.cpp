@@ -1,0 +1,100 @@
+// The inks of CMYK JPEGs, which libjpeg writes here; other formats are tested in image_test.cpp and hdr_test.cpp.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <vector>
+// libjpeg's headers want <cstdio> before them.
+#include <jpeglib.h>
+
+#include "base/file.h"
+#include "image/image.h"
+
+namespace goniochrome::image {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr int kWidth = 24, kHeight = 16;
+
+// A smooth slope of each ink, 0..255.
+int ink(int x, int y, int c) {
+  const int values[] = {10 * x, 15 * y, 255 - 10 * x, 5 * x + 5 * y};
+  return values[c];
+}
+
+// As Adobe's programs store inks, paper being 255, where `adobe`; else as they are. `space` is JCS_CMYK or JCS_YCCK.
+std::string cmyk_jpeg(bool adobe, J_COLOR_SPACE space) {
+  jpeg_compress_struct info{};
+  jpeg_error_mgr errors{};
+  info.err = jpeg_std_error(&errors);
+  jpeg_create_compress(&info);
+  unsigned char* bytes = nullptr;
+  unsigned long size = 0;
+  jpeg_mem_dest(&info, &bytes, &size);
+  info.image_width = kWidth, info.image_height = kHeight, info.input_components = 4, info.in_color_space = JCS_CMYK;
+  jpeg_set_defaults(&info);
+  jpeg_set_colorspace(&info, space);
+  for (int c = 0; c < 4; ++c) info.comp_info[c].h_samp_factor = info.comp_info[c].v_samp_factor = 1;
+  jpeg_set_quality(&info, 100, TRUE);
+  info.write_Adobe_marker = adobe ? TRUE : FALSE;
+  jpeg_start_compress(&info, TRUE);
+  for (int y = 0; y < kHeight; ++y) {
+    std::vector<JSAMPLE> row;
+    for (int x = 0; x < kWidth; ++x)
+      for (int c = 0; c < 4; ++c) row.push_back(static_cast<JSAMPLE>(adobe ? 255 - ink(x, y, c) : ink(x, y, c)));
+    JSAMPLE* pointer = row.data();
+    jpeg_write_scanlines(&info, &pointer, 1);
+  }
+  jpeg_finish_compress(&info);
+  std::string content(reinterpret_cast<char*>(bytes), size);
+  jpeg_destroy_compress(&info);
+  std::free(bytes);
+  return content;
+}
+
+class CmykJpeg : public testing::Test {
+ protected:
+  void TearDown() override { std::filesystem::remove(path_); }
+  Result<ImagePart> read(const std::string& content, Inks inks) {
+    EXPECT_TRUE(write_file(path_, content).ok());
+    return read_image(path_, inks);
+  }
+  const std::string path_ =
+      (std::filesystem::temp_directory_path() / fmt::format("goniochrome-cmyk-{}.jpg", getpid())).string();
+};
+
+// At quality 100 each coefficient is rounded to 1, which leaves a pixel off by 1 or 2 of 255; YCCK rounds once more.
+TEST_F(CmykJpeg, inks_come_back_as_they_were) {
+  for (const auto& [adobe, space] : {std::pair{true, JCS_CMYK}, {true, JCS_YCCK}, {false, JCS_CMYK}}) {
+    const auto part = read(cmyk_jpeg(adobe, space), Inks::kKept);
+    ASSERT_TRUE(part.ok()) << part.error().message;
+    const Image& image = part->image;
+    EXPECT_EQ(image.channel_names, (std::vector<std::string>{"C", "M", "Y", "K"}));
+    ASSERT_EQ(image.data.size(), 4U * kWidth * kHeight);
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x)
+        for (int c = 0; c < 4; ++c) EXPECT_NEAR(255 * image.pixel(x, y)[c], ink(x, y, c), 3) << x << " " << y << c;
+  }
+}
+
+TEST_F(CmykJpeg, who_does_not_ask_for_inks_gets_rgb) {
+  const auto part = read(cmyk_jpeg(true, JCS_CMYK), Inks::kAsRgb);
+  ASSERT_TRUE(part.ok()) << part.error().message;
+  EXPECT_EQ(part->image.channel_names, (std::vector<std::string>{"R", "G", "B"}));
+}
+
+TEST_F(CmykJpeg, a_cut_file_is_an_error) {
+  const std::string whole = cmyk_jpeg(true, JCS_CMYK);
+  for (const std::size_t size : {whole.size() / 2, whole.size() - 60}) {
+    const auto part = read(whole.substr(0, size), Inks::kKept);
+    ASSERT_FALSE(part.ok()) << size;
+    EXPECT_THAT(part.error().message, HasSubstr("cannot be read as an image: "));
+  }
+}
+
+}  // namespace
+}  // namespace goniochrome::image
