@@ -95,7 +95,7 @@ Result<fit::FitOptions> fit_options(const Options& options) {
 std::string plan(const Options& options, const fit::FitOptions& fit, const formats::Basis& basis) {
   std::vector<double> seen, unseen;
   for (const double e : basis.exponents)
-    (brdf::cos_power(15 * M_PI / 180, e) >= fit::kSeenPart ? seen : unseen).push_back(e);
+    (math::cos_power(15 * M_PI / 180, e) >= fit::kSeenPart ? seen : unseen).push_back(e);
   std::string text = fmt::format(
       "basis {}: {} lobes{}\n"
       "  flake lobes at a first reading of 15 deg:{}\n"

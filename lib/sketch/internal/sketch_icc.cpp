@@ -144,7 +144,7 @@ image::Image rows_converted(const image::Image& from, const Row& row) {
 
 // The signals of a gray image stand for all channels of the profile.
 std::size_t signal_step(const image::Image& image) {
-  return image::color_channels(image) == 1 ? 0 : 1;
+  return color_channels(image) == 1 ? 0 : 1;
 }
 
 template <std::size_t kChannels>
@@ -177,7 +177,7 @@ const char* pixels_name(int channels) {
 
 }  // namespace
 
-int image::color_channels(const image::Image& image) {
+int color_channels(const image::Image& image) {
   const auto& names = image.channel_names;
   constexpr const char* kInks[] = {"C", "M", "Y", "K"};
   if (names.size() >= 4 && std::equal(std::begin(kInks), std::end(kInks), names.begin())) return 4;
@@ -198,7 +198,7 @@ Result<image::Image> image_through_icc(const image::Image& image, const std::str
     if (!std::ranges::all_of(space, [](unsigned char c) { return std::isprint(c); })) return damaged();
     return input_error("{}: its ICC profile is for {}: convert the image to sRGB", name, space);
   }
-  const int pixels = image::color_channels(image);
+  const int pixels = color_channels(image);
   if (pixels != channels && !(pixels == 1 && channels == 3))
     return input_error("{}: its ICC profile is for {} and its pixels are read as {}: convert the image to sRGB", name,
                        pixels_name(channels), pixels_name(pixels));

@@ -9,7 +9,7 @@
 namespace goniochrome::sketch {
 
 // How many of the first channels hold color: 1 is gray, 3 is RGB, and 4 is CMYK, whose channels are named so.
-int image::color_channels(const image::Image& image);
+int color_channels(const image::Image& image);
 
 // The picture as light: three channels in the working space, where 1 is the white of the profile's medium, which is
 // paper for CMYK. The signals of `image` are 0..1, and 1 is full ink. `profile` holds the bytes of the ICC profile, and

@@ -98,7 +98,7 @@ std::string rgb_table_profile() {
 }
 
 // A row of pixels, with the names that an image file gives its channels.
-image::Image report::row_of(int channels, const std::vector<float>& data) {
+image::Image row_of(int channels, const std::vector<float>& data) {
   image::Image image{static_cast<int>(data.size()) / channels, 1, channels, data, {}};
   if (channels == 4) image.channel_names = {"C", "M", "Y", "K"};
   return image;
@@ -110,7 +110,7 @@ image::Image all_levels(int channels) {
   const int count = static_cast<int>(std::pow(5, channels));
   for (int i = 0; i < count; ++i)
     for (int c = 0, rest = i; c < channels; ++c, rest /= 5) data.push_back(static_cast<float>(rest % 5) / 4);
-  return report::row_of(channels, data);
+  return row_of(channels, data);
 }
 
 color::Rgb pixel(const image::Image& image, int x) {
@@ -131,7 +131,7 @@ TEST(SketchIcc, srgb_by_its_profile_is_srgb_by_its_formula) {
   std::vector<float> signals;
   for (int i = 0; i < 256; ++i)
     for (const int level : {i, (7 * i) % 256, 255 - i}) signals.push_back(static_cast<float>(level) / 255);
-  const image::Image image = report::row_of(3, signals);
+  const image::Image image = row_of(3, signals);
   const auto light = image_through_icc(image, rgb_profile(srgb_curve()), "a.png");
   ASSERT_TRUE(light.ok()) << light.error().message;
   for (int i = 0; i < 256; ++i) {
@@ -146,7 +146,7 @@ TEST(SketchIcc, a_curve_of_numbers_is_followed) {
   std::vector<cmsUInt16Number> numbers(1024);
   for (int i = 0; i < 1024; ++i)
     numbers[i] = static_cast<cmsUInt16Number>(std::lround(65535 * std::pow(i / 1023.0, 1.8)));
-  const auto light = image_through_icc(report::row_of(3, {0.25F, 0.25F, 0.25F, 1, 0.5F, 0}),
+  const auto light = image_through_icc(row_of(3, {0.25F, 0.25F, 0.25F, 1, 0.5F, 0}),
                                        rgb_profile(cmsBuildTabulatedToneCurve16(nullptr, 1024, numbers.data())), "a");
   ASSERT_TRUE(light.ok()) << light.error().message;
   const color::Rgb orange = color::rec2020_from_rec709({1, std::pow(0.5, 1.8), 0});
@@ -157,7 +157,7 @@ TEST(SketchIcc, a_curve_of_numbers_is_followed) {
 }
 
 TEST(SketchIcc, gray_is_neutral_and_follows_its_curve) {
-  const auto light = image_through_icc(report::row_of(1, {0, 0.1F, 0.5F, 1}), gray_profile(2.2), "gray.png");
+  const auto light = image_through_icc(row_of(1, {0, 0.1F, 0.5F, 1}), gray_profile(2.2), "gray.png");
   ASSERT_TRUE(light.ok()) << light.error().message;
   int x = 0;
   for (const double signal : {0.0, 0.1, 0.5, 1.0}) {
@@ -165,7 +165,7 @@ TEST(SketchIcc, gray_is_neutral_and_follows_its_curve) {
     ++x;
   }
   // A gray picture may have the profile of a display.
-  const auto shown = image_through_icc(report::row_of(1, {0.5F}), rgb_profile(srgb_curve()), "gray.jpg");
+  const auto shown = image_through_icc(row_of(1, {0.5F}), rgb_profile(srgb_curve()), "gray.jpg");
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(pixel(*shown, 0)[c], srgb_light(0.5), kMatrixRounding);
 }
 
@@ -192,7 +192,7 @@ TEST(SketchIcc, table_profiles_are_followed) {
     EXPECT_LE(most, kTableRounding_de) << channels;
     EXPECT_GE(control, 30) << channels;
   }
-  const auto paper = image_through_icc(report::row_of(4, {0, 0, 0, 0}), cmyk_profile(), "a.tif");
+  const auto paper = image_through_icc(row_of(4, {0, 0, 0, 0}), cmyk_profile(), "a.tif");
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(pixel(*paper, 0)[c], 1, kMatrixRounding);
 }
 
@@ -228,7 +228,7 @@ std::string p3_profile() {
 
 // The white of the working space to the rounding of the profile's own numbers, 1/65536 and five digits.
 TEST(SketchIcc, a_matrix_profile_is_followed) {
-  const auto light = image_through_icc(report::row_of(3, {1, 1, 1, 0.5F, 0.5F, 0.5F, 1, 0, 0}), p3_profile(), "p3.png");
+  const auto light = image_through_icc(row_of(3, {1, 1, 1, 0.5F, 0.5F, 0.5F, 1, 0, 0}), p3_profile(), "p3.png");
   ASSERT_TRUE(light.ok()) << light.error().message;
   const color::Rgb white = pixel(*light, 0), gray = pixel(*light, 1), red = pixel(*light, 2);
   for (int c = 0; c < 3; ++c) {
@@ -243,7 +243,7 @@ TEST(SketchIcc, a_matrix_profile_is_followed) {
 TEST(SketchIcc, profiles_that_cannot_be_followed_are_refused_with_the_remedy) {
   std::string lab = p3_profile(), no_curve = p3_profile();
   lab.replace(16, 4, "Lab "), no_curve.replace(132 + 3 * 12, 4, "none");
-  const image::Image rgb = report::row_of(3, {0.5F, 0.5F, 0.5F});
+  const image::Image rgb = row_of(3, {0.5F, 0.5F, 0.5F});
   for (const auto& [bytes, words] : {std::pair<std::string, std::string>{lab, "is for Lab"},
                                      {no_curve, "damaged"},
                                      {cmyk_profile(), "is for CMYK and its pixels are read as RGB"},
@@ -268,7 +268,7 @@ TEST(SketchIcc, a_damaged_profile_is_an_error_or_finite) {
     if (!light.ok()) return;
     for (const float value : light->data) EXPECT_TRUE(std::isfinite(value));
   };
-  const image::Image rgb = report::row_of(3, {0, 0.3F, 1, 1, 1, 1}), inks = report::row_of(4, {0, 0.3F, 1, 0.5F});
+  const image::Image rgb = row_of(3, {0, 0.3F, 1, 1, 1, 1}), inks = row_of(4, {0, 0.3F, 1, 0.5F});
   for (const auto& [whole, image] : {std::pair<std::string, image::Image>{p3_profile(), rgb}, {cmyk_profile(), inks}}) {
     const std::size_t head = std::min<std::size_t>(whole.size(), 400);
     for (std::size_t at = 0; at < head; ++at) {
