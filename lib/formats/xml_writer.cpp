@@ -1,7 +1,6 @@
 #include <cmath>
 
 #include "base/text.h"
-#include "base/utf8.h"
 #include "formats/internal/schemas.h"
 #include "formats/internal/xml_stream.h"
 #include "formats/xml.h"

@@ -10,7 +10,7 @@
 
 #include "base/file.h"
 #include "brdf/measured.h"
-#include "color/reflection_json.h"
+#include "color/reflection.h"
 #include "envmap/prefiltered.h"
 #include "formats/basis.h"
 #include "formats/cgats.h"
@@ -18,7 +18,7 @@
 #include "formats/cxf.h"
 #include "formats/xml.h"
 #include "image/hdr.h"
-#include "library/library_index.h"
+#include "library/index.h"
 #include "mesh/mesh.h"
 
 namespace goniochrome::fuzz {

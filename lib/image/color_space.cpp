@@ -53,11 +53,7 @@ std::optional<Space> named_space(std::string name) {
 }
 
 Result<Space> space_of(const ImagePart& part, const std::string& file) {
-  const auto text = [&](const char* name) -> std::string {
-    const auto found = part.attributes.find(name);
-    const auto* value = found == part.attributes.end() ? nullptr : std::get_if<std::string>(&found->second);
-    return value ? *value : "";
-  };
+  const auto text = [&](const char* name) { return attribute_or<std::string>(part.attributes, name, ""); };
   const auto unknown = [&](const char* attribute, const std::string& value) {
     return input_error("{}: {} is \"{}\", which is not known: convert it to linear Rec.709 and tag it lin_rec709_scene",
                        file, attribute, value);
@@ -66,12 +62,12 @@ Result<Space> space_of(const ImagePart& part, const std::string& file) {
     if (const auto space = named_space(id)) return *space;
     return unknown("colorInteropID", id);
   }
-  if (const auto found = part.attributes.find("chromaticities"); found != part.attributes.end())
-    if (const auto* xy = std::get_if<std::vector<float>>(&found->second); xy && xy->size() == 8) {
-      Space space;
-      std::copy(xy->begin(), xy->end(), space.primaries.begin());
-      return space;
-    }
+  const auto* xy = find_attribute<std::vector<float>>(part.attributes, "chromaticities");
+  if (xy && xy->size() == 8) {
+    Space space;
+    std::copy(xy->begin(), xy->end(), space.primaries.begin());
+    return space;
+  }
   if (const std::string name = text("oiio:ColorSpace"); !name.empty()) {
     if (const auto space = named_space(name)) return *space;
     return unknown("its color space", name);

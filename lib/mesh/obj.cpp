@@ -1,5 +1,5 @@
-// Wavefront OBJ, as far as a picture needs it: v, vt, vn, f, o, g, usemtl. Everything else (lines,
-// smoothing groups, material libraries) is passed over.
+// Wavefront OBJ, as far as a picture needs it: v, vt, vn, f, o, g, usemtl. Everything else (lines, smoothing groups,
+// material libraries) is passed over.
 #include <algorithm>
 #include <filesystem>
 #include <optional>

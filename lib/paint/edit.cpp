@@ -50,7 +50,7 @@ void move_to(Locus& locus, const Appearance& target) {
   locus.appearance = target;
 }
 
-// Turned into (-180, 180].
+// The turn from one angle to another, in (-180, 180].
 double turn_deg(double from_deg, double to_deg) {
   const double turn = std::remainder(to_deg - from_deg, 360.0);
   return turn == -180 ? 180 : turn;
@@ -65,7 +65,7 @@ void move_average(Locus& locus, const Edit& edit, Edited& result) {
   if (edit.average_lightness) tweak.lightness = *edit.average_lightness - average.L;
   if (achromatic && (edit.average_hue_deg || edit.average_chroma))
     result.skipped.push_back(
-        fmt::format("{}: the average chroma {:.2f} is below 1, a gray has no hue: move its face and flop",
+        fmt::format("{}: the average chroma {:.2f} is below 1, and a gray has no hue: move its face and flop",
                     edit.average_hue_deg ? "hue" : "chroma", average.chroma));
   map_all(locus, tweak);
 }
@@ -93,7 +93,7 @@ void move_travel(Locus& locus, const Edit& edit, Edited& result) {
     move_to(locus, target);
   else
     result.skipped.push_back(
-        fmt::format("travel: from {} deg it would go to {} deg, and it lies above 15 and up to 180",
+        fmt::format("travel: it would go from {} deg to {} deg, but it must be above 15 and at most 180",
                     shortest(locus.appearance.travel_deg), shortest(target.travel_deg)));
 }
 
@@ -133,7 +133,7 @@ bool has_color(const Paint& paint) {
   return paint.appearance || (paint.measurement && !paint.measurement->rows.empty());
 }
 
-// Puts a moved locus back: its residual is told by the rows it has now.
+// Puts a moved locus back. Its residual is that of the rows that it has now.
 void put_back(Paint& paint, Locus locus) {
   locus.appearance.residual_de00 = locus.rows.empty() ? std::nullopt : std::optional<double>(worst_de00(locus));
   paint.appearance = locus.appearance;
@@ -204,7 +204,7 @@ std::vector<LabReading> rows_between(const Measurement& from, const Measurement&
   return rows;
 }
 
-// A color that does not travel has no say in where the travel ends.
+// If one of the paints has a single color, the travel is that of the other one.
 double travel_between(const Appearance& from, const Appearance& to, double fraction) {
   if (from.face == from.flop) return to.travel_deg;
   if (to.face == to.flop) return from.travel_deg;

@@ -6,7 +6,6 @@
 
 #include "base/angles.h"
 #include "base/text.h"
-#include "base/utf8.h"
 
 namespace goniochrome::paint {
 

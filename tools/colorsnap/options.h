@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cli/options.h"
-#include "library/search_library.h"
+#include "library/search.h"
 
 namespace goniochrome::tool {
 

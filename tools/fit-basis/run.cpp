@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "base/file.h"
-#include "base/input.h"
 #include "base/text.h"
 #include "fit/basis_search.h"
 #include "fit/basis_targets.h"

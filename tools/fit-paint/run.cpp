@@ -5,12 +5,12 @@
 #include <utility>
 
 #include "base/clock.h"
-#include "base/input.h"
+#include "base/file.h"
 #include "brdf/lobe_model.h"
 #include "color_maps.h"
 #include "fit/albedo_error.h"
 #include "fit/paint_fit.h"
-#include "formats/name_ledger.h"
+#include "formats/imported.h"
 #include "formats/xml.h"
 #include "settings.h"
 #include "tally.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/text.h"
 #include "paint/curve.h"
 #include "sketch/sketch_gloss.h"
 #include "sketch/sketch_picture.h"
@@ -47,21 +48,7 @@ td.number { text-align: right; }
 )";
 
 std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&') {
-      out += "&amp;";
-    } else if (c == '<') {
-      out += "&lt;";
-    } else if (c == '>') {
-      out += "&gt;";
-    } else if (c == '"') {
-      out += "&quot;";
-    } else {
-      out += c;
-    }
-  }
-  return out;
+  return xml_escaped(text, "");
 }
 
 std::string base64(const std::string& bytes) {

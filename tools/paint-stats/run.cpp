@@ -10,7 +10,7 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "formats/batches.h"
-#include "paint/metrics_filter.h"
+#include "paint/metrics.h"
 
 namespace goniochrome::tool {
 

@@ -1,4 +1,5 @@
-// The border between the tools and goniochrome-oiio.so, in C so that it holds across compilers.
+// How the tools call goniochrome-oiio.so, which reads images through OpenImageIO. The interface is in C, so that the
+// two may come from different compilers.
 #pragma once
 
 extern "C" {
@@ -14,8 +15,8 @@ struct GoniochromeOiioImage {
   const float* chromaticities;       // 8 values, or null
   const char* icc_profile;           // the bytes of an embedded ICC profile, or null
   unsigned long icc_size;
-  const char* stored_space;  // what a JPEG was stored in, as in "CMYK", or ""
-  int is_integer;            // whether the file holds whole numbers, which 0..1 stand for here
+  const char* stored_space;  // the color space in which a JPEG file is stored, such as "CMYK", or ""
+  int is_integer;            // whether the file holds whole numbers; they are 0..1 here
 };
 
 // Decodes `path` and calls take(context, image) once, or fail(context, reason) once.
