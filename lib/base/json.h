@@ -1,4 +1,4 @@
-// JSON for reports: keys stay in the order written, and a number that is not finite becomes null.
+// JSON for reports. Keys stay in the order in which they are written, and a number that is not finite becomes null.
 #pragma once
 
 #include <cmath>

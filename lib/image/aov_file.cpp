@@ -9,7 +9,7 @@ namespace goniochrome::image {
 
 namespace {
 
-// `count` comma-separated numbers.
+// The `count` numbers that the commas in `text` part.
 Result<std::vector<double>> numbers(std::string_view text, std::size_t count, const std::string& path,
                                     const char* name) {
   std::vector<double> values;
@@ -56,7 +56,7 @@ Result<void> take_operator(const std::string& text, AovFile& file) {
   return {};
 }
 
-// The strings of a JSON list.
+// The strings of the JSON list in an attribute.
 std::vector<std::string> names_of(const Attributes& attributes, const char* name) {
   const auto text = attribute_or<std::string>(attributes, name, "");
   std::vector<std::string> names;

@@ -28,7 +28,7 @@ struct Space {
   double gamma = 1;
 };
 
-// IEC 61966-2-1, to linear.
+// Linear light from a value in sRGB (IEC 61966-2-1).
 double linear_from_srgb(double v) {
   return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
 }
@@ -83,8 +83,8 @@ bool same(const Primaries& a, const Primaries& b) {
 
 using Columns = std::array<Vec3, 3>;
 
-// Columns of the matrix from RGB of `p` to the working space: each primary, scaled so that they add up to the white,
-// adapted to D65.
+// The columns of the matrix from RGB of `p` to the working space. They are the primaries, scaled so that they add up to
+// the white, and adapted to D65.
 Result<Columns> to_working_space(const Primaries& p, const std::string& file) {
   const auto xyz = [&](int i) { return Vec3{p[i], p[i + 1], 1 - p[i] - p[i + 1]}; };
   const Vec3 r = xyz(0), g = xyz(2), b = xyz(4), w = xyz(6);

@@ -51,9 +51,9 @@ std::size_t most_samples_a_byte(Imf::Compression compression) {
   }
 }
 
-// Whether every attribute of every header ends within the file: the library makes room for what an attribute says its
-// length is before it reads it. A header is a list of name, type, length and value, ended by an empty name; so is the
-// list of the headers of several parts (bit 12 of the version).
+// Whether every attribute of every header ends within the file. The library allocates the length that an attribute
+// states before it reads it. A header is a list of name, type, length and value, ended by an empty name; so is the list
+// of the headers of several parts (bit 12 of the version).
 bool header_ends_within(const std::string& content) {
   if (content.size() < 8) return false;
   const bool several = (static_cast<unsigned char>(content[5]) & 0x10) != 0;
@@ -173,7 +173,7 @@ Result<ImagePart> decoded_part(Imf::MultiPartInputFile& file, int index, const s
   return part;
 }
 
-// The library's own pool, made once and only where it helps.
+// Makes the library's own pool of threads, once and only if it helps.
 void use_threads() {
   if (Imf::globalThreadCount() == 0 && threads() > 1) Imf::setGlobalThreadCount(threads());
 }

@@ -40,7 +40,7 @@ Result<Module> loaded_module() {
         "{}: cannot be loaded ({}): it reads every format but EXR; install it there, set GONIOCHROME_MODULE_PATH to "
         "its folder, or convert the image to EXR",
         path, dlerror());
-  loaded.read = reinterpret_cast<GoniochromeOiioRead>(dlsym(handle, kGoniochromeOiioReadName));
+  loaded.read = reinterpret_cast<GoniochromeOiioRead>(dlsym(handle, kOiioReadName));
   if (!loaded.read) return input_error("{}: is not of this version of Goniochrome: install both from one build", path);
   return loaded;
 }
@@ -86,7 +86,7 @@ Result<ImagePart> read_through_module(const std::string& path, const std::string
   return std::move(decoded.part);
 }
 
-// Standard input as a file in memory, for a library that wants a name.
+// Reads standard input, kept as a file in memory, because the library reads files by name.
 Result<ImagePart> read_content_through_module(const std::string& content) {
   const int fd = memfd_create("goniochrome", MFD_CLOEXEC);
   if (fd < 0) return input_error("standard input: cannot be kept in memory");

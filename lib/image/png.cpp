@@ -42,7 +42,7 @@ void append(png_structp png, png_bytep bytes, png_size_t count) {
   static_cast<std::string*>(png_get_io_ptr(png))->append(reinterpret_cast<const char*>(bytes), count);
 }
 
-// libpng leaves by longjmp, so nothing with a destructor is made between setjmp and the end.
+// libpng reports errors by longjmp, so no object with a destructor is made between setjmp and the end.
 bool encode(png_structp png, png_infop info, const Image& image, const std::uint8_t* bytes,
             const std::vector<png_text>& entries) {
   if (setjmp(png_jmpbuf(png))) return false;

@@ -31,7 +31,7 @@ struct Head {
   std::uint64_t file_bytes = 0, directory_at = 0, directory_bytes = 0;
 };
 
-// The metrics that are kept.
+// The metrics that an index keeps.
 std::span<const paint::MetricColumn> columns() {
   return paint::metric_columns_without_fit();
 }
@@ -110,7 +110,7 @@ Result<std::uint64_t> checksum(const std::string& path) {
   return sum;
 }
 
-// Puts arrays one after another and remembers where.
+// Packs arrays one after another into the bytes of a file; add() returns where each of them begins.
 class Packer {
  public:
   // `expected_bytes`: about what will be added.
@@ -159,7 +159,7 @@ struct SectionRows {
   std::vector<std::uint32_t> labels;
 };
 
-// Gathers paints and packs them.
+// Gathers the paints of a library and packs them into an index.
 class Builder {
  public:
   // Computes what the paints of a batch need on all cores, then takes them in their order.
@@ -270,7 +270,7 @@ Result<Built> build(const std::function<Result<std::optional<paint::Paint>>()>& 
   return built;
 }
 
-// The pieces of a packed index, each checked to lie inside it.
+// Finds the pieces of a packed index, and checks that each of them lies inside it.
 class Unpacker {
  public:
   explicit Unpacker(std::string_view bytes) : bytes_(bytes) {}
@@ -297,7 +297,7 @@ class Unpacker {
   std::string_view bytes_;
 };
 
-// Why the mapped index is not of this state of the library; empty if it is.
+// Why the mapped index does not belong to this state of the library; empty if it does.
 Result<std::string> staleness(const Json& directory, const Guard& guard, const std::string& library_path) {
   if (directory.value("library_bytes", std::uint64_t{0}) != guard.bytes) return std::string("the library has changed");
   if (directory.value("library_modified_ns", std::int64_t{0}) == guard.modified_ns) return std::string();

@@ -60,7 +60,8 @@ LibrarySearch::LibrarySearch(const LibraryIndex& index, LibrarySearchOptions opt
   }
 }
 
-// The candidates are what the query shares with one section, and what those have in common with one another.
+// The candidates are the geometries that the query shares with one section, and those that several candidates have in
+// common.
 std::vector<paint::Geometry> LibrarySearch::shared_geometries(const std::vector<paint::LabReading>& rows) const {
   constexpr std::size_t kEnough = 3, kMostCandidates = 64;
   std::vector<std::vector<paint::Geometry>> candidates;

@@ -29,8 +29,8 @@ bool inside(const Point2& p, const Point2& a, const Point2& b, const Point2& c) 
   return doubled_area(a, b, p) >= 0 && doubled_area(b, c, p) >= 0 && doubled_area(c, a, p) >= 0;
 }
 
-// The polygon seen along its mean normal (Newell: the sum of the cross products about the first corner), where it turns
-// counter-clockwise.
+// The polygon in the plane across its mean normal, from where it turns counter-clockwise. The normal is Newell's, the
+// sum of the cross products about the first corner.
 std::vector<Point2> flattened(const std::vector<Vec3>& ring) {
   Vec3 normal;
   for (std::size_t i = 1; i + 1 < ring.size(); ++i) normal += cross(ring[i] - ring[0], ring[i + 1] - ring[0]);
@@ -79,7 +79,7 @@ struct HashVec3 {
   }
 };
 
-// What makes a corner a vertex of its own.
+// Corners that agree in these are one vertex.
 struct VertexKey {
   std::uint64_t position_and_normal;
   std::int32_t texture;

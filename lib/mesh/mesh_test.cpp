@@ -87,7 +87,7 @@ TEST_F(MeshFiles, ErrorsNameLineValueAndRemedy) {
   EXPECT_THAT(obj_error(kSquare + "f 1 2 -5\n"), HasSubstr("vertex -5"));
   EXPECT_THAT(obj_error(kSquare + "f 0 1 2\n"), HasSubstr("whole number from 1"));
   EXPECT_THAT(obj_error(kSquare + "f 1//1 2//1 3//1\n"), HasSubstr("normal 1, but there are 0"));
-  EXPECT_THAT(obj_error(kSquare + "\nf 1 2\n"), HasSubstr("t.obj:6: a face of 2 corners"));
+  EXPECT_THAT(obj_error(kSquare + "\nf 1 2\n"), HasSubstr("t.obj:6: the face has 2 corners"));
   EXPECT_THAT(obj_error(kSquare), HasSubstr("holds no faces"));
   EXPECT_THAT(obj_error(kSquare + "f 1 1 2\n"), HasSubstr("none of its 1 faces has an area"));
   EXPECT_THAT(obj_error(kSquare + "f 1 2 \\\n3 \\\nx\n"), HasSubstr("t.obj:7: \"x\"")) << "continued lines count";

@@ -258,7 +258,7 @@ int keep_what_is_seen(Rim& rim, const Cover& cover, double size) {
   return turned;
 }
 
-// The two sides that continue each other best.
+// The two sides, one of each edge, whose normals differ least.
 struct Pair {
   Vec3 normal_a, normal_b, inward_a;
   double cosine = -2;
@@ -388,7 +388,7 @@ std::vector<SeamPoint> facing_points(const RimTree& rim_a, const RimTree& rim_b,
         continue;
       }
       SeamPoint p{at, other.at, pair.normal_a, pair.normal_b, (1 / edge_length) * way, -pair.inward_a};
-      // The smooth normal need not be the face's own: the way across is made perpendicular to it.
+      // The smooth normal may differ from the face's own, so the direction across is made perpendicular to it.
       p.across = normalized(p.across - dot(p.across, p.normal_a) * p.normal_a);
       const Vec3 between = (other.at - at) - dot(other.at - at, p.normal_a) * p.normal_a;
       if (length(between) > 0.01 * spacing && dot(between, p.across) < kFacing * length(between)) continue;

@@ -24,7 +24,7 @@ color::Lab lab_of(const Channels& c) {
   return {c[0], c[1], c[2]};
 }
 
-// A point to be fitted, and what fits it at one travel.
+// A point to be fitted, and the fit at one travel.
 struct Sample {
   double aspecular_deg;
   Channels value;

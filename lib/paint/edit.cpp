@@ -26,7 +26,7 @@ color::Lab mixed(const color::Lab& x, const color::Lab& y, double fraction) {
   return {std::lerp(x.L, y.L, fraction), std::lerp(x.a, y.a, fraction), std::lerp(x.b, y.b, fraction)};
 }
 
-// What a color move works on: the appearance and the rows, which move together.
+// What a move of the color changes: the appearance and the rows, which move together.
 struct Locus {
   Appearance appearance;
   std::vector<LabReading> rows;
@@ -103,7 +103,8 @@ void clip(color::Lab& lab, const std::string& what, Edited& result) {
   lab.L = 0;
 }
 
-// The worst row in the plane of incidence, or of all where there is none there, as in appearance_from_rows.
+// The difference of the worst row in the plane of incidence, or of all rows if none is in it, as in
+// appearance_from_rows.
 double worst_de00(const Locus& locus) {
   const auto in_plane = [](const LabReading& row) { return !row.geometry.out_of_plane; };
   const bool any = std::ranges::any_of(locus.rows, in_plane);
@@ -115,7 +116,7 @@ double worst_de00(const Locus& locus) {
   return worst;
 }
 
-// The paint's appearance and rows; the appearance fitted where it has none.
+// The paint's appearance and rows. The appearance is fitted if the paint has none.
 Result<Locus> locus_of(const Paint& paint) {
   Locus locus;
   if (paint.measurement) locus.rows = paint.measurement->rows;
@@ -318,7 +319,8 @@ Result<Paint> between(const Paint& from, const Paint& to, double fraction) {
     paint.anisotropy = Anisotropy{std::lerp(from.anisotropy->alpha_x, to.anisotropy->alpha_x, fraction),
                                   std::lerp(from.anisotropy->alpha_y, to.anisotropy->alpha_y, fraction)};
   if (from.measurement && to.measurement) locus.rows = rows_between(*from.measurement, *to.measurement, fraction);
-  // Only a measurement states a condition: under any but the default one a paint without rows gets those of its curve.
+  // Only a measurement states a condition. So a paint without rows gets those of its curve, unless its condition is the
+  // default one.
   if (locus.rows.empty() && a != color::ViewingCondition()) locus.rows = rows_of(locus.appearance);
   if (!locus.rows.empty()) paint.measurement = Measurement{a, "", {}};
   put_back(paint, std::move(locus));

@@ -241,7 +241,7 @@ bool holds(const std::string& op, double x, double y) {
   return x < y || x > y;  // != between numbers that are both applicable
 }
 
-// Turns `a < b` round to `b > a`.
+// The sign that says of b and a what `op` says of a and b.
 std::string mirrored(std::string op) {
   if (op[0] == '<')
     op[0] = '>';

@@ -25,7 +25,7 @@ std::string hex(const Vec3& color) {
   return fmt::format("#{:02x}{:02x}{:02x}", channel_byte(color.x), channel_byte(color.y), channel_byte(color.z));
 }
 
-// "#rrggbb" made darker.
+// The color "#rrggbb" made darker by the factor `light`.
 std::string shaded(const std::string& color, double light) {
   Vec3 rgb;
   for (int c = 0; c < 3; ++c) rgb[c] = light * std::stoi(color.substr(1 + 2 * c, 2), nullptr, 16) / 255.0;

@@ -12,14 +12,14 @@ namespace goniochrome::report {
 
 namespace {
 
-// Okabe and Ito's palette, without its yellow, which is lost on white paper.
+// Okabe and Ito's palette without its yellow, which can hardly be seen on white paper.
 constexpr const char* kPalette[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#444444"};
 
 constexpr double kLeft = 64, kRight = 16, kTop = 34, kBottom = 48;
 constexpr double kLegendLine = 17;
 constexpr double kLetter = 6.6;  // mean width of a letter at 12 px
 
-// A data axis laid along a stretch of the picture.
+// Where the values of an axis lie in the picture.
 class Scale {
  public:
   Scale(const Axis& axis, const std::vector<Series>& series, const std::vector<double> Series::*values, double from,
@@ -42,7 +42,7 @@ class Scale {
   std::vector<double> ticks(int count) const { return goniochrome::report::ticks(low_, high_, logarithmic_, count); }
 
  private:
-  // A little air around the data, and room where all values are one.
+  // Leaves some space around the data, and makes room if all values are equal.
   void widen(double& low, double& high) const {
     if (logarithmic_) {
       const double factor = high > low ? std::pow(high / low, 0.04) : 2;

@@ -27,5 +27,9 @@ using GoniochromeOiioRead = void (*)(const char* path, void* context, Goniochrom
 
 }  // extern "C"
 
+namespace goniochrome::image {
+
 // The name under which the module exports its GoniochromeOiioRead.
-constexpr const char* kGoniochromeOiioReadName = "goniochrome_oiio_read_2";
+constexpr const char* kOiioReadName = "goniochrome_oiio_read_2";
+
+}  // namespace goniochrome::image

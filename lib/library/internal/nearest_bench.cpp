@@ -1,5 +1,6 @@
-// Nearest paints against library size: tree and scan side by side, in both metrics. Every method is held against brute
-// force before it is timed. Queries are paints of the library moved by a few units: designs that have near neighbors.
+// How long a search for the nearest paints takes, by the size of the library, in both metrics, for the tree and the
+// scan. Every method is compared with brute force before it is timed. Queries are paints of the library moved by a few
+// units, like designs that have near neighbors.
 #include <benchmark/benchmark.h>
 
 #include <map>
