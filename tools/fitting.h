@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "base/input.h"
+#include "base/file.h"
 #include "brdf/measured.h"
 #include "cli/options.h"
 #include "formats/xml.h"

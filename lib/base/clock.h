@@ -1,4 +1,4 @@
-// Time and memory: what a tool reports and what limits it.
+// Clocks, time limits, and the memory that a process has used, for reports and for stopping in time.
 #pragma once
 
 #include <chrono>

@@ -7,18 +7,36 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <utility>
 
 namespace goniochrome {
 
 namespace {
 
+constexpr std::size_t kPeek = 1 << 16, kChunk = 1 << 20;
+
 std::string reason() {
   return std::strerror(errno);
+}
+
+Error cannot_be_read(const std::string& name) {
+  return input_error("{}: cannot be read: {}", name, reason());
+}
+Error cannot_be_written(const std::string& name) {
+  return input_error("{}: cannot be written: {}", name, reason());
+}
+Error is_a_folder(const std::string& name) {
+  return input_error("{}: is a folder: name a file", name);
 }
 
 std::string folder_of(const std::string& path) {
   const auto parent = std::filesystem::path(path).parent_path();
   return parent.empty() ? "." : parent.string();
+}
+
+// A name in the same folder for the file that is being written.
+std::string scratch_name(const std::string& path) {
+  return fmt::format("{}/.{}.{}.tmp", folder_of(path), std::filesystem::path(path).filename().string(), getpid());
 }
 
 // The mode a newly created file would get: 0666 less the umask.
@@ -30,39 +48,84 @@ mode_t creation_mode() {
 
 }  // namespace
 
-Result<std::string> file_content(const std::string& path) {
-  std::FILE* stream = path == "-" ? stdin : std::fopen(path.c_str(), "rb");
-  if (!stream) return input_error("{}: cannot be read: {}", path, reason());
+Result<InputFile> InputFile::open(const std::string& path) {
+  if (path.empty() || path == "-") return InputFile("standard input", STDIN_FILENO);
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return cannot_be_read(path);
+  InputFile file(path, descriptor);
+  struct stat status;
+  if (fstat(descriptor, &status) == 0 && S_ISDIR(status.st_mode)) return is_a_folder(path);
+  return file;
+}
+
+InputFile::InputFile(InputFile&& other) noexcept
+    : name_(std::move(other.name_)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      ahead_(std::move(other.ahead_)) {}
+
+InputFile::~InputFile() {
+  if (descriptor_ > STDIN_FILENO) close(descriptor_);
+}
+
+Result<std::string_view> InputFile::peek() {
+  if (ahead_.empty()) {
+    std::string first;
+    GONIO_ASSIGN([[maybe_unused]] const auto count, read(first, kPeek));
+    ahead_ = std::move(first);
+  }
+  return std::string_view(ahead_);
+}
+
+Result<std::size_t> InputFile::read(std::string& buffer, std::size_t most) {
+  if (!ahead_.empty()) {
+    const std::size_t count = std::min(most, ahead_.size());
+    buffer.append(ahead_, 0, count);
+    ahead_.erase(0, count);
+    return count;
+  }
+  const std::size_t size = buffer.size();
+  buffer.resize(size + most);
+  ssize_t count = 0;
+  do count = ::read(descriptor_, buffer.data() + size, most);
+  while (count < 0 && errno == EINTR);
+  buffer.resize(size + static_cast<std::size_t>(count < 0 ? 0 : count));
+  if (count < 0) return cannot_be_read(name_);
+  return static_cast<std::size_t>(count);
+}
+
+Result<std::string> InputFile::rest(std::size_t most) {
   std::string content;
-  char buffer[1 << 16];
-  std::size_t count = 0;
-  while ((count = std::fread(buffer, 1, sizeof buffer, stream)) > 0) content.append(buffer, count);
-  const bool failed = std::ferror(stream) != 0;
-  const std::string why = failed ? reason() : "";
-  if (stream != stdin) std::fclose(stream);
-  if (failed) return input_error("{}: cannot be read: {}", path, why);
-  return content;
+  for (;;) {
+    GONIO_ASSIGN(const std::size_t count, read(content, kChunk));
+    if (count == 0) return content;
+    if (content.size() > most) return input_error("{}: is larger than {} bytes: split it", name_, most);
+  }
+}
+
+Result<std::string> file_content(const std::string& path) {
+  if (path.empty()) return input_error("the name of a file is empty: name a file");
+  GONIO_ASSIGN(InputFile file, InputFile::open(path));
+  return file.rest(std::string::npos);
 }
 
 // An unnamed file (O_TMPFILE) is gone with the process, however it ends; only commit() gives it a name. File systems
 // without unnamed files get a dot file, removed by the destructor.
 Result<OutputFile> OutputFile::create(const std::string& path) {
   if (path.empty() || path == "-") return OutputFile("", "", stdout);
-  if (std::filesystem::is_directory(path)) return input_error("{}: is a folder: name a file", path);
-  const std::string folder = folder_of(path);
+  if (std::filesystem::is_directory(path)) return is_a_folder(path);
   if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path)) {
     // A device or a named pipe is written in place.
     std::FILE* stream = std::fopen(path.c_str(), "wb");
-    if (!stream) return input_error("{}: cannot be written: {}", path, reason());
+    if (!stream) return cannot_be_written(path);
     return OutputFile("", "", stream);
   }
-  int fd = open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  int fd = open(folder_of(path).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   std::string scratch;
   if (fd < 0 && (errno == EOPNOTSUPP || errno == EISDIR)) {
-    scratch = fmt::format("{}/.{}.{}.tmp", folder, std::filesystem::path(path).filename().string(), getpid());
+    scratch = scratch_name(path);
     fd = open(scratch.c_str(), O_CREAT | O_TRUNC | O_RDWR | O_CLOEXEC, 0600);
   }
-  if (fd < 0) return input_error("{}: cannot be written: {}", path, reason());
+  if (fd < 0) return cannot_be_written(path);
   if (fchmod(fd, creation_mode()) != 0) {
     // Some file systems have no modes; the file is still good.
   }
@@ -80,14 +143,18 @@ OutputFile::~OutputFile() {
   if (!scratch_.empty()) unlink(scratch_.c_str());
 }
 
+Error OutputFile::unwritable() const {
+  return cannot_be_written(path_.empty() ? "standard output" : path_);
+}
+
 Result<void> OutputFile::write(std::string_view bytes) {
   if (std::fwrite(bytes.data(), 1, bytes.size(), stream_) == bytes.size()) return {};
-  return input_error("{}: cannot be written: {}", path_.empty() ? "standard output" : path_, reason());
+  return unwritable();
 }
 
 Result<void> OutputFile::flush() {
   if (std::fflush(stream_) == 0) return {};
-  return input_error("{}: cannot be written: {}", path_.empty() ? "standard output" : path_, reason());
+  return unwritable();
 }
 
 Result<void> OutputFile::commit() {
@@ -95,15 +162,14 @@ Result<void> OutputFile::commit() {
   if (path_.empty()) return {};
   std::string named = scratch_;
   if (named.empty()) {
-    named = fmt::format("{}/.{}.{}.tmp", folder_of(path_), std::filesystem::path(path_).filename().string(), getpid());
+    named = scratch_name(path_);
     unlink(named.c_str());
-    if (linkat(AT_FDCWD, scratch_path().c_str(), AT_FDCWD, named.c_str(), AT_SYMLINK_FOLLOW) != 0)
-      return input_error("{}: cannot be written: {}", path_, reason());
+    if (linkat(AT_FDCWD, scratch_path().c_str(), AT_FDCWD, named.c_str(), AT_SYMLINK_FOLLOW) != 0) return unwritable();
   }
   if (std::rename(named.c_str(), path_.c_str()) != 0) {
-    const std::string why = reason();
+    const Error error = unwritable();  // before unlink() gives another reason
     unlink(named.c_str());
-    return input_error("{}: cannot be written: {}", path_, why);
+    return error;
   }
   scratch_.clear();
   return {};

@@ -1,36 +1,30 @@
 #include "base/file.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
-#include <filesystem>
 #include <fstream>
 
 #include "base/hard_case_for_test.h"
+#include "base/scratch_for_test.h"
 
 namespace goniochrome {
 namespace {
 
 class Files : public testing::Test {
  protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::size_t files_in_folder() const {
-    return static_cast<std::size_t>(
-        std::distance(std::filesystem::directory_iterator(folder_), std::filesystem::directory_iterator()));
-  }
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("gonio_file_test_" + std::to_string(getpid()));
-  std::string path_ = (folder_ / "out.txt").string();
+  ScratchFolder folder_;
+  std::string path_ = folder_.path("out.txt");
 };
 
 TEST_F(Files, WholeContentComesBack) {
   const std::string bytes("a\0b\nc", 5);
   ASSERT_TRUE(write_file(path_, bytes).ok());
   EXPECT_EQ(*file_content(path_), bytes);
-  EXPECT_EQ(files_in_folder(), 1u);
+  EXPECT_EQ(folder_.files(), 1u);
 }
 
 TEST_F(Files, MissingInputNamesThePath) {
@@ -40,7 +34,22 @@ TEST_F(Files, MissingInputNamesThePath) {
 }
 
 TEST_F(Files, FolderAsTargetIsRefused) {
-  EXPECT_FALSE(write_file(folder_.string(), "x").ok());
+  EXPECT_FALSE(write_file(folder_.path(""), "x").ok());
+}
+
+TEST_F(Files, FolderAsInputIsRefused) {
+  EXPECT_THAT(file_content(folder_.path("")).error().message, testing::EndsWith("is a folder: name a file"));
+  EXPECT_FALSE(file_content("").ok());
+}
+
+TEST_F(Files, PeekedBytesAreReadAgain) {
+  ASSERT_TRUE(write_file(path_, "0123456789").ok());
+  auto file = InputFile::open(path_).value();
+  EXPECT_EQ(*file.peek(), "0123456789");
+  std::string first;
+  EXPECT_EQ(*file.read(first, 4), 4u);
+  EXPECT_EQ(*file.rest(6), "456789");
+  EXPECT_FALSE(InputFile::open(path_)->rest(9).ok());
 }
 
 TEST_F(Files, ScratchPathCanBeOpenedByName) {
@@ -71,7 +80,7 @@ TEST_F(Files, HardCase_InterruptedLeavesTheOldFile) {
     (void)file->write("half of the new one");
     (void)file->flush();
   });
-  EXPECT_EQ(files_in_folder(), 1u) << "nothing may be left behind";
+  EXPECT_EQ(folder_.files(), 1u) << "nothing may be left behind";
   const double lost = *file_content(path_) == "old" ? 0 : 3;
   killed_while([&] {
     std::FILE* control = std::fopen(path_.c_str(), "w");

@@ -1,4 +1,5 @@
-// For tests: one figure of a hard case, the error of the textbook form beside ours and the bound that parts them.
+// For tests: one figure of a hard case, which is our error, the error of the textbook form, and a bound between the
+// two.
 #pragma once
 
 #include <fmt/format.h>
@@ -25,8 +26,8 @@ inline double worst_of(double so_far, double error) {
   return so_far < error ? error : so_far;
 }
 
-// Holds our error within the bound and the textbook's beyond it, and prints the line that scripts/hard-cases gathers.
-// `key` is one of scripts/hard_cases/cases.tsv.
+// Checks that our error is within the bound and the textbook's is beyond it, and prints the line that
+// scripts/hard-cases gathers. `key` is one of scripts/hard_cases/cases.tsv.
 inline void hard_case(std::string_view key, const HardCaseFigure& figure) {
   fmt::print("hard: {} {:.2g} {:.2g} {:.2g} {} {}\n", key, std::abs(figure.textbook), figure.ours, figure.bound,
              figure.unit, figure.what);

@@ -8,8 +8,9 @@
 #include <memory>
 
 #ifdef __SANITIZE_ADDRESS__
-// Here, since every program uses this file. Mesa keeps its window buffers and its compiled code until the process ends,
-// and the C library the catalogs of a locale. Tests compare what tools print.
+// What the leak check of the address sanitizer shall not report: Mesa keeps its window buffers and its compiled code
+// until the process ends, and the C library keeps the catalogs of a locale. It says nothing about them, because tests
+// compare what tools print. This stands here because every program uses this file.
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:libOSMesa.so\nleak:libLLVM\nleak:argz_add_sep";
 }

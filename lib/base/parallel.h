@@ -1,4 +1,4 @@
-// Loops over all cores whose result never depends on how many there are.
+// Loops that run on all cores, and whose results do not depend on how many cores there are.
 #pragma once
 
 #include <cstddef>

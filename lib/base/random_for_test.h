@@ -1,4 +1,4 @@
-// Random numbers for tests, the same on every machine.
+// For tests: random numbers that are the same on every machine.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Errors as values: Result<T> is a T or an Error that says where, what and what would be right.
+// Errors as values: a Result<T> is a T, or an Error that says where something is wrong, what it is, and what to do.
 #pragma once
 
 #include <fmt/format.h>

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstddef>
 
 namespace goniochrome {
 
@@ -22,6 +23,32 @@ std::optional<Number> parsed_whole(std::string_view text) {
   const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (status != std::errc{} || end != text.data() + text.size()) return std::nullopt;
   return value;
+}
+
+// `text` with the letters from `first` to `last` moved to the alphabet that begins at `to`.
+std::string in_case(std::string_view text, char first, char last, char to) {
+  std::string result(text);
+  for (char& c : result)
+    if (c >= first && c <= last) c = static_cast<char>(c - first + to);
+  return result;
+}
+
+// The length of the character at the front of `text`, or 0 if XML 1.0 does not allow it.
+std::size_t character_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned first = byte(0);
+  if (first < 0x80) return first >= 0x20 || first == '\t' || first == '\n' || first == '\r' ? 1 : 0;
+  const std::size_t length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
+  if (first < 0xc2 || first > 0xf4 || text.size() < length) return 0;
+  unsigned code = first & (0x7fu >> length);
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(i) & 0xc0) != 0x80) return 0;
+    code = code << 6 | (byte(i) & 0x3fu);
+  }
+  const bool too_long = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
+  const bool surrogate = code >= 0xd800 && code < 0xe000;
+  if (too_long || surrogate || code > 0x10ffff || code == 0xfffe || code == 0xffff) return 0;
+  return length;
 }
 
 }  // namespace
@@ -60,10 +87,11 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
 }
 
 std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return result;
+  return in_case(text, 'A', 'Z', 'a');
+}
+
+std::string upper(std::string_view text) {
+  return in_case(text, 'a', 'z', 'A');
 }
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -79,6 +107,52 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     }
   }
   return row[b.size()];
+}
+
+bool is_plain_utf8(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t length = character_length(text);
+    if (length == 0) return false;
+    text.remove_prefix(length);
+  }
+  return true;
+}
+
+std::string plain_utf8(std::string_view text) {
+  std::string plain;
+  while (!text.empty()) {
+    const std::size_t length = character_length(text);
+    plain += length == 0 ? "?" : text.substr(0, length);
+    text.remove_prefix(length == 0 ? 1 : length);
+  }
+  return plain;
+}
+
+std::string shown(std::string_view text) {
+  constexpr std::size_t kMost = 60;
+  std::string line;
+  while (!text.empty() && line.size() < kMost) {
+    const std::size_t length = character_length(text);
+    if (length == 0)
+      line += '?';
+    else
+      line += text[0] < ' ' && text[0] >= 0 ? " " : text.substr(0, length);
+    text.remove_prefix(length == 0 ? 1 : length);
+  }
+  return text.empty() ? line : line + "...";
+}
+
+std::string xml_escaped(std::string_view text, std::string_view as_numbers) {
+  std::string escaped;
+  escaped.reserve(text.size());
+  for (const char c : text)
+    if (const auto at = std::string_view("&<>\"").find(c); at != std::string_view::npos)
+      escaped += std::array{"&amp;", "&lt;", "&gt;", "&quot;"}[at];
+    else if (as_numbers.find(c) != std::string_view::npos)
+      escaped += "&#" + std::to_string(static_cast<int>(c)) + ';';
+    else
+      escaped += c;
+  return escaped;
 }
 
 }  // namespace goniochrome

@@ -1,4 +1,5 @@
-// Numbers as text: parsed whole or refused, printed shortest, whatever the locale.
+// Text: numbers that are read whole or refused and written in as few digits as possible, whatever the locale; words and
+// lines taken apart; and what may stand in a file or a message that others read.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +10,8 @@
 
 namespace goniochrome {
 
-// The number that the whole of `text` spells (decimal point, optional sign, exponent), or nothing: "64abc", "", "1,5"
-// are no numbers. "inf" and "nan" are refused; finite only.
+// The finite number that the whole of `text` spells (with a decimal point, and a sign or an exponent if need be), or
+// nothing. "64abc", "", "1,5", "inf" and "nan" are not numbers here.
 std::optional<double> parse_number(std::string_view text);
 
 // The whole number that the whole of `text` spells, or nothing.
@@ -19,16 +20,30 @@ std::optional<std::int64_t> parse_integer(std::string_view text);
 // The shortest decimal text that reads back as the same double.
 std::string shortest(double value);
 
-// `text` without leading and trailing white space.
+// `text` without the white space before and after it.
 std::string_view trimmed(std::string_view text);
 
-// The pieces of `text` between the separators; empty pieces are kept, so that an error can count them.
+// The pieces of `text` between the separators. Empty pieces are kept, so that an error can count them.
 std::vector<std::string_view> split(std::string_view text, char separator);
 
-// `text` in ASCII lower case.
+// `text` in ASCII lower case, and in upper case.
 std::string lower(std::string_view text);
+std::string upper(std::string_view text);
 
-// The number of single-letter edits between two words: for "did you mean".
+// How many letters must be added, removed or replaced to turn one word into the other: for "did you mean".
 std::size_t edit_distance(std::string_view a, std::string_view b);
+
+// Whether XML can hold `text`: it is valid UTF-8 and has no control characters except tabs and ends of lines.
+bool is_plain_utf8(std::string_view text);
+
+// `text` with a "?" in place of every byte that is_plain_utf8() objects to.
+std::string plain_utf8(std::string_view text);
+
+// `text` as a message can quote it: on one line, and cut off after 60 bytes.
+std::string shown(std::string_view text);
+
+// `text` with &, <, > and " written as XML entities. The characters in `as_numbers` are written as their numbers
+// (&#10;), because XML does not keep tabs and ends of lines in an attribute, nor carriage returns anywhere.
+std::string xml_escaped(std::string_view text, std::string_view as_numbers = "\t\n\r");
 
 }  // namespace goniochrome

@@ -1,4 +1,4 @@
-// Three numbers: a direction, a point or a linear RGB triple. Plain data, no surprises.
+// Three numbers, which are a direction, a point or a color in linear RGB, and the operations on them.
 #pragma once
 
 #include <cmath>

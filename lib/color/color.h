@@ -1,5 +1,5 @@
-// Colors and the way between them: CIELAB <-> XYZ <-> linear Rec.2020 (D65), by way of Bradford adaptation.
-// goniochrome-theory(7), CONVENTIONS.
+// Colors: CIELAB, XYZ and the working space, which is linear Rec.2020 (D65); the conversions between them by Bradford's
+// adaptation; and color differences. goniochrome-theory(7), CONVENTIONS.
 #pragma once
 
 #include <string>
@@ -24,7 +24,7 @@ struct Xyz {
 // The working space: linear Rec.2020, D65; 1 = perfect diffuser (reflectance factor) or scene radiance.
 using Rgb = Vec3;
 
-// What a Lab value is relative to. Default: the paint industry's.
+// What a Lab value is relative to. The default is the condition that the paint industry uses.
 struct ViewingCondition {
   std::string illuminant = "D65";  // D65 | D50 | A ...
   int observer_deg = 10;           // 2 | 10
@@ -57,8 +57,8 @@ Rgb rec709_from_rec2020(const Rgb& rec2020);
 double delta_e_76(const Lab& x, const Lab& y);
 double delta_e_2000(const Lab& x, const Lab& y);
 
-// A signed vector whose length is the CIEDE2000 difference: what a least-squares search wants, for it is smooth where
-// the colors are equal and the length is not.
+// A signed vector whose length is the CIEDE2000 difference. Least-squares searches need it, because it is smooth where
+// the colors are equal, and the length is not.
 Vec3 delta_e_2000_vector(const Lab& x, const Lab& y);
 
 // dL*/dY at lightness L*, Y = 1 for the perfect diffuser: the weight that makes a reflectance error perceptual. On the

@@ -21,7 +21,7 @@ double difference(const Lab& x, const Lab& y) {
   return std::max({std::abs(x.L - y.L), std::abs(x.a - y.a), std::abs(x.b - y.b)});
 }
 
-TEST(Color, white_points_have_the_published_chromaticity) {
+TEST(Color, WhitePointsHaveThePublishedChromaticity) {
   // CIE 15, 2 deg observer, to the digits printed there.
   struct {
     const char* illuminant;
@@ -37,7 +37,7 @@ TEST(Color, white_points_have_the_published_chromaticity) {
   }
 }
 
-TEST(Color, an_unknown_white_is_refused_and_the_known_ones_named) {
+TEST(Color, AnUnknownWhiteIsRefusedAndTheKnownOnesNamed) {
   EXPECT_EQ(white_point({"D93", 2}).error().message,
             "illuminant \"D93\" is not known: give one of D65, D50, A, C, D55, D75, F2, F7, F11");
   EXPECT_EQ(white_point({"D65", 4}).error().message, "observer 4 is not known: give 2 or 10 (degrees)");
@@ -46,7 +46,7 @@ TEST(Color, an_unknown_white_is_refused_and_the_known_ones_named) {
 // The tables of the color-matching functions (1 nm) and of the illuminants, summed over 360-780 nm, the range both
 // have. The printed white points were summed to 830 nm: that and their rounding to 1e-5 leave 4e-4, most for A, whose
 // light grows toward the red.
-TEST(Color, white_points_against_the_cie_tables_RealData) {
+TEST(Color, WhitePointsAgainstTheCieTablesRealData) {
   const char* data = std::getenv("GONIOCHROME_DATA");
   if (!data) GTEST_SKIP() << "GONIOCHROME_DATA is not set";
   const auto table = [&](const std::string& name) {
@@ -81,7 +81,7 @@ TEST(Color, white_points_against_the_cie_tables_RealData) {
   }
 }
 
-TEST(Color, known_lab_value) {
+TEST(Color, LabOfAKnownColorIsThePublishedOne) {
   // X = Z = 0.5 of the white, Y = 0.18: F = 0.5^(1/3) and 0.18^(1/3).
   const double half = std::cbrt(0.5), y = std::cbrt(0.18);
   const Lab lab = lab_from_xyz({0.5 * kD65_10.X, 0.18, 0.5 * kD65_10.Z}, kD65_10);
@@ -90,7 +90,7 @@ TEST(Color, known_lab_value) {
   EXPECT_DOUBLE_EQ(lab.b, 200 * (y - half));
 }
 
-TEST(Color, white_is_one_in_the_working_space_for_every_white) {
+TEST(Color, WhiteIsOneInTheWorkingSpaceForEveryWhite) {
   for (const char* illuminant : {"D65", "D50", "A", "F11"})
     for (const int observer : {2, 10}) {
       const Xyz white = *white_point({illuminant, observer});
@@ -99,14 +99,14 @@ TEST(Color, white_is_one_in_the_working_space_for_every_white) {
     }
 }
 
-TEST(Color, gray_has_equal_channels) {
+TEST(Color, GrayHasEqualChannels) {
   const Rgb rgb = rgb_from_lab({50, 0, 0}, kD65_10);
   EXPECT_NEAR(rgb.x, rgb.y, 1e-15);
   EXPECT_NEAR(rgb.y, rgb.z, 1e-15);
   EXPECT_NEAR(rgb.y, std::pow((50 + 16) / 116.0, 3), 1e-15);
 }
 
-TEST(Color, rec709_primaries_lie_inside_rec2020) {
+TEST(Color, Rec709PrimariesLieInsideRec2020) {
   // BT.2087, table of the conversion from Rec.709 to Rec.2020, four digits.
   const double expected[3][3] = {{0.6274, 0.3293, 0.0433}, {0.0691, 0.9195, 0.0114}, {0.0164, 0.0880, 0.8956}};
   for (int column = 0; column < 3; ++column) {
@@ -119,7 +119,7 @@ TEST(Color, rec709_primaries_lie_inside_rec2020) {
   }
 }
 
-TEST(Color, adaptation_to_the_same_white_changes_nothing_and_maps_white_to_white) {
+TEST(Color, AdaptationToTheSameWhiteChangesNothingAndMapsWhiteToWhite) {
   const Xyz d65 = *white_point({"D65", 2}), a = *white_point({"A", 10});
   const Xyz same = adapted({0.3, 0.2, 0.1}, a, a);
   EXPECT_NEAR(same.X, 0.3, 1e-15);

@@ -146,7 +146,7 @@ TEST(HardCase, De00BranchesWithZeroChroma) {
   EXPECT_NEAR(delta_e_2000({49, 0, 0}, {51, 0, 0}), 2, 1e-12);
 }
 
-TEST(Color, de76_is_the_length) {
+TEST(Difference, De76IsTheLength) {
   EXPECT_DOUBLE_EQ(delta_e_76({50, 3, 0}, {50, 0, 4}), 5);
   EXPECT_EQ(delta_e_76({1e200, 0, 0}, {0, 0, 0}), 1e200);
 }

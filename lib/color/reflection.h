@@ -1,18 +1,19 @@
-// Reflection of colored light without spectra: a bilinear product of light and reflectance in place of the
-// component-wise one. goniochrome-theory(7), COLORED LIGHT; [GranierDamez2004]
+// Reflection of colored light without spectra: a bilinear product of light and reflectance takes the place of the
+// product channel by channel. Also the files of such products. goniochrome-theory(7), COLORED LIGHT; [GranierDamez2004]
 #pragma once
 
 #include <array>
 #include <span>
+#include <string>
 
 #include "base/result.h"
 #include "color/color.h"
 
 namespace goniochrome::color {
 
-// The 27 coefficients of C_c = sum_d sum_e k[c][d][e] A_d B_e. Two properties are kept by everything here: k is
-// symmetric in d and e, so that light and reflectance may trade places, and coherent, sum_e k[c][d][e] = (c == d), so
-// that white light changes nothing.
+// The 27 coefficients of C_c = sum_d sum_e k[c][d][e] A_d B_e. All operators made here have two properties: k is
+// symmetric in d and e, so that light and reflectance may trade places, and it is coherent, sum_e k[c][d][e] = (c ==
+// d), so that white light changes nothing.
 struct ReflectionOperator {
   std::array<std::array<std::array<double, 3>, 3>, 3> k{};
 };
@@ -75,5 +76,13 @@ ReflectionOperator nearest_coherent(const ReflectionOperator& op);
 // The operator of a color space from its color-matching functions, sampled at equal steps of wavelength, each scaled to
 // sum 1. Error: fewer than three samples, or functions that depend on each other.
 Result<ReflectionOperator> estimated_operator(std::span<const Rgb> color_matching);
+
+// The operator as the text of a JSON file, {"k": [[[..3..],[..],[..]], [..], [..]]}, by output channel and then by both
+// colors. The numbers have the fewest digits that read back as the same numbers.
+std::string reflection_json(const ReflectionOperator& op);
+
+// Reads such a file. Error: the file, and what is missing; or the row in which an operator is not symmetric and
+// coherent to 1e-6.
+Result<ReflectionOperator> read_reflection_operator(const std::string& path);
 
 }  // namespace goniochrome::color

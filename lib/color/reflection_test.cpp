@@ -8,10 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "base/file.h"
 #include "base/hard_case_for_test.h"
+#include "base/scratch_for_test.h"
 #include "color/internal/cie_tables.h"
-#include "color/reflection_json.h"
 
 namespace goniochrome::color {
 namespace {
@@ -108,11 +107,12 @@ TEST(Reflection, RelightingThereAndBack) {
   expect_near(product(relighting(op, yellow, yellow)->matrix, color), color, 1e-13);
 }
 
-TEST(ReflectionJson, RoundTripAndRefusals) {
-  const std::string path = testing::TempDir() + "operator.json";
-  const auto write = [&](const std::string& text) { ASSERT_TRUE(write_file(path, text).ok()); };
-  write(reflection_json(iso_rgb_operator()));
-  const auto back = read_reflection_operator(path);
+TEST(ReflectionJson, ReadsBackWhatItWritesAndRefusesTheRest) {
+  const ScratchFolder folder;
+  const auto read = [&](const std::string& text) {
+    return read_reflection_operator(folder.file("operator.json", text));
+  };
+  const auto back = read(reflection_json(iso_rgb_operator()));
   ASSERT_TRUE(back.ok()) << back.error().message;
   EXPECT_LE(largest_difference(*back, iso_rgb_operator()), 1e-15);
   for (const auto& [text, told] :
@@ -122,8 +122,7 @@ TEST(ReflectionJson, RoundTripAndRefusals) {
          "k[2][2] is not coherent"},
         {"{\"k\": [[[1,1,-1],[0,0,0],[0,0,0]],[[0,0,0],[0,1,0],[0,0,0]],[[0,0,0],[0,0,0],[0,0,1]]]}",
          "k[0][0] is not symmetric"}}) {
-    write(text);
-    const auto refused = read_reflection_operator(path);
+    const auto refused = read(text);
     ASSERT_FALSE(refused.ok()) << text;
     EXPECT_NE(refused.error().message.find(told), std::string::npos) << refused.error().message;
   }

@@ -1,4 +1,5 @@
-// From spectral reflectance to color: CIE tables, an illuminant and an observer. goniochrome-theory(7), SPECTRA.
+// Turns spectral reflectance into color by the CIE's tables of illuminants and observers. goniochrome-theory(7),
+// SPECTRA.
 #pragma once
 
 #include <array>
@@ -10,12 +11,12 @@
 
 namespace goniochrome::color {
 
-// Turns reflectance factors at fixed wavelengths into XYZ under one viewing condition. The perfect diffuser gives its
-// own white exactly, so Lab needs no second table.
+// Turns reflectance factors at fixed wavelengths into XYZ and Lab under one viewing condition. Lab is relative to the
+// white that the perfect diffuser has in the same sum, so it needs no second table.
 class SpectralColorimeter {
  public:
-  // `wavelengths_nm` ascend, at least two. Error: they do not, or the condition is unknown (the message says what is
-  // known).
+  // `wavelengths_nm` ascend, and there are at least two. Error: they are not like that, or the condition is not known
+  // (the message says what is known).
   static Result<SpectralColorimeter> make(std::span<const double> wavelengths_nm, const ViewingCondition& condition);
 
   // XYZ of a reflectance factor per wavelength; Y = 1 for the perfect diffuser. Values may be negative or above 1.

@@ -25,7 +25,7 @@ SpectralColorimeter colorimeter(const std::vector<double>& nm, const ViewingCond
   return std::move(made).value();
 }
 
-TEST(Spectrum, perfect_diffuser_is_white_under_every_table) {
+TEST(Spectrum, PerfectDiffuserIsWhiteUnderEveryTable) {
   for (const char* illuminant : {"D65", "D50", "A"})
     for (int observer : {2, 10}) {
       const auto nm = wavelengths(400, 700, 10);
@@ -38,7 +38,7 @@ TEST(Spectrum, perfect_diffuser_is_white_under_every_table) {
     }
 }
 
-TEST(Spectrum, white_is_the_published_one) {
+TEST(Spectrum, WhiteIsThePublishedOne) {
   const auto nm = wavelengths(380, 780, 5);
   // CIE 15:2004 table T.3, 4 digits of other sums over the same tables: they agree to two units of the last one.
   const std::map<std::pair<std::string, int>, std::pair<double, double>> published = {
@@ -56,7 +56,7 @@ TEST(Spectrum, white_is_the_published_one) {
 }
 
 // A smooth spectrum on 10 nm against the same on 5 nm: the cubic loses little where the straight line loses more.
-TEST(Spectrum, cubic_between_samples_beats_the_straight_line) {
+TEST(Spectrum, CubicBetweenSamplesBeatsTheStraightLine) {
   const auto bump = [](double nm) { return 0.05 + 0.8 * std::exp(-std::pow((nm - 523) / 22, 2)); };
   const auto sampled = [&](const std::vector<double>& nm) {
     std::vector<double> values;
@@ -78,14 +78,14 @@ TEST(Spectrum, cubic_between_samples_beats_the_straight_line) {
   EXPECT_GT(delta_e_76(fine_meter.lab(straight), truth), 3 * cubic_error);
 }
 
-TEST(Spectrum, says_how_much_was_held_beyond_the_ends) {
+TEST(Spectrum, SaysHowMuchWasHeldBeyondTheEnds) {
   EXPECT_EQ(colorimeter(wavelengths(360, 780, 10), {"A", 2}).held_share(), 0);
   const double held = colorimeter(wavelengths(400, 700, 10), {"A", 2}).held_share();
   EXPECT_GT(held, 0.001);
   EXPECT_LT(held, 0.02);
 }
 
-TEST(Spectrum, refuses_what_it_cannot_integrate) {
+TEST(Spectrum, RefusesWhatItCannotIntegrate) {
   const std::vector<double> good = {400, 500}, twice = {400, 400, 500}, one = {400};
   EXPECT_NE(SpectralColorimeter::make(good, {"F2", 2}).error().message.find("D65, D50 or A"), std::string::npos);
   EXPECT_FALSE(SpectralColorimeter::make(good, {"D65", 4}).ok());
@@ -111,7 +111,7 @@ std::map<double, std::vector<double>> csv_rows(const std::string& name) {
   return rows;
 }
 
-TEST(Spectrum, embedded_tables_are_the_published_onesRealData) {
+TEST(Spectrum, EmbeddedTablesAreThePublishedOnesRealData) {
   if (!std::getenv("GONIOCHROME_DATA")) GTEST_SKIP() << "GONIOCHROME_DATA is not set";
   auto two = csv_rows("cie1931_2deg_1nm.csv"), ten = csv_rows("cie1964_10deg_1nm.csv");
   auto d65 = csv_rows("illuminant_D65.csv"), d50 = csv_rows("illuminant_D50.csv"), a = csv_rows("illuminant_A.csv");
@@ -128,7 +128,7 @@ TEST(Spectrum, embedded_tables_are_the_published_onesRealData) {
 
 // The 5 nm tables against the 1 nm ones, on the 24 patches of ISO 17321-1 (5 nm data, straight between): far below what
 // an eye or an instrument can tell.
-TEST(Spectrum, tables_every_5_nm_are_enoughRealData) {
+TEST(Spectrum, TablesEvery5NmAreEnoughRealData) {
   if (!std::getenv("GONIOCHROME_DATA")) GTEST_SKIP() << "GONIOCHROME_DATA is not set";
   auto cmf = csv_rows("cie1964_10deg_1nm.csv"), light = csv_rows("illuminant_D65.csv");
   auto patches = csv_rows("colourchecker_ISO_17321-1.csv");

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "base/input.h"
+#include "base/file.h"
 #include "base/result.h"
 #include "brdf/measured.h"
 #include "color/color.h"

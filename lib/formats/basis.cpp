@@ -2,10 +2,8 @@
 
 #include "base/file.h"
 #include "base/text.h"
-#include "base/utf8.h"
 #include "formats/internal/schemas.h"
 #include "formats/internal/xml_stream.h"
-#include "formats/internal/xml_values.h"
 
 namespace goniochrome::formats {
 
@@ -115,9 +113,7 @@ Result<Basis> read_basis(const std::string& path) {
   GONIO_ASSIGN(InputFile input, InputFile::open(path));
   BasisHandler handler(input.name());
   XmlStream stream(std::move(input), kBasisSchema, handler);
-  for (bool more = true; more;) {
-    GONIO_ASSIGN(more, stream.advance());
-  }
+  GONIO_TRY(stream.finish());
   return std::move(handler.basis);
 }
 

@@ -1,6 +1,7 @@
 #include "formats/batches.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "base/clock.h"
 
@@ -61,6 +62,13 @@ Result<std::vector<paint::Paint>> PaintBatches::next(const std::function<void(co
     return input_error("no paint is named \"{}\": names are taken letter by letter", *unmet_.begin());
   size_ = filling.elapsed_s() < kSlowBatch_s ? std::min(2 * size_, kLargestBatch) : 1;
   return batch;
+}
+
+PaintReference paint_reference(const std::string& text) {
+  std::error_code unknown;
+  const auto hash = text.rfind('#');
+  if (hash == std::string::npos || std::filesystem::exists(text, unknown)) return {text, std::nullopt};
+  return {text.substr(0, hash), text.substr(hash + 1)};
 }
 
 }  // namespace goniochrome::formats

@@ -1,7 +1,9 @@
-// The paints of several inputs in batches, for tools that work on many at once and still keep up with a slow pipe.
+// The paints that a command line names: `FILE#NAME`, and the paints of several inputs in batches, for tools that work
+// on many at once and still keep up with a slow pipe.
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -11,19 +13,27 @@
 
 namespace goniochrome::formats {
 
+struct PaintReference {
+  std::string file;
+  std::optional<std::string> name;  // of the one paint that is meant
+};
+
+// FILE or FILE#NAME, taken apart at the last #. If there is a file of that whole name, it is meant.
+PaintReference paint_reference(const std::string& text);
+
 class PaintBatches {
  public:
-  // Opens all inputs, `-` or none being standard input, and reads each as far as its first paint. With `only`, paints
-  // of other names are passed over. Error: the first that cannot be opened.
+  // Opens all inputs (`-`, or no input at all, is standard input) and reads each as far as its first paint. If `only`
+  // has names, paints of other names are passed over. Error: the first input that cannot be opened.
   static Result<PaintBatches> open(std::vector<std::string> paths, const std::vector<std::string>& only = {});
 
-  // What stood before the first paint of each input, in their order.
+  // What stood before the first paint of each input, in the order of the inputs.
   std::vector<Processing> processing() const;
   std::vector<std::string> foreign() const;
 
-  // The next paints, in order; none at the end. A batch holds one paint at first and doubles up to 1024 while paints
-  // arrive quickly. `left_out`, if given, is told of each paint that cannot be read, and reading goes on behind it;
-  // without it, such a paint is the error. Error at the end: a name of `only` that no paint has.
+  // The next paints, in order; none at the end. A batch holds one paint at first, and twice as many each time, up to
+  // 1024, while paints arrive quickly. `left_out`, if given, is told of each paint that cannot be read, and reading
+  // goes on behind it; without it, such a paint is the error. Error at the end: a name of `only` that no paint has.
   Result<std::vector<paint::Paint>> next(const std::function<void(const Error&)>& left_out = {});
 
  private:

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "formats/scratch_for_test.h"
+#include "base/scratch_for_test.h"
 
 namespace goniochrome::formats {
 namespace {
@@ -43,7 +43,7 @@ class PaintBatchesTest : public testing::Test {
   const std::string second_ = folder_.file("2.xml", document("<paint name=\"c\"/><paint name=\"d\"/>"));
 };
 
-TEST_F(PaintBatchesTest, AllPaintsOfAllInputsInOrder) {
+TEST_F(PaintBatchesTest, GiveAllPaintsOfAllInputsInOrder) {
   const Outcome all = read_all({first_, second_});
   EXPECT_THAT(all.names, ElementsAre("a", "b", "c", "d"));
   ASSERT_FALSE(all.sizes.empty());
@@ -51,7 +51,7 @@ TEST_F(PaintBatchesTest, AllPaintsOfAllInputsInOrder) {
   EXPECT_EQ(all.error, "");
 }
 
-TEST_F(PaintBatchesTest, OnlyThePaintsOfTheNamesAsked) {
+TEST_F(PaintBatchesTest, GiveOnlyThePaintsOfTheNamesAsked) {
   const Outcome some = read_all({first_, second_}, {"d", "b", "d"});
   EXPECT_THAT(some.names, ElementsAre("b", "d"));
   EXPECT_EQ(some.error, "");
@@ -72,6 +72,23 @@ TEST_F(PaintBatchesTest, AWrongPaintIsTheErrorOrToldAndPassedOver) {
   EXPECT_THAT(rest.names, ElementsAre("a", "b"));
   EXPECT_THAT(told, ElementsAre(testing::HasSubstr("shiny")));
   EXPECT_THAT(read_all({folder_.path("absent.xml")}).names, IsEmpty());
+}
+
+TEST(PaintReference, IsAFileAndTheNameBehindTheLastHash) {
+  EXPECT_EQ(paint_reference("a.xml").file, "a.xml");
+  EXPECT_FALSE(paint_reference("a.xml").name);
+  EXPECT_EQ(paint_reference("a#b.xml#Candy #2").file, "a#b.xml#Candy ");
+  EXPECT_EQ(paint_reference("a#b.xml#Candy #2").name, "2");
+  EXPECT_EQ(paint_reference("a.xml#").name, "");
+}
+
+TEST(PaintReference, AFileOfThatVeryNameIsMeantAsItStands) {
+  const ScratchFolder folder;
+  const std::string there = folder.file("batch#7.xml", "");
+  EXPECT_EQ(paint_reference(there).file, there);
+  EXPECT_FALSE(paint_reference(there).name);
+  EXPECT_EQ(paint_reference(there + "#red").file, there);
+  EXPECT_EQ(paint_reference(there + "#red").name, "red");
 }
 
 }  // namespace

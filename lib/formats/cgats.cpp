@@ -6,20 +6,12 @@
 #include <set>
 
 #include "base/text.h"
-#include "base/utf8.h"
 
 namespace goniochrome::formats {
 
 namespace {
 
 constexpr std::size_t kLargestFile = std::size_t{1} << 30;
-
-std::string upper(std::string_view text) {
-  std::string result(text);
-  for (char& c : result)
-    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-  return result;
-}
 
 std::string utf8_from_latin1(std::string_view text) {
   std::string result;
@@ -35,7 +27,7 @@ std::string utf8_from_latin1(std::string_view text) {
   return result;
 }
 
-// The words of a line: between white space, or in quotation marks (doubled inside), up to a comment.
+// The words of a line up to a comment. They stand between white space or in quotation marks, which are doubled inside.
 std::vector<std::string> words_of(std::string_view line) {
   std::vector<std::string> words;
   for (std::size_t i = 0; i < line.size();) {
@@ -90,7 +82,7 @@ std::string illuminant_in(std::string_view text) {
 }
 
 // 2 or 10 where `text` begins with such a number of degrees (`10 degree`, `2`); 0 otherwise.
-int observer_in(std::string_view text) {
+int leading_observer(std::string_view text) {
   text = trimmed(text);
   const auto digits = text.substr(0, std::min(text.find_first_not_of("0123456789"), text.size()));
   return digits == "2" ? 2 : digits == "10" ? 10 : 0;
@@ -106,7 +98,7 @@ std::string_view after(std::string_view text, std::string_view key) {
 
 constexpr int kNone = -1;
 
-// Which column holds what. Three numbers of a color share an ending, which may name their geometry.
+// Which column holds what. The names of a color's three columns have the same ending, which may name a geometry.
 struct ColorColumns {
   std::optional<paint::Geometry> geometry;
   std::array<int, 3> at = {kNone, kNone, kNone};
@@ -138,7 +130,7 @@ class CgatsParser {
         keyword(first);
       }
     }
-    if (!tables) return input_error("{}: has no BEGIN_DATA: it is no CGATS table, or was cut off", name_);
+    if (!tables) return input_error("{}: has no BEGIN_DATA: it is no CGATS table, or it was cut off", name_);
     finish_paint();
     result_.warnings = remarks_.lines();
     return std::move(result_);
@@ -169,16 +161,16 @@ class CgatsParser {
     } else if (key == "ILLUMINANT" || key == "ILLUMINATION_NAME") {
       if (const auto found = illuminant_in(value); !found.empty()) stated_.illuminant = found;
     } else if (key == "OBSERVER" || key == "OBSERVER_ANGLE") {
-      if (const int found = observer_in(value)) stated_.observer_deg = found;
+      if (const int found = leading_observer(value)) stated_.observer_deg = found;
     } else if (key == "WEIGHTING_FUNCTION") {
       const auto comma = value.find(',');
       const std::string kind = upper(trimmed(value.substr(0, comma)));
       const std::string what = comma == std::string::npos ? "" : value.substr(comma + 1);
       if (kind == "ILLUMINANT" && !illuminant_in(what).empty()) stated_.illuminant = illuminant_in(what);
-      if (kind == "OBSERVER" && observer_in(what)) stated_.observer_deg = observer_in(what);
+      if (kind == "OBSERVER" && leading_observer(what)) stated_.observer_deg = leading_observer(what);
     } else if (key == "MEASUREMENT_SOURCE") {
       if (stated_.illuminant.empty()) stated_.illuminant = illuminant_in(after(value, "Illumination="));
-      if (stated_.observer_deg == 0) stated_.observer_deg = observer_in(after(value, "ObserverAngle="));
+      if (stated_.observer_deg == 0) stated_.observer_deg = leading_observer(after(value, "ObserverAngle="));
     }
   }
 
@@ -262,7 +254,7 @@ class CgatsParser {
     return {};
   }
 
-  // The cells of the current line; sample names with bare spaces are told by tabs.
+  // Takes the current line apart into cells. Where names have spaces and no quotation marks, the tabs part the cells.
   Result<void> cells() {
     if (words_.size() == columns_.fields.size()) return {};
     const std::size_t by_space = words_.size();
@@ -284,13 +276,9 @@ class CgatsParser {
   Result<double> number(int column) {
     const std::string& text = cell(column);
     if (const auto value = parse_number(text)) return *value;
-    if (std::ranges::count(text, ',') == 1 && text.find('.') == std::string::npos) {
-      std::string pointed = text;
-      std::ranges::replace(pointed, ',', '.');
-      if (const auto value = parse_number(pointed)) {
-        remarks_.note("decimal commas were read as points", fmt::format("line {}", line_));
-        return *value;
-      }
+    if (const auto value = parse_number(with_decimal_point(text).value_or(""))) {
+      remarks_.note("decimal commas were read as points", fmt::format("line {}", line_));
+      return *value;
     }
     return error(fmt::format("{} is \"{}\": write a number", columns_.fields[static_cast<std::size_t>(column)], text));
   }
@@ -321,24 +309,24 @@ class CgatsParser {
       GONIO_ASSIGN(const double units, number(column));
       gloss.push_back({angle, units});
     }
-    if (columns_.geometry == kNone || name != paint_.name) {
+    if (columns_.geometry == kNone || name != open_.paint.name) {
       finish_paint();
-      paint_.name = std::move(name);
-      paint_.gloss = std::move(gloss);
-      paint_.code = cell(columns_.code);
-      paint_.paint_class = paint::paint_class_of(cell(columns_.paint_class)).value_or(paint::PaintClass::kUnknown);
-      paint_instrument_ = columns_.instrument == kNone ? instrument_ : cell(columns_.instrument);
+      open_.paint.name = std::move(name);
+      open_.paint.gloss = std::move(gloss);
+      open_.paint.code = cell(columns_.code);
+      open_.paint.paint_class = paint::paint_class_of(cell(columns_.paint_class)).value_or(paint::PaintClass::kUnknown);
+      open_.instrument = columns_.instrument == kNone ? instrument_ : cell(columns_.instrument);
     }
-    readings_.insert(readings_.end(), readings.begin(), readings.end());
+    open_.readings.insert(open_.readings.end(), readings.begin(), readings.end());
     return {};
   }
 
-  // From the row, else the header, else what the options mean, else the standard's D50/2.
+  // What the row states, or else the header, or else the options, or else D50/2, which is the standard's condition.
   Result<color::ViewingCondition> condition_of_row() {
     color::ViewingCondition condition = stated_;
     if (!cell(columns_.illuminant).empty()) condition.illuminant = cell(columns_.illuminant);
     if (!cell(columns_.observer).empty()) {
-      condition.observer_deg = observer_in(cell(columns_.observer));
+      condition.observer_deg = leading_observer(cell(columns_.observer));
       if (condition.observer_deg == 0)
         return error(fmt::format("OBSERVER is \"{}\": write 2 or 10", cell(columns_.observer)));
     }
@@ -346,12 +334,10 @@ class CgatsParser {
         options_.observer_deg == 0)
       remarks_.note("states neither illuminant nor observer: taken as D50/2; give --illuminant and --observer if not",
                     "");
-    if (condition.illuminant.empty()) condition.illuminant = options_.illuminant.empty() ? "D50" : options_.illuminant;
-    if (condition.observer_deg == 0) condition.observer_deg = options_.observer_deg ? options_.observer_deg : 2;
-    return condition;
+    return completed(condition, options_, {"D50", 2});
   }
 
-  // Nothing where the header names a geometry without an aspecular angle, such as a sphere.
+  // Nothing if the header names a geometry that has no aspecular angle, such as a sphere.
   Result<std::optional<paint::Geometry>> geometry_of_row(const ColorColumns& color) {
     if (color.geometry) return color.geometry;
     if (columns_.geometry != kNone) {
@@ -379,13 +365,11 @@ class CgatsParser {
   }
 
   void finish_paint() {
-    if (paint_.name.empty()) return;
-    paint_.measurement = measurement_of(readings_, options_, paint_.name, remarks_);
-    if (paint_.measurement) paint_.measurement->instrument = paint_instrument_;
-    paint_.name = names_.own(paint_.name, remarks_);
-    if (paint_.measurement || !paint_.gloss.empty()) result_.paints.push_back(std::move(paint_));
-    paint_ = {};
-    readings_.clear();
+    if (open_.paint.name.empty()) return;
+    const bool kept = open_.complete(options_, remarks_);
+    open_.paint.name = names_.own(open_.paint.name, remarks_);
+    if (kept) result_.paints.push_back(std::move(open_.paint));
+    open_ = {};
   }
 
   std::string name_;
@@ -399,9 +383,7 @@ class CgatsParser {
   color::ViewingCondition stated_{"", 0};
   Columns columns_;
 
-  paint::Paint paint_;  // gathering rows; no name while there is none
-  std::string paint_instrument_;
-  std::vector<SeenReading> readings_;
+  OpenPaint open_;  // without a name while there is none
   UniqueNames names_;
   Remarks remarks_;
   ImportedPaints result_;
@@ -425,7 +407,7 @@ bool looks_cgats(std::string_view head) {
 }
 
 Result<ImportedPaints> read_cgats(InputFile input, const ImportOptions& options) {
-  GONIO_ASSIGN(std::string text, whole_content(input, kLargestFile));
+  GONIO_ASSIGN(std::string text, input.rest(kLargestFile));
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
     return input_error("{}: is UTF-16: save it as UTF-8", input.name());
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);

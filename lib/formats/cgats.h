@@ -1,5 +1,5 @@
-// CGATS.17 text: a header of keywords, then a table. One row per reading; our own columns are announced by KEYWORD, as
-// the standard asks. goniochrome-paint(5).
+// Paints in CGATS.17 text, which is a header of keywords and then a table. We write one row for each reading, and
+// announce the columns that the standard does not have by KEYWORD, as it asks. goniochrome-paint(5).
 #pragma once
 
 #include <string>
@@ -15,13 +15,13 @@ namespace goniochrome::formats {
 // Whether a file that begins with `head` is CGATS text.
 bool looks_cgats(std::string_view head);
 
-// Takes LAB_ or XYZ_ columns; names from SAMPLE_NAME or SAMPLE_ID; the geometry
-// from GEOMETRY, from column endings (LAB_L_45as15) or from MEASUREMENT_GEOMETRY; the viewing condition from columns or
-// from any of the keywords in use. What the file does not say is assumed and told: D50/2 and 45/0, as ISO 13655.
-// Errors name file, line and cell.
+// Reads LAB_ or XYZ_ columns. Names come from SAMPLE_NAME or SAMPLE_ID; the geometry comes from GEOMETRY, from the
+// endings of columns (LAB_L_45as15) or from MEASUREMENT_GEOMETRY; the viewing condition comes from columns or from any
+// of the keywords in use. What the file does not say is assumed and remarked: D50/2 and 45/0, as in ISO 13655. Errors
+// name file, line and cell.
 Result<ImportedPaints> read_cgats(InputFile input, const ImportOptions& options);
 
-// Writes paints as one table. The header counts the rows, so they are held until finish().
+// Writes paints as one table. The header counts the rows, so the paints are held in memory until finish().
 class CgatsWriter {
  public:
   // `creator` and `created` (a date) go into the header.

@@ -8,16 +8,7 @@
 namespace goniochrome::formats {
 namespace {
 
-using testing::Contains;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-
 using Cgats = ImportTest<read_cgats>;
-
-paint::Geometry geometry(const char* name) {
-  return paint::parse_geometry(name).value();
-}
 
 constexpr const char* kHead =
     "CGATS.17\nWEIGHTING_FUNCTION \"ILLUMINANT, D65\"\nWEIGHTING_FUNCTION \"OBSERVER, 10 degree\"\n";
@@ -26,51 +17,22 @@ std::string table(const std::string& fields, const std::string& rows) {
   return "BEGIN_DATA_FORMAT\n" + fields + "\nEND_DATA_FORMAT\nBEGIN_DATA\n" + rows + "\nEND_DATA\n";
 }
 
-TEST_F(Cgats, round_trip_keeps_every_bit) {
-  paint::Paint a;
-  a.name = "blue \"night\" 7", a.code = "B-7", a.paint_class = paint::PaintClass::kMetallic;
-  a.measurement = paint::Measurement{{"D65", 10},
-                                     "MA-T12",
-                                     {{geometry("45as15"), {41.87, -45.99, -21.73 / 3}},
-                                      {geometry("45as-15"), {1.0 / 3, 1e-17, -1e300}},
-                                      {geometry("45as25az-76"), {130.5, 0, -0.1}},
-                                      {geometry("r45as45"), {0, 0, 0}}}};
-  a.gloss = {{60, 92.1}, {20, 1.0 / 7}};
-  paint::Paint b;
-  b.name = "plain";
-  b.measurement = paint::Measurement{{"A", 2}, "", {{geometry("45as110"), {2, 3, 4}}}};
+TEST_F(Cgats, RoundTripKeepsEveryBit) {
+  const std::vector<paint::Paint> paints = two_paints("A");
   auto file = OutputFile::create(path());
   ASSERT_TRUE(file.ok());
   auto writer = CgatsWriter::begin(std::move(file).value(), "test 1.0", "2026-01-02");
   ASSERT_TRUE(writer.ok());
-  ASSERT_TRUE(writer->write(a).ok());
-  ASSERT_TRUE(writer->write(b).ok());
+  for (const paint::Paint& paint : paints) ASSERT_TRUE(writer->write(paint).ok());
   ASSERT_TRUE(writer->finish().ok());
 
-  const auto read = read_cgats(InputFile::open(path()).value(), {});
+  const auto read = read_file(path());
   ASSERT_TRUE(read.ok()) << read.error().message;
   EXPECT_THAT(read->warnings, IsEmpty());
-  ASSERT_EQ(read->paints.size(), 2u);
-  for (const auto& [was, is] : {std::pair{&a, &read->paints[0]}, {&b, &read->paints[1]}}) {
-    EXPECT_EQ(is->name, was->name);
-    EXPECT_EQ(is->code, was->code);
-    EXPECT_EQ(is->paint_class, was->paint_class);
-    EXPECT_EQ(is->measurement->condition, was->measurement->condition);
-    EXPECT_EQ(is->measurement->instrument, was->measurement->instrument);
-    ASSERT_EQ(is->measurement->rows.size(), was->measurement->rows.size());
-    for (std::size_t i = 0; i < was->measurement->rows.size(); ++i) {
-      EXPECT_EQ(is->measurement->rows[i].geometry, was->measurement->rows[i].geometry);
-      EXPECT_EQ(is->measurement->rows[i].lab, was->measurement->rows[i].lab);
-    }
-    ASSERT_EQ(is->gloss.size(), was->gloss.size());
-    for (const paint::GlossReading& gloss : was->gloss)
-      EXPECT_THAT(is->gloss,
-                  Contains(testing::AllOf(testing::Field(&paint::GlossReading::angle_deg, gloss.angle_deg),
-                                          testing::Field(&paint::GlossReading::gloss_units, gloss.gloss_units))));
-  }
+  expect_same(paints, read->paints);
 }
 
-TEST_F(Cgats, writer_refuses_a_paint_without_readings) {
+TEST_F(Cgats, WriterRefusesAPaintWithoutReadings) {
   auto writer = CgatsWriter::begin(OutputFile::create(path()).value(), "test", "");
   paint::Paint paint;
   paint.name = "empty";
@@ -79,7 +41,7 @@ TEST_F(Cgats, writer_refuses_a_paint_without_readings) {
 
 // What a densitometer program wrote: tabs, bare spaces in names, a degree sign in Latin-1, doubled quotation marks,
 // CRLF, a comment, a wrong count.
-TEST_F(Cgats, table_of_another_program) {
+TEST_F(Cgats, ReadsTheTableOfAnotherProgram) {
   const auto paints = good(
       "ECI2002\r\nORIGINATOR\t\"\"\r\nCREATED\t\"10/17/2005\"  # Time: 15:24\r\n"
       "MEASUREMENT_SOURCE\t\"\"Illumination=D50\tObserverAngle=2\xB0\tWhiteBase=Abs\"\"\r\n"
@@ -94,7 +56,7 @@ TEST_F(Cgats, table_of_another_program) {
   EXPECT_THAT(paints.warnings, ElementsAre(HasSubstr("NUMBER_OF_SETS"), HasSubstr("Latin-1")));
 }
 
-TEST_F(Cgats, decimal_commas_wide_angles_and_gaps) {
+TEST_F(Cgats, ReadsDecimalCommasWideTablesAndGaps) {
   const auto paints =
       good(std::string(kHead) + table("SAMPLE_NAME LAB_L_45as15 LAB_A_45as15 LAB_B_45as15 LAB_L_110 LAB_A_110 "
                                       "LAB_B_110 GLOSS",
@@ -108,7 +70,7 @@ TEST_F(Cgats, decimal_commas_wide_angles_and_gaps) {
   EXPECT_THAT(paints.warnings, ElementsAre(HasSubstr("decimal commas")));
 }
 
-TEST_F(Cgats, xyz_and_unstated_conditions) {
+TEST_F(Cgats, ReadsXyzAndAssumesUnstatedConditions) {
   const std::string text = table("SAMPLE_ID XYZ_X XYZ_Y XYZ_Z", "7 96.42 100 82.51");
   const auto paints = good(text);
   ASSERT_EQ(paints.paints.size(), 1u);
@@ -120,7 +82,7 @@ TEST_F(Cgats, xyz_and_unstated_conditions) {
   EXPECT_EQ(good(text, {"D65", 10, false}).paints[0].measurement->condition, (color::ViewingCondition{"D65", 10}));
 }
 
-TEST_F(Cgats, one_condition_is_chosen) {
+TEST_F(Cgats, OneConditionIsChosen) {
   const std::string text = table("SAMPLE_NAME GEOMETRY ILLUMINANT OBSERVER LAB_L LAB_A LAB_B",
                                  "p 45as15 D65 10 1 2 3\np 45as15 A 10 4 5 6\np 45as15 A 10 7 8 9");
   const auto first = good(text);
@@ -133,7 +95,7 @@ TEST_F(Cgats, one_condition_is_chosen) {
   EXPECT_THAT(good(text, {"D50", 0, false}).paints, IsEmpty());
 }
 
-TEST_F(Cgats, repeated_names_and_spheres) {
+TEST_F(Cgats, NumbersRepeatedNamesAndLeavesOutSpheres) {
   const auto twice = good(std::string(kHead) + "MEASUREMENT_GEOMETRY 45/0\n" +
                           table("SAMPLE_NAME LAB_L LAB_A LAB_B", "p 1 2 3\np 4 5 6"));
   ASSERT_EQ(twice.paints.size(), 2u);
@@ -144,7 +106,7 @@ TEST_F(Cgats, repeated_names_and_spheres) {
   EXPECT_THAT(sphere.warnings, Contains(HasSubstr("\"d/8\" has no aspecular angle")));
 }
 
-TEST_F(Cgats, refusals_name_line_and_cell) {
+TEST_F(Cgats, RefusalsNameLineAndCell) {
   const std::string fields = "SAMPLE_NAME GEOMETRY LAB_L LAB_A LAB_B";
   EXPECT_THAT(refusal(table(fields, "p 45as15 1 2 x")), HasSubstr(":5: LAB_B is \"x\": write a number"));
   EXPECT_THAT(refusal(table(fields, "p q 45as15 1 2 3")), HasSubstr(":5: 6 cells where the format has 5 fields"));
@@ -158,7 +120,7 @@ TEST_F(Cgats, refusals_name_line_and_cell) {
   EXPECT_THAT(refusal("\xFF\xFEx"), HasSubstr("UTF-16"));
 }
 
-TEST_F(Cgats, bad_rows_are_passed_over_when_asked) {
+TEST_F(Cgats, BadRowsArePassedOverWhenAsked) {
   const auto paints = good(std::string(kHead) + table("SAMPLE_NAME GEOMETRY LAB_L LAB_A LAB_B",
                                                       "p 45as15 1 2 3\nq 45as15 1 2\nr 45as15 7 8 9"),
                            {"", 0, true});

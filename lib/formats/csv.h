@@ -1,6 +1,6 @@
-// Paints as tables in text, read and written as a stream. Long: one row per sample and geometry,
-// `sample,geometry,illuminant,observer,L,a,b`. Wide: one row per sample, `sample,illuminant,observer,L15,a15,b15,...`.
-// goniochrome-paint(5), TABLES.
+// Paints as tables in text (CSV), read and written as a stream. A long table has one row for each sample and geometry,
+// `sample,geometry,illuminant,observer,L,a,b`. A wide table has one row for each sample,
+// `sample,illuminant,observer,L15,a15,b15,...`. goniochrome-paint(5), TABLES.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "base/file.h"
-#include "base/input.h"
 #include "base/result.h"
 #include "paint/paint.h"
 
@@ -24,15 +23,15 @@ class CsvPaintReader {
   CsvPaintReader(CsvPaintReader&&) noexcept;
   ~CsvPaintReader();
 
-  // The next paint, or nothing at the end. An error loses one row: next() goes on behind it, with the other rows of the
-  // same sample. The rows of a long table that belong to one sample must stand together.
+  // The next paint, or nothing at the end. An error loses one row: next() goes on behind it with the other rows of the
+  // same sample. In a long table the rows of one sample must stand together.
   Result<std::optional<paint::Paint>> next();
 
   // The line (from 1) of the first row of the paint last returned.
   int line() const;
   // Whether the table is a wide one.
   bool is_wide() const;
-  // What the header left open: columns that are not read, a viewing condition that is assumed.
+  // What the header leaves open: columns that are not read, and a viewing condition that is assumed.
   const std::vector<std::string>& warnings() const;
 
  private:
@@ -42,9 +41,9 @@ class CsvPaintReader {
 };
 
 struct CsvLayout {
-  // The geometries of a wide table, in order; a long one where there is none.
+  // The geometries of a wide table, in order. Empty: the table is long.
   std::vector<paint::Geometry> wide;
-  // Also the columns class, code, instrument, gloss20, gloss60 and gloss85.
+  // The table also has the columns class, code, instrument, gloss20, gloss60 and gloss85.
   bool all_columns = false;
 };
 

@@ -1,6 +1,6 @@
-// CxF3 (ISO 17972-1): colors of objects, each under a color specification that says illuminant, observer and geometry.
-// A paint is an object; each of its angles has a specification of its own, MultiAngle with one BRDFAngle.
-// goniochrome-paint(5).
+// Paints in CxF3 (ISO 17972-1). Such a file lists objects and their colors, and each color refers to a specification of
+// illuminant, observer and geometry. A paint is an object; each of its angles has a specification of its own, which is
+// a MultiAngle with one BRDFAngle. goniochrome-paint(5).
 #pragma once
 
 #include <string>
@@ -17,19 +17,19 @@ namespace goniochrome::formats {
 // Whether a file that begins with `head` is CxF.
 bool looks_cxf(std::string_view head);
 
-// Reads objects with CIELAB, CIELCh or reflectance spectra at angles; spectra are integrated under their
-// specification's illuminant and observer, or those of `options`. One value under a specification of several angles
-// stands for all of them. The specifications stand last in the file, so what was read of the objects is held till then.
-// What cannot be placed is left out with a warning. Errors name file and line.
+// Reads objects with CIELAB, CIELCh or reflectance spectra at angles. Spectra are integrated under the illuminant and
+// observer of their specification, or else of `options`. One value under a specification of several angles stands for
+// all of them. The specifications stand at the end of the file, so the objects are held in memory until then. What
+// cannot be placed is left out with a warning. Errors name file and line.
 Result<ImportedPaints> read_cxf(InputFile input, const ImportOptions& options);
 
-// Writes paints as they come.
+// Writes each paint as it comes.
 class CxfWriter {
  public:
   struct Info {
     std::string creator, description;   // who made the file, and how
     std::string created;                // date and time as in 2026-11-21T10:00:00Z
-    bool one_object_per_angle = false;  // for readers that take only the first Lab of an object
+    bool one_object_per_angle = false;  // for programs that read only the first Lab of an object
   };
   static Result<CxfWriter> begin(OutputFile file, const Info& info);
   // Error: a paint without readings, or an L* below 0, which CxF3 does not allow.

@@ -4,7 +4,51 @@
 
 #include <algorithm>
 
+#include "base/text.h"
+
 namespace goniochrome::formats {
+
+Result<double> number_in(std::string_view text, Domain domain) {
+  const std::string_view value = trimmed(text);
+  if (value.empty()) return input_error("is empty: write a number");
+  const auto number = parse_number(value);
+  if (!number && value.find(',') != std::string_view::npos)
+    return input_error("is \"{}\": write a decimal point", shown(value));
+  const std::string word = lower(value.substr(0, 5));
+  if (!number && (word.find("nan") != word.npos || word.find("inf") != word.npos))
+    return input_error("is \"{}\": write a finite number", shown(value));
+  if (!number) return input_error("is \"{}\": write a number such as 12.5", shown(value));
+  if (domain == Domain::kNotNegative && *number < 0) return input_error("is {}: write 0 or more", value);
+  if (domain == Domain::kPositive && *number <= 0) return input_error("is {}: write a number above 0", value);
+  if (domain == Domain::kRefractiveIndex && *number < 1) return input_error("is {}: write 1 or more", value);
+  return *number;
+}
+
+Result<paint::PaintClass> class_in(std::string_view text) {
+  if (const auto known = paint::paint_class_of(text)) return *known;
+  return input_error("is \"{}\": write solid, metallic, pearl, interference or unknown", shown(text));
+}
+
+Result<int> observer_in(std::string_view text) {
+  if (text == "2" || text == "10") return text == "2" ? 2 : 10;
+  return input_error("is \"{}\": write 2 or 10 (degrees)", shown(text));
+}
+
+std::optional<std::string> with_decimal_point(std::string_view text) {
+  if (std::ranges::count(text, ',') != 1 || text.find('.') != std::string_view::npos) return std::nullopt;
+  std::string pointed(text);
+  pointed[pointed.find(',')] = '.';
+  return pointed;
+}
+
+color::ViewingCondition completed(color::ViewingCondition stated, const ImportOptions& options,
+                                  const color::ViewingCondition& assumed) {
+  if (stated.illuminant.empty())
+    stated.illuminant = options.illuminant.empty() ? assumed.illuminant : options.illuminant;
+  if (stated.observer_deg == 0)
+    stated.observer_deg = options.observer_deg ? options.observer_deg : assumed.observer_deg;
+  return stated;
+}
 
 void Remarks::note(const std::string& what, std::string_view example) {
   const auto known = std::ranges::find(kinds_, what, &Kind::what);
@@ -25,50 +69,36 @@ std::vector<std::string> Remarks::lines() const {
   return result;
 }
 
-bool is_wanted(const color::ViewingCondition& condition, const ImportOptions& options) {
-  return (options.illuminant.empty() || options.illuminant == condition.illuminant) &&
-         (options.observer_deg == 0 || options.observer_deg == condition.observer_deg);
-}
-
-std::optional<paint::Measurement> measurement_of(const std::vector<SeenReading>& readings, const ImportOptions& options,
-                                                 std::string_view paint, Remarks& remarks) {
-  const auto first =
-      std::ranges::find_if(readings, [&](const SeenReading& seen) { return is_wanted(seen.condition, options); });
+bool OpenPaint::complete(const ImportOptions& options, Remarks& remarks) {
+  const auto is_wanted = [&](const SeenReading& seen) {
+    return (options.illuminant.empty() || options.illuminant == seen.condition.illuminant) &&
+           (options.observer_deg == 0 || options.observer_deg == seen.condition.observer_deg);
+  };
+  const auto first = std::ranges::find_if(readings, is_wanted);
   if (first == readings.end()) {
-    if (!readings.empty()) remarks.note("no reading under the illuminant and observer asked for", paint);
-    return std::nullopt;
+    if (!readings.empty()) remarks.note("no reading under the illuminant and observer asked for", paint.name);
+    return !paint.gloss.empty();
   }
-  paint::Measurement result{first->condition, "", {}};
+  paint::Measurement& measurement = paint.measurement.emplace();
+  measurement.condition = first->condition;
+  measurement.instrument = instrument;
   bool others = false;
-  for (const SeenReading& seen : readings) {
-    if (seen.condition != result.condition) {
+  for (const auto& [condition, reading] : readings) {
+    if (condition != measurement.condition)
       others = true;
-      continue;
-    }
-    const bool known = std::ranges::any_of(
-        result.rows, [&](const paint::LabReading& row) { return row.geometry == seen.reading.geometry; });
-    if (known)
-      remarks.note("several readings at one geometry: the first was taken",
-                   fmt::format("{} at {}", paint, paint::geometry_name(seen.reading.geometry)));
+    else if (std::ranges::find(measurement.rows, reading.geometry, &paint::LabReading::geometry) ==
+             measurement.rows.end())
+      measurement.rows.push_back(reading);
     else
-      result.rows.push_back(seen.reading);
+      remarks.note("several readings at one geometry: the first was taken",
+                   fmt::format("{} at {}", paint.name, paint::geometry_name(reading.geometry)));
   }
   if (others)
     remarks.note(fmt::format("readings under other illuminants or observers than {}/{} were left out: choose with "
                              "--illuminant and --observer",
-                             result.condition.illuminant, result.condition.observer_deg),
-                 paint);
-  return result;
-}
-
-Result<std::string> whole_content(InputFile& input, std::size_t most) {
-  constexpr std::size_t kChunk = 1 << 20;
-  std::string content;
-  for (;;) {
-    GONIO_ASSIGN(const std::size_t count, input.read(content, kChunk));
-    if (count == 0) return content;
-    if (content.size() > most) return input_error("{}: is larger than {} bytes: split it", input.name(), most);
-  }
+                             measurement.condition.illuminant, measurement.condition.observer_deg),
+                 paint.name);
+  return true;
 }
 
 std::string UniqueNames::own(const std::string& name, Remarks& remarks) {
@@ -76,6 +106,42 @@ std::string UniqueNames::own(const std::string& name, Remarks& remarks) {
   for (int k = 2; !used_.insert(own).second; ++k) own = fmt::format("{} ({})", name, k);
   if (own != name) remarks.note("names that stood before got a number", own);
   return own;
+}
+
+namespace {
+
+// FNV-1a from a given start, with the bits stirred at the end (the finalizer of MurmurHash3), since FNV's high bits are
+// weak for short names.
+std::uint64_t hash_of(std::string_view text, std::uint64_t start) {
+  std::uint64_t h = start;
+  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  h = (h ^ (h >> 33)) * 0xff51afd7ed558ccd;
+  h = (h ^ (h >> 33)) * 0xc4ceb9fe1a85ec53;
+  return h ^ (h >> 33);
+}
+
+}  // namespace
+
+NameLedger::Entry& NameLedger::slot(const Entry& wanted) {
+  const std::size_t mask = slots_.size() - 1;
+  std::size_t i = wanted.hash[0] & mask;
+  while (slots_[i].line != 0 && (slots_[i].hash[0] != wanted.hash[0] || slots_[i].hash[1] != wanted.hash[1]))
+    i = (i + 1) & mask;
+  return slots_[i];
+}
+
+std::optional<int> NameLedger::note(std::string_view name, int line) {
+  const Entry entry{{hash_of(name, 0xcbf29ce484222325), hash_of(name, 0x9e3779b97f4a7c15)}, line};
+  Entry& found = slot(entry);
+  if (found.line != 0) return found.line;
+  found = entry;
+  if (2 * ++used_ > slots_.size()) {
+    std::vector<Entry> old(2 * slots_.size());
+    old.swap(slots_);
+    for (const Entry& kept : old)
+      if (kept.line != 0) slot(kept) = kept;
+  }
+  return std::nullopt;
 }
 
 }  // namespace goniochrome::formats

@@ -1,29 +1,43 @@
-// What the readers of other people's formats share: options, remarks, and the rule that a paint has one viewing
-// condition and one reading at each geometry.
+// What all readers of paints share: numbers and words as files spell them, remarks about what was read, names that are
+// given only once, and the rule that a paint has one viewing condition and one reading at each geometry.
 #pragma once
 
-#include <map>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_set>
-#include <utility>
 #include <vector>
 
-#include "base/input.h"
 #include "base/result.h"
 #include "color/color.h"
 #include "paint/paint.h"
 
 namespace goniochrome::formats {
 
+enum class Domain { kAny, kNotNegative, kPositive, kRefractiveIndex };
+
+// The number, paint class or observer (2 or 10 deg) that `text` spells. The errors lack the place and the name of the
+// value: `is "12,5": write a decimal point`.
+Result<double> number_in(std::string_view text, Domain domain = Domain::kAny);
+Result<paint::PaintClass> class_in(std::string_view text);
+Result<int> observer_in(std::string_view text);
+
+// `text` with a point in place of its comma, if it has one comma and no point; nothing otherwise.
+std::optional<std::string> with_decimal_point(std::string_view text);
+
 struct ImportOptions {
-  std::string illuminant;   // the readings to take, or what is meant where the file does not say; empty: the file's own
+  std::string illuminant;   // of the readings to take, and of files that do not state it; empty: the file's own
   int observer_deg = 0;     // likewise; 0: the file's own
   bool keep_going = false;  // leave out samples that cannot be read and say so, instead of stopping at the first
 };
 
-// Remarks of one kind count as one, with the first case named.
+// `stated` completed by the options where it is silent, and by `assumed` where they are silent too.
+color::ViewingCondition completed(color::ViewingCondition stated, const ImportOptions& options,
+                                  const color::ViewingCondition& assumed);
+
+// Remarks about a file. Those of one kind count as one, which names the first case.
 class Remarks {
  public:
   void note(const std::string& what, std::string_view example);
@@ -41,7 +55,7 @@ class Remarks {
 struct ImportedPaints {
   std::vector<paint::Paint> paints;
   std::vector<std::string> warnings;
-  std::vector<std::string> skipped;  // errors passed over, with file and line
+  std::vector<std::string> skipped;  // errors that were passed over, with file and line
 };
 
 struct SeenReading {
@@ -49,24 +63,43 @@ struct SeenReading {
   paint::LabReading reading;
 };
 
-// Whether `options` want readings under `condition`.
-bool is_wanted(const color::ViewingCondition& condition, const ImportOptions& options);
+// A paint whose readings are still being gathered.
+struct OpenPaint {
+  paint::Paint paint;
+  std::string instrument;
+  std::vector<SeenReading> readings;
 
-// The readings as one measurement: those under the first wanted condition, the first at each geometry; what is left out
-// is remarked with the paint's name. Nothing where none is wanted.
-std::optional<paint::Measurement> measurement_of(const std::vector<SeenReading>& readings, const ImportOptions& options,
-                                                 std::string_view paint, Remarks& remarks);
+  // Makes the readings into one measurement: those under the first condition that the options want, and of these the
+  // first at each geometry. What is left out is remarked with the paint's name. Returns whether the paint holds
+  // anything then: a measurement or a gloss.
+  bool complete(const ImportOptions& options, Remarks& remarks);
+};
 
-// All that `input` has left. Error: more than `most` bytes.
-Result<std::string> whole_content(InputFile& input, std::size_t most);
-
-// Gives each paint a name of its own: a name that was there before gets " (2)", " (3)", ...
+// Gives each paint a name of its own: a name that came before gets " (2)", " (3)", ...
 class UniqueNames {
  public:
   std::string own(const std::string& name, Remarks& remarks);
 
  private:
   std::unordered_set<std::string> used_;
+};
+
+// Finds a name that comes twice among millions, in 24 bytes a name. Names are kept as hashes of 128 bits: the chance
+// that two different names among 10^7 are taken for one is 10^-25.
+class NameLedger {
+ public:
+  // Notes `name` at `line`, or returns the line where it was noted before.
+  std::optional<int> note(std::string_view name, int line);
+
+ private:
+  struct Entry {
+    std::uint64_t hash[2] = {0, 0};
+    int line = 0;  // 0 where the slot is free
+  };
+  Entry& slot(const Entry& wanted);
+
+  std::vector<Entry> slots_ = std::vector<Entry>(1024);  // open addressing, a power of two, at most half full
+  std::size_t used_ = 0;
 };
 
 }  // namespace goniochrome::formats

@@ -1,5 +1,5 @@
-// Paint XML (`*.paints.xml`) as a stream: validated on reading, written as soon as each paint is done, in constant
-// memory. goniochrome-paint(5) is the format.
+// Paint XML (`*.paints.xml`) as a stream in constant memory: checked while it is read, and written paint by paint.
+// goniochrome-paint(5) describes the format.
 #pragma once
 
 #include <memory>
@@ -7,17 +7,16 @@
 #include <string>
 
 #include "base/file.h"
-#include "base/input.h"
 #include "base/result.h"
 #include "paint/paint.h"
 
 namespace goniochrome::formats {
 
-// The bounds of one paint: larger ones are refused.
+// The bounds of one paint. Larger paints are refused.
 constexpr std::size_t kLargestPaint_bytes = 16 << 20;
 constexpr std::size_t kMostRows = 10000;
 
-// One `<processing tool version command>` element: what made or enriched the stream.
+// One `<processing tool version command>` element, which names a tool that the paints went through.
 struct Processing {
   std::string tool, version, command;
 };
@@ -31,14 +30,14 @@ class PaintReader {
   PaintReader& operator=(PaintReader&&) noexcept;
   ~PaintReader();
 
-  // The next paint, or nothing at the end. A wrong value loses the paint it stands in: after such an error next() goes
-  // on behind that paint. After any other error (text that is not XML, a file cut off) it returns nothing.
+  // The next paint, or nothing at the end. A wrong value loses the paint that it stands in: after such an error next()
+  // goes on behind that paint. After any other error (text that is not XML, a file cut off) it returns nothing.
   Result<std::optional<paint::Paint>> next();
 
   // The line (from 1) of the start tag of the paint last returned.
   int line() const;
 
-  // Reads as far as the first paint. An error that this meets is told by next().
+  // Reads as far as the first paint. If it meets an error, next() will return it.
   void read_prolog();
 
   // Provenance and foreign elements that stood before the first paint; complete once next() or read_prolog() was
@@ -56,8 +55,8 @@ class PaintWriter {
   // Begins a document on `file` with the given history and foreign elements.
   static Result<PaintWriter> begin(OutputFile file, const std::vector<Processing>& history = {},
                                    const std::vector<std::string>& foreign = {});
-  // Writes one paint and hands it on at once where the output is standard output or a pipe. Error: a text that XML
-  // cannot hold (a control character, bytes that are not UTF-8), or the output's.
+  // Writes one paint, and hands it on at once if the output is standard output or a pipe. Error: a text that XML cannot
+  // hold (a control character, bytes that are not UTF-8), or an error of the output.
   Result<void> write(const paint::Paint& paint);
   // Ends the document and puts the file in place.
   Result<void> finish();

@@ -13,9 +13,9 @@
 
 #include "base/clock.h"
 #include "base/hard_case_for_test.h"
+#include "base/scratch_for_test.h"
 #include "base/text.h"
-#include "formats/name_ledger.h"
-#include "formats/scratch_for_test.h"
+#include "formats/imported.h"
 #include "formats/xml.h"
 
 namespace goniochrome::formats {

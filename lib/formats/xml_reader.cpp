@@ -4,12 +4,9 @@
 #include <limits>
 
 #include "base/text.h"
-#include "base/utf8.h"
+#include "formats/imported.h"
 #include "formats/internal/schemas.h"
-#include "formats/internal/xml_copy.h"
 #include "formats/internal/xml_stream.h"
-#include "formats/internal/xml_values.h"
-#include "formats/name_ledger.h"
 #include "formats/xml.h"
 #include "paint/curve.h"
 
@@ -175,8 +172,7 @@ Result<void> PaintHandler::element(const XmlTag& tag) {
   if (rule->node == Node::kPaint) {
     scope_.resize(1);
     scope_.push_back(scope_.front());
-    for (const XmlNamespace& s : tag.namespaces)
-      scope_.back().insert_or_assign(std::string(s.prefix), std::string(s.uri));
+    declare(tag, scope_.back());
   }
   open_.push_back(rule->node);
   return begin(rule->node, values);
@@ -199,10 +195,8 @@ Result<void> PaintHandler::foreign_element(const XmlTag& tag) {
 Result<void> PaintHandler::begin_document(const XmlTag& tag, const XmlValues& values) {
   if (values.text("version") != "1")
     return values.error("version", "this program reads version 1: convert the file with the program that wrote it");
-  XmlScope scope;
-  for (const XmlNamespace& space : tag.namespaces)
-    scope.insert_or_assign(std::string(space.prefix), std::string(space.uri));
-  scope_ = {std::move(scope)};
+  scope_.resize(1);
+  declare(tag, scope_.front());
   return {};
 }
 
@@ -269,11 +263,7 @@ Result<void> PaintHandler::begin_paint(const XmlValues& values) {
   paint_bytes_ = bytes_read;
   GONIO_TRY(values.name("name", paint_.name));
   paint_.code = values.text("code");
-  if (values.has("class")) {
-    const auto paint_class = paint::paint_class_of(values.text("class"));
-    if (!paint_class) return values.error("class", "write solid, metallic, pearl, interference or unknown");
-    paint_.paint_class = *paint_class;
-  }
+  if (values.has("class")) GONIO_TRY(values.word("class", paint_.paint_class, class_in));
   if (const auto line = names_.note(paint_.name, paint_line_))
     return values.error(
         fmt::format("paint \"{}\" is already at line {}: rename one of them", shown(paint_.name), *line));
@@ -284,9 +274,7 @@ Result<void> PaintHandler::begin_measurement(const XmlValues& values) {
   GONIO_TRY(once(paint_.measurement.has_value(), values));
   paint::Measurement& measurement = paint_.measurement.emplace();
   GONIO_TRY(values.name("illuminant", measurement.condition.illuminant));
-  const std::string_view observer = values.text("observer");
-  if (observer != "2" && observer != "10") return values.error("observer", "write 2 or 10 (degrees)");
-  measurement.condition.observer_deg = observer == "2" ? 2 : 10;
+  GONIO_TRY(values.word("observer", measurement.condition.observer_deg, observer_in));
   measurement.instrument = values.text("instrument");
   return {};
 }

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
+#include "base/scratch_for_test.h"
 #include "formats/basis.h"
-#include "formats/scratch_for_test.h"
 
 namespace goniochrome::formats {
 namespace {
@@ -124,7 +124,7 @@ void expect_same(const paint::Paint& x, const paint::Paint& y) {
   EXPECT_EQ(x.foreign, y.foreign);
 }
 
-TEST(PaintXml, every_part_survives_to_the_last_bit) {
+TEST(PaintXml, EveryPartSurvivesToTheLastBit) {
   const ScratchFolder folder;
   const paint::Paint paint = full_paint();
   const std::string path = folder.path("p.xml");
@@ -159,7 +159,7 @@ TEST(PaintXml, every_part_survives_to_the_last_bit) {
   EXPECT_EQ(folder.content("q.xml"), folder.content("p.xml"));
 }
 
-TEST(PaintXml, reads_the_sample_library_in_order_with_its_lines) {
+TEST(PaintXml, ReadsTheSampleLibraryInOrderWithItsLines) {
   const Reading reading = reading_of(std::string(GONIOCHROME_TESTDATA) + "/paints.paints.xml");
   EXPECT_THAT(reading.errors, ElementsAre());
   ASSERT_GT(reading.paints.size(), 35u);
@@ -169,7 +169,7 @@ TEST(PaintXml, reads_the_sample_library_in_order_with_its_lines) {
   EXPECT_EQ(reading.lines[1], 12);
 }
 
-TEST(PaintXml, parts_come_in_any_order_and_an_empty_library_is_one) {
+TEST(PaintXml, PartsComeInAnyOrderAndAnEmptyLibraryIsOne) {
   const Reading reading = reading_of_text(document(
       "<paint name=\"p\"><gloss angle=\"60\"> 92.1 </gloss><appearance travel=\"63\"><flop L=\"1\" a=\"2\" "
       "b=\"3\"/><face "
@@ -184,7 +184,7 @@ TEST(PaintXml, parts_come_in_any_order_and_an_empty_library_is_one) {
   EXPECT_TRUE(none.errors.empty() && none.paints.empty());
 }
 
-TEST(PaintXml, foreign_elements_mean_the_same_wherever_they_are_written) {
+TEST(PaintXml, ForeignElementsMeanTheSameWhereverTheyAreWritten) {
   const ScratchFolder folder;
   const std::string text =
       "<p:paints xmlns:p=\"urn:goniochrome:paint:1\" xmlns:x=\"urn:x\" xmlns=\"urn:default\" version=\"1\">"
@@ -206,7 +206,7 @@ TEST(PaintXml, foreign_elements_mean_the_same_wherever_they_are_written) {
   EXPECT_EQ(second.foreign, first.foreign);
 }
 
-TEST(PaintXml, one_wrong_value_loses_one_paint) {
+TEST(PaintXml, OneWrongValueLosesOnePaint) {
   const Reading reading =
       reading_of_text(document(measured("a", "<lab geometry=\"45as15\" L=\"1\" a=\"2\" b=\"3\"/>\n") +
                                measured("b", "<lab geometry=\"45as15\" L=\"1\" a=\"two\" b=\"3\"/>\n") +
@@ -217,7 +217,7 @@ TEST(PaintXml, one_wrong_value_loses_one_paint) {
   EXPECT_THAT(reading.errors, ElementsAre("p.xml:10: a is \"two\": write a number such as 12.5"));
 }
 
-TEST(PaintXml, wrong_values_are_named_with_line_and_remedy) {
+TEST(PaintXml, WrongValuesAreNamedWithLineAndRemedy) {
   const auto lab = [](const std::string& row) { return only_error(document(measured("p", row + "\n"))); };
   const auto paint = [](const std::string& body) {
     return only_error(document("<paint name=\"p\">\n" + body + "</paint>\n"));
@@ -277,13 +277,13 @@ TEST(PaintXml, wrong_values_are_named_with_line_and_remedy) {
             "p.xml:3: class is \"shiny\": write solid, metallic, pearl, interference or unknown");
 }
 
-TEST(PaintXml, messages_stay_on_one_line) {
+TEST(PaintXml, MessagesStayOnOneLine) {
   const std::string error =
       only_error(document("<paint name=\"p\">\none\ntwo " + std::string(100, 'x') + "</paint>\n"));
   EXPECT_EQ(error, "p.xml:5: text \"one two " + std::string(52, 'x') + "...\" stands between elements: remove it");
 }
 
-TEST(PaintXml, other_documents_are_refused_by_name) {
+TEST(PaintXml, OtherDocumentsAreRefusedByName) {
   EXPECT_THAT(only_error("<CxF xmlns=\"urn:x\"/>"), HasSubstr("p.xml:1: this begins with <CxF>, not with paints"));
   EXPECT_THAT(only_error("<paints version=\"1\"/>"), HasSubstr("xmlns=\"urn:goniochrome:paint:1\""));
   EXPECT_EQ(only_error("<paints xmlns=\"urn:goniochrome:paint:1\" version=\"2\"/>"),
@@ -301,15 +301,13 @@ TEST(PaintXml, other_documents_are_refused_by_name) {
   EXPECT_FALSE(PaintReader::open("/no/such/file.xml").ok());
 }
 
-TEST(PaintXml, the_schema_refuses_what_the_reader_refuses) {
-  // Each body through the schema alone (by way of the reader's net below its own words) is covered by
-  // wrong_values_are_named_with_line_and_remedy; here the schema is shown to accept what the writer writes.
+TEST(PaintXml, TheSchemaAcceptsWhatTheWriterWrites) {
   const ScratchFolder folder;
   ASSERT_TRUE(write_all(folder.path("p.xml"), {full_paint()}).ok());
-  for (const std::string& error : reading_of(folder.path("p.xml")).errors) EXPECT_THAT(error, Not(HasSubstr("schema")));
+  EXPECT_THAT(reading_of(folder.path("p.xml")).errors, ElementsAre());
 }
 
-TEST(PaintXml, writer_refuses_what_xml_cannot_hold) {
+TEST(PaintXml, WriterRefusesWhatXmlCannotHold) {
   const ScratchFolder folder;
   paint::Paint paint = full_paint();
   paint.name = "bell\a";
@@ -318,49 +316,6 @@ TEST(PaintXml, writer_refuses_what_xml_cannot_hold) {
   paint.name = "latin-1 \xe9";
   EXPECT_FALSE(write_all(folder.path("p.xml"), {paint}).ok());
   EXPECT_FALSE(std::filesystem::exists(folder.path("p.xml")));
-}
-
-TEST(BasisXml, survives_with_its_error_table) {
-  const ScratchFolder folder;
-  const Basis basis{"b\"7\"", {0.3, 1.3, 1e6}, true, {{1, 9.5, 2.25, 11.75}, {2, 1.0 / 3, 0.1, 0.5}}};
-  ASSERT_TRUE(write_basis(folder.path("b.xml"), basis).ok());
-  const auto back = read_basis(folder.path("b.xml"));
-  ASSERT_TRUE(back.ok()) << back.error().message;
-  EXPECT_EQ(back->name, basis.name);
-  EXPECT_EQ(back->exponents, basis.exponents);
-  EXPECT_TRUE(back->mirror);
-  ASSERT_EQ(back->sets.size(), 2u);
-  EXPECT_EQ(back->sets[1].lobes, 2);
-  EXPECT_EQ(back->sets[1].max_error, 1.0 / 3);
-  EXPECT_EQ(back->sets[1].objective, 0.5);
-  const auto sample = read_basis(std::string(GONIOCHROME_TESTDATA) + "/b7.basis.xml");
-  ASSERT_TRUE(sample.ok());
-  EXPECT_EQ(sample->exponents, (std::vector<double>{1.3, 6, 20, 70, 250, 900, 3000}));
-  EXPECT_TRUE(sample->mirror);
-}
-
-TEST(BasisXml, wrong_values_are_named_with_line_and_remedy) {
-  const ScratchFolder folder;
-  const auto error = [&](const std::string& body) {
-    const auto basis = read_basis(
-        folder.file("b.xml", "<basis xmlns=\"urn:goniochrome:basis:1\" name=\"b\">\n" + body + "\n</basis>\n"));
-    EXPECT_FALSE(basis.ok()) << body;
-    return basis.ok() ? "" : basis.error().message.substr(basis.error().message.rfind("b.xml"));
-  };
-  EXPECT_EQ(error("<exponent>1,5</exponent>"), "b.xml:2: exponent is \"1,5\": write a decimal point");
-  EXPECT_EQ(error("<exponent>5</exponent>\n<exponent>5</exponent>"),
-            "b.xml:3: exponent 5 follows 5: write them in ascending order, each once");
-  EXPECT_EQ(error("<exponent>-1</exponent>"), "b.xml:2: exponent is -1: write 0 or more");
-  EXPECT_EQ(error("<exponent>inf</exponent>"), "b.xml:2: exponent is \"inf\": write a finite number");
-  EXPECT_THAT(error("<mirror/>"), HasSubstr("the basis has no <exponent>"));
-  EXPECT_THAT(error("<exponent>1</exponent><lobe/>"), HasSubstr("<lobe> is not known inside <basis>"));
-  EXPECT_THAT(error("<exponent>1</exponent><set lobes=\"1.5\" max=\"1\" mean=\"1\" objective=\"1\"/>"),
-              HasSubstr("write a whole number"));
-  EXPECT_EQ(error("<exponent>1</exponent><mirror/><exponent>2</exponent>"),
-            "b.xml:2: <exponent> stands behind <mirror> or <set>: write the exponents first");
-  EXPECT_THAT(error(""), HasSubstr("the basis has no <exponent>: give it at least one"));
-  EXPECT_THAT(read_basis(std::string(GONIOCHROME_TESTDATA) + "/paints.paints.xml").error().message,
-              HasSubstr("this begins with <paints>, not with a basis"));
 }
 
 }  // namespace

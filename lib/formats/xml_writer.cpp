@@ -1,7 +1,6 @@
 #include <cmath>
 
 #include "base/text.h"
-#include "base/utf8.h"
 #include "formats/internal/schemas.h"
 #include "formats/internal/xml_stream.h"
 #include "formats/xml.h"
@@ -17,7 +16,7 @@ std::string attribute(std::string_view name, std::string_view text) {
 std::string attribute(std::string_view name, double value) {
   return fmt::format(" {}=\"{}\"", name, shortest(value));
 }
-// The same, or nothing where there is nothing to say.
+// The same, or nothing if the text is empty.
 std::string optional_attribute(std::string_view name, std::string_view text) {
   return text.empty() ? "" : attribute(name, text);
 }
@@ -85,7 +84,7 @@ std::string paint_element(const paint::Paint& paint) {
   return text + "  </paint>\n";
 }
 
-// What XML cannot hold, or what a reader would refuse: found before it is written.
+// Error: a text that XML cannot hold, or that a reader would refuse. It is found before anything is written.
 Result<void> check_texts(const paint::Paint& paint) {
   const std::string* texts[] = {&paint.name,
                                 &paint.code,

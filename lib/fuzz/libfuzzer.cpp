@@ -7,13 +7,13 @@
 #include "fuzz/targets.h"
 
 namespace {
-std::unique_ptr<goniochrome::FuzzRun> run;
+std::unique_ptr<goniochrome::fuzz::FuzzRun> run;
 }
 
 extern "C" int LLVMFuzzerInitialize(int*, char*** arguments) {
   const std::string program = std::filesystem::path((*arguments)[0]).filename().string();
   for (const goniochrome::fuzz::FuzzTarget& target : goniochrome::fuzz::fuzz_targets())
-    if (program == "fuzz-" + std::string(target.name)) run = std::make_unique<goniochrome::FuzzRun>(target);
+    if (program == "fuzz-" + std::string(target.name)) run = std::make_unique<goniochrome::fuzz::FuzzRun>(target);
   if (run) return 0;
   std::fprintf(stderr, "%s: call it fuzz-TARGET, where TARGET is one of:", program.c_str());
   for (const goniochrome::fuzz::FuzzTarget& target : goniochrome::fuzz::fuzz_targets())

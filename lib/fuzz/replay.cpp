@@ -1,4 +1,5 @@
-// Replays a corpus and mutations of it, without a fuzzer: what ctest runs. The same seed gives the same inputs.
+// Runs a reader on a corpus and on mutations of it, without a fuzzer. This is what ctest runs. The same seed gives the
+// same inputs.
 //
 //   fuzz_replay TARGET CORPUS INPUTS SEED
 //
@@ -34,7 +35,7 @@ Corpus corpus_in(const std::string& folder) {
   return corpus;
 }
 
-// Words that stand for extremes: of numbers, and of what parts them.
+// Extreme numbers, and characters that part numbers and words.
 const std::vector<std::string> kWords = [] {
   std::vector<std::string> words = {"0", "-1", "1e308", "-1e400", "1e-400", "nan", "inf", "4294967296"};
   for (const char* word : {"-9223372036854775809", "1.5,2", "</a>", "<!--", "]]>", "\xff\xff\xff\xff", "\xef\xbb\xbf",
@@ -47,8 +48,8 @@ const std::vector<std::string> kWords = [] {
   return words;
 }();
 
-// One to eight changes of the kinds that break readers: bits, bytes, cuts, repetitions, pieces of other inputs, and
-// words that stand for extremes.
+// Makes one to eight changes of the kinds that break readers: bits, bytes, cuts, repetitions, pieces of other inputs,
+// and the words above.
 class Mutator {
  public:
   Mutator(const Corpus& corpus, std::uint64_t seed) : corpus_(corpus), random_(seed) {}

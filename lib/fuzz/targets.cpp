@@ -10,7 +10,7 @@
 
 #include "base/file.h"
 #include "brdf/measured.h"
-#include "color/reflection_json.h"
+#include "color/reflection.h"
 #include "envmap/prefiltered.h"
 #include "formats/basis.h"
 #include "formats/cgats.h"
@@ -18,14 +18,14 @@
 #include "formats/cxf.h"
 #include "formats/xml.h"
 #include "image/hdr.h"
-#include "library/library_index.h"
+#include "library/index.h"
 #include "mesh/mesh.h"
 
 namespace goniochrome::fuzz {
 
 namespace {
 
-// What a reader let through must hold for everything behind it.
+// Ends the program if something does not hold for what a reader has accepted.
 void demand(bool holds, const char* what) {
   if (holds) return;
   std::fprintf(stderr, "fuzz: %s\n", what);
@@ -45,7 +45,7 @@ void demand_paint(const paint::Paint& paint) {
            "a reading that is no number");
 }
 
-// Every next() of a stream of paints. A stream of `most` errors and paints from a file of its size does not end.
+// Calls next() to the end of a stream of paints. A stream that gives more than `most` errors and paints does not end.
 template <class Reader>
 void drain(Reader& reader, std::size_t most) {
   for (std::size_t i = 0;; ++i) {
@@ -145,7 +145,7 @@ const std::vector<FuzzTarget>& fuzz_targets() {
 }
 
 FuzzRun::FuzzRun(const FuzzTarget& target) : target_(target) {
-  // In memory where the system has such a folder: a disk would set the pace.
+  // The folder is in memory if the system has such a place, since a disk would be slower than the readers.
   const char* top = std::filesystem::is_directory("/dev/shm") ? "/dev/shm" : "/tmp";
   folder_ = std::string(top) + "/gonio-fuzz-" + std::to_string(getpid());
   std::filesystem::create_directories(folder_);

@@ -1,4 +1,4 @@
-// What fuzzing feeds bytes to: every reader of files that come from elsewhere, by name.
+// The targets of fuzzing: every reader of files that come from elsewhere, by name.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,9 @@ namespace goniochrome::fuzz {
 
 struct FuzzTarget {
   std::string_view name;       // also the folder of its corpus
-  std::string_view file_name;  // what the reader takes the bytes for
-  // Reads the file at a path and walks all of what came of it. Refusing is right; it may not crash, hang, or answer
-  // with a number that is none.
+  std::string_view file_name;  // under which the reader gets the bytes
+  // Reads the file at a path and visits everything that comes of it. A reader may refuse the file; it may not crash,
+  // hang, or return a number that is not finite.
   std::function<void(const std::string& path)> read;
 };
 

@@ -9,21 +9,15 @@ namespace goniochrome::image {
 
 namespace {
 
-template <class T>
-T attribute(const Attributes& attributes, const char* name, const T& otherwise) {
-  const auto found = attributes.find(name);
-  const T* value = found == attributes.end() ? nullptr : std::get_if<T>(&found->second);
-  return value ? *value : otherwise;
-}
-
-// `count` comma-separated numbers.
+// The `count` numbers that the commas in `text` part.
 Result<std::vector<double>> numbers(std::string_view text, std::size_t count, const std::string& path,
                                     const char* name) {
   std::vector<double> values;
   for (const std::string_view piece : split(text, ','))
     if (const auto value = parse_number(trimmed(piece))) values.push_back(*value);
   if (values.size() != count)
-    return input_error("{}: its {} is \"{}\", not {} numbers: render the buffers again", path, name, text, count);
+    return input_error("{}: its attribute {} is \"{}\", which is not {} numbers: render the buffers again", path, name,
+                       text, count);
   return values;
 }
 
@@ -31,8 +25,9 @@ Result<void> take_rays(const std::string& text, AovFile& file) {
   if (text.empty()) return {};
   const auto pieces = split(text, ';');
   if (pieces.size() != 3)
-    return input_error("{}: its goniochrome:rays is \"{}\", not three vectors: render the buffers again", file.path,
-                       text);
+    return input_error(
+        "{}: its attribute goniochrome:rays is \"{}\", which is not three vectors: render the buffers again", file.path,
+        text);
   Vec3* const rays[3] = {&file.corner, &file.right, &file.down};
   for (int i = 0; i < 3; ++i) {
     GONIO_ASSIGN(const auto v, numbers(pieces[i], 3, file.path, "goniochrome:rays"));
@@ -61,9 +56,9 @@ Result<void> take_operator(const std::string& text, AovFile& file) {
   return {};
 }
 
-// The strings of a JSON list.
+// The strings of the JSON list in an attribute.
 std::vector<std::string> names_of(const Attributes& attributes, const char* name) {
-  const auto text = attribute<std::string>(attributes, name, "");
+  const auto text = attribute_or<std::string>(attributes, name, "");
   std::vector<std::string> names;
   for (const Json& entry : Json::parse(text.empty() ? "[]" : text, nullptr, false))
     if (entry.is_string()) names.push_back(entry.get<std::string>());
@@ -90,25 +85,26 @@ Result<int> AovFile::part(const std::string& name) const {
 Result<AovFile> read_aov_file(const std::string& path) {
   GONIO_ASSIGN(auto read, read_exr(path));
   const Attributes& attributes = read.front().attributes;
+  const auto text = [&](const char* name) { return attribute_or<std::string>(attributes, name, ""); };
   AovFile file;
   file.path = path == "-" ? "standard input" : path;
-  file.exposure_stops = attribute<float>(attributes, "goniochrome:exposure", 0);
-  file.white_luminance = attribute<float>(attributes, "goniochrome:whiteLuminance", 1);
+  file.exposure_stops = attribute_or<float>(attributes, "goniochrome:exposure", 0);
+  file.white_luminance = attribute_or<float>(attributes, "goniochrome:whiteLuminance", 1);
   if (!(file.white_luminance > 0)) file.white_luminance = 1;
-  file.samples = attribute<int>(attributes, "goniochrome:samples", 1);
-  file.environment = attribute<std::string>(attributes, "goniochrome:environment", "");
-  file.command = attribute<std::string>(attributes, "goniochrome:command", "");
-  if (const auto light = attribute<std::string>(attributes, "goniochrome:aovLight", ""); !light.empty()) {
+  file.samples = attribute_or<int>(attributes, "goniochrome:samples", 1);
+  file.environment = text("goniochrome:environment");
+  file.command = text("goniochrome:command");
+  if (const auto light = text("goniochrome:aovLight"); !light.empty()) {
     GONIO_ASSIGN(const auto v, numbers(light, 3, file.path, "goniochrome:aovLight"));
     file.light = {v[0], v[1], v[2]};
   }
-  GONIO_TRY(take_rays(attribute<std::string>(attributes, "goniochrome:rays", ""), file));
-  GONIO_TRY(take_lights(attribute<std::string>(attributes, "goniochrome:lights", ""), file));
-  GONIO_TRY(take_operator(attribute<std::string>(attributes, "goniochrome:operator", ""), file));
+  GONIO_TRY(take_rays(text("goniochrome:rays"), file));
+  GONIO_TRY(take_lights(text("goniochrome:lights"), file));
+  GONIO_TRY(take_operator(text("goniochrome:operator"), file));
   file.parts = names_of(attributes, "goniochrome:parts");
   file.materials = names_of(attributes, "goniochrome:materials");
   file.materials.resize(file.parts.size());
-  const auto plan = attribute<std::string>(attributes, "goniochrome:plan", "");
+  const auto plan = text("goniochrome:plan");
   const Json effects = Json::parse(plan.empty() ? "[]" : plan, nullptr, false);
   for (const Json& effect : effects) {
     if (!effect.is_object() || !effect.contains("effect") || !effect["effect"].is_string()) continue;

@@ -1,4 +1,5 @@
-// The picture with buffers that render-osmesa --aov writes, read back. goniochrome-theory(7), SKETCH FITTING.
+// The pictures that render-osmesa writes with --aov, read back: the picture itself, the buffers beside it (normals,
+// angles, parts), and what the header tells of camera, lights and effects. goniochrome-theory(7), SKETCH FITTING.
 #pragma once
 
 #include <string>
@@ -11,7 +12,7 @@
 
 namespace goniochrome::image {
 
-// A directional light as the file tells it: the way to it, and what a white diffuser that faces it shows.
+// A directional light as the file tells it: the direction to it, and the color of a white diffuser that faces it.
 struct AovLight {
   Vec3 direction, white{1, 1, 1};
 };
@@ -19,29 +20,29 @@ struct AovLight {
 struct AovFile {
   std::string path;
   Image image;  // R G B A and the buffers
-  // Of the file's header; a file that does not say has exposure 0 and white 1.
+  // From the file's header; where it does not tell them, the exposure is 0 and the white is 1.
   double exposure_stops = 0, white_luminance = 1;
-  int samples = 1;               // of every pixel of the picture; the buffers are of the centers
-  Vec3 light{0, 1, 0};           // that aspecular and lambert are relative to
-  std::vector<AovLight> lights;  // all there were
+  int samples = 1;               // in every pixel of the picture; the buffers have one, in the center of the pixel
+  Vec3 light{0, 1, 0};           // the light that the buffers aspecular and lambert are relative to
+  std::vector<AovLight> lights;  // all lights of the picture
   std::string environment;       // "" for none
   bool has_rays = false;
-  Vec3 corner, right, down;  // the ray through the point (x, y), pixels from the upper left: corner + x right + y down
+  Vec3 corner, right, down;  // the ray through x, y (pixels from the upper left) is corner + x right + y down
   std::vector<std::string> parts, materials;  // one material for each part, "" where the mesh named none
-  std::string command;                        // that made the file
-  std::vector<std::string> drawn;             // effects of the picture, by render-osmesa's names
-  std::vector<std::string> left_out;          // and those that the scene has and the picture does not
-  color::ReflectionOperator reflection = color::iso_rgb_operator();  // by which the effect "operator" was drawn
+  std::string command;                        // the command that made the file
+  std::vector<std::string> drawn;             // the effects that the picture shows, by render-osmesa's names
+  std::vector<std::string> left_out;          // the effects that the scene has and the picture does not show
+  color::ReflectionOperator reflection = color::iso_rgb_operator();  // with which the effect "operator" was drawn
 
-  // The channel's place in a pixel. Error: the file lacks it, with the command that makes it.
+  // The channel's place in a pixel. Error: the file lacks it; the message has the command that makes it.
   Result<int> channel(const std::string& name) const;
   // The unit direction to the viewer at the center of a pixel, or beside it.
   Vec3 to_viewer(double x, double y) const { return -normalized(corner + (x + 0.5) * right + (y + 0.5) * down); }
-  // The number of the part of that name, from 1. Error: the names there are.
+  // The number, from 1, of the part that has that name. Error: the names that there are.
   Result<int> part(const std::string& name) const;
 };
 
-// Error: not an EXR, or a header that says something else than render-osmesa writes.
+// Error: the file is not an EXR file, or its header is not one that render-osmesa writes.
 Result<AovFile> read_aov_file(const std::string& path);
 
 }  // namespace goniochrome::image

@@ -28,7 +28,7 @@ struct Space {
   double gamma = 1;
 };
 
-// IEC 61966-2-1, to linear.
+// Linear light from a value in sRGB (IEC 61966-2-1).
 double linear_from_srgb(double v) {
   return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
 }
@@ -53,11 +53,7 @@ std::optional<Space> named_space(std::string name) {
 }
 
 Result<Space> space_of(const ImagePart& part, const std::string& file) {
-  const auto text = [&](const char* name) -> std::string {
-    const auto found = part.attributes.find(name);
-    const auto* value = found == part.attributes.end() ? nullptr : std::get_if<std::string>(&found->second);
-    return value ? *value : "";
-  };
+  const auto text = [&](const char* name) { return attribute_or<std::string>(part.attributes, name, ""); };
   const auto unknown = [&](const char* attribute, const std::string& value) {
     return input_error("{}: {} is \"{}\", which is not known: convert it to linear Rec.709 and tag it lin_rec709_scene",
                        file, attribute, value);
@@ -66,12 +62,12 @@ Result<Space> space_of(const ImagePart& part, const std::string& file) {
     if (const auto space = named_space(id)) return *space;
     return unknown("colorInteropID", id);
   }
-  if (const auto found = part.attributes.find("chromaticities"); found != part.attributes.end())
-    if (const auto* xy = std::get_if<std::vector<float>>(&found->second); xy && xy->size() == 8) {
-      Space space;
-      std::copy(xy->begin(), xy->end(), space.primaries.begin());
-      return space;
-    }
+  const auto* xy = find_attribute<std::vector<float>>(part.attributes, "chromaticities");
+  if (xy && xy->size() == 8) {
+    Space space;
+    std::copy(xy->begin(), xy->end(), space.primaries.begin());
+    return space;
+  }
   if (const std::string name = text("oiio:ColorSpace"); !name.empty()) {
     if (const auto space = named_space(name)) return *space;
     return unknown("its color space", name);
@@ -87,8 +83,8 @@ bool same(const Primaries& a, const Primaries& b) {
 
 using Columns = std::array<Vec3, 3>;
 
-// Columns of the matrix from RGB of `p` to the working space: each primary, scaled so that they add up to the white,
-// adapted to D65.
+// The columns of the matrix from RGB of `p` to the working space. They are the primaries, scaled so that they add up to
+// the white, and adapted to D65.
 Result<Columns> to_working_space(const Primaries& p, const std::string& file) {
   const auto xyz = [&](int i) { return Vec3{p[i], p[i + 1], 1 - p[i] - p[i + 1]}; };
   const Vec3 r = xyz(0), g = xyz(2), b = xyz(4), w = xyz(6);

@@ -1,4 +1,4 @@
-// The color space that an image file claims, and the way from it to the working space.
+// The color space that an image file says it is in, and the conversion from it to the working space.
 #pragma once
 
 #include "base/result.h"
@@ -6,9 +6,10 @@
 
 namespace goniochrome::image {
 
-// Turns the first three channels of `part` (one channel is gray) into linear working-space RGB, as its attributes say:
-// colorInteropID, else chromaticities, else oiio:ColorSpace; untagged images are linear Rec.709. Whites are adapted to
-// D65 by Bradford. Error: names a color space that is not known, and the remedy.
+// Turns the first three channels of `part` (one channel is gray) into linear working-space RGB. The color space is the
+// one that the attribute colorInteropID names, or else chromaticities, or else oiio:ColorSpace; an image without any of
+// them is linear Rec.709. Whites are adapted to D65 by Bradford's method. Error: a color space that is not known, and
+// the remedy.
 Result<Image> working_space_rgb(ImagePart part, const std::string& name);
 
 }  // namespace goniochrome::image

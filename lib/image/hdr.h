@@ -1,4 +1,5 @@
-// Shared by the readers of this module and their tests.
+// Radiance pictures (`*.hdr`) in memory. Most probes of light come in this format, and it is read here because loading
+// OpenImageIO takes ten times longer than reading the picture.
 #pragma once
 
 #include <optional>
@@ -9,12 +10,12 @@
 
 namespace goniochrome::image {
 
-// Whether a file that begins so may be a Radiance picture.
+// Whether a file that begins with `head` may be a Radiance picture.
 bool is_radiance(std::string_view head);
 
-// A Radiance picture held in memory: rows from the top, columns from the left, linear RGB, as nearly all are. Nothing
-// where it is of another kind (XYZ, turned, gamma-corrected), which read_image() leaves to OpenImageIO. Error: the row
-// that ends early or whose runs are wrong; `name` is what errors call the file.
+// The picture, linear RGB, if its rows run from the top and its columns from the left, as they do in nearly all such
+// files. Nothing if it is of another kind (XYZ, turned, gamma-corrected), which read_image() leaves to OpenImageIO.
+// Error: the row that ends early or whose runs are wrong; `name` is what errors call the file.
 Result<std::optional<ImagePart>> decoded_hdr(const std::string& content, const std::string& name);
 
 }  // namespace goniochrome::image

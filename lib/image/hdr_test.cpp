@@ -2,13 +2,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
 #include <fstream>
 #include <random>
 
-#include "base/file.h"
+#include "base/scratch_for_test.h"
 
 namespace goniochrome::image {
 namespace {
@@ -47,24 +45,13 @@ std::string plain_pixels(int width, int height) {
 
 class HdrFile : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() / fmt::format("goniochrome-hdr-{}", getpid());
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  Result<ImagePart> read(const std::string& bytes) {
-    const std::string path = (folder_ / "x.hdr").string();
-    EXPECT_TRUE(write_file(path, bytes).ok());
-    return read_image(path);
-  }
-
-  std::filesystem::path folder_;
+  Result<ImagePart> read(const std::string& bytes) { return read_image(folder_.file("x.hdr", bytes)); }
+  ScratchFolder folder_;
 };
 
 // OpenImageIO is the judge: with a gamma other than 1 the same pixels go through it. Its powers of two are a step of a
 // float low for some exponents.
-TEST_F(HdrFile, pixels_are_those_that_OpenImageIO_reads) {
+TEST_F(HdrFile, PixelsAreThoseThatOpenImageIOReads) {
   constexpr double kStep = 1.2e-7;
   struct Case {
     int width, height;
@@ -86,7 +73,7 @@ TEST_F(HdrFile, pixels_are_those_that_OpenImageIO_reads) {
   }
 }
 
-TEST_F(HdrFile, other_kinds_are_left_to_the_module) {
+TEST_F(HdrFile, OtherKindsAreLeftToTheModule) {
   const std::string pixels = plain_pixels(2, 1), common = header(2, 1);
   const auto other = [&](const std::string& from, const std::string& to) {
     std::string changed = common;
@@ -100,7 +87,7 @@ TEST_F(HdrFile, other_kinds_are_left_to_the_module) {
   EXPECT_FALSE(decoded_hdr("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8", "x").value());
 }
 
-TEST_F(HdrFile, a_damaged_file_is_refused_by_row) {
+TEST_F(HdrFile, ADamagedFileIsRefusedByRow) {
   const std::string whole = header(200, 6) + rows_in_runs(200, 6);
   const auto cut = decoded_hdr(whole.substr(0, whole.size() - 1), "sky.hdr");
   ASSERT_FALSE(cut.ok());
@@ -113,10 +100,10 @@ TEST_F(HdrFile, a_damaged_file_is_refused_by_row) {
   // A size that the bytes cannot stand for asks for no memory.
   const auto forged = decoded_hdr(header(30000, 20000) + rows_in_runs(200, 6), "sky.hdr");
   ASSERT_FALSE(forged.ok());
-  EXPECT_THAT(forged.error().message, HasSubstr("sky.hdr: is cut short: it says 30000 x 20000 pixels"));
+  EXPECT_THAT(forged.error().message, HasSubstr("sky.hdr: is cut short: its header says 30000 x 20000 pixels"));
 }
 
-TEST_F(HdrFile, damage_never_crashes) {
+TEST_F(HdrFile, DamageNeverCrashes) {
   const std::string whole = header(64, 4) + rows_in_runs(64, 4);
   std::mt19937 random(3);
   int refused = 0, read = 0;
@@ -131,7 +118,7 @@ TEST_F(HdrFile, damage_never_crashes) {
   EXPECT_GT(read, 100);
 }
 
-TEST_F(HdrFile, the_other_formats_are_not_loaded) {
+TEST_F(HdrFile, TheOtherFormatsAreNotLoaded) {
   const auto loaded = [] {
     std::ifstream maps("/proc/self/maps");
     return std::string(std::istreambuf_iterator<char>(maps), {}).find("OpenImageIO") != std::string::npos;

@@ -1,5 +1,6 @@
-// Float images in memory, and the files they come from: OpenEXR and Radiance HDR directly, everything else through
-// OpenImageIO, which is loaded only when such a file is met (it costs 300 ms to start).
+// Float images in memory, and the files they come from and go to. OpenEXR, Radiance HDR and PNG are handled here;
+// everything else is read through OpenImageIO, which is loaded only when such a file is met (it takes 300 ms to start).
+// The path "-" is standard input or standard output everywhere.
 #pragma once
 
 #include <cstddef>
@@ -26,6 +27,20 @@ struct Image {
 using AttributeValue = std::variant<std::string, float, int, std::vector<float>>;
 using Attributes = std::map<std::string, AttributeValue>;
 
+// The value of an attribute, or null where there is none of that name and type.
+template <class T>
+const T* find_attribute(const Attributes& attributes, const std::string& name) {
+  const auto found = attributes.find(name);
+  return found == attributes.end() ? nullptr : std::get_if<T>(&found->second);
+}
+
+// The value of an attribute, or `otherwise`.
+template <class T>
+T attribute_or(const Attributes& attributes, const std::string& name, const T& otherwise) {
+  const T* value = find_attribute<T>(attributes, name);
+  return value ? *value : otherwise;
+}
+
 enum class PixelType { kHalf, kFloat };
 
 // One part of a (multi-part) EXR file.
@@ -36,25 +51,26 @@ struct ImagePart {
   PixelType type = PixelType::kHalf;
 };
 
-// All parts of an EXR file, scan lines or tiles ("-" is standard input); channels in the order R G B A, then the others
-// as stored. Error: path and reason; a cut file, deep data and subsampled channels are refused.
+// All parts of an EXR file, stored as scan lines or tiles. Channels come in the order R G B A, then the others as they
+// are stored. Error: the path and the reason; a file that is cut off, deep data and subsampled channels are refused.
 Result<std::vector<ImagePart>> read_exr(const std::string& path);
 
-// Writes parts as one EXR (ZIP), beside the target and renamed; "-" is standard output. Halves are rounded to nearest;
-// a value that a half cannot hold makes its part float. NaN and Inf are refused. Unnamed parts are named by number.
+// Writes parts as one EXR file (ZIP), which appears whole or not at all. Halves are rounded to the nearest; a part with
+// a value that a half cannot hold is written as floats. NaN and infinity are refused. A part without a name is named by
+// its number.
 Result<void> write_exr(const std::string& path, const std::vector<ImagePart>& parts);
 
-// What a CMYK JPEG or TIFF becomes: RGB without regard to its profile, or four channels C, M, Y and K, 1 being full
+// What a CMYK JPEG or TIFF becomes: RGB without regard to its profile, or four channels C, M, Y and K, where 1 is full
 // ink.
 enum class Inks { kAsRgb, kKept };
 
-// An image of any format (EXR and Radiance HDR here, others through OpenImageIO), first part, as stored ("-" is
-// standard input); `attributes` has `oiio:ColorSpace`, `chromaticities`, `colorInteropID`, `ICCProfile` and `envmap`
-// ("latlong" or "cube"), as the file has them, and `goniochrome:integer`: 1 where it held whole numbers, now 0..1.
+// The first part of an image of any format, as it is stored. `attributes` has `oiio:ColorSpace`, `chromaticities`,
+// `colorInteropID`, `ICCProfile` and `envmap` ("latlong" or "cube") where the file has them, and `goniochrome:integer`,
+// which is 1 where the file holds whole numbers; these are 0..1 here.
 Result<ImagePart> read_image(const std::string& path, Inks inks = Inks::kAsRgb);
 
-// 8-bit RGB PNG of display-referred values 0..1 (rounded, clamped), with text entries for provenance; "-" is standard
-// output. One channel is gray; channels after the third are left out.
+// Writes display-referred values 0..1, rounded and clamped, as a PNG of 8 bits and RGB, with text entries for
+// provenance. One channel is gray; channels after the third are left out.
 Result<void> write_png(const std::string& path, const Image& image, const Attributes& text = {});
 
 // The bytes of that PNG; `name` is what errors call it.

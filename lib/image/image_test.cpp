@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <csignal>
@@ -16,6 +15,7 @@
 
 #include "base/file.h"
 #include "base/hard_case_for_test.h"
+#include "base/scratch_for_test.h"
 
 namespace goniochrome::image {
 namespace {
@@ -24,14 +24,8 @@ using testing::HasSubstr;
 
 class ImageFile : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() / fmt::format("goniochrome-image-{}", getpid());
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
-  std::filesystem::path folder_;
+  std::string path(const std::string& name) const { return folder_.path(name); }
+  ScratchFolder folder_;
 };
 
 ImagePart random_part(const std::string& name, int width, int height, int channels, PixelType type) {
@@ -51,7 +45,7 @@ bool maps_contain(const std::string& text) {
   return all.find(text) != std::string::npos;
 }
 
-TEST_F(ImageFile, exr_parts_of_their_own_size_and_attributes_return) {
+TEST_F(ImageFile, ExrPartsOfTheirOwnSizeAndAttributesReturn) {
   std::vector<ImagePart> parts = {random_part("a", 5, 7, 3, PixelType::kFloat),
                                   random_part("b", 2, 12, 4, PixelType::kHalf),
                                   random_part("c", 9, 1, 1, PixelType::kFloat)};
@@ -85,7 +79,7 @@ TEST_F(ImageFile, exr_parts_of_their_own_size_and_attributes_return) {
   EXPECT_EQ(read.value()[0].image.channel_names, (std::vector<std::string>{"R", "G", "B"}));
 }
 
-TEST_F(ImageFile, halves_are_rounded_and_not_truncated) {
+TEST_F(ImageFile, HalvesAreRoundedAndNotTruncated) {
   ImagePart part = random_part("a", 100, 100, 3, PixelType::kHalf);
   std::mt19937 random(5);
   std::uniform_real_distribution<float> one_to_two(1, 2);
@@ -116,7 +110,7 @@ TEST_F(ImageFile, HardCase_PrefilterSunAValueBeyondHalfMakesThePartFloat) {
                               .unit = "relative"});
 }
 
-TEST_F(ImageFile, a_value_that_is_not_finite_is_refused_by_pixel) {
+TEST_F(ImageFile, AValueThatIsNotFiniteIsRefusedByPixel) {
   ImagePart part = random_part("depth", 3, 2, 3, PixelType::kFloat);
   part.image.data[3 * (3 + 2) + 1] = std::numeric_limits<float>::quiet_NaN();
   const auto written = write_exr(path("x.exr"), {part});
@@ -125,7 +119,7 @@ TEST_F(ImageFile, a_value_that_is_not_finite_is_refused_by_pixel) {
   EXPECT_FALSE(std::filesystem::exists(path("x.exr")));
 }
 
-TEST_F(ImageFile, every_cut_exr_is_refused) {
+TEST_F(ImageFile, EveryCutExrIsRefused) {
   ASSERT_TRUE(write_exr(path("x.exr"),
                         {random_part("a", 40, 40, 3, PixelType::kFloat), random_part("b", 40, 60, 3, PixelType::kHalf)})
                   .ok());
@@ -141,7 +135,7 @@ TEST_F(ImageFile, every_cut_exr_is_refused) {
   EXPECT_THAT(read.error().message, HasSubstr("absent.exr: cannot be read: No such file"));
 }
 
-TEST_F(ImageFile, damaged_exr_never_crashes) {
+TEST_F(ImageFile, DamagedExrNeverCrashes) {
   ASSERT_TRUE(write_exr(path("x.exr"), {random_part("a", 30, 30, 3, PixelType::kHalf)}).ok());
   const std::string whole = file_content(path("x.exr")).value();
   std::mt19937 random(3);
@@ -155,14 +149,14 @@ TEST_F(ImageFile, damaged_exr_never_crashes) {
   EXPECT_GT(refused, 50);
 }
 
-TEST_F(ImageFile, exr_alone_does_not_load_the_other_formats) {
+TEST_F(ImageFile, ExrAloneDoesNotLoadTheOtherFormats) {
   if (maps_contain("goniochrome-oiio")) GTEST_SKIP() << "another test of this process has loaded it";
   ASSERT_TRUE(write_exr(path("x.exr"), {random_part("a", 4, 2, 3, PixelType::kHalf)}).ok());
   ASSERT_TRUE(read_image(path("x.exr")).ok());
   EXPECT_FALSE(maps_contain("OpenImageIO"));
 }
 
-TEST_F(ImageFile, a_missing_module_says_where_it_was_looked_for_and_what_to_do) {
+TEST_F(ImageFile, AMissingModuleSaysWhereItWasLookedForAndWhatToDo) {
   ASSERT_TRUE(write_png(path("x.png"), {1, 1, 3, {0, 0, 0}, {}}).ok());
   if (maps_contain("goniochrome-oiio")) GTEST_SKIP() << "another test of this process has loaded it";
   setenv("GONIOCHROME_MODULE_PATH", "/nonexistent", 1);
@@ -173,7 +167,7 @@ TEST_F(ImageFile, a_missing_module_says_where_it_was_looked_for_and_what_to_do) 
   EXPECT_THAT(read.error().message, HasSubstr("convert the image to EXR"));
 }
 
-TEST_F(ImageFile, png_returns_within_half_a_step_with_its_text) {
+TEST_F(ImageFile, PngReturnsWithinHalfAStepWithItsText) {
   Image image = {16, 16, 3, {}, {}};
   for (int i = 0; i < 16 * 16 * 3; ++i) image.data.push_back(static_cast<float>(i % 257) / 256.0F);
   image.data[0] = -1;
@@ -192,13 +186,13 @@ TEST_F(ImageFile, png_returns_within_half_a_step_with_its_text) {
   EXPECT_THAT(file_content(path("x.png")).value(), HasSubstr("Software"));
 }
 
-TEST_F(ImageFile, an_unknown_format_is_refused_by_name) {
+TEST_F(ImageFile, AnUnknownFormatIsRefusedByName) {
   ASSERT_TRUE(write_file(path("notes.hdr"), "these are notes").ok());
   const auto read = read_image(path("notes.hdr"));
   ASSERT_FALSE(read.ok());
   EXPECT_THAT(read.error().message, HasSubstr("notes.hdr: cannot be read as an image"));
   EXPECT_FALSE(read_image(path("absent.hdr")).ok());
-  EXPECT_THAT(read_image(folder_.string()).error().message, HasSubstr("name an image"));
+  EXPECT_THAT(read_image(path("")).error().message, HasSubstr("is a folder"));
 }
 
 // The textbook writer opens the target itself: a full disk leaves a stump that looks like a file.
@@ -221,7 +215,7 @@ TEST_F(ImageFile, HardCase_InterruptedAFullDiskLeavesTheOldFile) {
                             .bound = 0,
                             .unit = "bytes"});
   std::filesystem::remove(path("stump.exr"));
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
+  EXPECT_EQ(folder_.files(), 1u);
 }
 
 }  // namespace

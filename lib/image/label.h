@@ -1,4 +1,4 @@
-// Small lettering for pictures: capitals, digits and a few signs.
+// Words in pictures: small letters made of dots (capitals, digits and a few signs), and boxes to set them on.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@ namespace goniochrome::image {
 // Small letters become capitals. What lies outside the image is cut off.
 void draw_label(Image& image, int x, int y, const std::string& text, int scale, const std::array<float, 3>& color);
 
-// In pixels.
+// The size of a label in pixels.
 int label_width(const std::string& text, int scale);
 int label_height(int scale);
 

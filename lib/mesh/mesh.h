@@ -1,4 +1,4 @@
-// Triangle meshes of named parts.
+// Triangle meshes of named parts, read from OBJ, OFF, PLY and STL files and mended on the way.
 #pragma once
 
 #include <array>
@@ -40,9 +40,10 @@ struct Box {
 };
 Box bounding_box(const Mesh& mesh);
 
-// Reads OBJ (parts from `o`, else `g`; a name that comes twice is one part), or OFF, PLY, STL as a single part. Normals
-// are made where the file has none (angle-weighted, broken at edges sharper than 60 degrees), degenerate triangles are
-// dropped, both counted. Errors name file, line and remedy.
+// Reads OBJ, whose parts are its objects (`o`) or else its groups (`g`; a name that comes twice is one part), or OFF,
+// PLY or STL as a single part. Vertices without a normal get one: the mean over the faces around them, weighted by
+// angle and broken at edges sharper than 60 degrees. Triangles without area are dropped. Both are counted. Errors name
+// file, line and remedy.
 Result<Mesh> read_mesh(const std::string& path);
 
 }  // namespace goniochrome::mesh

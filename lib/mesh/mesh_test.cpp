@@ -2,13 +2,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdlib>
-#include <filesystem>
 
 #include "base/angles.h"
-#include "base/file.h"
+#include "base/scratch_for_test.h"
 #include "mesh/internal/polygons.h"
 
 namespace goniochrome::mesh {
@@ -18,20 +16,13 @@ using testing::HasSubstr;
 
 class MeshFiles : public testing::Test {
  protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::string file(const std::string& name, const std::string& content) const {
-    const std::string path = (folder_ / name).string();
-    EXPECT_TRUE(write_file(path, content).ok());
-    return path;
-  }
+  std::string file(const std::string& name, const std::string& content) const { return folder_.file(name, content); }
   Result<Mesh> obj(const std::string& content) const { return read_mesh(file("t.obj", content)); }
   std::string obj_error(const std::string& content) const {
     const auto mesh = obj(content);
-    return mesh.ok() ? "no error" : mesh.error().message.substr(folder_.string().size() + 1);
+    return mesh.ok() ? "no error" : mesh.error().message.substr(folder_.path("").size());
   }
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("gonio_mesh_test_" + std::to_string(getpid()));
+  ScratchFolder folder_;
 };
 
 const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
@@ -69,7 +60,7 @@ TEST_F(MeshFiles, GroupsNamePartsOnlyWhereThereAreNoObjects) {
   EXPECT_EQ(obj(kSquare + "f 1 2 3\n")->parts[0].name, "t") << "the file names the only part";
 }
 
-TEST_F(MeshFiles, EveryWayToWriteACorner) {
+TEST_F(MeshFiles, EveryWayToWriteACornerIsRead) {
   const std::string tail = "vt 0 0\nvn 0 0 5\n";
   for (const char* face : {"f 1 2 3", "f 1/1 2/1 3/1", "f 1//1 2//1 3//1", "f 1/1/1 2/1/1 3/1/1", "f -4 -3 -2",
                            "f -4/-1/-1 -3/-1/-1 -2/-1/-1", "f 1 \\\n2 3", "f 1 2 3 # not 4", "f\t1  2\t3 \r"}) {
@@ -96,7 +87,7 @@ TEST_F(MeshFiles, ErrorsNameLineValueAndRemedy) {
   EXPECT_THAT(obj_error(kSquare + "f 1 2 -5\n"), HasSubstr("vertex -5"));
   EXPECT_THAT(obj_error(kSquare + "f 0 1 2\n"), HasSubstr("whole number from 1"));
   EXPECT_THAT(obj_error(kSquare + "f 1//1 2//1 3//1\n"), HasSubstr("normal 1, but there are 0"));
-  EXPECT_THAT(obj_error(kSquare + "\nf 1 2\n"), HasSubstr("t.obj:6: a face of 2 corners"));
+  EXPECT_THAT(obj_error(kSquare + "\nf 1 2\n"), HasSubstr("t.obj:6: the face has 2 corners"));
   EXPECT_THAT(obj_error(kSquare), HasSubstr("holds no faces"));
   EXPECT_THAT(obj_error(kSquare + "f 1 1 2\n"), HasSubstr("none of its 1 faces has an area"));
   EXPECT_THAT(obj_error(kSquare + "f 1 2 \\\n3 \\\nx\n"), HasSubstr("t.obj:7: \"x\"")) << "continued lines count";
@@ -220,7 +211,7 @@ TEST_F(MeshFiles, OffPlyAndStlAreOnePartNamedForTheFile) {
   }
 }
 
-TEST_F(MeshFiles, TextureCoordinates) {
+TEST_F(MeshFiles, TextureCoordinatesAreKept) {
   const std::string text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0 0\nvt 1 0.5\nvt 0\n";
   const auto mesh = read_mesh(file("uv.obj", text + "f 1/1 2/2 3/3\nf 1/4 3/3 4\n"));
   ASSERT_TRUE(mesh.ok()) << mesh.error().message;
@@ -237,7 +228,7 @@ TEST_F(MeshFiles, TextureCoordinates) {
   EXPECT_NE(comma.error().message.find("comma.obj:1: texture coordinate 1 is \"0,5\""), std::string::npos);
 }
 
-TEST(Mesh, VehicleRealData) {
+TEST_F(MeshFiles, ReadsAVehicleRealData) {
   const char* data = std::getenv("GONIOCHROME_DATA");
   if (data == nullptr) GTEST_SKIP() << "GONIOCHROME_DATA is not set";
   const auto mesh = read_mesh(std::string(data) + "/mesh/vehicle.obj");

@@ -1,8 +1,7 @@
-// Wavefront OBJ, as far as a picture needs it: v, vt, vn, f, o, g, usemtl. Everything else (lines,
-// smoothing groups, material libraries) is passed over.
+// Wavefront OBJ, as far as a picture needs it: v, vt, vn, f, o, g, usemtl. Everything else (lines, smoothing groups,
+// material libraries) is passed over.
 #include <algorithm>
 #include <filesystem>
-#include <optional>
 #include <string_view>
 #include <unordered_map>
 
@@ -18,7 +17,7 @@ class ObjParser {
   ObjParser(const std::string& text, const std::string& path) : text_(text), path_(path) {}
 
   Result<Polygons> parse() {
-    GONIO_TRY(find_part_keyword());
+    find_part_keyword();
     std::string joined;
     for (std::size_t at = 0; at < text_.size();) {
       std::string_view line = next_line(at);
@@ -59,7 +58,7 @@ class ObjParser {
   }
 
   // Objects name the parts; a file without objects is divided by its groups.
-  Result<void> find_part_keyword() {
+  void find_part_keyword() {
     for (std::size_t at = 0; at < text_.size();) {
       std::string_view line = next_line(at);
       const auto word = next_word(line);
@@ -67,7 +66,6 @@ class ObjParser {
       if (word == "g" && part_keyword_.empty()) part_keyword_ = "g";
       if (word == "o") break;
     }
-    return {};
   }
 
   Result<void> statement(std::string_view line) {
@@ -82,10 +80,12 @@ class ObjParser {
     return {};
   }
 
-  Result<Vec3> three_numbers(std::string_view line, const char* what) {
+  // The first `count` numbers of a line; those after the first `required` ones may be missing and are 0 then.
+  Result<Vec3> coordinates(std::string_view line, const char* what, int count = 3, int required = 3) {
     Vec3 v;
-    for (int axis = 0; axis < 3; ++axis) {
+    for (int axis = 0; axis < count; ++axis) {
       const auto word = next_word(line);
+      if (word.empty() && axis >= required) break;
       const auto number = parse_number(word);
       if (!number) {
         return input_error("{}:{}: {} coordinate {} is \"{}\": write a finite number with a decimal point", path_,
@@ -97,29 +97,21 @@ class ObjParser {
   }
 
   Result<void> vertex(std::string_view line) {
-    GONIO_ASSIGN(const Vec3 position, three_numbers(line, "vertex"));
+    GONIO_ASSIGN(const Vec3 position, coordinates(line, "vertex"));
     mesh_.positions.push_back(position);
     return {};
   }
 
-  // u v, and a w that is passed over.
+  // u and v; a w behind them is passed over.
   Result<void> texture(std::string_view line) {
-    std::array<float, 2> uv{};
-    for (std::size_t k = 0; k < 2; ++k) {
-      const auto word = next_word(line);
-      const auto number = k == 1 && word.empty() ? std::optional(0.0) : parse_number(word);
-      if (!number)
-        return input_error("{}:{}: texture coordinate {} is \"{}\": write a finite number with a decimal point", path_,
-                           line_, k + 1, word);
-      uv[k] = static_cast<float>(*number);
-    }
-    mesh_.texture.push_back(uv);
+    GONIO_ASSIGN(const Vec3 uv, coordinates(line, "texture", 2, 1));
+    mesh_.texture.push_back({static_cast<float>(uv.x), static_cast<float>(uv.y)});
     return {};
   }
 
-  // A normal of no length says nothing: its corners get a made one.
+  // A normal without length is of no use: its corners get a normal that is made for them.
   Result<void> normal(std::string_view line) {
-    GONIO_ASSIGN(const Vec3 given, three_numbers(line, "normal"));
+    GONIO_ASSIGN(const Vec3 given, coordinates(line, "normal"));
     const double size = length(given);
     const bool usable = size > 0 && std::isfinite(size);
     normal_index_.push_back(usable ? static_cast<std::int32_t>(mesh_.normals.size()) : kNoNormal);
@@ -127,7 +119,7 @@ class ObjParser {
     return {};
   }
 
-  // The 0-based index that a 1-based or (from the end) negative reference means.
+  // The index, from 0, for a reference that counts from 1, or, if it is negative, back from the end.
   Result<std::size_t> reference(std::string_view word, std::size_t count, const char* what) {
     const auto index = parse_integer(word);
     if (!index || *index == 0) {
@@ -170,7 +162,7 @@ class ObjParser {
       ++face.count;
     }
     if (face.count < 3) {
-      return input_error("{}:{}: a face of {} corners: at least three are needed", path_, line_, face.count);
+      return input_error("{}:{}: the face has {} corners: give it at least three", path_, line_, face.count);
     }
     mesh_.faces.push_back(face);
     return {};

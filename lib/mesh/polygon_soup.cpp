@@ -1,4 +1,4 @@
-// The one place that knows CGAL: its readers of OFF, PLY and STL.
+// OFF, PLY and STL files, read by CGAL.
 #include <CGAL/IO/polygon_soup_io.h>
 #include <CGAL/Simple_cartesian.h>
 

@@ -9,14 +9,173 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <map>
+#include <numeric>
+#include <set>
 
 #include "base/angles.h"
-#include "mesh/internal/seam_rim.h"
 
 namespace goniochrome::mesh {
 
 namespace {
+
+// The rim of a part is where its skin ends. Each of its edges has one face or more: the smooth normals of a face at
+// both ends of the edge, and the direction into the face.
+struct RimFace {
+  Vec3 normal0, normal1;
+  Vec3 inward;  // unit, in the face, perpendicular to the edge
+};
+
+struct RimEdge {
+  Vec3 p0, p1;
+  std::vector<RimFace> faces;
+};
+
+struct Rim {
+  std::vector<RimEdge> edges;
+  int duplicate_faces = 0, non_manifold_edges = 0;
+};
+
+constexpr double kFold_rad = 30 * kPi / 180;
+constexpr double kFlat_rad = 2 * kPi / 180;  // less is rounding of the file, whatever the size of the faces
+constexpr double kLeastPatch = 0.01;         // of the part's area
+
+using Index = std::uint32_t;
+
+// Gives each place a number, so that vertices which a file holds several times become one.
+class Places {
+ public:
+  explicit Places(double grid) : grid_(grid) {}
+  Index at(const Vec3& p) {
+    const std::array<std::int64_t, 3> key{std::llround(p.x / grid_), std::llround(p.y / grid_),
+                                          std::llround(p.z / grid_)};
+    return numbers_.try_emplace(key, static_cast<Index>(numbers_.size())).first->second;
+  }
+
+ private:
+  double grid_;
+  std::map<std::array<std::int64_t, 3>, Index> numbers_;
+};
+
+// A side of a triangle: which one, and from which corner it starts.
+struct Side {
+  std::size_t triangle;
+  int corner;
+};
+
+// Along the normal of a face, twice as long as the face is large.
+Vec3 doubled_area(const Mesh& mesh, std::size_t triangle) {
+  const auto& [i, j, k] = mesh.triangles[triangle];
+  return cross(mesh.positions[j] - mesh.positions[i], mesh.positions[k] - mesh.positions[i]);
+}
+
+double face_area(const Mesh& mesh, std::size_t triangle) {
+  return length(doubled_area(mesh, triangle)) / 2;
+}
+
+// How far the face reaches from one of its sides.
+double height_over(const Mesh& mesh, const Side& side) {
+  const auto& corners = mesh.triangles[side.triangle];
+  const Vec3 way = mesh.positions[corners[(side.corner + 1) % 3]] - mesh.positions[corners[side.corner]];
+  return 2 * face_area(mesh, side.triangle) / length(way);
+}
+
+RimFace rim_face(const Mesh& mesh, const Side& side, bool from_low) {
+  const auto& corners = mesh.triangles[side.triangle];
+  const Index from = corners[side.corner], to = corners[(side.corner + 1) % 3], third = corners[(side.corner + 2) % 3];
+  const Vec3 edge = normalized(mesh.positions[to] - mesh.positions[from]);
+  const Vec3 into = mesh.positions[third] - mesh.positions[from];
+  RimFace face{mesh.normals[from], mesh.normals[to], normalized(into - dot(into, edge) * edge)};
+  if (!from_low) std::swap(face.normal0, face.normal1);
+  return face;
+}
+
+// Sets of faces that are connected without a fold or a tight bend between them.
+class Patches {
+ public:
+  explicit Patches(const MeshPart& part) : first_(part.first), root_(part.count), area_(part.count, 0.0) {
+    std::iota(root_.begin(), root_.end(), std::size_t{0});
+  }
+  void join(std::size_t triangle, std::size_t other) { root_[find(triangle - first_)] = find(other - first_); }
+  void weigh(const Mesh& mesh) {
+    for (std::size_t t = 0; t < root_.size(); ++t) area_[find(t)] += face_area(mesh, first_ + t);
+    total_ = std::accumulate(area_.begin(), area_.end(), 0.0);
+  }
+  bool is_skin(std::size_t triangle) { return area_[find(triangle - first_)] >= kLeastPatch * total_; }
+  bool same(std::size_t a, std::size_t b) { return find(a - first_) == find(b - first_); }
+
+ private:
+  std::size_t find(std::size_t t) {
+    while (root_[t] != t) t = root_[t] = root_[root_[t]];
+    return t;
+  }
+  std::size_t first_;
+  std::vector<std::size_t> root_;
+  std::vector<double> area_;
+  double total_ = 0;
+};
+
+using Edges = std::map<std::pair<Index, Index>, std::vector<Side>>;
+
+// Whether the surface goes on over an edge of two faces. Two sides that run the same way belong to faces of opposite
+// sense: then their normals are compared as lines.
+bool goes_on(const Mesh& mesh, const std::vector<Side>& sides, double size, Places& places) {
+  const Vec3 a = normalized(doubled_area(mesh, sides[0].triangle));
+  const Vec3 b = normalized(doubled_area(mesh, sides[1].triangle));
+  const auto start = [&](const Side& s) { return places.at(mesh.positions[mesh.triangles[s.triangle][s.corner]]); };
+  const double along = start(sides[0]) == start(sides[1]) ? -dot(a, b) : dot(a, b);
+  const double angle = std::atan2(length(cross(a, b)), along);
+  const double height = std::min(height_over(mesh, sides[0]), height_over(mesh, sides[1]));
+  return angle < kFlat_rad || (angle < kFold_rad && height / angle > size / 200);
+}
+
+// The skin of a panel is what bends gently. It ends at open edges, at edges of more than two faces, and where it turns
+// down into the gap: at folds of more than 30 degrees, and at bends of a radius below size/200, such as the first edge
+// of a rounded or rolled border. Patches of less than a hundredth of the part's area are not skin. Only faces of the
+// skin are listed. Vertices within a millionth of `size` are taken as one.
+Rim rim_of(const Mesh& mesh, const MeshPart& part, double size) {
+  Rim rim;
+  Places places(1e-6 * size);
+  Edges edges;
+  std::set<std::array<Index, 3>> faces;
+  for (std::size_t t = part.first; t < part.first + part.count; ++t) {
+    std::array<Index, 3> at;
+    for (int c = 0; c < 3; ++c) at[c] = places.at(mesh.positions[mesh.triangles[t][c]]);
+    std::array<Index, 3> sorted = at;
+    std::ranges::sort(sorted);
+    if (sorted[0] == sorted[1] || sorted[1] == sorted[2]) continue;  // collapsed by the grid
+    if (!faces.insert(sorted).second) {
+      ++rim.duplicate_faces;
+      continue;
+    }
+    for (int c = 0; c < 3; ++c) {
+      const Index from = at[c], to = at[(c + 1) % 3];
+      edges[{std::min(from, to), std::max(from, to)}].push_back({t, c});
+    }
+  }
+  Patches patches(part);
+  for (const auto& [ends, sides] : edges)
+    if (sides.size() == 2 && goes_on(mesh, sides, size, places)) patches.join(sides[0].triangle, sides[1].triangle);
+  patches.weigh(mesh);
+
+  for (const auto& [ends, sides] : edges) {
+    if (sides.size() == 2 && patches.same(sides[0].triangle, sides[1].triangle)) continue;
+    rim.non_manifold_edges += sides.size() > 2;
+    RimEdge edge;
+    for (const Side& side : sides) {
+      if (!patches.is_skin(side.triangle)) continue;
+      const auto& corners = mesh.triangles[side.triangle];
+      const Vec3 &from = mesh.positions[corners[side.corner]], &to = mesh.positions[corners[(side.corner + 1) % 3]];
+      const bool from_low = places.at(from) == ends.first;
+      edge.p0 = from_low ? from : to, edge.p1 = from_low ? to : from;
+      edge.faces.push_back(rim_face(mesh, side, from_low));
+    }
+    if (!edge.faces.empty()) rim.edges.push_back(std::move(edge));
+  }
+  return rim;
+}
 
 using Kernel = CGAL::Simple_cartesian<double>;
 using Point = Kernel::Point_3;
@@ -34,7 +193,7 @@ Vec3 vec(const Point& p) {
   return {p.x(), p.y(), p.z()};
 }
 
-// The edges of a part, and the nearest of them to a point.
+// The rim of a part, and which of its edges is nearest to a point.
 class RimTree {
  public:
   explicit RimTree(Rim rim) : rim_(std::move(rim)) {
@@ -61,7 +220,7 @@ class RimTree {
   SegmentTree tree_;
 };
 
-// Everything that can lie over a seam.
+// All triangles of the mesh: whatever can cover a seam.
 class Cover {
  public:
   explicit Cover(const Mesh& mesh) {
@@ -80,8 +239,8 @@ class Cover {
   TriangleTree tree_;
 };
 
-// Leaves of every edge the sides that can be seen from outside, their normals turned outward; edges without one go.
-// Returns how many sides were turned.
+// Keeps the sides of every edge that can be seen from outside, and turns their normals outward. Edges without such a
+// side go. Returns how many sides were turned.
 int keep_what_is_seen(Rim& rim, const Cover& cover, double size) {
   int turned = 0;
   const double off = 1e-4 * size;
@@ -99,7 +258,7 @@ int keep_what_is_seen(Rim& rim, const Cover& cover, double size) {
   return turned;
 }
 
-// The two sides that continue each other best.
+// The two sides, one of each edge, whose normals differ least.
 struct Pair {
   Vec3 normal_a, normal_b, inward_a;
   double cosine = -2;
@@ -131,8 +290,8 @@ void measure(SeamPoint& p, double unit_m) {
   p.fold_deg = std::atan2(dot(p.normal_b, p.across), dot(p.normal_b, p.normal_a)) * 180 / kPi;
 }
 
-// Points in the order in which one meets them along the seam: from an end, always on to the nearest one left; a leap
-// begins a new run.
+// The points in their order along the seam: from an end always on to the nearest point that is left. Where that one is
+// far away, a new run begins.
 std::vector<SeamPoint> in_order(std::vector<SeamPoint> points, double spacing) {
   std::vector<SeamPoint> ordered;
   const auto nearest_to = [&](const Vec3& p) {
@@ -147,7 +306,7 @@ std::vector<SeamPoint> in_order(std::vector<SeamPoint> points, double spacing) {
       leap = length(next->a - ordered.back().a) > 6 * spacing;
     }
     if (leap) {
-      // An end: the point of the run at hand that is furthest from where one happened to land.
+      // An end of this run is the point that is furthest from any of its points. Twice, for a better one.
       for (int i = 0; i < 2; ++i) {
         const Vec3 from = next->a;
         double furthest = -1;
@@ -229,7 +388,7 @@ std::vector<SeamPoint> facing_points(const RimTree& rim_a, const RimTree& rim_b,
         continue;
       }
       SeamPoint p{at, other.at, pair.normal_a, pair.normal_b, (1 / edge_length) * way, -pair.inward_a};
-      // The smooth normal need not be the face's own: the way across is made perpendicular to it.
+      // The smooth normal may differ from the face's own, so the direction across is made perpendicular to it.
       p.across = normalized(p.across - dot(p.across, p.normal_a) * p.normal_a);
       const Vec3 between = (other.at - at) - dot(other.at - at, p.normal_a) * p.normal_a;
       if (length(between) > 0.01 * spacing && dot(between, p.across) < kFacing * length(between)) continue;

@@ -1,5 +1,5 @@
-// The seam between two parts of a mesh: where their edges face each other, how wide the gap is, and how far the panels
-// are out of line. goniochrome-theory(7), GONIOGEOMETRIC INDEX.
+// The seam between two parts of a mesh: where their edges face each other, how wide the gap between them is, and how
+// far one panel stands above the other or turns away from it. goniochrome-theory(7), GONIOGEOMETRIC INDEX.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ struct SeamPoint {
   Vec3 a, b;                // in the units of the mesh
   Vec3 normal_a, normal_b;  // smooth, unit, outward
   Vec3 along;               // unit, the direction of the edge of the first part
-  Vec3 across;              // unit, in the first panel, away from it toward the second
+  Vec3 across;              // unit, in the first panel's plane, toward the second panel
   double distance_m = 0;    // along the seam from the beginning of its run
   int run = 0;              // a seam that is interrupted has several runs
   double gap_mm = 0;        // between the ends of the skins, in the first panel's plane
@@ -42,11 +42,11 @@ struct SeamOptions {
   double max_gap_mm = 0;  // wider gaps are no seam; 0: one part in a hundred of the mesh's size
 };
 
-// The panels meet where their skins end: at open edges, folds, and where they bend down into the gap; a rolled border
-// belongs to the gap. Points lie a thousandth of the mesh's size apart; each pairs with the nearest edge of the other
-// part if that one's nearest is near it in turn, and if the surfaces on both sides can be seen from outside. Error: an
-// unknown part (with the names there are), one part twice, a part without edges, parts that do not touch (with the
-// gap), or a seam that is hidden everywhere.
+// The panels meet where their skins end: at open edges, at folds, and where they bend down into the gap; a rolled
+// border belongs to the gap. Points lie a thousandth of the mesh's size apart. Each point pairs with the nearest edge
+// of the other part, provided that this edge's nearest point is near it in turn, and that the surfaces on both sides
+// can be seen from outside. Error: a part that is not known (with the names that there are), the same part twice, a
+// part without edges, parts that do not touch (with the gap), or a seam that is hidden everywhere.
 Result<Seam> seam_between(const Mesh& mesh, const std::string& part_a, const std::string& part_b,
                           const SeamOptions& options = {});
 

@@ -1,5 +1,6 @@
-// The curve of a paint against aspecular angle, and the ways between the three representations.
-// [Shimizu2009] 3.3.8-3.3.10 goniochrome-theory(7), PAINT REPRESENTATIONS.
+// The color of a paint as a curve over the aspecular angle, and how the three representations of a paint (measured
+// rows, curve, face and flop) are made from one another. [Shimizu2009] 3.3.8-3.3.10; goniochrome-theory(7), PAINT
+// REPRESENTATIONS.
 #pragma once
 
 #include <array>
@@ -22,9 +23,9 @@ Result<void> check(const Appearance& appearance);
 // How far the quadratic is blown up at 0 deg: (travel/(travel-15))^2. Tools warn above 4.
 double extrapolation_at_specular(const Appearance& appearance);
 
-// One channel's clamped quadratic through its values at 15, 45 and 110 deg. `exact` where it passes through all three:
-// for 0 <= s < 1, s = (q45 - q110)/(q15 - q110), unless the vertex would lie beyond 180 deg, and for equal values. Any
-// other channel gets the nearest clamped quadratic (least squares).
+// One channel's clamped quadratic through its values at 15, 45 and 110 deg. It is `exact` if it passes through all
+// three, which it does for 0 <= s < 1, s = (q45 - q110)/(q15 - q110), unless the vertex would lie beyond 180 deg, and
+// for equal values. Any other channel gets the nearest clamped quadratic (least squares).
 struct ChannelCurve {
   double face = 0, flop = 0, travel_deg = 60;
   bool exact = true;
@@ -39,31 +40,32 @@ struct ChannelValue {
 };
 ChannelCurve nearest_channel_curve(const std::vector<ChannelValue>& values);
 
-// The face, flop and travel nearest (least squares in Lab) to rows at any number of aspecular angles: linear in face
-// and flop for fixed travel, which is scanned over its domain and refined. The rows in the plane of incidence are
-// fitted, or all where there is none. `de00` has every row given; residual_de00 is the worst of those fitted. Where the
-// rows leave the travel open, it is the largest that fits them, and where they are constant, 60 deg. Error: no rows.
+// The face, flop and travel nearest (least squares in Lab) to rows at any number of aspecular angles. For a fixed
+// travel the problem is linear in face and flop; the travel is scanned over its domain and refined. The rows in the
+// plane of incidence are fitted, or all rows if none is in that plane. `de00` has the miss of every row; residual_de00
+// is the worst of the fitted ones. If several travels fit the rows equally well, the largest is taken, and 60 deg if
+// the rows are constant. Error: no rows.
 struct AppearanceFit {
   Appearance appearance;
   std::vector<double> de00;
 };
 Result<AppearanceFit> appearance_from_rows(const std::vector<LabReading>& rows);
 
-// The aspecular angles (deg) at which designed paints are handed over: 15/45/110 and 25/45/75. [Shimizu2009] 3.3.3
+// The aspecular angles (deg) at which designed paints are stated: 15/45/110 and 25/45/75. [Shimizu2009] 3.3.3
 constexpr std::array<double, 5> kExportAngles_deg = {15, 25, 45, 75, 110};
 
 // What a designed paint would measure: rows at 45 deg incidence and the export angles.
 std::vector<LabReading> rows_of(const Appearance& appearance);
 
-// The color of a paint at any aspecular angle, by unsigned angle, in-plane rows at the same angle averaged:
-// - kMeasured: per channel a monotone piecewise cubic (PCHIP) through the rows, constant beyond the ends;
-// - kCurve: the clamped quadratic of the appearance, or where the paint has none one per channel, nearest to the rows,
-//   each of which counts for the angles that are nearest to it.
+// The color of a paint at any unsigned aspecular angle. In-plane rows at the same angle are averaged.
+// - kMeasured: in each channel a monotone piecewise cubic (PCHIP) through the rows, constant beyond the ends;
+// - kCurve: the clamped quadratic of the appearance. If the paint has none, it is the quadratic in each channel that is
+//   nearest to the rows, where each row counts for the angles that are nearest to it.
 class TargetCurve {
  public:
   enum class Kind { kMeasured, kCurve };
-  // The kind asked for, or the other one where the paint has only that. Error: the paint has neither rows nor an
-  // appearance, or one out of its domain.
+  // The kind asked for, or the other one if the paint has only that. Error: the paint has neither rows nor an
+  // appearance, or its appearance is out of its domain.
   static Result<TargetCurve> make(const Paint& paint, Kind kind);
   Kind kind() const { return kind_; }
   color::Lab at(double aspecular_deg) const;

@@ -39,14 +39,14 @@ double textbook_travel_deg(double at_15, double at_45, double at_110) {
   return (45 - 15 * root) / (1 - root);
 }
 
-TEST(Curve, equals_the_textbook_quadratic_where_that_holds) {
+TEST(Curve, EqualsTheTextbookQuadraticWhereThatHolds) {
   const Appearance appearance{{80, 20, -10}, {30, 5, -2}, 70, {}};
   const TextbookQuadratic L(80, 30, 70), a(20, 5, 70), b(-10, -2, 70);
   for (double t = 0; t <= 180; t += 0.5)
     EXPECT_LE(difference(lab_at(appearance, t), {L.at(t), a.at(t), b.at(t)}), 1e-12) << t;
 }
 
-TEST(Curve, passes_face_at_15_and_flop_from_the_travel_on) {
+TEST(Curve, PassesFaceAt15AndFlopFromTheTravelOn) {
   const Appearance appearance{{81.3, 20.1, -10.7}, {30.9, 5.3, -2.1}, 63, {}};
   EXPECT_EQ(lab_at(appearance, 63), appearance.flop);
   EXPECT_EQ(lab_at(appearance, 110), appearance.flop);
@@ -146,7 +146,7 @@ TEST(HardCase, AspecularNonmonotone) {
 }
 
 // Every channel with 0 <= s < 1 whose vertex stays within 180 deg is met at all three angles.
-TEST(Curve, three_angles_are_met_exactly) {
+TEST(Curve, ThreeAnglesAreMetExactly) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> value(-80, 100), share(0, 1);
   int plateau = 0, vertex = 0, beyond = 0;
@@ -172,7 +172,7 @@ TEST(Curve, three_angles_are_met_exactly) {
   EXPECT_GT(beyond, 1000);
 }
 
-TEST(Curve, the_mapping_is_continuous_where_the_plateau_leaves_110) {
+TEST(Curve, TheMappingIsContinuousWhereThePlateauLeaves110) {
   const double s = std::pow(65.0 / 95.0, 2);
   const ChannelCurve before = channel_curve(1, s - 1e-9, 0), after = channel_curve(1, s + 1e-9, 0);
   EXPECT_LE(before.travel_deg, 110);
@@ -181,7 +181,7 @@ TEST(Curve, the_mapping_is_continuous_where_the_plateau_leaves_110) {
   EXPECT_NEAR(before.flop, after.flop, 1e-6);
 }
 
-TEST(Curve, rows_of_an_appearance_give_it_back) {
+TEST(Curve, RowsOfAnAppearanceGiveItBack) {
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> travel(26, 180), axis(-40, 40), light(10, 110);
   for (int i = 0; i < 300; ++i) {
@@ -198,7 +198,7 @@ TEST(Curve, rows_of_an_appearance_give_it_back) {
   }
 }
 
-TEST(Curve, open_travel_extrapolates_least) {
+TEST(Curve, OpenTravelExtrapolatesLeast) {
   // A step between 15 and 25 deg: any travel between them meets both; the largest is taken.
   const auto step = appearance_from_rows({{{.aspecular_deg = 15}, {80, 0, 0}},
                                           {{.aspecular_deg = 25}, {30, 0, 0}},
@@ -216,7 +216,7 @@ TEST(Curve, open_travel_extrapolates_least) {
   EXPECT_FALSE(appearance_from_rows({}).ok());
 }
 
-TEST(Curve, out_of_plane_rows_are_told_but_not_fitted) {
+TEST(Curve, OutOfPlaneRowsAreToldButNotFitted) {
   auto rows = rows_at({{80, 10, 5}, {30, 0, 0}, 60, {}}, {15, 25, 45, 75, 110});
   rows.push_back({{.aspecular_deg = 25, .out_of_plane = true, .azimuth_deg = 90}, {20, 0, 0}});
   const auto fit = appearance_from_rows(rows);
@@ -225,7 +225,7 @@ TEST(Curve, out_of_plane_rows_are_told_but_not_fitted) {
   EXPECT_GT(fit->de00.back(), 5);
 }
 
-TEST(Curve, designed_paint_has_rows_at_both_export_sets) {
+TEST(Curve, DesignedPaintHasRowsAtBothExportSets) {
   const auto rows = rows_of({{80, 10, 5}, {30, 0, 0}, 60, {}});
   ASSERT_EQ(rows.size(), 5u);
   EXPECT_EQ(geometry_name(rows.front().geometry), "45as15");
@@ -241,7 +241,7 @@ Paint measured(const std::vector<std::pair<Geometry, color::Lab>>& rows) {
   return paint;
 }
 
-TEST(TargetCurve, passes_through_every_row_and_stays_between_neighbors) {
+TEST(TargetCurve, PassesThroughEveryRowAndStaysBetweenNeighbors) {
   const Paint paint = measured({{{.aspecular_deg = 110}, {22, 3, 1}},
                                 {{.aspecular_deg = 15}, {80, 10, -4}},
                                 {{.aspecular_deg = 25}, {60, 12, -4}},
@@ -265,7 +265,7 @@ TEST(TargetCurve, passes_through_every_row_and_stays_between_neighbors) {
   EXPECT_EQ(curve->at(180), (color::Lab{22, 3, 1}));
 }
 
-TEST(TargetCurve, straight_rows_give_a_straight_line) {
+TEST(TargetCurve, StraightRowsGiveAStraightLine) {
   const auto curve = TargetCurve::make(measured({{{.aspecular_deg = 15}, {90, 0, 0}},
                                                  {{.aspecular_deg = 25}, {80, 0, 0}},
                                                  {{.aspecular_deg = 45}, {60, 0, 0}},
@@ -274,7 +274,7 @@ TEST(TargetCurve, straight_rows_give_a_straight_line) {
   for (double t = 15; t <= 75; t += 0.5) EXPECT_NEAR(curve->at(t).L, 105 - t, 1e-12);
 }
 
-TEST(TargetCurve, both_sides_of_specular_are_averaged_and_out_of_plane_left_out) {
+TEST(TargetCurve, BothSidesOfSpecularAreAveragedAndOutOfPlaneLeftOut) {
   const auto curve =
       TargetCurve::make(measured({{{.aspecular_deg = 15}, {80, 0, 0}},
                                   {{.aspecular_deg = -15}, {84, 2, 0}},
@@ -287,7 +287,7 @@ TEST(TargetCurve, both_sides_of_specular_are_averaged_and_out_of_plane_left_out)
 }
 
 // Each channel travels on its own, as the common travel of face and flop cannot, and is met where it is a quadratic.
-TEST(TargetCurve, channels_travel_on_their_own) {
+TEST(TargetCurve, ChannelsTravelOnTheirOwn) {
   const ChannelCurve L{80, 20, 60, true}, a{-10, 30, 120, true}, b{5, -40, 45, true};
   std::vector<std::pair<Geometry, color::Lab>> rows;
   for (const double t : {15.0, 25.0, 45.0, 75.0, 110.0})
@@ -304,7 +304,7 @@ TEST(TargetCurve, channels_travel_on_their_own) {
 }
 
 // Readings close together near specular count no more than the one whose place they take.
-TEST(TargetCurve, close_readings_do_not_outvote_the_flop) {
+TEST(TargetCurve, CloseReadingsDoNotOutvoteTheFlop) {
   const auto rows = [](const std::vector<double>& angles) {
     std::vector<std::pair<Geometry, color::Lab>> r;
     for (const double t : angles) r.push_back({{.aspecular_deg = t}, {100 * std::exp(-t / 30), 0, 0}});
@@ -326,7 +326,7 @@ TEST(TargetCurve, close_readings_do_not_outvote_the_flop) {
   EXPECT_GT(worst_control, 2 * worst);
 }
 
-TEST(TargetCurve, falls_back_on_what_the_paint_has) {
+TEST(TargetCurve, FallsBackOnWhatThePaintHas) {
   Paint designed;
   designed.name = "d";
   designed.appearance = Appearance{{80, 0, 0}, {30, 0, 0}, 60, {}};

@@ -26,7 +26,7 @@ color::Lab mixed(const color::Lab& x, const color::Lab& y, double fraction) {
   return {std::lerp(x.L, y.L, fraction), std::lerp(x.a, y.a, fraction), std::lerp(x.b, y.b, fraction)};
 }
 
-// What a color move works on: the appearance and the rows, which move together.
+// What a move of the color changes: the appearance and the rows, which move together.
 struct Locus {
   Appearance appearance;
   std::vector<LabReading> rows;
@@ -50,7 +50,7 @@ void move_to(Locus& locus, const Appearance& target) {
   locus.appearance = target;
 }
 
-// Turned into (-180, 180].
+// The turn from one angle to another, in (-180, 180].
 double turn_deg(double from_deg, double to_deg) {
   const double turn = std::remainder(to_deg - from_deg, 360.0);
   return turn == -180 ? 180 : turn;
@@ -65,7 +65,7 @@ void move_average(Locus& locus, const Edit& edit, Edited& result) {
   if (edit.average_lightness) tweak.lightness = *edit.average_lightness - average.L;
   if (achromatic && (edit.average_hue_deg || edit.average_chroma))
     result.skipped.push_back(
-        fmt::format("{}: the average chroma {:.2f} is below 1, a gray has no hue: move its face and flop",
+        fmt::format("{}: the average chroma {:.2f} is below 1, and a gray has no hue: move its face and flop",
                     edit.average_hue_deg ? "hue" : "chroma", average.chroma));
   map_all(locus, tweak);
 }
@@ -93,7 +93,7 @@ void move_travel(Locus& locus, const Edit& edit, Edited& result) {
     move_to(locus, target);
   else
     result.skipped.push_back(
-        fmt::format("travel: from {} deg it would go to {} deg, and it lies above 15 and up to 180",
+        fmt::format("travel: it would go from {} deg to {} deg, but it must be above 15 and at most 180",
                     shortest(locus.appearance.travel_deg), shortest(target.travel_deg)));
 }
 
@@ -103,7 +103,8 @@ void clip(color::Lab& lab, const std::string& what, Edited& result) {
   lab.L = 0;
 }
 
-// The worst row in the plane of incidence, or of all where there is none there, as in appearance_from_rows.
+// The difference of the worst row in the plane of incidence, or of all rows if none is in it, as in
+// appearance_from_rows.
 double worst_de00(const Locus& locus) {
   const auto in_plane = [](const LabReading& row) { return !row.geometry.out_of_plane; };
   const bool any = std::ranges::any_of(locus.rows, in_plane);
@@ -115,7 +116,7 @@ double worst_de00(const Locus& locus) {
   return worst;
 }
 
-// The paint's appearance and rows; the appearance fitted where it has none.
+// The paint's appearance and rows. The appearance is fitted if the paint has none.
 Result<Locus> locus_of(const Paint& paint) {
   Locus locus;
   if (paint.measurement) locus.rows = paint.measurement->rows;
@@ -133,7 +134,7 @@ bool has_color(const Paint& paint) {
   return paint.appearance || (paint.measurement && !paint.measurement->rows.empty());
 }
 
-// Puts a moved locus back: its residual is told by the rows it has now.
+// Puts a moved locus back. Its residual is that of the rows that it has now.
 void put_back(Paint& paint, Locus locus) {
   locus.appearance.residual_de00 = locus.rows.empty() ? std::nullopt : std::optional<double>(worst_de00(locus));
   paint.appearance = locus.appearance;
@@ -204,7 +205,7 @@ std::vector<LabReading> rows_between(const Measurement& from, const Measurement&
   return rows;
 }
 
-// A color that does not travel has no say in where the travel ends.
+// If one of the paints has a single color, the travel is that of the other one.
 double travel_between(const Appearance& from, const Appearance& to, double fraction) {
   if (from.face == from.flop) return to.travel_deg;
   if (to.face == to.flop) return from.travel_deg;
@@ -318,7 +319,8 @@ Result<Paint> between(const Paint& from, const Paint& to, double fraction) {
     paint.anisotropy = Anisotropy{std::lerp(from.anisotropy->alpha_x, to.anisotropy->alpha_x, fraction),
                                   std::lerp(from.anisotropy->alpha_y, to.anisotropy->alpha_y, fraction)};
   if (from.measurement && to.measurement) locus.rows = rows_between(*from.measurement, *to.measurement, fraction);
-  // Only a measurement states a condition: under any but the default one a paint without rows gets those of its curve.
+  // Only a measurement states a condition. So a paint without rows gets those of its curve, unless its condition is the
+  // default one.
   if (locus.rows.empty() && a != color::ViewingCondition()) locus.rows = rows_of(locus.appearance);
   if (!locus.rows.empty()) paint.measurement = Measurement{a, "", {}};
   put_back(paint, std::move(locus));

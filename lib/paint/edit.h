@@ -1,5 +1,6 @@
-// The designer's moves on a paint: average hue, chroma and lightness, face, flop, travel, gloss, tweaks at an angle,
-// variations and gradients. [Shimizu2009] 3.4, 3.6, 5.4.4. goniochrome-theory(7), DESIGN MOVES.
+// How a designer changes a paint: its average hue, chroma and lightness, its face, flop, travel and gloss, or its color
+// at one angle; and the variations and gradients that are made in this way. [Shimizu2009] 3.4, 3.6, 5.4.4;
+// goniochrome-theory(7), DESIGN MOVES.
 #pragma once
 
 #include <optional>
@@ -11,9 +12,9 @@
 
 namespace goniochrome::paint {
 
-// What a designer calls the color of a paint as a whole: means over the curve at 15, 45 and 110 deg of L*, of chroma,
-// and of a* and b*, whose direction is the average hue in [0,360). Below kLeastChroma a paint has no hue to set and no
-// chroma to scale to a wish.
+// What a designer calls the color of a paint as a whole: the means of L*, of chroma, and of a* and b* over the curve at
+// 15, 45 and 110 deg. The direction of the mean a* and b* is the average hue in [0,360). Below kLeastChroma a paint has
+// no hue that could be set and no chroma that could be scaled.
 struct AverageColor {
   double L = 0, chroma = 0, hue_deg = 0;
 };
@@ -27,15 +28,15 @@ struct Tweak {
 };
 color::Lab tweaked(const color::Lab& lab, const Tweak& tweak);
 
-// R: how much of a change at an aspecular angle (deg) is the face's: 1 at 15 deg and nearer, 0 from the travel on,
-// linear between. The flop's part is 1 - R. [Shimizu2009] 3.6.4, corrected
+// R: the part of a change at an aspecular angle (deg) that the face takes: 1 up to 15 deg, 0 from the travel on, and
+// linear between. The flop takes 1 - R. [Shimizu2009] 3.6.4, corrected
 double face_share(const Appearance& appearance, double aspecular_deg);
 
-// Moves to make on one paint, in this order. A member that is empty, 0 or the identity changes nothing.
+// The moves that are made on one paint, in this order. A member that is empty, 0 or the identity changes nothing.
 struct Edit {
-  std::optional<double> average_hue_deg, average_chroma, average_lightness;  // to be reached by the whole paint
-  Tweak tweak;                   // of the whole paint, or where at_deg is set
-  std::optional<double> at_deg;  // of face and flop by face_share at this aspecular angle
+  std::optional<double> average_hue_deg, average_chroma, average_lightness;  // what the whole paint shall have
+  Tweak tweak;                   // of the whole paint, or, if at_deg is set,
+  std::optional<double> at_deg;  // of face and flop by their face_share at this aspecular angle
   std::optional<color::Lab> face, flop;
   color::Lab face_shift, flop_shift;
   std::optional<double> travel_deg;
@@ -49,20 +50,20 @@ struct Edit {
 bool moves_color(const Edit& edit);
 bool moves_gloss(const Edit& edit);
 
-// A paint after its moves, and what was done to it beside them.
+// A paint after its moves, and what else happened to it.
 struct Edited {
   Paint paint;
-  std::optional<Appearance> before, after;  // where the color moved
-  std::optional<double> fitted_de00;        // worst row, where the appearance had to be fitted first
-  std::vector<std::string> dropped;         // what went stale: "lobes", "color map", "gloss at 20 deg"
+  std::optional<Appearance> before, after;  // if the color moved
+  std::optional<double> fitted_de00;        // of the worst row, if the appearance had to be fitted first
+  std::vector<std::string> dropped;         // what is no longer true: "lobes", "color map", "gloss at 20 deg"
   std::vector<std::string> clipped;         // "face: L* -3.2 to 0"
-  std::vector<std::string> skipped;         // moves that this paint cannot take, and why
+  std::vector<std::string> skipped;         // moves that cannot be made on this paint, and why
 };
 
-// Rows and appearance move together. A change of the whole paint maps every row; any other change adds to each row what
-// it adds to the curve at the row's aspecular angle, so rows on the curve stay on it and a residual stays as it is.
-// The appearance is fitted where the paint has only rows. Name, code and class stay; the instrument's name goes, since
-// the rows are designed now. Error: the rows cannot be fitted.
+// The paint after its moves. Rows and appearance move together. A change of the whole paint maps every row; any other
+// change adds to each row what it adds to the curve at the row's aspecular angle, so that rows on the curve stay on it
+// and a residual stays as it is. The appearance is fitted if the paint has only rows. Name, code and class stay; the
+// instrument's name goes, since the rows are designed now. Error: the rows cannot be fitted.
 Result<Edited> edited(const Paint& paint, const Edit& edit);
 
 // One of the eight neighbors of a paint: its name ("face-lighter", "travel+10") and the edit that makes it.
@@ -72,14 +73,14 @@ struct Neighbor {
 };
 enum class Variation { kFace, kFlop, kTravel, kGloss };
 
-// Face and flop: lighter, darker and six hue directions 60 deg apart, all at dE76 = step. Travel (deg) and gloss
-// (units): one to four steps either way. step > 0.
+// The neighbors of a paint. Face and flop have lighter and darker ones and six in hue directions 60 deg apart, all at
+// dE76 = step. Travel (deg) and gloss (units) have those one to four steps away in either direction. step > 0.
 std::vector<Neighbor> neighbors(Variation variation, double step);
 
-// The paint at `fraction` (0..1) of the straight way in Lab from one paint to another: face and flop, the rows of the
-// geometries both have (under another condition than the default, and with none in common, those of the curve), and
-// travel and gloss in proportion. Error: different illuminants or observers, or a paint with
-// no color.
+// The paint at `fraction` (0..1) of the straight line in Lab from one paint to another. It has a face and a flop, the
+// rows of the geometries that both paints have, and travel and gloss in proportion. If there is no such row and the
+// condition is not the default one, it has the rows of its curve. Error: different illuminants or observers, or a paint
+// without color.
 Result<Paint> between(const Paint& from, const Paint& to, double fraction);
 
 }  // namespace goniochrome::paint

@@ -66,18 +66,18 @@ Paint done(const Paint& paint, const Edit& edit) {
   return result->paint;
 }
 
-TEST(Tweak, identity_changes_no_bit) {
+TEST(Tweak, IdentityChangesNoBit) {
   const color::Lab lab{41.3, -0.1, 17.7};
   EXPECT_EQ(tweaked(lab, {}), lab);
 }
 
-TEST(Tweak, turns_scales_and_lifts) {
+TEST(Tweak, TurnsScalesAndLifts) {
   expect_near(tweaked({50, 30, -10}, {4, 2, 90}), {54, 20, 60});
   EXPECT_NEAR(color::chroma(tweaked({50, 30, -10}, {0, 1, 37})), std::hypot(30, 10), kRounding);
   EXPECT_EQ(color::chroma(tweaked({50, 30, -10}, {0, 0, 0})), 0);
 }
 
-TEST(FaceShare, is_one_at_the_face_and_zero_at_the_flop) {
+TEST(FaceShare, IsOneAtTheFaceAndZeroAtTheFlop) {
   const Appearance a{{}, {}, 95, std::nullopt};
   EXPECT_EQ(face_share(a, 0), 1);
   EXPECT_EQ(face_share(a, 15), 1);
@@ -86,7 +86,7 @@ TEST(FaceShare, is_one_at_the_face_and_zero_at_the_flop) {
   EXPECT_EQ(face_share(a, 180), 0);
 }
 
-TEST(FaceShare, printed_form_moves_the_wrong_end) {
+TEST(FaceShare, ThePrintedFormMovesTheWrongEnd) {
   // As printed, R is 0 below 15 deg and 1 beyond the travel, and the face is blended by R: a tweak at the face leaves
   // the face alone and moves the flop.
   const Appearance a = blue();
@@ -101,7 +101,7 @@ TEST(FaceShare, printed_form_moves_the_wrong_end) {
   EXPECT_NE(printed_face_L, a.face.L + 10);
 }
 
-TEST(Edit, at_an_angle_moves_each_end_by_its_share) {
+TEST(Edit, AtAnAngleMovesEachEndByItsShare) {
   const Appearance a{{80, 20, 10}, {20, 5, 0}, 75, std::nullopt};
   Edit edit;
   edit.tweak = {8, 1.5, 0};
@@ -112,7 +112,7 @@ TEST(Edit, at_an_angle_moves_each_end_by_its_share) {
   EXPECT_EQ(b.travel_deg, 75);
 }
 
-TEST(Edit, reaches_the_average_it_is_told) {
+TEST(Edit, ReachesTheAverageItIsTold) {
   Edit edit;
   edit.average_hue_deg = 140;
   edit.average_chroma = 25;
@@ -123,7 +123,7 @@ TEST(Edit, reaches_the_average_it_is_told) {
   EXPECT_NEAR(average.L, 44, kRounding);
 }
 
-TEST(Edit, average_hue_of_360_is_that_of_0) {
+TEST(Edit, AverageHueOf360IsThatOf0) {
   Edit zero, full, negative;
   zero.average_hue_deg = 0;
   full.average_hue_deg = 360;
@@ -157,7 +157,7 @@ Edit random_edit(std::mt19937& random) {
 
 // Rows on the curve stay on it. Blending a row by R, which is linear in the angle, and not by the weight R^2 that the
 // curve gives the face there, takes it off the curve.
-TEST(Edit, rows_on_the_curve_stay_on_it) {
+TEST(Edit, RowsOnTheCurveStayOnIt) {
   std::mt19937 random(7);
   double worst_linear = 0;
   for (int i = 0; i < 500; ++i) {
@@ -177,7 +177,7 @@ TEST(Edit, rows_on_the_curve_stay_on_it) {
   EXPECT_GT(worst_linear, 1);
 }
 
-TEST(Edit, what_the_curve_does_not_explain_stays) {
+TEST(Edit, WhatTheCurveDoesNotExplainStays) {
   const Paint paint = measured();
   const auto fit = appearance_from_rows(paint.measurement->rows);
   ASSERT_TRUE(fit.ok());
@@ -200,7 +200,7 @@ TEST(Edit, what_the_curve_does_not_explain_stays) {
   }
 }
 
-TEST(Edit, whole_paint_maps_every_row) {
+TEST(Edit, WholePaintMapsEveryRow) {
   const Paint paint = measured();
   Edit edit;
   edit.tweak = {2, 0.5, 30};
@@ -209,7 +209,7 @@ TEST(Edit, whole_paint_maps_every_row) {
     EXPECT_EQ(now.measurement->rows[i].lab, tweaked(paint.measurement->rows[i].lab, edit.tweak));
 }
 
-TEST(Edit, keeps_the_identity_and_forgets_the_meter) {
+TEST(Edit, KeepsTheIdentityAndForgetsTheMeter) {
   Edit edit;
   edit.tweak.lightness = 1;
   const Paint now = done(measured(), edit);
@@ -219,7 +219,7 @@ TEST(Edit, keeps_the_identity_and_forgets_the_meter) {
   EXPECT_EQ(now.measurement->instrument, "");
 }
 
-TEST(Edit, drops_what_holds_the_old_color) {
+TEST(Edit, DropsWhatHoldsTheOldColor) {
   Paint paint = on_curve(blue());
   paint.lobes.emplace();
   paint.color_map = ColorMapReference{"map.exr", 1.5};
@@ -234,7 +234,7 @@ TEST(Edit, drops_what_holds_the_old_color) {
   EXPECT_THAT(result->dropped, ElementsAre("lobes", "color map"));
 }
 
-TEST(Edit, gloss_alone_leaves_the_color_as_it_is) {
+TEST(Edit, GlossAloneLeavesTheColorAsItIs) {
   Paint paint = measured();
   paint.lobes.emplace();
   paint.color_map = ColorMapReference{"map.exr", 1.5};
@@ -252,7 +252,7 @@ TEST(Edit, gloss_alone_leaves_the_color_as_it_is) {
   EXPECT_THAT(result->dropped, ElementsAre("gloss at 20 deg", "lobes"));
 }
 
-TEST(Edit, gloss_stays_within_its_scale) {
+TEST(Edit, GlossStaysWithinItsScale) {
   Edit up, down;
   up.gloss_shift = 50;
   down.gloss_shift = -95;
@@ -264,7 +264,7 @@ TEST(Edit, gloss_stays_within_its_scale) {
   EXPECT_EQ(done(mirror, down).gloss[0].gloss_units, 305);
 }
 
-TEST(Edit, gloss_shift_without_a_reading_is_left_out) {
+TEST(Edit, GlossShiftWithoutAReadingIsLeftOut) {
   Edit edit;
   edit.gloss_shift = 5;
   edit.gloss_angle_deg = 20;
@@ -274,7 +274,7 @@ TEST(Edit, gloss_shift_without_a_reading_is_left_out) {
   EXPECT_EQ(result->paint.gloss.size(), 1u);
 }
 
-TEST(Edit, gray_has_no_hue_to_set) {
+TEST(Edit, GrayHasNoHueToSet) {
   const Appearance gray{{60, 0.2, 0}, {30, 0, -0.3}, 70, std::nullopt};
   Edit edit;
   edit.average_hue_deg = 90;
@@ -286,7 +286,7 @@ TEST(Edit, gray_has_no_hue_to_set) {
   EXPECT_NEAR(average_color(*result->paint.appearance).L, 50, kRounding);
 }
 
-TEST(Edit, travel_out_of_its_domain_is_left_out) {
+TEST(Edit, TravelOutOfItsDomainIsLeftOut) {
   for (const double shift : {-57.0, -200.0, 108.5}) {
     Edit edit;
     edit.travel_shift_deg = shift;
@@ -300,7 +300,7 @@ TEST(Edit, travel_out_of_its_domain_is_left_out) {
   EXPECT_EQ(done(on_curve(blue()), last).appearance->travel_deg, 180);
 }
 
-TEST(Edit, lightness_stops_at_black) {
+TEST(Edit, LightnessStopsAtBlack) {
   Edit edit;
   edit.tweak.lightness = -20;
   const auto result = edited(on_curve(blue()), edit);
@@ -311,7 +311,7 @@ TEST(Edit, lightness_stops_at_black) {
   EXPECT_THAT(result->clipped, testing::Contains(HasSubstr("flop")));
 }
 
-TEST(Edit, paint_without_color_takes_gloss_only) {
+TEST(Edit, PaintWithoutColorTakesGlossOnly) {
   Paint paint;
   paint.gloss = {{60, 50}};
   Edit edit;
@@ -344,7 +344,7 @@ TEST(HardCase, CurveSolidEdited) {
       {.what = "readings of an edited solid paint", .textbook = textbook, .ours = ours, .bound = 0, .unit = "dE76"});
 }
 
-TEST(Neighbors, are_eight_distinct_ones_at_the_step) {
+TEST(Neighbors, AreEightDistinctOnesAtTheStep) {
   const Paint paint = on_curve(blue());
   for (const Variation variation : {Variation::kFace, Variation::kFlop, Variation::kTravel, Variation::kGloss}) {
     std::set<std::string> names;
@@ -362,7 +362,7 @@ TEST(Neighbors, are_eight_distinct_ones_at_the_step) {
   }
 }
 
-TEST(Between, starts_at_one_paint_and_ends_at_the_other) {
+TEST(Between, StartsAtOnePaintAndEndsAtTheOther) {
   const Appearance red{{52, 60, 33}, {11, 29, 15}, 80, std::nullopt};
   const Paint from = on_curve(blue()), to = on_curve(red);
   for (const double fraction : {0.0, 1.0}) {
@@ -377,7 +377,7 @@ TEST(Between, starts_at_one_paint_and_ends_at_the_other) {
   }
 }
 
-TEST(Between, half_way_is_half_way) {
+TEST(Between, HalfWayIsHalfWay) {
   Appearance red{{52, 60, 33}, {11, 29, 15}, 80, std::nullopt};
   Paint to = on_curve(red);
   to.gloss = {{60, 71}, {20, 40}};
@@ -394,14 +394,14 @@ TEST(Between, half_way_is_half_way) {
   expect_near(paint->measurement->rows[0].lab, {57, 23.25, -9});
 }
 
-TEST(Between, solid_end_has_no_travel_of_its_own) {
+TEST(Between, SolidEndHasNoTravelOfItsOwn) {
   const color::Lab white{90, 0, 0};
   const auto paint = between(on_curve(blue()), on_curve({white, white, 170, std::nullopt}), 0.25);
   ASSERT_TRUE(paint.ok());
   EXPECT_EQ(paint->appearance->travel_deg, 72);
 }
 
-TEST(Between, refuses_two_observers) {
+TEST(Between, RefusesTwoObservers) {
   Paint other = measured();
   other.name = "two_degrees";
   other.measurement->condition.observer_deg = 2;
@@ -410,7 +410,7 @@ TEST(Between, refuses_two_observers) {
   EXPECT_THAT(paint.error().message, HasSubstr("two_degrees"));
 }
 
-TEST(Between, keeps_the_condition_without_common_geometries) {
+TEST(Between, KeepsTheConditionWithoutCommonGeometries) {
   Paint from = measured(), to = measured();
   from.measurement->condition.observer_deg = to.measurement->condition.observer_deg = 2;
   for (LabReading& row : to.measurement->rows) row.geometry.aspecular_deg += 1;

@@ -6,15 +6,10 @@
 
 #include "base/angles.h"
 #include "base/text.h"
-#include "base/utf8.h"
 
 namespace goniochrome::paint {
 
 namespace {
-
-constexpr double radians(double degrees) {
-  return degrees * kDegree;
-}
 
 // Takes `prefix` off the front of `text`, if it stands there.
 bool take(std::string_view& text, std::string_view prefix) {
@@ -120,8 +115,8 @@ std::string geometry_name(const Geometry& geometry) {
 // With s the specular direction and g the way from it down to the grazing side, both unit and orthogonal. In plane the
 // angle is positive toward the normal, against g; out of plane azimuth 0 is along g.
 DirectionPair directions(const Geometry& geometry) {
-  const double t = radians(geometry.incidence_deg), as = radians(geometry.aspecular_deg);
-  const double az = radians(geometry.azimuth_deg);
+  const double t = geometry.incidence_deg * kDegree, as = geometry.aspecular_deg * kDegree;
+  const double az = geometry.azimuth_deg * kDegree;
   const Vec3 s{std::sin(t), 0, std::cos(t)}, g{std::cos(t), 0, -std::sin(t)}, y{0, 1, 0};
   const Vec3 away = geometry.out_of_plane ? std::cos(az) * g + std::sin(az) * y : -g;
   DirectionPair pair{{-std::sin(t), 0, std::cos(t)}, std::cos(as) * s + std::sin(as) * away};

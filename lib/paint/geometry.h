@@ -1,5 +1,5 @@
-// Measurement geometries of multi-angle instruments (ASTM E2194, E2539) and the directions they name.
-// goniochrome-theory(7), CONVENTIONS.
+// The measurement geometries of multi-angle instruments (ASTM E2194, E2539), their names such as `45as15`, and the
+// directions of light and detector that they stand for. goniochrome-theory(7), CONVENTIONS.
 #pragma once
 
 #include <string>
@@ -37,7 +37,8 @@ DirectionPair directions(const Geometry& geometry);
 // The unsigned aspecular angle, 0..180.
 double aspecular_angle_deg(const Geometry& geometry);
 
-// angle(r(wi), wo) in radians, 0..pi, within 4 ulp for any nonzero vectors, whose lengths cancel.
+// The angle between the mirror direction of `to_light` and `to_viewer`, in radians, 0..pi. It is right to 4 ulp for any
+// vectors but zero; their lengths do not matter.
 double aspecular_angle_rad(const Vec3& to_light, const Vec3& to_viewer, const Vec3& normal);
 
 }  // namespace goniochrome::paint

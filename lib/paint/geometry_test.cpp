@@ -18,7 +18,7 @@ void expect_near(const Vec3& v, const Vec3& expected, double tolerance) {
   EXPECT_NEAR(v.z, expected.z, tolerance);
 }
 
-TEST(Geometry, names_are_read_and_written) {
+TEST(Geometry, NamesAreReadAndWritten) {
   struct {
     const char *text, *name;
     double incidence, aspecular;
@@ -48,7 +48,7 @@ TEST(Geometry, names_are_read_and_written) {
   }
 }
 
-TEST(Geometry, azimuths_out_of_plane) {
+TEST(Geometry, AzimuthsOutOfPlaneAreReadAndWritten) {
   for (const auto& [text, name] : {std::pair{"45as25az90", "45as25az90"},
                                    {"45as25az-90", "45as25az-90"},
                                    {"45as25azMinus90", "45as25az-90"},
@@ -62,7 +62,7 @@ TEST(Geometry, azimuths_out_of_plane) {
   }
 }
 
-TEST(Geometry, wrong_names_are_refused_with_a_remedy) {
+TEST(Geometry, WrongNamesAreRefusedWithARemedy) {
   for (const char* text : {"", "as", "45as", "as15", "45as15az", "45x15", "fifteen", "45as15as25", "r15", "45as1,5",
                            "45as15 deg", "45asminus-15", "nan", "45asinf", "r", "45as25azx"}) {
     const auto geometry = parse_geometry(text);
@@ -80,14 +80,14 @@ TEST(Geometry, wrong_names_are_refused_with_a_remedy) {
   EXPECT_FALSE(parse_geometry("-5as15").ok());
 }
 
-TEST(Geometry, out_of_plane_directions) {
+TEST(Geometry, DirectionsOutOfPlaneFollowTheAzimuth) {
   // To the four digits at which these three geometries are usually given.
   expect_near(directions(*parse_geometry("45as25az-76")).view, {0.7132, -0.4101, 0.5686}, 5e-5);
   expect_near(directions(*parse_geometry("45as60az125.3")).view, {0, 0.7071, 0.7071}, 5e-4);  // 125.3 is rounded
   expect_near(directions(*parse_geometry("15as38.3az43")).view, {0.6409, 0.4226, 0.6409}, 5e-4);
 }
 
-TEST(Geometry, in_plane_positive_is_toward_the_normal_and_azimuth_0_away_from_it) {
+TEST(Geometry, InPlanePositiveIsTowardTheNormalAndAzimuth0AwayFromIt) {
   const auto polar_deg = [](const char* name) {
     const Vec3 v = directions(*parse_geometry(name)).view;
     return std::atan2(v.x, v.z) * 180 / kPi;
@@ -101,7 +101,7 @@ TEST(Geometry, in_plane_positive_is_toward_the_normal_and_azimuth_0_away_from_it
   EXPECT_NEAR(polar_deg("45as25az180"), 20, 1e-13);
 }
 
-TEST(Geometry, light_stands_opposite_and_reversed_trades_places) {
+TEST(Geometry, LightStandsOppositeAndReversedTradesPlaces) {
   const auto plain = directions(*parse_geometry("45as-15")), reversed = directions(*parse_geometry("r45as-15"));
   EXPECT_LT(plain.light.x, 0);
   EXPECT_NEAR(plain.light.z, std::sqrt(0.5), 1e-15);
@@ -109,7 +109,7 @@ TEST(Geometry, light_stands_opposite_and_reversed_trades_places) {
   EXPECT_EQ(plain.view, reversed.light);
 }
 
-TEST(Geometry, angle_of_the_directions_is_the_angle_of_the_name) {
+TEST(Geometry, AngleOfTheDirectionsIsTheAngleOfTheName) {
   for (const char* name : {"45as15", "45as-15", "r45as-15", "15as-45", "45as110", "45as25az-76", "15as38.3az43"}) {
     const Geometry geometry = *parse_geometry(name);
     const auto [light, view] = directions(geometry);

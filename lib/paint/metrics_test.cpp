@@ -1,8 +1,10 @@
 #include "paint/metrics.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "base/angles.h"
 #include "base/hard_case_for_test.h"
@@ -10,6 +12,8 @@
 
 namespace goniochrome::paint {
 namespace {
+
+using testing::HasSubstr;
 
 Paint measured(const std::vector<std::pair<double, color::Lab>>& rows) {
   Paint paint;
@@ -35,7 +39,7 @@ double textbook_flop_index(double L15, double L45, double L110) {
   return 2.69 * std::pow(L15 - L110, 1.11) / std::pow(L45, 0.86);
 }
 
-TEST(Metrics, flop_index_of_a_metallic) {
+TEST(Metrics, FlopIndexOfAMetallicIsTheOneByHand) {
   // 2.69 * 80^1.11 / 50^0.86 by hand: 80^1.11 = 129.548, 50^0.86 = 28.916.
   EXPECT_NEAR(flop_index(100, 50, 20).value, 12.052, 1e-3);
   EXPECT_DOUBLE_EQ(flop_index(100, 50, 20).value, textbook_flop_index(100, 50, 20));
@@ -71,7 +75,7 @@ TEST(HardCase, FlopIndexDark) {
 }
 
 // The sensitivity holds for every move within 0.1, and is reached.
-TEST(Metrics, flop_sensitivity_is_the_worst_case) {
+TEST(Metrics, FlopSensitivityIsTheWorstCase) {
   for (const auto& [a, b, c] :
        {std::array{100.0, 50.0, 20.0}, {20.0, 30.0, 60.0}, {10.05, 10.0, 10.0}, {5.0, 1.0, 1.0}}) {
     const FlopIndex index = flop_index(a, b, c);
@@ -89,7 +93,7 @@ double textbook_hue_shift(const color::Lab& f, const color::Lab& g) {
   return std::abs(g.a * f.b - f.a * g.b) / std::sqrt(f.a * f.a + f.b * f.b);
 }
 
-TEST(Metrics, hue_shift_and_chroma) {
+TEST(Metrics, HueShiftAndChromaAreThoseByHand) {
   const color::Lab face = polar(60, 50, 30), flop = polar(20, 20, 60);
   EXPECT_NEAR(hue_shift_index(face, flop), 20 * std::sin(kPi / 6), 1e-12);
   EXPECT_DOUBLE_EQ(hue_shift_index(face, flop), textbook_hue_shift(face, flop));
@@ -139,7 +143,7 @@ TEST(HardCase, HueShiftAchromatic) {
   EXPECT_TRUE(hue_travel(std::array{polar(60, 40, 20), polar(30, 40, 200.5)}).through_gray);
 }
 
-TEST(Metrics, from_rows_curve_and_fit) {
+TEST(Metrics, ComeFromRowsFromTheCurveOrFromAFit) {
   const Appearance appearance{polar(80, 40, 250), polar(20, 10, 260), 70, {}};
   Paint designed;
   designed.appearance = appearance;
@@ -179,7 +183,7 @@ TEST(Metrics, from_rows_curve_and_fit) {
   EXPECT_FALSE(std::isnan(quick.flop_index));
 }
 
-TEST(Metrics, no_color_and_gamut) {
+TEST(Metrics, NoColorAndColorsOutsideTheGamutAreFlagged) {
   EXPECT_TRUE(has_flag(*metrics(Paint{}), "no_color"));
   EXPECT_TRUE(std::isnan(metrics(Paint{})->flop_index));
   const auto inside = *metrics(measured({{15, {50, 10, 10}}, {45, {40, 5, 5}}, {110, {30, 1, 2}}}));
@@ -189,7 +193,7 @@ TEST(Metrics, no_color_and_gamut) {
   EXPECT_TRUE(has_flag(outside, "gamut"));
 }
 
-TEST(Metrics, rows_off_the_path_are_left_out) {
+TEST(Metrics, RowsOffThePathAreLeftOut) {
   Paint paint = measured({{15, polar(60, 40, 20)}, {45, polar(45, 35, 30)}, {110, polar(30, 30, 40)}});
   paint.measurement->rows.push_back({{.incidence_deg = 15, .aspecular_deg = 15}, polar(90, 90, 200)});
   paint.measurement->rows.push_back({{.incidence_deg = 45, .aspecular_deg = -15}, polar(90, 90, 200)});
@@ -198,10 +202,113 @@ TEST(Metrics, rows_off_the_path_are_left_out) {
   EXPECT_NEAR(metrics(paint)->hue_travel_deg, 20, 1e-9);
 }
 
-TEST(Metrics, columns_have_distinct_names) {
+TEST(Metrics, ColumnsHaveDistinctNames) {
   for (const MetricColumn& column : metric_columns()) EXPECT_EQ(find_metric(column.name), &column);
   EXPECT_EQ(find_metric("nonsense"), nullptr);
   EXPECT_EQ(metric_columns_without_fit().size(), metric_columns().size() - 2);
+}
+
+Paint red() {
+  Paint paint;
+  paint.name = "RM331";
+  paint.code = "x 1";
+  paint.paint_class = PaintClass::kMetallic;
+  return paint;
+}
+
+PaintMetrics numbers() {
+  PaintMetrics n;
+  n.flop_index = 17;
+  n.chroma_index = 4.5;
+  n.hue_travel_deg = -12;
+  n.flags = {"dark"};
+  n.source = PaintMetrics::Source::kRows;
+  return n;
+}
+
+bool matches(std::string_view condition) {
+  const auto filter = PaintFilter::parse(condition);
+  if (!filter.ok()) {
+    ADD_FAILURE() << filter.error().message;
+    return false;
+  }
+  return filter->matches(red(), numbers());
+}
+
+std::string complaint(std::string_view condition) {
+  const auto filter = PaintFilter::parse(condition);
+  if (filter.ok()) return "accepted";
+  EXPECT_EQ(filter.error().kind, ErrorKind::kUsage);
+  return filter.error().message;
+}
+
+TEST(PaintFilter, ComparesNumbers) {
+  EXPECT_TRUE(matches("flop_index>=17 && chroma_index<5"));
+  EXPECT_FALSE(matches("flop_index > 17"));
+  EXPECT_TRUE(matches("flop_index==17"));
+  EXPECT_TRUE(matches("17 <= flop_index"));
+  EXPECT_TRUE(matches("flop_index != 16.5"));
+  EXPECT_TRUE(matches("hue_travel_deg<-11.5"));
+  EXPECT_TRUE(matches("hue_travel_deg < +1e+1"));
+  EXPECT_TRUE(matches("chroma_index < flop_index"));
+}
+
+TEST(PaintFilter, AndBindsMoreTightlyThanOr) {
+  EXPECT_TRUE(matches("flop_index>0 or flop_index<0 and flop_index<0"));
+  EXPECT_FALSE(matches("(flop_index>0 or flop_index<0) and flop_index<0"));
+  EXPECT_TRUE(matches("not flop_index<0 && !(chroma_index>5)"));
+  EXPECT_TRUE(matches("! ! flop_index>0"));
+}
+
+TEST(PaintFilter, ComparesTexts) {
+  EXPECT_TRUE(matches("class==metallic"));
+  EXPECT_TRUE(matches("class != solid"));
+  EXPECT_TRUE(matches("name == RM331"));
+  EXPECT_TRUE(matches("code == 'x 1' and code==\"x 1\""));
+  EXPECT_TRUE(matches("flags==dark and flags!=gamut and source==rows"));
+  EXPECT_TRUE(matches("metallic == class"));
+}
+
+TEST(PaintFilter, ANumberThatDoesNotApplyIsOnlyEqualToNa) {
+  EXPECT_FALSE(matches("gloss<1000"));
+  EXPECT_FALSE(matches("gloss>=0"));
+  EXPECT_FALSE(matches("gloss!=3"));
+  EXPECT_TRUE(matches("not gloss<1000"));
+  EXPECT_TRUE(matches("gloss==na"));
+  EXPECT_TRUE(matches("na != flop_index"));
+}
+
+TEST(PaintFilter, ErrorsNameThePlace) {
+  EXPECT_THAT(complaint("flop_idx>3"), HasSubstr("\"flop_idx\" at character 1 is no metric; did you mean flop_index?"));
+  EXPECT_THAT(complaint("flop_index>3 && zzzzzzzzzzzz<1"), HasSubstr("there are flop_index, "));
+  EXPECT_THAT(complaint("flop_index>"), HasSubstr("ends where a name or a number is needed"));
+  EXPECT_THAT(complaint(""), HasSubstr("ends where"));
+  EXPECT_THAT(complaint("flop_index"), HasSubstr("a comparison"));
+  EXPECT_THAT(complaint("flop_index=3"), HasSubstr("write \"==\""));
+  EXPECT_THAT(complaint("flop_index>3 & gloss>2"), HasSubstr("write it twice"));
+  EXPECT_THAT(complaint("(flop_index>3"), HasSubstr("\")\""));
+  EXPECT_THAT(complaint("flop_index>3)"), HasSubstr("\")\" at character 13"));
+  EXPECT_THAT(complaint("flop_index>3 gloss>1"), HasSubstr("\"and\", \"or\" or the end"));
+  EXPECT_THAT(complaint("flop_index>3,5"), HasSubstr("\",\" at character 13"));
+  EXPECT_THAT(complaint("flop_index>12abc"), HasSubstr("\"12abc\" at character 12 is no metric"));
+  EXPECT_THAT(complaint("class>solid"), HasSubstr("class is a text"));
+  EXPECT_THAT(complaint("class==metalic"), HasSubstr("there is no class \"metalic\""));
+  EXPECT_THAT(complaint("name=='RM"), HasSubstr("not closed"));
+  EXPECT_THAT(complaint("gloss<na"), HasSubstr("na has no order"));
+  EXPECT_THAT(complaint(std::string(100000, '(')), HasSubstr("nested too deeply"));
+  EXPECT_THAT(complaint(std::string(100000, '!')), HasSubstr("nested too deeply"));
+}
+
+TEST(MetricRange, BoundsAreIncludedAndErrorsAreTold) {
+  const auto range = parse_metric_range("flop_index=3:10");
+  ASSERT_TRUE(range.ok());
+  EXPECT_TRUE(range->contains(3) && range->contains(10) && !range->contains(10.001));
+  EXPECT_FALSE(range->contains(std::numeric_limits<double>::quiet_NaN()));
+  EXPECT_TRUE(parse_metric_range("gloss=:5")->contains(-1e9));
+  EXPECT_TRUE(parse_metric_range("gloss=5:")->contains(1e9));
+  for (const char* wrong : {"flop_index", "flop_index=3", "flop_indx=3:4", "flop_index=a:4", "flop_index=4:3", "=1:2"})
+    EXPECT_FALSE(parse_metric_range(wrong).ok()) << wrong;
+  EXPECT_THAT(parse_metric_range("flop_indx=3:4").error().message, HasSubstr("did you mean flop_index?"));
 }
 
 }  // namespace

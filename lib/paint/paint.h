@@ -1,5 +1,6 @@
-// One paint and its three representations: measured aspecular rows, the curve, face and flop. [Shimizu2009] 3.3
-// goniochrome-theory(7), PAINT REPRESENTATIONS; goniochrome-paint(5) has the file format.
+// One paint in its three representations: rows measured at aspecular angles, a curve, and a face and a flop; and the
+// lobes that were fitted to it. [Shimizu2009] 3.3; goniochrome-theory(7), PAINT REPRESENTATIONS; goniochrome-paint(5)
+// describes the file format.
 #pragma once
 
 #include <limits>

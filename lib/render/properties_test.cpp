@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "base/scratch_for_test.h"
 #include "brdf/isoline.h"
 #include "brdf/lafortune.h"
 #include "brdf/lobe_model.h"
 #include "brdf/ward.h"
 #include "fit/paint_fit.h"
-#include "formats/scratch_for_test.h"
 #include "formats/xml.h"
 #include "prefilter/prefilter.h"
 #include "render/exact.h"
@@ -261,7 +261,7 @@ TEST_F(Property, MoreLobesNeverFitWorse) {
 
 // A paint read back is the paint written, to the last bit of every number.
 TEST_F(Property, PaintXmlKeepsEveryBit) {
-  const formats::ScratchFolder scratch;
+  const ScratchFolder scratch;
   std::vector<paint::Paint> written;
   for (int i = 0; i < 200; ++i) {
     paint::Paint p;

@@ -7,13 +7,14 @@
 #include <cmath>
 
 #include "base/angles.h"
+#include "base/text.h"
 
 namespace goniochrome::report {
 
 namespace {
 
 std::string title_text(const std::string& title) {
-  return fmt::format("<text class=\"title\" x=\"12\" y=\"20\">{}</text>\n", escaped(title));
+  return fmt::format("<text class=\"title\" x=\"12\" y=\"20\">{}</text>\n", xml_escaped(title, ""));
 }
 
 int channel_byte(double value) {
@@ -24,7 +25,7 @@ std::string hex(const Vec3& color) {
   return fmt::format("#{:02x}{:02x}{:02x}", channel_byte(color.x), channel_byte(color.y), channel_byte(color.z));
 }
 
-// "#rrggbb" made darker.
+// The color "#rrggbb" made darker by the factor `light`.
 std::string shaded(const std::string& color, double light) {
   Vec3 rgb;
   for (int c = 0; c < 3; ++c) rgb[c] = light * std::stoi(color.substr(1 + 2 * c, 2), nullptr, 16) / 255.0;
@@ -67,7 +68,8 @@ Drawing polar_drawing(const std::string& title, const std::vector<PolarSeries>& 
     }
     if (!path.empty()) out += fmt::format("<path class=\"curve\" stroke=\"{}\" d=\"{}\"/>\n", s.color, path);
     if (s.label.empty()) continue;
-    out += fmt::format("<text x=\"12\" y=\"{:.0f}\" style=\"fill:{}\">{}</text>\n", line, s.color, escaped(s.label));
+    out += fmt::format("<text x=\"12\" y=\"{:.0f}\" style=\"fill:{}\">{}</text>\n", line, s.color,
+                       xml_escaped(s.label, ""));
     line += 15;
   }
   return {width, height, out};
@@ -90,7 +92,7 @@ Drawing surface_drawing(const std::string& title, const std::string& color,
   const double tilt = 25 * kDegree;
   const double scale = std::min(width / 2.0 - 16, (height - 52.0) / (std::cos(tilt) + std::sin(tilt))) / largest;
   const double x0 = width / 2.0, y0 = height - 14 - scale * largest * std::sin(tilt);
-  // Orthographic, from y = -infinity and 25 deg up; `depth` grows away from the eye.
+  // The projection is parallel, from the side of negative y and 25 deg above; `depth` grows away from the eye.
   const auto screen = [&](const Vec3& v) {
     return std::pair{x0 + scale * v.x, y0 - scale * (v.z * std::cos(tilt) + v.y * std::sin(tilt))};
   };
@@ -133,8 +135,8 @@ Drawing surface_drawing(const std::string& title, const std::string& color,
 Drawing square_drawing(const std::string& title, int n, const std::function<Vec3(double x, double y)>& color, int width,
                        int height) {
   const double size = std::min(width - 16.0, height - 34.0) / n, left = (width - n * size) / 2, top = 28;
-  std::string out =
-      fmt::format("<text x=\"{:.1f}\" y=\"20\" text-anchor=\"middle\">{}</text>\n", width / 2.0, escaped(title));
+  std::string out = fmt::format("<text x=\"{:.1f}\" y=\"20\" text-anchor=\"middle\">{}</text>\n", width / 2.0,
+                                xml_escaped(title, ""));
   for (int row = 0; row < n; ++row) {
     // Neighbors of one color make one rectangle.
     int begin = 0;

@@ -6,18 +6,20 @@
 #include <cmath>
 #include <limits>
 
+#include "base/text.h"
+
 namespace goniochrome::report {
 
 namespace {
 
-// Okabe and Ito's palette, without its yellow, which is lost on white paper.
+// Okabe and Ito's palette without its yellow, which can hardly be seen on white paper.
 constexpr const char* kPalette[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#444444"};
 
 constexpr double kLeft = 64, kRight = 16, kTop = 34, kBottom = 48;
 constexpr double kLegendLine = 17;
 constexpr double kLetter = 6.6;  // mean width of a letter at 12 px
 
-// A data axis laid along a stretch of the picture.
+// Where the values of an axis lie in the picture.
 class Scale {
  public:
   Scale(const Axis& axis, const std::vector<Series>& series, const std::vector<double> Series::*values, double from,
@@ -40,7 +42,7 @@ class Scale {
   std::vector<double> ticks(int count) const { return goniochrome::report::ticks(low_, high_, logarithmic_, count); }
 
  private:
-  // A little air around the data, and room where all values are one.
+  // Leaves some space around the data, and makes room if all values are equal.
   void widen(double& low, double& high) const {
     if (logarithmic_) {
       const double factor = high > low ? std::pow(high / low, 0.04) : 2;
@@ -92,7 +94,7 @@ struct Ink {
 
 std::string text(double x, double y, const char* anchor, const std::string& words, const std::string& more = "") {
   return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\"{}>{}</text>\n", x, y, anchor, more,
-                     escaped(words));
+                     xml_escaped(words, ""));
 }
 
 std::string axes(const Plot& plot, const Scale& x, const Scale& y, double right, double bottom) {
@@ -164,28 +166,21 @@ std::string body(const Plot& plot) {
   return out + curves + "</svg>\n";
 }
 
-}  // namespace
-
-std::string escaped(const std::string& words) {
-  std::string out;
-  for (const char c : words) switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  return out;
+// Each drawing stands behind the one before it: to its right, or below it.
+Drawing joined(const std::vector<Drawing>& drawings, bool in_a_row) {
+  Drawing all;
+  for (const Drawing& each : drawings) {
+    int& along = in_a_row ? all.width : all.height;
+    int& across = in_a_row ? all.height : all.width;
+    all.body += fmt::format("<g transform=\"translate({} {})\">\n{}</g>\n", in_a_row ? along : 0, in_a_row ? 0 : along,
+                            each.body);
+    along += in_a_row ? each.width : each.height;
+    across = std::max(across, in_a_row ? each.height : each.width);
+  }
+  return all;
 }
+
+}  // namespace
 
 std::vector<double> ticks(double low, double high, bool logarithmic, int count) {
   std::vector<double> at;
@@ -216,23 +211,11 @@ Drawing drawing(const Plot& plot) {
 }
 
 Drawing row_of(const std::vector<Drawing>& drawings) {
-  Drawing row;
-  for (const Drawing& each : drawings) {
-    row.body += fmt::format("<g transform=\"translate({} 0)\">\n{}</g>\n", row.width, each.body);
-    row.width += each.width;
-    row.height = std::max(row.height, each.height);
-  }
-  return row;
+  return joined(drawings, true);
 }
 
 Drawing column_of(const std::vector<Drawing>& drawings) {
-  Drawing column;
-  for (const Drawing& each : drawings) {
-    column.body += fmt::format("<g transform=\"translate(0 {})\">\n{}</g>\n", column.height, each.body);
-    column.height += each.height;
-    column.width = std::max(column.width, each.width);
-  }
-  return column;
+  return joined(drawings, false);
 }
 
 std::string svg(const std::vector<Drawing>& drawings, int columns) {

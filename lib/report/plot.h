@@ -1,5 +1,5 @@
-// Plots as SVG: lines and points on linear or logarithmic axes, readable on paper. Every tool and report draws with
-// this.
+// Plots as SVG: lines and points on linear or logarithmic axes, which stay readable on paper. All tools and reports
+// draw their plots with this.
 #pragma once
 
 #include <optional>
@@ -11,14 +11,15 @@ namespace goniochrome::report {
 struct Axis {
   std::string label;                          // with its unit: "aspecular angle (deg)"
   bool logarithmic = false;                   // then only values > 0 are drawn
-  std::optional<double> low = {}, high = {};  // from the data where not given
+  std::optional<double> low = {}, high = {};  // taken from the data where they are not given
 };
 
 struct Series {
   std::string label = {};              // in the legend; empty: not listed
   std::vector<double> x = {}, y = {};  // a y (or x) that is not finite breaks the line
   enum class Style { kLine, kPoints, kLineAndPoints, kDashed, kRings } style = Style::kLine;
-  // CSS; empty: the next of a palette that color-blind readers can tell apart, after whose end points are hollow.
+  // A CSS color. Empty: the next color of a palette that color-blind readers can tell apart; when all of its colors
+  // have been used, they come again with hollow points.
   std::string color = {};
 };
 
@@ -36,20 +37,17 @@ struct Drawing {
 };
 Drawing drawing(const Plot& plot);
 
-// One SVG document, or several plots or drawings as one document in rows of `columns`.
+// An SVG document of one plot, or of several plots or drawings in rows of `columns`.
 std::string svg(const Plot& plot);
 std::string svg(const std::vector<Plot>& plots, int columns);
 std::string svg(const std::vector<Drawing>& drawings, int columns);
 
-// Drawings beside each other, or below each other, as one.
+// One drawing that shows the given ones side by side, or one below the other.
 Drawing row_of(const std::vector<Drawing>& drawings);
 Drawing column_of(const std::vector<Drawing>& drawings);
 
-// Text with the characters that markup gives a meaning replaced.
-std::string escaped(const std::string& text);
-
-// Where an axis from low to high is labeled: multiples of 1, 2 or 5 times a power of ten, about `count` of them; on a
-// logarithmic axis the powers of ten, and 2 and 5 times them where those alone would be few.
+// The values at which an axis from low to high is labeled: about `count` multiples of 1, 2 or 5 times a power of ten.
+// On a logarithmic axis they are the powers of ten, and 2 and 5 times these where the powers alone would be few.
 std::vector<double> ticks(double low, double high, bool logarithmic, int count);
 
 }  // namespace goniochrome::report

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "library/search_library.h"
+#include "library/search.h"
 
 namespace goniochrome::tool {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/text.h"
-#include "paint/metrics_filter.h"
+#include "paint/metrics.h"
 #include "table_output.h"
 
 namespace goniochrome::tool {

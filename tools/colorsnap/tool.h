@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cli/tool.h"
-#include "library/search_library.h"
+#include "library/search.h"
 
 namespace goniochrome::tool {
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "image/color_map_file.h"
+#include "image/surface_file.h"
 
 namespace goniochrome::tool {
 

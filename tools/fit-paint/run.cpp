@@ -5,12 +5,13 @@
 #include <utility>
 
 #include "base/clock.h"
+#include "base/file.h"
 #include "brdf/lobe_model.h"
 #include "color_maps.h"
 #include "fit/brdf_target.h"
 #include "fit/paint_fit.h"
 #include "fitting.h"
-#include "formats/name_ledger.h"
+#include "formats/imported.h"
 #include "paint_stream.h"
 #include "settings.h"
 #include "tally.h"

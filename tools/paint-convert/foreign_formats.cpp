@@ -110,7 +110,7 @@ class MeasuredSource : public PaintSource {
     InputFile input = std::move(*input_);
     input_.reset();
     constexpr std::size_t kLargestFile = std::size_t{1} << 30;
-    GONIO_ASSIGN(const std::string bytes, formats::whole_content(input, kLargestFile));
+    GONIO_ASSIGN(const std::string bytes, input.rest(kLargestFile));
     GONIO_ASSIGN(const auto brdf, brdf::read_measured(name_, bytes));
     const bool is_rgb = brdf->traits().wavelengths_nm.empty();
     const brdf::MeasuredChecks told = brdf::checks(*brdf);

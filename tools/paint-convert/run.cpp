@@ -6,7 +6,7 @@
 
 #include "base/text.h"
 #include "formats.h"
-#include "formats/name_ledger.h"
+#include "formats/imported.h"
 #include "selection.h"
 
 namespace goniochrome::tool {

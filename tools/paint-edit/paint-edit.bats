@@ -125,7 +125,7 @@ names() { xmllint --xpath "//*[local-name()='paint']/@name" "$1" | sed -E 's/.*"
 @test "variations beyond the domain are left out and told" {
   run paint-edit one.paints.xml --variations travel --step 30 -o v.paints.xml
   [ "$status" -eq 1 ]
-  [[ $output == *"one: left out: travel: from 75 deg it would go to -45 deg"* ]]
+  [[ $output == *"one: left out: travel: it would go from 75 deg to -45 deg"* ]]
   diff <(names v.paints.xml) <(printf '%s\n' one one.travel-30 one.travel+{30,60,90})
 }
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "formats/paint_choice.h"
+#include "formats/batches.h"
 
 namespace goniochrome::tool {
 

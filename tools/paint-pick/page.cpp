@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/text.h"
 #include "display/paint_view.h"
 #include "paint/curve.h"
 #include "report/plot.h"
@@ -48,6 +49,10 @@ td.number { text-align: right; }
 @media (max-width: 800px) { .frame { grid-template-columns: minmax(0, 1fr); padding: 14px; } .board { position: static; columns: 1; } }
 @media print { :root { background: #fff; } }
 )";
+
+std::string escaped(const std::string& text) {
+  return xml_escaped(text, "");
+}
 
 std::string base64(const std::string& bytes) {
   constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

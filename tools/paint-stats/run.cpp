@@ -8,7 +8,7 @@
 #include "base/file.h"
 #include "base/parallel.h"
 #include "base/text.h"
-#include "paint/metrics_filter.h"
+#include "paint/metrics.h"
 #include "paint_stream.h"
 #include "table_output.h"
 

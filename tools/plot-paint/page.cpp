@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "base/text.h"
 #include "brdf/lobe_model.h"
 #include "display/paint_view.h"
 #include "math/cosine_power.h"
@@ -178,7 +179,7 @@ report::Drawing facts(const Subject& s) {
   }
   std::string out = "<text class=\"title\" x=\"12\" y=\"20\">Fit</text>\n";
   for (std::size_t i = 0; i < lines.size(); ++i)
-    out += fmt::format("<text x=\"12\" y=\"{}\">{}</text>\n", 42 + 16 * i, report::escaped(lines[i]));
+    out += fmt::format("<text x=\"12\" y=\"{}\">{}</text>\n", 42 + 16 * i, xml_escaped(lines[i], ""));
   return {kThird, kColumnHeight, out};
 }
 
@@ -297,7 +298,7 @@ report::Drawing heading(const paint::Paint& paint, int width) {
                                        condition.illuminant, condition.observer_deg);
   return {width, 34,
           fmt::format("<text x=\"12\" y=\"24\" style=\"font-size:18px;font-weight:bold\">{}</text>\n",
-                      report::escaped(text))};
+                      xml_escaped(text, ""))};
 }
 
 report::Drawing lab_row(const Subject& s, int width, int height) {

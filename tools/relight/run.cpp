@@ -4,7 +4,7 @@
 
 #include "base/file.h"
 #include "base/text.h"
-#include "color/reflection_json.h"
+#include "color/reflection.h"
 #include "image/color_space.h"
 
 namespace goniochrome::tool {

@@ -6,10 +6,9 @@
 #include <numbers>
 
 #include "base/text.h"
-#include "formats/paint_choice.h"
+#include "formats/batches.h"
 #include "formats/xml.h"
-#include "image/color_map_file.h"
-#include "image/sbrdf_file.h"
+#include "image/surface_file.h"
 
 namespace goniochrome::tool {
 

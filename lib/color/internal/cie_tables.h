@@ -1,4 +1,4 @@
-// The CIE tables in use, every 5 nm: color-matching functions of both standard observers and three illuminants.
+// The CIE's tables at every 5 nm: color-matching functions of both standard observers, and three illuminants.
 #pragma once
 
 #include <array>

@@ -1,16 +1,67 @@
-// A test of one reader of foreign paints, on texts and files.
+// For tests: what the tests of foreign formats share, which read texts and files and compare paints.
 #pragma once
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/file.h"
+#include "base/scratch_for_test.h"
 #include "formats/imported.h"
-#include "formats/scratch_for_test.h"
 
 namespace goniochrome::formats {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+inline paint::Geometry geometry(const char* name) {
+  return paint::parse_geometry(name).value();
+}
+
+inline void expect_same(const std::vector<paint::Paint>& was, const std::vector<paint::Paint>& is) {
+  ASSERT_EQ(is.size(), was.size());
+  for (std::size_t p = 0; p < was.size(); ++p) {
+    EXPECT_EQ(is[p].name, was[p].name);
+    EXPECT_EQ(is[p].code, was[p].code);
+    EXPECT_EQ(is[p].paint_class, was[p].paint_class);
+    EXPECT_EQ(is[p].measurement->condition, was[p].measurement->condition);
+    EXPECT_EQ(is[p].measurement->instrument, was[p].measurement->instrument);
+    ASSERT_EQ(is[p].measurement->rows.size(), was[p].measurement->rows.size());
+    for (std::size_t i = 0; i < was[p].measurement->rows.size(); ++i) {
+      EXPECT_EQ(is[p].measurement->rows[i].geometry, was[p].measurement->rows[i].geometry);
+      EXPECT_EQ(is[p].measurement->rows[i].lab, was[p].measurement->rows[i].lab);
+    }
+    ASSERT_EQ(is[p].gloss.size(), was[p].gloss.size());
+    for (const paint::GlossReading& gloss : was[p].gloss)
+      EXPECT_THAT(is[p].gloss,
+                  Contains(testing::AllOf(testing::Field(&paint::GlossReading::angle_deg, gloss.angle_deg),
+                                          testing::Field(&paint::GlossReading::gloss_units, gloss.gloss_units))));
+  }
+}
+
+// Two paints with everything that a table of readings can hold: quotation marks in a name, numbers to the last bit, and
+// every kind of geometry. The second has an illuminant of its own.
+inline std::vector<paint::Paint> two_paints(const std::string& illuminant) {
+  paint::Paint a;
+  a.name = "blue \"night\" & <7>", a.code = "B-7", a.paint_class = paint::PaintClass::kMetallic;
+  a.measurement = paint::Measurement{{"D65", 10},
+                                     "MA-T12",
+                                     {{geometry("45as15"), {41.87, -45.99, -21.73 / 3}},
+                                      {geometry("45as-15"), {1.0 / 3, 1e-17, -1e300}},
+                                      {geometry("45as25az-76"), {130.5, 0, -0.1}},
+                                      {geometry("45as15az0"), {30, 1, 2}},
+                                      {geometry("r45as45"), {0, 0, 0}}}};
+  a.gloss = {{60, 92.1}, {20, 1.0 / 7}};
+  paint::Paint b;
+  b.name = "plain";
+  b.measurement = paint::Measurement{{illuminant, 2}, "", {{geometry("45as15"), {2, 3, 4}}}};
+  return {a, b};
+}
 
 template <Result<ImportedPaints> (*Read)(InputFile, const ImportOptions&)>
 class ImportTest : public testing::Test {

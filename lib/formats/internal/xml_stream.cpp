@@ -16,12 +16,17 @@ namespace goniochrome::formats {
 namespace {
 
 constexpr std::size_t kChunk = 1 << 16;
+constexpr std::string_view kSchemaInstance = "http://www.w3.org/2001/XMLSchema-instance";
+
+std::string qualified(std::string_view prefix, std::string_view name) {
+  return prefix.empty() ? std::string(name) : fmt::format("{}:{}", prefix, name);
+}
 
 std::string_view view(const xmlChar* text) {
   return text ? std::string_view(reinterpret_cast<const char*>(text)) : std::string_view();
 }
 
-// libxml2 prints nothing of its own accord; every error comes through the structured handlers below.
+// Keeps libxml2 from printing: every error comes through the structured handlers below.
 void silence(void*, const char*, ...) {}
 
 // A schema is compiled once per process and shared, since it is never changed.
@@ -36,7 +41,7 @@ xmlSchemaPtr compiled(const char* text) {
   return schema;
 }
 
-// What libxml2's complaint means to the person who wrote the file.
+// What libxml2's error means for the person who wrote the file.
 std::string explained(int code, std::string_view detail) {
   switch (code) {
     case XML_ERR_INVALID_CHAR:
@@ -191,7 +196,7 @@ void XmlStream::State::on_text(void* data, const xmlChar* text, int length) {
       state.handler.text({reinterpret_cast<const char*>(text), static_cast<std::size_t>(length)}, state.line()));
 }
 
-// Told before any entity is declared.
+// This is called before any entity is declared.
 void XmlStream::State::on_doctype(void* data, const xmlChar*, const xmlChar*, const xmlChar*) {
   State& state = of(data);
   state.fail(state.line(), "<!DOCTYPE is not accepted, nor are the entities it declares: remove it");
@@ -276,39 +281,132 @@ Result<bool> XmlStream::advance() {
   return !state_->finished;
 }
 
-const std::string& XmlStream::name() const {
-  return state_->input.name();
+Result<void> XmlStream::finish() {
+  for (bool more = true; more;) {
+    GONIO_ASSIGN(more, advance());
+  }
+  return {};
 }
 
 std::size_t XmlStream::bytes() const {
   return state_->bytes;
 }
 
-std::string xml_escaped(std::string_view text) {
-  std::string escaped;
-  escaped.reserve(text.size());
-  for (const char c : text) switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      case '\t':
-      case '\n':
-      case '\r':
-        escaped += fmt::format("&#{};", static_cast<int>(c));
-        break;
-      default:
-        escaped += c;
-    }
-  return escaped;
+const XmlAttribute* XmlValues::find(std::string_view name) const {
+  for (const XmlAttribute& attribute : tag_.attributes)
+    if (attribute.name == name && attribute.space.empty()) return &attribute;
+  return nullptr;
+}
+
+Result<void> XmlValues::check_names(std::string_view names) const {
+  std::string listed;
+  std::size_t known = 0;
+  for (std::string_view name : split(names, ' ')) {
+    if (name.empty()) break;
+    const bool optional = name.ends_with('?');
+    if (optional) name.remove_suffix(1);
+    listed += fmt::format("{}{}", listed.empty() ? "" : ", ", name);
+    if (has(name))
+      ++known;
+    else if (!optional)
+      return error(fmt::format("<{}> has no {}: write {}=\"...\"", tag_.name, name, name));
+  }
+  if (known == tag_.attributes.size()) return {};
+  for (const XmlAttribute& attribute : tag_.attributes) {
+    if (attribute.space == kSchemaInstance) continue;
+    const auto words = split(names, ' ');
+    const bool ours = attribute.space.empty() && std::ranges::any_of(words, [&](std::string_view word) {
+                        return word.substr(0, word.find('?')) == attribute.name;
+                      });
+    if (!ours)
+      return input_error("{}:{}: <{}> takes no attribute \"{}\": it takes {}", file_, attribute.line, tag_.name,
+                         attribute.name, listed.empty() ? "none" : listed);
+  }
+  return {};
+}
+
+std::string_view XmlValues::text(std::string_view name) const {
+  const XmlAttribute* attribute = find(name);
+  return attribute ? attribute->value : std::string_view();
+}
+
+Result<void> XmlValues::name(std::string_view name, std::string& target) const {
+  target = text(name);
+  return target.empty() ? error_at(name, "is empty: write something") : Result<void>();
+}
+
+Result<void> XmlValues::number(std::string_view name, double& target, Domain domain) const {
+  const auto value = number_in(text(name), domain);
+  if (!value.ok()) return error_at(name, value.error().message);
+  target = *value;
+  return {};
+}
+
+Result<void> XmlValues::lab(color::Lab& target) const {
+  GONIO_TRY(number("L", target.L));
+  GONIO_TRY(number("a", target.a));
+  return number("b", target.b);
+}
+
+Result<void> XmlValues::rgb(std::string_view prefix, color::Rgb& target) const {
+  GONIO_TRY(number(fmt::format("{}r", prefix), target.x));
+  GONIO_TRY(number(fmt::format("{}g", prefix), target.y));
+  return number(fmt::format("{}b", prefix), target.z);
+}
+
+Error XmlValues::error_at(std::string_view name, std::string_view what) const {
+  const XmlAttribute* attribute = find(name);
+  return input_error("{}:{}: {} {}", file_, attribute ? attribute->line : tag_.line, name, what);
+}
+
+Error XmlValues::error(std::string_view name, std::string_view remedy) const {
+  return error_at(name, fmt::format("is \"{}\": {}", shown(text(name)), remedy));
+}
+
+Error XmlValues::error(std::string_view what) const {
+  return input_error("{}:{}: {}", file_, tag_.line, what);
+}
+
+void declare(const XmlTag& tag, XmlScope& scope) {
+  for (const XmlNamespace& space : tag.namespaces)
+    scope.insert_or_assign(std::string(space.prefix), std::string(space.uri));
+}
+
+void XmlCopy::close_tag() {
+  if (tag_open_) text_ += '>';
+  tag_open_ = false;
+}
+
+void XmlCopy::start(const XmlTag& tag, const XmlScope& scope) {
+  if (depth_ == 0) text_.clear(), names_.clear();
+  close_tag();
+  names_.push_back(qualified(tag.prefix, tag.name));
+  text_ += "<" + names_.back();
+  XmlScope declared;
+  if (depth_ == 0) {
+    declared = scope;
+    declared.try_emplace("", "");
+    if (declared[""] == default_space_) declared.erase("");
+  }
+  declare(tag, declared);
+  for (const auto& [prefix, uri] : declared)
+    text_ += fmt::format(" {}=\"{}\"", prefix.empty() ? "xmlns" : "xmlns:" + prefix, xml_escaped(uri));
+  for (const XmlAttribute& attribute : tag.attributes)
+    text_ += fmt::format(" {}=\"{}\"", qualified(attribute.prefix, attribute.name), xml_escaped(attribute.value));
+  tag_open_ = true;
+  ++depth_;
+}
+
+void XmlCopy::text(std::string_view text) {
+  close_tag();
+  text_ += xml_escaped(text, "\r");  // between tags only a carriage return would be lost
+}
+
+bool XmlCopy::end() {
+  text_ += tag_open_ ? "/>" : "</" + names_.back() + ">";
+  tag_open_ = false;
+  names_.pop_back();
+  return --depth_ == 0;
 }
 
 }  // namespace goniochrome::formats

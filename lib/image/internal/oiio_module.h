@@ -1,4 +1,5 @@
-// The border between the tools and goniochrome-oiio.so, in C so that it holds across compilers.
+// How the tools call goniochrome-oiio.so, which reads images through OpenImageIO. The interface is in C, so that the
+// two may come from different compilers.
 #pragma once
 
 extern "C" {
@@ -14,7 +15,7 @@ struct GoniochromeOiioImage {
   const float* chromaticities;       // 8 values, or null
   const char* icc_profile;           // the bytes of an embedded ICC profile, or null
   unsigned long icc_size;
-  int is_integer;  // whether the file holds whole numbers, which 0..1 stand for here
+  int is_integer;  // whether the file holds whole numbers; they are 0..1 here
 };
 
 // Decodes `path` and calls take(context, image) once, or fail(context, reason) once. Where `keep_inks` is not 0, a CMYK
@@ -27,5 +28,9 @@ using GoniochromeOiioRead = void (*)(const char* path, int keep_inks, void* cont
 
 }  // extern "C"
 
+namespace goniochrome::image {
+
 // The name under which the module exports its GoniochromeOiioRead.
-constexpr const char* kGoniochromeOiioReadName = "goniochrome_oiio_read_3";
+constexpr const char* kOiioReadName = "goniochrome_oiio_read_3";
+
+}  // namespace goniochrome::image

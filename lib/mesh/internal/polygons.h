@@ -1,4 +1,4 @@
-// What a mesh file says, before it becomes a Mesh: polygons whose corners may lack normals. Internal to lib/mesh.
+// What a mesh file holds before it becomes a Mesh: polygons whose corners may lack normals.
 #pragma once
 
 #include <cstdint>

@@ -6,7 +6,7 @@
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
 #include "render/effects.h"
-#include "render/textures/surface_layer.h"
+#include "render/surface_layer.h"
 
 namespace goniochrome::render {
 

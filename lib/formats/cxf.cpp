@@ -1,0 +1,515 @@
+#include "formats/cxf.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/angles.h"
+#include "base/text.h"
+#include "color/spectrum.h"
+#include "formats/internal/xml_stream.h"
+
+namespace goniochrome::formats {
+
+namespace {
+
+constexpr std::string_view kNamespace = "http://colorexchangeformat.com/CxF3-core";
+
+// One value of an object, as it stands: Lab, or a spectrum to become one.
+struct RawColor {
+  std::string specification;
+  int line = 0;
+  color::Lab lab;
+  std::vector<double> spectrum;
+  double first_nm = 0;  // of the spectrum, where it says so itself
+};
+
+struct RawObject {
+  paint::Paint paint;
+  std::string joined;  // the paint whose angle this object is: our tag
+  std::vector<RawColor> colors;
+  bool bad = false;  // it had an error that was passed over
+};
+
+struct Specification {
+  color::ViewingCondition condition{"", 0};
+  std::vector<paint::Geometry> angles;
+  std::string other;  // a geometry without aspecular angles
+  std::string instrument;
+  double first_nm = 0, step_nm = 0;
+};
+
+// The observer (deg) that a word of CxF3 means; 0 for none.
+int observer_of(std::string_view word) {
+  return word == "2_Degree" ? 2 : word == "10_Degree" ? 10 : 0;
+}
+
+class CxfHandler final : public XmlHandler {
+ public:
+  CxfHandler(std::string file, bool keep_going) : file_(std::move(file)), keep_going_(keep_going) {}
+
+  Result<void> start(const XmlTag& tag) override {
+    line_ = tag.line;
+    if (path_.empty()) GONIO_TRY(check_root(tag));
+    path_.emplace_back(tag.space == kNamespace ? tag.name : "");
+    text_.clear();
+    const auto attribute = [&](std::string_view name) -> std::string {
+      for (const XmlAttribute& a : tag.attributes)
+        if (a.name == name && a.space.empty()) return std::string(a.value);
+      return "";
+    };
+    if (in("ObjectCollection", "Object")) {
+      objects_.emplace_back();
+      const std::string name = attribute("Name");
+      objects_.back().paint.name = name.empty() ? attribute("Id") : name;
+      if (objects_.back().paint.name.empty()) {
+        objects_.back().paint.name = fmt::format("line {}", tag.line);
+        remarks_.note("objects with neither Name nor Id are called by their line", objects_.back().paint.name);
+      }
+    } else if (in("ColorValues", "ColorCIELab") || in("ColorValues", "ColorCIELCh") ||
+               in("ColorValues", "ReflectanceSpectrum")) {
+      color_ = {attribute("ColorSpecification"), tag.line, {}, {}, 0};
+      if (const std::string first = attribute("StartWL"); !first.empty()) {
+        GONIO_ASSIGN(color_.first_nm, number("StartWL", first));
+      }
+    } else if (in("PhysicalAttributes", "Gloss")) {
+      gloss_method_ = attribute("Method");
+    } else if (path_.back() == "TagCollection") {
+      own_tags_ = attribute("Name") == "goniochrome";
+    } else if (in("TagCollection", "Tag") && own_tags_ && !objects_.empty()) {
+      own_tag(attribute("Name"), attribute("Value"));
+    } else if (in("ColorSpecificationCollection", "ColorSpecification")) {
+      specification_ = &specifications_[attribute("Id")];
+    } else if (in("TristimulusSpec", "Illuminant")) {
+      custom_illuminant_ = attribute("Name");
+    } else if (in("MultiAngle", "BRDFAngle") || in("GeometryChoice", "SingleAngle")) {
+      angle_ = {}, measurement_deg_ = 0;
+      notation_ = attribute("Notation");
+    } else if (in("MeasurementSpec", "WavelengthRange") && specification_) {
+      GONIO_ASSIGN(specification_->first_nm, number("StartWL", attribute("StartWL")));
+      GONIO_ASSIGN(specification_->step_nm, number("Increment", attribute("Increment")));
+    }
+    return {};
+  }
+
+  Result<void> text(std::string_view text, int) override {
+    text_ += text;
+    return {};
+  }
+
+  Result<void> end(int line) override {
+    line_ = line;
+    const std::string content(trimmed(text_));
+    text_.clear();
+    const bool of_object = inside("Object") && !objects_.empty();
+    const auto result = of_object        ? end_in_object(content)
+                        : specification_ ? end_in_specification(content)
+                                         : Result<void>();
+    path_.pop_back();
+    if (result.ok() || !keep_going_ || !of_object) return result;
+    skipped_.push_back(result.error().message);
+    objects_.back().bad = true;
+    return {};
+  }
+
+  Result<void> invalid(int, const std::string&) override { return {}; }
+
+  std::vector<RawObject>& objects() { return objects_; }
+  const std::map<std::string, Specification>& specifications() const { return specifications_; }
+  Remarks& remarks() { return remarks_; }
+  std::vector<std::string>& skipped() { return skipped_; }
+
+ private:
+  bool in(std::string_view parent, std::string_view name) const {
+    return path_.size() >= 2 && path_.back() == name && path_[path_.size() - 2] == parent;
+  }
+  bool inside(std::string_view name) const {
+    for (const std::string& open : path_)
+      if (open == name) return true;
+    return false;
+  }
+
+  Error error(const std::string& what) const { return input_error("{}:{}: {}", file_, line_, what); }
+
+  Result<double> number(std::string_view what, std::string_view text) const {
+    const auto value = parse_number(trimmed(text));
+    if (!value)
+      return error(fmt::format("{} is \"{}\": write a number with a decimal point", what, text.substr(0, 40)));
+    return *value;
+  }
+
+  Result<void> check_root(const XmlTag& tag) const {
+    if (tag.name == "CxF" && tag.space == kNamespace) return {};
+    if (tag.name == "CxF") return error(fmt::format("is CxF of another version (\"{}\"): export CxF3", tag.space));
+    return error(fmt::format("begins with <{}>, not with <CxF>: this is no CxF file", tag.name));
+  }
+
+  void own_tag(const std::string& name, const std::string& value) {
+    RawObject& object = objects_.back();
+    if (name == "paint") object.joined = value;
+    if (name == "code") object.paint.code = value;
+    if (name == "class") object.paint.paint_class = paint::paint_class_of(value).value_or(paint::PaintClass::kUnknown);
+  }
+
+  Result<void> end_in_object(const std::string& content) {
+    RawObject& object = objects_.back();
+    if (in("ColorCIELab", "L")) return take(color_.lab.L, "L", content);
+    if (in("ColorCIELab", "A")) return take(color_.lab.a, "A", content);
+    if (in("ColorCIELab", "B")) return take(color_.lab.b, "B", content);
+    if (in("ColorCIELCh", "L")) return take(color_.lab.L, "L", content);
+    if (in("ColorCIELCh", "C")) return take(chroma_, "C", content);
+    if (in("ColorCIELCh", "H")) return take(hue_deg_, "H", content);
+    if (in("ColorValues", "ColorCIELCh")) {
+      color_.lab.a = chroma_ * std::cos(hue_deg_ * kPi / 180);
+      color_.lab.b = chroma_ * std::sin(hue_deg_ * kPi / 180);
+      object.colors.push_back(color_);
+    }
+    if (in("ColorValues", "ColorCIELab")) object.colors.push_back(color_);
+    if (in("ColorValues", "ReflectanceSpectrum")) {
+      for (std::size_t i = 0; i < content.size();) {
+        const auto end = std::min(content.find_first_of(" \t\r\n", i), content.size());
+        if (end > i) {
+          GONIO_ASSIGN(const double value, number("ReflectanceSpectrum", std::string_view(content).substr(i, end - i)));
+          color_.spectrum.push_back(value);
+        }
+        i = end + 1;
+      }
+      object.colors.push_back(color_);
+    }
+    if (in("PhysicalAttributes", "Gloss")) {
+      paint::GlossReading gloss;
+      GONIO_TRY(take(gloss.gloss_units, "Gloss", content));
+      const auto first = gloss_method_.find_first_of("0123456789");
+      const auto digits = first == std::string::npos ? "" : gloss_method_.substr(first);
+      const auto angle = parse_number(std::string_view(digits).substr(0, digits.find_first_not_of("0123456789.")));
+      if (!angle) remarks_.note("a gloss without its angle was taken as 60 deg", object.paint.name);
+      gloss.angle_deg = angle.value_or(60);
+      object.paint.gloss.push_back(gloss);
+    }
+    return {};
+  }
+
+  Result<void> end_in_specification(const std::string& content) {
+    Specification& specification = *specification_;
+    if (in("TristimulusSpec", "Illuminant"))
+      specification.condition.illuminant =
+          content == "Custom" && !custom_illuminant_.empty() ? custom_illuminant_ : content;
+    if (in("TristimulusSpec", "Observer")) specification.condition.observer_deg = observer_of(content);
+    if (in("BRDFAngle", "IlluminationAngle")) return take(angle_.incidence_deg, "IlluminationAngle", content);
+    if (in("BRDFAngle", "Aspecular")) return take(angle_.aspecular_deg, "Aspecular", content);
+    if (in("BRDFAngle", "Azimuth")) {
+      GONIO_TRY(take(angle_.azimuth_deg, "Azimuth", content));
+      angle_.out_of_plane = angle_.azimuth_deg != 0;
+    }
+    if (in("MultiAngle", "BRDFAngle")) specification.angles.push_back(noted_angle());
+    if (in("SingleAngle", "IlluminationAngle")) return take(angle_.incidence_deg, "IlluminationAngle", content);
+    if (in("SingleAngle", "MeasurementAngle")) return take(measurement_deg_, "MeasurementAngle", content);
+    if (in("GeometryChoice", "SingleAngle")) {
+      // 45/0 and 0/45 read what 45as45 reads; the side of any other pair is not said.
+      if (std::abs(angle_.incidence_deg) + std::abs(measurement_deg_) == 45 &&
+          angle_.incidence_deg * measurement_deg_ == 0)
+        specification.angles.push_back({45, 45});
+      else
+        specification.other = fmt::format("{}/{}", shortest(angle_.incidence_deg), shortest(measurement_deg_));
+    }
+    if (in("GeometryChoice", "SphereGeometry")) specification.other = "sphere";
+    if (in("GeometryChoice", "UnknownGeometry")) specification.other = "unknown";
+    if (in("GeometryChoice", "EmissiveMode")) specification.other = "emissive";
+    if (in("Device", "Model")) specification.instrument = content;
+    if (in("ColorSpecificationCollection", "ColorSpecification")) specification_ = nullptr;
+    return {};
+  }
+
+  // The numbers of a BRDFAngle; its notation where that says the same and more (reversed, azimuth 0).
+  paint::Geometry noted_angle() const {
+    const auto noted = paint::parse_geometry(notation_);
+    if (noted && noted->incidence_deg == angle_.incidence_deg && noted->aspecular_deg == angle_.aspecular_deg &&
+        noted->azimuth_deg == angle_.azimuth_deg)
+      return *noted;
+    return angle_;
+  }
+
+  Result<void> take(double& target, std::string_view what, const std::string& content) const {
+    GONIO_ASSIGN(target, number(what, content));
+    return {};
+  }
+
+  std::string file_;
+  bool keep_going_;
+  int line_ = 0;
+  std::vector<std::string> path_;  // local names from the root; "" for elements of other vocabularies
+  std::string text_;
+  bool own_tags_ = false;
+
+  RawColor color_;
+  double chroma_ = 0, hue_deg_ = 0, measurement_deg_ = 0;
+  std::string gloss_method_, custom_illuminant_, notation_;
+  paint::Geometry angle_;
+  Specification* specification_ = nullptr;  // the one that is open
+
+  std::vector<RawObject> objects_;
+  std::map<std::string, Specification> specifications_;
+  Remarks remarks_;
+  std::vector<std::string> skipped_;
+};
+
+// Turns raw objects into paints once all specifications are known.
+class CxfResolver {
+ public:
+  CxfResolver(CxfHandler& handler, const ImportOptions& options)
+      : specifications_(handler.specifications()), options_(options), remarks_(handler.remarks()) {}
+
+  Result<void> add(RawObject object) {
+    if (object.joined.empty() || object.joined != joined_) {
+      finish();
+      open_.emplace().paint = std::move(object.paint);
+      if (!object.joined.empty()) open_->paint.name = object.joined;
+    }
+    joined_ = object.joined;
+    std::map<std::string, std::size_t> lab_values, spectra, used;  // per specification
+    for (const RawColor& color : object.colors) ++(color.spectrum.empty() ? lab_values : spectra)[color.specification];
+    for (const RawColor& color : object.colors) {
+      const bool spectral = !color.spectrum.empty();
+      if (spectral && lab_values.contains(color.specification)) continue;  // the file's own Lab is what it says
+      const std::size_t values = (spectral ? spectra : lab_values)[color.specification];
+      GONIO_TRY(place(color, values, used[color.specification]++));
+    }
+    return {};
+  }
+
+  void finish() {
+    if (!open_) return;
+    paint::Paint& paint = open_->paint;
+    if (open_->complete(options_, remarks_)) {
+      paint.name = names_.own(paint.name, remarks_);
+      paints_.push_back(std::move(paint));
+    } else if (open_->readings.empty()) {
+      remarks_.note("objects without a color at an angle were left out", paint.name);
+    }
+    open_.reset();
+  }
+
+  std::vector<paint::Paint>& paints() { return paints_; }
+
+ private:
+  // The k-th of n values under one specification: n angles take one each, a single value stands for all.
+  Result<void> place(const RawColor& color, std::size_t n, std::size_t k) {
+    const auto found = specifications_.find(color.specification);
+    if (found == specifications_.end()) {
+      remarks_.note(
+          fmt::format("color specification \"{}\" is not in the file: its values were left out", color.specification),
+          open_->paint.name);
+      return {};
+    }
+    const Specification& specification = found->second;
+    const std::vector<paint::Geometry>& angles = specification.angles;
+    if (angles.empty()) {
+      remarks_.note(fmt::format("values of {} geometry have no aspecular angle and were left out",
+                                specification.other.empty() ? "unstated" : specification.other),
+                    open_->paint.name);
+      return {};
+    }
+    if (n != 1 && n != angles.size()) {
+      remarks_.note(fmt::format("{} values under a specification of {} angles were left out", n, angles.size()),
+                    open_->paint.name);
+      return {};
+    }
+    if (n == 1 && angles.size() > 1) remarks_.note("one value stands for several angles", open_->paint.name);
+    const color::ViewingCondition condition = stated(specification);
+    color::Lab lab = color.lab;
+    if (!color.spectrum.empty()) {
+      GONIO_ASSIGN(const auto integrated, integrate(color, specification, condition));
+      if (!integrated) return {};
+      lab = *integrated;
+    }
+    for (std::size_t i = 0; i < angles.size(); ++i)
+      if (n == 1 || i == k) open_->readings.push_back({condition, {angles[i], lab}});
+    if (open_->instrument.empty()) open_->instrument = specification.instrument;
+    return {};
+  }
+
+  color::ViewingCondition stated(const Specification& specification) {
+    const bool silent = specification.condition.illuminant.empty() || specification.condition.observer_deg == 0;
+    const color::ViewingCondition condition = completed(specification.condition, options_, {"D65", 10});
+    if (silent && (options_.illuminant.empty() || options_.observer_deg == 0))
+      remarks_.note(
+          fmt::format("illuminant or observer is not stated: taken as {}/{}; give --illuminant and --observer if not",
+                      condition.illuminant, condition.observer_deg),
+          open_->paint.name);
+    return condition;
+  }
+
+  Result<std::optional<color::Lab>> integrate(const RawColor& color, const Specification& specification,
+                                              const color::ViewingCondition& condition) {
+    const double first_nm = color.first_nm > 0 ? color.first_nm : specification.first_nm;
+    if (first_nm <= 0 || specification.step_nm <= 0) {
+      remarks_.note("spectra without a WavelengthRange were left out", open_->paint.name);
+      return std::optional<color::Lab>();
+    }
+    std::vector<double> nm;
+    for (std::size_t i = 0; i < color.spectrum.size(); ++i)
+      nm.push_back(first_nm + specification.step_nm * static_cast<double>(i));
+    const auto meter = color::SpectralColorimeter::make(nm, condition);
+    if (!meter) {
+      remarks_.note("spectra were left out: " + meter.error().message, open_->paint.name);
+      return std::optional<color::Lab>();
+    }
+    return std::optional(meter->lab(color.spectrum));
+  }
+
+  const std::map<std::string, Specification>& specifications_;
+  const ImportOptions& options_;
+  Remarks& remarks_;
+  UniqueNames names_;
+  std::optional<OpenPaint> open_;
+  std::string joined_;
+  std::vector<paint::Paint> paints_;
+};
+
+}  // namespace
+
+// The name of the root element decides. Comments and the declaration may stand before it, and it may have a prefix.
+bool looks_cxf(std::string_view head) {
+  for (std::size_t at = 0; (at = head.find('<', at)) != std::string_view::npos; ++at) {
+    std::string_view name = head.substr(at + 1);
+    if (name.starts_with('?') || name.starts_with('!')) continue;
+    name = name.substr(0, name.find_first_of(" \t\r\n/>"));
+    return name.substr(name.find(':') + 1) == "CxF";
+  }
+  return false;
+}
+
+Result<ImportedPaints> read_cxf(InputFile input, const ImportOptions& options) {
+  CxfHandler handler(input.name(), options.keep_going);
+  XmlStream stream(std::move(input), nullptr, handler);
+  GONIO_TRY(stream.finish());
+  CxfResolver resolver(handler, options);
+  for (RawObject& object : handler.objects())
+    if (!object.bad) GONIO_TRY(resolver.add(std::move(object)));
+  resolver.finish();
+  if (handler.objects().empty()) handler.remarks().note("holds no objects", "");
+  return ImportedPaints{std::move(resolver.paints()), handler.remarks().lines(), std::move(handler.skipped())};
+}
+
+namespace {
+
+// The illuminants that CxF3 has a word for.
+bool has_word(const std::string& illuminant) {
+  static const std::vector<std::string> kWords = {"A",    "B",    "C",    "D50",  "D55",  "D60", "D65", "D75",
+                                                  "E",    "F2",   "F3",   "F7",   "F9",   "F10", "F11", "F12",
+                                                  "9300", "TL84", "TL83", "UL30", "UL35", "UL50"};
+  return std::ranges::find(kWords, illuminant) != kWords.end();
+}
+
+}  // namespace
+
+Result<CxfWriter> CxfWriter::begin(OutputFile file, const Info& info) {
+  CxfWriter writer(std::move(file), info);
+  GONIO_TRY(writer.file_.write(
+      fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+                  "<cc:CxF xmlns:cc=\"http://colorexchangeformat.com/CxF3-core\">\n"
+                  "  <cc:FileInformation>\n"
+                  "    <cc:Creator>{}</cc:Creator>\n    <cc:CreationDate>{}</cc:CreationDate>\n"
+                  "    <cc:Description>{}</cc:Description>\n"
+                  "  </cc:FileInformation>\n"
+                  "  <cc:Resources>\n",
+                  xml_escaped(info.creator), xml_escaped(info.created), xml_escaped(info.description))));
+  return writer;
+}
+
+std::size_t CxfWriter::number_of(const Specification& specification) {
+  const auto known = std::ranges::find(specifications_, specification);
+  const auto number = static_cast<std::size_t>(known - specifications_.begin()) + 1;
+  if (known == specifications_.end()) specifications_.push_back(specification);
+  return number;
+}
+
+// `part` is the ending of the object's name where an angle has its own; the `first` of them carries class, code and
+// gloss. Our tags join the parts again.
+std::string CxfWriter::object(const paint::Paint& paint, const std::vector<paint::LabReading>& rows,
+                              const std::string& part, bool first) {
+  std::string text = fmt::format(
+      "      <cc:Object ObjectType=\"Standard\" Name=\"{}\" Id=\"o{}\">\n        "
+      "<cc:CreationDate>{}</cc:CreationDate>\n"
+      "        <cc:ColorValues>\n",
+      xml_escaped(paint.name + part), ++objects_, xml_escaped(info_.created));
+  for (const paint::LabReading& row : rows)
+    text += fmt::format(
+        "          <cc:ColorCIELab "
+        "ColorSpecification=\"cs{}\"><cc:L>{}</cc:L><cc:A>{}</cc:A><cc:B>{}</cc:B></cc:ColorCIELab>\n",
+        number_of({paint.measurement->condition, paint.measurement->instrument, row.geometry}), shortest(row.lab.L),
+        shortest(row.lab.a), shortest(row.lab.b));
+  text += "        </cc:ColorValues>\n";
+
+  std::string tags;
+  const auto tag = [&](const char* name, std::string_view value) {
+    tags += fmt::format("          <cc:Tag Name=\"{}\" Value=\"{}\"/>\n", name, xml_escaped(value));
+  };
+  if (!part.empty()) tag("paint", paint.name);
+  if (first && paint.paint_class != paint::PaintClass::kUnknown)
+    tag("class", paint::paint_class_name(paint.paint_class));
+  if (first && !paint.code.empty()) tag("code", paint.code);
+  if (!tags.empty())
+    text += "        <cc:TagCollection Name=\"goniochrome\">\n" + tags + "        </cc:TagCollection>\n";
+
+  if (first && !paint.gloss.empty()) {
+    text += "        <cc:PhysicalAttributes>\n";
+    for (const paint::GlossReading& gloss : paint.gloss)
+      text += fmt::format("          <cc:Gloss Method=\"{} deg\">{}</cc:Gloss>\n", shortest(gloss.angle_deg),
+                          shortest(gloss.gloss_units));
+    text += "        </cc:PhysicalAttributes>\n";
+  }
+  return text + "      </cc:Object>\n";
+}
+
+Result<void> CxfWriter::write(const paint::Paint& paint) {
+  if (!paint.measurement || paint.measurement->rows.empty())
+    return input_error("paint \"{}\" has no readings: CxF holds readings only", paint.name);
+  for (const paint::LabReading& row : paint.measurement->rows)
+    if (row.lab.L < 0)
+      return input_error("paint \"{}\" at {}: L* is {}: CxF3 allows none below 0", paint.name,
+                         paint::geometry_name(row.geometry), shortest(row.lab.L));
+  std::string text = objects_ == 0 ? "    <cc:ObjectCollection>\n" : "";
+  if (!info_.one_object_per_angle) {
+    text += object(paint, paint.measurement->rows, "", true);
+  } else {
+    for (const paint::LabReading& row : paint.measurement->rows)
+      text += object(paint, {row}, " " + paint::geometry_name(row.geometry), &row == &paint.measurement->rows.front());
+  }
+  return file_.write(text);
+}
+
+Result<void> CxfWriter::finish() {
+  std::string text = objects_ ? "    </cc:ObjectCollection>\n    <cc:ColorSpecificationCollection>\n" : "";
+  for (const Specification& specification : specifications_) {
+    const paint::Geometry& geometry = specification.geometry;
+    const std::string& illuminant = specification.condition.illuminant;
+    text += fmt::format(
+        "      <cc:ColorSpecification Id=\"cs{}\">\n        <cc:TristimulusSpec>\n          {}\n"
+        "          <cc:Observer>{}_Degree</cc:Observer>\n          <cc:Method>unknown</cc:Method>\n"
+        "        </cc:TristimulusSpec>\n        <cc:MeasurementSpec>\n"
+        "          <cc:MeasurementType>Colorimetric_Reflectance</cc:MeasurementType>\n"
+        "          <cc:GeometryChoice>\n            <cc:MultiAngle>\n"
+        "              <cc:BRDFAngle Notation=\"{}\">\n"
+        "                <cc:IlluminationAngle>{}</cc:IlluminationAngle>\n"
+        "                <cc:Aspecular>{}</cc:Aspecular>\n",
+        number_of(specification),
+        has_word(illuminant)
+            ? fmt::format("<cc:Illuminant>{}</cc:Illuminant>", illuminant)
+            : fmt::format("<cc:Illuminant Name=\"{}\">Custom</cc:Illuminant>", xml_escaped(illuminant)),
+        specification.condition.observer_deg, paint::geometry_name(geometry), shortest(geometry.incidence_deg),
+        shortest(geometry.aspecular_deg));
+    if (geometry.out_of_plane)
+      text += fmt::format("                <cc:Azimuth>{}</cc:Azimuth>\n", shortest(geometry.azimuth_deg));
+    text += "              </cc:BRDFAngle>\n            </cc:MultiAngle>\n          </cc:GeometryChoice>\n";
+    if (!specification.instrument.empty())
+      text += fmt::format("          <cc:Device>\n            <cc:Model>{}</cc:Model>\n          </cc:Device>\n",
+                          xml_escaped(specification.instrument));
+    text += "        </cc:MeasurementSpec>\n      </cc:ColorSpecification>\n";
+  }
+  if (objects_) text += "    </cc:ColorSpecificationCollection>\n";
+  GONIO_TRY(file_.write(text + "  </cc:Resources>\n</cc:CxF>\n"));
+  return file_.commit();
+}
+
+}  // namespace goniochrome::formats

@@ -1,0 +1,361 @@
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfChromaticitiesAttribute.h>
+#include <OpenEXR/ImfCompression.h>
+#include <OpenEXR/ImfEnvmapAttribute.h>
+#include <OpenEXR/ImfFloatAttribute.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfIntAttribute.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfMultiPartOutputFile.h>
+#include <OpenEXR/ImfOutputPart.h>
+#include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfThreading.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <stdexcept>
+
+#include "base/file.h"
+#include "base/parallel.h"
+#include "image/image.h"
+#include "image/internal/exr.h"
+
+namespace goniochrome::image {
+
+namespace {
+
+// The most samples that a byte of a file can stand for. Deflate makes 1032 bytes of one; of the others, one color all
+// over packs best: 8192 x 4096 halves take 31 (RLE), 145 (PIZ), 5 (B44A) and 7068 (DWAB) samples to a byte.
+std::size_t most_samples_a_byte(Imf::Compression compression) {
+  switch (compression) {
+    case Imf::NO_COMPRESSION:
+      return 1;
+    case Imf::RLE_COMPRESSION:
+      return 64;
+    case Imf::B44_COMPRESSION:
+    case Imf::B44A_COMPRESSION:
+      return 16;
+    case Imf::DWAA_COMPRESSION:
+    case Imf::DWAB_COMPRESSION:
+      return 16384;
+    default:
+      return 1032;
+  }
+}
+
+// Whether every attribute of every header ends within the file. The library allocates the length that an attribute
+// states before it reads it. A header is a list of name, type, length and value, ended by an empty name; so is the list
+// of the headers of several parts (bit 12 of the version).
+bool header_ends_within(const std::string& content) {
+  if (content.size() < 8) return false;
+  const bool several = (static_cast<unsigned char>(content[5]) & 0x10) != 0;
+  std::size_t at = 8;
+  const auto skip_text = [&] {
+    at = content.find('\0', at);
+    return at != std::string::npos && ++at < content.size();
+  };
+  do {
+    while (at < content.size() && content[at] != '\0') {
+      std::int32_t length = 0;
+      if (!skip_text() || !skip_text() || content.size() - at < sizeof length) return false;
+      std::memcpy(&length, content.data() + at, sizeof length);
+      at += sizeof length;
+      if (length < 0 || static_cast<std::size_t>(length) > content.size() - at) return false;
+      at += static_cast<std::size_t>(length);
+    }
+    ++at;
+  } while (several && at < content.size() && content[at] != '\0');
+  return at < content.size();
+}
+
+class MemoryInput : public Imf::IStream {
+ public:
+  MemoryInput(const std::string& content, const std::string& name) : IStream(name.c_str()), content_(content) {}
+
+  bool read(char bytes[], int count) override {
+    if (count < 0 || content_.size() - position_ < static_cast<std::size_t>(count))
+      throw std::runtime_error("the file is cut off");
+    std::memcpy(bytes, content_.data() + position_, static_cast<std::size_t>(count));
+    position_ += static_cast<std::size_t>(count);
+    return position_ < content_.size();
+  }
+  std::uint64_t tellg() override { return position_; }
+  void seekg(std::uint64_t position) override {
+    if (position > content_.size()) throw std::runtime_error("the file is cut off");
+    position_ = position;
+  }
+
+ private:
+  const std::string& content_;
+  std::size_t position_ = 0;
+};
+
+std::vector<float> xy_values(const Imf::Chromaticities& c) {
+  return {c.red.x, c.red.y, c.green.x, c.green.y, c.blue.x, c.blue.y, c.white.x, c.white.y};
+}
+
+Attributes attributes_of(const Imf::Header& header) {
+  Attributes attributes;
+  for (auto it = header.begin(); it != header.end(); ++it) {
+    const std::string name = it.name();
+    if (name == "type" || name == "name") continue;
+    const Imf::Attribute& value = it.attribute();
+    if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&value))
+      attributes[name] = text->value();
+    else if (const auto* number = dynamic_cast<const Imf::FloatAttribute*>(&value))
+      attributes[name] = number->value();
+    else if (const auto* whole = dynamic_cast<const Imf::IntAttribute*>(&value))
+      attributes[name] = whole->value();
+    else if (const auto* xy = dynamic_cast<const Imf::ChromaticitiesAttribute*>(&value))
+      attributes[name] = xy_values(xy->value());
+    else if (const auto* map = dynamic_cast<const Imf::EnvmapAttribute*>(&value))
+      attributes[name] = std::string(map->value() == Imf::ENVMAP_CUBE ? "cube" : "latlong");
+  }
+  return attributes;
+}
+
+// R G B A first, then the others in the file's order.
+std::vector<std::string> ordered_channels(const Imf::ChannelList& list) {
+  std::vector<std::string> names;
+  for (const char* name : {"R", "G", "B", "A"})
+    if (list.findChannel(name)) names.emplace_back(name);
+  for (auto it = list.begin(); it != list.end(); ++it)
+    if (std::find(names.begin(), names.end(), it.name()) == names.end()) names.emplace_back(it.name());
+  return names;
+}
+
+Result<ImagePart> decoded_part(Imf::MultiPartInputFile& file, int index, const std::string& file_name,
+                               std::size_t file_bytes) {
+  const Imf::Header& header = file.header(index);
+  ImagePart part;
+  if (header.hasName()) part.name = header.name();
+  const std::string where = part.name.empty() ? file_name : fmt::format("{}: part {}", file_name, part.name);
+  if (header.hasType() && Imf::isDeepData(header.type()))
+    return input_error("{}: holds deep data: flatten it first", where);
+  if (!file.partComplete(index)) return input_error("{}: is cut off: some scan lines are missing", where);
+
+  const Imath::Box2i& window = header.dataWindow();
+  Image& image = part.image;
+  image.width = window.max.x - window.min.x + 1;
+  image.height = window.max.y - window.min.y + 1;
+  image.channel_names = ordered_channels(header.channels());
+  image.channels = static_cast<int>(image.channel_names.size());
+  const std::size_t samples = static_cast<std::size_t>(image.width) * image.height * image.channels;
+  if (samples == 0) return input_error("{}: holds no pixels", where);
+  if (samples > kMostSamples || samples / most_samples_a_byte(header.compression()) > file_bytes)
+    return input_error("{}: {} x {} pixels are too many for a file of {} bytes", where, image.width, image.height,
+                       file_bytes);
+  image.data.resize(samples);
+
+  part.type = PixelType::kHalf;
+  Imf::FrameBuffer buffer;
+  const std::size_t x_stride = sizeof(float) * image.channels, y_stride = x_stride * image.width;
+  for (int c = 0; c < image.channels; ++c) {
+    const Imf::Channel& channel = header.channels()[image.channel_names[c].c_str()];
+    if (channel.xSampling != 1 || channel.ySampling != 1)
+      return input_error("{}: channel {} is subsampled: convert it to full resolution", where, image.channel_names[c]);
+    if (channel.type != Imf::HALF) part.type = PixelType::kFloat;
+    buffer.insert(image.channel_names[c],
+                  Imf::Slice::Make(Imf::FLOAT, image.data.data() + c, window, x_stride, y_stride));
+  }
+  part.attributes = attributes_of(header);
+  Imf::InputPart input(file, index);
+  input.setFrameBuffer(buffer);
+  input.readPixels(window.min.y, window.max.y);
+  return part;
+}
+
+// Makes the library's own pool of threads, once and only if it helps.
+void use_threads() {
+  if (Imf::globalThreadCount() == 0 && threads() > 1) Imf::setGlobalThreadCount(threads());
+}
+
+}  // namespace
+
+Result<std::vector<ImagePart>> decoded_exr(const std::string& content, const std::string& name) {
+  use_threads();
+  // The library itself tells that a file is no EXR file at all.
+  if (is_exr(content) && !header_ends_within(content)) return input_error("{}: is cut off within its header", name);
+  try {
+    MemoryInput stream(content, name);
+    Imf::MultiPartInputFile file(stream, threads());
+    std::vector<ImagePart> parts;
+    for (int i = 0; i < file.parts(); ++i) {
+      GONIO_ASSIGN(auto part, decoded_part(file, i, name, content.size()));
+      parts.push_back(std::move(part));
+    }
+    return parts;
+  } catch (const std::bad_alloc&) {
+    return input_error("{}: is too large for the memory there is", name);
+  } catch (const std::exception& e) {
+    return input_error("{}: cannot be read as EXR: {}", name, e.what());
+  }
+}
+
+Result<std::vector<ImagePart>> read_exr(const std::string& path) {
+  GONIO_ASSIGN(InputFile input, InputFile::open(path));
+  GONIO_ASSIGN(const std::string content, input.rest(std::string::npos));
+  if (content.empty()) return input_error("{}: is empty: name an EXR file", input.name());
+  return decoded_exr(content, input.name());
+}
+
+namespace {
+
+constexpr float kMostHalf = 65504.0F;
+constexpr int kZipLevel = 2;  // within 3 % of the size of the highest level at a fraction of its time
+
+class MemoryOutput : public Imf::OStream {
+ public:
+  MemoryOutput() : OStream("memory") {}
+
+  void write(const char bytes[], int count) override {
+    const std::size_t end = position_ + static_cast<std::size_t>(count);
+    if (end > content_.size()) content_.resize(end);
+    std::memcpy(content_.data() + position_, bytes, static_cast<std::size_t>(count));
+    position_ = end;
+  }
+  std::uint64_t tellp() override { return position_; }
+  void seekp(std::uint64_t position) override { position_ = position; }
+  const std::string& content() const { return content_; }
+
+ private:
+  std::string content_;
+  std::size_t position_ = 0;
+};
+
+std::vector<std::string> channel_names(const Image& image) {
+  if (static_cast<int>(image.channel_names.size()) == image.channels) return image.channel_names;
+  if (image.channels == 1) return {"Y"};
+  std::vector<std::string> names = {"R", "G", "B", "A"};
+  for (int c = 4; c < image.channels; ++c) names.push_back(fmt::format("channel{}", c));
+  names.resize(static_cast<std::size_t>(image.channels));
+  return names;
+}
+
+// The type that holds every value of the part. Error: the first value that is not finite, by pixel.
+Result<PixelType> storage_type(const ImagePart& part, const std::vector<std::string>& names) {
+  const Image& image = part.image;
+  float most = 0;
+  for (std::size_t i = 0; i < image.data.size(); ++i) {
+    const float size = std::fabs(image.data[i]);
+    if (!std::isfinite(size)) {
+      const std::size_t pixel = i / image.channels;
+      return input_error("part {}: pixel {},{} channel {} is {}: only finite values are written", part.name,
+                         pixel % image.width, pixel / image.width, names[i % image.channels], image.data[i]);
+    }
+    most = std::max(most, size);
+  }
+  return most > kMostHalf ? PixelType::kFloat : part.type;
+}
+
+void set_attributes(Imf::Header& header, const Attributes& attributes) {
+  for (const auto& [name, value] : attributes) {
+    const auto* text = std::get_if<std::string>(&value);
+    if (name == "envmap" && text)
+      header.insert(name, Imf::EnvmapAttribute(*text == "cube" ? Imf::ENVMAP_CUBE : Imf::ENVMAP_LATLONG));
+    else if (text)
+      header.insert(name, Imf::StringAttribute(*text));
+    else if (const auto* number = std::get_if<float>(&value))
+      header.insert(name, Imf::FloatAttribute(*number));
+    else if (const auto* whole = std::get_if<int>(&value))
+      header.insert(name, Imf::IntAttribute(*whole));
+    else if (const auto* xy = std::get_if<std::vector<float>>(&value); xy && xy->size() == 8)
+      header.insert(name, Imf::ChromaticitiesAttribute(Imf::Chromaticities(
+                              {(*xy)[0], (*xy)[1]}, {(*xy)[2], (*xy)[3]}, {(*xy)[4], (*xy)[5]}, {(*xy)[6], (*xy)[7]})));
+  }
+}
+
+Imf::Header header_of(const ImagePart& part, PixelType type, const std::vector<std::string>& names,
+                      const Imath::Box2i& display) {
+  const Imath::Box2i data(Imath::V2i(0, 0), Imath::V2i(part.image.width - 1, part.image.height - 1));
+  Imf::Header header(display, data);
+  set_attributes(header, part.attributes);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  header.zipCompressionLevel() = kZipLevel;
+  header.setType(Imf::SCANLINEIMAGE);
+  header.setName(part.name);
+  for (const std::string& name : names)
+    header.channels().insert(name, Imf::Channel(type == PixelType::kHalf ? Imf::HALF : Imf::FLOAT));
+  return header;
+}
+
+// `values` as halves, rounded to nearest even.
+std::vector<half> halves(const std::vector<float>& values) {
+  std::vector<half> rounded(values.size());
+  constexpr std::size_t kChunk = 1 << 16;
+  parallel_for(values.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) rounded[i] = half(values[i]);
+  });
+  return rounded;
+}
+
+void write_part(Imf::MultiPartOutputFile& file, int index, const ImagePart& part, PixelType type,
+                const std::vector<std::string>& names) {
+  const Image& image = part.image;
+  const bool as_half = type == PixelType::kHalf;
+  const std::vector<half> rounded = as_half ? halves(image.data) : std::vector<half>();
+  const std::size_t size = as_half ? sizeof(half) : sizeof(float);
+  const char* base =
+      as_half ? reinterpret_cast<const char*>(rounded.data()) : reinterpret_cast<const char*>(image.data.data());
+  Imf::FrameBuffer buffer;
+  for (int c = 0; c < image.channels; ++c)
+    buffer.insert(names[c], Imf::Slice(as_half ? Imf::HALF : Imf::FLOAT, const_cast<char*>(base) + c * size,
+                                       size * image.channels, size * image.channels * image.width));
+  Imf::OutputPart output(file, index);
+  output.setFrameBuffer(buffer);
+  output.writePixels(image.height);
+}
+
+Result<std::string> encoded(const std::vector<ImagePart>& given) {
+  std::vector<ImagePart> unnamed;  // only filled where names are missing
+  const bool name_all = std::any_of(given.begin(), given.end(), [](const ImagePart& p) { return p.name.empty(); });
+  if (name_all) {
+    unnamed = given;
+    for (std::size_t i = 0; i < unnamed.size(); ++i)
+      if (unnamed[i].name.empty()) unnamed[i].name = fmt::format("part-{:03}", i);
+  }
+  const std::vector<ImagePart>& parts = name_all ? unnamed : given;
+
+  // The format wants one display window for all parts.
+  Imath::Box2i display(Imath::V2i(0, 0), Imath::V2i(0, 0));
+  for (const ImagePart& part : parts) display.extendBy(Imath::V2i(part.image.width - 1, part.image.height - 1));
+  std::vector<PixelType> types;
+  std::vector<std::vector<std::string>> names;
+  std::vector<Imf::Header> headers;
+  for (const ImagePart& part : parts) {
+    names.push_back(channel_names(part.image));
+    GONIO_ASSIGN(const PixelType type, storage_type(part, names.back()));
+    types.push_back(type);
+    headers.push_back(header_of(part, type, names.back(), display));
+  }
+  use_threads();
+  MemoryOutput stream;
+  {
+    Imf::MultiPartOutputFile file(stream, headers.data(), static_cast<int>(headers.size()), false, threads());
+    for (std::size_t i = 0; i < parts.size(); ++i) write_part(file, static_cast<int>(i), parts[i], types[i], names[i]);
+  }
+  return stream.content();
+}
+
+}  // namespace
+
+Result<void> write_exr(const std::string& path, const std::vector<ImagePart>& parts) {
+  const std::string shown = path.empty() || path == "-" ? "standard output" : path;
+  try {
+    auto content = encoded(parts);
+    if (!content.ok()) return input_error("{}: {}", shown, content.error().message);
+    return write_file(path, content.value());
+  } catch (const std::exception& e) {
+    return input_error("{}: cannot be written as EXR: {}", shown, e.what());
+  }
+}
+
+}  // namespace goniochrome::image

@@ -1,0 +1,128 @@
+#include "image/surface_file.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace goniochrome::image {
+
+Result<brdf::ColorMap> read_color_map(const std::string& path) {
+  GONIO_ASSIGN(const std::vector<ImagePart> parts, read_exr(path));
+  const Image& image = parts.front().image;
+  if (image.width < 1 || image.height != 2 * image.width || image.channels < 3)
+    return input_error("{}: {}x{} with {} channels is no color map: a color map is RGB and twice as high as wide", path,
+                       image.width, image.height, image.channels);
+  const Attributes& attributes = parts.front().attributes;
+  double index = 1.5;
+  if (attributes.contains("goniochrome:index")) {
+    const float* stated = find_attribute<float>(attributes, "goniochrome:index");
+    if (stated == nullptr || !(*stated >= 1 && *stated <= 4))
+      return input_error("{}: goniochrome:index must be a number from 1 to 4", path);
+    index = std::round(*stated * 1e6) * 1e-6;  // a decimal number that went through a float
+  }
+  brdf::ColorMap map = brdf::color_map_of_size(image.width, index);
+  for (int row = 0; row < image.height; ++row) {
+    for (int column = 0; column < image.width; ++column) {
+      for (int c = 0; c < 3; ++c) {
+        const float value = image.pixel(column, row)[c];
+        if (!std::isfinite(value))
+          return input_error("{}: pixel ({},{}) is {}: a reflectance factor is a finite number", path, column, row,
+                             value);
+        map.texel(column, row)[c] = value;
+      }
+    }
+  }
+  return map;
+}
+
+Result<void> write_color_map(const std::string& path, const brdf::ColorMap& map, const Attributes& attributes) {
+  ImagePart part{"color-map", {map.size, 2 * map.size, 3, map.factors, {"R", "G", "B"}}, attributes, PixelType::kHalf};
+  part.attributes["goniochrome:colorMap"] = std::string("cos(theta_i), cos(theta_o)");
+  part.attributes["goniochrome:index"] = static_cast<float>(map.index);
+  part.attributes["colorInteropID"] = std::string("lin_rec2020_scene");
+  return write_exr(path, {part});
+}
+
+namespace {
+
+// The channels of a file with so many lobes, in the order of SbrdfTexture.
+std::vector<std::string> channels_of(int lobes) {
+  std::vector<std::string> names = {"diffuse.R", "diffuse.G", "diffuse.B", "frame.c", "frame.s"};
+  for (int lobe = 0; lobe < lobes; ++lobe)
+    for (const char* channel : {"R", "G", "B", "x", "y", "z", "n"})
+      names.push_back(fmt::format("lobe{}.{}", lobe, channel));
+  return names;
+}
+
+bool may_be_negative(const std::string& name) {
+  return name.starts_with("frame.") || name.ends_with(".x") || name.ends_with(".y") || name.ends_with(".z");
+}
+
+// The channels of all parts side by side.
+Result<Image> joined(const std::vector<ImagePart>& parts, const std::string& path) {
+  const Image& first = parts.front().image;
+  if (parts.size() == 1) return first;
+  Image all{first.width, first.height, 0, {}, {}};
+  for (const ImagePart& part : parts) {
+    const Image& image = part.image;
+    if (image.width != first.width || image.height != first.height)
+      return input_error("{}: part {} is {} x {}, but part {} is {} x {}: give all of a texture the same size", path,
+                         part.name, image.width, image.height, parts.front().name, first.width, first.height);
+    all.channels += image.channels;
+    all.channel_names.insert(all.channel_names.end(), image.channel_names.begin(), image.channel_names.end());
+  }
+  for (int row = 0; row < all.height; ++row) {
+    for (int column = 0; column < all.width; ++column) {
+      for (const ImagePart& part : parts) {
+        const float* pixel = part.image.pixel(column, row);
+        all.data.insert(all.data.end(), pixel, pixel + part.image.channels);
+      }
+    }
+  }
+  return all;
+}
+
+// Which channel of the file holds each value; -1 for an absent frame.
+Result<std::vector<int>> sources(const std::vector<std::string>& wanted, const std::vector<std::string>& given,
+                                 const std::string& path) {
+  std::vector<int> result;
+  for (const std::string& name : wanted) {
+    const auto found = std::ranges::find(given, name);
+    if (found == given.end() && !name.starts_with("frame."))
+      return input_error("{}: channel {} is missing: lobes are lobe0, lobe1 ... with R G B x y z n", path, name);
+    result.push_back(found == given.end() ? -1 : static_cast<int>(found - given.begin()));
+  }
+  if ((result[3] < 0) != (result[4] < 0)) return input_error("{}: give frame.c and frame.s, or neither", path);
+  for (const std::string& name : given)
+    if (std::ranges::find(wanted, name) == wanted.end())
+      return input_error("{}: channel {} is not known: there are diffuse, frame and lobe0 to lobe15", path, name);
+  return result;
+}
+
+}  // namespace
+
+Result<brdf::SbrdfTexture> read_sbrdf(const std::string& path) {
+  GONIO_ASSIGN(const std::vector<ImagePart> parts, read_exr(path));
+  GONIO_ASSIGN(const Image image, joined(parts, path));
+  brdf::SbrdfTexture texture{image.width, image.height, 0, {}};
+  const auto& given = image.channel_names;
+  while (texture.lobes < 16 && std::ranges::find(given, fmt::format("lobe{}.n", texture.lobes)) != given.end())
+    ++texture.lobes;
+  const std::vector<std::string> wanted = channels_of(texture.lobes);
+  GONIO_ASSIGN(const std::vector<int> from, sources(wanted, given, path));
+  texture.values.reserve(static_cast<std::size_t>(image.width) * image.height * wanted.size());
+  for (int row = 0; row < image.height; ++row) {
+    for (int column = 0; column < image.width; ++column) {
+      const float* pixel = image.pixel(column, row);
+      for (std::size_t k = 0; k < wanted.size(); ++k) {
+        const float value = from[k] < 0 ? (k == 3 ? 1.0F : 0.0F) : pixel[from[k]];
+        if (!std::isfinite(value) || (value < 0 && !may_be_negative(wanted[k])))
+          return input_error("{}: {} of texel ({},{}) is {}: give a finite number{}", path, wanted[k], column, row,
+                             value, may_be_negative(wanted[k]) ? "" : " of 0 or more");
+        texture.values.push_back(value);
+      }
+    }
+  }
+  return texture;
+}
+
+}  // namespace goniochrome::image

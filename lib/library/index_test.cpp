@@ -1,0 +1,139 @@
+#include "library/index.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "base/file.h"
+#include "base/scratch_for_test.h"
+#include "formats/xml.h"
+#include "library/internal/random_paints_for_test.h"
+#include "library/search.h"
+
+namespace goniochrome::library {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class LibraryIndexFile : public testing::Test {
+ protected:
+  void SetUp() override { write_library(100); }
+
+  void write_library(int paints) {
+    std::mt19937_64 random(3);
+    auto writer = formats::PaintWriter::begin(OutputFile::create(path_).value()).value();
+    for (int i = 0; i < paints; ++i)
+      ASSERT_TRUE(writer.write(random_paints::paint(random, "p" + std::to_string(i), {15, 45, 110})).ok());
+    ASSERT_TRUE(writer.finish().ok());
+  }
+  LibraryIndex opened() {
+    auto index = LibraryIndex::open(path_);
+    EXPECT_TRUE(index.ok()) << index.error().message;
+    return std::move(index).value();
+  }
+
+  ScratchFolder folder_;
+  const std::string path_ = folder_.path("library.paints.xml");
+};
+
+TEST_F(LibraryIndexFile, IsBuiltOnceAndThenMapped) {
+  const LibraryIndex built = opened();
+  EXPECT_EQ(built.origin(), LibraryIndex::Origin::kBuilt);
+  EXPECT_EQ(built.note(), "there was none");
+  const LibraryIndex mapped = opened();
+  EXPECT_EQ(mapped.origin(), LibraryIndex::Origin::kMapped);
+  ASSERT_EQ(mapped.size(), 100u);
+  const auto paints = formats::read_paints(path_).value();
+  for (std::size_t i = 0; i < paints.size(); ++i) {
+    EXPECT_EQ(mapped.name(i), paints[i].name);
+    EXPECT_EQ(mapped.code(i), paints[i].code);
+    EXPECT_EQ(mapped.paint_class(i), paints[i].paint_class);
+    for (const paint::MetricColumn& column : paint::metric_columns_without_fit()) {
+      const double kept = mapped.metric(i, column), fresh = (*paint::metrics(paints[i])).*column.value;
+      EXPECT_TRUE(kept == fresh || (std::isnan(kept) && std::isnan(fresh))) << column.name;
+    }
+  }
+  ASSERT_EQ(mapped.sections().size(), 1u);
+  EXPECT_EQ(mapped.sections()[0].geometries.size(), 3u);
+  EXPECT_EQ(mapped.bytes(), fs::file_size(index_path(path_)));
+}
+
+TEST_F(LibraryIndexFile, ChangedLibraryMakesItStale) {
+  opened();
+  write_library(101);
+  const LibraryIndex again = opened();
+  EXPECT_EQ(again.origin(), LibraryIndex::Origin::kBuilt);
+  EXPECT_EQ(again.note(), "the library has changed");
+  EXPECT_EQ(again.size(), 101u);
+
+  // Same size, other content, other time: the checksum tells.
+  std::string text = file_content(path_).value();
+  text.replace(text.find("p100"), 4, "q100");
+  std::ofstream(path_) << text;
+  fs::last_write_time(path_, fs::last_write_time(path_) + std::chrono::seconds(5));
+  EXPECT_EQ(opened().name(100), "q100");
+}
+
+TEST_F(LibraryIndexFile, TouchedLibraryIsStillTheSame) {
+  opened();
+  fs::last_write_time(path_, fs::last_write_time(path_) + std::chrono::seconds(5));
+  EXPECT_EQ(opened().origin(), LibraryIndex::Origin::kMapped);
+}
+
+TEST_F(LibraryIndexFile, DamagedIndexIsRebuilt) {
+  opened();
+  const std::string whole = file_content(index_path(path_)).value();
+  // Cut anywhere, or with bytes turned in the head, the directory or the tables that are followed: never a crash, and
+  // either the damage is found or what is read is inside the file.
+  for (std::size_t size : {std::size_t{0}, std::size_t{5}, std::size_t{31}, whole.size() / 2, whole.size() - 1}) {
+    std::ofstream(index_path(path_), std::ios::binary) << whole.substr(0, size);
+    EXPECT_EQ(opened().origin(), LibraryIndex::Origin::kBuilt) << size;
+  }
+  std::mt19937_64 random(5);
+  int found = 0;
+  for (int i = 0; i < 600; ++i) {
+    std::string damaged = whole;
+    const std::size_t at = i % 3 == 0   ? random() % 64
+                           : i % 3 == 1 ? whole.size() - 1 - random() % 2000
+                                        : random() % whole.size();
+    damaged[at] = static_cast<char>(random());
+    std::ofstream(index_path(path_), std::ios::binary) << damaged;
+    const LibraryIndex index = opened();
+    found += index.origin() == LibraryIndex::Origin::kBuilt;
+    std::size_t letters = 0;
+    for (std::size_t p = 0; p < index.size(); ++p) letters += index.name(p).size() + index.code(p).size();
+    EXPECT_LE(letters, whole.size());
+    const LibrarySearch search(index, {.count = 3});
+    std::mt19937_64 same(4);
+    const auto plan = search.plan(random_paints::paint(same, "q", {15, 45, 110}));
+    if (!plan.ok()) continue;
+    for (const LibraryMatch& match : search.nearest(*plan)) EXPECT_LT(match.paint, index.size());
+  }
+  EXPECT_GT(found, 150);
+}
+
+TEST_F(LibraryIndexFile, StaysInMemoryWhereItCannotBeKept) {
+  fs::create_directory(index_path(path_));
+  const LibraryIndex index = opened();
+  EXPECT_EQ(index.origin(), LibraryIndex::Origin::kInMemory);
+  EXPECT_THAT(index.note(), HasSubstr("is a folder"));
+  EXPECT_EQ(index.size(), 100u);
+}
+
+TEST_F(LibraryIndexFile, TellsWhatIsWrong) {
+  EXPECT_THAT(LibraryIndex::open(folder_.path("none.xml")).error().message, HasSubstr("cannot be read"));
+  EXPECT_THAT(LibraryIndex::open(folder_.path("")).error().message, HasSubstr("no plain file"));
+  EXPECT_THAT(LibraryIndex::open("-").error().message, HasSubstr("-: cannot be read"));
+  std::ofstream(path_) << "<paints";
+  EXPECT_FALSE(LibraryIndex::open(path_).ok());
+  EXPECT_FALSE(fs::exists(index_path(path_)));
+}
+
+}  // namespace
+}  // namespace goniochrome::library
