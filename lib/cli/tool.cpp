@@ -22,7 +22,7 @@ struct Requests {
   std::string generate;
 };
 
-std::string quoted(const std::string& word) {
+std::string shell_word(const std::string& word) {
   const bool plain = !word.empty() && word.find_first_of(" \t\n\"'\\$`&|;<>()*?[]#~!{}") == std::string::npos;
   if (plain) return word;
   std::string text = "'";
@@ -32,7 +32,7 @@ std::string quoted(const std::string& word) {
 
 std::string command_line(const std::string& name, const std::vector<std::string>& arguments) {
   std::string text = name;
-  for (const std::string& word : arguments) text += " " + quoted(word);
+  for (const std::string& word : arguments) text += " " + shell_word(word);
   return text;
 }
 

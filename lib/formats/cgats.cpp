@@ -390,7 +390,7 @@ class CgatsParser {
 };
 
 // A value in quotation marks, on one line.
-std::string quoted(std::string_view text) {
+std::string cgats_text(std::string_view text) {
   std::string result = "\"";
   for (const char c : text) {
     if (c == '"') result += '"';
@@ -423,7 +423,7 @@ Result<ImportedPaints> read_cgats(InputFile input, const ImportOptions& options)
 Result<CgatsWriter> CgatsWriter::begin(OutputFile file, const std::string& creator, const std::string& created) {
   return CgatsWriter(std::move(file),
                      fmt::format("CGATS.17\n\nORIGINATOR\t{}\nFILE_DESCRIPTOR\t\"multi-angle CIELAB\"\nCREATED\t{}\n",
-                                 quoted(creator), quoted(created)));
+                                 cgats_text(creator), cgats_text(created)));
 }
 
 Result<void> CgatsWriter::write(const paint::Paint& paint) {
@@ -458,7 +458,7 @@ Result<void> CgatsWriter::finish() {
   if (!paints_.empty() && one_condition) {
     const color::ViewingCondition condition = paint::condition_of(paints_.front());
     text += fmt::format("WEIGHTING_FUNCTION\t{}\nWEIGHTING_FUNCTION\t\"OBSERVER, {} degree\"\n",
-                        quoted("ILLUMINANT, " + condition.illuminant), condition.observer_deg);
+                        cgats_text("ILLUMINANT, " + condition.illuminant), condition.observer_deg);
   }
   for (const std::string& field : own) text += fmt::format("KEYWORD\t\"{}\"\n", field);
   text += fmt::format("\nNUMBER_OF_FIELDS\t{}\nBEGIN_DATA_FORMAT\nSAMPLE_ID\tSAMPLE_NAME\tLAB_L\tLAB_A\tLAB_B",
@@ -470,17 +470,17 @@ Result<void> CgatsWriter::finish() {
   std::size_t id = 0;
   for (const paint::Paint& paint : paints_) {
     std::string tail =
-        fmt::format("\t{}\t{}", quoted(paint::condition_of(paint).illuminant), paint::condition_of(paint).observer_deg);
+        fmt::format("\t{}\t{}", cgats_text(paint::condition_of(paint).illuminant), paint::condition_of(paint).observer_deg);
     for (const double angle : angles) {
       const auto found = std::ranges::find(paint.gloss, angle, &paint::GlossReading::angle_deg);
       tail += '\t' + (found == paint.gloss.end() ? "\"\"" : shortest(found->gloss_units));
     }
     if (classes) tail += fmt::format("\t{}", paint::paint_class_name(paint.paint_class));
-    if (codes) tail += '\t' + quoted(paint.code);
-    if (instruments) tail += '\t' + quoted(paint.measurement->instrument);
+    if (codes) tail += '\t' + cgats_text(paint.code);
+    if (instruments) tail += '\t' + cgats_text(paint.measurement->instrument);
     for (const paint::LabReading& row : paint.measurement->rows)
       GONIO_TRY(
-          file_.write(fmt::format("{}\t{}\t{}\t{}\t{}\t{}{}\n", ++id, quoted(paint.name), shortest(row.lab.L),
+          file_.write(fmt::format("{}\t{}\t{}\t{}\t{}\t{}{}\n", ++id, cgats_text(paint.name), shortest(row.lab.L),
                                   shortest(row.lab.a), shortest(row.lab.b), paint::geometry_name(row.geometry), tail)));
   }
   GONIO_TRY(file_.write("END_DATA\n"));

@@ -50,10 +50,6 @@ td.number { text-align: right; }
 @media print { :root { background: #fff; } }
 )";
 
-std::string escaped(const std::string& text) {
-  return xml_escaped(text, "");
-}
-
 std::string base64(const std::string& bytes) {
   constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
