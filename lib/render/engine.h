@@ -43,7 +43,7 @@ struct EngineInfo {
   // it draws all effects, because leaving one out saves no time.
   bool is_planned;
   bool needs_texels;  // It sums the image that the environment was made from: Scene::texels.
-  bool needs_mesh;    // It cannot shade a G-buffer that comes from a file.
+  bool needs_mesh;    // It cannot shade a G-buffer that comes from a file. All G-buffers that it gets have triangles.
   std::unique_ptr<Engine> (*make)(Sight& sight);
 };
 

@@ -144,15 +144,16 @@ void Rasterizer::draw(const Camera& camera, const Rays& rays, double shift_x, do
   }
 }
 
-void Rasterizer::read(Gbuffer& gbuffer) const {
+void Rasterizer::read(Gbuffer& gbuffer, bool with_triangles) const {
   gbuffer.width = width_, gbuffer.height = height_;
   gbuffer.rays = drawn_;
   const std::size_t pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
   gbuffer.data.resize(pixels * 4);
-  gbuffer.triangles.resize(pixels);
   gl_->BindFramebuffer(GL_FRAMEBUFFER, target_);
   gl_->ReadBuffer(GL_COLOR_ATTACHMENT0);
   gl_->ReadPixels(0, 0, width_, height_, GL_RGBA, GL_FLOAT, gbuffer.data.data());
+  if (!with_triangles) return gbuffer.triangles.clear();
+  gbuffer.triangles.resize(pixels);
   gl_->ReadBuffer(GL_COLOR_ATTACHMENT1);
   gl_->ReadPixels(0, 0, width_, height_, GL_RED_INTEGER, GL_UNSIGNED_INT, gbuffer.triangles.data());
 }

@@ -40,7 +40,8 @@ struct Gbuffer {
   int width = 0, height = 0;
   std::vector<float> data;  // 4 a pixel: unit normal turned to the viewer, part + 1 (negative: seen from inside), or 0
   Rays rays;                // through the points: their shift within the pixel is in the corner
-  std::vector<std::uint32_t> triangles = {};  // of the mesh, one a pixel; empty where the buffer comes from a file
+  std::vector<std::uint32_t> triangles = {};  // of the mesh, one a pixel; empty where they were not asked for, or where
+                                              // the buffer comes from a file
 
   std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * width + x; }
   const float* at(int x, int y) const { return &data[index(x, y) * 4]; }
@@ -86,8 +87,8 @@ class Rasterizer {
   // Draws the points of all pixels that `rays`, without their shift, and the shift (in pixels) name. The result stays
   // in texture().
   void draw(const Camera& camera, const Rays& rays, double shift_x, double shift_y);
-  // Reads back what was drawn last.
-  void read(Gbuffer& gbuffer) const;
+  // Reads back what was drawn last, and the triangles if they are asked for.
+  void read(Gbuffer& gbuffer, bool with_triangles) const;
 
   unsigned texture() const { return texture_; }  // of Gbuffer::data
   const Rays& drawn_rays() const { return drawn_; }

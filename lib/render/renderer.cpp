@@ -132,14 +132,18 @@ std::shared_ptr<const Gbuffer> Renderer::State::gbuffer(int sample) {
   if (kept.size() <= place) kept.resize(place + 1);
   std::shared_ptr<Gbuffer>& g = kept[place];
   if (!g) g = std::make_shared<Gbuffer>();
-  if (g->width != 0 && (room || sample == 0)) return g;
+  // Triangles of samples are memory that only textures, and engines that need the mesh, make use of.
+  const bool with_triangles = sample == 0 || (engine != nullptr && engine->info().needs_mesh) ||
+                              (scene.layer != nullptr && scene.layer->textured());
+  const bool complete = g->width != 0 && (!with_triangles || !g->triangles.empty());
+  if (complete && (room || sample == 0)) return g;
   const Stopwatch clock;
   placed.resize(kept.size());
   placed[place].clear();
   const Rasterizer& drawn = *rasterized(sample);
   open_gl->context.Finish();
   rasterization_ms = 1000 * clock.elapsed_s();
-  drawn.read(*g);
+  drawn.read(*g, with_triangles);
   return g;
 }
 
