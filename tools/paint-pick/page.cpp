@@ -13,8 +13,6 @@ namespace goniochrome::tool {
 
 namespace {
 
-using report::escaped;
-
 constexpr int kWidest = 720;  // pixels of a picture on the page
 
 // The page has only neutral grays, so that the paints are its only color.
@@ -113,7 +111,7 @@ std::string dropper_marks(const PageImage& image, const std::vector<PageOfPaint>
         rings += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\" stroke=\"{}\"/>", x, y, radius, stroke);
       tags += fmt::format("<span class=\"tag{}\" style=\"left:{:.2f}%;top:{:.2f}%\">{} {}</span>",
                           x > 0.6 * width ? " left" : "", 100 * x / width, 100 * y / height,
-                          escaped(paint.picked.paint.name), kind);
+                          xml_escaped(paint.picked.paint.name, ""), kind);
     }
   return fmt::format("<svg viewBox=\"0 0 {:.0f} {:.0f}\" preserveAspectRatio=\"none\" aria-hidden=\"true\">{}</svg>{}",
                      width, height, rings, tags);
@@ -144,7 +142,7 @@ std::string paint_card(const PageOfPaint& paint) {
       "<span class=\"strip\" title=\"color from 15 to 110 degrees from specular\" "
       "style=\"background:linear-gradient(90deg,{2})\"></span>"
       "<div class=\"text\"><h2>{0}</h2><table>",
-      escaped(p.name), embedded(paint.picture), stops);
+      xml_escaped(p.name, ""), embedded(paint.picture), stops);
   text += color_row("Face", a.face) + color_row("Flop", a.flop);
   text += fmt::format("<tr><th scope=\"row\">Travel</th><td class=\"number\" colspan=\"3\">{:.0f}&deg;</td></tr>",
                       a.travel_deg);
@@ -159,7 +157,7 @@ std::string paint_card(const PageOfPaint& paint) {
 
 Result<std::string> board_page(const sketch::Board& board, const std::vector<PageImage>& images,
                                const std::vector<PageOfPaint>& paints, const std::string& lit_by) {
-  const std::string title = escaped(board.title.empty() ? "Mood board" : board.title);
+  const std::string title = xml_escaped(board.title.empty() ? "Mood board" : board.title, "");
   std::string page = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
@@ -168,11 +166,11 @@ Result<std::string> board_page(const sketch::Board& board, const std::vector<Pag
       "<header><h1>{0}</h1><p>{2} picture{3}, {4} paint{5}, drawn {6}</p></header>\n<div class=\"frame\">\n"
       "<section class=\"board\" aria-label=\"Pictures\">\n",
       title, kStyle, images.size(), images.size() == 1 ? "" : "s", paints.size(), paints.size() == 1 ? "" : "s",
-      escaped(lit_by));
+      xml_escaped(lit_by, ""));
   for (const PageImage& image : images) {
     GONIO_ASSIGN(const std::string png, page_png(image));
     page += fmt::format("<figure><div><img alt=\"{0}\" src=\"{1}\">{2}</div><figcaption>{0}</figcaption></figure>\n",
-                        escaped(image.image.name), embedded(png), dropper_marks(image, paints));
+                        xml_escaped(image.image.name, ""), embedded(png), dropper_marks(image, paints));
   }
   page += "</section>\n<main>\n";
   for (const PageOfPaint& paint : paints) page += paint_card(paint);
