@@ -169,6 +169,7 @@ TEST(PathPicture, StopsWhenItsTimeIsUpAndSaysHowFarItCame) {
 // cosine of its smooth normal. The control starts its rays on the flat triangles.
 TEST(HardCase, SmoothBallsAreLitSmoothlyAtAnyScale) {
   constexpr int kWidth = 96, kHeight = 72, kBall = 2;
+  double worst = 0, least_textbook = 1;
   for (const double size : {1e-6, 1.0, 1e6}) {
     mesh::Mesh mesh;
     for (const char* name : {"plane", "again"})
@@ -209,8 +210,9 @@ TEST(HardCase, SmoothBallsAreLitSmoothlyAtAnyScale) {
     EXPECT_GT(lit, 300);
     EXPECT_GT(plane_lit, 100);
     EXPECT_GT(plane - plane_lit, 100);  // the ball's shadow
-    hard_case("transport-self", {"light on a smooth ball of few triangles, off by", textbook, ours, 1e-5, "absolute"});
+    worst = worst_of(worst, ours), least_textbook = std::min(least_textbook, textbook);
   }
+  hard_case("transport-self", {"light on a smooth ball of few triangles", least_textbook, worst, 1e-5, "absolute"});
 }
 
 TEST(Noise, IsTheSpreadOfSmallErrors) {

@@ -1,4 +1,4 @@
-// Paints whose lobes make given lights look as a picture shows them. Internal to lib/fit.
+// Paints whose lobes make given lights look as a picture shows them.
 // [Shimizu2009] 3.7.5, goniochrome-theory(7), SKETCH FITTING.
 #pragma once
 

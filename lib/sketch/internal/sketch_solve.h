@@ -1,4 +1,4 @@
-// The small solvers behind sketch fitting. Internal to lib/fit. goniochrome-theory(7), SKETCH FITTING.
+// The small solvers behind sketch fitting. goniochrome-theory(7), SKETCH FITTING.
 #pragma once
 
 #include <functional>
