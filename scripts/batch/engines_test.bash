@@ -27,7 +27,7 @@ same_as_undisturbed() {
 
 # until_done OUT N: waits until N shards are done.
 until_done() {
-  for _ in {1..600}; do
+  for _ in {1..1800}; do
     [ "$(find "$1/shards" -name done.json 2>/dev/null | wc -l)" -ge "$2" ] && return
     sleep 0.1
   done
