@@ -9,6 +9,7 @@
 #include "brdf/lobe_model.h"
 #include "render/path/emitters.h"
 #include "render/path/environment_table.h"
+#include "render/path/scenes_for_paths_for_test.h"
 #include "render/path/traced_paint.h"
 #include "render/scenes_for_test.h"
 
@@ -83,15 +84,6 @@ double excess(const SphereBins& bins, int draws, const std::function<std::option
   return (chi2 - freedom) / std::sqrt(2.0 * freedom);
 }
 
-envmap::Environment lat_long(int width, int height, const std::function<color::Rgb(int, int)>& radiance) {
-  std::vector<float> rgb;
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x)
-      for (int c = 0; c < 3; ++c) rgb.push_back(static_cast<float>(radiance(x, y)[c]));
-  return envmap::Environment::from_lat_long({width, height, 3, rgb, {}}, envmap::Environment::BadPixels::kError, "made")
-      .value();
-}
-
 color::Rgb uneven(int x, int y) {
   const double sun = x == 5 && y == 3 ? 4 : 0;
   return {0.2 + 0.1 * x + sun, y == 7 ? 0.0 : 0.3, 0.05 * ((x * 7 + y * 3) % 11) + sun};
@@ -115,8 +107,8 @@ double excess_of(const envmap::Environment& environment, double wrong_factor = 1
 }
 
 TEST(Samplers, TheEnvironmentIsDrawnAsItsDensitySays) {
-  EXPECT_LT(excess_of(lat_long(32, 16, uneven)), 5);
-  EXPECT_GT(excess_of(lat_long(32, 16, uneven), 1.05), 5);  // control
+  EXPECT_LT(excess_of(environment_of(32, 16, uneven)), 5);
+  EXPECT_GT(excess_of(environment_of(32, 16, uneven), 1.05), 5);  // control
   const envmap::CubeMap cube = cube_of(8, [](const Vec3& d) {
     return Vec3{1.1 + d.x, d.y > 0.5 ? 5.0 : 0.2, 1 + d.z * d.z};
   });
@@ -128,7 +120,7 @@ TEST(Samplers, TheEnvironmentIsDrawnAsItsDensitySays) {
 }
 
 TEST(Samplers, TheEnvironmentsDensityAgreesWithWhatIsDrawn) {
-  const envmap::Environment environment = lat_long(64, 32, uneven);
+  const envmap::Environment environment = environment_of(64, 32, uneven);
   const EnvironmentTable table(environment);
   TestNumbers next(3);
   int neighbors = 0;
