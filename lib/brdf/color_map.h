@@ -1,5 +1,6 @@
-// The color map of a flake paint: its color at every pair of directions in plane, which by its isolines is its color at
-// every pair of directions. goniochrome-theory(7), ISOCHROMATIC LINES; [Kirchner], figure 2
+// The color map of a flake paint holds its color at every pair of directions in one plane with the normal. Every other
+// pair has the color of the pair in plane that lies on its isoline. goniochrome-theory(7), ISOCHROMATIC LINES;
+// [Kirchner], figure 2
 #pragma once
 
 #include <vector>
@@ -33,7 +34,7 @@ struct MapDirections {
 };
 MapDirections map_directions(int size, int column, int row);
 
-// Where a pair stands, in texels from the upper left corner; fetch there bilinearly, held at the borders.
+// Where a pair stands, in texels from the upper left corner. A fetch there is bilinear, and held at the borders.
 struct MapPlace {
   double x = 0, y = 0;
 };

@@ -1,5 +1,5 @@
-// The simulated gloss meter (ASTM D523) and the way back from its readings to the weights of the gloss lobes.
-// goniochrome-theory(7), GLOSS.
+// This is a simulated gloss meter (ASTM D523): it tells what a meter reads of a paint, and finds the weights of the
+// gloss lobes that make it read given values. goniochrome-theory(7), GLOSS.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@ namespace goniochrome::brdf {
 
 constexpr double kBlackGlassIndex = 1.567;  // the standard that reads 100 GU
 
-constexpr double kGlossAngles_deg[] = {20, 60, 85};  // of the meters there are
+constexpr double kGlossAngles_deg[] = {20, 60, 85};  // at which meters read
 
 // What the meter at 20, 60 or 85 deg reads, in gloss units (GU), for each part of the lobe model with weight 1.
 struct GlossColumns {
@@ -24,7 +24,7 @@ struct GlossColumns {
 };
 
 // The readings of a basis at the three standard angles, by quadrature over both apertures (relative error <= 1e-4);
-// some milliseconds once per basis. Immutable.
+// which take some milliseconds for a basis. It does not change afterwards.
 class GlossTable {
  public:
   explicit GlossTable(const std::vector<double>& exponents);
@@ -44,10 +44,11 @@ double gloss_units(const GlossTable& table, const GlossColumns& meter, const pai
 // Sets K_G and the mirror weight of `fit` (lobes: those of the table in its order, the mirror last if there is one) so
 // that the whole paint reads `readings`. Gloss lobes are gray. Returns simulated minus stated GU for each reading.
 //
-// One reading: a lobe of total energy F (Fresnel at the meter's angle, n = 1.5) as wide as the reading asks, spread
-// over its two neighbors in the basis; at and beyond the smooth limit the mirror alone, scaled up to 100 GU. Several:
-// non-negative least squares over the readings. What diffuse and flake light already reads is taken off first; where
-// that is more than the reading, nothing is set. Error: an angle that no meter has, or a reading below 0.
+// For one reading it takes a lobe of the total energy F (Fresnel at the meter's angle, n = 1.5) that is as wide as the
+// reading asks, and spreads it over its two neighbors in the basis; at and beyond the smooth limit it takes the mirror
+// alone, scaled up to 100 GU. For several readings it solves non-negative least squares. The reading of diffuse and
+// flake light is subtracted first; where that alone exceeds the reading, no gloss is set. Error: an angle that no meter
+// has, or a reading below 0.
 Result<std::vector<double>> set_gloss(const GlossTable& table, const std::vector<paint::GlossReading>& readings,
                                       paint::LobeFit& fit);
 

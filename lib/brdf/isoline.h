@@ -1,5 +1,6 @@
-// Isochromatic lines of flake paints: pairs of directions that see the same flakes at the same angle, and the one pair
-// in the plane of incidence that stands for all of them. goniochrome-theory(7), ISOCHROMATIC LINES; [Kirchner]
+// Isochromatic lines of flake paints are the pairs of directions that see the same flakes at the same angle. One pair
+// on each line lies in one plane with the normal and stands for all of them. goniochrome-theory(7), ISOCHROMATIC LINES;
+// [Kirchner]
 #pragma once
 
 #include <optional>

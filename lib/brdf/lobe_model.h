@@ -1,4 +1,4 @@
-// The lobe model of a paint: a constant plus cosine lobes about the mirror direction. [ShimizuMeyer] 3.1
+// The lobe model of a paint is a constant plus cosine lobes about the mirror direction. [ShimizuMeyer] 3.1
 // goniochrome-theory(7), LOBE MODEL.
 #pragma once
 
@@ -17,7 +17,7 @@ constexpr double kCoatIndex = 1.5;
 // interpolation between two of them, constant beyond the ends. Exponents ascending, as in the views.
 paint::LobeFit at_view(const paint::LobeFit& fit, double view_deg);
 
-// f(wi,wo) in 1/sr without its mirror lobe (that is a delta: see render/reference.h). 0 where either direction is below
+// f(wi,wo) in 1/sr without its mirror lobe (which is a delta: see render/exact.h). 0 where either direction is below
 // the horizon.
 color::Rgb brdf(const paint::LobeFit& fit, const Vec3& to_light, const Vec3& to_viewer, const Vec3& normal);
 

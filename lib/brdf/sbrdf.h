@@ -1,5 +1,5 @@
-// Spatially varying surfaces as textures: one sum of generalized cosine lobes per texel, and the direction its frame is
-// turned to. goniochrome-theory(7), SPATIALLY VARYING SURFACES; [McAllister2002]
+// A spatially varying surface is a texture here: each texel has a sum of generalized cosine lobes and the direction to
+// which its frame is turned. goniochrome-theory(7), SPATIALLY VARYING SURFACES; [McAllister2002]
 #pragma once
 
 #include <array>
@@ -29,8 +29,8 @@ struct SbrdfTexel {
 };
 SbrdfTexel sbrdf_texel(const SbrdfTexture& texture, int column, int row);
 
-// The axes of a texel in the world, on a surface with unit normal. The tangent is made perpendicular; one along the
-// normal says nothing, and any direction in the surface will do.
+// The axes of a texel in the world, on a surface with unit normal. The tangent is made perpendicular; if
+// it lies along the normal, any direction in the surface takes its place.
 struct SurfaceFrame {
   Vec3 x, y, z;
   Vec3 local(const Vec3& d) const { return {dot(d, x), dot(d, y), dot(d, z)}; }
@@ -47,9 +47,9 @@ struct TextureTap {
 std::array<TextureTap, 4> texture_taps(int width, int height, double u, double v);
 
 // One texel in the place of all: the mean diffuse part, and for each lobe, weighted by albedo/(n+1), the mean of that,
-// of log(n+1) and of the axes as matrices of the tangent frame, whose common direction is its frame's. What a texture
-// is worth is told against it; it is not the mean of the texels' BRDFs, which would take as many lobes as there are
-// texels.
+// of log(n+1) and of the axes as matrices of the tangent frame, whose common direction is its frame's. It is the
+// control that shows what a texture gains; it is not the mean of the texels' BRDFs, which would take as many lobes as
+// there are texels.
 SbrdfTexture mean_texture(const SbrdfTexture& texture);
 
 }  // namespace goniochrome::brdf

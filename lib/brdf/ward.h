@@ -1,5 +1,5 @@
-// Ward's anisotropic lobe, and its resolution into isotropic lobes about tilted normals for prefiltered maps.
-// goniochrome-theory(7), ANISOTROPY; [Ward1992], [Shimizu2009] 2.5.3
+// Ward's anisotropic lobe reflects light off brushed surfaces. Prefiltered maps hold isotropic lobes only, so it is
+// resolved into such lobes about tilted normals. goniochrome-theory(7), ANISOTROPY; [Ward1992], [Shimizu2009] 2.5.3
 #pragma once
 
 #include <vector>
@@ -11,8 +11,8 @@
 namespace goniochrome::brdf {
 
 // f in 1/sr of a lobe of strength 1 with slope distributions alpha_x and alpha_y along the tangents x and y, in the
-// frame z = normal; 0 where a direction is below the surface. Finite at grazing angles, reciprocal, and no light comes
-// back that was not sent: the integral of f cos_i is at most 1 for every viewer and every alpha > 0.
+// frame z = normal; 0 where a direction is below the surface. It is finite at grazing angles and reciprocal, and it
+// creates no light: the integral of f cos_i is at most 1 for every viewer and every alpha > 0.
 double ward(const Vec3& to_light, const Vec3& to_viewer, const paint::Anisotropy& alpha);
 
 // A normal to mirror the view about, in the frame of ward(), and its share of the light.

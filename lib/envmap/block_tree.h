@@ -1,5 +1,5 @@
-// An environment as a tree of texel blocks, each with its sums, for walks that open a block only where its parts differ
-// to whoever asks. goniochrome-theory(7), PREFILTERING, Blocks.
+// This is an environment as a tree of blocks of texels. Each block holds its sums, and a walk over the tree opens a
+// block only where the asker needs to tell its parts apart. goniochrome-theory(7), PREFILTERING, Blocks.
 #pragma once
 
 #include <algorithm>

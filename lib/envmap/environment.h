@@ -1,5 +1,5 @@
-// An environment: radiance from every direction, as it came from its file, without resampling. [McAllister2002] 6.1 for
-// cubes; goniochrome-theory(7), ENVIRONMENTS.
+// An environment is the radiance from every direction, kept as it came from its file, without resampling.
+// [McAllister2002] 6.1 for cubes; goniochrome-theory(7), ENVIRONMENTS.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// A part of one texel, and quadrature over it: radiance is constant there, so whatever is summed over an environment is
-// summed over such parts.
+// Radiance is constant over a texel, so whatever is summed over an environment is summed over parts of texels. This
+// header has such a part, and quadrature over it.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace goniochrome::envmap {
 
-// In continuous columns and rows.
+// A part of one texel, in continuous columns and rows.
 struct Cell {
   double column0 = 0, row0 = 0, column1 = 0, row1 = 0;
 };

@@ -1,4 +1,4 @@
-// A prefiltered environment (`*.env.exr`): one cube map for each lobe, with its measured error.
+// A prefiltered environment (`*.env.exr`) has one map for each lobe, with the error that was measured.
 // goniochrome-theory(7), PREFILTERING; the file format is in goniochrome-paint(5).
 #pragma once
 
@@ -18,7 +18,7 @@ using paint::kMirrorExponent;
 // P_E = (E+1)/(2 pi) * integral of L(w) max(0, d.w)^E dw: a constant map stays itself.
 struct PrefilteredLobe {
   double exponent = 1;
-  CubeMap map;  // of another layout: its texels row by row, and N of its N x 6N or 2N x N
+  CubeMap map;  // in another layout it holds the texels row by row, and N of N x 6N or 2N x N texels
   SphereGrid::Layout layout = SphereGrid::Layout::kCube;
   double tolerance = 0;                  // asked for; relative
   double max_error = 0, mean_error = 0;  // measured on the verified texels; relative

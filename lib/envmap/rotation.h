@@ -1,4 +1,4 @@
-// A turn of the environment about the scene.
+// An environment may be turned about the scene; this is the turn, which takes directions from one to the other.
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// How the texels of an image lie on the sphere: directions, exact solid angles and the texel that a direction meets.
-// goniochrome-theory(7), ENVIRONMENTS.
+// A grid tells how the texels of an image lie on the sphere: their directions, their exact solid angles and which texel
+// a direction meets. goniochrome-theory(7), ENVIRONMENTS.
 #pragma once
 
 #include "base/vec3.h"

@@ -1,5 +1,5 @@
-// Powers of cosines, which every lobe is made of: exact for exponents up to 1e6 and for angles down to 1e-8 rad. A lobe is
-// 0 from 90 degrees on. goniochrome-theory(7), LOBE MODEL.
+// Every lobe is a power of a cosine. These powers are exact for exponents up to 1e6 and for angles down to 1e-8 rad,
+// and 0 from 90 degrees on. goniochrome-theory(7), LOBE MODEL.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@ namespace goniochrome::math {
 // The logarithm of cos(angle), to a few ulp of itself; minus infinity from 90 degrees on.
 double log_cosine(double angle_rad);
 
-// cos^E from that logarithm, for those who raise one cosine to many exponents.
+// cos^E from that logarithm, for callers that raise one cosine to many exponents.
 inline double power_of_cosine(double log_cosine, double exponent) {
   return std::isinf(log_cosine) ? 0 : std::exp(exponent * log_cosine);
 }
@@ -20,8 +20,8 @@ double cos_power(double angle_rad, double exponent);
 // The same from the versine |r - d|^2 / 2 = 1 - cos, which two nearly parallel unit vectors give without cancellation.
 double cos_power_from_versine(double versine, double exponent);
 
-// max(0, t)^E for t = cos(angle) in [-1,1]; E = 0 is 1 above the horizon and 0 below. Its relative error is E times that
-// of t.
+// max(0, t)^E for t = cos(angle) in [-1,1]; E = 0 is 1 above the horizon and 0 below. Its relative error is E times
+// that of t.
 double cosine_power(double t, double exponent);
 
 }  // namespace goniochrome::math

@@ -1,5 +1,5 @@
-// Fourier transforms of any length, many at a time: element k of transform j is at [k * lanes + j], so that every pass
-// runs over contiguous memory.
+// These are Fourier transforms of any length, many at a time: element k of transform j is at [k * lanes + j], so that
+// every pass runs over contiguous memory.
 #pragma once
 
 #include <cstddef>

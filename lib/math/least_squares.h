@@ -1,5 +1,5 @@
-// Small non-negative fits: minimize |Mx - b| over x >= 0 in the 2-norm (NNLS) or the 1-norm (a linear program).
-// goniochrome-theory(7), FITTING.
+// Fits with non-negative weights: they minimize |Mx - b| over x >= 0 in the 2-norm (NNLS) or in the 1-norm (a linear
+// program). goniochrome-theory(7), FITTING.
 #pragma once
 
 #include <vector>
@@ -33,7 +33,8 @@ struct NonNegativeFit {
 NonNegativeFit nnls(const Matrix& m, const std::vector<double>& b);
 
 // Least absolute deviations: the exact vertex of a linear program by a simplex method on its dual, with the duality gap
-// as proof. Scale-free and deterministic as nnls(), which answers in its stead (converged = false) should it fail.
+// as proof. It is as scale-free and deterministic as nnls(), whose answer it returns (converged = false) should it
+// fail.
 NonNegativeFit l1_fit(const Matrix& m, const std::vector<double>& b);
 
 }  // namespace goniochrome::math

@@ -1,5 +1,6 @@
-// Associated Legendre functions, normalized so that the sum of squares of P_lm(cos t) exp(i m p) over the sphere is 1,
-// on many polar angles at once. goniochrome-theory(7), PREFILTERING, Zonal harmonics.
+// These sums and values of associated Legendre functions run over many polar angles at once. The functions are
+// normalized so that the integral of |P_lm(cos t) exp(i m p)|^2 over the sphere is 1. goniochrome-theory(7),
+// PREFILTERING, Zonal harmonics.
 #pragma once
 
 #include <cstddef>

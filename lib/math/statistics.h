@@ -1,4 +1,4 @@
-// Summaries of samples: means, medians and percentiles. None of them takes an empty list.
+// Means, medians and percentiles summarize samples. None of them takes an empty list.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The few texels that outshine the rest (a sun, lamps), convolved one by one, so that what is left has no peaks.
+// The few texels that outshine the rest (a sun, lamps) are convolved one by one, so that the rest has no peaks.
 // goniochrome-theory(7), PREFILTERING, Bright texels.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Spherical harmonics evaluated at many scattered directions: on a fine grid by fast transforms, then by a short
+// This evaluates spherical harmonics at many scattered directions: on a fine grid by fast transforms, then by a short
 // weighted sum around each direction (a non-uniform fast Fourier transform). goniochrome-theory(7), PREFILTERING,
 // Zonal harmonics.
 #pragma once

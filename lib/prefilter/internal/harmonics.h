@@ -1,4 +1,4 @@
-// The environment as spherical harmonics, and lobes as products of their coefficients.
+// In spherical harmonics a filter is a product: each coefficient of the environment times the multiplier of its degree.
 // goniochrome-theory(7), PREFILTERING, Zonal harmonics.
 #pragma once
 

@@ -1,5 +1,5 @@
-// The environment itself on other texels: what the mirror lobe looks up. goniochrome-theory(7), PREFILTERING, The
-// mirror.
+// The map of the mirror lobe is the environment itself, averaged over the texels of the map. goniochrome-theory(7),
+// PREFILTERING, The mirror.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
-// The texels of an image that a cell of another one covers, exactly: how the mirror map keeps all flux.
-// goniochrome-theory(7), PREFILTERING, The mirror.
+// This finds the texels of an image that a cell of another one covers, and how much of each, exactly, so that the
+// mirror map keeps all flux. goniochrome-theory(7), PREFILTERING, The mirror.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// What prefiltering costs: few measured constants, times what each step counts.
+// The time that prefiltering takes is predicted from a few measured constants times the counts of each step.
 // goniochrome-theory(7), PREFILTERING, Costs.
 #pragma once
 
