@@ -189,7 +189,8 @@ Workload workload_of(const Scene& scene, const Effects& all, const std::vector<V
   work.pixels = of_frame * request.samples;
   work.points = (pixels > 0 ? of_frame * visible / pixels : 0) * request.samples;
   work.textured = work.points * share_of(scene, probe, [](const PartSurface& s) { return s.texture != nullptr; });
-  work.mapped = work.points * share_of(scene, probe, [](const PartSurface& s) { return s.color_map != nullptr; });
+  if (scene.layer != nullptr && scene.layer->mapped())
+    work.mapped = work.points * share_of(scene, probe, [](const PartSurface& s) { return s.color_map != nullptr; });
   work.tilts = mean_tilts(scene, all, probe);
   work.forms = all.reflection ? product_forms(scene.reflection).count : 3;
   work.texture_lobes = scene.layer != nullptr ? scene.layer->lobes() : 0;

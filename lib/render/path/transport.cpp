@@ -37,15 +37,15 @@ std::vector<std::vector<brdf::Tilt>> tilts_for(const PathScene& scene) {
   return tilts_of(*scene.scene, effects);
 }
 
+bool is_mapped(const Scene& scene, std::size_t part) {
+  return scene.layer != nullptr && scene.layer->surface(static_cast<int>(part)).color_map != nullptr;
+}
+
 }  // namespace
 
 Result<Transport> Transport::create(const PathScene& path_scene) {
   const Scene& scene = *path_scene.scene;
   if (scene.mesh == nullptr) return input_error("a scene without a mesh: there is nothing to trace");
-  if (scene.layer != nullptr && scene.layer->textured())
-    return input_error("paths do not trace textures: take another engine for parts that wear one");
-  if (scene.layer != nullptr && scene.layer->mapped())
-    return input_error("paths do not trace color maps: take another engine for parts that wear one");
   if (scene.paints.size() != scene.mesh->parts.size())
     return input_error("{} paints for {} parts of the mesh: each part needs one", scene.paints.size(),
                        scene.mesh->parts.size());
@@ -54,8 +54,12 @@ Result<Transport> Transport::create(const PathScene& path_scene) {
   const auto tilts = tilts_for(path_scene);
   for (std::size_t part = 0; part < scene.paints.size(); ++part) {
     const double gloss_deg = part < scene.gloss_deg.size() ? scene.gloss_deg[part] : brdf::kGlossIncidence_deg;
-    auto paint = TracedPaint::create(scene.paints[part], gloss_deg, tilts[part]);
+    paint::LobeFit lobes = scene.paints[part];
+    // A color map takes the place of the flakes' weights for all views.
+    if (is_mapped(scene, part)) lobes.views.clear();
+    auto paint = TracedPaint::create(lobes, gloss_deg, tilts[part]);
     if (!paint.ok()) return input_error("part {}: {}", scene.mesh->parts[part].name, paint.error().message);
+    if (scene.layer != nullptr) paint->put_surface(*scene.layer, static_cast<int>(part));
     transport.paints_.push_back(*std::move(paint));
   }
   if (path_scene.floor) {
@@ -87,7 +91,7 @@ struct Transport::Vertex {
   double mirror_chance;  // that the path goes on along the mirror direction
 
   Vertex(const Transport& transport, const Spot& at, const Float3& to_viewer)
-      : spot(at), painted(transport.paints_[static_cast<std::size_t>(at.part)], at.shading, to_viewer) {
+      : spot(at), painted(at, transport.paints_[static_cast<std::size_t>(at.part)], to_viewer) {
     const double mirror = painted.mirror_weight(), lobes = painted.lobes_weight();
     mirror_chance = mirror > 0 ? mirror / (mirror + lobes) : 0;
   }
@@ -208,7 +212,7 @@ PointTransport::PointTransport(const Transport& transport, const PathOptions& op
       options_(options),
       spot_(spot),
       to_viewer_(to_viewer),
-      painted_(transport.paints_[static_cast<std::size_t>(spot.part)], spot.shading, to_viewer) {
+      painted_(spot, transport.paints_[static_cast<std::size_t>(spot.part)], to_viewer) {
   sure_ = transport.emitters_.radiance(spot.part);
   if (transport.environment_) {
     const float wide = 1 - painted_.narrow_share(transport.environment_->extent_sr());

@@ -44,8 +44,7 @@ constexpr int kBatch = 16;
 // Immutable: for any number of threads at once.
 class Transport {
  public:
-  // All that the scene refers to must outlive it. Error: as RayScene, TracedPaint and Emitters have them; textures and
-  // color maps, which paths do not trace.
+  // All that the scene refers to must outlive it. Error: as RayScene, TracedPaint and Emitters have them.
   static Result<Transport> create(const PathScene& scene);
 
   const rays::RayScene& rays() const { return *rays_; }
