@@ -345,4 +345,91 @@ LobeEstimate LobePoint::estimate(const color::Rgb* open_light, int sequences, in
   return result;
 }
 
+// `values`: of the columns at the visible point toward the hit, over the density of that direction.
+void LobePoint::add_pairs(const Hit& hit, const Float3& direction, const float* values, double scale,
+                          const Sequence& sequence, std::uint32_t index, Pairs& pairs) const {
+  const Transport& t = transport_;
+  const rays::Spot at = t.rays_->spot(hit, spot_.start, direction);
+  const PaintedPoint painted(t.paints_[static_cast<std::size_t>(at.part)], at.shading, -direction);
+  const LobeKernels kernels(columns_, painted);
+  const std::size_t count = columns_.count();
+  std::vector<color::Rgb> once(count), deeper(count);
+  float sent[2 * kMostTracedLobes + 2];
+  for (const Light& light : t.lights_) {
+    const Float3 to_light = rays::float3(light.direction);
+    if (!(kernels.at(to_light, sent) > 0) || t.rays_->blocked(at.start, to_light)) continue;
+    for (std::size_t l = 0; l < count; ++l) once[l] += (kPi * sent[l]) * light.white;
+  }
+  PathOptions further = options_;
+  --further.bounces;
+  const auto add = [&](const Float3& toward, double share, std::uint32_t set) {
+    const Hit next = t.rays_->closest(at.start, toward);
+    color::Rgb light, bounced;
+    if (!next.any()) {
+      if (t.environment_) light = t.environment_->at(toward).radiance;
+    } else {
+      light = t.emitters_.radiance(t.rays_->part(next.triangle));
+      if (further.bounces > 0) bounced = t.bounced(next, at.start, toward, further, sequence, index, set);
+    }
+    for (std::size_t l = 0; l < count; ++l)
+      once[l] += (share * sent[l]) * light, deeper[l] += (share * sent[l]) * bounced;
+  };
+  const std::array<double, 4> numbers = sequence.point(index, 4);
+  const float light_chance = t.environment_ ? kLightChance : 0;
+  Float3 toward;
+  if (numbers[0] < light_chance) {
+    toward = t.environment_->drawn(numbers[1], numbers[2]).direction;
+  } else {
+    toward = kernels.direction((numbers[0] - light_chance) / (1 - light_chance), numbers[1], numbers[2]);
+  }
+  const float kernels_pdf = kernels.at(toward, sent);
+  if (kernels_pdf > 0) {
+    const double light_pdf = t.environment_ ? t.environment_->at(toward).pdf : 0;
+    add(toward, 1 / (light_chance * light_pdf + (1 - light_chance) * kernels_pdf), 6);
+  }
+  std::fill_n(sent, count, 0.0F);
+  sent[columns_.mirror()] = kernels.mirror();
+  add(painted.mirrored(), 1, 40);
+  const int group = groups_.of_part[static_cast<std::size_t>(at.part)];
+  for (std::size_t k = 0; k < count; ++k) {
+    if (values[k] == 0) continue;
+    for (std::size_t l = 0; l < count; ++l) {
+      pairs.once[pairs.at(group, k, l)] += (scale * values[k]) * once[l];
+      pairs.deeper[pairs.at(group, k, l)] += (scale * values[k]) * deeper[l];
+    }
+  }
+}
+
+LobePoint::Pairs LobePoint::pairs(int sequences, int directions, std::uint64_t seed) const {
+  Pairs pairs{columns_.count(), {}, {}};
+  pairs.once.resize(static_cast<std::size_t>(groups_.count) * pairs.columns * pairs.columns);
+  pairs.deeper.resize(pairs.once.size());
+  if (open_ || options_.bounces == 0) return pairs;
+  bool any_blocked = false;
+  const std::vector<Ray> rays = traced_rays(sequences, directions, seed, any_blocked);
+  const double share = 1.0 / (static_cast<double>(sequences) * directions);
+  float values[2 * kMostTracedLobes + 2];
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Ray& ray = rays[i];
+    if (!ray.above || !ray.blocked) continue;
+    const float kernels_pdf = kernels_.at(ray.direction, values);
+    const double light_pdf = transport_.environment_ ? transport_.environment_->at(ray.direction).pdf : 0;
+    const double pdf = light_chance_ * light_pdf + (1 - light_chance_) * kernels_pdf;
+    const Hit hit = pdf > 0 && kernels_pdf > 0 ? transport_.rays_->closest(spot_.start, ray.direction) : Hit{};
+    if (!hit.any()) continue;
+    const std::size_t which = i / static_cast<std::size_t>(directions),
+                      index = i % static_cast<std::size_t>(directions);
+    const Sequence sequence(mixed(seed, which), static_cast<std::uint32_t>(directions));
+    add_pairs(hit, ray.direction, values, share / pdf, sequence, static_cast<std::uint32_t>(index), pairs);
+  }
+  if (!mirror_hit_.any()) return pairs;
+  std::fill_n(values, columns_.count(), 0.0F);
+  values[columns_.mirror()] = kernels_.mirror();
+  const Sequence sequence(mixed(seed, 0x4D), static_cast<std::uint32_t>(directions));
+  for (int i = 0; i < directions; ++i)
+    add_pairs(mirror_hit_, painted_.mirrored(), values, 1.0 / directions, sequence, static_cast<std::uint32_t>(i),
+              pairs);
+  return pairs;
+}
+
 }  // namespace goniochrome::render

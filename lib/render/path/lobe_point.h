@@ -10,7 +10,7 @@
 
 namespace goniochrome::render {
 
-// Parts that wear the same paint. Bounced light is told by the group that sent it and by how the light left it last.
+// Parts whose paints are told apart. Bounced light is told by the group that sent it and by how the light left it last.
 struct PaintGroups {
   std::vector<int> of_part;  // of the mesh, then of the floor
   int count = 0;
@@ -39,6 +39,19 @@ class LobePoint {
   // Whether nothing rises above its horizon.
   bool open() const { return open_; }
 
+  // Bounced light by every pair of columns: what column k of weight 1 gathers of the light that column l of weight 1
+  // sends there from a surface of a group. What that surface got from lights, environment and emitters at once is told
+  // apart from what came to it through further surfaces in the paints that they wear. Sums in any product of colors
+  // are products with l's weight first and k's after it. Sampled without regard to any weight.
+  struct Pairs {
+    std::size_t columns = 0;
+    std::vector<color::Rgb> once, deeper;  // (group, k, l)
+    std::size_t at(int group, std::size_t k, std::size_t l) const {
+      return (static_cast<std::size_t>(group) * columns + k) * columns + l;
+    }
+  };
+  Pairs pairs(int sequences, int directions, std::uint64_t seed) const;
+
   // The mean over so many sequences of `directions` each, a power of two. `open_light` has what each column
   // gathers of the environment without any surface in the way: it is corrected by what rays find, without bias, so that
   // a point whose rays are all free has no noise. Null: rays alone.
@@ -55,6 +68,8 @@ class LobePoint {
   void add_emitter(const std::array<double, 4>& numbers, Sums& sums, int which) const;
   void add_mirror(std::uint64_t seed, Sums& sums, int which) const;
   void add_classes(const rays::Float3& f, const rays::Hit& hit, const Sent& sent, double share, Sums& sums) const;
+  void add_pairs(const rays::Hit& hit, const rays::Float3& direction, const float* values, double scale,
+                 const Sequence& sequence, std::uint32_t index, Pairs& pairs) const;
   void add_sure(const color::Rgb* open_light, LobeEstimate& result) const;
   color::Rgb reflect(const rays::Float3& f, const color::Rgb& light) const;
 

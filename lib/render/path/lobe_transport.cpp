@@ -21,6 +21,8 @@ constexpr int kFirstBatches = 2, kMostAtOnce = 256;
 constexpr int kSequences = 8;
 // A point's own variance counts as its batches less one, that of its neighborhood as so many.
 constexpr double kNeighborhood = 4;
+// Directions at a probe; scaling is judged by ratios, in which the noise of a probe stands on both sides.
+constexpr int kProbeSequences = 4, kProbeDirections = 256;
 constexpr int kReach = 2;  // pixels to each side of the neighborhood
 
 class Tracing {
@@ -31,12 +33,13 @@ class Tracing {
     LobeTransport& t = result_.transport;
     const Gbuffer& g = surface.gbuffer;
     t.width = g.width, t.height = g.height, t.columns = columns, t.worn = worn;
-    t.white_luminance = request.white_luminance;
+    t.white_luminance = request.white_luminance, t.bounces = request.bounces;
     number_.assign(surface.hits.size(), -1);
     for (std::size_t i = 0; i < surface.hits.size(); ++i) {
       if (!surface.hits[i].any()) continue;
       number_[i] = static_cast<std::int32_t>(t.places.size());
       t.places.push_back(static_cast<std::uint32_t>(i));
+      t.part.push_back(std::abs(static_cast<int>(g.data[4 * i + 3])) - 1);
     }
     const std::size_t points = t.places.size();
     t.direct.assign(points * t.floats(), 0), t.bounced.assign(points * t.floats(), 0);
@@ -62,6 +65,7 @@ class Tracing {
       result_.samples_mean += kBatch * batches_[i] / count;
     }
     result_.free_share = static_cast<double>(std::ranges::count(batches_, 0)) / count;
+    if (request_.bounces > 0) probe();
     result_.time_s = clock_.elapsed_s();
     return std::move(result_);
   }
@@ -82,6 +86,45 @@ class Tracing {
     ++round_;
   }
 
+  LobePoint point_at(std::size_t i) const {
+    const LobeTransport& t = result_.transport;
+    const int x = static_cast<int>(t.places[i]) % t.width, y = static_cast<int>(t.places[i]) / t.width;
+    return {transport_,
+            t.columns,
+            t.worn.groups,
+            request_.bounces,
+            spot_at(transport_.rays(), surface_, x, y),
+            rays::float3(surface_.gbuffer.to_viewer(x, y))};
+  }
+
+  void probe() {
+    LobeTransport& t = result_.transport;
+    const std::size_t points = t.places.size(),
+                      count = std::min<std::size_t>(points, static_cast<std::size_t>(request_.probes));
+    std::vector<BounceProbe> probes(count);
+    parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const std::size_t number = (2 * i + 1) * points / (2 * count);
+        const LobePoint point = point_at(number);
+        if (point.open()) continue;
+        const LobePoint::Pairs pairs =
+            point.pairs(kProbeSequences, kProbeDirections, mixed(request_.seed, 0xB0BEU + i));
+        probes[i].point = static_cast<std::uint32_t>(number);
+        const auto keep = [](const std::vector<color::Rgb>& from, std::vector<float>& to) {
+          for (const color::Rgb& light : from)
+            for (int c = 0; c < 3; ++c) to.push_back(static_cast<float>(light[c]));
+        };
+        keep(pairs.once, probes[i].once), keep(pairs.deeper, probes[i].deeper);
+      }
+    });
+    t.probed = static_cast<int>(count);
+    for (BounceProbe& probe : probes) {
+      const auto lit = [](float value) { return value != 0; };
+      if (std::ranges::any_of(probe.once, lit) || std::ranges::any_of(probe.deeper, lit))
+        t.probes.push_back(std::move(probe));
+    }
+  }
+
   // Rounds are independent estimates, and count by their batches.
   void sample(std::size_t i, int batches) {
     LobeTransport& t = result_.transport;
@@ -89,8 +132,7 @@ class Tracing {
     const int x = static_cast<int>(place) % t.width, y = static_cast<int>(place) / t.width;
     const Gbuffer& g = surface_.gbuffer;
     const rays::Spot spot = spot_at(transport_.rays(), surface_, x, y);
-    const LobePoint point(transport_, t.columns, t.worn.groups, request_.bounces, spot,
-                          rays::float3(g.to_viewer(x, y)));
+    const LobePoint point = point_at(i);
     std::vector<color::Rgb> open(t.columns.count());
     if (open_ != nullptr) open_->at(rays::vec3(spot.shading), g.to_viewer(x, y), spot.part, open.data());
     const int sequences = std::min(batches, kSequences);
@@ -216,7 +258,7 @@ Result<WornPaints> worn_paints(const LobeColumns& columns, const PathScene& path
   WornPaints worn;
   std::vector<std::size_t> first;  // part of each group
   for (std::size_t part = 0; part < scene.paints.size(); ++part) {
-    int group = 0;
+    int group = scene.paints.size() <= kMostOwnGroups ? static_cast<int>(first.size()) : 0;
     while (group < static_cast<int>(first.size()) && !same_wear(scene, first[static_cast<std::size_t>(group)], part))
       ++group;
     if (group == static_cast<int>(first.size())) {

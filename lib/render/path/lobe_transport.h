@@ -18,9 +18,18 @@ struct WornPaints {
   PaintGroups groups;
   std::vector<std::vector<color::Rgb>> weights;
 };
-// The groups of the scene's parts, and of the floor as one more where there is one. Error: as column_weights(). Of a
-// paint whose weights change with the view they are those for all views together.
+// The groups of the scene's parts, and of the floor as one more where there is one. Each part is a group up to
+// kMostOwnGroups parts; beyond them parts that wear the same are one. Error: as column_weights(). Of a paint whose
+// weights change with the view they are those for all views together.
+constexpr std::size_t kMostOwnGroups = 8;
 Result<WornPaints> worn_paints(const LobeColumns& columns, const PathScene& scene);
+
+// Visible points evenly spread over the picture, at which bounced light is known by pairs of columns: they tell how
+// bounced light follows a change of paint, and by how much scaling it to first order errs.
+struct BounceProbe {
+  std::uint32_t point = 0;          // of LobeTransport::places
+  std::vector<float> once, deeper;  // as LobePoint::Pairs, channels last
+};
 
 // Light by column and channel, of weight 1, for the visible points row by row.
 struct LobeTransport {
@@ -29,9 +38,14 @@ struct LobeTransport {
   std::vector<std::uint32_t> places;   // y width + x, ascending
   std::vector<float> direct, bounced;  // point, column, channel
   WornPaints worn;
-  std::vector<float> classes;     // point, class of PaintGroups, channel: bounced light that the picture showed
-  std::vector<float> noise_de00;  // of each point, the largest over the columns: see LobeTransportRequest
-  double white_luminance = 1;
+  std::vector<float> classes;       // point, class of PaintGroups, channel: bounced light that the picture showed
+  std::vector<float> noise_de00;    // of each point, the largest over the columns: see LobeTransportRequest
+  std::vector<int> part;            // of each point
+  std::vector<BounceProbe> probes;  // those that see a surface
+  int probed = 0;                   // all of them
+  double white_luminance = 1;       // of the scene's diffuse white, in the unit that the light is kept in
+  double unit = 1;                  // that unit, as radiance
+  int bounces = 0;
 
   std::size_t floats() const { return 3 * columns.count(); }  // of a point
   color::Rgb light(std::size_t point, std::size_t column, bool with_bounced = true) const {
@@ -51,6 +65,7 @@ struct LobeTransportRequest {
   double time_limit_s = 0;  // 0: none
   int most_batches = 1024;  // of a point
   double white_luminance = 1;
+  int probes = 256;  // at most
   std::uint64_t seed = 1;
   std::function<void(double noise_de00, double seconds)> progress = {};
 };
