@@ -80,7 +80,7 @@ Result<int> AovFile::channel(const std::string& name) const {
 Result<int> AovFile::part(const std::string& name) const {
   const auto found = std::find(parts.begin(), parts.end(), name);
   if (found != parts.end()) return static_cast<int>(found - parts.begin()) + 1;
-  return usage_error("{} has no part \"{}\": its parts are {}", path, name, fmt::join(parts, ", "));
+  return usage_error("{} has no part \"{}\": its parts are {}", path, name, joined(parts, ", "));
 }
 
 Result<AovFile> read_aov_file(const std::string& path) {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
 
+#include "base/angles.h"
 #include "paint/geometry.h"
 
 namespace goniochrome::render {
@@ -30,7 +30,7 @@ const std::vector<Aov>& aovs() {
        180,
        [](const Gbuffer& g, int x, int y, const Vec3& to_light, float* value) {
          const double angle_rad = paint::aspecular_angle_rad(to_light, g.to_viewer(x, y), g.normal(x, y));
-         *value = static_cast<float>(angle_rad * 180 / std::numbers::pi);
+         *value = static_cast<float>(angle_rad / kDegree);
        }},
       {"lambert",
        {"lambert"},

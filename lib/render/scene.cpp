@@ -1,7 +1,6 @@
 #include "render/scene.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "color/color.h"
 
@@ -23,7 +22,7 @@ std::vector<double> lobe_exponents(const std::vector<paint::LobeFit>& paints) {
   std::vector<double> exponents;
   for (const paint::LobeFit& paint : paints) {
     for (const paint::Lobe& lobe : paint.lobes) {
-      if (std::isfinite(lobe.exponent) && has_weight(lobe)) exponents.push_back(lobe.exponent);
+      if (!lobe.is_mirror() && has_weight(lobe)) exponents.push_back(lobe.exponent);
     }
   }
   std::sort(exponents.begin(), exponents.end());
@@ -33,7 +32,7 @@ std::vector<double> lobe_exponents(const std::vector<paint::LobeFit>& paints) {
 
 bool has_mirror(const std::vector<paint::LobeFit>& paints) {
   return std::any_of(paints.begin(), paints.end(), [](const paint::LobeFit& paint) {
-    const paint::Lobe* mirror = find_lobe(paint, envmap::kMirrorExponent);
+    const paint::Lobe* mirror = find_lobe(paint, paint::kMirrorExponent);
     return mirror != nullptr && has_weight(*mirror);
   });
 }

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
+#include "base/angles.h"
 #include "base/parallel.h"
 #include "brdf/lobe_model.h"
 
@@ -76,7 +76,7 @@ color::Rgb SurfaceLayer::mapped_difference(int part, const Vec3& normal, const V
     if (wi.z <= 0 || wo.z <= 0) continue;
     const double aspecular_rad = paint::aspecular_angle_rad(wi, wo, {0, 0, 1});
     const color::Rgb map = brdf::reflectance_factor(*surfaces_[at].color_map, wi, wo, treatment_);
-    const color::Rgb lobes = brdf::flake_reflectance_factor(scene_.paints[at], aspecular_rad * 180 / std::numbers::pi);
+    const color::Rgb lobes = brdf::flake_reflectance_factor(scene_.paints[at], aspecular_rad / kDegree);
     sum += wi.z * color::reflected(scene_.reflection, light.white, map - lobes);
   }
   return sum;

@@ -33,7 +33,7 @@ formats::Basis basis_of(const envmap::PrefilteredEnvironment& env) {
 std::vector<paint::LobeFit> unit_paints(const formats::Basis& basis) {
   paint::LobeFit blank;
   for (const double exponent : basis.exponents) blank.lobes.push_back({exponent, {}, {}});
-  blank.lobes.push_back({envmap::kMirrorExponent, {}, {}});
+  blank.lobes.push_back({paint::kMirrorExponent, {}, {}});
   std::vector<paint::LobeFit> paints(search_columns(basis), blank);
   const color::Rgb one{1, 1, 1};
   paints.front().diffuse = one;

@@ -2,9 +2,9 @@
 
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 #include <utility>
 
+#include "base/angles.h"
 #include "display/display.h"
 #include "envmap/prefiltered.h"
 #include "fit/paint_fit.h"
@@ -25,7 +25,7 @@ mesh::Mesh ball() {
   mesh::Mesh mesh;
   for (std::uint32_t ring = 0; ring <= kRings; ++ring)
     for (std::uint32_t segment = 0; segment <= kSegments; ++segment) {
-      const double t = std::numbers::pi * ring / kRings, p = 2 * std::numbers::pi * segment / kSegments;
+      const double t = kPi * ring / kRings, p = 2 * kPi * segment / kSegments;
       mesh.positions.push_back({std::sin(t) * std::sin(p), std::cos(t), std::sin(t) * std::cos(p)});
     }
   mesh.normals = mesh.positions;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
-#include <numbers>
 
+#include "base/angles.h"
 #include "base/text.h"
 #include "formats/batches.h"
 #include "formats/xml.h"
@@ -156,7 +156,7 @@ Result<void> lay_textures(const mesh::Mesh& mesh, const Options& options, Dresse
 Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options) {
   PaintShelf shelf;
   paint::LobeFit gray;
-  gray.diffuse = (kUnpaintedReflectance / std::numbers::pi) * color::Rgb{1, 1, 1};
+  gray.diffuse = (kUnpaintedReflectance / kPi) * color::Rgb{1, 1, 1};
   const std::size_t parts_there = mesh.parts.size();
   DressedMesh result;
   result.paints.assign(parts_there, gray);

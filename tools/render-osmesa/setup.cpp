@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 
+#include "base/angles.h"
 #include "base/text.h"
 #include "render/engine.h"
 
@@ -139,7 +139,7 @@ Result<std::vector<Shot>> shots_of(const Options& options, const mesh::Mesh& mes
   const std::filesystem::path path(options.output);
   std::vector<Shot> shots;
   for (int i = 0; i < count; ++i) {
-    const double turn_rad = 2 * std::numbers::pi * i / count, c = std::cos(turn_rad), s = std::sin(turn_rad);
+    const double turn_rad = 2 * kPi * i / count, c = std::cos(turn_rad), s = std::sin(turn_rad);
     const auto turned = [&](const Vec3& v) { return Vec3{c * v.x + s * v.z, v.y, c * v.z - s * v.x}; };
     Shot shot{camera, lights, ""};
     if (options.turntable > 0) shot.camera.eye = camera.target + turned(camera.eye - camera.target);

@@ -1,5 +1,7 @@
 #include "tool.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -68,7 +70,7 @@ void warn_of_left_out(const image::AovFile& buffers, cli::Session& session) {
   session.warn(
       fmt::format("{} was drawn without {}, so that the paint found lacks it too, most of all near specular: render "
                   "picture and buffers with --effects all",
-                  buffers.path, fmt::join(light, ", ")));
+                  buffers.path, joined(light, ", ")));
 }
 
 Result<void> gather(const Options& options, Material& material) {

@@ -1,7 +1,5 @@
 #include "render/gl/gl_engine.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "render/gl/shader.h"

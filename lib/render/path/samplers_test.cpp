@@ -155,7 +155,7 @@ double excess_of(const paint::LobeFit& paint, double view_deg, std::vector<brdf:
   for (paint::Lobe& lobe : other.lobes) lobe.exponent *= wrong_exponent;
   const auto stated = TracedPaint::create(other, 45, {});
   const Vec3 normal = normalized({0.2, 0.9, -0.3}), side = normalized(cross(normal, {1, 0, 0}));
-  const double t = view_deg * kPi / 180;
+  const double t = view_deg * kDegree;
   const Vec3 viewer = std::cos(t) * normal + std::sin(t) * side;
   const PaintedPoint point(*traced, float3(normal), float3(viewer));
   const PaintedPoint told(wrong_exponent == 1 ? *traced : *stated, float3(normal), float3(viewer));

@@ -2,8 +2,8 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "base/angles.h"
 #include "base/parallel.h"
 
 namespace goniochrome::render {
@@ -37,7 +37,7 @@ class Unwrapped {
   Uv corner(std::uint32_t vertex) const {
     if (!mesh_.texture.empty()) return {mesh_.texture[vertex][0], mesh_.texture[vertex][1]};
     const Vec3 p = mesh_.positions[vertex] - middle_;
-    const double turn = 2 * std::numbers::pi;
+    const double turn = 2 * kPi;
     return {std::atan2(p.x, p.z) / turn, (mesh_.positions[vertex].y - box_.low.y) / (turn * std::max(radius_, 1e-300))};
   }
 
