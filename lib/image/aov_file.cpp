@@ -1,6 +1,7 @@
 #include "image/aov_file.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "base/json.h"
 #include "base/text.h"
@@ -114,7 +115,10 @@ Result<AovFile> read_aov_file(const std::string& path) {
     if (decision == "drawn" || decision == "forced on") file.drawn.push_back(name);
     if (decision == "dropped" || decision == "forced off" || decision == "over budget") file.left_out.push_back(name);
   }
+  file.transport = text("goniochrome:transport");
   file.image = std::move(read.front().image);
+  if (!file.transport.empty())
+    file.layers.assign(std::make_move_iterator(read.begin() + 1), std::make_move_iterator(read.end()));
   return file;
 }
 

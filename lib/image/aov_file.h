@@ -33,6 +33,8 @@ struct AovFile {
   std::vector<std::string> drawn;             // the effects that the picture shows, by render-osmesa's names
   std::vector<std::string> left_out;          // the effects that the scene has and the picture does not show
   color::ReflectionOperator reflection = color::iso_rgb_operator();  // with which the effect "operator" was drawn
+  std::string transport;          // what the header says of a transport, JSON; "" where the file has none
+  std::vector<ImagePart> layers;  // the parts after the picture: those of a transport
 
   // The channel's place in a pixel. Error: the file lacks it; the message has the command that makes it.
   Result<int> channel(const std::string& name) const;

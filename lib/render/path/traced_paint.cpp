@@ -209,7 +209,9 @@ PaintedPoint::Parts PaintedPoint::parts(const Float3& to_light) const {
   if (count_ == 0) return parts;
   const float fresnel = coat_reflectance(std::min(1.0F, 0.5F * rays::length(to_light + viewer_)));
   visit_lobes(to_light, [&](const Lobe& lobe, float power) {
-    parts.lobes = parts.lobes + (power * cos_i) * lobe.directional_diffuse + (power * fresnel) * lobe.gloss;
+    const Float3 gloss = (power * fresnel) * lobe.gloss;
+    parts.lobes = parts.lobes + (power * cos_i) * lobe.directional_diffuse + gloss;
+    parts.gloss = parts.gloss + gloss;
   });
   return parts;
 }

@@ -74,9 +74,10 @@ class PaintedPoint {
 
   // f cos_i and the density.
   Reflection at(const rays::Float3& to_light) const;
-  // The parts of f cos_i by themselves: that of the constant K_D, and that of the lobes; a color map is among these.
+  // The parts of f cos_i by themselves: that of the constant K_D, that of the lobes, among which a color map is, and of
+  // the latter that of gloss.
   struct Parts {
-    rays::Float3 diffuse, lobes;
+    rays::Float3 diffuse, lobes, gloss;
   };
   Parts parts(const rays::Float3& to_light) const;
 
@@ -91,6 +92,15 @@ class PaintedPoint {
   const rays::Float3& mirrored() const { return mirrored_; }  // where the mirror lobe looks
   const rays::Float3& mirror() const { return mirror_; }      // K_M F
   const rays::Float3& diffuse() const { return diffuse_; }    // K_D, 1/sr
+  const rays::Float3& to_viewer() const { return viewer_; }
+  // The mirror directions about the tilted normals of a brushed paint, with their shares; none: mirrored() alone.
+  struct Axis {
+    rays::Float3 direction;
+    float share;
+  };
+  const std::vector<Axis>& axes() const { return axes_; }
+  // A direction drawn with the density (E + 1)/(2 pi) cos^E about an axis, by numbers in [0,1).
+  static rays::Float3 drawn_about(const rays::Float3& axis, float exponent, float u, float v);
   // About what part of even light each sends back, mean of the channels: what samples are shared out by.
   float lobes_weight() const { return total_; }
   float mirror_weight() const;

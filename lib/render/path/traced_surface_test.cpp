@@ -112,7 +112,7 @@ struct TurnedFrame {
   Vec3 world(const Vec3& d) const { return d.x * x + d.y * y + d.z * n; }
 };
 Vec3 at_angles(double polar_deg, double azimuth_deg) {
-  const double t = polar_deg * kPi / 180, p = azimuth_deg * kPi / 180;
+  const double t = polar_deg * kDegree, p = azimuth_deg * kDegree;
   return {std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)};
 }
 

@@ -55,6 +55,7 @@ class Transport {
 
  private:
   friend class PointTransport;
+  friend class LobePoint;
   explicit Transport(rays::RayScene rays) : rays_(std::make_unique<const rays::RayScene>(std::move(rays))) {}
   color::Rgb bounced(rays::Hit hit, rays::Float3 origin, rays::Float3 direction, const PathOptions& options,
                      const Sequence& sequence, std::uint32_t index, std::uint32_t set) const;
