@@ -6,7 +6,8 @@ cli::ToolSpec tool_spec(Options& o) {
   cli::ToolSpec spec{.name = "paint-pick",
                      .summary = "paints from pictures: droppers for face, flop and gloss, palettes and mood boards"};
   spec.description = {
-      "paint-pick puts droppers on pictures of any format and makes a paint of what they find. A dropper is IMAGE@X,Y "
+      "paint-pick puts droppers on pictures (EXR, HDR, PNG, JPEG, TIFF, PNM, DPX, WebP, BMP or TGA) and makes a paint "
+      "of what they find. A dropper is IMAGE@X,Y "
       "or IMAGE@X,Y,RADIUS, in pixels from the upper left. Colors are averaged in linear light over the disc of the "
       "dropper, which has a radius of 5 pixels where none is given. Where only one of face and flop is picked, the "
       "paint is solid.",

@@ -107,7 +107,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "explain the picture as well. The search knows the effects that were drawn: Fresnel reflectance, the horizon and "
       "the operator of colored light. It does not know brushed paint, the travel of color maps, and textures; it warns "
       "where the buffers have them.",
-      "The picture may be of any format. Whole numbers (PNG, JPEG, TIFF) are what a display shows: sRGB, or what an "
+      "The picture may be an EXR, HDR, PNG, JPEG, TIFF, PNM, DPX, WebP, BMP or TGA. Whole numbers (PNG, JPEG, TIFF) "
+      "are what a display shows: sRGB, or what an "
       "embedded ICC profile says, be it of RGB, of gray or of CMYK, after the view and the exposure of render-osmesa. "
       "Floats (EXR) are light. Pixels are "
       "left out at edges, at grazing light, near specular, where they are clipped or transparent, and outside the "
