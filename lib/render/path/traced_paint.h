@@ -114,10 +114,6 @@ class PaintedPoint {
     float exponent, normalization, chance;
     rays::Float3 directional_diffuse, gloss;
   };
-  struct Axis {
-    rays::Float3 direction;
-    float share;
-  };
   // A lobe exp(log_peak) cos^exponent about its own axis.
   struct TexelLobe {
     rays::Float3 axis;
@@ -129,7 +125,6 @@ class PaintedPoint {
   void wear(const SurfaceLayer::Place& place);
   void add_texel_lobe(const Vec3& axis, double exponent, const color::Rgb& albedo);
   rays::Float3 mapped(const rays::Float3& to_light) const;
-  static rays::Float3 drawn_about(const rays::Float3& axis, float exponent, float u, float v);
   void set_axes(const std::vector<brdf::Tilt>& tilts);
   template <class Visit>
   void visit_lobes(const rays::Float3& to_light, const Visit& visit) const;
