@@ -54,6 +54,8 @@ class PaintedPoint {
  public:
   // Unit vectors with n.o > 0. The paint must outlive the point.
   PaintedPoint(const TracedPaint& paint, const rays::Float3& normal, const rays::Float3& to_viewer);
+  // A matt point of this K_D, in 1/sr.
+  PaintedPoint(const rays::Float3& diffuse, const rays::Float3& normal, const rays::Float3& to_viewer);
 
   // f cos_i and the density.
   Reflection at(const rays::Float3& to_light) const;
