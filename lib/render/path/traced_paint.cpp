@@ -128,6 +128,13 @@ PaintedPoint::PaintedPoint(const TracedPaint& paint, const Float3& normal, const
   set_axes(paint.tilts_);
 }
 
+PaintedPoint::PaintedPoint(const Float3& diffuse, const Float3& normal, const Float3& to_viewer)
+    : normal_(normal), viewer_(to_viewer), diffuse_(diffuse), frame_(rays::frame_about(normal)) {
+  cos_o_ = std::max(rays::dot(normal, to_viewer), 1e-6F);
+  mirrored_ = 2 * cos_o_ * normal - to_viewer;
+  total_ = diffuse_chance_ = kPi * mean_size(diffuse_);
+}
+
 // The frame of Gatherer::set_mirror_directions(): the tangent runs level around +Y, on a level surface along +X.
 void PaintedPoint::set_axes(const std::vector<brdf::Tilt>& tilts) {
   if (tilts.empty()) return;

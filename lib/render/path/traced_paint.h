@@ -71,6 +71,8 @@ class PaintedPoint {
   PaintedPoint(const TracedPaint& paint, const rays::Float3& normal, const rays::Float3& to_viewer);
   // With the texels of the spot.
   PaintedPoint(const rays::Spot& spot, const TracedPaint& paint, const rays::Float3& to_viewer);
+  // A matt point of this K_D, in 1/sr.
+  PaintedPoint(const rays::Float3& diffuse, const rays::Float3& normal, const rays::Float3& to_viewer);
 
   // f cos_i and the density.
   Reflection at(const rays::Float3& to_light) const;
