@@ -270,9 +270,13 @@ Result<WornPaints> worn_paints(const LobeColumns& columns, const PathScene& path
     }
     worn.groups.of_part.push_back(group);
   }
-  if (path.floor) {
-    GONIO_ASSIGN(auto weights,
-                 column_weights(columns, path.floor_paint.diffuse, path.floor_paint.lobes, brdf::kGlossIncidence_deg));
+  if (path.ground) {
+    if (path.ground->kind == Ground::Kind::kShadow)
+      return usage_error(
+          "the light of a floor that shows the environment is no sum of lobes: give the floor a paint, or "
+          "trace without it");
+    GONIO_ASSIGN(auto weights, column_weights(columns, path.ground->paint.diffuse, path.ground->paint.lobes,
+                                              brdf::kGlossIncidence_deg));
     worn.groups.of_part.push_back(static_cast<int>(first.size()));
     worn.weights.push_back(std::move(weights));
   }

@@ -15,7 +15,7 @@ namespace {
 std::vector<paint::LobeFit> unit_paints(const LobeColumns& columns) {
   const color::Rgb one{1, 1, 1};
   const double reflectance =
-      brdf::fresnel_dielectric(std::cos(brdf::kGlossIncidence_deg * kPi / 180), brdf::kCoatIndex);
+      brdf::fresnel_dielectric(std::cos(brdf::kGlossIncidence_deg * kDegree), brdf::kCoatIndex);
   paint::LobeFit blank;
   for (const double exponent : columns.exponents) blank.lobes.push_back({exponent, {}, {}});
   blank.lobes.push_back({paint::kMirrorExponent, {}, {}});
