@@ -5,6 +5,7 @@
 #   - a public header stands at the top of its room because somebody outside the room includes it;
 #   - no third-party type shows in a public header;
 #   - the code of a room stands in the namespace of that name; that of `base` stands in goniochrome itself;
+#   - what of std::filesystem can throw stands in base/paths.cpp alone: a loop of links or a forbidden folder is no bug;
 #   - lib/README.md lists the rooms, and CMake builds them, in this order.
 set -euo pipefail
 cd "$(dirname "$0")/../lib"
@@ -68,6 +69,11 @@ for room in "${order[@]}"; do
     grep -qE "^namespace $name(::[a-z_]+)? \{" "$file" || complain "$file does not stand in the namespace $name"
   done < <(find "$room" \( -name '*.h' -o -name '*.cpp' \) ! -path '*/oiio/*')
 done
+
+throwing='filesystem::([a-oq-z_]|p[b-z]|path_)[a-z_]*'
+while read -r line; do complain "$line: may throw: use base/paths.h"; done < <(
+  grep -rnE "$throwing" --include='*.h' --include='*.cpp' . ../tools |
+    grep -vE '_(test|bench)\.cpp:|_for_test\.h:|^\./fuzz/|^\./base/paths\.(cpp|h):' || true)
 
 map=$(sed -nE 's/^\| `([a-z]+)` \|.*/\1/p' README.md | tr '\n' ' ')
 [ "$map" = "${order[*]} " ] || complain "lib/README.md lists the rooms as \"$map\""

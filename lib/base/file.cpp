@@ -4,16 +4,24 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <utility>
+
+#include "base/paths.h"
+#include "base/text.h"
 
 namespace goniochrome {
 
 namespace {
 
 constexpr std::size_t kPeek = 1 << 16, kChunk = 1 << 20;
+constexpr int kMostLinks = 40;  // as the system has it
 
 std::string reason() {
   return std::strerror(errno);
@@ -34,9 +42,53 @@ std::string folder_of(const std::string& path) {
   return parent.empty() ? "." : parent.string();
 }
 
-// A name in the same folder for the file that is being written.
+// A name in the same folder for the file that is being written. It does not grow with the name of that file, which may
+// be as long as names can be.
 std::string scratch_name(const std::string& path) {
-  return fmt::format("{}/.{}.{}.tmp", folder_of(path), std::filesystem::path(path).filename().string(), getpid());
+  static std::atomic<unsigned> count = 0;
+  timespec now = {};
+  clock_gettime(CLOCK_REALTIME, &now);
+  return fmt::format("{}/.goniochrome-{}-{}-{}.tmp", folder_of(path), getpid(), ++count, now.tv_nsec);
+}
+
+// The number N where `path` leads to /proc/self/fd/N or the like, as /dev/stdout does. Such a name stands for an open
+// file, which must not be replaced by another.
+std::optional<int> named_descriptor(const std::string& path) {
+  std::string text = path;
+  for (int links = 0; links < kMostLinks; ++links) {
+    for (const std::string& folder :
+         {std::string("/dev/fd/"), std::string("/proc/self/fd/"), fmt::format("/proc/{}/fd/", getpid())})
+      if (text.starts_with(folder)) {
+        const auto number = parse_integer(std::string_view(text).substr(folder.size()));
+        if (number && *number >= 0 && *number < 1 << 20) return static_cast<int>(*number);
+      }
+    const auto target = link_target(text);
+    if (!target) return std::nullopt;
+    text = target->starts_with('/') ? *target : folder_of(text) + "/" + *target;
+  }
+  return std::nullopt;
+}
+
+// The file that a link leads to, be it there or not. Error: the links go round in a circle.
+Result<std::string> file_behind(const std::string& path) {
+  std::string file = path;
+  for (int links = 0; links < kMostLinks; ++links) {
+    const auto target = link_target(file);
+    if (!target) return file;
+    file = target->starts_with('/') ? *target : folder_of(file) + "/" + *target;
+  }
+  errno = ELOOP;
+  return cannot_be_written(path);
+}
+
+// Gives the new file the mode of the old one, and its owner where that is allowed.
+void take_over(int descriptor, const struct stat& old) {
+  if (fchown(descriptor, old.st_uid, old.st_gid) != 0 && fchown(descriptor, static_cast<uid_t>(-1), old.st_gid) != 0) {
+    // Only the administrator may give files away.
+  }
+  if (fchmod(descriptor, old.st_mode & 0777) != 0) {
+    // Some file systems have no modes; the file is still good.
+  }
 }
 
 // The mode a newly created file would get: 0666 less the umask.
@@ -108,28 +160,45 @@ Result<std::string> file_content(const std::string& path) {
   return file.rest(std::string::npos);
 }
 
+namespace {
+
+// A stream onto an open file, a device or a pipe, which is written in place.
+Result<OutputFile> written_in_place(int descriptor, const std::string& path,
+                                    const std::function<OutputFile(std::FILE*)>& made) {
+  std::FILE* stream = descriptor < 0 ? nullptr : fdopen(descriptor, "wb");
+  if (!stream) return cannot_be_written(path);
+  return made(stream);
+}
+
+}  // namespace
+
 // An unnamed file (O_TMPFILE) is gone with the process, however it ends; only commit() gives it a name. File systems
 // without unnamed files get a dot file, removed by the destructor.
 Result<OutputFile> OutputFile::create(const std::string& path) {
   if (path.empty() || path == "-") return OutputFile("", "", stdout);
-  if (std::filesystem::is_directory(path)) return is_a_folder(path);
-  if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path)) {
-    // A device or a named pipe is written in place.
-    std::FILE* stream = std::fopen(path.c_str(), "wb");
-    if (!stream) return cannot_be_written(path);
-    return OutputFile("", "", stream);
-  }
-  int fd = open(folder_of(path).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  const auto in_place = [](std::FILE* stream) { return OutputFile("", "", stream); };
+  if (const auto number = named_descriptor(path))
+    return written_in_place(fcntl(*number, F_DUPFD_CLOEXEC, STDERR_FILENO + 1), path, in_place);
+  struct stat old;
+  const bool there = stat(path.c_str(), &old) == 0;
+  if (!there && errno != ENOENT) return cannot_be_written(path);
+  if (there && S_ISDIR(old.st_mode)) return is_a_folder(path);
+  if (there && !S_ISREG(old.st_mode)) return written_in_place(open(path.c_str(), O_WRONLY | O_CLOEXEC), path, in_place);
+  if (there && access(path.c_str(), W_OK) != 0) return cannot_be_written(path);
+  GONIO_ASSIGN(const std::string file, file_behind(path));
+  int fd = open(folder_of(file).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   std::string scratch;
   if (fd < 0 && (errno == EOPNOTSUPP || errno == EISDIR)) {
-    scratch = scratch_name(path);
-    fd = open(scratch.c_str(), O_CREAT | O_TRUNC | O_RDWR | O_CLOEXEC, 0600);
+    scratch = scratch_name(file);
+    fd = open(scratch.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0600);
   }
   if (fd < 0) return cannot_be_written(path);
-  if (fchmod(fd, creation_mode()) != 0) {
+  if (there) {
+    take_over(fd, old);
+  } else if (fchmod(fd, creation_mode()) != 0) {
     // Some file systems have no modes; the file is still good.
   }
-  return OutputFile(path, scratch, fdopen(fd, "w+b"));
+  return OutputFile(file, scratch, fdopen(fd, "w+b"));
 }
 
 OutputFile::OutputFile(OutputFile&& other) noexcept

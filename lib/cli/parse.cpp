@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <iterator>
 #include <map>
 
 #include "base/text.h"
@@ -57,6 +58,7 @@ struct Setter {
   }
   Result<void> operator()(std::string* target) const {
     const std::string& text = texts.back();
+    if (text.empty()) return usage_error("{} is empty: give {}", dashed(option), option.value);
     if (!option.choices.empty() && std::ranges::find(option.choices, text) == option.choices.end())
       return usage_error("{} is \"{}\": give {}", dashed(option), text, joined(option.choices, ", "));
     *target = text;
@@ -79,6 +81,8 @@ struct Setter {
     return {};
   }
   Result<void> operator()(std::vector<std::string>* target) const {
+    for (const std::string& text : texts)
+      if (text.empty()) return usage_error("{} is empty: give {}", dashed(option), option.value);
     *target = texts;
     return {};
   }
@@ -115,12 +119,16 @@ Result<void> parse(const ToolSpec& spec, const std::vector<std::string>& argumen
              names, [&texts, &option](const std::string& text) { texts[option.name].push_back(text); })
           ->trigger_on_parse();
   }
-  std::vector<std::string> words;
-  if (spec.inputs) app.add_option("inputs", words);
-
+  // The library has a syntax of its own for words in brackets where it takes positional arguments, so it takes none:
+  // what it leaves over are the positional words, and unknown options. After "--" all words are positional.
+  const auto separator = std::ranges::find(arguments, "--");
+  // It takes the next word for the value of "--name=".
+  for (const Option& option : spec.options)
+    if (!option.value.empty() && std::find(arguments.begin(), separator, dashed(option) + "=") != separator)
+      return usage_error("{} is empty: give {}", dashed(option), option.value);
   try {
     // CLI11 takes the arguments last first.
-    std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
+    std::vector<std::string> reversed(std::make_reverse_iterator(separator), arguments.rend());
     app.parse(reversed);
   } catch (const CLI::ArgumentMismatch& mismatch) {
     const std::string name = std::string(mismatch.what()).substr(0, std::string(mismatch.what()).find(':'));
@@ -128,13 +136,14 @@ Result<void> parse(const ToolSpec& spec, const std::vector<std::string>& argumen
   } catch (const CLI::ParseError& error) {
     return usage_error("{}", error.what());
   }
-  for (const std::string& word : app.remaining()) {
-    if (word.size() > 1 && word[0] == '-') return unknown_option(spec, word);
-    return usage_error("\"{}\" is one word too many: {} takes no input files", word, spec.name);
-  }
+  std::vector<std::string> words = app.remaining();
   for (const std::string& word : words)
-    if (word.size() > 1 && word[0] == '-' && std::ranges::find(arguments, "--") == arguments.end())
-      return unknown_option(spec, word);
+    if (word.size() > 1 && word[0] == '-') return unknown_option(spec, word);
+  if (separator != arguments.end()) words.insert(words.end(), separator + 1, arguments.end());
+  if (!spec.inputs && !words.empty())
+    return usage_error("\"{}\" is one word too many: {} takes no input files", words.front(), spec.name);
+  if (std::ranges::find(words, "") != words.end())
+    return usage_error("an argument is empty: give {}, or - for standard input", spec.inputs->value);
 
   for (const Option& option : spec.options) {
     const auto given = texts.find(option.name);

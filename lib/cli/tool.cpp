@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -9,7 +10,9 @@
 #include "base/file.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "cli/outputs.h"
 #include "cli/parse.h"
+#include "cli/process.h"
 
 namespace goniochrome::cli {
 
@@ -128,13 +131,16 @@ Result<void> Session::write_report() const {
 
 int tool_main(int argc, char** argv, const ToolSpec& table, const CommonOptions& common,
               const std::function<Result<Verdict>(Session&)>& run) {
+  open_closed_descriptors();
+  expect_memory_to_run_out(table.name);
   Requests requests;
   ToolSpec spec = table;
   spec.flag("help,h", &requests.help, "print this help");
   spec.flag("version", &requests.version, "print the version");
   spec.option("generate", "TEXT", "man", &requests.generate, "print a text made from the table of options")
       .one_of({"man", "completion"});
-  const std::vector<std::string> arguments(argv + 1, argv + argc);
+  // Linux starts a program without any argument, its name included, where the caller wants that.
+  const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
   // These three answer whatever else is on the line, and even where a required option is missing.
   for (const std::string& word : arguments) {
     if (word == "--") break;
@@ -146,6 +152,7 @@ int tool_main(int argc, char** argv, const ToolSpec& table, const CommonOptions&
   try {
     if (const auto parsed = parse(spec, arguments); !parsed.ok()) return fail(spec.name, parsed.error());
     if (!requests.generate.empty()) return generate(spec, requests.generate);
+    if (const auto checked = check_outputs(spec); !checked.ok()) return fail(spec.name, checked.error());
     set_threads(common.threads);
     Session session(spec.name, command_line(spec.name, arguments), common);
     const auto verdict = run(session);
@@ -156,6 +163,7 @@ int tool_main(int argc, char** argv, const ToolSpec& table, const CommonOptions&
   } catch (const std::bad_alloc&) {
     return fail(spec.name, {ErrorKind::kInput, "out of memory: the input is too large for this machine"});
   } catch (const std::exception& bug) {
+    if (is_short_of_memory()) return fail(spec.name, input_error("out of memory: {}", bug.what()));
     return fail(spec.name,
                 {ErrorKind::kBug, fmt::format("internal error: {}: please report it with the command", bug.what())});
   }

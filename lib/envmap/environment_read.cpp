@@ -3,8 +3,8 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 
+#include "base/paths.h"
 #include "envmap/environment.h"
 #include "image/color_space.h"
 
@@ -224,8 +224,7 @@ Result<std::vector<std::string>> face_paths(const std::string& pattern) {
   const auto filled = [&](const char* face) { return std::string(pattern).replace(at, 6, face); };
   std::string tried;
   for (const auto& spelling : kSpellings) {
-    std::error_code ignored;
-    if (!std::filesystem::exists(filled(spelling[0]), ignored)) {
+    if (!is_there(filled(spelling[0]))) {
       tried += (tried.empty() ? "" : ", ") + filled(spelling[0]);
       continue;
     }

@@ -1,9 +1,9 @@
 #include "formats/batches.h"
 
 #include <algorithm>
-#include <filesystem>
 
 #include "base/clock.h"
+#include "base/paths.h"
 
 namespace goniochrome::formats {
 
@@ -65,9 +65,8 @@ Result<std::vector<paint::Paint>> PaintBatches::next(const std::function<void(co
 }
 
 PaintReference paint_reference(const std::string& text) {
-  std::error_code unknown;
   const auto hash = text.rfind('#');
-  if (hash == std::string::npos || std::filesystem::exists(text, unknown)) return {text, std::nullopt};
+  if (hash == std::string::npos || is_there(text)) return {text, std::nullopt};
   return {text.substr(0, hash), text.substr(hash + 1)};
 }
 

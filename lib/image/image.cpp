@@ -12,6 +12,7 @@
 
 #include "base/child.h"
 #include "base/file.h"
+#include "base/paths.h"
 #include "image/hdr.h"
 #include "image/image.h"
 #include "image/internal/content_format.h"
@@ -28,8 +29,7 @@ constexpr int kMostChannels = 1024;  // of one picture
 // The module's path: in $GONIOCHROME_MODULE_PATH where that is set, else in ../lib/goniochrome beside the program.
 std::filesystem::path module_path() {
   if (const char* folder = std::getenv("GONIOCHROME_MODULE_PATH")) return std::filesystem::path(folder) / kModuleName;
-  std::error_code ignored;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", ignored);
+  const std::filesystem::path program = link_target("/proc/self/exe").value_or("");
   return program.parent_path().parent_path() / "lib" / "goniochrome" / kModuleName;
 }
 

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "base/paths.h"
 #include "base/text.h"
 
 namespace goniochrome::prefilter {
@@ -49,11 +50,8 @@ const T* attribute(const image::ImagePart& part, const std::string& name) {
 
 Result<LobeCache> LobeCache::open(const std::string& folder, const envmap::Environment& env,
                                   const PrefilterRequest& request, const std::string& version) {
-  std::error_code failure;
-  std::filesystem::create_directories(folder, failure);
-  if (!std::filesystem::is_directory(folder))
-    return input_error("{}: cannot be a cache: {}: name a folder that can be written", folder,
-                       failure ? failure.message() : "it is not a folder");
+  GONIO_TRY(make_folder(folder));
+  GONIO_TRY(can_be_written((std::filesystem::path(folder) / "lobe.exr").string()));
   Digest digest;
   digest.add(version);
   digest.add(static_cast<std::uint64_t>(env.layout()));
@@ -74,8 +72,7 @@ std::string LobeCache::path(double exponent, int size) const {
 
 std::optional<envmap::PrefilteredLobe> LobeCache::find(const LobePlan& plan) const {
   const std::string file = path(plan.exponent, plan.size);
-  std::error_code failure;
-  if (!std::filesystem::exists(file, failure)) return std::nullopt;
+  if (!is_there(file)) return std::nullopt;
   auto parts = image::read_exr(file);
   if (!parts.ok() || parts->size() != 1) return std::nullopt;
   image::ImagePart& part = parts->front();

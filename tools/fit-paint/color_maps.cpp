@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "base/paths.h"
 #include "image/surface_file.h"
 
 namespace goniochrome::tool {
@@ -20,9 +21,7 @@ bool is_plain(char c) {
 std::filesystem::path folder_from_output(const Options& options) {
   const std::filesystem::path output = options.output == "-" ? "" : options.output;
   const auto base = output.has_parent_path() ? output.parent_path() : std::filesystem::path(".");
-  std::error_code failed;
-  const auto relative = std::filesystem::proximate(options.color_map, base, failed);
-  return failed ? std::filesystem::path(options.color_map) : relative;
+  return relative_path(options.color_map, base.string());
 }
 
 Result<fit::ColorMapFit> fitted(const paint::Paint& paint, const brdf::MeasuredBrdf* brdf,
@@ -38,12 +37,8 @@ ColorMaps::ColorMaps(const Options& options, cli::Session& session) : options_(o
 
 Result<void> ColorMaps::begin() const {
   if (options_.color_map.empty()) return {};
-  std::error_code failed;
-  std::filesystem::create_directories(options_.color_map, failed);
-  if (!std::filesystem::is_directory(options_.color_map))
-    return input_error("{}: is no folder and cannot be made: {}", options_.color_map,
-                       failed ? failed.message() : "there is a file of that name");
-  return {};
+  GONIO_TRY(make_folder(options_.color_map));
+  return can_be_written((std::filesystem::path(options_.color_map) / "map.exr").string());
 }
 
 // The letters, digits, - and _ of the paint's name. A number follows where two names would become the same.

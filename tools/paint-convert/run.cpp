@@ -2,8 +2,8 @@
 
 #include <cstdlib>
 #include <ctime>
-#include <filesystem>
 
+#include "base/paths.h"
 #include "base/text.h"
 #include "formats.h"
 #include "formats/imported.h"
@@ -32,7 +32,7 @@ Result<std::vector<Input>> surveyed(const Options& options, const SourceSetup& s
     const Prolog prolog = source->prolog();
     setup.prolog.processing.insert(setup.prolog.processing.end(), prolog.processing.begin(), prolog.processing.end());
     setup.prolog.foreign.insert(setup.prolog.foreign.end(), prolog.foreign.begin(), prolog.foreign.end());
-    const bool reopens = paths.size() > 1 && path != "-" && std::filesystem::is_regular_file(path);
+    const bool reopens = paths.size() > 1 && path != "-" && is_plain_file(path);
     inputs.push_back({path, reopens ? nullptr : std::move(source)});
   }
   return inputs;

@@ -1,10 +1,11 @@
 #include "tool.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
+#include <set>
 
 #include "base/file.h"
+#include "base/paths.h"
 #include "base/text.h"
 #include "formats/xml.h"
 #include "page.h"
@@ -50,11 +51,17 @@ Result<void> write_drawing(const std::string& path, bool png, const report::Draw
   return write_file(path, bytes);
 }
 
-// A name that a file may have.
-std::string file_name(std::string name) {
+// A name that a file may have, and that no earlier page has: a number follows where two names would become the same.
+// Long names are cut, to leave room for the number and the ending.
+std::string file_name(std::string name, std::set<std::string>& taken) {
+  constexpr std::size_t kLongest = 200;
   for (char& c : name)
     if (c == '/' || static_cast<unsigned char>(c) < ' ') c = '_';
-  return name.starts_with('.') ? "_" + name : name;
+  if (name.starts_with('.')) name = "_" + name;
+  if (name.size() > kLongest) name = name.substr(0, kLongest);
+  std::string unique = name;
+  for (int n = 2; !taken.insert(unique).second; ++n) unique = fmt::format("{}-{}", name, n);
+  return unique;
 }
 
 void report(const PageInput& input, const std::string& file, cli::Session& session) {
@@ -69,8 +76,10 @@ void report(const PageInput& input, const std::string& file, cli::Session& sessi
 }  // namespace
 
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
-  if (!options.pages.empty() && !std::filesystem::is_directory(options.pages))
-    return input_error("{}: is no folder: make it first", options.pages);
+  if (!options.pages.empty()) {
+    if (!is_folder(options.pages)) return input_error("{}: is no folder: make it first", options.pages);
+    GONIO_TRY(can_be_written(options.pages + "/page." + options.format));
+  }
   GONIO_ASSIGN(const std::vector<paint::Paint> paints, chosen_paints(options));
   GONIO_ASSIGN(const Brdfs brdfs, read_brdfs(options.brdfs));
   for (const auto& [name, brdf] : brdfs)
@@ -80,6 +89,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
 
   std::vector<report::Drawing> rows;
   std::size_t unfitted = 0;
+  std::set<std::string> taken;  // by pages
   for (const paint::Paint& paint : paints) {
     const auto brdf = brdfs.find(paint.name);
     const PageInput input{paint, brdf == brdfs.end() ? nullptr : brdf->second.get(), options.incidence_deg};
@@ -88,7 +98,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
     GONIO_ASSIGN(report::Drawing drawing, as_page ? page_of(input) : row_of_sheet(input));
     std::string file = options.output;
     if (!options.pages.empty()) {
-      file = fmt::format("{}/{}.{}", options.pages, file_name(paint.name), options.format);
+      file = fmt::format("{}/{}.{}", options.pages, file_name(paint.name, taken), options.format);
       GONIO_TRY(write_drawing(file, options.format == "png", drawing));
     } else {
       rows.push_back(std::move(drawing));

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "base/paths.h"
 #include "base/text.h"
 #include "display/display.h"
 #include "envmap/environment.h"
@@ -205,9 +206,8 @@ Result<Source> source_of(const Options& options, const render::Scene& scene, cli
   }
   std::string missing = "is not there";
   for (const std::string& path : candidates) {
-    std::error_code status;
     const bool is_pattern = path.find("{face}") != std::string::npos;
-    const bool there = is_pattern ? envmap::face_paths(path).ok() : std::filesystem::is_regular_file(path, status);
+    const bool there = is_pattern ? envmap::face_paths(path).ok() : is_plain_file(path);
     if (!there && options.check_source.empty()) continue;
     GONIO_ASSIGN(envmap::Environment environment,
                  envmap::Environment::read(path, envmap::Environment::BadPixels::kZero));

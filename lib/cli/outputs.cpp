@@ -1,0 +1,73 @@
+#include "cli/outputs.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <string_view>
+
+#include "base/paths.h"
+
+namespace goniochrome::cli {
+
+namespace {
+
+// The options that name files to write, in all tools.
+constexpr std::array<std::string_view, 7> kOutputs = {"output", "report",  "table",   "plot",
+                                                      "curve",  "picture", "residual"};
+
+struct File {
+  std::string what;  // "--output", or "PAINTS" for a positional word
+  std::string path;
+};
+
+bool writes(const Option& option) {
+  return std::ranges::find(kOutputs, option.name) != kOutputs.end();
+}
+
+bool is_file(const std::string& path) {
+  return !path.empty() && path != "-" && (!is_there(path) || is_plain_file(path));
+}
+
+// The values of the options that take a FILE: those that are written, or those that are read.
+std::vector<File> named_files(const ToolSpec& spec, bool written) {
+  std::vector<File> files;
+  const auto add = [&](const std::string& what, const std::string& path) {
+    if (is_file(path)) files.push_back({what, path});
+  };
+  for (const Option& option : spec.options) {
+    if (option.value != "FILE" || writes(option) != written) continue;
+    if (const auto* one = std::get_if<std::string*>(&option.target)) add("--" + option.name, **one);
+    if (const auto* many = std::get_if<std::vector<std::string>*>(&option.target))
+      for (const std::string& path : **many) add("--" + option.name, path);
+  }
+  if (!written && spec.inputs)
+    for (const std::string& path : *spec.inputs->target) add(spec.inputs->value, path);
+  return files;
+}
+
+// Whether two names lead to one file, be it there or not.
+bool same_file(const std::string& a, const std::string& b) {
+  const auto first = file_identity(a), second = file_identity(b);
+  if (first || second) return first == second;
+  return std::filesystem::path(a).lexically_normal() == std::filesystem::path(b).lexically_normal();
+}
+
+}  // namespace
+
+Result<void> check_outputs(const ToolSpec& spec) {
+  const std::vector<File> outputs = named_files(spec, true), inputs = named_files(spec, false);
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j)
+      if (same_file(outputs[i].path, outputs[j].path))
+        return usage_error("{} and {} are both {}: give each its own file", outputs[j].what, outputs[i].what,
+                           outputs[i].path);
+    for (const File& input : inputs)
+      if (file_identity(input.path) && same_file(outputs[i].path, input.path))
+        return usage_error("{} is {}, which is also read: write to another file, and put it in place afterwards",
+                           outputs[i].what, outputs[i].path);
+    GONIO_TRY(can_be_written(outputs[i].path));
+  }
+  return {};
+}
+
+}  // namespace goniochrome::cli
