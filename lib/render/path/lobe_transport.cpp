@@ -269,6 +269,7 @@ Result<WornPaints> worn_paints(const LobeColumns& columns, const PathScene& path
       first.push_back(part);
     }
     worn.groups.of_part.push_back(group);
+    worn.brushed.push_back(part < scene.anisotropy.size() ? scene.anisotropy[part] : paint::Anisotropy{});
   }
   if (path.floor) {
     GONIO_ASSIGN(auto weights,

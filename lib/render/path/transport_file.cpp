@@ -75,6 +75,8 @@ std::string header_of(const LobeTransport& t) {
     header["weights"].push_back(Json::array());
     for (const color::Rgb& weight : group) header["weights"].back().push_back(rgb_json(weight));
   }
+  header["brushed"] = Json::array();
+  for (const paint::Anisotropy& alpha : t.worn.brushed) header["brushed"].push_back({alpha.alpha_x, alpha.alpha_y});
   for (const BounceProbe& probe : t.probes) header["probes"].push_back(t.places[probe.point]);
   return header.dump();
 }
@@ -187,6 +189,8 @@ class Reader {
           t_.worn.weights.back().push_back(
               {weight.at(0).get<double>(), weight.at(1).get<double>(), weight.at(2).get<double>()});
       }
+      for (const Json& alpha : header.at("brushed"))
+        t_.worn.brushed.push_back({alpha.at(0).get<double>(), alpha.at(1).get<double>()});
       probe_places_ = header.at("probes").get<std::vector<std::uint32_t>>();
     } catch (const std::exception& e) {
       return wrong(fmt::format("the attribute {}: {}", kTransportAttribute, e.what()));
