@@ -93,10 +93,52 @@ def meshes():
     put("obj", "colors.obj", "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nf 1 2 3\nl 1 2\np 1\n")
 
 
+    corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 0, 1)]
+    faces = [(0, 1, 2), (0, 2, 3), (0, 3, 1)]
+    lines = "".join("%g %g %g\n" % c for c in corners)
+    put("off", "plain.off", f"OFF\n4 3 0\n{lines}" + "".join("3 %d %d %d\n" % f for f in faces))
+    put("off", "colors.off", f"COFF\n# made\n4 1 0\n" + "".join("%g %g %g 255 0 0 255\n" % c for c in corners) + "4 0 1 2 3\n")
+    head = ("ply\nformat %s 1.0\ncomment made\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+            "element face 3\nproperty list uchar int vertex_indices\nend_header\n")
+    put("ply", "plain.ply", head % "ascii" + lines + "".join("3 %d %d %d\n" % f for f in faces))
+    for order, name in ("<", "little"), (">", "big"):
+        data = b"".join(struct.pack(order + "fff", *c) for c in corners)
+        data += b"".join(struct.pack(order + "Biii", 3, *f) for f in faces)
+        put("ply", f"{name}.ply", (head % f"binary_{name}_endian").encode() + data)
+    put("stl", "plain.stl", "solid made\n" + "".join(
+        "facet normal 0 0 1\nouter loop\n" + "".join("vertex %g %g %g\n" % corners[i] for i in f) + "endloop\nendfacet\n"
+        for f in faces) + "endsolid made\n")
+    put("stl", "binary.stl", bytes(80) + struct.pack("<I", len(faces)) + b"".join(
+        struct.pack("<12fH", 0, 0, 1, *(v for i in f for v in corners[i]), 0) for f in faces))
+
+
+def pictures():
+    for target, name, *options in [
+            ("image-png", "rgb.png", "-d", "uint8"), ("image-png", "deep.png", "-d", "uint16"),
+            ("image-jpeg", "plain.jpg"),
+            ("image-tiff", "plain.tif", "-d", "uint8", "--compression", "none"),
+            ("image-tiff", "lzw.tif", "-d", "uint16", "--compression", "lzw"),
+            ("image-tiff", "float.tif", "-d", "float", "--compression", "zip"),
+            ("image-tiff", "tiles.tif", "-d", "uint8", "--tile", "16", "16"),
+            ("image-other", "six.ppm", "-d", "uint8"), ("image-other", "plain.dpx", "-d", "uint10"),
+            ("image-other", "plain.webp"), ("image-other", "plain.bmp", "-d", "uint8"),
+            ("image-other", "plain.tga", "-d", "uint8"), ("image-other", "runs.tga", "-d", "uint8", "--compression", "rle")]:
+        path = put(target, name, b"")
+        subprocess.run(["oiiotool", "--pattern", "fill:topleft=1,0,0:bottomright=0,.2,1", "9x5", "3", *options, "-o", path],
+                       check=True)
+    put("image-other", "three.ppm", "P3\n# made\n2 1\n255\n1 2 3 255 0 9\n")
+    put("image-other", "one.pbm", "P1\n3 2\n1 0 1\n0 1 0\n")
+    put("image-other", "turned.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n+X 8 +Y 8\n" + bytes([128, 64, 32, 129]) * 64)
+    put("image-other", "unwanted.iff", b"FOR4\0\0\0\x40CIMGTBHD\0\0\0\x20" + bytes(56))
+    channels = "diffuse.R,diffuse.G,diffuse.B,lobe0.R,lobe0.G,lobe0.B,lobe0.x,lobe0.y,lobe0.z,lobe0.n"
+    subprocess.run(["oiiotool", "--pattern", "constant:color=.1,.2,.3,.1,.1,.1,-1,-1,1,20", "4x4", "10", "-d", "half",
+                    "--chnames", channels, "-o", put("sbrdf-exr", "plain.sbrdf.exr", b"")], check=True)
+
+
 def operators():
     plain = [[[1.0 if c == d == e else 0.0 for e in range(3)] for d in range(3)] for c in range(3)]
     put("operator-json", "plain.json", json.dumps({"name": "plain", "k": plain}))
 
 
-paints(), bases(), measured(), environments(), meshes(), operators()
+paints(), bases(), measured(), environments(), meshes(), pictures(), operators()
 print(sum(f.stat().st_size for f in HERE.glob("corpus/*/*")), "bytes", file=sys.stderr)

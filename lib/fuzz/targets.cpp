@@ -18,6 +18,8 @@
 #include "formats/cxf.h"
 #include "formats/xml.h"
 #include "image/hdr.h"
+#include "image/image.h"
+#include "image/surface_file.h"
 #include "library/index.h"
 #include "mesh/mesh.h"
 
@@ -116,7 +118,20 @@ void read_probe(const std::string& path) {
   for (const float value : (*probe)->image.data) demand(std::isfinite(value), "a radiance that is no number");
 }
 
-void read_obj(const std::string& path) {
+void read_picture(const std::string& path) {
+  const auto part = image::read_image(path, image::Inks::kKept);
+  if (!part.ok()) return demand_message(part.error());
+  const image::Image& image = part->image;
+  demand(image.data.size() == static_cast<std::size_t>(image.width) * image.height * image.channels,
+         "a picture whose size is not that of its pixels");
+}
+
+void read_texture(const std::string& path) {
+  const auto texture = image::read_sbrdf(path);
+  if (!texture.ok()) demand_message(texture.error());
+}
+
+void read_mesh(const std::string& path) {
   const auto mesh = mesh::read_mesh(path);
   if (!mesh.ok()) demand_message(mesh.error());
 }
@@ -137,7 +152,15 @@ const std::vector<FuzzTarget>& fuzz_targets() {
       {"cgats", "a.txt", read_imported<formats::read_cgats>},
       {"measured", "a.brdf", read_measured_file},
       {"env-exr", "a.env.exr", read_env_file},
-      {"obj", "a.obj", read_obj},
+      {"obj", "a.obj", read_mesh},
+      {"off", "a.off", read_mesh},
+      {"ply", "a.ply", read_mesh},
+      {"stl", "a.stl", read_mesh},
+      {"image-png", "a.png", read_picture},
+      {"image-jpeg", "a.jpg", read_picture},
+      {"image-tiff", "a.tif", read_picture},
+      {"image-other", "a.image", read_picture},
+      {"sbrdf-exr", "a.sbrdf.exr", read_texture},
       {"probe-hdr", "a.hdr", read_probe},
       {"operator-json", "a.json", read_operator},
   };

@@ -1,6 +1,7 @@
 #include "image/aov_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "base/json.h"
@@ -92,6 +93,9 @@ Result<AovFile> read_aov_file(const std::string& path) {
   file.exposure_stops = attribute_or<float>(attributes, "goniochrome:exposure", 0);
   file.white_luminance = attribute_or<float>(attributes, "goniochrome:whiteLuminance", 1);
   if (!(file.white_luminance > 0)) file.white_luminance = 1;
+  // Files without the attribute were exposed for the diffuse white.
+  file.automatic_stops = attribute_or<float>(attributes, "goniochrome:automaticExposure",
+                                             static_cast<float>(-std::log2(file.white_luminance)));
   file.samples = attribute_or<int>(attributes, "goniochrome:samples", 1);
   file.environment = text("goniochrome:environment");
   file.command = text("goniochrome:command");

@@ -22,6 +22,8 @@ struct AovFile {
   Image image;  // R G B A and the buffers
   // From the file's header; where it does not tell them, the exposure is 0 and the white is 1.
   double exposure_stops = 0, white_luminance = 1;
+  // What brings the light of the buffers to the exposure of a PNG that is exposed automatically.
+  double automatic_stops = 0;
   int samples = 1;               // in every pixel of the picture; the buffers have one, in the center of the pixel
   Vec3 light{0, 1, 0};           // the light that the buffers aspecular and lambert are relative to
   std::vector<AovLight> lights;  // all lights of the picture

@@ -2,12 +2,19 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
+#include <optional>
 
+#include "base/child.h"
 #include "base/file.h"
 #include "image/hdr.h"
 #include "image/image.h"
+#include "image/internal/content_format.h"
 #include "image/internal/exr.h"
 #include "image/internal/oiio_module.h"
 
@@ -16,6 +23,7 @@ namespace goniochrome::image {
 namespace {
 
 constexpr const char* kModuleName = "goniochrome-oiio.so";
+constexpr int kMostChannels = 1024;  // of one picture
 
 // The module's path: in $GONIOCHROME_MODULE_PATH where that is set, else in ../lib/goniochrome beside the program.
 std::filesystem::path module_path() {
@@ -45,30 +53,34 @@ Result<Module> loaded_module() {
   return loaded;
 }
 
+// A picture on its way from the child process: numbers and texts, one after the other, and then the pixels.
+struct Numbers {
+  std::int32_t width, height, channels, is_integer, has_chromaticities;
+  std::array<float, 8> chromaticities;
+};
+
+void put_text(ChildOutput& output, std::string_view text) {
+  const std::uint64_t size = text.size();
+  output.write(&size, sizeof size);
+  output.write(text.data(), text.size());
+}
+
 struct Decoded {
-  ImagePart part;
-  std::string failure;
+  ChildOutput& output;
+  std::optional<std::string> failure = "the library that reads it said nothing";
 };
 
 void take(void* context, const GoniochromeOiioImage* image) {
-  ImagePart& part = static_cast<Decoded*>(context)->part;
-  part.type = PixelType::kFloat;
-  part.image.width = image->width;
-  part.image.height = image->height;
-  part.image.channels = image->channels;
-  part.image.data.assign(image->pixels,
-                         image->pixels + static_cast<std::size_t>(image->width) * image->height * image->channels);
-  part.image.channel_names.assign(image->channel_names, image->channel_names + image->channels);
-  const auto keep = [&](const char* name, const std::string& value) {
-    if (!value.empty()) part.attributes[name] = value;
-  };
-  keep("oiio:ColorSpace", image->color_space);
-  keep("colorInteropID", image->interop_id);
-  keep("envmap", image->envmap);
-  if (image->icc_profile) keep("ICCProfile", std::string(image->icc_profile, image->icc_size));
-  part.attributes["goniochrome:integer"] = image->is_integer;
-  if (image->chromaticities)
-    part.attributes["chromaticities"] = std::vector<float>(image->chromaticities, image->chromaticities + 8);
+  auto& decoded = *static_cast<Decoded*>(context);
+  ChildOutput& output = decoded.output;
+  Numbers numbers{image->width, image->height, image->channels, image->is_integer, image->chromaticities ? 1 : 0, {}};
+  if (image->chromaticities) std::copy_n(image->chromaticities, 8, numbers.chromaticities.begin());
+  output.write(&numbers, sizeof numbers);
+  for (const char* text : {image->color_space, image->interop_id, image->envmap}) put_text(output, text);
+  put_text(output, image->icc_profile ? std::string_view(image->icc_profile, image->icc_size) : std::string_view());
+  for (int c = 0; c < image->channels; ++c) put_text(output, image->channel_names[c]);
+  output.write(image->pixels, sizeof(float) * static_cast<std::size_t>(image->width) * image->height * image->channels);
+  decoded.failure.reset();
 }
 
 void fail(void* context, const char* reason) {
@@ -77,55 +89,127 @@ void fail(void* context, const char* reason) {
   static_cast<Decoded*>(context)->failure = text;
 }
 
-Result<ImagePart> read_through_module(const std::string& path, const std::string& shown, Inks inks) {
-  GONIO_ASSIGN(const Module module, loaded_module());
-  Decoded decoded;
-  module.read(path.c_str(), inks == Inks::kKept, &decoded, take, fail);
-  if (!decoded.failure.empty()) return input_error("{}: cannot be read as an image: {}", shown, decoded.failure);
-  return std::move(decoded.part);
+// Takes the picture that the child wrote apart again. Nothing in it is sure but its size.
+class Parcel {
+ public:
+  explicit Parcel(std::string_view bytes) : rest_(bytes) {}
+
+  bool take_bytes(void* to, std::size_t size) {
+    if (rest_.size() < size) return false;
+    std::memcpy(to, rest_.data(), size);
+    rest_.remove_prefix(size);
+    return true;
+  }
+  bool take_text(std::string& text) {
+    std::uint64_t size = 0;
+    if (!take_bytes(&size, sizeof size) || size > rest_.size()) return false;
+    text = rest_.substr(0, size);
+    rest_.remove_prefix(size);
+    return true;
+  }
+  std::size_t left() const { return rest_.size(); }
+
+ private:
+  std::string_view rest_;
+};
+
+std::optional<ImagePart> unpacked(std::string_view bytes) {
+  Parcel parcel(bytes);
+  Numbers numbers;
+  if (!parcel.take_bytes(&numbers, sizeof numbers)) return std::nullopt;
+  if (numbers.width < 1 || numbers.height < 1 || numbers.channels < 1 || numbers.channels > kMostChannels)
+    return std::nullopt;
+  ImagePart part;
+  part.type = PixelType::kFloat;
+  part.image.width = numbers.width, part.image.height = numbers.height, part.image.channels = numbers.channels;
+  for (const char* key : {"oiio:ColorSpace", "colorInteropID", "envmap", "ICCProfile"}) {
+    std::string text;
+    if (!parcel.take_text(text)) return std::nullopt;
+    if (!text.empty()) part.attributes[key] = text;
+  }
+  part.image.channel_names.resize(static_cast<std::size_t>(numbers.channels));
+  for (std::string& name : part.image.channel_names)
+    if (!parcel.take_text(name)) return std::nullopt;
+  part.attributes["goniochrome:integer"] = static_cast<int>(numbers.is_integer);
+  if (numbers.has_chromaticities != 0)
+    part.attributes["chromaticities"] =
+        std::vector<float>(numbers.chromaticities.begin(), numbers.chromaticities.end());
+  const std::size_t samples = parcel.left() / sizeof(float);
+  const std::size_t row = static_cast<std::size_t>(numbers.width) * static_cast<std::size_t>(numbers.channels);
+  if (parcel.left() % sizeof(float) != 0 || samples % row != 0 ||
+      samples / row != static_cast<std::size_t>(numbers.height))
+    return std::nullopt;
+  part.image.data.resize(samples);
+  parcel.take_bytes(part.image.data.data(), samples * sizeof(float));
+  return part;
 }
 
-// Reads standard input, kept as a file in memory, because the library reads files by name.
-Result<ImagePart> read_content_through_module(const std::string& content, Inks inks) {
-  const int fd = memfd_create("goniochrome", MFD_CLOEXEC);
-  if (fd < 0) return input_error("standard input: cannot be kept in memory");
-  std::size_t done = 0;
-  while (done < content.size()) {
-    const ssize_t count = write(fd, content.data() + done, content.size() - done);
-    if (count <= 0) break;
-    done += static_cast<std::size_t>(count);
+// A file in memory, which has a path for as long as this object lives: the library reads files by name.
+class MemoryFile {
+ public:
+  explicit MemoryFile(std::string_view content) : descriptor_(memfd_create("goniochrome", MFD_CLOEXEC)) {
+    while (descriptor_ >= 0 && !content.empty()) {
+      const ssize_t count = write(descriptor_, content.data(), content.size());
+      if (count <= 0) return;
+      content.remove_prefix(static_cast<std::size_t>(count));
+    }
+    whole_ = descriptor_ >= 0;
   }
-  auto part = done == content.size() ? read_through_module(fmt::format("/proc/self/fd/{}", fd), "standard input", inks)
-                                     : Result<ImagePart>(input_error("standard input: cannot be kept in memory"));
-  close(fd);
-  return part;
+  MemoryFile(const MemoryFile&) = delete;
+  ~MemoryFile() {
+    if (descriptor_ >= 0) close(descriptor_);
+  }
+  bool whole() const { return whole_; }
+  std::string path() const { return fmt::format("/proc/self/fd/{}", descriptor_); }
+
+ private:
+  int descriptor_;
+  bool whole_ = false;
+};
+
+// Addresses for one picture: the library's own, and 8 times the floats that a file of its size can hold.
+ChildLimits limits_for(std::size_t file_bytes) {
+  constexpr std::size_t kOwn = std::size_t{1} << 29, kFloatsAByte = 1100;
+  const std::size_t floats = std::min(kMostSamples, kFloatsAByte * file_bytes);
+  return {kOwn + 8 * sizeof(float) * floats, 60 + static_cast<int>(file_bytes >> 20)};
+}
+
+// The module is loaded into this process, once for all pictures; only what a file can harm runs in a child process.
+Result<ImagePart> read_through_module(std::string content, const std::string& format, const std::string& name,
+                                      Inks inks) {
+  GONIO_ASSIGN(const Module module, loaded_module());
+  const std::size_t size = content.size();
+  const MemoryFile file(content);
+  if (!file.whole()) return input_error("{}: is too large for the memory there is", name);
+  content = std::string();
+  GONIO_ASSIGN(const ChildBytes bytes, made_by_child(name, limits_for(size), [&](ChildOutput& output) -> Result<void> {
+                 Decoded decoded{output};
+                 module.read(file.path().c_str(), format.c_str(), size, inks == Inks::kKept, &decoded, take, fail);
+                 if (!decoded.failure) return {};
+                 return input_error("{}: cannot be read as an image: {}", name, *decoded.failure);
+               }));
+  auto part = unpacked(bytes.view());
+  if (!part)
+    return input_error("{}: the library that reads it lost its way: the file is damaged: export it again", name);
+  return std::move(*part);
 }
 
 }  // namespace
 
 Result<ImagePart> read_image(const std::string& path, Inks inks) {
   GONIO_ASSIGN(InputFile input, InputFile::open(path));
-  const bool piped = path.empty() || path == "-";
-  std::string content;
-  if (piped) {
-    GONIO_ASSIGN(content, input.rest(std::string::npos));
-  }
-  GONIO_ASSIGN(const std::string_view first, input.peek());
-  const std::string_view head = piped ? content : first;
-  if (head.empty()) return input_error("{}: is empty: name an image", input.name());
-  const bool exr = is_exr(head), radiance = is_radiance(head);
-  if (!piped && (exr || radiance)) {
-    GONIO_ASSIGN(content, input.rest(std::string::npos));
-  }
-  if (exr) {
+  GONIO_ASSIGN(std::string content, input.rest(std::string::npos));
+  if (content.empty()) return input_error("{}: is empty: name an image", input.name());
+  GONIO_ASSIGN(const std::string format, content_format(content, input.name()));
+  if (format == "openexr") {
     GONIO_ASSIGN(auto parts, decoded_exr(content, input.name()));
     return std::move(parts.front());
   }
-  if (radiance) {
+  if (format == "hdr") {
     GONIO_ASSIGN(auto part, decoded_hdr(content, input.name()));
     if (part) return std::move(*part);
   }
-  return piped ? read_content_through_module(content, inks) : read_through_module(path, input.name(), inks);
+  return read_through_module(std::move(content), format, input.name(), inks);
 }
 
 }  // namespace goniochrome::image

@@ -1,5 +1,5 @@
-// Float images in memory, and the files they come from and go to. OpenEXR, Radiance HDR and PNG are handled here;
-// everything else is read through OpenImageIO, which is loaded only when such a file is met (it takes 300 ms to start).
+// Float images in memory, and the files they come from and go to. OpenEXR and Radiance HDR are read here; PNG, JPEG, TIFF,
+// PNM, DPX, WebP, BMP and TGA through OpenImageIO, loaded on first need (300 ms) and run in a child process.
 // The path "-" is standard input or standard output everywhere.
 #pragma once
 
@@ -64,9 +64,9 @@ Result<void> write_exr(const std::string& path, const std::vector<ImagePart>& pa
 // ink.
 enum class Inks { kAsRgb, kKept };
 
-// The first part of an image of any format, as it is stored. `attributes` has `oiio:ColorSpace`, `chromaticities`,
-// `colorInteropID`, `ICCProfile` and `envmap` ("latlong" or "cube") where the file has them, and `goniochrome:integer`,
-// which is 1 where the file holds whole numbers; these are 0..1 here.
+// The first part of an image, as it is stored. Its content tells the format, not its name; others are refused.
+// `attributes` has `oiio:ColorSpace`, `chromaticities`, `colorInteropID`, `ICCProfile` and `envmap` ("latlong" or
+// "cube") where the file has them, and `goniochrome:integer`, which is 1 where it holds whole numbers; these are 0..1.
 Result<ImagePart> read_image(const std::string& path, Inks inks = Inks::kAsRgb);
 
 // Writes display-referred values 0..1, rounded and clamped, as a PNG of 8 bits and RGB, with text entries for

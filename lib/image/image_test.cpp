@@ -190,9 +190,56 @@ TEST_F(ImageFile, AnUnknownFormatIsRefusedByName) {
   ASSERT_TRUE(write_file(path("notes.hdr"), "these are notes").ok());
   const auto read = read_image(path("notes.hdr"));
   ASSERT_FALSE(read.ok());
-  EXPECT_THAT(read.error().message, HasSubstr("notes.hdr: cannot be read as an image"));
+  EXPECT_THAT(read.error().message, HasSubstr("notes.hdr: is none of the image formats that are read here"));
   EXPECT_FALSE(read_image(path("absent.hdr")).ok());
   EXPECT_THAT(read_image(path("")).error().message, HasSubstr("is a folder"));
+}
+
+TEST_F(ImageFile, TheContentTellsTheFormatAndTheNameDoesNot) {
+  ASSERT_TRUE(write_png(path("x.iff"), {2, 1, 3, {1, 0, 0, 0, 0, 1}, {}}).ok());
+  const auto read = read_image(path("x.iff"));
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_EQ(read->image.data, (std::vector<float>{1, 0, 0, 0, 0, 1}));
+}
+
+// OpenImageIO reads all of these.
+TEST_F(ImageFile, WhatIsNotWantedIsRefusedByItsNameWhateverItIsCalled) {
+  using std::string_literals::operator""s;
+  const std::string tiff = "II*\0\x08\0\0\0\x01\0"s, rest(200, '\0');
+  for (const auto& [content, what] : std::vector<std::pair<std::string, std::string>>{
+           {"FOR4\0\0\0\x40"
+            "CIMG"s +
+                rest,
+            "IFF"},
+           {"GIF89a" + rest, "GIF"},
+           {"8BPS" + rest, "Photoshop"},
+           {"\0\0\0\x0cjP  "s + rest, "JPEG 2000"},
+           {"\0\0\0\x18"
+            "ftypheic"s +
+                rest,
+            "HEIF"},
+           {"\x01\xda"s + rest, "SGI"},
+           {std::string(128, '\0') + "DICM" + rest, "DICOM"},
+           {"II*\0\x10\0\0\0CR\x02\0"s + rest, "camera's raw"},
+           {tiff + "\xfe\0\x04\0\x01\0\0\0\x01\0\0\0"s + rest, "camera's raw"},
+           {tiff + "\x12\xc6\x01\0\x04\0\0\0\x01\x04\0\0"s + rest, "camera's raw"},
+           {"<?xml version" + rest, "XML"},
+           {"RIFF\0\0\0\0WAVE"s + rest, "none of the image formats"}}) {
+    ASSERT_TRUE(write_file(path("x.png"), content).ok());
+    const auto read = read_image(path("x.png"));
+    ASSERT_FALSE(read.ok()) << what;
+    EXPECT_THAT(read.error().message, HasSubstr("x.png: "));
+    EXPECT_THAT(read.error().message, HasSubstr(what));
+    EXPECT_THAT(read.error().message, HasSubstr("convert it to EXR"));
+  }
+}
+
+// A header alone, of a picture of 10000 x 10000: what it says must not be taken for granted.
+TEST_F(ImageFile, AForgedSizeIsRefusedBeforeItTakesMemory) {
+  ASSERT_TRUE(write_file(path("x.ppm"), "P6\n10000 10000\n255\n" + std::string(100, 'x')).ok());
+  const auto read = read_image(path("x.ppm"));
+  ASSERT_FALSE(read.ok());
+  EXPECT_THAT(read.error().message, HasSubstr("more pixels than a file of its size can hold"));
 }
 
 // The textbook writer opens the target itself: a full disk leaves a stump that looks like a file.

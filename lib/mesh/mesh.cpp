@@ -252,7 +252,7 @@ Result<Mesh> read_mesh(const std::string& path) {
     return mesh_from_polygons(polygons, path);
   }
   if (extension == ".off" || extension == ".ply" || extension == ".stl") {
-    GONIO_ASSIGN(const Polygons polygons, polygons_from_file(path, file.stem().string()));
+    GONIO_ASSIGN(const Polygons polygons, polygons_from_file(path, extension, file.stem().string()));
     return mesh_from_polygons(polygons, path);
   }
   return input_error("{}: \"{}\" is no mesh format known here: give .obj (with parts), .off, .ply or .stl", path,

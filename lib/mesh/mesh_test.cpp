@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <map>
 
 #include "base/angles.h"
+#include "base/clock.h"
 #include "base/scratch_for_test.h"
 #include "mesh/internal/polygons.h"
 
@@ -93,7 +95,7 @@ TEST_F(MeshFiles, ErrorsNameLineValueAndRemedy) {
   EXPECT_THAT(obj_error(kSquare + "f 1 2 \\\n3 \\\nx\n"), HasSubstr("t.obj:7: \"x\"")) << "continued lines count";
   EXPECT_THAT(read_mesh("car.fbx").error().message, HasSubstr("\".fbx\" is no mesh format"));
   EXPECT_THAT(read_mesh("/nowhere/car.obj").error().message, HasSubstr("No such file"));
-  EXPECT_THAT(read_mesh("/nowhere/car.ply").error().message, HasSubstr("no such file"));
+  EXPECT_THAT(read_mesh("/nowhere/car.ply").error().message, HasSubstr("No such file"));
   EXPECT_THAT(read_mesh(file("cut.ply", "ply\nformat ascii 1.0\nelement vertex 3\n")).error().message,
               HasSubstr("not a whole ply mesh"));
 }
@@ -237,6 +239,25 @@ TEST_F(MeshFiles, ReadsAVehicleRealData) {
   EXPECT_EQ(mesh->repairs.normals_made, 0);
   EXPECT_TRUE(std::any_of(mesh->parts.begin(), mesh->parts.end(),
                           [](const MeshPart& p) { return p.name == "Body" && p.material == "Paint_Red"; }));
+}
+
+// The library is ended by a signal on the first of these files, and takes 2.4 GB for the second, which has 50 bytes.
+TEST_F(MeshFiles, HardCase_LibraryCrashADamagedFileIsAnError) {
+  const std::string ply =
+      file("a.ply", "ply\nformat ascii 1.0\nproperty float x\nelement vertex 3\nend_header\n0 0 0\n1 0 0\n0 1 0\n");
+  EXPECT_THAT(read_mesh(ply).error().message, HasSubstr("a.ply: the library that reads it crashed on it"));
+  for (const auto& [name, content] : std::map<std::string, std::string>{
+           {"b.off", "OFF\n100000000 100000000 0\n0 0 0\n1 0 0\n0 1 0\n"},
+           {"c.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2000000000 0 1 2\n"},
+           {"d.ply",
+            "ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\n"
+            "property float z\nend_header\n0 0 0\n"},
+           {"e.stl", std::string(80, ' ') + "\xff\xff\xff\x7f" + std::string(50, '\0')}}) {
+    const auto mesh = read_mesh(file(name, content));
+    ASSERT_FALSE(mesh.ok()) << name;
+    EXPECT_THAT(mesh.error().message, HasSubstr(name + ": "));
+  }
+  EXPECT_LT(peak_rss_mb(), 400);
 }
 
 }  // namespace

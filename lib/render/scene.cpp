@@ -18,6 +18,10 @@ double luminance(const color::Rgb& rgb) {
 
 }  // namespace
 
+bool needs_rays(const Scene& scene) {
+  return scene.ground || std::ranges::any_of(scene.emission, [](const color::Rgb& e) { return e != color::Rgb{}; });
+}
+
 std::vector<double> lobe_exponents(const std::vector<paint::LobeFit>& paints) {
   std::vector<double> exponents;
   for (const paint::LobeFit& paint : paints) {
@@ -58,6 +62,20 @@ DiffuseWhite diffuse_white(const envmap::PrefilteredEnvironment* env, const std:
   }
   for (const Light& light : lights) white.luminance += luminance(light.white);
   return white;
+}
+
+double facing_white(const envmap::PrefilteredEnvironment* env, const std::vector<Light>& lights,
+                    const Vec3& direction) {
+  double sum = 0;
+  if (env != nullptr && env->diffuse.map.size > 0) sum = luminance(envmap::bilinear(env->diffuse.map, direction));
+  for (const Light& light : lights) sum += std::max(0.0, dot(light.direction, direction)) * luminance(light.white);
+  return sum;
+}
+
+double metered_white(const envmap::PrefilteredEnvironment* env, const std::vector<Light>& lights,
+                     const Vec3& to_camera) {
+  const double mean = (facing_white(env, lights, {0, 1, 0}) + facing_white(env, lights, to_camera)) / 2;
+  return mean > 0 ? mean : diffuse_white(env, lights).luminance;
 }
 
 }  // namespace goniochrome::render

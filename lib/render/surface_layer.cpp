@@ -27,6 +27,7 @@ SurfaceLayer::SurfaceLayer(const Scene& scene, std::vector<PartSurface> surfaces
   std::vector<bool> parts;
   for (const PartSurface& surface : surfaces_) {
     parts.push_back(surface.texture != nullptr);
+    empty_ = empty_ && surface.texture == nullptr && surface.color_map == nullptr;
     mapped_ = mapped_ || (surface.color_map != nullptr && !scene.lights.empty());
     if (surface.texture == nullptr) continue;
     textured_ = true;
@@ -114,20 +115,35 @@ TexturePlace SurfaceLayer::placed(const VisiblePoint& point, std::size_t number)
   return place;
 }
 
+namespace {
+
+SurfaceLayer::Place seen_texels(const brdf::SbrdfTexture& texture, const TexturePlace& at) {
+  SurfaceLayer::Place result{{at.tangent[0], at.tangent[1], at.tangent[2]}, {}};
+  for (const brdf::TextureTap& tap : brdf::texture_taps(texture.width, texture.height, at.u, at.v)) {
+    if (tap.weight != 0) result.pieces.push_back({brdf::sbrdf_texel(texture, tap.column, tap.row), tap.weight});
+  }
+  return result;
+}
+
+}  // namespace
+
 SurfaceLayer::Place SurfaceLayer::place(const VisiblePoint& point, std::size_t number, const Effects& effects) const {
   const std::size_t which = shading_of(point.part, effects);
   const brdf::SbrdfTexture& texture = which < textures_.size() ? *textures_[which] : means_[which - textures_.size()];
-  const TexturePlace at = placed(point, number);
-  Place result{{at.tangent[0], at.tangent[1], at.tangent[2]}, {}};
-  for (const brdf::TextureTap& tap : brdf::texture_taps(texture.width, texture.height, at.u, at.v)) {
-    if (tap.weight == 0) continue;
-    Piece piece{brdf::sbrdf_texel(texture, tap.column, tap.row), tap.weight};
+  Place result = seen_texels(texture, placed(point, number));
+  for (Piece& piece : result.pieces) {
     std::vector<brdf::LafortuneLobe>& lobes = piece.texel.surface.lobes;
     for (std::size_t i = 0; i < lobes.size(); ++i)
       if ((effects.texture_lobes >> i & 1U) == 0) lobes[i].albedo = {};
-    result.pieces.push_back(std::move(piece));
   }
   return result;
+}
+
+SurfaceLayer::Place SurfaceLayer::place(int part, const MeshPoint& point) const {
+  TexturePlace at = layout_->place(part, point);
+  const double repeat = surface(part).repeat;
+  at.u = static_cast<float>(repeat * at.u), at.v = static_cast<float>(repeat * at.v);
+  return seen_texels(*surface(part).texture, at);
 }
 
 void SurfaceLayer::add_mapped(const std::vector<VisiblePoint>& points, std::vector<color::Rgb>& colors) const {

@@ -9,6 +9,7 @@
 #include "envmap/prefiltered.h"
 #include "fit/paint_fit.h"
 #include "render/renderer.h"
+#include "render/trim.h"
 #include "sketch/sketch.h"
 
 namespace goniochrome::tool {
@@ -105,6 +106,10 @@ Result<PaintDrawing> PaintDrawing::make(const Options& options) {
 Result<std::string> PaintDrawing::png(const paint::Paint& paint) {
   GONIO_ASSIGN(const fit::PaintFit fit, state_->fitter->fit(paint));
   state_->scene.paints.assign(state_->mesh.parts.size(), fit.lobes);
+  const bool with_mirror = state_->scene.env != nullptr && state_->env.mirror.map.size > 0;
+  for (std::size_t part = 0; part < state_->mesh.parts.size(); ++part) {
+    if (const auto trim = render::trim_of(state_->mesh.parts[part], with_mirror)) state_->scene.paints[part] = *trim;
+  }
   GONIO_TRY(state_->renderer->load(state_->scene));
   const render::Camera camera =
       render::Camera::orbit(state_->mesh, 35, 12, kDistance, 30, static_cast<double>(kWidth) / kHeight);

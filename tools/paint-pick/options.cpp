@@ -6,7 +6,8 @@ cli::ToolSpec tool_spec(Options& o) {
   cli::ToolSpec spec{.name = "paint-pick",
                      .summary = "paints from pictures: droppers for face, flop and gloss, palettes and mood boards"};
   spec.description = {
-      "paint-pick puts droppers on pictures of any format and makes a paint of what they find. A dropper is IMAGE@X,Y "
+      "paint-pick puts droppers on pictures (EXR, HDR, PNG, JPEG, TIFF, PNM, DPX, WebP, BMP or TGA) and makes a paint "
+      "of what they find. A dropper is IMAGE@X,Y "
       "or IMAGE@X,Y,RADIUS, in pixels from the upper left. Colors are averaged in linear light over the disc of the "
       "dropper, which has a radius of 5 pixels where none is given. Where only one of face and flop is picked, the "
       "paint is solid.",
@@ -34,7 +35,8 @@ cli::ToolSpec tool_spec(Options& o) {
           "is the paints, or a page where its name ends in .html. The page needs no other file; it shows the pictures, "
           "the droppers on them, and a drawing of every paint.");
   spec.heading = "page of a board";
-  spec.option("mesh,m", "FILE", "testdata/speed-shape.obj", &o.mesh, "mesh that the paints are drawn on")
+  spec.option("mesh,m", "FILE", "testdata/speed-shape.obj", &o.mesh,
+              "mesh that the paints are drawn on; glass, tires and the like are dressed")
       .more("Without it they are drawn on a ball.");
   spec.option("env,e", "FILE", "studio.env.exr", &o.env, "prefiltered environment that the paints are drawn under")
       .more("Without it they are drawn under two lamps.");

@@ -15,7 +15,7 @@ cli::ToolSpec tool_spec(Options& o) {
       "refused, and the message tells their condition number.",
       "The output is an EXR in linear Rec.2020. Colors may become negative where the old light cannot have shown them. "
       "They are counted, and kept unless --negative says zero."};
-  spec.inputs = {"IMAGE", "an HDR image of any format; - or none is standard input", &o.image, 0, 1};
+  spec.inputs = {"IMAGE", "an HDR image (EXR, HDR, TIFF or the like); - or none is standard input", &o.image, 0, 1};
   spec.heading = "light";
   spec.option("from", "LIGHT", "D65", &o.from, "illuminant of the image: R,G,B or D65, D50, A");
   spec.option("to", "LIGHT", "0.2,0.4,1", &o.to, "illuminant to change to: R,G,B or D65, D50, A");

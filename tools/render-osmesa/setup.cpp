@@ -6,6 +6,7 @@
 
 #include "base/angles.h"
 #include "base/text.h"
+#include "paints.h"
 #include "render/engine.h"
 
 namespace goniochrome::tool {
@@ -122,6 +123,61 @@ Result<color::ReflectionOperator> parse_operator(const std::string& text) {
   const auto share = parse_number(trimmed(words[1]));
   if (!share || *share < 0 || *share > 1) return wrong();
   return color::with_transfer(full, {*share, *share, *share});
+}
+
+Result<FloorRequest> parse_floor(const std::string& text, bool usual) {
+  FloorRequest request;
+  std::string what = text;
+  if (const auto comma = text.rfind(','); comma != std::string::npos) {
+    request.height = parse_number(trimmed(text.substr(comma + 1)));
+    if (!request.height)
+      return usage_error("--floor is \"{}\": after the comma write the height of the floor, a number", text);
+    what = text.substr(0, comma);
+  }
+  if (what == "auto" && !request.height) {
+    request.kind = usual ? FloorRequest::Kind::kShadow : FloorRequest::Kind::kNone;
+  } else if (what == "none" && !request.height) {
+    request.kind = FloorRequest::Kind::kNone;
+  } else if (what == "shadow") {
+    request.kind = FloorRequest::Kind::kShadow;
+  } else if (what.empty() || what == "none" || what == "auto") {
+    return usage_error("--floor is \"{}\": write none, shadow or a paint, and after it the height of the floor", text);
+  } else {
+    request.kind = FloorRequest::Kind::kPaint;
+    request.paint = what;
+  }
+  return request;
+}
+
+Result<std::vector<Emission>> parse_emissions(const std::vector<std::string>& texts) {
+  std::vector<Emission> all;
+  for (const std::string& text : texts) {
+    const auto equals = text.rfind('=');
+    const auto rgb = equals == std::string::npos ? std::nullopt : numbers(text.substr(equals + 1));
+    if (equals == 0 || !rgb || rgb->size() != 3) return usage_error("--emit is \"{}\": write PART=R,G,B", text);
+    if (std::min({(*rgb)[0], (*rgb)[1], (*rgb)[2]}) < 0)
+      return usage_error("--emit is \"{}\": light cannot be negative", text);
+    all.push_back({text.substr(0, equals), {(*rgb)[0], (*rgb)[1], (*rgb)[2]}});
+  }
+  return all;
+}
+
+Result<void> set_ground(const FloorRequest& request, const Options& options, render::Scene& scene) {
+  if (request.kind == FloorRequest::Kind::kNone) return {};
+  const mesh::Box box = mesh::bounding_box(*scene.mesh);
+  const Vec3 size = box.high - box.low, middle = 0.5 * (box.low + box.high);
+  render::Ground ground;
+  ground.height = request.height.value_or(box.low.y);
+  if (request.kind == FloorRequest::Kind::kPaint) {
+    ground.kind = render::Ground::Kind::kPaint;
+    GONIO_ASSIGN(ground.paint, lobes_of_paint(request.paint));
+  } else {
+    if (scene.env == nullptr) return usage_error("--floor shadow shows the ground of an environment: give --env");
+    const double eye = options.eye_height > 0 ? options.eye_height : std::max({size.x, size.y, size.z}) / 3;
+    ground.probe_eye = {middle.x, ground.height + eye, middle.z};
+  }
+  scene.ground = std::move(ground);
+  return {};
 }
 
 Result<std::vector<Shot>> shots_of(const Options& options, const mesh::Mesh& mesh, const PictureSize& size,

@@ -10,6 +10,7 @@
 #include "render/effects.h"
 #include "render/path/transport_shading.h"
 #include "render/path/visible_surface.h"
+#include "render/surface_layer.h"
 
 namespace goniochrome::tool {
 
@@ -79,9 +80,15 @@ void put_background(const render::Gbuffer& gbuffer, const render::Scene& scene, 
 }  // namespace
 
 Result<TracedView> traced_view(const render::Scene& scene, const envmap::Environment* environment, bool with_maps,
-                               const render::Gbuffer& seen, double white_luminance, cli::Session& session) {
+                               const render::Gbuffer& seen, double white_luminance, int bounces,
+                               cli::Session& session) {
+  if (scene.layer != nullptr && scene.layer->textured())
+    return usage_error("--aov transport holds light by the lobes of paints: leave out --texture");
+  if (scene.layer != nullptr && scene.layer->mapped())
+    session.warn("color maps are left out of the transport: their paints are shown by their lobes");
   render::PathScene path;
   path.scene = &scene, path.environment = environment;
+  path.emission = scene.emission, path.ground = scene.ground;
   GONIO_ASSIGN(const render::LobeColumns columns, render::lobe_columns(scene));
   GONIO_ASSIGN(const render::WornPaints worn, render::worn_paints(columns, path));
   GONIO_ASSIGN(const render::Transport transport, render::Transport::create(path));
@@ -97,6 +104,8 @@ Result<TracedView> traced_view(const render::Scene& scene, const envmap::Environ
   request.tolerance_de00 = session.common().tolerance;
   request.white_luminance = white_luminance > 0 ? white_luminance : 1;
   request.seed = session.common().seed;
+  request.bounces = bounces;
+  request.time_limit_s = session.common().time_limit_s;
   request.progress = [&](double noise, double seconds) {
     session.progress(fmt::format("transport: noise {:.2f} dE00 after {:.1f} s", noise, seconds));
   };
@@ -111,7 +120,8 @@ Result<std::optional<KeptTransport>> kept_transport(const image::AovFile& file, 
                                                     const std::vector<render::Light>& lights, cli::Session& session) {
   GONIO_ASSIGN(auto light, render::transport_of(file));
   if (!light) return std::optional<KeptTransport>();
-  KeptTransport kept{*std::move(light), file.white_luminance, file.environment, file.lights, file.reflection};
+  KeptTransport kept{*std::move(light), file.white_luminance, file.automatic_stops,
+                     file.environment,  file.lights,          file.reflection};
   const bool other_env = !options.env.empty() && options.env != file.environment;
   const bool other_lights = !lights.empty() && !same_light(kept, lights);
   if (other_env || other_lights) {
@@ -147,6 +157,10 @@ Result<ShadedView> shaded_view(const KeptTransport& kept, const render::Gbuffer&
     if (!flat.ok()) return named(flat.error());
     with_views |= paint->view_deg.size() > 1;
     paints.push_back(*std::move(paint)), weights.push_back(*std::move(flat));
+  }
+  if (light.worn.has_floor) {  // in the paint that it wore
+    weights.push_back(light.worn.weights[static_cast<std::size_t>(light.worn.groups.of_part.back())]);
+    paints.push_back({{0}, {weights.back()}});
   }
   if (kept.reflection.k != scene.reflection.k && light.bounces > 0)
     return usage_error("--operator is another than that of --gbuffer: bounced light was traced with that one");

@@ -25,12 +25,12 @@ struct TracedView {
 // Traces what is seen through `rays` in all that the scene has, and tells how. `with_maps`: open light by the
 // environment's maps, else by rays alone. Error: what paths do not trace; maps that the environment lacks.
 Result<TracedView> traced_view(const render::Scene& scene, const envmap::Environment* environment, bool with_maps,
-                               const render::Gbuffer& seen, double white_luminance, cli::Session& session);
+                               const render::Gbuffer& seen, double white_luminance, int bounces, cli::Session& session);
 
 // The transport of --gbuffer and what its file says of the light.
 struct KeptTransport {
   render::LobeTransport light;
-  double white_luminance = 1;
+  double white_luminance = 1, automatic_stops = 0;
   std::string environment;
   std::vector<image::AovLight> lights;
   color::ReflectionOperator reflection;

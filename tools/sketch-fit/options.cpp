@@ -115,7 +115,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "Buffers with a transport hold the light that each lobe gathers at every pixel, with shadows and with light that "
       "the body sends to itself. The picture is then linear in the paint, and is solved in that light. Without it the "
       "light is that which nothing blocks, and a message says so.",
-      "The picture may be of any format. Whole numbers (PNG, JPEG, TIFF) are what a display shows: sRGB, or what an "
+      "The picture may be an EXR, HDR, PNG, JPEG, TIFF, PNM, DPX, WebP, BMP or TGA. Whole numbers (PNG, JPEG, TIFF) "
+      "are what a display shows: sRGB, or what an "
       "embedded ICC profile says, be it of RGB, of gray or of CMYK, after the view and the exposure of render-osmesa. "
       "Floats (EXR) are light. Pixels are "
       "left out at edges, at grazing light, near specular, where they are clipped or transparent, and outside the "

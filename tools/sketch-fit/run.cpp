@@ -38,7 +38,8 @@ Result<double> gain_of(const Options& options, const Material& material) {
       return usage_error("--exposure is \"{}\": write a number of stops, or auto", options.exposure);
     return std::exp2(-*stops);
   }
-  return material.picture.scene_linear ? std::exp2(-material.buffers.exposure_stops) : material.buffers.white_luminance;
+  return material.picture.scene_linear ? std::exp2(-material.buffers.exposure_stops)
+                                       : std::exp2(-material.buffers.automatic_stops);
 }
 
 Result<void> check_light(const Options& options, const image::AovFile& buffers) {

@@ -18,19 +18,20 @@ struct GoniochromeOiioImage {
   int is_integer;  // whether the file holds whole numbers; they are 0..1 here
 };
 
-// Decodes `path` and calls take(context, image) once, or fail(context, reason) once. Where `keep_inks` is not 0, a CMYK
+// Decodes `path`, which holds `bytes` bytes of the format that OpenImageIO calls `format` whatever its name says, and
+// calls take(context, image) once, or fail(context, reason) once. Where `keep_inks` is not 0, a CMYK
 // JPEG or TIFF comes as four channels C, M, Y and K, of which 1 is full ink; else as the RGB that OpenImageIO makes of
 // it.
 using GoniochromeOiioTake = void (*)(void* context, const GoniochromeOiioImage* image);
 using GoniochromeOiioFail = void (*)(void* context, const char* reason);
-using GoniochromeOiioRead = void (*)(const char* path, int keep_inks, void* context, GoniochromeOiioTake take,
-                                     GoniochromeOiioFail fail);
+using GoniochromeOiioRead = void (*)(const char* path, const char* format, unsigned long bytes, int keep_inks,
+                                     void* context, GoniochromeOiioTake take, GoniochromeOiioFail fail);
 
 }  // extern "C"
 
 namespace goniochrome::image {
 
 // The name under which the module exports its GoniochromeOiioRead.
-constexpr const char* kOiioReadName = "goniochrome_oiio_read_3";
+constexpr const char* kOiioReadName = "goniochrome_oiio_read_4";
 
 }  // namespace goniochrome::image

@@ -1,4 +1,4 @@
-// goniochrome-oiio.so: reads any format that OpenImageIO knows.
+// goniochrome-oiio.so: reads pictures through OpenImageIO, in the format that the caller found them to be of.
 #include <OpenImageIO/imageio.h>
 
 #include <exception>
@@ -15,6 +15,18 @@ std::string text_attribute(const OIIO::ImageSpec& spec, const char* name) {
   return std::string(spec.get_string_attribute(name));
 }
 
+struct Source {
+  const char* path;
+  const char* format;
+  unsigned long bytes;
+  bool keep_inks;
+};
+
+// The most samples that a byte of any of the formats stands for, and a number of them that no file is too short for.
+// Deflate makes 1032 bytes of one, and a JPEG has one bit at least for 64 samples of one channel. What packs better
+// than that is one color all over, or a forged header.
+constexpr OIIO::imagesize_t kSamplesAByte = 1100, kFreeSamples = 1 << 22;
+
 std::string envmap_kind(const OIIO::ImageSpec& spec) {
   const std::string kind = text_attribute(spec, "textureformat");
   if (kind == "LatLong Environment") return "latlong";
@@ -23,12 +35,18 @@ std::string envmap_kind(const OIIO::ImageSpec& spec) {
 }
 
 // Opens the image; inks of a TIFF stay inks where they are to be kept. The inks of a JPEG are lost in any case.
-std::unique_ptr<OIIO::ImageInput> open(const char* path, bool keep_inks) {
-  auto input = OIIO::ImageInput::open(path);
-  if (!input || !keep_inks || text_attribute(input->spec(), "tiff:ColorSpace") != "CMYK") return input;
-  OIIO::ImageSpec raw;
-  raw.attribute("oiio:RawColor", 1);
-  return OIIO::ImageInput::open(path, &raw);
+std::unique_ptr<OIIO::ImageInput> open(const Source& source, std::string& problem) {
+  const auto opened = [&](bool raw) -> std::unique_ptr<OIIO::ImageInput> {
+    auto input = OIIO::ImageInput::create(source.format);
+    OIIO::ImageSpec spec, wishes;
+    if (raw) wishes.attribute("oiio:RawColor", 1);
+    if (input && input->open(source.path, spec, wishes)) return input;
+    problem = input ? input->geterror() : OIIO::geterror();
+    return nullptr;
+  };
+  auto input = opened(false);
+  if (!input || !source.keep_inks || text_attribute(input->spec(), "tiff:ColorSpace") != "CMYK") return input;
+  return opened(true);
 }
 
 bool is_cmyk_jpeg(const OIIO::ImageSpec& spec) {
@@ -36,19 +54,23 @@ bool is_cmyk_jpeg(const OIIO::ImageSpec& spec) {
   return space == "CMYK" || space == "YCbCrK";
 }
 
-void read(const char* path, bool keep_inks, void* context, GoniochromeOiioTake take, GoniochromeOiioFail fail) {
-  auto input = open(path, keep_inks);
-  if (!input) return fail(context, OIIO::geterror().c_str());
+void read(const Source& source, void* context, GoniochromeOiioTake take, GoniochromeOiioFail fail) {
+  OIIO::attribute("threads", 1);  // the caller's process has to stay small, and is there for one picture
+  std::string problem;
+  auto input = open(source, problem);
+  if (!input) return fail(context, problem.c_str());
   OIIO::ImageSpec spec = input->spec();
-  const bool from_jpeg = keep_inks && is_cmyk_jpeg(spec);
+  const bool from_jpeg = source.keep_inks && is_cmyk_jpeg(spec);
   if (from_jpeg) spec.nchannels = 4, spec.channelnames = {"C", "M", "Y", "K"};
   if (spec.depth > 1 || spec.deep) return fail(context, "volumes and deep images are not read");
   const OIIO::imagesize_t samples = spec.image_pixels() * static_cast<OIIO::imagesize_t>(spec.nchannels);
   if (spec.image_pixels() > goniochrome::image::kMostSamples || samples > goniochrome::image::kMostSamples)
     return fail(context, "its header says more pixels than fit into 8 GB: is it damaged?");
+  if (samples > kFreeSamples && samples / kSamplesAByte > source.bytes)
+    return fail(context, "its header says more pixels than a file of its size can hold: is it damaged?");
   std::vector<float> pixels(samples);
   if (from_jpeg) {
-    const std::string problem = goniochrome::image::read_cmyk_jpeg(path, spec.width, spec.height, pixels);
+    problem = goniochrome::image::read_cmyk_jpeg(source.path, spec.width, spec.height, pixels);
     if (!problem.empty()) return fail(context, problem.c_str());
   } else if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data())) {
     return fail(context, input->geterror().c_str());
@@ -79,11 +101,14 @@ void read(const char* path, bool keep_inks, void* context, GoniochromeOiioTake t
 
 }  // namespace
 
-extern "C" __attribute__((visibility("default"))) void goniochrome_oiio_read_3(const char* path, int keep_inks,
+extern "C" __attribute__((visibility("default"))) void goniochrome_oiio_read_4(const char* path, const char* format,
+                                                                               unsigned long bytes, int keep_inks,
                                                                                void* context, GoniochromeOiioTake take,
                                                                                GoniochromeOiioFail fail) {
   try {
-    read(path, keep_inks != 0, context, take, fail);
+    read({path, format, bytes, keep_inks != 0}, context, take, fail);
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& e) {
     fail(context, e.what());
   }

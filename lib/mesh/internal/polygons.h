@@ -37,8 +37,10 @@ struct Polygons {
 // The polygons of an OBJ text; `path` is for messages, which name the line.
 Result<Polygons> polygons_from_obj(const std::string& text, const std::string& path);
 
-// The polygons of an OFF, PLY or STL file, as one part of that name. Normals in such files are not read.
-Result<Polygons> polygons_from_file(const std::string& path, const std::string& part_name);
+// The polygons of an OFF, PLY or STL file, as one part of that name. Normals in such files are not read. `extension` is
+// ".off", ".ply" or ".stl".
+Result<Polygons> polygons_from_file(const std::string& path, const std::string& extension,
+                                    const std::string& part_name);
 
 // Triangulates, drops what has no area, makes missing normals and turns triangles to their normals.
 // Error: nothing is left.

@@ -89,6 +89,7 @@ const EngineInfo CpuEngine::kInfo = {
     .where = "on the processor",
     .is_planned = true,
     .needs_texels = false,
+    .traces_rays = false,
     .needs_mesh = false,
     .make = [](Sight&) -> std::unique_ptr<Engine> { return std::make_unique<CpuEngine>(); }};
 

@@ -19,6 +19,8 @@ using rays::float3;
 constexpr float kFloatPi = std::numbers::pi_v<float>;
 // cos^E below exp(-kTail) is left out: 4e-18 of the peak.
 constexpr float kTail = 40;
+// The share of a color map's mean that directions are drawn in by the cosine.
+constexpr float kCosineShare = 0.25F;
 
 float mean_size(const Float3& c) {
   return (std::abs(c.x) + std::abs(c.y) + std::abs(c.z)) / 3;
@@ -84,34 +86,6 @@ Result<TracedPaint> TracedPaint::create(const paint::LobeFit& paint, double glos
   return traced;
 }
 
-// The share of even light that comes to the viewer: diffuse part, lobes and mirror.
-bool TracedPaint::gains_light() const {
-  constexpr int kViews = 12, kRows = 96, kColumns = 48;
-  constexpr double kQuadratureError = 0.01, kRounding = 3e-8, kTwoPi = 2 * kFloatPi;
-  for (int view = 0; view < kViews; ++view) {
-    const double cos_o = (view + 0.5) / kViews;
-    const PaintedPoint point(*this, {0, 0, 1}, float3({std::sqrt(1 - cos_o * cos_o), 0, cos_o}));
-    const rays::Frame frame = rays::frame_about(point.mirrored());
-    Vec3 lobes;
-    // Rows about the mirror direction lie even in the sixth root of 1 - cos, which suits lobes up to 1e4.
-    for (int i = 0; i < kRows; ++i) {
-      const double x = (i + 0.5) / kRows, versine = 2 * std::pow(x, 6), step = 12 * std::pow(x, 5) / kRows,
-                   sine = std::sqrt(versine * (2 - versine));
-      for (int j = 0; j < kColumns; ++j) {
-        const double phi = kTwoPi * (j + 0.5) / kColumns;
-        const Float3 d = static_cast<float>(sine * std::cos(phi)) * frame.x +
-                         static_cast<float>(sine * std::sin(phi)) * frame.y +
-                         static_cast<float>(1 - versine) * point.mirrored();
-        lobes += (step * kTwoPi / kColumns) * rays::vec3(point.parts(d).lobes);
-      }
-    }
-    const Vec3 rest = rays::vec3(kFloatPi * point.diffuse() + point.mirror());
-    for (int c = 0; c < 3; ++c)
-      if (rest[c] + (1 - kQuadratureError) * lobes[c] > 1 + kRounding) return true;
-  }
-  return false;
-}
-
 PaintedPoint::PaintedPoint(const TracedPaint& paint, const Float3& normal, const Float3& to_viewer)
     : normal_(normal), viewer_(to_viewer), frame_(rays::frame_about(normal)) {
   cos_o_ = std::max(rays::dot(normal, to_viewer), 1e-6F);
@@ -131,6 +105,12 @@ PaintedPoint::PaintedPoint(const TracedPaint& paint, const Float3& normal, const
   const float fresnel = coat_reflectance(cos_o_);
   mirror_ = fresnel * blend(low->mirror, high->mirror, share);
   diffuse_chance_ = kFloatPi * mean_size(diffuse_);
+  if (paint.map_ != nullptr) {
+    // The lobes stand for the map where directions are drawn. What they miss the cosine finds.
+    paint_ = &paint;
+    diffuse_chance_ = std::max(diffuse_chance_, kCosineShare * paint.map_level_);
+    diffuse_ = {};
+  }
   total_ = diffuse_chance_;
   for (std::size_t j = 0; j < low->lobes.size(); ++j) {
     Lobe& lobe = lobes_[count_];
@@ -141,10 +121,18 @@ PaintedPoint::PaintedPoint(const TracedPaint& paint, const Float3& normal, const
     const float wide = 1 / std::sqrt(lobe.exponent + 2), cosine = cos_o_ + (1 - cos_o_) * wide;
     lobe.chance = (cosine * mean_size(lobe.directional_diffuse) + fresnel * mean_size(lobe.gloss)) / lobe.normalization;
     if (!(lobe.chance > 0)) continue;
+    if (paint_ != nullptr) lobe.directional_diffuse = {};
     total_ += lobe.chance;
     ++count_;
   }
   set_axes(paint.tilts_);
+}
+
+PaintedPoint::PaintedPoint(const Float3& diffuse, const Float3& normal, const Float3& to_viewer)
+    : normal_(normal), viewer_(to_viewer), diffuse_(diffuse), frame_(rays::frame_about(normal)) {
+  cos_o_ = std::max(rays::dot(normal, to_viewer), 1e-6F);
+  mirrored_ = 2 * cos_o_ * normal - to_viewer;
+  total_ = diffuse_chance_ = kPi * mean_size(diffuse_);
 }
 
 // The frame of Gatherer::set_mirror_directions(): the tangent runs level around +Y, on a level surface along +X.
@@ -179,6 +167,7 @@ float PaintedPoint::narrow_share(double light_sr) const {
   };
   float sum = diffuse_chance_ * narrow(1 / kFloatPi);
   for (int j = 0; j < count_; ++j) sum += lobes_[j].chance * narrow(lobes_[j].normalization);
+  for (const TexelLobe& lobe : texels_) sum += lobe.chance * narrow(lobe.normalization);
   return sum / total_;
 }
 
@@ -203,11 +192,27 @@ void PaintedPoint::visit_lobes(const Float3& to_light, const Visit& visit) const
     if (powers[j] > 0) visit(lobes_[j], powers[j]);
 }
 
+// Calls visit(lobe, cos^E).
+template <class Visit>
+void PaintedPoint::visit_texels(const Float3& to_light, const Visit& visit) const {
+  for (const TexelLobe& lobe : texels_) {
+    const Float3 apart = lobe.axis - to_light;
+    const float versine = 0.5F * rays::dot(apart, apart);
+    if (versine >= 1) continue;
+    const float power = lobe.exponent * std::log1p(-versine);
+    if (power >= -kTail) visit(lobe, std::exp(power));
+  }
+}
+
 PaintedPoint::Parts PaintedPoint::parts(const Float3& to_light) const {
   Parts parts;
   const float cos_i = rays::dot(normal_, to_light);
   if (!(cos_i > 0)) return parts;
   parts.diffuse = cos_i * diffuse_;
+  if (paint_ != nullptr) parts.lobes = mapped(to_light);
+  visit_texels(to_light, [&](const TexelLobe& lobe, float power) {
+    parts.lobes = parts.lobes + (std::exp(lobe.log_peak) * power * cos_i) * lobe.color;
+  });
   if (count_ == 0) return parts;
   const float fresnel = coat_reflectance(std::min(1.0F, 0.5F * rays::length(to_light + viewer_)));
   visit_lobes(to_light, [&](const Lobe& lobe, float power) {
@@ -223,6 +228,11 @@ Reflection PaintedPoint::at(const Float3& to_light) const {
   if (!(cos_i > 0) || !(total_ > 0)) return {to_light, {}, 0};
   Float3 f_cos = cos_i * diffuse_;
   float pdf = diffuse_chance_ * cos_i / kFloatPi;
+  if (paint_ != nullptr) f_cos = f_cos + mapped(to_light);
+  visit_texels(to_light, [&](const TexelLobe& lobe, float power) {
+    f_cos = f_cos + (std::exp(lobe.log_peak) * power * cos_i) * lobe.color;
+    pdf += lobe.chance * lobe.normalization * power;
+  });
   if (count_ > 0) {
     const float fresnel = coat_reflectance(std::min(1.0F, 0.5F * rays::length(to_light + viewer_)));
     visit_lobes(to_light, [&](const Lobe& lobe, float power) {
@@ -244,11 +254,16 @@ Float3 PaintedPoint::drawn_about(const Float3& axis, float exponent, float u, fl
 Float3 PaintedPoint::direction(double choice, double u, double v) const {
   const auto a = static_cast<float>(u), b = static_cast<float>(v);
   double left = choice * total_;
-  if (left < diffuse_chance_ || count_ == 0) {
+  if (left < diffuse_chance_ || (count_ == 0 && texels_.empty())) {
     const float r = std::sqrt(a), phi = 2 * kFloatPi * b;
     return (r * std::cos(phi)) * frame_.x + (r * std::sin(phi)) * frame_.y + std::sqrt(1 - a) * normal_;
   }
   left -= diffuse_chance_;
+  if (!texels_.empty()) {
+    std::size_t k = 0;
+    while (k + 1 < texels_.size() && left >= texels_[k].chance) left -= texels_[k++].chance;
+    return drawn_about(texels_[k].axis, texels_[k].exponent, a, b);
+  }
   int j = 0;
   while (j + 1 < count_ && left >= lobes_[j].chance) left -= lobes_[j++].chance;
   if (axes_.empty()) return drawn_about(mirrored_, lobes_[j].exponent, a, b);

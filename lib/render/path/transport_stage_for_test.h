@@ -26,7 +26,7 @@ inline const envmap::PrefilteredEnvironment& maps() {
     const envmap::Environment env = sky();
     prefilter::PrefilterRequest request;
     request.exponents = kExponents;
-    request.exponents.push_back(envmap::kMirrorExponent);
+    request.exponents.push_back(paint::kMirrorExponent);
     return prefilter::prefiltered(env, request, prefilter::prefilter_plan(env, request),
                                   [](const envmap::PrefilteredLobe&, double) {});
   }();
@@ -43,7 +43,7 @@ inline paint::LobeFit random_paint(std::mt19937_64& random) {
     paint.lobes.push_back({exponent, any(0.03 * (exponent + 2)), {gloss, gloss, gloss}});
   }
   const double mirror = in(0, 1);
-  paint.lobes.push_back({envmap::kMirrorExponent, {}, {mirror, mirror, mirror}});
+  paint.lobes.push_back({paint::kMirrorExponent, {}, {mirror, mirror, mirror}});
   return paint;
 }
 

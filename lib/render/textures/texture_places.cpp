@@ -95,6 +95,11 @@ TexturePlace TextureLayout::place(const MeshPoint& point, const Corners& corners
           {static_cast<float>(t.x), static_cast<float>(t.y), static_cast<float>(t.z)}};
 }
 
+TexturePlace TextureLayout::place(int part, const MeshPoint& point) const {
+  const auto at = static_cast<std::size_t>(part);
+  return place(point, faces_[at][point.triangle - mesh_.parts[at].first]);
+}
+
 std::vector<TexturePlace> TextureLayout::places(const Gbuffer& gbuffer) const {
   std::vector<TexturePlace> places(gbuffer.triangles.size());
   parallel_for(static_cast<std::size_t>(gbuffer.height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
@@ -102,9 +107,7 @@ std::vector<TexturePlace> TextureLayout::places(const Gbuffer& gbuffer) const {
       for (int x = 0; x < gbuffer.width; ++x) {
         const int part = gbuffer.part(x, y);
         if (part < 0 || faces_[static_cast<std::size_t>(part)].empty()) continue;
-        const MeshPoint point = mesh_point(mesh_, gbuffer, x, y);
-        const std::size_t face = point.triangle - mesh_.parts[static_cast<std::size_t>(part)].first;
-        places[gbuffer.index(x, y)] = place(point, faces_[static_cast<std::size_t>(part)][face]);
+        places[gbuffer.index(x, y)] = place(part, mesh_point(mesh_, gbuffer, x, y));
       }
     }
   });

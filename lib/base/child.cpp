@@ -1,0 +1,180 @@
+#include "base/child.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <utility>
+
+namespace goniochrome {
+
+namespace {
+
+// The exit statuses of a child. A sanitizer ends with 1, and a library may call exit() with another small number.
+constexpr int kDone = 0, kRefused = 40, kNoMemory = 41;
+
+// A child that waits for a lock uses no processor time. This many seconds are far more than a busy machine adds.
+constexpr int kWaitingFactor = 20;
+
+// The bytes of addresses that this process has mapped.
+std::size_t mapped_bytes() {
+  unsigned long pages = 0;
+  if (std::FILE* file = std::fopen("/proc/self/statm", "r")) {
+    if (std::fscanf(file, "%lu", &pages) != 1) pages = 0;
+    std::fclose(file);
+  }
+  return pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+// Lowers a limit of this process; a limit that is lower already stays. `grace` lies between the soft limit and the hard
+// one: at its soft limit of time a process gets SIGXCPU, and at the hard one SIGKILL, which tells nothing.
+void limit(int resource, rlim_t most, rlim_t grace = 0) {
+  rlimit now;
+  if (getrlimit(static_cast<__rlimit_resource_t>(resource), &now) != 0) return;
+  now.rlim_cur = std::min(now.rlim_cur, most);
+  now.rlim_max = std::min(now.rlim_max, most + grace);
+  setrlimit(static_cast<__rlimit_resource_t>(resource), &now);
+}
+
+// What a child does first: it dies of any signal and with its parent, keeps within the limits, and prints nothing.
+void confine(const ChildLimits& limits, std::size_t mapped, pid_t parent) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(kRefused);
+  for (const int number :
+       {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGXCPU, SIGALRM})
+    signal(number, SIG_DFL);
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+  limit(RLIMIT_CORE, 0);
+  limit(RLIMIT_CPU, static_cast<rlim_t>(limits.processor_s), 2);
+  alarm(static_cast<unsigned>(kWaitingFactor * limits.processor_s));
+#if !defined(__SANITIZE_ADDRESS__)
+  // A sanitizer takes terabytes of addresses for itself, and says on standard error what it found.
+  limit(RLIMIT_AS, mapped + limits.memory_bytes);
+  if (const int nowhere = open("/dev/null", O_WRONLY); nowhere >= 0)
+    dup2(nowhere, STDOUT_FILENO), dup2(nowhere, STDERR_FILENO);
+#else
+  static_cast<void>(mapped);
+#endif
+}
+
+// The child's life. It never returns, and runs no destructor of the parent's objects.
+[[noreturn]] void live(int descriptor, const std::string& name, const std::function<Result<void>(ChildOutput&)>& work) {
+  ChildOutput output(descriptor);
+  const auto refuse = [&](ErrorKind kind, const std::string& message) {
+    if (ftruncate(descriptor, 0) != 0 || lseek(descriptor, 0, SEEK_SET) != 0) _exit(kNoMemory);
+    const char letter = static_cast<char>(kind);
+    output.write(&letter, 1);
+    output.write(message.data(), message.size());
+    _exit(kRefused);
+  };
+  try {
+    const auto done = work(output);
+    if (!done.ok()) refuse(done.error().kind, done.error().message);
+    _exit(kDone);
+  } catch (const std::bad_alloc&) {
+    _exit(kNoMemory);
+  } catch (const std::exception& e) {
+    refuse(ErrorKind::kInput, fmt::format("{}: the library that reads it gave up: {}", name, e.what()));
+  } catch (...) {
+    refuse(ErrorKind::kInput, fmt::format("{}: the library that reads it gave up", name));
+  }
+  _exit(kRefused);
+}
+
+Error needs_memory(const std::string& name, const ChildLimits& limits) {
+  return input_error(
+      "{}: cannot be read within the memory there is, or within the {} MB that a file of its size is allowed: "
+      "is it damaged?",
+      name, limits.memory_bytes >> 20);
+}
+
+// The sentence about a child that was ended by a signal.
+Error ended_by(int number, const std::string& name, const ChildLimits& limits) {
+  if (number == SIGXCPU || number == SIGALRM)
+    return input_error("{}: reading it took more than {} s: is it damaged?", name, limits.processor_s);
+  if (number == SIGKILL) return needs_memory(name, limits);  // as the system does to processes when memory runs out
+  return input_error("{}: the library that reads it crashed on it ({}): the file is damaged: export it again", name,
+                     strsignal(number));
+}
+
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  Descriptor(const Descriptor&) = delete;
+  ~Descriptor() {
+    if (number_ >= 0) close(number_);
+  }
+  int number() const { return number_; }
+
+ private:
+  int number_;
+};
+
+Result<ChildBytes> content_of(const Descriptor& shared, const std::string& name) {
+  struct stat status;
+  if (fstat(shared.number(), &status) != 0) return input_error("{}: cannot be read: {}", name, std::strerror(errno));
+  const auto size = static_cast<std::size_t>(status.st_size);
+  if (size == 0) return ChildBytes(nullptr, 0);
+  void* bytes = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, shared.number(), 0);
+  if (bytes == MAP_FAILED) return input_error("{}: is too large for the memory there is", name);
+  return ChildBytes(static_cast<const char*>(bytes), size);
+}
+
+}  // namespace
+
+ChildBytes::ChildBytes(ChildBytes&& other) noexcept
+    : bytes_(std::exchange(other.bytes_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+
+ChildBytes::~ChildBytes() {
+  if (bytes_) munmap(const_cast<char*>(bytes_), size_);
+}
+
+void ChildOutput::write(const void* bytes, std::size_t size) {
+  const char* from = static_cast<const char*>(bytes);
+  while (size > 0) {
+    const ssize_t count = ::write(descriptor_, from, size);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) throw std::bad_alloc();
+    from += count, size -= static_cast<std::size_t>(count);
+  }
+}
+
+Result<ChildBytes> made_by_child(const std::string& name, const ChildLimits& limits,
+                                 const std::function<Result<void>(ChildOutput&)>& work) {
+  const Descriptor shared(memfd_create("goniochrome", MFD_CLOEXEC));
+  if (shared.number() < 0) return input_error("{}: cannot be read: {}", name, std::strerror(errno));
+  const std::size_t mapped = mapped_bytes();
+  const pid_t parent = getpid();
+  const pid_t child = fork();
+  if (child < 0) return input_error("{}: no process can be started to read it: {}", name, std::strerror(errno));
+  if (child == 0) {
+    confine(limits, mapped, parent);
+    live(shared.number(), name, work);
+  }
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0)
+    if (errno != EINTR) return input_error("{}: the process that reads it is lost: {}", name, std::strerror(errno));
+  if (WIFSIGNALED(status)) return ended_by(WTERMSIG(status), name, limits);
+  if (WEXITSTATUS(status) == kNoMemory) return needs_memory(name, limits);
+  GONIO_ASSIGN(ChildBytes bytes, content_of(shared, name));
+  if (WEXITSTATUS(status) == kDone) return bytes;
+  if (WEXITSTATUS(status) == kRefused && !bytes.view().empty())
+    return Error{static_cast<ErrorKind>(bytes.view()[0]), std::string(bytes.view().substr(1))};
+  return input_error("{}: the library that reads it ended with status {}: the file is damaged: export it again", name,
+                     WEXITSTATUS(status));
+}
+
+}  // namespace goniochrome

@@ -1,0 +1,16 @@
+// Which of the wanted image formats a file is of, told by its first bytes and never by its name.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "base/result.h"
+
+namespace goniochrome::image {
+
+// OpenImageIO's name of the format: "openexr", "hdr", "png", "jpeg", "tiff", "pnm", "dpx", "webp", "bmp" or "targa".
+// Error: it is of no such format, or a camera's raw file, whose TIFF is but a thumbnail; the message says what the file
+// is, if that can be told, and what to convert it to. `name` is what errors call the file.
+Result<std::string> content_format(std::string_view content, const std::string& name);
+
+}  // namespace goniochrome::image
