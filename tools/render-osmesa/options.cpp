@@ -14,7 +14,10 @@ void add_surfaces(cli::ToolSpec& spec, Options& o) {
           "parts and materials hold all that the engine cpu needs, so that other paints or other light are shown "
           "without the mesh and without rasterizing. The picture is that of --samples 1, bit for bit; view and size "
           "are "
-          "the file's. Textures need the mesh.");
+          "the file's. Textures need the mesh. A file of --aov transport holds the light as well: without --env and "
+          "--light it is shaded in that light, with its shadows. Bounced light, which was traced in other paints, is "
+          "scaled to the new ones; the error of that is told, and where it is beyond --tolerance the exit status is "
+          "1.");
   spec.option("paint,p", "PAINT", "fitted.xml#candy_red", &o.paint, "paint of all parts that --part does not name");
   spec.option("part", "PART=PAINT", "Glass=fitted.xml#silver_fine", &o.parts, "paint of a part or material")
       .more(
@@ -180,7 +183,7 @@ void add_output(cli::ToolSpec& spec, Options& o) {
           "its "
           "configuration.");
   spec.option("aov", "NAMES", "normal,part", &o.aovs,
-              "buffers to add to an EXR: normal, aspecular, lambert, mask, part, error")
+              "buffers to add to an EXR: normal, aspecular, lambert, mask, part, error, transport")
       .more(
           "error, of the engine path alone, is the noise of each pixel as CIEDE2000, one standard deviation. "
           "The others hold the pixel centers. normal is turned to the viewer (normal.X .Y .Z). aspecular is the angle "
@@ -192,7 +195,11 @@ void add_output(cli::ToolSpec& spec, Options& o) {
           "goniochrome:rays (corner;right;down: the ray through the point x,y is the sum of the first, x times the "
           "second and y times the third, in pixels from the upper left), goniochrome:lights (direction and white of "
           "each), goniochrome:operator (the 27 coefficients k[c][d][e] of colored light, with e running fastest), "
-          "goniochrome:samples (those of a pixel of the picture) and goniochrome:environment.");
+          "goniochrome:samples (those of a pixel of the picture) and goniochrome:environment. transport brings all "
+          "buffers and, in parts of their own, the light that each lobe of the basis gathers at each pixel, with "
+          "shadows and with light that surfaces send to each other; it is traced until its noise is within "
+          "--tolerance. --gbuffer then shows other paints in it within milliseconds. goniochrome-paint(5) describes "
+          "the parts.");
 }
 
 // The examples, the keys of --report, and the pages to see.
@@ -219,7 +226,16 @@ void add_report(cli::ToolSpec& spec) {
        "what each effect is worth, and whether it is drawn; with --check and --explain, truth_de00_p95 stands beside "
        "it"},
       {"plan_de00_p95, plan_ms", "change by all effects that are left out together, and the time that planning took"},
-      {"engine, engine_reason", "what shaded the picture (gl, cpu, integral or path), and why"},
+      {"engine, engine_reason", "what shaded the picture (gl, cpu, integral, path or transport), and why"},
+      {"transport: points, columns, bytes_per_point",
+       "with --aov transport, or --gbuffer of it: visible pixels, columns of light, and what a pixel takes in memory"},
+      {"transport: noise_de00_p95, noise_de00_mean, samples_mean, open_share, trace_s, reached",
+       "with --aov transport: noise of the worst column of each pixel, directions traced for each, the part of the "
+       "pixels above which nothing rises, the time, and whether the noise is within the tolerance"},
+      {"transport: float_parts, half_error_de00", "parts written as floats, and the error of those in halves"},
+      {"transport: load_ms, scale_ms, bounced_de00_p95, trace_again",
+       "with --gbuffer: time to lay out the light and to scale what bounced, the error of that, and whether it is "
+       "beyond the tolerance"},
       {"opengl", "the OpenGL renderer; null with --gbuffer, and where rays find what is visible"},
       {"noise_de00_p95, noise_de00_mean",
        "of the engine path: CIEDE2000 of one standard deviation of the noise, over the visible pixels of the last "

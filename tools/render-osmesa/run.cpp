@@ -20,6 +20,7 @@
 #include "render/renderer.h"
 #include "render/surface_layer.h"
 #include "setup.h"
+#include "transport_view.h"
 
 namespace goniochrome::tool {
 
@@ -35,6 +36,7 @@ struct Request {
   std::vector<render::Light> lights;
   std::optional<double> stops;
   std::vector<std::string> aovs;
+  bool transport = false;  // among the buffers
   bool png = false;
   color::ReflectionOperator reflection;
   render::PlanRequest plan;
@@ -42,6 +44,21 @@ struct Request {
   FloorRequest floor;
   std::vector<Emission> emissions;
 };
+
+// --aov transport is no channel: it is traced, and brings the buffers that it is read with.
+Result<void> take_transport(const Options& options, Request& request) {
+  request.transport = std::erase(request.aovs, "transport") > 0;
+  if (!request.transport) return {};
+  for (const char* needed : {"normal", "aspecular", "lambert", "mask", "part"})
+    if (std::ranges::find(request.aovs, needed) == request.aovs.end()) request.aovs.emplace_back(needed);
+  const std::pair<const char*, bool> given[] = {{"gbuffer", !options.gbuffer.empty()},
+                                                {"split", !options.split.empty()},
+                                                {"turntable", options.turntable > 0},
+                                                {"light-sweep", options.light_sweep > 0}};
+  for (const auto& [name, is_given] : given)
+    if (is_given) return usage_error("--aov transport traces one view of a mesh: leave out --{}", name);
+  return {};
+}
 
 Result<Request> request_of(const Options& options) {
   Request request;
@@ -53,13 +70,14 @@ Result<Request> request_of(const Options& options) {
   }
   GONIO_ASSIGN(request.stops, parse_exposure(options.exposure));
   request.aovs = aov_names(options.aovs);
+  GONIO_TRY(take_transport(options, request));
   const std::string extension = lower(std::filesystem::path(options.output).extension().string());
   request.png = extension == ".png";
   if (!request.png && extension != ".exr" && options.output != "-") {
     return usage_error("--output is \"{}\": write a name that ends in .exr or .png", options.output);
   }
   GONIO_ASSIGN(request.emissions, parse_emissions(options.emissions));
-  if (options.env.empty() && request.lights.empty() && request.emissions.empty())
+  if (options.env.empty() && request.lights.empty() && request.emissions.empty() && options.gbuffer.empty())
     return usage_error("there is no light: give --env, --light or both");
   if (options.samples != 0 && options.samples != 1 && options.samples != 4 && options.samples != 16) {
     return usage_error("--samples is {}: give 1, 4 or 16", options.samples);
@@ -295,7 +313,7 @@ std::string spelled(const color::ReflectionOperator& reflection) {
 Result<void> write_exr_picture(const Options& options, const Request& request, const Shot& shot,
                                const render::Frame& frame, const render::Scene& scene, const render::Plan& plan,
                                const render::DiffuseWhite& white, double stops, double automatic,
-                               const cli::Session& session) {
+                               const render::TransportParts* transport, const cli::Session& session) {
   image::ImagePart part{"picture", frame.picture, provenance(session), image::PixelType::kHalf};
   part.attributes["goniochrome:plan"] = plan_rows(plan, false).dump(-1, ' ', false, Json::error_handler_t::replace);
   part.attributes["goniochrome:engine"] = plan.engine;
@@ -326,16 +344,22 @@ Result<void> write_exr_picture(const Options& options, const Request& request, c
       names.push_back(mesh_part.name);
       materials.push_back(mesh_part.material);
     }
+    if (transport != nullptr && scene.ground) names.push_back("floor"), materials.push_back("");
     part.attributes["goniochrome:parts"] = names.dump(-1, ' ', false, Json::error_handler_t::replace);
     part.attributes["goniochrome:materials"] = materials.dump(-1, ' ', false, Json::error_handler_t::replace);
   }
-  return image::write_exr(shot.output, {part});
+  std::vector<image::ImagePart> parts;
+  if (transport != nullptr) part.attributes[render::kTransportAttribute] = transport->header;
+  parts.push_back(std::move(part));
+  if (transport != nullptr) parts.insert(parts.end(), transport->parts.begin(), transport->parts.end());
+  return image::write_exr(shot.output, parts);
 }
 
 // Everything that a picture is made from; the scene points into it.
 struct Stage {
   mesh::Mesh mesh;                                 // of its parts alone where there are buffers of it
   std::shared_ptr<const render::Gbuffer> gbuffer;  // of --gbuffer, or none
+  std::optional<KeptTransport> transport;          // of --gbuffer, or none
   std::vector<DressedMesh> dresses;                // one, or those of --split
   envmap::PrefilteredEnvironment env;
   render::Scene scene;
@@ -376,12 +400,21 @@ Result<void> dress_stage(const Options& options, Stage& stage) {
 }
 
 // The buffers of --gbuffer, and a mesh that has their parts.
-Result<void> set_gbuffer(const Options& options, Stage& stage) {
+Result<void> set_gbuffer(const Options& options, const Request& request, Stage& stage, cli::Session& session) {
   GONIO_ASSIGN(const image::AovFile buffers, image::read_aov_file(options.gbuffer));
   GONIO_ASSIGN(render::Gbuffer gbuffer, render::gbuffer_of(buffers));
   stage.gbuffer = std::make_shared<const render::Gbuffer>(std::move(gbuffer));
-  for (std::size_t i = 0; i < buffers.parts.size(); ++i)
+  GONIO_ASSIGN(stage.transport, kept_transport(buffers, options, request.lights, session));
+  // A floor keeps the paint that it wore.
+  const std::size_t floors = stage.transport && stage.transport->light.worn.has_floor ? 1 : 0;
+  for (std::size_t i = 0; i + floors < buffers.parts.size(); ++i)
     stage.mesh.parts.push_back({buffers.parts[i], buffers.materials[i], 0, 0});
+  if (!stage.transport && options.env.empty() && request.lights.empty())
+    return usage_error("there is no light: give --env, --light or both");
+  if (stage.transport && options.check > 0)
+    return usage_error("--check compares with light that nothing blocks: leave it out, or give --mesh");
+  if (stage.transport && !options.split.empty())
+    return usage_error("--split is not drawn from a transport: draw two pictures");
   return {};
 }
 
@@ -390,7 +423,7 @@ Result<void> set_stage(const Options& options, const Request& request, Stage& st
     GONIO_ASSIGN(stage.mesh, mesh::read_mesh(options.mesh));
     tell_repairs(stage.mesh, session);
   } else {
-    GONIO_TRY(set_gbuffer(options, stage));
+    GONIO_TRY(set_gbuffer(options, request, stage, session));
   }
   GONIO_TRY(dress_stage(options, stage));
   tell_parts(stage.mesh, stage.dresses.front(), session);
@@ -407,7 +440,7 @@ Result<void> set_stage(const Options& options, const Request& request, Stage& st
   }
   wear(stage.dresses.front(), options, stage);
   const bool summed = request.engine != nullptr && request.engine->needs_texels;
-  if (options.check > 0 || summed) {
+  if (options.check > 0 || summed || request.transport) {
     GONIO_ASSIGN(stage.source, source_of(options, scene, session));
   }
   if (summed && stage.source.environment) scene.texels = &stage.texels.emplace(*stage.source.environment);
@@ -460,6 +493,7 @@ class Shooting {
   Result<void> look(render::Renderer& renderer);
   Result<render::Plan> load(render::Renderer& renderer, const DressedMesh& dress);
   Result<void> draw(render::Renderer& renderer, const Shot& shot, bool first);
+  Result<cli::Verdict> shade_transport(const std::optional<display::Display>& display);
   Result<void> write(const Shot& shot, const std::optional<display::Display>& display, double stops);
   void tell_plan(render::Plan plan, const std::string& shader);
 
@@ -536,11 +570,42 @@ Result<void> Shooting::draw(render::Renderer& renderer, const Shot& shot, bool f
 
 Result<void> Shooting::write(const Shot& shot, const std::optional<display::Display>& display, double stops) {
   if (!display) {
+    std::optional<TracedView> traced;
+    if (request_.transport) {
+      const envmap::Environment* environment = stage_.source.environment ? &*stage_.source.environment : nullptr;
+      GONIO_ASSIGN(traced,
+                   traced_view(stage_.scene, environment, request_.engine == nullptr || request_.engine->is_planned,
+                               *frame_.gbuffer, white_.luminance, options_.bounces, session_));
+      frame_.gbuffer = traced->gbuffer;
+    }
     return write_exr_picture(options_, request_, shot, frame_, stage_.scene, plan_, white_, stops, automatic_stops_,
-                             session_);
+                             traced ? &traced->file : nullptr, session_);
   }
   GONIO_ASSIGN(const image::Image shown, display->image(frame_.picture, stops));
   return image::write_png(shot.output, shown, provenance(session_));
+}
+
+// Other paints in the light that was traced; nothing is planned, since all is there.
+Result<cli::Verdict> Shooting::shade_transport(const std::optional<display::Display>& display) {
+  const KeptTransport& kept = *stage_.transport;
+  GONIO_ASSIGN(ShadedView view, shaded_view(kept, *stage_.gbuffer, stage_.dresses.front(), stage_.scene, session_));
+  frame_.picture = std::move(view.picture), frame_.gbuffer = stage_.gbuffer;
+  white_ = {kept.white_luminance, {0, 1, 0}};
+  plan_.engine = "transport", plan_.engine_reason = options_.gbuffer + " holds the light by lobes";
+  stage_.scene.lights.clear();
+  for (const image::AovLight& light : kept.lights) stage_.scene.lights.push_back({light.direction, light.white});
+  automatic_stops_ = kept.automatic_stops;
+  const double stops = request_.stops.value_or(request_.png ? automatic_stops_ : 0);
+  GONIO_TRY(write({{}, {}, options_.output}, display, stops));
+  Json& results = session_.results();
+  results["engine"] = plan_.engine, results["engine_reason"] = plan_.engine_reason;
+  results["gbuffer_ms"] = 0, results["frame_ms"] = view.frame_ms, results["frames"] = 1;
+  results["exposure_stops"] = stops, results["white_luminance"] = json_number(white_.luminance);
+  session_.say(fmt::format("{}: {} x {}, shaded in {:.1f} ms from the light of {}, exposure {:+.2f}{}",
+                           options_.output == "-" ? "standard output" : options_.output, request_.size.width,
+                           request_.size.height, view.frame_ms, options_.gbuffer, stops,
+                           display ? ", " + display->name() : ""));
+  return view.trace_again ? cli::Verdict::kNegative : cli::Verdict::kDone;
 }
 
 // Rays find what is visible for the engine that traces them, and where there is no OpenGL.
@@ -584,6 +649,7 @@ void Shooting::tell_noise() {
 }
 
 Result<cli::Verdict> Shooting::shoot(const std::optional<display::Display>& display) {
+  if (stage_.transport) return shade_transport(display);
   GONIO_ASSIGN(shots_, shots_of(options_, stage_.mesh, request_.size, request_.lights));
   GONIO_ASSIGN(render::Renderer renderer, make_renderer());
   GONIO_TRY(look(renderer));

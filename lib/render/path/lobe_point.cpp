@@ -67,7 +67,7 @@ LobePoint::LobePoint(const Transport& transport, const LobeColumns& columns, con
       columns_(columns),
       groups_(groups),
       spot_(spot),
-      painted_(transport.paints_[static_cast<std::size_t>(spot.part)], spot.shading, to_viewer),
+      painted_(transport.painted(spot, to_viewer)),
       kernels_(columns, painted_) {
   options_.bounces = bounces;
   if (transport.environment_) light_chance_ = kLightChance;
@@ -122,7 +122,7 @@ LobePoint::Sent LobePoint::sent(const Hit& hit, const Float3& direction, const S
   Sent sent;
   const Transport& t = transport_;
   const rays::Spot at = t.rays_->spot(hit, spot_.start, direction);
-  const PaintedPoint painted(t.paints_[static_cast<std::size_t>(at.part)], at.shading, -direction);
+  const PaintedPoint painted = t.painted(at, -direction);
   if (painted.black()) return sent;
   const double mirror = painted.mirror_weight(),
                mirror_chance = mirror > 0 ? mirror / (mirror + painted.lobes_weight()) : 0, others = 1 - mirror_chance;
@@ -350,7 +350,7 @@ void LobePoint::add_pairs(const Hit& hit, const Float3& direction, const float* 
                           const Sequence& sequence, std::uint32_t index, Pairs& pairs) const {
   const Transport& t = transport_;
   const rays::Spot at = t.rays_->spot(hit, spot_.start, direction);
-  const PaintedPoint painted(t.paints_[static_cast<std::size_t>(at.part)], at.shading, -direction);
+  const PaintedPoint painted = t.painted(at, -direction);
   const LobeKernels kernels(columns_, painted);
   const std::size_t count = columns_.count();
   std::vector<color::Rgb> once(count), deeper(count);

@@ -269,6 +269,8 @@ Result<WornPaints> worn_paints(const LobeColumns& columns, const PathScene& path
       first.push_back(part);
     }
     worn.groups.of_part.push_back(group);
+    worn.emission.push_back(part < path.emission.size() ? path.emission[part] : color::Rgb{});
+    worn.brushed.push_back(part < scene.anisotropy.size() ? scene.anisotropy[part] : paint::Anisotropy{});
   }
   if (path.ground) {
     if (path.ground->kind == Ground::Kind::kShadow)
@@ -278,6 +280,7 @@ Result<WornPaints> worn_paints(const LobeColumns& columns, const PathScene& path
     GONIO_ASSIGN(auto weights, column_weights(columns, path.ground->paint.diffuse, path.ground->paint.lobes,
                                               brdf::kGlossIncidence_deg));
     worn.groups.of_part.push_back(static_cast<int>(first.size()));
+    worn.has_floor = true;
     worn.weights.push_back(std::move(weights));
   }
   worn.groups.count = static_cast<int>(worn.weights.size());

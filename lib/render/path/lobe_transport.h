@@ -17,6 +17,9 @@ namespace goniochrome::render {
 struct WornPaints {
   PaintGroups groups;
   std::vector<std::vector<color::Rgb>> weights;
+  std::vector<paint::Anisotropy> brushed;  // of each part of the mesh: its lobes are those of such a surface
+  std::vector<color::Rgb> emission;        // radiance of each part of the mesh by itself, whatever it wears
+  bool has_floor = false;                  // as the part after the mesh's
 };
 // The groups of the scene's parts, and of the floor as one more where there is one. Each part is a group up to
 // kMostOwnGroups parts; beyond them parts that wear the same are one. Error: as column_weights(). Of a paint whose

@@ -14,8 +14,7 @@ namespace {
 // Light off the coat has its reflectance in it, relative to nothing.
 std::vector<paint::LobeFit> unit_paints(const LobeColumns& columns) {
   const color::Rgb one{1, 1, 1};
-  const double reflectance =
-      brdf::fresnel_dielectric(std::cos(brdf::kGlossIncidence_deg * kDegree), brdf::kCoatIndex);
+  const double reflectance = brdf::fresnel_dielectric(std::cos(brdf::kGlossIncidence_deg * kDegree), brdf::kCoatIndex);
   paint::LobeFit blank;
   for (const double exponent : columns.exponents) blank.lobes.push_back({exponent, {}, {}});
   blank.lobes.push_back({paint::kMirrorExponent, {}, {}});

@@ -75,6 +75,11 @@ std::string header_of(const LobeTransport& t) {
     header["weights"].push_back(Json::array());
     for (const color::Rgb& weight : group) header["weights"].back().push_back(rgb_json(weight));
   }
+  header["floor"] = t.worn.has_floor;
+  header["emission"] = Json::array();
+  for (const color::Rgb& radiance : t.worn.emission) header["emission"].push_back(rgb_json(radiance));
+  header["brushed"] = Json::array();
+  for (const paint::Anisotropy& alpha : t.worn.brushed) header["brushed"].push_back({alpha.alpha_x, alpha.alpha_y});
   for (const BounceProbe& probe : t.probes) header["probes"].push_back(t.places[probe.point]);
   return header.dump();
 }
@@ -187,6 +192,12 @@ class Reader {
           t_.worn.weights.back().push_back(
               {weight.at(0).get<double>(), weight.at(1).get<double>(), weight.at(2).get<double>()});
       }
+      t_.worn.has_floor = header.at("floor").get<bool>();
+      for (const Json& radiance : header.at("emission"))
+        t_.worn.emission.push_back(
+            {radiance.at(0).get<double>(), radiance.at(1).get<double>(), radiance.at(2).get<double>()});
+      for (const Json& alpha : header.at("brushed"))
+        t_.worn.brushed.push_back({alpha.at(0).get<double>(), alpha.at(1).get<double>()});
       probe_places_ = header.at("probes").get<std::vector<std::uint32_t>>();
     } catch (const std::exception& e) {
       return wrong(fmt::format("the attribute {}: {}", kTransportAttribute, e.what()));
@@ -195,6 +206,9 @@ class Reader {
     const std::vector<double>& exponents = t_.columns.exponents;
     if (exponents.size() > kMostTracedLobes || !std::ranges::is_sorted(exponents) || t_.bounces < 0 || !(t_.unit > 0))
       return wrong("its exponents, bounces or white are not what a transport has");
+    if (t_.worn.groups.of_part.size() != t_.worn.brushed.size() + (t_.worn.has_floor ? 1 : 0) ||
+        t_.worn.emission.size() != t_.worn.brushed.size())
+      return wrong("its parts, their emission and their brushing differ in number");
     for (const auto& group : t_.worn.weights)
       if (group.size() != t_.columns.count())
         return wrong(fmt::format("a paint has {} weights for {} columns", group.size(), t_.columns.count()));

@@ -33,6 +33,7 @@ struct TransportShader::State {
   std::vector<float> direct, bounced, of_classes;
   std::vector<std::uint32_t> places;
   std::vector<float> view_deg;
+  std::vector<color::Rgb> emission;  // by part
 
   void gather(const LobeTransport& t);
   void lay_out(const LobeTransport& t);
@@ -109,6 +110,7 @@ TransportShader::TransportShader(const LobeTransport& t, std::vector<float> view
     : state_(std::make_unique<State>()) {
   State& s = *state_;
   s.columns = t.columns.count(), s.classes = t.worn.groups.classes(), s.unit = static_cast<float>(t.unit);
+  s.emission = t.worn.emission, s.emission.resize(t.worn.groups.of_part.size());
   s.places = t.places, s.view_deg = std::move(view_deg);
   const auto fits = [](const std::vector<float>& light) {
     return std::ranges::all_of(light, [](float value) { return std::abs(value) < kMostHalf; });
@@ -196,7 +198,9 @@ void TransportShader::shade(const std::vector<TransportPaint>& paints, const col
       }
       for (std::size_t lane = 0; lane < block.count; ++lane) {
         float* pixel = &rgba.data[4 * static_cast<std::size_t>(s.places[block.points[lane]])];
-        for (std::size_t c = 0; c < 3; ++c) pixel[c] = rgb[c * kTransportLanes + lane];
+        for (int c = 0; c < 3; ++c)
+          pixel[c] = rgb[static_cast<std::size_t>(c) * kTransportLanes + lane] +
+                     gain * static_cast<float>(s.emission[part][c]);
         pixel[3] = 1;
       }
     }
