@@ -70,11 +70,12 @@ void add_light(cli::ToolSpec& spec, Options& o) {
       .in("units of the mesh")
       .from(0)
       .more("0 takes a third of the longest side of the mesh's box, which is 1.5 m for a car of 4.5 m.");
-  spec.option("operator", "NAME[,SHARE]", "iso,0.1", &o.reflection, "how colored light and paint multiply")
+  spec.option("operator", "NAME[,SHARES]", "iso,0.1", &o.reflection, "how colored light and paint multiply")
       .more(
           "iso is a bilinear product by the published table for camera sensors. rec2020 is one that is estimated from "
           "color-matching functions, which can make saturated colors negative. none multiplies each channel by itself. "
-          "A number from 0 to 1 after a comma says how much the channels share.");
+          "A number from 0 to 1 after a comma says how much each channel takes from the others, and three numbers say "
+          "it for red, green and blue.");
   spec.option("critical-angle", "NAME", "clip", &o.critical_angle, "what color maps do beyond the critical angle")
       .one_of({"clip", "slide", "slide-map", "index"})
       .more(

@@ -288,11 +288,14 @@ refused() {
   awk -v p="$(pixel iso.exr 45 30)" 'BEGIN { split(p, c, " "); exit !(c[1] > 0.1) }'
   render-osmesa -q $red --operator iso,0 -o plain.exr
   near "$(pixel plain.exr 45 30)" "0 0.1 0.1 1"
+  render-osmesa -q $red --operator iso,0,1,1 -o blue.exr # red takes nothing
+  awk -v p="$(pixel blue.exr 45 30)" 'BEGIN { split(p, c, " "); exit !(c[1] == 0 && (c[2] > 0.11 || c[3] > 0.11 || c[2] < 0.09)) }'
   render-osmesa -q $red --operator rec2020 -o rec2020.exr
   run cmp -s iso.exr rec2020.exr
   [ "$status" -eq 1 ]
   refused 2 '--operator is "xyz": write iso, rec2020 or none' --mesh panels.obj $light --operator xyz
   refused 2 '--operator is "iso,2"' --mesh panels.obj $light --operator iso,2
+  refused 2 '--operator is "iso,0,1"' --mesh panels.obj $light --operator iso,0,1
 }
 
 @test "--split draws two paints side by side" {
