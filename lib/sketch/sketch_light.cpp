@@ -9,8 +9,6 @@
 #include "math/cosine_power.h"
 #include "render/effects.h"
 #include "render/gbuffer.h"
-#include "render/path/bounce_scale.h"
-#include "render/path/transport_file.h"
 
 namespace goniochrome::sketch {
 

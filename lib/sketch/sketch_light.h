@@ -7,7 +7,7 @@
 #include "base/result.h"
 #include "envmap/prefiltered.h"
 #include "image/aov_file.h"
-#include "render/path/lobe_transport.h"
+#include "render/light_transport.h"
 #include "sketch/sketch.h"
 
 namespace goniochrome::sketch {

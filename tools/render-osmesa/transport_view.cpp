@@ -8,8 +8,6 @@
 #include "base/parallel.h"
 #include "envmap/cube_map.h"
 #include "render/effects.h"
-#include "render/path/transport_shading.h"
-#include "render/path/visible_surface.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::tool {

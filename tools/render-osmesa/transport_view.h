@@ -9,8 +9,7 @@
 #include "envmap/environment.h"
 #include "image/aov_file.h"
 #include "paints.h"
-#include "render/path/lobe_transport.h"
-#include "render/path/transport_file.h"
+#include "render/light_transport.h"
 #include "render/renderer.h"
 #include "tool.h"
 

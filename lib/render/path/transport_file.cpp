@@ -36,9 +36,9 @@ image::Image blank(const LobeTransport& t, int channels) {
   return image;
 }
 
-// What rounding to halves changes in the gray paint of a column at its worst point.
+// What rounding to halves changes in the gray paint of a column, the 95th percentile.
 double half_error(const LobeTransport& t, const image::Image& image, std::size_t column) {
-  double worst = 0;
+  std::vector<double> errors;
   const double weight = nominal_weight(t.columns, column);
   for (std::size_t i = 0; i < t.places.size(); i += 7) {
     const float* rgb = &image.data[3 * static_cast<std::size_t>(t.places[i])];
@@ -53,9 +53,9 @@ double half_error(const LobeTransport& t, const image::Image& image, std::size_t
     color::Rgb base;
     if (t.columns.is_gloss(column))
       base = (kNominalGray / std::numbers::pi / t.white_luminance) * t.light(i, LobeColumns::diffuse());
-    worst = std::max(worst, seen_difference(base + weight * light, base + weight * rounded, 1));
+    errors.push_back(seen_difference(base + weight * light, base + weight * rounded, 1));
   }
-  return worst;
+  return percentile_95(std::move(errors));
 }
 
 Json rgb_json(const color::Rgb& c) {

@@ -11,7 +11,7 @@
 namespace goniochrome::render {
 
 // Light in halves errs by up to 1/2048 of itself. A part of the file whose halves change the gray paint of its column
-// (nominal_weight()) by more than this (CIEDE2000), at any of every seventh point, is written as floats.
+// (nominal_weight()) by more than this (CIEDE2000, 95th percentile over every seventh point) is written as floats.
 constexpr double kHalfError_de00 = 0.05;
 
 struct TransportParts {
