@@ -39,15 +39,21 @@ install() {
   DEBIAN_FRONTEND=noninteractive "${root[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
 }
 
-# build PRESET [CMAKE OPTION...]: configures and builds into build/PRESET.
+# build PRESET [-DOPTION=VALUE...] [TOOL...]: configures and builds into build/PRESET; without tools, all of them.
 build() {
-  local preset=$1 log
+  local preset=$1 log argument options=() tools=()
   shift
+  for argument in "$@"; do
+    case $argument in
+      -D*) options+=("$argument") ;;
+      *) tools+=("$argument") ;;
+    esac
+  done
   log=$(mktemp)
-  (cd "$top" && cmake --preset "$preset" "$@") >"$log" 2>&1 || {
+  (cd "$top" && cmake --preset "$preset" "${options[@]}") >"$log" 2>&1 || {
     cat "$log" >&2
     die "configuring failed"
   }
   rm -f "$log"
-  cmake --build "$top/build/$preset" >&2 || die "the build failed"
+  cmake --build "$top/build/$preset" ${tools[0]:+--target "${tools[@]}"} >&2 || die "the build failed"
 }

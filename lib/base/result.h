@@ -1,7 +1,7 @@
 // Errors as values: a Result<T> is a T, or an Error that says where something is wrong, what it is, and what to do.
 #pragma once
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <optional>
 #include <string>

@@ -26,6 +26,9 @@ std::string_view trimmed(std::string_view text);
 // The pieces of `text` between the separators. Empty pieces are kept, so that an error can count them.
 std::vector<std::string_view> split(std::string_view text, char separator);
 
+// The words with the separator between each two of them.
+std::string joined(const std::vector<std::string>& words, std::string_view separator);
+
 // `text` in ASCII lower case, and in upper case.
 std::string lower(std::string_view text);
 std::string upper(std::string_view text);

@@ -57,7 +57,7 @@ TEST(ColorMap, FetchIsBilinear) {
 // angles, red where they stand. Its map is filled from the function itself.
 color::Lab traveling_paint(const FlakeAngles& f) {
   const double flop = std::exp(-std::pow(f.flake_rad / 0.3, 2)),
-               hue = (140 + 230 * f.incidence_rad - 200 * f.flake_rad) * kPi / 180;
+               hue = (140 + 230 * f.incidence_rad - 200 * f.flake_rad) * kDegree;
   const double chroma = 20 + 30 * flop;
   return {25 + 50 * flop, chroma * std::cos(hue), chroma * std::sin(hue)};
 }
@@ -107,7 +107,7 @@ TEST(HardCase, IsolineCriticalSphereHasNoErrorPixels) {
   const color::Xyz white = *color::white_point({"D65", 10});
   int all_broken = 0, all_undefined = 0;
   for (const double from_viewer_deg : {10.0, 45.0, 75.0}) {
-    const Vec3 light = {std::sin(from_viewer_deg * kPi / 180), 0, std::cos(from_viewer_deg * kPi / 180)};
+    const Vec3 light = {std::sin(from_viewer_deg * kDegree), 0, std::cos(from_viewer_deg * kDegree)};
     for (const CriticalAngle treatment : {CriticalAngle::kClip, CriticalAngle::kSlide, CriticalAngle::kIndexOne}) {
       const ColorMap map = interference_map(64, treatment == CriticalAngle::kIndexOne ? 1 : 1.5);
       int lit = 0, broken = 0, control = 0;

@@ -34,7 +34,7 @@ const Angles kAngles[] = {{20, 1.8, 3.6}, {60, 4.4, 11.7}, {85, 4, 6}};
 
 // The meter by brute force: unit vectors, the plain dot product, one dense product rule over both windows.
 double brute_force_gloss(const Angles& meter, double exponent, int source_points, int receptor_points) {
-  const double t = meter.angle_deg * kPi / 180;
+  const double t = meter.angle_deg * kDegree;
   const Vec3 s = {std::sin(t), 0, std::cos(t)}, u = {std::cos(t), 0, -std::sin(t)}, v = {0, 1, 0};
   struct Point {
     Vec3 w;
@@ -42,7 +42,7 @@ double brute_force_gloss(const Angles& meter, double exponent, int source_points
   };
   const auto window = [&](double par_deg, double perp_deg, int n) {
     std::vector<Point> points;
-    const double a = std::tan(par_deg / 2 * kPi / 180), b = std::tan(perp_deg / 2 * kPi / 180);
+    const double a = std::tan(par_deg / 2 * kDegree), b = std::tan(perp_deg / 2 * kDegree);
     for (const auto& [x, wx] : math::gauss_legendre(n))
       for (const auto& [y, wy] : math::gauss_legendre(n)) {
         const Vec3 d = s + (a * x) * u + (b * y) * v;
@@ -77,7 +77,7 @@ TEST(Gloss, VerySharpLobeReadsAsTheMirrorOfItsEnergy) {
     const GlossColumns& columns = **sharp.at(meter.angle_deg);
     // All of a unit-energy lobe enters the receptor: 100 / F_1.567, averaged over the source (its cosines vary).
     const double energy_one = (1e6 + 1) / (2 * kPi) * columns.gloss[0];
-    const double f = fresnel_dielectric(std::cos(meter.angle_deg * kPi / 180), kCoatIndex);
+    const double f = fresnel_dielectric(std::cos(meter.angle_deg * kDegree), kCoatIndex);
     EXPECT_NEAR(energy_one * f / columns.mirror, 1, 1e-3) << meter.angle_deg;
   }
 }
@@ -88,10 +88,10 @@ TEST(Gloss, ClosedFormSeedIsNear) {
   for (const Angles& meter : kAngles)
     for (const double e : {70.0, 250.0, 900.0, 3000.0}) {
       const GlossTable one({e});
-      const double t = meter.angle_deg * kPi / 180, c = std::cos(t);
+      const double t = meter.angle_deg * kDegree, c = std::cos(t);
       const double seed = 100 / fresnel_dielectric(c, kBlackGlassIndex) *
-                          std::erf(meter.receptor_par_deg / 2 * kPi / 180 * std::sqrt(e / 2)) *
-                          std::erf(meter.receptor_perp_deg / 2 * kPi / 180 * std::sqrt(e / 2));
+                          std::erf(meter.receptor_par_deg / 2 * kDegree * std::sqrt(e / 2)) *
+                          std::erf(meter.receptor_perp_deg / 2 * kDegree * std::sqrt(e / 2));
       const double ours = (*one.at(meter.angle_deg))->gloss[0] * (e + 1) / (2 * kPi);
       EXPECT_NEAR(ours / seed, 1, 0.12) << meter.angle_deg << " " << e;
     }
@@ -110,7 +110,7 @@ TEST(HardCase, GlossLimitsSmoothCoatReadsThePublishedValues) {
   double ours = 0, textbook = 0;
   for (const auto& row : rows) {
     ours = worst_of(ours, std::abs((*table().at(row.angle_deg))->mirror - row.published));
-    const double cosine = std::cos(row.angle_deg * kPi / 180);
+    const double cosine = std::cos(row.angle_deg * kDegree);
     const double units = 100 * quintic(cosine, kCoatIndex) / quintic(cosine, kBlackGlassIndex);
     textbook = worst_of(textbook, std::abs(units - row.published));
   }

@@ -1,6 +1,10 @@
-// Isochromatic lines of flake paints are the pairs of directions that see the same flakes at the same angle. One pair
-// on each line lies in one plane with the normal and stands for all of them. goniochrome-theory(7), ISOCHROMATIC LINES;
-// [Kirchner]
+// Isochromatic lines of flake paints are the pairs of directions that see the same flakes at the same angle. With a and
+// b the two directions, refracted into the coat, and n its normal, they are all pairs of the same
+//
+//   t_flake = angle(a + b, n)   and   t_incidence = angle(a, a + b)
+//
+// One pair on each line lies in one plane with the normal and stands for all of them.
+// goniochrome-theory(7), ISOCHROMATIC LINES; [Kirchner]
 #pragma once
 
 #include <optional>

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/angles.h"
 #include "math/cosine_power.h"
@@ -57,7 +56,7 @@ color::Rgb brdf(const paint::LobeFit& fit, const Vec3& to_light, const Vec3& to_
   const double cos_i = dot(normal, to_light), cos_o = dot(normal, to_viewer);
   if (cos_i <= 0 || cos_o <= 0) return {};
   const double view_rad = fit.views.empty() ? 0 : std::atan2(length(cross(normal, to_viewer)), cos_o);
-  return brdf_by_angles(fit, paint::aspecular_angle_rad(to_light, to_viewer, normal), view_rad * (180 / kPi),
+  return brdf_by_angles(fit, paint::aspecular_angle_rad(to_light, to_viewer, normal), view_rad / kDegree,
                         fresnel / cos_i);
 }
 

@@ -14,9 +14,9 @@ TEST(LobeModel, FresnelKnownValues) {
   const double at_normal = std::pow((1.5 - 1) / (1.5 + 1), 2);
   EXPECT_NEAR(fresnel_dielectric(1, 1.5), at_normal, 1e-16);
   // The three values the gloss standard is built on (ASTM D523 prints four digits).
-  EXPECT_NEAR(fresnel_dielectric(std::cos(20 * kPi / 180), 1.567), 0.0491, 5e-5);
-  EXPECT_NEAR(fresnel_dielectric(std::cos(60 * kPi / 180), 1.567), 0.1001, 1e-4);
-  EXPECT_NEAR(fresnel_dielectric(std::cos(85 * kPi / 180), 1.567), 0.6192, 1e-4);
+  EXPECT_NEAR(fresnel_dielectric(std::cos(20 * kDegree), 1.567), 0.0491, 5e-5);
+  EXPECT_NEAR(fresnel_dielectric(std::cos(60 * kDegree), 1.567), 0.1001, 1e-4);
+  EXPECT_NEAR(fresnel_dielectric(std::cos(85 * kDegree), 1.567), 0.6192, 1e-4);
   EXPECT_NEAR(fresnel_dielectric(0, 1.5), 1, 1e-15);
   // Brewster's angle: half of r_s^2 alone, ((n^2-1)/(n^2+1))^2 / 2.
   const double n2 = 2.25;
@@ -45,9 +45,9 @@ paint::LobeFit sample_fit() {
 TEST(LobeModel, BrdfAddsItsParts) {
   const paint::LobeFit fit = sample_fit();
   const Vec3 normal = {0, 0, 1};
-  const double ti = 45 * kPi / 180, to = 30 * kPi / 180;  // 15 deg aspecular, in plane
+  const double ti = 45 * kDegree, to = 30 * kDegree;  // 15 deg aspecular, in plane
   const Vec3 light = {-std::sin(ti), 0, std::cos(ti)}, view = {std::sin(to), 0, std::cos(to)};
-  const double c20 = std::pow(std::cos(15 * kPi / 180), 20), c900 = std::pow(std::cos(15 * kPi / 180), 900);
+  const double c20 = std::pow(std::cos(15 * kDegree), 20), c900 = std::pow(std::cos(15 * kDegree), 900);
   const color::Rgb f = brdf(fit, light, view, normal);
   EXPECT_NEAR(f.x, 0.1 + 0.5 * c20 + 2 * c900 / std::cos(ti), 1e-14);
   EXPECT_NEAR(f.y, 0.05 + 0.4 * c20 + 0.1 * c900 + 2 * c900 / std::cos(ti), 1e-14);
@@ -59,11 +59,11 @@ TEST(LobeModel, ViewsAreInterpolatedAndHeldAtTheEnds) {
   paint::LobeFit fit = sample_fit();
   fit.views = {{0, {0.1, 0, 0}, {{20, {1, 0, 0}, {}}}},
                {40, {0.3, 0, 0}, {{20, {0, 0, 0}, {2, 0, 0}}, {50, {4, 0, 0}, {}}}}};
-  const auto at = [](double deg) { return Vec3{std::sin(deg * kPi / 180), 0, std::cos(deg * kPi / 180)}; };
-  const auto lobe = [](double deg, double e) { return std::pow(std::cos(deg * kPi / 180), e); };
+  const auto at = [](double deg) { return Vec3{std::sin(deg * kDegree), 0, std::cos(deg * kDegree)}; };
+  const auto lobe = [](double deg, double e) { return std::pow(std::cos(deg * kDegree), e); };
   const Vec3 light = at(-45), normal = {0, 0, 1};
   EXPECT_NEAR(brdf(fit, light, at(0), normal).x, 0.1 + lobe(45, 20), 1e-14);
-  const double gloss = 2 / std::cos(45 * kPi / 180);
+  const double gloss = 2 / std::cos(45 * kDegree);
   EXPECT_NEAR(brdf(fit, light, at(40), normal).x, 0.3 + gloss * lobe(5, 20) + 4 * lobe(5, 50), 1e-12);
   EXPECT_NEAR(brdf(fit, light, at(60), normal).x, 0.3 + gloss * lobe(15, 20) + 4 * lobe(15, 50), 1e-12);
   // A quarter of the way, on either side of the normal.
@@ -81,7 +81,7 @@ TEST(LobeModel, ViewsAreInterpolatedAndHeldAtTheEnds) {
 
 TEST(LobeModel, ReflectanceFactorLeavesGlossOut) {
   const paint::LobeFit fit = sample_fit();
-  const double c20 = std::pow(std::cos(15 * kPi / 180), 20);
+  const double c20 = std::pow(std::cos(15 * kDegree), 20);
   EXPECT_NEAR(flake_reflectance_factor(fit, 15).x, kPi * (0.1 + 0.5 * c20), 1e-14);
   EXPECT_NEAR(flake_reflectance_factor(fit, 0).y, kPi * (0.05 + 0.4 + 0.1), 1e-14);
   EXPECT_NEAR(flake_reflectance_factor(fit, 110).z, kPi * 0.02, 1e-16);

@@ -118,6 +118,13 @@ std::vector<paint::DirectionPair> MeasuredBrdf::samples() const {
   return result;
 }
 
+std::string measured_formats() {
+  std::string names;
+  for (const MeasuredFormat* format : kMeasuredFormats)
+    names += (names.empty() ? "" : format == kMeasuredFormats.back() ? " and " : ", ") + std::string(format->name);
+  return names;
+}
+
 bool looks_measured(std::string_view path, std::string_view head) {
   return std::ranges::any_of(kMeasuredFormats,
                              [&](const MeasuredFormat* format) { return format->recognizes(path, head); });
@@ -132,10 +139,7 @@ Result<std::unique_ptr<MeasuredBrdf>> read_measured(const std::string& name, std
   for (const MeasuredFormat* format : kMeasuredFormats)
     if (format != kMeasuredFormats.back() && format->recognizes(name, bytes)) return format->read(name, bytes);
   if (bytes.find('\0') == std::string_view::npos) return kMeasuredFormats.back()->read(name, bytes);
-  std::string known;
-  for (const MeasuredFormat* format : kMeasuredFormats)
-    known += (known.empty() ? "" : format == kMeasuredFormats.back() ? " and " : ", ") + std::string(format->name);
-  return input_error("{}: is none of {}", name, known);
+  return input_error("{}: is none of {}", name, measured_formats());
 }
 
 MeasuredChecks checks(const MeasuredBrdf& brdf) {

@@ -64,6 +64,10 @@ class MeasuredBrdf {
   MeasuredTraits traits_;
 };
 
+// The names of these formats with the endings of their files, for help and messages: "MERL .binary, ... and Cornell
+// .brdf".
+std::string measured_formats();
+
 // Whether a file that begins with `head` (200 bytes are enough) is one of these formats; Cornell's text is told by its
 // name's ending `.brdf`.
 bool looks_measured(std::string_view path, std::string_view head);

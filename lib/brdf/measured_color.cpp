@@ -18,7 +18,7 @@ struct ApertureSample {
 };
 std::vector<ApertureSample> aperture_samples(const Vec3& view, double aperture_deg) {
   if (aperture_deg == 0) return {{view, 1}};
-  const double radius = std::tan(aperture_deg / 2 * kPi / 180) * std::sqrt(2.0 / 3);
+  const double radius = std::tan(aperture_deg / 2 * kDegree) * std::sqrt(2.0 / 3);
   const Vec3 other = std::abs(view.y) < 0.9 ? Vec3{0, 1, 0} : Vec3{1, 0, 0};
   const Vec3 across = normalized(cross(other, view)), up = cross(view, across);
   std::vector<ApertureSample> samples = {{view, 0.25}};

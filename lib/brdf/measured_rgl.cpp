@@ -155,7 +155,7 @@ class RglBrdf final : public MeasuredBrdf {
     const double to = tables_.theta_rad[static_cast<std::size_t>(slice) + 1];
     const Cell incidence{static_cast<std::size_t>(slice), std::clamp((theta_i - from) / (to - from), 0.0, 1.0)};
     for (const double side : {v, 1 - v}) add(incidence, theta_i, u, side, 0.5 / view.z, result.f);
-    if (std::min(incidence.weight, 1 - incidence.weight) > 1e-6) result.gap_deg = (to - from) * 180 / kPi;
+    if (std::min(incidence.weight, 1 - incidence.weight) > 1e-6) result.gap_deg = (to - from) / kDegree;
     return result;
   }
 
@@ -232,7 +232,7 @@ Result<MeasuredPointer> read_rgl(const std::string& path, std::string_view bytes
   for (std::size_t k = 0; k < slices; ++k) {
     tables.visible.push_back(density(std::span(visible->values).subspan(k * size, size), tables.height, tables.width));
     if (!std::isfinite(tables.visible.back().over_rows.back()))
-      return input_error("{}: the density of visible normals is empty at {} deg", path, theta->values[k] * 180 / kPi);
+      return input_error("{}: the density of visible normals is empty at {} deg", path, theta->values[k] / kDegree);
   }
   MeasuredTraits traits{.format = "rgl", .description = file.description()};
   double negative_square = 0;

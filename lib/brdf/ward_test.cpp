@@ -50,7 +50,7 @@ double albedo(const F& f, const Vec3& wo, const paint::Anisotropy& a) {
 TEST(HardCase, WardGrazingIsFiniteAndSendsBackNoMoreThanItGot) {
   double most = 0, textbook_most = 0;
   for (const double polar_deg : {0.0, 30.0, 60.0, 80.0, 89.0, 89.99, 89.9999999}) {
-    const Vec3 wo = direction(polar_deg * kPi / 180, 0.4);
+    const Vec3 wo = direction(polar_deg * kDegree, 0.4);
     for (const paint::Anisotropy a :
          {paint::Anisotropy{1e-4, 0.1}, {0.05, 0.3}, {0.3, 0.3}, {0.2, 1.0}, {1.0, 1e-3}, {3, 3}}) {
       most = worst_of(most, albedo(ward, wo, a));
@@ -79,7 +79,7 @@ TEST(HardCase, WardGrazingIsFiniteAndSendsBackNoMoreThanItGot) {
 
 TEST(Ward, AlbedoOfNarrowLobesIsTheCosine) {
   for (const double polar_deg : {0.0, 45.0, 75.0}) {
-    const Vec3 wo = direction(polar_deg * kPi / 180, 1.1);
+    const Vec3 wo = direction(polar_deg * kDegree, 1.1);
     // The first correction is of the order alpha^2.
     EXPECT_NEAR(albedo(ward, wo, {0.01, 0.03}), wo.z, 5 * 0.03 * 0.03);
   }

@@ -27,10 +27,6 @@ Error unknown_option(const ToolSpec& spec, const std::string& word) {
                      nearest ? "did you mean " + dashed(*nearest) + "?" : "`" + spec.name + " --help` lists them");
 }
 
-std::string joined(const std::vector<std::string>& words, const char* separator) {
-  return fmt::format("{}", fmt::join(words, separator));
-}
-
 std::string domain(const Option& option) {
   if (option.low > -1e300 && option.high < 1e300)
     return fmt::format(" from {} to {}", shortest(option.low), shortest(option.high));

@@ -50,7 +50,7 @@ std::string message(const std::vector<std::string>& arguments) {
   return result.ok() ? "" : result.error().message;
 }
 
-TEST(Parse, values_reach_their_targets) {
+TEST(Parse, ValuesReachTheirTargets) {
   EXPECT_EQ(message({"--quiet", "-"}), "");
   EXPECT_EQ(message({"in", "-"}), "");
   EXPECT_EQ(message({"--tolerance", "1e-3"}), "");
@@ -70,13 +70,13 @@ TEST(Parse, values_reach_their_targets) {
   EXPECT_EQ(v.inputs, (std::vector<std::string>{"in", "-"}));
 }
 
-TEST(Parse, negative_numbers_are_values) {
+TEST(Parse, NegativeNumbersAreValues) {
   Values v;
   ASSERT_TRUE(parsed(v, {"--exponents", "-1,-2"}).ok());
   EXPECT_EQ(v.exponents, (std::vector<double>{-1, -2}));
 }
 
-TEST(Parse, a_mistake_is_told_with_option_value_and_remedy) {
+TEST(Parse, AMistakeIsToldWithOptionValueAndRemedy) {
   EXPECT_EQ(message({"--size", "64abc"}), "--size is \"64abc\": give a whole number of 1 or more");
   EXPECT_EQ(message({"--size", "0"}), "--size is \"0\": give a whole number of 1 or more");
   EXPECT_EQ(message({"--tolerance", "1,5"}), "--tolerance is \"1,5\": give a number from 0 to 1");
@@ -88,7 +88,7 @@ TEST(Parse, a_mistake_is_told_with_option_value_and_remedy) {
   EXPECT_EQ(message({"a", "b", "c"}), "3 inputs are given: sample-tool takes at most 2");
 }
 
-TEST(Parse, an_alias_is_the_same_option) {
+TEST(Parse, AnAliasIsTheSameOption) {
   Values v;
   ToolSpec spec = table(v);
   std::ranges::find(spec.options, "size", &Option::name)->alias = "width";
@@ -98,7 +98,7 @@ TEST(Parse, an_alias_is_the_same_option) {
   EXPECT_NE(help_text(spec).find("; also --width"), std::string::npos);
 }
 
-TEST(Parse, a_required_option_is_asked_for) {
+TEST(Parse, ARequiredOptionIsAskedFor) {
   Values v;
   ToolSpec spec = table(v);
   spec.options[0].required = true;
@@ -108,7 +108,7 @@ TEST(Parse, a_required_option_is_asked_for) {
   EXPECT_EQ(exit_status(result.error()), 2);
 }
 
-TEST(Texts, every_option_is_in_help_man_page_and_completion) {
+TEST(Texts, EveryOptionIsInHelpManPageAndCompletion) {
   Values v;
   const ToolSpec spec = table(v);
   std::string man = man_page(spec);
@@ -120,7 +120,7 @@ TEST(Texts, every_option_is_in_help_man_page_and_completion) {
   }
 }
 
-TEST(Texts, options_stand_under_their_headings) {
+TEST(Texts, OptionsStandUnderTheirHeadings) {
   Values v;
   const std::string help = help_text(table(v)), man = man_page(table(v));
   EXPECT_LT(help.find("\nmethod:\n"), help.find("--tolerance"));
@@ -128,7 +128,7 @@ TEST(Texts, options_stand_under_their_headings) {
   EXPECT_LT(man.find(".SS Method\n"), man.find("tolerance"));
 }
 
-TEST(Texts, the_man_page_tells_unit_domain_default_and_example) {
+TEST(Texts, TheManPageTellsUnitDomainDefaultAndExample) {
   Values v;
   EXPECT_NE(man_page(table(v)).find("Error. It is relative. The value is in units, from 0 to 1. The default is 0.5. "
                                     "Example: \\-\\-tolerance 0.1"),
@@ -136,7 +136,7 @@ TEST(Texts, the_man_page_tells_unit_domain_default_and_example) {
 }
 
 // The controls: a table without a fault, and one fault at a time.
-TEST(Texts, what_a_table_lacks_is_told) {
+TEST(Texts, WhatATableLacksIsTold) {
   Values v;
   EXPECT_EQ(table_faults(table(v)), std::vector<std::string>());
   const auto fault = [&](void (*spoil)(Option&)) {
@@ -163,7 +163,7 @@ int run_tool(const std::vector<std::string>& words, const std::function<Result<V
   return tool_main(static_cast<int>(argv.size()), argv.data(), table(v), common, run);
 }
 
-TEST(Tool, the_exit_status_follows_the_outcome) {
+TEST(Tool, TheExitStatusFollowsTheOutcome) {
   EXPECT_EQ(run_tool({}, [](Session&) { return Verdict::kDone; }), 0);
   EXPECT_EQ(run_tool({}, [](Session&) { return Verdict::kNegative; }), 1);
   EXPECT_EQ(run_tool({"--nonsense"}, [](Session&) { return Verdict::kDone; }), 2);

@@ -15,7 +15,7 @@ std::string path() {
 }
 
 // The text is what one dump of the whole document gives, lists or no lists, so both ways of adding can be mixed.
-TEST(Report, reads_as_one_document_in_the_order_written) {
+TEST(Report, ReadsAsOneDocumentInTheOrderWritten) {
   const Json head = {{"tool", "fit-paint"}, {"seed", 1}};
   const Json paint = {
       {"name", "red\n\"flake\""}, {"lobes", {1, 2}}, {"views", Json::object()}, {"none", Json::array()}};
@@ -33,14 +33,14 @@ TEST(Report, reads_as_one_document_in_the_order_written) {
   EXPECT_EQ(*file_content(path()), expected.dump(2) + "\n");
 }
 
-TEST(Report, without_results_is_a_document) {
+TEST(Report, WithoutResultsIsADocument) {
   ASSERT_TRUE(Report().write(path(), {{"tool", "relight"}}).ok());
   EXPECT_EQ(*file_content(path()), "{\n  \"tool\": \"relight\",\n  \"results\": {}\n}\n");
 }
 
 #ifndef __SANITIZE_ADDRESS__  // which keeps what was freed
 // 10^5 paints with forty figures each, 90 MB as text. The control: a fifth of them in one document.
-TEST(Report, a_list_of_any_length_takes_constant_memory) {
+TEST(Report, AListOfAnyLengthTakesConstantMemory) {
   const Json paint = {{"name", "red"}, {"de00_by_geometry", std::vector<double>(40, 0.123456789)}};
   const double before_mb = peak_rss_mb();
   Report report;

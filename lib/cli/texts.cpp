@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "base/text.h"
@@ -17,13 +15,11 @@ struct DefaultText {
   std::string operator()(const double* value) const { return shortest(*value); }
   std::string operator()(const int* value) const { return std::to_string(*value); }
   std::string operator()(const std::uint64_t* value) const { return std::to_string(*value); }
-  std::string operator()(const std::vector<std::string>* value) const {
-    return fmt::format("{}", fmt::join(*value, " "));
-  }
+  std::string operator()(const std::vector<std::string>* value) const { return joined(*value, " "); }
   std::string operator()(const std::vector<double>* value) const {
     std::vector<std::string> texts;
     for (const double v : *value) texts.push_back(shortest(v));
-    return fmt::format("{}", fmt::join(texts, ","));
+    return joined(texts, ",");
   }
 };
 
@@ -33,7 +29,7 @@ std::string default_of(const Option& option) {
 
 std::string option_help(const Option& option) {
   std::string text = option.help;
-  if (!option.choices.empty()) text += fmt::format(": {}", fmt::join(option.choices, ", "));
+  if (!option.choices.empty()) text += fmt::format(": {}", joined(option.choices, ", "));
   if (!option.alias.empty()) text += fmt::format("; also --{}", option.alias);
   const std::string value = default_of(option);
   if (option.required)
@@ -89,7 +85,7 @@ std::string sentence(std::string text) {
 // The option's paragraph in the man page.
 std::string paragraph(const Option& option) {
   std::string text = sentence(option.help);
-  if (!option.choices.empty()) text += fmt::format(" The value is one of {}.", fmt::join(option.choices, ", "));
+  if (!option.choices.empty()) text += fmt::format(" The value is one of {}.", joined(option.choices, ", "));
   if (!option.details.empty()) text += " " + option.details;
   if (option.choices.empty()) text += domain_sentences(option);
   const std::string value = default_of(option);
@@ -226,7 +222,7 @@ std::string bash_completion(const ToolSpec& spec) {
         option.letter ? fmt::format("--{}|-{}", option.name, option.letter) : "--" + option.name;
     if (!option.choices.empty())
       cases += fmt::format("    {}) COMPREPLY=($(compgen -W \"{}\" -- \"$word\")); return ;;\n", pattern,
-                           fmt::join(option.choices, " "));
+                           joined(option.choices, " "));
     else if (!option.value.empty())
       cases += fmt::format("    {}) COMPREPLY=($(compgen -f -- \"$word\")); return ;;\n", pattern);
   }
@@ -236,7 +232,7 @@ std::string bash_completion(const ToolSpec& spec) {
       "{}() {{\n  local word=${{COMP_WORDS[COMP_CWORD]}}\n  case ${{COMP_WORDS[COMP_CWORD-1]}} in\n{}  esac\n"
       "  case $word in\n    -*) COMPREPLY=($(compgen -W \"{}\" -- \"$word\")) ;;\n"
       "    *) COMPREPLY=($(compgen -f -- \"$word\")) ;;\n  esac\n}}\ncomplete -o filenames -F {} {}\n",
-      function, cases, fmt::join(words, " "), function, spec.name);
+      function, cases, joined(words, " "), function, spec.name);
 }
 
 std::vector<std::string> table_faults(const ToolSpec& spec) {

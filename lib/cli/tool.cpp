@@ -1,6 +1,5 @@
 #include "cli/tool.h"
 
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 
 #include "base/file.h"
 #include "base/parallel.h"
+#include "base/text.h"
 #include "cli/outputs.h"
 #include "cli/parse.h"
 #include "cli/process.h"
@@ -67,7 +67,7 @@ int answer(const ToolSpec& spec, const std::string& text) {
 int generate(const ToolSpec& spec, const std::string& what) {
   const std::string text = what == "man" ? man_page(spec) : bash_completion(spec);
   const std::vector<std::string> faults = table_faults(spec);
-  if (!faults.empty()) return fail(spec.name, {ErrorKind::kBug, fmt::format("{}", fmt::join(faults, "\n"))});
+  if (!faults.empty()) return fail(spec.name, {ErrorKind::kBug, joined(faults, "\n")});
   return answer(spec, text);
 }
 

@@ -135,7 +135,7 @@ double textbook_lightness(double Y) {
   return 116 * std::pow(Y, 1.0 / 3.0) - 16;
 }
 double textbook_hue_deg(double a, double b) {
-  return std::atan(b / a) * 180 / kPi;
+  return std::atan(b / a) / kDegree;
 }
 
 // Lab has magnitudes up to 160 and, in a*, differences of two numbers near 1.5 times 500: an ulp of those is 1.7e-13,

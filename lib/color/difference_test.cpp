@@ -59,8 +59,8 @@ constexpr Pair kPublished[] = {
 // of hues on both sides of 0 not turned by half a turn (wraps = false), or reached from the first hue by half the
 // difference, which rounds otherwise than from the second (from_first = true).
 double textbook_de00(const Lab& x, const Lab& y, double margin_deg, bool wraps, bool from_first = false) {
-  const auto rad = [](double d) { return d * kPi / 180; };
-  const auto hue = [](double a, double b) { return std::fmod(std::atan2(b, a) * 180 / kPi + 360, 360); };
+  const auto rad = [](double d) { return d * kDegree; };
+  const auto hue = [](double a, double b) { return std::fmod(std::atan2(b, a) / kDegree + 360, 360); };
   const double mean_ab = (std::hypot(x.a, x.b) + std::hypot(y.a, y.b)) / 2;
   const double g = 0.5 * (1 - std::sqrt(std::pow(mean_ab, 7) / (std::pow(mean_ab, 7) + std::pow(25, 7))));
   const double ax = x.a * (1 + g), ay = y.a * (1 + g), cx = std::hypot(ax, x.b), cy = std::hypot(ay, y.b);

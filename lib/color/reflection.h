@@ -1,5 +1,6 @@
-// Reflection of colored light without spectra: a bilinear product of light and reflectance takes the place of the
-// product channel by channel. Also the files of such products. goniochrome-theory(7), COLORED LIGHT; [GranierDamez2004]
+// Reflection of colored light without spectra. Light and reflectance are often multiplied channel by channel; here each
+// channel of the result depends on all channels of both, by a bilinear product. This header also reads and writes the
+// files of such products. goniochrome-theory(7), COLORED LIGHT; [GranierDamez2004]
 #pragma once
 
 #include <array>

@@ -1,5 +1,6 @@
-// This is an environment as a tree of blocks of texels. Each block holds its sums, and a walk over the tree opens a
-// block only where the asker needs to tell its parts apart. goniochrome-theory(7), PREFILTERING, Blocks.
+// This is an environment as a tree of blocks of texels. Each block holds the sums over its texels. A walk over the tree
+// starts at the largest blocks, and goes into a block only where the caller asks for its parts.
+// goniochrome-theory(7), PREFILTERING, Blocks.
 #pragma once
 
 #include <algorithm>

@@ -119,7 +119,7 @@ Result<PrefilteredEnvironment> levels_of(Imf::TiledInputFile& file, const std::s
     return input_error("{}: goniochrome:exponents names {} levels, which its {} levels of {} x {} texels are not", path,
                        exponents.size(), file.numLevels(), size, file.levelHeight(0));
   PrefilteredEnvironment env;
-  env.mirror.exponent = kMirrorExponent;
+  env.mirror.exponent = paint::kMirrorExponent;
   env.source = text_of(header, "goniochrome:source");
   for (std::size_t i = 0; i < exponents.size() && exponents[i] > 0; ++i) {
     PrefilteredLobe lobe;

@@ -167,7 +167,7 @@ Result<PrefilteredEnvironment> read_env(const std::string& path) {
   GONIO_ASSIGN(std::vector<image::ImagePart> parts, image::read_exr(path));
   if (!text_attribute(parts.front(), "goniochrome:exponents").empty()) return read_mip(path);
   PrefilteredEnvironment env;
-  env.mirror.exponent = kMirrorExponent;
+  env.mirror.exponent = paint::kMirrorExponent;
   for (image::ImagePart& part : parts) {
     const std::string name = part.name;
     if (name != "diffuse" && name != "mirror" && !name.starts_with("lobe-")) continue;

@@ -13,8 +13,6 @@
 
 namespace goniochrome::envmap {
 
-using paint::kMirrorExponent;
-
 // P_E = (E+1)/(2 pi) * integral of L(w) max(0, d.w)^E dw: a constant map stays itself.
 struct PrefilteredLobe {
   double exponent = 1;

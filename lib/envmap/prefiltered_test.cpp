@@ -45,7 +45,7 @@ PrefilteredEnvironment small_env() {
   env.source = "hall.hdr";
   env.diffuse = random_lobe(1, 4, 1e-3, .1, 10);
   env.lobes = {random_lobe(1.3, 3, 1e-3, .1, 10), random_lobe(70, 8, 1e-4, .1, 10)};
-  env.mirror = random_lobe(kMirrorExponent, 16, 1e-3, .1, 1e5);
+  env.mirror = random_lobe(paint::kMirrorExponent, 16, 1e-3, .1, 1e5);
   return env;
 }
 
@@ -61,13 +61,13 @@ TEST_F(EnvFile, EnvironmentReturnsAsRounded) {
   EXPECT_EQ(read->lobes[0].map.texels, env.lobes[0].map.texels);
   EXPECT_EQ(read->lobes[1].map.texels, env.lobes[1].map.texels);
   EXPECT_EQ(read->mirror.map.texels, env.mirror.map.texels);
-  EXPECT_EQ(read->mirror.exponent, kMirrorExponent);
+  EXPECT_EQ(read->mirror.exponent, paint::kMirrorExponent);
   EXPECT_FLOAT_EQ(static_cast<float>(read->lobes[0].max_error), 3e-4F);
   EXPECT_EQ(read->lobes[0].verified_texels, 12);
   EXPECT_EQ(read->lobes[0].method, "by hand");
   EXPECT_EQ(read->lobe(1.3), &read->lobes[0]);  // the file holds the float 1.3
   EXPECT_EQ(read->lobe(1), &read->diffuse);
-  EXPECT_EQ(read->lobe(kMirrorExponent), &read->mirror);
+  EXPECT_EQ(read->lobe(paint::kMirrorExponent), &read->mirror);
   EXPECT_EQ(read->lobe(71), nullptr);
 }
 

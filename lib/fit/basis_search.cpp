@@ -84,7 +84,7 @@ Result<BasisTarget> basis_target(const BrdfTarget& brdf, const BasisTargetOption
   };
   std::vector<Bin> bins(kBins);
   for (const BrdfSample& sample : brdf.samples) {
-    const double angle_deg = sample.aspecular_rad * (180 / kPi);
+    const double angle_deg = sample.aspecular_rad / kDegree;
     const double at = (angle_deg - kGlareAngle_deg) / kStep_deg;
     if (at < 0 || at >= static_cast<double>(kBins)) continue;
     if (std::max(sample.light_deg, sample.view_deg) > kSteepest_deg) continue;
@@ -110,7 +110,7 @@ double basis_de00(const std::vector<double>& exponents, const BasisTarget& targe
     const BasisRow& row = target.rows[r];
     problem.shape(r, 0) = 1;
     for (std::size_t j = 0; j < exponents.size(); ++j)
-      problem.shape(r, static_cast<int>(j) + 1) = math::cos_power(row.angle_deg * kPi / 180, exponents[j]);
+      problem.shape(r, static_cast<int>(j) + 1) = math::cos_power(row.angle_deg * kDegree, exponents[j]);
     problem.weight.push_back(row.weight), problem.value.push_back(row.value);
   }
   const std::vector<color::Rgb> fitted = predictions(problem, linear_fit(Norm::kL2, problem).x);

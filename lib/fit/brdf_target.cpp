@@ -15,7 +15,7 @@ namespace {
 const color::ViewingCondition kWorkingCondition = {"D65", 2};
 
 double from_normal_deg(const Vec3& direction) {
-  return std::atan2(std::hypot(direction.x, direction.y), direction.z) * (180 / kPi);
+  return std::atan2(std::hypot(direction.x, direction.y), direction.z) / kDegree;
 }
 
 // The quadrature of albedo_error(): lights, and rings and spokes of viewers about the mirror direction of each.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/angles.h"
 #include "base/clock.h"
@@ -124,7 +123,7 @@ bool has_flake(const std::vector<paint::Lobe>& lobes, double exponent) {
 paint::LobeFit with_gloss_at(paint::LobeFit lobes, double incidence_deg) {
   const double fresnel = brdf::coat_fresnel(std::cos(incidence_deg * kDegree));
   for (paint::Lobe& lobe : lobes.lobes)
-    if (std::isfinite(lobe.exponent)) lobe.gloss = fresnel * lobe.gloss;
+    if (!lobe.is_mirror()) lobe.gloss = fresnel * lobe.gloss;
   return lobes;
 }
 
@@ -155,7 +154,7 @@ PaintFit PaintFitter::started() const {
   out.lobes.basis = basis_.name;
   out.lobes.method = fit_method_name(options_.method);
   for (const double exponent : basis_.exponents) out.lobes.lobes.push_back({exponent, {}, {}});
-  if (basis_.mirror) out.lobes.lobes.push_back({std::numeric_limits<double>::infinity(), {}, {}});
+  if (basis_.mirror) out.lobes.lobes.push_back({paint::kMirrorExponent, {}, {}});
   return out;
 }
 

@@ -28,7 +28,7 @@ struct FitOptions {
   bool perceptual_weights = true;                       // rows weighted by dL*/dY of the target
   std::vector<paint::GlossReading> assumed_gloss = {};  // for paints that state no gloss
   int most_lobes = 0;                                   // flake lobes to use, the best subset of the basis; 0: all
-  double prune_de00 = 0;               // lobes that move no color by more than this are dropped; 0: none are
+  double prune_de00 = 0;               // --prune: lobes that move no color by more are dropped; 0: none are
   std::vector<double> views_deg = {};  // weights at these angles of the viewer too; empty: none
   bool views_where_needed = false;     // in place of views_deg, the views of readings that differ at one aspecular
                                        // angle; of a measured BRDF, views every 15 deg

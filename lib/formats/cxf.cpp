@@ -160,8 +160,8 @@ class CxfHandler final : public XmlHandler {
     if (in("ColorCIELCh", "C")) return take(chroma_, "C", content);
     if (in("ColorCIELCh", "H")) return take(hue_deg_, "H", content);
     if (in("ColorValues", "ColorCIELCh")) {
-      color_.lab.a = chroma_ * std::cos(hue_deg_ * kPi / 180);
-      color_.lab.b = chroma_ * std::sin(hue_deg_ * kPi / 180);
+      color_.lab.a = chroma_ * std::cos(hue_deg_ * kDegree);
+      color_.lab.b = chroma_ * std::sin(hue_deg_ * kDegree);
       object.colors.push_back(color_);
     }
     if (in("ColorValues", "ColorCIELab") || in("ColorValues", "ColorCIELCh"))

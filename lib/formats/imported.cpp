@@ -1,7 +1,5 @@
 #include "formats/imported.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <deque>
-#include <limits>
 
 #include "base/text.h"
 #include "formats/imported.h"
@@ -344,7 +343,7 @@ Result<void> PaintHandler::begin_lobe(const XmlValues& values, std::vector<paint
   if (lobes.size() >= kMostRows) return values.error(fmt::format("more than {} lobes in one paint", kMostRows));
   paint::Lobe& lobe = lobes.emplace_back();
   if (values.text("exponent") == "mirror")
-    lobe.exponent = std::numeric_limits<double>::infinity();
+    lobe.exponent = paint::kMirrorExponent;
   else
     GONIO_TRY(values.number("exponent", lobe.exponent, Domain::kNotNegative));
   GONIO_TRY(values.rgb("dd", lobe.directional_diffuse));

@@ -1,4 +1,3 @@
-#include <cmath>
 
 #include "base/text.h"
 #include "formats/internal/schemas.h"
@@ -49,7 +48,7 @@ std::string weights(const std::string& indent, const color::Rgb& diffuse, const 
   std::string text = indent + "<diffuse" + rgb_attributes("", diffuse) + "/>\n";
   for (const paint::Lobe& lobe : lobes)
     text += indent + "<lobe" +
-            (std::isinf(lobe.exponent) ? attribute("exponent", "mirror") : attribute("exponent", lobe.exponent)) +
+            (lobe.is_mirror() ? attribute("exponent", "mirror") : attribute("exponent", lobe.exponent)) +
             rgb_attributes("dd", lobe.directional_diffuse) + rgb_attributes("g", lobe.gloss) + "/>\n";
   return text;
 }

@@ -1,6 +1,8 @@
 #include "image/aov_file.h"
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 
 #include "base/json.h"
 #include "base/text.h"
@@ -79,7 +81,7 @@ Result<int> AovFile::channel(const std::string& name) const {
 Result<int> AovFile::part(const std::string& name) const {
   const auto found = std::find(parts.begin(), parts.end(), name);
   if (found != parts.end()) return static_cast<int>(found - parts.begin()) + 1;
-  return usage_error("{} has no part \"{}\": its parts are {}", path, name, fmt::join(parts, ", "));
+  return usage_error("{} has no part \"{}\": its parts are {}", path, name, joined(parts, ", "));
 }
 
 Result<AovFile> read_aov_file(const std::string& path) {
@@ -91,6 +93,9 @@ Result<AovFile> read_aov_file(const std::string& path) {
   file.exposure_stops = attribute_or<float>(attributes, "goniochrome:exposure", 0);
   file.white_luminance = attribute_or<float>(attributes, "goniochrome:whiteLuminance", 1);
   if (!(file.white_luminance > 0)) file.white_luminance = 1;
+  // Files without the attribute were exposed for the diffuse white.
+  file.automatic_stops = attribute_or<float>(attributes, "goniochrome:automaticExposure",
+                                             static_cast<float>(-std::log2(file.white_luminance)));
   file.samples = attribute_or<int>(attributes, "goniochrome:samples", 1);
   file.environment = text("goniochrome:environment");
   file.command = text("goniochrome:command");
@@ -114,7 +119,10 @@ Result<AovFile> read_aov_file(const std::string& path) {
     if (decision == "drawn" || decision == "forced on") file.drawn.push_back(name);
     if (decision == "dropped" || decision == "forced off" || decision == "over budget") file.left_out.push_back(name);
   }
+  file.transport = text("goniochrome:transport");
   file.image = std::move(read.front().image);
+  if (!file.transport.empty())
+    file.layers.assign(std::make_move_iterator(read.begin() + 1), std::make_move_iterator(read.end()));
   return file;
 }
 

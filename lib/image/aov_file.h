@@ -22,6 +22,8 @@ struct AovFile {
   Image image;  // R G B A and the buffers
   // From the file's header; where it does not tell them, the exposure is 0 and the white is 1.
   double exposure_stops = 0, white_luminance = 1;
+  // What brings the light of the buffers to the exposure of a PNG that is exposed automatically.
+  double automatic_stops = 0;
   int samples = 1;               // in every pixel of the picture; the buffers have one, in the center of the pixel
   Vec3 light{0, 1, 0};           // the light that the buffers aspecular and lambert are relative to
   std::vector<AovLight> lights;  // all lights of the picture
@@ -33,6 +35,8 @@ struct AovFile {
   std::vector<std::string> drawn;             // the effects that the picture shows, by render-osmesa's names
   std::vector<std::string> left_out;          // the effects that the scene has and the picture does not show
   color::ReflectionOperator reflection = color::iso_rgb_operator();  // with which the effect "operator" was drawn
+  std::string transport;          // what the header says of a transport, JSON; "" where the file has none
+  std::vector<ImagePart> layers;  // the parts after the picture: those of a transport
 
   // The channel's place in a pixel. Error: the file lacks it; the message has the command that makes it.
   Result<int> channel(const std::string& name) const;

@@ -68,7 +68,7 @@ class CmykJpeg : public testing::Test {
 };
 
 // At quality 100 each coefficient is rounded to 1, which leaves a pixel off by 1 or 2 of 255; YCCK rounds once more.
-TEST_F(CmykJpeg, inks_come_back_as_they_were) {
+TEST_F(CmykJpeg, InksComeBackAsTheyWere) {
   for (const auto& [adobe, space] : {std::pair{true, JCS_CMYK}, {true, JCS_YCCK}, {false, JCS_CMYK}}) {
     const auto part = read(cmyk_jpeg(adobe, space), Inks::kKept);
     ASSERT_TRUE(part.ok()) << part.error().message;
@@ -81,13 +81,13 @@ TEST_F(CmykJpeg, inks_come_back_as_they_were) {
   }
 }
 
-TEST_F(CmykJpeg, who_does_not_ask_for_inks_gets_rgb) {
+TEST_F(CmykJpeg, WhoDoesNotAskForInksGetsRgb) {
   const auto part = read(cmyk_jpeg(true, JCS_CMYK), Inks::kAsRgb);
   ASSERT_TRUE(part.ok()) << part.error().message;
   EXPECT_EQ(part->image.channel_names, (std::vector<std::string>{"R", "G", "B"}));
 }
 
-TEST_F(CmykJpeg, a_cut_file_is_an_error) {
+TEST_F(CmykJpeg, ACutFileIsAnError) {
   const std::string whole = cmyk_jpeg(true, JCS_CMYK);
   for (const std::size_t size : {whole.size() / 2, whole.size() - 60}) {
     const auto part = read(whole.substr(0, size), Inks::kKept);

@@ -24,7 +24,7 @@ TEST(HardCase, PowCosWithin1e12OfLongDouble) {
   int compared = 0, vanished = 0;
   for (double exponent : {0.3, 1.0, 7.5, 150.0, 3000.0, 1e4, 1e5, 1e6}) {
     for (double angle_deg = 1e-8; angle_deg < 89.9991; angle_deg *= 1.003) {
-      const double angle = angle_deg * kPi / 180;
+      const double angle = angle_deg * kDegree;
       const long double reference = reference_power(angle, exponent);
       const double ours = cos_power(angle, exponent);
       EXPECT_TRUE(std::isfinite(ours));
@@ -37,7 +37,7 @@ TEST(HardCase, PowCosWithin1e12OfLongDouble) {
       worst = worst_of(worst, static_cast<double>(std::abs(ours / reference - 1)));
       textbook = worst_of(textbook, static_cast<double>(std::abs(std::pow(std::cos(angle), exponent) / reference - 1)));
     }
-    const double last = 89.999 * kPi / 180;
+    const double last = 89.999 * kDegree;
     if (exponent >= 60) continue;
     EXPECT_NEAR(cos_power(last, exponent) / static_cast<double>(reference_power(last, exponent)), 1, 1e-12);
   }

@@ -196,7 +196,7 @@ TEST(L1Fit, RowsOfBothSignsEndSoon) {
     std::vector<double> b(kData + kAlike, 0.0);
     for (int i = 0; i < m.rows; ++i) {
       const int view = i < kData ? static_cast<int>(random() % kViews) : i % (kViews - 1);
-      const double c = std::cos((10 + 90 * unit(random)) * kPi / 180), weight = i < kData ? 1 : 0.1;
+      const double c = std::cos((10 + 90 * unit(random)) * kDegree), weight = i < kData ? 1 : 0.1;
       for (int j = 0; j < kLobes; ++j) {
         m(i, view * kLobes + j) = weight * std::pow(std::max(c, 0.0), j == 0 ? 0 : std::pow(3, j - 1));
         if (i >= kData) m(i, (view + 1) * kLobes + j) = -m(i, view * kLobes + j);

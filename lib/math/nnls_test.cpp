@@ -114,8 +114,7 @@ Matrix lobe_columns(const std::vector<double>& exponents) {
   const std::vector<double> angles = {2, 5, 10, 15, 25, 45, 75, 110};
   Matrix m(static_cast<int>(angles.size()), static_cast<int>(exponents.size()));
   for (int i = 0; i < m.rows; ++i)
-    for (int j = 0; j < m.columns; ++j)
-      m(i, j) = std::pow(std::max(0.0, std::cos(angles[i] * kPi / 180)), exponents[j]);
+    for (int j = 0; j < m.columns; ++j) m(i, j) = std::pow(std::max(0.0, std::cos(angles[i] * kDegree)), exponents[j]);
   return m;
 }
 

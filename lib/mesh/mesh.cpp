@@ -57,7 +57,7 @@ bool is_ear(const std::vector<Point2>& flat, const std::vector<std::uint32_t>& l
 }
 
 // Faces that meet at a sharper edge than this do not share a made normal.
-const double kCreaseCosine = std::cos(60 * kPi / 180);
+const double kCreaseCosine = std::cos(60 * kDegree);
 
 // A triangle whose height is less than this part of its longest edge has no area: its direction is rounding noise.
 constexpr double kFlatness = 1e-10;

@@ -16,6 +16,7 @@
 #include <set>
 
 #include "base/angles.h"
+#include "base/text.h"
 
 namespace goniochrome::mesh {
 
@@ -38,9 +39,9 @@ struct Rim {
   int duplicate_faces = 0, non_manifold_edges = 0;
 };
 
-constexpr double kFold_rad = 30 * kPi / 180;
-constexpr double kFlat_rad = 2 * kPi / 180;  // less is rounding of the file, whatever the size of the faces
-constexpr double kLeastPatch = 0.01;         // of the part's area
+constexpr double kFold_rad = 30 * kDegree;
+constexpr double kFlat_rad = 2 * kDegree;  // less is rounding of the file, whatever the size of the faces
+constexpr double kLeastPatch = 0.01;       // of the part's area
 
 using Index = std::uint32_t;
 
@@ -278,7 +279,7 @@ Pair best_pair(const RimEdge& a, const Vec3& at_a, const RimEdge& b, const Vec3&
   return best;
 }
 
-const double kLeastCosine = std::cos(30 * kPi / 180);  // sides further apart are not meant to be one surface
+const double kLeastCosine = std::cos(30 * kDegree);  // sides further apart are not meant to be one surface
 constexpr double kFacing = 0.7;  // of the way from edge to edge, across the first one; less is around a corner
 
 void measure(SeamPoint& p, double unit_m) {
@@ -286,8 +287,8 @@ void measure(SeamPoint& p, double unit_m) {
   const double flush = dot(apart, p.normal_a);
   p.flush_mm = flush * unit_m * 1e3;
   p.gap_mm = length(apart - flush * p.normal_a) * unit_m * 1e3;
-  p.angle_deg = std::atan2(length(cross(p.normal_a, p.normal_b)), dot(p.normal_a, p.normal_b)) * 180 / kPi;
-  p.fold_deg = std::atan2(dot(p.normal_b, p.across), dot(p.normal_b, p.normal_a)) * 180 / kPi;
+  p.angle_deg = std::atan2(length(cross(p.normal_a, p.normal_b)), dot(p.normal_a, p.normal_b)) / kDegree;
+  p.fold_deg = std::atan2(dot(p.normal_b, p.across), dot(p.normal_b, p.normal_a)) / kDegree;
 }
 
 // The points in their order along the seam: from an end always on to the nearest point that is left. Where that one is
@@ -336,7 +337,7 @@ Result<const MeshPart*> part_of(const Mesh& mesh, const std::string& name) {
     if (part.name == name) return &part;
   std::vector<std::string> names;
   for (const MeshPart& part : mesh.parts) names.push_back(part.name);
-  return input_error("the mesh has no part \"{}\": it has {}", name, fmt::join(names, ", "));
+  return input_error("the mesh has no part \"{}\": it has {}", name, joined(names, ", "));
 }
 
 double nearest_distance(const RimTree& a, const RimTree& b) {

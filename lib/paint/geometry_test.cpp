@@ -90,7 +90,7 @@ TEST(Geometry, DirectionsOutOfPlaneFollowTheAzimuth) {
 TEST(Geometry, InPlanePositiveIsTowardTheNormalAndAzimuth0AwayFromIt) {
   const auto polar_deg = [](const char* name) {
     const Vec3 v = directions(*parse_geometry(name)).view;
-    return std::atan2(v.x, v.z) * 180 / kPi;
+    return std::atan2(v.x, v.z) / kDegree;
   };
   EXPECT_NEAR(polar_deg("45as0"), 45, 1e-13);
   EXPECT_NEAR(polar_deg("45as15"), 30, 1e-13);
@@ -114,7 +114,7 @@ TEST(Geometry, AngleOfTheDirectionsIsTheAngleOfTheName) {
     const Geometry geometry = *parse_geometry(name);
     const auto [light, view] = directions(geometry);
     EXPECT_NEAR(length(view), 1, 4e-16);
-    EXPECT_NEAR(aspecular_angle_rad(light, view, {0, 0, 1}) * 180 / kPi, aspecular_angle_deg(geometry), 1e-12) << name;
+    EXPECT_NEAR(aspecular_angle_rad(light, view, {0, 0, 1}) / kDegree, aspecular_angle_deg(geometry), 1e-12) << name;
   }
 }
 

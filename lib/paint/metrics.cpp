@@ -114,7 +114,7 @@ HueTravel hue_travel(std::span<const color::Lab> path) {
   HueTravel travel;
   for (std::size_t i = 1; i < path.size(); ++i) {
     const color::Lab &from = path[i - 1], &to = path[i];
-    travel.degrees += std::atan2(from.a * to.b - from.b * to.a, from.a * to.a + from.b * to.b) * (180 / kPi);
+    travel.degrees += std::atan2(from.a * to.b - from.b * to.a, from.a * to.a + from.b * to.b) / kDegree;
     if (least_chroma(from, to) < kLeastChroma) travel.through_gray = true;
   }
   return travel;
@@ -448,7 +448,7 @@ std::string metric_advice(std::string_view unknown) {
     if (const std::size_t d = edit_distance(unknown, column.name); d < distance) nearest = &column, distance = d;
   }
   if (nearest) return fmt::format("; did you mean {}?", nearest->name);
-  return fmt::format("; there are {}", fmt::join(names, ", "));
+  return fmt::format("; there are {}", joined(names, ", "));
 }
 
 }  // namespace goniochrome::paint

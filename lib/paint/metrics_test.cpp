@@ -25,7 +25,7 @@ Paint measured(const std::vector<std::pair<double, color::Lab>>& rows) {
 }
 
 color::Lab polar(double L, double C, double hue_deg) {
-  const double h = hue_deg * kPi / 180;
+  const double h = hue_deg * kDegree;
   return {L, C * std::cos(h), C * std::sin(h)};
 }
 
@@ -122,7 +122,7 @@ TEST(HardCase, HueShiftAchromatic) {
   EXPECT_NEAR(turned.hue_shift_index, 0, 1e-9);
   const double seen = textbook_hue_shift(polar(60, 40, 20), polar(30, 30, 200));
   hard_case("hue-shift-achromatic", {.what = "hue turned by 180 deg",
-                                     .textbook = 180 - std::asin(seen / 30) * 180 / kPi,
+                                     .textbook = 180 - std::asin(seen / 30) / kDegree,
                                      .ours = std::abs(turned.hue_travel_deg - 180),
                                      .bound = 1e-9,
                                      .unit = "deg"});

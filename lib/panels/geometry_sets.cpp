@@ -51,7 +51,7 @@ Result<std::vector<View>> views_of(const char* option, const std::string& text, 
       if (set == sets.end()) {
         std::vector<std::string> names;
         for (const GeometrySet& s : sets) names.emplace_back(s.name);
-        return usage_error("{} names the set \"{}\": there are {}", option, name, fmt::join(names, ", "));
+        return usage_error("{} names the set \"{}\": there are {}", option, name, joined(names, ", "));
       }
       GONIO_ASSIGN(const std::vector<View> more, views_of(option, (*set).*member, member));
       views.insert(views.end(), more.begin(), more.end());
@@ -103,7 +103,7 @@ Result<std::vector<double>> light_angles(const std::string& text) {
 
 double aspecular_deg(const LightView& geometry) {
   const paint::DirectionPair pair = directions(geometry);
-  return paint::aspecular_angle_rad(pair.light, pair.view, {0, 0, 1}) * (180 / kPi);
+  return paint::aspecular_angle_rad(pair.light, pair.view, {0, 0, 1}) / kDegree;
 }
 
 Result<GeometryList> geometry_list(const GeometryTexts& texts) {

@@ -254,7 +254,7 @@ render::Camera seam_camera_from(const mesh::Seam& seam, const Vec3& direction, d
   const Vec3 middle = 0.5 * (box.low + box.high);
   double radius = 0;
   for (const mesh::SeamPoint& p : seam.points) radius = std::max(radius, length(p.a - middle));
-  const double half = fov_deg / 2 * kPi / 180;
+  const double half = fov_deg / 2 * kDegree;
   const double narrow = aspect < 1 ? std::atan(std::tan(half) * aspect) : half;
   render::Camera camera;
   camera.target = middle;

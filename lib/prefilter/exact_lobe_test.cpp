@@ -108,7 +108,7 @@ TEST(ExactLobe, OfOneTexelIsTheCosinePower) {
           5 * env.solid_angle(100, 60) * (exponent + 1) / (2 * kPi) * math::cosine_power(dot(d, texel), exponent);
       const double angle = envmap::angle_between(d, texel);
       // The patch against its center: E h^2/24 (1 + E tan^2) with h = 1 deg, two ways.
-      const double h = kPi / 180, spread = exponent * h * h / 6 * (1 + exponent * std::pow(std::tan(angle), 2)) + 1e-4;
+      const double h = kDegree, spread = exponent * h * h / 6 * (1 + exponent * std::pow(std::tan(angle), 2)) + 1e-4;
       if (spread < 0.5) {
         EXPECT_NEAR(reference_lobe(env, d, exponent).y / want, 1, spread) << exponent << " " << i;
       }

@@ -392,7 +392,7 @@ std::vector<LobePlan> prefilter_plan(const envmap::Environment& env, const Prefi
   for (const KernelPointer& kernel : request.kernels) add(kernel, request.size);
   if (request.mirror) {
     LobePlan mirror;
-    mirror.exponent = envmap::kMirrorExponent;
+    mirror.exponent = paint::kMirrorExponent;
     mirror.method = Method::kMirror;
     mirror.size = request.size > 0 ? request.size : mirror_size(env);
     mirror.predicted_error = rounding_error(request.tolerance);
@@ -407,7 +407,7 @@ envmap::PrefilteredEnvironment prefiltered(
     const std::function<void(const envmap::PrefilteredLobe&, double time_s)>& done, const LobeSource& known) {
   envmap::PrefilteredEnvironment result;
   result.source = env.source();
-  result.mirror.exponent = envmap::kMirrorExponent;
+  result.mirror.exponent = paint::kMirrorExponent;
   const double tolerance = method_tolerance(request.tolerance);
   std::vector<std::optional<envmap::PrefilteredLobe>> there(plan.size());
   std::vector<LobePlan> missing;

@@ -104,7 +104,7 @@ TEST(Prefilter, OfOneTexelIsTheCosinePower) {
       const double e = lobe->exponent, t = dot(d, texel);
       const double want = flux * (e + 1) / (2 * kPi) * math::cosine_power(t, e);
       // A patch of 1 deg against its center: E h^2/24 (1 + E tan^2) two ways; at the horizon half a texel of flank.
-      const double h = kPi / 180, bend = t > 0.1 ? e * h * h / 12 * (1 + e * (1 - t * t) / (t * t)) : 0;
+      const double h = kDegree, bend = t > 0.1 ? e * h * h / 12 * (1 + e * (1 - t * t) / (t * t)) : 0;
       const double flank = t > -h && t <= 0.1 ? flux * (e + 1) / (2 * kPi) * std::pow(0.1 + h, e) * h * e : 0;
       EXPECT_NEAR(rgb[1], want, (1e-4 + bend) * std::max(want, 1e-3 * mean) + flank) << e;
     });

@@ -275,6 +275,7 @@ void RayScene::closest(const Fan& fan, Hit* hits) const {
 Spot RayScene::spot(const Hit& hit, const Float3& origin, const Float3& direction) const {
   Spot spot;
   spot.triangle = hit.triangle;
+  spot.u = hit.u, spot.v = hit.v;
   spot.part = part(hit.triangle);
   if (hit.triangle == kFloor) {
     spot.position = origin + hit.distance * direction;

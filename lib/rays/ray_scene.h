@@ -40,6 +40,7 @@ struct Spot {
   std::uint32_t triangle = kNothing;
   int part = 0;         // of the mesh; the floor is the part after the last
   bool inside = false;  // whether it was met from its back
+  float u = 0, v = 0;   // of the hit
 };
 
 // The same for callers outside of the kernels, in the units of the mesh.

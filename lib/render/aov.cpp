@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
 
+#include "base/angles.h"
 #include "paint/geometry.h"
 
 namespace goniochrome::render {
@@ -30,7 +30,7 @@ const std::vector<Aov>& aovs() {
        180,
        [](const Gbuffer& g, int x, int y, const Vec3& to_light, float* value) {
          const double angle_rad = paint::aspecular_angle_rad(to_light, g.to_viewer(x, y), g.normal(x, y));
-         *value = static_cast<float>(angle_rad * 180 / std::numbers::pi);
+         *value = static_cast<float>(angle_rad / kDegree);
        }},
       {"lambert",
        {"lambert"},
@@ -51,12 +51,16 @@ const std::vector<Aov>& aovs() {
 
 }  // namespace
 
+std::string aov_names() {
+  std::string known;
+  for (const Aov& a : aovs()) known += (known.empty() ? "" : ", ") + a.name;
+  return known;
+}
+
 Result<void> add_aov(image::Image& picture, const Gbuffer& gbuffer, const std::string& name, const Vec3& to_light) {
   const auto aov = std::find_if(aovs().begin(), aovs().end(), [&](const Aov& a) { return a.name == name; });
   if (aov == aovs().end()) {
-    std::string known;
-    for (const Aov& a : aovs()) known += (known.empty() ? "" : ", ") + a.name;
-    return usage_error("there is no buffer \"{}\": there are {}", name, known);
+    return usage_error("there is no buffer \"{}\": there are {} and error", name, aov_names());
   }
   const int old_channels = picture.channels, added = static_cast<int>(aov->channels.size());
   image::Image wider{picture.width, picture.height, old_channels + added, {}, picture.channel_names};
@@ -74,6 +78,16 @@ Result<void> add_aov(image::Image& picture, const Gbuffer& gbuffer, const std::s
   }
   picture = std::move(wider);
   return {};
+}
+
+void add_error(image::Image& picture, const Noise& noise) {
+  image::Image wider{picture.width, picture.height, picture.channels + 1, {}, picture.channel_names};
+  wider.channel_names.emplace_back("error");
+  wider.data.resize(static_cast<std::size_t>(wider.width) * wider.height * wider.channels);
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x)
+      *std::copy_n(picture.pixel(x, y), picture.channels, wider.pixel(x, y)) = *noise.de00.pixel(x, y);
+  picture = std::move(wider);
 }
 
 Result<Gbuffer> gbuffer_of(const image::AovFile& buffers) {

@@ -21,6 +21,12 @@ namespace goniochrome::render {
 // Error (usage): the names there are.
 Result<void> add_aov(image::Image& picture, const Gbuffer& gbuffer, const std::string& name, const Vec3& to_light);
 
+// The names of the buffers above.
+std::string aov_names();
+
+// Adds the channel `error`: the noise of each pixel as CIEDE2000, one standard deviation.
+void add_error(image::Image& picture, const Noise& noise);
+
 // The G-buffer back from the channels normal and part, bit for bit, but for which parts were seen from inside.
 // Error: what the file lacks, with the command that makes it; or the pixel that holds no normal or no part.
 Result<Gbuffer> gbuffer_of(const image::AovFile& buffers);

@@ -25,7 +25,7 @@ struct World {
     env.lobes[1].map = cube_of(8, [](const Vec3& d) { return Vec3{1 + d.x, 1 + d.y, 1 + d.z}; });
     paint::LobeFit paint = matt({0.1, 0.2, 0.05});
     paint.lobes = {
-        {6, {0.05, 0.1, 0.02}, {}}, {40, {0.2, 0.3, 0.1}, {0.1, 0.1, 0.1}}, {envmap::kMirrorExponent, {}, {1, 1, 1}}};
+        {6, {0.05, 0.1, 0.02}, {}}, {40, {0.2, 0.3, 0.1}, {0.1, 0.1, 0.1}}, {paint::kMirrorExponent, {}, {1, 1, 1}}};
     scene.mesh = &mesh, scene.env = &env, scene.paints = {paint, matt({0.5, 0.1, 0.1})};
     scene.lights = {{normalized({1, 2, 3}), {1, 0.9, 0.8}}};
     scene.background = Background::kEnvironment;

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "base/angles.h"
 
 namespace goniochrome::render {
 
 namespace {
 
-constexpr double kRadians = std::numbers::pi / 180;
 constexpr double kBorder = 1.04;  // air around a mesh that "just fits"
 
 // Right, down and forward, unit.
@@ -28,7 +28,7 @@ Axes axes_of(const Camera& camera) {
 }  // namespace
 
 Vec3 orbit_direction(double azimuth_deg, double elevation_deg) {
-  const double a = azimuth_deg * kRadians, e = elevation_deg * kRadians;
+  const double a = azimuth_deg * kDegree, e = elevation_deg * kDegree;
   return {std::sin(a) * std::cos(e), std::sin(e), std::cos(a) * std::cos(e)};
 }
 
@@ -42,12 +42,12 @@ Camera Camera::orbit(const mesh::Mesh& mesh, double azimuth_deg, double elevatio
   double radius = 0;
   for (const Vec3& p : mesh.positions) radius = std::max(radius, std::hypot(p.x - middle.x, p.z - middle.z));
   const double half_height = 0.5 * (box.high.y - box.low.y);
-  const double t = std::tan(0.5 * fov_deg * kRadians);
+  const double t = std::tan(0.5 * fov_deg * kDegree);
   const Vec3 toward = orbit_direction(0, elevation_deg), up = orbit_direction(180, 90 - elevation_deg);
   double fitting = 0;
   for (int step = 0; step < 360; ++step) {
     for (const double side : {-1.0, 1.0}) {
-      const double a = step * kRadians;
+      const double a = step * kDegree;
       const Vec3 p{radius * std::sin(a), side * half_height, radius * std::cos(a)};
       fitting = std::max(fitting,
                          dot(p, toward) + kBorder * std::max(std::abs(p.x) / (aspect * t), std::abs(dot(p, up)) / t));
@@ -69,7 +69,7 @@ Result<Rays> rays(const Camera& camera, int width, int height) {
   }
   if (!(length(camera.target - camera.eye) > 0)) return usage_error("the camera's eye and target are the same point");
   const Axes axes = axes_of(camera);
-  const double pixel = 2 * std::tan(0.5 * camera.fov_deg * kRadians) / height;
+  const double pixel = 2 * std::tan(0.5 * camera.fov_deg * kDegree) / height;
   return Rays{axes.forward - (0.5 * width * pixel) * axes.right - (0.5 * height * pixel) * axes.down,
               pixel * axes.right, pixel * axes.down, camera.eye};
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/angles.h"
 #include "render/scenes_for_test.h"
 
 namespace goniochrome::render {
@@ -55,7 +56,7 @@ TEST(Camera, UpperLeftIsUpperLeft) {
   EXPECT_LT(corner.x, 0);
   EXPECT_GT(corner.y, 0);
   EXPECT_LT(length(middle - Vec3{0, 0, -1}), 1e-15);
-  EXPECT_NEAR(std::atan2(seen->direction(100, 0).y, -seen->direction(100, 0).z) * 180 / std::numbers::pi, 15, 1e-12);
+  EXPECT_NEAR(std::atan2(seen->direction(100, 0).y, -seen->direction(100, 0).z) / kDegree, 15, 1e-12);
 }
 
 // A car-like box: at distance 1 it is inside from everywhere, and from the side it nearly fills the picture.

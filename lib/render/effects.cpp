@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/angles.h"
 #include "brdf/lobe_model.h"
 #include "render/internal/lobe_curves.h"
 #include "render/surface_layer.h"
@@ -12,8 +13,6 @@
 namespace goniochrome::render {
 
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 double gloss_deg_of(const Scene& scene, std::size_t part) {
   return part < scene.gloss_deg.size() ? scene.gloss_deg[part] : 45;
@@ -26,8 +25,7 @@ class SlotValues {
 
   SlotValues(const WeightTable& table, const Effects& effects, double gloss_deg)
       : table_(table), effects_(effects), values_(static_cast<std::size_t>(table.slots)) {
-    if (effects.fresnel)
-      fresnel_scale_ = 1 / brdf::fresnel_dielectric(std::cos(gloss_deg * kPi / 180), brdf::kCoatIndex);
+    if (effects.fresnel) fresnel_scale_ = 1 / brdf::fresnel_dielectric(std::cos(gloss_deg * kDegree), brdf::kCoatIndex);
   }
 
   // `lit` is what lights meet. `node` counts the ends of the segments; a table of one segment has the view cos_o = 0 at
@@ -60,7 +58,7 @@ class SlotValues {
       if (use.directional_diffuse) set(table_.directional_diffuse_slot(j), met->directional_diffuse);
       if (use.gloss) set(table_.gloss_slot(j), fresnel_scale_ * met->gloss);
     }
-    const paint::Lobe* mirror = effects_.mirror ? find_lobe(paint, envmap::kMirrorExponent) : nullptr;
+    const paint::Lobe* mirror = effects_.mirror ? find_lobe(paint, paint::kMirrorExponent) : nullptr;
     const double seen_cos = effects_.fresnel ? cos_o : std::numbers::sqrt2 / 2;
     if (mirror != nullptr)
       set(table_.mirror_slot(), brdf::fresnel_dielectric(seen_cos, brdf::kCoatIndex) * mirror->gloss);
@@ -86,7 +84,7 @@ void fill_part(const Scene& scene, const Effects& effects, std::size_t part, con
   std::vector<SlotValues::Texel> before;
   for (int node = 0; node <= table.segments; ++node) {
     const double x = static_cast<double>(node) / table.segments, cos_o = table.segments > 1 ? x * x : x;
-    const paint::LobeFit here_paint = with_views ? brdf::at_view(paint, std::acos(cos_o) * 180 / kPi) : paint;
+    const paint::LobeFit here_paint = with_views ? brdf::at_view(paint, std::acos(cos_o) / kDegree) : paint;
     const std::vector<SlotValues::Texel>& here = values.at(here_paint, effects.maps ? paint : here_paint, cos_o, node);
     if (node > 0) {
       for (std::size_t slot = 0; slot < here.size(); ++slot, rows += 8) {
@@ -163,7 +161,7 @@ paint::LobeFit with_effects(const paint::LobeFit& paint, const Effects& effects)
   const auto strip = [&](color::Rgb& diffuse, std::vector<paint::Lobe>& lobes) {
     if (!effects.diffuse) diffuse = {};
     std::erase_if(lobes, [&](paint::Lobe& lobe) {
-      if (lobe.exponent == envmap::kMirrorExponent) return !effects.mirror;
+      if (lobe.is_mirror()) return !effects.mirror;
       const auto use = std::find_if(effects.lobes.begin(), effects.lobes.end(),
                                     [&](const Effects::LobeUse& u) { return u.exponent == lobe.exponent; });
       if (use == effects.lobes.end()) return true;

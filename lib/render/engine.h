@@ -3,7 +3,10 @@
 // engine is its own two files and one line in engines.cpp. goniochrome-theory(7), RENDERING.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,10 +16,34 @@
 #include "render/gbuffer.h"
 #include "render/scene.h"
 
+namespace goniochrome::rays {
+class RayScene;
+}
+
 namespace goniochrome::render {
 
 class Engine;
 class GlContext;
+
+// How much trouble an engine takes that draws by random samples.
+struct Effort {
+  int bounces = kUsualBounces;  // How many surfaces of the mesh may pass light on before it reaches what is seen.
+  double time_limit_s = 0;      // of one picture; 0: none
+  std::uint64_t seed = 1;
+  // Told after each round of samples: the noise of the picture so far (CIEDE2000, 95th percentile), and the seconds.
+  std::function<void(double noise_de00, double seconds)> progress = {};
+  // Measured on the vehicle in four probes: what more bounces change is below .1 dE00 at 95 of 100 pixels.
+  static constexpr int kUsualBounces = 4;
+};
+
+// The random error of a picture that was drawn by samples.
+struct Noise {
+  double de00_p95 = 0, de00_mean = 0;  // over the visible pixels
+  double samples_mean = 0;             // of a visible pixel
+  double time_s = 0;
+  bool reached = false;  // whether de00_p95 is within the tolerance
+  image::Image de00;     // of each pixel, one standard deviation; one channel
+};
 
 // A view as the renderer offers it to its engines. Sample 0 is the pixel centers; the samples of a picture are counted
 // from 1.
@@ -30,6 +57,11 @@ class Sight {
   virtual const std::vector<TexturePlace>& places(int sample) = 0;
   // The OpenGL context of the renderer; null where the renderer was given a G-buffer and has no mesh.
   virtual const GlContext* gl() const = 0;
+  // Whether it shows the mesh of the scene, and not a G-buffer that was given.
+  virtual bool shows_mesh() const { return gl() != nullptr; }
+  // The mesh as rays meet it, with the floor of the scene; null where OpenGL draws the G-buffers.
+  virtual std::shared_ptr<const rays::RayScene> traced_mesh() const { return nullptr; }
+  virtual Effort effort() const { return {}; }
   // Rasterizes the sample and returns the rasterizer, which holds the G-buffer as a texture; null without OpenGL.
   virtual const Rasterizer* rasterized(int sample) = 0;
 };
@@ -43,6 +75,7 @@ struct EngineInfo {
   // it draws all effects, because leaving one out saves no time.
   bool is_planned;
   bool needs_texels;  // It sums the image that the environment was made from: Scene::texels.
+  bool traces_rays;   // It sees the mesh in the way of light: it draws shadows, floors and parts that shine.
   bool needs_mesh;    // It cannot shade a G-buffer that comes from a file. All G-buffers that it gets have triangles.
   std::unique_ptr<Engine> (*make)(Sight& sight);
 };
@@ -96,6 +129,10 @@ class Engine {
   // Shades one sample of every pixel: radiance times `gain` in R G B, and coverage times `gain` in A. With `add` the
   // result is added to what the samples before made. The picture may be incomplete until finish().
   virtual Result<void> shade(Sight& sight, int sample, float gain, bool add, image::Image& rgba) = 0;
+  // Of the picture that was drawn last; nothing from engines that do not draw by random samples.
+  virtual const Noise* noise() const { return nullptr; }
+  // Sentences about the loaded scene that whoever asked for the picture should read.
+  virtual std::vector<std::string> remarks() const { return {}; }
   // Completes the picture after its last sample.
   virtual void finish(image::Image&) {}
 

@@ -5,6 +5,7 @@
 #include "render/cpu/cpu_engine.h"
 #include "render/gl/gl_engine.h"
 #include "render/integral/integral_engine.h"
+#include "render/path/path_engine.h"
 
 namespace goniochrome::render {
 
@@ -13,6 +14,7 @@ const std::vector<const EngineInfo*>& engines() {
       &CpuEngine::kInfo,
       &GlEngine::kInfo,
       &IntegralEngine::kInfo,
+      &PathEngine::kInfo,
   };
   return all;
 }

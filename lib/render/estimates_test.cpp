@@ -72,7 +72,7 @@ paint::LobeFit wide_flakes() {
 
 paint::LobeFit coated(const color::Rgb& color) {
   paint::LobeFit paint = matt(color);
-  paint.lobes = {{60, {}, {0.5, 0.5, 0.5}}, {envmap::kMirrorExponent, {}, {1, 1, 1}}};
+  paint.lobes = {{60, {}, {0.5, 0.5, 0.5}}, {paint::kMirrorExponent, {}, {1, 1, 1}}};
   return paint;
 }
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/angles.h"
 #include "base/hard_case_for_test.h"
 #include "base/parallel.h"
 #include "brdf/lobe_model.h"
@@ -43,7 +44,7 @@ TEST(ReferenceRadiance, ConstantEnvironmentHasAClosedForm) {
   const Vec3 n = normalized({0.3, 0.5, -0.8});
   EXPECT_NEAR(at(matt({0.5, 0.5, 0.5}), n, n, env).x, 1, 1e-3);
   for (const double exponent : {0.0, 0.5, 1.0, 7.0, 100.0, 3000.0, 1e5, 1e6}) {
-    const double diffuse = 2 * std::numbers::pi / (exponent + 2), gloss = 2 * std::numbers::pi / (exponent + 1);
+    const double diffuse = 2 * kPi / (exponent + 2), gloss = 2 * kPi / (exponent + 1);
     EXPECT_NEAR(at(one_lobe(exponent, 1, 0), n, n, env).y / diffuse, 1, 2e-3) << exponent;
     EXPECT_NEAR(at(one_lobe(exponent, 0, 1), n, n, env).y / gloss, 1, 2e-3) << exponent;
   }
@@ -55,7 +56,7 @@ TEST(ReferenceRadiance, ConstantEnvironmentHasAClosedForm) {
       centers += env.solid_angle(column, row) * math::cos_power_from_versine(0.5 * dot(apart, apart), 1e5);
     }
   }
-  EXPECT_GT(std::abs(centers * (1e5 + 1) / (2 * std::numbers::pi) - 1), 0.1);
+  EXPECT_GT(std::abs(centers * (1e5 + 1) / (2 * kPi) - 1), 0.1);
 }
 
 // Against the definition, with brdf/lobe_model's f and its aspecular angle by atan2.
@@ -101,7 +102,7 @@ TEST(ReferenceRadiance, SharpLobeSeesTexelsAsPatches) {
       }
     }
     wanted *= env.solid_angle(40, 30) / (kFine * kFine);
-    EXPECT_NEAR(at(paint, n, n, env).x, wanted, 2e-3 * 2 * std::numbers::pi / 1e4) << off;
+    EXPECT_NEAR(at(paint, n, n, env).x, wanted, 2e-3 * 2 * kPi / 1e4) << off;
   }
 }
 
@@ -140,7 +141,7 @@ TEST(ReferenceRadiance, LightsAreIrradianceOverPi) {
   const color::Rgb seen = reference_radiance({{n, wo, &paint}}, nullptr, {light}).front();
   const color::Rgb f = brdf::brdf(paint, light.direction, wo, n);
   for (int c = 0; c < 3; ++c) {
-    EXPECT_NEAR(seen[c], std::numbers::pi * light.direction.z * light.white[c] * f[c], 1e-14);
+    EXPECT_NEAR(seen[c], kPi * light.direction.z * light.white[c] * f[c], 1e-14);
   }
 }
 

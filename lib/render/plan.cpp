@@ -189,7 +189,8 @@ Workload workload_of(const Scene& scene, const Effects& all, const std::vector<V
   work.pixels = of_frame * request.samples;
   work.points = (pixels > 0 ? of_frame * visible / pixels : 0) * request.samples;
   work.textured = work.points * share_of(scene, probe, [](const PartSurface& s) { return s.texture != nullptr; });
-  work.mapped = work.points * share_of(scene, probe, [](const PartSurface& s) { return s.color_map != nullptr; });
+  if (scene.layer != nullptr && scene.layer->mapped())
+    work.mapped = work.points * share_of(scene, probe, [](const PartSurface& s) { return s.color_map != nullptr; });
   work.tilts = mean_tilts(scene, all, probe);
   work.forms = all.reflection ? product_forms(scene.reflection).count : 3;
   work.texture_lobes = scene.layer != nullptr ? scene.layer->lobes() : 0;
@@ -357,6 +358,25 @@ std::string reason_of(const std::vector<Priced>& all, const Priced& chosen, bool
   return fmt::format("{}: predicted {}", asked ? "as asked" : count > 1 ? "the faster" : "the only one here", planned);
 }
 
+// The plan for an engine that draws everything and does without prefiltered maps: there is nothing to choose, and
+// nothing to try it out by.
+Plan plan_of_everything(const Scene& scene, const Effects& all, const std::vector<VisiblePoint>& probe,
+                        const EngineInfo& engine) {
+  Plan plan;
+  for (const EffectSwitch& effect : effect_switches(scene, all, probe)) {
+    PlanItem item;
+    item.effect = effect.name, item.needed = effect.needed, item.reason = effect.reason;
+    item.de00_p95 = item.cost_ms = std::numeric_limits<double>::quiet_NaN();
+    item.on = effect.needed;
+    item.decision = effect.needed ? Decision::kDrawn : Decision::kNotInScene;
+    plan.items.push_back(std::move(item));
+  }
+  plan.effects = all;
+  plan.engine = engine.name;
+  plan.engine_reason = "as asked: it draws every effect";
+  return plan;
+}
+
 Decision decision_of(const EffectSwitch& effect, bool on, bool forced, bool over_budget) {
   if (!effect.needed) return Decision::kNotInScene;
   if (forced) return on ? Decision::kForcedOn : Decision::kForcedOff;
@@ -448,9 +468,13 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   GONIO_ASSIGN(const Words words, words_of(request.effects));
   Effects all = effects_of(scene);
   all.tolerance_de00 = request.tolerance_de00;
+  const std::vector<VisiblePoint> probe = probe_points(gbuffers, kProbe);
+  const auto wanted = std::ranges::find_if(
+      engines, [&](const Engine* engine) { return request.engine && *request.engine == engine->info().name; });
+  const Engine* asked = wanted == engines.end() ? nullptr : *wanted;
+  if (asked != nullptr && asked->info().traces_rays) return plan_of_everything(scene, all, probe, asked->info());
   Probers probers;
   GONIO_TRY(probers.load(scene, all));
-  const std::vector<VisiblePoint> probe = probe_points(gbuffers, kProbe);
   const Stopwatch clock;
 
   // What each effect is worth.
@@ -478,9 +502,6 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
 
   // Which of them are drawn, and by which engine.
   Choice choice = forced_choice(words, switches);
-  const auto wanted = std::ranges::find_if(
-      engines, [&](const Engine* engine) { return request.engine && *request.engine == engine->info().name; });
-  const Engine* asked = wanted == engines.end() ? nullptr : *wanted;
   const bool may_leave_out = asked == nullptr || asked->info().is_planned;
   const bool automatic = words.start == Start::kAuto && may_leave_out;
   if (automatic) drop_unseen(prober, switches, plan.items, !scene.lights.empty(), request.tolerance_de00, choice);

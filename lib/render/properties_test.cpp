@@ -1,11 +1,11 @@
 // Laws that hold for any paint, light and direction, on random ones. Every test prints its seed; GONIOCHROME_SEED tries
 // another.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstdlib>
 
+#include "base/angles.h"
 #include "base/scratch_for_test.h"
 #include "brdf/isoline.h"
 #include "brdf/lafortune.h"
@@ -19,8 +19,6 @@
 
 namespace goniochrome::render {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 std::uint64_t seed() {
   const char* text = std::getenv("GONIOCHROME_SEED");
@@ -153,7 +151,7 @@ TEST_F(Property, LightAndViewerTradePlaces) {
 TEST_F(Property, NothingReflectsMoreThanItGets) {
   const envmap::Environment furnace = environment(16, 8, std::vector<float>(3 * 16 * 8, 1.0F));
   std::vector<paint::LobeFit> all = paints(200, 0.6, true);
-  for (paint::LobeFit& fit : all) fit.lobes.push_back({envmap::kMirrorExponent, {}, {0.4, 0.4, 0.4}});
+  for (paint::LobeFit& fit : all) fit.lobes.push_back({paint::kMirrorExponent, {}, {0.4, 0.4, 0.4}});
   for (const color::Rgb& shown : reference_radiance(points(all), &furnace, {})) {
     // The texels are cut as finely as a lobe needs: the sum is right to the reference's own 1e-4.
     EXPECT_LE(std::max({shown.x, shown.y, shown.z}), 1 + 1e-4);

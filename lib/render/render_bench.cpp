@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "base/angles.h"
 #include "render/exact.h"
 #include "render/internal/seen.h"
 #include "render/left_out.h"
@@ -35,7 +36,7 @@ std::unique_ptr<BenchScene> bench_scene(int lobes) {
     lobe.map = cube_of(128, [](const Vec3&) { return Vec3{1, 1, 1}; });
   paint::LobeFit paint;
   for (int j = 0; j < lobes; ++j) {
-    const double weight = (kExponents[j] + 1) / (4 * std::numbers::pi);
+    const double weight = (kExponents[j] + 1) / (4 * kPi);
     paint.lobes.push_back({kExponents[j], weight * color::Rgb{1, 1, 1}, weight * color::Rgb{1, 1, 1}});
   }
   bench->scene.mesh = &bench->mesh;

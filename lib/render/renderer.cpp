@@ -4,8 +4,10 @@
 #include <optional>
 
 #include "base/clock.h"
+#include "rays/ray_scene.h"
 #include "render/gl/gl.h"
 #include "render/gl/shader.h"
+#include "render/path/visible_surface.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {
@@ -20,6 +22,25 @@ bool same_view(const View& a, const View& b) {
   const Camera &x = a.camera, &y = b.camera;
   return a.width == b.width && a.height == b.height && x.eye == y.eye && x.target == y.target && x.up == y.up &&
          x.fov_deg == y.fov_deg;
+}
+
+std::optional<rays::Floor> floor_of(const std::optional<Ground>& ground) {
+  if (!ground) return std::nullopt;
+  return rays::Floor{ground->height};
+}
+
+// What the rays of the pixels meet of the mesh, as Rasterizer has it: the floor is no part of the mesh.
+void trace_gbuffer(const rays::RayScene& scene, const Rays& rays, int width, int height, Gbuffer& gbuffer) {
+  VisibleSurface surface = visible_surface(scene, rays, width, height);
+  gbuffer = std::move(surface.gbuffer);
+  gbuffer.triangles.assign(surface.hits.size(), kNoTriangle);
+  for (std::size_t i = 0; i < surface.hits.size(); ++i) {
+    if (surface.hits[i].triangle == rays::kFloor) {
+      std::fill_n(&gbuffer.data[4 * i], 4, 0.0F);
+    } else if (surface.hits[i].any()) {
+      gbuffer.triangles[i] = surface.hits[i].triangle;
+    }
+  }
 }
 
 // 0 is the center of the pixel; then come the samples.
@@ -38,7 +59,10 @@ struct OpenGl {
 };
 
 struct Renderer::State : Sight {
-  std::unique_ptr<OpenGl> open_gl;            // none: `given` is all there is to see
+  std::unique_ptr<OpenGl> open_gl;  // none: rays find what is visible, or `given` is all there is to see
+  std::optional<Ground> ground;     // with rays
+  std::shared_ptr<const rays::RayScene> traced;
+  Effort effort_asked;
   std::shared_ptr<const Gbuffer> given;       // of the pixel centers, whatever the view
   std::vector<std::unique_ptr<Engine>> made;  // beside engines(); null: not yet
   Engine* engine = nullptr;                   // that is loaded
@@ -61,11 +85,14 @@ struct Renderer::State : Sight {
   }
   Engine& engine_of(const EngineInfo& info);
   Result<void> can_shade(const Scene& wanted, const Engine& by) const;
-  void show(const mesh::Mesh& mesh);
+  Result<void> show(const mesh::Mesh& mesh);
   Result<void> look_at(const View& wanted);
   Result<void> take(int first, int count, image::Image& picture);
 
   const GlContext* gl() const override { return open_gl ? &open_gl->context : nullptr; }
+  std::shared_ptr<const rays::RayScene> traced_mesh() const override { return traced; }
+  bool shows_mesh() const override { return given == nullptr; }
+  Effort effort() const override { return effort_asked; }
   const Rasterizer* rasterized(int sample) override;
   std::shared_ptr<const Gbuffer> gbuffer(int sample) override;
   const std::vector<TexturePlace>& places(int sample) override;
@@ -79,17 +106,25 @@ Engine& Renderer::State::engine_of(const EngineInfo& info) {
 }
 
 Result<void> Renderer::State::can_shade(const Scene& wanted, const Engine& by) const {
+  if (needs_rays(wanted) && !by.info().traces_rays)
+    return usage_error("the engine {} draws neither floors nor parts that shine: take the engine path", by.info().name);
   GONIO_TRY(by.can_shade(wanted));
   if (given && wanted.layer != nullptr && wanted.layer->textured())
     return usage_error("textures lie on the mesh: a G-buffer that is given has no places on them");
   return {};
 }
 
-void Renderer::State::show(const mesh::Mesh& mesh) {
-  if (!open_gl || (uploaded == &mesh && uploaded_triangles == mesh.triangles.size())) return;
-  open_gl->rasterizer->upload(mesh);
+Result<void> Renderer::State::show(const mesh::Mesh& mesh) {
+  if (given || (uploaded == &mesh && uploaded_triangles == mesh.triangles.size())) return {};
+  if (open_gl) {
+    open_gl->rasterizer->upload(mesh);
+  } else {
+    GONIO_ASSIGN(rays::RayScene scene_of_rays, rays::RayScene::create(mesh, floor_of(ground)));
+    traced = std::make_shared<const rays::RayScene>(std::move(scene_of_rays));
+  }
   uploaded = &mesh, uploaded_triangles = mesh.triangles.size();
   view.reset();
+  return {};
 }
 
 Result<void> Renderer::State::look_at(const View& wanted) {
@@ -99,7 +134,7 @@ Result<void> Renderer::State::look_at(const View& wanted) {
     view = wanted;
     return {};
   }
-  GONIO_TRY(open_gl->rasterizer->resize(wanted.width, wanted.height));
+  if (open_gl) GONIO_TRY(open_gl->rasterizer->resize(wanted.width, wanted.height));
   if (!view || !same_view(*view, wanted) || view->samples != wanted.samples) {
     GONIO_ASSIGN(rays, goniochrome::render::rays(wanted.camera, wanted.width, wanted.height));
     in_texture = -1;
@@ -140,10 +175,18 @@ std::shared_ptr<const Gbuffer> Renderer::State::gbuffer(int sample) {
   const Stopwatch clock;
   placed.resize(kept.size());
   placed[place].clear();
-  const Rasterizer& drawn = *rasterized(sample);
-  open_gl->context.Finish();
-  rasterization_ms = 1000 * clock.elapsed_s();
-  drawn.read(*g, with_triangles);
+  if (open_gl) {
+    const Rasterizer& drawn = *rasterized(sample);
+    open_gl->context.Finish();
+    rasterization_ms = 1000 * clock.elapsed_s();
+    drawn.read(*g, with_triangles);
+  } else {
+    const auto [x, y] = shift_of(sample, view->samples);
+    Rays shifted = rays;
+    shifted.corner += x * rays.right + y * rays.down;
+    trace_gbuffer(*traced, shifted, view->width, view->height, *g);
+    rasterization_ms = 1000 * clock.elapsed_s();
+  }
   return g;
 }
 
@@ -191,6 +234,24 @@ Renderer Renderer::shading(std::shared_ptr<const Gbuffer> gbuffer) {
   return Renderer(std::move(state));
 }
 
+Renderer Renderer::tracing(std::optional<Ground> ground) {
+  auto state = std::make_unique<State>();
+  state->ground = std::move(ground);
+  return Renderer(std::move(state));
+}
+
+std::vector<std::string> Renderer::remarks() const {
+  return state_->engine != nullptr ? state_->engine->remarks() : std::vector<std::string>();
+}
+
+bool Renderer::traces() const {
+  return !state_->open_gl && !state_->given;
+}
+
+void Renderer::set_effort(Effort effort) {
+  state_->effort_asked = std::move(effort);
+}
+
 std::string Renderer::opengl() const {
   state_->begin();
   return state_->open_gl ? state_->open_gl->context.engine() : "";
@@ -213,15 +274,19 @@ Result<void> Renderer::load(const Scene& scene, const Effects& effects, const st
   s.scene = scene;
   s.effects = effects;
   s.engine = &engine;
-  s.show(*scene.mesh);
+  GONIO_TRY(s.show(*scene.mesh));
   return engine.load(scene, effects);
 }
 
 Result<Plan> Renderer::load(const Scene& scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers,
                             const PlanRequest& request) {
   State& s = *state_;
-  const Scene seen = seen_scene(scene, gbuffers);
-  if (request.engine) GONIO_TRY(engine_named(*request.engine));
+  const EngineInfo* asked = nullptr;
+  if (request.engine) {
+    GONIO_ASSIGN(asked, engine_named(*request.engine));
+  }
+  // Rays meet parts that the camera does not see.
+  const Scene seen = asked != nullptr && asked->traces_rays ? scene : seen_scene(scene, gbuffers);
   std::vector<const Engine*> able;
   std::optional<Error> refusal;  // of the engine that was asked for, or of the first
   for (const EngineInfo* info : engines()) {
@@ -246,7 +311,7 @@ void Renderer::load_paints(const Scene& scene) {
 Result<std::shared_ptr<const Gbuffer>> Renderer::look(const mesh::Mesh& mesh, const View& view) {
   State& s = *state_;
   s.begin();
-  s.show(mesh);
+  GONIO_TRY(s.show(mesh));
   GONIO_TRY(s.look_at(view));
   return std::shared_ptr<const Gbuffer>(s.gbuffer(0));
 }
@@ -266,6 +331,8 @@ Result<void> Renderer::draw(const View& view, Frame& frame) {
     frame.centers = view.with_centers ? frame.picture : image::Image{};
   }
   if (view.samples > 1) GONIO_TRY(s.take(1, view.samples, frame.picture));
+  frame.noise.reset();
+  if (s.engine->noise() != nullptr) frame.noise = *s.engine->noise();
   frame.frame_ms = 1000 * whole.elapsed_s();
   return s.open_gl ? s.open_gl->context.status("drawing") : Result<void>();
 }

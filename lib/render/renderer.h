@@ -1,9 +1,10 @@
-// The renderer draws scenes into pictures of scene-linear radiance. OpenGL on OSMesa rasterizes what a view shows; then
-// one of the engines shades it. The renderer keeps what the next picture can use again: the mesh in OpenGL, the
-// G-buffers of the last view, and the engines. goniochrome-theory(7), RENDERING.
+// The renderer draws scenes into pictures of scene-linear radiance. OpenGL on OSMesa rasterizes what a view shows, or
+// rays find it; then one of the engines shades it. The renderer keeps what the next picture can use again: the mesh in
+// OpenGL, the G-buffers of the last view, and the engines. goniochrome-theory(7), RENDERING.
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ struct Frame {
   std::shared_ptr<const Gbuffer> gbuffer;  // of the pixel centers
   double gbuffer_ms = 0;                   // one rasterization; 0 where the view was seen before
   double frame_ms = 0;                     // everything but uploads
+  std::optional<Noise> noise;              // of the picture; none of engines that do not draw by random samples
 };
 
 class Renderer {
@@ -42,6 +44,8 @@ class Renderer {
   // G-buffer, and the camera of the view is ignored; of the mesh of the scene only the parts are used. Its other
   // functions fail for engines that need the mesh, for textures, and for more than one sample.
   static Renderer shading(std::shared_ptr<const Gbuffer> gbuffer);
+  // A renderer without OpenGL: rays find what a view shows, and the floor of the scenes that it draws is known to them.
+  static Renderer tracing(std::optional<Ground> ground = {});
   Renderer(Renderer&&) noexcept;
   ~Renderer();
 
@@ -64,11 +68,18 @@ class Renderer {
   Result<void> draw(const View& view, Frame& frame);
   Result<Frame> draw(const Camera& camera, int width, int height, int samples, bool with_centers = false);
 
+  // For all pictures from now on, by engines that draw by random samples.
+  void set_effort(Effort effort);
+
   // The mesh as it will be seen, before anything is shaded.
   Result<std::shared_ptr<const Gbuffer>> look(const mesh::Mesh& mesh, const View& view);
 
   // "llvmpipe (LLVM 15.0.6, 256 bits)"; "" without OpenGL
   std::string opengl() const;
+  // What the engine has to say about the scene that was loaded.
+  std::vector<std::string> remarks() const;
+  // Whether rays find what is visible.
+  bool traces() const;
   // The program by which the engine gl shades the scene and effects loaded, whatever engine they were loaded for.
   std::string shader() const;
 

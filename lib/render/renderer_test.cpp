@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/angles.h"
 #include "brdf/lobe_model.h"
 #include "render/scenes_for_test.h"
 
@@ -67,7 +68,7 @@ TEST(Renderer, WhiteMattPaintShowsTheConstantEnvironment) {
     EXPECT_NEAR(pixel[2], 2, 2 * kFloat);
     EXPECT_EQ(pixel[3], 1);
   });
-  EXPECT_NEAR(visible, std::numbers::pi * std::pow(32 / std::tan(10 * std::numbers::pi / 180) / std::sqrt(63), 2), 40);
+  EXPECT_NEAR(visible, kPi * std::pow(32 / std::tan(10 * kDegree) / std::sqrt(63), 2), 40);
 }
 
 // The closed form of theory, RENDERING, in a constant environment: every P_E is 1.
@@ -78,7 +79,7 @@ TEST(Renderer, FurnaceFollowsTheClosedForm) {
   paint.lobes.push_back({2.5, {0.01, 0.02, 0.03}, {}});
   paint.lobes.push_back({40, {0.3, 0.2, 0.1}, {0.5, 0.5, 0.5}});
   paint.lobes.push_back({3000, {}, {20, 20, 20}});
-  paint.lobes.push_back({envmap::kMirrorExponent, {}, {0.9, 0.9, 0.9}});
+  paint.lobes.push_back({paint::kMirrorExponent, {}, {0.9, 0.9, 0.9}});
   Scene scene{&mesh, {paint}, &env, {}, Background::kNone, {}};
   Effects effects = effects_of(scene);
   effects.horizon = false;
@@ -86,11 +87,11 @@ TEST(Renderer, FurnaceFollowsTheClosedForm) {
   const int visible = for_each_visible(frame, [&](int x, int y, const float* pixel) {
     const double c = dot(frame.gbuffer->normal(x, y), frame.gbuffer->to_viewer(x, y));
     for (int channel = 0; channel < 3; ++channel) {
-      double wanted = std::numbers::pi * paint.diffuse[channel] + 0.9 * brdf::fresnel_dielectric(c, brdf::kCoatIndex);
+      double wanted = kPi * paint.diffuse[channel] + 0.9 * brdf::fresnel_dielectric(c, brdf::kCoatIndex);
       double pieces = 0.9 * kPieces;  // the cosine c = x^2 bends less
       for (int j = 0; j < 3; ++j) {
         const paint::Lobe& lobe = paint.lobes[static_cast<std::size_t>(j)];
-        const double solid_angle = 2 * std::numbers::pi / (lobe.exponent + 1);
+        const double solid_angle = 2 * kPi / (lobe.exponent + 1);
         wanted += (c * lobe.directional_diffuse[channel] + fresnel_share(c) * lobe.gloss[channel]) * solid_angle;
         pieces += kPieces *
                   (lobe.directional_diffuse[channel] +
@@ -149,7 +150,7 @@ TEST(Renderer, OneBrightTexelIsSeenOnItsOwnSide) {
       sum += pixel[0], x_sum += pixel[0] * (x - 50), y_sum += pixel[0] * (50 - y);
     });
     ASSERT_GT(sum, 0);
-    const double sphere = 50 / std::tan(7.5 * std::numbers::pi / 180) / std::sqrt(63);  // its radius in pixels
+    const double sphere = 50 / std::tan(7.5 * kDegree) / std::sqrt(63);  // its radius in pixels
     EXPECT_NEAR(x_sum / sum, one.right * sphere * std::sqrt(0.5), 3);
     EXPECT_NEAR(y_sum / sum, one.up * sphere * std::sqrt(0.5), 3);
   }
@@ -178,7 +179,7 @@ TEST(Renderer, LightsFollowTheExactBrdf) {
       for (paint::Lobe& lobe : here.lobes) {
         lobe.gloss = fresnel_share(length(light.direction + wo) / 2) * lobe.gloss;
       }
-      wanted += std::numbers::pi * cos_i * (light.white * brdf::brdf(here, light.direction, wo, n));
+      wanted += kPi * cos_i * (light.white * brdf::brdf(here, light.direction, wo, n));
     }
     brightest = std::max(brightest, wanted.x);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(pixel[c], wanted[c], 2e-4 * wanted[c] + 1e-6) << x << " " << y;
@@ -249,7 +250,7 @@ TEST(Renderer, SamplesResolveCoverage) {
   for (const int samples : {4, 16}) {
     for (const double part : {0.1, 0.3, 0.55, 0.9}) {
       Camera camera = front(1, 30);
-      const double pixel = 2 * std::tan(15 * std::numbers::pi / 180) / 20;
+      const double pixel = 2 * std::tan(15 * kDegree) / 20;
       camera.eye = {1 - part * pixel, 0, 1};  // the edge at x = 1 falls at this part of pixel 10
       camera.target = {1 - part * pixel, 0, 0};
       const Frame frame = drawn(scene, camera, 20, 20, samples);

@@ -1,7 +1,6 @@
 #include "render/scene.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "color/color.h"
 
@@ -19,11 +18,15 @@ double luminance(const color::Rgb& rgb) {
 
 }  // namespace
 
+bool needs_rays(const Scene& scene) {
+  return scene.ground || std::ranges::any_of(scene.emission, [](const color::Rgb& e) { return e != color::Rgb{}; });
+}
+
 std::vector<double> lobe_exponents(const std::vector<paint::LobeFit>& paints) {
   std::vector<double> exponents;
   for (const paint::LobeFit& paint : paints) {
     for (const paint::Lobe& lobe : paint.lobes) {
-      if (std::isfinite(lobe.exponent) && has_weight(lobe)) exponents.push_back(lobe.exponent);
+      if (!lobe.is_mirror() && has_weight(lobe)) exponents.push_back(lobe.exponent);
     }
   }
   std::sort(exponents.begin(), exponents.end());
@@ -33,7 +36,7 @@ std::vector<double> lobe_exponents(const std::vector<paint::LobeFit>& paints) {
 
 bool has_mirror(const std::vector<paint::LobeFit>& paints) {
   return std::any_of(paints.begin(), paints.end(), [](const paint::LobeFit& paint) {
-    const paint::Lobe* mirror = find_lobe(paint, envmap::kMirrorExponent);
+    const paint::Lobe* mirror = find_lobe(paint, paint::kMirrorExponent);
     return mirror != nullptr && has_weight(*mirror);
   });
 }
@@ -59,6 +62,20 @@ DiffuseWhite diffuse_white(const envmap::PrefilteredEnvironment* env, const std:
   }
   for (const Light& light : lights) white.luminance += luminance(light.white);
   return white;
+}
+
+double facing_white(const envmap::PrefilteredEnvironment* env, const std::vector<Light>& lights,
+                    const Vec3& direction) {
+  double sum = 0;
+  if (env != nullptr && env->diffuse.map.size > 0) sum = luminance(envmap::bilinear(env->diffuse.map, direction));
+  for (const Light& light : lights) sum += std::max(0.0, dot(light.direction, direction)) * luminance(light.white);
+  return sum;
+}
+
+double metered_white(const envmap::PrefilteredEnvironment* env, const std::vector<Light>& lights,
+                     const Vec3& to_camera) {
+  const double mean = (facing_white(env, lights, {0, 1, 0}) + facing_white(env, lights, to_camera)) / 2;
+  return mean > 0 ? mean : diffuse_white(env, lights).luminance;
 }
 
 }  // namespace goniochrome::render

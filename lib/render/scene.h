@@ -23,6 +23,17 @@ enum class Background { kNone, kColor, kEnvironment };
 
 class SurfaceLayer;
 
+// A level floor that reaches to the horizon.
+struct Ground {
+  // kShadow: the lower half of the environment, laid on the floor as a probe saw it that stood on it, and darkened
+  // where the mesh takes light from it. kPaint: a floor that wears a paint.
+  enum class Kind { kShadow, kPaint };
+  Kind kind = Kind::kShadow;
+  double height = 0;           // of the plane y = height, in units of the mesh
+  paint::LobeFit paint = {};   // with kPaint
+  Vec3 probe_eye = {0, 1, 0};  // with kShadow: where the environment was seen from, above the floor
+};
+
 struct Scene {
   const mesh::Mesh* mesh = nullptr;
   std::vector<paint::LobeFit> paints;                   // one for each part of the mesh, in order
@@ -35,7 +46,12 @@ struct Scene {
   color::ReflectionOperator reflection = color::component_wise();
   const SurfaceLayer* layer = nullptr;        // textures and color maps of parts, if there are any
   const envmap::BlockTree* texels = nullptr;  // of the image that env was made from, for engines that sum it
+  std::vector<color::Rgb> emission = {};      // radiance of each part that shines by itself; none where there are fewer
+  std::optional<Ground> ground = {};
 };
+
+// Whether the scene has what only engines that trace rays can draw: a floor, or parts that shine by themselves.
+bool needs_rays(const Scene& scene);
 
 // The exponents (finite, ascending) of the lobes with any weight, over all paints.
 std::vector<double> lobe_exponents(const std::vector<paint::LobeFit>& paints);
@@ -53,5 +69,14 @@ struct DiffuseWhite {
   Vec3 direction{0, 1, 0};  // of the environment's largest irradiance
 };
 DiffuseWhite diffuse_white(const envmap::PrefilteredEnvironment* env, const std::vector<Light>& lights);
+
+// The luminance of a perfect white diffuser that faces a direction (unit), with nothing in the way of the light.
+double facing_white(const envmap::PrefilteredEnvironment* env, const std::vector<Light>& lights, const Vec3& direction);
+
+// The luminance that automatic exposure brings to 1, and .18 of it to middle gray: the mean of the white diffuser that
+// lies level and of the one that faces the camera, `to_camera` from what it looks at. Where both are dark, that of
+// diffuse_white(). What a picture shows of a body lies between the two. 0 without light.
+double metered_white(const envmap::PrefilteredEnvironment* env, const std::vector<Light>& lights,
+                     const Vec3& to_camera);
 
 }  // namespace goniochrome::render

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
-#include <numbers>
 
+#include "base/angles.h"
 #include "base/random_for_test.h"
 #include "render/gbuffer.h"
 #include "render/scene.h"
@@ -18,7 +18,7 @@ inline mesh::Mesh sphere_mesh(int rows = 256) {
   const int columns = 2 * rows;
   for (int i = 0; i <= rows; ++i) {
     for (int j = 0; j <= columns; ++j) {
-      const double t = std::numbers::pi * i / rows, p = 2 * std::numbers::pi * j / columns;
+      const double t = kPi * i / rows, p = 2 * kPi * j / columns;
       mesh.positions.push_back({std::sin(t) * std::sin(p), std::cos(t), std::sin(t) * std::cos(p)});
     }
   }
@@ -110,7 +110,7 @@ inline envmap::PrefilteredEnvironment constant_env(const Vec3& radiance, const s
   const envmap::CubeMap map = cube_of(4, [&](const Vec3&) { return radiance; });
   envmap::PrefilteredEnvironment env;
   env.diffuse.map = env.mirror.map = map;
-  env.mirror.exponent = envmap::kMirrorExponent;
+  env.mirror.exponent = paint::kMirrorExponent;
   for (const double exponent : exponents) {
     env.lobes.emplace_back();
     env.lobes.back().exponent = exponent;
@@ -122,13 +122,13 @@ inline envmap::PrefilteredEnvironment constant_env(const Vec3& radiance, const s
 
 inline paint::LobeFit matt(const color::Rgb& reflectance) {
   paint::LobeFit paint;
-  paint.diffuse = (1 / std::numbers::pi) * reflectance;
+  paint.diffuse = (1 / kPi) * reflectance;
   return paint;
 }
 
 inline paint::LobeFit only_mirror(double weight = 1) {
   paint::LobeFit paint;
-  paint.lobes.push_back({envmap::kMirrorExponent, {}, {weight, weight, weight}});
+  paint.lobes.push_back({paint::kMirrorExponent, {}, {weight, weight, weight}});
   return paint;
 }
 
@@ -154,7 +154,7 @@ inline paint::LobeFit rich_paint() {
                  {40, {0.3, 0.2, 0.1}, {0.2, 0.2, 0.2}},
                  {300, {0.5, 0.6, 0.1}, {}},
                  {3000, {}, {9, 9, 9}},
-                 {envmap::kMirrorExponent, {}, {0.6, 0.6, 0.6}}};
+                 {paint::kMirrorExponent, {}, {0.6, 0.6, 0.6}}};
   return paint;
 }
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
+#include "base/angles.h"
 #include "base/parallel.h"
 #include "brdf/lobe_model.h"
 
@@ -27,6 +27,7 @@ SurfaceLayer::SurfaceLayer(const Scene& scene, std::vector<PartSurface> surfaces
   std::vector<bool> parts;
   for (const PartSurface& surface : surfaces_) {
     parts.push_back(surface.texture != nullptr);
+    empty_ = empty_ && surface.texture == nullptr && surface.color_map == nullptr;
     mapped_ = mapped_ || (surface.color_map != nullptr && !scene.lights.empty());
     if (surface.texture == nullptr) continue;
     textured_ = true;
@@ -76,7 +77,7 @@ color::Rgb SurfaceLayer::mapped_difference(int part, const Vec3& normal, const V
     if (wi.z <= 0 || wo.z <= 0) continue;
     const double aspecular_rad = paint::aspecular_angle_rad(wi, wo, {0, 0, 1});
     const color::Rgb map = brdf::reflectance_factor(*surfaces_[at].color_map, wi, wo, treatment_);
-    const color::Rgb lobes = brdf::flake_reflectance_factor(scene_.paints[at], aspecular_rad * 180 / std::numbers::pi);
+    const color::Rgb lobes = brdf::flake_reflectance_factor(scene_.paints[at], aspecular_rad / kDegree);
     sum += wi.z * color::reflected(scene_.reflection, light.white, map - lobes);
   }
   return sum;
@@ -114,20 +115,35 @@ TexturePlace SurfaceLayer::placed(const VisiblePoint& point, std::size_t number)
   return place;
 }
 
+namespace {
+
+SurfaceLayer::Place seen_texels(const brdf::SbrdfTexture& texture, const TexturePlace& at) {
+  SurfaceLayer::Place result{{at.tangent[0], at.tangent[1], at.tangent[2]}, {}};
+  for (const brdf::TextureTap& tap : brdf::texture_taps(texture.width, texture.height, at.u, at.v)) {
+    if (tap.weight != 0) result.pieces.push_back({brdf::sbrdf_texel(texture, tap.column, tap.row), tap.weight});
+  }
+  return result;
+}
+
+}  // namespace
+
 SurfaceLayer::Place SurfaceLayer::place(const VisiblePoint& point, std::size_t number, const Effects& effects) const {
   const std::size_t which = shading_of(point.part, effects);
   const brdf::SbrdfTexture& texture = which < textures_.size() ? *textures_[which] : means_[which - textures_.size()];
-  const TexturePlace at = placed(point, number);
-  Place result{{at.tangent[0], at.tangent[1], at.tangent[2]}, {}};
-  for (const brdf::TextureTap& tap : brdf::texture_taps(texture.width, texture.height, at.u, at.v)) {
-    if (tap.weight == 0) continue;
-    Piece piece{brdf::sbrdf_texel(texture, tap.column, tap.row), tap.weight};
+  Place result = seen_texels(texture, placed(point, number));
+  for (Piece& piece : result.pieces) {
     std::vector<brdf::LafortuneLobe>& lobes = piece.texel.surface.lobes;
     for (std::size_t i = 0; i < lobes.size(); ++i)
       if ((effects.texture_lobes >> i & 1U) == 0) lobes[i].albedo = {};
-    result.pieces.push_back(std::move(piece));
   }
   return result;
+}
+
+SurfaceLayer::Place SurfaceLayer::place(int part, const MeshPoint& point) const {
+  TexturePlace at = layout_->place(part, point);
+  const double repeat = surface(part).repeat;
+  at.u = static_cast<float>(repeat * at.u), at.v = static_cast<float>(repeat * at.v);
+  return seen_texels(*surface(part).texture, at);
 }
 
 void SurfaceLayer::add_mapped(const std::vector<VisiblePoint>& points, std::vector<color::Rgb>& colors) const {

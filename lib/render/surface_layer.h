@@ -32,11 +32,14 @@ class SurfaceLayer {
                const MipCube* mip = nullptr);
   ~SurfaceLayer();
 
-  // Whether there is nothing to add, and what there is: textures, and color maps under lights.
-  bool empty() const { return !textured_ && !mapped_; }
+  // Whether no part has a surface beyond its paint.
+  bool empty() const { return empty_; }
+  // What there is to add to a picture that an engine drew by lobes: textures, and color maps under lights. Paths
+  // evaluate color maps under every light.
   bool textured() const { return textured_; }
   bool mapped() const { return mapped_; }
   const PartSurface& surface(int part) const { return surfaces_[static_cast<std::size_t>(part)]; }
+  brdf::CriticalAngle treatment() const { return treatment_; }
   // No other layer has it.
   std::uint64_t id() const { return id_; }
   // The most lobes of a texture.
@@ -72,6 +75,9 @@ class SurfaceLayer {
   };
   // Of the point of this number; its lobes that the effects have.
   Place place(const VisiblePoint& point, std::size_t number, const Effects& effects) const;
+  // Of a point of the mesh on a part that has a texture: all its lobes. Of the point the triangle and the shares are
+  // read.
+  Place place(int part, const MeshPoint& point) const;
 
  private:
   class Row;
@@ -82,7 +88,7 @@ class SurfaceLayer {
   std::vector<PartSurface> surfaces_;
   brdf::CriticalAngle treatment_;
   std::uint64_t id_;
-  bool textured_ = false, mapped_ = false;
+  bool empty_ = true, textured_ = false, mapped_ = false;
   std::vector<const brdf::SbrdfTexture*> textures_;  // each once
   std::vector<brdf::SbrdfTexture> means_;            // of the same
   std::unique_ptr<const SbrdfShader> shader_;        // of the textures, then of the means

@@ -85,7 +85,9 @@ TEST(SurfaceLayer, AddsItsWeightAndNothingElsewhere) {
   // Without lights a color map adds nothing: an environment is lit by the paint's lobes.
   Stage dark;
   dark.scene.lights.clear();
-  EXPECT_TRUE(SurfaceLayer(dark.scene, {{nullptr, 1, &map}}, brdf::CriticalAngle::kClip).empty());
+  const SurfaceLayer unlit(dark.scene, {{nullptr, 1, &map}}, brdf::CriticalAngle::kClip);
+  EXPECT_FALSE(unlit.mapped());
+  EXPECT_FALSE(unlit.empty());  // paths evaluate it under every light
 }
 
 TEST(SurfaceLayer, BitsDoNotDependOnTheThreads) {

@@ -1,6 +1,6 @@
 #include "report/lobe_drawings.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>

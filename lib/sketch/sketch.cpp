@@ -361,7 +361,7 @@ SketchFit sketch_environment(const SketchInput& input, const SketchPixels& pixel
   const LobeSearch first(fitters, samples_of(input, pixels, light, kFirstPixels));
   const FoundPaint found = search.find(first);
   take_found(found, fit);
-  weights = found.weights;
+  weights = fit.weights = found.weights;
   judge();
   if (fit.median_de76 > limits.median_de76) return give_up(poor_match(fit));
   return fit;

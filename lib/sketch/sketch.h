@@ -39,7 +39,8 @@ struct SketchFit {
   double condition = 0;
   double rms_de76 = 0, median_de76 = 0;  // edited picture against the paint found, relative to white
   double seen_from_deg = 0, seen_to_deg = 0;
-  std::vector<float> de76;  // of every used pixel, in the order of SketchPixels::used; where asked for
+  std::vector<color::Rgb> weights;  // of the lobes found, in the order of search_columns(); none of a point light
+  std::vector<float> de76;          // of every used pixel, in the order of SketchPixels::used; where asked for
 };
 
 // The paint under one directional light, whose effect at each pixel is computed exactly. The answer is the lobe curve

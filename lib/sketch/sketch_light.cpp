@@ -9,6 +9,8 @@
 #include "math/cosine_power.h"
 #include "render/effects.h"
 #include "render/gbuffer.h"
+#include "render/path/bounce_scale.h"
+#include "render/path/transport_file.h"
 
 namespace goniochrome::sketch {
 
@@ -33,7 +35,7 @@ formats::Basis basis_of(const envmap::PrefilteredEnvironment& env) {
 std::vector<paint::LobeFit> unit_paints(const formats::Basis& basis) {
   paint::LobeFit blank;
   for (const double exponent : basis.exponents) blank.lobes.push_back({exponent, {}, {}});
-  blank.lobes.push_back({envmap::kMirrorExponent, {}, {}});
+  blank.lobes.push_back({paint::kMirrorExponent, {}, {}});
   std::vector<paint::LobeFit> paints(search_columns(basis), blank);
   const color::Rgb one{1, 1, 1};
   paints.front().diffuse = one;
@@ -151,6 +153,57 @@ Result<SketchLight> sketch_light(const image::AovFile& buffers, const envmap::Pr
   SketchLight light{shading->basis(), {}, [shading](std::uint32_t place, Vec3* out) { shading->shade(place, out); }};
   if (drawn(buffers, "operator")) light.reflection = buffers.reflection;
   return light;
+}
+
+Result<std::optional<SketchTransport>> SketchTransport::of(const image::AovFile& buffers) {
+  GONIO_ASSIGN(auto read, render::transport_of(buffers));
+  if (!read) return std::optional<SketchTransport>();
+  SketchTransport transport;
+  transport.transport_ = std::make_shared<const render::LobeTransport>(*std::move(read));
+  if (buffers.reflection.k != color::component_wise().k) transport.reflection_ = buffers.reflection;
+  return std::optional<SketchTransport>(std::move(transport));
+}
+
+// The columns of a transport are those of the search; its gloss has the coat's reflectance in it, the search's has it
+// relative to that of the reading.
+SketchLight SketchTransport::light() const {
+  formats::Basis basis;
+  basis.name = "transport", basis.exponents = transport_->columns.exponents, basis.mirror = true;
+  const auto shade = [transport = transport_, factors = factors_](std::uint32_t place, Vec3* out) {
+    const render::LobeTransport& t = *transport;
+    const double gloss = 1 / brdf::fresnel_dielectric(std::cos(kGloss_deg * kDegree), brdf::kCoatIndex);
+    std::fill_n(out, t.columns.count(), Vec3{});
+    const auto found = std::ranges::lower_bound(t.places, place);
+    if (found == t.places.end() || *found != place) return;
+    const auto point = static_cast<std::size_t>(found - t.places.begin());
+    for (std::size_t k = 0; k < t.columns.count(); ++k) {
+      const color::Rgb direct = t.light(point, k, false);
+      color::Rgb bounced = t.light(point, k) - direct;
+      if (factors) bounced = (*factors)[point] * bounced;
+      const bool scaled = t.columns.is_gloss(k) && k != t.columns.mirror();
+      out[k] = (scaled ? gloss : 1) * (direct + bounced);
+    }
+  };
+  return {basis, reflection_, shade};
+}
+
+double SketchTransport::wear(const std::vector<color::Rgb>& weights, const std::vector<int>& parts) {
+  const render::LobeTransport& t = *transport_;
+  if (t.bounces == 0) return 0;
+  const double gloss = 1 / brdf::fresnel_dielectric(std::cos(kGloss_deg * kDegree), brdf::kCoatIndex);
+  std::vector<color::Rgb> own = weights;
+  for (std::size_t k = 0; k < own.size(); ++k)
+    if (t.columns.is_gloss(k) && k != t.columns.mirror()) own[k] = gloss * own[k];
+  std::vector<std::vector<color::Rgb>> worn;
+  for (std::size_t part = 0; part < t.worn.groups.of_part.size(); ++part) {
+    const bool meant = parts.empty() || std::ranges::find(parts, static_cast<int>(part) + 1) != parts.end();
+    worn.push_back(meant ? own : t.worn.weights[static_cast<std::size_t>(t.worn.groups.of_part[part])]);
+  }
+  const render::BounceScale scale = render::bounce_scale(t, worn, reflection_ ? &*reflection_ : nullptr);
+  std::vector<color::Rgb> factors(t.places.size());
+  for (std::size_t i = 0; i < factors.size(); ++i) factors[i] = render::bounce_factor(t, i, scale);
+  factors_ = std::make_shared<const std::vector<color::Rgb>>(std::move(factors));
+  return scale.error_p95_de00;
 }
 
 std::vector<std::string> effects_without_light(const image::AovFile& buffers) {

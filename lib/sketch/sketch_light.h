@@ -1,9 +1,13 @@
 // The renderer's equations as the search for the paint of a picture needs them. goniochrome-theory(7), SKETCH FITTING.
 #pragma once
 
+#include <memory>
+#include <optional>
+
 #include "base/result.h"
 #include "envmap/prefiltered.h"
 #include "image/aov_file.h"
+#include "render/path/lobe_transport.h"
 #include "sketch/sketch.h"
 
 namespace goniochrome::sketch {
@@ -12,6 +16,26 @@ namespace goniochrome::sketch {
 // effects `fresnel`, `horizon` and `operator` where the buffers' header says that they were drawn. Both arguments must
 // outlive the result. Error: the buffers lack normals or rays.
 Result<SketchLight> sketch_light(const image::AovFile& buffers, const envmap::PrefilteredEnvironment& env);
+
+// The light that was traced for the buffers' view, with shadows and bounced light, and what a paint makes of it.
+class SketchTransport {
+ public:
+  // Nothing where the buffers have no transport. Error: as render::transport_of().
+  static Result<std::optional<SketchTransport>> of(const image::AovFile& buffers);
+
+  // As sketch_light(). Bounced light is that of the paints that were worn, or of the paint told last.
+  SketchLight light() const;
+
+  // Scales bounced light to these weights on these parts (numbers from 1; none: all), and returns what that errs by
+  // (CIEDE2000, 95th percentile): 0 where the tracing was done without bounces.
+  double wear(const std::vector<color::Rgb>& weights, const std::vector<int>& parts);
+
+ private:
+  SketchTransport() = default;
+  std::shared_ptr<const render::LobeTransport> transport_;
+  std::shared_ptr<const std::vector<color::Rgb>> factors_;  // of each point's bounced light; null: 1
+  std::optional<color::ReflectionOperator> reflection_;
+};
 
 // The effects that the buffers' picture was drawn with and that sketch_light() does not have, by render-osmesa's names
 // and in its order.

@@ -31,7 +31,7 @@ paint::LobeFit paint() {
   fit.lobes = {{2, {0.04, 0.02, 0.03}, {}},
                {20, {}, {0.2, 0.2, 0.2}},
                {300, {0.4, 0.3, 0.2}, {}},
-               {envmap::kMirrorExponent, {}, {1, 1, 1}}};
+               {paint::kMirrorExponent, {}, {1, 1, 1}}};
   return fit;
 }
 

@@ -67,7 +67,7 @@ envmap::PrefilteredEnvironment glowing() {
     lobe.exponent = exponent, lobe.map = glow(1 + std::sqrt(exponent));
     env.lobes.push_back(lobe);
   }
-  env.mirror.exponent = envmap::kMirrorExponent, env.mirror.map = glow(80);
+  env.mirror.exponent = paint::kMirrorExponent, env.mirror.map = glow(80);
   return env;
 }
 

@@ -7,6 +7,7 @@ from make_testdata import patch
 from make_testdata.patch import Part, add_grid, add_rolled_edge, add_seam, insets, spread
 from make_testdata.speed_shape import body
 from make_testdata.vectors import along, between, cross, dot, unit
+from make_testdata.wheels import open_wells, wheels
 
 BODY = body()
 AROUND, FRONT_POLE = BODY.around, BODY.along
@@ -273,7 +274,8 @@ def speed_shape():
     add_seam(seams, upper_half(tail, sill_rear), across(quarter["rear"], deck["rear"]))
     add_seam(seams, underbody["front"], lower_half(nose, sill_front - 0.015))
     add_seam(seams, lower_half(tail, sill_rear), underbody["rear"])
-    return parts.values()
+    open_wells(parts["Underbody"], AXLES, ARCH_CENTER, ARCH_RADIUS)
+    return list(parts.values()) + wheels(AXLES)
 
 
 def upper_half(edge, last):
@@ -295,7 +297,7 @@ def speed_shape_obj():
     """The bytes of speed-shape.obj."""
     nose = TurnedNose()
     lines = ["# A speed shape for judging paint: metres, +Y up, +Z forward, ground at y = 0.",
-             "# Gaps of 4 mm; paint Seams and Underbody black and Glass dark, the rest as you like.",
+             "# Gaps of 4 mm; paint Seams, Underbody and Tires black, Glass dark and Rims as metal, the rest as you like.",
              f"# Bumper_F is out of flush: turned by {MISALIGNMENT_DEG:g} degrees about the line parallel to x through "
              f"y = {number(nose.pivot[1])}, z = {number(nose.pivot[2])}, its lower edge drawn in.",
              "# Made by scripts/make-testdata."]

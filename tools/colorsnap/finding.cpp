@@ -1,8 +1,8 @@
 #include "finding.h"
 
 #include <cmath>
-#include <numbers>
 
+#include "base/angles.h"
 #include "base/clock.h"
 #include "paint/metrics.h"
 
@@ -44,7 +44,7 @@ std::string Finding::status() const {
 }
 
 double signed_hue_shift(double hue_shift_index, double hue_travel_deg) {
-  return std::copysign(hue_shift_index, std::sin(hue_travel_deg * (std::numbers::pi / 180)));
+  return std::copysign(hue_shift_index, std::sin(hue_travel_deg * kDegree));
 }
 
 Finding finding_of(const paint::Paint& query, library::SearchPlan plan, const library::LibrarySearch& search,

@@ -5,6 +5,7 @@
 
 #include "base/clock.h"
 #include "base/parallel.h"
+#include "base/text.h"
 #include "finding.h"
 #include "paint_stream.h"
 #include "sink.h"
@@ -139,7 +140,7 @@ class Run {
     std::set<std::string> names;
     for (std::size_t i = 0; i < index_.sections().size(); ++i)
       names.insert(search_.method(i) == library::SearchMethod::kTree ? "tree" : "scan");
-    return fmt::format("{}", fmt::join(names, ","));
+    return joined({names.begin(), names.end()}, ",");
   }
 
   std::string plan_text() const {

@@ -1,7 +1,5 @@
 #include "tool.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -60,7 +58,7 @@ Result<std::vector<fit::BasisTarget>> read_targets(const Options& options, cli::
 std::string list(const std::vector<double>& exponents) {
   std::vector<std::string> texts;
   for (const double e : exponents) texts.push_back(fmt::format("{:.4g}", e));
-  return fmt::format("{}", fmt::join(texts, " "));
+  return joined(texts, " ");
 }
 
 // The dE00 of the worst paint at its worst angle, for each set.

@@ -1,3 +1,4 @@
+#include "brdf/measured.h"
 #include "fitting.h"
 #include "tool.h"
 
@@ -135,11 +136,11 @@ cli::ToolSpec tool_spec(Options& o) {
       "rate that it had there, which is the least that any sum of lobes can do. Gloss readings at 20, 60 and 85 "
       "degrees set the gloss lobes and the mirror through a simulated gloss meter; what the lobes cannot meet is told "
       "in the report.",
-      "A measured BRDF (MERL .binary, Cornell .brdf, NVIDIA .mbsdf, RGL _rgb.bsdf) becomes one paint. It is fitted to "
-      "all measured directions, in and out of plane, except those within 10 degrees of specular and those near "
-      "grazing. What the flake leaves near specular goes to sharp lobes: to gray gloss with the reflectance of a coat, "
-      "which grows toward grazing, and to colored flake. The report tells what the three gloss meters read of the "
-      "coat's spike.",
+      "A measured BRDF (" + brdf::measured_formats() +
+          ") becomes one paint. It is fitted to all measured directions, in and out of plane, except those within 10 "
+          "degrees of specular and those near grazing. What the flake leaves near specular goes to sharp lobes: to "
+          "gray gloss with the reflectance of a coat, which grows toward grazing, and to colored flake. The report "
+          "tells what the three gloss meters read of the coat's spike.",
       "Two readings at one aspecular angle may differ, as 45as15 and 45as-15 of many paints do. Lobes that know the "
       "aspecular angle alone cannot meet both. The summary tells how close such lobes can come at best; --views auto "
       "gives these paints weights for the views of these readings.",

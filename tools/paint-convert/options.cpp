@@ -1,5 +1,6 @@
 #include "tool.h"
 
+#include "brdf/measured.h"
 #include "formats.h"
 
 namespace goniochrome::tool {
@@ -94,12 +95,13 @@ cli::ToolSpec tool_spec(Options& o) {
       "the colors that do not. Where a sample has readings under several illuminants or observers, the first counts, "
       "or the one of --illuminant and --observer. Spectra in CxF are integrated under what their specification states. "
       "CxF is written with one color specification for each angle.",
-      "A measured BRDF (MERL .binary, Cornell .brdf, NVIDIA .mbsdf, RGL _rgb.bsdf) becomes one paint, which holds what "
-      "a multi-angle instrument would have read at the geometries of --geometry, by default at 15, 25, 45, 75 and 110 "
-      "degrees. Spectra are integrated under --illuminant and --observer, by default D65 and 10 degrees. RGB data are "
-      "what the 2 degree observer sees under D65, and they stay that. The data are checked on the way: the report "
-      "tells the share of negative samples, how far light and viewer can be swapped, whether the values are f or f "
-      "cos, the noise floor, and which readings were interpolated and how far.",
+      "A measured BRDF (" + brdf::measured_formats() +
+          ") becomes one paint, which holds what a multi-angle instrument would have read at the geometries of "
+          "--geometry, by default at 15, 25, 45, 75 and 110 degrees. Spectra are integrated under --illuminant and "
+          "--observer, by default D65 and 10 degrees. RGB data are what the 2 degree observer sees under D65, and "
+          "they stay that. The data are checked on the way: the report tells the share of negative samples, how far "
+          "light and viewer can be swapped, whether the values are f or f cos, the noise floor, and which readings "
+          "were interpolated and how far.",
       "A measured paint keeps the rows it has; --geometry selects among them and never interpolates. A designed paint "
       "has a face, a flop and a travel but no rows. It gets rows where readings are written: at 15, 45 and 110 degrees "
       "and at 25, 45 and 75 degrees, which are the two sets of the industry, or at those of --geometry. What the "

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/angles.h"
 #include "base/text.h"
 #include "brdf/gloss.h"
 #include "image/aov_file.h"
@@ -62,12 +63,12 @@ Result<void> place_tweak(Options& o) {
 // coat; see goniochrome-theory(7), GLOSS.
 Result<double> gloss_of_edge(double edge_deg, double meter_deg) {
   constexpr double kSharpest = 1e6;
-  const double radians = std::clamp(edge_deg, 0.0, 89.0) * std::numbers::pi / 180;
+  const double radians = std::clamp(edge_deg, 0.0, 89.0) * kDegree;
   const double sine = std::sin(radians);
   const double minus_log_cos = -0.5 * std::log1p(-sine * sine);
   const double exponent = std::min(kSharpest, std::numbers::ln2 / std::max(minus_log_cos, 1e-12));
-  const double energy = brdf::fresnel_dielectric(std::cos(meter_deg * std::numbers::pi / 180), brdf::kCoatIndex);
-  const double weight = energy * (exponent + 1) / (2 * std::numbers::pi);
+  const double energy = brdf::fresnel_dielectric(std::cos(meter_deg * kDegree), brdf::kCoatIndex);
+  const double weight = energy * (exponent + 1) / (2 * kPi);
   const brdf::GlossTable table({exponent});
   GONIO_ASSIGN(const brdf::GlossColumns* meter, table.at(meter_deg));
   paint::LobeFit lobe;

@@ -160,8 +160,9 @@ class Run {
     results["read"] = read_;
     results["written"] = written_;
     if (!results.contains("changes")) results["changes"] = Json::array();
-    const std::string stale =
-        dropped_.empty() ? "" : fmt::format("; dropped because they no longer hold: {}", fmt::join(dropped_, ", "));
+    const std::string stale = dropped_.empty() ? ""
+                                               : fmt::format("; dropped because they no longer hold: {}",
+                                                             joined({dropped_.begin(), dropped_.end()}, ", "));
     session_.say(fmt::format("paints: {} read, {} {}, {} written{}", read_, changes_,
                              options_.variations.empty() && options_.gradient == 0 ? "edited" : "made", written_,
                              stale));
@@ -197,7 +198,7 @@ std::string plan_text(const Options& options, const paint::Edit& edit) {
   if (paint::moves_gloss(edit))
     line(fmt::format("gloss: the reading at {} deg is moved, readings at other angles and the lobes are dropped",
                      options.gloss_angle_deg));
-  if (!options.only.empty()) line(fmt::format("left as they are: all paints but {}", fmt::join(options.only, ", ")));
+  if (!options.only.empty()) line(fmt::format("left as they are: all paints but {}", joined(options.only, ", ")));
   return text;
 }
 

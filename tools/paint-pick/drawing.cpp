@@ -2,13 +2,14 @@
 
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 #include <utility>
 
+#include "base/angles.h"
 #include "display/display.h"
 #include "envmap/prefiltered.h"
 #include "fit/paint_fit.h"
 #include "render/renderer.h"
+#include "render/trim.h"
 #include "sketch/sketch.h"
 
 namespace goniochrome::tool {
@@ -25,7 +26,7 @@ mesh::Mesh ball() {
   mesh::Mesh mesh;
   for (std::uint32_t ring = 0; ring <= kRings; ++ring)
     for (std::uint32_t segment = 0; segment <= kSegments; ++segment) {
-      const double t = std::numbers::pi * ring / kRings, p = 2 * std::numbers::pi * segment / kSegments;
+      const double t = kPi * ring / kRings, p = 2 * kPi * segment / kSegments;
       mesh.positions.push_back({std::sin(t) * std::sin(p), std::cos(t), std::sin(t) * std::cos(p)});
     }
   mesh.normals = mesh.positions;
@@ -105,6 +106,10 @@ Result<PaintDrawing> PaintDrawing::make(const Options& options) {
 Result<std::string> PaintDrawing::png(const paint::Paint& paint) {
   GONIO_ASSIGN(const fit::PaintFit fit, state_->fitter->fit(paint));
   state_->scene.paints.assign(state_->mesh.parts.size(), fit.lobes);
+  const bool with_mirror = state_->scene.env != nullptr && state_->env.mirror.map.size > 0;
+  for (std::size_t part = 0; part < state_->mesh.parts.size(); ++part) {
+    if (const auto trim = render::trim_of(state_->mesh.parts[part], with_mirror)) state_->scene.paints[part] = *trim;
+  }
   GONIO_TRY(state_->renderer->load(state_->scene));
   const render::Camera camera =
       render::Camera::orbit(state_->mesh, 35, 12, kDistance, 30, static_cast<double>(kWidth) / kHeight);

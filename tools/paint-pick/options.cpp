@@ -35,7 +35,8 @@ cli::ToolSpec tool_spec(Options& o) {
           "is the paints, or a page where its name ends in .html. The page needs no other file; it shows the pictures, "
           "the droppers on them, and a drawing of every paint.");
   spec.heading = "page of a board";
-  spec.option("mesh,m", "FILE", "testdata/speed-shape.obj", &o.mesh, "mesh that the paints are drawn on")
+  spec.option("mesh,m", "FILE", "testdata/speed-shape.obj", &o.mesh,
+              "mesh that the paints are drawn on; glass, tires and the like are dressed")
       .more("Without it they are drawn on a ball.");
   spec.option("env,e", "FILE", "studio.env.exr", &o.env, "prefiltered environment that the paints are drawn under")
       .more("Without it they are drawn under two lamps.");

@@ -122,7 +122,7 @@ report::Plot parts_plot(const paint::LobeFit& fit) {
   add(
       "diffuse", [&](double) { return M_PI * luminance(fit.diffuse); }, report::Series::Style::kLine);
   for (const paint::Lobe& lobe : fit.lobes) {
-    if (std::isinf(lobe.exponent)) continue;
+    if (lobe.is_mirror()) continue;
     const auto curve_of = [&](const color::Rgb& weight) {
       return [&lobe, y = M_PI * luminance(weight)](double t) { return y * math::cos_power(t, lobe.exponent); };
     };
@@ -172,7 +172,7 @@ report::Drawing facts(const Subject& s) {
                   s.lobes->views.empty() ? "" : fmt::format(", {} views", s.lobes->views.size()))};
   for (const paint::Lobe& lobe : s.lobes->lobes) {
     if (lines.size() > 13) break;
-    const std::string name = std::isinf(lobe.exponent) ? "mirror" : fmt::format("E {:.4g}", lobe.exponent);
+    const std::string name = lobe.is_mirror() ? "mirror" : fmt::format("E {:.4g}", lobe.exponent);
     const color::Rgb k = lobe.directional_diffuse;
     lines.push_back(k == color::Rgb{} ? fmt::format("{}: gloss {:.3g}", name, lobe.gloss.y)
                                       : fmt::format("{}: {:.3g} {:.3g} {:.3g} /sr", name, k.x, k.y, k.z));

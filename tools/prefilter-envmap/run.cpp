@@ -1,8 +1,8 @@
+#include "base/angles.h"
 #include "tool.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "base/clock.h"
@@ -19,7 +19,7 @@ namespace goniochrome::tool {
 namespace {
 
 std::string exponent_name(double exponent) {
-  return std::isinf(exponent) ? "mirror" : shortest(exponent);
+  return paint::is_mirror(exponent) ? "mirror" : shortest(exponent);
 }
 
 const char* layout_name(envmap::Environment::Layout layout) {
@@ -43,7 +43,7 @@ Result<envmap::Environment> read_environment(const Options& options, const envma
                   ? envmap::Environment::read_faces(options.images, bad)
                   : envmap::Environment::read(options.images.empty() ? "-" : options.images.front(), bad);
   if (read.ok() && options.exposure != 0) read = read->scaled(std::exp2(options.exposure));
-  if (read.ok() && options.horizon > -90) read = read->above(options.horizon * std::numbers::pi / 180, turn);
+  if (read.ok() && options.horizon > -90) read = read->above(options.horizon * kDegree, turn);
   return read;
 }
 
@@ -97,7 +97,7 @@ struct Timing {
 Json report_of(const prefilter::LobePlan& plan, const envmap::PrefilteredLobe& lobe, const Timing& timing,
                double ratio) {
   const bool verified = lobe.verified_texels > 0;
-  return {{"exponent", std::isinf(lobe.exponent) ? Json("mirror") : Json(lobe.exponent)},
+  return {{"exponent", lobe.is_mirror() ? Json("mirror") : Json(lobe.exponent)},
           {"size", lobe.map.size},
           {"method", lobe.method},
           {"cached", timing.cached},
@@ -150,7 +150,7 @@ void tell_wanted(const Options& options, const Wanted& wanted, cli::Session& ses
   session.results()["layout"] = options.layout;
   Json& left_out = session.results()["left_out"] = Json::array();
   for (const LeftOut& lobe : wanted.left_out)
-    left_out.push_back({{"exponent", std::isinf(lobe.exponent) ? Json("mirror") : Json(lobe.exponent)},
+    left_out.push_back({{"exponent", paint::is_mirror(lobe.exponent) ? Json("mirror") : Json(lobe.exponent)},
                         {"share", json_number(lobe.share)}});
 }
 

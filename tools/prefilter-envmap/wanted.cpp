@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <map>
-#include <numbers>
 
+#include "base/angles.h"
 #include "base/text.h"
 #include "envmap/mip.h"
 #include "formats/basis.h"
@@ -15,7 +14,6 @@ namespace goniochrome::tool {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kLeastTolerance = 1e-6;  // a float is rounded by 6e-8, and the reference is good to 1e-8
 
 double largest(const color::Rgb& weights) {
@@ -26,7 +24,7 @@ double largest(const color::Rgb& weights) {
 // its weight alone.
 double reflectance(const paint::Lobe& lobe) {
   const double weight = largest(lobe.directional_diffuse) + largest(lobe.gloss);
-  return std::isinf(lobe.exponent) ? weight : weight * 2 * kPi / (lobe.exponent + 1);
+  return lobe.is_mirror() ? weight : weight * 2 * kPi / (lobe.exponent + 1);
 }
 
 // The largest share of a paint's reflectance that each exponent has, over paints and views.
@@ -57,7 +55,7 @@ Result<void> want_those_of_paints(const Options& options, Wanted& wanted) {
   for (const auto& [exponent, share] : shares) {
     if (share <= wanted.request.tolerance)
       wanted.left_out.push_back({exponent, share});
-    else if (std::isinf(exponent))
+    else if (paint::is_mirror(exponent))
       wanted.request.mirror = true;
     else
       wanted.request.exponents.push_back(exponent);
@@ -81,7 +79,7 @@ Result<void> set_geometry(const Options& options, prefilter::PrefilterRequest& r
   const std::vector<double>& turn = options.rotate;
   if (turn.size() > 3)
     return usage_error("--rotate has {} angles: give one to three, about +Y, +X and +Z", turn.size());
-  const auto angle = [&](std::size_t i) { return i < turn.size() ? turn[i] * kPi / 180 : 0; };
+  const auto angle = [&](std::size_t i) { return i < turn.size() ? turn[i] * kDegree : 0; };
   request.turn = envmap::Rotation::about_axes(angle(0), angle(1), angle(2));
   return {};
 }

@@ -14,12 +14,21 @@ void add_surfaces(cli::ToolSpec& spec, Options& o) {
           "parts and materials hold all that the engine cpu needs, so that other paints or other light are shown "
           "without the mesh and without rasterizing. The picture is that of --samples 1, bit for bit; view and size "
           "are "
-          "the file's. Textures need the mesh.");
+          "the file's. Textures need the mesh. A file of --aov transport holds the light as well: without --env and "
+          "--light it is shaded in that light, with its shadows. Bounced light, which was traced in other paints, is "
+          "scaled to the new ones; the error of that is told, and where it is beyond --tolerance the exit status is "
+          "1.");
   spec.option("paint,p", "PAINT", "fitted.xml#candy_red", &o.paint, "paint of all parts that --part does not name");
   spec.option("part", "PART=PAINT", "Glass=fitted.xml#silver_fine", &o.parts, "paint of a part or material")
       .more(
           "The part of that name is painted, or, where no part has it, every part of that material. The material of a "
           "part is that of its first face.");
+  spec.flag("trim", &o.trim, "dress glass, tires, rims, seams and the underside instead of painting them")
+      .more(
+          "Parts are known by words in their names or materials, such as glass, window, tire, rubber, rim, chrome, "
+          "seam "
+          "and underbody. Glass is black under a coat, rubber, seams and the underside are matt black, and rims and "
+          "metal are gray under a coat. --part goes before --trim, and --trim before --paint.");
   spec.option("split", "PAINT,PAINT", "a.xml#red,a.xml#blue", &o.split, "draw the halves of the picture in two paints")
       .more("Both stand in the place of --paint: the first on the left, the second on the right.");
   spec.option("texture", "PART=FILE", "Hood=flakes.exr*4", &o.textures, "surface that varies over a part or material")
@@ -44,11 +53,29 @@ void add_light(cli::ToolSpec& spec, Options& o) {
           "The direction is AZIMUTH,ELEVATION, or a vector X,Y,Z toward the light. R,G,B may follow; it is what a "
           "perfect white diffuser shows that faces the light, and 1,1,1 if not given. The mirror image of such a light "
           "is a point without extent and is not drawn.");
-  spec.option("operator", "NAME[,SHARE]", "iso,0.1", &o.reflection, "how colored light and paint multiply")
+  spec.option("emit", "PART=R,G,B", "Lamp=20,18,15", &o.emissions, "make a part or material shine by itself")
+      .more(
+          "R,G,B is the radiance of both sides of the part, in linear Rec.2020, beside what its paint reflects. Only "
+          "the engine path draws such parts, and auto takes it for them.");
+  spec.option("floor", "WHAT[,HEIGHT]", "shadow", &o.floor, "level floor: none, shadow or a PAINT")
+      .in("units of the mesh for the height")
+      .more(
+          "The floor reaches to the horizon, and lies at HEIGHT or, without it, at the lowest point of the mesh. "
+          "shadow "
+          "lays the lower half of the environment on the floor, as it was seen from --eye-height above the middle of "
+          "the mesh; it is darkened where the mesh takes light from it, and is seen in the paint. Only the engine path "
+          "draws floors, and auto takes it for them. With --background env, the engine path draws the floor shadow "
+          "unless another is asked for.");
+  spec.option("eye-height", "H", "1.5", &o.eye_height, "height above the floor that the environment was seen from")
+      .in("units of the mesh")
+      .from(0)
+      .more("0 takes a third of the longest side of the mesh's box, which is 1.5 m for a car of 4.5 m.");
+  spec.option("operator", "NAME[,SHARES]", "iso,0.1", &o.reflection, "how colored light and paint multiply")
       .more(
           "iso is a bilinear product by the published table for camera sensors. rec2020 is one that is estimated from "
           "color-matching functions, which can make saturated colors negative. none multiplies each channel by itself. "
-          "A number from 0 to 1 after a comma says how much the channels share.");
+          "A number from 0 to 1 after a comma says how much each channel takes from the others, and three numbers say "
+          "it for red, green and blue.");
   spec.option("critical-angle", "NAME", "clip", &o.critical_angle, "what color maps do beyond the critical angle")
       .one_of({"clip", "slide", "slide-map", "index"})
       .more(
@@ -56,8 +83,12 @@ void add_light(cli::ToolSpec& spec, Options& o) {
           "weights for several views.");
   spec.option("exposure", "STOPS", "-1", &o.exposure, "power of two that brightens the picture, or auto")
       .more(
-          "auto leaves an EXR as it is. In a PNG it brings the brightest that a white diffuser can be in this light to "
-          "1.");
+          "auto leaves an EXR as it is. In a PNG it makes a gray card of 18 % middle gray: the light on the card is "
+          "the "
+          "mean of that on a card that lies level and of that on one that faces the camera, of the first picture of a "
+          "sequence. Where parts of the mesh are all the light there is, what is seen of the mesh is middle gray in "
+          "the "
+          "mean.");
   spec.option("background", "WHAT", "env", &o.background, "what is seen beside the mesh: none, env or R,G,B")
       .more("none is transparent, and in a PNG a gray of 18 %. env shows the environment.");
 }
@@ -108,14 +139,24 @@ void add_engines(cli::ToolSpec& spec, Options& o) {
   spec.option("engine", "NAME", "cpu", &o.engine, "what shades the picture")
       .one_of(render::engine_choices())
       .more(
-          "Three engines draw a scene. gl shades in OpenGL, and cpu reads all lobes of a texel at once; their pictures "
+          "Four engines draw a scene. gl shades in OpenGL, and cpu reads all lobes of a texel at once; their pictures "
           "are the same, and auto takes the one that is predicted to be faster. Both use prefiltered maps, which know "
           "one direction at each point. They cannot tell light that changes within that part of a broad lobe that is "
           "above the horizon, and differ from the truth by some 0.5 to 1 dE00 in the mean, and by more at single "
           "points. integral does without such maps: at every visible point it sums the image that the environment was "
           "made from, in blocks as coarse as --tolerance allows. It draws every effect. At the default tolerance it "
           "takes several hundred times as long as the others, and a brushed paint takes another 50 times as long; "
-          "--explain predicts the time.");
+          "--explain predicts the time. These three leave out that the mesh is in the way of light. path follows light "
+          "along rays from the image that the environment was made from: it draws shadows, the mesh mirrored in "
+          "itself, "
+          "the light that surfaces pass on, floors and parts that shine. It needs neither prefiltered maps nor OpenGL. "
+          "It draws samples until the noise of the picture, estimated from them, is within --tolerance: that is the "
+          "95th percentile, over the visible pixels, of the CIEDE2000 difference of one standard deviation.");
+  spec.option("bounces", "N", "8", &o.bounces, "surfaces that may pass light on, with the engine path")
+      .from(0, 4096)
+      .more(
+          "0 draws the light that comes from the environment, lights and shining parts without detour: surfaces that "
+          "are seen in others are then black, but for what they emit.");
   spec.flag("print-shader", &o.print_shader, "print the OpenGL program of the scene on standard output");
 }
 
@@ -143,9 +184,11 @@ void add_output(cli::ToolSpec& spec, Options& o) {
           "its "
           "configuration.");
   spec.option("aov", "NAMES", "normal,part", &o.aovs,
-              "buffers to add to an EXR: normal, aspecular, lambert, mask, part")
+              "buffers to add to an EXR: normal, aspecular, lambert, mask, part, error, transport")
       .more(
-          "They hold the pixel centers. normal is turned to the viewer (normal.X .Y .Z). aspecular is the angle in "
+          "error, of the engine path alone, is the noise of each pixel as CIEDE2000, one standard deviation. "
+          "The others hold the pixel centers. normal is turned to the viewer (normal.X .Y .Z). aspecular is the angle "
+          "in "
           "degrees between the view and the mirror direction of the first light, and lambert the cosine between normal "
           "and that light; without --light, it is the direction in which the environment's irradiance is largest, and "
           "goniochrome:aovLight holds it. mask is 1 on the mesh. part is a number from 1, and the attribute "
@@ -153,7 +196,11 @@ void add_output(cli::ToolSpec& spec, Options& o) {
           "goniochrome:rays (corner;right;down: the ray through the point x,y is the sum of the first, x times the "
           "second and y times the third, in pixels from the upper left), goniochrome:lights (direction and white of "
           "each), goniochrome:operator (the 27 coefficients k[c][d][e] of colored light, with e running fastest), "
-          "goniochrome:samples (those of a pixel of the picture) and goniochrome:environment.");
+          "goniochrome:samples (those of a pixel of the picture) and goniochrome:environment. transport brings all "
+          "buffers and, in parts of their own, the light that each lobe of the basis gathers at each pixel, with "
+          "shadows and with light that surfaces send to each other; it is traced until its noise is within "
+          "--tolerance. --gbuffer then shows other paints in it within milliseconds. goniochrome-paint(5) describes "
+          "the parts.");
 }
 
 // The examples, the keys of --report, and the pages to see.
@@ -180,8 +227,23 @@ void add_report(cli::ToolSpec& spec) {
        "what each effect is worth, and whether it is drawn; with --check and --explain, truth_de00_p95 stands beside "
        "it"},
       {"plan_de00_p95, plan_ms", "change by all effects that are left out together, and the time that planning took"},
-      {"engine, engine_reason", "what shaded the picture (gl, cpu or integral), and why"},
-      {"opengl", "the OpenGL renderer; null with --gbuffer"},
+      {"engine, engine_reason", "what shaded the picture (gl, cpu, integral, path or transport), and why"},
+      {"transport: points, columns, bytes_per_point",
+       "with --aov transport, or --gbuffer of it: visible pixels, columns of light, and what a pixel takes in memory"},
+      {"transport: noise_de00_p95, noise_de00_mean, samples_mean, open_share, trace_s, reached",
+       "with --aov transport: noise of the worst column of each pixel, directions traced for each, the part of the "
+       "pixels above which nothing rises, the time, and whether the noise is within the tolerance"},
+      {"transport: float_parts, half_error_de00", "parts written as floats, and the error of those in halves"},
+      {"transport: load_ms, scale_ms, bounced_de00_p95, trace_again",
+       "with --gbuffer: time to lay out the light and to scale what bounced, the error of that, and whether it is "
+       "beyond the tolerance"},
+      {"opengl", "the OpenGL renderer; null with --gbuffer, and where rays find what is visible"},
+      {"noise_de00_p95, noise_de00_mean",
+       "of the engine path: CIEDE2000 of one standard deviation of the noise, over the visible pixels of the last "
+       "picture"},
+      {"noise_reached, samples_mean, path_s, bounces",
+       "of the engine path: whether the noise is within the tolerance in all pictures, the samples of a visible pixel, "
+       "the time that tracing them took, and --bounces"},
       {"frames", "number of pictures written"},
       {"gbuffer_ms", "time to rasterize the mesh once; 0 with --gbuffer"},
       {"frame_ms", "time to draw the picture with all samples, without reading and uploading"},
@@ -223,7 +285,10 @@ cli::ToolSpec tool_spec(Options& o) {
   add_engines(spec, o);
   add_checking(spec, o);
   add_output(spec, o);
-  cli::add_common_options(spec, o.common, {.explain = true, .seed = "the pixels to check"});
+  cli::add_common_options(spec, o.common,
+                          {.explain = true,
+                           .time_limit = "each picture by the engine path",
+                           .seed = "the pixels to check, and the samples of the engine path"});
   add_report(spec);
   return spec;
 }

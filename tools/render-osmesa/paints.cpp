@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
-#include <numbers>
 
+#include "base/angles.h"
 #include "base/text.h"
 #include "formats/batches.h"
 #include "formats/xml.h"
 #include "image/surface_file.h"
+#include "render/trim.h"
+#include "setup.h"
 
 namespace goniochrome::tool {
 
@@ -156,7 +158,7 @@ Result<void> lay_textures(const mesh::Mesh& mesh, const Options& options, Dresse
 Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options) {
   PaintShelf shelf;
   paint::LobeFit gray;
-  gray.diffuse = (kUnpaintedReflectance / std::numbers::pi) * color::Rgb{1, 1, 1};
+  gray.diffuse = (kUnpaintedReflectance / kPi) * color::Rgb{1, 1, 1};
   const std::size_t parts_there = mesh.parts.size();
   DressedMesh result;
   result.paints.assign(parts_there, gray);
@@ -176,6 +178,12 @@ Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options) {
     GONIO_ASSIGN(const brdf::ColorMap* map, shelf.color_map(options.paint, paint));
     for (std::size_t part = 0; part < mesh.parts.size(); ++part) wear(part, paint, map);
   }
+  for (std::size_t part = 0; options.trim && part < mesh.parts.size(); ++part) {
+    const auto trim = render::trim_of(mesh.parts[part], !options.env.empty());
+    if (!trim) continue;
+    result.paints[part] = *trim, result.gloss_deg[part] = kUnreadGlossDeg;
+    result.anisotropy[part] = {}, result.surfaces[part] = {}, result.names[part] = "trim";
+  }
   // A part's own name is meant before its material, wherever it stands on the command line.
   GONIO_ASSIGN(const std::vector<Assignment> all, assignments(options.parts));
   for (const bool by_name : {false, true}) {
@@ -193,6 +201,21 @@ Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options) {
     if (result.names[part].empty()) result.unpainted.push_back(mesh.parts[part].name);
   }
   return result;
+}
+
+Result<paint::LobeFit> lobes_of_paint(const std::string& reference) {
+  PaintShelf shelf;
+  GONIO_ASSIGN(const paint::Paint paint, shelf.paint(reference));
+  return *paint.lobes;
+}
+
+Result<std::vector<color::Rgb>> emission_of(const mesh::Mesh& mesh, const std::vector<Emission>& emissions) {
+  std::vector<color::Rgb> all(emissions.empty() ? 0 : mesh.parts.size());
+  for (const Emission& emission : emissions) {
+    GONIO_ASSIGN(const std::vector<std::size_t> parts, parts_meant(mesh, emission.part));
+    for (const std::size_t part : parts) all[part] = emission.radiance;
+  }
+  return all;
 }
 
 Result<DressedMesh> dressed_in(const mesh::Mesh& mesh, Options options, const std::string& paint) {

@@ -27,6 +27,13 @@ struct DressedMesh {
 // Resolves --part and --paint. Error: an unknown part, paint or file, or a paint without lobes, with what there is.
 Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options);
 
+// The lobes of FILE#NAME.
+Result<paint::LobeFit> lobes_of_paint(const std::string& reference);
+
+// The radiance of each part by --emit. Error: an unknown part.
+struct Emission;
+Result<std::vector<color::Rgb>> emission_of(const mesh::Mesh& mesh, const std::vector<Emission>& emissions);
+
 // The same with another paint in the place of --paint.
 Result<DressedMesh> dressed_in(const mesh::Mesh& mesh, Options options, const std::string& paint);
 

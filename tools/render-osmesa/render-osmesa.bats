@@ -267,14 +267,17 @@ refused() {
   oiiotool gl.exr cpu.exr --fail 0.001 --diff >/dev/null
   render-osmesa -q --mesh "$shape" $light $small --effects none -o none.exr
   [ "$(pixel none.exr 48 27)" = "0.000000 0.000000 0.000000 1.000000" ] || near "$(pixel none.exr 48 27)" "0 0 0 1"
-  run render-osmesa --mesh "$shape" $light $small --budget 0.000001 --explain -o out.exr
-  [[ "$output" =~ "over budget" ]]
-  rm out.exr
   refused 2 '--effects is "fast": write auto, all or none' --mesh "$shape" $light --effects fast
   refused 2 '--effects names "shine": there are diffuse' --mesh "$shape" $light --effects all,-shine
   refused 2 'engine' --mesh "$shape" $light --engine vulkan
-  refused 2 'budget' --mesh "$shape" $light --budget -1
   refused 2 'tolerance' --mesh "$shape" $light --tolerance -1
+}
+
+@test "--budget leaves out what takes too long, and says so" {
+  run render-osmesa --mesh "$shape" $light $small --budget 0.000001 --explain -o out.exr
+  [[ "$output" =~ "over budget" ]]
+  rm out.exr
+  refused 2 'budget' --mesh "$shape" $light --budget -1
 }
 
 @test "--operator: red paint in cyan light keeps some red" {
@@ -285,11 +288,14 @@ refused() {
   awk -v p="$(pixel iso.exr 45 30)" 'BEGIN { split(p, c, " "); exit !(c[1] > 0.1) }'
   render-osmesa -q $red --operator iso,0 -o plain.exr
   near "$(pixel plain.exr 45 30)" "0 0.1 0.1 1"
+  render-osmesa -q $red --operator iso,0,1,1 -o blue.exr # red takes nothing
+  awk -v p="$(pixel blue.exr 45 30)" 'BEGIN { split(p, c, " "); exit !(c[1] == 0 && (c[2] > 0.11 || c[3] > 0.11 || c[2] < 0.09)) }'
   render-osmesa -q $red --operator rec2020 -o rec2020.exr
   run cmp -s iso.exr rec2020.exr
   [ "$status" -eq 1 ]
   refused 2 '--operator is "xyz": write iso, rec2020 or none' --mesh panels.obj $light --operator xyz
   refused 2 '--operator is "iso,2"' --mesh panels.obj $light --operator iso,2
+  refused 2 '--operator is "iso,0,1"' --mesh panels.obj $light --operator iso,0,1
 }
 
 @test "--split draws two paints side by side" {

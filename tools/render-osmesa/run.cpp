@@ -20,6 +20,7 @@
 #include "render/renderer.h"
 #include "render/surface_layer.h"
 #include "setup.h"
+#include "transport_view.h"
 
 namespace goniochrome::tool {
 
@@ -35,11 +36,29 @@ struct Request {
   std::vector<render::Light> lights;
   std::optional<double> stops;
   std::vector<std::string> aovs;
+  bool transport = false;  // among the buffers
   bool png = false;
   color::ReflectionOperator reflection;
   render::PlanRequest plan;
   const render::EngineInfo* engine = nullptr;  // null: the plan chooses
+  FloorRequest floor;
+  std::vector<Emission> emissions;
 };
+
+// --aov transport is no channel: it is traced, and brings the buffers that it is read with.
+Result<void> take_transport(const Options& options, Request& request) {
+  request.transport = std::erase(request.aovs, "transport") > 0;
+  if (!request.transport) return {};
+  for (const char* needed : {"normal", "aspecular", "lambert", "mask", "part"})
+    if (std::ranges::find(request.aovs, needed) == request.aovs.end()) request.aovs.emplace_back(needed);
+  const std::pair<const char*, bool> given[] = {{"gbuffer", !options.gbuffer.empty()},
+                                                {"split", !options.split.empty()},
+                                                {"turntable", options.turntable > 0},
+                                                {"light-sweep", options.light_sweep > 0}};
+  for (const auto& [name, is_given] : given)
+    if (is_given) return usage_error("--aov transport traces one view of a mesh: leave out --{}", name);
+  return {};
+}
 
 Result<Request> request_of(const Options& options) {
   Request request;
@@ -51,12 +70,14 @@ Result<Request> request_of(const Options& options) {
   }
   GONIO_ASSIGN(request.stops, parse_exposure(options.exposure));
   request.aovs = aov_names(options.aovs);
+  GONIO_TRY(take_transport(options, request));
   const std::string extension = lower(std::filesystem::path(options.output).extension().string());
   request.png = extension == ".png";
   if (!request.png && extension != ".exr" && options.output != "-") {
     return usage_error("--output is \"{}\": write a name that ends in .exr or .png", options.output);
   }
-  if (options.env.empty() && request.lights.empty())
+  GONIO_ASSIGN(request.emissions, parse_emissions(options.emissions));
+  if (options.env.empty() && request.lights.empty() && request.emissions.empty() && options.gbuffer.empty())
     return usage_error("there is no light: give --env, --light or both");
   if (options.samples != 0 && options.samples != 1 && options.samples != 4 && options.samples != 16) {
     return usage_error("--samples is {}: give 1, 4 or 16", options.samples);
@@ -67,19 +88,33 @@ Result<Request> request_of(const Options& options) {
   request.plan.budget_ms = options.budget_ms;
   request.samples = !options.gbuffer.empty() ? 1 : options.samples > 0 ? options.samples : 4;
   request.plan.samples = request.samples;
-  if (options.engine != "auto") {
-    GONIO_ASSIGN(request.engine, render::engine_named(options.engine));
-    request.plan.engine = options.engine;
+  const bool wants_rays =
+      !request.emissions.empty() || (options.floor != "auto" && options.floor != "none");  // only one engine has them
+  const std::string engine = options.engine == "auto" && wants_rays ? "path" : options.engine;
+  if (engine != "auto") {
+    GONIO_ASSIGN(request.engine, render::engine_named(engine));
+    request.plan.engine = engine;
     if (!request.engine->is_planned && options.budget_ms > 0)
       return usage_error("--budget chooses effects of prefiltered maps: leave it out, or --engine {}", options.engine);
   }
+  const bool traces = request.engine != nullptr && request.engine->traces_rays;
+  GONIO_ASSIGN(request.floor, parse_floor(options.floor, traces && options.background == "env"));
+  if (wants_rays && !traces)
+    return usage_error("--engine {} draws neither floors nor parts that shine: leave out --{}, or take --engine path",
+                       options.engine, request.emissions.empty() ? "floor" : "emit");
+  if (wants_rays && !options.gbuffer.empty())
+    return usage_error("--{} needs the mesh: --gbuffer holds one view of surfaces without it",
+                       request.emissions.empty() ? "floor" : "emit");
   if (!options.split.empty() && options.check > 0) return usage_error("--split and --check exclude each other");
   if (options.print_shader && options.output == "-")
     return usage_error("--print-shader and a picture both want standard output");
   if (request.png && !request.aovs.empty()) return usage_error("a PNG holds no --aov buffers: write an .exr");
   if (!request.png && !options.view.empty()) return usage_error("--view is for a PNG: an EXR stays scene-linear");
   image::Image unused{0, 0, 0, {}, {}};
-  for (const std::string& aov : request.aovs) GONIO_TRY(render::add_aov(unused, {}, aov, {}));
+  for (const std::string& aov : request.aovs) {
+    if (aov != "error") GONIO_TRY(render::add_aov(unused, {}, aov, {}));
+    if (aov == "error" && !traces) return usage_error("--aov error is of pictures by samples: take --engine path");
+  }
   return request;
 }
 
@@ -111,12 +146,30 @@ void tell_parts(const mesh::Mesh& mesh, const DressedMesh& dress, cli::Session& 
                            dress.unpainted.size() > 6 ? ", ..." : ""));
 }
 
-// A camera that sees the mesh from inside, or not at all, is legal and hardly ever meant.
-void tell_visibility(const render::Gbuffer& gbuffer, cli::Session& session) {
+// A camera that sees the mesh from inside, or not at all, is legal and hardly ever meant; and so are single parts of
+// which only back sides are seen.
+void tell_visibility(const render::Gbuffer& gbuffer, const mesh::Mesh& mesh, cli::Session& session) {
+  constexpr std::size_t kMany = 20, kMostNames = 6;  // fewer pixels may be those of a rim
   std::size_t seen = 0, from_inside = 0;
+  std::vector<std::size_t> fronts(mesh.parts.size()), backs(mesh.parts.size());
   for (std::size_t i = 3; i < gbuffer.data.size(); i += 4) {
     seen += gbuffer.data[i] != 0;
     from_inside += gbuffer.data[i] < 0;
+    if (gbuffer.data[i] == 0) continue;
+    const auto part = static_cast<std::size_t>(std::abs(gbuffer.data[i])) - 1;
+    ++(gbuffer.data[i] < 0 ? backs : fronts)[part];
+  }
+  std::string turned;
+  std::size_t count = 0;
+  for (std::size_t part = 0; part < backs.size(); ++part) {
+    if (backs[part] < kMany || fronts[part] > backs[part] / 100) continue;
+    if (++count <= kMostNames) turned += (turned.empty() ? "" : ", ") + mesh.parts[part].name;
+  }
+  if (count > kMostNames) turned += ", ...";
+  if (count > 0 && 2 * from_inside <= seen) {
+    session.warn(fmt::format("{} show{} {} back{} alone: {} faces may be turned inside out", turned,
+                             count == 1 ? "s" : "", count == 1 ? "its" : "their", count == 1 ? "" : "s",
+                             count == 1 ? "its" : "their"));
   }
   if (seen == 0) {
     session.warn("the mesh is not in the picture: check --camera or --orbit");
@@ -259,7 +312,8 @@ std::string spelled(const color::ReflectionOperator& reflection) {
 
 Result<void> write_exr_picture(const Options& options, const Request& request, const Shot& shot,
                                const render::Frame& frame, const render::Scene& scene, const render::Plan& plan,
-                               const render::DiffuseWhite& white, double stops, const cli::Session& session) {
+                               const render::DiffuseWhite& white, double stops, double automatic,
+                               const render::TransportParts* transport, const cli::Session& session) {
   image::ImagePart part{"picture", frame.picture, provenance(session), image::PixelType::kHalf};
   part.attributes["goniochrome:plan"] = plan_rows(plan, false).dump(-1, ' ', false, Json::error_handler_t::replace);
   part.attributes["goniochrome:engine"] = plan.engine;
@@ -270,9 +324,16 @@ Result<void> write_exr_picture(const Options& options, const Request& request, c
       std::vector<float>{0.708F, 0.292F, 0.170F, 0.797F, 0.131F, 0.046F, 0.3127F, 0.3290F};
   part.attributes["goniochrome:exposure"] = static_cast<float>(stops);
   part.attributes["goniochrome:whiteLuminance"] = static_cast<float>(white.luminance);
+  part.attributes["goniochrome:automaticExposure"] = static_cast<float>(automatic);
   if (!request.aovs.empty()) {
     const Vec3 to_light = scene.lights.empty() ? white.direction : scene.lights.front().direction;
-    for (const std::string& aov : request.aovs) GONIO_TRY(render::add_aov(part.image, *frame.gbuffer, aov, to_light));
+    for (const std::string& aov : request.aovs) {
+      if (aov == "error") {
+        render::add_error(part.image, frame.noise.value());
+      } else {
+        GONIO_TRY(render::add_aov(part.image, *frame.gbuffer, aov, to_light));
+      }
+    }
     part.type = image::PixelType::kFloat;
     part.attributes["goniochrome:aovLight"] = spelled(to_light);
     describe_view(options, frame.gbuffer->rays, scene.lights, part.attributes);
@@ -283,16 +344,22 @@ Result<void> write_exr_picture(const Options& options, const Request& request, c
       names.push_back(mesh_part.name);
       materials.push_back(mesh_part.material);
     }
+    if (transport != nullptr && scene.ground) names.push_back("floor"), materials.push_back("");
     part.attributes["goniochrome:parts"] = names.dump(-1, ' ', false, Json::error_handler_t::replace);
     part.attributes["goniochrome:materials"] = materials.dump(-1, ' ', false, Json::error_handler_t::replace);
   }
-  return image::write_exr(shot.output, {part});
+  std::vector<image::ImagePart> parts;
+  if (transport != nullptr) part.attributes[render::kTransportAttribute] = transport->header;
+  parts.push_back(std::move(part));
+  if (transport != nullptr) parts.insert(parts.end(), transport->parts.begin(), transport->parts.end());
+  return image::write_exr(shot.output, parts);
 }
 
 // Everything that a picture is made from; the scene points into it.
 struct Stage {
   mesh::Mesh mesh;                                 // of its parts alone where there are buffers of it
   std::shared_ptr<const render::Gbuffer> gbuffer;  // of --gbuffer, or none
+  std::optional<KeptTransport> transport;          // of --gbuffer, or none
   std::vector<DressedMesh> dresses;                // one, or those of --split
   envmap::PrefilteredEnvironment env;
   render::Scene scene;
@@ -333,12 +400,21 @@ Result<void> dress_stage(const Options& options, Stage& stage) {
 }
 
 // The buffers of --gbuffer, and a mesh that has their parts.
-Result<void> set_gbuffer(const Options& options, Stage& stage) {
+Result<void> set_gbuffer(const Options& options, const Request& request, Stage& stage, cli::Session& session) {
   GONIO_ASSIGN(const image::AovFile buffers, image::read_aov_file(options.gbuffer));
   GONIO_ASSIGN(render::Gbuffer gbuffer, render::gbuffer_of(buffers));
   stage.gbuffer = std::make_shared<const render::Gbuffer>(std::move(gbuffer));
-  for (std::size_t i = 0; i < buffers.parts.size(); ++i)
+  GONIO_ASSIGN(stage.transport, kept_transport(buffers, options, request.lights, session));
+  // A floor keeps the paint that it wore.
+  const std::size_t floors = stage.transport && stage.transport->light.worn.has_floor ? 1 : 0;
+  for (std::size_t i = 0; i + floors < buffers.parts.size(); ++i)
     stage.mesh.parts.push_back({buffers.parts[i], buffers.materials[i], 0, 0});
+  if (!stage.transport && options.env.empty() && request.lights.empty())
+    return usage_error("there is no light: give --env, --light or both");
+  if (stage.transport && options.check > 0)
+    return usage_error("--check compares with light that nothing blocks: leave it out, or give --mesh");
+  if (stage.transport && !options.split.empty())
+    return usage_error("--split is not drawn from a transport: draw two pictures");
   return {};
 }
 
@@ -347,7 +423,7 @@ Result<void> set_stage(const Options& options, const Request& request, Stage& st
     GONIO_ASSIGN(stage.mesh, mesh::read_mesh(options.mesh));
     tell_repairs(stage.mesh, session);
   } else {
-    GONIO_TRY(set_gbuffer(options, stage));
+    GONIO_TRY(set_gbuffer(options, request, stage, session));
   }
   GONIO_TRY(dress_stage(options, stage));
   tell_parts(stage.mesh, stage.dresses.front(), session);
@@ -364,10 +440,12 @@ Result<void> set_stage(const Options& options, const Request& request, Stage& st
   }
   wear(stage.dresses.front(), options, stage);
   const bool summed = request.engine != nullptr && request.engine->needs_texels;
-  if (options.check > 0 || summed) {
+  if (options.check > 0 || summed || request.transport) {
     GONIO_ASSIGN(stage.source, source_of(options, scene, session));
   }
   if (summed && stage.source.environment) scene.texels = &stage.texels.emplace(*stage.source.environment);
+  GONIO_TRY(set_ground(request.floor, options, scene));
+  GONIO_ASSIGN(scene.emission, emission_of(stage.mesh, request.emissions));
   return set_background(scene, options.background);
 }
 
@@ -380,22 +458,42 @@ void put_right_half(const render::Frame& other, render::Frame& frame) {
   }
 }
 
+constexpr double kMiddleGray = 0.18;
+
+// Of what is seen of the mesh: what a scene that only its own parts light is exposed by.
+double mean_luminance(const render::Frame& frame) {
+  double sum = 0;
+  std::size_t count = 0;
+  for (int y = 0; y < frame.gbuffer->height; ++y) {
+    for (int x = 0; x < frame.gbuffer->width; ++x) {
+      if (frame.gbuffer->part(x, y) < 0) continue;
+      const float* rgb = frame.picture.pixel(x, y);
+      sum += color::xyz_d65_from_rgb({rgb[0], rgb[1], rgb[2]}).Y / color::xyz_d65_from_rgb({1, 1, 1}).Y;
+      ++count;
+    }
+  }
+  return count > 0 ? sum / static_cast<double>(count) : 0;
+}
+
 // A run that draws: its shots share one context and one upload.
 class Shooting {
  public:
   Shooting(const Options& options, Request request, Stage& stage, cli::Session& session)
       : options_(options), request_(std::move(request)), stage_(stage), session_(session) {}
 
-  Result<void> shoot(const std::optional<display::Display>& display);
+  Result<cli::Verdict> shoot(const std::optional<display::Display>& display);
 
  private:
   render::View view(const Shot& shot, int shrink) const {
     return {shot.camera, std::max(1, request_.size.width / shrink), std::max(1, request_.size.height / shrink),
             shrink > 1 ? 1 : request_.samples, shrink == 1 && options_.check > 0};
   }
+  Result<render::Renderer> make_renderer();
+  void tell_noise();
   Result<void> look(render::Renderer& renderer);
   Result<render::Plan> load(render::Renderer& renderer, const DressedMesh& dress);
   Result<void> draw(render::Renderer& renderer, const Shot& shot, bool first);
+  Result<cli::Verdict> shade_transport(const std::optional<display::Display>& display);
   Result<void> write(const Shot& shot, const std::optional<display::Display>& display, double stops);
   void tell_plan(render::Plan plan, const std::string& shader);
 
@@ -408,6 +506,8 @@ class Shooting {
   render::DiffuseWhite white_;
   render::Plan plan_;
   render::Frame frame_;
+  double automatic_stops_ = 0;  // of a PNG
+  bool stopped_ = false;        // by the time limit
 };
 
 // A sequence is planned on small pictures from some of its places, a single picture on itself.
@@ -454,7 +554,10 @@ Result<void> Shooting::draw(render::Renderer& renderer, const Shot& shot, bool f
                                                    session_.common().seed);
         render::add_truth(plan, render::seen_scene(stage_.scene, looks_), sample.points, environment, white_.luminance);
       }
-      if (first) tell_plan(std::move(plan), renderer.shader());
+      if (first) {
+        tell_plan(std::move(plan), renderer.shader());
+        for (const std::string& remark : renderer.remarks()) session_.warn(remark);
+      }
     } else {
       wear(stage_.dresses[i], options_, stage_);
       renderer.load_paints(stage_.scene);
@@ -467,35 +570,117 @@ Result<void> Shooting::draw(render::Renderer& renderer, const Shot& shot, bool f
 
 Result<void> Shooting::write(const Shot& shot, const std::optional<display::Display>& display, double stops) {
   if (!display) {
-    return write_exr_picture(options_, request_, shot, frame_, stage_.scene, plan_, white_, stops, session_);
+    std::optional<TracedView> traced;
+    if (request_.transport) {
+      const envmap::Environment* environment = stage_.source.environment ? &*stage_.source.environment : nullptr;
+      GONIO_ASSIGN(traced,
+                   traced_view(stage_.scene, environment, request_.engine == nullptr || request_.engine->is_planned,
+                               *frame_.gbuffer, white_.luminance, options_.bounces, session_));
+      frame_.gbuffer = traced->gbuffer;
+    }
+    return write_exr_picture(options_, request_, shot, frame_, stage_.scene, plan_, white_, stops, automatic_stops_,
+                             traced ? &traced->file : nullptr, session_);
   }
   GONIO_ASSIGN(const image::Image shown, display->image(frame_.picture, stops));
   return image::write_png(shot.output, shown, provenance(session_));
 }
 
-Result<void> Shooting::shoot(const std::optional<display::Display>& display) {
+// Other paints in the light that was traced; nothing is planned, since all is there.
+Result<cli::Verdict> Shooting::shade_transport(const std::optional<display::Display>& display) {
+  const KeptTransport& kept = *stage_.transport;
+  GONIO_ASSIGN(ShadedView view, shaded_view(kept, *stage_.gbuffer, stage_.dresses.front(), stage_.scene, session_));
+  frame_.picture = std::move(view.picture), frame_.gbuffer = stage_.gbuffer;
+  white_ = {kept.white_luminance, {0, 1, 0}};
+  plan_.engine = "transport", plan_.engine_reason = options_.gbuffer + " holds the light by lobes";
+  stage_.scene.lights.clear();
+  for (const image::AovLight& light : kept.lights) stage_.scene.lights.push_back({light.direction, light.white});
+  automatic_stops_ = kept.automatic_stops;
+  const double stops = request_.stops.value_or(request_.png ? automatic_stops_ : 0);
+  GONIO_TRY(write({{}, {}, options_.output}, display, stops));
+  Json& results = session_.results();
+  results["engine"] = plan_.engine, results["engine_reason"] = plan_.engine_reason;
+  results["gbuffer_ms"] = 0, results["frame_ms"] = view.frame_ms, results["frames"] = 1;
+  results["exposure_stops"] = stops, results["white_luminance"] = json_number(white_.luminance);
+  session_.say(fmt::format("{}: {} x {}, shaded in {:.1f} ms from the light of {}, exposure {:+.2f}{}",
+                           options_.output == "-" ? "standard output" : options_.output, request_.size.width,
+                           request_.size.height, view.frame_ms, options_.gbuffer, stops,
+                           display ? ", " + display->name() : ""));
+  return view.trace_again ? cli::Verdict::kNegative : cli::Verdict::kDone;
+}
+
+// Rays find what is visible for the engine that traces them, and where there is no OpenGL.
+Result<render::Renderer> Shooting::make_renderer() {
+  render::Effort effort;
+  effort.bounces = options_.bounces;
+  effort.time_limit_s = session_.common().time_limit_s;
+  effort.seed = session_.common().seed;
+  effort.progress = [this](double noise, double seconds) {
+    session_.progress(fmt::format("noise {:.2f} dE00 after {:.1f} s", noise, seconds));
+  };
+  const auto ready = [&](render::Renderer renderer) {
+    renderer.set_effort(std::move(effort));
+    return Result<render::Renderer>(std::move(renderer));
+  };
+  if (stage_.gbuffer) return ready(render::Renderer::shading(stage_.gbuffer));
+  if (request_.engine != nullptr && request_.engine->traces_rays)
+    return ready(render::Renderer::tracing(stage_.scene.ground));
+  auto renderer = render::Renderer::create();
+  if (renderer.ok()) return ready(*std::move(renderer));
+  if (request_.engine != nullptr && std::string_view(request_.engine->name) == "gl") return renderer;
+  session_.say(fmt::format("{}: rays find what is visible", renderer.error().message));
+  return ready(render::Renderer::tracing());
+}
+
+void Shooting::tell_noise() {
+  if (!frame_.noise) return;
+  const render::Noise& noise = *frame_.noise;
+  stopped_ |= !noise.reached;
+  Json& results = session_.results();
+  results["noise_de00_p95"] = json_number(noise.de00_p95);
+  results["noise_de00_mean"] = json_number(noise.de00_mean);
+  results["noise_reached"] = !stopped_;
+  results["samples_mean"] = noise.samples_mean;
+  results["path_s"] = noise.time_s;
+  results["bounces"] = options_.bounces;
+  session_.say(fmt::format(
+      "noise: dE00 p95 {:.2f}, mean {:.2f} after {:.0f} samples a pixel in {:.1f} s{}", noise.de00_p95, noise.de00_mean,
+      noise.samples_mean, noise.time_s,
+      noise.reached ? "" : fmt::format(", stopped before it was within {}", shortest(session_.common().tolerance))));
+}
+
+Result<cli::Verdict> Shooting::shoot(const std::optional<display::Display>& display) {
+  if (stage_.transport) return shade_transport(display);
   GONIO_ASSIGN(shots_, shots_of(options_, stage_.mesh, request_.size, request_.lights));
-  GONIO_ASSIGN(render::Renderer renderer,
-               stage_.gbuffer ? render::Renderer::shading(stage_.gbuffer) : render::Renderer::create());
+  GONIO_ASSIGN(render::Renderer renderer, make_renderer());
   GONIO_TRY(look(renderer));
-  tell_visibility(*looks_.front(), session_);
+  tell_visibility(*looks_.front(), stage_.mesh, session_);
   white_ = render::diffuse_white(stage_.scene.env, stage_.scene.lights);
   request_.plan.white_luminance = white_.luminance;
   request_.plan.tolerance_de00 = session_.common().tolerance;
   request_.plan.frames = static_cast<int>(shots_.size());
   request_.plan.pixels = static_cast<double>(request_.size.width) * request_.size.height;
   session_.explain(explanation(options_, stage_.mesh, stage_.dresses.front()));
-  const double automatic = request_.png && white_.luminance > 0 ? -std::log2(white_.luminance) : 0;
-  const double stops = request_.stops.value_or(automatic);
+  const render::Rays& through = looks_.front()->rays;
+  const Vec3 to_camera = -through.direction(0.5 * looks_.front()->width, 0.5 * looks_.front()->height);
+  double metered = render::metered_white(stage_.scene.env, stage_.scene.lights, to_camera);
+  double stops = 0;
   double frame_ms = 0;
   for (const Shot& shot : shots_) {
     GONIO_TRY(draw(renderer, shot, &shot == &shots_.front()));
     frame_ms += frame_.frame_ms / static_cast<double>(shots_.size());
+    tell_noise();
+    if (&shot == &shots_.front()) {
+      if (!(metered > 0)) metered = mean_luminance(frame_) / kMiddleGray;
+      automatic_stops_ = metered > 0 ? -std::log2(metered) : 0;
+      stops = request_.stops.value_or(request_.png ? automatic_stops_ : 0);
+    }
+    if (stage_.scene.ground && shot.camera.eye.y <= stage_.scene.ground->height)
+      session_.warn(fmt::format("the camera of {} is below the floor, which is black from there", shot.output));
     session_.progress(shot.output);
     GONIO_TRY(write(shot, display, stops));
   }
   Json& results = session_.results();
-  results["opengl"] = stage_.gbuffer ? Json(nullptr) : Json(renderer.opengl());
+  results["opengl"] = stage_.gbuffer || renderer.traces() ? Json(nullptr) : Json(renderer.opengl());
   results["gbuffer_ms"] = frame_.gbuffer_ms;
   results["frame_ms"] = frame_ms;
   results["frames"] = shots_.size();
@@ -512,7 +697,7 @@ Result<void> Shooting::shoot(const std::optional<display::Display>& display) {
     GONIO_TRY(measure_plan(renderer, render::seen_scene(stage_.scene, looks_), plan_, view(shots_.back(), 1),
                            white_.luminance, session_));
   }
-  return {};
+  return stopped_ ? cli::Verdict::kStopped : cli::Verdict::kDone;
 }
 
 }  // namespace
@@ -528,8 +713,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   Stage stage;
   GONIO_TRY(set_stage(options, request, stage, session));
   if (stage.gbuffer) request.size = {stage.gbuffer->width, stage.gbuffer->height};
-  GONIO_TRY(Shooting(options, std::move(request), stage, session).shoot(display));
-  return cli::Verdict::kDone;
+  return Shooting(options, std::move(request), stage, session).shoot(display);
 }
 
 }  // namespace goniochrome::tool

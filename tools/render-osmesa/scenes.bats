@@ -71,9 +71,11 @@ decided() { grep -A4 "\"effect\": \"$1\"" auto.json | grep -q "\"decision\": \"$
   sed -n '/"left_out": {/,/}/p' all.json | grep -qE '"de00_max": 0(\.0)?,?$'
 }
 
+# Every pixel is checked: near the outline an effect is worth ten times its mean, and few pixels do not tell its 95th
+# percentile.
 @test "an effect forced off errs by what the plan predicted" {
   for effect in fresnel mirror lobes; do
-    render-osmesa -q $view --check 60 -p fitted.xml#candy_red --env studio.env.exr --effects all,-$effect -o off.exr \
+    render-osmesa -q $view --check 2000 -p fitted.xml#candy_red --env studio.env.exr --effects all,-$effect -o off.exr \
       --report off.json
     awk -v plan="$(grep -m1 plan_de00_p95 off.json | sed -E 's/.*: ([-0-9.e+]+),?$/\1/')" -v truth="$(error off.json)" \
       -v effect=$effect 'BEGIN { print effect, plan, truth; exit !(truth < 2 * plan && truth > plan / 2) }'

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 
+#include "base/angles.h"
 #include "base/text.h"
+#include "paints.h"
 #include "render/engine.h"
 
 namespace goniochrome::tool {
@@ -113,15 +114,75 @@ Result<color::ReflectionOperator> parse_operator(const std::string& text) {
   const std::string name(trimmed(words[0]));
   const auto wrong = [&] {
     return usage_error(
-        "--operator is \"{}\": write iso, rec2020 or none, and if wanted a share from 0 to 1 after a comma", text);
+        "--operator is \"{}\": write iso, rec2020 or none, and if wanted after a comma a share from 0 to 1, or three",
+        text);
   };
   if (name == "none" && words.size() == 1) return color::component_wise();
-  if ((name != "rec2020" && name != "iso") || words.size() > 2) return wrong();
+  if ((name != "rec2020" && name != "iso") || (words.size() > 2 && words.size() != 4)) return wrong();
   const color::ReflectionOperator full = name == "iso" ? color::iso_rgb_operator() : color::working_space_operator();
   if (words.size() == 1) return full;
-  const auto share = parse_number(trimmed(words[1]));
-  if (!share || *share < 0 || *share > 1) return wrong();
-  return color::with_transfer(full, {*share, *share, *share});
+  color::Rgb shares;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto share = parse_number(trimmed(words[words.size() == 2 ? 1 : c + 1]));
+    if (!share || *share < 0 || *share > 1) return wrong();
+    shares[static_cast<int>(c)] = *share;
+  }
+  return color::with_transfer(full, shares);
+}
+
+Result<FloorRequest> parse_floor(const std::string& text, bool usual) {
+  FloorRequest request;
+  std::string what = text;
+  if (const auto comma = text.rfind(','); comma != std::string::npos) {
+    request.height = parse_number(trimmed(text.substr(comma + 1)));
+    if (!request.height)
+      return usage_error("--floor is \"{}\": after the comma write the height of the floor, a number", text);
+    what = text.substr(0, comma);
+  }
+  if (what == "auto" && !request.height) {
+    request.kind = usual ? FloorRequest::Kind::kShadow : FloorRequest::Kind::kNone;
+  } else if (what == "none" && !request.height) {
+    request.kind = FloorRequest::Kind::kNone;
+  } else if (what == "shadow") {
+    request.kind = FloorRequest::Kind::kShadow;
+  } else if (what.empty() || what == "none" || what == "auto") {
+    return usage_error("--floor is \"{}\": write none, shadow or a paint, and after it the height of the floor", text);
+  } else {
+    request.kind = FloorRequest::Kind::kPaint;
+    request.paint = what;
+  }
+  return request;
+}
+
+Result<std::vector<Emission>> parse_emissions(const std::vector<std::string>& texts) {
+  std::vector<Emission> all;
+  for (const std::string& text : texts) {
+    const auto equals = text.rfind('=');
+    const auto rgb = equals == std::string::npos ? std::nullopt : numbers(text.substr(equals + 1));
+    if (equals == 0 || !rgb || rgb->size() != 3) return usage_error("--emit is \"{}\": write PART=R,G,B", text);
+    if (std::min({(*rgb)[0], (*rgb)[1], (*rgb)[2]}) < 0)
+      return usage_error("--emit is \"{}\": light cannot be negative", text);
+    all.push_back({text.substr(0, equals), {(*rgb)[0], (*rgb)[1], (*rgb)[2]}});
+  }
+  return all;
+}
+
+Result<void> set_ground(const FloorRequest& request, const Options& options, render::Scene& scene) {
+  if (request.kind == FloorRequest::Kind::kNone) return {};
+  const mesh::Box box = mesh::bounding_box(*scene.mesh);
+  const Vec3 size = box.high - box.low, middle = 0.5 * (box.low + box.high);
+  render::Ground ground;
+  ground.height = request.height.value_or(box.low.y);
+  if (request.kind == FloorRequest::Kind::kPaint) {
+    ground.kind = render::Ground::Kind::kPaint;
+    GONIO_ASSIGN(ground.paint, lobes_of_paint(request.paint));
+  } else {
+    if (scene.env == nullptr) return usage_error("--floor shadow shows the ground of an environment: give --env");
+    const double eye = options.eye_height > 0 ? options.eye_height : std::max({size.x, size.y, size.z}) / 3;
+    ground.probe_eye = {middle.x, ground.height + eye, middle.z};
+  }
+  scene.ground = std::move(ground);
+  return {};
 }
 
 Result<std::vector<Shot>> shots_of(const Options& options, const mesh::Mesh& mesh, const PictureSize& size,
@@ -139,7 +200,7 @@ Result<std::vector<Shot>> shots_of(const Options& options, const mesh::Mesh& mes
   const std::filesystem::path path(options.output);
   std::vector<Shot> shots;
   for (int i = 0; i < count; ++i) {
-    const double turn_rad = 2 * std::numbers::pi * i / count, c = std::cos(turn_rad), s = std::sin(turn_rad);
+    const double turn_rad = 2 * kPi * i / count, c = std::cos(turn_rad), s = std::sin(turn_rad);
     const auto turned = [&](const Vec3& v) { return Vec3{c * v.x + s * v.z, v.y, c * v.z - s * v.x}; };
     Shot shot{camera, lights, ""};
     if (options.turntable > 0) shot.camera.eye = camera.target + turned(camera.eye - camera.target);

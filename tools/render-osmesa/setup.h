@@ -33,6 +33,23 @@ Result<render::Camera> camera_of(const Options& options, const mesh::Mesh& mesh,
 // The operator of --operator. Error (usage): the names there are.
 Result<color::ReflectionOperator> parse_operator(const std::string& text);
 
+// What --emit, --floor and --eye-height say, before the mesh is read.
+struct FloorRequest {
+  enum class Kind { kNone, kShadow, kPaint } kind = Kind::kNone;
+  std::string paint;             // with kPaint
+  std::optional<double> height;  // none: the lowest point of the mesh
+};
+// "auto" is the floor shadow where `usual`, else none.
+Result<FloorRequest> parse_floor(const std::string& text, bool usual);
+struct Emission {
+  std::string part;
+  color::Rgb radiance;
+};
+Result<std::vector<Emission>> parse_emissions(const std::vector<std::string>& texts);
+
+// The floor of the scene, whose mesh is set.
+Result<void> set_ground(const FloorRequest& request, const Options& options, render::Scene& scene);
+
 // One picture of a sequence.
 struct Shot {
   render::Camera camera;

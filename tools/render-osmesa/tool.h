@@ -5,13 +5,18 @@
 #include <vector>
 
 #include "cli/tool.h"
+#include "render/engine.h"
 
 namespace goniochrome::tool {
 
 struct Options {
   cli::CommonOptions common;
   std::string mesh, gbuffer, paint, env, output;
-  std::vector<std::string> parts, lights;
+  std::vector<std::string> parts, lights, emissions;
+  std::string floor = "auto";
+  bool trim = false;
+  double eye_height = 0;
+  int bounces = render::Effort::kUsualBounces;
   std::string size = "auto";
   std::vector<double> orbit = {35, 12};
   std::vector<double> camera;

@@ -10,7 +10,10 @@ void add_options(cli::ToolSpec& spec, Options& o) {
       .needed();
   spec.option("buffers,b", "FILE", "scene.exr", &o.buffers, "buffers that were rendered with it")
       .needed()
-      .more("An EXR of render-osmesa --aov normal,aspecular,lambert,mask,part has all that is needed.");
+      .more(
+          "An EXR of render-osmesa --aov normal,aspecular,lambert,mask,part has all that is needed. With transport "
+          "among them the picture may have shadows and bounced light, which are then part of what the paint is sought "
+          "in; --env is not needed.");
   spec.option("view", "VIEW", "plain", &o.view, "view that a display picture went through")
       .one_of({"paint", "plain"})
       .more("paint is the view Paint of render-osmesa, plain is none.");
@@ -66,7 +69,9 @@ void add_report(cli::ToolSpec& spec) {
   spec.report = {
       {"status", "fitted, or diffuse_fallback"},
       {"reason", "reason of the fallback; else null"},
-      {"mode", "point or environment"},
+      {"mode", "point, environment or transport"},
+      {"bounced_de00_p95",
+       "with a transport: error of the bounced light that was scaled to the paint found, 95th percentile, CIEDE2000"},
       {"model", "lobes, quadratic, search, search with free rows, search with free lobes, or diffuse"},
       {"rms_de76", "root mean square CIE 1976 difference of the used pixels from the paint found, relative to white"},
       {"median_de76", "their median, which outliers do not move"},
@@ -107,6 +112,9 @@ cli::ToolSpec tool_spec(Options& o) {
       "explain the picture as well. The search knows the effects that were drawn: Fresnel reflectance, the horizon and "
       "the operator of colored light. It does not know brushed paint, the travel of color maps, and textures; it warns "
       "where the buffers have them.",
+      "Buffers with a transport hold the light that each lobe gathers at every pixel, with shadows and with light that "
+      "the body sends to itself. The picture is then linear in the paint, and is solved in that light. Without it the "
+      "light is that which nothing blocks, and a message says so.",
       "The picture may be an EXR, HDR, PNG, JPEG, TIFF, PNM, DPX, WebP, BMP or TGA. Whole numbers (PNG, JPEG, TIFF) "
       "are what a display shows: sRGB, or what an "
       "embedded ICC profile says, be it of RGB, of gray or of CMYK, after the view and the exposure of render-osmesa. "

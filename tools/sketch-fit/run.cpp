@@ -1,5 +1,7 @@
 #include "tool.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -16,6 +18,8 @@ namespace goniochrome::tool {
 
 namespace {
 
+constexpr double kToldBounce_de00 = 0.5;  // below it, an error of bounced light is not worth a warning
+
 // Everything that the fit looks at; `input` points into it.
 struct Material {
   image::AovFile buffers;
@@ -23,6 +27,7 @@ struct Material {
   image::Image mask;
   envmap::PrefilteredEnvironment env;
   formats::Basis basis;
+  std::optional<sketch::SketchTransport> transport;
   sketch::SketchInput input;
 };
 
@@ -33,11 +38,12 @@ Result<double> gain_of(const Options& options, const Material& material) {
       return usage_error("--exposure is \"{}\": write a number of stops, or auto", options.exposure);
     return std::exp2(-*stops);
   }
-  return material.picture.scene_linear ? std::exp2(-material.buffers.exposure_stops) : material.buffers.white_luminance;
+  return material.picture.scene_linear ? std::exp2(-material.buffers.exposure_stops)
+                                       : std::exp2(-material.buffers.automatic_stops);
 }
 
 Result<void> check_light(const Options& options, const image::AovFile& buffers) {
-  if (!options.env.empty()) return {};
+  if (!options.env.empty() || !buffers.transport.empty()) return {};
   if (!buffers.environment.empty())
     return usage_error("{} was rendered under the environment {}: give --env {}", buffers.path, buffers.environment,
                        buffers.environment);
@@ -68,7 +74,7 @@ void warn_of_left_out(const image::AovFile& buffers, cli::Session& session) {
   session.warn(
       fmt::format("{} was drawn without {}, so that the paint found lacks it too, most of all near specular: render "
                   "picture and buffers with --effects all",
-                  buffers.path, fmt::join(light, ", ")));
+                  buffers.path, joined(light, ", ")));
 }
 
 Result<void> gather(const Options& options, Material& material) {
@@ -104,6 +110,8 @@ Result<void> gather(const Options& options, Material& material) {
   if (!options.shift.empty())
     input.shift_x = static_cast<int>(std::lround(options.shift[0])),
     input.shift_y = static_cast<int>(std::lround(options.shift[1]));
+  GONIO_ASSIGN(material.transport, sketch::SketchTransport::of(material.buffers));
+  if (material.transport) return {};
   if (options.env.empty()) {
     input.least_cosine = 0.05, input.glare_deg = options.glare_deg;
     material.basis = sketch::sketch_basis();
@@ -166,6 +174,36 @@ void tell(const Options& options, const sketch::SketchPixels& pixels, const sket
       fit.rms_de76, pixels.used.size(), pixels.changed_only ? "edited " : ""));
 }
 
+// The paint in light that was traced. Bounced light depends on the paint: it is scaled to what was found, and the paint
+// is sought again.
+sketch::SketchFit fit_in_transport(const sketch::SketchInput& input, const sketch::SketchPixels& pixels,
+                                   const sketch::SketchLimits& limits, bool differences,
+                                   sketch::SketchTransport& transport, cli::Session& session) {
+  constexpr int kRounds = 3;
+  sketch::SketchFit fit;
+  double error_de00 = 0;
+  for (int round = 0; round < kRounds; ++round) {
+    fit = sketch::sketch_environment(input, pixels, transport.light(), limits, differences);
+    if (fit.weights.empty() || round + 1 == kRounds) break;
+    error_de00 = transport.wear(fit.weights, input.parts);
+  }
+  session.results()["bounced_de00_p95"] = json_number(error_de00);
+  if (error_de00 > kToldBounce_de00)
+    session.warn(
+        fmt::format("bounced light was traced in other paints; scaled to the paint found it is off by {:.1f} "
+                    "dE00 (p95): trace again in that paint with render-osmesa --aov transport",
+                    error_de00));
+  return fit;
+}
+
+// What a fit without traced light leaves out.
+void tell_shadows(const image::AovFile& buffers, cli::Session& session) {
+  session.say(fmt::format(
+      "{} holds no transport: the paint is sought in light that nothing blocks and no surface sends back. Where the "
+      "picture has shadows or the body in itself, give buffers of render-osmesa --aov transport",
+      buffers.path));
+}
+
 Result<void> check_usable(const sketch::SketchPixels& pixels, const Options& options) {
   if (!pixels.used.empty()) return {};
   std::string reasons;
@@ -211,17 +249,19 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   GONIO_TRY(gather(options, material));
   const sketch::SketchInput& input = material.input;
   for (const std::string& warning : material.picture.warnings) session.warn(warning);
-  if (!options.env.empty()) warn_of_effects(material.buffers, session);
-  warn_of_left_out(material.buffers, session);
+  if (!options.env.empty() && !material.transport) warn_of_effects(material.buffers, session);
+  if (!material.transport) warn_of_left_out(material.buffers, session), tell_shadows(material.buffers, session);
   const Stopwatch clock;
   GONIO_ASSIGN(const sketch::SketchPixels pixels, sketch::sketch_pixels(input));
   GONIO_TRY(check_usable(pixels, options));
   sketch::SketchLimits limits;
   limits.median_de76 = options.most_de76;
   const bool differences = !options.residual.empty();
-  const bool environment = !options.env.empty();
+  const bool environment = !options.env.empty() || material.transport;
   sketch::SketchFit fit;
-  if (environment) {
+  if (material.transport) {
+    fit = fit_in_transport(input, pixels, limits, differences, *material.transport, session);
+  } else if (environment) {
     GONIO_ASSIGN(const sketch::SketchLight light, sketch::sketch_light(material.buffers, material.env));
     fit = sketch::sketch_environment(input, pixels, light, limits, differences);
   } else {
@@ -229,6 +269,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   }
   Json& results = session.results();
   report_fit(fit, environment, results);
+  if (material.transport) results["mode"] = "transport";
   report_pixels(pixels, results);
   tell_shift(input, session);
   results["color_space"] = material.picture.space;

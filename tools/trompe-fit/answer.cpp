@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "base/text.h"
+
 namespace goniochrome::tool {
 
 namespace {
@@ -60,8 +62,8 @@ std::string answer_line(const Answer& answer) {
       changes += fmt::format("{}{} {:+.2f}", changes.empty() ? "; " : ", ", panels::parameter_name(p), to[p] - from[p]);
   line += changes;
   if (!answer.fit.undetermined.empty())
-    line += fmt::format("; not determined by these views: {}", fmt::join(answer.fit.undetermined, ", "));
-  if (!answer.fit.at_bound.empty()) line += fmt::format("; held by a bound: {}", fmt::join(answer.fit.at_bound, ", "));
+    line += fmt::format("; not determined by these views: {}", joined(answer.fit.undetermined, ", "));
+  if (!answer.fit.at_bound.empty()) line += fmt::format("; held by a bound: {}", joined(answer.fit.at_bound, ", "));
   if (answer.fit.solid) line += "; solid: face and flop as one, travel left alone";
   return line;
 }

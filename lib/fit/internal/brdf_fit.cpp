@@ -99,7 +99,7 @@ double aspecular_of_flakes_deg(const BrdfSample& sample) {
 std::vector<std::size_t> sharp_lobes(const std::vector<paint::Lobe>& lobes) {
   std::vector<std::size_t> sharp;
   for (std::size_t j = 0; j < lobes.size(); ++j)
-    if (std::isfinite(lobes[j].exponent) && math::cos_power(kGlareAngle_deg * kDegree, lobes[j].exponent) <= kSharpPart)
+    if (!lobes[j].is_mirror() && math::cos_power(kGlareAngle_deg * kDegree, lobes[j].exponent) <= kSharpPart)
       sharp.push_back(j);
   return sharp;
 }

@@ -200,7 +200,7 @@ class Bound : public testing::Test {
       case 1:
         return {L, uniform(-1e-9, 1e-9), uniform(-1e-9, 1e-9)};
       case 2:
-        return polar(L, uniform(0, 150), (275 + uniform(-40, 40)) * kPi / 180);
+        return polar(L, uniform(0, 150), (275 + uniform(-40, 40)) * kDegree);
       case 3:
         return {uniform(49.9, 50.1), uniform(-1, 1), uniform(-1, 1)};
       case 4:

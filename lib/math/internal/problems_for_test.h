@@ -42,7 +42,7 @@ inline Problem lobes(std::mt19937_64& random, int rows, int columns) {
   for (int j = 1; j < columns; ++j) exponents.push_back(std::pow(3000.0, unit(random)));
   const double rate = 30 * unit(random), noise = 0.2 * unit(random);
   for (int i = 0; i < rows; ++i) {
-    const double angle = (i == 0 ? 15 : 15 + 95 * unit(random)) * kPi / 180;
+    const double angle = (i == 0 ? 15 : 15 + 95 * unit(random)) * kDegree;
     const double c = std::max(std::cos(angle), 0.0);
     for (int j = 0; j < columns; ++j) p.m(i, j) = std::pow(c, exponents[j]);
     p.b[i] = 0.1 + std::pow(c, rate) * 2 + noise * (unit(random) - 0.5);

@@ -42,7 +42,7 @@ class ZonalKernel {
   // K is below 1e-30 beyond this angle, in radians.
   virtual double support_rad() const = 0;
 
-  // Harmonics. k_l, l = 0..degree: what the filter multiplies degree l by; k_0 = 1.
+  // Zonal harmonic coefficients. k_l, l = 0..degree: what the filter multiplies degree l by; k_0 = 1.
   virtual std::vector<double> multipliers(int degree) const;
   // The sum over all l beyond a table of multipliers of (2l+1)|k_l|, or 1e300 where it has no bound.
   virtual double tail(const std::vector<double>& multipliers) const;

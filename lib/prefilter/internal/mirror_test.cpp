@@ -36,7 +36,7 @@ TEST(Mirror, KeepsFluxAndConstantsAndCopiesAnEqualCube) {
 TEST(Mirror, EqualsASearchAlongTheEdges) {
   for (const envmap::Environment& env : environments()) {
     envmap::PrefilteredLobe lobe;
-    lobe.exponent = envmap::kMirrorExponent;
+    lobe.exponent = paint::kMirrorExponent;
     lobe.map = mirror_map(env, 12);
     const LobeError error = lobe_error(env, lobe, 24, 3, 3);
     // The search takes edges as straight over 1/128 of a texel, and a sun outshines the rest of its texel by 1e5.

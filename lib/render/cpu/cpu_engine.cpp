@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "base/angles.h"
 #include "base/parallel.h"
 #include "render/internal/map_cost.h"
 
@@ -89,6 +89,7 @@ const EngineInfo CpuEngine::kInfo = {
     .where = "on the processor",
     .is_planned = true,
     .needs_texels = false,
+    .traces_rays = false,
     .needs_mesh = false,
     .make = [](Sight&) -> std::unique_ptr<Engine> { return std::make_unique<CpuEngine>(); }};
 
@@ -189,8 +190,8 @@ void CpuEngine::set_lights(const Scene& scene, const Effects& effects) {
   for (const Light& light : effects.lights > 0 ? scene.lights : std::vector<Light>()) {
     for (int c = 0; c < 3; ++c) lights_.push_back(static_cast<float>(light.direction[c]));
     lights_.push_back(0);
-    const color::Matrix3 product = color::reflection_matrix(
-        effects.reflection ? scene.reflection : color::component_wise(), std::numbers::pi * light.white);
+    const color::Matrix3 product =
+        color::reflection_matrix(effects.reflection ? scene.reflection : color::component_wise(), kPi * light.white);
     for (std::size_t column = 0; column < 3; ++column) {
       for (std::size_t row = 0; row < 3; ++row) lights_.push_back(static_cast<float>(product[row][column]));
       lights_.push_back(0);

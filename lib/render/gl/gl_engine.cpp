@@ -1,7 +1,5 @@
 #include "render/gl/gl_engine.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "render/gl/shader.h"
@@ -35,6 +33,7 @@ const EngineInfo GlEngine::kInfo = {
     .where = "in OpenGL",
     .is_planned = true,
     .needs_texels = false,
+    .traces_rays = false,
     .needs_mesh = true,
     .make = [](Sight& sight) -> std::unique_ptr<Engine> { return std::make_unique<GlEngine>(sight.gl()); }};
 

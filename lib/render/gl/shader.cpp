@@ -1,10 +1,8 @@
 #include "render/gl/shader.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <numbers>
 
+#include "base/angles.h"
 #include "base/text.h"
 #include "brdf/lobe_model.h"
 #include "render/internal/product_forms.h"
@@ -225,8 +223,8 @@ std::string light_terms(const Effects& effects) {
     const char* fresnel = lit_gloss(effects) ? "fresnel(sqrt(0.5 + 0.5 * dot(l, wo)))" : "1.0";
     text += over_tilts(effects, "reflected", "lit_lobes", fmt::format(", l, cos_i, {}", fresnel));
   }
-  return text + fmt::format("    radiance += {} * {};\n  }}\n", glsl(std::numbers::pi),
-                            times(effects, "light_white[i]", "reflected"));
+  return text +
+         fmt::format("    radiance += {} * {};\n  }}\n", glsl(kPi), times(effects, "light_white[i]", "reflected"));
 }
 
 std::string background_color(Background background, Product product) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/angles.h"
+
 namespace goniochrome::render {
 
 namespace {
@@ -23,8 +25,7 @@ const ExactModel& model_of(const SurfacePoint& point) {
 }
 
 double view_deg(const SurfacePoint& point) {
-  return std::atan2(length(cross(point.normal, point.to_viewer)), dot(point.normal, point.to_viewer)) * 180 /
-         std::numbers::pi;
+  return std::atan2(length(cross(point.normal, point.to_viewer)), dot(point.normal, point.to_viewer)) / kDegree;
 }
 
 Vec3 vec(const float* v) {
@@ -53,15 +54,14 @@ void Grain::add(std::vector<Vec3> middles, const std::vector<double>& exponents)
   for (const Vec3& middle : bundle.middles) bundle.radius = std::max(bundle.radius, length(middle - bundle.axis));
   if (bundle.middles.size() > 1) {
     // Evenly over the cap they stand radius sqrt(pi / n) apart; a quarter of it, since they lie closer in its middle.
-    const double apart =
-        0.25 * bundle.radius * std::sqrt(std::numbers::pi / static_cast<double>(bundle.middles.size()));
+    const double apart = 0.25 * bundle.radius * std::sqrt(kPi / static_cast<double>(bundle.middles.size()));
     apart2_ = apart * apart;
   }
   for (const double exponent : exponents) {
     const double pieces = std::max(1.0, std::ceil(texel_rad_ * std::sqrt(exponent) / piece_));
     // cos^E = exp(-kTail) at this angle; a texel whose center is that far and its own extent has nothing to give.
     const double reach_rad = std::acos(std::exp(-kTail / exponent)) + texel_rad_;
-    const double chord = 2 * std::sin(0.5 * std::min(reach_rad, std::numbers::pi));
+    const double chord = 2 * std::sin(0.5 * std::min(reach_rad, kPi));
     bundle.reaches.push_back({1 / (1 / exponent + apart2_), static_cast<int>(pieces), chord * chord});
   }
   bundles_.push_back(std::move(bundle));
@@ -82,8 +82,11 @@ int Grain::pieces(const Vec3& direction) const {
 }
 
 bool Grain::opens(const envmap::BlockTree::Block& block, double variance) const {
+  // First the diffuse part: the cosine law is a lobe of exponent 1 whose middle may be anywhere.
   const double most = most_spread_ * most_spread_;
-  if (variance > most) return true;    // the cosine law is a lobe of exponent 1 whose middle may be anywhere
+  if (variance > most) return true;
+  // Then each bundle of lobes, by how far the cap of the block is from the nearest lobe. A lobe bends less the farther
+  // from its middle it is met, so that far blocks may be wider.
   constexpr double kHalfSphere = 0.5;  // of wider caps the sine is no measure
   if (block.cosine < kHalfSphere) return true;
   const double extent = 1.2 * block.sine;  // at least the chord of the cap's radius
@@ -104,14 +107,14 @@ Gatherer::Gatherer(const SurfacePoint& point, double texel_rad, double most_spre
       cos_o_(dot(point.normal, point.to_viewer)),
       grain_(texel_rad, most_spread) {
   set_mirror_directions();
+  // The lobes in the order of their exponents, so that a loop over them can stop at the first that is too sharp.
   for (const paint::Lobe& lobe : paint_.lobes) {
-    if (std::isfinite(lobe.exponent)) lobes_.push_back(lobe);
+    if (!lobe.is_mirror()) lobes_.push_back(lobe);
   }
   std::sort(lobes_.begin(), lobes_.end(),
             [](const paint::Lobe& a, const paint::Lobe& b) { return a.exponent < b.exponent; });
   if (model_.fresnel) {
-    const double share =
-        1 / brdf::fresnel_dielectric(std::cos(model_.gloss_deg * std::numbers::pi / 180), brdf::kCoatIndex);
+    const double share = 1 / brdf::fresnel_dielectric(std::cos(model_.gloss_deg * kDegree), brdf::kCoatIndex);
     for (paint::Lobe& lobe : lobes_) lobe.gloss = share * lobe.gloss;
   }
   std::vector<Vec3> middles;
@@ -140,7 +143,7 @@ void Gatherer::set_mirror_directions() {
 }
 
 void Gatherer::add_light(const Light& light) {
-  add({light.direction, std::numbers::pi}, light.white, true);
+  add({light.direction, kPi}, light.white, true);
 }
 
 void Gatherer::add(const Patch& patch, const color::Rgb& radiance, bool horizon) {
@@ -153,7 +156,7 @@ void Gatherer::add(const Patch& patch, const color::Rgb& radiance, bool horizon)
 }
 
 void Gatherer::add_mirror(const color::Rgb& radiance) {
-  const paint::Lobe* mirror = find_lobe(paint_, envmap::kMirrorExponent);
+  const paint::Lobe* mirror = find_lobe(paint_, paint::kMirrorExponent);
   if (mirror == nullptr) return;
   const bool fresnel = point_.model == nullptr || model_.fresnel;
   const color::Rgb k =
@@ -167,11 +170,13 @@ color::Rgb Gatherer::lobes_toward(const Patch& patch, double cos_i) const {
   const double cos_half = 0.5 * length(direction + point_.to_viewer);
   const double fresnel = model_.fresnel ? brdf::fresnel_dielectric(std::min(1.0, cos_half), brdf::kCoatIndex) : 1;
   for (const Mirrored& m : mirrored_) {
+    // ln cos of the angle to the mirror direction, by the versine, which keeps its digits where the angle is small.
     const Vec3 apart = m.direction - direction;
     const double versine = 0.5 * dot(apart, apart);
     if (versine >= 1) continue;
     const double log_cos = std::log1p(-versine);
     for (const paint::Lobe& lobe : lobes_) {
+      // The lobe as the spread of the patch blurs it: lower, and less sharp by the same factor.
       const double lowered = grain_.lowered(lobe.exponent, patch.variance), exponent = lobe.exponent * lowered;
       if (exponent * -log_cos > kTail) break;
       const double power = m.share * lowered * std::exp(exponent * log_cos);
@@ -229,7 +234,7 @@ void TextureGatherer::add(const Patch& patch, const color::Rgb& radiance) {
 }
 
 void TextureGatherer::add_light(const Light& light) {
-  add({light.direction, std::numbers::pi}, light.white);
+  add({light.direction, kPi}, light.white);
 }
 
 }  // namespace goniochrome::render

@@ -52,6 +52,7 @@ const EngineInfo IntegralEngine::kInfo = {
     .where = "by the integral",
     .is_planned = false,
     .needs_texels = true,
+    .traces_rays = false,
     .needs_mesh = false,
     .make = [](Sight&) -> std::unique_ptr<Engine> { return std::make_unique<IntegralEngine>(); }};
 

@@ -43,7 +43,7 @@ struct World {
                              {6, {0.1, 0.1, 0.12}, {}},
                              {60, {0.4, 0.4, 0.4}, {0.02, 0.02, 0.02}},
                              {900, {}, {3, 3, 3}},
-                             {envmap::kMirrorExponent, {}, {1, 1, 1}}};
+                             {paint::kMirrorExponent, {}, {1, 1, 1}}};
   }
   Result<Frame> drawn(Effects effects, double tolerance, int size = 48) const {
     effects.tolerance_de00 = tolerance;

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <map>
 #include <mutex>
-#include <numbers>
 #include <tuple>
 
+#include "base/angles.h"
 #include "brdf/lobe_model.h"
 #include "math/quadrature.h"
 
@@ -19,7 +19,7 @@ constexpr int kPolar = 24, kAround = 8;
 // The part of the ring at angle t from the mirror direction that is above the horizon, as half its azimuth: n.w =
 // a + b cos p with a = cos t cos_o, b = sin t sin_o.
 double half_arc(double a, double b) {
-  if (a >= b) return std::numbers::pi;
+  if (a >= b) return kPi;
   return a <= -b ? 0 : std::acos(-a / b);
 }
 
@@ -44,7 +44,7 @@ struct Moment {
 // reflectance wants the angle between light and viewer; the viewer is the mirror image of the lobe's axis, so that wo.w
 // = cos t cos 2o + sin t sin 2o cos p.
 LobeIntegrals lobe_integrals(double exponent, double cos_o, bool horizon) {
-  const double whole = 2 * std::numbers::pi / (exponent + 1);
+  const double whole = 2 * kPi / (exponent + 1);
   if (!horizon) return {whole * cos_o, whole, whole * brdf::fresnel_dielectric(cos_o, brdf::kCoatIndex)};
   static const std::vector<math::QuadraturePoint> points = math::gauss_legendre(kPolar);
   const double sin_o = std::sqrt(std::max(1e-8, 1 - cos_o * cos_o));  // along the normal the shift has a limit

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "base/angles.h"
 #include "base/vec3.h"
 #include "brdf/lobe_model.h"
 
@@ -21,9 +21,9 @@ LobeIntegrals summed(double exponent, double cos_o) {
   for (int i = 0; i < kRings; ++i) {
     const double z = (i + 0.5) / kRings, s = std::sqrt(1 - z * z);
     for (int j = 0; j < kAround; ++j) {
-      const double phi = 2 * std::numbers::pi * (j + 0.5) / kAround;
+      const double phi = 2 * kPi * (j + 0.5) / kAround;
       const Vec3 w{s * std::cos(phi), s * std::sin(phi), z};
-      const double power = std::pow(std::max(0.0, dot(r, w)), exponent) * 2 * std::numbers::pi / kRings / kAround;
+      const double power = std::pow(std::max(0.0, dot(r, w)), exponent) * 2 * kPi / kRings / kAround;
       sum.cosine += power * z;
       sum.plain += power;
       sum.fresnel += power * brdf::fresnel_dielectric(length(w + wo) / 2, brdf::kCoatIndex);

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <vector>
+
+#include "base/angles.h"
 
 namespace goniochrome::render {
 
@@ -73,7 +74,7 @@ std::optional<Vec3> three_roots(const std::array<double, 4>& k) {
   const double radius = 2 * std::sqrt(-p / 3), angle = std::acos(std::clamp(3 * q / (p * radius), -1.0, 1.0)) / 3;
   Vec3 roots;
   for (int i = 0; i < 3; ++i) {
-    double t = radius * std::cos(angle - 2 * std::numbers::pi * i / 3) - b / 3;
+    double t = radius * std::cos(angle - 2 * kPi * i / 3) - b / 3;
     for (int step = 0; step < 2; ++step) {
       const double slope = (3 * t + 2 * b) * t + c;
       if (slope != 0) t -= (((t + b) * t + c) * t + d) / slope;

@@ -1,8 +1,6 @@
 // Error beside time: a vehicle under measured light, by paths that correct the open light, and by paths alone. Folders
 // of data: GONIOCHROME_DATA, else the speed shape under the project's own studio.
 #include <benchmark/benchmark.h>
-#include <fmt/format.h>
-
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -38,7 +36,7 @@ paint::LobeFit silver() {
     paint.lobes.push_back(
         {exponents[j], shares[j] * unit * color::Rgb{1, 0.99, 0.97}, (j == 5 ? 0.02 : 0) * unit * color::Rgb{1, 1, 1}});
   }
-  paint.lobes.push_back({envmap::kMirrorExponent, {}, {0.5, 0.5, 0.5}});
+  paint.lobes.push_back({paint::kMirrorExponent, {}, {0.5, 0.5, 0.5}});
   return paint;
 }
 

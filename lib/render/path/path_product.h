@@ -28,6 +28,12 @@ class PathProduct {
         for (std::size_t k = 0; k < 3; ++k) result[i][j] += matrix_[i][k] * next[k][j];
     matrix_ = result;
   }
+  // Of a surface that reflects each channel by itself, whatever the operator.
+  void reflect_plain(const color::Rgb& paint) {
+    diagonal_ = diagonal_ * paint;
+    for (auto& row : matrix_)
+      for (std::size_t j = 0; j < 3; ++j) row[j] *= paint[static_cast<int>(j)];
+  }
   void scale(double factor) {
     diagonal_ = factor * diagonal_;
     for (auto& row : matrix_)

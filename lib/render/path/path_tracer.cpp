@@ -1,7 +1,7 @@
 #include "render/path/path_tracer.h"
 
 #include <algorithm>
-#include <atomic>
+#include <bit>
 #include <cmath>
 
 #include "base/clock.h"
@@ -57,14 +57,11 @@ class Picture {
           const PathRequest& request)
       : transport_(transport), surface_(surface), base_(base), request_(request), deadline_(request.time_limit_s) {
     const Gbuffer& g = surface.gbuffer;
+    shifts_ = sample_shifts(request.pixel_samples);
+    if (shifts_.size() > 1) coverage_ = coverage(transport.rays(), g.rays, g.width, g.height, shifts_);
     number_.assign(static_cast<std::size_t>(g.width) * g.height, -1);
-    for (int y = 0; y < g.height; ++y) {
-      for (int x = 0; x < g.width; ++x) {
-        if (!surface.hits[place(x, y)].any()) continue;
-        number_[place(x, y)] = static_cast<std::int32_t>(points_.size());
-        points_.push_back({x, y, {}, {}, 0, 0});
-      }
-    }
+    for (int y = 0; y < g.height; ++y)
+      for (int x = 0; x < g.width; ++x) add_point(x, y);
     states_.resize(points_.size());
   }
 
@@ -74,6 +71,7 @@ class Picture {
     bool reached = false;
     while (true) {
       sample(more);
+      first_round_ = false;  // which no time limit cuts, so that every point is seen
       noise = judge();
       if (request_.progress) request_.progress(noise, clock_.elapsed_s());
       reached = request_.tolerance_de00 > 0 && noise <= request_.tolerance_de00;
@@ -95,11 +93,29 @@ class Picture {
   }
 
  private:
+  void add_point(int x, int y) {
+    const std::size_t at = place(x, y);
+    PathPoint point;
+    point.x = x, point.y = y;
+    if (shifts_.size() > 1) {
+      const unsigned any = coverage_.any[at];
+      point.coverage = static_cast<float>(std::popcount(any)) / static_cast<float>(shifts_.size());
+      point.floor = coverage_.floor[at] == any;
+    } else {
+      point.coverage = surface_.hits[at].any() ? 1 : 0;
+      point.floor = surface_.hits[at].triangle == rays::kFloor;
+    }
+    if (point.coverage == 0) return;
+    number_[at] = static_cast<std::int32_t>(points_.size());
+    points_.push_back(point);
+  }
+
   struct State {
     Sums sums;
     color::Rgb sure;
     double needed = 0;  // batches that bring the noise of the neighborhood to the tolerance
     bool certain = false;
+    std::uint16_t uncertain = 0;  // samples of the pixel whose light is not known without paths
   };
 
   std::size_t place(int x, int y) const {
@@ -115,7 +131,7 @@ class Picture {
     const std::size_t step = scattering(chunks);
     parallel_for(chunks, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        if (deadline_.passed()) return;
+        if (!first_round_ && deadline_.passed()) return;
         const std::size_t chunk = i * step % chunks;
         for (std::size_t k = chunk * kTogether; k < std::min(wanted.size(), (chunk + 1) * kTogether); ++k)
           sample(wanted[k], more[wanted[k]]);
@@ -135,6 +151,7 @@ class Picture {
   }
 
   void sample(std::size_t i, int batches) {
+    if (shifts_.size() > 1) return sample_spread(i, batches);
     State& state = states_[i];
     PathPoint& point = points_[i];
     const Gbuffer& g = surface_.gbuffer;
@@ -144,6 +161,52 @@ class Picture {
     state.sure = at.sure();
     if (state.certain) return;
     for (int k = 0; k < batches; ++k) state.sums.add(at.batch(seed_of(request_.seed, i, state.sums.count)));
+  }
+
+  // What a sample of a pixel sees, which is something.
+  PointTransport transport_at(const PathPoint& point, std::size_t sample, rays::Spot& spot) const {
+    const rays::RayScene& scene = transport_.rays();
+    const Rays& through = surface_.gbuffer.rays;
+    const Vec3 toward = through.direction(point.x + 0.5 + shifts_[sample][0], point.y + 0.5 + shifts_[sample][1]);
+    const rays::Float3 eye = scene.local(through.eye), direction = rays::float3(toward);
+    spot = scene.spot(scene.closest(eye, direction), eye, direction);
+    return {transport_, request_.options, spot, -direction};
+  }
+
+  // Each batch is shared by two samples of the pixel, half of it each, and the batches take the samples in turn from
+  // one drawn by chance: the mean over all batches has the right expectation, and the differences between samples count
+  // as noise while not all have been seen.
+  void sample_spread(std::size_t i, int batches) {
+    State& state = states_[i];
+    const PathPoint& point = points_[i];
+    const auto count = static_cast<unsigned>(shifts_.size());
+    const unsigned covered = coverage_.any[place(point.x, point.y)];
+    const bool first_time = state.sums.count == 0;
+    if (first_time) state.uncertain = 0, state.sure = {};
+    std::vector<color::Rgb> values(static_cast<std::size_t>(batches));
+    const auto first = static_cast<unsigned>(state.sums.count);
+    const auto start = static_cast<unsigned>(mixed(request_.seed, i) >> 32);
+    for (unsigned sample = 0; sample < count; ++sample) {
+      if ((covered >> sample & 1U) == 0) continue;
+      if (!first_time && (state.uncertain >> sample & 1U) == 0) continue;
+      rays::Spot spot;
+      const PointTransport at = transport_at(point, sample, spot);
+      if (first_time) {
+        state.sure += (1.0 / count) * at.sure();
+        if (!at.certain()) state.uncertain = static_cast<std::uint16_t>(state.uncertain | 1U << sample);
+      }
+      if (at.certain()) continue;
+      for (unsigned k = 0; k < values.size(); ++k) {
+        for (unsigned half = 0; half < 2; ++half) {
+          if ((start + 2 * (first + k) + half) % count != sample) continue;
+          const std::uint64_t seed = seed_of(request_.seed, i, static_cast<int>(first + k));
+          values[k] += 0.5 * at.part_of_batch(seed, kFan * half, kFan);
+        }
+      }
+    }
+    state.certain = state.uncertain == 0;
+    if (state.certain) return;
+    for (const color::Rgb& value : values) state.sums.add(value);
   }
 
   // Radiance, error and noise of every point from its sums; the 95th percentile of the noise.
@@ -159,9 +222,15 @@ class Picture {
     parallel_for(points_.size(), 1024, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) judge(i, own);
     });
-    std::vector<double> noise(points_.size());
-    for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = points_[i].noise_de00;
-    return percentile_95(std::move(noise));
+    return worse_percentile([this](std::size_t i) { return points_[i].noise_de00; });
+  }
+
+  // The larger of the 95th percentiles over the mesh and over the floor.
+  template <class Value>
+  double worse_percentile(const Value& value) const {
+    std::vector<double> mesh, floor;
+    for (std::size_t i = 0; i < points_.size(); ++i) (points_[i].floor ? floor : mesh).push_back(value(i));
+    return std::max(percentile_95(std::move(mesh)), percentile_95(std::move(floor)));
   }
 
   // Few estimates tell little of their variance, and a point none of whose rays was blocked knows nothing of its
@@ -212,17 +281,16 @@ class Picture {
   // has. The twentieth part of the points that would need most get no more than the rest. Where the neighborhoods are
   // content but the picture is not, all is scaled by what it lacks. Whether there are any.
   bool plan(double noise, std::vector<int>& more) const {
-    std::vector<double> needed;
-    for (const State& state : states_) needed.push_back(state.needed);
+    const double typical = worse_percentile([this](std::size_t i) { return states_[i].needed; });
     const double limit = request_.most_samples / kBatch, lacking = noise / tolerance();
     for (double scale = 1;; scale *= 1.1 * std::max(1.0, lacking * lacking)) {
-      const double most = std::min(std::ceil(1.05 * scale * percentile_95(needed)), limit);
+      const double most = std::min(std::ceil(1.05 * scale * typical), limit);
       bool any = false, limited = true;
       for (std::size_t i = 0; i < points_.size(); ++i) {
-        const double n = states_[i].sums.count, wanted = std::min(std::ceil(scale * needed[i]), most) - n;
+        const double n = states_[i].sums.count, wanted = std::min(std::ceil(scale * states_[i].needed), most) - n;
         more[i] = static_cast<int>(std::clamp(wanted, 0.0, n));
         any = any || more[i] > 0;
-        limited = limited && (n == 0 || needed[i] == 0 || n >= limit);
+        limited = limited && (n == 0 || states_[i].needed == 0 || n >= limit);
       }
       if (any) return true;
       if (limited || scale > 1e6) return false;
@@ -235,7 +303,10 @@ class Picture {
   const PathRequest& request_;
   Deadline deadline_;
   Stopwatch clock_;
-  std::vector<std::int32_t> number_;  // of the point of each pixel, or -1
+  bool first_round_ = true;
+  std::vector<std::array<double, 2>> shifts_;  // of the pixels' samples
+  Coverage coverage_;                          // empty where the centers alone are seen
+  std::vector<std::int32_t> number_;           // of the point of each pixel, or -1
   std::vector<PathPoint> points_;
   std::vector<State> states_;
 };

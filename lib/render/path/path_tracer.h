@@ -19,13 +19,18 @@ struct PathRequest {
   int most_samples = 1 << 16;   // of a pixel
   double white_luminance = 1;   // what noise is seen before
   std::uint64_t seed = 1;
+  // Of a pixel, as sample_shifts() has them; with 1 the pixel centers are seen. Paths are spread over them.
+  int pixel_samples = 1;
   // Told after each round: the noise so far, and the seconds.
   std::function<void(double noise_de00, double seconds)> progress = {};
 };
 
-// Of one visible point.
+// Of one visible point; with several samples in a pixel, the mean over all of them, of which those that see nothing are
+// black.
 struct PathPoint {
   int x = 0, y = 0;
+  float coverage = 1;     // share of the pixel's samples that see the scene or its floor
+  bool floor = false;     // whether all that they see is the floor
   color::Rgb radiance;    // with PathOptions::correction: what to add to the radiance without the mesh in the way
   Covariance covariance;  // of the error of `radiance`; smoothed with that of its neighbors while samples are few
   double noise_de00 = 0;  // of one standard deviation
@@ -34,7 +39,9 @@ struct PathPoint {
 
 struct PathPicture {
   std::vector<PathPoint> points;  // of the visible surface, row by row
-  double noise_p95_de00 = 0;      // the 95th percentile over all points
+  // The 95th percentile over the points of the mesh or over those of the floor, whichever is larger: a large floor that
+  // is easy to draw does not hide the mesh.
+  double noise_p95_de00 = 0;
   double noise_mean_de00 = 0;
   double samples_mean = 0;  // of all points
   double free_share = 0;    // of points that needed no samples

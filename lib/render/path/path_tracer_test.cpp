@@ -16,7 +16,7 @@ namespace {
 
 paint::LobeFit glossy() {
   paint::LobeFit paint = matt({0.3, 0.2, 0.1});
-  paint.lobes = {{20, {0.5, 0.5, 0.5}, {0.1, 0.1, 0.1}}, {envmap::kMirrorExponent, {}, {0.6, 0.6, 0.6}}};
+  paint.lobes = {{20, {0.5, 0.5, 0.5}, {0.1, 0.1, 0.1}}, {paint::kMirrorExponent, {}, {0.6, 0.6, 0.6}}};
   return paint;
 }
 

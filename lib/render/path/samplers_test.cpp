@@ -7,6 +7,7 @@
 
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
+#include "render/path/chi_square_for_test.h"
 #include "render/path/emitters.h"
 #include "render/path/environment_table.h"
 #include "render/path/scenes_for_paths_for_test.h"
@@ -18,71 +19,6 @@ namespace {
 
 using rays::Float3;
 using rays::float3;
-
-// Bins of equal solid angle, even in azimuth and in the cosine from an axis.
-class SphereBins {
- public:
-  SphereBins(const Vec3& axis, int rows, int columns) : z_(axis), rows_(rows), columns_(columns) {
-    const rays::Frame frame = rays::frame_about(float3(axis));
-    x_ = rays::vec3(frame.x), y_ = rays::vec3(frame.y);
-  }
-  std::size_t count() const { return static_cast<std::size_t>(rows_) * static_cast<std::size_t>(columns_); }
-  std::size_t bin(const Vec3& d) const {
-    const int row = std::clamp(static_cast<int>((1 - dot(d, z_)) / 2 * rows_), 0, rows_ - 1);
-    const double azimuth = std::atan2(dot(d, y_), dot(d, x_)) / (2 * kPi) + 0.5;
-    return static_cast<std::size_t>(row * columns_ + std::clamp(static_cast<int>(azimuth * columns_), 0, columns_ - 1));
-  }
-  // The direction at a part (a, b) of a bin.
-  Vec3 direction(std::size_t bin, double a, double b) const {
-    const double c = 1 - 2 * (static_cast<double>(bin / static_cast<std::size_t>(columns_)) + a) / rows_;
-    const double p = 2 * kPi * ((static_cast<double>(bin % static_cast<std::size_t>(columns_)) + b) / columns_ - 0.5);
-    const double s = std::sqrt(1 - c * c);
-    return s * std::cos(p) * x_ + s * std::sin(p) * y_ + c * z_;
-  }
-  double solid_angle() const { return 4 * kPi / static_cast<double>(count()); }
-
- private:
-  Vec3 x_, y_, z_;
-  int rows_, columns_;
-};
-
-// `grid`: points a side by which the density is summed over a bin: many where it jumps inside.
-// Standard deviations by which the bins' chi-square exceeds its mean: below 5 in all but one of a million cases. A draw
-// may come to nothing; so may the density be less than 1 in sum.
-double excess(const SphereBins& bins, int draws, const std::function<std::optional<Vec3>(double, double, double)>& draw,
-              const std::function<double(const Vec3&)>& density, int grid = 24) {
-  TestNumbers next(5);
-  std::vector<double> seen(bins.count() + 1), expected(bins.count() + 1);
-  for (int i = 0; i < draws; ++i) {
-    const double a = next(), b = next(), c = next();
-    const auto direction = draw(a, b, c);
-    seen[direction ? bins.bin(*direction) : bins.count()] += 1;
-  }
-  expected.back() = draws;
-  for (std::size_t bin = 0; bin < bins.count(); ++bin) {
-    double sum = 0;
-    for (int i = 0; i < grid; ++i)
-      for (int j = 0; j < grid; ++j) sum += density(bins.direction(bin, (i + 0.5) / grid, (j + 0.5) / grid));
-    expected[bin] = draws * sum / (grid * grid) * bins.solid_angle();
-    expected.back() -= expected[bin];
-  }
-  expected.back() = std::max(expected.back(), 0.0);
-  // Bins that expect fewer than ten are put together.
-  double chi2 = 0, few_seen = 0, few_expected = 0;
-  int freedom = -1;
-  for (std::size_t bin = 0; bin < seen.size(); ++bin) {
-    if (expected[bin] < 10) {
-      few_seen += seen[bin], few_expected += expected[bin];
-      continue;
-    }
-    chi2 += (seen[bin] - expected[bin]) * (seen[bin] - expected[bin]) / expected[bin];
-    ++freedom;
-  }
-  if (few_expected > 10) chi2 += (few_seen - few_expected) * (few_seen - few_expected) / few_expected, ++freedom;
-  EXPECT_GT(freedom, 3);
-  EXPECT_LT(few_seen, few_expected + 10 + 6 * std::sqrt(few_expected + 10));
-  return (chi2 - freedom) / std::sqrt(2.0 * freedom);
-}
 
 color::Rgb uneven(int x, int y) {
   const double sun = x == 5 && y == 3 ? 4 : 0;
@@ -155,7 +91,7 @@ double excess_of(const paint::LobeFit& paint, double view_deg, std::vector<brdf:
   for (paint::Lobe& lobe : other.lobes) lobe.exponent *= wrong_exponent;
   const auto stated = TracedPaint::create(other, 45, {});
   const Vec3 normal = normalized({0.2, 0.9, -0.3}), side = normalized(cross(normal, {1, 0, 0}));
-  const double t = view_deg * kPi / 180;
+  const double t = view_deg * kDegree;
   const Vec3 viewer = std::cos(t) * normal + std::sin(t) * side;
   const PaintedPoint point(*traced, float3(normal), float3(viewer));
   const PaintedPoint told(wrong_exponent == 1 ? *traced : *stated, float3(normal), float3(viewer));

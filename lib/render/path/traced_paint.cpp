@@ -16,9 +16,11 @@ namespace {
 using rays::Float3;
 using rays::float3;
 
-constexpr float kPi = std::numbers::pi_v<float>;
+constexpr float kFloatPi = std::numbers::pi_v<float>;
 // cos^E below exp(-kTail) is left out: 4e-18 of the peak.
 constexpr float kTail = 40;
+// The share of a color map's mean that directions are drawn in by the cosine.
+constexpr float kCosineShare = 0.25F;
 
 float mean_size(const Float3& c) {
   return (std::abs(c.x) + std::abs(c.y) + std::abs(c.z)) / 3;
@@ -49,7 +51,7 @@ Result<TracedPaint> TracedPaint::create(const paint::LobeFit& paint, double glos
       if (!(lobe.exponent >= 0)) return input_error("a lobe of exponent {}: it must be 0 or more", lobe.exponent);
       if (!is_finite(lobe.directional_diffuse) || !is_finite(lobe.gloss))
         return input_error("a weight of the lobe of exponent {} is not finite", lobe.exponent);
-      if (std::isfinite(lobe.exponent) && (lobe.directional_diffuse != color::Rgb{} || lobe.gloss != color::Rgb{}))
+      if (!lobe.is_mirror() && (lobe.directional_diffuse != color::Rgb{} || lobe.gloss != color::Rgb{}))
         exponents.insert(lobe.exponent);
     }
     return {};
@@ -65,11 +67,11 @@ Result<TracedPaint> TracedPaint::create(const paint::LobeFit& paint, double glos
                        kMostTracedLobes);
   TracedPaint traced;
   if (tilts.size() > 1) traced.tilts_ = std::move(tilts);
-  const double gloss_scale = 1 / brdf::fresnel_dielectric(std::cos(gloss_deg * kPi / 180), brdf::kCoatIndex);
+  const double gloss_scale = 1 / brdf::fresnel_dielectric(std::cos(gloss_deg * kDegree), brdf::kCoatIndex);
   for (const paint::ViewLobes& view : views) {
     Weights weights{static_cast<float>(view.view_deg), float3(view.diffuse), {}, {}};
     for (const double exponent : exponents) {
-      Lobe lobe{static_cast<float>(exponent), static_cast<float>((exponent + 1) / (2 * kPi)), {}, {}};
+      Lobe lobe{static_cast<float>(exponent), static_cast<float>((exponent + 1) / (2 * kFloatPi)), {}, {}};
       for (const paint::Lobe& given : view.lobes) {
         if (given.exponent != exponent) continue;
         lobe.directional_diffuse = float3(given.directional_diffuse);
@@ -78,38 +80,10 @@ Result<TracedPaint> TracedPaint::create(const paint::LobeFit& paint, double glos
       weights.lobes.push_back(lobe);
     }
     for (const paint::Lobe& given : view.lobes)
-      if (std::isinf(given.exponent)) weights.mirror = float3(given.gloss);
+      if (given.is_mirror()) weights.mirror = float3(given.gloss);
     traced.views_.push_back(std::move(weights));
   }
   return traced;
-}
-
-// The share of even light that comes to the viewer: diffuse part, lobes and mirror.
-bool TracedPaint::gains_light() const {
-  constexpr int kViews = 12, kRows = 96, kColumns = 48;
-  constexpr double kQuadratureError = 0.01, kRounding = 3e-8, kTwoPi = 2 * kPi;
-  for (int view = 0; view < kViews; ++view) {
-    const double cos_o = (view + 0.5) / kViews;
-    const PaintedPoint point(*this, {0, 0, 1}, float3({std::sqrt(1 - cos_o * cos_o), 0, cos_o}));
-    const rays::Frame frame = rays::frame_about(point.mirrored());
-    Vec3 lobes;
-    // Rows about the mirror direction lie even in the sixth root of 1 - cos, which suits lobes up to 1e4.
-    for (int i = 0; i < kRows; ++i) {
-      const double x = (i + 0.5) / kRows, versine = 2 * std::pow(x, 6), step = 12 * std::pow(x, 5) / kRows,
-                   sine = std::sqrt(versine * (2 - versine));
-      for (int j = 0; j < kColumns; ++j) {
-        const double phi = kTwoPi * (j + 0.5) / kColumns;
-        const Float3 d = static_cast<float>(sine * std::cos(phi)) * frame.x +
-                         static_cast<float>(sine * std::sin(phi)) * frame.y +
-                         static_cast<float>(1 - versine) * point.mirrored();
-        lobes += (step * kTwoPi / kColumns) * rays::vec3(point.parts(d).lobes);
-      }
-    }
-    const Vec3 rest = rays::vec3(kPi * point.diffuse() + point.mirror());
-    for (int c = 0; c < 3; ++c)
-      if (rest[c] + (1 - kQuadratureError) * lobes[c] > 1 + kRounding) return true;
-  }
-  return false;
 }
 
 PaintedPoint::PaintedPoint(const TracedPaint& paint, const Float3& normal, const Float3& to_viewer)
@@ -120,7 +94,7 @@ PaintedPoint::PaintedPoint(const TracedPaint& paint, const Float3& normal, const
   float share = 0;
   if (paint.views_.size() > 1) {
     const Float3 across = rays::cross(normal, to_viewer);
-    const float view_deg = std::atan2(rays::length(across), cos_o_) * (180 / kPi);
+    const float view_deg = std::atan2(rays::length(across), cos_o_) * (180 / kFloatPi);
     const auto above = std::ranges::upper_bound(paint.views_, view_deg, {}, &TracedPaint::Weights::view_deg);
     high = above == paint.views_.end() ? &paint.views_.back() : &*above;
     low = above == paint.views_.begin() ? high : &above[-1];
@@ -130,7 +104,13 @@ PaintedPoint::PaintedPoint(const TracedPaint& paint, const Float3& normal, const
   diffuse_ = blend(low->diffuse, high->diffuse, share);
   const float fresnel = coat_reflectance(cos_o_);
   mirror_ = fresnel * blend(low->mirror, high->mirror, share);
-  diffuse_chance_ = kPi * mean_size(diffuse_);
+  diffuse_chance_ = kFloatPi * mean_size(diffuse_);
+  if (paint.map_ != nullptr) {
+    // The lobes stand for the map where directions are drawn. What they miss the cosine finds.
+    paint_ = &paint;
+    diffuse_chance_ = std::max(diffuse_chance_, kCosineShare * paint.map_level_);
+    diffuse_ = {};
+  }
   total_ = diffuse_chance_;
   for (std::size_t j = 0; j < low->lobes.size(); ++j) {
     Lobe& lobe = lobes_[count_];
@@ -141,10 +121,18 @@ PaintedPoint::PaintedPoint(const TracedPaint& paint, const Float3& normal, const
     const float wide = 1 / std::sqrt(lobe.exponent + 2), cosine = cos_o_ + (1 - cos_o_) * wide;
     lobe.chance = (cosine * mean_size(lobe.directional_diffuse) + fresnel * mean_size(lobe.gloss)) / lobe.normalization;
     if (!(lobe.chance > 0)) continue;
+    if (paint_ != nullptr) lobe.directional_diffuse = {};
     total_ += lobe.chance;
     ++count_;
   }
   set_axes(paint.tilts_);
+}
+
+PaintedPoint::PaintedPoint(const Float3& diffuse, const Float3& normal, const Float3& to_viewer)
+    : normal_(normal), viewer_(to_viewer), diffuse_(diffuse), frame_(rays::frame_about(normal)) {
+  cos_o_ = std::max(rays::dot(normal, to_viewer), 1e-6F);
+  mirrored_ = 2 * cos_o_ * normal - to_viewer;
+  total_ = diffuse_chance_ = kPi * mean_size(diffuse_);
 }
 
 // The frame of Gatherer::set_mirror_directions(): the tangent runs level around +Y, on a level surface along +X.
@@ -177,8 +165,9 @@ float PaintedPoint::narrow_share(double light_sr) const {
   const auto narrow = [light_sr](float normalization) {
     return static_cast<float>(light_sr / (light_sr + 1 / normalization));
   };
-  float sum = diffuse_chance_ * narrow(1 / kPi);
+  float sum = diffuse_chance_ * narrow(1 / kFloatPi);
   for (int j = 0; j < count_; ++j) sum += lobes_[j].chance * narrow(lobes_[j].normalization);
+  for (const TexelLobe& lobe : texels_) sum += lobe.chance * narrow(lobe.normalization);
   return sum / total_;
 }
 
@@ -203,15 +192,33 @@ void PaintedPoint::visit_lobes(const Float3& to_light, const Visit& visit) const
     if (powers[j] > 0) visit(lobes_[j], powers[j]);
 }
 
+// Calls visit(lobe, cos^E).
+template <class Visit>
+void PaintedPoint::visit_texels(const Float3& to_light, const Visit& visit) const {
+  for (const TexelLobe& lobe : texels_) {
+    const Float3 apart = lobe.axis - to_light;
+    const float versine = 0.5F * rays::dot(apart, apart);
+    if (versine >= 1) continue;
+    const float power = lobe.exponent * std::log1p(-versine);
+    if (power >= -kTail) visit(lobe, std::exp(power));
+  }
+}
+
 PaintedPoint::Parts PaintedPoint::parts(const Float3& to_light) const {
   Parts parts;
   const float cos_i = rays::dot(normal_, to_light);
   if (!(cos_i > 0)) return parts;
   parts.diffuse = cos_i * diffuse_;
+  if (paint_ != nullptr) parts.lobes = mapped(to_light);
+  visit_texels(to_light, [&](const TexelLobe& lobe, float power) {
+    parts.lobes = parts.lobes + (std::exp(lobe.log_peak) * power * cos_i) * lobe.color;
+  });
   if (count_ == 0) return parts;
   const float fresnel = coat_reflectance(std::min(1.0F, 0.5F * rays::length(to_light + viewer_)));
   visit_lobes(to_light, [&](const Lobe& lobe, float power) {
-    parts.lobes = parts.lobes + (power * cos_i) * lobe.directional_diffuse + (power * fresnel) * lobe.gloss;
+    const Float3 gloss = (power * fresnel) * lobe.gloss;
+    parts.lobes = parts.lobes + (power * cos_i) * lobe.directional_diffuse + gloss;
+    parts.gloss = parts.gloss + gloss;
   });
   return parts;
 }
@@ -220,7 +227,12 @@ Reflection PaintedPoint::at(const Float3& to_light) const {
   const float cos_i = rays::dot(normal_, to_light);
   if (!(cos_i > 0) || !(total_ > 0)) return {to_light, {}, 0};
   Float3 f_cos = cos_i * diffuse_;
-  float pdf = diffuse_chance_ * cos_i / kPi;
+  float pdf = diffuse_chance_ * cos_i / kFloatPi;
+  if (paint_ != nullptr) f_cos = f_cos + mapped(to_light);
+  visit_texels(to_light, [&](const TexelLobe& lobe, float power) {
+    f_cos = f_cos + (std::exp(lobe.log_peak) * power * cos_i) * lobe.color;
+    pdf += lobe.chance * lobe.normalization * power;
+  });
   if (count_ > 0) {
     const float fresnel = coat_reflectance(std::min(1.0F, 0.5F * rays::length(to_light + viewer_)));
     visit_lobes(to_light, [&](const Lobe& lobe, float power) {
@@ -234,7 +246,7 @@ Reflection PaintedPoint::at(const Float3& to_light) const {
 // cos = u^(1/(E+1)); 1 - cos without cancellation, so that lobes of any sharpness keep their shape.
 Float3 PaintedPoint::drawn_about(const Float3& axis, float exponent, float u, float v) {
   const float versine = u > 0 ? -std::expm1(std::log(u) / (exponent + 1)) : 1;
-  const float sine = std::sqrt(std::max(0.0F, versine * (2 - versine))), phi = 2 * kPi * v;
+  const float sine = std::sqrt(std::max(0.0F, versine * (2 - versine))), phi = 2 * kFloatPi * v;
   const rays::Frame frame = rays::frame_about(axis);
   return (sine * std::cos(phi)) * frame.x + (sine * std::sin(phi)) * frame.y + (1 - versine) * axis;
 }
@@ -242,11 +254,16 @@ Float3 PaintedPoint::drawn_about(const Float3& axis, float exponent, float u, fl
 Float3 PaintedPoint::direction(double choice, double u, double v) const {
   const auto a = static_cast<float>(u), b = static_cast<float>(v);
   double left = choice * total_;
-  if (left < diffuse_chance_ || count_ == 0) {
-    const float r = std::sqrt(a), phi = 2 * kPi * b;
+  if (left < diffuse_chance_ || (count_ == 0 && texels_.empty())) {
+    const float r = std::sqrt(a), phi = 2 * kFloatPi * b;
     return (r * std::cos(phi)) * frame_.x + (r * std::sin(phi)) * frame_.y + std::sqrt(1 - a) * normal_;
   }
   left -= diffuse_chance_;
+  if (!texels_.empty()) {
+    std::size_t k = 0;
+    while (k + 1 < texels_.size() && left >= texels_[k].chance) left -= texels_[k++].chance;
+    return drawn_about(texels_[k].axis, texels_[k].exponent, a, b);
+  }
   int j = 0;
   while (j + 1 < count_ && left >= lobes_[j].chance) left -= lobes_[j++].chance;
   if (axes_.empty()) return drawn_about(mirrored_, lobes_[j].exponent, a, b);

@@ -5,9 +5,11 @@
 #include <vector>
 
 #include "base/result.h"
+#include "brdf/color_map.h"
 #include "brdf/ward.h"
 #include "paint/paint.h"
-#include "rays/float3.h"
+#include "rays/ray_scene.h"
+#include "render/surface_layer.h"
 
 namespace goniochrome::render {
 
@@ -22,13 +24,21 @@ class TracedPaint {
   // `tilts`: as ward_tilts() returns them; one or none: isotropic. Error: more than kMostTracedLobes lobes, a weight
   // that is not finite, an exponent below 0.
   static Result<TracedPaint> create(const paint::LobeFit& paint, double gloss_deg, std::vector<brdf::Tilt> tilts);
+  // The surface that a part of the scene has, where the layer holds one for it: the texture in the place of the paint,
+  // or the color map in the place of K_D and K_DD, so that f = map/pi + gloss lobes. The lobes of the paint are still
+  // what directions are drawn by. The layer must outlive the paint.
+  void put_surface(const SurfaceLayer& layer, int part);
 
+  // Whether all that it shows are its lobes, its diffuse part and its mirror, which is not so with a texture or a map.
+  bool is_lobe_model() const { return map_ == nullptr && layer_ == nullptr; }
   // Whether it sends back more light than it gets, in some channel to some viewer. Its diffuse part is known exactly,
-  // that of its lobes by quadrature to 1 %: a paint is told whose sum is beyond 1 by more than that.
+  // that of its lobes by quadrature to 1 %: a paint is told whose sum is beyond 1 by more than that. Of a texture those
+  // texels are asked whose lobes could be the brightest, some twenty.
   bool gains_light() const;
 
  private:
   friend class PaintedPoint;
+  bool gains_light(const SurfaceLayer::Place* place) const;
   struct Lobe {
     float exponent = 1, normalization = 0;  // (E + 1)/(2 pi)
     rays::Float3 directional_diffuse, gloss;
@@ -40,6 +50,11 @@ class TracedPaint {
   };
   std::vector<Weights> views_;     // one, or ascending in view_deg
   std::vector<brdf::Tilt> tilts_;  // none: isotropic
+  const brdf::ColorMap* map_ = nullptr;
+  brdf::CriticalAngle treatment_ = brdf::CriticalAngle::kSlide;
+  float map_level_ = 0;                  // the mean size of the map's factors
+  const SurfaceLayer* layer_ = nullptr;  // of a textured part
+  int part_ = 0;
 };
 
 // A direction that light may have come from, with f cos_i and the probability density that drawn() gives it.
@@ -52,14 +67,19 @@ struct Reflection {
 // A paint at one point seen from one direction: the mirror lobe apart, everything that it shows.
 class PaintedPoint {
  public:
-  // Unit vectors with n.o > 0. The paint must outlive the point.
+  // Unit vectors with n.o > 0. The paint must outlive the point. A texture shows nothing, since its place is not known.
   PaintedPoint(const TracedPaint& paint, const rays::Float3& normal, const rays::Float3& to_viewer);
+  // With the texels of the spot.
+  PaintedPoint(const rays::Spot& spot, const TracedPaint& paint, const rays::Float3& to_viewer);
+  // A matt point of this K_D, in 1/sr.
+  PaintedPoint(const rays::Float3& diffuse, const rays::Float3& normal, const rays::Float3& to_viewer);
 
   // f cos_i and the density.
   Reflection at(const rays::Float3& to_light) const;
-  // The parts of f cos_i by themselves: that of the constant K_D, and that of the lobes.
+  // The parts of f cos_i by themselves: that of the constant K_D, that of the lobes, among which a color map is, and of
+  // the latter that of gloss.
   struct Parts {
-    rays::Float3 diffuse, lobes;
+    rays::Float3 diffuse, lobes, gloss;
   };
   Parts parts(const rays::Float3& to_light) const;
 
@@ -74,6 +94,15 @@ class PaintedPoint {
   const rays::Float3& mirrored() const { return mirrored_; }  // where the mirror lobe looks
   const rays::Float3& mirror() const { return mirror_; }      // K_M F
   const rays::Float3& diffuse() const { return diffuse_; }    // K_D, 1/sr
+  const rays::Float3& to_viewer() const { return viewer_; }
+  // The mirror directions about the tilted normals of a brushed paint, with their shares; none: mirrored() alone.
+  struct Axis {
+    rays::Float3 direction;
+    float share;
+  };
+  const std::vector<Axis>& axes() const { return axes_; }
+  // A direction drawn with the density (E + 1)/(2 pi) cos^E about an axis, by numbers in [0,1).
+  static rays::Float3 drawn_about(const rays::Float3& axis, float exponent, float u, float v);
   // About what part of even light each sends back, mean of the channels: what samples are shared out by.
   float lobes_weight() const { return total_; }
   float mirror_weight() const;
@@ -87,14 +116,22 @@ class PaintedPoint {
     float exponent, normalization, chance;
     rays::Float3 directional_diffuse, gloss;
   };
-  struct Axis {
-    rays::Float3 direction;
-    float share;
+  // A lobe exp(log_peak) cos^exponent about its own axis.
+  struct TexelLobe {
+    rays::Float3 axis;
+    float exponent, log_peak;
+    rays::Float3 color;
+    float normalization, chance;
   };
-  static rays::Float3 drawn_about(const rays::Float3& axis, float exponent, float u, float v);
+  friend class TracedPaint;
+  void wear(const SurfaceLayer::Place& place);
+  void add_texel_lobe(const Vec3& axis, double exponent, const color::Rgb& albedo);
+  rays::Float3 mapped(const rays::Float3& to_light) const;
   void set_axes(const std::vector<brdf::Tilt>& tilts);
   template <class Visit>
   void visit_lobes(const rays::Float3& to_light, const Visit& visit) const;
+  template <class Visit>
+  void visit_texels(const rays::Float3& to_light, const Visit& visit) const;
 
   rays::Float3 normal_, viewer_, mirrored_, mirror_, diffuse_;
   rays::Frame frame_;
@@ -103,6 +140,8 @@ class PaintedPoint {
   Lobe lobes_[kMostTracedLobes];
   std::vector<Axis> axes_;  // of tilts; none: mirrored_ alone
   float axes_total_ = 1;
+  std::vector<TexelLobe> texels_;       // of a texture
+  const TracedPaint* paint_ = nullptr;  // of a color map
 };
 
 }  // namespace goniochrome::render

@@ -37,35 +37,51 @@ std::vector<std::vector<brdf::Tilt>> tilts_for(const PathScene& scene) {
   return tilts_of(*scene.scene, effects);
 }
 
+bool is_mapped(const Scene& scene, std::size_t part) {
+  return scene.layer != nullptr && scene.layer->surface(static_cast<int>(part)).color_map != nullptr;
+}
+
 }  // namespace
 
 Result<Transport> Transport::create(const PathScene& path_scene) {
   const Scene& scene = *path_scene.scene;
   if (scene.mesh == nullptr) return input_error("a scene without a mesh: there is nothing to trace");
-  if (scene.layer != nullptr && scene.layer->textured())
-    return input_error("paths do not trace textures: take another engine for parts that wear one");
-  if (scene.layer != nullptr && scene.layer->mapped())
-    return input_error("paths do not trace color maps: take another engine for parts that wear one");
   if (scene.paints.size() != scene.mesh->parts.size())
     return input_error("{} paints for {} parts of the mesh: each part needs one", scene.paints.size(),
                        scene.mesh->parts.size());
-  GONIO_ASSIGN(rays::RayScene rays, rays::RayScene::create(*scene.mesh, path_scene.floor));
+  const std::optional<Ground>& ground = path_scene.ground;
+  std::shared_ptr<const rays::RayScene> rays = path_scene.rays;
+  if (rays == nullptr) {
+    std::optional<rays::Floor> floor;
+    if (ground) floor = rays::Floor{ground->height};
+    GONIO_ASSIGN(rays::RayScene made, rays::RayScene::create(*scene.mesh, floor));
+    rays = std::make_shared<const rays::RayScene>(std::move(made));
+  }
   Transport transport(std::move(rays));
+  const mesh::Box box = bounding_box(*scene.mesh);
+  transport.mesh_radius_ = static_cast<float>(1.0001 * transport.rays_->scale() * length(0.5 * (box.high - box.low)));
   const auto tilts = tilts_for(path_scene);
   for (std::size_t part = 0; part < scene.paints.size(); ++part) {
     const double gloss_deg = part < scene.gloss_deg.size() ? scene.gloss_deg[part] : brdf::kGlossIncidence_deg;
-    auto paint = TracedPaint::create(scene.paints[part], gloss_deg, tilts[part]);
+    paint::LobeFit lobes = scene.paints[part];
+    // A color map takes the place of the flakes' weights for all views.
+    if (is_mapped(scene, part)) lobes.views.clear();
+    auto paint = TracedPaint::create(lobes, gloss_deg, tilts[part]);
     if (!paint.ok()) return input_error("part {}: {}", scene.mesh->parts[part].name, paint.error().message);
+    if (scene.layer != nullptr) paint->put_surface(*scene.layer, static_cast<int>(part));
     transport.paints_.push_back(*std::move(paint));
   }
-  if (path_scene.floor) {
-    auto paint = TracedPaint::create(path_scene.floor_paint, brdf::kGlossIncidence_deg, {});
+  if (ground) {
+    auto paint = TracedPaint::create(ground->paint, brdf::kGlossIncidence_deg, {});
     if (!paint.ok()) return input_error("floor: {}", paint.error().message);
     transport.paints_.push_back(*std::move(paint));
   }
   if (path_scene.environment != nullptr) {
     transport.environment_.emplace(*path_scene.environment);
     if (transport.environment_->dark()) transport.environment_.reset();
+    if (ground && ground->kind == Ground::Kind::kShadow) {
+      GONIO_ASSIGN(transport.ground_, LaidGround::create(*ground, *path_scene.environment, scene.lights));
+    }
   }
   GONIO_ASSIGN(transport.emitters_, Emitters::create(*transport.rays_, path_scene.emission));
   transport.lights_ = scene.lights;
@@ -85,13 +101,34 @@ struct Transport::Vertex {
   Spot spot;
   PaintedPoint painted;
   double mirror_chance;  // that the path goes on along the mirror direction
+  // Whether it is a floor that shows the environment. What that shows in the open is known, and paths add what the mesh
+  // changes: along rays that nothing blocks there is nothing to add.
+  bool is_laid = false;
+  color::Rgb open;  // what such a floor shows in the open
 
   Vertex(const Transport& transport, const Spot& at, const Float3& to_viewer)
-      : spot(at), painted(transport.paints_[static_cast<std::size_t>(at.part)], at.shading, to_viewer) {
+      : spot(at),
+        painted(transport.painted(at, to_viewer)),
+        is_laid(transport.is_laid(at)),
+        open(is_laid ? transport.open_ground(at) : color::Rgb{}) {
     const double mirror = painted.mirror_weight(), lobes = painted.lobes_weight();
     mirror_chance = mirror > 0 ? mirror / (mirror + lobes) : 0;
   }
 };
+
+bool Transport::is_laid(const Spot& spot) const {
+  return ground_ && spot.triangle == rays::kFloor;
+}
+
+// From below the floor is black.
+color::Rgb Transport::open_ground(const Spot& spot) const {
+  return spot.inside ? color::Rgb{} : ground_->open_radiance(rays_->world(spot.position));
+}
+
+PaintedPoint Transport::painted(const Spot& spot, const Float3& to_viewer) const {
+  if (is_laid(spot)) return {rays::float3(ground_->paint(open_ground(spot))), spot.shading, to_viewer};
+  return {spot, paints_[static_cast<std::size_t>(spot.part)], to_viewer};
+}
 
 // Where a path goes on.
 struct Transport::Next {
@@ -107,23 +144,30 @@ color::Rgb Transport::direct_light(const Vertex& vertex, const PathProduct& path
   color::Rgb sum;
   const auto add = [&](const Float3& f_cos, double scale, const color::Rgb& light) {
     PathProduct here = path;
-    here.reflect(scale * rgb(f_cos));
+    if (vertex.is_laid) {
+      here.reflect_plain(scale * rgb(f_cos));
+    } else {
+      here.reflect(scale * rgb(f_cos));
+    }
     sum += here.shown(light);
   };
+  const bool laid = vertex.is_laid;
+  const double sign = laid ? -1 : 1;
   const Float3& start = vertex.spot.start;
   if (!lights_.empty()) {
     const auto count = static_cast<double>(lights_.size());
     const Light& light = lights_[std::min(lights_.size() - 1, static_cast<std::size_t>(numbers[2] * count))];
     const Float3 direction = rays::float3(light.direction);
     const Reflection reflection = vertex.painted.at(direction);
-    if (reflection.pdf > 0 && !rays_->blocked(start, direction)) add(reflection.f_cos, count * kPi, light.white);
+    if (reflection.pdf > 0 && rays_->blocked(start, direction) == laid)
+      add(reflection.f_cos, sign * count * kPi, light.white);
   }
   if (environment_) {
     const LightSample light = environment_->drawn(numbers[0], numbers[1]);
     if (light.pdf > 0) {
       const Reflection reflection = vertex.painted.at(light.direction);
-      if (reflection.pdf > 0 && !rays_->blocked(start, light.direction))
-        add(reflection.f_cos, 1 / (light.pdf + (1 - vertex.mirror_chance) * reflection.pdf), light.radiance);
+      if (reflection.pdf > 0 && rays_->blocked(start, light.direction) == laid)
+        add(reflection.f_cos, sign / (light.pdf + (1 - vertex.mirror_chance) * reflection.pdf), light.radiance);
     }
   }
   if (!emitters_.empty()) {
@@ -150,23 +194,28 @@ Transport::Next Transport::next_ray(const Vertex& vertex, PathProduct& path,
     if (!(drawn.pdf > 0)) return next;
     next.direction = drawn.direction;
     next.pdf = others * drawn.pdf;
-    path.reflect((1 / next.pdf) * rgb(drawn.f_cos));
+    if (vertex.is_laid) {
+      path.reflect_plain((1 / next.pdf) * rgb(drawn.f_cos));
+    } else {
+      path.reflect((1 / next.pdf) * rgb(drawn.f_cos));
+    }
   }
   next.hit = rays_->closest(vertex.spot.start, next.direction);
   return next;
 }
 
 // The environment or an emitter that the next ray found.
-color::Rgb Transport::light_at_end(const Next& next, const PathProduct& path) const {
+color::Rgb Transport::light_at_end(const Next& next, const PathProduct& path, bool laid) const {
   const auto share = [&](double light_pdf) { return std::isinf(next.pdf) ? 1 : next.pdf / (next.pdf + light_pdf); };
-  if (!next.hit.any()) {
-    if (!environment_) return {};
+  color::Rgb sum;
+  if (next.hit.any() == laid && environment_) {
     const LightSample light = environment_->at(next.direction);
-    return share(light.pdf) * path.shown(light.radiance);
+    sum = (laid ? -1 : 1) * share(light.pdf) * path.shown(light.radiance);
   }
+  if (!next.hit.any()) return sum;
   const color::Rgb& emission = emitters_.radiance(rays_->part(next.hit.triangle));
-  if (emission == color::Rgb{}) return {};
-  return share(emitters_.pdf(next.hit.triangle, next.direction, next.hit.distance)) * path.shown(emission);
+  if (emission == color::Rgb{}) return sum;
+  return sum + share(emitters_.pdf(next.hit.triangle, next.direction, next.hit.distance)) * path.shown(emission);
 }
 
 // What the surface at `hit` sends back along the ray, its own emission apart.
@@ -175,15 +224,20 @@ color::Rgb Transport::bounced(Hit hit, Float3 origin, Float3 direction, const Pa
   PathProduct path(reflection_);
   color::Rgb sum;
   const int most = std::min(options.bounces, kMostBounces);
-  for (int bounce = 1; bounce <= most; ++bounce) {
+  for (int bounce = 1, surfaces = 0;; ++bounce) {
     const Vertex vertex(*this, rays_->spot(hit, origin, direction), -direction);
+    if (vertex.is_laid) {
+      sum += path.shown(vertex.open);
+    } else if (++surfaces > most) {
+      break;
+    }
     if (vertex.painted.black()) break;
     const std::array<double, 4> to_light = sequence.point(index, set++), onward = sequence.point(index, set++);
     sum += direct_light(vertex, path, to_light, onward[3]);
     const Next next = next_ray(vertex, path, onward);
     if (!(next.pdf > 0)) break;
-    sum += light_at_end(next, path);
-    if (!next.hit.any() || bounce == most) break;
+    sum += light_at_end(next, path, vertex.is_laid);
+    if (!next.hit.any() || (surfaces == most && !is_laid(next.hit))) break;
     if (bounce >= kRouletteFrom) {
       const double most_chance = bounce >= kEndlessFrom ? kEndlessChance : 1;
       const double chance = std::clamp(path.size(), kLeastChance, most_chance);
@@ -208,8 +262,11 @@ PointTransport::PointTransport(const Transport& transport, const PathOptions& op
       options_(options),
       spot_(spot),
       to_viewer_(to_viewer),
-      painted_(transport.paints_[static_cast<std::size_t>(spot.part)], spot.shading, to_viewer) {
-  sure_ = transport.emitters_.radiance(spot.part);
+      painted_(transport.painted(spot, to_viewer)),
+      is_laid_(transport.is_laid(spot)),
+      correction_(options.correction || is_laid_) {
+  sure_ = is_laid_ ? transport.open_ground(spot) : transport.emitters_.radiance(spot.part);
+  if (is_laid_) narrow_to_mesh();
   if (transport.environment_) {
     const float wide = 1 - painted_.narrow_share(transport.environment_->extent_sr());
     light_chance_ = std::clamp(kMostLightChance * wide, kLeastLightChance, kMostLightChance);
@@ -224,7 +281,16 @@ PointTransport::PointTransport(const Transport& transport, const PathOptions& op
 }
 
 color::Rgb PointTransport::reflect(const Float3& f, const color::Rgb& light) const {
-  return transport_.reflection_ != nullptr ? color::reflected(*transport_.reflection_, rgb(f), light) : rgb(f) * light;
+  return transport_.reflection_ != nullptr && !is_laid_ ? color::reflected(*transport_.reflection_, rgb(f), light)
+                                                        : rgb(f) * light;
+}
+
+// The cone from the point about the sphere that holds the mesh, whose middle is the origin of local coordinates.
+void PointTransport::narrow_to_mesh() {
+  const float distance = rays::length(spot_.start), sine = transport_.mesh_radius_ / distance;
+  if (!(sine < 1)) return;
+  mesh_axis_ = (-1 / distance) * spot_.start;
+  mesh_cosine_ = std::sqrt(1 - sine * sine) - 1e-6F;
 }
 
 void PointTransport::add_lights() {
@@ -233,7 +299,7 @@ void PointTransport::add_lights() {
     const Reflection reflection = painted_.at(direction);
     if (!(reflection.pdf > 0)) continue;
     const bool blocked = transport_.rays_->blocked(spot_.start, direction);
-    if (blocked == options_.correction) sure_ += (blocked ? -kPi : kPi) * reflect(reflection.f_cos, light.white);
+    if (blocked == correction_) sure_ += (blocked ? -kPi : kPi) * reflect(reflection.f_cos, light.white);
   }
 }
 
@@ -245,14 +311,14 @@ void PointTransport::add_mirror() {
   const color::Rgb open =
       transport_.environment_ ? transport_.environment_->radiance(painted_.mirrored()) : color::Rgb{};
   if (!mirror_hit_.any()) {
-    if (!options_.correction) sure_ += reflect(mirror, open);
+    if (!correction_) sure_ += reflect(mirror, open);
     return;
   }
-  if (options_.correction) sure_ += -1.0 * reflect(mirror, open);
+  if (correction_) sure_ += -1.0 * reflect(mirror, open);
   sure_ += reflect(mirror, transport_.emitters_.radiance(transport_.rays_->part(mirror_hit_.triangle)));
-  if (options_.bounces == 0 || !options_.into_lobes) return;
+  if ((options_.bounces == 0 && !transport_.is_laid(mirror_hit_)) || !options_.into_lobes) return;
   const double share = weight / (weight + painted_.lobes_weight());
-  mirror_samples_ = std::clamp(static_cast<int>(std::lround(kBatch * share)), 1, kBatch);
+  mirror_samples_ = static_cast<std::uint32_t>(std::clamp(static_cast<int>(std::lround(kBatch * share)), 1, kBatch));
 }
 
 PointTransport::Ray PointTransport::drawn_ray(const std::array<double, 4>& numbers) const {
@@ -284,16 +350,16 @@ color::Rgb PointTransport::shown(const Ray& ray, bool blocked, const Sequence& s
   const auto scaled = static_cast<float>(1 / pdf);
   if (!blocked) return reflect(scaled * reflection.f_cos, light.radiance);
 
-  color::Rgb arriving = options_.correction ? -1.0 * light.radiance : color::Rgb{};
+  color::Rgb arriving = correction_ ? -1.0 * light.radiance : color::Rgb{};
   color::Rgb sum;
-  if (options_.bounces > 0 || !transport_.emitters_.empty()) {
+  if (options_.bounces > 0 || !transport_.emitters_.empty() || transport_.ground_) {
     const Hit hit = transport_.rays_->closest(spot_.start, ray.direction);
     if (hit.any()) {
       const color::Rgb& emission = transport_.emitters_.radiance(transport_.rays_->part(hit.triangle));
       if (emission != color::Rgb{})
         arriving += pdf / (pdf + transport_.emitters_.pdf(hit.triangle, ray.direction, hit.distance)) * emission;
       const bool all = options_.into_lobes && options_.into_diffuse;
-      if (options_.bounces > 0 && (options_.into_lobes || options_.into_diffuse)) {
+      if ((options_.bounces > 0 || transport_.is_laid(hit)) && (options_.into_lobes || options_.into_diffuse)) {
         const color::Rgb sent = transport_.bounced(hit, spot_.start, ray.direction, options_, sequence, index, 4);
         if (all) {
           arriving += sent;
@@ -318,37 +384,37 @@ color::Rgb PointTransport::emitter_sample(const std::array<double, 4>& numbers) 
   return reflect(static_cast<float>(1 / pdf) * reflection.f_cos, light.radiance);
 }
 
-color::Rgb PointTransport::batch(std::uint64_t seed) const {
+color::Rgb PointTransport::part_of_batch(std::uint64_t seed, std::uint32_t begin, std::uint32_t count) const {
   if (certain_) return {};
   const Sequence sequence(seed, kBatch);
   color::Rgb sum;
   if (painted_.lobes_weight() > 0) {
-    for (std::uint32_t first = 0; first < kBatch; first += 8) {
-      Ray rays[8];
+    for (std::uint32_t first = begin; first < begin + count; first += kFan) {
+      Ray rays[kFan];
       rays::Fan fan;
       fan.origin = spot_.start;
       for (std::uint32_t i = 0; i < 8; ++i) {
         rays[i] = drawn_ray(sequence.point(first + i, 0));
         fan.x[i] = rays[i].direction.x, fan.y[i] = rays[i].direction.y, fan.z[i] = rays[i].direction.z;
-        if (rays[i].above) fan.wanted |= 1U << i;
+        if (rays[i].above && rays::dot(rays[i].direction, mesh_axis_) >= mesh_cosine_) fan.wanted |= 1U << i;
       }
-      const unsigned blocked = transport_.rays_->blocked(fan);
+      const unsigned blocked = fan.wanted != 0 ? transport_.rays_->blocked(fan) : 0;
       for (std::uint32_t i = 0; i < 8; ++i) {
         const bool is_blocked = (blocked >> i & 1U) != 0;
-        if (!rays[i].above || (!is_blocked && (options_.correction || !transport_.environment_))) continue;
+        if (!rays[i].above || (!is_blocked && (correction_ || !transport_.environment_))) continue;
         sum += shown(rays[i], is_blocked, sequence, first + i);
       }
     }
     if (!transport_.emitters_.empty())
-      for (std::uint32_t i = 0; i < kBatch; ++i) sum += emitter_sample(sequence.point(i, 1));
+      for (std::uint32_t i = begin; i < begin + count; ++i) sum += emitter_sample(sequence.point(i, 1));
   }
+  const std::uint32_t mirrors = mirror_samples_ > 0 ? std::max(1U, mirror_samples_ * count / kBatch) : 0;
   color::Rgb mirrored;
-  for (int i = 0; i < mirror_samples_; ++i)
+  for (std::uint32_t i = begin; i < begin + mirrors; ++i)
     mirrored += transport_.bounced(mirror_hit_, spot_.start, painted_.mirrored(), options_,
-                                   Sequence(mixed(seed, 0x4D), kBatch), static_cast<std::uint32_t>(i), 4);
-  if (mirror_samples_ > 0)
-    sum += (static_cast<double>(kBatch) / mirror_samples_) * reflect(painted_.mirror(), mirrored);
-  return (1.0 / kBatch) * sum;
+                                   Sequence(mixed(seed, 0x4D), kBatch), i, 4);
+  if (mirrors > 0) sum += (static_cast<double>(count) / mirrors) * reflect(painted_.mirror(), mirrored);
+  return (1.0 / count) * sum;
 }
 
 }  // namespace goniochrome::render

@@ -8,6 +8,7 @@
 #include "base/result.h"
 #include "render/path/emitters.h"
 #include "render/path/environment_table.h"
+#include "render/path/laid_ground.h"
 #include "render/path/path_product.h"
 #include "render/path/sequence.h"
 #include "render/path/traced_paint.h"
@@ -20,32 +21,33 @@ struct PathScene {
   const Scene* scene = nullptr;  // its mesh, paints, lights and product of colors; its maps are not used
   const envmap::Environment* environment = nullptr;  // none: dark
   std::vector<color::Rgb> emission = {};             // radiance of each part; none where there are fewer
-  std::optional<rays::Floor> floor = {};
-  paint::LobeFit floor_paint = {};
+  std::optional<Ground> ground = {};
+  // The mesh with its floor, where they are there already; else they are made.
+  std::shared_ptr<const rays::RayScene> rays = nullptr;
   double tilt_tolerance = 1e-3;  // of the tilted normals of brushed paints, relative to the lobe's peak
 };
 
 // What is asked of them.
 struct PathOptions {
   // How many surfaces may pass light on before it reaches the point that is seen: 0 lets a surface that is met be
-  // black, apart from what it emits.
+  // black, apart from what it emits. A floor that shows the environment is light, and does not count.
   int bounces = 8;
   // Whether the light that surfaces pass on reaches the lobes and the mirror of the point that is seen, and whether it
   // reaches its diffuse part.
   bool into_lobes = true, into_diffuse = true;
   // Only what the mesh changes: the radiance with the mesh in the way less the radiance without it. That is 0 without
-  // any noise where no ray is blocked.
+  // any noise where no ray is blocked. A floor that shows the environment is there either way, with all its radiance.
   bool correction = false;
 };
 
 // How many samples are drawn together from one sequence. Their mean is one independent estimate.
 constexpr int kBatch = 16;
+constexpr int kFan = 8;  // and how many of them are traced together
 
 // Immutable: for any number of threads at once.
 class Transport {
  public:
-  // All that the scene refers to must outlive it. Error: as RayScene, TracedPaint and Emitters have them; textures and
-  // color maps, which paths do not trace.
+  // All that the scene refers to must outlive it. Error: as RayScene, TracedPaint and Emitters have them.
   static Result<Transport> create(const PathScene& scene);
 
   const rays::RayScene& rays() const { return *rays_; }
@@ -56,7 +58,8 @@ class Transport {
 
  private:
   friend class PointTransport;
-  explicit Transport(rays::RayScene rays) : rays_(std::make_unique<const rays::RayScene>(std::move(rays))) {}
+  friend class LobePoint;
+  explicit Transport(std::shared_ptr<const rays::RayScene> rays) : rays_(std::move(rays)) {}
   color::Rgb bounced(rays::Hit hit, rays::Float3 origin, rays::Float3 direction, const PathOptions& options,
                      const Sequence& sequence, std::uint32_t index, std::uint32_t set) const;
   struct Vertex;
@@ -64,10 +67,16 @@ class Transport {
   color::Rgb direct_light(const Vertex& vertex, const PathProduct& path, const std::array<double, 4>& numbers,
                           double choice) const;
   Next next_ray(const Vertex& vertex, PathProduct& path, const std::array<double, 4>& numbers) const;
-  color::Rgb light_at_end(const Next& next, const PathProduct& path) const;
+  color::Rgb light_at_end(const Next& next, const PathProduct& path, bool laid) const;
+  bool is_laid(const rays::Spot& spot) const;
+  bool is_laid(const rays::Hit& hit) const { return ground_ && hit.triangle == rays::kFloor; }
+  color::Rgb open_ground(const rays::Spot& spot) const;
+  PaintedPoint painted(const rays::Spot& spot, const rays::Float3& to_viewer) const;
 
-  std::unique_ptr<const rays::RayScene> rays_;  // stays where it is when the transport is moved
+  std::shared_ptr<const rays::RayScene> rays_;  // stays where it is when the transport is moved
   std::vector<TracedPaint> paints_;             // of the parts, then of the floor
+  std::optional<LaidGround> ground_;            // of a floor that shows the environment
+  float mesh_radius_ = 0;                       // local, of a sphere about the origin that holds the mesh
   std::optional<EnvironmentTable> environment_;
   Emitters emitters_;
   std::vector<Light> lights_;
@@ -87,10 +96,13 @@ class PointTransport {
   // Whether that is all: then every batch() is 0.
   bool certain() const { return certain_; }
   // The mean of kBatch samples of the rest, drawn from a sequence of this seed. Its expectation is the rest, exactly.
-  color::Rgb batch(std::uint64_t seed) const;
+  color::Rgb batch(std::uint64_t seed) const { return part_of_batch(seed, 0, kBatch); }
+  // The mean of the samples first, first + 1, ... of the same; `first` and `count` are multiples of kFan.
+  color::Rgb part_of_batch(std::uint64_t seed, std::uint32_t first, std::uint32_t count) const;
 
  private:
   struct Ray;
+  void narrow_to_mesh();
   void add_lights();
   void add_mirror();
   Ray drawn_ray(const std::array<double, 4>& numbers) const;
@@ -103,9 +115,14 @@ class PointTransport {
   rays::Spot spot_;
   rays::Float3 to_viewer_;
   PaintedPoint painted_;
+  bool is_laid_;     // on a floor that shows the environment
+  bool correction_;  // whether samples tell what the mesh changes: as asked, or of such a floor
+  // Only directions within this cone can meet the mesh; of other floors and of the mesh itself all of them.
+  rays::Float3 mesh_axis_;
+  float mesh_cosine_ = -2;
   float light_chance_ = 0;  // of a direction that is drawn from the environment
   rays::Hit mirror_hit_;
-  int mirror_samples_ = 0;  // in a batch
+  std::uint32_t mirror_samples_ = 0;  // in a batch
   color::Rgb sure_;
   bool certain_ = false;
 };

@@ -200,7 +200,7 @@ paint::LobeFit coated() {
   paint.lobes = {{3, {0.05, 0.1, 0.1}, {}},
                  {40, {0.3, 0.2, 0.1}, {0.5, 0.5, 0.5}},
                  {700, {}, {9, 9, 9}},
-                 {envmap::kMirrorExponent, {}, {0.8, 0.8, 0.8}}};
+                 {paint::kMirrorExponent, {}, {0.8, 0.8, 0.8}}};
   return paint;
 }
 

@@ -49,6 +49,37 @@ VisibleSurface visible_surface(const rays::RayScene& scene, const Rays& rays, in
   return surface;
 }
 
+Coverage coverage(const rays::RayScene& scene, const Rays& rays, int width, int height,
+                  const std::vector<std::array<double, 2>>& shifts) {
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  Coverage result{std::vector<std::uint16_t>(pixels, 0), std::vector<std::uint16_t>(pixels, 0)};
+  const rays::Float3 eye = scene.local(rays.eye);
+  parallel_for(static_cast<std::size_t>(height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t job = begin * shifts.size(); job < end * shifts.size(); ++job) {
+      const std::size_t y = job / shifts.size(), sample = job % shifts.size();
+      for (int x = 0; x < width; x += 8) {
+        rays::Fan fan;
+        fan.origin = eye;
+        for (int i = 0; i < 8; ++i) {
+          const rays::Float3 d = rays::float3(rays.direction(std::min(x + i, width - 1) + 0.5 + shifts[sample][0],
+                                                             static_cast<double>(y) + 0.5 + shifts[sample][1]));
+          fan.x[i] = d.x, fan.y[i] = d.y, fan.z[i] = d.z;
+          if (x + i < width) fan.wanted |= 1U << i;
+        }
+        rays::Hit hits[8];
+        scene.closest(fan, hits);
+        for (int i = 0; i < 8 && x + i < width; ++i) {
+          const std::size_t at = y * static_cast<std::size_t>(width) + static_cast<std::size_t>(x + i);
+          const auto bit = static_cast<std::uint16_t>(1U << sample);
+          if (hits[i].any()) result.any[at] |= bit;
+          if (hits[i].triangle == rays::kFloor) result.floor[at] |= bit;
+        }
+      }
+    }
+  });
+  return result;
+}
+
 rays::Spot spot_at(const rays::RayScene& scene, const VisibleSurface& surface, int x, int y) {
   const Gbuffer& g = surface.gbuffer;
   return scene.spot(surface.hits[static_cast<std::size_t>(y) * g.width + x], scene.local(g.rays.eye),

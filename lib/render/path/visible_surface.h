@@ -1,6 +1,8 @@
 // What a camera sees, by rays: the G-buffer that every engine shades, and the surface points behind it.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "rays/ray_scene.h"
@@ -15,6 +17,14 @@ struct VisibleSurface {
 
 // The points of all pixels that `rays` names. Bit-identical for any number of threads.
 VisibleSurface visible_surface(const rays::RayScene& scene, const Rays& rays, int width, int height);
+
+// Which of the samples of each pixel meet the scene, or its floor: bit i stands for the sample that is shifted by
+// shifts[i] (pixels) from the center. At most 16 shifts.
+struct Coverage {
+  std::vector<std::uint16_t> any, floor;  // pixel by pixel
+};
+Coverage coverage(const rays::RayScene& scene, const Rays& rays, int width, int height,
+                  const std::vector<std::array<double, 2>>& shifts);
 
 // The surface point of a pixel, which shows something.
 rays::Spot spot_at(const rays::RayScene& scene, const VisibleSurface& surface, int x, int y);

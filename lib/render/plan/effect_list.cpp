@@ -1,7 +1,5 @@
 #include "render/plan/effect_list.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "base/angles.h"
 #include "base/parallel.h"
 #include "render/internal/lobe_curves.h"
 #include "render/internal/maps.h"
@@ -110,7 +111,7 @@ void SbrdfShader::make_horizon(double low, double high) {
   for (double exponent = std::max(low, 0.1);; exponent *= kHorizonStep) {
     horizon_exponents_.push_back(exponent);
     for (const LobeIntegrals& lobe : lobe_curve(exponent, kHorizonSegments, true)) {
-      horizon_.push_back(static_cast<float>(lobe.cosine * (exponent + 1) / (2 * std::numbers::pi)));
+      horizon_.push_back(static_cast<float>(lobe.cosine * (exponent + 1) / (2 * kPi)));
       horizon_.push_back(static_cast<float>(lobe.cosine_shift));
     }
     if (exponent >= high) return;
@@ -123,7 +124,7 @@ void SbrdfShader::pack_lobe(const brdf::LafortuneLobe& lobe, float* to) const {
   if (largest > 0) {
     for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(lobe.albedo[c] / largest);
     to[kLobeAlbedo] = static_cast<float>(std::log(largest));
-    to[kLobeEnergy] = static_cast<float>(std::log(2 * std::numbers::pi / (lobe.exponent + 1) * largest));
+    to[kLobeEnergy] = static_cast<float>(std::log(2 * kPi / (lobe.exponent + 1) * largest));
   }
   for (int k = 0; k < 3; ++k) to[kLobeAxes + static_cast<std::size_t>(k)] = static_cast<float>(lobe.axes[k]);
   to[kLobeExponent] = static_cast<float>(lobe.exponent);
@@ -168,7 +169,7 @@ SbrdfShader::Batch::Batch(const SbrdfShader& shader, std::size_t texture, const 
   for (const Light& l : light.lights) {
     for (int c = 0; c < 3; ++c) lights_.push_back(static_cast<float>(l.direction[c]));
     lights_.push_back(0);
-    for (int c = 0; c < 3; ++c) lights_.push_back(static_cast<float>(std::numbers::pi * l.white[c]));
+    for (int c = 0; c < 3; ++c) lights_.push_back(static_cast<float>(kPi * l.white[c]));
     lights_.push_back(0);
   }
   shading_.lights = static_cast<int>(light.lights.size());

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <tuple>
 
+#include "base/angles.h"
 #include "brdf/lobe_model.h"
 #include "render/scenes_for_test.h"
 
@@ -82,9 +82,9 @@ TEST(SbrdfShader, PhongLobesAreThoseOfTheLobeModel) {
   const Vec3 mirror = 2 * dot(kNormal, kViewer) * kNormal - kViewer;
   for (const double n : {4.0, 16.0, 64.0}) {
     const color::Rgb got = shade(phong_texel(n), &env, without_horizon());
-    const double lobe = 2 * std::numbers::pi / (n + 1) * dot(kNormal, mirror) * (1 + (n + 1) / (n + 2) * mirror.y);
+    const double lobe = 2 * kPi / (n + 1) * dot(kNormal, mirror) * (1 + (n + 1) / (n + 2) * mirror.y);
     // Bilinear fetches of a slope on 32 texels a face err by about h^2/8 of it, h = 0.05.
-    EXPECT_NEAR(got.x, 0.1 * std::numbers::pi * (1 + 2.0 / 3 * kNormal.y) + 0.3 * lobe, 2e-3) << n;
+    EXPECT_NEAR(got.x, 0.1 * kPi * (1 + 2.0 / 3 * kNormal.y) + 0.3 * lobe, 2e-3) << n;
   }
 }
 
@@ -101,9 +101,8 @@ TEST(SbrdfShader, BlendsNeighborsInTheLogarithmOfTheExponent) {
     apart = std::max(apart, std::abs(level / got - 1));
     if (n < 1 || n > 64) continue;
     const Vec3 mirror = 2 * dot(kNormal, kViewer) * kNormal - kViewer;
-    const double exact = 0.1 * std::numbers::pi * (1 + 2.0 / 3 * kNormal.y) + 0.3 * 2 * std::numbers::pi / (n + 1) *
-                                                                                  dot(kNormal, mirror) *
-                                                                                  (1 + (n + 1) / (n + 2) * mirror.y);
+    const double exact = 0.1 * kPi * (1 + 2.0 / 3 * kNormal.y) +
+                         0.3 * 2 * kPi / (n + 1) * dot(kNormal, mirror) * (1 + (n + 1) / (n + 2) * mirror.y);
     EXPECT_NEAR(got / exact, 1, 0.02) << n;
   }
   // Coarse levels hold the same lobes on fewer texels.
@@ -121,10 +120,10 @@ TEST(SbrdfShader, LightsAreExactAndFramesTurn) {
   const SbrdfLight lit = lights_alone({light});
   const brdf::SurfaceFrame frame = brdf::surface_frame(texel, kNormal, kTangent);
   const color::Rgb f = brdf::brdf(texel.surface, frame.local(light.direction), frame.local(kViewer));
-  const double wanted = 2 * std::numbers::pi * dot(kNormal, light.direction) * f.x;
+  const double wanted = 2 * kPi * dot(kNormal, light.direction) * f.x;
   EXPECT_NEAR(shade(texel, nullptr, lit).x / wanted, 1, kFloat);
   // A texel turned by 30 deg is the texel on a surface whose tangent is turned by 30 deg.
-  const double turn = std::numbers::pi / 6;
+  const double turn = kPi / 6;
   brdf::SbrdfTexel turned = texel;
   turned.x_tangent = std::cos(turn), turned.x_bitangent = std::sin(turn);
   const double got = shade(turned, nullptr, lit).y;
@@ -150,8 +149,7 @@ TEST(SbrdfShader, LafortunePower) {
     const brdf::SurfaceFrame frame = brdf::surface_frame(texel, n, kTangent);
     const Vec3 p = frame.world(axes * frame.local(viewer));
     const Vec3 light = length(p) > 0 && p.y > 0 ? normalized(p) : n;
-    const double wanted =
-        std::numbers::pi * light.y * brdf::brdf(texel.surface, frame.local(light), frame.local(viewer)).x;
+    const double wanted = kPi * light.y * brdf::brdf(texel.surface, frame.local(light), frame.local(viewer)).x;
     const double got = shade(texel, nullptr, lights_alone({{light, {1, 1, 1}}}), nullptr, point(n, kTangent, viewer)).x;
     // n times the rounding of the direction, squared, at most.
     EXPECT_NEAR(got, wanted, std::max(1e-4 * wanted, 1e-30)) << exponent;
@@ -177,8 +175,7 @@ TEST(SbrdfShader, ColoredLightGoesThroughTheOperator) {
   const auto local = [&](const Vec3& d) { return Vec3{dot(d, x), dot(d, y), dot(d, kNormal)}; };
   const Light& light = cyan.lights[0];
   const color::Rgb f = brdf::brdf(phong_texel(9).surface, local(light.direction), local(kViewer));
-  const color::Rgb wanted =
-      std::numbers::pi * dot(kNormal, light.direction) * color::reflected(cyan.reflection, light.white, f);
+  const color::Rgb wanted = kPi * dot(kNormal, light.direction) * color::reflected(cyan.reflection, light.white, f);
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(got[c] / wanted[c], 1, kFloat);
 }
 
@@ -195,9 +192,9 @@ TEST(SbrdfShader, LobesEndAtTheHorizon) {
     constexpr int kSteps = 400;
     for (int i = 0; i < kSteps; ++i) {
       for (int j = 0; j < 2 * kSteps; ++j) {
-        const double y = (i + 0.5) / kSteps, a = std::numbers::pi * (j + 0.5) / kSteps, r = std::sqrt(1 - y * y);
+        const double y = (i + 0.5) / kSteps, a = kPi * (j + 0.5) / kSteps, r = std::sqrt(1 - y * y);
         const double cosine = dot(mirror, {r * std::cos(a), y, r * std::sin(a)});
-        if (cosine > 0) exact += y * std::pow(cosine, 9) * std::numbers::pi / (kSteps * kSteps);
+        if (cosine > 0) exact += y * std::pow(cosine, 9) * kPi / (kSteps * kSteps);
       }
     }
     const VisiblePoint at = point(n, kTangent, viewer);
@@ -213,7 +210,7 @@ TEST(SbrdfShader, LobesThatAreOffAreMissing) {
   SbrdfLight both = lights_alone({{kNormal, {1, 1, 1}}}), first = both, second = both, none = both;
   first.lobes = 1, second.lobes = 2, none.lobes = 0;
   const double diffuse = shade(texel, nullptr, none).x;
-  EXPECT_NEAR(diffuse, std::numbers::pi * 0.1, 1e-6);
+  EXPECT_NEAR(diffuse, kPi * 0.1, 1e-6);
   EXPECT_NEAR(shade(texel, nullptr, first).x + shade(texel, nullptr, second).x - diffuse, shade(texel, nullptr, both).x,
               1e-5);
   EXPECT_GT(shade(texel, nullptr, first).x, diffuse);
@@ -251,7 +248,7 @@ TEST(SbrdfShader, AMeanTexelKeepsEnergyAndTheCommonDirection) {
   brdf::SbrdfTexel a, b;
   a.surface.lobes = {{{0.2, 0.1, 0.1}, {-1, -0.6, 1}, 9}}, b.surface.lobes = {{{0.4, 0.2, 0.2}, {-1, -0.6, 1}, 9}};
   a.surface.diffuse = {0.1, 0, 0}, b.surface.diffuse = {0.3, 0, 0};
-  for (const double turn : {0.0, 0.5 * std::numbers::pi}) {
+  for (const double turn : {0.0, 0.5 * kPi}) {
     b.x_tangent = std::cos(turn), b.x_bitangent = std::sin(turn);
     const brdf::SbrdfTexel mean = brdf::sbrdf_texel(brdf::mean_texture(texture_of({a, b})), 0, 0);
     const brdf::LafortuneLobe& lobe = mean.surface.lobes[0];

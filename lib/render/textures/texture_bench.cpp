@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/angles.h"
 #include "render/exact.h"
 #include "render/renderer.h"
 #include "render/scenes_for_test.h"
@@ -15,7 +16,7 @@ namespace {
 brdf::SbrdfTexture brushed(int size) {
   brdf::SbrdfTexture texture{size, size, 3, {}};
   for (int i = 0; i < size * size; ++i) {
-    const double angle = 2 * std::numbers::pi * (i % size) / size;
+    const double angle = 2 * kPi * (i % size) / size;
     for (const float value : {0.01F,
                               0.01F,
                               0.01F,

@@ -2,8 +2,8 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "base/angles.h"
 #include "base/parallel.h"
 
 namespace goniochrome::render {
@@ -37,7 +37,7 @@ class Unwrapped {
   Uv corner(std::uint32_t vertex) const {
     if (!mesh_.texture.empty()) return {mesh_.texture[vertex][0], mesh_.texture[vertex][1]};
     const Vec3 p = mesh_.positions[vertex] - middle_;
-    const double turn = 2 * std::numbers::pi;
+    const double turn = 2 * kPi;
     return {std::atan2(p.x, p.z) / turn, (mesh_.positions[vertex].y - box_.low.y) / (turn * std::max(radius_, 1e-300))};
   }
 
@@ -95,6 +95,11 @@ TexturePlace TextureLayout::place(const MeshPoint& point, const Corners& corners
           {static_cast<float>(t.x), static_cast<float>(t.y), static_cast<float>(t.z)}};
 }
 
+TexturePlace TextureLayout::place(int part, const MeshPoint& point) const {
+  const auto at = static_cast<std::size_t>(part);
+  return place(point, faces_[at][point.triangle - mesh_.parts[at].first]);
+}
+
 std::vector<TexturePlace> TextureLayout::places(const Gbuffer& gbuffer) const {
   std::vector<TexturePlace> places(gbuffer.triangles.size());
   parallel_for(static_cast<std::size_t>(gbuffer.height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
@@ -102,9 +107,7 @@ std::vector<TexturePlace> TextureLayout::places(const Gbuffer& gbuffer) const {
       for (int x = 0; x < gbuffer.width; ++x) {
         const int part = gbuffer.part(x, y);
         if (part < 0 || faces_[static_cast<std::size_t>(part)].empty()) continue;
-        const MeshPoint point = mesh_point(mesh_, gbuffer, x, y);
-        const std::size_t face = point.triangle - mesh_.parts[static_cast<std::size_t>(part)].first;
-        places[gbuffer.index(x, y)] = place(point, faces_[static_cast<std::size_t>(part)][face]);
+        places[gbuffer.index(x, y)] = place(part, mesh_point(mesh_, gbuffer, x, y));
       }
     }
   });

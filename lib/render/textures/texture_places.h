@@ -22,6 +22,10 @@ class TextureLayout {
   // 0. The G-buffer must have triangles. Bit-identical for any number of threads.
   std::vector<TexturePlace> places(const Gbuffer& gbuffer) const;
 
+  // The place of a point of the mesh, of which the triangle and the shares are read. The triangle is one of a part that
+  // the layout was made for.
+  TexturePlace place(int part, const MeshPoint& point) const;
+
  private:
   using Corners = std::array<std::array<float, 2>, 3>;  // u and v of each corner
   TexturePlace place(const MeshPoint& point, const Corners& corners) const;

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "base/angles.h"
 #include "render/scenes_for_test.h"
 
 namespace goniochrome::render {
@@ -18,7 +18,7 @@ TEST(TexturePlaces, OwnCoordinatesAndThoseMadeAroundTheAxis) {
   const auto made = TextureLayout(mesh, {true}).places(g);
   const TexturePlace& middle = made[32 * 64 + 32];  // half a pixel right and down of the middle
   EXPECT_NEAR(middle.u, 0, 0.02);
-  EXPECT_NEAR(middle.v, 1 / (2 * std::numbers::pi), 0.02);
+  EXPECT_NEAR(middle.v, 1 / (2 * kPi), 0.02);
   EXPECT_NEAR(middle.tangent[0], 1, 0.05);
   EXPECT_NEAR(middle.tangent[1], 0, 0.05);
   // Across the sphere u runs through a half turn, its own coordinates likewise.

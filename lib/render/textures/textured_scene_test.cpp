@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/angles.h"
 #include "render/exact.h"
 #include "render/integral/integral_engine.h"
 #include "render/internal/seen.h"
@@ -49,7 +50,7 @@ brdf::SbrdfTexture brushed_texture() {
   brdf::SbrdfTexture texture{8, 4, 3, {}};
   for (int row = 0; row < 4; ++row) {
     for (int column = 0; column < 8; ++column) {
-      const double angle = 2 * std::numbers::pi * column / 8;
+      const double angle = 2 * kPi * column / 8;
       const float share = row % 2 == 0 ? 1.0F : 0.5F;
       for (const float value : {0.02F,
                                 0.02F,

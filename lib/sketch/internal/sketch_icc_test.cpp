@@ -127,7 +127,7 @@ color::Lab lab_d50(const color::Rgb& rgb) {
 // 2.5, and three columns make 6e-5; the rounded exponent and slopes of the curve add less than 2e-5.
 constexpr double kMatrixRounding = 1e-4;
 
-TEST(SketchIcc, srgb_by_its_profile_is_srgb_by_its_formula) {
+TEST(SketchIcc, SrgbByItsProfileIsSrgbByItsFormula) {
   std::vector<float> signals;
   for (int i = 0; i < 256; ++i)
     for (const int level : {i, (7 * i) % 256, 255 - i}) signals.push_back(static_cast<float>(level) / 255);
@@ -142,7 +142,7 @@ TEST(SketchIcc, srgb_by_its_profile_is_srgb_by_its_formula) {
 }
 
 // A curve of 1024 numbers of 16 bits, as scanners and cameras write: half a number is 8e-6 of light.
-TEST(SketchIcc, a_curve_of_numbers_is_followed) {
+TEST(SketchIcc, ACurveOfNumbersIsFollowed) {
   std::vector<cmsUInt16Number> numbers(1024);
   for (int i = 0; i < 1024; ++i)
     numbers[i] = static_cast<cmsUInt16Number>(std::lround(65535 * std::pow(i / 1023.0, 1.8)));
@@ -156,7 +156,7 @@ TEST(SketchIcc, a_curve_of_numbers_is_followed) {
   }
 }
 
-TEST(SketchIcc, gray_is_neutral_and_follows_its_curve) {
+TEST(SketchIcc, GrayIsNeutralAndFollowsItsCurve) {
   const auto light = image_through_icc(row_of(1, {0, 0.1F, 0.5F, 1}), gray_profile(2.2), "gray.png");
   ASSERT_TRUE(light.ok()) << light.error().message;
   int x = 0;
@@ -174,7 +174,7 @@ TEST(SketchIcc, gray_is_neutral_and_follows_its_curve) {
 // 0.003 in L* and 0.005 in a* and b*, which is 0.008 dE. The control is the rule of thumb for inks, or sRGB.
 constexpr double kTableRounding_de = 0.01;
 
-TEST(SketchIcc, table_profiles_are_followed) {
+TEST(SketchIcc, TableProfilesAreFollowed) {
   for (const int channels : {3, 4}) {
     const image::Image image = all_levels(channels);
     const auto light = image_through_icc(image, channels == 4 ? cmyk_profile() : rgb_table_profile(), "a.tif");
@@ -227,7 +227,7 @@ std::string p3_profile() {
 }
 
 // The white of the working space to the rounding of the profile's own numbers, 1/65536 and five digits.
-TEST(SketchIcc, a_matrix_profile_is_followed) {
+TEST(SketchIcc, AMatrixProfileIsFollowed) {
   const auto light = image_through_icc(row_of(3, {1, 1, 1, 0.5F, 0.5F, 0.5F, 1, 0, 0}), p3_profile(), "p3.png");
   ASSERT_TRUE(light.ok()) << light.error().message;
   const color::Rgb white = pixel(*light, 0), gray = pixel(*light, 1), red = pixel(*light, 2);
@@ -240,7 +240,7 @@ TEST(SketchIcc, a_matrix_profile_is_followed) {
   EXPECT_LT(red.y, srgb_red.y);
 }
 
-TEST(SketchIcc, profiles_that_cannot_be_followed_are_refused_with_the_remedy) {
+TEST(SketchIcc, ProfilesThatCannotBeFollowedAreRefusedWithTheRemedy) {
   std::string lab = p3_profile(), no_curve = p3_profile();
   lab.replace(16, 4, "Lab "), no_curve.replace(132 + 3 * 12, 4, "none");
   const image::Image rgb = row_of(3, {0.5F, 0.5F, 0.5F});
@@ -260,7 +260,7 @@ TEST(SketchIcc, profiles_that_cannot_be_followed_are_refused_with_the_remedy) {
 }
 
 // Cut anywhere, or with any byte turned: an error or light, never a read past the end (the sanitizers look on).
-TEST(SketchIcc, a_damaged_profile_is_an_error_or_finite) {
+TEST(SketchIcc, ADamagedProfileIsAnErrorOrFinite) {
   int refused = 0, followed = 0;
   const auto check = [&](const std::string& bytes, const image::Image& image) {
     const auto light = image_through_icc(image, bytes, "cut.png");
@@ -321,7 +321,7 @@ std::string tiff(const std::string& profile) {
   return bytes;
 }
 
-TEST_F(CmykFile, a_tiff_of_inks_is_what_its_profile_says) {
+TEST_F(CmykFile, ATiffOfInksIsWhatItsProfileSays) {
   const auto picture = read_picture(file("inks.tif", tiff(cmyk_profile())), PictureView::kPlain);
   ASSERT_TRUE(picture.ok()) << picture.error().message;
   EXPECT_EQ(picture->space, "its ICC profile");
@@ -334,7 +334,7 @@ TEST_F(CmykFile, a_tiff_of_inks_is_what_its_profile_says) {
   }
 }
 
-TEST_F(CmykFile, inks_without_a_profile_are_filters_and_a_warning_says_so) {
+TEST_F(CmykFile, InksWithoutAProfileAreFiltersAndAWarningSaysSo) {
   const auto picture = read_picture(file("inks.tif", tiff("")), PictureView::kPlain);
   ASSERT_TRUE(picture.ok()) << picture.error().message;
   ASSERT_EQ(picture->warnings.size(), 1U);

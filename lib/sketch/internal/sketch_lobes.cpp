@@ -40,7 +40,7 @@ std::array<Vec3, 3> slopes(const SearchSamples& samples, const color::Rgb& at) {
 }  // namespace
 
 double lobe_at(double aspecular_deg, double exponent) {
-  return math::cos_power(aspecular_deg * kPi / 180, exponent);
+  return math::cos_power(aspecular_deg * kDegree, exponent);
 }
 
 color::Lab paint_lab(const color::Rgb& rgb) {
@@ -80,7 +80,7 @@ paint::LobeFit lobes_of(const formats::Basis& basis, const std::vector<color::Rg
   fit.diffuse = weights.front();
   for (std::size_t j = 0; j < basis.exponents.size(); ++j)
     fit.lobes.push_back({basis.exponents[j], weights[1 + 2 * j], weights[2 + 2 * j]});
-  if (basis.mirror) fit.lobes.push_back({envmap::kMirrorExponent, {}, weights.back()});
+  if (basis.mirror) fit.lobes.push_back({paint::kMirrorExponent, {}, weights.back()});
   return fit;
 }
 
@@ -88,7 +88,7 @@ std::vector<color::Rgb> weights_of(const formats::Basis& basis, const paint::Lob
   std::vector<color::Rgb> w(search_columns(basis));
   w.front() = lobes.diffuse;
   for (const paint::Lobe& lobe : lobes.lobes) {
-    if (!std::isfinite(lobe.exponent)) w.back() = lobe.gloss;
+    if (lobe.is_mirror()) w.back() = lobe.gloss;
     for (std::size_t j = 0; j < basis.exponents.size(); ++j)
       if (lobe.exponent == basis.exponents[j]) w[1 + 2 * j] = lobe.directional_diffuse, w[2 + 2 * j] = lobe.gloss;
   }

@@ -64,7 +64,7 @@ inline image::AovFile sphere(int size, const Vec3& to_light) {
       if (z2 <= 0) continue;
       const Vec3 n{u, v, std::sqrt(z2)};
       p[3] = 1;
-      p[4] = static_cast<float>(paint::aspecular_angle_rad(file.light, file.to_viewer(x, y), n) * 180 / kPi);
+      p[4] = static_cast<float>(paint::aspecular_angle_rad(file.light, file.to_viewer(x, y), n) / kDegree);
       p[5] = static_cast<float>(std::max(0.0, dot(n, file.light)));
       p[6] = 1;
       for (int c = 0; c < 3; ++c) p[7 + c] = static_cast<float>(n[c]);

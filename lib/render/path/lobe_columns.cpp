@@ -1,0 +1,140 @@
+#include "render/path/lobe_columns.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/text.h"
+#include "brdf/lobe_model.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+using rays::Float3;
+
+constexpr float kPi = std::numbers::pi_v<float>;
+constexpr float kTail = 40;     // cos^E below exp(-kTail) is left out, as PaintedPoint has it
+constexpr double kSame = 1e-6;  // relative, of two exponents
+
+float coat_reflectance(float cosine) {
+  return static_cast<float>(brdf::fresnel_dielectric(cosine, brdf::kCoatIndex));
+}
+
+}  // namespace
+
+std::string LobeColumns::name(std::size_t column) const {
+  if (column == diffuse()) return "diffuse";
+  if (column == mirror()) return "mirror";
+  return (column % 2 == 1 ? "flake-" : "gloss-") + shortest(exponents[(column - 1) / 2]);
+}
+
+Result<LobeColumns> lobe_columns(const Scene& scene) {
+  LobeColumns columns;
+  if (scene.env != nullptr) {
+    for (const envmap::PrefilteredLobe& lobe : scene.env->lobes) columns.exponents.push_back(lobe.exponent);
+  } else {
+    columns.exponents = lobe_exponents(scene.paints);
+  }
+  if (columns.exponents.size() > kMostTracedLobes)
+    return input_error("a basis of {} lobes: a transport has at most {}: take a smaller basis",
+                       columns.exponents.size(), kMostTracedLobes);
+  return columns;
+}
+
+Result<std::vector<color::Rgb>> column_weights(const LobeColumns& columns, const color::Rgb& diffuse,
+                                               const std::vector<paint::Lobe>& lobes, double gloss_deg) {
+  const double gloss_scale =
+      1 / brdf::fresnel_dielectric(std::cos(gloss_deg * std::numbers::pi / 180), brdf::kCoatIndex);
+  std::vector<color::Rgb> weights(columns.count());
+  weights[LobeColumns::diffuse()] = diffuse;
+  for (const paint::Lobe& lobe : lobes) {
+    if (lobe.directional_diffuse == color::Rgb{} && lobe.gloss == color::Rgb{}) continue;
+    if (lobe.is_mirror()) {
+      weights[columns.mirror()] = lobe.gloss;
+      continue;
+    }
+    const auto found = std::ranges::find_if(
+        columns.exponents, [&](double e) { return std::abs(e - lobe.exponent) <= kSame * lobe.exponent; });
+    if (found == columns.exponents.end()) {
+      std::string known;
+      for (const double e : columns.exponents) known += (known.empty() ? "" : ", ") + shortest(e);
+      return input_error(
+          "a paint has a lobe of exponent {}, and the transport has those of {}: fit the paint to that "
+          "basis, or trace with this one",
+          shortest(lobe.exponent), known.empty() ? "no lobes" : known);
+    }
+    const auto j = static_cast<std::size_t>(found - columns.exponents.begin());
+    weights[LobeColumns::flake(j)] = lobe.directional_diffuse;
+    weights[LobeColumns::gloss(j)] = gloss_scale * lobe.gloss;
+  }
+  return weights;
+}
+
+// Over the hemisphere of a viewer in front, cos^E cos_i has the integral 2 pi/(E + 2), and cos^E has 2 pi/(E + 1).
+double nominal_weight(const LobeColumns& columns, std::size_t column) {
+  constexpr double kHalf = 0.5, kTwoPi = 2 * std::numbers::pi;
+  if (column == LobeColumns::diffuse()) return kHalf / std::numbers::pi;
+  if (column == columns.mirror()) return 1;
+  const double exponent = columns.exponents[(column - 1) / 2];
+  return columns.is_gloss(column) ? (exponent + 1) / kTwoPi : kHalf * (exponent + 2) / kTwoPi;
+}
+
+LobeKernels::LobeKernels(const LobeColumns& columns, const PaintedPoint& point)
+    : columns_(columns), point_(point), frame_(rays::frame_about(point.normal())) {
+  const float cos_o = std::clamp(rays::dot(point.normal(), point.to_viewer()), 1e-6F, 1.0F);
+  mirror_ = coat_reflectance(cos_o);
+  if (!point.axes().empty()) axes_total_ = 0;
+  for (const PaintedPoint::Axis& axis : point.axes()) axes_total_ += axis.share;
+}
+
+float LobeKernels::at(const Float3& to_light, float* values) const {
+  const std::size_t lobes = columns_.exponents.size();
+  std::fill_n(values, columns_.count(), 0.0F);
+  const float cos_i = rays::dot(point_.normal(), to_light);
+  if (!(cos_i > 0)) return 0;
+  float powers[kMostTracedLobes] = {};
+  const auto add = [&](const Float3& axis, float share) {
+    const Float3 apart = axis - to_light;
+    const float versine = 0.5F * rays::dot(apart, apart);
+    if (versine >= 1) return;
+    const float log_cos = std::log1p(-versine);
+    for (std::size_t j = 0; j < lobes; ++j) {
+      const float power = static_cast<float>(columns_.exponents[j]) * log_cos;
+      if (power < -kTail) break;
+      powers[j] += share * std::exp(power);
+    }
+  };
+  if (point_.axes().empty()) add(point_.mirrored(), 1);
+  for (const PaintedPoint::Axis& axis : point_.axes()) add(axis.direction, axis.share);
+  const float fresnel = coat_reflectance(std::min(1.0F, 0.5F * rays::length(to_light + point_.to_viewer())));
+  values[LobeColumns::diffuse()] = cos_i;
+  float pdf = cos_i / kPi;
+  for (std::size_t j = 0; j < lobes; ++j) {
+    if (!(powers[j] > 0)) continue;
+    values[LobeColumns::flake(j)] = cos_i * powers[j];
+    values[LobeColumns::gloss(j)] = fresnel * powers[j];
+    pdf += (static_cast<float>(columns_.exponents[j]) + 1) / (2 * kPi) * powers[j] / axes_total_;
+  }
+  return pdf / static_cast<float>(lobes + 1);
+}
+
+Float3 LobeKernels::direction(double choice, double u, double v) const {
+  const std::size_t lobes = columns_.exponents.size();
+  const auto a = static_cast<float>(u), b = static_cast<float>(v);
+  const double scaled = choice * static_cast<double>(lobes + 1);
+  const std::size_t which = std::min(lobes, static_cast<std::size_t>(scaled));
+  if (which == 0) {
+    const float r = std::sqrt(a), phi = 2 * kPi * b;
+    return (r * std::cos(phi)) * frame_.x + (r * std::sin(phi)) * frame_.y + std::sqrt(1 - a) * point_.normal();
+  }
+  const auto exponent = static_cast<float>(columns_.exponents[which - 1]);
+  const auto& axes = point_.axes();
+  if (axes.empty()) return PaintedPoint::drawn_about(point_.mirrored(), exponent, a, b);
+  double at_axis = (scaled - static_cast<double>(which)) * axes_total_;
+  std::size_t k = 0;
+  while (k + 1 < axes.size() && at_axis >= axes[k].share) at_axis -= axes[k++].share;
+  return PaintedPoint::drawn_about(axes[k].direction, exponent, a, b);
+}
+
+}  // namespace goniochrome::render

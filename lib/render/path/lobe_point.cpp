@@ -1,0 +1,435 @@
+#include "render/path/lobe_point.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/angles.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+using rays::Float3;
+using rays::Hit;
+
+constexpr float kShort = 1 - 1e-4F;   // a ray to a point of an emitter ends this part of the way short of it
+constexpr float kLightChance = 0.5F;  // that a direction is drawn from the environment, where there is one
+constexpr int kMirrorShare = 8;       // one mirror sample to so many directions, where the mirror sees a surface
+
+color::Rgb rgb(const Float3& c) {
+  return rays::vec3(c);
+}
+
+double brightness(const color::Rgb& c) {
+  return (std::abs(c.x) + std::abs(c.y) + std::abs(c.z)) / 3;
+}
+
+}  // namespace
+
+struct LobePoint::Ray {
+  Float3 direction;
+  bool above = false, blocked = false, from_light = false;
+};
+
+// What a surface that a ray met sends back along it, by class.
+struct LobePoint::Sent {
+  color::Rgb base, gloss, deeper;
+  color::Rgb total() const { return base + gloss + deeper; }
+};
+
+// Of each sequence and column, the mean over its directions: light of the environment from free and from blocked
+// directions, of emitters, and bounced. The squares of single directions tell which estimate is the quieter one.
+struct LobePoint::Sums {
+  std::size_t columns;
+  int directions;
+  std::vector<color::Rgb> free, hidden, emitted, bounced;
+  std::vector<double> free_squares, hidden_squares;
+  std::vector<color::Rgb> classes;
+
+  Sums(std::size_t count, int of_directions, std::size_t of_columns, std::size_t of_classes)
+      : columns(of_columns),
+        directions(of_directions),
+        free(count * of_columns),
+        hidden(free.size()),
+        emitted(free.size()),
+        bounced(free.size()),
+        free_squares(free.size()),
+        hidden_squares(free.size()),
+        classes(of_classes) {}
+  std::size_t at(int sequence, std::size_t column) const {
+    return static_cast<std::size_t>(sequence) * columns + column;
+  }
+};
+
+LobePoint::LobePoint(const Transport& transport, const LobeColumns& columns, const PaintGroups& groups, int bounces,
+                     const rays::Spot& spot, const Float3& to_viewer)
+    : transport_(transport),
+      columns_(columns),
+      groups_(groups),
+      spot_(spot),
+      painted_(transport.painted(spot, to_viewer)),
+      kernels_(columns, painted_) {
+  options_.bounces = bounces;
+  if (transport.environment_) light_chance_ = kLightChance;
+  open_ = !transport.rays_->has_floor() && !transport.rays_->any_above(spot.start, spot.shading, 0);
+  if (!open_) mirror_hit_ = transport.rays_->closest(spot_.start, painted_.mirrored());
+}
+
+color::Rgb LobePoint::reflect(const Float3& f, const color::Rgb& light) const {
+  return transport_.reflection_ != nullptr ? color::reflected(*transport_.reflection_, rgb(f), light) : rgb(f) * light;
+}
+
+LobePoint::Ray LobePoint::drawn_ray(const std::array<double, 4>& numbers) const {
+  Ray ray;
+  if (numbers[0] < light_chance_) {
+    const EnvironmentTable::Place place = transport_.environment_->place(numbers[1], numbers[2]);
+    if (!(place.density > 0)) return ray;
+    ray.direction = place.direction;
+  } else {
+    ray.direction = kernels_.direction((numbers[0] - light_chance_) / (1 - light_chance_), numbers[1], numbers[2]);
+  }
+  ray.above = rays::dot(ray.direction, spot_.shading) > 0;
+  return ray;
+}
+
+std::vector<LobePoint::Ray> LobePoint::traced_rays(int sequences, int directions, std::uint64_t seed,
+                                                   bool& any_blocked) const {
+  std::vector<Ray> rays(static_cast<std::size_t>(sequences) * static_cast<std::size_t>(directions));
+  for (int which = 0; which < sequences; ++which) {
+    const Sequence sequence(mixed(seed, static_cast<std::uint64_t>(which)), static_cast<std::uint32_t>(directions));
+    for (int first = 0; first < directions; first += 8) {
+      Ray* eight = &rays[static_cast<std::size_t>(which) * static_cast<std::size_t>(directions) +
+                         static_cast<std::size_t>(first)];
+      rays::Fan fan;
+      fan.origin = spot_.start;
+      for (int i = 0; i < 8; ++i) {
+        eight[i] = drawn_ray(sequence.point(static_cast<std::uint32_t>(first + i), 0));
+        fan.x[i] = eight[i].direction.x, fan.y[i] = eight[i].direction.y, fan.z[i] = eight[i].direction.z;
+        if (eight[i].above) fan.wanted |= 1U << i;
+      }
+      const unsigned blocked = transport_.rays_->blocked(fan);
+      for (int i = 0; i < 8; ++i) eight[i].blocked = (blocked >> i & 1U) != 0;
+      any_blocked = any_blocked || blocked != 0;
+    }
+  }
+  return rays;
+}
+
+// As Transport::bounced() at its first surface, whose reflection is told in two parts here. What comes from further
+// surfaces is told apart.
+LobePoint::Sent LobePoint::sent(const Hit& hit, const Float3& direction, const Sequence& sequence,
+                                std::uint32_t index) const {
+  Sent sent;
+  const Transport& t = transport_;
+  const rays::Spot at = t.rays_->spot(hit, spot_.start, direction);
+  const PaintedPoint painted = t.painted(at, -direction);
+  if (painted.black()) return sent;
+  const double mirror = painted.mirror_weight(),
+               mirror_chance = mirror > 0 ? mirror / (mirror + painted.lobes_weight()) : 0, others = 1 - mirror_chance;
+  const Float3& start = at.start;
+  const auto add = [&](const Float3& to_light, double scale, const color::Rgb& light) {
+    const PaintedPoint::Parts parts = painted.parts(to_light);
+    const auto s = static_cast<float>(scale);
+    sent.base += reflect(s * (parts.diffuse + parts.lobes - parts.gloss), light);
+    sent.gloss += reflect(s * parts.gloss, light);
+  };
+  const std::array<double, 4> numbers = sequence.point(index, 4), onward = sequence.point(index, 5);
+  if (!t.lights_.empty()) {
+    const auto count = static_cast<double>(t.lights_.size());
+    const Light& light = t.lights_[std::min(t.lights_.size() - 1, static_cast<std::size_t>(numbers[2] * count))];
+    const Float3 to_light = rays::float3(light.direction);
+    if (rays::dot(at.shading, to_light) > 0 && !t.rays_->blocked(start, to_light))
+      add(to_light, count * kPi, light.white);
+  }
+  if (t.environment_) {
+    const LightSample light = t.environment_->drawn(numbers[0], numbers[1]);
+    const Reflection reflection = light.pdf > 0 ? painted.at(light.direction) : Reflection{};
+    if (reflection.pdf > 0 && !t.rays_->blocked(start, light.direction))
+      add(light.direction, 1 / (light.pdf + others * reflection.pdf), light.radiance);
+  }
+  if (!t.emitters_.empty()) {
+    const EmitterSample light = t.emitters_.drawn(start, onward[3], numbers[2], numbers[3]);
+    const Reflection reflection = light.pdf > 0 ? painted.at(light.direction) : Reflection{};
+    if (reflection.pdf > 0 && !t.rays_->blocked(start, light.direction, kShort * light.distance))
+      add(light.direction, 1 / (light.pdf + others * reflection.pdf), light.radiance);
+  }
+  // The next ray: along the mirror direction, or drawn from the lobes.
+  const bool mirrored = onward[0] < mirror_chance;
+  Reflection drawn;
+  if (mirrored) {
+    drawn.direction = painted.mirrored();
+  } else {
+    drawn = painted.drawn((onward[0] - mirror_chance) / others, onward[1], onward[2]);
+    if (!(drawn.pdf > 0)) return sent;
+  }
+  const double pdf = others * drawn.pdf;
+  const Hit next = t.rays_->closest(start, drawn.direction);
+  color::Rgb end;
+  double light_pdf = 0;
+  if (next.any()) {
+    end = t.emitters_.radiance(t.rays_->part(next.triangle));
+    if (end != color::Rgb{} && !mirrored) light_pdf = t.emitters_.pdf(next.triangle, drawn.direction, next.distance);
+  } else if (t.environment_) {
+    const LightSample light = t.environment_->at(drawn.direction);
+    end = light.radiance;
+    if (!mirrored) light_pdf = light.pdf;
+  }
+  if (mirrored) {
+    sent.gloss += (1 / mirror_chance) * reflect(painted.mirror(), end);
+  } else if (end != color::Rgb{}) {
+    add(drawn.direction, 1 / (pdf + light_pdf), end);
+  }
+  if (!next.any() || options_.bounces < 2) return sent;
+  PathOptions further = options_;
+  --further.bounces;
+  const color::Rgb deeper = t.bounced(next, start, drawn.direction, further, sequence, index, 6);
+  sent.deeper =
+      mirrored ? (1 / mirror_chance) * reflect(painted.mirror(), deeper) : (1 / pdf) * reflect(drawn.f_cos, deeper);
+  return sent;
+}
+
+void LobePoint::add_classes(const Float3& f, const Hit& hit, const Sent& sent, double share, Sums& sums) const {
+  const int group = groups_.of_part[static_cast<std::size_t>(transport_.rays_->part(hit.triangle))];
+  sums.classes[groups_.at(group, PaintGroups::kBase)] += share * reflect(f, sent.base);
+  sums.classes[groups_.at(group, PaintGroups::kGloss)] += share * reflect(f, sent.gloss);
+  sums.classes[groups_.at(group, PaintGroups::kDeeper)] += share * reflect(f, sent.deeper);
+}
+
+void LobePoint::add_ray(const Ray& ray, const Sequence& sequence, std::uint32_t index, Sums& sums, int which) const {
+  float values[2 * kMostTracedLobes + 2];
+  const float kernels_pdf = kernels_.at(ray.direction, values);
+  LightSample light;
+  if (transport_.environment_) light = transport_.environment_->at(ray.direction);
+  const double pdf = light_chance_ * light.pdf + (1 - light_chance_) * kernels_pdf;
+  if (!(pdf > 0) || !(kernels_pdf > 0)) return;
+  const double scale = 1 / pdf, size = scale * brightness(light.radiance);
+  const std::size_t first = sums.at(which, 0), count = columns_.count();
+  std::vector<color::Rgb>& into = ray.blocked ? sums.hidden : sums.free;
+  std::vector<double>& squares = ray.blocked ? sums.hidden_squares : sums.free_squares;
+  for (std::size_t k = 0; k < count; ++k) {
+    into[first + k] += (scale / sums.directions * values[k]) * light.radiance;
+    squares[first + k] += size * size * values[k] * values[k];
+  }
+  if (!ray.blocked || (options_.bounces == 0 && transport_.emitters_.empty())) return;
+  const Hit hit = transport_.rays_->closest(spot_.start, ray.direction);
+  if (!hit.any()) return;
+  const color::Rgb& emission = transport_.emitters_.radiance(transport_.rays_->part(hit.triangle));
+  if (emission != color::Rgb{}) {
+    const double share = 1 / (pdf + transport_.emitters_.pdf(hit.triangle, ray.direction, hit.distance));
+    for (std::size_t k = 0; k < count; ++k) sums.emitted[first + k] += (share / sums.directions * values[k]) * emission;
+  }
+  if (options_.bounces == 0) return;
+  const Sent sent = this->sent(hit, ray.direction, sequence, index);
+  const color::Rgb total = sent.total();
+  if (total == color::Rgb{}) return;
+  for (std::size_t k = 0; k < count; ++k) sums.bounced[first + k] += (scale / sums.directions * values[k]) * total;
+  add_classes(static_cast<float>(scale) * painted_.at(ray.direction).f_cos, hit, sent, 1.0 / sums.directions, sums);
+}
+
+void LobePoint::add_emitter(const std::array<double, 4>& numbers, Sums& sums, int which) const {
+  const EmitterSample light = transport_.emitters_.drawn(spot_.start, numbers[0], numbers[1], numbers[2]);
+  float values[2 * kMostTracedLobes + 2];
+  const float kernels_pdf = light.pdf > 0 ? kernels_.at(light.direction, values) : 0;
+  if (!(kernels_pdf > 0) || transport_.rays_->blocked(spot_.start, light.direction, kShort * light.distance)) return;
+  const double open_pdf = transport_.environment_ ? transport_.environment_->at(light.direction).pdf : 0;
+  const double scale = 1 / (light.pdf + light_chance_ * open_pdf + (1 - light_chance_) * kernels_pdf);
+  for (std::size_t k = 0; k < columns_.count(); ++k)
+    sums.emitted[sums.at(which, k)] += (scale / sums.directions * values[k]) * light.radiance;
+}
+
+void LobePoint::add_mirror(std::uint64_t seed, Sums& sums, int which) const {
+  if (options_.bounces == 0 || !mirror_hit_.any()) return;
+  const int samples = std::max(1, sums.directions / kMirrorShare);
+  const Sequence sequence(mixed(seed, 0x4D), static_cast<std::uint32_t>(sums.directions));
+  color::Rgb& sum = sums.bounced[sums.at(which, columns_.mirror())];
+  for (int i = 0; i < samples; ++i) {
+    const Sent sent = this->sent(mirror_hit_, painted_.mirrored(), sequence, static_cast<std::uint32_t>(i));
+    sum += (kernels_.mirror() / static_cast<double>(samples)) * sent.total();
+    add_classes(painted_.mirror(), mirror_hit_, sent, 1.0 / samples, sums);
+  }
+}
+
+// Directional lights, whose shadow rays decide all, and what the mirror sees without a bounce.
+void LobePoint::add_sure(const color::Rgb* open_light, LobeEstimate& result) const {
+  float values[2 * kMostTracedLobes + 2];
+  for (const Light& light : transport_.lights_) {
+    const Float3 direction = rays::float3(light.direction);
+    if (!(kernels_.at(direction, values) > 0)) continue;
+    if (!open_ && transport_.rays_->blocked(spot_.start, direction)) continue;
+    for (std::size_t k = 0; k < columns_.count(); ++k) result.direct[k] += (kPi * values[k]) * light.white;
+  }
+  color::Rgb& mirror = result.direct[columns_.mirror()];
+  if (mirror_hit_.any()) {
+    mirror += kernels_.mirror() * transport_.emitters_.radiance(transport_.rays_->part(mirror_hit_.triangle));
+  } else if (open_light != nullptr) {
+    mirror += open_light[columns_.mirror()];
+  } else if (transport_.environment_) {
+    mirror += kernels_.mirror() * transport_.environment_->radiance(painted_.mirrored());
+  }
+}
+
+// Light L from free directions is what is wanted; M is known of all directions. For any beta that does not depend on
+// the samples,
+//   (1 - beta) free + beta (M - hidden)
+// has the right expectation: beta = 1 takes away what is hidden, beta = 0 sums what is free. The quieter of both is the
+// one with the smaller second moment; beta = free2/(free2 + hidden2) is taken for the even sequences from the odd
+// ones and for the odd ones from the even ones, so that it depends on no sample that it weighs.
+LobeEstimate LobePoint::estimate(const color::Rgb* open_light, int sequences, int directions,
+                                 std::uint64_t seed) const {
+  const std::size_t count = columns_.count();
+  LobeEstimate result;
+  result.direct.resize(count), result.bounced.resize(count), result.covariance.resize(count);
+  result.classes.resize(groups_.classes());
+  add_sure(open_light, result);
+  const auto add_open = [&] {
+    for (std::size_t k = 0; open_light != nullptr && k + 1 < count; ++k) result.direct[k] += open_light[k];
+  };
+  if (open_ && (open_light != nullptr || !transport_.environment_)) {
+    add_open();
+    return result;
+  }
+  result.sequences = sequences;
+  bool any_blocked = false;
+  const std::vector<Ray> rays = traced_rays(sequences, directions, seed, any_blocked);
+  const bool summed = open_light == nullptr && transport_.environment_.has_value();
+  if (!any_blocked && !summed && !mirror_hit_.any()) {
+    add_open();
+    return result;
+  }
+  Sums sums(static_cast<std::size_t>(sequences), directions, count, groups_.classes());
+  const auto per_sequence = static_cast<std::uint32_t>(directions);
+  for (int which = 0; which < sequences; ++which) {
+    const std::uint64_t own = mixed(seed, static_cast<std::uint64_t>(which));
+    const Sequence sequence(own, per_sequence);
+    for (std::uint32_t i = 0; i < per_sequence; ++i) {
+      const Ray& ray = rays[static_cast<std::size_t>(which) * per_sequence + i];
+      if (ray.above && (ray.blocked || transport_.environment_)) add_ray(ray, sequence, i, sums, which);
+    }
+    if (!transport_.emitters_.empty())
+      for (std::uint32_t i = 0; i < per_sequence; ++i) add_emitter(sequence.point(i, 1), sums, which);
+    add_mirror(own, sums, which);
+  }
+  for (std::size_t c = 0; c < sums.classes.size(); ++c) result.classes[c] = (1.0 / sequences) * sums.classes[c];
+  std::vector<color::Rgb> shown(static_cast<std::size_t>(sequences));
+  for (std::size_t k = 0; k < count; ++k) {
+    double beta[2] = {0, 0};
+    if (open_light != nullptr && k != columns_.mirror()) {
+      double free[2] = {0, 0}, hidden[2] = {0, 0};
+      for (int which = 0; which < sequences; ++which)
+        free[which % 2] += sums.free_squares[sums.at(which, k)],
+            hidden[which % 2] += sums.hidden_squares[sums.at(which, k)];
+      for (const std::size_t parity : {0, 1}) {
+        const double all = free[1 - parity] + hidden[1 - parity];
+        beta[parity] = all > 0 ? free[1 - parity] / all : 1;
+      }
+    }
+    color::Rgb direct, bounced;
+    for (int which = 0; which < sequences; ++which) {
+      const std::size_t at = sums.at(which, k);
+      const double b = beta[which % 2];
+      color::Rgb light = (1 - b) * sums.free[at] - b * sums.hidden[at] + sums.emitted[at];
+      if (open_light != nullptr && k != columns_.mirror()) light += b * open_light[k];
+      direct += (1.0 / sequences) * light, bounced += (1.0 / sequences) * sums.bounced[at];
+      shown[static_cast<std::size_t>(which)] = light + sums.bounced[at];
+    }
+    result.direct[k] += direct, result.bounced[k] += bounced;
+    if (sequences < 2) continue;
+    const color::Rgb mean = direct + bounced;
+    Covariance& c = result.covariance[k];
+    for (const color::Rgb& one : shown) {
+      const color::Rgb d = one - mean;
+      const double products[6] = {d.x * d.x, d.y * d.y, d.z * d.z, d.x * d.y, d.x * d.z, d.y * d.z};
+      for (std::size_t i = 0; i < 6; ++i) c[i] += products[i] / (sequences - 1);
+    }
+  }
+  return result;
+}
+
+// `values`: of the columns at the visible point toward the hit, over the density of that direction.
+void LobePoint::add_pairs(const Hit& hit, const Float3& direction, const float* values, double scale,
+                          const Sequence& sequence, std::uint32_t index, Pairs& pairs) const {
+  const Transport& t = transport_;
+  const rays::Spot at = t.rays_->spot(hit, spot_.start, direction);
+  const PaintedPoint painted = t.painted(at, -direction);
+  const LobeKernels kernels(columns_, painted);
+  const std::size_t count = columns_.count();
+  std::vector<color::Rgb> once(count), deeper(count);
+  float sent[2 * kMostTracedLobes + 2];
+  for (const Light& light : t.lights_) {
+    const Float3 to_light = rays::float3(light.direction);
+    if (!(kernels.at(to_light, sent) > 0) || t.rays_->blocked(at.start, to_light)) continue;
+    for (std::size_t l = 0; l < count; ++l) once[l] += (kPi * sent[l]) * light.white;
+  }
+  PathOptions further = options_;
+  --further.bounces;
+  const auto add = [&](const Float3& toward, double share, std::uint32_t set) {
+    const Hit next = t.rays_->closest(at.start, toward);
+    color::Rgb light, bounced;
+    if (!next.any()) {
+      if (t.environment_) light = t.environment_->at(toward).radiance;
+    } else {
+      light = t.emitters_.radiance(t.rays_->part(next.triangle));
+      if (further.bounces > 0) bounced = t.bounced(next, at.start, toward, further, sequence, index, set);
+    }
+    for (std::size_t l = 0; l < count; ++l)
+      once[l] += (share * sent[l]) * light, deeper[l] += (share * sent[l]) * bounced;
+  };
+  const std::array<double, 4> numbers = sequence.point(index, 4);
+  const float light_chance = t.environment_ ? kLightChance : 0;
+  Float3 toward;
+  if (numbers[0] < light_chance) {
+    toward = t.environment_->drawn(numbers[1], numbers[2]).direction;
+  } else {
+    toward = kernels.direction((numbers[0] - light_chance) / (1 - light_chance), numbers[1], numbers[2]);
+  }
+  const float kernels_pdf = kernels.at(toward, sent);
+  if (kernels_pdf > 0) {
+    const double light_pdf = t.environment_ ? t.environment_->at(toward).pdf : 0;
+    add(toward, 1 / (light_chance * light_pdf + (1 - light_chance) * kernels_pdf), 6);
+  }
+  std::fill_n(sent, count, 0.0F);
+  sent[columns_.mirror()] = kernels.mirror();
+  add(painted.mirrored(), 1, 40);
+  const int group = groups_.of_part[static_cast<std::size_t>(at.part)];
+  for (std::size_t k = 0; k < count; ++k) {
+    if (values[k] == 0) continue;
+    for (std::size_t l = 0; l < count; ++l) {
+      pairs.once[pairs.at(group, k, l)] += (scale * values[k]) * once[l];
+      pairs.deeper[pairs.at(group, k, l)] += (scale * values[k]) * deeper[l];
+    }
+  }
+}
+
+LobePoint::Pairs LobePoint::pairs(int sequences, int directions, std::uint64_t seed) const {
+  Pairs pairs{columns_.count(), {}, {}};
+  pairs.once.resize(static_cast<std::size_t>(groups_.count) * pairs.columns * pairs.columns);
+  pairs.deeper.resize(pairs.once.size());
+  if (open_ || options_.bounces == 0) return pairs;
+  bool any_blocked = false;
+  const std::vector<Ray> rays = traced_rays(sequences, directions, seed, any_blocked);
+  const double share = 1.0 / (static_cast<double>(sequences) * directions);
+  float values[2 * kMostTracedLobes + 2];
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Ray& ray = rays[i];
+    if (!ray.above || !ray.blocked) continue;
+    const float kernels_pdf = kernels_.at(ray.direction, values);
+    const double light_pdf = transport_.environment_ ? transport_.environment_->at(ray.direction).pdf : 0;
+    const double pdf = light_chance_ * light_pdf + (1 - light_chance_) * kernels_pdf;
+    const Hit hit = pdf > 0 && kernels_pdf > 0 ? transport_.rays_->closest(spot_.start, ray.direction) : Hit{};
+    if (!hit.any()) continue;
+    const std::size_t which = i / static_cast<std::size_t>(directions),
+                      index = i % static_cast<std::size_t>(directions);
+    const Sequence sequence(mixed(seed, which), static_cast<std::uint32_t>(directions));
+    add_pairs(hit, ray.direction, values, share / pdf, sequence, static_cast<std::uint32_t>(index), pairs);
+  }
+  if (!mirror_hit_.any()) return pairs;
+  std::fill_n(values, columns_.count(), 0.0F);
+  values[columns_.mirror()] = kernels_.mirror();
+  const Sequence sequence(mixed(seed, 0x4D), static_cast<std::uint32_t>(directions));
+  for (int i = 0; i < directions; ++i)
+    add_pairs(mirror_hit_, painted_.mirrored(), values, 1.0 / directions, sequence, static_cast<std::uint32_t>(i),
+              pairs);
+  return pairs;
+}
+
+}  // namespace goniochrome::render

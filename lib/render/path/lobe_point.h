@@ -1,0 +1,88 @@
+// One visible point and the light that each lobe of a basis gathers there, by rays. goniochrome-theory(7), TRANSPORT.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "render/path/lobe_columns.h"
+#include "render/path/noise.h"
+#include "render/path/transport.h"
+
+namespace goniochrome::render {
+
+// Parts whose paints are told apart. Bounced light is told by the group that sent it and by how the light left it last.
+struct PaintGroups {
+  std::vector<int> of_part;  // of the mesh, then of the floor
+  int count = 0;
+  // The classes of bounced light: off the flakes of a group, off its gloss and mirror, and through further surfaces.
+  static constexpr int kKinds = 3;
+  enum Kind { kBase = 0, kGloss = 1, kDeeper = 2 };
+  std::size_t classes() const { return static_cast<std::size_t>(count) * kKinds; }
+  std::size_t at(int group, Kind kind) const { return static_cast<std::size_t>(group * kKinds + kind); }
+};
+
+// What a point shows in each column of weight 1, in the order of the columns. Direct light is that of lights,
+// environment and emitters; bounced light has met a surface before.
+struct LobeEstimate {
+  std::vector<color::Rgb> direct, bounced;
+  std::vector<Covariance> covariance;  // of one sequence's mean of the sum of both
+  std::vector<color::Rgb> classes;     // of bounced light, as the paint that the point wears shows them
+  int sequences = 0;                   // 0: the point sees its whole hemisphere, and all is exact
+};
+
+class LobePoint {
+ public:
+  // `bounces` as in PathOptions. The arguments must outlive the point.
+  LobePoint(const Transport& transport, const LobeColumns& columns, const PaintGroups& groups, int bounces,
+            const rays::Spot& spot, const rays::Float3& to_viewer);
+
+  // Whether nothing rises above its horizon.
+  bool open() const { return open_; }
+
+  // Bounced light by every pair of columns: what column k of weight 1 gathers of the light that column l of weight 1
+  // sends there from a surface of a group. What that surface got from lights, environment and emitters at once is told
+  // apart from what came to it through further surfaces in the paints that they wear. Sums in any product of colors
+  // are products with l's weight first and k's after it. Sampled without regard to any weight.
+  struct Pairs {
+    std::size_t columns = 0;
+    std::vector<color::Rgb> once, deeper;  // (group, k, l)
+    std::size_t at(int group, std::size_t k, std::size_t l) const {
+      return (static_cast<std::size_t>(group) * columns + k) * columns + l;
+    }
+  };
+  Pairs pairs(int sequences, int directions, std::uint64_t seed) const;
+
+  // The mean over so many sequences of `directions` each, a power of two. `open_light` has what each column
+  // gathers of the environment without any surface in the way: it is corrected by what rays find, without bias, so that
+  // a point whose rays are all free has no noise. Null: rays alone.
+  LobeEstimate estimate(const color::Rgb* open_light, int sequences, int directions, std::uint64_t seed) const;
+
+ private:
+  struct Ray;
+  struct Sent;
+  struct Sums;
+  Ray drawn_ray(const std::array<double, 4>& numbers) const;
+  std::vector<Ray> traced_rays(int sequences, int directions, std::uint64_t seed, bool& any_blocked) const;
+  Sent sent(const rays::Hit& hit, const rays::Float3& direction, const Sequence& sequence, std::uint32_t index) const;
+  void add_ray(const Ray& ray, const Sequence& sequence, std::uint32_t index, Sums& sums, int which) const;
+  void add_emitter(const std::array<double, 4>& numbers, Sums& sums, int which) const;
+  void add_mirror(std::uint64_t seed, Sums& sums, int which) const;
+  void add_classes(const rays::Float3& f, const rays::Hit& hit, const Sent& sent, double share, Sums& sums) const;
+  void add_pairs(const rays::Hit& hit, const rays::Float3& direction, const float* values, double scale,
+                 const Sequence& sequence, std::uint32_t index, Pairs& pairs) const;
+  void add_sure(const color::Rgb* open_light, LobeEstimate& result) const;
+  color::Rgb reflect(const rays::Float3& f, const color::Rgb& light) const;
+
+  const Transport& transport_;
+  const LobeColumns& columns_;
+  const PaintGroups& groups_;
+  PathOptions options_;
+  rays::Spot spot_;
+  PaintedPoint painted_;
+  LobeKernels kernels_;
+  rays::Hit mirror_hit_;
+  float light_chance_ = 0;
+  bool open_ = false;
+};
+
+}  // namespace goniochrome::render

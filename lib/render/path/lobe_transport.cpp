@@ -1,0 +1,295 @@
+#include "render/path/lobe_transport.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/clock.h"
+#include "base/parallel.h"
+#include "brdf/lobe_model.h"
+#include "render/effects.h"
+#include "render/internal/seen.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+constexpr std::size_t kTogether = 64;
+constexpr int kFirstBatches = 2, kMostAtOnce = 256;
+// Later rounds draw as few sequences as tell a variance, each of as many directions as it takes: the longer a sequence,
+// the more evenly it covers the hemisphere.
+constexpr int kSequences = 8;
+// A point's own variance counts as its batches less one, that of its neighborhood as so many.
+constexpr double kNeighborhood = 4;
+// Directions at a probe; scaling is judged by ratios, in which the noise of a probe stands on both sides.
+constexpr int kProbeSequences = 4, kProbeDirections = 256;
+constexpr int kReach = 2;  // pixels to each side of the neighborhood
+
+class Tracing {
+ public:
+  Tracing(const Transport& transport, const VisibleSurface& surface, const LobeColumns& columns, const WornPaints& worn,
+          const OpenLight* open, const LobeTransportRequest& request)
+      : transport_(transport), surface_(surface), open_(open), request_(request), deadline_(request.time_limit_s) {
+    LobeTransport& t = result_.transport;
+    const Gbuffer& g = surface.gbuffer;
+    t.width = g.width, t.height = g.height, t.columns = columns, t.worn = worn;
+    t.white_luminance = request.white_luminance, t.bounces = request.bounces;
+    number_.assign(surface.hits.size(), -1);
+    for (std::size_t i = 0; i < surface.hits.size(); ++i) {
+      if (!surface.hits[i].any()) continue;
+      number_[i] = static_cast<std::int32_t>(t.places.size());
+      t.places.push_back(static_cast<std::uint32_t>(i));
+      t.part.push_back(std::abs(static_cast<int>(g.data[4 * i + 3])) - 1);
+    }
+    const std::size_t points = t.places.size();
+    t.direct.assign(points * t.floats(), 0), t.bounced.assign(points * t.floats(), 0);
+    t.classes.assign(points * worn.groups.classes() * 3, 0);
+    t.noise_de00.assign(points, 0);
+    variance_.assign(points * columns.count(), 0);
+    batches_.assign(points, 0), sequences_.assign(points, 0), needed_.assign(points, 0);
+    for (std::size_t k = 0; k < columns.count(); ++k) nominal_.push_back(nominal_weight(columns, k));
+  }
+
+  TracedLobes trace() {
+    std::vector<int> more(batches_.size(), kFirstBatches);
+    while (true) {
+      sample(more);
+      result_.noise_p95_de00 = judge();
+      if (request_.progress) request_.progress(result_.noise_p95_de00, clock_.elapsed_s());
+      result_.reached = result_.noise_p95_de00 <= request_.tolerance_de00;
+      if (result_.reached || deadline_.passed() || !plan(more)) break;
+    }
+    const double count = std::max<double>(1, static_cast<double>(batches_.size()));
+    for (std::size_t i = 0; i < batches_.size(); ++i) {
+      result_.noise_mean_de00 += result_.transport.noise_de00[i] / count;
+      result_.samples_mean += kBatch * batches_[i] / count;
+    }
+    result_.free_share = static_cast<double>(std::ranges::count(batches_, 0)) / count;
+    if (request_.bounces > 0) probe();
+    result_.time_s = clock_.elapsed_s();
+    return std::move(result_);
+  }
+
+ private:
+  void sample(const std::vector<int>& more) {
+    std::vector<std::uint32_t> wanted;
+    for (std::size_t i = 0; i < more.size(); ++i)
+      if (more[i] > 0) wanted.push_back(static_cast<std::uint32_t>(i));
+    const std::size_t chunks = (wanted.size() + kTogether - 1) / kTogether;
+    parallel_for(chunks, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t chunk = begin; chunk < end; ++chunk) {
+        if (round_ > 0 && deadline_.passed()) return;  // the first round is whole
+        for (std::size_t k = chunk * kTogether; k < std::min(wanted.size(), (chunk + 1) * kTogether); ++k)
+          sample(wanted[k], more[wanted[k]]);
+      }
+    });
+    ++round_;
+  }
+
+  LobePoint point_at(std::size_t i) const {
+    const LobeTransport& t = result_.transport;
+    const int x = static_cast<int>(t.places[i]) % t.width, y = static_cast<int>(t.places[i]) / t.width;
+    return {transport_,
+            t.columns,
+            t.worn.groups,
+            request_.bounces,
+            spot_at(transport_.rays(), surface_, x, y),
+            rays::float3(surface_.gbuffer.to_viewer(x, y))};
+  }
+
+  void probe() {
+    LobeTransport& t = result_.transport;
+    const std::size_t points = t.places.size(),
+                      count = std::min<std::size_t>(points, static_cast<std::size_t>(request_.probes));
+    std::vector<BounceProbe> probes(count);
+    parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const std::size_t number = (2 * i + 1) * points / (2 * count);
+        const LobePoint point = point_at(number);
+        if (point.open()) continue;
+        const LobePoint::Pairs pairs =
+            point.pairs(kProbeSequences, kProbeDirections, mixed(request_.seed, 0xB0BEU + i));
+        probes[i].point = static_cast<std::uint32_t>(number);
+        const auto keep = [](const std::vector<color::Rgb>& from, std::vector<float>& to) {
+          for (const color::Rgb& light : from)
+            for (int c = 0; c < 3; ++c) to.push_back(static_cast<float>(light[c]));
+        };
+        keep(pairs.once, probes[i].once), keep(pairs.deeper, probes[i].deeper);
+      }
+    });
+    t.probed = static_cast<int>(count);
+    for (BounceProbe& probe : probes) {
+      const auto lit = [](float value) { return value != 0; };
+      if (std::ranges::any_of(probe.once, lit) || std::ranges::any_of(probe.deeper, lit))
+        t.probes.push_back(std::move(probe));
+    }
+  }
+
+  // Rounds are independent estimates, and count by their batches.
+  void sample(std::size_t i, int batches) {
+    LobeTransport& t = result_.transport;
+    const std::uint32_t place = t.places[i];
+    const int x = static_cast<int>(place) % t.width, y = static_cast<int>(place) / t.width;
+    const Gbuffer& g = surface_.gbuffer;
+    const rays::Spot spot = spot_at(transport_.rays(), surface_, x, y);
+    const LobePoint point = point_at(i);
+    std::vector<color::Rgb> open(t.columns.count());
+    if (open_ != nullptr) open_->at(rays::vec3(spot.shading), g.to_viewer(x, y), spot.part, open.data());
+    const int sequences = std::min(batches, kSequences);
+    int of_each = 1;  // batches
+    while (of_each * sequences < batches) of_each *= 2;
+    const LobeEstimate estimate =
+        point.estimate(open_ != nullptr ? open.data() : nullptr, sequences, of_each * kBatch,
+                       mixed(mixed(request_.seed, i), static_cast<std::uint64_t>(batches_[i])));
+    const double before = batches_[i], added = estimate.sequences * of_each;
+    const double share = added > 0 ? added / (before + added) : 1;
+    const auto mix = [share](float& into, double value) {
+      into = static_cast<float>((1 - share) * into + share * value);
+    };
+    for (std::size_t k = 0; k < t.columns.count(); ++k)
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::size_t at = i * t.floats() + 3 * k + c;
+        mix(t.direct[at], estimate.direct[k][static_cast<int>(c)]);
+        mix(t.bounced[at], estimate.bounced[k][static_cast<int>(c)]);
+      }
+    for (std::size_t k = 0; k < estimate.classes.size(); ++k)
+      for (std::size_t c = 0; c < 3; ++c)
+        mix(t.classes[(i * estimate.classes.size() + k) * 3 + c], estimate.classes[k][static_cast<int>(c)]);
+    batches_[i] += estimate.sequences * of_each;
+    sequences_[i] += estimate.sequences;
+    // The variance of the mean of both rounds, kept as that of one batch.
+    for (std::size_t k = 0; added > 0 && k < t.columns.count(); ++k) {
+      float& variance = variance_[i * t.columns.count() + k];
+      const double old = before > 0 ? (1 - share) * (1 - share) * variance / before : 0,
+                   now = share * share * nominal_variance(i, k, estimate.covariance[k]) / estimate.sequences;
+      variance = static_cast<float>((before + added) * (old + now));
+    }
+  }
+
+  // dE00^2
+  double nominal_variance(std::size_t i, std::size_t k, Covariance covariance) const {
+    const LobeTransport& t = result_.transport;
+    color::Rgb shown = nominal_[k] * t.light(i, k);
+    if (t.columns.is_gloss(k)) shown += (kNominalGray / std::numbers::pi) * t.light(i, 0);
+    for (double& element : covariance) element *= nominal_[k] * nominal_[k];
+    const double noise = noise_de00(shown, covariance, request_.white_luminance);
+    return noise * noise;
+  }
+
+  double judge() {
+    const std::size_t points = batches_.size();
+    parallel_for(points, 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) judge(i);
+    });
+    std::vector<double> noise(result_.transport.noise_de00.begin(), result_.transport.noise_de00.end());
+    return percentile_95(std::move(noise));
+  }
+
+  // As path_picture(): few estimates tell little of their variance, and how many samples a point is to get is decided
+  // by its neighbors alone, so that no point stops where its own sums happen to be bright.
+  void judge(std::size_t i) {
+    LobeTransport& t = result_.transport;
+    t.noise_de00[i] = 0, needed_[i] = 0;
+    const int n = batches_[i];
+    if (n < 2) return;
+    const std::size_t columns = t.columns.count();
+    const int x = static_cast<int>(t.places[i]) % t.width, y = static_cast<int>(t.places[i]) / t.width;
+    double around[2 * kMostTracedLobes + 2] = {};
+    int count = 0;
+    for (int v = std::max(0, y - kReach); v <= std::min(t.height - 1, y + kReach); ++v) {
+      for (int u = std::max(0, x - kReach); u <= std::min(t.width - 1, x + kReach); ++u) {
+        const std::int32_t number = number_[static_cast<std::size_t>(v) * static_cast<std::size_t>(t.width) + u];
+        const auto other = static_cast<std::size_t>(number);
+        if (number < 0 || other == i || batches_[other] < 2) continue;
+        ++count;
+        for (std::size_t k = 0; k < columns; ++k) around[k] += variance_[other * columns + k];
+      }
+    }
+    const double freedom = sequences_[i] - 1;
+    double worst = 0, needed = 0;
+    for (std::size_t k = 0; k < columns; ++k) {
+      const double own = variance_[i * columns + k];
+      const double mean = (around[k] + own) / (count + 1);
+      worst = std::max(worst, (freedom * own + kNeighborhood * mean) / (freedom + kNeighborhood) / n);
+      needed = std::max(needed, count > 0 ? around[k] / count : own);
+    }
+    t.noise_de00[i] = static_cast<float>(std::sqrt(worst));
+    needed_[i] = needed / (request_.tolerance_de00 * request_.tolerance_de00);
+  }
+
+  // How many batches each point is to get next: what its neighborhood asks for, at most four times what it has. The
+  // twentieth part of the points that would need most get no more than the rest. Where the neighborhoods are content
+  // but the picture is not, all is scaled by what it lacks.
+  bool plan(std::vector<int>& more) const {
+    const double lacking = result_.noise_p95_de00 / request_.tolerance_de00;
+    for (double scale = 1.1;; scale *= 1.1 * std::max(1.0, lacking * lacking)) {
+      const double most = std::min<double>(std::ceil(1.05 * scale * percentile_95(needed_)), request_.most_batches);
+      bool any = false, limited = true;
+      for (std::size_t i = 0; i < batches_.size(); ++i) {
+        const double n = batches_[i], wanted = std::min(std::ceil(scale * needed_[i]), most) - n;
+        more[i] = static_cast<int>(std::clamp(wanted, 0.0, std::min<double>(3 * n, kMostAtOnce)));
+        if (more[i] % 2 != 0) ++more[i];
+        any = any || more[i] > 0;
+        limited = limited && (n == 0 || needed_[i] == 0 || n >= request_.most_batches);
+      }
+      if (any) return true;
+      if (limited || scale > 1e6) return false;
+    }
+  }
+
+  const Transport& transport_;
+  const VisibleSurface& surface_;
+  const OpenLight* open_;
+  const LobeTransportRequest& request_;
+  Deadline deadline_;
+  Stopwatch clock_;
+  TracedLobes result_;
+  std::vector<std::int32_t> number_;  // of the point of each pixel, or -1
+  std::vector<float> variance_;       // of one batch: point, column; dE00^2
+  std::vector<int> batches_, sequences_;
+  std::vector<double> needed_, nominal_;
+  int round_ = 0;
+};
+
+}  // namespace
+
+Result<WornPaints> worn_paints(const LobeColumns& columns, const PathScene& path) {
+  const Scene& scene = *path.scene;
+  WornPaints worn;
+  std::vector<std::size_t> first;  // part of each group
+  for (std::size_t part = 0; part < scene.paints.size(); ++part) {
+    int group = scene.paints.size() <= kMostOwnGroups ? static_cast<int>(first.size()) : 0;
+    while (group < static_cast<int>(first.size()) && !same_wear(scene, first[static_cast<std::size_t>(group)], part))
+      ++group;
+    if (group == static_cast<int>(first.size())) {
+      const double gloss_deg = part < scene.gloss_deg.size() ? scene.gloss_deg[part] : brdf::kGlossIncidence_deg;
+      GONIO_ASSIGN(auto weights,
+                   column_weights(columns, scene.paints[part].diffuse, scene.paints[part].lobes, gloss_deg));
+      worn.weights.push_back(std::move(weights));
+      first.push_back(part);
+    }
+    worn.groups.of_part.push_back(group);
+    worn.emission.push_back(part < path.emission.size() ? path.emission[part] : color::Rgb{});
+    worn.brushed.push_back(part < scene.anisotropy.size() ? scene.anisotropy[part] : paint::Anisotropy{});
+  }
+  if (path.ground) {
+    if (path.ground->kind == Ground::Kind::kShadow)
+      return usage_error(
+          "the light of a floor that shows the environment is no sum of lobes: give the floor a paint, or "
+          "trace without it");
+    GONIO_ASSIGN(auto weights, column_weights(columns, path.ground->paint.diffuse, path.ground->paint.lobes,
+                                              brdf::kGlossIncidence_deg));
+    worn.groups.of_part.push_back(static_cast<int>(first.size()));
+    worn.has_floor = true;
+    worn.weights.push_back(std::move(weights));
+  }
+  worn.groups.count = static_cast<int>(worn.weights.size());
+  return worn;
+}
+
+TracedLobes traced_lobes(const Transport& transport, const VisibleSurface& surface, const LobeColumns& columns,
+                         const WornPaints& worn, const OpenLight* open, const LobeTransportRequest& request) {
+  return Tracing(transport, surface, columns, worn, open, request).trace();
+}
+
+}  // namespace goniochrome::render

@@ -1,0 +1,95 @@
+#include "render/path/open_light.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/angles.h"
+#include "base/text.h"
+#include "brdf/lobe_model.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+// Light off the coat has its reflectance in it, relative to nothing.
+std::vector<paint::LobeFit> unit_paints(const LobeColumns& columns) {
+  const color::Rgb one{1, 1, 1};
+  const double reflectance = brdf::fresnel_dielectric(std::cos(brdf::kGlossIncidence_deg * kDegree), brdf::kCoatIndex);
+  paint::LobeFit blank;
+  for (const double exponent : columns.exponents) blank.lobes.push_back({exponent, {}, {}});
+  blank.lobes.push_back({paint::kMirrorExponent, {}, {}});
+  std::vector<paint::LobeFit> paints(columns.count(), blank);
+  paints.front().diffuse = one;
+  for (std::size_t j = 0; j < columns.exponents.size(); ++j) {
+    paints[LobeColumns::flake(j)].lobes[j].directional_diffuse = one;
+    paints[LobeColumns::gloss(j)].lobes[j].gloss = reflectance * one;
+  }
+  paints.back().lobes.back().gloss = one;
+  return paints;
+}
+
+}  // namespace
+
+Result<OpenLight> OpenLight::create(const envmap::PrefilteredEnvironment& env, const LobeColumns& columns,
+                                    std::vector<std::vector<brdf::Tilt>> tilts) {
+  OpenLight open;
+  open.env_ = &env, open.columns_ = columns, open.tilts_ = std::move(tilts);
+  for (const double exponent : columns.exponents) {
+    open.lobes_.push_back(env.lobe(exponent));
+    if (open.lobes_.back() == nullptr)
+      return input_error("the environment has no lobe of exponent {}, which a transport of this basis needs",
+                         shortest(exponent));
+  }
+  if (env.diffuse.map.size == 0 || env.mirror.map.size == 0)
+    return input_error(
+        "the environment has no {} part, which a transport needs: make it with a basis that holds "
+        "<mirror/>, by prefilter-envmap",
+        env.diffuse.map.size == 0 ? "diffuse" : "mirror");
+  Scene scene;
+  scene.paints = unit_paints(columns);
+  scene.env = &env;
+  scene.gloss_deg.assign(scene.paints.size(), brdf::kGlossIncidence_deg);
+  Effects effects = effects_of(scene);
+  effects.fresnel = effects.horizon = effects.mirror = true;
+  open.table_ = weight_table(scene, effects);
+  return open;
+}
+
+double OpenLight::weight(std::size_t column, int slot, double cos_o, int channel) const {
+  const double x = std::sqrt(cos_o) * table_.segments;
+  const int segment = std::min(static_cast<int>(x), table_.segments - 1);
+  const float* w = table_.at(static_cast<int>(column), segment, slot);
+  return w[channel] + w[4 + channel] * (x - segment);
+}
+
+// A brushed surface gathers the mean over its tilted normals, as the engines have it.
+void OpenLight::at(const Vec3& n, const Vec3& to_viewer, int part, color::Rgb* light) const {
+  const double cos_o = std::clamp(dot(n, to_viewer), 0.0, 1.0);
+  std::fill_n(light, columns_.count(), color::Rgb{});
+  light[0] = weight(0, WeightTable::diffuse_slot(), cos_o, 0) * envmap::bilinear(env_->diffuse.map, n);
+  const auto add_lobes = [&](const Vec3& mirrored, double share) {
+    for (std::size_t k = 1; k < columns_.mirror(); ++k) {
+      const std::size_t lobe = (k - 1) / 2;
+      const Vec3 toward = mirrored + weight(k, table_.shift_slot(lobe), cos_o, static_cast<int>(lobe % 4)) * n;
+      light[k] +=
+          share * weight(k, WeightTable::lobe_slot(lobe), cos_o, 0) * envmap::bilinear(lobes_[lobe]->map, toward);
+    }
+  };
+  const Vec3 mirrored = 2 * dot(n, to_viewer) * n - to_viewer;
+  const auto p = static_cast<std::size_t>(part);
+  if (p >= tilts_.size() || tilts_[p].size() <= 1) {
+    add_lobes(mirrored, 1);
+  } else {
+    const double level2 = n.x * n.x + n.z * n.z;
+    const Vec3 x = level2 > 1e-12 ? normalized({n.z, 0, -n.x}) : Vec3{1, 0, 0}, y = cross(n, x);
+    for (const brdf::Tilt& tilt : tilts_[p]) {
+      const Vec3 m = tilt.normal.x * x + tilt.normal.y * y + tilt.normal.z * n;
+      const Vec3 r = 2 * dot(m, to_viewer) * m - to_viewer;
+      if (dot(m, to_viewer) > 0 && dot(r, n) > 0) add_lobes(r, tilt.weight);
+    }
+  }
+  const std::size_t last = columns_.mirror();
+  light[last] = weight(last, table_.mirror_slot(), cos_o, 0) * envmap::bilinear(env_->mirror.map, mirrored);
+}
+
+}  // namespace goniochrome::render

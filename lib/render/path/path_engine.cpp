@@ -1,0 +1,158 @@
+#include "render/path/path_engine.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "render/path/path_tracer.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+// Of a scene that only its own parts light: the luminance of a matt white surface in light as bright as they are.
+double emitted_white(const Scene& scene) {
+  double largest = 0;
+  for (const color::Rgb& emission : scene.emission) largest = std::max(largest, color::xyz_d65_from_rgb(emission).Y);
+  return largest;
+}
+
+}  // namespace
+
+const EngineInfo PathEngine::kInfo = {
+    .name = "path",
+    .sentence = "follows light along rays, from surface to surface: shadows, floors and light that the mesh passes on",
+    .where = "along rays",
+    .is_planned = false,
+    .needs_texels = true,
+    .traces_rays = true,
+    .needs_mesh = true,
+    .make = [](Sight& sight) -> std::unique_ptr<Engine> { return std::make_unique<PathEngine>(sight); }};
+
+Result<void> PathEngine::can_shade(const Scene& scene) const {
+  if (!sight_.shows_mesh() || scene.mesh == nullptr || scene.mesh->triangles.empty())
+    return usage_error("the engine path traces rays through a mesh: a G-buffer that is given is shaded by cpu");
+  if (scene.env != nullptr && scene.texels == nullptr)
+    return usage_error(
+        "the engine path traces rays to the image that the environment was made from, which is not given");
+  if (scene.ground && scene.ground->kind == Ground::Kind::kShadow && scene.texels == nullptr)
+    return usage_error("a floor that shows the ground of an environment needs an environment");
+  return {};
+}
+
+Result<void> PathEngine::load(const Scene& scene, const Effects& effects) {
+  scene_ = scene, effects_ = effects;
+  white_luminance_ = diffuse_white(scene.env, scene.lights).luminance;
+  if (!(white_luminance_ > 0)) white_luminance_ = emitted_white(scene);
+  if (!(white_luminance_ > 0)) white_luminance_ = 1;
+  transport_.reset();
+  PathScene path;
+  path.scene = &scene_;
+  path.environment = scene.texels != nullptr ? &scene.texels->environment() : nullptr;
+  path.emission = scene.emission;
+  path.ground = scene.ground;
+  path.rays = sight_.traced_mesh();
+  path.tilt_tolerance = effects.tilt_tolerance;
+  GONIO_ASSIGN(Transport transport, Transport::create(path));
+  transport_.emplace(std::move(transport));
+  return {};
+}
+
+std::vector<std::string> PathEngine::remarks() const {
+  std::vector<std::string> all;
+  if (!transport_) return all;
+  std::string gaining;
+  for (const int part : transport_->gaining_parts()) {
+    const auto at = static_cast<std::size_t>(part);
+    const bool floor = at >= scene_.mesh->parts.size();
+    gaining += (gaining.empty() ? "" : ", ") + (floor ? "the floor" : scene_.mesh->parts[at].name);
+  }
+  if (!gaining.empty())
+    all.push_back(
+        fmt::format("the paint of {} sends back more light than it gets: between such surfaces light grows "
+                    "with every bounce",
+                    gaining));
+  if (scene_.ground) {
+    const mesh::Box box = bounding_box(*scene_.mesh);
+    const double margin = 1e-6 * std::max({box.high.x - box.low.x, box.high.y - box.low.y, box.high.z - box.low.z});
+    if (scene_.ground->height > box.low.y + margin)
+      all.push_back(
+          fmt::format("the floor at height {:.6g} lies above the lowest point of the mesh, which is at {:.6g}: "
+                      "what is below the floor is not seen",
+                      scene_.ground->height, box.low.y));
+  }
+  return all;
+}
+
+void PathEngine::load_paints(const Scene& scene) {
+  const Result<void> loaded = load(Scene(scene), effects_);
+  failure_.reset();
+  if (!loaded.ok()) failure_ = loaded.error();
+}
+
+// Behind everything: in each pixel the mean over its samples, that the scene then covers.
+void PathEngine::draw_background(const Rays& rays, int samples, image::Image& rgba) const {
+  const auto shifts = sample_shifts(samples);
+  const rays::RayScene& traced = transport_->rays();
+  const rays::Float3 eye = traced.local(rays.eye);
+  parallel_for(static_cast<std::size_t>(rgba.height), 8, [&](std::size_t begin, std::size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      for (int x = 0; x < rgba.width; ++x) {
+        color::Rgb sum;
+        for (const auto& [dx, dy] : shifts) {
+          const Vec3 direction = rays.direction(x + 0.5 + dx, y + 0.5 + dy);
+          if (traced.closest(eye, rays::float3(direction)).any()) continue;
+          if (effects_.background == Background::kColor) {
+            sum += scene_.background_color;
+          } else if (scene_.texels != nullptr) {
+            sum += smooth_radiance(scene_.texels->environment(), direction);
+          }
+        }
+        float* pixel = rgba.pixel(x, y);
+        for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(sum[c] / static_cast<double>(shifts.size()));
+        pixel[3] = 1;
+      }
+    }
+  });
+}
+
+Result<void> PathEngine::shade(Sight& sight, int sample, float gain, bool add, image::Image& rgba) {
+  if (failure_) return *failure_;
+  if (add) return {};
+  const int samples = sample == 0 ? 1 : static_cast<int>(std::lround(1 / gain));
+  VisibleSurface surface;
+  {
+    const std::shared_ptr<const Gbuffer> seen = sight.gbuffer(0);
+    surface.gbuffer.width = seen->width, surface.gbuffer.height = seen->height, surface.gbuffer.rays = seen->rays;
+  }
+  const Gbuffer& g = surface.gbuffer;
+  if (samples == 1) surface = visible_surface(transport_->rays(), Rays(g.rays), g.width, g.height);
+  const Effort effort = sight.effort();
+  PathRequest request;
+  request.options.bounces = effort.bounces;
+  request.tolerance_de00 = effects_.tolerance_de00;
+  request.time_limit_s = effort.time_limit_s;
+  request.seed = effort.seed;
+  request.progress = effort.progress;
+  request.white_luminance = white_luminance_;
+  request.pixel_samples = samples;
+  const PathPicture picture = path_picture(*transport_, surface, nullptr, request);
+  rgba = {g.width, g.height, 4, {}, {}};
+  rgba.data.assign(static_cast<std::size_t>(g.width) * static_cast<std::size_t>(g.height) * 4, 0.0F);
+  if (effects_.background != Background::kNone) draw_background(g.rays, samples, rgba);
+  Noise noise{picture.noise_p95_de00, picture.noise_mean_de00, picture.samples_mean,
+              picture.time_s,         picture.reached,         {}};
+  noise.de00 = {g.width, g.height, 1, std::vector<float>(rgba.data.size() / 4, 0.0F), {"error"}};
+  for (const PathPoint& point : picture.points) {
+    float* pixel = rgba.pixel(point.x, point.y);
+    for (int c = 0; c < 3; ++c) pixel[c] += static_cast<float>(point.radiance[c]);
+    if (effects_.background == Background::kNone) pixel[3] = point.coverage;
+    *noise.de00.pixel(point.x, point.y) = static_cast<float>(point.noise_de00);
+  }
+  noise_ = std::move(noise);
+  return {};
+}
+
+}  // namespace goniochrome::render

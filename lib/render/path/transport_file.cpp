@@ -1,0 +1,306 @@
+#include "render/path/transport_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/json.h"
+#include "base/text.h"
+#include "render/internal/seen.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+constexpr int kVersion = 1;
+const char* const kRemedy = "render it again with --aov transport";
+const char* const kKindNames[PaintGroups::kKinds] = {"base", "gloss", "deeper"};
+
+// "direct-diffuse", "bounced-flake-002": lobes by number, as the parts of an environment.
+std::string part_name(const LobeColumns& columns, std::size_t column, bool bounced) {
+  const std::string head = bounced ? "bounced-" : "direct-";
+  if (column == LobeColumns::diffuse()) return head + "diffuse";
+  if (column == columns.mirror()) return head + "mirror";
+  return fmt::format("{}{}-{:03}", head, columns.is_gloss(column) ? "gloss" : "flake", (column - 1) / 2);
+}
+
+std::string class_name(int group) {
+  return fmt::format("bounced-class-{:03}", group);
+}
+
+image::Image blank(const LobeTransport& t, int channels) {
+  image::Image image{t.width, t.height, channels, {}, {}};
+  image.data.assign(
+      static_cast<std::size_t>(t.width) * static_cast<std::size_t>(t.height) * static_cast<std::size_t>(channels),
+      0.0F);
+  return image;
+}
+
+// What rounding to halves changes in the gray paint of a column at its worst point.
+double half_error(const LobeTransport& t, const image::Image& image, std::size_t column) {
+  double worst = 0;
+  const double weight = nominal_weight(t.columns, column);
+  for (std::size_t i = 0; i < t.places.size(); i += 7) {
+    const float* rgb = &image.data[3 * static_cast<std::size_t>(t.places[i])];
+    color::Rgb light{rgb[0], rgb[1], rgb[2]}, rounded;
+    for (int c = 0; c < 3; ++c) {
+      // To 11 bits, and to multiples of the smallest half.
+      int exponent = 0;
+      std::frexp(light[c], &exponent);
+      const double unit = std::max(std::ldexp(1.0, exponent - 11), 0x1p-24);
+      rounded[c] = unit * std::nearbyint(light[c] / unit);
+    }
+    color::Rgb base;
+    if (t.columns.is_gloss(column))
+      base = (kNominalGray / std::numbers::pi / t.white_luminance) * t.light(i, LobeColumns::diffuse());
+    worst = std::max(worst, seen_difference(base + weight * light, base + weight * rounded, 1));
+  }
+  return worst;
+}
+
+Json rgb_json(const color::Rgb& c) {
+  return Json::array({c.x, c.y, c.z});
+}
+
+std::string header_of(const LobeTransport& t) {
+  Json header = {{"version", kVersion},
+                 {"exponents", t.columns.exponents},
+                 {"bounces", t.bounces},
+                 {"white_luminance", t.white_luminance},
+                 {"group_of_part", t.worn.groups.of_part},
+                 {"probed", t.probed},
+                 {"weights", Json::array()},
+                 {"probes", Json::array()}};
+  for (const auto& group : t.worn.weights) {
+    header["weights"].push_back(Json::array());
+    for (const color::Rgb& weight : group) header["weights"].back().push_back(rgb_json(weight));
+  }
+  header["floor"] = t.worn.has_floor;
+  header["emission"] = Json::array();
+  for (const color::Rgb& radiance : t.worn.emission) header["emission"].push_back(rgb_json(radiance));
+  header["brushed"] = Json::array();
+  for (const paint::Anisotropy& alpha : t.worn.brushed) header["brushed"].push_back({alpha.alpha_x, alpha.alpha_y});
+  for (const BounceProbe& probe : t.probes) header["probes"].push_back(t.places[probe.point]);
+  return header.dump();
+}
+
+// Light of every point and of one column.
+image::ImagePart light_part(const LobeTransport& t, std::size_t column, bool bounced, TransportParts& all) {
+  image::ImagePart part{part_name(t.columns, column, bounced), blank(t, 3), {}, image::PixelType::kHalf};
+  const std::vector<float>& light = bounced ? t.bounced : t.direct;
+  const auto scale = static_cast<float>(1 / t.white_luminance);
+  for (std::size_t i = 0; i < t.places.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c)
+      part.image.data[3 * static_cast<std::size_t>(t.places[i]) + c] = scale * light[i * t.floats() + 3 * column + c];
+  part.attributes["goniochrome:column"] = t.columns.name(column);
+  part.attributes["colorInteropID"] = "lin_rec2020_scene";
+  const double error = half_error(t, part.image, column);
+  const bool fits = std::ranges::all_of(part.image.data, [](float value) { return std::abs(value) < 65504; });
+  if (!fits || error > kHalfError_de00) {
+    part.type = image::PixelType::kFloat;
+    ++all.float_parts;
+  } else {
+    all.half_error_de00 = std::max(all.half_error_de00, error);
+  }
+  all.bytes_per_point += part.type == image::PixelType::kFloat ? 12 : 6;
+  return part;
+}
+
+image::ImagePart class_part(const LobeTransport& t, int group, TransportParts& all) {
+  constexpr int kChannels = 3 * PaintGroups::kKinds;
+  image::ImagePart part{class_name(group), blank(t, kChannels), {}, image::PixelType::kHalf};
+  for (const char* kind : kKindNames)
+    for (const char* channel : {"R", "G", "B"}) part.image.channel_names.push_back(fmt::format("{}.{}", kind, channel));
+  const auto scale = static_cast<float>(1 / t.white_luminance);
+  const std::size_t stride = 3 * t.worn.groups.classes();
+  for (std::size_t i = 0; i < t.places.size(); ++i)
+    for (std::size_t c = 0; c < kChannels; ++c)
+      part.image.data[kChannels * static_cast<std::size_t>(t.places[i]) + c] =
+          scale * t.classes[i * stride + static_cast<std::size_t>(group) * kChannels + c];
+  all.bytes_per_point += 2 * kChannels;
+  return part;
+}
+
+// Probe by probe a row: once, then deeper.
+image::ImagePart probe_part(const LobeTransport& t) {
+  const std::size_t floats = t.probes.front().once.size();
+  image::ImagePart part{"bounced-probes",
+                        {static_cast<int>(2 * floats), static_cast<int>(t.probes.size()), 1, {}, {"Y"}},
+                        {},
+                        image::PixelType::kFloat};
+  for (const BounceProbe& probe : t.probes) {
+    part.image.data.insert(part.image.data.end(), probe.once.begin(), probe.once.end());
+    part.image.data.insert(part.image.data.end(), probe.deeper.begin(), probe.deeper.end());
+  }
+  for (float& value : part.image.data) value = static_cast<float>(value / t.white_luminance);
+  return part;
+}
+
+class Reader {
+ public:
+  explicit Reader(const image::AovFile& file) : file_(file) {}
+
+  Result<LobeTransport> read(const std::string& text) {
+    GONIO_TRY(read_header(text));
+    t_.width = file_.image.width, t_.height = file_.image.height;
+    GONIO_ASSIGN(const int part_channel, file_.channel("part"));
+    for (int y = 0; y < t_.height; ++y) {
+      for (int x = 0; x < t_.width; ++x) {
+        const float part = file_.image.pixel(x, y)[part_channel];
+        if (part == 0) continue;
+        t_.places.push_back(static_cast<std::uint32_t>(y * t_.width + x));
+        t_.part.push_back(static_cast<int>(part) - 1);
+        if (!(part >= 1) || static_cast<std::size_t>(part) > t_.worn.groups.of_part.size())
+          return wrong(fmt::format("pixel {},{} shows part {}, and the transport knows {}", x, y, part,
+                                   t_.worn.groups.of_part.size()));
+      }
+    }
+    for (const bool bounced : {false, true}) {
+      std::vector<float>& light = bounced ? t_.bounced : t_.direct;
+      light.assign(t_.places.size() * t_.floats(), 0);
+      for (std::size_t k = 0; k < t_.columns.count() && (!bounced || t_.bounces > 0); ++k)
+        GONIO_TRY(read_light(part_name(t_.columns, k, bounced), 3, 3 * k, t_.floats(), light));
+    }
+    const std::size_t classes = t_.worn.groups.classes();
+    t_.classes.assign(t_.places.size() * classes * 3, 0);
+    for (int group = 0; group < t_.worn.groups.count && t_.bounces > 0; ++group)
+      GONIO_TRY(read_light(class_name(group), 9, 9 * static_cast<std::size_t>(group), 3 * classes, t_.classes));
+    GONIO_TRY(read_probes());
+    return std::move(t_);
+  }
+
+ private:
+  Error wrong(const std::string& what) const {
+    return input_error("{}: its transport is damaged: {}: {}", file_.path, what, kRemedy);
+  }
+
+  Result<void> read_header(const std::string& text) {
+    const Json header = Json::parse(text, nullptr, false);
+    if (!header.is_object()) return wrong(fmt::format("the attribute {} is no JSON object", kTransportAttribute));
+    try {
+      if (header.at("version").get<int>() != kVersion)
+        return wrong(
+            fmt::format("its version is {}, and this program reads {}", header.at("version").get<int>(), kVersion));
+      t_.columns.exponents = header.at("exponents").get<std::vector<double>>();
+      t_.bounces = header.at("bounces").get<int>();
+      t_.unit = header.at("white_luminance").get<double>();
+      t_.probed = header.at("probed").get<int>();
+      t_.worn.groups.of_part = header.at("group_of_part").get<std::vector<int>>();
+      for (const Json& group : header.at("weights")) {
+        t_.worn.weights.emplace_back();
+        for (const Json& weight : group)
+          t_.worn.weights.back().push_back(
+              {weight.at(0).get<double>(), weight.at(1).get<double>(), weight.at(2).get<double>()});
+      }
+      t_.worn.has_floor = header.at("floor").get<bool>();
+      for (const Json& radiance : header.at("emission"))
+        t_.worn.emission.push_back(
+            {radiance.at(0).get<double>(), radiance.at(1).get<double>(), radiance.at(2).get<double>()});
+      for (const Json& alpha : header.at("brushed"))
+        t_.worn.brushed.push_back({alpha.at(0).get<double>(), alpha.at(1).get<double>()});
+      probe_places_ = header.at("probes").get<std::vector<std::uint32_t>>();
+    } catch (const std::exception& e) {
+      return wrong(fmt::format("the attribute {}: {}", kTransportAttribute, e.what()));
+    }
+    t_.worn.groups.count = static_cast<int>(t_.worn.weights.size());
+    const std::vector<double>& exponents = t_.columns.exponents;
+    if (exponents.size() > kMostTracedLobes || !std::ranges::is_sorted(exponents) || t_.bounces < 0 || !(t_.unit > 0))
+      return wrong("its exponents, bounces or white are not what a transport has");
+    if (t_.worn.groups.of_part.size() != t_.worn.brushed.size() + (t_.worn.has_floor ? 1 : 0) ||
+        t_.worn.emission.size() != t_.worn.brushed.size())
+      return wrong("its parts, their emission and their brushing differ in number");
+    for (const auto& group : t_.worn.weights)
+      if (group.size() != t_.columns.count())
+        return wrong(fmt::format("a paint has {} weights for {} columns", group.size(), t_.columns.count()));
+    for (const int group : t_.worn.groups.of_part)
+      if (group < 0 || group >= t_.worn.groups.count) return wrong(fmt::format("there is no group {}", group));
+    return {};
+  }
+
+  const image::ImagePart* find(const std::string& name) const {
+    const auto found = std::ranges::find(file_.layers, name, &image::ImagePart::name);
+    return found == file_.layers.end() ? nullptr : &*found;
+  }
+
+  // Some channels of each point, from `first` of `stride`.
+  Result<void> read_light(const std::string& name, int channels, std::size_t first, std::size_t stride,
+                          std::vector<float>& to) const {
+    const image::ImagePart* part = find(name);
+    if (part == nullptr) return wrong(fmt::format("it lacks the part {}", name));
+    if (part->image.width != t_.width || part->image.height != t_.height || part->image.channels != channels)
+      return wrong(fmt::format("its part {} has {} x {} pixels of {} channels, and the picture has {} x {} of {}", name,
+                               part->image.width, part->image.height, part->image.channels, t_.width, t_.height,
+                               channels));
+    // Channels come R G B, or in the order of their names.
+    std::vector<std::size_t> from(static_cast<std::size_t>(channels));
+    for (std::size_t c = 0; c < from.size(); ++c) {
+      from[c] = c;
+      if (channels != 3) {
+        const std::string wanted = fmt::format("{}.{}", kKindNames[c / 3], "RGB"[c % 3]);
+        const auto found = std::ranges::find(part->image.channel_names, wanted);
+        if (found == part->image.channel_names.end())
+          return wrong(fmt::format("its part {} lacks the channel {}", name, wanted));
+        from[c] = static_cast<std::size_t>(found - part->image.channel_names.begin());
+      }
+    }
+    for (std::size_t i = 0; i < t_.places.size(); ++i) {
+      const float* pixel = &part->image.data[static_cast<std::size_t>(channels) * t_.places[i]];
+      for (std::size_t c = 0; c < from.size(); ++c) {
+        if (!std::isfinite(pixel[from[c]]))
+          return wrong(fmt::format("its part {} has a value at pixel {},{} that is not finite", name,
+                                   t_.places[i] % static_cast<std::uint32_t>(t_.width),
+                                   t_.places[i] / static_cast<std::uint32_t>(t_.width)));
+        to[i * stride + first + c] = pixel[from[c]];
+      }
+    }
+    return {};
+  }
+
+  Result<void> read_probes() {
+    if (probe_places_.empty()) return {};
+    const image::ImagePart* part = find("bounced-probes");
+    const std::size_t floats =
+        3 * static_cast<std::size_t>(t_.worn.groups.count) * t_.columns.count() * t_.columns.count();
+    if (part == nullptr) return wrong("it lacks the part bounced-probes");
+    if (part->image.data.size() != 2 * floats * probe_places_.size() ||
+        t_.probed < static_cast<int>(probe_places_.size()))
+      return wrong(fmt::format("its part bounced-probes has {} values and not {}", part->image.data.size(),
+                               2 * floats * probe_places_.size()));
+    const float* from = part->image.data.data();
+    for (const std::uint32_t place : probe_places_) {
+      const auto found = std::ranges::lower_bound(t_.places, place);
+      if (found == t_.places.end() || *found != place) return wrong("a probe stands beside the mesh");
+      BounceProbe probe{static_cast<std::uint32_t>(found - t_.places.begin()), {}, {}};
+      probe.once.assign(from, from + floats), probe.deeper.assign(from + floats, from + 2 * floats);
+      from += 2 * floats;
+      t_.probes.push_back(std::move(probe));
+    }
+    return {};
+  }
+
+  const image::AovFile& file_;
+  LobeTransport t_;
+  std::vector<std::uint32_t> probe_places_;
+};
+
+}  // namespace
+
+TransportParts transport_parts(const LobeTransport& t) {
+  TransportParts all;
+  all.header = header_of(t);
+  for (const bool bounced : {false, true})
+    for (std::size_t k = 0; k < t.columns.count() && (!bounced || t.bounces > 0); ++k)
+      all.parts.push_back(light_part(t, k, bounced, all));
+  for (int group = 0; group < t.worn.groups.count && t.bounces > 0; ++group)
+    all.parts.push_back(class_part(t, group, all));
+  if (!t.probes.empty()) all.parts.push_back(probe_part(t));
+  return all;
+}
+
+Result<std::optional<LobeTransport>> transport_of(const image::AovFile& file) {
+  if (file.transport.empty()) return std::optional<LobeTransport>();
+  GONIO_ASSIGN(LobeTransport transport, Reader(file).read(file.transport));
+  return std::optional<LobeTransport>(std::move(transport));
+}
+
+}  // namespace goniochrome::render

@@ -1,0 +1,210 @@
+#include "render/path/transport_shading.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "render/path/transport_kernel.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+constexpr std::size_t kBlocksAtOnce = 64;
+constexpr float kMostHalf = 65504;
+
+}  // namespace
+
+// Blocks of kTransportLanes points of one part; those with bounced light apart from those without. The last of each
+// kind is filled up with its last point.
+struct TransportShader::State {
+  struct Block {
+    int part = 0;
+    std::size_t direct = 0, bounced = 0;  // number of the block among those that have such light
+    bool is_bounced = false;
+    std::uint32_t points[kTransportLanes] = {};
+    std::uint32_t count = 0;
+  };
+  std::size_t columns = 0, classes = 0;
+  bool halves = true;
+  float unit = 1;
+  std::vector<Block> blocks;
+  std::vector<std::uint16_t> half_direct, half_bounced, half_classes;
+  std::vector<float> direct, bounced, of_classes;
+  std::vector<std::uint32_t> places;
+  std::vector<float> view_deg;
+  std::vector<color::Rgb> emission;  // by part
+
+  void gather(const LobeTransport& t);
+  void lay_out(const LobeTransport& t);
+  const void* at(const std::vector<std::uint16_t>& half, const std::vector<float>& wide, std::size_t place) const {
+    return halves ? static_cast<const void*>(half.data() + place) : static_cast<const void*>(wide.data() + place);
+  }
+};
+
+void TransportShader::State::gather(const LobeTransport& t) {
+  const std::size_t points = t.places.size(), floats = t.floats();
+  std::vector<std::vector<std::uint32_t>> kinds;  // part and whether light bounces there
+  std::size_t direct_blocks = 0, bounced_blocks = 0;
+  for (std::size_t i = 0; i < points; ++i) {
+    const float* light = &t.bounced[i * floats];
+    const bool lit = std::any_of(light, light + floats, [](float value) { return value != 0; });
+    const std::size_t kind = 2 * static_cast<std::size_t>(t.part[i]) + (lit ? 1 : 0);
+    if (kind >= kinds.size()) kinds.resize(kind + 1);
+    kinds[kind].push_back(static_cast<std::uint32_t>(i));
+  }
+  for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+    for (std::size_t first = 0; first < kinds[kind].size(); first += kTransportLanes) {
+      Block block;
+      block.part = static_cast<int>(kind / 2), block.is_bounced = kind % 2 == 1;
+      block.direct = direct_blocks++, block.bounced = block.is_bounced ? bounced_blocks++ : 0;
+      block.count = static_cast<std::uint32_t>(std::min(kTransportLanes, kinds[kind].size() - first));
+      for (std::size_t k = 0; k < kTransportLanes; ++k)
+        block.points[k] = kinds[kind][std::min(first + k, kinds[kind].size() - 1)];
+      blocks.push_back(block);
+    }
+  }
+}
+
+void TransportShader::State::lay_out(const LobeTransport& t) {
+  const std::size_t of_block = t.floats() * kTransportLanes, of_class = 3 * classes * kTransportLanes;
+  std::size_t bounced_blocks = 0;
+  for (const Block& block : blocks) bounced_blocks += block.is_bounced ? 1 : 0;
+  const auto spread = [&](const std::vector<float>& from, std::size_t stride, std::size_t size, std::size_t count,
+                          bool all, std::vector<std::uint16_t>& half, std::vector<float>& wide) {
+    if (halves) half.resize(count * size);
+    if (!halves) wide.resize(count * size);
+    parallel_for(blocks.size(), kBlocksAtOnce, [&](std::size_t begin, std::size_t end) {
+      std::vector<float> lanes(size);
+      for (std::size_t b = begin; b < end; ++b) {
+        const Block& block = blocks[b];
+        if (!all && !block.is_bounced) continue;
+        for (std::size_t lane = 0; lane < kTransportLanes; ++lane)
+          for (std::size_t k = 0; k < stride; ++k)
+            lanes[k * kTransportLanes + lane] = from[block.points[lane] * stride + k];
+        const std::size_t to = (all ? block.direct : block.bounced) * size;
+        if (halves) to_halves(lanes.data(), size, &half[to]);
+        if (!halves) std::ranges::copy(lanes, wide.begin() + static_cast<std::ptrdiff_t>(to));
+      }
+    });
+  };
+  spread(t.direct, t.floats(), of_block, blocks.size(), true, half_direct, direct);
+  spread(t.bounced, t.floats(), of_block, bounced_blocks, false, half_bounced, bounced);
+  spread(t.classes, 3 * classes, of_class, bounced_blocks, false, half_classes, of_classes);
+}
+
+Result<TransportPaint> transport_paint(const LobeColumns& columns, const paint::LobeFit& paint, double gloss_deg) {
+  TransportPaint result;
+  if (paint.views.empty()) {
+    GONIO_ASSIGN(auto weights, column_weights(columns, paint.diffuse, paint.lobes, gloss_deg));
+    result.view_deg = {0}, result.weights.push_back(std::move(weights));
+  }
+  for (const paint::ViewLobes& view : paint.views) {
+    GONIO_ASSIGN(auto weights, column_weights(columns, view.diffuse, view.lobes, gloss_deg));
+    result.view_deg.push_back(view.view_deg), result.weights.push_back(std::move(weights));
+  }
+  return result;
+}
+
+TransportShader::TransportShader(const LobeTransport& t, std::vector<float> view_deg)
+    : state_(std::make_unique<State>()) {
+  State& s = *state_;
+  s.columns = t.columns.count(), s.classes = t.worn.groups.classes(), s.unit = static_cast<float>(t.unit);
+  s.emission = t.worn.emission, s.emission.resize(t.worn.groups.of_part.size());
+  s.places = t.places, s.view_deg = std::move(view_deg);
+  const auto fits = [](const std::vector<float>& light) {
+    return std::ranges::all_of(light, [](float value) { return std::abs(value) < kMostHalf; });
+  };
+  s.halves = fits(t.direct) && fits(t.bounced) && fits(t.classes);
+  s.gather(t);
+  s.lay_out(t);
+}
+TransportShader::~TransportShader() = default;
+
+std::size_t TransportShader::bytes() const {
+  const State& s = *state_;
+  return 2 * (s.half_direct.size() + s.half_bounced.size() + s.half_classes.size()) +
+         4 * (s.direct.size() + s.bounced.size() + s.of_classes.size());
+}
+
+void TransportShader::shade(const std::vector<TransportPaint>& paints, const color::ReflectionOperator* reflection,
+                            const BounceScale& scale, float gain, image::Image& rgba) const {
+  const State& s = *state_;
+  const color::ReflectionOperator plain = color::component_wise();
+  // The matrices of every set of weights, with gain and unit.
+  struct Set {
+    std::vector<float> matrices;
+    std::vector<std::uint8_t> dark;
+  };
+  std::vector<std::vector<Set>> sets(paints.size());
+  for (std::size_t part = 0; part < paints.size(); ++part) {
+    for (const auto& weights : paints[part].weights) {
+      Set set;
+      for (const color::Rgb& weight : weights) {
+        const color::Matrix3 m = color::reflection_matrix(reflection != nullptr ? *reflection : plain, weight);
+        for (const auto& row : m)
+          for (const double value : row) set.matrices.push_back(gain * s.unit * static_cast<float>(value));
+        set.dark.push_back(weight == color::Rgb{} ? 1 : 0);
+      }
+      sets[part].push_back(std::move(set));
+    }
+  }
+  std::vector<float> factors;
+  for (const color::Rgb& factor : scale.of_class)
+    for (int c = 0; c < 3; ++c) factors.push_back(static_cast<float>(factor[c]));
+  const std::size_t of_block = 3 * s.columns * kTransportLanes, of_class = 3 * s.classes * kTransportLanes;
+  parallel_for(s.blocks.size(), kBlocksAtOnce, [&](std::size_t begin, std::size_t end) {
+    float rgb[3 * kTransportLanes], mixed[3 * kTransportLanes];
+    for (std::size_t b = begin; b < end; ++b) {
+      const State::Block& block = s.blocks[b];
+      const auto part = static_cast<std::size_t>(block.part);
+      TransportBlock light;
+      light.halves = s.halves;
+      light.direct = s.at(s.half_direct, s.direct, block.direct * of_block);
+      if (block.is_bounced) {
+        light.bounced = s.at(s.half_bounced, s.bounced, block.bounced * of_block);
+        light.classes = s.at(s.half_classes, s.of_classes, block.bounced * of_class);
+      }
+      const auto shaded = [&](std::size_t set, float* to) {
+        shade_transport(
+            light, {s.columns, s.classes, sets[part][set].matrices.data(), sets[part][set].dark.data(), factors.data()},
+            to);
+      };
+      const std::vector<double>& views = paints[part].view_deg;
+      if (views.size() == 1) {
+        shaded(0, rgb);
+      } else {
+        // Every set that a point lies beside, and its share of it.
+        std::fill_n(rgb, 3 * kTransportLanes, 0.0F);
+        for (std::size_t set = 0; set < views.size(); ++set) {
+          float share[kTransportLanes];
+          bool any = false;
+          for (std::size_t lane = 0; lane < kTransportLanes; ++lane) {
+            const double view = std::clamp<double>(s.view_deg[block.points[lane]], views.front(), views.back());
+            const auto beside = [&](std::size_t next) {
+              const double width = std::abs(views[next] - views[set]);
+              return width > 0 ? std::max(0.0, 1 - std::abs(view - views[set]) / width) : 0;
+            };
+            double own = view == views[set] ? 1 : 0;
+            if (set > 0 && view < views[set]) own = beside(set - 1);
+            if (set + 1 < views.size() && view > views[set]) own = beside(set + 1);
+            share[lane] = static_cast<float>(own);
+            any = any || own > 0;
+          }
+          if (!any) continue;
+          shaded(set, mixed);
+          for (std::size_t k = 0; k < 3 * kTransportLanes; ++k) rgb[k] += share[k % kTransportLanes] * mixed[k];
+        }
+      }
+      for (std::size_t lane = 0; lane < block.count; ++lane) {
+        float* pixel = &rgba.data[4 * static_cast<std::size_t>(s.places[block.points[lane]])];
+        for (int c = 0; c < 3; ++c)
+          pixel[c] = rgb[static_cast<std::size_t>(c) * kTransportLanes + lane] +
+                     gain * static_cast<float>(s.emission[part][c]);
+        pixel[3] = 1;
+      }
+    }
+  });
+}
+
+}  // namespace goniochrome::render

@@ -1,0 +1,41 @@
+// Pictures of other paints from a transport, in milliseconds. goniochrome-theory(7), TRANSPORT.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "color/reflection.h"
+#include "image/image.h"
+#include "render/path/bounce_scale.h"
+#include "render/path/lobe_transport.h"
+
+namespace goniochrome::render {
+
+// A paint of a part, by column: one set of weights, or several by the angle of the viewer.
+struct TransportPaint {
+  std::vector<double> view_deg;                  // ascending; one entry where the weights hold for every view
+  std::vector<std::vector<color::Rgb>> weights;  // for each
+};
+// Error: as column_weights().
+Result<TransportPaint> transport_paint(const LobeColumns& columns, const paint::LobeFit& paint, double gloss_deg);
+
+// A transport laid out for shading: points of one part side by side, their light in halves where halves hold it.
+class TransportShader {
+ public:
+  // `view_deg`: of each point, the angle of its viewer from the normal; may be empty where no paint changes with it.
+  TransportShader(const LobeTransport& transport, std::vector<float> view_deg);
+  ~TransportShader();
+
+  // Writes the radiance of every point, times `gain`, to R G B of its pixel, and 1 to A. `paints` by part.
+  // Bit-identical for any number of threads.
+  void shade(const std::vector<TransportPaint>& paints, const color::ReflectionOperator* reflection,
+             const BounceScale& scale, float gain, image::Image& rgba) const;
+
+  std::size_t bytes() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace goniochrome::render

@@ -1,0 +1,93 @@
+# The light of a view by lobes, and other paints in it.
+
+setup_file() {
+  cd "$BATS_FILE_TMPDIR" || exit 1
+  oiiotool "$TESTDATA/studio.exr" --resize:filter=box 32x16 -o studio.exr
+  prefilter-envmap -q studio.exr --basis "$TESTDATA/b5.basis.xml" --tolerance 1e-2 -o studio.env.exr
+  fit-paint -q --basis "$TESTDATA/b5.basis.xml" "$TESTDATA/paints.paints.xml" -o fitted.xml
+  fit-paint -q --basis "$TESTDATA/b7.basis.xml" "$TESTDATA/paints.paints.xml" -o other-basis.xml
+  # Two walls that meet: each hides light from the other and sends some back.
+  cat >walls.obj <<'OBJ'
+v -1 -1 0
+v 1 -1 0
+v 1 1 0
+v -1 1 0
+v 1 -1 2
+v -1 -1 2
+o back
+f 1 2 3 4
+o floor
+f 6 5 2 1
+OBJ
+  render-osmesa -q --mesh walls.obj --size 32x24 --samples 1 --camera 0.6,0.8,4,0,-0.3,0,30 -p fitted.xml#silver_fine \
+    --env studio.env.exr --aov transport --tolerance 3 -o view.exr --report view.json
+}
+
+setup() { cd "$BATS_FILE_TMPDIR" || exit 1; }
+
+# figure KEY FILE
+figure() { grep -m1 "\"$1\"" "$2" | sed -E 's/.*: ([-0-9.e+a-z]+),?$/\1/'; }
+
+@test "a transport is told with its noise and size, and its parts are images of their own" {
+  awk -v n="$(figure noise_de00_p95 view.json)" 'BEGIN { exit !(n > 0 && n <= 3) }'
+  awk -v b="$(figure bytes_per_point view.json)" 'BEGIN { exit !(b > 100 && b < 600) }'
+  exrheader view.exr >header.txt
+  grep -q 'direct-diffuse' header.txt
+  grep -q 'bounced-mirror' header.txt
+}
+
+@test "the paint that was worn is shown without an error of scaling, another one with the error told" {
+  render-osmesa -q --gbuffer view.exr -p fitted.xml#silver_fine -o same.exr --report same.json
+  [ "$(figure trace_again same.json)" = false ]
+  awk -v e="$(figure bounced_de00_p95 same.json)" 'BEGIN { exit !(e == 0) }'
+  grep -q '"engine": "transport"' same.json
+  run render-osmesa --gbuffer view.exr -p fitted.xml#signal_white --tolerance 1e-6 -o other.exr --report other.json
+  [ "$status" -eq 1 ]
+  [[ "$output" =~ "trace again with --aov transport in these paints" ]]
+  awk -v e="$(figure bounced_de00_p95 other.json)" 'BEGIN { exit !(e > 0 && e < 5) }'
+  run render-osmesa --gbuffer view.exr -p fitted.xml#signal_white --tolerance 20 -o other.exr
+  [ "$status" -eq 0 ]
+  [[ "$output" =~ "scaled to these: off by" ]]
+}
+
+@test "the picture has the shadows that the engine path draws" {
+  render-osmesa -q --mesh walls.obj --size 32x24 --samples 1 --camera 0.6,0.8,4,0,-0.3,0,30 -p fitted.xml#silver_fine \
+    --env studio.env.exr --engine path --floor none --tolerance 2 -o path.exr
+  render-osmesa -q --gbuffer view.exr -p fitted.xml#silver_fine -o same.exr
+  render-osmesa -q --mesh walls.obj --size 32x24 --samples 1 --camera 0.6,0.8,4,0,-0.3,0,30 -p fitted.xml#silver_fine \
+    --env studio.env.exr --engine cpu -o open.exr
+  for picture in same open; do
+    oiiotool path.exr --ch R,G,B $picture.exr --ch R,G,B --absdiff --stats | awk '/Stats Avg/ { print $4 }' >$picture.txt
+  done
+  # The mean of what the noise of both leaves, against the light that the maps alone have.
+  awk -v a="$(cat same.txt)" -v b="$(cat open.txt)" 'BEGIN { exit !(a < 0.35 * b) }'
+}
+
+@test "without a transport, --gbuffer is as it was" {
+  render-osmesa -q --mesh walls.obj --size 32x24 --samples 1 --camera 0.6,0.8,4,0,-0.3,0,30 -p fitted.xml#silver_fine \
+    --env studio.env.exr --engine cpu --aov normal,part -o plain.exr
+  run render-osmesa --gbuffer plain.exr -p fitted.xml#signal_white -o out.exr
+  [ "$status" -eq 2 ]
+  [[ "$output" =~ "there is no light: give --env, --light or both" ]]
+  render-osmesa -q --gbuffer plain.exr -p fitted.xml#silver_fine --env studio.env.exr --engine cpu -o again.exr
+  [ "$(oiiotool plain.exr --ch R,G,B again.exr --ch R,G,B --diff | tail -1)" = PASS ]
+}
+
+@test "a paint of another basis, a cut file and other light are told" {
+  run render-osmesa --gbuffer view.exr -p other-basis.xml#silver_fine -o out.exr
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ "a paint has a lobe of exponent" ]]
+  [[ "$output" =~ "fit the paint to that basis, or trace with this one" ]]
+  head -c 20000 view.exr >cut.exr
+  run render-osmesa --gbuffer cut.exr -p fitted.xml#silver_fine -o out.exr
+  [ "$status" -eq 3 ]
+  [ "$(echo "$output" | grep -c cut.exr)" -eq 1 ]
+  run render-osmesa --gbuffer view.exr --light 30,50 -p fitted.xml#silver_fine -o out.exr
+  [ "$status" -eq 0 ]
+  [[ "$output" =~ "the picture has no shadows" ]]
+  run render-osmesa --gbuffer view.exr -p fitted.xml#silver_fine --check 5 -o out.exr
+  [ "$status" -eq 2 ]
+  run render-osmesa --gbuffer view.exr --env studio.env.exr -p fitted.xml#silver_fine --aov transport -o out.exr
+  [ "$status" -eq 2 ]
+  [[ "$output" =~ "traces one view of a mesh" ]]
+}

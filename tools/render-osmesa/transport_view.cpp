@@ -1,0 +1,211 @@
+#include "transport_view.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/angles.h"
+#include "base/clock.h"
+#include "base/parallel.h"
+#include "envmap/cube_map.h"
+#include "render/effects.h"
+#include "render/path/transport_shading.h"
+#include "render/path/visible_surface.h"
+#include "render/surface_layer.h"
+
+namespace goniochrome::tool {
+
+namespace {
+
+constexpr int kTimings = 5;  // of one picture, of which the median is told
+
+void report_traced(const render::TracedLobes& traced, const render::TransportParts& file, cli::Session& session) {
+  const double per_point = file.bytes_per_point;
+  session.results()["transport"] = {{"points", traced.transport.places.size()},
+                                    {"columns", traced.transport.columns.count()},
+                                    {"noise_de00_p95", json_number(traced.noise_p95_de00)},
+                                    {"noise_de00_mean", json_number(traced.noise_mean_de00)},
+                                    {"samples_mean", traced.samples_mean},
+                                    {"open_share", traced.free_share},
+                                    {"trace_s", traced.time_s},
+                                    {"bytes_per_point", per_point},
+                                    {"float_parts", file.float_parts},
+                                    {"half_error_de00", json_number(file.half_error_de00)},
+                                    {"reached", traced.reached}};
+  session.say(fmt::format(
+      "transport: {} points by {} columns, noise {:.2f} dE00 (p95 of the gray paint of each lobe) after {:.0f} "
+      "directions a point and {:.1f} s; {:.0f} bytes a point, {} parts as floats",
+      traced.transport.places.size(), traced.transport.columns.count(), traced.noise_p95_de00, traced.samples_mean,
+      traced.time_s, per_point, file.float_parts));
+  if (!traced.reached)
+    session.warn(fmt::format("the noise of the transport is {:.2f} dE00, above --tolerance: give more --time-limit",
+                             traced.noise_p95_de00));
+}
+
+bool same_light(const KeptTransport& kept, const std::vector<render::Light>& lights) {
+  return std::equal(lights.begin(), lights.end(), kept.lights.begin(), kept.lights.end(),
+                    [](const render::Light& a, const image::AovLight& b) {
+                      return length(a.direction - b.direction) < 1e-9 && a.white == b.white;
+                    });
+}
+
+// Of each point, the angle of the viewer from the normal.
+std::vector<float> view_angles(const render::LobeTransport& light, const render::Gbuffer& gbuffer) {
+  std::vector<float> angles(light.places.size());
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    const int x = static_cast<int>(light.places[i]) % light.width, y = static_cast<int>(light.places[i]) / light.width;
+    const Vec3 n = gbuffer.normal(x, y), v = gbuffer.to_viewer(x, y);
+    angles[i] = static_cast<float>(std::atan2(length(cross(n, v)), dot(n, v)) / kDegree);
+  }
+  return angles;
+}
+
+// What is seen beside the mesh.
+void put_background(const render::Gbuffer& gbuffer, const render::Scene& scene, image::Image& picture) {
+  if (scene.background == render::Background::kNone) return;
+  parallel_for(static_cast<std::size_t>(picture.height), 8, [&](std::size_t begin, std::size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      for (int x = 0; x < picture.width; ++x) {
+        if (gbuffer.part(x, y) >= 0) continue;
+        const Vec3 color = scene.background == render::Background::kColor
+                               ? scene.background_color
+                               : envmap::bilinear(scene.env->mirror.map, -gbuffer.to_viewer(x, y));
+        float* pixel = picture.pixel(x, y);
+        for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(color[c]);
+        pixel[3] = 1;
+      }
+    }
+  });
+}
+
+}  // namespace
+
+Result<TracedView> traced_view(const render::Scene& scene, const envmap::Environment* environment, bool with_maps,
+                               const render::Gbuffer& seen, double white_luminance, int bounces,
+                               cli::Session& session) {
+  if (scene.layer != nullptr && scene.layer->textured())
+    return usage_error("--aov transport holds light by the lobes of paints: leave out --texture");
+  if (scene.layer != nullptr && scene.layer->mapped())
+    session.warn("color maps are left out of the transport: their paints are shown by their lobes");
+  render::PathScene path;
+  path.scene = &scene, path.environment = environment;
+  path.emission = scene.emission, path.ground = scene.ground;
+  GONIO_ASSIGN(const render::LobeColumns columns, render::lobe_columns(scene));
+  GONIO_ASSIGN(const render::WornPaints worn, render::worn_paints(columns, path));
+  GONIO_ASSIGN(const render::Transport transport, render::Transport::create(path));
+  std::optional<render::OpenLight> open;
+  if (scene.env != nullptr && with_maps) {
+    const render::Effects effects = render::effects_of(scene);
+    GONIO_ASSIGN(open, render::OpenLight::create(*scene.env, columns,
+                                                 effects.anisotropy ? render::tilts_of(scene, effects)
+                                                                    : std::vector<std::vector<brdf::Tilt>>()));
+  }
+  const render::VisibleSurface surface = render::visible_surface(transport.rays(), seen.rays, seen.width, seen.height);
+  render::LobeTransportRequest request;
+  request.tolerance_de00 = session.common().tolerance;
+  request.white_luminance = white_luminance > 0 ? white_luminance : 1;
+  request.seed = session.common().seed;
+  request.bounces = bounces;
+  request.time_limit_s = session.common().time_limit_s;
+  request.progress = [&](double noise, double seconds) {
+    session.progress(fmt::format("transport: noise {:.2f} dE00 after {:.1f} s", noise, seconds));
+  };
+  const render::TracedLobes traced =
+      render::traced_lobes(transport, surface, columns, worn, open ? &*open : nullptr, request);
+  TracedView view{std::make_shared<const render::Gbuffer>(surface.gbuffer), render::transport_parts(traced.transport)};
+  report_traced(traced, view.file, session);
+  return view;
+}
+
+Result<std::optional<KeptTransport>> kept_transport(const image::AovFile& file, const Options& options,
+                                                    const std::vector<render::Light>& lights, cli::Session& session) {
+  GONIO_ASSIGN(auto light, render::transport_of(file));
+  if (!light) return std::optional<KeptTransport>();
+  KeptTransport kept{*std::move(light), file.white_luminance, file.automatic_stops,
+                     file.environment,  file.lights,          file.reflection};
+  const bool other_env = !options.env.empty() && options.env != file.environment;
+  const bool other_lights = !lights.empty() && !same_light(kept, lights);
+  if (other_env || other_lights) {
+    session.warn(
+        fmt::format("{} holds the light of {} and {} lights, and the command line has other light: the "
+                    "picture has no shadows: leave out --env and --light, or trace the transport again",
+                    file.path, file.environment.empty() ? "no environment" : file.environment, file.lights.size()));
+    return std::optional<KeptTransport>();
+  }
+  return std::optional<KeptTransport>(std::move(kept));
+}
+
+Result<ShadedView> shaded_view(const KeptTransport& kept, const render::Gbuffer& gbuffer, const DressedMesh& dress,
+                               const render::Scene& scene, cli::Session& session) {
+  const render::LobeTransport& light = kept.light;
+  std::vector<render::TransportPaint> paints;
+  std::vector<std::vector<color::Rgb>> weights;
+  bool with_views = false;
+  for (std::size_t part = 0; part < dress.paints.size(); ++part) {
+    const paint::LobeFit& fit = dress.paints[part];
+    const auto named = [&](const Error& error) {
+      return Error{error.kind, dress.names[part].empty() ? error.message : dress.names[part] + ": " + error.message};
+    };
+    if (light.worn.brushed.size() > part && (light.worn.brushed[part].alpha_x != dress.anisotropy[part].alpha_x ||
+                                             light.worn.brushed[part].alpha_y != dress.anisotropy[part].alpha_y))
+      return input_error(
+          "{}: is brushed otherwise than the paint of part {} was when its light was traced: render "
+          "again with --aov transport in this paint",
+          dress.names[part], scene.mesh->parts[part].name);
+    auto paint = render::transport_paint(light.columns, fit, dress.gloss_deg[part]);
+    if (!paint.ok()) return named(paint.error());
+    auto flat = render::column_weights(light.columns, fit.diffuse, fit.lobes, dress.gloss_deg[part]);
+    if (!flat.ok()) return named(flat.error());
+    with_views |= paint->view_deg.size() > 1;
+    paints.push_back(*std::move(paint)), weights.push_back(*std::move(flat));
+  }
+  if (light.worn.has_floor) {  // in the paint that it wore
+    weights.push_back(light.worn.weights[static_cast<std::size_t>(light.worn.groups.of_part.back())]);
+    paints.push_back({{0}, {weights.back()}});
+  }
+  if (kept.reflection.k != scene.reflection.k && light.bounces > 0)
+    return usage_error("--operator is another than that of --gbuffer: bounced light was traced with that one");
+  const color::ReflectionOperator* reflection =
+      scene.reflection.k != color::component_wise().k ? &scene.reflection : nullptr;
+  const Stopwatch laying;
+  const render::TransportShader shader(light, with_views ? view_angles(light, gbuffer) : std::vector<float>());
+  const double load_ms = 1000 * laying.elapsed_s();
+  const Stopwatch judging;
+  const render::BounceScale scale = render::bounce_scale(light, weights, reflection);
+  const double judge_ms = 1000 * judging.elapsed_s();
+  ShadedView view{{gbuffer.width, gbuffer.height, 4, {}, {"R", "G", "B", "A"}}, 0, false};
+  view.picture.data.assign(4 * static_cast<std::size_t>(gbuffer.width) * static_cast<std::size_t>(gbuffer.height), 0);
+  std::vector<double> times_ms;
+  for (int i = 0; i < kTimings; ++i) {
+    const Stopwatch shading;
+    shader.shade(paints, reflection, scale, 1, view.picture);
+    times_ms.push_back(1000 * shading.elapsed_s());
+  }
+  std::ranges::sort(times_ms);
+  view.frame_ms = times_ms[kTimings / 2];
+  put_background(gbuffer, scene, view.picture);
+  const double tolerance = session.common().tolerance;
+  view.trace_again = scale.error_p95_de00 > tolerance;
+  session.results()["transport"] = {
+      {"points", light.places.size()},
+      {"columns", light.columns.count()},
+      {"bytes_per_point",
+       static_cast<double>(shader.bytes()) / std::max<double>(1, static_cast<double>(light.places.size()))},
+      {"load_ms", load_ms},
+      {"scale_ms", judge_ms},
+      {"bounced_de00_p95", json_number(scale.error_p95_de00)},
+      {"trace_again", view.trace_again}};
+  if (!scale.changed) {
+    session.say("bounced light is that of these paints");
+  } else if (!view.trace_again) {
+    session.say(fmt::format("bounced light was traced in other paints and scaled to these: off by {:.2f} dE00 (p95)",
+                            scale.error_p95_de00));
+  } else {
+    session.warn(fmt::format(
+        "bounced light was traced in other paints; scaled to these it is off by {:.2f} dE00 (p95), above --tolerance "
+        "{}: trace again with --aov transport in these paints",
+        scale.error_p95_de00, tolerance));
+  }
+  return view;
+}
+
+}  // namespace goniochrome::tool

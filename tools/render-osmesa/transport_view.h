@@ -1,0 +1,52 @@
+// --aov transport: the light of a view by lobes; and pictures of other paints from it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "envmap/environment.h"
+#include "image/aov_file.h"
+#include "paints.h"
+#include "render/path/lobe_transport.h"
+#include "render/path/transport_file.h"
+#include "render/renderer.h"
+#include "tool.h"
+
+namespace goniochrome::tool {
+
+// A view whose light was traced. Its G-buffer is that of the rays, which the picture's buffers must show.
+struct TracedView {
+  std::shared_ptr<const render::Gbuffer> gbuffer;
+  render::TransportParts file;
+};
+
+// Traces what is seen through `rays` in all that the scene has, and tells how. `with_maps`: open light by the
+// environment's maps, else by rays alone. Error: what paths do not trace; maps that the environment lacks.
+Result<TracedView> traced_view(const render::Scene& scene, const envmap::Environment* environment, bool with_maps,
+                               const render::Gbuffer& seen, double white_luminance, int bounces, cli::Session& session);
+
+// The transport of --gbuffer and what its file says of the light.
+struct KeptTransport {
+  render::LobeTransport light;
+  double white_luminance = 1, automatic_stops = 0;
+  std::string environment;
+  std::vector<image::AovLight> lights;
+  color::ReflectionOperator reflection;
+};
+// Nothing where the file has none, or where the command line has other light, which is told.
+Result<std::optional<KeptTransport>> kept_transport(const image::AovFile& file, const Options& options,
+                                                    const std::vector<render::Light>& lights, cli::Session& session);
+
+// The picture of these paints, R G B A, with the scene's background, and how long its shading took. Tells what scaling
+// the bounced light errs by. Error: a paint that the transport cannot show.
+struct ShadedView {
+  image::Image picture;
+  double frame_ms = 0;
+  bool trace_again = false;  // the error of scaling is beyond the tolerance
+};
+Result<ShadedView> shaded_view(const KeptTransport& kept, const render::Gbuffer& gbuffer, const DressedMesh& dress,
+                               const render::Scene& scene, cli::Session& session);
+
+}  // namespace goniochrome::tool
