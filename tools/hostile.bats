@@ -215,3 +215,139 @@ usage() {
   ls pages
   [ "$(ls pages | wc -l)" -eq 3 ]
 }
+
+@test "a paint whose values are no color is refused by line" {
+  for value in 1e50 -10001 1e300 nan; do
+    printf 'sample,geometry,illuminant,observer,L,a,b\nx,45as15,D65,10,50,1,2\nx,45as45,D65,10,40,%s,2\nx,45as110,D65,10,30,1,2\n' "$value" >v.csv
+    refused "v.csv:3" paint-convert -q v.csv --to xml
+    printf 'CGATS.17\nBEGIN_DATA_FORMAT\nSAMPLE_NAME LAB_L LAB_A LAB_B\nEND_DATA_FORMAT\nBEGIN_DATA\nx %s 1 2\nEND_DATA\n' "$value" >v.txt
+    refused "v.txt:6" paint-convert -q v.txt --to xml
+    sed "0,/<lab geometry=\"45as15\" L=\"[^\"]*\"/s//<lab geometry=\"45as15\" L=\"$value\"/" "$TESTDATA/paints.paints.xml" >v.xml
+    for tool in "paint-stats" "fit-basis --lobes 1" "fit-paint -b $TESTDATA/b5.basis.xml" "goniogeom-index --lights 30 --views as15"; do
+      # shellcheck disable=SC2086
+      refused "v.xml:" $tool -q v.xml
+    done
+  done
+  # The ends of the domain are colors still.
+  printf 'sample,geometry,illuminant,observer,L,a,b\nx,45as15,D65,10,10000,-10000,10000\n' >v.csv
+  paint-convert -q v.csv --to csv
+  # A number that nothing in a paint can be.
+  sed '0,/<gloss angle="60">[^<]*</s//<gloss angle="60">1e300</' "$TESTDATA/paints.paints.xml" >v.xml
+  refused "1e300" paint-stats -q v.xml
+}
+
+@test "plots of all numbers end soon and hold numbers alone" {
+  for rows in '0,1\na,1,1.0000000000000002' '0,1e-300\na,1,1e300' '0,-1e300\na,1,1e300' '0,5e-324\na,1,1e-323' \
+    '9e299,9007199254740992\na,9.000000000000002e299,9007199254740994'; do
+    for axes in none x y both; do
+      printf "series,x,y\na,$rows\n" >t.csv
+      timeout 10 draw-plot -q t.csv --logarithmic $axes -o t.svg
+      ! grep -qE '["  ](-?nan|-?inf)' t.svg
+      xmllint --noout t.svg
+      [ "$(wc -c <t.svg)" -lt 100000 ]
+    done
+  done
+  printf 'series,x,y\na,1,1e301\n' >far.csv
+  refused "far.csv:2" draw-plot -q far.csv
+}
+
+@test "names that a spreadsheet would work out, and names in bad letters, come back or are legible" {
+  { echo 'sample,geometry,illuminant,observer,L,a,b'
+    for name in '=1+1' '+x' '-x' '@x' "'=x" "''=x" "'x" '=HYPERLINK(""a"",""b"")' '-5'; do printf '"%s",45as15,D65,10,50,1,2\n' "$name"; done; } >n.csv
+  paint-convert -q n.csv -o n.xml
+  paint-convert -q n.xml --to csv -o back.csv
+  paint-convert -q back.csv -o again.xml
+  cmp <(grep '<paint ' n.xml) <(grep '<paint ' again.xml)
+  ! grep -qE '^"?[=+@-]' back.csv
+  # CGATS holds no tabs: names that differ in one stay two names.
+  printf 'sample,geometry,illuminant,observer,L,a,b\n"a\tb",45as15,D65,10,50,1,2\na b,45as15,D65,10,60,1,2\n' >tab.csv
+  paint-convert -q tab.csv --to cgats -o tab.txt
+  [ "$(paint-convert -q tab.txt --to csv | wc -l)" -eq 3 ]
+  # Bytes outside UTF-8 on the command line.
+  bad=$(printf 'caf\351')
+  paint-convert -q tab.csv --to cxf -o "$bad.cxf" --report "$bad.json"
+  paint-convert -q "$bad.cxf" --to csv >/dev/null
+  xmllint --noout "$bad.cxf"
+  printf 'series,x,y\na,1,2\n' | draw-plot -q --title "$bad" -o t.svg
+  xmllint --noout t.svg
+}
+
+@test "images from pipes work in every tool that takes one" {
+  pipe_into() { # pipe_into FILE COMMAND...: FIFO stands for the pipe
+    local file=$1
+    shift
+    rm -f fifo && mkfifo fifo
+    cat "$file" >fifo &
+    "$@" || { echo "$*: exit $?"; kill $!; return 1; }
+    wait $!
+  }
+  prefilter-envmap -q -e 6 -s 8 "$TESTDATA/studio.exr" -o sky.env.exr
+  oiiotool --pattern fill:topleft=1,0,0:bottomright=0,.2,1 32x24 3 -d uint8 -o p.png
+  render-osmesa -q --engine cpu --mesh "$TESTDATA/box.obj" --light 0,20 --size 32x24 --aov normal,aspecular,lambert,mask,part -o s.exr
+  for image in "$TESTDATA/outdoor.exr" p.png; do
+    pipe_into "$image" prefilter-envmap -q -e 6 -s 8 fifo -o o.exr
+    pipe_into "$image" relight -q --from D65 --to A fifo -o o.exr
+    pipe_into "$image" paint-pick -q --face fifo@4,4 -o o.xml
+    pipe_into "$image" paint-pick -q --palette 2 fifo -o o.xml
+  done
+  pipe_into s.exr sketch-fit -q -i fifo -b s.exr -o o.xml
+  pipe_into s.exr sketch-fit -q -i s.exr -b fifo -o o.xml
+  pipe_into p.png sketch-fit -q -i s.exr -b s.exr --mask fifo -o o.xml
+  pipe_into s.exr render-osmesa -q --engine cpu --gbuffer fifo --light 0,20 -o o.exr
+  pipe_into sky.env.exr render-osmesa -q --engine cpu --mesh "$TESTDATA/box.obj" --env fifo --size 32x24 -o o.png
+}
+
+# within SECONDS MEGABYTES COMMAND...: exit 0 to 3 with no more processor time and memory than that.
+within() {
+  local seconds=$1 megabytes=$2 status=0
+  shift 2
+  /usr/bin/time -o used -f '%U %S %M' timeout 100 "$@" >/dev/null 2>messages </dev/null || status=$?
+  [ "$status" -le 3 ] || { echo "$*: exit $status: $(cat messages)"; return 1; }
+  tail -n 1 used | awk -v s="$seconds" -v m="$megabytes" '{ exit !($1 + $2 <= s && $3 / 1024 <= m) }' || { echo "$*: $(cat used)"; return 1; }
+}
+
+@test "time and memory stay in proportion to the file" {
+  # Each of these took from 7 s to more than a minute, or more than 1 GB.
+  { printf 'CGATS.17\nBEGIN_DATA_FORMAT\nSAMPLE_NAME'
+    awk 'BEGIN { for (i = 0; i < 7000; ++i) { g = sprintf("45as%d.%02d", i / 100, i % 100); printf " LAB_L_%s LAB_A_%s LAB_B_%s", g, g, g } }'
+    printf '\nEND_DATA_FORMAT\nBEGIN_DATA\nEND_DATA\n'; } >fields.txt
+  within 3 300 paint-convert fields.txt --to csv
+  { printf '<paints xmlns="urn:goniochrome:paint:1" version="1"><paint name="x"'; seq -f ' a%g="1"' 100000 | tr -d '\n'; printf '/></paints>'; } >attributes.xml
+  within 3 200 paint-convert attributes.xml --to csv
+  grep -q 'more than 256 attributes' messages
+  { printf '<paints xmlns="urn:goniochrome:paint:1" version="1"><paint name="x"><gloss angle="60">'; head -c 100000000 /dev/zero | tr '\0' 1; printf '</gloss></paint></paints>'; } >text.xml
+  within 5 200 paint-convert text.xml --to csv
+  { printf '<paints xmlns="urn:goniochrome:paint:1" version="1"><paint name="x"><gloss angle="60">'; yes '11111<!-- -->' | head -c 30000000; printf '</gloss></paint></paints>'; } >pieces.xml
+  within 20 200 paint-convert pieces.xml --to csv
+  { printf '# made\n3\n400 550 700\n'; awk 'BEGIN { for (i = 0; i < 8000; ++i) printf "%g %g %g %g .3 .2 .1\n", .7, 0, i % 90 / 60, i / 900 }'; } >rows.brdf
+  within 10 200 paint-convert rows.brdf --to csv
+  printf 'OFF\n100000000 100000000 0\n0 0 0\n1 0 0\n0 1 0\n' >forged.off
+  within 5 400 render-osmesa --engine cpu --mesh forged.off --light 0,20 --size 16x16 -o x.png
+}
+
+@test "with little memory every tool ends by itself and says what it lacked" {
+  if ldd "$(command -v paint-convert)" | grep -q libasan; then skip "built with a sanitizer"; fi
+  for kilobytes in 30000 90000 160000 250000 400000 700000; do
+    for line in "prefilter-envmap -q -e 6,70 -s 8 $TESTDATA/studio.exr" "fit-basis -q --lobes 1 --starts 1 --angles 8 $TESTDATA/paints.paints.xml" \
+      "relight -q --from D65 --to A $TESTDATA/outdoor.exr"; do
+      status=0
+      # shellcheck disable=SC2086
+      (ulimit -v "$kilobytes"; exec timeout -s KILL 60 $line -o o.exr) 2>err || status=$?
+      echo "$kilobytes: $line: exit $status: $(cat err)"
+      [ "$status" -le 1 ] || { [ "$status" -eq 3 ] && [ -s err ]; } || { [ "$status" -eq 127 ] && grep -q "shared object" err; }
+    done
+  done
+}
+
+@test "SIGTERM and SIGINT end a tool wherever it is" {
+  command -v strace >/dev/null && strace -o none true || skip "strace may not trace here"
+  for signal in TERM INT; do
+    for at in 5 40 90 130 170 220; do
+      status=0
+      timeout -s KILL 60 strace -f -qq -o none -e "inject=all:signal=$signal:when=$at" \
+        prefilter-envmap -q -e 6 -s 8 "$TESTDATA/studio.exr" -o o.exr || status=$?
+      # 0 where it ended before that call.
+      [ "$status" -eq 143 ] || [ "$status" -eq 130 ] || [ "$status" -eq 0 ] || { echo "$signal at $at: $status"; return 1; }
+    done
+  done
+}

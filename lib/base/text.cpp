@@ -152,6 +152,7 @@ std::string shown(std::string_view text) {
 }
 
 std::string xml_escaped(std::string_view text, std::string_view as_numbers) {
+  if (!is_plain_utf8(text)) return xml_escaped(plain_utf8(text), as_numbers);
   std::string escaped;
   escaped.reserve(text.size());
   for (const char c : text)

@@ -86,6 +86,10 @@ Result<MeasuredColor> measured_color(const MeasuredBrdf& brdf, const MeasuredCol
     reading.lab = color::lab_from_xyz(xyz, color.white());
     if (!std::isfinite(reading.lab.L + reading.lab.a + reading.lab.b))
       return input_error("its data give no finite value at {}: the file is damaged", paint::geometry_name(geometry));
+    // Paints with such values are not read.
+    if (std::max({std::abs(reading.lab.L), std::abs(reading.lab.a), std::abs(reading.lab.b)}) > 1e4)
+      return input_error("its data give a CIELAB value beyond 10000 at {}: the file is damaged",
+                         paint::geometry_name(geometry));
     result.readings.push_back(reading);
   }
   return result;

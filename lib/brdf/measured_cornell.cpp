@@ -72,7 +72,10 @@ std::vector<Share> delaunay_shares(const std::vector<Offset>& points, const Offs
   };
   std::array<std::size_t, 3> basis = {n, n + 1, n + 2};
   std::array<double, 3> weight{};
-  for (std::size_t round = 0; round < 100 + 10 * n; ++round) {
+  // A few dozen rounds suffice, unless many points lie on one circle, where the search may go round among equals: then
+  // any of the triangles is one.
+  const std::size_t most_rounds = 100 + 10 * std::min<std::size_t>(n, 20);
+  for (std::size_t round = 0; round < most_rounds; ++round) {
     const Vertex a = vertex(basis[0]), b = vertex(basis[1]), c = vertex(basis[2]);
     const double area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
     const auto barycentric = [&](double x, double y) -> std::array<double, 3> {
@@ -171,10 +174,14 @@ class CornellBrdf final : public MeasuredBrdf {
     return result;
   }
 
-  // The measured rows themselves, away from specular and grazing.
+  // The measured rows themselves, away from specular and grazing. Of very many, which each cost a search among all,
+  // some are taken throughout the file.
   std::vector<paint::DirectionPair> probes() const override {
+    constexpr std::size_t kMostProbes = 1000;
+    const std::size_t every = (rows_.size() + kMostProbes - 1) / kMostProbes;
     std::vector<paint::DirectionPair> result;
-    for (const Row& row : rows_) {
+    for (std::size_t i = 0; i < rows_.size(); i += every) {
+      const Row& row = rows_[i];
       const Offset offset = aspecular_offset(row.pair.light, row.pair.view);
       const double steepest = std::max(polar_angle(row.pair.light), polar_angle(row.pair.view));
       if (std::hypot(offset.toward, offset.across) > 15 && steepest < 75 * kDegree) result.push_back(row.pair);

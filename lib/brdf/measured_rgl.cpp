@@ -46,6 +46,7 @@ Result<TensorFile> TensorFile::parse(const std::string& path, std::string_view b
   const auto count = reader.next<std::uint32_t>();
   if (!count) return cut();
   if (*version != 1) return input_error("{}: tensor file of an unknown version", path);
+  std::size_t used = 0;
   for (std::uint32_t i = 0; i < *count; ++i) {
     const auto name_length = reader.next<std::uint16_t>();
     const auto name = name_length ? reader.text(*name_length) : std::nullopt;
@@ -67,6 +68,9 @@ Result<TensorFile> TensorFile::parse(const std::string& path, std::string_view b
     const std::size_t length = size * (*type == kFloat32 ? sizeof(float) : 1);
     if (*offset > bytes.size() || length > bytes.size() - *offset)
       return input_error("{}: field \"{}\" ends beyond the file: the file is cut", path, *name);
+    // Fields that share their bytes would make arrays out of all proportion to the file.
+    used += length;
+    if (used > bytes.size()) return input_error("{}: its fields overlap: the file is damaged", path);
     const auto data = bytes.substr(*offset, length);
     if (*type == kUint8 && *name == "description") file.description_ = std::string(data);
     if (*type != kFloat32) continue;

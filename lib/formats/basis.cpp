@@ -1,5 +1,7 @@
 #include "formats/basis.h"
 
+#include <cmath>
+
 #include "base/file.h"
 #include "base/text.h"
 #include "formats/internal/schemas.h"
@@ -118,6 +120,11 @@ Result<Basis> read_basis(const std::string& path) {
 }
 
 Result<void> write_basis(const std::string& path, const Basis& basis) {
+  bool finite = true;
+  for (const double exponent : basis.exponents) finite = finite && std::isfinite(exponent);
+  for (const BasisSet& set : basis.sets)
+    finite = finite && std::isfinite(set.max_error) && std::isfinite(set.mean_error) && std::isfinite(set.objective);
+  if (!finite) return input_error("{}: an exponent or an error of the basis is not finite: it is not written", path);
   std::string text = fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<basis xmlns=\"{}\" name=\"{}\">\n",
                                  kBasisNamespace, xml_escaped(plain_utf8(basis.name)));
   for (const double exponent : basis.exponents) text += fmt::format("  <exponent>{}</exponent>\n", shortest(exponent));

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <set>
+#include <unordered_map>
 
 #include "base/text.h"
 
@@ -211,10 +212,12 @@ class CgatsParser {
   }
 
   bool find_colors(std::string_view prefix, std::string_view letters, bool xyz) {
+    std::unordered_map<std::string, int> number_of;  // the first of each name; a table may have thousands of columns
+    for (std::size_t i = 0; i < columns_.fields.size(); ++i)
+      number_of.try_emplace(upper(columns_.fields[i]), static_cast<int>(i));
     const auto column_of = [&](const std::string& field) {
-      for (std::size_t i = 0; i < columns_.fields.size(); ++i)
-        if (upper(columns_.fields[i]) == field) return static_cast<int>(i);
-      return kNone;
+      const auto found = number_of.find(field);
+      return found == number_of.end() ? kNone : found->second;
     };
     for (const std::string& field : columns_.fields) {
       const std::string first = std::string(prefix) + letters[0];
@@ -300,6 +303,7 @@ class CgatsParser {
         GONIO_ASSIGN(const color::Xyz white, color::white_point(condition));
         lab = color::lab_from_xyz({values[0] / 100, values[1] / 100, values[2] / 100}, white);
       }
+      if (const auto checked = check_lab(lab); !checked.ok()) return error(checked.error().message);
       GONIO_ASSIGN(const auto geometry, geometry_of_row(color));
       if (geometry) readings.push_back({condition, {*geometry, lab}});
     }
@@ -307,6 +311,7 @@ class CgatsParser {
     for (const auto& [angle, column] : columns_.gloss) {
       if (cell(column).empty()) continue;
       GONIO_ASSIGN(const double units, number(column));
+      if (!(std::abs(units) <= kMostLab)) return error(fmt::format("the gloss is {}: write gloss units", units));
       gloss.push_back({angle, units});
     }
     if (columns_.geometry == kNone || name != open_.paint.name) {
@@ -389,12 +394,18 @@ class CgatsParser {
   ImportedPaints result_;
 };
 
+std::string on_one_line(std::string text) {
+  std::ranges::replace_if(
+      text, [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+  return text;
+}
+
 // A value in quotation marks, on one line.
-std::string cgats_text(std::string_view text) {
+std::string cgats_text(const std::string& text) {
   std::string result = "\"";
-  for (const char c : text) {
+  for (const char c : on_one_line(text)) {
     if (c == '"') result += '"';
-    result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    result += c;
   }
   return result + '"';
 }
@@ -429,8 +440,12 @@ Result<CgatsWriter> CgatsWriter::begin(OutputFile file, const std::string& creat
 Result<void> CgatsWriter::write(const paint::Paint& paint) {
   if (!paint.measurement || paint.measurement->rows.empty())
     return input_error("paint \"{}\" has no readings: CGATS holds readings only", paint.name);
+  GONIO_TRY(check_writable(paint));
   paint::Paint kept;  // what the table has columns for
-  kept.name = paint.name, kept.code = paint.code, kept.paint_class = paint.paint_class;
+  // Rows of one name are one paint, and a line holds no tabs and line ends: names must differ in what is written.
+  std::string name = on_one_line(paint.name);
+  for (int n = 2; !names_.insert(name).second; ++n) name = fmt::format("{} ({})", on_one_line(paint.name), n);
+  kept.name = name, kept.code = paint.code, kept.paint_class = paint.paint_class;
   kept.measurement = paint.measurement, kept.gloss = paint.gloss;
   paints_.push_back(std::move(kept));
   return {};
@@ -469,8 +484,8 @@ Result<void> CgatsWriter::finish() {
 
   std::size_t id = 0;
   for (const paint::Paint& paint : paints_) {
-    std::string tail =
-        fmt::format("\t{}\t{}", cgats_text(paint::condition_of(paint).illuminant), paint::condition_of(paint).observer_deg);
+    std::string tail = fmt::format("\t{}\t{}", cgats_text(paint::condition_of(paint).illuminant),
+                                   paint::condition_of(paint).observer_deg);
     for (const double angle : angles) {
       const auto found = std::ranges::find(paint.gloss, angle, &paint::GlossReading::angle_deg);
       tail += '\t' + (found == paint.gloss.end() ? "\"\"" : shortest(found->gloss_units));

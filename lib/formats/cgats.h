@@ -2,6 +2,7 @@
 // announce the columns that the standard does not have by KEYWORD, as it asks. goniochrome-paint(5).
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,7 @@ class CgatsWriter {
   OutputFile file_;
   std::string head_;
   std::vector<paint::Paint> paints_;
+  std::set<std::string> names_;  // as they are written
 };
 
 }  // namespace goniochrome::formats

@@ -134,12 +134,30 @@ Result<bool> CsvRecords::next(std::vector<std::string>& cells) {
   return true;
 }
 
-// One cell as it is written between commas: quoted if any reader might take it apart.
+std::string doubled_quotes(std::string_view text) {
+  std::string doubled;
+  for (const char c : text) doubled += c == '"' ? "\"\"" : std::string(1, c);
+  return doubled;
+}
+
+// Whether a spreadsheet would take the text for a formula and work it out. Apostrophes before one count as part of it,
+// so that one more can be taken off again.
+bool looks_like_formula(std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of('\''), text.size()));
+  return !text.empty() && std::string_view("=+-@").find(text.front()) != std::string_view::npos;
+}
+
+// A text that is none of our numbers as its cell says it, without the apostrophe that marks it as text.
+std::string_view cell_text(std::string_view cell) {
+  return cell.starts_with('\'') && looks_like_formula(cell) ? cell.substr(1) : cell;
+}
+
+// One text as it is written between commas: quoted if any reader might take it apart, and behind an apostrophe if a
+// spreadsheet would take it for a formula.
 std::string csv_cell(std::string_view text) {
+  if (looks_like_formula(text)) return "\"'" + doubled_quotes(text) + '"';
   if (text.find_first_of(",;\t\"\r\n") == std::string_view::npos && trimmed(text) == text) return std::string(text);
-  std::string cell = "\"";
-  for (const char c : text) cell += c == '"' ? "\"\"" : std::string(1, c);
-  return cell + '"';
+  return '"' + doubled_quotes(text) + '"';
 }
 
 // The columns that have names of their own.
@@ -250,7 +268,7 @@ struct CsvPaintReader::State {
   Result<std::optional<paint::Paint>> next_long();
 
   Result<void> check_width() const;
-  std::string_view text(int column) const { return column < 0 ? std::string_view() : std::string_view(cells[column]); }
+  std::string_view text(int column) const { return column < 0 ? std::string_view() : cell_text(cells[column]); }
   Result<double> number(int column, Domain domain = Domain::kAny) const;
   Result<color::Lab> lab(const std::array<int, 3>& columns) const;
   Result<color::ViewingCondition> condition() const;
@@ -304,9 +322,9 @@ Result<double> CsvPaintReader::State::number(int column, Domain domain) const {
 
 Result<color::Lab> CsvPaintReader::State::lab(const std::array<int, 3>& columns) const {
   color::Lab value;
-  GONIO_ASSIGN(value.L, number(columns[0]));
-  GONIO_ASSIGN(value.a, number(columns[1]));
-  GONIO_ASSIGN(value.b, number(columns[2]));
+  GONIO_ASSIGN(value.L, number(columns[0], Domain::kLab));
+  GONIO_ASSIGN(value.a, number(columns[1], Domain::kLab));
+  GONIO_ASSIGN(value.b, number(columns[2], Domain::kLab));
   return value;
 }
 
@@ -509,6 +527,7 @@ Result<CsvPaintWriter> CsvPaintWriter::begin(OutputFile file, const CsvLayout& l
 Result<void> CsvPaintWriter::write(const paint::Paint& paint) {
   if (!paint.measurement || paint.measurement->rows.empty())
     return input_error("paint \"{}\" has no Lab values: a table cannot hold it", shown(paint.name));
+  GONIO_TRY(check_writable(paint));
   const auto& [condition, instrument, rows] = *paint.measurement;
   const std::string viewing = fmt::format(",{},{}", csv_cell(condition.illuminant), condition.observer_deg);
   const std::string others = layout_.all_columns ? other_cells(paint) : "";

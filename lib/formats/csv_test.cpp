@@ -262,7 +262,7 @@ TEST(PaintCsv, IsWrittenAsTheManualSays) {
 
 TEST(PaintCsv, BothFormsComeBackToTheLastBit) {
   const ScratchFolder folder;
-  paint::Paint paint = paint_with("x", {{"-15", {160.0 / 3, -1e-17, 1e5 / 7}}, {"15", {0.1 + 0.2, -0.0, 5e-324}}});
+  paint::Paint paint = paint_with("x", {{"-15", {160.0 / 3, -1e-17, 1e4 / 7}}, {"15", {0.1 + 0.2, -0.0, 5e-324}}});
   paint.gloss = {{20, 1.0 / 3}};
   paint.code = "c";
   paint.measurement->instrument = "i \"1\"";

@@ -164,6 +164,8 @@ class CxfHandler final : public XmlHandler {
       color_.lab.b = chroma_ * std::sin(hue_deg_ * kDegree);
       object.colors.push_back(color_);
     }
+    if (in("ColorValues", "ColorCIELab") || in("ColorValues", "ColorCIELCh"))
+      if (const auto checked = check_lab(color_.lab); !checked.ok()) return error(checked.error().message);
     if (in("ColorValues", "ColorCIELab")) object.colors.push_back(color_);
     if (in("ColorValues", "ReflectanceSpectrum")) {
       for (std::size_t i = 0; i < content.size();) {
@@ -405,15 +407,16 @@ bool has_word(const std::string& illuminant) {
 
 Result<CxfWriter> CxfWriter::begin(OutputFile file, const Info& info) {
   CxfWriter writer(std::move(file), info);
-  GONIO_TRY(writer.file_.write(
-      fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-                  "<cc:CxF xmlns:cc=\"http://colorexchangeformat.com/CxF3-core\">\n"
-                  "  <cc:FileInformation>\n"
-                  "    <cc:Creator>{}</cc:Creator>\n    <cc:CreationDate>{}</cc:CreationDate>\n"
-                  "    <cc:Description>{}</cc:Description>\n"
-                  "  </cc:FileInformation>\n"
-                  "  <cc:Resources>\n",
-                  xml_escaped(info.creator), xml_escaped(info.created), xml_escaped(info.description))));
+  GONIO_TRY(
+      writer.file_.write(fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+                                     "<cc:CxF xmlns:cc=\"http://colorexchangeformat.com/CxF3-core\">\n"
+                                     "  <cc:FileInformation>\n"
+                                     "    <cc:Creator>{}</cc:Creator>\n    <cc:CreationDate>{}</cc:CreationDate>\n"
+                                     "    <cc:Description>{}</cc:Description>\n"
+                                     "  </cc:FileInformation>\n"
+                                     "  <cc:Resources>\n",
+                                     xml_escaped(plain_utf8(info.creator)), xml_escaped(plain_utf8(info.created)),
+                                     xml_escaped(plain_utf8(info.description)))));
   return writer;
 }
 
@@ -465,6 +468,7 @@ std::string CxfWriter::object(const paint::Paint& paint, const std::vector<paint
 Result<void> CxfWriter::write(const paint::Paint& paint) {
   if (!paint.measurement || paint.measurement->rows.empty())
     return input_error("paint \"{}\" has no readings: CxF holds readings only", paint.name);
+  GONIO_TRY(check_writable(paint));
   for (const paint::LabReading& row : paint.measurement->rows)
     if (row.lab.L < 0)
       return input_error("paint \"{}\" at {}: L* is {}: CxF3 allows none below 0", paint.name,

@@ -1,10 +1,15 @@
 #include "formats/imported.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/text.h"
 
 namespace goniochrome::formats {
+
+namespace {
+constexpr double kMostNumber = 1e12;
+}
 
 Result<double> number_in(std::string_view text, Domain domain) {
   const std::string_view value = trimmed(text);
@@ -19,7 +24,49 @@ Result<double> number_in(std::string_view text, Domain domain) {
   if (domain == Domain::kNotNegative && *number < 0) return input_error("is {}: write 0 or more", value);
   if (domain == Domain::kPositive && *number <= 0) return input_error("is {}: write a number above 0", value);
   if (domain == Domain::kRefractiveIndex && *number < 1) return input_error("is {}: write 1 or more", value);
+  if (domain == Domain::kLab && std::abs(*number) > kMostLab)
+    return input_error("is {}: write a CIELAB value from {} to {}", value, -kMostLab, kMostLab);
+  if (std::abs(*number) > kMostNumber) return input_error("is {}: write a number below 1e12", value);
   return *number;
+}
+
+Result<void> check_lab(const color::Lab& lab) {
+  for (const auto& [name, value] : {std::pair{"L*", lab.L}, {"a*", lab.a}, {"b*", lab.b}})
+    if (!(std::abs(value) <= kMostLab))
+      return input_error("{} is {}: CIELAB values lie between {} and {}", name, shortest(value), -kMostLab, kMostLab);
+  return {};
+}
+
+namespace {
+
+bool is_finite(const color::Rgb& rgb) {
+  return std::isfinite(rgb.x) && std::isfinite(rgb.y) && std::isfinite(rgb.z);
+}
+
+bool is_finite(const color::Rgb& diffuse, const std::vector<paint::Lobe>& lobes) {
+  return is_finite(diffuse) && std::ranges::all_of(lobes, [](const paint::Lobe& lobe) {
+           return !std::isnan(lobe.exponent) && is_finite(lobe.directional_diffuse) && is_finite(lobe.gloss);
+         });
+}
+
+}  // namespace
+
+Result<void> check_writable(const paint::Paint& paint) {
+  const auto refused = [&](const std::string& why) { return input_error("paint \"{}\": {}", shown(paint.name), why); };
+  std::vector<color::Lab> colors;
+  if (paint.measurement)
+    for (const paint::LabReading& row : paint.measurement->rows) colors.push_back(row.lab);
+  if (paint.appearance) colors.insert(colors.end(), {paint.appearance->face, paint.appearance->flop});
+  for (const color::Lab& lab : colors)
+    if (const auto checked = check_lab(lab); !checked.ok()) return refused(checked.error().message);
+  bool finite = !paint.appearance || std::isfinite(paint.appearance->travel_deg);
+  for (const paint::GlossReading& gloss : paint.gloss) finite = finite && std::isfinite(gloss.gloss_units);
+  if (paint.lobes) {
+    finite = finite && is_finite(paint.lobes->diffuse, paint.lobes->lobes);
+    for (const auto& view : paint.lobes->views) finite = finite && is_finite(view.diffuse, view.lobes);
+  }
+  if (!finite) return refused("a number of it is not finite: only finite numbers are written");
+  return {};
 }
 
 Result<paint::PaintClass> class_in(std::string_view text) {

@@ -16,13 +16,24 @@
 
 namespace goniochrome::formats {
 
-enum class Domain { kAny, kNotNegative, kPositive, kRefractiveIndex };
+// Every domain ends at 1e12 in size, beyond which no quantity of a paint lies and sums of squares lose their sense.
+enum class Domain { kAny, kNotNegative, kPositive, kRefractiveIndex, kLab };
+
+// The largest size of a CIELAB coordinate: fifty times that of any color that was ever measured.
+constexpr double kMostLab = 1e4;
 
 // The number, paint class or observer (2 or 10 deg) that `text` spells. The errors lack the place and the name of the
 // value: `is "12,5": write a decimal point`.
 Result<double> number_in(std::string_view text, Domain domain = Domain::kAny);
 Result<paint::PaintClass> class_in(std::string_view text);
 Result<int> observer_in(std::string_view text);
+
+// Whether L*, a* and b* are numbers of a color. The error lacks the place: `L* is 1e+50: ...`.
+Result<void> check_lab(const color::Lab& lab);
+
+// Whether every reading and number of the paint can be written: it is finite, and a CIELAB coordinate is within its
+// domain. The error names the paint. An exponent may be infinite, which is a mirror.
+Result<void> check_writable(const paint::Paint& paint);
 
 // `text` with a point in place of its comma, if it has one comma and no point; nothing otherwise.
 std::optional<std::string> with_decimal_point(std::string_view text);

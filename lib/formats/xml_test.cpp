@@ -83,13 +83,13 @@ paint::Paint full_paint() {
   paint.paint_class = paint::PaintClass::kInterference;
   paint.measurement = paint::Measurement{{"A", 2}, "goniometer \"7\"", {}};
   for (const char* name : {"45as15", "45as-15", "r45as-15", "15as-45", "45as25az90", "45as110"})
-    paint.measurement->rows.push_back({*paint::parse_geometry(name), {160.1 / 3, -1e-17, 1e5 / 7}});
+    paint.measurement->rows.push_back({*paint::parse_geometry(name), {160.1 / 3, -1e-17, 1e4 / 7}});
   paint.gloss = {{20, 81.7}, {60, 0}, {85, 1999.5}};
   paint.appearance = paint::Appearance{{95, 1, 2}, {0.1 + 0.2, -5e-324, 2}, std::nextafter(15.0, 16.0), 0.41};
   paint.anisotropy = paint::Anisotropy{0.05, 0.3};
   paint.color_map = paint::ColorMapReference{"maps/x y.exr", 1.5};
   paint.lobes = paint::LobeFit{"b7", "l1", 1.25, 0.5, {0.1, 0.2, 0.3}, {}};
-  paint.lobes->lobes = {{12.5, {1, 2, 3}, {4, 5, 6}}, {INFINITY, {0, 0, 0}, {1e-300, 1e300, 0.1}}};
+  paint.lobes->lobes = {{12.5, {1, 2, 3}, {4, 5, 6}}, {INFINITY, {0, 0, 0}, {1e-300, 987654321098.7654, 0.1}}};
   paint.lobes->views = {{0, {0.1, 0.2, 0.3}, {{12.5, {1, 2, 3}, {}}}}, {90, {0.3, 0.2, 0.1}, {}}};
   paint.foreign = {"<x:note xmlns:x=\"urn:x\" k=\"1\">a<x:b/>c &amp; d</x:note>", "<y xmlns=\"urn:y\"/>"};
   return paint;

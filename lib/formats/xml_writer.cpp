@@ -117,6 +117,7 @@ Result<PaintWriter> PaintWriter::begin(OutputFile file, const std::vector<Proces
 
 Result<void> PaintWriter::write(const paint::Paint& paint) {
   GONIO_TRY(check_texts(paint));
+  GONIO_TRY(check_writable(paint));
   GONIO_TRY(file_.write(paint_element(paint)));
   return is_stream_ ? file_.flush() : Result<void>();
 }

@@ -36,7 +36,9 @@ class Scale {
 
   bool usable(double v) const { return std::isfinite(v) && (!logarithmic_ || v > 0); }
   double at(double v) const {
-    const double part = logarithmic_ ? std::log(v / low_) / std::log(high_ / low_) : (v - low_) / (high_ - low_);
+    // A ratio of the ends of the axis could be larger than any number.
+    const double part = logarithmic_ ? (std::log(v) - std::log(low_)) / (std::log(high_) - std::log(low_))
+                                     : (v - low_) / (high_ - low_);
     return from_ + (to_ - from_) * part;
   }
   std::vector<double> ticks(int count) const { return goniochrome::report::ticks(low_, high_, logarithmic_, count); }
@@ -45,8 +47,9 @@ class Scale {
   // Leaves some space around the data, and makes room if all values are equal.
   void widen(double& low, double& high) const {
     if (logarithmic_) {
-      const double factor = high > low ? std::pow(high / low, 0.04) : 2;
-      low /= factor, high *= factor;
+      const double factor = high > low ? std::exp(0.04 * (std::log(high) - std::log(low))) : 2;
+      low = std::max(low / factor, std::numeric_limits<double>::denorm_min());
+      high = std::min(high * factor, std::numeric_limits<double>::max());
     } else {
       const double air = high > low ? 0.04 * (high - low) : std::max(1.0, 0.1 * std::abs(high));
       // An axis that begins at zero shall be seen to do so.
@@ -186,8 +189,9 @@ std::vector<double> ticks(double low, double high, bool logarithmic, int count) 
   std::vector<double> at;
   if (!(low < high)) return at;
   if (logarithmic) {
-    const int every = std::max(1, static_cast<int>(std::ceil(std::log10(high / low) / std::max(count, 1))));
-    for (const bool dense : {high / low < 100, true}) {
+    const double decades = std::log10(high) - std::log10(low);
+    const int every = std::max(1, static_cast<int>(std::ceil(decades / std::max(count, 1))));
+    for (const bool dense : {decades < 2, true}) {
       at.clear();
       for (int decade = static_cast<int>(std::floor(std::log10(low))); decade <= std::ceil(std::log10(high)); ++decade)
         for (const double part : {1.0, 2.0, 5.0}) {
@@ -201,8 +205,13 @@ std::vector<double> ticks(double low, double high, bool logarithmic, int count) 
   }
   const double rough = (high - low) / std::max(count, 1), power = std::pow(10.0, std::floor(std::log10(rough)));
   const double step = power * (rough / power <= 1 ? 1 : rough / power <= 2 ? 2 : rough / power <= 5 ? 5 : 10);
-  for (double i = std::ceil(low / step - 1e-9); i <= high / step + 1e-9; ++i)
-    at.push_back(i * step + 0.0);  // -0 becomes 0
+  if (!(step > 0) || !std::isfinite(step)) return at;
+  // Where the ends of the axis are neighbors, one step more does not change a number, so the steps are counted.
+  const double first = std::ceil(low / step - 1e-9), most = 2 * std::max(count, 1) + 2;
+  for (double k = 0; k < most && first + k <= high / step + 1e-9; ++k) {
+    const double v = (first + k) * step + 0.0;  // -0 becomes 0
+    if (at.empty() || v > at.back()) at.push_back(v);
+  }
   return at;
 }
 

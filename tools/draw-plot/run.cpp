@@ -19,6 +19,8 @@ const std::map<std::string_view, report::Series::Style> kStyles = {{"line", repo
                                                                    {"dashed", report::Series::Style::kDashed},
                                                                    {"rings", report::Series::Style::kRings}};
 
+constexpr double kMostCoordinate = 1e300;  // so that the length of an axis is a number too
+
 // Where each heading stands among the words of a row; style and color may be missing.
 struct Columns {
   std::size_t series = 0, x = 0, y = 0, count = 0;
@@ -40,7 +42,11 @@ Result<Columns> columns_of(const std::string& name, int line, const std::vector<
 // A number, or NaN for an empty cell, which breaks a line.
 Result<double> coordinate(const std::string& name, int line, const char* column, std::string_view text) {
   if (trimmed(text).empty()) return std::numeric_limits<double>::quiet_NaN();
-  if (const auto value = parse_number(trimmed(text))) return *value;
+  if (const auto value = parse_number(trimmed(text))) {
+    if (std::abs(*value) <= kMostCoordinate) return *value;
+    return input_error("{}:{}: {} is {}: numbers beyond {} have no place in a plot", name, line, column, trimmed(text),
+                       kMostCoordinate);
+  }
   return input_error("{}:{}: {} is \"{}\": write a number such as 0.5, or nothing", name, line, column, trimmed(text));
 }
 
@@ -56,6 +62,7 @@ Result<std::vector<report::Series>> read_table(const std::string& path) {
   const std::string name = path == "-" ? "standard input" : path;
   GONIO_ASSIGN(const std::string text, file_content(path));
   std::vector<report::Series> all;
+  std::map<std::string, std::size_t> number_of;  // where the series of a label stands
   std::optional<Columns> columns;
   int line = 0;
   for (const std::string_view raw : split(text, '\n')) {
@@ -69,9 +76,10 @@ Result<std::vector<report::Series>> read_table(const std::string& path) {
     if (words.size() != columns->count)
       return input_error("{}:{}: {} cells where the headings are {}", name, line, words.size(), columns->count);
     const std::string label(trimmed(words[columns->series]));
-    auto series = std::ranges::find(all, label, &report::Series::label);
-    if (series == all.end()) {
-      series = all.insert(series, {.label = label, .x = {}, .y = {}});
+    const auto [known, is_new] = number_of.try_emplace(label, all.size());
+    if (is_new) all.push_back({.label = label, .x = {}, .y = {}});
+    report::Series* series = &all[known->second];
+    if (is_new) {
       if (columns->style) {
         const std::string_view style = trimmed(words[*columns->style]);
         if (!kStyles.contains(style))

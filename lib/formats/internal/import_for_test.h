@@ -52,7 +52,7 @@ inline std::vector<paint::Paint> two_paints(const std::string& illuminant) {
   a.measurement = paint::Measurement{{"D65", 10},
                                      "MA-T12",
                                      {{geometry("45as15"), {41.87, -45.99, -21.73 / 3}},
-                                      {geometry("45as-15"), {1.0 / 3, 1e-17, -1e300}},
+                                      {geometry("45as-15"), {1.0 / 3, 1e-17, -9999.999999999998}},
                                       {geometry("45as25az-76"), {130.5, 0, -0.1}},
                                       {geometry("45as15az0"), {30, 1, 2}},
                                       {geometry("r45as45"), {0, 0, 0}}}};

@@ -16,6 +16,8 @@ namespace goniochrome::formats {
 namespace {
 
 constexpr std::size_t kChunk = 1 << 16;
+constexpr std::size_t kMostAttributes = 256, kMostNamespaces = 256;  // of one tag; of all open elements
+constexpr std::size_t kMostPieces = 10000;  // of one text, which comments and the parser's buffer part
 constexpr std::string_view kSchemaInstance = "http://www.w3.org/2001/XMLSchema-instance";
 
 std::string qualified(std::string_view prefix, std::string_view name) {
@@ -97,6 +99,66 @@ std::string explained(int code, std::string_view detail) {
   return fmt::format("not well-formed XML ({})", trimmed(detail));
 }
 
+// Counts the attributes of each tag on the way to the parser. libxml2 compares every attribute of a tag with every
+// other, so that 10^5 of them in one tag take more than a minute.
+class AttributeCounter {
+ public:
+  // False if a tag within `chunk`, or one that was begun before it, has more than kMostAttributes.
+  bool pass(std::string_view chunk) {
+    while (!chunk.empty()) {
+      if (state_ == State::kText) {
+        const auto at = chunk.find('<');
+        if (at == std::string_view::npos) return true;
+        chunk.remove_prefix(at + 1);
+        state_ = State::kBegun, begin_.clear();
+        continue;
+      }
+      if (!take(chunk.front())) return false;
+      chunk.remove_prefix(1);
+    }
+    return true;
+  }
+
+ private:
+  enum class State { kText, kBegun, kTag, kQuoted, kSkipped };
+
+  bool take(char c) {
+    if (state_ == State::kQuoted) {
+      if (c == quote_) state_ = State::kTag;
+    } else if (state_ == State::kSkipped) {
+      last_ = (last_ + c).substr(last_.size() < 3 ? 0 : 1);
+      if (last_.ends_with(end_)) state_ = State::kText;
+    } else if (state_ == State::kBegun && is_begin_of_skipped(c)) {
+      // what it is will be seen with the next letters
+    } else {
+      state_ = State::kTag;
+      if (c == '>') state_ = State::kText;
+      if (c == '"' || c == '\'') state_ = State::kQuoted, quote_ = c;
+      if (c == '=') return ++attributes_ <= kMostAttributes;
+    }
+    return true;
+  }
+
+  // Whether what follows "<" may still be, or is, a comment, a CDATA section or an instruction, which have no
+  // attributes.
+  bool is_begin_of_skipped(char c) {
+    if (begin_.empty()) attributes_ = 0;
+    begin_ += c;
+    for (const auto& [begin, end] :
+         {std::pair<std::string_view, std::string_view>{"!--", "-->"}, {"![CDATA[", "]]>"}, {"?", "?>"}}) {
+      if (begin_ == begin) state_ = State::kSkipped, end_ = end, last_.clear();
+      if (begin.starts_with(begin_)) return true;
+    }
+    return false;
+  }
+
+  State state_ = State::kText;
+  std::string begin_, last_;
+  std::string_view end_;
+  char quote_ = 0;
+  std::size_t attributes_ = 0;
+};
+
 }  // namespace
 
 struct XmlStream::State {
@@ -114,6 +176,10 @@ struct XmlStream::State {
   bool has_root = false, tag_cut = false, at_end = false, finished = false;
   std::size_t bytes = 0, since_markup = 0;
   std::string chunk;
+  AttributeCounter attributes;
+  std::vector<int> namespaces;  // that each open element declares
+  std::size_t all_namespaces = 0;
+  std::size_t text_bytes = 0, text_pieces = 0;  // since the last tag
 
   State(InputFile file, XmlHandler& told) : input(std::move(file)), handler(told) {}
   ~State() {
@@ -164,6 +230,7 @@ void XmlStream::State::on_start(void* data, const xmlChar* name, const xmlChar* 
   const xmlChar next = *state.parser->input->cur;
   state.tag_cut = next != '>' && next != '/';
   if (state.tag_cut) return;
+  state.text_bytes = state.text_pieces = 0;
   if (state.open.size() == kDeepestXml)
     return state.fail(state.line(), fmt::format("elements are nested more than {} deep: flatten them", kDeepestXml));
   XmlTag& tag = state.tag;
@@ -178,6 +245,11 @@ void XmlStream::State::on_start(void* data, const xmlChar* name, const xmlChar* 
     tag.attributes.push_back({view(part[0]), view(part[1]), view(part[2]), value, state.line_of(part[3])});
   }
   state.open.emplace_back(tag.name);
+  state.namespaces.push_back(namespaces);
+  state.all_namespaces += static_cast<std::size_t>(namespaces);
+  if (state.all_namespaces > kMostNamespaces)
+    return state.fail(state.line(),
+                      fmt::format("more than {} namespaces are declared at once: declare fewer", kMostNamespaces));
   state.has_root = true;
   state.accept(state.handler.start(tag));
 }
@@ -186,14 +258,25 @@ void XmlStream::State::on_end(void* data, const xmlChar*, const xmlChar*, const 
   State& state = of(data);
   if (state.error) return;
   state.open.pop_back();
+  state.text_bytes = state.text_pieces = 0;
+  state.all_namespaces -= static_cast<std::size_t>(state.namespaces.back());
+  state.namespaces.pop_back();
   state.accept(state.handler.end(state.line()));
 }
 
 void XmlStream::State::on_text(void* data, const xmlChar* text, int length) {
   State& state = of(data);
   if (state.error) return;
-  state.accept(
-      state.handler.text({reinterpret_cast<const char*>(text), static_cast<std::size_t>(length)}, state.line()));
+  // The schema's validator puts the pieces together, and measures the whole text for each.
+  state.text_bytes += static_cast<std::size_t>(length);
+  const bool too_long = ++state.text_pieces > kMostPieces || state.text_bytes > kLongestXmlToken;
+  const auto taken =
+      too_long
+          ? Result<void>(input_error("{}:{}: one text is longer than {} bytes, or in more than {} pieces: shorten it",
+                                     state.input.name(), state.line(), kLongestXmlToken, kMostPieces))
+          : state.handler.text({reinterpret_cast<const char*>(text), static_cast<std::size_t>(length)}, state.line());
+  // libxml2 2.9 crashes where it is stopped within a text. What follows in this chunk is passed over.
+  if (!taken.ok()) state.error = taken.error();
 }
 
 // This is called before any entity is declared.
@@ -261,6 +344,8 @@ Result<void> XmlStream::State::read_chunk() {
   since_markup = last_markup == std::string::npos ? since_markup + count : count - last_markup;
   if (since_markup > kLongestXmlToken)
     fail(line(), fmt::format("one text or attribute is longer than {} bytes: shorten it", kLongestXmlToken));
+  if (!attributes.pass(chunk))
+    fail(line(), fmt::format("from here on, a tag has more than {} attributes: it takes fewer", kMostAttributes));
   if (!error) xmlParseChunk(parser, chunk.data(), static_cast<int>(count), at_end);
   finished = at_end;
   if (error) return *error;
@@ -343,9 +428,9 @@ Result<void> XmlValues::number(std::string_view name, double& target, Domain dom
 }
 
 Result<void> XmlValues::lab(color::Lab& target) const {
-  GONIO_TRY(number("L", target.L));
-  GONIO_TRY(number("a", target.a));
-  return number("b", target.b);
+  GONIO_TRY(number("L", target.L, Domain::kLab));
+  GONIO_TRY(number("a", target.a, Domain::kLab));
+  return number("b", target.b, Domain::kLab);
 }
 
 Result<void> XmlValues::rgb(std::string_view prefix, color::Rgb& target) const {
