@@ -9,6 +9,7 @@
 #include "brdf/lobe_model.h"
 #include "render/effects.h"
 #include "render/internal/seen.h"
+#include "render/surface_layer.h"
 
 namespace goniochrome::render {
 
@@ -258,6 +259,12 @@ Result<WornPaints> worn_paints(const LobeColumns& columns, const PathScene& path
   WornPaints worn;
   std::vector<std::size_t> first;  // part of each group
   for (std::size_t part = 0; part < scene.paints.size(); ++part) {
+    if (scene.layer != nullptr) {
+      const PartSurface& surface = scene.layer->surface(static_cast<int>(part));
+      if (surface.texture != nullptr || surface.color_map != nullptr)
+        return usage_error("part {} wears a {}, whose light is no sum of the lobes of a paint: trace without it",
+                           scene.mesh->parts[part].name, surface.texture != nullptr ? "texture" : "color map");
+    }
     int group = scene.paints.size() <= kMostOwnGroups ? static_cast<int>(first.size()) : 0;
     while (group < static_cast<int>(first.size()) && !same_wear(scene, first[static_cast<std::size_t>(group)], part))
       ++group;

@@ -7,6 +7,7 @@
 #include "brdf/lobe_model.h"
 #include "render/exact.h"
 #include "render/path/chi_square_for_test.h"
+#include "render/path/lobe_transport.h"
 #include "render/path/scenes_for_paths_for_test.h"
 #include "render/path/traced_paint.h"
 #include "render/path/visible_surface.h"
@@ -405,6 +406,24 @@ TEST(TracedSurface, TellsWhetherItGainsLight) {
   gaining.values[static_cast<std::size_t>(gaining.stride()) * 13 + 5 + 7] = 16;
   stage.surfaces = {{nullptr, 1, &dim}, {nullptr, 1, &bright}, {&fair, 1, nullptr}, {&gaining, 1, nullptr}};
   EXPECT_EQ(stage.build_with_layer().gaining_parts(), (std::vector<int>{1, 3}));
+}
+
+// A file of the light of each lobe cannot hold them.
+TEST(TracedSurface, AreNoSumOfLobes) {
+  LayeredStage stage(panels_mesh(2), {mapped_paint(), {}});
+  const brdf::ColorMap map = even_map(0.5F);
+  const brdf::SbrdfTexture texture = brushed();
+  const LobeColumns columns = *lobe_columns(stage.scene);
+  PathScene path;
+  path.scene = &stage.scene;
+  EXPECT_TRUE(worn_paints(columns, path).ok());
+  for (const bool textured : {false, true}) {
+    stage.surfaces = {{}, textured ? PartSurface{&texture, 1, nullptr} : PartSurface{nullptr, 1, &map}};
+    stage.build_with_layer();
+    const auto worn = worn_paints(columns, path);
+    ASSERT_FALSE(worn.ok());
+    EXPECT_NE(worn.error().message.find(textured ? "wears a texture" : "wears a color map"), std::string::npos);
+  }
 }
 
 // White by a map and white by a texture in an even light of 1, in a cup, with all bounces.

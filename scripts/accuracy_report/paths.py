@@ -1,0 +1,145 @@
+"""Paths: error against time for samples, engines and bounces, and growth with triangles, pixels and lights."""
+
+import numpy
+
+from shared import pictures
+from shared.colors import de2000, lab
+
+from .growth import curve
+from .scene import CAMERA
+from .study import Figure, Reading, Study
+
+XYZ_FROM_REC2020 = ((0.636958, 0.144617, 0.168881), (0.262700, 0.677998, 0.059302), (0.0, 0.028073, 1.060985))
+PAINT = "silver_fine"
+MOST = 12  # bounces of the picture that all are held against
+LEAST = 0.02  # the least difference of the plot; nobody sees a smaller one
+COMMON = ("--floor", "none", "--exposure", "0", "--background", "none")
+
+
+def wavy_obj(rows):
+    """The text of a sphere whose surface is wavy, so that it shades itself: `rows` rows, twice as many columns, with normals."""
+    t = numpy.pi * numpy.arange(rows + 1)[:, None] / rows
+    p = numpy.pi * numpy.arange(2 * rows)[None, :] / rows
+    wave, slope_t, slope_p = 0.06 * numpy.sin(8 * t) * numpy.sin(9 * p), 0.48 * numpy.cos(8 * t) * numpy.sin(9 * p), 0.54 * numpy.sin(
+        8 * t) * numpy.cos(9 * p)
+    r, one = 1 + wave, numpy.ones_like(p)
+    sin_t = numpy.maximum(numpy.sin(t), 1e-6)
+    radial = numpy.stack([numpy.sin(t) * numpy.sin(p), numpy.cos(t) * one, numpy.sin(t) * numpy.cos(p)], -1)
+    down = numpy.stack([numpy.cos(t) * numpy.sin(p), -numpy.sin(t) * one, numpy.cos(t) * numpy.cos(p)], -1)
+    across = numpy.stack([numpy.cos(p) * numpy.ones_like(t), 0 * t * one, -numpy.sin(p) * numpy.ones_like(t)], -1)
+    normals = r[..., None] * radial - slope_t[..., None] * down - (slope_p / sin_t)[..., None] * across
+    normals /= numpy.linalg.norm(normals, axis=-1, keepdims=True)
+    points = (r[..., None] * radial).reshape(-1, 3)
+    lines = ["v {:.6f} {:.6f} {:.6f}".format(*point) for point in points]
+    lines += ["vn {:.4f} {:.4f} {:.4f}".format(*normal) for normal in normals.reshape(-1, 3)]
+    wide = 2 * rows
+    for i in range(rows):
+        for j in range(wide):
+            a, b = i * wide + j + 1, i * wide + (j + 1) % wide + 1
+            if i > 0:
+                lines.append(f"f {a}//{a} {a + wide}//{a + wide} {b}//{b}")
+            if i < rows - 1:
+                lines.append(f"f {b}//{b} {a + wide}//{a + wide} {b + wide}//{b + wide}")
+    return "\n".join(lines) + "\n"
+
+
+class Pictures:
+    """Pictures of one paint on the mesh under the probe, and what they are held against."""
+
+    def __init__(self, run):
+        self.run, self.fitted, self.env = run, run.work / "paths.xml", run.work / "paths.env.exr"
+        run.tool("fit-paint", "--basis", run.data / "b7.basis.xml", run.paints, "-o", self.fitted)
+        run.tool("prefilter-envmap", run.probe, "--basis", run.data / "b7.basis.xml", "-o", self.env)
+        self.light = ("--env", self.env, "--check-source", run.probe)
+        self.words = ("--mesh", run.mesh, "--paint", f"{self.fitted}#{run.named([PAINT])[0]}", *COMMON, *CAMERA)
+        self.truth = None
+        self.white = 1.0
+
+    def drawn(self, *more):
+        """(the colors, whether a pixel shows the mesh, the results of the report, the seconds)"""
+        out = self.run.work / "path.exr"
+        results, seconds = self.run.tool("render-osmesa", *self.words, *more, "-o", out)
+        channels = pictures.channels(out)
+        return numpy.stack([channels[name] for name in "RGB"], -1).astype(float), channels["A"] > 0.99, results, seconds
+
+    def path(self, bounces, tolerance, seed=2):
+        return self.drawn(*self.light, "--engine", "path", "--bounces", bounces, "--tolerance", tolerance, "--seed", seed)
+
+    def converge(self):
+        """Draws the picture that all others are held against."""
+        rgb, self.seen, results, _ = self.path(MOST, 1 if self.run.quick else 0.1, seed=1)
+        self.truth = rgb[self.seen]
+        self.white = 2 * float(numpy.quantile((self.truth @ numpy.transpose(XYZ_FROM_REC2020))[:, 1], 0.9))
+        return results["noise_de00_p95"]
+
+    def error(self, rgb):
+        """The 95th percentile of dE00 to that picture."""
+        def color(linear):
+            return lab(numpy.maximum(linear @ numpy.transpose(XYZ_FROM_REC2020) / self.white, 0))
+        return float(numpy.quantile(de2000(color(rgb[self.seen]), color(self.truth)), 0.95))
+
+    def reading(self, method, setting, *drawn, default=False):
+        """A reading; `drawn` are the options that make the picture."""
+        rgb, _, _, seconds = self.drawn(*drawn)
+        return Reading(f"{method}, {setting}", error=self.error(rgb), method=method, default=default,
+                       **self.run.timed(lambda: self.drawn(*drawn)[3], seconds))
+
+
+def against_time(run):
+    """(the readings of all engines, the noise of the picture that they are held against)"""
+    stage = Pictures(run)
+    noise = stage.converge()
+    readings = []
+    for bounces in (0, 8) if run.quick else (0, 1, 8):
+        for tolerance in ("8", "4") if run.quick else ("8", "4", "2", "1", "0.5"):
+            readings.append(stage.reading(f"path, {bounces} bounces", f"to {tolerance} dE00", *stage.light, "--engine", "path",
+                                          "--bounces", bounces, "--tolerance", tolerance))
+    readings.append(stage.reading("cpu", "all effects", *stage.light, "--engine", "cpu", "--effects", "all"))
+    readings.append(stage.reading("integral", "to 0.1 dE00", *stage.light, "--engine", "integral", "--tolerance", "0.1"))
+    return readings, noise
+
+
+def growth(run):
+    """(what grows, its size, the least seconds, all seconds): processor time of the whole tool."""
+    fitted = run.work / "paths.xml"
+    paint = ("--paint", f"{fitted}#{run.named([PAINT])[0]}", *COMMON, "--engine", "path", "--bounces", 2, "--tolerance", 2,
+             "-o", run.work / "growth.exr")
+    mesh = run.work / "wavy.obj"
+    view = ("--orbit", "30,20", "--env", run.work / "paths.env.exr", "--check-source", run.probe)
+
+    def timed(*words):
+        _, best, raw = run.repeated("render-osmesa", "--mesh", mesh, *paint, *words)
+        return best, raw
+    for rows in (50, 100) if run.quick else (50, 158, 500):
+        mesh.write_text(wavy_obj(rows))
+        yield "triangles", 4 * rows * (rows - 1), *timed(*view, "--size", "160x90")
+    mesh.write_text(wavy_obj(100))
+    for width in (80, 160) if run.quick else (80, 160, 320, 640):
+        yield "pixels", width * width * 9 // 16, *timed(*view, "--size", f"{width}x{width * 9 // 16}")
+    for lights in (1, 8) if run.quick else (1, 4, 16, 64):
+        words = [word for i in range(lights) for word in ("--light", f"{360 * i / lights - 180:.1f},40")]
+        yield "lights", lights, *timed("--orbit", "30,20", "--size", "160x90", *words)
+
+
+def study(run):
+    readings, noise = against_time(run)
+    error = Figure("paths", "dE00 to a converged picture, 95 % of the pixels, against time", readings, "processor time (s)",
+                   "dE00, 95 % of the pixels", y=lambda r: max(r.error, LEAST),
+                   note=f"The picture that all are held against has {MOST} bounces and a noise of {noise:.2f} dE00. The engines cpu "
+                   "and integral leave out that the mesh is in the way of light, which no setting of theirs mends.")
+    kinds = {}
+    for kind, n, best, raw in growth(run):
+        kinds.setdefault(kind, []).append(Reading(f"{kind} {n}", time_s=best, error=0.0, method=kind, raw_s=raw, numbers={"n": n}))
+    grown = Figure("path-growth", "Time of a path traced picture against its size", [r for rs in kinds.values() for r in rs],
+                   x_label="triangles, pixels or lights", y_label="time (s)", front=False, x=lambda r: r.numbers["n"],
+                   y=lambda r: r.time_s)
+    return Study("Paths", "The engine path draws until the noise of the picture is within a tolerance. Each point is a tolerance; "
+                 "each line allows another number of bounces. Fewer bounces leave light out, which no number of samples brings "
+                 "back: their lines end level. Times are processor time of the whole tool, reading and the G-buffer included. "
+                 "Growth is that of a wavy sphere that shades itself, to a noise of 2 dE00 with 2 bounces; the tolerance ends the "
+                 "work, so that a light more costs what its noise costs.",
+                 [error, grown],
+                 [("Error and time", ("method, tolerance", "time (s)", "dE00 95 %"), [(r.setting, r.time_s, r.error) for r in readings]),
+                  ("Growth", ("what grows", "sizes", "least (s)", "most (s)", "exponent", "steepest step", "its exponent"),
+                   [(kind, f"{rs[0].numbers['n']} to {rs[-1].numbers['n']}", rs[0].time_s, rs[-1].time_s, *curve(rs))
+                    for kind, rs in kinds.items()])])
