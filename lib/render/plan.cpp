@@ -373,7 +373,9 @@ Plan plan_of_everything(const Scene& scene, const Effects& all, const std::vecto
   }
   plan.effects = all;
   plan.engine = engine.name;
-  plan.engine_reason = "as asked: it draws every effect";
+  plan.engine_reason =
+      "as asked: it draws every effect, by rays alone; prefiltered maps are not used, which were 1.6 to 3.1 dE00 (p95) "
+      "off in measured light";
   return plan;
 }
 

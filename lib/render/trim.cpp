@@ -39,7 +39,8 @@ std::optional<paint::LobeFit> finish_of(const std::string& text, bool with_mirro
   };
   if (has_word_of(text, kGlass)) return wear(0.005, true);
   if (has_word_of(text, kBlack)) return wear(0.03, false);
-  if (has_word_of(text, kMetal)) return wear(0.4, true);
+  // With a lighter gray, coat and gray together would send back more light than they get at grazing views.
+  if (has_word_of(text, kMetal)) return wear(0.2, true);
   return std::nullopt;
 }
 

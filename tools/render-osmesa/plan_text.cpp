@@ -6,8 +6,9 @@ namespace goniochrome::tool {
 
 namespace {
 
-std::string cost_text(const render::PlanItem& item) {
-  return std::isnan(item.cost_ms) ? "-" : fmt::format("{:.2f}", item.cost_ms);
+// Engines that draw everything at once are not asked what each effect is worth and costs.
+std::string known(double value) {
+  return std::isnan(value) ? "-" : fmt::format("{:.2f}", value);
 }
 
 }  // namespace
@@ -21,10 +22,11 @@ std::string plan_table(const render::Plan& plan) {
     const std::string exact = item.truth_de00_p95 ? fmt::format("{:7.2f} ", *item.truth_de00_p95)
                               : truth             ? "        "
                                                   : "";
-    text += item.needed ? fmt::format("{:<13} {:<6} {:>7.2f} {}{:>7}  {:<16} {}\n", item.effect, "yes", item.de00_p95,
-                                      exact, cost_text(item), spelled(item.decision), item.reason)
-                        : fmt::format("{:<13} {:<6} {:>7} {}{:>7}  {:<16} {}\n", item.effect, "no", "-",
-                                      truth ? "        " : "", "-", spelled(item.decision), item.reason);
+    text += item.needed
+                ? fmt::format("{:<13} {:<6} {:>7} {}{:>7}  {:<16} {}\n", item.effect, "yes", known(item.de00_p95),
+                              exact, known(item.cost_ms), spelled(item.decision), item.reason)
+                : fmt::format("{:<13} {:<6} {:>7} {}{:>7}  {:<16} {}\n", item.effect, "no", "-",
+                              truth ? "        " : "", "-", spelled(item.decision), item.reason);
   }
   return text + fmt::format("left out together: dE00 {:.2f} (p95); planned in {:.1f} ms\nengine {}: {}\n",
                             plan.de00_p95, plan.time_ms, plan.engine, plan.engine_reason);

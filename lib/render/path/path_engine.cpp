@@ -63,12 +63,16 @@ Result<void> PathEngine::load(const Scene& scene, const Effects& effects) {
 std::vector<std::string> PathEngine::remarks() const {
   std::vector<std::string> all;
   if (!transport_) return all;
+  constexpr int kMostNames = 6;
   std::string gaining;
+  int named = 0;
   for (const int part : transport_->gaining_parts()) {
     const auto at = static_cast<std::size_t>(part);
+    if (++named > kMostNames) continue;
     const bool floor = at >= scene_.mesh->parts.size();
     gaining += (gaining.empty() ? "" : ", ") + (floor ? "the floor" : scene_.mesh->parts[at].name);
   }
+  if (named > kMostNames) gaining += fmt::format(", ... ({} in all)", named);
   if (!gaining.empty())
     all.push_back(
         fmt::format("the paint of {} sends back more light than it gets: between such surfaces light grows "

@@ -122,6 +122,9 @@ class Picture {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(surface_.gbuffer.width) + static_cast<std::size_t>(x);
   }
 
+  // Of the single sample of a pixel. Most of a floor is easy, so that its first round is half as long.
+  int batch_of(const PathPoint& point) const { return point.floor && shifts_.size() == 1 ? kFan : kBatch; }
+
   // Chunks are taken in a scattered order, so that a picture that time cut short is noisy evenly.
   void sample(const std::vector<int>& more) {
     std::vector<std::uint32_t> wanted;
@@ -160,7 +163,9 @@ class Picture {
     state.certain = at.certain();
     state.sure = at.sure();
     if (state.certain) return;
-    for (int k = 0; k < batches; ++k) state.sums.add(at.batch(seed_of(request_.seed, i, state.sums.count)));
+    const auto count = static_cast<std::uint32_t>(batch_of(point));
+    for (int k = 0; k < batches; ++k)
+      state.sums.add(at.part_of_batch(seed_of(request_.seed, i, state.sums.count), 0, count));
   }
 
   // What a sample of a pixel sees, which is something.
@@ -216,7 +221,7 @@ class Picture {
       for (std::size_t i = begin; i < end; ++i) {
         own[i] = states_[i].sums.covariance();
         points_[i].radiance = states_[i].sure + states_[i].sums.mean();
-        points_[i].samples = kBatch * states_[i].sums.count;
+        points_[i].samples = batch_of(points_[i]) * states_[i].sums.count;
       }
     });
     parallel_for(points_.size(), 1024, [&](std::size_t begin, std::size_t end) {
