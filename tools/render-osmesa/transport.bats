@@ -69,7 +69,7 @@ figure() { grep -m1 "\"$1\"" "$2" | sed -E 's/.*: ([-0-9.e+a-z]+),?$/\1/'; }
   run render-osmesa --gbuffer plain.exr -p fitted.xml#signal_white -o out.exr
   [ "$status" -eq 2 ]
   [[ "$output" =~ "there is no light: give --env, --light or both" ]]
-  render-osmesa -q --gbuffer plain.exr -p fitted.xml#silver_fine --env studio.env.exr --engine cpu -o again.exr
+  render-osmesa -q --gbuffer plain.exr -p fitted.xml#silver_fine --env studio.env.exr --engine cpu --aov normal,part -o again.exr
   [ "$(oiiotool plain.exr --ch R,G,B again.exr --ch R,G,B --diff | tail -1)" = PASS ]
 }
 
