@@ -292,7 +292,8 @@ usage() {
   done
   pipe_into s.exr sketch-fit -q -i fifo -b s.exr -o o.xml
   pipe_into s.exr sketch-fit -q -i s.exr -b fifo -o o.xml
-  pipe_into p.png sketch-fit -q -i s.exr -b s.exr --mask fifo -o o.xml
+  oiiotool --pattern constant:color=1,1,1 32x24 3 -d uint8 -o white.png
+  pipe_into white.png sketch-fit -q -i s.exr -b s.exr --mask fifo -o o.xml
   pipe_into s.exr render-osmesa -q --engine cpu --gbuffer fifo --light 0,20 -o o.exr
   pipe_into sky.env.exr render-osmesa -q --engine cpu --mesh "$TESTDATA/box.obj" --env fifo --size 32x24 -o o.png
 }

@@ -198,3 +198,31 @@ PY
   [[ $output == "paint-book: "*p* ]]
   [ ! -e none.html ]
 }
+
+@test "a book goes to standard output, through a pipe and into a device, and replaces none of them" {
+  local few="$BATS_TEST_TMPDIR/one.paints.xml"
+  printf '%s' '<paints xmlns="urn:goniochrome:paint:1" version="1"><paint name="p"><measurement illuminant="D65" observer="10">' \
+    '<lab geometry="45as15" L="50" a="0" b="0"/><lab geometry="45as45" L="40" a="0" b="0"/><lab geometry="45as110" L="30" a="0" b="0"/>' \
+    '</measurement></paint></paints>' >"$few"
+  book "$few" --env small.env.exr --basis "$TESTDATA/b5.basis.xml" --size 32x24 --quiet -o - >printed.html
+  head -c 100 printed.html | grep -qi '<!doctype html'
+  mkfifo pipe.html
+  cat pipe.html >piped.html &
+  book "$few" --env small.env.exr --basis "$TESTDATA/b5.basis.xml" --size 32x24 --quiet -o pipe.html
+  wait $!
+  [ -p pipe.html ]
+  [ "$(wc -c <piped.html)" -gt 10000 ]
+  book "$few" --env small.env.exr --basis "$TESTDATA/b5.basis.xml" --size 32x24 --quiet -o /dev/null
+  [ -c /dev/null ]
+  # A link and a mode stay.
+  echo old >real.html
+  chmod 600 real.html
+  ln -s real.html link.html
+  book "$few" --env small.env.exr --basis "$TESTDATA/b5.basis.xml" --size 32x24 --quiet -o link.html
+  [ -L link.html ] && [ "$(stat -c %a real.html)" = 600 ] && [ "$(wc -c <real.html)" -gt 10000 ]
+  # With standard output closed, to print is an error, and the book is whole.
+  book "$few" --env small.env.exr --basis "$TESTDATA/b5.basis.xml" --size 32x24 -o closed.html >&- 2>&-
+  tail -c 20 closed.html | grep -q '</html>'
+  run bash -c '"$@" >&-' closed "$BATS_TEST_DIRNAME/../paint-book" "$few" --env small.env.exr --basis "$TESTDATA/b5.basis.xml" --size 32x24 --quiet -o -
+  [ "$status" -ne 0 ]
+}
