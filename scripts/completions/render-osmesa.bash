@@ -10,6 +10,9 @@ _render_osmesa() {
     --texture-maps) COMPREPLY=($(compgen -W "cubes mip" -- "$word")); return ;;
     --env|-e) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --light) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --emit) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --floor) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --eye-height) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --operator) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --critical-angle) COMPREPLY=($(compgen -W "clip slide slide-map index" -- "$word")); return ;;
     --exposure) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -24,19 +27,22 @@ _render_osmesa() {
     --effects) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --tolerance) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --budget) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --engine) COMPREPLY=($(compgen -W "auto cpu gl integral" -- "$word")); return ;;
+    --engine) COMPREPLY=($(compgen -W "auto cpu gl integral path" -- "$word")); return ;;
+    --bounces) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --check) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --check-against) COMPREPLY=($(compgen -W "truth model" -- "$word")); return ;;
     --check-source) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --view) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --aov) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --time-limit) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --seed) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --report) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --threads) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--mesh --gbuffer --paint --part --split --texture --texture-maps --env --light --operator --critical-angle --exposure --background --orbit --camera --fov --size --samples --turntable --light-sweep --effects --tolerance --budget --engine --print-shader --check --check-source --output --view --aov --explain --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--mesh --gbuffer --paint --part --trim --split --texture --texture-maps --env --light --emit --floor --eye-height --operator --critical-angle --exposure --background --orbit --camera --fov --size --samples --turntable --light-sweep --effects --tolerance --budget --engine --bounces --print-shader --check --check-against --check-source --output --view --aov --explain --time-limit --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }
