@@ -116,7 +116,13 @@ Result<AovFile> read_aov_file(const std::string& path) {
     const std::string decision =
         effect.value("decision", Json()).is_string() ? effect["decision"].get<std::string>() : "";
     const auto name = effect["effect"].get<std::string>();
-    if (decision == "drawn" || decision == "forced on") file.drawn.push_back(name);
+    if (decision == "drawn" || decision == "forced on") {
+      file.drawn.push_back(name);
+      const Json worth = effect.value("de00_p95", Json());
+      if (name == "shadow" || name == "self" || name == "bounce" || name == "floor")
+        file.drawn_by_rays += (file.drawn_by_rays.empty() ? "" : ", ") + name +
+                              (worth.is_number() ? fmt::format(" (dE00 {:.1f})", worth.get<double>()) : "");
+    }
     if (decision == "dropped" || decision == "forced off" || decision == "over budget") file.left_out.push_back(name);
   }
   file.transport = text("goniochrome:transport");

@@ -34,6 +34,9 @@ struct AovFile {
   std::string command;                        // the command that made the file
   std::vector<std::string> drawn;             // the effects that the picture shows, by render-osmesa's names
   std::vector<std::string> left_out;          // the effects that the scene has and the picture does not show
+  // Those of them that the picture shows by tracing rays (shadow, self, bounce, floor), with what each is worth, as in
+  // "shadow (dE00 6.2), bounce (dE00 1.3)"; "" for none. A pixel's color is then not told by its normal alone.
+  std::string drawn_by_rays;
   color::ReflectionOperator reflection = color::iso_rgb_operator();  // with which the effect "operator" was drawn
   std::string transport;          // what the header says of a transport, JSON; "" where the file has none
   std::vector<ImagePart> layers;  // the parts after the picture: those of a transport

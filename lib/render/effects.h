@@ -11,6 +11,21 @@
 
 namespace goniochrome::render {
 
+// The effects that are drawn by tracing rays: what the mesh does to light on its way. They are nested, so that it is
+// plain what a picture without one of them shows. goniochrome-theory(7), PLAN, Effects of rays.
+struct RayEffects {
+  // The mesh takes light away from its own surface. Where it does, the surface sees a black body. Without this effect,
+  // every point sees all of the light around, and the other three effects are off as well.
+  bool shadow = false;
+  // Instead of black, the lobes and the mirror of a point see the light that the body sends back.
+  bool self = false;
+  // The same for the diffuse part of a point.
+  bool bounce = false;
+
+  bool any() const { return shadow; }
+  bool operator==(const RayEffects&) const = default;
+};
+
 // The effects that are on, and how accurate they are.
 struct Effects {
   struct LobeUse {
@@ -33,6 +48,7 @@ struct Effects {
   double tolerance_de00 = 0.3;  // of engines that sum light instead of looking it up: p95 over the visible pixels
   bool reflection = false;      // the scene's reflection operator in place of the component-wise product
   std::size_t lights = 0;
+  RayEffects rays = {};  // effects_of() leaves them out, since no engine with prefiltered maps draws them by itself
   Background background = Background::kNone;
 
   bool depends_on_view() const { return fresnel || horizon || views; }

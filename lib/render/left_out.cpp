@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "render/internal/seen.h"
+#include "render/plan/ray_plan.h"
 
 namespace goniochrome::render {
 
@@ -46,23 +47,25 @@ Result<LeftOut> left_out(Renderer& renderer, const Scene& scene, const Plan& pla
   view.samples = 1, view.with_centers = false;
   LeftOut result;
   result.planned_ms = result.full_ms = std::numeric_limits<double>::infinity();
-  const bool whole =
-      std::none_of(plan.items.begin(), plan.items.end(), [](const PlanItem& item) { return item.needed && !item.on; });
+  Effects drawn = plan.effects, all = effects_of(scene);
+  drawn.rays = all.rays = {};
+  const auto& by_rays = ray_effect_names();
+  const bool whole = std::none_of(plan.items.begin(), plan.items.end(), [&](const PlanItem& item) {
+    return item.needed && !item.on && std::ranges::find(by_rays, item.effect) == by_rays.end();
+  });
   Frame planned, full;
   for (int round = 0; round < kRounds; ++round) {
     if (round > 0 && result.planned_ms > kLong_ms) break;
     if (!whole) {
-      GONIO_TRY(renderer.load(scene, effects_of(scene), plan.engine));
+      GONIO_TRY(renderer.load(scene, all, plan.engine));
       GONIO_TRY(draw_fastest(renderer, view, full, result.full_ms));
     }
-    if (round == 0 || !whole) GONIO_TRY(renderer.load(scene, plan.effects, plan.engine));
+    if (round == 0 || !whole) GONIO_TRY(renderer.load(scene, drawn, plan.engine));
     GONIO_TRY(draw_fastest(renderer, view, planned, result.planned_ms));
   }
-  if (whole) {
-    result.full_ms = result.planned_ms;
-    return result;
-  }
-  compare(planned, full, white_luminance > 0 ? white_luminance : 1, result);
+  if (whole) result.full_ms = result.planned_ms;
+  if (!whole) compare(planned, full, white_luminance > 0 ? white_luminance : 1, result);
+  GONIO_TRY(renderer.load(scene, plan.effects, plan.engine));
   return result;
 }
 

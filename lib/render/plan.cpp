@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <set>
 
@@ -13,6 +14,7 @@
 #include "render/internal/product_forms.h"
 #include "render/internal/seen.h"
 #include "render/plan/effect_list.h"
+#include "render/plan/ray_plan.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {
@@ -24,6 +26,8 @@ constexpr double kSafety = 0.8;
 
 // Visible points that a plan is made from.
 constexpr std::size_t kProbe = 512;
+// Those at which rays are traced. There are more of them, because most effects of rays show in few places.
+constexpr std::size_t kRayProbe = 1536;
 
 // The words of --effects: what is on to begin with, and the effects that are forced on or off.
 enum class Start { kAuto, kAll, kNone };
@@ -358,6 +362,33 @@ std::string reason_of(const std::vector<Priced>& all, const Priced& chosen, bool
   return fmt::format("{}: predicted {}", asked ? "as asked" : count > 1 ? "the faster" : "the only one here", planned);
 }
 
+// The effects of rays, as far as there are rays. `colors` shades points with all other effects.
+RayChoice planned_rays(const Scene& scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers,
+                       const PlanRequest& request, const Words& words, const RayContext& rays, const Workload& work,
+                       const std::function<std::vector<color::Rgb>(const std::vector<VisiblePoint>&)>& colors) {
+  if (rays.transport == nullptr) return rays.absent.empty() ? RayChoice{} : no_rays(rays.absent);
+  std::vector<VisiblePoint> points;
+  std::vector<RayPoint> ray_points;
+  for (const auto& [gbuffer, x, y] : probe_pixels(gbuffers, kRayProbe)) {
+    points.push_back(gbuffer->point(x, y));
+    ray_points.push_back(ray_point(rays.transport->rays(), *scene.mesh, *gbuffer, x, y));
+  }
+  const RayProbe probe =
+      RayProbe::traced(*rays.transport, ray_points, colors(points), request.white_luminance, rays.bounces, rays.seed);
+  RayWishes wishes;
+  wishes.on = words.start != Start::kNone;
+  wishes.automatic = words.start == Start::kAuto;
+  wishes.forced = [&](const std::string& name) {
+    std::optional<bool> forced;
+    for (const auto& [word, on] : words.forced)
+      if (word == name) forced = on;
+    return forced;
+  };
+  wishes.tolerance_de00 = request.tolerance_de00, wishes.budget_ms = request.budget_ms;
+  wishes.visible_points = work.points / request.samples, wishes.samples = request.samples;
+  return ray_choice(probe, wishes);
+}
+
 // The plan for an engine that draws everything and does without prefiltered maps: there is nothing to choose, and
 // nothing to try it out by.
 Plan plan_of_everything(const Scene& scene, const Effects& all, const std::vector<VisiblePoint>& probe,
@@ -369,6 +400,13 @@ Plan plan_of_everything(const Scene& scene, const Effects& all, const std::vecto
     item.de00_p95 = item.cost_ms = std::numeric_limits<double>::quiet_NaN();
     item.on = effect.needed;
     item.decision = effect.needed ? Decision::kDrawn : Decision::kNotInScene;
+    plan.items.push_back(std::move(item));
+  }
+  for (const std::string& name : ray_effect_names()) {
+    PlanItem item;
+    item.effect = name, item.needed = item.on = true, item.reason = "drawn by every path";
+    item.de00_p95 = item.cost_ms = std::numeric_limits<double>::quiet_NaN();
+    item.decision = Decision::kDrawn;
     plan.items.push_back(std::move(item));
   }
   plan.effects = all;
@@ -430,22 +468,28 @@ Result<void> check_effects(const std::string& effects) {
   return {};
 }
 
-std::vector<VisiblePoint> probe_points(const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers, std::size_t count) {
+std::vector<ProbePixel> probe_pixels(const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers, std::size_t count) {
   std::size_t visible = 0;
   for (const auto& g : gbuffers) {
     for (std::size_t i = 3; i < g->data.size(); i += 4) visible += g->data[i] != 0 ? 1 : 0;
   }
   // Every n-th visible point, row by row; a stride that shares no factor with common widths keeps columns apart.
   const std::size_t stride = std::max<std::size_t>(1, visible / count) | 1;
-  std::vector<VisiblePoint> points;
+  std::vector<ProbePixel> pixels;
   std::size_t met = stride / 2;
   for (const auto& g : gbuffers) {
     for (std::size_t i = 0; 4 * i + 3 < g->data.size(); ++i) {
       if (g->data[4 * i + 3] == 0 || ++met % stride != 0) continue;
-      const int x = static_cast<int>(i) % g->width, y = static_cast<int>(i) / g->width;
-      points.push_back(g->point(x, y));
+      pixels.push_back({g.get(), static_cast<int>(i) % g->width, static_cast<int>(i) / g->width});
     }
   }
+  return pixels;
+}
+
+std::vector<VisiblePoint> probe_points(const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers, std::size_t count) {
+  std::vector<VisiblePoint> points;
+  for (const ProbePixel& pixel : probe_pixels(gbuffers, count))
+    points.push_back(pixel.gbuffer->point(pixel.x, pixel.y));
   return points;
 }
 
@@ -466,7 +510,7 @@ Scene seen_scene(const Scene& scene, const std::vector<std::shared_ptr<const Gbu
 }
 
 Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers,
-                       const PlanRequest& request, const std::vector<const Engine*>& engines) {
+                       const PlanRequest& request, const std::vector<const Engine*>& engines, const RayContext& rays) {
   GONIO_ASSIGN(const Words words, words_of(request.effects));
   Effects all = effects_of(scene);
   all.tolerance_de00 = request.tolerance_de00;
@@ -502,11 +546,20 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
     plan.items.push_back(std::move(item));
   }
 
+  // What the mesh does to light comes first: what is left out of that, the others may not leave out as well.
+  const RayChoice by_rays = planned_rays(scene, gbuffers, request, words, rays, work, [&](const auto& points) {
+    const Compact probed = compacted(scene, points);
+    return Prober(probed.scene, all, switches, probed.points, points, request.white_luminance, probers.all,
+                  probers.component_wise(all))
+        .colors(everything);
+  });
+  const double tolerance = std::max(0.0, request.tolerance_de00 - by_rays.left_out_de00_p95);
+
   // Which of them are drawn, and by which engine.
   Choice choice = forced_choice(words, switches);
   const bool may_leave_out = asked == nullptr || asked->info().is_planned;
   const bool automatic = words.start == Start::kAuto && may_leave_out;
-  if (automatic) drop_unseen(prober, switches, plan.items, !scene.lights.empty(), request.tolerance_de00, choice);
+  if (automatic) drop_unseen(prober, switches, plan.items, !scene.lights.empty(), tolerance, choice);
   std::vector<Priced> prices = priced(engines, asked, work, prober.effects(choice.on));
   const Engine& engine = *chosen_of(prices, asked, request.frames).engine;
   plan.engine = engine.info().name;
@@ -516,9 +569,11 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   if (request.budget_ms > 0 && may_leave_out) gone = keep_affordable(prober, work, engine, request.budget_ms, choice);
 
   // What that comes to.
-  plan.de00_p95 = prober.difference(full, prober.colors(choice.on));
+  plan.de00_p95 = prober.difference(full, prober.colors(choice.on)) + by_rays.left_out_de00_p95;
   plan.effects = prober.effects(choice.on);
   tidy(plan.effects);
+  plan.effects.rays = by_rays.effects;
+  plan.rays_ms = by_rays.cost.ms;
   for (const auto& [of, price] : prices) {
     const Price now = of->info().is_planned ? of->price(work, plan.effects) : price;
     plan.prices.push_back({of->info().name, now.frame_ms, now.once_ms});
@@ -532,6 +587,7 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
     item.on = choice.on[i];
     item.decision = decision_of(switches[i], item.on, choice.forced[i], gone.contains(i));
   }
+  plan.items.insert(plan.items.end(), by_rays.items.begin(), by_rays.items.end());
   plan.time_ms = 1000 * clock.elapsed_s();
   return plan;
 }

@@ -20,6 +20,15 @@ class Environment;
 namespace goniochrome::render {
 
 class Engine;
+class Transport;
+
+// What the effects of rays are priced by.
+struct RayContext {
+  const Transport* transport = nullptr;  // of the whole scene, not only what is seen of it; null: no rays
+  int bounces = 8;
+  std::uint64_t seed = 1;
+  std::string absent = "no rays are traced";  // why there is no transport
+};
 
 struct PlanRequest {
   double tolerance_de00 = 0.5;        // what leaving effects out may change, p95 over visible pixels, all together
@@ -46,6 +55,7 @@ struct PlanItem {
   bool on = false;
   Decision decision = Decision::kNotInScene;
   std::optional<double> truth_de00_p95;  // the same as de00_p95, by the reference integrator
+  std::optional<double> standard_error;  // of de00_p95, where it was measured by random samples
 };
 
 // The shading of a frame by one engine, predicted.
@@ -62,6 +72,7 @@ struct Plan {
   std::vector<EnginePrice> prices;  // of the engines that could be chosen, and of the one that was asked for
   double de00_p95 = 0;              // predicted for all that is left out together
   double time_ms = 0;               // that planning took
+  double rays_ms = 0;               // predicted for the effects of rays of one frame that are on
 
   // Of the engine that was chosen.
   double predicted_ms() const;
@@ -70,7 +81,13 @@ struct Plan {
 // Error (usage): a word of --effects that names no effect, with the names that there are.
 Result<void> check_effects(const std::string& effects);
 
-// Up to `count` visible points, evenly spread over those of all G-buffers.
+// Up to `count` pixels of which each shows something, evenly spread over those of all G-buffers.
+struct ProbePixel {
+  const Gbuffer* gbuffer = nullptr;
+  int x = 0, y = 0;
+};
+std::vector<ProbePixel> probe_pixels(const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers, std::size_t count);
+// The points that they show.
 std::vector<VisiblePoint> probe_points(const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers, std::size_t count);
 
 // The scene as far as it is seen: paints of parts that no G-buffer shows are bare, so that nothing is loaded for them.
@@ -78,9 +95,11 @@ Scene seen_scene(const Scene& scene, const std::vector<std::shared_ptr<const Gbu
 
 // Plans the drawing of `scene`, as seen_scene() has it, by one of these engines, of which there is at least one. The
 // engine that is asked for must be among them. The effects are tried out by the engine cpu. Error: as for loading that
-// engine with all effects of the scene, and as check_effects().
+// engine with all effects of the scene, and as check_effects(). The effects of rays come last in the plan. With a
+// transport, all G-buffers must have the triangles of the scene's mesh.
 Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers,
-                       const PlanRequest& request, const std::vector<const Engine*>& engines);
+                       const PlanRequest& request, const std::vector<const Engine*>& engines,
+                       const RayContext& rays = {});
 
 // Fills in the truth of every effect that is needed: the change of the exact picture without it, at these points.
 void add_truth(Plan& plan, const Scene& scene, const std::vector<VisiblePoint>& points, const envmap::Environment* env,

@@ -8,6 +8,7 @@
 #include "render/gl/gl.h"
 #include "render/gl/shader.h"
 #include "render/path/visible_surface.h"
+#include "render/plan/ray_plan.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {
@@ -68,6 +69,10 @@ struct Renderer::State : Sight {
   Engine* engine = nullptr;                   // that is loaded
   Scene scene;
   Effects effects;
+  std::optional<RaySetup> ray_setup;
+  Scene ray_scene;  // all of it, seen or not: rays meet parts that the camera does not see
+  std::optional<Transport> transport;
+  double white_luminance = 1;
   const mesh::Mesh* uploaded = nullptr;
   std::size_t uploaded_triangles = 0;
 
@@ -88,6 +93,8 @@ struct Renderer::State : Sight {
   Result<void> show(const mesh::Mesh& mesh);
   Result<void> look_at(const View& wanted);
   Result<void> take(int first, int count, image::Image& picture);
+  CorrectionNoise correct(int first, int count, image::Image& picture);
+  Result<void> trace(const Scene& whole);
 
   const GlContext* gl() const override { return open_gl ? &open_gl->context : nullptr; }
   std::shared_ptr<const rays::RayScene> traced_mesh() const override { return traced; }
@@ -168,7 +175,7 @@ std::shared_ptr<const Gbuffer> Renderer::State::gbuffer(int sample) {
   std::shared_ptr<Gbuffer>& g = kept[place];
   if (!g) g = std::make_shared<Gbuffer>();
   // Triangles of samples are memory that only textures, and engines that need the mesh, make use of.
-  const bool with_triangles = sample == 0 || (engine != nullptr && engine->info().needs_mesh) ||
+  const bool with_triangles = sample == 0 || effects.rays.any() || (engine != nullptr && engine->info().needs_mesh) ||
                               (scene.layer != nullptr && scene.layer->textured());
   const bool complete = g->width != 0 && (!with_triangles || !g->triangles.empty());
   if (complete && (room || sample == 0)) return g;
@@ -213,6 +220,39 @@ Result<void> Renderer::State::take(int first, int count, image::Image& picture) 
   picture.channel_names = {"R", "G", "B", "A"};
   if (scene.layer == nullptr || engine->shades_layer()) return {};
   for (int i = first; i < first + count; ++i) scene.layer->add(*gbuffer(i), places(i), effects, gain, picture);
+  return {};
+}
+
+// Each sample of a pixel is corrected as the surface that it shows.
+CorrectionNoise Renderer::State::correct(int first, int count, image::Image& picture) {
+  CorrectionNoise all;
+  if (!effects.rays.any() || !transport) return all;
+  CorrectionRequest request;
+  request.effects = effects.rays;
+  request.bounces = effort_asked.bounces;
+  request.tolerance_de00 = kRayNoiseShare * effects.tolerance_de00;
+  request.white_luminance = white_luminance;
+  request.samples = count;
+  const image::Image before = picture;
+  for (int i = first; i < first + count; ++i) {
+    request.seed = mixed(effort_asked.seed, static_cast<std::uint64_t>(i));
+    const CorrectionNoise one = add_correction(*transport, *scene.mesh, *gbuffer(i), request, before,
+                                               1.0F / static_cast<float>(count), picture);
+    all.de00_p95 += one.de00_p95 / count, all.free_share += one.free_share / count;
+    all.samples += one.samples, all.ms += one.ms;
+  }
+  return all;
+}
+
+Result<void> Renderer::State::trace(const Scene& whole) {
+  transport.reset();
+  if (!ray_setup || !ray_setup->absent.empty()) return {};
+  ray_scene = whole;
+  PathScene paths;
+  paths.scene = &ray_scene;
+  paths.environment = ray_setup->environment;
+  GONIO_ASSIGN(Transport created, Transport::create(paths));
+  transport.emplace(std::move(created));
   return {};
 }
 
@@ -296,7 +336,16 @@ Result<Plan> Renderer::load(const Scene& scene, const std::vector<std::shared_pt
     if (!can.ok() && (request.engine ? *request.engine == info->name : !refusal)) refusal = can.error();
   }
   if (refusal && (request.engine || able.empty())) return *refusal;
-  GONIO_ASSIGN(Plan plan, make_plan(seen, gbuffers, request, able));
+  RayContext rays;
+  rays.absent.clear();
+  if (s.ray_setup && !(asked != nullptr && asked->traces_rays)) {
+    rays.bounces = s.effort_asked.bounces, rays.seed = s.effort_asked.seed, rays.absent = s.ray_setup->absent;
+    const Result<void> traced = s.trace(scene);
+    if (!traced.ok()) rays.absent = traced.error().message;
+    rays.transport = s.transport ? &*s.transport : nullptr;
+  }
+  s.white_luminance = request.white_luminance;
+  GONIO_ASSIGN(Plan plan, make_plan(seen, gbuffers, request, able, rays));
   GONIO_TRY(load(seen, plan.effects, plan.engine));
   return plan;
 }
@@ -306,6 +355,16 @@ void Renderer::load_paints(const Scene& scene) {
   s.begin();
   s.scene = scene;
   if (s.engine != nullptr) s.engine->load_paints(scene);
+  // What was made before from such a scene is made again.
+  if (s.effects.rays.any()) static_cast<void>(s.trace(scene));
+}
+
+void Renderer::set_rays(const RaySetup& setup) {
+  state_->ray_setup = setup;
+}
+
+const Transport* Renderer::transport() const {
+  return state_->transport ? &*state_->transport : nullptr;
 }
 
 Result<std::shared_ptr<const Gbuffer>> Renderer::look(const mesh::Mesh& mesh, const View& view) {
@@ -326,11 +385,17 @@ Result<void> Renderer::draw(const View& view, Frame& frame) {
   GONIO_TRY(s.look_at(view));
   frame.gbuffer = s.gbuffer(0);
   frame.gbuffer_ms = s.rasterization_ms;
+  frame.open_centers = {};
   if (view.with_centers || view.samples == 1) {
     GONIO_TRY(s.take(0, 1, frame.picture));
+    frame.open_centers = view.with_centers ? frame.picture : image::Image{};
+    frame.rays = s.correct(0, 1, frame.picture);
     frame.centers = view.with_centers ? frame.picture : image::Image{};
   }
-  if (view.samples > 1) GONIO_TRY(s.take(1, view.samples, frame.picture));
+  if (view.samples > 1) {
+    GONIO_TRY(s.take(1, view.samples, frame.picture));
+    frame.rays = s.correct(1, view.samples, frame.picture);
+  }
   frame.noise.reset();
   if (s.engine->noise() != nullptr) frame.noise = *s.engine->noise();
   frame.frame_ms = 1000 * whole.elapsed_s();

@@ -14,6 +14,7 @@
 #include "render/effects.h"
 #include "render/engine.h"
 #include "render/gbuffer.h"
+#include "render/path/ray_correction.h"
 #include "render/plan.h"
 #include "render/scene.h"
 
@@ -34,6 +35,15 @@ struct Frame {
   double gbuffer_ms = 0;                   // one rasterization; 0 where the view was seen before
   double frame_ms = 0;                     // everything but uploads
   std::optional<Noise> noise;              // of the picture; none of engines that do not draw by random samples
+  image::Image open_centers;  // of the pixel centers without the effects of rays; empty unless centers are asked for
+  CorrectionNoise rays;       // of the effects of rays in `picture`; 0 where none are drawn
+};
+
+// The light that rays meet beside the lights of the scene. How many bounces it takes, and which random numbers, is told
+// by Effort.
+struct RaySetup {
+  const envmap::Environment* environment = nullptr;  // none: dark
+  std::string absent;                                // why plans cannot trace rays; "" where they can
 };
 
 class Renderer {
@@ -48,6 +58,10 @@ class Renderer {
   static Renderer tracing(std::optional<Ground> ground = {});
   Renderer(Renderer&&) noexcept;
   ~Renderer();
+
+  // From now on plans price the effects of rays, and pictures are drawn with those that are on. The environment must
+  // outlive the drawing. Without this call, no rays are traced.
+  void set_rays(const RaySetup& setup);
 
   // Uploads what the scene needs for the engine of that name, with the effects given or, without them, with all that
   // it calls for. The scene must outlive the drawing. Error: no such engine; what the engine cannot shade; a lobe or
@@ -68,6 +82,8 @@ class Renderer {
   Result<void> draw(const View& view, Frame& frame);
   Result<Frame> draw(const Camera& camera, int width, int height, int samples, bool with_centers = false);
 
+  // By which the effects of rays are drawn; null where none are loaded.
+  const Transport* transport() const;
   // For all pictures from now on, by engines that draw by random samples.
   void set_effort(Effort effort);
 

@@ -120,7 +120,14 @@ void add_effects(cli::ToolSpec& spec, Options& o) {
               "effects to draw: auto, all or none, and then +NAME and -NAME")
       .more(
           "The names are diffuse, lobes, gloss, mirror, fresnel, horizon, anisotropy, travel, texture, texture-lobes, "
-          "operator and lights. lobe-20, gloss-900 and texture-0 (lobe0 of the textures) are single lobes. auto leaves "
+          "operator and lights. lobe-20, gloss-900 and texture-0 (lobe0 of the textures) are single lobes. Three more "
+          "are "
+          "drawn by tracing rays: shadow (the mesh blocks light), self (lobes and mirror see the body instead of "
+          "black) and bounce (the same for the diffuse part). The last two need shadow. They take part only if "
+          "--effects "
+          "names one of them with a plus, or all three by +rays, as in auto,+rays; the rest of the plan then decides "
+          "about "
+          "them as about every other effect. They are drawn at those pixels alone that can see the mesh. auto leaves "
           "out the effects that change too little, as --tolerance and --budget say.");
   o.common.tolerance = 0.5;
   cli::add_tolerance(spec, o.common, "DE00", "largest change by all effects that are left out")
@@ -128,7 +135,8 @@ void add_effects(cli::ToolSpec& spec, Options& o) {
           "Before drawing, each effect that the scene calls for is priced: what it changes in the picture (the 95th "
           "percentile of the difference over visible pixels), and what it costs. What changes less than the tolerance, "
           "all together, is left out. --explain prints the table, which is also in the report and in the header of an "
-          "EXR. The engine integral makes its sums as coarse as this tolerance allows at 95 of 100 points.");
+          "EXR. The effects of rays are drawn with samples until their noise is within the tolerance. The engine "
+          "integral makes its sums as coarse as this tolerance allows at 95 of 100 points.");
   spec.option("budget", "MS", "20", &o.budget_ms, "longest time for shading a frame; 0 is no limit")
       .from(0, 1e6)
       .more("Where the time is not enough, the effects that are worth least for their time are left out as well.");
@@ -162,12 +170,25 @@ void add_engines(cli::ToolSpec& spec, Options& o) {
 
 void add_checking(cli::ToolSpec& spec, Options& o) {
   spec.heading = "checking";
-  spec.option("check", "N", "100", &o.check, "compare N random visible pixels with the reference integrator")
+  spec.option("check", "N", "100", &o.check, "compare N random visible pixels with a reference")
       .from(0, 1e8)
       .more(
           "The reference applies the exact lobe model to every texel of the environment's source, without "
-          "prefiltering. Differences are CIEDE2000, relative to the brightest that a white diffuser can be in this "
-          "light, whatever the exposure is.");
+          "prefiltering. "
+          "Differences are CIEDE2000, relative to the brightest that a white diffuser can be in this light, whatever "
+          "the "
+          "exposure is. --check-against says whether the reference knows that the mesh is in the way of light.");
+  spec.option("check-against", "WHAT", "truth", &o.check_against, "what --check compares with")
+      .one_of({"truth", "model"})
+      .more(
+          "model, the default, has nothing in the way of light. truth adds paths for what the mesh does to light: "
+          "shadows, "
+          "the body mirrored in itself, and light that it passes on. They are traced until the standard error of the "
+          "truth "
+          "is below a tenth of the difference, or a warning says that it is not. The difference is then told by its "
+          "causes, and if its 95th percentile is over --tolerance, the exit status is 1. With --gbuffer the mesh is "
+          "not "
+          "known, and the comparison is with model.");
   spec.option("check-source", "FILE", "testdata/studio.exr", &o.check_source, "image the environment was made from")
       .more("It is needed where that image is no longer where the environment says. The engine integral uses it too.");
 }
@@ -226,6 +247,11 @@ void add_report(cli::ToolSpec& spec) {
       {"plan[]: effect, needed, reason, de00_p95, cost_ms, decision",
        "what each effect is worth, and whether it is drawn; with --check and --explain, truth_de00_p95 stands beside "
        "it"},
+      {"plan[]: standard_error", "of de00_p95, where it was measured by random samples"},
+      {"rays: noise_de00_p95, samples, free_share, ms, predicted_ms",
+       "how the effects of rays were drawn, where any were: the noise of the picture, the samples of a visible point, "
+       "the "
+       "share of points that needed none, and the time"},
       {"plan_de00_p95, plan_ms", "change by all effects that are left out together, and the time that planning took"},
       {"engine, engine_reason", "what shaded the picture (gl, cpu, integral, path or transport), and why"},
       {"transport: points, columns, bytes_per_point",
@@ -253,10 +279,17 @@ void add_report(cli::ToolSpec& spec) {
       {"view", "display and view of a PNG"},
       {"white_luminance", "the brightest that a white diffuser can be in this light"},
       {"repairs: normals_made, degenerate_dropped, polygons_split, triangles_turned", "what was mended in the mesh"},
-      {"error: de00_mean, de00_p95, de00_max", "CIEDE2000 of the checked pixels against the reference integrator"},
+      {"error: de00_mean, de00_p95, de00_max", "CIEDE2000 of the checked pixels against the truth"},
       {"error: checked_pixels, worst_x, worst_y, time_s",
        "how many pixels were checked, where the worst one is, and how long the check took"},
       {"error: source", "image that the reference integrator used"},
+      {"error: against", "truth or model"},
+      {"error: standard_error", "of the truth: the 95th percentile of its noise"},
+      {"error: prefilter, occlusion, bounce, noise",
+       "95th percentile of what each cause alone changes: maps and their look-up; shadow and self, if they were left "
+       "out; "
+       "bounce, if it was left out; the noise of the effects of rays"},
+      {"error: fit", "95th percentile of what the paints of the pixels miss of their own readings"},
       {"left_out: de00_mean, de00_p95, de00_max",
        "with --check: how far the picture is from that with all effects, over all visible pixels"},
       {"left_out: shading_ms, shading_all_ms, predicted_ms",

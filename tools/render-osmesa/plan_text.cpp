@@ -28,6 +28,7 @@ std::string plan_table(const render::Plan& plan) {
                 : fmt::format("{:<13} {:<6} {:>7} {}{:>7}  {:<16} {}\n", item.effect, "no", "-",
                               truth ? "        " : "", "-", spelled(item.decision), item.reason);
   }
+  if (plan.rays_ms > 0) text += fmt::format("rays: predicted {:.0f} ms\n", plan.rays_ms);
   return text + fmt::format("left out together: dE00 {:.2f} (p95); planned in {:.1f} ms\nengine {}: {}\n",
                             plan.de00_p95, plan.time_ms, plan.engine, plan.engine_reason);
 }
@@ -41,6 +42,7 @@ Json plan_rows(const render::Plan& plan, bool times) {
                 {"de00_p95", item.needed ? json_number(item.de00_p95) : Json(nullptr)},
                 {"decision", spelled(item.decision)}};
     if (times) row["cost_ms"] = item.needed ? json_number(item.cost_ms) : Json(nullptr);
+    if (item.standard_error) row["standard_error"] = json_number(*item.standard_error);
     if (item.truth_de00_p95) row["truth_de00_p95"] = json_number(*item.truth_de00_p95);
     rows.push_back(std::move(row));
   }

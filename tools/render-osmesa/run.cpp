@@ -21,6 +21,7 @@
 #include "render/surface_layer.h"
 #include "setup.h"
 #include "transport_view.h"
+#include "truth_check.h"
 
 namespace goniochrome::tool {
 
@@ -250,7 +251,8 @@ void check(const Options& options, const render::Frame& frame, const render::Sce
   const envmap::Environment* environment = source.environment ? &*source.environment : nullptr;
   const render::PictureError error =
       render::picture_error(frame, scene, environment, white, options.check, session.common().seed);
-  session.results()["error"] = {{"de00_mean", json_number(error.de00_mean)},
+  session.results()["error"] = {{"against", "model"},
+                                {"de00_mean", json_number(error.de00_mean)},
                                 {"de00_p95", json_number(error.de00_p95)},
                                 {"de00_max", json_number(error.de00_max)},
                                 {"checked_pixels", error.checked_pixels},
@@ -367,6 +369,8 @@ struct Stage {
   std::unique_ptr<render::SurfaceLayer> layer;
   Source source;                            // where the picture is checked, or sums it
   std::optional<envmap::BlockTree> texels;  // of the source
+  std::optional<envmap::Environment> sky;   // that rays meet: the environment at the resolution of its mirror part
+  std::optional<render::RaySetup> rays;     // none: not asked for
 };
 
 void wear(const DressedMesh& dress, const Options& options, Stage& stage) {
@@ -418,6 +422,23 @@ Result<void> set_gbuffer(const Options& options, const Request& request, Stage& 
   return {};
 }
 
+// The light that rays meet, where --effects names any effect of rays. Prefiltered environments hold it in their mirror
+// part, unless that was left out.
+void set_rays(const Options& options, const Request& request, Stage& stage) {
+  const auto named = [&](const char* name) { return options.effects.find(name) != std::string::npos; };
+  if (request.engine != nullptr && request.engine->traces_rays) return;
+  if (!named("+rays") && !named("+shadow") && !named("+self") && !named("+bounce")) return;
+  render::RaySetup& rays = stage.rays.emplace();
+  if (!options.gbuffer.empty()) {
+    rays.absent = "buffers without their mesh: what it blocks is not known";
+  } else if (!options.env.empty() && stage.env.mirror.map.size == 0) {
+    rays.absent = "the environment has no mirror part, which rays would meet: make it without --no-mirror";
+  } else if (!options.env.empty()) {
+    stage.sky.emplace(envmap::Environment::from_cube(stage.env.mirror.map, options.env));
+    rays.environment = &*stage.sky;
+  }
+}
+
 Result<void> set_stage(const Options& options, const Request& request, Stage& stage, cli::Session& session) {
   if (options.gbuffer.empty()) {
     GONIO_ASSIGN(stage.mesh, mesh::read_mesh(options.mesh));
@@ -439,6 +460,7 @@ Result<void> set_stage(const Options& options, const Request& request, Stage& st
     }
   }
   wear(stage.dresses.front(), options, stage);
+  set_rays(options, request, stage);
   const bool summed = request.engine != nullptr && request.engine->needs_texels;
   if (options.check > 0 || summed || request.transport) {
     GONIO_ASSIGN(stage.source, source_of(options, scene, session));
@@ -495,6 +517,7 @@ class Shooting {
   Result<void> draw(render::Renderer& renderer, const Shot& shot, bool first);
   Result<cli::Verdict> shade_transport(const std::optional<display::Display>& display);
   Result<void> write(const Shot& shot, const std::optional<display::Display>& display, double stops);
+  Result<cli::Verdict> check_picture();
   void tell_plan(render::Plan plan, const std::string& shader);
 
   const Options& options_;
@@ -619,6 +642,7 @@ Result<render::Renderer> Shooting::make_renderer() {
   };
   const auto ready = [&](render::Renderer renderer) {
     renderer.set_effort(std::move(effort));
+    if (stage_.rays) renderer.set_rays(*stage_.rays);
     return Result<render::Renderer>(std::move(renderer));
   };
   if (stage_.gbuffer) return ready(render::Renderer::shading(stage_.gbuffer));
@@ -692,12 +716,40 @@ Result<cli::Verdict> Shooting::shoot(const std::optional<display::Display>& disp
       name, shots_.size() > 1 ? fmt::format(" and {} more", shots_.size() - 1) : "", request_.size.width,
       request_.size.height, request_.samples, frame_ms, plan_.engine, frame_.gbuffer_ms, stops,
       display ? ", " + display->name() : ""));
+  if (plan_.effects.rays.any()) {
+    results["rays"] = {{"noise_de00_p95", json_number(frame_.rays.de00_p95)},
+                       {"samples", frame_.rays.samples},
+                       {"free_share", frame_.rays.free_share},
+                       {"ms", frame_.rays.ms},
+                       {"predicted_ms", plan_.rays_ms}};
+    session_.say(fmt::format("rays: {:.0f} samples a point in {:.0f} ms (predicted {:.0f}), noise dE00 {:.2f} (p95)",
+                             frame_.rays.samples, frame_.rays.ms, plan_.rays_ms, frame_.rays.de00_p95));
+  }
+  cli::Verdict verdict = cli::Verdict::kDone;
   if (options_.check > 0) {
-    check(options_, frame_, stage_.scene, stage_.source, white_.luminance, session_);
+    GONIO_ASSIGN(verdict, check_picture());
     GONIO_TRY(measure_plan(renderer, render::seen_scene(stage_.scene, looks_), plan_, view(shots_.back(), 1),
                            white_.luminance, session_));
   }
-  return stopped_ ? cli::Verdict::kStopped : cli::Verdict::kDone;
+  return stopped_ ? cli::Verdict::kStopped : verdict;
+}
+
+Result<cli::Verdict> Shooting::check_picture() {
+  if (options_.check_against == "model" || stage_.gbuffer) {
+    check(options_, frame_, stage_.scene, stage_.source, white_.luminance, session_);
+    return cli::Verdict::kDone;
+  }
+  session_.progress(fmt::format("checking {} pixels", options_.check));
+  render::TruthRequest request;
+  request.environment = stage_.source.environment ? &*stage_.source.environment : nullptr;
+  request.white_luminance = white_.luminance;
+  request.count = options_.check;
+  request.bounces = options_.bounces;
+  request.seed = session_.common().seed;
+  request.whole = request_.engine != nullptr && request_.engine->traces_rays;
+  GONIO_ASSIGN(const render::TruthError error, render::truth_error(frame_, stage_.scene, plan_.effects.rays, request));
+  tell_truth(error, stage_.source.name, session_.common().tolerance, session_);
+  return error.total.de00_p95 > session_.common().tolerance ? cli::Verdict::kNegative : cli::Verdict::kDone;
 }
 
 }  // namespace

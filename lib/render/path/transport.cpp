@@ -336,7 +336,7 @@ PointTransport::Ray PointTransport::drawn_ray(const std::array<double, 4>& numbe
 
 // What a drawn direction is worth. One set of directions serves every lobe and the environment: each is weighed by the
 // density that the mixture gives it, which is the balance heuristic.
-color::Rgb PointTransport::shown(const Ray& ray, bool blocked, const Sequence& sequence, std::uint32_t index) const {
+LightShares PointTransport::shown(const Ray& ray, bool blocked, const Sequence& sequence, std::uint32_t index) const {
   const Reflection reflection = painted_.at(ray.direction);
   LightSample light;
   if (!(reflection.pdf > 0)) return {};
@@ -348,29 +348,26 @@ color::Rgb PointTransport::shown(const Ray& ray, bool blocked, const Sequence& s
   const double pdf = light_chance_ * light.pdf + (1 - light_chance_) * reflection.pdf;
   if (!(pdf > 0)) return {};
   const auto scaled = static_cast<float>(1 / pdf);
-  if (!blocked) return reflect(scaled * reflection.f_cos, light.radiance);
+  if (!blocked) return {reflect(scaled * reflection.f_cos, light.radiance), {}, {}};
 
   color::Rgb arriving = correction_ ? -1.0 * light.radiance : color::Rgb{};
-  color::Rgb sum;
+  LightShares shares;
   if (options_.bounces > 0 || !transport_.emitters_.empty() || transport_.ground_) {
     const Hit hit = transport_.rays_->closest(spot_.start, ray.direction);
     if (hit.any()) {
       const color::Rgb& emission = transport_.emitters_.radiance(transport_.rays_->part(hit.triangle));
       if (emission != color::Rgb{})
         arriving += pdf / (pdf + transport_.emitters_.pdf(hit.triangle, ray.direction, hit.distance)) * emission;
-      const bool all = options_.into_lobes && options_.into_diffuse;
       if ((options_.bounces > 0 || transport_.is_laid(hit)) && (options_.into_lobes || options_.into_diffuse)) {
         const color::Rgb sent = transport_.bounced(hit, spot_.start, ray.direction, options_, sequence, index, 4);
-        if (all) {
-          arriving += sent;
-        } else {
-          const PaintedPoint::Parts parts = painted_.parts(ray.direction);
-          sum = reflect(scaled * (options_.into_lobes ? parts.lobes : parts.diffuse), sent);
-        }
+        const PaintedPoint::Parts parts = painted_.parts(ray.direction);
+        if (options_.into_lobes) shares.into_lobes = reflect(scaled * parts.lobes, sent);
+        if (options_.into_diffuse) shares.into_diffuse = reflect(scaled * parts.diffuse, sent);
       }
     }
   }
-  return sum + reflect(scaled * reflection.f_cos, arriving);
+  shares.direct = reflect(scaled * reflection.f_cos, arriving);
+  return shares;
 }
 
 color::Rgb PointTransport::emitter_sample(const std::array<double, 4>& numbers) const {
@@ -384,10 +381,12 @@ color::Rgb PointTransport::emitter_sample(const std::array<double, 4>& numbers) 
   return reflect(static_cast<float>(1 / pdf) * reflection.f_cos, light.radiance);
 }
 
-color::Rgb PointTransport::part_of_batch(std::uint64_t seed, std::uint32_t begin, std::uint32_t count) const {
+LightShares PointTransport::batch_shares(std::uint64_t seed, std::uint32_t begin, std::uint32_t count,
+                                         bool* any_blocked) const {
+  if (any_blocked != nullptr) *any_blocked = mirror_samples_ > 0;
   if (certain_) return {};
   const Sequence sequence(seed, kBatch);
-  color::Rgb sum;
+  LightShares sum;
   if (painted_.lobes_weight() > 0) {
     for (std::uint32_t first = begin; first < begin + count; first += kFan) {
       Ray rays[kFan];
@@ -399,6 +398,7 @@ color::Rgb PointTransport::part_of_batch(std::uint64_t seed, std::uint32_t begin
         if (rays[i].above && rays::dot(rays[i].direction, mesh_axis_) >= mesh_cosine_) fan.wanted |= 1U << i;
       }
       const unsigned blocked = fan.wanted != 0 ? transport_.rays_->blocked(fan) : 0;
+      if (any_blocked != nullptr && blocked != 0) *any_blocked = true;
       for (std::uint32_t i = 0; i < 8; ++i) {
         const bool is_blocked = (blocked >> i & 1U) != 0;
         if (!rays[i].above || (!is_blocked && (correction_ || !transport_.environment_))) continue;
@@ -406,14 +406,14 @@ color::Rgb PointTransport::part_of_batch(std::uint64_t seed, std::uint32_t begin
       }
     }
     if (!transport_.emitters_.empty())
-      for (std::uint32_t i = begin; i < begin + count; ++i) sum += emitter_sample(sequence.point(i, 1));
+      for (std::uint32_t i = begin; i < begin + count; ++i) sum.direct += emitter_sample(sequence.point(i, 1));
   }
   const std::uint32_t mirrors = mirror_samples_ > 0 ? std::max(1U, mirror_samples_ * count / kBatch) : 0;
   color::Rgb mirrored;
   for (std::uint32_t i = begin; i < begin + mirrors; ++i)
     mirrored += transport_.bounced(mirror_hit_, spot_.start, painted_.mirrored(), options_,
                                    Sequence(mixed(seed, 0x4D), kBatch), i, 4);
-  if (mirrors > 0) sum += (static_cast<double>(count) / mirrors) * reflect(painted_.mirror(), mirrored);
+  if (mirrors > 0) sum.into_lobes += (static_cast<double>(count) / mirrors) * reflect(painted_.mirror(), mirrored);
   return (1.0 / count) * sum;
 }
 

@@ -40,6 +40,22 @@ struct PathOptions {
   bool correction = false;
 };
 
+// What a point shows, by the way that the light took. The sum is what it shows.
+struct LightShares {
+  color::Rgb direct;        // from light straight to the point; with PathOptions::correction less what the mesh blocks
+  color::Rgb into_lobes;    // passed on by surfaces to the lobes and the mirror of the point
+  color::Rgb into_diffuse;  // passed on by surfaces to the diffuse part of the point
+
+  color::Rgb sum() const { return direct + into_lobes + into_diffuse; }
+  LightShares& operator+=(const LightShares& o) {
+    direct += o.direct, into_lobes += o.into_lobes, into_diffuse += o.into_diffuse;
+    return *this;
+  }
+};
+constexpr LightShares operator*(double scale, const LightShares& a) {
+  return {scale * a.direct, scale * a.into_lobes, scale * a.into_diffuse};
+}
+
 // How many samples are drawn together from one sequence. Their mean is one independent estimate.
 constexpr int kBatch = 16;
 constexpr int kFan = 8;  // and how many of them are traced together
@@ -98,7 +114,12 @@ class PointTransport {
   // The mean of kBatch samples of the rest, drawn from a sequence of this seed. Its expectation is the rest, exactly.
   color::Rgb batch(std::uint64_t seed) const { return part_of_batch(seed, 0, kBatch); }
   // The mean of the samples first, first + 1, ... of the same; `first` and `count` are multiples of kFan.
-  color::Rgb part_of_batch(std::uint64_t seed, std::uint32_t first, std::uint32_t count) const;
+  color::Rgb part_of_batch(std::uint64_t seed, std::uint32_t first, std::uint32_t count) const {
+    return batch_shares(seed, first, count).sum();
+  }
+  // The same by shares. `any_blocked`, unless null, is told whether any ray of the samples was blocked.
+  LightShares batch_shares(std::uint64_t seed, std::uint32_t first = 0, std::uint32_t count = kBatch,
+                           bool* any_blocked = nullptr) const;
 
  private:
   struct Ray;
@@ -106,7 +127,7 @@ class PointTransport {
   void add_lights();
   void add_mirror();
   Ray drawn_ray(const std::array<double, 4>& numbers) const;
-  color::Rgb shown(const Ray& ray, bool blocked, const Sequence& sequence, std::uint32_t index) const;
+  LightShares shown(const Ray& ray, bool blocked, const Sequence& sequence, std::uint32_t index) const;
   color::Rgb emitter_sample(const std::array<double, 4>& numbers) const;
   color::Rgb reflect(const rays::Float3& f, const color::Rgb& light) const;
 

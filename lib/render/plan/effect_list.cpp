@@ -5,6 +5,7 @@
 
 #include "base/text.h"
 #include "color/color.h"
+#include "render/plan/ray_plan.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {
@@ -121,6 +122,8 @@ const std::vector<std::string>& effect_groups() {
   static const std::vector<std::string> groups = [] {
     std::vector<std::string> names;
     for (const EffectSwitch& effect : effect_switches({}, {}, {})) names.push_back(effect.group);
+    names.emplace_back("rays");  // all of the following together
+    names.insert(names.end(), ray_effect_names().begin(), ray_effect_names().end());
     return names;
   }();
   return groups;

@@ -1,0 +1,54 @@
+#include "render/path/ray_correction.h"
+
+#include <cmath>
+
+#include "base/clock.h"
+#include "base/parallel.h"
+
+namespace goniochrome::render {
+
+VisibleSurface drawn_surface(const mesh::Mesh& mesh, const Gbuffer& gbuffer) {
+  VisibleSurface surface;
+  surface.gbuffer = gbuffer;
+  surface.hits.resize(static_cast<std::size_t>(gbuffer.width) * static_cast<std::size_t>(gbuffer.height));
+  constexpr std::size_t kRowsAtOnce = 8;
+  parallel_for(static_cast<std::size_t>(gbuffer.height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      for (int x = 0; x < gbuffer.width; ++x) {
+        if (gbuffer.part(x, y) < 0) continue;
+        const MeshPoint at = mesh_point(mesh, gbuffer, x, y);
+        surface.hits[gbuffer.index(x, y)] = {at.triangle, static_cast<float>(at.shares[1]),
+                                             static_cast<float>(at.shares[2]), 0};
+      }
+    }
+  });
+  return surface;
+}
+
+CorrectionNoise add_correction(const Transport& transport, const mesh::Mesh& mesh, const Gbuffer& gbuffer,
+                               const CorrectionRequest& request, const image::Image& before, float gain,
+                               image::Image& picture) {
+  CorrectionNoise noise;
+  if (!request.effects.shadow) return noise;
+  const Stopwatch clock;
+  PathRequest paths;
+  paths.options.bounces = request.effects.self || request.effects.bounce ? request.bounces : 0;
+  paths.options.into_lobes = request.effects.self;
+  paths.options.into_diffuse = request.effects.bounce;
+  paths.options.correction = true;
+  paths.tolerance_de00 = request.tolerance_de00 * std::sqrt(request.samples);
+  paths.white_luminance = request.white_luminance > 0 ? request.white_luminance : 1;
+  paths.seed = request.seed;
+  const PathPicture drawn = path_picture(transport, drawn_surface(mesh, gbuffer), &before, paths);
+  for (const PathPoint& point : drawn.points) {
+    float* pixel = &picture.data[gbuffer.index(point.x, point.y) * static_cast<std::size_t>(picture.channels)];
+    for (int c = 0; c < 3; ++c) pixel[c] += gain * static_cast<float>(point.radiance[c]);
+  }
+  noise.de00_p95 = drawn.noise_p95_de00 / std::sqrt(request.samples);
+  noise.samples = drawn.samples_mean;
+  noise.free_share = drawn.free_share;
+  noise.ms = 1000 * clock.elapsed_s();
+  return noise;
+}
+
+}  // namespace goniochrome::render

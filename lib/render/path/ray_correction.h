@@ -1,0 +1,40 @@
+// Draws the effects of rays on a picture that an engine made without them: at each sample of a pixel what the mesh
+// changes of its light. goniochrome-theory(7), PLAN, Effects of rays.
+#pragma once
+
+#include <cstdint>
+
+#include "image/image.h"
+#include "render/effects.h"
+#include "render/path/path_tracer.h"
+
+namespace goniochrome::render {
+
+// The surface behind a rasterized G-buffer of the mesh: the points on the very triangles that were drawn, so that a
+// pixel on an edge is corrected as the surface that it shows. The G-buffer must have triangles.
+VisibleSurface drawn_surface(const mesh::Mesh& mesh, const Gbuffer& gbuffer);
+
+struct CorrectionRequest {
+  RayEffects effects;
+  int bounces = 8;
+  double tolerance_de00 = 0.5;  // of the picture's noise, 95th percentile over the visible points
+  double white_luminance = 1;
+  std::uint64_t seed = 1;
+  int samples = 1;  // of a pixel: each is corrected with a noise that is larger by the square root of that
+};
+
+// How the effects were drawn; of several samples the means.
+struct CorrectionNoise {
+  double de00_p95 = 0;  // of the picture, one standard deviation
+  double samples = 0;   // rays' samples of a visible point, in all
+  double free_share = 0;
+  double ms = 0;
+};
+
+// Adds `gain` times the correction to the first three channels of the picture, which holds radiance times coverage.
+// `before` is the picture without corrections; it tells how visible noise is. Bit-identical for any number of threads.
+CorrectionNoise add_correction(const Transport& transport, const mesh::Mesh& mesh, const Gbuffer& gbuffer,
+                               const CorrectionRequest& request, const image::Image& before, float gain,
+                               image::Image& picture);
+
+}  // namespace goniochrome::render

@@ -1,0 +1,143 @@
+#include "render/plan/ray_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+namespace goniochrome::render {
+
+namespace {
+
+constexpr std::size_t kEffects = 3;
+// The same allowance for the choice of points as for other effects.
+constexpr double kSafety = 0.8;
+constexpr RayEffects kAll{true, true, true};
+
+bool RayEffects::*const kFlags[kEffects] = {&RayEffects::shadow, &RayEffects::self, &RayEffects::bounce};
+
+RayEffects nested(RayEffects effects) {
+  effects.self = effects.self && effects.shadow;
+  effects.bounce = effects.bounce && effects.shadow;
+  return effects;
+}
+
+RayEffects without(RayEffects effects, std::size_t effect) {
+  effects.*kFlags[effect] = false;
+  return nested(effects);
+}
+
+std::string reason_of(std::size_t effect, const RayProbe& probe, const RayCost& cost) {
+  switch (effect) {
+    case 0:
+      return fmt::format("rays meet the mesh from {:.0f} % of what is seen; {:.0f} samples a point",
+                         100 * probe.blocked_share(), cost.samples);
+    case 1:
+      return "lobes and mirror see the body";
+    default:
+      return "light that the body passes on reaches its diffuse parts";
+  }
+}
+
+struct State {
+  RayEffects on;
+  std::array<bool, kEffects> forced{}, over_budget{};
+};
+
+State forced_state(const RayWishes& wishes) {
+  State state;
+  std::array<std::optional<bool>, kEffects> forced;
+  for (std::size_t i = 0; i < kEffects; ++i) {
+    forced[i] = wishes.forced ? wishes.forced(ray_effect_names()[i]) : std::nullopt;
+    state.on.*kFlags[i] = forced[i].value_or(wishes.on);
+    state.forced[i] = forced[i].has_value();
+  }
+  const bool wanted = forced[1].value_or(false) || forced[2].value_or(false);
+  if (wanted && !forced[0]) state.on.shadow = state.forced[0] = true;
+  if (forced[0] == std::optional(false)) state.forced.fill(true);
+  state.on = nested(state.on);
+  return state;
+}
+
+// Leaves out, cheapest to miss first, what all together cannot be seen.
+void drop_unseen(const RayProbe& probe, double tolerance, State& state) {
+  const RayEffects wanted = state.on;
+  std::array<double, kEffects> worth{};
+  for (std::size_t i = 0; i < kEffects; ++i) worth[i] = probe.worth(wanted, without(wanted, i)).de00_p95;
+  std::array<std::size_t, kEffects> order{};
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return worth[a] < worth[b]; });
+  for (const std::size_t i : order) {
+    if (!(state.on.*kFlags[i]) || state.forced[i]) continue;
+    const RayEffects less = without(state.on, i);
+    const bool keeps_forced = !((state.forced[1] && state.on.self) || (state.forced[2] && state.on.bounce)) || i != 0;
+    if (keeps_forced && probe.worth(wanted, less).de00_p95 <= kSafety * tolerance) state.on = less;
+  }
+}
+
+// What others need goes last.
+void keep_affordable(const RayProbe& probe, const RayWishes& wishes, State& state) {
+  for (const std::size_t i : {std::size_t{2}, std::size_t{1}, std::size_t{0}}) {
+    if (probe.cost(state.on, kRayNoiseShare * wishes.tolerance_de00, wishes.visible_points, wishes.samples).ms <=
+        wishes.budget_ms)
+      return;
+    if (!(state.on.*kFlags[i]) || state.forced[i]) continue;
+    state.on = without(state.on, i);
+    state.over_budget[i] = true;
+  }
+}
+
+Decision decision_of(const State& state, std::size_t i) {
+  const bool on = state.on.*kFlags[i];
+  if (state.forced[i]) return on ? Decision::kForcedOn : Decision::kForcedOff;
+  if (state.over_budget[i]) return Decision::kOverBudget;
+  return on ? Decision::kDrawn : Decision::kDropped;
+}
+
+}  // namespace
+
+const std::vector<std::string>& ray_effect_names() {
+  static const std::vector<std::string> names = {"shadow", "self", "bounce"};
+  return names;
+}
+
+RayChoice no_rays(const std::string& reason) {
+  RayChoice choice;
+  for (const std::string& name : ray_effect_names()) {
+    PlanItem item;
+    item.effect = name, item.reason = reason;
+    choice.items.push_back(std::move(item));
+  }
+  return choice;
+}
+
+RayChoice ray_choice(const RayProbe& probe, const RayWishes& wishes) {
+  if (probe.free()) return no_rays("no ray meets the mesh");
+  State state = forced_state(wishes);
+  const RayEffects wanted = state.on;
+  if (wishes.automatic) drop_unseen(probe, wishes.tolerance_de00, state);
+  if (wishes.budget_ms > 0) keep_affordable(probe, wishes, state);
+
+  RayChoice choice;
+  choice.effects = state.on;
+  const auto cost = [&](const RayEffects& effects) {
+    return probe.cost(effects, kRayNoiseShare * wishes.tolerance_de00, wishes.visible_points, wishes.samples);
+  };
+  choice.cost = cost(state.on);
+  choice.left_out_de00_p95 = state.on == wanted ? 0 : probe.worth(wanted, state.on).de00_p95;
+  const RayCost all = cost(kAll);
+  for (std::size_t i = 0; i < kEffects; ++i) {
+    PlanItem item;
+    const RayEffects less = without(kAll, i);
+    const Worth worth = probe.worth(kAll, less);
+    item.effect = ray_effect_names()[i], item.needed = true, item.reason = reason_of(i, probe, all);
+    item.de00_p95 = worth.de00_p95, item.standard_error = worth.standard_error;
+    item.cost_ms = std::max(0.0, all.ms - cost(less).ms);
+    item.on = state.on.*kFlags[i], item.decision = decision_of(state, i);
+    choice.items.push_back(std::move(item));
+  }
+  return choice;
+}
+
+}  // namespace goniochrome::render

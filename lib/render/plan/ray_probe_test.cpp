@@ -1,0 +1,245 @@
+// What the effects of rays are worth, told from some points, against what they are worth in the whole picture.
+#include "render/plan/ray_probe.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "base/parallel.h"
+#include "render/camera.h"
+#include "render/exact.h"
+#include "render/internal/seen.h"
+#include "render/path/scenes_for_paths_for_test.h"
+
+namespace goniochrome::render {
+namespace {
+
+constexpr RayEffects kAll{true, true, true}, kNoSelf{true, false, true}, kNoBounce{true, true, false};
+constexpr int kBounces = 4;
+
+paint::LobeFit silver() {
+  paint::LobeFit paint = matt({0.2, 0.2, 0.19});
+  paint.lobes = {{1.3, {0.05, 0.05, 0.05}, {}},
+                 {20, {0.4, 0.4, 0.38}, {}},
+                 {200, {0.8, 0.8, 0.8}, {0.5, 0.5, 0.5}},
+                 {envmap::kMirrorExponent, {}, {0.6, 0.6, 0.6}}};
+  return paint;
+}
+
+// A ball with a dent that is 0.35 deep and as wide as its opening is.
+mesh::Mesh dented_mesh() {
+  mesh::Mesh mesh = sphere_mesh(48);
+  const Vec3 toward = normalized({0.5, 0.4, 1});
+  for (Vec3& p : mesh.positions) {
+    const double angle = std::acos(std::clamp(dot(p, toward), -1.0, 1.0));
+    p = (1 - 0.35 * std::exp(-angle * angle / 0.12)) * p;
+  }
+  mesh.normals.assign(mesh.positions.size(), Vec3{});
+  for (const auto& t : mesh.triangles) {
+    const Vec3 area = cross(mesh.positions[t[1]] - mesh.positions[t[0]], mesh.positions[t[2]] - mesh.positions[t[0]]);
+    for (const std::uint32_t v : t) mesh.normals[v] += area;
+  }
+  for (Vec3& n : mesh.normals) n = length(n) > 0 ? normalized(n) : Vec3{0, 1, 0};
+  return mesh;
+}
+
+// A closed box on a plate, with a ball before it.
+mesh::Mesh box_on_a_plate() {
+  mesh::Mesh mesh;
+  add_rectangle(mesh, "plate", {-2, -1, -2}, {0, 0, 4}, {4, 0, 0});
+  mesh::Mesh box = box_mesh(true);
+  for (auto& t : box.triangles) std::swap(t[1], t[2]);  // facing outward
+  for (Vec3& n : box.normals) n = -n;
+  add_mesh(mesh, box, 0.6, {-0.4, -0.4, -0.3});
+  add_mesh(mesh, sphere_mesh(24), 0.4, {0.6, -0.6, 0.7});
+  return mesh;
+}
+
+struct NamedLight {
+  const char* name;
+  std::function<color::Rgb(int, int)> sky;  // of 32 x 16; none: dark
+  std::vector<Light> lights;
+};
+std::vector<NamedLight> five_lights() {
+  const auto lamp = [](int x, int y, int left, int top, int size) {
+    return x >= left && x < left + size && y >= top && y < top + size;
+  };
+  return {{"even",
+           [](int, int) {
+             return color::Rgb{1, 1, 1};
+           },
+           {}},
+          {"overcast",
+           [](int, int y) {
+             return (y < 8 ? 1.2 - 0.05 * y : 0.15) * color::Rgb{0.9, 1, 1.1};
+           },
+           {}},
+          {"studio",
+           [=](int x, int y) {
+             const double light = lamp(x, y, 6, 3, 3) ? 12 : lamp(x, y, 20, 5, 2) ? 8 : 0.15;
+             return light * color::Rgb{1, 0.95, 0.9};
+           },
+           {}},
+          {"sun",
+           [=](int x, int y) {
+             return lamp(x, y, 11, 4, 1) ? color::Rgb{90, 85, 70} : color::Rgb{0.3, 0.4, 0.6};
+           },
+           {}},
+          {"lamps", nullptr, {{normalized({1, 2, 1}), {0.8, 0.8, 0.8}}, {normalized({-1, 0.5, 1}), {0.3, 0.25, 0.2}}}}};
+}
+
+struct Seen {
+  std::vector<RayPoint> points;
+  std::vector<color::Rgb> base;
+  std::vector<Vec3> to_viewer;
+};
+
+// All visible points of a small picture.
+Seen seen_of(const PathStage& stage, const Camera& camera, int width, int height) {
+  Seen seen;
+  const VisibleSurface surface = visible_surface(stage.transport->rays(), *rays(camera, width, height), width, height);
+  std::vector<SurfacePoint> exact;
+  ExactModel model;
+  model.fresnel = true;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const Gbuffer& g = surface.gbuffer;
+      if (g.part(x, y) < 0) continue;
+      seen.points.push_back({spot_at(stage.transport->rays(), surface, x, y), rays::float3(g.to_viewer(x, y))});
+      seen.to_viewer.push_back(g.to_viewer(x, y));
+      exact.push_back(
+          {g.normal(x, y), g.to_viewer(x, y), &stage.scene.paints[static_cast<std::size_t>(g.part(x, y))], &model});
+    }
+  }
+  seen.base = reference_radiance(exact, stage.environment ? &*stage.environment : nullptr, stage.scene.lights);
+  return seen;
+}
+
+// The same three figures by many samples at every point, each effect traced by itself.
+std::array<double, 3> true_worth(const PathStage& stage, const Seen& seen, double white, int batches) {
+  std::array<std::vector<color::Rgb>, 3> added;  // all, without self, without bounce
+  const RayEffects kinds[] = {kAll, kNoSelf, kNoBounce};
+  for (std::size_t kind = 0; kind < 3; ++kind) {
+    added[kind].resize(seen.points.size());
+    PathOptions options;
+    options.bounces = kBounces;
+    options.correction = true;
+    options.into_lobes = kinds[kind].self, options.into_diffuse = kinds[kind].bounce;
+    parallel_for(seen.points.size(), 8, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        added[kind][i] =
+            path_estimate(*stage.transport, options, seen.points[i].spot, seen.to_viewer[i], batches, mixed(77, i))
+                .radiance;
+    });
+  }
+  std::array<double, 3> worth{};
+  for (std::size_t kind = 0; kind < 3; ++kind) {
+    std::vector<double> de00;
+    for (std::size_t i = 0; i < seen.points.size(); ++i) {
+      const color::Rgb all = seen.base[i] + added[0][i];
+      de00.push_back(seen_difference(all, kind == 0 ? seen.base[i] : seen.base[i] + added[kind][i], white));
+    }
+    worth[kind] = percentile_95(std::move(de00));
+  }
+  return worth;
+}
+
+struct Shape {
+  std::string name;
+  mesh::Mesh mesh;
+};
+
+// Points that are spread over the picture tell what holds for all of it: within a factor of 1.3 or 0.1 dE00.
+void expect_predicted(const Shape& shape) {
+  const int width = 72, height = 54;
+  for (const NamedLight& light : five_lights()) {
+    PathStage stage(shape.mesh, {silver()});
+    if (light.sky) stage.environment = environment_of(32, 16, light.sky);
+    stage.scene.lights = light.lights;
+    stage.build();
+    const Camera camera = Camera::orbit(stage.mesh, 35, 25, 1, 30, static_cast<double>(width) / height);
+    const Seen all = seen_of(stage, camera, width, height);
+    std::vector<RayPoint> points;
+    std::vector<color::Rgb> base;
+    const std::size_t step = all.points.size() / 1536 + 1;
+    for (std::size_t i = step / 2; i < all.points.size(); i += step) {
+      points.push_back(all.points[i]);
+      base.push_back(all.base[i]);
+    }
+    const RayProbe probe = RayProbe::traced(*stage.transport, points, base, 1, kBounces, 1);
+    const std::array<double, 3> truth = true_worth(stage, all, 1, 32);
+    const RayEffects without[] = {{}, kNoSelf, kNoBounce};
+    const char* names[] = {"shadow", "self", "bounce"};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Worth worth = probe.worth(kAll, without[k]);
+      const std::string which = shape.name + ", " + light.name + ", " + names[k];
+      ::testing::Test::RecordProperty(
+          which, fmt::format("{:.3f} +- {:.3f}, truth {:.3f}", worth.de00_p95, worth.standard_error, truth[k]));
+      if (std::abs(worth.de00_p95 - truth[k]) <= 0.1) continue;
+      EXPECT_LE(worth.de00_p95, 1.3 * truth[k]) << which << " +- " << worth.standard_error;
+      EXPECT_GE(worth.de00_p95, truth[k] / 1.3) << which << " +- " << worth.standard_error;
+    }
+  }
+}
+
+TEST(RayProbe, PredictsTheWorthOfADent) {
+  expect_predicted({"dented ball", dented_mesh()});
+}
+
+TEST(RayProbe, PredictsTheWorthOfABoxOnAPlate) {
+  expect_predicted({"box on a plate", box_on_a_plate()});
+}
+
+TEST(RayProbe, PredictsTheWorthOfTheSpeedShape) {
+  auto mesh = mesh::read_mesh(GONIOCHROME_TESTDATA "/speed-shape.obj");
+  ASSERT_TRUE(mesh.ok());
+  expect_predicted({"speed shape", *std::move(mesh)});
+}
+
+TEST(RayProbe, PredictsTheWorthOfMeshesRealData) {
+  const char* data = std::getenv("GONIOCHROME_DATA");
+  if (data == nullptr) GTEST_SKIP() << "GONIOCHROME_DATA is not set";
+  for (const char* name : {"teapot", "vehicle"}) {
+    auto mesh = mesh::read_mesh(std::string(data) + "/mesh/" + name + ".obj");
+    ASSERT_TRUE(mesh.ok());
+    expect_predicted({name, *std::move(mesh)});
+  }
+}
+
+// No ray that leaves a ball meets it again: nothing, not little. The control has a dent.
+TEST(RayProbe, ABallIsWorthExactlyNothing) {
+  for (const bool dented : {false, true}) {
+    for (const NamedLight& light : five_lights()) {
+      PathStage stage(dented ? dented_mesh() : sphere_mesh(48), {silver()});
+      if (light.sky) stage.environment = environment_of(32, 16, light.sky);
+      stage.scene.lights = light.lights;
+      stage.build();
+      const Seen all = seen_of(stage, Camera::orbit(stage.mesh, 35, 25, 1, 30, 1), 40, 40);
+      const RayProbe probe = RayProbe::traced(*stage.transport, all.points, all.base, 1, kBounces, 1);
+      EXPECT_EQ(probe.free(), !dented);
+      for (const RayEffects& without : {RayEffects{}, kNoSelf, kNoBounce})
+        EXPECT_EQ(probe.worth(kAll, without).de00_p95 == 0, !dented) << light.name;
+      EXPECT_EQ(probe.worth(kAll, kAll).de00_p95, 0);
+    }
+  }
+}
+
+TEST(RayProbe, IsTheSameForAnyNumberOfThreads) {
+  PathStage stage(dented_mesh(), {silver()});
+  stage.environment = environment_of(32, 16, five_lights()[3].sky);
+  stage.build();
+  const Seen all = seen_of(stage, Camera::orbit(stage.mesh, 35, 25, 1, 30, 1), 32, 32);
+  std::vector<double> worth;
+  for (const int count : {1, 2, 5}) {
+    set_threads(count);
+    worth.push_back(RayProbe::traced(*stage.transport, all.points, all.base, 1, kBounces, 1).worth(kAll, {}).de00_p95);
+  }
+  set_threads(0);
+  EXPECT_EQ(worth[0], worth[1]);
+  EXPECT_EQ(worth[0], worth[2]);
+}
+
+}  // namespace
+}  // namespace goniochrome::render
