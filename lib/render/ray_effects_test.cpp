@@ -1,0 +1,134 @@
+// Pictures with the effects of rays, against the truth and against pictures without them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "render/path/scenes_for_paths_for_test.h"
+#include "render/plan/ray_plan.h"
+#include "render/renderer.h"
+#include "render/truth.h"
+
+namespace goniochrome::render {
+namespace {
+
+struct World {
+  mesh::Mesh mesh;
+  envmap::PrefilteredEnvironment env = constant_env({1, 1, 1}, {20, 900});
+  envmap::Environment sky = even_environment();
+  Scene scene;
+  View view;
+
+  explicit World(mesh::Mesh made) : mesh(std::move(made)) {
+    paint::LobeFit paint = matt({0.5, 0.4, 0.3});
+    paint.lobes = {{20, {0.3, 0.3, 0.3}, {}}};
+    scene.mesh = &mesh;
+    scene.paints.assign(mesh.parts.size(), paint);
+    scene.env = &env;
+    view = {Camera::orbit(mesh, 30, 35, 1, 30, 1), 48, 48, 1, true};
+  }
+  World(const World&) = delete;
+};
+
+mesh::Mesh ball_in_a_cup() {
+  mesh::Mesh mesh = box_mesh(false);
+  add_mesh(mesh, sphere_mesh(32), 0.5, {0.1, -0.5, 0});
+  return mesh;
+}
+
+struct Drawn {
+  Plan plan;
+  Frame frame;
+};
+
+Drawn drawn(const World& world, const std::string& effects, bool rays, int samples = 1) {
+  auto renderer = Renderer::create();
+  EXPECT_TRUE(renderer.ok());
+  if (rays) renderer->set_rays({&world.sky, ""});
+  View view = world.view;
+  view.samples = samples;
+  const auto seen = renderer->look(world.mesh, view);
+  EXPECT_TRUE(seen.ok());
+  PlanRequest request;
+  request.effects = effects;
+  request.samples = samples;
+  auto plan = renderer->load(world.scene, {*seen}, request);
+  EXPECT_TRUE(plan.ok()) << plan.error().message;
+  Drawn result{*std::move(plan), {}};
+  EXPECT_TRUE(renderer->draw(view, result.frame).ok());
+  return result;
+}
+
+TruthError against_truth(const World& world, const Drawn& picture) {
+  TruthRequest request;
+  request.environment = &world.sky;
+  request.count = 100;
+  request.bounces = Effort::kUsualBounces;
+  request.seed = 5;
+  auto error = truth_error(picture.frame, world.scene, picture.plan.effects.rays, request);
+  EXPECT_TRUE(error.ok());
+  return *error;
+}
+
+const PlanItem& item(const Plan& plan, const std::string& effect) {
+  return *std::ranges::find(plan.items, effect, &PlanItem::effect);
+}
+
+TEST(RayEffects, ABallIsDrawnAsBefore) {
+  const World world(sphere_mesh(48));
+  const Drawn before = drawn(world, "auto", false), after = drawn(world, "auto", true);
+  EXPECT_EQ(before.frame.picture.data, after.frame.picture.data);
+  for (const std::string& name : ray_effect_names()) {
+    EXPECT_FALSE(item(after.plan, name).needed);
+    EXPECT_EQ(item(after.plan, name).decision, Decision::kNotInScene);
+  }
+}
+
+// In even light prefiltered maps are exact but for the horizon, so that what a picture errs by is what the mesh does.
+TEST(RayEffects, APictureWithThemIsTheTruth) {
+  const World world(ball_in_a_cup());
+  const Drawn with = drawn(world, "auto", true), without = drawn(world, "all,-shadow", true);
+  for (const std::string& name : ray_effect_names()) {
+    EXPECT_EQ(item(with.plan, name).decision, Decision::kDrawn) << name;
+    EXPECT_GT(item(with.plan, name).de00_p95, 1) << name;
+    EXPECT_EQ(item(without.plan, name).decision, Decision::kForcedOff) << name;
+  }
+  const TruthError good = against_truth(world, with), bad = against_truth(world, without);
+  // The noise is half of the tolerance; the maps err by less than the tolerance here.
+  EXPECT_LT(good.total.de00_p95, 2 * PlanRequest{}.tolerance_de00);
+  EXPECT_EQ(good.shares.occlusion, 0);
+  EXPECT_EQ(good.shares.bounce, 0);
+  EXPECT_TRUE(good.sharp);
+  // Control: what was left out is found, and by its name.
+  EXPECT_GT(bad.total.de00_p95, 5);
+  EXPECT_GT(bad.shares.occlusion, 5);
+  EXPECT_GT(bad.shares.bounce, 1);
+  EXPECT_EQ(bad.shares.noise, 0);
+  EXPECT_NEAR(bad.shares.prefilter, good.shares.prefilter, 1e-9);
+  // The plan knew what leaving shadows out is worth: 100 pixels of 95 % lie between the 90th and the 99th.
+  EXPECT_NEAR(item(without.plan, "shadow").de00_p95, bad.total.de00_p95, 0.3 * bad.total.de00_p95);
+}
+
+// The mean over the samples of a pixel is that of one sample, apart from edges and noise.
+TEST(RayEffects, SeveralSamplesAreCorrectedEach) {
+  const World world(ball_in_a_cup());
+  const Drawn one = drawn(world, "all", true, 1), four = drawn(world, "all", true, 4);
+  double sum_one = 0, sum_four = 0, least = 1;
+  for (std::size_t i = 0; i < one.frame.picture.data.size(); i += 4) {
+    sum_one += one.frame.picture.data[i], sum_four += four.frame.picture.data[i];
+    least = std::min<double>(least, four.frame.picture.data[i]);
+  }
+  EXPECT_NEAR(sum_four, sum_one, 0.01 * sum_one);
+  EXPECT_GT(least, -0.02);
+}
+
+TEST(RayEffects, SelfAndBounceNeedShadow) {
+  const World world(ball_in_a_cup());
+  const Plan forced = drawn(world, "none,+bounce", true).plan;
+  EXPECT_EQ(item(forced, "shadow").decision, Decision::kForcedOn);
+  EXPECT_EQ(item(forced, "bounce").decision, Decision::kForcedOn);
+  EXPECT_EQ(item(forced, "self").decision, Decision::kDropped);
+  EXPECT_EQ(forced.effects.rays, (RayEffects{true, false, true}));
+}
+
+}  // namespace
+}  // namespace goniochrome::render
