@@ -40,7 +40,8 @@ Result<void> make_folder(const std::string& path) {
   std::error_code failure;
   std::filesystem::create_directories(path, failure);
   if (is_folder(path)) return {};
-  return input_error("{}: cannot be made a folder: {}", path, failure ? failure.message() : "a file is in its place");
+  if (is_there(path)) return input_error("{}: is no folder: a file is in its place", path);
+  return input_error("{}: cannot be made a folder: {}", path, failure.message());
 }
 
 std::optional<std::pair<unsigned long, unsigned long>> file_identity(const std::string& path) {

@@ -133,8 +133,11 @@ struct RayScene::State {
 
   Result<void> build() {
     device.reset(rtcNewDevice(nullptr));
-    if (!device)
-      return input_error("Embree cannot be started: its error is {}", static_cast<int>(rtcGetDeviceError(nullptr)));
+    if (!device) {
+      const RTCError error = rtcGetDeviceError(nullptr);
+      if (error == RTC_ERROR_OUT_OF_MEMORY) return input_error("there is not enough memory to begin to trace rays");
+      return input_error("rays cannot be traced: Embree cannot be started, its error is {}", static_cast<int>(error));
+    }
     scene.reset(rtcNewScene(device.get()));
     const bool compact = triangles.size() >= kCompactFrom;
     rtcSetSceneFlags(scene.get(), compact ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT : RTC_SCENE_FLAG_ROBUST);

@@ -32,7 +32,6 @@ struct Effort {
   std::uint64_t seed = 1;
   // Told after each round of samples: the noise of the picture so far (CIEDE2000, 95th percentile), and the seconds.
   std::function<void(double noise_de00, double seconds)> progress = {};
-  // Measured on the vehicle in four probes: what more bounces change is below .1 dE00 at 95 of 100 pixels.
   static constexpr int kUsualBounces = 4;
 };
 

@@ -86,24 +86,26 @@ TEST(RayEffects, ABallIsDrawnAsBefore) {
 // In even light prefiltered maps are exact but for the horizon, so that what a picture errs by is what the mesh does.
 TEST(RayEffects, APictureWithThemIsTheTruth) {
   const World world(ball_in_a_cup());
-  const Drawn with = drawn(world, "auto", true), without = drawn(world, "all,-shadow", true);
+  const Drawn planned = drawn(world, "auto", true), with = drawn(world, "all", true),
+              without = drawn(world, "all,-shadow", true);
   for (const std::string& name : ray_effect_names()) {
-    EXPECT_EQ(item(with.plan, name).decision, Decision::kDrawn) << name;
-    EXPECT_GT(item(with.plan, name).de00_p95, 1) << name;
+    EXPECT_EQ(item(planned.plan, name).decision, Decision::kDrawn) << name;
+    EXPECT_GT(item(planned.plan, name).de00_p95, 1) << name;
     EXPECT_EQ(item(without.plan, name).decision, Decision::kForcedOff) << name;
   }
   const TruthError good = against_truth(world, with), bad = against_truth(world, without);
   // The noise is half of the tolerance; the maps err by less than the tolerance here.
   EXPECT_LT(good.total.de00_p95, 2 * PlanRequest{}.tolerance_de00);
-  EXPECT_EQ(good.shares.occlusion, 0);
-  EXPECT_EQ(good.shares.bounce, 0);
-  EXPECT_TRUE(good.sharp);
+  EXPECT_NEAR(good.shares.occlusion, 0, 1e-9);
+  EXPECT_NEAR(good.shares.bounce, 0, 1e-9);
   // Control: what was left out is found, and by its name.
+  EXPECT_TRUE(bad.sharp);
   EXPECT_GT(bad.total.de00_p95, 5);
   EXPECT_GT(bad.shares.occlusion, 5);
   EXPECT_GT(bad.shares.bounce, 1);
   EXPECT_EQ(bad.shares.noise, 0);
-  EXPECT_NEAR(bad.shares.prefilter, good.shares.prefilter, 1e-9);
+  // What the maps err by is told from pictures, of which one is noisy.
+  EXPECT_NEAR(bad.shares.prefilter, good.shares.prefilter, 0.1 * PlanRequest{}.tolerance_de00);
   // The plan knew what leaving shadows out is worth: 100 pixels of 95 % lie between the 90th and the 99th.
   EXPECT_NEAR(item(without.plan, "shadow").de00_p95, bad.total.de00_p95, 0.3 * bad.total.de00_p95);
 }

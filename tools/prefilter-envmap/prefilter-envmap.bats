@@ -195,7 +195,7 @@ lobes_paint() {
   echo file >taken
   run prefilter-envmap -e 6 --cache taken "$sky" -o x.env.exr
   [ "$status" -eq 3 ]
-  [[ "$output" =~ "taken: cannot be made a folder" ]]
+  [[ "$output" =~ "taken: is no folder" ]]
   run prefilter-envmap -e 6 "$sky" -o x.env.exr --cache
   [ "$status" -eq 2 ]
 }

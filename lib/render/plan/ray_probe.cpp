@@ -20,7 +20,7 @@ struct Round {
   double share;
   int batches;
 };
-constexpr Round kRounds[] = {{1, 1}, {0.25, 4}, {0.1, 16}};
+constexpr Round kRounds[] = {{1, 2}, {0.3, 8}, {0.1, 32}};
 // Below this, in CIEDE2000, nobody needs to know a percentile more accurately.
 constexpr double kLeastPercentile = 0.1;
 // Points that are traced once more without light that is passed on, for the time of that.
@@ -88,8 +88,8 @@ RayProbe RayProbe::traced(const Transport& transport, const std::vector<RayPoint
     const Stopwatch clock;
     const std::vector<int> more = probe.more(share, batches);
     probe.trace(transport, points, more, seed);
-    if (batches > 1) continue;
-    probe.passed_ms_ = 1000 * clock.elapsed_s() / static_cast<double>(points.size());
+    if (share < 1) continue;
+    probe.passed_ms_ = 1000 * clock.elapsed_s() / static_cast<double>(batches * points.size());
     for (const Point& point : probe.points_) probe.blocked_ += point.blocked ? 1 : 0;
     if (probe.free()) return probe;
   }

@@ -117,29 +117,38 @@ Seen seen_of(const PathStage& stage, const Camera& camera, int width, int height
   return seen;
 }
 
-// The same three figures by many samples at every point, each effect traced by itself.
+// The same three figures by many samples at every point, each effect traced by itself. Two halves tell how much of a
+// squared difference is noise: it is twice as much in either as in their mean.
 std::array<double, 3> true_worth(const PathStage& stage, const Seen& seen, double white, int batches) {
-  std::array<std::vector<color::Rgb>, 3> added;  // all, without self, without bounce
+  std::array<std::array<std::vector<color::Rgb>, 2>, 3> added;  // all, without self, without bounce; halves
   const RayEffects kinds[] = {kAll, kNoSelf, kNoBounce};
   for (std::size_t kind = 0; kind < 3; ++kind) {
-    added[kind].resize(seen.points.size());
     PathOptions options;
     options.bounces = kBounces;
     options.correction = true;
     options.into_lobes = kinds[kind].self, options.into_diffuse = kinds[kind].bounce;
-    parallel_for(seen.points.size(), 8, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i)
-        added[kind][i] =
-            path_estimate(*stage.transport, options, seen.points[i].spot, seen.to_viewer[i], batches, mixed(77, i))
-                .radiance;
-    });
+    for (std::size_t half = 0; half < 2; ++half) {
+      added[kind][half].resize(seen.points.size());
+      parallel_for(seen.points.size(), 8, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+          added[kind][half][i] = path_estimate(*stage.transport, options, seen.points[i].spot, seen.to_viewer[i],
+                                               batches / 2, mixed(77 + half, i))
+                                     .radiance;
+      });
+    }
   }
   std::array<double, 3> worth{};
   for (std::size_t kind = 0; kind < 3; ++kind) {
     std::vector<double> de00;
     for (std::size_t i = 0; i < seen.points.size(); ++i) {
-      const color::Rgb all = seen.base[i] + added[0][i];
-      de00.push_back(seen_difference(all, kind == 0 ? seen.base[i] : seen.base[i] + added[kind][i], white));
+      const auto squared = [&](const color::Rgb& all, const color::Rgb& some) {
+        const double d = seen_difference(seen.base[i] + all, seen.base[i] + (kind == 0 ? color::Rgb{} : some), white);
+        return d * d;
+      };
+      const auto& [all, some] = std::tie(added[0], added[kind]);
+      const double whole = squared(0.5 * (all[0][i] + all[1][i]), 0.5 * (some[0][i] + some[1][i]));
+      const double halves = 0.5 * (squared(all[0][i], some[0][i]) + squared(all[1][i], some[1][i]));
+      de00.push_back(std::sqrt(std::max(0.0, 2 * whole - halves)));
     }
     worth[kind] = percentile_95(std::move(de00));
   }

@@ -25,9 +25,7 @@ def roughly_counted(path):
     """The number of paints in a library: exact for paint XML, estimated from the size of the file for tables."""
     if path == "-" or not pathlib.Path(path).is_file():
         return 0
-    with open(path, "rb") as file:
-        blocks = iter(lambda: file.read(library.BLOCK), b"")
-        paints = sum(block.count(library.START) for block in blocks)
+    paints = sum(1 for _ in library.places(path))
     return paints or max(1, pathlib.Path(path).stat().st_size // 150)
 
 

@@ -1,0 +1,91 @@
+#include "picture_file.h"
+
+#include <cmath>
+
+#include "base/text.h"
+#include "plan_text.h"
+#include "render/aov.h"
+
+namespace goniochrome::tool {
+
+namespace {
+
+std::string spelled(const Vec3& v) {
+  return fmt::format("{},{},{}", shortest(v.x), shortest(v.y), shortest(v.z));
+}
+
+// What one must know to shade the buffers again: the rays through the pixels, and the light.
+void describe_view(const Options& options, const render::Rays& rays, const std::vector<render::Light>& lights,
+                   image::Attributes& attributes) {
+  attributes["goniochrome:rays"] =
+      fmt::format("{};{};{}", spelled(rays.corner), spelled(rays.right), spelled(rays.down));
+  std::string all;
+  for (const render::Light& light : lights)
+    all += fmt::format("{}{},{}", all.empty() ? "" : ";", spelled(light.direction), spelled(light.white));
+  attributes["goniochrome:lights"] = all;
+  attributes["goniochrome:environment"] = options.env;
+}
+
+// The 27 coefficients, the last index running fastest.
+std::string spelled(const color::ReflectionOperator& reflection) {
+  std::string all;
+  for (const auto& matrix : reflection.k)
+    for (const auto& row : matrix)
+      for (const double value : row) all += (all.empty() ? "" : ",") + shortest(value);
+  return all;
+}
+
+}  // namespace
+
+image::Attributes provenance(const cli::Session& session) {
+  return {{"goniochrome:tool", session.tool()},
+          {"goniochrome:version", std::string(cli::Session::version())},
+          {"goniochrome:command", session.command_line()}};
+}
+
+Result<void> write_exr_picture(const Options& options, const Request& request, const Shot& shot,
+                               const render::Frame& frame, const render::Scene& scene, const render::Plan& plan,
+                               const render::DiffuseWhite& white, double stops, double automatic,
+                               const render::TransportParts* transport, const cli::Session& session) {
+  image::ImagePart part{"picture", frame.picture, provenance(session), image::PixelType::kHalf};
+  part.attributes["goniochrome:plan"] = plan_rows(plan, false).dump(-1, ' ', false, Json::error_handler_t::replace);
+  part.attributes["goniochrome:engine"] = plan.engine;
+  const float gain = static_cast<float>(std::exp2(stops));
+  for (std::size_t i = 0; i < part.image.data.size(); ++i) part.image.data[i] *= i % 4 == 3 ? 1 : gain;
+  part.attributes["colorInteropID"] = "lin_rec2020_scene";
+  part.attributes["chromaticities"] =
+      std::vector<float>{0.708F, 0.292F, 0.170F, 0.797F, 0.131F, 0.046F, 0.3127F, 0.3290F};
+  part.attributes["goniochrome:exposure"] = static_cast<float>(stops);
+  part.attributes["goniochrome:whiteLuminance"] = static_cast<float>(white.luminance);
+  part.attributes["goniochrome:automaticExposure"] = static_cast<float>(automatic);
+  if (!request.aovs.empty()) {
+    const Vec3 to_light = scene.lights.empty() ? white.direction : scene.lights.front().direction;
+    for (const std::string& aov : request.aovs) {
+      if (aov == "error") {
+        render::add_error(part.image, frame.noise.value());
+      } else {
+        GONIO_TRY(render::add_aov(part.image, *frame.gbuffer, aov, to_light));
+      }
+    }
+    part.type = image::PixelType::kFloat;
+    part.attributes["goniochrome:aovLight"] = spelled(to_light);
+    describe_view(options, frame.gbuffer->rays, scene.lights, part.attributes);
+    part.attributes["goniochrome:operator"] = spelled(scene.reflection);
+    part.attributes["goniochrome:samples"] = request.samples;
+    Json names = Json::array(), materials = Json::array();
+    for (const mesh::MeshPart& mesh_part : scene.mesh->parts) {
+      names.push_back(mesh_part.name);
+      materials.push_back(mesh_part.material);
+    }
+    if (transport != nullptr && scene.ground) names.push_back("floor"), materials.push_back("");
+    part.attributes["goniochrome:parts"] = names.dump(-1, ' ', false, Json::error_handler_t::replace);
+    part.attributes["goniochrome:materials"] = materials.dump(-1, ' ', false, Json::error_handler_t::replace);
+  }
+  std::vector<image::ImagePart> parts;
+  if (transport != nullptr) part.attributes[render::kTransportAttribute] = transport->header;
+  parts.push_back(std::move(part));
+  if (transport != nullptr) parts.insert(parts.end(), transport->parts.begin(), transport->parts.end());
+  return image::write_exr(shot.output, parts);
+}
+
+}  // namespace goniochrome::tool

@@ -1,0 +1,89 @@
+#include "request.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "base/text.h"
+#include "render/aov.h"
+
+namespace goniochrome::tool {
+
+namespace {
+
+// --aov transport is no channel: it is traced, and brings the buffers that it is read with.
+Result<void> take_transport(const Options& options, Request& request) {
+  request.transport = std::erase(request.aovs, "transport") > 0;
+  if (!request.transport) return {};
+  for (const char* needed : {"normal", "aspecular", "lambert", "mask", "part"})
+    if (std::ranges::find(request.aovs, needed) == request.aovs.end()) request.aovs.emplace_back(needed);
+  const std::pair<const char*, bool> given[] = {{"gbuffer", !options.gbuffer.empty()},
+                                                {"split", !options.split.empty()},
+                                                {"turntable", options.turntable > 0},
+                                                {"light-sweep", options.light_sweep > 0}};
+  for (const auto& [name, is_given] : given)
+    if (is_given) return usage_error("--aov transport traces one view of a mesh: leave out --{}", name);
+  return {};
+}
+
+}  // namespace
+
+Result<Request> request_of(const Options& options) {
+  Request request;
+  GONIO_TRY(check_surfaces(options));
+  GONIO_ASSIGN(request.size, parse_size(options.size));
+  for (const std::string& text : options.lights) {
+    GONIO_ASSIGN(const render::Light light, parse_light(text));
+    request.lights.push_back(light);
+  }
+  GONIO_ASSIGN(request.stops, parse_exposure(options.exposure));
+  request.aovs = aov_names(options.aovs);
+  GONIO_TRY(take_transport(options, request));
+  const std::string extension = lower(std::filesystem::path(options.output).extension().string());
+  request.png = extension == ".png";
+  if (!request.png && extension != ".exr" && options.output != "-") {
+    return usage_error("--output is \"{}\": write a name that ends in .exr or .png", options.output);
+  }
+  GONIO_ASSIGN(request.emissions, parse_emissions(options.emissions));
+  if (options.env.empty() && request.lights.empty() && request.emissions.empty() && options.gbuffer.empty())
+    return usage_error("there is no light: give --env, --light or both");
+  if (options.samples != 0 && options.samples != 1 && options.samples != 4 && options.samples != 16) {
+    return usage_error("--samples is {}: give 1, 4 or 16", options.samples);
+  }
+  GONIO_ASSIGN(request.reflection, parse_operator(options.reflection));
+  GONIO_TRY(render::check_effects(options.effects));
+  request.plan.effects = options.effects;
+  request.plan.budget_ms = options.budget_ms;
+  request.samples = !options.gbuffer.empty() ? 1 : options.samples > 0 ? options.samples : 4;
+  request.plan.samples = request.samples;
+  const bool wants_rays =
+      !request.emissions.empty() || (options.floor != "auto" && options.floor != "none");  // only one engine has them
+  const std::string engine = options.engine == "auto" && wants_rays ? "path" : options.engine;
+  if (engine != "auto") {
+    GONIO_ASSIGN(request.engine, render::engine_named(engine));
+    request.plan.engine = engine;
+    if (!request.engine->is_planned && options.budget_ms > 0)
+      return usage_error("--budget chooses effects of prefiltered maps: leave it out, or --engine {}", options.engine);
+  }
+  const bool traces = request.engine != nullptr && request.engine->traces_rays;
+  GONIO_ASSIGN(request.floor, parse_floor(options.floor, traces && options.background == "env"));
+  if (wants_rays && !traces)
+    return usage_error("--engine {} draws neither floors nor parts that shine: leave out --{}, or take --engine path",
+                       options.engine, request.emissions.empty() ? "floor" : "emit");
+  if (wants_rays && !options.gbuffer.empty())
+    return usage_error("--{} needs the mesh: --gbuffer holds one view of surfaces without it",
+                       request.emissions.empty() ? "floor" : "emit");
+  if (!options.split.empty() && options.check > 0) return usage_error("--split and --check exclude each other");
+  if (options.print_shader && options.output == "-")
+    return usage_error("--print-shader and a picture both want standard output");
+  if (request.png && !request.aovs.empty()) return usage_error("a PNG holds no --aov buffers: write an .exr");
+  if (!request.png && !options.view.empty()) return usage_error("--view is for a PNG: an EXR stays scene-linear");
+  image::Image unused{0, 0, 0, {}, {}};
+  for (const std::string& aov : request.aovs) {
+    if (aov != "error") GONIO_TRY(render::add_aov(unused, {}, aov, {}));
+    if (aov == "error" && !traces) return usage_error("--aov error is of pictures by samples: take --engine path");
+  }
+  return request;
+}
+
+}  // namespace goniochrome::tool

@@ -1,0 +1,35 @@
+// What the command line asks for, checked before anything is read.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "color/reflection.h"
+#include "paints.h"
+#include "render/engine.h"
+#include "render/plan.h"
+#include "setup.h"
+#include "tool.h"
+
+namespace goniochrome::tool {
+
+struct Request {
+  PictureSize size;  // with --gbuffer, that of the file
+  int samples = 1;
+  std::vector<render::Light> lights;
+  std::optional<double> stops;
+  std::vector<std::string> aovs;
+  bool transport = false;  // among the buffers
+  bool png = false;
+  color::ReflectionOperator reflection;
+  render::PlanRequest plan;
+  const render::EngineInfo* engine = nullptr;  // null: the plan chooses
+  FloorRequest floor;
+  std::vector<Emission> emissions;
+};
+
+// Error (usage): values and combinations of options that cannot be.
+Result<Request> request_of(const Options& options);
+
+}  // namespace goniochrome::tool

@@ -1,0 +1,194 @@
+#include "stage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "base/paths.h"
+#include "base/text.h"
+#include "image/aov_file.h"
+#include "prefilter/lobe_tree.h"
+#include "render/aov.h"
+
+namespace goniochrome::tool {
+
+namespace {
+
+void tell_repairs(const mesh::Mesh& mesh, cli::Session& session) {
+  const mesh::Mesh::Repairs& repairs = mesh.repairs;
+  session.results()["triangles"] = mesh.triangles.size();
+  session.results()["repairs"] = {{"normals_made", repairs.normals_made},
+                                  {"degenerate_dropped", repairs.degenerate_dropped},
+                                  {"polygons_split", repairs.polygons_split},
+                                  {"triangles_turned", repairs.triangles_turned}};
+  if (repairs.normals_made > 0) {
+    session.say(fmt::format("{} of {} vertices had no normal and got one", repairs.normals_made, mesh.normals.size()));
+  }
+}
+
+void tell_parts(const mesh::Mesh& mesh, const DressedMesh& dress, cli::Session& session) {
+  Json& results = session.results();
+  for (std::size_t i = 0; i < mesh.parts.size(); ++i) {
+    const Json paint = dress.names[i].empty() ? Json(nullptr) : Json(dress.names[i]);
+    results["parts"].push_back({{"name", mesh.parts[i].name}, {"material", mesh.parts[i].material}, {"paint", paint}});
+  }
+  if (dress.unpainted.empty()) return;
+  std::string names;
+  for (std::size_t i = 0; i < std::min<std::size_t>(6, dress.unpainted.size()); ++i) {
+    names += (i == 0 ? "" : ", ") + dress.unpainted[i];
+  }
+  session.warn(fmt::format("{} of {} parts have no paint and are matt gray: {}{}: give --paint or --part",
+                           dress.unpainted.size(), mesh.parts.size(), names,
+                           dress.unpainted.size() > 6 ? ", ..." : ""));
+}
+
+// Whether the image holds the light of the environment, which may have been turned, brightened or cut since: their
+// irradiance agrees about the middle of each face.
+bool is_same_light(const envmap::Environment& image, const envmap::PrefilteredEnvironment& env) {
+  constexpr double kApart = 0.03;  // of the largest; the tolerance of the diffuse map is at most a tenth in use
+  const envmap::CubeMap& map = env.diffuse.map;
+  if (map.size == 0) return true;  // nothing to tell by
+  const prefilter::LobeTree exact(image);
+  const int middle = map.size / 2;
+  double largest = 0, apart = 0;
+  for (int face = 0; face < 6; ++face) {
+    const Vec3 truth = exact.lobe(envmap::cube_direction(face, middle + 0.5, middle + 0.5, map.size), 1, 1e-3);
+    for (int c = 0; c < 3; ++c) {
+      largest = std::max(largest, truth[c]);
+      apart = std::max(apart, std::abs(truth[c] - map.at(face, middle, middle)[c]));
+    }
+  }
+  return apart <= (kApart + env.diffuse.tolerance) * largest;
+}
+
+// The image that the environment was made from: as named, or beside the environment, if
+// it holds the same light; else its mirror part.
+Result<Source> source_of(const Options& options, const render::Scene& scene, cli::Session& session) {
+  if (scene.env == nullptr) return Source{};
+  std::vector<std::string> candidates = {options.check_source};
+  if (options.check_source.empty()) {
+    candidates = {scene.env->source, (std::filesystem::path(options.env).parent_path() / scene.env->source).string()};
+  }
+  std::string missing = "is not there";
+  for (const std::string& path : candidates) {
+    const bool is_pattern = path.find("{face}") != std::string::npos;
+    const bool there = is_pattern ? envmap::face_paths(path).ok() : is_plain_file(path);
+    if (!there && options.check_source.empty()) continue;
+    GONIO_ASSIGN(envmap::Environment environment,
+                 envmap::Environment::read(path, envmap::Environment::BadPixels::kZero));
+    if (is_same_light(environment, *scene.env)) return Source{std::move(environment), path};
+    missing = "is turned, brightened or cut there";
+    break;
+  }
+  if (scene.env->mirror.map.size == 0) {
+    return input_error(
+        "{}: its source \"{}\" {}, and it has no mirror part: name the image by --check-source, or make it with a "
+        "mirror",
+        options.env, scene.env->source, missing);
+  }
+  session.warn(fmt::format("the source \"{}\" of {} {}: its mirror part takes its place", scene.env->source,
+                           options.env, missing));
+  return Source{envmap::Environment::from_cube(scene.env->mirror.map, options.env), options.env + " (mirror part)"};
+}
+
+Result<void> dress_stage(const Options& options, Stage& stage) {
+  if (options.split.empty()) {
+    GONIO_ASSIGN(DressedMesh dress, dressed(stage.mesh, options));
+    stage.dresses.push_back(std::move(dress));
+    return {};
+  }
+  std::vector<std::string> paints;
+  for (const std::string& text : options.split) {
+    for (const std::string_view paint : split(text, ',')) paints.emplace_back(trimmed(paint));
+  }
+  if (paints.size() != 2)
+    return usage_error("--split names {} paints: write two, A.xml#NAME,B.xml#NAME", paints.size());
+  for (const std::string& paint : paints) {
+    GONIO_ASSIGN(DressedMesh dress, dressed_in(stage.mesh, options, paint));
+    stage.dresses.push_back(std::move(dress));
+  }
+  return {};
+}
+
+// The buffers of --gbuffer, and a mesh that has their parts.
+Result<void> set_gbuffer(const Options& options, const Request& request, Stage& stage, cli::Session& session) {
+  GONIO_ASSIGN(const image::AovFile buffers, image::read_aov_file(options.gbuffer));
+  GONIO_ASSIGN(render::Gbuffer gbuffer, render::gbuffer_of(buffers));
+  stage.gbuffer = std::make_shared<const render::Gbuffer>(std::move(gbuffer));
+  GONIO_ASSIGN(stage.transport, kept_transport(buffers, options, request.lights, session));
+  // A floor keeps the paint that it wore.
+  const std::size_t floors = stage.transport && stage.transport->light.worn.has_floor ? 1 : 0;
+  for (std::size_t i = 0; i + floors < buffers.parts.size(); ++i)
+    stage.mesh.parts.push_back({buffers.parts[i], buffers.materials[i], 0, 0});
+  if (!stage.transport && options.env.empty() && request.lights.empty())
+    return usage_error("there is no light: give --env, --light or both");
+  if (stage.transport && options.check > 0)
+    return usage_error("--check compares with light that nothing blocks: leave it out, or give --mesh");
+  if (stage.transport && !options.split.empty())
+    return usage_error("--split is not drawn from a transport: draw two pictures");
+  return {};
+}
+
+// The light that rays meet, where --effects names any effect of rays. Prefiltered environments hold it in their mirror
+// part, unless that was left out.
+void set_rays(const Options& options, const Request& request, Stage& stage) {
+  const auto named = [&](const char* name) { return options.effects.find(name) != std::string::npos; };
+  if (request.engine != nullptr && request.engine->traces_rays) return;
+  if (!named("+rays") && !named("+shadow") && !named("+self") && !named("+bounce")) return;
+  render::RaySetup& rays = stage.rays.emplace();
+  if (!options.gbuffer.empty()) {
+    rays.absent = "buffers without their mesh: what it blocks is not known";
+  } else if (!options.env.empty() && stage.env.mirror.map.size == 0) {
+    rays.absent = "the environment has no mirror part, which rays would meet: make it without --no-mirror";
+  } else if (!options.env.empty()) {
+    stage.sky.emplace(envmap::Environment::from_cube(stage.env.mirror.map, options.env));
+    rays.environment = &*stage.sky;
+  }
+}
+
+}  // namespace
+
+void wear(const DressedMesh& dress, const Options& options, Stage& stage) {
+  render::Scene& scene = stage.scene;
+  scene.paints = dress.paints;
+  scene.gloss_deg = dress.gloss_deg;
+  scene.anisotropy = dress.anisotropy;
+  stage.layer = std::make_unique<render::SurfaceLayer>(
+      scene, dress.surfaces, brdf::critical_angle_of(options.critical_angle).value_or(brdf::CriticalAngle::kSlide),
+      stage.mip ? &*stage.mip : nullptr);
+  scene.layer = stage.layer->empty() ? nullptr : stage.layer.get();
+}
+
+Result<void> set_stage(const Options& options, const Request& request, Stage& stage, cli::Session& session) {
+  if (options.gbuffer.empty()) {
+    GONIO_ASSIGN(stage.mesh, mesh::read_mesh(options.mesh));
+    tell_repairs(stage.mesh, session);
+  } else {
+    GONIO_TRY(set_gbuffer(options, request, stage, session));
+  }
+  GONIO_TRY(dress_stage(options, stage));
+  tell_parts(stage.mesh, stage.dresses.front(), session);
+  render::Scene& scene = stage.scene;
+  scene.mesh = &stage.mesh;
+  scene.lights = request.lights;
+  scene.reflection = request.reflection;
+  if (!options.env.empty()) {
+    GONIO_ASSIGN(stage.env, envmap::read_env(options.env));
+    scene.env = &stage.env;
+    if (options.texture_maps == "mip") {
+      GONIO_ASSIGN(stage.mip, render::mip_cube(stage.env));
+    }
+  }
+  wear(stage.dresses.front(), options, stage);
+  set_rays(options, request, stage);
+  const bool summed = request.engine != nullptr && request.engine->needs_texels;
+  if (options.check > 0 || summed || request.transport) {
+    GONIO_ASSIGN(stage.source, source_of(options, scene, session));
+  }
+  if (summed && stage.source.environment) scene.texels = &stage.texels.emplace(*stage.source.environment);
+  GONIO_TRY(set_ground(request.floor, options, scene));
+  GONIO_ASSIGN(scene.emission, emission_of(stage.mesh, request.emissions));
+  return set_background(scene, options.background);
+}
+
+}  // namespace goniochrome::tool

@@ -1,0 +1,51 @@
+// Everything that a picture is made from, read and put together.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "envmap/block_tree.h"
+#include "envmap/environment.h"
+#include "envmap/prefiltered.h"
+#include "mesh/mesh.h"
+#include "paints.h"
+#include "render/gbuffer.h"
+#include "render/renderer.h"
+#include "render/surface_layer.h"
+#include "request.h"
+#include "transport_view.h"
+
+namespace goniochrome::tool {
+
+// The image that the environment was made from.
+struct Source {
+  std::optional<envmap::Environment> environment;
+  std::string name;
+};
+
+// The scene points into the rest, so that a stage stays where it is.
+struct Stage {
+  mesh::Mesh mesh;                                 // of its parts alone where there are buffers of it
+  std::shared_ptr<const render::Gbuffer> gbuffer;  // of --gbuffer, or none
+  std::optional<KeptTransport> transport;          // of --gbuffer, or none
+  std::vector<DressedMesh> dresses;                // one, or those of --split
+  envmap::PrefilteredEnvironment env;
+  render::Scene scene;
+  std::optional<render::MipCube> mip;
+  std::unique_ptr<render::SurfaceLayer> layer;
+  Source source;                            // where the picture is checked, or sums it
+  std::optional<envmap::BlockTree> texels;  // of the source
+  std::optional<envmap::Environment> sky;   // that rays meet: the environment at the resolution of its mirror part
+  std::optional<render::RaySetup> rays;     // none: not asked for
+};
+
+// Reads what the options name, tells the session about the mesh, and dresses it in the first of the paints. Error: what
+// cannot be read or does not go together.
+Result<void> set_stage(const Options& options, const Request& request, Stage& stage, cli::Session& session);
+
+// Puts the paints, textures and color maps of `dress` on the mesh of the scene.
+void wear(const DressedMesh& dress, const Options& options, Stage& stage);
+
+}  // namespace goniochrome::tool
