@@ -13,7 +13,7 @@ constexpr double kNoHue = 1e-9;
 // atan2 turned into [0,360); 0 where there is no hue.
 double hue_of(double a, double b) {
   if (std::hypot(a, b) < kNoHue) return 0;
-  const double degrees = std::atan2(b, a) / kDegree;
+  const double degrees = std::atan2(b, a) * (180 / kPi);  // fits by color differences keep their last digits by it
   if (degrees >= 0) return degrees;
   return degrees + 360 < 360 ? degrees + 360 : 0;
 }
