@@ -114,7 +114,7 @@ HueTravel hue_travel(std::span<const color::Lab> path) {
   HueTravel travel;
   for (std::size_t i = 1; i < path.size(); ++i) {
     const color::Lab &from = path[i - 1], &to = path[i];
-    travel.degrees += std::atan2(from.a * to.b - from.b * to.a, from.a * to.a + from.b * to.b) / kDegree;
+    travel.degrees += std::atan2(from.a * to.b - from.b * to.a, from.a * to.a + from.b * to.b) * (180 / kPi);
     if (least_chroma(from, to) < kLeastChroma) travel.through_gray = true;
   }
   return travel;
