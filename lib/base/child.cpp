@@ -11,10 +11,11 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <new>
+#include <optional>
 #include <utility>
 
 namespace goniochrome {
@@ -27,14 +28,16 @@ constexpr int kDone = 0, kRefused = 40, kNoMemory = 41;
 // A child that waits for a lock uses no processor time. This many seconds are far more than a busy machine adds.
 constexpr int kWaitingFactor = 20;
 
-// The bytes of addresses that this process has mapped.
-std::size_t mapped_bytes() {
-  unsigned long pages = 0;
-  if (std::FILE* file = std::fopen("/proc/self/statm", "r")) {
-    if (std::fscanf(file, "%lu", &pages) != 1) pages = 0;
-    std::fclose(file);
-  }
-  return pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+// The bytes of addresses that this process has mapped, where the system tells them. A child asks for itself: other
+// threads of its parent go on mapping until the very fork, and the allocator takes 64 MB of addresses for each of them.
+std::optional<std::size_t> mapped_bytes() {
+  const int file = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
+  if (file < 0) return std::nullopt;
+  char pages[32] = {};
+  const bool told = read(file, pages, sizeof pages - 1) > 0;
+  close(file);
+  if (!told) return std::nullopt;
+  return std::strtoul(pages, nullptr, 10) * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
 // Lowers a limit of this process; a limit that is lower already stays. `grace` lies between the soft limit and the hard
@@ -48,7 +51,7 @@ void limit(int resource, rlim_t most, rlim_t grace = 0) {
 }
 
 // What a child does first: it dies of any signal and with its parent, keeps within the limits, and prints nothing.
-void confine(const ChildLimits& limits, std::size_t mapped, pid_t parent) {
+void confine(const ChildLimits& limits, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(kRefused);
   for (const int number :
@@ -62,11 +65,9 @@ void confine(const ChildLimits& limits, std::size_t mapped, pid_t parent) {
   alarm(static_cast<unsigned>(kWaitingFactor * limits.processor_s));
 #if !defined(__SANITIZE_ADDRESS__)
   // A sanitizer takes terabytes of addresses for itself, and says on standard error what it found.
-  limit(RLIMIT_AS, mapped + limits.memory_bytes);
+  if (const auto mapped = mapped_bytes()) limit(RLIMIT_AS, *mapped + limits.memory_bytes);
   if (const int nowhere = open("/dev/null", O_WRONLY); nowhere >= 0)
     dup2(nowhere, STDOUT_FILENO), dup2(nowhere, STDERR_FILENO);
-#else
-  static_cast<void>(mapped);
 #endif
 }
 
@@ -156,12 +157,11 @@ Result<ChildBytes> made_by_child(const std::string& name, const ChildLimits& lim
                                  const std::function<Result<void>(ChildOutput&)>& work) {
   const Descriptor shared(memfd_create("goniochrome", MFD_CLOEXEC));
   if (shared.number() < 0) return input_error("{}: cannot be read: {}", name, std::strerror(errno));
-  const std::size_t mapped = mapped_bytes();
   const pid_t parent = getpid();
   const pid_t child = fork();
   if (child < 0) return input_error("{}: no process can be started to read it: {}", name, std::strerror(errno));
   if (child == 0) {
-    confine(limits, mapped, parent);
+    confine(limits, parent);
     live(shared.number(), name, work);
   }
   int status = 0;
