@@ -10,6 +10,7 @@
 #include "base/file.h"
 #include "base/hard_case_for_test.h"
 #include "base/parallel.h"
+#include "base/testdata_for_test.h"
 #include "base/text.h"
 #include "formats/xml.h"
 #include "math/cosine_power.h"
@@ -364,7 +365,7 @@ TEST(PaintFit, BothSidesOfSpecularRealData) {
 
 // Every search ends where no weight can move and gain, by the cosine of its column to the residual.
 TEST(PaintFit, DeltaEIsStationary) {
-  const auto paints = formats::read_paints(GONIOCHROME_TESTDATA "/paints.paints.xml");
+  const auto paints = formats::read_paints(testdata("paints.paints.xml"));
   ASSERT_TRUE(paints.ok());
   for (const auto& fit : fits(PaintFitter(kBasis, {.method = FitMethod::kDeltaE}), *paints)) {
     ASSERT_TRUE(fit.ok());
@@ -376,8 +377,8 @@ TEST(PaintFit, DeltaEIsStationary) {
 // The color differences at the readings are never larger, in the mean square, than those of the better linear fit: the
 // search starts there. The inferred rows may trade a little, hence the 1 %.
 TEST(PaintFit, DeltaEIsNotWorseThanItsStarts) {
-  const auto paints = formats::read_paints(GONIOCHROME_TESTDATA "/paints.paints.xml");
-  const auto basis = formats::read_basis(GONIOCHROME_TESTDATA "/b7.basis.xml");
+  const auto paints = formats::read_paints(testdata("paints.paints.xml"));
+  const auto basis = formats::read_basis(testdata("b7.basis.xml"));
   ASSERT_TRUE(paints.ok() && basis.ok());
   double sums[3] = {};
   for (const FitMethod method : {FitMethod::kL1, FitMethod::kL2, FitMethod::kDeltaE}) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/scratch_for_test.h"
+#include "base/testdata_for_test.h"
 
 namespace goniochrome::formats {
 namespace {
@@ -23,7 +24,7 @@ TEST(BasisXml, SurvivesWithItsErrorTable) {
   EXPECT_EQ(back->sets[1].lobes, 2);
   EXPECT_EQ(back->sets[1].max_error, 1.0 / 3);
   EXPECT_EQ(back->sets[1].objective, 0.5);
-  const auto sample = read_basis(std::string(GONIOCHROME_TESTDATA) + "/b7.basis.xml");
+  const auto sample = read_basis(testdata("b7.basis.xml"));
   ASSERT_TRUE(sample.ok());
   EXPECT_EQ(sample->exponents, (std::vector<double>{1.3, 6, 20, 70, 250, 900, 3000}));
   EXPECT_TRUE(sample->mirror);
@@ -49,7 +50,7 @@ TEST(BasisXml, WrongValuesAreNamedWithLineAndRemedy) {
   EXPECT_EQ(error("<exponent>1</exponent><mirror/><exponent>2</exponent>"),
             "b.xml:2: <exponent> stands behind <mirror> or <set>: write the exponents first");
   EXPECT_THAT(error(""), HasSubstr("the basis has no <exponent>: give it at least one"));
-  EXPECT_THAT(read_basis(std::string(GONIOCHROME_TESTDATA) + "/paints.paints.xml").error().message,
+  EXPECT_THAT(read_basis(testdata("paints.paints.xml")).error().message,
               HasSubstr("this begins with <paints>, not with a basis"));
 }
 

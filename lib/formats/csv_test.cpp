@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "base/scratch_for_test.h"
+#include "base/testdata_for_test.h"
 #include "formats/xml.h"
 
 namespace goniochrome::formats {
@@ -113,11 +114,10 @@ TEST(PaintCsv, WideTablesLeaveOutEmptyGeometries) {
 }
 
 TEST(PaintCsv, TheSampleTablesAgreeWithTheSampleLibrary) {
-  const std::string data = GONIOCHROME_TESTDATA;
-  const auto library = read_paints(data + "/paints.paints.xml");
+  const auto library = read_paints(testdata("paints.paints.xml"));
   ASSERT_TRUE(library.ok());
-  for (const char* name : {"/paints.csv", "/paints-wide.csv"}) {
-    const Reading reading = reading_of(data + name);
+  for (const char* name : {"paints.csv", "paints-wide.csv"}) {
+    const Reading reading = reading_of(testdata(name));
     EXPECT_THAT(reading.errors, ElementsAre());
     std::size_t i = 0;
     for (const paint::Paint& paint : *library) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/scratch_for_test.h"
+#include "base/testdata_for_test.h"
 #include "formats/basis.h"
 
 namespace goniochrome::formats {
@@ -160,7 +161,7 @@ TEST(PaintXml, EveryPartSurvivesToTheLastBit) {
 }
 
 TEST(PaintXml, ReadsTheSampleLibraryInOrderWithItsLines) {
-  const Reading reading = reading_of(std::string(GONIOCHROME_TESTDATA) + "/paints.paints.xml");
+  const Reading reading = reading_of(testdata("paints.paints.xml"));
   EXPECT_THAT(reading.errors, ElementsAre());
   ASSERT_GT(reading.paints.size(), 35u);
   EXPECT_EQ(reading.paints[0].name, "arctic_white");

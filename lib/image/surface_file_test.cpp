@@ -7,6 +7,7 @@
 
 #include "base/angles.h"
 #include "base/scratch_for_test.h"
+#include "base/testdata_for_test.h"
 
 namespace goniochrome::image {
 namespace {
@@ -103,7 +104,7 @@ TEST_F(SbrdfFile, TellsWhatIsWrong) {
 
 TEST_F(SbrdfFile, ReadsTheTexturesOfTheTestData) {
   for (const auto& [name, lobes] : {std::pair{"brushed", 3}, {"nameplate", 3}, {"wood", 1}}) {
-    const auto texture = read_sbrdf(std::string(GONIOCHROME_TESTDATA "/") + name + ".sbrdf.exr");
+    const auto texture = read_sbrdf(testdata(std::string(name) + ".sbrdf.exr"));
     ASSERT_TRUE(texture.ok()) << texture.error().message;
     EXPECT_EQ(texture->lobes, lobes);
     EXPECT_EQ(texture->width, 128);

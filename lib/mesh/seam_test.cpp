@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/angles.h"
+#include "base/testdata_for_test.h"
 
 namespace goniochrome::mesh {
 namespace {
@@ -135,7 +136,7 @@ double median_fold(const Seam& seam) {
 // The bumper of the speed shape is turned by 8 degrees; rolled borders put 9 mm of the nose's own bend between the ends
 // of both skins, which is the half degree more. Door and fender are in line.
 TEST(Seam, TheBumperOfTheSpeedShapeIsEightDegreesOut) {
-  const Mesh mesh = *read_mesh(GONIOCHROME_TESTDATA "/speed-shape.obj");
+  const Mesh mesh = *read_mesh(testdata("speed-shape.obj"));
   const Seam bumper = *seam_between(mesh, "Hood", "Bumper_F");
   EXPECT_GT(bumper.length_m, 0.9);
   EXPECT_GT(median_fold(bumper), 8);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/testdata_for_test.h"
 #include "render/renderer.h"
 
 namespace goniochrome::render {
@@ -30,7 +31,7 @@ image::Image box_picture(Renderer& renderer, const mesh::Mesh& mesh, const color
 }
 
 TEST(ColoredLight, ARedWallStaysRedInCyanLight) {
-  const auto mesh = mesh::read_mesh(GONIOCHROME_TESTDATA "/box.obj");
+  const auto mesh = mesh::read_mesh(testdata("box.obj"));
   ASSERT_TRUE(mesh.ok()) << mesh.error().message;
   auto renderer = Renderer::create();
   ASSERT_TRUE(renderer.ok()) << renderer.error().message;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/angles.h"
+#include "base/testdata_for_test.h"
 #include "render/exact.h"
 #include "render/internal/seen.h"
 #include "render/left_out.h"
@@ -28,8 +29,7 @@ struct BenchScene {
 std::unique_ptr<BenchScene> bench_scene(int lobes) {
   auto bench = std::make_unique<BenchScene>();
   const char* data = std::getenv("GONIOCHROME_DATA");  // the vehicle of 51k triangles, where there is one
-  auto mesh = mesh::read_mesh(data != nullptr ? std::string(data) + "/mesh/vehicle.obj"
-                                              : GONIOCHROME_TESTDATA "/speed-shape.obj");
+  auto mesh = mesh::read_mesh(data != nullptr ? std::string(data) + "/mesh/vehicle.obj" : testdata("speed-shape.obj"));
   bench->mesh = mesh.ok() ? *std::move(mesh) : sphere_mesh();
   bench->env = constant_env({1, 1, 1}, {kExponents, kExponents + lobes});
   for (envmap::PrefilteredLobe& lobe : bench->env.lobes)

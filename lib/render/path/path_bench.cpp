@@ -7,6 +7,7 @@
 
 #include "base/angles.h"
 #include "base/clock.h"
+#include "base/testdata_for_test.h"
 #include "render/camera.h"
 #include "render/exact.h"
 #include "render/internal/seen.h"
@@ -47,15 +48,14 @@ std::vector<std::string> probes() {
       if (entry.path().extension() == ".hdr") paths.push_back(entry.path().string());
     std::ranges::sort(paths);
   }
-  if (paths.empty()) paths.push_back(GONIOCHROME_TESTDATA "/studio.exr");
+  if (paths.empty()) paths.push_back(testdata("studio.exr"));
   return paths;
 }
 
 std::unique_ptr<BenchScene> bench_scene(const std::string& probe, int width, int height) {
   auto bench = std::make_unique<BenchScene>();
   const char* data = std::getenv("GONIOCHROME_DATA");
-  auto mesh = mesh::read_mesh(data != nullptr ? std::string(data) + "/mesh/vehicle.obj"
-                                              : GONIOCHROME_TESTDATA "/speed-shape.obj");
+  auto mesh = mesh::read_mesh(data != nullptr ? std::string(data) + "/mesh/vehicle.obj" : testdata("speed-shape.obj"));
   auto environment = envmap::Environment::read(probe, envmap::Environment::BadPixels::kZero);
   if (!mesh.ok() || !environment.ok()) return nullptr;
   bench->mesh = *std::move(mesh);

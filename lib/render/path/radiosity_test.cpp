@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/angles.h"
+#include "base/testdata_for_test.h"
 #include "render/path/scenes_for_paths_for_test.h"
 
 namespace goniochrome::render {
@@ -176,7 +177,7 @@ struct Figures {
 class CornellBox : public testing::Test {
  protected:
   CornellBox() {
-    auto read = mesh::read_mesh(GONIOCHROME_TESTDATA "/cornell.obj");
+    auto read = mesh::read_mesh(testdata("cornell.obj"));
     EXPECT_TRUE(read.ok());
     mesh_ = *std::move(read);
     const color::Rgb white{0.75, 0.75, 0.75}, red{0.62, 0.07, 0.05}, green{0.1, 0.42, 0.09};

@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include "base/parallel.h"
+#include "base/testdata_for_test.h"
 #include "render/camera.h"
 #include "render/exact.h"
 #include "render/internal/seen.h"
@@ -205,7 +206,7 @@ TEST(RayProbe, PredictsTheWorthOfABoxOnAPlate) {
 }
 
 TEST(RayProbe, PredictsTheWorthOfTheSpeedShape) {
-  auto mesh = mesh::read_mesh(GONIOCHROME_TESTDATA "/speed-shape.obj");
+  auto mesh = mesh::read_mesh(testdata("speed-shape.obj"));
   ASSERT_TRUE(mesh.ok());
   expect_predicted({"speed shape", *std::move(mesh)});
 }
