@@ -3,9 +3,12 @@
 
 #include <cmath>
 
+#include "base/angles.h"
 #include "base/vec3.h"
 
 namespace goniochrome::rays {
+
+inline constexpr float kFloatPi = static_cast<float>(kPi);
 
 struct Float3 {
   float x = 0, y = 0, z = 0;

@@ -15,7 +15,7 @@ namespace goniochrome::render {
 // plain what a picture without one of them shows. goniochrome-theory(7), PLAN, Effects of rays.
 struct RayEffects {
   // The mesh takes light away from its own surface. Where it does, the surface sees a black body. Without this effect,
-  // every point sees all of the light around, and the other three effects are off as well.
+  // every point sees all of the light around, and the other two effects are off as well.
   bool shadow = false;
   // Instead of black, the lobes and the mirror of a point see the light that the body sends back.
   bool self = false;

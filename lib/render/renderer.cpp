@@ -71,7 +71,9 @@ struct Renderer::State : Sight {
   Effects effects;
   std::optional<RaySetup> ray_setup;
   Scene ray_scene;  // all of it, seen or not: rays meet parts that the camera does not see
+  std::shared_ptr<const rays::RayScene> ray_mesh;  // of that scene; none: not yet
   std::optional<Transport> transport;
+  std::optional<Error> ray_failure;  // of load_paints(), which cannot tell it
   double white_luminance = 1;
   const mesh::Mesh* uploaded = nullptr;
   std::size_t uploaded_triangles = 0;
@@ -130,6 +132,7 @@ Result<void> Renderer::State::show(const mesh::Mesh& mesh) {
     traced = std::make_shared<const rays::RayScene>(std::move(scene_of_rays));
   }
   uploaded = &mesh, uploaded_triangles = mesh.triangles.size();
+  ray_mesh = traced;
   view.reset();
   return {};
 }
@@ -245,12 +248,18 @@ CorrectionNoise Renderer::State::correct(int first, int count, image::Image& pic
 }
 
 Result<void> Renderer::State::trace(const Scene& whole) {
-  transport.reset();
+  transport.reset(), ray_failure.reset();
   if (!ray_setup || !ray_setup->absent.empty()) return {};
   ray_scene = whole;
   PathScene paths;
   paths.scene = &ray_scene;
   paths.environment = ray_setup->environment;
+  if (whole.mesh != nullptr) GONIO_TRY(show(*whole.mesh));
+  if (whole.mesh != nullptr && ray_mesh == nullptr) {
+    GONIO_ASSIGN(rays::RayScene scene_of_rays, rays::RayScene::create(*whole.mesh));
+    ray_mesh = std::make_shared<const rays::RayScene>(std::move(scene_of_rays));
+  }
+  paths.rays = ray_mesh;
   GONIO_ASSIGN(Transport created, Transport::create(paths));
   transport.emplace(std::move(created));
   return {};
@@ -355,8 +364,9 @@ void Renderer::load_paints(const Scene& scene) {
   s.begin();
   s.scene = scene;
   if (s.engine != nullptr) s.engine->load_paints(scene);
-  // What was made before from such a scene is made again.
-  if (s.effects.rays.any()) static_cast<void>(s.trace(scene));
+  if (!s.effects.rays.any()) return;
+  const Result<void> traced = s.trace(scene);
+  if (!traced.ok()) s.ray_failure = traced.error();
 }
 
 void Renderer::set_rays(const RaySetup& setup) {
@@ -378,6 +388,7 @@ Result<std::shared_ptr<const Gbuffer>> Renderer::look(const mesh::Mesh& mesh, co
 Result<void> Renderer::draw(const View& view, Frame& frame) {
   State& s = *state_;
   if (s.engine == nullptr) return usage_error("nothing was loaded that could be drawn");
+  if (s.ray_failure) return *s.ray_failure;
   s.begin();
   const Stopwatch whole;
   s.rasterization_ms = 0;

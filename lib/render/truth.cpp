@@ -19,46 +19,28 @@ constexpr int kFirst = 16, kMost = 1024;  // batches of a point
 // The part of the difference that the truth's own error may be, and the noise below which nobody sees any.
 constexpr double kPart = 0.1, kUnseen = 0.02;
 
-// Sums of independent batches; the covariance is that of the mean of their sum.
+// Independent batches, added one after the other.
 struct PointTruth {
   LightShares sure, sum;
-  color::Rgb first, shifted;
-  Covariance squares{};
-  int count = 0;
+  Estimates batches;
   bool certain = false;
 
   void add(const LightShares& batch) {
     sum += batch;
-    const color::Rgb value = batch.sum();
-    if (count++ == 0) first = value;
-    const color::Rgb d = value - first;
-    shifted += d;
-    const double products[6] = {d.x * d.x, d.y * d.y, d.z * d.z, d.x * d.y, d.x * d.z, d.y * d.z};
-    for (std::size_t i = 0; i < 6; ++i) squares[i] += products[i];
+    batches.add(batch.sum());
   }
   LightShares mean() const {
     LightShares result = sure;
-    if (count > 0) result += (1.0 / count) * sum;
+    if (batches.count() > 0) result += (1.0 / batches.count()) * sum;
     return result;
   }
+  // Of that mean.
   Covariance covariance() const {
-    Covariance result{};
-    if (count < 2) return result;
-    const double n = count;
-    const color::Rgb& s = shifted;
-    const double products[6] = {s.x * s.x, s.y * s.y, s.z * s.z, s.x * s.y, s.x * s.z, s.y * s.z};
-    for (std::size_t i = 0; i < 6; ++i) result[i] = (squares[i] - products[i] / n) / (n - 1) / n;
+    Covariance result = batches.covariance();
+    for (double& value : result) value /= std::max(1, batches.count());
     return result;
   }
 };
-
-color::Rgb chosen(const LightShares& shares, const RayEffects& effects) {
-  color::Rgb sum;
-  if (effects.shadow) sum += shares.direct;
-  if (effects.shadow && effects.self) sum += shares.into_lobes;
-  if (effects.shadow && effects.bounce) sum += shares.into_diffuse;
-  return sum;
-}
 
 color::Rgb pixel_of(const image::Image& image, const std::array<int, 2>& place) {
   const float* p = image.pixel(place[0], place[1]);
@@ -125,8 +107,8 @@ class Judge {
         PointTruth& truth = truth_[i];
         truth.certain = point.certain();
         truth.sure = {point.sure(), {}, {}};
-        while (!truth.certain && truth.count < batches)
-          truth.add(point.batch_shares(mixed(mixed(seed, i), static_cast<std::uint64_t>(truth.count))));
+        while (!truth.certain && truth.batches.count() < batches)
+          truth.add(point.batch_shares(mixed(mixed(seed, i), static_cast<std::uint64_t>(truth.batches.count()))));
       }
     });
   }
@@ -149,14 +131,14 @@ class Judge {
   double occlusion(std::size_t i) const {
     if (request_.whole) return 0;
     const LightShares mean = truth_[i].mean();
-    return changed(i, chosen(mean, {drawn_.shadow, drawn_.self, false}) - mean.direct - mean.into_lobes);
+    return changed(i, mean.shown({drawn_.shadow, drawn_.self, false}) - mean.direct - mean.into_lobes);
   }
   double bounce(std::size_t i) const {
     return request_.whole || (drawn_.shadow && drawn_.bounce) ? 0 : changed(i, -1.0 * truth_[i].mean().into_diffuse);
   }
   double drawn_noise(std::size_t i) const {
     if (request_.whole) return total(i);
-    return drawn_.any() ? changed(i, picture(i) - open_picture(i) - chosen(truth_[i].mean(), drawn_)) : 0;
+    return drawn_.any() ? changed(i, picture(i) - open_picture(i) - truth_[i].mean().shown(drawn_)) : 0;
   }
 
   const Frame& frame_;

@@ -5,6 +5,14 @@ namespace goniochrome::tool {
 
 namespace {
 
+// One sentence about each engine.
+std::string engine_sentences() {
+  std::string text;
+  for (const render::EngineInfo* engine : render::engines())
+    text += (text.empty() ? "" : " ") + std::string(engine->name) + " " + engine->sentence + ".";
+  return text;
+}
+
 void add_surfaces(cli::ToolSpec& spec, Options& o) {
   spec.heading = "surfaces";
   spec.option("mesh,m", "FILE", "testdata/speed-shape.obj", &o.mesh, "mesh: OBJ with parts, or OFF, PLY, STL");
@@ -13,11 +21,10 @@ void add_surfaces(cli::ToolSpec& spec, Options& o) {
           "The file is an EXR that was made with --aov normal,part. Its buffers and its attributes goniochrome:rays, "
           "parts and materials hold all that the engine cpu needs, so that other paints or other light are shown "
           "without the mesh and without rasterizing. The picture is that of --samples 1, bit for bit; view and size "
-          "are "
-          "the file's. Textures need the mesh. A file of --aov transport holds the light as well: without --env and "
-          "--light it is shaded in that light, with its shadows. Bounced light, which was traced in other paints, is "
-          "scaled to the new ones; the error of that is told, and where it is beyond --tolerance the exit status is "
-          "1.");
+          "are the file's. Textures need the mesh. A file of --aov transport holds the light as well: without --env "
+          "and --light it is shaded in that light, with its shadows. Bounced light, which was traced in other paints, "
+          "is scaled to the new ones; the error of that is told, and where it is beyond --tolerance the exit status "
+          "is 1.");
   spec.option("paint,p", "PAINT", "fitted.xml#candy_red", &o.paint, "paint of all parts that --part does not name");
   spec.option("part", "PART=PAINT", "Glass=fitted.xml#silver_fine", &o.parts, "paint of a part or material")
       .more(
@@ -26,22 +33,21 @@ void add_surfaces(cli::ToolSpec& spec, Options& o) {
   spec.flag("trim", &o.trim, "dress glass, tires, rims, seams and the underside instead of painting them")
       .more(
           "Parts are known by words in their names or materials, such as glass, window, tire, rubber, rim, chrome, "
-          "seam "
-          "and underbody. Glass is black under a coat, rubber, seams and the underside are matt black, and rims and "
-          "metal are gray under a coat. --part goes before --trim, and --trim before --paint.");
+          "seam and underbody. Glass is black under a coat, rubber, seams and the underside are matt black, and rims "
+          "and metal are gray under a coat. --part goes before --trim, and --trim before --paint.");
   spec.option("split", "PAINT,PAINT", "a.xml#red,a.xml#blue", &o.split, "draw the halves of the picture in two paints")
       .more("Both stand in the place of --paint: the first on the left, the second on the right.");
   spec.option("texture", "PART=FILE", "Hood=flakes.exr*4", &o.textures, "surface that varies over a part or material")
       .more(
           "The texture is an EXR of generalized cosine lobes and stands in the place of a paint. FILE*N repeats it N "
-          "times. It is laid by the texture coordinates of the mesh, or around the vertical axis where there are none. "
-          "Without the effect texture, the part shows the mean texel.");
+          "times. It is laid by the texture coordinates of the mesh, or around the vertical axis where there are "
+          "none. Without the effect texture, the part shows the mean texel.");
   spec.option("texture-maps", "WHAT", "mip", &o.texture_maps, "where the lobes of textures are looked up")
       .one_of({"cubes", "mip"})
       .more(
           "The exponents of a texture lie between those of the environment, and are blended. cubes blends maps that "
-          "have one exponent each. mip blends the levels of one cube, of which coarser ones hold wider lobes; it needs "
-          "the sharpest exponent and its quarters, or the layout mip of prefilter-envmap(1).");
+          "have one exponent each. mip blends the levels of one cube, of which coarser ones hold wider lobes; it "
+          "needs the sharpest exponent and its quarters, or the layout mip of prefilter-envmap(1).");
 }
 
 void add_light(cli::ToolSpec& spec, Options& o) {
@@ -51,8 +57,8 @@ void add_light(cli::ToolSpec& spec, Options& o) {
       .in("degrees where the direction is given by angles")
       .more(
           "The direction is AZIMUTH,ELEVATION, or a vector X,Y,Z toward the light. R,G,B may follow; it is what a "
-          "perfect white diffuser shows that faces the light, and 1,1,1 if not given. The mirror image of such a light "
-          "is a point without extent and is not drawn.");
+          "perfect white diffuser shows that faces the light, and 1,1,1 if not given. The mirror image of such a "
+          "light is a point without extent and is not drawn.");
   spec.option("emit", "PART=R,G,B", "Lamp=20,18,15", &o.emissions, "make a part or material shine by itself")
       .more(
           "R,G,B is the radiance of both sides of the part, in linear Rec.2020, beside what its paint reflects. Only "
@@ -61,11 +67,10 @@ void add_light(cli::ToolSpec& spec, Options& o) {
       .in("units of the mesh for the height")
       .more(
           "The floor reaches to the horizon, and lies at HEIGHT or, without it, at the lowest point of the mesh. "
-          "shadow "
-          "lays the lower half of the environment on the floor, as it was seen from --eye-height above the middle of "
-          "the mesh; it is darkened where the mesh takes light from it, and is seen in the paint. Only the engine path "
-          "draws floors, and auto takes it for them. With --background env, the engine path draws the floor shadow "
-          "unless another is asked for.");
+          "shadow lays the lower half of the environment on the floor, as it was seen from --eye-height above the "
+          "middle of the mesh; it is darkened where the mesh takes light from it, and is seen in the paint. Only the "
+          "engine path draws floors, and auto takes it for them. With --background env, the engine path draws the "
+          "floor shadow unless another is asked for.");
   spec.option("eye-height", "H", "1.5", &o.eye_height, "height above the floor that the environment was seen from")
       .in("units of the mesh")
       .from(0)
@@ -73,9 +78,9 @@ void add_light(cli::ToolSpec& spec, Options& o) {
   spec.option("operator", "NAME[,SHARES]", "iso,0.1", &o.reflection, "how colored light and paint multiply")
       .more(
           "iso is a bilinear product by the published table for camera sensors. rec2020 is one that is estimated from "
-          "color-matching functions, which can make saturated colors negative. none multiplies each channel by itself. "
-          "A number from 0 to 1 after a comma says how much each channel takes from the others, and three numbers say "
-          "it for red, green and blue.");
+          "color-matching functions, which can make saturated colors negative. none multiplies each channel by "
+          "itself. A number from 0 to 1 after a comma says how much each channel takes from the others, and three "
+          "numbers say it for red, green and blue.");
   spec.option("critical-angle", "NAME", "clip", &o.critical_angle, "what color maps do beyond the critical angle")
       .one_of({"clip", "slide", "slide-map", "index"})
       .more(
@@ -84,11 +89,9 @@ void add_light(cli::ToolSpec& spec, Options& o) {
   spec.option("exposure", "STOPS", "-1", &o.exposure, "power of two that brightens the picture, or auto")
       .more(
           "auto leaves an EXR as it is. In a PNG it makes a gray card of 18 % middle gray: the light on the card is "
-          "the "
-          "mean of that on a card that lies level and of that on one that faces the camera, of the first picture of a "
-          "sequence. Where parts of the mesh are all the light there is, what is seen of the mesh is middle gray in "
-          "the "
-          "mean.");
+          "the mean of that on a card that lies level and of that on one that faces the camera, of the first picture "
+          "of a sequence. Where parts of the mesh are all the light there is, what is seen of the mesh is middle gray "
+          "in the mean.");
   spec.option("background", "WHAT", "env", &o.background, "what is seen beside the mesh: none, env or R,G,B")
       .more("none is transparent, and in a PNG a gray of 18 %. env shows the environment.");
 }
@@ -121,21 +124,19 @@ void add_effects(cli::ToolSpec& spec, Options& o) {
       .more(
           "The names are diffuse, lobes, gloss, mirror, fresnel, horizon, anisotropy, travel, texture, texture-lobes, "
           "operator and lights. lobe-20, gloss-900 and texture-0 (lobe0 of the textures) are single lobes. Three more "
-          "are "
-          "drawn by tracing rays: shadow (the mesh blocks light), self (lobes and mirror see the body instead of "
+          "are drawn by tracing rays: shadow (the mesh blocks light), self (lobes and mirror see the body instead of "
           "black) and bounce (the same for the diffuse part). The last two need shadow. They take part only if "
-          "--effects "
-          "names one of them with a plus, or all three by +rays, as in auto,+rays; the rest of the plan then decides "
-          "about "
-          "them as about every other effect. They are drawn at those pixels alone that can see the mesh. auto leaves "
-          "out the effects that change too little, as --tolerance and --budget say.");
+          "--effects names one of them with a plus, or all three by +rays, as in auto,+rays; the rest of the plan "
+          "then decides about them as about every other effect. They are drawn at those pixels alone that can see the "
+          "mesh. auto leaves out the effects that change too little, as --tolerance and --budget say.");
   o.common.tolerance = 0.5;
   cli::add_tolerance(spec, o.common, "DE00", "largest change by all effects that are left out")
       .more(
           "Before drawing, each effect that the scene calls for is priced: what it changes in the picture (the 95th "
-          "percentile of the difference over visible pixels), and what it costs. What changes less than the tolerance, "
-          "all together, is left out. --explain prints the table, which is also in the report and in the header of an "
-          "EXR. The effects of rays are drawn with samples until their noise is within the tolerance. The engine "
+          "percentile of the difference over visible pixels), and what it costs. What changes less than the "
+          "tolerance, all together, is left out. --explain prints the table, which is also in the report and in the "
+          "header of an EXR. The effects of rays are drawn with samples until the standard deviation of their noise "
+          "is within half of the tolerance at 95 of 100 points, which does not keep each point within it. The engine "
           "integral makes its sums as coarse as this tolerance allows at 95 of 100 points.");
   spec.option("budget", "MS", "20", &o.budget_ms, "longest time for shading a frame; 0 is no limit")
       .from(0, 1e6)
@@ -146,23 +147,22 @@ void add_engines(cli::ToolSpec& spec, Options& o) {
   spec.heading = "engines";
   spec.option("engine", "NAME", "cpu", &o.engine, "what shades the picture")
       .one_of(render::engine_choices())
-      .more(
-          "Four engines draw a scene. gl shades in OpenGL, and cpu reads all lobes of a texel at once; their pictures "
-          "are the same, and auto takes the one that is predicted to be faster. Both use prefiltered maps, which know "
-          "one direction at each point. They cannot tell light that changes within that part of a broad lobe that is "
-          "above the horizon, and differ from the truth by some 0.5 to 1 dE00 in the mean, and by more at single "
-          "points. integral does without such maps: at every visible point it sums the image that the environment was "
-          "made from, in blocks as coarse as --tolerance allows. It draws every effect. At the default tolerance it "
-          "takes several hundred times as long as the others, and a brushed paint takes another 50 times as long; "
-          "--explain predicts the time. These three leave out that the mesh is in the way of light. path follows light "
-          "along rays from the image that the environment was made from: it draws shadows, the mesh mirrored in "
-          "itself, "
-          "the light that surfaces pass on, floors and parts that shine. It needs neither prefiltered maps nor OpenGL. "
-          "It draws samples until the noise of the picture, estimated from them, is within --tolerance: that is the "
-          "95th percentile, over the visible pixels, of the CIEDE2000 difference of one standard deviation.");
-  spec.option("bounces", "N", "8", &o.bounces, "surfaces that may pass light on, with the engine path")
+      .more(engine_sentences() +
+            " The pictures of cpu and gl are the same, and auto takes the one that is predicted to be faster. "
+            "Prefiltered maps know one direction at each point. They cannot tell light that changes within that "
+            "part of a broad lobe that is above the horizon, and differ from the truth by some 0.5 to 1 dE00 in the "
+            "mean, and by more at single points. integral sums blocks of the image that are as coarse as "
+            "--tolerance allows, and draws every effect. At the default tolerance it takes several hundred times as "
+            "long as the others, and a brushed paint takes another 50 times as long; --explain predicts the time. "
+            "These three leave out that the mesh is in the way of light. path also draws the mesh mirrored in "
+            "itself and parts that shine. It takes the light from the image that the environment was made from, and "
+            "needs neither prefiltered maps nor OpenGL. It draws samples until the noise of the picture, estimated "
+            "from them, is within --tolerance: that is the 95th percentile, over the visible pixels, of the "
+            "CIEDE2000 difference of one standard deviation.");
+  spec.option("bounces", "N", "8", &o.bounces, "surfaces that may pass light on to what is seen")
       .from(0, 4096)
       .more(
+          "It holds for the engine path, for the effects of rays, for --aov transport and for --check-against truth. "
           "0 draws the light that comes from the environment, lights and shining parts without detour: surfaces that "
           "are seen in others are then black, but for what they emit.");
   spec.flag("print-shader", &o.print_shader, "print the OpenGL program of the scene on standard output");
@@ -174,21 +174,18 @@ void add_checking(cli::ToolSpec& spec, Options& o) {
       .from(0, 1e8)
       .more(
           "The reference applies the exact lobe model to every texel of the environment's source, without "
-          "prefiltering. "
-          "Differences are CIEDE2000, relative to the brightest that a white diffuser can be in this light, whatever "
-          "the "
-          "exposure is. --check-against says whether the reference knows that the mesh is in the way of light.");
+          "prefiltering. Differences are CIEDE2000, relative to the brightest that a white diffuser can be in this "
+          "light, whatever the exposure is. --check-against says whether the reference knows that the mesh is in the "
+          "way of light.");
   spec.option("check-against", "WHAT", "truth", &o.check_against, "what --check compares with")
       .one_of({"truth", "model"})
       .more(
           "model, the default, has nothing in the way of light. truth adds paths for what the mesh does to light: "
-          "shadows, "
-          "the body mirrored in itself, and light that it passes on. They are traced until the standard error of the "
-          "truth "
-          "is below a tenth of the difference, or a warning says that it is not. The difference is then told by its "
-          "causes, and if its 95th percentile is over --tolerance, the exit status is 1. With --gbuffer the mesh is "
-          "not "
-          "known, and the comparison is with model.");
+          "shadows, the body mirrored in itself, and light that it passes on. They are traced until the standard "
+          "error of the truth is below a tenth of the difference, or a warning says that it is not. The difference is "
+          "then told by its causes, and if its 95th percentile is over --tolerance, the exit status is 1. A picture "
+          "of the engine path is compared with paths of the same kind, only more of them, so that the check tells its "
+          "noise alone. With --gbuffer the mesh is not known, and the comparison is with model.");
   spec.option("check-source", "FILE", "testdata/studio.exr", &o.check_source, "image the environment was made from")
       .more("It is needed where that image is no longer where the environment says. The engine integral uses it too.");
 }
@@ -200,23 +197,20 @@ void add_output(cli::ToolSpec& spec, Options& o) {
   spec.option("view", "NAME", "'ACES SDR'", &o.view, "display view of a PNG: Paint, ACES SDR or Un-tone-mapped")
       .more(
           "Paint, the default, keeps colors exact up to 80 % of display white, and the hue of every highlight. ACES "
-          "SDR "
-          "is the film-like rendering of ACES 1.0. Un-tone-mapped clips. Where $OCIO is set, the views are those of "
-          "its "
-          "configuration.");
+          "SDR is the film-like rendering of ACES 1.0. Un-tone-mapped clips. Where $OCIO is set, the views are those "
+          "of its configuration.");
   spec.option("aov", "NAMES", "normal,part", &o.aovs,
               "buffers to add to an EXR: normal, aspecular, lambert, mask, part, error, transport")
       .more(
-          "error, of the engine path alone, is the noise of each pixel as CIEDE2000, one standard deviation. "
-          "The others hold the pixel centers. normal is turned to the viewer (normal.X .Y .Z). aspecular is the angle "
-          "in "
-          "degrees between the view and the mirror direction of the first light, and lambert the cosine between normal "
-          "and that light; without --light, it is the direction in which the environment's irradiance is largest, and "
-          "goniochrome:aovLight holds it. mask is 1 on the mesh. part is a number from 1, and the attribute "
-          "goniochrome:parts names the parts. More attributes say what is needed to shade the buffers again: "
-          "goniochrome:rays (corner;right;down: the ray through the point x,y is the sum of the first, x times the "
-          "second and y times the third, in pixels from the upper left), goniochrome:lights (direction and white of "
-          "each), goniochrome:operator (the 27 coefficients k[c][d][e] of colored light, with e running fastest), "
+          "error, of the engine path alone, is the noise of each pixel as CIEDE2000, one standard deviation. The "
+          "others hold the pixel centers. normal is turned to the viewer (normal.X .Y .Z). aspecular is the angle in "
+          "degrees between the view and the mirror direction of the first light, and lambert the cosine between "
+          "normal and that light; without --light, it is the direction in which the environment's irradiance is "
+          "largest, and goniochrome:aovLight holds it. mask is 1 on the mesh. part is a number from 1, and the "
+          "attribute goniochrome:parts names the parts. More attributes say what is needed to shade the buffers "
+          "again: goniochrome:rays (corner;right;down: the ray through the point x,y is the sum of the first, x times "
+          "the second and y times the third, in pixels from the upper left), goniochrome:lights (direction and white "
+          "of each), goniochrome:operator (the 27 coefficients k[c][d][e] of colored light, with e running fastest), "
           "goniochrome:samples (those of a pixel of the picture) and goniochrome:environment. transport brings all "
           "buffers and, in parts of their own, the light that each lobe of the basis gathers at each pixel, with "
           "shadows and with light that surfaces send to each other; it is traced until its noise is within "
@@ -230,18 +224,17 @@ void add_report(cli::ToolSpec& spec) {
       {"render-osmesa --mesh testdata/speed-shape.obj --light 30,50 -o shape.png",
        "draw the bare shape under one light"},
       {"fit-paint --basis testdata/b7.basis.xml testdata/paints.paints.xml -o fitted.xml && render-osmesa --mesh "
-       "testdata/speed-shape.obj --paint fitted.xml#candy_red --part Glass=fitted.xml#silver_black_flop --light 30,50 "
-       "--light -60,20,0.5,0.5,0.6 --samples 16 -o candy.png",
+       "testdata/speed-shape.obj --paint fitted.xml#candy_red --part Glass=fitted.xml#silver_black_flop --light "
+       "30,50 --light -60,20,0.5,0.5,0.6 --samples 16 -o candy.png",
        "draw it in a fitted paint, and its windows in another one"},
-      {"prefilter-envmap testdata/studio.exr --basis testdata/b7.basis.xml -o studio.env.exr && "
-       "fit-paint --basis testdata/b7.basis.xml testdata/paints.paints.xml -o fitted.xml && "
-       "render-osmesa --mesh testdata/speed-shape.obj --paint fitted.xml#candy_red --env studio.env.exr --check 100 -o "
-       "studio.png",
+      {"prefilter-envmap testdata/studio.exr --basis testdata/b7.basis.xml -o studio.env.exr && fit-paint --basis "
+       "testdata/b7.basis.xml testdata/paints.paints.xml -o fitted.xml && render-osmesa --mesh "
+       "testdata/speed-shape.obj --paint fitted.xml#candy_red --env studio.env.exr --check 100 -o studio.png",
        "draw it in a photo studio, and tell how far the picture is from the reference integrator"},
       {"render-osmesa --mesh testdata/speed-shape.obj --light 30,50 --aov aspecular,lambert,mask,part -o buffers.exr",
        "write the buffers that a sketch is fitted from"},
-      {"render-osmesa --mesh testdata/speed-shape.obj --light 30,50 --aov normal,part -o view.exr && "
-       "render-osmesa --gbuffer view.exr --light 30,50 --light-sweep 12 -o sweep.png",
+      {"render-osmesa --mesh testdata/speed-shape.obj --light 30,50 --aov normal,part -o view.exr && render-osmesa "
+       "--gbuffer view.exr --light 30,50 --light-sweep 12 -o sweep.png",
        "rasterize the mesh once, and move the light around it"}};
   spec.report = {
       {"plan[]: effect, needed, reason, de00_p95, cost_ms, decision",
@@ -250,8 +243,7 @@ void add_report(cli::ToolSpec& spec) {
       {"plan[]: standard_error", "of de00_p95, where it was measured by random samples"},
       {"rays: noise_de00_p95, samples, free_share, ms, predicted_ms",
        "how the effects of rays were drawn, where any were: the noise of the picture, the samples of a visible point, "
-       "the "
-       "share of points that needed none, and the time"},
+       "the share of points that needed none, and the time"},
       {"plan_de00_p95, plan_ms", "change by all effects that are left out together, and the time that planning took"},
       {"engine, engine_reason", "what shaded the picture (gl, cpu, integral, path or transport), and why"},
       {"transport: points, columns, bytes_per_point",
@@ -268,8 +260,8 @@ void add_report(cli::ToolSpec& spec) {
        "of the engine path: CIEDE2000 of one standard deviation of the noise, over the visible pixels of the last "
        "picture"},
       {"noise_reached, samples_mean, path_s, bounces",
-       "of the engine path: whether the noise is within the tolerance in all pictures, the samples of a visible pixel, "
-       "the time that tracing them took, and --bounces"},
+       "of the engine path: whether the noise is within the tolerance in all pictures, the samples of a visible "
+       "pixel, the time that tracing them took, and --bounces"},
       {"frames", "number of pictures written"},
       {"gbuffer_ms", "time to rasterize the mesh once; 0 with --gbuffer"},
       {"frame_ms", "time to draw the picture with all samples, without reading and uploading"},
@@ -279,7 +271,7 @@ void add_report(cli::ToolSpec& spec) {
       {"view", "display and view of a PNG"},
       {"white_luminance", "the brightest that a white diffuser can be in this light"},
       {"repairs: normals_made, degenerate_dropped, polygons_split, triangles_turned", "what was mended in the mesh"},
-      {"error: de00_mean, de00_p95, de00_max", "CIEDE2000 of the checked pixels against the truth"},
+      {"error: de00_mean, de00_p95, de00_max", "CIEDE2000 of the checked pixels against the reference"},
       {"error: checked_pixels, worst_x, worst_y, time_s",
        "how many pixels were checked, where the worst one is, and how long the check took"},
       {"error: source", "image that the reference integrator used"},
@@ -287,8 +279,7 @@ void add_report(cli::ToolSpec& spec) {
       {"error: standard_error", "of the truth: the 95th percentile of its noise"},
       {"error: prefilter, occlusion, bounce, noise",
        "95th percentile of what each cause alone changes: maps and their look-up; shadow and self, if they were left "
-       "out; "
-       "bounce, if it was left out; the noise of the effects of rays"},
+       "out; bounce, if it was left out; the noise of the effects of rays"},
       {"error: fit", "95th percentile of what the paints of the pixels miss of their own readings"},
       {"left_out: de00_mean, de00_p95, de00_max",
        "with --check: how far the picture is from that with all effects, over all visible pixels"},
@@ -320,7 +311,7 @@ cli::ToolSpec tool_spec(Options& o) {
   add_output(spec, o);
   cli::add_common_options(spec, o.common,
                           {.explain = true,
-                           .time_limit = "each picture by the engine path",
+                           .time_limit = "each picture by the engine path, and the tracing of --aov transport",
                            .seed = "the pixels to check, and the samples of the engine path"});
   add_report(spec);
   return spec;

@@ -58,7 +58,8 @@ Result<Request> request_of(const Options& options) {
   request.plan.samples = request.samples;
   const bool wants_rays =
       !request.emissions.empty() || (options.floor != "auto" && options.floor != "none");  // only one engine has them
-  const std::string engine = options.engine == "auto" && wants_rays ? "path" : options.engine;
+  const auto tracer = std::ranges::find_if(render::engines(), [](const auto* engine) { return engine->traces_rays; });
+  const std::string engine = options.engine == "auto" && wants_rays ? (*tracer)->name : options.engine;
   if (engine != "auto") {
     GONIO_ASSIGN(request.engine, render::engine_named(engine));
     request.plan.engine = engine;

@@ -158,7 +158,7 @@ class Shooting {
   render::Plan plan_;
   render::Frame frame_;
   double automatic_stops_ = 0;  // of a PNG
-  bool stopped_ = false;        // by the time limit
+  bool stopped_ = false;        // before the noise was within the tolerance
 };
 
 // A sequence is planned on small pictures from some of its places, a single picture on itself.
@@ -228,6 +228,7 @@ Result<void> Shooting::write(const Shot& shot, const std::optional<display::Disp
                    traced_view(stage_.scene, environment, request_.engine == nullptr || request_.engine->is_planned,
                                *frame_.gbuffer, white_.luminance, options_.bounces, session_));
       frame_.gbuffer = traced->gbuffer;
+      stopped_ |= !traced->reached;
     }
     return write_exr_picture(options_, request_, shot, frame_, stage_.scene, plan_, white_, stops, automatic_stops_,
                              traced ? &traced->file : nullptr, session_);
@@ -278,7 +279,7 @@ Result<render::Renderer> Shooting::make_renderer() {
     return ready(render::Renderer::tracing(stage_.scene.ground));
   auto renderer = render::Renderer::create();
   if (renderer.ok()) return ready(*std::move(renderer));
-  if (request_.engine != nullptr && std::string_view(request_.engine->name) == "gl") return renderer;
+  if (request_.engine != nullptr && request_.engine->needs_opengl) return renderer;
   session_.say(fmt::format("{}: rays find what is visible", renderer.error().message));
   return ready(render::Renderer::tracing());
 }
@@ -356,6 +357,9 @@ Result<cli::Verdict> Shooting::shoot(const std::optional<display::Display>& disp
   cli::Verdict verdict = cli::Verdict::kDone;
   if (options_.check > 0) {
     GONIO_ASSIGN(verdict, check_picture());
+  }
+  // An engine that traces rays leaves nothing out.
+  if (options_.check > 0 && !render::engine_named(plan_.engine).value()->traces_rays) {
     GONIO_TRY(measure_plan(renderer, render::seen_scene(stage_.scene, looks_), plan_, view(shots_.back(), 1),
                            white_.luminance, session_));
   }

@@ -6,6 +6,7 @@
 #include "base/angles.h"
 #include "base/clock.h"
 #include "base/parallel.h"
+#include "base/text.h"
 #include "envmap/cube_map.h"
 #include "render/effects.h"
 #include "render/surface_layer.h"
@@ -13,8 +14,6 @@
 namespace goniochrome::tool {
 
 namespace {
-
-constexpr int kTimings = 5;  // of one picture, of which the median is told
 
 void report_traced(const render::TracedLobes& traced, const render::TransportParts& file, cli::Session& session) {
   const double per_point = file.bytes_per_point;
@@ -35,8 +34,11 @@ void report_traced(const render::TracedLobes& traced, const render::TransportPar
       traced.transport.places.size(), traced.transport.columns.count(), traced.noise_p95_de00, traced.samples_mean,
       traced.time_s, per_point, file.float_parts));
   if (!traced.reached)
-    session.warn(fmt::format("the noise of the transport is {:.2f} dE00, above --tolerance: give more --time-limit",
-                             traced.noise_p95_de00));
+    session.warn(fmt::format("the noise of the transport is {:.2f} dE00, above --tolerance {}: {}",
+                             traced.noise_p95_de00, shortest(session.common().tolerance),
+                             session.common().time_limit_s > 0
+                                 ? "give more --time-limit"
+                                 : "some points have as many samples as one can have: give a larger --tolerance"));
 }
 
 bool same_light(const KeptTransport& kept, const std::vector<render::Light>& lights) {
@@ -109,7 +111,8 @@ Result<TracedView> traced_view(const render::Scene& scene, const envmap::Environ
   };
   const render::TracedLobes traced =
       render::traced_lobes(transport, surface, columns, worn, open ? &*open : nullptr, request);
-  TracedView view{std::make_shared<const render::Gbuffer>(surface.gbuffer), render::transport_parts(traced.transport)};
+  TracedView view{std::make_shared<const render::Gbuffer>(surface.gbuffer), render::transport_parts(traced.transport),
+                  traced.reached};
   report_traced(traced, view.file, session);
   return view;
 }
@@ -172,14 +175,9 @@ Result<ShadedView> shaded_view(const KeptTransport& kept, const render::Gbuffer&
   const double judge_ms = 1000 * judging.elapsed_s();
   ShadedView view{{gbuffer.width, gbuffer.height, 4, {}, {"R", "G", "B", "A"}}, 0, false};
   view.picture.data.assign(4 * static_cast<std::size_t>(gbuffer.width) * static_cast<std::size_t>(gbuffer.height), 0);
-  std::vector<double> times_ms;
-  for (int i = 0; i < kTimings; ++i) {
-    const Stopwatch shading;
-    shader.shade(paints, reflection, scale, 1, view.picture);
-    times_ms.push_back(1000 * shading.elapsed_s());
-  }
-  std::ranges::sort(times_ms);
-  view.frame_ms = times_ms[kTimings / 2];
+  const Stopwatch shading;
+  shader.shade(paints, reflection, scale, 1, view.picture);
+  view.frame_ms = 1000 * shading.elapsed_s();
   put_background(gbuffer, scene, view.picture);
   const double tolerance = session.common().tolerance;
   view.trace_again = scale.error_p95_de00 > tolerance;

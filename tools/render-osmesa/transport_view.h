@@ -19,6 +19,7 @@ namespace goniochrome::tool {
 struct TracedView {
   std::shared_ptr<const render::Gbuffer> gbuffer;
   render::TransportParts file;
+  bool reached = false;  // whether its noise is within the tolerance
 };
 
 // Traces what is seen through `rays` in all that the scene has, and tells how. `with_maps`: open light by the

@@ -90,6 +90,7 @@ const EngineInfo CpuEngine::kInfo = {
     .is_planned = true,
     .needs_texels = false,
     .traces_rays = false,
+    .needs_opengl = false,
     .needs_mesh = false,
     .make = [](Sight&) -> std::unique_ptr<Engine> { return std::make_unique<CpuEngine>(); }};
 

@@ -34,6 +34,7 @@ const EngineInfo GlEngine::kInfo = {
     .is_planned = true,
     .needs_texels = false,
     .traces_rays = false,
+    .needs_opengl = true,
     .needs_mesh = true,
     .make = [](Sight& sight) -> std::unique_ptr<Engine> { return std::make_unique<GlEngine>(sight.gl()); }};
 

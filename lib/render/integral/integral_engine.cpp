@@ -53,6 +53,7 @@ const EngineInfo IntegralEngine::kInfo = {
     .is_planned = false,
     .needs_texels = true,
     .traces_rays = false,
+    .needs_opengl = false,
     .needs_mesh = false,
     .make = [](Sight&) -> std::unique_ptr<Engine> { return std::make_unique<IntegralEngine>(); }};
 

@@ -12,6 +12,7 @@
 #include "base/angles.h"
 #include "base/random_for_test.h"
 #include "rays/float3.h"
+#include "render/path/traced_paint.h"
 
 namespace goniochrome::render {
 
@@ -79,6 +80,20 @@ inline double excess(const SphereBins& bins, int draws,
   EXPECT_GT(freedom, 3);
   EXPECT_LT(few_seen, few_expected + 10 + 6 * std::sqrt(few_expected + 10));
   return (chi2 - freedom) / std::sqrt(2.0 * freedom);
+}
+
+// The same of the directions that a point draws, about its mirror direction.
+inline double excess_of_draws(const PaintedPoint& point, int rows, int columns,
+                              const std::function<double(const Vec3&)>& density) {
+  const SphereBins bins(rays::vec3(point.mirrored()), rows, columns);
+  return excess(
+      bins, 400000,
+      [&](double choice, double u, double v) -> std::optional<Vec3> {
+        const Reflection drawn = point.drawn(choice, u, v);
+        if (!(drawn.pdf > 0)) return std::nullopt;
+        return rays::vec3(drawn.direction);
+      },
+      density);
 }
 
 }  // namespace goniochrome::render

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "base/text.h"
 #include "brdf/lobe_model.h"
@@ -13,8 +12,8 @@ namespace {
 
 using rays::Float3;
 
-constexpr float kPi = std::numbers::pi_v<float>;
-constexpr float kTail = 40;     // cos^E below exp(-kTail) is left out, as PaintedPoint has it
+using rays::kFloatPi;
+
 constexpr double kSame = 1e-6;  // relative, of two exponents
 
 float coat_reflectance(float cosine) {
@@ -44,8 +43,7 @@ Result<LobeColumns> lobe_columns(const Scene& scene) {
 
 Result<std::vector<color::Rgb>> column_weights(const LobeColumns& columns, const color::Rgb& diffuse,
                                                const std::vector<paint::Lobe>& lobes, double gloss_deg) {
-  const double gloss_scale =
-      1 / brdf::fresnel_dielectric(std::cos(gloss_deg * std::numbers::pi / 180), brdf::kCoatIndex);
+  const double gloss_scale = 1 / brdf::fresnel_dielectric(std::cos(gloss_deg * kDegree), brdf::kCoatIndex);
   std::vector<color::Rgb> weights(columns.count());
   weights[LobeColumns::diffuse()] = diffuse;
   for (const paint::Lobe& lobe : lobes) {
@@ -73,8 +71,8 @@ Result<std::vector<color::Rgb>> column_weights(const LobeColumns& columns, const
 
 // Over the hemisphere of a viewer in front, cos^E cos_i has the integral 2 pi/(E + 2), and cos^E has 2 pi/(E + 1).
 double nominal_weight(const LobeColumns& columns, std::size_t column) {
-  constexpr double kHalf = 0.5, kTwoPi = 2 * std::numbers::pi;
-  if (column == LobeColumns::diffuse()) return kHalf / std::numbers::pi;
+  constexpr double kHalf = 0.5, kTwoPi = 2 * kPi;
+  if (column == LobeColumns::diffuse()) return kHalf / kPi;
   if (column == columns.mirror()) return 1;
   const double exponent = columns.exponents[(column - 1) / 2];
   return columns.is_gloss(column) ? (exponent + 1) / kTwoPi : kHalf * (exponent + 2) / kTwoPi;
@@ -95,26 +93,19 @@ float LobeKernels::at(const Float3& to_light, float* values) const {
   if (!(cos_i > 0)) return 0;
   float powers[kMostTracedLobes] = {};
   const auto add = [&](const Float3& axis, float share) {
-    const Float3 apart = axis - to_light;
-    const float versine = 0.5F * rays::dot(apart, apart);
-    if (versine >= 1) return;
-    const float log_cos = std::log1p(-versine);
-    for (std::size_t j = 0; j < lobes; ++j) {
-      const float power = static_cast<float>(columns_.exponents[j]) * log_cos;
-      if (power < -kTail) break;
-      powers[j] += share * std::exp(power);
-    }
+    add_powers(
+        axis, to_light, share, lobes, [&](std::size_t j) { return static_cast<float>(columns_.exponents[j]); }, powers);
   };
   if (point_.axes().empty()) add(point_.mirrored(), 1);
   for (const PaintedPoint::Axis& axis : point_.axes()) add(axis.direction, axis.share);
   const float fresnel = coat_reflectance(std::min(1.0F, 0.5F * rays::length(to_light + point_.to_viewer())));
   values[LobeColumns::diffuse()] = cos_i;
-  float pdf = cos_i / kPi;
+  float pdf = cos_i / kFloatPi;
   for (std::size_t j = 0; j < lobes; ++j) {
     if (!(powers[j] > 0)) continue;
     values[LobeColumns::flake(j)] = cos_i * powers[j];
     values[LobeColumns::gloss(j)] = fresnel * powers[j];
-    pdf += (static_cast<float>(columns_.exponents[j]) + 1) / (2 * kPi) * powers[j] / axes_total_;
+    pdf += (static_cast<float>(columns_.exponents[j]) + 1) / (2 * kFloatPi) * powers[j] / axes_total_;
   }
   return pdf / static_cast<float>(lobes + 1);
 }
@@ -125,7 +116,7 @@ Float3 LobeKernels::direction(double choice, double u, double v) const {
   const double scaled = choice * static_cast<double>(lobes + 1);
   const std::size_t which = std::min(lobes, static_cast<std::size_t>(scaled));
   if (which == 0) {
-    const float r = std::sqrt(a), phi = 2 * kPi * b;
+    const float r = std::sqrt(a), phi = 2 * kFloatPi * b;
     return (r * std::cos(phi)) * frame_.x + (r * std::sin(phi)) * frame_.y + std::sqrt(1 - a) * point_.normal();
   }
   const auto exponent = static_cast<float>(columns_.exponents[which - 1]);

@@ -310,7 +310,6 @@ LobeEstimate LobePoint::estimate(const color::Rgb* open_light, int sequences, in
     add_mirror(own, sums, which);
   }
   for (std::size_t c = 0; c < sums.classes.size(); ++c) result.classes[c] = (1.0 / sequences) * sums.classes[c];
-  std::vector<color::Rgb> shown(static_cast<std::size_t>(sequences));
   for (std::size_t k = 0; k < count; ++k) {
     double beta[2] = {0, 0};
     if (open_light != nullptr && k != columns_.mirror()) {
@@ -324,23 +323,17 @@ LobeEstimate LobePoint::estimate(const color::Rgb* open_light, int sequences, in
       }
     }
     color::Rgb direct, bounced;
+    Estimates shown;
     for (int which = 0; which < sequences; ++which) {
       const std::size_t at = sums.at(which, k);
       const double b = beta[which % 2];
       color::Rgb light = (1 - b) * sums.free[at] - b * sums.hidden[at] + sums.emitted[at];
       if (open_light != nullptr && k != columns_.mirror()) light += b * open_light[k];
       direct += (1.0 / sequences) * light, bounced += (1.0 / sequences) * sums.bounced[at];
-      shown[static_cast<std::size_t>(which)] = light + sums.bounced[at];
+      shown.add(light + sums.bounced[at]);
     }
     result.direct[k] += direct, result.bounced[k] += bounced;
-    if (sequences < 2) continue;
-    const color::Rgb mean = direct + bounced;
-    Covariance& c = result.covariance[k];
-    for (const color::Rgb& one : shown) {
-      const color::Rgb d = one - mean;
-      const double products[6] = {d.x * d.x, d.y * d.y, d.z * d.z, d.x * d.y, d.x * d.z, d.y * d.z};
-      for (std::size_t i = 0; i < 6; ++i) c[i] += products[i] / (sequences - 1);
-    }
+    result.covariance[k] = shown.covariance();
   }
   return result;
 }

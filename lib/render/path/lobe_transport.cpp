@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "base/angles.h"
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "brdf/lobe_model.h"
@@ -171,7 +171,7 @@ class Tracing {
   double nominal_variance(std::size_t i, std::size_t k, Covariance covariance) const {
     const LobeTransport& t = result_.transport;
     color::Rgb shown = nominal_[k] * t.light(i, k);
-    if (t.columns.is_gloss(k)) shown += (kNominalGray / std::numbers::pi) * t.light(i, 0);
+    if (t.columns.is_gloss(k)) shown += (kNominalGray / kPi) * t.light(i, 0);
     for (double& element : covariance) element *= nominal_[k] * nominal_[k];
     const double noise = noise_de00(shown, covariance, request_.white_luminance);
     return noise * noise;

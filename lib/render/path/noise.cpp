@@ -39,6 +39,17 @@ double variance_along(const Vec3& v, const Covariance& c) {
 
 }  // namespace
 
+Covariance Estimates::covariance() const {
+  Covariance result{};
+  if (count_ < 2) return result;
+  const double n = count_;
+  const double products[6] = {sum_.x * sum_.x, sum_.y * sum_.y, sum_.z * sum_.z,
+                              sum_.x * sum_.y, sum_.x * sum_.z, sum_.y * sum_.z};
+  for (std::size_t i = 0; i < 6; ++i) result[i] = (squares_[i] - products[i] / n) / (n - 1);
+  for (std::size_t i = 0; i < 3; ++i) result[i] = std::max(result[i], 0.0);
+  return result;
+}
+
 // L, a and b are linear in the error to first order: dL = 116 f'(Y) dY and so on. CIEDE2000 weighs it along L, chroma
 // and hue by the S functions; its a' = (1 + G) a stretches grays.
 double noise_de00(const color::Rgb& radiance, const Covariance& covariance, double white_luminance) {

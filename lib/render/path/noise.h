@@ -10,6 +10,28 @@ namespace goniochrome::render {
 // The covariance of three channels: rr gg bb rg rb gb.
 using Covariance = std::array<double, 6>;
 
+// Independent estimates of one radiance, one after the other: their mean, and how they scatter. What is summed are
+// their differences from the first, so that few digits cancel.
+class Estimates {
+ public:
+  void add(const color::Rgb& value) {
+    if (count_++ == 0) first_ = value;
+    const color::Rgb d = value - first_;
+    sum_ += d;
+    squares_[0] += d.x * d.x, squares_[1] += d.y * d.y, squares_[2] += d.z * d.z;
+    squares_[3] += d.x * d.y, squares_[4] += d.x * d.z, squares_[5] += d.y * d.z;
+  }
+  int count() const { return count_; }
+  color::Rgb mean() const { return count_ > 0 ? first_ + (1.0 / count_) * sum_ : color::Rgb{}; }
+  // Of a single estimate; that of their mean is smaller by count(). 0 where there are fewer than two.
+  Covariance covariance() const;
+
+ private:
+  color::Rgb first_, sum_;
+  Covariance squares_{};
+  int count_ = 0;
+};
+
 // The root mean square CIEDE2000 difference between a radiance and the same with a small random error of this
 // covariance, as seen before a diffuse white of this luminance. To first order in the error; without the rotation term
 // of blues, which is worth a few percent.

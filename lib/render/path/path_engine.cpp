@@ -28,6 +28,7 @@ const EngineInfo PathEngine::kInfo = {
     .is_planned = false,
     .needs_texels = true,
     .traces_rays = true,
+    .needs_opengl = false,
     .needs_mesh = true,
     .make = [](Sight& sight) -> std::unique_ptr<Engine> { return std::make_unique<PathEngine>(sight); }};
 

@@ -20,33 +20,6 @@ constexpr int kFirstBatches = 2;
 constexpr double kNeighborhood = 4;
 constexpr int kReach = 2;  // pixels to each side of the neighborhood
 
-// Sums over independent estimates, for their mean and its covariance. Shifted by the first, so that nothing cancels.
-struct Sums {
-  color::Rgb first, sum;
-  Covariance squares{};
-  int count = 0;
-
-  void add(const color::Rgb& value) {
-    if (count++ == 0) first = value;
-    const color::Rgb d = value - first;
-    sum += d;
-    squares[0] += d.x * d.x, squares[1] += d.y * d.y, squares[2] += d.z * d.z;
-    squares[3] += d.x * d.y, squares[4] += d.x * d.z, squares[5] += d.y * d.z;
-  }
-  color::Rgb mean() const { return count > 0 ? first + (1.0 / count) * sum : color::Rgb{}; }
-  // Of a single estimate; needs two.
-  Covariance covariance() const {
-    Covariance result{};
-    if (count < 2) return result;
-    const double n = count;
-    const double products[6] = {sum.x * sum.x, sum.y * sum.y, sum.z * sum.z,
-                                sum.x * sum.y, sum.x * sum.z, sum.y * sum.z};
-    for (std::size_t i = 0; i < 6; ++i) result[i] = (squares[i] - products[i] / n) / (n - 1);
-    for (std::size_t i = 0; i < 3; ++i) result[i] = std::max(result[i], 0.0);
-    return result;
-  }
-};
-
 std::uint64_t seed_of(std::uint64_t seed, std::uint64_t point, int batch) {
   return mixed(mixed(seed, point), static_cast<std::uint64_t>(batch));
 }
@@ -111,7 +84,7 @@ class Picture {
   }
 
   struct State {
-    Sums sums;
+    Estimates sums;
     color::Rgb sure;
     double needed = 0;  // batches that bring the noise of the neighborhood to the tolerance
     bool certain = false;
@@ -165,7 +138,7 @@ class Picture {
     if (state.certain) return;
     const auto count = static_cast<std::uint32_t>(batch_of(point));
     for (int k = 0; k < batches; ++k)
-      state.sums.add(at.part_of_batch(seed_of(request_.seed, i, state.sums.count), 0, count));
+      state.sums.add(at.part_of_batch(seed_of(request_.seed, i, state.sums.count()), 0, count));
   }
 
   // What a sample of a pixel sees, which is something.
@@ -186,10 +159,10 @@ class Picture {
     const PathPoint& point = points_[i];
     const auto count = static_cast<unsigned>(shifts_.size());
     const unsigned covered = coverage_.any[place(point.x, point.y)];
-    const bool first_time = state.sums.count == 0;
+    const bool first_time = state.sums.count() == 0;
     if (first_time) state.uncertain = 0, state.sure = {};
     std::vector<color::Rgb> values(static_cast<std::size_t>(batches));
-    const auto first = static_cast<unsigned>(state.sums.count);
+    const auto first = static_cast<unsigned>(state.sums.count());
     const auto start = static_cast<unsigned>(mixed(request_.seed, i) >> 32);
     for (unsigned sample = 0; sample < count; ++sample) {
       if ((covered >> sample & 1U) == 0) continue;
@@ -221,7 +194,7 @@ class Picture {
       for (std::size_t i = begin; i < end; ++i) {
         own[i] = states_[i].sums.covariance();
         points_[i].radiance = states_[i].sure + states_[i].sums.mean();
-        points_[i].samples = batch_of(points_[i]) * states_[i].sums.count;
+        points_[i].samples = batch_of(points_[i]) * states_[i].sums.count();
       }
     });
     parallel_for(points_.size(), 1024, [&](std::size_t begin, std::size_t end) {
@@ -245,7 +218,7 @@ class Picture {
     State& state = states_[i];
     point.covariance = {};
     point.noise_de00 = state.needed = 0;
-    const int n = state.sums.count;
+    const int n = state.sums.count();
     if (n < 2) return;
     Covariance around{};
     color::Rgb light;
@@ -254,7 +227,7 @@ class Picture {
       for (int x = std::max(0, point.x - kReach); x <= std::min(surface_.gbuffer.width - 1, point.x + kReach); ++x) {
         const std::int32_t number = number_[place(x, y)];
         const auto other = static_cast<std::size_t>(number);
-        if (number < 0 || other == i || states_[other].sums.count < 2) continue;
+        if (number < 0 || other == i || states_[other].sums.count() < 2) continue;
         ++count;
         light += points_[other].radiance;
         for (std::size_t k = 0; k < 6; ++k) around[k] += own[other][k];
@@ -292,7 +265,7 @@ class Picture {
       const double most = std::min(std::ceil(1.05 * scale * typical), limit);
       bool any = false, limited = true;
       for (std::size_t i = 0; i < points_.size(); ++i) {
-        const double n = states_[i].sums.count, wanted = std::min(std::ceil(scale * states_[i].needed), most) - n;
+        const double n = states_[i].sums.count(), wanted = std::min(std::ceil(scale * states_[i].needed), most) - n;
         more[i] = static_cast<int>(std::clamp(wanted, 0.0, n));
         any = any || more[i] > 0;
         limited = limited && (n == 0 || states_[i].needed == 0 || n >= limit);
@@ -327,7 +300,7 @@ PathEstimate path_estimate(const Transport& transport, const PathOptions& option
                            const Vec3& to_viewer, int batches, std::uint64_t seed) {
   const PointTransport at(transport, options, spot, rays::float3(to_viewer));
   if (at.certain()) return {at.sure(), {}};
-  Sums sums;
+  Estimates sums;
   for (int k = 0; k < batches; ++k) sums.add(at.batch(seed_of(seed, 0, k)));
   Covariance covariance = sums.covariance();
   for (double& element : covariance) element /= batches;

@@ -95,16 +95,8 @@ double excess_of(const paint::LobeFit& paint, double view_deg, std::vector<brdf:
   const Vec3 viewer = std::cos(t) * normal + std::sin(t) * side;
   const PaintedPoint point(*traced, float3(normal), float3(viewer));
   const PaintedPoint told(wrong_exponent == 1 ? *traced : *stated, float3(normal), float3(viewer));
-  // Bins about the mirror direction, fine enough for the sharpest lobe.
-  const SphereBins bins(rays::vec3(point.mirrored()), 400, 12);
-  return excess(
-      bins, 400000,
-      [&](double choice, double u, double v) -> std::optional<Vec3> {
-        const Reflection drawn = point.drawn(choice, u, v);
-        if (!(drawn.pdf > 0)) return std::nullopt;
-        return rays::vec3(drawn.direction);
-      },
-      [&](const Vec3& d) { return told.at(float3(d)).pdf; });
+  // The bins are fine enough for the sharpest lobe.
+  return excess_of_draws(point, 400, 12, [&](const Vec3& d) { return told.at(float3(d)).pdf; });
 }
 
 TEST(Samplers, LobesAreDrawnAsTheirDensitySays) {

@@ -54,6 +54,14 @@ inline envmap::Environment environment_of(int width, int height,
       .value();
 }
 
+// A lamp in a room that is brighter below.
+inline envmap::Environment studio() {
+  return environment_of(64, 32, [](int x, int y) {
+    const double lamp = x > 20 && x < 26 && y > 6 && y < 11 ? 12 : 0;
+    return color::Rgb{0.2 + 0.01 * x + lamp, 0.3 + 0.02 * y + lamp, 0.4 + 0.5 * lamp};
+  });
+}
+
 inline envmap::Environment even_environment(const color::Rgb& radiance = {1, 1, 1}) {
   return environment_of(16, 8, [&](int, int) { return radiance; });
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
 
 #include "base/angles.h"
@@ -16,9 +15,8 @@ namespace {
 using rays::Float3;
 using rays::float3;
 
-constexpr float kFloatPi = std::numbers::pi_v<float>;
-// cos^E below exp(-kTail) is left out: 4e-18 of the peak.
-constexpr float kTail = 40;
+using rays::kFloatPi;
+
 // The share of a color map's mean that directions are drawn in by the cosine.
 constexpr float kCosineShare = 0.25F;
 
@@ -176,15 +174,9 @@ template <class Visit>
 void PaintedPoint::visit_lobes(const Float3& to_light, const Visit& visit) const {
   float powers[kMostTracedLobes] = {};
   const auto add = [&](const Float3& axis, float share) {
-    const Float3 apart = axis - to_light;
-    const float versine = 0.5F * rays::dot(apart, apart);
-    if (versine >= 1) return;
-    const float log_cos = std::log1p(-versine);
-    for (int j = 0; j < count_; ++j) {
-      const float power = lobes_[j].exponent * log_cos;
-      if (power < -kTail) break;
-      powers[j] += share * std::exp(power);
-    }
+    add_powers(
+        axis, to_light, share, static_cast<std::size_t>(count_), [&](std::size_t j) { return lobes_[j].exponent; },
+        powers);
   };
   if (axes_.empty()) add(mirrored_, 1);
   for (const Axis& axis : axes_) add(axis.direction, axis.share);
@@ -200,7 +192,7 @@ void PaintedPoint::visit_texels(const Float3& to_light, const Visit& visit) cons
     const float versine = 0.5F * rays::dot(apart, apart);
     if (versine >= 1) continue;
     const float power = lobe.exponent * std::log1p(-versine);
-    if (power >= -kTail) visit(lobe, std::exp(power));
+    if (power >= -kPowerTail) visit(lobe, std::exp(power));
   }
 }
 

@@ -1,6 +1,8 @@
 // Paints as paths meet them: evaluated and sampled in floats. goniochrome-theory(7), PATHS and LOBE MODEL.
 #pragma once
 
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -16,7 +18,7 @@ namespace goniochrome::render {
 // The most lobes of a paint, the mirror apart.
 constexpr int kMostTracedLobes = 24;
 
-// A paint laid out for tracing. What it shows is ExactModel's (render/reference.h) with the Fresnel reflectance on:
+// A paint laid out for tracing. What it shows is ExactModel's (render/exact.h) with the Fresnel reflectance on:
 //   f cos_i = cos_i (K_D + sum K_DD cos^E) + F(theta_h)/F(gloss_deg) sum K_G cos^E,  mirror K_M F(theta_o)
 // above the horizon, nothing below it. Of an anisotropic paint each lobe is the mean over tilted normals.
 class TracedPaint {
@@ -56,6 +58,25 @@ class TracedPaint {
   const SurfaceLayer* layer_ = nullptr;  // of a textured part
   int part_ = 0;
 };
+
+// cos^E below exp(-kPowerTail) is left out: 4e-18 of the peak.
+constexpr float kPowerTail = 40;
+
+// Adds to powers[j] the share of cos^E of the angle between two directions, for exponent(j) = E, j = 0..count-1, in
+// ascending order.
+template <class Exponent>
+void add_powers(const rays::Float3& axis, const rays::Float3& direction, float share, std::size_t count,
+                const Exponent& exponent, float* powers) {
+  const rays::Float3 apart = axis - direction;
+  const float versine = 0.5F * rays::dot(apart, apart);
+  if (versine >= 1) return;
+  const float log_cos = std::log1p(-versine);
+  for (std::size_t j = 0; j < count; ++j) {
+    const float power = exponent(j) * log_cos;
+    if (power < -kPowerTail) break;
+    powers[j] += share * std::exp(power);
+  }
+}
 
 // A direction that light may have come from, with f cos_i and the probability density that drawn() gives it.
 struct Reflection {

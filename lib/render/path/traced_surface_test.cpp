@@ -118,17 +118,9 @@ Vec3 at_angles(double polar_deg, double azimuth_deg) {
 }
 
 double excess_of(const PaintedPoint& point, double wrong_factor = 1) {
-  const SphereBins bins(rays::vec3(point.mirrored()), 200, 24);
-  return excess(
-      bins, 400000,
-      [&](double choice, double u, double v) -> std::optional<Vec3> {
-        const Reflection drawn = point.drawn(choice, u, v);
-        if (!(drawn.pdf > 0)) return std::nullopt;
-        return rays::vec3(drawn.direction);
-      },
-      [&](const Vec3& d) {
-        return (dot(d, rays::vec3(point.mirrored())) > 0.9 ? wrong_factor : 1) * point.at(float3(d)).pdf;
-      });
+  return excess_of_draws(point, 200, 24, [&](const Vec3& d) {
+    return (dot(d, rays::vec3(point.mirrored())) > 0.9 ? wrong_factor : 1) * point.at(float3(d)).pdf;
+  });
 }
 
 TEST(TracedSurface, MapsAndTexturesAreDrawnAsTheirDensitySays) {
@@ -202,13 +194,6 @@ color::Rgb mapped_integral(const brdf::ColorMap& map, const paint::LobeFit& glos
     }
   }
   return sum;
-}
-
-envmap::Environment studio() {
-  return environment_of(64, 32, [](int x, int y) {
-    const double lamp = x > 20 && x < 26 && y > 6 && y < 11 ? 12 : 0;
-    return color::Rgb{0.2 + 0.01 * x + lamp, 0.3 + 0.02 * y + lamp, 0.4 + 0.5 * lamp};
-  });
 }
 
 TEST(TracedSurface, AMappedConvexShapeShowsTheIntegral) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "render/effects.h"
 #include "render/path/emitters.h"
 #include "render/path/environment_table.h"
 #include "render/path/laid_ground.h"
@@ -47,6 +48,14 @@ struct LightShares {
   color::Rgb into_diffuse;  // passed on by surfaces to the diffuse part of the point
 
   color::Rgb sum() const { return direct + into_lobes + into_diffuse; }
+  // What pictures with these effects show of it.
+  color::Rgb shown(const RayEffects& effects) const {
+    color::Rgb shown;
+    if (effects.shadow) shown += direct;
+    if (effects.shadow && effects.self) shown += into_lobes;
+    if (effects.shadow && effects.bounce) shown += into_diffuse;
+    return shown;
+  }
   LightShares& operator+=(const LightShares& o) {
     direct += o.direct, into_lobes += o.into_lobes, into_diffuse += o.into_diffuse;
     return *this;

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "base/angles.h"
 #include "base/json.h"
 #include "base/text.h"
 #include "render/internal/seen.h"
@@ -52,7 +52,7 @@ double half_error(const LobeTransport& t, const image::Image& image, std::size_t
     }
     color::Rgb base;
     if (t.columns.is_gloss(column))
-      base = (kNominalGray / std::numbers::pi / t.white_luminance) * t.light(i, LobeColumns::diffuse());
+      base = (kNominalGray / kPi / t.white_luminance) * t.light(i, LobeColumns::diffuse());
     errors.push_back(seen_difference(base + weight * light, base + weight * rounded, 1));
   }
   return percentile_95(std::move(errors));

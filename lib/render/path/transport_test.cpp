@@ -204,13 +204,6 @@ paint::LobeFit coated() {
   return paint;
 }
 
-envmap::Environment studio() {
-  return environment_of(64, 32, [](int x, int y) {
-    const double lamp = x > 20 && x < 26 && y > 6 && y < 11 ? 12 : 0;
-    return color::Rgb{0.2 + 0.01 * x + lamp, 0.3 + 0.02 * y + lamp, 0.4 + 0.5 * lamp};
-  });
-}
-
 // A convex shape blocks nothing: paths show what the reference integrator sums, and there is nothing to correct.
 TEST(Transport, AConvexShapeShowsTheReferenceIntegral) {
   for (const bool brushed : {false, true}) {

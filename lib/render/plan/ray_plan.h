@@ -11,8 +11,9 @@
 
 namespace goniochrome::render {
 
-// The part of the tolerance that the noise of these effects may take, as one standard deviation at 95 of 100 points: a
-// picture whose errors are twice that at some of them is still within the tolerance.
+// The part of the tolerance that the noise of these effects may take, as one standard deviation at 95 of 100 points.
+// The error of a point may be several times its standard deviation, so that this alone does not keep the whole picture
+// within the tolerance: --check-against truth tells.
 constexpr double kRayNoiseShare = 0.5;
 
 // The names of the effects, in the order in which plans list them.

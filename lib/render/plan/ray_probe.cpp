@@ -26,14 +26,6 @@ constexpr double kLeastPercentile = 0.1;
 // Points that are traced once more without light that is passed on, for the time of that.
 constexpr std::size_t kTimed = 64;
 
-color::Rgb chosen(const LightShares& shares, const RayEffects& effects) {
-  color::Rgb sum;
-  if (effects.shadow) sum += shares.direct;
-  if (effects.shadow && effects.self) sum += shares.into_lobes;
-  if (effects.shadow && effects.bounce) sum += shares.into_diffuse;
-  return sum;
-}
-
 // The batches from `first` in steps of `step`.
 LightShares mean_of(const std::vector<LightShares>& batches, std::size_t first, std::size_t step) {
   LightShares sum;
@@ -44,16 +36,9 @@ LightShares mean_of(const std::vector<LightShares>& batches, std::size_t first, 
 
 // Of what the effects add, by one batch.
 Covariance covariance_of(const std::vector<LightShares>& batches, const RayEffects& with, const RayEffects& without) {
-  Covariance covariance{};
-  if (batches.size() < 2) return covariance;
-  const auto value = [&](const LightShares& b) { return chosen(b, with) - chosen(b, without); };
-  const color::Rgb mean = value(mean_of(batches, 0, 1));
-  for (const LightShares& batch : batches) {
-    const color::Rgb d = value(batch) - mean;
-    const double products[6] = {d.x * d.x, d.y * d.y, d.z * d.z, d.x * d.y, d.x * d.z, d.y * d.z};
-    for (std::size_t i = 0; i < 6; ++i) covariance[i] += products[i] / static_cast<double>(batches.size() - 1);
-  }
-  return covariance;
+  Estimates values;
+  for (const LightShares& batch : batches) values.add(batch.shown(with) - batch.shown(without));
+  return values.covariance();
 }
 
 // The three comparisons that a plan makes.
@@ -152,7 +137,7 @@ std::vector<int> RayProbe::more(double share, int batches) const {
 
 color::Rgb RayProbe::added(std::size_t i, const RayEffects& effects) const {
   const Point& point = points_[i];
-  return chosen(point.sure, effects) + chosen(mean_of(point.batches, 0, 1), effects);
+  return point.sure.shown(effects) + mean_of(point.batches, 0, 1).shown(effects);
 }
 
 // With n batches the expectation of the squared difference is d^2 + c/n + O(1/n^2), whatever the metric: c holds the
@@ -161,7 +146,7 @@ double RayProbe::squared_difference(std::size_t i, const RayEffects& with, const
   const Point& point = points_[i];
   const auto squared = [&](const LightShares& mean) {
     const LightShares sum = {point.sure.direct + mean.direct, mean.into_lobes, mean.into_diffuse};
-    const double d = seen_difference(base_[i] + chosen(sum, with), base_[i] + chosen(sum, without), white_);
+    const double d = seen_difference(base_[i] + sum.shown(with), base_[i] + sum.shown(without), white_);
     return d * d;
   };
   const double whole = squared(mean_of(point.batches, 0, 1));
