@@ -303,6 +303,7 @@ void Shooting::tell_noise() {
 
 Result<cli::Verdict> Shooting::shoot(const std::optional<display::Display>& display) {
   if (stage_.transport) return shade_transport(display);
+  if (request_.transport) GONIO_TRY(can_trace_view(stage_.scene));
   GONIO_ASSIGN(shots_, shots_of(options_, stage_.mesh, request_.size, request_.lights));
   GONIO_ASSIGN(render::Renderer renderer, make_renderer());
   GONIO_TRY(look(renderer));

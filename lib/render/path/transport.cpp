@@ -249,6 +249,25 @@ color::Rgb Transport::bounced(Hit hit, Float3 origin, Float3 direction, const Pa
   return sum;
 }
 
+// As bounced() at a vertex on such a floor.
+Transport::FloorLight Transport::off_floor(const Hit& hit, const Float3& origin, const Float3& direction, int bounces,
+                                           const Sequence& sequence, std::uint32_t index, std::uint32_t set) const {
+  const Vertex vertex(*this, rays_->spot(hit, origin, direction), -direction);
+  FloorLight light{vertex.open, {}};
+  if (vertex.painted.black()) return light;
+  PathProduct path(reflection_);
+  const std::array<double, 4> to_light = sequence.point(index, set), onward = sequence.point(index, set + 1);
+  light.fixed += direct_light(vertex, path, to_light, onward[3]);
+  const Next next = next_ray(vertex, path, onward);
+  if (!(next.pdf > 0)) return light;
+  light.fixed += light_at_end(next, path, true);
+  if (!next.hit.any() || bounces == 0) return light;
+  PathOptions further;
+  further.bounces = bounces;
+  light.bounced = path.shown(bounced(next.hit, vertex.spot.start, next.direction, further, sequence, index, set + 2));
+  return light;
+}
+
 // A direction at the visible point.
 struct PointTransport::Ray {
   Float3 direction;
