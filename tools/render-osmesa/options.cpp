@@ -75,12 +75,19 @@ void add_light(cli::ToolSpec& spec, Options& o) {
       .in("units of the mesh")
       .from(0)
       .more("0 takes a third of the longest side of the mesh's box, which is 1.5 m for a car of 4.5 m.");
-  spec.option("operator", "NAME[,SHARES]", "iso,0.1", &o.reflection, "how colored light and paint multiply")
+  spec.option("operator", "OP[,SHARES]", "iso,0.1", &o.reflection, "how colored light and paint multiply")
       .more(
-          "iso is a bilinear product by the published table for camera sensors. rec2020 is one that is estimated from "
-          "color-matching functions, which can make saturated colors negative. none multiplies each channel by "
-          "itself. A number from 0 to 1 after a comma says how much each channel takes from the others, and three "
-          "numbers say it for red, green and blue.");
+          "fitted is a bilinear product that is fitted to published spectra, and of all products here it has the least "
+          "error "
+          "on spectra that were held out: goniochrome-theory(7), COLORED LIGHT, has the table. plain multiplies each "
+          "channel by itself. iso is the published table for camera sensors, applied to Rec.2020 values; it was the "
+          "default before. iso709 is the same table in the primaries of Rec.709, for which it was made. estimated "
+          "comes "
+          "from color-matching functions. none is another name for plain, and working and rec2020 are other names for "
+          "estimated. A JSON file holds a table, and may name the primaries that it is for; goniochrome-paint(5) "
+          "describes it. A number from 0 to 1 after a comma says how much each channel takes from the others, and "
+          "three numbers say it for red, green and blue; a channel that keeps more than 1 of itself takes no such "
+          "number but 0.");
   spec.option("critical-angle", "NAME", "clip", &o.critical_angle, "what color maps do beyond the critical angle")
       .one_of({"clip", "slide", "slide-map", "index"})
       .more(

@@ -284,7 +284,7 @@ refused() {
   red="--mesh panels.obj -p paints.xml#red $front --light 0,0,0,1,1 --effects all"
   render-osmesa -q $red --operator none -o none.exr
   near "$(pixel none.exr 45 30)" "0 0.1 0.1 1"
-  render-osmesa -q $red -o iso.exr
+  render-osmesa -q $red --operator iso -o iso.exr
   awk -v p="$(pixel iso.exr 45 30)" 'BEGIN { split(p, c, " "); exit !(c[1] > 0.1) }'
   render-osmesa -q $red --operator iso,0 -o plain.exr
   near "$(pixel plain.exr 45 30)" "0 0.1 0.1 1"
@@ -293,9 +293,24 @@ refused() {
   render-osmesa -q $red --operator rec2020 -o rec2020.exr
   run cmp -s iso.exr rec2020.exr
   [ "$status" -eq 1 ]
-  refused 2 '--operator is "xyz": write iso, rec2020 or none' --mesh panels.obj $light --operator xyz
+  refused 2 '--operator is "xyz": write fitted, plain, iso, iso709, estimated or a JSON file' --mesh panels.obj $light --operator xyz
   refused 2 '--operator is "iso,2"' --mesh panels.obj $light --operator iso,2
   refused 2 '--operator is "iso,0,1"' --mesh panels.obj $light --operator iso,0,1
+  refused 2 'red of this operator keeps 1.' --mesh panels.obj $light --operator rec2020,0.1
+  # A file holds a table, and the primaries for which it was made.
+  k='[[[1,0,0],[0,0,0],[0,0,0]],[[0,0,0],[0,1,0],[0,0,0]],[[0,0,0],[0,0,0],[0,0,1]]]'
+  echo "{\"k\": $k}" >plain.json
+  render-osmesa -q $red --operator plain.json -o file.exr
+  near "$(pixel file.exr 45 30)" "0 0.1 0.1 1"
+  echo "{\"k\": $k, \"primaries\": \"rec709\"}" >plain709.json
+  render-osmesa -q $red --operator plain709.json -o file709.exr
+  run near "$(pixel file709.exr 45 30)" "0 0.1 0.1 1"
+  [ "$status" -ne 0 ]
+  refused 3 'nowhere.json' --mesh panels.obj $light --operator nowhere.json
+  # fitted is what is taken without the option.
+  render-osmesa -q $red -o default.exr
+  render-osmesa -q $red --operator fitted -o fitted.exr
+  [ "$(pixel default.exr 45 30)" = "$(pixel fitted.exr 45 30)" ]
 }
 
 @test "--split draws two paints side by side" {

@@ -50,7 +50,7 @@ Result<Request> request_of(const Options& options) {
   if (options.samples != 0 && options.samples != 1 && options.samples != 4 && options.samples != 16) {
     return usage_error("--samples is {}: give 1, 4 or 16", options.samples);
   }
-  GONIO_ASSIGN(request.reflection, parse_operator(options.reflection));
+  GONIO_ASSIGN(request.reflection, color::chosen_operator(options.reflection));
   GONIO_TRY(render::check_effects(options.effects));
   request.plan.effects = options.effects;
   request.plan.budget_ms = options.budget_ms;
