@@ -136,6 +136,19 @@ closing() {
   [ -s "$fits" ]
 }
 
+@test "a sequence and the sets of --each are found unwritable before the work" {
+  mkdir out
+  # The third picture of four, and the second set of two, have a folder in their place.
+  mkdir out/turn-0003.exr out/set-2.basis.xml
+  # Before the work: the input is not even opened.
+  refused "turn-0003.exr: is a folder" render-osmesa -q --mesh none.obj --light 0,20 --size 8x8 --turntable 4 -o out/turn.exr
+  refused "turn-0003.exr: is a folder" render-osmesa -q --mesh none.obj --light 0,20 --size 8x8 --light-sweep 4 -o out/turn.exr
+  refused "set-2.basis.xml: is a folder" fit-basis -q none.xml --lobes 1..2 --each out/set- -o b.xml
+  refused "none/set-1.basis.xml: cannot be written" fit-basis -q none.xml --lobes 1..2 --each none/set- -o b.xml
+  [ "$(ls out | wc -l)" -eq 2 ]
+  [ ! -e b.xml ]
+}
+
 @test "a forbidden folder is an error of input" {
   [ "$(id -u)" -eq 0 ] || skip "only root can become somebody else"
   mkdir forbidden
@@ -297,6 +310,39 @@ usage() {
   pipe_into white.png sketch-fit -q -i s.exr -b s.exr --mask fifo -o o.xml
   pipe_into s.exr render-osmesa -q --engine cpu --gbuffer fifo --light 0,20 -o o.exr
   pipe_into sky.env.exr render-osmesa -q --engine cpu --mesh "$TESTDATA/box.obj" --env fifo --size 32x24 -o o.png
+}
+
+@test "meshes from pipes work in every tool that takes one" {
+  printf 'OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n' >m.off
+  printf 'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n' >m.ply
+  printf 'solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\nendfacet\nendsolid s\n' >m.stl
+  cp "$TESTDATA/box.obj" m.obj
+  printf 'image one p.png\npaint dawn\nface one@4,4\n' >spring.board
+  oiiotool --pattern fill:topleft=1,0,0:bottomright=0,.2,1 32x24 3 -d uint8 -o p.png
+  for mesh in m.obj m.off m.ply m.stl; do
+    draw=(render-osmesa -q --engine cpu --light 0,20 --size 32x24)
+    "${draw[@]}" --mesh $mesh -o whole.png
+    "${draw[@]}" --mesh <(cat $mesh) -o piped.png
+    "${draw[@]}" --mesh - -o stdin.png <$mesh
+    rm -f fifo && mkfifo fifo
+    cat $mesh >fifo &
+    "${draw[@]}" --mesh fifo -o fifo.png
+    wait $!
+    for picture in piped stdin fifo; do oiiotool --diff whole.png $picture.png; done
+    paint-pick -q --board spring.board --mesh <(cat $mesh) -o page.html
+  done
+  # Two squares in one plane, which meet at x = 1.
+  printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\no A\nf 1 2 3 4\no B\nf 2 5 6 3\n' >panels.obj
+  { sed -n '1,/<\/paint>/p' "$TESTDATA/paints.paints.xml" && echo '</paints>'; } >one.xml
+  for tool in goniogeom-index trompe-fit; do
+    seam=(one.xml -q --seam A,B --unit m --light-from 0,75 --view-from 25,20)
+    whole=0 piped=0
+    $tool "${seam[@]}" --mesh panels.obj -o whole.out || whole=$?
+    $tool "${seam[@]}" --mesh <(cat panels.obj) -o piped.out || piped=$?
+    [ "$whole" -le 1 ]
+    [ "$piped" -eq "$whole" ]
+    cmp <(grep -v "$tool" whole.out) <(grep -v "$tool" piped.out)
+  done
 }
 
 # within SECONDS MEGABYTES COMMAND...: exit 0 to 3 with no more processor time and memory than that.

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <unordered_map>
 
 #include "base/angles.h"
 #include "base/file.h"
+#include "base/paths.h"
 #include "base/text.h"
 #include "mesh/internal/polygons.h"
 
@@ -243,20 +245,53 @@ Box bounding_box(const Mesh& mesh) {
   return box;
 }
 
+namespace {
+
+// The keyword of an OFF file: OFF, behind letters for what else each vertex has (ST, C, N, 4, n).
+bool is_off_keyword(std::string_view word) {
+  if (!word.ends_with("OFF")) return false;
+  word.remove_suffix(3);
+  if (word.starts_with("ST")) word.remove_prefix(2);
+  return word.size() <= 4 && word.find_first_not_of("CN4n") == std::string_view::npos;
+}
+
+// A binary STL file has a header of 80 bytes, the number of triangles, and 50 bytes for each of them. Its header may
+// begin with "solid" as the text form does.
+bool is_binary_stl(std::string_view content) {
+  std::uint32_t triangles = 0;
+  if (content.size() < 84) return false;
+  std::memcpy(&triangles, content.data() + 80, sizeof triangles);
+  return content.size() == 84 + std::size_t{50} * triangles;
+}
+
+// The ending that a mesh of this content would have. OBJ is what is left, since it has no mark of its own.
+std::string extension_by_content(std::string_view content) {
+  if (content.starts_with("ply\n") || content.starts_with("ply\r")) return ".ply";
+  std::string_view first = content;
+  while (first.starts_with('#') || first.starts_with('\n') || first.starts_with('\r'))
+    first.remove_prefix(std::min(first.size(), first.starts_with('#') ? first.find('\n') : 1));
+  first = first.substr(0, first.find_first_of(" \t\r\n"));
+  if (is_off_keyword(first)) return ".off";
+  return first == "solid" || is_binary_stl(content) ? ".stl" : ".obj";
+}
+
+}  // namespace
+
 Result<Mesh> read_mesh(const std::string& path) {
   const std::filesystem::path file(path);
-  const std::string extension = lower(file.extension().string());
-  if (extension == ".obj" || path == "-") {
-    GONIO_ASSIGN(const std::string text, file_content(path));
-    GONIO_ASSIGN(const Polygons polygons, polygons_from_obj(text, path));
-    return mesh_from_polygons(polygons, path);
-  }
-  if (extension == ".off" || extension == ".ply" || extension == ".stl") {
-    GONIO_ASSIGN(const Polygons polygons, polygons_from_file(path, extension, file.stem().string()));
-    return mesh_from_polygons(polygons, path);
-  }
-  return input_error("{}: \"{}\" is no mesh format known here: give .obj (with parts), .off, .ply or .stl", path,
-                     extension);
+  std::string extension = lower(file.extension().string());
+  constexpr std::array kKnown = {"", ".obj", ".off", ".ply", ".stl"};
+  if (std::ranges::find(kKnown, extension) == kKnown.end())
+    return input_error("{}: \"{}\" is no mesh format known here: give .obj (with parts), .off, .ply or .stl", path,
+                       extension);
+  if (path.empty()) return input_error("the name of a mesh is empty: name a file");
+  GONIO_ASSIGN(InputFile input, InputFile::open(path));
+  GONIO_ASSIGN(const std::string content, input.rest(std::string::npos));
+  if (extension.empty()) extension = extension_by_content(content);
+  const Source source{input.name(), is_plain_file(path) ? file.stem().string() : "mesh"};
+  GONIO_ASSIGN(const Polygons polygons, extension == ".obj" ? polygons_from_obj(content, source)
+                                                            : polygons_from_soup(content, extension, source));
+  return mesh_from_polygons(polygons, source.name);
 }
 
 }  // namespace goniochrome::mesh

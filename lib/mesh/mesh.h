@@ -42,7 +42,8 @@ Box bounding_box(const Mesh& mesh);
 
 // Reads OBJ, whose parts are its objects (`o`) or else its groups (`g`; a name that comes twice is one part), or OFF,
 // PLY or STL as a single part. Vertices without a normal get one: the mean over the faces around them, weighted by
-// angle and broken at edges sharper than 60 degrees. Triangles without area are dropped. Both are counted. Errors name
+// angle and broken at edges sharper than 60 degrees. Triangles without area are dropped. Both are counted. The ending
+// of the name tells the format; where there is none, as with pipes and standard input, the content does. Errors name
 // file, line and remedy.
 Result<Mesh> read_mesh(const std::string& path);
 

@@ -2,9 +2,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <map>
+#include <thread>
 
 #include "base/angles.h"
 #include "base/clock.h"
@@ -211,6 +214,46 @@ TEST_F(MeshFiles, OffPlyAndStlAreOnePartNamedForTheFile) {
     EXPECT_NEAR(area(*mesh), 1, 1e-15) << name;
     for (const Vec3& n : mesh->normals) EXPECT_EQ(n, (Vec3{0, 0, 1})) << name;
   }
+}
+
+// What a pipe holds is told by its content, since its name has no ending.
+TEST_F(MeshFiles, ContentTellsTheFormatWhereTheNameHasNoEnding) {
+  const std::string corners = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+  std::string binary(80, ' ');
+  binary.replace(0, 5, "solid");
+  binary += std::string("\1\0\0\0", 4);
+  const float facet[] = {0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 1, 0};
+  binary.append(reinterpret_cast<const char*>(facet), sizeof facet).append(2, '\0');
+  const std::vector<std::pair<std::string, double>> contents = {
+      // and the area of each
+      {"OFF\n4 1 0\n" + corners + "4 0 1 2 3\n", 1},
+      {"# made\n\nOFF\n4 1 0\n" + corners + "4 0 1 2 3\n", 1},
+      {"ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+       "property list uchar int vertex_indices\nend_header\n" +
+           corners + "4 0 1 2 3\n",
+       1},
+      {"solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\nendfacet\nendsolid "
+       "s\n",
+       0.5},
+      {binary, 0.5},
+      {"# OFF\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n", 0.5}};
+  for (const auto& [content, expected] : contents) {
+    const auto plain = read_mesh(file("hood", content));
+    ASSERT_TRUE(plain.ok()) << content << plain.error().message;
+    EXPECT_NEAR(area(*plain), expected, 1e-15) << content;
+    EXPECT_EQ(plain->parts[0].name, "hood");
+    const std::string fifo = folder_.path("fifo");
+    ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
+    std::thread writer([&, text = content] { std::ofstream(fifo, std::ios::binary) << text; });
+    const auto piped = read_mesh(fifo);
+    writer.join();
+    std::remove(fifo.c_str());
+    ASSERT_TRUE(piped.ok()) << content << piped.error().message;
+    EXPECT_EQ(piped->positions, plain->positions) << content;
+    EXPECT_EQ(piped->parts[0].name, "mesh");
+  }
+  EXPECT_THAT(read_mesh(file("none", "nothing\n")).error().message, HasSubstr("holds no faces"));
+  EXPECT_THAT(read_mesh("").error().message, HasSubstr("is empty"));
 }
 
 TEST_F(MeshFiles, TextureCoordinatesAreKept) {

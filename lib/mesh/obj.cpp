@@ -1,7 +1,6 @@
 // Wavefront OBJ, as far as a picture needs it: v, vt, vn, f, o, g, usemtl. Everything else (lines, smoothing groups,
 // material libraries) is passed over.
 #include <algorithm>
-#include <filesystem>
 #include <string_view>
 #include <unordered_map>
 
@@ -14,7 +13,8 @@ namespace {
 
 class ObjParser {
  public:
-  ObjParser(const std::string& text, const std::string& path) : text_(text), path_(path) {}
+  ObjParser(const std::string& text, const Source& source)
+      : text_(text), path_(source.name), part_name_of_file_(source.part_name) {}
 
   Result<Polygons> parse() {
     find_part_keyword();
@@ -34,7 +34,7 @@ class ObjParser {
       GONIO_TRY(statement(line));
     }
     if (mesh_.faces.empty()) return input_error("{}: holds no faces (f lines): there is nothing to draw", path_);
-    if (part_keyword_.empty()) mesh_.parts[0].name = std::filesystem::path(path_).stem().string();
+    if (part_keyword_.empty()) mesh_.parts[0].name = part_name_of_file_;
     return std::move(mesh_);
   }
 
@@ -180,6 +180,7 @@ class ObjParser {
 
   const std::string& text_;
   const std::string& path_;
+  const std::string& part_name_of_file_;
   std::size_t line_ = 0;
   std::string part_keyword_, part_name_, material_;
   std::unordered_map<std::string, std::uint32_t> part_index_;
@@ -189,8 +190,8 @@ class ObjParser {
 
 }  // namespace
 
-Result<Polygons> polygons_from_obj(const std::string& text, const std::string& path) {
-  return ObjParser(text, path).parse();
+Result<Polygons> polygons_from_obj(const std::string& text, const Source& source) {
+  return ObjParser(text, source).parse();
 }
 
 }  // namespace goniochrome::mesh

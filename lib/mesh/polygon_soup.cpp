@@ -10,7 +10,6 @@
 #include <sstream>
 
 #include "base/child.h"
-#include "base/file.h"
 #include "base/text.h"
 #include "mesh/internal/polygons.h"
 
@@ -111,9 +110,8 @@ class Soup {
 
 }  // namespace
 
-Result<Polygons> polygons_from_file(const std::string& path, const std::string& extension,
-                                    const std::string& part_name) {
-  GONIO_ASSIGN(const std::string content, file_content(path));
+Result<Polygons> polygons_from_soup(const std::string& content, const std::string& extension, const Source& source) {
+  const std::string& path = source.name;
   GONIO_ASSIGN(
       const ChildBytes bytes, made_by_child(path, limits_for(content.size()), [&](ChildOutput& output) -> Result<void> {
         std::vector<Point> points;
@@ -125,7 +123,7 @@ Result<Polygons> polygons_from_file(const std::string& path, const std::string& 
         put(output, points, faces);
         return {};
       }));
-  return Soup(bytes.view(), path).polygons(part_name);
+  return Soup(bytes.view(), path).polygons(source.part_name);
 }
 
 }  // namespace goniochrome::mesh

@@ -42,6 +42,7 @@ undisturbed() {
 }
 
 setup_file() {
+  command -v snakemake >/dev/null || skip "snakemake is not installed"
   cd "$BATS_FILE_TMPDIR"
   undisturbed
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/file.h"
+#include "base/paths.h"
 #include "base/text.h"
 #include "fit/basis_search.h"
 #include "fitting.h"
@@ -128,6 +129,11 @@ std::string plot_svg(const fit::BasisSearch& search, const std::vector<double>& 
   return report::svg({exponents, errors}, 1);
 }
 
+// The file of --each that gets the set of so many lobes.
+std::string each_name(const Options& options, std::size_t lobes) {
+  return fmt::format("{}{}.basis.xml", options.each, lobes);
+}
+
 formats::Basis basis_of(const Options& options, const fit::BasisSearch& search, const fit::FoundBasis& found) {
   formats::Basis basis{options.name.empty() ? fmt::format("b{}", found.exponents.size()) : options.name,
                        found.exponents,
@@ -167,6 +173,9 @@ void report(const fit::BasisSearch& search, const std::vector<fit::BasisTarget>&
 
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   GONIO_ASSIGN(const Range range, lobe_range(options.lobes));
+  if (!options.each.empty())
+    for (int lobes = range.first; lobes <= range.last; ++lobes)
+      GONIO_TRY(can_be_written(each_name(options, static_cast<std::size_t>(lobes))));
   GONIO_ASSIGN(const std::vector<fit::BasisTarget> targets, read_targets(options, session));
   fit::BasisSearchOptions search_options;
   search_options.method = options.method == "lm" ? fit::BasisMethod::kLevenbergMarquardt : fit::BasisMethod::kPowerMean;
@@ -195,8 +204,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   if (!options.plot.empty()) GONIO_TRY(write_file(options.plot, plot_svg(search, de00)));
   if (!options.each.empty())
     for (const fit::FoundBasis& set : search.sets)
-      GONIO_TRY(formats::write_basis(fmt::format("{}{}.basis.xml", options.each, set.exponents.size()),
-                                     basis_of(options, search, set)));
+      GONIO_TRY(formats::write_basis(each_name(options, set.exponents.size()), basis_of(options, search, set)));
   GONIO_TRY(formats::write_basis(options.output, basis_of(options, search, search.sets.back())));
   return search.stopped ? cli::Verdict::kStopped : cli::Verdict::kDone;
 }

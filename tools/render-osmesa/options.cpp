@@ -15,7 +15,8 @@ std::string engine_sentences() {
 
 void add_surfaces(cli::ToolSpec& spec, Options& o) {
   spec.heading = "surfaces";
-  spec.option("mesh,m", "FILE", "testdata/speed-shape.obj", &o.mesh, "mesh: OBJ with parts, or OFF, PLY, STL");
+  spec.option("mesh,m", "FILE", "testdata/speed-shape.obj", &o.mesh, "mesh: OBJ with parts, or OFF, PLY, STL")
+      .more("A name without an ending, such as that of a pipe, leaves it to the content to tell the format.");
   spec.option("gbuffer", "FILE", "view.exr", &o.gbuffer, "shade the buffers of an earlier picture instead of a mesh")
       .more(
           "The file is an EXR that was made with --aov normal,part. Its buffers and its attributes goniochrome:rays, "

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/paths.h"
 #include "base/text.h"
 #include "display/display.h"
 #include "picture_file.h"
@@ -395,6 +396,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
     display.emplace(std::move(made));
     session.results()["view"] = display->name();
   }
+  for (const std::string& name : shot_names(options)) GONIO_TRY(can_be_written(name));
   Stage stage;
   GONIO_TRY(set_stage(options, request, stage, session));
   if (stage.gbuffer) request.size = {stage.gbuffer->width, stage.gbuffer->height};

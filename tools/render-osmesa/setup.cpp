@@ -164,6 +164,18 @@ Result<void> set_ground(const FloorRequest& request, const Options& options, ren
   return {};
 }
 
+std::vector<std::string> shot_names(const Options& options) {
+  const int count = std::max(options.turntable, options.light_sweep);
+  if (count == 0) return {options.output};
+  const std::filesystem::path path(options.output);
+  std::vector<std::string> names;
+  for (int i = 0; i < count; ++i) {
+    const std::string name = fmt::format("{}-{:04}{}", path.stem().string(), i + 1, path.extension().string());
+    names.push_back((path.parent_path() / name).string());
+  }
+  return names;
+}
+
 Result<std::vector<Shot>> shots_of(const Options& options, const mesh::Mesh& mesh, const PictureSize& size,
                                    const std::vector<render::Light>& lights) {
   render::Camera camera;  // of --gbuffer it is not meant
@@ -176,16 +188,14 @@ Result<std::vector<Shot>> shots_of(const Options& options, const mesh::Mesh& mes
   if (count == 0) return std::vector<Shot>{{camera, lights, options.output}};
   if (options.output == "-") return usage_error("a sequence does not go on standard output: give --output a name");
   if (options.light_sweep > 0 && lights.empty()) return usage_error("--light-sweep needs a --light to move");
-  const std::filesystem::path path(options.output);
+  const std::vector<std::string> names = shot_names(options);
   std::vector<Shot> shots;
   for (int i = 0; i < count; ++i) {
     const double turn_rad = 2 * kPi * i / count, c = std::cos(turn_rad), s = std::sin(turn_rad);
     const auto turned = [&](const Vec3& v) { return Vec3{c * v.x + s * v.z, v.y, c * v.z - s * v.x}; };
-    Shot shot{camera, lights, ""};
+    Shot shot{camera, lights, names[static_cast<std::size_t>(i)]};
     if (options.turntable > 0) shot.camera.eye = camera.target + turned(camera.eye - camera.target);
     if (options.light_sweep > 0) shot.lights[0].direction = turned(lights[0].direction);
-    const std::string name = fmt::format("{}-{:04}{}", path.stem().string(), i + 1, path.extension().string());
-    shot.output = (path.parent_path() / name).string();
     shots.push_back(std::move(shot));
   }
   return shots;

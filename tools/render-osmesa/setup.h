@@ -53,6 +53,8 @@ struct Shot {
   std::vector<render::Light> lights;
   std::string output;
 };
+// The files that they are written to. A sequence on standard output, which is refused, has names all the same.
+std::vector<std::string> shot_names(const Options& options);
 // The pictures that --turntable or --light-sweep ask for, else the one. Error: a sequence on standard output, both at
 // once, or a sweep without a light.
 Result<std::vector<Shot>> shots_of(const Options& options, const mesh::Mesh& mesh, const PictureSize& size,

@@ -34,13 +34,18 @@ struct Polygons {
   std::vector<Part> parts;
 };
 
-// The polygons of an OBJ text; `path` is for messages, which name the line.
-Result<Polygons> polygons_from_obj(const std::string& text, const std::string& path);
+// Where the bytes of a mesh come from.
+struct Source {
+  std::string name;       // for messages
+  std::string part_name;  // of the one part of a mesh that names none
+};
 
-// The polygons of an OFF, PLY or STL file, as one part of that name. Normals in such files are not read. `extension` is
-// ".off", ".ply" or ".stl".
-Result<Polygons> polygons_from_file(const std::string& path, const std::string& extension,
-                                    const std::string& part_name);
+// The polygons of an OBJ text. Errors name the line.
+Result<Polygons> polygons_from_obj(const std::string& text, const Source& source);
+
+// The polygons of the bytes of an OFF, PLY or STL file, as one part. Normals in such files are not read. `extension`
+// is ".off", ".ply" or ".stl".
+Result<Polygons> polygons_from_soup(const std::string& content, const std::string& extension, const Source& source);
 
 // Triangulates, drops what has no area, makes missing normals and turns triangles to their normals.
 // Error: nothing is left.
