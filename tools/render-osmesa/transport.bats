@@ -104,5 +104,5 @@ figure() { grep -m1 "\"$1\"" "$2" | sed -E 's/.*: ([-0-9.e+a-z]+),?$/\1/'; }
   sketch-fit -q --pixels all -i anew.exr -b on-floor.exr -o sketch.xml --report sketch.json
   # Many of the 768 pixels show the floor, and none of them the paint.
   walls=$(render-osmesa -q --gbuffer view.exr -p fitted.xml#silver_fine -o walls.exr && oiiotool walls.exr --ch A --stats | awk '/Stats Avg/ { print $4 }')
-  awk -v p="$(figure used sketch.json)" -v share="$walls" 'BEGIN { exit !(p > 50 && p <= 768 * share) }'
+  awk -v p="$(figure pixels_used sketch.json)" -v share="$walls" 'BEGIN { exit !(p > 50 && p <= 768 * share) }'
 }
