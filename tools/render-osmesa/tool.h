@@ -37,7 +37,7 @@ struct Options {
   std::vector<std::string> split;
   int turntable = 0, light_sweep = 0;
   int check = 0;
-  std::string check_source, check_against = "model";
+  std::string check_source, check_against = "auto";
 };
 
 cli::ToolSpec tool_spec(Options& options);

@@ -73,7 +73,7 @@ void warn_of_left_out(const image::AovFile& buffers, cli::Session& session) {
   if (!buffers.drawn_by_rays.empty())
     session.warn(
         fmt::format("{} shows {}: no paint explains what the mesh does to light, so that the paint found is off: "
-                    "render picture and buffers with --effects auto,-shadow",
+                    "render picture and buffers with --effects auto,-rays, or the buffers with --aov transport",
                     buffers.path, buffers.drawn_by_rays));
   if (light.empty()) return;
   session.warn(

@@ -18,6 +18,7 @@ using rays::Spot;
 
 // A ray to a point of an emitter ends this part of the way short of it.
 constexpr float kShort = 1 - 1e-4F;
+constexpr float kInversePi = 1 / static_cast<float>(kPi);
 // From the third surface on a path goes on by chance; so many surfaces later never with more than this chance, so that
 // paths end between walls that send back everything.
 constexpr int kRouletteFrom = 3, kEndlessFrom = 64, kMostBounces = 4096;
@@ -281,7 +282,8 @@ PointTransport::PointTransport(const Transport& transport, const PathOptions& op
       options_(options),
       spot_(spot),
       to_viewer_(to_viewer),
-      painted_(transport.painted(spot, to_viewer)),
+      painted_(options.white ? PaintedPoint(Float3{kInversePi, kInversePi, kInversePi}, spot.shading, to_viewer)
+                             : transport.painted(spot, to_viewer)),
       is_laid_(transport.is_laid(spot)),
       correction_(options.correction || is_laid_) {
   sure_ = is_laid_ ? transport.open_ground(spot) : transport.emitters_.radiance(spot.part);

@@ -39,6 +39,8 @@ struct PathOptions {
   // Only what the mesh changes: the radiance with the mesh in the way less the radiance without it. That is 0 without
   // any noise where no ray is blocked. A floor that shows the environment is there either way, with all its radiance.
   bool correction = false;
+  // The point that is seen is matt white there, whatever its paint is. Surfaces that send light to it keep theirs.
+  bool white = false;
 };
 
 // What a point shows, by the way that the light took. The sum is what it shows.
