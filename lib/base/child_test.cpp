@@ -9,6 +9,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
+#include <memory>
 #include <new>
 #include <stdexcept>
 #include <thread>
@@ -74,6 +75,22 @@ TEST(Child, MemoryBeyondTheLimitIsAnError) {
                 return much[7] == 'x' ? Result<void>() : Result<void>(input_error("none"));
               }),
               HasSubstr("64 MB"));
+}
+
+// As libraries do that do not look at what malloc() returned: what they lacked is told, and not a damaged file.
+TEST(Child, CrashForWantOfMemoryIsToldAsThat) {
+  for (const int number : {SIGABRT, SIGSEGV})
+    EXPECT_THAT(error_of([&](ChildOutput&) -> Result<void> {
+                  std::vector<std::unique_ptr<char[]>> all;
+                  for (;;) {
+                    char* more = new (std::nothrow) char[1 << 20];
+                    if (more == nullptr) break;
+                    all.emplace_back(more);
+                  }
+                  raise(number);
+                  return {};
+                }),
+                HasSubstr("64 MB"));
 }
 #endif
 
