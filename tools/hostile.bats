@@ -284,6 +284,11 @@ usage() {
   xmllint --noout "$bad.cxf"
   printf 'series,x,y\na,1,2\n' | draw-plot -q --title "$bad" -o t.svg
   xmllint --noout t.svg
+  printf 'P6\n2 1\n255\nabcdef' >p.ppm
+  printf 'title %s <b>\nimage one p.ppm\npaint dawn\nface one@0,0\n' "$bad" >bad.board
+  paint-pick -q -b bad.board -o page.html
+  iconv -f UTF-8 -t UTF-8 page.html >/dev/null
+  grep -q '<title>caf.* &lt;b&gt;</title>' page.html
 }
 
 @test "images from pipes work in every tool that takes one" {
@@ -371,6 +376,15 @@ within() {
   within 20 200 paint-convert pieces.xml --to csv
   { printf '# made\n3\n400 550 700\n'; awk 'BEGIN { for (i = 0; i < 8000; ++i) printf "%g %g %g %g .3 .2 .1\n", .7, 0, i % 90 / 60, i / 900 }'; } >rows.brdf
   within 10 200 paint-convert rows.brdf --to csv
+  # 900 fields that lie over each other, each as large as the file of 440 kB.
+  /usr/bin/python3 - >over.bsdf <<'PY'
+import struct, sys
+fields = b"".join(struct.pack("<H", 4) + b"f%03d" % i + struct.pack("<HBQQ", 1, 10, 40000, 100000) for i in range(900))
+head = b"tensor_file\0" + struct.pack("<BBI", 1, 0, 900) + fields
+sys.stdout.buffer.write(head + bytes(440000 - len(head)))
+PY
+  within 3 200 paint-convert over.bsdf --to csv
+  grep -q 'its fields overlap' messages
   printf 'OFF\n100000000 100000000 0\n0 0 0\n1 0 0\n0 1 0\n' >forged.off
   within 5 400 render-osmesa --engine cpu --mesh forged.off --light 0,20 --size 16x16 -o x.png
 }
