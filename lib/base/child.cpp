@@ -59,7 +59,7 @@ std::size_t quarter = 0;
 
 // A library that gets no memory may abort or write to address 0. Where a quarter of what the child may take is not to
 // be had any more, want of memory is taken for the cause of a crash.
-void explain_crash(int number) {
+[[maybe_unused]] void explain_crash(int number) {
   if (mmap(nullptr, quarter, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0) == MAP_FAILED)
     _exit(kNoMemory);
   signal(number, SIG_DFL);

@@ -115,7 +115,7 @@ TEST(Child, ChangesNothingHere) {
 // A child whose parent has threads of parallel_for, which free what they had while the process is doubled.
 TEST(Child, CanBeMadeRightAfterALoop) {
   set_threads(4);
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < 40; ++i) {
     parallel_for(200, 1, [](std::size_t begin, std::size_t) { std::vector<char> much(1000 * (begin % 60 + 1)); });
     EXPECT_EQ(error_of([&](ChildOutput& output) -> Result<void> {
                 const std::vector<char> bytes(1 << 16);
