@@ -10,7 +10,7 @@ build_packages=(
 )
 test_packages=(
   bats coinor-libclp-dev file jq librsvg2-bin libbenchmark-dev libgmock-dev libgtest-dev libxml2-utils locales make mandoc
-  openexr openimageio-tools python3 python3-numpy python3-openimageio strace time
+  openexr openimageio-tools procps python3 python3-numpy python3-openimageio strace time
 )
 demo_packages=(fonts-dejavu-core openimageio-tools python3)
 

@@ -284,6 +284,11 @@ usage() {
   xmllint --noout "$bad.cxf"
   printf 'series,x,y\na,1,2\n' | draw-plot -q --title "$bad" -o t.svg
   xmllint --noout t.svg
+  printf 'P6\n2 1\n255\nabcdef' >p.ppm
+  printf 'title %s <b>\nimage one p.ppm\npaint dawn\nface one@0,0\n' "$bad" >bad.board
+  paint-pick -q -b bad.board -o page.html
+  iconv -f UTF-8 -t UTF-8 page.html >/dev/null
+  grep -q '<title>caf.* &lt;b&gt;</title>' page.html
 }
 
 @test "images from pipes work in every tool that takes one" {
@@ -296,6 +301,7 @@ usage() {
     wait $!
   }
   prefilter-envmap -q -e 6 -s 8 "$TESTDATA/studio.exr" -o sky.env.exr
+  prefilter-envmap -q -e 64 -s 8 --layout mip "$TESTDATA/studio.exr" -o mip.env.exr
   oiiotool --pattern fill:topleft=1,0,0:bottomright=0,.2,1 32x24 3 -d uint8 -o p.png
   render-osmesa -q --engine cpu --mesh "$TESTDATA/box.obj" --light 0,20 --size 32x24 --aov normal,aspecular,lambert,mask,part -o s.exr
   for image in "$TESTDATA/outdoor.exr" p.png; do
@@ -310,6 +316,7 @@ usage() {
   pipe_into white.png sketch-fit -q -i s.exr -b s.exr --mask fifo -o o.xml
   pipe_into s.exr render-osmesa -q --engine cpu --gbuffer fifo --light 0,20 -o o.exr
   pipe_into sky.env.exr render-osmesa -q --engine cpu --mesh "$TESTDATA/box.obj" --env fifo --size 32x24 -o o.png
+  pipe_into mip.env.exr render-osmesa -q --engine cpu --mesh "$TESTDATA/box.obj" --env fifo --size 32x24 -o o.png
 }
 
 @test "meshes from pipes work in every tool that takes one" {
@@ -369,22 +376,107 @@ within() {
   within 20 200 paint-convert pieces.xml --to csv
   { printf '# made\n3\n400 550 700\n'; awk 'BEGIN { for (i = 0; i < 8000; ++i) printf "%g %g %g %g .3 .2 .1\n", .7, 0, i % 90 / 60, i / 900 }'; } >rows.brdf
   within 10 200 paint-convert rows.brdf --to csv
+  # 900 fields that lie over each other, each as large as the file of 440 kB.
+  /usr/bin/python3 - >over.bsdf <<'PY'
+import struct, sys
+fields = b"".join(struct.pack("<H", 4) + b"f%03d" % i + struct.pack("<HBQQ", 1, 10, 40000, 100000) for i in range(900))
+head = b"tensor_file\0" + struct.pack("<BBI", 1, 0, 900) + fields
+sys.stdout.buffer.write(head + bytes(440000 - len(head)))
+PY
+  within 3 200 paint-convert over.bsdf --to csv
+  grep -q 'its fields overlap' messages
   printf 'OFF\n100000000 100000000 0\n0 0 0\n1 0 0\n0 1 0\n' >forged.off
   within 5 400 render-osmesa --engine cpu --mesh forged.off --light 0,20 --size 16x16 -o x.png
 }
 
-@test "with little memory every tool ends by itself and says what it lacked" {
+# every_tool: a line for each tool: the ending of its output, and the command without it.
+every_tool() {
+  { sed -n '1,/<\/paint>/p' "$TESTDATA/paints.paints.xml" && echo '</paints>'; } >one.xml
+  printf 'P6\n16 8\n255\n' >p.ppm && head -c 384 "$TESTDATA/contact-sheet.jpg" >>p.ppm
+  printf 'series,x,y\na,1,0.5\na,2,0.25\n' >table.csv
+  printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n' >tri.off
+  cat <<LIST
+csv paint-convert -q $TESTDATA/paints.paints.xml --to csv
+xml paint-edit -q one.xml --hue-shift 90
+tsv paint-stats -q one.xml
+xml fit-paint -q -b $TESTDATA/b5.basis.xml one.xml
+xml fit-basis -q --lobes 1 --starts 1 --angles 8 one.xml
+exr prefilter-envmap -q $TESTDATA/studio.exr -e 6,70 -s 8
+exr prefilter-envmap -q p.ppm -e 6 -s 4
+exr relight -q --from D65 --to A $TESTDATA/outdoor.exr
+tsv goniogeom-index -q one.xml --lights 30 --views as15
+xml trompe-fit -q one.xml --angle 2
+tsv colorsnap -q -l $TESTDATA/paints.paints.xml -k 1 one.xml
+xml paint-pick -q --face p.ppm@4,4
+svg plot-paint -q one.xml
+svg draw-plot -q table.csv
+png render-osmesa -q --engine cpu --mesh tri.off --light 0,20 --size 16x12 --samples 1
+png render-osmesa -q --mesh tri.off --light 0,20 --size 160x120
+LIST
+}
+
+@test "with little memory every tool says what it lacked, and soon" {
   if ldd "$(command -v paint-convert)" | grep -q libasan; then skip "built with a sanitizer"; fi
-  for kilobytes in 30000 90000 160000 250000 400000 700000; do
-    for line in "prefilter-envmap -q -e 6,70 -s 8 $TESTDATA/studio.exr" "fit-basis -q --lobes 1 --starts 1 --angles 8 $TESTDATA/paints.paints.xml" \
-      "relight -q --from D65 --to A $TESTDATA/outdoor.exr"; do
-      status=0
+  local tried=0 short=0
+  while read -r ending line; do
+    for kilobytes in 20000 50000 75000 110000 180000 260000 400000 410000 500000 1000000; do
+      status=0 tried=$((tried + 1))
       # shellcheck disable=SC2086
-      (ulimit -v "$kilobytes"; exec timeout -s KILL 60 $line -o o.exr) 2>err || status=$?
-      echo "$kilobytes: $line: exit $status: $(cat err)"
-      [ "$status" -le 1 ] || { [ "$status" -eq 3 ] && [ -s err ]; } || { [ "$status" -eq 127 ] && grep -q "shared object" err; }
+      /usr/bin/time -q -o used -f '%U %S' timeout -s KILL 60 bash -c 'ulimit -v "$1"; shift; exec "$@"' limited "$kilobytes" $line -o o.$ending \
+        >/dev/null 2>err </dev/null || status=$?
+      echo "$kilobytes: $line: exit $status, $(cat used) s: $(cat err)"
+      # The loader of programs says it in its own words.
+      if [ "$status" -eq 127 ]; then grep -q "shared" err && continue; fi
+      [ "$status" -le 1 ] && continue
+      short=$((short + 1))
+      [ "$status" -eq 3 ]
+      grep -qi memory err
+      # What was done before the memory ran out counts as well; the slowest loads all of the picture formats.
+      awk '{ exit !($1 + $2 <= 2) }' used
+    done
+  done < <(every_tool)
+  [ "$tried" -eq 160 ]
+  [ "$short" -ge 20 ]
+}
+
+@test "SIGTERM and SIGINT end every tool soon, while it reads, works, waits or lacks memory" {
+  { sed -n '1,/<\/paint>/p' "$TESTDATA/paints.paints.xml" && echo '</paints>'; } >one.xml
+  oiiotool --pattern constant:color=.5,.4,.3 6000x3000 3 -d uint16 --compression zip -o slow.tif
+  mkfifo nobody
+  # sent SECONDS COMMAND...: to be ended by $signal, or to be done before; 137 is a tool that did not listen for 10 s.
+  sent() {
+    local after=$1 status=0
+    shift
+    timeout --preserve-status -s "$signal" -k 10 "$after" "$@" >/dev/null 2>err </dev/null || status=$?
+    case $status in
+      0 | 1 | 3 | 130 | 143) return ;;
+    esac
+    echo "SIG$signal after $after s: $*: exit $status: $(cat err)"
+    return 1
+  }
+  for signal in TERM INT; do
+    for after in 0.02 0.1 0.3 0.7; do
+      sent $after paint-pick -q --face slow.tif@4,4 -o o.xml # a child reads it
+      sent $after bash -c 'ulimit -v 400000; exec "$@"' limited prefilter-envmap -q slow.tif -e 6 -s 8 -o o.exr
+      sent $after bash -c 'ulimit -v 400000; exec "$@"' limited prefilter-envmap -q "$TESTDATA/studio.exr" -e 6,70 -s 64 --verify 5000 -o o.exr
+      sent $after render-osmesa -q --engine gl --mesh "$TESTDATA/speed-shape.obj" --light 0,20 --size 1600x900 --samples 16 -o o.png
+      sent $after render-osmesa -q --engine path --mesh "$TESTDATA/box.obj" --light 0,20 --size 640x480 --tolerance .01 -o o.png
+      sent $after fit-basis -q --lobes 6..9 one.xml -o o.xml
+      sent $after trompe-fit -q one.xml --angle 2 -o o.xml
+    done
+    for waiting in "paint-pick -q --face nobody@1,1" "paint-convert -q nobody" "render-osmesa -q --light 0,20 -o o.png --mesh nobody" \
+      "prefilter-envmap -q -e 6 nobody -o o.exr"; do
+      # shellcheck disable=SC2086
+      sent 0.2 $waiting
+      [ ! -e o.exr ] || rm o.exr
     done
   done
+  # Nobody is left who reads for a tool that is gone.
+  for _ in {1..50}; do
+    pgrep -f "slow.tif@4,4 -o o.xml" >/dev/null || return 0
+    sleep 0.1
+  done
+  return 1
 }
 
 @test "SIGTERM and SIGINT end a tool wherever it is" {

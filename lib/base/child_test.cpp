@@ -9,6 +9,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
+#include <memory>
 #include <new>
 #include <stdexcept>
 #include <thread>
@@ -75,6 +76,22 @@ TEST(Child, MemoryBeyondTheLimitIsAnError) {
               }),
               HasSubstr("64 MB"));
 }
+
+// As libraries do that do not look at what malloc() returned: what they lacked is told, and not a damaged file.
+TEST(Child, CrashForWantOfMemoryIsToldAsThat) {
+  for (const int number : {SIGABRT, SIGSEGV})
+    EXPECT_THAT(error_of([&](ChildOutput&) -> Result<void> {
+                  std::vector<std::unique_ptr<char[]>> all;
+                  for (;;) {
+                    char* more = new (std::nothrow) char[1 << 20];
+                    if (more == nullptr) break;
+                    all.emplace_back(more);
+                  }
+                  raise(number);
+                  return {};
+                }),
+                HasSubstr("64 MB"));
+}
 #endif
 
 TEST(Child, TimeBeyondTheLimitIsAnError) {
@@ -98,7 +115,7 @@ TEST(Child, ChangesNothingHere) {
 // A child whose parent has threads of parallel_for, which free what they had while the process is doubled.
 TEST(Child, CanBeMadeRightAfterALoop) {
   set_threads(4);
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < 40; ++i) {
     parallel_for(200, 1, [](std::size_t begin, std::size_t) { std::vector<char> much(1000 * (begin % 60 + 1)); });
     EXPECT_EQ(error_of([&](ChildOutput& output) -> Result<void> {
                 const std::vector<char> bytes(1 << 16);

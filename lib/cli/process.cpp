@@ -21,7 +21,7 @@ constexpr int kInputStatus = 3;
 char out_of_memory[256];
 std::size_t out_of_memory_size = 0;
 
-void explain_crash(int number) {
+[[maybe_unused]] void explain_crash(int number) {
   if (is_short_of_memory()) {
     if (write(STDERR_FILENO, out_of_memory, out_of_memory_size) < 0) {
       // The exit status still tells.

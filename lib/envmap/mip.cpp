@@ -12,6 +12,7 @@
 #include <cmath>
 #include <exception>
 #include <functional>
+#include <new>
 
 #include "base/file.h"
 #include "base/text.h"
@@ -159,20 +160,26 @@ Result<std::vector<double>> mip_exponents(std::vector<double> given, int size) {
 
 Result<void> write_mip(const std::string& path, const std::vector<PrefilteredLobe>& levels, const std::string& source,
                        const std::string& command) {
+  const std::string shown = path.empty() || path == "-" ? "standard output" : path;
   try {
     return write_file(path, encoded(levels, source, command));
+  } catch (const std::bad_alloc&) {
+    return input_error("{}: cannot be written as EXR: there is too little memory for it", shown);
   } catch (const std::exception& e) {
-    return input_error("{}: cannot be written as EXR: {}", path.empty() || path == "-" ? "standard output" : path,
-                       e.what());
+    return input_error("{}: cannot be written as EXR: {}", shown, e.what());
   }
 }
 
-Result<PrefilteredEnvironment> read_mip(const std::string& path) {
+Result<PrefilteredEnvironment> read_mip(const std::string& content, const std::string& name) {
   try {
-    Imf::TiledInputFile file(path.c_str());
-    return levels_of(file, path);
+    Imf::StdISStream stream;
+    stream.str(content);
+    Imf::TiledInputFile file(stream);
+    return levels_of(file, name);
+  } catch (const std::bad_alloc&) {
+    return input_error("{}: is too large for the memory there is", name);
   } catch (const std::exception& e) {
-    return input_error("{}: cannot be read as a mip-mapped cube: {}", path, e.what());
+    return input_error("{}: cannot be read as a mip-mapped cube: {}", name, e.what());
   }
 }
 

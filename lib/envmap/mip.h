@@ -19,9 +19,9 @@ Result<std::vector<double>> mip_exponents(std::vector<double> given, int size);
 Result<void> write_mip(const std::string& path, const std::vector<PrefilteredLobe>& levels, const std::string& source,
                        const std::string& command);
 
-// Reads what write_mip() writes: the levels as lobes, without those of exponent 0; the level of exponent 1 is the
-// diffuse map as well. Error: the file is no mip-mapped cube, its attributes do not fit its levels, or none has the
-// exponent 1, with what makes one.
-Result<PrefilteredEnvironment> read_mip(const std::string& path);
+// Reads what write_mip() writes, the bytes of a file that errors call `name`: the levels as lobes, without those of
+// exponent 0; the level of exponent 1 is the diffuse map as well. Error: the file is no mip-mapped cube, its attributes
+// do not fit its levels, or none has the exponent 1, with what makes one.
+Result<PrefilteredEnvironment> read_mip(const std::string& content, const std::string& name);
 
 }  // namespace goniochrome::envmap

@@ -7,8 +7,10 @@
 #include <cmath>
 #include <cstdint>
 
+#include "base/file.h"
 #include "base/parallel.h"
 #include "envmap/mip.h"
+#include "image/exr.h"
 
 namespace goniochrome::envmap {
 
@@ -164,8 +166,11 @@ const PrefilteredLobe* PrefilteredEnvironment::lobe(double exponent) const {
 }
 
 Result<PrefilteredEnvironment> read_env(const std::string& path) {
-  GONIO_ASSIGN(std::vector<image::ImagePart> parts, image::read_exr(path));
-  if (!text_attribute(parts.front(), "goniochrome:exponents").empty()) return read_mip(path);
+  GONIO_ASSIGN(InputFile input, InputFile::open(path));
+  GONIO_ASSIGN(const std::string content, input.rest(std::string::npos));
+  if (content.empty()) return input_error("{}: is empty: name an EXR file", input.name());
+  GONIO_ASSIGN(std::vector<image::ImagePart> parts, image::decoded_exr(content, input.name()));
+  if (!text_attribute(parts.front(), "goniochrome:exponents").empty()) return read_mip(content, input.name());
   PrefilteredEnvironment env;
   env.mirror.exponent = paint::kMirrorExponent;
   for (image::ImagePart& part : parts) {

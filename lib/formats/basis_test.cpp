@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "base/scratch_for_test.h"
 #include "base/testdata_for_test.h"
 
@@ -28,6 +30,18 @@ TEST(BasisXml, SurvivesWithItsErrorTable) {
   ASSERT_TRUE(sample.ok());
   EXPECT_EQ(sample->exponents, (std::vector<double>{1.3, 6, 20, 70, 250, 900, 3000}));
   EXPECT_TRUE(sample->mirror);
+}
+
+TEST(BasisXml, WhatIsNotFiniteIsNotWritten) {
+  const ScratchFolder folder;
+  for (const double wrong : {std::nan(""), HUGE_VAL}) {
+    for (const Basis& basis : {Basis{"b", {1, wrong}, false, {}}, Basis{"b", {1, 2}, false, {{2, wrong, 1, 1}}}}) {
+      const auto written = write_basis(folder.path("b.xml"), basis);
+      ASSERT_FALSE(written.ok());
+      EXPECT_THAT(written.error().message, HasSubstr("not finite"));
+    }
+  }
+  EXPECT_EQ(folder.files(), 0u);
 }
 
 TEST(BasisXml, WrongValuesAreNamedWithLineAndRemedy) {

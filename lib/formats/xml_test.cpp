@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <functional>
 
 #include "base/scratch_for_test.h"
 #include "base/testdata_for_test.h"
@@ -216,6 +218,29 @@ TEST(PaintXml, OneWrongValueLosesOnePaint) {
   EXPECT_EQ(reading.paints[0].name, "a");
   EXPECT_EQ(reading.paints[1].name, "c");
   EXPECT_THAT(reading.errors, ElementsAre("p.xml:10: a is \"two\": write a number such as 12.5"));
+}
+
+// The check that all writers share.
+TEST(PaintXml, WhatIsNoColorOrNotFiniteIsNotWritten) {
+  const ScratchFolder folder;
+  const auto refused = [&](const std::function<void(paint::Paint&)>& spoil) {
+    paint::Paint paint = full_paint();
+    spoil(paint);
+    const auto written = write_all(folder.path("p.xml"), {paint});
+    return written.ok() ? std::string() : written.error().message;
+  };
+  EXPECT_EQ(refused([](paint::Paint&) {}), "");
+  std::filesystem::remove(folder.path("p.xml"));
+  for (const double wrong : {std::nan(""), HUGE_VAL, 1e50}) {
+    EXPECT_NE(refused([&](paint::Paint& p) { p.measurement->rows[0].lab.a = wrong; }), "") << wrong;
+    EXPECT_NE(refused([&](paint::Paint& p) { p.appearance->face.L = wrong; }), "") << wrong;
+  }
+  for (const double wrong : {std::nan(""), HUGE_VAL}) {
+    EXPECT_NE(refused([&](paint::Paint& p) { p.appearance->travel_deg = wrong; }), "") << wrong;
+    EXPECT_NE(refused([&](paint::Paint& p) { p.gloss[0].gloss_units = wrong; }), "") << wrong;
+    EXPECT_NE(refused([&](paint::Paint& p) { p.lobes->lobes[0].gloss.x = wrong; }), "") << wrong;
+  }
+  EXPECT_EQ(folder.files(), 0u);
 }
 
 TEST(PaintXml, WrongValuesAreNamedWithLineAndRemedy) {

@@ -85,6 +85,12 @@ def environments():
     put("probe-hdr", "runs.hdr", head + (bytes([2, 2, 0, 16]) + bytes([144, 128, 4, 9, 8, 7, 6, 140, 5, 144, 32, 144, 129])) * 8)
     out = HERE / "corpus" / "env-exr" / "sky.env.exr"
     tool("prefilter-envmap", "-q", sky, "--exponents", "6", "--size", "2", "-o", out)
+    tool("prefilter-envmap", "-q", sky, "--exponents", "4", "--size", "2", "--layout", "mip", "-o", out.with_name("mip.env.exr"))
+
+
+def buffers():
+    tool("render-osmesa", "-q", "--engine", "cpu", "--mesh", TESTDATA / "box.obj", "--light", "0,20", "--size", "8x6", "--samples", "1",
+         "--aov", "normal,aspecular,lambert,mask,part", "-o", put("buffers-exr", "box.exr", b""))
 
 
 def meshes():
@@ -140,5 +146,5 @@ def operators():
     put("operator-json", "plain.json", json.dumps({"name": "plain", "k": plain}))
 
 
-paints(), bases(), measured(), environments(), meshes(), pictures(), operators()
+paints(), bases(), measured(), environments(), buffers(), meshes(), pictures(), operators()
 print(sum(f.stat().st_size for f in HERE.glob("corpus/*/*")), "bytes", file=sys.stderr)

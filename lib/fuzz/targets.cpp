@@ -17,6 +17,7 @@
 #include "formats/csv.h"
 #include "formats/cxf.h"
 #include "formats/xml.h"
+#include "image/aov_file.h"
 #include "image/hdr.h"
 #include "image/image.h"
 #include "image/surface_file.h"
@@ -131,6 +132,11 @@ void read_texture(const std::string& path) {
   if (!texture.ok()) demand_message(texture.error());
 }
 
+void read_buffers(const std::string& path) {
+  const auto buffers = image::read_aov_file(path);
+  if (!buffers.ok()) demand_message(buffers.error());
+}
+
 void read_mesh(const std::string& path) {
   const auto mesh = mesh::read_mesh(path);
   if (!mesh.ok()) demand_message(mesh.error());
@@ -161,6 +167,7 @@ const std::vector<FuzzTarget>& fuzz_targets() {
       {"image-tiff", "a.tif", read_picture},
       {"image-other", "a.image", read_picture},
       {"sbrdf-exr", "a.sbrdf.exr", read_texture},
+      {"buffers-exr", "a.exr", read_buffers},
       {"probe-hdr", "a.hdr", read_probe},
       {"operator-json", "a.json", read_operator},
   };

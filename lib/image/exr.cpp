@@ -25,6 +25,7 @@
 
 #include "base/file.h"
 #include "base/parallel.h"
+#include "image/exr.h"
 #include "image/image.h"
 #include "image/internal/exr.h"
 
@@ -353,6 +354,8 @@ Result<void> write_exr(const std::string& path, const std::vector<ImagePart>& pa
     auto content = encoded(parts);
     if (!content.ok()) return input_error("{}: {}", shown, content.error().message);
     return write_file(path, content.value());
+  } catch (const std::bad_alloc&) {
+    return input_error("{}: cannot be written as EXR: there is too little memory for it", shown);
   } catch (const std::exception& e) {
     return input_error("{}: cannot be written as EXR: {}", shown, e.what());
   }

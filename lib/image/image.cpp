@@ -14,6 +14,7 @@
 #include "base/child.h"
 #include "base/file.h"
 #include "base/paths.h"
+#include "image/exr.h"
 #include "image/hdr.h"
 #include "image/image.h"
 #include "image/internal/content_format.h"
@@ -44,11 +45,20 @@ Result<Module> loaded_module() {
   if (loaded.read) return loaded;
   const std::string path = module_path().string();
   void* handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (!handle)
+  if (!handle) {
+    // The loader tells by a sentence alone that it had no memory.
+    const std::string reason = dlerror();
+    for (const char* words : {"failed to map", "annot allocate memory", "cannot create shared object"})
+      if (reason.find(words) != std::string::npos)
+        return input_error(
+            "{}: cannot be loaded, for there is too little memory ({}): give it 600 MB of addresses, or convert the "
+            "image to EXR",
+            path, reason);
     return input_error(
         "{}: cannot be loaded ({}): it reads every format but EXR; install it there, set GONIOCHROME_MODULE_PATH to "
         "its folder, or convert the image to EXR",
-        path, dlerror());
+        path, reason);
+  }
   loaded.read = reinterpret_cast<GoniochromeOiioRead>(dlsym(handle, kOiioReadName));
   if (!loaded.read) return input_error("{}: is not of this version of Goniochrome: install both from one build", path);
   return loaded;
@@ -168,9 +178,10 @@ class MemoryFile {
   bool whole_ = false;
 };
 
-// Addresses for one picture: the library's own, and 8 times the floats that a file of its size can hold.
+// Addresses for one picture: the libraries' own, of which 400 MB are their code, and 8 times the floats that a file of
+// its size can hold.
 ChildLimits limits_for(std::size_t file_bytes) {
-  constexpr std::size_t kOwn = std::size_t{1} << 29, kFloatsAByte = 1100;
+  constexpr std::size_t kOwn = std::size_t{1} << 30, kFloatsAByte = 1100;
   const std::size_t floats = std::min(kMostSamples, kFloatsAByte * file_bytes);
   return {kOwn + 8 * sizeof(float) * floats, 60 + static_cast<int>(file_bytes >> 20)};
 }

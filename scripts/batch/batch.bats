@@ -45,6 +45,23 @@ setup() {
   [ -n "$(jq -r '.failed[0].fit' one/report.json)" ]
 }
 
+@test "elements named paint of another vocabulary are no paints, in a paint and beside it" {
+  {
+    sed -n '1,/<paints/p' metallic.xml
+    echo '<paint xmlns="urn:other"/><box xmlns="urn:other"><paint name="boxed">x</paint></box><!-- <paint> -->'
+    echo '<o:paint xmlns:o="urn:other"><o:paint/></o:paint>'
+    sed -n '/<paint /,/<\/paint>/p' metallic.xml | awk '{ print } /<\/paint>/ { exit }' |
+      sed 's|</paint>|<paint xmlns="urn:other" name="inner">a note</paint></paint>|'
+    echo '<o:paint xmlns:o="urn:other"/></paints>'
+  } >foreign.xml
+  batch plan foreign.xml --out foreign --size 64x48 --env-size 16 --basis "$TESTDATA/b5.basis.xml"
+  [ "$(jq .paints foreign/plan.json)" -eq 1 ]
+  batch shard foreign 0
+  batch merge foreign
+  [ "$(jq .fitted foreign/report.json)" -eq 1 ]
+  [ "$(jq .pictures foreign/report.json)" -eq 1 ]
+}
+
 @test "the report is the same for any shards" {
   whole three --shard-paints 3
   whole each --shard-paints 1

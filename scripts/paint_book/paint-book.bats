@@ -122,6 +122,14 @@ PY
   [ "$(grep -c '</script>' small.html)" -eq 2 ]
 }
 
+@test "names and titles in bytes outside UTF-8 give a page in UTF-8" {
+  library=$(printf 'caf\351.paints.xml')
+  cp small.paints.xml "$library"
+  book "$library" --env small.env.exr --basis "$TESTDATA/b5.basis.xml" --size 32x24 --title "$(printf 'caf\351 <b>')" -o bad.html
+  iconv -f UTF-8 -t UTF-8 bad.html >/dev/null
+  grep -q '<title>caf.* &lt;b&gt;</title>' bad.html
+}
+
 @test "the downloads read back with the paint's numbers" {
   /usr/bin/python3 - small.html <<'PY'
 import json, re, sys

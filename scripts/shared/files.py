@@ -16,7 +16,8 @@ def write_whole(path, content):
     "-" is standard output. What is no plain file (a device, a pipe) is written to and not replaced, and so is a name of an
     open file. A file that is replaced keeps its mode, its owner where that is allowed, and the links that lead to it.
     """
-    content = content if isinstance(content, bytes) else content.encode()
+    # Names from the command line may hold bytes outside UTF-8, which the text must not.
+    content = content if isinstance(content, bytes) else content.encode(errors="replace")
     named = OPEN_FILE.fullmatch(str(path))
     descriptor = int(named[1]) if named else NAMES.get(str(path))
     if descriptor is not None:

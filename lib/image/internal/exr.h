@@ -1,11 +1,8 @@
-// OpenEXR pictures in memory: what the readers of this room and the module of the other formats share.
+// What the readers of this room and the module of the other formats share.
 #pragma once
 
-#include <string>
+#include <cstddef>
 #include <string_view>
-#include <vector>
-
-#include "image/image.h"
 
 namespace goniochrome::image {
 
@@ -16,8 +13,5 @@ constexpr std::size_t kMostSamples = std::size_t{1} << 31;
 inline bool is_exr(std::string_view head) {
   return head.starts_with("\x76\x2f\x31\x01");
 }
-
-// All parts of an EXR file held in memory; `name` is what errors call it.
-Result<std::vector<ImagePart>> decoded_exr(const std::string& content, const std::string& name);
 
 }  // namespace goniochrome::image

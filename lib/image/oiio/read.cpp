@@ -2,7 +2,9 @@
 #include <OpenImageIO/imageio.h>
 
 #include <exception>
+#include <new>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "image/internal/exr.h"
@@ -109,6 +111,10 @@ extern "C" __attribute__((visibility("default"))) void goniochrome_oiio_read_4(c
     read({path, format, bytes, keep_inks != 0}, context, take, fail);
   } catch (const std::bad_alloc&) {
     throw;
+  } catch (const std::system_error& e) {
+    // A thread that cannot be started lacks the memory for its stack.
+    if (e.code() == std::errc::resource_unavailable_try_again) throw std::bad_alloc();
+    fail(context, e.what());
   } catch (const std::exception& e) {
     fail(context, e.what());
   }
