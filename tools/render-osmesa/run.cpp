@@ -10,7 +10,6 @@
 #include "picture_file.h"
 #include "plan_text.h"
 #include "render/left_out.h"
-#include "render/plan/ray_plan.h"
 #include "stage.h"
 #include "truth_check.h"
 

@@ -99,10 +99,10 @@ figure() { grep -m1 "\"$1\"" "$2" | sed -E 's/.*: ([-0-9.e+a-z]+),?$/\1/'; }
   render-osmesa -q "${view[@]}" -p fitted.xml#silver_fine -o anew.exr
   render-osmesa -q --gbuffer on-floor.exr -p fitted.xml#silver_fine -o shaded.exr
   # Light of both pictures, floor and all; they differ by noise.
-  mean() { oiiotool "$1" --ch R,G,B --stats | awk '/Stats Avg/ { print $4 }'; }
+  mean() { oiiotool --stats "$1" | awk '/Stats Avg/ { print $4 }'; }
   awk -v a="$(mean anew.exr)" -v b="$(mean shaded.exr)" 'BEGIN { exit !(a > 0 && b / a > 0.97 && b / a < 1.03) }'
   sketch-fit -q --pixels all -i anew.exr -b on-floor.exr -o sketch.xml --report sketch.json
   # Many of the 768 pixels show the floor, and none of them the paint.
-  walls=$(render-osmesa -q --gbuffer view.exr -p fitted.xml#silver_fine -o walls.exr && oiiotool walls.exr --ch A --stats | awk '/Stats Avg/ { print $4 }')
+  walls=$(render-osmesa -q --gbuffer view.exr -p fitted.xml#silver_fine -o walls.exr && oiiotool --stats walls.exr | awk '/Stats Avg/ { print $6 }')
   awk -v p="$(figure pixels_used sketch.json)" -v share="$walls" 'BEGIN { exit !(p > 50 && p <= 768 * share) }'
 }
