@@ -107,6 +107,7 @@ class ChannelColorimeter {
 struct MeasuredReading {
   paint::Geometry geometry;
   color::Lab lab;
+  std::vector<double> factors = {};     // reflectance factors per channel of the file, 0 where a channel was negative
   double gap_deg = 0, outside_deg = 0;  // of the value it came from
   bool negative = false;                // a channel was below 0 and was taken as 0
   bool noise = false;                   // Y is below the noise floor

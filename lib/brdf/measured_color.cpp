@@ -76,11 +76,12 @@ Result<MeasuredColor> measured_color(const MeasuredBrdf& brdf, const MeasuredCol
       result.unmeasured.push_back(geometry);
       continue;
     }
-    MeasuredReading reading{geometry, {}, value.gap_deg, value.outside_deg};
+    MeasuredReading reading{geometry, {}, {}, value.gap_deg, value.outside_deg};
     for (double& f : value.f) {
       reading.negative = reading.negative || f < 0;
       f = kPi * std::max(f, 0.0);
     }
+    reading.factors = value.f;
     const color::Xyz xyz = color.xyz(value.f);
     reading.noise = xyz.Y < options.noise_floor;
     reading.lab = color::lab_from_xyz(xyz, color.white());

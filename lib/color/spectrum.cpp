@@ -12,11 +12,23 @@ namespace goniochrome::color {
 
 namespace {
 
+// The columns of both tables, side by side.
+constexpr std::array kIlluminants = {"D65", "D50", "A", "C", "D55", "D75", "F2", "F7", "F11"};
+constexpr std::size_t kFirstColumns = 3;
+
 std::optional<std::size_t> illuminant_column(const std::string& name) {
-  if (name == "D65") return 0;
-  if (name == "D50") return 1;
-  if (name == "A") return 2;
-  return std::nullopt;
+  const auto* found = std::ranges::find(kIlluminants, name);
+  if (found == kIlluminants.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - kIlluminants.begin());
+}
+
+// Fluorescent lamps have lines, so that straight lines between their values would spread them: each value stands for
+// the light of its 5 nm, all of it at the wavelength of the table.
+constexpr std::size_t kFirstLamp = 6;
+
+double illuminant_power(std::size_t row, std::size_t column) {
+  return column < kFirstColumns ? kCieTable[row].illuminants[column]
+                                : kMoreIlluminantTable[row][column - kFirstColumns];
 }
 
 // The nodes of the interpolating cubic at `x`: two on either side, three in all at the ends of the list (CIE 167:2005).
@@ -51,8 +63,9 @@ Triple weighted_observer(double nm, std::size_t illuminant, int observer_deg) {
   }();
   const double at = (nm - kCieStart_nm) / kCieStep_nm;
   const auto i = std::min(static_cast<std::size_t>(at), kCieTable.size() - 2);
-  const double light = std::lerp(kCieTable[i].illuminants[illuminant], kCieTable[i + 1].illuminants[illuminant],
-                                 at - static_cast<double>(i));
+  const double between = at - static_cast<double>(i);
+  if (illuminant >= kFirstLamp && between != 0 && between != 1) return {};
+  const double light = std::lerp(illuminant_power(i, illuminant), illuminant_power(i + 1, illuminant), between);
   Triple result{};
   const Window window = window_around(kWavelengths_nm, nm);
   for (std::size_t k = window.first; k < window.first + window.count; ++k) {
@@ -65,15 +78,24 @@ Triple weighted_observer(double nm, std::size_t illuminant, int observer_deg) {
 
 }  // namespace
 
+std::string spectral_illuminants() {
+  std::string all;
+  for (std::size_t i = 0; i < kIlluminants.size(); ++i)
+    all += (i == 0 ? "" : i + 1 < kIlluminants.size() ? ", " : " or ") + std::string(kIlluminants[i]);
+  return all;
+}
+
 // X = k sum_l S(l) xbar(l) R(l) over every nanometer, k = 1 / sum_l S(l) ybar(l) (CIE 15:2004, 7.1). The 5 nm of the
-// tables become 1 nm as their makers say: the illuminants along straight lines, the color-matching functions along
-// cubics. R between the measured wavelengths is the Lagrange cubic through four of them; beyond them the outermost
-// value is held. All this is linear in R, so it folds into one weight per measured wavelength.
+// tables become 1 nm as their makers say: the illuminants (but for lamps with lines) along straight lines, the
+// color-matching functions along cubics. R between the measured wavelengths is the Lagrange cubic through four of them;
+// beyond them the outermost value is held. All this is linear in R, so it folds into one weight per measured
+// wavelength.
 Result<SpectralColorimeter> SpectralColorimeter::make(std::span<const double> wavelengths_nm,
                                                       const ViewingCondition& condition) {
   const auto illuminant = illuminant_column(condition.illuminant);
   if (!illuminant)
-    return input_error("illuminant is \"{}\": spectra are integrated under D65, D50 or A", condition.illuminant);
+    return input_error("illuminant is \"{}\": spectra are integrated under {}", condition.illuminant,
+                       spectral_illuminants());
   if (condition.observer_deg != 2 && condition.observer_deg != 10)
     return input_error("observer is {} deg: the standard observers are 2 and 10 deg", condition.observer_deg);
   if (wavelengths_nm.size() < 2) return input_error("a spectrum needs at least two wavelengths");

@@ -4,12 +4,16 @@
 
 #include <array>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "base/result.h"
 #include "color/color.h"
 
 namespace goniochrome::color {
+
+// The illuminants under which spectra are integrated, for help and messages: "D65, D50, ... or F11".
+std::string spectral_illuminants();
 
 // Turns reflectance factors at fixed wavelengths into XYZ and Lab under one viewing condition. Lab is relative to the
 // white that the perfect diffuser has in the same sum, so it needs no second table.

@@ -44,6 +44,16 @@ TEST(Spectrum, WhiteIsThePublishedOne) {
   const std::map<std::pair<std::string, int>, std::pair<double, double>> published = {
       {{"D65", 2}, {0.9504, 1.0888}},  {{"D65", 10}, {0.9481, 1.0732}}, {{"D50", 2}, {0.9642, 0.8251}},
       {{"D50", 10}, {0.9672, 0.8143}}, {{"A", 2}, {1.0985, 0.3558}},    {{"A", 10}, {1.1114, 0.3520}}};
+  // The whites that ASTM E308 prints, from sums by its own tables.
+  for (const char* other : {"C", "D55", "D75", "F2", "F7", "F11"})
+    for (const int observer : {2, 10}) {
+      const Xyz sum = colorimeter(nm, {other, observer}).white();
+      const auto printed = white_point({other, observer});
+      ASSERT_TRUE(printed.ok());
+      EXPECT_NEAR(sum.X, printed->X, 3e-4) << other << observer;
+      // C is printed from another table of its powers than that of CIE 15.
+      EXPECT_NEAR(sum.Z, printed->Z, std::string_view(other) == "C" ? 6e-4 : 3e-4) << other << observer;
+    }
   for (const auto& [condition, xz] : published) {
     const Xyz white = colorimeter(nm, {condition.first, condition.second}).white();
     EXPECT_NEAR(white.X, xz.first, 2e-4) << condition.first << condition.second;
@@ -87,7 +97,8 @@ TEST(Spectrum, SaysHowMuchWasHeldBeyondTheEnds) {
 
 TEST(Spectrum, RefusesWhatItCannotIntegrate) {
   const std::vector<double> good = {400, 500}, twice = {400, 400, 500}, one = {400};
-  EXPECT_NE(SpectralColorimeter::make(good, {"F2", 2}).error().message.find("D65, D50 or A"), std::string::npos);
+  EXPECT_NE(SpectralColorimeter::make(good, {"F4", 2}).error().message.find("D65, D50, A, C, D55, D75, F2, F7 or F11"),
+            std::string::npos);
   EXPECT_FALSE(SpectralColorimeter::make(good, {"D65", 4}).ok());
   EXPECT_FALSE(SpectralColorimeter::make(twice, {"D65", 2}).ok());
   EXPECT_FALSE(SpectralColorimeter::make(one, {"D65", 2}).ok());

@@ -268,10 +268,11 @@ class CxfResolver {
       if (!object.joined.empty()) open_->paint.name = object.joined;
     }
     joined_ = object.joined;
-    std::map<std::string, std::size_t> lab_values, spectra, used;  // per specification
+    std::map<std::string, std::size_t> lab_values, spectra, used, kept;  // per specification
     for (const RawColor& color : object.colors) ++(color.spectrum.empty() ? lab_values : spectra)[color.specification];
     for (const RawColor& color : object.colors) {
       const bool spectral = !color.spectrum.empty();
+      if (spectral) keep_spectrum(color, spectra[color.specification], kept[color.specification]++);
       if (spectral && lab_values.contains(color.specification)) continue;  // the file's own Lab is what it says
       const std::size_t values = (spectral ? spectra : lab_values)[color.specification];
       GONIO_TRY(place(color, values, used[color.specification]++));
@@ -294,6 +295,19 @@ class CxfResolver {
   std::vector<paint::Paint>& paints() { return paints_; }
 
  private:
+  // The k-th of n spectra under one specification, at the angles that place() gives it.
+  void keep_spectrum(const RawColor& color, std::size_t n, std::size_t k) {
+    const auto found = specifications_.find(color.specification);
+    if (found == specifications_.end()) return;
+    const Specification& specification = found->second;
+    const double first_nm = color.first_nm > 0 ? color.first_nm : specification.first_nm;
+    const bool placed = n == 1 || n == specification.angles.size();
+    if (!placed || first_nm <= 0 || specification.step_nm <= 0 || color.spectrum.size() < 2) return;
+    for (std::size_t i = 0; i < specification.angles.size(); ++i)
+      if (n == 1 || i == k)
+        open_->spectra.push_back({specification.angles[i], first_nm, specification.step_nm, color.spectrum});
+  }
+
   // The k-th of n values under one specification: n angles take one each, a single value stands for all.
   Result<void> place(const RawColor& color, std::size_t n, std::size_t k) {
     const auto found = specifications_.find(color.specification);

@@ -60,6 +60,10 @@ Result<void> check_writable(const paint::Paint& paint) {
   for (const color::Lab& lab : colors)
     if (const auto checked = check_lab(lab); !checked.ok()) return refused(checked.error().message);
   bool finite = !paint.appearance || std::isfinite(paint.appearance->travel_deg);
+  if (paint.measurement)
+    for (const paint::SpectrumReading& spectrum : paint.measurement->spectra)
+      finite = finite && spectrum.factors.size() > 1 &&
+               std::ranges::all_of(spectrum.factors, [](double value) { return std::isfinite(value); });
   for (const paint::GlossReading& gloss : paint.gloss) finite = finite && std::isfinite(gloss.gloss_units);
   if (paint.lobes) {
     finite = finite && is_finite(paint.lobes->diffuse, paint.lobes->lobes);
@@ -138,6 +142,12 @@ bool OpenPaint::complete(const ImportOptions& options, Remarks& remarks) {
       remarks.note("several readings at one geometry: the first was taken",
                    fmt::format("{} at {}", paint.name, paint::geometry_name(reading.geometry)));
   }
+  for (const paint::SpectrumReading& spectrum : spectra)
+    if (std::ranges::find(measurement.rows, spectrum.geometry, &paint::LabReading::geometry) !=
+            measurement.rows.end() &&
+        std::ranges::find(measurement.spectra, spectrum.geometry, &paint::SpectrumReading::geometry) ==
+            measurement.spectra.end())
+      measurement.spectra.push_back(spectrum);
   if (others)
     remarks.note(fmt::format("readings under other illuminants or observers than {}/{} were left out: choose with "
                              "--illuminant and --observer",

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <deque>
 
 #include "base/text.h"
@@ -20,6 +21,7 @@ enum class Node {
   kPaint,
   kMeasurement,
   kLab,
+  kSpectrum,
   kGloss,
   kAppearance,
   kFace,
@@ -46,6 +48,7 @@ constexpr std::array kRules = {
     ElementRule{Node::kPaint, Node::kPaints, "paint", "name class? code?"},
     ElementRule{Node::kMeasurement, Node::kPaint, "measurement", "illuminant observer instrument?"},
     ElementRule{Node::kLab, Node::kMeasurement, "lab", "geometry L a b"},
+    ElementRule{Node::kSpectrum, Node::kMeasurement, "spectrum", "geometry from to step"},
     ElementRule{Node::kGloss, Node::kPaint, "gloss", "angle"},
     ElementRule{Node::kAppearance, Node::kPaint, "appearance", "travel residual_de00?"},
     ElementRule{Node::kFace, Node::kAppearance, "face", "L a b"},
@@ -107,6 +110,8 @@ class PaintHandler : public XmlHandler {
   Result<void> begin_paint(const XmlValues& values);
   Result<void> begin_measurement(const XmlValues& values);
   Result<void> begin_lab(const XmlValues& values);
+  Result<void> begin_spectrum(const XmlValues& values);
+  Result<void> finish_spectrum();
   Result<void> begin_gloss(const XmlValues& values);
   Result<void> begin_appearance(const XmlValues& values);
   Result<void> begin_lobes(const XmlValues& values);
@@ -129,8 +134,9 @@ class PaintHandler : public XmlHandler {
   int paint_line_ = 0;
   std::size_t paint_bytes_ = 0;
   bool has_face_ = false, has_flop_ = false, has_diffuse_ = false, has_view_diffuse_ = false;
-  std::string gloss_text_;
-  int gloss_line_ = 0;
+  std::string value_text_;  // of the <gloss> or <spectrum> that is open
+  int value_line_ = 0;
+  std::size_t spectrum_values_ = 0;  // that its attributes announce
 };
 
 Result<void> PaintHandler::lose_paint(const Error& error) {
@@ -211,6 +217,8 @@ Result<void> PaintHandler::begin(Node node, const XmlValues& values) {
       return begin_measurement(values);
     case Node::kLab:
       return begin_lab(values);
+    case Node::kSpectrum:
+      return begin_spectrum(values);
     case Node::kGloss:
       return begin_gloss(values);
     case Node::kAppearance:
@@ -299,9 +307,55 @@ Result<void> PaintHandler::begin_gloss(const XmlValues& values) {
   if (std::ranges::find(paint_.gloss, angle_deg, &paint::GlossReading::angle_deg) != paint_.gloss.end())
     return values.error(fmt::format("a second gloss at {} deg: keep one", angle));
   paint_.gloss.push_back({angle_deg, 0});
-  gloss_text_.clear();
-  gloss_line_ = values.tag().line;
+  value_text_.clear();
+  value_line_ = values.tag().line;
   return {};
+}
+
+Result<void> PaintHandler::begin_spectrum(const XmlValues& values) {
+  constexpr double kMostValues = 2001;
+  auto& spectra = paint_.measurement->spectra;
+  paint::SpectrumReading spectrum;
+  auto geometry = paint::parse_geometry(values.text("geometry"));
+  if (!geometry.ok()) return values.error(geometry.error().message);
+  for (const paint::SpectrumReading& other : spectra)
+    if (other.geometry == *geometry)
+      return values.error(fmt::format("a second spectrum at {}: keep one", paint::geometry_name(*geometry)));
+  if (spectra.size() >= kMostRows) return values.error(fmt::format("more than {} spectra in one paint", kMostRows));
+  spectrum.geometry = *geometry;
+  double to_nm = 0;
+  GONIO_TRY(values.number("from", spectrum.from_nm, Domain::kPositive));
+  GONIO_TRY(values.number("to", to_nm, Domain::kPositive));
+  GONIO_TRY(values.number("step", spectrum.step_nm, Domain::kPositive));
+  if (to_nm <= spectrum.from_nm) return values.error("to", "it must be above `from` (nanometers)");
+  const double steps = (to_nm - spectrum.from_nm) / spectrum.step_nm;
+  if (std::abs(steps - std::round(steps)) > 1e-6 || steps + 1 > kMostValues)
+    return values.error("step", fmt::format("the way from {} to {} nm must be whole steps, at most {} of them",
+                                            shortest(spectrum.from_nm), shortest(to_nm), kMostValues - 1));
+  spectrum_values_ = static_cast<std::size_t>(std::lround(steps)) + 1;
+  spectra.push_back(std::move(spectrum));
+  value_text_.clear();
+  value_line_ = values.tag().line;
+  return {};
+}
+
+Result<void> PaintHandler::finish_spectrum() {
+  paint::SpectrumReading& spectrum = paint_.measurement->spectra.back();
+  const std::string_view text = value_text_;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find_first_of(" \t\r\n", at), text.size());
+    if (end > at) {
+      const auto value = number_in(text.substr(at, end - at));
+      if (!value.ok())
+        return input_error("{}:{}: value {} of the spectrum at {} {}", file_, value_line_, spectrum.factors.size() + 1,
+                           paint::geometry_name(spectrum.geometry), value.error().message);
+      spectrum.factors.push_back(*value);
+    }
+    at = end + 1;
+  }
+  if (spectrum.factors.size() == spectrum_values_) return {};
+  return input_error("{}:{}: the spectrum at {} has {} values, and its wavelengths make {}", file_, value_line_,
+                     paint::geometry_name(spectrum.geometry), spectrum.factors.size(), spectrum_values_);
 }
 
 Result<void> PaintHandler::begin_appearance(const XmlValues& values) {
@@ -353,7 +407,7 @@ Result<void> PaintHandler::begin_lobe(const XmlValues& values, std::vector<paint
 Result<void> PaintHandler::text(std::string_view text, int line) {
   if (lost_) return {};
   if (copy_.active()) return copy_.text(text), Result<void>();
-  if (current() == Node::kGloss) return gloss_text_ += text, Result<void>();
+  if (current() == Node::kGloss || current() == Node::kSpectrum) return value_text_ += text, Result<void>();
   const std::string_view words = trimmed(text);
   if (words.empty()) return {};
   return lose_paint(input_error("{}:{}: text \"{}\" stands between elements: remove it", file_, line, shown(words)));
@@ -388,6 +442,8 @@ Result<void> PaintHandler::finish(Node node, int line) {
     case Node::kMeasurement:
       if (paint_.measurement->rows.empty()) return lacks("lab");
       break;
+    case Node::kSpectrum:
+      return finish_spectrum();
     case Node::kAppearance:
       if (!has_face_) return lacks("face");
       if (!has_flop_) return lacks("flop");
@@ -399,8 +455,8 @@ Result<void> PaintHandler::finish(Node node, int line) {
       if (!has_view_diffuse_) return lacks("diffuse");
       break;
     case Node::kGloss: {
-      auto gloss = number_in(gloss_text_, Domain::kNotNegative);
-      if (!gloss.ok()) return input_error("{}:{}: gloss {}", file_, gloss_line_, gloss.error().message);
+      auto gloss = number_in(value_text_, Domain::kNotNegative);
+      if (!gloss.ok()) return input_error("{}:{}: gloss {}", file_, value_line_, gloss.error().message);
       paint_.gloss.back().gloss_units = *gloss;
       break;
     }

@@ -344,5 +344,48 @@ TEST(PaintXml, WriterRefusesWhatXmlCannotHold) {
   EXPECT_FALSE(std::filesystem::exists(folder.path("p.xml")));
 }
 
+const std::string kRow = "<lab geometry=\"45as15\" L=\"50\" a=\"0\" b=\"0\"/>\n";
+
+TEST(PaintXml, SpectraAreReadAndWrittenAgain) {
+  const Reading reading = reading_of_text(document(measured(
+      "p", kRow + "<spectrum geometry=\"45as15\" from=\"400\" to=\"420\" step=\"10\">\n 0.1 0.25\n1.5 </spectrum>\n"
+                  "<spectrum geometry=\"45as25az90\" from=\"380\" to=\"385\" step=\"2.5\">0 -0.01 1e-3</spectrum>\n")));
+  ASSERT_THAT(reading.errors, ElementsAre());
+  const paint::Measurement& measurement = *reading.paints.at(0).measurement;
+  ASSERT_EQ(measurement.spectra.size(), 2U);
+  EXPECT_THAT(measurement.spectra[0].factors, ElementsAre(0.1, 0.25, 1.5));
+  EXPECT_EQ(measurement.spectra[0].to_nm(), 420);
+  EXPECT_EQ(measurement.spectra[1].step_nm, 2.5);
+  const ScratchFolder folder;
+  ASSERT_TRUE(write_all(folder.path("out.xml"), reading.paints).ok());
+  const Reading again = reading_of(folder.path("out.xml"));
+  ASSERT_THAT(again.errors, ElementsAre());
+  for (std::size_t i = 0; i < 2; ++i) {
+    const paint::SpectrumReading &a = measurement.spectra[i], &b = again.paints.at(0).measurement->spectra.at(i);
+    EXPECT_EQ(a.factors, b.factors);
+    EXPECT_EQ(a.geometry, b.geometry);
+    EXPECT_EQ(a.from_nm, b.from_nm);
+  }
+}
+
+TEST(PaintXml, WrongSpectraAreToldWhereTheyStand) {
+  const auto told = [&](const std::string& spectrum) { return only_error(document(measured("p", kRow + spectrum))); };
+  const std::string range = " from=\"400\" to=\"420\" step=\"10\">", good = "<spectrum geometry=\"45as15\"" + range;
+  EXPECT_EQ(told(good + "1 2</spectrum>"), "p.xml:6: the spectrum at 45as15 has 2 values, and its wavelengths make 3");
+  EXPECT_EQ(told(good + "1 0,5 2</spectrum>"),
+            "p.xml:6: value 2 of the spectrum at 45as15 is \"0,5\": write a decimal point");
+  EXPECT_EQ(told(good + "1 nan 2</spectrum>"),
+            "p.xml:6: value 2 of the spectrum at 45as15 is \"nan\": write a finite number");
+  EXPECT_EQ(told(good + "1 2 3</spectrum>" + good + "1 2 3</spectrum>"),
+            "p.xml:6: a second spectrum at 45as15: keep one");
+  EXPECT_EQ(told("<spectrum geometry=\"45as15\" from=\"420\" to=\"400\" step=\"10\">1</spectrum>"),
+            "p.xml:6: to is \"400\": it must be above `from` (nanometers)");
+  EXPECT_THAT(told("<spectrum geometry=\"45as15\" from=\"400\" to=\"425\" step=\"10\">1 2 3</spectrum>"),
+              HasSubstr("must be whole steps"));
+  EXPECT_THAT(told("<spectrum geometry=\"45as15\" from=\"400\" to=\"4e9\" step=\"1\">1</spectrum>"),
+              HasSubstr("at most 2000 of them"));
+  EXPECT_THAT(told("<spectrum geometry=\"15nonsense\"" + range + "1 2 3</spectrum>"), HasSubstr("15nonsense"));
+}
+
 }  // namespace
 }  // namespace goniochrome::formats

@@ -33,6 +33,14 @@ std::string measurement_element(const paint::Measurement& measurement) {
                      optional_attribute("instrument", measurement.instrument) + ">\n";
   for (const paint::LabReading& row : measurement.rows)
     text += "      <lab" + attribute("geometry", paint::geometry_name(row.geometry)) + lab_attributes(row.lab) + "/>\n";
+  for (const paint::SpectrumReading& spectrum : measurement.spectra) {
+    text += "      <spectrum" + attribute("geometry", paint::geometry_name(spectrum.geometry)) +
+            attribute("from", spectrum.from_nm) + attribute("to", spectrum.to_nm()) +
+            attribute("step", spectrum.step_nm) + ">";
+    for (std::size_t i = 0; i < spectrum.factors.size(); ++i)
+      text += (i == 0 ? "" : " ") + shortest(spectrum.factors[i]);
+    text += "</spectrum>\n";
+  }
   return text + "    </measurement>\n";
 }
 

@@ -141,6 +141,7 @@ void put_back(Paint& paint, Locus locus) {
   if (!paint.measurement) return;
   paint.measurement->rows = std::move(locus.rows);
   paint.measurement->instrument.clear();
+  paint.measurement->spectra.clear();  // they are those of the color before
 }
 
 void drop_lobes(Paint& paint, Edited& result) {

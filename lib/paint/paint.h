@@ -21,11 +21,22 @@ struct LabReading {
   color::Lab lab;
 };
 
-// What an instrument or a designer stated: Lab at several geometries, all under one viewing condition.
+// Reflectance factors (1 = perfect diffuser) at equal steps of wavelength.
+struct SpectrumReading {
+  Geometry geometry;
+  double from_nm = 400, step_nm = 10;
+  std::vector<double> factors;
+
+  double to_nm() const { return from_nm + step_nm * (static_cast<double>(factors.size()) - 1); }
+};
+
+// What an instrument or a designer stated: Lab at several geometries, all under one viewing condition; and the spectra
+// behind them, where they are known. Whoever changes rows removes the spectra.
 struct Measurement {
   color::ViewingCondition condition;
   std::string instrument;
   std::vector<LabReading> rows;
+  std::vector<SpectrumReading> spectra = {};
 };
 
 struct GlossReading {

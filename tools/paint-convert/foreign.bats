@@ -102,7 +102,7 @@ brdf() {
   [[ "$stderr" == *"--cxf-compat is for CxF, and the output is long table: give --to cxf"* ]]
   run --separate-stderr paint-convert paints.csv --to cgats --illuminant A
   [ "$status" -eq 0 ]
-  [[ "$stderr" == *"paints.csv: --illuminant and --observer do nothing to a long table"* ]]
+  [[ "$stderr" == *"paints without spectra stay as they are: nothing tells their color under A/10 (plain)"* ]]
 }
 
 @test "a measured BRDF becomes a paint under the illuminant and observer asked for" {
@@ -127,9 +127,9 @@ brdf() {
   [ "$status" -eq 3 ]
   [[ "$stderr" =~ short.brdf:[0-9]+:\ 5\ numbers\ where\ 4\ angles\ and\ 2\ wavelengths\ make\ 6 ]]
   brdf 7 >gray.brdf
-  run --separate-stderr paint-convert gray.brdf --illuminant F11
+  run --separate-stderr paint-convert gray.brdf --illuminant F4
   [ "$status" -eq 3 ]
-  [[ "$stderr" == *'gray.brdf: illuminant is "F11": spectra are integrated under D65, D50 or A' ]]
+  [[ "$stderr" == *'gray.brdf: illuminant is "F4": spectra are integrated under D65, D50, A, C, D55, D75, F2, F7 or F11' ]]
   for option in --illuminant --observer --aperture; do
     run --separate-stderr paint-convert gray.brdf $option
     [ "$status" -eq 2 ]
@@ -175,4 +175,40 @@ brdf() {
   done
   run --separate-stderr paint-convert -q "$GONIOCHROME_DATA/cxf/geometry_edge_cases.cxf" --to csv
   [ "$(tail -n +2 <<<"$output" | cut -d, -f2 | tr '\n' ' ')" = "45as15 45as25 45as45 45as15az30 45as25az60 " ]
+}
+
+@test "spectra are kept in paint XML, and give the colors in other light" {
+  brdf 7 >gray.brdf
+  paint-convert -q gray.brdf -o gray.xml
+  [ "$(grep -c '<spectrum geometry="45as[0-9]*" from="380" to="780" step="400">0.5[0-9]* 0.5[0-9]*</spectrum>\|<spectrum geometry="45as[0-9]*" from="380" to="780" step="400">0.4999[0-9]* 0.4999[0-9]*</spectrum>' gray.xml)" -eq 5 ]
+  # A slope from blue to red, which is redder and lighter under A; what was made for the light before goes.
+  {
+    echo '<paints xmlns="urn:goniochrome:paint:1" version="1"><paint name="slope">'
+    echo '<measurement illuminant="D65" observer="10"><lab geometry="45as15" L="60" a="1" b="2"/><lab geometry="45as45" L="50" a="0" b="0"/>'
+    echo '<spectrum geometry="45as15" from="400" to="700" step="100">0.1 0.2 0.4 0.8</spectrum></measurement>'
+    echo '<lobes space="lin_rec2020_scene" basis="b" method="l1" max_de00="0" mean_de00="0"><diffuse r="0.1" g="0.1" b="0.1"/></lobes></paint>'
+    echo '<paint name="plain"><measurement illuminant="D65" observer="10"><lab geometry="45as15" L="60" a="1" b="2"/></measurement></paint></paints>'
+  } >slope.xml
+  run --separate-stderr paint-convert slope.xml --illuminant A -o a.xml
+  [ "$status" -eq 0 ]
+  [[ "$stderr" == *"readings without a spectrum are left out"*"(slope)"* ]]
+  [[ "$stderr" == *"lobes and color maps are left out: they are those of the light before (slope)"* ]]
+  [[ "$stderr" == *"paints without spectra stay as they are: nothing tells their color under A/10 (plain)"* ]]
+  [ "$(grep -c '<lobes' a.xml)" -eq 0 ]
+  [ "$(grep -c '<spectrum' a.xml)" -eq 1 ]
+  grep -q 'illuminant="A" observer="10"' a.xml
+  paint-convert -q slope.xml --illuminant D50 | grep -q 'illuminant="D50"'
+  light() { sed -nE 's/.*45as15" L="([0-9.]*)".*/\1/p' "$1" | head -1; }
+  paint-convert -q slope.xml --illuminant C -o c.xml
+  awk -v a="$(light a.xml)" -v c="$(light c.xml)" 'BEGIN { exit !(a > c + 1) }'
+  # There and back again, nothing is lost.
+  paint-convert -q a.xml --illuminant C -o again.xml
+  [ "$(grep '<lab' again.xml)" = "$(grep '<lab' c.xml)" ]
+  # A color that is changed has no spectrum any more, and other formats say that they hold none.
+  paint-edit -q --lightness-shift 2 slope.xml | grep -c '<spectrum' | grep -qx 0
+  run --separate-stderr paint-convert slope.xml --to csv
+  [[ "$stderr" == *"spectra are left out: only paint XML holds them (slope)"* ]]
+  run --separate-stderr paint-convert slope.xml --illuminant F4
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *'paint "slope": illuminant is "F4"'* ]]
 }

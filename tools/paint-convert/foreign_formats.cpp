@@ -6,6 +6,7 @@
 #include "formats/cgats.h"
 #include "formats/cxf.h"
 #include "paint/curve.h"
+#include "paint/spectra.h"
 
 namespace goniochrome::tool {
 
@@ -130,8 +131,11 @@ class MeasuredSource : public PaintSource {
     paint::Paint paint;
     paint.name = name_ == "standard input" ? "measured" : std::filesystem::path(name_).stem().string();
     paint.measurement = paint::Measurement{color->condition, "", {}};
-    for (const brdf::MeasuredReading& reading : color->readings)
+    for (const brdf::MeasuredReading& reading : color->readings) {
       paint.measurement->rows.push_back({reading.geometry, reading.lab});
+      const auto spectrum = paint::spectrum_of(reading.geometry, brdf->traits().wavelengths_nm, reading.factors);
+      if (spectrum) paint.measurement->spectra.push_back(*spectrum);
+    }
     figures_ = as_json(paint.name, brdf->traits(), told, *color);
     return std::optional(std::move(paint));
   }

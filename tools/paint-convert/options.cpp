@@ -1,6 +1,7 @@
 #include "tool.h"
 
 #include "brdf/measured.h"
+#include "color/spectrum.h"
 #include "formats.h"
 
 namespace goniochrome::tool {
@@ -12,8 +13,10 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("from", "FORMAT", "csv", &o.from, "format of every input").one_of(input_format_names());
   spec.option("illuminant", "NAME", "A", &o.illuminant, "illuminant of the readings, such as D65, D50 or A")
       .more(
-          "It picks the readings that are taken from CxF and CGATS, and measured spectra are integrated under it. auto "
-          "takes the first readings, and D65 for spectra.");
+          "It picks the readings that are taken from CxF and CGATS, and measured spectra are integrated under it: "
+          "those "
+          "of measured BRDFs, of CxF and of paint XML, under " +
+          color::spectral_illuminants() + ". auto takes the first readings, and D65 for spectra.");
   spec.option("observer", "DEG", "2", &o.observer, "observer of the readings")
       .one_of({"auto", "2", "10"})
       .more("It does the same as --illuminant. auto takes the first readings, and 10 degrees for spectra.");
@@ -106,6 +109,11 @@ cli::ToolSpec tool_spec(Options& o) {
       "has a face, a flop and a travel but no rows. It gets rows where readings are written: at 15, 45 and 110 degrees "
       "and at 25, 45 and 75 degrees, which are the two sets of the industry, or at those of --geometry. What the "
       "output cannot hold is named in a warning.",
+      "Paint XML keeps the spectra of measured BRDFs and of CxF, one for each geometry. With --illuminant or "
+      "--observer, "
+      "a paint that has spectra gets the readings that these make in that light, and its face and flop are fitted "
+      "again; its lobes and its color map, which are those of the light before, are left out. A paint without spectra "
+      "stays as it is, and a warning says so.",
       "A wrong value stops the conversion, and the output file stays as it was."};
   spec.inputs = {"INPUT", "paint XML, tables, CxF, CGATS or measured BRDFs; - or none is standard input", &o.inputs};
   add_options(spec, o);

@@ -7,6 +7,8 @@
 #include "base/text.h"
 #include "formats.h"
 #include "formats/imported.h"
+#include "paint/curve.h"
+#include "paint/spectra.h"
 #include "selection.h"
 
 namespace goniochrome::tool {
@@ -75,6 +77,7 @@ class Conversion {
  private:
   Result<void> pass(paint::Paint paint, const PaintSource& source);
   Result<void> skip(const Error& error);
+  Result<void> bring_to_light(paint::Paint& paint);
 
   const Options& options_;
   const SourceSetup& setup_;
@@ -94,12 +97,43 @@ Result<void> Conversion::skip(const Error& error) {
   return {};
 }
 
+// Readings under the illuminant and observer asked for, from spectra. What was made for the light before is made again
+// or left out.
+Result<void> Conversion::bring_to_light(paint::Paint& paint) {
+  const formats::ImportOptions& asked = setup_.import;
+  if (!paint.measurement || (asked.illuminant.empty() && asked.observer_deg == 0)) return {};
+  color::ViewingCondition condition = paint.measurement->condition;
+  if (!asked.illuminant.empty()) condition.illuminant = asked.illuminant;
+  if (asked.observer_deg != 0) condition.observer_deg = asked.observer_deg;
+  if (condition == paint.measurement->condition) return {};
+  if (paint.measurement->spectra.empty()) {
+    remarks_.note(fmt::format("paints without spectra stay as they are: nothing tells their color under {}/{}",
+                              condition.illuminant, condition.observer_deg),
+                  paint.name);
+    return {};
+  }
+  const std::size_t rows = paint.measurement->rows.size();
+  GONIO_ASSIGN(paint.measurement, paint::under_light(*paint.measurement, condition));
+  if (paint.measurement->rows.size() < rows)
+    remarks_.note("readings without a spectrum are left out: nothing tells their color in other light", paint.name);
+  if (paint.appearance) {
+    GONIO_ASSIGN(const paint::AppearanceFit fit, paint::appearance_from_rows(paint.measurement->rows));
+    paint.appearance = fit.appearance;
+  }
+  if (paint.lobes || paint.color_map)
+    remarks_.note("lobes and color maps are left out: they are those of the light before", paint.name);
+  paint.lobes.reset(), paint.color_map.reset();
+  return {};
+}
+
 Result<void> Conversion::pass(paint::Paint paint, const PaintSource& source) {
   ++read;
   if (const auto other = names_.note(paint.name, static_cast<int>(inputs_.size())))
     if (*other != static_cast<int>(inputs_.size()))
       return skip(input_error("{}: paint \"{}\" is also in {}: rename one of them", source.place(), paint.name,
                               inputs_[*other - 1]));
+  const auto relit = bring_to_light(paint);
+  if (!relit.ok()) return skip(input_error("{}: paint \"{}\": {}", source.place(), paint.name, relit.error().message));
   const auto selected = selection_.apply(paint, remarks_);
   if (!selected.ok()) return skip(input_error("{}: {}", source.place(), selected.error().message));
   GONIO_TRY(sink_.write(paint));
@@ -114,9 +148,6 @@ Result<void> Conversion::convert(Input& input) {
     GONIO_ASSIGN(input.source, open_source(input.path, options_.from, setup_));
   }
   for (const std::string& warning : input.source->warnings()) session_.warn(warning);
-  if (!input.source->takes_condition() && !(setup_.import.illuminant.empty() && setup_.import.observer_deg == 0))
-    session_.warn(fmt::format("{}: --illuminant and --observer do nothing to a {}: it states its own", input.path,
-                              input.source->format()));
   for (;;) {
     auto paint = input.source->next();
     if (!paint.ok()) {

@@ -59,6 +59,9 @@ void Selection::keep_chosen(paint::Paint& paint, formats::Remarks& remarks) cons
   if (options_.geometry.empty() && chosen_rows < paint.measurement->rows.size())
     remarks.note("rows beside the usual six geometries are left out: name the columns with --geometry", paint.name);
   paint.measurement->rows = std::move(kept);
+  std::erase_if(paint.measurement->spectra, [&](const paint::SpectrumReading& spectrum) {
+    return std::ranges::find(chosen_, spectrum.geometry) == chosen_.end();
+  });
 }
 
 void Selection::note_losses(const paint::Paint& paint, bool designed, formats::Remarks& remarks) const {
@@ -66,6 +69,7 @@ void Selection::note_losses(const paint::Paint& paint, bool designed, formats::R
     if (there) remarks.note(fmt::format("{} left out: only paint XML holds them", what), paint.name);
   };
   lost(paint.lobes.has_value(), "lobes are");
+  lost(paint.measurement && !paint.measurement->spectra.empty(), "spectra are");
   lost(paint.appearance.has_value() && !designed, "face, flop and travel are");
   lost(paint.anisotropy || paint.color_map, "anisotropy and color maps are");
   lost(!paint.foreign.empty(), "elements of other vocabularies are");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 namespace goniochrome::color {
 
@@ -15,5 +16,9 @@ struct CieRow {
 constexpr int kCieRows = 85;
 constexpr double kCieStart_nm = 360, kCieStep_nm = 5;  // to 780 nm
 extern const std::array<CieRow, kCieRows> kCieTable;
+
+// Further illuminants at the same wavelengths: C, D55, D75, F2, F7 and F11, relative.
+constexpr std::size_t kMoreIlluminants = 6;
+extern const std::array<std::array<double, kMoreIlluminants>, kCieRows> kMoreIlluminantTable;
 
 }  // namespace goniochrome::color
