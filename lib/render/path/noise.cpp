@@ -53,7 +53,6 @@ Covariance Estimates::covariance() const {
 // L, a and b are linear in the error to first order: dL = 116 f'(Y) dY and so on. CIEDE2000 weighs it along L, chroma
 // and hue by the S functions; its a' = (1 + G) a stretches grays.
 double noise_de00(const color::Rgb& radiance, const Covariance& covariance, double white_luminance) {
-  if (covariance[0] == 0 && covariance[1] == 0 && covariance[2] == 0) return 0;
   const auto& rows = relative_xyz_rows();
   const double scale = 1 / white_luminance;
   Curve f[3];

@@ -1,6 +1,5 @@
-// Error beside time: a vehicle under measured light, by paths that correct the open light, by paths alone, and by light
-// that is gathered at few points. Folders of data: GONIOCHROME_DATA, else the speed shape under the project's own
-// studio.
+// Error beside time: a vehicle under measured light, by paths that correct the open light, and by paths alone. Folders
+// of data: GONIOCHROME_DATA, else the speed shape under the project's own studio.
 #include <benchmark/benchmark.h>
 #include <cstdlib>
 #include <filesystem>
@@ -8,9 +7,7 @@
 
 #include "base/angles.h"
 #include "base/clock.h"
-#include "base/parallel.h"
 #include "base/testdata_for_test.h"
-#include "prefilter/prefilter.h"
 #include "render/camera.h"
 #include "render/exact.h"
 #include "render/internal/seen.h"
@@ -24,7 +21,6 @@ struct BenchScene {
   mesh::Mesh mesh;
   std::optional<envmap::Environment> environment;
   std::optional<envmap::BlockTree> blocks;
-  envmap::PrefilteredEnvironment maps;
   Scene scene;
   std::optional<Transport> transport;
   VisibleSurface surface;
@@ -56,8 +52,7 @@ std::vector<std::string> probes() {
   return paths;
 }
 
-// `with_floor`: the ground of the environment under the mesh, and maps for the paint.
-std::unique_ptr<BenchScene> bench_scene(const std::string& probe, int width, int height, bool with_floor = false) {
+std::unique_ptr<BenchScene> bench_scene(const std::string& probe, int width, int height) {
   auto bench = std::make_unique<BenchScene>();
   const char* data = std::getenv("GONIOCHROME_DATA");
   auto mesh = mesh::read_mesh(data != nullptr ? std::string(data) + "/mesh/vehicle.obj" : testdata("speed-shape.obj"));
@@ -71,21 +66,6 @@ std::unique_ptr<BenchScene> bench_scene(const std::string& probe, int width, int
   PathScene path;
   path.scene = &bench->scene;
   path.environment = &*bench->environment;
-  if (with_floor) {
-    prefilter::PrefilterRequest request;
-    for (const paint::Lobe& lobe : silver().lobes)
-      if (!lobe.is_mirror()) request.exponents.push_back(lobe.exponent);
-    bench->maps =
-        prefilter::prefiltered(*bench->environment, request, prefilter::prefilter_plan(*bench->environment, request),
-                               [](const envmap::PrefilteredLobe&, double) {});
-    bench->scene.env = &bench->maps, bench->scene.texels = &*bench->blocks;
-    const mesh::Box box = bounding_box(bench->mesh);
-    bench->scene.ground.emplace();
-    bench->scene.ground->height = box.low.y;
-    bench->scene.ground->probe_eye = {0.5 * (box.low.x + box.high.x), box.low.y + 1.2 * (box.high.y - box.low.y),
-                                      0.5 * (box.low.z + box.high.z)};
-    path.ground = bench->scene.ground;
-  }
   auto transport = Transport::create(path);
   if (!transport.ok()) return nullptr;
   bench->transport.emplace(*std::move(transport));
@@ -145,82 +125,6 @@ void BM_Noise(benchmark::State& state) {
 BENCHMARK(BM_Noise)
     ->ArgNames({"probe", "correction", "bounces", "tolerance"})
     ->ArgsProduct({{0, 1, 2, 3}, {1, 0}, {0, 4}, {100, 50}})
-    ->Unit(benchmark::kSecond)
-    ->Iterations(1)
-    ->MeasureProcessCPUTime()
-    ->UseRealTime();
-
-// The colors of some points of the mesh and of the floor by so many paths that little noise is left.
-struct Truth {
-  std::vector<std::size_t> numbers;  // among the points of a picture
-  std::vector<PathEstimate> estimates;
-};
-Truth truth_of(const BenchScene& bench, const PathPicture& picture, const PathRequest& request, int count,
-               int batches) {
-  Truth truth;
-  std::vector<std::size_t> kinds[2];
-  for (std::size_t i = 0; i < picture.points.size(); ++i) kinds[picture.points[i].floor ? 1 : 0].push_back(i);
-  for (const std::vector<std::size_t>& kind : kinds)
-    for (std::size_t k = 0; k < static_cast<std::size_t>(count) && !kind.empty(); ++k)
-      truth.numbers.push_back(kind[mixed(k, 5) % kind.size()]);
-  truth.estimates.resize(truth.numbers.size());
-  parallel_for(truth.numbers.size(), 1, [&](std::size_t begin, std::size_t) {
-    const PathPoint& point = picture.points[truth.numbers[begin]];
-    const rays::Spot spot = spot_at(bench.transport->rays(), bench.surface, point.x, point.y);
-    truth.estimates[begin] = path_estimate(*bench.transport, request.options, spot,
-                                           bench.surface.gbuffer.to_viewer(point.x, point.y), batches, 1000 + begin);
-  });
-  return truth;
-}
-
-// The 95th percentile of the differences to it, over the mesh or over the floor, whichever is larger, and the share of
-// intervals of two standard deviations that cover it.
-std::pair<double, double> error_of(const PathPicture& picture, const Truth& truth, double white) {
-  std::vector<double> errors[2];
-  double within = 0;
-  for (std::size_t k = 0; k < truth.numbers.size(); ++k) {
-    const PathPoint& point = picture.points[truth.numbers[k]];
-    const PathEstimate& there = truth.estimates[k];
-    const double difference = seen_difference(point.radiance, there.radiance, white);
-    within += difference <= 2 * std::hypot(point.noise_de00, noise_de00(there.radiance, there.covariance, white));
-    errors[point.floor ? 1 : 0].push_back(difference);
-  }
-  return {std::max(percentile_95(errors[0]), percentile_95(errors[1])),
-          within / static_cast<double>(truth.numbers.size())};
-}
-
-// The whole picture with a floor. Arguments: the probe's number, whether light is gathered, bounces, hundredths of the
-// tolerance, width. Processor time is that of the picture alone.
-void BM_Picture(benchmark::State& state) {
-  const auto paths = probes();
-  const auto number = static_cast<std::size_t>(state.range(0));
-  if (number >= paths.size()) return state.SkipWithError("no such probe");
-  const int width = static_cast<int>(state.range(4));
-  const auto bench = bench_scene(paths[number], width, width * 9 / 16, true);
-  if (!bench) return state.SkipWithError("no scene");
-  PathRequest request;
-  request.options.bounces = static_cast<int>(state.range(2));
-  request.tolerance_de00 = 0.01 * static_cast<double>(state.range(3));
-  request.white_luminance = bench->white;
-  request.gather = state.range(1) != 0;
-  PathPicture picture;
-  for (auto _ : state) {
-    const OpenShading open(bench->scene);
-    if (request.gather) request.open = &open;
-    picture = path_picture(*bench->transport, bench->surface, nullptr, request);
-  }
-  const Truth truth = truth_of(*bench, picture, request, 200, 500);
-  const auto [error, coverage] = error_of(picture, truth, bench->white);
-  state.counters["error_p95_de00"] = error;
-  state.counters["noise_p95_de00"] = picture.noise_p95_de00;
-  state.counters["coverage"] = coverage;
-  state.counters["samples"] = picture.samples_mean;
-  state.SetLabel(std::filesystem::path(paths[number]).stem().string());
-}
-BENCHMARK(BM_Picture)
-    ->ArgNames({"probe", "gather", "bounces", "tolerance", "width"})
-    ->ArgsProduct({{0, 1, 2, 3}, {0, 1}, {0, 4}, {100, 50}, {320}})
-    ->ArgsProduct({{0, 1, 2, 3}, {1}, {0, 4}, {100, 50}, {1280}})
     ->Unit(benchmark::kSecond)
     ->Iterations(1)
     ->MeasureProcessCPUTime()

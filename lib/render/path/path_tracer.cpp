@@ -7,7 +7,6 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "render/internal/seen.h"
-#include "render/path/gathered_light.h"
 
 namespace goniochrome::render {
 
@@ -20,8 +19,6 @@ constexpr int kFirstBatches = 2;
 // A point's own variance counts as its batches less one, that of its neighborhood as so many.
 constexpr double kNeighborhood = 4;
 constexpr int kReach = 2;  // pixels to each side of the neighborhood
-// The part of the tolerance that gathered light may take at first, and what samples of the points may.
-constexpr double kGatheredShare = 0.9, kOwnShare = 0.6;
 
 std::uint64_t seed_of(std::uint64_t seed, std::uint64_t point, int batch) {
   return mixed(mixed(seed, point), static_cast<std::uint64_t>(batch));
@@ -43,22 +40,15 @@ class Picture {
 
   PathPicture draw() {
     std::vector<int> more(points_.size(), kFirstBatches);
-    double noise = 0, target = kGatheredShare * tolerance();
+    double noise = 0;
     bool reached = false;
-    if (request_.gather) gather(target);
     while (true) {
       sample(more);
       first_round_ = false;  // which no time limit cuts, so that every point is seen
       noise = judge();
       if (request_.progress) request_.progress(noise, clock_.elapsed_s());
       reached = request_.tolerance_de00 > 0 && noise <= request_.tolerance_de00;
-      if (reached || deadline_.passed()) break;
-      bool any = plan(noise, more);
-      if (request_.gather && gathered_p95() > kOwnShare * tolerance()) {
-        const bool gathered = gather(target *= 0.8);
-        any = gathered || release(target, more) || any;
-      }
-      if (!any) break;
+      if (reached || deadline_.passed() || !plan(noise, more)) break;
     }
     PathPicture picture;
     picture.reached = reached;
@@ -96,11 +86,7 @@ class Picture {
   struct State {
     Estimates sums;
     color::Rgb sure;
-    color::Rgb gathered;  // with `is_gathered`: the diffuse part and the lobes, and what their error is
-    Covariance gathered_error{};
-    int gathered_samples = 0;
-    bool is_gathered = false;  // then `sums` are of what the mirror sees
-    double needed = 0;         // batches that bring the noise of the neighborhood to the tolerance
+    double needed = 0;  // batches that bring the noise of the neighborhood to the tolerance
     bool certain = false;
     std::uint16_t uncertain = 0;  // samples of the pixel whose light is not known without paths
   };
@@ -145,106 +131,14 @@ class Picture {
     State& state = states_[i];
     PathPoint& point = points_[i];
     const Gbuffer& g = surface_.gbuffer;
-    if (state.is_gathered && state.certain && state.sums.count() == 0 && !first_round_) return;
     const rays::Spot spot = spot_at(transport_.rays(), surface_, point.x, point.y);
-    if (state.is_gathered && transport_.shows_ground(spot.part) && !transport_.has_lights()) {
-      state.certain = true, state.sure = transport_.open_ground(spot);
-      return;
-    }
     const PointTransport at(transport_, request_.options, spot, rays::float3(g.to_viewer(point.x, point.y)));
-    state.certain = state.is_gathered ? at.mirror_certain() : at.certain();
+    state.certain = at.certain();
     state.sure = at.sure();
     if (state.certain) return;
     const auto count = static_cast<std::uint32_t>(batch_of(point));
     for (int k = 0; k < batches; ++k)
-      state.sums.add(batch_part(at, state, seed_of(request_.seed, i, state.sums.count()), 0, count));
-  }
-
-  static color::Rgb batch_part(const PointTransport& at, const State& state, std::uint64_t seed, std::uint32_t first,
-                               std::uint32_t count) {
-    return state.is_gathered ? at.mirror_mean(seed, first, count) : at.part_of_batch(seed, first, count);
-  }
-
-  // Light of smooth surface, within the target as far as time allows. Whether anything was done.
-  bool gather(double target) {
-    const bool first_time = !gathered_;
-    if (first_time) {
-      GatherRequest request;
-      request.options = request_.options, request.tolerance_de00 = tolerance(), request.seed = request_.seed;
-      request.white_luminance = request_.white_luminance, request.open = request_.open, request.base = base_;
-      gathered_.emplace(transport_, surface_, request);
-      gathered_->begin();
-    }
-    bool any = false;
-    while (gathered_->improve(target, deadline_)) {
-      any = true;
-      if (request_.progress) request_.progress(gathered_->noise_p95_de00(), clock_.elapsed_s());
-    }
-    if (first_time || any) take_gathered(first_time);
-    return any;
-  }
-
-  // The gathered light of all points, the mean over the samples of each pixel. Which points are gathered is decided
-  // once, since the others have samples of their own. Interpolation errs alike at all samples of a pixel.
-  void take_gathered(bool decide) {
-    const Gbuffer& g = surface_.gbuffer;
-    const auto count = static_cast<double>(shifts_.size());
-    std::vector<std::uint8_t> missing(points_.size(), 0);
-    for (State& state : states_) state.gathered = {}, state.gathered_error = {}, state.gathered_samples = 0;
-    image::Image quick{g.width, g.height, 4, std::vector<float>(4 * number_.size(), 0.0F), {}};
-    for (std::size_t sample = 0; sample < shifts_.size(); ++sample) {
-      const auto [dx, dy] = shifts_[sample];
-      VisibleSurface shifted;
-      if (shifts_.size() > 1) {
-        Rays through = g.rays;
-        through.corner += dx * through.right + dy * through.down;
-        shifted = visible_surface(transport_.rays(), through, g.width, g.height);
-      }
-      const VisibleSurface& seen = shifts_.size() > 1 ? shifted : surface_;
-      if (request_.open != nullptr) request_.open->add_quick(seen.gbuffer, static_cast<float>(1 / count), quick);
-      parallel_for(points_.size(), 256, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          const PathPoint& point = points_[i];
-          if (!seen.hits[place(point.x, point.y)].any() || (!decide && !states_[i].is_gathered)) continue;
-          const rays::Spot spot = spot_at(transport_.rays(), seen, point.x, point.y);
-          const GatheredLight::Light light = gathered_->at(point.x + dx, point.y + dy, spot);
-          missing[i] |= light.known ? 0 : 1;
-          if (light.samples == 0 && light.light == color::Rgb{}) continue;
-          const color::Rgb scale = (1 / count) * transport_.laid_paint(spot);
-          State& state = states_[i];
-          state.gathered += scale * light.light;
-          state.gathered_samples += static_cast<int>(light.samples / count);
-          const double terms[6] = {scale.x * scale.x, scale.y * scale.y, scale.z * scale.z,
-                                   scale.x * scale.y, scale.x * scale.z, scale.y * scale.z};
-          for (std::size_t k = 0; k < 6; ++k) state.gathered_error[k] += count * terms[k] * light.covariance[k];
-        }
-      });
-    }
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      State& state = states_[i];
-      if (decide) state.is_gathered = missing[i] == 0;
-      const float* rgb = quick.pixel(points_[i].x, points_[i].y);
-      state.gathered += color::Rgb{rgb[0], rgb[1], rgb[2]};
-    }
-  }
-
-  // Points whose gathered light cannot be brought to the target get samples of their own. Whether there are any.
-  bool release(double target, std::vector<int>& more) {
-    bool any = false;
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      State& state = states_[i];
-      if (!state.is_gathered || noise_of(i, points_[i].radiance, state.gathered_error) <= target) continue;
-      state = {};
-      more[i] = kFirstBatches;
-      any = true;
-    }
-    return any;
-  }
-
-  double gathered_p95() const {
-    return worse_percentile([this](std::size_t i) {
-      return states_[i].is_gathered ? noise_of(i, points_[i].radiance, states_[i].gathered_error) : 0;
-    });
+      state.sums.add(at.part_of_batch(seed_of(request_.seed, i, state.sums.count()), 0, count));
   }
 
   // What a sample of a pixel sees, which is something.
@@ -277,15 +171,14 @@ class Picture {
       const PointTransport at = transport_at(point, sample, spot);
       if (first_time) {
         state.sure += (1.0 / count) * at.sure();
-        if (!(state.is_gathered ? at.mirror_certain() : at.certain()))
-          state.uncertain = static_cast<std::uint16_t>(state.uncertain | 1U << sample);
+        if (!at.certain()) state.uncertain = static_cast<std::uint16_t>(state.uncertain | 1U << sample);
       }
-      if ((state.uncertain >> sample & 1U) == 0) continue;
+      if (at.certain()) continue;
       for (unsigned k = 0; k < values.size(); ++k) {
         for (unsigned half = 0; half < 2; ++half) {
           if ((start + 2 * (first + k) + half) % count != sample) continue;
           const std::uint64_t seed = seed_of(request_.seed, i, static_cast<int>(first + k));
-          values[k] += 0.5 * batch_part(at, state, seed, kFan * half, kFan);
+          values[k] += 0.5 * at.part_of_batch(seed, kFan * half, kFan);
         }
       }
     }
@@ -300,12 +193,8 @@ class Picture {
     parallel_for(points_.size(), 1024, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         own[i] = states_[i].sums.covariance();
-        const State& state = states_[i];
-        points_[i].radiance = state.sure + state.sums.mean();
-        points_[i].samples = batch_of(points_[i]) * state.sums.count();
-        if (!state.is_gathered) continue;
-        points_[i].radiance += state.gathered;
-        points_[i].samples += state.gathered_samples;
+        points_[i].radiance = states_[i].sure + states_[i].sums.mean();
+        points_[i].samples = batch_of(points_[i]) * states_[i].sums.count();
       }
     });
     parallel_for(points_.size(), 1024, [&](std::size_t begin, std::size_t end) {
@@ -329,10 +218,6 @@ class Picture {
     State& state = states_[i];
     point.covariance = {};
     point.noise_de00 = state.needed = 0;
-    if (state.is_gathered) {
-      point.covariance = state.gathered_error;
-      point.noise_de00 = noise_of(i, point.radiance, point.covariance);
-    }
     const int n = state.sums.count();
     if (n < 2) return;
     Covariance around{};
@@ -343,22 +228,20 @@ class Picture {
         const std::int32_t number = number_[place(x, y)];
         const auto other = static_cast<std::size_t>(number);
         if (number < 0 || other == i || states_[other].sums.count() < 2) continue;
-        if (states_[other].is_gathered != state.is_gathered) continue;
         ++count;
         light += points_[other].radiance;
         for (std::size_t k = 0; k < 6; ++k) around[k] += own[other][k];
       }
     }
     for (std::size_t k = 0; k < 6; ++k)
-      point.covariance[k] +=
+      point.covariance[k] =
           ((n - 1) * own[i][k] + kNeighborhood * (around[k] + own[i][k]) / (count + 1)) / (n - 1 + kNeighborhood) / n;
     point.noise_de00 = noise_of(i, point.radiance, point.covariance);
     // How many samples a point is to get is decided by its neighbors alone: were its own sums asked, it would stop
     // where they happen to be bright, and the mean would be too.
     if (count == 0) around = own[i], light = point.radiance, count = 1;
     for (double& element : around) element /= count;
-    const double share = state.is_gathered ? kOwnShare : 1;
-    const double excess = noise_of(i, (1.0 / count) * light, around) / (share * tolerance());
+    const double excess = noise_of(i, (1.0 / count) * light, around) / tolerance();
     state.needed = excess * excess;
   }
 
@@ -404,7 +287,6 @@ class Picture {
   std::vector<std::int32_t> number_;           // of the point of each pixel, or -1
   std::vector<PathPoint> points_;
   std::vector<State> states_;
-  std::optional<GatheredLight> gathered_;
 };
 
 }  // namespace

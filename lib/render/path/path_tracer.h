@@ -7,7 +7,6 @@
 
 #include "image/image.h"
 #include "render/path/noise.h"
-#include "render/path/open_shading.h"
 #include "render/path/transport.h"
 #include "render/path/visible_surface.h"
 
@@ -22,11 +21,6 @@ struct PathRequest {
   std::uint64_t seed = 1;
   // Of a pixel, as sample_shifts() has them; with 1 the pixel centers are seen. Paths are spread over them.
   int pixel_samples = 1;
-  // Whether the diffuse part and the lobes are gathered at few points of smooth surface and interpolated, where that is
-  // shown to err by less than the tolerance; see gathered_light.h. The error is in the noise. Else every point is
-  // sampled by itself.
-  bool gather = false;
-  const OpenShading* open = nullptr;  // with `gather`: what points show without the mesh in the way; may be null
   // Told after each round: the noise so far, and the seconds.
   std::function<void(double noise_de00, double seconds)> progress = {};
 };
@@ -40,7 +34,7 @@ struct PathPoint {
   color::Rgb radiance;    // with PathOptions::correction: what to add to the radiance without the mesh in the way
   Covariance covariance;  // of the error of `radiance`; smoothed with that of its neighbors while samples are few
   double noise_de00 = 0;  // of one standard deviation
-  int samples = 0;        // 0 where none were needed; of gathered light those of the points it was interpolated from
+  int samples = 0;        // 0 where none were needed
 };
 
 struct PathPicture {

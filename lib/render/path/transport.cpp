@@ -38,23 +38,6 @@ std::vector<std::vector<brdf::Tilt>> tilts_for(const PathScene& scene) {
   return tilts_of(*scene.scene, effects);
 }
 
-// Of each part the first that wears the same; -1 where a texture or a map changes from point to point.
-std::vector<int> wears_of(const Scene& scene) {
-  std::vector<int> wears;
-  std::vector<std::size_t> firsts;
-  for (std::size_t part = 0; part < scene.paints.size(); ++part) {
-    const auto* surface = scene.layer != nullptr ? &scene.layer->surface(static_cast<int>(part)) : nullptr;
-    if (surface != nullptr && (surface->texture != nullptr || surface->color_map != nullptr)) {
-      wears.push_back(-1);
-      continue;
-    }
-    const auto same = std::ranges::find_if(firsts, [&](std::size_t first) { return same_wear(scene, first, part); });
-    wears.push_back(static_cast<int>(same == firsts.end() ? part : *same));
-    if (same == firsts.end()) firsts.push_back(part);
-  }
-  return wears;
-}
-
 bool is_mapped(const Scene& scene, std::size_t part) {
   return scene.layer != nullptr && scene.layer->surface(static_cast<int>(part)).color_map != nullptr;
 }
@@ -89,9 +72,7 @@ Result<Transport> Transport::create(const PathScene& path_scene) {
     if (scene.layer != nullptr) paint->put_surface(*scene.layer, static_cast<int>(part));
     transport.paints_.push_back(*std::move(paint));
   }
-  transport.wears_ = wears_of(scene);
   if (ground) {
-    transport.wears_.push_back(static_cast<int>(scene.paints.size()));
     auto paint = TracedPaint::create(ground->paint, brdf::kGlossIncidence_deg, {});
     if (!paint.ok()) return input_error("floor: {}", paint.error().message);
     transport.paints_.push_back(*std::move(paint));
@@ -311,13 +292,13 @@ PointTransport::PointTransport(const Transport& transport, const PathOptions& op
     const float wide = 1 - painted_.narrow_share(transport.environment_->extent_sr());
     light_chance_ = std::clamp(kMostLightChance * wide, kLeastLightChance, kMostLightChance);
   }
-  free_ =
+  const bool free =
       !transport.rays_->has_floor() && !transport.rays_->any_above(spot.start, spot.shading, 0) && options.correction;
-  if (!free_) {
+  if (!free) {
     add_lights();
-    add_mirror();
   }
-  certain_ = free_ || (!(painted_.lobes_weight() > 0) && mirror_samples_ == 0);
+  if (!free) add_mirror();
+  certain_ = free || (!(painted_.lobes_weight() > 0) && mirror_samples_ == 0);
 }
 
 color::Rgb PointTransport::reflect(const Float3& f, const color::Rgb& light) const {
@@ -421,59 +402,40 @@ color::Rgb PointTransport::emitter_sample(const std::array<double, 4>& numbers) 
   return reflect(static_cast<float>(1 / pdf) * reflection.f_cos, light.radiance);
 }
 
-// The sum over the points begin, begin + 1, ... of a sequence.
-LightShares PointTransport::lobes_sum(const Sequence& sequence, std::uint32_t begin, std::uint32_t count,
-                                      bool& any_blocked) const {
+LightShares PointTransport::batch_shares(std::uint64_t seed, std::uint32_t begin, std::uint32_t count,
+                                         bool* any_blocked) const {
+  if (any_blocked != nullptr) *any_blocked = mirror_samples_ > 0;
+  if (certain_) return {};
+  const Sequence sequence(seed, kBatch);
   LightShares sum;
-  if (!(painted_.lobes_weight() > 0)) return sum;
-  for (std::uint32_t first = begin; first < begin + count; first += kFan) {
-    Ray rays[kFan];
-    rays::Fan fan;
-    fan.origin = spot_.start;
-    for (std::uint32_t i = 0; i < 8; ++i) {
-      rays[i] = drawn_ray(sequence.point(first + i, 0));
-      fan.x[i] = rays[i].direction.x, fan.y[i] = rays[i].direction.y, fan.z[i] = rays[i].direction.z;
-      if (rays[i].above && rays::dot(rays[i].direction, mesh_axis_) >= mesh_cosine_) fan.wanted |= 1U << i;
+  if (painted_.lobes_weight() > 0) {
+    for (std::uint32_t first = begin; first < begin + count; first += kFan) {
+      Ray rays[kFan];
+      rays::Fan fan;
+      fan.origin = spot_.start;
+      for (std::uint32_t i = 0; i < 8; ++i) {
+        rays[i] = drawn_ray(sequence.point(first + i, 0));
+        fan.x[i] = rays[i].direction.x, fan.y[i] = rays[i].direction.y, fan.z[i] = rays[i].direction.z;
+        if (rays[i].above && rays::dot(rays[i].direction, mesh_axis_) >= mesh_cosine_) fan.wanted |= 1U << i;
+      }
+      const unsigned blocked = fan.wanted != 0 ? transport_.rays_->blocked(fan) : 0;
+      if (any_blocked != nullptr && blocked != 0) *any_blocked = true;
+      for (std::uint32_t i = 0; i < 8; ++i) {
+        const bool is_blocked = (blocked >> i & 1U) != 0;
+        if (!rays[i].above || (!is_blocked && (correction_ || !transport_.environment_))) continue;
+        sum += shown(rays[i], is_blocked, sequence, first + i);
+      }
     }
-    const unsigned blocked = fan.wanted != 0 ? transport_.rays_->blocked(fan) : 0;
-    any_blocked = any_blocked || blocked != 0;
-    for (std::uint32_t i = 0; i < 8; ++i) {
-      const bool is_blocked = (blocked >> i & 1U) != 0;
-      if (!rays[i].above || (!is_blocked && (correction_ || !transport_.environment_))) continue;
-      sum += shown(rays[i], is_blocked, sequence, first + i);
-    }
+    if (!transport_.emitters_.empty())
+      for (std::uint32_t i = begin; i < begin + count; ++i) sum.direct += emitter_sample(sequence.point(i, 1));
   }
-  if (!transport_.emitters_.empty())
-    for (std::uint32_t i = begin; i < begin + count; ++i) sum.direct += emitter_sample(sequence.point(i, 1));
-  return sum;
-}
-
-color::Rgb PointTransport::lobes_mean(std::uint64_t seed, std::uint32_t directions) const {
-  if (lobes_certain()) return {};
-  bool any_blocked = false;
-  return (1.0 / directions) * lobes_sum(Sequence(seed, directions), 0, directions, any_blocked).sum();
-}
-
-color::Rgb PointTransport::mirror_mean(std::uint64_t seed, std::uint32_t begin, std::uint32_t count) const {
-  if (mirror_samples_ == 0) return {};
-  const std::uint32_t mirrors = std::max(1U, mirror_samples_ * count / kBatch);
+  const std::uint32_t mirrors = mirror_samples_ > 0 ? std::max(1U, mirror_samples_ * count / kBatch) : 0;
   color::Rgb mirrored;
   for (std::uint32_t i = begin; i < begin + mirrors; ++i)
     mirrored += transport_.bounced(mirror_hit_, spot_.start, painted_.mirrored(), options_,
                                    Sequence(mixed(seed, 0x4D), kBatch), i, 4);
-  return (1.0 / mirrors) * reflect(painted_.mirror(), mirrored);
-}
-
-LightShares PointTransport::batch_shares(std::uint64_t seed, std::uint32_t begin, std::uint32_t count,
-                                         bool* any_blocked) const {
-  bool blocked = mirror_samples_ > 0;
-  LightShares mean;
-  if (!certain_) {
-    mean = (1.0 / count) * lobes_sum(Sequence(seed, kBatch), begin, count, blocked);
-    mean.into_lobes += mirror_mean(seed, begin, count);
-  }
-  if (any_blocked != nullptr) *any_blocked = blocked;
-  return mean;
+  if (mirrors > 0) sum.into_lobes += (static_cast<double>(count) / mirrors) * reflect(painted_.mirror(), mirrored);
+  return (1.0 / count) * sum;
 }
 
 }  // namespace goniochrome::render

@@ -82,18 +82,6 @@ class Transport {
   // The parts whose paint sends back more light than it gets, by number: paths between such walls gain light for ever
   // and are ended by chance alone.
   std::vector<int> gaining_parts() const;
-  // Parts with the same number wear the same lobes, so that what they show is alike where they lie side by side. -1 of
-  // parts with a texture or a color map. A floor has a number of its own.
-  int wear(int part) const { return wears_[static_cast<std::size_t>(part)]; }
-  // Of a floor that shows the environment, its paint in 1/sr; else 1.
-  color::Rgb laid_paint(const rays::Spot& spot) const {
-    return is_laid(spot) ? ground_->paint(open_ground(spot)) : color::Rgb{1, 1, 1};
-  }
-  bool has_lights() const { return !lights_.empty(); }
-  // What a point of a floor that shows the environment shows of it in the open.
-  color::Rgb open_ground(const rays::Spot& spot) const;
-  // Whether the part is a floor that shows the environment.
-  bool shows_ground(int part) const { return ground_ && static_cast<std::size_t>(part) + 1 == wears_.size(); }
 
  private:
   friend class PointTransport;
@@ -116,11 +104,11 @@ class Transport {
   color::Rgb light_at_end(const Next& next, const PathProduct& path, bool laid) const;
   bool is_laid(const rays::Spot& spot) const;
   bool is_laid(const rays::Hit& hit) const { return ground_ && hit.triangle == rays::kFloor; }
+  color::Rgb open_ground(const rays::Spot& spot) const;
   PaintedPoint painted(const rays::Spot& spot, const rays::Float3& to_viewer) const;
 
   std::shared_ptr<const rays::RayScene> rays_;  // stays where it is when the transport is moved
   std::vector<TracedPaint> paints_;             // of the parts, then of the floor
-  std::vector<int> wears_;                      // of the same
   std::optional<LaidGround> ground_;            // of a floor that shows the environment
   float mesh_radius_ = 0;                       // local, of a sphere about the origin that holds the mesh
   std::optional<EnvironmentTable> environment_;
@@ -151,14 +139,6 @@ class PointTransport {
   LightShares batch_shares(std::uint64_t seed, std::uint32_t first = 0, std::uint32_t count = kBatch,
                            bool* any_blocked = nullptr) const;
 
-  // The two terms of a batch by themselves: the mean over all points of a sequence of `directions`, a power of two and
-  // at least kFan, of what the diffuse part and the lobes show...
-  color::Rgb lobes_mean(std::uint64_t seed, std::uint32_t directions) const;
-  // ...and what surfaces send to the mirror lobe, by the samples first, first + 1, ... of a batch.
-  color::Rgb mirror_mean(std::uint64_t seed, std::uint32_t first, std::uint32_t count) const;
-  bool lobes_certain() const { return free_ || !(painted_.lobes_weight() > 0); }  // lobes_mean() is 0
-  bool mirror_certain() const { return mirror_samples_ == 0; }                    // mirror_mean() is 0
-
  private:
   struct Ray;
   void narrow_to_mesh();
@@ -167,7 +147,6 @@ class PointTransport {
   Ray drawn_ray(const std::array<double, 4>& numbers) const;
   LightShares shown(const Ray& ray, bool blocked, const Sequence& sequence, std::uint32_t index) const;
   color::Rgb emitter_sample(const std::array<double, 4>& numbers) const;
-  LightShares lobes_sum(const Sequence& sequence, std::uint32_t begin, std::uint32_t count, bool& any_blocked) const;
   color::Rgb reflect(const rays::Float3& f, const color::Rgb& light) const;
 
   const Transport& transport_;
@@ -184,7 +163,6 @@ class PointTransport {
   rays::Hit mirror_hit_;
   std::uint32_t mirror_samples_ = 0;  // in a batch
   color::Rgb sure_;
-  bool free_ = false;  // nothing rises above its horizon, and only what the mesh changes is asked for
   bool certain_ = false;
 };
 
