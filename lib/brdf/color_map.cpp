@@ -40,10 +40,25 @@ color::Rgb fetched(const ColorMap& map, const MapPlace& place) {
   return result;
 }
 
+// With the light at the angle t whose cosine is the center of the first column, the viewer at `aspecular - t` from the
+// normal, on the side of the light where that is positive, sees this aspecular angle. Its cosine falls linearly with
+// small aspecular angles, so that texels are dense where the color changes most.
+MapPlace aspecular_place(double aspecular_rad, int size) {
+  const double first = 0.5 / size, view_rad = aspecular_rad - std::acos(first),
+               cosine = std::max(std::cos(view_rad), 0.0);
+  return {0.5, view_rad >= 0 ? (2 - cosine) * size : cosine * size};
+}
+
+MapPlace place_of_pair(const ColorMap& map, const Vec3& to_light, const Vec3& to_viewer, CriticalAngle treatment) {
+  if (!map.aspecular) return map_place(equivalent_in_plane(to_light, to_viewer, map.index, treatment), map.size);
+  const Vec3 mirror = {-to_light.x, -to_light.y, to_light.z};
+  return aspecular_place(std::atan2(length(cross(mirror, to_viewer)), dot(mirror, to_viewer)), map.size);
+}
+
 color::Rgb reflectance_factor(const ColorMap& map, const Vec3& to_light, const Vec3& to_viewer,
                               CriticalAngle treatment) {
   if (to_light.z <= 0 || to_viewer.z <= 0) return {};
-  return fetched(map, map_place(equivalent_in_plane(to_light, to_viewer, map.index, treatment), map.size));
+  return fetched(map, place_of_pair(map, to_light, to_viewer, treatment));
 }
 
 }  // namespace goniochrome::brdf

@@ -310,7 +310,7 @@ class CornellParser {
   std::vector<std::string_view> words_;
   int line_ = 0;
   bool counted_ = false;
-  MeasuredTraits traits_{.format = "cornell"};
+  MeasuredTraits traits_{.format = "cornell", .scattered = true};
   double negative_square_ = 0;
   std::vector<CornellBrdf::Row> rows_;
 };

@@ -14,7 +14,9 @@
 
 #include "base/angles.h"
 #include "base/file.h"
+#include "base/testdata_for_test.h"
 #include "base/text.h"
+#include "color/reflection.h"
 
 namespace goniochrome::brdf {
 namespace {
@@ -521,6 +523,59 @@ TEST_F(Measured, NvidiaChecksTellItsFlawsRealData) {
   EXPECT_THAT(told.warnings, testing::Contains(HasSubstr("copied, not measured")));
   EXPECT_GT(told.reciprocity_error, 0.05);
   EXPECT_GT(told.noise_floor, 1e-4);
+}
+
+// The spectra of three measured car paints in lamps that the default operator was not fitted to (testdata/): it is
+// nearer to the product of the spectra than the plain product on each of them. Where two tables differ in wavelengths,
+// the light is interpolated along straight lines.
+TEST_F(Measured, CornellPaintsInHeldOutLampsRealData) {
+  if (!std::getenv("GONIOCHROME_DATA")) GTEST_SKIP() << "GONIOCHROME_DATA is not set";
+  const auto text = file_content(testdata("published-lights.csv"));
+  ASSERT_TRUE(text.ok());
+  std::vector<std::vector<std::string_view>> table;
+  for (const std::string_view line : split(*text, '\n'))
+    if (!line.empty()) table.push_back(split(line, ','));
+  const auto power = [&](std::size_t column, double nm) {
+    const double at = (nm - 380) / 5;
+    const auto row = static_cast<std::size_t>(at);
+    return *parse_number(table[row + 2][column]) * (1 - at + static_cast<double>(row)) +
+           *parse_number(table[row + 3][column]) * (at - static_cast<double>(row));
+  };
+  std::size_t daylight = 0;
+  while (table[1][daylight] != "daylight") ++daylight;
+  const color::Xyz screen = color::xyz_d65_from_rgb({1, 1, 1});
+  for (const char* name : {"cayman", "garnet_red", "krylon_blue"}) {
+    const auto brdf = read_measured(data_path(fmt::format("brdf/cornell/{}.brdf", name)));
+    ASSERT_TRUE(brdf.ok());
+    const auto& nm = (*brdf)->traits().wavelengths_nm;
+    const auto meter = color::SpectralColorimeter::make(nm, {"D65", 2});
+    ASSERT_TRUE(meter.ok());
+    const auto rgb = [&](const std::vector<double>& relative) {
+      return color::rgb_from_xyz_d65(color::adapted(meter->xyz(relative), meter->white(), screen));
+    };
+    double sum[2] = {};
+    for (const auto& pair : (*brdf)->samples()) {
+      if (pair.light.z < 0.5 || pair.view.z < 0.5 ||
+          paint::aspecular_angle_rad(pair.light, pair.view, {0, 0, 1}) < 0.25)
+        continue;
+      std::vector<double> paint = (*brdf)->value(pair.light, pair.view).f;
+      for (double& f : paint) f = kPi * std::max(f, 0.0);
+      for (std::size_t column = 1; column < table[0].size(); ++column) {
+        if (table[1][column] != "held") continue;
+        std::vector<double> light, both;
+        for (const double w : nm) light.push_back(power(column, w) / power(daylight, w));
+        const double luminance = meter->xyz(light).Y;
+        for (std::size_t k = 0; k < nm.size(); ++k) light[k] /= luminance, both.push_back(light[k] * paint[k]);
+        const auto lab = [&](const color::Rgb& c) { return color::lab_from_xyz(color::xyz_d65_from_rgb(c), screen); };
+        sum[0] += color::delta_e_2000(lab(color::reflected(color::fitted_operator(), rgb(light), rgb(paint))),
+                                      lab(rgb(both)));
+        sum[1] +=
+            color::delta_e_2000(lab(color::reflected(color::component_wise(), rgb(light), rgb(paint))), lab(rgb(both)));
+      }
+    }
+    std::printf("%-12s plain / fitted %.2f\n", name, sum[1] / sum[0]);
+    EXPECT_LT(sum[0], 0.9 * sum[1]) << name;
+  }
 }
 
 }  // namespace

@@ -5,8 +5,6 @@
 #include <limits>
 #include <vector>
 
-#include "base/file.h"
-#include "base/json.h"
 #include "color/internal/cie_tables.h"
 
 namespace goniochrome::color {
@@ -15,6 +13,14 @@ ReflectionOperator component_wise() {
   ReflectionOperator op;
   for (int c = 0; c < 3; ++c) op.k[c][c][c] = 1;
   return op;
+}
+
+// By scripts/fit-operator with the tables of testdata/, in thousandths: a step of 0.001 in one of the numbers changes
+// the mean difference over the pairs that it was fitted to by less than 0.001.
+ReflectionOperator fitted_operator() {
+  return nearest_coherent({{{{{{1.047, -0.136, 0.089}, {-0.136, 0.256, -0.120}, {0.089, -0.120, 0.031}}},
+                             {{{0.087, -0.046, -0.041}, {-0.046, 1.016, 0.030}, {-0.041, 0.030, 0.011}}},
+                             {{{0.008, -0.010, 0.002}, {-0.010, 0.006, 0.004}, {0.002, 0.004, 0.994}}}}}});
 }
 
 // Ten printed digits leave row sums up to 2e-10 off; the nearest coherent table is at most that far from them.
@@ -28,6 +34,10 @@ ReflectionOperator iso_rgb_operator() {
                              {{{-.01119056664, .0005536667, .0106368999},
                                {.0005536667, -.04014829995, .0395946333},
                                {.0106368999, .0395946333, .9497684667}}}}}});
+}
+
+ReflectionOperator iso_rec709_operator() {
+  return *in_working_space(iso_rgb_operator(), kRec709);
 }
 
 ReflectionOperator working_space_operator() {
@@ -177,50 +187,6 @@ Result<ReflectionOperator> estimated_operator(std::span<const Rgb> color_matchin
     for (int c = 0; c < 3; ++c)
       for (int d = 0; d < 3; ++d)
         for (int e = 0; e < 3; ++e) op.k[c][d][e] += b[c] * dual[d] * dual[e];
-  }
-  return nearest_coherent(op);
-}
-
-std::string reflection_json(const ReflectionOperator& op) {
-  return Json{{"k", op.k}}.dump() + "\n";
-}
-
-namespace {
-
-bool is_table(const Json& k) {
-  if (!k.is_array() || k.size() != 3) return false;
-  for (const Json& rows : k) {
-    if (!rows.is_array() || rows.size() != 3) return false;
-    for (const Json& row : rows) {
-      if (!row.is_array() || row.size() != 3) return false;
-      for (const Json& value : row)
-        if (!value.is_number()) return false;
-    }
-  }
-  return true;
-}
-
-}  // namespace
-
-Result<ReflectionOperator> read_reflection_operator(const std::string& path) {
-  GONIO_ASSIGN(const std::string text, file_content(path));
-  const Json json = Json::parse(text, nullptr, false);
-  if (!json.is_object() || !json.contains("k") || !is_table(json["k"]))
-    return input_error("{}: a reflection operator is a JSON object with \"k\", three tables of 3 x 3 numbers", path);
-  ReflectionOperator op;
-  json["k"].get_to(op.k);
-  constexpr double kTolerance = 1e-6;
-  for (int c = 0; c < 3; ++c) {
-    for (int d = 0; d < 3; ++d) {
-      const auto& row = op.k[c][d];
-      const double sum = row[0] + row[1] + row[2];
-      const bool symmetric =
-          std::abs(row[0] - op.k[c][0][d]) + std::abs(row[1] - op.k[c][1][d]) + std::abs(row[2] - op.k[c][2][d]) <=
-          kTolerance;
-      if (!symmetric || !(std::abs(sum - (c == d)) <= kTolerance))
-        return input_error("{}: k[{}][{}] is {}: each table is symmetric, and the row sums to {}, here {}", path, c, d,
-                           symmetric ? "not coherent" : "not symmetric", c == d ? 1 : 0, sum);
-    }
   }
   return nearest_coherent(op);
 }

@@ -1,11 +1,10 @@
 // Reflection of colored light without spectra. Light and reflectance are often multiplied channel by channel; here each
-// channel of the result depends on all channels of both, by a bilinear product. This header also reads and writes the
-// files of such products. goniochrome-theory(7), COLORED LIGHT; [GranierDamez2004]
+// channel of the result depends on all channels of both, by a bilinear product. goniochrome-theory(7), COLORED LIGHT;
+// [GranierDamez2004]
 #pragma once
 
 #include <array>
 #include <span>
-#include <string>
 
 #include "base/result.h"
 #include "color/color.h"
@@ -22,9 +21,17 @@ struct ReflectionOperator {
 // k[c][c][c] = 1, all else 0: each channel by itself.
 ReflectionOperator component_wise();
 
-// The table of [GranierDamez2004] 5.3 for the sensors of ISO 17321, made coherent beyond its printed digits. The
-// default for rendering, on working-space values as they are.
+// The default for rendering: fitted in the working space to published reflectances and lights (scripts/fit-operator),
+// so that the mean CIEDE2000 difference from spectral products is least. reflection_evidence_test.cpp holds its error
+// on spectra that were held out beside that of every other operator here.
+ReflectionOperator fitted_operator();
+
+// The table of [GranierDamez2004] 5.3 for the sensors of ISO 17321, made coherent beyond its printed digits. It is
+// applied to working-space values as they are, although it was made for other primaries.
 ReflectionOperator iso_rgb_operator();
+
+// The same table in its own primaries, those of Rec.709: both colors are taken there, and the product is taken back.
+ReflectionOperator iso_rec709_operator();
 
 // The operator of the working space, linear Rec.2020, estimated from the CIE 1931 color-matching functions. Its
 // primaries are nearly monochromatic: red in cyan light goes negative there, where red of Rec.709 in its cyan stays
@@ -78,12 +85,16 @@ ReflectionOperator nearest_coherent(const ReflectionOperator& op);
 // sum 1. Error: fewer than three samples, or functions that depend on each other.
 Result<ReflectionOperator> estimated_operator(std::span<const Rgb> color_matching);
 
-// The operator as the text of a JSON file, {"k": [[[..3..],[..],[..]], [..], [..]]}, by output channel and then by both
-// colors. The numbers have the fewest digits that read back as the same numbers.
-std::string reflection_json(const ReflectionOperator& op);
+// The primaries and the white of an RGB space, as CIE 1931 chromaticities x and y.
+struct Primaries {
+  std::array<std::array<double, 2>, 3> rgb{};  // of red, green and blue
+  std::array<double, 2> white{};
+};
+constexpr Primaries kRec709 = {{{{0.640, 0.330}, {0.300, 0.600}, {0.150, 0.060}}}, {0.3127, 0.3290}};
+constexpr Primaries kRec2020 = {{{{0.708, 0.292}, {0.170, 0.797}, {0.131, 0.046}}}, {0.3127, 0.3290}};
 
-// Reads such a file. Error: the file, and what is missing; or the row in which an operator is not symmetric and
-// coherent to 1e-6.
-Result<ReflectionOperator> read_reflection_operator(const std::string& path);
+// The operator on working-space values that does what `op` does on values of another space. A white other than D65 is
+// adapted by Bradford's transform. Error: primaries on one line, or a chromaticity with y of 0 or less.
+Result<ReflectionOperator> in_working_space(const ReflectionOperator& op, const Primaries& source);
 
 }  // namespace goniochrome::color

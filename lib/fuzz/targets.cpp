@@ -10,7 +10,7 @@
 
 #include "base/file.h"
 #include "brdf/measured.h"
-#include "color/reflection.h"
+#include "color/reflection_file.h"
 #include "envmap/prefiltered.h"
 #include "formats/basis.h"
 #include "formats/cgats.h"

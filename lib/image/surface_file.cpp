@@ -20,6 +20,12 @@ Result<brdf::ColorMap> read_color_map(const std::string& path) {
     index = std::round(*stated * 1e6) * 1e-6;  // a decimal number that went through a float
   }
   brdf::ColorMap map = brdf::color_map_of_size(image.width, index);
+  const auto model = attribute_or<std::string>(attributes, "goniochrome:model", "isolines");
+  if (model != "isolines" && model != "aspecular")
+    return input_error("{}: goniochrome:model is \"{}\": it is isolines or aspecular", path, model);
+  map.aspecular = model == "aspecular";
+  const auto distance = std::ranges::find(image.channel_names, "distance");
+  const bool has_distance = distance != image.channel_names.end();
   for (int row = 0; row < image.height; ++row) {
     for (int column = 0; column < image.width; ++column) {
       for (int c = 0; c < 3; ++c) {
@@ -29,6 +35,7 @@ Result<brdf::ColorMap> read_color_map(const std::string& path) {
                              value);
         map.texel(column, row)[c] = value;
       }
+      if (has_distance) map.distance_deg.push_back(image.pixel(column, row)[distance - image.channel_names.begin()]);
     }
   }
   return map;
@@ -36,6 +43,15 @@ Result<brdf::ColorMap> read_color_map(const std::string& path) {
 
 Result<void> write_color_map(const std::string& path, const brdf::ColorMap& map, const Attributes& attributes) {
   ImagePart part{"color-map", {map.size, 2 * map.size, 3, map.factors, {"R", "G", "B"}}, attributes, PixelType::kHalf};
+  if (!map.distance_deg.empty()) {
+    Image& image = part.image;
+    image.channels = 4, image.channel_names.push_back("distance"), image.data.clear();
+    for (std::size_t i = 0; i < map.distance_deg.size(); ++i) {
+      for (std::size_t c = 0; c < 3; ++c) image.data.push_back(map.factors[3 * i + c]);
+      image.data.push_back(map.distance_deg[i]);
+    }
+  }
+  part.attributes["goniochrome:model"] = std::string(map.aspecular ? "aspecular" : "isolines");
   part.attributes["goniochrome:colorMap"] = std::string("cos(theta_i), cos(theta_o)");
   part.attributes["goniochrome:index"] = static_cast<float>(map.index);
   part.attributes["colorInteropID"] = std::string("lin_rec2020_scene");

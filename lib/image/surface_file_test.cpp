@@ -25,6 +25,23 @@ TEST(ColorMapFile, ReadsBackWhatWasWritten) {
   EXPECT_EQ(back->factors, map.factors);  // quarters are exact in half precision
 }
 
+TEST(ColorMapFile, ModelAndDistancesAreKept) {
+  const ScratchFolder folder;
+  const std::string path = folder.path("map.exr");
+  brdf::ColorMap map = brdf::color_map_of_size(2, 1.5);
+  ASSERT_TRUE(write_color_map(path, map, {}).ok());
+  EXPECT_FALSE(read_color_map(path)->aspecular);
+  EXPECT_TRUE(read_color_map(path)->distance_deg.empty());
+  map.aspecular = true;
+  for (std::size_t i = 0; i < 8; ++i) map.distance_deg.push_back(static_cast<float>(i)), map.factors[3 * i] = 0.25F;
+  ASSERT_TRUE(write_color_map(path, map, {}).ok());
+  const auto back = read_color_map(path);
+  ASSERT_TRUE(back.ok()) << back.error().message;
+  EXPECT_TRUE(back->aspecular);
+  EXPECT_EQ(back->distance_deg, map.distance_deg);
+  EXPECT_EQ(back->factors, map.factors);
+}
+
 TEST(ColorMapFile, RefusesWhatIsNoMap) {
   const ScratchFolder folder;
   const std::string path = folder.path("no-map.exr");

@@ -120,16 +120,8 @@ struct RayScene::State {
   std::vector<std::uint32_t> part_of;
   std::vector<std::array<float, 2>> texture;
   int parts = 0;
-  std::optional<float> floor;  // local height
   mutable std::once_flag tree_made;
   mutable std::unique_ptr<const VertexTree> tree;
-
-  // Infinite where the ray does not meet the floor.
-  float floor_distance(const Float3& origin, const Float3& direction) const {
-    if (!floor) return kInfinite;
-    const float distance = (*floor - origin.y) / direction.y;
-    return distance > 0 ? distance : kInfinite;  // NaN where the ray lies in the floor
-  }
 
   Result<void> build() {
     device.reset(rtcNewDevice(nullptr));
@@ -163,7 +155,7 @@ struct RayScene::State {
 
 Result<RayScene> RayScene::create(const mesh::Mesh& mesh, const std::optional<Floor>& floor) {
   GONIO_TRY(check(mesh, floor));
-  auto state = std::make_unique<State>();
+  auto state = std::make_shared<State>();
   state->placing = placing_of(mesh);
   const auto local = [&](const Vec3& p) { return float3(state->placing.scale * (p - state->placing.middle)); };
   state->positions.reserve(mesh.positions.size() + 1);
@@ -176,21 +168,33 @@ Result<RayScene> RayScene::create(const mesh::Mesh& mesh, const std::optional<Fl
   state->parts = static_cast<int>(mesh.parts.size());
   for (std::size_t part = 0; part < mesh.parts.size(); ++part)
     state->part_of.insert(state->part_of.end(), mesh.parts[part].count, static_cast<std::uint32_t>(part));
-  if (floor) state->floor = local({0, floor->height, 0}).y;
   GONIO_TRY(state->build());
-  return RayScene(std::move(state));
+  const RayScene bare(std::move(state), std::nullopt);
+  return floor ? bare.over(*floor) : RayScene(bare.state_, std::nullopt);
 }
 
-RayScene::RayScene(std::unique_ptr<State> state) : state_(std::move(state)) {}
+RayScene RayScene::over(const Floor& floor) const {
+  return {state_, local({0, floor.height, 0}).y};
+}
+
+RayScene::RayScene(std::shared_ptr<const State> state, std::optional<float> floor)
+    : state_(std::move(state)), floor_(floor) {}
 RayScene::RayScene(RayScene&&) noexcept = default;
 RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 RayScene::~RayScene() = default;
 
+// Infinite where the ray does not meet the floor.
+float RayScene::floor_distance(const Float3& origin, const Float3& direction) const {
+  if (!floor_) return kInfinite;
+  const float distance = (*floor_ - origin.y) / direction.y;
+  return distance > 0 ? distance : kInfinite;  // NaN where the ray lies in the floor
+}
+
 int RayScene::parts() const {
-  return state_->parts + (state_->floor ? 1 : 0);
+  return state_->parts + (floor_ ? 1 : 0);
 }
 bool RayScene::has_floor() const {
-  return state_->floor.has_value();
+  return floor_.has_value();
 }
 std::size_t RayScene::triangles() const {
   return state_->triangles.size();
@@ -212,7 +216,7 @@ std::array<Float3, 3> RayScene::corners(std::uint32_t triangle) const {
 Hit RayScene::closest(const Float3& origin, const Float3& direction) const {
   RTCIntersectContext context = incoherent();
   RTCRayHit query{};
-  const float floor = state_->floor_distance(origin, direction);
+  const float floor = floor_distance(origin, direction);
   query.ray = ray_of(origin, direction, floor);
   query.hit.geomID = query.hit.primID = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(state_->scene.get(), &context, &query);
@@ -222,7 +226,7 @@ Hit RayScene::closest(const Float3& origin, const Float3& direction) const {
 }
 
 bool RayScene::blocked(const Float3& origin, const Float3& direction, float distance) const {
-  if (state_->floor_distance(origin, direction) < distance) return true;
+  if (floor_distance(origin, direction) < distance) return true;
   RTCIntersectContext context = incoherent();
   RTCRay ray = ray_of(origin, direction, distance);
   rtcOccluded1(state_->scene.get(), &context, &ray);
@@ -236,7 +240,7 @@ unsigned RayScene::blocked(const Fan& fan) const {
   unsigned result = 0;
   for (unsigned i = 0; i < 8; ++i) {
     bool trace = (fan.wanted >> i & 1U) != 0;
-    if (trace && state_->floor_distance(fan.origin, {fan.x[i], fan.y[i], fan.z[i]}) < kInfinite) {
+    if (trace && floor_distance(fan.origin, {fan.x[i], fan.y[i], fan.z[i]}) < kInfinite) {
       result |= 1U << i;
       trace = false;
     }
@@ -260,7 +264,7 @@ void RayScene::closest(const Fan& fan, Hit* hits) const {
     valid[i] = (fan.wanted >> i & 1U) != 0 ? -1 : 0;
     rays.ray.org_x[i] = fan.origin.x, rays.ray.org_y[i] = fan.origin.y, rays.ray.org_z[i] = fan.origin.z;
     rays.ray.dir_x[i] = fan.x[i], rays.ray.dir_y[i] = fan.y[i], rays.ray.dir_z[i] = fan.z[i];
-    rays.ray.tfar[i] = state_->floor_distance(fan.origin, {fan.x[i], fan.y[i], fan.z[i]});
+    rays.ray.tfar[i] = floor_distance(fan.origin, {fan.x[i], fan.y[i], fan.z[i]});
     rays.ray.mask[i] = ~0U;
     rays.hit.geomID[i] = rays.hit.primID[i] = RTC_INVALID_GEOMETRY_ID;
   }
@@ -282,7 +286,7 @@ Spot RayScene::spot(const Hit& hit, const Float3& origin, const Float3& directio
   spot.part = part(hit.triangle);
   if (hit.triangle == kFloor) {
     spot.position = origin + hit.distance * direction;
-    spot.position.y = *state_->floor;
+    spot.position.y = *floor_;
     spot.inside = direction.y > 0;
     spot.geometric = spot.shading = {0, spot.inside ? -1.0F : 1.0F, 0};
     spot.start = spot.position + kLift * spot.geometric;

@@ -71,6 +71,8 @@ class RayScene {
   // Error: a vertex that is not finite, a triangle that refers to no vertex, parts that do not cover the triangles, no
   // triangle at all, a floor whose height is not finite, or Embree's own word where it fails.
   static Result<RayScene> create(const mesh::Mesh& mesh, const std::optional<Floor>& floor = {});
+  // The same mesh over this floor, whose height is finite. The tree of the mesh is shared.
+  RayScene over(const Floor& floor) const;
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;
   ~RayScene();
@@ -116,8 +118,11 @@ class RayScene {
 
  private:
   struct State;
-  explicit RayScene(std::unique_ptr<State> state);
-  std::unique_ptr<State> state_;
+  RayScene(std::shared_ptr<const State> state, std::optional<float> floor);
+  float floor_distance(const Float3& origin, const Float3& direction) const;
+
+  std::shared_ptr<const State> state_;
+  std::optional<float> floor_;  // local height
 };
 
 // What rays that leave a surface start above it, in local units: more than four roundings of a float between 1 and 2,

@@ -40,8 +40,9 @@ struct Noise {
   double de00_p95 = 0, de00_mean = 0;  // over the visible pixels
   double samples_mean = 0;             // of a visible pixel
   double time_s = 0;
-  bool reached = false;  // whether de00_p95 is within the tolerance
-  image::Image de00;     // of each pixel, one standard deviation; one channel
+  bool reached = false;        // whether de00_p95 is within the tolerance
+  double white_luminance = 0;  // that the noise is judged by
+  image::Image de00;           // of each pixel, one standard deviation; one channel
 };
 
 // A view as the renderer offers it to its engines. Sample 0 is the pixel centers; the samples of a picture are counted

@@ -15,6 +15,7 @@
 #include "render/internal/seen.h"
 #include "render/plan/effect_list.h"
 #include "render/plan/effect_words.h"
+#include "render/plan/kept.h"
 #include "render/plan/ray_plan.h"
 #include "render/surface_layer.h"
 
@@ -27,8 +28,8 @@ constexpr double kSafety = 0.8;
 
 // Visible points that a plan is made from.
 constexpr std::size_t kProbe = 512;
-// Those at which rays are traced. There are more of them, because most effects of rays show in few places.
-constexpr std::size_t kRayProbe = 1536;
+// The most at which rays are traced. There are more of them, because most effects of rays show in few places.
+constexpr std::size_t kRayProbe = 4096;
 
 // Shades the probe with any choice of effects.
 class Prober {
@@ -333,28 +334,42 @@ std::string reason_of(const std::vector<Priced>& all, const Priced& chosen, bool
 // The effects of rays, as far as there are rays. `colors` shades points with all other effects.
 RayChoice planned_rays(const Scene& scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers,
                        const PlanRequest& request, const Words& words, const RayContext& rays, const Workload& work,
+                       double open_de00,
                        const std::function<std::vector<color::Rgb>(const std::vector<VisiblePoint>&)>& colors) {
-  if (rays.transport == nullptr) return rays.absent.empty() ? RayChoice{} : no_rays(rays.absent);
+  if (rays.transport == nullptr) {
+    RayChoice choice;
+    if (rays.absent.empty()) return choice;
+    choice = no_rays(rays.absent, rays.refused);
+    add_floor(nullptr, rays.absent, choice);
+    return choice;
+  }
   std::vector<VisiblePoint> points;
   std::vector<RayPoint> ray_points;
   for (const auto& [gbuffer, x, y] : probe_pixels(gbuffers, kRayProbe)) {
     points.push_back(gbuffer->point(x, y));
     ray_points.push_back(ray_point(rays.transport->rays(), *scene.mesh, *gbuffer, x, y));
   }
-  const RayProbe probe =
-      RayProbe::traced(*rays.transport, ray_points, colors(points), request.white_luminance, rays.bounces, rays.seed);
+  ProbeSetting setting;
+  setting.transport = rays.transport, setting.over_floor = rays.over_floor;
+  setting.white_luminance = request.white_luminance;
+  setting.bounces = rays.bounces, setting.seed = rays.seed;
+  setting.visible_points = static_cast<double>(gbuffers.size()) * work.points / request.samples;
+  const RayProbe probe = RayProbe::traced(setting, ray_points, colors(points));
   RayWishes wishes;
   wishes.on = words.start != Start::kNone;
   wishes.automatic = words.start == Start::kAuto;
   wishes.forced = [&](const std::string& name) {
     std::optional<bool> forced;
     for (const auto& [word, on] : words.forced)
-      if (word == name) forced = on;
+      if (word == name || word == "rays") forced = on;
     return forced;
   };
+  wishes.open_de00_p95 = open_de00;
   wishes.tolerance_de00 = request.tolerance_de00, wishes.budget_ms = request.budget_ms;
   wishes.visible_points = work.points / request.samples, wishes.samples = request.samples;
-  return ray_choice(probe, wishes);
+  RayChoice choice = ray_choice(probe, wishes);
+  add_floor(&probe, rays.no_floor, choice);
+  return choice;
 }
 
 // The plan for an engine that draws everything and does without prefiltered maps: there is nothing to choose, and
@@ -372,9 +387,11 @@ Plan plan_of_everything(const Scene& scene, const Effects& all, const std::vecto
   }
   for (const std::string& name : ray_effect_names()) {
     PlanItem item;
-    item.effect = name, item.needed = item.on = true, item.reason = "drawn by every path";
+    const bool there = name != "floor" || scene.ground.has_value();
+    item.effect = name, item.needed = item.on = there;
+    item.reason = there ? "drawn by every path" : "no floor is asked for";
     item.de00_p95 = item.cost_ms = std::numeric_limits<double>::quiet_NaN();
-    item.decision = Decision::kDrawn;
+    item.decision = there ? Decision::kDrawn : Decision::kNotInScene;
     plan.items.push_back(std::move(item));
   }
   plan.effects = all;
@@ -513,12 +530,20 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   }
 
   // What the mesh does to light comes first: what is left out of that, the others may not leave out as well.
-  const RayChoice by_rays = planned_rays(scene, gbuffers, request, words, rays, work, [&](const auto& points) {
-    const Compact probed = compacted(scene, points);
-    return Prober(probed.scene, all, switches, probed.points, points, request.white_luminance, probers.all,
-                  probers.component_wise(all))
-        .colors(everything);
-  });
+  std::optional<OpenTruth> open_truth;
+  if (scene.env != nullptr && rays.texels != nullptr && !probe.empty() &&
+      (asked == nullptr || asked->info().is_planned))
+    open_truth.emplace(scene, all, probe, *rays.texels, request.white_luminance);
+  const double open_de00 = open_truth ? open_truth->error(full) : 0;
+  const Stopwatch ray_clock;
+  const RayChoice by_rays =
+      planned_rays(scene, gbuffers, request, words, rays, work, open_de00, [&](const auto& points) {
+        const Compact probed = compacted(scene, points);
+        return Prober(probed.scene, all, switches, probed.points, points, request.white_luminance, probers.all,
+                      probers.component_wise(all))
+            .colors(everything);
+      });
+  plan.ray_pricing_ms = 1000 * ray_clock.elapsed_s();
   const double tolerance = std::max(0.0, request.tolerance_de00 - by_rays.left_out_de00_p95);
 
   // Which of them are drawn, and by which engine.
@@ -539,7 +564,15 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   plan.effects = prober.effects(choice.on);
   tidy(plan.effects);
   plan.effects.rays = by_rays.effects;
-  plan.rays_ms = by_rays.cost.ms;
+  plan.effects.most_ray_samples = by_rays.most_samples, plan.effects.ray_noise_de00 = by_rays.aim_de00;
+  plan.rays_ms = by_rays.cost.ms, plan.rays_noise_de00 = by_rays.noise_de00;
+  const bool has_maps = scene.env != nullptr && !engine.info().needs_texels;
+  if (open_truth) plan.open_de00_p95 = open_truth->error(prober.colors(choice.on));
+  if (!has_maps)
+    plan.open_de00_p95 = scene.env != nullptr ? request.tolerance_de00 : plan.de00_p95 - by_rays.left_out_de00_p95;
+  if (rays.transport != nullptr && plan.open_de00_p95)
+    plan.whole_de00_p95 = std::hypot(*plan.open_de00_p95, by_rays.left_out_de00_p95, by_rays.noise_de00);
+  plan.not_kept = reason_not_kept(plan, by_rays, request, has_maps);
   for (const auto& [of, price] : prices) {
     const Price now = of->info().is_planned ? of->price(work, plan.effects) : price;
     plan.prices.push_back({of->info().name, now.frame_ms, now.once_ms});

@@ -14,8 +14,9 @@
 #include "render/scene.h"
 
 namespace goniochrome::envmap {
+class BlockTree;
 class Environment;
-}
+}  // namespace goniochrome::envmap
 
 namespace goniochrome::render {
 
@@ -25,9 +26,15 @@ class Transport;
 // What the effects of rays are priced by.
 struct RayContext {
   const Transport* transport = nullptr;  // of the whole scene, not only what is seen of it; null: no rays
+  // The same over the floor that the engine of the plan does not draw; null: none that the picture calls for.
+  const Transport* over_floor = nullptr;
   int bounces = 8;
   std::uint64_t seed = 1;
   std::string absent = "no rays are traced";  // why there is no transport
+  bool refused = false;                       // whether that is because --effects says so
+  std::string no_floor;                       // why no floor is priced; "" where one is, or where nothing is said of it
+  // Of the light that rays meet, to measure by how much maps miss the open light; null: that is not measured.
+  const envmap::BlockTree* texels = nullptr;
 };
 
 struct PlanRequest {
@@ -73,6 +80,15 @@ struct Plan {
   double de00_p95 = 0;              // predicted for all that is left out together
   double time_ms = 0;               // that planning took
   double rays_ms = 0;               // predicted for the effects of rays of one frame that are on
+  double ray_pricing_ms = 0;        // of the time that planning took: what the effects of rays are worth
+  double rays_noise_de00 = 0;       // the noise of these that is aimed at: a standard deviation at 95 of 100 points
+  // What the open light as planned misses of the exact sum, at some of the points, with the effects left out that the
+  // plan leaves out of it; none where it was not measured.
+  std::optional<double> open_de00_p95;
+  // Predicted for all that the picture is to miss: open light, effects of rays that are left out, and noise.
+  std::optional<double> whole_de00_p95;
+  // A sentence where the picture is not going to be within the tolerance: why, and what would be; "" where it is.
+  std::string not_kept;
 
   // Of the engine that was chosen.
   double predicted_ms() const;
@@ -80,6 +96,11 @@ struct Plan {
 
 // Error (usage): a word of --effects that names no effect, with the names that there are.
 Result<void> check_effects(const std::string& effects);
+
+// Whether such words leave no effect of rays on, so that no rays need be traced for them. The words are checked.
+bool leave_out_rays(const std::string& effects);
+// Whether they force the floor on or off; nothing where they do not name it.
+std::optional<bool> floor_forced(const std::string& effects);
 
 // Up to `count` pixels of which each shows something, evenly spread over those of all G-buffers.
 struct ProbePixel {

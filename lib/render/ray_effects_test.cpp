@@ -43,7 +43,9 @@ struct Drawn {
 Drawn drawn(const World& world, const std::string& effects, bool rays, int samples = 1) {
   auto renderer = Renderer::create();
   EXPECT_TRUE(renderer.ok());
-  if (rays) renderer->set_rays({&world.sky, ""});
+  RaySetup setup;
+  setup.environment = &world.sky;
+  if (rays) renderer->set_rays(setup);
   View view = world.view;
   view.samples = samples;
   const auto seen = renderer->look(world.mesh, view);
@@ -77,7 +79,7 @@ TEST(RayEffects, ABallIsDrawnAsBefore) {
   const World world(sphere_mesh(48));
   const Drawn before = drawn(world, "auto", false), after = drawn(world, "auto", true);
   EXPECT_EQ(before.frame.picture.data, after.frame.picture.data);
-  for (const std::string& name : ray_effect_names()) {
+  for (const std::string name : {"shadow", "self", "bounce"}) {
     EXPECT_FALSE(item(after.plan, name).needed);
     EXPECT_EQ(item(after.plan, name).decision, Decision::kNotInScene);
   }
@@ -88,7 +90,7 @@ TEST(RayEffects, APictureWithThemIsTheTruth) {
   const World world(ball_in_a_cup());
   const Drawn planned = drawn(world, "auto", true), with = drawn(world, "all", true),
               without = drawn(world, "all,-shadow", true);
-  for (const std::string& name : ray_effect_names()) {
+  for (const std::string name : {"shadow", "self", "bounce"}) {
     EXPECT_EQ(item(planned.plan, name).decision, Decision::kDrawn) << name;
     EXPECT_GT(item(planned.plan, name).de00_p95, 1) << name;
     EXPECT_EQ(item(without.plan, name).decision, Decision::kForcedOff) << name;
@@ -108,6 +110,18 @@ TEST(RayEffects, APictureWithThemIsTheTruth) {
   EXPECT_NEAR(bad.shares.prefilter, good.shares.prefilter, 0.1 * PlanRequest{}.tolerance_de00);
   // The plan knew what leaving shadows out is worth: 100 pixels of 95 % lie between the 90th and the 99th.
   EXPECT_NEAR(item(without.plan, "shadow").de00_p95, bad.total.de00_p95, 0.3 * bad.total.de00_p95);
+}
+
+// What the plan says of the whole: in even light it is the noise and what is left out. Control: with the shadow left
+// out it is what the check finds.
+TEST(RayEffects, TheWholeIsPredicted) {
+  const World world(ball_in_a_cup());
+  const Drawn with = drawn(world, "all", true), without = drawn(world, "all,-shadow", true);
+  ASSERT_TRUE(with.plan.whole_de00_p95.has_value());
+  ASSERT_TRUE(without.plan.whole_de00_p95.has_value());
+  EXPECT_LT(against_truth(world, with).total.de00_p95, 2 * *with.plan.whole_de00_p95);
+  EXPECT_LT(*with.plan.whole_de00_p95, 2 * PlanRequest{}.tolerance_de00);
+  EXPECT_GT(item(without.plan, "shadow").de00_p95, 5);
 }
 
 // The mean over the samples of a pixel is that of one sample, apart from edges and noise.

@@ -73,7 +73,8 @@ struct Renderer::State : Sight {
   Scene ray_scene;  // all of it, seen or not: rays meet parts that the camera does not see
   std::shared_ptr<const rays::RayScene> ray_mesh;  // of that scene; none: not yet
   std::optional<Transport> transport;
-  std::optional<Error> ray_failure;  // of load_paints(), which cannot tell it
+  std::optional<envmap::BlockTree> ray_texels;  // of the environment of ray_setup; none: not yet
+  std::optional<Error> ray_failure;             // of load_paints(), which cannot tell it
   double white_luminance = 1;
   const mesh::Mesh* uploaded = nullptr;
   std::size_t uploaded_triangles = 0;
@@ -96,6 +97,7 @@ struct Renderer::State : Sight {
   Result<void> look_at(const View& wanted);
   Result<void> take(int first, int count, image::Image& picture);
   CorrectionNoise correct(int first, int count, image::Image& picture);
+  Result<std::optional<Transport>> transport_over_floor() const;
   Result<void> trace(const Scene& whole);
 
   const GlContext* gl() const override { return open_gl ? &open_gl->context : nullptr; }
@@ -233,16 +235,22 @@ CorrectionNoise Renderer::State::correct(int first, int count, image::Image& pic
   CorrectionRequest request;
   request.effects = effects.rays;
   request.bounces = effort_asked.bounces;
-  request.tolerance_de00 = kRayNoiseShare * effects.tolerance_de00;
+  request.tolerance_de00 = effects.ray_noise_de00;
   request.white_luminance = white_luminance;
   request.samples = count;
+  request.most_samples = std::max(2 * kBatch, effects.most_ray_samples / count);
+  request.progress = effort_asked.progress;
   const image::Image before = picture;
+  const Deadline deadline(effort_asked.time_limit_s);
   for (int i = first; i < first + count; ++i) {
+    // What is left is shared by the samples of the pixels that are left.
+    if (effort_asked.time_limit_s > 0) request.time_limit_s = std::max(1e-3, deadline.left_s()) / (first + count - i);
     request.seed = mixed(effort_asked.seed, static_cast<std::uint64_t>(i));
     const CorrectionNoise one = add_correction(*transport, *scene.mesh, *gbuffer(i), request, before,
                                                1.0F / static_cast<float>(count), picture);
     all.de00_p95 += one.de00_p95 / count, all.free_share += one.free_share / count;
     all.samples += one.samples, all.ms += one.ms;
+    all.reached = all.reached && one.reached;
   }
   return all;
 }
@@ -263,6 +271,18 @@ Result<void> Renderer::State::trace(const Scene& whole) {
   GONIO_ASSIGN(Transport created, Transport::create(paths));
   transport.emplace(std::move(created));
   return {};
+}
+
+// The same over the floor that plans price; none where there is no such floor.
+Result<std::optional<Transport>> Renderer::State::transport_over_floor() const {
+  if (!transport || !ray_setup->floor || ray_setup->environment == nullptr) return std::optional<Transport>();
+  PathScene paths;
+  paths.scene = &ray_scene;
+  paths.environment = ray_setup->environment;
+  paths.ground = ray_setup->floor;
+  paths.rays = std::make_shared<const rays::RayScene>(ray_mesh->over({ray_setup->floor->height}));
+  GONIO_ASSIGN(Transport created, Transport::create(paths));
+  return std::optional<Transport>(std::move(created));
 }
 
 Renderer::Renderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -346,12 +366,20 @@ Result<Plan> Renderer::load(const Scene& scene, const std::vector<std::shared_pt
   }
   if (refusal && (request.engine || able.empty())) return *refusal;
   RayContext rays;
+  std::optional<Transport> over_floor;
   rays.absent.clear();
   if (s.ray_setup && !(asked != nullptr && asked->traces_rays)) {
     rays.bounces = s.effort_asked.bounces, rays.seed = s.effort_asked.seed, rays.absent = s.ray_setup->absent;
+    rays.refused = s.ray_setup->refused, rays.no_floor = s.ray_setup->no_floor;
     const Result<void> traced = s.trace(scene);
     if (!traced.ok()) rays.absent = traced.error().message;
     rays.transport = s.transport ? &*s.transport : nullptr;
+    GONIO_ASSIGN(over_floor, s.transport_over_floor());
+    rays.over_floor = over_floor ? &*over_floor : nullptr;
+    if (s.transport && s.ray_setup->environment != nullptr) {
+      if (!s.ray_texels) s.ray_texels.emplace(*s.ray_setup->environment);
+      rays.texels = &*s.ray_texels;
+    }
   }
   s.white_luminance = request.white_luminance;
   GONIO_ASSIGN(Plan plan, make_plan(seen, gbuffers, request, able, rays));
@@ -371,6 +399,7 @@ void Renderer::load_paints(const Scene& scene) {
 
 void Renderer::set_rays(const RaySetup& setup) {
   state_->ray_setup = setup;
+  state_->ray_texels.reset();
 }
 
 const Transport* Renderer::transport() const {

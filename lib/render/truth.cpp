@@ -1,6 +1,7 @@
 #include "render/truth.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -22,16 +23,28 @@ constexpr double kPart = 0.1, kUnseen = 0.02;
 // Independent batches, added one after the other.
 struct PointTruth {
   LightShares sure, sum;
+  LightShares even;  // the sum of every second batch
   Estimates batches;
   bool certain = false;
 
   void add(const LightShares& batch) {
+    if (batches.count() % 2 == 0) even += batch;
     sum += batch;
     batches.add(batch.sum());
   }
   LightShares mean() const {
     LightShares result = sure;
     if (batches.count() > 0) result += (1.0 / batches.count()) * sum;
+    return result;
+  }
+  // The mean of every second batch, and of the others.
+  std::array<LightShares, 2> halves() const {
+    LightShares odd = sum;
+    odd += -1.0 * even;
+    const int count = batches.count();
+    std::array<LightShares, 2> result = {(1.0 / std::max(1, (count + 1) / 2)) * even,
+                                         (1.0 / std::max(1, count / 2)) * odd};
+    for (LightShares& half : result) half += sure;
     return result;
   }
   // Of that mean.
@@ -86,6 +99,11 @@ class Judge {
     error.shares.occlusion = percentile(&Judge::occlusion);
     error.shares.bounce = percentile(&Judge::bounce);
     error.shares.noise = percentile(&Judge::drawn_noise);
+    if (!request_.whole) {
+      error.worth.shadow = worth({false, false, false});
+      error.worth.self = worth({true, false, true});
+      error.worth.bounce = worth({true, true, false});
+    }
     std::vector<double> fit;
     for (const VisiblePoint& point : sample_.points)
       fit.push_back(scene.paints[static_cast<std::size_t>(point.part)].mean_de00);
@@ -116,6 +134,25 @@ class Judge {
   double percentile(double (Judge::*of)(std::size_t) const) const {
     std::vector<double> values;
     for (std::size_t i = 0; i < truth_.size(); ++i) values.push_back((this->*of)(i));
+    return percentile_95(std::move(values));
+  }
+  // As plans have it, in the same way free of noise: theory(7), PLAN, Effects of rays.
+  double worth(const RayEffects& without) const {
+    constexpr RayEffects kAll{true, true, true};
+    std::vector<double> values;
+    for (std::size_t i = 0; i < truth_.size(); ++i) {
+      const auto squared = [&](const LightShares& mean) {
+        const double d = seen_difference(open_[i] + mean.shown(kAll), open_[i] + mean.shown(without), white_);
+        return d * d;
+      };
+      const double whole = squared(truth_[i].mean());
+      if (truth_[i].batches.count() < 2) {
+        values.push_back(std::sqrt(whole));
+        continue;
+      }
+      const auto halves = truth_[i].halves();
+      values.push_back(std::sqrt(std::max(0.0, 2 * whole - 0.5 * (squared(halves[0]) + squared(halves[1])))));
+    }
     return percentile_95(std::move(values));
   }
   color::Rgb truth(std::size_t i) const { return open_[i] + truth_[i].mean().sum(); }

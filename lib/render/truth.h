@@ -20,11 +20,17 @@ struct TruthShares {
                    // is not part of the difference
 };
 
+// What each effect of rays is worth in the truth, as a plan has it: the change by leaving it out, noise taken off.
+struct TrueWorth {
+  double shadow = 0, self = 0, bounce = 0;
+};
+
 struct TruthError {
   PictureError total;
   double standard_error = 0;  // of the truth itself: the 95th percentile of its noise
   bool sharp = false;         // whether that is below a tenth of total.de00_p95, or of the least that matters
   TruthShares shares;
+  TrueWorth worth;  // 0 where the picture was drawn by paths alone
 };
 
 struct TruthRequest {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
@@ -185,6 +186,12 @@ SketchLight SketchTransport::light() const {
   return {basis, reflection_, shade};
 }
 
+std::vector<int> SketchTransport::mesh_parts() const {
+  std::vector<int> parts(transport_->worn.brushed.size());
+  std::iota(parts.begin(), parts.end(), 1);
+  return parts;
+}
+
 double SketchTransport::wear(const std::vector<color::Rgb>& weights, const std::vector<int>& parts) {
   const render::LobeTransport& t = *transport_;
   if (t.bounces == 0) return 0;
@@ -194,7 +201,7 @@ double SketchTransport::wear(const std::vector<color::Rgb>& weights, const std::
     if (t.columns.is_gloss(k) && k != t.columns.mirror()) own[k] = gloss * own[k];
   std::vector<std::vector<color::Rgb>> worn;
   for (std::size_t part = 0; part < t.worn.groups.of_part.size(); ++part) {
-    const bool meant = parts.empty() || std::ranges::find(parts, static_cast<int>(part) + 1) != parts.end();
+    const bool meant = std::ranges::find(parts, static_cast<int>(part) + 1) != parts.end();
     worn.push_back(meant ? own : t.worn.weights[static_cast<std::size_t>(t.worn.groups.of_part[part])]);
   }
   const render::BounceScale scale = render::bounce_scale(t, worn, reflection_ ? &*reflection_ : nullptr);

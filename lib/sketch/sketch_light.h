@@ -26,7 +26,10 @@ class SketchTransport {
   // As sketch_light(). Bounced light is that of the paints that were worn, or of the paint told last.
   SketchLight light() const;
 
-  // Scales bounced light to these weights on these parts (numbers from 1; none: all), and returns what that errs by
+  // The parts of the mesh, by number from 1. The floor has no number among them: it keeps what it wears.
+  std::vector<int> mesh_parts() const;
+
+  // Scales bounced light to these weights on these parts (numbers from 1), and returns what that errs by
   // (CIEDE2000, 95th percentile): 0 where the tracing was done without bounces.
   double wear(const std::vector<color::Rgb>& weights, const std::vector<int>& parts);
 

@@ -31,9 +31,9 @@ struct Picture {
 };
 
 // Reads any image. Tagged files are what they say (ICC profile, color space, chromaticities); untagged whole numbers
-// are sRGB, untagged EXR is in the working space as render-osmesa writes it, other floats linear Rec.709. Inks of a CMYK
-// picture without a profile are converted by a rule of thumb, and a warning says so. Error, with the remedy: not an
-// image, a damaged profile or one of other channels, or an unknown color space.
+// are sRGB, untagged EXR is in the working space as render-osmesa writes it, other floats linear Rec.709. Inks of a
+// CMYK picture without a profile are converted by a rule of thumb, and a warning says so. Error, with the remedy: not
+// an image, a damaged profile or one of other channels, or an unknown color space.
 Result<Picture> read_picture(const std::string& path, PictureView view);
 // The same of an image that was read with Inks::kKept, or of a piece of one; `name` is what errors call it.
 Result<Picture> picture_of(image::ImagePart part, const std::string& name, PictureView view);

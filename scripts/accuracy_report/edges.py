@@ -42,7 +42,7 @@ class Picture:
         fitted, env = run.work / "edges.xml", run.work / "edges.env.exr"
         run.tool("fit-paint", "--basis", run.data / "b7.basis.xml", run.paints, "-o", fitted)
         run.tool("prefilter-envmap", run.probe, "--basis", run.data / "b7.basis.xml", "-o", env)
-        self.words = ("--mesh", run.mesh, "--paint", f"{fitted}#{paint}", "--env", env, *VIEW, "--effects", "all", "-o", self.out)
+        self.words = ("--mesh", run.mesh, "--paint", f"{fitted}#{paint}", "--env", env, *VIEW, "--effects", "all,-rays", "-o", self.out)
 
     def drawn(self, scale, samples, engine):
         size = "x".join(str(scale * side) for side in SIZE)

@@ -61,7 +61,7 @@ def rendering(run):
     run.tool("fit-paint", "--basis", run.data / "b7.basis.xml", run.paints, "-o", fitted)
     run.tool("prefilter-envmap", run.probe, "--basis", run.data / "b7.basis.xml", "-o", env)
     # CAMERA[2:] leaves the size out. With all effects, every size draws the same ones.
-    words = ("--mesh", run.mesh, "--paint", f"{fitted}#silver_black_flop", "--effects", "all", *CAMERA[2:],
+    words = ("--mesh", run.mesh, "--paint", f"{fitted}#silver_black_flop", "--effects", "all,-rays", *CAMERA[2:],
              "-o", run.work / "p.exr")
     def frame(*more):
         frames = [run.tool("render-osmesa", *words, *more)[0]["frame_ms"] * 1e-3 for _ in range(1 if run.quick else 3)]

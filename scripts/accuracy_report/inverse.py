@@ -26,7 +26,7 @@ def drawn(run, light, paint, width):
     """
     picture, buffers = run.work / "sketch.png", run.work / "sketch.exr"
     words = ("--mesh", run.data / "speed-shape.obj", "--paint", f"{run.work / 'planted-fitted.xml'}#{paint}", *light,
-             "--size", f"{width}x{int(width / SHAPE)}", "--samples", 1, "--effects", "all")
+             "--size", f"{width}x{int(width / SHAPE)}", "--samples", 1, "--effects", "all,-rays")
     run.tool("render-osmesa", *words, "-o", picture)
     run.tool("render-osmesa", *words, "--aov", "normal,aspecular,lambert,mask,part", "-o", buffers)
     return picture, buffers

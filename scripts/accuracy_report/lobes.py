@@ -53,7 +53,7 @@ def study(run):
         library.append(Reading(setting, best, results["de00_mean"], series, setting == DEFAULT, raw, numbers))
         for name in names:
             shading = functools.partial(run.shading, "--mesh", run.mesh, "--paint", f"{fitted}#{name}", "--env", env,
-                                        *SIZE, *CAMERA[2:], "--effects", "all", "-o", run.work / "lobes.exr")
+                                        *SIZE, *CAMERA[2:], "--effects", "all,-rays", "-o", run.work / "lobes.exr")
             by_paint[name].append(Reading(setting, error=paints[name]["de00_mean"], method=series, default=setting == DEFAULT,
                                           **run.timed(shading), numbers={"lobes": paints[name]["active_lobes"]}))
         shading = [1e3 * by_paint[name][-1].time_s for name in names]

@@ -31,10 +31,13 @@ class Settings:
         engine, _, tolerance = self.effects.partition(" ")
         return tolerance if engine == "integral" else ""
 
+    # Chains, maps and effects of open light are studied without what the mesh does to light, which has studies of its own.
     def render_words(self):
         if self.integral():
-            return ("--engine", "integral", "--tolerance", self.integral())
-        return ("--effects", self.effects) if self.effects in ("all", "none") else ("--tolerance", self.effects)
+            return ("--engine", "integral", "--tolerance", self.integral(), "--effects", "auto,-rays")
+        if self.effects in ("all", "none"):
+            return ("--effects", f"{self.effects},-rays")
+        return ("--tolerance", self.effects, "--effects", "auto,-rays")
 
     def __str__(self):
         limit = self.integral()

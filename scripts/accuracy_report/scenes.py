@@ -89,7 +89,7 @@ class Stage:
         paint, wears, light = scene
         if wears == "texture":
             wears, more = "fitted", (*more, "--texture", f"Hood={self.run.data / 'nameplate.sbrdf.exr'}")
-        return ("--mesh", self.run.mesh, *SIZE, "--effects", effects, *self.light(light), "--paint", self.paint(paint, wears),
+        return ("--mesh", self.run.mesh, *SIZE, "--effects", f"{effects},-rays", *self.light(light), "--paint", self.paint(paint, wears),
                 *more, "-o", self.run.work / "picture.exr")
 
     def picture(self, scene, effects, *more):

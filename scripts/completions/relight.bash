@@ -6,6 +6,7 @@ _relight() {
     --operator) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --transfer) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --estimate) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --primaries) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --negative) COMPREPLY=($(compgen -W "keep zero" -- "$word")); return ;;
     --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --report) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -13,7 +14,7 @@ _relight() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--from --to --operator --transfer --estimate --negative --output --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--from --to --operator --transfer --estimate --primaries --negative --output --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

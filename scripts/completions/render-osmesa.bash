@@ -30,7 +30,7 @@ _render_osmesa() {
     --engine) COMPREPLY=($(compgen -W "auto cpu gl integral path" -- "$word")); return ;;
     --bounces) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --check) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --check-against) COMPREPLY=($(compgen -W "truth model" -- "$word")); return ;;
+    --check-against) COMPREPLY=($(compgen -W "auto truth model" -- "$word")); return ;;
     --check-source) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --view) COMPREPLY=($(compgen -f -- "$word")); return ;;

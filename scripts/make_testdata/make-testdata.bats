@@ -7,7 +7,7 @@
     cmp "$made" "$TESTDATA/${made##*/}"
   done
   # Only what PROVENANCE.md says is not among them, and indices that colorsnap keeps beside libraries.
-  [ "$(ls "$TESTDATA" | grep -v '\.snapindex$' | grep -vxF "$(ls "$BATS_TEST_TMPDIR/made")" | xargs)" = 'PROVENANCE.md contact-sheet.jpg' ]
+  [ "$(ls "$TESTDATA" | grep -v '\.snapindex$' | grep -vxF "$(ls "$BATS_TEST_TMPDIR/made")" | xargs)" = 'PROVENANCE.md contact-sheet.jpg published-lights.csv published-reflectances.csv' ]
 }
 
 @test "a folder that cannot be written is named" {

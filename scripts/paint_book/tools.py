@@ -42,7 +42,7 @@ class Tools:
     def picture(self, paint, mesh, env, size, orbit, out):
         """The bytes of a PNG of a paint on a mesh."""
         self.run("render-osmesa", "--mesh", mesh, "--paint", paint, "--trim", "--env", env, "--size", f"{size[0]}x{size[1]}",
-                 "--orbit", orbit, "--samples", 4, "--background", BACKGROUND, "--threads", 1, "-o", out)
+                 "--orbit", orbit, "--samples", 4, "--background", BACKGROUND, "--effects", "auto,-rays", "--threads", 1, "-o", out)
         return out.read_bytes()
 
     def handoff(self, document, kind):

@@ -54,6 +54,8 @@ std::string ColorMaps::file_name(const std::string& paint) {
 Result<void> ColorMaps::add(paint::Paint& paint, const brdf::MeasuredBrdf* brdf, const std::string& where) {
   if (options_.color_map.empty()) return {};
   fit::ColorMapOptions asked;
+  if (options_.color_map_model == "isolines") asked.model = fit::ColorMapModel::kIsolines;
+  if (options_.color_map_model == "aspecular") asked.model = fit::ColorMapModel::kAspecular;
   if (paint.color_map) asked.index = paint.color_map->index;
   const auto fit = fitted(paint, brdf, asked);
   if (!fit.ok()) {
@@ -63,17 +65,26 @@ Result<void> ColorMaps::add(paint::Paint& paint, const brdf::MeasuredBrdf* brdf,
   }
   const std::string name = file_name(paint.name);
   const std::string path = (std::filesystem::path(options_.color_map) / name).string();
-  GONIO_TRY(image::write_color_map(path, fit->map, {{"goniochrome:command", session_.provenance()}}));
+  GONIO_TRY(image::write_color_map(path, fit->map,
+                                   {{"goniochrome:command", session_.provenance()},
+                                    {"goniochrome:heldOutIsolines", static_cast<float>(fit->isolines_de76)},
+                                    {"goniochrome:heldOutAspecular", static_cast<float>(fit->aspecular_de76)}}));
   paint.color_map = paint::ColorMapReference{(folder_from_output(options_) / name).generic_string(), asked.index};
   ++made_;
   sum_held_out_ += fit->held_out_de76;
+  if (fit->map.aspecular) ++aspecular_;
   session_.add("color_maps", [&] {
     return Json{{"name", paint.name},
                 {"file", path},
                 {"rows", fit->rows},
                 {"glare_rows", fit->glare_rows},
                 {"grazing_rows", fit->grazing_rows},
+                {"beyond_rows", fit->beyond_rows},
                 {"illuminations", fit->illuminations},
+                {"model", fit->map.aspecular ? "aspecular" : "isolines"},
+                {"isolines_de76", json_number(fit->isolines_de76)},
+                {"aspecular_de76", json_number(fit->aspecular_de76)},
+                {"compared_rows", fit->compared_rows},
                 {"held_out_de76", json_number(fit->held_out_de76)},
                 {"negative_share", fit->negative_share}};
   });
@@ -85,8 +96,10 @@ void ColorMaps::finish() {
   session_.results()["without_color_map"] = without_;
   if (without_ > kWarningsShown)
     session_.warn(fmt::format("{} more paints get no color map", without_ - kWarningsShown));
-  session_.say(fmt::format("{}: {} color maps, mean dE76 of a reading predicted from the others {:.2f}",
-                           session_.tool(), made_, made_ > 0 ? sum_held_out_ / made_ : 0));
+  session_.say(
+      fmt::format("{}: {} color maps, {} of them by the aspecular angle alone, mean dE76 of a reading predicted from "
+                  "the others {:.2f}",
+                  session_.tool(), made_, aspecular_, made_ > 0 ? sum_held_out_ / made_ : 0));
 }
 
 }  // namespace goniochrome::tool

@@ -31,7 +31,7 @@ class ColorMaps {
   const Options& options_;
   cli::Session& session_;
   std::set<std::string> names_;
-  int made_ = 0, without_ = 0;
+  int made_ = 0, without_ = 0, aspecular_ = 0;
   double sum_held_out_ = 0;
 };
 

@@ -340,10 +340,33 @@ cornell() {
   run --separate-stderr fit-paint -b "$basis" in.xml -o deep/out.xml --color-map deep/maps --report r.json
   [ "$status" -eq 0 ]
   [[ "$stderr" =~ 'in.xml:1: paint "one" gets no color map: a color map takes 4 readings' ]]
-  [[ "$stderr" =~ "1 color maps, mean dE76 of a reading predicted from the others" ]]
+  [[ "$stderr" =~ 1\ color\ maps,\ [01]\ of\ them\ by\ the\ aspecular\ angle\ alone,\ mean\ dE76\ of\ a\ reading\ predicted ]]
   [ -s deep/maps/sea_green_1.exr ]
   grep -q '<colorMap href="maps/sea_green_1.exr" index="1.5"/>' deep/out.xml
   [ "$(grep -c '<colorMap' deep/out.xml)" -eq 1 ]
   [ "$(number rows)" = 12 ]
   [ "$(number without_color_map)" = 1 ]
+  [ "$(number compared_rows)" = 12 ]
+}
+
+@test "--color-map-model takes the better model or the one that is told; missing and wrong ones are refused" {
+  # L* falls with the aspecular angle in air, and is the same at every light.
+  rows=
+  for light in 20 30 45 60; do
+    for aspecular in 15 25 40 60 90; do
+      rows+="<lab geometry=\"${light}as$aspecular\" L=\"$((90 - aspecular / 2))\" a=\"10\" b=\"5\"/>"
+    done
+  done
+  echo "$head<paint name=\"matt\"><measurement illuminant=\"D65\" observer=\"10\">$rows</measurement></paint></paints>" >in.xml
+  for model in better isolines aspecular; do
+    fit-paint -q -b "$basis" in.xml -o out.xml --color-map "$model" --color-map-model "$model" --report "$model.json"
+  done
+  grep -q '"model": "aspecular"' better.json
+  grep -q '"model": "isolines"' isolines.json
+  grep -q '"model": "aspecular"' aspecular.json
+  [ "$(oiiotool --info -v isolines/matt.exr | grep -c 'goniochrome:model: "isolines"')" -eq 1 ]
+  run fit-paint -b "$basis" in.xml -o out.xml --color-map maps --color-map-model
+  [ "$status" -eq 2 ]
+  run fit-paint -b "$basis" in.xml -o out.xml --color-map maps --color-map-model best
+  [ "$status" -eq 2 ]
 }

@@ -46,6 +46,15 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("output,o", "FILE", "fitted.paints.xml", &o.output, "where the paints go; - is standard output");
   spec.option("color-map", "FOLDER", "maps", &o.color_map, "also make color maps, as FOLDER/name.exr")
       .more("Every paint that was read at two or more angles of incidence gets a map, and the paint written names it.");
+  spec.option("color-map-model", "MODEL", "isolines", &o.color_map_model, "what carries readings to other directions")
+      .one_of({"better", "isolines", "aspecular"})
+      .more(
+          "isolines see the same flakes at the same angle, which follows interference paints out of the plane. "
+          "aspecular "
+          "takes the color from the aspecular angle alone, which is closer on near-matt paints. better leaves out each "
+          "reading in turn, predicts it from the others by both, and takes the model that errs less; the report and "
+          "the "
+          "file tell both errors.");
   cli::add_common_options(spec, o.common, {.explain = true});
 }
 
@@ -99,11 +108,19 @@ void add_report(cli::ToolSpec& spec) {
       {"paints[].message", "reason why a paint failed"},
       {"color_maps[].name", "with --color-map: the paint"},
       {"color_maps[].file", "file of its map"},
-      {"color_maps[].rows", "readings that the map goes through"},
+      {"color_maps[].rows", "readings that the map is made from"},
       {"color_maps[].glare_rows", "readings that are left out because they are within 10 degrees of specular"},
       {"color_maps[].grazing_rows", "readings left out for a direction more than 75 degrees from the normal"},
       {"color_maps[].illuminations", "number of different angles of incidence on the flakes, to 1 degree"},
-      {"color_maps[].held_out_de76", "mean CIE 1976 difference of a reading that is predicted from the others"},
+      {"color_maps[].beyond_rows",
+       "readings out of plane for which the map has no place, because they are beyond the critical angle; the map is "
+       "compared with them"},
+      {"color_maps[].model", "isolines or aspecular"},
+      {"color_maps[].isolines_de76", "mean CIE 1976 difference of a reading that isolines predict from the others"},
+      {"color_maps[].aspecular_de76", "the same for the aspecular angle alone"},
+      {"color_maps[].held_out_de76", "the one of these two for the model that the map has"},
+      {"color_maps[].compared_rows",
+       "number of readings behind these figures; they are measured, and none of them is interpolated from others"},
       {"color_maps[].negative_share", "share of the map that is outside the working space"},
       {"without_color_map", "number of paints whose readings do not make a map"},
       {"fits_per_s", "fits a second, without reading and writing"},

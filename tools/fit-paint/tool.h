@@ -23,6 +23,7 @@ struct Options {
   double steepest_deg = 75;
   double paint_time_limit_s = 0;
   std::string color_map;
+  std::string color_map_model = "better";
 };
 
 cli::ToolSpec tool_spec(Options& options);

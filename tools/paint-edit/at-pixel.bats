@@ -57,7 +57,7 @@ tweak() { paint-edit -q one.paints.xml --image scene.exr -o out.paints.xml --rep
 }
 
 @test "the angle is that of the renderer's own buffers" {
-  render-osmesa -q --mesh "$TESTDATA/speed-shape.obj" --light 30,50 --size 96x60 --aov aspecular,mask -o car.exr
+  render-osmesa -q --mesh "$TESTDATA/speed-shape.obj" --light 30,50 --size 96x60 --effects auto,-rays --aov aspecular,mask -o car.exr
   paint-edit one.paints.xml --image car.exr --at-pixel 40,30 --lighter 1 -o out.paints.xml --report r.json 2>said
   grep -qE '^--at-pixel 40,30 is [0-9.]+ deg from specular$' said
   oiiotool car.exr --ch aspecular --cut 1x1+40+30 -o pixel.exr

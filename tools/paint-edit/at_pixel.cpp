@@ -78,10 +78,11 @@ Result<double> gloss_of_edge(double edge_deg, double meter_deg) {
 
 Result<PlacedOptions> placed(const Options& options) {
   GONIO_TRY(check_places(options));
-  PlacedOptions result{options, {}};
+  PlacedOptions result{options, {}, ""};
   if (options.image.empty()) return result;
   Options& o = result.options;
   GONIO_ASSIGN(const image::AovFile file, image::read_aov_file(options.image));
+  result.drawn_by_rays = file.drawn_by_rays;
   const auto look = [&](const char* option, const std::vector<double>& place) -> Result<double> {
     GONIO_ASSIGN(const SeenPixel pixel, seen(file, option, place));
     result.pixels.push_back(pixel);

@@ -24,6 +24,7 @@ struct SeenPixel {
 struct PlacedOptions {
   Options options;
   std::vector<SeenPixel> pixels;
+  std::string drawn_by_rays;  // as image::AovFile has it, of --image
 };
 Result<PlacedOptions> placed(const Options& options);
 

@@ -208,6 +208,9 @@ Result<cli::Verdict> run(const Options& stated, cli::Session& session) {
   GONIO_ASSIGN(const PlacedOptions place, placed(stated));
   const Options& options = place.options;
   GONIO_ASSIGN(const paint::Edit edit, edit_of(options));
+  if (!place.drawn_by_rays.empty())
+    session.say(fmt::format("{} shows {}: the edit is made at the angle of the pixel, in light that nothing blocks",
+                            stated.image, place.drawn_by_rays));
   for (const SeenPixel& pixel : place.pixels) {
     session.results()["pixels"].push_back(
         {{"option", pixel.option}, {"x", pixel.x}, {"y", pixel.y}, {"aspecular_deg", pixel.aspecular_deg}});

@@ -46,6 +46,15 @@ cli::ToolSpec tool_spec(Options& o) {
           "Comparisons are joined by && || ! (or by the words and, or, not) and parentheses, as in \"class==metallic "
           "and not flags==dark\". A figure that does not apply makes a comparison false; hue_shift_index==na asks for "
           "it. Where no paint matches, the exit status is 1.");
+  spec.heading = "comparison";
+  spec.option("score", "TABLE", "cayman.brdf", &o.score, "compare the models of paints with measured directions")
+      .more(
+          "TABLE is a measured BRDF, or paint XML or CSV with readings of paints of the same names. The models are the "
+          "curve of a paint, its lobes and its color map, where it has them. Directions less than 10 degrees from "
+          "specular or more than 75 degrees from the normal are left out and counted. The table has one line for each "
+          "model: how many directions were compared, and the mean, the 95th percentile and the largest CIEDE2000 "
+          "difference, and the mean and the 95th percentile of the CIE 1976 difference. A measured BRDF is for the "
+          "paint that has the name of its file; if there is none, it is for all paints.");
   add_keep_going(spec, "keep-going,k", o.keep_going, "paints that cannot be read");
   spec.heading = "output";
   add_table_options(spec, o.output, o.format, "the paints themselves, with every element kept", "paint");
@@ -65,6 +74,9 @@ cli::ToolSpec tool_spec(Options& o) {
   spec.report.insert(spec.report.end(), {{"read", "number of paints read"},
                                          {"matched", "number of paints written"},
                                          {"left_out", "number of paints that --keep-going left out"},
+                                         {"scores[]",
+                                          "with --score: name, model, rows, left_out, de00_mean, de00_p95, de00_max, "
+                                          "de76_mean and de76_p95 of each model of a paint"},
                                          {"paints_per_s", "paints a second, without reading and writing"},
                                          {"warnings[]", "messages about paints left out"}});
   spec.see_also = {"colorsnap(1)", "paint-convert(1)", "paint-edit(1)"};

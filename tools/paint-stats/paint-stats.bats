@@ -235,3 +235,37 @@ column() {
   [ "$status" -eq 2 ]
   [[ "$output" == *"--where"* ]]
 }
+
+@test "--score compares every model of a paint with measured directions; missing and wrong tables are refused" {
+  {
+    echo '<paints xmlns="urn:goniochrome:paint:1" version="1">'
+    echo '<paint name="gray"><measurement illuminant="D65" observer="10"><lab geometry="45as15" L="60" a="0" b="0"/><lab geometry="45as45" L="50" a="0" b="0"/><lab geometry="45as110" L="40" a="0" b="0"/></measurement>'
+    echo '<lobes space="lin_rec2020_scene" basis="b" method="l1" max_de00="0" mean_de00="0"><diffuse r="0.05862" g="0.05862" b="0.05862"/></lobes></paint>'
+    echo '<paint name="other"><measurement illuminant="D65" observer="10"><lab geometry="45as45" L="50" a="0" b="0"/></measurement></paint></paints>'
+  } >gray.xml
+  printf 'sample,geometry,illuminant,observer,L,a,b\ngray,45as15,D65,10,63,4,0\ngray,45as45,D65,10,50,0,0\ngray,45as5,D65,10,99,0,0\n' >table.csv
+  run --separate-stderr paint-stats --score table.csv gray.xml --report r.json
+  [ "$status" -eq 0 ]
+  [[ "$stderr" == *"1 of 2 paints compared with table.csv"* ]]
+  # The curve misses 45as15 by (3,4,0), which is 5, and 45as45 by nothing; the lobes are L* 50 everywhere.
+  [ "$(awk -F'\t' '$2 == "curve" { print $3, $4, $8 }' <<<"$output")" = "2 1 2.500" ]
+  awk -F'\t' '$2 == "lobes" { exit !($8 > 6.7 && $8 < 6.85) }' <<<"$output"
+  grep -q '"model": "lobes"' r.json
+  run --separate-stderr paint-stats --score
+  [ "$status" -eq 2 ]
+  run --separate-stderr paint-stats --score nowhere.csv gray.xml
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *"nowhere.csv"* ]]
+  printf 'sample,geometry,illuminant,observer,L,a,b\ngray,45as15,A,10,63,4,0\n' >a.csv
+  run --separate-stderr paint-stats --score a.csv gray.xml
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *'"gray" was measured under A/10, and the paint is told under D65/10'* ]]
+  printf 'sample,geometry,illuminant,observer,L,a,b\nnobody,45as15,D65,10,63,4,0\n' >nobody.csv
+  run --separate-stderr paint-stats --score nobody.csv gray.xml
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *"no paint has both a model and directions there"* ]]
+  run --separate-stderr paint-stats --score table.csv --where 'L15>1' gray.xml
+  [ "$status" -eq 2 ]
+  run --separate-stderr paint-stats --score table.csv -f paints gray.xml
+  [ "$status" -eq 2 ]
+}

@@ -10,6 +10,7 @@
 #include "base/text.h"
 #include "paint/metrics.h"
 #include "paint_stream.h"
+#include "score.h"
 #include "table_output.h"
 
 namespace goniochrome::tool {
@@ -175,6 +176,10 @@ std::string plan(const Options& options) {
 }  // namespace
 
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
+  if (!options.score.empty()) {
+    if (!options.where.empty()) return usage_error("--score and --where exclude each other");
+    return score(options, session);
+  }
   session.explain(plan(options));
   return Run(options, session)();
 }

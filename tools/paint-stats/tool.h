@@ -14,6 +14,7 @@ struct Options {
   std::string output = "-";
   std::string format = "auto";
   std::string where;
+  std::string score;
   bool keep_going = false;
 };
 

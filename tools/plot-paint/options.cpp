@@ -23,6 +23,14 @@ cli::ToolSpec tool_spec(Options& o) {
   spec.option("incidence", "DEG,...", "15,45,65", &o.incidence_deg, "angles of the light for the squares")
       .from(0, 89)
       .in("degrees from the normal");
+  spec.flag("color-map", &o.color_map, "draw the color map of each paint instead")
+      .more(
+          "The page has the colors in the plane of incidence over the angles of light and viewer, and the hemisphere "
+          "of "
+          "viewers as squares of colors. Directions that no reading covers are hatched: those within 10 degrees of "
+          "specular or more than 75 degrees from the normal, those beyond the critical angle of the coat, where "
+          "isolines do not reach, and those more than 10 degrees from the nearest reading. Paints without a color map "
+          "are left out, and a warning says so.");
   spec.heading = "output";
   spec.option("output,o", "FILE", "sheet.svg", &o.output, "where the page or sheet goes; - is standard output")
       .more("It is a PNG if the name ends in .png, else an SVG.");
@@ -36,6 +44,7 @@ cli::ToolSpec tool_spec(Options& o) {
   spec.report = {{"paints[].name", "name of the paint"},
                  {"paints[].file", "file that it was drawn to"},
                  {"paints[].lobes", "number of lobes drawn; 0 where the paint was not fitted"},
+                 {"paints[].model", "with --color-map: isolines or aspecular"},
                  {"paints[].target", "what the squares compare with: measured BRDF, curve or none"}};
   spec.see_also = {"fit-paint(1)", "paint-convert(1)", "goniochrome-theory(7)"};
   return spec;

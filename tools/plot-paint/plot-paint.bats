@@ -100,3 +100,37 @@ setup() {
   [[ "$output" =~ "nothing to draw" ]]
   [ ! -e page.svg ]
 }
+
+@test "--color-map draws maps, with uncovered directions hatched; paints without one are told" {
+  rows=
+  for light in 20 30 45 60; do
+    for aspecular in 15 25 40 60 90; do
+      rows+="<lab geometry=\"${light}as$aspecular\" L=\"$((90 - aspecular / 2))\" a=\"$((light - 40))\" b=\"5\"/>"
+    done
+  done
+  {
+    echo '<paints xmlns="urn:goniochrome:paint:1" version="1">'
+    echo "<paint name=\"sea\"><measurement illuminant=\"D65\" observer=\"10\">$rows</measurement></paint>"
+    echo '<paint name="plain"><measurement illuminant="D65" observer="10"><lab geometry="45as45" L="50" a="0" b="0"/></measurement></paint>'
+    echo '</paints>'
+  } >in.xml
+  fit-paint -q -b "$TESTDATA/b7.basis.xml" in.xml -o out.xml --color-map maps
+  run --separate-stderr plot-paint --color-map out.xml -o map.svg --report r.json
+  [ "$status" -eq 0 ]
+  [[ "$stderr" == *'paint "plain" has no color map'* ]]
+  grep -q 'sea, color map' map.svg
+  grep -q 'of all pairs of directions are covered' map.svg
+  # Each hatching is one path of a stroke for each cell.
+  [ "$(grep -o 'M[0-9.]* [0-9.]*l' map.svg | wc -l)" -gt 500 ]
+  grep -Eq '"model": "(isolines|aspecular)"' r.json
+  mkdir pages
+  plot-paint -q --color-map -p sea out.xml --pages pages
+  [ -s pages/sea.svg ]
+  run --separate-stderr plot-paint --color-map -p plain out.xml -o map.svg
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *"none of the paints has a color map"* ]]
+  rm maps/sea.exr
+  run --separate-stderr plot-paint --color-map -p sea out.xml -o map.svg
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *"sea.exr"* ]]
+}

@@ -8,6 +8,8 @@
 #include "base/paths.h"
 #include "base/text.h"
 #include "formats/xml.h"
+#include "image/surface_file.h"
+#include "map_page.h"
 #include "page.h"
 #include "png.h"
 
@@ -26,9 +28,15 @@ Result<Brdfs> read_brdfs(const std::vector<std::string>& paths) {
   return brdfs;
 }
 
+// A paint with the folder from which its color map is named.
+struct ChosenPaint {
+  paint::Paint paint;
+  std::filesystem::path folder;
+};
+
 // The paints asked for, in the order of the libraries.
-Result<std::vector<paint::Paint>> chosen_paints(const Options& options) {
-  std::vector<paint::Paint> chosen;
+Result<std::vector<ChosenPaint>> chosen_paints(const Options& options) {
+  std::vector<ChosenPaint> chosen;
   std::vector<std::string> missing = options.names;
   for (const std::string& path : options.libraries.empty() ? std::vector<std::string>{"-"} : options.libraries) {
     GONIO_ASSIGN(std::vector<paint::Paint> paints, formats::read_paints(path));
@@ -36,12 +44,12 @@ Result<std::vector<paint::Paint>> chosen_paints(const Options& options) {
       const bool named = std::ranges::find(options.names, paint.name) != options.names.end();
       if (!options.names.empty() && !named) continue;
       std::erase(missing, paint.name);
-      chosen.push_back(std::move(paint));
+      chosen.push_back({std::move(paint), path == "-" ? "" : std::filesystem::path(path).parent_path()});
     }
   }
   if (!missing.empty()) return input_error("there is no paint \"{}\": see the names in the library", missing.front());
   if (chosen.empty()) return input_error("there is no paint to draw");
-  return chosen;
+  return Result(std::move(chosen));
 }
 
 Result<void> write_drawing(const std::string& path, bool png, const report::Drawing& drawing) {
@@ -64,6 +72,26 @@ std::string file_name(std::string name, std::set<std::string>& taken) {
   return unique;
 }
 
+// The pages of the color maps, each with its paint. A paint without one is told.
+Result<std::vector<report::Drawing>> map_pages(const std::vector<ChosenPaint>& paints, const Options& options,
+                                               cli::Session& session, std::vector<std::string>& names) {
+  std::vector<report::Drawing> pages;
+  for (const ChosenPaint& chosen : paints) {
+    if (!chosen.paint.color_map) {
+      session.warn(fmt::format("paint \"{}\" has no color map: fit-paint --color-map makes one", chosen.paint.name));
+      continue;
+    }
+    GONIO_ASSIGN(const brdf::ColorMap map,
+                 image::read_color_map((chosen.folder / chosen.paint.color_map->href).string()));
+    pages.push_back(map_page(chosen.paint.name, map, options.incidence_deg));
+    names.push_back(chosen.paint.name);
+    session.results()["paints"].push_back(
+        {{"name", chosen.paint.name}, {"model", map.aspecular ? "aspecular" : "isolines"}});
+  }
+  if (pages.empty()) return input_error("none of the paints has a color map: fit-paint --color-map makes them");
+  return Result(std::move(pages));
+}
+
 void report(const PageInput& input, const std::string& file, cli::Session& session) {
   const paint::Paint& paint = input.paint;
   const char* target = input.brdf ? "measured BRDF" : paint.measurement || paint.appearance ? "curve" : "none";
@@ -73,6 +101,21 @@ void report(const PageInput& input, const std::string& file, cli::Session& sessi
                                          {"target", target}});
 }
 
+Result<cli::Verdict> draw_maps(const std::vector<ChosenPaint>& paints, const Options& options, cli::Session& session) {
+  std::vector<std::string> names;
+  GONIO_ASSIGN(const std::vector<report::Drawing> pages, map_pages(paints, options, session, names));
+  std::set<std::string> taken;
+  for (std::size_t i = 0; i < pages.size() && !options.pages.empty(); ++i) {
+    const std::string file = fmt::format("{}/{}.{}", options.pages, file_name(names[i], taken), options.format);
+    GONIO_TRY(write_drawing(file, options.format == "png", pages[i]));
+    session.results()["paints"][i]["file"] = file;
+  }
+  if (options.pages.empty())
+    GONIO_TRY(write_drawing(options.output, lower(options.output).ends_with(".png"), report::column_of(pages)));
+  session.say(fmt::format("{}: {} color maps drawn", session.tool(), pages.size()));
+  return cli::Verdict::kDone;
+}
+
 }  // namespace
 
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
@@ -80,17 +123,19 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
     if (!is_folder(options.pages)) return input_error("{}: is no folder: make it first", options.pages);
     GONIO_TRY(can_be_written(options.pages + "/page." + options.format));
   }
-  GONIO_ASSIGN(const std::vector<paint::Paint> paints, chosen_paints(options));
+  GONIO_ASSIGN(const std::vector<ChosenPaint> paints, chosen_paints(options));
   GONIO_ASSIGN(const Brdfs brdfs, read_brdfs(options.brdfs));
   for (const auto& [name, brdf] : brdfs)
-    if (std::ranges::find(paints, name, &paint::Paint::name) == paints.end())
+    if (std::ranges::none_of(paints, [&](const ChosenPaint& chosen) { return chosen.paint.name == name; }))
       session.warn(fmt::format("no paint is named \"{}\" as the measured BRDF is: it is not used", name));
   session.results()["paints"] = Json::array();
 
+  if (options.color_map) return draw_maps(paints, options, session);
   std::vector<report::Drawing> rows;
   std::size_t unfitted = 0;
   std::set<std::string> taken;  // by pages
-  for (const paint::Paint& paint : paints) {
+  for (const ChosenPaint& chosen : paints) {
+    const paint::Paint& paint = chosen.paint;
     const auto brdf = brdfs.find(paint.name);
     const PageInput input{paint, brdf == brdfs.end() ? nullptr : brdf->second.get(), options.incidence_deg};
     unfitted += !paint.lobes;

@@ -16,6 +16,7 @@ struct Options {
   std::string format = "svg";
   std::vector<std::string> names;
   std::vector<std::string> brdfs;
+  bool color_map = false;
   std::vector<double> incidence_deg = {10, 40, 70};
 };
 

@@ -1,10 +1,11 @@
 #include "tool.h"
 
 #include <cmath>
+#include <optional>
 
 #include "base/file.h"
 #include "base/text.h"
-#include "color/reflection.h"
+#include "color/reflection_file.h"
 #include "image/color_space.h"
 
 namespace goniochrome::tool {
@@ -30,17 +31,12 @@ Result<color::Rgb> illuminant(const std::string& option, const std::string& text
   return rgb;
 }
 
-Result<color::ReflectionOperator> chosen_operator(const Options& options) {
-  color::ReflectionOperator op = color::working_space_operator();
-  if (options.op == "iso") op = color::iso_rgb_operator();
-  if (options.op == "plain") op = color::component_wise();
-  if (options.op != "working" && options.op != "iso" && options.op != "plain") {
-    GONIO_ASSIGN(op, color::read_reflection_operator(options.op));
-  }
+Result<color::ReflectionOperator> operator_of(const Options& options) {
+  GONIO_ASSIGN(const color::ReflectionOperator op, color::chosen_operator(options.op));
   if (options.transfer.empty()) return op;
   if (options.transfer.size() != 3)
     return usage_error("--transfer has {} values: give three, for red, green and blue", options.transfer.size());
-  return color::with_transfer(op, {options.transfer[0], options.transfer[1], options.transfer[2]});
+  return color::with_shares(op, {options.transfer[0], options.transfer[1], options.transfer[2]});
 }
 
 std::string plan_text(const Options& options, const color::Rgb& from, const color::Rgb& to,
@@ -102,14 +98,36 @@ Result<std::vector<color::Rgb>> read_matching_table(const std::string& path) {
   return table;
 }
 
+// --primaries: a name, or x,y of red, green, blue and, if wanted, white. Nothing where the option is not given.
+Result<std::optional<color::Primaries>> primaries_of(const std::string& text) {
+  if (text.empty()) return std::optional<color::Primaries>();
+  if (text == "rec709") return std::optional(color::kRec709);
+  if (text == "rec2020") return std::optional(color::kRec2020);
+  const auto words = split(text, ',');
+  color::Primaries primaries = color::kRec2020;
+  bool right = words.size() == 6 || words.size() == 8;
+  for (std::size_t i = 0; i < words.size() && right; ++i) {
+    const auto value = parse_number(trimmed(words[i]));
+    right = value.has_value();
+    if (right) (i < 6 ? primaries.rgb[i / 2] : primaries.white)[i % 2] = *value;
+  }
+  if (!right)
+    return usage_error(
+        "--primaries is \"{}\": give rec709, rec2020, or x,y of red, green and blue and, if wanted, of white", text);
+  const auto usable = color::in_working_space(color::component_wise(), primaries);
+  if (!usable.ok()) return usage_error("--primaries is \"{}\": {}", text, usable.error().message);
+  return std::optional(primaries);
+}
+
 Result<cli::Verdict> estimate(const Options& options, cli::Session& session) {
   if (!options.image.empty() || !options.from.empty() || !options.to.empty() || !options.transfer.empty())
     return usage_error("--estimate makes an operator: it takes no image, --from, --to or --transfer");
+  GONIO_ASSIGN(const auto primaries, primaries_of(options.primaries));
   GONIO_ASSIGN(const std::vector<color::Rgb> table, read_matching_table(options.estimate));
   GONIO_ASSIGN(const color::ReflectionOperator op, color::estimated_operator(table));
   session.results()["operator"] = op.k;
   session.results()["condition"] = nullptr;
-  GONIO_TRY(write_file(options.output, color::reflection_json(op)));
+  GONIO_TRY(write_file(options.output, color::reflection_json(op, primaries ? &*primaries : nullptr)));
   session.say(fmt::format("{}: each channel keeps {:.4f} {:.4f} {:.4f} of itself", session.tool(), op.k[0][0][0],
                           op.k[1][1][1], op.k[2][2][2]));
   return cli::Verdict::kDone;
@@ -119,9 +137,11 @@ Result<cli::Verdict> estimate(const Options& options, cli::Session& session) {
 
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   if (!options.estimate.empty()) return estimate(options, session);
+  if (!options.primaries.empty())
+    return usage_error("--primaries is for --estimate: an operator of --operator has its own");
   GONIO_ASSIGN(const color::Rgb from, illuminant("from", options.from));
   GONIO_ASSIGN(const color::Rgb to, illuminant("to", options.to));
-  GONIO_ASSIGN(const color::ReflectionOperator op, chosen_operator(options));
+  GONIO_ASSIGN(const color::ReflectionOperator op, operator_of(options));
   auto change = color::relighting(op, from, to);
   if (!change.ok()) return usage_error("--from {}: {}", options.from, change.error().message);
   if (options.common.explain) session.explain(plan_text(options, from, to, *change));

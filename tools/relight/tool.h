@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cli/tool.h"
+#include "color/reflection_file.h"
 
 namespace goniochrome::tool {
 
@@ -13,10 +14,10 @@ struct Options {
   std::vector<std::string> image;
   std::string output = "-";
   std::string from, to;
-  std::string op = "iso";
+  std::string op = color::kDefaultOperator;
   std::vector<double> transfer;
   std::string negative = "keep";
-  std::string estimate;
+  std::string estimate, primaries;
 };
 
 cli::ToolSpec tool_spec(Options& options);

@@ -76,12 +76,19 @@ void add_light(cli::ToolSpec& spec, Options& o) {
       .in("units of the mesh")
       .from(0)
       .more("0 takes a third of the longest side of the mesh's box, which is 1.5 m for a car of 4.5 m.");
-  spec.option("operator", "NAME[,SHARES]", "iso,0.1", &o.reflection, "how colored light and paint multiply")
+  spec.option("operator", "OP[,SHARES]", "iso,0.1", &o.reflection, "how colored light and paint multiply")
       .more(
-          "iso is a bilinear product by the published table for camera sensors. rec2020 is one that is estimated from "
-          "color-matching functions, which can make saturated colors negative. none multiplies each channel by "
-          "itself. A number from 0 to 1 after a comma says how much each channel takes from the others, and three "
-          "numbers say it for red, green and blue.");
+          "fitted is a bilinear product that is fitted to published spectra, and of all products here it has the least "
+          "error "
+          "on spectra that were held out: goniochrome-theory(7), COLORED LIGHT, has the table. plain multiplies each "
+          "channel by itself. iso is the published table for camera sensors, applied to Rec.2020 values; it was the "
+          "default before. iso709 is the same table in the primaries of Rec.709, for which it was made. estimated "
+          "comes "
+          "from color-matching functions. none is another name for plain, and working and rec2020 are other names for "
+          "estimated. A JSON file holds a table, and may name the primaries that it is for; goniochrome-paint(5) "
+          "describes it. A number from 0 to 1 after a comma says how much each channel takes from the others, and "
+          "three numbers say it for red, green and blue; a channel that keeps more than 1 of itself takes no such "
+          "number but 0.");
   spec.option("critical-angle", "NAME", "clip", &o.critical_angle, "what color maps do beyond the critical angle")
       .one_of({"clip", "slide", "slide-map", "index"})
       .more(
@@ -126,19 +133,27 @@ void add_effects(cli::ToolSpec& spec, Options& o) {
           "The names are diffuse, lobes, gloss, mirror, fresnel, horizon, anisotropy, travel, texture, texture-lobes, "
           "operator and lights. lobe-20, gloss-900 and texture-0 (lobe0 of the textures) are single lobes. Three more "
           "are drawn by tracing rays: shadow (the mesh blocks light), self (lobes and mirror see the body instead of "
-          "black) and bounce (the same for the diffuse part). The last two need shadow. They take part only if "
-          "--effects names one of them with a plus, or all three by +rays, as in auto,+rays; the rest of the plan "
-          "then decides about them as about every other effect. They are drawn at those pixels alone that can see the "
-          "mesh. auto leaves out the effects that change too little, as --tolerance and --budget say.");
+          "black) and bounce (the same for the diffuse part). The last two need shadow, and rays names all three. They "
+          "are drawn at those pixels alone that can see the mesh, so that a convex shape is drawn as without them. "
+          "Rays are traced wherever a mesh is given; auto,-rays traces none, which is much faster where the mesh "
+          "blocks much light. Effects of rays that auto decides to draw take at most 1024 samples of a point, and "
+          "those that are named with a plus, as in auto,+rays, take as many as --tolerance needs. The effect floor is "
+          "priced where the environment is the background; the engine path alone draws it, and +floor asks for it as "
+          "--floor shadow does. auto leaves out the effects that change too little, as --tolerance and --budget say.");
   o.common.tolerance = 0.5;
-  cli::add_tolerance(spec, o.common, "DE00", "largest change by all effects that are left out")
+  cli::add_tolerance(spec, o.common, "DE00", "largest difference from the truth, all errors together")
       .more(
           "Before drawing, each effect that the scene calls for is priced: what it changes in the picture (the 95th "
           "percentile of the difference over visible pixels), and what it costs. What changes less than the "
           "tolerance, all together, is left out. --explain prints the table, which is also in the report and in the "
           "header of an EXR. The effects of rays are drawn with samples until the standard deviation of their noise "
-          "is within half of the tolerance at 95 of 100 points, which does not keep each point within it. The engine "
-          "integral makes its sums as coarse as this tolerance allows at 95 of 100 points.");
+          "is within half of the tolerance at 95 of 100 points, which does not keep each point within it. Where the "
+          "prefiltered maps err by more than the tolerance, half of what they err by is enough, unless --effects "
+          "names effects of rays with a plus. "
+          "Before drawing, the plan also compares what the prefiltered maps show at some points with the exact sum, "
+          "adds what is left out and the noise, and says in a sentence if the whole is not going to be within the "
+          "tolerance, and what would keep it. The engine integral makes its sums as coarse as this tolerance allows "
+          "at 95 of 100 points.");
   spec.option("budget", "MS", "20", &o.budget_ms, "longest time for shading a frame; 0 is no limit")
       .from(0, 1e6)
       .more("Where the time is not enough, the effects that are worth least for their time are left out as well.");
@@ -179,9 +194,10 @@ void add_checking(cli::ToolSpec& spec, Options& o) {
           "light, whatever the exposure is. --check-against says whether the reference knows that the mesh is in the "
           "way of light.");
   spec.option("check-against", "WHAT", "truth", &o.check_against, "what --check compares with")
-      .one_of({"truth", "model"})
+      .one_of({"auto", "truth", "model"})
       .more(
-          "model, the default, has nothing in the way of light. truth adds paths for what the mesh does to light: "
+          "auto takes truth where rays are traced, and else model. model has nothing in the way of light, and is "
+          "compared with the picture without the effects of rays. truth adds paths for what the mesh does to light: "
           "shadows, the body mirrored in itself, and light that it passes on. They are traced until the standard "
           "error of the truth is below a tenth of the difference, or a warning says that it is not. The difference is "
           "then told by its causes, and if its 95th percentile is over --tolerance, the exit status is 1. A picture "
@@ -242,10 +258,15 @@ void add_report(cli::ToolSpec& spec) {
        "what each effect is worth, and whether it is drawn; with --check and --explain, truth_de00_p95 stands beside "
        "it"},
       {"plan[]: standard_error", "of de00_p95, where it was measured by random samples"},
-      {"rays: noise_de00_p95, samples, free_share, ms, predicted_ms",
+      {"rays: noise_de00_p95, samples, free_share, reached, ms, predicted_ms",
        "how the effects of rays were drawn, where any were: the noise of the picture, the samples of a visible point, "
-       "the share of points that needed none, and the time"},
-      {"plan_de00_p95, plan_ms", "change by all effects that are left out together, and the time that planning took"},
+       "the share of points that needed none, whether the noise is as low as it was to be, and the time"},
+      {"plan_open_de00_p95, plan_whole_de00_p95",
+       "predicted before drawing: what the open light errs by, and all errors together; null where they are not "
+       "known"},
+      {"plan_de00_p95, plan_ms, plan_rays_ms",
+       "change by all effects that are left out together, the time that planning took, and the part of it in which "
+       "the effects of rays were priced"},
       {"engine, engine_reason", "what shaded the picture (gl, cpu, integral, path or transport), and why"},
       {"transport: points, columns, bytes_per_point",
        "with --aov transport, or --gbuffer of it: visible pixels, columns of light, and what a pixel takes in memory"},
@@ -281,6 +302,10 @@ void add_report(cli::ToolSpec& spec) {
       {"error: prefilter, occlusion, bounce, noise",
        "95th percentile of what each cause alone changes: maps and their look-up; shadow and self, if they were left "
        "out; bounce, if it was left out; the noise of the effects of rays"},
+      {"error: worth",
+       "what shadow, self and bounce are worth in the truth, by the 95th percentile over the checked pixels, as the "
+       "plan "
+       "predicts it"},
       {"error: fit", "95th percentile of what the paints of the pixels miss of their own readings"},
       {"left_out: de00_mean, de00_p95, de00_max",
        "with --check: how far the picture is from that with all effects, over all visible pixels"},
@@ -310,10 +335,11 @@ cli::ToolSpec tool_spec(Options& o) {
   add_engines(spec, o);
   add_checking(spec, o);
   add_output(spec, o);
-  cli::add_common_options(spec, o.common,
-                          {.explain = true,
-                           .time_limit = "each picture by the engine path, and the tracing of --aov transport",
-                           .seed = "the pixels to check, and the samples of the engine path"});
+  cli::add_common_options(
+      spec, o.common,
+      {.explain = true,
+       .time_limit = "each picture by the engine path, the effects of rays, and the tracing of --aov transport",
+       .seed = "the pixels to check, and the samples of the engine path"});
   add_report(spec);
   return spec;
 }

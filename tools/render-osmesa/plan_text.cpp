@@ -28,7 +28,11 @@ std::string plan_table(const render::Plan& plan) {
                 : fmt::format("{:<13} {:<6} {:>7} {}{:>7}  {:<16} {}\n", item.effect, "no", "-",
                               truth ? "        " : "", "-", spelled(item.decision), item.reason);
   }
-  if (plan.rays_ms > 0) text += fmt::format("rays: predicted {:.0f} ms\n", plan.rays_ms);
+  if (plan.rays_ms > 0)
+    text += fmt::format("rays: predicted {:.0f} ms, noise dE00 {:.2f}\n", plan.rays_ms, plan.rays_noise_de00);
+  if (plan.open_de00_p95)
+    text += fmt::format("open light as planned: dE00 {:.2f} to its exact sum (p95)\n", *plan.open_de00_p95);
+  if (plan.whole_de00_p95) text += fmt::format("the whole: dE00 {:.2f} (p95) predicted\n", *plan.whole_de00_p95);
   return text + fmt::format("left out together: dE00 {:.2f} (p95); planned in {:.1f} ms\nengine {}: {}\n",
                             plan.de00_p95, plan.time_ms, plan.engine, plan.engine_reason);
 }

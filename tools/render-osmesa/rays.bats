@@ -15,42 +15,102 @@ setup() {
 # of KEY EFFECT: that key of the effect in the plan of r.json.
 of() { jq -r ".results.plan[] | select(.effect == \"$2\") | .$1" r.json; }
 
-@test "+rays plans shadow, self and bounce, and draws what is seen" {
-  render-osmesa -q $scene -o before.exr --report r.json
-  [ -z "$(of decision shadow)" ]
-  render-osmesa -q $scene --effects auto,+rays --tolerance 2 -o out.exr --report r.json
+@test "shadow, self and bounce are planned by default, and what is seen is drawn" {
+  render-osmesa -q $scene --effects auto,-rays -o before.exr --report r.json
+  [ "$(of decision shadow)" = "forced off" ]
+  [ "$(of de00_p95 shadow)" = null ]
+  render-osmesa -q $scene --tolerance 2 -o out.exr --report r.json
   [ "$(of decision shadow)" = drawn ]
-  awk -v worth="$(of de00_p95 shadow)" -v error="$(of standard_error shadow)" 'BEGIN { exit !(worth > 1 && error > 0 && error < worth) }'
+  awk -v worth="$(of de00_p95 shadow)" -v error="$(of standard_error shadow)" \
+    'BEGIN { exit !(worth > 1 && error > 0 && error < worth / 4) }'
   [ "$(of needed bounce)" = true ]
-  # The noise is within half of the tolerance.
-  jq -e '.results.rays.noise_de00_p95 <= 1 and .results.rays.samples > 0' r.json
+  # The noise is within half of the tolerance or of what the maps err by, unless the most samples were drawn.
+  jq -e '.results | .rays.noise_de00_p95 <= 0.5 * ([2, .plan_open_de00_p95] | max) or (.rays.reached | not)' r.json
+  jq -e '.results.rays.samples | . > 0 and . <= 1024' r.json
+  jq -e '.results | .plan_whole_de00_p95 >= .plan_open_de00_p95 and .plan_open_de00_p95 > 0' r.json
   ! cmp -s before.exr out.exr
 }
 
+@test "a convex shape is drawn as without rays, bit for bit, and takes none" {
+  # An octahedron.
+  printf 'v 1 0 0\nv -1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1\n' >solid.obj
+  for y in 3 4; do for x in 1 2; do for z in 5 6; do
+    [ $(((x + y + z) % 2)) -eq 1 ] && echo "f $x $y $z" || echo "f $x $z $y"
+  done; done; done >>solid.obj
+  solid="--mesh solid.obj -p fitted.xml#silver_fine --env small.env.exr --light 30,50 --size 48x36 --samples 4"
+  render-osmesa -q $solid --effects auto,-rays -o before.png
+  render-osmesa -q $solid -o after.png --report r.json
+  [ "$(of needed shadow)" = false ]
+  [ "$(jq .results.rays r.json)" = null ]
+  oiiotool before.png after.png --diff
+}
+
+@test "what is named is drawn until the noise is within half of the tolerance, whatever the maps err by" {
+  render-osmesa -q $scene --effects auto,+rays --tolerance 6 -o out.exr --report r.json
+  [ "$(of decision shadow)" = "forced on" ]
+  jq -e '.results.rays | .reached and .noise_de00_p95 <= 3' r.json
+}
+
+@test "a time limit ends the samples, which is told, and the picture is written" {
+  run render-osmesa $scene --effects auto,+rays --tolerance 0.01 --time-limit 1 -o limited.exr --report r.json
+  [ "$status" -eq 4 ]
+  [[ $output == *"stopped before it was within 0.005"* ]]
+  jq -e '.results.rays.reached == false' r.json
+  [ -s limited.exr ]
+}
+
+@test "a picture that is not going to be within the tolerance says so beforehand" {
+  run render-osmesa $scene --tolerance 0.2 -o out.exr
+  [ "$status" -eq 0 ]
+  [[ $output == *"predicted to miss the truth by dE00 "*", --tolerance is 0.2: "* ]]
+  # Control: where it is going to be, nothing is said.
+  run render-osmesa $scene --tolerance 30 -o out.exr
+  [ "$status" -eq 0 ]
+  [[ $output != *"predicted to miss"* ]]
+}
+
+@test "the floor is priced where the environment is the background" {
+  render-osmesa -q $scene --tolerance 2 -o out.exr --report r.json
+  [ "$(of needed floor)" = false ]
+  [[ $(of reason floor) == *"no floor is asked for"* ]]
+  render-osmesa -q $scene --tolerance 2 --background env -o out.exr --report r.json
+  [ "$(of decision floor)" = dropped ]
+  awk -v worth="$(of de00_p95 floor)" -v error="$(of standard_error floor)" 'BEGIN { exit !(worth > 0 && error > 0) }'
+  run render-osmesa -q $scene --floor shadow --effects auto,-floor -o none.exr
+  [ "$status" -eq 2 ]
+  [[ $output == *"--effects and --floor shadow exclude each other"* ]]
+}
+
 @test "forced off they cost nothing and change nothing" {
-  render-osmesa -q $scene -o before.png
+  render-osmesa -q $scene --effects auto,-rays -o before.png
   render-osmesa -q $scene --effects auto,+rays,-shadow -o after.png --report r.json
   [ "$(of decision shadow)" = "forced off" ]
   [ "$(of decision bounce)" = "forced off" ]
   [ "$(jq .results.rays r.json)" = null ]
+  oiiotool before.png after.png --diff
 }
 
-@test "--check-against truth tells the difference by its causes, and ends with 1 over the tolerance" {
-  run render-osmesa $scene --check 40 --check-against truth -o out.exr --report r.json
+@test "--check compares with truth, tells the difference by its causes, and ends with 1 over the tolerance" {
+  run render-osmesa $scene --effects all,-shadow,-self,-bounce --check 40 --check-against truth -o out.exr --report r.json
   [ "$status" -eq 1 ]
   jq -e '.results.error | .against == "truth" and .occlusion > 1 and .noise == 0 and .standard_error < 0.1 * .de00_p95' r.json
   [[ $output == *"farther from the truth than --tolerance 0.5"* ]]
   jq '.results.error.occlusion' r.json >without
   # What is left is noise, whose standard deviation is within half of the tolerance at 95 of 100 points.
-  run render-osmesa -q $scene --effects all,+rays --tolerance 3 --check 40 --check-against truth -o out.exr --report r.json
+  run render-osmesa -q $scene --effects all,+rays --tolerance 3 --check 40 -o out.exr --report r.json
   [ "$status" -le 1 ]
   jq -e --argjson without "$(cat without)" \
-    '.results.error | .occlusion < 1e-6 and .bounce < 1e-6 and .noise < 6 and .de00_p95 < 0.5 * $without' r.json
+    '.results.error | .against == "truth" and .occlusion < 1e-6 and .bounce < 1e-6 and .noise < 6 and .de00_p95 < 0.5 * $without' r.json
+  # The model knows nothing of the mesh, and is compared with what the picture is without it.
+  render-osmesa -q $scene --tolerance 2 --check 40 --check-against model -o out.exr --report r.json
+  jq -e '.results.error.de00_p95' r.json >drawn
+  render-osmesa -q $scene --effects auto,-rays --tolerance 2 --check 40 -o out.exr --report r.json
+  jq -e --argjson drawn "$(cat drawn)" '.results.error | .against == "model" and (.de00_p95 - $drawn | fabs) < 2' r.json
 }
 
 @test "buffers without their mesh say so" {
-  render-osmesa -q $scene --aov normal,part -o view.exr
-  render-osmesa -q --gbuffer view.exr -p fitted.xml#signal_white --env small.env.exr --effects auto,+rays -o out.exr --report r.json
+  render-osmesa -q $scene --effects auto,-rays --aov normal,part -o view.exr
+  render-osmesa -q --gbuffer view.exr -p fitted.xml#signal_white --env small.env.exr -o out.exr --report r.json
   [[ $(of reason shadow) == *"without their mesh"* ]]
 }
 

@@ -4,7 +4,7 @@ setup() {
   cd "$BATS_TEST_TMPDIR" || exit 1
   shape=$TESTDATA/speed-shape.obj
   light="--light 30,40"
-  small="--size 96x54 --samples 1"
+  small="--size 96x54 --samples 1 --effects auto,-rays"
   # Three panels side by side, facing +Z.
   cat >panels.obj <<'OBJ'
 v -1.5 -0.5 0
@@ -158,7 +158,7 @@ near() {
 }
 
 @test "--check agrees with the reference integrator where nothing is approximated" {
-  run render-osmesa --mesh panels.obj --light 20,30 --light -1,1,1,0.5,0.5,0.2 -p paints.xml#red $front --effects all --check 100 -o out.exr --report r.json
+  run render-osmesa --mesh panels.obj --light 20,30 --light -1,1,1,0.5,0.5,0.2 -p paints.xml#red $front --effects all,-rays --check 100 -o out.exr --report r.json
   [ "$status" -eq 0 ]
   [[ "$output" =~ "dE00 to the reference: mean 0.00, p95 0.00, max 0.00" ]]
   grep -q '"checked_pixels": 100' r.json
@@ -265,7 +265,7 @@ refused() {
   grep -q '"engine": "gl"' r.json
   render-osmesa -q --mesh "$shape" $light $small --engine cpu -o cpu.exr
   oiiotool gl.exr cpu.exr --fail 0.001 --diff >/dev/null
-  render-osmesa -q --mesh "$shape" $light $small --effects none -o none.exr
+  render-osmesa -q --mesh "$shape" $light --size 96x54 --samples 1 --effects none -o none.exr
   [ "$(pixel none.exr 48 27)" = "0.000000 0.000000 0.000000 1.000000" ] || near "$(pixel none.exr 48 27)" "0 0 0 1"
   refused 2 '--effects is "fast": write auto, all or none' --mesh "$shape" $light --effects fast
   refused 2 '--effects names "shine": there are diffuse' --mesh "$shape" $light --effects all,-shine
@@ -284,7 +284,7 @@ refused() {
   red="--mesh panels.obj -p paints.xml#red $front --light 0,0,0,1,1 --effects all"
   render-osmesa -q $red --operator none -o none.exr
   near "$(pixel none.exr 45 30)" "0 0.1 0.1 1"
-  render-osmesa -q $red -o iso.exr
+  render-osmesa -q $red --operator iso -o iso.exr
   awk -v p="$(pixel iso.exr 45 30)" 'BEGIN { split(p, c, " "); exit !(c[1] > 0.1) }'
   render-osmesa -q $red --operator iso,0 -o plain.exr
   near "$(pixel plain.exr 45 30)" "0 0.1 0.1 1"
@@ -293,9 +293,24 @@ refused() {
   render-osmesa -q $red --operator rec2020 -o rec2020.exr
   run cmp -s iso.exr rec2020.exr
   [ "$status" -eq 1 ]
-  refused 2 '--operator is "xyz": write iso, rec2020 or none' --mesh panels.obj $light --operator xyz
+  refused 2 '--operator is "xyz": write fitted, plain, iso, iso709, estimated or a JSON file' --mesh panels.obj $light --operator xyz
   refused 2 '--operator is "iso,2"' --mesh panels.obj $light --operator iso,2
   refused 2 '--operator is "iso,0,1"' --mesh panels.obj $light --operator iso,0,1
+  refused 2 'red of this operator keeps 1.' --mesh panels.obj $light --operator rec2020,0.1
+  # A file holds a table, and the primaries for which it was made.
+  k='[[[1,0,0],[0,0,0],[0,0,0]],[[0,0,0],[0,1,0],[0,0,0]],[[0,0,0],[0,0,0],[0,0,1]]]'
+  echo "{\"k\": $k}" >plain.json
+  render-osmesa -q $red --operator plain.json -o file.exr
+  near "$(pixel file.exr 45 30)" "0 0.1 0.1 1"
+  echo "{\"k\": $k, \"primaries\": \"rec709\"}" >plain709.json
+  render-osmesa -q $red --operator plain709.json -o file709.exr
+  run near "$(pixel file709.exr 45 30)" "0 0.1 0.1 1"
+  [ "$status" -ne 0 ]
+  refused 3 'nowhere.json' --mesh panels.obj $light --operator nowhere.json
+  # fitted is what is taken without the option.
+  render-osmesa -q $red -o default.exr
+  render-osmesa -q $red --operator fitted -o fitted.exr
+  [ "$(pixel default.exr 45 30)" = "$(pixel fitted.exr 45 30)" ]
 }
 
 @test "--split draws two paints side by side" {

@@ -50,14 +50,20 @@ Result<Request> request_of(const Options& options) {
   if (options.samples != 0 && options.samples != 1 && options.samples != 4 && options.samples != 16) {
     return usage_error("--samples is {}: give 1, 4 or 16", options.samples);
   }
-  GONIO_ASSIGN(request.reflection, parse_operator(options.reflection));
+  GONIO_ASSIGN(request.reflection, color::chosen_operator(options.reflection));
   GONIO_TRY(render::check_effects(options.effects));
   request.plan.effects = options.effects;
   request.plan.budget_ms = options.budget_ms;
   request.samples = !options.gbuffer.empty() ? 1 : options.samples > 0 ? options.samples : 4;
   request.plan.samples = request.samples;
+  const std::optional<bool> floor_forced = render::floor_forced(options.effects);
+  const std::string floor = options.floor != "auto" || !floor_forced ? options.floor
+                            : *floor_forced                          ? "shadow"
+                                                                     : "none";
+  if (floor_forced && *floor_forced == (floor == "none"))
+    return usage_error("--effects and --floor {} exclude each other: leave one of them out", options.floor);
   const bool wants_rays =
-      !request.emissions.empty() || (options.floor != "auto" && options.floor != "none");  // only one engine has them
+      !request.emissions.empty() || (floor != "auto" && floor != "none");  // only one engine has them
   const auto tracer = std::ranges::find_if(render::engines(), [](const auto* engine) { return engine->traces_rays; });
   const std::string engine = options.engine == "auto" && wants_rays ? (*tracer)->name : options.engine;
   if (engine != "auto") {
@@ -67,7 +73,10 @@ Result<Request> request_of(const Options& options) {
       return usage_error("--budget chooses effects of prefiltered maps: leave it out, or --engine {}", options.engine);
   }
   const bool traces = request.engine != nullptr && request.engine->traces_rays;
-  GONIO_ASSIGN(request.floor, parse_floor(options.floor, traces && options.background == "env"));
+  GONIO_ASSIGN(request.floor, parse_floor(floor, traces && options.background == "env"));
+  if (!traces) {
+    GONIO_ASSIGN(request.missing_floor, parse_floor(floor, options.background == "env" && !options.env.empty()));
+  }
   if (wants_rays && !traces)
     return usage_error("--engine {} draws neither floors nor parts that shine: leave out --{}, or take --engine path",
                        options.engine, request.emissions.empty() ? "floor" : "emit");

@@ -26,6 +26,7 @@ struct Request {
   render::PlanRequest plan;
   const render::EngineInfo* engine = nullptr;  // null: the plan chooses
   FloorRequest floor;
+  FloorRequest missing_floor;  // that the picture calls for, by an engine that draws none
   std::vector<Emission> emissions;
 };
 

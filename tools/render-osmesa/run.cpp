@@ -10,6 +10,7 @@
 #include "picture_file.h"
 #include "plan_text.h"
 #include "render/left_out.h"
+#include "render/plan/ray_plan.h"
 #include "stage.h"
 #include "truth_check.h"
 
@@ -84,6 +85,13 @@ void check(const Options& options, const render::Frame& frame, const render::Sce
                           error.checked_pixels, error.time_s));
 }
 
+// The frame as it is without the effects of rays, which the model does not know.
+render::Frame open_frame(const render::Frame& frame) {
+  render::Frame open = frame;
+  if (!open.open_centers.data.empty()) open.centers = open.open_centers;
+  return open;
+}
+
 // Beside the plan's estimates, what they are worth here: how far the picture is from that of all effects, and its time.
 Result<void> measure_plan(render::Renderer& renderer, const render::Scene& scene, const render::Plan& plan,
                           const render::View& view, double white, cli::Session& session) {
@@ -141,6 +149,7 @@ class Shooting {
   }
   Result<render::Renderer> make_renderer();
   void tell_noise();
+  void tell_rays();
   Result<void> look(render::Renderer& renderer);
   Result<render::Plan> load(render::Renderer& renderer, const DressedMesh& dress);
   Result<void> draw(render::Renderer& renderer, const Shot& shot, bool first);
@@ -186,10 +195,14 @@ void Shooting::tell_plan(render::Plan plan, const std::string& shader) {
   Json& results = session_.results();
   for (Json& row : plan_rows(plan, true)) results["plan"].push_back(std::move(row));
   results["plan_de00_p95"] = json_number(plan.de00_p95);
+  results["plan_open_de00_p95"] = plan.open_de00_p95 ? json_number(*plan.open_de00_p95) : Json(nullptr);
+  results["plan_whole_de00_p95"] = plan.whole_de00_p95 ? json_number(*plan.whole_de00_p95) : Json(nullptr);
   results["plan_ms"] = plan.time_ms;
+  results["plan_rays_ms"] = plan.ray_pricing_ms;
   results["engine"] = plan.engine;
   results["engine_reason"] = plan.engine_reason;
   session_.explain(plan_table(plan));
+  if (!plan.not_kept.empty()) session_.say(plan.not_kept);
   if (options_.print_shader) std::fputs(shader.c_str(), stdout);
   plan_ = std::move(plan);
 }
@@ -285,6 +298,24 @@ Result<render::Renderer> Shooting::make_renderer() {
   return ready(render::Renderer::tracing());
 }
 
+// Of the effects of rays that an engine without rays was given.
+void Shooting::tell_rays() {
+  if (!plan_.effects.rays.any()) return;
+  const render::CorrectionNoise& rays = frame_.rays;
+  const bool limited = session_.common().time_limit_s > 0;
+  stopped_ |= limited && !rays.reached;
+  session_.results()["rays"] = {{"noise_de00_p95", json_number(rays.de00_p95)},
+                                {"samples", rays.samples},
+                                {"free_share", rays.free_share},
+                                {"reached", rays.reached},
+                                {"ms", rays.ms},
+                                {"predicted_ms", plan_.rays_ms}};
+  session_.say(fmt::format(
+      "rays: {:.0f} samples a point in {:.0f} ms (predicted {:.0f}), noise dE00 {:.2f} (p95){}", rays.samples, rays.ms,
+      plan_.rays_ms, rays.de00_p95,
+      rays.reached ? "" : fmt::format(", stopped before it was within {}", shortest(plan_.effects.ray_noise_de00))));
+}
+
 void Shooting::tell_noise() {
   if (!frame_.noise) return;
   const render::Noise& noise = *frame_.noise;
@@ -304,6 +335,7 @@ void Shooting::tell_noise() {
 
 Result<cli::Verdict> Shooting::shoot(const std::optional<display::Display>& display) {
   if (stage_.transport) return shade_transport(display);
+  if (request_.transport) GONIO_TRY(can_trace_view(stage_.scene));
   GONIO_ASSIGN(shots_, shots_of(options_, stage_.mesh, request_.size, request_.lights));
   GONIO_ASSIGN(render::Renderer renderer, make_renderer());
   GONIO_TRY(look(renderer));
@@ -323,6 +355,7 @@ Result<cli::Verdict> Shooting::shoot(const std::optional<display::Display>& disp
     GONIO_TRY(draw(renderer, shot, &shot == &shots_.front()));
     frame_ms += frame_.frame_ms / static_cast<double>(shots_.size());
     tell_noise();
+    tell_rays();
     if (&shot == &shots_.front()) {
       if (!(metered > 0)) metered = mean_luminance(frame_) / kMiddleGray;
       automatic_stops_ = metered > 0 ? -std::log2(metered) : 0;
@@ -346,15 +379,6 @@ Result<cli::Verdict> Shooting::shoot(const std::optional<display::Display>& disp
       name, shots_.size() > 1 ? fmt::format(" and {} more", shots_.size() - 1) : "", request_.size.width,
       request_.size.height, request_.samples, frame_ms, plan_.engine, frame_.gbuffer_ms, stops,
       display ? ", " + display->name() : ""));
-  if (plan_.effects.rays.any()) {
-    results["rays"] = {{"noise_de00_p95", json_number(frame_.rays.de00_p95)},
-                       {"samples", frame_.rays.samples},
-                       {"free_share", frame_.rays.free_share},
-                       {"ms", frame_.rays.ms},
-                       {"predicted_ms", plan_.rays_ms}};
-    session_.say(fmt::format("rays: {:.0f} samples a point in {:.0f} ms (predicted {:.0f}), noise dE00 {:.2f} (p95)",
-                             frame_.rays.samples, frame_.rays.ms, plan_.rays_ms, frame_.rays.de00_p95));
-  }
   cli::Verdict verdict = cli::Verdict::kDone;
   if (options_.check > 0) {
     GONIO_ASSIGN(verdict, check_picture());
@@ -368,14 +392,18 @@ Result<cli::Verdict> Shooting::shoot(const std::optional<display::Display>& disp
 }
 
 Result<cli::Verdict> Shooting::check_picture() {
-  if (options_.check_against == "model" || stage_.gbuffer) {
-    check(options_, frame_, stage_.scene, stage_.source, white_.luminance, session_);
+  const bool traced =
+      frame_.rays.samples > 0 || plan_.effects.rays.any() || (stage_.rays && stage_.rays->absent.empty());
+  const bool truth = options_.check_against == "truth" || (options_.check_against == "auto" && traced);
+  if (!truth || stage_.gbuffer) {
+    check(options_, open_frame(frame_), stage_.scene, stage_.source, white_.luminance, session_);
     return cli::Verdict::kDone;
   }
   session_.progress(fmt::format("checking {} pixels", options_.check));
   render::TruthRequest request;
   request.environment = stage_.source.environment ? &*stage_.source.environment : nullptr;
-  request.white_luminance = white_.luminance;
+  request.white_luminance =
+      frame_.noise && frame_.noise->white_luminance > 0 ? frame_.noise->white_luminance : white_.luminance;
   request.count = options_.check;
   request.bounces = options_.bounces;
   request.seed = session_.common().seed;

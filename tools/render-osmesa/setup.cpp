@@ -109,27 +109,6 @@ Result<render::Camera> camera_of(const Options& options, const mesh::Mesh& mesh,
                                static_cast<double>(size.width) / size.height);
 }
 
-Result<color::ReflectionOperator> parse_operator(const std::string& text) {
-  const auto words = split(text, ',');
-  const std::string name(trimmed(words[0]));
-  const auto wrong = [&] {
-    return usage_error(
-        "--operator is \"{}\": write iso, rec2020 or none, and if wanted after a comma a share from 0 to 1, or three",
-        text);
-  };
-  if (name == "none" && words.size() == 1) return color::component_wise();
-  if ((name != "rec2020" && name != "iso") || (words.size() > 2 && words.size() != 4)) return wrong();
-  const color::ReflectionOperator full = name == "iso" ? color::iso_rgb_operator() : color::working_space_operator();
-  if (words.size() == 1) return full;
-  color::Rgb shares;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const auto share = parse_number(trimmed(words[words.size() == 2 ? 1 : c + 1]));
-    if (!share || *share < 0 || *share > 1) return wrong();
-    shares[static_cast<int>(c)] = *share;
-  }
-  return color::with_transfer(full, shares);
-}
-
 Result<FloorRequest> parse_floor(const std::string& text, bool usual) {
   FloorRequest request;
   std::string what = text;

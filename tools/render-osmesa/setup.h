@@ -30,9 +30,6 @@ Result<render::Light> parse_light(const std::string& text);
 // --camera or --orbit.
 Result<render::Camera> camera_of(const Options& options, const mesh::Mesh& mesh, const PictureSize& size);
 
-// The operator of --operator. Error (usage): the names there are.
-Result<color::ReflectionOperator> parse_operator(const std::string& text);
-
 // What --emit, --floor and --eye-height say, before the mesh is read.
 struct FloorRequest {
   enum class Kind { kNone, kShadow, kPaint } kind = Kind::kNone;

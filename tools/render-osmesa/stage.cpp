@@ -129,21 +129,35 @@ Result<void> set_gbuffer(const Options& options, const Request& request, Stage& 
   return {};
 }
 
-// The light that rays meet, where --effects names any effect of rays. Prefiltered environments hold it in their mirror
-// part, unless that was left out.
-void set_rays(const Options& options, const Request& request, Stage& stage) {
-  const auto named = [&](const char* name) { return options.effects.find(name) != std::string::npos; };
-  if (request.engine != nullptr && request.engine->traces_rays) return;
-  if (!named("+rays") && !named("+shadow") && !named("+self") && !named("+bounce")) return;
+// The floor that a picture with the environment around the mesh calls for, and that engines with maps do not draw.
+Result<void> set_missing_floor(const Options& options, const Request& request, const render::Scene& scene,
+                               render::RaySetup& rays) {
+  rays.no_floor = "no floor is asked for: --floor shadow has one, and --background env calls for it";
+  if (request.missing_floor.kind == FloorRequest::Kind::kNone || scene.env == nullptr) return {};
+  render::Scene over = scene;
+  GONIO_TRY(set_ground(request.missing_floor, options, over));
+  rays.floor = over.ground;
+  return {};
+}
+
+// The light that rays meet. Prefiltered environments hold it in their mirror part, unless that was left out.
+Result<void> set_rays(const Options& options, const Request& request, Stage& stage) {
+  if (request.engine != nullptr && request.engine->traces_rays) return {};
   render::RaySetup& rays = stage.rays.emplace();
-  if (!options.gbuffer.empty()) {
-    rays.absent = "buffers without their mesh: what it blocks is not known";
+  if (render::leave_out_rays(options.effects)) {
+    rays.absent = "left out by --effects: what it is worth was not measured";
+    rays.refused = true;
+  } else if (!options.gbuffer.empty()) {
+    rays.absent = "buffers without their mesh: what it blocks is not known, nor what that is worth";
   } else if (!options.env.empty() && stage.env.mirror.map.size == 0) {
-    rays.absent = "the environment has no mirror part, which rays would meet: make it without --no-mirror";
+    rays.absent =
+        "the environment has no mirror part, which rays would meet: make it without --no-mirror. What "
+        "the mesh does to light is not known, nor what that is worth";
   } else if (!options.env.empty()) {
     stage.sky.emplace(envmap::Environment::from_cube(stage.env.mirror.map, options.env));
     rays.environment = &*stage.sky;
   }
+  return rays.absent.empty() ? set_missing_floor(options, request, stage.scene, rays) : Result<void>();
 }
 
 }  // namespace
@@ -180,7 +194,7 @@ Result<void> set_stage(const Options& options, const Request& request, Stage& st
     }
   }
   wear(stage.dresses.front(), options, stage);
-  set_rays(options, request, stage);
+  GONIO_TRY(set_rays(options, request, stage));
   const bool summed = request.engine != nullptr && request.engine->needs_texels;
   if (options.check > 0 || summed || request.transport) {
     GONIO_ASSIGN(stage.source, source_of(options, scene, session));

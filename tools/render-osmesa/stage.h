@@ -38,7 +38,7 @@ struct Stage {
   Source source;                            // where the picture is checked, or sums it
   std::optional<envmap::BlockTree> texels;  // of the source
   std::optional<envmap::Environment> sky;   // that rays meet: the environment at the resolution of its mirror part
-  std::optional<render::RaySetup> rays;     // none: not asked for
+  std::optional<render::RaySetup> rays;     // none with engines that trace by themselves
 };
 
 // Reads what the options name, tells the session about the mesh, and dresses it in the first of the paints. Error: what

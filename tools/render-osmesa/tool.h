@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cli/tool.h"
+#include "color/reflection_file.h"
 #include "render/engine.h"
 
 namespace goniochrome::tool {
@@ -27,7 +28,7 @@ struct Options {
   std::string background = "none";
   std::vector<std::string> aovs;
   std::string effects = "auto", engine = "auto";
-  std::string reflection = "iso";
+  std::string reflection = color::kDefaultOperator;
   std::string critical_angle = "slide";
   std::vector<std::string> textures;
   std::string texture_maps = "cubes";
@@ -36,7 +37,7 @@ struct Options {
   std::vector<std::string> split;
   int turntable = 0, light_sweep = 0;
   int check = 0;
-  std::string check_source, check_against = "model";
+  std::string check_source, check_against = "auto";
 };
 
 cli::ToolSpec tool_spec(Options& options);

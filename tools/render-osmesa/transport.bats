@@ -55,7 +55,7 @@ figure() { grep -m1 "\"$1\"" "$2" | sed -E 's/.*: ([-0-9.e+a-z]+),?$/\1/'; }
     --env studio.env.exr --engine path --floor none --tolerance 2 -o path.exr
   render-osmesa -q --gbuffer view.exr -p fitted.xml#silver_fine -o same.exr
   render-osmesa -q --mesh walls.obj --size 32x24 --samples 1 --camera 0.6,0.8,4,0,-0.3,0,30 -p fitted.xml#silver_fine \
-    --env studio.env.exr --engine cpu -o open.exr
+    --env studio.env.exr --engine cpu --effects auto,-rays -o open.exr
   for picture in same open; do
     oiiotool path.exr --ch R,G,B $picture.exr --ch R,G,B --absdiff --stats | awk '/Stats Avg/ { print $4 }' >$picture.txt
   done
@@ -65,7 +65,7 @@ figure() { grep -m1 "\"$1\"" "$2" | sed -E 's/.*: ([-0-9.e+a-z]+),?$/\1/'; }
 
 @test "without a transport, --gbuffer is as it was" {
   render-osmesa -q --mesh walls.obj --size 32x24 --samples 1 --camera 0.6,0.8,4,0,-0.3,0,30 -p fitted.xml#silver_fine \
-    --env studio.env.exr --engine cpu --aov normal,part -o plain.exr
+    --env studio.env.exr --engine cpu --effects auto,-rays --aov normal,part -o plain.exr
   run render-osmesa --gbuffer plain.exr -p fitted.xml#signal_white -o out.exr
   [ "$status" -eq 2 ]
   [[ "$output" =~ "there is no light: give --env, --light or both" ]]
@@ -90,4 +90,19 @@ figure() { grep -m1 "\"$1\"" "$2" | sed -E 's/.*: ([-0-9.e+a-z]+),?$/\1/'; }
   run render-osmesa --gbuffer view.exr --env studio.env.exr -p fitted.xml#silver_fine --aov transport -o out.exr
   [ "$status" -eq 2 ]
   [[ "$output" =~ "traces one view of a mesh" ]]
+}
+
+@test "a floor that shows the environment is in the transport, and keeps what it shows when a sketch is fitted" {
+  view=(--mesh walls.obj --size 32x24 --samples 1 --camera "0.6,0.8,4,0,-0.3,0,30" --env studio.env.exr --engine path
+    --floor shadow,-1.2 --tolerance 3)
+  render-osmesa -q "${view[@]}" -p fitted.xml#silver_fine --aov aspecular,lambert,mask,part,transport -o on-floor.exr
+  render-osmesa -q "${view[@]}" -p fitted.xml#silver_fine -o anew.exr
+  render-osmesa -q --gbuffer on-floor.exr -p fitted.xml#silver_fine -o shaded.exr
+  # Light of both pictures, floor and all; they differ by noise.
+  mean() { oiiotool "$1" --ch R,G,B --stats | awk '/Stats Avg/ { print $4 }'; }
+  awk -v a="$(mean anew.exr)" -v b="$(mean shaded.exr)" 'BEGIN { exit !(a > 0 && b / a > 0.97 && b / a < 1.03) }'
+  sketch-fit -q --pixels all -i anew.exr -b on-floor.exr -o sketch.xml --report sketch.json
+  # Many of the 768 pixels show the floor, and none of them the paint.
+  walls=$(render-osmesa -q --gbuffer view.exr -p fitted.xml#silver_fine -o walls.exr && oiiotool walls.exr --ch A --stats | awk '/Stats Avg/ { print $4 }')
+  awk -v p="$(figure pixels_used sketch.json)" -v share="$walls" 'BEGIN { exit !(p > 50 && p <= 768 * share) }'
 }

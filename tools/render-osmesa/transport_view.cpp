@@ -79,13 +79,20 @@ void put_background(const render::Gbuffer& gbuffer, const render::Scene& scene, 
 
 }  // namespace
 
+Result<void> can_trace_view(const render::Scene& scene) {
+  if (scene.layer != nullptr && scene.layer->textured())
+    return usage_error("--aov transport holds light by the lobes of paints: leave out --texture");
+  render::PathScene path;
+  path.scene = &scene, path.emission = scene.emission, path.ground = scene.ground;
+  GONIO_ASSIGN(const render::LobeColumns columns, render::lobe_columns(scene));
+  const auto worn = render::worn_paints(columns, path);
+  if (!worn.ok()) return worn.error();
+  return {};
+}
+
 Result<TracedView> traced_view(const render::Scene& scene, const envmap::Environment* environment, bool with_maps,
                                const render::Gbuffer& seen, double white_luminance, int bounces,
                                cli::Session& session) {
-  if (scene.layer != nullptr && scene.layer->textured())
-    return usage_error("--aov transport holds light by the lobes of paints: leave out --texture");
-  if (scene.layer != nullptr && scene.layer->mapped())
-    session.warn("color maps are left out of the transport: their paints are shown by their lobes");
   render::PathScene path;
   path.scene = &scene, path.environment = environment;
   path.emission = scene.emission, path.ground = scene.ground;

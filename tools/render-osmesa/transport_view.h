@@ -22,8 +22,12 @@ struct TracedView {
   bool reached = false;  // whether its noise is within the tolerance
 };
 
+// Whether the light of the scene is a sum of lobes. Error: what it wears that is none.
+Result<void> can_trace_view(const render::Scene& scene);
+
 // Traces what is seen through `rays` in all that the scene has, and tells how. `with_maps`: open light by the
-// environment's maps, else by rays alone. Error: what paths do not trace; maps that the environment lacks.
+// environment's maps, else by rays alone. The scene is one that
+// can_trace_view() accepts. Error: what paths do not trace; maps that the environment lacks.
 Result<TracedView> traced_view(const render::Scene& scene, const envmap::Environment* environment, bool with_maps,
                                const render::Gbuffer& seen, double white_luminance, int bounces, cli::Session& session);
 

@@ -71,10 +71,10 @@ void warn_of_left_out(const image::AovFile& buffers, cli::Session& session) {
     if (name == "diffuse" || name == "mirror" || name.starts_with("lobe-") || name.starts_with("gloss-"))
       light.push_back(name);
   if (!buffers.drawn_by_rays.empty())
-    session.warn(fmt::format(
-        "{} shows {}: no paint explains what the mesh does to light, so that the paint found is off: "
-        "render picture and buffers with --effects auto,-shadow",
-        buffers.path, buffers.drawn_by_rays));
+    session.warn(
+        fmt::format("{} shows {}: no paint explains what the mesh does to light, so that the paint found is off: "
+                    "render picture and buffers with --effects auto,-rays, or the buffers with --aov transport",
+                    buffers.path, buffers.drawn_by_rays));
   if (light.empty()) return;
   session.warn(
       fmt::format("{} was drawn without {}, so that the paint found lacks it too, most of all near specular: render "
@@ -116,7 +116,10 @@ Result<void> gather(const Options& options, Material& material) {
     input.shift_x = static_cast<int>(std::lround(options.shift[0])),
     input.shift_y = static_cast<int>(std::lround(options.shift[1]));
   GONIO_ASSIGN(material.transport, sketch::SketchTransport::of(material.buffers));
-  if (material.transport) return {};
+  if (material.transport) {
+    if (input.parts.empty()) input.parts = material.transport->mesh_parts();
+    return {};
+  }
   if (options.env.empty()) {
     input.least_cosine = 0.05, input.glare_deg = options.glare_deg;
     material.basis = sketch::sketch_basis();

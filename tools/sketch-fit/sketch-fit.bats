@@ -14,7 +14,7 @@ setup_file() {
 </paints>
 EOF
   fit-paint -q --basis "$TESTDATA/b7.basis.xml" designed.xml -o fitted.xml
-  scene="--mesh $TESTDATA/speed-shape.obj --light 0,20 --size 320x200 --samples 1"
+  scene="--mesh $TESTDATA/speed-shape.obj --light 0,20 --size 320x200 --samples 1 --effects auto,-rays"
   for paint in steel ruby; do
     render-osmesa -q $scene --paint "fitted.xml#$paint" --aov normal,aspecular,lambert,mask,part -o $paint.exr
     render-osmesa -q $scene --paint "fitted.xml#$paint" -o $paint.png
@@ -60,7 +60,7 @@ fit() { sketch-fit -q -o found.xml --report r.json "$@"; }
   fit -i steel.exr -b steel.exr --name found
   xmllint --noout found.xml
   fit-paint -q --basis "$TESTDATA/b7.basis.xml" found.xml -o again.xml
-  render-osmesa -q --mesh "$TESTDATA/speed-shape.obj" --light 0,20 --size 320x200 --samples 1 --paint again.xml#found -o again.exr
+  render-osmesa -q --mesh "$TESTDATA/speed-shape.obj" --light 0,20 --size 320x200 --samples 1 --effects auto,-rays --paint again.xml#found -o again.exr
   # Where the highlight is, gloss differs; elsewhere the pictures agree.
   run oiiotool steel.exr --ch R,G,B again.exr --ch R,G,B --fail 0.01 --failpercent 3 --diff
   [ "$status" -eq 0 ] || { echo "$output"; return 1; }
@@ -87,13 +87,13 @@ fit() { sketch-fit -q -o found.xml --report r.json "$@"; }
   oiiotool "$TESTDATA/studio.exr" --resize:filter=box 128x64 -o small.exr
   prefilter-envmap -q small.exr --basis "$TESTDATA/b7.basis.xml" -o small.env.exr
   scene="--mesh $TESTDATA/speed-shape.obj --env small.env.exr --size 240x150 --samples 1"
-  render-osmesa -q $scene --paint fitted.xml#satin --aov normal,aspecular,lambert,mask,part -o env.exr
+  render-osmesa -q $scene --paint fitted.xml#satin --effects auto,-rays --aov normal,aspecular,lambert,mask,part -o env.exr
   run sketch-fit -i env.exr -b env.exr -o found.xml
   [ "$status" -eq 2 ]
   [[ $output == *"env.exr was rendered under the environment small.env.exr: give --env small.env.exr"* ]]
   exrheader env.exr | grep -q '"effect":"fresnel","needed":true.*"decision":"drawn"'
   for effects in auto all all,-fresnel,-horizon,-operator; do
-    render-osmesa -q $scene --paint fitted.xml#satin --effects $effects --aov normal,aspecular,lambert,mask,part -o env.exr
+    render-osmesa -q $scene --paint fitted.xml#satin --effects $effects,-rays --aov normal,aspecular,lambert,mask,part -o env.exr
     run sketch-fit -i env.exr -b env.exr --env small.env.exr -o found.xml --report r.json
     [ "$status" -eq 0 ]
     [[ $output != *warning* ]] || { echo "$effects: $output"; return 1; }
@@ -109,7 +109,7 @@ fit() { sketch-fit -q -o found.xml --report r.json "$@"; }
 # planted ENV PAINT: renders the measured paint under the environment as it is rendered by default, and finds it. What its
 # lobes show at 45 and 110 deg are its readings, to 0.01.
 planted() {
-  render-osmesa -q --mesh "$TESTDATA/speed-shape.obj" --env "$1" --size 240x150 --paint "measured.xml#$2" \
+  render-osmesa -q --mesh "$TESTDATA/speed-shape.obj" --env "$1" --size 240x150 --effects auto,-rays --paint "measured.xml#$2" \
     --aov normal,aspecular,lambert,mask,part -o planted.exr
   sketch-fit -q -i planted.exr -b planted.exr --env "$1" -o found.xml --report r.json
   [ "$(result status)" = fitted ]
@@ -153,13 +153,24 @@ planted() {
   [[ $output == *"wood.exr was drawn with effects that the search does not know"*"--effects auto,-texture"* ]] || { echo "$output"; return 1; }
 }
 
+@test "a picture with shadows says that no paint explains them, and how to leave them out" {
+  scene="--mesh $TESTDATA/box.obj --light 35,45 --paint fitted.xml#satin --size 48x36 --samples 1 --aov normal,aspecular,lambert,mask,part"
+  render-osmesa -q $scene --tolerance 2 -o shadows.exr
+  run sketch-fit -i shadows.exr -b shadows.exr -o found.xml
+  [ "$status" -le 1 ]
+  [[ $output == *"shadows.exr shows shadow (dE00 "*"no paint explains"*"--effects auto,-rays"* ]] || { echo "$output"; return 1; }
+  render-osmesa -q $scene --effects auto,-rays -o open.exr
+  run sketch-fit -i open.exr -b open.exr -o found.xml
+  [[ $output != *"no paint explains"* ]] || { echo "$output"; return 1; }
+}
+
 @test "light that the picture was drawn without is told with its remedy" {
   scene="--mesh $TESTDATA/speed-shape.obj --light 35,45 --paint fitted.xml#steel --size 320x200 --samples 1 --aov normal,aspecular,lambert,mask,part"
-  render-osmesa -q $scene --effects all,-lobe-20 -o without.exr
+  render-osmesa -q $scene --effects all,-rays,-lobe-20 -o without.exr
   run sketch-fit -i without.exr -b without.exr -o found.xml
   [ "$status" -eq 0 ]
   [[ $output == *"without.exr was drawn without lobe-20, "*"--effects all"* ]] || { echo "$output"; return 1; }
-  render-osmesa -q $scene --effects all -o with.exr
+  render-osmesa -q $scene --effects all,-rays -o with.exr
   run sketch-fit -i with.exr -b with.exr -o found.xml
   [[ $output != *"drawn without"* ]] || { echo "$output"; return 1; }
 }
@@ -248,7 +259,7 @@ EOF
   fit -i ruby.exr -b steel.exr --max-de 0 --pixels all
   [ "$(result status)" = diffuse_fallback ]
   # Of so small a car nothing is seen nearer to specular than 69 deg.
-  small="--mesh $TESTDATA/speed-shape.obj --light 35,45 --paint fitted.xml#steel --size 40x25 --samples 1"
+  small="--mesh $TESTDATA/speed-shape.obj --light 35,45 --paint fitted.xml#steel --size 40x25 --samples 1 --effects auto,-rays"
   render-osmesa -q $small -o small.png
   render-osmesa -q $small --aov normal,aspecular,lambert,mask,part -o small.exr
   fit -i small.png -b small.exr
@@ -258,7 +269,7 @@ EOF
   echo '<paints xmlns="urn:goniochrome:paint:1" version="1"><paint name="jade"><gloss angle="60">85.7</gloss>
     <appearance travel="63"><face L="76.8" a="-50.4" b="-12.47"/><flop L="31.23" a="-34.67" b="-0.55"/></appearance></paint></paints>' >jade.xml
   fit-paint -q --basis "$TESTDATA/b7.basis.xml" jade.xml -o jade-fitted.xml
-  small="--mesh $TESTDATA/speed-shape.obj --light 60,25 --paint jade-fitted.xml#jade --size 72x45 --samples 1 --effects all"
+  small="--mesh $TESTDATA/speed-shape.obj --light 60,25 --paint jade-fitted.xml#jade --size 72x45 --samples 1 --effects all,-rays"
   render-osmesa -q $small -o small.png
   render-osmesa -q $small --aov normal,aspecular,lambert,mask,part -o small.exr
   fit -i small.png -b small.exr --basis "$TESTDATA/b7.basis.xml"

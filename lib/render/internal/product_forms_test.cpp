@@ -28,7 +28,8 @@ constexpr double kExact = 1e-12;
 TEST(ProductForms, FourMakeEveryOperatorInUse) {
   EXPECT_EQ(product_forms(color::component_wise()).count, 3);
   EXPECT_LT(error_of(product_forms(color::component_wise()), color::component_wise()), 1e-15);
-  for (const color::ReflectionOperator& base : {color::iso_rgb_operator(), color::working_space_operator()}) {
+  for (const color::ReflectionOperator& base : {color::iso_rgb_operator(), color::working_space_operator(),
+                                                color::iso_rec709_operator(), color::fitted_operator()}) {
     EXPECT_EQ(product_forms(base).count, 4);
     EXPECT_LT(error_of(product_forms(base), base), kExact);
     EXPECT_GT(error_of({}, base), 0.05) << "each channel by itself would have been wrong";

@@ -31,9 +31,10 @@ struct LobePoint::Ray {
   bool above = false, blocked = false, from_light = false;
 };
 
-// What a surface that a ray met sends back along it, by class.
+// What a surface that a ray met sends back along it, by class; apart from them, the light off a floor that no paint
+// changes.
 struct LobePoint::Sent {
-  color::Rgb base, gloss, deeper;
+  color::Rgb base, gloss, deeper, fixed;
   color::Rgb total() const { return base + gloss + deeper; }
 };
 
@@ -71,8 +72,9 @@ LobePoint::LobePoint(const Transport& transport, const LobeColumns& columns, con
       kernels_(columns, painted_) {
   options_.bounces = bounces;
   if (transport.environment_) light_chance_ = kLightChance;
+  is_laid_ = transport.is_laid(spot);
   open_ = !transport.rays_->has_floor() && !transport.rays_->any_above(spot.start, spot.shading, 0);
-  if (!open_) mirror_hit_ = transport.rays_->closest(spot_.start, painted_.mirrored());
+  if (!open_ && !is_laid_) mirror_hit_ = transport.rays_->closest(spot_.start, painted_.mirrored());
 }
 
 color::Rgb LobePoint::reflect(const Float3& f, const color::Rgb& light) const {
@@ -121,6 +123,11 @@ LobePoint::Sent LobePoint::sent(const Hit& hit, const Float3& direction, const S
                                 std::uint32_t index) const {
   Sent sent;
   const Transport& t = transport_;
+  if (t.is_laid(hit)) {
+    const Transport::FloorLight floor = t.off_floor(hit, spot_.start, direction, options_.bounces, sequence, index, 4);
+    sent.fixed = floor.fixed, sent.deeper = floor.bounced;
+    return sent;
+  }
   const rays::Spot at = t.rays_->spot(hit, spot_.start, direction);
   const PaintedPoint painted = t.painted(at, -direction);
   if (painted.black()) return sent;
@@ -164,11 +171,17 @@ LobePoint::Sent LobePoint::sent(const Hit& hit, const Float3& direction, const S
   }
   const double pdf = others * drawn.pdf;
   const Hit next = t.rays_->closest(start, drawn.direction);
-  color::Rgb end;
+  color::Rgb end, deeper;
   double light_pdf = 0;
-  if (next.any()) {
+  PathOptions further = options_;
+  --further.bounces;
+  if (t.is_laid(next)) {
+    const Transport::FloorLight floor = t.off_floor(next, start, drawn.direction, further.bounces, sequence, index, 6);
+    end = floor.fixed, deeper = floor.bounced;
+  } else if (next.any()) {
     end = t.emitters_.radiance(t.rays_->part(next.triangle));
     if (end != color::Rgb{} && !mirrored) light_pdf = t.emitters_.pdf(next.triangle, drawn.direction, next.distance);
+    if (further.bounces > 0) deeper = t.bounced(next, start, drawn.direction, further, sequence, index, 6);
   } else if (t.environment_) {
     const LightSample light = t.environment_->at(drawn.direction);
     end = light.radiance;
@@ -179,17 +192,14 @@ LobePoint::Sent LobePoint::sent(const Hit& hit, const Float3& direction, const S
   } else if (end != color::Rgb{}) {
     add(drawn.direction, 1 / (pdf + light_pdf), end);
   }
-  if (!next.any() || options_.bounces < 2) return sent;
-  PathOptions further = options_;
-  --further.bounces;
-  const color::Rgb deeper = t.bounced(next, start, drawn.direction, further, sequence, index, 6);
+  if (deeper == color::Rgb{}) return sent;
   sent.deeper =
       mirrored ? (1 / mirror_chance) * reflect(painted.mirror(), deeper) : (1 / pdf) * reflect(drawn.f_cos, deeper);
   return sent;
 }
 
 void LobePoint::add_classes(const Float3& f, const Hit& hit, const Sent& sent, double share, Sums& sums) const {
-  const int group = groups_.of_part[static_cast<std::size_t>(transport_.rays_->part(hit.triangle))];
+  const int group = group_of(hit);
   sums.classes[groups_.at(group, PaintGroups::kBase)] += share * reflect(f, sent.base);
   sums.classes[groups_.at(group, PaintGroups::kGloss)] += share * reflect(f, sent.gloss);
   sums.classes[groups_.at(group, PaintGroups::kDeeper)] += share * reflect(f, sent.deeper);
@@ -210,7 +220,7 @@ void LobePoint::add_ray(const Ray& ray, const Sequence& sequence, std::uint32_t 
     into[first + k] += (scale / sums.directions * values[k]) * light.radiance;
     squares[first + k] += size * size * values[k] * values[k];
   }
-  if (!ray.blocked || (options_.bounces == 0 && transport_.emitters_.empty())) return;
+  if (!ray.blocked || (options_.bounces == 0 && transport_.emitters_.empty() && !transport_.ground_)) return;
   const Hit hit = transport_.rays_->closest(spot_.start, ray.direction);
   if (!hit.any()) return;
   const color::Rgb& emission = transport_.emitters_.radiance(transport_.rays_->part(hit.triangle));
@@ -218,9 +228,11 @@ void LobePoint::add_ray(const Ray& ray, const Sequence& sequence, std::uint32_t 
     const double share = 1 / (pdf + transport_.emitters_.pdf(hit.triangle, ray.direction, hit.distance));
     for (std::size_t k = 0; k < count; ++k) sums.emitted[first + k] += (share / sums.directions * values[k]) * emission;
   }
-  if (options_.bounces == 0) return;
+  if (options_.bounces == 0 && !transport_.is_laid(hit)) return;
   const Sent sent = this->sent(hit, ray.direction, sequence, index);
   const color::Rgb total = sent.total();
+  for (std::size_t k = 0; sent.fixed != color::Rgb{} && k < count; ++k)
+    sums.emitted[first + k] += (scale / sums.directions * values[k]) * sent.fixed;
   if (total == color::Rgb{}) return;
   for (std::size_t k = 0; k < count; ++k) sums.bounced[first + k] += (scale / sums.directions * values[k]) * total;
   add_classes(static_cast<float>(scale) * painted_.at(ray.direction).f_cos, hit, sent, 1.0 / sums.directions, sums);
@@ -238,13 +250,14 @@ void LobePoint::add_emitter(const std::array<double, 4>& numbers, Sums& sums, in
 }
 
 void LobePoint::add_mirror(std::uint64_t seed, Sums& sums, int which) const {
-  if (options_.bounces == 0 || !mirror_hit_.any()) return;
+  if (!mirror_hit_.any() || (options_.bounces == 0 && !transport_.is_laid(mirror_hit_))) return;
   const int samples = std::max(1, sums.directions / kMirrorShare);
   const Sequence sequence(mixed(seed, 0x4D), static_cast<std::uint32_t>(sums.directions));
-  color::Rgb& sum = sums.bounced[sums.at(which, columns_.mirror())];
+  const std::size_t mirror = sums.at(which, columns_.mirror());
   for (int i = 0; i < samples; ++i) {
     const Sent sent = this->sent(mirror_hit_, painted_.mirrored(), sequence, static_cast<std::uint32_t>(i));
-    sum += (kernels_.mirror() / static_cast<double>(samples)) * sent.total();
+    sums.bounced[mirror] += (kernels_.mirror() / static_cast<double>(samples)) * sent.total();
+    sums.emitted[mirror] += (kernels_.mirror() / static_cast<double>(samples)) * sent.fixed;
     add_classes(painted_.mirror(), mirror_hit_, sent, 1.0 / samples, sums);
   }
 }
@@ -268,6 +281,34 @@ void LobePoint::add_sure(const color::Rgb* open_light, LobeEstimate& result) con
   }
 }
 
+// All that a floor shows is light of its one column; what the mesh sends to it came through other surfaces.
+LobeEstimate LobePoint::floor_estimate(int sequences, int directions, std::uint64_t seed) const {
+  LobeEstimate result;
+  result.direct.resize(columns_.count()), result.bounced.resize(columns_.count());
+  result.covariance.resize(columns_.count()), result.classes.resize(groups_.classes());
+  const PointTransport point(transport_, options_, spot_, painted_.to_viewer());
+  result.direct[LobeColumns::diffuse()] = point.sure();
+  if (point.certain()) return result;
+  result.sequences = sequences;
+  const int batches = std::max(1, directions / kBatch);
+  LightShares mean;
+  Estimates shown;
+  for (int which = 0; which < sequences; ++which) {
+    LightShares of_sequence;
+    for (int i = 0; i < batches; ++i)
+      of_sequence += (1.0 / batches) * point.batch_shares(mixed(mixed(seed, static_cast<std::uint64_t>(which)),
+                                                                static_cast<std::uint64_t>(i)));
+    mean += (1.0 / sequences) * of_sequence;
+    shown.add(of_sequence.sum());
+  }
+  result.direct[LobeColumns::diffuse()] += mean.direct;
+  result.bounced[LobeColumns::diffuse()] = mean.into_lobes + mean.into_diffuse;
+  result.covariance[LobeColumns::diffuse()] = shown.covariance();
+  const int floor = groups_.of_part[static_cast<std::size_t>(spot_.part)];
+  result.classes[groups_.at(floor, PaintGroups::kDeeper)] = result.bounced[LobeColumns::diffuse()];
+  return result;
+}
+
 // Light L from free directions is what is wanted; M is known of all directions. For any beta that does not depend on
 // the samples,
 //   (1 - beta) free + beta (M - hidden)
@@ -276,6 +317,7 @@ void LobePoint::add_sure(const color::Rgb* open_light, LobeEstimate& result) con
 // ones and for the odd ones from the even ones, so that it depends on no sample that it weighs.
 LobeEstimate LobePoint::estimate(const color::Rgb* open_light, int sequences, int directions,
                                  std::uint64_t seed) const {
+  if (is_laid_) return floor_estimate(sequences, directions, seed);
   const std::size_t count = columns_.count();
   LobeEstimate result;
   result.direct.resize(count), result.bounced.resize(count), result.covariance.resize(count);
@@ -342,6 +384,14 @@ LobeEstimate LobePoint::estimate(const color::Rgb* open_light, int sequences, in
 void LobePoint::add_pairs(const Hit& hit, const Float3& direction, const float* values, double scale,
                           const Sequence& sequence, std::uint32_t index, Pairs& pairs) const {
   const Transport& t = transport_;
+  // What a column of the visible point shows; a floor that shows the environment has a color of its own.
+  const color::Rgb tint = is_laid_ ? rgb(painted_.diffuse()) : color::Rgb{1, 1, 1};
+  if (t.is_laid(hit)) {
+    const Transport::FloorLight floor = t.off_floor(hit, spot_.start, direction, options_.bounces, sequence, index, 4);
+    for (std::size_t k = 0; k < columns_.count(); ++k)
+      pairs.deeper[pairs.at(group_of(hit), k, LobeColumns::diffuse())] += (scale * values[k]) * tint * floor.bounced;
+    return;
+  }
   const rays::Spot at = t.rays_->spot(hit, spot_.start, direction);
   const PaintedPoint painted = t.painted(at, -direction);
   const LobeKernels kernels(columns_, painted);
@@ -358,7 +408,10 @@ void LobePoint::add_pairs(const Hit& hit, const Float3& direction, const float* 
   const auto add = [&](const Float3& toward, double share, std::uint32_t set) {
     const Hit next = t.rays_->closest(at.start, toward);
     color::Rgb light, bounced;
-    if (!next.any()) {
+    if (t.is_laid(next)) {
+      const Transport::FloorLight floor = t.off_floor(next, at.start, toward, further.bounces, sequence, index, set);
+      light = floor.fixed, bounced = floor.bounced;
+    } else if (!next.any()) {
       if (t.environment_) light = t.environment_->at(toward).radiance;
     } else {
       light = t.emitters_.radiance(t.rays_->part(next.triangle));
@@ -385,10 +438,10 @@ void LobePoint::add_pairs(const Hit& hit, const Float3& direction, const float* 
   add(painted.mirrored(), 1, 40);
   const int group = groups_.of_part[static_cast<std::size_t>(at.part)];
   for (std::size_t k = 0; k < count; ++k) {
-    if (values[k] == 0) continue;
+    if (values[k] == 0 || (is_laid_ && k != LobeColumns::diffuse())) continue;
     for (std::size_t l = 0; l < count; ++l) {
-      pairs.once[pairs.at(group, k, l)] += (scale * values[k]) * once[l];
-      pairs.deeper[pairs.at(group, k, l)] += (scale * values[k]) * deeper[l];
+      pairs.once[pairs.at(group, k, l)] += (scale * values[k]) * tint * once[l];
+      pairs.deeper[pairs.at(group, k, l)] += (scale * values[k]) * tint * deeper[l];
     }
   }
 }

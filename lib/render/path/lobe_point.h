@@ -10,7 +10,9 @@
 
 namespace goniochrome::render {
 
-// Parts whose paints are told apart. Bounced light is told by the group that sent it and by how the light left it last.
+// Parts whose paints are told apart. A floor that shows the environment is a group with the one weight 1 of the diffuse
+// column, and its light is kept as it shows it. Bounced light is told by the group that sent it and by how the light
+// left it last.
 struct PaintGroups {
   std::vector<int> of_part;  // of the mesh, then of the floor
   int count = 0;
@@ -71,6 +73,10 @@ class LobePoint {
   void add_pairs(const rays::Hit& hit, const rays::Float3& direction, const float* values, double scale,
                  const Sequence& sequence, std::uint32_t index, Pairs& pairs) const;
   void add_sure(const color::Rgb* open_light, LobeEstimate& result) const;
+  LobeEstimate floor_estimate(int sequences, int directions, std::uint64_t seed) const;
+  int group_of(const rays::Hit& hit) const {
+    return groups_.of_part[static_cast<std::size_t>(transport_.rays().part(hit.triangle))];
+  }
   color::Rgb reflect(const rays::Float3& f, const color::Rgb& light) const;
 
   const Transport& transport_;
@@ -83,6 +89,7 @@ class LobePoint {
   rays::Hit mirror_hit_;
   float light_chance_ = 0;
   bool open_ = false;
+  bool is_laid_ = false;  // on a floor that shows the environment
 };
 
 }  // namespace goniochrome::render

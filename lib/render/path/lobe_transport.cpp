@@ -135,7 +135,8 @@ class Tracing {
     const rays::Spot spot = spot_at(transport_.rays(), surface_, x, y);
     const LobePoint point = point_at(i);
     std::vector<color::Rgb> open(t.columns.count());
-    if (open_ != nullptr) open_->at(rays::vec3(spot.shading), g.to_viewer(x, y), spot.part, open.data());
+    if (open_ != nullptr && !t.worn.is_laid(spot.part))
+      open_->at(rays::vec3(spot.shading), g.to_viewer(x, y), spot.part, open.data());
     const int sequences = std::min(batches, kSequences);
     int of_each = 1;  // batches
     while (of_each * sequences < batches) of_each *= 2;
@@ -170,9 +171,10 @@ class Tracing {
   // dE00^2
   double nominal_variance(std::size_t i, std::size_t k, Covariance covariance) const {
     const LobeTransport& t = result_.transport;
-    color::Rgb shown = nominal_[k] * t.light(i, k);
+    const double weight = t.worn.is_laid(t.part[i]) ? 1 : nominal_[k];
+    color::Rgb shown = weight * t.light(i, k);
     if (t.columns.is_gloss(k)) shown += (kNominalGray / kPi) * t.light(i, 0);
-    for (double& element : covariance) element *= nominal_[k] * nominal_[k];
+    for (double& element : covariance) element *= weight * weight;
     const double noise = noise_de00(shown, covariance, request_.white_luminance);
     return noise * noise;
   }
@@ -280,12 +282,13 @@ Result<WornPaints> worn_paints(const LobeColumns& columns, const PathScene& path
     worn.brushed.push_back(part < scene.anisotropy.size() ? scene.anisotropy[part] : paint::Anisotropy{});
   }
   if (path.ground) {
-    if (path.ground->kind == Ground::Kind::kShadow)
-      return usage_error(
-          "the light of a floor that shows the environment is no sum of lobes: give the floor a paint, or "
-          "trace without it");
+    worn.floor_is_laid = path.ground->kind == Ground::Kind::kShadow;
     GONIO_ASSIGN(auto weights, column_weights(columns, path.ground->paint.diffuse, path.ground->paint.lobes,
                                               brdf::kGlossIncidence_deg));
+    if (worn.floor_is_laid) {
+      weights.assign(columns.count(), color::Rgb{});
+      weights[LobeColumns::diffuse()] = {1, 1, 1};
+    }
     worn.groups.of_part.push_back(static_cast<int>(first.size()));
     worn.has_floor = true;
     worn.weights.push_back(std::move(weights));

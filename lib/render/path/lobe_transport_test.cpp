@@ -253,6 +253,83 @@ TEST(LobeTransport, ScalesBouncedLightToOtherPaintsWithinWhatIsTold) {
   EXPECT_GE(controls, 2);
 }
 
+// A ball on a floor that shows the environment: what the floor sends to the ball, the ball to the floor and the floor
+// back is in the transport, and so is the shadow. After a change of paint it is off by what is told. The controls are
+// the transport of the same ball without a floor, and the floor in the open.
+TEST(LobeTransport, HoldsAFloorThatShowsTheEnvironment) {
+  std::mt19937_64 random(12);
+  const paint::LobeFit worn_paint = random_paint(random);
+  PathStage stage(sphere_mesh(32), {worn_paint});
+  stage.environment = sky();
+  stage.scene.env = &maps();
+  Ground ground;
+  ground.height = -1, ground.probe_eye = {0, 0.5, 0};
+  const LobeColumns columns{kExponents};
+  const OpenLight open = *OpenLight::create(maps(), columns, {});
+  Camera camera;
+  camera.eye = {1, 2, 6};
+  camera.fov_deg = 36;
+  LobeTransportRequest request;
+  request.tolerance_de00 = 0.5;
+  const auto traced = [&](bool with_floor) {
+    stage.ground = with_floor ? std::optional(ground) : std::nullopt;
+    stage.build();
+    const VisibleSurface surface = visible_surface(stage.transport->rays(), *rays(camera, 16, 12), 16, 12);
+    PathScene scene;
+    scene.scene = &stage.scene;
+    scene.ground = stage.ground;
+    return traced_lobes(*stage.transport, surface, columns, *worn_paints(columns, scene), &open, request);
+  };
+  const TracedLobes bare = traced(false), whole = traced(true);
+  ASSERT_TRUE(whole.reached) << whole.noise_p95_de00;
+  const LobeTransport& t = whole.transport;
+  ASSERT_TRUE(t.worn.floor_is_laid);
+  paint::LobeFit other_paint = worn_paint;
+  other_paint.diffuse = other_paint.diffuse * color::Rgb{0.4, 1.3, 1};
+  for (const paint::LobeFit& paint : {worn_paint, other_paint}) {
+    stage.scene.paints.assign(1, paint);
+    stage.build();
+    const VisibleSurface surface = visible_surface(stage.transport->rays(), *rays(camera, 16, 12), 16, 12);
+    PathRequest path;
+    path.options.bounces = request.bounces;
+    path.tolerance_de00 = 0.4;
+    const PathPicture truth = path_picture(*stage.transport, surface, nullptr, path);
+    ASSERT_EQ(truth.points.size(), t.places.size());
+    const std::vector<std::vector<color::Rgb>> weights = {weights_of(columns, paint), t.worn.weights.back()};
+    const BounceScale scale = bounce_scale(t, weights, nullptr);
+    std::vector<double> of_ball, of_floor, without_floor, in_the_open;
+    std::size_t of_bare = 0;
+    for (std::size_t i = 0; i < t.places.size(); ++i) {
+      const auto& own = weights[static_cast<std::size_t>(t.part[i])];
+      const color::Rgb direct = shown(t, i, own, false), bounced = shown(t, i, own, true) - direct;
+      const color::Rgb ours = direct + bounce_factor(t, i, scale) * bounced;
+      const double off = seen_difference(ours, truth.points[i].radiance, 1);
+      if (t.part[i] == 1) {
+        of_floor.push_back(off);
+        const Vec3 at = stage.transport->rays().world(
+            spot_at(stage.transport->rays(), surface, truth.points[i].x, truth.points[i].y).position);
+        in_the_open.push_back(seen_difference(smooth_radiance(*stage.environment, normalized(at - ground.probe_eye)),
+                                              truth.points[i].radiance, 1));
+        continue;
+      }
+      of_ball.push_back(off);
+      while (bare.transport.places[of_bare] < t.places[i]) ++of_bare;
+      without_floor.push_back(seen_difference(shown(bare.transport, of_bare, own, true), truth.points[i].radiance, 1));
+    }
+    ASSERT_GT(of_ball.size(), 30U);
+    ASSERT_GT(of_floor.size(), 30U);
+    std::printf("ball %.2f, floor %.2f, told %.2f; controls %.2f, %.2f\n", percentile_95(of_ball),
+                percentile_95(of_floor), scale.error_p95_de00, percentile_95(without_floor),
+                percentile_95(in_the_open));
+    // As in ShowsTheWornPaintsWithBouncesAsTracingDoes, and what is told of the change of paint.
+    const double most = 2.2 * std::hypot(0.5, 0.4) + 0.5 + 1.2 * scale.error_p95_de00;
+    EXPECT_LT(percentile_95(of_ball), most);
+    EXPECT_LT(percentile_95(of_floor), most);
+    EXPECT_GT(percentile_95(without_floor), 2 * most);
+    EXPECT_GT(percentile_95(in_the_open), 2 * most);
+  }
+}
+
 // What it says of its noise, against another of a third of it: over the points of each column, the root mean square
 // difference in the nominal paint is at most what is told of the worst column, and that of the worst column is near.
 TEST(LobeTransport, IsAsNoisyAsItSays) {

@@ -7,19 +7,9 @@
 
 #include "base/parallel.h"
 #include "render/path/path_tracer.h"
+#include "render/path/visible_white.h"
 
 namespace goniochrome::render {
-
-namespace {
-
-// Of a scene that only its own parts light: the luminance of a matt white surface in light as bright as they are.
-double emitted_white(const Scene& scene) {
-  double largest = 0;
-  for (const color::Rgb& emission : scene.emission) largest = std::max(largest, color::xyz_d65_from_rgb(emission).Y);
-  return largest;
-}
-
-}  // namespace
 
 const EngineInfo PathEngine::kInfo = {
     .name = "path",
@@ -46,8 +36,6 @@ Result<void> PathEngine::can_shade(const Scene& scene) const {
 Result<void> PathEngine::load(const Scene& scene, const Effects& effects) {
   scene_ = scene, effects_ = effects;
   white_luminance_ = diffuse_white(scene.env, scene.lights).luminance;
-  if (!(white_luminance_ > 0)) white_luminance_ = emitted_white(scene);
-  if (!(white_luminance_ > 0)) white_luminance_ = 1;
   transport_.reset();
   PathScene path;
   path.scene = &scene_;
@@ -142,13 +130,28 @@ Result<void> PathEngine::shade(Sight& sight, int sample, float gain, bool add, i
   request.seed = effort.seed;
   request.progress = effort.progress;
   request.white_luminance = white_luminance_;
+  if (!(request.white_luminance > 0)) {
+    if (samples > 1) {
+      request.white_luminance =
+          visible_white(*transport_, visible_surface(transport_->rays(), Rays(g.rays), g.width, g.height),
+                        effort.bounces, effort.seed);
+    } else {
+      request.white_luminance = visible_white(*transport_, surface, effort.bounces, effort.seed);
+    }
+  }
+  if (!(request.white_luminance > 0)) request.white_luminance = 1;
   request.pixel_samples = samples;
   const PathPicture picture = path_picture(*transport_, surface, nullptr, request);
   rgba = {g.width, g.height, 4, {}, {}};
   rgba.data.assign(static_cast<std::size_t>(g.width) * static_cast<std::size_t>(g.height) * 4, 0.0F);
   if (effects_.background != Background::kNone) draw_background(g.rays, samples, rgba);
-  Noise noise{picture.noise_p95_de00, picture.noise_mean_de00, picture.samples_mean,
-              picture.time_s,         picture.reached,         {}};
+  Noise noise{picture.noise_p95_de00,
+              picture.noise_mean_de00,
+              picture.samples_mean,
+              picture.time_s,
+              picture.reached,
+              request.white_luminance,
+              {}};
   noise.de00 = {g.width, g.height, 1, std::vector<float>(rgba.data.size() / 4, 0.0F), {"error"}};
   for (const PathPoint& point : picture.points) {
     float* pixel = rgba.pixel(point.x, point.y);

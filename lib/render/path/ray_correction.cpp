@@ -39,6 +39,9 @@ CorrectionNoise add_correction(const Transport& transport, const mesh::Mesh& mes
   paths.tolerance_de00 = request.tolerance_de00 * std::sqrt(request.samples);
   paths.white_luminance = request.white_luminance > 0 ? request.white_luminance : 1;
   paths.seed = request.seed;
+  paths.most_samples = request.most_samples;
+  paths.time_limit_s = request.time_limit_s;
+  paths.progress = request.progress;
   const PathPicture drawn = path_picture(transport, drawn_surface(mesh, gbuffer), &before, paths);
   for (const PathPoint& point : drawn.points) {
     float* pixel = &picture.data[gbuffer.index(point.x, point.y) * static_cast<std::size_t>(picture.channels)];
@@ -47,6 +50,7 @@ CorrectionNoise add_correction(const Transport& transport, const mesh::Mesh& mes
   noise.de00_p95 = drawn.noise_p95_de00 / std::sqrt(request.samples);
   noise.samples = drawn.samples_mean;
   noise.free_share = drawn.free_share;
+  noise.reached = drawn.reached;
   noise.ms = 1000 * clock.elapsed_s();
   return noise;
 }

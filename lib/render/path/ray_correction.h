@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 #include "image/image.h"
 #include "render/effects.h"
@@ -20,7 +21,10 @@ struct CorrectionRequest {
   double tolerance_de00 = 0.5;  // of the picture's noise, 95th percentile over the visible points
   double white_luminance = 1;
   std::uint64_t seed = 1;
-  int samples = 1;  // of a pixel: each is corrected with a noise that is larger by the square root of that
+  int samples = 1;             // of a pixel: each is corrected with a noise that is larger by the square root of that
+  int most_samples = 1 << 16;  // of rays, at each point
+  double time_limit_s = 0;     // 0: none
+  std::function<void(double noise_de00, double seconds)> progress = {};
 };
 
 // How the effects were drawn; of several samples the means.
@@ -29,6 +33,7 @@ struct CorrectionNoise {
   double samples = 0;   // rays' samples of a visible point, in all
   double free_share = 0;
   double ms = 0;
+  bool reached = true;  // whether the noise is within the tolerance
 };
 
 // Adds `gain` times the correction to the first three channels of the picture, which holds radiance times coverage.

@@ -72,6 +72,7 @@ struct PathStage {
   Scene scene;
   std::optional<envmap::Environment> environment;
   std::vector<color::Rgb> emission;
+  std::optional<Ground> ground;
   std::optional<Transport> transport;
 
   PathStage(mesh::Mesh m, std::vector<paint::LobeFit> paints) : mesh(std::move(m)) {
@@ -86,6 +87,7 @@ struct PathStage {
     path.scene = &scene;
     path.environment = environment ? &*environment : nullptr;
     path.emission = emission;
+    path.ground = ground;
     auto made = Transport::create(path);
     if (!made.ok()) throw std::runtime_error(made.error().message);
     transport.emplace(*std::move(made));

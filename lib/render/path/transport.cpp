@@ -18,6 +18,7 @@ using rays::Spot;
 
 // A ray to a point of an emitter ends this part of the way short of it.
 constexpr float kShort = 1 - 1e-4F;
+constexpr float kInversePi = 1 / static_cast<float>(kPi);
 // From the third surface on a path goes on by chance; so many surfaces later never with more than this chance, so that
 // paths end between walls that send back everything.
 constexpr int kRouletteFrom = 3, kEndlessFrom = 64, kMostBounces = 4096;
@@ -249,6 +250,25 @@ color::Rgb Transport::bounced(Hit hit, Float3 origin, Float3 direction, const Pa
   return sum;
 }
 
+// As bounced() at a vertex on such a floor.
+Transport::FloorLight Transport::off_floor(const Hit& hit, const Float3& origin, const Float3& direction, int bounces,
+                                           const Sequence& sequence, std::uint32_t index, std::uint32_t set) const {
+  const Vertex vertex(*this, rays_->spot(hit, origin, direction), -direction);
+  FloorLight light{vertex.open, {}};
+  if (vertex.painted.black()) return light;
+  PathProduct path(reflection_);
+  const std::array<double, 4> to_light = sequence.point(index, set), onward = sequence.point(index, set + 1);
+  light.fixed += direct_light(vertex, path, to_light, onward[3]);
+  const Next next = next_ray(vertex, path, onward);
+  if (!(next.pdf > 0)) return light;
+  light.fixed += light_at_end(next, path, true);
+  if (!next.hit.any() || bounces == 0) return light;
+  PathOptions further;
+  further.bounces = bounces;
+  light.bounced = path.shown(bounced(next.hit, vertex.spot.start, next.direction, further, sequence, index, set + 2));
+  return light;
+}
+
 // A direction at the visible point.
 struct PointTransport::Ray {
   Float3 direction;
@@ -262,7 +282,8 @@ PointTransport::PointTransport(const Transport& transport, const PathOptions& op
       options_(options),
       spot_(spot),
       to_viewer_(to_viewer),
-      painted_(transport.painted(spot, to_viewer)),
+      painted_(options.white ? PaintedPoint(Float3{kInversePi, kInversePi, kInversePi}, spot.shading, to_viewer)
+                             : transport.painted(spot, to_viewer)),
       is_laid_(transport.is_laid(spot)),
       correction_(options.correction || is_laid_) {
   sure_ = is_laid_ ? transport.open_ground(spot) : transport.emitters_.radiance(spot.part);

@@ -39,6 +39,8 @@ struct PathOptions {
   // Only what the mesh changes: the radiance with the mesh in the way less the radiance without it. That is 0 without
   // any noise where no ray is blocked. A floor that shows the environment is there either way, with all its radiance.
   bool correction = false;
+  // The point that is seen is matt white there, whatever its paint is. Surfaces that send light to it keep theirs.
+  bool white = false;
 };
 
 // What a point shows, by the way that the light took. The sum is what it shows.
@@ -87,6 +89,13 @@ class Transport {
   explicit Transport(std::shared_ptr<const rays::RayScene> rays) : rays_(std::move(rays)) {}
   color::Rgb bounced(rays::Hit hit, rays::Float3 origin, rays::Float3 direction, const PathOptions& options,
                      const Sequence& sequence, std::uint32_t index, std::uint32_t set) const;
+  // Light that a floor that shows the environment sends back: what no paint of the mesh changes, which is what the
+  // floor shows in the open less what the mesh takes from it, and what the mesh sends to it.
+  struct FloorLight {
+    color::Rgb fixed, bounced;
+  };
+  FloorLight off_floor(const rays::Hit& hit, const rays::Float3& origin, const rays::Float3& direction, int bounces,
+                       const Sequence& sequence, std::uint32_t index, std::uint32_t set) const;
   struct Vertex;
   struct Next;
   color::Rgb direct_light(const Vertex& vertex, const PathProduct& path, const std::array<double, 4>& numbers,

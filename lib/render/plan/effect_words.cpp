@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "base/text.h"
+#include "render/plan.h"
 #include "render/plan/effect_list.h"
 
 namespace goniochrome::render {
@@ -33,6 +34,26 @@ Result<Words> words_of(const std::string& text) {
                        known);
   }
   return words;
+}
+
+bool leave_out_rays(const std::string& effects) {
+  const auto words = words_of(effects);
+  if (!words.ok()) return false;
+  bool shadow = words->start != Start::kNone, named = false;
+  for (const auto& [name, on] : words->forced) {
+    if (name == "rays" || name == "shadow") shadow = on, named = true;
+    if ((name == "self" || name == "bounce") && on && !named) shadow = true;
+  }
+  return !shadow;
+}
+
+std::optional<bool> floor_forced(const std::string& effects) {
+  std::optional<bool> forced;
+  const auto words = words_of(effects);
+  if (!words.ok()) return forced;
+  for (const auto& [name, on] : words->forced)
+    if (name == "floor") forced = on;
+  return forced;
 }
 
 }  // namespace goniochrome::render

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace goniochrome::render {
@@ -43,6 +45,7 @@ std::string reason_of(std::size_t effect, const RayProbe& probe, const RayCost& 
 struct State {
   RayEffects on;
   std::array<bool, kEffects> forced{}, over_budget{};
+  bool named = false;  // whether any effect was asked for by name
 };
 
 State forced_state(const RayWishes& wishes) {
@@ -53,6 +56,7 @@ State forced_state(const RayWishes& wishes) {
     state.on.*kFlags[i] = forced[i].value_or(wishes.on);
     state.forced[i] = forced[i].has_value();
   }
+  state.named = std::ranges::any_of(forced, [](const auto& one) { return one.value_or(false); });
   const bool wanted = forced[1].value_or(false) || forced[2].value_or(false);
   if (wanted && !forced[0]) state.on.shadow = state.forced[0] = true;
   if (forced[0] == std::optional(false)) state.forced.fill(true);
@@ -76,11 +80,15 @@ void drop_unseen(const RayProbe& probe, double tolerance, State& state) {
   }
 }
 
+double aim_of(const RayWishes& wishes, const State& state) {
+  const RayNoise noise = ray_noise(wishes.tolerance_de00, wishes.open_de00_p95);
+  return state.named || !wishes.automatic ? noise.asked_de00 : noise.unasked_de00;
+}
+
 // What others need goes last.
 void keep_affordable(const RayProbe& probe, const RayWishes& wishes, State& state) {
   for (const std::size_t i : {std::size_t{2}, std::size_t{1}, std::size_t{0}}) {
-    if (probe.cost(state.on, kRayNoiseShare * wishes.tolerance_de00, wishes.visible_points, wishes.samples).ms <=
-        wishes.budget_ms)
+    if (probe.cost(state.on, aim_of(wishes, state), wishes.visible_points, wishes.samples).ms <= wishes.budget_ms)
       return;
     if (!(state.on.*kFlags[i]) || state.forced[i]) continue;
     state.on = without(state.on, i);
@@ -98,18 +106,42 @@ Decision decision_of(const State& state, std::size_t i) {
 }  // namespace
 
 const std::vector<std::string>& ray_effect_names() {
-  static const std::vector<std::string> names = {"shadow", "self", "bounce"};
+  static const std::vector<std::string> names = {"shadow", "self", "bounce", "floor"};
   return names;
 }
 
-RayChoice no_rays(const std::string& reason) {
+RayNoise ray_noise(double tolerance_de00, double open_de00_p95) {
+  return {kRayNoiseShare * tolerance_de00, kRayNoiseShare * std::max(tolerance_de00, open_de00_p95)};
+}
+
+RayChoice no_rays(const std::string& reason, bool refused) {
   RayChoice choice;
-  for (const std::string& name : ray_effect_names()) {
+  for (std::size_t i = 0; i < kEffects; ++i) {
     PlanItem item;
-    item.effect = name, item.reason = reason;
+    item.effect = ray_effect_names()[i], item.reason = reason;
+    if (refused) {
+      item.needed = true, item.decision = Decision::kForcedOff;
+      item.de00_p95 = item.cost_ms = std::numeric_limits<double>::quiet_NaN();
+    }
     choice.items.push_back(std::move(item));
   }
   return choice;
+}
+
+void add_floor(const RayProbe* probe, const std::string& no_floor, RayChoice& choice) {
+  PlanItem item;
+  item.effect = ray_effect_names()[kEffects];
+  item.reason = no_floor;
+  const std::optional<Worth> worth = probe != nullptr ? probe->floor_worth() : std::nullopt;
+  if (worth) {
+    item.needed = true;
+    item.reason =
+        "the ground lights the mesh from below, and the mesh shades it: --floor shadow draws it, by the engine path";
+    item.de00_p95 = worth->de00_p95, item.standard_error = worth->standard_error;
+    item.cost_ms = std::numeric_limits<double>::quiet_NaN();
+    item.decision = Decision::kDropped;
+  }
+  choice.items.push_back(std::move(item));
 }
 
 RayChoice ray_choice(const RayProbe& probe, const RayWishes& wishes) {
@@ -121,10 +153,14 @@ RayChoice ray_choice(const RayProbe& probe, const RayWishes& wishes) {
 
   RayChoice choice;
   choice.effects = state.on;
+  choice.aim_de00 = aim_of(wishes, state);
   const auto cost = [&](const RayEffects& effects) {
-    return probe.cost(effects, kRayNoiseShare * wishes.tolerance_de00, wishes.visible_points, wishes.samples);
+    return probe.cost(effects, choice.aim_de00, wishes.visible_points, wishes.samples);
   };
   choice.cost = cost(state.on);
+  if (!state.named && wishes.automatic) choice.most_samples = kMostUnaskedSamples;
+  if (state.on.any())
+    choice.noise_de00 = choice.aim_de00 * std::sqrt(std::max(1.0, choice.cost.most_samples / choice.most_samples));
   choice.left_out_de00_p95 = state.on == wanted ? 0 : probe.worth(wanted, state.on).de00_p95;
   const RayCost all = cost(kAll);
   for (std::size_t i = 0; i < kEffects; ++i) {

@@ -16,6 +16,13 @@ namespace goniochrome::render {
 // within the tolerance: --check-against truth tells.
 constexpr double kRayNoiseShare = 0.5;
 
+// The noise that is aimed at. Where nobody asked for the effects by name, it is also that part of what the maps err by:
+// samples that lower it further would not bring the picture much nearer to the truth.
+struct RayNoise {
+  double asked_de00 = 0, unasked_de00 = 0;
+};
+RayNoise ray_noise(double tolerance_de00, double open_de00_p95);
+
 // The names of the effects, in the order in which plans list them.
 const std::vector<std::string>& ray_effect_names();
 
@@ -25,23 +32,34 @@ struct RayWishes {
   bool automatic = true;  // whether it may be left out for being unseen
   std::function<std::optional<bool>(const std::string& name)> forced;
   double tolerance_de00 = 0.5;
-  double budget_ms = 0;  // of one frame's rays; 0: none
+  double open_de00_p95 = 0;  // what the engine misses of the open light
+  double budget_ms = 0;      // of one frame's rays; 0: none
   double visible_points = 0;
   int samples = 1;
 };
+
+// The most samples of a point that are drawn for effects that nobody asked for by name. Most points
+// get far fewer.
+constexpr int kMostUnaskedSamples = 1024;
 
 struct RayChoice {
   std::vector<PlanItem> items;
   RayEffects effects;
   double left_out_de00_p95 = 0;  // of all that is left out and was not forced off
   RayCost cost;                  // of what is drawn
+  int most_samples = 1 << 16;    // of a point
+  double aim_de00 = 0.25;        // noise that is aimed at
+  double noise_de00 = 0;         // that is to be expected of what is drawn
 };
 
 // Effects that need another one are off with it: `self` and `bounce` need `shadow`. Forcing one of them on forces
 // `shadow` on, unless that is forced off.
 RayChoice ray_choice(const RayProbe& probe, const RayWishes& wishes);
 
-// Where rays cannot be traced: all effects off, for this reason.
-RayChoice no_rays(const std::string& reason);
+// Where rays cannot be traced, or may not: all effects off, for this reason.
+RayChoice no_rays(const std::string& reason, bool refused = false);
+
+// What the floor is worth that the engine does not draw; nothing where the reason is "" and no floor was probed.
+void add_floor(const RayProbe* probe, const std::string& no_floor, RayChoice& choice);
 
 }  // namespace goniochrome::render

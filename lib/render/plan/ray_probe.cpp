@@ -13,43 +13,42 @@ namespace goniochrome::render {
 
 namespace {
 
-// Rounds of sampling: the share of the points that take part, and the batches that these then have. A percentile is
-// decided by the points about it, so that later rounds go to those that seem to be worth most. Their shares are several
-// times the twentieth of the points that lies above the percentile: noise puts points out of their order.
-struct Round {
-  double share;
-  int batches;
-};
-constexpr Round kRounds[] = {{1, 2}, {0.3, 8}, {0.1, 32}};
-// Below this, in CIEDE2000, nobody needs to know a percentile more accurately.
-constexpr double kLeastPercentile = 0.1;
+// The points of the first round, and the fans of each point in every round that adds points.
+constexpr std::size_t kFirstPoints = 1024;
+constexpr int kFirstFans = 8;
+// Those of them at which a floor is traced as well.
+constexpr std::size_t kFloorPoints = 512;
+// No point gets more fans than that, and all points together no more than so many.
+constexpr int kMostFans = 128;
+constexpr int kMostInAll = 32768;
+constexpr int kMostRounds = 8;
+// A percentile is known well enough when its standard error is within this part of it, or below what nobody sees.
+constexpr double kSharpPart = 0.07, kUnseen = 0.03;
+// A point may lie on either side of the percentile if it is no farther from it than so many standard errors.
+constexpr double kDoubt = 2;
 // Points that are traced once more without light that is passed on, for the time of that.
 constexpr std::size_t kTimed = 64;
 
-// The batches from `first` in steps of `step`.
-LightShares mean_of(const std::vector<LightShares>& batches, std::size_t first, std::size_t step) {
+// The fans from `first` in steps of `step`.
+LightShares mean_of(const std::vector<LightShares>& fans, std::size_t first, std::size_t step) {
   LightShares sum;
   int count = 0;
-  for (std::size_t i = first; i < batches.size(); i += step, ++count) sum += batches[i];
+  for (std::size_t i = first; i < fans.size(); i += step, ++count) sum += fans[i];
   return count > 0 ? (1.0 / count) * sum : sum;
 }
 
-// Of what the effects add, by one batch.
-Covariance covariance_of(const std::vector<LightShares>& batches, const RayEffects& with, const RayEffects& without) {
-  Estimates values;
-  for (const LightShares& batch : batches) values.add(batch.shown(with) - batch.shown(without));
-  return values.covariance();
-}
-
-// The three comparisons that a plan makes.
-struct Comparison {
-  RayEffects with, without;
-};
 constexpr RayEffects kAll{true, true, true};
-constexpr Comparison kComparisons[] = {{kAll, {}}, {kAll, {true, false, true}}, {kAll, {true, true, false}}};
 
 std::size_t place_of_percentile(std::size_t count) {
   return (count * 95 + 99) / 100 - 1;
+}
+
+// A step near the golden section of n that shares no factor with it: points taken in such steps are spread evenly, as
+// many as there may be.
+std::size_t scattering(std::size_t n) {
+  auto step = static_cast<std::size_t>(0.6180339887 * static_cast<double>(n)) + 1;
+  while (n > 1 && std::gcd(step, n) != 1) ++step;
+  return step;
 }
 
 }  // namespace
@@ -61,110 +60,226 @@ RayPoint ray_point(const rays::RayScene& scene, const mesh::Mesh& mesh, const Gb
   return {scene.spot(hit, scene.local(gbuffer.rays.eye), rays::float3(-to_viewer)), rays::float3(to_viewer)};
 }
 
-RayProbe RayProbe::traced(const Transport& transport, const std::vector<RayPoint>& points, std::vector<color::Rgb> base,
-                          double white_luminance, int bounces, std::uint64_t seed) {
+// The three comparisons that a plan makes, and that of the floor.
+const std::vector<RayProbe::Comparison>& RayProbe::comparisons() {
+  static const std::vector<Comparison> all = {
+      {kAll, {}}, {kAll, {true, false, true}}, {kAll, {true, true, false}}, {kAll, kAll, true}};
+  return all;
+}
+
+RayProbe RayProbe::traced(const ProbeSetting& setting, const std::vector<RayPoint>& points,
+                          const std::vector<color::Rgb>& base) {
   RayProbe probe;
-  probe.points_.resize(points.size());
-  probe.base_ = std::move(base);
-  probe.white_ = white_luminance > 0 ? white_luminance : 1;
-  probe.bounces_ = bounces;
+  probe.white_ = setting.white_luminance > 0 ? setting.white_luminance : 1;
+  probe.visible_points_ = setting.visible_points;
   if (points.empty()) return probe;
-  for (const auto& [share, batches] : kRounds) {
-    const Stopwatch clock;
-    const std::vector<int> more = probe.more(share, batches);
-    probe.trace(transport, points, more, seed);
-    if (share < 1) continue;
-    probe.passed_ms_ = 1000 * clock.elapsed_s() / static_cast<double>(batches * points.size());
-    for (const Point& point : probe.points_) probe.blocked_ += point.blocked ? 1 : 0;
-    if (probe.free()) return probe;
+  probe.floor_points_ = setting.over_floor != nullptr ? std::min(kFloorPoints, points.size()) : 0;
+  probe.add_points(points, base, std::min(kFirstPoints, points.size()));
+  const Stopwatch clock;
+  probe.trace(setting, std::vector<int>(probe.size(), kFirstFans));
+  probe.passed_ms_ =
+      1000 * clock.elapsed_s() * kBatch / (kFan * kFirstFans * static_cast<double>(probe.size() + probe.floor_points_));
+  if (probe.free() && probe.floor_points_ == 0) return probe;
+  // Where nothing is sharp yet, more points help those percentiles that few points decide.
+  for (const bool all : {false, true}) {
+    probe.refine(setting);
+    if (all || probe.free() || probe.size() == points.size()) break;
+    const bool sharp = std::ranges::all_of(comparisons(), [&](const Comparison& comparison) {
+      if (comparison.floor) return true;
+      const Worth worth = probe.worth(probe.changes(comparison));
+      return worth.standard_error <= std::max(kUnseen, kSharpPart * worth.de00_p95);
+    });
+    if (sharp) break;
+    const std::size_t before = probe.size();
+    probe.add_points(points, base, points.size());
+    std::vector<int> more(probe.size(), 0);
+    std::fill(more.begin() + static_cast<std::ptrdiff_t>(before), more.end(), kFirstFans);
+    probe.trace(setting, more);
   }
 
   RayProbe plain;
-  plain.points_.resize(std::min(points.size(), kTimed));
-  std::vector<RayPoint> some;
-  for (std::size_t i = 0; i < plain.points_.size(); ++i)
-    some.push_back(points[i * points.size() / plain.points_.size()]);
+  for (std::size_t i = 0; i < std::min(probe.size(), kTimed); ++i)
+    plain.points_.push_back({probe.points_[i].at, {}, {}, {}});
+  ProbeSetting without = setting;
+  without.bounces = 0;
   const Stopwatch plain_clock;
-  plain.trace(transport, some, std::vector<int>(some.size(), 1), seed);
+  plain.trace(without, std::vector<int>(plain.size(), kBatch / kFan));
   probe.direct_ms_ =
       std::min(probe.passed_ms_, 1000 * plain_clock.elapsed_s() / static_cast<double>(plain.points_.size()));
   return probe;
 }
 
-void RayProbe::trace(const Transport& transport, const std::vector<RayPoint>& points, const std::vector<int>& more,
-                     std::uint64_t seed) {
-  PathOptions options;
-  options.bounces = bounces_;
-  options.correction = true;
-  constexpr std::size_t kTogether = 4;
-  parallel_for(points.size(), kTogether, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      if (more[i] == 0) continue;
-      Point& point = points_[i];
-      const PointTransport at(transport, options, points[i].spot, points[i].to_viewer);
-      point.certain = at.certain();
-      point.sure = {at.sure(), {}, {}};
-      point.blocked = point.blocked || at.sure() != color::Rgb{};
-      for (int k = 0; k < more[i] && !point.certain; ++k) {
-        bool blocked = false;
-        point.batches.push_back(at.batch_shares(mixed(mixed(seed, i), point.batches.size()), 0, kBatch, &blocked));
-        point.blocked = point.blocked || blocked;
-      }
-    }
-  });
+// Up to so many of them, those that are there already among them.
+void RayProbe::add_points(const std::vector<RayPoint>& points, const std::vector<color::Rgb>& base, std::size_t count) {
+  const std::size_t step = scattering(points.size());
+  for (std::size_t k = points_.size(); k < count; ++k) {
+    const std::size_t i = k * step % points.size();
+    points_.push_back({points[i], base[i], {}, {}});
+  }
 }
 
-// The further batches that bring this share of the points to so many, those first that seem to be worth most.
-std::vector<int> RayProbe::more(double share, int batches) const {
-  std::vector<int> more(points_.size(), batches);
-  if (share < 1) {
-    std::vector<double> rank(points_.size(), 0);
-    for (const auto& [with, without] : kComparisons) {
-      const double p95 = std::max(kLeastPercentile, worth(with, without).de00_p95);
-      for (std::size_t i = 0; i < points_.size(); ++i)
-        rank[i] = std::max(rank[i], std::sqrt(std::max(0.0, squared_difference(i, with, without))) / p95);
+std::size_t RayProbe::samples() const {
+  std::size_t fans = 0;
+  for (const Point& point : points_) fans += point.bare.fans.size() + point.over_floor.fans.size();
+  return fans * kFan;
+}
+
+void RayProbe::trace(const ProbeSetting& setting, const std::vector<int>& more) {
+  PathOptions options;
+  options.bounces = setting.bounces;
+  options.correction = true;
+  const auto add = [&](const Transport& transport, std::size_t i, Light& light) {
+    const RayPoint& from = points_[i].at;
+    const PointTransport at(transport, options, from.spot, from.to_viewer);
+    light.certain = at.certain();
+    light.sure = {at.sure(), {}, {}};
+    light.blocked = light.blocked || at.sure() != color::Rgb{};
+    for (int k = 0; k < more[i] && !light.certain; ++k) {
+      bool blocked = false;
+      light.fans.push_back(at.batch_shares(mixed(mixed(setting.seed, i), light.fans.size()), 0, kFan, &blocked));
+      light.blocked = light.blocked || blocked;
     }
-    std::vector<std::size_t> order(points_.size());
+  };
+  constexpr std::size_t kTogether = 4;
+  parallel_for(points_.size(), kTogether, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (more[i] == 0) continue;
+      add(*setting.transport, i, points_[i].bare);
+      if (i < floor_points_) add(*setting.over_floor, i, points_[i].over_floor);
+    }
+  });
+  blocked_ = 0;
+  for (const Point& point : points_) blocked_ += point.bare.blocked ? 1 : 0;
+}
+
+// A percentile is decided by the points about it: those get samples that may lie on either side of it, until the
+// percentiles are sharp or the samples are spent.
+void RayProbe::refine(const ProbeSetting& setting) {
+  for (int round = 0; round < kMostRounds; ++round) {
+    std::vector<double> wish(size(), 0);
+    bool sharp = true;
+    for (const Comparison& comparison : comparisons()) {
+      if (count_for(comparison) == 0) continue;
+      const std::vector<Change> all = changes(comparison);
+      if (add_ambiguous(all, worth(all), wish)) sharp = false;
+    }
+    if (sharp) return;
+    std::vector<std::size_t> order(size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return rank[a] > rank[b]; });
-    const auto taken = static_cast<std::size_t>(share * static_cast<double>(order.size()));
-    for (std::size_t k = taken; k < order.size(); ++k) more[order[k]] = 0;
+    std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return wish[a] > wish[b]; });
+    int left = kMostInAll - static_cast<int>(samples() / kFan);
+    std::vector<int> more(size(), 0);
+    bool any = false;
+    for (const std::size_t i : order) {
+      const int has = fans(i);
+      if (wish[i] == 0 || left <= 0) break;
+      more[i] = std::clamp(std::max(has, kFirstFans), 0, std::min(left, kMostFans - has));
+      left -= i < floor_points_ ? 2 * more[i] : more[i];
+      any = any || more[i] > 0;
+    }
+    if (!any) return;
+    trace(setting, more);
   }
-  for (std::size_t i = 0; i < more.size(); ++i)
-    more[i] = std::max(0, more[i] - static_cast<int>(points_[i].batches.size()));
-  return more;
+}
+
+// How much each of the points in doubt wishes for samples; whether there is any.
+bool RayProbe::add_ambiguous(const std::vector<Change>& changes, const Worth& worth, std::vector<double>& wish) const {
+  const double enough = std::max(kUnseen, kSharpPart * worth.de00_p95);
+  // A point that rare bright paths have missed so far shows too small an error of its own: it has at least what
+  // three quarters of the points have.
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < changes.size(); ++i)
+    if (changes[i].standard_error > 0) errors.push_back(changes[i].standard_error * std::sqrt(fans(i)));
+  double usual = 0;
+  if (!errors.empty()) {
+    const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(3 * errors.size() / 4);
+    std::ranges::nth_element(errors, middle);
+    usual = *middle;
+  }
+  bool any = false;
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    const Change& change = changes[i];
+    if (fans(i) == 0 || fans(i) >= kMostFans) continue;
+    const double error = std::max(change.standard_error, usual / std::sqrt(fans(i)));
+    if (error <= 0.5 * enough || std::abs(change.de00 - worth.de00_p95) > kDoubt * error) continue;
+    wish[i] = std::max(wish[i], error / enough);
+    any = true;
+  }
+  return any;
 }
 
 color::Rgb RayProbe::added(std::size_t i, const RayEffects& effects) const {
-  const Point& point = points_[i];
-  return point.sure.shown(effects) + mean_of(point.batches, 0, 1).shown(effects);
+  const Light& light = points_[i].bare;
+  return light.sure.shown(effects) + mean_of(light.fans, 0, 1).shown(effects);
 }
 
-// With n batches the expectation of the squared difference is d^2 + c/n + O(1/n^2), whatever the metric: c holds the
-// variance and the curvature. Halves of the batches have twice the excess, which takes it off.
-double RayProbe::squared_difference(std::size_t i, const RayEffects& with, const RayEffects& without) const {
+// With n fans the expectation of the squared difference is d^2 + c/n + O(1/n^2), whatever the metric: c holds the
+// variance and the curvature. Halves of the fans have twice the excess, which takes it off.
+RayProbe::Change RayProbe::change(std::size_t i, const Comparison& comparison) const {
   const Point& point = points_[i];
-  const auto squared = [&](const LightShares& mean) {
-    const LightShares sum = {point.sure.direct + mean.direct, mean.into_lobes, mean.into_diffuse};
-    const double d = seen_difference(base_[i] + sum.shown(with), base_[i] + sum.shown(without), white_);
+  const Light& first = comparison.floor ? point.over_floor : point.bare;
+  const Light& second = point.bare;
+  if (!first.blocked && !second.blocked) return {};
+  const auto squared = [&](std::size_t begin, std::size_t step) {
+    LightShares a = mean_of(first.fans, begin, step), b = mean_of(second.fans, begin, step);
+    a += first.sure, b += second.sure;
+    const double d =
+        seen_difference(point.base + a.shown(comparison.with), point.base + b.shown(comparison.without), white_);
     return d * d;
   };
-  const double whole = squared(mean_of(point.batches, 0, 1));
-  if (point.batches.size() < 2) return whole;
-  return 2 * whole - 0.5 * (squared(mean_of(point.batches, 0, 2)) + squared(mean_of(point.batches, 1, 2)));
+  const double whole = squared(0, 1);
+  const std::size_t count = first.fans.size();
+  if (count < 2) return {std::sqrt(whole), 0};
+  Estimates values;
+  for (std::size_t k = 0; k < count; ++k) {
+    const color::Rgb other = k < second.fans.size() ? second.fans[k].shown(comparison.without) : color::Rgb{};
+    values.add(first.fans[k].shown(comparison.with) - other);
+  }
+  Covariance covariance = values.covariance();
+  for (double& element : covariance) element /= static_cast<double>(count);
+  const color::Rgb shown =
+      point.base + first.sure.shown(comparison.with) + mean_of(first.fans, 0, 1).shown(comparison.with);
+  return {std::sqrt(std::max(0.0, 2 * whole - 0.5 * (squared(0, 2) + squared(1, 2)))),
+          noise_de00(shown, covariance, white_)};
 }
 
-// The percentile's own error: of n points the k-th in order lies between those that are one standard deviation of the
-// binomial distribution of n and 0.95 away from it.
+std::size_t RayProbe::count_for(const Comparison& comparison) const {
+  return comparison.floor ? floor_points_ : size();
+}
+
+std::vector<RayProbe::Change> RayProbe::changes(const Comparison& comparison) const {
+  std::vector<Change> all(count_for(comparison));
+  parallel_for(all.size(), 128, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) all[i] = change(i, comparison);
+  });
+  return all;
+}
+
+// The percentile's own error: of n points, drawn from N, the k-th in order lies between those that are one standard
+// deviation away from it in the order. The choice of points moves the place with the variance n 0.95 0.05 (1 - n/N),
+// and each point that noise may have put on the wrong side moves it with 1/4.
+Worth RayProbe::worth(std::vector<Change> changes) const {
+  if (changes.empty()) return {};
+  std::ranges::sort(changes, {}, &Change::de00);
+  const std::size_t n = changes.size(), k = place_of_percentile(n);
+  const double worth = changes[k].de00;
+  const auto in_doubt = static_cast<double>(std::ranges::count_if(changes, [&](const Change& change) {
+    return change.standard_error > 0 && std::abs(change.de00 - worth) <= change.standard_error;
+  }));
+  const auto count = static_cast<double>(n);
+  const double chosen = visible_points_ > 0 ? std::max(0.0, 1 - count / visible_points_) : 1;
+  const double places = std::sqrt(0.95 * 0.05 * count * chosen + 0.25 * in_doubt);
+  const auto spread = static_cast<std::size_t>(std::lround(places));
+  return {worth, 0.5 * (changes[std::min(n - 1, k + spread)].de00 - changes[k - std::min(k, spread)].de00)};
+}
+
 Worth RayProbe::worth(const RayEffects& with, const RayEffects& without) const {
-  if (points_.empty()) return {};
-  std::vector<double> de00;
-  for (std::size_t i = 0; i < points_.size(); ++i)
-    de00.push_back(std::sqrt(std::max(0.0, squared_difference(i, with, without))));
-  std::ranges::sort(de00);
-  const std::size_t n = de00.size(), k = place_of_percentile(n);
-  const auto spread = static_cast<std::size_t>(std::lround(std::sqrt(0.95 * 0.05 * static_cast<double>(n))));
-  return {de00[k], 0.5 * (de00[std::min(n - 1, k + spread)] - de00[k - std::min(k, spread)])};
+  return worth(changes({with, without, false}));
+}
+
+std::optional<Worth> RayProbe::floor_worth() const {
+  if (floor_points_ == 0) return std::nullopt;
+  return worth(changes({kAll, kAll, true}));
 }
 
 // As path_picture() shares out its samples.
@@ -176,19 +291,21 @@ RayCost RayProbe::cost(const RayEffects& effects, double tolerance_de00, double 
   std::vector<double> needed;
   std::size_t traced = 0;
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    const Point& point = points_[i];
-    traced += point.certain ? 0 : 1;
-    const double one =
-        noise_de00(base_[i] + added(i, effects), covariance_of(point.batches, effects, {}), white_) / tolerance;
-    needed.push_back(point.certain ? 0 : one * one);
+    const Light& light = points_[i].bare;
+    traced += light.certain ? 0 : 1;
+    Estimates values;
+    for (const LightShares& fan : light.fans) values.add(fan.shown(effects));
+    const double one = noise_de00(points_[i].base + added(i, effects), values.covariance(), white_) / tolerance;
+    needed.push_back(light.certain ? 0 : one * one * kFan / kBatch);
   }
   const double most = std::max(kFewest, std::ceil(1.05 * percentile_95(needed)));
   double batches = 0;
   for (std::size_t i = 0; i < points_.size(); ++i)
-    batches += points_[i].certain ? 0 : std::clamp(std::ceil(needed[i]), kFewest, most);
+    batches += points_[i].bare.certain ? 0 : std::clamp(std::ceil(needed[i]), kFewest, most);
   const double n = static_cast<double>(points_.size());
   cost.traced_share = static_cast<double>(traced) / n;
   cost.samples = kBatch * samples * batches / n;
+  cost.most_samples = kBatch * samples * most;
   cost.ms = samples * visible_points * batches / n * (effects.self || effects.bounce ? passed_ms_ : direct_ms_);
   return cost;
 }

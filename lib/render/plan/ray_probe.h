@@ -2,8 +2,9 @@
 // how long it takes. goniochrome-theory(7), PLAN, Effects of rays.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
-#include <memory>
+#include <optional>
 #include <vector>
 
 #include "mesh/mesh.h"
@@ -24,7 +25,7 @@ struct RayPoint {
 RayPoint ray_point(const rays::RayScene& scene, const mesh::Mesh& mesh, const Gbuffer& gbuffer, int x, int y);
 
 // The change of a picture: the 95th percentile of CIEDE2000 over its points, and the standard error of that figure,
-// which comes from the choice of points and from the noise of each.
+// which comes from the choice of points and from the noise of those near the percentile.
 struct Worth {
   double de00_p95 = 0, standard_error = 0;
 };
@@ -33,45 +34,85 @@ struct Worth {
 struct RayCost {
   double traced_share = 0;  // of the visible points: those that cannot be told to see all of the light around
   double samples = 0;       // the mean over the visible points
+  double most_samples = 0;  // of a point
   double ms = 0;            // on all cores together
+};
+
+// What a probe is traced by. The probe keeps no reference to the transports.
+struct ProbeSetting {
+  const Transport* transport = nullptr;
+  // Of the same mesh over the floor that the picture may get; null: there is none to be priced.
+  const Transport* over_floor = nullptr;
+  double white_luminance = 1;
+  int bounces = 8;
+  std::uint64_t seed = 1;
+  // How many points the picture shows. Where the probe has all of them, their choice adds no error. 0: beyond number.
+  double visible_points = 0;
 };
 
 // Some points, with the light that the mesh takes from them and sends to them. Immutable.
 class RayProbe {
  public:
-  // Traces. The probe keeps no reference to the transport. `base` is what the points show
-  // without the mesh in the way. Bit-identical for any number of threads, but for the time that it measures.
-  static RayProbe traced(const Transport& transport, const std::vector<RayPoint>& points, std::vector<color::Rgb> base,
-                         double white_luminance, int bounces, std::uint64_t seed);
+  // Traces from as many of the points as it takes to know the worth of the effects, within a fixed number of samples.
+  // `points` are in any order that follows the picture; `base` is what they show without the mesh in the way.
+  // Bit-identical for any number of threads, but for the time that it measures.
+  static RayProbe traced(const ProbeSetting& setting, const std::vector<RayPoint>& points,
+                         const std::vector<color::Rgb>& base);
 
-  // Whether no ray of any point met the mesh, so that all effects of rays are worth exactly nothing.
+  // Whether no ray of any point met the mesh, so that all effects of rays but the floor are worth exactly nothing.
   bool free() const { return blocked_ == 0; }
   // The share of the points of which some ray met the mesh.
   double blocked_share() const { return points_.empty() ? 0 : static_cast<double>(blocked_) / points_.size(); }
   std::size_t size() const { return points_.size(); }
+  // Of all points together.
+  std::size_t samples() const;
   // What the effects add to the radiance of a point.
   color::Rgb added(std::size_t point, const RayEffects& effects) const;
   // What changing the effects changes. Both pictures are told from the same rays. Noise makes points differ that are
   // the same, so that its share is taken off: theory(7) says how.
   Worth worth(const RayEffects& with, const RayEffects& without) const;
+  // What the floor changes on the mesh where all other effects are drawn, told from some of the points; nothing where
+  // no floor was probed.
+  std::optional<Worth> floor_worth() const;
   // Of drawing so many visible points until their noise is within the tolerance, in so many samples of each pixel.
   RayCost cost(const RayEffects& effects, double tolerance_de00, double visible_points, int samples) const;
 
  private:
-  struct Point {
+  struct Light {
     LightShares sure;
-    std::vector<LightShares> batches;
+    std::vector<LightShares> fans;  // means of kFan samples each
     bool certain = false, blocked = false;
   };
-  void trace(const Transport& transport, const std::vector<RayPoint>& points, const std::vector<int>& more,
-             std::uint64_t seed);
-  std::vector<int> more(double share, int batches) const;
-  double squared_difference(std::size_t point, const RayEffects& with, const RayEffects& without) const;
+  struct Point {
+    RayPoint at;
+    color::Rgb base;
+    Light bare, over_floor;
+  };
+  // One difference at a point, and the standard error of it.
+  struct Change {
+    double de00 = 0, standard_error = 0;
+  };
+  // Without a floor in either, or `floor`: the floor is in the first alone.
+  struct Comparison {
+    RayEffects with, without;
+    bool floor = false;
+  };
+  static const std::vector<Comparison>& comparisons();
+  void add_points(const std::vector<RayPoint>& points, const std::vector<color::Rgb>& base, std::size_t count);
+  void trace(const ProbeSetting& setting, const std::vector<int>& more);
+  void refine(const ProbeSetting& setting);
+  Change change(std::size_t point, const Comparison& comparison) const;
+  std::vector<Change> changes(const Comparison& comparison) const;
+  std::size_t count_for(const Comparison& comparison) const;
+  int fans(std::size_t i) const {
+    return static_cast<int>(std::max(points_[i].bare.fans.size(), points_[i].over_floor.fans.size()));
+  }
+  Worth worth(std::vector<Change> changes) const;
+  bool add_ambiguous(const std::vector<Change>& changes, const Worth& worth, std::vector<double>& wish) const;
 
   std::vector<Point> points_;
-  std::vector<color::Rgb> base_;
-  double white_ = 1;
-  int bounces_ = 0;
+  std::size_t floor_points_ = 0;  // the first of them
+  double white_ = 1, visible_points_ = 0;
   std::size_t blocked_ = 0;
   double passed_ms_ = 0, direct_ms_ = 0;  // of a batch, with light passed on and without
 };

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "base/clock.h"
 #include "base/parallel.h"
 #include "base/testdata_for_test.h"
 #include "render/camera.h"
@@ -161,10 +162,21 @@ struct Shape {
   mesh::Mesh mesh;
 };
 
-// Points that are spread over the picture tell what holds for all of it: within a factor of 1.3, 0.1 dE00, or the error
-// that they state.
+ProbeSetting setting_of(const PathStage& stage, const Seen& seen) {
+  ProbeSetting setting;
+  setting.transport = &*stage.transport;
+  setting.bounces = kBounces;
+  setting.visible_points = static_cast<double>(seen.points.size());
+  return setting;
+}
+
+// Points that are spread over the picture tell what holds for all of it: within a factor of 1.3, or 0.1 dE00.
+// Of the fifteen figures of a shape one may miss that, where rare bright paths make most of it; it is then still within
+// three of its standard errors, or 0.15.
 void expect_predicted(const Shape& shape) {
-  const int width = 72, height = 54;
+  const int width = 80, height = 60;
+  std::string missed;
+  int count = 0;
   for (const NamedLight& light : five_lights()) {
     PathStage stage(shape.mesh, {silver()});
     if (light.sky) stage.environment = environment_of(32, 16, light.sky);
@@ -172,29 +184,26 @@ void expect_predicted(const Shape& shape) {
     stage.build();
     const Camera camera = Camera::orbit(stage.mesh, 35, 25, 1, 30, static_cast<double>(width) / height);
     const Seen all = seen_of(stage, camera, width, height);
-    std::vector<RayPoint> points;
-    std::vector<color::Rgb> base;
-    const std::size_t step = all.points.size() / 1536 + 1;
-    for (std::size_t i = step / 2; i < all.points.size(); i += step) {
-      points.push_back(all.points[i]);
-      base.push_back(all.base[i]);
-    }
-    const RayProbe probe = RayProbe::traced(*stage.transport, points, base, 1, kBounces, 1);
-    const std::array<double, 3> truth = true_worth(stage, all, 1, 32);
+    const Stopwatch clock;
+    const RayProbe probe = RayProbe::traced(setting_of(stage, all), all.points, all.base);
+    const double ms = 1000 * clock.elapsed_s();
+    const std::array<double, 3> truth = true_worth(stage, all, 1, 64);
     const RayEffects without[] = {{}, kNoSelf, kNoBounce};
     const char* names[] = {"shadow", "self", "bounce"};
     for (std::size_t k = 0; k < 3; ++k) {
       const Worth worth = probe.worth(kAll, without[k]);
       const std::string which = shape.name + ", " + light.name + ", " + names[k];
       ::testing::Test::RecordProperty(
-          which, fmt::format("{:.3f} +- {:.3f}, truth {:.3f}", worth.de00_p95, worth.standard_error, truth[k]));
-      // Three of its own standard errors, for some dozens of figures.
-      const double allowed = std::max(0.1, 3 * worth.standard_error);
-      if (std::abs(worth.de00_p95 - truth[k]) <= allowed) continue;
-      EXPECT_LE(worth.de00_p95, 1.3 * truth[k]) << which << " +- " << worth.standard_error;
-      EXPECT_GE(worth.de00_p95, truth[k] / 1.3) << which << " +- " << worth.standard_error;
+          which, fmt::format("{:.3f} +- {:.3f}, truth {:.3f}; {} points, {} samples, {:.0f} ms", worth.de00_p95,
+                             worth.standard_error, truth[k], probe.size(), probe.samples(), ms));
+      const double off = std::abs(worth.de00_p95 - truth[k]);
+      if (off <= 0.1 || (worth.de00_p95 <= 1.3 * truth[k] && worth.de00_p95 >= truth[k] / 1.3)) continue;
+      missed += which + "; ";
+      ++count;
+      EXPECT_LE(off, std::max(0.15, 3 * worth.standard_error)) << which << " +- " << worth.standard_error;
     }
   }
+  EXPECT_LE(count, 1) << missed;
 }
 
 TEST(RayProbe, PredictsTheWorthOfADent) {
@@ -221,6 +230,56 @@ TEST(RayProbe, PredictsTheWorthOfMeshesRealData) {
   }
 }
 
+// The same of the floor that a picture does not show, by many samples with it and without it.
+double true_floor(const PathStage& stage, const Transport& over_floor, const Seen& seen) {
+  PathOptions options;
+  options.bounces = kBounces;
+  options.correction = true;
+  std::vector<double> de00(seen.points.size());
+  parallel_for(de00.size(), 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto with = path_estimate(over_floor, options, seen.points[i].spot, seen.to_viewer[i], 256, mixed(5, i)),
+                 without =
+                     path_estimate(*stage.transport, options, seen.points[i].spot, seen.to_viewer[i], 256, mixed(6, i));
+      de00[i] = seen_difference(seen.base[i] + with.radiance, seen.base[i] + without.radiance, 1);
+    }
+  });
+  return percentile_95(std::move(de00));
+}
+
+TEST(RayProbe, PredictsTheWorthOfAFloor) {
+  for (const bool dented : {false, true}) {
+    for (const std::size_t light : {std::size_t{1}, std::size_t{3}}) {
+      PathStage stage(dented ? dented_mesh() : sphere_mesh(48), {silver()});
+      stage.environment = environment_of(32, 16, five_lights()[light].sky);
+      stage.build();
+      const Seen all = seen_of(stage, Camera::orbit(stage.mesh, 35, 25, 1, 30, 1), 32, 32);
+      PathScene over;
+      over.scene = &stage.scene, over.environment = &*stage.environment;
+      over.ground.emplace();
+      over.ground->height = -1, over.ground->probe_eye = {0, -0.3, 0};
+      over.rays = std::make_shared<const rays::RayScene>(stage.transport->rays().over({-1}));
+      const auto over_floor = Transport::create(over);
+      ASSERT_TRUE(over_floor.ok());
+      ProbeSetting setting = setting_of(stage, all);
+      setting.over_floor = &*over_floor;
+      const RayProbe probe = RayProbe::traced(setting, all.points, all.base);
+      ASSERT_TRUE(probe.floor_worth().has_value());
+      const double predicted = probe.floor_worth()->de00_p95, truth = true_floor(stage, *over_floor, all);
+      ::testing::Test::RecordProperty(
+          fmt::format("{}, {}", dented ? "dented ball" : "ball", five_lights()[light].name),
+          fmt::format("{:.3f} +- {:.3f}, truth {:.3f}", predicted, probe.floor_worth()->standard_error, truth));
+      EXPECT_GT(truth, 0.3) << "it matters here";
+      EXPECT_TRUE(std::abs(predicted - truth) <= 0.1 || (predicted <= 1.3 * truth && predicted >= truth / 1.3))
+          << predicted << " +- " << probe.floor_worth()->standard_error << ", truth " << truth;
+      // The control: without a floor to be priced nothing is said of it, and a ball is worth nothing.
+      const RayProbe bare = RayProbe::traced(setting_of(stage, all), all.points, all.base);
+      EXPECT_FALSE(bare.floor_worth().has_value());
+      EXPECT_EQ(bare.free(), !dented);
+    }
+  }
+}
+
 // No ray that leaves a ball meets it again: nothing, not little. The control has a dent.
 TEST(RayProbe, ABallIsWorthExactlyNothing) {
   for (const bool dented : {false, true}) {
@@ -230,7 +289,7 @@ TEST(RayProbe, ABallIsWorthExactlyNothing) {
       stage.scene.lights = light.lights;
       stage.build();
       const Seen all = seen_of(stage, Camera::orbit(stage.mesh, 35, 25, 1, 30, 1), 40, 40);
-      const RayProbe probe = RayProbe::traced(*stage.transport, all.points, all.base, 1, kBounces, 1);
+      const RayProbe probe = RayProbe::traced(setting_of(stage, all), all.points, all.base);
       EXPECT_EQ(probe.free(), !dented);
       for (const RayEffects& without : {RayEffects{}, kNoSelf, kNoBounce})
         EXPECT_EQ(probe.worth(kAll, without).de00_p95 == 0, !dented) << light.name;
@@ -247,7 +306,7 @@ TEST(RayProbe, IsTheSameForAnyNumberOfThreads) {
   std::vector<double> worth;
   for (const int count : {1, 2, 5}) {
     set_threads(count);
-    worth.push_back(RayProbe::traced(*stage.transport, all.points, all.base, 1, kBounces, 1).worth(kAll, {}).de00_p95);
+    worth.push_back(RayProbe::traced(setting_of(stage, all), all.points, all.base).worth(kAll, {}).de00_p95);
   }
   set_threads(0);
   EXPECT_EQ(worth[0], worth[1]);

@@ -60,7 +60,10 @@ class Shard:
 
     def chosen(self, stage):
         """The options that --target-de00 chose for a stage."""
-        return self.target[stage] if self.target else []
+        if self.target:
+            return self.target[stage]
+        # Rays would take most of the time of a batch.
+        return ["--effects", "auto,-rays"] if stage == "render" else []
 
     def stats(self, given, folder):
         out = folder / "stats.jsonl"

@@ -1,0 +1,172 @@
+#include "color/reflection_file.h"
+
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "base/file.h"
+#include "base/json.h"
+#include "base/paths.h"
+#include "base/text.h"
+
+namespace goniochrome::color {
+
+namespace {
+
+std::optional<ReflectionOperator> named_operator(std::string_view name) {
+  if (name == "fitted") return fitted_operator();
+  if (name == "plain" || name == "none") return component_wise();
+  if (name == "iso") return iso_rgb_operator();
+  if (name == "iso709") return iso_rec709_operator();
+  if (name == "estimated" || name == "working" || name == "rec2020") return working_space_operator();
+  return std::nullopt;
+}
+
+// The shares at the end of a text, one or three numbers from 0 to 1 after commas, which are cut off.
+std::optional<Rgb> cut_shares(std::string& text) {
+  const auto words = split(text, ',');
+  for (const std::size_t count : {std::size_t{3}, std::size_t{1}}) {
+    if (words.size() <= count) continue;
+    Rgb shares;
+    bool all = true;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto share = parse_number(trimmed(words[words.size() - count + (count == 3 ? i : 0)]));
+      all = all && share && *share >= 0 && *share <= 1;
+      if (all) shares[static_cast<int>(i)] = *share;
+    }
+    if (!all) continue;
+    std::string rest(words[0]);
+    for (std::size_t i = 1; i < words.size() - count; ++i) rest += "," + std::string(words[i]);
+    text = rest;
+    return shares;
+  }
+  return std::nullopt;
+}
+
+bool is_path(const std::string& text) {
+  return text.ends_with(".json") || text.find('/') != std::string::npos || is_there(text);
+}
+
+}  // namespace
+
+Result<ReflectionOperator> chosen_operator(const std::string& text) {
+  std::string name(trimmed(text));
+  const std::optional<Rgb> shares = cut_shares(name);
+  std::optional<ReflectionOperator> op = named_operator(name);
+  if (!op) {
+    if (!is_path(name))
+      return usage_error(
+          "--operator is \"{}\": write fitted, plain, iso, iso709, estimated or a JSON file, and if wanted after a "
+          "comma a share from 0 to 1, or three",
+          text);
+    GONIO_ASSIGN(op, read_reflection_operator(name));
+  }
+  if (!shares) return *op;
+  auto result = with_shares(*op, *shares);
+  if (!result.ok()) return usage_error("--operator is \"{}\": {}", text, result.error().message);
+  return result;
+}
+
+Result<ReflectionOperator> with_shares(const ReflectionOperator& op, const Rgb& shares) {
+  constexpr const char* kChannels[] = {"red", "green", "blue"};
+  for (int c = 0; c < 3; ++c) {
+    const double own = op.k[static_cast<std::size_t>(c)][static_cast<std::size_t>(c)][static_cast<std::size_t>(c)];
+    if (shares[c] > 0 && own > 1 + 1e-9)
+      return input_error(
+          "{} of this operator keeps {:.3f} of itself, which is more than 1: it has no share of the other channels "
+          "that "
+          "could be set to {}",
+          kChannels[c], own, shares[c]);
+  }
+  return with_transfer(op, shares);
+}
+
+std::string reflection_json(const ReflectionOperator& op, const Primaries* primaries) {
+  Json json{{"k", op.k}};
+  if (primaries) json["primaries"] = primaries->rgb, json["white"] = primaries->white;
+  return json.dump() + "\n";
+}
+
+namespace {
+
+bool is_list(const Json& list, std::size_t count) {
+  if (!list.is_array() || list.size() != count) return false;
+  for (const Json& value : list)
+    if (!value.is_number()) return false;
+  return true;
+}
+
+bool is_table(const Json& k) {
+  if (!k.is_array() || k.size() != 3) return false;
+  for (const Json& rows : k) {
+    if (!rows.is_array() || rows.size() != 3) return false;
+    for (const Json& row : rows)
+      if (!is_list(row, 3)) return false;
+  }
+  return true;
+}
+
+// The primaries that a file names, if it names any.
+Result<std::optional<Primaries>> source_primaries(const Json& json, const std::string& path) {
+  if (!json.contains("primaries")) {
+    if (json.contains("white")) return input_error("{}: \"white\" says nothing without \"primaries\": add them", path);
+    return std::optional<Primaries>();
+  }
+  const Json& named = json["primaries"];
+  Primaries primaries = kRec2020;
+  if (named == "rec709") {
+    primaries = kRec709;
+  } else if (named != "rec2020") {
+    const bool pairs =
+        named.is_array() && named.size() == 3 && is_list(named[0], 2) && is_list(named[1], 2) && is_list(named[2], 2);
+    if (!pairs)
+      return input_error(
+          "{}: \"primaries\" are {}: give \"rec709\", \"rec2020\" or x and y of red, green and blue, such as "
+          "[[0.64,0.33],[0.3,0.6],[0.15,0.06]]",
+          path, named.dump());
+    named.get_to(primaries.rgb);
+  }
+  if (json.contains("white")) {
+    if (!is_list(json["white"], 2))
+      return input_error("{}: \"white\" is {}: give x and y, such as [0.3127,0.329]", path, json["white"].dump());
+    json["white"].get_to(primaries.white);
+  }
+  return std::optional(primaries);
+}
+
+Result<void> check_coherent(const ReflectionOperator& op, const std::string& path) {
+  constexpr double kTolerance = 1e-6;
+  for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t d = 0; d < 3; ++d) {
+      const auto& row = op.k[c][d];
+      const double sum = row[0] + row[1] + row[2];
+      const bool symmetric =
+          std::abs(row[0] - op.k[c][0][d]) + std::abs(row[1] - op.k[c][1][d]) + std::abs(row[2] - op.k[c][2][d]) <=
+          kTolerance;
+      if (!symmetric || !(std::abs(sum - (c == d)) <= kTolerance))
+        return input_error("{}: k[{}][{}] is {}: each table is symmetric, and the row sums to {}, here {}", path, c, d,
+                           symmetric ? "not coherent" : "not symmetric", c == d ? 1 : 0, sum);
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<ReflectionOperator> read_reflection_operator(const std::string& path) {
+  GONIO_ASSIGN(const std::string text, file_content(path));
+  const Json json = Json::parse(text, nullptr, false);
+  if (!json.is_object() || !json.contains("k") || !is_table(json["k"]))
+    return input_error("{}: a reflection operator is a JSON object with \"k\", three tables of 3 x 3 numbers", path);
+  ReflectionOperator op;
+  json["k"].get_to(op.k);
+  GONIO_TRY(check_coherent(op, path));
+  op = nearest_coherent(op);
+  GONIO_ASSIGN(const std::optional<Primaries> primaries, source_primaries(json, path));
+  if (!primaries) return op;
+  auto result = in_working_space(op, *primaries);
+  if (!result.ok()) return input_error("{}: {}", path, result.error().message);
+  return result;
+}
+
+}  // namespace goniochrome::color

@@ -1,0 +1,47 @@
+#include "render/path/visible_white.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "base/parallel.h"
+#include "render/path/path_tracer.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+constexpr std::size_t kPoints = 256;
+constexpr int kBatches = 4;
+
+}  // namespace
+
+double visible_white(const Transport& transport, const VisibleSurface& surface, int bounces, std::uint64_t seed) {
+  const Gbuffer& g = surface.gbuffer;
+  const rays::RayScene& scene = transport.rays();
+  std::vector<std::size_t> lit;
+  for (std::size_t i = 0; i < surface.hits.size(); ++i) {
+    if (!surface.hits[i].any()) continue;
+    if (transport.emitters().radiance(scene.part(surface.hits[i].triangle)) == color::Rgb{}) lit.push_back(i);
+  }
+  if (lit.empty()) return 0;
+  PathOptions options;
+  options.bounces = bounces;
+  options.white = true;
+  const std::size_t count = std::min(kPoints, lit.size());
+  std::vector<double> luminance(count);
+  parallel_for(count, 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::size_t i = lit[(2 * k + 1) * lit.size() / (2 * count)];
+      const int x = static_cast<int>(i % static_cast<std::size_t>(g.width)),
+                y = static_cast<int>(i / static_cast<std::size_t>(g.width));
+      const color::Rgb white =
+          path_estimate(transport, options, spot_at(scene, surface, x, y), g.to_viewer(x, y), kBatches, mixed(seed, i))
+              .radiance;
+      luminance[k] = color::xyz_d65_from_rgb(white).Y;
+    }
+  });
+  std::ranges::nth_element(luminance, luminance.begin() + static_cast<std::ptrdiff_t>(count / 2));
+  return luminance[count / 2];
+}
+
+}  // namespace goniochrome::render

@@ -1,0 +1,48 @@
+#include "render/plan/kept.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "render/exact.h"
+#include "render/integral/integral_engine.h"
+#include "render/internal/seen.h"
+
+namespace goniochrome::render {
+
+OpenTruth::OpenTruth(const Scene& scene, const Effects& all, const std::vector<VisiblePoint>& points,
+                     const envmap::BlockTree& texels, double white)
+    : white_(white > 0 ? white : 1) {
+  constexpr std::size_t kExact = 128;
+  step_ = std::max<std::size_t>(1, points.size() / kExact);
+  std::vector<VisiblePoint> some;
+  for (std::size_t i = 0; i < points.size(); i += step_) some.push_back(points[i]);
+  exact_ = exact_radiance(some, scene, all, Surroundings(texels, spread_for(all.tolerance_de00)));
+}
+
+double OpenTruth::error(const std::vector<color::Rgb>& planned) const {
+  std::vector<double> de00;
+  for (std::size_t i = 0; i < exact_.size(); ++i)
+    de00.push_back(seen_difference(planned[i * step_], exact_[i], white_));
+  return percentile_95(std::move(de00));
+}
+
+std::string reason_not_kept(const Plan& plan, const RayChoice& rays, const PlanRequest& request, bool has_maps) {
+  if (!plan.whole_de00_p95 || *plan.whole_de00_p95 <= request.tolerance_de00) return "";
+  const std::string start = fmt::format(
+      "the picture is predicted to miss the truth by dE00 {:.2g} (p95), --tolerance is {:g}: ", *plan.whole_de00_p95,
+      request.tolerance_de00);
+  const double open = plan.open_de00_p95.value_or(0), noise = plan.rays_noise_de00, left = rays.left_out_de00_p95;
+  if (open >= noise && open >= left && has_maps)
+    return start + fmt::format(
+                       "the prefiltered maps miss the open light by {:.2g}; --engine integral sums it within the "
+                       "tolerance, and --engine path draws everything within it",
+                       open);
+  if (noise >= left)
+    return start +
+           fmt::format("the noise of {} samples a point is {:.2g}; --effects auto,+rays draws as many as it takes",
+                       rays.most_samples, noise);
+  return start + fmt::format("the effects of rays that are left out are worth {:.2g}", left);
+}
+
+}  // namespace goniochrome::render
