@@ -18,7 +18,16 @@
 #include <optional>
 #include <utility>
 
+// GCC tells by a macro that the address sanitizer is there, and Clang by a question.
 #if defined(__SANITIZE_ADDRESS__)
+#define GONIO_SANITIZED 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define GONIO_SANITIZED 1
+#endif
+#endif
+#if defined(GONIO_SANITIZED)
+#include <sanitizer/common_interface_defs.h>
 #include <tbb/global_control.h>
 #endif
 
@@ -34,7 +43,7 @@ constexpr int kWaitingFactor = 20;
 
 // The bytes of addresses that this process has mapped, where the system tells them. A child asks for itself: other
 // threads of its parent go on mapping until the very fork, and the allocator takes 64 MB of addresses for each of them.
-[[maybe_unused]] std::optional<std::size_t> mapped_bytes() {
+std::optional<std::size_t> mapped_bytes() {
   const int file = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
   if (file < 0) return std::nullopt;
   char pages[32] = {};
@@ -73,7 +82,7 @@ void confine(const ChildLimits& limits, pid_t parent) {
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU, SIGALRM}) signal(number, SIG_DFL);
   quarter = std::max<std::size_t>(limits.memory_bytes / 4, 1);
   for (const int number : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTRAP})
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(GONIO_SANITIZED)
     signal(number, SIG_DFL);
 #else
     signal(number, explain_crash);
@@ -84,9 +93,12 @@ void confine(const ChildLimits& limits, pid_t parent) {
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, static_cast<rlim_t>(limits.processor_s), 2);
   alarm(static_cast<unsigned>(kWaitingFactor * limits.processor_s));
-#if !defined(__SANITIZE_ADDRESS__)
-  // A sanitizer takes terabytes of addresses for itself, and says on standard error what it found.
+  // A sanitizer has taken its terabytes of addresses by now, so that they are among those that are mapped.
   if (const auto mapped = mapped_bytes()) limit(RLIMIT_AS, *mapped + limits.memory_bytes);
+#if defined(GONIO_SANITIZED)
+  // It says on standard error what it found. A fuzzer must not take that for a finding in its own process.
+  __sanitizer_set_death_callback([] {});
+#else
   if (const int nowhere = open("/dev/null", O_WRONLY); nowhere >= 0)
     dup2(nowhere, STDOUT_FILENO), dup2(nowhere, STDERR_FILENO);
 #endif
@@ -121,7 +133,7 @@ void confine(const ChildLimits& limits, pid_t parent) {
 // library frees the locks of its own allocator in the child. The allocator of a sanitizer does not (GCC 12), and where
 // another thread held its lock, the child waited for ever.
 void end_threads() {
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(GONIO_SANITIZED)
   tbb::task_scheduler_handle handle{tbb::attach{}};
   tbb::finalize(handle, std::nothrow);
 #endif
