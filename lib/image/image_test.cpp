@@ -176,6 +176,8 @@ TEST_F(ImageFile, PngReturnsWithinHalfAStepWithItsText) {
   ASSERT_TRUE(write_png(path("x.png"), image, {{"Software", std::string("goniochrome")}}).ok());
   const auto read = read_image(path("x.png"));
   ASSERT_TRUE(read.ok()) << read.error().message;
+  // The first picture is read by a child process, and this one holds the libraries from the second one on.
+  EXPECT_TRUE(read_image(path("x.png")).ok());
   EXPECT_TRUE(maps_contain("goniochrome-oiio"));
   EXPECT_EQ(std::get<std::string>(read->attributes.at("oiio:ColorSpace")), "sRGB");
   EXPECT_EQ(read->image.data[0], 0);
