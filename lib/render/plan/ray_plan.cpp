@@ -64,8 +64,16 @@ State forced_state(const RayWishes& wishes) {
   return state;
 }
 
-// Leaves out, cheapest to miss first, what all together cannot be seen.
-void drop_unseen(const RayProbe& probe, double tolerance, State& state) {
+double aim_of(const RayWishes& wishes, const State& state) {
+  const RayNoise noise = ray_noise(wishes.tolerance_de00, wishes.open_de00_p95);
+  return state.named || !wishes.automatic ? noise.asked_de00 : noise.unasked_de00;
+}
+
+// Leaves out, cheapest to miss first, what all together cannot be seen. What saves no time is drawn.
+void drop_unseen(const RayProbe& probe, const RayWishes& wishes, State& state) {
+  const auto ms = [&](const RayEffects& effects) {
+    return probe.cost(effects, aim_of(wishes, state), wishes.visible_points, wishes.samples).ms;
+  };
   const RayEffects wanted = state.on;
   std::array<double, kEffects> worth{};
   for (std::size_t i = 0; i < kEffects; ++i) worth[i] = probe.worth(wanted, without(wanted, i)).de00_p95;
@@ -76,13 +84,9 @@ void drop_unseen(const RayProbe& probe, double tolerance, State& state) {
     if (!(state.on.*kFlags[i]) || state.forced[i]) continue;
     const RayEffects less = without(state.on, i);
     const bool keeps_forced = !((state.forced[1] && state.on.self) || (state.forced[2] && state.on.bounce)) || i != 0;
-    if (keeps_forced && probe.worth(wanted, less).de00_p95 <= kSafety * tolerance) state.on = less;
+    const bool is_unseen = probe.worth(wanted, less).de00_p95 <= kSafety * wishes.tolerance_de00;
+    if (keeps_forced && is_unseen && ms(less) < ms(state.on)) state.on = less;
   }
-}
-
-double aim_of(const RayWishes& wishes, const State& state) {
-  const RayNoise noise = ray_noise(wishes.tolerance_de00, wishes.open_de00_p95);
-  return state.named || !wishes.automatic ? noise.asked_de00 : noise.unasked_de00;
 }
 
 // What others need goes last.
@@ -148,7 +152,7 @@ RayChoice ray_choice(const RayProbe& probe, const RayWishes& wishes) {
   if (probe.free()) return no_rays("no ray meets the mesh");
   State state = forced_state(wishes);
   const RayEffects wanted = state.on;
-  if (wishes.automatic) drop_unseen(probe, wishes.tolerance_de00, state);
+  if (wishes.automatic) drop_unseen(probe, wishes, state);
   if (wishes.budget_ms > 0) keep_affordable(probe, wishes, state);
 
   RayChoice choice;
