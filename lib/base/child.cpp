@@ -141,8 +141,8 @@ void end_threads() {
 
 Error needs_memory(const std::string& name, const ChildLimits& limits) {
   return input_error(
-      "{}: cannot be read within the memory there is, or within the {} MB that a file of its size is allowed: "
-      "is it damaged?",
+      "{}: cannot be read within the memory there is, or within the {} MB that a file of its size is allowed: is it "
+      "damaged?",
       name, limits.memory_bytes >> 20);
 }
 

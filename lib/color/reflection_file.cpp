@@ -49,6 +49,18 @@ bool is_path(const std::string& text) {
 
 }  // namespace
 
+std::string operator_sentences() {
+  return "fitted is a bilinear product that is fitted to published spectra, and of all products here it has the "
+         "least error on spectra that were held out: goniochrome-theory(7), COLORED LIGHT, has the table. plain "
+         "multiplies each channel by itself. iso is the published table for camera sensors, applied to Rec.2020 "
+         "values; it was the default before. iso709 is the same table in the primaries of Rec.709, for which it was "
+         "made. estimated comes from color-matching functions. none is another name for plain, and working and "
+         "rec2020 are other names for estimated. A JSON file holds a table, and may name the primaries that it is "
+         "for; goniochrome-paint(5) describes it. A number from 0 to 1 after a comma says how much each channel "
+         "takes from the others, and three numbers say it for red, green and blue; a channel that keeps more than 1 "
+         "of itself takes no such number but 0.";
+}
+
 Result<ReflectionOperator> chosen_operator(const std::string& text) {
   std::string name(trimmed(text));
   const std::optional<Rgb> shares = cut_shares(name);
@@ -74,8 +86,7 @@ Result<ReflectionOperator> with_shares(const ReflectionOperator& op, const Rgb& 
     if (shares[c] > 0 && own > 1 + 1e-9)
       return input_error(
           "{} of this operator keeps {:.3f} of itself, which is more than 1: it has no share of the other channels "
-          "that "
-          "could be set to {}",
+          "that could be set to {}",
           kChannels[c], own, shares[c]);
   }
   return with_transfer(op, shares);

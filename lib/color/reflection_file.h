@@ -16,6 +16,9 @@ constexpr const char* kDefaultOperator = "fitted";
 // numbers say it for red, green and blue. Error: of usage, what the text may be; or of the file.
 Result<ReflectionOperator> chosen_operator(const std::string& text);
 
+// What each of these is, in sentences for those who choose among them.
+std::string operator_sentences();
+
 // with_transfer() for a user: a channel that keeps more than 1 of itself has no share that could be scaled, so it is
 // refused, unless its share is to be 0.
 Result<ReflectionOperator> with_shares(const ReflectionOperator& op, const Rgb& shares);

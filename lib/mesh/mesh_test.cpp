@@ -288,8 +288,11 @@ TEST_F(MeshFiles, ReadsAVehicleRealData) {
 TEST_F(MeshFiles, HardCase_LibraryCrashADamagedFileIsAnError) {
   const std::string ply =
       file("a.ply", "ply\nformat ascii 1.0\nproperty float x\nelement vertex 3\nend_header\n0 0 0\n1 0 0\n0 1 0\n");
-  // It crashes, or ends with a status where sanitizers watch it.
-  EXPECT_THAT(read_mesh(ply).error().message, HasSubstr("a.ply: the library that reads it "));
+#if defined(__SANITIZE_ADDRESS__)  // which ends it with a status of its own
+  EXPECT_THAT(read_mesh(ply).error().message, HasSubstr("a.ply: the library that reads it ended with status"));
+#else
+  EXPECT_THAT(read_mesh(ply).error().message, HasSubstr("a.ply: the library that reads it crashed on it"));
+#endif
   for (const auto& [name, content] : std::map<std::string, std::string>{
            {"b.off", "OFF\n100000000 100000000 0\n0 0 0\n1 0 0\n0 1 0\n"},
            {"c.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2000000000 0 1 2\n"},

@@ -28,8 +28,6 @@ constexpr double kSafety = 0.8;
 
 // Visible points that a plan is made from.
 constexpr std::size_t kProbe = 512;
-// The most at which rays are traced. There are more of them, because most effects of rays show in few places.
-constexpr std::size_t kRayProbe = 4096;
 
 // Shades the probe with any choice of effects.
 class Prober {
@@ -331,47 +329,6 @@ std::string reason_of(const std::vector<Priced>& all, const Priced& chosen, bool
   return fmt::format("{}: predicted {}", asked ? "as asked" : count > 1 ? "the faster" : "the only one here", planned);
 }
 
-// The effects of rays, as far as there are rays. `colors` shades points with all other effects.
-RayChoice planned_rays(const Scene& scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers,
-                       const PlanRequest& request, const Words& words, const RayContext& rays, const Workload& work,
-                       double open_de00,
-                       const std::function<std::vector<color::Rgb>(const std::vector<VisiblePoint>&)>& colors) {
-  if (rays.transport == nullptr) {
-    RayChoice choice;
-    if (rays.absent.empty()) return choice;
-    choice = no_rays(rays.absent, rays.refused);
-    add_floor(nullptr, rays.absent, choice);
-    return choice;
-  }
-  std::vector<VisiblePoint> points;
-  std::vector<RayPoint> ray_points;
-  for (const auto& [gbuffer, x, y] : probe_pixels(gbuffers, kRayProbe)) {
-    points.push_back(gbuffer->point(x, y));
-    ray_points.push_back(ray_point(rays.transport->rays(), *scene.mesh, *gbuffer, x, y));
-  }
-  ProbeSetting setting;
-  setting.transport = rays.transport, setting.over_floor = rays.over_floor;
-  setting.white_luminance = request.white_luminance;
-  setting.bounces = rays.bounces, setting.seed = rays.seed;
-  setting.visible_points = static_cast<double>(gbuffers.size()) * work.points / request.samples;
-  const RayProbe probe = RayProbe::traced(setting, ray_points, colors(points));
-  RayWishes wishes;
-  wishes.on = words.start != Start::kNone;
-  wishes.automatic = words.start == Start::kAuto;
-  wishes.forced = [&](const std::string& name) {
-    std::optional<bool> forced;
-    for (const auto& [word, on] : words.forced)
-      if (word == name || word == "rays") forced = on;
-    return forced;
-  };
-  wishes.open_de00_p95 = open_de00;
-  wishes.tolerance_de00 = request.tolerance_de00, wishes.budget_ms = request.budget_ms;
-  wishes.visible_points = work.points / request.samples, wishes.samples = request.samples;
-  RayChoice choice = ray_choice(probe, wishes);
-  add_floor(&probe, rays.no_floor, choice);
-  return choice;
-}
-
 // The plan for an engine that draws everything and does without prefiltered maps: there is nothing to choose, and
 // nothing to try it out by.
 Plan plan_of_everything(const Scene& scene, const Effects& all, const std::vector<VisiblePoint>& probe,
@@ -537,7 +494,7 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   const double open_de00 = open_truth ? open_truth->error(full) : 0;
   const Stopwatch ray_clock;
   const RayChoice by_rays =
-      planned_rays(scene, gbuffers, request, words, rays, work, open_de00, [&](const auto& points) {
+      planned_rays(scene, gbuffers, request, words, rays, work.points, open_de00, [&](const auto& points) {
         const Compact probed = compacted(scene, points);
         return Prober(probed.scene, all, switches, probed.points, points, request.white_luminance, probers.all,
                       probers.component_wise(all))

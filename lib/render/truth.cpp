@@ -168,7 +168,10 @@ class Judge {
   double occlusion(std::size_t i) const {
     if (request_.whole) return 0;
     const LightShares mean = truth_[i].mean();
-    return changed(i, mean.shown({drawn_.shadow, drawn_.self, false}) - mean.direct - mean.into_lobes);
+    color::Rgb left_out;
+    if (!drawn_.shadow) left_out += mean.direct;
+    if (!drawn_.shadow || !drawn_.self) left_out += mean.into_lobes;
+    return changed(i, -1.0 * left_out);
   }
   double bounce(std::size_t i) const {
     return request_.whole || (drawn_.shadow && drawn_.bounce) ? 0 : changed(i, -1.0 * truth_[i].mean().into_diffuse);

@@ -186,8 +186,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   session.explain(
       fmt::format("{} paints at {} angles; {} starts for each of {} to {} "
                   "lobes, method {}\n"
-                  "left out: gloss and the mirror, which no aspecular reading "
-                  "sees; directions out of plane\n",
+                  "left out: gloss and the mirror, which no aspecular reading sees; directions out of plane\n",
                   targets.size(), options.angles, options.starts, range.first, range.last, options.method));
 
   const fit::BasisSearch search = fit::search_basis(targets, search_options);

@@ -50,11 +50,9 @@ void add_options(cli::ToolSpec& spec, Options& o) {
       .one_of({"better", "isolines", "aspecular"})
       .more(
           "isolines see the same flakes at the same angle, which follows interference paints out of the plane. "
-          "aspecular "
-          "takes the color from the aspecular angle alone, which is closer on near-matt paints. better leaves out each "
-          "reading in turn, predicts it from the others by both, and takes the model that errs less; the report and "
-          "the "
-          "file tell both errors.");
+          "aspecular takes the color from the aspecular angle alone, which is closer on near-matt paints. better "
+          "leaves out each reading in turn, predicts it from the others by both, and takes the model that errs "
+          "less; the report and the file tell both errors.");
   cli::add_common_options(spec, o.common, {.explain = true});
 }
 

@@ -26,8 +26,7 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.flag("keep-going,k", &o.keep_going, "leave out what is wrong, and write the rest")
       .more(
           "Of a long table a row is left out, of other formats a paint. Each is named in a warning, and the exit "
-          "status "
-          "is 1.");
+          "status is 1.");
   spec.heading = "readings";
   spec.option("geometry", "LIST", "15,45,110", &o.geometry, "geometries to write, such as 15 or 45as25az90")
       .more("Several are separated by commas.");
@@ -73,8 +72,7 @@ void add_report(cli::ToolSpec& spec) {
       {"measured[].held_share", "share of X, Y or Z that comes from beyond the ends of the spectrum"},
       {"measured[].geometries[]",
        "geometry; gap_deg, the widest step that was interpolated; outside_deg, the distance to the nearest sample "
-       "where "
-       "the geometry lies beyond them; negative; below_noise"},
+       "where the geometry lies beyond them; negative; below_noise"},
       {"warnings[]", "what was left out, assumed or lost, one line each"}};
   spec.see_also = {"fit-paint(1)", "paint-edit(1)", "goniochrome-paint(5)"};
 }
@@ -110,10 +108,9 @@ cli::ToolSpec tool_spec(Options& o) {
       "and at 25, 45 and 75 degrees, which are the two sets of the industry, or at those of --geometry. What the "
       "output cannot hold is named in a warning.",
       "Paint XML keeps the spectra of measured BRDFs and of CxF, one for each geometry. With --illuminant or "
-      "--observer, "
-      "a paint that has spectra gets the readings that these make in that light, and its face and flop are fitted "
-      "again; its lobes and its color map, which are those of the light before, are left out. A paint without spectra "
-      "stays as it is, and a warning says so.",
+      "--observer, a paint that has spectra gets the readings that these make in that light, and its face and flop "
+      "are fitted again; its lobes and its color map, which are those of the light before, are left out. A paint "
+      "without spectra stays as it is, and a warning says so.",
       "A wrong value stops the conversion, and the output file stays as it was."};
   spec.inputs = {"INPUT", "paint XML, tables, CxF, CGATS or measured BRDFs; - or none is standard input", &o.inputs};
   add_options(spec, o);

@@ -25,12 +25,11 @@ cli::ToolSpec tool_spec(Options& o) {
       .in("degrees from the normal");
   spec.flag("color-map", &o.color_map, "draw the color map of each paint instead")
       .more(
-          "The page has the colors in the plane of incidence over the angles of light and viewer, and the hemisphere "
-          "of "
-          "viewers as squares of colors. Directions that no reading covers are hatched: those within 10 degrees of "
-          "specular or more than 75 degrees from the normal, those beyond the critical angle of the coat, where "
-          "isolines do not reach, and those more than 10 degrees from the nearest reading. Paints without a color map "
-          "are left out, and a warning says so.");
+          "The page has the colors in the plane of incidence over the angles of light and viewer, and the "
+          "hemisphere of viewers as squares of colors. Directions that no reading covers are hatched: those within "
+          "10 degrees of specular or more than 75 degrees from the normal, those beyond the critical angle of the "
+          "coat, where isolines do not reach, and those more than 10 degrees from the nearest reading. Paints "
+          "without a color map are left out, and a warning says so.");
   spec.heading = "output";
   spec.option("output,o", "FILE", "sheet.svg", &o.output, "where the page or sheet goes; - is standard output")
       .more("It is a PNG if the name ends in .png, else an SVG.");

@@ -20,24 +20,12 @@ cli::ToolSpec tool_spec(Options& o) {
   spec.option("to", "LIGHT", "0.2,0.4,1", &o.to, "illuminant to change to: R,G,B or D65, D50, A");
   spec.heading = "product of colors";
   spec.option("operator", "OP[,SHARES]", "iso709", &o.op, "how colored light and surfaces multiply")
-      .more(
-          "fitted is a bilinear product that is fitted to published spectra, and of all products here it has the least "
-          "error "
-          "on spectra that were held out: goniochrome-theory(7), COLORED LIGHT, has the table. plain multiplies each "
-          "channel by itself. iso is the published table for camera sensors, applied to Rec.2020 values; it was the "
-          "default before. iso709 is the same table in the primaries of Rec.709, for which it was made. estimated "
-          "comes "
-          "from color-matching functions. none is another name for plain, and working and rec2020 are other names for "
-          "estimated. A JSON file holds a table, and may name the primaries that it is for; goniochrome-paint(5) "
-          "describes it. A number from 0 to 1 after a comma says how much each channel takes from the others, and "
-          "three numbers say it for red, green and blue; a channel that keeps more than 1 of itself takes no such "
-          "number but 0.");
+      .more(color::operator_sentences());
   spec.option("transfer", "K,K,K", "0.1,0.1,0.1", &o.transfer, "what red, green and blue receive from other channels")
       .from(0, 1)
       .more(
           "The three numbers replace what the operator says, as those after a comma of --operator do. 0,0,0 is the "
-          "plain "
-          "product.");
+          "plain product.");
   spec.option("estimate", "FILE", "functions.csv", &o.estimate, "estimate an operator and read no image")
       .more(
           "The operator is estimated from the color-matching functions of a color space, and written as JSON for "
@@ -46,9 +34,8 @@ cli::ToolSpec tool_spec(Options& o) {
   spec.option("primaries", "NAME|X,Y,...", "rec709", &o.primaries, "color space of the table of --estimate")
       .more(
           "rec709, rec2020, or x and y of red, green and blue, and if wanted of white, which is D65 otherwise. The "
-          "file "
-          "then holds them, and whoever reads it takes the product in that space. Without this option the table is for "
-          "linear Rec.2020.");
+          "file then holds them, and whoever reads it takes the product in that space. Without this option the "
+          "table is for linear Rec.2020.");
   spec.heading = "output";
   spec.option("negative", "WHAT", "zero", &o.negative, "what becomes of negative channels")
       .one_of({"keep", "zero"})

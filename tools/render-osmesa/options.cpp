@@ -77,18 +77,7 @@ void add_light(cli::ToolSpec& spec, Options& o) {
       .from(0)
       .more("0 takes a third of the longest side of the mesh's box, which is 1.5 m for a car of 4.5 m.");
   spec.option("operator", "OP[,SHARES]", "iso,0.1", &o.reflection, "how colored light and paint multiply")
-      .more(
-          "fitted is a bilinear product that is fitted to published spectra, and of all products here it has the least "
-          "error "
-          "on spectra that were held out: goniochrome-theory(7), COLORED LIGHT, has the table. plain multiplies each "
-          "channel by itself. iso is the published table for camera sensors, applied to Rec.2020 values; it was the "
-          "default before. iso709 is the same table in the primaries of Rec.709, for which it was made. estimated "
-          "comes "
-          "from color-matching functions. none is another name for plain, and working and rec2020 are other names for "
-          "estimated. A JSON file holds a table, and may name the primaries that it is for; goniochrome-paint(5) "
-          "describes it. A number from 0 to 1 after a comma says how much each channel takes from the others, and "
-          "three numbers say it for red, green and blue; a channel that keeps more than 1 of itself takes no such "
-          "number but 0.");
+      .more(color::operator_sentences());
   spec.option("critical-angle", "NAME", "clip", &o.critical_angle, "what color maps do beyond the critical angle")
       .one_of({"clip", "slide", "slide-map", "index"})
       .more(
@@ -143,17 +132,16 @@ void add_effects(cli::ToolSpec& spec, Options& o) {
   o.common.tolerance = 0.5;
   cli::add_tolerance(spec, o.common, "DE00", "largest difference from the truth, all errors together")
       .more(
-          "Before drawing, each effect that the scene calls for is priced: what it changes in the picture (the 95th "
-          "percentile of the difference over visible pixels), and what it costs. What changes less than the "
-          "tolerance, all together, is left out. --explain prints the table, which is also in the report and in the "
-          "header of an EXR. The effects of rays are drawn with samples until the standard deviation of their noise "
-          "is within half of the tolerance at 95 of 100 points, which does not keep each point within it. Where the "
-          "prefiltered maps err by more than the tolerance, half of what they err by is enough, unless --effects "
-          "names effects of rays with a plus. "
-          "Before drawing, the plan also compares what the prefiltered maps show at some points with the exact sum, "
-          "adds what is left out and the noise, and says in a sentence if the whole is not going to be within the "
-          "tolerance, and what would keep it. The engine integral makes its sums as coarse as this tolerance allows "
-          "at 95 of 100 points.");
+          "Before drawing, each effect that the scene calls for is priced: what it changes in the picture (the "
+          "95th percentile of the difference over visible pixels), and what it costs. What changes less than the "
+          "tolerance, all together, is left out. --explain prints the table, which is also in the report and in "
+          "the header of an EXR. The effects of rays are drawn with samples until the standard deviation of their "
+          "noise is within half of the tolerance at 95 of 100 points, which does not keep each point within it. "
+          "Where the prefiltered maps err by more than the tolerance, half of what they err by is enough, unless "
+          "--effects names effects of rays with a plus. Before drawing, the plan also compares what the "
+          "prefiltered maps show at some points with the exact sum, adds what is left out and the noise, and says "
+          "in a sentence if the whole is not going to be within the tolerance, and what would keep it. The engine "
+          "integral makes its sums as coarse as this tolerance allows at 95 of 100 points.");
   spec.option("budget", "MS", "20", &o.budget_ms, "longest time for shading a frame; 0 is no limit")
       .from(0, 1e6)
       .more("Where the time is not enough, the effects that are worth least for their time are left out as well.");
@@ -164,17 +152,17 @@ void add_engines(cli::ToolSpec& spec, Options& o) {
   spec.option("engine", "NAME", "cpu", &o.engine, "what shades the picture")
       .one_of(render::engine_choices())
       .more(engine_sentences() +
-            " The pictures of cpu and gl are the same, and auto takes the one that is predicted to be faster. "
+            "The pictures of cpu and gl are the same, and auto takes the one that is predicted to be faster. "
             "Prefiltered maps know one direction at each point. They cannot tell light that changes within that "
-            "part of a broad lobe that is above the horizon, and differ from the truth by some 0.5 to 1 dE00 in the "
-            "mean, and by more at single points. integral sums blocks of the image that are as coarse as "
-            "--tolerance allows, and draws every effect. At the default tolerance it takes several hundred times as "
-            "long as the others, and a brushed paint takes another 50 times as long; --explain predicts the time. "
-            "These three leave out that the mesh is in the way of light. path also draws the mesh mirrored in "
-            "itself and parts that shine. It takes the light from the image that the environment was made from, and "
-            "needs neither prefiltered maps nor OpenGL. It draws samples until the noise of the picture, estimated "
-            "from them, is within --tolerance: that is the 95th percentile, over the visible pixels, of the "
-            "CIEDE2000 difference of one standard deviation.");
+            "part of a broad lobe that is above the horizon, and differ from the truth by some 0.5 to 1 dE00 in "
+            "the mean, and by more at single points. integral sums blocks of the image that are as coarse as "
+            "--tolerance allows, and draws every effect. At the default tolerance it takes several hundred times "
+            "as long as the others, and a brushed paint takes another 50 times as long; --explain predicts the "
+            "time. These three leave out that the mesh is in the way of light. path also draws the mesh mirrored "
+            "in itself and parts that shine. It takes the light from the image that the environment was made from, "
+            "and needs neither prefiltered maps nor OpenGL. It draws samples until the noise of the picture, "
+            "estimated from them, is within --tolerance: that is the 95th percentile, over the visible pixels, of "
+            "the CIEDE2000 difference of one standard deviation.");
   spec.option("bounces", "N", "8", &o.bounces, "surfaces that may pass light on to what is seen")
       .from(0, 4096)
       .more(
@@ -303,9 +291,8 @@ void add_report(cli::ToolSpec& spec) {
        "95th percentile of what each cause alone changes: maps and their look-up; shadow and self, if they were left "
        "out; bounce, if it was left out; the noise of the effects of rays"},
       {"error: worth",
-       "what shadow, self and bounce are worth in the truth, by the 95th percentile over the checked pixels, as the "
-       "plan "
-       "predicts it"},
+       "what shadow, self and bounce are worth in the truth, by the 95th percentile over the checked pixels, as "
+       "the plan predicts it"},
       {"error: fit", "95th percentile of what the paints of the pixels miss of their own readings"},
       {"left_out: de00_mean, de00_p95, de00_max",
        "with --check: how far the picture is from that with all effects, over all visible pixels"},

@@ -151,8 +151,8 @@ Result<void> set_rays(const Options& options, const Request& request, Stage& sta
     rays.absent = "buffers without their mesh: what it blocks is not known, nor what that is worth";
   } else if (!options.env.empty() && stage.env.mirror.map.size == 0) {
     rays.absent =
-        "the environment has no mirror part, which rays would meet: make it without --no-mirror. What "
-        "the mesh does to light is not known, nor what that is worth";
+        "the environment has no mirror part, which rays would meet: make it without --no-mirror. What the mesh does "
+        "to light is not known, nor what that is worth";
   } else if (!options.env.empty()) {
     stage.sky.emplace(envmap::Environment::from_cube(stage.env.mirror.map, options.env));
     rays.environment = &*stage.sky;

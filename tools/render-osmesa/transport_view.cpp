@@ -156,8 +156,8 @@ Result<ShadedView> shaded_view(const KeptTransport& kept, const render::Gbuffer&
     if (light.worn.brushed.size() > part && (light.worn.brushed[part].alpha_x != dress.anisotropy[part].alpha_x ||
                                              light.worn.brushed[part].alpha_y != dress.anisotropy[part].alpha_y))
       return input_error(
-          "{}: is brushed otherwise than the paint of part {} was when its light was traced: render "
-          "again with --aov transport in this paint",
+          "{}: is brushed otherwise than the paint of part {} was when its light was traced: render again with "
+          "--aov transport in this paint",
           dress.names[part], scene.mesh->parts[part].name);
     auto paint = render::transport_paint(light.columns, fit, dress.gloss_deg[part]);
     if (!paint.ok()) return named(paint.error());

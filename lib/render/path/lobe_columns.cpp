@@ -58,8 +58,8 @@ Result<std::vector<color::Rgb>> column_weights(const LobeColumns& columns, const
       std::string known;
       for (const double e : columns.exponents) known += (known.empty() ? "" : ", ") + shortest(e);
       return input_error(
-          "a paint has a lobe of exponent {}, and the transport has those of {}: fit the paint to that "
-          "basis, or trace with this one",
+          "a paint has a lobe of exponent {}, and the transport has those of {}: fit the paint to that basis, or "
+          "trace with this one",
           shortest(lobe.exponent), known.empty() ? "no lobes" : known);
     }
     const auto j = static_cast<std::size_t>(found - columns.exponents.begin());

@@ -13,6 +13,8 @@ namespace goniochrome::render {
 namespace {
 
 constexpr std::size_t kEffects = 3;
+// The most at which rays are traced. There are more of them, because most effects of rays show in few places.
+constexpr std::size_t kRayProbe = 4096;
 // The same allowance for the choice of points as for other effects.
 constexpr double kSafety = 0.8;
 constexpr RayEffects kAll{true, true, true};
@@ -177,6 +179,46 @@ RayChoice ray_choice(const RayProbe& probe, const RayWishes& wishes) {
     item.on = state.on.*kFlags[i], item.decision = decision_of(state, i);
     choice.items.push_back(std::move(item));
   }
+  return choice;
+}
+
+RayChoice planned_rays(const Scene& scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers,
+                       const PlanRequest& request, const Words& words, const RayContext& rays, double points_drawn,
+                       double open_de00,
+                       const std::function<std::vector<color::Rgb>(const std::vector<VisiblePoint>&)>& colors) {
+  if (rays.transport == nullptr) {
+    RayChoice choice;
+    if (rays.absent.empty()) return choice;
+    choice = no_rays(rays.absent, rays.refused);
+    add_floor(nullptr, rays.absent, choice);
+    return choice;
+  }
+  std::vector<VisiblePoint> points;
+  std::vector<RayPoint> ray_points;
+  for (const auto& [gbuffer, x, y] : probe_pixels(gbuffers, kRayProbe)) {
+    points.push_back(gbuffer->point(x, y));
+    ray_points.push_back(ray_point(rays.transport->rays(), *scene.mesh, *gbuffer, x, y));
+  }
+  ProbeSetting setting;
+  setting.transport = rays.transport, setting.over_floor = rays.over_floor;
+  setting.white_luminance = request.white_luminance;
+  setting.bounces = rays.bounces, setting.seed = rays.seed;
+  setting.visible_points = static_cast<double>(gbuffers.size()) * points_drawn / request.samples;
+  const RayProbe probe = RayProbe::traced(setting, ray_points, colors(points));
+  RayWishes wishes;
+  wishes.on = words.start != Start::kNone;
+  wishes.automatic = words.start == Start::kAuto;
+  wishes.forced = [&](const std::string& name) {
+    std::optional<bool> forced;
+    for (const auto& [word, on] : words.forced)
+      if (word == name || word == "rays") forced = on;
+    return forced;
+  };
+  wishes.open_de00_p95 = open_de00;
+  wishes.tolerance_de00 = request.tolerance_de00, wishes.budget_ms = request.budget_ms;
+  wishes.visible_points = points_drawn / request.samples, wishes.samples = request.samples;
+  RayChoice choice = ray_choice(probe, wishes);
+  add_floor(&probe, rays.no_floor, choice);
   return choice;
 }
 

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "render/plan.h"
+#include "render/plan/effect_words.h"
 #include "render/plan/ray_probe.h"
 
 namespace goniochrome::render {
@@ -38,8 +40,7 @@ struct RayWishes {
   int samples = 1;
 };
 
-// The most samples of a point that are drawn for effects that nobody asked for by name. Most points
-// get far fewer.
+// The most samples of a point that are drawn for effects that nobody asked for by name. Most points get far fewer.
 constexpr int kMostUnaskedSamples = 1024;
 
 struct RayChoice {
@@ -58,6 +59,13 @@ RayChoice ray_choice(const RayProbe& probe, const RayWishes& wishes);
 
 // Where rays cannot be traced, or may not: all effects off, for this reason.
 RayChoice no_rays(const std::string& reason, bool refused = false);
+
+// The effects of rays of a scene, as far as there are rays. `points_drawn`: of one picture, with all samples of its
+// pixels. `open_de00`: as RayWishes has it. `colors` shades points with all other effects.
+RayChoice planned_rays(const Scene& scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers,
+                       const PlanRequest& request, const Words& words, const RayContext& rays, double points_drawn,
+                       double open_de00,
+                       const std::function<std::vector<color::Rgb>(const std::vector<VisiblePoint>&)>& colors);
 
 // What the floor is worth that the engine does not draw; nothing where the reason is "" and no floor was probed.
 void add_floor(const RayProbe* probe, const std::string& no_floor, RayChoice& choice);

@@ -170,13 +170,10 @@ ProbeSetting setting_of(const PathStage& stage, const Seen& seen) {
   return setting;
 }
 
-// Points that are spread over the picture tell what holds for all of it: within a factor of 1.3, or 0.1 dE00.
-// Of the fifteen figures of a shape one may miss that, where rare bright paths make most of it; it is then still within
-// three of its standard errors, or 0.15.
+// Points that are spread over the picture tell what holds for all of it: within a factor of 1.3, or 0.1 dE00. The truth
+// takes 4,096 samples at every point: with a quarter of them its own noise moves a percentile by 0.05.
 void expect_predicted(const Shape& shape) {
   const int width = 80, height = 60;
-  std::string missed;
-  int count = 0;
   for (const NamedLight& light : five_lights()) {
     PathStage stage(shape.mesh, {silver()});
     if (light.sky) stage.environment = environment_of(32, 16, light.sky);
@@ -187,7 +184,7 @@ void expect_predicted(const Shape& shape) {
     const Stopwatch clock;
     const RayProbe probe = RayProbe::traced(setting_of(stage, all), all.points, all.base);
     const double ms = 1000 * clock.elapsed_s();
-    const std::array<double, 3> truth = true_worth(stage, all, 1, 64);
+    const std::array<double, 3> truth = true_worth(stage, all, 1, 256);
     const RayEffects without[] = {{}, kNoSelf, kNoBounce};
     const char* names[] = {"shadow", "self", "bounce"};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -196,14 +193,11 @@ void expect_predicted(const Shape& shape) {
       ::testing::Test::RecordProperty(
           which, fmt::format("{:.3f} +- {:.3f}, truth {:.3f}; {} points, {} samples, {:.0f} ms", worth.de00_p95,
                              worth.standard_error, truth[k], probe.size(), probe.samples(), ms));
-      const double off = std::abs(worth.de00_p95 - truth[k]);
-      if (off <= 0.1 || (worth.de00_p95 <= 1.3 * truth[k] && worth.de00_p95 >= truth[k] / 1.3)) continue;
-      missed += which + "; ";
-      ++count;
-      EXPECT_LE(off, std::max(0.15, 3 * worth.standard_error)) << which << " +- " << worth.standard_error;
+      if (std::abs(worth.de00_p95 - truth[k]) <= 0.1) continue;
+      EXPECT_LE(worth.de00_p95, 1.3 * truth[k]) << which << " +- " << worth.standard_error;
+      EXPECT_GE(worth.de00_p95, truth[k] / 1.3) << which << " +- " << worth.standard_error;
     }
   }
-  EXPECT_LE(count, 1) << missed;
 }
 
 TEST(RayProbe, PredictsTheWorthOfADent) {
