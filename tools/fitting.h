@@ -35,13 +35,19 @@ struct FitInput {
   std::optional<formats::PaintReader> reader;
   std::optional<InputFile> measured;
 
-  // Error: the file cannot be opened.
-  static Result<FitInput> open(const std::string& path) {
+  // `reference` is FILE, or FILE#NAMES for some of its paints. Error: the file cannot be opened.
+  static Result<FitInput> open(const std::string& reference) {
+    auto [path, names] = formats::paint_reference(reference);
     GONIO_ASSIGN(InputFile file, InputFile::open(path));
     const std::string name = file.name();
     GONIO_ASSIGN(const std::string_view head, file.peek());
-    if (brdf::looks_measured(path, head)) return FitInput{name, std::nullopt, std::move(file)};
-    formats::PaintReader reader(std::move(file));
+    if (brdf::looks_measured(path, head)) {
+      if (names) return input_error("{}: is one measured BRDF without names: leave out #{}", name, *names);
+      return FitInput{name, std::nullopt, std::move(file)};
+    }
+    std::optional<formats::NameChoice> choice;
+    if (names) choice.emplace(std::move(*names));
+    formats::PaintReader reader(std::move(file), std::move(choice));
     return FitInput{name, std::move(reader), std::nullopt};
   }
 };

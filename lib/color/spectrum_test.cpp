@@ -7,6 +7,7 @@
 #include <map>
 
 #include "base/file.h"
+#include "base/testdata_for_test.h"
 #include "base/text.h"
 #include "color/internal/cie_tables.h"
 
@@ -102,6 +103,64 @@ TEST(Spectrum, RefusesWhatItCannotIntegrate) {
   EXPECT_FALSE(SpectralColorimeter::make(good, {"D65", 4}).ok());
   EXPECT_FALSE(SpectralColorimeter::make(twice, {"D65", 2}).ok());
   EXPECT_FALSE(SpectralColorimeter::make(one, {"D65", 2}).ok());
+}
+
+// The polynomial through these points at x, by Newton's divided differences.
+double newton(std::vector<double> nodes, std::vector<double> values, double x) {
+  for (std::size_t order = 1; order < nodes.size(); ++order)
+    for (std::size_t i = nodes.size() - 1; i >= order; --i)
+      values[i] = (values[i] - values[i - 1]) / (nodes[i] - nodes[i - order]);
+  double result = values.back();
+  for (std::size_t i = nodes.size() - 1; i-- > 0;) result = result * (x - nodes[i]) + values[i];
+  return result;
+}
+
+// A table every `step` nm at x, held beyond its ends: by the two neighbors on either side, three in all at the ends.
+double cubic_at(const std::vector<double>& table, double from, double step, double x) {
+  const double place = std::clamp((x - from) / step, 0.0, static_cast<double>(table.size() - 1));
+  const int interval = std::min(static_cast<int>(place), static_cast<int>(table.size()) - 2);
+  std::vector<double> nodes, values;
+  for (int k = std::max(0, interval - 1); k <= std::min(interval + 2, static_cast<int>(table.size()) - 1); ++k)
+    nodes.push_back(k), values.push_back(table[static_cast<std::size_t>(k)]);
+  return newton(nodes, values, place);
+}
+
+// Ten published reflectances under illuminant A, by direct sums with an interpolation that is written otherwise.
+TEST(Spectrum, TenPaintsUnderAAreTheirDirectSums) {
+  const auto text = file_content(testdata("published-reflectances.csv"));
+  ASSERT_TRUE(text.ok());
+  std::vector<std::vector<double>> paints(10);
+  const auto lines = split(*text, '\n');
+  for (std::size_t i = 2; i < lines.size() && !trimmed(lines[i]).empty(); ++i) {
+    const auto cells = split(trimmed(lines[i]), ',');
+    const double nm = *parse_number(cells[0]);
+    if (nm < 400 || nm > 700 || std::fmod(nm, 10) != 0) continue;
+    for (std::size_t k = 0; k < paints.size(); ++k) paints[k].push_back(*parse_number(cells[1 + k]));
+  }
+  for (const int observer_deg : {2, 10}) {
+    const auto meter = colorimeter(wavelengths(400, 700, 10), {"A", observer_deg});
+    std::array<std::vector<double>, 3> observer;
+    for (const CieRow& row : kCieTable)
+      for (std::size_t c = 0; c < 3; ++c)
+        observer[c].push_back(observer_deg == 2 ? row.observer_2[c] : row.observer_10[c]);
+    for (const std::vector<double>& paint : paints) {
+      ASSERT_EQ(paint.size(), 31U);
+      std::array<double, 3> sum{}, white{};
+      for (int nm = 360; nm <= 780; ++nm) {
+        const double place = (nm - kCieStart_nm) / kCieStep_nm;
+        const auto low = std::min(static_cast<std::size_t>(place), kCieTable.size() - 2);
+        const double power = std::lerp(kCieTable[low].illuminants[2], kCieTable[low + 1].illuminants[2],
+                                       place - static_cast<double>(low));
+        for (std::size_t c = 0; c < 3; ++c) {
+          const double seen = power * cubic_at(observer[c], kCieStart_nm, kCieStep_nm, nm);
+          white[c] += seen, sum[c] += seen * cubic_at(paint, 400, 10, nm);
+        }
+      }
+      const Lab direct = lab_from_xyz({sum[0] / white[1], sum[1] / white[1], sum[2] / white[1]},
+                                      {white[0] / white[1], 1, white[2] / white[1]});
+      EXPECT_LT(delta_e_76(meter.lab(paint), direct), 1e-6);
+    }
+  }
 }
 
 // The published tables as files, one value column set per row: wavelength and the columns after it.

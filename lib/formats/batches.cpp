@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "base/clock.h"
-#include "base/paths.h"
 
 namespace goniochrome::formats {
 
@@ -62,12 +61,6 @@ Result<std::vector<paint::Paint>> PaintBatches::next(const std::function<void(co
     return input_error("no paint is named \"{}\": names are taken letter by letter", *unmet_.begin());
   size_ = filling.elapsed_s() < kSlowBatch_s ? std::min(2 * size_, kLargestBatch) : 1;
   return batch;
-}
-
-PaintReference paint_reference(const std::string& text) {
-  const auto hash = text.rfind('#');
-  if (hash == std::string::npos || is_there(text)) return {text, std::nullopt};
-  return {text.substr(0, hash), text.substr(hash + 1)};
 }
 
 }  // namespace goniochrome::formats

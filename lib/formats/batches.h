@@ -1,9 +1,7 @@
-// The paints that a command line names: `FILE#NAME`, and the paints of several inputs in batches, for tools that work
-// on many at once and still keep up with a slow pipe.
+// The paints of several inputs in batches, for tools that work on many at once and still keep up with a slow pipe.
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -12,14 +10,6 @@
 #include "formats/xml.h"
 
 namespace goniochrome::formats {
-
-struct PaintReference {
-  std::string file;
-  std::optional<std::string> name;  // of the one paint that is meant
-};
-
-// FILE or FILE#NAME, taken apart at the last #. If there is a file of that whole name, it is meant.
-PaintReference paint_reference(const std::string& text);
 
 class PaintBatches {
  public:

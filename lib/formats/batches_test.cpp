@@ -74,21 +74,9 @@ TEST_F(PaintBatchesTest, AWrongPaintIsTheErrorOrToldAndPassedOver) {
   EXPECT_THAT(read_all({folder_.path("absent.xml")}).names, IsEmpty());
 }
 
-TEST(PaintReference, IsAFileAndTheNameBehindTheLastHash) {
-  EXPECT_EQ(paint_reference("a.xml").file, "a.xml");
-  EXPECT_FALSE(paint_reference("a.xml").name);
-  EXPECT_EQ(paint_reference("a#b.xml#Candy #2").file, "a#b.xml#Candy ");
-  EXPECT_EQ(paint_reference("a#b.xml#Candy #2").name, "2");
-  EXPECT_EQ(paint_reference("a.xml#").name, "");
-}
-
-TEST(PaintReference, AFileOfThatVeryNameIsMeantAsItStands) {
-  const ScratchFolder folder;
-  const std::string there = folder.file("batch#7.xml", "");
-  EXPECT_EQ(paint_reference(there).file, there);
-  EXPECT_FALSE(paint_reference(there).name);
-  EXPECT_EQ(paint_reference(there + "#red").file, there);
-  EXPECT_EQ(paint_reference(there + "#red").name, "red");
+TEST_F(PaintBatchesTest, GiveThePaintsThatAnInputNames) {
+  EXPECT_THAT(read_all({second_ + "#d", first_}).names, ElementsAre("d", "a", "b"));
+  EXPECT_THAT(read_all({second_ + "#x", first_}).error, testing::HasSubstr("no paint is named \"x\""));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "base/file.h"
 #include "base/result.h"
+#include "formats/reference.h"
 #include "paint/paint.h"
 
 namespace goniochrome::formats {
@@ -23,15 +24,17 @@ struct Processing {
 
 class PaintReader {
  public:
-  // Opens `path` ("-" is standard input), or goes on with an open file. Errors name file and line.
+  // Opens `path` ("-" is standard input), or FILE#NAMES for the paints of FILE that have these names; or goes on with
+  // an open file. Errors name file and line.
   static Result<PaintReader> open(const std::string& path);
-  explicit PaintReader(InputFile input);
+  explicit PaintReader(InputFile input, std::optional<NameChoice> choice = {});
   PaintReader(PaintReader&&) noexcept;
   PaintReader& operator=(PaintReader&&) noexcept;
   ~PaintReader();
 
-  // The next paint, or nothing at the end. A wrong value loses the paint that it stands in: after such an error next()
-  // goes on behind that paint. After any other error (text that is not XML, a file cut off) it returns nothing.
+  // The next paint that is wanted, or nothing at the end; a name that no paint had is an error there. A wrong value
+  // loses the paint that it stands in: after such an error next() goes on behind that paint. After any other error
+  // (text that is not XML, a file cut off) it returns nothing.
   Result<std::optional<paint::Paint>> next();
 
   // The line (from 1) of the start tag of the paint last returned.

@@ -481,7 +481,8 @@ Result<void> PaintHandler::invalid(int line, const std::string& why) {
 }  // namespace
 
 struct PaintReader::State {
-  explicit State(InputFile input) : handler(input.name()), stream(std::move(input), kPaintSchema, handler) {}
+  State(InputFile input, std::optional<NameChoice> wanted)
+      : file(input.name()), choice(std::move(wanted)), handler(file), stream(std::move(input), kPaintSchema, handler) {}
 
   // Reads on until a paint or the end is found.
   bool more() {
@@ -496,6 +497,8 @@ struct PaintReader::State {
     return !at_end;
   }
 
+  std::string file;
+  std::optional<NameChoice> choice;
   PaintHandler handler;
   XmlStream stream;
   std::optional<Error> failure;  // told when the paints before it are taken
@@ -504,28 +507,35 @@ struct PaintReader::State {
 };
 
 Result<PaintReader> PaintReader::open(const std::string& path) {
-  GONIO_ASSIGN(InputFile input, InputFile::open(path));
-  return PaintReader(std::move(input));
+  auto [file, names] = paint_reference(path);
+  GONIO_ASSIGN(InputFile input, InputFile::open(file));
+  std::optional<NameChoice> choice;
+  if (names) choice.emplace(std::move(*names));
+  return PaintReader(std::move(input), std::move(choice));
 }
 
-PaintReader::PaintReader(InputFile input) : state_(std::make_unique<State>(std::move(input))) {}
+PaintReader::PaintReader(InputFile input, std::optional<NameChoice> choice)
+    : state_(std::make_unique<State>(std::move(input), std::move(choice))) {}
 PaintReader::PaintReader(PaintReader&&) noexcept = default;
 PaintReader& PaintReader::operator=(PaintReader&&) noexcept = default;
 PaintReader::~PaintReader() = default;
 
 Result<std::optional<paint::Paint>> PaintReader::next() {
   auto& found = state_->handler.found;
-  while (found.empty() && state_->more()) {
+  for (;;) {
+    while (found.empty() && state_->more()) {
+    }
+    if (found.empty()) break;
+    Found first = std::move(found.front());
+    found.pop_front();
+    state_->line = first.line;
+    if (!first.paint.ok()) return first.paint.error();
+    if (!state_->choice || state_->choice->takes(first.paint->name))
+      return std::optional<paint::Paint>(std::move(*first.paint));
   }
-  if (found.empty()) {
-    if (state_->failure) return *std::exchange(state_->failure, std::nullopt);
-    return std::optional<paint::Paint>();
-  }
-  Found first = std::move(found.front());
-  found.pop_front();
-  state_->line = first.line;
-  if (!first.paint.ok()) return first.paint.error();
-  return std::optional<paint::Paint>(std::move(*first.paint));
+  if (state_->failure) return *std::exchange(state_->failure, std::nullopt);
+  if (const auto choice = std::exchange(state_->choice, std::nullopt)) GONIO_TRY(choice->check_all_met(state_->file));
+  return std::optional<paint::Paint>();
 }
 
 int PaintReader::line() const {

@@ -17,6 +17,7 @@
 #include "base/json.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "formats/reference.h"
 #include "formats/xml.h"
 #include "paint/curve.h"
 
@@ -395,6 +396,12 @@ Result<LibraryIndex> LibraryIndex::view_of(std::unique_ptr<Bytes> bytes) try {
 Result<LibraryIndex> LibraryIndex::open(const std::string& library_path,
                                         const std::function<void(std::size_t)>& progress) {
   const Stopwatch mapping;
+  if (formats::paint_reference(library_path).name) {
+    GONIO_ASSIGN(auto reader, formats::PaintReader::open(library_path));
+    GONIO_ASSIGN(LibraryIndex index, from_paints([&] { return reader.next(); }));
+    index.note_ = "it holds some paints of a file";
+    return Result(std::move(index));
+  }
   GONIO_ASSIGN(const Guard guard, guard_of(library_path));
   const std::string path = index_path(library_path);
   std::string why = "there was none";

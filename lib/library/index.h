@@ -40,7 +40,8 @@ class LibraryIndex {
 
   // The index of the paint file `library_path`. The file `<library_path>.snapindex` is mapped if it belongs to this
   // state of the library: size and time of modification agree, or size and checksum. Otherwise the library is read, and
-  // the index is written there, whole or not at all. If that cannot be done, it stays in memory and note() says why.
+  // the index is written there, whole or not at all. If that cannot be done, it stays in memory and note() says why; so
+  // does that of FILE#NAMES, some paints of a file.
   // `progress` is told the number of paints read so far. Error: the library cannot be read, or it is a stream.
   static Result<LibraryIndex> open(const std::string& library_path,
                                    const std::function<void(std::size_t)>& progress = {});

@@ -148,7 +148,7 @@ SearchMethod LibrarySearch::method(std::size_t section) const {
   return options_.method.value_or(faster_method(index_.sections()[section].tree.size, passing_[section]));
 }
 
-std::vector<LibraryMatch> LibrarySearch::nearest(const SearchPlan& plan) const {
+std::vector<LibraryMatch> LibrarySearch::nearest(const SearchPlan& plan, std::size_t count) const {
   std::vector<LibraryMatch> matches;
   double limit = NearestMatches::kNoLimit;
   for (const std::size_t i : plan.sections) {
@@ -157,7 +157,7 @@ std::vector<LibraryMatch> LibrarySearch::nearest(const SearchPlan& plan) const {
     for (std::size_t t = 0; t < terms.size(); ++t)
       terms[t].geometry = static_cast<std::size_t>(std::ranges::find(section.geometries, plan.geometries[t]) -
                                                    section.geometries.begin());
-    NearestMatches best(options_.count, limit);
+    NearestMatches best(count, limit);
     find_nearest(section.tree, terms, options_.metric, method(i),
                  masks_.empty() ? std::span<const LeafMask>() : masks_[i], best);
     for (const Match& match : best.list()) {
@@ -169,8 +169,8 @@ std::vector<LibraryMatch> LibrarySearch::nearest(const SearchPlan& plan) const {
       }
     }
     std::ranges::sort(matches, {}, [](const LibraryMatch& m) { return std::pair(m.distance, m.paint); });
-    if (matches.size() >= options_.count) {
-      matches.resize(options_.count);
+    if (matches.size() >= count) {
+      matches.resize(count);
       limit = matches.back().distance;
     }
   }

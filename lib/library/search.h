@@ -58,7 +58,9 @@ class LibrarySearch {
 
   // The nearest paints, nearest first; equal distances come in the library's order. They are fewer than asked for if
   // the filters leave fewer.
-  std::vector<LibraryMatch> nearest(const SearchPlan& plan) const;
+  std::vector<LibraryMatch> nearest(const SearchPlan& plan) const { return nearest(plan, options_.count); }
+  // The nearest `count` instead of as many as the options say.
+  std::vector<LibraryMatch> nearest(const SearchPlan& plan, std::size_t count) const;
 
  private:
   std::vector<paint::Geometry> shared_geometries(const std::vector<paint::LabReading>& rows) const;

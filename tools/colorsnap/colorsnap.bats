@@ -301,3 +301,28 @@ column() {
   [ "$status" -eq 2 ]
   [[ "$output" == *"did you mean --library?"* ]]
 }
+
+@test "--illuminant looks for the paints that are near in every light" {
+  # Of two paints, the nearer by daylight has other pigments.
+  lit() { awk -v name="$1" "BEGIN {
+    for (nm = 400; nm <= 700; nm += 10) factors = factors (nm > 400 ? \" \" : \"\") ($2)
+    printf \"<paint name=\\\"%s\\\"><measurement illuminant=\\\"D65\\\" observer=\\\"10\\\"><lab geometry=\\\"45as45\\\" L=\\\"50\\\" a=\\\"0\\\" b=\\\"0\\\"/>\", name
+    printf \"<spectrum geometry=\\\"45as45\\\" from=\\\"400\\\" step=\\\"10\\\" to=\\\"700\\\">%s</spectrum></measurement></paint>\\n\", factors
+  }"; }
+  gray=0.3 metamer='0.3 + 0.12 * sin((nm - 400) / 18)'
+  { echo "$head"; lit metamer "$metamer"; lit lighter 0.36; echo "</paints>"; } >spectra.xml
+  { echo "$head"; lit wish $gray; echo "</paints>"; } >gray.xml
+  nearest() { colorsnap -q -k 2 -l spectra.xml --threshold 100 "$@" gray.xml; }
+  nearest --illuminant D65 >daylight.tsv
+  nearest --illuminant D65,A,F11 >all.tsv
+  [ "$(head -1 all.tsv | cut -f13)" = illuminant ]
+  [ "$(sed -n 2p daylight.tsv | cut -f13)" = D65 ]
+  # The distance in all is the largest of the distances in each.
+  for name in metamer lighter; do
+    largest=$(for light in D65 A F11; do nearest --illuminant $light | awk -F'\t' -v n=$name '$3 == n { print $6 }'; done | sort -g | tail -1)
+    [ "$(awk -F'\t' -v n=$name '$3 == n { print $6 }' all.tsv)" = "$largest" ]
+  done
+  run --separate-stderr colorsnap -l lib.xml --illuminant A gray.xml
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *"6 of 6 library paints have no spectra"* || "$stderr" == *"5 of 5 library paints have no spectra"* ]]
+}

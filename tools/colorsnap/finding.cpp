@@ -16,19 +16,20 @@ double hue_difference(const color::Lab& x, const color::Lab& y) {
   return 2 * std::sqrt(color::chroma(x) * color::chroma(y)) * std::sin(turn / 2);
 }
 
-Neighbor neighbor_of(library::LibraryMatch match, const library::SearchPlan& plan, library::ColorMetric metric) {
+Neighbor neighbor_of(library::LibraryMatch match, const std::vector<library::SearchTerm>& terms,
+                     library::ColorMetric metric) {
   Neighbor neighbor;
   double weight = 0;
-  for (std::size_t i = 0; i < plan.terms.size(); ++i) {
-    const color::Lab &query = plan.terms[i].lab, &found = match.lab[i];
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    const color::Lab &query = terms[i].lab, &found = match.lab[i];
     neighbor.de.push_back(metric == library::ColorMetric::kDe76 ? color::delta_e_76(query, found)
                                                                 : color::delta_e_2000(query, found));
     neighbor.dL += query.L - found.L;
     neighbor.dC += color::chroma(query) - color::chroma(found);
     neighbor.dH += hue_difference(query, found);
-    weight += plan.terms[i].weight;
+    weight += terms[i].weight;
   }
-  const auto count = static_cast<double>(plan.terms.size());
+  const auto count = static_cast<double>(terms.size());
   neighbor.dL /= count, neighbor.dC /= count, neighbor.dH /= count;
   neighbor.mean_de = weight > 0 ? match.distance / weight : 0;
   neighbor.match = std::move(match);
@@ -47,15 +48,39 @@ double signed_hue_shift(double hue_shift_index, double hue_travel_deg) {
   return std::copysign(hue_shift_index, std::sin(hue_travel_deg * kDegree));
 }
 
-Finding finding_of(const paint::Paint& query, library::SearchPlan plan, const library::LibrarySearch& search,
-                   const library::LibraryIndex& index, library::ColorMetric metric, const FindingLimits& limits) {
+Result<QueryPlan> Searched::plan(const paint::Paint& query) const {
+  QueryPlan result;
+  if (lights_ == nullptr) {
+    GONIO_ASSIGN(result.plan, search_.plan(query));
+    return Result(std::move(result));
+  }
+  GONIO_ASSIGN(result.lights, lights_->plan(query));
+  result.plan = result.lights->first;
+  return Result(std::move(result));
+}
+
+std::vector<Neighbor> Searched::nearest(const QueryPlan& plan, library::ColorMetric metric) const {
+  std::vector<Neighbor> neighbors;
+  if (!plan.lights) {
+    for (library::LibraryMatch& match : search_.nearest(plan.plan))
+      neighbors.push_back(neighbor_of(std::move(match), plan.plan.terms, metric));
+    return neighbors;
+  }
+  for (library::LightsMatch& found : lights_->nearest(*plan.lights)) {
+    neighbors.push_back(neighbor_of(std::move(found.match), plan.lights->terms[found.light], metric));
+    neighbors.back().illuminant = lights_->illuminants()[found.light];
+  }
+  return neighbors;
+}
+
+Finding finding_of(const paint::Paint& query, QueryPlan plan, const Searched& library, library::ColorMetric metric,
+                   const FindingLimits& limits) {
   Finding finding;
   finding.query = query.name;
   const Stopwatch searching;
-  std::vector<library::LibraryMatch> matches = search.nearest(plan);
+  finding.neighbors = library.nearest(plan, metric);
   finding.search_s = searching.elapsed_s();
-  for (library::LibraryMatch& match : matches) finding.neighbors.push_back(neighbor_of(std::move(match), plan, metric));
-  finding.plan = std::move(plan);
+  finding.plan = std::move(plan.plan);
   finding.hue_shift = finding.matched_hue_shift = paint::PaintMetrics::kNone;
   if (finding.no_match()) return finding;
 
@@ -63,7 +88,9 @@ Finding finding_of(const paint::Paint& query, library::SearchPlan plan, const li
   finding.outside = nearest.mean_de > limits.outside;
   if (const auto numbers = paint::metrics(query, paint::CurveFit::kWhereNeeded); numbers.ok())
     finding.hue_shift = signed_hue_shift(numbers->hue_shift_index, numbers->hue_travel_deg);
-  const auto of_match = [&](const char* name) { return index.metric(nearest.match.paint, *paint::find_metric(name)); };
+  const auto of_match = [&](const char* name) {
+    return library.index().metric(nearest.match.paint, *paint::find_metric(name));
+  };
   finding.matched_hue_shift = signed_hue_shift(of_match("hue_shift_index"), of_match("hue_travel_deg"));
   finding.off_radial = std::abs(finding.hue_shift - finding.matched_hue_shift) > limits.off_radial;
   return finding;

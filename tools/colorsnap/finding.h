@@ -1,9 +1,11 @@
 // What a search found for one paint, and what it says of the design. [Shimizu2009] 5.3.5
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "library/lights.h"
 #include "library/search.h"
 
 namespace goniochrome::tool {
@@ -12,6 +14,7 @@ namespace goniochrome::tool {
 // over the geometries.
 struct Neighbor {
   library::LibraryMatch match;
+  std::string illuminant;         // in which the distance is largest; "" where there is one light alone
   double mean_de = 0;             // distance per unit of weight
   double dL = 0, dC = 0, dH = 0;  // CIELAB lightness, chroma and hue difference
   std::vector<double> de;         // at each geometry, without weight
@@ -39,9 +42,35 @@ struct FindingLimits {
   double off_radial = 5;  // difference of hue shifts
 };
 
+// How a query is compared: in the light of the readings, or in several.
+struct QueryPlan {
+  library::SearchPlan plan;  // in the first light
+  std::optional<library::LightsPlan> lights;
+};
+
+// The library that is searched, in one of the two ways.
+class Searched {
+ public:
+  // Both must outlive it.
+  Searched(const library::LibraryIndex& index, const library::LibrarySearch& search) : index_(index), search_(search) {}
+  explicit Searched(const library::LightsSearch& lights)
+      : index_(lights.index()), search_(lights.first()), lights_(&lights) {}
+
+  const library::LibraryIndex& index() const { return index_; }
+  // Of the first light.
+  const library::LibrarySearch& search() const { return search_; }
+  Result<QueryPlan> plan(const paint::Paint& query) const;
+  std::vector<Neighbor> nearest(const QueryPlan& plan, library::ColorMetric metric) const;
+
+ private:
+  const library::LibraryIndex& index_;
+  const library::LibrarySearch& search_;
+  const library::LightsSearch* lights_ = nullptr;
+};
+
 // Searches the library and judges the design. `query` must be the paint of the plan. Several threads may call it at
 // once.
-Finding finding_of(const paint::Paint& query, library::SearchPlan plan, const library::LibrarySearch& search,
-                   const library::LibraryIndex& index, library::ColorMetric metric, const FindingLimits& limits);
+Finding finding_of(const paint::Paint& query, QueryPlan plan, const Searched& library, library::ColorMetric metric,
+                   const FindingLimits& limits);
 
 }  // namespace goniochrome::tool

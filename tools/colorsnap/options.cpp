@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/text.h"
+#include "color/spectrum.h"
 #include "paint/metrics.h"
 #include "table_output.h"
 
@@ -82,7 +83,8 @@ namespace {
 void add_options(cli::ToolSpec& spec, Options& o) {
   spec.heading = "library";
   spec.option("library,l", "FILE", "testdata/paints.paints.xml", &o.library, "paint XML file to search, a plain file")
-      .needed();
+      .needed()
+      .more("FILE#NAMES searches some of its paints, for which an index is made in memory.");
   spec.option("filter", "NAME=LOW:HIGH", "flop_index=3:10", &o.filters, "consider only library paints in this range")
       .more(
           "NAME is a metric of paint-stats(1). Either end of the range may be left out. class=solid,metallic picks "
@@ -94,6 +96,12 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("geometry,g", "LIST", "45as15,45as45,45as110", &o.geometries, "geometries at which paints are compared")
       .more("Where the option is given, the geometries that query and library share are not looked for.");
   spec.option("weight,w", "LIST", "45as15=2,45as110=0.5", &o.weights, "weights of geometries; 1 for the others");
+  spec.option("illuminant", "NAME,...", "D65,A,F11", &o.illuminants, "compare paints in all of these lights")
+      .more(
+          "The names are " + color::spectral_illuminants() +
+          ". The distance of two paints is then the largest in any of the lights, and a last column of the table names "
+          "that light. The colors come from spectra; library paints without them are left out with a warning. The "
+          "index is made in memory. Metrics of --filter are those in the first of the lights.");
   spec.flag("mix-observers", &o.mix_observers, "compare Lab values of different illuminants and observers as they are")
       .more("Without this option, such values are refused.");
   spec.option("method", "METHOD", "scan", &o.method, "search by k-d tree, by scan, or by whichever is faster")
@@ -126,25 +134,27 @@ void add_report(cli::ToolSpec& spec) {
        "look among metallics of moderate flop, by CIEDE2000"},
       {"colorsnap -l testdata/paints.paints.xml -k 1 -w 45as110=2 testdata/paints.paints.xml -o start.paints.xml",
        "write the paint nearest to each, with the flop counting twice, to start formulations from"}};
-  spec.report = {{"queries[].name", "name of the query"},
-                 {"queries[].status", "ok, or outside, off_radial, no_match"},
-                 {"queries[].geometries[]", "geometries at which it was compared"},
-                 {"queries[].hue_shift, matched_hue_shift",
-                  "signed distance of the flop from the face's hue line, for the query and for the nearest paint"},
-                 {"queries[].matches[]", "name, code, class, distance, mean_de, dL, dC, dH, de_by_geometry{}"},
-                 {"library_size", "number of paints in the library"},
-                 {"candidates", "number of paints that pass the filters and have a color"},
-                 {"index", "mapped, built, or in_memory where it could not be written"},
-                 {"index_s", "time to map the index, or to build and write it"},
-                 {"read_s", "time to read the library; 0 where the index was mapped"},
-                 {"index_bytes", "size of the index"},
-                 {"method", "tree, scan, or both where parts of the library differ"},
-                 {"query_us", "mean time of a search on one core"},
-                 {"queries_per_s", "searches a second on all threads, without reading and writing"},
-                 {"searched", "number of queries that were answered"},
-                 {"outside, off_radial, no_match", "number of queries with this status"},
-                 {"left_out", "number of queries that --keep-going left out"},
-                 {"warnings[]", "the warnings of the run"}};
+  spec.report = {
+      {"queries[].name", "name of the query"},
+      {"queries[].status", "ok, or outside, off_radial, no_match"},
+      {"queries[].geometries[]", "geometries at which it was compared"},
+      {"queries[].hue_shift, matched_hue_shift",
+       "signed distance of the flop from the face's hue line, for the query and for the nearest paint"},
+      {"queries[].matches[]",
+       "name, code, class, distance, mean_de, dL, dC, dH, de_by_geometry{}; with --illuminant also illuminant"},
+      {"library_size", "number of paints in the library"},
+      {"candidates", "number of paints that pass the filters and have a color"},
+      {"index", "mapped, built, or in_memory where it could not be written"},
+      {"index_s", "time to map the index, or to build and write it"},
+      {"read_s", "time to read the library; 0 where the index was mapped"},
+      {"index_bytes", "size of the index"},
+      {"method", "tree, scan, or both where parts of the library differ"},
+      {"query_us", "mean time of a search on one core"},
+      {"queries_per_s", "searches a second on all threads, without reading and writing"},
+      {"searched", "number of queries that were answered"},
+      {"outside, off_radial, no_match", "number of queries with this status"},
+      {"left_out", "number of queries that --keep-going left out"},
+      {"warnings[]", "the warnings of the run"}};
   spec.see_also = {"paint-stats(1)", "paint-edit(1)", "paint-convert(1)"};
 }
 
@@ -174,7 +184,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "status is 1. off_radial: the flop leaves the face's hue line on another side than that of the nearest paint "
       "does, or farther, so that its hue shift is not captured; a paint chemist has to be asked. no_match: the filters "
       "leave no paint, and the exit status is 1."};
-  spec.inputs = {"PAINTS", "paint XML files; standard input where none is given", &o.inputs};
+  spec.inputs = {"PAINTS", "paint XML files, or FILE#NAMES for some paints of one; standard input where none is given",
+                 &o.inputs};
   add_options(spec, o);
   add_report(spec);
   return spec;

@@ -7,6 +7,8 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "finding.h"
+#include "formats/reference.h"
+#include "illuminants.h"
 #include "paint_stream.h"
 #include "sink.h"
 
@@ -38,20 +40,22 @@ const char* origin_name(library::LibraryIndex::Origin origin) {
 // One run, which turns a stream of queries into findings.
 class Run {
  public:
-  Run(const Options& options, cli::Session& session, const library::LibraryIndex& index,
-      library::LibrarySearchOptions search)
+  Run(const Options& options, cli::Session& session, const Searched& library,
+      const library::LibrarySearchOptions& search)
       : options_(options),
         session_(session),
-        index_(index),
+        library_(library),
+        index_(library.index()),
         metric_(search.metric),
         weights_(search.weights),
-        search_(index, std::move(search)) {}
+        search_(library.search()) {}
 
   Result<cli::Verdict> operator()() {
     session_.explain(plan_text());
     GONIO_ASSIGN(formats::PaintBatches batches, formats::PaintBatches::open(options_.inputs));
     GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
-    GONIO_ASSIGN(Sink sink, Sink::begin(format_of(options_.format, options_.output), std::move(file)));
+    GONIO_ASSIGN(Sink sink, Sink::begin(format_of(options_.format, options_.output), !options_.illuminants.empty(),
+                                        std::move(file)));
     session_.begin_list("queries");
     GONIO_TRY(for_each_batch(
         batches, session_, [&](const std::vector<paint::Paint>& batch) { return answer(batch, sink); }, left_out()));
@@ -72,11 +76,11 @@ class Run {
   }
 
   Result<void> answer(const std::vector<paint::Paint>& batch, Sink& sink) {
-    std::vector<std::pair<const paint::Paint*, library::SearchPlan>> queries;
+    std::vector<std::pair<const paint::Paint*, QueryPlan>> queries;
     for (const paint::Paint& paint : batch) {
-      auto plan = search_.plan(paint);
+      auto plan = library_.plan(paint);
       if (plan.ok()) {
-        tell_once(*plan);
+        tell_once(plan->plan);
         queries.emplace_back(&paint, std::move(*plan));
         continue;
       }
@@ -88,7 +92,7 @@ class Run {
     std::vector<Finding> findings(queries.size());
     parallel_for(queries.size(), 4, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
-        findings[i] = finding_of(*queries[i].first, std::move(queries[i].second), search_, index_, metric_,
+        findings[i] = finding_of(*queries[i].first, std::move(queries[i].second), library_, metric_,
                                  {options_.threshold, options_.off_radial});
     });
     wall_s_ += searching.elapsed_s();
@@ -202,28 +206,47 @@ class Run {
 
   const Options& options_;
   cli::Session& session_;
+  const Searched& library_;
   const library::LibraryIndex& index_;
   library::ColorMetric metric_;
   std::vector<std::pair<paint::Geometry, double>> weights_;
-  library::LibrarySearch search_;
+  const library::LibrarySearch& search_;
   std::set<std::string> told_, compared_;
   std::size_t searched_ = 0, outside_ = 0, off_radial_ = 0, no_match_ = 0, left_out_ = 0, problems_ = 0;
   double search_s_ = 0, wall_s_ = 0;
 };
 
+// The search under several illuminants.
+Result<cli::Verdict> run_under_lights(const Options& options, const library::LibrarySearchOptions& search,
+                                      cli::Session& session) {
+  GONIO_ASSIGN(std::vector<std::string> illuminants, illuminants_of(options.illuminants));
+  GONIO_ASSIGN(const library::LightsSearch lights,
+               library::LightsSearch::open(options.library, std::move(illuminants), search, [&](std::size_t paints) {
+                 session.progress(fmt::format("{}: reading {}: {} paints", session.tool(), options.library, paints));
+               }));
+  if (lights.without_spectra() > 0)
+    session.warn(
+        fmt::format("{} of {} library paints have no spectra and are left out: nothing tells their color in "
+                    "other light",
+                    lights.without_spectra(), lights.index().size()));
+  return Run(options, session, Searched(lights), search)();
+}
+
 }  // namespace
 
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
-  GONIO_ASSIGN(library::LibrarySearchOptions search, search_options(options));
+  GONIO_ASSIGN(const library::LibrarySearchOptions search, search_options(options));
+  if (!options.illuminants.empty()) return run_under_lights(options, search, session);
   GONIO_ASSIGN(const library::LibraryIndex index, library::LibraryIndex::open(options.library, [&](std::size_t paints) {
                  session.progress(fmt::format("{}: indexing {}: {} paints", session.tool(), options.library, paints));
                }));
   if (index.origin() == library::LibraryIndex::Origin::kBuilt && index.note() != "there was none")
     session.say(
         fmt::format("{}: {}: made anew, {}", session.tool(), library::index_path(options.library), index.note()));
-  if (index.origin() == library::LibraryIndex::Origin::kInMemory)
+  if (index.origin() == library::LibraryIndex::Origin::kInMemory && !formats::paint_reference(options.library).name)
     session.warn(fmt::format("the index stays in memory and is made again by every run: {}", index.note()));
-  return Run(options, session, index, std::move(search))();
+  const library::LibrarySearch all(index, search);
+  return Run(options, session, Searched(index, all), search)();
 }
 
 }  // namespace goniochrome::tool

@@ -10,11 +10,12 @@ namespace goniochrome::tool {
 namespace {
 
 constexpr const char* kTableHead =
-    "query\trank\tname\tcode\tclass\tdistance\tmean_de\tdL\tdC\tdH\tstatus\tde_by_geometry\n";
+    "query\trank\tname\tcode\tclass\tdistance\tmean_de\tdL\tdC\tdH\tstatus\tde_by_geometry";
 
-std::string table_lines(const Finding& finding, const library::LibraryIndex& index) {
+std::string table_lines(const Finding& finding, bool lights, const library::LibraryIndex& index) {
   const std::string query = table_field(finding.query), status = finding.status();
-  if (finding.no_match()) return query + "\t0\t\t\t\tn/a\tn/a\tn/a\tn/a\tn/a\t" + status + "\t-\n";
+  if (finding.no_match())
+    return query + "\t0\t\t\t\tn/a\tn/a\tn/a\tn/a\tn/a\t" + status + (lights ? "\t-\t-\n" : "\t-\n");
   std::string text;
   int rank = 0;
   for (const Neighbor& neighbor : finding.neighbors) {
@@ -26,6 +27,7 @@ std::string table_lines(const Finding& finding, const library::LibraryIndex& ind
     text += "\t" + status + "\t";
     for (std::size_t i = 0; i < neighbor.de.size(); ++i)
       text += (i ? "," : "") + paint::geometry_name(finding.plan.geometries[i]) + "=" + shortest(neighbor.de[i]);
+    if (!neighbor.illuminant.empty()) text += "\t" + neighbor.illuminant;
     text += "\n";
   }
   return text;
@@ -50,6 +52,7 @@ Json finding_json(const Finding& finding, const library::LibraryIndex& index) {
                        {"dC", json_number(neighbor.dC)},
                        {"dH", json_number(neighbor.dH)},
                        {"de_by_geometry", differences}});
+    if (!neighbor.illuminant.empty()) matches.back()["illuminant"] = neighbor.illuminant;
   }
   return {{"name", finding.query},
           {"status", finding.status()},
@@ -59,16 +62,17 @@ Json finding_json(const Finding& finding, const library::LibraryIndex& index) {
           {"matches", matches}};
 }
 
-Result<Sink> Sink::begin(Format format, OutputFile file) {
-  Sink sink(format, std::move(file));
-  if (format == Format::kTable) GONIO_TRY(sink.file_.write(kTableHead));
+Result<Sink> Sink::begin(Format format, bool lights, OutputFile file) {
+  Sink sink(format, lights, std::move(file));
+  if (format == Format::kTable)
+    GONIO_TRY(sink.file_.write(std::string(kTableHead) + (lights ? "\tilluminant\n" : "\n")));
   return sink;
 }
 
 Result<void> Sink::write(const Finding& finding, const library::LibraryIndex& index) {
   switch (format_) {
     case Format::kTable:
-      return file_.write(table_lines(finding, index));
+      return file_.write(table_lines(finding, lights_, index));
     case Format::kJson:
       return file_.write(finding_json(finding, index).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
     case Format::kPaints:

@@ -18,7 +18,8 @@ Json finding_json(const Finding& finding, const library::LibraryIndex& index);
 
 class Sink {
  public:
-  static Result<Sink> begin(Format format, OutputFile file);
+  // With `lights` a table tells in which light each distance is largest.
+  static Result<Sink> begin(Format format, bool lights, OutputFile file);
   Result<void> write(const Finding& finding, const library::LibraryIndex& index);
   Result<void> flush() { return file_.flush(); }
   // Ends the output. The matched paints are read from the library; the index knows their places in it. The run joins
@@ -26,10 +27,11 @@ class Sink {
   Result<void> finish(const std::string& library_path, const cli::Session& session);
 
  private:
-  explicit Sink(Format format, OutputFile file) : format_(format), file_(std::move(file)) {}
+  Sink(Format format, bool lights, OutputFile file) : format_(format), lights_(lights), file_(std::move(file)) {}
   Result<void> write_paints(const std::string& library_path, const cli::Session& session);
 
   Format format_;
+  bool lights_;
   OutputFile file_;
   std::vector<std::uint32_t> wanted_;  // library paints, in the order they were first met
   std::unordered_set<std::uint32_t> met_;

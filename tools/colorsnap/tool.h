@@ -20,6 +20,7 @@ struct Options {
   std::vector<std::string> geometries;
   std::vector<std::string> weights;
   std::vector<std::string> filters;
+  std::vector<std::string> illuminants;
   std::string method = "auto";
   double threshold = 10;
   double off_radial = 5;

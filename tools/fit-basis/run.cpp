@@ -49,7 +49,7 @@ Result<std::vector<fit::BasisTarget>> read_targets(const Options& options, cli::
       if (target.ok())
         targets.push_back(std::move(*target));
       else
-        session.warn(fmt::format("{}:{}: left out: {}", path, input.reader->line(), target.error().message));
+        session.warn(fmt::format("{}:{}: left out: {}", input.name, input.reader->line(), target.error().message));
     }
   }
   if (targets.empty()) return input_error("no paint to choose a basis for: give a library with at least one");

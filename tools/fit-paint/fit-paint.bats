@@ -370,3 +370,22 @@ cornell() {
   run fit-paint -b "$basis" in.xml -o out.xml --color-map maps --color-map-model best
   [ "$status" -eq 2 ]
 }
+
+@test "--illuminant fits the colors of that light, and passes on unfitted what has no spectra" {
+  factors=$(awk 'BEGIN { for (nm = 400; nm <= 700; nm += 10) printf "%s%g", (nm > 400 ? " " : ""), 0.1 + 0.5 / (1 + exp((590 - nm) / 15)) }')
+  spectra=
+  for angle in 15 45 110; do
+    spectra+="<spectrum geometry=\"45as$angle\" from=\"400\" step=\"10\" to=\"700\">$factors</spectrum>"
+  done
+  echo "$head<paint name=\"red\"><measurement illuminant=\"D65\" observer=\"10\">$row$spectra</measurement></paint>$one</paints>" >two.xml
+  run --separate-stderr fit-paint --basis "$basis" --illuminant A two.xml -o lit.xml
+  [ "$status" -eq 1 ]
+  [[ "$stderr" == *'paint "one" is passed on unfitted: it has no spectra'* ]]
+  [ "$(grep -c '<lobes ' lit.xml)" -eq 1 ]
+  # The same as by way of paint-convert.
+  paint-convert -q two.xml#red --illuminant A | fit-paint -q --basis "$basis" -o piped.xml
+  diff <(sed -n '/<paint name="red"/,/<\/paint>/p' lit.xml) <(sed -n '/<paint name="red"/,/<\/paint>/p' piped.xml)
+  grep -q 'illuminant="A"' lit.xml
+  run fit-paint --basis "$basis" --illuminant B two.xml
+  [ "$status" -eq 2 ]
+}

@@ -1,4 +1,5 @@
 #include "brdf/measured.h"
+#include "color/spectrum.h"
 #include "fitting.h"
 #include "tool.h"
 
@@ -10,6 +11,13 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.heading = "what is fitted";
   spec.option("basis,b", "FILE", "testdata/b7.basis.xml", &o.basis, "basis of exponents to fit to").needed();
   add_target_options(spec, o.target, o.weights);
+  spec.option("illuminant", "NAME", "A", &o.illuminant, "fit the colors under this illuminant, from spectra")
+      .more(
+          "It is " + color::spectral_illuminants() +
+          ". The paints then leave with the readings for this illuminant, and in white light their lobes show what an "
+          "eye sees that has adapted to it. A paint without spectra is not fitted, and a measured BRDF is converted by "
+          "paint-convert --illuminant first. Without this option the paints are fitted under the illuminant of their "
+          "readings.");
   spec.option("gloss,g", "GU|ANGLE:GU,...", "20:80,60:90", &o.gloss, "gloss of paints that state none")
       .in("gloss units")
       .more(
@@ -161,7 +169,10 @@ cli::ToolSpec tool_spec(Options& o) {
       "gives these paints weights for the views of these readings.",
       "A paint that has neither readings nor an appearance cannot be fitted. It is named, it passes unchanged, and the "
       "exit status is 1."};
-  spec.inputs = {"PAINTS", "paint XML files or measured BRDFs; standard input where none is given", &o.paints};
+  spec.inputs = {
+      "PAINTS",
+      "paint XML files, or FILE#NAMES for some paints of one, or measured BRDFs; standard input where none is given",
+      &o.paints};
   add_options(spec, o);
   add_report(spec);
   return spec;

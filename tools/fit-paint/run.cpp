@@ -12,6 +12,8 @@
 #include "fit/paint_fit.h"
 #include "fitting.h"
 #include "formats/imported.h"
+#include "illuminants.h"
+#include "paint/spectra.h"
 #include "paint_stream.h"
 #include "settings.h"
 #include "tally.h"
@@ -54,9 +56,11 @@ class NamesOfAll {
 // One run over all inputs.
 class Run {
  public:
-  Run(const fit::PaintFitter& fitter, std::vector<FitInput>& inputs, formats::PaintWriter& writer, Tally& tally,
-      ColorMaps& maps, const cli::Session& session)
+  // The colors are those under `illuminant`, or under that of the readings if it is "".
+  Run(const fit::PaintFitter& fitter, const std::string& illuminant, std::vector<FitInput>& inputs,
+      formats::PaintWriter& writer, Tally& tally, ColorMaps& maps, const cli::Session& session)
       : fitter_(fitter),
+        illuminant_(illuminant),
         inputs_(inputs),
         writer_(writer),
         tally_(tally),
@@ -93,10 +97,13 @@ class Run {
   // Fits one batch and writes it on.
   Result<void> finish_batch(std::vector<paint::Paint>& batch, const std::vector<int>& lines, const std::string& name) {
     const Stopwatch clock;
+    const std::vector<std::string> unlit = bring_to_light(batch);
     std::vector<Result<fit::PaintFit>> results = fit::fits(fitter_, batch);
     tally_.add_time(clock.elapsed_s());
     for (std::size_t i = 0; i < batch.size(); ++i) {
-      if (results[i].ok()) {
+      if (!unlit[i].empty()) {
+        tally_.add_failure(batch[i], fmt::format("{}:{}", name, lines[i]), unlit[i]);
+      } else if (results[i].ok()) {
         tally_.add(batch[i], *results[i]);
         batch[i].lobes = std::move(results[i]->lobes);
       } else {
@@ -108,8 +115,24 @@ class Run {
     return {};
   }
 
+  // Brings the paints to the illuminant, and says why a paint stays as it was; "" of those that did not.
+  std::vector<std::string> bring_to_light(std::vector<paint::Paint>& batch) const {
+    std::vector<std::string> unlit(batch.size());
+    for (std::size_t i = 0; !illuminant_.empty() && i < batch.size(); ++i) {
+      auto lit = paint::in_light(batch[i], {illuminant_, paint::condition_of(batch[i]).observer_deg});
+      if (lit.ok())
+        batch[i] = std::move(*lit);
+      else
+        unlit[i] = lit.error().message;
+    }
+    return unlit;
+  }
+
   Result<void> measured(std::size_t k) {
     FitInput& input = inputs_[k];
+    if (!illuminant_.empty())
+      return usage_error("{}: is a measured BRDF: bring it to --illuminant {} by paint-convert first", input.name,
+                         illuminant_);
     GONIO_ASSIGN(fit::BrdfTarget target, fit::read_brdf_target(*input.measured));
     input.measured.reset();
     GONIO_TRY(names_.note(target.paint, k, 1));
@@ -131,6 +154,7 @@ class Run {
   }
 
   const fit::PaintFitter& fitter_;
+  const std::string& illuminant_;
   std::vector<FitInput>& inputs_;
   formats::PaintWriter& writer_;
   Tally& tally_;
@@ -144,6 +168,7 @@ class Run {
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   GONIO_ASSIGN(fit::FitOptions fit, fit_options(options));
   GONIO_ASSIGN(formats::Basis basis, formats::read_basis(options.basis));
+  if (!options.illuminant.empty()) GONIO_TRY(illuminants_of({options.illuminant}));
   session.explain(plan(options, fit, basis));
   const fit::PaintFitter fitter(std::move(basis), std::move(fit));
 
@@ -155,7 +180,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   Tally tally(options, session);
   ColorMaps maps(options, session);
   GONIO_TRY(maps.begin());
-  GONIO_TRY(Run(fitter, inputs, writer, tally, maps, session).all());
+  GONIO_TRY(Run(fitter, options.illuminant, inputs, writer, tally, maps, session).all());
   GONIO_TRY(writer.finish());
   maps.finish();
   return tally.finish();

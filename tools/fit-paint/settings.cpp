@@ -102,13 +102,16 @@ std::string plan(const Options& options, const fit::FitOptions& fit, const forma
       "  gloss alone, no reading sees them:{}\n"
       "target {}: {}\n"
       "method {}: {}\n"
+      "{}"
       "gloss: {}\n"
       "left out: readings within {} deg of specular; the colors of the working space below 0 (told as gamut_de00)\n",
       basis.name, basis.exponents.size(), basis.mirror ? " and the mirror" : "", list(seen), list(unseen),
       options.target,
       options.target == "curve" ? "quadratic of face, flop and travel; misses 5-angle readings by some dE00"
                                 : "the readings, a monotone cubic between them at 3 % of their weight",
-      options.method, method_plan(fit.method), gloss_plan(fit.assumed_gloss), fit::kGlareAngle_deg);
+      options.method, method_plan(fit.method),
+      options.illuminant.empty() ? "" : fmt::format("colors: from spectra, under {}\n", options.illuminant),
+      gloss_plan(fit.assumed_gloss), fit::kGlareAngle_deg);
   text += fmt::format("measured BRDFs: directions to {} deg from the normal; some ms each\n", fit.steepest_deg);
   if (fit.most_lobes > 0) text += fmt::format("lobes: the best subset of {}\n", fit.most_lobes);
   if (fit.prune_de00 > 0) text += fmt::format("lobes that move no color by dE00 {} are dropped\n", fit.prune_de00);

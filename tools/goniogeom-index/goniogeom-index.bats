@@ -211,3 +211,32 @@ column() { sed -n 2p | cut -f "$1"; }
   [ "$status" -eq 2 ]
   [[ "$output" =~ "choose one by --only" ]]
 }
+
+# Two spectra whose colors part in one light only: the flop is the face with more red, which daylight lamps hide.
+@test "--illuminant judges paints in several lights, and the smallest index is that of all" {
+  spectrum() { awk -v red="$2" -v scale="$3" -v g="$1" 'BEGIN {
+    printf "<spectrum geometry=\"%s\" from=\"400\" step=\"10\" to=\"700\">", g
+    for (nm = 400; nm <= 700; nm += 10) printf "%s%g", (nm > 400 ? " " : ""), scale * (0.2 + red * (nm > 640))
+    print "</spectrum>" }'; }
+  {
+    echo "$head<paint name=\"turning\"><measurement illuminant=\"D65\" observer=\"10\"><lab geometry=\"45as15\" L=\"50\" a=\"0\" b=\"0\"/>"
+    spectrum 45as15 0 1 && spectrum 45as45 0.3 1 && spectrum 45as110 0.9 1
+    echo "</measurement></paint><paint name=\"gray\" class=\"solid\">$gray</paint></paints>"
+  } >spectra.xml
+  run --separate-stderr goniogeom-index spectra.xml --views 0 --light 45 --illuminant D65,A
+  [ "$status" -eq 1 ]
+  [[ "$stderr" == *'paint "gray": it has no readings'* ]]
+  [ "${#lines[@]}" -eq 3 ]
+  [ "$(cut -f11 <<<"${lines[0]}")" = illuminant ]
+  [ "$(cut -f11 <<<"${lines[1]}") $(cut -f11 <<<"${lines[2]}")" = "D65 A" ]
+  # A lamp has more red, so that the paint turns faster there.
+  awk -v a="$(cut -f8 <<<"${lines[2]}")" -v b="$(cut -f8 <<<"${lines[1]}")" 'BEGIN { exit !(a != b) }'
+  run --separate-stderr goniogeom-index spectra.xml#turning --views 0 --light 45 --illuminant D65,A --worst
+  [ "$status" -eq 0 ]
+  [ "${#lines[@]}" -eq 2 ]
+  # The same figures as by way of paint-convert.
+  diff <(goniogeom-index -q spectra.xml#turning --views 0 --light 45 --illuminant A | cut -f1-10) \
+    <(paint-convert -q spectra.xml#turning --illuminant A | goniogeom-index -q --views 0 --light 45)
+  run goniogeom-index spectra.xml --illuminant X
+  [ "$status" -eq 2 ]
+}

@@ -1,6 +1,8 @@
 #include "tool.h"
 
 #include "base/text.h"
+#include "color/spectrum.h"
+#include "illuminants.h"
 #include "paint_stream.h"
 #include "panels.h"
 
@@ -46,6 +48,9 @@ Result<IndexRequest> request_of(const Options& options) {
   for (const std::string& curve : options.curves)
     if (!curve.ends_with(".csv") && !curve.ends_with(".svg"))
       return usage_error("--curve is \"{}\": give a name that ends in .csv or .svg", curve);
+  GONIO_ASSIGN(request.illuminants, illuminants_of(options.illuminants));
+  if (!request.illuminants.empty() && !options.curves.empty())
+    return usage_error("--curve shows a paint under the illuminant of its readings: leave out --illuminant");
   request.one_row = options.worst || request.tolerance_deg;
   GONIO_ASSIGN(panels::GeometryList list, panels::geometry_list(options.geometries));
   request.glare = list.glare, request.below_horizon = list.below_horizon;
@@ -58,8 +63,8 @@ Result<IndexRequest> request_of(const Options& options) {
 Result<SeamRequest> seam_request_of(const Options& options) {
   SeamRequest request;
   GONIO_ASSIGN(request.world, panels::seam_world(options.seam));
-  if (!options.tolerance_for_deg.empty() || !options.curves.empty())
-    return usage_error("--tolerance-for and --curve are for panels without a mesh: leave out --mesh");
+  if (!options.tolerance_for_deg.empty() || !options.curves.empty() || !options.illuminants.empty())
+    return usage_error("--tolerance-for, --curve and --illuminant are for panels without a mesh: leave out --mesh");
   if (!options.picture.empty() && !options.picture.ends_with(".png"))
     return usage_error("--picture is \"{}\": give a name that ends in .png", options.picture);
   GONIO_ASSIGN(static_cast<DifferenceRequest&>(request), difference_of(options));
@@ -82,6 +87,11 @@ void add_options(cli::ToolSpec& spec, Options& o) {
           "curve is face, flop and travel, which are fitted where the paint has only rows. measured is a monotone "
           "curve "
           "through the rows.");
+  spec.option("illuminant", "NAME,...", "D65,A,F11", &o.illuminants, "judge each paint in all of these lights")
+      .more(
+          "The names are " + color::spectral_illuminants() +
+          ". The colors come from the spectra of the paint; one without spectra is left out with a warning. The table "
+          "then has a last column with the illuminant, and the smallest index is that over all of them.");
   spec.heading = "verdict";
   spec.flag("worst", &o.worst, "write one row for each paint: its smallest index");
   spec.option("tolerance-for", "DEG", "1", &o.tolerance_for_deg, "judge the paints by every angle up to this one")
@@ -119,8 +129,10 @@ void add_report(cli::ToolSpec& spec) {
   spec.report = {
       {"paints[].name", "the paint"},
       {"paints[].status", "done, or failed with a message: the paint has no color"},
-      {"paints[].residual_de00", "worst row of the curve that was fitted; null where the paint states its curve"},
+      {"paints[].residual_de00",
+       "worst row of the curve that was fitted; null where the paint states its curve; the largest of several lights"},
       {"paints[].geometries[].light_deg", "the light, from the normal of the first panel"},
+      {"paints[].geometries[].illuminant", "with --illuminant: the light's"},
       {"paints[].geometries[].view_deg", "the viewer, positive on the far side of the normal from the light"},
       {"paints[].geometries[].azimuth_deg", "azimuth of the viewer about the normal"},
       {"paints[].geometries[].aspecular_deg", "aspecular angle at the first panel"},
@@ -167,7 +179,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "every place as they would to a flat one, with the light from either side of the seam. --light-from and "
       "--view-from put them into the world instead, and --environment takes the light of a prefiltered environment. "
       "Shadows and reflections of the mesh on itself are left out."};
-  spec.inputs = {"PAINTS", "paint XML files; standard input where none is given", &o.inputs};
+  spec.inputs = {"PAINTS", "paint XML files, or FILE#NAMES for some paints of one; standard input where none is given",
+                 &o.inputs};
   add_geometry_options(spec, o.geometries, o.seam_deg);
   add_options(spec, o);
   add_report(spec);

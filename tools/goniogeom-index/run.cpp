@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "curve.h"
+#include "paint/spectra.h"
 #include "paint_stream.h"
 #include "panels.h"
 #include "table_output.h"
@@ -19,6 +20,8 @@ constexpr double kTold_deg[] = {1, 2, 5};
 constexpr int kNamesShown = 20;
 
 struct GeometryRow {
+  std::size_t geometry = 0;    // of the request
+  std::size_t illuminant = 0;  // of the request, where it names some
   panels::GeometryIndex index;
   double de[std::size(kTold_deg)];
 };
@@ -27,24 +30,37 @@ struct GeometryRow {
 struct PaintIndex {
   std::string failure;  // why there is nothing else
   std::optional<double> residual_de00;
-  std::vector<GeometryRow> rows;  // one for each geometry
+  std::vector<GeometryRow> rows;  // one for each geometry; all of one illuminant after the other
   std::size_t worst = 0;
   double smallest_deg = std::numeric_limits<double>::infinity();
 };
 
-PaintIndex paint_index(const paint::Paint& paint, const IndexRequest& request) {
-  PaintIndex result;
+// Adds the rows of a paint in one light. Returns why there are none, or "".
+std::string add_rows(const paint::Paint& paint, std::size_t illuminant, const IndexRequest& request,
+                     PaintIndex& result) {
   const auto curve = panels::FlakeCurve::make(paint, request.target);
-  if (!curve.ok()) return {curve.error().message, {}, {}, 0, 0};
-  result.residual_de00 = curve->residual_de00();
+  if (!curve.ok()) return curve.error().message;
+  if (curve->residual_de00())
+    result.residual_de00 = std::max(result.residual_de00.value_or(0), *curve->residual_de00());
   for (std::size_t i = 0; i < request.pairs.size(); ++i) {
     const panels::TiltedPair& pair = request.pairs[i];
-    GeometryRow row{panels::geometry_index(*curve, pair, request.threshold, request.metric), {}};
+    GeometryRow row{i, illuminant, panels::geometry_index(*curve, pair, request.threshold, request.metric), {}};
     for (std::size_t k = 0; k < std::size(kTold_deg); ++k)
       row.de[k] = panels::larger_difference(*curve, pair, kTold_deg[k], request.metric);
     if (row.index.smallest_deg() < result.smallest_deg)
-      result.smallest_deg = row.index.smallest_deg(), result.worst = i;
+      result.smallest_deg = row.index.smallest_deg(), result.worst = result.rows.size();
     result.rows.push_back(row);
+  }
+  return "";
+}
+
+PaintIndex paint_index(const paint::Paint& paint, const IndexRequest& request) {
+  PaintIndex result;
+  if (request.illuminants.empty()) result.failure = add_rows(paint, 0, request, result);
+  for (std::size_t i = 0; i < request.illuminants.size() && result.failure.empty(); ++i) {
+    const auto lit = paint::in_light(paint, {request.illuminants[i], paint::condition_of(paint).observer_deg});
+    result.failure = lit.ok() ? add_rows(*lit, i, request, result)
+                              : fmt::format("paint \"{}\": {}", paint.name, lit.error().message);
   }
   return result;
 }
@@ -62,13 +78,14 @@ std::string table_rows(const paint::Paint& paint, const PaintIndex& index, const
   const std::size_t first = request.one_row ? index.worst : 0;
   const std::size_t last = request.one_row ? first + 1 : index.rows.size();
   for (std::size_t i = first; i < last; ++i) {
-    const panels::LightView& g = request.geometries[i];
     const GeometryRow& row = index.rows[i];
+    const panels::LightView& g = request.geometries[row.geometry];
     fmt::format_to(std::back_inserter(text), "{}\t{}\t{}\t{}\t{:.9g}\t{}\t{}", table_field(paint.name), g.light_deg,
-                   g.view_deg, g.azimuth_deg, request.pairs[i].at(0).aspecular_deg, angle_text(row.index.plus_deg),
-                   angle_text(row.index.minus_deg));
+                   g.view_deg, g.azimuth_deg, request.pairs[row.geometry].at(0).aspecular_deg,
+                   angle_text(row.index.plus_deg), angle_text(row.index.minus_deg));
     for (const double de : row.de) text += std::isnan(de) ? "\t-" : fmt::format("\t{:.6g}", de);
     if (request.tolerance_deg) text += "\t" + verdict_of(index, *request.tolerance_deg);
+    if (!request.illuminants.empty()) text += "\t" + request.illuminants[row.illuminant];
     text += '\n';
   }
   return text;
@@ -77,25 +94,26 @@ std::string table_rows(const paint::Paint& paint, const PaintIndex& index, const
 std::string table_head(const IndexRequest& request) {
   return fmt::format(
       "name\tlight_deg\tview_deg\tazimuth_deg\taspecular_deg\tindex_plus_deg\tindex_minus_deg\tde_at_1deg\tde_at_2deg\t"
-      "de_at_5deg{}\n",
-      request.tolerance_deg ? "\tverdict" : "");
+      "de_at_5deg{}{}\n",
+      request.tolerance_deg ? "\tverdict" : "", request.illuminants.empty() ? "" : "\tilluminant");
 }
 
 Json paint_json(const paint::Paint& paint, const PaintIndex& index, const IndexRequest& request) {
   Json geometries = Json::array();
   const auto angle = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
   for (std::size_t i = 0; i < index.rows.size(); ++i) {
-    const panels::LightView& g = request.geometries[i];
     const GeometryRow& row = index.rows[i];
+    const panels::LightView& g = request.geometries[row.geometry];
     geometries.push_back({{"light_deg", g.light_deg},
                           {"view_deg", g.view_deg},
                           {"azimuth_deg", g.azimuth_deg},
-                          {"aspecular_deg", request.pairs[i].at(0).aspecular_deg},
+                          {"aspecular_deg", request.pairs[row.geometry].at(0).aspecular_deg},
                           {"index_plus_deg", angle(row.index.plus_deg)},
                           {"index_minus_deg", angle(row.index.minus_deg)},
                           {"de_at_1deg", json_number(row.de[0])},
                           {"de_at_2deg", json_number(row.de[1])},
                           {"de_at_5deg", json_number(row.de[2])}});
+    if (!request.illuminants.empty()) geometries.back()["illuminant"] = request.illuminants[row.illuminant];
   }
   return {{"name", paint.name},
           {"status", "done"},
@@ -112,6 +130,8 @@ std::string plan(const Options& options, const IndexRequest& request) {
       "seam at {} deg from the plane of incidence\n",
       request.pairs.size(), request.glare, panels::kIndexGlare_deg, request.below_horizon, options.metric,
       shortest(request.threshold), shortest(options.seam_deg));
+  if (!request.illuminants.empty())
+    text += fmt::format("colors from spectra, under {} each\n", joined(request.illuminants, ", "));
   text +=
       request.target == paint::TargetCurve::Kind::kCurve
           ? "color: face, flop and travel; a fit of some 20 us where a paint has only rows, residual in the report\n"
@@ -163,8 +183,10 @@ class Run {
     ++done_;
     if (index.smallest_deg < smallest_deg_ || done_ == 1) {
       smallest_deg_ = index.smallest_deg;
-      const panels::LightView& g = request_.geometries[index.worst];
-      worst_ = fmt::format("{} at light {}, view {}", paint.name, shortest(g.light_deg), shortest(g.view_deg));
+      const GeometryRow& row = index.rows[index.worst];
+      const panels::LightView& g = request_.geometries[row.geometry];
+      worst_ = fmt::format("{} at light {}, view {}{}", paint.name, shortest(g.light_deg), shortest(g.view_deg),
+                           request_.illuminants.empty() ? "" : ", " + request_.illuminants[row.illuminant]);
     }
     if (request_.tolerance_deg && verdict_of(index, *request_.tolerance_deg) == "fail") failing_.push_back(paint.name);
     session_.add("paints", [&] { return paint_json(paint, index, request_); });

@@ -19,6 +19,7 @@ struct Options {
   double seam_deg = 90;
   double threshold = 2.3;
   std::string metric = "de76", target = "curve";
+  std::vector<std::string> illuminants;
   bool worst = false;
   std::vector<double> tolerance_for_deg;  // empty: not asked
   std::vector<std::string> curves;
@@ -47,7 +48,8 @@ struct IndexRequest : DifferenceRequest {
   int glare = 0, below_horizon = 0;       // pairs left out
   std::vector<panels::TiltedPair> pairs;  // one for each geometry
   std::optional<double> tolerance_deg;
-  bool one_row = false;  // for each paint: its worst geometry
+  bool one_row = false;                  // for each paint: its worst geometry
+  std::vector<std::string> illuminants;  // under which each paint is judged; none: that of its readings
 };
 Result<IndexRequest> request_of(const Options& options);
 

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "base/text.h"
 #include "brdf/measured.h"
 #include "foreign_formats.h"
 #include "formats/cgats.h"
 #include "formats/cxf.h"
+#include "formats/reference.h"
 
 namespace goniochrome::tool {
 
@@ -43,6 +45,34 @@ class CsvSource : public PaintSource {
 };
 
 using SourcePointer = std::unique_ptr<PaintSource>;
+
+// The paints of a source that have certain names.
+class NamedSource : public PaintSource {
+ public:
+  NamedSource(std::string file, SourcePointer all, formats::NameChoice choice)
+      : file_(std::move(file)), all_(std::move(all)), choice_(std::move(choice)) {}
+  Result<std::optional<paint::Paint>> next() override {
+    for (;;) {
+      GONIO_ASSIGN(std::optional<paint::Paint> paint, all_->next());
+      if (paint && !choice_->takes(paint->name)) continue;
+      if (!paint)
+        if (const auto choice = std::exchange(choice_, std::nullopt)) GONIO_TRY(choice->check_all_met(file_));
+      return paint;
+    }
+  }
+  std::string place() const override { return all_->place(); }
+  std::string format() const override { return all_->format(); }
+  Prolog prolog() override { return all_->prolog(); }
+  std::vector<std::string> warnings() const override { return all_->warnings(); }
+  std::vector<std::string> closing_warnings() const override { return all_->closing_warnings(); }
+  Json figures() const override { return all_->figures(); }
+  bool takes_condition() const override { return all_->takes_condition(); }
+
+ private:
+  std::string file_;
+  SourcePointer all_;
+  std::optional<formats::NameChoice> choice_;  // until the end was met
+};
 using SinkPointer = std::unique_ptr<PaintSink>;
 
 // The first character that is no white space, behind a byte order mark; 0 where there is none.
@@ -126,18 +156,21 @@ std::vector<std::string> output_format_names() {
   return names;
 }
 
-Result<SourcePointer> open_source(const std::string& path, const std::string& format, const SourceSetup& setup) {
+Result<SourcePointer> open_source(const std::string& reference, const std::string& format, const SourceSetup& setup) {
+  auto [path, names] = formats::paint_reference(reference);
   GONIO_ASSIGN(InputFile input, InputFile::open(path));
   GONIO_ASSIGN(const std::string_view head, input.peek());
   if (head.empty()) return input_error("{}: is empty: give it paints", input.name());
   const auto* known = std::ranges::find_if(kInputs, [&](const InputFormat& candidate) {
-    return format == "auto" ? candidate.looks(path, head) : candidate.name == format;
+    return format == "auto" ? candidate.looks(input.name(), head) : candidate.name == format;
   });
   if (known == kInputs.end())
     return input_error(
         "{}: is neither paint XML nor a table, CxF, CGATS or measured BRDF: name its format by --from if it is one",
         input.name());
-  return known->open(std::move(input), setup);
+  GONIO_ASSIGN(SourcePointer source, known->open(std::move(input), setup));
+  if (!names) return source;
+  return SourcePointer(std::make_unique<NamedSource>(path, std::move(source), formats::NameChoice(std::move(*names))));
 }
 
 Result<const OutputFormat*> output_format(const std::string& path, const std::string& format) {

@@ -83,8 +83,9 @@ struct OutputFormat {
 std::vector<std::string> input_format_names();
 std::vector<std::string> output_format_names();
 
-// Opens an input; "auto" finds its format from the first bytes. Error: the file, and the formats there are.
-Result<std::unique_ptr<PaintSource>> open_source(const std::string& path, const std::string& format,
+// Opens FILE, or FILE#NAMES for some of its paints; "auto" finds the format from the first bytes. Error: the file, and
+// the formats there are.
+Result<std::unique_ptr<PaintSource>> open_source(const std::string& reference, const std::string& format,
                                                  const SourceSetup& setup);
 
 // The output format of that name; "auto" goes by the ending of `path`, and is paint XML for standard output. Error: the

@@ -112,7 +112,10 @@ cli::ToolSpec tool_spec(Options& o) {
       "are fitted again; its lobes and its color map, which are those of the light before, are left out. A paint "
       "without spectra stays as it is, and a warning says so.",
       "A wrong value stops the conversion, and the output file stays as it was."};
-  spec.inputs = {"INPUT", "paint XML, tables, CxF, CGATS or measured BRDFs; - or none is standard input", &o.inputs};
+  spec.inputs = {"INPUT",
+                 "paint XML, tables, CxF, CGATS or measured BRDFs, or FILE#NAMES for some paints of one; - or none is "
+                 "standard input",
+                 &o.inputs};
   add_options(spec, o);
   add_report(spec);
   return spec;

@@ -113,16 +113,11 @@ Result<void> Conversion::bring_to_light(paint::Paint& paint) {
     return {};
   }
   const std::size_t rows = paint.measurement->rows.size();
-  GONIO_ASSIGN(paint.measurement, paint::under_light(*paint.measurement, condition));
+  const bool has_models = paint.lobes || paint.color_map;
+  GONIO_ASSIGN(paint, paint::in_light(std::move(paint), condition));
   if (paint.measurement->rows.size() < rows)
     remarks_.note("readings without a spectrum are left out: nothing tells their color in other light", paint.name);
-  if (paint.appearance) {
-    GONIO_ASSIGN(const paint::AppearanceFit fit, paint::appearance_from_rows(paint.measurement->rows));
-    paint.appearance = fit.appearance;
-  }
-  if (paint.lobes || paint.color_map)
-    remarks_.note("lobes and color maps are left out: they are those of the light before", paint.name);
-  paint.lobes.reset(), paint.color_map.reset();
+  if (has_models) remarks_.note("lobes and color maps are left out: they are those of the light before", paint.name);
   return {};
 }
 

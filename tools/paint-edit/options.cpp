@@ -191,7 +191,7 @@ cli::ToolSpec tool_spec(Options& o) {
       "ones. Name, code and class stay.",
       "Some paints cannot take a move: a gray, for example, has no hue to turn. Such a move is left out with a "
       "warning, the other moves are made, and the exit status is 1."};
-  spec.inputs = {"PAINTS", "paint XML files, or FILE#NAME for one paint; standard input where none is given",
+  spec.inputs = {"PAINTS", "paint XML files, or FILE#NAMES for some paints of one; standard input where none is given",
                  &o.inputs};
   add_options(spec, o);
   add_report(spec);

@@ -9,11 +9,11 @@
 
 namespace goniochrome::tool {
 
-// Reads FILE, FILE#NAME and - one after the other, in constant memory. The first paint of each is read when the source
+// Reads FILE, FILE#NAMES and - one after the other, in constant memory. The first paint of each is read when the source
 // is opened, so that the history of all is known before anything is written.
 class PaintSource {
  public:
-  // Error: a file that cannot be read, or a NAME that it does not have.
+  // Error: a file that cannot be read, or a name that it does not have.
   static Result<PaintSource> open(const std::vector<std::string>& inputs);
 
   Result<std::optional<paint::Paint>> next();
@@ -22,12 +22,9 @@ class PaintSource {
 
  private:
   struct Input {
-    std::string path;
-    std::optional<std::string> name;  // the only paint wanted
     formats::PaintReader reader;
     std::optional<paint::Paint> first;  // read already
 
-    // The next paint that is wanted.
     Result<std::optional<paint::Paint>> next();
   };
   std::vector<Input> inputs_;

@@ -1,5 +1,6 @@
 #include "tool.h"
 
+#include "color/spectrum.h"
 #include "paint/metrics.h"
 #include "table_output.h"
 
@@ -37,7 +38,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "passes so close to gray that the sense of the hue travel is noise; gamut, where the working space loses more "
       "than 1 dE00 of some color; no_color, where there are neither rows nor a curve.",
       "The report holds the same figures as the table in one object."};
-  spec.inputs = {"PAINTS", "paint XML files; standard input where none is given", &o.inputs};
+  spec.inputs = {"PAINTS", "paint XML files, or FILE#NAMES for some paints of one; standard input where none is given",
+                 &o.inputs};
   spec.heading = "selection";
   spec.option("where,w", "CONDITION", "'flop_index>=17 && chroma_index<5'", &o.where,
               "write only the paints for which this holds")
@@ -55,6 +57,19 @@ cli::ToolSpec tool_spec(Options& o) {
           "model: how many directions were compared, and the mean, the 95th percentile and the largest CIEDE2000 "
           "difference, and the mean and the 95th percentile of the CIE 1976 difference. A measured BRDF is for the "
           "paint that has the name of its file; if there is none, it is for all paints.");
+  spec.option("illuminant", "NAME,...", "A,F11", &o.illuminants, "tell how the colors change in other light")
+      .more(
+          "The names are " + color::spectral_illuminants() +
+          ". The table has a column inconstancy_NAME for each: the CIEDE2000 difference between the color under the "
+          "illuminant of the readings and under this one, to an eye that has adapted to each of them by CMCCAT2000, at "
+          "the geometry where it is largest. It is n/a for paints without spectra; paint-convert keeps those of CxF "
+          "and of measured BRDFs. The columns stand behind all others, and --where does not know them.");
+  spec.option("standard", "PAINT", "fitted.xml#candy_red", &o.standard, "pair each paint with this one")
+      .more(
+          "With --illuminant the table has a column metamerism_NAME for each illuminant: the special metamerism index "
+          "of CIE 15, by CIEDE2000, at the geometry where it is largest. It tells how much two paints that match in "
+          "the light of the readings differ in this one. What they differ by in the light of the readings is taken "
+          "off before, by a factor for each of X, Y and Z. PAINT is a file with one paint, or FILE#NAME.");
   add_keep_going(spec, "keep-going,k", o.keep_going, "paints that cannot be read");
   spec.heading = "output";
   add_table_options(spec, o.output, o.format, "the paints themselves, with every element kept", "paint");
@@ -72,6 +87,9 @@ cli::ToolSpec tool_spec(Options& o) {
   for (const paint::MetricColumn& column : paint::metric_columns())
     spec.report.push_back({std::string("paints[].") + column.name, column.meaning});
   spec.report.insert(spec.report.end(), {{"read", "number of paints read"},
+                                         {"paints[].under.NAME",
+                                          "with --illuminant: inconstancy and, with --standard, metamerism, each with "
+                                          "its CIEDE2000 difference by geometry"},
                                          {"matched", "number of paints written"},
                                          {"left_out", "number of paints that --keep-going left out"},
                                          {"scores[]",

@@ -269,3 +269,41 @@ column() {
   run --separate-stderr paint-stats --score table.csv -f paints gray.xml
   [ "$status" -eq 2 ]
 }
+
+# spectral NAME FACTOR: a paint whose reflectance factors from 400 to 700 nm are FACTOR at each, an expression in nm.
+spectral() {
+  awk -v name="$1" "BEGIN {
+    for (nm = 400; nm <= 700; nm += 10) factors = factors (nm > 400 ? \" \" : \"\") ($2)
+    printf \"<paint name=\\\"%s\\\"><measurement illuminant=\\\"D65\\\" observer=\\\"10\\\">\", name
+    printf \"<lab geometry=\\\"45as45\\\" L=\\\"50\\\" a=\\\"0\\\" b=\\\"0\\\"/>\"
+    printf \"<spectrum geometry=\\\"45as45\\\" from=\\\"400\\\" step=\\\"10\\\" to=\\\"700\\\">%s</spectrum></measurement></paint>\\n\", factors
+  }"
+}
+
+@test "--illuminant tells the inconstancy and, with --standard, the metamerism of paints with spectra" {
+  {
+    echo "$head"
+    spectral gray 0.3
+    spectral green '0.1 + 0.5 * exp(-((nm - 530) / 40) ^ 2)'
+    spectral bright_green '0.12 + 0.6 * exp(-((nm - 530) / 40) ^ 2)'
+    spectral other_green '0.1 + 0.5 * exp(-((nm - 525) / 30) ^ 2) + 0.1 * exp(-((nm - 580) / 20) ^ 2)'
+    echo "$metallic</paints>"
+  } >lib.xml
+  paint-stats -q --illuminant A,F11 --standard lib.xml#green lib.xml >t.tsv
+  [ "$(column inconstancy_A <t.tsv | awk 'NR == 1 { print ($1 < 1e-9) }')" = 1 ]
+  [ "$(column inconstancy_A <t.tsv | awk 'NR == 2 { print ($1 > 1) }')" = 1 ]
+  # A brighter paint of the same color is no metamer, and one of other pigments is.
+  [ "$(column metamerism_A <t.tsv | awk 'NR == 2 { print $1 }')" = 0 ]
+  [ "$(column metamerism_A <t.tsv | awk 'NR == 3 { print ($1 < 1e-4) }')" = 1 ]
+  [ "$(column metamerism_F11 <t.tsv | awk 'NR == 4 { print ($1 > 0.5) }')" = 1 ]
+  [ "$(column metamerism_F11 <t.tsv | tail -1)" = n/a ]
+  paint-stats -q -f json --illuminant A lib.xml#green | jq -e '.under.A.inconstancy["45as45"] > 1' >/dev/null
+  run paint-stats --illuminant A9 lib.xml
+  [ "$status" -eq 2 ]
+  [[ "$output" == *"D65, D50, A"* ]]
+  run paint-stats --standard lib.xml#green lib.xml
+  [ "$status" -eq 2 ]
+  run paint-stats --illuminant A --standard lib.xml lib.xml
+  [ "$status" -eq 3 ]
+  [[ "$output" == *"holds 5 paints: name one of them by FILE#NAME"* ]]
+}

@@ -8,6 +8,7 @@
 #include "base/file.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "other_light.h"
 #include "paint/metrics.h"
 #include "paint_stream.h"
 #include "score.h"
@@ -22,34 +23,45 @@ std::string number_field(double value) {
   return std::isinf(value) ? (value < 0 ? "-inf" : "inf") : shortest(value);
 }
 
-Json as_json(const paint::Paint& paint, const paint::PaintMetrics& numbers) {
+// What is told of one paint.
+struct Figures {
+  paint::PaintMetrics numbers;
+  OtherLight::Figures elsewhere;
+};
+
+Json as_json(const paint::Paint& paint, const Figures& figures) {
+  const paint::PaintMetrics& numbers = figures.numbers;
   Json json = {{"name", paint.name}, {"code", paint.code}, {"class", paint::paint_class_name(paint.paint_class)}};
   for (const paint::MetricColumn& column : paint::metric_columns())
     json[column.name] = json_number(numbers.*column.value);
   json["source"] = paint::source_name(numbers.source);
   json["flags"] = numbers.flags;
+  if (!figures.elsewhere.json.is_null()) json["under"] = figures.elsewhere.json;
   return json;
 }
 
-std::string table_head() {
+std::string table_head(const OtherLight& light) {
   std::string text = "name\tcode\tclass";
   for (const paint::MetricColumn& column : paint::metric_columns()) text += std::string("\t") + column.name;
-  return text + "\tsource\tflags\n";
+  return text + "\tsource\tflags" + light.head() + "\n";
 }
 
-std::string table_line(const paint::Paint& paint, const paint::PaintMetrics& numbers) {
+std::string table_line(const paint::Paint& paint, const Figures& figures) {
+  const paint::PaintMetrics& numbers = figures.numbers;
   std::string text =
       table_field(paint.name) + "\t" + table_field(paint.code) + "\t" + paint::paint_class_name(paint.paint_class);
   for (const paint::MetricColumn& column : paint::metric_columns()) text += "\t" + number_field(numbers.*column.value);
   std::string flags;
   for (const char* flag : numbers.flags) flags += (flags.empty() ? "" : ",") + std::string(flag);
-  return text + "\t" + paint::source_name(numbers.source) + "\t" + (flags.empty() ? "-" : flags) + "\n";
+  return text + "\t" + paint::source_name(numbers.source) + "\t" + (flags.empty() ? "-" : flags) +
+         figures.elsewhere.columns + "\n";
 }
 
 // Where matching paints go, in one of the three formats.
 class Sink {
  public:
-  static Result<Sink> begin(Format format, OutputFile file, Prolog prolog, const cli::Session& session) {
+  static Result<Sink> begin(Format format, OutputFile file, Prolog prolog, const OtherLight& light,
+                            const cli::Session& session) {
     Sink sink;
     sink.format_ = format;
     if (format == Format::kPaints) {
@@ -58,20 +70,20 @@ class Sink {
       return sink;
     }
     sink.file_.emplace(std::move(file));
-    if (format == Format::kTable) GONIO_TRY(sink.file_->write(table_head()));
+    if (format == Format::kTable) GONIO_TRY(sink.file_->write(table_head(light)));
     return sink;
   }
 
-  Result<void> write(const paint::Paint& paint, const paint::PaintMetrics& numbers) {
+  Result<void> write(const paint::Paint& paint, const Figures& figures) {
     switch (format_) {
       case Format::kPaints:
         return writer_->write(paint);
       case Format::kJson:
-        return file_->write(as_json(paint, numbers).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
+        return file_->write(as_json(paint, figures).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
       case Format::kTable:
         break;
     }
-    return file_->write(table_line(paint, numbers));
+    return file_->write(table_line(paint, figures));
   }
   Result<void> flush() { return file_ ? file_->flush() : Result<void>(); }
   Result<void> finish() { return writer_ ? writer_->finish() : file_->commit(); }
@@ -92,12 +104,13 @@ class Run {
       GONIO_ASSIGN(paint::PaintFilter filter, paint::PaintFilter::parse(options_.where));
       filter_.emplace(std::move(filter));
     }
+    GONIO_ASSIGN(light_, OtherLight::create(options_));
     GONIO_ASSIGN(formats::PaintBatches batches, formats::PaintBatches::open(options_.inputs));
     Prolog prolog;
     prolog.take(batches);
     GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
     GONIO_ASSIGN(Sink sink, Sink::begin(format_of(options_.format, options_.output), std::move(file), std::move(prolog),
-                                        session_));
+                                        *light_, session_));
     sink_.emplace(std::move(sink));
     session_.begin_list("paints");
     GONIO_TRY(for_each_batch(
@@ -118,24 +131,30 @@ class Run {
 
   Result<void> measure(const std::vector<paint::Paint>& batch) {
     const Stopwatch measuring;
-    std::vector<std::optional<Result<paint::PaintMetrics>>> numbers(batch.size());
+    std::vector<std::optional<Result<Figures>>> figures(batch.size());
     parallel_for(batch.size(), 16, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) numbers[i] = paint::metrics(batch[i]);
+      for (std::size_t i = begin; i < end; ++i) figures[i] = figures_of(batch[i]);
     });
     measuring_s_ += measuring.elapsed_s();
     read_ += batch.size();
     for (std::size_t i = 0; i < batch.size(); ++i) {
-      if (!numbers[i]->ok()) return input_error("paint \"{}\": {}", batch[i].name, numbers[i]->error().message);
-      GONIO_TRY(take(batch[i], **numbers[i]));
+      if (!figures[i]->ok()) return input_error("paint \"{}\": {}", batch[i].name, figures[i]->error().message);
+      GONIO_TRY(take(batch[i], **figures[i]));
     }
     return sink_->flush();
   }
 
-  Result<void> take(const paint::Paint& paint, const paint::PaintMetrics& numbers) {
-    if (filter_ && !filter_->matches(paint, numbers)) return {};
+  Result<Figures> figures_of(const paint::Paint& paint) const {
+    GONIO_ASSIGN(paint::PaintMetrics numbers, paint::metrics(paint));
+    GONIO_ASSIGN(OtherLight::Figures elsewhere, light_->of(paint));
+    return Figures{std::move(numbers), std::move(elsewhere)};
+  }
+
+  Result<void> take(const paint::Paint& paint, const Figures& figures) {
+    if (filter_ && !filter_->matches(paint, figures.numbers)) return {};
     ++matched_;
-    session_.add("paints", [&] { return as_json(paint, numbers); });
-    return sink_->write(paint, numbers);
+    session_.add("paints", [&] { return as_json(paint, figures); });
+    return sink_->write(paint, figures);
   }
 
   cli::Verdict finish() {
@@ -154,6 +173,7 @@ class Run {
   const Options& options_;
   cli::Session& session_;
   std::optional<paint::PaintFilter> filter_;
+  std::optional<OtherLight> light_;
   std::optional<Sink> sink_;
   std::size_t read_ = 0, matched_ = 0, left_out_ = 0;
   double measuring_s_ = 0;
@@ -178,6 +198,8 @@ std::string plan(const Options& options) {
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   if (!options.score.empty()) {
     if (!options.where.empty()) return usage_error("--score and --where exclude each other");
+    if (!options.illuminants.empty() || !options.standard.empty())
+      return usage_error("--score compares under the light of the readings: leave out --illuminant and --standard");
     return score(options, session);
   }
   session.explain(plan(options));

@@ -212,7 +212,7 @@ Result<cli::Verdict> score(const Options& options, cli::Session& session) {
     GONIO_ASSIGN(std::vector<paint::Paint> read, formats::read_paints(path));
     for (paint::Paint& paint : read) {
       named = named || paint.name == table.stem();
-      paints.emplace_back(std::move(paint), path == "-" ? "" : std::filesystem::path(path).parent_path());
+      paints.emplace_back(std::move(paint), std::filesystem::path(formats::paint_reference(path).file).parent_path());
     }
   }
   std::string text = format == Format::kTable

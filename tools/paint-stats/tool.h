@@ -15,6 +15,8 @@ struct Options {
   std::string format = "auto";
   std::string where;
   std::string score;
+  std::vector<std::string> illuminants;
+  std::string standard;
   bool keep_going = false;
 };
 

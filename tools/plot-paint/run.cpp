@@ -40,11 +40,12 @@ Result<std::vector<ChosenPaint>> chosen_paints(const Options& options) {
   std::vector<std::string> missing = options.names;
   for (const std::string& path : options.libraries.empty() ? std::vector<std::string>{"-"} : options.libraries) {
     GONIO_ASSIGN(std::vector<paint::Paint> paints, formats::read_paints(path));
+    const std::filesystem::path folder = std::filesystem::path(formats::paint_reference(path).file).parent_path();
     for (paint::Paint& paint : paints) {
       const bool named = std::ranges::find(options.names, paint.name) != options.names.end();
       if (!options.names.empty() && !named) continue;
       std::erase(missing, paint.name);
-      chosen.push_back({std::move(paint), path == "-" ? "" : std::filesystem::path(path).parent_path()});
+      chosen.push_back({std::move(paint), folder});
     }
   }
   if (!missing.empty()) return input_error("there is no paint \"{}\": see the names in the library", missing.front());

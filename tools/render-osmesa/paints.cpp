@@ -6,7 +6,7 @@
 
 #include "base/angles.h"
 #include "base/text.h"
-#include "formats/batches.h"
+#include "formats/reference.h"
 #include "formats/xml.h"
 #include "image/surface_file.h"
 #include "render/trim.h"

@@ -210,7 +210,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "A solid paint has no travel, and its face and flop move together. A paint counts as solid by its class, or "
       "where face and flop are closer than 1. Parameters that the views do not determine stay near those of the paint "
       "given, and are named. The exit status is 1 where a paint is not improved."};
-  spec.inputs = {"PAINTS", "paint XML files; standard input where none is given", &o.inputs};
+  spec.inputs = {"PAINTS", "paint XML files, or FILE#NAMES for some paints of one; standard input where none is given",
+                 &o.inputs};
   add_options(spec, o);
   add_report(spec);
   return spec;

@@ -1,0 +1,43 @@
+// The paints that a command line names: FILE, or FILE#NAMES for some of those in a file.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+
+namespace goniochrome::formats {
+
+struct PaintReference {
+  std::string file;
+  std::optional<std::string> name;  // of the paints that are meant
+};
+
+// FILE or FILE#NAMES, taken apart at the last # before which a file's name stands, or else at the last #. If there is a
+// file of the whole name, it is meant.
+PaintReference paint_reference(const std::string& text);
+
+// Which paints NAMES means: the one of this very name; or several names, separated by commas, in which * stands for any
+// text and ? for any character.
+class NameChoice {
+ public:
+  explicit NameChoice(std::string names);
+
+  // Whether the paint of this name is meant. Names are taken letter by letter.
+  bool takes(const std::string& name);
+
+  // What is to be told at the end of a file: the first of the names that no paint had. Error: names it.
+  Result<void> check_all_met(const std::string& file) const;
+
+ private:
+  struct Pattern {
+    std::string text;
+    bool met = false;
+  };
+  std::string whole_;
+  bool whole_met_ = false;
+  std::vector<Pattern> patterns_;
+};
+
+}  // namespace goniochrome::formats

@@ -1,0 +1,78 @@
+#include "other_light.h"
+
+#include "base/text.h"
+#include "formats/xml.h"
+#include "illuminants.h"
+
+namespace goniochrome::tool {
+
+namespace {
+
+// The largest difference, or n/a where there is none.
+std::string field_of(const std::vector<paint::DifferenceAt>& differences) {
+  double largest = -1;
+  for (const paint::DifferenceAt& difference : differences)
+    if (!(difference.de00 <= largest)) largest = difference.de00;  // also one that is not a number
+  return "\t" + (largest >= 0 ? shortest(largest) : std::string("n/a"));
+}
+
+Json json_of(const std::vector<paint::DifferenceAt>& differences) {
+  Json json = Json::object();
+  for (const paint::DifferenceAt& difference : differences)
+    json[paint::geometry_name(difference.geometry)] = json_number(difference.de00);
+  return json;
+}
+
+Result<paint::Measurement> standard_of(const std::string& reference) {
+  GONIO_ASSIGN(const std::vector<paint::Paint> paints, formats::read_paints(reference));
+  if (paints.size() != 1)
+    return input_error("--standard {}: holds {} paints: name one of them by FILE#NAME", reference, paints.size());
+  const auto& measurement = paints.front().measurement;
+  if (!measurement || measurement->spectra.empty())
+    return input_error("--standard {}: has no spectra, so that nothing tells its color in other light", reference);
+  return Result(*measurement);
+}
+
+}  // namespace
+
+Result<OtherLight> OtherLight::create(const Options& options) {
+  OtherLight result;
+  GONIO_ASSIGN(result.illuminants_, illuminants_of(options.illuminants));
+  if (options.standard.empty()) return result;
+  if (result.illuminants_.empty())
+    return usage_error("--standard needs the light in which pairs are compared: give --illuminant, as in A,F11");
+  GONIO_ASSIGN(result.standard_, standard_of(options.standard));
+  return result;
+}
+
+std::string OtherLight::head() const {
+  std::string text;
+  for (const std::string& name : illuminants_) {
+    text += "\tinconstancy_" + name;
+    if (standard_) text += "\tmetamerism_" + name;
+  }
+  return text;
+}
+
+Result<OtherLight::Figures> OtherLight::of(const paint::Paint& paint) const {
+  Figures figures;
+  const bool known = paint.measurement && !paint.measurement->spectra.empty();
+  for (const std::string& name : illuminants_) {
+    std::vector<paint::DifferenceAt> inconstancy, metamerism;
+    if (known) {
+      const color::ViewingCondition reference = paint.measurement->condition, test = {name, reference.observer_deg};
+      GONIO_ASSIGN(inconstancy, paint::inconstancy(*paint.measurement, reference, test));
+      if (standard_) {
+        GONIO_ASSIGN(metamerism, paint::metamerism(*paint.measurement, *standard_, reference, test));
+      }
+    }
+    figures.columns += field_of(inconstancy);
+    figures.json[name]["inconstancy"] = json_of(inconstancy);
+    if (!standard_) continue;
+    figures.columns += field_of(metamerism);
+    figures.json[name]["metamerism"] = json_of(metamerism);
+  }
+  return figures;
+}
+
+}  // namespace goniochrome::tool
