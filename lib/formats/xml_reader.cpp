@@ -28,6 +28,7 @@ enum class Node {
   kFlop,
   kAnisotropy,
   kColorMap,
+  kCoat,
   kLobes,
   kDiffuse,
   kLobe,
@@ -55,6 +56,7 @@ constexpr std::array kRules = {
     ElementRule{Node::kFlop, Node::kAppearance, "flop", "L a b"},
     ElementRule{Node::kAnisotropy, Node::kPaint, "anisotropy", "alphaX alphaY"},
     ElementRule{Node::kColorMap, Node::kPaint, "colorMap", "href index?"},
+    ElementRule{Node::kCoat, Node::kPaint, "coat", "index"},
     ElementRule{Node::kLobes, Node::kPaint, "lobes", "space basis method max_de00 mean_de00"},
     ElementRule{Node::kDiffuse, Node::kLobes, "diffuse", "r g b"},
     ElementRule{Node::kLobe, Node::kLobes, "lobe", "exponent ddr ddg ddb gr gg gb"},
@@ -114,6 +116,7 @@ class PaintHandler : public XmlHandler {
   Result<void> finish_spectrum();
   Result<void> begin_gloss(const XmlValues& values);
   Result<void> begin_appearance(const XmlValues& values);
+  Result<void> begin_coat(const XmlValues& values);
   Result<void> begin_lobes(const XmlValues& values);
   Result<void> begin_lobe(const XmlValues& values, std::vector<paint::Lobe>& lobes);
   Result<void> begin_view(const XmlValues& values);
@@ -240,6 +243,8 @@ Result<void> PaintHandler::begin(Node node, const XmlValues& values) {
       GONIO_TRY(values.name("href", paint_.color_map->href));
       return values.has("index") ? values.number("index", paint_.color_map->index, Domain::kRefractiveIndex)
                                  : Result<void>();
+    case Node::kCoat:
+      return begin_coat(values);
     case Node::kLobes:
       return begin_lobes(values);
     case Node::kDiffuse:
@@ -368,6 +373,16 @@ Result<void> PaintHandler::begin_appearance(const XmlValues& values) {
   return values.number("residual_de00", appearance.residual_de00.emplace(), Domain::kNotNegative);
 }
 
+Result<void> PaintHandler::begin_coat(const XmlValues& values) {
+  GONIO_TRY(once(paint_.coat_index.has_value(), values));
+  double& index = paint_.coat_index.emplace();
+  GONIO_TRY(values.number("index", index, Domain::kRefractiveIndex));
+  if (index != paint::kNoCoat && !(index >= paint::kLeastCoatIndex && index <= paint::kMostCoatIndex))
+    return values.error("index", fmt::format("a coat has {} to {}, and {} says that there is none",
+                                             paint::kLeastCoatIndex, paint::kMostCoatIndex, paint::kNoCoat));
+  return {};
+}
+
 Result<void> PaintHandler::begin_lobes(const XmlValues& values) {
   GONIO_TRY(once(paint_.lobes.has_value(), values));
   paint::LobeFit& lobes = paint_.lobes.emplace();
@@ -461,6 +476,7 @@ Result<void> PaintHandler::finish(Node node, int line) {
       break;
     }
     case Node::kPaint:
+      if (paint_.lobes) paint_.lobes->coat_index = paint_.coat_index.value_or(paint::kNoCoat);
       found.push_back({std::move(paint_), paint_line_});
       break;
     default:

@@ -86,6 +86,9 @@ std::string paint_element(const paint::Paint& paint) {
   if (paint.color_map)
     text += "    <colorMap" + attribute("href", paint.color_map->href) + attribute("index", paint.color_map->index) +
             "/>\n";
+  std::optional<double> coat_index = paint.coat_index;
+  if (paint.lobes && (coat_index || paint.lobes->coat_index != paint::kNoCoat)) coat_index = paint.lobes->coat_index;
+  if (coat_index) text += "    <coat" + attribute("index", *coat_index) + "/>\n";
   if (paint.lobes) text += lobes_element(*paint.lobes);
   for (const std::string& element : paint.foreign) text += "    " + element + "\n";
   return text + "  </paint>\n";

@@ -83,11 +83,18 @@ struct ViewLobes {
   std::vector<Lobe> lobes;
 };
 
-// A paint fitted to a basis: f = K_D + sum K_DD cos^E(theta_as) + (1/cos_i) sum K_G cos^E(theta_as).
+// The coat index of a paint without a coat: it neither reflects nor takes light away.
+inline constexpr double kNoCoat = 1;
+// Other coats have an index from here to there. brdf::kCoatIndex is the usual one.
+inline constexpr double kLeastCoatIndex = 1.5, kMostCoatIndex = 1.7;
+
+// A paint fitted to a basis: f = T(theta_i) T(theta_o) (K_D + sum K_DD cos^E(theta_as)) + (1/cos_i) sum K_G
+// cos^E(theta_as), where T is what the coat lets through.
 struct LobeFit {
   std::string basis, method;
   double max_de00 = 0, mean_de00 = 0;
-  color::Rgb diffuse;  // K_D, 1/sr
+  double coat_index = kNoCoat;  // K_D and K_DD hold under such a coat
+  color::Rgb diffuse;           // K_D, 1/sr
   std::vector<Lobe> lobes;
   // Weights that change with the view, ascending in view_deg, each set complete; linear between two of them and
   // constant beyond the ends. Where there are none, `diffuse` and `lobes` hold for every view; where there are, these
@@ -104,6 +111,7 @@ struct Paint {
   std::optional<Appearance> appearance;
   std::optional<Anisotropy> anisotropy;
   std::optional<ColorMapReference> color_map;
+  std::optional<double> coat_index;  // that the paint states; where it has lobes, theirs
   std::optional<LobeFit> lobes;
   // Elements of other vocabularies, kept as they came (serialized XML), in order.
   std::vector<std::string> foreign;

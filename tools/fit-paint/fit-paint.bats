@@ -371,6 +371,29 @@ cornell() {
   [ "$status" -eq 2 ]
 }
 
+@test "a paint with gloss gets a coat, and --coat decides otherwise" {
+  glossy=${one/<\/measurement>/<\/measurement><gloss angle=\"60\">92<\/gloss>}
+  echo "$head$one</paints>" >matt.xml
+  echo "$head$glossy</paints>" >glossy.xml
+  fit-paint -q -b "$basis" matt.xml -o out.xml
+  [ "$(grep -c '<coat' out.xml)" -eq 0 ]
+  fit-paint -q -b "$basis" matt.xml --gloss 40 -o out.xml
+  grep -q '<coat index="1.5"/>' out.xml
+  # A smooth coat of 1.5 reads 89 GU: 92 ask for more.
+  fit-paint -q -b "$basis" glossy.xml -o out.xml
+  grep -Eq '<coat index="1\.51' out.xml
+  fit-paint -q -b "$basis" glossy.xml --coat none -o out.xml
+  [ "$(grep -c '<coat' out.xml)" -eq 0 ]
+  fit-paint -q -b "$basis" matt.xml --coat 1.6 -o out.xml
+  grep -q '<coat index="1.6"/>' out.xml
+  # What a paint states stays, also that it has none.
+  sed 's/<gloss/<coat index="1"\/><gloss/' glossy.xml | fit-paint -q -b "$basis" -o out.xml
+  grep -q '<coat index="1"/>' out.xml
+  run fit-paint -b "$basis" matt.xml --coat 1.2
+  [ "$status" -eq 2 ]
+  [[ "$output" =~ "give auto, none, or the index of the coat from 1.5 to 1.7" ]]
+}
+
 @test "--illuminant fits the colors of that light, and passes on unfitted what has no spectra" {
   factors=$(awk 'BEGIN { for (nm = 400; nm <= 700; nm += 10) printf "%s%g", (nm > 400 ? " " : ""), 0.1 + 0.5 / (1 + exp((590 - nm) / 15)) }')
   spectra=

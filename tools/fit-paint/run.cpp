@@ -105,6 +105,7 @@ class Run {
         tally_.add_failure(batch[i], fmt::format("{}:{}", name, lines[i]), unlit[i]);
       } else if (results[i].ok()) {
         tally_.add(batch[i], *results[i]);
+        if (results[i]->lobes.coat_index != paint::kNoCoat) batch[i].coat_index = results[i]->lobes.coat_index;
         batch[i].lobes = std::move(results[i]->lobes);
       } else {
         tally_.add_failure(batch[i], fmt::format("{}:{}", name, lines[i]), results[i].error().message);

@@ -17,6 +17,7 @@ struct Options {
   std::string target = "measured";
   std::string weights = "perceptual";
   std::string gloss = "0";
+  std::string coat = "auto";
   std::string illuminant;
   int lobes = 0;
   double prune_de00 = 0;
