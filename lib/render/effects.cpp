@@ -7,6 +7,7 @@
 
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
+#include "envmap/weighted_diffuse.h"
 #include "render/internal/lobe_curves.h"
 #include "render/surface_layer.h"
 
@@ -23,8 +24,12 @@ class SlotValues {
  public:
   using Texel = std::array<double, 4>;
 
-  SlotValues(const WeightTable& table, const Effects& effects, double gloss_deg)
-      : table_(table), effects_(effects), values_(static_cast<std::size_t>(table.slots)) {
+  SlotValues(const WeightTable& table, const Effects& effects, double gloss_deg, double coat_index)
+      : table_(table),
+        effects_(effects),
+        coat_index_(coat_index),
+        even_(brdf::mean_coat_transmission(coat_index)),
+        values_(static_cast<std::size_t>(table.slots)) {
     if (effects.fresnel) fresnel_scale_ = 1 / brdf::fresnel_dielectric(std::cos(gloss_deg * kDegree), brdf::kCoatIndex);
   }
 
@@ -32,18 +37,22 @@ class SlotValues {
   // its start and 1 at its end.
   const std::vector<Texel>& at(const paint::LobeFit& paint, const paint::LobeFit& lit, double cos_o, int node) {
     std::fill(values_.begin(), values_.end(), Texel{});
+    const double let_out = brdf::coat_transmission(cos_o, coat_index_);
     if (effects_.diffuse) {
-      set(WeightTable::diffuse_slot(), kPi * paint.diffuse);
-      set(table_.light_slot(), lit.diffuse);
+      const bool bare = coat_index_ == paint::kNoCoat;
+      set(bare ? WeightTable::diffuse_slot() : table_.coat_diffuse_slot(), let_out * even_ * kPi * paint.diffuse);
+      set(table_.light_slot(), let_out * lit.diffuse);
     }
+    values_[static_cast<std::size_t>(table_.light_slot())][3] = coat_index_ * coat_index_;
     for (std::size_t j = 0; j < effects_.lobes.size(); ++j) {
       const Effects::LobeUse& use = effects_.lobes[j];
       const paint::Lobe* lobe = find_lobe(paint, use.exponent);
       if (lobe == nullptr) continue;
-      const color::Rgb flake = use.directional_diffuse ? lobe->directional_diffuse : color::Rgb{};
+      const color::Rgb flake = use.directional_diffuse ? let_out * lobe->directional_diffuse : color::Rgb{};
       const color::Rgb gloss = use.gloss ? fresnel_scale_ * lobe->gloss : color::Rgb{};
-      const LobeIntegrals seen = table_.segments > 1 ? lobe_curve(use.exponent, table_.segments, effects_.horizon)[node]
-                                                     : lobe_integrals(use.exponent, cos_o, false);
+      const LobeIntegrals seen = table_.segments > 1
+                                     ? lobe_curve(use.exponent, table_.segments, effects_.horizon, coat_index_)[node]
+                                     : lobe_integrals(use.exponent, cos_o, false);
       const color::Rgb by_flake = seen.cosine * flake,
                        by_gloss = (effects_.fresnel ? seen.fresnel : seen.plain) * gloss;
       set(WeightTable::lobe_slot(j), by_flake + by_gloss);
@@ -55,13 +64,13 @@ class SlotValues {
       }
       const paint::Lobe* met = find_lobe(lit, use.exponent);
       if (met == nullptr) continue;
-      if (use.directional_diffuse) set(table_.directional_diffuse_slot(j), met->directional_diffuse);
+      if (use.directional_diffuse) set(table_.directional_diffuse_slot(j), let_out * met->directional_diffuse);
       if (use.gloss) set(table_.gloss_slot(j), fresnel_scale_ * met->gloss);
     }
     const paint::Lobe* mirror = effects_.mirror ? find_lobe(paint, paint::kMirrorExponent) : nullptr;
     const double seen_cos = effects_.fresnel ? cos_o : std::numbers::sqrt2 / 2;
     if (mirror != nullptr)
-      set(table_.mirror_slot(), brdf::fresnel_dielectric(seen_cos, brdf::kCoatIndex) * mirror->gloss);
+      set(table_.mirror_slot(), brdf::fresnel_dielectric(seen_cos, brdf::mirror_index(coat_index_)) * mirror->gloss);
     return values_;
   }
 
@@ -73,14 +82,15 @@ class SlotValues {
 
   const WeightTable& table_;
   const Effects& effects_;
+  double coat_index_, even_;  // and what even light is left of on its way in
   double fresnel_scale_ = 1;
   std::vector<Texel> values_;
 };
 
 void fill_part(const Scene& scene, const Effects& effects, std::size_t part, const WeightTable& table, float* rows) {
-  const paint::LobeFit& paint = scene.paints[part];
+  const paint::LobeFit paint = effects.coat ? scene.paints[part] : brdf::under_coat(scene.paints[part], paint::kNoCoat);
   const bool with_views = effects.views && !paint.views.empty();
-  SlotValues values(table, effects, gloss_deg_of(scene, part));
+  SlotValues values(table, effects, gloss_deg_of(scene, part), paint.coat_index);
   std::vector<SlotValues::Texel> before;
   for (int node = 0; node <= table.segments; ++node) {
     const double x = static_cast<double>(node) / table.segments, cos_o = table.segments > 1 ? x * x : x;
@@ -117,8 +127,9 @@ paint::Anisotropy anisotropy_of(const Scene& scene, std::size_t part) {
 bool same_wear(const Scene& scene, std::size_t a, std::size_t b) {
   const paint::LobeFit &x = scene.paints[a], &y = scene.paints[b];
   const paint::Anisotropy brushed_x = anisotropy_of(scene, a), brushed_y = anisotropy_of(scene, b);
-  return x.diffuse == y.diffuse && same_lobes(x.lobes, y.lobes) && gloss_deg_of(scene, a) == gloss_deg_of(scene, b) &&
-         brushed_x.alpha_x == brushed_y.alpha_x && brushed_x.alpha_y == brushed_y.alpha_y &&
+  return x.diffuse == y.diffuse && x.coat_index == y.coat_index && same_lobes(x.lobes, y.lobes) &&
+         gloss_deg_of(scene, a) == gloss_deg_of(scene, b) && brushed_x.alpha_x == brushed_y.alpha_x &&
+         brushed_x.alpha_y == brushed_y.alpha_y &&
          std::equal(x.views.begin(), x.views.end(), y.views.begin(), y.views.end(),
                     [](const paint::ViewLobes& v, const paint::ViewLobes& w) {
                       return v.view_deg == w.view_deg && v.diffuse == w.diffuse && same_lobes(v.lobes, w.lobes);
@@ -144,6 +155,8 @@ Effects effects_of(const Scene& scene) {
     effects.lobes.push_back(use);
   }
   effects.fresnel = gloss;
+  effects.coat = std::any_of(scene.paints.begin(), scene.paints.end(),
+                             [](const paint::LobeFit& paint) { return paint.coat_index != paint::kNoCoat; });
   effects.horizon = effects.environment && !effects.lobes.empty();
   effects.views = std::any_of(scene.paints.begin(), scene.paints.end(),
                               [](const paint::LobeFit& paint) { return !paint.views.empty(); });
@@ -156,7 +169,7 @@ Effects effects_of(const Scene& scene) {
 }
 
 paint::LobeFit with_effects(const paint::LobeFit& paint, const Effects& effects) {
-  paint::LobeFit result = paint;
+  paint::LobeFit result = effects.coat ? paint : brdf::under_coat(paint, paint::kNoCoat);
   if (!effects.views) result.views.clear();
   const auto strip = [&](color::Rgb& diffuse, std::vector<paint::Lobe>& lobes) {
     if (!effects.diffuse) diffuse = {};
@@ -200,11 +213,15 @@ std::vector<std::vector<brdf::Tilt>> tilts_of(const Scene& scene, const Effects&
   return tilts;
 }
 
+envmap::CubeMap coat_diffuse_map(const envmap::PrefilteredEnvironment& env) {
+  return envmap::weighted_diffuse(env, [](double c) { return brdf::coat_transmission(c, brdf::kCoatIndex); });
+}
+
 WeightTable slots_of(const Effects& effects) {
   WeightTable table;
   table.lobes = static_cast<int>(effects.lobes.size());
   table.segments = effects.depends_on_view() ? kViewSegments : 1;
-  table.slots = 3 + 3 * table.lobes + (table.lobes + 3) / 4;
+  table.slots = 4 + 3 * table.lobes + (table.lobes + 3) / 4;
   return table;
 }
 

@@ -221,7 +221,7 @@ std::vector<color::Rgb> exact_radiance(const std::vector<VisiblePoint>& points, 
                          effects.lights > 0 ? scene.lights : std::vector<Light>());
   std::vector<color::Rgb> colors(points.size());
   for (std::size_t i = 0; i < plain.size(); ++i) colors[numbers[i]] = plain[i];
-  if (effects.maps) scene.layer->add_mapped(points, colors);
+  if (effects.maps) scene.layer->add_mapped(points, effects.coat, colors);
   put_textured(scene, points, effects, around, colors);
   return colors;
 }

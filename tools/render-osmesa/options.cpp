@@ -119,8 +119,9 @@ void add_effects(cli::ToolSpec& spec, Options& o) {
   spec.option("effects", "WORDS", "auto,-fresnel", &o.effects,
               "effects to draw: auto, all or none, and then +NAME and -NAME")
       .more(
-          "The names are diffuse, lobes, gloss, mirror, fresnel, horizon, anisotropy, travel, texture, texture-lobes, "
-          "operator and lights. lobe-20, gloss-900 and texture-0 (lobe0 of the textures) are single lobes. Three more "
+          "The names are diffuse, lobes, gloss, mirror, fresnel, coat, horizon, anisotropy, travel, texture, "
+          "texture-lobes, operator and lights. lobe-20, gloss-900 and texture-0 (lobe0 of the textures) are single "
+          "lobes. Three more "
           "are drawn by tracing rays: shadow (the mesh blocks light), self (lobes and mirror see the body instead of "
           "black) and bounce (the same for the diffuse part). The last two need shadow, and rays names all three. They "
           "are drawn at those pixels alone that can see the mesh, so that a convex shape is drawn as without them. "

@@ -205,6 +205,7 @@ void CpuEngine::set_lights(const Scene& scene, const Effects& effects) {
   shading_.exponents = exponents_.data();
   shading_.lit_diffuse = effects.diffuse;
   shading_.fresnel = effects.fresnel;
+  shading_.coat = effects.coat;
 }
 
 void CpuEngine::set_tilts(const Scene& scene, const Effects& effects) {

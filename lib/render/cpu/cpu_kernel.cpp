@@ -260,6 +260,14 @@ HWY_INLINE V fresnel_of(V c) {
   return hn::Mul(hn::Set(f, 0.5F), hn::MulAdd(s, s, hn::Mul(p, p)));
 }
 
+// What a coat lets in, by brdf's form of the Fresnel reflectance; `index2` is the square of its index, 1 without a
+// coat.
+HWY_INLINE float let_in(float c, float index2) {
+  const float contrast = index2 - 1, g = std::sqrt(contrast + c * c), s = c + g, p = index2 * c + g;
+  const float r_s = contrast / (s * s), r_p = contrast * ((index2 + 1) * c * c - 1) / (p * p);
+  return 1 - 0.5F * (r_s * r_s + r_p * r_p);
+}
+
 // What every lobe sends from a light to the viewer, cos^E of the angle to the mirror direction, mean over the tilts.
 HWY_INLINE void lobe_powers(const CpuShading& s, const Direction& l, const PointArrays& points, const Frame& frame,
                             const float* cos_i, float* powers) {
@@ -309,14 +317,15 @@ HWY_INLINE void add_light(const CpuShading& s, const float* light, const PointAr
       reflected = mul_add(Quad::filled(share), mul_add(t, Quad::load(weight + 4), Quad::load(weight)), reflected);
       weight += 8;
     };
-    add(s.lit_diffuse ? cos_i[i] : 0);
+    const float base = s.coat ? cos_i[i] * let_in(cos_i[i], weight[3]) : cos_i[i];
+    add(s.lit_diffuse ? base : 0);
     for (int j = 0; j < s.lobes; ++j) {
       const float power = powers[j * kPointsAtOnce + i];
       if (power == 0) {
         weight += 16;
         continue;
       }
-      add(cos_i[i] * power);
+      add(base * power);
       add(fresnel[i] * power);
     }
     float k[4];

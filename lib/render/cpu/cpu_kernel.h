@@ -54,7 +54,7 @@ struct CpuShading {
       nullptr;  // 16 a light: direction, 0, and the columns (4 floats) of pi times its product's matrix
   int lobes = 0;
   const float* exponents = nullptr;
-  bool lit_diffuse = false, fresnel = false;
+  bool lit_diffuse = false, fresnel = false, coat = false;
 };
 
 // Points as separate arrays of kPointsAtOnce each. The first `count` of them are shaded; the others must hold any

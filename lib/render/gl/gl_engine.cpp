@@ -81,6 +81,7 @@ Result<void> GlEngine::load(const Scene& scene, const Effects& effects) {
   for (const auto& [sampler, texture] : cubes_) gl_->DeleteTextures(1, &texture);
   cubes_.clear();
   if (maps.diffuse.size > 0) upload(maps.diffuse.maps[0], "diffuse");
+  if (maps.diffuse.maps.size() > 1) upload(maps.diffuse.maps[1], "coat_diffuse");
   for (const MapClass& lobes : maps.lobes) {
     for (std::size_t i = 0; i < lobes.slots.size(); ++i)
       upload(lobes.maps[i], fmt::format("lobe_{}", lobes.slots[i] - 1));

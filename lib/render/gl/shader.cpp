@@ -39,6 +39,7 @@ uniform sampler2D weights;  // a row for each part; two texels for each slot of 
   if (effects.anisotropy) text += "uniform sampler2D tilts;  // a row for each part: normal in its frame, share\n";
   if (effects.environment) {
     if (effects.diffuse) text += "uniform samplerCube diffuse;  // P_1\n";
+    if (effects.diffuse && effects.coat) text += "uniform samplerCube coat_diffuse;  // P_1 as a coat lets light in\n";
     for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
       text += fmt::format("uniform samplerCube lobe_{};  // P_E, E = {}\n", j, shortest(effects.lobes[j].exponent));
     }
@@ -84,6 +85,16 @@ float fresnel(float c) {{  // unpolarized, index {0}
                      glsl(brdf::kCoatIndex), glsl(brdf::kCoatIndex * brdf::kCoatIndex - 1),
                      glsl(brdf::kCoatIndex * brdf::kCoatIndex));
 }
+
+// What a coat lets in, by brdf's form of the Fresnel reflectance; `index2` is the square of its index, 1 without a
+// coat.
+constexpr const char* kLetIn = R"(
+float let_in(float c, float index2) {
+  float contrast = index2 - 1.0, g = sqrt(contrast + c * c), s = c + g, p = index2 * c + g;
+  float r_s = contrast / (s * s), r_p = contrast * ((index2 + 1.0) * c * c - 1.0) / (p * p);
+  return 1.0 - 0.5 * (r_s * r_s + r_p * r_p);
+}
+)";
 
 // cos^E from 1 - cos, which is exact where cos is 1 but for the last digits.
 constexpr const char* kCosPower = R"(
@@ -164,12 +175,12 @@ std::string lobe_functions(const Effects& effects, Product product) {
   }
   if (effects.lights == 0) return text;
   const WeightTable slots = slots_of(effects);
-  text += "\nvec3 lit_lobes(vec3 r, vec3 l, float cos_i, float F) {  // without the gloss term's 1/cos_i\n";
+  text += "\nvec3 lit_lobes(vec3 r, vec3 l, float base, float F) {  // without the gloss term's 1/cos_i\n";
   text += "  float versine = 0.5 * dot(r - l, r - l);\n  vec3 sum = vec3(0.0);\n";
   for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
     const Effects::LobeUse& lobe = effects.lobes[j];
     std::string weight;
-    if (lobe.directional_diffuse) weight = fmt::format("cos_i * W({}).rgb", slots.directional_diffuse_slot(j));
+    if (lobe.directional_diffuse) weight = fmt::format("base * W({}).rgb", slots.directional_diffuse_slot(j));
     if (lobe.gloss) weight += fmt::format("{}F * W({}).rgb", weight.empty() ? "" : " + ", slots.gloss_slot(j));
     text += fmt::format("  sum += ({}) * cos_power(versine, {});\n", weight, glsl(lobe.exponent));
   }
@@ -201,6 +212,7 @@ std::string environment_terms(const Effects& effects, Product product) {
     text += fmt::format("  {} += {};\n", sum, product_with_map(product, slot, map, direction));
   };
   if (effects.diffuse) term(WeightTable::diffuse_slot(), "diffuse", "n");
+  if (effects.diffuse && effects.coat) term(slots_of(effects).coat_diffuse_slot(), "coat_diffuse", "n");
   if (!effects.lobes.empty()) text += over_tilts(effects, sum, "lobes", ", n");
   if (effects.mirror) term(slots_of(effects).mirror_slot(), "mirror", "r");
   if (product == Product::kForms) text += "  radiance += color_of(products);\n";
@@ -216,12 +228,14 @@ std::string light_terms(const Effects& effects) {
     vec3 l = light_direction[i];
     float cos_i = dot(n, l);
     if (cos_i <= 0.0) continue;
+    float base = cos_i{};
     vec3 reflected = {};
 )",
-      effects.lights, effects.diffuse ? fmt::format("cos_i * W({}).rgb", slots_of(effects).light_slot()) : "vec3(0.0)");
+      effects.lights, effects.coat ? fmt::format(" * let_in(cos_i, W({}).a)", slots_of(effects).light_slot()) : "",
+      effects.diffuse ? fmt::format("base * W({}).rgb", slots_of(effects).light_slot()) : "vec3(0.0)");
   if (!effects.lobes.empty()) {
     const char* fresnel = lit_gloss(effects) ? "fresnel(sqrt(0.5 + 0.5 * dot(l, wo)))" : "1.0";
-    text += over_tilts(effects, "reflected", "lit_lobes", fmt::format(", l, cos_i, {}", fresnel));
+    text += over_tilts(effects, "reflected", "lit_lobes", fmt::format(", l, base, {}", fresnel));
   }
   return text +
          fmt::format("    radiance += {} * {};\n  }}\n", glsl(kPi), times(effects, "light_white[i]", "reflected"));
@@ -292,6 +306,7 @@ std::string shading_fragment_shader(const Effects& effects, const color::Reflect
   if (effects.environment && product == Product::kForms)
     text += forms_functions(forms, effects.background == Background::kEnvironment);
   if (lit_gloss(effects)) text += fresnel_function();
+  if (effects.coat && effects.lights > 0) text += kLetIn;
   if (lit_lobes) text += kCosPower;
   if (!effects.lobes.empty()) text += lobe_functions(effects, product);
   // 2. Where nothing is seen the program shows the background; else it finds the view and the row of weights.

@@ -107,6 +107,9 @@ Gatherer::Gatherer(const SurfacePoint& point, double texel_rad, double most_spre
       cos_o_(dot(point.normal, point.to_viewer)),
       grain_(texel_rad, most_spread) {
   set_mirror_directions();
+  const double let_out = brdf::coat_transmission(std::clamp(cos_o_, 0.0, 1.0), paint_.coat_index);
+  paint_.diffuse = let_out * paint_.diffuse;
+  for (paint::Lobe& lobe : paint_.lobes) lobe.directional_diffuse = let_out * lobe.directional_diffuse;
   // The lobes in the order of their exponents, so that a loop over them can stop at the first that is too sharp.
   for (const paint::Lobe& lobe : paint_.lobes) {
     if (!lobe.is_mirror()) lobes_.push_back(lobe);
@@ -148,7 +151,7 @@ void Gatherer::add_light(const Light& light) {
 
 void Gatherer::add(const Patch& patch, const color::Rgb& radiance, bool horizon) {
   const double above = (1 - patch.variance) * dot(point_.normal, patch.direction), cos_i = horizon ? above : cos_o_;
-  color::Rgb f = above > 0 ? above * paint_.diffuse : color::Rgb{};
+  color::Rgb f = above > 0 ? (let_in(above) * above) * paint_.diffuse : color::Rgb{};
   if (above > 0 || !horizon) f += lobes_toward(patch, cos_i);
   const color::Rgb product =
       model_.reflection != nullptr ? goniochrome::color::reflected(*model_.reflection, f, radiance) : f * radiance;
@@ -160,7 +163,8 @@ void Gatherer::add_mirror(const color::Rgb& radiance) {
   if (mirror == nullptr) return;
   const bool fresnel = point_.model == nullptr || model_.fresnel;
   const color::Rgb k =
-      brdf::fresnel_dielectric(fresnel ? cos_o_ : std::numbers::sqrt2 / 2, brdf::kCoatIndex) * mirror->gloss;
+      brdf::fresnel_dielectric(fresnel ? cos_o_ : std::numbers::sqrt2 / 2, brdf::mirror_index(paint_.coat_index)) *
+      mirror->gloss;
   sum_ += model_.reflection != nullptr ? goniochrome::color::reflected(*model_.reflection, k, radiance) : k * radiance;
 }
 
@@ -169,6 +173,7 @@ color::Rgb Gatherer::lobes_toward(const Patch& patch, double cos_i) const {
   color::Rgb f;
   const double cos_half = 0.5 * length(direction + point_.to_viewer);
   const double fresnel = model_.fresnel ? brdf::fresnel_dielectric(std::min(1.0, cos_half), brdf::kCoatIndex) : 1;
+  const double base = let_in(cos_i) * cos_i;
   for (const Mirrored& m : mirrored_) {
     // ln cos of the angle to the mirror direction, by the versine, which keeps its digits where the angle is small.
     const Vec3 apart = m.direction - direction;
@@ -180,7 +185,7 @@ color::Rgb Gatherer::lobes_toward(const Patch& patch, double cos_i) const {
       const double lowered = grain_.lowered(lobe.exponent, patch.variance), exponent = lobe.exponent * lowered;
       if (exponent * -log_cos > kTail) break;
       const double power = m.share * lowered * std::exp(exponent * log_cos);
-      f += power * (cos_i * lobe.directional_diffuse + fresnel * lobe.gloss);
+      f += power * (base * lobe.directional_diffuse + fresnel * lobe.gloss);
     }
   }
   return f;

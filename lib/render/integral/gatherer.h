@@ -2,6 +2,7 @@
 // integrand of exact.h and decides how finely the light must be divided.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "brdf/lobe_model.h"
@@ -88,10 +89,14 @@ class Gatherer {
   // With `horizon`, the direction's own cosine, and nothing from below.
   void add(const Patch& patch, const color::Rgb& radiance, bool horizon);
   color::Rgb lobes_toward(const Patch& patch, double cos_i) const;
+  // What the coat lets in from there.
+  double let_in(double cos_i) const {
+    return paint_.coat_index == paint::kNoCoat ? 1 : brdf::coat_transmission(std::min(cos_i, 1.0), paint_.coat_index);
+  }
 
   const SurfacePoint& point_;
   const ExactModel& model_;
-  paint::LobeFit paint_;
+  paint::LobeFit paint_;  // its base as the coat lets it out
   double cos_o_ = 1;
   Vec3 reflected_;
   std::vector<Mirrored> mirrored_;

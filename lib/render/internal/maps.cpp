@@ -71,6 +71,10 @@ Result<SceneMaps> scene_maps(const Scene& scene, const Effects& effects) {
   if (!effects.environment) return maps;
   const envmap::PrefilteredEnvironment& env = *scene.env;
   if (effects.diffuse) maps.diffuse = single(WeightTable::diffuse_slot(), env.diffuse.map);
+  if (effects.diffuse && effects.coat) {
+    maps.diffuse.slots.push_back(slots_of(effects).coat_diffuse_slot());
+    maps.diffuse.maps.push_back(coat_diffuse_map(env));
+  }
   for (const Effects::LobeUse& use : effects.lobes) GONIO_TRY(check_lobe(env, use.exponent, effects));
   for (const LobeClass& of : lobe_classes(env, effects)) {
     MapClass into{env.lobe(effects.lobes[of.lobes.front()].exponent)->map.size, {}, {}, of.shifted};

@@ -80,8 +80,7 @@ double nominal_weight(const LobeColumns& columns, std::size_t column) {
 
 LobeKernels::LobeKernels(const LobeColumns& columns, const PaintedPoint& point)
     : columns_(columns), point_(point), frame_(rays::frame_about(point.normal())) {
-  const float cos_o = std::clamp(rays::dot(point.normal(), point.to_viewer()), 1e-6F, 1.0F);
-  mirror_ = coat_reflectance(cos_o);
+  mirror_ = point.coat_mirror();
   if (!point.axes().empty()) axes_total_ = 0;
   for (const PaintedPoint::Axis& axis : point.axes()) axes_total_ += axis.share;
 }
@@ -99,11 +98,12 @@ float LobeKernels::at(const Float3& to_light, float* values) const {
   if (point_.axes().empty()) add(point_.mirrored(), 1);
   for (const PaintedPoint::Axis& axis : point_.axes()) add(axis.direction, axis.share);
   const float fresnel = coat_reflectance(std::min(1.0F, 0.5F * rays::length(to_light + point_.to_viewer())));
-  values[LobeColumns::diffuse()] = cos_i;
+  const float base = cos_i * point_.passages(cos_i);
+  values[LobeColumns::diffuse()] = base;
   float pdf = cos_i / kFloatPi;
   for (std::size_t j = 0; j < lobes; ++j) {
     if (!(powers[j] > 0)) continue;
-    values[LobeColumns::flake(j)] = cos_i * powers[j];
+    values[LobeColumns::flake(j)] = base * powers[j];
     values[LobeColumns::gloss(j)] = fresnel * powers[j];
     pdf += (static_cast<float>(columns_.exponents[j]) + 1) / (2 * kFloatPi) * powers[j] / axes_total_;
   }

@@ -51,8 +51,8 @@ class LobeKernels {
   // The arguments must outlive it.
   LobeKernels(const LobeColumns& columns, const PaintedPoint& point);
 
-  // Writes f cos_i of weight 1 for each column, the mirror's 0, and returns the density (1/sr) by which drawn() gives
-  // the direction. Where the direction is below the horizon both are 0.
+  // Writes f cos_i of weight 1 for each column, under the coat of the point and the mirror's 0, and returns the density
+  // (1/sr) by which drawn() gives the direction. Where the direction is below the horizon both are 0.
   float at(const rays::Float3& to_light, float* values) const;
   // A direction drawn evenly from the cosine and the lobes, by numbers in [0,1). It may lie below the horizon.
   rays::Float3 direction(double choice, double u, double v) const;

@@ -19,7 +19,8 @@ namespace goniochrome::render {
 constexpr int kMostTracedLobes = 24;
 
 // A paint laid out for tracing. What it shows is ExactModel's (render/exact.h) with the Fresnel reflectance on:
-//   f cos_i = cos_i (K_D + sum K_DD cos^E) + F(theta_h)/F(gloss_deg) sum K_G cos^E,  mirror K_M F(theta_o)
+//   f cos_i = T(theta_i) T(theta_o) cos_i (K_D + sum K_DD cos^E) + F(theta_h)/F(gloss_deg) sum K_G cos^E,
+//   mirror K_M F(theta_o)
 // above the horizon, nothing below it. Of an anisotropic paint each lobe is the mean over tilted normals.
 class TracedPaint {
  public:
@@ -50,7 +51,8 @@ class TracedPaint {
     rays::Float3 diffuse, mirror;
     std::vector<Lobe> lobes;  // those of all views, ascending exponents
   };
-  std::vector<Weights> views_;     // one, or ascending in view_deg
+  std::vector<Weights> views_;  // one, or ascending in view_deg
+  double coat_index_ = paint::kNoCoat;
   std::vector<brdf::Tilt> tilts_;  // none: isotropic
   const brdf::ColorMap* map_ = nullptr;
   brdf::CriticalAngle treatment_ = brdf::CriticalAngle::kSlide;
@@ -114,7 +116,13 @@ class PaintedPoint {
   const rays::Float3& normal() const { return normal_; }
   const rays::Float3& mirrored() const { return mirrored_; }  // where the mirror lobe looks
   const rays::Float3& mirror() const { return mirror_; }      // K_M F
-  const rays::Float3& diffuse() const { return diffuse_; }    // K_D, 1/sr
+  // K_D T(theta_o), 1/sr, and its part of even light that the point sends back
+  const rays::Float3& diffuse() const { return diffuse_; }
+  rays::Float3 diffuse_albedo() const;
+  // What the coat leaves of the base's light from a direction of that cosine, and what it mirrors to the viewer;
+  // without a coat 1, and what kCoatIndex mirrors.
+  float passages(float cos_i) const { return let_out_ * let_in(cos_i); }
+  float coat_mirror() const;
   const rays::Float3& to_viewer() const { return viewer_; }
   // The mirror directions about the tilted normals of a brushed paint, with their shares; none: mirrored() alone.
   struct Axis {
@@ -154,8 +162,12 @@ class PaintedPoint {
   template <class Visit>
   void visit_texels(const rays::Float3& to_light, const Visit& visit) const;
 
+  float let_in(float cos_i) const;
+
   rays::Float3 normal_, viewer_, mirrored_, mirror_, diffuse_;
   rays::Frame frame_;
+  double coat_index_ = paint::kNoCoat;
+  float let_out_ = 1;  // what the coat lets out to the viewer: diffuse_ and the lobes' K_DD hold it
   float cos_o_ = 1, diffuse_chance_ = 0, total_ = 0;
   int count_ = 0;
   Lobe lobes_[kMostTracedLobes];

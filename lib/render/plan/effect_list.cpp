@@ -157,6 +157,11 @@ std::vector<EffectSwitch> effect_switches(const Scene& scene, const Effects& all
       : grazing > 0 ? fmt::format("{:.0f} % of what is seen lies beyond 60 deg", grazing)
                     : "nothing is seen beyond 60 deg",
       [](Effects& e) { e.fresnel = false; });
+  add("coat", all.coat,
+      !all.coat     ? "no visible paint has a coat"
+      : grazing > 0 ? fmt::format("the coat takes light from the base, {:.0f} % of what is seen beyond 60 deg", grazing)
+                    : "the coat takes light from the base",
+      [](Effects& e) { e.coat = false; });
   add("horizon", all.horizon, horizon_reason(all, seen), [](Effects& e) { e.horizon = false; });
   add("anisotropy", all.anisotropy, anisotropy_reason(scene, all), [](Effects& e) { e.anisotropy = false; });
   add("travel", all.views || all.maps,
