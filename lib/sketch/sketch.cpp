@@ -7,6 +7,7 @@
 
 #include "base/angles.h"
 #include "base/parallel.h"
+#include "brdf/lobe_model.h"
 #include "display/paint_view.h"
 #include "math/statistics.h"
 #include "paint/curve.h"
@@ -82,6 +83,9 @@ class Seen {
   explicit Seen(const SketchInput& input) : input_(input), image_(input.buffers->image) {
     aspecular_ = *input.buffers->channel("aspecular");
     lambert_ = *input.buffers->channel("lambert");
+    const auto normal = input.buffers->channel("normal.X");
+    const bool coat = std::ranges::find(input.buffers->drawn, "coat") != input.buffers->drawn.end();
+    if (coat && normal.ok() && input.buffers->has_rays) normal_ = *normal;
     if (input.buffers->lights.empty()) return;
     const color::Rgb white = input.buffers->lights.front().white;
     for (int c = 0; c < 3; ++c) scale_[c] = white[c] > 0 ? 1 / white[c] : 0;
@@ -91,14 +95,30 @@ class Seen {
     const float* pixel = &image_.data[static_cast<std::size_t>(place) * image_.channels];
     const color::Rgb light = scale_ * edited_light(input_, place);
     return {pixel[aspecular_],
-            pixel[lambert_],
+            pixel[lambert_] * coat_share(place, pixel),
             {static_cast<float>(light.x), static_cast<float>(light.y), static_cast<float>(light.z)}};
   }
 
+  // Of the coat that the picture was drawn with.
+  double coat_index() const { return normal_ < 0 ? paint::kNoCoat : brdf::kCoatIndex; }
+
  private:
+  // What a coat leaves of the base's light at a pixel, relative to what it leaves where an instrument reads the color
+  // of that aspecular angle.
+  float coat_share(std::uint32_t place, const float* pixel) const {
+    if (normal_ < 0) return 1;
+    const int x = static_cast<int>(place) % image_.width, y = static_cast<int>(place) / image_.width;
+    const Vec3 normal{pixel[normal_], pixel[normal_ + 1], pixel[normal_ + 2]};
+    const auto cosine = [](double c) { return std::clamp(c, 0.0, 1.0); };
+    const double here = brdf::coat_passages(coat_index(), cosine(pixel[lambert_]),
+                                            cosine(dot(normal, input_.buffers->to_viewer(x, y))));
+    return static_cast<float>(here / instrument_passages(pixel[aspecular_], coat_index()));
+  }
+
   const SketchInput& input_;
   const image::Image& image_;
   int aspecular_ = 0, lambert_ = 0;
+  int normal_ = -1;  // the first of three channels, where the base is seen through a coat
   color::Rgb scale_{1, 1, 1};
 };
 
@@ -152,19 +172,21 @@ void take_gloss(const Highlight& highlight, const std::function<bool(double)>& a
 }
 
 // The same cells as light on lobes: about `most` of them, of all angles and cosines alike.
-SearchSamples search_samples(const std::vector<SketchCell>& cells, const formats::Basis& basis, bool display,
-                             std::size_t most) {
+SearchSamples search_samples(const std::vector<SketchCell>& cells, const formats::Basis& basis, double coat_index,
+                             bool display, std::size_t most) {
   const std::size_t step = sketch_step(cells.size(), most);
   SearchSamples samples;
   samples.columns = search_columns(basis);
+  samples.coat_index = coat_index;
   samples.display = display;
   for (std::size_t i = 0; i < cells.size(); i += step) {
     const SketchCell& cell = cells[i];
     const auto light = [&](double value) { samples.light.push_back(value * kPi * Vec3{1, 1, 1}); };
-    light(cell.cos_i);
+    const double base = cell.cos_i * instrument_passages(cell.aspecular_deg, coat_index);
+    light(base);
     for (const double exponent : basis.exponents) {
       const double power = lobe_at(cell.aspecular_deg, exponent);
-      light(cell.cos_i * power), light(power);
+      light(base * power), light(power);
     }
     light(0);  // the mirror image of a lamp is a point
     samples.seen.push_back(cell.seen);
@@ -218,8 +240,9 @@ color::Rgb face_of(const FoundPaint& found) {
   return color::rgb_from_lab({v[0], v[1], v[2]}, *color::white_point({}));
 }
 
-SketchCurve curve_of(const FoundPaint& found, const formats::Basis& basis) {
+SketchCurve curve_of(const FoundPaint& found, const formats::Basis& basis, double coat_index) {
   SketchCurve curve;
+  curve.coat_index = coat_index;
   curve.exponents = basis.exponents;
   curve.diffuse = kPi * found.weights.front();
   for (std::size_t j = 0; j < basis.exponents.size(); ++j) {
@@ -246,6 +269,7 @@ SearchSamples samples_of(const SketchInput& input, const SketchPixels& pixels, c
   SearchSamples samples;
   samples.columns = search_columns(light.basis);
   samples.reflection = light.reflection;
+  samples.coat_index = light.coat_index;
   samples.display = !input.edited->scene_linear;
   samples.light.resize(places.size() * samples.columns);
   samples.importance.assign(places.size(), 1.0);
@@ -306,12 +330,13 @@ SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, con
   const CurveFit quadratic = fit_quadratic(cells), lobes = fit_lobes(cells);
   const CurveFit& better = lobes.cost <= quadratic.cost ? lobes : quadratic;
   const bool display = !input.edited->scene_linear;
-  const SearchFitters fitters(basis);
-  const LobeSearch first(fitters, search_samples(cells, basis, display, kFirstCells));
-  const LobeSearch search(fitters, search_samples(cells, basis, display, kSearchCells));
+  const double coat = seen.coat_index();
+  const SearchFitters fitters(basis, coat);
+  const LobeSearch first(fitters, search_samples(cells, basis, coat, display, kFirstCells));
+  const LobeSearch search(fitters, search_samples(cells, basis, coat, display, kSearchCells));
   const FoundPaint found = search.find_plain(first);
   const bool as_good = is_as_good(found.search.cost, better.cost, !is_seen(cells, kFace_deg));
-  curve = as_good ? curve_of(found, basis) : better.curve;
+  curve = as_good ? curve_of(found, basis, coat) : better.curve;
   judge();
   if (fit.median_de76 > limits.median_de76) return give_up(poor_match(fit));
   std::string problem;
@@ -334,7 +359,7 @@ SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, con
 
 SketchFit sketch_environment(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light,
                              const SketchLimits& limits, bool with_differences) {
-  const SearchFitters fitters(light.basis);
+  const SearchFitters fitters(light.basis, light.coat_index);
   const LobeSearch search(fitters, samples_of(input, pixels, light, kMostPixels));
   SketchFit fit;
   std::vector<color::Rgb> weights(search_columns(light.basis));

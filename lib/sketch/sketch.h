@@ -59,6 +59,7 @@ struct SketchLight {
   // The light of each part of the model with weight 1 (1/sr) at a place of the buffers, relative to white: K_D, then
   // K_DD and K_G of every lobe, then the mirror.
   std::function<void(std::uint32_t place, Vec3* columns)> shade;
+  double coat_index = paint::kNoCoat;  // of the coat through which K_D and K_DD are lit
 };
 
 // The number of those parts.

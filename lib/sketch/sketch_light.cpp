@@ -31,8 +31,9 @@ formats::Basis basis_of(const envmap::PrefilteredEnvironment& env) {
 }
 
 // One paint for each column, with weight 1 in it and nowhere else. All have all lobes, so that each of them is drawn.
-std::vector<paint::LobeFit> unit_paints(const formats::Basis& basis) {
+std::vector<paint::LobeFit> unit_paints(const formats::Basis& basis, double coat_index) {
   paint::LobeFit blank;
+  blank.coat_index = coat_index;
   for (const double exponent : basis.exponents) blank.lobes.push_back({exponent, {}, {}});
   blank.lobes.push_back({paint::kMirrorExponent, {}, {}});
   std::vector<paint::LobeFit> paints(search_columns(basis), blank);
@@ -50,7 +51,8 @@ class Shading {
       : buffers_(buffers), env_(env), basis_(basis_of(env)), normal_(normal), part_(part) {
     if (buffers.samples > 1) shifts_ = render::sample_shifts(std::min(buffers.samples, kMostSamples));
     render::Scene scene;
-    scene.paints = unit_paints(basis_);
+    if (drawn(buffers, "coat")) coat_index_ = brdf::kCoatIndex, coat_diffuse_ = render::coat_diffuse_map(env);
+    scene.paints = unit_paints(basis_, coat_index_);
     scene.env = &env;
     for (const image::AovLight& light : buffers.lights) scene.lights.push_back({light.direction, light.white});
     scene.gloss_deg.assign(scene.paints.size(), kGloss_deg);
@@ -61,6 +63,7 @@ class Shading {
   }
 
   const formats::Basis& basis() const { return basis_; }
+  double coat_index() const { return coat_index_; }
 
   // The mean over the samples of the pixel, whose normals follow from those of the pixels around.
   void shade(std::uint32_t place, Vec3* column) const {
@@ -94,14 +97,15 @@ class Shading {
   void add_sample(const Vec3& n, const Vec3& wo, double scale, Vec3* column) const {
     const View view{n, wo, 2 * dot(n, wo) * n - wo, std::clamp(dot(n, wo), 0.0, 1.0)};
     const int last = static_cast<int>(search_columns(basis_)) - 1;
-    column[0] +=
-        scale * weight(0, render::WeightTable::diffuse_slot(), view.cos_o, 0) * envmap::bilinear(env_.diffuse.map, n);
+    const bool bare = coat_index_ == paint::kNoCoat;
+    const int slot = bare ? render::WeightTable::diffuse_slot() : table_.coat_diffuse_slot();
+    column[0] += scale * weight(0, slot, view.cos_o, 0) * envmap::bilinear(bare ? env_.diffuse.map : coat_diffuse_, n);
     for (int k = 1; k < last; ++k) {
       const auto lobe = static_cast<std::size_t>((k - 1) / 2);
-      const int slot = render::WeightTable::lobe_slot(lobe);
+      const int lobe_slot = render::WeightTable::lobe_slot(lobe);
       const Vec3 toward =
           view.mirrored + weight(k, table_.shift_slot(lobe), view.cos_o, static_cast<int>(lobe % 4)) * n;
-      column[k] += scale * weight(k, slot, view.cos_o, 0) * envmap::bilinear(env_.lobes[lobe].map, toward);
+      column[k] += scale * weight(k, lobe_slot, view.cos_o, 0) * envmap::bilinear(env_.lobes[lobe].map, toward);
     }
     if (basis_.mirror)
       column[last] +=
@@ -123,11 +127,12 @@ class Shading {
     const Vec3 apart = view.mirrored - light.direction, white = scale * kPi * light.white;
     const double cos_half = std::sqrt(0.5 + 0.5 * dot(light.direction, view.to_viewer));
     const double coat = fresnel_ ? brdf::fresnel_dielectric(cos_half, brdf::kCoatIndex) : 1;
-    column[0] += cos_i * weight(0, table_.light_slot(), c, 0) * white;
+    const double base = cos_i * brdf::coat_transmission(std::min(cos_i, 1.0), coat_index_);
+    column[0] += base * weight(0, table_.light_slot(), c, 0) * white;
     for (std::size_t j = 0; j < basis_.exponents.size(); ++j) {
       const double power = math::cos_power_from_versine(0.5 * dot(apart, apart), basis_.exponents[j]);
       const int flake = static_cast<int>(1 + 2 * j), gloss = flake + 1;
-      column[flake] += cos_i * power * weight(flake, table_.directional_diffuse_slot(j), c, 0) * white;
+      column[flake] += base * power * weight(flake, table_.directional_diffuse_slot(j), c, 0) * white;
       column[gloss] += coat * power * weight(gloss, table_.gloss_slot(j), c, 0) * white;
     }
   }
@@ -137,6 +142,8 @@ class Shading {
   formats::Basis basis_;
   int normal_, part_;                                     // channels
   std::vector<std::array<double, 2>> shifts_ = {{0, 0}};  // of the samples of a pixel from its center
+  double coat_index_ = paint::kNoCoat;
+  envmap::CubeMap coat_diffuse_;
   bool fresnel_ = false;
   render::WeightTable table_;
 };
@@ -149,7 +156,10 @@ Result<SketchLight> sketch_light(const image::AovFile& buffers, const envmap::Pr
   if (!buffers.has_rays)
     return input_error("{}: its header lacks goniochrome:rays: render the buffers again", buffers.path);
   const auto shading = std::make_shared<const Shading>(buffers, env, normal, part);
-  SketchLight light{shading->basis(), {}, [shading](std::uint32_t place, Vec3* out) { shading->shade(place, out); }};
+  SketchLight light{shading->basis(),
+                    {},
+                    [shading](std::uint32_t place, Vec3* out) { shading->shade(place, out); },
+                    shading->coat_index()};
   if (drawn(buffers, "operator")) light.reflection = buffers.reflection;
   return light;
 }
@@ -183,7 +193,9 @@ SketchLight SketchTransport::light() const {
       out[k] = (scaled ? gloss : 1) * (direct + bounced);
     }
   };
-  return {basis, reflection_, shade};
+  const std::vector<double>& coats = transport_->worn.coats;
+  const double coat = coats.empty() ? paint::kNoCoat : *std::ranges::max_element(coats);
+  return {basis, reflection_, shade, coat};
 }
 
 std::vector<int> SketchTransport::mesh_parts() const {

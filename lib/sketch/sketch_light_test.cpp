@@ -46,6 +46,7 @@ Drawing draw(const envmap::PrefilteredEnvironment& env, const std::vector<std::s
   const mesh::Mesh mesh = render::sphere_mesh(64);
   render::Scene scene;
   scene.mesh = &mesh, scene.paints = {paint()}, scene.env = &env;
+  if (has("coat")) scene.paints.front().coat_index = 1.5;
   scene.lights = {{normalized(Vec3{1, 1, 2}), {0.5, 0.6, 0.7}}};
   scene.gloss_deg = {60}, scene.reflection = color::iso_rgb_operator();
   render::Effects effects = render::effects_of(scene);
@@ -99,7 +100,7 @@ double difference(const Drawing& drawing, const SketchLight& light, double steep
 TEST(SketchLight, IsWhatTheRendererDrawsWithTheSameEffects) {
   const envmap::PrefilteredEnvironment env = uneven_env();
   const std::vector<std::vector<std::string>> all = {
-      {}, {"fresnel"}, {"horizon"}, {"operator"}, {"fresnel", "horizon", "operator"}};
+      {}, {"fresnel"}, {"horizon"}, {"operator"}, {"coat"}, {"fresnel", "coat", "horizon", "operator"}};
   for (const auto& drawn : all) {
     Drawing drawing = draw(env, drawn);
     const auto light = sketch_light(drawing.buffers, env);
