@@ -7,6 +7,7 @@ _colorsnap() {
     --metric|-m) COMPREPLY=($(compgen -W "de76 de00" -- "$word")); return ;;
     --geometry|-g) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --weight|-w) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --illuminant) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --method) COMPREPLY=($(compgen -W "auto tree scan" -- "$word")); return ;;
     --threshold) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --off-radial) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -17,7 +18,7 @@ _colorsnap() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--library --filter --count --metric --geometry --weight --mix-observers --method --threshold --off-radial --output --format --keep-going --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--library --filter --count --metric --geometry --weight --illuminant --mix-observers --method --threshold --off-radial --output --format --keep-going --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

@@ -4,6 +4,7 @@ _fit_paint() {
     --basis|-b) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --target|-t) COMPREPLY=($(compgen -W "measured curve" -- "$word")); return ;;
     --weights|-w) COMPREPLY=($(compgen -W "perceptual plain" -- "$word")); return ;;
+    --illuminant) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --gloss|-g) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --steepest) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --method|-m) COMPREPLY=($(compgen -W "l1 l2 deltae" -- "$word")); return ;;
@@ -19,7 +20,7 @@ _fit_paint() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--basis --target --weights --gloss --steepest --method --lobes --prune --views --paint-time-limit --output --color-map --color-map-model --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--basis --target --weights --illuminant --gloss --steepest --method --lobes --prune --views --paint-time-limit --output --color-map --color-map-model --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

@@ -8,6 +8,7 @@ _goniogeom_index() {
     --threshold|-t) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --metric) COMPREPLY=($(compgen -W "de76 de00" -- "$word")); return ;;
     --target) COMPREPLY=($(compgen -W "curve measured" -- "$word")); return ;;
+    --illuminant) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --tolerance-for) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --mesh) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --seam) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -26,7 +27,7 @@ _goniogeom_index() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--lights --views --out-of-plane --seam-axis --threshold --metric --target --worst --tolerance-for --mesh --seam --unit --max-gap --light-from --view-from --environment --advise --only --output --curve --misalignments --picture --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--lights --views --out-of-plane --seam-axis --threshold --metric --target --illuminant --worst --tolerance-for --mesh --seam --unit --max-gap --light-from --view-from --environment --advise --only --output --curve --misalignments --picture --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }
