@@ -60,21 +60,21 @@ options() {
 }
 
 @test "FILE#NAMES names some paints of a file in every tool that reads paints" {
-  library=$TESTDATA/paints.paints.xml
+  library=$top/testdata/paints.paints.xml
   names() { grep -o '<paint name="[^"]*"' | cut -d'"' -f2 | paste -sd' '; }
   [ "$(paint-convert -q "$library#candy_red" | names)" = candy_red ]
   [ "$(paint-edit -q --hue-shift 1 "$library#candy_red" | names)" = candy_red ]
   silvers=$(paint-convert -q "$library#silver_*" | names)
   [[ "$silvers" == *" "* ]] && [[ "$silvers" != *candy* ]]
-  [ "$(fit-paint -q --basis "$TESTDATA/b7.basis.xml" "$library#silver_*" -o fitted.xml && names <fitted.xml)" = "$silvers" ]
+  [ "$(fit-paint -q --basis "$top/testdata/b7.basis.xml" "$library#silver_*" -o fitted.xml && names <fitted.xml)" = "$silvers" ]
   [ "$(paint-stats -q "$library#silver_*" | tail -n +2 | cut -f1 | paste -sd' ')" = "$silvers" ]
   [ "$(goniogeom-index -q --worst "$library#candy_red,silver_*" 2>/dev/null | tail -n +2 | wc -l)" -eq $((1 + $(wc -w <<<"$silvers"))) ]
   [ "$(colorsnap -q -k 1 -l "$library#silver_*" "$library#candy_red" | sed -n 2p | cut -f3 | grep -c silver)" -eq 1 ]
   plot-paint -q fitted.xml#silver_fine -o sheet.svg
   fit-basis -q --lobes 2 "$library#silver_fine" -o two.basis.xml
   trompe-fit -q "$library#silver_fine" --angle 2 -o b.xml
-  prefilter-envmap -q --for fitted.xml#silver_fine -s 8 "$TESTDATA/studio.exr" -o o.exr
-  for tool in paint-convert "paint-edit --hue-shift 1" paint-stats goniogeom-index plot-paint "fit-paint --basis $TESTDATA/b7.basis.xml" \
+  prefilter-envmap -q --for fitted.xml#silver_fine -s 8 "$top/testdata/studio.exr" -o o.exr
+  for tool in paint-convert "paint-edit --hue-shift 1" paint-stats goniogeom-index plot-paint "fit-paint --basis $top/testdata/b7.basis.xml" \
     "fit-basis --lobes 2" "trompe-fit --angle 2"; do
     # shellcheck disable=SC2086
     run $tool "$library#nobody"

@@ -114,7 +114,7 @@ Result<void> Conversion::bring_to_light(paint::Paint& paint) {
   }
   const std::size_t rows = paint.measurement->rows.size();
   const bool has_models = paint.lobes || paint.color_map;
-  GONIO_ASSIGN(paint, paint::in_light(std::move(paint), condition));
+  GONIO_ASSIGN(paint, paint::in_light(paint, condition));
   if (paint.measurement->rows.size() < rows)
     remarks_.note("readings without a spectrum are left out: nothing tells their color in other light", paint.name);
   if (has_models) remarks_.note("lobes and color maps are left out: they are those of the light before", paint.name);
