@@ -104,6 +104,22 @@ double disc_above(double cosine, double radius_rad) {
   return std::clamp(1 - below / whole, 0.0, 1.0);
 }
 
+double DiscRings::half_arc(double share) const {
+  const double inner_gap = share * width, outer_gap = (crossing - width) + (1 - share) * width;
+  return brdf::half_arc(first + inner_gap, between_rad, radius_rad, inner_gap, outer_gap);
+}
+
+// The width is that of all rings that cross the rim, written so that it keeps its digits where the disc is small.
+DiscRings disc_rings(double exponent, double radius_rad, double between_rad) {
+  DiscRings rings{0, std::abs(radius_rad - between_rad), 0, radius_rad, between_rad, 0};
+  rings.crossing = 2 * std::min(radius_rad, between_rad);
+  const bool inside = between_rad < radius_rad;
+  const double reach = reach_from(inside ? 0 : rings.first, exponent);
+  if (inside) rings.whole = std::min(rings.first, reach);
+  rings.width = std::min({rings.crossing, reach - rings.first, kPi / 2 - rings.first});
+  return rings;
+}
+
 // Ring by ring about r. Rings that are whole within the disc have a closed form; of the others the part of the ring
 // within the disc is an arc of half-angle psi about the direction to l, so that with e the unit vector from r toward l
 //   power = integral of cos^E t sin t 2 psi dt,   moment = integral of cos^E t sin t (2 psi cos t r + 2 sin psi sin t
@@ -114,27 +130,20 @@ LobeOfDisc lobe_of_disc(double exponent, double radius_rad, double between_rad) 
     const double power = math::cos_power(between_rad, exponent);
     return {power, power, 0};
   }
-  const double scale = disc_radiance(radius_rad), inner = std::abs(radius_rad - between_rad);
+  const DiscRings rings = disc_rings(exponent, radius_rad, between_rad);
+  const double scale = disc_radiance(radius_rad);
   double power = 0, along_r = 0, along_e = 0;
-  double largest_at = 0;  // the angle at which cos^E is largest on the disc
   if (between_rad < radius_rad) {
-    const double log_inner = math::log_cosine(inner);
+    const double log_inner = math::log_cosine(rings.first);
     power = 2 * kPi / (exponent + 1) * -std::expm1((exponent + 1) * log_inner);
     along_r = 2 * kPi / (exponent + 2) * -std::expm1((exponent + 2) * log_inner);
-  } else {
-    largest_at = inner;
   }
-  // The width is that of all rings that cross the rim, written so that it keeps its digits where the disc is small.
-  const double crossing = 2 * std::min(radius_rad, between_rad);
-  const double width = std::min({crossing, reach_from(largest_at, exponent) - inner, kPi / 2 - inner});
-  if (width > 0) {
+  if (rings.width > 0) {
     for (const math::QuadraturePoint& point : ring_rule()) {
-      const double x = kPi / 4 * (1 + point.position), sine2 = square(std::sin(x));
-      const double inner_gap = width * sine2, t = inner + inner_gap,
-                   outer_gap = (crossing - width) + width * square(std::cos(x));
-      const double psi = half_arc(t, between_rad, radius_rad, inner_gap, outer_gap);
+      const double x = kPi / 4 * (1 + point.position), share = square(std::sin(x));
+      const double t = rings.first + share * rings.width, psi = rings.half_arc(share);
       const double weight =
-          kPi / 4 * point.weight * width * std::sin(2 * x) * std::sin(t) * math::cos_power(t, exponent);
+          kPi / 4 * point.weight * rings.width * std::sin(2 * x) * std::sin(t) * math::cos_power(t, exponent);
       power += weight * 2 * psi;
       along_r += weight * 2 * psi * std::cos(t);
       along_e += weight * 2 * std::sin(psi) * std::sin(t);
@@ -164,6 +173,17 @@ DiscLobeTable::Node DiscLobeTable::at(double chord) const {
   return node;
 }
 
+DiscLobeTable::Node disc_lobe_node(double exponent, double radius_rad, double chord) {
+  const LobeOfDisc lobe = lobe_of_disc(exponent, radius_rad, 2 * std::asin(std::min(1.0, 0.5 * chord)));
+  const double both = lobe.by_light + lobe.by_mirror;
+  DiscLobeTable::Node node;
+  node.cosine[0] = static_cast<float>(lobe.by_light), node.cosine[1] = static_cast<float>(lobe.by_mirror);
+  if (!(both > 0)) return node;
+  node.plain[0] = static_cast<float>(lobe.power * lobe.by_light / both);
+  node.plain[1] = static_cast<float>(lobe.power * lobe.by_mirror / both);
+  return node;
+}
+
 namespace {
 
 std::shared_ptr<const DiscLobeTable> made_table(double exponent, double radius) {
@@ -177,14 +197,8 @@ std::shared_ptr<const DiscLobeTable> made_table(double exponent, double radius) 
   table->nodes.resize(DiscLobeTable::kNodes + 1);
   parallel_for(DiscLobeTable::kNodes - 1, 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const double chord = table->first_chord + static_cast<double>(i) / table->nodes_per_chord;
-      const LobeOfDisc lobe = lobe_of_disc(exponent, radius, 2 * std::asin(std::min(1.0, 0.5 * chord)));
-      const double both = lobe.by_light + lobe.by_mirror;
-      DiscLobeTable::Node& node = table->nodes[i];
-      node.cosine[0] = static_cast<float>(lobe.by_light), node.cosine[1] = static_cast<float>(lobe.by_mirror);
-      if (!(both > 0)) continue;
-      node.plain[0] = static_cast<float>(lobe.power * lobe.by_light / both);
-      node.plain[1] = static_cast<float>(lobe.power * lobe.by_mirror / both);
+      table->nodes[i] =
+          disc_lobe_node(exponent, radius, table->first_chord + static_cast<double>(i) / table->nodes_per_chord);
     }
   });
   return table;

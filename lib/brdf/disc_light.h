@@ -1,5 +1,5 @@
 // Light from a disc of even radiance, such as the sun or a lamp, and what a cosine lobe gathers of it.
-// goniochrome-theory(7), LAMPS.
+// goniochrome-theory(7), RENDERING, Lamps.
 #pragma once
 
 #include <memory>
@@ -35,6 +35,16 @@ struct LobeOfDisc {
 // below 1e-7 of its largest value. A radius of 0 is a point.
 LobeOfDisc lobe_of_disc(double exponent, double radius_rad, double between_rad);
 
+// The rings about r that lie within the disc, as far as the lobe counts there: those up to `whole` with all of their
+// circumference, and of those from `first` on, over `width`, an arc to both sides of the direction to l.
+struct DiscRings {
+  double whole = 0, first = 0, width = 0;
+  double radius_rad = 0, between_rad = 0, crossing = 0;
+  // Half of the angle of the arc at first + share * width.
+  double half_arc(double share) const;
+};
+DiscRings disc_rings(double exponent, double radius_rad, double between_rad);
+
 // The radiance that a mirror sees within the disc, again relative: 1/(pi sin^2(radius)). Infinite for a point.
 double disc_radiance(double radius_rad);
 
@@ -54,6 +64,9 @@ struct DiscLobeTable {
 
   Node at(double chord) const;
 };
+
+// What a table has at that chord, computed.
+DiscLobeTable::Node disc_lobe_node(double exponent, double radius_rad, double chord);
 
 // The table of this lobe and disc. Tables are kept, so that asking again costs nothing. Any number of threads.
 std::shared_ptr<const DiscLobeTable> disc_lobe_table(double exponent, double radius_rad);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/angles.h"
+#include "base/hard_case_for_test.h"
 #include "base/vec3.h"
 #include "math/cosine_power.h"
 #include "math/quadrature.h"
@@ -146,6 +147,20 @@ TEST(DiscLight, ExtentKeepsTheEnergyOfALobe) {
       EXPECT_NEAR(sum / wanted, 1, 1e-6) << exponent << " " << radius_deg;
     }
   }
+}
+
+TEST(HardCase, LampExtentSharpLobeUnderTheSun) {
+  double worst = 0, textbook = 0;
+  const double radius = 0.265 * kDegree;
+  for (const double exponent : {3e4, 1e6}) {
+    for (const double between : {0.0, 0.5 * radius}) {
+      const Vec3 r = tilted(between);
+      const double truth = brute_force(radius, 600, 2400, [&](const Vec3& w) { return versine_power(w, r, exponent); });
+      worst = worst_of(worst, std::abs(lobe_of_disc(exponent, radius, between).power / truth - 1));
+      textbook = worst_of(textbook, std::abs(math::cos_power(between, exponent) / truth - 1));
+    }
+  }
+  hard_case("lamp-extent", {"highlight of a narrow lobe under the sun", textbook, worst, 1e-6, "relative"});
 }
 
 TEST(HardCase, LampExtentGoesToThePointLampForWideLobes) {

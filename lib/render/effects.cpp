@@ -60,8 +60,11 @@ class SlotValues {
     }
     const paint::Lobe* mirror = effects_.mirror ? find_lobe(paint, paint::kMirrorExponent) : nullptr;
     const double seen_cos = effects_.fresnel ? cos_o : std::numbers::sqrt2 / 2;
-    if (mirror != nullptr)
-      set(table_.mirror_slot(), brdf::fresnel_dielectric(seen_cos, brdf::kCoatIndex) * mirror->gloss);
+    if (mirror != nullptr) {
+      const color::Rgb weight = brdf::fresnel_dielectric(seen_cos, brdf::kCoatIndex) * mirror->gloss;
+      set(table_.mirror_slot(), weight);
+      set(table_.lamp_mirror_slot(), weight);
+    }
     return values_;
   }
 
@@ -108,6 +111,14 @@ bool same_lobes(const std::vector<paint::Lobe>& a, const std::vector<paint::Lobe
   });
 }
 
+// Whether the extent of a lamp changes what a paint shows. A lobe of exponent E falls by E R^2/4 in its middle, and a
+// wide disc is cut by the horizon.
+bool is_seen_as_disc(const Light& light, const Effects& effects) {
+  constexpr double kFall = 1e-3, kWide_rad = 0.02;
+  const double radius = light.radius_rad;
+  return radius > kWide_rad || (!effects.lobes.empty() && effects.lobes.back().exponent * radius * radius / 4 > kFall);
+}
+
 paint::Anisotropy anisotropy_of(const Scene& scene, std::size_t part) {
   return part < scene.anisotropy.size() ? scene.anisotropy[part] : paint::Anisotropy{};
 }
@@ -128,7 +139,8 @@ bool same_wear(const Scene& scene, std::size_t a, std::size_t b) {
 Effects effects_of(const Scene& scene) {
   Effects effects;
   effects.environment = scene.env != nullptr;
-  effects.mirror = effects.environment && has_mirror(scene.paints);
+  const bool discs = std::ranges::any_of(scene.lights, [](const Light& light) { return light.radius_rad > 0; });
+  effects.mirror = (effects.environment || discs) && has_mirror(scene.paints);
   effects.lights = scene.lights.size();
   effects.background = scene.background;
   bool gloss = effects.mirror;
@@ -144,6 +156,8 @@ Effects effects_of(const Scene& scene) {
     effects.lobes.push_back(use);
   }
   effects.fresnel = gloss;
+  effects.extent = effects.mirror && discs;
+  for (const Light& light : scene.lights) effects.extent |= is_seen_as_disc(light, effects);
   effects.horizon = effects.environment && !effects.lobes.empty();
   effects.views = std::any_of(scene.paints.begin(), scene.paints.end(),
                               [](const paint::LobeFit& paint) { return !paint.views.empty(); });
@@ -153,6 +167,14 @@ Effects effects_of(const Scene& scene) {
   effects.maps = scene.layer != nullptr && scene.layer->mapped();
   effects.reflection = scene.reflection.k != color::component_wise().k;
   return effects;
+}
+
+std::vector<Light> lights_of(const Scene& scene, const Effects& effects) {
+  if (effects.lights == 0) return {};
+  std::vector<Light> lights = scene.lights;
+  if (!effects.extent)
+    for (Light& light : lights) light.radius_rad = 0;
+  return lights;
 }
 
 paint::LobeFit with_effects(const paint::LobeFit& paint, const Effects& effects) {
@@ -204,7 +226,7 @@ WeightTable slots_of(const Effects& effects) {
   WeightTable table;
   table.lobes = static_cast<int>(effects.lobes.size());
   table.segments = effects.depends_on_view() ? kViewSegments : 1;
-  table.slots = 3 + 3 * table.lobes + (table.lobes + 3) / 4;
+  table.slots = table.lamp_mirror_slot() + 1;
   return table;
 }
 

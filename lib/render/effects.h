@@ -48,6 +48,7 @@ struct Effects {
   double tolerance_de00 = 0.3;  // of engines that sum light instead of looking it up: p95 over the visible pixels
   bool reflection = false;      // the scene's reflection operator in place of the component-wise product
   std::size_t lights = 0;
+  bool extent = false;   // lamps as discs, which lobes and the mirror see; else as points
   RayEffects rays = {};  // effects_of() leaves them out, since no engine with prefiltered maps draws them by itself
   double ray_noise_de00 = 0.25;    // of the picture, one standard deviation at 95 of 100 points
   int most_ray_samples = 1 << 16;  // of a visible point, in all samples of its pixel
@@ -65,6 +66,9 @@ bool same_wear(const Scene& scene, std::size_t a, std::size_t b);
 // A paint with the diffuse part, lobes, mirror and views that are on alone.
 paint::LobeFit with_effects(const paint::LobeFit& paint, const Effects& effects);
 
+// The lamps that these effects draw, as points where the effect `extent` is off.
+std::vector<Light> lights_of(const Scene& scene, const Effects& effects);
+
 // The tilted normals that each part's lobes are drawn about; a single one where the part is isotropic.
 std::vector<std::vector<brdf::Tilt>> tilts_of(const Scene& scene, const Effects& effects);
 
@@ -76,6 +80,7 @@ std::vector<std::vector<brdf::Tilt>> tilts_of(const Scene& scene, const Effects&
 //   slot 1 + lobes    K_M F, of the mirror map
 //   then, for lights, K_D, and K_DD and K_G of each lobe, in 1/sr
 //   then s of each lobe, four in a slot
+//   then K_M F, of the mirror image of lamps
 constexpr int kViewSegments = 64;
 // Lobes up to this exponent look where the light they gather above the horizon comes from, each by itself; sharper ones
 // share the mirror direction. With the effect `horizon`.
@@ -94,6 +99,7 @@ struct WeightTable {
   int directional_diffuse_slot(std::size_t lobe) const { return 3 + lobes + 2 * static_cast<int>(lobe); }
   int gloss_slot(std::size_t lobe) const { return directional_diffuse_slot(lobe) + 1; }
   int shift_slot(std::size_t lobe) const { return 3 + 3 * lobes + static_cast<int>(lobe / 4); }  // channel lobe % 4
+  int lamp_mirror_slot() const { return 3 + 3 * lobes + (lobes + 3) / 4; }
   const float* at(int part, int segment, int slot) const {
     return &rgba[(static_cast<std::size_t>(part * segments + segment) * static_cast<std::size_t>(slots) +
                   static_cast<std::size_t>(slot)) *

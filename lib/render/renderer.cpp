@@ -7,6 +7,7 @@
 #include "rays/ray_scene.h"
 #include "render/gl/gl.h"
 #include "render/gl/shader.h"
+#include "render/glints.h"
 #include "render/path/visible_surface.h"
 #include "render/plan/ray_plan.h"
 #include "render/surface_layer.h"
@@ -118,7 +119,9 @@ Engine& Renderer::State::engine_of(const EngineInfo& info) {
 
 Result<void> Renderer::State::can_shade(const Scene& wanted, const Engine& by) const {
   if (needs_rays(wanted) && !by.info().traces_rays)
-    return usage_error("the engine {} draws neither floors nor parts that shine: take the engine path", by.info().name);
+    return usage_error(
+        "the engine {} draws neither floors nor parts that shine nor lamps at a place: take the engine path",
+        by.info().name);
   GONIO_TRY(by.can_shade(wanted));
   if (given && wanted.layer != nullptr && wanted.layer->textured())
     return usage_error("textures lie on the mesh: a G-buffer that is given has no places on them");
@@ -223,6 +226,8 @@ Result<void> Renderer::State::take(int first, int count, image::Image& picture) 
   for (int i = first; i < first + count; ++i) GONIO_TRY(engine->shade(*this, i, gain, i > first, picture));
   engine->finish(picture);
   picture.channel_names = {"R", "G", "B", "A"};
+  if (!engine->info().traces_rays && effects.extent && effects.mirror)
+    for (int i = first; i < first + count; ++i) add_glints(scene, effects, *gbuffer(i), gain, picture);
   if (scene.layer == nullptr || engine->shades_layer()) return {};
   for (int i = first; i < first + count; ++i) scene.layer->add(*gbuffer(i), places(i), effects, gain, picture);
   return {};

@@ -73,12 +73,14 @@ color::Rgb SurfaceLayer::mapped_difference(int part, const Vec3& normal, const V
   color::Rgb sum;
   const auto at = static_cast<std::size_t>(part);
   for (const Light& light : scene_.lights) {
-    const auto [wi, wo] = about_normal(normal, light.direction, to_viewer);
-    if (wi.z <= 0 || wo.z <= 0) continue;
-    const double aspecular_rad = paint::aspecular_angle_rad(wi, wo, {0, 0, 1});
-    const color::Rgb map = brdf::reflectance_factor(*surfaces_[at].color_map, wi, wo, treatment_);
-    const color::Rgb lobes = brdf::flake_reflectance_factor(scene_.paints[at], aspecular_rad / kDegree);
-    sum += wi.z * color::reflected(scene_.reflection, light.white, map - lobes);
+    for (const DiscDirection& part_of : disc_directions(light)) {
+      const auto [wi, wo] = about_normal(normal, part_of.direction, to_viewer);
+      if (wi.z <= 0 || wo.z <= 0) continue;
+      const double aspecular_rad = paint::aspecular_angle_rad(wi, wo, {0, 0, 1});
+      const color::Rgb map = brdf::reflectance_factor(*surfaces_[at].color_map, wi, wo, treatment_);
+      const color::Rgb lobes = brdf::flake_reflectance_factor(scene_.paints[at], aspecular_rad / kDegree);
+      sum += part_of.weight * wi.z * color::reflected(scene_.reflection, light.white, map - lobes);
+    }
   }
   return sum;
 }
@@ -86,7 +88,7 @@ color::Rgb SurfaceLayer::mapped_difference(int part, const Vec3& normal, const V
 namespace {
 
 SbrdfLight light_of(const Scene& scene, const Effects& effects) {
-  return {effects.environment, effects.lights > 0 ? scene.lights : std::vector<Light>(),
+  return {effects.environment, lights_of(scene, effects),
           effects.reflection ? scene.reflection : color::component_wise(), true, effects.texture_lobes};
 }
 

@@ -238,11 +238,11 @@ std::string rank_problem(const std::vector<SketchCell>& cells, const SketchFit& 
   return "";
 }
 
-SearchSamples samples_of(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light,
+SearchSamples samples_of(const SketchInput& input, const std::vector<std::uint32_t>& used, const SketchLight& light,
                          std::size_t most) {
-  const std::size_t step = std::max<std::size_t>(1, pixels.used.size() / most);
+  const std::size_t step = std::max<std::size_t>(1, used.size() / most);
   std::vector<std::uint32_t> places;
-  for (std::size_t i = 0; i < pixels.used.size(); i += step) places.push_back(pixels.used[i]);
+  for (std::size_t i = 0; i < used.size(); i += step) places.push_back(used[i]);
   SearchSamples samples;
   samples.columns = search_columns(light.basis);
   samples.reflection = light.reflection;
@@ -332,10 +332,50 @@ SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, con
   return fit;
 }
 
-SketchFit sketch_environment(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light,
-                             const SketchLimits& limits, bool with_differences) {
+namespace {
+
+// The pixels that the search looks at: all of them, or all within the highlight of the first lamp and as many others.
+struct Looked {
+  std::vector<std::uint32_t> answer, way;
+};
+
+Looked looked_under_lamps(const SketchInput& input, const SketchPixels& pixels) {
+  constexpr double kHighlight_deg = 12;
+  constexpr std::size_t kMostAnswer = 3000, kMostWay = 700;
+  const image::Image& image = input.buffers->image;
+  const int aspecular = *input.buffers->channel("aspecular");
+  std::vector<std::uint32_t> near, far;
+  for (const std::uint32_t place : pixels.used) {
+    const bool is_near = image.data[static_cast<std::size_t>(place) * image.channels + aspecular] < kHighlight_deg;
+    (is_near ? near : far).push_back(place);
+  }
+  const auto take = [](const std::vector<std::uint32_t>& from, std::size_t most, std::vector<std::uint32_t>& to) {
+    const std::size_t step = std::max<std::size_t>(1, (from.size() + most - 1) / most);
+    for (std::size_t i = 0; i < from.size(); i += step) to.push_back(from[i]);
+  };
+  Looked looked;
+  take(near, kMostAnswer, looked.answer), take(far, kMostAnswer, looked.answer);
+  take(near, kMostWay, looked.way), take(far, kMostWay, looked.way);
+  return looked;
+}
+
+// Which readings explain the pixels as well as the one that was found.
+void take_gloss_range(const LobeSearch& search, const FoundPaint& found, SketchFit& fit) {
+  constexpr double kStep_gu = 2.5, kOpen_gu = 10;
+  const double most = kSameCost * found.search.cost + kSameCostBy;
+  fit.gloss_low_gu = fit.gloss_high_gu = fit.gloss_60_gu;
+  for (double gloss = 0; gloss <= 100; gloss += kStep_gu) {
+    if (search.cost_with_gloss(found, gloss) > most) continue;
+    fit.gloss_low_gu = std::min(fit.gloss_low_gu, gloss), fit.gloss_high_gu = std::max(fit.gloss_high_gu, gloss);
+  }
+  if (fit.gloss_high_gu - fit.gloss_low_gu > kOpen_gu) fit.gloss_from = "undetermined";
+}
+
+SketchFit searched(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light,
+                   const SketchLimits& limits, bool with_differences, const Looked* lamps) {
   const SearchFitters fitters(light.basis);
-  const LobeSearch search(fitters, samples_of(input, pixels, light, kMostPixels));
+  const LobeSearch search(fitters, lamps != nullptr ? samples_of(input, lamps->answer, light, lamps->answer.size())
+                                                    : samples_of(input, pixels.used, light, kMostPixels));
   SketchFit fit;
   std::vector<color::Rgb> weights(search_columns(light.basis));
   const auto judge = [&] {
@@ -358,13 +398,28 @@ SketchFit sketch_environment(const SketchInput& input, const SketchPixels& pixel
   };
   if (pixels.used.size() < kFewestPixels)
     return give_up(fmt::format("{} pixels are too few for a search", pixels.used.size()));
-  const LobeSearch first(fitters, samples_of(input, pixels, light, kFirstPixels));
+  const LobeSearch first(fitters, lamps != nullptr ? samples_of(input, lamps->way, light, lamps->way.size())
+                                                   : samples_of(input, pixels.used, light, kFirstPixels));
   const FoundPaint found = search.find(first);
   take_found(found, fit);
+  if (lamps != nullptr) take_gloss_range(search, found, fit);
   weights = fit.weights = found.weights;
   judge();
   if (fit.median_de76 > limits.median_de76) return give_up(poor_match(fit));
   return fit;
+}
+
+}  // namespace
+
+SketchFit sketch_environment(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light,
+                             const SketchLimits& limits, bool with_differences) {
+  return searched(input, pixels, light, limits, with_differences, nullptr);
+}
+
+SketchFit sketch_lamps(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light,
+                       const SketchLimits& limits, bool with_differences) {
+  const Looked looked = looked_under_lamps(input, pixels);
+  return searched(input, pixels, light, limits, with_differences, &looked);
 }
 
 paint::Paint sketch_paint(const SketchFit& fit, const std::string& name) {
@@ -373,7 +428,7 @@ paint::Paint sketch_paint(const SketchFit& fit, const std::string& name) {
   paint.paint_class = fit.status == "fitted" ? paint::PaintClass::kUnknown : paint::PaintClass::kSolid;
   paint.measurement = paint::Measurement{{}, "", fit.rows};
   paint.appearance = fit.appearance;
-  if (!fit.gloss_from.empty()) paint.gloss.push_back({60, fit.gloss_60_gu});
+  if (!fit.gloss_from.empty() && fit.gloss_from != "undetermined") paint.gloss.push_back({60, fit.gloss_60_gu});
   return paint;
 }
 

@@ -17,6 +17,9 @@ namespace goniochrome::sketch {
 // outlive the result. Error: the buffers lack normals or rays.
 Result<SketchLight> sketch_light(const image::AovFile& buffers, const envmap::PrefilteredEnvironment& env);
 
+// The same of the lamps of the buffers alone, in the lobes of a basis.
+Result<SketchLight> lamp_light(const image::AovFile& buffers, const formats::Basis& basis);
+
 // The light that was traced for the buffers' view, with shadows and bounced light, and what a paint makes of it.
 class SketchTransport {
  public:

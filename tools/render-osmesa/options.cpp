@@ -54,12 +54,17 @@ void add_surfaces(cli::ToolSpec& spec, Options& o) {
 void add_light(cli::ToolSpec& spec, Options& o) {
   spec.heading = "light";
   spec.option("env,e", "FILE", "studio.env.exr", &o.env, "prefiltered environment (*.env.exr)");
-  spec.option("light", "DIR[,RGB]", "-60,20,0.5,0.5,0.6", &o.lights, "directional light")
-      .in("degrees where the direction is given by angles")
+  spec.option("light", "WHERE[,RGB][@EXTENT]", "-60,20,0.5,0.5,0.6@2", &o.lights, "lamp")
+      .in("degrees for angles and for the extent")
       .more(
-          "The direction is AZIMUTH,ELEVATION, or a vector X,Y,Z toward the light. R,G,B may follow; it is what a "
-          "perfect white diffuser shows that faces the light, and 1,1,1 if not given. The mirror image of such a "
-          "light is a point without extent and is not drawn.");
+          "WHERE is AZIMUTH,ELEVATION or a vector X,Y,Z toward a lamp that is far away, or place:X,Y,Z for a lamp "
+          "that stands at that place, in units of the mesh. R,G,B may follow; it is what a perfect white diffuser "
+          "shows that faces the lamp, and 1,1,1 if not given. EXTENT is the angle that the lamp spans, from 0 to 180, "
+          "and 0.53 as that of the sun if not given. The lamp is a disc of even radiance, and a wider one sends as "
+          "much light as a narrow one. Its highlight and its mirror image are those of the disc; with the extent 0 "
+          "it is a point, which has no mirror image. A lamp at a place is a sphere, has that extent and that white "
+          "in the middle of the mesh, and its light falls with the square of the distance; the engine path draws "
+          "it.");
   spec.option("emit", "PART=R,G,B", "Lamp=20,18,15", &o.emissions, "make a part or material shine by itself")
       .more(
           "R,G,B is the radiance of both sides of the part, in linear Rec.2020, beside what its paint reflects. Only "
@@ -214,8 +219,10 @@ void add_output(cli::ToolSpec& spec, Options& o) {
           "largest, and goniochrome:aovLight holds it. mask is 1 on the mesh. part is a number from 1, and the "
           "attribute goniochrome:parts names the parts. More attributes say what is needed to shade the buffers "
           "again: goniochrome:rays (corner;right;down: the ray through the point x,y is the sum of the first, x times "
-          "the second and y times the third, in pixels from the upper left), goniochrome:lights (direction and white "
-          "of each), goniochrome:operator (the 27 coefficients k[c][d][e] of colored light, with e running fastest), "
+          "the second and y times the third, in pixels from the upper left), goniochrome:lights (direction, "
+          "white and extent of each in degrees, and of a lamp at a place that place and its distance from the middle "
+          "of the mesh), goniochrome:operator (the 27 coefficients k[c][d][e] of colored light, with e running "
+          "fastest), "
           "goniochrome:samples (those of a pixel of the picture) and goniochrome:environment. transport brings all "
           "buffers and, in parts of their own, the light that each lobe of the basis gathers at each pixel, with "
           "shadows and with light that surfaces send to each other; it is traced until its noise is within "

@@ -62,8 +62,10 @@ Result<Request> request_of(const Options& options) {
                                                                      : "none";
   if (floor_forced && *floor_forced == (floor == "none"))
     return usage_error("--effects and --floor {} exclude each other: leave one of them out", options.floor);
+  const bool places = std::ranges::any_of(request.lights, [](const render::Light& l) { return l.place.has_value(); });
   const bool wants_rays =
-      !request.emissions.empty() || (floor != "auto" && floor != "none");  // only one engine has them
+      !request.emissions.empty() || places || (floor != "auto" && floor != "none");  // only one engine has them
+  const char* of_rays = !request.emissions.empty() ? "emit" : places ? "light place:..." : "floor";
   const auto tracer = std::ranges::find_if(render::engines(), [](const auto* engine) { return engine->traces_rays; });
   const std::string engine = options.engine == "auto" && wants_rays ? (*tracer)->name : options.engine;
   if (engine != "auto") {
@@ -78,11 +80,12 @@ Result<Request> request_of(const Options& options) {
     GONIO_ASSIGN(request.missing_floor, parse_floor(floor, options.background == "env" && !options.env.empty()));
   }
   if (wants_rays && !traces)
-    return usage_error("--engine {} draws neither floors nor parts that shine: leave out --{}, or take --engine path",
-                       options.engine, request.emissions.empty() ? "floor" : "emit");
+    return usage_error(
+        "--engine {} draws neither floors nor parts that shine nor lamps at a place: leave out --{}, or take --engine "
+        "path",
+        options.engine, of_rays);
   if (wants_rays && !options.gbuffer.empty())
-    return usage_error("--{} needs the mesh: --gbuffer holds one view of surfaces without it",
-                       request.emissions.empty() ? "floor" : "emit");
+    return usage_error("--{} needs the mesh: --gbuffer holds one view of surfaces without it", of_rays);
   if (!options.split.empty() && options.check > 0) return usage_error("--split and --check exclude each other");
   if (options.print_shader && options.output == "-")
     return usage_error("--print-shader and a picture both want standard output");

@@ -9,6 +9,7 @@
 #include "display/display.h"
 #include "picture_file.h"
 #include "plan_text.h"
+#include "render/aov.h"
 #include "render/left_out.h"
 #include "stage.h"
 #include "truth_check.h"
@@ -258,7 +259,7 @@ Result<cli::Verdict> Shooting::shade_transport(const std::optional<display::Disp
   white_ = {kept.white_luminance, {0, 1, 0}};
   plan_.engine = "transport", plan_.engine_reason = options_.gbuffer + " holds the light by lobes";
   stage_.scene.lights.clear();
-  for (const image::AovLight& light : kept.lights) stage_.scene.lights.push_back({light.direction, light.white});
+  for (const image::AovLight& light : kept.lights) stage_.scene.lights.push_back(render::light_of(light));
   automatic_stops_ = kept.automatic_stops;
   const double stops = request_.stops.value_or(request_.png ? automatic_stops_ : 0);
   GONIO_TRY(write({{}, {}, options_.output}, display, stops));
@@ -335,7 +336,7 @@ void Shooting::tell_noise() {
 Result<cli::Verdict> Shooting::shoot(const std::optional<display::Display>& display) {
   if (stage_.transport) return shade_transport(display);
   if (request_.transport) GONIO_TRY(can_trace_view(stage_.scene));
-  GONIO_ASSIGN(shots_, shots_of(options_, stage_.mesh, request_.size, request_.lights));
+  GONIO_ASSIGN(shots_, shots_of(options_, stage_.mesh, request_.size, stage_.scene.lights));
   GONIO_ASSIGN(render::Renderer renderer, make_renderer());
   GONIO_TRY(look(renderer));
   tell_visibility(*looks_.front(), stage_.mesh, session_);

@@ -185,6 +185,11 @@ Result<void> set_stage(const Options& options, const Request& request, Stage& st
   render::Scene& scene = stage.scene;
   scene.mesh = &stage.mesh;
   scene.lights = request.lights;
+  if (options.gbuffer.empty()) {
+    GONIO_TRY(stand_lamps(stage.mesh, scene.lights));
+  } else if (std::ranges::any_of(scene.lights, [](const render::Light& light) { return light.place.has_value(); })) {
+    return usage_error("--gbuffer holds no places, so that no lamp can stand at one: give --mesh");
+  }
   scene.reflection = request.reflection;
   if (!options.env.empty()) {
     GONIO_ASSIGN(stage.env, envmap::read_env(options.env));

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "envmap/cube_map.h"
+#include "render/aov.h"
 #include "render/effects.h"
 #include "render/surface_layer.h"
 
@@ -44,7 +45,9 @@ void report_traced(const render::TracedLobes& traced, const render::TransportPar
 bool same_light(const KeptTransport& kept, const std::vector<render::Light>& lights) {
   return std::equal(lights.begin(), lights.end(), kept.lights.begin(), kept.lights.end(),
                     [](const render::Light& a, const image::AovLight& b) {
-                      return length(a.direction - b.direction) < 1e-9 && a.white == b.white;
+                      return length(a.direction - b.direction) < 1e-9 && a.white == b.white &&
+                             std::abs(a.radius_rad - render::light_of(b).radius_rad) < 1e-9 &&
+                             a.place.has_value() == b.is_placed;
                     });
 }
 

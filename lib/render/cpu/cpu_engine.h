@@ -3,6 +3,7 @@
 // goniochrome-theory(7), RENDERING, Engines.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "image/image.h"
@@ -51,6 +52,7 @@ class CpuEngine : public Engine {
   static Stack interleaved(const MapClass& maps, MapUse use, const ProductForms& forms);
   void interleave(const MapClass& maps, MapUse use);
   void set_lights(const Scene& scene, const Effects& effects);
+  void set_discs(const std::vector<Light>& lights, const Effects& effects);
   void set_tilts(const Scene& scene, const Effects& effects);
   void shade_row(const Gbuffer& gbuffer, int y, float gain, bool add, float* rgba) const;
 
@@ -63,6 +65,9 @@ class CpuEngine : public Engine {
   CpuShading shading_;
   Background background_ = Background::kNone;
   color::Rgb background_color_;
+  std::vector<CpuShading::Disc> discs_;
+  std::vector<std::shared_ptr<const brdf::DiscLobeTable>> disc_tables_;
+  std::vector<const brdf::DiscLobeTable*> disc_lobes_;
 };
 
 }  // namespace goniochrome::render

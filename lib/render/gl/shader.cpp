@@ -4,6 +4,7 @@
 
 #include "base/angles.h"
 #include "base/text.h"
+#include "brdf/disc_light.h"
 #include "brdf/lobe_model.h"
 #include "render/internal/product_forms.h"
 
@@ -48,6 +49,12 @@ uniform sampler2D weights;  // a row for each part; two texels for each slot of 
   }
   if (effects.lights > 0) {
     text += fmt::format("uniform vec3 light_direction[{0}], light_white[{0}];\n", effects.lights);
+    if (effects.extent) {
+      text += fmt::format(
+          "uniform vec3 light_disc[{}];  // sine and chord of the radius, 1/(pi sine^2)\n"
+          "uniform sampler2D discs;  // for each light a row for each lobe, then one for the horizon\n",
+          effects.lights);
+    }
   }
   if (effects.background == Background::kColor) text += "uniform vec3 background;\n";
   return text;
@@ -94,6 +101,28 @@ float cos_power(float versine, float exponent) {
   return exp(exponent * log_cos);
 }
 )";
+
+// What a lobe gathers of a disc, by the chord from the mirror direction to its middle; and how much of a disc stands
+// above the horizon, by the cosine to its middle relative to the sine of its radius: irradiance and part.
+std::string disc_functions(std::size_t lobes) {
+  return fmt::format(R"(
+vec4 disc_node(int row, float x) {{
+  x = max(x, 0.0);
+  int node = int(x);
+  return mix(texelFetch(discs, ivec2(node, row), 0), texelFetch(discs, ivec2(node + 1, row), 0), x - float(node));
+}}
+vec4 disc_lobe(int light, int lobe, float chord) {{
+  int row = {0} * light + lobe;
+  vec4 steps = texelFetch(discs, ivec2({1}, row), 0);
+  float x = (chord - steps.x) * steps.y;
+  return x < {1}.0 - 1.0 ? disc_node(row, x) : vec4(0.0);
+}}
+vec2 disc_horizon(int light, float part) {{
+  return disc_node({0} * light + {2}, min(0.5 * (part + 1.0) * ({1}.0 - 1.0), {1}.0 - 1.001)).xy;
+}}
+)",
+                     lobes + 1, brdf::DiscLobeTable::kNodes, lobes);
+}
 
 bool lit_gloss(const Effects& effects) {
   return effects.lights > 0 && effects.fresnel &&
@@ -146,6 +175,23 @@ const char* sum_type(Product product) {
   return product == Product::kForms ? "vec4" : "vec3";
 }
 
+// What the lobes send from a disc: one part with the cosine and the coat at the disc, the other with those at r.
+std::string disc_lobes(const Effects& effects, const WeightTable& slots) {
+  std::string text = fmt::format(
+      "\nvec3 lit_lobes(vec3 r, vec3 l, vec3 n, vec3 wo, int light, float irradiance, float above) {{\n"
+      "  float chord = distance(r, l), cos_r = max(dot(n, r), 0.0), coat = {};\n  vec3 sum = vec3(0.0);\n  vec4 of;\n",
+      lit_gloss(effects) ? "fresnel(sqrt(max(0.5 + 0.5 * dot(r, wo), 0.0)))" : "1.0");
+  for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
+    const Effects::LobeUse& lobe = effects.lobes[j];
+    text += fmt::format("  of = disc_lobe(light, {}, chord);\n", j);
+    if (lobe.directional_diffuse)
+      text +=
+          fmt::format("  sum += (of.x * irradiance + of.y * cos_r) * W({}).rgb;\n", slots.directional_diffuse_slot(j));
+    if (lobe.gloss) text += fmt::format("  sum += (of.z * above + of.w * coat) * W({}).rgb;\n", slots.gloss_slot(j));
+  }
+  return text + "  return sum;\n}\n";
+}
+
 // What the lobes show of the environment in a mirror direction, and what they send from a light.
 std::string lobe_functions(const Effects& effects, Product product) {
   std::string text;
@@ -164,6 +210,7 @@ std::string lobe_functions(const Effects& effects, Product product) {
   }
   if (effects.lights == 0) return text;
   const WeightTable slots = slots_of(effects);
+  if (effects.extent) return text + disc_lobes(effects, slots);
   text += "\nvec3 lit_lobes(vec3 r, vec3 l, float cos_i, float F) {  // without the gloss term's 1/cos_i\n";
   text += "  float versine = 0.5 * dot(r - l, r - l);\n  vec3 sum = vec3(0.0);\n";
   for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
@@ -207,8 +254,34 @@ std::string environment_terms(const Effects& effects, Product product) {
   return text;
 }
 
+// The same of discs, with their mirror images.
+std::string disc_terms(const Effects& effects) {
+  std::string text = fmt::format(
+      R"(
+  // the lamps
+  for (int i = 0; i < {}; ++i) {{
+    vec3 l = light_direction[i], disc = light_disc[i];
+    float cos_i = dot(n, l);
+    if (cos_i <= -disc.x) continue;
+    vec2 seen = cos_i >= disc.x ? vec2(cos_i, 1.0) : disc_horizon(i, cos_i / disc.x);
+    vec3 reflected = {};
+)",
+      effects.lights,
+      effects.diffuse ? fmt::format("seen.x * W({}).rgb", slots_of(effects).light_slot()) : "vec3(0.0)");
+  if (!effects.lobes.empty()) {
+    const char* fresnel = lit_gloss(effects) ? "fresnel(sqrt(max(0.5 + 0.5 * dot(l, wo), 0.0)))" : "1.0";
+    text += over_tilts(effects, "reflected", "lit_lobes", fmt::format(", l, n, wo, i, seen.x, seen.y * {}", fresnel));
+  }
+  if (effects.mirror)
+    text += fmt::format("    if (distance(r, l) <= disc.y) reflected += disc.z * W({}).rgb;\n",
+                        slots_of(effects).lamp_mirror_slot());
+  return text +
+         fmt::format("    radiance += {} * {};\n  }}\n", glsl(kPi), times(effects, "light_white[i]", "reflected"));
+}
+
 // The exact BRDF times cos_i, so that the gloss term's 1/cos_i is gone.
 std::string light_terms(const Effects& effects) {
+  if (effects.extent) return disc_terms(effects);
   std::string text = fmt::format(
       R"(
   // the lights
@@ -292,7 +365,8 @@ std::string shading_fragment_shader(const Effects& effects, const color::Reflect
   if (effects.environment && product == Product::kForms)
     text += forms_functions(forms, effects.background == Background::kEnvironment);
   if (lit_gloss(effects)) text += fresnel_function();
-  if (lit_lobes) text += kCosPower;
+  if (lit_lobes && !effects.extent) text += kCosPower;
+  if (effects.lights > 0 && effects.extent) text += disc_functions(effects.lobes.size());
   if (!effects.lobes.empty()) text += lobe_functions(effects, product);
   // 2. Where nothing is seen the program shows the background; else it finds the view and the row of weights.
   text += fmt::format(R"(

@@ -87,6 +87,9 @@ class Gatherer {
   void set_mirror_directions();
   // With `horizon`, the direction's own cosine, and nothing from below.
   void add(const Patch& patch, const color::Rgb& radiance, bool horizon);
+  color::Rgb lobes_toward_disc(const Light& light) const;
+  color::Rgb lobe_over_disc(const paint::Lobe& lobe, const Vec3& mirrored, const Light& light) const;
+  void add_reflected(const color::Rgb& f, const color::Rgb& light);
   color::Rgb lobes_toward(const Patch& patch, double cos_i) const;
 
   const SurfacePoint& point_;
@@ -97,6 +100,7 @@ class Gatherer {
   std::vector<Mirrored> mirrored_;
   std::vector<paint::Lobe> lobes_;  // finite exponents, ascending
   Grain grain_;
+  bool summed_ = false;  // whether lamps are integrated over their discs, and not looked up
   color::Rgb sum_;
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/angles.h"
+#include "brdf/disc_light.h"
 
 namespace goniochrome::render {
 
@@ -88,7 +89,8 @@ Result<LaidGround> LaidGround::create(const Ground& ground, const envmap::Enviro
   laid.environment_ = &environment;
   laid.eye_ = ground.probe_eye;
   laid.irradiance_ = level_irradiance(environment);
-  for (const Light& light : lights) laid.irradiance_ += (kPi * std::max(0.0, light.direction.y)) * light.white;
+  for (const Light& light : lights)
+    laid.irradiance_ += (kPi * brdf::disc_irradiance(light.direction.y, light.radius_rad)) * light.white;
   return laid;
 }
 

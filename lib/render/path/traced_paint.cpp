@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/angles.h"
+#include "brdf/disc_light.h"
 #include "brdf/lobe_model.h"
 #include "render/scene.h"
 
@@ -233,6 +234,45 @@ Reflection PaintedPoint::at(const Float3& to_light) const {
     });
   }
   return {to_light, f_cos, pdf / total_};
+}
+
+Float3 PaintedPoint::toward_disc(const Light& light, bool tabled) const {
+  const Vec3 n = rays::vec3(normal_), viewer = rays::vec3(viewer_);
+  const double cosine = dot(n, light.direction), radius = light.radius_rad;
+  if (cosine <= -std::sin(radius)) return {};
+  const double irradiance = brdf::disc_irradiance(cosine, radius), above = brdf::disc_above(cosine, radius);
+  Float3 f = static_cast<float>(irradiance) * diffuse_;
+  if (paint_ != nullptr) {
+    for (const DiscDirection& part : disc_directions(light))
+      if (dot(n, part.direction) > 0) f = f + static_cast<float>(part.weight) * mapped(float3(part.direction));
+  }
+  for (const TexelLobe& lobe : texels_) {
+    const Vec3 axis = rays::vec3(lobe.axis);
+    const double between = 2 * std::asin(std::min(1.0, 0.5 * length(axis - light.direction)));
+    const brdf::LobeOfDisc of = brdf::lobe_of_disc(lobe.exponent, radius, between);
+    const double gathered = of.by_light * irradiance + of.by_mirror * std::max(0.0, dot(n, axis));
+    f = f + (std::exp(lobe.log_peak) * static_cast<float>(gathered)) * lobe.color;
+  }
+  const auto coat = [&](const Vec3& toward) {
+    return coat_reflectance(static_cast<float>(std::min(1.0, 0.5 * length(toward + viewer))));
+  };
+  const auto coat_l = static_cast<float>(above) * coat(light.direction);
+  const auto add_lobes = [&](const Float3& axis, float share) {
+    const Vec3 r = rays::vec3(axis);
+    const double chord = length(r - light.direction);
+    const auto wide = static_cast<float>(irradiance), cos_r = static_cast<float>(std::max(0.0, dot(n, r)));
+    const float coat_r = coat(r);
+    for (int j = 0; j < count_; ++j) {
+      const double exponent = lobes_[j].exponent;
+      const brdf::DiscLobeTable::Node of =
+          tabled ? brdf::disc_lobe_table(exponent, radius)->at(chord) : brdf::disc_lobe_node(exponent, radius, chord);
+      f = f + (share * (of.cosine[0] * wide + of.cosine[1] * cos_r)) * lobes_[j].directional_diffuse +
+          (share * (of.plain[0] * coat_l + of.plain[1] * coat_r)) * lobes_[j].gloss;
+    }
+  };
+  if (axes_.empty()) add_lobes(mirrored_, 1);
+  for (const Axis& axis : axes_) add_lobes(axis.direction, axis.share);
+  return f;
 }
 
 // cos = u^(1/(E+1)); 1 - cos without cancellation, so that lobes of any sharpness keep their shape.

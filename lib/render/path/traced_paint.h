@@ -11,6 +11,7 @@
 #include "brdf/ward.h"
 #include "paint/paint.h"
 #include "rays/ray_scene.h"
+#include "render/scene.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {
@@ -103,6 +104,12 @@ class PaintedPoint {
     rays::Float3 diffuse, lobes, gloss;
   };
   Parts parts(const rays::Float3& to_light) const;
+
+  // The integral of f cos_i over the disc of a lamp that has no place, relative to pi sin^2 of its radius and as if
+  // nothing stood in the way; 0 below the horizon. The coat's reflectance and what the horizon takes are those of the
+  // middle of the disc and of the mirror direction, in shares; render/exact.h has them for each direction.
+  // `tabled`: whether many points see a disc of this radius, so that a table of its lobes is worth while.
+  rays::Float3 toward_disc(const Light& light, bool tabled = true) const;
 
   // A direction drawn by numbers in [0,1). `choice` says which lobe. It may lie below the horizon. The point is not
   // black.

@@ -133,10 +133,53 @@ PaintedPoint Transport::painted(const Spot& spot, const Float3& to_viewer) const
 
 // Where a path goes on.
 struct Transport::Next {
-  Float3 direction;
+  Float3 start, direction;
   double pdf = 0;  // 0: nowhere; infinite along the mirror direction
   Hit hit;
 };
+
+Transport::SeenLamp Transport::seen_lamp(std::size_t lamp, const Float3& from) const {
+  SeenLamp seen{lights_[lamp]};
+  if (!seen.light.place) return seen;
+  const Vec3 position = rays_->world(from);
+  const double distance = length(seen.light.place->position - position);
+  seen.light = light_at(seen.light, position), seen.is_placed = true;
+  const double surface = distance * (1 - std::sin(seen.light.radius_rad));
+  seen.reach = kShort * static_cast<float>(rays_->scale() * surface);
+  return seen;
+}
+
+Transport::LampSample Transport::drawn_from(const SeenLamp& lamp, double u, double v) {
+  const Light& light = lamp.light;
+  const color::Rgb whole = kPi * light.white;
+  if (!(light.radius_rad > 0)) return {rays::float3(light.direction), lamp.reach, whole};
+  const double half = std::sin(0.5 * light.radius_rad), cos_half = std::cos(0.5 * light.radius_rad);
+  const double versine = 2 * half * half * u, across = std::sqrt(versine * (2 - versine)), phi = 2 * kPi * v;
+  const Vec3 other = std::abs(light.direction.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  const Vec3 x = normalized(cross(other, light.direction)), y = cross(light.direction, x);
+  const Vec3 toward = (1 - versine) * light.direction + across * std::cos(phi) * x + across * std::sin(phi) * y;
+  // The solid angle by pi sin^2 of the radius is 1/cos^2 of half of it.
+  return {rays::float3(toward), lamp.reach, (1 / (cos_half * cos_half)) * whole};
+}
+
+Transport::LampSample Transport::drawn_lamp(const Float3& from, double choice, double v) const {
+  const auto count = static_cast<double>(lights_.size());
+  const double at = choice * count;
+  const std::size_t lamp = std::min(lights_.size() - 1, static_cast<std::size_t>(at));
+  LampSample sample = drawn_from(seen_lamp(lamp, from), at - static_cast<double>(lamp), v);
+  sample.light = count * sample.light;
+  return sample;
+}
+
+color::Rgb Transport::mirrored_lamps(const Float3& from, const Float3& toward, const Hit& hit) const {
+  color::Rgb sum;
+  for (std::size_t i = 0; i < lights_.size(); ++i) {
+    if (!(lights_[i].radius_rad > 0)) continue;
+    const SeenLamp lamp = seen_lamp(i, from);
+    if (lamp.light.meets(rays::vec3(toward)) && !(hit.any() && hit.distance < lamp.reach)) sum += lamp.light.radiance();
+  }
+  return sum;
+}
 
 // Light that is drawn at a vertex, weighed against the same light found by the next ray (the balance heuristic,
 // [Veach1995] 3.1): together they count it once.
@@ -156,12 +199,10 @@ color::Rgb Transport::direct_light(const Vertex& vertex, const PathProduct& path
   const double sign = laid ? -1 : 1;
   const Float3& start = vertex.spot.start;
   if (!lights_.empty()) {
-    const auto count = static_cast<double>(lights_.size());
-    const Light& light = lights_[std::min(lights_.size() - 1, static_cast<std::size_t>(numbers[2] * count))];
-    const Float3 direction = rays::float3(light.direction);
-    const Reflection reflection = vertex.painted.at(direction);
-    if (reflection.pdf > 0 && rays_->blocked(start, direction) == laid)
-      add(reflection.f_cos, sign * count * kPi, light.white);
+    const LampSample lamp = drawn_lamp(start, numbers[2], numbers[3]);
+    const Reflection reflection = vertex.painted.at(lamp.direction);
+    if (reflection.pdf > 0 && rays_->blocked(start, lamp.direction, lamp.reach) == laid)
+      add(reflection.f_cos, sign, lamp.light);
   }
   if (environment_) {
     const LightSample light = environment_->drawn(numbers[0], numbers[1]);
@@ -185,6 +226,7 @@ color::Rgb Transport::direct_light(const Vertex& vertex, const PathProduct& path
 Transport::Next Transport::next_ray(const Vertex& vertex, PathProduct& path,
                                     const std::array<double, 4>& numbers) const {
   Next next;
+  next.start = vertex.spot.start;
   if (numbers[0] < vertex.mirror_chance) {
     path.reflect((1 / vertex.mirror_chance) * rgb(vertex.painted.mirror()));
     next.direction = vertex.painted.mirrored();
@@ -209,9 +251,10 @@ Transport::Next Transport::next_ray(const Vertex& vertex, PathProduct& path,
 color::Rgb Transport::light_at_end(const Next& next, const PathProduct& path, bool laid) const {
   const auto share = [&](double light_pdf) { return std::isinf(next.pdf) ? 1 : next.pdf / (next.pdf + light_pdf); };
   color::Rgb sum;
+  if (std::isinf(next.pdf) && !lights_.empty()) sum += path.shown(mirrored_lamps(next.start, next.direction, next.hit));
   if (next.hit.any() == laid && environment_) {
     const LightSample light = environment_->at(next.direction);
-    sum = (laid ? -1 : 1) * share(light.pdf) * path.shown(light.radiance);
+    sum += (laid ? -1 : 1) * share(light.pdf) * path.shown(light.radiance);
   }
   if (!next.hit.any()) return sum;
   const color::Rgb& emission = emitters_.radiance(rays_->part(next.hit.triangle));
@@ -292,13 +335,13 @@ PointTransport::PointTransport(const Transport& transport, const PathOptions& op
     const float wide = 1 - painted_.narrow_share(transport.environment_->extent_sr());
     light_chance_ = std::clamp(kMostLightChance * wide, kLeastLightChance, kMostLightChance);
   }
-  const bool free =
-      !transport.rays_->has_floor() && !transport.rays_->any_above(spot.start, spot.shading, 0) && options.correction;
+  open_ = !transport.rays_->has_floor() && !transport.rays_->any_above(spot.start, spot.shading, 0);
+  const bool free = open_ && options.correction;
   if (!free) {
     add_lights();
   }
   if (!free) add_mirror();
-  certain_ = free || (!(painted_.lobes_weight() > 0) && mirror_samples_ == 0);
+  certain_ = free || (!(painted_.lobes_weight() > 0) && mirror_samples_ == 0 && lamps_.empty());
 }
 
 color::Rgb PointTransport::reflect(const Float3& f, const color::Rgb& light) const {
@@ -314,14 +357,58 @@ void PointTransport::narrow_to_mesh() {
   mesh_cosine_ = std::sqrt(1 - sine * sine) - 1e-6F;
 }
 
+// A point is either seen or hidden. Of a disc the light without the mesh is known, and samples tell what the mesh takes
+// from it, without bias; where it takes most of it, they tell what is left. Which of both is decided by a few rays and
+// has no part in the expectation.
 void PointTransport::add_lights() {
-  for (const Light& light : transport_.lights_) {
-    const Float3 direction = rays::float3(light.direction);
-    const Reflection reflection = painted_.at(direction);
-    if (!(reflection.pdf > 0)) continue;
-    const bool blocked = transport_.rays_->blocked(spot_.start, direction);
-    if (blocked == correction_) sure_ += (blocked ? -kPi : kPi) * reflect(reflection.f_cos, light.white);
+  for (std::size_t i = 0; i < transport_.lights_.size(); ++i) {
+    const Transport::SeenLamp lamp = transport_.seen_lamp(i, spot_.start);
+    const Light& light = lamp.light;
+    if (!(light.radius_rad > 0)) {
+      const Float3 direction = rays::float3(light.direction);
+      const Reflection reflection = painted_.at(direction);
+      if (!(reflection.pdf > 0)) continue;
+      const bool blocked = transport_.rays_->blocked(spot_.start, direction, lamp.reach);
+      if (blocked == correction_) sure_ += (blocked ? -kPi : kPi) * reflect(reflection.f_cos, light.white);
+      continue;
+    }
+    const double sine = rays::dot(spot_.shading, rays::float3(light.direction));
+    if (sine <= -std::sin(light.radius_rad)) continue;
+    const color::Rgb whole = reflect(painted_.toward_disc(light, !lamp.is_placed), kPi * light.white);
+    constexpr std::uint32_t kProbes = 16;
+    std::uint32_t blocked = 0, above = 0;
+    const Sequence sequence(mixed(0x1A3B, i), kProbes);
+    for (std::uint32_t k = 0; k < kProbes && !open_; ++k) {
+      const std::array<double, 4> numbers = sequence.point(k, 0);
+      const Transport::LampSample sample = Transport::drawn_from(lamp, numbers[0], numbers[1]);
+      if (!(rays::dot(sample.direction, spot_.shading) > 0)) continue;
+      ++above;
+      if (transport_.rays_->blocked(spot_.start, sample.direction, sample.reach)) ++blocked;
+    }
+    const bool hidden = 2 * blocked <= above;
+    if (hidden != correction_) sure_ += (correction_ ? -1.0 : 1.0) * whole;
+    if (!open_) lamps_.push_back({lamp, hidden});
   }
+}
+
+// What lamps that are discs add to sure(), as the mean over samples.
+color::Rgb PointTransport::lamp_shadows(const Sequence& sequence, std::uint32_t begin, std::uint32_t count,
+                                        bool* any_blocked) const {
+  constexpr std::uint32_t kSet = 60;  // that nothing else draws from
+  color::Rgb sum;
+  for (std::size_t k = 0; k < lamps_.size(); ++k) {
+    const Lamp& lamp = lamps_[k];
+    for (std::uint32_t i = begin; i < begin + count; ++i) {
+      const std::array<double, 4> numbers = sequence.point(i, kSet + static_cast<std::uint32_t>(k));
+      const Transport::LampSample sample = Transport::drawn_from(lamp.seen, numbers[0], numbers[1]);
+      const Reflection reflection = painted_.at(sample.direction);
+      if (!(reflection.pdf > 0)) continue;
+      const bool blocked = transport_.rays_->blocked(spot_.start, sample.direction, sample.reach);
+      if (any_blocked != nullptr && blocked) *any_blocked = true;
+      if (blocked == lamp.hidden) sum += (blocked ? -1.0 : 1.0) * reflect(reflection.f_cos, sample.light);
+    }
+  }
+  return sum;
 }
 
 void PointTransport::add_mirror() {
@@ -331,6 +418,11 @@ void PointTransport::add_mirror() {
   mirror_hit_ = transport_.rays_->closest(spot_.start, painted_.mirrored());
   const color::Rgb open =
       transport_.environment_ ? transport_.environment_->radiance(painted_.mirrored()) : color::Rgb{};
+  if (!transport_.lights_.empty()) {
+    color::Rgb lamps = transport_.mirrored_lamps(spot_.start, painted_.mirrored(), mirror_hit_);
+    if (correction_) lamps += -1.0 * transport_.mirrored_lamps(spot_.start, painted_.mirrored(), {});
+    sure_ += reflect(mirror, lamps);
+  }
   if (!mirror_hit_.any()) {
     if (!correction_) sure_ += reflect(mirror, open);
     return;
@@ -408,6 +500,7 @@ LightShares PointTransport::batch_shares(std::uint64_t seed, std::uint32_t begin
   if (certain_) return {};
   const Sequence sequence(seed, kBatch);
   LightShares sum;
+  sum.direct += lamp_shadows(sequence, begin, count, any_blocked);
   if (painted_.lobes_weight() > 0) {
     for (std::uint32_t first = begin; first < begin + count; first += kFan) {
       Ray rays[kFan];

@@ -1,6 +1,7 @@
 // Light on its way through a scene: what one point shows, by rays. goniochrome-theory(7), PATHS.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -102,6 +103,25 @@ class Transport {
                           double choice) const;
   Next next_ray(const Vertex& vertex, PathProduct& path, const std::array<double, 4>& numbers) const;
   color::Rgb light_at_end(const Next& next, const PathProduct& path, bool laid) const;
+  // A lamp as the point sees it, and how far a ray to it goes (local).
+  struct SeenLamp {
+    Light light;
+    float reach = std::numeric_limits<float>::infinity();
+    bool is_placed = false;
+  };
+  SeenLamp seen_lamp(std::size_t lamp, const rays::Float3& from) const;
+  // A direction to a lamp, drawn evenly from its disc by numbers in [0,1), and the radiance times solid angle of the
+  // lamp in units of f cos_i: what a sample adds with the mean over samples.
+  struct LampSample {
+    rays::Float3 direction;
+    float reach = 0;
+    color::Rgb light;
+  };
+  static LampSample drawn_from(const SeenLamp& lamp, double u, double v);
+  // The same of any one lamp.
+  LampSample drawn_lamp(const rays::Float3& from, double choice, double v) const;
+  // What a mirror sees of lamps in that direction, where a ray meets `hit`.
+  color::Rgb mirrored_lamps(const rays::Float3& from, const rays::Float3& toward, const rays::Hit& hit) const;
   bool is_laid(const rays::Spot& spot) const;
   bool is_laid(const rays::Hit& hit) const { return ground_ && hit.triangle == rays::kFloor; }
   color::Rgb open_ground(const rays::Spot& spot) const;
@@ -145,6 +165,7 @@ class PointTransport {
   void add_lights();
   void add_mirror();
   Ray drawn_ray(const std::array<double, 4>& numbers) const;
+  color::Rgb lamp_shadows(const Sequence& sequence, std::uint32_t begin, std::uint32_t count, bool* any_blocked) const;
   LightShares shown(const Ray& ray, bool blocked, const Sequence& sequence, std::uint32_t index) const;
   color::Rgb emitter_sample(const std::array<double, 4>& numbers) const;
   color::Rgb reflect(const rays::Float3& f, const color::Rgb& light) const;
@@ -162,6 +183,14 @@ class PointTransport {
   float light_chance_ = 0;  // of a direction that is drawn from the environment
   rays::Hit mirror_hit_;
   std::uint32_t mirror_samples_ = 0;  // in a batch
+  // Lamps that are discs, parts of which the mesh may hide: samples tell what is hidden, or what is free where that is
+  // less.
+  struct Lamp {
+    Transport::SeenLamp seen;
+    bool hidden = true;
+  };
+  std::vector<Lamp> lamps_;
+  bool open_ = false;  // nothing rises above the horizon
   color::Rgb sure_;
   bool certain_ = false;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.h"
 #include "base/text.h"
 #include "color/color.h"
 #include "render/plan/ray_plan.h"
@@ -71,6 +72,17 @@ std::string anisotropy_reason(const Scene& scene, const Effects& all) {
   std::size_t most = 0;
   for (const auto& tilts : tilts_of(scene, all)) most = std::max(most, tilts.size());
   return fmt::format("brushed paint: {} tilted normals", most);
+}
+
+std::string extent_reason(const Scene& scene, const Effects& all) {
+  if (all.lights == 0) return "no lamps";
+  double widest = 0;
+  for (const Light& light : scene.lights) widest = std::max(widest, light.radius_rad);
+  if (widest == 0) return "lamps are points";
+  if (!all.extent) return "no lobe is narrow enough to tell the lamps from points";
+  return fmt::format("lamps up to {:.2g} deg wide, in lobes up to exponent {}{}", 2 * widest / kDegree,
+                     all.lobes.empty() ? "0" : shortest(all.lobes.back().exponent),
+                     all.mirror ? " and in the mirror" : "");
 }
 
 // The chroma of the colors of light, as of a white diffuser in it.
@@ -148,9 +160,12 @@ std::vector<EffectSwitch> effect_switches(const Scene& scene, const Effects& all
   add_lobes(scene, all, false, list);
   add_lobes(scene, all, true, list);
   add("mirror", all.mirror,
-      all.mirror ? "a smooth coat mirrors the environment"
-                 : (all.environment ? "no visible paint has a mirror lobe" : "no image light to mirror"),
+      !all.mirror        ? (all.environment || all.extent ? "no visible paint has a mirror lobe" : "no light to mirror")
+      : !all.environment ? "a smooth coat mirrors the lamps"
+      : all.extent       ? "a smooth coat mirrors the environment and the lamps"
+                         : "a smooth coat mirrors the environment",
       [](Effects& e) { e.mirror = false; });
+  list.back().is_highlight = all.extent;
   const double grazing = percent(seen, [](const VisiblePoint& p) { return cos_o(p) < kGrazingCos; });
   add("fresnel", all.fresnel,
       !all.fresnel  ? "neither gloss lobes nor mirror"
@@ -174,6 +189,8 @@ std::vector<EffectSwitch> effect_switches(const Scene& scene, const Effects& all
         e.lights = 0;
         e.maps = false;
       });
+  add("extent", all.extent, extent_reason(scene, all), [](Effects& e) { e.extent = false; });
+  list.back().is_highlight = true;
   return list;
 }
 
