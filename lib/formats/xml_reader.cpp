@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "formats/imported.h"
 #include "formats/internal/schemas.h"
+#include "formats/internal/tilts_xml.h"
 #include "formats/internal/xml_stream.h"
 #include "formats/xml.h"
 #include "paint/curve.h"
@@ -85,7 +86,7 @@ struct Found {
 // Turns elements into paints. A wrong value inside a paint ends up in its place; all else ends the document.
 class PaintHandler : public XmlHandler {
  public:
-  explicit PaintHandler(std::string file) : file_(std::move(file)) {}
+  explicit PaintHandler(std::string file) : file_(std::move(file)), tilts_(file_) {}
 
   Result<void> start(const XmlTag& tag) override;
   Result<void> end(int line) override;
@@ -129,7 +130,9 @@ class PaintHandler : public XmlHandler {
   int depth_ = 0;                  // elements open, ours or not
   std::vector<XmlScope> scope_;    // of <paints> and of the open <paint>
   XmlCopy copy_{kPaintNamespace};  // of the foreign element that is open
-  std::optional<Error> lost_;      // what is wrong with the open paint; the rest of it is skipped
+  TiltsReader tilts_;
+  std::vector<paint::TiltedLobes> tilt_sets_;  // of the open paint
+  std::optional<Error> lost_;                  // what is wrong with the open paint; the rest of it is skipped
   paint::Paint paint_;
   int paint_line_ = 0;
   std::size_t paint_bytes_ = 0;
@@ -152,6 +155,13 @@ Result<void> PaintHandler::start(const XmlTag& tag) {
     return input_error("{}:{}: paint \"{}\" is longer than {} MB: split it", file_, tag.line, shown(paint_.name),
                        kLargestPaint_bytes >> 20);
   if (copy_.active()) return copy_.start(tag, {}), Result<void>();
+  const bool tilts = current() == Node::kPaint && tag.space == kTiltsNamespace && tag.name == "tilts";
+  if (tilts_.active() || tilts) {
+    const XmlValues values(file_, tag);
+    const auto once_only = tilts_.active() ? Result<void>() : once(!tilt_sets_.empty(), values);
+    const auto begun = once_only.ok() ? tilts_.start(tag) : once_only;
+    return begun.ok() ? begun : lose_paint(begun.error());
+  }
   // A paint that is refused as a whole counts as begun, so that it alone is lost.
   in_paints = in_paints || (depth_ == 2 && tag.name == "paint" && tag.space == kPaintNamespace);
   const auto done = element(tag);
@@ -266,6 +276,7 @@ Result<void> PaintHandler::once(bool seen, const XmlValues& values) const {
 
 Result<void> PaintHandler::begin_paint(const XmlValues& values) {
   paint_ = {};
+  tilt_sets_.clear();
   paint_line_ = values.tag().line;
   paint_bytes_ = bytes_read;
   GONIO_TRY(values.name("name", paint_.name));
@@ -407,6 +418,10 @@ Result<void> PaintHandler::begin_lobe(const XmlValues& values, std::vector<paint
 Result<void> PaintHandler::text(std::string_view text, int line) {
   if (lost_) return {};
   if (copy_.active()) return copy_.text(text), Result<void>();
+  if (tilts_.active()) {
+    const auto done = tilts_.text(text, line);
+    return done.ok() ? done : lose_paint(done.error());
+  }
   if (current() == Node::kGloss || current() == Node::kSpectrum) return value_text_ += text, Result<void>();
   const std::string_view words = trimmed(text);
   if (words.empty()) return {};
@@ -419,11 +434,18 @@ Result<void> PaintHandler::end(int line) {
     if (depth_ > 1) return {};
     open_.resize(1);
     copy_ = XmlCopy(kPaintNamespace);
+    tilts_ = TiltsReader(file_);
     found.push_back({*std::exchange(lost_, std::nullopt), paint_line_});
     return {};
   }
   if (copy_.active()) {
     if (copy_.end()) (current() == Node::kPaint ? paint_.foreign : foreign).push_back(copy_.take());
+    return {};
+  }
+  if (tilts_.active()) {
+    const auto done = tilts_.end(line);
+    if (!done.ok()) lost_ = done.error();
+    if (!tilts_.active()) tilt_sets_ = tilts_.take();
     return {};
   }
   const Node node = open_.back();
@@ -461,6 +483,8 @@ Result<void> PaintHandler::finish(Node node, int line) {
       break;
     }
     case Node::kPaint:
+      if (!tilt_sets_.empty() && !paint_.lobes) return lacks("lobes");
+      if (paint_.lobes) paint_.lobes->tilts = std::exchange(tilt_sets_, {});
       found.push_back({std::move(paint_), paint_line_});
       break;
     default:

@@ -83,6 +83,41 @@ struct ViewLobes {
   std::vector<Lobe> lobes;
 };
 
+// A lobe cos^E about an axis that stands beside the mirror direction: turned by `tilt_deg` away from the normal within
+// the plane of incidence, then by `out_deg` out of that plane. Where out_deg is not 0 there are two such lobes, one on
+// either side of the plane. goniochrome-theory(7), TILTED LOBES.
+struct TiltedLobe {
+  double exponent = 1;
+  double tilt_deg = 0, out_deg = 0;
+  bool operator==(const TiltedLobe&) const = default;
+
+  int lookups() const { return out_deg != 0 ? 2 : 1; }
+};
+
+// Their weights at one angle of the viewer from the normal: the share of even light that each lobe, or each pair, sends
+// to the viewer. All are 0 or more.
+struct TiltedView {
+  double view_deg = 0;  // 0..90
+  color::Rgb diffuse;   // K_D, 1/sr
+  std::vector<color::Rgb> weights;
+  bool operator==(const TiltedView&) const = default;
+};
+
+// What stands for the color map of a paint in image light, in the place of K_D and K_DD.
+struct TiltedLobes {
+  double mean_de00 = 0;  // from the map, in the lights that the lobes were fitted in
+  std::vector<TiltedLobe> lobes;
+  std::vector<TiltedView> views;  // two or more, ascending; weights are linear between two of them
+  bool operator==(const TiltedLobes&) const = default;
+
+  // In prefiltered maps, beside the diffuse map.
+  int lookups() const {
+    int sum = 0;
+    for (const TiltedLobe& lobe : lobes) sum += lobe.lookups();
+    return sum;
+  }
+};
+
 // A paint fitted to a basis: f = K_D + sum K_DD cos^E(theta_as) + (1/cos_i) sum K_G cos^E(theta_as).
 struct LobeFit {
   std::string basis, method;
@@ -93,6 +128,8 @@ struct LobeFit {
   // constant beyond the ends. Where there are none, `diffuse` and `lobes` hold for every view; where there are, these
   // remain the best weights for all views together.
   std::vector<ViewLobes> views = {};
+  // Approximations of the color map with more and more lobes; none: the lobes above stand for all light.
+  std::vector<TiltedLobes> tilts = {};
 };
 
 struct Paint {

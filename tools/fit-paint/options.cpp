@@ -53,6 +53,12 @@ void add_options(cli::ToolSpec& spec, Options& o) {
           "aspecular takes the color from the aspecular angle alone, which is closer on near-matt paints. better "
           "leaves out each reading in turn, predicts it from the others by both, and takes the model that errs "
           "less; the report and the file tell both errors.");
+  spec.option("tilts", "none|N,...", "8,16", &o.tilts, "look-ups of tilted lobes that stand for a color map")
+      .more(
+          "A paint that has a color map by isolines also gets tilted lobes, by which pictures under image light come "
+          "close to the map. Each number makes a set that takes so many look-ups of prefiltered maps at a point; more "
+          "look-ups are closer and slower, and render-osmesa chooses between the sets. A number that hardly helps "
+          "makes no set. A paint gets none where its lobes are within a visible difference of the map.");
   cli::add_common_options(spec, o.common, {.explain = true});
 }
 
@@ -120,6 +126,11 @@ void add_report(cli::ToolSpec& spec) {
       {"color_maps[].compared_rows",
        "number of readings behind these figures; they are measured, and none of them is interpolated from others"},
       {"color_maps[].negative_share", "share of the map that is outside the working space"},
+      {"tilts[].name", "paint with a color map, unless --tilts is none"},
+      {"tilts[].lobes_de00",
+       "mean color difference between its lobes and the map, in lamps of several sizes all around"},
+      {"tilts[].sets[].lookups", "look-ups of prefiltered maps that a set of tilted lobes takes"},
+      {"tilts[].sets[].de00_mean", "mean color difference between the set and the map in the same lamps"},
       {"without_color_map", "number of paints whose readings do not make a map"},
       {"fits_per_s", "fits a second, without reading and writing"},
       {"fitted", "number of paints that got lobes"},
