@@ -11,8 +11,8 @@
 #include "base/parallel.h"
 #include "brdf/lobe_model.h"
 #include "brdf/tilted_lobes.h"
+#include "fit/internal/tilt_lights.h"
 #include "fit/paint_fit.h"
-#include "fit/tilt_lights.h"
 
 namespace goniochrome::fit {
 
@@ -25,10 +25,20 @@ constexpr std::array kViews_deg = {0.0, 8.0, 15.0, 25.0, 35.0, 45.0, 55.0, 64.0,
 constexpr double kSharpest = 300;
 constexpr std::size_t kMostExponents = 8;
 
+// Lobes up to this exponent are always there about the mirror direction itself, to which all axes fall together where
+// the viewer is at the normal.
+constexpr double kSharpestKept = 100;
+
 // A set is kept where it lowers the mean error of the one before by this part of it.
 constexpr double kWorthwhile = 0.05;
 
-constexpr int kSweeps = 60, kFinalSweeps = 4000;  // of coordinate descent
+constexpr int kSweeps = 60, kFinalSweeps = 400;  // of coordinate descent
+
+// Sets are interpolated between views, and where lobes can stand for each other the weights of two views may differ at
+// will. In the end the weights of each view are therefore drawn toward the mean of its neighbors, with this part of
+// what keeps them in place, in so many rounds.
+constexpr double kPull = 0.003;
+constexpr int kPullRounds = 12;
 
 // Exponents of the basis, thinned to a few of different widths.
 std::vector<double> tilted_exponents(const formats::Basis& basis) {
@@ -52,12 +62,12 @@ struct Candidate {
   bool diffuse = false;
 };
 std::vector<Candidate> candidates_of(const std::vector<double>& exponents) {
-  constexpr double kApart = 0.9, kReach = 8;  // standard deviations of a lobe
+  constexpr double kApart = 0.9, kReach = 2.2;  // standard deviations of a lobe
   std::vector<Candidate> all = {{{1, 0, 0}, exponents.size(), true}};
   for (std::size_t e = 0; e < exponents.size(); ++e) {
     const double width_deg = 1 / (std::sqrt(exponents[e]) * kDegree);
     const double step = std::clamp(std::round(kApart * width_deg), 5.0, 30.0);
-    const double reach = std::clamp(kReach * width_deg, 35.0, 110.0), out_most = std::min(reach, 75.0);
+    const double reach = std::min(kReach * width_deg, 110.0), out_most = std::min(reach, 75.0);
     for (double tilt = -step * std::floor(reach / step); tilt <= std::min(reach, 60.0); tilt += step)
       for (double out = 0; out <= out_most; out += step) all.push_back({{exponents[e], tilt, out}, e, false});
   }
@@ -71,18 +81,20 @@ class View {
  public:
   View(double view_deg, const TiltLights& lights, const std::vector<Candidate>& candidates, const brdf::ColorMap& map,
        brdf::CriticalAngle treatment)
-      : view_deg_(view_deg), lights_(lights) {
+      : view_deg_(view_deg) {
     const double view_rad = view_deg * kDegree;
     const Vec3 viewer{-std::sin(view_rad), 0, std::max(std::cos(view_rad), 1e-9)};
-    target_ = lights.colors(
-        [&](const Vec3& light) { return light.z / kPi * brdf::reflectance_factor(map, light, viewer, treatment); });
-    for (std::size_t m = 0; m < target_.size(); ++m) metric_.push_back(lights.metric(m, target_[m]));
+    const TiltLights::Set set = lights.lights(view_deg);
+    target_ = lights.colors(set, [&](const Vec3& light) {
+      return light.z / kPi * brdf::reflectance_factor(map, light, viewer, treatment);
+    });
+    for (std::size_t m = 0; m < target_.size(); ++m) metric_.push_back(lights.metric(set, m, target_[m]));
     columns_.resize(candidates.size());
     blocks_.resize(candidates.size());
     for (std::size_t k = 0; k < candidates.size(); ++k) {
       const Candidate& candidate = candidates[k];
       const Vec3 axis = candidate.diffuse ? Vec3{0, 0, 1} : brdf::tilted_axis(candidate.lobe, view_deg);
-      columns_[k] = lights.column(candidate.exponent, axis);
+      columns_[k] = lights.column(set, candidate.exponent, axis);
       blocks_[k] = block(k, k);
     }
   }
@@ -108,8 +120,8 @@ class View {
       gram_[row][column] = block(chosen_[row], chosen_[column]);
     }
   }
-  // Coordinate descent to non-negative weights. `without` has none.
-  void solve(int sweeps, std::size_t without = SIZE_MAX) {
+  // Coordinate descent to non-negative weights. `without` has none. With `near`, weights are drawn to those a little.
+  void solve(int sweeps, std::size_t without = SIZE_MAX, const std::vector<Channels>* near = nullptr) {
     constexpr double kStill = 1e-7;
     if (without < weights_.size()) weights_[without] = {};
     for (int sweep = 0; sweep < sweeps; ++sweep) {
@@ -121,7 +133,9 @@ class View {
         const Metric& own = gram_[i][i];
         for (std::size_t c = 0; c < 3; ++c) {
           if (!(own.at(c, c) > 0)) continue;
-          const double before = weights_[i][c], after = std::max(0.0, before + slope[c] / own.at(c, c));
+          const double pull = near != nullptr ? kPull * own.at(c, c) : 0, before = weights_[i][c];
+          const double drawn = near != nullptr ? pull * ((*near)[i][c] - before) : 0;
+          const double after = std::max(0.0, before + (slope[c] + drawn) / (own.at(c, c) + pull));
           weights_[i][c] = after;
           for (std::size_t d = 0; d < 3; ++d) slope[d] -= (after - before) * own.at(c, d);
           most = std::max(most, after), moved = std::max(moved, std::abs(after - before));
@@ -179,7 +193,6 @@ class View {
   }
 
   double view_deg_;
-  const TiltLights& lights_;
   std::vector<color::Rgb> target_;  // the color in each light
   std::vector<Metric> metric_;
   std::vector<std::vector<float>> columns_;  // of each candidate: what a weight of 1 shows in each light
@@ -201,6 +214,11 @@ class Search {
     });
     views_ = std::move(made);
     take(0);
+    for (std::size_t k = 1; k < candidates_.size(); ++k) {
+      const paint::TiltedLobe& lobe = candidates_[k].lobe;
+      if (lobe.tilt_deg == 0 && lobe.out_deg == 0 && lobe.exponent <= kSharpestKept) take(k);
+    }
+    kept_ = chosen_.size();
   }
 
   // Mean color difference over the lights, at the views and half-way between them.
@@ -211,11 +229,12 @@ class Search {
       for (std::size_t v = begin; v < end; ++v) {
         const double view_deg = 0.5 * (kViews_deg[v] + kViews_deg[v + 1]), view_rad = view_deg * kDegree;
         const Vec3 viewer{-std::sin(view_rad), 0, std::cos(view_rad)};
-        const auto truth = lights_.colors([&](const Vec3& light) {
+        const TiltLights::Set set = lights_.lights(view_deg);
+        const auto truth = lights_.colors(set, [&](const Vec3& light) {
           return light.z / kPi * brdf::reflectance_factor(map_, light, viewer, options_.treatment);
         });
         errors[v] = lights_.mean_difference(
-            truth, lights_.colors_all([&](const Vec3& light) { return model(light, view_deg); }));
+            set, truth, lights_.colors_all(set, [&](const Vec3& light) { return model(light, view_deg); }));
       }
     });
     // Pictures of round bodies show a view in proportion to sin cos.
@@ -238,7 +257,7 @@ class Search {
     constexpr int kRounds = 2;
     for (int round = 0; round < kRounds; ++round) {
       bool changed = false;
-      for (std::size_t place = 1; place < chosen_.size(); ++place) changed = improved(place) || changed;
+      for (std::size_t place = kept_; place < chosen_.size(); ++place) changed = improved(place) || changed;
       if (!changed) break;
     }
   }
@@ -252,15 +271,13 @@ class Search {
   paint::TiltedLobes set() const {
     paint::TiltedLobes set;
     for (std::size_t i = 1; i < chosen_.size(); ++i) set.lobes.push_back(candidates_[chosen_[i]].lobe);
-    for (const auto& view : views_) {
-      View solved = *view;
-      solved.solve(kFinalSweeps);
+    for (const View& solved : smoothed()) {
       const auto rgb = [&](std::size_t i, double scale) {
         const Channels& w = solved.weights()[i];
         return color::Rgb{rounded(scale * w[0]), rounded(scale * w[1]), rounded(scale * w[2])};
       };
       paint::TiltedView& of = set.views.emplace_back();
-      of.view_deg = view->view_deg();
+      of.view_deg = solved.view_deg();
       of.diffuse = rgb(0, 1 / kPi);
       for (std::size_t i = 1; i < chosen_.size(); ++i) of.weights.push_back(rgb(i, 1));
     }
@@ -276,6 +293,27 @@ class Search {
     if (!(value > kUnseen)) return 0;
     const double scale = std::pow(10.0, 4 - std::floor(std::log10(value)));
     return std::round(value * scale) / scale;
+  }
+
+  // The views with their final weights.
+  std::vector<View> smoothed() const {
+    std::vector<View> views;
+    for (const auto& view : views_) views.push_back(*view);
+    for (int round = 0; round < kPullRounds; ++round) {
+      std::vector<std::vector<Channels>> near(views.size());
+      for (std::size_t v = 0; v < views.size(); ++v) {
+        const auto &low = views[v > 0 ? v - 1 : 1].weights(),
+                   &high = views[v + 1 < views.size() ? v + 1 : v - 1].weights();
+        for (std::size_t i = 0; i < low.size(); ++i) {
+          near[v].push_back({});
+          for (std::size_t c = 0; c < 3; ++c) near[v][i][c] = 0.5 * (low[i][c] + high[i][c]);
+        }
+      }
+      parallel_for(views.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v) views[v].solve(kFinalSweeps, SIZE_MAX, &near[v]);
+      });
+    }
+    return views;
   }
 
   template <class Each>
@@ -346,6 +384,7 @@ class Search {
   const TiltOptions& options_;
   std::vector<std::unique_ptr<View>> views_;
   std::vector<std::size_t> chosen_;
+  std::size_t kept_ = 0;  // of these, that are never replaced
 };
 
 }  // namespace

@@ -7,7 +7,9 @@
 
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
+#include "brdf/tilted_lobes.h"
 #include "render/internal/lobe_curves.h"
+#include "render/internal/tilt_table.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {
@@ -77,15 +79,25 @@ class SlotValues {
   std::vector<Texel> values_;
 };
 
+// What is left of a paint in image light where tilted lobes stand for its flakes: gloss and mirror, and K_D of the set.
+paint::LobeFit beside_tilts(paint::LobeFit paint, const paint::TiltedLobes& set, double view_deg) {
+  paint.diffuse = brdf::at_view(set, view_deg).diffuse;
+  for (paint::Lobe& lobe : paint.lobes) lobe.directional_diffuse = {};
+  return paint;
+}
+
 void fill_part(const Scene& scene, const Effects& effects, std::size_t part, const WeightTable& table, float* rows) {
   const paint::LobeFit& paint = scene.paints[part];
   const bool with_views = effects.views && !paint.views.empty();
+  const paint::TiltedLobes* tilts = drawn_tilts(paint, effects);
   SlotValues values(table, effects, gloss_deg_of(scene, part));
   std::vector<SlotValues::Texel> before;
   for (int node = 0; node <= table.segments; ++node) {
     const double x = static_cast<double>(node) / table.segments, cos_o = table.segments > 1 ? x * x : x;
     const paint::LobeFit here_paint = with_views ? brdf::at_view(paint, std::acos(cos_o) / kDegree) : paint;
-    const std::vector<SlotValues::Texel>& here = values.at(here_paint, effects.maps ? paint : here_paint, cos_o, node);
+    const std::vector<SlotValues::Texel>& here =
+        values.at(tilts != nullptr ? beside_tilts(here_paint, *tilts, std::acos(cos_o) / kDegree) : here_paint,
+                  effects.maps ? paint : here_paint, cos_o, node);
     if (node > 0) {
       for (std::size_t slot = 0; slot < here.size(); ++slot, rows += 8) {
         for (std::size_t c = 0; c < 4; ++c) {
@@ -114,11 +126,15 @@ paint::Anisotropy anisotropy_of(const Scene& scene, std::size_t part) {
 
 }  // namespace
 
+bool is_mapped(const Scene& scene, std::size_t part) {
+  return scene.layer != nullptr && scene.layer->surface(static_cast<int>(part)).color_map != nullptr;
+}
+
 bool same_wear(const Scene& scene, std::size_t a, std::size_t b) {
   const paint::LobeFit &x = scene.paints[a], &y = scene.paints[b];
   const paint::Anisotropy brushed_x = anisotropy_of(scene, a), brushed_y = anisotropy_of(scene, b);
   return x.diffuse == y.diffuse && same_lobes(x.lobes, y.lobes) && gloss_deg_of(scene, a) == gloss_deg_of(scene, b) &&
-         brushed_x.alpha_x == brushed_y.alpha_x && brushed_x.alpha_y == brushed_y.alpha_y &&
+         x.tilts == y.tilts && brushed_x.alpha_x == brushed_y.alpha_x && brushed_x.alpha_y == brushed_y.alpha_y &&
          std::equal(x.views.begin(), x.views.end(), y.views.begin(), y.views.end(),
                     [](const paint::ViewLobes& v, const paint::ViewLobes& w) {
                       return v.view_deg == w.view_deg && v.diffuse == w.diffuse && same_lobes(v.lobes, w.lobes);
@@ -149,6 +165,12 @@ Effects effects_of(const Scene& scene) {
                               [](const paint::LobeFit& paint) { return !paint.views.empty(); });
   effects.anisotropy =
       !effects.lobes.empty() && std::any_of(scene.anisotropy.begin(), scene.anisotropy.end(), is_anisotropic);
+  if (effects.environment) {
+    for (std::size_t part = 0; part < scene.paints.size(); ++part) {
+      effects.tilt_level = std::max(effects.tilt_level, static_cast<int>(scene.paints[part].tilts.size()));
+      effects.image_maps = effects.image_maps || is_mapped(scene, part);
+    }
+  }
   effects.texture = scene.layer != nullptr && scene.layer->textured();
   effects.maps = scene.layer != nullptr && scene.layer->mapped();
   effects.reflection = scene.reflection.k != color::component_wise().k;

@@ -40,6 +40,8 @@ struct Effects {
   bool horizon = false;               // lobes end at the horizon, and each of their directions has its own cosine
   bool views = false;                 // weights of paints that change with the view
   bool maps = false;                  // color maps under lights
+  bool image_maps = false;            // color maps in image light, by engines that can evaluate them there
+  int tilt_level = 0;                 // what stands for them elsewhere: which set of tilted lobes; 0: none
   bool texture = false;               // textures of lobes; else the mean texel of each
   std::uint32_t texture_lobes = ~0U;  // of textures, by bits
   bool anisotropy = false;
@@ -53,11 +55,14 @@ struct Effects {
   int most_ray_samples = 1 << 16;  // of a visible point, in all samples of its pixel
   Background background = Background::kNone;
 
-  bool depends_on_view() const { return fresnel || horizon || views; }
+  bool depends_on_view() const { return fresnel || horizon || views || tilt_level > 0; }
 };
 
 // Everything that the scene's paints and lights call for.
 Effects effects_of(const Scene& scene);
+
+// Whether a part of the scene wears a color map.
+bool is_mapped(const Scene& scene, std::size_t part);
 
 // Whether two parts of the scene wear the same.
 bool same_wear(const Scene& scene, std::size_t a, std::size_t b);

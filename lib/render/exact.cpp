@@ -201,12 +201,15 @@ std::vector<color::Rgb> exact_radiance(const std::vector<VisiblePoint>& points, 
   for (std::size_t part = 0; part < scene.paints.size(); ++part) {
     paints.push_back(with_effects(scene.paints[part], effects));
     ExactModel& model = models[part];
-    if (effects.maps) paints.back().views.clear();  // the maps are told apart from the weights for all views
     model.fresnel = effects.fresnel;
     if (part < scene.gloss_deg.size()) model.gloss_deg = scene.gloss_deg[part];
     model.horizon = effects.horizon || effects.lobes.empty() || !effects.environment;
     if (tilts[part].size() > 1) model.tilts = tilts[part];
     if (effects.reflection) model.reflection = &scene.reflection;
+    if (!is_mapped(scene, part) || !(effects.maps || effects.image_maps)) continue;
+    model.map = scene.layer->surface(static_cast<int>(part)).color_map;
+    model.treatment = scene.layer->treatment();
+    model.map_in_image = effects.image_maps, model.map_under_lights = effects.maps;
   }
   std::vector<SurfacePoint> surface;
   std::vector<std::size_t> numbers;
@@ -221,7 +224,6 @@ std::vector<color::Rgb> exact_radiance(const std::vector<VisiblePoint>& points, 
                          effects.lights > 0 ? scene.lights : std::vector<Light>());
   std::vector<color::Rgb> colors(points.size());
   for (std::size_t i = 0; i < plain.size(); ++i) colors[numbers[i]] = plain[i];
-  if (effects.maps) scene.layer->add_mapped(points, colors);
   put_textured(scene, points, effects, around, colors);
   return colors;
 }

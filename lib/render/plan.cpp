@@ -13,6 +13,7 @@
 #include "render/exact.h"
 #include "render/internal/product_forms.h"
 #include "render/internal/seen.h"
+#include "render/internal/tilt_table.h"
 #include "render/plan/effect_list.h"
 #include "render/plan/effect_words.h"
 #include "render/plan/kept.h"
@@ -163,6 +164,7 @@ Workload workload_of(const Scene& scene, const Effects& all, const std::vector<V
   if (scene.layer != nullptr && scene.layer->mapped())
     work.mapped = work.points * share_of(scene, probe, [](const PartSurface& s) { return s.color_map != nullptr; });
   work.tilts = mean_tilts(scene, all, probe);
+  for (int level = 1; level <= all.tilt_level; ++level) work.lookups.push_back(mean_lookups(scene, level, probe));
   work.forms = all.reflection ? product_forms(scene.reflection).count : 3;
   work.texture_lobes = scene.layer != nullptr ? scene.layer->lobes() : 0;
   return work;
@@ -171,6 +173,7 @@ Workload workload_of(const Scene& scene, const Effects& all, const std::vector<V
 // The shading of one frame with these effects.
 double shading_ms(const Engine& engine, const Workload& work, Effects effects) {
   tidy(effects);
+  leave_to_tilts(*work.scene, effects);
   return engine.price(work, effects).frame_ms;
 }
 
@@ -203,6 +206,12 @@ struct Choice {
   std::vector<bool> on, forced;
 };
 
+// An effect that needs another one is off without it.
+void settle(const std::vector<EffectSwitch>& switches, std::vector<bool>& on) {
+  for (std::size_t i = 0; i < switches.size(); ++i)
+    if (switches[i].needs >= 0 && !on[static_cast<std::size_t>(switches[i].needs)]) on[i] = false;
+}
+
 Choice forced_choice(const Words& words, const std::vector<EffectSwitch>& switches) {
   Choice choice{std::vector<bool>(switches.size()), std::vector<bool>(switches.size(), false)};
   for (std::size_t i = 0; i < switches.size(); ++i) {
@@ -213,7 +222,21 @@ Choice forced_choice(const Words& words, const std::vector<EffectSwitch>& switch
       choice.forced[i] = true;
     }
   }
+  for (std::size_t i = switches.size();
+       i-- > 0;) {  // what a forced effect needs is on as well, unless it is forced off
+    if (switches[i].needs < 0 || !choice.forced[i] || !choice.on[i]) continue;
+    const auto needed = static_cast<std::size_t>(switches[i].needs);
+    if (!choice.forced[needed]) choice.on[needed] = choice.forced[needed] = true;
+  }
+  settle(switches, choice.on);
   return choice;
+}
+
+// Whether tilted lobes are drawn.
+bool tilted(const std::vector<EffectSwitch>& switches, const std::vector<bool>& on) {
+  for (std::size_t i = 0; i < switches.size(); ++i)
+    if (switches[i].group == "tilts" && switches[i].needed && on[i]) return true;
+  return false;
 }
 
 // Leaves out, cheapest to miss first, what all together cannot be seen. The gloss of a lamp stays: its highlight may
@@ -223,14 +246,21 @@ void drop_unseen(Prober& prober, const std::vector<EffectSwitch>& switches, cons
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < items.size(); ++i) {
     if (lamps && switches[i].is_highlight) continue;
+    if (switches[i].left_to_tilts && tilted(switches, choice.on)) continue;
     if (choice.on[i] && !choice.forced[i] && items[i].de00_p95 <= tolerance) order.push_back(i);
   }
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return items[a].de00_p95 < items[b].de00_p95; });
+  // The finest set of tilted lobes comes first: what stands for it is then judged with the rest.
+  const auto is_tilts = [&](std::size_t i) { return switches[i].group == "tilts"; };
+  const auto rest = std::stable_partition(order.begin(), order.end(), is_tilts);
+  std::sort(order.begin(), rest, std::greater<>());
   const std::vector<color::Rgb> wanted = prober.colors(choice.on);
   for (const std::size_t i : order) {
+    const std::vector<bool> before = choice.on;
     choice.on[i] = false;
-    if (prober.seen(wanted, prober.colors(choice.on)) > kSafety * tolerance) choice.on[i] = true;
+    settle(switches, choice.on);
+    if (prober.seen(wanted, prober.colors(choice.on)) > kSafety * tolerance) choice.on = before;
   }
 }
 
@@ -238,13 +268,14 @@ void drop_unseen(Prober& prober, const std::vector<EffectSwitch>& switches, cons
 constexpr double kFree = 0.02;
 
 // Takes back what was left out for nothing, whatever is worth most first: what is drawn with the rest at no price.
-void take_back_free(const Prober& prober, const Workload& work, const Engine& engine, std::vector<PlanItem>& items,
-                    Choice& choice) {
+void take_back_free(const Prober& prober, const Workload& work, const Engine& engine,
+                    const std::vector<EffectSwitch>& switches, std::vector<PlanItem>& items, Choice& choice) {
   std::vector<std::size_t> gone;
   for (std::size_t i = 0; i < items.size(); ++i)
     if (items[i].needed && !choice.on[i] && !choice.forced[i]) gone.push_back(i);
   std::ranges::stable_sort(gone, [&](std::size_t a, std::size_t b) { return items[a].de00_p95 > items[b].de00_p95; });
   for (const std::size_t i : gone) {
+    if (switches[i].needs >= 0 && !choice.on[static_cast<std::size_t>(switches[i].needs)]) continue;
     const double without_ms = shading_ms(engine, work, prober.effects(choice.on));
     choice.on[i] = true;
     const double with_ms = shading_ms(engine, work, prober.effects(choice.on));
@@ -258,8 +289,8 @@ void take_back_free(const Prober& prober, const Workload& work, const Engine& en
 
 // Leaves out what is worth least for its time until the rest fits, and takes back what fits after all; returns those
 // left out.
-std::set<std::size_t> keep_affordable(Prober& prober, const Workload& work, const Engine& engine, double budget_ms,
-                                      Choice& choice) {
+std::set<std::size_t> keep_affordable(Prober& prober, const Workload& work, const Engine& engine,
+                                      const std::vector<EffectSwitch>& switches, double budget_ms, Choice& choice) {
   const auto now = [&] { return shading_ms(engine, work, prober.effects(choice.on)); };
   std::set<std::size_t> gone;
   const std::vector<color::Rgb> wanted = prober.colors(choice.on);
@@ -268,17 +299,24 @@ std::set<std::size_t> keep_affordable(Prober& prober, const Workload& work, cons
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < choice.on.size(); ++i) {
       if (!choice.on[i] || choice.forced[i]) continue;
+      if (switches[i].left_to_tilts && tilted(switches, choice.on)) continue;
+      const std::vector<bool> before = choice.on;
       choice.on[i] = false;
+      settle(switches, choice.on);
       const double saved_ms = now_ms - now();
       const double lost = prober.difference(wanted, prober.colors(choice.on)) / std::max(saved_ms, 1e-9);
-      choice.on[i] = true;
+      choice.on = before;
       if (lost < least) least = lost, worst = i;
     }
     if (worst == choice.on.size()) break;
+    const std::vector<bool> before = choice.on;
     choice.on[worst] = false;
-    gone.insert(worst);
+    settle(switches, choice.on);
+    for (std::size_t i = 0; i < before.size(); ++i)
+      if (before[i] && !choice.on[i]) gone.insert(i);
   }
   std::erase_if(gone, [&](std::size_t i) {
+    if (switches[i].needs >= 0 && !choice.on[static_cast<std::size_t>(switches[i].needs)]) return false;
     choice.on[i] = true;
     const bool fits = now() <= budget_ms;
     choice.on[i] = fits;
@@ -298,6 +336,7 @@ struct Priced {
 std::vector<Priced> priced(const std::vector<const Engine*>& engines, const Engine* wanted, const Workload& work,
                            Effects effects) {
   tidy(effects);
+  leave_to_tilts(*work.scene, effects);
   std::vector<Priced> result;
   for (const Engine* engine : engines) {
     if (engine->info().is_planned) result.push_back({engine, engine->price(work, effects)});
@@ -512,14 +551,16 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   const Engine& engine = *chosen_of(prices, asked, request.frames).engine;
   plan.engine = engine.info().name;
   plan.engine_reason = reason_of(prices, chosen_of(prices, asked, request.frames), asked != nullptr);
-  if (automatic) take_back_free(prober, work, engine, plan.items, choice);
+  if (automatic) take_back_free(prober, work, engine, switches, plan.items, choice);
   std::set<std::size_t> gone;
-  if (request.budget_ms > 0 && may_leave_out) gone = keep_affordable(prober, work, engine, request.budget_ms, choice);
+  if (request.budget_ms > 0 && may_leave_out)
+    gone = keep_affordable(prober, work, engine, switches, request.budget_ms, choice);
 
   // What that comes to.
   plan.de00_p95 = prober.difference(full, prober.colors(choice.on)) + by_rays.left_out_de00_p95;
   plan.effects = prober.effects(choice.on);
   tidy(plan.effects);
+  leave_to_tilts(scene, plan.effects);
   plan.effects.rays = by_rays.effects;
   plan.effects.most_ray_samples = by_rays.most_samples, plan.effects.ray_noise_de00 = by_rays.aim_de00;
   plan.rays_ms = by_rays.cost.ms, plan.rays_noise_de00 = by_rays.noise_de00;
@@ -555,7 +596,7 @@ void add_truth(Plan& plan, const Scene& scene, const std::vector<VisiblePoint>& 
   const std::vector<color::Rgb> full = exact_radiance(points, scene, all, env);
   const double white = white_luminance > 0 ? white_luminance : 1;
   for (std::size_t i = 0; i < switches.size(); ++i) {
-    if (!switches[i].needed) continue;
+    if (!switches[i].needed || switches[i].refines) continue;  // the reference has no sets
     Effects without = all;
     switches[i].turn_off(without);
     const std::vector<color::Rgb> colors = exact_radiance(points, scene, without, env);

@@ -7,6 +7,7 @@
 #include "rays/ray_scene.h"
 #include "render/gl/gl.h"
 #include "render/gl/shader.h"
+#include "render/internal/tilt_table.h"
 #include "render/path/visible_surface.h"
 #include "render/plan/ray_plan.h"
 #include "render/surface_layer.h"
@@ -327,7 +328,8 @@ std::string Renderer::opengl() const {
 }
 
 std::string Renderer::shader() const {
-  return shading_fragment_shader(state_->effects, state_->scene.reflection);
+  return shading_fragment_shader(state_->effects, state_->scene.reflection,
+                                 tilt_exponents(state_->scene, state_->effects));
 }
 
 Result<void> Renderer::load(const Scene& scene, const std::string& engine) {

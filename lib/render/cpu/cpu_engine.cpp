@@ -12,8 +12,16 @@ namespace goniochrome::render {
 namespace {
 
 // Measured by BM_PaintEdited and BM_Tilts.
-constexpr MapCost kCost = {
-    .pixel = 2.5, .point = 6, .block = 3, .direction = 6, .light = 12, .lit_lobe = 5, .view = 2, .pairs = true};
+constexpr MapCost kCost = {.pixel = 2.5,
+                           .point = 6,
+                           .block = 3,
+                           .direction = 6,
+                           .light = 12,
+                           .lit_lobe = 5,
+                           .view = 2,
+                           .tilted = 12,
+                           .lookup = 6,
+                           .pairs = true};
 
 constexpr std::size_t kBlock = 8;  // floats of a texel: two maps of four forms, or one of six
 
@@ -48,7 +56,7 @@ std::vector<float> interleaved(const std::vector<envmap::CubeMap>& maps, const P
 // Points that are gathered until there are enough for the kernel, and where their colors go.
 class Batch {
  public:
-  explicit Batch(const CpuShading& shading) : shading_(shading) {
+  Batch(const CpuShading& shading, const TiltShading& tilted) : shading_(shading), tilted_(tilted) {
     PointArrays& p = points_;
     std::fill_n(p.nx, kPointsAtOnce, 0.0F), std::fill_n(p.ny, kPointsAtOnce, 0.0F),
         std::fill_n(p.nz, kPointsAtOnce, 1.0F);
@@ -69,12 +77,16 @@ class Batch {
     p.part[count_] = part;
     index_[count_++] = index;
   }
-  void shade() { shade_points(shading_, points_, count_, rgba_); }
+  void shade() {
+    shade_points(shading_, points_, count_, rgba_);
+    if (tilted_.segments > 0) add_tilted(tilted_, points_, count_, rgba_);
+  }
   void look_up(const InterleavedMaps& map) { look_up_background(map, points_, count_, rgba_); }
   void clear() { count_ = 0; }
 
  private:
   const CpuShading& shading_;
+  const TiltShading& tilted_;
   PointArrays points_;
   std::size_t index_[kPointsAtOnce];
   int count_ = 0;
@@ -143,6 +155,8 @@ Result<void> CpuEngine::load(const Scene& scene, const Effects& effects) {
   }
   shading_.map_floats = static_cast<int>(floats_of(forms_));
   shading_.colors_of_forms = colors_of_forms_.data();
+  tilt_store_ = {};
+  if (scene.env != nullptr) tilt_store_.load(*scene.env, tilt_exponents(scene, effects), forms_);
   load_paints(scene, effects);
   return {};
 }
@@ -182,6 +196,8 @@ void CpuEngine::load_paints(const Scene& scene, const Effects& effects) {
   shading_.weights = weights_.data();
   set_lights(scene, effects);
   set_tilts(scene, effects);
+  tilt_store_.load_paints(scene, effects);
+  tilt_shading_ = tilt_store_.shading(colors_of_forms_.data());
   background_ = effects.background;
   background_color_ = scene.background_color;
 }
@@ -229,7 +245,7 @@ void CpuEngine::shade_row(const Gbuffer& gbuffer, int y, float gain, bool add, f
     for (int c = 0; c < 3; ++c) pixel[c] = gain * color[c] + (add ? pixel[c] : 0);
     pixel[3] = gain * alpha + (add ? pixel[3] : 0);
   };
-  Batch seen(shading_), missed(shading_);
+  Batch seen(shading_, tilt_shading_), missed(shading_, tilt_shading_);
   const InterleavedMaps sky = background_map_.maps();
   const auto flush = [&](Batch& batch) {
     if (batch.count() == 0) return;
@@ -294,7 +310,7 @@ double CpuEngine::counted_point_ns(const Workload& work, const Effects& effects)
 std::vector<color::Rgb> CpuEngine::colors(const std::vector<VisiblePoint>& points) const {
   std::vector<color::Rgb> colors(points.size());
   parallel_for(points.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
-    Batch batch(shading_);
+    Batch batch(shading_, tilt_shading_);
     for (std::size_t i = begin; i < end; ++i) {
       const VisiblePoint& point = points[i];
       float normal[3], to_viewer[3];

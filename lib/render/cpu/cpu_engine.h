@@ -7,6 +7,7 @@
 
 #include "image/image.h"
 #include "render/cpu/cpu_kernel.h"
+#include "render/cpu/tilt_kernel.h"
 #include "render/engine.h"
 #include "render/internal/maps.h"
 #include "render/internal/product_forms.h"
@@ -61,6 +62,8 @@ class CpuEngine : public Engine {
   std::vector<float> weights_, lights_, exponents_, tilts_, colors_of_forms_;
   std::vector<int> first_tilt_;
   CpuShading shading_;
+  TiltStore tilt_store_;
+  TiltShading tilt_shading_;  // of tilted lobes
   Background background_ = Background::kNone;
   color::Rgb background_color_;
 };

@@ -5,6 +5,7 @@
 #include "base/angles.h"
 #include "base/text.h"
 #include "brdf/lobe_model.h"
+#include "render/gl/tilt_shader.h"
 #include "render/internal/product_forms.h"
 
 namespace goniochrome::render {
@@ -25,7 +26,7 @@ vec3 ray() { return normalize(corner + gl_FragCoord.x * right + gl_FragCoord.y *
 
 // How products with the environment's maps are taken: in plain RGB, in the four forms of the operator (which the maps
 // and their weights hold already), or by the operator itself.
-enum class Product { kPlain, kForms, kOperator };
+using Product = TiltProduct;
 
 Product product_of(const Effects& effects, const ProductForms& forms) {
   if (!effects.reflection) return Product::kPlain;
@@ -193,7 +194,7 @@ std::string over_tilts(const Effects& effects, const std::string& sum, const std
 }
 
 // L = K_D pi P_1(n) + sum W_j P_Ej(r) + K_M F P_inf(r)
-std::string environment_terms(const Effects& effects, Product product) {
+std::string environment_terms(const Effects& effects, Product product, bool tilted) {
   std::string text = "\n  // the environment\n";
   const std::string sum = product == Product::kForms ? "products" : "radiance";
   if (product == Product::kForms) text += "  vec4 products = vec4(0.0);\n";
@@ -203,6 +204,7 @@ std::string environment_terms(const Effects& effects, Product product) {
   if (effects.diffuse) term(WeightTable::diffuse_slot(), "diffuse", "n");
   if (!effects.lobes.empty()) text += over_tilts(effects, sum, "lobes", ", n");
   if (effects.mirror) term(slots_of(effects).mirror_slot(), "mirror", "r");
+  if (tilted) text += fmt::format("  {} += tilted_lobes(r, n, wo);\n", sum);
   if (product == Product::kForms) text += "  radiance += color_of(products);\n";
   return text;
 }
@@ -281,19 +283,22 @@ void main() {  // one triangle that covers the picture
 )";
 }
 
-std::string shading_fragment_shader(const Effects& effects, const color::ReflectionOperator& op) {
+std::string shading_fragment_shader(const Effects& effects, const color::ReflectionOperator& op,
+                                    const std::vector<double>& tilted) {
   const bool lit_lobes = effects.lights > 0 && !effects.lobes.empty();
   const ProductForms forms = effects.reflection ? product_forms(op) : ProductForms{};
   const Product product = product_of(effects, forms);
   // 1. What the program is given, and the functions that it needs.
   std::string text = "#version 330 core\n// goniochrome-theory(7), RENDERING\n";
-  text += uniforms(effects) + kRays + "layout(location = 0) out vec4 color;\n" + kWeight;
+  text +=
+      uniforms(effects) + tilt_uniforms(effects, tilted) + kRays + "layout(location = 0) out vec4 color;\n" + kWeight;
   if (effects.reflection && (product == Product::kOperator || effects.lights > 0)) text += reflection_function(op);
   if (effects.environment && product == Product::kForms)
     text += forms_functions(forms, effects.background == Background::kEnvironment);
   if (lit_gloss(effects)) text += fresnel_function();
   if (lit_lobes) text += kCosPower;
   if (!effects.lobes.empty()) text += lobe_functions(effects, product);
+  text += tilt_function(effects, tilted, product);
   // 2. Where nothing is seen the program shows the background; else it finds the view and the row of weights.
   text += fmt::format(R"(
 void main() {{
@@ -316,7 +321,7 @@ void main() {{
   vec3 x = dot(n.xz, n.xz) > 1e-12 ? normalize(vec3(n.z, 0.0, -n.x)) : vec3(1.0, 0.0, 0.0), y = cross(n, x);
 )";
   }
-  if (effects.environment) text += environment_terms(effects, product);
+  if (effects.environment) text += environment_terms(effects, product, !tilted.empty());
   if (effects.lights > 0) text += light_terms(effects);
   return text + "  color = vec4(radiance, 1.0);\n}\n";
 }

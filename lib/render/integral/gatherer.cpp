@@ -107,6 +107,11 @@ Gatherer::Gatherer(const SurfacePoint& point, double texel_rad, double most_spre
       cos_o_(dot(point.normal, point.to_viewer)),
       grain_(texel_rad, most_spread) {
   set_mirror_directions();
+  if (model_.map != nullptr) {
+    const Vec3& n = point.normal;
+    frame_x_ = normalized(cross(std::abs(n.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, n)), frame_y_ = cross(n, frame_x_);
+    local_viewer_ = {dot(point.to_viewer, frame_x_), dot(point.to_viewer, frame_y_), cos_o_};
+  }
   // The lobes in the order of their exponents, so that a loop over them can stop at the first that is too sharp.
   for (const paint::Lobe& lobe : paint_.lobes) {
     if (!lobe.is_mirror()) lobes_.push_back(lobe);
@@ -143,13 +148,13 @@ void Gatherer::set_mirror_directions() {
 }
 
 void Gatherer::add_light(const Light& light) {
-  add({light.direction, kPi}, light.white, true);
+  add({light.direction, kPi}, light.white, true, model_.map_under_lights);
 }
 
-void Gatherer::add(const Patch& patch, const color::Rgb& radiance, bool horizon) {
+void Gatherer::add(const Patch& patch, const color::Rgb& radiance, bool horizon, bool mapped) {
   const double above = (1 - patch.variance) * dot(point_.normal, patch.direction), cos_i = horizon ? above : cos_o_;
-  color::Rgb f = above > 0 ? above * paint_.diffuse : color::Rgb{};
-  if (above > 0 || !horizon) f += lobes_toward(patch, cos_i);
+  color::Rgb f = above > 0 ? above * (mapped ? mapped_toward(patch.direction) : paint_.diffuse) : color::Rgb{};
+  if (above > 0 || !horizon) f += lobes_toward(patch, cos_i, mapped);
   const color::Rgb product =
       model_.reflection != nullptr ? goniochrome::color::reflected(*model_.reflection, f, radiance) : f * radiance;
   sum_ += patch.solid_angle_sr * product;
@@ -164,7 +169,13 @@ void Gatherer::add_mirror(const color::Rgb& radiance) {
   sum_ += model_.reflection != nullptr ? goniochrome::color::reflected(*model_.reflection, k, radiance) : k * radiance;
 }
 
-color::Rgb Gatherer::lobes_toward(const Patch& patch, double cos_i) const {
+// A map holds reflectance factors, pi f. Isolines do not change when both directions turn about the normal.
+color::Rgb Gatherer::mapped_toward(const Vec3& direction) const {
+  const Vec3 light{dot(direction, frame_x_), dot(direction, frame_y_), dot(direction, point_.normal)};
+  return (1 / kPi) * brdf::reflectance_factor(*model_.map, light, local_viewer_, model_.treatment);
+}
+
+color::Rgb Gatherer::lobes_toward(const Patch& patch, double cos_i, bool mapped) const {
   const Vec3& direction = patch.direction;
   color::Rgb f;
   const double cos_half = 0.5 * length(direction + point_.to_viewer);
@@ -180,7 +191,7 @@ color::Rgb Gatherer::lobes_toward(const Patch& patch, double cos_i) const {
       const double lowered = grain_.lowered(lobe.exponent, patch.variance), exponent = lobe.exponent * lowered;
       if (exponent * -log_cos > kTail) break;
       const double power = m.share * lowered * std::exp(exponent * log_cos);
-      f += power * (cos_i * lobe.directional_diffuse + fresnel * lobe.gloss);
+      f += power * (mapped ? fresnel * lobe.gloss : cos_i * lobe.directional_diffuse + fresnel * lobe.gloss);
     }
   }
   return f;

@@ -1,5 +1,6 @@
 #include "render/internal/map_cost.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "base/parallel.h"
@@ -35,6 +36,11 @@ double point_ns(const Workload& work, const Effects& effects, const MapCost& c) 
     ns += single * (c.block + c.direction);
     for (const LobeClass& of : lobe_classes(*work.scene->env, effects))
       ns += spread * (c.direction + c.block * static_cast<double>(pairs ? (of.lobes.size() + 1) / 2 : of.lobes.size()));
+  }
+  if (effects.environment && effects.tilt_level > 0 && !work.lookups.empty()) {
+    const double lookups =
+        work.lookups[std::min(work.lookups.size(), static_cast<std::size_t>(effects.tilt_level)) - 1];
+    if (lookups > 0) ns += c.tilted + lookups * c.lookup;
   }
   return ns + static_cast<double>(effects.lights) *
                   (c.light + spread * static_cast<double>(effects.lobes.size()) * c.lit_lobe);

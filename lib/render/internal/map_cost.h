@@ -15,6 +15,8 @@ struct MapCost {
   double light;      // one light more
   double lit_lobe;   // one lobe in a light
   double view;       // weights that depend on the view
+  double tilted;     // tilted lobes, at a point that has any
+  double lookup;     // one look-up of a tilted lobe
   bool pairs;        // whether a block holds two maps as long as the product of colors has at most four forms
 };
 

@@ -38,10 +38,6 @@ std::vector<std::vector<brdf::Tilt>> tilts_for(const PathScene& scene) {
   return tilts_of(*scene.scene, effects);
 }
 
-bool is_mapped(const Scene& scene, std::size_t part) {
-  return scene.layer != nullptr && scene.layer->surface(static_cast<int>(part)).color_map != nullptr;
-}
-
 }  // namespace
 
 Result<Transport> Transport::create(const PathScene& path_scene) {

@@ -40,31 +40,40 @@ class TiltLights {
   // Columns can then be asked for of these exponents, and of the number behind them, which is that of exponent 1.
   explicit TiltLights(const std::vector<double>& exponents);
 
-  std::size_t count() const { return lamps_.size(); }
+  // The lights for a viewer at an angle from the normal: lamps with an extent, even light alone, and lamps without
+  // extent, of which half stand close about the mirror direction. A number in all that follows is that of a light.
+  struct Set {
+    std::vector<Vec3> points;  // of the lamps without extent
+  };
+  Set lights(double view_deg) const;
+
   // What a viewer sees of f cos_i in each light, relative to white; f cos_i is symmetric in y and 0 below the horizon.
-  std::vector<color::Rgb> colors(const std::function<color::Rgb(const Vec3& light)>& f_cos) const;
+  std::vector<color::Rgb> colors(const Set& set, const std::function<color::Rgb(const Vec3& light)>& f_cos) const;
   // The same with what f cos_i is below the horizon.
-  std::vector<color::Rgb> colors_all(const std::function<color::Rgb(const Vec3& light)>& f_cos) const;
+  std::vector<color::Rgb> colors_all(const Set& set, const std::function<color::Rgb(const Vec3& light)>& f_cos) const;
   // The same of a lobe of weight 1 about an axis and the axis at -y, half of each: (E + 1)/(2 pi) cos^E.
-  std::vector<float> column(std::size_t exponent, const Vec3& axis) const;
+  std::vector<float> column(const Set& set, std::size_t exponent, const Vec3& axis) const;
   // What small differences from such a color count in light m.
-  Metric metric(std::size_t m, const color::Rgb& color) const;
+  Metric metric(const Set& set, std::size_t m, const color::Rgb& color) const;
   // The mean color difference over the lights.
-  double mean_difference(const std::vector<color::Rgb>& a, const std::vector<color::Rgb>& b) const;
+  double mean_difference(const Set& set, const std::vector<color::Rgb>& a, const std::vector<color::Rgb>& b) const;
 
  private:
   struct Lamp {
     Vec3 center;
     int kind = 0;       // by size; the last kind is even light alone
-    double weight = 1;  // in sums over lights; together 1
+    double weight = 1;  // in sums over lights; together with the points 1
   };
   struct Sample {
     Vec3 direction;
     double solid_angle_sr;  // that it stands for, with its mirror image
   };
-  std::vector<color::Rgb> summed(const std::function<color::Rgb(const Vec3& light)>& f_cos, std::size_t begin) const;
+  std::vector<color::Rgb> summed(const Set& set, const std::function<color::Rgb(const Vec3& light)>& f_cos,
+                                 std::size_t begin) const;
   double blurred(std::size_t exponent, int kind, double cosine) const;
+  double weight(const Set& set, std::size_t m) const;
 
+  std::vector<double> exponents_;
   std::vector<Lamp> lamps_;
   std::vector<Sample> samples_;  // below the horizon first
   std::size_t first_above_ = 0;

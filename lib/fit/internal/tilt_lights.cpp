@@ -1,4 +1,4 @@
-#include "fit/tilt_lights.h"
+#include "fit/internal/tilt_lights.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,12 +17,17 @@ struct Kind {
   int count;
   double weight;
 };
-constexpr std::array kKinds = {Kind{200, 320, 0.35}, Kind{32, 120, 0.4}, Kind{5.5, 40, 0.2}};
+constexpr std::array kKinds = {Kind{200, 240, 0.25}, Kind{32, 120, 0.3}, Kind{5.5, 40, 0.1}};
 constexpr int kEven = static_cast<int>(kKinds.size());
 constexpr double kEvenWeight = 0.05;
 
 // Of the light that falls on a white surface that faces the lamp.
 constexpr double kLampShare = 0.75;
+
+// Lamps without extent show the shape of lobes, and a sum of few sharp lobes as spots. Half of them are spread evenly,
+// half as cos^E about the mirror direction, where all that is sharp lies.
+constexpr int kPoints = 260;
+constexpr double kPointWeight = 0.3, kPointShare = 0.6, kPointExponent = 12;
 
 constexpr int kAngles = 361;  // of blurred lobes, every half degree
 
@@ -98,7 +103,7 @@ double Metric::gain(const Channels& slope) const {
   return 2 * (x[0] * slope[0] + x[1] * slope[1] + x[2] * slope[2]) - squared(x);
 }
 
-TiltLights::TiltLights(const std::vector<double>& exponents) {
+TiltLights::TiltLights(const std::vector<double>& exponents) : exponents_(exponents) {
   for (int kind = 0; kind < kEven; ++kind) {
     const std::vector<Vec3> centers = half_sphere(kKinds[static_cast<std::size_t>(kind)].count);
     for (const Vec3& center : centers)
@@ -135,8 +140,8 @@ TiltLights::TiltLights(const std::vector<double>& exponents) {
       for (const double value : values) kernels_[m].push_back(static_cast<float>(value / sum));
     }
   });
-  std::vector<double> all = exponents;
-  all.push_back(1);
+  exponents_.push_back(1);
+  const std::vector<double>& all = exponents_;
   blurred_.resize(all.size() * kKinds.size());
   parallel_for(blurred_.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -147,6 +152,23 @@ TiltLights::TiltLights(const std::vector<double>& exponents) {
   });
 }
 
+TiltLights::Set TiltLights::lights(double view_deg) const {
+  Set set{half_sphere(kPoints)};
+  const double in = view_deg * kDegree;
+  for (const Vec3& even : half_sphere(kPoints)) {
+    // cos^E about the mirror direction: the even one keeps its turn about the axis.
+    const double cosine = std::pow(0.5 * (1 + even.z), 1 / (kPointExponent + 1)), sine = std::sqrt(1 - cosine * cosine);
+    const double flat = std::hypot(even.x, even.y), x = flat > 0 ? sine * even.x / flat : 0;
+    const double y = flat > 0 ? sine * even.y / flat : sine;
+    set.points.push_back({x * std::cos(in) + cosine * std::sin(in), y, cosine * std::cos(in) - x * std::sin(in)});
+  }
+  return set;
+}
+
+double TiltLights::weight(const Set& set, std::size_t m) const {
+  return m < lamps_.size() ? lamps_[m].weight : kPointWeight / static_cast<double>(set.points.size());
+}
+
 double TiltLights::blurred(std::size_t exponent, int kind, double cosine) const {
   const std::vector<double>& table = blurred_[exponent * kKinds.size() + static_cast<std::size_t>(kind)];
   const double at = std::acos(std::clamp(cosine, -1.0, 1.0)) / kPi * (kAngles - 1);
@@ -155,14 +177,16 @@ double TiltLights::blurred(std::size_t exponent, int kind, double cosine) const 
   return (1 - share) * table[static_cast<std::size_t>(low)] + share * table[static_cast<std::size_t>(low) + 1];
 }
 
-std::vector<color::Rgb> TiltLights::colors(const std::function<color::Rgb(const Vec3& light)>& f_cos) const {
-  return summed(f_cos, first_above_);
+std::vector<color::Rgb> TiltLights::colors(const Set& set,
+                                           const std::function<color::Rgb(const Vec3& light)>& f_cos) const {
+  return summed(set, f_cos, first_above_);
 }
-std::vector<color::Rgb> TiltLights::colors_all(const std::function<color::Rgb(const Vec3& light)>& f_cos) const {
-  return summed(f_cos, 0);
+std::vector<color::Rgb> TiltLights::colors_all(const Set& set,
+                                               const std::function<color::Rgb(const Vec3& light)>& f_cos) const {
+  return summed(set, f_cos, 0);
 }
 
-std::vector<color::Rgb> TiltLights::summed(const std::function<color::Rgb(const Vec3& light)>& f_cos,
+std::vector<color::Rgb> TiltLights::summed(const Set& set, const std::function<color::Rgb(const Vec3& light)>& f_cos,
                                            std::size_t begin) const {
   std::vector<color::Rgb> values;
   color::Rgb even;
@@ -181,10 +205,14 @@ std::vector<color::Rgb> TiltLights::summed(const std::function<color::Rgb(const 
       if (kernels_[m][i] > 0) lit += static_cast<double>(kernels_[m][i]) * values[i - begin];
     colors.push_back(kLampShare * kPi * lit + (1 - kLampShare) * even);
   }
+  for (const Vec3& point : set.points) {
+    const color::Rgb lit = point.z > 0 || begin == 0 ? f_cos(point) : color::Rgb{};
+    colors.push_back(kPointShare * kPi * lit + (1 - kPointShare) * even);
+  }
   return colors;
 }
 
-std::vector<float> TiltLights::column(std::size_t exponent, const Vec3& axis) const {
+std::vector<float> TiltLights::column(const Set& set, std::size_t exponent, const Vec3& axis) const {
   std::vector<float> column;
   for (const Lamp& lamp : lamps_) {
     double value = 1;
@@ -196,12 +224,21 @@ std::vector<float> TiltLights::column(std::size_t exponent, const Vec3& axis) co
     }
     column.push_back(static_cast<float>(value));
   }
+  const double power = exponents_[exponent];
+  for (const Vec3& point : set.points) {
+    double lit = 0;
+    for (const double side : {1.0, -1.0}) {
+      const double cosine = dot(point, {axis.x, side * axis.y, axis.z});
+      if (cosine > 0) lit += 0.5 * std::pow(cosine, power);
+    }
+    column.push_back(static_cast<float>(kPointShare * kPi * normalization(power) * lit + (1 - kPointShare)));
+  }
   return column;
 }
 
 // CIEDE2000 of small differences, but for its turns of hue: the differences of lightness, chroma and hue over
 // S_L, S_C and S_H = 1, 1 + 0.045 C and 1 + 0.015 C. The derivatives of L*a*b* are taken by differences.
-Metric TiltLights::metric(std::size_t m, const color::Rgb& color) const {
+Metric TiltLights::metric(const Set& set, std::size_t m, const color::Rgb& color) const {
   constexpr double kDark = 0.004, kStep = 1e-4;
   const color::Rgb at{std::max(color.x, kDark), std::max(color.y, kDark), std::max(color.z, kDark)};
   const color::Lab lab = color::lab_from_rgb(at, white());
@@ -216,14 +253,14 @@ Metric TiltLights::metric(std::size_t m, const color::Rgb& color) const {
     rows[1][c] = (a * (to.a - lab.a) + b * (to.b - lab.b)) / step / (1 + 0.045 * chroma);
     rows[2][c] = (a * (to.b - lab.b) - b * (to.a - lab.a)) / step / (1 + 0.015 * chroma);
   }
-  return {rows, lamps_[m].weight};
+  return {rows, weight(set, m)};
 }
 
-double TiltLights::mean_difference(const std::vector<color::Rgb>& a, const std::vector<color::Rgb>& b) const {
+double TiltLights::mean_difference(const Set& set, const std::vector<color::Rgb>& a,
+                                   const std::vector<color::Rgb>& b) const {
   double sum = 0;
-  for (std::size_t m = 0; m < lamps_.size(); ++m)
-    sum +=
-        lamps_[m].weight * color::delta_e_2000(color::lab_from_rgb(a[m], white()), color::lab_from_rgb(b[m], white()));
+  for (std::size_t m = 0; m < a.size(); ++m)
+    sum += weight(set, m) * color::delta_e_2000(color::lab_from_rgb(a[m], white()), color::lab_from_rgb(b[m], white()));
   return sum;
 }
 
