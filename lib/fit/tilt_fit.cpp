@@ -54,7 +54,9 @@ std::vector<double> tilted_exponents(const formats::Basis& basis) {
   return exponents;
 }
 
-// Lobes about axes that stand as far apart as they are wide, and the sharper, the nearer to the mirror direction. The
+// Lobes about axes that stand about as far apart as they are wide, and no farther from the mirror direction than twice
+// that: farther out, few sharp lobes show a small lamp as separate spots. On cayman in a studio, 8 look-ups with axes
+// to 3.2 standard deviations erred by 2.07 (mean CIEDE2000), to 2.2 by 1.38, and to 8 by more than its plain lobes. The
 // first one is the diffuse part: a lobe of exponent 1 about the normal.
 struct Candidate {
   paint::TiltedLobe lobe;

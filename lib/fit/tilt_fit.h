@@ -14,7 +14,7 @@ namespace goniochrome::fit {
 struct TiltOptions {
   // Look-ups in prefiltered maps that each set may take, ascending. Each count gives a set, unless it is hardly better
   // than the set before.
-  std::vector<int> lookups = {8, 16, 32};
+  std::vector<int> lookups = {8, 16, 32, 64};
   brdf::CriticalAngle treatment = brdf::CriticalAngle::kSlide;
 };
 

@@ -58,7 +58,7 @@ TEST(TiltFit, FollowsATravelingColorBetterTheMoreLookupsThereAre) {
 }
 
 // The truth is the map itself, whose light from below the horizon is 0: a set sends little there at any view. A lobe of
-// exponent 20 about the mirror direction, with the same light in it, is the control: at 85 deg near half of it lies
+// exponent 20 about the mirror direction, with the same light in it, is the control: at 85 deg a third of it lies
 // below.
 TEST(TiltFit, HardlyReachesBelowTheHorizon) {
   const TiltFit fit = fitted({12});
@@ -82,7 +82,7 @@ TEST(TiltFit, HardlyReachesBelowTheHorizon) {
   for (const double view_deg : {0.0, 30.0, 50.0, 65.0, 80.0, 85.0}) {
     EXPECT_LT(share_below(fit.sets[0], view_deg), 0.06) << view_deg;
   }
-  EXPECT_GT(share_below(control, 85), 0.4);
+  EXPECT_GT(share_below(control, 85), 0.3);  // 5 deg of the 12.8 that such a lobe has as its standard deviation
 }
 
 TEST(TiltFit, NothingIsTiltedWhereLobesDoAsWell) {
@@ -96,7 +96,9 @@ TEST(TiltFit, NothingIsTiltedWhereLobesDoAsWell) {
   EXPECT_LT(same.lobes_de00, 0.05);
   // The control: lobes of another color do not.
   matt.diffuse = (0.2 / kPi) * color::Rgb{1, 0.5, 0.5};
-  EXPECT_FALSE(fit_tilts(gray, matt, kBasis, {}).sets.empty());
+  const TiltFit other = fit_tilts(gray, matt, kBasis, {});
+  EXPECT_GT(other.lobes_de00, 5);
+  EXPECT_FALSE(other.sets.empty());
   // A map of the aspecular angle.
   brdf::ColorMap aspecular = traveling().map;
   aspecular.aspecular = true;

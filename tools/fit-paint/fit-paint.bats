@@ -370,3 +370,30 @@ cornell() {
   run fit-paint -b "$basis" in.xml -o out.xml --color-map maps --color-map-model best
   [ "$status" -eq 2 ]
 }
+
+@test "--tilts makes sets of tilted lobes where a color map travels; missing and wrong counts are refused" {
+  fit-paint -q -b "$basis" "$TESTDATA/travel.paints.xml" -o out.xml --color-map maps --tilts 6,10 --report r.json
+  [ "$(grep -c '<tilts xmlns="urn:goniochrome:tilts:1">' out.xml)" -eq 2 ]
+  [ "$(grep -c '<set mean_de00=' out.xml)" -eq 4 ]
+  # The finer set is closer to the map, and both are closer than the lobes.
+  jq -e '.results.tilts | all(.lobes_de00 > .sets[0].de00_mean and .sets[0].de00_mean > .sets[1].de00_mean)' r.json
+  jq -e '.results.tilts | all(.sets[0].lookups <= 6 and .sets[1].lookups <= 10)' r.json
+  # A paint that names its map gets its sets again without --color-map, and they are the same.
+  fit-paint -q -b "$basis" out.xml -o again.xml --tilts 6,10
+  diff <(grep -A99 '<tilts' out.xml) <(grep -A99 '<tilts' again.xml)
+  fit-paint -q -b "$basis" out.xml -o none.xml --tilts none
+  run ! grep -q '<tilts' none.xml
+  rm maps/film_gold_teal.exr
+  run --separate-stderr fit-paint -b "$basis" out.xml -o lost.xml --tilts 6
+  [ "$status" -eq 0 ]
+  [[ "$stderr" =~ 'paint "film_gold_teal" gets no tilted lobes: ' ]]
+  [ "$(grep -c '<tilts' lost.xml)" -eq 1 ]
+  for wrong in 0 65 8,8 16,8 8, all; do
+    run fit-paint -b "$basis" out.xml -o wrong.xml --tilts "$wrong"
+    [ "$status" -eq 2 ]
+    [[ "$output" =~ "--tilts \"$wrong\"" ]]
+    [ ! -e wrong.xml ]
+  done
+  run fit-paint -b "$basis" out.xml -o wrong.xml --tilts
+  [ "$status" -eq 2 ]
+}

@@ -24,7 +24,7 @@ struct Options {
   double paint_time_limit_s = 0;
   std::string color_map;
   std::string color_map_model = "better";
-  std::string tilts = "8,16,32";
+  std::string tilts = "8,16,32,64";
 };
 
 cli::ToolSpec tool_spec(Options& options);

@@ -81,8 +81,10 @@ void add_light(cli::ToolSpec& spec, Options& o) {
   spec.option("critical-angle", "NAME", "clip", &o.critical_angle, "what color maps do beyond the critical angle")
       .one_of({"clip", "slide", "slide-map", "index"})
       .more(
-          "A color map shows its own colors under lights. Under an environment, a paint that has one is shown by its "
-          "weights for several views.");
+          "A color map shows its own colors under lights. Under an environment, the engines integral and path show it "
+          "as "
+          "well; cpu and gl show the tilted lobes of the paint, which stand for its map with the angle slide, or its "
+          "lobes where it has none.");
   spec.option("exposure", "STOPS", "-1", &o.exposure, "power of two that brightens the picture, or auto")
       .more(
           "auto leaves an EXR as it is. In a PNG it makes a gray card of 18 % middle gray: the light on the card is "
@@ -119,8 +121,12 @@ void add_effects(cli::ToolSpec& spec, Options& o) {
   spec.option("effects", "WORDS", "auto,-fresnel", &o.effects,
               "effects to draw: auto, all or none, and then +NAME and -NAME")
       .more(
-          "The names are diffuse, lobes, gloss, mirror, fresnel, horizon, anisotropy, travel, texture, texture-lobes, "
-          "operator and lights. lobe-20, gloss-900 and texture-0 (lobe0 of the textures) are single lobes. Three more "
+          "The names are diffuse, lobes, gloss, mirror, fresnel, horizon, anisotropy, travel, tilts, texture, "
+          "texture-lobes, operator and lights. lobe-20, gloss-900 and texture-0 (lobe0 of the textures) are single "
+          "lobes. tilts are the tilted lobes that stand for color maps under an environment, tilts-1 is the set with "
+          "the "
+          "fewest of them, and each finer set, as tilts-2, needs the one before; while they are drawn, the lobes of "
+          "these paints are not. Three more "
           "are drawn by tracing rays: shadow (the mesh blocks light), self (lobes and mirror see the body instead of "
           "black) and bounce (the same for the diffuse part). The last two need shadow, and rays names all three. They "
           "are drawn at those pixels alone that can see the mesh, so that a convex shape is drawn as without them. "

@@ -239,10 +239,12 @@ std::vector<float> TiltLights::column(const Set& set, std::size_t exponent, cons
 // CIEDE2000 of small differences, but for its turns of hue: the differences of lightness, chroma and hue over
 // S_L, S_C and S_H = 1, 1 + 0.045 C and 1 + 0.015 C. The derivatives of L*a*b* are taken by differences.
 Metric TiltLights::metric(const Set& set, std::size_t m, const color::Rgb& color) const {
-  constexpr double kDark = 0.004, kStep = 1e-4;
+  constexpr double kDark = 0.004, kStep = 1e-4, kGray = 1e-3;
   const color::Rgb at{std::max(color.x, kDark), std::max(color.y, kDark), std::max(color.z, kDark)};
   const color::Lab lab = color::lab_from_rgb(at, white());
-  const double chroma = std::max(std::hypot(lab.a, lab.b), 1e-9), a = lab.a / chroma, b = lab.b / chroma;
+  const double chroma = std::hypot(lab.a, lab.b);
+  const bool gray = chroma < kGray;  // which has no hue: any two directions across each other serve
+  const double a = gray ? 1 : lab.a / chroma, b = gray ? 0 : lab.b / chroma;
   std::array<Metric::Channels, 3> rows{};
   for (std::size_t c = 0; c < 3; ++c) {
     color::Rgb moved = at;
