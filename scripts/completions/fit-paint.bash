@@ -14,12 +14,13 @@ _fit_paint() {
     --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --color-map) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --color-map-model) COMPREPLY=($(compgen -W "better isolines aspecular" -- "$word")); return ;;
+    --tilts) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --report) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --threads) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--basis --target --weights --gloss --steepest --method --lobes --prune --views --paint-time-limit --output --color-map --color-map-model --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--basis --target --weights --gloss --steepest --method --lobes --prune --views --paint-time-limit --output --color-map --color-map-model --tilts --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }
