@@ -178,13 +178,8 @@ void TiltStore::load_paints(const Scene& scene, const Effects& effects) {
 
 TiltShading TiltStore::shading(const float* colors_of_forms) const {
   if (!any_) return {};
-  return {kViewSegments, groups_.data(),
-          rows_.data(),
-          axes_.data(),
-          places_.data(),
-          weights_.data(),
-          texels_.data(),
-          static_cast<int>(floats_of(forms_)),
+  return {kViewSegments,  groups_.data(),  rows_.data(),   axes_.data(),
+          places_.data(), weights_.data(), texels_.data(), static_cast<int>(floats_of(forms_)),
           colors_of_forms};
 }
 

@@ -19,7 +19,7 @@ constexpr std::size_t kTiltLanes = 16;
 struct TiltShading {
   int segments = 0;                      // 0: nothing is tilted
   const std::int32_t* groups = nullptr;  // of each part
-  const std::uint32_t* rows = nullptr;  // of a group and segment: where its look-ups begin; and one more for the end
+  const std::uint32_t* rows = nullptr;   // of a group and segment: where its look-ups begin; and one more for the end
   const float* axes = nullptr;           // 6 of each look-up in groups of kTiltLanes: a, s, c, and their steps
   const std::int32_t* places = nullptr;  // 2 of each look-up in such groups: size of the map, first texel
   const float* weights = nullptr;        // of each look-up: the forms of the weight, and of its step
