@@ -21,6 +21,9 @@ struct RayEffects {
   bool self = false;
   // The same for the diffuse part of a point.
   bool bounce = false;
+  // A floor that shows the ground of the environment lies below: it is seen, shaded by the mesh, and sends its light to
+  // the mesh in the place of what the environment has below the horizon. It needs `shadow`.
+  bool floor = false;
 
   bool any() const { return shadow; }
   bool operator==(const RayEffects&) const = default;

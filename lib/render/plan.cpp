@@ -357,6 +357,26 @@ Plan plan_of_everything(const Scene& scene, const Effects& all, const std::vecto
   return plan;
 }
 
+// Where prefiltered maps do not keep the tolerance and rays alone are faster, everything is drawn by these.
+void take_rays_alone(const Effects& all, const RayChoice& by_rays, double tolerance_de00, const Engine& tracer,
+                     Plan& plan) {
+  const double by_maps_ms = plan.predicted_ms() + plan.rays_ms;
+  for (PlanItem& item : plan.items) {
+    if (!item.needed) continue;
+    item.on = true, item.decision = Decision::kDrawn;
+  }
+  plan.engine_reason = fmt::format(
+      "prefiltered maps would miss the truth by dE00 {:.2g} (p95) in {:.0f} ms; rays alone keep the tolerance in "
+      "{:.0f}",
+      *plan.whole_de00_p95, by_maps_ms, by_rays.path_ms);
+  plan.engine = tracer.info().name;
+  plan.prices.push_back({plan.engine, by_rays.path_ms, 0});
+  plan.effects = all;
+  plan.de00_p95 = plan.rays_ms = plan.rays_noise_de00 = 0;
+  plan.open_de00_p95 = plan.whole_de00_p95 = tolerance_de00;
+  plan.not_kept.clear();
+}
+
 Decision decision_of(const EffectSwitch& effect, bool on, bool forced, bool over_budget) {
   if (!effect.needed) return Decision::kNotInScene;
   if (forced) return on ? Decision::kForcedOn : Decision::kForcedOff;
@@ -544,6 +564,12 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
     item.decision = decision_of(switches[i], item.on, choice.forced[i], gone.contains(i));
   }
   plan.items.insert(plan.items.end(), by_rays.items.begin(), by_rays.items.end());
+  const auto tracer = std::ranges::find_if(engines, [](const Engine* of) { return of->info().traces_rays; });
+  const bool may_take = asked == nullptr && words.start == Start::kAuto && words.forced.empty();
+  plan.path_ms = by_rays.path_ms;
+  if (may_take && tracer != engines.end() && !plan.not_kept.empty() && by_rays.path_ms > 0 &&
+      by_rays.path_ms < plan.predicted_ms() + plan.rays_ms)
+    take_rays_alone(all, by_rays, request.tolerance_de00, **tracer, plan);
   plan.time_ms = 1000 * clock.elapsed_s();
   return plan;
 }

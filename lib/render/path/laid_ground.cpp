@@ -23,7 +23,11 @@ double upward_weight(const envmap::Environment& environment, int column, int row
     const double below = std::max(0.0, std::cos(kPi * (row + 1) / environment.height()));
     return 2 * kPi / environment.width() * (above * above - below * below) / 2;
   }
-  constexpr int kParts = 4;
+  // Away from the horizon the middle of a fine texel is exact to the square of its size.
+  constexpr int kParts = 4, kFine = 64;
+  const double up = environment.direction_at(column + 0.5, row + 0.5).y;
+  if (environment.width() >= kFine && std::abs(up) > 4.0 / environment.width())
+    return up > 0 ? up * environment.solid_angle_density(column + 0.5, row + 0.5) : 0;
   double weight = 0;
   for (int i = 0; i < kParts; ++i) {
     for (int j = 0; j < kParts; ++j) {
@@ -34,18 +38,25 @@ double upward_weight(const envmap::Environment& environment, int column, int row
   return weight / (kParts * kParts);
 }
 
-// The irradiance of a level surface that looks up, each texel as a constant patch.
-color::Rgb level_irradiance(const envmap::Environment& environment) {
-  const bool rows_agree = environment.layout() == envmap::Environment::Layout::kLatLong;
-  color::Rgb sum;
-  for (int row = 0; row < environment.height(); ++row) {
-    double weight = 0;
-    for (int column = 0; column < environment.width(); ++column) {
-      if (column == 0 || !rows_agree) weight = upward_weight(environment, column, row);
-      if (weight > 0) sum += weight * texel(environment, column, row);
-    }
-  }
-  return sum;
+constexpr int kAzimuths = 128, kElevations = 32;
+
+std::size_t place_of(int azimuth, int elevation) {
+  return static_cast<std::size_t>(elevation) * (kAzimuths + 1) + static_cast<std::size_t>(azimuth);
+}
+
+double azimuth_of(const Vec3& direction) {
+  return std::atan2(direction.x, direction.z);
+}
+
+double mean_of(const color::Rgb& light) {
+  return (light.x + light.y + light.z) / 3;
+}
+
+// How far the edge of a texel may be from its middle.
+double texel_radius(const envmap::Environment& environment) {
+  return environment.layout() == envmap::Environment::Layout::kCube
+             ? kPi / 2 / environment.width()
+             : 1.5 * kPi / std::min(environment.width(), environment.height());
 }
 
 }  // namespace
@@ -87,9 +98,75 @@ Result<LaidGround> LaidGround::create(const Ground& ground, const envmap::Enviro
   LaidGround laid;
   laid.environment_ = &environment;
   laid.eye_ = ground.probe_eye;
-  laid.irradiance_ = level_irradiance(environment);
-  for (const Light& light : lights) laid.irradiance_ += (kPi * std::max(0.0, light.direction.y)) * light.white;
+  laid.sums_.assign(place_of(0, kElevations + 1), 0.0);
+  laid.margin_rad_ = std::max(kPi / kAzimuths, texel_radius(environment));
+  // Each texel is a constant patch.
+  const bool rows_agree = environment.layout() == envmap::Environment::Layout::kLatLong;
+  for (int row = 0; row < environment.height(); ++row) {
+    double weight = 0;
+    for (int column = 0; column < environment.width(); ++column) {
+      if (column == 0 || !rows_agree) weight = upward_weight(environment, column, row);
+      if (!(weight > 0)) continue;
+      const color::Rgb light = weight * texel(environment, column, row);
+      laid.irradiance_ += light;
+      laid.add_light(environment.direction_at(column + 0.5, row + 0.5), mean_of(light));
+    }
+  }
+  for (const Light& light : lights) {
+    const color::Rgb lit = (kPi * std::max(0.0, light.direction.y)) * light.white;
+    laid.irradiance_ += lit;
+    if (light.direction.y > 0) laid.add_light(light.direction, mean_of(lit));
+  }
+  laid.sum_up();
   return laid;
+}
+
+void LaidGround::add_light(const Vec3& direction, double light) {
+  const double around = azimuth_of(direction) / (2 * kPi) + 0.5;
+  const double up = std::atan2(direction.y, std::hypot(direction.x, direction.z)) / (kPi / 2);
+  const int azimuth = std::clamp(static_cast<int>(around * kAzimuths), 0, kAzimuths - 1);
+  const int elevation = std::clamp(static_cast<int>(up * kElevations), 0, kElevations - 1);
+  sums_[place_of(azimuth + 1, elevation + 1)] += light;
+}
+
+void LaidGround::sum_up() {
+  for (int e = 1; e <= kElevations; ++e)
+    for (int a = 1; a <= kAzimuths; ++a)
+      sums_[place_of(a, e)] += sums_[place_of(a - 1, e)] + sums_[place_of(a, e - 1)] - sums_[place_of(a - 1, e - 1)];
+}
+
+// The light from below an elevation and so far to either side of an azimuth, or more.
+double LaidGround::light_within(double azimuth_rad, double half_width_rad, double elevation_rad) const {
+  const int top =
+      std::min(kElevations, static_cast<int>(std::ceil((elevation_rad + margin_rad_) / (kPi / 2) * kElevations)));
+  const double half = half_width_rad + margin_rad_, cell = 2 * kPi / kAzimuths;
+  if (half >= kPi) return sums_[place_of(kAzimuths, top)];
+  const int first = static_cast<int>(std::floor((azimuth_rad - half + kPi) / cell));
+  const int count = std::min(kAzimuths, static_cast<int>(std::ceil((azimuth_rad + half + kPi) / cell)) - first);
+  const int begin = (first % kAzimuths + kAzimuths) % kAzimuths, end = begin + count;
+  const auto before = [&](int azimuth) { return sums_[place_of(azimuth, top)]; };
+  double sum = before(std::min(end, kAzimuths)) - before(begin);
+  if (end > kAzimuths) sum += before(end - kAzimuths);
+  return sum;
+}
+
+double LaidGround::hidden_share(const Vec3& position, const mesh::Box& box) const {
+  const Vec3 nearest = {std::clamp(position.x, box.low.x, box.high.x), 0,
+                        std::clamp(position.z, box.low.z, box.high.z)};
+  const double distance = std::hypot(nearest.x - position.x, nearest.z - position.z);
+  const double height = box.high.y - position.y;
+  if (!(distance > 0)) return 1;
+  if (!(height > 0)) return 0;
+  const double toward = azimuth_of(0.5 * (box.low + box.high) - position);
+  double half_width = 0;
+  for (const double x : {box.low.x, box.high.x})
+    for (const double z : {box.low.z, box.high.z})
+      half_width = std::max(
+          half_width, std::abs(std::remainder(azimuth_of({x - position.x, 0, z - position.z}) - toward, 2 * kPi)));
+  const double elevation = std::atan2(height, distance);
+  const double covered = half_width / kPi * height * height / (height * height + distance * distance);
+  const double light = mean_of(irradiance_);
+  return std::max(covered, light > 0 ? light_within(toward, half_width, elevation) / light : 0);
 }
 
 color::Rgb LaidGround::open_radiance(const Vec3& position) const {

@@ -5,6 +5,7 @@
 
 #include "color/color.h"
 #include "envmap/environment.h"
+#include "mesh/mesh.h"
 #include "rays/ray_scene.h"
 #include "render/scene.h"
 
@@ -30,10 +31,22 @@ class LaidGround {
   // Of the floor in the open, from above.
   const color::Rgb& irradiance() const { return irradiance_; }
 
+  // How much a body within this box, which stands on the floor, can change of what a point of the floor shows: the
+  // share of the irradiance that comes from where the box hides the sky, or the share of the hemisphere, weighed by the
+  // cosine, that it covers, whichever is larger. It is 1 under the box.
+  double hidden_share(const Vec3& position, const mesh::Box& box) const;
+
  private:
+  void add_light(const Vec3& direction, double light);
+  void sum_up();
+  double light_within(double azimuth_rad, double half_width_rad, double elevation_rad) const;
+
   const envmap::Environment* environment_ = nullptr;
   Vec3 eye_;
   color::Rgb irradiance_;
+  // Irradiance from below each elevation and before each azimuth, the mean of the channels, in cells of even angles.
+  std::vector<double> sums_;
+  double margin_rad_ = 0;  // how far the light of a cell may lie outside of it
 };
 
 }  // namespace goniochrome::render

@@ -333,7 +333,7 @@ LobeEstimate LobePoint::estimate(const color::Rgb* open_light, int sequences, in
   result.sequences = sequences;
   bool any_blocked = false;
   const std::vector<Ray> rays = traced_rays(sequences, directions, seed, any_blocked);
-  const bool summed = open_light == nullptr && transport_.environment_.has_value();
+  const bool summed = open_light == nullptr && transport_.environment_ != nullptr;
   if (!any_blocked && !summed && !mirror_hit_.any()) {
     add_open();
     return result;

@@ -60,6 +60,7 @@ Result<Transport> Transport::create(const PathScene& path_scene) {
   }
   Transport transport(std::move(rays));
   const mesh::Box box = bounding_box(*scene.mesh);
+  transport.mesh_box_ = box;
   transport.mesh_radius_ = static_cast<float>(1.0001 * transport.rays_->scale() * length(0.5 * (box.high - box.low)));
   const auto tilts = tilts_for(path_scene);
   for (std::size_t part = 0; part < scene.paints.size(); ++part) {
@@ -78,7 +79,9 @@ Result<Transport> Transport::create(const PathScene& path_scene) {
     transport.paints_.push_back(*std::move(paint));
   }
   if (path_scene.environment != nullptr) {
-    transport.environment_.emplace(*path_scene.environment);
+    transport.environment_ = path_scene.table != nullptr
+                                 ? path_scene.table
+                                 : std::make_shared<const EnvironmentTable>(*path_scene.environment);
     if (transport.environment_->dark()) transport.environment_.reset();
     if (ground && ground->kind == Ground::Kind::kShadow) {
       GONIO_ASSIGN(transport.ground_, LaidGround::create(*ground, *path_scene.environment, scene.lights));
@@ -119,6 +122,10 @@ struct Transport::Vertex {
 
 bool Transport::is_laid(const Spot& spot) const {
   return ground_ && spot.triangle == rays::kFloor;
+}
+
+double Transport::hidden_share(const Spot& spot) const {
+  return is_laid(spot) ? ground_->hidden_share(rays_->world(spot.position), mesh_box_) : 1;
 }
 
 // From below the floor is black.
@@ -337,7 +344,7 @@ void PointTransport::add_mirror() {
   }
   if (correction_) sure_ += -1.0 * reflect(mirror, open);
   sure_ += reflect(mirror, transport_.emitters_.radiance(transport_.rays_->part(mirror_hit_.triangle)));
-  if ((options_.bounces == 0 && !transport_.is_laid(mirror_hit_)) || !options_.into_lobes) return;
+  if ((options_.bounces == 0 || !options_.into_lobes) && !transport_.is_laid(mirror_hit_)) return;
   const double share = weight / (weight + painted_.lobes_weight());
   mirror_samples_ = static_cast<std::uint32_t>(std::clamp(static_cast<int>(std::lround(kBatch * share)), 1, kBatch));
 }
@@ -371,21 +378,26 @@ LightShares PointTransport::shown(const Ray& ray, bool blocked, const Sequence& 
   const auto scaled = static_cast<float>(1 / pdf);
   if (!blocked) return {reflect(scaled * reflection.f_cos, light.radiance), {}, {}};
 
-  color::Rgb arriving = correction_ ? -1.0 * light.radiance : color::Rgb{};
+  color::Rgb arriving = correction_ ? -1.0 * light.radiance : color::Rgb{}, sent;
   LightShares shares;
   if (options_.bounces > 0 || !transport_.emitters_.empty() || transport_.ground_) {
     const Hit hit = transport_.rays_->closest(spot_.start, ray.direction);
-    if (hit.any()) {
+    if (transport_.is_laid(hit)) {
+      const Transport::FloorLight floor =
+          transport_.off_floor(hit, spot_.start, ray.direction, options_.bounces, sequence, index, 4);
+      arriving += floor.fixed, sent = floor.bounced;
+    } else if (hit.any()) {
       const color::Rgb& emission = transport_.emitters_.radiance(transport_.rays_->part(hit.triangle));
       if (emission != color::Rgb{})
         arriving += pdf / (pdf + transport_.emitters_.pdf(hit.triangle, ray.direction, hit.distance)) * emission;
-      if ((options_.bounces > 0 || transport_.is_laid(hit)) && (options_.into_lobes || options_.into_diffuse)) {
-        const color::Rgb sent = transport_.bounced(hit, spot_.start, ray.direction, options_, sequence, index, 4);
-        const PaintedPoint::Parts parts = painted_.parts(ray.direction);
-        if (options_.into_lobes) shares.into_lobes = reflect(scaled * parts.lobes, sent);
-        if (options_.into_diffuse) shares.into_diffuse = reflect(scaled * parts.diffuse, sent);
-      }
+      if (options_.bounces > 0 && (options_.into_lobes || options_.into_diffuse))
+        sent = transport_.bounced(hit, spot_.start, ray.direction, options_, sequence, index, 4);
     }
+  }
+  if (sent != color::Rgb{}) {
+    const PaintedPoint::Parts parts = painted_.parts(ray.direction);
+    if (options_.into_lobes) shares.into_lobes = reflect(scaled * parts.lobes, sent);
+    if (options_.into_diffuse) shares.into_diffuse = reflect(scaled * parts.diffuse, sent);
   }
   shares.direct = reflect(scaled * reflection.f_cos, arriving);
   return shares;
@@ -400,6 +412,24 @@ color::Rgb PointTransport::emitter_sample(const std::array<double, 4>& numbers) 
   const double open_pdf = transport_.environment_ ? transport_.environment_->at(light.direction).pdf : 0;
   const double pdf = light.pdf + light_chance_ * open_pdf + (1 - light_chance_) * reflection.pdf;
   return reflect(static_cast<float>(1 / pdf) * reflection.f_cos, light.radiance);
+}
+
+// The light that the mirror lobe sees, summed over these samples.
+LightShares PointTransport::mirrored(const Sequence& sequence, std::uint32_t begin, std::uint32_t count) const {
+  color::Rgb fixed, sent;
+  for (std::uint32_t i = begin; i < begin + count; ++i) {
+    if (transport_.is_laid(mirror_hit_)) {
+      const Transport::FloorLight floor =
+          transport_.off_floor(mirror_hit_, spot_.start, painted_.mirrored(), options_.bounces, sequence, i, 4);
+      fixed += floor.fixed, sent += floor.bounced;
+    } else {
+      sent += transport_.bounced(mirror_hit_, spot_.start, painted_.mirrored(), options_, sequence, i, 4);
+    }
+  }
+  LightShares shares;
+  shares.direct = reflect(painted_.mirror(), fixed);
+  if (options_.into_lobes) shares.into_lobes = reflect(painted_.mirror(), sent);
+  return shares;
 }
 
 LightShares PointTransport::batch_shares(std::uint64_t seed, std::uint32_t begin, std::uint32_t count,
@@ -430,11 +460,8 @@ LightShares PointTransport::batch_shares(std::uint64_t seed, std::uint32_t begin
       for (std::uint32_t i = begin; i < begin + count; ++i) sum.direct += emitter_sample(sequence.point(i, 1));
   }
   const std::uint32_t mirrors = mirror_samples_ > 0 ? std::max(1U, mirror_samples_ * count / kBatch) : 0;
-  color::Rgb mirrored;
-  for (std::uint32_t i = begin; i < begin + mirrors; ++i)
-    mirrored += transport_.bounced(mirror_hit_, spot_.start, painted_.mirrored(), options_,
-                                   Sequence(mixed(seed, 0x4D), kBatch), i, 4);
-  if (mirrors > 0) sum.into_lobes += (static_cast<double>(count) / mirrors) * reflect(painted_.mirror(), mirrored);
+  if (mirrors > 0)
+    sum += static_cast<double>(count) / mirrors * mirrored(Sequence(mixed(seed, 0x4D), kBatch), begin, mirrors);
   return (1.0 / count) * sum;
 }
 

@@ -25,6 +25,8 @@ struct PathScene {
   std::optional<Ground> ground = {};
   // The mesh with its floor, where they are there already; else they are made.
   std::shared_ptr<const rays::RayScene> rays = nullptr;
+  // Of that environment, where it is there already; else it is made.
+  std::shared_ptr<const EnvironmentTable> table = nullptr;
   double tilt_tolerance = 1e-3;  // of the tilted normals of brushed paints, relative to the lobe's peak
 };
 
@@ -45,7 +47,9 @@ struct PathOptions {
 
 // What a point shows, by the way that the light took. The sum is what it shows.
 struct LightShares {
-  color::Rgb direct;        // from light straight to the point; with PathOptions::correction less what the mesh blocks
+  // From light straight to the point; with PathOptions::correction less what the mesh blocks. A floor that shows the
+  // environment is light, apart from what the mesh sends it.
+  color::Rgb direct;
   color::Rgb into_lobes;    // passed on by surfaces to the lobes and the mirror of the point
   color::Rgb into_diffuse;  // passed on by surfaces to the diffuse part of the point
 
@@ -79,6 +83,10 @@ class Transport {
 
   const rays::RayScene& rays() const { return *rays_; }
   const Emitters& emitters() const { return emitters_; }
+  // Of a point on a floor that shows the environment: see LaidGround::hidden_share(); of others 1.
+  double hidden_share(const rays::Spot& spot) const;
+  // What such a floor shows there in the open.
+  color::Rgb open_ground(const rays::Spot& spot) const;
   // The parts whose paint sends back more light than it gets, by number: paths between such walls gain light for ever
   // and are ended by chance alone.
   std::vector<int> gaining_parts() const;
@@ -104,14 +112,14 @@ class Transport {
   color::Rgb light_at_end(const Next& next, const PathProduct& path, bool laid) const;
   bool is_laid(const rays::Spot& spot) const;
   bool is_laid(const rays::Hit& hit) const { return ground_ && hit.triangle == rays::kFloor; }
-  color::Rgb open_ground(const rays::Spot& spot) const;
   PaintedPoint painted(const rays::Spot& spot, const rays::Float3& to_viewer) const;
 
   std::shared_ptr<const rays::RayScene> rays_;  // stays where it is when the transport is moved
   std::vector<TracedPaint> paints_;             // of the parts, then of the floor
   std::optional<LaidGround> ground_;            // of a floor that shows the environment
-  float mesh_radius_ = 0;                       // local, of a sphere about the origin that holds the mesh
-  std::optional<EnvironmentTable> environment_;
+  mesh::Box mesh_box_;
+  float mesh_radius_ = 0;  // local, of a sphere about the origin that holds the mesh
+  std::shared_ptr<const EnvironmentTable> environment_;
   Emitters emitters_;
   std::vector<Light> lights_;
   const color::ReflectionOperator* reflection_ = nullptr;  // null: channel by channel
@@ -146,6 +154,7 @@ class PointTransport {
   void add_mirror();
   Ray drawn_ray(const std::array<double, 4>& numbers) const;
   LightShares shown(const Ray& ray, bool blocked, const Sequence& sequence, std::uint32_t index) const;
+  LightShares mirrored(const Sequence& sequence, std::uint32_t begin, std::uint32_t count) const;
   color::Rgb emitter_sample(const std::array<double, 4>& numbers) const;
   color::Rgb reflect(const rays::Float3& f, const color::Rgb& light) const;
 
