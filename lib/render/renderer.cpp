@@ -1,6 +1,7 @@
 #include "render/renderer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "base/clock.h"
@@ -231,33 +232,37 @@ Result<void> Renderer::State::take(int first, int count, image::Image& picture) 
   return {};
 }
 
-// Each sample of a pixel is corrected as the surface that it shows.
+// Each sample of a pixel is corrected as the surface that it shows, a few of them together.
 CorrectionNoise Renderer::State::correct(int first, int count, image::Image& picture) {
+  constexpr int kTogether = 4;
   CorrectionNoise all;
   if (!effects.rays.any() || !transport) return all;
+  const int groups = (count + kTogether - 1) / kTogether;
   CorrectionRequest request;
   request.effects = effects.rays;
   request.bounces = effort_asked.bounces;
-  request.tolerance_de00 = effects.ray_noise_de00;
+  request.tolerance_de00 = effects.ray_noise_de00 * std::sqrt(groups);
   request.white_luminance = white_luminance;
-  request.samples = count;
-  request.most_samples = std::max(2 * kBatch, effects.most_ray_samples / count);
+  request.most_samples = std::max(2 * kBatch, effects.most_ray_samples / groups);
   request.progress = effort_asked.progress;
   const image::Image before = picture;
   const Deadline deadline(effort_asked.time_limit_s);
-  for (int i = first; i < first + count; ++i) {
+  for (int group = 0; group < groups; ++group) {
     // What is left is shared by the samples of the pixels that are left.
-    if (effort_asked.time_limit_s > 0) request.time_limit_s = std::max(1e-3, deadline.left_s()) / (first + count - i);
-    request.seed = mixed(effort_asked.seed, static_cast<std::uint64_t>(i));
-    const float gain = 1.0F / static_cast<float>(count);
-    VisibleSurface surface = drawn_surface(*scene.mesh, *gbuffer(i));
-    if (effects.rays.floor) {
-      add_floor(*transport, surface);
-      add_surroundings(*transport, surface, {effects.background, scene.background_color, ray_setup->environment}, gain,
-                       picture);
+    if (effort_asked.time_limit_s > 0) request.time_limit_s = std::max(1e-3, deadline.left_s()) / (groups - group);
+    const int begin = first + group * kTogether, end = std::min(first + count, begin + kTogether);
+    request.seed = mixed(effort_asked.seed, static_cast<std::uint64_t>(begin));
+    std::vector<VisibleSurface> samples;
+    for (int i = begin; i < end; ++i) {
+      samples.push_back(drawn_surface(*scene.mesh, *gbuffer(i)));
+      if (!effects.rays.floor) continue;
+      add_floor(*transport, samples.back());
+      add_surroundings(*transport, samples.back(), {effects.background, scene.background_color, ray_setup->environment},
+                       1.0F / static_cast<float>(count), picture);
     }
-    const CorrectionNoise one = add_correction(*transport, surface, request, before, gain, picture);
-    all.de00_p95 += one.de00_p95 / count, all.free_share += one.free_share / count;
+    const float gain = static_cast<float>(end - begin) / static_cast<float>(count);
+    const CorrectionNoise one = add_correction(*transport, samples, request, before, gain, picture);
+    all.de00_p95 += one.de00_p95 / std::sqrt(groups) / groups, all.free_share += one.free_share / groups;
     all.samples += one.samples, all.ms += one.ms;
     all.reached = all.reached && one.reached;
   }

@@ -69,9 +69,10 @@ void add_light(cli::ToolSpec& spec, Options& o) {
       .more(
           "The floor reaches to the horizon, and lies at HEIGHT or, without it, at the lowest point of the mesh. "
           "shadow lays the lower half of the environment on the floor, as it was seen from --eye-height above the "
-          "middle of the mesh; it is darkened where the mesh takes light from it, and is seen in the paint. Only the "
-          "engine path draws floors, and auto takes it for them. With --background env, the engine path draws the "
-          "floor shadow unless another is asked for.");
+          "middle of the mesh; it is darkened where the mesh takes light from it, and lights the mesh from below. With "
+          "--background env it is drawn unless another floor is asked for; --floor none and --effects auto,-rays leave "
+          "it out. Only the engine path draws a floor that wears a paint, and a floor above the lowest point of the "
+          "mesh; auto takes it for them.");
   spec.option("eye-height", "H", "1.5", &o.eye_height, "height above the floor that the environment was seen from")
       .in("units of the mesh")
       .from(0)
@@ -126,8 +127,9 @@ void add_effects(cli::ToolSpec& spec, Options& o) {
           "are drawn at those pixels alone that can see the mesh, so that a convex shape is drawn as without them. "
           "Rays are traced wherever a mesh is given; auto,-rays traces none, which is much faster where the mesh "
           "blocks much light. Effects of rays that auto decides to draw take at most 1024 samples of a point, and "
-          "those that are named with a plus, as in auto,+rays, take as many as --tolerance needs. The effect floor is "
-          "priced where the environment is the background; the engine path alone draws it, and +floor asks for it as "
+          "those that are named with a plus, as in auto,+rays, take as many as --tolerance needs. The effect floor is that "
+          "of --floor shadow and needs shadow; it is priced where the environment is the background, and +floor asks "
+          "for it as "
           "--floor shadow does. auto leaves out the effects that change too little, as --tolerance and --budget say.");
   o.common.tolerance = 0.5;
   cli::add_tolerance(spec, o.common, "DE00", "largest difference from the truth, all errors together")
@@ -158,11 +160,12 @@ void add_engines(cli::ToolSpec& spec, Options& o) {
             "the mean, and by more at single points. integral sums blocks of the image that are as coarse as "
             "--tolerance allows, and draws every effect. At the default tolerance it takes several hundred times "
             "as long as the others, and a brushed paint takes another 50 times as long; --explain predicts the "
-            "time. These three leave out that the mesh is in the way of light. path also draws the mesh mirrored "
-            "in itself and parts that shine. It takes the light from the image that the environment was made from, "
+            "time. To pictures of these three, what the mesh does to light is added by rays, see --effects. path also "
+            "draws parts that shine and floors that wear a paint. It takes the light from the image that the environment was made from, "
             "and needs neither prefiltered maps nor OpenGL. It draws samples until the noise of the picture, "
             "estimated from them, is within --tolerance: that is the 95th percentile, over the visible pixels, of "
-            "the CIEDE2000 difference of one standard deviation.");
+            "the CIEDE2000 difference of one standard deviation. auto takes path where the prefiltered maps are predicted "
+            "not to keep --tolerance, and path is predicted to be faster than they and their rays.");
   spec.option("bounces", "N", "8", &o.bounces, "surfaces that may pass light on to what is seen")
       .from(0, 4096)
       .more(

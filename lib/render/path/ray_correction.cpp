@@ -84,7 +84,7 @@ void add_surroundings(const Transport& transport, const VisibleSurface& surface,
   });
 }
 
-CorrectionNoise add_correction(const Transport& transport, const VisibleSurface& surface,
+CorrectionNoise add_correction(const Transport& transport, const std::vector<VisibleSurface>& samples,
                                const CorrectionRequest& request, const image::Image& before, float gain,
                                image::Image& picture) {
   CorrectionNoise noise;
@@ -95,18 +95,19 @@ CorrectionNoise add_correction(const Transport& transport, const VisibleSurface&
   paths.options.into_lobes = request.effects.self;
   paths.options.into_diffuse = request.effects.bounce;
   paths.options.correction = true;
-  paths.tolerance_de00 = request.tolerance_de00 * std::sqrt(request.samples);
+  paths.tolerance_de00 = request.tolerance_de00;
   paths.white_luminance = request.white_luminance > 0 ? request.white_luminance : 1;
   paths.seed = request.seed;
   paths.most_samples = request.most_samples;
   paths.time_limit_s = request.time_limit_s;
   paths.progress = request.progress;
-  const PathPicture drawn = path_picture(transport, surface, &before, paths);
+  const PathPicture drawn = path_picture(transport, samples, &before, paths);
   for (const PathPoint& point : drawn.points) {
-    float* pixel = &picture.data[surface.gbuffer.index(point.x, point.y) * static_cast<std::size_t>(picture.channels)];
+    float* pixel =
+        &picture.data[samples.front().gbuffer.index(point.x, point.y) * static_cast<std::size_t>(picture.channels)];
     for (int c = 0; c < 3; ++c) pixel[c] += gain * static_cast<float>(point.radiance[c]);
   }
-  noise.de00_p95 = drawn.noise_p95_de00 / std::sqrt(request.samples);
+  noise.de00_p95 = drawn.noise_p95_de00;
   noise.samples = drawn.samples_mean;
   noise.free_share = drawn.free_share;
   noise.reached = drawn.reached;

@@ -26,7 +26,6 @@ struct CorrectionRequest {
   double tolerance_de00 = 0.5;  // of the picture's noise, 95th percentile over the visible points
   double white_luminance = 1;
   std::uint64_t seed = 1;
-  int samples = 1;             // of a pixel: each is corrected with a noise that is larger by the square root of that
   int most_samples = 1 << 16;  // of rays, at each point
   double time_limit_s = 0;     // 0: none
   std::function<void(double noise_de00, double seconds)> progress = {};
@@ -53,10 +52,11 @@ struct Backdrop {
 void add_surroundings(const Transport& transport, const VisibleSurface& surface, const Backdrop& backdrop, float gain,
                       image::Image& picture);
 
-// Adds `gain` times the correction to the first three channels of the picture, which holds radiance times coverage.
+// Adds `gain` times the correction, the mean over these samples of each pixel, to the first three channels of the
+// picture, which holds radiance times coverage.
 // `before` is the picture without corrections; it tells how visible noise is. Bit-identical for any number of threads.
 // Of points of the floor it adds all that they show.
-CorrectionNoise add_correction(const Transport& transport, const VisibleSurface& surface,
+CorrectionNoise add_correction(const Transport& transport, const std::vector<VisibleSurface>& samples,
                                const CorrectionRequest& request, const image::Image& before, float gain,
                                image::Image& picture);
 

@@ -24,7 +24,7 @@ constexpr float kInversePi = 1 / static_cast<float>(kPi);
 constexpr int kRouletteFrom = 3, kEndlessFrom = 64, kMostBounces = 4096;
 constexpr double kEndlessChance = 0.9, kLeastChance = 0.05;
 // The most and least chance that a direction is drawn from the environment where there is one.
-constexpr float kLeastLightChance = 0.1F, kMostLightChance = 0.75F;
+constexpr float kLeastLightChance = 0.1F, kMostLightChance = 0.75F, kLeastWindowLightChance = 0.05F;
 
 color::Rgb rgb(const Float3& c) {
   return rays::vec3(c);
@@ -125,7 +125,7 @@ bool Transport::is_laid(const Spot& spot) const {
 }
 
 double Transport::hidden_share(const Spot& spot) const {
-  return is_laid(spot) ? ground_->hidden_share(rays_->world(spot.position), mesh_box_) : 1;
+  return is_laid(spot) ? ground_->hidden_share(ground_->window(rays_->world(spot.position), mesh_box_)) : 1;
 }
 
 // From below the floor is black.
@@ -281,6 +281,8 @@ struct PointTransport::Ray {
   Float3 direction;
   bool above = false;
   std::optional<EnvironmentTable::Place> place;  // where the direction was drawn from the environment
+  LaidGround::BrightSample bright;               // with a density above 0 where it was drawn from the brightest texels
+  double weight = 1;                             // of the sample in the mean
 };
 
 PointTransport::PointTransport(const Transport& transport, const PathOptions& options, const Spot& spot,
@@ -294,8 +296,16 @@ PointTransport::PointTransport(const Transport& transport, const PathOptions& op
       is_laid_(transport.is_laid(spot)),
       correction_(options.correction || is_laid_) {
   sure_ = is_laid_ ? transport.open_ground(spot) : transport.emitters_.radiance(spot.part);
-  if (is_laid_) narrow_to_mesh();
-  if (transport.environment_) {
+  if (is_laid_) {
+    narrow_to_mesh();
+    window_ = transport.ground_->window(transport.rays_->world(spot.position), transport.mesh_box_);
+    // Under the mesh most light is blocked: what is left of it is summed, instead of taken from that of the open floor.
+    if (window_->half_width_rad >= kPi) correction_ = false, sure_ = {};
+    // The environment's own table draws a sun within its texel, but most other directions in vain.
+    if (transport.environment_)
+      light_chance_ = std::clamp(kMostLightChance * static_cast<float>(transport.ground_->light_share(*window_)),
+                                 kLeastWindowLightChance, kMostLightChance);
+  } else if (transport.environment_) {
     const float wide = 1 - painted_.narrow_share(transport.environment_->extent_sr());
     light_chance_ = std::clamp(kMostLightChance * wide, kLeastLightChance, kMostLightChance);
   }
@@ -349,14 +359,32 @@ void PointTransport::add_mirror() {
   mirror_samples_ = static_cast<std::uint32_t>(std::clamp(static_cast<int>(std::lround(kBatch * share)), 1, kBatch));
 }
 
-PointTransport::Ray PointTransport::drawn_ray(const std::array<double, 4>& numbers) const {
+// Of a direction that is not drawn from the environment.
+double PointTransport::drawn_pdf(const Float3& direction, const Reflection& reflection) const {
+  return window_ ? transport_.ground_->density(*window_, rays::vec3(direction)) : reflection.pdf;
+}
+
+PointTransport::Ray PointTransport::drawn_ray(const std::array<double, 4>& numbers, std::uint32_t of_fan) const {
   Ray ray;
+  if (window_ && transport_.ground_->has_bright()) {
+    // So many rays of a fan go there, and the others look past them.
+    constexpr std::uint32_t kBright = 2;
+    ray.weight = static_cast<double>(kFan) / (of_fan < kBright ? kBright : kFan - kBright);
+    if (of_fan < kBright) {
+      ray.bright = transport_.ground_->drawn_bright(numbers[1], numbers[2], numbers[3]);
+      ray.direction = rays::float3(ray.bright.direction);
+      ray.above = ray.bright.pdf > 0 && rays::dot(ray.direction, spot_.shading) > 0;
+      return ray;
+    }
+  }
   if (numbers[0] < light_chance_) {
     ray.place = transport_.environment_->place(numbers[1], numbers[2]);
     if (!(ray.place->density > 0)) return ray;
     ray.direction = ray.place->direction;
   } else {
-    ray.direction = painted_.direction((numbers[0] - light_chance_) / (1 - light_chance_), numbers[1], numbers[2]);
+    const double choice = (numbers[0] - light_chance_) / (1 - light_chance_);
+    ray.direction = window_ ? rays::float3(transport_.ground_->drawn(*window_, choice, numbers[1], numbers[2]))
+                            : painted_.direction(choice, numbers[1], numbers[2]);
   }
   ray.above = rays::dot(ray.direction, spot_.shading) > 0;
   return ray;
@@ -373,7 +401,12 @@ LightShares PointTransport::shown(const Ray& ray, bool blocked, const Sequence& 
   } else if (transport_.environment_) {
     light = transport_.environment_->at(ray.direction);
   }
-  const double pdf = light_chance_ * light.pdf + (1 - light_chance_) * reflection.pdf;
+  double pdf = light_chance_ * light.pdf + (1 - light_chance_) * drawn_pdf(ray.direction, reflection);
+  if (ray.bright.pdf > 0) {
+    pdf = ray.bright.pdf, light.radiance = ray.bright.radiance;
+  } else if (window_ && transport_.ground_->is_bright(rays::vec3(ray.direction))) {
+    return {};
+  }
   if (!(pdf > 0)) return {};
   const auto scaled = static_cast<float>(1 / pdf);
   if (!blocked) return {reflect(scaled * reflection.f_cos, light.radiance), {}, {}};
@@ -410,7 +443,8 @@ color::Rgb PointTransport::emitter_sample(const std::array<double, 4>& numbers) 
   if (!(reflection.pdf > 0) || transport_.rays_->blocked(spot_.start, light.direction, kShort * light.distance))
     return {};
   const double open_pdf = transport_.environment_ ? transport_.environment_->at(light.direction).pdf : 0;
-  const double pdf = light.pdf + light_chance_ * open_pdf + (1 - light_chance_) * reflection.pdf;
+  const double pdf =
+      light.pdf + light_chance_ * open_pdf + (1 - light_chance_) * drawn_pdf(light.direction, reflection);
   return reflect(static_cast<float>(1 / pdf) * reflection.f_cos, light.radiance);
 }
 
@@ -444,7 +478,7 @@ LightShares PointTransport::batch_shares(std::uint64_t seed, std::uint32_t begin
       rays::Fan fan;
       fan.origin = spot_.start;
       for (std::uint32_t i = 0; i < 8; ++i) {
-        rays[i] = drawn_ray(sequence.point(first + i, 0));
+        rays[i] = drawn_ray(sequence.point(first + i, 0), i);
         fan.x[i] = rays[i].direction.x, fan.y[i] = rays[i].direction.y, fan.z[i] = rays[i].direction.z;
         if (rays[i].above && rays::dot(rays[i].direction, mesh_axis_) >= mesh_cosine_) fan.wanted |= 1U << i;
       }
@@ -453,7 +487,11 @@ LightShares PointTransport::batch_shares(std::uint64_t seed, std::uint32_t begin
       for (std::uint32_t i = 0; i < 8; ++i) {
         const bool is_blocked = (blocked >> i & 1U) != 0;
         if (!rays[i].above || (!is_blocked && (correction_ || !transport_.environment_))) continue;
-        sum += shown(rays[i], is_blocked, sequence, first + i);
+        if (rays[i].weight == 1) {
+          sum += shown(rays[i], is_blocked, sequence, first + i);
+        } else {
+          sum += rays[i].weight * shown(rays[i], is_blocked, sequence, first + i);
+        }
       }
     }
     if (!transport_.emitters_.empty())

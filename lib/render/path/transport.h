@@ -83,7 +83,7 @@ class Transport {
 
   const rays::RayScene& rays() const { return *rays_; }
   const Emitters& emitters() const { return emitters_; }
-  // Of a point on a floor that shows the environment: see LaidGround::hidden_share(); of others 1.
+  // Of a point on a floor that shows the environment how much the mesh can change there: see LaidGround; of others 1.
   double hidden_share(const rays::Spot& spot) const;
   // What such a floor shows there in the open.
   color::Rgb open_ground(const rays::Spot& spot) const;
@@ -152,7 +152,8 @@ class PointTransport {
   void narrow_to_mesh();
   void add_lights();
   void add_mirror();
-  Ray drawn_ray(const std::array<double, 4>& numbers) const;
+  double drawn_pdf(const rays::Float3& direction, const Reflection& reflection) const;
+  Ray drawn_ray(const std::array<double, 4>& numbers, std::uint32_t of_fan) const;
   LightShares shown(const Ray& ray, bool blocked, const Sequence& sequence, std::uint32_t index) const;
   LightShares mirrored(const Sequence& sequence, std::uint32_t begin, std::uint32_t count) const;
   color::Rgb emitter_sample(const std::array<double, 4>& numbers) const;
@@ -163,7 +164,8 @@ class PointTransport {
   rays::Spot spot_;
   rays::Float3 to_viewer_;
   PaintedPoint painted_;
-  bool is_laid_;     // on a floor that shows the environment
+  bool is_laid_;                              // on a floor that shows the environment
+  std::optional<LaidGround::Window> window_;  // of such a point: directions in which it may see the mesh
   bool correction_;  // whether samples tell what the mesh changes: as asked, or of such a floor
   // Only directions within this cone can meet the mesh; of other floors and of the mesh itself all of them.
   rays::Float3 mesh_axis_;

@@ -111,7 +111,7 @@ RayCost FloorProbe::cost(const RayEffects& effects, double tolerance_de00, doubl
   RayCost cost;
   if (light_.empty()) return cost;
   constexpr double kFewest = 2;
-  const double tolerance = tolerance_de00 * std::sqrt(samples);
+  const double groups = std::ceil(samples / 4.0), tolerance = tolerance_de00 * std::sqrt(groups);
   std::vector<double> needed;
   for (std::size_t i = 0; i < light_.size(); ++i) {
     Estimates values;
@@ -128,9 +128,9 @@ RayCost FloorProbe::cost(const RayEffects& effects, double tolerance_de00, doubl
   }
   const auto n = static_cast<double>(light_.size());
   cost.traced_share = traced / n;
-  cost.samples = kFan * samples * fans / n;
-  cost.most_samples = kFan * samples * most;
-  cost.ms = samples * floor_pixels * fans / n * batch_ms_;
+  cost.samples = kFan * groups * fans / n;
+  cost.most_samples = kFan * groups * most;
+  cost.ms = groups * floor_pixels * fans / n * batch_ms_;
   return cost;
 }
 

@@ -288,7 +288,7 @@ RayCost RayProbe::cost_of(Light Point::*of, std::size_t count, const RayEffects&
   RayCost cost;
   if (!effects.shadow || count == 0) return cost;
   constexpr double kFewest = 2;
-  const double tolerance = tolerance_de00 * std::sqrt(samples);
+  const double groups = std::ceil(samples / 4.0), tolerance = tolerance_de00 * std::sqrt(groups);
   std::vector<double> needed;
   std::size_t traced = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -306,9 +306,9 @@ RayCost RayProbe::cost_of(Light Point::*of, std::size_t count, const RayEffects&
     batches += (points_[i].*of).certain ? 0 : std::clamp(std::ceil(needed[i]), kFewest, most);
   const auto n = static_cast<double>(count);
   cost.traced_share = static_cast<double>(traced) / n;
-  cost.samples = kBatch * samples * batches / n;
-  cost.most_samples = kBatch * samples * most;
-  cost.ms = samples * visible_points * batches / n * (effects.self || effects.bounce ? passed_ms_ : direct_ms_);
+  cost.samples = kBatch * groups * batches / n;
+  cost.most_samples = kBatch * groups * most;
+  cost.ms = groups * visible_points * batches / n * (effects.self || effects.bounce ? passed_ms_ : direct_ms_);
   return cost;
 }
 
