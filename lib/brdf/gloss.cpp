@@ -112,8 +112,29 @@ double luminance(const color::Rgb& rgb) {
   return color::xyz_d65_from_rgb(rgb).Y;
 }
 
-// K_G and mirror for one reading of `gu`, already free of flake light; weights ordered as the basis, the mirror last.
-std::vector<double> one_reading(const GlossTable& table, const GlossColumns& meter, double gu, bool has_mirror) {
+Error no_meter(double angle_deg) {
+  return input_error("gloss angle {} deg: gloss meters have 20, 60 or 85", angle_deg);
+}
+
+// The reading of a smooth surface of that index.
+double smooth_reading(double angle_deg, double index) {
+  double standard = 0, smooth = 0;
+  for (const Sample& in : source_samples(angle_deg)) {
+    standard += in.weight * in.cos_normal * fresnel_dielectric(in.cos_normal, kBlackGlassIndex);
+    smooth += in.weight * in.cos_normal * fresnel_dielectric(in.cos_normal, index);
+  }
+  return 100 * smooth / standard;
+}
+
+double mirror_reading(const GlossColumns& meter, double coat_index) {
+  const double index = mirror_index(coat_index);
+  return index == kCoatIndex ? meter.mirror : smooth_reading(meter.angle_deg, index);
+}
+
+// K_G and mirror for one reading of `gu`, already free of flake light; weights ordered as the basis, the mirror last,
+// which reads `mirror` alone.
+std::vector<double> one_reading(const GlossTable& table, const GlossColumns& meter, double mirror, double gu,
+                                bool has_mirror) {
   const std::size_t lobes = table.exponents().size();
   std::vector<double> weights(lobes + 1, 0.0);
   if (gu <= 0) return weights;
@@ -122,9 +143,7 @@ std::vector<double> one_reading(const GlossTable& table, const GlossColumns& met
   const auto full_weight = [&](std::size_t j) {
     return j == lobes ? 1.0 : energy * (table.exponents()[j] + 1) / (2 * kPi);
   };
-  const auto full_reading = [&](std::size_t j) {
-    return full_weight(j) * (j == lobes ? meter.mirror : meter.gloss[j]);
-  };
+  const auto full_reading = [&](std::size_t j) { return full_weight(j) * (j == lobes ? mirror : meter.gloss[j]); };
   const std::size_t end = lobes + (has_mirror ? 1 : 0);
   if (end == 0) return weights;
   std::size_t sharper = 0;
@@ -146,14 +165,12 @@ std::vector<double> one_reading(const GlossTable& table, const GlossColumns& met
 GlossTable::GlossTable(const std::vector<double>& exponents) : exponents_(exponents) {
   for (const Meter& meter : kMeters) {
     const std::vector<Sample> source = source_samples(meter.angle_deg);
-    double standard = 0, smooth = 0;
-    for (const Sample& in : source) {
+    double standard = 0;
+    for (const Sample& in : source)
       standard += in.weight * in.cos_normal * fresnel_dielectric(in.cos_normal, kBlackGlassIndex);
-      smooth += in.weight * in.cos_normal * fresnel_dielectric(in.cos_normal, kCoatIndex);
-    }
     GlossColumns columns;
     columns.angle_deg = meter.angle_deg;
-    columns.mirror = 100 * smooth / standard;
+    columns.mirror = smooth_reading(meter.angle_deg, kCoatIndex);
     columns.diffuse = 100 * lobe_integrals(meter, source, 0).directional_diffuse / standard;
     for (const double exponent : exponents) {
       const LobeReading lobe = lobe_integrals(meter, source, exponent);
@@ -167,20 +184,43 @@ GlossTable::GlossTable(const std::vector<double>& exponents) : exponents_(expone
 Result<const GlossColumns*> GlossTable::at(double angle_deg) const {
   for (const GlossColumns& columns : columns_)
     if (columns.angle_deg == angle_deg) return &columns;
-  return input_error("gloss angle {} deg: gloss meters have 20, 60 or 85", angle_deg);
+  return no_meter(angle_deg);
+}
+
+Result<double> smooth_gloss(double angle_deg, double coat_index) {
+  if (std::ranges::find(kGlossAngles_deg, angle_deg) == std::end(kGlossAngles_deg)) return no_meter(angle_deg);
+  return smooth_reading(angle_deg, mirror_index(coat_index));
+}
+
+Result<double> coat_index_of(const std::vector<paint::GlossReading>& readings) {
+  double index = paint::kNoCoat;
+  for (const paint::GlossReading& reading : readings) {
+    if (!(reading.gloss_units > 0)) continue;
+    const double gu = std::min(reading.gloss_units, 100.0);
+    GONIO_ASSIGN(const double usual, smooth_gloss(reading.angle_deg, kCoatIndex));
+    double low = kCoatIndex, high = gu > usual ? kBlackGlassIndex : low;
+    while (high - low > 1e-12) {
+      const double middle = 0.5 * (low + high);
+      (smooth_reading(reading.angle_deg, middle) < gu ? low : high) = middle;
+    }
+    index = std::max(index, high);
+  }
+  return index;
 }
 
 double gloss_units(const GlossTable& table, const GlossColumns& meter, const paint::LobeFit& fit) {
-  double gu = meter.diffuse * luminance(fit.diffuse);
+  const double cosine = std::cos(meter.angle_deg * kDegree), base = coat_passages(fit.coat_index, cosine, cosine);
+  double gu = base * meter.diffuse * luminance(fit.diffuse);
   for (const paint::Lobe& lobe : fit.lobes) {
     if (lobe.is_mirror()) {
-      gu += meter.mirror * luminance(lobe.gloss);
+      if (lobe.gloss != color::Rgb{}) gu += mirror_reading(meter, fit.coat_index) * luminance(lobe.gloss);
       continue;
     }
     const auto found = std::find(table.exponents().begin(), table.exponents().end(), lobe.exponent);
     if (found == table.exponents().end()) continue;
     const std::size_t j = found - table.exponents().begin();
-    gu += meter.directional_diffuse[j] * luminance(lobe.directional_diffuse) + meter.gloss[j] * luminance(lobe.gloss);
+    gu += base * meter.directional_diffuse[j] * luminance(lobe.directional_diffuse) +
+          meter.gloss[j] * luminance(lobe.gloss);
   }
   return gu;
 }
@@ -202,12 +242,12 @@ Result<std::vector<double>> set_gloss(const GlossTable& table, const std::vector
 
   std::vector<double> weights(lobes + 1, 0.0);
   if (readings.size() == 1) {
-    weights = one_reading(table, *meters[0], wanted[0], has_mirror);
+    weights = one_reading(table, *meters[0], mirror_reading(*meters[0], fit.coat_index), wanted[0], has_mirror);
   } else if (!readings.empty()) {
     math::Matrix m(static_cast<int>(readings.size()), static_cast<int>(lobes + (has_mirror ? 1 : 0)));
     for (int i = 0; i < m.rows; ++i)
       for (int j = 0; j < m.columns; ++j)
-        m(i, j) = j < static_cast<int>(lobes) ? meters[i]->gloss[j] : meters[i]->mirror;
+        m(i, j) = j < static_cast<int>(lobes) ? meters[i]->gloss[j] : mirror_reading(*meters[i], fit.coat_index);
     const math::NonNegativeFit best = math::nnls(m, wanted);
     std::copy(best.x.begin(), best.x.end(), weights.begin());
   }

@@ -37,18 +37,26 @@ class GlossTable {
   std::vector<GlossColumns> columns_;
 };
 
-// The reading in GU of a whole paint: diffuse, flake, gloss lobes and mirror, by luminance. Exponents of `fit` that the
-// table does not hold count as 0.
+// The reading in GU of a smooth coat of that index alone. Error: no meter has that angle.
+Result<double> smooth_gloss(double angle_deg, double coat_index);
+
+// The index of the coat of a paint that states these readings: kCoatIndex or, where a reading is above what a smooth
+// coat of that index reads, the least index that reads so much, at most that of 100 GU. kNoCoat where no reading is
+// above 0. Error: an angle that no meter has.
+Result<double> coat_index_of(const std::vector<paint::GlossReading>& readings);
+
+// The reading in GU of a whole paint: diffuse, flake, gloss lobes and mirror, by luminance. What the coat leaves of the
+// base's light is taken at the meter's angle. Exponents of `fit` that the table does not hold count as 0.
 double gloss_units(const GlossTable& table, const GlossColumns& meter, const paint::LobeFit& fit);
 
 // Sets K_G and the mirror weight of `fit` (lobes: those of the table in its order, the mirror last if there is one) so
 // that the whole paint reads `readings`. Gloss lobes are gray. Returns simulated minus stated GU for each reading.
 //
 // For one reading it takes a lobe of the total energy F (Fresnel at the meter's angle, n = 1.5) that is as wide as the
-// reading asks, and spreads it over its two neighbors in the basis; at and beyond the smooth limit it takes the mirror
-// alone, scaled up to 100 GU. For several readings it solves non-negative least squares. The reading of diffuse and
-// flake light is subtracted first; where that alone exceeds the reading, no gloss is set. Error: an angle that no meter
-// has, or a reading below 0.
+// reading asks, and spreads it over its two neighbors in the basis; at and beyond the smooth limit of the coat of `fit`
+// it takes the mirror alone, scaled up to 100 GU. For several readings it solves non-negative least squares. The
+// reading of diffuse and flake light is subtracted first; where that alone exceeds the reading, no gloss is set. Error:
+// an angle that no meter has, or a reading below 0.
 Result<std::vector<double>> set_gloss(const GlossTable& table, const std::vector<paint::GlossReading>& readings,
                                       paint::LobeFit& fit);
 

@@ -225,5 +225,41 @@ TEST(Gloss, NoReadingNoGloss) {
   for (const paint::Lobe& lobe : fit.lobes) EXPECT_EQ(lobe.gloss, color::Rgb{});
 }
 
+// A smooth coat reads no more than its index allows: beyond that the index grows, up to that of the black glass, so
+// that the mirror image is never scaled beyond Fresnel's equations.
+TEST(Gloss, TheIndexOfACoatIsWhatItsGlossAsksFor) {
+  EXPECT_EQ(*coat_index_of({}), paint::kNoCoat);
+  EXPECT_EQ(*coat_index_of({{60, 0}}), paint::kNoCoat);
+  EXPECT_EQ(*coat_index_of({{60, 5}}), kCoatIndex);
+  EXPECT_NEAR(*coat_index_of({{60, 100}}), kBlackGlassIndex, 1e-9);
+  EXPECT_NEAR(*coat_index_of({{60, 150}}), kBlackGlassIndex, 1e-9);
+  EXPECT_FALSE(coat_index_of({{45, 90}}).ok());
+  for (const double angle : kGlossAngles_deg)
+    for (const double gu : {93.0, 96.0, 99.0}) {
+      const double index = *coat_index_of({{angle, gu}});
+      EXPECT_NEAR(*smooth_gloss(angle, index), std::max(gu, *smooth_gloss(angle, kCoatIndex)), 1e-6)
+          << angle << " " << gu;
+      paint::LobeFit fit = empty_fit();
+      fit.coat_index = index;
+      EXPECT_NEAR((*set_gloss(table(), {{angle, gu}}, fit))[0], 0, 1e-6);
+      EXPECT_LE(fit.lobes.back().gloss.y, 1 + 1e-9);
+      // The control: the usual index needs a mirror that sends back more than it gets at grazing angles.
+      paint::LobeFit textbook = empty_fit();
+      ASSERT_TRUE(set_gloss(table(), {{angle, gu}}, textbook).ok());
+      if (gu > *smooth_gloss(angle, kCoatIndex)) {
+        EXPECT_GT(textbook.lobes.back().gloss.y, 1);
+      }
+    }
+}
+
+// The base is read through the coat.
+TEST(Gloss, ACoatTakesFromWhatTheBaseReads) {
+  paint::LobeFit white = empty_fit();
+  white.diffuse = (1 / kPi) * color::Rgb{1, 1, 1};
+  const double bare = gloss_units(table(), **table().at(60), white);
+  white.coat_index = 1.5;
+  EXPECT_NEAR(gloss_units(table(), **table().at(60), white) / bare, coat_passages(1.5, 0.5, 0.5), 1e-12);
+}
+
 }  // namespace
 }  // namespace goniochrome::brdf

@@ -5,6 +5,7 @@
 
 #include "base/angles.h"
 #include "math/cosine_power.h"
+#include "math/quadrature.h"
 
 namespace goniochrome::brdf {
 
@@ -24,6 +25,48 @@ double fresnel_dielectric(double cos_i, double index) {
   return 0.5 * (r_s * r_s + r_p * r_p);
 }
 
+double coat_transmission(double cosine, double coat_index) {
+  return 1 - fresnel_dielectric(cosine, coat_index);
+}
+
+// The reflectance falls steeply near grazing: x = sqrt(cos) makes it smooth there, and 2 c dc = 4 x^3 dx.
+double mean_coat_transmission(double coat_index) {
+  static const std::vector<math::QuadraturePoint> points = math::gauss_legendre(24);
+  double sum = 0;
+  for (const auto& [position, weight] : points) {
+    const double x = 0.5 * (1 + position);
+    sum += 0.5 * weight * 4 * x * x * x * coat_transmission(x * x, coat_index);
+  }
+  return sum;
+}
+
+double coat_passages(double coat_index, double cos_i, double cos_o) {
+  return coat_index == paint::kNoCoat ? 1 : coat_transmission(cos_i, coat_index) * coat_transmission(cos_o, coat_index);
+}
+
+paint::LobeFit under_coat(const paint::LobeFit& fit, double coat_index) {
+  paint::LobeFit other = fit;
+  if (coat_index == fit.coat_index) return other;
+  other.coat_index = coat_index;
+  constexpr double kBase_deg = 45, kMirror_deg = 60;
+  const auto passages = [](double index) { return coat_passages(index, std::cos(kBase_deg * kDegree), 1); };
+  const auto mirrored = [](double index) {
+    return fresnel_dielectric(std::cos(kMirror_deg * kDegree), mirror_index(index));
+  };
+  const double base = passages(fit.coat_index) / passages(coat_index),
+               mirror = mirrored(fit.coat_index) / mirrored(coat_index);
+  const auto scale = [&](color::Rgb& diffuse, std::vector<paint::Lobe>& lobes) {
+    diffuse = base * diffuse;
+    for (paint::Lobe& lobe : lobes) {
+      lobe.directional_diffuse = base * lobe.directional_diffuse;
+      if (lobe.is_mirror()) lobe.gloss = mirror * lobe.gloss;
+    }
+  };
+  scale(other.diffuse, other.lobes);
+  for (paint::ViewLobes& view : other.views) scale(view.diffuse, view.lobes);
+  return other;
+}
+
 namespace {
 
 // The two views around an angle and the share of the upper one.
@@ -40,14 +83,15 @@ ViewPair views_around(const std::vector<paint::ViewLobes>& views, double view_de
   return {&low, &high, (view_deg - low.view_deg) / (high.view_deg - low.view_deg)};
 }
 
-// `gloss_scale` is what a gloss weight of 1 shows.
+// `base_scale` and `gloss_scale` are what a weight of 1 shows.
 color::Rgb lobes_at(const color::Rgb& diffuse, const std::vector<paint::Lobe>& lobes, double angle_rad,
-                    double gloss_scale) {
-  color::Rgb f = diffuse;
+                    double base_scale, double gloss_scale) {
+  color::Rgb f = base_scale * diffuse;
   const double log_cos = math::log_cosine(angle_rad);
   for (const paint::Lobe& lobe : lobes)
     if (!lobe.is_mirror())
-      f += math::power_of_cosine(log_cos, lobe.exponent) * (lobe.directional_diffuse + gloss_scale * lobe.gloss);
+      f += math::power_of_cosine(log_cos, lobe.exponent) *
+           (base_scale * lobe.directional_diffuse + gloss_scale * lobe.gloss);
   return f;
 }
 
@@ -57,7 +101,7 @@ color::Rgb brdf(const paint::LobeFit& fit, const Vec3& to_light, const Vec3& to_
   if (cos_i <= 0 || cos_o <= 0) return {};
   const double view_rad = fit.views.empty() ? 0 : std::atan2(length(cross(normal, to_viewer)), cos_o);
   return brdf_by_angles(fit, paint::aspecular_angle_rad(to_light, to_viewer, normal), view_rad / kDegree,
-                        fresnel / cos_i);
+                        coat_passages(fit.coat_index, std::min(cos_i, 1.0), std::min(cos_o, 1.0)), fresnel / cos_i);
 }
 
 void add_scaled(const paint::ViewLobes& view, double scale, paint::LobeFit& sum) {
@@ -84,11 +128,12 @@ paint::LobeFit at_view(const paint::LobeFit& fit, double view_deg) {
   return result;
 }
 
-color::Rgb brdf_by_angles(const paint::LobeFit& fit, double aspecular_rad, double view_deg, double gloss_scale) {
-  if (fit.views.empty()) return lobes_at(fit.diffuse, fit.lobes, aspecular_rad, gloss_scale);
+color::Rgb brdf_by_angles(const paint::LobeFit& fit, double aspecular_rad, double view_deg, double base_scale,
+                          double gloss_scale) {
+  if (fit.views.empty()) return lobes_at(fit.diffuse, fit.lobes, aspecular_rad, base_scale, gloss_scale);
   const auto [low, high, share] = views_around(fit.views, view_deg);
-  color::Rgb f = (1 - share) * lobes_at(low->diffuse, low->lobes, aspecular_rad, gloss_scale);
-  if (share > 0) f += share * lobes_at(high->diffuse, high->lobes, aspecular_rad, gloss_scale);
+  color::Rgb f = (1 - share) * lobes_at(low->diffuse, low->lobes, aspecular_rad, base_scale, gloss_scale);
+  if (share > 0) f += share * lobes_at(high->diffuse, high->lobes, aspecular_rad, base_scale, gloss_scale);
   return f;
 }
 
@@ -106,8 +151,17 @@ color::Rgb coated_brdf(const paint::LobeFit& fit, const Vec3& to_light, const Ve
   return brdf(fit, to_light, to_viewer, normal, coat_fresnel(length(to_light + to_viewer) / 2, gloss_deg));
 }
 
+color::Rgb flake_reflectance_factor(const paint::LobeFit& fit, double aspecular_deg, double light_deg,
+                                    double view_deg) {
+  const double passages = coat_passages(fit.coat_index, std::max(0.0, std::cos(light_deg * kDegree)),
+                                        std::max(0.0, std::cos(view_deg * kDegree)));
+  return kPi * lobes_at(fit.diffuse, fit.lobes, aspecular_deg * kDegree, passages, 0);
+}
+
 color::Rgb flake_reflectance_factor(const paint::LobeFit& fit, double aspecular_deg) {
-  return kPi * lobes_at(fit.diffuse, fit.lobes, aspecular_deg * kDegree, 0);
+  constexpr double kLight_deg = 45, kSteepestView_deg = 65;
+  return flake_reflectance_factor(fit, aspecular_deg, kLight_deg,
+                                  std::min(std::abs(kLight_deg - aspecular_deg), kSteepestView_deg));
 }
 
 }  // namespace goniochrome::brdf

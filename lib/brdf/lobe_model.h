@@ -13,6 +13,26 @@ double fresnel_dielectric(double cos_i, double index);
 
 constexpr double kCoatIndex = 1.5;
 
+// What a coat of that index lets through at an angle of that cosine: 1 less its Fresnel reflectance. Light passes it
+// twice on its way to the viewer. Exactly 1 without a coat. goniochrome-theory(7), COAT.
+double coat_transmission(double cosine, double coat_index);
+
+// Its mean over the hemisphere, weighted by the cosine: what even light is left of. Relative error 1e-6.
+double mean_coat_transmission(double coat_index);
+
+// What the passages leave of the light of a base that is lit and seen there, relative to the light without a coat.
+double coat_passages(double coat_index, double cos_i, double cos_o);
+
+// The index of the surface that the mirror lobe is the image on: that of the coat, or kCoatIndex where there is none.
+constexpr double mirror_index(double coat_index) {
+  return coat_index > paint::kNoCoat ? coat_index : kCoatIndex;
+}
+
+// The paint under a coat of another index that looks the same: its base where it is lit at 45 deg and seen along the
+// normal, its mirror image at 60 deg. Under kNoCoat that is the textbook form, whose coat adds light and takes none
+// away.
+paint::LobeFit under_coat(const paint::LobeFit& fit, double coat_index);
+
 // The weights that hold for a viewer at that angle from the normal: `fit` itself without its views, or the linear
 // interpolation between two of them, constant beyond the ends. Exponents ascending, as in the views.
 paint::LobeFit at_view(const paint::LobeFit& fit, double view_deg);
@@ -32,12 +52,16 @@ double coat_fresnel(double cos_half, double gloss_deg = kGlossIncidence_deg);
 color::Rgb coated_brdf(const paint::LobeFit& fit, const Vec3& to_light, const Vec3& to_viewer, const Vec3& normal,
                        double gloss_deg = kGlossIncidence_deg);
 
-// f in 1/sr of a viewer `view_deg` from the normal; `gloss_scale` is what a K_G of 1 counts: 1/cos_i, and under a coat
-// times coat_fresnel().
-color::Rgb brdf_by_angles(const paint::LobeFit& fit, double aspecular_rad, double view_deg, double gloss_scale);
+// f in 1/sr of a viewer `view_deg` from the normal; `base_scale` is what the coat leaves of the base's light, as
+// coat_passages() has it; `gloss_scale` is what a K_G of 1 counts: 1/cos_i, and under a coat times coat_fresnel().
+color::Rgb brdf_by_angles(const paint::LobeFit& fit, double aspecular_rad, double view_deg, double base_scale,
+                          double gloss_scale);
 
-// The reflectance factor pi f without conventional gloss at an aspecular angle: what a multi-angle instrument reads,
-// by the weights for all views.
+// The reflectance factor pi f without conventional gloss at an aspecular angle, by the weights for all views, where
+// light and viewer are at those angles from the normal.
+color::Rgb flake_reflectance_factor(const paint::LobeFit& fit, double aspecular_deg, double light_deg, double view_deg);
+// What a multi-angle instrument reads: light at 45 deg, the viewer in the plane of incidence. Beyond 110 deg, where no
+// instrument reads, the viewer is taken to stay at 65 deg from the normal.
 color::Rgb flake_reflectance_factor(const paint::LobeFit& fit, double aspecular_deg);
 
 }  // namespace goniochrome::brdf

@@ -87,5 +87,86 @@ TEST(LobeModel, ReflectanceFactorLeavesGlossOut) {
   EXPECT_NEAR(flake_reflectance_factor(fit, 110).z, kPi * 0.02, 1e-16);
 }
 
+// The mean over the hemisphere by a plain sum in the cosine.
+double summed_transmission(double index) {
+  constexpr int kSteps = 200000;
+  double sum = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double c = (i + 0.5) / kSteps;
+    sum += 2 * c * coat_transmission(c, index) / kSteps;
+  }
+  return sum;
+}
+
+TEST(Coat, LetsThroughWhatItDoesNotReflect) {
+  for (const double c : {0.0, 0.1, 0.7, 1.0}) {
+    EXPECT_EQ(coat_transmission(c, paint::kNoCoat), 1);
+    EXPECT_EQ(coat_transmission(c, 1.5), 1 - fresnel_dielectric(c, 1.5));
+  }
+  for (const double index : {1.0, 1.5, 1.567, 1.7})
+    EXPECT_NEAR(mean_coat_transmission(index), summed_transmission(index), 1e-6) << index;
+  EXPECT_NEAR(mean_coat_transmission(1.5), 0.9082, 5e-5);  // F of diffuse light on n = 1.5 is .0918 in tables
+}
+
+// A white base that reads beta at 45/0. In even light a coat of n = 1.5 mirrors F and leaves T(theta) Tm of the base.
+// The control is the textbook form, which adds the mirror image to the base.
+TEST(Coat, AWhiteBaseNeverSendsBackMoreThanItGets) {
+  double largest = 0, textbook = 0;
+  for (const double beta : {0.9, 0.98, 1.0}) {
+    const double base = beta / coat_passages(kCoatIndex, std::cos(45 * kDegree), 1);
+    for (double theta = 0; theta < 90; theta += 0.25) {
+      const double c = std::cos(theta * kDegree), mirrored = fresnel_dielectric(c, kCoatIndex);
+      largest =
+          std::max(largest, mirrored + coat_transmission(c, kCoatIndex) * mean_coat_transmission(kCoatIndex) * base);
+      textbook = std::max(textbook, mirrored + beta);
+    }
+  }
+  EXPECT_LE(largest, 1);
+  EXPECT_GT(largest, 0.999);
+  EXPECT_GT(textbook, 1.8);
+}
+
+TEST(Coat, IsPassedTwiceByTheBaseAndNotByTheGloss) {
+  paint::LobeFit fit = sample_fit();
+  const Vec3 normal = {0, 0, 1};
+  const auto at = [](double deg) { return Vec3{std::sin(deg * kDegree), 0, std::cos(deg * kDegree)}; };
+  paint::LobeFit base = fit, gloss = fit;
+  for (paint::Lobe& lobe : base.lobes) lobe.gloss = {};
+  gloss.diffuse = {};
+  for (paint::Lobe& lobe : gloss.lobes) lobe.directional_diffuse = {};
+  fit.coat_index = 1.5;
+  for (const double in : {-5.0, -45.0, -85.0})
+    for (const double out : {0.0, 4.0, 60.0, 80.0}) {
+      const double passages =
+          coat_transmission(std::cos(in * kDegree), 1.5) * coat_transmission(std::cos(out * kDegree), 1.5);
+      const color::Rgb wanted = passages * brdf(base, at(in), at(out), normal) + brdf(gloss, at(in), at(out), normal);
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(brdf(fit, at(in), at(out), normal)[c], wanted[c], 1e-12 * (1 + wanted[c]));
+      const double aspecular = std::abs(in + out);
+      EXPECT_NEAR(flake_reflectance_factor(fit, aspecular, -in, out).y,
+                  kPi * passages * brdf(base, at(in), at(out), normal).y, 1e-12);
+    }
+  // What an instrument reads: light at 45 deg.
+  EXPECT_EQ(flake_reflectance_factor(fit, 15), flake_reflectance_factor(fit, 15, 45, 30));
+  EXPECT_EQ(flake_reflectance_factor(fit, 110), flake_reflectance_factor(fit, 110, 45, 65));
+}
+
+TEST(Coat, UnderAnotherCoatAPaintLooksTheSameAtTheUsualGeometry) {
+  paint::LobeFit fit = sample_fit();
+  fit.coat_index = 1.53;
+  fit.views = {{0, fit.diffuse, fit.lobes}, {40, fit.diffuse, fit.lobes}};
+  const auto at = [](double deg) { return Vec3{std::sin(deg * kDegree), 0, std::cos(deg * kDegree)}; };
+  for (const double index : {paint::kNoCoat, 1.5, 1.53}) {
+    const paint::LobeFit other = under_coat(fit, index);
+    EXPECT_EQ(other.coat_index, index);
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(brdf(other, at(-45), at(0), {0, 0, 1})[c] / brdf(fit, at(-45), at(0), {0, 0, 1})[c], 1, 1e-12);
+    const double c60 = 0.5;
+    EXPECT_NEAR(other.lobes.back().gloss.y * fresnel_dielectric(c60, mirror_index(index)),
+                fit.lobes.back().gloss.y * fresnel_dielectric(c60, 1.53), 1e-12);
+  }
+  EXPECT_EQ(under_coat(fit, 1.53).diffuse, fit.diffuse);
+}
+
 }  // namespace
 }  // namespace goniochrome::brdf

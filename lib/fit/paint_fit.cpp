@@ -73,12 +73,14 @@ void fit_flake(const FitOptions& options, const FlakeTarget& together, const Fla
   if (deadline.passed()) report.status = FitStatus::kTimeLimit;
 }
 
-FlakeTarget flake_target(const FitOptions& options, const Target& target, const color::Xyz& white) {
+FlakeTarget flake_target(const FitOptions& options, const Target& target, const color::Xyz& white, double coat_index) {
   FlakeTarget flake{white, {}, {}};
   for (const TargetRow& row : target.rows) flake.rows.push_back(flake_row(row, options, row.importance < 1));
   for (const paint::LabReading& reading : target.readings)
     flake.readings.push_back(
-        {{paint::aspecular_angle_deg(reading.geometry) * kDegree, view_angle_deg(reading.geometry)}, reading.lab});
+        {{paint::aspecular_angle_deg(reading.geometry) * kDegree, view_angle_deg(reading.geometry)},
+         reading.lab,
+         coat_passages_at(reading.geometry, coat_index)});
   return flake;
 }
 
@@ -87,9 +89,11 @@ std::vector<GeometryError> errors_at(const std::vector<paint::LabReading>& readi
                                      const paint::LobeFit& fit) {
   std::vector<GeometryError> errors;
   for (const paint::LabReading& reading : readings) {
-    const double angle_deg = paint::aspecular_angle_deg(reading.geometry);
-    const color::Rgb predicted =
-        brdf::flake_reflectance_factor(brdf::at_view(fit, view_angle_deg(reading.geometry)), angle_deg);
+    const Vec3 light = paint::directions(reading.geometry).light;
+    const double light_deg = std::atan2(std::hypot(light.x, light.y), light.z) / kDegree,
+                 view_deg = view_angle_deg(reading.geometry);
+    const color::Rgb predicted = brdf::flake_reflectance_factor(
+        brdf::at_view(fit, view_deg), paint::aspecular_angle_deg(reading.geometry), light_deg, view_deg);
     errors.push_back({paint::geometry_name(reading.geometry),
                       color::delta_e_2000(reading.lab, color::lab_from_rgb(predicted, white))});
   }
@@ -148,9 +152,19 @@ const char* fit_status_name(FitStatus status) {
 PaintFitter::PaintFitter(formats::Basis basis, FitOptions options)
     : basis_(std::move(basis)), options_(std::move(options)), gloss_(basis_.exponents) {}
 
+// Of a paint with these readings of gloss.
+Result<double> PaintFitter::coat_index(const paint::Paint& paint,
+                                       const std::vector<paint::GlossReading>& readings) const {
+  if (options_.coat_index) return *options_.coat_index;
+  if (paint.coat_index == paint::kNoCoat) return paint::kNoCoat;
+  GONIO_ASSIGN(const double asked, brdf::coat_index_of(readings));
+  return std::max(asked, paint.coat_index.value_or(paint::kNoCoat));
+}
+
 // Every lobe of the basis without weight.
-PaintFit PaintFitter::started() const {
+PaintFit PaintFitter::started(double coat_index) const {
   PaintFit out;
+  out.lobes.coat_index = coat_index;
   out.lobes.basis = basis_.name;
   out.lobes.method = fit_method_name(options_.method);
   for (const double exponent : basis_.exponents) out.lobes.lobes.push_back({exponent, {}, {}});
@@ -183,25 +197,26 @@ void PaintFitter::finish(const std::vector<paint::LabReading>& readings, const c
 
 Result<PaintFit> PaintFitter::fit(const paint::Paint& paint) const {
   const Stopwatch clock;
-  PaintFit out = started();
+  const std::vector<paint::GlossReading>& readings = paint.gloss.empty() ? options_.assumed_gloss : paint.gloss;
+  GONIO_ASSIGN(const double coat, coat_index(paint, readings));
+  PaintFit out = started(coat);
   GONIO_ASSIGN(const color::Xyz white, color::white_point(paint::condition_of(paint)));
-  GONIO_ASSIGN(const Target target, target_rows(paint, options_.target, white, basis_.exponents));
-  const FlakeTarget together = flake_target(options_, target, white);
+  GONIO_ASSIGN(const Target target, target_rows(paint, options_.target, white, basis_.exponents, coat));
+  const FlakeTarget together = flake_target(options_, target, white, coat);
   const double first_rad = target.first_deg * kDegree;
   const Twins twins = twins_of(target.readings);
   const std::vector<double>& views = options_.views_where_needed ? twins.views_deg : options_.views_deg;
   if (views.empty()) {
     fit_flake(options_, together, together, views, basis_.exponents, first_rad, out);
   } else {
-    GONIO_ASSIGN(const Target apart, target_rows(paint, options_.target, white, basis_.exponents, true));
-    fit_flake(options_, together, flake_target(options_, apart, white), views, basis_.exponents, first_rad, out);
+    GONIO_ASSIGN(const Target apart, target_rows(paint, options_.target, white, basis_.exponents, coat, true));
+    fit_flake(options_, together, flake_target(options_, apart, white, coat), views, basis_.exponents, first_rad, out);
   }
   out.report.floor = {twins.apart_de00, twins.sum_de00 / static_cast<double>(target.readings.size()),
                       twins.largest_de00};
   out.report.gamut_de00 = target.gamut_de00;
   out.report.glare_rows = target.glare_rows;
 
-  const std::vector<paint::GlossReading>& readings = paint.gloss.empty() ? options_.assumed_gloss : paint.gloss;
   GONIO_TRY(brdf::set_gloss(gloss_, readings, out.lobes));
   for (const double angle : brdf::kGlossAngles_deg) {
     const auto stated = std::ranges::find(readings, angle, &paint::GlossReading::angle_deg);
@@ -216,7 +231,7 @@ Result<PaintFit> PaintFitter::fit(const paint::Paint& paint) const {
 
 Result<PaintFit> PaintFitter::fit(const BrdfTarget& brdf) const {
   const Stopwatch clock;
-  PaintFit out = started();
+  PaintFit out = started(options_.coat_index.value_or(paint::kNoCoat));
   GONIO_ASSIGN(const color::Xyz white, color::white_point({"D65", 2}));
   GONIO_ASSIGN(const BrdfRows rows, brdf_rows(brdf, white, options_, basis_.exponents));
   static const std::vector<double> kEvery15_deg = {0, 15, 30, 45, 60, 75};
@@ -241,10 +256,11 @@ Result<PaintFit> PaintFitter::fit(const BrdfTarget& brdf) const {
 
 // Without views, which five readings know nothing of, and without gloss, which no direction beyond glare shows.
 Result<FiveAngleFigures> PaintFitter::from_five_angles(const BrdfTarget& brdf) const {
-  PaintFit five = started();
+  const double coat = options_.coat_index.value_or(paint::kNoCoat);
+  PaintFit five = started(coat);
   GONIO_ASSIGN(const color::Xyz white, color::white_point(paint::condition_of(brdf.paint)));
-  GONIO_ASSIGN(const Target target, target_rows(brdf.paint, options_.target, white, basis_.exponents));
-  const FlakeTarget flake = flake_target(options_, target, white);
+  GONIO_ASSIGN(const Target target, target_rows(brdf.paint, options_.target, white, basis_.exponents, coat));
+  const FlakeTarget flake = flake_target(options_, target, white, coat);
   fit_flake(options_, flake, flake, {}, basis_.exponents, target.first_deg * kDegree, five);
   return five_angle_figures(brdf, five.lobes);
 }

@@ -97,6 +97,71 @@ TEST(PaintFit, OneReadingBlackAndNonMonotoneStayFinite) {
   }
 }
 
+// What is read of a paint does not change where a coat takes its part: the base is fitted to what it leaves. The
+// control is the base of a paint without a coat, seen through one.
+TEST(PaintFit, ReadingsAreMetThroughACoat) {
+  paint::Paint solid = paint_with({{15, {96, -1, 2}}, {45, {96, -1, 2}}, {110, {96, -1, 2}}});
+  solid.gloss = {{60, 92}};
+  const auto fit = PaintFitter(kBasis, {}).fit(solid),
+             bare = PaintFitter(kBasis, {.coat_index = paint::kNoCoat}).fit(solid);
+  ASSERT_TRUE(fit.ok() && bare.ok());
+  EXPECT_GT(fit->lobes.coat_index, brdf::kCoatIndex);
+  EXPECT_EQ(bare->lobes.coat_index, paint::kNoCoat);
+  paint::LobeFit through = bare->lobes;
+  through.coat_index = fit->lobes.coat_index;
+  // One reading tells K_D exactly, and each other geometry its own share of it.
+  const paint::Paint single = [&] {
+    paint::Paint one = solid;
+    one.measurement->rows.resize(2);
+    one.measurement->rows.erase(one.measurement->rows.begin());
+    return one;
+  }();
+  const auto exact = PaintFitter(kBasis, {}).fit(single);
+  ASSERT_TRUE(exact.ok());
+  const paint::DirectionPair at = paint::directions(single.measurement->rows.front().geometry);
+  paint::LobeFit base = exact->lobes;
+  for (paint::Lobe& lobe : base.lobes) lobe.gloss = {};
+  const color::Rgb wanted = color::rgb_from_lab({96, -1, 2}, *color::white_point({})),
+                   read = kPi * brdf::coated_brdf(base, at.light, at.view, {0, 0, 1});
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_NEAR(read[c], wanted[c], 1e-9);
+    EXPECT_GT(std::abs(kPi * brdf::coated_brdf(through, at.light, at.view, {0, 0, 1})[c] - wanted[c]), 0.05);
+  }
+  EXPECT_LE(exact->report.de00_max, 1e-6);
+}
+
+// A base under a coat that lobes can show: its readings lead back to it.
+TEST(PaintFit, ABaseUnderACoatIsFoundFromItsReadings) {
+  paint::LobeFit base;
+  base.coat_index = brdf::kCoatIndex;
+  base.diffuse = {0.02, 0.05, 0.1};
+  base.lobes = {{6, {0.1, 0.2, 0.1}, {}}, {20, {0.3, 0.2, 0.1}, {}}};
+  paint::Paint read = paint_from(base, {15, 25, 45, 75, 110});
+  const auto under = PaintFitter(kBasis, {.method = FitMethod::kDeltaE, .coat_index = brdf::kCoatIndex}).fit(read);
+  const auto bare = PaintFitter(kBasis, {.method = FitMethod::kDeltaE, .coat_index = paint::kNoCoat}).fit(read);
+  ASSERT_TRUE(under.ok() && bare.ok());
+  EXPECT_LE(under->report.de00_max, 0.05);
+  EXPECT_LE(under->report.de00_max, bare->report.de00_max);
+}
+
+TEST(PaintFit, TheCoatIsThatOfThePaintOfItsGlossOrOfTheOptions) {
+  paint::Paint paint = paint_with({{15, {60, 0, 0}}, {45, {50, 0, 0}}, {110, {40, 0, 0}}});
+  const auto coat = [&](FitOptions options = {}) { return PaintFitter(kBasis, options).fit(paint)->lobes.coat_index; };
+  EXPECT_EQ(coat(), paint::kNoCoat);
+  EXPECT_EQ(coat({.assumed_gloss = {{60, 40}}}), brdf::kCoatIndex);
+  EXPECT_EQ(coat({.coat_index = 1.6}), 1.6);
+  paint.gloss = {{60, 30}};
+  EXPECT_EQ(coat(), brdf::kCoatIndex);
+  paint.gloss = {{60, 95}};
+  EXPECT_NEAR(coat(), *brdf::coat_index_of(paint.gloss), 0);
+  paint.coat_index = 1.55;
+  EXPECT_EQ(coat(), 1.55);
+  paint.coat_index = 1.51;
+  EXPECT_GT(coat(), 1.51);
+  paint.coat_index = paint::kNoCoat;
+  EXPECT_EQ(coat(), paint::kNoCoat);
+}
+
 TEST(HardCase, FitUnseenLobesAreLeftOutAndNamed) {
   const auto fit = PaintFitter(kBasis, {}).fit(metallic_blue());
   ASSERT_TRUE(fit.ok());

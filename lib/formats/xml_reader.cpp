@@ -5,7 +5,9 @@
 
 #include "base/text.h"
 #include "formats/imported.h"
+#include "formats/internal/paint_elements.h"
 #include "formats/internal/schemas.h"
+#include "formats/internal/tilts_xml.h"
 #include "formats/internal/xml_stream.h"
 #include "formats/xml.h"
 #include "paint/curve.h"
@@ -13,66 +15,6 @@
 namespace goniochrome::formats {
 
 namespace {
-
-enum class Node {
-  kDocument,
-  kPaints,
-  kProcessing,
-  kPaint,
-  kMeasurement,
-  kLab,
-  kSpectrum,
-  kGloss,
-  kAppearance,
-  kFace,
-  kFlop,
-  kAnisotropy,
-  kColorMap,
-  kLobes,
-  kDiffuse,
-  kLobe,
-  kView,
-  kViewDiffuse,
-  kViewLobe
-};
-
-// The elements of paint XML: where each stands and what attributes it takes ("?" marks those that may be missing). The
-// schema says the same; this table says it in words that help.
-struct ElementRule {
-  Node node, parent;
-  std::string_view name, attributes;
-};
-constexpr std::array kRules = {
-    ElementRule{Node::kPaints, Node::kDocument, "paints", "version"},
-    ElementRule{Node::kProcessing, Node::kPaints, "processing", "tool version command"},
-    ElementRule{Node::kPaint, Node::kPaints, "paint", "name class? code?"},
-    ElementRule{Node::kMeasurement, Node::kPaint, "measurement", "illuminant observer instrument?"},
-    ElementRule{Node::kLab, Node::kMeasurement, "lab", "geometry L a b"},
-    ElementRule{Node::kSpectrum, Node::kMeasurement, "spectrum", "geometry from to step"},
-    ElementRule{Node::kGloss, Node::kPaint, "gloss", "angle"},
-    ElementRule{Node::kAppearance, Node::kPaint, "appearance", "travel residual_de00?"},
-    ElementRule{Node::kFace, Node::kAppearance, "face", "L a b"},
-    ElementRule{Node::kFlop, Node::kAppearance, "flop", "L a b"},
-    ElementRule{Node::kAnisotropy, Node::kPaint, "anisotropy", "alphaX alphaY"},
-    ElementRule{Node::kColorMap, Node::kPaint, "colorMap", "href index?"},
-    ElementRule{Node::kLobes, Node::kPaint, "lobes", "space basis method max_de00 mean_de00"},
-    ElementRule{Node::kDiffuse, Node::kLobes, "diffuse", "r g b"},
-    ElementRule{Node::kLobe, Node::kLobes, "lobe", "exponent ddr ddg ddb gr gg gb"},
-    ElementRule{Node::kView, Node::kLobes, "view", "angle"},
-    ElementRule{Node::kViewDiffuse, Node::kView, "diffuse", "r g b"},
-    ElementRule{Node::kViewLobe, Node::kView, "lobe", "exponent ddr ddg ddb gr gg gb"},
-};
-
-std::string_view name_of(Node node) {
-  return std::ranges::find(kRules, node, &ElementRule::node)->name;
-}
-
-std::string children_of(Node parent) {
-  std::string names;
-  for (const ElementRule& rule : kRules)
-    if (rule.parent == parent) names += fmt::format("{}<{}>", names.empty() ? "" : ", ", rule.name);
-  return names.empty() ? "nothing" : names;
-}
 
 constexpr const char* kRoot = "<paints xmlns=\"urn:goniochrome:paint:1\" version=\"1\">";
 
@@ -85,7 +27,7 @@ struct Found {
 // Turns elements into paints. A wrong value inside a paint ends up in its place; all else ends the document.
 class PaintHandler : public XmlHandler {
  public:
-  explicit PaintHandler(std::string file) : file_(std::move(file)) {}
+  explicit PaintHandler(std::string file) : file_(std::move(file)), tilts_(file_) {}
 
   Result<void> start(const XmlTag& tag) override;
   Result<void> end(int line) override;
@@ -114,6 +56,7 @@ class PaintHandler : public XmlHandler {
   Result<void> finish_spectrum();
   Result<void> begin_gloss(const XmlValues& values);
   Result<void> begin_appearance(const XmlValues& values);
+  Result<void> begin_coat(const XmlValues& values);
   Result<void> begin_lobes(const XmlValues& values);
   Result<void> begin_lobe(const XmlValues& values, std::vector<paint::Lobe>& lobes);
   Result<void> begin_view(const XmlValues& values);
@@ -129,7 +72,9 @@ class PaintHandler : public XmlHandler {
   int depth_ = 0;                  // elements open, ours or not
   std::vector<XmlScope> scope_;    // of <paints> and of the open <paint>
   XmlCopy copy_{kPaintNamespace};  // of the foreign element that is open
-  std::optional<Error> lost_;      // what is wrong with the open paint; the rest of it is skipped
+  TiltsReader tilts_;
+  std::vector<paint::TiltedLobes> tilt_sets_;  // of the open paint
+  std::optional<Error> lost_;                  // what is wrong with the open paint; the rest of it is skipped
   paint::Paint paint_;
   int paint_line_ = 0;
   std::size_t paint_bytes_ = 0;
@@ -152,6 +97,13 @@ Result<void> PaintHandler::start(const XmlTag& tag) {
     return input_error("{}:{}: paint \"{}\" is longer than {} MB: split it", file_, tag.line, shown(paint_.name),
                        kLargestPaint_bytes >> 20);
   if (copy_.active()) return copy_.start(tag, {}), Result<void>();
+  const bool tilts = current() == Node::kPaint && tag.space == kTiltsNamespace && tag.name == "tilts";
+  if (tilts_.active() || tilts) {
+    const XmlValues values(file_, tag);
+    const auto once_only = tilts_.active() ? Result<void>() : once(!tilt_sets_.empty(), values);
+    const auto begun = once_only.ok() ? tilts_.start(tag) : once_only;
+    return begun.ok() ? begun : lose_paint(begun.error());
+  }
   // A paint that is refused as a whole counts as begun, so that it alone is lost.
   in_paints = in_paints || (depth_ == 2 && tag.name == "paint" && tag.space == kPaintNamespace);
   const auto done = element(tag);
@@ -240,6 +192,8 @@ Result<void> PaintHandler::begin(Node node, const XmlValues& values) {
       GONIO_TRY(values.name("href", paint_.color_map->href));
       return values.has("index") ? values.number("index", paint_.color_map->index, Domain::kRefractiveIndex)
                                  : Result<void>();
+    case Node::kCoat:
+      return begin_coat(values);
     case Node::kLobes:
       return begin_lobes(values);
     case Node::kDiffuse:
@@ -266,6 +220,7 @@ Result<void> PaintHandler::once(bool seen, const XmlValues& values) const {
 
 Result<void> PaintHandler::begin_paint(const XmlValues& values) {
   paint_ = {};
+  tilt_sets_.clear();
   paint_line_ = values.tag().line;
   paint_bytes_ = bytes_read;
   GONIO_TRY(values.name("name", paint_.name));
@@ -368,6 +323,16 @@ Result<void> PaintHandler::begin_appearance(const XmlValues& values) {
   return values.number("residual_de00", appearance.residual_de00.emplace(), Domain::kNotNegative);
 }
 
+Result<void> PaintHandler::begin_coat(const XmlValues& values) {
+  GONIO_TRY(once(paint_.coat_index.has_value(), values));
+  double& index = paint_.coat_index.emplace();
+  GONIO_TRY(values.number("index", index, Domain::kRefractiveIndex));
+  if (index != paint::kNoCoat && !(index >= paint::kLeastCoatIndex && index <= paint::kMostCoatIndex))
+    return values.error("index", fmt::format("a coat has {} to {}, and {} says that there is none",
+                                             paint::kLeastCoatIndex, paint::kMostCoatIndex, paint::kNoCoat));
+  return {};
+}
+
 Result<void> PaintHandler::begin_lobes(const XmlValues& values) {
   GONIO_TRY(once(paint_.lobes.has_value(), values));
   paint::LobeFit& lobes = paint_.lobes.emplace();
@@ -407,6 +372,10 @@ Result<void> PaintHandler::begin_lobe(const XmlValues& values, std::vector<paint
 Result<void> PaintHandler::text(std::string_view text, int line) {
   if (lost_) return {};
   if (copy_.active()) return copy_.text(text), Result<void>();
+  if (tilts_.active()) {
+    const auto done = tilts_.text(text, line);
+    return done.ok() ? done : lose_paint(done.error());
+  }
   if (current() == Node::kGloss || current() == Node::kSpectrum) return value_text_ += text, Result<void>();
   const std::string_view words = trimmed(text);
   if (words.empty()) return {};
@@ -419,11 +388,18 @@ Result<void> PaintHandler::end(int line) {
     if (depth_ > 1) return {};
     open_.resize(1);
     copy_ = XmlCopy(kPaintNamespace);
+    tilts_ = TiltsReader(file_);
     found.push_back({*std::exchange(lost_, std::nullopt), paint_line_});
     return {};
   }
   if (copy_.active()) {
     if (copy_.end()) (current() == Node::kPaint ? paint_.foreign : foreign).push_back(copy_.take());
+    return {};
+  }
+  if (tilts_.active()) {
+    const auto done = tilts_.end(line);
+    if (!done.ok()) lost_ = done.error();
+    if (!tilts_.active()) tilt_sets_ = tilts_.take();
     return {};
   }
   const Node node = open_.back();
@@ -461,6 +437,9 @@ Result<void> PaintHandler::finish(Node node, int line) {
       break;
     }
     case Node::kPaint:
+      if (!tilt_sets_.empty() && !paint_.lobes) return lacks("lobes");
+      if (paint_.lobes) paint_.lobes->tilts = std::exchange(tilt_sets_, {});
+      if (paint_.lobes) paint_.lobes->coat_index = paint_.coat_index.value_or(paint::kNoCoat);
       found.push_back({std::move(paint_), paint_line_});
       break;
     default:

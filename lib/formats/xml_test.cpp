@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -91,7 +93,8 @@ paint::Paint full_paint() {
   paint.appearance = paint::Appearance{{95, 1, 2}, {0.1 + 0.2, -5e-324, 2}, std::nextafter(15.0, 16.0), 0.41};
   paint.anisotropy = paint::Anisotropy{0.05, 0.3};
   paint.color_map = paint::ColorMapReference{"maps/x y.exr", 1.5};
-  paint.lobes = paint::LobeFit{"b7", "l1", 1.25, 0.5, {0.1, 0.2, 0.3}, {}};
+  paint.lobes = paint::LobeFit{"b7", "l1", 1.25, 0.5, 1.5375, {0.1, 0.2, 0.3}, {}};
+  paint.coat_index = 1.5375;
   paint.lobes->lobes = {{12.5, {1, 2, 3}, {4, 5, 6}}, {INFINITY, {0, 0, 0}, {1e-300, 987654321098.7654, 0.1}}};
   paint.lobes->views = {{0, {0.1, 0.2, 0.3}, {{12.5, {1, 2, 3}, {}}}}, {90, {0.3, 0.2, 0.1}, {}}};
   paint.foreign = {"<x:note xmlns:x=\"urn:x\" k=\"1\">a<x:b/>c &amp; d</x:note>", "<y xmlns=\"urn:y\"/>"};
@@ -124,6 +127,7 @@ void expect_same(const paint::Paint& x, const paint::Paint& y) {
     EXPECT_EQ(x.appearance->travel_deg, y.appearance->travel_deg);
     EXPECT_EQ(x.appearance->residual_de00, y.appearance->residual_de00);
   }
+  EXPECT_EQ(x.coat_index, y.coat_index);
   EXPECT_EQ(x.foreign, y.foreign);
 }
 
@@ -160,6 +164,31 @@ TEST(PaintXml, EveryPartSurvivesToTheLastBit) {
   // Written again it is the same file.
   ASSERT_TRUE(write_all(folder.path("q.xml"), reading.paints, reading.processing, reading.foreign).ok());
   EXPECT_EQ(folder.content("q.xml"), folder.content("p.xml"));
+}
+
+// The coat of the lobes is that of the paint. Lobes of a file that does not know coats have none.
+TEST(PaintXml, LobesHoldUnderTheCoatThatThePaintStates) {
+  const auto read = [](const std::string& coat) {
+    const ScratchFolder folder;
+    const std::string lobes =
+        "<lobes space=\"lin_rec2020_scene\" basis=\"b\" method=\"l1\" max_de00=\"1\" mean_de00=\"1\">"
+        "<diffuse r=\"1\" g=\"1\" b=\"1\"/></lobes>";
+    const std::string path = folder.path("p.xml");
+    std::ofstream(path) << document("<paint name=\"p\">" + lobes + coat + "</paint>\n");
+    const Reading reading = reading_of(path);
+    EXPECT_THAT(reading.errors, ElementsAre());
+    return reading.paints.front();
+  };
+  EXPECT_EQ(read("").coat_index, std::nullopt);
+  EXPECT_EQ(read("").lobes->coat_index, paint::kNoCoat);
+  EXPECT_EQ(read("<coat index=\"1.52\"/>").lobes->coat_index, 1.52);
+  EXPECT_EQ(read("<coat index=\"1\"/>").coat_index, paint::kNoCoat);
+  // Lobes that were fitted again have the last word.
+  const ScratchFolder folder;
+  paint::Paint paint = read("<coat index=\"1.52\"/>");
+  paint.lobes->coat_index = paint::kNoCoat;
+  ASSERT_TRUE(write_all(folder.path("q.xml"), {paint}, {}, {}).ok());
+  EXPECT_EQ(reading_of(folder.path("q.xml")).paints.front().lobes->coat_index, paint::kNoCoat);
 }
 
 TEST(PaintXml, ReadsTheSampleLibraryInOrderWithItsLines) {
@@ -277,9 +306,13 @@ TEST(PaintXml, WrongValuesAreNamedWithLineAndRemedy) {
             "p.xml:4: observer is \"4\": write 2 or 10 (degrees)");
   EXPECT_EQ(paint("<colour/>"),
             "p.xml:4: <colour> is not known inside <paint>: it holds <measurement>, <gloss>, <appearance>, "
-            "<anisotropy>, <colorMap>, <lobes>");
+            "<anisotropy>, <colorMap>, <coat>, <lobes>");
   EXPECT_EQ(paint("<anisotropy alphaX=\"0\" alphaY=\"1\"/>"), "p.xml:4: alphaX is 0: write a number above 0");
   EXPECT_EQ(paint("<colorMap href=\"x.exr\" index=\"0.9\"/>"), "p.xml:4: index is 0.9: write 1 or more");
+  for (const char* index : {"1.2", "1.8", "1.4999"})
+    EXPECT_EQ(paint(std::string("<coat index=\"") + index + "\"/>"),
+              std::string("p.xml:4: index is \"") + index + "\": a coat has 1.5 to 1.7, and 1 says that there is none");
+  EXPECT_EQ(paint("<coat index=\"1.5\"/><coat index=\"1.5\"/>"), "p.xml:4: a second <coat> in paint \"p\": keep one");
   EXPECT_EQ(paint("some words"), "p.xml:4: text \"some words\" stands between elements: remove it");
   EXPECT_EQ(paint("<anisotropy alphaX=\"1\" alphaY=\"1\"/><anisotropy alphaX=\"1\" alphaY=\"1\"/>"),
             "p.xml:4: a second <anisotropy> in paint \"p\": keep one");

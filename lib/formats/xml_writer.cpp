@@ -1,6 +1,7 @@
 
 #include "base/text.h"
 #include "formats/internal/schemas.h"
+#include "formats/internal/tilts_xml.h"
 #include "formats/internal/xml_stream.h"
 #include "formats/xml.h"
 
@@ -86,7 +87,10 @@ std::string paint_element(const paint::Paint& paint) {
   if (paint.color_map)
     text += "    <colorMap" + attribute("href", paint.color_map->href) + attribute("index", paint.color_map->index) +
             "/>\n";
-  if (paint.lobes) text += lobes_element(*paint.lobes);
+  std::optional<double> coat_index = paint.coat_index;
+  if (paint.lobes && (coat_index || paint.lobes->coat_index != paint::kNoCoat)) coat_index = paint.lobes->coat_index;
+  if (coat_index) text += "    <coat" + attribute("index", *coat_index) + "/>\n";
+  if (paint.lobes) text += lobes_element(*paint.lobes) + tilts_element(paint.lobes->tilts);
   for (const std::string& element : paint.foreign) text += "    " + element + "\n";
   return text + "  </paint>\n";
 }

@@ -42,8 +42,17 @@ Result<void> take_rays(const std::string& text, AovFile& file) {
 Result<void> take_lights(const std::string& text, AovFile& file) {
   if (text.empty()) return {};
   for (const std::string_view piece : split(text, ';')) {
-    GONIO_ASSIGN(const auto v, numbers(piece, 6, file.path, "goniochrome:lights"));
-    file.lights.push_back({{v[0], v[1], v[2]}, {v[3], v[4], v[5]}});
+    // Files of earlier versions have points, without an extent.
+    const auto commas = static_cast<std::size_t>(std::ranges::count(piece, ','));
+    const std::size_t count = commas == 5 ? 6 : commas == 10 ? 11 : 7;
+    GONIO_ASSIGN(const auto v, numbers(piece, count, file.path, "goniochrome:lights"));
+    AovLight light{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
+    if (count > 6) light.extent_deg = v[6];
+    if (!(light.extent_deg >= 0 && light.extent_deg <= 180))
+      return input_error("{}: its attribute goniochrome:lights has a lamp of {} deg: render the buffers again",
+                         file.path, light.extent_deg);
+    if (count > 7) light.is_placed = true, light.place = {v[7], v[8], v[9]}, light.distance = v[10];
+    file.lights.push_back(light);
   }
   return {};
 }

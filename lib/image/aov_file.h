@@ -12,9 +12,14 @@
 
 namespace goniochrome::image {
 
-// A directional light as the file tells it: the direction to it, and the color of a white diffuser that faces it.
+// A lamp as the file tells it: the direction to it, the color of a white diffuser that faces it, and the angle that it
+// spans, 0 for a point. Of a lamp at a place, all are those in the middle of the mesh, which is `distance` away.
 struct AovLight {
   Vec3 direction, white{1, 1, 1};
+  double extent_deg = 0;
+  bool is_placed = false;
+  Vec3 place = {};
+  double distance = 0;
 };
 
 struct AovFile {

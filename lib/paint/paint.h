@@ -83,16 +83,60 @@ struct ViewLobes {
   std::vector<Lobe> lobes;
 };
 
-// A paint fitted to a basis: f = K_D + sum K_DD cos^E(theta_as) + (1/cos_i) sum K_G cos^E(theta_as).
+// A lobe cos^E about an axis that stands beside the mirror direction: turned by `tilt_deg` away from the normal within
+// the plane of incidence, then by `out_deg` out of that plane. Where out_deg is not 0 there are two such lobes, one on
+// either side of the plane. goniochrome-theory(7), TILTED LOBES.
+struct TiltedLobe {
+  double exponent = 1;
+  double tilt_deg = 0, out_deg = 0;
+  bool operator==(const TiltedLobe&) const = default;
+
+  int lookups() const { return out_deg != 0 ? 2 : 1; }
+};
+
+// Their weights at one angle of the viewer from the normal: the share of even light that each lobe, or each pair, sends
+// to the viewer. All are 0 or more.
+struct TiltedView {
+  double view_deg = 0;  // 0..90
+  color::Rgb diffuse;   // K_D, 1/sr
+  std::vector<color::Rgb> weights;
+  bool operator==(const TiltedView&) const = default;
+};
+
+// What stands for the color map of a paint in image light, in the place of K_D and K_DD.
+struct TiltedLobes {
+  double mean_de00 = 0;  // from the map, in the lights that the lobes were fitted in
+  std::vector<TiltedLobe> lobes;
+  std::vector<TiltedView> views;  // two or more, ascending; weights are linear between two of them
+  bool operator==(const TiltedLobes&) const = default;
+
+  // In prefiltered maps, beside the diffuse map.
+  int lookups() const {
+    int sum = 0;
+    for (const TiltedLobe& lobe : lobes) sum += lobe.lookups();
+    return sum;
+  }
+};
+
+// The coat index of a paint without a coat: it neither reflects nor takes light away.
+inline constexpr double kNoCoat = 1;
+// Other coats have an index from here to there. brdf::kCoatIndex is the usual one.
+inline constexpr double kLeastCoatIndex = 1.5, kMostCoatIndex = 1.7;
+
+// A paint fitted to a basis: f = T(theta_i) T(theta_o) (K_D + sum K_DD cos^E(theta_as)) + (1/cos_i) sum K_G
+// cos^E(theta_as), where T is what the coat lets through.
 struct LobeFit {
   std::string basis, method;
   double max_de00 = 0, mean_de00 = 0;
-  color::Rgb diffuse;  // K_D, 1/sr
+  double coat_index = kNoCoat;  // K_D and K_DD hold under such a coat
+  color::Rgb diffuse;           // K_D, 1/sr
   std::vector<Lobe> lobes;
   // Weights that change with the view, ascending in view_deg, each set complete; linear between two of them and
   // constant beyond the ends. Where there are none, `diffuse` and `lobes` hold for every view; where there are, these
   // remain the best weights for all views together.
   std::vector<ViewLobes> views = {};
+  // Approximations of the color map with more and more lobes; none: the lobes above stand for all light.
+  std::vector<TiltedLobes> tilts = {};
 };
 
 struct Paint {
@@ -104,6 +148,7 @@ struct Paint {
   std::optional<Appearance> appearance;
   std::optional<Anisotropy> anisotropy;
   std::optional<ColorMapReference> color_map;
+  std::optional<double> coat_index;  // that the paint states; where it has lobes, theirs
   std::optional<LobeFit> lobes;
   // Elements of other vocabularies, kept as they came (serialized XML), in order.
   std::vector<std::string> foreign;

@@ -183,7 +183,6 @@ RayScene::RayScene(RayScene&&) noexcept = default;
 RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 RayScene::~RayScene() = default;
 
-// Infinite where the ray does not meet the floor.
 float RayScene::floor_distance(const Float3& origin, const Float3& direction) const {
   if (!floor_) return kInfinite;
   const float distance = (*floor_ - origin.y) / direction.y;

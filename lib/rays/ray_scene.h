@@ -104,6 +104,9 @@ class RayScene {
   // The nearest hits of those wanted rays of the fan; the others are left alone.
   void closest(const Fan& fan, Hit* hits) const;
 
+  // How far along the ray the floor is, whatever lies before it; infinite where the ray does not meet it.
+  float floor_distance(const Float3& origin, const Float3& direction) const;
+
   // The surface at a hit that `direction` led to. Vertices of the triangle are read, so that the point does not depend
   // on the distance's rounding.
   Spot spot(const Hit& hit, const Float3& origin, const Float3& direction) const;
@@ -119,7 +122,6 @@ class RayScene {
  private:
   struct State;
   RayScene(std::shared_ptr<const State> state, std::optional<float> floor);
-  float floor_distance(const Float3& origin, const Float3& direction) const;
 
   std::shared_ptr<const State> state_;
   std::optional<float> floor_;  // local height

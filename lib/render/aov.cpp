@@ -123,4 +123,10 @@ Result<Gbuffer> gbuffer_of(const image::AovFile& buffers) {
   return gbuffer;
 }
 
+Light light_of(const image::AovLight& light) {
+  Light result{light.direction, light.white, 0.5 * light.extent_deg * kDegree};
+  if (light.is_placed) result.place = {light.place, light.distance};
+  return result;
+}
+
 }  // namespace goniochrome::render

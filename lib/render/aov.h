@@ -9,6 +9,7 @@
 #include "image/aov_file.h"
 #include "image/image.h"
 #include "render/renderer.h"
+#include "render/scene.h"
 
 namespace goniochrome::render {
 
@@ -30,5 +31,8 @@ void add_error(image::Image& picture, const Noise& noise);
 // The G-buffer back from the channels normal and part, bit for bit, but for which parts were seen from inside.
 // Error: what the file lacks, with the command that makes it; or the pixel that holds no normal or no part.
 Result<Gbuffer> gbuffer_of(const image::AovFile& buffers);
+
+// A lamp that the file tells of.
+Light light_of(const image::AovLight& light);
 
 }  // namespace goniochrome::render

@@ -7,7 +7,10 @@
 
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
+#include "brdf/tilted_lobes.h"
+#include "envmap/weighted_diffuse.h"
 #include "render/internal/lobe_curves.h"
+#include "render/internal/tilt_table.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {
@@ -23,8 +26,14 @@ class SlotValues {
  public:
   using Texel = std::array<double, 4>;
 
-  SlotValues(const WeightTable& table, const Effects& effects, double gloss_deg)
-      : table_(table), effects_(effects), values_(static_cast<std::size_t>(table.slots)) {
+  // With `mapped`, K_D in image light is that of a color map, which was measured through the coat.
+  SlotValues(const WeightTable& table, const Effects& effects, double gloss_deg, double coat_index, bool mapped)
+      : table_(table),
+        effects_(effects),
+        coat_index_(coat_index),
+        mapped_(mapped),
+        even_(brdf::mean_coat_transmission(coat_index)),
+        values_(static_cast<std::size_t>(table.slots)) {
     if (effects.fresnel) fresnel_scale_ = 1 / brdf::fresnel_dielectric(std::cos(gloss_deg * kDegree), brdf::kCoatIndex);
   }
 
@@ -32,18 +41,25 @@ class SlotValues {
   // its start and 1 at its end.
   const std::vector<Texel>& at(const paint::LobeFit& paint, const paint::LobeFit& lit, double cos_o, int node) {
     std::fill(values_.begin(), values_.end(), Texel{});
+    const double let_out = brdf::coat_transmission(cos_o, coat_index_);
     if (effects_.diffuse) {
-      set(WeightTable::diffuse_slot(), kPi * paint.diffuse);
-      set(table_.light_slot(), lit.diffuse);
+      if (mapped_ || coat_index_ == paint::kNoCoat) {
+        set(WeightTable::diffuse_slot(), kPi * paint.diffuse);
+      } else {
+        set(table_.coat_diffuse_slot(), let_out * even_ * kPi * paint.diffuse);
+      }
+      set(table_.light_slot(), let_out * lit.diffuse);
     }
+    values_[static_cast<std::size_t>(table_.light_slot())][3] = coat_index_ * coat_index_;
     for (std::size_t j = 0; j < effects_.lobes.size(); ++j) {
       const Effects::LobeUse& use = effects_.lobes[j];
       const paint::Lobe* lobe = find_lobe(paint, use.exponent);
       if (lobe == nullptr) continue;
-      const color::Rgb flake = use.directional_diffuse ? lobe->directional_diffuse : color::Rgb{};
+      const color::Rgb flake = use.directional_diffuse ? let_out * lobe->directional_diffuse : color::Rgb{};
       const color::Rgb gloss = use.gloss ? fresnel_scale_ * lobe->gloss : color::Rgb{};
-      const LobeIntegrals seen = table_.segments > 1 ? lobe_curve(use.exponent, table_.segments, effects_.horizon)[node]
-                                                     : lobe_integrals(use.exponent, cos_o, false);
+      const LobeIntegrals seen = table_.segments > 1
+                                     ? lobe_curve(use.exponent, table_.segments, effects_.horizon, coat_index_)[node]
+                                     : lobe_integrals(use.exponent, cos_o, false);
       const color::Rgb by_flake = seen.cosine * flake,
                        by_gloss = (effects_.fresnel ? seen.fresnel : seen.plain) * gloss;
       set(WeightTable::lobe_slot(j), by_flake + by_gloss);
@@ -55,13 +71,16 @@ class SlotValues {
       }
       const paint::Lobe* met = find_lobe(lit, use.exponent);
       if (met == nullptr) continue;
-      if (use.directional_diffuse) set(table_.directional_diffuse_slot(j), met->directional_diffuse);
+      if (use.directional_diffuse) set(table_.directional_diffuse_slot(j), let_out * met->directional_diffuse);
       if (use.gloss) set(table_.gloss_slot(j), fresnel_scale_ * met->gloss);
     }
     const paint::Lobe* mirror = effects_.mirror ? find_lobe(paint, paint::kMirrorExponent) : nullptr;
     const double seen_cos = effects_.fresnel ? cos_o : std::numbers::sqrt2 / 2;
-    if (mirror != nullptr)
-      set(table_.mirror_slot(), brdf::fresnel_dielectric(seen_cos, brdf::kCoatIndex) * mirror->gloss);
+    if (mirror != nullptr) {
+      const color::Rgb weight = brdf::fresnel_dielectric(seen_cos, brdf::mirror_index(coat_index_)) * mirror->gloss;
+      set(table_.mirror_slot(), weight);
+      set(table_.lamp_mirror_slot(), weight);
+    }
     return values_;
   }
 
@@ -73,19 +92,32 @@ class SlotValues {
 
   const WeightTable& table_;
   const Effects& effects_;
+  double coat_index_;
+  bool mapped_;
+  double even_;  // what is left of even light on its way in
   double fresnel_scale_ = 1;
   std::vector<Texel> values_;
 };
 
+// What is left of a paint in image light where tilted lobes stand for its flakes: gloss and mirror, and K_D of the set.
+paint::LobeFit beside_tilts(paint::LobeFit paint, const paint::TiltedLobes& set, double view_deg) {
+  paint.diffuse = brdf::at_view(set, view_deg).diffuse;
+  for (paint::Lobe& lobe : paint.lobes) lobe.directional_diffuse = {};
+  return paint;
+}
+
 void fill_part(const Scene& scene, const Effects& effects, std::size_t part, const WeightTable& table, float* rows) {
-  const paint::LobeFit& paint = scene.paints[part];
+  const paint::LobeFit paint = effects.coat ? scene.paints[part] : brdf::under_coat(scene.paints[part], paint::kNoCoat);
   const bool with_views = effects.views && !paint.views.empty();
-  SlotValues values(table, effects, gloss_deg_of(scene, part));
+  const paint::TiltedLobes* tilts = drawn_tilts(paint, effects);
+  SlotValues values(table, effects, gloss_deg_of(scene, part), paint.coat_index, tilts != nullptr);
   std::vector<SlotValues::Texel> before;
   for (int node = 0; node <= table.segments; ++node) {
     const double x = static_cast<double>(node) / table.segments, cos_o = table.segments > 1 ? x * x : x;
     const paint::LobeFit here_paint = with_views ? brdf::at_view(paint, std::acos(cos_o) / kDegree) : paint;
-    const std::vector<SlotValues::Texel>& here = values.at(here_paint, effects.maps ? paint : here_paint, cos_o, node);
+    const std::vector<SlotValues::Texel>& here =
+        values.at(tilts != nullptr ? beside_tilts(here_paint, *tilts, std::acos(cos_o) / kDegree) : here_paint,
+                  effects.maps ? paint : here_paint, cos_o, node);
     if (node > 0) {
       for (std::size_t slot = 0; slot < here.size(); ++slot, rows += 8) {
         for (std::size_t c = 0; c < 4; ++c) {
@@ -108,17 +140,30 @@ bool same_lobes(const std::vector<paint::Lobe>& a, const std::vector<paint::Lobe
   });
 }
 
+// Whether the extent of a lamp changes what a paint shows. A lobe of exponent E falls by E R^2/4 in its middle, and a
+// wide disc is cut by the horizon.
+bool is_seen_as_disc(const Light& light, const Effects& effects) {
+  constexpr double kFall = 1e-3, kWide_rad = 0.02;
+  const double radius = light.radius_rad;
+  return radius > kWide_rad || (!effects.lobes.empty() && effects.lobes.back().exponent * radius * radius / 4 > kFall);
+}
+
 paint::Anisotropy anisotropy_of(const Scene& scene, std::size_t part) {
   return part < scene.anisotropy.size() ? scene.anisotropy[part] : paint::Anisotropy{};
 }
 
 }  // namespace
 
+bool is_mapped(const Scene& scene, std::size_t part) {
+  return scene.layer != nullptr && scene.layer->surface(static_cast<int>(part)).color_map != nullptr;
+}
+
 bool same_wear(const Scene& scene, std::size_t a, std::size_t b) {
   const paint::LobeFit &x = scene.paints[a], &y = scene.paints[b];
   const paint::Anisotropy brushed_x = anisotropy_of(scene, a), brushed_y = anisotropy_of(scene, b);
-  return x.diffuse == y.diffuse && same_lobes(x.lobes, y.lobes) && gloss_deg_of(scene, a) == gloss_deg_of(scene, b) &&
-         brushed_x.alpha_x == brushed_y.alpha_x && brushed_x.alpha_y == brushed_y.alpha_y &&
+  return x.diffuse == y.diffuse && x.coat_index == y.coat_index && x.tilts == y.tilts && same_lobes(x.lobes, y.lobes) &&
+         gloss_deg_of(scene, a) == gloss_deg_of(scene, b) && brushed_x.alpha_x == brushed_y.alpha_x &&
+         brushed_x.alpha_y == brushed_y.alpha_y &&
          std::equal(x.views.begin(), x.views.end(), y.views.begin(), y.views.end(),
                     [](const paint::ViewLobes& v, const paint::ViewLobes& w) {
                       return v.view_deg == w.view_deg && v.diffuse == w.diffuse && same_lobes(v.lobes, w.lobes);
@@ -128,7 +173,8 @@ bool same_wear(const Scene& scene, std::size_t a, std::size_t b) {
 Effects effects_of(const Scene& scene) {
   Effects effects;
   effects.environment = scene.env != nullptr;
-  effects.mirror = effects.environment && has_mirror(scene.paints);
+  const bool discs = std::ranges::any_of(scene.lights, [](const Light& light) { return light.radius_rad > 0; });
+  effects.mirror = (effects.environment || discs) && has_mirror(scene.paints);
   effects.lights = scene.lights.size();
   effects.background = scene.background;
   bool gloss = effects.mirror;
@@ -144,19 +190,37 @@ Effects effects_of(const Scene& scene) {
     effects.lobes.push_back(use);
   }
   effects.fresnel = gloss;
+  effects.extent = effects.mirror && discs;
+  for (const Light& light : scene.lights) effects.extent |= is_seen_as_disc(light, effects);
+  effects.coat = std::any_of(scene.paints.begin(), scene.paints.end(),
+                             [](const paint::LobeFit& paint) { return paint.coat_index != paint::kNoCoat; });
   effects.horizon = effects.environment && !effects.lobes.empty();
   effects.views = std::any_of(scene.paints.begin(), scene.paints.end(),
                               [](const paint::LobeFit& paint) { return !paint.views.empty(); });
   effects.anisotropy =
       !effects.lobes.empty() && std::any_of(scene.anisotropy.begin(), scene.anisotropy.end(), is_anisotropic);
+  if (effects.environment) {
+    for (std::size_t part = 0; part < scene.paints.size(); ++part) {
+      effects.tilt_level = std::max(effects.tilt_level, static_cast<int>(scene.paints[part].tilts.size()));
+      effects.image_maps = effects.image_maps || is_mapped(scene, part);
+    }
+  }
   effects.texture = scene.layer != nullptr && scene.layer->textured();
   effects.maps = scene.layer != nullptr && scene.layer->mapped();
   effects.reflection = scene.reflection.k != color::component_wise().k;
   return effects;
 }
 
+std::vector<Light> lights_of(const Scene& scene, const Effects& effects) {
+  if (effects.lights == 0) return {};
+  std::vector<Light> lights = scene.lights;
+  if (!effects.extent)
+    for (Light& light : lights) light.radius_rad = 0;
+  return lights;
+}
+
 paint::LobeFit with_effects(const paint::LobeFit& paint, const Effects& effects) {
-  paint::LobeFit result = paint;
+  paint::LobeFit result = effects.coat ? paint : brdf::under_coat(paint, paint::kNoCoat);
   if (!effects.views) result.views.clear();
   const auto strip = [&](color::Rgb& diffuse, std::vector<paint::Lobe>& lobes) {
     if (!effects.diffuse) diffuse = {};
@@ -200,11 +264,15 @@ std::vector<std::vector<brdf::Tilt>> tilts_of(const Scene& scene, const Effects&
   return tilts;
 }
 
+envmap::CubeMap coat_diffuse_map(const envmap::PrefilteredEnvironment& env) {
+  return envmap::weighted_diffuse(env, [](double c) { return brdf::coat_transmission(c, brdf::kCoatIndex); });
+}
+
 WeightTable slots_of(const Effects& effects) {
   WeightTable table;
   table.lobes = static_cast<int>(effects.lobes.size());
   table.segments = effects.depends_on_view() ? kViewSegments : 1;
-  table.slots = 3 + 3 * table.lobes + (table.lobes + 3) / 4;
+  table.slots = table.lamp_mirror_slot() + 1;
   return table;
 }
 

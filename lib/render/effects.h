@@ -21,6 +21,9 @@ struct RayEffects {
   bool self = false;
   // The same for the diffuse part of a point.
   bool bounce = false;
+  // A floor that shows the ground of the environment lies below: it is seen, shaded by the mesh, and sends its light to
+  // the mesh in the place of what the environment has below the horizon. It needs `shadow`.
+  bool floor = false;
 
   bool any() const { return shadow; }
   bool operator==(const RayEffects&) const = default;
@@ -37,9 +40,12 @@ struct Effects {
   std::vector<LobeUse> lobes;  // ascending exponents
   bool mirror = false;
   bool fresnel = false;               // of gloss lobes and mirror
+  bool coat = false;                  // light passes the coat on its way to the base and back; else as much everywhere
   bool horizon = false;               // lobes end at the horizon, and each of their directions has its own cosine
   bool views = false;                 // weights of paints that change with the view
   bool maps = false;                  // color maps under lights
+  bool image_maps = false;            // color maps in image light, by engines that can evaluate them there
+  int tilt_level = 0;                 // what stands for them elsewhere: which set of tilted lobes; 0: none
   bool texture = false;               // textures of lobes; else the mean texel of each
   std::uint32_t texture_lobes = ~0U;  // of textures, by bits
   bool anisotropy = false;
@@ -48,22 +54,29 @@ struct Effects {
   double tolerance_de00 = 0.3;  // of engines that sum light instead of looking it up: p95 over the visible pixels
   bool reflection = false;      // the scene's reflection operator in place of the component-wise product
   std::size_t lights = 0;
+  bool extent = false;   // lamps as discs, which lobes and the mirror see; else as points
   RayEffects rays = {};  // effects_of() leaves them out, since no engine with prefiltered maps draws them by itself
   double ray_noise_de00 = 0.25;    // of the picture, one standard deviation at 95 of 100 points
   int most_ray_samples = 1 << 16;  // of a visible point, in all samples of its pixel
   Background background = Background::kNone;
 
-  bool depends_on_view() const { return fresnel || horizon || views; }
+  bool depends_on_view() const { return fresnel || coat || horizon || views || tilt_level > 0; }
 };
 
 // Everything that the scene's paints and lights call for.
 Effects effects_of(const Scene& scene);
 
+// Whether a part of the scene wears a color map.
+bool is_mapped(const Scene& scene, std::size_t part);
+
 // Whether two parts of the scene wear the same.
 bool same_wear(const Scene& scene, std::size_t a, std::size_t b);
 
-// A paint with the diffuse part, lobes, mirror and views that are on alone.
+// A paint with the diffuse part, lobes, mirror, views and coat that are on alone.
 paint::LobeFit with_effects(const paint::LobeFit& paint, const Effects& effects);
+
+// The lamps that these effects draw, as points where the effect `extent` is off.
+std::vector<Light> lights_of(const Scene& scene, const Effects& effects);
 
 // The tilted normals that each part's lobes are drawn about; a single one where the part is isotropic.
 std::vector<std::vector<brdf::Tilt>> tilts_of(const Scene& scene, const Effects& effects);
@@ -71,11 +84,14 @@ std::vector<std::vector<brdf::Tilt>> tilts_of(const Scene& scene, const Effects&
 // Weights are piecewise linear in the view: W = a + b t. Where no effect depends on the view there is one segment, with
 // t = n.wo itself; else kViewSegments of them, even in x = sqrt(n.wo), with t the part of a segment. Each part of the
 // mesh has a row for each segment; each slot has two RGBA texels, a and b.
-//   slot 0            pi K_D, of the diffuse map
-//   slot 1 + j        lobe j's share of P_Ej(r + s n), cosine and 2 pi/(E+1) included
+//   slot 0            pi K_D, of the diffuse map, of a paint without a coat
+//   slot 1 + j        lobe j's share of P_Ej(r + s n), cosine, coat and 2 pi/(E+1) included
 //   slot 1 + lobes    K_M F, of the mirror map
-//   then, for lights, K_D, and K_DD and K_G of each lobe, in 1/sr
+//   slot 2 + lobes    pi K_D, of the coat's diffuse map, of a paint with a coat, times its passages
+//   then, for lights, K_D, and K_DD and K_G of each lobe, in 1/sr; all but K_G as the coat lets them out to the viewer.
+//                     The fourth channel of K_D is the square of the coat's index, 1 without a coat
 //   then s of each lobe, four in a slot
+//   then K_M F, of the mirror image of lamps
 constexpr int kViewSegments = 64;
 // Lobes up to this exponent look where the light they gather above the horizon comes from, each by itself; sharper ones
 // share the mirror direction. With the effect `horizon`.
@@ -90,16 +106,22 @@ struct WeightTable {
   static int diffuse_slot() { return 0; }
   static int lobe_slot(std::size_t lobe) { return 1 + static_cast<int>(lobe); }
   int mirror_slot() const { return 1 + lobes; }
-  int light_slot() const { return 2 + lobes; }
-  int directional_diffuse_slot(std::size_t lobe) const { return 3 + lobes + 2 * static_cast<int>(lobe); }
+  int coat_diffuse_slot() const { return 2 + lobes; }
+  int light_slot() const { return 3 + lobes; }
+  int directional_diffuse_slot(std::size_t lobe) const { return 4 + lobes + 2 * static_cast<int>(lobe); }
   int gloss_slot(std::size_t lobe) const { return directional_diffuse_slot(lobe) + 1; }
-  int shift_slot(std::size_t lobe) const { return 3 + 3 * lobes + static_cast<int>(lobe / 4); }  // channel lobe % 4
+  int shift_slot(std::size_t lobe) const { return 4 + 3 * lobes + static_cast<int>(lobe / 4); }  // channel lobe % 4
+  int lamp_mirror_slot() const { return 4 + 3 * lobes + (lobes + 3) / 4; }
   const float* at(int part, int segment, int slot) const {
     return &rgba[(static_cast<std::size_t>(part * segments + segment) * static_cast<std::size_t>(slots) +
                   static_cast<std::size_t>(slot)) *
                  8];
   }
 };
+// The diffuse map of a base under a coat: light counts with what a coat of kCoatIndex lets in from where it comes,
+// relative to its mean over the hemisphere. Other coats differ from it by 1 part in 100 at most where light matters.
+envmap::CubeMap coat_diffuse_map(const envmap::PrefilteredEnvironment& env);
+
 // The table's sizes, without its weights.
 WeightTable slots_of(const Effects& effects);
 WeightTable weight_table(const Scene& scene, const Effects& effects);

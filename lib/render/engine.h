@@ -99,9 +99,10 @@ struct Workload {
   double textured = 0;                               // those points that show a texture
   double mapped = 0;                                 // those points that show a color map
   double tilts = 1;                                  // normals that lobes are drawn about, the mean over the points
-  int forms = 3;          // in which the product of colors is taken; internal/product_forms.h
-  int texture_lobes = 0;  // of the texture that has most
-  double speed = 1;       // nanoseconds on this machine for each nanosecond that was counted
+  std::vector<double> lookups = {};  // of tilted lobes, the mean over the points, by each level of Effects
+  int forms = 3;                     // in which the product of colors is taken; internal/product_forms.h
+  int texture_lobes = 0;             // of the texture that has most
+  double speed = 1;                  // nanoseconds on this machine for each nanosecond that was counted
 };
 
 // What an engine is predicted to take.

@@ -168,6 +168,13 @@ std::vector<color::Rgb> textured_radiance(const std::vector<TexturedPoint>& poin
 
 namespace {
 
+// No light from all around, summed as finely.
+Surroundings darkness(const Surroundings& around) {
+  Surroundings none(nullptr);
+  none.most_spread = around.most_spread;
+  return none;
+}
+
 bool is_textured(const Scene& scene, int part) {
   return scene.layer != nullptr && scene.layer->surface(part).texture != nullptr;
 }
@@ -182,9 +189,9 @@ void put_textured(const Scene& scene, const std::vector<VisiblePoint>& points, c
     textured.push_back({points[i].normal, points[i].to_viewer, scene.layer->place(points[i], i, effects)});
     numbers.push_back(i);
   }
-  const std::vector<color::Rgb> shown = textured_radiance(
-      textured, effects.environment ? around : Surroundings(nullptr),
-      effects.lights > 0 ? scene.lights : std::vector<Light>(), effects.reflection ? &scene.reflection : nullptr);
+  const std::vector<color::Rgb> shown =
+      textured_radiance(textured, effects.environment ? around : darkness(around), lights_of(scene, effects),
+                        effects.reflection ? &scene.reflection : nullptr);
   for (std::size_t i = 0; i < shown.size(); ++i) colors[numbers[i]] = shown[i];
 }
 
@@ -201,12 +208,15 @@ std::vector<color::Rgb> exact_radiance(const std::vector<VisiblePoint>& points, 
   for (std::size_t part = 0; part < scene.paints.size(); ++part) {
     paints.push_back(with_effects(scene.paints[part], effects));
     ExactModel& model = models[part];
-    if (effects.maps) paints.back().views.clear();  // the maps are told apart from the weights for all views
     model.fresnel = effects.fresnel;
     if (part < scene.gloss_deg.size()) model.gloss_deg = scene.gloss_deg[part];
     model.horizon = effects.horizon || effects.lobes.empty() || !effects.environment;
     if (tilts[part].size() > 1) model.tilts = tilts[part];
     if (effects.reflection) model.reflection = &scene.reflection;
+    if (!is_mapped(scene, part) || !(effects.maps || effects.image_maps)) continue;
+    model.map = scene.layer->surface(static_cast<int>(part)).color_map;
+    model.treatment = scene.layer->treatment();
+    model.map_in_image = effects.image_maps, model.map_under_lights = effects.maps;
   }
   std::vector<SurfacePoint> surface;
   std::vector<std::size_t> numbers;
@@ -217,11 +227,9 @@ std::vector<color::Rgb> exact_radiance(const std::vector<VisiblePoint>& points, 
     numbers.push_back(i);
   }
   const std::vector<color::Rgb> plain =
-      reference_radiance(surface, effects.environment ? around : Surroundings(nullptr),
-                         effects.lights > 0 ? scene.lights : std::vector<Light>());
+      reference_radiance(surface, effects.environment ? around : darkness(around), lights_of(scene, effects));
   std::vector<color::Rgb> colors(points.size());
   for (std::size_t i = 0; i < plain.size(); ++i) colors[numbers[i]] = plain[i];
-  if (effects.maps) scene.layer->add_mapped(points, colors);
   put_textured(scene, points, effects, around, colors);
   return colors;
 }

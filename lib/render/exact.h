@@ -23,6 +23,10 @@ struct ExactModel {
   bool horizon = true;  // each direction with its own cosine, and none from below; else as prefiltered maps have it
   std::vector<brdf::Tilt> tilts;                          // none: isotropic
   const color::ReflectionOperator* reflection = nullptr;  // null: component-wise
+  // In the place of K_D and K_DD: in image light, under lights, or in both.
+  const brdf::ColorMap* map = nullptr;
+  brdf::CriticalAngle treatment = brdf::CriticalAngle::kSlide;
+  bool map_in_image = false, map_under_lights = false;
 };
 
 struct SurfacePoint {

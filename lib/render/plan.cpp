@@ -13,9 +13,11 @@
 #include "render/exact.h"
 #include "render/internal/product_forms.h"
 #include "render/internal/seen.h"
+#include "render/internal/tilt_table.h"
 #include "render/plan/effect_list.h"
 #include "render/plan/effect_words.h"
 #include "render/plan/kept.h"
+#include "render/plan/prober.h"
 #include "render/plan/ray_plan.h"
 #include "render/surface_layer.h"
 
@@ -28,94 +30,6 @@ constexpr double kSafety = 0.8;
 
 // Visible points that a plan is made from.
 constexpr std::size_t kProbe = 512;
-
-// Shades the probe with any choice of effects.
-class Prober {
- public:
-  Prober(const Scene& scene, const Effects& all, const std::vector<EffectSwitch>& switches,
-         const std::vector<VisiblePoint>& points, const std::vector<VisiblePoint>& seen, double white,
-         CpuEngine& engine, CpuEngine& component_wise)
-      : scene_(scene),
-        all_(all),
-        switches_(switches),
-        points_(points),
-        seen_(seen),
-        white_(white > 0 ? white : 1),
-        engine_(engine),
-        component_wise_(component_wise) {}
-
-  Effects effects(const std::vector<bool>& on) const {
-    Effects effects = all_;
-    for (std::size_t i = 0; i < switches_.size(); ++i) {
-      if (!on[i]) switches_[i].turn_off(effects);
-    }
-    return effects;
-  }
-
-  std::vector<color::Rgb> colors(const std::vector<bool>& on) {
-    const Effects chosen = effects(on);
-    CpuEngine& engine = chosen.reflection ? engine_ : component_wise_;
-    engine.load_paints(scene_, chosen);
-    std::vector<color::Rgb> colors = engine.colors(points_);
-    if (scene_.layer != nullptr) scene_.layer->add(seen_, chosen, colors);
-    return colors;
-  }
-
-  double difference(const std::vector<color::Rgb>& a, const std::vector<color::Rgb>& b) const {
-    std::vector<double> de00;
-    for (std::size_t i = 0; i < a.size(); ++i) de00.push_back(seen_difference(a[i], b[i], white_));
-    return percentile_95(std::move(de00));
-  }
-
-  // What decides whether a change is seen: the difference that 95 % of the points stay below or, where few points hold
-  // all of it, as they do a highlight, the root mean square.
-  double seen(const std::vector<color::Rgb>& a, const std::vector<color::Rgb>& b) const {
-    double squares = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      const double de00 = seen_difference(a[i], b[i], white_);
-      squares += de00 * de00;
-    }
-    return std::max(difference(a, b), std::sqrt(squares / static_cast<double>(std::max<std::size_t>(a.size(), 1))));
-  }
-
-  // Seconds that a point takes on all cores together, the best of a few runs, each long enough that starting the
-  // threads does not count.
-  double seconds_per_point() const {
-    if (points_.empty()) return 0;
-    constexpr double kLong_s = 2e-4, kSlow_s = 2e-3, kEnough_s = 2e-2;
-    std::vector<VisiblePoint> many = points_;
-    const Stopwatch clock_once;
-    const auto first = engine_.colors(points_);
-    const double once_s = clock_once.elapsed_s();
-    if (once_s > kSlow_s) {  // again nevertheless: the machine may have been busy
-      double least_s = once_s, all_s = once_s;
-      for (int i = 0; i < 2 && (i == 0 || all_s < kEnough_s); ++i) {
-        const Stopwatch clock;
-        const auto again = engine_.colors(points_);
-        least_s = std::min(least_s, clock.elapsed_s()), all_s += clock.elapsed_s();
-      }
-      return least_s / static_cast<double>(points_.size());
-    }
-    for (double s = once_s; s < kLong_s && many.size() < 8192; s += once_s)
-      many.insert(many.end(), points_.begin(), points_.end());
-    double best = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < 3; ++i) {
-      const Stopwatch clock;
-      const auto colors = engine_.colors(many);
-      best = std::min(best, clock.elapsed_s());
-    }
-    return best / static_cast<double>(many.size());
-  }
-
- private:
-  const Scene& scene_;
-  const Effects& all_;
-  const std::vector<EffectSwitch>& switches_;
-  const std::vector<VisiblePoint>& points_;
-  const std::vector<VisiblePoint>& seen_;  // the same, with the parts of the whole scene
-  double white_;
-  CpuEngine &engine_, &component_wise_;
-};
 
 double mean_tilts(const Scene& scene, const Effects& effects, const std::vector<VisiblePoint>& points) {
   if (!effects.anisotropy || points.empty()) return 1;
@@ -163,6 +77,7 @@ Workload workload_of(const Scene& scene, const Effects& all, const std::vector<V
   if (scene.layer != nullptr && scene.layer->mapped())
     work.mapped = work.points * share_of(scene, probe, [](const PartSurface& s) { return s.color_map != nullptr; });
   work.tilts = mean_tilts(scene, all, probe);
+  for (int level = 1; level <= all.tilt_level; ++level) work.lookups.push_back(mean_lookups(scene, level, probe));
   work.forms = all.reflection ? product_forms(scene.reflection).count : 3;
   work.texture_lobes = scene.layer != nullptr ? scene.layer->lobes() : 0;
   return work;
@@ -171,6 +86,7 @@ Workload workload_of(const Scene& scene, const Effects& all, const std::vector<V
 // The shading of one frame with these effects.
 double shading_ms(const Engine& engine, const Workload& work, Effects effects) {
   tidy(effects);
+  leave_to_tilts(*work.scene, effects);
   return engine.price(work, effects).frame_ms;
 }
 
@@ -203,6 +119,12 @@ struct Choice {
   std::vector<bool> on, forced;
 };
 
+// An effect that needs another one is off without it.
+void settle(const std::vector<EffectSwitch>& switches, std::vector<bool>& on) {
+  for (std::size_t i = 0; i < switches.size(); ++i)
+    if (switches[i].needs >= 0 && !on[static_cast<std::size_t>(switches[i].needs)]) on[i] = false;
+}
+
 Choice forced_choice(const Words& words, const std::vector<EffectSwitch>& switches) {
   Choice choice{std::vector<bool>(switches.size()), std::vector<bool>(switches.size(), false)};
   for (std::size_t i = 0; i < switches.size(); ++i) {
@@ -213,7 +135,21 @@ Choice forced_choice(const Words& words, const std::vector<EffectSwitch>& switch
       choice.forced[i] = true;
     }
   }
+  for (std::size_t i = switches.size();
+       i-- > 0;) {  // what a forced effect needs is on as well, unless it is forced off
+    if (switches[i].needs < 0 || !choice.forced[i] || !choice.on[i]) continue;
+    const auto needed = static_cast<std::size_t>(switches[i].needs);
+    if (!choice.forced[needed]) choice.on[needed] = choice.forced[needed] = true;
+  }
+  settle(switches, choice.on);
   return choice;
+}
+
+// Whether tilted lobes are drawn.
+bool tilted(const std::vector<EffectSwitch>& switches, const std::vector<bool>& on) {
+  for (std::size_t i = 0; i < switches.size(); ++i)
+    if (switches[i].group == "tilts" && switches[i].needed && on[i]) return true;
+  return false;
 }
 
 // Leaves out, cheapest to miss first, what all together cannot be seen. The gloss of a lamp stays: its highlight may
@@ -223,14 +159,21 @@ void drop_unseen(Prober& prober, const std::vector<EffectSwitch>& switches, cons
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < items.size(); ++i) {
     if (lamps && switches[i].is_highlight) continue;
+    if (switches[i].left_to_tilts && tilted(switches, choice.on)) continue;
     if (choice.on[i] && !choice.forced[i] && items[i].de00_p95 <= tolerance) order.push_back(i);
   }
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return items[a].de00_p95 < items[b].de00_p95; });
+  // The finest set of tilted lobes comes first: what stands for it is then judged with the rest.
+  const auto is_tilts = [&](std::size_t i) { return switches[i].group == "tilts"; };
+  const auto rest = std::stable_partition(order.begin(), order.end(), is_tilts);
+  std::sort(order.begin(), rest, std::greater<>());
   const std::vector<color::Rgb> wanted = prober.colors(choice.on);
   for (const std::size_t i : order) {
+    const std::vector<bool> before = choice.on;
     choice.on[i] = false;
-    if (prober.seen(wanted, prober.colors(choice.on)) > kSafety * tolerance) choice.on[i] = true;
+    settle(switches, choice.on);
+    if (prober.seen(wanted, prober.colors(choice.on)) > kSafety * tolerance) choice.on = before;
   }
 }
 
@@ -238,13 +181,14 @@ void drop_unseen(Prober& prober, const std::vector<EffectSwitch>& switches, cons
 constexpr double kFree = 0.02;
 
 // Takes back what was left out for nothing, whatever is worth most first: what is drawn with the rest at no price.
-void take_back_free(const Prober& prober, const Workload& work, const Engine& engine, std::vector<PlanItem>& items,
-                    Choice& choice) {
+void take_back_free(const Prober& prober, const Workload& work, const Engine& engine,
+                    const std::vector<EffectSwitch>& switches, std::vector<PlanItem>& items, Choice& choice) {
   std::vector<std::size_t> gone;
   for (std::size_t i = 0; i < items.size(); ++i)
     if (items[i].needed && !choice.on[i] && !choice.forced[i]) gone.push_back(i);
   std::ranges::stable_sort(gone, [&](std::size_t a, std::size_t b) { return items[a].de00_p95 > items[b].de00_p95; });
   for (const std::size_t i : gone) {
+    if (switches[i].needs >= 0 && !choice.on[static_cast<std::size_t>(switches[i].needs)]) continue;
     const double without_ms = shading_ms(engine, work, prober.effects(choice.on));
     choice.on[i] = true;
     const double with_ms = shading_ms(engine, work, prober.effects(choice.on));
@@ -258,8 +202,8 @@ void take_back_free(const Prober& prober, const Workload& work, const Engine& en
 
 // Leaves out what is worth least for its time until the rest fits, and takes back what fits after all; returns those
 // left out.
-std::set<std::size_t> keep_affordable(Prober& prober, const Workload& work, const Engine& engine, double budget_ms,
-                                      Choice& choice) {
+std::set<std::size_t> keep_affordable(Prober& prober, const Workload& work, const Engine& engine,
+                                      const std::vector<EffectSwitch>& switches, double budget_ms, Choice& choice) {
   const auto now = [&] { return shading_ms(engine, work, prober.effects(choice.on)); };
   std::set<std::size_t> gone;
   const std::vector<color::Rgb> wanted = prober.colors(choice.on);
@@ -268,17 +212,24 @@ std::set<std::size_t> keep_affordable(Prober& prober, const Workload& work, cons
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < choice.on.size(); ++i) {
       if (!choice.on[i] || choice.forced[i]) continue;
+      if (switches[i].left_to_tilts && tilted(switches, choice.on)) continue;
+      const std::vector<bool> before = choice.on;
       choice.on[i] = false;
+      settle(switches, choice.on);
       const double saved_ms = now_ms - now();
       const double lost = prober.difference(wanted, prober.colors(choice.on)) / std::max(saved_ms, 1e-9);
-      choice.on[i] = true;
+      choice.on = before;
       if (lost < least) least = lost, worst = i;
     }
     if (worst == choice.on.size()) break;
+    const std::vector<bool> before = choice.on;
     choice.on[worst] = false;
-    gone.insert(worst);
+    settle(switches, choice.on);
+    for (std::size_t i = 0; i < before.size(); ++i)
+      if (before[i] && !choice.on[i]) gone.insert(i);
   }
   std::erase_if(gone, [&](std::size_t i) {
+    if (switches[i].needs >= 0 && !choice.on[static_cast<std::size_t>(switches[i].needs)]) return false;
     choice.on[i] = true;
     const bool fits = now() <= budget_ms;
     choice.on[i] = fits;
@@ -298,6 +249,7 @@ struct Priced {
 std::vector<Priced> priced(const std::vector<const Engine*>& engines, const Engine* wanted, const Workload& work,
                            Effects effects) {
   tidy(effects);
+  leave_to_tilts(*work.scene, effects);
   std::vector<Priced> result;
   for (const Engine* engine : engines) {
     if (engine->info().is_planned) result.push_back({engine, engine->price(work, effects)});
@@ -355,6 +307,26 @@ Plan plan_of_everything(const Scene& scene, const Effects& all, const std::vecto
   plan.engine = engine.name;
   plan.engine_reason = "as asked: it draws every effect by rays alone, without prefiltered maps";
   return plan;
+}
+
+// Where prefiltered maps do not keep the tolerance and rays alone are faster, everything is drawn by these.
+void take_rays_alone(const Effects& all, const RayChoice& by_rays, double tolerance_de00, const Engine& tracer,
+                     Plan& plan) {
+  const double by_maps_ms = plan.predicted_ms() + plan.rays_ms;
+  for (PlanItem& item : plan.items) {
+    if (!item.needed) continue;
+    item.on = true, item.decision = Decision::kDrawn;
+  }
+  plan.engine_reason = fmt::format(
+      "prefiltered maps would miss the truth by dE00 {:.2g} (p95) in {:.0f} ms; rays alone keep the tolerance in "
+      "{:.0f}",
+      *plan.whole_de00_p95, by_maps_ms, by_rays.path_ms);
+  plan.engine = tracer.info().name;
+  plan.prices.push_back({plan.engine, by_rays.path_ms, 0});
+  plan.effects = all;
+  plan.de00_p95 = plan.rays_ms = plan.rays_noise_de00 = 0;
+  plan.open_de00_p95 = plan.whole_de00_p95 = tolerance_de00;
+  plan.not_kept.clear();
 }
 
 Decision decision_of(const EffectSwitch& effect, bool on, bool forced, bool over_budget) {
@@ -512,14 +484,16 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   const Engine& engine = *chosen_of(prices, asked, request.frames).engine;
   plan.engine = engine.info().name;
   plan.engine_reason = reason_of(prices, chosen_of(prices, asked, request.frames), asked != nullptr);
-  if (automatic) take_back_free(prober, work, engine, plan.items, choice);
+  if (automatic) take_back_free(prober, work, engine, switches, plan.items, choice);
   std::set<std::size_t> gone;
-  if (request.budget_ms > 0 && may_leave_out) gone = keep_affordable(prober, work, engine, request.budget_ms, choice);
+  if (request.budget_ms > 0 && may_leave_out)
+    gone = keep_affordable(prober, work, engine, switches, request.budget_ms, choice);
 
   // What that comes to.
   plan.de00_p95 = prober.difference(full, prober.colors(choice.on)) + by_rays.left_out_de00_p95;
   plan.effects = prober.effects(choice.on);
   tidy(plan.effects);
+  leave_to_tilts(scene, plan.effects);
   plan.effects.rays = by_rays.effects;
   plan.effects.most_ray_samples = by_rays.most_samples, plan.effects.ray_noise_de00 = by_rays.aim_de00;
   plan.rays_ms = by_rays.cost.ms, plan.rays_noise_de00 = by_rays.noise_de00;
@@ -544,6 +518,12 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
     item.decision = decision_of(switches[i], item.on, choice.forced[i], gone.contains(i));
   }
   plan.items.insert(plan.items.end(), by_rays.items.begin(), by_rays.items.end());
+  const auto tracer = std::ranges::find_if(engines, [](const Engine* of) { return of->info().traces_rays; });
+  const bool may_take = asked == nullptr && words.start == Start::kAuto && words.forced.empty();
+  plan.path_ms = by_rays.path_ms;
+  if (may_take && tracer != engines.end() && !plan.not_kept.empty() && by_rays.path_ms > 0 &&
+      by_rays.path_ms < plan.predicted_ms() + plan.rays_ms)
+    take_rays_alone(all, by_rays, request.tolerance_de00, **tracer, plan);
   plan.time_ms = 1000 * clock.elapsed_s();
   return plan;
 }
@@ -555,7 +535,7 @@ void add_truth(Plan& plan, const Scene& scene, const std::vector<VisiblePoint>& 
   const std::vector<color::Rgb> full = exact_radiance(points, scene, all, env);
   const double white = white_luminance > 0 ? white_luminance : 1;
   for (std::size_t i = 0; i < switches.size(); ++i) {
-    if (!switches[i].needed) continue;
+    if (!switches[i].needed || switches[i].refines) continue;  // the reference has no sets
     Effects without = all;
     switches[i].turn_off(without);
     const std::vector<color::Rgb> colors = exact_radiance(points, scene, without, env);

@@ -26,8 +26,10 @@ class Transport;
 // What the effects of rays are priced by.
 struct RayContext {
   const Transport* transport = nullptr;  // of the whole scene, not only what is seen of it; null: no rays
-  // The same over the floor that the engine of the plan does not draw; null: none that the picture calls for.
+  // The same over the floor that the picture calls for; null: none.
   const Transport* over_floor = nullptr;
+  bool floor_forced = false;                         // whether that is asked for by name
+  const envmap::Environment* environment = nullptr;  // that rays meet
   int bounces = 8;
   std::uint64_t seed = 1;
   std::string absent = "no rays are traced";  // why there is no transport
@@ -81,6 +83,7 @@ struct Plan {
   double time_ms = 0;               // that planning took
   double rays_ms = 0;               // predicted for the effects of rays of one frame that are on
   double ray_pricing_ms = 0;        // of the time that planning took: what the effects of rays are worth
+  double path_ms = 0;               // predicted for a frame by rays alone within the tolerance; 0: not priced
   double rays_noise_de00 = 0;       // the noise of these that is aimed at: a standard deviation at 95 of 100 points
   // What the open light as planned misses of the exact sum, at some of the points, with the effects left out that the
   // plan leaves out of it; none where it was not measured.

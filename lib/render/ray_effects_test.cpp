@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "render/internal/seen.h"
 #include "render/path/scenes_for_paths_for_test.h"
 #include "render/plan/ray_plan.h"
 #include "render/renderer.h"
@@ -144,6 +145,95 @@ TEST(RayEffects, SelfAndBounceNeedShadow) {
   EXPECT_EQ(item(forced, "bounce").decision, Decision::kForcedOn);
   EXPECT_EQ(item(forced, "self").decision, Decision::kDropped);
   EXPECT_EQ(forced.effects.rays, (RayEffects{true, false, true}));
+}
+
+// A black ball of radius 1 that rests on the floor of an even sky. From the floor at the distance d from its center it
+// hides the share 1/d^3 of the light, by the cosine: (R/d)^2 cos t with cos t = R/d.
+TEST(RayEffects, AFloorIsDrawnAndShadedByEnginesWithMaps) {
+  World world(sphere_mesh(64));
+  world.scene.paints.assign(1, matt({0, 0, 0}));
+  world.scene.background = Background::kEnvironment;
+  world.env.mirror = world.env.diffuse;
+  Ground ground;
+  ground.height = -1, ground.probe_eye = {0, 0.5, 0};
+  for (const char* engine : {"cpu", "gl"}) {
+    for (const int samples : {1, 4}) {
+      auto renderer = Renderer::create();
+      ASSERT_TRUE(renderer.ok());
+      RaySetup setup;
+      setup.environment = &world.sky, setup.floor = ground;
+      renderer->set_rays(setup);
+      View view = world.view;
+      view.width = view.height = 64, view.samples = samples, view.with_centers = false;
+      const auto seen = renderer->look(world.mesh, view);
+      ASSERT_TRUE(seen.ok());
+      PlanRequest request;
+      request.engine = engine, request.samples = samples, request.tolerance_de00 = 1;
+      request.effects = "auto,+rays";
+      const auto plan = renderer->load(world.scene, {*seen}, request);
+      ASSERT_TRUE(plan.ok()) << plan.error().message;
+      EXPECT_TRUE(plan->effects.rays.floor);
+      EXPECT_EQ(plan->items.back().effect, "floor");
+      EXPECT_TRUE(plan->items.back().on);
+      EXPECT_GE(plan->items.back().cost_ms, 0);
+      Frame frame;
+      ASSERT_TRUE(renderer->draw(view, frame).ok());
+      std::vector<double> errors, without;
+      double bias = 0;
+      for (int y = 0; y < 64; ++y) {
+        for (int x = 0; x < 64; ++x) {
+          const float* pixel = frame.picture.pixel(x, y);
+          EXPECT_EQ(pixel[3], 1);
+          // Pixels in whose neighborhood nothing but the floor is seen.
+          bool floor = true;
+          for (int j = std::max(0, y - 1); j <= std::min(63, y + 1); ++j)
+            for (int i = std::max(0, x - 1); i <= std::min(63, x + 1); ++i)
+              floor = floor && (*seen)->part(i, j) < 0 && (*seen)->to_viewer(i, j).y > 0.02;
+          if (!floor) continue;
+          const Vec3 toward = -(*seen)->to_viewer(x, y), eye = (*seen)->rays.eye;
+          const Vec3 at = eye + ((-1 - eye.y) / toward.y) * toward;
+          const double d = length(at);
+          const double truth = 1 - 1 / (d * d * d);
+          errors.push_back(seen_difference({pixel[0], pixel[1], pixel[2]}, {truth, truth, truth}, 1));
+          without.push_back(seen_difference({1, 1, 1}, {truth, truth, truth}, 1));
+          bias += pixel[1] - truth;
+        }
+      }
+      ASSERT_GT(errors.size(), 300U);
+      // The noise is one standard deviation at 95 of 100 points, so that 95 of 100 errors are within two of them. The
+      // mesh is a polyhedron, which hides 0.3 % less than the ball.
+      EXPECT_LE(frame.rays.de00_p95, 0.5);
+      EXPECT_LT(percentile_95(errors), 2 * 0.5 + 0.1) << engine << ", " << samples;
+      EXPECT_LT(std::abs(bias) / static_cast<double>(errors.size()), 0.004);
+      EXPECT_GT(percentile_95(without), 5) << "the control: the floor in the open";
+    }
+  }
+}
+
+// Without a floor to be drawn nothing is, and forced off it is not drawn either.
+TEST(RayEffects, AFloorNeedsShadow) {
+  World world(ball_in_a_cup());
+  world.scene.background = Background::kEnvironment;
+  world.env.mirror = world.env.diffuse;
+  auto renderer = Renderer::create();
+  ASSERT_TRUE(renderer.ok());
+  RaySetup setup;
+  setup.environment = &world.sky;
+  setup.floor.emplace();
+  setup.floor->height = -1;
+  renderer->set_rays(setup);
+  const auto seen = renderer->look(world.mesh, world.view);
+  ASSERT_TRUE(seen.ok());
+  PlanRequest request;
+  request.effects = "auto,-shadow";
+  const auto plan = renderer->load(world.scene, {*seen}, request);
+  ASSERT_TRUE(plan.ok());
+  EXPECT_FALSE(plan->effects.rays.floor);
+  EXPECT_FALSE(plan->effects.rays.any());
+  request.effects = "auto";
+  const auto with = renderer->load(world.scene, {*seen}, request);
+  ASSERT_TRUE(with.ok());
+  EXPECT_TRUE(with->effects.rays.floor);
 }
 
 }  // namespace

@@ -1,12 +1,15 @@
 #include "render/renderer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "base/clock.h"
 #include "rays/ray_scene.h"
 #include "render/gl/gl.h"
 #include "render/gl/shader.h"
+#include "render/glints.h"
+#include "render/internal/tilt_table.h"
 #include "render/path/visible_surface.h"
 #include "render/plan/ray_plan.h"
 #include "render/surface_layer.h"
@@ -72,6 +75,7 @@ struct Renderer::State : Sight {
   std::optional<RaySetup> ray_setup;
   Scene ray_scene;  // all of it, seen or not: rays meet parts that the camera does not see
   std::shared_ptr<const rays::RayScene> ray_mesh;  // of that scene; none: not yet
+  std::shared_ptr<const EnvironmentTable> ray_table;
   std::optional<Transport> transport;
   std::optional<envmap::BlockTree> ray_texels;  // of the environment of ray_setup; none: not yet
   std::optional<Error> ray_failure;             // of load_paints(), which cannot tell it
@@ -97,8 +101,10 @@ struct Renderer::State : Sight {
   Result<void> look_at(const View& wanted);
   Result<void> take(int first, int count, image::Image& picture);
   CorrectionNoise correct(int first, int count, image::Image& picture);
+  Result<Transport> traced_light(bool over_floor) const;
   Result<std::optional<Transport>> transport_over_floor() const;
   Result<void> trace(const Scene& whole);
+  Scene completed(const Scene& scene) const;
 
   const GlContext* gl() const override { return open_gl ? &open_gl->context : nullptr; }
   std::shared_ptr<const rays::RayScene> traced_mesh() const override { return traced; }
@@ -118,7 +124,9 @@ Engine& Renderer::State::engine_of(const EngineInfo& info) {
 
 Result<void> Renderer::State::can_shade(const Scene& wanted, const Engine& by) const {
   if (needs_rays(wanted) && !by.info().traces_rays)
-    return usage_error("the engine {} draws neither floors nor parts that shine: take the engine path", by.info().name);
+    return usage_error(
+        "the engine {} draws neither floors nor parts that shine nor lamps at a place: take the engine path",
+        by.info().name);
   GONIO_TRY(by.can_shade(wanted));
   if (given && wanted.layer != nullptr && wanted.layer->textured())
     return usage_error("textures lie on the mesh: a G-buffer that is given has no places on them");
@@ -223,32 +231,44 @@ Result<void> Renderer::State::take(int first, int count, image::Image& picture) 
   for (int i = first; i < first + count; ++i) GONIO_TRY(engine->shade(*this, i, gain, i > first, picture));
   engine->finish(picture);
   picture.channel_names = {"R", "G", "B", "A"};
+  if (!engine->info().traces_rays && effects.extent && effects.mirror)
+    for (int i = first; i < first + count; ++i) add_glints(scene, effects, *gbuffer(i), gain, picture);
   if (scene.layer == nullptr || engine->shades_layer()) return {};
   for (int i = first; i < first + count; ++i) scene.layer->add(*gbuffer(i), places(i), effects, gain, picture);
   return {};
 }
 
-// Each sample of a pixel is corrected as the surface that it shows.
+// Each sample of a pixel is corrected as the surface that it shows, a few of them together.
 CorrectionNoise Renderer::State::correct(int first, int count, image::Image& picture) {
+  constexpr int kTogether = 4;
   CorrectionNoise all;
   if (!effects.rays.any() || !transport) return all;
+  const int groups = (count + kTogether - 1) / kTogether;
   CorrectionRequest request;
   request.effects = effects.rays;
   request.bounces = effort_asked.bounces;
-  request.tolerance_de00 = effects.ray_noise_de00;
+  request.tolerance_de00 = effects.ray_noise_de00 * std::sqrt(groups);
   request.white_luminance = white_luminance;
-  request.samples = count;
-  request.most_samples = std::max(2 * kBatch, effects.most_ray_samples / count);
+  request.most_samples = std::max(2 * kBatch, effects.most_ray_samples / groups);
   request.progress = effort_asked.progress;
   const image::Image before = picture;
   const Deadline deadline(effort_asked.time_limit_s);
-  for (int i = first; i < first + count; ++i) {
+  for (int group = 0; group < groups; ++group) {
     // What is left is shared by the samples of the pixels that are left.
-    if (effort_asked.time_limit_s > 0) request.time_limit_s = std::max(1e-3, deadline.left_s()) / (first + count - i);
-    request.seed = mixed(effort_asked.seed, static_cast<std::uint64_t>(i));
-    const CorrectionNoise one = add_correction(*transport, *scene.mesh, *gbuffer(i), request, before,
-                                               1.0F / static_cast<float>(count), picture);
-    all.de00_p95 += one.de00_p95 / count, all.free_share += one.free_share / count;
+    if (effort_asked.time_limit_s > 0) request.time_limit_s = std::max(1e-3, deadline.left_s()) / (groups - group);
+    const int begin = first + group * kTogether, end = std::min(first + count, begin + kTogether);
+    request.seed = mixed(effort_asked.seed, static_cast<std::uint64_t>(begin));
+    std::vector<VisibleSurface> samples;
+    for (int i = begin; i < end; ++i) {
+      samples.push_back(drawn_surface(*scene.mesh, *gbuffer(i)));
+      if (!effects.rays.floor) continue;
+      add_floor(*transport, samples.back());
+      add_surroundings(*transport, samples.back(), {effects.background, scene.background_color, ray_setup->environment},
+                       1.0F / static_cast<float>(count), picture);
+    }
+    const float gain = static_cast<float>(end - begin) / static_cast<float>(count);
+    const CorrectionNoise one = add_correction(*transport, samples, request, before, gain, picture);
+    all.de00_p95 += one.de00_p95 / std::sqrt(groups) / groups, all.free_share += one.free_share / groups;
     all.samples += one.samples, all.ms += one.ms;
     all.reached = all.reached && one.reached;
   }
@@ -259,30 +279,44 @@ Result<void> Renderer::State::trace(const Scene& whole) {
   transport.reset(), ray_failure.reset();
   if (!ray_setup || !ray_setup->absent.empty()) return {};
   ray_scene = whole;
-  PathScene paths;
-  paths.scene = &ray_scene;
-  paths.environment = ray_setup->environment;
   if (whole.mesh != nullptr) GONIO_TRY(show(*whole.mesh));
   if (whole.mesh != nullptr && ray_mesh == nullptr) {
     GONIO_ASSIGN(rays::RayScene scene_of_rays, rays::RayScene::create(*whole.mesh));
     ray_mesh = std::make_shared<const rays::RayScene>(std::move(scene_of_rays));
   }
-  paths.rays = ray_mesh;
-  GONIO_ASSIGN(Transport created, Transport::create(paths));
+  if (ray_setup->environment != nullptr && ray_table == nullptr)
+    ray_table = std::make_shared<const EnvironmentTable>(*ray_setup->environment);
+  GONIO_ASSIGN(Transport created, traced_light(effects.rays.floor && ray_setup->floor));
   transport.emplace(std::move(created));
   return {};
 }
 
-// The same over the floor that plans price; none where there is no such floor.
-Result<std::optional<Transport>> Renderer::State::transport_over_floor() const {
-  if (!transport || !ray_setup->floor || ray_setup->environment == nullptr) return std::optional<Transport>();
+Result<Transport> Renderer::State::traced_light(bool over_floor) const {
   PathScene paths;
   paths.scene = &ray_scene;
-  paths.environment = ray_setup->environment;
-  paths.ground = ray_setup->floor;
-  paths.rays = std::make_shared<const rays::RayScene>(ray_mesh->over({ray_setup->floor->height}));
-  GONIO_ASSIGN(Transport created, Transport::create(paths));
+  paths.environment = ray_setup->environment, paths.table = ray_table;
+  paths.rays = ray_mesh;
+  if (over_floor) {
+    paths.ground = ray_setup->floor;
+    paths.rays = std::make_shared<const rays::RayScene>(ray_mesh->over({ray_setup->floor->height}));
+  }
+  return Transport::create(paths);
+}
+
+// The same over the floor of the picture; none where there is no such floor.
+Result<std::optional<Transport>> Renderer::State::transport_over_floor() const {
+  if (!transport || !ray_setup->floor || ray_setup->environment == nullptr) return std::optional<Transport>();
+  GONIO_ASSIGN(Transport created, traced_light(true));
   return std::optional<Transport>(std::move(created));
+}
+
+// With the light and the floor that rays meet, for engines that draw by them alone.
+Scene Renderer::State::completed(const Scene& given_scene) const {
+  Scene complete = given_scene;
+  if (!ray_setup) return complete;
+  if (complete.texels == nullptr && ray_texels) complete.texels = &*ray_texels;
+  if (!complete.ground) complete.ground = ray_setup->floor;
+  return complete;
 }
 
 Renderer::Renderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -327,7 +361,8 @@ std::string Renderer::opengl() const {
 }
 
 std::string Renderer::shader() const {
-  return shading_fragment_shader(state_->effects, state_->scene.reflection);
+  return shading_fragment_shader(state_->effects, state_->scene.reflection,
+                                 tilt_exponents(state_->scene, state_->effects));
 }
 
 Result<void> Renderer::load(const Scene& scene, const std::string& engine) {
@@ -344,7 +379,10 @@ Result<void> Renderer::load(const Scene& scene, const Effects& effects, const st
   s.effects = effects;
   s.engine = &engine;
   GONIO_TRY(s.show(*scene.mesh));
-  return engine.load(scene, effects);
+  // The floor lies before the background, and is drawn with it.
+  Effects by_engine = effects;
+  if (effects.rays.floor) by_engine.background = Background::kNone;
+  return engine.load(scene, by_engine);
 }
 
 Result<Plan> Renderer::load(const Scene& scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers,
@@ -356,42 +394,46 @@ Result<Plan> Renderer::load(const Scene& scene, const std::vector<std::shared_pt
   }
   // Rays meet parts that the camera does not see.
   const Scene seen = asked != nullptr && asked->traces_rays ? scene : seen_scene(scene, gbuffers);
-  std::vector<const Engine*> able;
-  std::optional<Error> refusal;  // of the engine that was asked for, or of the first
-  for (const EngineInfo* info : engines()) {
-    const Engine& engine = s.engine_of(*info);
-    const Result<void> can = s.can_shade(seen, engine);
-    if (can.ok()) able.push_back(&engine);
-    if (!can.ok() && (request.engine ? *request.engine == info->name : !refusal)) refusal = can.error();
-  }
-  if (refusal && (request.engine || able.empty())) return *refusal;
   RayContext rays;
   std::optional<Transport> over_floor;
   rays.absent.clear();
   if (s.ray_setup && !(asked != nullptr && asked->traces_rays)) {
     rays.bounces = s.effort_asked.bounces, rays.seed = s.effort_asked.seed, rays.absent = s.ray_setup->absent;
     rays.refused = s.ray_setup->refused, rays.no_floor = s.ray_setup->no_floor;
+    s.effects.rays = {};  // decided below
     const Result<void> traced = s.trace(scene);
     if (!traced.ok()) rays.absent = traced.error().message;
     rays.transport = s.transport ? &*s.transport : nullptr;
     GONIO_ASSIGN(over_floor, s.transport_over_floor());
     rays.over_floor = over_floor ? &*over_floor : nullptr;
+    rays.floor_forced = s.ray_setup->floor_forced, rays.environment = s.ray_setup->environment;
     if (s.transport && s.ray_setup->environment != nullptr) {
       if (!s.ray_texels) s.ray_texels.emplace(*s.ray_setup->environment);
       rays.texels = &*s.ray_texels;
     }
   }
+  std::vector<const Engine*> able;
+  std::optional<Error> refusal;  // of the engine that was asked for, or of the first
+  for (const EngineInfo* info : engines()) {
+    const Engine& engine = s.engine_of(*info);
+    const Result<void> can = s.can_shade(info->traces_rays ? s.completed(scene) : seen, engine);
+    if (can.ok()) able.push_back(&engine);
+    if (!can.ok() && (request.engine ? *request.engine == info->name : !refusal)) refusal = can.error();
+  }
+  if (refusal && (request.engine || able.empty())) return *refusal;
   s.white_luminance = request.white_luminance;
   GONIO_ASSIGN(Plan plan, make_plan(seen, gbuffers, request, able, rays));
-  GONIO_TRY(load(seen, plan.effects, plan.engine));
+  if (plan.effects.rays.floor) s.transport = std::move(over_floor);
+  GONIO_ASSIGN(const EngineInfo* taken, engine_named(plan.engine));
+  GONIO_TRY(load(taken->traces_rays ? s.completed(scene) : seen, plan.effects, plan.engine));
   return plan;
 }
 
 void Renderer::load_paints(const Scene& scene) {
   State& s = *state_;
   s.begin();
-  s.scene = scene;
-  if (s.engine != nullptr) s.engine->load_paints(scene);
+  s.scene = s.engine != nullptr && s.engine->info().traces_rays ? s.completed(scene) : scene;
+  if (s.engine != nullptr) s.engine->load_paints(s.scene);
   if (!s.effects.rays.any()) return;
   const Result<void> traced = s.trace(scene);
   if (!traced.ok()) s.ray_failure = traced.error();
@@ -399,7 +441,7 @@ void Renderer::load_paints(const Scene& scene) {
 
 void Renderer::set_rays(const RaySetup& setup) {
   state_->ray_setup = setup;
-  state_->ray_texels.reset();
+  state_->ray_texels.reset(), state_->ray_table.reset();
 }
 
 const Transport* Renderer::transport() const {

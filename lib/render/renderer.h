@@ -45,8 +45,9 @@ struct RaySetup {
   const envmap::Environment* environment = nullptr;  // none: dark
   std::string absent;                                // why plans cannot trace rays; "" where they can
   bool refused = false;                              // whether that is because nobody wants them
-  std::optional<Ground> floor;  // that plans price beside the other effects of rays, and engines with maps do not draw
-  std::string no_floor;         // why there is none
+  std::optional<Ground> floor;                       // that shows the environment: plans decide whether it is drawn
+  bool floor_forced = false;  // whether it is asked for by name, so that it is drawn whatever it is worth
+  std::string no_floor;       // why there is none
 };
 
 class Renderer {

@@ -1,7 +1,10 @@
 #include "render/scene.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "base/angles.h"
+#include "brdf/disc_light.h"
 #include "color/color.h"
 
 namespace goniochrome::render {
@@ -19,7 +22,52 @@ double luminance(const color::Rgb& rgb) {
 }  // namespace
 
 bool needs_rays(const Scene& scene) {
-  return scene.ground || std::ranges::any_of(scene.emission, [](const color::Rgb& e) { return e != color::Rgb{}; });
+  return scene.ground || std::ranges::any_of(scene.emission, [](const color::Rgb& e) { return e != color::Rgb{}; }) ||
+         std::ranges::any_of(scene.lights, [](const Light& light) { return light.place.has_value(); });
+}
+
+color::Rgb Light::radiance() const {
+  return radius_rad > 0 ? kPi * brdf::disc_radiance(radius_rad) * white : color::Rgb{};
+}
+
+bool Light::meets(const Vec3& toward) const {
+  return radius_rad > 0 && length(toward - direction) <= 2 * std::sin(0.5 * radius_rad);
+}
+
+Light light_at(const Light& light, const Vec3& position) {
+  if (!light.place) return light;
+  const Vec3 toward = light.place->position - position;
+  const double distance = length(toward), radius = light.place->distance * std::sin(light.radius_rad);
+  Light seen = light;
+  seen.place.reset();
+  // A point lamp has no surface that a point of the mesh could touch; there it is as bright as that close by.
+  const double least = std::max(radius, 1e-6 * light.place->distance), far = std::max(distance, least);
+  if (distance > 0) seen.direction = (1 / distance) * toward;
+  const double closer = light.place->distance / far;
+  seen.white = closer * closer * light.white;
+  seen.radius_rad = std::asin(std::min(1.0, radius / far));
+  return seen;
+}
+
+// Rings and steps of even solid angle; the middle of each in both.
+std::vector<DiscDirection> disc_directions(const Light& light) {
+  constexpr double kNarrow_rad = 0.01;
+  constexpr int kRings = 4, kSteps = 8;
+  if (light.radius_rad < kNarrow_rad) return {{light.direction, 1}};
+  const Vec3 other = std::abs(light.direction.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  const Vec3 x = normalized(cross(other, light.direction)), y = cross(light.direction, x);
+  const double half = std::sin(0.5 * light.radius_rad), sine = std::sin(light.radius_rad);
+  const double weight = 4 * half * half / (sine * sine) / (kRings * kSteps);
+  std::vector<DiscDirection> all;
+  for (int ring = 0; ring < kRings; ++ring) {
+    const double versine = 2 * half * half * (ring + 0.5) / kRings, across = std::sqrt(versine * (2 - versine));
+    for (int step = 0; step < kSteps; ++step) {
+      const double phi = 2 * kPi * (step + 0.5 * (ring % 2)) / kSteps;
+      all.push_back(
+          {(1 - versine) * light.direction + across * std::cos(phi) * x + across * std::sin(phi) * y, weight});
+    }
+  }
+  return all;
 }
 
 std::vector<double> lobe_exponents(const std::vector<paint::LobeFit>& paints) {
@@ -68,7 +116,8 @@ double facing_white(const envmap::PrefilteredEnvironment* env, const std::vector
                     const Vec3& direction) {
   double sum = 0;
   if (env != nullptr && env->diffuse.map.size > 0) sum = luminance(envmap::bilinear(env->diffuse.map, direction));
-  for (const Light& light : lights) sum += std::max(0.0, dot(light.direction, direction)) * luminance(light.white);
+  for (const Light& light : lights)
+    sum += brdf::disc_irradiance(dot(light.direction, direction), light.radius_rad) * luminance(light.white);
   return sum;
 }
 

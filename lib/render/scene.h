@@ -13,11 +13,34 @@
 
 namespace goniochrome::render {
 
-// A directional light. `white` is the radiance that a perfect white diffuser facing it shows: irradiance / pi.
+// A lamp far away, or at a place. It is a disc of even radiance, or a point. goniochrome-theory(7), RENDERING, Lamps.
 struct Light {
-  Vec3 direction{0, 1, 0};  // to the light, unit
-  color::Rgb white{1, 1, 1};
+  // A lamp that is a sphere at a place: its irradiance falls with the square of the distance.
+  struct Place {
+    Vec3 position;        // of its middle, in units of the mesh
+    double distance = 1;  // at which it has the white and the radius below
+  };
+  Vec3 direction{0, 1, 0};    // to its middle, unit; of a lamp at a place, as seen from the middle of the mesh
+  color::Rgb white{1, 1, 1};  // the radiance of a perfect white diffuser that faces it: irradiance / pi
+  double radius_rad = 0;  // of the disc as it is seen, 0..kWidestDisc_rad; 0: a point, whose mirror image is not drawn
+  std::optional<Place> place = {};
+
+  // Of the disc: what a mirror shows within it. Black for a point.
+  color::Rgb radiance() const;
+  // Whether this direction (unit) meets the disc.
+  bool meets(const Vec3& toward) const;
 };
+
+// The lamp as it is seen from a point of the mesh: without a place. Within the lamp it fills half of the sphere.
+Light light_at(const Light& light, const Vec3& position);
+
+// Directions to parts of a disc that are alike and small enough to be a point each, for what changes slowly: the middle
+// of a narrow disc alone. The weights are solid angles relative to pi sin^2(radius).
+struct DiscDirection {
+  Vec3 direction;
+  double weight = 1;
+};
+std::vector<DiscDirection> disc_directions(const Light& light);
 
 enum class Background { kNone, kColor, kEnvironment };
 
@@ -50,7 +73,8 @@ struct Scene {
   std::optional<Ground> ground = {};
 };
 
-// Whether the scene has what only engines that trace rays can draw: a floor, or parts that shine by themselves.
+// Whether the scene has what only engines that trace rays can draw: a floor, parts that shine by themselves, or lamps
+// at a place.
 bool needs_rays(const Scene& scene);
 
 // The exponents (finite, ascending) of the lobes with any weight, over all paints.

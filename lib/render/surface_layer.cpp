@@ -69,16 +69,21 @@ LocalPair about_normal(const Vec3& normal, const Vec3& light, const Vec3& viewer
 
 // The lobe model under a light is pi W f cos_i; the flakes' part of f, K_D and K_DD, is taken out and the map's
 // reflectance factor, pi f by definition, put in.
-color::Rgb SurfaceLayer::mapped_difference(int part, const Vec3& normal, const Vec3& to_viewer) const {
+color::Rgb SurfaceLayer::mapped_difference(int part, const Vec3& normal, const Vec3& to_viewer, bool coat) const {
   color::Rgb sum;
   const auto at = static_cast<std::size_t>(part);
   for (const Light& light : scene_.lights) {
-    const auto [wi, wo] = about_normal(normal, light.direction, to_viewer);
-    if (wi.z <= 0 || wo.z <= 0) continue;
-    const double aspecular_rad = paint::aspecular_angle_rad(wi, wo, {0, 0, 1});
-    const color::Rgb map = brdf::reflectance_factor(*surfaces_[at].color_map, wi, wo, treatment_);
-    const color::Rgb lobes = brdf::flake_reflectance_factor(scene_.paints[at], aspecular_rad / kDegree);
-    sum += wi.z * color::reflected(scene_.reflection, light.white, map - lobes);
+    for (const DiscDirection& part_of : disc_directions(light)) {
+      const auto [wi, wo] = about_normal(normal, part_of.direction, to_viewer);
+      if (wi.z <= 0 || wo.z <= 0) continue;
+      const double aspecular_rad = paint::aspecular_angle_rad(wi, wo, {0, 0, 1});
+      const color::Rgb map = brdf::reflectance_factor(*surfaces_[at].color_map, wi, wo, treatment_);
+      const paint::LobeFit& paint = scene_.paints[at];
+      const color::Rgb lobes = brdf::flake_reflectance_factor(
+          coat ? paint : brdf::under_coat(paint, paint::kNoCoat), aspecular_rad / kDegree,
+          std::acos(std::min(wi.z, 1.0)) / kDegree, std::acos(std::min(wo.z, 1.0)) / kDegree);
+      sum += part_of.weight * wi.z * color::reflected(scene_.reflection, light.white, map - lobes);
+    }
   }
   return sum;
 }
@@ -86,7 +91,7 @@ color::Rgb SurfaceLayer::mapped_difference(int part, const Vec3& normal, const V
 namespace {
 
 SbrdfLight light_of(const Scene& scene, const Effects& effects) {
-  return {effects.environment, effects.lights > 0 ? scene.lights : std::vector<Light>(),
+  return {effects.environment, lights_of(scene, effects),
           effects.reflection ? scene.reflection : color::component_wise(), true, effects.texture_lobes};
 }
 
@@ -146,16 +151,17 @@ SurfaceLayer::Place SurfaceLayer::place(int part, const MeshPoint& point) const 
   return seen_texels(*surface(part).texture, at);
 }
 
-void SurfaceLayer::add_mapped(const std::vector<VisiblePoint>& points, std::vector<color::Rgb>& colors) const {
+void SurfaceLayer::add_mapped(const std::vector<VisiblePoint>& points, bool coat,
+                              std::vector<color::Rgb>& colors) const {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const VisiblePoint& p = points[i];
-    if (surface(p.part).color_map != nullptr) colors[i] += mapped_difference(p.part, p.normal, p.to_viewer);
+    if (surface(p.part).color_map != nullptr) colors[i] += mapped_difference(p.part, p.normal, p.to_viewer, coat);
   }
 }
 
 void SurfaceLayer::add(const std::vector<VisiblePoint>& points, const Effects& effects,
                        std::vector<color::Rgb>& colors) const {
-  if (effects.maps) add_mapped(points, colors);
+  if (effects.maps) add_mapped(points, effects.coat, colors);
   std::vector<std::vector<VisiblePoint>> by_texture(2 * textures_.size());
   std::vector<std::vector<std::size_t>> numbers(by_texture.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -225,7 +231,7 @@ void SurfaceLayer::add(const Gbuffer& gbuffer, const std::vector<TexturePlace>& 
           textured->put(shading_of(part, effects), x, y, gbuffer.at(x, y), -(first + (x + 0.5) * rays.right),
                         places[static_cast<std::size_t>(y) * gbuffer.width + x], surface.repeat);
         } else if (effects.maps && surface.color_map != nullptr) {
-          const color::Rgb color = mapped_difference(part, gbuffer.normal(x, y), gbuffer.to_viewer(x, y));
+          const color::Rgb color = mapped_difference(part, gbuffer.normal(x, y), gbuffer.to_viewer(x, y), effects.coat);
           for (int c = 0; c < 3; ++c) rgba.pixel(x, y)[c] += weight * static_cast<float>(color[c]);
         }
       }

@@ -54,11 +54,12 @@ class SurfaceLayer {
   void add(const Gbuffer& gbuffer, const std::vector<TexturePlace>& places, const Effects& effects, float weight,
            image::Image& rgba) const;
 
-  // The color map's part at one point: radiance under the scene's lights less that of the paint's flake lobes.
-  color::Rgb mapped_difference(int part, const Vec3& normal, const Vec3& to_viewer) const;
+  // The color map's part at one point: radiance under the scene's lights less that of the paint's flake lobes, drawn
+  // with the effect `coat` or without it.
+  color::Rgb mapped_difference(int part, const Vec3& normal, const Vec3& to_viewer, bool coat = true) const;
 
   // Adds to the colors of these points what color maps change under the scene's lights.
-  void add_mapped(const std::vector<VisiblePoint>& points, std::vector<color::Rgb>& colors) const;
+  void add_mapped(const std::vector<VisiblePoint>& points, bool coat, std::vector<color::Rgb>& colors) const;
 
   // Adds the layer to the colors of these points. One whose place on its texture is not known takes another place for
   // each, which is enough to tell what a texture is worth.

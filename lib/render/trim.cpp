@@ -8,6 +8,7 @@
 
 #include "base/angles.h"
 #include "base/text.h"
+#include "brdf/lobe_model.h"
 
 namespace goniochrome::render {
 
@@ -34,12 +35,12 @@ std::optional<paint::LobeFit> finish_of(const std::string& text, bool with_mirro
   paint::LobeFit finish;
   const auto wear = [&](double reflectance, bool coated) {
     finish.diffuse = (reflectance / kPi) * color::Rgb{1, 1, 1};
-    if (coated && with_mirror) finish.lobes.push_back({paint::kMirrorExponent, {}, {1, 1, 1}});
-    return finish;
+    if (!coated || !with_mirror) return finish;
+    finish.lobes.push_back({paint::kMirrorExponent, {}, {1, 1, 1}});
+    return brdf::under_coat(finish, brdf::kCoatIndex);
   };
   if (has_word_of(text, kGlass)) return wear(0.005, true);
   if (has_word_of(text, kBlack)) return wear(0.03, false);
-  // With a lighter gray, coat and gray together would send back more light than they get at grazing views.
   if (has_word_of(text, kMetal)) return wear(0.2, true);
   return std::nullopt;
 }

@@ -3,13 +3,15 @@
 #include <gtest/gtest.h>
 
 #include "base/angles.h"
+#include "brdf/lobe_model.h"
 
 namespace goniochrome::render {
 namespace {
 
 double albedo(const char* name, const char* material = "") {
   const auto finish = trim_of({name, material, 0, 1}, true);
-  return finish ? kPi * finish->diffuse.x : -1;
+  // As read at 45 and 0 deg, through the coat where there is one.
+  return finish ? brdf::flake_reflectance_factor(*finish, 45).x : -1;
 }
 
 TEST(Trim, IsKnownByWholeWordsOfNameOrMaterial) {

@@ -7,6 +7,7 @@
 
 #include "base/angles.h"
 #include "base/parallel.h"
+#include "brdf/lobe_model.h"
 #include "display/paint_view.h"
 #include "math/statistics.h"
 #include "paint/curve.h"
@@ -82,6 +83,9 @@ class Seen {
   explicit Seen(const SketchInput& input) : input_(input), image_(input.buffers->image) {
     aspecular_ = *input.buffers->channel("aspecular");
     lambert_ = *input.buffers->channel("lambert");
+    const auto normal = input.buffers->channel("normal.X");
+    const bool coat = std::ranges::find(input.buffers->drawn, "coat") != input.buffers->drawn.end();
+    if (coat && normal.ok() && input.buffers->has_rays) normal_ = *normal;
     if (input.buffers->lights.empty()) return;
     const color::Rgb white = input.buffers->lights.front().white;
     for (int c = 0; c < 3; ++c) scale_[c] = white[c] > 0 ? 1 / white[c] : 0;
@@ -91,14 +95,30 @@ class Seen {
     const float* pixel = &image_.data[static_cast<std::size_t>(place) * image_.channels];
     const color::Rgb light = scale_ * edited_light(input_, place);
     return {pixel[aspecular_],
-            pixel[lambert_],
+            pixel[lambert_] * coat_share(place, pixel),
             {static_cast<float>(light.x), static_cast<float>(light.y), static_cast<float>(light.z)}};
   }
 
+  // Of the coat that the picture was drawn with.
+  double coat_index() const { return normal_ < 0 ? paint::kNoCoat : brdf::kCoatIndex; }
+
  private:
+  // What a coat leaves of the base's light at a pixel, relative to what it leaves where an instrument reads the color
+  // of that aspecular angle.
+  float coat_share(std::uint32_t place, const float* pixel) const {
+    if (normal_ < 0) return 1;
+    const int x = static_cast<int>(place) % image_.width, y = static_cast<int>(place) / image_.width;
+    const Vec3 normal{pixel[normal_], pixel[normal_ + 1], pixel[normal_ + 2]};
+    const auto cosine = [](double c) { return std::clamp(c, 0.0, 1.0); };
+    const double here = brdf::coat_passages(coat_index(), cosine(pixel[lambert_]),
+                                            cosine(dot(normal, input_.buffers->to_viewer(x, y))));
+    return static_cast<float>(here / instrument_passages(pixel[aspecular_], coat_index()));
+  }
+
   const SketchInput& input_;
   const image::Image& image_;
   int aspecular_ = 0, lambert_ = 0;
+  int normal_ = -1;  // the first of three channels, where the base is seen through a coat
   color::Rgb scale_{1, 1, 1};
 };
 
@@ -152,19 +172,21 @@ void take_gloss(const Highlight& highlight, const std::function<bool(double)>& a
 }
 
 // The same cells as light on lobes: about `most` of them, of all angles and cosines alike.
-SearchSamples search_samples(const std::vector<SketchCell>& cells, const formats::Basis& basis, bool display,
-                             std::size_t most) {
+SearchSamples search_samples(const std::vector<SketchCell>& cells, const formats::Basis& basis, double coat_index,
+                             bool display, std::size_t most) {
   const std::size_t step = sketch_step(cells.size(), most);
   SearchSamples samples;
   samples.columns = search_columns(basis);
+  samples.coat_index = coat_index;
   samples.display = display;
   for (std::size_t i = 0; i < cells.size(); i += step) {
     const SketchCell& cell = cells[i];
     const auto light = [&](double value) { samples.light.push_back(value * kPi * Vec3{1, 1, 1}); };
-    light(cell.cos_i);
+    const double base = cell.cos_i * instrument_passages(cell.aspecular_deg, coat_index);
+    light(base);
     for (const double exponent : basis.exponents) {
       const double power = lobe_at(cell.aspecular_deg, exponent);
-      light(cell.cos_i * power), light(power);
+      light(base * power), light(power);
     }
     light(0);  // the mirror image of a lamp is a point
     samples.seen.push_back(cell.seen);
@@ -218,8 +240,9 @@ color::Rgb face_of(const FoundPaint& found) {
   return color::rgb_from_lab({v[0], v[1], v[2]}, *color::white_point({}));
 }
 
-SketchCurve curve_of(const FoundPaint& found, const formats::Basis& basis) {
+SketchCurve curve_of(const FoundPaint& found, const formats::Basis& basis, double coat_index) {
   SketchCurve curve;
+  curve.coat_index = coat_index;
   curve.exponents = basis.exponents;
   curve.diffuse = kPi * found.weights.front();
   for (std::size_t j = 0; j < basis.exponents.size(); ++j) {
@@ -238,14 +261,15 @@ std::string rank_problem(const std::vector<SketchCell>& cells, const SketchFit& 
   return "";
 }
 
-SearchSamples samples_of(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light,
+SearchSamples samples_of(const SketchInput& input, const std::vector<std::uint32_t>& used, const SketchLight& light,
                          std::size_t most) {
-  const std::size_t step = std::max<std::size_t>(1, pixels.used.size() / most);
+  const std::size_t step = std::max<std::size_t>(1, used.size() / most);
   std::vector<std::uint32_t> places;
-  for (std::size_t i = 0; i < pixels.used.size(); i += step) places.push_back(pixels.used[i]);
+  for (std::size_t i = 0; i < used.size(); i += step) places.push_back(used[i]);
   SearchSamples samples;
   samples.columns = search_columns(light.basis);
   samples.reflection = light.reflection;
+  samples.coat_index = light.coat_index;
   samples.display = !input.edited->scene_linear;
   samples.light.resize(places.size() * samples.columns);
   samples.importance.assign(places.size(), 1.0);
@@ -306,12 +330,13 @@ SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, con
   const CurveFit quadratic = fit_quadratic(cells), lobes = fit_lobes(cells);
   const CurveFit& better = lobes.cost <= quadratic.cost ? lobes : quadratic;
   const bool display = !input.edited->scene_linear;
-  const SearchFitters fitters(basis);
-  const LobeSearch first(fitters, search_samples(cells, basis, display, kFirstCells));
-  const LobeSearch search(fitters, search_samples(cells, basis, display, kSearchCells));
+  const double coat = seen.coat_index();
+  const SearchFitters fitters(basis, coat);
+  const LobeSearch first(fitters, search_samples(cells, basis, coat, display, kFirstCells));
+  const LobeSearch search(fitters, search_samples(cells, basis, coat, display, kSearchCells));
   const FoundPaint found = search.find_plain(first);
   const bool as_good = is_as_good(found.search.cost, better.cost, !is_seen(cells, kFace_deg));
-  curve = as_good ? curve_of(found, basis) : better.curve;
+  curve = as_good ? curve_of(found, basis, coat) : better.curve;
   judge();
   if (fit.median_de76 > limits.median_de76) return give_up(poor_match(fit));
   std::string problem;
@@ -332,10 +357,50 @@ SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, con
   return fit;
 }
 
-SketchFit sketch_environment(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light,
-                             const SketchLimits& limits, bool with_differences) {
-  const SearchFitters fitters(light.basis);
-  const LobeSearch search(fitters, samples_of(input, pixels, light, kMostPixels));
+namespace {
+
+// The pixels that the search looks at: all of them, or all within the highlight of the first lamp and as many others.
+struct Looked {
+  std::vector<std::uint32_t> answer, way;
+};
+
+Looked looked_under_lamps(const SketchInput& input, const SketchPixels& pixels) {
+  constexpr double kHighlight_deg = 12;
+  constexpr std::size_t kMostAnswer = 3000, kMostWay = 700;
+  const image::Image& image = input.buffers->image;
+  const int aspecular = *input.buffers->channel("aspecular");
+  std::vector<std::uint32_t> near, far;
+  for (const std::uint32_t place : pixels.used) {
+    const bool is_near = image.data[static_cast<std::size_t>(place) * image.channels + aspecular] < kHighlight_deg;
+    (is_near ? near : far).push_back(place);
+  }
+  const auto take = [](const std::vector<std::uint32_t>& from, std::size_t most, std::vector<std::uint32_t>& to) {
+    const std::size_t step = std::max<std::size_t>(1, (from.size() + most - 1) / most);
+    for (std::size_t i = 0; i < from.size(); i += step) to.push_back(from[i]);
+  };
+  Looked looked;
+  take(near, kMostAnswer, looked.answer), take(far, kMostAnswer, looked.answer);
+  take(near, kMostWay, looked.way), take(far, kMostWay, looked.way);
+  return looked;
+}
+
+// Which readings explain the pixels as well as the one that was found.
+void take_gloss_range(const LobeSearch& search, const FoundPaint& found, SketchFit& fit) {
+  constexpr double kStep_gu = 2.5, kOpen_gu = 10;
+  const double most = kSameCost * found.search.cost + kSameCostBy;
+  fit.gloss_low_gu = fit.gloss_high_gu = fit.gloss_60_gu;
+  for (double gloss = 0; gloss <= 100; gloss += kStep_gu) {
+    if (search.cost_with_gloss(found, gloss) > most) continue;
+    fit.gloss_low_gu = std::min(fit.gloss_low_gu, gloss), fit.gloss_high_gu = std::max(fit.gloss_high_gu, gloss);
+  }
+  if (fit.gloss_high_gu - fit.gloss_low_gu > kOpen_gu) fit.gloss_from = "undetermined";
+}
+
+SketchFit searched(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light,
+                   const SketchLimits& limits, bool with_differences, const Looked* lamps) {
+  const SearchFitters fitters(light.basis, light.coat_index);
+  const LobeSearch search(fitters, lamps != nullptr ? samples_of(input, lamps->answer, light, lamps->answer.size())
+                                                    : samples_of(input, pixels.used, light, kMostPixels));
   SketchFit fit;
   std::vector<color::Rgb> weights(search_columns(light.basis));
   const auto judge = [&] {
@@ -358,13 +423,28 @@ SketchFit sketch_environment(const SketchInput& input, const SketchPixels& pixel
   };
   if (pixels.used.size() < kFewestPixels)
     return give_up(fmt::format("{} pixels are too few for a search", pixels.used.size()));
-  const LobeSearch first(fitters, samples_of(input, pixels, light, kFirstPixels));
+  const LobeSearch first(fitters, lamps != nullptr ? samples_of(input, lamps->way, light, lamps->way.size())
+                                                   : samples_of(input, pixels.used, light, kFirstPixels));
   const FoundPaint found = search.find(first);
   take_found(found, fit);
+  if (lamps != nullptr) take_gloss_range(search, found, fit);
   weights = fit.weights = found.weights;
   judge();
   if (fit.median_de76 > limits.median_de76) return give_up(poor_match(fit));
   return fit;
+}
+
+}  // namespace
+
+SketchFit sketch_environment(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light,
+                             const SketchLimits& limits, bool with_differences) {
+  return searched(input, pixels, light, limits, with_differences, nullptr);
+}
+
+SketchFit sketch_lamps(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light,
+                       const SketchLimits& limits, bool with_differences) {
+  const Looked looked = looked_under_lamps(input, pixels);
+  return searched(input, pixels, light, limits, with_differences, &looked);
 }
 
 paint::Paint sketch_paint(const SketchFit& fit, const std::string& name) {
@@ -373,7 +453,7 @@ paint::Paint sketch_paint(const SketchFit& fit, const std::string& name) {
   paint.paint_class = fit.status == "fitted" ? paint::PaintClass::kUnknown : paint::PaintClass::kSolid;
   paint.measurement = paint::Measurement{{}, "", fit.rows};
   paint.appearance = fit.appearance;
-  if (!fit.gloss_from.empty()) paint.gloss.push_back({60, fit.gloss_60_gu});
+  if (!fit.gloss_from.empty() && fit.gloss_from != "undetermined") paint.gloss.push_back({60, fit.gloss_60_gu});
   return paint;
 }
 

@@ -35,7 +35,9 @@ struct SketchFit {
   std::vector<paint::LabReading> rows;   // at the export angles
   std::vector<double> extrapolated_deg;  // angles of those rows that no pixel shows
   double gloss_60_gu = 0;
-  std::string gloss_from;  // "highlight", "contrast" or "search"
+  std::string gloss_from;  // "highlight", "contrast" or "search"; "undetermined" where the pixels cannot tell it
+  // The readings that explain the pixels as well, of a search that looked; else both are 0.
+  double gloss_low_gu = 0, gloss_high_gu = 0;
   double condition = 0;
   double rms_de76 = 0, median_de76 = 0;  // edited picture against the paint found, relative to white
   double seen_from_deg = 0, seen_to_deg = 0;
@@ -59,6 +61,7 @@ struct SketchLight {
   // The light of each part of the model with weight 1 (1/sr) at a place of the buffers, relative to white: K_D, then
   // K_DD and K_G of every lobe, then the mirror.
   std::function<void(std::uint32_t place, Vec3* columns)> shade;
+  double coat_index = paint::kNoCoat;  // of the coat through which K_D and K_DD are lit
 };
 
 // The number of those parts.
@@ -67,6 +70,11 @@ std::size_t search_columns(const formats::Basis& basis);
 // The paint under this light: face, flop, travel and gloss by a nonlinear search.
 SketchFit sketch_environment(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light,
                              const SketchLimits& limits, bool with_differences);
+
+// The same under lamps that are discs: their highlights, glare included, tell the gloss. Few pixels show them, so that
+// all of these are looked at. Gloss is "undetermined" where readings more than 10 units apart explain them as well.
+SketchFit sketch_lamps(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light,
+                       const SketchLimits& limits, bool with_differences);
 
 // The paint found as it is written to a file: rows, face, flop, travel and gloss. A fallback is a solid paint.
 paint::Paint sketch_paint(const SketchFit& fit, const std::string& name);

@@ -6,10 +6,13 @@
 #include <numeric>
 
 #include "base/angles.h"
+#include "brdf/disc_light.h"
 #include "brdf/lobe_model.h"
 #include "math/cosine_power.h"
+#include "render/aov.h"
 #include "render/effects.h"
 #include "render/gbuffer.h"
+#include "render/glints.h"
 
 namespace goniochrome::sketch {
 
@@ -31,8 +34,9 @@ formats::Basis basis_of(const envmap::PrefilteredEnvironment& env) {
 }
 
 // One paint for each column, with weight 1 in it and nowhere else. All have all lobes, so that each of them is drawn.
-std::vector<paint::LobeFit> unit_paints(const formats::Basis& basis) {
+std::vector<paint::LobeFit> unit_paints(const formats::Basis& basis, double coat_index) {
   paint::LobeFit blank;
+  blank.coat_index = coat_index;
   for (const double exponent : basis.exponents) blank.lobes.push_back({exponent, {}, {}});
   blank.lobes.push_back({paint::kMirrorExponent, {}, {}});
   std::vector<paint::LobeFit> paints(search_columns(basis), blank);
@@ -46,14 +50,25 @@ std::vector<paint::LobeFit> unit_paints(const formats::Basis& basis) {
 
 class Shading {
  public:
-  Shading(const image::AovFile& buffers, const envmap::PrefilteredEnvironment& env, int normal, int part)
-      : buffers_(buffers), env_(env), basis_(basis_of(env)), normal_(normal), part_(part) {
-    if (buffers.samples > 1) shifts_ = render::sample_shifts(std::min(buffers.samples, kMostSamples));
+  // `env` is null where lamps are all the light there is.
+  Shading(const image::AovFile& buffers, const envmap::PrefilteredEnvironment* env, formats::Basis basis, int normal,
+          int part)
+      : buffers_(buffers), env_(env), basis_(std::move(basis)), normal_(normal), part_(part) {
+    // The narrow highlight of a lamp is summed over all samples, as it was drawn.
+    const int most = env != nullptr ? kMostSamples : buffers.samples;
+    if (buffers.samples > 1) shifts_ = render::sample_shifts(std::min(buffers.samples, most));
     render::Scene scene;
-    scene.paints = unit_paints(basis_);
-    scene.env = &env;
-    for (const image::AovLight& light : buffers.lights) scene.lights.push_back({light.direction, light.white});
+    if (drawn(buffers, "coat")) {
+      coat_index_ = brdf::kCoatIndex;
+      if (env != nullptr) coat_diffuse_ = render::coat_diffuse_map(*env);
+    }
+    scene.paints = unit_paints(basis_, coat_index_);
+    scene.env = env;
+    for (const image::AovLight& light : buffers.lights) scene.lights.push_back(render::light_of(light));
     scene.gloss_deg.assign(scene.paints.size(), kGloss_deg);
+    if (!drawn(buffers, "extent"))
+      for (render::Light& lamp : scene.lights) lamp.radius_rad = 0;
+    lights_ = scene.lights;
     render::Effects effects = render::effects_of(scene);
     effects.fresnel = fresnel_ = drawn(buffers, "fresnel");
     effects.horizon = drawn(buffers, "horizon");
@@ -61,6 +76,7 @@ class Shading {
   }
 
   const formats::Basis& basis() const { return basis_; }
+  double coat_index() const { return coat_index_; }
 
   // The mean over the samples of the pixel, whose normals follow from those of the pixels around.
   void shade(std::uint32_t place, Vec3* column) const {
@@ -69,14 +85,18 @@ class Shading {
     const std::size_t columns = search_columns(basis_);
     std::fill_n(column, columns, Vec3{});
     const double share = 1 / (buffers_.white_luminance * static_cast<double>(shifts_.size()));
+    // The mirror direction turns by twice as much as the normal, and less across a plane that is seen aslant.
+    const double turned = 4 * length(cross(right, down)) * std::max(0.0, dot(n, buffers_.to_viewer(x, y)));
+    const double spread = std::sqrt(turned / kPi / static_cast<double>(shifts_.size()));
     for (const auto& [dx, dy] : shifts_)
-      add_sample(normalized(n + dx * right + dy * down), buffers_.to_viewer(x + dx, y + dy), share, column);
+      add_sample(normalized(n + dx * right + dy * down), buffers_.to_viewer(x + dx, y + dy), spread, share, column);
   }
 
  private:
   struct View {
     Vec3 normal, to_viewer, mirrored;
     double cos_o;
+    double spread = 0;  // of the mirror directions of a sample, as render/glints.h has it
   };
 
   Vec3 normal(int x, int y) const {
@@ -86,27 +106,33 @@ class Shading {
 
   // Of the normal for each pixel, from one to the other beyond a pixel; none where they lie on two parts.
   Vec3 change(int x0, int y0, int x1, int y1) const {
-    if (shifts_.size() == 1 || x0 < 0 || y0 < 0 || x1 >= buffers_.image.width || y1 >= buffers_.image.height) return {};
+    if (x0 < 0 || y0 < 0 || x1 >= buffers_.image.width || y1 >= buffers_.image.height) return {};
     if (buffers_.image.pixel(x0, y0)[part_] != buffers_.image.pixel(x1, y1)[part_]) return {};
     return 0.5 * (normal(x1, y1) - normal(x0, y0));
   }
 
-  void add_sample(const Vec3& n, const Vec3& wo, double scale, Vec3* column) const {
-    const View view{n, wo, 2 * dot(n, wo) * n - wo, std::clamp(dot(n, wo), 0.0, 1.0)};
+  void add_sample(const Vec3& n, const Vec3& wo, double spread, double scale, Vec3* column) const {
+    const View view{n, wo, 2 * dot(n, wo) * n - wo, std::clamp(dot(n, wo), 0.0, 1.0), spread};
+    if (env_ != nullptr) add_environment(*env_, view, scale, column);
+    for (const render::Light& light : lights_) add_light(light, view, scale, column);
+  }
+
+  void add_environment(const envmap::PrefilteredEnvironment& env, const View& view, double scale, Vec3* column) const {
     const int last = static_cast<int>(search_columns(basis_)) - 1;
+    const bool bare = coat_index_ == paint::kNoCoat;
+    const int slot = bare ? render::WeightTable::diffuse_slot() : table_.coat_diffuse_slot();
     column[0] +=
-        scale * weight(0, render::WeightTable::diffuse_slot(), view.cos_o, 0) * envmap::bilinear(env_.diffuse.map, n);
+        scale * weight(0, slot, view.cos_o, 0) * envmap::bilinear(bare ? env.diffuse.map : coat_diffuse_, view.normal);
     for (int k = 1; k < last; ++k) {
       const auto lobe = static_cast<std::size_t>((k - 1) / 2);
-      const int slot = render::WeightTable::lobe_slot(lobe);
+      const int lobe_slot = render::WeightTable::lobe_slot(lobe);
       const Vec3 toward =
-          view.mirrored + weight(k, table_.shift_slot(lobe), view.cos_o, static_cast<int>(lobe % 4)) * n;
-      column[k] += scale * weight(k, slot, view.cos_o, 0) * envmap::bilinear(env_.lobes[lobe].map, toward);
+          view.mirrored + weight(k, table_.shift_slot(lobe), view.cos_o, static_cast<int>(lobe % 4)) * view.normal;
+      column[k] += scale * weight(k, lobe_slot, view.cos_o, 0) * envmap::bilinear(env.lobes[lobe].map, toward);
     }
     if (basis_.mirror)
       column[last] +=
-          scale * weight(last, table_.mirror_slot(), view.cos_o, 0) * envmap::bilinear(env_.mirror.map, view.mirrored);
-    for (const image::AovLight& light : buffers_.lights) add_light(light, view, scale, column);
+          scale * weight(last, table_.mirror_slot(), view.cos_o, 0) * envmap::bilinear(env.mirror.map, view.mirrored);
   }
 
   // A slot's channel of the paint of this number.
@@ -117,41 +143,97 @@ class Shading {
     return w[channel] + w[4 + channel] * (x - segment);
   }
 
-  void add_light(const image::AovLight& light, const View& view, double scale, Vec3* column) const {
+  // As the engines draw a disc: lobes by their table, one part with cosine and coat of the disc and one with those of
+  // the mirror direction.
+  void add_disc(const render::Light& light, const View& view, double scale, Vec3* column) const {
+    const double cosine = dot(view.normal, light.direction), c = view.cos_o, radius = light.radius_rad;
+    if (cosine <= -std::sin(radius)) return;
+    const Vec3 white = scale * kPi * light.white;
+    const double above = brdf::disc_above(cosine, radius), bare = brdf::disc_irradiance(cosine, radius);
+    const auto let_in = [&](double to) { return brdf::coat_transmission(std::clamp(to, 0.0, 1.0), coat_index_); };
+    const double irradiance = above > 0 ? bare * let_in(bare / above) : 0, cos_r = c * let_in(c);
+    const double chord = length(view.mirrored - light.direction);
+    const auto coat = [&](const Vec3& toward) {
+      const double cos_half = std::sqrt(std::max(0.0, 0.5 + 0.5 * dot(toward, view.to_viewer)));
+      return fresnel_ ? brdf::fresnel_dielectric(std::min(1.0, cos_half), brdf::kCoatIndex) : 1;
+    };
+    const double coat_l = above * coat(light.direction), coat_r = coat(view.mirrored);
+    column[0] += irradiance * weight(0, table_.light_slot(), c, 0) * white;
+    for (std::size_t j = 0; j < basis_.exponents.size(); ++j) {
+      const brdf::DiscLobeTable::Node of = brdf::disc_lobe_table(basis_.exponents[j], radius)->at(chord);
+      const int flake = static_cast<int>(1 + 2 * j), gloss = flake + 1;
+      column[flake] += (of.cosine[0] * irradiance + of.cosine[1] * cos_r) *
+                       weight(flake, table_.directional_diffuse_slot(j), c, 0) * white;
+      column[gloss] +=
+          (of.plain[0] * coat_l + of.plain[1] * coat_r) * weight(gloss, table_.gloss_slot(j), c, 0) * white;
+    }
+    const int last = static_cast<int>(search_columns(basis_)) - 1;
+    const double mirrored = basis_.mirror ? render::mirrored_share(light, view.mirrored, view.spread) : 0;
+    if (mirrored > 0)
+      column[last] += weight(last, table_.lamp_mirror_slot(), c, 0) * (mirrored * scale * light.radiance());
+  }
+
+  void add_light(const render::Light& light, const View& view, double scale, Vec3* column) const {
+    if (light.radius_rad > 0) return add_disc(light, view, scale, column);
     const double cos_i = dot(view.normal, light.direction), c = view.cos_o;
     if (cos_i <= 0) return;
     const Vec3 apart = view.mirrored - light.direction, white = scale * kPi * light.white;
     const double cos_half = std::sqrt(0.5 + 0.5 * dot(light.direction, view.to_viewer));
     const double coat = fresnel_ ? brdf::fresnel_dielectric(cos_half, brdf::kCoatIndex) : 1;
-    column[0] += cos_i * weight(0, table_.light_slot(), c, 0) * white;
+    const double base = cos_i * brdf::coat_transmission(std::min(cos_i, 1.0), coat_index_);
+    column[0] += base * weight(0, table_.light_slot(), c, 0) * white;
     for (std::size_t j = 0; j < basis_.exponents.size(); ++j) {
       const double power = math::cos_power_from_versine(0.5 * dot(apart, apart), basis_.exponents[j]);
       const int flake = static_cast<int>(1 + 2 * j), gloss = flake + 1;
-      column[flake] += cos_i * power * weight(flake, table_.directional_diffuse_slot(j), c, 0) * white;
+      column[flake] += base * power * weight(flake, table_.directional_diffuse_slot(j), c, 0) * white;
       column[gloss] += coat * power * weight(gloss, table_.gloss_slot(j), c, 0) * white;
     }
   }
 
   const image::AovFile& buffers_;
-  const envmap::PrefilteredEnvironment& env_;
+  const envmap::PrefilteredEnvironment* env_;
   formats::Basis basis_;
   int normal_, part_;                                     // channels
   std::vector<std::array<double, 2>> shifts_ = {{0, 0}};  // of the samples of a pixel from its center
+  std::vector<render::Light> lights_;
+  double coat_index_ = paint::kNoCoat;
+  envmap::CubeMap coat_diffuse_;
   bool fresnel_ = false;
   render::WeightTable table_;
 };
 
 }  // namespace
 
-Result<SketchLight> sketch_light(const image::AovFile& buffers, const envmap::PrefilteredEnvironment& env) {
+namespace {
+
+Result<SketchLight> light_by(const image::AovFile& buffers, const envmap::PrefilteredEnvironment* env,
+                             const formats::Basis& basis) {
   GONIO_ASSIGN(const int normal, buffers.channel("normal.X"));
   GONIO_ASSIGN(const int part, buffers.channel("part"));
   if (!buffers.has_rays)
     return input_error("{}: its header lacks goniochrome:rays: render the buffers again", buffers.path);
-  const auto shading = std::make_shared<const Shading>(buffers, env, normal, part);
-  SketchLight light{shading->basis(), {}, [shading](std::uint32_t place, Vec3* out) { shading->shade(place, out); }};
+  if (std::ranges::any_of(buffers.lights, [](const image::AovLight& light) { return light.is_placed; }))
+    return input_error(
+        "{}: it was drawn with a lamp at a place, and the buffers hold no places: give the buffers of a lamp far away, "
+        "or of render-osmesa --aov transport",
+        buffers.path);
+  const auto shading = std::make_shared<const Shading>(buffers, env, basis, normal, part);
+  SketchLight light{shading->basis(),
+                    {},
+                    [shading](std::uint32_t place, Vec3* out) { shading->shade(place, out); },
+                    shading->coat_index()};
   if (drawn(buffers, "operator")) light.reflection = buffers.reflection;
   return light;
+}
+
+}  // namespace
+
+Result<SketchLight> sketch_light(const image::AovFile& buffers, const envmap::PrefilteredEnvironment& env) {
+  return light_by(buffers, &env, basis_of(env));
+}
+
+Result<SketchLight> lamp_light(const image::AovFile& buffers, const formats::Basis& basis) {
+  return light_by(buffers, nullptr, basis);
 }
 
 Result<std::optional<SketchTransport>> SketchTransport::of(const image::AovFile& buffers) {
@@ -183,7 +265,9 @@ SketchLight SketchTransport::light() const {
       out[k] = (scaled ? gloss : 1) * (direct + bounced);
     }
   };
-  return {basis, reflection_, shade};
+  const std::vector<double>& coats = transport_->worn.coats;
+  const double coat = coats.empty() ? paint::kNoCoat : *std::ranges::max_element(coats);
+  return {basis, reflection_, shade, coat};
 }
 
 std::vector<int> SketchTransport::mesh_parts() const {

@@ -13,9 +13,12 @@
 namespace goniochrome::sketch {
 
 // The light of the environment and of the lamps of the buffers in every lobe, as render-osmesa drew it: with the
-// effects `fresnel`, `horizon` and `operator` where the buffers' header says that they were drawn. Both arguments must
-// outlive the result. Error: the buffers lack normals or rays.
+// effects `fresnel`, `coat`, `horizon` and `operator` where the buffers' header says that they were drawn. Both
+// arguments must outlive the result. Error: the buffers lack normals or rays.
 Result<SketchLight> sketch_light(const image::AovFile& buffers, const envmap::PrefilteredEnvironment& env);
+
+// The same of the lamps of the buffers alone, in the lobes of a basis.
+Result<SketchLight> lamp_light(const image::AovFile& buffers, const formats::Basis& basis);
 
 // The light that was traced for the buffers' view, with shadows and bounced light, and what a paint makes of it.
 class SketchTransport {

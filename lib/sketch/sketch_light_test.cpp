@@ -26,12 +26,12 @@ envmap::PrefilteredEnvironment uneven_env() {
   return env;
 }
 
-paint::LobeFit paint() {
+paint::LobeFit paint(bool mirror = true) {
   paint::LobeFit fit = render::matt({0.1, 0.2, 0.3});
   fit.lobes = {{2, {0.04, 0.02, 0.03}, {}},
                {20, {}, {0.2, 0.2, 0.2}},
                {300, {0.4, 0.3, 0.2}, {}},
-               {paint::kMirrorExponent, {}, {1, 1, 1}}};
+               {paint::kMirrorExponent, {}, mirror ? color::Rgb{1, 1, 1} : color::Rgb{}}};
   return fit;
 }
 
@@ -41,12 +41,14 @@ struct Drawing {
 };
 
 // A sphere of that paint with these effects alone, and its buffers.
-Drawing draw(const envmap::PrefilteredEnvironment& env, const std::vector<std::string>& drawn, int samples = 1) {
+Drawing draw(const envmap::PrefilteredEnvironment& env, const std::vector<std::string>& drawn, int samples = 1,
+             double extent_deg = 0) {
   const auto has = [&](const char* name) { return std::ranges::find(drawn, name) != drawn.end(); };
   const mesh::Mesh mesh = render::sphere_mesh(64);
   render::Scene scene;
-  scene.mesh = &mesh, scene.paints = {paint()}, scene.env = &env;
-  scene.lights = {{normalized(Vec3{1, 1, 2}), {0.5, 0.6, 0.7}}};
+  scene.mesh = &mesh, scene.paints = {paint(extent_deg == 0)}, scene.env = &env;
+  if (has("coat")) scene.paints.front().coat_index = 1.5;
+  scene.lights = {{normalized(Vec3{1, 1, 2}), {0.5, 0.6, 0.7}, 0.5 * extent_deg * kDegree}};
   scene.gloss_deg = {60}, scene.reflection = color::iso_rgb_operator();
   render::Effects effects = render::effects_of(scene);
   effects.fresnel = has("fresnel"), effects.horizon = has("horizon"), effects.reflection = has("operator");
@@ -63,7 +65,7 @@ Drawing draw(const envmap::PrefilteredEnvironment& env, const std::vector<std::s
   buffers.image.channel_names = {"R", "G", "B", "A"};
   for (const char* aov : {"normal", "part"})
     EXPECT_TRUE(render::add_aov(buffers.image, *frame.gbuffer, aov, scene.lights.front().direction).ok());
-  buffers.lights = {{scene.lights.front().direction, scene.lights.front().white}};
+  buffers.lights = {{scene.lights.front().direction, scene.lights.front().white, extent_deg}};
   const render::Rays& rays = frame.gbuffer->rays;
   buffers.corner = rays.corner, buffers.right = rays.right, buffers.down = rays.down;
   return result;
@@ -71,8 +73,8 @@ Drawing draw(const envmap::PrefilteredEnvironment& env, const std::vector<std::s
 
 // The largest difference of a channel, relative to the brightest, where the sphere is seen within that angle from its
 // normal.
-double difference(const Drawing& drawing, const SketchLight& light, double steepest_deg = 80) {
-  const paint::LobeFit fit = paint();
+double difference(const Drawing& drawing, const SketchLight& light, double steepest_deg = 80, bool mirror = true) {
+  const paint::LobeFit fit = paint(mirror);
   std::vector<color::Rgb> weights(search_columns(light.basis));
   weights.front() = fit.diffuse, weights.back() = fit.lobes.back().gloss;
   for (std::size_t j = 0; j < 3; ++j)
@@ -99,7 +101,7 @@ double difference(const Drawing& drawing, const SketchLight& light, double steep
 TEST(SketchLight, IsWhatTheRendererDrawsWithTheSameEffects) {
   const envmap::PrefilteredEnvironment env = uneven_env();
   const std::vector<std::vector<std::string>> all = {
-      {}, {"fresnel"}, {"horizon"}, {"operator"}, {"fresnel", "horizon", "operator"}};
+      {}, {"fresnel"}, {"horizon"}, {"operator"}, {"coat"}, {"fresnel", "coat", "horizon", "operator"}};
   for (const auto& drawn : all) {
     Drawing drawing = draw(env, drawn);
     const auto light = sketch_light(drawing.buffers, env);
@@ -110,6 +112,26 @@ TEST(SketchLight, IsWhatTheRendererDrawsWithTheSameEffects) {
     drawing.buffers.drawn.clear();
     EXPECT_GT(difference(drawing, *sketch_light(drawing.buffers, env)), 5e-3) << testing::PrintToString(drawn);
   }
+}
+
+// Lamps that are discs, without their mirror images, whose edges lie within pixels. The control: lamps as points.
+TEST(SketchLight, KnowsTheExtentOfLamps) {
+  const envmap::PrefilteredEnvironment env = uneven_env();
+  for (const double extent_deg : {8.0, 40.0}) {
+    Drawing drawing = draw(env, {"fresnel", "horizon", "extent"}, 1, extent_deg);
+    EXPECT_LT(difference(drawing, *sketch_light(drawing.buffers, env), 80, false), 2e-3) << extent_deg;
+    drawing.buffers.drawn.pop_back();
+    EXPECT_GT(difference(drawing, *sketch_light(drawing.buffers, env), 80, false), 0.02) << extent_deg;
+  }
+}
+
+TEST(SketchLight, WantsLampsFarAway) {
+  const envmap::PrefilteredEnvironment env = uneven_env();
+  Drawing drawing = draw(env, {"extent"}, 1, 8);
+  drawing.buffers.lights.front().is_placed = true;
+  const auto light = sketch_light(drawing.buffers, env);
+  ASSERT_FALSE(light.ok());
+  EXPECT_THAT(light.error().message, HasSubstr("lamp at a place"));
 }
 
 // Light that changes within a pixel. The control: light of the centers of the pixels alone.

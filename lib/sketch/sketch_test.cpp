@@ -38,6 +38,32 @@ TEST(Sketch, PlantedPaintsReturnUnderALamp) {
   EXPECT_LE(sum / 200, 0.3);
 }
 
+// The same through a coat. The control is a search that does not know that the picture was drawn with it.
+TEST(Sketch, CoatedPaintsReturnUnderALamp) {
+  image::AovFile ball = sphere(120, kLamp);
+  fit::FitOptions options = fitter().options();
+  options.coat_index = brdf::kCoatIndex;
+  const fit::PaintFitter coated(fitter().basis(), options);
+  double sum = 0, control = 0;
+  std::mt19937_64 random(11);
+  constexpr int kPaints = 40;
+  for (int i = 0; i < kPaints; ++i) {
+    const paint::Paint paint = random_paint(random);
+    const fit::PaintFit planted = *coated.fit(paint);
+    shade(ball, planted.lobes);
+    ASSERT_EQ(ball.drawn, std::vector<std::string>{"coat"});
+    const Picture p = picture(ball);
+    const SketchFit found = fit(input(ball, p));
+    ASSERT_EQ(found.status, "fitted");
+    sum += worst_de00(found, *paint.appearance);
+    EXPECT_LE(worst_de00(found, *paint.appearance) - planted.report.de00_max, 1) << i;
+    ball.drawn.clear();
+    control += worst_de00(fit(input(ball, p)), *paint.appearance);
+  }
+  EXPECT_LE(sum / kPaints, 0.3);
+  EXPECT_GT(control, 2 * sum);
+}
+
 paint::Paint designed(const color::Lab& face, const color::Lab& flop, double travel_deg) {
   paint::Paint paint;
   paint.appearance = paint::Appearance{face, flop, travel_deg, std::nullopt};

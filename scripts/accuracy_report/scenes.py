@@ -24,7 +24,7 @@ QUICK = (0, 4, 8)
 LEAST = 0.01  # the least difference of the plot; nobody sees a smaller one
 
 # Each effect, and the scene of the list above in which it matters.
-MATTERS = {"diffuse": 0, "lobes": 3, "gloss": 3, "mirror": 2, "fresnel": 2, "horizon": 3, "travel": 7, "operator": 4,
+MATTERS = {"diffuse": 0, "lobes": 3, "gloss": 3, "mirror": 2, "fresnel": 2, "coat": 2, "horizon": 3, "travel": 7, "operator": 4,
            "anisotropy": 8, "lights": 8}
 MEASURED = {"overcast": "uffizi.hdr", "studio": "studio_small_03_1k.hdr", "sunset": "venice_sunset_1k.hdr"}
 

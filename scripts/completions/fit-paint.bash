@@ -6,6 +6,7 @@ _fit_paint() {
     --weights|-w) COMPREPLY=($(compgen -W "perceptual plain" -- "$word")); return ;;
     --illuminant) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --gloss|-g) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --coat) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --steepest) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --method|-m) COMPREPLY=($(compgen -W "l1 l2 deltae" -- "$word")); return ;;
     --lobes|-n) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -15,12 +16,13 @@ _fit_paint() {
     --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --color-map) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --color-map-model) COMPREPLY=($(compgen -W "better isolines aspecular" -- "$word")); return ;;
+    --tilts) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --report) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --threads) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--basis --target --weights --illuminant --gloss --steepest --method --lobes --prune --views --paint-time-limit --output --color-map --color-map-model --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--basis --target --weights --illuminant --gloss --coat --steepest --method --lobes --prune --views --paint-time-limit --output --color-map --color-map-model --tilts --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

@@ -51,8 +51,9 @@ std::string ColorMaps::file_name(const std::string& paint) {
   return name + ".exr";
 }
 
-Result<void> ColorMaps::add(paint::Paint& paint, const brdf::MeasuredBrdf* brdf, const std::string& where) {
-  if (options_.color_map.empty()) return {};
+Result<std::optional<brdf::ColorMap>> ColorMaps::add(paint::Paint& paint, const brdf::MeasuredBrdf* brdf,
+                                                     const std::string& where) {
+  if (options_.color_map.empty()) return std::optional<brdf::ColorMap>();
   fit::ColorMapOptions asked;
   if (options_.color_map_model == "isolines") asked.model = fit::ColorMapModel::kIsolines;
   if (options_.color_map_model == "aspecular") asked.model = fit::ColorMapModel::kAspecular;
@@ -61,7 +62,7 @@ Result<void> ColorMaps::add(paint::Paint& paint, const brdf::MeasuredBrdf* brdf,
   if (!fit.ok()) {
     if (++without_ <= kWarningsShown)
       session_.warn(fmt::format("{}: paint \"{}\" gets no color map: {}", where, paint.name, fit.error().message));
-    return {};
+    return std::optional<brdf::ColorMap>();
   }
   const std::string name = file_name(paint.name);
   const std::string path = (std::filesystem::path(options_.color_map) / name).string();
@@ -88,7 +89,7 @@ Result<void> ColorMaps::add(paint::Paint& paint, const brdf::MeasuredBrdf* brdf,
                 {"held_out_de76", json_number(fit->held_out_de76)},
                 {"negative_share", fit->negative_share}};
   });
-  return {};
+  return std::optional<brdf::ColorMap>(fit->map);
 }
 
 void ColorMaps::finish() {

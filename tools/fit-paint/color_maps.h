@@ -1,6 +1,7 @@
 // The color maps of a run: one file for each paint, in one folder.
 #pragma once
 
+#include <optional>
 #include <set>
 #include <string>
 
@@ -19,8 +20,10 @@ class ColorMaps {
   Result<void> begin() const;
 
   // Makes the map of a paint from its readings or, where it has one, from its measured BRDF, and names it in the paint.
-  // A paint that cannot have one is left as it is, and a warning says so. Error: the file cannot be written.
-  Result<void> add(paint::Paint& paint, const brdf::MeasuredBrdf* brdf, const std::string& where);
+  // A paint that cannot have one is left as it is, and a warning says so. Returns the map, if one was made. Error: the
+  // file cannot be written.
+  Result<std::optional<brdf::ColorMap>> add(paint::Paint& paint, const brdf::MeasuredBrdf* brdf,
+                                            const std::string& where);
 
   // Puts the number of maps into the report and the summary.
   void finish();

@@ -371,6 +371,29 @@ cornell() {
   [ "$status" -eq 2 ]
 }
 
+@test "a paint with gloss gets a coat, and --coat decides otherwise" {
+  glossy=${one/<\/measurement>/<\/measurement><gloss angle=\"60\">92<\/gloss>}
+  echo "$head$one</paints>" >matt.xml
+  echo "$head$glossy</paints>" >glossy.xml
+  fit-paint -q -b "$basis" matt.xml -o out.xml
+  [ "$(grep -c '<coat' out.xml)" -eq 0 ]
+  fit-paint -q -b "$basis" matt.xml --gloss 40 -o out.xml
+  grep -q '<coat index="1.5"/>' out.xml
+  # A smooth coat of 1.5 reads 89 GU: 92 ask for more.
+  fit-paint -q -b "$basis" glossy.xml -o out.xml
+  grep -Eq '<coat index="1\.51' out.xml
+  fit-paint -q -b "$basis" glossy.xml --coat none -o out.xml
+  [ "$(grep -c '<coat' out.xml)" -eq 0 ]
+  fit-paint -q -b "$basis" matt.xml --coat 1.6 -o out.xml
+  grep -q '<coat index="1.6"/>' out.xml
+  # What a paint states stays, also that it has none.
+  sed 's/<gloss/<coat index="1"\/><gloss/' glossy.xml | fit-paint -q -b "$basis" -o out.xml
+  grep -q '<coat index="1"/>' out.xml
+  run fit-paint -b "$basis" matt.xml --coat 1.2
+  [ "$status" -eq 2 ]
+  [[ "$output" =~ "give auto, none, or the index of the coat from 1.5 to 1.7" ]]
+}
+
 @test "--illuminant fits the colors of that light, and passes on unfitted what has no spectra" {
   factors=$(awk 'BEGIN { for (nm = 400; nm <= 700; nm += 10) printf "%s%g", (nm > 400 ? " " : ""), 0.1 + 0.5 / (1 + exp((590 - nm) / 15)) }')
   spectra=
@@ -387,5 +410,32 @@ cornell() {
   diff <(sed -n '/<paint name="red"/,/<\/paint>/p' lit.xml) <(sed -n '/<paint name="red"/,/<\/paint>/p' piped.xml)
   grep -q 'illuminant="A"' lit.xml
   run fit-paint --basis "$basis" --illuminant B two.xml
+  [ "$status" -eq 2 ]
+}
+
+@test "--tilts makes sets of tilted lobes where a color map travels; missing and wrong counts are refused" {
+  fit-paint -q -b "$basis" "$TESTDATA/travel.paints.xml" -o out.xml --color-map maps --tilts 6,10 --report r.json
+  [ "$(grep -c '<tilts xmlns="urn:goniochrome:tilts:1">' out.xml)" -eq 2 ]
+  [ "$(grep -c '<set mean_de00=' out.xml)" -eq 4 ]
+  # The finer set is closer to the map, and both are closer than the lobes.
+  jq -e '.results.tilts | all(.lobes_de00 > .sets[0].de00_mean and .sets[0].de00_mean > .sets[1].de00_mean)' r.json
+  jq -e '.results.tilts | all(.sets[0].lookups <= 6 and .sets[1].lookups <= 10)' r.json
+  # A paint that names its map gets its sets again without --color-map, with the same axes.
+  fit-paint -q -b "$basis" out.xml -o again.xml --tilts 6,10
+  diff <(grep 'tilt=' out.xml) <(grep 'tilt=' again.xml)
+  fit-paint -q -b "$basis" out.xml -o none.xml --tilts none
+  run ! grep -q '<tilts' none.xml
+  rm maps/film_gold_teal.exr
+  run --separate-stderr fit-paint -b "$basis" out.xml -o lost.xml --tilts 6
+  [ "$status" -eq 0 ]
+  [[ "$stderr" =~ 'paint "film_gold_teal" gets no tilted lobes: ' ]]
+  [ "$(grep -c '<tilts' lost.xml)" -eq 1 ]
+  for wrong in 0 65 8,8 16,8 8, all; do
+    run fit-paint -b "$basis" out.xml -o wrong.xml --tilts "$wrong"
+    [ "$status" -eq 2 ]
+    [[ "$output" =~ "--tilts \"$wrong\"" ]]
+    [ ! -e wrong.xml ]
+  done
+  run fit-paint -b "$basis" out.xml -o wrong.xml --tilts
   [ "$status" -eq 2 ]
 }

@@ -23,6 +23,13 @@ void add_options(cli::ToolSpec& spec, Options& o) {
       .more(
           "A single number is the gloss at 60 degrees. Several readings are written as angle and gloss, with the "
           "angles 20, 60 and 85. 0 leaves the paints matt.");
+  spec.option("coat", "INDEX", "1.5", &o.coat, "refractive index of the clear coat of every paint; none is no coat")
+      .more(
+          "The coat takes from the base what it reflects itself. The readings are met all the same, because the base "
+          "is "
+          "fitted to what the coat leaves of it at each geometry. auto gives a coat to every paint with gloss, stated "
+          "or assumed, and to every paint that states a coat; its index is 1.5, or as much as the gloss asks for. "
+          "Measured BRDFs have none unless it is given here.");
   spec.option("steepest", "DEG", "60", &o.steepest_deg, "largest angle to the normal that counts in measured BRDFs")
       .from(0, 90);
   spec.heading = "how it is fitted";
@@ -61,6 +68,12 @@ void add_options(cli::ToolSpec& spec, Options& o) {
           "aspecular takes the color from the aspecular angle alone, which is closer on near-matt paints. better "
           "leaves out each reading in turn, predicts it from the others by both, and takes the model that errs "
           "less; the report and the file tell both errors.");
+  spec.option("tilts", "none|N,...", "8,16", &o.tilts, "look-ups of tilted lobes that stand for a color map")
+      .more(
+          "A paint that has a color map by isolines also gets tilted lobes, by which pictures under image light come "
+          "close to the map. Each number makes a set that takes so many look-ups of prefiltered maps at a point; more "
+          "look-ups are closer and slower, and render-osmesa chooses between the sets. A number that hardly helps "
+          "makes no set. A paint gets none where its lobes are within a visible difference of the map.");
   cli::add_common_options(spec, o.common, {.explain = true});
 }
 
@@ -128,6 +141,11 @@ void add_report(cli::ToolSpec& spec) {
       {"color_maps[].compared_rows",
        "number of readings behind these figures; they are measured, and none of them is interpolated from others"},
       {"color_maps[].negative_share", "share of the map that is outside the working space"},
+      {"tilts[].name", "paint with a color map, unless --tilts is none"},
+      {"tilts[].lobes_de00",
+       "mean color difference between its lobes and the map, in lamps of several sizes all around"},
+      {"tilts[].sets[].lookups", "look-ups of prefiltered maps that a set of tilted lobes takes"},
+      {"tilts[].sets[].de00_mean", "mean color difference between the set and the map in the same lamps"},
       {"without_color_map", "number of paints whose readings do not make a map"},
       {"fits_per_s", "fits a second, without reading and writing"},
       {"fitted", "number of paints that got lobes"},

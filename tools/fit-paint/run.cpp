@@ -17,6 +17,7 @@
 #include "paint_stream.h"
 #include "settings.h"
 #include "tally.h"
+#include "tilts.h"
 
 namespace goniochrome::tool {
 
@@ -58,13 +59,14 @@ class Run {
  public:
   // The colors are those under `illuminant`, or under that of the readings if it is "".
   Run(const fit::PaintFitter& fitter, const std::string& illuminant, std::vector<FitInput>& inputs,
-      formats::PaintWriter& writer, Tally& tally, ColorMaps& maps, const cli::Session& session)
+      formats::PaintWriter& writer, Tally& tally, ColorMaps& maps, Tilts& tilts, const cli::Session& session)
       : fitter_(fitter),
         illuminant_(illuminant),
         inputs_(inputs),
         writer_(writer),
         tally_(tally),
         maps_(maps),
+        tilts_(tilts),
         session_(session),
         names_(inputs) {}
 
@@ -105,11 +107,14 @@ class Run {
         tally_.add_failure(batch[i], fmt::format("{}:{}", name, lines[i]), unlit[i]);
       } else if (results[i].ok()) {
         tally_.add(batch[i], *results[i]);
+        if (results[i]->lobes.coat_index != paint::kNoCoat) batch[i].coat_index = results[i]->lobes.coat_index;
         batch[i].lobes = std::move(results[i]->lobes);
       } else {
         tally_.add_failure(batch[i], fmt::format("{}:{}", name, lines[i]), results[i].error().message);
       }
-      GONIO_TRY(maps_.add(batch[i], nullptr, fmt::format("{}:{}", name, lines[i])));
+      const std::string where = fmt::format("{}:{}", name, lines[i]);
+      GONIO_ASSIGN(const std::optional<brdf::ColorMap> map, maps_.add(batch[i], nullptr, where));
+      if (results[i].ok()) tilts_.add(batch[i], map, name, where);
       GONIO_TRY(writer_.write(batch[i]));
     }
     return {};
@@ -149,7 +154,8 @@ class Run {
     } else {
       tally_.add_failure(target.paint, input.name, fit.error().message);
     }
-    GONIO_TRY(maps_.add(target.paint, target.source.get(), input.name));
+    GONIO_ASSIGN(const std::optional<brdf::ColorMap> map, maps_.add(target.paint, target.source.get(), input.name));
+    tilts_.add(target.paint, map, input.name, input.name);
     return writer_.write(target.paint);
   }
 
@@ -159,6 +165,7 @@ class Run {
   formats::PaintWriter& writer_;
   Tally& tally_;
   ColorMaps& maps_;
+  Tilts& tilts_;
   const cli::Session& session_;
   NamesOfAll names_;
 };
@@ -180,9 +187,12 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   Tally tally(options, session);
   ColorMaps maps(options, session);
   GONIO_TRY(maps.begin());
-  GONIO_TRY(Run(fitter, options.illuminant, inputs, writer, tally, maps, session).all());
+  Tilts tilts(options, fitter.basis(), session);
+  GONIO_TRY(tilts.begin());
+  GONIO_TRY(Run(fitter, options.illuminant, inputs, writer, tally, maps, tilts, session).all());
   GONIO_TRY(writer.finish());
   maps.finish();
+  tilts.finish();
   return tally.finish();
 }
 

@@ -31,6 +31,17 @@ Result<std::vector<paint::GlossReading>> gloss_readings(const std::string& text)
   return readings;
 }
 
+// "auto" is nothing, "none" is paint::kNoCoat.
+Result<std::optional<double>> coat_index(const std::string& text) {
+  if (text == "auto") return std::optional<double>();
+  if (text == "none") return std::optional(paint::kNoCoat);
+  const auto index = parse_number(text);
+  if (!index || *index < paint::kLeastCoatIndex || *index > paint::kMostCoatIndex)
+    return usage_error("--coat \"{}\": give auto, none, or the index of the coat from {} to {}", text,
+                       paint::kLeastCoatIndex, paint::kMostCoatIndex);
+  return index;
+}
+
 // "0,15,30", or nothing.
 Result<std::vector<double>> view_angles(const std::string& text) {
   std::vector<double> angles;
@@ -85,6 +96,7 @@ Result<fit::FitOptions> fit_options(const Options& options) {
   fit.steepest_deg = options.steepest_deg;
   fit.time_limit_s = options.paint_time_limit_s;
   GONIO_ASSIGN(fit.assumed_gloss, gloss_readings(options.gloss));
+  GONIO_ASSIGN(fit.coat_index, coat_index(options.coat));
   fit.views_where_needed = options.views == "auto";
   if (!fit.views_where_needed) {
     GONIO_ASSIGN(fit.views_deg, view_angles(options.views));
@@ -112,6 +124,10 @@ std::string plan(const Options& options, const fit::FitOptions& fit, const forma
       options.method, method_plan(fit.method),
       options.illuminant.empty() ? "" : fmt::format("colors: from spectra, under {}\n", options.illuminant),
       gloss_plan(fit.assumed_gloss), fit::kGlareAngle_deg);
+  text += fmt::format("coat: {}\n",
+                      !fit.coat_index ? "of every paint with gloss, with the index that its gloss asks for"
+                      : *fit.coat_index == paint::kNoCoat ? "none"
+                                                          : "of every paint, index " + shortest(*fit.coat_index));
   text += fmt::format("measured BRDFs: directions to {} deg from the normal; some ms each\n", fit.steepest_deg);
   if (fit.most_lobes > 0) text += fmt::format("lobes: the best subset of {}\n", fit.most_lobes);
   if (fit.prune_de00 > 0) text += fmt::format("lobes that move no color by dE00 {} are dropped\n", fit.prune_de00);

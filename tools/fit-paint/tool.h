@@ -17,6 +17,7 @@ struct Options {
   std::string target = "measured";
   std::string weights = "perceptual";
   std::string gloss = "0";
+  std::string coat = "auto";
   std::string illuminant;
   int lobes = 0;
   double prune_de00 = 0;
@@ -25,6 +26,7 @@ struct Options {
   double paint_time_limit_s = 0;
   std::string color_map;
   std::string color_map_model = "better";
+  std::string tilts = "8,16,32,64";
 };
 
 cli::ToolSpec tool_spec(Options& options);

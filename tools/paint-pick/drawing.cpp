@@ -83,8 +83,10 @@ Result<PaintDrawing> PaintDrawing::make(const Options& options) {
     if (!options.basis.empty()) {
       GONIO_ASSIGN(basis, formats::read_basis(options.basis));
     }
-    state->scene.lights = {{render::orbit_direction(25, 45), {1, 1, 1}},
-                           {render::orbit_direction(-60, 20), {0.35, 0.35, 0.35}}};
+    // As wide as a lamp of half a meter five meters away, so that gloss shows in a small picture.
+    constexpr double kRadius_rad = 0.05;
+    state->scene.lights = {{render::orbit_direction(25, 45), {1, 1, 1}, kRadius_rad},
+                           {render::orbit_direction(-60, 20), {0.35, 0.35, 0.35}, kRadius_rad}};
   }
   const auto file = [](const std::string& path) { return std::filesystem::path(path).filename().string(); };
   state->description = fmt::format("on {} under {}", options.mesh.empty() ? "a ball" : file(options.mesh),

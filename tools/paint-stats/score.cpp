@@ -151,9 +151,11 @@ Result<std::vector<Score>> scores_of(const paint::Paint& paint, const Rows& rows
     add_score(
         "lobes", rows,
         [&](const Row& row) {
-          const paint::LobeFit seen = brdf::at_view(*paint.lobes, std::acos(std::min(row.view.z, 1.0)) / kDegree);
-          return std::optional(
-              color::lab_from_rgb(brdf::flake_reflectance_factor(seen, aspecular_deg(row)), rows.white));
+          const auto from_normal_deg = [](const Vec3& v) { return std::acos(std::min(v.z, 1.0)) / kDegree; };
+          const double view_deg = from_normal_deg(row.view);
+          const color::Rgb seen = brdf::flake_reflectance_factor(
+              brdf::at_view(*paint.lobes, view_deg), aspecular_deg(row), from_normal_deg(row.light), view_deg);
+          return std::optional(color::lab_from_rgb(seen, rows.white));
         },
         scores);
   }

@@ -144,7 +144,8 @@ report::Drawing polar_plot(const Subject& s) {
     for (double view = -89; view <= 89; view += 1) {
       const double aspecular = std::abs(45 - view);
       line.angle_deg.push_back(view);
-      line.radius.push_back(brdf::flake_reflectance_factor(brdf::at_view(*s.lobes, std::abs(view)), aspecular)[c]);
+      line.radius.push_back(
+          brdf::flake_reflectance_factor(brdf::at_view(*s.lobes, std::abs(view)), aspecular, 45, std::abs(view))[c]);
       highest = std::max(highest, line.radius.back());
     }
     series.push_back(line);
@@ -192,8 +193,9 @@ report::Drawing surfaces(const paint::LobeFit& fit) {
         fmt::format("Root of the flake, {}", kChannels[c]), kChannelColors[c],
         [&](const Vec3& view) {
           const double view_deg = std::atan2(std::hypot(view.x, view.y), view.z) / kRadian;
-          return std::sqrt(brdf::flake_reflectance_factor(
-              brdf::at_view(fit, view_deg), paint::aspecular_angle_rad(light, view, {0, 0, 1}) / kRadian)[c]);
+          return std::sqrt(brdf::flake_reflectance_factor(brdf::at_view(fit, view_deg),
+                                                          paint::aspecular_angle_rad(light, view, {0, 0, 1}) / kRadian,
+                                                          45, view_deg)[c]);
         },
         light, kThird, kColumnHeight));
   return report::row_of(drawings);

@@ -49,6 +49,8 @@ Result<void> want_those_of_paints(const Options& options, Wanted& wanted) {
                          paint->name);
     add_shares(paint->lobes->diffuse, paint->lobes->lobes, shares);
     for (const paint::ViewLobes& view : paint->lobes->views) add_shares(view.diffuse, view.lobes, shares);
+    for (const paint::TiltedLobes& set : paint->lobes->tilts)
+      for (const paint::TiltedLobe& lobe : set.lobes) shares[lobe.exponent] = 1;  // none of them can be missing
   }
   if (wanted.paints == 0) return input_error("{}: holds no paint: name paints that have lobes", options.paints);
   wanted.request.mirror = false;

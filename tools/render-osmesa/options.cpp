@@ -54,12 +54,17 @@ void add_surfaces(cli::ToolSpec& spec, Options& o) {
 void add_light(cli::ToolSpec& spec, Options& o) {
   spec.heading = "light";
   spec.option("env,e", "FILE", "studio.env.exr", &o.env, "prefiltered environment (*.env.exr)");
-  spec.option("light", "DIR[,RGB]", "-60,20,0.5,0.5,0.6", &o.lights, "directional light")
-      .in("degrees where the direction is given by angles")
+  spec.option("light", "WHERE[,RGB][@EXTENT]", "-60,20,0.5,0.5,0.6@2", &o.lights, "lamp")
+      .in("degrees for angles and for the extent")
       .more(
-          "The direction is AZIMUTH,ELEVATION, or a vector X,Y,Z toward the light. R,G,B may follow; it is what a "
-          "perfect white diffuser shows that faces the light, and 1,1,1 if not given. The mirror image of such a "
-          "light is a point without extent and is not drawn.");
+          "WHERE is AZIMUTH,ELEVATION or a vector X,Y,Z toward a lamp that is far away, or place:X,Y,Z for a lamp "
+          "that stands at that place, in units of the mesh. R,G,B may follow; it is what a perfect white diffuser "
+          "shows that faces the lamp, and 1,1,1 if not given. EXTENT is the angle that the lamp spans, from 0 to 180, "
+          "and 0.53 as that of the sun if not given. The lamp is a disc of even radiance, and a wider one sends as "
+          "much light as a narrow one. Its highlight and its mirror image are those of the disc; with the extent 0 "
+          "it is a point, which has no mirror image. A lamp at a place is a sphere, has that extent and that white "
+          "in the middle of the mesh, and its light falls with the square of the distance; the engine path draws "
+          "it.");
   spec.option("emit", "PART=R,G,B", "Lamp=20,18,15", &o.emissions, "make a part or material shine by itself")
       .more(
           "R,G,B is the radiance of both sides of the part, in linear Rec.2020, beside what its paint reflects. Only "
@@ -69,9 +74,10 @@ void add_light(cli::ToolSpec& spec, Options& o) {
       .more(
           "The floor reaches to the horizon, and lies at HEIGHT or, without it, at the lowest point of the mesh. "
           "shadow lays the lower half of the environment on the floor, as it was seen from --eye-height above the "
-          "middle of the mesh; it is darkened where the mesh takes light from it, and is seen in the paint. Only the "
-          "engine path draws floors, and auto takes it for them. With --background env, the engine path draws the "
-          "floor shadow unless another is asked for.");
+          "middle of the mesh; it is darkened where the mesh takes light from it, and lights the mesh from below. With "
+          "--background env it is drawn unless another floor is asked for; --floor none and --effects auto,-rays leave "
+          "it out. Only the engine path draws a floor that wears a paint, and a floor above the lowest point of the "
+          "mesh; auto takes it for them.");
   spec.option("eye-height", "H", "1.5", &o.eye_height, "height above the floor that the environment was seen from")
       .in("units of the mesh")
       .from(0)
@@ -81,8 +87,10 @@ void add_light(cli::ToolSpec& spec, Options& o) {
   spec.option("critical-angle", "NAME", "clip", &o.critical_angle, "what color maps do beyond the critical angle")
       .one_of({"clip", "slide", "slide-map", "index"})
       .more(
-          "A color map shows its own colors under lights. Under an environment, a paint that has one is shown by its "
-          "weights for several views.");
+          "A color map shows its own colors under lights. Under an environment, the engines integral and path show it "
+          "as "
+          "well; cpu and gl show the tilted lobes of the paint, which stand for its map with the angle slide, or its "
+          "lobes where it has none.");
   spec.option("exposure", "STOPS", "-1", &o.exposure, "power of two that brightens the picture, or auto")
       .more(
           "auto leaves an EXR as it is. In a PNG it makes a gray card of 18 % middle gray: the light on the card is "
@@ -119,15 +127,20 @@ void add_effects(cli::ToolSpec& spec, Options& o) {
   spec.option("effects", "WORDS", "auto,-fresnel", &o.effects,
               "effects to draw: auto, all or none, and then +NAME and -NAME")
       .more(
-          "The names are diffuse, lobes, gloss, mirror, fresnel, horizon, anisotropy, travel, texture, texture-lobes, "
-          "operator and lights. lobe-20, gloss-900 and texture-0 (lobe0 of the textures) are single lobes. Three more "
+          "The names are diffuse, lobes, gloss, mirror, fresnel, coat, horizon, anisotropy, travel, tilts, texture, "
+          "texture-lobes, operator, lights and extent (of lamps). lobe-20, gloss-900 and texture-0 (lobe0 of the "
+          "textures) are single lobes. tilts are the tilted lobes that stand for color maps under an environment, "
+          "tilts-1 is the set with the fewest of them, and each finer set, as tilts-2, needs the one before; while "
+          "they are drawn, the lobes of these paints are not. Three more "
           "are drawn by tracing rays: shadow (the mesh blocks light), self (lobes and mirror see the body instead of "
           "black) and bounce (the same for the diffuse part). The last two need shadow, and rays names all three. They "
           "are drawn at those pixels alone that can see the mesh, so that a convex shape is drawn as without them. "
           "Rays are traced wherever a mesh is given; auto,-rays traces none, which is much faster where the mesh "
           "blocks much light. Effects of rays that auto decides to draw take at most 1024 samples of a point, and "
           "those that are named with a plus, as in auto,+rays, take as many as --tolerance needs. The effect floor is "
-          "priced where the environment is the background; the engine path alone draws it, and +floor asks for it as "
+          "that "
+          "of --floor shadow and needs shadow; it is priced where the environment is the background, and +floor asks "
+          "for it as "
           "--floor shadow does. auto leaves out the effects that change too little, as --tolerance and --budget say.");
   o.common.tolerance = 0.5;
   cli::add_tolerance(spec, o.common, "DE00", "largest difference from the truth, all errors together")
@@ -158,11 +171,14 @@ void add_engines(cli::ToolSpec& spec, Options& o) {
             "the mean, and by more at single points. integral sums blocks of the image that are as coarse as "
             "--tolerance allows, and draws every effect. At the default tolerance it takes several hundred times "
             "as long as the others, and a brushed paint takes another 50 times as long; --explain predicts the "
-            "time. These three leave out that the mesh is in the way of light. path also draws the mesh mirrored "
-            "in itself and parts that shine. It takes the light from the image that the environment was made from, "
+            "time. To pictures of these three, what the mesh does to light is added by rays, see --effects. path also "
+            "draws parts that shine and floors that wear a paint. It takes the light from the image that the "
+            "environment was made from, "
             "and needs neither prefiltered maps nor OpenGL. It draws samples until the noise of the picture, "
             "estimated from them, is within --tolerance: that is the 95th percentile, over the visible pixels, of "
-            "the CIEDE2000 difference of one standard deviation.");
+            "the CIEDE2000 difference of one standard deviation. auto takes path where the prefiltered maps are "
+            "predicted "
+            "not to keep --tolerance, and path is predicted to be faster than they and their rays.");
   spec.option("bounces", "N", "8", &o.bounces, "surfaces that may pass light on to what is seen")
       .from(0, 4096)
       .more(
@@ -214,8 +230,10 @@ void add_output(cli::ToolSpec& spec, Options& o) {
           "largest, and goniochrome:aovLight holds it. mask is 1 on the mesh. part is a number from 1, and the "
           "attribute goniochrome:parts names the parts. More attributes say what is needed to shade the buffers "
           "again: goniochrome:rays (corner;right;down: the ray through the point x,y is the sum of the first, x times "
-          "the second and y times the third, in pixels from the upper left), goniochrome:lights (direction and white "
-          "of each), goniochrome:operator (the 27 coefficients k[c][d][e] of colored light, with e running fastest), "
+          "the second and y times the third, in pixels from the upper left), goniochrome:lights (direction, "
+          "white and extent of each in degrees, and of a lamp at a place that place and its distance from the middle "
+          "of the mesh), goniochrome:operator (the 27 coefficients k[c][d][e] of colored light, with e running "
+          "fastest), "
           "goniochrome:samples (those of a pixel of the picture) and goniochrome:environment. transport brings all "
           "buffers and, in parts of their own, the light that each lobe of the basis gathers at each pixel, with "
           "shadows and with light that surfaces send to each other; it is traced until its noise is within "

@@ -168,6 +168,7 @@ Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options) {
   result.names.resize(parts_there);
   const auto wear = [&](std::size_t part, const paint::Paint& paint, const brdf::ColorMap* map) {
     result.paints[part] = *paint.lobes;
+    if (map == nullptr) result.paints[part].tilts.clear();  // they stand for a map
     result.gloss_deg[part] = paint.gloss.empty() ? kUnreadGlossDeg : paint.gloss.front().angle_deg;
     result.anisotropy[part] = paint.anisotropy.value_or(paint::Anisotropy{});
     result.surfaces[part] = {nullptr, 1, map};

@@ -177,8 +177,8 @@ refused() { # STATUS TEXT ARGUMENTS...
 }
 
 @test "what does not go together is refused" {
-  refused 2 '--engine cpu draws neither floors nor parts that shine' $table --env even.env.exr --engine cpu --floor shadow
-  refused 2 '--engine gl draws neither floors nor parts that shine' $table --env even.env.exr --engine gl --emit Lamp=1,1,1
+  refused 2 '--engine cpu draws neither parts that shine nor floors that wear a paint' $table --env even.env.exr --engine cpu --floor paints.xml#gray
+  refused 2 '--engine gl draws neither parts that shine nor' $table --env even.env.exr --engine gl --emit Lamp=1,1,1
   refused 2 '--emit is "Lamp=1,1": write PART=R,G,B' $table --emit Lamp=1,1
   refused 2 '--emit is "Lamp=1,-1,1": light cannot be negative' $table --emit Lamp=1,-1,1
   refused 2 'the mesh has no part or material "Bulb"' $table --emit Bulb=1,1,1

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/angles.h"
 #include "base/text.h"
 #include "plan_text.h"
 #include "render/aov.h"
@@ -21,7 +22,9 @@ void describe_view(const Options& options, const render::Rays& rays, const std::
       fmt::format("{};{};{}", spelled(rays.corner), spelled(rays.right), spelled(rays.down));
   std::string all;
   for (const render::Light& light : lights)
-    all += fmt::format("{}{},{}", all.empty() ? "" : ";", spelled(light.direction), spelled(light.white));
+    all += fmt::format("{}{},{},{}{}", all.empty() ? "" : ";", spelled(light.direction), spelled(light.white),
+                       shortest(2 * light.radius_rad / kDegree),
+                       light.place ? "," + spelled(light.place->position) + "," + shortest(light.place->distance) : "");
   attributes["goniochrome:lights"] = all;
   attributes["goniochrome:environment"] = options.env;
 }

@@ -53,7 +53,7 @@ number() { sed -n '/"error": {/,/}/p' r.json | grep -m1 "\"$1\"" | sed -E 's/.*:
 @test "buffers come with the rays, the lights and the environment they were seen in" {
   render-osmesa -q --mesh "$shape" -p paints.xml#matt --env small.env.exr --light 0,0,2,0.5,1,1 $small --aov mask -o out.exr
   exrheader out.exr >header
-  grep -A1 'goniochrome:lights' header | grep -q '"0,0,1,0.5,1,1"'
+  grep -A1 'goniochrome:lights' header | grep -q '"0,0,1,0.5,1,1,0.53"'
   grep -A1 'goniochrome:environment' header | grep -q '"small.env.exr"'
   rays=$(grep -A1 'goniochrome:rays' header | grep -oE '"[^"]+"')
   [ "$(tr -cd ';' <<<"$rays" | wc -c)" -eq 2 ]

@@ -339,3 +339,22 @@ refused() {
   run render-osmesa --mesh panels.obj --env nowhere.env.exr --light-sweep 2 -o out.exr
   [ "$status" -ne 0 ]
 }
+
+@test "a lamp has an extent, and a wrong one is refused" {
+  for extent in @0 "" @3; do
+    render-osmesa -q --mesh "$TESTDATA/box.obj" --paint paints.xml#red --light 0,20,1,1,1$extent --size 64x40 --samples 1 --aov mask -o lamp.exr
+    exrheader lamp.exr | grep -A1 'goniochrome:lights' | grep -q ",1,1,1,$(case $extent in @*) echo "${extent#@}" ;; *) echo 0.53 ;; esac)"
+  done
+  for wrong in 0,20@ 0,20@-1 0,20@181 0,20@wide place:1,2 place:1,2,3,4 @3; do
+    run --separate-stderr render-osmesa --mesh "$TESTDATA/box.obj" --paint paints.xml#red --light "$wrong" --size 64x40 -o lamp.exr
+    [ "$status" -eq 2 ]
+    [[ "$stderr" == *"--light is \"$wrong\""* ]]
+  done
+}
+
+@test "a lamp at a place is drawn along rays" {
+  for place in 0,40,0 0,80,0; do
+    render-osmesa -q --mesh "$TESTDATA/box.obj" --paint paints.xml#red --light "place:$place@1" --size 64x40 --samples 1 --report r.json -o lamp.exr
+    [ "$(jq -r .results.engine r.json)" = path ]
+  done
+}

@@ -62,8 +62,14 @@ Result<Request> request_of(const Options& options) {
                                                                      : "none";
   if (floor_forced && *floor_forced == (floor == "none"))
     return usage_error("--effects and --floor {} exclude each other: leave one of them out", options.floor);
-  const bool wants_rays =
-      !request.emissions.empty() || (floor != "auto" && floor != "none");  // only one engine has them
+  GONIO_ASSIGN(const FloorRequest named, parse_floor(floor, false));
+  const bool has_floor = named.kind != FloorRequest::Kind::kNone;
+  const bool places = std::ranges::any_of(request.lights, [](const render::Light& l) { return l.place.has_value(); });
+  // Only one engine has parts that shine, lamps at a place, floors that wear a paint, and floors where no effects of
+  // rays are drawn.
+  const bool wants_rays = !request.emissions.empty() || places || named.kind == FloorRequest::Kind::kPaint ||
+                          (has_floor && render::leave_out_rays(options.effects));
+  const char* of_rays = !request.emissions.empty() ? "emit" : places ? "light place:..." : "floor";
   const auto tracer = std::ranges::find_if(render::engines(), [](const auto* engine) { return engine->traces_rays; });
   const std::string engine = options.engine == "auto" && wants_rays ? (*tracer)->name : options.engine;
   if (engine != "auto") {
@@ -73,16 +79,16 @@ Result<Request> request_of(const Options& options) {
       return usage_error("--budget chooses effects of prefiltered maps: leave it out, or --engine {}", options.engine);
   }
   const bool traces = request.engine != nullptr && request.engine->traces_rays;
-  GONIO_ASSIGN(request.floor, parse_floor(floor, traces && options.background == "env"));
-  if (!traces) {
-    GONIO_ASSIGN(request.missing_floor, parse_floor(floor, options.background == "env" && !options.env.empty()));
-  }
+  GONIO_ASSIGN(request.floor, parse_floor(floor, options.background == "env" && (traces || !options.env.empty())));
+  request.floor_named = has_floor;
   if (wants_rays && !traces)
-    return usage_error("--engine {} draws neither floors nor parts that shine: leave out --{}, or take --engine path",
-                       options.engine, request.emissions.empty() ? "floor" : "emit");
-  if (wants_rays && !options.gbuffer.empty())
-    return usage_error("--{} needs the mesh: --gbuffer holds one view of surfaces without it",
-                       request.emissions.empty() ? "floor" : "emit");
+    return usage_error(
+        "--engine {} draws neither parts that shine nor lamps at a place nor {}: leave out --{}, or take --engine path",
+        options.engine,
+        named.kind == FloorRequest::Kind::kPaint ? "floors that wear a paint" : "floors without effects of rays",
+        of_rays);
+  if ((wants_rays || has_floor) && !options.gbuffer.empty())
+    return usage_error("--{} needs the mesh: --gbuffer holds one view of surfaces without it", of_rays);
   if (!options.split.empty() && options.check > 0) return usage_error("--split and --check exclude each other");
   if (options.print_shader && options.output == "-")
     return usage_error("--print-shader and a picture both want standard output");

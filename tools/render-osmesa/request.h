@@ -26,7 +26,7 @@ struct Request {
   render::PlanRequest plan;
   const render::EngineInfo* engine = nullptr;  // null: the plan chooses
   FloorRequest floor;
-  FloorRequest missing_floor;  // that the picture calls for, by an engine that draws none
+  bool floor_named = false;  // whether it is asked for by name
   std::vector<Emission> emissions;
 };
 

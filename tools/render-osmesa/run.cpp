@@ -9,6 +9,7 @@
 #include "display/display.h"
 #include "picture_file.h"
 #include "plan_text.h"
+#include "render/aov.h"
 #include "render/left_out.h"
 #include "stage.h"
 #include "truth_check.h"
@@ -147,6 +148,13 @@ class Shooting {
             shrink > 1 ? 1 : request_.samples, shrink == 1 && options_.check > 0};
   }
   Result<render::Renderer> make_renderer();
+  // Whether the picture is drawn by rays alone.
+  bool by_rays() const {
+    const auto engine = render::engine_named(plan_.engine);
+    return engine.ok() && (*engine)->traces_rays;
+  }
+  render::Scene over_floor(bool wanted) const;
+  void leave_out_hidden_floor();
   void tell_noise();
   void tell_rays();
   Result<void> look(render::Renderer& renderer);
@@ -169,6 +177,25 @@ class Shooting {
   double automatic_stops_ = 0;  // of a PNG
   bool stopped_ = false;        // before the noise was within the tolerance
 };
+
+// The scene with the floor of its picture, wherever that is drawn.
+render::Scene Shooting::over_floor(bool wanted) const {
+  render::Scene scene = stage_.scene;
+  if (wanted && stage_.rays && stage_.rays->absent.empty() && !scene.ground) scene.ground = stage_.rays->floor;
+  return scene;
+}
+
+// From below, a floor would hide the mesh.
+void Shooting::leave_out_hidden_floor() {
+  if (!stage_.rays || !stage_.rays->floor) return;
+  const auto below =
+      std::ranges::find_if(shots_, [&](const Shot& shot) { return shot.camera.eye.y <= stage_.rays->floor->height; });
+  if (below == shots_.end()) return;
+  if (stage_.rays->floor_forced)
+    session_.warn(fmt::format("the camera of {} is below the floor, which is left out", below->output));
+  stage_.rays->no_floor = "the camera is below the floor";
+  stage_.rays->floor.reset();
+}
 
 // A sequence is planned on small pictures from some of its places, a single picture on itself.
 Result<void> Shooting::look(render::Renderer& renderer) {
@@ -234,16 +261,17 @@ Result<void> Shooting::draw(render::Renderer& renderer, const Shot& shot, bool f
 
 Result<void> Shooting::write(const Shot& shot, const std::optional<display::Display>& display, double stops) {
   if (!display) {
+    const render::Scene drawn = over_floor(plan_.effects.rays.floor || by_rays());
     std::optional<TracedView> traced;
     if (request_.transport) {
       const envmap::Environment* environment = stage_.source.environment ? &*stage_.source.environment : nullptr;
-      GONIO_ASSIGN(traced,
-                   traced_view(stage_.scene, environment, request_.engine == nullptr || request_.engine->is_planned,
-                               *frame_.gbuffer, white_.luminance, options_.bounces, session_));
+      const bool with_maps = !by_rays() && (request_.engine == nullptr || request_.engine->is_planned);
+      GONIO_ASSIGN(traced, traced_view(drawn, environment, with_maps, *frame_.gbuffer, white_.luminance,
+                                       options_.bounces, session_));
       frame_.gbuffer = traced->gbuffer;
       stopped_ |= !traced->reached;
     }
-    return write_exr_picture(options_, request_, shot, frame_, stage_.scene, plan_, white_, stops, automatic_stops_,
+    return write_exr_picture(options_, request_, shot, frame_, drawn, plan_, white_, stops, automatic_stops_,
                              traced ? &traced->file : nullptr, session_);
   }
   GONIO_ASSIGN(const image::Image shown, display->image(frame_.picture, stops));
@@ -258,7 +286,7 @@ Result<cli::Verdict> Shooting::shade_transport(const std::optional<display::Disp
   white_ = {kept.white_luminance, {0, 1, 0}};
   plan_.engine = "transport", plan_.engine_reason = options_.gbuffer + " holds the light by lobes";
   stage_.scene.lights.clear();
-  for (const image::AovLight& light : kept.lights) stage_.scene.lights.push_back({light.direction, light.white});
+  for (const image::AovLight& light : kept.lights) stage_.scene.lights.push_back(render::light_of(light));
   automatic_stops_ = kept.automatic_stops;
   const double stops = request_.stops.value_or(request_.png ? automatic_stops_ : 0);
   GONIO_TRY(write({{}, {}, options_.output}, display, stops));
@@ -335,7 +363,8 @@ void Shooting::tell_noise() {
 Result<cli::Verdict> Shooting::shoot(const std::optional<display::Display>& display) {
   if (stage_.transport) return shade_transport(display);
   if (request_.transport) GONIO_TRY(can_trace_view(stage_.scene));
-  GONIO_ASSIGN(shots_, shots_of(options_, stage_.mesh, request_.size, request_.lights));
+  GONIO_ASSIGN(shots_, shots_of(options_, stage_.mesh, request_.size, stage_.scene.lights));
+  leave_out_hidden_floor();
   GONIO_ASSIGN(render::Renderer renderer, make_renderer());
   GONIO_TRY(look(renderer));
   tell_visibility(*looks_.front(), stage_.mesh, session_);
@@ -383,7 +412,7 @@ Result<cli::Verdict> Shooting::shoot(const std::optional<display::Display>& disp
     GONIO_ASSIGN(verdict, check_picture());
   }
   // An engine that traces rays leaves nothing out.
-  if (options_.check > 0 && !render::engine_named(plan_.engine).value()->traces_rays) {
+  if (options_.check > 0 && !by_rays()) {
     GONIO_TRY(measure_plan(renderer, render::seen_scene(stage_.scene, looks_), plan_, view(shots_.back(), 1),
                            white_.luminance, session_));
   }
@@ -406,8 +435,9 @@ Result<cli::Verdict> Shooting::check_picture() {
   request.count = options_.check;
   request.bounces = options_.bounces;
   request.seed = session_.common().seed;
-  request.whole = request_.engine != nullptr && request_.engine->traces_rays;
-  GONIO_ASSIGN(const render::TruthError error, render::truth_error(frame_, stage_.scene, plan_.effects.rays, request));
+  request.whole = by_rays();
+  GONIO_ASSIGN(const render::TruthError error,
+               render::truth_error(frame_, over_floor(true), plan_.effects.rays, request));
   tell_truth(error, stage_.source.name, session_.common().tolerance, session_);
   return error.total.de00_p95 > session_.common().tolerance ? cli::Verdict::kNegative : cli::Verdict::kDone;
 }

@@ -81,3 +81,20 @@ decided() { grep -A4 "\"effect\": \"$1\"" auto.json | grep -q "\"decision\": \"$
       -v effect=$effect 'BEGIN { print effect, plan, truth; exit !(truth < 2 * plan && truth > plan / 2) }'
   done
 }
+
+# The white paint in an even light of 1. The control is the same paint without its coat.
+@test "a white paint in even light is not brighter than the light" {
+  oiiotool --pattern constant:color=1,1,1 64x32 3 -d float -o even.exr
+  prefilter-envmap -q even.exr --basis "$TESTDATA/b7.basis.xml" -o even.env.exr
+  fit-paint -q --basis "$TESTDATA/b7.basis.xml" "$TESTDATA/paints.paints.xml" -o coated.xml
+  grep -v '<coat ' coated.xml >uncoated.xml
+  # brightest LIBRARY ENGINE
+  brightest() {
+    render-osmesa -q $view -p "$1.xml#arctic_white" --env even.env.exr --engine "$2" --effects all,-rays --exposure 0 -o even-$2.exr || return 1
+    oiiotool --stats even-$2.exr | sed -nE 's/.*Stats Max: ([0-9.]+) .*/\1/p' | head -1
+  }
+  for engine in cpu gl integral; do
+    awk -v most="$(brightest coated $engine)" 'BEGIN { exit !(most > 0.9 && most <= 1.005) }'
+    awk -v most="$(brightest uncoated $engine)" 'BEGIN { exit !(most > 1.5) }'
+  done
+}

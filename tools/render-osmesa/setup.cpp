@@ -6,6 +6,7 @@
 
 #include "base/angles.h"
 #include "base/text.h"
+#include "brdf/disc_light.h"
 #include "paints.h"
 #include "render/engine.h"
 
@@ -69,19 +70,46 @@ Result<PictureSize> parse_size(const std::string& text) {
 
 Result<render::Light> parse_light(const std::string& text) {
   const auto error = [&](const char* what) { return usage_error("--light is \"{}\": {}", text, what); };
-  const auto values = numbers(text);
+  constexpr std::string_view kPlace = "place:";
+  const bool placed = text.starts_with(kPlace);
+  const std::string without = placed ? text.substr(kPlace.size()) : text;
+  const std::size_t at = without.find('@');
+  const auto values = numbers(without.substr(0, at));
   if (!values || values->size() < 2 || values->size() == 4 || values->size() > 6) {
-    return error("write AZ,EL or X,Y,Z, and after it R,G,B if the light is not 1,1,1");
+    return error(
+        "write AZ,EL or X,Y,Z or place:X,Y,Z, after it R,G,B if the light is not 1,1,1, and after that @DEGREES if "
+        "its diameter is not that of the sun");
   }
   const std::vector<double>& v = *values;
   render::Light light;
+  const auto extent_deg = at == std::string::npos ? brdf::kSunExtent_deg : parse_number(without.substr(at + 1));
+  if (!extent_deg || !(*extent_deg >= 0 && *extent_deg <= 180))
+    return error("the diameter after @ goes from 0, for a point, to 180 degrees");
+  light.radius_rad = 0.5 * *extent_deg * kDegree;
   const bool angles = v.size() == 2 || v.size() == 5;
+  if (placed) {
+    if (angles) return error("a place has three coordinates: write place:X,Y,Z");
+    light.place = {{v[0], v[1], v[2]}, 1};
+  }
   light.direction = angles ? render::orbit_direction(v[0], v[1]) : Vec3{v[0], v[1], v[2]};
-  if (!(length(light.direction) > 0)) return error("the vector to the light has no length");
-  light.direction = normalized(light.direction);
+  if (!placed && !(length(light.direction) > 0)) return error("the vector to the light has no length");
+  if (!placed) light.direction = normalized(light.direction);
   if (v.size() >= 5) light.white = {v[v.size() - 3], v[v.size() - 2], v[v.size() - 1]};
   if (std::min({light.white.x, light.white.y, light.white.z}) < 0) return error("light cannot be negative");
   return light;
+}
+
+Result<void> stand_lamps(const mesh::Mesh& mesh, std::vector<render::Light>& lights) {
+  for (render::Light& light : lights) {
+    if (!light.place) continue;
+    const mesh::Box box = bounding_box(mesh);
+    const Vec3 toward = light.place->position - 0.5 * (box.low + box.high);
+    light.place->distance = length(toward);
+    if (!(light.place->distance > 0))
+      return usage_error("--light has a lamp in the middle of the mesh: place it outside of the mesh");
+    light.direction = normalized(toward);
+  }
+  return {};
 }
 
 Result<render::Camera> camera_of(const Options& options, const mesh::Mesh& mesh, const PictureSize& size) {
@@ -195,7 +223,10 @@ Result<std::vector<Shot>> shots_of(const Options& options, const mesh::Mesh& mes
     const auto turned = [&](const Vec3& v) { return Vec3{c * v.x + s * v.z, v.y, c * v.z - s * v.x}; };
     Shot shot{camera, lights, names[static_cast<std::size_t>(i)]};
     if (options.turntable > 0) shot.camera.eye = camera.target + turned(camera.eye - camera.target);
-    if (options.light_sweep > 0) shot.lights[0].direction = turned(lights[0].direction);
+    if (options.light_sweep > 0) {
+      shot.lights[0].direction = turned(lights[0].direction);
+      if (lights[0].place) shot.lights[0].place->position = turned(lights[0].place->position);
+    }
     shots.push_back(std::move(shot));
   }
   return shots;

@@ -26,6 +26,9 @@ Result<PictureSize> parse_size(const std::string& text);
 
 // AZ,EL or X,Y,Z, then R,G,B if the light is not 1,1,1.
 Result<render::Light> parse_light(const std::string& text);
+// Gives lamps at a place the direction and the distance that they have from the middle of the mesh. Error (usage): a
+// lamp stands there.
+Result<void> stand_lamps(const mesh::Mesh& mesh, std::vector<render::Light>& lights);
 
 // --camera or --orbit.
 Result<render::Camera> camera_of(const Options& options, const mesh::Mesh& mesh, const PictureSize& size);

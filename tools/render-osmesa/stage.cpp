@@ -129,14 +129,34 @@ Result<void> set_gbuffer(const Options& options, const Request& request, Stage& 
   return {};
 }
 
-// The floor that a picture with the environment around the mesh calls for, and that engines with maps do not draw.
-Result<void> set_missing_floor(const Options& options, const Request& request, const render::Scene& scene,
-                               render::RaySetup& rays) {
+// The floor of a picture by an engine with prefiltered maps.
+Result<void> set_laid_floor(const Options& options, const Request& request, const render::Scene& scene,
+                            render::RaySetup& rays) {
   rays.no_floor = "no floor is asked for: --floor shadow has one, and --background env calls for it";
-  if (request.missing_floor.kind == FloorRequest::Kind::kNone || scene.env == nullptr) return {};
+  if (request.floor.kind == FloorRequest::Kind::kNone) return {};
   render::Scene over = scene;
-  GONIO_TRY(set_ground(request.missing_floor, options, over));
-  rays.floor = over.ground;
+  GONIO_TRY(set_ground(request.floor, options, over));
+  rays.floor = over.ground, rays.floor_forced = request.floor_named;
+  if (!rays.absent.empty() && request.floor_named)
+    return usage_error("--floor shadow is drawn by rays, and there are none: {}", rays.absent);
+  return {};
+}
+
+// What is below a floor is hidden by rays alone.
+Result<void> take_path_below(const Options& options, const mesh::Mesh& mesh, Request& request) {
+  const bool traces = request.engine != nullptr && request.engine->traces_rays;
+  if (traces || request.floor.kind == FloorRequest::Kind::kNone || !request.floor.height) return {};
+  const mesh::Box box = mesh::bounding_box(mesh);
+  const double margin = 1e-6 * std::max({box.high.x - box.low.x, box.high.y - box.low.y, box.high.z - box.low.z});
+  if (*request.floor.height <= box.low.y + margin) return {};
+  if (request.engine != nullptr)
+    return usage_error(
+        "--floor lies at {}, above the lowest point of the mesh, which is at {:.6g}: --engine path hides what is below",
+        shortest(*request.floor.height), box.low.y);
+  const auto tracer = std::ranges::find_if(render::engines(), [](const auto* engine) { return engine->traces_rays; });
+  request.engine = *tracer, request.plan.engine = (*tracer)->name;
+  if (options.budget_ms > 0)
+    return usage_error("--budget chooses effects of prefiltered maps: leave it out, or the height of the floor");
   return {};
 }
 
@@ -157,7 +177,7 @@ Result<void> set_rays(const Options& options, const Request& request, Stage& sta
     stage.sky.emplace(envmap::Environment::from_cube(stage.env.mirror.map, options.env));
     rays.environment = &*stage.sky;
   }
-  return rays.absent.empty() ? set_missing_floor(options, request, stage.scene, rays) : Result<void>();
+  return set_laid_floor(options, request, stage.scene, rays);
 }
 
 }  // namespace
@@ -173,10 +193,11 @@ void wear(const DressedMesh& dress, const Options& options, Stage& stage) {
   scene.layer = stage.layer->empty() ? nullptr : stage.layer.get();
 }
 
-Result<void> set_stage(const Options& options, const Request& request, Stage& stage, cli::Session& session) {
+Result<void> set_stage(const Options& options, Request& request, Stage& stage, cli::Session& session) {
   if (options.gbuffer.empty()) {
     GONIO_ASSIGN(stage.mesh, mesh::read_mesh(options.mesh));
     tell_repairs(stage.mesh, session);
+    GONIO_TRY(take_path_below(options, stage.mesh, request));
   } else {
     GONIO_TRY(set_gbuffer(options, request, stage, session));
   }
@@ -185,6 +206,11 @@ Result<void> set_stage(const Options& options, const Request& request, Stage& st
   render::Scene& scene = stage.scene;
   scene.mesh = &stage.mesh;
   scene.lights = request.lights;
+  if (options.gbuffer.empty()) {
+    GONIO_TRY(stand_lamps(stage.mesh, scene.lights));
+  } else if (std::ranges::any_of(scene.lights, [](const render::Light& light) { return light.place.has_value(); })) {
+    return usage_error("--gbuffer holds no places, so that no lamp can stand at one: give --mesh");
+  }
   scene.reflection = request.reflection;
   if (!options.env.empty()) {
     GONIO_ASSIGN(stage.env, envmap::read_env(options.env));
@@ -200,7 +226,7 @@ Result<void> set_stage(const Options& options, const Request& request, Stage& st
     GONIO_ASSIGN(stage.source, source_of(options, scene, session));
   }
   if (summed && stage.source.environment) scene.texels = &stage.texels.emplace(*stage.source.environment);
-  GONIO_TRY(set_ground(request.floor, options, scene));
+  if (request.engine != nullptr && request.engine->traces_rays) GONIO_TRY(set_ground(request.floor, options, scene));
   GONIO_ASSIGN(scene.emission, emission_of(stage.mesh, request.emissions));
   return set_background(scene, options.background);
 }

@@ -41,9 +41,9 @@ struct Stage {
   std::optional<render::RaySetup> rays;     // none with engines that trace by themselves
 };
 
-// Reads what the options name, tells the session about the mesh, and dresses it in the first of the paints. Error: what
-// cannot be read or does not go together.
-Result<void> set_stage(const Options& options, const Request& request, Stage& stage, cli::Session& session);
+// Reads what the options name, tells the session about the mesh, and dresses it in the first of the paints. A floor
+// above the lowest point of the mesh takes the engine path. Error: what cannot be read or does not go together.
+Result<void> set_stage(const Options& options, Request& request, Stage& stage, cli::Session& session);
 
 // Puts the paints, textures and color maps of `dress` on the mesh of the scene.
 void wear(const DressedMesh& dress, const Options& options, Stage& stage);

@@ -7,7 +7,9 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "brdf/lobe_model.h"
 #include "envmap/cube_map.h"
+#include "render/aov.h"
 #include "render/effects.h"
 #include "render/surface_layer.h"
 
@@ -44,7 +46,9 @@ void report_traced(const render::TracedLobes& traced, const render::TransportPar
 bool same_light(const KeptTransport& kept, const std::vector<render::Light>& lights) {
   return std::equal(lights.begin(), lights.end(), kept.lights.begin(), kept.lights.end(),
                     [](const render::Light& a, const image::AovLight& b) {
-                      return length(a.direction - b.direction) < 1e-9 && a.white == b.white;
+                      return length(a.direction - b.direction) < 1e-9 && a.white == b.white &&
+                             std::abs(a.radius_rad - render::light_of(b).radius_rad) < 1e-9 &&
+                             a.place.has_value() == b.is_placed;
                     });
 }
 
@@ -104,7 +108,8 @@ Result<TracedView> traced_view(const render::Scene& scene, const envmap::Environ
     const render::Effects effects = render::effects_of(scene);
     GONIO_ASSIGN(open, render::OpenLight::create(*scene.env, columns,
                                                  effects.anisotropy ? render::tilts_of(scene, effects)
-                                                                    : std::vector<std::vector<brdf::Tilt>>()));
+                                                                    : std::vector<std::vector<brdf::Tilt>>(),
+                                                 worn.coats));
   }
   const render::VisibleSurface surface = render::visible_surface(transport.rays(), seen.rays, seen.width, seen.height);
   render::LobeTransportRequest request;
@@ -147,9 +152,11 @@ Result<ShadedView> shaded_view(const KeptTransport& kept, const render::Gbuffer&
   const render::LobeTransport& light = kept.light;
   std::vector<render::TransportPaint> paints;
   std::vector<std::vector<color::Rgb>> weights;
-  bool with_views = false;
+  bool with_views = false, coat_changed = false;
   for (std::size_t part = 0; part < dress.paints.size(); ++part) {
-    const paint::LobeFit& fit = dress.paints[part];
+    const double coat = part < light.worn.coats.size() ? light.worn.coats[part] : paint::kNoCoat;
+    const paint::LobeFit fit = brdf::under_coat(dress.paints[part], coat);
+    coat_changed |= (coat == paint::kNoCoat) != (dress.paints[part].coat_index == paint::kNoCoat);
     const auto named = [&](const Error& error) {
       return Error{error.kind, dress.names[part].empty() ? error.message : dress.names[part] + ": " + error.message};
     };
@@ -166,6 +173,10 @@ Result<ShadedView> shaded_view(const KeptTransport& kept, const render::Gbuffer&
     with_views |= paint->view_deg.size() > 1;
     paints.push_back(*std::move(paint)), weights.push_back(*std::move(flat));
   }
+  if (coat_changed)
+    session.warn(
+        "a paint has a coat and took the place of one without it, or the other way round: toward grazing the picture "
+        "is that of the paint whose light was traced");
   if (light.worn.has_floor) {  // in the paint that it wore
     weights.push_back(light.worn.weights[static_cast<std::size_t>(light.worn.groups.of_part.back())]);
     paints.push_back({{0}, {weights.back()}});

@@ -80,8 +80,9 @@ void add_report(cli::ToolSpec& spec) {
       {"flop", "L*, a*, b* of its flop"},
       {"rows[]: geometry, L, a, b", "its colors at the export angles"},
       {"extrapolated_deg[]", "those of the angles that no pixel shows"},
-      {"gloss_60_gu", "its gloss at 60 degrees; null for the fallback"},
-      {"gloss_from", "highlight, contrast or search"},
+      {"gloss_60_gu", "its gloss at 60 degrees; null for the fallback, and where it is undetermined"},
+      {"gloss_from", "highlight, contrast, search, or undetermined"},
+      {"gloss_range_gu", "under lamps with an extent, the least and the largest gloss that explain the pixels as well"},
       {"condition", "condition number of the linear fit, or of the search at its end; null where nothing was fitted"},
       {"pixels_used", "number of pixels that the fit rests on"},
       {"pixels_changed", "number of pixels that could be used and were edited"},
@@ -121,7 +122,11 @@ cli::ToolSpec tool_spec(Options& o) {
       "Floats (EXR) are light. Pixels are "
       "left out at edges, at grazing light, near specular, where they are clipped or transparent, and outside the "
       "mask.",
-      "Gloss comes from the shape of the highlight where it is seen unclipped, and else from its contrast. With --env, "
+      "Under a lamp that spans an angle, which the buffers tell, the search knows its highlight and its mirror image, "
+      "and "
+      "gloss is what explains them. It is undetermined where readings more than 10 units apart explain the pixels as "
+      "well. Under a point, "
+      "gloss comes from the shape of the highlight where it is seen unclipped, and else from its contrast. With --env, "
       "it comes from the search where other pixels contradict the highlight.",
       "A picture that seems to be moved against the buffers is told with the shift to give."};
   add_options(spec, o);

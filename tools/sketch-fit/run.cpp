@@ -157,7 +157,9 @@ void report_fit(const sketch::SketchFit& fit, bool environment, Json& results) {
     results["rows"].push_back(
         {{"geometry", paint::geometry_name(row.geometry)}, {"L", row.lab.L}, {"a", row.lab.a}, {"b", row.lab.b}});
   results["extrapolated_deg"] = fit.extrapolated_deg;
-  results["gloss_60_gu"] = fit.gloss_from.empty() ? Json(nullptr) : Json(fit.gloss_60_gu);
+  const bool told = !fit.gloss_from.empty() && fit.gloss_from != "undetermined";
+  results["gloss_60_gu"] = told ? Json(fit.gloss_60_gu) : Json(nullptr);
+  results["gloss_range_gu"] = fit.gloss_high_gu > 0 ? Json({fit.gloss_low_gu, fit.gloss_high_gu}) : Json(nullptr);
   results["gloss_from"] = fit.gloss_from.empty() ? Json(nullptr) : Json(fit.gloss_from);
   results["condition"] = fit.condition > 0 ? json_number(fit.condition) : Json(nullptr);
   results["aspecular_from_deg"] = environment ? Json(nullptr) : Json(fit.seen_from_deg);
@@ -174,7 +176,10 @@ void tell(const Options& options, const sketch::SketchPixels& pixels, const sket
                              fmt::join(fit.extrapolated_deg, ", ")));
   const paint::Appearance& a = fit.appearance;
   const std::string gloss =
-      fit.gloss_from.empty() ? "" : fmt::format(", gloss {:.0f} GU by {}", fit.gloss_60_gu, fit.gloss_from);
+      fit.gloss_from.empty() ? ""
+      : fit.gloss_from == "undetermined"
+          ? fmt::format(", gloss undetermined between {:.0f} and {:.0f} GU", fit.gloss_low_gu, fit.gloss_high_gu)
+          : fmt::format(", gloss {:.0f} GU by {}", fit.gloss_60_gu, fit.gloss_from);
   session.say(fmt::format(
       "{}: face {:.1f} {:.1f} {:.1f}, flop {:.1f} {:.1f} {:.1f}, travel {:.0f}{}; dE76 median {:.1f}, rms {:.1f}, {} {}"
       "pixels",
@@ -251,6 +256,33 @@ std::string plan_text(const Options& options) {
 
 }  // namespace
 
+namespace {
+
+// Lamps that are discs have highlights that tell the gloss. The search that knows them is the answer where it explains
+// the pixels as well as the curve does.
+Result<void> fit_lamps(const Material& material, const sketch::SketchLimits& limits, bool differences,
+                       sketch::SketchPixels& pixels, sketch::SketchFit& fit) {
+  const std::vector<image::AovLight>& lights = material.buffers.lights;
+  const bool discs = std::ranges::any_of(lights, [](const image::AovLight& light) { return light.extent_deg > 0; });
+  const std::vector<std::string>& drawn = material.buffers.drawn;
+  if (!discs || std::ranges::find(drawn, "extent") == drawn.end() || !material.buffers.has_rays ||
+      !material.buffers.channel("normal.X").ok())
+    return {};
+  GONIO_ASSIGN(const sketch::SketchLight light, sketch::lamp_light(material.buffers, material.basis));
+  sketch::SketchInput with_glare = material.input;
+  with_glare.glare_deg = 0;
+  GONIO_ASSIGN(sketch::SketchPixels all, sketch::sketch_pixels(with_glare));
+  sketch::SketchFit by_lamps = sketch::sketch_lamps(with_glare, all, light, limits, differences);
+  constexpr double kMore = 1.15, kMoreBy_de76 = 0.1;
+  if (by_lamps.status != "fitted" || by_lamps.median_de76 > kMore * fit.median_de76 + kMoreBy_de76) return {};
+  by_lamps.seen_from_deg = fit.seen_from_deg, by_lamps.seen_to_deg = fit.seen_to_deg;
+  by_lamps.extrapolated_deg = fit.extrapolated_deg;
+  fit = std::move(by_lamps), pixels = std::move(all);
+  return {};
+}
+
+}  // namespace
+
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   session.explain(plan_text(options));
   Material material;
@@ -260,7 +292,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   if (!options.env.empty() && !material.transport) warn_of_effects(material.buffers, session);
   if (!material.transport) warn_of_left_out(material.buffers, session), tell_shadows(material.buffers, session);
   const Stopwatch clock;
-  GONIO_ASSIGN(const sketch::SketchPixels pixels, sketch::sketch_pixels(input));
+  GONIO_ASSIGN(sketch::SketchPixels pixels, sketch::sketch_pixels(input));
   GONIO_TRY(check_usable(pixels, options));
   sketch::SketchLimits limits;
   limits.median_de76 = options.most_de76;
@@ -274,6 +306,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
     fit = sketch::sketch_environment(input, pixels, light, limits, differences);
   } else {
     fit = sketch::sketch_point(input, pixels, material.basis, limits, differences);
+    GONIO_TRY(fit_lamps(material, limits, differences, pixels, fit));
   }
   Json& results = session.results();
   report_fit(fit, environment, results);

@@ -342,3 +342,39 @@ usage_error() { # TEXT ARGUMENTS...
   [ "$status" -eq 3 ]
   [ ! -e none.xml ]
 }
+
+# A ball, which shows the highlight of any lamp.
+ball() {
+  awk 'BEGIN { n = 64; m = 128; p = atan2(0, -1)
+    for (i = 0; i <= n; ++i) for (j = 0; j < m; ++j) {
+      s = sin(p * i / n); v = sprintf("%.9g %.9g %.9g", s * sin(2 * p * j / m), cos(p * i / n), s * cos(2 * p * j / m))
+      print "v " v; print "vn " v }
+    for (i = 0; i < n; ++i) for (j = 0; j < m; ++j) {
+      a = i * m + j + 1; b = i * m + (j + 1) % m + 1; c = b + m; d = a + m
+      if (i > 0) print "f " a "//" a " " d "//" d " " b "//" b
+      if (i < n - 1) print "f " b "//" b " " d "//" d " " c "//" c } }' >ball.obj
+}
+
+@test "the highlight of a lamp with an extent tells the gloss, from none to a mirror" {
+  ball
+  for gloss in 0 10 40 80 100; do
+    cat >one.xml <<EOF
+<paints xmlns="urn:goniochrome:paint:1" version="1"><paint name="one" class="solid"><measurement illuminant="D65" observer="10">
+<lab geometry="45as15" L="42" a="50" b="28"/><lab geometry="45as45" L="40" a="50" b="28"/><lab geometry="45as110" L="40" a="50" b="28"/>
+</measurement><gloss angle="60">$gloss</gloss></paint></paints>
+EOF
+    fit-paint -q --basis "$TESTDATA/b7.basis.xml" one.xml -o lit.xml
+    for extent in 0 3; do
+      render-osmesa -q --mesh ball.obj --light 35,45@$extent --size 160x160 --samples 4 --effects auto,-rays \
+        --paint lit.xml --aov normal,aspecular,lambert,mask,part -o lit.exr
+      sketch-fit -q --image lit.exr --buffers lit.exr -o found.xml --report r.json
+      if [ $extent = 3 ]; then
+        [ "$(result gloss_from)" = search ]
+        below "$(awk -v x="$(result gloss_60_gu)" -v y=$gloss 'BEGIN { print (x - y)^2 }')" 25
+      elif [ $gloss = 0 ] || [ $gloss = 100 ]; then # the control: a point has no mirror image
+        echo "$gloss $(result gloss_60_gu)" >>control
+      fi
+    done
+  done
+  below "$(awk 'NR == 1 { x = $2 } NR == 2 { print ($2 - x)^2 }' control)" 1
+}

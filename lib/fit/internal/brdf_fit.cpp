@@ -29,9 +29,15 @@ double coat_scale(const BrdfSample& sample) {
   return brdf::coat_fresnel(half_angle_cosine(sample)) / std::cos(sample.light_deg * kDegree);
 }
 
+// What a coat leaves of the base's light there.
+double passages(const BrdfSample& sample, double coat_index) {
+  return brdf::coat_passages(coat_index, std::cos(sample.light_deg * kDegree), std::cos(sample.view_deg * kDegree));
+}
+
 // What the lobes show there, gloss included: reflectance factors of the working space.
 color::Rgb shown_at(const paint::LobeFit& lobes, const BrdfSample& sample) {
-  return kPi * brdf::brdf_by_angles(lobes, sample.aspecular_rad, sample.view_deg, coat_scale(sample));
+  return kPi * brdf::brdf_by_angles(lobes, sample.aspecular_rad, sample.view_deg, passages(sample, lobes.coat_index),
+                                    coat_scale(sample));
 }
 
 // The mean color and angle of the flake from one aspecular angle to another; false where nothing was measured there.
@@ -58,8 +64,8 @@ void add_extension(const FitOptions& options, const std::vector<double>& exponen
       !mean_between(rows.flake.rows, kGlareAngle_deg + 10, kGlareAngle_deg + 15, end.b_deg, end.at_b))
     return;
   const double importance = kShare * static_cast<double>(rows.fitted.size());
-  for (const TargetRow& row :
-       extension_to_specular(end, steepest_seen(exponents, rows.first_rad), rows.flake.white, importance))
+  for (const TargetRow& row : extension_to_specular(end, steepest_seen(exponents, rows.first_rad), rows.flake.white,
+                                                    importance, options.coat_index.value_or(paint::kNoCoat)))
     rows.flake.rows.push_back(flake_row(row, options, true));
 }
 
@@ -129,7 +135,7 @@ math::NonNegativeFit solved(const BrdfRows& rows, const std::vector<BrdfSample>&
   for (int i = 0; i < n; ++i) {
     const BrdfSample& sample = samples[static_cast<std::size_t>(i)];
     const double weight = color::lightness_slope(color::lab_from_rgb(sample.value, rows.flake.white).L);
-    const double coat = coat_scale(sample);
+    const double coat = coat_scale(sample), base = passages(sample, flake.coat_index);
     const color::Rgb rest = sample.value - shown_at(flake, sample);
     const double log_cos = math::log_cosine(sample.aspecular_rad);
     for (std::size_t j = 0; j < flake.lobes.size(); ++j)
@@ -139,7 +145,7 @@ math::NonNegativeFit solved(const BrdfRows& rows, const std::vector<BrdfSample>&
       left[static_cast<std::size_t>(row)] = weight * rest[c];
       for (std::size_t j = 0; j < columns.gray.size(); ++j) m(row, static_cast<int>(j)) = coat * power[columns.gray[j]];
       for (std::size_t j = 0; j < columns.colored.size(); ++j)
-        m(row, columns.colored_column(c, j)) = power[columns.colored[j]];
+        m(row, columns.colored_column(c, j)) = base * power[columns.colored[j]];
     }
   }
   return math::nnls(m, left);
@@ -156,7 +162,9 @@ FiveAngleFigures five_angle_figures(const BrdfTarget& brdf, const paint::LobeFit
         sample.aspecular_rad < kGlareAngle_deg * kDegree || size <= 0)
       continue;
     const auto error = [&](double angle_deg) {
-      return length(brdf::flake_reflectance_factor(lobes, angle_deg) - sample.value) / size;
+      return length(brdf::flake_reflectance_factor(lobes, angle_deg, sample.light_deg, sample.view_deg) -
+                    sample.value) /
+             size;
     };
     by_aspecular.push_back(error(sample.aspecular_rad / kDegree));
     by_flake.push_back(error(aspecular_of_flakes_deg(sample)));
@@ -180,12 +188,13 @@ Result<BrdfRows> brdf_rows(const BrdfTarget& brdf, const color::Xyz& white, cons
       continue;
     }
     const color::Lab lab = color::lab_from_rgb(sample.value, white);
+    const double base = passages(sample, options.coat_index.value_or(paint::kNoCoat));
     rows.gamut_de00 = std::max(rows.gamut_de00, gamut_loss(lab, sample.value, white));
     rows.flake.rows.push_back({{sample.aspecular_rad, sample.view_deg},
-                               non_negative(sample.value),
-                               options.perceptual_weights ? color::lightness_slope(lab.L) : 1,
+                               (1 / base) * non_negative(sample.value),
+                               base * (options.perceptual_weights ? color::lightness_slope(lab.L) : 1),
                                false});
-    if (options.method == FitMethod::kDeltaE) rows.flake.readings.push_back({rows.flake.rows.back().at, lab});
+    if (options.method == FitMethod::kDeltaE) rows.flake.readings.push_back({rows.flake.rows.back().at, lab, base});
     rows.fitted.push_back(sample);
     rows.first_rad = std::min(rows.first_rad, sample.aspecular_rad);
   }

@@ -314,6 +314,7 @@ DeltaEProblem deltae_problem(const FlakeTarget& target, const FlakeModel& model,
   for (const FlakeReading& reading : target.readings) {
     std::vector<double> shape(width);
     model.shape(reading.at, shape.data());
+    for (double& s : shape) s *= reading.passages;
     problem.readings.push_back({std::move(shape), reading.lab});
   }
   for (int i = 0; i < linear.rows(); ++i) {

@@ -29,7 +29,7 @@ struct FlakePoint {
 
 struct FlakeRow {
   FlakePoint at;
-  color::Rgb value;       // reflectance factor, channels >= 0
+  color::Rgb value;       // reflectance factor under the coat, channels >= 0
   double weight = 1;      // of the error
   bool inferred = false;  // the row was not read; it steers the weights between and beyond the readings
 };
@@ -37,6 +37,7 @@ struct FlakeRow {
 struct FlakeReading {
   FlakePoint at;
   color::Lab lab;
+  double passages = 1;  // what the coat leaves of the light of weights 1 there, see brdf::coat_passages()
 };
 
 struct FlakeTarget {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/angles.h"
+#include "brdf/lobe_model.h"
 #include "math/cosine_power.h"
 
 namespace goniochrome::fit {
@@ -22,12 +23,22 @@ double usual_view_deg(double aspecular_deg) {
   return std::abs(45 - aspecular_deg);
 }
 
-// Adds the row of `lab` and notes the gamut loss.
-void add_row(const color::Lab& lab, const color::Xyz& white, double angle_deg, double view_deg, double importance,
-             Target& target) {
-  const color::Rgb rgb = color::rgb_from_lab(lab, white);
-  target.gamut_de00 = std::max(target.gamut_de00, gamut_loss(lab, rgb, white));
-  target.rows.push_back({angle_deg, view_deg, non_negative(rgb), importance, lab.L});
+double usual_passages(double aspecular_deg, double coat_index) {
+  return brdf::coat_passages(coat_index, std::cos(45 * kDegree), std::cos(usual_view_deg(aspecular_deg) * kDegree));
+}
+
+// The color of the base of which a coat leaves `lab`.
+color::Lab base_lab(const color::Lab& lab, double passages, const color::Xyz& white) {
+  return passages == 1 ? lab : color::lab_from_rgb((1 / passages) * color::rgb_from_lab(lab, white), white);
+}
+
+// Adds the row of the base's color, `lightness` being that of what is seen, and notes the gamut loss.
+void add_row(const color::Lab& base, const color::Xyz& white, TargetRow row, Target& target) {
+  const color::Rgb rgb = color::rgb_from_lab(base, white), seen = row.passages * rgb;
+  const color::Lab lab = row.passages == 1 ? base : color::lab_from_rgb(seen, white);
+  target.gamut_de00 = std::max(target.gamut_de00, gamut_loss(lab, seen, white));
+  row.reflectance_factor = non_negative(rgb);
+  target.rows.push_back(row);
 }
 
 color::Lab mean_of(const std::vector<color::Lab>& colors) {
@@ -39,9 +50,9 @@ color::Lab mean_of(const std::vector<color::Lab>& colors) {
 
 // One row per unsigned aspecular angle: readings that share it (45as15 and 45as-15) are averaged and count together.
 // Kept apart, the l1 fit could take its red from one and its green from the other.
-void add_readings(const color::Xyz& white, bool by_view, Target& target) {
+void add_readings(const color::Xyz& white, double coat_index, bool by_view, Target& target) {
   struct Seen {
-    double angle_deg, view_deg;
+    double angle_deg, view_deg, passages;
     color::Lab lab;
     bool with(const Seen& other, bool same_view) const {
       return std::abs(angle_deg - other.angle_deg) <= 1e-6 &&
@@ -50,15 +61,22 @@ void add_readings(const color::Xyz& white, bool by_view, Target& target) {
   };
   std::vector<Seen> sorted;
   for (const paint::LabReading& reading : target.readings)
-    sorted.push_back({paint::aspecular_angle_deg(reading.geometry), view_angle_deg(reading.geometry), reading.lab});
+    sorted.push_back({paint::aspecular_angle_deg(reading.geometry), view_angle_deg(reading.geometry),
+                      coat_passages_at(reading.geometry, coat_index), reading.lab});
   std::ranges::stable_sort(sorted, [&](const Seen& a, const Seen& b) {
     return a.angle_deg != b.angle_deg ? a.angle_deg < b.angle_deg : by_view && a.view_deg < b.view_deg;
   });
   for (auto first = sorted.begin(); first != sorted.end();) {
     const auto last = std::find_if(first, sorted.end(), [&](const Seen& s) { return !s.with(*first, by_view); });
-    std::vector<color::Lab> same;
-    std::transform(first, last, std::back_inserter(same), [](const Seen& s) { return s.lab; });
-    add_row(mean_of(same), white, first->angle_deg, first->view_deg, static_cast<double>(same.size()), target);
+    std::vector<color::Lab> same, base;
+    double passages = 0;
+    for (auto seen = first; seen != last; ++seen) {
+      same.push_back(seen->lab), base.push_back(base_lab(seen->lab, seen->passages, white));
+      passages += seen->passages / static_cast<double>(last - first);
+    }
+    add_row(mean_of(base), white,
+            {first->angle_deg, first->view_deg, {}, static_cast<double>(same.size()), mean_of(same).L, passages},
+            target);
     first = last;
   }
 }
@@ -138,6 +156,11 @@ std::vector<double> seen_exponents(const std::vector<double>& exponents, double 
   return seen;
 }
 
+double coat_passages_at(const paint::Geometry& geometry, double coat_index) {
+  const paint::DirectionPair at = paint::directions(geometry);
+  return brdf::coat_passages(coat_index, std::clamp(at.light.z, 0.0, 1.0), std::clamp(at.view.z, 0.0, 1.0));
+}
+
 double steepest_seen(const std::vector<double>& exponents, double first_rad) {
   const std::vector<double> seen = seen_exponents(exponents, first_rad);
   return seen.empty() ? 0 : std::ranges::max(seen);
@@ -151,7 +174,7 @@ double gamut_loss(const color::Lab& lab, const color::Rgb& rgb, const color::Xyz
 FlakeRow flake_row(const TargetRow& row, const FitOptions& options, bool inferred) {
   return {{row.angle_deg * kDegree, row.view_deg},
           row.reflectance_factor,
-          row.importance * (options.perceptual_weights ? color::lightness_slope(row.lightness) : 1),
+          row.importance * row.passages * (options.perceptual_weights ? color::lightness_slope(row.lightness) : 1),
           inferred};
 }
 
@@ -160,7 +183,7 @@ FlakeRow flake_row(const TargetRow& row, const FitOptions& options, bool inferre
 // exponentials of linear functions), so it lies on or above this line: the extension is the least highlight that the
 // lobes can have, and it leaves no reason for a sharp lobe with an arbitrary weight.
 std::vector<TargetRow> extension_to_specular(const HighlightEnd& end, double steepest, const color::Xyz& white,
-                                             double importance) {
+                                             double importance, double coat_index) {
   const double cos_a = std::cos(end.a_deg * kDegree), cos_b = std::cos(end.b_deg * kDegree);
   color::Rgb exponent;
   for (int c = 0; c < 3; ++c) {
@@ -172,14 +195,15 @@ std::vector<TargetRow> extension_to_specular(const HighlightEnd& end, double ste
   for (double t = 0; t < end.a_deg - kStep_deg / 2; t += kStep_deg) {
     TargetRow row = {t, usual_view_deg(t), end.at_a, importance, 0};
     for (int c = 0; c < 3; ++c) row.reflectance_factor[c] *= std::pow(std::cos(t * kDegree) / cos_a, exponent[c]);
-    row.lightness = color::lab_from_rgb(row.reflectance_factor, white).L;
+    row.passages = usual_passages(t, coat_index);
+    row.lightness = color::lab_from_rgb(row.passages * row.reflectance_factor, white).L;
     rows.push_back(row);
   }
   return rows;
 }
 
 Result<Target> target_rows(const paint::Paint& paint, paint::TargetCurve::Kind kind, const color::Xyz& white,
-                           const std::vector<double>& exponents, bool by_view) {
+                           const std::vector<double>& exponents, double coat_index, bool by_view) {
   // The readings beyond glare, or what a designed paint would read.
   Target target;
   if (paint.measurement) {
@@ -203,23 +227,29 @@ Result<Target> target_rows(const paint::Paint& paint, paint::TargetCurve::Kind k
     known.push_back(paint::aspecular_angle_deg(reading.geometry));
   const auto [first, last] = std::minmax_element(known.begin(), known.end());
   const bool is_curve = kind == paint::TargetCurve::Kind::kCurve;
-  if (!is_curve) add_readings(white, by_view, target);
+  if (!is_curve) add_readings(white, coat_index, by_view, target);
   target.first_deg = is_curve ? paint::kFaceAngle_deg : *first;
   const double end_deg = is_curve ? std::max(*last, 110.0) : *last;
   for (double t = target.first_deg; t <= end_deg; t += kStep_deg) {
     const bool near_known =
         std::any_of(known.begin(), known.end(), [&](double k) { return std::abs(k - t) < kStep_deg / 2; });
-    if (is_curve || !near_known)
-      add_row(curve.at(t), white, t, usual_view_deg(t), is_curve ? 1 : kInterpolatedImportance, target);
+    if (!is_curve && near_known) continue;
+    const color::Lab lab = curve.at(t);
+    const double passages = usual_passages(t, coat_index);
+    add_row(base_lab(lab, passages, white), white,
+            {t, usual_view_deg(t), {}, is_curve ? 1 : kInterpolatedImportance, lab.L, passages}, target);
   }
 
   // The rows toward specular.
-  const auto color_at = [&](double angle_deg) { return non_negative(color::rgb_from_lab(curve.at(angle_deg), white)); };
+  const auto color_at = [&](double angle_deg) {
+    const double passages = usual_passages(angle_deg, coat_index);
+    return (1 / passages) * non_negative(color::rgb_from_lab(curve.at(angle_deg), white));
+  };
   const double a_deg = target.first_deg, b_deg = target.first_deg + 10;
   const HighlightEnd end{a_deg, b_deg, color_at(a_deg), color_at(b_deg)};
-  std::ranges::move(
-      extension_to_specular(end, steepest_seen(exponents, target.first_deg * kDegree), white, kExtendedImportance),
-      std::back_inserter(target.rows));
+  std::ranges::move(extension_to_specular(end, steepest_seen(exponents, target.first_deg * kDegree), white,
+                                          kExtendedImportance, coat_index),
+                    std::back_inserter(target.rows));
   return target;
 }
 

@@ -22,9 +22,10 @@ struct TargetRow {
   color::Rgb reflectance_factor;  // working space, negative channels set to 0
   double importance = 1;          // 1 for each reading that is known, less for what is inferred
   double lightness = 0;           // L*, for the perceptual weight
+  double passages = 1;            // what a coat leaves of the base's light there, see brdf::coat_passages()
 };
 
-// That row as the fit has it.
+// That row as the fit has it: the color of the base under the coat, whose error counts by what is seen of it.
 FlakeRow flake_row(const TargetRow& row, const FitOptions& options, bool inferred);
 
 struct Target {
@@ -37,18 +38,20 @@ struct Target {
 
 // The rows of a paint. Readings at one aspecular angle make one row; where `by_view` is true, those from different
 // views stand alone. The highlight below first_deg rises no steeper than the sharpest of `exponents` that the samples
-// see. `white` is that of the paint's viewing condition. Error: the paint has no color beyond glare.
+// see. `white` is that of the paint's viewing condition. Readings at one angle are averaged as colors of the base under
+// a coat of that index. Error: the paint has no color beyond glare.
 Result<Target> target_rows(const paint::Paint& paint, paint::TargetCurve::Kind kind, const color::Xyz& white,
-                           const std::vector<double>& exponents, bool by_view = false);
+                           const std::vector<double>& exponents, double coat_index = paint::kNoCoat,
+                           bool by_view = false);
 
 // How the flake highlight goes on from the angle a toward specular, in rows every 5 deg from 0, by its color there and
-// at b > a (reflectance factors, at least 0). It rises no steeper than a lobe of the exponent `steepest`.
+// at b > a (reflectance factors of the base, at least 0). It rises no steeper than a lobe of the exponent `steepest`.
 struct HighlightEnd {
   double a_deg = 0, b_deg = 0;
   color::Rgb at_a, at_b;
 };
 std::vector<TargetRow> extension_to_specular(const HighlightEnd& end, double steepest, const color::Xyz& white,
-                                             double importance);
+                                             double importance, double coat_index);
 
 // The exponents whose lobes are seen from that angle on.
 std::vector<double> seen_exponents(const std::vector<double>& exponents, double first_rad);
@@ -58,6 +61,8 @@ double steepest_seen(const std::vector<double>& exponents, double first_rad);
 
 // The angle of the viewer of a geometry from the normal.
 double view_angle_deg(const paint::Geometry& geometry);
+// What a coat leaves of the base's light there.
+double coat_passages_at(const paint::Geometry& geometry, double coat_index);
 
 // How far a color is from what weights >= 0 can show: dE00 between `lab`, which is `rgb` relative to `white`, and
 // non_negative(rgb). It is 0 where no channel is negative.

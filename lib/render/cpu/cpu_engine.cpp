@@ -12,8 +12,17 @@ namespace goniochrome::render {
 namespace {
 
 // Measured by BM_PaintEdited and BM_Tilts.
-constexpr MapCost kCost = {
-    .pixel = 2.5, .point = 6, .block = 3, .direction = 6, .light = 12, .lit_lobe = 5, .view = 2, .pairs = true};
+constexpr MapCost kCost = {.pixel = 2.5,
+                           .point = 6,
+                           .block = 3,
+                           .direction = 6,
+                           .light = 12,
+                           .lit_lobe = 5,
+                           .disc_lobe = 5,
+                           .view = 2,
+                           .tilted = 12,
+                           .lookup = 6,
+                           .pairs = true};
 
 constexpr std::size_t kBlock = 8;  // floats of a texel: two maps of four forms, or one of six
 
@@ -48,7 +57,7 @@ std::vector<float> interleaved(const std::vector<envmap::CubeMap>& maps, const P
 // Points that are gathered until there are enough for the kernel, and where their colors go.
 class Batch {
  public:
-  explicit Batch(const CpuShading& shading) : shading_(shading) {
+  Batch(const CpuShading& shading, const TiltShading& tilted) : shading_(shading), tilted_(tilted) {
     PointArrays& p = points_;
     std::fill_n(p.nx, kPointsAtOnce, 0.0F), std::fill_n(p.ny, kPointsAtOnce, 0.0F),
         std::fill_n(p.nz, kPointsAtOnce, 1.0F);
@@ -69,12 +78,16 @@ class Batch {
     p.part[count_] = part;
     index_[count_++] = index;
   }
-  void shade() { shade_points(shading_, points_, count_, rgba_); }
+  void shade() {
+    shade_points(shading_, points_, count_, rgba_);
+    if (tilted_.segments > 0) add_tilted(tilted_, points_, count_, rgba_);
+  }
   void look_up(const InterleavedMaps& map) { look_up_background(map, points_, count_, rgba_); }
   void clear() { count_ = 0; }
 
  private:
   const CpuShading& shading_;
+  const TiltShading& tilted_;
   PointArrays points_;
   std::size_t index_[kPointsAtOnce];
   int count_ = 0;
@@ -143,6 +156,8 @@ Result<void> CpuEngine::load(const Scene& scene, const Effects& effects) {
   }
   shading_.map_floats = static_cast<int>(floats_of(forms_));
   shading_.colors_of_forms = colors_of_forms_.data();
+  tilt_store_ = {};
+  if (scene.env != nullptr) tilt_store_.load(*scene.env, tilt_exponents(scene, effects), forms_);
   load_paints(scene, effects);
   return {};
 }
@@ -154,7 +169,7 @@ void CpuEngine::load_paints(const Scene& scene, const Effects& effects) {
   const int light_slots = effects.lights > 0 ? table.shift_slot(0) - table.light_slot() : 0;
   shading_.segments = table.segments;
   shading_.light_offset = 2 * kBlock * blocks;
-  shading_.shift_offset = shading_.light_offset + 8 * static_cast<std::size_t>(light_slots);
+  shading_.shift_offset = shading_.light_offset + 8 * static_cast<std::size_t>(light_slots > 0 ? light_slots + 1 : 0);
   const std::size_t shift_floats = (2 * stacks_.size() + kBlock - 1) / kBlock * kBlock;
   shading_.segment_floats = shading_.shift_offset + shift_floats;
   weights_.assign(shading_.segment_floats * static_cast<std::size_t>(table.segments * table.parts), 0.0F);
@@ -171,6 +186,7 @@ void CpuEngine::load_paints(const Scene& scene, const Effects& effects) {
       to += 2 * kBlock * static_cast<std::size_t>(stack.blocks);
     }
     for (int slot = 0; slot < light_slots; ++slot, to += 8) std::copy_n(texel(table.light_slot() + slot), 8, to);
+    if (light_slots > 0) std::copy_n(texel(table.lamp_mirror_slot()), 8, to), to += 8;
     for (std::size_t k = 0; k < stacks_.size(); ++k) {
       if (!stacks_[k].shape.shifted) continue;
       const auto lobe = static_cast<std::size_t>(stacks_[k].shape.slots.front() - WeightTable::lobe_slot(0));
@@ -182,13 +198,16 @@ void CpuEngine::load_paints(const Scene& scene, const Effects& effects) {
   shading_.weights = weights_.data();
   set_lights(scene, effects);
   set_tilts(scene, effects);
+  tilt_store_.load_paints(scene, effects);
+  tilt_shading_ = tilt_store_.shading(colors_of_forms_.data());
   background_ = effects.background;
   background_color_ = scene.background_color;
 }
 
 void CpuEngine::set_lights(const Scene& scene, const Effects& effects) {
   lights_.clear(), exponents_.clear();
-  for (const Light& light : effects.lights > 0 ? scene.lights : std::vector<Light>()) {
+  const std::vector<Light> lights = lights_of(scene, effects);
+  for (const Light& light : lights) {
     for (int c = 0; c < 3; ++c) lights_.push_back(static_cast<float>(light.direction[c]));
     lights_.push_back(0);
     const color::Matrix3 product =
@@ -205,6 +224,27 @@ void CpuEngine::set_lights(const Scene& scene, const Effects& effects) {
   shading_.exponents = exponents_.data();
   shading_.lit_diffuse = effects.diffuse;
   shading_.fresnel = effects.fresnel;
+  shading_.coat = effects.coat;
+  set_discs(lights, effects);
+}
+
+void CpuEngine::set_discs(const std::vector<Light>& lights, const Effects& effects) {
+  discs_.clear(), disc_tables_.clear(), disc_lobes_.clear();
+  shading_.discs = nullptr;
+  if (!effects.extent || lights.empty()) return;
+  for (const Light& light : lights) {
+    CpuShading::Disc disc;
+    disc.radius_rad = light.radius_rad;
+    disc.sine = static_cast<float>(std::sin(light.radius_rad));
+    disc.chord = light.radius_rad > 0 ? static_cast<float>(2 * std::sin(0.5 * light.radius_rad)) : -1;
+    if (light.radius_rad > 0) disc.mirrored = static_cast<float>(brdf::disc_radiance(light.radius_rad));
+    discs_.push_back(disc);
+    for (const Effects::LobeUse& lobe : effects.lobes)
+      disc_tables_.push_back(brdf::disc_lobe_table(lobe.exponent, light.radius_rad));
+  }
+  for (const auto& table : disc_tables_) disc_lobes_.push_back(table.get());
+  shading_.discs = discs_.data();
+  shading_.disc_lobes = disc_lobes_.data();
 }
 
 void CpuEngine::set_tilts(const Scene& scene, const Effects& effects) {
@@ -229,7 +269,7 @@ void CpuEngine::shade_row(const Gbuffer& gbuffer, int y, float gain, bool add, f
     for (int c = 0; c < 3; ++c) pixel[c] = gain * color[c] + (add ? pixel[c] : 0);
     pixel[3] = gain * alpha + (add ? pixel[3] : 0);
   };
-  Batch seen(shading_), missed(shading_);
+  Batch seen(shading_, tilt_shading_), missed(shading_, tilt_shading_);
   const InterleavedMaps sky = background_map_.maps();
   const auto flush = [&](Batch& batch) {
     if (batch.count() == 0) return;
@@ -294,7 +334,7 @@ double CpuEngine::counted_point_ns(const Workload& work, const Effects& effects)
 std::vector<color::Rgb> CpuEngine::colors(const std::vector<VisiblePoint>& points) const {
   std::vector<color::Rgb> colors(points.size());
   parallel_for(points.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
-    Batch batch(shading_);
+    Batch batch(shading_, tilt_shading_);
     for (std::size_t i = begin; i < end; ++i) {
       const VisiblePoint& point = points[i];
       float normal[3], to_viewer[3];

@@ -3,10 +3,12 @@
 // goniochrome-theory(7), RENDERING, Engines.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "image/image.h"
 #include "render/cpu/cpu_kernel.h"
+#include "render/cpu/tilt_kernel.h"
 #include "render/engine.h"
 #include "render/internal/maps.h"
 #include "render/internal/product_forms.h"
@@ -51,6 +53,7 @@ class CpuEngine : public Engine {
   static Stack interleaved(const MapClass& maps, MapUse use, const ProductForms& forms);
   void interleave(const MapClass& maps, MapUse use);
   void set_lights(const Scene& scene, const Effects& effects);
+  void set_discs(const std::vector<Light>& lights, const Effects& effects);
   void set_tilts(const Scene& scene, const Effects& effects);
   void shade_row(const Gbuffer& gbuffer, int y, float gain, bool add, float* rgba) const;
 
@@ -61,8 +64,13 @@ class CpuEngine : public Engine {
   std::vector<float> weights_, lights_, exponents_, tilts_, colors_of_forms_;
   std::vector<int> first_tilt_;
   CpuShading shading_;
+  TiltStore tilt_store_;
+  TiltShading tilt_shading_;  // of tilted lobes
   Background background_ = Background::kNone;
   color::Rgb background_color_;
+  std::vector<CpuShading::Disc> discs_;
+  std::vector<std::shared_ptr<const brdf::DiscLobeTable>> disc_tables_;
+  std::vector<const brdf::DiscLobeTable*> disc_lobes_;
 };
 
 }  // namespace goniochrome::render

@@ -260,6 +260,14 @@ HWY_INLINE V fresnel_of(V c) {
   return hn::Mul(hn::Set(f, 0.5F), hn::MulAdd(s, s, hn::Mul(p, p)));
 }
 
+// What a coat lets in, by brdf's form of the Fresnel reflectance; `index2` is the square of its index, 1 without a
+// coat.
+HWY_INLINE float let_in(float c, float index2) {
+  const float contrast = index2 - 1, g = std::sqrt(contrast + c * c), s = c + g, p = index2 * c + g;
+  const float r_s = contrast / (s * s), r_p = contrast * ((index2 + 1) * c * c - 1) / (p * p);
+  return 1 - 0.5F * (r_s * r_s + r_p * r_p);
+}
+
 // What every lobe sends from a light to the viewer, cos^E of the angle to the mirror direction, mean over the tilts.
 HWY_INLINE void lobe_powers(const CpuShading& s, const Direction& l, const PointArrays& points, const Frame& frame,
                             const float* cos_i, float* powers) {
@@ -309,14 +317,15 @@ HWY_INLINE void add_light(const CpuShading& s, const float* light, const PointAr
       reflected = mul_add(Quad::filled(share), mul_add(t, Quad::load(weight + 4), Quad::load(weight)), reflected);
       weight += 8;
     };
-    add(s.lit_diffuse ? cos_i[i] : 0);
+    const float base = s.coat ? cos_i[i] * let_in(cos_i[i], weight[3]) : cos_i[i];
+    add(s.lit_diffuse ? base : 0);
     for (int j = 0; j < s.lobes; ++j) {
       const float power = powers[j * kPointsAtOnce + i];
       if (power == 0) {
         weight += 16;
         continue;
       }
-      add(cos_i[i] * power);
+      add(base * power);
       add(fresnel[i] * power);
     }
     float k[4];
@@ -328,12 +337,133 @@ HWY_INLINE void add_light(const CpuShading& s, const float* light, const PointAr
   }
 }
 
+// What every lobe sends of a disc to the viewer: with its flake weight, and with its gloss weight.
+struct DiscSums {
+  HWY_ALIGN float flake[kMostLobes * kPointsAtOnce];
+  HWY_ALIGN float gloss[kMostLobes * kPointsAtOnce];
+};
+
+// The disc above the horizon of each point: its irradiance as the coat lets it in, and its part times the coat's
+// reflectance in its middle; and the square of the coat's index.
+struct DiscView {
+  HWY_ALIGN float irradiance[kPointsAtOnce];
+  HWY_ALIGN float above[kPointsAtOnce];
+  HWY_ALIGN float index2[kPointsAtOnce];
+};
+
+// Each lobe is looked up by the chord between the mirror direction and the middle of the disc. Of what it gathers, one
+// part counts with cosine and coat at the disc and the other with those at the mirror direction. Mean over the tilts.
+HWY_INLINE void gather_disc(const CpuShading& s, int light, const Direction& l, const PointArrays& points,
+                            const Frame& frame, const DiscView& view, int count, DiscSums& sums) {
+  const D f;
+  const V half = hn::Set(f, 0.5F), zero = hn::Zero(f);
+  HWY_ALIGN float chord[kPointsAtOnce], cos_r[kPointsAtOnce], coat_r[kPointsAtOnce];
+  std::fill_n(sums.flake, s.lobes * kPointsAtOnce, 0.0F), std::fill_n(sums.gloss, s.lobes * kPointsAtOnce, 0.0F);
+  Tilted tilted;
+  for (int which = 0; which < s.most_tilts; ++which) {
+    if (s.tilts != nullptr) tilt(s, points, which, tilted);
+    for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
+      const Direction r = s.tilts != nullptr ? tilted.r(i) : frame.r(i);
+      const Direction apart = {hn::Sub(r.x, l.x), hn::Sub(r.y, l.y), hn::Sub(r.z, l.z)};
+      hn::Store(hn::Sqrt(dot(apart, apart)), f, chord + i);
+      hn::Store(hn::Max(dot(normal_of(points, i), r), zero), f, cos_r + i);
+      const V cos_half2 = hn::MulAdd(half, dot(viewer_of(points, i), r), half);
+      hn::Store(s.fresnel ? fresnel_of(hn::Sqrt(hn::Max(cos_half2, zero))) : hn::Set(f, 1.0F), f, coat_r + i);
+    }
+    for (int i = 0; s.coat && i < count; ++i) cos_r[i] *= let_in(cos_r[i], view.index2[i]);
+    for (int j = 0; j < s.lobes; ++j) {
+      const brdf::DiscLobeTable& table = *s.disc_lobes[light * s.lobes + j];
+      const auto first = static_cast<float>(table.first_chord), scale = static_cast<float>(table.nodes_per_chord);
+      float *flake = sums.flake + j * kPointsAtOnce, *gloss = sums.gloss + j * kPointsAtOnce;
+      for (int i = 0; i < count; ++i) {
+        const float x = (chord[i] - first) * scale, share = s.tilts != nullptr ? tilted.share[i] : 1.0F;
+        if (!(x < brdf::DiscLobeTable::kNodes - 1) || share == 0) continue;
+        const float from = x > 0 ? x : 0.0F;
+        const auto node = static_cast<int>(from);
+        const brdf::DiscLobeTable::Node* at = table.nodes.data() + node;
+        const float t = share * (from - static_cast<float>(node)), rest = share - t;
+        flake[i] += (rest * at->cosine[0] + t * at[1].cosine[0]) * view.irradiance[i] +
+                    (rest * at->cosine[1] + t * at[1].cosine[1]) * cos_r[i];
+        gloss[i] += (rest * at->plain[0] + t * at[1].plain[0]) * view.above[i] +
+                    (rest * at->plain[1] + t * at[1].plain[1]) * coat_r[i];
+      }
+    }
+  }
+}
+
+// As add_light() for a disc, with its mirror image.
+HWY_INLINE void add_disc(const CpuShading& s, int light, const PointArrays& points, const Frame& frame, int count,
+                         float* rgba) {
+  const D f;
+  const float* from = s.light + 16 * light;
+  const CpuShading::Disc& disc = s.discs[light];
+  const Direction l = {hn::Set(f, from[0]), hn::Set(f, from[1]), hn::Set(f, from[2])};
+  const V half = hn::Set(f, 0.5F), zero = hn::Zero(f);
+  // 1. How much of the disc stands above the horizon of each point, and the coat's reflectance at its middle.
+  DiscView view;
+  HWY_ALIGN float cosine[kPointsAtOnce], apart[kPointsAtOnce];
+  for (std::size_t i = 0; i < kPointsAtOnce; i += hn::Lanes(f)) {
+    hn::Store(dot(normal_of(points, i), l), f, cosine + i);
+    const V cos_half2 = hn::MulAdd(half, dot(viewer_of(points, i), l), half);
+    hn::Store(s.fresnel ? fresnel_of(hn::Sqrt(hn::Max(cos_half2, zero))) : hn::Set(f, 1.0F), f, view.above + i);
+    const Direction r = frame.r(i), to_disc = {hn::Sub(r.x, l.x), hn::Sub(r.y, l.y), hn::Sub(r.z, l.z)};
+    hn::Store(hn::Sqrt(dot(to_disc, to_disc)), f, apart + i);
+  }
+  for (int i = 0; i < count; ++i) {
+    view.irradiance[i] = cosine[i];
+    float part = 1;
+    if (cosine[i] < disc.sine) {
+      view.irradiance[i] = static_cast<float>(brdf::disc_irradiance(cosine[i], disc.radius_rad));
+      part = static_cast<float>(brdf::disc_above(cosine[i], disc.radius_rad));
+      view.above[i] *= part;
+    }
+    if (!s.coat) continue;
+    view.index2[i] = (frame.weights(s, points, i) + s.light_offset)[3];
+    // At the mean cosine of what is seen of the disc.
+    if (part > 0) view.irradiance[i] *= let_in(std::min(view.irradiance[i] / part, 1.0F), view.index2[i]);
+  }
+  // 2. What each lobe gathers.
+  DiscSums sums;
+  gather_disc(s, light, l, points, frame, view, count, sums);
+  // 3. Point by point, the weighted sum of diffuse part, lobes and mirror, times the light through the product's
+  // matrix.
+  for (int i = 0; i < count; ++i) {
+    if (!(cosine[i] > -disc.sine)) continue;
+    const float* weight = frame.weights(s, points, i) + s.light_offset;
+    const Quad t = Quad::filled(frame.t[i]);
+    Quad reflected = Quad::filled(0);
+    const auto add = [&](float share) HWY_ATTR {
+      if (share != 0)
+        reflected = mul_add(Quad::filled(share), mul_add(t, Quad::load(weight + 4), Quad::load(weight)), reflected);
+      weight += 8;
+    };
+    add(s.lit_diffuse ? view.irradiance[i] : 0);
+    for (int j = 0; j < s.lobes; ++j) {
+      add(sums.flake[j * kPointsAtOnce + i]);
+      add(sums.gloss[j * kPointsAtOnce + i]);
+    }
+    add(apart[i] <= disc.chord ? disc.mirrored : 0);
+    float k[4];
+    reflected.store(k);
+    float* pixel = rgba + 4 * i;
+    Quad sum = Quad::load(pixel);
+    for (int c = 0; c < 3; ++c) sum = mul_add(Quad::filled(k[c]), Quad::load(from + 4 + 4 * c), sum);
+    sum.store(pixel);
+  }
+}
+
 // A point's view and segment of weights; the environment by prefiltered maps; then the lights, one by one.
 void ShadePoints(const CpuShading& s, PointArrays& points, int count, float* rgba) {
   Frame frame;
   set_up(s, points, frame);
   add_environment(s, points, frame, count, rgba);
-  for (int i = 0; i < s.lights; ++i) add_light(s, s.light + 16 * i, points, frame, count, rgba);
+  for (int i = 0; i < s.lights; ++i) {
+    if (s.discs != nullptr) {
+      add_disc(s, i, points, frame, count, rgba);
+    } else {
+      add_light(s, s.light + 16 * i, points, frame, count, rgba);
+    }
+  }
 }
 
 void LookUpBackground(const InterleavedMaps& map, PointArrays& points, int count, float* rgba) {

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "brdf/disc_light.h"
+
 namespace goniochrome::render {
 
 // So many points are shaded at a time: their addresses stay in the first cache.
@@ -41,7 +43,8 @@ struct CpuShading {
   int segments = 1;
   const float* weights = nullptr;
   std::size_t segment_floats = 0;
-  std::size_t light_offset = 0, shift_offset = 0;  // of the light slots and of the shifts, within a segment
+  // Within a segment: of the light slots, after which the mirror's for lamps stands, and of the shifts.
+  std::size_t light_offset = 0, shift_offset = 0;
 
   // Tilts of the normal, 4 floats each (in the frame of the surface, then the share); part p has those from
   // first_tilt[p] to first_tilt[p + 1]. Null where no part has more than one.
@@ -54,7 +57,16 @@ struct CpuShading {
       nullptr;  // 16 a light: direction, 0, and the columns (4 floats) of pi times its product's matrix
   int lobes = 0;
   const float* exponents = nullptr;
-  bool lit_diffuse = false, fresnel = false;
+  bool lit_diffuse = false, fresnel = false, coat = false;
+
+  // Where lamps are drawn as discs: for each light its disc, and for each light and lobe what the lobe gathers of it.
+  struct Disc {
+    double radius_rad = 0;
+    float sine = 0, chord = 0;  // of the radius
+    float mirrored = 0;         // of the mirror, within the disc, beside pi times the light: 1/(pi sin^2 of the radius)
+  };
+  const Disc* discs = nullptr;  // null: all are points
+  const brdf::DiscLobeTable* const* disc_lobes = nullptr;
 };
 
 // Points as separate arrays of kPointsAtOnce each. The first `count` of them are shaded; the others must hold any

@@ -1,8 +1,11 @@
 #include "render/gl/gl_engine.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "brdf/disc_light.h"
 #include "render/gl/shader.h"
+#include "render/gl/tilt_shader.h"
 #include "render/internal/map_cost.h"
 
 namespace goniochrome::render {
@@ -10,8 +13,17 @@ namespace goniochrome::render {
 namespace {
 
 // Measured by BM_PaintEdited and BM_Tilts. The pixel includes reading it back from OpenGL.
-constexpr MapCost kCost = {
-    .pixel = 12, .point = 30, .block = 42, .direction = 0, .light = 40, .lit_lobe = 30, .view = 12, .pairs = false};
+constexpr MapCost kCost = {.pixel = 12,
+                           .point = 30,
+                           .block = 42,
+                           .direction = 0,
+                           .light = 40,
+                           .lit_lobe = 30,
+                           .disc_lobe = 40,
+                           .view = 12,
+                           .tilted = 40,
+                           .lookup = 60,
+                           .pairs = false};
 constexpr double kCompileMs = 110;
 
 // The four forms of colors that lie `step` floats apart.
@@ -69,7 +81,7 @@ void GlEngine::upload(const envmap::CubeMap& map, const std::string& sampler) {
 
 Result<void> GlEngine::load(const Scene& scene, const Effects& effects) {
   GONIO_ASSIGN(const SceneMaps maps, scene_maps(scene, effects));
-  const std::string text = shading_fragment_shader(effects, scene.reflection);
+  const std::string text = shading_fragment_shader(effects, scene.reflection, tilt_exponents(scene, effects));
   if (text != text_) {
     if (program_ != 0) gl_->DeleteProgram(program_);
     GONIO_ASSIGN(program_, gl_->program(shading_vertex_shader(), text));
@@ -81,13 +93,19 @@ Result<void> GlEngine::load(const Scene& scene, const Effects& effects) {
   for (const auto& [sampler, texture] : cubes_) gl_->DeleteTextures(1, &texture);
   cubes_.clear();
   if (maps.diffuse.size > 0) upload(maps.diffuse.maps[0], "diffuse");
+  if (maps.diffuse.maps.size() > 1) upload(maps.diffuse.maps[1], "coat_diffuse");
   for (const MapClass& lobes : maps.lobes) {
     for (std::size_t i = 0; i < lobes.slots.size(); ++i)
       upload(lobes.maps[i], fmt::format("lobe_{}", lobes.slots[i] - 1));
   }
   if (maps.mirror.size > 0) upload(maps.mirror.maps[0], "mirror");
+  tilt_exponents_ = tilt_exponents(scene, effects);
+  for (const double exponent : tilt_exponents_) {
+    const std::string sampler = tilt_sampler(effects, tilt_exponents_, exponent);
+    if (sampler.starts_with("tilted_")) upload(scene.env->lobe(exponent)->map, sampler);
+  }
   const int units = gl_->integer(GL_MAX_TEXTURE_IMAGE_UNITS);
-  if (static_cast<int>(cubes_.size()) + 3 > units) {
+  if (static_cast<int>(cubes_.size()) + 4 > units) {
     return input_error("the paints use {} lobes, but OpenGL has only {} texture units: fit them to one common basis",
                        effects.lobes.size(), units);
   }
@@ -110,6 +128,42 @@ void GlEngine::upload_tilts(const std::vector<std::vector<brdf::Tilt>>& tilts) {
   tilts_ = gl_->float_texture(static_cast<int>(most), static_cast<int>(tilts.size()), texels.data());
 }
 
+void GlEngine::upload_tilted(const Scene& scene) {
+  const TiltTexture texture =
+      tilt_texture(tilt_table(scene, effects_, tilt_exponents_), tilt_exponents_.size(), [&](const float* rgb) {
+        return forms_.count == 4 ? in_forms(forms_, rgb, 1, 3) : std::vector<float>{rgb[0], rgb[1], rgb[2]};
+      });
+  tilt_stride_ = static_cast<int>(texture.stride);
+  tilted_ = gl_->float_texture(static_cast<int>(kTiltTexels), static_cast<int>(texture.rgba.size() / (4 * kTiltTexels)),
+                               texture.rgba.data());
+}
+
+// For each light a row for each lobe, whose last texel holds first_chord and nodes_per_chord; then a row of the
+// horizon.
+void GlEngine::upload_discs() {
+  constexpr int kNodes = brdf::DiscLobeTable::kNodes;
+  std::vector<float> texels;
+  for (const Light& light : lights_) {
+    for (const Effects::LobeUse& lobe : effects_.lobes) {
+      const auto table = brdf::disc_lobe_table(lobe.exponent, light.radius_rad);
+      for (int i = 0; i < kNodes; ++i) {
+        const brdf::DiscLobeTable::Node& node = table->nodes[static_cast<std::size_t>(i)];
+        texels.insert(texels.end(), {node.cosine[0], node.cosine[1], node.plain[0], node.plain[1]});
+      }
+      texels.insert(texels.end(), {static_cast<float>(table->first_chord), static_cast<float>(table->nodes_per_chord)});
+      texels.insert(texels.end(), {0, 0});
+    }
+    for (int i = 0; i <= kNodes; ++i) {
+      const double sine = std::sin(light.radius_rad) * std::min(1.0, 2.0 * i / (kNodes - 1) - 1);
+      texels.push_back(static_cast<float>(brdf::disc_irradiance(sine, light.radius_rad)));
+      texels.push_back(static_cast<float>(brdf::disc_above(sine, light.radius_rad)));
+      texels.insert(texels.end(), {0, 0});
+    }
+  }
+  discs_ =
+      gl_->float_texture(kNodes + 1, static_cast<int>((effects_.lobes.size() + 1) * lights_.size()), texels.data());
+}
+
 void GlEngine::load_paints(const Scene& scene) {
   const WeightTable table = weight_table(scene, effects_);
   gl_->DeleteTextures(1, &weights_);
@@ -124,7 +178,13 @@ void GlEngine::load_paints(const Scene& scene) {
   gl_->DeleteTextures(1, &tilts_);
   tilts_ = 0;
   if (effects_.anisotropy) upload_tilts(tilts_of(scene, effects_));
-  lights_ = effects_.lights > 0 ? scene.lights : std::vector<Light>();
+  gl_->DeleteTextures(1, &tilted_);
+  tilted_ = 0;
+  if (!tilt_exponents_.empty()) upload_tilted(scene);
+  lights_ = lights_of(scene, effects_);
+  gl_->DeleteTextures(1, &discs_);
+  discs_ = 0;
+  if (effects_.extent && !lights_.empty()) upload_discs();
   background_color_ = scene.background_color;
 }
 
@@ -154,11 +214,21 @@ Result<void> GlEngine::shade(Sight& sight, int sample, float gain, bool add, ima
   bind("gbuffer", GL_TEXTURE_2D, seen.texture());
   bind("weights", GL_TEXTURE_2D, weights_);
   if (effects_.anisotropy) bind("tilts", GL_TEXTURE_2D, tilts_);
+  if (tilted_ != 0) {
+    bind("tilted", GL_TEXTURE_2D, tilted_);
+    gl_->Uniform1i(gl_->GetUniformLocation(program_, "tilt_stride"), tilt_stride_);
+  }
+  if (discs_ != 0) bind("discs", GL_TEXTURE_2D, discs_);
   for (const auto& [sampler, texture] : cubes_) bind(sampler, GL_TEXTURE_CUBE_MAP, texture);
   gl_->ActiveTexture(GL_TEXTURE0);
   for (std::size_t i = 0; i < lights_.size(); ++i) {
     gl_->set(program_, fmt::format("light_direction[{}]", i), lights_[i].direction);
     gl_->set(program_, fmt::format("light_white[{}]", i), lights_[i].white);
+    if (discs_ == 0) continue;
+    const double radius = lights_[i].radius_rad;
+    gl_->set(
+        program_, fmt::format("light_disc[{}]", i),
+        radius > 0 ? Vec3{std::sin(radius), 2 * std::sin(0.5 * radius), brdf::disc_radiance(radius)} : Vec3{0, -1, 0});
   }
   if (effects_.background == Background::kColor) gl_->set(program_, "background", background_color_);
   gl_->BindVertexArray(no_vertices_);

@@ -33,17 +33,21 @@ class GlEngine : public Engine {
 
  private:
   Result<void> resize(int width, int height);
+  void upload_discs();
   void upload_tilts(const std::vector<std::vector<brdf::Tilt>>& tilts);
+  void upload_tilted(const Scene& scene);
   void upload(const envmap::CubeMap& map, const std::string& sampler);
 
   const GlContext* gl_;
   Effects effects_;
   ProductForms forms_;
   std::string text_;
-  GLuint program_ = 0, weights_ = 0, tilts_ = 0, no_vertices_ = 0, texture_ = 0, target_ = 0;
+  GLuint program_ = 0, weights_ = 0, tilts_ = 0, tilted_ = 0, discs_ = 0, no_vertices_ = 0, texture_ = 0, target_ = 0;
   std::vector<std::pair<std::string, GLuint>> cubes_;  // by the name of their sampler
   std::vector<Light> lights_;
   color::Rgb background_color_;
+  std::vector<double> tilt_exponents_;  // of tilted lobes
+  int tilt_stride_ = 0;
   int width_ = 0, height_ = 0;
   float gain_ = 1;
 };

@@ -4,7 +4,9 @@
 
 #include "base/angles.h"
 #include "base/text.h"
+#include "brdf/disc_light.h"
 #include "brdf/lobe_model.h"
+#include "render/gl/tilt_shader.h"
 #include "render/internal/product_forms.h"
 
 namespace goniochrome::render {
@@ -25,7 +27,7 @@ vec3 ray() { return normalize(corner + gl_FragCoord.x * right + gl_FragCoord.y *
 
 // How products with the environment's maps are taken: in plain RGB, in the four forms of the operator (which the maps
 // and their weights hold already), or by the operator itself.
-enum class Product { kPlain, kForms, kOperator };
+using Product = TiltProduct;
 
 Product product_of(const Effects& effects, const ProductForms& forms) {
   if (!effects.reflection) return Product::kPlain;
@@ -39,6 +41,7 @@ uniform sampler2D weights;  // a row for each part; two texels for each slot of 
   if (effects.anisotropy) text += "uniform sampler2D tilts;  // a row for each part: normal in its frame, share\n";
   if (effects.environment) {
     if (effects.diffuse) text += "uniform samplerCube diffuse;  // P_1\n";
+    if (effects.diffuse && effects.coat) text += "uniform samplerCube coat_diffuse;  // P_1 as a coat lets light in\n";
     for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
       text += fmt::format("uniform samplerCube lobe_{};  // P_E, E = {}\n", j, shortest(effects.lobes[j].exponent));
     }
@@ -48,6 +51,12 @@ uniform sampler2D weights;  // a row for each part; two texels for each slot of 
   }
   if (effects.lights > 0) {
     text += fmt::format("uniform vec3 light_direction[{0}], light_white[{0}];\n", effects.lights);
+    if (effects.extent) {
+      text += fmt::format(
+          "uniform vec3 light_disc[{}];  // sine and chord of the radius, 1/(pi sine^2)\n"
+          "uniform sampler2D discs;  // for each light a row for each lobe, then one for the horizon\n",
+          effects.lights);
+    }
   }
   if (effects.background == Background::kColor) text += "uniform vec3 background;\n";
   return text;
@@ -85,6 +94,16 @@ float fresnel(float c) {{  // unpolarized, index {0}
                      glsl(brdf::kCoatIndex * brdf::kCoatIndex));
 }
 
+// What a coat lets in, by brdf's form of the Fresnel reflectance; `index2` is the square of its index, 1 without a
+// coat.
+constexpr const char* kLetIn = R"(
+float let_in(float c, float index2) {
+  float contrast = index2 - 1.0, g = sqrt(contrast + c * c), s = c + g, p = index2 * c + g;
+  float r_s = contrast / (s * s), r_p = contrast * ((index2 + 1.0) * c * c - 1.0) / (p * p);
+  return 1.0 - 0.5 * (r_s * r_s + r_p * r_p);
+}
+)";
+
 // cos^E from 1 - cos, which is exact where cos is 1 but for the last digits.
 constexpr const char* kCosPower = R"(
 float cos_power(float versine, float exponent) {
@@ -94,6 +113,28 @@ float cos_power(float versine, float exponent) {
   return exp(exponent * log_cos);
 }
 )";
+
+// What a lobe gathers of a disc, by the chord from the mirror direction to its middle; and how much of a disc stands
+// above the horizon, by the cosine to its middle relative to the sine of its radius: irradiance and part.
+std::string disc_functions(std::size_t lobes) {
+  return fmt::format(R"(
+vec4 disc_node(int row, float x) {{
+  x = max(x, 0.0);
+  int node = int(x);
+  return mix(texelFetch(discs, ivec2(node, row), 0), texelFetch(discs, ivec2(node + 1, row), 0), x - float(node));
+}}
+vec4 disc_lobe(int light, int lobe, float chord) {{
+  int row = {0} * light + lobe;
+  vec4 steps = texelFetch(discs, ivec2({1}, row), 0);
+  float x = (chord - steps.x) * steps.y;
+  return x < {1}.0 - 1.0 ? disc_node(row, x) : vec4(0.0);
+}}
+vec2 disc_horizon(int light, float part) {{
+  return disc_node({0} * light + {2}, min(0.5 * (part + 1.0) * ({1}.0 - 1.0), {1}.0 - 1.001)).xy;
+}}
+)",
+                     lobes + 1, brdf::DiscLobeTable::kNodes, lobes);
+}
 
 bool lit_gloss(const Effects& effects) {
   return effects.lights > 0 && effects.fresnel &&
@@ -146,6 +187,24 @@ const char* sum_type(Product product) {
   return product == Product::kForms ? "vec4" : "vec3";
 }
 
+// What the lobes send from a disc: one part with the cosine and the coat at the disc, the other with those at r.
+std::string disc_lobes(const Effects& effects, const WeightTable& slots) {
+  std::string text = fmt::format(
+      "\nvec3 lit_lobes(vec3 r, vec3 l, vec3 n, vec3 wo, int light, float irradiance, float above) {{\n"
+      "  float chord = distance(r, l), cos_r = max(dot(n, r), 0.0), coat = {};\n  vec3 sum = vec3(0.0);\n  vec4 of;\n",
+      lit_gloss(effects) ? "fresnel(sqrt(max(0.5 + 0.5 * dot(r, wo), 0.0)))" : "1.0");
+  if (effects.coat) text += fmt::format("  cos_r *= let_in(cos_r, W({}).a);\n", slots.light_slot());
+  for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
+    const Effects::LobeUse& lobe = effects.lobes[j];
+    text += fmt::format("  of = disc_lobe(light, {}, chord);\n", j);
+    if (lobe.directional_diffuse)
+      text +=
+          fmt::format("  sum += (of.x * irradiance + of.y * cos_r) * W({}).rgb;\n", slots.directional_diffuse_slot(j));
+    if (lobe.gloss) text += fmt::format("  sum += (of.z * above + of.w * coat) * W({}).rgb;\n", slots.gloss_slot(j));
+  }
+  return text + "  return sum;\n}\n";
+}
+
 // What the lobes show of the environment in a mirror direction, and what they send from a light.
 std::string lobe_functions(const Effects& effects, Product product) {
   std::string text;
@@ -164,12 +223,13 @@ std::string lobe_functions(const Effects& effects, Product product) {
   }
   if (effects.lights == 0) return text;
   const WeightTable slots = slots_of(effects);
-  text += "\nvec3 lit_lobes(vec3 r, vec3 l, float cos_i, float F) {  // without the gloss term's 1/cos_i\n";
+  if (effects.extent) return text + disc_lobes(effects, slots);
+  text += "\nvec3 lit_lobes(vec3 r, vec3 l, float base, float F) {  // without the gloss term's 1/cos_i\n";
   text += "  float versine = 0.5 * dot(r - l, r - l);\n  vec3 sum = vec3(0.0);\n";
   for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
     const Effects::LobeUse& lobe = effects.lobes[j];
     std::string weight;
-    if (lobe.directional_diffuse) weight = fmt::format("cos_i * W({}).rgb", slots.directional_diffuse_slot(j));
+    if (lobe.directional_diffuse) weight = fmt::format("base * W({}).rgb", slots.directional_diffuse_slot(j));
     if (lobe.gloss) weight += fmt::format("{}F * W({}).rgb", weight.empty() ? "" : " + ", slots.gloss_slot(j));
     text += fmt::format("  sum += ({}) * cos_power(versine, {});\n", weight, glsl(lobe.exponent));
   }
@@ -193,7 +253,7 @@ std::string over_tilts(const Effects& effects, const std::string& sum, const std
 }
 
 // L = K_D pi P_1(n) + sum W_j P_Ej(r) + K_M F P_inf(r)
-std::string environment_terms(const Effects& effects, Product product) {
+std::string environment_terms(const Effects& effects, Product product, bool tilted) {
   std::string text = "\n  // the environment\n";
   const std::string sum = product == Product::kForms ? "products" : "radiance";
   if (product == Product::kForms) text += "  vec4 products = vec4(0.0);\n";
@@ -201,14 +261,46 @@ std::string environment_terms(const Effects& effects, Product product) {
     text += fmt::format("  {} += {};\n", sum, product_with_map(product, slot, map, direction));
   };
   if (effects.diffuse) term(WeightTable::diffuse_slot(), "diffuse", "n");
+  if (effects.diffuse && effects.coat) term(slots_of(effects).coat_diffuse_slot(), "coat_diffuse", "n");
   if (!effects.lobes.empty()) text += over_tilts(effects, sum, "lobes", ", n");
   if (effects.mirror) term(slots_of(effects).mirror_slot(), "mirror", "r");
+  if (tilted) text += fmt::format("  {} += tilted_lobes(r, n, wo);\n", sum);
   if (product == Product::kForms) text += "  radiance += color_of(products);\n";
   return text;
 }
 
+// The same of discs, with their mirror images.
+std::string disc_terms(const Effects& effects) {
+  std::string text = fmt::format(
+      R"(
+  // the lamps
+  for (int i = 0; i < {}; ++i) {{
+    vec3 l = light_direction[i], disc = light_disc[i];
+    float cos_i = dot(n, l);
+    if (cos_i <= -disc.x) continue;
+    vec2 seen = cos_i >= disc.x ? vec2(cos_i, 1.0) : disc_horizon(i, cos_i / disc.x);
+{}    vec3 reflected = {};
+)",
+      effects.lights,
+      // At the mean cosine of what is seen of the disc.
+      effects.coat ? fmt::format("    seen.x *= let_in(min(seen.x / max(seen.y, 1e-6), 1.0), W({}).a);\n",
+                                 slots_of(effects).light_slot())
+                   : "",
+      effects.diffuse ? fmt::format("seen.x * W({}).rgb", slots_of(effects).light_slot()) : "vec3(0.0)");
+  if (!effects.lobes.empty()) {
+    const char* fresnel = lit_gloss(effects) ? "fresnel(sqrt(max(0.5 + 0.5 * dot(l, wo), 0.0)))" : "1.0";
+    text += over_tilts(effects, "reflected", "lit_lobes", fmt::format(", l, n, wo, i, seen.x, seen.y * {}", fresnel));
+  }
+  if (effects.mirror)
+    text += fmt::format("    if (distance(r, l) <= disc.y) reflected += disc.z * W({}).rgb;\n",
+                        slots_of(effects).lamp_mirror_slot());
+  return text +
+         fmt::format("    radiance += {} * {};\n  }}\n", glsl(kPi), times(effects, "light_white[i]", "reflected"));
+}
+
 // The exact BRDF times cos_i, so that the gloss term's 1/cos_i is gone.
 std::string light_terms(const Effects& effects) {
+  if (effects.extent) return disc_terms(effects);
   std::string text = fmt::format(
       R"(
   // the lights
@@ -216,12 +308,14 @@ std::string light_terms(const Effects& effects) {
     vec3 l = light_direction[i];
     float cos_i = dot(n, l);
     if (cos_i <= 0.0) continue;
+    float base = cos_i{};
     vec3 reflected = {};
 )",
-      effects.lights, effects.diffuse ? fmt::format("cos_i * W({}).rgb", slots_of(effects).light_slot()) : "vec3(0.0)");
+      effects.lights, effects.coat ? fmt::format(" * let_in(cos_i, W({}).a)", slots_of(effects).light_slot()) : "",
+      effects.diffuse ? fmt::format("base * W({}).rgb", slots_of(effects).light_slot()) : "vec3(0.0)");
   if (!effects.lobes.empty()) {
     const char* fresnel = lit_gloss(effects) ? "fresnel(sqrt(0.5 + 0.5 * dot(l, wo)))" : "1.0";
-    text += over_tilts(effects, "reflected", "lit_lobes", fmt::format(", l, cos_i, {}", fresnel));
+    text += over_tilts(effects, "reflected", "lit_lobes", fmt::format(", l, base, {}", fresnel));
   }
   return text +
          fmt::format("    radiance += {} * {};\n  }}\n", glsl(kPi), times(effects, "light_white[i]", "reflected"));
@@ -281,19 +375,24 @@ void main() {  // one triangle that covers the picture
 )";
 }
 
-std::string shading_fragment_shader(const Effects& effects, const color::ReflectionOperator& op) {
+std::string shading_fragment_shader(const Effects& effects, const color::ReflectionOperator& op,
+                                    const std::vector<double>& tilted) {
   const bool lit_lobes = effects.lights > 0 && !effects.lobes.empty();
   const ProductForms forms = effects.reflection ? product_forms(op) : ProductForms{};
   const Product product = product_of(effects, forms);
   // 1. What the program is given, and the functions that it needs.
   std::string text = "#version 330 core\n// goniochrome-theory(7), RENDERING\n";
-  text += uniforms(effects) + kRays + "layout(location = 0) out vec4 color;\n" + kWeight;
+  text +=
+      uniforms(effects) + tilt_uniforms(effects, tilted) + kRays + "layout(location = 0) out vec4 color;\n" + kWeight;
   if (effects.reflection && (product == Product::kOperator || effects.lights > 0)) text += reflection_function(op);
   if (effects.environment && product == Product::kForms)
     text += forms_functions(forms, effects.background == Background::kEnvironment);
   if (lit_gloss(effects)) text += fresnel_function();
-  if (lit_lobes) text += kCosPower;
+  if (effects.coat && effects.lights > 0) text += kLetIn;
+  if (lit_lobes && !effects.extent) text += kCosPower;
+  if (effects.lights > 0 && effects.extent) text += disc_functions(effects.lobes.size());
   if (!effects.lobes.empty()) text += lobe_functions(effects, product);
+  text += tilt_function(effects, tilted, product);
   // 2. Where nothing is seen the program shows the background; else it finds the view and the row of weights.
   text += fmt::format(R"(
 void main() {{
@@ -316,7 +415,7 @@ void main() {{
   vec3 x = dot(n.xz, n.xz) > 1e-12 ? normalize(vec3(n.z, 0.0, -n.x)) : vec3(1.0, 0.0, 0.0), y = cross(n, x);
 )";
   }
-  if (effects.environment) text += environment_terms(effects, product);
+  if (effects.environment) text += environment_terms(effects, product, !tilted.empty());
   if (effects.lights > 0) text += light_terms(effects);
   return text + "  color = vec4(radiance, 1.0);\n}\n";
 }

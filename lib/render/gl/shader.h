@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "render/effects.h"
 
@@ -15,7 +16,8 @@ std::string gbuffer_fragment_shader();
 
 // Covers the picture, and shades each point of the G-buffer.
 std::string shading_vertex_shader();
-// The operator is written into it where the effects have it.
-std::string shading_fragment_shader(const Effects& effects, const color::ReflectionOperator& op);
+// The operator is written into it where the effects have it. `tilted` are the exponents of tilted lobes.
+std::string shading_fragment_shader(const Effects& effects, const color::ReflectionOperator& op,
+                                    const std::vector<double>& tilted);
 
 }  // namespace goniochrome::render

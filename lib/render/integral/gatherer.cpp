@@ -5,6 +5,9 @@
 #include <numbers>
 
 #include "base/angles.h"
+#include "brdf/disc_light.h"
+#include "math/cosine_power.h"
+#include "math/quadrature.h"
 
 namespace goniochrome::render {
 
@@ -105,8 +108,17 @@ Gatherer::Gatherer(const SurfacePoint& point, double texel_rad, double most_spre
       model_(model_of(point)),
       paint_(brdf::at_view(*point.paint, view_deg(point))),
       cos_o_(dot(point.normal, point.to_viewer)),
-      grain_(texel_rad, most_spread) {
+      grain_(texel_rad, most_spread),
+      summed_(most_spread == 0 && model_.tilts.empty()) {
   set_mirror_directions();
+  if (model_.map != nullptr) {
+    const Vec3& n = point.normal;
+    frame_x_ = normalized(cross(std::abs(n.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, n)), frame_y_ = cross(n, frame_x_);
+    local_viewer_ = {dot(point.to_viewer, frame_x_), dot(point.to_viewer, frame_y_), cos_o_};
+  }
+  const double let_out = brdf::coat_transmission(std::clamp(cos_o_, 0.0, 1.0), paint_.coat_index);
+  paint_.diffuse = let_out * paint_.diffuse;
+  for (paint::Lobe& lobe : paint_.lobes) lobe.directional_diffuse = let_out * lobe.directional_diffuse;
   // The lobes in the order of their exponents, so that a loop over them can stop at the first that is too sharp.
   for (const paint::Lobe& lobe : paint_.lobes) {
     if (!lobe.is_mirror()) lobes_.push_back(lobe);
@@ -142,14 +154,147 @@ void Gatherer::set_mirror_directions() {
   }
 }
 
+// The integral over the disc. Looked up, the lobes are as the kernels have them; summed, it is exact.
 void Gatherer::add_light(const Light& light) {
-  add({light.direction, kPi}, light.white, true);
+  if (!(light.radius_rad > 0)) return add({light.direction, kPi}, light.white, true, model_.map_under_lights);
+  const double cosine = dot(point_.normal, light.direction);
+  if (cosine <= -std::sin(light.radius_rad)) return;
+  const bool mapped = model_.map_under_lights;
+  const double irradiance = brdf::disc_irradiance(cosine, light.radius_rad);
+  const color::Rgb f = irradiance * (mapped ? mapped_toward(light.direction) : let_in_of(light) * paint_.diffuse) +
+                       lobes_toward_disc(light, mapped);
+  add_reflected(f, kPi * light.white);
+  if (light.meets(reflected_)) add_mirror(light.radiance());
 }
 
-void Gatherer::add(const Patch& patch, const color::Rgb& radiance, bool horizon) {
+void Gatherer::add_reflected(const color::Rgb& f, const color::Rgb& light) {
+  sum_ += model_.reflection != nullptr ? goniochrome::color::reflected(*model_.reflection, f, light) : f * light;
+}
+
+// Mean over the disc above the horizon, each part with its cosine.
+double Gatherer::let_in_of(const Light& light) const {
+  if (paint_.coat_index == paint::kNoCoat) return 1;
+  double whole = 0, passed = 0;
+  for (const DiscDirection& part : disc_directions(light)) {
+    const double weighed = part.weight * std::max(0.0, dot(point_.normal, part.direction));
+    whole += weighed, passed += weighed * let_in(weighed / part.weight);
+  }
+  const double above = brdf::disc_above(dot(point_.normal, light.direction), light.radius_rad);
+  // Where the middle of a narrow disc is below the horizon, the mean cosine of what is above it.
+  if (whole <= 0 && above > 0)
+    return let_in(brdf::disc_irradiance(dot(point_.normal, light.direction), light.radius_rad) / above);
+  return whole > 0 ? passed / whole : 1;
+}
+
+// f cos_i of all lobes, integrated over the disc relative to pi sin^2 of its radius.
+color::Rgb Gatherer::lobes_toward_disc(const Light& light, bool mapped) const {
+  const double radius = light.radius_rad, cosine = dot(point_.normal, light.direction);
+  const double irradiance = brdf::disc_irradiance(cosine, radius), above = brdf::disc_above(cosine, radius);
+  const auto coat = [&](const Vec3& toward) {
+    return model_.fresnel
+               ? brdf::fresnel_dielectric(std::min(1.0, 0.5 * length(toward + point_.to_viewer)), brdf::kCoatIndex)
+               : 1;
+  };
+  const double coat_l = coat(light.direction), in_l = let_in_of(light);
+  color::Rgb f;
+  for (const Mirrored& m : mirrored_) {
+    const Vec3 apart = m.direction - light.direction;
+    const double chord = length(apart), cos_r = std::max(0.0, dot(point_.normal, m.direction)),
+                 coat_r = coat(m.direction);
+    for (const paint::Lobe& lobe : lobes_) {
+      if (summed_) {
+        f += m.share * lobe_over_disc(lobe, m.direction, light, mapped);
+        continue;
+      }
+      const brdf::DiscLobeTable::Node of = brdf::disc_lobe_table(lobe.exponent, radius)->at(chord);
+      f += m.share *
+           ((of.cosine[0] * irradiance * in_l + of.cosine[1] * cos_r * let_in(cos_r)) * lobe.directional_diffuse +
+            (of.plain[0] * above * coat_l + of.plain[1] * coat_r) * lobe.gloss);
+    }
+  }
+  return f;
+}
+
+namespace {
+
+// The part of the arc from -half to half whose elevation above a plane is positive where it is
+// level + slope cos(azimuth - middle): at most two pieces.
+struct Arcs {
+  int count = 0;
+  double from[2] = {}, to[2] = {};
+};
+Arcs arcs_above(double half, double level, double slope, double middle) {
+  Arcs arcs;
+  const auto add = [&](double from, double to) {
+    if (to > from && arcs.count < 2) arcs.from[arcs.count] = from, arcs.to[arcs.count++] = to;
+  };
+  if (level >= slope) add(-half, half);
+  if (level >= slope || level <= -slope) return arcs;
+  const double wide = std::acos(-level / slope);
+  for (const double turn : {-2 * kPi, 0.0, 2 * kPi})
+    add(std::max(-half, middle + turn - wide), std::min(half, middle + turn + wide));
+  return arcs;
+}
+
+// Gauss-Legendre points on -1..1.
+const std::vector<math::QuadraturePoint>& disc_rule() {
+  constexpr int kPoints = 24;
+  static const std::vector<math::QuadraturePoint> rule = math::gauss_legendre(kPoints);
+  return rule;
+}
+const std::vector<math::QuadraturePoint>& arc_rule() {
+  constexpr int kPoints = 10;
+  static const std::vector<math::QuadraturePoint> rule = math::gauss_legendre(kPoints);
+  return rule;
+}
+
+}  // namespace
+
+// Ring by ring about the mirror direction, as brdf::lobe_of_disc(), each arc cut at the horizon, and each direction
+// with its own cosine and coat.
+color::Rgb Gatherer::lobe_over_disc(const paint::Lobe& lobe, const Vec3& r, const Light& light, bool mapped) const {
+  const Vec3 &n = point_.normal, apart = r - light.direction;
+  const double chord = length(apart), between = 2 * std::asin(std::min(1.0, 0.5 * chord)), radius = light.radius_rad;
+  const Vec3 across = light.direction - dot(light.direction, r) * r;
+  const Vec3 side = std::abs(r.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  const Vec3 x = length(across) > 1e-12 ? normalized(across) : normalized(cross(side, r)), y = cross(r, x);
+  const double nx = dot(n, x), ny = dot(n, y), nr = dot(n, r), slope = std::hypot(nx, ny), middle = std::atan2(ny, nx);
+  double flake = 0, gloss = 0;
+  const auto add_ring = [&](double t, double half, double weight) {
+    const double sine = std::sin(t), cosine = std::cos(t);
+    const Arcs arcs = arcs_above(half, nr * cosine, sine * slope, middle);
+    const double power = weight * sine * math::cos_power(t, lobe.exponent);
+    for (int k = 0; k < arcs.count; ++k) {
+      const double wide = 0.5 * (arcs.to[k] - arcs.from[k]), center = 0.5 * (arcs.to[k] + arcs.from[k]);
+      for (const math::QuadraturePoint& p : arc_rule()) {
+        const double phi = center + wide * p.position, c = std::cos(phi), s = std::sin(phi);
+        const Vec3 w = cosine * r + sine * c * x + sine * s * y;
+        const double share = power * wide * p.weight;
+        const double cos_w = std::max(0.0, dot(n, w));
+        flake += share * cos_w * let_in(cos_w);
+        gloss += share * (model_.fresnel ? brdf::fresnel_dielectric(std::min(1.0, 0.5 * length(w + point_.to_viewer)),
+                                                                    brdf::kCoatIndex)
+                                         : 1);
+      }
+    }
+  };
+  const brdf::DiscRings rings = brdf::disc_rings(lobe.exponent, radius, between);
+  for (const math::QuadraturePoint& p : disc_rule()) {
+    if (rings.whole > 0) add_ring(0.5 * rings.whole * (1 + p.position), kPi, 0.5 * rings.whole * p.weight);
+    const double at = kPi / 4 * (1 + p.position), sine = std::sin(at);
+    if (rings.width > 0)
+      add_ring(rings.first + rings.width * sine * sine, rings.half_arc(sine * sine),
+               kPi / 4 * p.weight * rings.width * std::sin(2 * at));
+  }
+  const double scale = brdf::disc_radiance(radius);
+  return scale * ((mapped ? 0 : flake) * lobe.directional_diffuse + gloss * lobe.gloss);
+}
+
+void Gatherer::add(const Patch& patch, const color::Rgb& radiance, bool horizon, bool mapped) {
   const double above = (1 - patch.variance) * dot(point_.normal, patch.direction), cos_i = horizon ? above : cos_o_;
-  color::Rgb f = above > 0 ? above * paint_.diffuse : color::Rgb{};
-  if (above > 0 || !horizon) f += lobes_toward(patch, cos_i);
+  color::Rgb f =
+      above > 0 ? above * (mapped ? mapped_toward(patch.direction) : let_in(above) * paint_.diffuse) : color::Rgb{};
+  if (above > 0 || !horizon) f += lobes_toward(patch, cos_i, mapped);
   const color::Rgb product =
       model_.reflection != nullptr ? goniochrome::color::reflected(*model_.reflection, f, radiance) : f * radiance;
   sum_ += patch.solid_angle_sr * product;
@@ -160,15 +305,23 @@ void Gatherer::add_mirror(const color::Rgb& radiance) {
   if (mirror == nullptr) return;
   const bool fresnel = point_.model == nullptr || model_.fresnel;
   const color::Rgb k =
-      brdf::fresnel_dielectric(fresnel ? cos_o_ : std::numbers::sqrt2 / 2, brdf::kCoatIndex) * mirror->gloss;
+      brdf::fresnel_dielectric(fresnel ? cos_o_ : std::numbers::sqrt2 / 2, brdf::mirror_index(paint_.coat_index)) *
+      mirror->gloss;
   sum_ += model_.reflection != nullptr ? goniochrome::color::reflected(*model_.reflection, k, radiance) : k * radiance;
 }
 
-color::Rgb Gatherer::lobes_toward(const Patch& patch, double cos_i) const {
+// A map holds reflectance factors, pi f. Isolines do not change when both directions turn about the normal.
+color::Rgb Gatherer::mapped_toward(const Vec3& direction) const {
+  const Vec3 light{dot(direction, frame_x_), dot(direction, frame_y_), dot(direction, point_.normal)};
+  return (1 / kPi) * brdf::reflectance_factor(*model_.map, light, local_viewer_, model_.treatment);
+}
+
+color::Rgb Gatherer::lobes_toward(const Patch& patch, double cos_i, bool mapped) const {
   const Vec3& direction = patch.direction;
   color::Rgb f;
   const double cos_half = 0.5 * length(direction + point_.to_viewer);
   const double fresnel = model_.fresnel ? brdf::fresnel_dielectric(std::min(1.0, cos_half), brdf::kCoatIndex) : 1;
+  const double base = let_in(cos_i) * cos_i;
   for (const Mirrored& m : mirrored_) {
     // ln cos of the angle to the mirror direction, by the versine, which keeps its digits where the angle is small.
     const Vec3 apart = m.direction - direction;
@@ -180,7 +333,7 @@ color::Rgb Gatherer::lobes_toward(const Patch& patch, double cos_i) const {
       const double lowered = grain_.lowered(lobe.exponent, patch.variance), exponent = lobe.exponent * lowered;
       if (exponent * -log_cos > kTail) break;
       const double power = m.share * lowered * std::exp(exponent * log_cos);
-      f += power * (cos_i * lobe.directional_diffuse + fresnel * lobe.gloss);
+      f += power * (mapped ? fresnel * lobe.gloss : base * lobe.directional_diffuse + fresnel * lobe.gloss);
     }
   }
   return f;
@@ -234,7 +387,19 @@ void TextureGatherer::add(const Patch& patch, const color::Rgb& radiance) {
 }
 
 void TextureGatherer::add_light(const Light& light) {
-  add({light.direction, kPi}, light.white);
+  if (!(light.radius_rad > 0)) return add({light.direction, kPi}, light.white);
+  const double cosine = dot(point_.normal, light.direction);
+  const double irradiance = brdf::disc_irradiance(cosine, light.radius_rad);
+  color::Rgb f = irradiance * diffuse_;
+  for (const TexelLobe& lobe : lobes_) {
+    const double chord = length(lobe.middle - light.direction), between = 2 * std::asin(std::min(1.0, 0.5 * chord));
+    const brdf::LobeOfDisc of = brdf::lobe_of_disc(lobe.exponent, light.radius_rad, between);
+    const double cos_m = std::max(0.0, dot(point_.normal, lobe.middle));
+    f +=
+        std::exp(std::min(lobe.log_peak, kLargestLog)) * (of.by_light * irradiance + of.by_mirror * cos_m) * lobe.color;
+  }
+  const color::Rgb white = kPi * light.white;
+  sum_ += reflection_ != nullptr ? goniochrome::color::reflected(*reflection_, f, white) : f * white;
 }
 
 }  // namespace goniochrome::render

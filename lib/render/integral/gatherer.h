@@ -2,6 +2,7 @@
 // integrand of exact.h and decides how finely the light must be divided.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "brdf/lobe_model.h"
@@ -72,7 +73,9 @@ class Gatherer {
   const Vec3& normal() const { return point_.normal; }
 
   // Adds f L cos_i dw, with cos_i multiplied into f so that the gloss term needs no division.
-  void add(const Patch& patch, const color::Rgb& radiance) { add(patch, radiance, model_.horizon); }
+  void add(const Patch& patch, const color::Rgb& radiance) {
+    add(patch, radiance, model_.horizon, model_.map_in_image);
+  }
   void add_light(const Light& light);
   // The mirror lobe, which sees this radiance.
   void add_mirror(const color::Rgb& radiance);
@@ -85,18 +88,31 @@ class Gatherer {
     double share;
   };
   void set_mirror_directions();
-  // With `horizon`, the direction's own cosine, and nothing from below.
-  void add(const Patch& patch, const color::Rgb& radiance, bool horizon);
-  color::Rgb lobes_toward(const Patch& patch, double cos_i) const;
+  // With `horizon`, the direction's own cosine, and nothing from below. With `mapped`, the color map in the place of
+  // the diffuse part and the flakes.
+  void add(const Patch& patch, const color::Rgb& radiance, bool horizon, bool mapped);
+  color::Rgb lobes_toward(const Patch& patch, double cos_i, bool mapped) const;
+  color::Rgb mapped_toward(const Vec3& direction) const;
+  color::Rgb lobes_toward_disc(const Light& light, bool mapped) const;
+  color::Rgb lobe_over_disc(const paint::Lobe& lobe, const Vec3& mirrored, const Light& light, bool mapped) const;
+  void add_reflected(const color::Rgb& f, const color::Rgb& light);
+  // What the coat lets in of a disc.
+  double let_in_of(const Light& light) const;
+  // What the coat lets in from there.
+  double let_in(double cos_i) const {
+    return paint_.coat_index == paint::kNoCoat ? 1 : brdf::coat_transmission(std::min(cos_i, 1.0), paint_.coat_index);
+  }
 
   const SurfacePoint& point_;
   const ExactModel& model_;
-  paint::LobeFit paint_;
+  paint::LobeFit paint_;  // its base as the coat lets it out
   double cos_o_ = 1;
   Vec3 reflected_;
+  Vec3 frame_x_, frame_y_, local_viewer_;  // of a color map, with the normal as z
   std::vector<Mirrored> mirrored_;
   std::vector<paint::Lobe> lobes_;  // finite exponents, ascending
   Grain grain_;
+  bool summed_ = false;  // whether lamps are integrated over their discs, and not looked up
   color::Rgb sum_;
 };
 

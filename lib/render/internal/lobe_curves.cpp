@@ -14,7 +14,7 @@ namespace goniochrome::render {
 
 namespace {
 
-constexpr int kPolar = 24, kAround = 8;
+constexpr int kPolar = 24, kAround = 8, kAroundCoat = 16;
 
 // The part of the ring at angle t from the mirror direction that is above the horizon, as half its azimuth: n.w =
 // a + b cos p with a = cos t cos_o, b = sin t sin_o.
@@ -43,9 +43,11 @@ struct Moment {
 // Around the ring, n.w and the moments integrate in closed form, w = cos t r + sin t cos p e + ... The Fresnel
 // reflectance wants the angle between light and viewer; the viewer is the mirror image of the lobe's axis, so that wo.w
 // = cos t cos 2o + sin t sin 2o cos p.
-LobeIntegrals lobe_integrals(double exponent, double cos_o, bool horizon) {
+LobeIntegrals lobe_integrals(double exponent, double cos_o, bool horizon, double coat_index) {
   const double whole = 2 * kPi / (exponent + 1);
-  if (!horizon) return {whole * cos_o, whole, whole * brdf::fresnel_dielectric(cos_o, brdf::kCoatIndex)};
+  if (!horizon)
+    return {whole * cos_o * brdf::coat_transmission(cos_o, coat_index), whole,
+            whole * brdf::fresnel_dielectric(cos_o, brdf::kCoatIndex)};
   static const std::vector<math::QuadraturePoint> points = math::gauss_legendre(kPolar);
   const double sin_o = std::sqrt(std::max(1e-8, 1 - cos_o * cos_o));  // along the normal the shift has a limit
   const double cos_2o = 2 * cos_o * cos_o - 1, sin_2o = 2 * sin_o * cos_o;
@@ -57,10 +59,19 @@ LobeIntegrals lobe_integrals(double exponent, double cos_o, bool horizon) {
     const double sin_t = std::sqrt(std::max(0.0, 1 - cos_t * cos_t));
     const double a = cos_t * cos_o, b = sin_t * sin_o, arc = half_arc(a, b);
     const double chord = std::sin(arc), with_cosine = weight * 2 * (a * arc + b * chord);
-    sum.cosine += with_cosine;
     sum.plain += weight * 2 * arc;
-    cosine.along += cos_t * with_cosine;
-    cosine.across += sin_t * weight * (2 * a * chord + b * (arc + chord * std::cos(arc)));
+    if (coat_index == paint::kNoCoat) {
+      sum.cosine += with_cosine;
+      cosine.along += cos_t * with_cosine;
+      cosine.across += sin_t * weight * (2 * a * chord + b * (arc + chord * std::cos(arc)));
+    }
+    for (int i = 0; coat_index != paint::kNoCoat && i < kAroundCoat; ++i) {
+      const double cos_p = std::cos(arc * (i + 0.5) / kAroundCoat), c = std::clamp(a + b * cos_p, 0.0, 1.0);
+      const double let_in = weight * 2 * arc / kAroundCoat * c * brdf::coat_transmission(c, coat_index);
+      sum.cosine += let_in;
+      cosine.along += cos_t * let_in;
+      cosine.across += sin_t * cos_p * let_in;
+    }
     plain.along += cos_t * weight * 2 * arc;
     plain.across += sin_t * weight * 2 * chord;
     for (int i = 0; i < kAround; ++i) {
@@ -74,14 +85,14 @@ LobeIntegrals lobe_integrals(double exponent, double cos_o, bool horizon) {
           plain.shift(cos_o, sin_o)};
 }
 
-const std::vector<LobeIntegrals>& lobe_curve(double exponent, int segments, bool horizon) {
-  static std::map<std::tuple<double, int, bool>, std::vector<LobeIntegrals>> curves;
+const std::vector<LobeIntegrals>& lobe_curve(double exponent, int segments, bool horizon, double coat_index) {
+  static std::map<std::tuple<double, int, bool, double>, std::vector<LobeIntegrals>> curves;
   static std::mutex mutex;
   const std::scoped_lock lock(mutex);
-  std::vector<LobeIntegrals>& curve = curves[{exponent, segments, horizon}];
+  std::vector<LobeIntegrals>& curve = curves[{exponent, segments, horizon, coat_index}];
   for (int i = static_cast<int>(curve.size()); i <= segments; ++i) {
     const double x = static_cast<double>(i) / segments;
-    curve.push_back(lobe_integrals(exponent, x * x, horizon));
+    curve.push_back(lobe_integrals(exponent, x * x, horizon, coat_index));
   }
   return curve;
 }

@@ -13,7 +13,7 @@ namespace goniochrome::render {
 namespace {
 
 // The whole integral over the hemisphere by a plain sum of many directions, as the failing control's yardstick.
-LobeIntegrals summed(double exponent, double cos_o) {
+LobeIntegrals summed(double exponent, double cos_o, double coat_index = paint::kNoCoat) {
   constexpr int kRings = 2000, kAround = 400;
   const double sin_o = std::sqrt(1 - cos_o * cos_o);
   const Vec3 wo{sin_o, 0, cos_o}, r{-sin_o, 0, cos_o};
@@ -24,7 +24,7 @@ LobeIntegrals summed(double exponent, double cos_o) {
       const double phi = 2 * kPi * (j + 0.5) / kAround;
       const Vec3 w{s * std::cos(phi), s * std::sin(phi), z};
       const double power = std::pow(std::max(0.0, dot(r, w)), exponent) * 2 * kPi / kRings / kAround;
-      sum.cosine += power * z;
+      sum.cosine += power * z * brdf::coat_transmission(z, coat_index);
       sum.plain += power;
       sum.fresnel += power * brdf::fresnel_dielectric(length(w + wo) / 2, brdf::kCoatIndex);
     }
@@ -45,6 +45,20 @@ TEST(LobeCurves, HorizonIntegralsAreThoseOfTheHemisphere) {
     }
   }
   EXPECT_TRUE(apart) << "the whole lobe would have been wrong somewhere";
+}
+
+// The control is what the coat lets in from the mirror direction alone, for all of the lobe.
+TEST(LobeCurves, ACoatLetsInLessFromGrazingDirections) {
+  bool apart = false;
+  for (const double exponent : {1.3, 6.0, 40.0, 100.0}) {
+    for (const double cos_o : {0.02, 0.2, 0.5, 0.8, 1.0}) {
+      const double wanted = summed(exponent, cos_o, 1.5).cosine;
+      EXPECT_NEAR(lobe_integrals(exponent, cos_o, true, 1.5).cosine / wanted, 1, 3e-3) << exponent << " " << cos_o;
+      apart |= std::abs(lobe_integrals(exponent, cos_o, true).cosine * brdf::coat_transmission(cos_o, 1.5) / wanted -
+                        1) > 0.1;
+    }
+  }
+  EXPECT_TRUE(apart);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "render/internal/map_cost.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "base/parallel.h"
@@ -10,9 +11,11 @@ namespace goniochrome::render {
 namespace {
 
 // The colors of a color map under the scene's lights.
-double mapped_point_ns(const Effects& effects) {
+double mapped_point_ns(const Workload& work, const Effects& effects) {
   constexpr double kMapped = 300;
-  return effects.maps ? kMapped * static_cast<double>(effects.lights) : 0;
+  double directions = 0;
+  for (const Light& light : work.scene->lights) directions += static_cast<double>(disc_directions(light).size());
+  return effects.maps ? kMapped * directions : 0;
 }
 
 // Four texels around a place, each with its lobes, or the mean texel. Measured by BM_Texture: a point, a lobe of a
@@ -36,14 +39,19 @@ double point_ns(const Workload& work, const Effects& effects, const MapCost& c) 
     for (const LobeClass& of : lobe_classes(*work.scene->env, effects))
       ns += spread * (c.direction + c.block * static_cast<double>(pairs ? (of.lobes.size() + 1) / 2 : of.lobes.size()));
   }
-  return ns + static_cast<double>(effects.lights) *
-                  (c.light + spread * static_cast<double>(effects.lobes.size()) * c.lit_lobe);
+  if (effects.environment && effects.tilt_level > 0 && !work.lookups.empty()) {
+    const double lookups =
+        work.lookups[std::min(work.lookups.size(), static_cast<std::size_t>(effects.tilt_level)) - 1];
+    if (lookups > 0) ns += c.tilted + lookups * c.lookup;
+  }
+  return ns + static_cast<double>(effects.lights) * (c.light + spread * static_cast<double>(effects.lobes.size()) *
+                                                                   (effects.extent ? c.disc_lobe : c.lit_lobe));
 }
 
 double frame_ms(const Workload& work, const Effects& effects, const MapCost& cost) {
   const double texture_ns = work.textured > 0 ? textured_point_ns(effects, work.texture_lobes) : 0;
   const double ns = work.pixels * cost.pixel + work.points * point_ns(work, effects, cost) +
-                    work.textured * texture_ns + work.mapped * mapped_point_ns(effects);
+                    work.textured * texture_ns + work.mapped * mapped_point_ns(work, effects);
   return 1e-6 * work.speed * ns / threads();
 }
 

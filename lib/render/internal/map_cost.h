@@ -13,8 +13,11 @@ struct MapCost {
   double block;      // one block of maps more
   double direction;  // one direction more in which maps are looked up
   double light;      // one light more
-  double lit_lobe;   // one lobe in a light
+  double lit_lobe;   // one lobe in a light that is a point
+  double disc_lobe;  // one lobe in a light that is a disc
   double view;       // weights that depend on the view
+  double tilted;     // tilted lobes, at a point that has any
+  double lookup;     // one look-up of a tilted lobe
   bool pairs;        // whether a block holds two maps as long as the product of colors has at most four forms
 };
 

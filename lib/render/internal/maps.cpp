@@ -1,9 +1,11 @@
 #include "render/internal/maps.h"
 
 #include <algorithm>
+#include <set>
 
 #include "base/parallel.h"
 #include "base/text.h"
+#include "render/internal/tilt_table.h"
 
 namespace goniochrome::render {
 
@@ -16,7 +18,9 @@ constexpr double kSmallest = 0.4;
 Result<void> check_lobe(const envmap::PrefilteredEnvironment& env, double exponent, const Effects& effects) {
   if (env.lobe(exponent) != nullptr) return {};
   std::string list;
-  for (const Effects::LobeUse& use : effects.lobes) list += (list.empty() ? "" : ",") + shortest(use.exponent);
+  std::set<double> exponents = {exponent};
+  for (const Effects::LobeUse& use : effects.lobes) exponents.insert(use.exponent);
+  for (const double of : exponents) list += (list.empty() ? "" : ",") + shortest(of);
   return input_error(
       "the environment has no lobe of exponent {}, which a paint needs: make it with `prefilter-envmap {} --exponents "
       "{} -o ENV.env.exr`, or fit the paints to the basis it was made for",
@@ -71,7 +75,12 @@ Result<SceneMaps> scene_maps(const Scene& scene, const Effects& effects) {
   if (!effects.environment) return maps;
   const envmap::PrefilteredEnvironment& env = *scene.env;
   if (effects.diffuse) maps.diffuse = single(WeightTable::diffuse_slot(), env.diffuse.map);
+  if (effects.diffuse && effects.coat) {
+    maps.diffuse.slots.push_back(slots_of(effects).coat_diffuse_slot());
+    maps.diffuse.maps.push_back(coat_diffuse_map(env));
+  }
   for (const Effects::LobeUse& use : effects.lobes) GONIO_TRY(check_lobe(env, use.exponent, effects));
+  for (const double exponent : tilt_exponents(scene, effects)) GONIO_TRY(check_lobe(env, exponent, effects));
   for (const LobeClass& of : lobe_classes(env, effects)) {
     MapClass into{env.lobe(effects.lobes[of.lobes.front()].exponent)->map.size, {}, {}, of.shifted};
     for (const std::size_t j : of.lobes) {

@@ -19,7 +19,7 @@ struct MapClass {
 };
 
 struct SceneMaps {
-  MapClass diffuse;             // met by the normal
+  MapClass diffuse;             // met by the normal; with the effect `coat` the coat's diffuse map as well
   std::vector<MapClass> lobes;  // met by the mirror direction; small faces first
   MapClass mirror;              // met by the mirror direction, and by rays that miss the mesh
 };

@@ -1,10 +1,12 @@
 // The lower half of an environment, laid on a floor. goniochrome-theory(7), PATHS, Ground.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "color/color.h"
 #include "envmap/environment.h"
+#include "mesh/mesh.h"
 #include "rays/ray_scene.h"
 #include "render/scene.h"
 
@@ -30,10 +32,56 @@ class LaidGround {
   // Of the floor in the open, from above.
   const color::Rgb& irradiance() const { return irradiance_; }
 
+  // The directions from a point of the floor in which it can see a body within a box that stands on the floor: about
+  // an azimuth and below an elevation. From under the box these are all directions.
+  struct Window {
+    double azimuth_rad = 0, half_width_rad = 0, top_rad = 0;
+    double cosine = 0;                     // the integral of the cosine over them
+    int first = 0, columns = 0, rows = 0;  // cells of even angles that hold them
+    std::array<float, 129> light = {};     // irradiance from the first so many rows of these cells
+  };
+  Window window(const Vec3& position, const mesh::Box& box) const;
+  // How much a body within such a window can change of what a point of the floor shows: the share of the irradiance
+  // that comes from there, or the share of the hemisphere, weighed by the cosine, whichever is larger.
+  double hidden_share(const Window& window) const;
+  // The share of the irradiance that comes from a window.
+  double light_share(const Window& window) const;
+  // A direction of the window that two numbers in [0,1) draw: half of them as light comes from there, half by the
+  // cosine. The density in 1/sr by which any direction is drawn; 0 outside of the window.
+  Vec3 drawn(const Window& window, double choice, double u, double v) const;
+  double density(const Window& window, const Vec3& direction) const;
+
+  // The brightest texels above the horizon, such as those of a sun: light from them is drawn apart from all else, so
+  // that where all of it is blocked its share has no noise. None where they hold little of the irradiance.
+  bool has_bright() const { return !bright_.empty(); }
+  bool is_bright(const Vec3& direction) const;
+  // A direction of theirs, in proportion to the irradiance that they give.
+  struct BrightSample {
+    Vec3 direction;
+    double pdf = 0;
+    color::Rgb radiance;
+  };
+  BrightSample drawn_bright(double which, double u, double v) const;
+
  private:
+  struct BrightTexel {
+    int column = 0, row = 0;
+    double light = 0;  // irradiance
+  };
+  void find_bright(std::vector<BrightTexel> texels);
+  void add_light(const Vec3& direction, double light);
+  void gather_light(const envmap::Environment& environment);
+  void sum_up();
+  double before(int column, int row) const;
+
   const envmap::Environment* environment_ = nullptr;
   Vec3 eye_;
   color::Rgb irradiance_;
+  // Irradiance from the first so many columns of each row of cells, column by column; the mean of the channels.
+  std::vector<float> sums_;
+  std::vector<BrightTexel> bright_;
+  std::vector<double> bright_sums_;  // cumulative
+  std::vector<bool> is_bright_;      // texel by texel; empty where there are none
 };
 
 }  // namespace goniochrome::render

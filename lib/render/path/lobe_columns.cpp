@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.h"
 #include "base/text.h"
+#include "brdf/disc_light.h"
 #include "brdf/lobe_model.h"
 
 namespace goniochrome::render {
@@ -80,8 +82,7 @@ double nominal_weight(const LobeColumns& columns, std::size_t column) {
 
 LobeKernels::LobeKernels(const LobeColumns& columns, const PaintedPoint& point)
     : columns_(columns), point_(point), frame_(rays::frame_about(point.normal())) {
-  const float cos_o = std::clamp(rays::dot(point.normal(), point.to_viewer()), 1e-6F, 1.0F);
-  mirror_ = coat_reflectance(cos_o);
+  mirror_ = point.coat_mirror();
   if (!point.axes().empty()) axes_total_ = 0;
   for (const PaintedPoint::Axis& axis : point.axes()) axes_total_ += axis.share;
 }
@@ -99,15 +100,43 @@ float LobeKernels::at(const Float3& to_light, float* values) const {
   if (point_.axes().empty()) add(point_.mirrored(), 1);
   for (const PaintedPoint::Axis& axis : point_.axes()) add(axis.direction, axis.share);
   const float fresnel = coat_reflectance(std::min(1.0F, 0.5F * rays::length(to_light + point_.to_viewer())));
-  values[LobeColumns::diffuse()] = cos_i;
+  const float base = cos_i * point_.passages(cos_i);
+  values[LobeColumns::diffuse()] = base;
   float pdf = cos_i / kFloatPi;
   for (std::size_t j = 0; j < lobes; ++j) {
     if (!(powers[j] > 0)) continue;
-    values[LobeColumns::flake(j)] = cos_i * powers[j];
+    values[LobeColumns::flake(j)] = base * powers[j];
     values[LobeColumns::gloss(j)] = fresnel * powers[j];
     pdf += (static_cast<float>(columns_.exponents[j]) + 1) / (2 * kFloatPi) * powers[j] / axes_total_;
   }
   return pdf / static_cast<float>(lobes + 1);
+}
+
+bool LobeKernels::toward_disc(const Light& light, bool tabled, float* values) const {
+  std::fill_n(values, columns_.count(), 0.0F);
+  const Vec3 n = rays::vec3(point_.normal()), viewer = rays::vec3(point_.to_viewer());
+  const double cosine = dot(n, light.direction), radius = light.radius_rad;
+  if (cosine <= -std::sin(radius)) return false;
+  const double irradiance = brdf::disc_irradiance(cosine, radius);
+  const auto coat = [&](const Vec3& toward) {
+    return coat_reflectance(static_cast<float>(std::min(1.0, 0.5 * length(toward + viewer))));
+  };
+  const double coat_l = brdf::disc_above(cosine, radius) * coat(light.direction);
+  values[LobeColumns::diffuse()] = static_cast<float>(irradiance);
+  const auto add = [&](const Float3& axis, double share) {
+    const Vec3 r = rays::vec3(axis);
+    const double chord = length(r - light.direction), cos_r = std::max(0.0, dot(n, r)), coat_r = coat(r);
+    for (std::size_t j = 0; j < columns_.exponents.size(); ++j) {
+      const double exponent = columns_.exponents[j];
+      const brdf::DiscLobeTable::Node of =
+          tabled ? brdf::disc_lobe_table(exponent, radius)->at(chord) : brdf::disc_lobe_node(exponent, radius, chord);
+      values[LobeColumns::flake(j)] += static_cast<float>(share * (of.cosine[0] * irradiance + of.cosine[1] * cos_r));
+      values[LobeColumns::gloss(j)] += static_cast<float>(share * (of.plain[0] * coat_l + of.plain[1] * coat_r));
+    }
+  };
+  if (point_.axes().empty()) add(point_.mirrored(), 1);
+  for (const PaintedPoint::Axis& axis : point_.axes()) add(axis.direction, axis.share);
+  return true;
 }
 
 Float3 LobeKernels::direction(double choice, double u, double v) const {

@@ -51,9 +51,12 @@ class LobeKernels {
   // The arguments must outlive it.
   LobeKernels(const LobeColumns& columns, const PaintedPoint& point);
 
-  // Writes f cos_i of weight 1 for each column, the mirror's 0, and returns the density (1/sr) by which drawn() gives
-  // the direction. Where the direction is below the horizon both are 0.
+  // Writes f cos_i of weight 1 for each column, under the coat of the point and the mirror's 0, and returns the density
+  // (1/sr) by which drawn() gives the direction. Where the direction is below the horizon both are 0.
   float at(const rays::Float3& to_light, float* values) const;
+  // The same, integrated over the disc of a lamp that has no place, relative to pi sin^2 of its radius; the mirror's is
+  // 0. Whether there is anything above the horizon. `tabled` as in PaintedPoint::toward_disc().
+  bool toward_disc(const Light& light, bool tabled, float* values) const;
   // A direction drawn evenly from the cosine and the lobes, by numbers in [0,1). It may lie below the horizon.
   rays::Float3 direction(double choice, double u, double v) const;
   // The coat's Fresnel reflectance to the viewer: what the mirror sends back.

@@ -142,11 +142,9 @@ LobePoint::Sent LobePoint::sent(const Hit& hit, const Float3& direction, const S
   };
   const std::array<double, 4> numbers = sequence.point(index, 4), onward = sequence.point(index, 5);
   if (!t.lights_.empty()) {
-    const auto count = static_cast<double>(t.lights_.size());
-    const Light& light = t.lights_[std::min(t.lights_.size() - 1, static_cast<std::size_t>(numbers[2] * count))];
-    const Float3 to_light = rays::float3(light.direction);
-    if (rays::dot(at.shading, to_light) > 0 && !t.rays_->blocked(start, to_light))
-      add(to_light, count * kPi, light.white);
+    const Transport::LampSample lamp = t.drawn_lamp(start, numbers[2], numbers[3]);
+    if (rays::dot(at.shading, lamp.direction) > 0 && !t.rays_->blocked(start, lamp.direction, lamp.reach))
+      add(lamp.direction, 1, lamp.light);
   }
   if (t.environment_) {
     const LightSample light = t.environment_->drawn(numbers[0], numbers[1]);
@@ -188,6 +186,7 @@ LobePoint::Sent LobePoint::sent(const Hit& hit, const Float3& direction, const S
     if (!mirrored) light_pdf = light.pdf;
   }
   if (mirrored) {
+    if (!t.lights_.empty()) end += t.mirrored_lamps(start, drawn.direction, next);
     sent.gloss += (1 / mirror_chance) * reflect(painted.mirror(), end);
   } else if (end != color::Rgb{}) {
     add(drawn.direction, 1 / (pdf + light_pdf), end);
@@ -262,16 +261,48 @@ void LobePoint::add_mirror(std::uint64_t seed, Sums& sums, int which) const {
   }
 }
 
-// Directional lights, whose shadow rays decide all, and what the mirror sees without a bounce.
+// What the columns gather of a disc that the mesh may hide in part: even directions of it, of which some are free.
+bool LobePoint::lamp_values(std::size_t which, const Transport::SeenLamp& lamp, float* values) const {
+  constexpr std::uint32_t kDirections = 64;
+  const bool any = kernels_.toward_disc(lamp.light, !lamp.is_placed, values);
+  if (!any || open_) return any;
+  const std::size_t count = columns_.count();
+  float sums[2 * kMostTracedLobes + 2] = {}, here[2 * kMostTracedLobes + 2];
+  bool all_free = true;
+  const Sequence sequence(mixed(0x1A3B, which), kDirections);
+  for (std::uint32_t i = 0; i < kDirections; ++i) {
+    const std::array<double, 4> numbers = sequence.point(i, 0);
+    const Transport::LampSample sample = Transport::drawn_from(lamp, numbers[0], numbers[1]);
+    if (!(kernels_.at(sample.direction, here) > 0)) continue;
+    if (transport_.rays_->blocked(spot_.start, sample.direction, sample.reach)) {
+      all_free = false;
+      continue;
+    }
+    const double half = std::cos(0.5 * lamp.light.radius_rad), share = 1 / (half * half * kDirections);
+    for (std::size_t k = 0; k < count; ++k) sums[k] += static_cast<float>(share) * here[k];
+  }
+  if (!all_free) std::copy_n(sums, count, values);
+  return true;
+}
+
+// Lamps, whose shadow rays decide all, and what the mirror sees without a bounce.
 void LobePoint::add_sure(const color::Rgb* open_light, LobeEstimate& result) const {
   float values[2 * kMostTracedLobes + 2];
-  for (const Light& light : transport_.lights_) {
-    const Float3 direction = rays::float3(light.direction);
-    if (!(kernels_.at(direction, values) > 0)) continue;
-    if (!open_ && transport_.rays_->blocked(spot_.start, direction)) continue;
+  for (std::size_t i = 0; i < transport_.lights_.size(); ++i) {
+    const Transport::SeenLamp lamp = transport_.seen_lamp(i, spot_.start);
+    const Light& light = lamp.light;
+    if (light.radius_rad > 0) {
+      if (!lamp_values(i, lamp, values)) continue;
+    } else {
+      const Float3 direction = rays::float3(light.direction);
+      if (!(kernels_.at(direction, values) > 0)) continue;
+      if (!open_ && transport_.rays_->blocked(spot_.start, direction, lamp.reach)) continue;
+    }
     for (std::size_t k = 0; k < columns_.count(); ++k) result.direct[k] += (kPi * values[k]) * light.white;
   }
   color::Rgb& mirror = result.direct[columns_.mirror()];
+  if (!transport_.lights_.empty())
+    mirror += kernels_.mirror() * transport_.mirrored_lamps(spot_.start, painted_.mirrored(), mirror_hit_);
   if (mirror_hit_.any()) {
     mirror += kernels_.mirror() * transport_.emitters_.radiance(transport_.rays_->part(mirror_hit_.triangle));
   } else if (open_light != nullptr) {
@@ -333,7 +364,7 @@ LobeEstimate LobePoint::estimate(const color::Rgb* open_light, int sequences, in
   result.sequences = sequences;
   bool any_blocked = false;
   const std::vector<Ray> rays = traced_rays(sequences, directions, seed, any_blocked);
-  const bool summed = open_light == nullptr && transport_.environment_.has_value();
+  const bool summed = open_light == nullptr && transport_.environment_ != nullptr;
   if (!any_blocked && !summed && !mirror_hit_.any()) {
     add_open();
     return result;
@@ -398,10 +429,11 @@ void LobePoint::add_pairs(const Hit& hit, const Float3& direction, const float* 
   const std::size_t count = columns_.count();
   std::vector<color::Rgb> once(count), deeper(count);
   float sent[2 * kMostTracedLobes + 2];
-  for (const Light& light : t.lights_) {
-    const Float3 to_light = rays::float3(light.direction);
-    if (!(kernels.at(to_light, sent) > 0) || t.rays_->blocked(at.start, to_light)) continue;
-    for (std::size_t l = 0; l < count; ++l) once[l] += (kPi * sent[l]) * light.white;
+  const std::array<double, 4> of_lamp = sequence.point(index, 5);
+  for (std::size_t i = 0; i < t.lights_.size(); ++i) {
+    const Transport::LampSample lamp = Transport::drawn_from(t.seen_lamp(i, at.start), of_lamp[0], of_lamp[1]);
+    if (!(kernels.at(lamp.direction, sent) > 0) || t.rays_->blocked(at.start, lamp.direction, lamp.reach)) continue;
+    for (std::size_t l = 0; l < count; ++l) once[l] += static_cast<double>(sent[l]) * lamp.light;
   }
   PathOptions further = options_;
   --further.bounces;
@@ -436,6 +468,9 @@ void LobePoint::add_pairs(const Hit& hit, const Float3& direction, const float* 
   std::fill_n(sent, count, 0.0F);
   sent[columns_.mirror()] = kernels.mirror();
   add(painted.mirrored(), 1, 40);
+  if (!t.lights_.empty())
+    once[columns_.mirror()] += kernels.mirror() * t.mirrored_lamps(at.start, painted.mirrored(),
+                                                                   t.rays_->closest(at.start, painted.mirrored()));
   const int group = groups_.of_part[static_cast<std::size_t>(at.part)];
   for (std::size_t k = 0; k < count; ++k) {
     if (values[k] == 0 || (is_laid_ && k != LobeColumns::diffuse())) continue;

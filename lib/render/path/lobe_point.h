@@ -72,6 +72,7 @@ class LobePoint {
   void add_classes(const rays::Float3& f, const rays::Hit& hit, const Sent& sent, double share, Sums& sums) const;
   void add_pairs(const rays::Hit& hit, const rays::Float3& direction, const float* values, double scale,
                  const Sequence& sequence, std::uint32_t index, Pairs& pairs) const;
+  bool lamp_values(std::size_t which, const Transport::SeenLamp& lamp, float* values) const;
   void add_sure(const color::Rgb* open_light, LobeEstimate& result) const;
   LobeEstimate floor_estimate(int sequences, int directions, std::uint64_t seed) const;
   int group_of(const rays::Hit& hit) const {

@@ -279,6 +279,7 @@ Result<WornPaints> worn_paints(const LobeColumns& columns, const PathScene& path
     }
     worn.groups.of_part.push_back(group);
     worn.emission.push_back(part < path.emission.size() ? path.emission[part] : color::Rgb{});
+    worn.coats.push_back(scene.paints[part].coat_index);
     worn.brushed.push_back(part < scene.anisotropy.size() ? scene.anisotropy[part] : paint::Anisotropy{});
   }
   if (path.ground) {
@@ -290,6 +291,7 @@ Result<WornPaints> worn_paints(const LobeColumns& columns, const PathScene& path
       weights[LobeColumns::diffuse()] = {1, 1, 1};
     }
     worn.groups.of_part.push_back(static_cast<int>(first.size()));
+    worn.coats.push_back(worn.floor_is_laid ? paint::kNoCoat : path.ground->paint.coat_index);
     worn.has_floor = true;
     worn.weights.push_back(std::move(weights));
   }

@@ -18,8 +18,11 @@ struct WornPaints {
   PaintGroups groups;
   std::vector<std::vector<color::Rgb>> weights;
   std::vector<paint::Anisotropy> brushed;  // of each part of the mesh: its lobes are those of such a surface
-  std::vector<color::Rgb> emission;        // radiance of each part of the mesh by itself, whatever it wears
-  bool has_floor = false;                  // as the part after the mesh's
+  // Of each part of the mesh, then of the floor, the index of the coat that its base is lit through. The light of a
+  // paint under another coat is that of brdf::under_coat().
+  std::vector<double> coats;
+  std::vector<color::Rgb> emission;  // radiance of each part of the mesh by itself, whatever it wears
+  bool has_floor = false;            // as the part after the mesh's
   // Whether that floor shows the environment. Its weights are 1 in the diffuse column and 0 elsewhere, for any paint.
   bool floor_is_laid = false;
 

@@ -12,10 +12,11 @@ namespace goniochrome::render {
 namespace {
 
 // Light off the coat has its reflectance in it, relative to nothing.
-std::vector<paint::LobeFit> unit_paints(const LobeColumns& columns) {
+std::vector<paint::LobeFit> unit_paints(const LobeColumns& columns, double coat_index) {
   const color::Rgb one{1, 1, 1};
   const double reflectance = brdf::fresnel_dielectric(std::cos(brdf::kGlossIncidence_deg * kDegree), brdf::kCoatIndex);
   paint::LobeFit blank;
+  blank.coat_index = coat_index;
   for (const double exponent : columns.exponents) blank.lobes.push_back({exponent, {}, {}});
   blank.lobes.push_back({paint::kMirrorExponent, {}, {}});
   std::vector<paint::LobeFit> paints(columns.count(), blank);
@@ -31,9 +32,9 @@ std::vector<paint::LobeFit> unit_paints(const LobeColumns& columns) {
 }  // namespace
 
 Result<OpenLight> OpenLight::create(const envmap::PrefilteredEnvironment& env, const LobeColumns& columns,
-                                    std::vector<std::vector<brdf::Tilt>> tilts) {
+                                    std::vector<std::vector<brdf::Tilt>> tilts, std::vector<double> coats) {
   OpenLight open;
-  open.env_ = &env, open.columns_ = columns, open.tilts_ = std::move(tilts);
+  open.env_ = &env, open.columns_ = columns, open.tilts_ = std::move(tilts), open.coats_ = std::move(coats);
   for (const double exponent : columns.exponents) {
     open.lobes_.push_back(env.lobe(exponent));
     if (open.lobes_.back() == nullptr)
@@ -45,38 +46,47 @@ Result<OpenLight> OpenLight::create(const envmap::PrefilteredEnvironment& env, c
         "the environment has no {} part, which a transport needs: make it with a basis that holds "
         "<mirror/>, by prefilter-envmap",
         env.diffuse.map.size == 0 ? "diffuse" : "mirror");
-  Scene scene;
-  scene.paints = unit_paints(columns);
-  scene.env = &env;
-  scene.gloss_deg.assign(scene.paints.size(), brdf::kGlossIncidence_deg);
-  Effects effects = effects_of(scene);
-  effects.fresnel = effects.horizon = effects.mirror = true;
-  open.table_ = weight_table(scene, effects);
+  std::vector<double> different = open.coats_;
+  different.push_back(paint::kNoCoat);
+  for (const double coat_index : different) {
+    if (open.tables_.contains(coat_index)) continue;
+    Scene scene;
+    scene.paints = unit_paints(columns, coat_index);
+    scene.env = &env;
+    scene.gloss_deg.assign(scene.paints.size(), brdf::kGlossIncidence_deg);
+    Effects effects = effects_of(scene);
+    effects.fresnel = effects.horizon = effects.mirror = true;
+    open.tables_[coat_index] = weight_table(scene, effects);
+  }
+  if (open.tables_.size() > 1) open.coat_diffuse_ = coat_diffuse_map(env);
   return open;
 }
 
-double OpenLight::weight(std::size_t column, int slot, double cos_o, int channel) const {
-  const double x = std::sqrt(cos_o) * table_.segments;
-  const int segment = std::min(static_cast<int>(x), table_.segments - 1);
-  const float* w = table_.at(static_cast<int>(column), segment, slot);
+double OpenLight::weight(const WeightTable& table, std::size_t column, int slot, double cos_o, int channel) {
+  const double x = std::sqrt(cos_o) * table.segments;
+  const int segment = std::min(static_cast<int>(x), table.segments - 1);
+  const float* w = table.at(static_cast<int>(column), segment, slot);
   return w[channel] + w[4 + channel] * (x - segment);
 }
 
 // A brushed surface gathers the mean over its tilted normals, as the engines have it.
 void OpenLight::at(const Vec3& n, const Vec3& to_viewer, int part, color::Rgb* light) const {
   const double cos_o = std::clamp(dot(n, to_viewer), 0.0, 1.0);
+  const auto p = static_cast<std::size_t>(part);
+  const WeightTable& table = tables_.at(p < coats_.size() ? coats_[p] : paint::kNoCoat);
   std::fill_n(light, columns_.count(), color::Rgb{});
-  light[0] = weight(0, WeightTable::diffuse_slot(), cos_o, 0) * envmap::bilinear(env_->diffuse.map, n);
+  const bool bare = &table == &tables_.at(paint::kNoCoat);
+  light[0] = weight(table, 0, bare ? WeightTable::diffuse_slot() : table.coat_diffuse_slot(), cos_o, 0) *
+             envmap::bilinear(bare ? env_->diffuse.map : coat_diffuse_, n);
   const auto add_lobes = [&](const Vec3& mirrored, double share) {
     for (std::size_t k = 1; k < columns_.mirror(); ++k) {
       const std::size_t lobe = (k - 1) / 2;
-      const Vec3 toward = mirrored + weight(k, table_.shift_slot(lobe), cos_o, static_cast<int>(lobe % 4)) * n;
-      light[k] +=
-          share * weight(k, WeightTable::lobe_slot(lobe), cos_o, 0) * envmap::bilinear(lobes_[lobe]->map, toward);
+      const Vec3 toward = mirrored + weight(table, k, table.shift_slot(lobe), cos_o, static_cast<int>(lobe % 4)) * n;
+      light[k] += share * weight(table, k, WeightTable::lobe_slot(lobe), cos_o, 0) *
+                  envmap::bilinear(lobes_[lobe]->map, toward);
     }
   };
   const Vec3 mirrored = 2 * dot(n, to_viewer) * n - to_viewer;
-  const auto p = static_cast<std::size_t>(part);
   if (p >= tilts_.size() || tilts_[p].size() <= 1) {
     add_lobes(mirrored, 1);
   } else {
@@ -89,7 +99,7 @@ void OpenLight::at(const Vec3& n, const Vec3& to_viewer, int part, color::Rgb* l
     }
   }
   const std::size_t last = columns_.mirror();
-  light[last] = weight(last, table_.mirror_slot(), cos_o, 0) * envmap::bilinear(env_->mirror.map, mirrored);
+  light[last] = weight(table, last, table.mirror_slot(), cos_o, 0) * envmap::bilinear(env_->mirror.map, mirrored);
 }
 
 }  // namespace goniochrome::render

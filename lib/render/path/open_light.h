@@ -2,6 +2,7 @@
 // maps. goniochrome-theory(7), RENDERING and TRANSPORT.
 #pragma once
 
+#include <map>
 #include <vector>
 
 #include "base/result.h"
@@ -13,22 +14,25 @@ namespace goniochrome::render {
 class OpenLight {
  public:
   // For columns whose exponents are among those of the environment. `tilts` of each part, as tilts_of() has them; none:
-  // isotropic. The environment must outlive it. Error: a lobe that it lacks, the diffuse map, or the mirror part.
+  // isotropic. `coats`: the index of the coat of each part; none where there are fewer. The environment must outlive
+  // it. Error: a lobe that it lacks, the diffuse map, or the mirror part.
   static Result<OpenLight> create(const envmap::PrefilteredEnvironment& env, const LobeColumns& columns,
-                                  std::vector<std::vector<brdf::Tilt>> tilts);
+                                  std::vector<std::vector<brdf::Tilt>> tilts, std::vector<double> coats = {});
 
   // Writes the light of each column with weight 1 at a point seen from there; both vectors unit, on one side.
   void at(const Vec3& normal, const Vec3& to_viewer, int part, color::Rgb* light) const;
 
  private:
   OpenLight() = default;
-  double weight(std::size_t column, int slot, double cos_o, int channel) const;
+  static double weight(const WeightTable& table, std::size_t column, int slot, double cos_o, int channel);
 
   const envmap::PrefilteredEnvironment* env_ = nullptr;
   LobeColumns columns_;
   std::vector<const envmap::PrefilteredLobe*> lobes_;  // of the columns' exponents
   std::vector<std::vector<brdf::Tilt>> tilts_;
-  WeightTable table_;  // of a paint for each column, with weight 1 there alone
+  std::vector<double> coats_;
+  envmap::CubeMap coat_diffuse_;          // where any part has a coat
+  std::map<double, WeightTable> tables_;  // by coat: of a paint for each column, with weight 1 there alone
 };
 
 }  // namespace goniochrome::render

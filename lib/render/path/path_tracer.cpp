@@ -31,11 +31,31 @@ class Picture {
       : transport_(transport), surface_(surface), base_(base), request_(request), deadline_(request.time_limit_s) {
     const Gbuffer& g = surface.gbuffer;
     shifts_ = sample_shifts(request.pixel_samples);
-    if (shifts_.size() > 1) coverage_ = coverage(transport.rays(), g.rays, g.width, g.height, shifts_);
-    number_.assign(static_cast<std::size_t>(g.width) * g.height, -1);
-    for (int y = 0; y < g.height; ++y)
-      for (int x = 0; x < g.width; ++x) add_point(x, y);
-    states_.resize(points_.size());
+    count_ = shifts_.size();
+    if (count_ > 1) coverage_ = coverage(transport.rays(), g.rays, g.width, g.height, shifts_);
+    add_points();
+  }
+
+  Picture(const Transport& transport, const std::vector<VisibleSurface>& samples, const image::Image* base,
+          const PathRequest& request)
+      : transport_(transport),
+        surface_(samples.front()),
+        seen_(&samples),
+        base_(base),
+        request_(request),
+        deadline_(request.time_limit_s) {
+    count_ = samples.size();
+    const std::size_t pixels = surface_.hits.size();
+    coverage_ = {std::vector<std::uint16_t>(pixels, 0), std::vector<std::uint16_t>(pixels, 0)};
+    for (std::size_t sample = 0; sample < count_; ++sample) {
+      const auto bit = static_cast<std::uint16_t>(1U << sample);
+      for (std::size_t i = 0; i < pixels; ++i) {
+        const rays::Hit& hit = samples[sample].hits[i];
+        if (hit.any()) coverage_.any[i] |= bit;
+        if (hit.triangle == rays::kFloor) coverage_.floor[i] |= bit;
+      }
+    }
+    add_points();
   }
 
   PathPicture draw() {
@@ -66,13 +86,21 @@ class Picture {
   }
 
  private:
+  void add_points() {
+    const Gbuffer& g = surface_.gbuffer;
+    number_.assign(static_cast<std::size_t>(g.width) * static_cast<std::size_t>(g.height), -1);
+    for (int y = 0; y < g.height; ++y)
+      for (int x = 0; x < g.width; ++x) add_point(x, y);
+    states_.resize(points_.size());
+  }
+
   void add_point(int x, int y) {
     const std::size_t at = place(x, y);
     PathPoint point;
     point.x = x, point.y = y;
-    if (shifts_.size() > 1) {
+    if (count_ > 1) {
       const unsigned any = coverage_.any[at];
-      point.coverage = static_cast<float>(std::popcount(any)) / static_cast<float>(shifts_.size());
+      point.coverage = static_cast<float>(std::popcount(any)) / static_cast<float>(count_);
       point.floor = coverage_.floor[at] == any;
     } else {
       point.coverage = surface_.hits[at].any() ? 1 : 0;
@@ -95,8 +123,8 @@ class Picture {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(surface_.gbuffer.width) + static_cast<std::size_t>(x);
   }
 
-  // Of the single sample of a pixel. Most of a floor is easy, so that its first round is half as long.
-  int batch_of(const PathPoint& point) const { return point.floor && shifts_.size() == 1 ? kFan : kBatch; }
+  // Most of a floor is easy, so that its first round is half as long.
+  static int batch_of(const PathPoint& point) { return point.floor ? kFan : kBatch; }
 
   // Chunks are taken in a scattered order, so that a picture that time cut short is noisy evenly.
   void sample(const std::vector<int>& more) {
@@ -127,7 +155,7 @@ class Picture {
   }
 
   void sample(std::size_t i, int batches) {
-    if (shifts_.size() > 1) return sample_spread(i, batches);
+    if (count_ > 1) return sample_spread(i, batches);
     State& state = states_[i];
     PathPoint& point = points_[i];
     const Gbuffer& g = surface_.gbuffer;
@@ -144,6 +172,11 @@ class Picture {
   // What a sample of a pixel sees, which is something.
   PointTransport transport_at(const PathPoint& point, std::size_t sample, rays::Spot& spot) const {
     const rays::RayScene& scene = transport_.rays();
+    if (seen_ != nullptr) {
+      const VisibleSurface& surface = (*seen_)[sample];
+      spot = spot_at(scene, surface, point.x, point.y);
+      return {transport_, request_.options, spot, rays::float3(surface.gbuffer.to_viewer(point.x, point.y))};
+    }
     const Rays& through = surface_.gbuffer.rays;
     const Vec3 toward = through.direction(point.x + 0.5 + shifts_[sample][0], point.y + 0.5 + shifts_[sample][1]);
     const rays::Float3 eye = scene.local(through.eye), direction = rays::float3(toward);
@@ -151,13 +184,13 @@ class Picture {
     return {transport_, request_.options, spot, -direction};
   }
 
-  // Each batch is shared by two samples of the pixel, half of it each, and the batches take the samples in turn from
-  // one drawn by chance: the mean over all batches has the right expectation, and the differences between samples count
-  // as noise while not all have been seen.
+  // Each batch is shared by two samples of the pixel, half of it each, or where the floor alone is seen is half as long
+  // and of one sample. The batches take the samples in turn from one drawn by chance: the mean over all batches has the
+  // right expectation, and the differences between samples count as noise while not all have been seen.
   void sample_spread(std::size_t i, int batches) {
     State& state = states_[i];
     const PathPoint& point = points_[i];
-    const auto count = static_cast<unsigned>(shifts_.size());
+    const auto count = static_cast<unsigned>(count_), shared = point.floor ? 1U : 2U;
     const unsigned covered = coverage_.any[place(point.x, point.y)];
     const bool first_time = state.sums.count() == 0;
     if (first_time) state.uncertain = 0, state.sure = {};
@@ -175,10 +208,10 @@ class Picture {
       }
       if (at.certain()) continue;
       for (unsigned k = 0; k < values.size(); ++k) {
-        for (unsigned half = 0; half < 2; ++half) {
-          if ((start + 2 * (first + k) + half) % count != sample) continue;
+        for (unsigned half = 0; half < shared; ++half) {
+          if ((start + shared * (first + k) + half) % count != sample) continue;
           const std::uint64_t seed = seed_of(request_.seed, i, static_cast<int>(first + k));
-          values[k] += 0.5 * at.part_of_batch(seed, kFan * half, kFan);
+          values[k] += (1.0 / shared) * at.part_of_batch(seed, kFan * half, kFan);
         }
       }
     }
@@ -277,12 +310,14 @@ class Picture {
 
   const Transport& transport_;
   const VisibleSurface& surface_;
+  const std::vector<VisibleSurface>* seen_ = nullptr;  // of each sample of a pixel; null: rays find what is seen
   const image::Image* base_;
   const PathRequest& request_;
   Deadline deadline_;
   Stopwatch clock_;
   bool first_round_ = true;
-  std::vector<std::array<double, 2>> shifts_;  // of the pixels' samples
+  std::size_t count_ = 1;                      // of the pixels' samples
+  std::vector<std::array<double, 2>> shifts_;  // of these, where rays find what is seen
   Coverage coverage_;                          // empty where the centers alone are seen
   std::vector<std::int32_t> number_;           // of the point of each pixel, or -1
   std::vector<PathPoint> points_;
@@ -294,6 +329,12 @@ class Picture {
 PathPicture path_picture(const Transport& transport, const VisibleSurface& surface, const image::Image* base,
                          const PathRequest& request) {
   return Picture(transport, surface, base, request).draw();
+}
+
+PathPicture path_picture(const Transport& transport, const std::vector<VisibleSurface>& samples,
+                         const image::Image* base, const PathRequest& request) {
+  return samples.size() == 1 ? path_picture(transport, samples.front(), base, request)
+                             : Picture(transport, samples, base, request).draw();
 }
 
 PathEstimate path_estimate(const Transport& transport, const PathOptions& options, const rays::Spot& spot,

@@ -55,6 +55,11 @@ struct PathPicture {
 PathPicture path_picture(const Transport& transport, const VisibleSurface& surface, const image::Image* base,
                          const PathRequest& request);
 
+// The same of pixels whose samples are these surfaces, of which there are at most 16: paths are spread over them, and
+// PathRequest::pixel_samples is not used. The points of a surface may be others than those that rays find.
+PathPicture path_picture(const Transport& transport, const std::vector<VisibleSurface>& samples,
+                         const image::Image* base, const PathRequest& request);
+
 // One point: the mean of so many batches and the covariance of its error.
 struct PathEstimate {
   color::Rgb radiance;

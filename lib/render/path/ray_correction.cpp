@@ -1,6 +1,7 @@
 #include "render/path/ray_correction.h"
 
 #include <cmath>
+#include <limits>
 
 #include "base/clock.h"
 #include "base/parallel.h"
@@ -25,7 +26,65 @@ VisibleSurface drawn_surface(const mesh::Mesh& mesh, const Gbuffer& gbuffer) {
   return surface;
 }
 
-CorrectionNoise add_correction(const Transport& transport, const mesh::Mesh& mesh, const Gbuffer& gbuffer,
+namespace {
+
+constexpr std::size_t kRowsAtOnce = 8;
+
+// The place of the floor that a pixel sees, or nothing above the horizon.
+rays::Hit floor_hit(const rays::RayScene& scene, const rays::Float3& eye, const rays::Float3& direction) {
+  const float distance = scene.floor_distance(eye, direction);
+  if (!(distance < std::numeric_limits<float>::infinity())) return {};
+  return {rays::kFloor, 0, 0, distance};
+}
+
+}  // namespace
+
+void add_floor(const Transport& transport, VisibleSurface& surface) {
+  const rays::RayScene& scene = transport.rays();
+  const Gbuffer& g = surface.gbuffer;
+  const rays::Float3 eye = scene.local(g.rays.eye);
+  parallel_for(static_cast<std::size_t>(g.height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      for (int x = 0; x < g.width; ++x) {
+        if (g.part(x, y) >= 0) continue;
+        const rays::Float3 direction = -rays::float3(g.to_viewer(x, y));
+        const rays::Hit hit = floor_hit(scene, eye, direction);
+        if (hit.any() && transport.hidden_share(scene.spot(hit, eye, direction)) > kUnseenShare)
+          surface.hits[g.index(x, y)] = hit;
+      }
+    }
+  });
+}
+
+void add_surroundings(const Transport& transport, const VisibleSurface& surface, const Backdrop& backdrop, float gain,
+                      image::Image& picture) {
+  const rays::RayScene& scene = transport.rays();
+  const Gbuffer& g = surface.gbuffer;
+  const rays::Float3 eye = scene.local(g.rays.eye);
+  const auto behind = [&](const rays::Float3& direction) {
+    const rays::Hit hit = floor_hit(scene, eye, direction);
+    if (hit.any()) return transport.open_ground(scene.spot(hit, eye, direction));
+    if (backdrop.background == Background::kColor) return backdrop.color;
+    if (backdrop.background == Background::kNone || backdrop.environment == nullptr) return color::Rgb{};
+    return smooth_radiance(*backdrop.environment, rays::vec3(direction));
+  };
+  parallel_for(static_cast<std::size_t>(g.height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      for (int x = 0; x < g.width; ++x) {
+        if (g.part(x, y) >= 0) continue;
+        float* pixel = &picture.data[g.index(x, y) * static_cast<std::size_t>(picture.channels)];
+        const rays::Float3 direction = -rays::float3(g.to_viewer(x, y));
+        const bool covered = backdrop.background != Background::kNone || floor_hit(scene, eye, direction).any();
+        if (covered && picture.channels > 3) pixel[3] += gain;
+        if (!covered || surface.hits[g.index(x, y)].any()) continue;
+        const color::Rgb light = behind(direction);
+        for (int c = 0; c < 3; ++c) pixel[c] += gain * static_cast<float>(light[c]);
+      }
+    }
+  });
+}
+
+CorrectionNoise add_correction(const Transport& transport, const std::vector<VisibleSurface>& samples,
                                const CorrectionRequest& request, const image::Image& before, float gain,
                                image::Image& picture) {
   CorrectionNoise noise;
@@ -36,18 +95,19 @@ CorrectionNoise add_correction(const Transport& transport, const mesh::Mesh& mes
   paths.options.into_lobes = request.effects.self;
   paths.options.into_diffuse = request.effects.bounce;
   paths.options.correction = true;
-  paths.tolerance_de00 = request.tolerance_de00 * std::sqrt(request.samples);
+  paths.tolerance_de00 = request.tolerance_de00;
   paths.white_luminance = request.white_luminance > 0 ? request.white_luminance : 1;
   paths.seed = request.seed;
   paths.most_samples = request.most_samples;
   paths.time_limit_s = request.time_limit_s;
   paths.progress = request.progress;
-  const PathPicture drawn = path_picture(transport, drawn_surface(mesh, gbuffer), &before, paths);
+  const PathPicture drawn = path_picture(transport, samples, &before, paths);
   for (const PathPoint& point : drawn.points) {
-    float* pixel = &picture.data[gbuffer.index(point.x, point.y) * static_cast<std::size_t>(picture.channels)];
+    float* pixel =
+        &picture.data[samples.front().gbuffer.index(point.x, point.y) * static_cast<std::size_t>(picture.channels)];
     for (int c = 0; c < 3; ++c) pixel[c] += gain * static_cast<float>(point.radiance[c]);
   }
-  noise.de00_p95 = drawn.noise_p95_de00 / std::sqrt(request.samples);
+  noise.de00_p95 = drawn.noise_p95_de00;
   noise.samples = drawn.samples_mean;
   noise.free_share = drawn.free_share;
   noise.reached = drawn.reached;

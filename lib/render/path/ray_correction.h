@@ -15,13 +15,17 @@ namespace goniochrome::render {
 // pixel on an edge is corrected as the surface that it shows. The G-buffer must have triangles.
 VisibleSurface drawn_surface(const mesh::Mesh& mesh, const Gbuffer& gbuffer);
 
+// Adds to a surface the points of the floor that the pixels show beside the mesh, as far as the mesh may change what is
+// seen there. Beyond them, where it changes less than a thousandth, the floor is drawn as in the open.
+constexpr double kUnseenShare = 1e-3;
+void add_floor(const Transport& transport, VisibleSurface& surface);
+
 struct CorrectionRequest {
   RayEffects effects;
   int bounces = 8;
   double tolerance_de00 = 0.5;  // of the picture's noise, 95th percentile over the visible points
   double white_luminance = 1;
   std::uint64_t seed = 1;
-  int samples = 1;             // of a pixel: each is corrected with a noise that is larger by the square root of that
   int most_samples = 1 << 16;  // of rays, at each point
   double time_limit_s = 0;     // 0: none
   std::function<void(double noise_de00, double seconds)> progress = {};
@@ -36,9 +40,23 @@ struct CorrectionNoise {
   bool reached = true;  // whether the noise is within the tolerance
 };
 
-// Adds `gain` times the correction to the first three channels of the picture, which holds radiance times coverage.
+// What is seen beside the mesh of a picture with a floor that shows the environment.
+struct Backdrop {
+  Background background = Background::kNone;
+  color::Rgb color;
+  const envmap::Environment* environment = nullptr;
+};
+
+// Adds `gain` times what the pixels show that show neither the mesh nor a point of `surface`: the floor in the open or,
+// above the horizon, the background. Where these points are the floor, it adds their coverage.
+void add_surroundings(const Transport& transport, const VisibleSurface& surface, const Backdrop& backdrop, float gain,
+                      image::Image& picture);
+
+// Adds `gain` times the correction, the mean over these samples of each pixel, to the first three channels of the
+// picture, which holds radiance times coverage.
 // `before` is the picture without corrections; it tells how visible noise is. Bit-identical for any number of threads.
-CorrectionNoise add_correction(const Transport& transport, const mesh::Mesh& mesh, const Gbuffer& gbuffer,
+// Of points of the floor it adds all that they show.
+CorrectionNoise add_correction(const Transport& transport, const std::vector<VisibleSurface>& samples,
                                const CorrectionRequest& request, const image::Image& before, float gain,
                                image::Image& picture);
 

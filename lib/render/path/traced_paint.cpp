@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/angles.h"
+#include "brdf/disc_light.h"
 #include "brdf/lobe_model.h"
 #include "render/scene.h"
 
@@ -28,11 +29,11 @@ bool is_finite(const color::Rgb& c) {
   return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z);
 }
 
-// fresnel_dielectric() of kCoatIndex, in floats.
-float coat_reflectance(float cosine) {
-  constexpr float kN2 = static_cast<float>(brdf::kCoatIndex * brdf::kCoatIndex), kContrast = kN2 - 1;
-  const float g = std::sqrt(kContrast + cosine * cosine), s = cosine + g, p = kN2 * cosine + g;
-  const float r_s = kContrast / (s * s), r_p = kContrast * ((kN2 + 1) * cosine * cosine - 1) / (p * p);
+// fresnel_dielectric(), in floats.
+float coat_reflectance(float cosine, double index = brdf::kCoatIndex) {
+  const auto n2 = static_cast<float>(index * index);
+  const float contrast = n2 - 1, g = std::sqrt(contrast + cosine * cosine), s = cosine + g, p = n2 * cosine + g;
+  const float r_s = contrast / (s * s), r_p = contrast * ((n2 + 1) * cosine * cosine - 1) / (p * p);
   return 0.5F * (r_s * r_s + r_p * r_p);
 }
 
@@ -65,6 +66,7 @@ Result<TracedPaint> TracedPaint::create(const paint::LobeFit& paint, double glos
                        kMostTracedLobes);
   TracedPaint traced;
   if (tilts.size() > 1) traced.tilts_ = std::move(tilts);
+  traced.coat_index_ = paint.coat_index;
   const double gloss_scale = 1 / brdf::fresnel_dielectric(std::cos(gloss_deg * kDegree), brdf::kCoatIndex);
   for (const paint::ViewLobes& view : views) {
     Weights weights{static_cast<float>(view.view_deg), float3(view.diffuse), {}, {}};
@@ -99,9 +101,11 @@ PaintedPoint::PaintedPoint(const TracedPaint& paint, const Float3& normal, const
     if (high != low && high->view_deg > low->view_deg)
       share = std::clamp((view_deg - low->view_deg) / (high->view_deg - low->view_deg), 0.0F, 1.0F);
   }
-  diffuse_ = blend(low->diffuse, high->diffuse, share);
+  coat_index_ = paint.coat_index_;
+  let_out_ = let_in(cos_o_);
+  diffuse_ = let_out_ * blend(low->diffuse, high->diffuse, share);
   const float fresnel = coat_reflectance(cos_o_);
-  mirror_ = fresnel * blend(low->mirror, high->mirror, share);
+  mirror_ = coat_mirror() * blend(low->mirror, high->mirror, share);
   diffuse_chance_ = kFloatPi * mean_size(diffuse_);
   if (paint.map_ != nullptr) {
     // The lobes stand for the map where directions are drawn. What they miss the cosine finds.
@@ -113,7 +117,8 @@ PaintedPoint::PaintedPoint(const TracedPaint& paint, const Float3& normal, const
   for (std::size_t j = 0; j < low->lobes.size(); ++j) {
     Lobe& lobe = lobes_[count_];
     lobe.exponent = low->lobes[j].exponent, lobe.normalization = low->lobes[j].normalization;
-    lobe.directional_diffuse = blend(low->lobes[j].directional_diffuse, high->lobes[j].directional_diffuse, share);
+    lobe.directional_diffuse =
+        let_out_ * blend(low->lobes[j].directional_diffuse, high->lobes[j].directional_diffuse, share);
     lobe.gloss = blend(low->lobes[j].gloss, high->lobes[j].gloss, share);
     // A wide lobe looks where cosines are larger than that of the mirror direction.
     const float wide = 1 / std::sqrt(lobe.exponent + 2), cosine = cos_o_ + (1 - cos_o_) * wide;
@@ -152,6 +157,18 @@ void PaintedPoint::set_axes(const std::vector<brdf::Tilt>& tilts) {
     count_ = 0;
     total_ = diffuse_chance_;
   }
+}
+
+float PaintedPoint::let_in(float cos_i) const {
+  return coat_index_ == paint::kNoCoat ? 1 : 1 - coat_reflectance(cos_i, coat_index_);
+}
+
+float PaintedPoint::coat_mirror() const {
+  return coat_reflectance(cos_o_, brdf::mirror_index(coat_index_));
+}
+
+Float3 PaintedPoint::diffuse_albedo() const {
+  return static_cast<float>(kPi * brdf::mean_coat_transmission(coat_index_)) * diffuse_;
 }
 
 float PaintedPoint::mirror_weight() const {
@@ -200,7 +217,8 @@ PaintedPoint::Parts PaintedPoint::parts(const Float3& to_light) const {
   Parts parts;
   const float cos_i = rays::dot(normal_, to_light);
   if (!(cos_i > 0)) return parts;
-  parts.diffuse = cos_i * diffuse_;
+  const float base = let_in(cos_i) * cos_i;
+  parts.diffuse = base * diffuse_;
   if (paint_ != nullptr) parts.lobes = mapped(to_light);
   visit_texels(to_light, [&](const TexelLobe& lobe, float power) {
     parts.lobes = parts.lobes + (std::exp(lobe.log_peak) * power * cos_i) * lobe.color;
@@ -209,7 +227,7 @@ PaintedPoint::Parts PaintedPoint::parts(const Float3& to_light) const {
   const float fresnel = coat_reflectance(std::min(1.0F, 0.5F * rays::length(to_light + viewer_)));
   visit_lobes(to_light, [&](const Lobe& lobe, float power) {
     const Float3 gloss = (power * fresnel) * lobe.gloss;
-    parts.lobes = parts.lobes + (power * cos_i) * lobe.directional_diffuse + gloss;
+    parts.lobes = parts.lobes + (power * base) * lobe.directional_diffuse + gloss;
     parts.gloss = parts.gloss + gloss;
   });
   return parts;
@@ -218,7 +236,8 @@ PaintedPoint::Parts PaintedPoint::parts(const Float3& to_light) const {
 Reflection PaintedPoint::at(const Float3& to_light) const {
   const float cos_i = rays::dot(normal_, to_light);
   if (!(cos_i > 0) || !(total_ > 0)) return {to_light, {}, 0};
-  Float3 f_cos = cos_i * diffuse_;
+  const float base = let_in(cos_i) * cos_i;
+  Float3 f_cos = base * diffuse_;
   float pdf = diffuse_chance_ * cos_i / kFloatPi;
   if (paint_ != nullptr) f_cos = f_cos + mapped(to_light);
   visit_texels(to_light, [&](const TexelLobe& lobe, float power) {
@@ -228,11 +247,50 @@ Reflection PaintedPoint::at(const Float3& to_light) const {
   if (count_ > 0) {
     const float fresnel = coat_reflectance(std::min(1.0F, 0.5F * rays::length(to_light + viewer_)));
     visit_lobes(to_light, [&](const Lobe& lobe, float power) {
-      f_cos = f_cos + (power * cos_i) * lobe.directional_diffuse + (power * fresnel) * lobe.gloss;
+      f_cos = f_cos + (power * base) * lobe.directional_diffuse + (power * fresnel) * lobe.gloss;
       pdf += lobe.chance * lobe.normalization * power / axes_total_;
     });
   }
   return {to_light, f_cos, pdf / total_};
+}
+
+Float3 PaintedPoint::toward_disc(const Light& light, bool tabled) const {
+  const Vec3 n = rays::vec3(normal_), viewer = rays::vec3(viewer_);
+  const double cosine = dot(n, light.direction), radius = light.radius_rad;
+  if (cosine <= -std::sin(radius)) return {};
+  const double irradiance = brdf::disc_irradiance(cosine, radius), above = brdf::disc_above(cosine, radius);
+  Float3 f = static_cast<float>(irradiance) * diffuse_;
+  if (paint_ != nullptr) {
+    for (const DiscDirection& part : disc_directions(light))
+      if (dot(n, part.direction) > 0) f = f + static_cast<float>(part.weight) * mapped(float3(part.direction));
+  }
+  for (const TexelLobe& lobe : texels_) {
+    const Vec3 axis = rays::vec3(lobe.axis);
+    const double between = 2 * std::asin(std::min(1.0, 0.5 * length(axis - light.direction)));
+    const brdf::LobeOfDisc of = brdf::lobe_of_disc(lobe.exponent, radius, between);
+    const double gathered = of.by_light * irradiance + of.by_mirror * std::max(0.0, dot(n, axis));
+    f = f + (std::exp(lobe.log_peak) * static_cast<float>(gathered)) * lobe.color;
+  }
+  const auto coat = [&](const Vec3& toward) {
+    return coat_reflectance(static_cast<float>(std::min(1.0, 0.5 * length(toward + viewer))));
+  };
+  const auto coat_l = static_cast<float>(above) * coat(light.direction);
+  const auto add_lobes = [&](const Float3& axis, float share) {
+    const Vec3 r = rays::vec3(axis);
+    const double chord = length(r - light.direction);
+    const auto wide = static_cast<float>(irradiance), cos_r = static_cast<float>(std::max(0.0, dot(n, r)));
+    const float coat_r = coat(r);
+    for (int j = 0; j < count_; ++j) {
+      const double exponent = lobes_[j].exponent;
+      const brdf::DiscLobeTable::Node of =
+          tabled ? brdf::disc_lobe_table(exponent, radius)->at(chord) : brdf::disc_lobe_node(exponent, radius, chord);
+      f = f + (share * (of.cosine[0] * wide + of.cosine[1] * cos_r)) * lobes_[j].directional_diffuse +
+          (share * (of.plain[0] * coat_l + of.plain[1] * coat_r)) * lobes_[j].gloss;
+    }
+  };
+  if (axes_.empty()) add_lobes(mirrored_, 1);
+  for (const Axis& axis : axes_) add_lobes(axis.direction, axis.share);
+  return f;
 }
 
 // cos = u^(1/(E+1)); 1 - cos without cancellation, so that lobes of any sharpness keep their shape.

@@ -11,6 +11,7 @@
 #include "brdf/ward.h"
 #include "paint/paint.h"
 #include "rays/ray_scene.h"
+#include "render/scene.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {
@@ -19,7 +20,8 @@ namespace goniochrome::render {
 constexpr int kMostTracedLobes = 24;
 
 // A paint laid out for tracing. What it shows is ExactModel's (render/exact.h) with the Fresnel reflectance on:
-//   f cos_i = cos_i (K_D + sum K_DD cos^E) + F(theta_h)/F(gloss_deg) sum K_G cos^E,  mirror K_M F(theta_o)
+//   f cos_i = T(theta_i) T(theta_o) cos_i (K_D + sum K_DD cos^E) + F(theta_h)/F(gloss_deg) sum K_G cos^E,
+//   mirror K_M F(theta_o)
 // above the horizon, nothing below it. Of an anisotropic paint each lobe is the mean over tilted normals.
 class TracedPaint {
  public:
@@ -50,7 +52,8 @@ class TracedPaint {
     rays::Float3 diffuse, mirror;
     std::vector<Lobe> lobes;  // those of all views, ascending exponents
   };
-  std::vector<Weights> views_;     // one, or ascending in view_deg
+  std::vector<Weights> views_;  // one, or ascending in view_deg
+  double coat_index_ = paint::kNoCoat;
   std::vector<brdf::Tilt> tilts_;  // none: isotropic
   const brdf::ColorMap* map_ = nullptr;
   brdf::CriticalAngle treatment_ = brdf::CriticalAngle::kSlide;
@@ -104,6 +107,12 @@ class PaintedPoint {
   };
   Parts parts(const rays::Float3& to_light) const;
 
+  // The integral of f cos_i over the disc of a lamp that has no place, relative to pi sin^2 of its radius and as if
+  // nothing stood in the way; 0 below the horizon. The coat's reflectance and what the horizon takes are those of the
+  // middle of the disc and of the mirror direction, in shares; render/exact.h has them for each direction.
+  // `tabled`: whether many points see a disc of this radius, so that a table of its lobes is worth while.
+  rays::Float3 toward_disc(const Light& light, bool tabled = true) const;
+
   // A direction drawn by numbers in [0,1). `choice` says which lobe. It may lie below the horizon. The point is not
   // black.
   rays::Float3 direction(double choice, double u, double v) const;
@@ -114,7 +123,13 @@ class PaintedPoint {
   const rays::Float3& normal() const { return normal_; }
   const rays::Float3& mirrored() const { return mirrored_; }  // where the mirror lobe looks
   const rays::Float3& mirror() const { return mirror_; }      // K_M F
-  const rays::Float3& diffuse() const { return diffuse_; }    // K_D, 1/sr
+  // K_D T(theta_o), 1/sr, and its part of even light that the point sends back
+  const rays::Float3& diffuse() const { return diffuse_; }
+  rays::Float3 diffuse_albedo() const;
+  // What the coat leaves of the base's light from a direction of that cosine, and what it mirrors to the viewer;
+  // without a coat 1, and what kCoatIndex mirrors.
+  float passages(float cos_i) const { return let_out_ * let_in(cos_i); }
+  float coat_mirror() const;
   const rays::Float3& to_viewer() const { return viewer_; }
   // The mirror directions about the tilted normals of a brushed paint, with their shares; none: mirrored() alone.
   struct Axis {
@@ -154,8 +169,12 @@ class PaintedPoint {
   template <class Visit>
   void visit_texels(const rays::Float3& to_light, const Visit& visit) const;
 
+  float let_in(float cos_i) const;
+
   rays::Float3 normal_, viewer_, mirrored_, mirror_, diffuse_;
   rays::Frame frame_;
+  double coat_index_ = paint::kNoCoat;
+  float let_out_ = 1;  // what the coat lets out to the viewer: diffuse_ and the lobes' K_DD hold it
   float cos_o_ = 1, diffuse_chance_ = 0, total_ = 0;
   int count_ = 0;
   Lobe lobes_[kMostTracedLobes];

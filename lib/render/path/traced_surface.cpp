@@ -58,6 +58,7 @@ void TracedPaint::put_surface(const SurfaceLayer& layer, int part) {
   if (surface.texture != nullptr) {
     // The texture takes the place of all that the paint shows.
     views_.assign(1, {});
+    coat_index_ = paint::kNoCoat;
     tilts_.clear();
     layer_ = &layer, part_ = part;
     return;
@@ -101,7 +102,7 @@ bool TracedPaint::gains_light(const SurfaceLayer::Place* place) const {
         lobes += (step * kTwoPi / kColumns) * rays::vec3(point.parts(d).lobes);
       }
     }
-    const Vec3 rest = kPi * rays::vec3(point.diffuse()) + rays::vec3(point.mirror());
+    const Vec3 rest = rays::vec3(point.diffuse_albedo()) + rays::vec3(point.mirror());
     for (int c = 0; c < 3; ++c)
       if (rest[c] + (1 - kQuadratureError) * lobes[c] > 1 + kRounding) return true;
   }

@@ -24,7 +24,7 @@ constexpr float kInversePi = 1 / static_cast<float>(kPi);
 constexpr int kRouletteFrom = 3, kEndlessFrom = 64, kMostBounces = 4096;
 constexpr double kEndlessChance = 0.9, kLeastChance = 0.05;
 // The most and least chance that a direction is drawn from the environment where there is one.
-constexpr float kLeastLightChance = 0.1F, kMostLightChance = 0.75F;
+constexpr float kLeastLightChance = 0.1F, kMostLightChance = 0.75F, kLeastWindowLightChance = 0.05F;
 
 color::Rgb rgb(const Float3& c) {
   return rays::vec3(c);
@@ -36,10 +36,6 @@ std::vector<std::vector<brdf::Tilt>> tilts_for(const PathScene& scene) {
   effects.tilt_tolerance = scene.tilt_tolerance;
   if (!effects.anisotropy) return std::vector<std::vector<brdf::Tilt>>(scene.scene->paints.size());
   return tilts_of(*scene.scene, effects);
-}
-
-bool is_mapped(const Scene& scene, std::size_t part) {
-  return scene.layer != nullptr && scene.layer->surface(static_cast<int>(part)).color_map != nullptr;
 }
 
 }  // namespace
@@ -60,6 +56,7 @@ Result<Transport> Transport::create(const PathScene& path_scene) {
   }
   Transport transport(std::move(rays));
   const mesh::Box box = bounding_box(*scene.mesh);
+  transport.mesh_box_ = box;
   transport.mesh_radius_ = static_cast<float>(1.0001 * transport.rays_->scale() * length(0.5 * (box.high - box.low)));
   const auto tilts = tilts_for(path_scene);
   for (std::size_t part = 0; part < scene.paints.size(); ++part) {
@@ -78,7 +75,9 @@ Result<Transport> Transport::create(const PathScene& path_scene) {
     transport.paints_.push_back(*std::move(paint));
   }
   if (path_scene.environment != nullptr) {
-    transport.environment_.emplace(*path_scene.environment);
+    transport.environment_ = path_scene.table != nullptr
+                                 ? path_scene.table
+                                 : std::make_shared<const EnvironmentTable>(*path_scene.environment);
     if (transport.environment_->dark()) transport.environment_.reset();
     if (ground && ground->kind == Ground::Kind::kShadow) {
       GONIO_ASSIGN(transport.ground_, LaidGround::create(*ground, *path_scene.environment, scene.lights));
@@ -121,6 +120,10 @@ bool Transport::is_laid(const Spot& spot) const {
   return ground_ && spot.triangle == rays::kFloor;
 }
 
+double Transport::hidden_share(const Spot& spot) const {
+  return is_laid(spot) ? ground_->hidden_share(ground_->window(rays_->world(spot.position), mesh_box_)) : 1;
+}
+
 // From below the floor is black.
 color::Rgb Transport::open_ground(const Spot& spot) const {
   return spot.inside ? color::Rgb{} : ground_->open_radiance(rays_->world(spot.position));
@@ -133,10 +136,53 @@ PaintedPoint Transport::painted(const Spot& spot, const Float3& to_viewer) const
 
 // Where a path goes on.
 struct Transport::Next {
-  Float3 direction;
+  Float3 start, direction;
   double pdf = 0;  // 0: nowhere; infinite along the mirror direction
   Hit hit;
 };
+
+Transport::SeenLamp Transport::seen_lamp(std::size_t lamp, const Float3& from) const {
+  SeenLamp seen{lights_[lamp]};
+  if (!seen.light.place) return seen;
+  const Vec3 position = rays_->world(from);
+  const double distance = length(seen.light.place->position - position);
+  seen.light = light_at(seen.light, position), seen.is_placed = true;
+  const double surface = distance * (1 - std::sin(seen.light.radius_rad));
+  seen.reach = kShort * static_cast<float>(rays_->scale() * surface);
+  return seen;
+}
+
+Transport::LampSample Transport::drawn_from(const SeenLamp& lamp, double u, double v) {
+  const Light& light = lamp.light;
+  const color::Rgb whole = kPi * light.white;
+  if (!(light.radius_rad > 0)) return {rays::float3(light.direction), lamp.reach, whole};
+  const double half = std::sin(0.5 * light.radius_rad), cos_half = std::cos(0.5 * light.radius_rad);
+  const double versine = 2 * half * half * u, across = std::sqrt(versine * (2 - versine)), phi = 2 * kPi * v;
+  const Vec3 other = std::abs(light.direction.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  const Vec3 x = normalized(cross(other, light.direction)), y = cross(light.direction, x);
+  const Vec3 toward = (1 - versine) * light.direction + across * std::cos(phi) * x + across * std::sin(phi) * y;
+  // The solid angle by pi sin^2 of the radius is 1/cos^2 of half of it.
+  return {rays::float3(toward), lamp.reach, (1 / (cos_half * cos_half)) * whole};
+}
+
+Transport::LampSample Transport::drawn_lamp(const Float3& from, double choice, double v) const {
+  const auto count = static_cast<double>(lights_.size());
+  const double at = choice * count;
+  const std::size_t lamp = std::min(lights_.size() - 1, static_cast<std::size_t>(at));
+  LampSample sample = drawn_from(seen_lamp(lamp, from), at - static_cast<double>(lamp), v);
+  sample.light = count * sample.light;
+  return sample;
+}
+
+color::Rgb Transport::mirrored_lamps(const Float3& from, const Float3& toward, const Hit& hit) const {
+  color::Rgb sum;
+  for (std::size_t i = 0; i < lights_.size(); ++i) {
+    if (!(lights_[i].radius_rad > 0)) continue;
+    const SeenLamp lamp = seen_lamp(i, from);
+    if (lamp.light.meets(rays::vec3(toward)) && !(hit.any() && hit.distance < lamp.reach)) sum += lamp.light.radiance();
+  }
+  return sum;
+}
 
 // Light that is drawn at a vertex, weighed against the same light found by the next ray (the balance heuristic,
 // [Veach1995] 3.1): together they count it once.
@@ -156,12 +202,10 @@ color::Rgb Transport::direct_light(const Vertex& vertex, const PathProduct& path
   const double sign = laid ? -1 : 1;
   const Float3& start = vertex.spot.start;
   if (!lights_.empty()) {
-    const auto count = static_cast<double>(lights_.size());
-    const Light& light = lights_[std::min(lights_.size() - 1, static_cast<std::size_t>(numbers[2] * count))];
-    const Float3 direction = rays::float3(light.direction);
-    const Reflection reflection = vertex.painted.at(direction);
-    if (reflection.pdf > 0 && rays_->blocked(start, direction) == laid)
-      add(reflection.f_cos, sign * count * kPi, light.white);
+    const LampSample lamp = drawn_lamp(start, numbers[2], numbers[3]);
+    const Reflection reflection = vertex.painted.at(lamp.direction);
+    if (reflection.pdf > 0 && rays_->blocked(start, lamp.direction, lamp.reach) == laid)
+      add(reflection.f_cos, sign, lamp.light);
   }
   if (environment_) {
     const LightSample light = environment_->drawn(numbers[0], numbers[1]);
@@ -185,6 +229,7 @@ color::Rgb Transport::direct_light(const Vertex& vertex, const PathProduct& path
 Transport::Next Transport::next_ray(const Vertex& vertex, PathProduct& path,
                                     const std::array<double, 4>& numbers) const {
   Next next;
+  next.start = vertex.spot.start;
   if (numbers[0] < vertex.mirror_chance) {
     path.reflect((1 / vertex.mirror_chance) * rgb(vertex.painted.mirror()));
     next.direction = vertex.painted.mirrored();
@@ -209,9 +254,10 @@ Transport::Next Transport::next_ray(const Vertex& vertex, PathProduct& path,
 color::Rgb Transport::light_at_end(const Next& next, const PathProduct& path, bool laid) const {
   const auto share = [&](double light_pdf) { return std::isinf(next.pdf) ? 1 : next.pdf / (next.pdf + light_pdf); };
   color::Rgb sum;
+  if (std::isinf(next.pdf) && !lights_.empty()) sum += path.shown(mirrored_lamps(next.start, next.direction, next.hit));
   if (next.hit.any() == laid && environment_) {
     const LightSample light = environment_->at(next.direction);
-    sum = (laid ? -1 : 1) * share(light.pdf) * path.shown(light.radiance);
+    sum += (laid ? -1 : 1) * share(light.pdf) * path.shown(light.radiance);
   }
   if (!next.hit.any()) return sum;
   const color::Rgb& emission = emitters_.radiance(rays_->part(next.hit.triangle));
@@ -274,6 +320,8 @@ struct PointTransport::Ray {
   Float3 direction;
   bool above = false;
   std::optional<EnvironmentTable::Place> place;  // where the direction was drawn from the environment
+  LaidGround::BrightSample bright;               // with a density above 0 where it was drawn from the brightest texels
+  double weight = 1;                             // of the sample in the mean
 };
 
 PointTransport::PointTransport(const Transport& transport, const PathOptions& options, const Spot& spot,
@@ -287,18 +335,26 @@ PointTransport::PointTransport(const Transport& transport, const PathOptions& op
       is_laid_(transport.is_laid(spot)),
       correction_(options.correction || is_laid_) {
   sure_ = is_laid_ ? transport.open_ground(spot) : transport.emitters_.radiance(spot.part);
-  if (is_laid_) narrow_to_mesh();
-  if (transport.environment_) {
+  if (is_laid_) {
+    narrow_to_mesh();
+    window_ = transport.ground_->window(transport.rays_->world(spot.position), transport.mesh_box_);
+    // Under the mesh most light is blocked: what is left of it is summed, instead of taken from that of the open floor.
+    if (window_->half_width_rad >= kPi) correction_ = false, sure_ = {};
+    // The environment's own table draws a sun within its texel, but most other directions in vain.
+    if (transport.environment_)
+      light_chance_ = std::clamp(kMostLightChance * static_cast<float>(transport.ground_->light_share(*window_)),
+                                 kLeastWindowLightChance, kMostLightChance);
+  } else if (transport.environment_) {
     const float wide = 1 - painted_.narrow_share(transport.environment_->extent_sr());
     light_chance_ = std::clamp(kMostLightChance * wide, kLeastLightChance, kMostLightChance);
   }
-  const bool free =
-      !transport.rays_->has_floor() && !transport.rays_->any_above(spot.start, spot.shading, 0) && options.correction;
+  open_ = !transport.rays_->has_floor() && !transport.rays_->any_above(spot.start, spot.shading, 0);
+  const bool free = open_ && options.correction;
   if (!free) {
     add_lights();
   }
   if (!free) add_mirror();
-  certain_ = free || (!(painted_.lobes_weight() > 0) && mirror_samples_ == 0);
+  certain_ = free || (!(painted_.lobes_weight() > 0) && mirror_samples_ == 0 && lamps_.empty());
 }
 
 color::Rgb PointTransport::reflect(const Float3& f, const color::Rgb& light) const {
@@ -314,14 +370,58 @@ void PointTransport::narrow_to_mesh() {
   mesh_cosine_ = std::sqrt(1 - sine * sine) - 1e-6F;
 }
 
+// A point is either seen or hidden. Of a disc the light without the mesh is known, and samples tell what the mesh takes
+// from it, without bias; where it takes most of it, they tell what is left. Which of both is decided by a few rays and
+// has no part in the expectation.
 void PointTransport::add_lights() {
-  for (const Light& light : transport_.lights_) {
-    const Float3 direction = rays::float3(light.direction);
-    const Reflection reflection = painted_.at(direction);
-    if (!(reflection.pdf > 0)) continue;
-    const bool blocked = transport_.rays_->blocked(spot_.start, direction);
-    if (blocked == correction_) sure_ += (blocked ? -kPi : kPi) * reflect(reflection.f_cos, light.white);
+  for (std::size_t i = 0; i < transport_.lights_.size(); ++i) {
+    const Transport::SeenLamp lamp = transport_.seen_lamp(i, spot_.start);
+    const Light& light = lamp.light;
+    if (!(light.radius_rad > 0)) {
+      const Float3 direction = rays::float3(light.direction);
+      const Reflection reflection = painted_.at(direction);
+      if (!(reflection.pdf > 0)) continue;
+      const bool blocked = transport_.rays_->blocked(spot_.start, direction, lamp.reach);
+      if (blocked == correction_) sure_ += (blocked ? -kPi : kPi) * reflect(reflection.f_cos, light.white);
+      continue;
+    }
+    const double sine = rays::dot(spot_.shading, rays::float3(light.direction));
+    if (sine <= -std::sin(light.radius_rad)) continue;
+    const color::Rgb whole = reflect(painted_.toward_disc(light, !lamp.is_placed), kPi * light.white);
+    constexpr std::uint32_t kProbes = 16;
+    std::uint32_t blocked = 0, above = 0;
+    const Sequence sequence(mixed(0x1A3B, i), kProbes);
+    for (std::uint32_t k = 0; k < kProbes && !open_; ++k) {
+      const std::array<double, 4> numbers = sequence.point(k, 0);
+      const Transport::LampSample sample = Transport::drawn_from(lamp, numbers[0], numbers[1]);
+      if (!(rays::dot(sample.direction, spot_.shading) > 0)) continue;
+      ++above;
+      if (transport_.rays_->blocked(spot_.start, sample.direction, sample.reach)) ++blocked;
+    }
+    const bool hidden = 2 * blocked <= above;
+    if (hidden != correction_) sure_ += (correction_ ? -1.0 : 1.0) * whole;
+    if (!open_) lamps_.push_back({lamp, hidden});
   }
+}
+
+// What lamps that are discs add to sure(), as the mean over samples.
+color::Rgb PointTransport::lamp_shadows(const Sequence& sequence, std::uint32_t begin, std::uint32_t count,
+                                        bool* any_blocked) const {
+  constexpr std::uint32_t kSet = 60;  // that nothing else draws from
+  color::Rgb sum;
+  for (std::size_t k = 0; k < lamps_.size(); ++k) {
+    const Lamp& lamp = lamps_[k];
+    for (std::uint32_t i = begin; i < begin + count; ++i) {
+      const std::array<double, 4> numbers = sequence.point(i, kSet + static_cast<std::uint32_t>(k));
+      const Transport::LampSample sample = Transport::drawn_from(lamp.seen, numbers[0], numbers[1]);
+      const Reflection reflection = painted_.at(sample.direction);
+      if (!(reflection.pdf > 0)) continue;
+      const bool blocked = transport_.rays_->blocked(spot_.start, sample.direction, sample.reach);
+      if (any_blocked != nullptr && blocked) *any_blocked = true;
+      if (blocked == lamp.hidden) sum += (blocked ? -1.0 : 1.0) * reflect(reflection.f_cos, sample.light);
+    }
+  }
+  return sum;
 }
 
 void PointTransport::add_mirror() {
@@ -331,25 +431,48 @@ void PointTransport::add_mirror() {
   mirror_hit_ = transport_.rays_->closest(spot_.start, painted_.mirrored());
   const color::Rgb open =
       transport_.environment_ ? transport_.environment_->radiance(painted_.mirrored()) : color::Rgb{};
+  if (!transport_.lights_.empty()) {
+    color::Rgb lamps = transport_.mirrored_lamps(spot_.start, painted_.mirrored(), mirror_hit_);
+    if (correction_) lamps += -1.0 * transport_.mirrored_lamps(spot_.start, painted_.mirrored(), {});
+    sure_ += reflect(mirror, lamps);
+  }
   if (!mirror_hit_.any()) {
     if (!correction_) sure_ += reflect(mirror, open);
     return;
   }
   if (correction_) sure_ += -1.0 * reflect(mirror, open);
   sure_ += reflect(mirror, transport_.emitters_.radiance(transport_.rays_->part(mirror_hit_.triangle)));
-  if ((options_.bounces == 0 && !transport_.is_laid(mirror_hit_)) || !options_.into_lobes) return;
+  if ((options_.bounces == 0 || !options_.into_lobes) && !transport_.is_laid(mirror_hit_)) return;
   const double share = weight / (weight + painted_.lobes_weight());
   mirror_samples_ = static_cast<std::uint32_t>(std::clamp(static_cast<int>(std::lround(kBatch * share)), 1, kBatch));
 }
 
-PointTransport::Ray PointTransport::drawn_ray(const std::array<double, 4>& numbers) const {
+// Of a direction that is not drawn from the environment.
+double PointTransport::drawn_pdf(const Float3& direction, const Reflection& reflection) const {
+  return window_ ? transport_.ground_->density(*window_, rays::vec3(direction)) : reflection.pdf;
+}
+
+PointTransport::Ray PointTransport::drawn_ray(const std::array<double, 4>& numbers, std::uint32_t of_fan) const {
   Ray ray;
+  if (window_ && transport_.ground_->has_bright()) {
+    // So many rays of a fan go there, and the others look past them.
+    constexpr std::uint32_t kBright = 2;
+    ray.weight = static_cast<double>(kFan) / (of_fan < kBright ? kBright : kFan - kBright);
+    if (of_fan < kBright) {
+      ray.bright = transport_.ground_->drawn_bright(numbers[1], numbers[2], numbers[3]);
+      ray.direction = rays::float3(ray.bright.direction);
+      ray.above = ray.bright.pdf > 0 && rays::dot(ray.direction, spot_.shading) > 0;
+      return ray;
+    }
+  }
   if (numbers[0] < light_chance_) {
     ray.place = transport_.environment_->place(numbers[1], numbers[2]);
     if (!(ray.place->density > 0)) return ray;
     ray.direction = ray.place->direction;
   } else {
-    ray.direction = painted_.direction((numbers[0] - light_chance_) / (1 - light_chance_), numbers[1], numbers[2]);
+    const double choice = (numbers[0] - light_chance_) / (1 - light_chance_);
+    ray.direction = window_ ? rays::float3(transport_.ground_->drawn(*window_, choice, numbers[1], numbers[2]))
+                            : painted_.direction(choice, numbers[1], numbers[2]);
   }
   ray.above = rays::dot(ray.direction, spot_.shading) > 0;
   return ray;
@@ -366,26 +489,36 @@ LightShares PointTransport::shown(const Ray& ray, bool blocked, const Sequence& 
   } else if (transport_.environment_) {
     light = transport_.environment_->at(ray.direction);
   }
-  const double pdf = light_chance_ * light.pdf + (1 - light_chance_) * reflection.pdf;
+  double pdf = light_chance_ * light.pdf + (1 - light_chance_) * drawn_pdf(ray.direction, reflection);
+  if (ray.bright.pdf > 0) {
+    pdf = ray.bright.pdf, light.radiance = ray.bright.radiance;
+  } else if (window_ && transport_.ground_->is_bright(rays::vec3(ray.direction))) {
+    return {};
+  }
   if (!(pdf > 0)) return {};
   const auto scaled = static_cast<float>(1 / pdf);
   if (!blocked) return {reflect(scaled * reflection.f_cos, light.radiance), {}, {}};
 
-  color::Rgb arriving = correction_ ? -1.0 * light.radiance : color::Rgb{};
+  color::Rgb arriving = correction_ ? -1.0 * light.radiance : color::Rgb{}, sent;
   LightShares shares;
   if (options_.bounces > 0 || !transport_.emitters_.empty() || transport_.ground_) {
     const Hit hit = transport_.rays_->closest(spot_.start, ray.direction);
-    if (hit.any()) {
+    if (transport_.is_laid(hit)) {
+      const Transport::FloorLight floor =
+          transport_.off_floor(hit, spot_.start, ray.direction, options_.bounces, sequence, index, 4);
+      arriving += floor.fixed, sent = floor.bounced;
+    } else if (hit.any()) {
       const color::Rgb& emission = transport_.emitters_.radiance(transport_.rays_->part(hit.triangle));
       if (emission != color::Rgb{})
         arriving += pdf / (pdf + transport_.emitters_.pdf(hit.triangle, ray.direction, hit.distance)) * emission;
-      if ((options_.bounces > 0 || transport_.is_laid(hit)) && (options_.into_lobes || options_.into_diffuse)) {
-        const color::Rgb sent = transport_.bounced(hit, spot_.start, ray.direction, options_, sequence, index, 4);
-        const PaintedPoint::Parts parts = painted_.parts(ray.direction);
-        if (options_.into_lobes) shares.into_lobes = reflect(scaled * parts.lobes, sent);
-        if (options_.into_diffuse) shares.into_diffuse = reflect(scaled * parts.diffuse, sent);
-      }
+      if (options_.bounces > 0 && (options_.into_lobes || options_.into_diffuse))
+        sent = transport_.bounced(hit, spot_.start, ray.direction, options_, sequence, index, 4);
     }
+  }
+  if (sent != color::Rgb{}) {
+    const PaintedPoint::Parts parts = painted_.parts(ray.direction);
+    if (options_.into_lobes) shares.into_lobes = reflect(scaled * parts.lobes, sent);
+    if (options_.into_diffuse) shares.into_diffuse = reflect(scaled * parts.diffuse, sent);
   }
   shares.direct = reflect(scaled * reflection.f_cos, arriving);
   return shares;
@@ -398,8 +531,27 @@ color::Rgb PointTransport::emitter_sample(const std::array<double, 4>& numbers) 
   if (!(reflection.pdf > 0) || transport_.rays_->blocked(spot_.start, light.direction, kShort * light.distance))
     return {};
   const double open_pdf = transport_.environment_ ? transport_.environment_->at(light.direction).pdf : 0;
-  const double pdf = light.pdf + light_chance_ * open_pdf + (1 - light_chance_) * reflection.pdf;
+  const double pdf =
+      light.pdf + light_chance_ * open_pdf + (1 - light_chance_) * drawn_pdf(light.direction, reflection);
   return reflect(static_cast<float>(1 / pdf) * reflection.f_cos, light.radiance);
+}
+
+// The light that the mirror lobe sees, summed over these samples.
+LightShares PointTransport::mirrored(const Sequence& sequence, std::uint32_t begin, std::uint32_t count) const {
+  color::Rgb fixed, sent;
+  for (std::uint32_t i = begin; i < begin + count; ++i) {
+    if (transport_.is_laid(mirror_hit_)) {
+      const Transport::FloorLight floor =
+          transport_.off_floor(mirror_hit_, spot_.start, painted_.mirrored(), options_.bounces, sequence, i, 4);
+      fixed += floor.fixed, sent += floor.bounced;
+    } else {
+      sent += transport_.bounced(mirror_hit_, spot_.start, painted_.mirrored(), options_, sequence, i, 4);
+    }
+  }
+  LightShares shares;
+  shares.direct = reflect(painted_.mirror(), fixed);
+  if (options_.into_lobes) shares.into_lobes = reflect(painted_.mirror(), sent);
+  return shares;
 }
 
 LightShares PointTransport::batch_shares(std::uint64_t seed, std::uint32_t begin, std::uint32_t count,
@@ -408,13 +560,14 @@ LightShares PointTransport::batch_shares(std::uint64_t seed, std::uint32_t begin
   if (certain_) return {};
   const Sequence sequence(seed, kBatch);
   LightShares sum;
+  sum.direct += lamp_shadows(sequence, begin, count, any_blocked);
   if (painted_.lobes_weight() > 0) {
     for (std::uint32_t first = begin; first < begin + count; first += kFan) {
       Ray rays[kFan];
       rays::Fan fan;
       fan.origin = spot_.start;
       for (std::uint32_t i = 0; i < 8; ++i) {
-        rays[i] = drawn_ray(sequence.point(first + i, 0));
+        rays[i] = drawn_ray(sequence.point(first + i, 0), i);
         fan.x[i] = rays[i].direction.x, fan.y[i] = rays[i].direction.y, fan.z[i] = rays[i].direction.z;
         if (rays[i].above && rays::dot(rays[i].direction, mesh_axis_) >= mesh_cosine_) fan.wanted |= 1U << i;
       }
@@ -423,18 +576,19 @@ LightShares PointTransport::batch_shares(std::uint64_t seed, std::uint32_t begin
       for (std::uint32_t i = 0; i < 8; ++i) {
         const bool is_blocked = (blocked >> i & 1U) != 0;
         if (!rays[i].above || (!is_blocked && (correction_ || !transport_.environment_))) continue;
-        sum += shown(rays[i], is_blocked, sequence, first + i);
+        if (rays[i].weight == 1) {
+          sum += shown(rays[i], is_blocked, sequence, first + i);
+        } else {
+          sum += rays[i].weight * shown(rays[i], is_blocked, sequence, first + i);
+        }
       }
     }
     if (!transport_.emitters_.empty())
       for (std::uint32_t i = begin; i < begin + count; ++i) sum.direct += emitter_sample(sequence.point(i, 1));
   }
   const std::uint32_t mirrors = mirror_samples_ > 0 ? std::max(1U, mirror_samples_ * count / kBatch) : 0;
-  color::Rgb mirrored;
-  for (std::uint32_t i = begin; i < begin + mirrors; ++i)
-    mirrored += transport_.bounced(mirror_hit_, spot_.start, painted_.mirrored(), options_,
-                                   Sequence(mixed(seed, 0x4D), kBatch), i, 4);
-  if (mirrors > 0) sum.into_lobes += (static_cast<double>(count) / mirrors) * reflect(painted_.mirror(), mirrored);
+  if (mirrors > 0)
+    sum += static_cast<double>(count) / mirrors * mirrored(Sequence(mixed(seed, 0x4D), kBatch), begin, mirrors);
   return (1.0 / count) * sum;
 }
 

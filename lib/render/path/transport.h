@@ -1,6 +1,7 @@
 // Light on its way through a scene: what one point shows, by rays. goniochrome-theory(7), PATHS.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -25,6 +26,8 @@ struct PathScene {
   std::optional<Ground> ground = {};
   // The mesh with its floor, where they are there already; else they are made.
   std::shared_ptr<const rays::RayScene> rays = nullptr;
+  // Of that environment, where it is there already; else it is made.
+  std::shared_ptr<const EnvironmentTable> table = nullptr;
   double tilt_tolerance = 1e-3;  // of the tilted normals of brushed paints, relative to the lobe's peak
 };
 
@@ -45,7 +48,9 @@ struct PathOptions {
 
 // What a point shows, by the way that the light took. The sum is what it shows.
 struct LightShares {
-  color::Rgb direct;        // from light straight to the point; with PathOptions::correction less what the mesh blocks
+  // From light straight to the point; with PathOptions::correction less what the mesh blocks. A floor that shows the
+  // environment is light, apart from what the mesh sends it.
+  color::Rgb direct;
   color::Rgb into_lobes;    // passed on by surfaces to the lobes and the mirror of the point
   color::Rgb into_diffuse;  // passed on by surfaces to the diffuse part of the point
 
@@ -79,6 +84,10 @@ class Transport {
 
   const rays::RayScene& rays() const { return *rays_; }
   const Emitters& emitters() const { return emitters_; }
+  // Of a point on a floor that shows the environment how much the mesh can change there: see LaidGround; of others 1.
+  double hidden_share(const rays::Spot& spot) const;
+  // What such a floor shows there in the open.
+  color::Rgb open_ground(const rays::Spot& spot) const;
   // The parts whose paint sends back more light than it gets, by number: paths between such walls gain light for ever
   // and are ended by chance alone.
   std::vector<int> gaining_parts() const;
@@ -102,16 +111,35 @@ class Transport {
                           double choice) const;
   Next next_ray(const Vertex& vertex, PathProduct& path, const std::array<double, 4>& numbers) const;
   color::Rgb light_at_end(const Next& next, const PathProduct& path, bool laid) const;
+  // A lamp as the point sees it, and how far a ray to it goes (local).
+  struct SeenLamp {
+    Light light;
+    float reach = std::numeric_limits<float>::infinity();
+    bool is_placed = false;
+  };
+  SeenLamp seen_lamp(std::size_t lamp, const rays::Float3& from) const;
+  // A direction to a lamp, drawn evenly from its disc by numbers in [0,1), and the radiance times solid angle of the
+  // lamp in units of f cos_i: what a sample adds with the mean over samples.
+  struct LampSample {
+    rays::Float3 direction;
+    float reach = 0;
+    color::Rgb light;
+  };
+  static LampSample drawn_from(const SeenLamp& lamp, double u, double v);
+  // The same of any one lamp.
+  LampSample drawn_lamp(const rays::Float3& from, double choice, double v) const;
+  // What a mirror sees of lamps in that direction, where a ray meets `hit`.
+  color::Rgb mirrored_lamps(const rays::Float3& from, const rays::Float3& toward, const rays::Hit& hit) const;
   bool is_laid(const rays::Spot& spot) const;
   bool is_laid(const rays::Hit& hit) const { return ground_ && hit.triangle == rays::kFloor; }
-  color::Rgb open_ground(const rays::Spot& spot) const;
   PaintedPoint painted(const rays::Spot& spot, const rays::Float3& to_viewer) const;
 
   std::shared_ptr<const rays::RayScene> rays_;  // stays where it is when the transport is moved
   std::vector<TracedPaint> paints_;             // of the parts, then of the floor
   std::optional<LaidGround> ground_;            // of a floor that shows the environment
-  float mesh_radius_ = 0;                       // local, of a sphere about the origin that holds the mesh
-  std::optional<EnvironmentTable> environment_;
+  mesh::Box mesh_box_;
+  float mesh_radius_ = 0;  // local, of a sphere about the origin that holds the mesh
+  std::shared_ptr<const EnvironmentTable> environment_;
   Emitters emitters_;
   std::vector<Light> lights_;
   const color::ReflectionOperator* reflection_ = nullptr;  // null: channel by channel
@@ -144,8 +172,11 @@ class PointTransport {
   void narrow_to_mesh();
   void add_lights();
   void add_mirror();
-  Ray drawn_ray(const std::array<double, 4>& numbers) const;
+  double drawn_pdf(const rays::Float3& direction, const Reflection& reflection) const;
+  Ray drawn_ray(const std::array<double, 4>& numbers, std::uint32_t of_fan) const;
+  color::Rgb lamp_shadows(const Sequence& sequence, std::uint32_t begin, std::uint32_t count, bool* any_blocked) const;
   LightShares shown(const Ray& ray, bool blocked, const Sequence& sequence, std::uint32_t index) const;
+  LightShares mirrored(const Sequence& sequence, std::uint32_t begin, std::uint32_t count) const;
   color::Rgb emitter_sample(const std::array<double, 4>& numbers) const;
   color::Rgb reflect(const rays::Float3& f, const color::Rgb& light) const;
 
@@ -154,7 +185,8 @@ class PointTransport {
   rays::Spot spot_;
   rays::Float3 to_viewer_;
   PaintedPoint painted_;
-  bool is_laid_;     // on a floor that shows the environment
+  bool is_laid_;                              // on a floor that shows the environment
+  std::optional<LaidGround::Window> window_;  // of such a point: directions in which it may see the mesh
   bool correction_;  // whether samples tell what the mesh changes: as asked, or of such a floor
   // Only directions within this cone can meet the mesh; of other floors and of the mesh itself all of them.
   rays::Float3 mesh_axis_;
@@ -162,6 +194,14 @@ class PointTransport {
   float light_chance_ = 0;  // of a direction that is drawn from the environment
   rays::Hit mirror_hit_;
   std::uint32_t mirror_samples_ = 0;  // in a batch
+  // Lamps that are discs, parts of which the mesh may hide: samples tell what is hidden, or what is free where that is
+  // less.
+  struct Lamp {
+    Transport::SeenLamp seen;
+    bool hidden = true;
+  };
+  std::vector<Lamp> lamps_;
+  bool open_ = false;  // nothing rises above the horizon
   color::Rgb sure_;
   bool certain_ = false;
 };

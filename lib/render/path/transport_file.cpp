@@ -12,7 +12,8 @@ namespace goniochrome::render {
 
 namespace {
 
-constexpr int kVersion = 1;
+// Version 2 has the coats of the parts. In a file of version 1 no part has one.
+constexpr int kVersion = 2, kVersionWithoutCoats = 1;
 const char* const kRemedy = "render it again with --aov transport";
 const char* const kKindNames[PaintGroups::kKinds] = {"base", "gloss", "deeper"};
 
@@ -80,6 +81,7 @@ std::string header_of(const LobeTransport& t) {
   for (const color::Rgb& radiance : t.worn.emission) header["emission"].push_back(rgb_json(radiance));
   header["brushed"] = Json::array();
   for (const paint::Anisotropy& alpha : t.worn.brushed) header["brushed"].push_back({alpha.alpha_x, alpha.alpha_y});
+  header["coats"] = t.worn.coats;
   for (const BounceProbe& probe : t.probes) header["probes"].push_back(t.places[probe.point]);
   return header.dump();
 }
@@ -178,9 +180,10 @@ class Reader {
     const Json header = Json::parse(text, nullptr, false);
     if (!header.is_object()) return wrong(fmt::format("the attribute {} is no JSON object", kTransportAttribute));
     try {
-      if (header.at("version").get<int>() != kVersion)
-        return wrong(
-            fmt::format("its version is {}, and this program reads {}", header.at("version").get<int>(), kVersion));
+      const int version = header.at("version").get<int>();
+      if (version != kVersion && version != kVersionWithoutCoats)
+        return wrong(fmt::format("its version is {}, and this program reads {} and {}", version, kVersionWithoutCoats,
+                                 kVersion));
       t_.columns.exponents = header.at("exponents").get<std::vector<double>>();
       t_.bounces = header.at("bounces").get<int>();
       t_.unit = header.at("white_luminance").get<double>();
@@ -198,6 +201,8 @@ class Reader {
             {radiance.at(0).get<double>(), radiance.at(1).get<double>(), radiance.at(2).get<double>()});
       for (const Json& alpha : header.at("brushed"))
         t_.worn.brushed.push_back({alpha.at(0).get<double>(), alpha.at(1).get<double>()});
+      t_.worn.coats.assign(t_.worn.groups.of_part.size(), paint::kNoCoat);
+      if (version == kVersion) t_.worn.coats = header.at("coats").get<std::vector<double>>();
       probe_places_ = header.at("probes").get<std::vector<std::uint32_t>>();
     } catch (const std::exception& e) {
       return wrong(fmt::format("the attribute {}: {}", kTransportAttribute, e.what()));
@@ -207,8 +212,8 @@ class Reader {
     if (exponents.size() > kMostTracedLobes || !std::ranges::is_sorted(exponents) || t_.bounces < 0 || !(t_.unit > 0))
       return wrong("its exponents, bounces or white are not what a transport has");
     if (t_.worn.groups.of_part.size() != t_.worn.brushed.size() + (t_.worn.has_floor ? 1 : 0) ||
-        t_.worn.emission.size() != t_.worn.brushed.size())
-      return wrong("its parts, their emission and their brushing differ in number");
+        t_.worn.emission.size() != t_.worn.brushed.size() || t_.worn.coats.size() != t_.worn.groups.of_part.size())
+      return wrong("its parts, their emission, their coats and their brushing differ in number");
     for (const auto& group : t_.worn.weights)
       if (group.size() != t_.columns.count())
         return wrong(fmt::format("a paint has {} weights for {} columns", group.size(), t_.columns.count()));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.h"
 #include "base/text.h"
 #include "color/color.h"
 #include "render/plan/ray_plan.h"
@@ -50,6 +51,9 @@ void add_lobes(const Scene& scene, const Effects& all, bool gloss, std::vector<E
     list.push_back({fmt::format("{}-{}", gloss ? "gloss" : "lobe", shortest(exponent)), group, true,
                     fmt::format("{} on {} visible part{}", gloss ? "gloss" : "flake", parts, parts == 1 ? "" : "s"),
                     [=](Effects& e) { remove_weight(e, exponent, gloss); }, gloss});
+    list.back().left_to_tilts = !gloss && std::ranges::any_of(scene.paints, [&](const paint::LobeFit& paint) {
+      return !paint.tilts.empty() && find_lobe(paint, exponent) != nullptr;
+    });
   }
   if (list.size() == before) {
     list.push_back({group, group, false, gloss ? "no visible paint has gloss lobes" : "solid paints: no flake lobes",
@@ -71,6 +75,17 @@ std::string anisotropy_reason(const Scene& scene, const Effects& all) {
   std::size_t most = 0;
   for (const auto& tilts : tilts_of(scene, all)) most = std::max(most, tilts.size());
   return fmt::format("brushed paint: {} tilted normals", most);
+}
+
+std::string extent_reason(const Scene& scene, const Effects& all) {
+  if (all.lights == 0) return "no lamps";
+  double widest = 0;
+  for (const Light& light : scene.lights) widest = std::max(widest, light.radius_rad);
+  if (widest == 0) return "lamps are points";
+  if (!all.extent) return "no lobe is narrow enough to tell the lamps from points";
+  return fmt::format("lamps up to {:.2g} deg wide, in lobes up to exponent {}{}", 2 * widest / kDegree,
+                     all.lobes.empty() ? "0" : shortest(all.lobes.back().exponent),
+                     all.mirror ? " and in the mirror" : "");
 }
 
 // The chroma of the colors of light, as of a white diffuser in it.
@@ -105,6 +120,37 @@ std::string texture_reason(const Scene& scene, const Effects& all, const std::ve
                      percent(seen, [&](const auto& p) { return scene.layer->surface(p.part).texture != nullptr; }));
 }
 
+// The sets of tilted lobes, the coarsest first. Each set but the first is drawn in the place of the one before it.
+void add_tilts(const Scene& scene, const Effects& all, std::vector<EffectSwitch>& list) {
+  int before = -1;
+  for (int level = 1; level <= all.tilt_level; ++level) {
+    int most = 0;
+    for (const paint::LobeFit& paint : scene.paints) {
+      if (paint.tilts.empty()) continue;
+      const auto set = std::min(paint.tilts.size(), static_cast<std::size_t>(level)) - 1;
+      most = std::max(most, paint.tilts[set].lookups());
+    }
+    EffectSwitch effect{
+        fmt::format("tilts-{}", level), "tilts", true,
+        fmt::format("{} image light by {} tilted look-ups", level == 1 ? "a color map in" : "the map closer in", most),
+        [=](Effects& e) {
+          e.tilt_level = std::min(e.tilt_level, level - 1);
+          if (level == 1) e.image_maps = false;
+        }};
+    effect.needs = before;
+    effect.refines = level > 1;
+    before = static_cast<int>(list.size());
+    list.push_back(std::move(effect));
+  }
+  if (all.tilt_level > 0) return;
+  list.push_back({"tilts", "tilts", false,
+                  all.image_maps
+                      ? "a color map in image light; maps of lobes cannot show it, as the paint has no tilted "
+                        "lobes: fit it with fit-paint --tilts"
+                      : "no visible paint has a color map in image light",
+                  [](Effects&) {}});
+}
+
 // The lobes of textures by number, those of all textures together.
 void add_texture_lobes(const Scene& scene, const Effects& all, std::vector<EffectSwitch>& list) {
   const int lobes = all.texture ? scene.layer->lobes() : 0;
@@ -131,7 +177,8 @@ const std::vector<std::string>& effect_groups() {
 
 bool is_effect_name(const std::string& name) {
   if (std::ranges::find(effect_groups(), name) != effect_groups().end()) return true;
-  const bool lobe = name.starts_with("lobe-") || name.starts_with("gloss-") || name.starts_with("texture-");
+  const bool lobe = name.starts_with("lobe-") || name.starts_with("gloss-") || name.starts_with("texture-") ||
+                    name.starts_with("tilts-");
   return lobe && parse_number(name.substr(name.find('-') + 1)).has_value();
 }
 
@@ -148,15 +195,23 @@ std::vector<EffectSwitch> effect_switches(const Scene& scene, const Effects& all
   add_lobes(scene, all, false, list);
   add_lobes(scene, all, true, list);
   add("mirror", all.mirror,
-      all.mirror ? "a smooth coat mirrors the environment"
-                 : (all.environment ? "no visible paint has a mirror lobe" : "no image light to mirror"),
+      !all.mirror        ? (all.environment || all.extent ? "no visible paint has a mirror lobe" : "no light to mirror")
+      : !all.environment ? "a smooth coat mirrors the lamps"
+      : all.extent       ? "a smooth coat mirrors the environment and the lamps"
+                         : "a smooth coat mirrors the environment",
       [](Effects& e) { e.mirror = false; });
+  list.back().is_highlight = all.extent;
   const double grazing = percent(seen, [](const VisiblePoint& p) { return cos_o(p) < kGrazingCos; });
   add("fresnel", all.fresnel,
       !all.fresnel  ? "neither gloss lobes nor mirror"
       : grazing > 0 ? fmt::format("{:.0f} % of what is seen lies beyond 60 deg", grazing)
                     : "nothing is seen beyond 60 deg",
       [](Effects& e) { e.fresnel = false; });
+  add("coat", all.coat,
+      !all.coat     ? "no visible paint has a coat"
+      : grazing > 0 ? fmt::format("the coat takes light from the base, {:.0f} % of what is seen beyond 60 deg", grazing)
+                    : "the coat takes light from the base",
+      [](Effects& e) { e.coat = false; });
   add("horizon", all.horizon, horizon_reason(all, seen), [](Effects& e) { e.horizon = false; });
   add("anisotropy", all.anisotropy, anisotropy_reason(scene, all), [](Effects& e) { e.anisotropy = false; });
   add("travel", all.views || all.maps,
@@ -165,6 +220,7 @@ std::vector<EffectSwitch> effect_switches(const Scene& scene, const Effects& all
       : all.maps            ? "a color map under lights"
                             : "no visible paint has a color map or weights for several views",
       [](Effects& e) { e.views = e.maps = false; });
+  add_tilts(scene, all, list);
   add("texture", all.texture, texture_reason(scene, all, seen), [](Effects& e) { e.texture = false; });
   add_texture_lobes(scene, all, list);
   add("operator", all.reflection && light_chroma(scene, all) > kWhiteChroma, reflection_reason(scene, all),
@@ -174,6 +230,8 @@ std::vector<EffectSwitch> effect_switches(const Scene& scene, const Effects& all
         e.lights = 0;
         e.maps = false;
       });
+  add("extent", all.extent, extent_reason(scene, all), [](Effects& e) { e.extent = false; });
+  list.back().is_highlight = true;
   return list;
 }
 

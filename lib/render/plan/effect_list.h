@@ -16,7 +16,10 @@ struct EffectSwitch {
   bool needed = false;
   std::string reason;
   std::function<void(Effects&)> turn_off;
-  bool is_highlight = false;  // It may be bright between the points at which a plan looks.
+  bool is_highlight = false;   // It may be bright between the points at which a plan looks.
+  int needs = -1;              // The effect of this number in the list, without which this one is off as well.
+  bool refines = false;        // It only draws another effect finer.
+  bool left_to_tilts = false;  // Tilted lobes stand for it on some part, and it shows nothing there while they are on.
 };
 
 // The groups, in the order of the list.

@@ -36,8 +36,8 @@ std::string reason_not_kept(const Plan& plan, const RayChoice& rays, const PlanR
   if (open >= noise && open >= left && has_maps)
     return start + fmt::format(
                        "the prefiltered maps miss the open light by {:.2g}; --engine integral sums it within the "
-                       "tolerance, and --engine path draws everything within it",
-                       open);
+                       "tolerance, and --engine path draws everything within it{}",
+                       open, rays.path_ms > 0 ? fmt::format(" in some {:.1g} s", rays.path_ms / 1000) : "");
   if (noise >= left)
     return start +
            fmt::format("the noise of {} samples a point is {:.2g}; --effects auto,+rays draws as many as it takes",

@@ -8,6 +8,8 @@
 #include <limits>
 #include <numeric>
 
+#include "render/plan/path_price.h"
+
 namespace goniochrome::render {
 
 namespace {
@@ -24,6 +26,7 @@ bool RayEffects::*const kFlags[kEffects] = {&RayEffects::shadow, &RayEffects::se
 RayEffects nested(RayEffects effects) {
   effects.self = effects.self && effects.shadow;
   effects.bounce = effects.bounce && effects.shadow;
+  effects.floor = effects.floor && effects.shadow;
   return effects;
 }
 
@@ -32,11 +35,11 @@ RayEffects without(RayEffects effects, std::size_t effect) {
   return nested(effects);
 }
 
-std::string reason_of(std::size_t effect, const RayProbe& probe, const RayCost& cost) {
+std::string reason_of(std::size_t effect, const RayProbe& probe, const RayCost& cost, bool over_floor) {
   switch (effect) {
     case 0:
-      return fmt::format("rays meet the mesh from {:.0f} % of what is seen; {:.0f} samples a point",
-                         100 * probe.blocked_share(), cost.samples);
+      return fmt::format("rays meet the {} from {:.0f} % of what is seen; {:.0f} samples a point",
+                         over_floor ? "mesh or the floor" : "mesh", 100 * probe.blocked_share(), cost.samples);
     case 1:
       return "lobes and mirror see the body";
     default:
@@ -62,6 +65,7 @@ State forced_state(const RayWishes& wishes) {
   const bool wanted = forced[1].value_or(false) || forced[2].value_or(false);
   if (wanted && !forced[0]) state.on.shadow = state.forced[0] = true;
   if (forced[0] == std::optional(false)) state.forced.fill(true);
+  if (wishes.floor) state.on.shadow = state.on.floor = true;
   state.on = nested(state.on);
   return state;
 }
@@ -71,11 +75,17 @@ double aim_of(const RayWishes& wishes, const State& state) {
   return state.named || !wishes.automatic ? noise.asked_de00 : noise.unasked_de00;
 }
 
+// Of the mesh and of the floor beside it.
+RayCost cost_of(const RayProbe& probe, const RayWishes& wishes, const RayEffects& effects, double aim_de00) {
+  RayCost cost = probe.cost(effects, aim_de00, wishes.visible_points, wishes.samples);
+  if (effects.floor && wishes.of_floor != nullptr)
+    cost.ms += wishes.of_floor->cost(effects, aim_de00, wishes.floor_pixels, wishes.samples).ms;
+  return cost;
+}
+
 // Leaves out, cheapest to miss first, what all together cannot be seen. What saves no time is drawn.
 void drop_unseen(const RayProbe& probe, const RayWishes& wishes, State& state) {
-  const auto ms = [&](const RayEffects& effects) {
-    return probe.cost(effects, aim_of(wishes, state), wishes.visible_points, wishes.samples).ms;
-  };
+  const auto ms = [&](const RayEffects& effects) { return cost_of(probe, wishes, effects, aim_of(wishes, state)).ms; };
   const RayEffects wanted = state.on;
   std::array<double, kEffects> worth{};
   for (std::size_t i = 0; i < kEffects; ++i) worth[i] = probe.worth(wanted, without(wanted, i)).de00_p95;
@@ -83,7 +93,7 @@ void drop_unseen(const RayProbe& probe, const RayWishes& wishes, State& state) {
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return worth[a] < worth[b]; });
   for (const std::size_t i : order) {
-    if (!(state.on.*kFlags[i]) || state.forced[i]) continue;
+    if (!(state.on.*kFlags[i]) || state.forced[i] || (i == 0 && state.on.floor)) continue;
     const RayEffects less = without(state.on, i);
     const bool keeps_forced = !((state.forced[1] && state.on.self) || (state.forced[2] && state.on.bounce)) || i != 0;
     const bool is_unseen = probe.worth(wanted, less).de00_p95 <= kSafety * wishes.tolerance_de00;
@@ -94,9 +104,8 @@ void drop_unseen(const RayProbe& probe, const RayWishes& wishes, State& state) {
 // What others need goes last.
 void keep_affordable(const RayProbe& probe, const RayWishes& wishes, State& state) {
   for (const std::size_t i : {std::size_t{2}, std::size_t{1}, std::size_t{0}}) {
-    if (probe.cost(state.on, aim_of(wishes, state), wishes.visible_points, wishes.samples).ms <= wishes.budget_ms)
-      return;
-    if (!(state.on.*kFlags[i]) || state.forced[i]) continue;
+    if (cost_of(probe, wishes, state.on, aim_of(wishes, state)).ms <= wishes.budget_ms) return;
+    if (!(state.on.*kFlags[i]) || state.forced[i] || (i == 0 && state.on.floor)) continue;
     state.on = without(state.on, i);
     state.over_budget[i] = true;
   }
@@ -134,24 +143,8 @@ RayChoice no_rays(const std::string& reason, bool refused) {
   return choice;
 }
 
-void add_floor(const RayProbe* probe, const std::string& no_floor, RayChoice& choice) {
-  PlanItem item;
-  item.effect = ray_effect_names()[kEffects];
-  item.reason = no_floor;
-  const std::optional<Worth> worth = probe != nullptr ? probe->floor_worth() : std::nullopt;
-  if (worth) {
-    item.needed = true;
-    item.reason =
-        "the ground lights the mesh from below, and the mesh shades it: --floor shadow draws it, by the engine path";
-    item.de00_p95 = worth->de00_p95, item.standard_error = worth->standard_error;
-    item.cost_ms = std::numeric_limits<double>::quiet_NaN();
-    item.decision = Decision::kDropped;
-  }
-  choice.items.push_back(std::move(item));
-}
-
 RayChoice ray_choice(const RayProbe& probe, const RayWishes& wishes) {
-  if (probe.free()) return no_rays("no ray meets the mesh");
+  if (probe.free() && !wishes.floor) return no_rays("no ray meets the mesh");
   State state = forced_state(wishes);
   const RayEffects wanted = state.on;
   if (wishes.automatic) drop_unseen(probe, wishes, state);
@@ -160,20 +153,20 @@ RayChoice ray_choice(const RayProbe& probe, const RayWishes& wishes) {
   RayChoice choice;
   choice.effects = state.on;
   choice.aim_de00 = aim_of(wishes, state);
-  const auto cost = [&](const RayEffects& effects) {
-    return probe.cost(effects, choice.aim_de00, wishes.visible_points, wishes.samples);
-  };
+  const auto cost = [&](const RayEffects& effects) { return cost_of(probe, wishes, effects, choice.aim_de00); };
   choice.cost = cost(state.on);
   if (!state.named && wishes.automatic) choice.most_samples = kMostUnaskedSamples;
   if (state.on.any())
     choice.noise_de00 = choice.aim_de00 * std::sqrt(std::max(1.0, choice.cost.most_samples / choice.most_samples));
   choice.left_out_de00_p95 = state.on == wanted ? 0 : probe.worth(wanted, state.on).de00_p95;
-  const RayCost all = cost(kAll);
+  RayEffects everything = kAll;
+  everything.floor = wishes.floor;
+  const RayCost all = cost(everything);
   for (std::size_t i = 0; i < kEffects; ++i) {
     PlanItem item;
-    const RayEffects less = without(kAll, i);
-    const Worth worth = probe.worth(kAll, less);
-    item.effect = ray_effect_names()[i], item.needed = true, item.reason = reason_of(i, probe, all);
+    const RayEffects less = without(everything, i);
+    const Worth worth = probe.worth(everything, less);
+    item.effect = ray_effect_names()[i], item.needed = true, item.reason = reason_of(i, probe, all, wishes.floor);
     item.de00_p95 = worth.de00_p95, item.standard_error = worth.standard_error;
     item.cost_ms = std::max(0.0, all.ms - cost(less).ms);
     item.on = state.on.*kFlags[i], item.decision = decision_of(state, i);
@@ -181,6 +174,52 @@ RayChoice ray_choice(const RayProbe& probe, const RayWishes& wishes) {
   }
   return choice;
 }
+
+namespace {
+
+// The floor's row of the plan, and whether it is drawn.
+struct FloorChoice {
+  PlanItem item;
+  bool on = false;
+};
+
+std::optional<bool> forced_by(const Words& words, const std::string& name) {
+  std::optional<bool> forced;
+  for (const auto& [word, on] : words.forced)
+    if (word == name || word == "rays") forced = on;
+  return forced;
+}
+
+FloorChoice no_floor(const std::string& reason) {
+  FloorChoice choice;
+  choice.item.effect = ray_effect_names()[kEffects];
+  choice.item.reason = reason;
+  return choice;
+}
+
+// Of the mesh, which it lights, and of the picture beside it, whichever changes more.
+FloorChoice floor_choice(const RayProbe& probe, const FloorProbe& beside, const RayWishes& wishes, bool forced) {
+  FloorChoice choice = no_floor("the mesh stands on the ground of the environment, which lights it from below");
+  PlanItem& item = choice.item;
+  item.needed = true;
+  const Worth on_mesh = probe.floor_worth().value_or(Worth{}), around = beside.worth();
+  const Worth& worth = on_mesh.de00_p95 > around.de00_p95 ? on_mesh : around;
+  item.de00_p95 = worth.de00_p95, item.standard_error = worth.standard_error;
+  const double aim = ray_noise(wishes.tolerance_de00, wishes.open_de00_p95).unasked_de00;
+  RayEffects all = kAll;
+  const double without_ms = probe.cost_without_floor(all, aim, wishes.visible_points, wishes.samples).ms;
+  const double mesh_ms = probe.cost(all, aim, wishes.visible_points, wishes.samples).ms;
+  const double beside_ms = beside.cost(all, aim, wishes.floor_pixels, wishes.samples).ms;
+  item.cost_ms = std::max(0.0, mesh_ms + beside_ms - without_ms);
+  item.decision = forced ? Decision::kForcedOn : Decision::kDrawn;
+  if (!forced && wishes.automatic && worth.de00_p95 <= kSafety * wishes.tolerance_de00)
+    item.decision = Decision::kDropped;
+  if (!forced && wishes.budget_ms > 0 && mesh_ms + beside_ms > wishes.budget_ms) item.decision = Decision::kOverBudget;
+  item.on = choice.on = item.decision == Decision::kForcedOn || item.decision == Decision::kDrawn;
+  return choice;
+}
+
+}  // namespace
 
 RayChoice planned_rays(const Scene& scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers,
                        const PlanRequest& request, const Words& words, const RayContext& rays, double points_drawn,
@@ -190,7 +229,7 @@ RayChoice planned_rays(const Scene& scene, const std::vector<std::shared_ptr<con
     RayChoice choice;
     if (rays.absent.empty()) return choice;
     choice = no_rays(rays.absent, rays.refused);
-    add_floor(nullptr, rays.absent, choice);
+    choice.items.push_back(no_floor(rays.absent).item);
     return choice;
   }
   std::vector<VisiblePoint> points;
@@ -199,26 +238,50 @@ RayChoice planned_rays(const Scene& scene, const std::vector<std::shared_ptr<con
     points.push_back(gbuffer->point(x, y));
     ray_points.push_back(ray_point(rays.transport->rays(), *scene.mesh, *gbuffer, x, y));
   }
-  ProbeSetting setting;
-  setting.transport = rays.transport, setting.over_floor = rays.over_floor;
-  setting.white_luminance = request.white_luminance;
-  setting.bounces = rays.bounces, setting.seed = rays.seed;
-  setting.visible_points = static_cast<double>(gbuffers.size()) * points_drawn / request.samples;
-  const RayProbe probe = RayProbe::traced(setting, ray_points, colors(points));
+  const std::vector<color::Rgb> base = colors(points);
   RayWishes wishes;
   wishes.on = words.start != Start::kNone;
   wishes.automatic = words.start == Start::kAuto;
-  wishes.forced = [&](const std::string& name) {
-    std::optional<bool> forced;
-    for (const auto& [word, on] : words.forced)
-      if (word == name || word == "rays") forced = on;
-    return forced;
-  };
+  wishes.forced = [&](const std::string& name) { return forced_by(words, name); };
   wishes.open_de00_p95 = open_de00;
   wishes.tolerance_de00 = request.tolerance_de00, wishes.budget_ms = request.budget_ms;
   wishes.visible_points = points_drawn / request.samples, wishes.samples = request.samples;
-  RayChoice choice = ray_choice(probe, wishes);
-  add_floor(&probe, rays.no_floor, choice);
+  ProbeSetting setting;
+  setting.transport = rays.transport;
+  setting.white_luminance = request.white_luminance;
+  setting.bounces = rays.bounces, setting.seed = rays.seed;
+  setting.visible_points = static_cast<double>(gbuffers.size()) * points_drawn / request.samples;
+  const auto with_path_price = [&](RayChoice choice) {
+    if (open_de00 > request.tolerance_de00)
+      choice.path_ms = path_frame_ms(setting, ray_points, request.tolerance_de00, wishes.visible_points);
+    return choice;
+  };
+
+  const bool off = forced_by(words, "shadow") == std::optional(false);
+  FloorChoice floor = no_floor(off ? "the floor needs the effect shadow" : rays.no_floor);
+  if (rays.over_floor != nullptr && !off) {
+    setting.transport = rays.over_floor, setting.without_floor = rays.transport;
+    constexpr std::size_t kFloorPixels = 384;
+    const FloorPixels pixels = floor_pixels(*rays.over_floor, scene, rays.environment, gbuffers, kFloorPixels);
+    double shown = 0;
+    for (const auto& g : gbuffers) shown += static_cast<double>(g->data.size() / 4);
+    const RayProbe probe = RayProbe::traced(setting, ray_points, base);
+    const FloorProbe beside(setting, pixels);
+    wishes.floor_pixels = request.pixels > 0 && shown > 0 ? pixels.count * request.pixels / shown : pixels.count;
+    wishes.of_floor = &beside;
+    floor = floor_choice(probe, beside, wishes, rays.floor_forced);
+    if (floor.on) {
+      wishes.floor = true;
+      RayChoice choice = with_path_price(ray_choice(probe, wishes));
+      if (choice.path_ms > 0) choice.path_ms += beside.cost(kAll, request.tolerance_de00, wishes.floor_pixels, 1).ms;
+      choice.items.push_back(std::move(floor.item));
+      return choice;
+    }
+    setting.transport = rays.transport, setting.without_floor = nullptr;
+    wishes.of_floor = nullptr;
+  }
+  RayChoice choice = with_path_price(ray_choice(RayProbe::traced(setting, ray_points, base), wishes));
+  choice.items.push_back(std::move(floor.item));
   return choice;
 }
 

@@ -9,6 +9,7 @@
 
 #include "render/plan.h"
 #include "render/plan/effect_words.h"
+#include "render/plan/floor_probe.h"
 #include "render/plan/ray_probe.h"
 
 namespace goniochrome::render {
@@ -38,6 +39,9 @@ struct RayWishes {
   double budget_ms = 0;      // of one frame's rays; 0: none
   double visible_points = 0;
   int samples = 1;
+  bool floor = false;                    // whether a floor is drawn, which needs `shadow`
+  double floor_pixels = 0;               // that show the floor
+  const FloorProbe* of_floor = nullptr;  // what these cost; null: nothing
 };
 
 // The most samples of a point that are drawn for effects that nobody asked for by name. Most points get far fewer.
@@ -51,6 +55,7 @@ struct RayChoice {
   int most_samples = 1 << 16;    // of a point
   double aim_de00 = 0.25;        // noise that is aimed at
   double noise_de00 = 0;         // that is to be expected of what is drawn
+  double path_ms = 0;            // of a frame by the engine path, within the tolerance; 0: not known
 };
 
 // Effects that need another one are off with it: `self` and `bounce` need `shadow`. Forcing one of them on forces
@@ -66,8 +71,5 @@ RayChoice planned_rays(const Scene& scene, const std::vector<std::shared_ptr<con
                        const PlanRequest& request, const Words& words, const RayContext& rays, double points_drawn,
                        double open_de00,
                        const std::function<std::vector<color::Rgb>(const std::vector<VisiblePoint>&)>& colors);
-
-// What the floor is worth that the engine does not draw; nothing where the reason is "" and no floor was probed.
-void add_floor(const RayProbe* probe, const std::string& no_floor, RayChoice& choice);
 
 }  // namespace goniochrome::render

@@ -73,7 +73,7 @@ RayProbe RayProbe::traced(const ProbeSetting& setting, const std::vector<RayPoin
   probe.white_ = setting.white_luminance > 0 ? setting.white_luminance : 1;
   probe.visible_points_ = setting.visible_points;
   if (points.empty()) return probe;
-  probe.floor_points_ = setting.over_floor != nullptr ? std::min(kFloorPoints, points.size()) : 0;
+  probe.floor_points_ = setting.without_floor != nullptr ? std::min(kFloorPoints, points.size()) : 0;
   probe.add_points(points, base, std::min(kFirstPoints, points.size()));
   const Stopwatch clock;
   probe.trace(setting, std::vector<int>(probe.size(), kFirstFans));
@@ -120,7 +120,7 @@ void RayProbe::add_points(const std::vector<RayPoint>& points, const std::vector
 
 std::size_t RayProbe::samples() const {
   std::size_t fans = 0;
-  for (const Point& point : points_) fans += point.bare.fans.size() + point.over_floor.fans.size();
+  for (const Point& point : points_) fans += point.drawn.fans.size() + point.without_floor.fans.size();
   return fans * kFan;
 }
 
@@ -144,12 +144,12 @@ void RayProbe::trace(const ProbeSetting& setting, const std::vector<int>& more) 
   parallel_for(points_.size(), kTogether, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (more[i] == 0) continue;
-      add(*setting.transport, i, points_[i].bare);
-      if (i < floor_points_) add(*setting.over_floor, i, points_[i].over_floor);
+      add(*setting.transport, i, points_[i].drawn);
+      if (i < floor_points_) add(*setting.without_floor, i, points_[i].without_floor);
     }
   });
   blocked_ = 0;
-  for (const Point& point : points_) blocked_ += point.bare.blocked ? 1 : 0;
+  for (const Point& point : points_) blocked_ += point.drawn.blocked ? 1 : 0;
 }
 
 // A percentile is decided by the points about it: those get samples that may lie on either side of it, until the
@@ -209,7 +209,7 @@ bool RayProbe::add_ambiguous(const std::vector<Change>& changes, const Worth& wo
 }
 
 color::Rgb RayProbe::added(std::size_t i, const RayEffects& effects) const {
-  const Light& light = points_[i].bare;
+  const Light& light = points_[i].drawn;
   return light.sure.shown(effects) + mean_of(light.fans, 0, 1).shown(effects);
 }
 
@@ -217,8 +217,8 @@ color::Rgb RayProbe::added(std::size_t i, const RayEffects& effects) const {
 // variance and the curvature. Halves of the fans have twice the excess, which takes it off.
 RayProbe::Change RayProbe::change(std::size_t i, const Comparison& comparison) const {
   const Point& point = points_[i];
-  const Light& first = comparison.floor ? point.over_floor : point.bare;
-  const Light& second = point.bare;
+  const Light& first = point.drawn;
+  const Light& second = comparison.floor ? point.without_floor : point.drawn;
   if (!first.blocked && !second.blocked) return {};
   const auto squared = [&](std::size_t begin, std::size_t step) {
     LightShares a = mean_of(first.fans, begin, step), b = mean_of(second.fans, begin, step);
@@ -283,31 +283,42 @@ std::optional<Worth> RayProbe::floor_worth() const {
 }
 
 // As path_picture() shares out its samples.
-RayCost RayProbe::cost(const RayEffects& effects, double tolerance_de00, double visible_points, int samples) const {
+RayCost RayProbe::cost_of(Light Point::*of, std::size_t count, const RayEffects& effects, double tolerance_de00,
+                          double visible_points, int samples) const {
   RayCost cost;
-  if (!effects.shadow || points_.empty()) return cost;
+  if (!effects.shadow || count == 0) return cost;
   constexpr double kFewest = 2;
-  const double tolerance = tolerance_de00 * std::sqrt(samples);
+  const double groups = std::ceil(samples / 4.0), tolerance = tolerance_de00 * std::sqrt(groups);
   std::vector<double> needed;
   std::size_t traced = 0;
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const Light& light = points_[i].bare;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Light& light = points_[i].*of;
     traced += light.certain ? 0 : 1;
     Estimates values;
     for (const LightShares& fan : light.fans) values.add(fan.shown(effects));
-    const double one = noise_de00(points_[i].base + added(i, effects), values.covariance(), white_) / tolerance;
+    const color::Rgb shown = light.sure.shown(effects) + mean_of(light.fans, 0, 1).shown(effects);
+    const double one = noise_de00(points_[i].base + shown, values.covariance(), white_) / tolerance;
     needed.push_back(light.certain ? 0 : one * one * kFan / kBatch);
   }
   const double most = std::max(kFewest, std::ceil(1.05 * percentile_95(needed)));
   double batches = 0;
-  for (std::size_t i = 0; i < points_.size(); ++i)
-    batches += points_[i].bare.certain ? 0 : std::clamp(std::ceil(needed[i]), kFewest, most);
-  const double n = static_cast<double>(points_.size());
+  for (std::size_t i = 0; i < count; ++i)
+    batches += (points_[i].*of).certain ? 0 : std::clamp(std::ceil(needed[i]), kFewest, most);
+  const auto n = static_cast<double>(count);
   cost.traced_share = static_cast<double>(traced) / n;
-  cost.samples = kBatch * samples * batches / n;
-  cost.most_samples = kBatch * samples * most;
-  cost.ms = samples * visible_points * batches / n * (effects.self || effects.bounce ? passed_ms_ : direct_ms_);
+  cost.samples = kBatch * groups * batches / n;
+  cost.most_samples = kBatch * groups * most;
+  cost.ms = groups * visible_points * batches / n * (effects.self || effects.bounce ? passed_ms_ : direct_ms_);
   return cost;
+}
+
+RayCost RayProbe::cost(const RayEffects& effects, double tolerance_de00, double visible_points, int samples) const {
+  return cost_of(&Point::drawn, points_.size(), effects, tolerance_de00, visible_points, samples);
+}
+
+RayCost RayProbe::cost_without_floor(const RayEffects& effects, double tolerance_de00, double visible_points,
+                                     int samples) const {
+  return cost_of(&Point::without_floor, floor_points_, effects, tolerance_de00, visible_points, samples);
 }
 
 }  // namespace goniochrome::render

@@ -41,8 +41,8 @@ struct RayCost {
 // What a probe is traced by. The probe keeps no reference to the transports.
 struct ProbeSetting {
   const Transport* transport = nullptr;
-  // Of the same mesh over the floor that the picture may get; null: there is none to be priced.
-  const Transport* over_floor = nullptr;
+  // Where that is over a floor, the same mesh without it; null: there is no floor to be priced.
+  const Transport* without_floor = nullptr;
   double white_luminance = 1;
   int bounces = 8;
   std::uint64_t seed = 1;
@@ -59,9 +59,9 @@ class RayProbe {
   static RayProbe traced(const ProbeSetting& setting, const std::vector<RayPoint>& points,
                          const std::vector<color::Rgb>& base);
 
-  // Whether no ray of any point met the mesh, so that all effects of rays but the floor are worth exactly nothing.
+  // Whether no ray of any point met the mesh or the floor, so that all effects of rays are worth exactly nothing.
   bool free() const { return blocked_ == 0; }
-  // The share of the points of which some ray met the mesh.
+  // The share of the points of which some ray met the mesh or the floor.
   double blocked_share() const { return points_.empty() ? 0 : static_cast<double>(blocked_) / points_.size(); }
   std::size_t size() const { return points_.size(); }
   // Of all points together.
@@ -74,6 +74,9 @@ class RayProbe {
   // What the floor changes on the mesh where all other effects are drawn, told from some of the points; nothing where
   // no floor was probed.
   std::optional<Worth> floor_worth() const;
+  // As cost(), of the mesh without the floor that was probed, told from these points.
+  RayCost cost_without_floor(const RayEffects& effects, double tolerance_de00, double visible_points,
+                             int samples) const;
   // Of drawing so many visible points until their noise is within the tolerance, in so many samples of each pixel.
   RayCost cost(const RayEffects& effects, double tolerance_de00, double visible_points, int samples) const;
 
@@ -86,13 +89,13 @@ class RayProbe {
   struct Point {
     RayPoint at;
     color::Rgb base;
-    Light bare, over_floor;
+    Light drawn, without_floor;
   };
   // One difference at a point, and the standard error of it.
   struct Change {
     double de00 = 0, standard_error = 0;
   };
-  // Without a floor in either, or `floor`: the floor is in the first alone.
+  // With the floor, if there is one, in both; or `floor`: in the first alone.
   struct Comparison {
     RayEffects with, without;
     bool floor = false;
@@ -105,9 +108,11 @@ class RayProbe {
   std::vector<Change> changes(const Comparison& comparison) const;
   std::size_t count_for(const Comparison& comparison) const;
   int fans(std::size_t i) const {
-    return static_cast<int>(std::max(points_[i].bare.fans.size(), points_[i].over_floor.fans.size()));
+    return static_cast<int>(std::max(points_[i].drawn.fans.size(), points_[i].without_floor.fans.size()));
   }
   Worth worth(std::vector<Change> changes) const;
+  RayCost cost_of(Light Point::*light, std::size_t count, const RayEffects& effects, double tolerance_de00,
+                  double visible_points, int samples) const;
   bool add_ambiguous(const std::vector<Change>& changes, const Worth& worth, std::vector<double>& wish) const;
 
   std::vector<Point> points_;

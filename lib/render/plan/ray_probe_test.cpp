@@ -224,7 +224,7 @@ TEST(RayProbe, PredictsTheWorthOfMeshesRealData) {
   }
 }
 
-// The same of the floor that a picture does not show, by many samples with it and without it.
+// The same of the floor, by many samples with it and without it.
 double true_floor(const PathStage& stage, const Transport& over_floor, const Seen& seen) {
   PathOptions options;
   options.bounces = kBounces;
@@ -256,7 +256,7 @@ TEST(RayProbe, PredictsTheWorthOfAFloor) {
       const auto over_floor = Transport::create(over);
       ASSERT_TRUE(over_floor.ok());
       ProbeSetting setting = setting_of(stage, all);
-      setting.over_floor = &*over_floor;
+      setting.transport = &*over_floor, setting.without_floor = &*stage.transport;
       const RayProbe probe = RayProbe::traced(setting, all.points, all.base);
       ASSERT_TRUE(probe.floor_worth().has_value());
       const double predicted = probe.floor_worth()->de00_p95, truth = true_floor(stage, *over_floor, all);

@@ -168,7 +168,7 @@ SbrdfShader::Batch::Batch(const SbrdfShader& shader, std::size_t texture, const 
   }
   for (const Light& l : light.lights) {
     for (int c = 0; c < 3; ++c) lights_.push_back(static_cast<float>(l.direction[c]));
-    lights_.push_back(0);
+    lights_.push_back(static_cast<float>(0.25 * l.radius_rad * l.radius_rad));
     for (int c = 0; c < 3; ++c) lights_.push_back(static_cast<float>(kPi * l.white[c]));
     lights_.push_back(0);
   }

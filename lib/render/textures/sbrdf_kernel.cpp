@@ -215,7 +215,8 @@ HWY_INLINE void add_filtered(const SbrdfShading& s, const SbrdfPoints& p, const 
 }
 
 // Adds what one lobe of one texel sends of a light to the viewer: the exact BRDF. With m the middle of the lobe,
-// (p.wi)^n = |p|^n (m.wi)^n, the second from 1 - m.wi = |m - wi|^2/2.
+// (p.wi)^n = |p|^n (m.wi)^n, the second from 1 - m.wi = |m - wi|^2/2. The disc of a lamp is taken as a Gaussian of the
+// same variance, which makes the lobe wider and lower by one factor.
 template <bool reflection>
 HWY_INLINE void add_lit(const float* light, const SbrdfPoints& p, const SurfaceFrames& frames, const LobeValues& l,
                         const LobeMiddles& middles, int tap, int count, float* sums) {
@@ -232,8 +233,10 @@ HWY_INLINE void add_lit(const float* light, const SbrdfPoints& p, const SurfaceF
     const Direction apart = {hn::Sub(m.x, hn::MulAdd(c, lt, hn::Mul(q, lb))),
                              hn::Sub(m.y, hn::MulSub(c, lb, hn::Mul(q, lt))), hn::Sub(m.z, cos_i)};
     const V versine = hn::Mul(half, dot(apart, apart));
-    const V log_lobe = hn::MulAdd(hn::Load(f, l.exponent + i), log_cos_of(versine), hn::Load(f, middles.log_power + i));
-    const V power = bounded_exp(hn::Add(log_lobe, hn::Load(f, l.albedo + i)));
+    const V exponent = hn::Load(f, l.exponent + i), one = hn::Set(f, 1.0F);
+    const V lowered = hn::Div(one, hn::MulAdd(exponent, hn::Set(f, light[3]), one));
+    const V log_lobe = hn::MulAdd(hn::Mul(lowered, exponent), log_cos_of(versine), hn::Load(f, middles.log_power + i));
+    const V power = hn::Mul(lowered, bounded_exp(hn::Add(log_lobe, hn::Load(f, l.albedo + i))));
     const auto seen = hn::And(hn::And(hn::Gt(cos_i, zero), hn::Gt(hn::Load(f, frames.vn + i), zero)),
                               hn::Lt(versine, hn::Set(f, 1.0F)));
     hn::Store(hn::IfThenElseZero(seen, hn::Mul(hn::Mul(power, cos_i), hn::LoadU(f, p.share[tap] + i))), f, weight + i);

@@ -35,7 +35,7 @@ struct SbrdfShading {
   int lobes = 0;                 // of a packed texel
   std::uint32_t lobes_on = ~0U;  // by bits
   int lights = 0;
-  const float* light = nullptr;       // 8 a light: direction 0, pi times its white 0
+  const float* light = nullptr;       // 8 a light: direction, variance of its disc; pi times its white, 0
   const float* reflection = nullptr;  // k[c][d][e]; null: the component-wise product
 };
 

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.h"
 #include "base/parallel.h"
+#include "brdf/lobe_model.h"
 #include "math/statistics.h"
 #include "sketch/internal/sketch_lobes.h"
 #include "sketch/internal/sketch_solve.h"
@@ -214,7 +216,13 @@ color::Rgb SketchCurve::reflectance(double aspecular_deg) const {
   }
   color::Rgb sum = diffuse;
   for (std::size_t j = 0; j < exponents.size(); ++j) sum += lobe_at(aspecular_deg, exponents[j]) * flake[j];
-  return sum;
+  return instrument_passages(aspecular_deg, coat_index) * sum;
+}
+
+double instrument_passages(double aspecular_deg, double coat_index) {
+  constexpr double kLight_deg = 45, kSteepest_deg = 65;
+  const double view_deg = std::min(std::abs(kLight_deg - aspecular_deg), kSteepest_deg);
+  return brdf::coat_passages(coat_index, std::cos(kLight_deg * kDegree), std::cos(view_deg * kDegree));
 }
 
 color::Rgb SketchCurve::gloss(double aspecular_deg) const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "color/color.h"
+#include "paint/paint.h"
 
 namespace goniochrome::sketch {
 
@@ -40,10 +41,16 @@ struct SketchCurve {
   color::Rgb diffuse;
   std::vector<double> exponents;
   std::vector<color::Rgb> flake, glare;
+  // Of the coat that these flake weights are lit through; reflectance() is then as an instrument reads it.
+  double coat_index = paint::kNoCoat;
 
   color::Rgb reflectance(double aspecular_deg) const;
   color::Rgb gloss(double aspecular_deg) const;
 };
+
+// What a coat leaves of the base's light where an instrument reads that aspecular angle, see
+// brdf::flake_reflectance_factor().
+double instrument_passages(double aspecular_deg, double coat_index);
 
 struct CurveFit {
   SketchCurve curve;

@@ -75,8 +75,9 @@ void differences(const SearchSamples& samples, const std::vector<color::Lab>& ta
   }
 }
 
-paint::LobeFit lobes_of(const formats::Basis& basis, const std::vector<color::Rgb>& weights) {
+paint::LobeFit lobes_of(const formats::Basis& basis, const std::vector<color::Rgb>& weights, double coat_index) {
   paint::LobeFit fit;
+  fit.coat_index = coat_index;
   fit.diffuse = weights.front();
   for (std::size_t j = 0; j < basis.exponents.size(); ++j)
     fit.lobes.push_back({basis.exponents[j], weights[1 + 2 * j], weights[2 + 2 * j]});
@@ -123,7 +124,7 @@ Vec3 FreeLobeFit::effect(const Unknown& unknown, std::size_t sample) const {
 }
 
 void FreeLobeFit::set_gloss_of(double gloss, std::vector<color::Rgb>& weights) const {
-  paint::LobeFit lobes = lobes_of(basis_, weights);
+  paint::LobeFit lobes = lobes_of(basis_, weights, samples_.coat_index);
   if (brdf::set_gloss(gloss_, {{60, gloss}}, lobes).ok()) weights = weights_of(basis_, lobes);
 }
 
@@ -177,7 +178,8 @@ FreeLobes FreeLobeFit::descend(std::vector<color::Rgb> weights, std::optional<do
     }
     if (!(least < (1 - kLeastGain) * before)) break;
   }
-  const double reading = gloss ? *gloss : brdf::gloss_units(gloss_, **gloss_.at(60), lobes_of(basis_, weights));
+  const double reading =
+      gloss ? *gloss : brdf::gloss_units(gloss_, **gloss_.at(60), lobes_of(basis_, weights, samples_.coat_index));
   return {weights, std::clamp(reading, 0.0, 100.0), least};
 }
 

@@ -25,6 +25,7 @@ struct SearchSamples {
   std::vector<color::Rgb> seen;
   std::vector<double> importance;                            // of each sample; more than 0
   std::optional<color::ReflectionOperator> reflection = {};  // as that of a SketchLight
+  double coat_index = paint::kNoCoat;                        // of the coat through which K_D and K_DD are lit
   bool display = false;  // seen on an sRGB display, whose gamut is then part of the picture
 
   std::size_t size() const { return seen.size(); }
@@ -86,8 +87,8 @@ class FreeLobeFit {
   std::size_t flake_lobes_ = 0;  // those that reach 15 deg
 };
 
-// Columns as lobes, the mirror last, and back.
-paint::LobeFit lobes_of(const formats::Basis& basis, const std::vector<color::Rgb>& weights);
+// Columns as lobes under such a coat, the mirror last, and back.
+paint::LobeFit lobes_of(const formats::Basis& basis, const std::vector<color::Rgb>& weights, double coat_index);
 std::vector<color::Rgb> weights_of(const formats::Basis& basis, const paint::LobeFit& lobes);
 
 }  // namespace goniochrome::sketch

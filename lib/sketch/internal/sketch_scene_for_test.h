@@ -31,8 +31,13 @@ inline paint::Paint random_paint(std::mt19937_64& random) {
   return paint;
 }
 
+// Without a coat, so that pictures that know nothing of the view are those of its lobes.
 inline const fit::PaintFitter& fitter() {
-  static const fit::PaintFitter one(basis(), {});
+  static const fit::PaintFitter one(basis(), [] {
+    fit::FitOptions options;
+    options.coat_index = paint::kNoCoat;
+    return options;
+  }());
   return one;
 }
 
@@ -90,6 +95,8 @@ inline void shade(image::AovFile& file, const paint::LobeFit& fit) {
       const double scale = kPi * std::max(0.0, dot(n, file.light));
       set(file, x, y, scale * brdf::brdf(fit, file.light, file.to_viewer(x, y), n));
     }
+  file.drawn.clear();
+  if (fit.coat_index != paint::kNoCoat) file.drawn = {"coat"};
 }
 
 // The picture of the buffers as light, unedited.

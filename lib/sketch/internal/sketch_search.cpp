@@ -27,9 +27,9 @@ constexpr double kHopelessCost = 1.5;   // of enough, in a part of the samples
 constexpr double kFoundCost = 1e-3, kGoodCost = 0.02, kNoisyCost = 0.2, kRowsGain = 0.8;
 constexpr std::size_t kAtOnce = 2;  // starts; fixed, so that no result depends on the number of threads
 
-fit::FitOptions by(fit::FitMethod method) {
+fit::FitOptions by(fit::FitMethod method, double coat_index) {
   fit::FitOptions options;
-  options.method = method;
+  options.method = method, options.coat_index = coat_index;
   return options;
 }
 
@@ -117,8 +117,10 @@ const char* FoundPaint::model() const {
   return search.values.size() == kByThree ? "search with free rows" : "search with free lobes";
 }
 
-SearchFitters::SearchFitters(const formats::Basis& basis)
-    : gloss(basis.exponents), smooth(basis, by(fit::FitMethod::kL2)), exact(basis, by(fit::FitMethod::kL1)) {}
+SearchFitters::SearchFitters(const formats::Basis& basis, double coat_index)
+    : gloss(basis.exponents),
+      smooth(basis, by(fit::FitMethod::kL2, coat_index)),
+      exact(basis, by(fit::FitMethod::kL1, coat_index)) {}
 
 LobeSearch::LobeSearch(const SearchFitters& fitters, SearchSamples samples)
     : fitters_(fitters), basis_(fitters.smooth.basis()), samples_(std::move(samples)) {
@@ -154,7 +156,7 @@ color::Rgb LobeSearch::matt() const {
 }
 
 double LobeSearch::cost_with_gloss(const FoundPaint& found, double gloss) const {
-  paint::LobeFit lobes = lobes_of(basis_, found.weights);
+  paint::LobeFit lobes = lobes_of(basis_, found.weights, samples_.coat_index);
   return brdf::set_gloss(fitters_.gloss, {{60, gloss}}, lobes).ok() ? cost(weights_of(basis_, lobes))
                                                                     : found.search.cost;
 }
@@ -171,7 +173,7 @@ LobeSearch::Way LobeSearch::way(const std::vector<double>& start) const {
 FoundPaint LobeSearch::find(const LobeSearch& first) const {
   const auto enough = [](const FreeLobes& free) { return std::max(kSameCost * free.cost, kExactCost); };
   const FreeLobes begun = first.free_lobes().find(), free = free_lobes().refined(begun);
-  const paint::LobeFit lobes = lobes_of(basis_, free.weights);
+  const paint::LobeFit lobes = lobes_of(basis_, free.weights, samples_.coat_index);
   const std::vector<double> three = numbers_of(lobes, kThree_deg, free.gloss_60_gu);
   for (const std::vector<double>& start : {appearance_of(three), three}) {
     const Way way = first.way(start);
@@ -198,7 +200,8 @@ void LobeSearch::scan_gloss(std::vector<double>& start) const {
 // not worth their time.
 LobeSearch::Way LobeSearch::best_way() const {
   const FreeLobes free = free_lobes().with_any_gloss();
-  const auto read_off = appearance_of(numbers_of(lobes_of(basis_, free.weights), kThree_deg, free.gloss_60_gu));
+  const auto read_off =
+      appearance_of(numbers_of(lobes_of(basis_, free.weights, samples_.coat_index), kThree_deg, free.gloss_60_gu));
   Way best{{{}, std::numeric_limits<double>::infinity(), 0, 0}, nullptr};
   const auto try_all = [&](std::span<const std::vector<double>> starts) {
     for (std::size_t from = 0; from < starts.size() && best.result.cost > kFoundCost; from += kAtOnce) {

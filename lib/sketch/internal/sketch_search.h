@@ -22,7 +22,7 @@ struct FoundPaint {
 
 // The ways from a paint to its lobes: least squares, whose weights follow a paint smoothly, and least absolute error.
 struct SearchFitters {
-  explicit SearchFitters(const formats::Basis& basis);
+  SearchFitters(const formats::Basis& basis, double coat_index);
   brdf::GlossTable gloss;
   fit::PaintFitter smooth, exact;
 };

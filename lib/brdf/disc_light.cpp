@@ -1,0 +1,225 @@
+#include "brdf/disc_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <utility>
+
+#include "base/angles.h"
+#include "base/parallel.h"
+#include "math/cosine_power.h"
+#include "math/quadrature.h"
+
+namespace goniochrome::brdf {
+
+namespace {
+
+// Below this radius the closed forms lose digits to cancellation, and the disc is taken as a flat one, which errs by
+// the square of the radius.
+constexpr double kFlat_rad = 3e-4;
+// cos^E below exp(-kTail) of its largest value on the disc is left out.
+constexpr double kTail = 40;
+// Of Gauss's rule over the rings of a lobe, which are at most 9 standard deviations wide together. The substitution of
+// lobe_of_disc() makes the integrand smooth at both ends, so that the error falls exponentially with the rings.
+constexpr int kRings = 48;
+
+const std::vector<math::QuadraturePoint>& ring_rule() {
+  static const std::vector<math::QuadraturePoint> rule = math::gauss_legendre(kRings);
+  return rule;
+}
+
+double square(double x) {
+  return x * x;
+}
+
+// Where the rim of the disc meets the horizon, seen from its middle: the angle from straight down.
+double rim_azimuth(double sine, double cosine_elevation, double radius) {
+  return std::acos(std::clamp(sine * std::cos(radius) / (cosine_elevation * std::sin(radius)), -1.0, 1.0));
+}
+
+// Half of the angle about r that the ring of radius t spends within the disc of radius `radius` about l, with r and l
+// `between` apart: the half-angle formula of a spherical triangle with the sides t, between and radius. The
+// differences of its sides are given, since they lose their digits where they are computed here.
+double half_arc(double t, double between, double radius, double inner_gap, double outer_gap) {
+  // s - between = (t + radius - between)/2 and so on; of the two gaps one is t - |radius - between|, the other
+  // radius + between - t.
+  const double s = 0.5 * (t + between + radius);
+  double by_between, by_radius;  // s - between, s - radius
+  if (between >= radius) {
+    by_between = 0.5 * inner_gap, by_radius = between - radius + 0.5 * inner_gap;
+  } else {
+    by_radius = 0.5 * inner_gap, by_between = radius - between + 0.5 * inner_gap;
+  }
+  const double above = std::sin(by_between) * std::sin(std::max(0.0, 0.5 * outer_gap)),
+               below = std::sin(s) * std::sin(by_radius);
+  return 2 * std::atan2(std::sqrt(std::max(0.0, above)), std::sqrt(std::max(0.0, below)));
+}
+
+// The largest angle at which cos^E is above exp(-kTail) of its value at the angle `from`.
+double reach_from(double from, double exponent) {
+  const double log_start = math::log_cosine(from);
+  if (std::isinf(log_start)) return from;
+  return exponent > 0 ? std::acos(std::exp(std::max(-700.0, log_start - kTail / exponent))) : kPi / 2;
+}
+
+}  // namespace
+
+double disc_radiance(double radius_rad) {
+  return 1 / (kPi * square(std::sin(radius_rad)));
+}
+
+// By Stokes' theorem the irradiance is half the integral of n.(x cross dx) along the border of the part above the
+// horizon: the rim from one crossing to the other, and the arc of the horizon between both. With e the elevation of
+// the middle, psi_0 the azimuth of a crossing and beta half of that arc:
+//   E = (pi - psi_0) sin^2 R sin e - sin R cos R cos e sin psi_0 + beta,   cos beta = cos R / cos e
+double disc_irradiance(double cosine, double radius_rad) {
+  const double sine_radius = std::sin(radius_rad), cos_elevation = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+  if (cosine >= sine_radius) return cosine;
+  if (cosine <= -sine_radius) return 0;
+  const double u = cosine / sine_radius;
+  if (radius_rad < kFlat_rad) {
+    const double w = std::sqrt(1 - u * u);
+    return sine_radius * (u * (kPi / 2 + std::asin(u)) + w * (2 + u * u) / 3) / kPi;
+  }
+  const double azimuth = rim_azimuth(cosine, cos_elevation, radius_rad);
+  const double sin2_half_arc = std::max(0.0, square(sine_radius) - square(cosine)) / square(cos_elevation);
+  const double beta = std::atan2(std::sqrt(sin2_half_arc), std::cos(radius_rad) / cos_elevation);
+  const double irradiance = (kPi - azimuth) * square(sine_radius) * cosine -
+                            sine_radius * std::cos(radius_rad) * cos_elevation * std::sin(azimuth) + beta;
+  return std::max(0.0, irradiance / (kPi * square(sine_radius)));
+}
+
+// What is below is a sector of the disc less a spherical triangle: pi - 2 alpha - 2 psi_0 cos R, with
+// sin alpha = sin e / sin R.
+double disc_above(double cosine, double radius_rad) {
+  const double sine_radius = std::sin(radius_rad);
+  if (cosine >= sine_radius) return 1;
+  if (cosine <= -sine_radius) return 0;
+  const double u = cosine / sine_radius;
+  if (radius_rad < kFlat_rad) return 1 - (std::acos(u) - u * std::sqrt(1 - u * u)) / kPi;
+  const double azimuth = rim_azimuth(cosine, std::sqrt(1 - cosine * cosine), radius_rad);
+  const double below = kPi - 2 * std::asin(u) - 2 * azimuth * std::cos(radius_rad),
+               whole = 4 * kPi * square(std::sin(0.5 * radius_rad));
+  return std::clamp(1 - below / whole, 0.0, 1.0);
+}
+
+double DiscRings::half_arc(double share) const {
+  const double inner_gap = share * width, outer_gap = (crossing - width) + (1 - share) * width;
+  return brdf::half_arc(first + inner_gap, between_rad, radius_rad, inner_gap, outer_gap);
+}
+
+// The width is that of all rings that cross the rim, written so that it keeps its digits where the disc is small.
+DiscRings disc_rings(double exponent, double radius_rad, double between_rad) {
+  DiscRings rings{0, std::abs(radius_rad - between_rad), 0, radius_rad, between_rad, 0};
+  rings.crossing = 2 * std::min(radius_rad, between_rad);
+  const bool inside = between_rad < radius_rad;
+  const double reach = reach_from(inside ? 0 : rings.first, exponent);
+  if (inside) rings.whole = std::min(rings.first, reach);
+  rings.width = std::min({rings.crossing, reach - rings.first, kPi / 2 - rings.first});
+  return rings;
+}
+
+// Ring by ring about r. Rings that are whole within the disc have a closed form; of the others the part of the ring
+// within the disc is an arc of half-angle psi about the direction to l, so that with e the unit vector from r toward l
+//   power = integral of cos^E t sin t 2 psi dt,   moment = integral of cos^E t sin t (2 psi cos t r + 2 sin psi sin t
+//   e)
+// The arc has the slope of a square root at both ends, which t = a + (b - a) sin^2(x) takes away.
+LobeOfDisc lobe_of_disc(double exponent, double radius_rad, double between_rad) {
+  if (!(radius_rad > 0)) {
+    const double power = math::cos_power(between_rad, exponent);
+    return {power, power, 0};
+  }
+  const DiscRings rings = disc_rings(exponent, radius_rad, between_rad);
+  const double scale = disc_radiance(radius_rad);
+  double power = 0, along_r = 0, along_e = 0;
+  if (between_rad < radius_rad) {
+    const double log_inner = math::log_cosine(rings.first);
+    power = 2 * kPi / (exponent + 1) * -std::expm1((exponent + 1) * log_inner);
+    along_r = 2 * kPi / (exponent + 2) * -std::expm1((exponent + 2) * log_inner);
+  }
+  if (rings.width > 0) {
+    for (const math::QuadraturePoint& point : ring_rule()) {
+      const double x = kPi / 4 * (1 + point.position), share = square(std::sin(x));
+      const double t = rings.first + share * rings.width, psi = rings.half_arc(share);
+      const double weight =
+          kPi / 4 * point.weight * rings.width * std::sin(2 * x) * std::sin(t) * math::cos_power(t, exponent);
+      power += weight * 2 * psi;
+      along_r += weight * 2 * psi * std::cos(t);
+      along_e += weight * 2 * std::sin(psi) * std::sin(t);
+    }
+  }
+  // e = (l - cos(between) r)/sin(between). Where both directions agree there is no e, and nothing along it.
+  LobeOfDisc lobe{scale * power, 0, scale * along_r};
+  const double sine_between = std::sin(between_rad);
+  if (sine_between > 1e-12) {
+    lobe.by_light = scale * along_e / sine_between;
+    lobe.by_mirror = std::max(0.0, scale * along_r - lobe.by_light * std::cos(between_rad));
+  }
+  return lobe;
+}
+
+DiscLobeTable::Node DiscLobeTable::at(double chord) const {
+  const double x = (chord - first_chord) * nodes_per_chord;
+  if (x >= kNodes - 1) return {};
+  const double from = std::max(0.0, x);
+  const auto i = static_cast<std::size_t>(from);
+  const auto t = static_cast<float>(from - static_cast<double>(i));
+  Node node;
+  for (int k = 0; k < 2; ++k) {
+    node.cosine[k] = nodes[i].cosine[k] + t * (nodes[i + 1].cosine[k] - nodes[i].cosine[k]);
+    node.plain[k] = nodes[i].plain[k] + t * (nodes[i + 1].plain[k] - nodes[i].plain[k]);
+  }
+  return node;
+}
+
+DiscLobeTable::Node disc_lobe_node(double exponent, double radius_rad, double chord) {
+  const LobeOfDisc lobe = lobe_of_disc(exponent, radius_rad, 2 * std::asin(std::min(1.0, 0.5 * chord)));
+  const double both = lobe.by_light + lobe.by_mirror;
+  DiscLobeTable::Node node;
+  node.cosine[0] = static_cast<float>(lobe.by_light), node.cosine[1] = static_cast<float>(lobe.by_mirror);
+  if (!(both > 0)) return node;
+  node.plain[0] = static_cast<float>(lobe.power * lobe.by_light / both);
+  node.plain[1] = static_cast<float>(lobe.power * lobe.by_mirror / both);
+  return node;
+}
+
+namespace {
+
+std::shared_ptr<const DiscLobeTable> made_table(double exponent, double radius) {
+  auto table = std::make_shared<DiscLobeTable>();
+  // Nine standard deviations of the lobe to both sides of the rim.
+  const double reach = 9 / std::sqrt(exponent + 0.5);
+  const double first = std::max(0.0, radius - reach), last = std::min({kPi, radius + reach, radius + kPi / 2});
+  const double last_chord = 2 * std::sin(0.5 * last);
+  table->first_chord = 2 * std::sin(0.5 * first);
+  table->nodes_per_chord = (DiscLobeTable::kNodes - 1) / (last_chord - table->first_chord);
+  table->nodes.resize(DiscLobeTable::kNodes + 1);
+  parallel_for(DiscLobeTable::kNodes - 1, 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      table->nodes[i] =
+          disc_lobe_node(exponent, radius, table->first_chord + static_cast<double>(i) / table->nodes_per_chord);
+    }
+  });
+  return table;
+}
+
+}  // namespace
+
+std::shared_ptr<const DiscLobeTable> disc_lobe_table(double exponent, double radius_rad) {
+  constexpr std::size_t kMost = 4096;
+  static std::mutex mutex;
+  static std::map<std::pair<double, double>, std::shared_ptr<const DiscLobeTable>> tables;
+  const std::pair<double, double> key{exponent, radius_rad};
+  {
+    const std::scoped_lock lock(mutex);
+    const auto found = tables.find(key);
+    if (found != tables.end()) return found->second;
+  }
+  std::shared_ptr<const DiscLobeTable> made = made_table(exponent, radius_rad);
+  const std::scoped_lock lock(mutex);
+  if (tables.size() >= kMost) tables.clear();
+  return tables.emplace(key, std::move(made)).first->second;
+}
+
+}  // namespace goniochrome::brdf

@@ -1,0 +1,38 @@
+// The part of the shading program that looks tilted lobes up, and the layout of the texture that it reads them from.
+// goniochrome-theory(7), TILTED LOBES.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "render/effects.h"
+#include "render/internal/tilt_table.h"
+
+namespace goniochrome::render {
+
+// How weights and maps are multiplied in the program: as RGB, in the four forms of the operator, or by times().
+enum class TiltProduct { kPlain, kForms, kOperator };
+
+// The texture "tilted", texel by texel in rows of kTiltTexels: first, for each part, where the rows of its paint begin.
+// Then a row for each paint and segment of the view: for each map the number of its first look-up, and one more for the
+// end; then four texels for each look-up, which are the axis (a, s, c), its step, the weight, and its step.
+constexpr std::size_t kTiltTexels = 4096;
+struct TiltTexture {
+  std::size_t stride = 0;   // texels of a row
+  std::vector<float> rgba;  // of whole rows of kTiltTexels
+};
+// `forms` puts n weights of three channels, one behind the other, into four.
+TiltTexture tilt_texture(const TiltTable& table, std::size_t maps,
+                         const std::function<std::vector<float>(const float* rgb)>& forms);
+
+// The sampler of the map of one of the exponents. Lobes that are drawn anyhow share theirs.
+std::string tilt_sampler(const Effects& effects, const std::vector<double>& exponents, double exponent);
+
+// The uniforms, and the function `tilted_lobes(r, n, wo)` that sums the look-ups of this point. Both are empty where
+// there are no exponents.
+std::string tilt_uniforms(const Effects& effects, const std::vector<double>& exponents);
+std::string tilt_function(const Effects& effects, const std::vector<double>& exponents, TiltProduct product);
+
+}  // namespace goniochrome::render

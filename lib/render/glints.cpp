@@ -1,0 +1,92 @@
+#include "render/glints.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/angles.h"
+#include "base/parallel.h"
+#include "brdf/lobe_model.h"
+#include "render/surface_layer.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+constexpr double kSmall = 0.18;      // of the lamp's radius: narrower spreads change nothing that is seen
+constexpr double kWidest_rad = 0.3;  // at outlines the spread is no measure
+constexpr double kWidened = 2;       // the image holds at least so many samples
+
+// Half of the change of the mirror direction between the pixels beside this one; nothing where no neighbor shows the
+// same part.
+class Mirrors {
+ public:
+  explicit Mirrors(const Gbuffer& gbuffer) : g_(gbuffer) {}
+
+  Vec3 at(int x, int y) const {
+    const Vec3 n = g_.normal(x, y), viewer = g_.to_viewer(x, y);
+    return 2 * dot(n, viewer) * n - viewer;
+  }
+  Vec3 change(int x, int y, int dx, int dy) const {
+    const int part = g_.part(x, y);
+    const bool after = same(x + dx, y + dy, part), before = same(x - dx, y - dy, part);
+    const Vec3 to = after ? at(x + dx, y + dy) : at(x, y), from = before ? at(x - dx, y - dy) : at(x, y);
+    return (after && before ? 0.5 : 1.0) * (to - from);
+  }
+  // The radius of a disc of the solid angle that the pixel sees by reflection.
+  double spread(int x, int y) const { return std::sqrt(length(cross(change(x, y, 1, 0), change(x, y, 0, 1))) / kPi); }
+
+ private:
+  bool same(int x, int y, int part) const {
+    return x >= 0 && y >= 0 && x < g_.width && y < g_.height && g_.part(x, y) == part;
+  }
+  const Gbuffer& g_;
+};
+
+}  // namespace
+
+double mirrored_share(const Light& light, const Vec3& mirrored, double spread_rad) {
+  const double radius = light.radius_rad;
+  if (!(radius > 0)) return 0;
+  if (spread_rad <= kSmall * radius || spread_rad > kWidest_rad) return light.meets(mirrored) ? 1 : 0;
+  Light wide = light;
+  wide.radius_rad = std::min(kPi / 2, std::sqrt(radius * radius + kWidened * spread_rad * spread_rad));
+  const double share = std::sin(0.5 * radius) / std::sin(0.5 * wide.radius_rad);
+  return wide.meets(mirrored) ? share * share : 0;
+}
+
+void add_glints(const Scene& scene, const Effects& effects, const Gbuffer& gbuffer, float weight, image::Image& rgba) {
+  if (!effects.mirror || !effects.extent || effects.lights == 0) return;
+  const Mirrors mirrors(gbuffer);
+  const double of_sample = std::sqrt(static_cast<double>(weight));
+  parallel_for(static_cast<std::size_t>(gbuffer.height), 8, [&](std::size_t begin, std::size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      for (int x = 0; x < gbuffer.width; ++x) {
+        const int part = gbuffer.part(x, y);
+        if (part < 0) continue;
+        if (scene.layer != nullptr && scene.layer->surface(part).texture != nullptr) continue;
+        const paint::LobeFit& paint = scene.paints[static_cast<std::size_t>(part)];
+        if (find_lobe(paint, paint::kMirrorExponent) == nullptr) continue;
+        const Vec3 r = mirrors.at(x, y);
+        color::Rgb sum;
+        double spread = -1;
+        for (const Light& light : scene.lights) {
+          if (!(light.radius_rad > 0) || length(r - light.direction) > 2 * (light.radius_rad + kWidest_rad)) continue;
+          if (spread < 0) spread = of_sample * mirrors.spread(x, y);
+          const double missing = mirrored_share(light, r, spread) - (light.meets(r) ? 1 : 0);
+          if (missing == 0) continue;
+          const double cos_o = std::clamp(dot(gbuffer.normal(x, y), gbuffer.to_viewer(x, y)), 0.0, 1.0);
+          const paint::LobeFit here = effects.views ? brdf::at_view(paint, std::acos(cos_o) / kDegree) : paint;
+          const double fresnel =
+              brdf::fresnel_dielectric(effects.fresnel ? cos_o : std::numbers::sqrt2 / 2, brdf::kCoatIndex);
+          const color::Rgb k = fresnel * find_lobe(here, paint::kMirrorExponent)->gloss;
+          const color::Rgb light_seen = missing * light.radiance();
+          sum += effects.reflection ? color::reflected(scene.reflection, k, light_seen) : k * light_seen;
+        }
+        for (int c = 0; c < 3; ++c) rgba.pixel(x, y)[c] += weight * static_cast<float>(sum[c]);
+      }
+    }
+  });
+}
+
+}  // namespace goniochrome::render
