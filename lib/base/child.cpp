@@ -1,16 +1,19 @@
 #include "base/child.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
@@ -155,6 +158,26 @@ Error ended_by(int number, const std::string& name, const ChildLimits& limits) {
                      strsignal(number));
 }
 
+// Ends the child when its time is up, also where a library has blocked every signal that can be blocked: one does so
+// while it starts its threads, and waits for ever where there is no memory for them. Returns whether it was ended.
+bool end_in_time(pid_t child, const ChildLimits& limits) {
+  const int handle = static_cast<int>(syscall(SYS_pidfd_open, child, 0));
+  if (handle < 0) return false;
+  // A second more than the alarm of the child's own.
+  const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(kWaitingFactor * limits.processor_s + 1);
+  bool late = false;
+  for (;;) {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - std::chrono::steady_clock::now());
+    late = left.count() <= 0;
+    pollfd ended{handle, POLLIN, 0};
+    const int told = late ? 0 : poll(&ended, 1, static_cast<int>(std::min<long long>(left.count() + 1, 1 << 30)));
+    if (late || told > 0 || (told < 0 && errno != EINTR)) break;
+  }
+  close(handle);
+  if (late) kill(child, SIGKILL);
+  return late;
+}
+
 class Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}
@@ -179,6 +202,13 @@ Result<ChildBytes> content_of(const Descriptor& shared, const std::string& name)
 }
 
 }  // namespace
+
+std::optional<std::size_t> addresses_left() {
+  rlimit limit;
+  const auto mapped = mapped_bytes();
+  if (!mapped || getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return std::nullopt;
+  return limit.rlim_cur > *mapped ? static_cast<std::size_t>(limit.rlim_cur) - *mapped : 0;
+}
 
 ChildBytes::ChildBytes(ChildBytes&& other) noexcept
     : bytes_(std::exchange(other.bytes_, nullptr)), size_(std::exchange(other.size_, 0)) {}
@@ -209,10 +239,11 @@ Result<ChildBytes> made_by_child(const std::string& name, const ChildLimits& lim
     confine(limits, parent);
     live(shared.number(), name, work);
   }
+  const bool late = end_in_time(child, limits);
   int status = 0;
   while (waitpid(child, &status, 0) < 0)
     if (errno != EINTR) return input_error("{}: the process that reads it is lost: {}", name, std::strerror(errno));
-  if (WIFSIGNALED(status)) return ended_by(WTERMSIG(status), name, limits);
+  if (WIFSIGNALED(status)) return ended_by(late ? SIGALRM : WTERMSIG(status), name, limits);
   if (WEXITSTATUS(status) == kNoMemory) return needs_memory(name, limits);
   GONIO_ASSIGN(ChildBytes bytes, content_of(shared, name));
   if (WEXITSTATUS(status) == kDone) return bytes;

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -39,6 +40,10 @@ class ChildOutput {
  private:
   int descriptor_;
 };
+
+// The bytes of addresses that this process may map beyond those that it has, or nothing where there is no limit or the
+// system does not tell.
+std::optional<std::size_t> addresses_left();
 
 // Runs `work` in a child process and returns what it wrote. The child sees this process as it is, but nothing that it
 // changes comes back except those bytes, and whatever it prints is lost. Error: the one that `work` returned, or a

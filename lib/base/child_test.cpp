@@ -102,6 +102,18 @@ TEST(Child, TimeBeyondTheLimitIsAnError) {
               HasSubstr("took more than 1 s"));
 }
 
+// It uses no processor time, and neither an alarm nor SIGTERM reaches it.
+TEST(Child, WaitingWithEverySignalBlockedIsEnded) {
+  const auto waiting = made_by_child("stuck.ppm", kLimits, [](ChildOutput&) -> Result<void> {
+    sigset_t all;
+    sigfillset(&all);
+    sigprocmask(SIG_SETMASK, &all, nullptr);
+    for (;;) pause();
+  });
+  ASSERT_FALSE(waiting.ok());
+  EXPECT_EQ(waiting.error().message, "stuck.ppm: reading it took more than 1 s: is it damaged?");
+}
+
 TEST(Child, ChangesNothingHere) {
   int value = 1;
   EXPECT_EQ(error_of([&](ChildOutput&) -> Result<void> {

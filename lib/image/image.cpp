@@ -44,6 +44,13 @@ Result<Module> loaded_module() {
   static Module loaded;
   if (loaded.read) return loaded;
   const std::string path = module_path().string();
+  // With less, one of the libraries starts its threads, fails at one of them and then waits for the others for ever.
+  constexpr std::size_t kLoading_bytes = std::size_t{450} << 20;
+  if (const auto left = addresses_left(); left && *left < kLoading_bytes)
+    return input_error(
+        "{}: cannot be loaded, for there is too little memory: give it 600 MB of addresses, or convert the image to "
+        "EXR",
+        path);
   void* handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!handle) {
     // The loader tells by a sentence alone that it had no memory.
