@@ -294,17 +294,37 @@ formats::Basis sketch_basis() {
   return basis;
 }
 
-SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, const formats::Basis& basis,
-                       const SketchLimits& limits, bool with_differences) {
-  // What the pixels show, sorted into cells.
-  const Seen seen(input);
+namespace {
+
+std::vector<SketchSample> seen_samples(const Seen& seen, const SketchPixels& pixels) {
   std::vector<SketchSample> samples(pixels.used.size());
   parallel_for(samples.size(), kChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) samples[i] = seen.at(pixels.used[i]);
   });
+  return samples;
+}
+
+// Which aspecular angles the pixels show.
+void take_seen(const std::vector<SketchCell>& cells, SketchFit& fit) {
+  if (!cells.empty()) fit.seen_from_deg = cells.front().aspecular_deg, fit.seen_to_deg = cells.back().aspecular_deg;
+}
+
+// Which of the rows that were found no pixel shows.
+void take_extrapolated(const std::vector<SketchCell>& cells, SketchFit& fit) {
+  for (const paint::LabReading& row : fit.rows)
+    if (!is_seen(cells, row.geometry.aspecular_deg)) fit.extrapolated_deg.push_back(row.geometry.aspecular_deg);
+}
+
+}  // namespace
+
+SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, const formats::Basis& basis,
+                       const SketchLimits& limits, bool with_differences) {
+  // What the pixels show, sorted into cells.
+  const Seen seen(input);
+  const std::vector<SketchSample> samples = seen_samples(seen, pixels);
   const std::vector<SketchCell> cells = sketch_cells(samples);
   SketchFit fit;
-  if (!cells.empty()) fit.seen_from_deg = cells.front().aspecular_deg, fit.seen_to_deg = cells.back().aspecular_deg;
+  take_seen(cells, fit);
 
   // How the curve that was found is judged, and what is answered where none will do.
   SketchCurve curve;
@@ -348,8 +368,7 @@ SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, con
   take_curve(curve, fit);
   if (as_good) take_found(found, fit);
   fit.condition = quadratic.condition;
-  for (const paint::LabReading& row : fit.rows)
-    if (!is_seen(cells, row.geometry.aspecular_deg)) fit.extrapolated_deg.push_back(row.geometry.aspecular_deg);
+  take_extrapolated(cells, fit);
   const auto allows = [&](double gloss) {
     return search.cost_with_gloss(found, gloss) <= kSameCost * found.search.cost + kSameCostBy;
   };
@@ -426,8 +445,20 @@ SketchFit searched(const SketchInput& input, const SketchPixels& pixels, const S
   const LobeSearch first(fitters, lamps != nullptr ? samples_of(input, lamps->way, light, lamps->way.size())
                                                    : samples_of(input, pixels.used, light, kFirstPixels));
   const FoundPaint found = search.find(first);
-  take_found(found, fit);
-  if (lamps != nullptr) take_gloss_range(search, found, fit);
+  if (lamps != nullptr) {
+    const std::vector<SketchCell> cells = sketch_cells(seen_samples(Seen(input), pixels));
+    take_seen(cells, fit);
+    take_found(found, fit);
+    // Lobes of any weight have no errors of their own.
+    const std::vector<double> none(3, 0.0), &error = found.search.error.size() < 3 ? none : found.search.error;
+    const color::Rgb face = color::rgb_from_lab(fit.appearance.face, *color::white_point({}));
+    const std::string problem = face_problem(cells, face, error, fit, limits);
+    if (!problem.empty()) return give_up(problem);
+    take_extrapolated(cells, fit);
+    take_gloss_range(search, found, fit);
+  } else {
+    take_found(found, fit);
+  }
   weights = fit.weights = found.weights;
   judge();
   if (fit.median_de76 > limits.median_de76) return give_up(poor_match(fit));

@@ -60,11 +60,11 @@ of() { jq -r ".results.plan[] | select(.effect == \"$2\") | .$1" r.json; }
 }
 
 @test "a picture that is not going to be within the tolerance says so beforehand" {
-  run render-osmesa $scene --tolerance 0.2 -o out.exr
+  run render-osmesa $scene --engine cpu --tolerance 0.2 -o out.exr
   [ "$status" -eq 0 ]
   [[ $output == *"predicted to miss the truth by dE00 "*", --tolerance is 0.2: "* ]]
   # Control: where it is going to be, nothing is said.
-  run render-osmesa $scene --tolerance 30 -o out.exr
+  run render-osmesa $scene --engine cpu --tolerance 30 -o out.exr
   [ "$status" -eq 0 ]
   [[ $output != *"predicted to miss"* ]]
 }

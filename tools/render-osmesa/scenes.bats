@@ -37,7 +37,7 @@ decided() { grep -A4 "\"effect\": \"$1\"" auto.json | grep -q "\"decision\": \"$
   scene fitted.xml#signal_white --env outdoor.env.exr
   decided anisotropy "not in the scene"
   scene fitted.xml#signal_white --env studio.env.exr
-  scene fitted.xml#signal_white --light 40,50
+  scene fitted.xml#signal_white --light 40,50@0
   decided mirror "not in the scene"
   decided operator "not in the scene"
 }
