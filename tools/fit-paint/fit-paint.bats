@@ -411,6 +411,9 @@ cornell() {
   grep -q 'illuminant="A"' lit.xml
   run fit-paint --basis "$basis" --illuminant B two.xml
   [ "$status" -eq 2 ]
+  run fit-paint --basis "$basis" --illuminant A,F11 two.xml
+  [ "$status" -eq 2 ]
+  [[ "$output" == *"give one, and run once for each"* ]]
 }
 
 @test "--tilts makes sets of tilted lobes where a color map travels; missing and wrong counts are refused" {

@@ -26,10 +26,9 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("coat", "INDEX", "1.5", &o.coat, "refractive index of the clear coat of every paint; none is no coat")
       .more(
           "The coat takes from the base what it reflects itself. The readings are met all the same, because the base "
-          "is "
-          "fitted to what the coat leaves of it at each geometry. auto gives a coat to every paint with gloss, stated "
-          "or assumed, and to every paint that states a coat; its index is 1.5, or as much as the gloss asks for. "
-          "Measured BRDFs have none unless it is given here.");
+          "is fitted to what the coat leaves of it at each geometry. auto gives a coat to every paint with gloss, "
+          "stated or assumed, and to every paint that states a coat; its index is 1.5, or as much as the gloss asks "
+          "for. Measured BRDFs have none unless it is given here.");
   spec.option("steepest", "DEG", "60", &o.steepest_deg, "largest angle to the normal that counts in measured BRDFs")
       .from(0, 90);
   spec.heading = "how it is fitted";

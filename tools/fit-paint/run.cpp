@@ -175,7 +175,11 @@ class Run {
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   GONIO_ASSIGN(fit::FitOptions fit, fit_options(options));
   GONIO_ASSIGN(formats::Basis basis, formats::read_basis(options.basis));
-  if (!options.illuminant.empty()) GONIO_TRY(illuminants_of({options.illuminant}));
+  if (!options.illuminant.empty()) {
+    GONIO_ASSIGN(const std::vector<std::string> illuminants, illuminants_of({options.illuminant}));
+    if (illuminants != std::vector{options.illuminant})
+      return usage_error("--illuminant is \"{}\": give one, and run once for each", options.illuminant);
+  }
   session.explain(plan(options, fit, basis));
   const fit::PaintFitter fitter(std::move(basis), std::move(fit));
 

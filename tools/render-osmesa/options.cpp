@@ -87,10 +87,9 @@ void add_light(cli::ToolSpec& spec, Options& o) {
   spec.option("critical-angle", "NAME", "clip", &o.critical_angle, "what color maps do beyond the critical angle")
       .one_of({"clip", "slide", "slide-map", "index"})
       .more(
-          "A color map shows its own colors under lights. Under an environment, the engines integral and path show it "
-          "as "
-          "well; cpu and gl show the tilted lobes of the paint, which stand for its map with the angle slide, or its "
-          "lobes where it has none.");
+          "A color map shows its own colors under lights. Under an environment, the engines integral and path show "
+          "it as well; cpu and gl show the tilted lobes of the paint, which stand for its map with the angle slide, "
+          "or its lobes where it has none.");
   spec.option("exposure", "STOPS", "-1", &o.exposure, "power of two that brightens the picture, or auto")
       .more(
           "auto leaves an EXR as it is. In a PNG it makes a gray card of 18 % middle gray: the light on the card is "
@@ -131,17 +130,15 @@ void add_effects(cli::ToolSpec& spec, Options& o) {
           "texture-lobes, operator, lights and extent (of lamps). lobe-20, gloss-900 and texture-0 (lobe0 of the "
           "textures) are single lobes. tilts are the tilted lobes that stand for color maps under an environment, "
           "tilts-1 is the set with the fewest of them, and each finer set, as tilts-2, needs the one before; while "
-          "they are drawn, the lobes of these paints are not. Three more "
-          "are drawn by tracing rays: shadow (the mesh blocks light), self (lobes and mirror see the body instead of "
-          "black) and bounce (the same for the diffuse part). The last two need shadow, and rays names all three. They "
-          "are drawn at those pixels alone that can see the mesh, so that a convex shape is drawn as without them. "
-          "Rays are traced wherever a mesh is given; auto,-rays traces none, which is much faster where the mesh "
-          "blocks much light. Effects of rays that auto decides to draw take at most 1024 samples of a point, and "
-          "those that are named with a plus, as in auto,+rays, take as many as --tolerance needs. The effect floor is "
-          "that "
-          "of --floor shadow and needs shadow; it is priced where the environment is the background, and +floor asks "
-          "for it as "
-          "--floor shadow does. auto leaves out the effects that change too little, as --tolerance and --budget say.");
+          "they are drawn, the lobes of these paints are not. Three more are drawn by tracing rays: shadow (the mesh "
+          "blocks light), self (lobes and mirror see the body instead of black) and bounce (the same for the diffuse "
+          "part). The last two need shadow, and rays names all three. They are drawn at those pixels alone that can "
+          "see the mesh, so that a convex shape is drawn as without them. Rays are traced wherever a mesh is given; "
+          "auto,-rays traces none, which is much faster where the mesh blocks much light. Effects of rays that auto "
+          "decides to draw take at most 1024 samples of a point, and those that are named with a plus, as in "
+          "auto,+rays, take as many as --tolerance needs. The effect floor is that of --floor shadow and needs "
+          "shadow; it is priced where the environment is the background, and +floor asks for it as --floor shadow "
+          "does. auto leaves out the effects that change too little, as --tolerance and --budget say.");
   o.common.tolerance = 0.5;
   cli::add_tolerance(spec, o.common, "DE00", "largest difference from the truth, all errors together")
       .more(
@@ -166,19 +163,18 @@ void add_engines(cli::ToolSpec& spec, Options& o) {
       .one_of(render::engine_choices())
       .more(engine_sentences() +
             "The pictures of cpu and gl are the same, and auto takes the one that is predicted to be faster. "
-            "Prefiltered maps know one direction at each point. They cannot tell light that changes within that "
-            "part of a broad lobe that is above the horizon, and differ from the truth by some 0.5 to 1 dE00 in "
-            "the mean, and by more at single points. integral sums blocks of the image that are as coarse as "
-            "--tolerance allows, and draws every effect. At the default tolerance it takes several hundred times "
-            "as long as the others, and a brushed paint takes another 50 times as long; --explain predicts the "
-            "time. To pictures of these three, what the mesh does to light is added by rays, see --effects. path also "
-            "draws parts that shine and floors that wear a paint. It takes the light from the image that the "
-            "environment was made from, "
-            "and needs neither prefiltered maps nor OpenGL. It draws samples until the noise of the picture, "
-            "estimated from them, is within --tolerance: that is the 95th percentile, over the visible pixels, of "
+            "Prefiltered maps know one direction at each point. They cannot tell light that changes within that part "
+            "of a broad lobe that is above the horizon, and differ from the truth by some 0.5 to 1 dE00 in the mean, "
+            "and by more at single points. integral sums blocks of the image that are as coarse as --tolerance "
+            "allows, and draws every effect. At the default tolerance it takes several hundred times as long as the "
+            "others, and a brushed paint takes another 50 times as long; --explain predicts the time. To pictures of "
+            "these three, what the mesh does to light is added by rays, see --effects. path also draws parts that "
+            "shine, lamps at a place and floors that wear a paint. It takes the light from the image that the "
+            "environment was made from, and needs neither prefiltered maps nor OpenGL. It draws samples until the "
+            "noise of the picture, estimated from them, is within --tolerance: that is the 95th percentile, over the "
+            "visible pixels, of "
             "the CIEDE2000 difference of one standard deviation. auto takes path where the prefiltered maps are "
-            "predicted "
-            "not to keep --tolerance, and path is predicted to be faster than they and their rays.");
+            "predicted not to keep --tolerance, and path is predicted to be faster than they and their rays.");
   spec.option("bounces", "N", "8", &o.bounces, "surfaces that may pass light on to what is seen")
       .from(0, 4096)
       .more(
@@ -229,16 +225,15 @@ void add_output(cli::ToolSpec& spec, Options& o) {
           "normal and that light; without --light, it is the direction in which the environment's irradiance is "
           "largest, and goniochrome:aovLight holds it. mask is 1 on the mesh. part is a number from 1, and the "
           "attribute goniochrome:parts names the parts. More attributes say what is needed to shade the buffers "
-          "again: goniochrome:rays (corner;right;down: the ray through the point x,y is the sum of the first, x times "
-          "the second and y times the third, in pixels from the upper left), goniochrome:lights (direction, "
+          "again: goniochrome:rays (corner;right;down: the ray through the point x,y is the sum of the first, x "
+          "times the second and y times the third, in pixels from the upper left), goniochrome:lights (direction, "
           "white and extent of each in degrees, and of a lamp at a place that place and its distance from the middle "
           "of the mesh), goniochrome:operator (the 27 coefficients k[c][d][e] of colored light, with e running "
-          "fastest), "
-          "goniochrome:samples (those of a pixel of the picture) and goniochrome:environment. transport brings all "
-          "buffers and, in parts of their own, the light that each lobe of the basis gathers at each pixel, with "
-          "shadows and with light that surfaces send to each other; it is traced until its noise is within "
-          "--tolerance. --gbuffer then shows other paints in it within milliseconds. goniochrome-paint(5) describes "
-          "the parts.");
+          "fastest), goniochrome:samples (those of a pixel of the picture) and goniochrome:environment. transport "
+          "brings all buffers and, in parts of their own, the light that each lobe of the basis gathers at each "
+          "pixel, with shadows and with light that surfaces send to each other; it is traced until its noise is "
+          "within --tolerance. --gbuffer then shows other paints in it within milliseconds. goniochrome-paint(5) "
+          "describes the parts.");
 }
 
 // The examples, the keys of --report, and the pages to see.

@@ -371,8 +371,8 @@ EOF
       if [ $extent = 3 ]; then
         [ "$(result gloss_from)" = search ]
         below "$(awk -v x="$(result gloss_60_gu)" -v y=$gloss 'BEGIN { print (x - y)^2 }')" 25
-      elif [ $gloss = 0 ]; then # the control: a point has no mirror image, so that none can be told from much
-        ! below "$(awk -v x="$(result gloss_60_gu)" 'BEGIN { print x^2 }')" 25
+      elif [ $gloss = 0 ]; then # the control: a point has no mirror image, by which no gloss and much gloss differ
+        if below "$(awk -v x="$(result gloss_60_gu)" 'BEGIN { print x^2 }')" 25; then return 1; fi
       fi
     done
   done
