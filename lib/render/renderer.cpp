@@ -262,9 +262,8 @@ CorrectionNoise Renderer::State::correct(int first, int count, image::Image& pic
     for (int i = begin; i < end; ++i) {
       samples.push_back(drawn_surface(*scene.mesh, *gbuffer(i)));
       if (!effects.rays.floor) continue;
-      add_floor(*transport, samples.back());
-      add_surroundings(*transport, samples.back(), {effects.background, scene.background_color, ray_setup->environment},
-                       1.0F / static_cast<float>(count), picture);
+      add_surroundings(*transport, *gbuffer(i), {effects.background, scene.background_color, ray_setup->environment},
+                       effects.rays, 1.0F / static_cast<float>(count), picture);
     }
     const float gain = static_cast<float>(end - begin) / static_cast<float>(count);
     const CorrectionNoise one = add_correction(*transport, samples, request, before, gain, picture);
@@ -300,7 +299,9 @@ Result<Transport> Renderer::State::traced_light(bool over_floor) const {
     paths.ground = ray_setup->floor;
     paths.rays = std::make_shared<const rays::RayScene>(ray_mesh->over({ray_setup->floor->height}));
   }
-  return Transport::create(paths);
+  GONIO_ASSIGN(Transport created, Transport::create(paths));
+  if (over_floor) created.shade_ground({.seed = effort_asked.seed}, effort_asked.bounces);
+  return created;
 }
 
 // The same over the floor of the picture; none where there is no such floor.

@@ -70,6 +70,14 @@ std::vector<DiscDirection> disc_directions(const Light& light) {
   return all;
 }
 
+Vec3 disc_direction(const Light& light, double u, double v) {
+  const double half = std::sin(0.5 * light.radius_rad);
+  const double versine = 2 * half * half * u, across = std::sqrt(versine * (2 - versine)), phi = 2 * kPi * v;
+  const Vec3 other = std::abs(light.direction.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  const Vec3 x = normalized(cross(other, light.direction)), y = cross(light.direction, x);
+  return (1 - versine) * light.direction + across * std::cos(phi) * x + across * std::sin(phi) * y;
+}
+
 std::vector<double> lobe_exponents(const std::vector<paint::LobeFit>& paints) {
   std::vector<double> exponents;
   for (const paint::LobeFit& paint : paints) {

@@ -41,6 +41,8 @@ struct DiscDirection {
   double weight = 1;
 };
 std::vector<DiscDirection> disc_directions(const Light& light);
+// A direction to a disc, even over its solid angle, by numbers in [0,1).
+Vec3 disc_direction(const Light& light, double u, double v);
 
 enum class Background { kNone, kColor, kEnvironment };
 

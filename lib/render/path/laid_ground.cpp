@@ -5,6 +5,7 @@
 
 #include "base/angles.h"
 #include "brdf/disc_light.h"
+#include "render/path/sequence.h"
 
 namespace goniochrome::render {
 
@@ -123,18 +124,28 @@ Result<LaidGround> LaidGround::create(const Ground& ground, const envmap::Enviro
   if (!fine) laid.gather_light(environment);
   // Each texel is a constant patch.
   std::vector<BrightTexel> texels;
+  laid.soft_rows_.assign(static_cast<std::size_t>(environment.height()) + 1, 0.0);
+  double below = 0, below_squares = 0;
   const bool rows_agree = environment.layout() == envmap::Environment::Layout::kLatLong;
   for (int row = 0; row < environment.height(); ++row) {
     double weight = 0;
     for (int column = 0; column < environment.width(); ++column) {
+      if (environment.direction_at(column + 0.5, row + 0.5).y < 0) {
+        const double mean = mean_of(texel(environment, column, row)),
+                     solid_angle = environment.solid_angle(column, row);
+        below += mean * solid_angle, below_squares += mean * mean * solid_angle;
+      }
       if (column == 0 || !rows_agree) weight = upward_weight(environment, column, row);
       if (!(weight > 0)) continue;
       const color::Rgb light = weight * texel(environment, column, row);
       laid.irradiance_ += light;
+      laid.soft_rows_[static_cast<std::size_t>(row) + 1] += mean_of(light);
       if (mean_of(texel(environment, column, row)) > 0) texels.push_back({column, row, mean_of(light)});
       if (fine) laid.add_light(environment.direction_at(column + 0.5, row + 0.5), mean_of(light));
     }
   }
+  if (below_squares > 0) laid.ground_extent_sr_ = below * below / below_squares;
+  laid.soft_irradiance_ = laid.irradiance_;
   for (const Light& light : lights) {
     const color::Rgb lit = (kPi * brdf::disc_irradiance(light.direction.y, light.radius_rad)) * light.white;
     laid.irradiance_ += lit;
@@ -142,6 +153,8 @@ Result<LaidGround> LaidGround::create(const Ground& ground, const envmap::Enviro
   }
   laid.sum_up();
   laid.find_bright(std::move(texels));
+  for (std::size_t row = 1; row < laid.soft_rows_.size(); ++row)
+    laid.soft_rows_[row] = laid.soft_rows_[row - 1] + std::max(0.0, laid.soft_rows_[row]);
   return laid;
 }
 
@@ -245,9 +258,14 @@ void LaidGround::find_bright(std::vector<BrightTexel> texels) {
   bright_ = std::move(texels);
   is_bright_.assign(static_cast<std::size_t>(environment_->width()) * static_cast<std::size_t>(environment_->height()),
                     false);
-  for (const BrightTexel& at : bright_)
+  for (const BrightTexel& at : bright_) {
+    const color::Rgb light = upward_weight(*environment_, at.column, at.row) * texel(*environment_, at.column, at.row);
+    bright_irradiance_ += light;
+    soft_rows_[static_cast<std::size_t>(at.row) + 1] -= at.light;
     is_bright_[static_cast<std::size_t>(at.row) * static_cast<std::size_t>(environment_->width()) +
                static_cast<std::size_t>(at.column)] = true;
+  }
+  soft_irradiance_ += -1.0 * bright_irradiance_;
 }
 
 bool LaidGround::is_bright(const Vec3& direction) const {
@@ -268,6 +286,75 @@ LaidGround::BrightSample LaidGround::drawn_bright(double which, double u, double
   const double density = environment_->solid_angle_density(column, row);
   return {environment_->direction_at(column, row), density > 0 ? at.light / total / density : 0,
           texel(*environment_, at.column, at.row)};
+}
+
+color::Rgb LaidGround::share_of(const color::Rgb& irradiance) const {
+  const auto by = [](double part, double whole) { return whole > 0 ? std::max(0.0, part / whole) : 0; };
+  return {by(irradiance.x, irradiance_.x), by(irradiance.y, irradiance_.y), by(irradiance.z, irradiance_.z)};
+}
+
+// Where a channel has no light in the draws, it is shared evenly.
+void LaidGround::scale_to(const color::Rgb& irradiance, std::vector<SharedRay>& rays) const {
+  const color::Rgb wanted = share_of(irradiance);
+  color::Rgb drawn;
+  for (const SharedRay& ray : rays) drawn += ray.share;
+  for (int c = 0; c < 3; ++c) {
+    for (SharedRay& ray : rays)
+      ray.share[c] =
+          drawn[c] > 0 ? ray.share[c] * (wanted[c] / drawn[c]) : wanted[c] / static_cast<double>(rays.size());
+  }
+}
+
+// Rows are drawn by what light they hold, columns by that within the row, and places within a texel evenly.
+std::vector<LaidGround::SharedRay> LaidGround::soft_rays(std::uint32_t count) const {
+  const double total = soft_rows_.back();
+  if (!(total > 1e-9 * mean_of(irradiance_))) return {};
+  const auto width = static_cast<std::size_t>(environment_->width());
+  const Sequence sequence(0x50F7, count);
+  std::vector<std::array<double, 4>> draws;
+  for (std::uint32_t i = 0; i < count; ++i) draws.push_back(sequence.point(i, 0));
+  std::ranges::sort(draws);
+  std::vector<SharedRay> rays;
+  std::vector<double> sums(width + 1);  // of the row that was asked last
+  int in_sums = -1;
+  for (const std::array<double, 4>& draw : draws) {
+    const auto above = std::upper_bound(soft_rows_.begin(), soft_rows_.end(), draw[0] * total);
+    const int row = std::clamp(static_cast<int>(above - soft_rows_.begin()) - 1, 0, environment_->height() - 1);
+    if (row != in_sums) {
+      for (std::size_t column = 0; column < width; ++column) {
+        const int at = static_cast<int>(column);
+        const bool bright = !is_bright_.empty() && is_bright_[static_cast<std::size_t>(row) * width + column];
+        const double light =
+            bright ? 0 : upward_weight(*environment_, at, row) * mean_of(texel(*environment_, at, row));
+        sums[column + 1] = sums[column] + light;
+      }
+      in_sums = row;
+    }
+    if (!(sums.back() > 0)) continue;
+    const auto right = std::upper_bound(sums.begin(), sums.end(), draw[1] * sums.back());
+    const int column = std::clamp(static_cast<int>(right - sums.begin()) - 1, 0, environment_->width() - 1);
+    const color::Rgb light = texel(*environment_, column, row);
+    Vec3 direction = environment_->direction_at(column + draw[2], row + draw[3]);
+    if (!(direction.y > 0)) direction = environment_->direction_at(column + 0.5, row + 0.5);
+    if (!(direction.y > 0)) continue;
+    rays.push_back({direction, (1 / mean_of(light)) * share_of(light)});
+  }
+  scale_to(soft_irradiance_, rays);
+  return rays;
+}
+
+std::vector<LaidGround::SharedRay> LaidGround::bright_rays(std::uint32_t count) const {
+  std::vector<SharedRay> rays;
+  if (!has_bright()) return rays;
+  const Sequence sequence(0xB816, count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::array<double, 4> draw = sequence.point(i, 0);
+    const BrightSample sample = drawn_bright(draw[0], draw[1], draw[2]);
+    if (sample.pdf > 0 && sample.direction.y > 0)
+      rays.push_back({sample.direction, (1 / mean_of(sample.radiance)) * share_of(sample.radiance)});
+  }
+  scale_to(bright_irradiance_, rays);
+  return rays;
 }
 
 // The part of the draws that follow the light.

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "base/angles.h"
 #include "color/color.h"
 #include "envmap/environment.h"
 #include "mesh/mesh.h"
@@ -31,6 +32,9 @@ class LaidGround {
   color::Rgb paint(const color::Rgb& open_radiance) const;
   // Of the floor in the open, from above.
   const color::Rgb& irradiance() const { return irradiance_; }
+  // (integral L)^2 / integral L^2 of the environment below the horizon, of the mean over channels: 2 pi for even
+  // ground.
+  double ground_extent_sr() const { return ground_extent_sr_; }
 
   // The directions from a point of the floor in which it can see a body within a box that stands on the floor: about
   // an azimuth and below an elevation. From under the box these are all directions.
@@ -63,12 +67,24 @@ class LaidGround {
   };
   BrightSample drawn_bright(double which, double u, double v) const;
 
+  // Directions above the horizon, spread as the light of the environment comes from there, and what comes along each to
+  // the open floor, as shares of irradiance() channel by channel. Together the shares are what all such light gives.
+  // `count` is a power of two.
+  struct SharedRay {
+    Vec3 direction;
+    color::Rgb share;
+  };
+  std::vector<SharedRay> soft_rays(std::uint32_t count) const;  // all but the brightest texels; none where that is dark
+  std::vector<SharedRay> bright_rays(std::uint32_t count) const;  // of these; none where there are none
+
  private:
   struct BrightTexel {
     int column = 0, row = 0;
     double light = 0;  // irradiance
   };
   void find_bright(std::vector<BrightTexel> texels);
+  color::Rgb share_of(const color::Rgb& irradiance) const;
+  void scale_to(const color::Rgb& irradiance, std::vector<SharedRay>& rays) const;
   void add_light(const Vec3& direction, double light);
   void gather_light(const envmap::Environment& environment);
   void sum_up();
@@ -77,11 +93,14 @@ class LaidGround {
   const envmap::Environment* environment_ = nullptr;
   Vec3 eye_;
   color::Rgb irradiance_;
+  double ground_extent_sr_ = 2 * kPi;
   // Irradiance from the first so many columns of each row of cells, column by column; the mean of the channels.
   std::vector<float> sums_;
   std::vector<BrightTexel> bright_;
-  std::vector<double> bright_sums_;  // cumulative
-  std::vector<bool> is_bright_;      // texel by texel; empty where there are none
+  std::vector<double> bright_sums_;                 // cumulative
+  std::vector<bool> is_bright_;                     // texel by texel; empty where there are none
+  color::Rgb bright_irradiance_, soft_irradiance_;  // of the environment
+  std::vector<double> soft_rows_;  // irradiance from the first so many rows of texels but the bright ones
 };
 
 }  // namespace goniochrome::render

@@ -92,7 +92,26 @@ class Picture {
     for (int y = 0; y < g.height; ++y)
       for (int x = 0; x < g.width; ++x) add_point(x, y);
     states_.resize(points_.size());
+    whole_ = request_.options;
+    whole_.correction = false;
+    const bool given = seen_ != nullptr || count_ == 1;  // the surfaces of all samples
+    if (request_.options.correction && base_ != nullptr && given) find_hidden();
   }
+
+  // Where the mesh takes most of the light, what is left has less noise than what is taken.
+  void find_hidden() {
+    parallel_for(points_.size(), kTogether, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const PathPoint& point = points_[i];
+        const unsigned covered = seen_ != nullptr ? coverage_.any[place(point.x, point.y)] : 1;
+        const VisibleSurface& surface = seen_ != nullptr ? (*seen_)[std::countr_zero(covered)] : surface_;
+        const rays::Spot spot = spot_at(transport_.rays(), surface, point.x, point.y);
+        states_[i].hidden = transport_.open_share(spot) < kMostlyHidden;
+      }
+    });
+  }
+
+  const PathOptions& options_of(std::size_t i) const { return states_[i].hidden ? whole_ : request_.options; }
 
   void add_point(int x, int y) {
     const std::size_t at = place(x, y);
@@ -116,6 +135,7 @@ class Picture {
     color::Rgb sure;
     double needed = 0;  // batches that bring the noise of the neighborhood to the tolerance
     bool certain = false;
+    bool hidden = false;          // most of its light: all that is left is summed, from which the base is taken
     std::uint16_t uncertain = 0;  // samples of the pixel whose light is not known without paths
   };
 
@@ -160,7 +180,7 @@ class Picture {
     PathPoint& point = points_[i];
     const Gbuffer& g = surface_.gbuffer;
     const rays::Spot spot = spot_at(transport_.rays(), surface_, point.x, point.y);
-    const PointTransport at(transport_, request_.options, spot, rays::float3(g.to_viewer(point.x, point.y)));
+    const PointTransport at(transport_, options_of(i), spot, rays::float3(g.to_viewer(point.x, point.y)));
     state.certain = at.certain();
     state.sure = at.sure();
     if (state.certain) return;
@@ -170,18 +190,19 @@ class Picture {
   }
 
   // What a sample of a pixel sees, which is something.
-  PointTransport transport_at(const PathPoint& point, std::size_t sample, rays::Spot& spot) const {
+  PointTransport transport_at(std::size_t i, std::size_t sample, rays::Spot& spot) const {
+    const PathPoint& point = points_[i];
     const rays::RayScene& scene = transport_.rays();
     if (seen_ != nullptr) {
       const VisibleSurface& surface = (*seen_)[sample];
       spot = spot_at(scene, surface, point.x, point.y);
-      return {transport_, request_.options, spot, rays::float3(surface.gbuffer.to_viewer(point.x, point.y))};
+      return {transport_, options_of(i), spot, rays::float3(surface.gbuffer.to_viewer(point.x, point.y))};
     }
     const Rays& through = surface_.gbuffer.rays;
     const Vec3 toward = through.direction(point.x + 0.5 + shifts_[sample][0], point.y + 0.5 + shifts_[sample][1]);
     const rays::Float3 eye = scene.local(through.eye), direction = rays::float3(toward);
     spot = scene.spot(scene.closest(eye, direction), eye, direction);
-    return {transport_, request_.options, spot, -direction};
+    return {transport_, options_of(i), spot, -direction};
   }
 
   // Each batch is shared by two samples of the pixel, half of it each, or where the floor alone is seen is half as long
@@ -201,7 +222,7 @@ class Picture {
       if ((covered >> sample & 1U) == 0) continue;
       if (!first_time && (state.uncertain >> sample & 1U) == 0) continue;
       rays::Spot spot;
-      const PointTransport at = transport_at(point, sample, spot);
+      const PointTransport at = transport_at(i, sample, spot);
       if (first_time) {
         state.sure += (1.0 / count) * at.sure();
         if (!at.certain()) state.uncertain = static_cast<std::uint16_t>(state.uncertain | 1U << sample);
@@ -227,6 +248,7 @@ class Picture {
       for (std::size_t i = begin; i < end; ++i) {
         own[i] = states_[i].sums.covariance();
         points_[i].radiance = states_[i].sure + states_[i].sums.mean();
+        if (states_[i].hidden) points_[i].radiance += -1.0 * base_at(points_[i]);
         points_[i].samples = batch_of(points_[i]) * states_[i].sums.count();
       }
     });
@@ -279,11 +301,13 @@ class Picture {
   }
 
   double noise_of(std::size_t i, color::Rgb radiance, const Covariance& covariance) const {
-    if (base_ != nullptr) {
-      const float* rgb = base_->pixel(points_[i].x, points_[i].y);
-      radiance += color::Rgb{rgb[0], rgb[1], rgb[2]};
-    }
+    if (base_ != nullptr) radiance += base_at(points_[i]);
     return noise_de00(radiance, covariance, request_.white_luminance);
+  }
+
+  color::Rgb base_at(const PathPoint& point) const {
+    const float* rgb = base_->pixel(point.x, point.y);
+    return {rgb[0], rgb[1], rgb[2]};
   }
 
   double tolerance() const { return request_.tolerance_de00 > 0 ? request_.tolerance_de00 : 1e-9; }
@@ -310,6 +334,7 @@ class Picture {
 
   const Transport& transport_;
   const VisibleSurface& surface_;
+  PathOptions whole_;                                  // without correction
   const std::vector<VisibleSurface>* seen_ = nullptr;  // of each sample of a pixel; null: rays find what is seen
   const image::Image* base_;
   const PathRequest& request_;

@@ -12,6 +12,10 @@
 
 namespace goniochrome::render {
 
+// A point that gets less than this part of even light (Transport::open_share) is corrected by the sum of all that is
+// left instead of what is taken: where most is taken, that has less noise.
+constexpr double kMostlyHidden = 0.5;
+
 struct PathRequest {
   PathOptions options = {};
   double tolerance_de00 = 0.5;  // of the picture's noise; 0: until another limit ends it

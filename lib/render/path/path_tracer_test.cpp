@@ -215,6 +215,42 @@ TEST(HardCase, SmoothBallsAreLitSmoothlyAtAnyScale) {
   hard_case("transport-self", {"light on a smooth ball of few triangles", least_textbook, worst, 1e-5, "absolute"});
 }
 
+// Deep in a cup under even light of 1 a matt paint of albedo a shows a without the cup. What is added to that makes the
+// same picture as a sum of all light, also where all that is left is summed; and that has less noise.
+TEST(PathPicture, CorrectsHiddenPointsByTheSumOfWhatIsLeft) {
+  constexpr double kAlbedo = 0.5;
+  PathStage stage(box_mesh(false), {matt({kAlbedo, kAlbedo, kAlbedo})});
+  for (Vec3& p : stage.mesh.positions) p.y = 1 + 3 * (p.y - 1);
+  stage.environment = even_environment();
+  stage.build();
+  const VisibleSurface surface = seen_from_above(stage, 32, 24);
+  image::Image base;
+  base.width = 32, base.height = 24, base.channels = 3;
+  base.data.assign(std::size_t{32} * 24 * 3, static_cast<float>(kAlbedo));
+  PathRequest request;
+  request.options.bounces = 3;
+  request.tolerance_de00 = 0.5;
+  const PathPicture whole = path_picture(*stage.transport, surface, nullptr, request);
+  request.options.correction = true, request.seed = 2;
+  const PathPicture added = path_picture(*stage.transport, surface, &base, request);
+  request.options.correction = true, request.seed = 3;
+  const PathPicture never_hidden = path_picture(*stage.transport, surface, nullptr, request);
+  ASSERT_EQ(added.points.size(), whole.points.size());
+  int hidden = 0;
+  double difference = 0, variance = 0, left = 0, taken = 0;
+  for (std::size_t i = 0; i < whole.points.size(); ++i) {
+    const PathPoint &a = added.points[i], &b = whole.points[i], &c = never_hidden.points[i];
+    difference += kAlbedo + a.radiance.y - b.radiance.y, variance += a.covariance[1] + b.covariance[1];
+    const rays::Spot spot = spot_at(stage.transport->rays(), surface, a.x, a.y);
+    if (stage.transport->open_share(spot) >= kMostlyHidden) continue;
+    ++hidden;
+    left += a.covariance[1] * a.samples, taken += c.covariance[1] * c.samples;
+  }
+  EXPECT_LT(std::abs(difference), 4 * std::sqrt(variance));
+  ASSERT_GT(hidden, 20);
+  EXPECT_LT(left, 0.8 * taken) << "the control: what is taken away";
+}
+
 TEST(Noise, IsTheSpreadOfSmallErrors) {
   TestNumbers next(2);
   const auto normal = [&] { return std::sqrt(-2 * std::log(1 - next())) * std::cos(6.283185307179586 * next()); };

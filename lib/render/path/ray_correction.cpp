@@ -39,31 +39,11 @@ rays::Hit floor_hit(const rays::RayScene& scene, const rays::Float3& eye, const 
 
 }  // namespace
 
-void add_floor(const Transport& transport, VisibleSurface& surface) {
+void add_surroundings(const Transport& transport, const Gbuffer& g, const Backdrop& backdrop, const RayEffects& effects,
+                      float gain, image::Image& picture) {
   const rays::RayScene& scene = transport.rays();
-  const Gbuffer& g = surface.gbuffer;
   const rays::Float3 eye = scene.local(g.rays.eye);
-  parallel_for(static_cast<std::size_t>(g.height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      for (int x = 0; x < g.width; ++x) {
-        if (g.part(x, y) >= 0) continue;
-        const rays::Float3 direction = -rays::float3(g.to_viewer(x, y));
-        const rays::Hit hit = floor_hit(scene, eye, direction);
-        if (hit.any() && transport.hidden_share(scene.spot(hit, eye, direction)) > kUnseenShare)
-          surface.hits[g.index(x, y)] = hit;
-      }
-    }
-  });
-}
-
-void add_surroundings(const Transport& transport, const VisibleSurface& surface, const Backdrop& backdrop, float gain,
-                      image::Image& picture) {
-  const rays::RayScene& scene = transport.rays();
-  const Gbuffer& g = surface.gbuffer;
-  const rays::Float3 eye = scene.local(g.rays.eye);
-  const auto behind = [&](const rays::Float3& direction) {
-    const rays::Hit hit = floor_hit(scene, eye, direction);
-    if (hit.any()) return transport.open_ground(scene.spot(hit, eye, direction));
+  const auto sky = [&](const rays::Float3& direction) {
     if (backdrop.background == Background::kColor) return backdrop.color;
     if (backdrop.background == Background::kNone || backdrop.environment == nullptr) return color::Rgb{};
     return smooth_radiance(*backdrop.environment, rays::vec3(direction));
@@ -72,12 +52,13 @@ void add_surroundings(const Transport& transport, const VisibleSurface& surface,
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       for (int x = 0; x < g.width; ++x) {
         if (g.part(x, y) >= 0) continue;
-        float* pixel = &picture.data[g.index(x, y) * static_cast<std::size_t>(picture.channels)];
         const rays::Float3 direction = -rays::float3(g.to_viewer(x, y));
-        const bool covered = backdrop.background != Background::kNone || floor_hit(scene, eye, direction).any();
-        if (covered && picture.channels > 3) pixel[3] += gain;
-        if (!covered || surface.hits[g.index(x, y)].any()) continue;
-        const color::Rgb light = behind(direction);
+        const rays::Hit hit = floor_hit(scene, eye, direction);
+        if (!hit.any() && backdrop.background == Background::kNone) continue;
+        float* pixel = &picture.data[g.index(x, y) * static_cast<std::size_t>(picture.channels)];
+        if (picture.channels > 3) pixel[3] += gain;
+        const color::Rgb light =
+            hit.any() ? transport.shaded_ground(scene.spot(hit, eye, direction)).shown(effects) : sky(direction);
         for (int c = 0; c < 3; ++c) pixel[c] += gain * static_cast<float>(light[c]);
       }
     }

@@ -15,11 +15,6 @@ namespace goniochrome::render {
 // pixel on an edge is corrected as the surface that it shows. The G-buffer must have triangles.
 VisibleSurface drawn_surface(const mesh::Mesh& mesh, const Gbuffer& gbuffer);
 
-// Adds to a surface the points of the floor that the pixels show beside the mesh, as far as the mesh may change what is
-// seen there. Beyond them, where it changes less than a thousandth, the floor is drawn as in the open.
-constexpr double kUnseenShare = 1e-3;
-void add_floor(const Transport& transport, VisibleSurface& surface);
-
 struct CorrectionRequest {
   RayEffects effects;
   int bounces = 8;
@@ -47,15 +42,14 @@ struct Backdrop {
   const envmap::Environment* environment = nullptr;
 };
 
-// Adds `gain` times what the pixels show that show neither the mesh nor a point of `surface`: the floor in the open or,
-// above the horizon, the background. Where these points are the floor, it adds their coverage.
-void add_surroundings(const Transport& transport, const VisibleSurface& surface, const Backdrop& backdrop, float gain,
-                      image::Image& picture);
+// Adds `gain` times what the pixels show beside the mesh: the floor, whose ground is shaded, or, above the horizon, the
+// background. Where these points are the floor, it adds their coverage.
+void add_surroundings(const Transport& transport, const Gbuffer& gbuffer, const Backdrop& backdrop,
+                      const RayEffects& effects, float gain, image::Image& picture);
 
 // Adds `gain` times the correction, the mean over these samples of each pixel, to the first three channels of the
 // picture, which holds radiance times coverage.
 // `before` is the picture without corrections; it tells how visible noise is. Bit-identical for any number of threads.
-// Of points of the floor it adds all that they show.
 CorrectionNoise add_correction(const Transport& transport, const std::vector<VisibleSurface>& samples,
                                const CorrectionRequest& request, const image::Image& before, float gain,
                                image::Image& picture);

@@ -24,6 +24,8 @@ constexpr float kInversePi = 1 / static_cast<float>(kPi);
 constexpr int kRouletteFrom = 3, kEndlessFrom = 64, kMostBounces = 4096;
 constexpr double kEndlessChance = 0.9, kLeastChance = 0.05;
 // The most and least chance that a direction is drawn from the environment where there is one.
+// Ground of a smaller extent is drawn as PointTransport::shown_over_ground() has it.
+constexpr double kEvenGround_sr = 5;
 constexpr float kLeastLightChance = 0.1F, kMostLightChance = 0.75F, kLeastWindowLightChance = 0.05F;
 
 color::Rgb rgb(const Float3& c) {
@@ -81,12 +83,83 @@ Result<Transport> Transport::create(const PathScene& path_scene) {
     if (transport.environment_->dark()) transport.environment_.reset();
     if (ground && ground->kind == Ground::Kind::kShadow) {
       GONIO_ASSIGN(transport.ground_, LaidGround::create(*ground, *path_scene.environment, scene.lights));
+      transport.ground_eye_ = transport.rays_->local(ground->probe_eye);
+      transport.uneven_ground_ = transport.ground_->ground_extent_sr() < kEvenGround_sr;
     }
   }
   GONIO_ASSIGN(transport.emitters_, Emitters::create(*transport.rays_, path_scene.emission));
   transport.lights_ = scene.lights;
   if (scene.reflection.k != color::component_wise().k) transport.reflection_ = &scene.reflection;
   return transport;
+}
+
+void Transport::shade_ground(GroundRequest request, int bounces) {
+  if (!ground_) return;
+  PathOptions options;
+  options.bounces = bounces;
+  if (bounces > 0)
+    request.sent = [&](const Hit& hit, const Float3& from, const Float3& direction, const Sequence& sequence,
+                       std::uint32_t index) { return bounced(hit, from, direction, options, sequence, index, 1); };
+  shaded_ = std::make_shared<const ShadedGround>(rays_, *ground_, lights_, mesh_box_, mesh_radius_, request);
+}
+
+Float3 Transport::toward_ground(const Float3& from, const Float3& from_eye) const {
+  const Float3 place = ground_eye_ + rays_->floor_distance(ground_eye_, from_eye) * from_eye;
+  return rays::normalized(place - from);
+}
+
+// That of the environment's table where it was seen from, by the ratio of the solid angles of a piece of the floor.
+double Transport::ground_pdf(const Float3& from, const Float3& direction) const {
+  const float distance = rays_->floor_distance(from, direction);
+  const Float3 seen = from + distance * direction - ground_eye_;
+  const float eye_distance = rays::length(seen);
+  if (!(distance > 0) || !(eye_distance > 0)) return 0;
+  const Float3 from_eye = (1 / eye_distance) * seen;
+  const double ratio = static_cast<double>(distance) / eye_distance;
+  return environment_->at(from_eye).pdf * ratio * ratio * (from_eye.y / direction.y);
+}
+
+// Directions even by the cosine. Light from the ground counts by what the mesh leaves of it.
+double Transport::open_share(const Spot& spot) const {
+  constexpr std::uint32_t kDirections = 16;
+  const Sequence sequence(0x09E4, kDirections);
+  const rays::Frame frame = rays::frame_about(spot.shading);
+  double open = 0;
+  for (std::uint32_t first = 0; first < kDirections; first += kFan) {
+    rays::Fan fan;
+    fan.origin = spot.start;
+    Float3 directions[kFan];
+    for (std::uint32_t i = 0; i < kFan; ++i) {
+      const std::array<double, 4> numbers = sequence.point(first + i, 0);
+      const auto across = static_cast<float>(std::sqrt(numbers[0])),
+                 phi = 2 * rays::kFloatPi * static_cast<float>(numbers[1]);
+      directions[i] = (across * std::cos(phi)) * frame.x + (across * std::sin(phi)) * frame.y +
+                      std::sqrt(1 - across * across) * spot.shading;
+      fan.x[i] = directions[i].x, fan.y[i] = directions[i].y, fan.z[i] = directions[i].z;
+    }
+    fan.wanted = (1U << kFan) - 1;
+    Hit hits[kFan];
+    rays_->closest(fan, hits);
+    for (std::uint32_t i = 0; i < kFan; ++i) {
+      if (!hits[i].any()) {
+        ++open;
+      } else if (shaded_ != nullptr && is_laid(hits[i])) {
+        const Float3 place = spot.start + hits[i].distance * directions[i];
+        open += shaded_->met(place, 0.5).left.y;
+      }
+    }
+  }
+  return open / kDirections;
+}
+
+LightShares Transport::shaded_ground(const Spot& spot) const {
+  if (spot.inside) return {};
+  return shown_ground(spot, shaded_->seen(spot.position));
+}
+
+LightShares Transport::shown_ground(const Spot& spot, const GroundLight& light) const {
+  const color::Rgb open = open_ground(spot);
+  return {open * light.left, {}, open * light.bounced};
 }
 
 std::vector<int> Transport::gaining_parts() const {
@@ -118,10 +191,6 @@ struct Transport::Vertex {
 
 bool Transport::is_laid(const Spot& spot) const {
   return ground_ && spot.triangle == rays::kFloor;
-}
-
-double Transport::hidden_share(const Spot& spot) const {
-  return is_laid(spot) ? ground_->hidden_share(ground_->window(rays_->world(spot.position), mesh_box_)) : 1;
 }
 
 // From below the floor is black.
@@ -156,13 +225,9 @@ Transport::LampSample Transport::drawn_from(const SeenLamp& lamp, double u, doub
   const Light& light = lamp.light;
   const color::Rgb whole = kPi * light.white;
   if (!(light.radius_rad > 0)) return {rays::float3(light.direction), lamp.reach, whole};
-  const double half = std::sin(0.5 * light.radius_rad), cos_half = std::cos(0.5 * light.radius_rad);
-  const double versine = 2 * half * half * u, across = std::sqrt(versine * (2 - versine)), phi = 2 * kPi * v;
-  const Vec3 other = std::abs(light.direction.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-  const Vec3 x = normalized(cross(other, light.direction)), y = cross(light.direction, x);
-  const Vec3 toward = (1 - versine) * light.direction + across * std::cos(phi) * x + across * std::sin(phi) * y;
+  const double cos_half = std::cos(0.5 * light.radius_rad);
   // The solid angle by pi sin^2 of the radius is 1/cos^2 of half of it.
-  return {rays::float3(toward), lamp.reach, (1 / (cos_half * cos_half)) * whole};
+  return {rays::float3(disc_direction(light, u, v)), lamp.reach, (1 / (cos_half * cos_half)) * whole};
 }
 
 Transport::LampSample Transport::drawn_lamp(const Float3& from, double choice, double v) const {
@@ -274,6 +339,11 @@ color::Rgb Transport::bounced(Hit hit, Float3 origin, Float3 direction, const Pa
   for (int bounce = 1, surfaces = 0;; ++bounce) {
     const Vertex vertex(*this, rays_->spot(hit, origin, direction), -direction);
     if (vertex.is_laid) {
+      if (shaded_ != nullptr) {
+        if (vertex.spot.inside) break;
+        const double number = sequence.point(index, set)[0];
+        return sum + path.shown(shown_ground(vertex.spot, shaded_->met(vertex.spot.position, number)).sum());
+      }
       sum += path.shown(vertex.open);
     } else if (++surfaces > most) {
       break;
@@ -299,7 +369,13 @@ color::Rgb Transport::bounced(Hit hit, Float3 origin, Float3 direction, const Pa
 // As bounced() at a vertex on such a floor.
 Transport::FloorLight Transport::off_floor(const Hit& hit, const Float3& origin, const Float3& direction, int bounces,
                                            const Sequence& sequence, std::uint32_t index, std::uint32_t set) const {
-  const Vertex vertex(*this, rays_->spot(hit, origin, direction), -direction);
+  const Spot spot = rays_->spot(hit, origin, direction);
+  if (shaded_ != nullptr) {
+    if (spot.inside) return {};
+    const LightShares shown = shown_ground(spot, shaded_->met(spot.position, sequence.point(index, set)[0]));
+    return {shown.direct, bounces > 0 ? shown.into_diffuse : color::Rgb{}};
+  }
+  const Vertex vertex(*this, spot, -direction);
   FloorLight light{vertex.open, {}};
   if (vertex.painted.black()) return light;
   PathProduct path(reflection_);
@@ -321,6 +397,7 @@ struct PointTransport::Ray {
   bool above = false;
   std::optional<EnvironmentTable::Place> place;  // where the direction was drawn from the environment
   LaidGround::BrightSample bright;               // with a density above 0 where it was drawn from the brightest texels
+  bool to_ground = false;                        // whether it goes to where the floor shows that place
   double weight = 1;                             // of the sample in the mean
 };
 
@@ -333,7 +410,8 @@ PointTransport::PointTransport(const Transport& transport, const PathOptions& op
       painted_(options.white ? PaintedPoint(Float3{kInversePi, kInversePi, kInversePi}, spot.shading, to_viewer)
                              : transport.painted(spot, to_viewer)),
       is_laid_(transport.is_laid(spot)),
-      correction_(options.correction || is_laid_) {
+      correction_(options.correction || is_laid_),
+      over_ground_(!is_laid_ && transport.shaded_ != nullptr && transport.environment_ != nullptr) {
   sure_ = is_laid_ ? transport.open_ground(spot) : transport.emitters_.radiance(spot.part);
   if (is_laid_) {
     narrow_to_mesh();
@@ -469,6 +547,10 @@ PointTransport::Ray PointTransport::drawn_ray(const std::array<double, 4>& numbe
     ray.place = transport_.environment_->place(numbers[1], numbers[2]);
     if (!(ray.place->density > 0)) return ray;
     ray.direction = ray.place->direction;
+    if (over_ground_ && transport_.uneven_ground_ && ray.direction.y < 0) {
+      ray.to_ground = true;
+      ray.direction = transport_.toward_ground(spot_.start, ray.direction);
+    }
   } else {
     const double choice = (numbers[0] - light_chance_) / (1 - light_chance_);
     ray.direction = window_ ? rays::float3(transport_.ground_->drawn(*window_, choice, numbers[1], numbers[2]))
@@ -515,13 +597,66 @@ LightShares PointTransport::shown(const Ray& ray, bool blocked, const Sequence& 
         sent = transport_.bounced(hit, spot_.start, ray.direction, options_, sequence, index, 4);
     }
   }
-  if (sent != color::Rgb{}) {
-    const PaintedPoint::Parts parts = painted_.parts(ray.direction);
-    if (options_.into_lobes) shares.into_lobes = reflect(scaled * parts.lobes, sent);
-    if (options_.into_diffuse) shares.into_diffuse = reflect(scaled * parts.diffuse, sent);
-  }
+  add_sent(ray.direction, sent, scaled, shares);
   shares.direct = reflect(scaled * reflection.f_cos, arriving);
   return shares;
+}
+
+// A floor that shows the environment hides what is below the horizon, and shows the same light from elsewhere. Both are
+// drawn together: a direction that is drawn from the environment below the horizon is what is hidden, and the way to
+// the place of the floor that shows it is what is seen instead. Light by density is the same for both, so that the
+// brightest texels add no more noise than others.
+LightShares PointTransport::shown_over_ground(const Ray& ray, const Hit& hit, const Sequence& sequence,
+                                              std::uint32_t index) const {
+  LightShares shares;
+  const bool blocked = hit.any();
+  const auto light_from = [&](const Float3& direction) {
+    return ray.place ? transport_.environment_->light(*ray.place) : transport_.environment_->at(direction);
+  };
+  const auto scale = [&](double light_pdf, const Reflection& reflection) {
+    return static_cast<float>(1 / (light_chance_ * light_pdf + (1 - light_chance_) * reflection.pdf));
+  };
+  const Float3& hidden = ray.to_ground ? ray.place->direction : ray.direction;
+  if (correction_ && hidden.y < 0) {
+    const Reflection reflection = painted_.at(hidden);
+    if (reflection.pdf > 0) {
+      const LightSample light = light_from(hidden);
+      shares.direct = -1.0 * reflect(scale(light.pdf, reflection) * reflection.f_cos, light.radiance);
+    }
+  }
+  if (!ray.above || (!blocked && correction_)) return shares;
+  const Reflection reflection = painted_.at(ray.direction);
+  if (!(reflection.pdf > 0)) return shares;
+  color::Rgb arriving, sent;
+  double light_pdf = 0;
+  if (ray.direction.y < 0 && transport_.uneven_ground_) {
+    light_pdf = transport_.ground_pdf(spot_.start, ray.direction);
+  } else if (ray.direction.y < 0) {
+    light_pdf = light_from(ray.direction).pdf;
+  } else {
+    const LightSample light = light_from(ray.direction);
+    light_pdf = light.pdf;
+    if (blocked == correction_) arriving = (blocked ? -1.0 : 1.0) * light.radiance;
+  }
+  const float scaled = scale(light_pdf, reflection);
+  if (transport_.is_laid(hit)) {
+    const Transport::FloorLight floor =
+        transport_.off_floor(hit, spot_.start, ray.direction, options_.bounces, sequence, index, 4);
+    arriving += floor.fixed, sent = floor.bounced;
+  } else if (blocked && options_.bounces > 0 && (options_.into_lobes || options_.into_diffuse)) {
+    sent = transport_.bounced(hit, spot_.start, ray.direction, options_, sequence, index, 4);
+  }
+  shares.direct += reflect(scaled * reflection.f_cos, arriving);
+  add_sent(ray.direction, sent, scaled, shares);
+  return shares;
+}
+
+// What surfaces send along a direction, times `scale`: one over the density of the direction.
+void PointTransport::add_sent(const Float3& direction, const color::Rgb& sent, float scale, LightShares& shares) const {
+  if (sent == color::Rgb{}) return;
+  const PaintedPoint::Parts parts = painted_.parts(direction);
+  if (options_.into_lobes) shares.into_lobes = reflect(scale * parts.lobes, sent);
+  if (options_.into_diffuse) shares.into_diffuse = reflect(scale * parts.diffuse, sent);
 }
 
 color::Rgb PointTransport::emitter_sample(const std::array<double, 4>& numbers) const {
@@ -570,6 +705,15 @@ LightShares PointTransport::batch_shares(std::uint64_t seed, std::uint32_t begin
         rays[i] = drawn_ray(sequence.point(first + i, 0), i);
         fan.x[i] = rays[i].direction.x, fan.y[i] = rays[i].direction.y, fan.z[i] = rays[i].direction.z;
         if (rays[i].above && rays::dot(rays[i].direction, mesh_axis_) >= mesh_cosine_) fan.wanted |= 1U << i;
+      }
+      if (over_ground_) {
+        Hit hits[kFan];
+        if (fan.wanted != 0) transport_.rays_->closest(fan, hits);
+        for (std::uint32_t i = 0; i < kFan; ++i) {
+          if (any_blocked != nullptr && hits[i].any()) *any_blocked = true;
+          sum += shown_over_ground(rays[i], hits[i], sequence, first + i);
+        }
+        continue;
       }
       const unsigned blocked = fan.wanted != 0 ? transport_.rays_->blocked(fan) : 0;
       if (any_blocked != nullptr && blocked != 0) *any_blocked = true;

@@ -13,6 +13,7 @@
 #include "render/path/laid_ground.h"
 #include "render/path/path_product.h"
 #include "render/path/sequence.h"
+#include "render/path/shaded_ground.h"
 #include "render/path/traced_paint.h"
 #include "render/scene.h"
 
@@ -84,10 +85,16 @@ class Transport {
 
   const rays::RayScene& rays() const { return *rays_; }
   const Emitters& emitters() const { return emitters_; }
-  // Of a point on a floor that shows the environment how much the mesh can change there: see LaidGround; of others 1.
-  double hidden_share(const rays::Spot& spot) const;
-  // What such a floor shows there in the open.
+  // What a floor that shows the environment shows in the open.
   color::Rgb open_ground(const rays::Spot& spot) const;
+  // From here on paths that meet such a floor read its light from a grid, and go no farther. They lose what little
+  // noise they had from there, and are no longer exact: ShadedGround says by how much. Not for scenes with emitters.
+  // Without such a floor it does nothing.
+  void shade_ground(GroundRequest request, int bounces);
+  // What the floor shows then.
+  LightShares shaded_ground(const rays::Spot& spot) const;
+  // About what part of even light a point gets past the mesh.
+  double open_share(const rays::Spot& spot) const;
   // The parts whose paint sends back more light than it gets, by number: paths between such walls gain light for ever
   // and are ended by chance alone.
   std::vector<int> gaining_parts() const;
@@ -105,6 +112,11 @@ class Transport {
   };
   FloorLight off_floor(const rays::Hit& hit, const rays::Float3& origin, const rays::Float3& direction, int bounces,
                        const Sequence& sequence, std::uint32_t index, std::uint32_t set) const;
+  // The direction from a point to where the floor shows what the environment has in a direction below the horizon, and
+  // the density by which the environment's table draws a direction so.
+  rays::Float3 toward_ground(const rays::Float3& from, const rays::Float3& from_eye) const;
+  double ground_pdf(const rays::Float3& from, const rays::Float3& direction) const;
+  LightShares shown_ground(const rays::Spot& spot, const GroundLight& light) const;
   struct Vertex;
   struct Next;
   color::Rgb direct_light(const Vertex& vertex, const PathProduct& path, const std::array<double, 4>& numbers,
@@ -137,6 +149,9 @@ class Transport {
   std::shared_ptr<const rays::RayScene> rays_;  // stays where it is when the transport is moved
   std::vector<TracedPaint> paints_;             // of the parts, then of the floor
   std::optional<LaidGround> ground_;            // of a floor that shows the environment
+  std::shared_ptr<const ShadedGround> shaded_;  // see shade_ground()
+  bool uneven_ground_ = false;
+  rays::Float3 ground_eye_;  // local: where such a floor's environment was seen from
   mesh::Box mesh_box_;
   float mesh_radius_ = 0;  // local, of a sphere about the origin that holds the mesh
   std::shared_ptr<const EnvironmentTable> environment_;
@@ -176,6 +191,9 @@ class PointTransport {
   Ray drawn_ray(const std::array<double, 4>& numbers, std::uint32_t of_fan) const;
   color::Rgb lamp_shadows(const Sequence& sequence, std::uint32_t begin, std::uint32_t count, bool* any_blocked) const;
   LightShares shown(const Ray& ray, bool blocked, const Sequence& sequence, std::uint32_t index) const;
+  LightShares shown_over_ground(const Ray& ray, const rays::Hit& hit, const Sequence& sequence,
+                                std::uint32_t index) const;
+  void add_sent(const rays::Float3& direction, const color::Rgb& sent, float scale, LightShares& shares) const;
   LightShares mirrored(const Sequence& sequence, std::uint32_t begin, std::uint32_t count) const;
   color::Rgb emitter_sample(const std::array<double, 4>& numbers) const;
   color::Rgb reflect(const rays::Float3& f, const color::Rgb& light) const;
@@ -187,7 +205,8 @@ class PointTransport {
   PaintedPoint painted_;
   bool is_laid_;                              // on a floor that shows the environment
   std::optional<LaidGround::Window> window_;  // of such a point: directions in which it may see the mesh
-  bool correction_;  // whether samples tell what the mesh changes: as asked, or of such a floor
+  bool correction_;   // whether samples tell what the mesh changes: as asked, or of such a floor
+  bool over_ground_;  // over a floor whose ground is shaded
   // Only directions within this cone can meet the mesh; of other floors and of the mesh itself all of them.
   rays::Float3 mesh_axis_;
   float mesh_cosine_ = -2;

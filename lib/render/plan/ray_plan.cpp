@@ -79,7 +79,7 @@ double aim_of(const RayWishes& wishes, const State& state) {
 RayCost cost_of(const RayProbe& probe, const RayWishes& wishes, const RayEffects& effects, double aim_de00) {
   RayCost cost = probe.cost(effects, aim_de00, wishes.visible_points, wishes.samples);
   if (effects.floor && wishes.of_floor != nullptr)
-    cost.ms += wishes.of_floor->cost(effects, aim_de00, wishes.floor_pixels, wishes.samples).ms;
+    cost.ms += wishes.of_floor->cost_ms(wishes.floor_pixels, wishes.samples);
   return cost;
 }
 
@@ -209,7 +209,7 @@ FloorChoice floor_choice(const RayProbe& probe, const FloorProbe& beside, const 
   RayEffects all = kAll;
   const double without_ms = probe.cost_without_floor(all, aim, wishes.visible_points, wishes.samples).ms;
   const double mesh_ms = probe.cost(all, aim, wishes.visible_points, wishes.samples).ms;
-  const double beside_ms = beside.cost(all, aim, wishes.floor_pixels, wishes.samples).ms;
+  const double beside_ms = beside.cost_ms(wishes.floor_pixels, wishes.samples);
   item.cost_ms = std::max(0.0, mesh_ms + beside_ms - without_ms);
   item.decision = forced ? Decision::kForcedOn : Decision::kDrawn;
   if (!forced && wishes.automatic && worth.de00_p95 <= kSafety * wishes.tolerance_de00)
@@ -266,14 +266,14 @@ RayChoice planned_rays(const Scene& scene, const std::vector<std::shared_ptr<con
     double shown = 0;
     for (const auto& g : gbuffers) shown += static_cast<double>(g->data.size() / 4);
     const RayProbe probe = RayProbe::traced(setting, ray_points, base);
-    const FloorProbe beside(setting, pixels);
+    const FloorProbe beside(*rays.over_floor, request.white_luminance, pixels);
     wishes.floor_pixels = request.pixels > 0 && shown > 0 ? pixels.count * request.pixels / shown : pixels.count;
     wishes.of_floor = &beside;
     floor = floor_choice(probe, beside, wishes, rays.floor_forced);
     if (floor.on) {
       wishes.floor = true;
       RayChoice choice = with_path_price(ray_choice(probe, wishes));
-      if (choice.path_ms > 0) choice.path_ms += beside.cost(kAll, request.tolerance_de00, wishes.floor_pixels, 1).ms;
+      if (choice.path_ms > 0) choice.path_ms += beside.cost_ms(wishes.floor_pixels, 1);
       choice.items.push_back(std::move(floor.item));
       return choice;
     }

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "render/internal/seen.h"
 #include "render/path/noise.h"
+#include "render/path/path_tracer.h"
 
 namespace goniochrome::render {
 
@@ -128,12 +129,17 @@ void RayProbe::trace(const ProbeSetting& setting, const std::vector<int>& more) 
   PathOptions options;
   options.bounces = setting.bounces;
   options.correction = true;
+  PathOptions whole = options;
+  whole.correction = false;
   const auto add = [&](const Transport& transport, std::size_t i, Light& light) {
     const RayPoint& from = points_[i].at;
-    const PointTransport at(transport, options, from.spot, from.to_viewer);
+    // As path_picture() has it.
+    const bool hidden = transport.open_share(from.spot) < kMostlyHidden;
+    const PointTransport at(transport, hidden ? whole : options, from.spot, from.to_viewer);
     light.certain = at.certain();
     light.sure = {at.sure(), {}, {}};
-    light.blocked = light.blocked || at.sure() != color::Rgb{};
+    if (hidden) light.sure.direct += -1.0 * points_[i].base;
+    light.blocked = light.blocked || hidden || at.sure() != color::Rgb{};
     for (int k = 0; k < more[i] && !light.certain; ++k) {
       bool blocked = false;
       light.fans.push_back(at.batch_shares(mixed(mixed(setting.seed, i), light.fans.size()), 0, kFan, &blocked));

@@ -1,0 +1,296 @@
+#include "render/path/shaded_ground.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "base/angles.h"
+#include "base/parallel.h"
+#include "brdf/disc_light.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+using rays::Float3;
+
+constexpr unsigned kFanRays = 8;
+// Few directions of a source tell whether its light is all there or all hidden; else there are so many.
+constexpr std::uint32_t kFew = 8, kMany = 64;
+// The grid is even about the mesh, to this part of its length beyond it. From there on cells grow by this factor, as
+// far as so many lengths.
+constexpr double kMargin = 0.1, kGrowth = 1.08, kReach = 16;
+constexpr std::size_t kBounceStep = 6;
+
+float mean_of(const Float3& a) {
+  return (a.x + a.y + a.z) / 3;
+}
+
+std::vector<float> lines(double low, double high, double cell, double length) {
+  const double first = low - kMargin * length, last = high + kMargin * length;
+  const auto count = static_cast<int>(std::ceil((last - first) / cell));
+  std::vector<float> inner, outer;
+  for (int i = 0; i <= count; ++i) inner.push_back(static_cast<float>(first + i * (last - first) / count));
+  double step = cell, beyond = 0;
+  while (beyond < kReach * length) {
+    step *= kGrowth, beyond += step;
+    outer.push_back(static_cast<float>(beyond));
+  }
+  std::vector<float> all;
+  for (std::size_t i = outer.size(); i-- > 0;) all.push_back(inner.front() - outer[i]);
+  all.insert(all.end(), inner.begin(), inner.end());
+  for (const float further : outer) all.push_back(inner.back() + further);
+  return all;
+}
+
+// Every so many-th, and the last.
+std::vector<float> every(const std::vector<float>& all, std::size_t step) {
+  std::vector<float> some;
+  for (std::size_t i = 0; i + 1 < all.size(); i += step) some.push_back(all[i]);
+  some.push_back(all.back());
+  return some;
+}
+
+Float3 floats(const color::Rgb& c) {
+  return rays::float3(c);
+}
+
+}  // namespace
+
+// The directions from a place of the floor in which the mesh can be: all where the place is beside the cone's sphere.
+struct ShadedGround::Cone {
+  Float3 axis;
+  float cosine = -2;
+
+  unsigned wanted(const rays::Fan& fan) const {
+    unsigned bits = 0;
+    for (unsigned i = 0; i < kFanRays; ++i)
+      if (fan.x[i] * axis.x + fan.y[i] * axis.y + fan.z[i] * axis.z >= cosine) bits |= 1U << i;
+    return bits & fan.wanted;
+  }
+};
+
+ShadedGround::Cone ShadedGround::cone(const Float3& start) const {
+  Cone cone;
+  const float distance = rays::length(start), sine = distance > 0 ? mesh_radius_ / distance : 1;
+  if (!(sine < 1)) return cone;
+  cone.axis = (-1 / distance) * start;
+  cone.cosine = std::sqrt(1 - sine * sine) - 1e-6F;
+  return cone;
+}
+
+bool ShadedGround::Grid::find(const Float3& place, std::size_t& column, std::size_t& row, float& right,
+                              float& down) const {
+  if (values.empty() || !(place.x >= x.front() && place.x <= x.back() && place.z >= z.front() && place.z <= z.back()))
+    return false;
+  const auto interval = [](const std::vector<float>& lines, float at, std::size_t& i, float& part) {
+    const auto above = std::upper_bound(lines.begin() + 1, lines.end() - 1, at);
+    i = static_cast<std::size_t>(above - lines.begin()) - 1;
+    part = (at - lines[i]) / (lines[i + 1] - lines[i]);
+  };
+  interval(x, place.x, column, right);
+  interval(z, place.z, row, down);
+  return true;
+}
+
+// Directions that lie together are traced together: sectors of azimuth, and within each from the horizon up.
+ShadedGround::Directions ShadedGround::directions(const std::vector<LaidGround::SharedRay>& rays) {
+  std::vector<LaidGround::SharedRay> sorted = rays;
+  const auto azimuth = [](const LaidGround::SharedRay& ray) { return std::atan2(ray.direction.x, ray.direction.z); };
+  std::ranges::sort(sorted, {}, azimuth);
+  const auto across = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(rays.size()) * kFanRays)));
+  for (std::size_t first = 0; first < sorted.size(); first += std::max<std::size_t>(kFanRays, across)) {
+    const auto begin = sorted.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto end = sorted.begin() + static_cast<std::ptrdiff_t>(
+                                          std::min(sorted.size(), first + std::max<std::size_t>(kFanRays, across)));
+    std::sort(begin, end, [](const auto& a, const auto& b) { return a.direction.y < b.direction.y; });
+  }
+  Directions all;
+  for (std::size_t first = 0; first < sorted.size(); first += kFanRays) {
+    rays::Fan fan;
+    for (std::size_t i = 0; i < kFanRays; ++i) {
+      const bool real = first + i < sorted.size();
+      const LaidGround::SharedRay& ray = sorted[real ? first + i : first];
+      const Float3 direction = rays::float3(ray.direction);
+      fan.x[i] = direction.x, fan.y[i] = direction.y, fan.z[i] = direction.z;
+      if (real) fan.wanted |= 1U << i;
+      all.shares.push_back(real ? floats(ray.share) : Float3{});
+    }
+    all.fans.push_back(fan);
+  }
+  return all;
+}
+
+ShadedGround::Source ShadedGround::source(
+    const std::function<std::vector<LaidGround::SharedRay>(std::uint32_t count)>& drawn) {
+  Source source{directions(drawn(kFew)), directions(drawn(kMany)), {}};
+  for (const Float3& share : source.many.shares) source.share = source.share + share;
+  return source;
+}
+
+void ShadedGround::add_lamp(const Light& light, const color::Rgb& irradiance) {
+  const color::Rgb lit = (kPi * brdf::disc_irradiance(light.direction.y, light.radius_rad)) * light.white;
+  color::Rgb share;
+  for (int c = 0; c < 3; ++c) share[c] = irradiance[c] > 0 ? lit[c] / irradiance[c] : 0;
+  if (share == color::Rgb{}) return;
+  sources_.push_back(source([&](std::uint32_t count) {
+    std::vector<LaidGround::SharedRay> rays;
+    if (!(light.radius_rad > 0)) return std::vector<LaidGround::SharedRay>{{light.direction, share}};
+    const Sequence sequence(0x1A3B, count);
+    double above = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::array<double, 4> numbers = sequence.point(i, 0);
+      const Vec3 direction = disc_direction(light, numbers[0], numbers[1]);
+      if (direction.y > 0) rays.push_back({direction, share}), above += direction.y;
+    }
+    for (LaidGround::SharedRay& ray : rays) ray.share = (ray.direction.y / above) * ray.share;
+    return rays;
+  }));
+}
+
+ShadedGround::ShadedGround(std::shared_ptr<const rays::RayScene> scene, const LaidGround& ground,
+                           const std::vector<Light>& lights, const mesh::Box& box, float mesh_radius,
+                           const GroundRequest& request)
+    : scene_(std::move(scene)), mesh_radius_(mesh_radius), steep_(static_cast<float>(request.steep)) {
+  height_ = scene_->spot({rays::kFloor, 0, 0, 0}, {}, {0, -1, 0}).position.y;
+  soft_ = directions(ground.soft_rays(static_cast<std::uint32_t>(request.directions)));
+  if (ground.has_bright()) sources_.push_back(source([&](std::uint32_t count) { return ground.bright_rays(count); }));
+  for (const Light& light : lights) add_lamp(light, ground.irradiance());
+  const Float3 low = scene_->local(box.low), high = scene_->local(box.high);
+  const double length = std::max(high.x - low.x, high.z - low.z);
+  if (!(length > 0)) return;
+  const std::vector<float> x = lines(low.x, high.x, request.cell * length, length),
+                           z = lines(low.z, high.z, request.cell * length, length);
+  shade(x, z);
+  if (request.sent) gather(every(x, kBounceStep), every(z, kBounceStep), request, ground.irradiance());
+}
+
+template <class Value>
+void ShadedGround::fill(Grid& grid, const Value& value) const {
+  const std::size_t columns = grid.x.size();
+  grid.values.resize(columns * grid.z.size());
+  parallel_for(grid.z.size(), 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row)
+      for (std::size_t column = 0; column < columns; ++column)
+        grid.values[row * columns + column] = value(start_at(grid.x[column], grid.z[row]), row * columns + column);
+  });
+}
+
+void ShadedGround::shade(const std::vector<float>& x, const std::vector<float>& z) {
+  blocked_.x = x, blocked_.z = z;
+  fill(blocked_, [&](const Float3& start, std::size_t) { return blocked(soft_, start); });
+}
+
+// Directions even by the cosine.
+void ShadedGround::gather(const std::vector<float>& x, const std::vector<float>& z, const GroundRequest& request,
+                          const color::Rgb& irradiance) {
+  bounced_.x = x, bounced_.z = z;
+  const auto count = static_cast<std::uint32_t>(request.bounced_directions);
+  fill(bounced_, [&](const Float3& start, std::size_t node) {
+    const Sequence sequence(mixed(request.seed, node), count);
+    const Cone toward = cone(start);
+    color::Rgb sum;
+    for (std::uint32_t first = 0; first < count; first += kFanRays) {
+      rays::Fan fan;
+      fan.origin = start;
+      for (std::uint32_t i = 0; i < kFanRays; ++i) {
+        const std::array<double, 4> numbers = sequence.point(first + i, 0);
+        const double across = std::sqrt(numbers[0]), phi = 2 * kPi * numbers[1];
+        fan.x[i] = static_cast<float>(across * std::cos(phi)), fan.z[i] = static_cast<float>(across * std::sin(phi));
+        fan.y[i] = static_cast<float>(std::sqrt(1 - numbers[0]));
+        if (fan.y[i] > 0) fan.wanted |= 1U << i;
+      }
+      fan.wanted = toward.wanted(fan);
+      if (fan.wanted == 0) continue;
+      rays::Hit hits[kFanRays];
+      scene_->closest(fan, hits);
+      for (std::uint32_t i = 0; i < kFanRays; ++i)
+        if (hits[i].any()) sum += request.sent(hits[i], start, {fan.x[i], fan.y[i], fan.z[i]}, sequence, first + i);
+    }
+    color::Rgb share;
+    for (int c = 0; c < 3; ++c) share[c] = irradiance[c] > 0 ? kPi / count * sum[c] / irradiance[c] : 0;
+    return floats(share);
+  });
+}
+
+Float3 ShadedGround::blocked(const Directions& directions, const Float3& start) const {
+  const Cone toward = cone(start);
+  Float3 sum;
+  for (std::size_t k = 0; k < directions.fans.size(); ++k) {
+    const unsigned wanted = toward.wanted(directions.fans[k]);
+    if (wanted == 0) continue;
+    rays::Fan fan = directions.fans[k];
+    fan.origin = start, fan.wanted = wanted;
+    const unsigned met = scene_->blocked(fan);
+    for (unsigned bits = met; bits != 0; bits &= bits - 1)
+      sum = sum + directions.shares[kFanRays * k + static_cast<std::size_t>(std::countr_zero(bits))];
+  }
+  return sum;
+}
+
+Float3 ShadedGround::blocked(const Source& source, const Float3& start) const {
+  const Float3 few = blocked(source.few, start);
+  constexpr float kAll = 1 - 1e-5F;
+  if (mean_of(few) == 0) return few;
+  return mean_of(few) >= kAll * mean_of(source.share) ? source.share : blocked(source.many, start);
+}
+
+GroundLight ShadedGround::light(const Float3& place, bool seen) const {
+  GroundLight light;
+  std::size_t column = 0, row = 0;
+  float right = 0, down = 0;
+  if (!blocked_.find(place, column, row, right, down)) return light;
+  const auto between = [&](const Grid& grid) {
+    return (1 - down) * ((1 - right) * grid.at(column, row) + right * grid.at(column + 1, row)) +
+           down * ((1 - right) * grid.at(column, row + 1) + right * grid.at(column + 1, row + 1));
+  };
+  const auto is_steep = [&] {
+    const auto [least, most] =
+        std::minmax({mean_of(blocked_.at(column, row)), mean_of(blocked_.at(column + 1, row)),
+                     mean_of(blocked_.at(column, row + 1)), mean_of(blocked_.at(column + 1, row + 1))});
+    return most - least > steep_;
+  };
+  const Float3 hidden = seen && is_steep() ? blocked(soft_, start_at(place.x, place.z)) : between(blocked_);
+  light.left = color::Rgb{1, 1, 1} - rays::vec3(hidden);
+  if (bounced_.find(place, column, row, right, down)) light.bounced = rays::vec3(between(bounced_));
+  return light;
+}
+
+namespace {
+
+void take(const Float3& hidden, GroundLight& light) {
+  light.left += -1.0 * color::Rgb(rays::vec3(hidden));
+}
+
+void keep_positive(GroundLight& light) {
+  for (int c = 0; c < 3; ++c) light.left[c] = std::max(0.0, light.left[c]);
+}
+
+}  // namespace
+
+GroundLight ShadedGround::seen(const Float3& place) const {
+  GroundLight shown = light(place, true);
+  for (const Source& source : sources_) take(blocked(source, start_at(place.x, place.z)), shown);
+  keep_positive(shown);
+  return shown;
+}
+
+GroundLight ShadedGround::met(const Float3& place, double number) const {
+  GroundLight shown = light(place, false);
+  const Float3 start = start_at(place.x, place.z);
+  for (const Source& source : sources_) {
+    const std::size_t count = source.many.fans.size() * kFanRays;
+    std::size_t ray = std::min(count - 1, static_cast<std::size_t>(number * static_cast<double>(count)));
+    const rays::Fan& fan = source.many.fans[ray / kFanRays];
+    ray %= kFanRays;
+    if ((fan.wanted >> ray & 1U) == 0) ray = 0;
+    const Float3 direction{fan.x[ray], fan.y[ray], fan.z[ray]};
+    const Cone toward = cone(start);
+    if (rays::dot(direction, toward.axis) < toward.cosine) continue;
+    if (scene_->blocked(start, direction)) take(source.share, shown);
+  }
+  keep_positive(shown);
+  return shown;
+}
+
+}  // namespace goniochrome::render

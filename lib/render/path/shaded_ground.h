@@ -1,0 +1,94 @@
+// What a mesh leaves of the light of a floor that shows the environment, known beforehand on a grid: a floor is seen by
+// every ray that goes down, and its soft light changes slowly. goniochrome-theory(7), PATHS, Ground.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "color/color.h"
+#include "mesh/mesh.h"
+#include "rays/ray_scene.h"
+#include "render/path/laid_ground.h"
+#include "render/path/sequence.h"
+#include "render/scene.h"
+
+namespace goniochrome::render {
+
+// Light of a point of the floor, relative to the irradiance of the open floor, channel by channel.
+struct GroundLight {
+  color::Rgb left{1, 1, 1};  // of the environment and the lamps: what the mesh leaves
+  color::Rgb bounced;        // what the mesh sends there
+};
+
+struct GroundRequest {
+  int directions = 256;          // at each node, a power of two
+  double cell = 1.0 / 160;       // of the grid about the mesh, in lengths of the mesh; farther away cells grow
+  double steep = 0.06;           // nodes that differ by more are not interpolated between where the floor is seen
+  int bounced_directions = 256;  // at each sixth node, a power of two
+  std::uint64_t seed = 1;
+  // The radiance that the mesh sends along a ray from the floor that meets it there, for the numbers of a sample; none:
+  // black.
+  std::function<color::Rgb(const rays::Hit& hit, const rays::Float3& from, const rays::Float3& direction,
+                           const Sequence& sequence, std::uint32_t index)>
+      sent = {};
+};
+
+// Immutable: for any number of threads at once.
+class ShadedGround {
+ public:
+  // `lights` have no place. Bit-identical for any number of threads.
+  // `box` of the mesh, in its units; `mesh_radius` as Transport has it.
+  ShadedGround(std::shared_ptr<const rays::RayScene> scene, const LaidGround& ground, const std::vector<Light>& lights,
+               const mesh::Box& box, float mesh_radius, const GroundRequest& request);
+
+  // At a place of the floor, local, as a picture shows it. Soft light is interpolated where that is flat, and summed at
+  // the place where it is not; the brightest texels and lamps that are discs get the more rays the more of them the
+  // edge of their shadow needs. There is no randomness in it.
+  GroundLight seen(const rays::Float3& place) const;
+  // The same where a path meets the floor: interpolated everywhere, and one ray to the brightest texels and to each
+  // lamp, which `number` in [0,1) draws.
+  GroundLight met(const rays::Float3& place, double number) const;
+
+ private:
+  // Directions of light, eight by eight, with their shares of the irradiance.
+  struct Directions {
+    std::vector<rays::Fan> fans;
+    std::vector<rays::Float3> shares;  // of each direction; 0 for those that fill the last fan
+  };
+  // A lamp, or the brightest texels together.
+  struct Source {
+    Directions few, many;
+    rays::Float3 share;  // of all of it
+  };
+  // Values at the crossings of lines; beyond the last line there are none.
+  struct Grid {
+    std::vector<float> x, z;
+    std::vector<rays::Float3> values;
+    bool find(const rays::Float3& place, std::size_t& column, std::size_t& row, float& right, float& down) const;
+    const rays::Float3& at(std::size_t column, std::size_t row) const { return values[row * x.size() + column]; }
+  };
+  static Directions directions(const std::vector<LaidGround::SharedRay>& rays);
+  static Source source(const std::function<std::vector<LaidGround::SharedRay>(std::uint32_t count)>& drawn);
+  void add_lamp(const Light& light, const color::Rgb& irradiance);
+  void shade(const std::vector<float>& x, const std::vector<float>& z);
+  void gather(const std::vector<float>& x, const std::vector<float>& z, const GroundRequest& request,
+              const color::Rgb& irradiance);
+  template <class Value>
+  void fill(Grid& grid, const Value& value) const;
+  GroundLight light(const rays::Float3& place, bool seen) const;
+  struct Cone;
+  Cone cone(const rays::Float3& start) const;
+  rays::Float3 blocked(const Directions& directions, const rays::Float3& start) const;
+  rays::Float3 blocked(const Source& source, const rays::Float3& start) const;
+  rays::Float3 start_at(float x, float z) const { return {x, height_ + rays::kLift, z}; }
+
+  std::shared_ptr<const rays::RayScene> scene_;
+  float mesh_radius_ = 0, steep_ = 0, height_ = 0;
+  Directions soft_;
+  std::vector<Source> sources_;
+  Grid blocked_, bounced_;  // of the soft light; of the open irradiance
+};
+
+}  // namespace goniochrome::render

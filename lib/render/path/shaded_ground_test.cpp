@@ -1,0 +1,133 @@
+// The light of a floor from a grid, against paths that know no grid.
+#include "render/path/shaded_ground.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "math/statistics.h"
+#include "render/internal/seen.h"
+#include "render/path/scenes_for_paths_for_test.h"
+
+namespace goniochrome::render {
+namespace {
+
+// A sky with a sun, and ground of many colors.
+envmap::Environment meadow() {
+  return environment_of(64, 32, [](int x, int y) {
+    const double sun = x == 20 && y == 8 ? 900 : 0;
+    if (y >= 16) return color::Rgb{0.2 + 0.1 * (x % 7), 0.5, 0.1 + 0.05 * (y % 5)};
+    return color::Rgb{0.3 + 0.005 * x + sun, 0.5 + sun, 0.9 + 0.9 * sun};
+  });
+}
+
+// A white box on four stilts, as a car is.
+mesh::Mesh box_above_floor() {
+  mesh::Mesh box = box_mesh(true);
+  for (auto& t : box.triangles) std::swap(t[1], t[2]);  // facing outward
+  for (Vec3& n : box.normals) n = -n;
+  mesh::Mesh all;
+  add_mesh(all, box, 1, {0, 0, 0});
+  for (Vec3& p : all.positions) p = {p.x, 0.3 + 0.4 * (p.y + 1), 2 * p.z};
+  for (const double x : {-0.8, 0.8})
+    for (const double z : {-1.6, 1.6}) {
+      mesh::Mesh leg = box;
+      for (Vec3& p : leg.positions) p = {x + 0.1 * p.x, 0.16 * (p.y + 1), z + 0.1 * p.z};
+      add_mesh(all, leg, 1, {0, 0, 0});
+    }
+  return all;
+}
+
+struct Stage : PathStage {
+  Stage() : PathStage(box_above_floor(), {matt({0.7, 0.6, 0.5})}) {
+    environment = meadow();
+    ground.emplace();
+    ground->height = 0, ground->probe_eye = {0, 0.6, 0};
+    scene.lights = {{normalized({-1, 0.8, 0.4}), {0.3, 0.3, 0.2}, 0.05}};
+    build();
+  }
+};
+
+TEST(ShadedGround, ShowsWhatPathsShow) {
+  const Stage stage;
+  constexpr int kBounces = 4;
+  // As pictures have it, and with eight times as many directions of light that the mesh sends.
+  Transport shaded = *stage.transport, finer = *stage.transport;
+  shaded.shade_ground({}, kBounces);
+  finer.shade_ground({.bounced_directions = 2048}, kBounces);
+  PathOptions options;
+  options.bounces = kBounces;
+  std::vector<double> errors, finer_errors, control;
+  double bias = 0;
+  constexpr int kPoints = 120;
+  for (int i = 0; i < kPoints; ++i) {
+    // Spirals out from under the box; the far ones lie where cells are large.
+    const double turn = 2.399963 * i, radius = 0.3 + 6.0 * i * i / (kPoints * kPoints);
+    const Vec3 at{radius * std::sin(turn), 0, radius * std::cos(turn)};
+    const PathEstimate truth = stage.seen(options, at + Vec3{0, 0.05, 0}, at, 256);
+    const rays::Float3 from = shaded.rays().local(at + Vec3{0, 0.05, 0}), down{0, -1, 0};
+    const rays::Hit hit = shaded.rays().closest(from, down);
+    if (hit.triangle != rays::kFloor) continue;  // within a leg
+    const rays::Spot spot = shaded.rays().spot(hit, from, down);
+    const color::Rgb seen = shaded.shaded_ground(spot).sum(), open = shaded.open_ground(spot);
+    const double noise = noise_de00(truth.radiance, truth.covariance, 1);
+    errors.push_back(std::max(0.0, seen_difference(seen, truth.radiance, 1) - 2 * noise));
+    finer_errors.push_back(
+        std::max(0.0, seen_difference(finer.shaded_ground(spot).sum(), truth.radiance, 1) - 2 * noise));
+    control.push_back(seen_difference(open, truth.radiance, 1));
+    bias += (seen.y - truth.radiance.y) / kPoints;
+  }
+  EXPECT_LT(percentile_95(errors), 1);
+  EXPECT_LT(percentile_95(finer_errors), 0.5);
+  ASSERT_GT(errors.size(), 0.9 * kPoints);
+  EXPECT_LT(std::abs(bias), 0.002);
+  EXPECT_GT(percentile_95(control), 10) << "the control: the floor in the open";
+}
+
+// Points of the body see the floor through the grid, and the light of the ground that it hides is drawn with what is
+// shown in its place: the sums are those of paths.
+TEST(ShadedGround, LightsTheBodyAsPathsDo) {
+  const Stage stage;
+  Transport shaded = *stage.transport;
+  shaded.shade_ground({}, 4);
+  for (const bool correction : {true, false}) {
+    PathOptions options;
+    options.bounces = 4, options.correction = correction;
+    for (const Vec3& at : {Vec3{1, 0.5, 0.3}, Vec3{1, 0.4, -1.2}, Vec3{-1, 0.9, 0.7}, Vec3{0.2, 0.6, 2}}) {
+      const Vec3 outward = std::abs(at.x) == 1 ? Vec3{at.x, 0.1, 0.2} : Vec3{0.1, 0.2, 1};
+      const PathEstimate truth = stage.seen(options, at + 0.5 * outward, at, 4096);
+      const rays::Float3 from = shaded.rays().local(at + 0.5 * outward),
+                         toward = rays::float3(normalized(-1.0 * outward));
+      const rays::Hit hit = shaded.rays().closest(from, toward);
+      ASSERT_TRUE(hit.any());
+      const PathEstimate read =
+          path_estimate(shaded, options, shaded.rays().spot(hit, from, toward), normalized(outward), 4096, 2);
+      for (int c = 0; c < 3; ++c) {
+        const double noise = std::hypot(deviation(truth, c), deviation(read, c));
+        EXPECT_NEAR(read.radiance[c], truth.radiance[c], 4 * noise + 0.003)
+            << at.x << " " << at.y << " " << at.z << ", channel " << c << ", " << correction;
+        EXPECT_LT(noise, 0.02);
+      }
+      EXPECT_LT(deviation(read), deviation(truth)) << "what the grid is for";
+    }
+  }
+}
+
+// A leg hides all of the light; far away the mesh hides next to none.
+TEST(ShadedGround, IsWholeUnderTheBodyAndFarFromIt) {
+  const Stage stage;
+  Transport shaded = *stage.transport;
+  shaded.shade_ground({}, 0);
+  const auto shown = [&](const Vec3& at) {
+    const rays::Float3 from = shaded.rays().local(at + Vec3{0, 0.001, 0}), down{0, -1, 0};
+    const rays::Spot spot =
+        shaded.rays().spot({rays::kFloor, 0, 0, shaded.rays().floor_distance(from, down)}, from, down);
+    return shaded.shaded_ground(spot).sum().y / shaded.open_ground(spot).y;
+  };
+  EXPECT_LT(shown({0.8, 0, 1.6}), 1e-5) << "within a leg";
+  EXPECT_GT(shown({300, 0, 50}), 0.9999);
+  EXPECT_GT(shown({60, 0, 50}), 0.999);
+}
+
+}  // namespace
+}  // namespace goniochrome::render
