@@ -39,7 +39,7 @@ namespace goniochrome {
 namespace {
 
 // The exit statuses of a child. A sanitizer ends with 1, and a library may call exit() with another small number.
-constexpr int kDone = 0, kRefused = 40, kNoMemory = 41;
+constexpr int kDone = 0, kRefused = 40, kNoMemory = 41, kThreadless = 42;
 
 // A child that waits for a lock uses no processor time. This many seconds are far more than a busy machine adds.
 constexpr int kWaitingFactor = 20;
@@ -66,14 +66,18 @@ void limit(int resource, rlim_t most, rlim_t grace = 0) {
   setrlimit(static_cast<__rlimit_resource_t>(resource), &now);
 }
 
-// A quarter of the memory that this child may take, for a signal handler.
+// A quarter of the memory that this child may take, for a signal handler; 0 in a process that is no child.
 std::size_t quarter = 0;
 
-// A library that gets no memory may abort or write to address 0. Where a quarter of what the child may take is not to
-// be had any more, want of memory is taken for the cause of a crash.
+// Whether a quarter of what the child may take is not to be had any more. Want of memory is then taken for the cause of
+// whatever went wrong.
+bool child_is_short_of_memory() {
+  return mmap(nullptr, quarter, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0) == MAP_FAILED;
+}
+
+// A library that gets no memory may abort or write to address 0.
 [[maybe_unused]] void explain_crash(int number) {
-  if (mmap(nullptr, quarter, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0) == MAP_FAILED)
-    _exit(kNoMemory);
+  if (child_is_short_of_memory()) _exit(kNoMemory);
   signal(number, SIG_DFL);
   raise(number);
 }
@@ -210,6 +214,10 @@ std::optional<std::size_t> addresses_left() {
   return limit.rlim_cur > *mapped ? static_cast<std::size_t>(limit.rlim_cur) - *mapped : 0;
 }
 
+void end_child_without_thread() {
+  if (quarter > 0) _exit(child_is_short_of_memory() ? kNoMemory : kThreadless);
+}
+
 ChildBytes::ChildBytes(ChildBytes&& other) noexcept
     : bytes_(std::exchange(other.bytes_, nullptr)), size_(std::exchange(other.size_, 0)) {}
 
@@ -245,6 +253,7 @@ Result<ChildBytes> made_by_child(const std::string& name, const ChildLimits& lim
     if (errno != EINTR) return input_error("{}: the process that reads it is lost: {}", name, std::strerror(errno));
   if (WIFSIGNALED(status)) return ended_by(late ? SIGALRM : WTERMSIG(status), name, limits);
   if (WEXITSTATUS(status) == kNoMemory) return needs_memory(name, limits);
+  if (WEXITSTATUS(status) == kThreadless) return input_error("{}: cannot be read: {}", name, kNoThread);
   GONIO_ASSIGN(ChildBytes bytes, content_of(shared, name));
   if (WEXITSTATUS(status) == kDone) return bytes;
   if (WEXITSTATUS(status) == kRefused && !bytes.view().empty())

@@ -53,4 +53,13 @@ std::optional<std::size_t> addresses_left();
 Result<ChildBytes> made_by_child(const std::string& name, const ChildLimits& limits,
                                  const std::function<Result<void>(ChildOutput&)>& work);
 
+// What was lacking where a thread cannot start, and what to do about it; the beginning of a sentence.
+inline constexpr const char* kNoThread =
+    "no thread can be started, because the system allows no more of them (`ulimit -u`, or the limit of a container): "
+    "raise the limit, or end other processes";
+
+// Ends this process if it is such a child, and its parent then tells that a library could not start a thread. Elsewhere
+// it does nothing.
+void end_child_without_thread();
+
 }  // namespace goniochrome

@@ -45,6 +45,15 @@ TEST(Child, HandsItsBytesOver) {
   EXPECT_TRUE(none->view().empty());
 }
 
+TEST(Child, ThatCannotStartAThreadIsToldByItsParent) {
+  EXPECT_THAT(error_of([](ChildOutput&) -> Result<void> {
+                end_child_without_thread();
+                return {};
+              }),
+              HasSubstr("x.ply: cannot be read: no thread can be started"));
+  end_child_without_thread();  // a process that is no child goes on
+}
+
 TEST(Child, WhateverEndsItIsAnErrorThatNamesTheFile) {
   for (const int number : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL})
     EXPECT_THAT(error_of([&](ChildOutput&) -> Result<void> {

@@ -172,8 +172,9 @@ Result<OutputFile> written_in_place(int descriptor, const std::string& path,
 
 }  // namespace
 
-// An unnamed file (O_TMPFILE) is gone with the process, however it ends; only commit() gives it a name. File systems
-// without unnamed files get a dot file, removed by the destructor.
+// An unnamed file (O_TMPFILE) is gone with the process, however it ends; only commit() gives it a name. A file can take
+// the place of another only under a name, so who kills the process within commit() may leave the whole new file under a
+// hidden name. File systems without unnamed files get a dot file, removed by the destructor.
 Result<OutputFile> OutputFile::create(const std::string& path) {
   if (path.empty() || path == "-") return OutputFile("", "", stdout);
   const auto in_place = [](std::FILE* stream) { return OutputFile("", "", stream); };

@@ -22,8 +22,9 @@ extern "C" const char* __lsan_default_options() {
 namespace goniochrome {
 
 namespace {
+// It is never destroyed: the end of the limit would start threads while the program ends.
 std::unique_ptr<tbb::global_control>& limit() {
-  static std::unique_ptr<tbb::global_control> control;
+  static auto& control = *new std::unique_ptr<tbb::global_control>;
   return control;
 }
 }  // namespace

@@ -72,7 +72,7 @@ void add_common_options(ToolSpec& spec, CommonOptions& common, const CommonTexts
       .more("- is standard output, where that carries no data.");
   spec.option("threads", "N", "4", &common.threads, "number of threads; 0 is one for each core")
       .from(0, 1024)
-      .more("The results do not depend on it.");
+      .more("The results do not depend on it. 1 needs the fewest threads, where the system allows no more.");
   spec.flag("quiet,q", &common.quiet, "print nothing but errors");
 }
 

@@ -198,8 +198,8 @@ std::string man_page(const ToolSpec& spec) {
   text +=
       ".SH EXIT STATUS\n"
       "0: the work is done. 1: it is done, and its verdict is negative. 2: the command line is wrong. 3: an input is "
-      "wrong, or a file cannot be read or written. 4: a limit stopped the work, and the best result is written. 70: "
-      "the tool has a bug.\n";
+      "wrong, a file cannot be read or written, or the system gives too little memory or no thread. 4: a limit stopped "
+      "the work, and the best result is written. 70: the tool has a bug.\n";
   if (!spec.examples.empty()) text += ".SH EXAMPLES\n";
   for (std::size_t i = 0; i < spec.examples.size(); ++i)
     text += fmt::format("{}{}\n.PP\n.nf\n.RS\n{}\n.RE\n.fi\n", i ? ".PP\n" : "",

@@ -13,6 +13,7 @@
 #include "cli/outputs.h"
 #include "cli/parse.h"
 #include "cli/process.h"
+#include "cli/thread_start.h"
 
 namespace goniochrome::cli {
 
@@ -133,6 +134,7 @@ int tool_main(int argc, char** argv, const ToolSpec& table, const CommonOptions&
               const std::function<Result<Verdict>(Session&)>& run) {
   open_closed_descriptors();
   expect_memory_to_run_out(table.name);
+  expect_threads_to_run_out(table.name);
   Requests requests;
   ToolSpec spec = table;
   spec.flag("help,h", &requests.help, "print this help");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 #include "base/text.h"
 
@@ -39,15 +40,40 @@ Result<void> check_lab(const color::Lab& lab) {
 
 namespace {
 
-bool is_finite(const color::Rgb& rgb) {
-  return std::isfinite(rgb.x) && std::isfinite(rgb.y) && std::isfinite(rgb.z);
-}
+// Whether every number that it was given is finite.
+class Finite {
+ public:
+  Finite& numbers(std::initializer_list<double> numbers) {
+    all_ = all_ && std::ranges::all_of(numbers, [](double value) { return std::isfinite(value); });
+    return *this;
+  }
+  Finite& color(const color::Rgb& rgb) { return numbers({rgb.x, rgb.y, rgb.z}); }
+  Finite& lobes(const color::Rgb& diffuse, const std::vector<paint::Lobe>& lobes) {
+    color(diffuse);
+    for (const paint::Lobe& lobe : lobes) {
+      if (!lobe.is_mirror()) numbers({lobe.exponent});  // that of the mirror is infinite
+      color(lobe.directional_diffuse).color(lobe.gloss);
+    }
+    return *this;
+  }
+  Finite& fit(const paint::LobeFit& fit) {
+    numbers({fit.max_de00, fit.mean_de00, fit.coat_index}).lobes(fit.diffuse, fit.lobes);
+    for (const paint::ViewLobes& view : fit.views) numbers({view.view_deg}).lobes(view.diffuse, view.lobes);
+    for (const paint::TiltedLobes& tilts : fit.tilts) {
+      numbers({tilts.mean_de00});
+      for (const paint::TiltedLobe& lobe : tilts.lobes) numbers({lobe.exponent, lobe.tilt_deg, lobe.out_deg});
+      for (const paint::TiltedView& view : tilts.views) {
+        numbers({view.view_deg}).color(view.diffuse);
+        for (const color::Rgb& weight : view.weights) color(weight);
+      }
+    }
+    return *this;
+  }
+  bool all() const { return all_; }
 
-bool is_finite(const color::Rgb& diffuse, const std::vector<paint::Lobe>& lobes) {
-  return is_finite(diffuse) && std::ranges::all_of(lobes, [](const paint::Lobe& lobe) {
-           return !std::isnan(lobe.exponent) && is_finite(lobe.directional_diffuse) && is_finite(lobe.gloss);
-         });
-}
+ private:
+  bool all_ = true;
+};
 
 }  // namespace
 
@@ -59,17 +85,19 @@ Result<void> check_writable(const paint::Paint& paint) {
   if (paint.appearance) colors.insert(colors.end(), {paint.appearance->face, paint.appearance->flop});
   for (const color::Lab& lab : colors)
     if (const auto checked = check_lab(lab); !checked.ok()) return refused(checked.error().message);
-  bool finite = !paint.appearance || std::isfinite(paint.appearance->travel_deg);
+  Finite finite;
   if (paint.measurement)
-    for (const paint::SpectrumReading& spectrum : paint.measurement->spectra)
-      finite = finite && spectrum.factors.size() > 1 &&
-               std::ranges::all_of(spectrum.factors, [](double value) { return std::isfinite(value); });
-  for (const paint::GlossReading& gloss : paint.gloss) finite = finite && std::isfinite(gloss.gloss_units);
-  if (paint.lobes) {
-    finite = finite && is_finite(paint.lobes->diffuse, paint.lobes->lobes);
-    for (const auto& view : paint.lobes->views) finite = finite && is_finite(view.diffuse, view.lobes);
-  }
-  if (!finite) return refused("a number of it is not finite: only finite numbers are written");
+    for (const paint::SpectrumReading& spectrum : paint.measurement->spectra) {
+      if (spectrum.factors.size() < 2) return refused("a spectrum of it has fewer than two wavelengths");
+      finite.numbers({spectrum.from_nm, spectrum.step_nm});
+      for (const double factor : spectrum.factors) finite.numbers({factor});
+    }
+  for (const paint::GlossReading& gloss : paint.gloss) finite.numbers({gloss.angle_deg, gloss.gloss_units});
+  if (paint.appearance) finite.numbers({paint.appearance->travel_deg, paint.appearance->residual_de00.value_or(0)});
+  if (paint.anisotropy) finite.numbers({paint.anisotropy->alpha_x, paint.anisotropy->alpha_y});
+  finite.numbers({paint.color_map ? paint.color_map->index : 0, paint.coat_index.value_or(0)});
+  if (paint.lobes) finite.fit(*paint.lobes);
+  if (!finite.all()) return refused("a number of it is not finite: only finite numbers are written");
   return {};
 }
 

@@ -258,7 +258,12 @@ TEST(PaintXml, WhatIsNoColorOrNotFiniteIsNotWritten) {
     const auto written = write_all(folder.path("p.xml"), {paint});
     return written.ok() ? std::string() : written.error().message;
   };
+  const auto tilted = [](double tilt_deg, double weight) {
+    const paint::TiltedView view = {0, {0.1, 0.1, 0.1}, {{weight, 0, 0}}};
+    return std::vector{paint::TiltedLobes{1, {{12, tilt_deg, 0}}, {view, view}}};
+  };
   EXPECT_EQ(refused([](paint::Paint&) {}), "");
+  EXPECT_EQ(refused([&](paint::Paint& p) { p.lobes->tilts = tilted(1, 1); }), "");
   std::filesystem::remove(folder.path("p.xml"));
   for (const double wrong : {std::nan(""), HUGE_VAL, 1e50}) {
     EXPECT_NE(refused([&](paint::Paint& p) { p.measurement->rows[0].lab.a = wrong; }), "") << wrong;
@@ -268,6 +273,16 @@ TEST(PaintXml, WhatIsNoColorOrNotFiniteIsNotWritten) {
     EXPECT_NE(refused([&](paint::Paint& p) { p.appearance->travel_deg = wrong; }), "") << wrong;
     EXPECT_NE(refused([&](paint::Paint& p) { p.gloss[0].gloss_units = wrong; }), "") << wrong;
     EXPECT_NE(refused([&](paint::Paint& p) { p.lobes->lobes[0].gloss.x = wrong; }), "") << wrong;
+    EXPECT_NE(refused([&](paint::Paint& p) { p.appearance->residual_de00 = wrong; }), "") << wrong;
+    EXPECT_NE(refused([&](paint::Paint& p) { p.anisotropy->alpha_y = wrong; }), "") << wrong;
+    EXPECT_NE(refused([&](paint::Paint& p) { p.color_map->index = wrong; }), "") << wrong;
+    EXPECT_NE(refused([&](paint::Paint& p) { p.coat_index = wrong; }), "") << wrong;
+    EXPECT_NE(refused([&](paint::Paint& p) { p.lobes->coat_index = wrong; }), "") << wrong;
+    EXPECT_NE(refused([&](paint::Paint& p) { p.lobes->mean_de00 = wrong; }), "") << wrong;
+    EXPECT_NE(refused([&](paint::Paint& p) { p.lobes->views[1].view_deg = wrong; }), "") << wrong;
+    EXPECT_NE(refused([&](paint::Paint& p) { p.lobes->lobes[0].exponent = -wrong; }), "") << wrong;
+    EXPECT_NE(refused([&](paint::Paint& p) { p.lobes->tilts = tilted(wrong, 0); }), "") << wrong;
+    EXPECT_NE(refused([&](paint::Paint& p) { p.lobes->tilts = tilted(0, wrong); }), "") << wrong;
   }
   EXPECT_EQ(folder.files(), 0u);
 }

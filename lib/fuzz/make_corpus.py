@@ -3,7 +3,8 @@
 
     lib/fuzz/make_corpus.py BIN     BIN: folder of built tools
 
-Files named found-*, inputs that once broke a reader, are kept.
+Files named found-*, inputs that once broke a reader, are kept, and so are grown-*, which scripts/fuzz --keep has made of
+the others.
 """
 import json
 import os

@@ -104,7 +104,7 @@ class TiffNumbers {
 // Whether the first picture of a TIFF file is a thumbnail, as in the raw files of most cameras: NewSubfileType (254)
 // says "reduced", there is a DNGVersion (50706), or Canon's mark stands behind the header. A BigTIFF has none of these.
 bool is_camera_raw(std::string_view content) {
-  if (content.substr(8, 2) == "CR") return true;
+  if (shows(content, {8, "CR"sv, ""})) return true;
   const TiffNumbers number(content);
   if (number.at(2, 2) != 42) return false;
   const std::size_t directory = number.at(4, 4);

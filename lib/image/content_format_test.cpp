@@ -1,0 +1,32 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "image/internal/content_format.h"
+
+namespace goniochrome::image {
+namespace {
+
+using testing::HasSubstr;
+
+// The first bytes of files that are known by them, and others behind.
+TEST(ContentFormat, AFileThatEndsWithinItsHeaderIsNamedOrRefused) {
+  using namespace std::string_literals;
+  const std::string heads[] = {
+      "\x76\x2f\x31\x01"s, "#?RADIANCE"s, "\x89PNG\r\n\x1a\n"s, "\xff\xd8\xff"s, "II\x2a\0"s, "MM\0\x2a"s, "II\x2b\0"s,
+      "MM\0\x2b"s,         "SDPX"s,       "RIFF....WEBPVP8"s,   "BM"s,           "FOR4"s,     "P6 "s,      "\0\0\x02"s,
+      "\0\0\0\x0cjP  "s};
+  for (const std::string& head : heads)
+    for (const char filling : {'\0', '\x08', '\xff'}) {
+      const std::string whole = head + std::string(24, filling);
+      for (std::size_t size = 0; size < whole.size(); ++size) {
+        const auto format = content_format(whole.substr(0, size), "x");
+        if (format.ok()) continue;
+        EXPECT_THAT(format.error().message, HasSubstr("x: is ")) << size << " bytes of " << head;
+      }
+    }
+}
+
+}  // namespace
+}  // namespace goniochrome::image
