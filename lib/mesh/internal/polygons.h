@@ -61,8 +61,8 @@ struct CornerTriangle {
 
 // Gives the corners without a normal one, which is appended to `normals`: the mean of the normals of the triangles that
 // meet there within 60 degrees of its own triangle, each weighted by its angle at the vertex, which does not depend on
-// how the surface was cut into triangles [Thuermer1998]. Vertices at the same place are one vertex here, whatever their
-// number in the file. Triangles must have an area.
+// how the surface was cut into triangles (Thuermer and Wuethrich 1998). Vertices at the same place are one vertex here,
+// whatever their number in the file. Triangles must have an area.
 void make_normals(std::vector<CornerTriangle>& triangles, const std::vector<Vec3>& positions,
                   std::vector<Vec3>& normals);
 
