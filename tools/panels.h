@@ -1,6 +1,7 @@
 // What goniogeom-index and trompe-fit share: the options for lights, viewers and seams, and the picture of one paint.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "image/image.h"
 #include "panels/geometry_sets.h"
 #include "panels/seam.h"
+#include "panels/traced_seam.h"
 
 namespace goniochrome::tool {
 
@@ -40,7 +42,42 @@ inline void add_seam_options(cli::ToolSpec& spec, panels::SeamTexts& seam) {
   spec.option("view-from", "AZ,EL", "25,20", &seam.views_from, "a distant viewer in the world")
       .in("degrees, as for --light-from");
   spec.option("environment", "FILE", "studio.env.exr", &seam.environment,
-              "light of a prefiltered environment, for --view-from");
+              "light of a prefiltered environment, for --view-from")
+      .more(
+          "The mesh takes a part of this light from the seam and sends another part to it, in the paint that is "
+          "judged: "
+          "both are traced by rays, with a noise that is told.");
+  spec.flag("open", &seam.open, "let the light of --environment come to the seam as if there were no mesh");
+}
+
+// The light at the seam where an environment is given, with the mesh in its way unless nobody wants that. Nothing, with
+// a warning that says why and what that leaves out, where it cannot be traced.
+inline std::optional<panels::TracedSeam> traced_seam(const panels::SeamTexts& texts, const panels::SeamStage& stage,
+                                                     cli::Session& session) {
+  if (texts.environment.empty()) return std::nullopt;
+  auto traced = panels::TracedSeam::create(stage.mesh, stage.env, texts.open);
+  if (traced.ok()) return std::optional<panels::TracedSeam>(*std::move(traced));
+  if (!texts.open)
+    session.warn(fmt::format("{}: {}; shadows and reflections of the mesh on itself are left out", texts.environment,
+                             traced.error().message));
+  return std::nullopt;
+}
+
+// What was traced for a paint, and how well; nothing of open light.
+inline void tell_traced(const panels::SeamLights& lights, std::size_t views, const std::string& paint,
+                        cli::Session& session) {
+  if (lights.noise_de76 == 0 && lights.worth_de76 == 0 && lights.beside == 0) return;
+  session.results()["traced"].push_back({{"paint", paint},
+                                         {"worth_de76", lights.worth_de76},
+                                         {"noise_de76", lights.noise_de76},
+                                         {"panels_not_found", lights.beside}});
+  session.say(fmt::format("{}: the mesh changes differences by {:.2f} (95 % of the views), known to {:.2f}{}", paint,
+                          lights.worth_de76, lights.noise_de76,
+                          lights.beside > 0
+                              ? fmt::format("; of {} of {} views a panel is not found under its edge, and "
+                                            "they get open light",
+                                            lights.beside, 2 * views)
+                              : ""));
 }
 
 // For a picture that can show one paint only: `count` says which paint of the run this is, and `option_does` what the

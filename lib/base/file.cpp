@@ -147,6 +147,9 @@ Result<std::size_t> InputFile::read(std::string& buffer, std::size_t most) {
 
 Result<std::string> InputFile::rest(std::size_t most) {
   std::string content;
+  struct stat status;  // the room is taken at once where the size is known
+  if (fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 0)
+    content.reserve(std::min(static_cast<std::size_t>(status.st_size), most) + kChunk);
   for (;;) {
     GONIO_ASSIGN(const std::size_t count, read(content, kChunk));
     if (count == 0) return content;

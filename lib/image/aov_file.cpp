@@ -93,6 +93,35 @@ Result<int> AovFile::part(const std::string& name) const {
   return usage_error("{} has no part \"{}\": its parts are {}", path, name, joined(parts, ", "));
 }
 
+namespace {
+
+// What the plan in a header says of the effects.
+void take_plan(const std::string& plan, AovFile& file) {
+  const Json effects = Json::parse(plan.empty() ? "[]" : plan, nullptr, false);
+  for (const Json& effect : effects) {
+    if (!effect.is_object() || !effect.contains("effect") || !effect["effect"].is_string()) continue;
+    const std::string decision =
+        effect.value("decision", Json()).is_string() ? effect["decision"].get<std::string>() : "";
+    const auto name = effect["effect"].get<std::string>();
+    if (decision == "drawn" || decision == "forced on") {
+      file.drawn.push_back(name);
+      const Json worth = effect.value("de00_p95", Json());
+      if (name == "shadow" || name == "self" || name == "bounce" || name == "floor")
+        file.drawn_by_rays += (file.drawn_by_rays.empty() ? "" : ", ") + name +
+                              (worth.is_number() ? fmt::format(" (dE00 {:.1f})", worth.get<double>()) : "");
+    }
+    if (decision == "dropped" || decision == "forced off" || decision == "over budget") file.left_out.push_back(name);
+  }
+}
+
+}  // namespace
+
+std::string drawn_by_rays(const ImagePart& picture) {
+  AovFile file;
+  take_plan(attribute_or<std::string>(picture.attributes, "goniochrome:plan", ""), file);
+  return file.drawn_by_rays;
+}
+
 Result<AovFile> read_aov_file(const std::string& path) {
   GONIO_ASSIGN(auto read, read_exr(path));
   const Attributes& attributes = read.front().attributes;
@@ -118,22 +147,7 @@ Result<AovFile> read_aov_file(const std::string& path) {
   file.parts = names_of(attributes, "goniochrome:parts");
   file.materials = names_of(attributes, "goniochrome:materials");
   file.materials.resize(file.parts.size());
-  const auto plan = text("goniochrome:plan");
-  const Json effects = Json::parse(plan.empty() ? "[]" : plan, nullptr, false);
-  for (const Json& effect : effects) {
-    if (!effect.is_object() || !effect.contains("effect") || !effect["effect"].is_string()) continue;
-    const std::string decision =
-        effect.value("decision", Json()).is_string() ? effect["decision"].get<std::string>() : "";
-    const auto name = effect["effect"].get<std::string>();
-    if (decision == "drawn" || decision == "forced on") {
-      file.drawn.push_back(name);
-      const Json worth = effect.value("de00_p95", Json());
-      if (name == "shadow" || name == "self" || name == "bounce" || name == "floor")
-        file.drawn_by_rays += (file.drawn_by_rays.empty() ? "" : ", ") + name +
-                              (worth.is_number() ? fmt::format(" (dE00 {:.1f})", worth.get<double>()) : "");
-    }
-    if (decision == "dropped" || decision == "forced off" || decision == "over budget") file.left_out.push_back(name);
-  }
+  take_plan(text("goniochrome:plan"), file);
   file.transport = text("goniochrome:transport");
   file.image = std::move(read.front().image);
   if (!file.transport.empty())

@@ -54,6 +54,9 @@ struct AovFile {
   Result<int> part(const std::string& name) const;
 };
 
+// AovFile::drawn_by_rays of a picture that was read without its buffers; "" where it does not tell.
+std::string drawn_by_rays(const ImagePart& picture);
+
 // Error: the file is not an EXR file, or its header is not one that render-osmesa writes.
 Result<AovFile> read_aov_file(const std::string& path);
 

@@ -1,14 +1,14 @@
 #include "mesh/mesh.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <unordered_map>
+#include <limits>
+#include <map>
 
-#include "base/angles.h"
 #include "base/file.h"
+#include "base/parallel.h"
 #include "base/paths.h"
 #include "base/text.h"
 #include "mesh/internal/polygons.h"
@@ -58,115 +58,130 @@ bool is_ear(const std::vector<Point2>& flat, const std::vector<std::uint32_t>& l
   return true;
 }
 
-// Faces that meet at a sharper edge than this do not share a made normal.
-const double kCreaseCosine = std::cos(60 * kDegree);
-
 // A triangle whose height is less than this part of its longest edge has no area: its direction is rounding noise.
 constexpr double kFlatness = 1e-10;
 
-struct Triangle {
-  std::array<Polygons::Corner, 3> corners;
-  std::uint32_t part;
-  Vec3 normal;  // unit, from the winding
+// What the faces [begin, end) become.
+struct Triangles {
+  std::vector<CornerTriangle> triangles;
+  Mesh::Repairs repairs;
 };
 
-struct HashVec3 {
-  std::size_t operator()(const Vec3& v) const {
-    std::size_t hash = 0;
-    for (const double c : {v.x, v.y, v.z}) {
-      hash = (hash ^ std::bit_cast<std::uint64_t>(c + 0.0)) * 0x9E3779B97F4A7C15U;  // + 0.0 joins -0 and 0
-      hash ^= hash >> 29;
-    }
-    return hash;
-  }
-};
+// The file's normals say which side is outside; a triangle wound against them is turned.
+bool is_against(const CornerTriangle& t, const Vec3& normal, const std::vector<Vec3>& normals) {
+  double agreement = 0;
+  for (const Polygons::Corner& corner : t.corners)
+    if (corner.normal != kNoNormal) agreement += dot(normal, normals[static_cast<std::size_t>(corner.normal)]);
+  return agreement < 0;
+}
 
-// Corners that agree in these are one vertex.
-struct VertexKey {
-  std::uint64_t position_and_normal;
-  std::int32_t texture;
-  friend bool operator==(const VertexKey&, const VertexKey&) = default;
-};
-struct HashVertexKey {
-  std::size_t operator()(const VertexKey& key) const {
-    std::size_t hash = (key.position_and_normal ^ static_cast<std::uint32_t>(key.texture)) * 0x9E3779B97F4A7C15U;
-    return hash ^ (hash >> 29);
-  }
-};
-
-std::vector<Triangle> triangles_of(const Polygons& polygons, Mesh::Repairs& repairs) {
-  std::vector<Triangle> triangles;
+Triangles triangles_of(const Polygons& polygons, std::size_t begin, std::size_t end) {
+  Triangles made;
+  made.triangles.reserve(end - begin);
+  const std::vector<std::array<std::uint32_t, 3>> alone = {{0, 1, 2}};
   std::vector<Vec3> ring;
-  for (const Polygons::Face& face : polygons.faces) {
+  for (std::size_t f = begin; f < end; ++f) {
+    const Polygons::Face& face = polygons.faces[f];
+    const Polygons::Corner* corners = &polygons.corners[face.first];
     ring.clear();
-    for (std::uint32_t i = 0; i < face.count; ++i) {
-      ring.push_back(polygons.positions[polygons.corners[face.first + i].position]);
-    }
-    if (face.count > 3) ++repairs.polygons_split;
-    for (const auto& [i, j, k] : triangulated(ring)) {
+    for (std::uint32_t i = 0; i < face.count; ++i) ring.push_back(polygons.positions[corners[i].position]);
+    if (face.count > 3) ++made.repairs.polygons_split;
+    for (const auto& [i, j, k] : face.count == 3 ? alone : triangulated(ring)) {
       const Vec3 a = ring[j] - ring[i], b = ring[k] - ring[i], c = ring[k] - ring[j];
       const Vec3 doubled = cross(a, b);
       const double longest = std::max({dot(a, a), dot(b, b), dot(c, c)});
       const double size = length(doubled);
       if (!(size > kFlatness * longest)) {
-        ++repairs.degenerate_dropped;
+        ++made.repairs.degenerate_dropped;
         continue;
       }
-      triangles.push_back(
-          {{polygons.corners[face.first + i], polygons.corners[face.first + j], polygons.corners[face.first + k]},
-           face.part,
-           (1 / size) * doubled});
+      CornerTriangle triangle = {{corners[i], corners[j], corners[k]}, face.part};
+      if (is_against(triangle, (1 / size) * doubled, polygons.normals)) {
+        std::swap(triangle.corners[1], triangle.corners[2]);
+        ++made.repairs.triangles_turned;
+      }
+      made.triangles.push_back(triangle);
     }
+  }
+  return made;
+}
+
+// The triangles of all faces, in their order. The corners and faces are given up.
+std::vector<CornerTriangle> triangles_of(Polygons& polygons, Mesh::Repairs& repairs) {
+  constexpr std::size_t kFaces = 1 << 15;
+  const std::size_t faces = polygons.faces.size();
+  std::vector<Triangles> chunks((faces + kFaces - 1) / kFaces);
+  parallel_for(faces, kFaces, [&](std::size_t begin, std::size_t end) {
+    chunks[begin / kFaces] = triangles_of(polygons, begin, end);
+  });
+  polygons.corners = {}, polygons.faces = {};
+  std::size_t count = 0;
+  for (const Triangles& chunk : chunks) count += chunk.triangles.size();
+  std::vector<CornerTriangle> triangles;
+  triangles.reserve(count);
+  for (Triangles& chunk : chunks) {
+    triangles.insert(triangles.end(), chunk.triangles.begin(), chunk.triangles.end());
+    repairs.degenerate_dropped += chunk.repairs.degenerate_dropped;
+    repairs.polygons_split += chunk.repairs.polygons_split;
+    repairs.triangles_turned += chunk.repairs.triangles_turned;
+    chunk = {};
   }
   return triangles;
 }
 
-// The file's normals say which side is outside; a triangle wound against them is turned.
-void turn_to_normals(std::vector<Triangle>& triangles, const std::vector<Vec3>& normals, Mesh::Repairs& repairs) {
-  for (Triangle& t : triangles) {
-    double agreement = 0;
-    for (const auto& corner : t.corners) {
-      if (corner.normal != kNoNormal) agreement += dot(t.normal, normals[static_cast<std::size_t>(corner.normal)]);
-    }
-    if (agreement >= 0) continue;
-    std::swap(t.corners[1], t.corners[2]);
-    t.normal = -t.normal;
-    ++repairs.triangles_turned;
-  }
-}
+// Numbers the vertices of a mesh: corners that agree in position, normal and texture are one vertex. The vertices of a
+// position stand in a list, since there are few of them; where there are many, a table finds the rest.
+class VertexNumbers {
+ public:
+  explicit VertexNumbers(std::size_t positions) : first_of_(positions, kNone) {}
 
-// Normals for the corners that have none: the mean of the normals of the triangles that meet there within the crease
-// angle, each weighted by its angle at the vertex, which does not depend on how the surface was cut into triangles
-// (Thuermer and Wuethrich 1998). Vertices at the same place are one vertex here, whatever their number in the file.
-void make_normals(std::vector<Triangle>& triangles, const std::vector<Vec3>& positions, std::vector<Vec3>& normals) {
-  struct Incident {
-    std::size_t triangle;
-    double angle_rad;
+  struct Number {
+    std::uint32_t vertex;
+    bool is_new;
   };
-  std::unordered_map<Vec3, std::vector<Incident>, HashVec3> around;
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    for (int k = 0; k < 3; ++k) {
-      const Vec3& p = positions[triangles[i].corners[k].position];
-      const Vec3 a = positions[triangles[i].corners[(k + 1) % 3].position] - p;
-      const Vec3 b = positions[triangles[i].corners[(k + 2) % 3].position] - p;
-      around[p].push_back({i, std::atan2(length(cross(a, b)), dot(a, b))});
-    }
-  }
-  std::unordered_map<Vec3, std::int32_t, HashVec3> index_of;  // equal normals are stored once
-  for (Triangle& t : triangles) {
-    for (auto& corner : t.corners) {
-      if (corner.normal != kNoNormal) continue;
-      Vec3 sum;
-      for (const Incident& other : around[positions[corner.position]]) {
-        const Vec3& n = triangles[other.triangle].normal;
-        if (dot(n, t.normal) >= kCreaseCosine) sum += other.angle_rad * n;
+  Number number(const Polygons::Corner& corner) {
+    std::uint32_t* link = &first_of_[corner.position];
+    for (int steps = 0; steps < kMostSteps; ++steps) {
+      if (*link == kNone) {
+        *link = static_cast<std::uint32_t>(vertices_.size());
+        return {add(corner), true};
       }
-      const Vec3 normal = normalized(sum);
-      const auto [entry, is_new] = index_of.try_emplace(normal, static_cast<std::int32_t>(normals.size()));
-      if (is_new) normals.push_back(normal);
-      corner.normal = entry->second;
+      Vertex& vertex = vertices_[*link];
+      if (vertex.normal == corner.normal && vertex.texture == corner.texture) return {*link, false};
+      link = &vertex.next;
     }
+    const auto [entry, is_new] = others_.try_emplace({corner.position, corner.normal, corner.texture},
+                                                     static_cast<std::uint32_t>(vertices_.size()));
+    if (is_new) add(corner);
+    return {entry->second, is_new};
   }
+
+ private:
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  static constexpr int kMostSteps = 16;
+  struct Vertex {
+    std::int32_t normal, texture;
+    std::uint32_t next;
+  };
+  std::uint32_t add(const Polygons::Corner& corner) {
+    vertices_.push_back({corner.normal, corner.texture, kNone});
+    return static_cast<std::uint32_t>(vertices_.size() - 1);
+  }
+
+  std::vector<std::uint32_t> first_of_;  // of each position
+  std::vector<Vertex> vertices_;
+  std::map<std::array<std::int64_t, 3>, std::uint32_t> others_;
+};
+
+// The numbers of the triangles, part by part, and in each part in order.
+std::vector<std::uint32_t> ordered_by_part(const std::vector<CornerTriangle>& triangles,
+                                           std::vector<std::size_t>& count_of) {
+  for (const CornerTriangle& t : triangles) ++count_of[t.part];
+  std::vector<std::size_t> at(count_of.size());
+  for (std::size_t part = 1; part < at.size(); ++part) at[part] = at[part - 1] + count_of[part - 1];
+  std::vector<std::uint32_t> order(triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i) order[at[triangles[i].part]++] = static_cast<std::uint32_t>(i);
+  return order;
 }
 
 }  // namespace
@@ -191,44 +206,45 @@ std::vector<std::array<std::uint32_t, 3>> triangulated(const std::vector<Vec3>& 
   return triangles;
 }
 
-Result<Mesh> mesh_from_polygons(const Polygons& polygons, const std::string& path) {
+Result<Mesh> mesh_from_polygons(Polygons polygons, const std::string& path) {
   Mesh mesh;
-  std::vector<Triangle> triangles = triangles_of(polygons, mesh.repairs);
+  const std::size_t faces = polygons.faces.size();
+  if (polygons.corners.size() > std::numeric_limits<std::uint32_t>::max() / 3)
+    return input_error("{}: its faces have {} corners, and {} are the most: split it", path, polygons.corners.size(),
+                       std::numeric_limits<std::uint32_t>::max() / 3);
+  std::vector<CornerTriangle> triangles = triangles_of(polygons, mesh.repairs);
   if (triangles.empty()) {
-    return input_error("{}: none of its {} faces has an area: check the units of the export", path,
-                       polygons.faces.size());
+    return input_error("{}: none of its {} faces has an area: check the units of the export", path, faces);
   }
-  turn_to_normals(triangles, polygons.normals, mesh.repairs);
-  std::vector<Vec3> normals = polygons.normals;
-  make_normals(triangles, polygons.positions, normals);
+  const std::size_t given = polygons.normals.size();
+  make_normals(triangles, polygons.positions, polygons.normals);
 
-  std::vector<std::vector<std::size_t>> members(polygons.parts.size());
-  for (std::size_t i = 0; i < triangles.size(); ++i) members[triangles[i].part].push_back(i);
-  std::unordered_map<VertexKey, std::uint32_t, HashVertexKey> vertex_of;
-  for (std::size_t part = 0; part < members.size(); ++part) {
-    if (members[part].empty()) continue;
-    mesh.parts.push_back(
-        {polygons.parts[part].name, polygons.parts[part].material, mesh.triangles.size(), members[part].size()});
-    for (const std::size_t i : members[part]) {
-      std::array<std::uint32_t, 3> triangle;
-      for (int k = 0; k < 3; ++k) {
-        const Polygons::Corner& corner = triangles[i].corners[k];
-        const VertexKey key = {std::uint64_t{corner.position} << 32 | static_cast<std::uint32_t>(corner.normal),
-                               corner.texture};
-        const auto [entry, is_new] = vertex_of.try_emplace(key, static_cast<std::uint32_t>(mesh.positions.size()));
-        triangle[k] = entry->second;
-        if (!is_new) continue;
-        const auto normal = static_cast<std::size_t>(corner.normal);
-        mesh.positions.push_back(polygons.positions[corner.position]);
-        mesh.normals.push_back(normals[normal]);
-        if (!polygons.texture.empty())
-          mesh.texture.push_back(corner.texture == kNoTexture
-                                     ? std::array<float, 2>{}
-                                     : polygons.texture[static_cast<std::size_t>(corner.texture)]);
-        if (normal >= polygons.normals.size()) ++mesh.repairs.normals_made;
-      }
-      mesh.triangles.push_back(triangle);
+  std::vector<std::size_t> count_of(polygons.parts.size());
+  const std::vector<std::uint32_t> order = ordered_by_part(triangles, count_of);
+  for (std::size_t part = 0, first = 0; part < count_of.size(); first += count_of[part++]) {
+    if (count_of[part] > 0)
+      mesh.parts.push_back({polygons.parts[part].name, polygons.parts[part].material, first, count_of[part]});
+  }
+  const std::size_t guess = polygons.positions.size();
+  mesh.positions.reserve(guess), mesh.normals.reserve(guess), mesh.triangles.reserve(triangles.size());
+  VertexNumbers numbers(polygons.positions.size());
+  for (const std::uint32_t i : order) {
+    std::array<std::uint32_t, 3> triangle;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Polygons::Corner& corner = triangles[i].corners[k];
+      const auto [vertex, is_new] = numbers.number(corner);
+      triangle[k] = vertex;
+      if (!is_new) continue;
+      const auto normal = static_cast<std::size_t>(corner.normal);
+      mesh.positions.push_back(polygons.positions[corner.position]);
+      mesh.normals.push_back(polygons.normals[normal]);
+      if (!polygons.texture.empty())
+        mesh.texture.push_back(corner.texture == kNoTexture
+                                   ? std::array<float, 2>{}
+                                   : polygons.texture[static_cast<std::size_t>(corner.texture)]);
+      if (normal >= given) ++mesh.repairs.normals_made;
     }
+    mesh.triangles.push_back(triangle);
   }
   return mesh;
 }
@@ -286,12 +302,13 @@ Result<Mesh> read_mesh(const std::string& path) {
                        extension);
   if (path.empty()) return input_error("the name of a mesh is empty: name a file");
   GONIO_ASSIGN(InputFile input, InputFile::open(path));
-  GONIO_ASSIGN(const std::string content, input.rest(std::string::npos));
+  GONIO_ASSIGN(std::string content, input.rest(std::string::npos));
   if (extension.empty()) extension = extension_by_content(content);
   const Source source{input.name(), is_plain_file(path) ? file.stem().string() : "mesh"};
-  GONIO_ASSIGN(const Polygons polygons, extension == ".obj" ? polygons_from_obj(content, source)
-                                                            : polygons_from_soup(content, extension, source));
-  return mesh_from_polygons(polygons, source.name);
+  GONIO_ASSIGN(Polygons polygons, extension == ".obj" ? polygons_from_obj(content, source)
+                                                      : polygons_from_soup(content, extension, source));
+  content = std::string();  // its memory is needed
+  return mesh_from_polygons(std::move(polygons), source.name);
 }
 
 }  // namespace goniochrome::mesh

@@ -11,6 +11,7 @@
 
 #include "base/angles.h"
 #include "base/clock.h"
+#include "base/parallel.h"
 #include "base/scratch_for_test.h"
 #include "mesh/internal/polygons.h"
 
@@ -195,6 +196,94 @@ TEST_F(MeshFiles, MadeNormalsAreSmoothButKeepCreases) {
     EXPECT_NEAR(length(sphere->normals[i]), 1, 1e-15);
     EXPECT_NEAR(dot(sphere->normals[i], sphere->positions[i]), 1, 1e-4);
   }
+}
+
+// A strip of squares of several megabytes, written in every way that makes a chunk depend on those before it: indices
+// that count back, parts and materials that go on, and lines that are continued. What is read is known from how it is
+// made.
+std::string long_strip(int squares) {
+  std::string text = "v 0 0 0\nv 0 1 0\nvn 0 0 1\n";
+  for (int i = 1; i <= squares; ++i) {
+    if (i % (squares / 3) == 1) text += fmt::format("o part{}\nusemtl m{}\n", i / (squares / 3) % 2, i);
+    text += fmt::format("v {} 0 \\\n0\nv {} 1 0  # a comment of some length, so that the text has many bytes\n", i, i);
+    text += i % 2 == 0 ? std::string("f -4//1 -2//1 \\\n -1//1 -3//1\n")
+                       : fmt::format("f {}//-1 {}//-1 {}//-1 {}//-1\n", 2 * i - 1, 2 * i + 1, 2 * i + 2, 2 * i);
+  }
+  return text;
+}
+
+TEST_F(MeshFiles, LongTextsAreReadInChunksAsIfInOnePieceByAnyNumberOfThreads) {
+  constexpr int kSquares = 39999;  // in three runs of 13333, of parts 0, 1 and 0
+  const std::string text = long_strip(kSquares);
+  ASSERT_GT(text.size(), std::size_t{3} << 20) << "several chunks";
+  const std::string path = file("strip.obj", text);
+  for (const int threads : {1, 2, 5}) {
+    set_threads(threads);
+    const auto mesh = read_mesh(path);
+    ASSERT_TRUE(mesh.ok()) << mesh.error().message;
+    ASSERT_EQ(mesh->triangles.size(), 2u * kSquares);
+    EXPECT_EQ(mesh->positions.size(), 2u * kSquares + 2);
+    EXPECT_NEAR(area(*mesh), kSquares, 1e-9 * kSquares);
+    ASSERT_EQ(mesh->parts.size(), 2u);  // part0 goes on after part1
+    EXPECT_EQ(mesh->parts[0].name, "part0");
+    EXPECT_EQ(mesh->parts[0].material, "m1");
+    EXPECT_EQ(mesh->parts[1].count, 2u * (kSquares / 3));
+    // In each part the squares stand in order: triangle 2 i lies in the square of its own number.
+    for (std::size_t part = 0, first = 0; part < 2; first += mesh->parts[part++].count)
+      for (std::size_t t = first; t < first + mesh->parts[part].count; ++t) {
+        double middle = 0;
+        for (const auto vertex : mesh->triangles[t]) middle += mesh->positions[vertex].x / 3;
+        const int third = kSquares / 3, in_part = static_cast<int>(t - first) / 2;
+        const int square = part == 1 ? third + in_part : in_part < third ? in_part : third + in_part;
+        ASSERT_EQ(std::floor(middle), square) << "triangle " << t;
+      }
+  }
+  // The first error counts, wherever threads meet another one.
+  const std::string broken = text + "v 1 2 x\n" + long_strip(kSquares) + "f 1 2\n";
+  const auto lines = std::count(text.begin(), text.end(), '\n');
+  for (const int threads : {1, 5}) {
+    set_threads(threads);
+    EXPECT_EQ(obj_error(broken), fmt::format("t.obj:{}: vertex coordinate 3 is \"x\": write a finite number with a "
+                                             "decimal point",
+                                             lines + 1));
+  }
+  set_threads(0);
+}
+
+// A fan around the tip of a steep cone, whose neighbors within 60 degrees are a third of all. The sum over them is
+// compared with a plain loop over all, which takes n^2 steps.
+TEST_F(MeshFiles, ATipOfManyTrianglesGetsTheNormalsOfItsNeighborhoodInLessThanQuadraticTime) {
+  const auto spike = [](int sides) {
+    std::string text = "v 0 3 0\n";
+    for (int i = 0; i < sides; ++i)
+      text += fmt::format("v {} 0 {}\n", std::cos(2 * kPi * i / sides), std::sin(2 * kPi * i / sides));
+    for (int i = 0; i < sides; ++i) text += fmt::format("f 1 {} {}\n", (i + 1) % sides + 2, i + 2);
+    return text;
+  };
+  constexpr int kSides = 1000;
+  const auto mesh = obj(spike(kSides));
+  ASSERT_TRUE(mesh.ok());
+  std::vector<Vec3> weighted, normals;
+  for (const auto& [i, j, k] : mesh->triangles) {
+    const Vec3 a = mesh->positions[j] - mesh->positions[i], b = mesh->positions[k] - mesh->positions[i];
+    normals.push_back(normalized(cross(a, b)));
+    weighted.push_back(std::atan2(length(cross(a, b)), dot(a, b)) * normals.back());
+  }
+  for (int t = 0; t < kSides; ++t) {
+    Vec3 sum;
+    double apart = 1;  // from the limit
+    for (int other = 0; other < kSides; ++other) {
+      const double cosine = dot(normals[t], normals[other]);
+      apart = std::min(apart, std::abs(cosine - 0.5));
+      if (cosine >= 0.5) sum += weighted[other];
+    }
+    if (apart < 1e-9) continue;  // rounding decides
+    const Vec3 made = mesh->normals[mesh->triangles[static_cast<std::size_t>(t)][0]];
+    EXPECT_LT(length(made - normalized(sum)), 1e-12) << t;  // 1000 roundings of a sum
+  }
+  const auto large = obj(spike(300000));  // 9e10 steps in a plain loop, which are minutes
+  ASSERT_TRUE(large.ok());
+  EXPECT_EQ(large->triangles.size(), 300000u);
 }
 
 TEST_F(MeshFiles, OffPlyAndStlAreOnePartNamedForTheFile) {

@@ -181,6 +181,10 @@ PanelColors seam_colors(const EnvironmentPanels& panels, const mesh::Seam& seam,
     const mesh::SeamPoint& p = seam.points[view.point];
     lights.push_back(panels.light(side == SeamSide::kA ? p.normal_a : p.normal_b, view.view));
   }
+  return seam_colors(panels, std::move(lights));
+}
+
+PanelColors seam_colors(const EnvironmentPanels& panels, std::vector<EnvironmentPanels::Light> lights) {
   return [&panels, lights = std::move(lights)](const paint::Appearance& paint) -> Result<std::vector<color::Lab>> {
     GONIO_ASSIGN(const paint::LobeFit fit, panels.lobes(paint));
     std::vector<color::Lab> colors;
@@ -190,7 +194,7 @@ PanelColors seam_colors(const EnvironmentPanels& panels, const mesh::Seam& seam,
 }
 
 bool SeamTexts::names_anything_but_mesh() const {
-  return !seam.empty() || !environment.empty() || !lights_from.empty() || !views_from.empty();
+  return !seam.empty() || !environment.empty() || open || !lights_from.empty() || !views_from.empty();
 }
 
 Result<SeamWorld> seam_world(const SeamTexts& texts) {
@@ -205,6 +209,8 @@ Result<SeamWorld> seam_world(const SeamTexts& texts) {
   GONIO_ASSIGN(world.viewers, directions_of("--view-from", texts.views_from));
   if (!world.lights.empty() && !texts.environment.empty())
     return usage_error("--light-from and --environment exclude each other");
+  if (texts.open && texts.environment.empty())
+    return usage_error("--open is about the light of an environment: give --environment");
   world.in_world = !world.lights.empty() || !texts.environment.empty();
   if (world.in_world && world.viewers.empty())
     return usage_error("lights in the world want viewers there: give --view-from AZ,EL");
@@ -232,14 +238,16 @@ Result<SeamStage> seam_stage(const SeamTexts& texts, const SeamWorld& world, con
 }
 
 std::string seam_light_text(const SeamTexts& texts, const SeamWorld& world, const GeometryList& geometries) {
-  constexpr const char* kLeftOut = "left out: gloss, and shadows and reflections of the mesh on itself\n";
+  const bool traced = world.in_world && !texts.environment.empty() && !texts.open;
+  const char* const left_out = traced ? "left out: gloss; traced: what the mesh takes from the light and sends back\n"
+                                      : "left out: gloss, and shadows and reflections of the mesh on itself\n";
   if (!world.in_world)
     return fmt::format("{} pairs of light and viewer at every place, the light from both sides of the seam\n{}",
-                       geometries.pairs.size(), kLeftOut);
+                       geometries.pairs.size(), left_out);
   return fmt::format(
       "{} viewers in the world, {}\n{}", world.viewers.size(),
       texts.environment.empty() ? fmt::format("{} lights", world.lights.size()) : "light of " + texts.environment,
-      kLeftOut);
+      left_out);
 }
 
 // The sphere about the middle of the seam's box that holds all places just fits between the borders that are nearer.

@@ -99,12 +99,15 @@ class EnvironmentPanels {
 enum class SeamSide { kA, kB };
 PanelColors seam_colors(const EnvironmentPanels& panels, const mesh::Seam& seam, const std::vector<SeamView>& views,
                         SeamSide side);
+// The same in light that is known, one for each view.
+PanelColors seam_colors(const EnvironmentPanels& panels, std::vector<EnvironmentPanels::Light> lights);
 
 // What the options of a tool say of a seam: the file of a mesh, its two parts as A,B, its unit (auto | m | cm | mm),
 // lights and viewers in the world as AZIMUTH,ELEVATION of render::orbit_direction(), and the file of an environment.
 struct SeamTexts {
   std::string mesh, seam, unit = "auto", environment;
   double max_gap_mm = 0;
+  bool open = false;  // whether the mesh is not in the way of the environment's light
   std::vector<std::string> lights_from, views_from;
   bool names_anything_but_mesh() const;
 };

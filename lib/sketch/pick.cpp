@@ -104,6 +104,16 @@ color::Lab mean_between(const std::vector<const Pixel*>& sorted, double from, do
   return color::lab_from_rgb((1 / static_cast<double>(last - first)) * sum, *color::white_point({}));
 }
 
+// The reflectances of which diffusers show this sum, by Cramer's rule; nothing where they are dark in a channel.
+std::optional<color::Rgb> reflectance_of(const color::Rgb& shown, const std::array<color::Rgb, 3>& diffusers) {
+  const double determinant = dot(diffusers[0], cross(diffusers[1], diffusers[2]));
+  const double scale = length(diffusers[0]) * length(diffusers[1]) * length(diffusers[2]);
+  if (!(determinant > 1e-6 * scale) || !(scale > 0)) return std::nullopt;
+  return color::Rgb{std::max(0.0, dot(shown, cross(diffusers[1], diffusers[2])) / determinant),
+                    std::max(0.0, dot(shown, cross(diffusers[2], diffusers[0])) / determinant),
+                    std::max(0.0, dot(shown, cross(diffusers[0], diffusers[1])) / determinant)};
+}
+
 // One board as it is read line by line.
 class BoardReader {
  public:
@@ -218,7 +228,8 @@ Result<Dropper> parse_dropper(const std::string& text, const std::string& option
   return Dropper{text.substr(0, at), static_cast<int>(*x), static_cast<int>(*y), *radius};
 }
 
-Result<PickSample> pick(const image::ImagePart& image, const std::string& path, const Dropper& dropper) {
+Result<PickSample> pick(const image::ImagePart& image, const std::string& path, const Dropper& dropper,
+                        const PickLight* light) {
   if (dropper.x >= image.image.width || dropper.y >= image.image.height)
     return input_error("{}: the point {},{} lies outside its {} x {} pixels", path, dropper.x, dropper.y,
                        image.image.width, image.image.height);
@@ -226,9 +237,15 @@ Result<PickSample> pick(const image::ImagePart& image, const std::string& path, 
   const int reach = static_cast<int>(std::ceil(dropper.radius));
   const int x0 = std::max(0, dropper.x - reach), x1 = std::min(image.image.width, dropper.x + reach + 1);
   const int y0 = std::max(0, dropper.y - reach), y1 = std::min(image.image.height, dropper.y + reach + 1);
-  GONIO_ASSIGN(const Picture picture, picture_of(piece_of(image, x0, y0, x1, y1, 1), path, PictureView::kPlain));
-  PickSample sample{dropper, path, 0, 0, 0, {}, 0, picture.warnings};
+  if (light != nullptr &&
+      (light->traced->width() != image.image.width || light->traced->height() != image.image.height))
+    return input_error("{}: has {} x {} pixels, and the light was traced for {} x {}", path, image.image.width,
+                       image.image.height, light->traced->width(), light->traced->height());
+  const PictureView view = light != nullptr ? PictureView::kPaint : PictureView::kPlain;
+  GONIO_ASSIGN(const Picture picture, picture_of(piece_of(image, x0, y0, x1, y1, 1), path, view));
+  PickSample sample{dropper, path, 0, 0, 0, {}, false, 0, picture.warnings};
   color::Rgb sum;
+  std::array<color::Rgb, 3> diffusers{};
   std::vector<double> brightness;
   for (int y = 0; y < picture.rgb.height; ++y)
     for (int x = 0; x < picture.rgb.width; ++x) {
@@ -239,15 +256,32 @@ Result<PickSample> pick(const image::ImagePart& image, const std::string& path, 
         continue;
       }
       const float* p = picture.pixel(x, y);
-      const color::Rgb light{p[0], p[1], p[2]};
-      if (!std::isfinite(light.x + light.y + light.z)) continue;
+      const color::Rgb shown{p[0], p[1], p[2]};
+      if (!std::isfinite(shown.x + shown.y + shown.z)) continue;
+      if (light != nullptr) {
+        const auto here = light->traced->diffusers(x0 + x, y0 + y);
+        if (!here) continue;
+        for (std::size_t c = 0; c < 3; ++c) diffusers[c] += (*here)[c];
+      }
       sample.clipped += state == Picture::kClipped;
-      ++sample.pixels, sum += light;
-      brightness.push_back(display::srgb_signal(color::xyz_d65_from_rgb(light).Y));
+      ++sample.pixels, sum += shown;
+      brightness.push_back(display::srgb_signal(color::xyz_d65_from_rgb(shown).Y));
     }
+  if (sample.pixels == 0 && light != nullptr)
+    return input_error("{}: no light was traced for the pixels about {},{}: put the dropper on the mesh", path,
+                       dropper.x, dropper.y);
   if (sample.pixels == 0)
     return input_error("{}: every pixel about {},{} is transparent: move the dropper", path, dropper.x, dropper.y);
-  sample.lab = color::lab_from_rgb((1.0 / sample.pixels) * sum, *color::white_point({}));
+  color::Rgb reflectance = (1.0 / sample.pixels) * sum;
+  if (light != nullptr) {
+    const auto explained =
+        reflectance_of((picture.scene_linear ? light->gain_linear : light->gain_display) * sum, diffusers);
+    if (!explained)
+      return input_error("{}: the pixels about {},{} get no light: put the dropper elsewhere", path, dropper.x,
+                         dropper.y);
+    reflectance = *explained, sample.lit = true;
+  }
+  sample.lab = color::lab_from_rgb(reflectance, *color::white_point({}));
   sample.gloss = contrast_gloss(brightness);
   return sample;
 }

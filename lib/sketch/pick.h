@@ -9,6 +9,7 @@
 #include "base/result.h"
 #include "image/image.h"
 #include "paint/paint.h"
+#include "sketch/traced_light.h"
 
 namespace goniochrome::sketch {
 
@@ -30,14 +31,25 @@ struct PickSample {
   Dropper dropper;
   std::string path;
   int pixels = 0, clipped = 0, transparent = 0;
-  color::Lab lab;    // of the mean light
+  color::Lab lab;    // of the mean light, or of the reflectance that explains it
+  bool lit = false;  // whether it is the latter
   double gloss = 0;  // by contrast, gloss units
   std::vector<std::string> warnings;
 };
 
-// The mean light of the disc's pixels without the transparent ones, and their contrast. Error: the center of the disc
-// lies outside the picture, or no pixel is left.
-Result<PickSample> pick(const image::ImagePart& image, const std::string& path, const Dropper& dropper);
+// The light that a picture was drawn in, and what its numbers times a gain are: linear light of a picture that is
+// scene-linear, and that of a picture for a display, which went through render-osmesa's default view.
+struct PickLight {
+  const TracedLight* traced = nullptr;
+  double gain_linear = 1, gain_display = 1;
+};
+
+// The mean light of the disc's pixels without the transparent ones, and their contrast. With `light`, its color is
+// that of the matt surface which would show this in the light that was traced for these pixels; without it, the light
+// is taken for white and even. Error: the center of the disc lies outside the picture, no pixel is left, or the light
+// is that of a picture of another size.
+Result<PickSample> pick(const image::ImagePart& image, const std::string& path, const Dropper& dropper,
+                        const PickLight* light = nullptr);
 
 // A paint to be picked.
 struct PaintPick {

@@ -27,7 +27,7 @@ _goniogeom_index() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--lights --views --out-of-plane --seam-axis --threshold --metric --target --illuminant --worst --tolerance-for --mesh --seam --unit --max-gap --light-from --view-from --environment --advise --only --output --curve --misalignments --picture --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--lights --views --out-of-plane --seam-axis --threshold --metric --target --illuminant --worst --tolerance-for --mesh --seam --unit --max-gap --light-from --view-from --environment --open --advise --only --output --curve --misalignments --picture --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

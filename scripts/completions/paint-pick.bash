@@ -5,6 +5,7 @@ _paint_pick() {
     --flop) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --gloss) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --travel) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --buffers) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --palette) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --board|-b) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --mesh|-m) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -17,7 +18,7 @@ _paint_pick() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--face --flop --gloss --travel --retro --palette --board --mesh --env --basis --name --output --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--face --flop --gloss --travel --retro --buffers --palette --board --mesh --env --basis --name --output --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

@@ -30,7 +30,7 @@ _trompe_fit() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--angle --lights --views --out-of-plane --seam-axis --light-weights --view-weights --mode --at --objective --vary --bounds --mesh --seam --unit --max-gap --light-from --view-from --environment --only --suffix --output --picture --dark --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--angle --lights --views --out-of-plane --seam-axis --light-weights --view-weights --mode --at --objective --vary --bounds --mesh --seam --unit --max-gap --light-from --view-from --environment --open --only --suffix --output --picture --dark --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

@@ -169,6 +169,33 @@ column() { sed -n 2p | cut -f "$1"; }
   awk -v a="$env" 'BEGIN { exit !(a > 2 && a < 40) }'
 }
 
+@test "a mesh in the way of an environment's light is traced, and --open leaves it out" {
+  # Two level panels and a high wall beyond the second one, in even light. The wall hides more than a quarter of the sky
+  # from both edges; how exactly it does so is tested with the library.
+  awk 'BEGIN { for (i = 0; i < 3; ++i) { x = i == 0 ? -1 : i == 1 ? 0.005 : 1; y = i == 0 ? 0 : i == 1 ? 1 : 1
+      if (i < 2) printf "v %g 0 9\nv %g 0 9\nv %g 0 -9\nv %g 0 -9\n", x, y, y, x
+      else printf "v 1 0 9\nv 1 2 9\nv 1 2 -9\nv 1 0 -9\n" }
+    print "o A\nf 1 2 3 4\no B\nf 5 6 7 8\no Wall\nf 12 11 10 9" }' >wall.obj
+  oiiotool --create 32x16 3 --fill:color=0.5,0.5,0.5 32x16 -o even.exr
+  prefilter-envmap -e 2,8,32 --size 8 even.exr -o even.env.exr -q
+  seam="--mesh wall.obj --seam A,B --environment even.env.exr --view-from -90,60"
+  run --separate-stderr goniogeom-index "$paints" --only jet_black $seam --worst --report r.json
+  [ "$status" -eq 0 ]
+  [[ "$stderr" =~ "the mesh changes differences by "[0-9.]+" (95 % of the views), known to " ]]
+  jq -e '.results.traced[0] | .paint == "jet_black" and .panels_not_found == 0 and .noise_de76 < 0.3' r.json
+  run --separate-stderr goniogeom-index "$paints" --only jet_black $seam --open --worst --report o.json
+  [[ ! "$stderr" =~ "the mesh changes" ]]
+  jq -e '.results | has("traced") | not' o.json
+  prefilter-envmap -e 2,8,32 --size 8 --no-mirror even.exr -o bare.env.exr -q
+  run --separate-stderr goniogeom-index "$paints" --only jet_black --mesh wall.obj --seam A,B --environment bare.env.exr \
+    --view-from -90,60 --worst
+  [ "$status" -eq 0 ]
+  [[ "$stderr" == *"has no mirror part"*"shadows and reflections of the mesh on itself are left out"* ]]
+  run goniogeom-index "$paints" --only jet_black --mesh wall.obj --seam A,B --open
+  [ "$status" -eq 2 ]
+  [[ "$output" =~ "--open is about the light of an environment" ]]
+}
+
 @test "--unit and --max-gap decide what is a seam" {
   awk '$1 == "v" { printf "v %.9g %.9g %.9g\n", $2 * 1000, $3 * 1000, $4 * 1000; next } { print }' \
     "$TESTDATA/speed-shape.obj" >mm.obj

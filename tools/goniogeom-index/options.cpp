@@ -148,6 +148,10 @@ void add_report(cli::ToolSpec& spec) {
       {"paints[].de_max", "with --mesh: largest difference along the seam; de_rms is that over all places and views"},
       {"paints[].over_threshold", "with --mesh: part of the seam that reaches the threshold"},
       {"paints[].seam[]", "with --mesh: rows of the table"},
+      {"traced[].paint", "with --environment: name of a paint whose light was traced"},
+      {"traced[].worth_de76", "what the mesh changes in the difference of the panels (CIE 1976), at 95 % of the views"},
+      {"traced[].noise_de76", "standard deviation of that difference by the random rays, at 95 % of the views"},
+      {"traced[].panels_not_found", "panels under whose edge no ray found them, and that get open light"},
       {"paints[].advice[]", "with --advise: one line for each guideline"},
       {"failing", "with --tolerance-for: names of the paints that do not stay under the threshold"}};
   spec.see_also = {"trompe-fit(1)", "paint-stats(1)", "goniochrome-theory(7)"};
@@ -178,7 +182,9 @@ cli::ToolSpec tool_spec(Options& o) {
       "ridge), and the largest and the RMS difference over the lights and viewers. These stand to the first panel at "
       "every place as they would to a flat one, with the light from either side of the seam. --light-from and "
       "--view-from put them into the world instead, and --environment takes the light of a prefiltered environment. "
-      "Shadows and reflections of the mesh on itself are left out."};
+      "There the mesh takes light from the seam and sends light to it: that is traced in the paint that is judged, "
+      "unless --open is given. Under --light-from and lights that stand to the seam alike, shadows and reflections of "
+      "the mesh on itself are left out."};
   spec.inputs = {"PAINTS", "paint XML files, or FILE#NAMES for some paints of one; standard input where none is given",
                  &o.inputs};
   add_geometry_options(spec, o.geometries, o.seam_deg);

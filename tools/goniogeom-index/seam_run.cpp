@@ -76,6 +76,7 @@ class SeamRun {
  private:
   Result<void> prepare() {
     GONIO_ASSIGN(stage_, panels::seam_stage(options_.seam, request_.world, request_.geometries, options_.seam_deg));
+    traced_ = traced_seam(options_.seam, stage_, session_);
     const mesh::Seam& seam = stage_.seam;
     session_.say(seam_line(request_, seam));
     tell_repairs(seam, stage_.mesh, session_);
@@ -100,10 +101,13 @@ class SeamRun {
       GONIO_ASSIGN(const paint::Appearance appearance, panels::appearance_of(paint));
       GONIO_ASSIGN(const panels::EnvironmentPanels panels,
                    panels::EnvironmentPanels::make(stage_.env, paint::condition_of(paint)));
-      GONIO_ASSIGN(const auto a,
-                   panels::seam_colors(panels, stage_.seam, stage_.views, panels::SeamSide::kA)(appearance));
-      GONIO_ASSIGN(const auto b,
-                   panels::seam_colors(panels, stage_.seam, stage_.views, panels::SeamSide::kB)(appearance));
+      GONIO_ASSIGN(const paint::LobeFit fit, panels.lobes(appearance));
+      GONIO_ASSIGN(const panels::SeamLights lights,
+                   panels::seam_lights(panels, traced_ ? &*traced_ : nullptr, fit, stage_.seam, stage_.views,
+                                       request_.world.part_a, request_.world.part_b));
+      tell_traced(lights, stage_.views.size(), paint.name, session_);
+      GONIO_ASSIGN(const auto a, panels::seam_colors(panels, lights.a)(appearance));
+      GONIO_ASSIGN(const auto b, panels::seam_colors(panels, lights.b)(appearance));
       for (std::size_t i = 0; i < de.size(); ++i) de[i] = panels::difference(request_.metric, a[i], b[i]);
       return de;
     }
@@ -200,6 +204,7 @@ class SeamRun {
   const SeamRequest& request_;
   cli::Session& session_;
   panels::SeamStage stage_;
+  std::optional<panels::TracedSeam> traced_;  // in an environment with a mirror part
   int failed_ = 0, pictures_ = 0;
 };
 

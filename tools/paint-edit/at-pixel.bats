@@ -65,6 +65,46 @@ tweak() { paint-edit -q one.paints.xml --image scene.exr -o out.paints.xml --rep
   awk -v x="$(jq '.results.pixels[0].aspecular_deg' r.json)" -v y="$there" 'BEGIN { exit !(x - y < 1e-4 && y - x < 1e-4) }'
 }
 
+@test "in traced light the angle is that of the light there, for the mesh may hide the lamp" {
+  cat >stage.obj <<'OBJ'
+v -2 0 -2
+v 2 0 -2
+v 2 0 2
+v -2 0 2
+v -0.3 0 0
+v 0.3 0 0
+v 0.3 0.8 0
+v -0.3 0.8 0
+o floor
+f 4 3 2 1
+o post
+f 5 6 7 8
+OBJ
+  # The camera looks from where the mirror image of the lamp is seen on the floor behind the post.
+  fit-paint -q --basis "$TESTDATA/b5.basis.xml" "$TESTDATA/paints.paints.xml" -o fitted.xml
+  oiiotool --create 32x16 3 --fill:color=0.3,0.3,0.3 32x16 -o even.exr
+  prefilter-envmap -q even.exr --basis "$TESTDATA/b5.basis.xml" --tolerance 1e-2 -o even.env.exr
+  render-osmesa -q --mesh stage.obj --size 32x24 --samples 1 --camera 0,4,-2.5,0,0,-0.4,30 -p fitted.xml#silver_fine \
+    --light 0,50,3,3,3@0 --env even.env.exr --engine path --floor none --tolerance 2 --aov aspecular,mask,transport -o view.exr
+  oiiotool view.exr --subimage 0 --ch R,G,B,A,aspecular,mask --eraseattrib "goniochrome:transport" -o plain.exr
+  # angle FILE X,Y: what the move is made at
+  angle() {
+    paint-edit -q one.paints.xml --image "$1" --at-pixel "$2" --lighter 6 -o out.paints.xml --report r.json
+    jq '.results.pixels[0].aspecular_deg' r.json
+  }
+  # In the lamp's light both agree, though the even light widens the angle; in its shadow only the even light is left,
+  # of which the post hides a part; it shows the paint between face (15) and flop.
+  lit=$(angle view.exr 4,12) lamp_lit=$(angle plain.exr 4,12)
+  hidden=$(angle view.exr 16,12) lamp_hidden=$(angle plain.exr 16,12)
+  echo "lit $lit $lamp_lit, hidden $hidden $lamp_hidden"
+  [ "$(jq '.results.pixels[0].traced' r.json)" = false ]
+  awk -v a="$lit" -v b="$lamp_lit" 'BEGIN { exit !(a - b < 12 && b - a < 12) }'
+  awk -v a="$hidden" 'BEGIN { exit !(a > 25 && a < 75) }'
+  awk -v b="$lamp_hidden" 'BEGIN { exit !(b < 15) }'
+  run paint-edit one.paints.xml --image view.exr --at-pixel 16,12 --lighter 6 -o out.paints.xml
+  [[ $output == *"--at-pixel 16,12 gets light as from one lamp "*" deg from specular"* ]]
+}
+
 usage_error() { # TEXT ARGUMENTS...
   local text=$1
   shift

@@ -9,6 +9,7 @@
 #include "brdf/disc_light.h"
 #include "brdf/gloss.h"
 #include "image/aov_file.h"
+#include "sketch/traced_light.h"
 
 namespace goniochrome::tool {
 
@@ -104,8 +105,16 @@ Result<PlacedOptions> placed(const Options& options) {
   Options& o = result.options;
   GONIO_ASSIGN(const image::AovFile file, image::read_aov_file(options.image));
   result.drawn_by_rays = file.drawn_by_rays;
-  const auto look = [&](const char* option, const std::vector<double>& place) -> Result<double> {
-    GONIO_ASSIGN(const SeenPixel pixel, seen(file, option, place));
+  std::optional<sketch::TracedLight> traced;
+  if (!file.transport.empty()) {
+    GONIO_ASSIGN(traced, sketch::TracedLight::of(file));
+    result.drawn_by_rays.clear();  // the light is known
+  }
+  const auto look = [&](const char* option, const std::vector<double>& place, bool of_lamp = false) -> Result<double> {
+    GONIO_ASSIGN(SeenPixel pixel, seen(file, option, place));
+    if (traced && !of_lamp) {
+      if (const auto angle = traced->aspecular_deg(pixel.x, pixel.y)) pixel.aspecular_deg = *angle, pixel.traced = true;
+    }
     result.pixels.push_back(pixel);
     return pixel.aspecular_deg;
   };
@@ -123,7 +132,7 @@ Result<PlacedOptions> placed(const Options& options) {
     o.travel_deg = {angle};
   }
   if (!o.gloss_to.empty()) {
-    GONIO_ASSIGN(const double angle, look("--gloss-to", o.gloss_to));
+    GONIO_ASSIGN(const double angle, look("--gloss-to", o.gloss_to, true));
     GONIO_ASSIGN(const double gloss, gloss_of_edge(angle, *parse_number(o.gloss_angle_deg),
                                                    file.lights.empty() ? 0 : file.lights.front().extent_deg));
     o.gloss = {gloss};

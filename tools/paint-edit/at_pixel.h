@@ -10,13 +10,18 @@
 
 namespace goniochrome::tool {
 
-// A pixel that an option names, and the aspecular angle (deg) seen there.
+// A pixel that an option names, and the aspecular angle (deg) seen there: from the first lamp, or in traced light that
+// of the one lamp which would show the paint alike.
 struct SeenPixel {
   std::string option;
   int x = 0, y = 0;
   double aspecular_deg = 0;
+  bool traced = false;
 };
 
+// Where --image holds light that was traced, the angles of --at-pixel and --travel-to are those of that light, since
+// the mesh may hide the lamp. --gloss-to is about the highlight of the lamp and takes the angle from it.
+//
 // Returns the options with every place in --image replaced by an angle: --at-pixel becomes --at, --travel-to becomes
 // --travel, and --gloss-to becomes --gloss. --lighter, --chroma and --hue become the shifts at that place. Options
 // without a place come back as they are. Error: what is missing, an image without the buffer, a pixel outside or beside
@@ -28,8 +33,8 @@ struct PlacedOptions {
 };
 Result<PlacedOptions> placed(const Options& options);
 
-// The reading of a gloss meter (GU) on the lobe whose highlight, under a lamp that spans `extent_deg`, falls to half its
-// brightness at this aspecular angle (deg, 0..90). No lobe ends within the lamp: there the answer is the sharpest.
+// The reading of a gloss meter (GU) on the lobe whose highlight, under a lamp that spans `extent_deg`, falls to half
+// its brightness at this aspecular angle (deg, 0..90). No lobe ends within the lamp: there the answer is the sharpest.
 Result<double> gloss_of_edge(double edge_deg, double meter_deg, double extent_deg);
 
 }  // namespace goniochrome::tool

@@ -97,7 +97,10 @@ void add_options(cli::ToolSpec& spec, Options& o) {
           "these on both in proportion.");
   spec.heading = "moves at a place in a picture";
   spec.option("image", "FILE", "scene.exr", &o.image, "buffers of a picture of the paint")
-      .more("render-osmesa(1) writes them with --aov aspecular,mask.");
+      .more(
+          "render-osmesa(1) writes them with --aov aspecular,mask. With --aov aspecular,mask,transport, --at-pixel and "
+          "--travel-to take the angle from the light that was traced there: that of the one lamp that would show the "
+          "paint alike, as the mesh may hide the lamp that the buffers are relative to.");
   pixel("at-pixel", o.at_pixel, "make shifts at the aspecular angle under this pixel")
       .more("The shifts are --lighter, --chroma, which is a factor then, and --hue, which is a turn then.");
   spec.option("lighter", "D", "3", &o.lighter, "what is added to L* under the pixel of --at-pixel")
@@ -159,6 +162,7 @@ void add_report(cli::ToolSpec& spec) {
       {"pixels[].x", "pixels from the left"},
       {"pixels[].y", "pixels from the top"},
       {"pixels[].aspecular_deg", "aspecular angle that is seen there"},
+      {"pixels[].traced", "whether that angle is one of traced light"},
       {"changes[].name", "name of a paint that was edited or made"},
       {"changes[].from", "name of the paint that it was made from; for a gradient, the names of both"},
       {"changes[].fraction", "place in a gradient, from 0 to 1"},

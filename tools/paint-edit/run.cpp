@@ -209,13 +209,20 @@ Result<cli::Verdict> run(const Options& stated, cli::Session& session) {
   const Options& options = place.options;
   GONIO_ASSIGN(const paint::Edit edit, edit_of(options));
   if (!place.drawn_by_rays.empty())
-    session.say(fmt::format("{} shows {}: the edit is made at the angle of the pixel, in light that nothing blocks",
-                            stated.image, place.drawn_by_rays));
-  for (const SeenPixel& pixel : place.pixels) {
-    session.results()["pixels"].push_back(
-        {{"option", pixel.option}, {"x", pixel.x}, {"y", pixel.y}, {"aspecular_deg", pixel.aspecular_deg}});
     session.say(
-        fmt::format("{} {},{} is {:.1f} deg from specular", pixel.option, pixel.x, pixel.y, pixel.aspecular_deg));
+        fmt::format("{} shows {}: the edit is made at the angle of the pixel, in light that nothing blocks; "
+                    "with --aov transport the angle is that of the light there",
+                    stated.image, place.drawn_by_rays));
+  for (const SeenPixel& pixel : place.pixels) {
+    session.results()["pixels"].push_back({{"option", pixel.option},
+                                           {"x", pixel.x},
+                                           {"y", pixel.y},
+                                           {"aspecular_deg", pixel.aspecular_deg},
+                                           {"traced", pixel.traced}});
+    session.say(pixel.traced ? fmt::format("{} {},{} gets light as from one lamp {:.1f} deg from specular",
+                                           pixel.option, pixel.x, pixel.y, pixel.aspecular_deg)
+                             : fmt::format("{} {},{} is {:.1f} deg from specular", pixel.option, pixel.x, pixel.y,
+                                           pixel.aspecular_deg));
   }
   session.explain(plan_text(options, edit));
   return Run(options, edit, session)();

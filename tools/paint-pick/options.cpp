@@ -21,6 +21,13 @@ cli::ToolSpec tool_spec(Options& o) {
   spec.option("travel", "DEG", "45", &o.travel_deg, "aspecular angle where the color stops changing").from(15.001, 180);
   spec.flag("retro", &o.retro, "keep a flop that is lighter than the face")
       .more("Such paints are rare. Without this option the two are swapped, and a message says so.");
+  spec.option("buffers", "FILE", "view.exr", &o.buffers, "light that was traced for the picture under the droppers")
+      .more(
+          "render-osmesa(1) writes it with --aov transport. The color found is then that of the matt surface which "
+          "would "
+          "show what the dropper sees in this light, with shadows and with light that other surfaces send. Pictures "
+          "without linear light must have render-osmesa's default view and automatic exposure. Without this option a "
+          "dropper in a shadow finds a darker paint.");
   spec.heading = "palettes and mood boards";
   spec.option("palette", "N", "8", &o.palette, "propose up to N paints from one picture; 0 for none")
       .from(0, 64)
@@ -59,7 +66,8 @@ cli::ToolSpec tool_spec(Options& o) {
                  {"samples[].radius", "radius of its disc, in pixels"},
                  {"samples[].pixels", "number of pixels averaged"},
                  {"samples[].clipped", "number of pixels that are as bright as the picture can show"},
-                 {"samples[].lab", "L*, a*, b* of the mean light"},
+                 {"samples[].lab", "L*, a*, b* of the mean light, or with --buffers of the reflectance found"},
+                 {"samples[].lit", "whether the light under the dropper was taken from --buffers"},
                  {"samples[].gloss_gu", "gloss by contrast, in gloss units"},
                  {"paints[].name", "name of a paint"},
                  {"paints[].face", "L*, a*, b* of its face"},

@@ -224,3 +224,66 @@ usage_error() { # TEXT ARGUMENTS...
     [ ! -e none.html ]
   done
 }
+
+# A post on a floor hides a lamp from the floor behind it. All wear one matt paint, without gloss and without a coat.
+shadow_stage() {
+  cat >stage.obj <<'OBJ'
+v -2 0 -2
+v 2 0 -2
+v 2 0 2
+v -2 0 2
+v -0.3 0 0
+v 0.3 0 0
+v 0.3 0.8 0
+v -0.3 0.8 0
+o floor
+f 4 3 2 1
+o post
+f 5 6 7 8
+OBJ
+  fit-paint -q --basis "$TESTDATA/b5.basis.xml" "$TESTDATA/paints.paints.xml#primer_gray" -o gray.xml
+  sed -E -e '/<(lobe|coat|gloss) /d' -e 's/<diffuse .*/<diffuse r="0.08" g="0.05" b="0.03"\/>/' gray.xml >matt.xml
+  oiiotool "$TESTDATA/studio.exr" --resize:filter=box 32x16 -o studio.exr
+  prefilter-envmap -q studio.exr --basis "$TESTDATA/b5.basis.xml" --tolerance 1e-2 -o studio.env.exr
+  render-osmesa -q --mesh stage.obj --size 32x24 --samples 1 --camera 0,4,1.2,0,0,-0.3,35 -p matt.xml#primer_gray \
+    --light 0,35,3,3,3@0 --env studio.env.exr --engine path --floor none --tolerance 1 --aov transport -o view.exr
+  render-osmesa -q --gbuffer view.exr -p matt.xml#primer_gray -o view.png
+}
+
+@test "a dropper in a shadow finds the paint in the light that was traced there, and without it the error is told" {
+  shadow_stage
+  # K_D times pi is the reflectance: linear Rec.2020 .251 .157 .094, of Y .178 and L* 49.2. Picture and transport have a
+  # noise of 1 dE00 each; over the 13 pixels of the disc it is 1.4 / sqrt(13) = .4, and twice that is the tolerance.
+  for picture in view.exr view.png; do
+    for place in 16,11 16,20 5,12; do
+      paint-pick -q --face $picture@$place,2 --buffers view.exr -o out.xml --report r.json
+      near "$(result 'paints[0].face[0]')" 49.2 0.8
+      near "$(result 'paints[0].face[1]')" 15.6 0.8
+      near "$(result 'paints[0].face[2]')" 21.0 0.8
+      [ "$(result 'samples[0].lit')" = true ]
+    done
+  done
+  # The control: the same paint is another one in the shadow.
+  paint-pick -q --face view.png@16,11,2 -o out.xml --report dark.json
+  paint-pick -q --face view.png@5,12,2 -o out.xml --report light.json
+  awk -v d="$(jq '.results.paints[0].face[0]' dark.json)" -v l="$(jq '.results.paints[0].face[0]' light.json)" \
+    'BEGIN { exit !(l - d > 8) }'
+  run paint-pick --face view.exr@16,11,2 -o out.xml
+  [ "$status" -eq 0 ]
+  [[ $output == *"view.exr shows shadow"*"which a dropper takes for the color of the paint: give --buffers"* ]]
+}
+
+@test "buffers that do not fit are refused" {
+  shadow_stage
+  run paint-pick --face two.png@16,11 --buffers view.exr -o none.xml
+  [ "$status" -eq 3 ]
+  [[ $output == *"two.png: has 100 x 60 pixels, and the light was traced for 32 x 24"* ]]
+  run paint-pick --palette 2 two.png --buffers view.exr -o none.xml
+  [ "$status" -eq 2 ]
+  [[ $output == *"--buffers is for droppers"* ]]
+  render-osmesa -q --gbuffer view.exr -p matt.xml#primer_gray --aov normal,part -o plain.exr
+  run paint-pick --face view.png@16,11 --buffers plain.exr -o none.xml
+  [ "$status" -eq 3 ]
+  [[ $output == *"plain.exr: holds no light that was traced: make it by render-osmesa --aov transport"* ]]
+  [ ! -e none.xml ]
+}

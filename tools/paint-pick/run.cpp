@@ -1,12 +1,15 @@
 #include "tool.h"
 
+#include <cmath>
 #include <map>
 
 #include "base/text.h"
 #include "drawing.h"
+#include "image/aov_file.h"
 #include "page.h"
 #include "paint_stream.h"
 #include "sketch/pick.h"
+#include "sketch/traced_light.h"
 
 namespace goniochrome::tool {
 
@@ -37,6 +40,7 @@ void tell_sample(const std::string& kind, const std::string& paint, const sketch
                                           {"pixels", s.pixels},
                                           {"clipped", s.clipped},
                                           {"lab", lab_json(s.lab)},
+                                          {"lit", s.lit},
                                           {"gloss_gu", s.gloss}});
   for (const std::string& warning : s.warnings) session.warn(warning);
   if (kind != "gloss" && 2 * s.clipped > s.pixels)
@@ -65,9 +69,19 @@ void tell_paint(const sketch::PickedPaint& picked, cli::Session& session) {
                           a.face.a, a.face.b, a.flop.L, a.flop.a, a.flop.b, shortest(a.travel_deg), gloss));
 }
 
-// Puts a paint's droppers on their pictures; path_of() tells the path of a dropper's image.
+// A dropper takes what shadows and bounced light do to a surface for its paint, unless the light is known.
+void tell_rays(const std::string& path, const image::ImagePart& image, cli::Session& session) {
+  if (const std::string rays = image::drawn_by_rays(image); !rays.empty())
+    session.warn(
+        fmt::format("{} shows {}, which a dropper takes for the color of the paint: give --buffers, made by "
+                    "render-osmesa --aov transport",
+                    path, rays));
+}
+
+// Puts a paint's droppers on their pictures; path_of() tells the path of a dropper's image. `light` may be null.
 template <class PathOf>
-Result<PageOfPaint> picked(const sketch::PaintPick& wanted, Shelf& shelf, PathOf&& path_of, cli::Session& session) {
+Result<PageOfPaint> picked(const sketch::PaintPick& wanted, Shelf& shelf, PathOf&& path_of,
+                           const sketch::PickLight* light, cli::Session& session) {
   PageOfPaint page;
   std::optional<color::Lab> face, flop;
   std::optional<double> gloss;
@@ -75,7 +89,8 @@ Result<PageOfPaint> picked(const sketch::PaintPick& wanted, Shelf& shelf, PathOf
     if (!dropper) return {};
     const std::string path = path_of(dropper->image);
     GONIO_ASSIGN(const image::ImagePart* image, shelf.image(path));
-    GONIO_ASSIGN(sketch::PickSample sample, sketch::pick(*image, path, *dropper));
+    GONIO_ASSIGN(sketch::PickSample sample, sketch::pick(*image, path, *dropper, light));
+    if (light == nullptr) tell_rays(path, *image, session);
     tell_sample(kind, wanted.name, sample, session);
     page.samples.emplace_back(kind, std::move(sample));
     return {};
@@ -107,7 +122,7 @@ Result<cli::Verdict> run_board(const Options& options, bool as_page, cli::Sessio
   };
   std::vector<PageOfPaint> paints;
   for (const sketch::PaintPick& wanted : board.paints) {
-    GONIO_ASSIGN(PageOfPaint paint, picked(wanted, shelf, path_of, session));
+    GONIO_ASSIGN(PageOfPaint paint, picked(wanted, shelf, path_of, nullptr, session));
     paints.push_back(std::move(paint));
   }
   if (!as_page) {
@@ -160,8 +175,15 @@ Result<cli::Verdict> run_droppers(const Options& options, cli::Session& session)
   GONIO_TRY(parse("--flop", options.flop, wanted.flop));
   GONIO_TRY(parse("--gloss", options.gloss, wanted.gloss));
   Shelf shelf;
-  GONIO_ASSIGN(PageOfPaint paint, picked(
-                                      wanted, shelf, [](const std::string& path) { return path; }, session));
+  std::optional<sketch::TracedLight> traced;
+  sketch::PickLight light;
+  if (!options.buffers.empty()) {
+    GONIO_ASSIGN(const image::AovFile buffers, image::read_aov_file(options.buffers));
+    GONIO_ASSIGN(traced, sketch::TracedLight::of(buffers));
+    light = {&*traced, std::exp2(-buffers.exposure_stops), std::exp2(-buffers.automatic_stops)};
+  }
+  const auto as_named = [](const std::string& path) { return path; };
+  GONIO_ASSIGN(PageOfPaint paint, picked(wanted, shelf, as_named, traced ? &light : nullptr, session));
   GONIO_TRY(write(options.output, {std::move(paint)}, session));
   return cli::Verdict::kDone;
 }
@@ -183,6 +205,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
     return usage_error("--basis is for lamps: an environment brings its own");
   if (options.palette == 0 && !options.images.empty())
     return usage_error("the picture {} is given and no --palette: name it in a dropper", options.images.front());
+  if (!droppers && !options.buffers.empty()) return usage_error("--buffers is for droppers: give --face or --flop");
   if (droppers && options.face.empty() && options.flop.empty())
     return usage_error("--gloss alone makes no paint: give --face or --flop");
   session.results()["samples"] = Json::array();

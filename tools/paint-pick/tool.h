@@ -11,7 +11,7 @@ namespace goniochrome::tool {
 struct Options {
   cli::CommonOptions common;
   std::vector<std::string> images;
-  std::string face, flop, gloss;
+  std::string face, flop, gloss, buffers;
   double travel_deg = 60;
   bool retro = false;
   std::string name = "picked";

@@ -18,6 +18,11 @@ namespace goniochrome::tool {
 
 namespace {
 
+// From this many triangles on, rays find what is visible unless OpenGL is asked for. For 4 million triangles a tree of
+// rays is built in 1 s on two cores, and a view of 1280x720 takes 0.1 s; OSMesa rasterizes such a view in 0.7 s, five
+// times for a picture of 4 samples a pixel.
+constexpr std::size_t kTracedFrom = 1000000;
+
 // Pixels that the truth of each effect is measured at; it takes an integration for each of them.
 constexpr int kMostTruth = 100;
 
@@ -301,7 +306,7 @@ Result<cli::Verdict> Shooting::shade_transport(const std::optional<display::Disp
   return view.trace_again ? cli::Verdict::kNegative : cli::Verdict::kDone;
 }
 
-// Rays find what is visible for the engine that traces them, and where there is no OpenGL.
+// Rays find what is visible for the engine that traces them, for meshes of many triangles, and where there is no OpenGL.
 Result<render::Renderer> Shooting::make_renderer() {
   render::Effort effort;
   effort.bounces = options_.bounces;
@@ -318,9 +323,11 @@ Result<render::Renderer> Shooting::make_renderer() {
   if (stage_.gbuffer) return ready(render::Renderer::shading(stage_.gbuffer));
   if (request_.engine != nullptr && request_.engine->traces_rays)
     return ready(render::Renderer::tracing(stage_.scene.ground));
+  const bool needs_opengl = request_.engine != nullptr && request_.engine->needs_opengl;
+  if (stage_.mesh.triangles.size() >= kTracedFrom && !needs_opengl) return ready(render::Renderer::tracing());
   auto renderer = render::Renderer::create();
   if (renderer.ok()) return ready(*std::move(renderer));
-  if (request_.engine != nullptr && request_.engine->needs_opengl) return renderer;
+  if (needs_opengl) return renderer;
   session_.say(fmt::format("{}: rays find what is visible", renderer.error().message));
   return ready(render::Renderer::tracing());
 }

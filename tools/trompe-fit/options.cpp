@@ -179,6 +179,10 @@ void add_report(cli::ToolSpec& spec) {
       {"status", "converged, not_converged, or failed with a message"},
       {"time_ms", "time of the fit; starts tells from how many points it was begun"},
       {"misalignment_deg", "with --mesh: low, median and high misalignment of the seam"},
+      {"traced[].paint", "with --environment: name of a paint whose light was traced"},
+      {"traced[].worth_de76", "what the mesh changes in the difference of the panels (CIE 1976), at 95 % of the views"},
+      {"traced[].noise_de76", "standard deviation of that difference by the random rays, at 95 % of the views"},
+      {"traced[].panels_not_found", "panels under whose edge no ray found them, and that get open light"},
       {"seam[].rms_before",
        "with --mesh, for each place; beside it stand rms_after, run, distance_m and fold_deg. geometries[] is left out "
        "then, and views counts all of them"},
@@ -206,7 +210,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "goniogeom-index(1) finds it, and B gets the paint found. At every place, lights and viewers stand to the first "
       "panel as they would to a flat one, with the light from either side, which no single paint can serve. By "
       "--light-from and --view-from they stand in the world instead. With --environment the light is that of a "
-      "prefiltered environment, and paints are fitted to its own lobes.",
+      "prefiltered environment, and paints are fitted to its own lobes. What the mesh takes from that light and sends "
+      "back is traced while all parts wear the first paint, unless --open is given.",
       "A solid paint has no travel, and its face and flop move together. A paint counts as solid by its class, or "
       "where face and flop are closer than 1. Parameters that the views do not determine stay near those of the paint "
       "given, and are named. The exit status is 1 where a paint is not improved."};

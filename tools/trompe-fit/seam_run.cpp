@@ -46,6 +46,7 @@ class SeamRun {
  private:
   Result<void> prepare() {
     GONIO_ASSIGN(stage_, panels::seam_stage(options_.seam, request_.world, request_.geometries, options_.seam_deg));
+    traced_ = traced_seam(options_.seam, stage_, session_);
     for (const std::size_t i : panels::spread_places(stage_.views.size(), kMostFitted))
       fitted_.push_back(stage_.views[i]);
     std::vector<double> folds;
@@ -59,7 +60,7 @@ class SeamRun {
     return {};
   }
 
-  Result<Answer> answer_for(const paint::Paint& paint) const {
+  Result<Answer> answer_for(const paint::Paint& paint) {
     Answer answer;
     answer.name = paint.name + options_.suffix;
     GONIO_ASSIGN(answer.a, panels::appearance_of(paint));
@@ -73,17 +74,20 @@ class SeamRun {
     }
     GONIO_ASSIGN(const panels::EnvironmentPanels panels,
                  panels::EnvironmentPanels::make(stage_.env, paint::condition_of(paint)));
-    const auto colors = [&](const std::vector<panels::SeamView>& views, panels::SeamSide side,
-                            const paint::Appearance& appearance) {
-      return panels::seam_colors(panels, stage_.seam, views, side)(appearance);
+    GONIO_ASSIGN(const paint::LobeFit worn, panels.lobes(answer.a));
+    const auto lights_of = [&](const std::vector<panels::SeamView>& views) {
+      return panels::seam_lights(panels, traced_ ? &*traced_ : nullptr, worn, stage_.seam, views, request_.world.part_a,
+                                 request_.world.part_b);
     };
-    GONIO_ASSIGN(const std::vector<color::Lab> target, colors(fitted_, panels::SeamSide::kA, answer.a));
+    GONIO_ASSIGN(const panels::SeamLights some, lights_of(fitted_));
+    GONIO_ASSIGN(const panels::SeamLights all, lights_of(stage_.views));
+    tell_traced(all, stage_.views.size(), paint.name, session_);
+    GONIO_ASSIGN(const std::vector<color::Lab> target, panels::seam_colors(panels, some.a)(answer.a));
     GONIO_ASSIGN(answer.fit, panels::trompe_fit(answer.a, solid, target, weights_of(fitted_),
-                                                panels::seam_colors(panels, stage_.seam, fitted_, panels::SeamSide::kB),
-                                                request_.fit));
-    GONIO_ASSIGN(const std::vector<color::Lab> first, colors(stage_.views, panels::SeamSide::kA, answer.a));
-    GONIO_ASSIGN(const std::vector<color::Lab> before, colors(stage_.views, panels::SeamSide::kB, answer.a));
-    GONIO_ASSIGN(const std::vector<color::Lab> after, colors(stage_.views, panels::SeamSide::kB, answer.fit.b));
+                                                panels::seam_colors(panels, some.b), request_.fit));
+    GONIO_ASSIGN(const std::vector<color::Lab> first, panels::seam_colors(panels, all.a)(answer.a));
+    GONIO_ASSIGN(const std::vector<color::Lab> before, panels::seam_colors(panels, all.b)(answer.a));
+    GONIO_ASSIGN(const std::vector<color::Lab> after, panels::seam_colors(panels, all.b)(answer.fit.b));
     answer.before = panels::trompe_errors(first, before, weights_of(stage_.views));
     answer.after = panels::trompe_errors(first, after, weights_of(stage_.views));
     return answer;
@@ -138,6 +142,7 @@ class SeamRun {
   const TrompeSeamRequest& request_;
   cli::Session& session_;
   panels::SeamStage stage_;
+  std::optional<panels::TracedSeam> traced_;  // in an environment with a mirror part
   std::vector<panels::SeamView> fitted_;
   std::vector<Json> fits_;
   int pictures_ = 0;

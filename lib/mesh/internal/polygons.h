@@ -1,8 +1,10 @@
 // What a mesh file holds before it becomes a Mesh: polygons whose corners may lack normals.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/result.h"
@@ -41,15 +43,28 @@ struct Source {
 };
 
 // The polygons of an OBJ text. Errors name the line.
-Result<Polygons> polygons_from_obj(const std::string& text, const Source& source);
+Result<Polygons> polygons_from_obj(std::string_view text, const Source& source);
 
 // The polygons of the bytes of an OFF, PLY or STL file, as one part. Normals in such files are not read. `extension`
 // is ".off", ".ply" or ".stl".
 Result<Polygons> polygons_from_soup(const std::string& content, const std::string& extension, const Source& source);
 
 // Triangulates, drops what has no area, makes missing normals and turns triangles to their normals.
-// Error: nothing is left.
-Result<Mesh> mesh_from_polygons(const Polygons& polygons, const std::string& path);
+// Error: nothing is left, or there are more than 2^32 corners.
+Result<Mesh> mesh_from_polygons(Polygons polygons, const std::string& path);
+
+// A triangle of polygons, whose positions and normals it refers to.
+struct CornerTriangle {
+  std::array<Polygons::Corner, 3> corners;
+  std::uint32_t part;
+};
+
+// Gives the corners without a normal one, which is appended to `normals`: the mean of the normals of the triangles that
+// meet there within 60 degrees of its own triangle, each weighted by its angle at the vertex, which does not depend on
+// how the surface was cut into triangles (Thuermer and Wuethrich 1998). Vertices at the same place are one vertex here,
+// whatever their number in the file. Triangles must have an area.
+void make_normals(std::vector<CornerTriangle>& triangles, const std::vector<Vec3>& positions,
+                  std::vector<Vec3>& normals);
 
 // The n-2 triangles of a simple polygon, as indices into `ring`, by ear clipping; concave ones included. A polygon that
 // crosses itself still gives n-2 triangles.

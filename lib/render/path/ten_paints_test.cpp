@@ -1,0 +1,82 @@
+// Ten paints of a ball in a gray cup on one basis, shaded from one transport as an editor of paints does it, against
+// tracing each of them anew with all bounces.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "render/internal/seen.h"
+#include "render/path/path_tracer.h"
+#include "render/path/transport_shading.h"
+#include "render/path/transport_stage_for_test.h"
+
+namespace goniochrome::render {
+namespace {
+
+using namespace transport_stage;
+
+constexpr int kWidth = 12, kHeight = 9;
+constexpr double kTruthNoise_de00 = 1.5;
+
+image::Image shaded(const TransportShader& shader, const LobeTransport& t, const paint::LobeFit& cup,
+                    const paint::LobeFit& ball, BounceScale& scale) {
+  std::vector<TransportPaint> paints(5, *transport_paint(t.columns, cup, brdf::kGlossIncidence_deg));
+  paints.push_back(*transport_paint(t.columns, ball, brdf::kGlossIncidence_deg));
+  std::vector<std::vector<color::Rgb>> weights(5, weights_of(t.columns, cup));
+  weights.push_back(weights_of(t.columns, ball));
+  scale = bounce_scale(t, weights, nullptr);
+  image::Image picture{kWidth, kHeight, 4, std::vector<float>(4UL * kWidth * kHeight, 0.0F), {}};
+  shader.shade(paints, nullptr, scale, 1, picture);
+  return picture;
+}
+
+// The difference to tracing anew has three parts: the noise of the transport, which two transports show (they differ by
+// sqrt 2 of it, which is more); that of the truth, of whose standard deviation 95 % stay within 2.2 (of three
+// channels); and what the scaling of bounced light says that it errs by, known to a fifth from its probes. The first
+// two are independent. Maps err by some 0.5. The control is the picture of the paints that were worn: a shading that
+// did nothing.
+TEST(TenPaints, FromOneTransportAreThoseThatAreTracedAnew) {
+  std::mt19937_64 random(12);
+  const paint::LobeFit cup = matt({0.15, 0.15, 0.15}), ball = random_paint(random);
+  Stage stage(cup, ball, kWidth, kHeight);
+  LobeTransportRequest request;
+  request.tolerance_de00 = 1.5;
+  const TracedLobes traced = stage.traced(request);
+  request.seed = 50;
+  const TracedLobes other = stage.traced(request);
+  ASSERT_TRUE(traced.reached && other.reached);
+  const LobeTransport& t = traced.transport;
+  const TransportShader shader(t, {}), other_shader(other.transport, {});
+  BounceScale scale;
+  const image::Image as_worn = shaded(shader, t, cup, ball, scale);
+  EXPECT_EQ(scale.error_p95_de00, 0);
+  int controls = 0;
+  for (int number = 0; number < 10; ++number) {
+    const paint::LobeFit new_ball = random_paint(random);
+    const image::Image again = shaded(other_shader, other.transport, cup, new_ball, scale);
+    const image::Image ours = shaded(shader, t, cup, new_ball, scale);
+    stage.dress(cup, new_ball);
+    PathRequest path;
+    path.tolerance_de00 = kTruthNoise_de00;
+    const PathPicture truth = path_picture(*stage.path.transport, stage.surface, nullptr, path);
+    ASSERT_EQ(truth.points.size(), t.places.size());
+    std::vector<double> off, noise, undone;
+    for (std::size_t i = 0; i < truth.points.size(); ++i) {
+      const auto pixel = [&](const image::Image& picture) {
+        const float* p = picture.pixel(truth.points[i].x, truth.points[i].y);
+        return color::Rgb{p[0], p[1], p[2]};
+      };
+      off.push_back(seen_difference(pixel(ours), truth.points[i].radiance, 1));
+      noise.push_back(seen_difference(pixel(ours), pixel(again), 1));
+      undone.push_back(seen_difference(pixel(as_worn), truth.points[i].radiance, 1));
+    }
+    const double bound = std::hypot(percentile_95(noise), 2.2 * kTruthNoise_de00) + 1.2 * scale.error_p95_de00 + 0.5;
+    std::printf("paint %d: p95 %.2f of %.2f, told %.2f, noise %.2f, undone %.2f\n", number, percentile_95(off), bound,
+                scale.error_p95_de00, percentile_95(noise), percentile_95(undone));
+    EXPECT_LT(percentile_95(off), bound) << number;
+    controls += percentile_95(undone) > bound ? 1 : 0;
+  }
+  EXPECT_GE(controls, 8);
+}
+
+}  // namespace
+}  // namespace goniochrome::render

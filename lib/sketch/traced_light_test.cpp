@@ -1,0 +1,136 @@
+// The light under pixels, of a transport that is written by hand from light that is known.
+#include "sketch/traced_light.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/angles.h"
+#include "render/light_transport.h"
+#include "sketch/pick.h"
+
+namespace goniochrome::sketch {
+namespace {
+
+using testing::HasSubstr;
+
+const std::vector<double> kExponents = {3, 20, 200};
+constexpr double kWhite = 2;  // luminance of the scene's white diffuser, so that units show
+
+// What the diffuse column gets at a pixel, and what each flake column gets of it.
+struct Lit {
+  color::Rgb diffuse;
+  std::vector<double> shares;
+};
+
+std::vector<double> of_lamp(double aspecular_deg) {
+  std::vector<double> shares;
+  for (const double e : kExponents) shares.push_back(std::pow(std::cos(aspecular_deg * kDegree), e));
+  return shares;
+}
+// Of an even hemisphere seen from above: the integral of cos^(E+1) is 2 pi/(E + 2), that of the cosine is pi.
+std::vector<double> of_even_light() {
+  std::vector<double> shares;
+  for (const double e : kExponents) shares.push_back(2 / (e + 2));
+  return shares;
+}
+
+image::AovFile buffers_of(const std::vector<Lit>& pixels) {
+  render::LobeTransport t;
+  t.width = static_cast<int>(pixels.size()), t.height = 1;
+  t.columns.exponents = kExponents;
+  t.worn.groups = {{0}, 1};
+  t.worn.weights = {std::vector<color::Rgb>(t.columns.count(), color::Rgb{0.1, 0.1, 0.1})};
+  t.worn.brushed.resize(1), t.worn.coats = {paint::kNoCoat}, t.worn.emission.resize(1);
+  t.white_luminance = kWhite;
+  const auto put = [&](const color::Rgb& light) {
+    for (int c = 0; c < 3; ++c) t.direct.push_back(static_cast<float>(light[c]));
+  };
+  for (std::uint32_t i = 0; i < pixels.size(); ++i) {
+    t.places.push_back(i), t.part.push_back(0), t.noise_de00.push_back(0);
+    put(pixels[i].diffuse);
+    for (const double share : pixels[i].shares) put(share * pixels[i].diffuse), put({});
+    put({});
+  }
+  t.bounced.assign(t.direct.size(), 0), t.classes.assign(pixels.size() * t.worn.groups.classes() * 3, 0);
+  const render::TransportParts parts = render::transport_parts(t);
+  image::AovFile file;
+  file.path = "view.exr";
+  file.image = {t.width, 1, 1, std::vector<float>(pixels.size(), 1.0F), {"part"}};
+  file.transport = parts.header, file.layers = parts.parts;
+  file.reflection = color::component_wise();
+  return file;
+}
+
+// Light in halves errs by up to 2^-11 of itself, which near 25 deg moves the angle by less than 0.1 deg.
+TEST(TracedLight, TheAngleIsThatOfALampAndBetweenFaceAndFlopInEvenLight) {
+  const image::AovFile file = buffers_of(
+      {{{1, 1, 1}, of_lamp(25)}, {{0.5, 0.4, 0.2}, of_lamp(60)}, {{3, 3, 3}, of_even_light()}, {{}, of_lamp(9)}});
+  const auto light = TracedLight::of(file);
+  ASSERT_TRUE(light.ok()) << light.error().message;
+  EXPECT_NEAR(light->aspecular_deg(0, 0).value(), 25, 0.1);
+  EXPECT_NEAR(light->aspecular_deg(1, 0).value(), 60, 0.1);
+  // (cos^3 - 0.4)^2 + (cos^20 - 1/11)^2 + (cos^200 - 1/101)^2 has its root about cos^3 = 0.4 and cos^20 = 0.09, which
+  // are 42.5 and 27.5 deg. The wide lobe falls slowly, so that the least squares lie between the two.
+  EXPECT_GT(light->aspecular_deg(2, 0).value(), 27.5);
+  EXPECT_LT(light->aspecular_deg(2, 0).value(), 42.5);
+  EXPECT_FALSE(light->aspecular_deg(3, 0).has_value()) << "no light";
+  EXPECT_FALSE(light->aspecular_deg(4, 0).has_value()) << "outside";
+  image::AovFile none = file;
+  none.transport.clear(), none.layers.clear();
+  EXPECT_THAT(TracedLight::of(none).error().message, HasSubstr("view.exr: holds no light that was traced"));
+}
+
+// A matt surface in full light, in a twentieth of it, and in light of another color: the color found is its own. The
+// tolerance is that of halves, 2^-11 of the light, which is 0.02 in L* and at most 0.2 in chroma. Without the light
+// (control) the pixel in the shadow is a darker paint.
+TEST(TracedLight, ADropperInAShadowFindsThePaintOfTheSurface) {
+  const color::Rgb reflectance{0.4, 0.2, 0.1};
+  for (const color::ReflectionOperator& reflection : {color::component_wise(), color::iso_rgb_operator()}) {
+    const double bright = kPi * kWhite;
+    image::AovFile file = buffers_of({{{bright, bright, bright}, of_lamp(40)},
+                                      {{bright / 20, bright / 20, bright / 20}, of_lamp(40)},
+                                      {{bright, 0.6 * bright, 0.3 * bright}, of_lamp(40)}});
+    file.reflection = reflection;
+    const auto traced = TracedLight::of(file);
+    ASSERT_TRUE(traced.ok()) << traced.error().message;
+    constexpr double kStops = 1.5;
+    image::ImagePart picture;
+    picture.image = {3, 1, 3, {}, {"R", "G", "B"}};
+    picture.attributes["colorInteropID"] = std::string("lin_rec2020_scene");
+    for (const color::Rgb& light :
+         {color::Rgb{kWhite, kWhite, kWhite}, (kWhite / 20) * color::Rgb{1, 1, 1}, kWhite * color::Rgb{1, 0.6, 0.3}}) {
+      const color::Rgb shown = std::exp2(kStops) * color::reflected(reflection, reflectance, light);
+      for (int c = 0; c < 3; ++c) picture.image.data.push_back(static_cast<float>(shown[c]));
+    }
+    const PickLight light{&*traced, std::exp2(-kStops), 1};
+    const color::Lab truth = color::lab_from_rgb(reflectance, *color::white_point({}));
+    for (int x = 0; x < 3; ++x) {
+      const auto sample = pick(picture, "p.exr", {"p.exr", x, 0, 0}, &light);
+      ASSERT_TRUE(sample.ok()) << sample.error().message;
+      EXPECT_TRUE(sample->lit);
+      EXPECT_LT(color::delta_e_76(sample->lab, truth), 0.2) << x;
+    }
+    const auto shadow = pick(picture, "p.exr", {"p.exr", 1, 0, 0});
+    ASSERT_TRUE(shadow.ok());
+    EXPECT_FALSE(shadow->lit);
+    EXPECT_GT(color::delta_e_76(shadow->lab, truth), 5) << "the control must fail";
+  }
+}
+
+TEST(TracedLight, APictureOfAnotherSizeAndAPixelWithoutLightAreRefused) {
+  const image::AovFile file = buffers_of({{{1, 1, 1}, of_lamp(40)}, {{}, of_lamp(40)}});
+  const auto traced = TracedLight::of(file);
+  ASSERT_TRUE(traced.ok());
+  const PickLight light{&*traced, 1, 1};
+  image::ImagePart picture;
+  picture.image = {2, 1, 3, std::vector<float>(6, 0.5F), {"R", "G", "B"}};
+  picture.attributes["colorInteropID"] = std::string("lin_rec2020_scene");
+  EXPECT_TRUE(pick(picture, "p.exr", {"p.exr", 0, 0, 0}, &light).ok());
+  EXPECT_THAT(pick(picture, "p.exr", {"p.exr", 1, 0, 0}, &light).error().message, HasSubstr("get no light"));
+  picture.image = {3, 1, 3, std::vector<float>(9, 0.5F), {"R", "G", "B"}};
+  EXPECT_THAT(pick(picture, "p.exr", {"p.exr", 0, 0, 0}, &light).error().message,
+              HasSubstr("has 3 x 1 pixels, and the light was traced for 2 x 1"));
+}
+
+}  // namespace
+}  // namespace goniochrome::sketch
