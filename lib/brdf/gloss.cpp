@@ -12,12 +12,15 @@
 // what is left is a smooth function of the source point, and 3 x 3 points on half the source are enough: the source is
 // narrower than the receptor by more than it would take to see an edge.
 #include "brdf/gloss.h"
-#include "base/angles.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <mutex>
 
+#include "base/angles.h"
+#include "brdf/internal/gloss_meter.h"
+#include "brdf/rough_coat.h"
 #include "math/cosine_power.h"
 #include "math/least_squares.h"
 #include "math/quadrature.h"
@@ -32,12 +35,6 @@ struct Aperture {
 Aperture aperture(double par_deg, double perp_deg) {
   return {std::tan(par_deg / 2 * kDegree), std::tan(perp_deg / 2 * kDegree)};
 }
-
-struct Meter {
-  double angle_deg, receptor_par_deg, receptor_perp_deg;
-};
-constexpr Meter kMeters[] = {{20, 1.8, 3.6}, {60, 4.4, 11.7}, {85, 4.0, 6.0}};
-constexpr double kSourcePar_deg = 0.75, kSourcePerp_deg = 2.5;
 
 struct Sample {
   double p, q, weight;  // weight holds the solid angle
@@ -150,7 +147,8 @@ std::vector<double> one_reading(const GlossTable& table, const GlossColumns& met
   while (sharper < end && full_reading(sharper) < gu) ++sharper;
   if (sharper == 0 || sharper == end) {
     const std::size_t only = sharper == 0 ? 0 : end - 1;
-    weights[only] = full_weight(only) * gu / full_reading(only);
+    const double share = gu / full_reading(only);
+    weights[only] = full_weight(only) * (only == lobes ? share : std::min(share, 1.0));
     return weights;
   }
   const double wide = full_reading(sharper - 1), sharp = full_reading(sharper);
@@ -160,9 +158,107 @@ std::vector<double> one_reading(const GlossTable& table, const GlossColumns& met
   return weights;
 }
 
+// The readings less what the base reflects into the meter.
+Result<std::vector<paint::GlossReading>> without_base(const GlossTable& table,
+                                                      const std::vector<paint::GlossReading>& readings,
+                                                      paint::LobeFit fit) {
+  fit.views.clear();
+  for (paint::Lobe& lobe : fit.lobes) lobe.gloss = {};
+  std::vector<paint::GlossReading> rest = readings;
+  for (paint::GlossReading& reading : rest) {
+    GONIO_ASSIGN(const GlossColumns* meter, table.at(reading.angle_deg));
+    if (!(reading.gloss_units >= 0)) return input_error("gloss {} GU: a reading is 0 or more", reading.gloss_units);
+    reading.gloss_units = std::min(reading.gloss_units, 100.0) - gloss_units(table, *meter, fit);
+  }
+  return rest;
+}
+
+void put_gloss(const std::vector<double>& weights, std::vector<paint::Lobe>& lobes) {
+  for (std::size_t j = 0; j < lobes.size(); ++j) lobes[j].gloss = {weights[j], weights[j], weights[j]};
+}
+
+std::size_t view_of(double angle_deg) {
+  return static_cast<std::size_t>(std::ranges::find(kCoatViews_deg, angle_deg) - std::begin(kCoatViews_deg));
+}
+
+// Moves a small share of the light from all lobes to the widest lobe or to the sharpest one, so that the simulated
+// reading is exactly `gu`, where that is possible. Weights hold at the incidence `gloss_deg`.
+void meet_reading(const GlossTable& table, const GlossColumns& meter, double gu, double gloss_deg, bool has_mirror,
+                  double coat_index, std::vector<double>& weights) {
+  const std::size_t lobes = table.exponents().size();
+  if (weights.empty() || (lobes == 0 && !has_mirror)) return;
+  const double fresnel = coat_fresnel(std::cos(meter.angle_deg * kDegree), gloss_deg),
+               at_meter = fresnel_dielectric(std::cos(meter.angle_deg * kDegree), kCoatIndex);
+  const double mirror = mirror_reading(meter, coat_index);
+  const auto energy = [&](std::size_t j) {
+    return j == lobes ? at_meter : fresnel * 2 * kPi / (table.exponents()[j] + 1);
+  };
+  const auto reading = [&](std::size_t j) { return j == lobes ? mirror : fresnel * meter.gloss[j]; };
+  double read = 0, all = 0;
+  for (std::size_t j = 0; j <= lobes; ++j)
+    if (weights[j] > 0) read += weights[j] * reading(j), all += weights[j] * energy(j);
+  const std::size_t to = read > gu ? 0 : has_mirror ? lobes : lobes - 1;
+  const double there = all / energy(to) * reading(to), share = (gu - read) / (there - read);
+  if (!(share > 0 && share <= 1)) return;
+  for (double& weight : weights) weight *= 1 - share;
+  weights[to] += share * all / energy(to);
+}
+
+// K_G and mirror for one view of a rough coat. Rows are the shares within rings, relative to what a smooth surface of
+// index 1.5 reflects, of which the last is all the light, and what the nearest meter would read. These two count so
+// much that the other rings bend to them. Unknowns are energies, so that the columns are of one size.
+std::vector<double> coat_weights(const GlossTable& table, const RoughCoat& coat, std::size_t view, double gloss_deg,
+                                 bool has_mirror, double coat_index) {
+  constexpr double kAllWeight = 30, kReadingWeight = 3;  // of 1 GU
+  const double cosine = std::cos(kCoatViews_deg[view] * kDegree), smooth = fresnel_dielectric(cosine, kCoatIndex),
+               brighter = fresnel_dielectric(cosine, mirror_index(coat_index)) / smooth;
+  const auto& lobes = table.within(view);
+  std::vector<double> wanted = coat_within(coat, view);
+  wanted.push_back(coat_reading_at(coat, view));
+  const int rows = static_cast<int>(wanted.size()), count = static_cast<int>(lobes.size());
+  math::Matrix m(rows, count + (has_mirror ? 1 : 0));
+  for (int k = 0; k < rows; ++k) {
+    const double weight = k == rows - 1 ? kReadingWeight : k == rows - 2 ? kAllWeight : 1;
+    for (int j = 0; j < count; ++j) m(k, j) = weight * (table.exponents()[j] + 1) / (2 * kPi) * lobes[j][k];
+    if (has_mirror) m(k, count) = weight * brighter * (k == rows - 1 ? mirror_reading_at(view) : 1);
+    wanted[k] *= weight * brighter;
+  }
+  const std::vector<double> best = math::nnls(m, wanted).x;
+  double energy = 0;
+  for (int j = 0; j < m.columns; ++j) energy += m(rows - 2, j) / kAllWeight * best[j];
+  const double bound = std::min(1.0, brighter / std::max(energy, 1e-300));
+  std::vector<double> weights(lobes.size() + 1, 0.0);
+  const double fresnel = fresnel_dielectric(std::cos(gloss_deg * kDegree), kCoatIndex);
+  for (int j = 0; j < m.columns; ++j)
+    weights[j] = bound * best[j] * (j < count ? fresnel * (table.exponents()[j] + 1) / (2 * kPi) : 1);
+  if (const Result<const GlossColumns*> meter = table.at(kCoatViews_deg[view]); meter.ok())
+    meet_reading(table, **meter, *coat_reading(coat, kCoatViews_deg[view], mirror_index(coat_index)), gloss_deg,
+                 has_mirror, coat_index, weights);
+  return weights;
+}
+
 }  // namespace
 
-GlossTable::GlossTable(const std::vector<double>& exponents) : exponents_(exponents) {
+struct GlossTable::CoatColumns {
+  std::once_flag once;
+  std::vector<std::vector<std::vector<double>>> within;  // by view, by exponent
+};
+
+const std::vector<std::vector<double>>& GlossTable::within(std::size_t view) const {
+  std::call_once(coat_->once, [&] {
+    for (std::size_t v = 0; v < std::size(kCoatViews_deg); ++v) {
+      std::vector<std::vector<double>>& lobes = coat_->within.emplace_back();
+      for (const double exponent : exponents_) {
+        lobes.push_back(lobe_within(exponent, v));
+        lobes.back().push_back(lobe_reading_at(exponent, v));
+      }
+    }
+  });
+  return coat_->within[view];
+}
+
+GlossTable::GlossTable(const std::vector<double>& exponents)
+    : exponents_(exponents), coat_(std::make_shared<CoatColumns>()) {
   for (const Meter& meter : kMeters) {
     const std::vector<Sample> source = source_samples(meter.angle_deg);
     double standard = 0;
@@ -208,10 +304,12 @@ Result<double> coat_index_of(const std::vector<paint::GlossReading>& readings) {
   return index;
 }
 
-double gloss_units(const GlossTable& table, const GlossColumns& meter, const paint::LobeFit& fit) {
+double gloss_units(const GlossTable& table, const GlossColumns& meter, const paint::LobeFit& fit, double gloss_deg) {
   const double cosine = std::cos(meter.angle_deg * kDegree), base = coat_passages(fit.coat_index, cosine, cosine);
-  double gu = base * meter.diffuse * luminance(fit.diffuse);
-  for (const paint::Lobe& lobe : fit.lobes) {
+  const double fresnel = gloss_deg == meter.angle_deg ? 1 : coat_fresnel(cosine, gloss_deg);
+  const paint::LobeFit seen = at_view(fit, meter.angle_deg);
+  double gu = base * meter.diffuse * luminance(seen.diffuse);
+  for (const paint::Lobe& lobe : seen.lobes) {
     if (lobe.is_mirror()) {
       if (lobe.gloss != color::Rgb{}) gu += mirror_reading(meter, fit.coat_index) * luminance(lobe.gloss);
       continue;
@@ -220,43 +318,71 @@ double gloss_units(const GlossTable& table, const GlossColumns& meter, const pai
     if (found == table.exponents().end()) continue;
     const std::size_t j = found - table.exponents().begin();
     gu += base * meter.directional_diffuse[j] * luminance(lobe.directional_diffuse) +
-          meter.gloss[j] * luminance(lobe.gloss);
+          fresnel * meter.gloss[j] * luminance(lobe.gloss);
   }
   return gu;
 }
 
+double gloss_units(const GlossTable& table, const GlossColumns& meter, const paint::LobeFit& fit) {
+  return gloss_units(table, meter, fit, meter.angle_deg);
+}
+
 Result<std::vector<double>> set_gloss(const GlossTable& table, const std::vector<paint::GlossReading>& readings,
                                       paint::LobeFit& fit) {
-  const std::size_t lobes = table.exponents().size();
-  const bool has_mirror = fit.lobes.size() > lobes;
   for (paint::Lobe& lobe : fit.lobes) lobe.gloss = {};
-
-  std::vector<const GlossColumns*> meters;
-  std::vector<double> wanted;
-  for (const paint::GlossReading& reading : readings) {
-    GONIO_ASSIGN(const GlossColumns* meter, table.at(reading.angle_deg));
-    if (!(reading.gloss_units >= 0)) return input_error("gloss {} GU: a reading is 0 or more", reading.gloss_units);
-    meters.push_back(meter);
-    wanted.push_back(std::min(reading.gloss_units, 100.0) - gloss_units(table, *meter, fit));
+  if (readings.empty()) return std::vector<double>();
+  GONIO_ASSIGN(const std::vector<paint::GlossReading> wanted, without_base(table, readings, fit));
+  GONIO_ASSIGN(const GlossColumns* meter, table.at(readings.front().angle_deg));
+  std::optional<RoughCoat> coat;
+  if (readings.size() > 1) {
+    GONIO_ASSIGN(coat, rough_coat_of(wanted, mirror_index(fit.coat_index)));
   }
-
-  std::vector<double> weights(lobes + 1, 0.0);
-  if (readings.size() == 1) {
-    weights = one_reading(table, *meters[0], mirror_reading(*meters[0], fit.coat_index), wanted[0], has_mirror);
-  } else if (!readings.empty()) {
-    math::Matrix m(static_cast<int>(readings.size()), static_cast<int>(lobes + (has_mirror ? 1 : 0)));
-    for (int i = 0; i < m.rows; ++i)
-      for (int j = 0; j < m.columns; ++j)
-        m(i, j) = j < static_cast<int>(lobes) ? meters[i]->gloss[j] : mirror_reading(*meters[i], fit.coat_index);
-    const math::NonNegativeFit best = math::nnls(m, wanted);
-    std::copy(best.x.begin(), best.x.end(), weights.begin());
-  }
-  for (std::size_t j = 0; j < fit.lobes.size(); ++j) fit.lobes[j].gloss = {weights[j], weights[j], weights[j]};
+  const bool has_mirror = fit.lobes.size() > table.exponents().size();
+  const std::vector<double> weights =
+      coat ? coat_weights(table, *coat, view_of(meter->angle_deg), meter->angle_deg, has_mirror, fit.coat_index)
+           : one_reading(table, *meter, mirror_reading(*meter, fit.coat_index), wanted[0].gloss_units, has_mirror);
+  put_gloss(weights, fit.lobes);
 
   std::vector<double> misfit_gu;
-  for (std::size_t i = 0; i < readings.size(); ++i)
-    misfit_gu.push_back(gloss_units(table, *meters[i], fit) - readings[i].gloss_units);
+  paint::LobeFit all = fit;
+  all.views.clear();
+  for (const paint::GlossReading& reading : readings)
+    misfit_gu.push_back(gloss_units(table, **table.at(reading.angle_deg), all, meter->angle_deg) - reading.gloss_units);
   return misfit_gu;
+}
+
+Result<void> set_gloss_views(const GlossTable& table, const std::vector<paint::GlossReading>& readings,
+                             paint::LobeFit& fit) {
+  std::optional<RoughCoat> coat;
+  if (!readings.empty()) {
+    GONIO_ASSIGN(const std::vector<paint::GlossReading> wanted, without_base(table, readings, fit));
+    GONIO_ASSIGN(coat, rough_coat_of(wanted, mirror_index(fit.coat_index)));
+  }
+  if (!coat) {
+    for (paint::ViewLobes& view : fit.views)
+      for (std::size_t j = 0; j < view.lobes.size(); ++j) view.lobes[j].gloss = fit.lobes[j].gloss;
+    return {};
+  }
+  paint::LobeFit gloss = fit;
+  gloss.views.clear();
+  for (std::size_t v = 0; v < std::size(kCoatViews_deg); ++v) {
+    gloss.views.push_back({kCoatViews_deg[v], {}, fit.lobes});
+    put_gloss(coat_weights(table, *coat, v, readings.front().angle_deg, fit.lobes.size() > table.exponents().size(),
+                           fit.coat_index),
+              gloss.views.back().lobes);
+  }
+  std::vector<double> angles(std::begin(kCoatViews_deg), std::end(kCoatViews_deg));
+  for (const paint::ViewLobes& view : fit.views) angles.push_back(view.view_deg);
+  std::ranges::sort(angles);
+  angles.erase(std::ranges::unique(angles).begin(), angles.end());
+  std::vector<paint::ViewLobes> views;
+  for (const double angle : angles) {
+    const paint::LobeFit base = at_view(fit, angle), coated = at_view(gloss, angle);
+    views.push_back({angle, base.diffuse, base.lobes});
+    for (std::size_t j = 0; j < base.lobes.size(); ++j) views.back().lobes[j].gloss = coated.lobes[j].gloss;
+  }
+  fit.views = std::move(views);
+  return {};
 }
 
 }  // namespace goniochrome::brdf

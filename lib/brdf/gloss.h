@@ -2,6 +2,7 @@
 // gloss lobes that make it read given values. goniochrome-theory(7), GLOSS.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "base/result.h"
@@ -31,9 +32,14 @@ class GlossTable {
   const std::vector<double>& exponents() const { return exponents_; }
   // Error: no meter has that angle.
   Result<const GlossColumns*> at(double angle_deg) const;
+  // lobe_within() of every exponent at one of kCoatViews_deg, and lobe_reading_at() as the last element; made when it
+  // is first asked for, by any thread.
+  const std::vector<std::vector<double>>& within(std::size_t view) const;
 
  private:
+  struct CoatColumns;
   std::vector<double> exponents_;
+  std::shared_ptr<CoatColumns> coat_;
   std::vector<GlossColumns> columns_;
 };
 
@@ -46,18 +52,31 @@ Result<double> smooth_gloss(double angle_deg, double coat_index);
 Result<double> coat_index_of(const std::vector<paint::GlossReading>& readings);
 
 // The reading in GU of a whole paint: diffuse, flake, gloss lobes and mirror, by luminance. What the coat leaves of the
-// base's light is taken at the meter's angle. Exponents of `fit` that the table does not hold count as 0.
+// base's light is taken at the meter's angle. Exponents of `fit` that the table does not hold count as 0. The gloss
+// weights hold at the incidence `gloss_deg` and follow coat_fresnel() from there; without it, they hold at the meter's
+// own angle.
+double gloss_units(const GlossTable& table, const GlossColumns& meter, const paint::LobeFit& fit, double gloss_deg);
 double gloss_units(const GlossTable& table, const GlossColumns& meter, const paint::LobeFit& fit);
 
-// Sets K_G and the mirror weight of `fit` (lobes: those of the table in its order, the mirror last if there is one) so
-// that the whole paint reads `readings`. Gloss lobes are gray. Returns simulated minus stated GU for each reading.
+// Sets K_G and the mirror weight of `fit` for all views (lobes: those of the table in its order, the mirror last if
+// there is one), so that the whole paint reads the first of `readings`; K_G holds at the incidence of that reading.
+// Gloss lobes are gray. Returns simulated minus stated GU for each reading.
 //
 // For one reading it takes a lobe of the total energy F (Fresnel at the meter's angle, n = 1.5) that is as wide as the
 // reading asks, and spreads it over its two neighbors in the basis; at and beyond the smooth limit of the coat of `fit`
-// it takes the mirror alone, scaled up to 100 GU. For several readings it solves non-negative least squares. The
-// reading of diffuse and flake light is subtracted first; where that alone exceeds the reading, no gloss is set. Error:
-// an angle that no meter has, or a reading below 0.
+// it takes the mirror alone, scaled up to 100 GU. Without a mirror lobe the sharpest lobe is taken there, which reads
+// less, since no more than F is reflected. For several readings it takes the rough coat of them all at the angle of the
+// first, see set_gloss_views(). The reading of diffuse and flake light is subtracted first; where that alone exceeds
+// the reading, no gloss is set. Error: an angle that no meter has, or a reading below 0.
 Result<std::vector<double>> set_gloss(const GlossTable& table, const std::vector<paint::GlossReading>& readings,
                                       paint::LobeFit& fit);
+
+// Gives the gloss of a rough coat that has these readings (see rough_coat_of()) to the views of `fit`, which it makes
+// at kCoatViews_deg and at the views that are there: at each view the gray weights >= 0 of the lobes and the mirror
+// whose light comes as near to that of the coat as it can, counted within rings around the mirror direction, and whose
+// readings are those of the coat. Weights for all views, see set_gloss(), must be set. Where there is no rough coat,
+// the views that are there get those. Errors as in set_gloss().
+Result<void> set_gloss_views(const GlossTable& table, const std::vector<paint::GlossReading>& readings,
+                             paint::LobeFit& fit);
 
 }  // namespace goniochrome::brdf

@@ -123,12 +123,13 @@ bool has_flake(const std::vector<paint::Lobe>& lobes, double exponent) {
   return at != lobes.end() && at->directional_diffuse != color::Rgb{};
 }
 
-// Its gloss as a coat shows it to a meter of that angle.
-paint::LobeFit with_gloss_at(paint::LobeFit lobes, double incidence_deg) {
-  const double fresnel = brdf::coat_fresnel(std::cos(incidence_deg * kDegree));
-  for (paint::Lobe& lobe : lobes.lobes)
-    if (!lobe.is_mirror()) lobe.gloss = fresnel * lobe.gloss;
-  return lobes;
+void scale_gloss(double factor, paint::LobeFit& fit) {
+  const auto scale = [&](std::vector<paint::Lobe>& lobes) {
+    for (paint::Lobe& lobe : lobes)
+      if (!lobe.is_mirror()) lobe.gloss = factor * lobe.gloss;
+  };
+  scale(fit.lobes);
+  for (paint::ViewLobes& view : fit.views) scale(view.lobes);
 }
 
 void drop_unused(std::vector<paint::Lobe>& lobes) {
@@ -172,14 +173,11 @@ PaintFit PaintFitter::started(double coat_index) const {
   return out;
 }
 
-// Gives every view the gloss, drops unused lobes, and compares with the readings.
+// Drops unused lobes, and compares with the readings.
 void PaintFitter::finish(const std::vector<paint::LabReading>& readings, const color::Xyz& white, PaintFit& out) const {
   paint::LobeFit& fit = out.lobes;
   PaintFitReport& report = out.report;
-  for (paint::ViewLobes& view : fit.views) {
-    for (std::size_t j = 0; j < view.lobes.size(); ++j) view.lobes[j].gloss = fit.lobes[j].gloss;
-    drop_unused(view.lobes);
-  }
+  for (paint::ViewLobes& view : fit.views) drop_unused(view.lobes);
   drop_unused(fit.lobes);
   report.active_lobes = static_cast<int>(fit.lobes.size());
   report.de00_by_geometry = errors_at(readings, white, fit);
@@ -218,10 +216,18 @@ Result<PaintFit> PaintFitter::fit(const paint::Paint& paint) const {
   out.report.glare_rows = target.glare_rows;
 
   GONIO_TRY(brdf::set_gloss(gloss_, readings, out.lobes));
+  const bool satin = options_.satin == Satin::kAll || (options_.satin == Satin::kBySeveral && readings.size() > 1);
+  GONIO_TRY(brdf::set_gloss_views(gloss_, satin ? readings : std::vector<paint::GlossReading>(), out.lobes));
+  double gloss_deg = readings.empty() ? brdf::kGlossIncidence_deg : readings.front().angle_deg;
+  if (paint.gloss.empty() && !readings.empty()) {
+    // The paint will not state this reading, so that its weights are taken to hold at the usual incidence.
+    scale_gloss(brdf::coat_fresnel(std::cos(brdf::kGlossIncidence_deg * kDegree), gloss_deg), out.lobes);
+    gloss_deg = brdf::kGlossIncidence_deg;
+  }
   for (const double angle : brdf::kGlossAngles_deg) {
     const auto stated = std::ranges::find(readings, angle, &paint::GlossReading::angle_deg);
     GONIO_ASSIGN(const brdf::GlossColumns* meter, gloss_.at(angle));
-    out.report.gloss.push_back({angle, brdf::gloss_units(gloss_, *meter, out.lobes),
+    out.report.gloss.push_back({angle, brdf::gloss_units(gloss_, *meter, out.lobes, gloss_deg),
                                 stated == readings.end() ? std::nullopt : std::optional(stated->gloss_units)});
   }
   finish(target.readings, white, out);
@@ -240,10 +246,13 @@ Result<PaintFit> PaintFitter::fit(const BrdfTarget& brdf) const {
   out.report.gamut_de00 = rows.gamut_de00;
   out.report.brdf = BrdfFigures{.fitted = rows.fitted.size(), .glare = rows.glare.size(), .steep = rows.steep};
   add_spike(rows, spike_exponents(options_, basis_.exponents, out.report), out);
+  for (paint::ViewLobes& view : out.lobes.views)
+    for (std::size_t j = 0; j < view.lobes.size(); ++j) view.lobes[j].gloss = out.lobes.lobes[j].gloss;
   std::erase_if(out.report.unseen, [&](double e) { return has_flake(out.lobes.lobes, e); });
   for (const double angle : brdf::kGlossAngles_deg) {
     GONIO_ASSIGN(const brdf::GlossColumns* meter, gloss_.at(angle));
-    out.report.gloss.push_back({angle, brdf::gloss_units(gloss_, *meter, with_gloss_at(out.lobes, angle)), {}});
+    const double read = brdf::gloss_units(gloss_, *meter, out.lobes, brdf::kGlossIncidence_deg);
+    out.report.gloss.push_back({angle, read, {}});
   }
   finish(brdf.paint.measurement ? brdf.paint.measurement->rows : std::vector<paint::LabReading>(), white, out);
   compare(rows, white, out);

@@ -22,6 +22,10 @@ enum class FitMethod { kL1, kL2, kDeltaE };
 // "l1" | "l2" | "deltae"
 const char* fit_method_name(FitMethod method);
 
+// Which paints get the gloss of a rough coat, with weights for views of its own (see brdf::set_gloss_views()): those
+// with two or three readings, all with a reading, whose others then follow the usual series of coats, or none.
+enum class Satin { kBySeveral, kAll, kNone };
+
 struct FitOptions {
   FitMethod method = FitMethod::kL1;
   paint::TargetCurve::Kind target = paint::TargetCurve::Kind::kMeasured;
@@ -36,8 +40,9 @@ struct FitOptions {
   std::vector<double> views_deg = {};  // weights at these angles of the viewer too; empty: none
   bool views_where_needed = false;     // in place of views_deg, the views of readings that differ at one aspecular
                                        // angle; of a measured BRDF, views every 15 deg
-  double steepest_deg = 75;            // measured BRDFs: directions farther from the normal are left out
-  double time_limit_s = 0;             // for one paint; 0: none
+  Satin satin = Satin::kBySeveral;
+  double steepest_deg = 75;  // measured BRDFs: directions farther from the normal are left out
+  double time_limit_s = 0;   // for one paint; 0: none
 };
 
 // Readings nearer to specular than this hold conventional glare, which the gloss meter measures.

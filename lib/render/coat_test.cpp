@@ -69,6 +69,48 @@ TEST(Coat, NoPaintSendsBackMoreThanItGets) {
   EXPECT_GT(most_textbook, 1.5);
 }
 
+// The same in bases without a mirror, whose lobes may not send more than a coat reflects, although they then read less
+// gloss. Colors do not depend on gloss. The control scales the sharpest lobe up until the meter reads what is stated.
+TEST(Coat, NoPaintSendsBackMoreThanItGetsWithoutAMirror) {
+  const envmap::Environment sky = even_sky();
+  const std::vector<paint::Paint> paints = *formats::read_paints(testdata("paints.paints.xml"));
+  double most = 0, most_textbook = 0, moved = 0;
+  for (const std::vector<double>& exponents :
+       {std::vector<double>{1.3, 6, 20, 70, 250, 900, 3000}, {2, 12, 60, 300}, {20}, {1.3}}) {
+    const formats::Basis bare{.name = "bare", .exponents = exponents};
+    const brdf::GlossTable table(exponents);
+    std::vector<paint::LobeFit> fitted, textbook;
+    for (paint::Paint paint : paints) {
+      fitted.push_back(fit::PaintFitter(bare, {}).fit(paint)->lobes);
+      textbook.push_back(fitted.back());
+      const double lacking = paint.gloss.front().gloss_units - brdf::gloss_units(table, **table.at(60), fitted.back());
+      if (paint::Lobe& last = textbook.back().lobes.back(); lacking > 0 && last.exponent == exponents.back())
+        last.gloss += (lacking / (**table.at(60)).gloss.back()) * color::Rgb{1, 1, 1};
+      paint.gloss.clear(), paint.coat_index = fitted.back().coat_index;
+      const paint::LobeFit matt = fit::PaintFitter(bare, {}).fit(paint)->lobes;
+      for (const double angle : {15.0, 45.0, 110.0})
+        moved = std::max(moved, length(brdf::flake_reflectance_factor(matt, angle) -
+                                       brdf::flake_reflectance_factor(fitted.back(), angle)));
+    }
+    ExactModel model;
+    model.fresnel = true, model.gloss_deg = 60;
+    for (const auto* all : {&fitted, &textbook}) {
+      std::vector<SurfacePoint> points;
+      for (const paint::LobeFit& paint : *all)
+        for (const double view_deg : {0.0, 60.0, 80.0, 85.0, 88.0}) {
+          const double t = view_deg * kDegree;
+          points.push_back({{0, 1, 0}, {std::sin(t), std::cos(t), 0}, &paint, &model});
+        }
+      double& brightest = all == &fitted ? most : most_textbook;
+      for (const color::Rgb& radiance : reference_radiance(points, &sky, {}))
+        brightest = std::max(brightest, largest(radiance));
+    }
+  }
+  EXPECT_LE(most, 1 + 2e-3);
+  EXPECT_GT(most_textbook, 1.5);
+  EXPECT_LE(moved, 1e-9);
+}
+
 // The same in pictures of every engine. Prefiltered engines draw the coat by straight pieces, 2e-3; paths have noise.
 TEST(Coat, NoPixelOfAnyEngineIsBrighterThanTheEvenSky) {
   const mesh::Mesh mesh = sphere_mesh(48);

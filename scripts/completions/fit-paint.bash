@@ -7,6 +7,7 @@ _fit_paint() {
     --illuminant) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --gloss|-g) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --coat) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --satin) COMPREPLY=($(compgen -W "several all none" -- "$word")); return ;;
     --steepest) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --method|-m) COMPREPLY=($(compgen -W "l1 l2 deltae" -- "$word")); return ;;
     --lobes|-n) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -22,7 +23,7 @@ _fit_paint() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--basis --target --weights --illuminant --gloss --coat --steepest --method --lobes --prune --views --paint-time-limit --output --color-map --color-map-model --tilts --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--basis --target --weights --illuminant --gloss --coat --satin --steepest --method --lobes --prune --views --paint-time-limit --output --color-map --color-map-model --tilts --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

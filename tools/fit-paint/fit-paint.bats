@@ -96,6 +96,26 @@ number() { grep -m1 "\"$1\"" r.json | sed -E 's/.*: ([-0-9.e+]+),?$/\1/'; }
   grep -q '"stated_gu": 92' r.json
 }
 
+@test "three readings of a satin coat are met together, and --satin all predicts them from one" {
+  stated='<gloss angle="20">18</gloss><gloss angle="60">60</gloss><gloss angle="85">88</gloss>'
+  echo "$head${one/<\/measurement>/</measurement>$stated}</paints>" >three.xml
+  fit-paint -q -b "$basis" three.xml -o out.xml --report r.json
+  [ "$(grep -c '<view angle=' out.xml)" -eq 14 ]
+  jq -e '.results.paints[0].gloss | length == 3 and all(.misfit_gu | fabs < 1)' r.json
+  # The control: for all views alike, the reading at 20 deg is met and the others are missed.
+  fit-paint -q -b "$basis" --satin none three.xml -o out.xml --report r.json
+  [ "$(grep -c '<view angle=' out.xml)" -eq 0 ]
+  jq -e '.results.paints[0].gloss | any(.misfit_gu | fabs > 10)' r.json
+  echo "$head$one</paints>" >one.xml
+  fit-paint -q -b "$basis" --gloss 60 one.xml -o out.xml
+  [ "$(grep -c '<view angle=' out.xml)" -eq 0 ]
+  fit-paint -q -b "$basis" --gloss 60 --satin all one.xml -o out.xml --report r.json
+  [ "$(grep -c '<view angle=' out.xml)" -eq 14 ]
+  jq -e '.results.paints[0].gloss | .[0].simulated_gu > 12 and .[0].simulated_gu < 20 and .[2].simulated_gu > 78 and .[2].simulated_gu < 88' r.json
+  run fit-paint -b "$basis" --satin some one.xml -o out.xml
+  [ "$status" -eq 2 ]
+}
+
 @test "--explain tells the plan and what is left out" {
   run --separate-stderr fit-paint -b "$basis" --explain "$paints" -o /dev/null
   [ "$status" -eq 0 ]

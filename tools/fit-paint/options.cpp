@@ -29,6 +29,15 @@ void add_options(cli::ToolSpec& spec, Options& o) {
           "is fitted to what the coat leaves of it at each geometry. auto gives a coat to every paint with gloss, "
           "stated or assumed, and to every paint that states a coat; its index is 1.5, or as much as the gloss asks "
           "for. Measured BRDFs have none unless it is given here.");
+  spec.option("satin", "WHICH", "all", &o.satin, "which paints get the gloss of a rough coat, by views")
+      .one_of({"several", "all", "none"})
+      .more(
+          "A satin coat is sharper and brighter toward grazing. From two or three readings the fit finds a rough "
+          "dielectric that has them, and writes weights for several angles of the viewer. several does so for paints "
+          "with two or three readings of gloss. all also takes paints with one reading, whose coat is then that of a "
+          "usual series: 60 GU at 60 degrees go with 16 GU at 20 and 83 GU at 85 degrees. sketch-fit does not follow "
+          "gloss that changes with the view, which is why all is not the default. With none, or for one reading, the "
+          "lobes are those of the first reading for all views.");
   spec.option("steepest", "DEG", "60", &o.steepest_deg, "largest angle to the normal that counts in measured BRDFs")
       .from(0, 90);
   spec.heading = "how it is fitted";

@@ -97,6 +97,9 @@ Result<fit::FitOptions> fit_options(const Options& options) {
   fit.time_limit_s = options.paint_time_limit_s;
   GONIO_ASSIGN(fit.assumed_gloss, gloss_readings(options.gloss));
   GONIO_ASSIGN(fit.coat_index, coat_index(options.coat));
+  fit.satin = options.satin == "all"    ? fit::Satin::kAll
+              : options.satin == "none" ? fit::Satin::kNone
+                                        : fit::Satin::kBySeveral;
   fit.views_where_needed = options.views == "auto";
   if (!fit.views_where_needed) {
     GONIO_ASSIGN(fit.views_deg, view_angles(options.views));

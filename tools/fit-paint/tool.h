@@ -18,6 +18,7 @@ struct Options {
   std::string weights = "perceptual";
   std::string gloss = "0";
   std::string coat = "auto";
+  std::string satin = "several";
   std::string illuminant;
   int lobes = 0;
   double prune_de00 = 0;

@@ -1,0 +1,59 @@
+// A clear coat with a rough surface, from satin to matt: what gloss meters read of it, which coat has given readings,
+// and where it sends the light of each view. goniochrome-theory(7), SATIN.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/result.h"
+#include "base/vec3.h"
+#include "paint/paint.h"
+
+namespace goniochrome::brdf {
+
+// A rough dielectric on two scales. The fine scale has a height that compares with the wavelength: it leaves the share
+// exp(-k cos^2) of the reflected light together (Kirchhoff) and scatters the rest. The coarse scale is an orange peel
+// of slopes. Both are distributions of GGX, so that f = F (share D_slope G + (1 - share) D_haze G) / (4 cos_i cos_o),
+// where F and the share hold at the angle between light and half vector.
+struct RoughCoat {
+  double k = 0;         // (4 pi sigma / lambda)^2, sigma the height of the fine scale
+  double slope = 0;     // of the coarse scale
+  double haze = kHaze;  // slope of what the fine scale scatters
+  bool operator==(const RoughCoat&) const = default;
+
+  static constexpr double kHaze = 0.3;  // where no reading tells
+};
+
+// The share of the reflected light that the fine scale leaves together, at an angle of that cosine.
+double sharp_share(const RoughCoat& coat, double cosine);
+
+// What a meter at 20, 60 or 85 deg reads of such a coat of that index alone, in GU. Error: no meter has that angle.
+Result<double> coat_reading(const RoughCoat& coat, double angle_deg, double index);
+
+// The coat of one to three readings, which are free of what the base reflects; no coat where they are those of a smooth
+// surface to 1 GU, which is what meters repeat. One reading takes the coat of the usual series, in which both scales
+// grow together; further readings leave that series as far as they ask for it. Error: no meter has that angle.
+Result<std::optional<RoughCoat>> rough_coat_of(const std::vector<paint::GlossReading>& readings, double index);
+
+// The angles of the viewer at which weights stand for a rough coat, between which they are linear.
+inline constexpr double kCoatViews_deg[] = {0, 20, 35, 45, 53, 60, 66, 71, 75, 78.5, 82, 85, 87, 89};
+
+// The angles from the mirror direction within which light is counted: 180 deg is the last.
+std::span<const double> ring_angles_rad();
+
+// The shares of the light reflected at a view that come from within each of ring_angles_rad(), relative to what a
+// smooth surface reflects. Views are those of kCoatViews_deg; absolute error 0.01, as each ring has one share.
+std::vector<double> coat_within(const RoughCoat& coat, std::size_t view);
+
+// What the nearest meter would read there of the coat, of a gloss lobe cos^E of weight F(theta_h), and of the mirror,
+// all of index 1.5, in GU.
+double coat_reading_at(const RoughCoat& coat, std::size_t view);
+double lobe_reading_at(double exponent, std::size_t view);
+double mirror_reading_at(std::size_t view);
+
+// The shares of light within the rings of a gloss lobe cos^E of weight F(theta_h), which the horizon cuts.
+// Relative error 1e-3.
+std::vector<double> lobe_within(double exponent, std::size_t view);
+
+}  // namespace goniochrome::brdf

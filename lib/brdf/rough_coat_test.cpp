@@ -1,0 +1,151 @@
+#include "brdf/rough_coat.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/angles.h"
+#include "base/hard_case_for_test.h"
+#include "brdf/gloss.h"
+#include "brdf/true_coat_for_test.h"
+#include "math/quadrature.h"
+
+namespace goniochrome::brdf {
+namespace {
+
+const std::vector<double> kBasis = {1.3, 6, 20, 70, 250, 900, 3000};
+
+const GlossTable& table() {
+  static const GlossTable made(kBasis);
+  return made;
+}
+
+constexpr int kDirections = 3000;  // for each of 36 points of the source: 0.1 GU
+
+std::vector<paint::GlossReading> readings_of(const TrueCoat& coat) {
+  std::vector<paint::GlossReading> readings;
+  for (const TestMeter& meter : kTestMeters)
+    readings.push_back({meter.angle_deg, true_reading(coat, meter, kDirections)});
+  return readings;
+}
+
+// A paint of gloss alone, with views.
+paint::LobeFit coated(const std::vector<paint::GlossReading>& readings) {
+  paint::LobeFit fit;
+  fit.coat_index = 1.5;
+  for (const double e : kBasis) fit.lobes.push_back({e, {}, {}});
+  fit.lobes.push_back({paint::kMirrorExponent, {}, {}});
+  EXPECT_TRUE(set_gloss(table(), readings, fit).ok());
+  EXPECT_TRUE(set_gloss_views(table(), readings, fit).ok());
+  return fit;
+}
+
+// The meter by one dense product rule over both windows, of the lobes as engines draw them: weights between views,
+// Fresnel at the half vector.
+double shown_reading(const paint::LobeFit& fit, const TestMeter& meter, double gloss_deg) {
+  const double t = meter.angle_deg * kDegree;
+  const Vec3 s = {std::sin(t), 0, std::cos(t)}, u = {std::cos(t), 0, -std::sin(t)}, v = {0, 1, 0};
+  struct Point {
+    Vec3 w;
+    double solid_angle;
+  };
+  const auto window = [&](double par_deg, double perp_deg, int n) {
+    std::vector<Point> points;
+    const double a = std::tan(par_deg / 2 * kDegree), b = std::tan(perp_deg / 2 * kDegree);
+    for (const auto& [x, wx] : math::gauss_legendre(n))
+      for (const auto& [y, wy] : math::gauss_legendre(n)) {
+        const Vec3 d = s + (a * x) * u + (b * y) * v;
+        points.push_back({normalized(d), wx * wy * a * b / std::pow(length(d), 3)});
+      }
+    return points;
+  };
+  const auto source = window(0.75, 2.5, 4), receptor = window(meter.receptor_par_deg, meter.receptor_perp_deg, 32);
+  double numerator = 0, mirror = 0, denominator = 0;
+  for (const Point& i : source) {
+    const Vec3 light = {-i.w.x, -i.w.y, i.w.z};
+    denominator += i.solid_angle * i.w.z * TrueCoat::fresnel(i.w.z, 1.567);
+    const paint::LobeFit there = at_view(fit, std::acos(i.w.z) / kDegree);
+    for (const paint::Lobe& lobe : there.lobes)
+      if (lobe.is_mirror()) mirror += i.solid_angle * i.w.z * lobe.gloss.y * TrueCoat::fresnel(i.w.z, 1.5);
+    for (const Point& o : receptor)
+      numerator += i.solid_angle * o.solid_angle * i.w.z * o.w.z * coated_brdf(fit, light, o.w, {0, 0, 1}, gloss_deg).y;
+  }
+  return 100 * (numerator + mirror) / denominator;
+}
+
+TEST(RoughCoat, ReadingsAreThoseOfFacetsDrawnAtRandom) {
+  for (const TrueCoat& coat : {TrueCoat{0, 0.003, 0.3}, TrueCoat{0, 0.05, 0.3}, TrueCoat{0, 0.4, 0.3},
+                               TrueCoat{1.1, 0.009, 0.3}, TrueCoat{2.5, 0.02, 0.2}})
+    for (const TestMeter& meter : kTestMeters)
+      EXPECT_NEAR(*coat_reading({coat.k, coat.slope, coat.haze}, meter.angle_deg, 1.5),
+                  true_reading(coat, meter, 8 * kDirections), 0.25)
+          << coat.k << " " << coat.slope << " " << meter.angle_deg;
+}
+
+// Each ring has one share, that of its mean (wi.h)^2 = m: exp(-k m) falls short of the mean by k^2/2 times the variance
+// of (wi.h)^2, at most 0.04 in the wide rings, which hold less than half of the light.
+TEST(RoughCoat, RingsHoldTheLightOfFacetsDrawnAtRandom) {
+  for (const TrueCoat& coat : {TrueCoat{0, 0.004, 0.3}, TrueCoat{0, 0.1, 0.3}, TrueCoat{1.1, 0.009, 0.4}})
+    for (const std::size_t view : {0U, 3U, 5U, 8U, 11U, 13U}) {
+      const double t = kCoatViews_deg[view] * kDegree;
+      const Vec3 out = {std::sin(t), 0, std::cos(t)}, axis = {-out.x, 0, out.z};
+      std::vector<double> within(ring_angles_rad().size());
+      coat.each_light(out, 200000, [&](const Vec3& light, double energy) {
+        const double angle = std::atan2(length(cross(axis, light)), dot(axis, light));
+        for (std::size_t k = 0; k < within.size(); ++k)
+          if (angle <= ring_angles_rad()[k]) within[k] += energy / TrueCoat::fresnel(out.z, 1.5);
+      });
+      const std::vector<double> ours = coat_within({coat.k, coat.slope, coat.haze}, view);
+      for (std::size_t k = 0; k < within.size(); ++k)
+        EXPECT_NEAR(ours[k], within[k], 1e-2) << coat.slope << " " << kCoatViews_deg[view] << " " << k;
+    }
+}
+
+// The gloss levels of the Master Painters Institute pair 60 with 85 deg: G1 below 5 with below 10, G2 below 10 with 10
+// to 35, G3 10 to 25 with 10 to 35, G4 20 to 35 with 35 and more. The control has one width for all angles (k = 0),
+// whose satin is as dull at 85 deg as at 60.
+TEST(RoughCoat, OneReadingGoesWithItsGlossLevel) {
+  struct {
+    double at_60, low_85, high_85;
+  } const levels[] = {{3, 0, 10},   {4.8, 0, 10}, {6, 10, 35},   {9, 10, 35},
+                      {15, 10, 35}, {19, 10, 35}, {22, 35, 100}, {34, 35, 100}};
+  for (const auto& level : levels) {
+    const RoughCoat coat = **rough_coat_of({{60, level.at_60}}, 1.5);
+    EXPECT_NEAR(*coat_reading(coat, 60, 1.5), level.at_60, 1e-9);
+    EXPECT_GE(*coat_reading(coat, 85, 1.5), level.low_85) << level.at_60;
+    EXPECT_LE(*coat_reading(coat, 85, 1.5), level.high_85) << level.at_60;
+    EXPECT_LT(*coat_reading(coat, 20, 1.5), level.at_60 / 4);
+  }
+  const RoughCoat satin = **rough_coat_of({{60, 60}}, 1.5);
+  EXPECT_NEAR(*coat_reading(satin, 20, 1.5), 18, 3);
+  EXPECT_NEAR(*coat_reading(satin, 85, 1.5), 88, 5);
+  EXPECT_NEAR(*coat_reading({0, 0.0205, 0.3}, 85, 1.5), 60, 3) << "the control";
+  EXPECT_FALSE(*rough_coat_of({{60, 88.6}}, 1.5)) << "smooth";
+  EXPECT_FALSE(*rough_coat_of({}, 1.5));
+  EXPECT_FALSE(rough_coat_of({{45, 50}}, 1.5).ok());
+}
+
+TEST(HardCase, GlossSatinMeetsThreeReadingsTogether) {
+  std::vector<std::vector<paint::GlossReading>> all = {{{20, 18}, {60, 60}, {85, 88}}};
+  for (const TrueCoat& coat : true_coats()) all.push_back(readings_of(coat));
+  double ours = 0, textbook = 0;
+  for (const std::vector<paint::GlossReading>& readings : all) {
+    const paint::LobeFit fit = coated(readings), control = coated({});
+    paint::LobeFit one = control;
+    one.views.clear();
+    ASSERT_TRUE(set_gloss(table(), {readings[1]}, one).ok());
+    for (std::size_t m = 0; m < 3; ++m) {
+      const double off = std::abs(shown_reading(fit, kTestMeters[m], 20) - readings[m].gloss_units);
+      ours = worst_of(ours, off);
+      textbook = worst_of(textbook, std::abs(shown_reading(one, kTestMeters[m], 60) - readings[m].gloss_units));
+    }
+  }
+  hard_case("gloss-satin", {.what = "readings at 20, 60 and 85 deg of a satin coat and of 40 rough dielectrics",
+                            .textbook = textbook,
+                            .ours = ours,
+                            .bound = 3,
+                            .unit = "GU"});
+}
+
+}  // namespace
+}  // namespace goniochrome::brdf
