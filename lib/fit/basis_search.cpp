@@ -9,6 +9,8 @@
 #include "base/angles.h"
 #include "base/clock.h"
 #include "base/parallel.h"
+#include "brdf/gloss.h"
+#include "brdf/lobe_model.h"
 #include "fit/ceres_options.h"
 #include "fit/internal/flake_fit.h"
 #include "math/cosine_power.h"
@@ -22,6 +24,36 @@ constexpr double kPolishGain = 1e-5;
 
 double row_weight(const BasisTargetOptions& options, double lightness) {
   return options.perceptual_weights ? color::lightness_slope(lightness) : 1;
+}
+
+// Adds the mean square error of the coat of a target. Of a lobe of energy 1 the share 1 - cos^(E+1) psi lies within
+// psi, whose derivative by log E is -E log(cos psi) cos^(E+1) psi.
+void add_coat_error(const std::vector<double>& exponents, const BasisTarget& target, bool with_gradient,
+                    SquaredError& result) {
+  static constexpr std::size_t kViews[] = {1, 3, 5, 8, 11};  // 20, 45, 60, 75, 85 deg
+  const std::span<const double> rings = brdf::ring_angles_rad();
+  const int rows = static_cast<int>(rings.size()), lobes = static_cast<int>(exponents.size());
+  math::Matrix m(rows, lobes + (target.mirror ? 1 : 0));
+  for (int k = 0; k < rows; ++k) {
+    for (int j = 0; j < lobes; ++j) m(k, j) = 1 - math::cos_power(rings[k], exponents[j] + 1);
+    if (target.mirror) m(k, lobes) = 1;
+  }
+  for (const std::size_t view : kViews) {
+    const double weight =
+        target.coat_weight * brdf::fresnel_dielectric(std::cos(brdf::kCoatViews_deg[view] * kDegree), brdf::kCoatIndex);
+    const double scale = weight * weight / (static_cast<double>(std::size(kViews)) * rows);
+    const std::vector<double> wanted = brdf::coat_within(*target.coat, view);
+    const math::NonNegativeFit fit = math::nnls(m, wanted);
+    for (int k = 0; k < rows; ++k) {
+      double residual = -wanted[k];
+      for (int j = 0; j < m.columns; ++j) residual += m(k, j) * fit.x[j];
+      result.value += scale * residual * residual;
+      const double log_cos = math::log_cosine(rings[k]);
+      if (!with_gradient || std::isinf(log_cos)) continue;
+      for (int j = 0; j < lobes; ++j)
+        result.gradient[j] -= 2 * scale * residual * fit.x[j] * exponents[j] * log_cos * (1 - m(k, j));
+    }
+  }
 }
 
 // At the inner optimum x the residual's dependence on x drops out (envelope theorem: x_j is either stationary or held
@@ -54,6 +86,7 @@ SquaredError squared_error(const std::vector<double>& exponents, const BasisTarg
   const double scale = 1.0 / std::max(3 * rows, 1);
   result.value *= scale;
   for (double& g : result.gradient) g *= scale;
+  if (target.coat) add_coat_error(exponents, target, with_gradient, result);
   return result;
 }
 
@@ -66,12 +99,16 @@ Result<BasisTarget> basis_target(const paint::Paint& paint, const BasisTargetOpt
   const double first = std::max(known.front(), kGlareAngle_deg), last = std::min(known.back(), 110.0);
   if (last <= first) return input_error("paint \"{}\" has one angle: a basis needs at least two", paint.name);
 
-  BasisTarget target{paint.name, {}};
+  BasisTarget target{.name = paint.name, .rows = {}};
   for (int i = 0; i < options.angles; ++i) {
     const double angle = first + (last - first) * i / (options.angles - 1);
     const color::Lab lab = curve.at(angle);
     target.rows.push_back({angle, non_negative(color::rgb_from_lab(lab, white)), row_weight(options, lab.L)});
   }
+  GONIO_ASSIGN(const double index, brdf::coat_index_of(paint.gloss));
+  GONIO_ASSIGN(target.coat, brdf::rough_coat_of(paint.gloss, brdf::mirror_index(index)));
+  target.coat_weight = target.rows.back().weight;
+  target.mirror = options.mirror;
   return target;
 }
 
@@ -92,7 +129,7 @@ Result<BasisTarget> basis_target(const BrdfTarget& brdf, const BasisTargetOption
     ++bin.count, bin.angle_deg += angle_deg, bin.sum += sample.value;
   }
   GONIO_ASSIGN(const color::Xyz white, color::white_point({"D65", 2}));
-  BasisTarget target{brdf.paint.name, {}};
+  BasisTarget target{.name = brdf.paint.name, .rows = {}};
   for (const Bin& bin : bins) {
     if (bin.count == 0) continue;
     const color::Rgb mean = (1 / bin.count) * bin.sum;
@@ -333,10 +370,12 @@ std::vector<std::vector<double>> starting_points(const std::vector<double>& smal
   return starts;
 }
 
-// The sharpest lobe that some target sees. A sharper one would be fitted to the first angle alone, with a weight that
-// means nothing anywhere else.
+// The sharpest lobe that some target sees; a coat sees all. A sharper one would be fitted to the first angle alone,
+// with a weight that means nothing anywhere else.
 double sharpest_seen(const std::vector<BasisTarget>& targets) {
   double first_deg = 90;
+  if (std::ranges::any_of(targets, [](const BasisTarget& target) { return target.coat.has_value(); }))
+    return std::numeric_limits<double>::infinity();
   for (const BasisTarget& target : targets) first_deg = std::min(first_deg, target.rows.front().angle_deg);
   return std::log(kSeenPart) / math::log_cosine(first_deg * kDegree);
 }

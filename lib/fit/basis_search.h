@@ -4,10 +4,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/result.h"
+#include "brdf/rough_coat.h"
 #include "color/color.h"
 #include "fit/brdf_target.h"
 #include "paint/curve.h"
@@ -23,16 +25,22 @@ struct BasisRow {
 };
 struct BasisTarget {
   std::string name;
-  std::vector<BasisRow> rows;  // by ascending angle
+  std::vector<BasisRow> rows;                // by ascending angle
+  std::optional<brdf::RoughCoat> coat = {};  // whose gloss the basis is to hold, with a gray lobe of any weight each
+  double coat_weight = 1;                    // of a share of what a smooth coat reflects
+  bool mirror = false;                       // beside the lobes, for the coat alone
 };
 
 struct BasisTargetOptions {
   paint::TargetCurve::Kind target = paint::TargetCurve::Kind::kMeasured;
   int angles = 40;                 // sample angles of a paint, evenly from the first known angle to the last
   bool perceptual_weights = true;  // rows weighted by dL*/dY, as fit-paint does
+  bool mirror = false;             // the basis gets a mirror lobe, which takes part in the gloss of rough coats
 };
 
-// The reflectance factors of a paint at evenly spaced aspecular angles. Error: the paint has neither rows beyond glare
+// The reflectance factors of a paint at evenly spaced aspecular angles, and the rough coat that its readings of gloss
+// ask for (see brdf::rough_coat_of(); what the base adds to a reading is neglected). A smooth coat asks for a mirror
+// and not for lobes. Error: the paint has neither rows beyond glare
 // nor an appearance, it has one angle only, or its illuminant is unknown.
 Result<BasisTarget> basis_target(const paint::Paint& paint, const BasisTargetOptions& options);
 
@@ -41,7 +49,9 @@ Result<BasisTarget> basis_target(const paint::Paint& paint, const BasisTargetOpt
 Result<BasisTarget> basis_target(const BrdfTarget& brdf, const BasisTargetOptions& options);
 
 // The weighted RMS error over all angles and channels of a target after the non-negative fit of a constant and lobes of
-// these exponents.
+// these exponents; of a target with a coat the root of the sum of its square and of the mean square error of the light
+// within rings around the mirror direction, at 20, 45, 60, 75 and 85 deg, with the lobes and, where the target says so,
+// the mirror.
 double basis_error(const std::vector<double>& exponents, const BasisTarget& target);
 
 // The square of that error and its gradient by log E_j, for every target.

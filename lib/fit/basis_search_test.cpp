@@ -158,5 +158,53 @@ TEST(BasisTarget, OfASolidPaintNeedsNoLobe) {
   EXPECT_LT(basis_de00({10}, *target), 1e-6);
 }
 
+paint::Paint painted(const std::string& name, double lightness, std::vector<paint::GlossReading> gloss) {
+  paint::Paint paint;
+  paint.name = name, paint.gloss = std::move(gloss);
+  paint.appearance = paint::Appearance{{1.5 * lightness, 5, 5}, {lightness / 2, 2, 2}, 60, {}};
+  return paint;
+}
+
+std::vector<BasisTarget> library(const std::vector<paint::GlossReading>& gloss) {
+  std::vector<BasisTarget> targets;
+  for (const double lightness : {20.0, 40.0, 60.0})
+    targets.push_back(*basis_target(painted("p", lightness, gloss), {.mirror = true}));
+  return targets;
+}
+
+// A library of satin coats gets sharper lobes than one of the same colors without gloss, and libraries of 40 and of 90
+// GU get different ones. The control is the basis that was chosen without gloss: its coats err more.
+TEST(BasisSearch, SatinCoatsGetLobes) {
+  BasisSearchOptions options;
+  options.first = options.last = 4, options.starts = 2;
+  const auto satin = library({{20, 18}, {60, 60}, {85, 88}}), medium = library({{60, 40}}), plain = library({}),
+             smooth = library({{60, 90}});
+  EXPECT_TRUE(satin[0].coat && medium[0].coat);
+  EXPECT_FALSE(smooth[0].coat) << "its mirror is enough";
+  const auto best = [&](const std::vector<BasisTarget>& targets) {
+    return search_basis(targets, options).sets.back().exponents;
+  };
+  const std::vector<double> for_satin = best(satin), for_medium = best(medium), for_plain = best(plain);
+  EXPECT_EQ(for_plain, best(smooth));
+  EXPECT_GT(for_satin.back(), 1000);
+  EXPECT_LT(for_plain.back(), 1000);
+  EXPECT_NE(for_medium, for_plain);
+  EXPECT_LT(2 * basis_error(for_satin, satin).objective(), basis_error(for_plain, satin).objective());
+}
+
+TEST(BasisSearch, GradientHoldsWithACoat) {
+  const std::vector<BasisTarget> targets = library({{20, 18}, {60, 60}, {85, 88}});
+  const std::vector<double> exponents = {2, 20, 300, 4000};
+  const auto at = squared_basis_errors(exponents, targets, true);
+  for (std::size_t j = 0; j < exponents.size(); ++j) {
+    std::vector<double> low = exponents, high = exponents;
+    low[j] *= std::exp(-1e-5), high[j] *= std::exp(1e-5);
+    const double slope =
+        (squared_basis_errors(high, targets, false)[0].value - squared_basis_errors(low, targets, false)[0].value) /
+        2e-5;
+    EXPECT_NEAR(at[0].gradient[j], slope, 1e-4 * std::abs(slope) + 1e-9) << j;
+  }
+}
+
 }  // namespace
 }  // namespace goniochrome::fit

@@ -66,7 +66,29 @@ quick=(--lobes 2 --starts 1 --angles 12)
 @test "--explain says what is done and left out" {
   run fit-basis "${quick[@]}" --explain "$TESTDATA/paints.paints.xml" -o b.basis.xml
   [ "$status" -eq 0 ]
-  [[ "$output" == *"left out: gloss"* ]]
+  [[ "$output" == *"gloss: the rough coats of "[1-9]*" paints take part; a smooth coat asks for a mirror"* ]]
+  [[ "$output" == *"left out: directions out of plane"* ]]
+}
+
+# gloss GU FILE: a library of three paints with that gloss at 60 deg.
+gloss() {
+  { echo '<paints xmlns="urn:goniochrome:paint:1" version="1">'
+    for L in 20 40 60; do
+      echo "<paint name=\"p$L\"><gloss angle=\"60\">$1</gloss><appearance travel=\"60\"><face L=\"$((L * 3 / 2))\" a=\"5\" b=\"5\"/><flop L=\"$((L / 2))\" a=\"2\" b=\"2\"/></appearance></paint>"
+    done
+    echo '</paints>'; } >"$2"
+}
+
+@test "gloss is weighed: satin coats get sharp lobes, smooth ones none" {
+  gloss 40 satin.xml
+  gloss 90 smooth.xml
+  for library in satin smooth; do
+    fit-basis --quiet --lobes 4 --starts 1 --mirror --name b $library.xml -o $library.basis.xml
+    sed -n 's/.*<exponent>\(.*\)<.exponent>/\1/p' $library.basis.xml >$library.txt
+  done
+  ! diff -q satin.txt smooth.txt
+  awk 'END { exit !($1 > 500) }' satin.txt
+  awk 'END { exit !($1 < 500) }' smooth.txt
 }
 
 @test "wrong values are refused by name" {

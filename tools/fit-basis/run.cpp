@@ -32,7 +32,7 @@ Result<Range> lobe_range(const std::string& text) {
 
 Result<std::vector<fit::BasisTarget>> read_targets(const Options& options, cli::Session& session) {
   const fit::BasisTargetOptions target_options{target_kind(options.target), options.angles,
-                                               options.weights == "perceptual"};
+                                               options.weights == "perceptual", options.mirror};
   std::vector<fit::BasisTarget> targets;
   for (const std::string& path : options.paints.empty() ? std::vector<std::string>{"-"} : options.paints) {
     GONIO_ASSIGN(FitInput input, FitInput::open(path));
@@ -186,8 +186,11 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   session.explain(
       fmt::format("{} paints at {} angles; {} starts for each of {} to {} "
                   "lobes, method {}\n"
-                  "left out: gloss and the mirror, which no aspecular reading sees; directions out of plane\n",
-                  targets.size(), options.angles, options.starts, range.first, range.last, options.method));
+                  "gloss: the rough coats of {} paints take part{}; a smooth coat asks for a mirror and for no lobe\n"
+                  "left out: directions out of plane\n",
+                  targets.size(), options.angles, options.starts, range.first, range.last, options.method,
+                  std::ranges::count_if(targets, [](const fit::BasisTarget& t) { return t.coat.has_value(); }),
+                  options.mirror ? ", with the mirror" : ""));
 
   const fit::BasisSearch search = fit::search_basis(targets, search_options);
   const std::vector<double> de00 = visible_errors(search, targets);
