@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/angles.h"
+#include "brdf/coat.h"
 #include "math/cosine_power.h"
 #include "math/quadrature.h"
 
@@ -38,6 +39,24 @@ double mean_coat_transmission(double coat_index) {
     sum += 0.5 * weight * 4 * x * x * x * coat_transmission(x * x, coat_index);
   }
   return sum;
+}
+
+namespace {
+
+constexpr double kInstrumentLight_deg = 45;
+
+double instrument_view_deg(double aspecular_deg) {
+  constexpr double kSteepestView_deg = 65;
+  return std::min(std::abs(kInstrumentLight_deg - aspecular_deg), kSteepestView_deg);
+}
+
+}  // namespace
+
+double coat_passages_to_reading(double coat_index, double aspecular_deg, double cos_i, double cos_o) {
+  if (coat_index == paint::kNoCoat) return 1;
+  return coat_passages(coat_index, std::clamp(cos_i, 0.0, 1.0), std::clamp(cos_o, 0.0, 1.0)) /
+         coat_passages(coat_index, std::cos(kInstrumentLight_deg * kDegree),
+                       std::cos(instrument_view_deg(aspecular_deg) * kDegree));
 }
 
 double coat_passages(double coat_index, double cos_i, double cos_o) {
@@ -159,9 +178,7 @@ color::Rgb flake_reflectance_factor(const paint::LobeFit& fit, double aspecular_
 }
 
 color::Rgb flake_reflectance_factor(const paint::LobeFit& fit, double aspecular_deg) {
-  constexpr double kLight_deg = 45, kSteepestView_deg = 65;
-  return flake_reflectance_factor(fit, aspecular_deg, kLight_deg,
-                                  std::min(std::abs(kLight_deg - aspecular_deg), kSteepestView_deg));
+  return flake_reflectance_factor(fit, aspecular_deg, kInstrumentLight_deg, instrument_view_deg(aspecular_deg));
 }
 
 }  // namespace goniochrome::brdf

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/angles.h"
+#include "brdf/coat.h"
 #include "panels/internal/shading.h"
 
 namespace goniochrome::panels {
@@ -92,6 +93,12 @@ FlakeCurve::FlakeCurve(const paint::Appearance& appearance) {
 }
 
 Result<FlakeCurve> FlakeCurve::make(const paint::Paint& paint, paint::TargetCurve::Kind kind) {
+  GONIO_ASSIGN(FlakeCurve curve, bare(paint, kind));
+  curve.coat_index_ = paint.coat_index.value_or(paint::kNoCoat);
+  return curve;
+}
+
+Result<FlakeCurve> FlakeCurve::bare(const paint::Paint& paint, paint::TargetCurve::Kind kind) {
   if (kind == paint::TargetCurve::Kind::kMeasured && paint.measurement && !paint.measurement->rows.empty()) {
     GONIO_ASSIGN(const paint::TargetCurve target, paint::TargetCurve::make(paint, kind));
     if (target.kind() == paint::TargetCurve::Kind::kMeasured) {
@@ -197,12 +204,12 @@ TiltedPair::TiltedPair(const Vec3& light, const Vec3& view, const Vec3& normal, 
   const Vec3 m = cross(axis, normal);
   const double light_phase = std::atan2(dot(light, m), dot(light, normal));
   const double view_phase = std::atan2(dot(view, m), dot(view, normal));
-  const double view_radius = std::hypot(dot(view, m), dot(view, normal));
+  view_radius_ = std::hypot(dot(view, m), dot(view, normal));
   light_radius_ = std::hypot(dot(light, m), dot(light, normal));
   cos_phase_ = std::cos(light_phase), sin_phase_ = std::sin(light_phase);
   light_phase_deg_ = light_phase / kDegree, view_phase_deg_ = view_phase / kDegree;
-  const double s = dot(light, axis), S = dot(view, axis), radii = light_radius_ - view_radius;
-  across_ = 4 * light_radius_ * view_radius;
+  const double s = dot(light, axis), S = dot(view, axis), radii = light_radius_ - view_radius_;
+  across_ = 4 * light_radius_ * view_radius_;
   difference_ = (s + S) * (s + S) + radii * radii;
   sum_ = (s - S) * (s - S) + radii * radii;
   // The mirrored light has the phase -q at b = 0 and 2b - q at b; the view has its own.
@@ -220,20 +227,45 @@ TiltedPair TiltedPair::make(const LightView& geometry, double seam_deg) {
 TiltedPair::State TiltedPair::at(double b_deg) const {
   const double b = b_deg * kDegree, cos_b = std::cos(b), sin_b = std::sin(b);
   const double cos_light = std::max(0.0, light_radius_ * (cos_phase_ * cos_b + sin_phase_ * sin_b));
+  const double cos_view = std::max(0.0, view_radius_ * std::cos((view_phase_deg_ - b_deg) * kDegree));
   if (in_plane_deg_) {
     const double d = std::abs(*in_plane_deg_ - 2 * b_deg);  // below 540
-    return {d <= 180 ? d : std::abs(360 - d), cos_light};
+    return {d <= 180 ? d : std::abs(360 - d), cos_light, cos_view};
   }
   const double sin_d = sin_half_ * cos_b - cos_half_ * sin_b, cos_d = cos_half_ * cos_b + sin_half_ * sin_b;
   const double apart = std::sqrt(difference_ + across_ * sin_d * sin_d);
   const double together = std::sqrt(sum_ + across_ * cos_d * cos_d);
-  return {2 * std::atan2(apart, together) / kDegree, cos_light};
+  return {2 * std::atan2(apart, together) / kDegree, cos_light, cos_view};
 }
+
+double TiltedPair::State::shade(double coat_index) const {
+  return cos_light * brdf::coat_passages_to_reading(coat_index, aspecular_deg, cos_light, cos_view);
+}
+
+namespace {
+
+// The bounds of State::shade() where each cosine and the aspecular angle may be anything between their bounds: what a
+// coat lets through rises with the cosine, and so does what it lets through where the angle is read.
+struct ShadeBounds {
+  double least, most;
+};
+ShadeBounds shade_bounds(double coat_index, const TiltedPair::State& low, const TiltedPair::State& high) {
+  if (coat_index == paint::kNoCoat) return {low.cos_light, high.cos_light};
+  const double from = low.aspecular_deg, to = high.aspecular_deg;
+  // The reading is taken along the normal at 45 deg, and farther from it on both sides.
+  const double frontal = std::clamp(45.0, from, to), steep = std::abs(from - 45) > std::abs(to - 45) ? from : to;
+  const auto shade = [&](const TiltedPair::State& s, double aspecular_deg) {
+    return TiltedPair::State{aspecular_deg, s.cos_light, s.cos_view}.shade(coat_index);
+  };
+  return {shade(low, frontal), shade(high, steep)};
+}
+
+}  // namespace
 
 double difference_at(const FlakeCurve& curve, const TiltedPair& pair, double b_deg, DifferenceMetric metric) {
   const auto color = [&](double b) {
     const TiltedPair::State state = pair.at(b);
-    return panel_color(curve.at(state.aspecular_deg), state.cos_light);
+    return panel_color(curve.at(state.aspecular_deg), state.shade(curve.coat_index()));
   };
   return difference(metric, color(0), color(b_deg));
 }
@@ -241,25 +273,26 @@ double difference_at(const FlakeCurve& curve, const TiltedPair& pair, double b_d
 // dE(b) rises and falls, so no bisection is safe. A step h from b is safe if no point of it can reach the threshold.
 // The color moves by at most
 //   2 h V k  for the curve (the aspecular angle changes by at most 2h; V its steepest slope there; shading by k =
-//            cbrt(cos) <= 1 never stretches a difference by more than k) plus
+//            cbrt(c) <= 1 never stretches a difference by more than k, and k > 1 by no more than c) plus
 //   M |dk|   for the shading.
+// c is the cosine to the light or, under a coat, that cosine times what the coat lets through.
 // Steps of at least kShortestExcursion_deg end the approach to a crossing; the crossing is then bracketed by that step.
 std::optional<double> first_crossing(const FlakeCurve& curve, const TiltedPair& pair, int sign, double threshold,
                                      DifferenceMetric metric) {
   struct Point {
     TiltedPair::State state;
-    double k = 0;
+    double c = 0, k = 0;
   };
+  const double coat = curve.coat_index();
   const double stretch = metric == DifferenceMetric::kDe76 ? 1 : kStretch;
   const double range = pair.range_deg(sign), brightest = sign * pair.brightest_deg(),
-               top_k = std::cbrt(pair.largest_cos());
+               frontal = sign * pair.frontal_deg();
   const auto point = [&](double b) {
     const TiltedPair::State state = pair.at(sign * b);
-    return Point{state, std::cbrt(state.cos_light)};
+    const double c = state.shade(coat);
+    return Point{state, c, std::cbrt(c)};
   };
-  const auto color = [&](const Point& p, const color::Lab& reflectance) {
-    return shaded(reflectance, p.state.cos_light, p.k);
-  };
+  const auto color = [&](const Point& p, const color::Lab& reflectance) { return shaded(reflectance, p.c, p.k); };
   // From panel to panel in steps as long as is safe; `room` is what is left below the threshold.
   Point here = point(0), next;
   color::Lab reflectance = curve.at(here.state.aspecular_deg);
@@ -270,10 +303,18 @@ std::optional<double> first_crossing(const FlakeCurve& curve, const TiltedPair& 
     step = std::min({2 * step, longest, range - b});
     for (;;) {
       next = point(b + step);
-      // Within the step the cosine has no minimum, and its maximum at an end or at `brightest`.
-      const double most_k = b < brightest && brightest < b + step ? top_k : std::max(here.k, next.k);
-      const double least_k = std::min(here.k, next.k), as = here.state.aspecular_deg;
-      const double move = 2 * step * curve.steepest(as - 2 * step, as + 2 * step) * most_k +
+      // Within the step the cosines have no minimum, and their maxima at an end, at `brightest` or at `frontal`.
+      const double as = here.state.aspecular_deg;
+      const auto between = [&](double top_deg, double top, double x, double y) {
+        return b < top_deg && top_deg < b + step ? top : std::max(x, y);
+      };
+      const TiltedPair::State &s = here.state, &t = next.state;
+      const ShadeBounds bounds =
+          shade_bounds(coat, {as - 2 * step, std::min(s.cos_light, t.cos_light), std::min(s.cos_view, t.cos_view)},
+                       {as + 2 * step, between(brightest, pair.largest_cos(), s.cos_light, t.cos_light),
+                        between(frontal, pair.largest_cos_view(), s.cos_view, t.cos_view)});
+      const double most_k = std::cbrt(bounds.most), least_k = std::cbrt(bounds.least);
+      const double move = 2 * step * curve.steepest(as - 2 * step, as + 2 * step) * std::max(most_k, bounds.most) +
                           std::max(most_k - here.k, here.k - least_k) * shading_reach(reflectance, least_k);
       if (stretch * move < room) break;
       if (step <= kShortestExcursion_deg) break;

@@ -27,6 +27,9 @@ class FlakeCurve {
   // Lab at an unsigned aspecular angle (deg, 0..180).
   color::Lab at(double aspecular_deg) const;
 
+  // Of the coat that the paint states, or paint::kNoCoat: the curve holds where an instrument reads.
+  double coat_index() const { return coat_index_; }
+
   // The largest dE00 between the curve and the rows it was fitted to, where that is known.
   std::optional<double> residual_de00() const { return residual_de00_; }
 
@@ -40,12 +43,14 @@ class FlakeCurve {
     std::array<std::array<double, 4>, 3> coefficients{};
   };
   FlakeCurve() = default;
+  static Result<FlakeCurve> bare(const paint::Paint& paint, paint::TargetCurve::Kind kind);
   void tabulate_slopes();
 
   static constexpr int kCells = 180;  // of one degree
   std::vector<Piece> pieces_;
   std::array<float, kCells> slope_{};
   std::optional<double> residual_de00_;
+  double coat_index_ = paint::kNoCoat;
 };
 
 // The appearance that a paint states, or else the one nearest to its rows. Error: the paint has no color, or a travel
@@ -78,9 +83,13 @@ class TiltedPair {
   // panel toward the light.
   static TiltedPair make(const LightView& geometry, double seam_deg);
 
-  // What the panel at b sees: its aspecular angle (deg) and the cosine to the light (0 where it is in its own shadow).
+  // What the panel at b sees: its aspecular angle (deg) and the cosines to the light (0 where it is in its own shadow)
+  // and to the viewer.
   struct State {
-    double aspecular_deg = 0, cos_light = 0;
+    double aspecular_deg = 0, cos_light = 0, cos_view = 1;
+
+    // The cosine that stands for light and coat together, see brdf::coat_passages_to_reading().
+    double shade(double coat_index) const;
   };
   State at(double b_deg) const;
 
@@ -90,10 +99,13 @@ class TiltedPair {
   // The b (deg) at which the second panel is lit at the largest cosine, and that cosine.
   double brightest_deg() const { return light_phase_deg_; }
   double largest_cos() const { return light_radius_; }
+  // The same of the viewer.
+  double frontal_deg() const { return view_phase_deg_; }
+  double largest_cos_view() const { return view_radius_; }
 
  private:
   double light_radius_, cos_phase_, sin_phase_;  // the light across the seam, and its phase from the normal
-  double light_phase_deg_, view_phase_deg_;
+  double light_phase_deg_, view_phase_deg_, view_radius_;
   double across_, sum_, difference_;  // see at()
   double cos_half_, sin_half_;
   std::optional<double>

@@ -274,5 +274,80 @@ TEST(FirstCrossing, StretchOfDe00IsWithinItsBound) {
   EXPECT_GT(most, 1) << "dE00 is steeper than dE76 somewhere: the stretch is needed";
 }
 
+// What a coat of that index lets through at that cosine, from the amplitudes of both polarizations.
+double let_through(double cosine, double index) {
+  const double c = std::clamp(cosine, 0.0, 1.0), t = std::sqrt(1 - (1 - c * c) / (index * index));
+  const double s = (c - index * t) / (c + index * t), p = (index * c - t) / (index * c + t);
+  return 1 - (s * s + p * p) / 2;
+}
+
+// The differences through a coat by vectors: each reading is taken through the coat at 45 deg and at the angle of its
+// viewer, and seen through it where light and viewer stand. The control is the curve without its coat.
+TEST(Coat, PanelsAreSeenThroughIt) {
+  paint::Paint paint;
+  paint.appearance = kSilver;
+  const FlakeCurve bare = *FlakeCurve::make(paint, paint::TargetCurve::Kind::kCurve);
+  paint.coat_index = 1.55;
+  const FlakeCurve coated = *FlakeCurve::make(paint, paint::TargetCurve::Kind::kCurve);
+  EXPECT_EQ(bare.coat_index(), paint::kNoCoat);
+  const color::Xyz white = *color::white_point({"D65", 10});
+  std::mt19937_64 random(3);
+  double off = 0, control = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Vec3 light = random_direction(random, 0.1), view = random_direction(random, 0.1), normal{0, 0, 1};
+    const double turn = 2 * kPi * i / 300;
+    const Vec3 axis{std::cos(turn), std::sin(turn), 0};
+    const auto color = [&](const Vec3& n) {
+      const double as = paint::aspecular_angle_rad(light, view, n) / kDegree;
+      const double read_deg = std::min(std::abs(45 - as), 65.0), cos_i = std::max(0.0, dot(n, light));
+      const double c = cos_i * let_through(cos_i, 1.55) * let_through(dot(n, view), 1.55) /
+                       (let_through(std::sqrt(0.5), 1.55) * let_through(std::cos(read_deg * kDegree), 1.55));
+      const color::Xyz xyz = color::xyz_from_lab(coated.at(as), white);
+      return color::lab_from_xyz({xyz.X * c, xyz.Y * c, xyz.Z * c}, white);
+    };
+    const TiltedPair pair(light, view, normal, axis);
+    for (const double b : {-3.0, 1.0, 8.0}) {
+      if (dot(turned(normal, axis, b), view) <= 0.01) continue;
+      const double wanted = difference(k76, color(normal), color(turned(normal, axis, b)));
+      off = std::max(off, std::abs(difference_at(coated, pair, b, k76) - wanted));
+      control = std::max(control, std::abs(difference_at(bare, pair, b, k76) - wanted));
+    }
+  }
+  EXPECT_LE(off, 1e-9);
+  EXPECT_GT(control, 1);
+}
+
+// The first crossing is that of a dense scan, so that the steps are safe under a coat too.
+TEST(Coat, FirstCrossingsAreThoseOfADenseScan) {
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> part(0, 1);
+  int crossed = 0;
+  for (int i = 0; i < 60; ++i) {
+    paint::Paint paint;
+    paint.appearance = paint::Appearance{{120 * part(random), 60 * part(random) - 30, 60 * part(random) - 30},
+                                         {40 * part(random), 40 * part(random) - 20, 40 * part(random) - 20},
+                                         20 + 100 * part(random),
+                                         {}};
+    paint.coat_index = 1.5 + 0.2 * part(random);
+    const FlakeCurve curve = *FlakeCurve::make(paint, paint::TargetCurve::Kind::kCurve);
+    const double turn = 2 * kPi * part(random);
+    const TiltedPair pair(random_direction(random, 0.05), random_direction(random, 0.05), {0, 0, 1},
+                          {std::cos(turn), std::sin(turn), 0});
+    for (const int sign : {1, -1}) {
+      const double threshold = 0.5 + 8 * part(random);
+      const auto found = first_crossing(curve, pair, sign, threshold, k76);
+      std::optional<double> scanned;
+      for (double b = 0.005; b < pair.range_deg(sign) && !scanned; b += 0.005)
+        if (difference_at(curve, pair, sign * b, k76) >= threshold) scanned = b;
+      ASSERT_EQ(found.has_value(), scanned.has_value()) << i;
+      if (!found) continue;
+      ++crossed;
+      EXPECT_NEAR(*found, *scanned, 0.0051) << i;
+      EXPECT_NEAR(difference_at(curve, pair, sign * *found, k76), threshold, 1e-6) << i;
+    }
+  }
+  EXPECT_GT(crossed, 60);
+}
+
 }  // namespace
 }  // namespace goniochrome::panels

@@ -5,8 +5,10 @@
 
 #include "base/angles.h"
 #include "base/text.h"
+#include "brdf/lobe_model.h"
 #include "envmap/cube_map.h"
 #include "fit/paint_fit.h"
+#include "render/effects.h"
 
 namespace goniochrome::panels {
 
@@ -94,7 +96,9 @@ PanelView panel_view(const mesh::Seam& seam, const SeamView& view) {
   const mesh::SeamPoint& p = seam.points[view.point];
   const auto aspecular = [&](const Vec3& n) { return paint::aspecular_angle_rad(*view.light, view.view, n) / kDegree; };
   const auto cosine = [&](const Vec3& n) { return std::max(0.0, dot(n, *view.light)); };
-  return {aspecular(p.normal_a), cosine(p.normal_a), aspecular(p.normal_b), cosine(p.normal_b), view.weight};
+  const auto cos_view = [&](const Vec3& n) { return std::max(0.0, dot(n, view.view)); };
+  return {aspecular(p.normal_a), cosine(p.normal_a),   aspecular(p.normal_b), cosine(p.normal_b),
+          view.weight,           cos_view(p.normal_a), cos_view(p.normal_b)};
 }
 
 std::vector<SeamDifference> by_place(const mesh::Seam& seam, const std::vector<SeamView>& views,
@@ -123,8 +127,9 @@ fit::PaintFitter appearance_fitter(const std::vector<double>& exponents) {
 }
 
 Result<paint::LobeFit> appearance_lobes(const fit::PaintFitter& fitter, const paint::Appearance& appearance,
-                                        const color::ViewingCondition& condition) {
+                                        const color::ViewingCondition& condition, double coat_index) {
   paint::Paint paint;
+  paint.coat_index = coat_index;
   paint.measurement = paint::Measurement{condition, "", paint::rows_of(appearance)};
   paint.appearance = appearance;
   GONIO_ASSIGN(fit::PaintFit fit, fitter.fit(paint));
@@ -132,8 +137,9 @@ Result<paint::LobeFit> appearance_lobes(const fit::PaintFitter& fitter, const pa
 }
 
 Result<EnvironmentPanels> EnvironmentPanels::make(const envmap::PrefilteredEnvironment& env,
-                                                  const color::ViewingCondition& condition) {
+                                                  const color::ViewingCondition& condition, double coat_index) {
   EnvironmentPanels panels;
+  panels.coat_index_ = coat_index;
   panels.env_ = &env;
   for (const envmap::PrefilteredLobe& lobe : env.lobes) panels.exponents_.push_back(lobe.exponent);
   if (panels.exponents_.empty())
@@ -143,6 +149,7 @@ Result<EnvironmentPanels> EnvironmentPanels::make(const envmap::PrefilteredEnvir
   for (std::size_t i = 0; i < diffuse.texels.size(); i += 3) most = std::max(most, luminance(&diffuse.texels[i]));
   if (!(most > 0)) return input_error("the environment is black: there is no white to compare with");
   panels.luminance_ = most;
+  if (coat_index != paint::kNoCoat) panels.coat_diffuse_ = render::coat_diffuse_map(env);
   panels.condition_ = condition;
   GONIO_ASSIGN(panels.white_, color::white_point(condition));
   panels.fitter_ = std::make_shared<const fit::PaintFitter>(appearance_fitter(panels.exponents_));
@@ -153,14 +160,20 @@ Result<EnvironmentPanels> EnvironmentPanels::make(const envmap::PrefilteredEnvir
 // 2 pi/(E + 1) P_E(r) the light in a lobe of exponent E.
 EnvironmentPanels::Light EnvironmentPanels::light(const Vec3& normal, const Vec3& view) const {
   const Vec3 mirrored = 2 * dot(normal, view) * normal - view;
-  Light light{kPi * envmap::bilinear(env_->diffuse.map, normal), {}, std::max(0.0, dot(normal, mirrored))};
+  const double cosine = std::max(0.0, dot(normal, mirrored));
+  const bool coated = coat_index_ != paint::kNoCoat;
+  const double let_out = coated ? brdf::coat_transmission(std::min(cosine, 1.0), coat_index_) : 1;
+  const color::Rgb diffuse =
+      coated ? let_out * brdf::mean_coat_transmission(coat_index_) * kPi * envmap::bilinear(coat_diffuse_, normal)
+             : kPi * envmap::bilinear(env_->diffuse.map, normal);
+  Light light{diffuse, {}, cosine * let_out * let_out};
   for (const envmap::PrefilteredLobe& lobe : env_->lobes)
     light.lobes.push_back((2 * kPi / (lobe.exponent + 1)) * envmap::bilinear(lobe.map, mirrored));
   return light;
 }
 
 Result<paint::LobeFit> EnvironmentPanels::lobes(const paint::Appearance& appearance) const {
-  return appearance_lobes(*fitter_, appearance, condition_);
+  return appearance_lobes(*fitter_, appearance, condition_, coat_index_);
 }
 
 color::Lab EnvironmentPanels::color(const paint::LobeFit& paint, const Light& light) const {

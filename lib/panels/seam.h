@@ -25,9 +25,10 @@ namespace goniochrome::panels {
 // Fits face, flop and travel, without gloss, to these exponents by least squares.
 fit::PaintFitter appearance_fitter(const std::vector<double>& exponents);
 
-// The lobes of face, flop and travel, whose Lab is relative to `condition`. Error: an illuminant without a known white.
+// The lobes of face, flop and travel under such a coat, whose Lab is relative to `condition`. Error: an illuminant
+// without a known white.
 Result<paint::LobeFit> appearance_lobes(const fit::PaintFitter& fitter, const paint::Appearance& appearance,
-                                        const color::ViewingCondition& condition);
+                                        const color::ViewingCondition& condition, double coat_index = paint::kNoCoat);
 
 // One viewer of one place at the seam, and the light there; without a light it is the environment's.
 struct SeamView {
@@ -67,16 +68,17 @@ std::vector<SeamDifference> by_place(const mesh::Seam& seam, const std::vector<S
 // Panels without gloss in a prefiltered environment. White is the brightest that a white diffuser can be there.
 class EnvironmentPanels {
  public:
-  // Paints are fitted to the environment's own exponents; `condition` is what their Lab values are relative to. Error:
-  // the environment has no lobes or no light, or the illuminant is unknown.
+  // Paints are fitted to the environment's own exponents, under a coat of that index; `condition` is what their Lab
+  // values are relative to. Error: the environment has no lobes or no light, or the illuminant is unknown.
   static Result<EnvironmentPanels> make(const envmap::PrefilteredEnvironment& env,
-                                        const color::ViewingCondition& condition);
+                                        const color::ViewingCondition& condition, double coat_index = paint::kNoCoat);
 
-  // The light that a lobe model needs at a place: P of the normal, and of the mirrored view for every lobe.
+  // The light that a lobe model needs at a place: P of the normal, and of the mirrored view for every lobe. It is what
+  // the coat lets through, as the engines draw it: goniochrome-theory(7), COAT.
   struct Light {
     color::Rgb diffuse;
     std::vector<color::Rgb> lobes;
-    double cosine = 0;  // between normal and mirrored view
+    double cosine = 0;  // between normal and mirrored view, times both passages of a coat
   };
   Light light(const Vec3& normal, const Vec3& view) const;
 
@@ -88,6 +90,8 @@ class EnvironmentPanels {
  private:
   const envmap::PrefilteredEnvironment* env_ = nullptr;
   std::vector<double> exponents_;
+  double coat_index_ = paint::kNoCoat;
+  envmap::CubeMap coat_diffuse_;  // where there is a coat
   color::ViewingCondition condition_;
   color::Xyz white_;
   double luminance_ = 1;

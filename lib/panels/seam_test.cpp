@@ -127,5 +127,29 @@ TEST(EnvironmentPanels, AreHelpedByATrompeFitInLightFromAbove) {
   EXPECT_LT(fit->after.rms, 0.7 * fit->before.rms);
 }
 
+// Even light passes a coat on its way in with the cosine mean of what it lets through, and on its way out at the angle
+// of the viewer; the paint was read through the coat as well. The mean of index 1.5 is published as .9082 [Duntley].
+TEST(EnvironmentPanels, ShowAMattPaintThroughItsCoat) {
+  const envmap::PrefilteredEnvironment env = uniform(2);
+  const EnvironmentPanels panels = *EnvironmentPanels::make(env, {}, 1.5);
+  const color::Lab gray{60, 0, 0};
+  const paint::LobeFit fit = *panels.lobes({gray, gray, 60, {}});
+  EXPECT_EQ(fit.coat_index, 1.5);
+  const auto through = [](double deg) {
+    const double c = std::cos(deg * kDegree), t = std::sqrt(1 - (1 - c * c) / 2.25);
+    const double s = (c - 1.5 * t) / (c + 1.5 * t), p = (1.5 * c - t) / (1.5 * c + t);
+    return 1 - (s * s + p * p) / 2;
+  };
+  const double beta = color::xyz_from_lab(gray, {100, 100, 100}).Y / 100;
+  for (const double view_deg : {0.0, 60.0, 80.0}) {
+    const Vec3 view{std::sin(view_deg * kDegree), 0, std::cos(view_deg * kDegree)};
+    const color::Lab shown = panels.color(fit, panels.light({0, 0, 1}, view));
+    const double luminance = color::xyz_from_lab(shown, {100, 100, 100}).Y / 100;
+    // The readings lie on lobes of a few exponents, so that their passages are met to a percent.
+    EXPECT_NEAR(luminance / (beta * through(view_deg) * 0.9082 / (through(45) * through(0))), 1, 0.02) << view_deg;
+  }
+  EXPECT_LT(panels.color(fit, panels.light({0, 0, 1}, {std::sin(1.4), 0, std::cos(1.4)})).L, 57);
+}
+
 }  // namespace
 }  // namespace goniochrome::panels

@@ -93,7 +93,9 @@ Result<TracedSeam::Seen> TracedSeam::seen(const paint::LobeFit& worn, const mesh
   path.scene = &scene, path.environment = &*s.sky, path.table = s.table, path.rays = s.rays;
   GONIO_ASSIGN(const render::Transport transport, render::Transport::create(path));
   GONIO_ASSIGN(const render::WornPaints groups, render::worn_paints(s.columns, path));
-  GONIO_ASSIGN(const render::OpenLight open, render::OpenLight::create(*s.env, s.columns, {}));
+  GONIO_ASSIGN(
+      const render::OpenLight open,
+      render::OpenLight::create(*s.env, s.columns, {}, std::vector<double>(s.mesh->parts.size(), worn.coat_index)));
   Seen seen;
   seen.lights.resize(views.size()), seen.open.resize(views.size());
   std::vector<char> beside(views.size());

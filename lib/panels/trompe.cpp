@@ -352,7 +352,19 @@ std::optional<PanelView> panel_view(const LightView& geometry, double seam_deg, 
   const TiltedPair pair = TiltedPair::make(geometry, seam_deg);
   if (std::abs(b_deg) >= pair.range_deg(b_deg < 0 ? -1 : 1)) return std::nullopt;
   const TiltedPair::State a = pair.at(0), b = pair.at(b_deg);
-  return PanelView{a.aspecular_deg, a.cos_light, b.aspecular_deg, b.cos_light, 1};
+  return PanelView{a.aspecular_deg, a.cos_light, b.aspecular_deg, b.cos_light, 1, a.cos_view, b.cos_view};
+}
+
+PanelView PanelView::under_coat(double coat_index) const {
+  PanelView view = *this;
+  view.cos_a = TiltedPair::State{aspecular_a_deg, cos_a, cos_view_a}.shade(coat_index);
+  view.cos_b = TiltedPair::State{aspecular_b_deg, cos_b, cos_view_b}.shade(coat_index);
+  return view;
+}
+
+std::vector<PanelView> under_coat(std::vector<PanelView> views, double coat_index) {
+  for (PanelView& view : views) view = view.under_coat(coat_index);
+  return views;
 }
 
 const char* parameter_name(int parameter) {

@@ -12,12 +12,19 @@
 
 namespace goniochrome::panels {
 
-// What one viewer sees of both panels under one light: the aspecular angles, and the cosines to the light.
+// What one viewer sees of both panels under one light: the aspecular angles, the cosines to the light, and the cosines
+// to the viewer.
 struct PanelView {
   double aspecular_a_deg = 45, cos_a = 1;
   double aspecular_b_deg = 45, cos_b = 1;
   double weight = 1;
+  double cos_view_a = 1, cos_view_b = 1;
+
+  // The same of panels under a coat of that index: each cosine to the light times what the coat lets through, see
+  // brdf::coat_passages_to_reading(). Without a coat it is the same.
+  PanelView under_coat(double coat_index) const;
 };
+std::vector<PanelView> under_coat(std::vector<PanelView> views, double coat_index);
 // What a viewer sees where the second panel is turned by b (deg); none where that panel is not seen.
 std::optional<PanelView> panel_view(const LightView& geometry, double seam_deg, double b_deg);
 

@@ -182,5 +182,19 @@ TEST(Trompe, RefusesBadProblemsByName) {
   EXPECT_THAT(trompe_fit(beyond, false, views, {}).error().message, HasSubstr("travel is 15"));
 }
 
+// Under a coat light and viewer count with what it lets through; without one, nothing changes.
+TEST(Trompe, ViewsUnderACoatAreThoseOfTheCurve) {
+  const LightView geometry{60, 70, 0};
+  const PanelView view = *panel_view(geometry, 90, 6);
+  EXPECT_EQ(view.under_coat(paint::kNoCoat).cos_a, view.cos_a);
+  paint::Paint paint;
+  paint.appearance = kPearl;
+  paint.coat_index = 1.5;
+  const FlakeCurve curve = *FlakeCurve::make(paint, paint::TargetCurve::Kind::kCurve);
+  const TrompeErrors errors = trompe_errors(kPearl, kPearl, under_coat({view}, 1.5));
+  EXPECT_NEAR(errors.max, difference_at(curve, TiltedPair::make(geometry, 90), 6, DifferenceMetric::kDe76), 1e-9);
+  EXPECT_GT(std::abs(errors.max - trompe_errors(kPearl, kPearl, {view}).max), 0.1);
+}
+
 }  // namespace
 }  // namespace goniochrome::panels

@@ -45,7 +45,7 @@ std::vector<std::string> advice(const paint::Paint& paint, const SeamRequest& re
                                 const std::vector<panels::SeamView>& views, const std::vector<double>& de) {
   const auto appearance = panels::appearance_of(paint);
   if (!appearance.ok()) return {};
-  const panels::FlakeCurve curve(*appearance);
+  const panels::FlakeCurve curve = *panels::FlakeCurve::make(paint, paint::TargetCurve::Kind::kCurve);
   std::vector<double> folds;
   for (const mesh::SeamPoint& p : seam.points) folds.push_back(std::abs(p.fold_deg));
   std::ranges::sort(folds);
@@ -56,7 +56,7 @@ std::vector<std::string> advice(const paint::Paint& paint, const SeamRequest& re
   std::vector<panels::PanelView> seen, near_side, far_side;
   Rms low, high;
   for (std::size_t i = 0; has_lights && i < views.size(); ++i) {
-    const panels::PanelView view = panels::panel_view(seam, views[i]);
+    const panels::PanelView view = panels::panel_view(seam, views[i]).under_coat(curve.coat_index());
     seen.push_back(view);
     (view.aspecular_a_deg <= kLowAspecular_deg ? low : high).add(de[i], view.weight);
     // Views where the second panel is turned toward the highlight, and views where it is turned away from it.

@@ -267,3 +267,27 @@ column() { sed -n 2p | cut -f "$1"; }
   run goniogeom-index spectra.xml --illuminant X
   [ "$status" -eq 2 ]
 }
+
+# coated INDEX FILE: the gray paint under such a coat.
+coated() { echo "$head<paint name=\"gray\" class=\"solid\">${gray}<coat index=\"$1\"/></paint></paints>" >"$2"; }
+
+@test "a coat that the paint states takes light at steep angles; an index of 1 is no coat" {
+  coated 1 bare.xml
+  coated 1.5 coat.xml
+  diff <(goniogeom-index -q gray.xml --light 60 --view 70) <(goniogeom-index -q bare.xml --light 60 --view 70)
+  # dE at the index is that of cos T(light) T(viewer), relative to where the reading is taken.
+  got=$(goniogeom-index -q coat.xml --light 60 --view 70 | column 6)
+  awk -v b="$got" 'function fresnel(d,  c, g) {
+      c = cos(d * r); g = sqrt(1.25 + c * c)
+      return (((c - g) / (c + g)) ^ 2 + ((2.25 * c - g) / (2.25 * c + g)) ^ 2) / 2
+    }
+    function shade(b,  as, read) {
+      as = 10 + 2 * b
+      read = as < 45 ? 45 - as : as - 45; if (read > 65) read = 65
+      return cos((60 - b) * r) * (1 - fresnel(60 - b)) * (1 - fresnel(70 + b)) / ((1 - fresnel(45)) * (1 - fresnel(read)))
+    }
+    BEGIN { r = atan2(0, -1) / 180; d = 66 * (shade(b) ^ (1 / 3) - shade(0) ^ (1 / 3)); if (d < 0) d = -d
+      exit !(d > 2.2999 && d < 2.3001) }'
+  without=$(goniogeom-index -q gray.xml --light 60 --view 70 | column 6)
+  awk -v a="$got" -v b="$without" 'BEGIN { d = a - b; exit !(d > 0.1 || d < -0.1) }'
+}

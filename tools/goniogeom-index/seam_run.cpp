@@ -100,7 +100,8 @@ class SeamRun {
     if (!options_.seam.environment.empty()) {
       GONIO_ASSIGN(const paint::Appearance appearance, panels::appearance_of(paint));
       GONIO_ASSIGN(const panels::EnvironmentPanels panels,
-                   panels::EnvironmentPanels::make(stage_.env, paint::condition_of(paint)));
+                   panels::EnvironmentPanels::make(stage_.env, paint::condition_of(paint),
+                                                   paint.coat_index.value_or(paint::kNoCoat)));
       GONIO_ASSIGN(const paint::LobeFit fit, panels.lobes(appearance));
       GONIO_ASSIGN(const panels::SeamLights lights,
                    panels::seam_lights(panels, traced_ ? &*traced_ : nullptr, fit, stage_.seam, stage_.views,
@@ -114,7 +115,7 @@ class SeamRun {
     GONIO_ASSIGN(const panels::FlakeCurve curve, panels::FlakeCurve::make(paint, request_.target));
     parallel_for(de.size(), 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        const panels::PanelView view = panels::panel_view(stage_.seam, stage_.views[i]);
+        const panels::PanelView view = panels::panel_view(stage_.seam, stage_.views[i]).under_coat(curve.coat_index());
         de[i] = panels::difference(request_.metric, panels::panel_color(curve.at(view.aspecular_a_deg), view.cos_a),
                                    panels::panel_color(curve.at(view.aspecular_b_deg), view.cos_b));
       }

@@ -18,10 +18,11 @@ struct Answer {
   panels::TrompeFit fit;
   std::vector<const TrompeGeometry*> judged;  // empty on a mesh
   panels::TrompeErrors before, after;         // over all that is judged
+  double coat_index = paint::kNoCoat;         // of both panels
 };
 
-// The paint of an answer, with the rows that an instrument would read. Gloss, class and foreign elements are those of
-// `paint`.
+// The paint of an answer, with the rows that an instrument would read. Gloss, coat, class and foreign elements are
+// those of `paint`.
 paint::Paint painted(const paint::Paint& paint, const Answer& answer);
 
 // Its part of the report.

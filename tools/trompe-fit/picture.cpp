@@ -82,7 +82,7 @@ Result<image::Image> swatches(const color::ViewingCondition& condition, const st
   Sheet sheet(kRight + kSide + 260, height);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto& [answer, geometry, before, after] = rows[i];
-    const panels::PanelView& view = geometry->view;
+    const panels::PanelView view = geometry->view.under_coat(answer->coat_index);
     const auto rgb = [&](const paint::Appearance& paint, double aspecular, double cosine) {
       return color::rgb_from_lab(panels::panel_color(paint::lab_at(paint, aspecular), cosine), white);
     };
@@ -126,9 +126,10 @@ Result<std::array<image::Image, 2>> seam_halves(const SeamPair& pair) {
     for (const envmap::PrefilteredLobe& lobe : pair.env->lobes) exponents.push_back(lobe.exponent);
   }
   const fit::PaintFitter fitter = panels::appearance_fitter(exponents);
-  GONIO_ASSIGN(const paint::LobeFit a, panels::appearance_lobes(fitter, pair.answer.a, paint::condition_of(pair.a)));
-  GONIO_ASSIGN(const paint::LobeFit b,
-               panels::appearance_lobes(fitter, pair.answer.fit.b, paint::condition_of(pair.a)));
+  GONIO_ASSIGN(const paint::LobeFit a,
+               panels::appearance_lobes(fitter, pair.answer.a, paint::condition_of(pair.a), pair.answer.coat_index));
+  GONIO_ASSIGN(const paint::LobeFit b, panels::appearance_lobes(fitter, pair.answer.fit.b, paint::condition_of(pair.a),
+                                                                pair.answer.coat_index));
   paint::LobeFit black;
   black.diffuse = (0.01 / M_PI) * color::Rgb{1, 1, 1};
 

@@ -18,9 +18,12 @@ constexpr int kNamesShown = 20;
 
 using Answers = std::vector<Answer>;
 
-std::vector<panels::PanelView> views_of(const std::vector<const TrompeGeometry*>& geometries) {
+// Under the coat that the paint states.
+std::vector<panels::PanelView> views_of(const paint::Paint& paint,
+                                        const std::vector<const TrompeGeometry*>& geometries) {
   std::vector<panels::PanelView> views;
-  for (const TrompeGeometry* geometry : geometries) views.push_back(geometry->view);
+  for (const TrompeGeometry* geometry : geometries)
+    views.push_back(geometry->view.under_coat(paint.coat_index.value_or(paint::kNoCoat)));
   return views;
 }
 
@@ -28,9 +31,9 @@ Result<Answer> answer(const paint::Paint& paint, const paint::Appearance& a,
                       const std::vector<panels::PanelView>& fitted, std::vector<const TrompeGeometry*> judged,
                       const TrompeRequest& request) {
   Answer result;
-  result.a = a;
+  result.a = a, result.coat_index = paint.coat_index.value_or(paint::kNoCoat);
   GONIO_ASSIGN(result.fit, panels::trompe_fit(a, paint.paint_class == paint::PaintClass::kSolid, fitted, request.fit));
-  const std::vector<panels::PanelView> views = views_of(judged);
+  const std::vector<panels::PanelView> views = views_of(paint, judged);
   result.before = panels::trompe_errors(a, a, views);
   result.after = panels::trompe_errors(a, result.fit.b, views);
   result.judged = std::move(judged);
@@ -44,7 +47,7 @@ Result<Answers> answers_for(const paint::Paint& paint, const TrompeRequest& requ
   std::vector<const TrompeGeometry*> all;
   for (const TrompeGeometry& geometry : request.geometries) all.push_back(&geometry);
   if (request.mode != TrompeMode::kRows) {
-    const auto fitted = request.single ? std::vector<panels::PanelView>{request.single->view} : views_of(all);
+    const auto fitted = views_of(paint, request.single ? std::vector{&*request.single} : all);
     GONIO_ASSIGN(Answer one, answer(paint, a, fitted, all, request));
     one.name = paint.name + suffix;
     answers.push_back(std::move(one));
@@ -57,7 +60,7 @@ Result<Answers> answers_for(const paint::Paint& paint, const TrompeRequest& requ
     std::vector<const TrompeGeometry*> row;
     std::ranges::copy_if(all, std::back_inserter(row),
                          [&](const TrompeGeometry* g) { return g->geometry.light_deg == light; });
-    GONIO_ASSIGN(Answer one, answer(paint, a, views_of(row), row, request));
+    GONIO_ASSIGN(Answer one, answer(paint, a, views_of(paint, row), row, request));
     one.name = fmt::format("{}{}.light{}", paint.name, suffix, shortest(light));
     one.light_deg = light;
     answers.push_back(std::move(one));

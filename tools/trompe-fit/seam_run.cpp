@@ -63,17 +63,20 @@ class SeamRun {
   Result<Answer> answer_for(const paint::Paint& paint) {
     Answer answer;
     answer.name = paint.name + options_.suffix;
+    const double coat = answer.coat_index = paint.coat_index.value_or(paint::kNoCoat);
     GONIO_ASSIGN(answer.a, panels::appearance_of(paint));
     const bool solid = paint.paint_class == paint::PaintClass::kSolid;
     if (options_.seam.environment.empty()) {
-      GONIO_ASSIGN(answer.fit, panels::trompe_fit(answer.a, solid, panel_views(stage_.seam, fitted_), request_.fit));
-      const std::vector<panels::PanelView> all = panel_views(stage_.seam, stage_.views);
+      GONIO_ASSIGN(answer.fit,
+                   panels::trompe_fit(answer.a, solid, panels::under_coat(panel_views(stage_.seam, fitted_), coat),
+                                      request_.fit));
+      const std::vector<panels::PanelView> all = panels::under_coat(panel_views(stage_.seam, stage_.views), coat);
       answer.before = panels::trompe_errors(answer.a, answer.a, all);
       answer.after = panels::trompe_errors(answer.a, answer.fit.b, all);
       return answer;
     }
     GONIO_ASSIGN(const panels::EnvironmentPanels panels,
-                 panels::EnvironmentPanels::make(stage_.env, paint::condition_of(paint)));
+                 panels::EnvironmentPanels::make(stage_.env, paint::condition_of(paint), coat));
     GONIO_ASSIGN(const paint::LobeFit worn, panels.lobes(answer.a));
     const auto lights_of = [&](const std::vector<panels::SeamView>& views) {
       return panels::seam_lights(panels, traced_ ? &*traced_ : nullptr, worn, stage_.seam, views, request_.world.part_a,

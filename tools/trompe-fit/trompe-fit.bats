@@ -158,3 +158,13 @@ setup() {
   [ "$status" -eq 3 ]
   [[ "$output" =~ 'no part "Nix", which --dark names' ]]
 }
+
+@test "the panels are seen through the coat that the paint states, and the answer keeps it" {
+  paint='<appearance travel="70"><face L="75" a="0" b="-2"/><flop L="22" a="0" b="-2"/></appearance>'
+  for index in 1 1.5; do
+    echo "<paints xmlns=\"urn:goniochrome:paint:1\" version=\"1\"><paint name=\"p\">$paint<coat index=\"$index\"/></paint></paints>" >p$index.xml
+    trompe-fit p$index.xml --angle 5 --lights 60 --views 50,70 --report r$index.json -q -o b$index.xml
+    grep -q "<coat index=\"$index\"/>" b$index.xml
+  done
+  jq -en --slurpfile a r1.json --slurpfile b r1.5.json '($a[0].results.before.rms - $b[0].results.before.rms) | fabs > 0.1'
+}

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 namespace goniochrome::panels {
 
@@ -14,7 +15,12 @@ template <class T>
 T scaled_response(const T& f, double c, double k) {
   if (f > kResponseKnee && k * f > kResponseKnee) return k * f;
   const T line = f > kResponseKnee ? f * f * f / (3 * kResponseKnee * kResponseKnee) : f - 4.0 / 29;
-  return c * line + 4.0 / 29;
+  const T scaled = c * line + 4.0 / 29;
+  if (c > 1 && scaled > kResponseKnee) {  // what was below the knee is lifted above it
+    using std::cbrt;
+    return cbrt(3 * kResponseKnee * kResponseKnee * (scaled - 4.0 / 29));
+  }
+  return scaled;
 }
 
 // L*, a*, b* of c times the stimulus whose Lab is `lab`; k = cbrt(c).
