@@ -79,7 +79,7 @@ struct Renderer::State : Sight {
   std::optional<Transport> transport;
   std::optional<envmap::BlockTree> ray_texels;  // of the environment of ray_setup; none: not yet
   std::optional<Error> ray_failure;             // of load_paints(), which cannot tell it
-  double white_luminance = 1;
+  double white_luminance = 1, tolerance_de00 = 0.5;
   const mesh::Mesh* uploaded = nullptr;
   std::size_t uploaded_triangles = 0;
 
@@ -300,7 +300,11 @@ Result<Transport> Renderer::State::traced_light(bool over_floor) const {
     paths.rays = std::make_shared<const rays::RayScene>(ray_mesh->over({ray_setup->floor->height}));
   }
   GONIO_ASSIGN(Transport created, Transport::create(paths));
-  if (over_floor) created.shade_ground({.seed = effort_asked.seed}, effort_asked.bounces);
+  if (over_floor) {
+    GroundRequest request;
+    request.directions = ground_directions(tolerance_de00), request.seed = effort_asked.seed;
+    created.shade_ground(request, effort_asked.bounces);
+  }
   return created;
 }
 
@@ -389,6 +393,7 @@ Result<void> Renderer::load(const Scene& scene, const Effects& effects, const st
 Result<Plan> Renderer::load(const Scene& scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers,
                             const PlanRequest& request) {
   State& s = *state_;
+  s.tolerance_de00 = request.tolerance_de00;
   const EngineInfo* asked = nullptr;
   if (request.engine) {
     GONIO_ASSIGN(asked, engine_named(*request.engine));

@@ -57,6 +57,14 @@ Float3 floats(const color::Rgb& c) {
 
 }  // namespace
 
+// 256 for the default tolerance. Twice the directions have some .6 of the error.
+int ground_directions(double tolerance_de00) {
+  constexpr double kDefault_de00 = 0.5;
+  int directions = 128;
+  for (double kept = 1.6 * kDefault_de00; kept > tolerance_de00 && directions < 4096; kept *= 0.6) directions *= 2;
+  return directions;
+}
+
 // The directions from a place of the floor in which the mesh can be: all where the place is beside the cone's sphere.
 struct ShadedGround::Cone {
   Float3 axis;
@@ -157,7 +165,7 @@ ShadedGround::ShadedGround(std::shared_ptr<const rays::RayScene> scene, const La
   if (ground.has_bright()) sources_.push_back(source([&](std::uint32_t count) { return ground.bright_rays(count); }));
   for (const Light& light : lights) add_lamp(light, ground.irradiance());
   const Float3 low = scene_->local(box.low), high = scene_->local(box.high);
-  const double length = std::max(high.x - low.x, high.z - low.z);
+  const double length = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
   if (!(length > 0)) return;
   const std::vector<float> x = lines(low.x, high.x, request.cell * length, length),
                            z = lines(low.z, high.z, request.cell * length, length);

@@ -84,6 +84,33 @@ TEST(ShadedGround, ShowsWhatPathsShow) {
   EXPECT_GT(percentile_95(control), 10) << "the control: the floor in the open";
 }
 
+// More directions cost more time and err less. What is left is compared with a sum over 16384 directions.
+TEST(ShadedGround, ErrsLessTheMoreDirectionsItHas) {
+  const Stage stage;
+  const auto lit = [&](const Transport& shaded, const Vec3& at) {
+    const rays::Float3 from = shaded.rays().local(at + Vec3{0, 0.05, 0}), down{0, -1, 0};
+    return shaded.shaded_ground(shaded.rays().spot(shaded.rays().closest(from, down), from, down)).direct;
+  };
+  Transport truth = *stage.transport;
+  truth.shade_ground({.directions = 1 << 14, .cell = 0.1, .steep = -1}, 0);  // summed at every place
+  double before = 1;
+  for (const double tolerance : {2.0, 0.125}) {
+    Transport shaded = *stage.transport;
+    const int directions = ground_directions(tolerance);
+    shaded.shade_ground({.directions = directions}, 0);
+    std::vector<double> errors;
+    for (int i = 0; i < 400; ++i) {
+      const double turn = 2.399963 * i, radius = 1.2 + 0.01 * i;
+      const Vec3 at{radius * std::sin(turn), 0, 1.6 * radius * std::cos(turn)};
+      errors.push_back(seen_difference(lit(shaded, at), lit(truth, at), 1));
+    }
+    const double error = percentile_95(errors);
+    EXPECT_LT(error, std::max(0.5 * tolerance, 0.05)) << directions;
+    EXPECT_LT(error, 0.35 * before);
+    before = error;
+  }
+}
+
 // Points of the body see the floor through the grid, and the light of the ground that it hides is drawn with what is
 // shown in its place: the sums are those of paths.
 TEST(ShadedGround, LightsTheBodyAsPathsDo) {
