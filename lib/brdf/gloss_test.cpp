@@ -7,7 +7,7 @@
 
 #include "base/angles.h"
 #include "base/hard_case_for_test.h"
-#include "math/quadrature.h"
+#include "brdf/internal/gloss_meter_for_test.h"
 
 namespace goniochrome::brdf {
 namespace {
@@ -27,35 +27,15 @@ const GlossTable& table() {
   return made;
 }
 
-struct Angles {
-  double angle_deg, receptor_par_deg, receptor_perp_deg;
-};
-const Angles kAngles[] = {{20, 1.8, 3.6}, {60, 4.4, 11.7}, {85, 4, 6}};
-
 // The meter by brute force: unit vectors, the plain dot product, one dense product rule over both windows.
-double brute_force_gloss(const Angles& meter, double exponent, int source_points, int receptor_points) {
-  const double t = meter.angle_deg * kDegree;
-  const Vec3 s = {std::sin(t), 0, std::cos(t)}, u = {std::cos(t), 0, -std::sin(t)}, v = {0, 1, 0};
-  struct Point {
-    Vec3 w;
-    double solid_angle;
-  };
-  const auto window = [&](double par_deg, double perp_deg, int n) {
-    std::vector<Point> points;
-    const double a = std::tan(par_deg / 2 * kDegree), b = std::tan(perp_deg / 2 * kDegree);
-    for (const auto& [x, wx] : math::gauss_legendre(n))
-      for (const auto& [y, wy] : math::gauss_legendre(n)) {
-        const Vec3 d = s + (a * x) * u + (b * y) * v;
-        points.push_back({normalized(d), wx * wy * a * b / std::pow(length(d), 3)});
-      }
-    return points;
-  };
-  const auto source = window(0.75, 2.5, source_points);
-  const auto receptor = window(meter.receptor_par_deg, meter.receptor_perp_deg, receptor_points);
+double brute_force_gloss(const TestMeter& meter, double exponent, int source_points, int receptor_points) {
+  const auto source = window_points(meter.angle_deg, kSourceParallel_deg, kSourcePerpendicular_deg, source_points);
+  const auto receptor =
+      window_points(meter.angle_deg, meter.receptor_par_deg, meter.receptor_perp_deg, receptor_points);
   double numerator = 0, denominator = 0;
-  for (const Point& i : source) {
+  for (const WindowPoint& i : source) {
     denominator += i.solid_angle * i.w.z * fresnel_dielectric(i.w.z, kBlackGlassIndex);
-    for (const Point& o : receptor)
+    for (const WindowPoint& o : receptor)
       numerator += i.solid_angle * o.solid_angle * o.w.z * std::pow(std::max(0.0, dot(i.w, o.w)), exponent);
   }
   return 100 * numerator / denominator;
@@ -64,7 +44,7 @@ double brute_force_gloss(const Angles& meter, double exponent, int source_points
 TEST(Gloss, QuadratureMatchesBruteForce) {
   const std::vector<double> exponents = {0, 1.3, 70, 900, 3000, 30000};
   const GlossTable many(exponents);
-  for (const Angles& meter : kAngles)
+  for (const TestMeter& meter : kTestMeters)
     for (std::size_t j = 0; j < exponents.size(); ++j) {
       const double brute = brute_force_gloss(meter, exponents[j], 6, exponents[j] > 5000 ? 96 : 40);
       EXPECT_NEAR((*many.at(meter.angle_deg))->gloss[j] / brute, 1, 1e-4) << meter.angle_deg << " " << exponents[j];
@@ -73,7 +53,7 @@ TEST(Gloss, QuadratureMatchesBruteForce) {
 
 TEST(Gloss, VerySharpLobeReadsAsTheMirrorOfItsEnergy) {
   const GlossTable sharp({1e6});
-  for (const Angles& meter : kAngles) {
+  for (const TestMeter& meter : kTestMeters) {
     const GlossColumns& columns = **sharp.at(meter.angle_deg);
     // All of a unit-energy lobe enters the receptor: 100 / F_1.567, averaged over the source (its cosines vary).
     const double energy_one = (1e6 + 1) / (2 * kPi) * columns.gloss[0];
@@ -85,7 +65,7 @@ TEST(Gloss, VerySharpLobeReadsAsTheMirrorOfItsEnergy) {
 TEST(Gloss, ClosedFormSeedIsNear) {
   // G ~ 100 F/F_1.567 erf(w_par/2 sqrt(e/2)) erf(w_perp/2 sqrt(e/2)) has no cosines and a source without width, which
   // matters most at 20 deg, where the receptor is only 1.8 deg wide: 10 % at e = 3000.
-  for (const Angles& meter : kAngles)
+  for (const TestMeter& meter : kTestMeters)
     for (const double e : {70.0, 250.0, 900.0, 3000.0}) {
       const GlossTable one({e});
       const double t = meter.angle_deg * kDegree, c = std::cos(t);

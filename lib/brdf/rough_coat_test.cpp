@@ -8,7 +8,6 @@
 #include "base/hard_case_for_test.h"
 #include "brdf/gloss.h"
 #include "brdf/true_coat_for_test.h"
-#include "math/quadrature.h"
 
 namespace goniochrome::brdf {
 namespace {
@@ -43,31 +42,16 @@ paint::LobeFit coated(const std::vector<paint::GlossReading>& readings) {
 // The meter by one dense product rule over both windows, of the lobes as engines draw them: weights between views,
 // Fresnel at the half vector.
 double shown_reading(const paint::LobeFit& fit, const TestMeter& meter, double gloss_deg) {
-  const double t = meter.angle_deg * kDegree;
-  const Vec3 s = {std::sin(t), 0, std::cos(t)}, u = {std::cos(t), 0, -std::sin(t)}, v = {0, 1, 0};
-  struct Point {
-    Vec3 w;
-    double solid_angle;
-  };
-  const auto window = [&](double par_deg, double perp_deg, int n) {
-    std::vector<Point> points;
-    const double a = std::tan(par_deg / 2 * kDegree), b = std::tan(perp_deg / 2 * kDegree);
-    for (const auto& [x, wx] : math::gauss_legendre(n))
-      for (const auto& [y, wy] : math::gauss_legendre(n)) {
-        const Vec3 d = s + (a * x) * u + (b * y) * v;
-        points.push_back({normalized(d), wx * wy * a * b / std::pow(length(d), 3)});
-      }
-    return points;
-  };
-  const auto source = window(0.75, 2.5, 4), receptor = window(meter.receptor_par_deg, meter.receptor_perp_deg, 32);
+  const auto source = window_points(meter.angle_deg, kSourceParallel_deg, kSourcePerpendicular_deg, 4),
+             receptor = window_points(meter.angle_deg, meter.receptor_par_deg, meter.receptor_perp_deg, 32);
   double numerator = 0, mirror = 0, denominator = 0;
-  for (const Point& i : source) {
+  for (const WindowPoint& i : source) {
     const Vec3 light = {-i.w.x, -i.w.y, i.w.z};
     denominator += i.solid_angle * i.w.z * TrueCoat::fresnel(i.w.z, 1.567);
     const paint::LobeFit there = at_view(fit, std::acos(i.w.z) / kDegree);
     for (const paint::Lobe& lobe : there.lobes)
       if (lobe.is_mirror()) mirror += i.solid_angle * i.w.z * lobe.gloss.y * TrueCoat::fresnel(i.w.z, 1.5);
-    for (const Point& o : receptor)
+    for (const WindowPoint& o : receptor)
       numerator += i.solid_angle * o.solid_angle * i.w.z * o.w.z * coated_brdf(fit, light, o.w, {0, 0, 1}, gloss_deg).y;
   }
   return 100 * (numerator + mirror) / denominator;

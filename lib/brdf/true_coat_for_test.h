@@ -9,6 +9,7 @@
 #include "base/angles.h"
 #include "base/random_for_test.h"
 #include "base/vec3.h"
+#include "brdf/internal/gloss_meter_for_test.h"
 
 namespace goniochrome::brdf {
 
@@ -65,11 +66,6 @@ struct TrueCoat {
 };
 
 // The windows of the meters [ASTM D523].
-struct TestMeter {
-  double angle_deg, receptor_par_deg, receptor_perp_deg;
-};
-inline constexpr TestMeter kTestMeters[] = {{20, 1.8, 3.6}, {60, 4.4, 11.7}, {85, 4, 6}};
-
 // What the meter reads: the light of each point of the source, counted where it enters the receptor.
 inline double true_reading(const TrueCoat& coat, const TestMeter& meter, int count) {
   const double t = meter.angle_deg * kDegree;

@@ -86,7 +86,8 @@ gloss() {
     fit-basis --quiet --lobes 4 --starts 1 --mirror --name b $library.xml -o $library.basis.xml
     sed -n 's/.*<exponent>\(.*\)<.exponent>/\1/p' $library.basis.xml >$library.txt
   done
-  ! diff -q satin.txt smooth.txt
+  run diff -q satin.txt smooth.txt
+  [ "$status" -eq 1 ]
   awk 'END { exit !($1 > 500) }' satin.txt
   awk 'END { exit !($1 < 500) }' smooth.txt
 }

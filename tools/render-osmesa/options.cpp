@@ -162,7 +162,7 @@ void add_engines(cli::ToolSpec& spec, Options& o) {
   spec.option("engine", "NAME", "cpu", &o.engine, "what shades the picture")
       .one_of(render::engine_choices())
       .more(engine_sentences() +
-            "The pictures of cpu and gl are the same, and auto takes the one that is predicted to be faster. "
+            " The pictures of cpu and gl are the same, and auto takes the one that is predicted to be faster. "
             "Prefiltered maps know one direction at each point. They cannot tell light that changes within that part "
             "of a broad lobe that is above the horizon, and differ from the truth by some 0.5 to 1 dE00 in the mean, "
             "and by more at single points. integral sums blocks of the image that are as coarse as --tolerance "

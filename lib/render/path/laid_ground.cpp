@@ -239,10 +239,6 @@ double LaidGround::light_share(const Window& window) const {
   return light > 0 ? std::min(1.0, window.light[static_cast<std::size_t>(window.rows)] / light) : 0;
 }
 
-double LaidGround::hidden_share(const Window& window) const {
-  return std::max(std::min(1.0, window.cosine / kPi), light_share(window));
-}
-
 // Those that are so many times as bright as the mean, if they hold enough of the irradiance.
 void LaidGround::find_bright(std::vector<BrightTexel> texels) {
   constexpr double kTimes = 30, kPart = 0.1;

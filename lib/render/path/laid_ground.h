@@ -45,9 +45,6 @@ class LaidGround {
     std::array<float, 129> light = {};     // irradiance from the first so many rows of these cells
   };
   Window window(const Vec3& position, const mesh::Box& box) const;
-  // How much a body within such a window can change of what a point of the floor shows: the share of the irradiance
-  // that comes from there, or the share of the hemisphere, weighed by the cosine, whichever is larger.
-  double hidden_share(const Window& window) const;
   // The share of the irradiance that comes from a window.
   double light_share(const Window& window) const;
   // A direction of the window that two numbers in [0,1) draw: half of them as light comes from there, half by the

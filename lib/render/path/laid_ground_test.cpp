@@ -90,7 +90,7 @@ TEST(LaidGround, ShowsWhatTheMeshLeavesOfTheLight) {
           << at.x << " " << at.z << ", channel " << c;
     }
     // What a mesh can change is more than what it changes.
-    const double hidden = laid->hidden_share(laid->window(at, bounding_box(box)));
+    const double hidden = laid->light_share(laid->window(at, bounding_box(box)));
     const color::Rgb open = laid->open_radiance(at);
     EXPECT_LE(1 - seen.radiance[1] / open[1], hidden + 4 * deviation(seen, 1) / open[1] + 1e-3);
   }
@@ -102,13 +102,13 @@ TEST(LaidGround, TellsWhereAMeshChangesNothing) {
   const auto laid = LaidGround::create(ground_at(0), even, {});
   ASSERT_TRUE(laid.ok());
   const mesh::Box box{{-1, 0, -2}, {1, 1.4, 2}};
-  EXPECT_EQ(laid->hidden_share(laid->window({0.5, 0, 1}, box)), 1);
-  EXPECT_LT(laid->hidden_share(laid->window({0, 0, 40}, box)), 1e-3);
+  EXPECT_EQ(laid->light_share(laid->window({0.5, 0, 1}, box)), 1);
+  EXPECT_LT(laid->light_share(laid->window({0, 0, 40}, box)), 1e-3);
   std::vector<Light> low = {{normalized({0, 0.05, -1}), {3, 3, 3}}};
   const auto lit = LaidGround::create(ground_at(0), even, low);
   ASSERT_TRUE(lit.ok());
-  EXPECT_GT(lit->hidden_share(lit->window({0, 0, 20}, box)), 0.01) << "the shadow of the light falls there";
-  EXPECT_LT(lit->hidden_share(lit->window({0, 0, -40}, box)), 1e-3);
+  EXPECT_GT(lit->light_share(lit->window({0, 0, 20}, box)), 0.01) << "the shadow of the light falls there";
+  EXPECT_LT(lit->light_share(lit->window({0, 0, -40}, box)), 1e-3);
 }
 
 }  // namespace

@@ -35,8 +35,8 @@ struct GroundRequest {
       sent = {};
 };
 
-// How many directions keep the error of soft light within half of a tolerance in CIEDE2000, for 95 of 100 places under
-// measured skies: goniochrome-theory(7) has the figures. 128 to 4096.
+// How many directions keep the error of soft light within half of a tolerance in CIEDE2000 at 95 of 100 places, as far
+// as the tests tell: 128 to 4096.
 int ground_directions(double tolerance_de00);
 
 // Immutable: for any number of threads at once.

@@ -16,17 +16,12 @@ using rays::Float3;
 using rays::Hit;
 using rays::Spot;
 
-// A ray to a point of an emitter ends this part of the way short of it.
-constexpr float kShort = 1 - 1e-4F;
-constexpr float kInversePi = 1 / static_cast<float>(kPi);
 // From the third surface on a path goes on by chance; so many surfaces later never with more than this chance, so that
 // paths end between walls that send back everything.
 constexpr int kRouletteFrom = 3, kEndlessFrom = 64, kMostBounces = 4096;
 constexpr double kEndlessChance = 0.9, kLeastChance = 0.05;
-// The most and least chance that a direction is drawn from the environment where there is one.
 // Ground of a smaller extent is drawn as PointTransport::shown_over_ground() has it.
 constexpr double kEvenGround_sr = 5;
-constexpr float kLeastLightChance = 0.1F, kMostLightChance = 0.75F, kLeastWindowLightChance = 0.05F;
 
 color::Rgb rgb(const Float3& c) {
   return rays::vec3(c);
@@ -121,6 +116,7 @@ double Transport::ground_pdf(const Float3& from, const Float3& direction) const 
 
 // Directions even by the cosine. Light from the ground counts by what the mesh leaves of it.
 double Transport::open_share(const Spot& spot) const {
+  if (!rays_->has_floor() && !rays_->any_above(spot.start, spot.shading, 0)) return 1;
   constexpr std::uint32_t kDirections = 16;
   const Sequence sequence(0x09E4, kDirections);
   const rays::Frame frame = rays::frame_about(spot.shading);
@@ -160,6 +156,11 @@ LightShares Transport::shaded_ground(const Spot& spot) const {
 LightShares Transport::shown_ground(const Spot& spot, const GroundLight& light) const {
   const color::Rgb open = open_ground(spot);
   return {open * light.left, {}, open * light.bounced};
+}
+
+LightShares Transport::met_ground(const Hit& hit, const Float3& origin, const Float3& direction, double number) const {
+  const Spot spot = rays_->spot(hit, origin, direction);
+  return spot.inside ? LightShares{} : shown_ground(spot, shaded_->met(spot.position, number));
 }
 
 std::vector<int> Transport::gaining_parts() const {
@@ -337,13 +338,10 @@ color::Rgb Transport::bounced(Hit hit, Float3 origin, Float3 direction, const Pa
   color::Rgb sum;
   const int most = std::min(options.bounces, kMostBounces);
   for (int bounce = 1, surfaces = 0;; ++bounce) {
+    if (shaded_ != nullptr && is_laid(hit))
+      return sum + path.shown(met_ground(hit, origin, direction, sequence.point(index, set)[0]).sum());
     const Vertex vertex(*this, rays_->spot(hit, origin, direction), -direction);
     if (vertex.is_laid) {
-      if (shaded_ != nullptr) {
-        if (vertex.spot.inside) break;
-        const double number = sequence.point(index, set)[0];
-        return sum + path.shown(shown_ground(vertex.spot, shaded_->met(vertex.spot.position, number)).sum());
-      }
       sum += path.shown(vertex.open);
     } else if (++surfaces > most) {
       break;
@@ -369,13 +367,11 @@ color::Rgb Transport::bounced(Hit hit, Float3 origin, Float3 direction, const Pa
 // As bounced() at a vertex on such a floor.
 Transport::FloorLight Transport::off_floor(const Hit& hit, const Float3& origin, const Float3& direction, int bounces,
                                            const Sequence& sequence, std::uint32_t index, std::uint32_t set) const {
-  const Spot spot = rays_->spot(hit, origin, direction);
   if (shaded_ != nullptr) {
-    if (spot.inside) return {};
-    const LightShares shown = shown_ground(spot, shaded_->met(spot.position, sequence.point(index, set)[0]));
+    const LightShares shown = met_ground(hit, origin, direction, sequence.point(index, set)[0]);
     return {shown.direct, bounces > 0 ? shown.into_diffuse : color::Rgb{}};
   }
-  const Vertex vertex(*this, spot, -direction);
+  const Vertex vertex(*this, rays_->spot(hit, origin, direction), -direction);
   FloorLight light{vertex.open, {}};
   if (vertex.painted.black()) return light;
   PathProduct path(reflection_);
@@ -389,351 +385,6 @@ Transport::FloorLight Transport::off_floor(const Hit& hit, const Float3& origin,
   further.bounces = bounces;
   light.bounced = path.shown(bounced(next.hit, vertex.spot.start, next.direction, further, sequence, index, set + 2));
   return light;
-}
-
-// A direction at the visible point.
-struct PointTransport::Ray {
-  Float3 direction;
-  bool above = false;
-  std::optional<EnvironmentTable::Place> place;  // where the direction was drawn from the environment
-  LaidGround::BrightSample bright;               // with a density above 0 where it was drawn from the brightest texels
-  bool to_ground = false;                        // whether it goes to where the floor shows that place
-  double weight = 1;                             // of the sample in the mean
-};
-
-PointTransport::PointTransport(const Transport& transport, const PathOptions& options, const Spot& spot,
-                               const Float3& to_viewer)
-    : transport_(transport),
-      options_(options),
-      spot_(spot),
-      to_viewer_(to_viewer),
-      painted_(options.white ? PaintedPoint(Float3{kInversePi, kInversePi, kInversePi}, spot.shading, to_viewer)
-                             : transport.painted(spot, to_viewer)),
-      is_laid_(transport.is_laid(spot)),
-      correction_(options.correction || is_laid_),
-      over_ground_(!is_laid_ && transport.shaded_ != nullptr && transport.environment_ != nullptr) {
-  sure_ = is_laid_ ? transport.open_ground(spot) : transport.emitters_.radiance(spot.part);
-  if (is_laid_) {
-    narrow_to_mesh();
-    window_ = transport.ground_->window(transport.rays_->world(spot.position), transport.mesh_box_);
-    // Under the mesh most light is blocked: what is left of it is summed, instead of taken from that of the open floor.
-    if (window_->half_width_rad >= kPi) correction_ = false, sure_ = {};
-    // The environment's own table draws a sun within its texel, but most other directions in vain.
-    if (transport.environment_)
-      light_chance_ = std::clamp(kMostLightChance * static_cast<float>(transport.ground_->light_share(*window_)),
-                                 kLeastWindowLightChance, kMostLightChance);
-  } else if (transport.environment_) {
-    const float wide = 1 - painted_.narrow_share(transport.environment_->extent_sr());
-    light_chance_ = std::clamp(kMostLightChance * wide, kLeastLightChance, kMostLightChance);
-  }
-  open_ = !transport.rays_->has_floor() && !transport.rays_->any_above(spot.start, spot.shading, 0);
-  const bool free = open_ && options.correction;
-  if (!free) {
-    add_lights();
-  }
-  if (!free) add_mirror();
-  certain_ = free || (!(painted_.lobes_weight() > 0) && mirror_samples_ == 0 && lamps_.empty());
-}
-
-color::Rgb PointTransport::reflect(const Float3& f, const color::Rgb& light) const {
-  return transport_.reflection_ != nullptr && !is_laid_ ? color::reflected(*transport_.reflection_, rgb(f), light)
-                                                        : rgb(f) * light;
-}
-
-// The cone from the point about the sphere that holds the mesh, whose middle is the origin of local coordinates.
-void PointTransport::narrow_to_mesh() {
-  const float distance = rays::length(spot_.start), sine = transport_.mesh_radius_ / distance;
-  if (!(sine < 1)) return;
-  mesh_axis_ = (-1 / distance) * spot_.start;
-  mesh_cosine_ = std::sqrt(1 - sine * sine) - 1e-6F;
-}
-
-// A point is either seen or hidden. Of a disc the light without the mesh is known, and samples tell what the mesh takes
-// from it, without bias; where it takes most of it, they tell what is left. Which of both is decided by a few rays and
-// has no part in the expectation.
-void PointTransport::add_lights() {
-  for (std::size_t i = 0; i < transport_.lights_.size(); ++i) {
-    const Transport::SeenLamp lamp = transport_.seen_lamp(i, spot_.start);
-    const Light& light = lamp.light;
-    if (!(light.radius_rad > 0)) {
-      const Float3 direction = rays::float3(light.direction);
-      const Reflection reflection = painted_.at(direction);
-      if (!(reflection.pdf > 0)) continue;
-      const bool blocked = transport_.rays_->blocked(spot_.start, direction, lamp.reach);
-      if (blocked == correction_) sure_ += (blocked ? -kPi : kPi) * reflect(reflection.f_cos, light.white);
-      continue;
-    }
-    const double sine = rays::dot(spot_.shading, rays::float3(light.direction));
-    if (sine <= -std::sin(light.radius_rad)) continue;
-    const color::Rgb whole = reflect(painted_.toward_disc(light, !lamp.is_placed), kPi * light.white);
-    constexpr std::uint32_t kProbes = 16;
-    std::uint32_t blocked = 0, above = 0;
-    const Sequence sequence(mixed(0x1A3B, i), kProbes);
-    for (std::uint32_t k = 0; k < kProbes && !open_; ++k) {
-      const std::array<double, 4> numbers = sequence.point(k, 0);
-      const Transport::LampSample sample = Transport::drawn_from(lamp, numbers[0], numbers[1]);
-      if (!(rays::dot(sample.direction, spot_.shading) > 0)) continue;
-      ++above;
-      if (transport_.rays_->blocked(spot_.start, sample.direction, sample.reach)) ++blocked;
-    }
-    const bool hidden = 2 * blocked <= above;
-    if (hidden != correction_) sure_ += (correction_ ? -1.0 : 1.0) * whole;
-    if (!open_) lamps_.push_back({lamp, hidden});
-  }
-}
-
-// What lamps that are discs add to sure(), as the mean over samples.
-color::Rgb PointTransport::lamp_shadows(const Sequence& sequence, std::uint32_t begin, std::uint32_t count,
-                                        bool* any_blocked) const {
-  constexpr std::uint32_t kSet = 60;  // that nothing else draws from
-  color::Rgb sum;
-  for (std::size_t k = 0; k < lamps_.size(); ++k) {
-    const Lamp& lamp = lamps_[k];
-    for (std::uint32_t i = begin; i < begin + count; ++i) {
-      const std::array<double, 4> numbers = sequence.point(i, kSet + static_cast<std::uint32_t>(k));
-      const Transport::LampSample sample = Transport::drawn_from(lamp.seen, numbers[0], numbers[1]);
-      const Reflection reflection = painted_.at(sample.direction);
-      if (!(reflection.pdf > 0)) continue;
-      const bool blocked = transport_.rays_->blocked(spot_.start, sample.direction, sample.reach);
-      if (any_blocked != nullptr && blocked) *any_blocked = true;
-      if (blocked == lamp.hidden) sum += (blocked ? -1.0 : 1.0) * reflect(reflection.f_cos, sample.light);
-    }
-  }
-  return sum;
-}
-
-void PointTransport::add_mirror() {
-  const Float3& mirror = painted_.mirror();
-  const float weight = painted_.mirror_weight();
-  if (!(weight > 0)) return;
-  mirror_hit_ = transport_.rays_->closest(spot_.start, painted_.mirrored());
-  const color::Rgb open =
-      transport_.environment_ ? transport_.environment_->radiance(painted_.mirrored()) : color::Rgb{};
-  if (!transport_.lights_.empty()) {
-    color::Rgb lamps = transport_.mirrored_lamps(spot_.start, painted_.mirrored(), mirror_hit_);
-    if (correction_) lamps += -1.0 * transport_.mirrored_lamps(spot_.start, painted_.mirrored(), {});
-    sure_ += reflect(mirror, lamps);
-  }
-  if (!mirror_hit_.any()) {
-    if (!correction_) sure_ += reflect(mirror, open);
-    return;
-  }
-  if (correction_) sure_ += -1.0 * reflect(mirror, open);
-  sure_ += reflect(mirror, transport_.emitters_.radiance(transport_.rays_->part(mirror_hit_.triangle)));
-  if ((options_.bounces == 0 || !options_.into_lobes) && !transport_.is_laid(mirror_hit_)) return;
-  const double share = weight / (weight + painted_.lobes_weight());
-  mirror_samples_ = static_cast<std::uint32_t>(std::clamp(static_cast<int>(std::lround(kBatch * share)), 1, kBatch));
-}
-
-// Of a direction that is not drawn from the environment.
-double PointTransport::drawn_pdf(const Float3& direction, const Reflection& reflection) const {
-  return window_ ? transport_.ground_->density(*window_, rays::vec3(direction)) : reflection.pdf;
-}
-
-PointTransport::Ray PointTransport::drawn_ray(const std::array<double, 4>& numbers, std::uint32_t of_fan) const {
-  Ray ray;
-  if (window_ && transport_.ground_->has_bright()) {
-    // So many rays of a fan go there, and the others look past them.
-    constexpr std::uint32_t kBright = 2;
-    ray.weight = static_cast<double>(kFan) / (of_fan < kBright ? kBright : kFan - kBright);
-    if (of_fan < kBright) {
-      ray.bright = transport_.ground_->drawn_bright(numbers[1], numbers[2], numbers[3]);
-      ray.direction = rays::float3(ray.bright.direction);
-      ray.above = ray.bright.pdf > 0 && rays::dot(ray.direction, spot_.shading) > 0;
-      return ray;
-    }
-  }
-  if (numbers[0] < light_chance_) {
-    ray.place = transport_.environment_->place(numbers[1], numbers[2]);
-    if (!(ray.place->density > 0)) return ray;
-    ray.direction = ray.place->direction;
-    if (over_ground_ && transport_.uneven_ground_ && ray.direction.y < 0) {
-      ray.to_ground = true;
-      ray.direction = transport_.toward_ground(spot_.start, ray.direction);
-    }
-  } else {
-    const double choice = (numbers[0] - light_chance_) / (1 - light_chance_);
-    ray.direction = window_ ? rays::float3(transport_.ground_->drawn(*window_, choice, numbers[1], numbers[2]))
-                            : painted_.direction(choice, numbers[1], numbers[2]);
-  }
-  ray.above = rays::dot(ray.direction, spot_.shading) > 0;
-  return ray;
-}
-
-// What a drawn direction is worth. One set of directions serves every lobe and the environment: each is weighed by the
-// density that the mixture gives it, which is the balance heuristic.
-LightShares PointTransport::shown(const Ray& ray, bool blocked, const Sequence& sequence, std::uint32_t index) const {
-  const Reflection reflection = painted_.at(ray.direction);
-  LightSample light;
-  if (!(reflection.pdf > 0)) return {};
-  if (ray.place) {
-    light = transport_.environment_->light(*ray.place);
-  } else if (transport_.environment_) {
-    light = transport_.environment_->at(ray.direction);
-  }
-  double pdf = light_chance_ * light.pdf + (1 - light_chance_) * drawn_pdf(ray.direction, reflection);
-  if (ray.bright.pdf > 0) {
-    pdf = ray.bright.pdf, light.radiance = ray.bright.radiance;
-  } else if (window_ && transport_.ground_->is_bright(rays::vec3(ray.direction))) {
-    return {};
-  }
-  if (!(pdf > 0)) return {};
-  const auto scaled = static_cast<float>(1 / pdf);
-  if (!blocked) return {reflect(scaled * reflection.f_cos, light.radiance), {}, {}};
-
-  color::Rgb arriving = correction_ ? -1.0 * light.radiance : color::Rgb{}, sent;
-  LightShares shares;
-  if (options_.bounces > 0 || !transport_.emitters_.empty() || transport_.ground_) {
-    const Hit hit = transport_.rays_->closest(spot_.start, ray.direction);
-    if (transport_.is_laid(hit)) {
-      const Transport::FloorLight floor =
-          transport_.off_floor(hit, spot_.start, ray.direction, options_.bounces, sequence, index, 4);
-      arriving += floor.fixed, sent = floor.bounced;
-    } else if (hit.any()) {
-      const color::Rgb& emission = transport_.emitters_.radiance(transport_.rays_->part(hit.triangle));
-      if (emission != color::Rgb{})
-        arriving += pdf / (pdf + transport_.emitters_.pdf(hit.triangle, ray.direction, hit.distance)) * emission;
-      if (options_.bounces > 0 && (options_.into_lobes || options_.into_diffuse))
-        sent = transport_.bounced(hit, spot_.start, ray.direction, options_, sequence, index, 4);
-    }
-  }
-  add_sent(ray.direction, sent, scaled, shares);
-  shares.direct = reflect(scaled * reflection.f_cos, arriving);
-  return shares;
-}
-
-// A floor that shows the environment hides what is below the horizon, and shows the same light from elsewhere. Both are
-// drawn together: a direction that is drawn from the environment below the horizon is what is hidden, and the way to
-// the place of the floor that shows it is what is seen instead. Light by density is the same for both, so that the
-// brightest texels add no more noise than others.
-LightShares PointTransport::shown_over_ground(const Ray& ray, const Hit& hit, const Sequence& sequence,
-                                              std::uint32_t index) const {
-  LightShares shares;
-  const bool blocked = hit.any();
-  const auto light_from = [&](const Float3& direction) {
-    return ray.place ? transport_.environment_->light(*ray.place) : transport_.environment_->at(direction);
-  };
-  const auto scale = [&](double light_pdf, const Reflection& reflection) {
-    return static_cast<float>(1 / (light_chance_ * light_pdf + (1 - light_chance_) * reflection.pdf));
-  };
-  const Float3& hidden = ray.to_ground ? ray.place->direction : ray.direction;
-  if (correction_ && hidden.y < 0) {
-    const Reflection reflection = painted_.at(hidden);
-    if (reflection.pdf > 0) {
-      const LightSample light = light_from(hidden);
-      shares.direct = -1.0 * reflect(scale(light.pdf, reflection) * reflection.f_cos, light.radiance);
-    }
-  }
-  if (!ray.above || (!blocked && correction_)) return shares;
-  const Reflection reflection = painted_.at(ray.direction);
-  if (!(reflection.pdf > 0)) return shares;
-  color::Rgb arriving, sent;
-  double light_pdf = 0;
-  if (ray.direction.y < 0 && transport_.uneven_ground_) {
-    light_pdf = transport_.ground_pdf(spot_.start, ray.direction);
-  } else if (ray.direction.y < 0) {
-    light_pdf = light_from(ray.direction).pdf;
-  } else {
-    const LightSample light = light_from(ray.direction);
-    light_pdf = light.pdf;
-    if (blocked == correction_) arriving = (blocked ? -1.0 : 1.0) * light.radiance;
-  }
-  const float scaled = scale(light_pdf, reflection);
-  if (transport_.is_laid(hit)) {
-    const Transport::FloorLight floor =
-        transport_.off_floor(hit, spot_.start, ray.direction, options_.bounces, sequence, index, 4);
-    arriving += floor.fixed, sent = floor.bounced;
-  } else if (blocked && options_.bounces > 0 && (options_.into_lobes || options_.into_diffuse)) {
-    sent = transport_.bounced(hit, spot_.start, ray.direction, options_, sequence, index, 4);
-  }
-  shares.direct += reflect(scaled * reflection.f_cos, arriving);
-  add_sent(ray.direction, sent, scaled, shares);
-  return shares;
-}
-
-// What surfaces send along a direction, times `scale`: one over the density of the direction.
-void PointTransport::add_sent(const Float3& direction, const color::Rgb& sent, float scale, LightShares& shares) const {
-  if (sent == color::Rgb{}) return;
-  const PaintedPoint::Parts parts = painted_.parts(direction);
-  if (options_.into_lobes) shares.into_lobes = reflect(scale * parts.lobes, sent);
-  if (options_.into_diffuse) shares.into_diffuse = reflect(scale * parts.diffuse, sent);
-}
-
-color::Rgb PointTransport::emitter_sample(const std::array<double, 4>& numbers) const {
-  const EmitterSample light = transport_.emitters_.drawn(spot_.start, numbers[0], numbers[1], numbers[2]);
-  if (!(light.pdf > 0)) return {};
-  const Reflection reflection = painted_.at(light.direction);
-  if (!(reflection.pdf > 0) || transport_.rays_->blocked(spot_.start, light.direction, kShort * light.distance))
-    return {};
-  const double open_pdf = transport_.environment_ ? transport_.environment_->at(light.direction).pdf : 0;
-  const double pdf =
-      light.pdf + light_chance_ * open_pdf + (1 - light_chance_) * drawn_pdf(light.direction, reflection);
-  return reflect(static_cast<float>(1 / pdf) * reflection.f_cos, light.radiance);
-}
-
-// The light that the mirror lobe sees, summed over these samples.
-LightShares PointTransport::mirrored(const Sequence& sequence, std::uint32_t begin, std::uint32_t count) const {
-  color::Rgb fixed, sent;
-  for (std::uint32_t i = begin; i < begin + count; ++i) {
-    if (transport_.is_laid(mirror_hit_)) {
-      const Transport::FloorLight floor =
-          transport_.off_floor(mirror_hit_, spot_.start, painted_.mirrored(), options_.bounces, sequence, i, 4);
-      fixed += floor.fixed, sent += floor.bounced;
-    } else {
-      sent += transport_.bounced(mirror_hit_, spot_.start, painted_.mirrored(), options_, sequence, i, 4);
-    }
-  }
-  LightShares shares;
-  shares.direct = reflect(painted_.mirror(), fixed);
-  if (options_.into_lobes) shares.into_lobes = reflect(painted_.mirror(), sent);
-  return shares;
-}
-
-LightShares PointTransport::batch_shares(std::uint64_t seed, std::uint32_t begin, std::uint32_t count,
-                                         bool* any_blocked) const {
-  if (any_blocked != nullptr) *any_blocked = mirror_samples_ > 0;
-  if (certain_) return {};
-  const Sequence sequence(seed, kBatch);
-  LightShares sum;
-  sum.direct += lamp_shadows(sequence, begin, count, any_blocked);
-  if (painted_.lobes_weight() > 0) {
-    for (std::uint32_t first = begin; first < begin + count; first += kFan) {
-      Ray rays[kFan];
-      rays::Fan fan;
-      fan.origin = spot_.start;
-      for (std::uint32_t i = 0; i < 8; ++i) {
-        rays[i] = drawn_ray(sequence.point(first + i, 0), i);
-        fan.x[i] = rays[i].direction.x, fan.y[i] = rays[i].direction.y, fan.z[i] = rays[i].direction.z;
-        if (rays[i].above && rays::dot(rays[i].direction, mesh_axis_) >= mesh_cosine_) fan.wanted |= 1U << i;
-      }
-      if (over_ground_) {
-        Hit hits[kFan];
-        if (fan.wanted != 0) transport_.rays_->closest(fan, hits);
-        for (std::uint32_t i = 0; i < kFan; ++i) {
-          if (any_blocked != nullptr && hits[i].any()) *any_blocked = true;
-          sum += shown_over_ground(rays[i], hits[i], sequence, first + i);
-        }
-        continue;
-      }
-      const unsigned blocked = fan.wanted != 0 ? transport_.rays_->blocked(fan) : 0;
-      if (any_blocked != nullptr && blocked != 0) *any_blocked = true;
-      for (std::uint32_t i = 0; i < 8; ++i) {
-        const bool is_blocked = (blocked >> i & 1U) != 0;
-        if (!rays[i].above || (!is_blocked && (correction_ || !transport_.environment_))) continue;
-        if (rays[i].weight == 1) {
-          sum += shown(rays[i], is_blocked, sequence, first + i);
-        } else {
-          sum += rays[i].weight * shown(rays[i], is_blocked, sequence, first + i);
-        }
-      }
-    }
-    if (!transport_.emitters_.empty())
-      for (std::uint32_t i = begin; i < begin + count; ++i) sum.direct += emitter_sample(sequence.point(i, 1));
-  }
-  const std::uint32_t mirrors = mirror_samples_ > 0 ? std::max(1U, mirror_samples_ * count / kBatch) : 0;
-  if (mirrors > 0)
-    sum += static_cast<double>(count) / mirrors * mirrored(Sequence(mixed(seed, 0x4D), kBatch), begin, mirrors);
-  return (1.0 / count) * sum;
 }
 
 }  // namespace goniochrome::render

@@ -117,6 +117,11 @@ class Transport {
   rays::Float3 toward_ground(const rays::Float3& from, const rays::Float3& from_eye) const;
   double ground_pdf(const rays::Float3& from, const rays::Float3& direction) const;
   LightShares shown_ground(const rays::Spot& spot, const GroundLight& light) const;
+  // The same where a path meets the floor, by a number in [0,1); nothing from below.
+  LightShares met_ground(const rays::Hit& hit, const rays::Float3& origin, const rays::Float3& direction,
+                         double number) const;
+  // A ray to a point of an emitter ends this part of the way short of it.
+  static constexpr float kShort = 1 - 1e-4F;
   struct Vertex;
   struct Next;
   color::Rgb direct_light(const Vertex& vertex, const PathProduct& path, const std::array<double, 4>& numbers,
