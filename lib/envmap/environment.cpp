@@ -54,6 +54,15 @@ Environment Environment::above(double elevation_rad, const Rotation& turn) const
   return upper;
 }
 
+Environment Environment::dimmed(const std::vector<Dimmed>& texels) const {
+  Environment result = *this;
+  for (const Dimmed& texel : texels) {
+    float* rgb = &result.rgb_[3 * (static_cast<std::size_t>(texel.row) * width() + texel.column)];
+    for (int c = 0; c < 3; ++c) rgb[c] = static_cast<float>(texel.factor * rgb[c]);
+  }
+  return result;
+}
+
 Vec3 Environment::flux(const Clip& clip) const {
   std::vector<Vec3> rows(static_cast<std::size_t>(height()));
   parallel_for(rows.size(), 16, [&](std::size_t begin, std::size_t end) {

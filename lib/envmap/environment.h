@@ -94,6 +94,13 @@ class Environment {
     return &rgb_[3 * static_cast<std::size_t>(grid_.texel(direction))];
   }
 
+  // With single texels scaled: by column and row, and a factor of 0 or more.
+  struct Dimmed {
+    int column = 0, row = 0;
+    double factor = 1;
+  };
+  Environment dimmed(const std::vector<Dimmed>& texels) const;
+
   // sum of radiance * solid angle, per channel, of what `clip` leaves.
   Vec3 flux(const Clip& clip = {}) const;
 

@@ -22,6 +22,7 @@ constexpr double kHalfSubnormal = 0x1p-25;  // absolute, below 2^-14
 constexpr double kFloor = 1e-3;             // errors are relative to the local value, but no less than this of the mean
 constexpr const char* kTexels = "goniochrome:texels";
 constexpr const char* kExponent = "goniochrome:exponent";
+constexpr const char* kSpots = "goniochrome:brightSpots";
 
 double mean_value(const CubeMap& map) {
   double sum = 0;
@@ -177,6 +178,13 @@ Result<PrefilteredEnvironment> read_env(const std::string& path) {
     const std::string name = part.name;
     if (name != "diffuse" && name != "mirror" && !name.starts_with("lobe-")) continue;
     if (env.source.empty()) env.source = text_attribute(part, "goniochrome:source");
+    if (name == "diffuse") {
+      auto spots = spots_of_text(text_attribute(part, kSpots));
+      if (!spots.ok())
+        return input_error("{}: part diffuse: attribute {}: {}: write it with prefilter-envmap", path, kSpots,
+                           spots.error().message);
+      env.spots = *std::move(spots);
+    }
     GONIO_ASSIGN(PrefilteredLobe lobe, lobe_of(std::move(part), path));
     if (name == "diffuse")
       env.diffuse = std::move(lobe);
@@ -195,6 +203,7 @@ Result<PrefilteredEnvironment> read_env(const std::string& path) {
 
 Result<void> write_env(const std::string& path, const PrefilteredEnvironment& env, const std::string& command) {
   std::vector<image::ImagePart> parts = {part_of("diffuse", env.diffuse, env.source, command)};
+  if (!env.spots.empty()) parts.front().attributes[kSpots] = text_of_spots(env.spots);
   for (std::size_t i = 0; i < env.lobes.size(); ++i)
     parts.push_back(part_of(fmt::format("lobe-{:03}", i), env.lobes[i], env.source, command));
   if (env.mirror.map.size > 0) parts.push_back(part_of("mirror", env.mirror, env.source, command));

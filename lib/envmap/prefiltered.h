@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "envmap/bright_spots.h"
 #include "envmap/cube_map.h"
 #include "envmap/sphere_grid.h"
 #include "image/image.h"
@@ -43,6 +44,7 @@ struct PrefilteredEnvironment {
   std::vector<PrefilteredLobe> lobes;  // ascending exponents
   PrefilteredLobe mirror;              // the environment itself, exponent inf; size 0 where absent
   std::string source;
+  std::vector<Spot> spots;  // the bright part of the light in the maps, once more; none where it is not known
 
   // The lobe of this exponent (to 1e-6 relative), or null.
   const PrefilteredLobe* lobe(double exponent) const;

@@ -441,6 +441,8 @@ envmap::PrefilteredEnvironment prefiltered(
     else
       result.lobes.push_back(std::move(lobe));
   }
+  result.spots = envmap::bright_spots(env);
+  for (envmap::Spot& spot : result.spots) spot.direction = request.turn.to_world(spot.direction);
   return result;
 }
 

@@ -11,6 +11,7 @@
 #include "envmap/weighted_diffuse.h"
 #include "render/internal/lobe_curves.h"
 #include "render/internal/tilt_table.h"
+#include "render/spots.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {
@@ -205,6 +206,9 @@ Effects effects_of(const Scene& scene) {
       effects.image_maps = effects.image_maps || is_mapped(scene, part);
     }
   }
+  // Color maps and tilted lobes stand for the light of all the maps.
+  const bool maps_alone = effects.tilt_level > 0 || (scene.layer != nullptr && scene.layer->mapped());
+  if (effects.horizon && !maps_alone) effects.spots = scene.env->spots.size();
   effects.texture = scene.layer != nullptr && scene.layer->textured();
   effects.maps = scene.layer != nullptr && scene.layer->mapped();
   effects.reflection = scene.reflection.k != color::component_wise().k;
@@ -216,6 +220,12 @@ std::vector<Light> lights_of(const Scene& scene, const Effects& effects) {
   std::vector<Light> lights = scene.lights;
   if (!effects.extent)
     for (Light& light : lights) light.radius_rad = 0;
+  return lights;
+}
+
+std::vector<Light> single_lights(const Scene& scene, const Effects& effects) {
+  std::vector<Light> lights = lights_of(scene, effects);
+  for (std::size_t i = 0; i < effects.spots; ++i) lights.push_back(light_of(scene.env->spots[i]));
   return lights;
 }
 

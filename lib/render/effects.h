@@ -42,6 +42,7 @@ struct Effects {
   bool fresnel = false;               // of gloss lobes and mirror
   bool coat = false;                  // light passes the coat on its way to the base and back; else as much everywhere
   bool horizon = false;               // lobes end at the horizon, and each of their directions has its own cosine
+  std::size_t spots = 0;              // bright spots of the environment that each horizon cuts by itself; with horizon
   bool views = false;                 // weights of paints that change with the view
   bool maps = false;                  // color maps under lights
   bool image_maps = false;            // color maps in image light, by engines that can evaluate them there
@@ -60,6 +61,9 @@ struct Effects {
   int most_ray_samples = 1 << 16;  // of a visible point, in all samples of its pixel
   Background background = Background::kNone;
 
+  // What engines of maps sum one by one: lamps, and bright spots of the environment as discs.
+  std::size_t single_lights() const { return lights + spots; }
+  bool discs() const { return extent || spots > 0; }
   bool depends_on_view() const { return fresnel || coat || horizon || views || tilt_level > 0; }
 };
 
@@ -77,6 +81,10 @@ paint::LobeFit with_effects(const paint::LobeFit& paint, const Effects& effects)
 
 // The lamps that these effects draw, as points where the effect `extent` is off.
 std::vector<Light> lights_of(const Scene& scene, const Effects& effects);
+
+// These, and then the bright spots of the environment that are cut one by one, which scene_maps() takes out of the
+// maps.
+std::vector<Light> single_lights(const Scene& scene, const Effects& effects);
 
 // The tilted normals that each part's lobes are drawn about; a single one where the part is isotropic.
 std::vector<std::vector<brdf::Tilt>> tilts_of(const Scene& scene, const Effects& effects);

@@ -55,6 +55,7 @@ void tidy(Effects& effects) {
                      std::any_of(effects.lobes.begin(), effects.lobes.end(), [](const auto& use) { return use.gloss; });
   effects.fresnel = effects.fresnel && gloss;
   effects.horizon = effects.horizon && !effects.lobes.empty();
+  if (!effects.horizon) effects.spots = 0;
   effects.anisotropy = effects.anisotropy && !effects.lobes.empty();
 }
 

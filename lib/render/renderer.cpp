@@ -12,6 +12,7 @@
 #include "render/internal/tilt_table.h"
 #include "render/path/visible_surface.h"
 #include "render/plan/ray_plan.h"
+#include "render/spots.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {
@@ -75,6 +76,7 @@ struct Renderer::State : Sight {
   std::optional<RaySetup> ray_setup;
   Scene ray_scene;  // all of it, seen or not: rays meet parts that the camera does not see
   std::shared_ptr<const rays::RayScene> ray_mesh;  // of that scene; none: not yet
+  std::optional<envmap::SunlitSky> ray_sun;        // of the environment of ray_setup, where it has a sun
   std::shared_ptr<const EnvironmentTable> ray_table;
   std::optional<Transport> transport;
   std::optional<envmap::BlockTree> ray_texels;  // of the environment of ray_setup; none: not yet
@@ -105,6 +107,8 @@ struct Renderer::State : Sight {
   Result<std::optional<Transport>> transport_over_floor() const;
   Result<void> trace(const Scene& whole);
   Scene completed(const Scene& scene) const;
+  // The light of which rays are drawn; a sun is asked for by itself.
+  const envmap::Environment* ray_environment() const { return ray_sun ? &ray_sun->sky : ray_setup->environment; }
 
   const GlContext* gl() const override { return open_gl ? &open_gl->context : nullptr; }
   std::shared_ptr<const rays::RayScene> traced_mesh() const override { return traced; }
@@ -278,13 +282,14 @@ Result<void> Renderer::State::trace(const Scene& whole) {
   transport.reset(), ray_failure.reset();
   if (!ray_setup || !ray_setup->absent.empty()) return {};
   ray_scene = whole;
+  if (ray_sun) ray_scene.lights.push_back(light_of(ray_sun->sun));
   if (whole.mesh != nullptr) GONIO_TRY(show(*whole.mesh));
   if (whole.mesh != nullptr && ray_mesh == nullptr) {
     GONIO_ASSIGN(rays::RayScene scene_of_rays, rays::RayScene::create(*whole.mesh));
     ray_mesh = std::make_shared<const rays::RayScene>(std::move(scene_of_rays));
   }
   if (ray_setup->environment != nullptr && ray_table == nullptr)
-    ray_table = std::make_shared<const EnvironmentTable>(*ray_setup->environment);
+    ray_table = std::make_shared<const EnvironmentTable>(*ray_environment());
   GONIO_ASSIGN(Transport created, traced_light(effects.rays.floor && ray_setup->floor));
   transport.emplace(std::move(created));
   return {};
@@ -293,7 +298,7 @@ Result<void> Renderer::State::trace(const Scene& whole) {
 Result<Transport> Renderer::State::traced_light(bool over_floor) const {
   PathScene paths;
   paths.scene = &ray_scene;
-  paths.environment = ray_setup->environment, paths.table = ray_table;
+  paths.environment = ray_environment(), paths.mirrored = ray_setup->environment, paths.table = ray_table;
   paths.rays = ray_mesh;
   if (over_floor) {
     paths.ground = ray_setup->floor;
@@ -447,7 +452,8 @@ void Renderer::load_paints(const Scene& scene) {
 
 void Renderer::set_rays(const RaySetup& setup) {
   state_->ray_setup = setup;
-  state_->ray_texels.reset(), state_->ray_table.reset();
+  state_->ray_texels.reset(), state_->ray_table.reset(), state_->ray_sun.reset();
+  if (setup.environment != nullptr && setup.absent.empty()) state_->ray_sun = envmap::sunlit_sky(*setup.environment);
 }
 
 const Transport* Renderer::transport() const {

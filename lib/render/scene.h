@@ -24,6 +24,7 @@ struct Light {
   color::Rgb white{1, 1, 1};  // the radiance of a perfect white diffuser that faces it: irradiance / pi
   double radius_rad = 0;  // of the disc as it is seen, 0..kWidestDisc_rad; 0: a point, whose mirror image is not drawn
   std::optional<Place> place = {};
+  bool mirrored = true;  // whether a mirror shows it; else its image is that of the environment it is a part of
 
   // Of the disc: what a mirror shows within it. Black for a point.
   color::Rgb radiance() const;

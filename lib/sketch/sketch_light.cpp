@@ -13,6 +13,7 @@
 #include "render/effects.h"
 #include "render/gbuffer.h"
 #include "render/glints.h"
+#include "render/spots.h"
 
 namespace goniochrome::sketch {
 
@@ -69,6 +70,7 @@ class Shading {
     if (!drawn(buffers, "extent"))
       for (render::Light& lamp : scene.lights) lamp.radius_rad = 0;
     lights_ = scene.lights;
+    if (env != nullptr && drawn(buffers, "spots")) take_out_spots(*env);
     render::Effects effects = render::effects_of(scene);
     effects.fresnel = fresnel_ = drawn(buffers, "fresnel");
     effects.horizon = drawn(buffers, "horizon");
@@ -135,6 +137,18 @@ class Shading {
           scale * weight(last, table_.mirror_slot(), view.cos_o, 0) * envmap::bilinear(env.mirror.map, view.mirrored);
   }
 
+  // As the engines have them: lamps take the place of what the maps have of the spots.
+  void take_out_spots(const envmap::PrefilteredEnvironment& env) {
+    rest_ = env;
+    rest_.diffuse.map = render::diffuse_without_spots(std::move(rest_.diffuse.map), false, env.spots);
+    if (coat_diffuse_.size > 0)
+      coat_diffuse_ = render::diffuse_without_spots(std::move(coat_diffuse_), true, env.spots);
+    for (envmap::PrefilteredLobe& lobe : rest_.lobes)
+      lobe.map = render::without_spots(std::move(lobe.map), lobe.exponent, env.spots);
+    for (const envmap::Spot& spot : env.spots) lights_.push_back(render::light_of(spot));
+    env_ = &rest_;
+  }
+
   // A slot's channel of the paint of this number.
   double weight(int paint, int slot, double cos_o, int channel) const {
     const double x = table_.segments > 1 ? std::sqrt(cos_o) * table_.segments : cos_o;
@@ -168,7 +182,8 @@ class Shading {
           (of.plain[0] * coat_l + of.plain[1] * coat_r) * weight(gloss, table_.gloss_slot(j), c, 0) * white;
     }
     const int last = static_cast<int>(search_columns(basis_)) - 1;
-    const double mirrored = basis_.mirror ? render::mirrored_share(light, view.mirrored, view.spread) : 0;
+    const double mirrored =
+        basis_.mirror && light.mirrored ? render::mirrored_share(light, view.mirrored, view.spread) : 0;
     if (mirrored > 0)
       column[last] += weight(last, table_.lamp_mirror_slot(), c, 0) * (mirrored * scale * light.radiance());
   }
@@ -192,6 +207,7 @@ class Shading {
 
   const image::AovFile& buffers_;
   const envmap::PrefilteredEnvironment* env_;
+  envmap::PrefilteredEnvironment rest_;  // without bright spots
   formats::Basis basis_;
   int normal_, part_;                                     // channels
   std::vector<std::array<double, 2>> shifts_ = {{0, 0}};  // of the samples of a pixel from its center

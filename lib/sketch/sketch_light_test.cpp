@@ -51,6 +51,7 @@ Drawing draw(const envmap::PrefilteredEnvironment& env, const std::vector<std::s
   scene.lights = {{normalized(Vec3{1, 1, 2}), {0.5, 0.6, 0.7}, 0.5 * extent_deg * kDegree}};
   scene.gloss_deg = {60}, scene.reflection = color::iso_rgb_operator();
   render::Effects effects = render::effects_of(scene);
+  if (!has("spots")) effects.spots = 0;
   effects.fresnel = has("fresnel"), effects.horizon = has("horizon"), effects.reflection = has("operator");
   auto renderer = render::Renderer::create();
   EXPECT_TRUE(renderer.ok());
@@ -99,9 +100,16 @@ double difference(const Drawing& drawing, const SketchLight& light, double steep
 // The engine's arithmetic is single precision, its cosine powers good to 1e-3 of a lobe's peak. The control: light that
 // does not know what was drawn.
 TEST(SketchLight, IsWhatTheRendererDrawsWithTheSameEffects) {
-  const envmap::PrefilteredEnvironment env = uneven_env();
-  const std::vector<std::vector<std::string>> all = {
-      {}, {"fresnel"}, {"horizon"}, {"operator"}, {"coat"}, {"fresnel", "coat", "horizon", "operator"}};
+  envmap::PrefilteredEnvironment env = uneven_env();
+  env.spots = {{normalized(Vec3{1, 0.2, 0.1}), {0.3, 0.2, 0.2}, 0.05},
+               {normalized(Vec3{-1, 1, 1}), {0.1, 0.1, 0.2}, 0.3}};
+  const std::vector<std::vector<std::string>> all = {{},
+                                                     {"fresnel"},
+                                                     {"horizon"},
+                                                     {"operator"},
+                                                     {"coat"},
+                                                     {"horizon", "spots"},
+                                                     {"fresnel", "coat", "horizon", "spots", "operator"}};
   for (const auto& drawn : all) {
     Drawing drawing = draw(env, drawn);
     const auto light = sketch_light(drawing.buffers, env);

@@ -126,8 +126,10 @@ void add_effects(cli::ToolSpec& spec, Options& o) {
   spec.option("effects", "WORDS", "auto,-fresnel", &o.effects,
               "effects to draw: auto, all or none, and then +NAME and -NAME")
       .more(
-          "The names are diffuse, lobes, gloss, mirror, fresnel, coat, horizon, anisotropy, travel, tilts, texture, "
-          "texture-lobes, operator, lights and extent (of lamps). lobe-20, gloss-900 and texture-0 (lobe0 of the "
+          "The names are diffuse, lobes, gloss, mirror, fresnel, coat, horizon, spots, anisotropy, travel, tilts, "
+          "texture, texture-lobes, operator, lights and extent (of lamps). spots draws the bright spots of the "
+          "environment, such as its sun, as lamps that each horizon cuts by itself, and needs horizon. lobe-20, "
+          "gloss-900 and texture-0 (lobe0 of the "
           "textures) are single lobes. tilts are the tilted lobes that stand for color maps under an environment, "
           "tilts-1 is the set with the fewest of them, and each finer set, as tilts-2, needs the one before; while "
           "they are drawn, the lobes of these paints are not. Three more are drawn by tracing rays: shadow (the mesh "
@@ -135,7 +137,7 @@ void add_effects(cli::ToolSpec& spec, Options& o) {
           "part). The last two need shadow, and rays names all three. They are drawn at those pixels alone that can "
           "see the mesh, so that a convex shape is drawn as without them. Rays are traced wherever a mesh is given; "
           "auto,-rays traces none, which is much faster where the mesh blocks much light. Effects of rays that auto "
-          "decides to draw take at most 1024 samples of a point, and those that are named with a plus, as in "
+          "decides to draw take at most 1024 samples of a point and 64 of all points in the mean, and those that are named with a plus, as in "
           "auto,+rays, take as many as --tolerance needs. The effect floor is that of --floor shadow and needs "
           "shadow; it is priced where the environment is the background, and +floor asks for it as --floor shadow "
           "does. auto leaves out the effects that change too little, as --tolerance and --budget say.");

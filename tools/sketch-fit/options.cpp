@@ -110,8 +110,9 @@ cli::ToolSpec tool_spec(Options& o) {
       "channel: cosine lobes, or, where it explains the pixels better, the clamped quadratic, whose travel is scanned.",
       "With --env, the light is an environment. The lobes of any paint are then found with the renderer's own "
       "equations on the buffers, without drawing again, and after them face, flop, travel and gloss where these "
-      "explain the picture as well. The search knows the effects that were drawn: Fresnel reflectance, the horizon and "
-      "the operator of colored light. It does not know brushed paint, the travel of color maps, and textures; it warns "
+      "explain the picture as well. The search knows the effects that were drawn: Fresnel reflectance, the horizon, "
+      "bright spots and the operator of colored light. It does not know brushed paint, the travel of color maps, and "
+      "textures; it warns "
       "where the buffers have them.",
       "Buffers with a transport hold the light that each lobe gathers at every pixel, with shadows and with light that "
       "the body sends to itself. The picture is then linear in the paint, and is solved in that light. Without it the "

@@ -121,19 +121,36 @@ CpuEngine::Stack CpuEngine::interleaved(const MapClass& maps, MapUse use, const 
           render::interleaved(maps.maps, forms, stride)};
 }
 
-void CpuEngine::interleave(const MapClass& maps, MapUse use) {
-  if (maps.size > 0) stacks_.push_back(interleaved(maps, use, forms_));
+// The maps of a scene that can be loaded, for the effects that were loaded.
+void CpuEngine::stack(const SceneMaps& maps) {
+  stacks_.clear();
+  const auto add = [&](const MapClass& of, MapUse use) {
+    if (of.size > 0) stacks_.push_back(interleaved(of, use, forms_));
+  };
+  add(maps.diffuse, MapUse::kNormal);
+  for (const MapClass& lobes : maps.lobes) add(lobes, MapUse::kTilted);
+  if (effects_.mirror) add(maps.mirror, MapUse::kMirror);
+}
+
+// Which spots are taken out of the maps is seen in the maps; those of before are kept, as plans try both.
+void CpuEngine::take_out_spots(const Scene& scene, std::size_t spots) {
+  if (spots == effects_.spots) return;
+  effects_.spots = spots;
+  std::swap(stacks_, other_stacks_);
+  if (stacks_.empty()) {
+    const Result<SceneMaps> maps = scene_maps(scene, effects_);
+    if (maps.ok()) stack(*maps);
+  }
+  for (std::size_t k = 0; k < stacks_.size(); ++k) shading_.maps[k] = stacks_[k].maps();
 }
 
 Result<void> CpuEngine::load(const Scene& scene, const Effects& effects) {
   GONIO_ASSIGN(const SceneMaps maps, scene_maps(scene, effects));
   effects_ = effects;
-  stacks_.clear();
+  other_stacks_.clear();
   background_map_ = {};
   forms_ = effects.reflection ? product_forms(scene.reflection) : ProductForms{};
-  interleave(maps.diffuse, MapUse::kNormal);
-  for (const MapClass& lobes : maps.lobes) interleave(lobes, MapUse::kTilted);
-  if (effects.mirror) interleave(maps.mirror, MapUse::kMirror);
+  stack(maps);
   if (effects.background == Background::kEnvironment) {
     background_map_ = interleaved(maps.mirror, MapUse::kMirror, {});
   }
@@ -163,10 +180,11 @@ Result<void> CpuEngine::load(const Scene& scene, const Effects& effects) {
 }
 
 void CpuEngine::load_paints(const Scene& scene, const Effects& effects) {
+  take_out_spots(scene, effects.spots);
   const WeightTable table = weight_table(scene, effects);
   std::size_t blocks = 0;
   for (const Stack& stack : stacks_) blocks += static_cast<std::size_t>(stack.blocks);
-  const int light_slots = effects.lights > 0 ? table.shift_slot(0) - table.light_slot() : 0;
+  const int light_slots = effects.single_lights() > 0 ? table.shift_slot(0) - table.light_slot() : 0;
   shading_.segments = table.segments;
   shading_.light_offset = 2 * kBlock * blocks;
   shading_.shift_offset = shading_.light_offset + 8 * static_cast<std::size_t>(light_slots > 0 ? light_slots + 1 : 0);
@@ -206,7 +224,7 @@ void CpuEngine::load_paints(const Scene& scene, const Effects& effects) {
 
 void CpuEngine::set_lights(const Scene& scene, const Effects& effects) {
   lights_.clear(), exponents_.clear();
-  const std::vector<Light> lights = lights_of(scene, effects);
+  const std::vector<Light> lights = single_lights(scene, effects);
   for (const Light& light : lights) {
     for (int c = 0; c < 3; ++c) lights_.push_back(static_cast<float>(light.direction[c]));
     lights_.push_back(0);
@@ -231,13 +249,14 @@ void CpuEngine::set_lights(const Scene& scene, const Effects& effects) {
 void CpuEngine::set_discs(const std::vector<Light>& lights, const Effects& effects) {
   discs_.clear(), disc_tables_.clear(), disc_lobes_.clear();
   shading_.discs = nullptr;
-  if (!effects.extent || lights.empty()) return;
+  if (!effects.discs() || lights.empty()) return;
   for (const Light& light : lights) {
     CpuShading::Disc disc;
     disc.radius_rad = light.radius_rad;
     disc.sine = static_cast<float>(std::sin(light.radius_rad));
     disc.chord = light.radius_rad > 0 ? static_cast<float>(2 * std::sin(0.5 * light.radius_rad)) : -1;
-    if (light.radius_rad > 0) disc.mirrored = static_cast<float>(brdf::disc_radiance(light.radius_rad));
+    if (light.radius_rad > 0 && light.mirrored)
+      disc.mirrored = static_cast<float>(brdf::disc_radiance(light.radius_rad));
     discs_.push_back(disc);
     for (const Effects::LobeUse& lobe : effects.lobes)
       disc_tables_.push_back(brdf::disc_lobe_table(lobe.exponent, light.radius_rad));

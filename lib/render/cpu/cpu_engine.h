@@ -51,14 +51,15 @@ class CpuEngine : public Engine {
     std::vector<float> texels;
   };
   static Stack interleaved(const MapClass& maps, MapUse use, const ProductForms& forms);
-  void interleave(const MapClass& maps, MapUse use);
+  void stack(const SceneMaps& maps);
+  void take_out_spots(const Scene& scene, std::size_t spots);
   void set_lights(const Scene& scene, const Effects& effects);
   void set_discs(const std::vector<Light>& lights, const Effects& effects);
   void set_tilts(const Scene& scene, const Effects& effects);
   void shade_row(const Gbuffer& gbuffer, int y, float gain, bool add, float* rgba) const;
 
   Effects effects_;
-  std::vector<Stack> stacks_;
+  std::vector<Stack> stacks_, other_stacks_;  // those with other spots; none: not yet
   Stack background_map_;
   ProductForms forms_;
   std::vector<float> weights_, lights_, exponents_, tilts_, colors_of_forms_;

@@ -181,10 +181,10 @@ void GlEngine::load_paints(const Scene& scene) {
   gl_->DeleteTextures(1, &tilted_);
   tilted_ = 0;
   if (!tilt_exponents_.empty()) upload_tilted(scene);
-  lights_ = lights_of(scene, effects_);
+  lights_ = single_lights(scene, effects_);
   gl_->DeleteTextures(1, &discs_);
   discs_ = 0;
-  if (effects_.extent && !lights_.empty()) upload_discs();
+  if (effects_.discs() && !lights_.empty()) upload_discs();
   background_color_ = scene.background_color;
 }
 
@@ -226,9 +226,10 @@ Result<void> GlEngine::shade(Sight& sight, int sample, float gain, bool add, ima
     gl_->set(program_, fmt::format("light_white[{}]", i), lights_[i].white);
     if (discs_ == 0) continue;
     const double radius = lights_[i].radius_rad;
-    gl_->set(
-        program_, fmt::format("light_disc[{}]", i),
-        radius > 0 ? Vec3{std::sin(radius), 2 * std::sin(0.5 * radius), brdf::disc_radiance(radius)} : Vec3{0, -1, 0});
+    gl_->set(program_, fmt::format("light_disc[{}]", i),
+             radius > 0 ? Vec3{std::sin(radius), 2 * std::sin(0.5 * radius),
+                               lights_[i].mirrored ? brdf::disc_radiance(radius) : 0}
+                        : Vec3{0, -1, 0});
   }
   if (effects_.background == Background::kColor) gl_->set(program_, "background", background_color_);
   gl_->BindVertexArray(no_vertices_);

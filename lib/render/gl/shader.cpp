@@ -49,13 +49,13 @@ uniform sampler2D weights;  // a row for each part; two texels for each slot of 
       text += "uniform samplerCube mirror;  // the environment itself\n";
     }
   }
-  if (effects.lights > 0) {
-    text += fmt::format("uniform vec3 light_direction[{0}], light_white[{0}];\n", effects.lights);
-    if (effects.extent) {
+  if (effects.single_lights() > 0) {
+    text += fmt::format("uniform vec3 light_direction[{0}], light_white[{0}];\n", effects.single_lights());
+    if (effects.discs()) {
       text += fmt::format(
           "uniform vec3 light_disc[{}];  // sine and chord of the radius, 1/(pi sine^2)\n"
           "uniform sampler2D discs;  // for each light a row for each lobe, then one for the horizon\n",
-          effects.lights);
+          effects.single_lights());
     }
   }
   if (effects.background == Background::kColor) text += "uniform vec3 background;\n";
@@ -137,7 +137,7 @@ vec2 disc_horizon(int light, float part) {{
 }
 
 bool lit_gloss(const Effects& effects) {
-  return effects.lights > 0 && effects.fresnel &&
+  return effects.single_lights() > 0 && effects.fresnel &&
          std::any_of(effects.lobes.begin(), effects.lobes.end(), [](const Effects::LobeUse& use) { return use.gloss; });
 }
 
@@ -221,9 +221,9 @@ std::string lobe_functions(const Effects& effects, Product product) {
     }
     text += "  return sum;\n}\n";
   }
-  if (effects.lights == 0) return text;
+  if (effects.single_lights() == 0) return text;
   const WeightTable slots = slots_of(effects);
-  if (effects.extent) return text + disc_lobes(effects, slots);
+  if (effects.discs()) return text + disc_lobes(effects, slots);
   text += "\nvec3 lit_lobes(vec3 r, vec3 l, float base, float F) {  // without the gloss term's 1/cos_i\n";
   text += "  float versine = 0.5 * dot(r - l, r - l);\n  vec3 sum = vec3(0.0);\n";
   for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
@@ -281,7 +281,7 @@ std::string disc_terms(const Effects& effects) {
     vec2 seen = cos_i >= disc.x ? vec2(cos_i, 1.0) : disc_horizon(i, cos_i / disc.x);
 {}    vec3 reflected = {};
 )",
-      effects.lights,
+      effects.single_lights(),
       // At the mean cosine of what is seen of the disc.
       effects.coat ? fmt::format("    seen.x *= let_in(min(seen.x / max(seen.y, 1e-6), 1.0), W({}).a);\n",
                                  slots_of(effects).light_slot())
@@ -300,7 +300,7 @@ std::string disc_terms(const Effects& effects) {
 
 // The exact BRDF times cos_i, so that the gloss term's 1/cos_i is gone.
 std::string light_terms(const Effects& effects) {
-  if (effects.extent) return disc_terms(effects);
+  if (effects.discs()) return disc_terms(effects);
   std::string text = fmt::format(
       R"(
   // the lights
@@ -311,7 +311,8 @@ std::string light_terms(const Effects& effects) {
     float base = cos_i{};
     vec3 reflected = {};
 )",
-      effects.lights, effects.coat ? fmt::format(" * let_in(cos_i, W({}).a)", slots_of(effects).light_slot()) : "",
+      effects.single_lights(),
+      effects.coat ? fmt::format(" * let_in(cos_i, W({}).a)", slots_of(effects).light_slot()) : "",
       effects.diffuse ? fmt::format("base * W({}).rgb", slots_of(effects).light_slot()) : "vec3(0.0)");
   if (!effects.lobes.empty()) {
     const char* fresnel = lit_gloss(effects) ? "fresnel(sqrt(0.5 + 0.5 * dot(l, wo)))" : "1.0";
@@ -377,20 +378,21 @@ void main() {  // one triangle that covers the picture
 
 std::string shading_fragment_shader(const Effects& effects, const color::ReflectionOperator& op,
                                     const std::vector<double>& tilted) {
-  const bool lit_lobes = effects.lights > 0 && !effects.lobes.empty();
+  const bool lit_lobes = effects.single_lights() > 0 && !effects.lobes.empty();
   const ProductForms forms = effects.reflection ? product_forms(op) : ProductForms{};
   const Product product = product_of(effects, forms);
   // 1. What the program is given, and the functions that it needs.
   std::string text = "#version 330 core\n// goniochrome-theory(7), RENDERING\n";
   text +=
       uniforms(effects) + tilt_uniforms(effects, tilted) + kRays + "layout(location = 0) out vec4 color;\n" + kWeight;
-  if (effects.reflection && (product == Product::kOperator || effects.lights > 0)) text += reflection_function(op);
+  if (effects.reflection && (product == Product::kOperator || effects.single_lights() > 0))
+    text += reflection_function(op);
   if (effects.environment && product == Product::kForms)
     text += forms_functions(forms, effects.background == Background::kEnvironment);
   if (lit_gloss(effects)) text += fresnel_function();
-  if (effects.coat && effects.lights > 0) text += kLetIn;
-  if (lit_lobes && !effects.extent) text += kCosPower;
-  if (effects.lights > 0 && effects.extent) text += disc_functions(effects.lobes.size());
+  if (effects.coat && effects.single_lights() > 0) text += kLetIn;
+  if (lit_lobes && !effects.discs()) text += kCosPower;
+  if (effects.single_lights() > 0 && effects.discs()) text += disc_functions(effects.lobes.size());
   if (!effects.lobes.empty()) text += lobe_functions(effects, product);
   text += tilt_function(effects, tilted, product);
   // 2. Where nothing is seen the program shows the background; else it finds the view and the row of weights.
@@ -416,7 +418,7 @@ void main() {{
 )";
   }
   if (effects.environment) text += environment_terms(effects, product, !tilted.empty());
-  if (effects.lights > 0) text += light_terms(effects);
+  if (effects.single_lights() > 0) text += light_terms(effects);
   return text + "  color = vec4(radiance, 1.0);\n}\n";
 }
 

@@ -44,8 +44,9 @@ double point_ns(const Workload& work, const Effects& effects, const MapCost& c) 
         work.lookups[std::min(work.lookups.size(), static_cast<std::size_t>(effects.tilt_level)) - 1];
     if (lookups > 0) ns += c.tilted + lookups * c.lookup;
   }
-  return ns + static_cast<double>(effects.lights) * (c.light + spread * static_cast<double>(effects.lobes.size()) *
-                                                                   (effects.extent ? c.disc_lobe : c.lit_lobe));
+  return ns +
+         static_cast<double>(effects.single_lights()) * (c.light + spread * static_cast<double>(effects.lobes.size()) *
+                                                                       (effects.discs() ? c.disc_lobe : c.lit_lobe));
 }
 
 double frame_ms(const Workload& work, const Effects& effects, const MapCost& cost) {

@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "render/internal/tilt_table.h"
+#include "render/spots.h"
 
 namespace goniochrome::render {
 
@@ -74,10 +75,13 @@ Result<SceneMaps> scene_maps(const Scene& scene, const Effects& effects) {
   SceneMaps maps;
   if (!effects.environment) return maps;
   const envmap::PrefilteredEnvironment& env = *scene.env;
-  if (effects.diffuse) maps.diffuse = single(WeightTable::diffuse_slot(), env.diffuse.map);
+  const std::vector<envmap::Spot> spots(env.spots.begin(),
+                                        env.spots.begin() + static_cast<std::ptrdiff_t>(effects.spots));
+  if (effects.diffuse)
+    maps.diffuse = single(WeightTable::diffuse_slot(), diffuse_without_spots(env.diffuse.map, false, spots));
   if (effects.diffuse && effects.coat) {
     maps.diffuse.slots.push_back(slots_of(effects).coat_diffuse_slot());
-    maps.diffuse.maps.push_back(coat_diffuse_map(env));
+    maps.diffuse.maps.push_back(diffuse_without_spots(coat_diffuse_map(env), true, spots));
   }
   for (const Effects::LobeUse& use : effects.lobes) GONIO_TRY(check_lobe(env, use.exponent, effects));
   for (const double exponent : tilt_exponents(scene, effects)) GONIO_TRY(check_lobe(env, exponent, effects));
@@ -85,7 +89,8 @@ Result<SceneMaps> scene_maps(const Scene& scene, const Effects& effects) {
     MapClass into{env.lobe(effects.lobes[of.lobes.front()].exponent)->map.size, {}, {}, of.shifted};
     for (const std::size_t j : of.lobes) {
       into.slots.push_back(WeightTable::lobe_slot(j));
-      into.maps.push_back(resized(env.lobe(effects.lobes[j].exponent)->map, into.size));
+      const double exponent = effects.lobes[j].exponent;
+      into.maps.push_back(resized(without_spots(env.lobe(exponent)->map, exponent, spots), into.size));
     }
     maps.lobes.push_back(std::move(into));
   }

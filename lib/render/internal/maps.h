@@ -32,7 +32,8 @@ struct LobeClass {
 };
 std::vector<LobeClass> lobe_classes(const envmap::PrefilteredEnvironment& env, const Effects& effects);
 
-// The maps of the scene's environment that the effects need. A lobe's map is brought to the size of its class by
+// The maps of the scene's environment that the effects need, without the bright spots that they cut one by one; the
+// mirror part keeps these. A lobe's map is brought to the size of its class by
 // bilinear interpolation between its own texels. Error: a lobe or the mirror part that the environment lacks, with the
 // command that makes it.
 Result<SceneMaps> scene_maps(const Scene& scene, const Effects& effects);

@@ -133,6 +133,7 @@ void leave_to_tilts(const Scene& scene, Effects& effects) {
   }
   std::erase_if(effects.lobes, [](const Effects::LobeUse& use) { return !use.directional_diffuse && !use.gloss; });
   effects.horizon = effects.horizon && !effects.lobes.empty();
+  if (!effects.horizon) effects.spots = 0;
   effects.anisotropy = effects.anisotropy && !effects.lobes.empty();
 }
 

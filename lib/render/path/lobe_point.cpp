@@ -308,7 +308,7 @@ void LobePoint::add_sure(const color::Rgb* open_light, LobeEstimate& result) con
   } else if (open_light != nullptr) {
     mirror += open_light[columns_.mirror()];
   } else if (transport_.environment_) {
-    mirror += kernels_.mirror() * transport_.environment_->radiance(painted_.mirrored());
+    mirror += kernels_.mirror() * transport_.mirrored_environment(painted_.mirrored());
   }
 }
 

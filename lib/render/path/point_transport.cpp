@@ -135,8 +135,7 @@ void PointTransport::add_mirror() {
   const float weight = painted_.mirror_weight();
   if (!(weight > 0)) return;
   mirror_hit_ = transport_.rays_->closest(spot_.start, painted_.mirrored());
-  const color::Rgb open =
-      transport_.environment_ ? transport_.environment_->radiance(painted_.mirrored()) : color::Rgb{};
+  const color::Rgb open = transport_.environment_ ? transport_.mirrored_environment(painted_.mirrored()) : color::Rgb{};
   if (!transport_.lights_.empty()) {
     color::Rgb lamps = transport_.mirrored_lamps(spot_.start, painted_.mirrored(), mirror_hit_);
     if (correction_) lamps += -1.0 * transport_.mirrored_lamps(spot_.start, painted_.mirrored(), {});

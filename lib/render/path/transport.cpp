@@ -76,6 +76,7 @@ Result<Transport> Transport::create(const PathScene& path_scene) {
                                  ? path_scene.table
                                  : std::make_shared<const EnvironmentTable>(*path_scene.environment);
     if (transport.environment_->dark()) transport.environment_.reset();
+    transport.mirrored_ = path_scene.mirrored;
     if (ground && ground->kind == Ground::Kind::kShadow) {
       GONIO_ASSIGN(transport.ground_, LaidGround::create(*ground, *path_scene.environment, scene.lights));
       transport.ground_eye_ = transport.rays_->local(ground->probe_eye);
@@ -240,10 +241,16 @@ Transport::LampSample Transport::drawn_lamp(const Float3& from, double choice, d
   return sample;
 }
 
+color::Rgb Transport::mirrored_environment(const Float3& direction) const {
+  if (mirrored_ == nullptr) return environment_->radiance(direction);
+  const float* texel = mirrored_->lookup(rays::vec3(direction));
+  return {texel[0], texel[1], texel[2]};
+}
+
 color::Rgb Transport::mirrored_lamps(const Float3& from, const Float3& toward, const Hit& hit) const {
   color::Rgb sum;
   for (std::size_t i = 0; i < lights_.size(); ++i) {
-    if (!(lights_[i].radius_rad > 0)) continue;
+    if (!(lights_[i].radius_rad > 0) || !lights_[i].mirrored) continue;
     const SeenLamp lamp = seen_lamp(i, from);
     if (lamp.light.meets(rays::vec3(toward)) && !(hit.any() && hit.distance < lamp.reach)) sum += lamp.light.radiance();
   }
@@ -323,7 +330,8 @@ color::Rgb Transport::light_at_end(const Next& next, const PathProduct& path, bo
   if (std::isinf(next.pdf) && !lights_.empty()) sum += path.shown(mirrored_lamps(next.start, next.direction, next.hit));
   if (next.hit.any() == laid && environment_) {
     const LightSample light = environment_->at(next.direction);
-    sum += (laid ? -1 : 1) * share(light.pdf) * path.shown(light.radiance);
+    const color::Rgb radiance = std::isinf(next.pdf) ? mirrored_environment(next.direction) : light.radiance;
+    sum += (laid ? -1 : 1) * share(light.pdf) * path.shown(radiance);
   }
   if (!next.hit.any()) return sum;
   const color::Rgb& emission = emitters_.radiance(rays_->part(next.hit.triangle));

@@ -23,7 +23,9 @@ namespace goniochrome::render {
 struct PathScene {
   const Scene* scene = nullptr;  // its mesh, paints, lights and product of colors; its maps are not used
   const envmap::Environment* environment = nullptr;  // none: dark
-  std::vector<color::Rgb> emission = {};             // radiance of each part; none where there are fewer
+  // What mirrors show where its sun is one of the scene's lights and is no part of `environment`; none: that.
+  const envmap::Environment* mirrored = nullptr;
+  std::vector<color::Rgb> emission = {};  // radiance of each part; none where there are fewer
   std::optional<Ground> ground = {};
   // The mesh with its floor, where they are there already; else they are made.
   std::shared_ptr<const rays::RayScene> rays = nullptr;
@@ -145,6 +147,8 @@ class Transport {
   static LampSample drawn_from(const SeenLamp& lamp, double u, double v);
   // The same of any one lamp.
   LampSample drawn_lamp(const rays::Float3& from, double choice, double v) const;
+  // What a mirror sees of the environment, which is there.
+  color::Rgb mirrored_environment(const rays::Float3& direction) const;
   // What a mirror sees of lamps in that direction, where a ray meets `hit`.
   color::Rgb mirrored_lamps(const rays::Float3& from, const rays::Float3& toward, const rays::Hit& hit) const;
   bool is_laid(const rays::Spot& spot) const;
@@ -160,6 +164,7 @@ class Transport {
   mesh::Box mesh_box_;
   float mesh_radius_ = 0;  // local, of a sphere about the origin that holds the mesh
   std::shared_ptr<const EnvironmentTable> environment_;
+  const envmap::Environment* mirrored_ = nullptr;  // in its place in mirrors
   Emitters emitters_;
   std::vector<Light> lights_;
   const color::ReflectionOperator* reflection_ = nullptr;  // null: channel by channel

@@ -70,6 +70,14 @@ std::string horizon_reason(const Effects& all, const std::vector<VisiblePoint>& 
                      percent(seen, [&](const VisiblePoint& p) { return cos_o(p) < std::sin(half_rad); }));
 }
 
+std::string spots_reason(const Scene& scene, const Effects& all) {
+  if (!all.horizon) return "no horizon to cut light from all around";
+  if (scene.env->spots.empty()) return "no small part of the environment is bright";
+  if (all.spots == 0) return "color maps stand for the light of the maps";
+  return fmt::format("{} bright spot{} of the environment, each cut by the horizon by itself", all.spots,
+                     all.spots == 1 ? "" : "s");
+}
+
 std::string anisotropy_reason(const Scene& scene, const Effects& all) {
   if (!all.anisotropy) return "no visible paint is brushed";
   std::size_t most = 0;
@@ -212,7 +220,14 @@ std::vector<EffectSwitch> effect_switches(const Scene& scene, const Effects& all
       : grazing > 0 ? fmt::format("the coat takes light from the base, {:.0f} % of what is seen beyond 60 deg", grazing)
                     : "the coat takes light from the base",
       [](Effects& e) { e.coat = false; });
-  add("horizon", all.horizon, horizon_reason(all, seen), [](Effects& e) { e.horizon = false; });
+  add("horizon", all.horizon, horizon_reason(all, seen), [](Effects& e) {
+    e.horizon = false;
+    e.spots = 0;
+  });
+  const int horizon = static_cast<int>(list.size()) - 1;
+  add("spots", all.spots > 0, spots_reason(scene, all), [](Effects& e) { e.spots = 0; });
+  list.back().needs = horizon;
+  list.back().refines = true;
   add("anisotropy", all.anisotropy, anisotropy_reason(scene, all), [](Effects& e) { e.anisotropy = false; });
   add("travel", all.views || all.maps,
       all.views && all.maps ? "weights change with the view, and a color map under lights"

@@ -155,7 +155,13 @@ RayChoice ray_choice(const RayProbe& probe, const RayWishes& wishes) {
   choice.aim_de00 = aim_of(wishes, state);
   const auto cost = [&](const RayEffects& effects) { return cost_of(probe, wishes, effects, choice.aim_de00); };
   choice.cost = cost(state.on);
-  if (!state.named && wishes.automatic) choice.most_samples = kMostUnaskedSamples;
+  if (!state.named && wishes.automatic) {
+    choice.most_samples = kMostUnaskedSamples;
+    if (choice.cost.samples > kMeanUnaskedSamples) {
+      choice.aim_de00 *= std::sqrt(choice.cost.samples / kMeanUnaskedSamples);
+      choice.cost = cost(state.on);
+    }
+  }
   if (state.on.any())
     choice.noise_de00 = choice.aim_de00 * std::sqrt(std::max(1.0, choice.cost.most_samples / choice.most_samples));
   choice.left_out_de00_p95 = state.on == wanted ? 0 : probe.worth(wanted, state.on).de00_p95;

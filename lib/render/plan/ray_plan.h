@@ -46,6 +46,8 @@ struct RayWishes {
 
 // The most samples of a point that are drawn for effects that nobody asked for by name. Most points get far fewer.
 constexpr int kMostUnaskedSamples = 1024;
+// And of all visible points in the mean: the noise is aimed at that comes to no more.
+constexpr double kMeanUnaskedSamples = 64;
 
 struct RayChoice {
   std::vector<PlanItem> items;
