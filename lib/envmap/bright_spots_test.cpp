@@ -44,17 +44,17 @@ Vec3 irradiance(const Environment& environment, const Vec3& normal) {
   return sum;
 }
 
-// A texel of the map is .35 deg wide, so that the rim of the disc is known to a part of that, and its area to 4 %.
+// A texel of the map is .18 deg wide, so that the rim of the disc is known to a part of that, and its area to 6 %.
 TEST(BrightSpots, FindADiscAsItIs) {
   const Vec3 direction = normalized({0.5, 0.6, -0.4});
-  const double radius = 3 * kDegree, light = 500;
-  const std::vector<Spot> spots = bright_spots(disc_on_sky(direction, radius, light));
+  const double radius = 1 * kDegree, light = 4500;
+  const std::vector<Spot> spots = bright_spots(disc_on_sky(direction, radius, light, 2048));
   ASSERT_THAT(spots, SizeIs(1));
   EXPECT_GT(dot(spots[0].direction, direction), std::cos(0.1 * kDegree));
-  EXPECT_NEAR(spots[0].radius_rad, radius, 0.02 * radius);
+  EXPECT_NEAR(spots[0].radius_rad, radius, 0.03 * radius);
   const double white = light * std::sin(radius) * std::sin(radius);  // irradiance / pi
-  EXPECT_NEAR(spots[0].white.x, white, 0.04 * white);
-  EXPECT_NEAR(spots[0].white.z, 0.25 * white, 0.01 * white);
+  EXPECT_NEAR(spots[0].white.x, white, 0.06 * white);
+  EXPECT_NEAR(spots[0].white.z, 0.25 * white, 0.015 * white);
 }
 
 TEST(BrightSpots, AStripIsCutIntoCompactSpots) {
@@ -104,7 +104,9 @@ TEST(SunlitSky, SunAndSkyHaveTheLightOfTheEnvironment) {
     const double cosine = std::max(0.0, dot(normal, split->sun.direction));
     for (int c = 0; c < 3; ++c) {
       EXPECT_NEAR(sky[c] + kPi * cosine * split->sun.white[c], all[c], 1e-4 * all[c]);
-      if (c == 0) EXPECT_LT(sky[c], 0.6 * all[c]) << "the sun is taken out";
+    }
+    if (cosine > 0) {
+      EXPECT_LT(sky.x, 0.6 * all.x) << "the sun is taken out";
     }
   }
 }

@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "base/angles.h"
-#include "brdf/disc_light.h"
 #include "brdf/lobe_model.h"
 #include "math/cosine_power.h"
 #include "render/aov.h"
@@ -14,6 +13,7 @@
 #include "render/gbuffer.h"
 #include "render/glints.h"
 #include "render/spots.h"
+#include "render/unit_weights.h"
 
 namespace goniochrome::sketch {
 
@@ -69,12 +69,19 @@ class Shading {
     scene.gloss_deg.assign(scene.paints.size(), kGloss_deg);
     if (!drawn(buffers, "extent"))
       for (render::Light& lamp : scene.lights) lamp.radius_rad = 0;
-    lights_ = scene.lights;
-    if (env != nullptr && drawn(buffers, "spots")) take_out_spots(*env);
     render::Effects effects = render::effects_of(scene);
     effects.fresnel = fresnel_ = drawn(buffers, "fresnel");
     effects.horizon = drawn(buffers, "horizon");
-    table_ = render::weight_table(scene, effects);
+    weights_ = render::UnitWeights(scene, effects, basis_.exponents, coat_index_);
+    std::vector<render::Light> lights = scene.lights;
+    if (env != nullptr && drawn(buffers, "spots")) take_out_spots(*env, lights);
+    for (const render::Light& light : lights) {
+      if (light.radius_rad > 0) {
+        discs_.push_back(weights_.disc(light));
+      } else {
+        points_.push_back(light);
+      }
+    }
   }
 
   const formats::Basis& basis() const { return basis_; }
@@ -116,92 +123,67 @@ class Shading {
   void add_sample(const Vec3& n, const Vec3& wo, double spread, double scale, Vec3* column) const {
     const View view{n, wo, 2 * dot(n, wo) * n - wo, std::clamp(dot(n, wo), 0.0, 1.0), spread};
     if (env_ != nullptr) add_environment(*env_, view, scale, column);
-    for (const render::Light& light : lights_) add_light(light, view, scale, column);
+    for (const render::Light& light : points_) add_light(light, view, scale, column);
+    for (std::size_t i = 0; i < discs_.size(); ++i) add_disc(i, view, scale, column);
   }
 
   void add_environment(const envmap::PrefilteredEnvironment& env, const View& view, double scale, Vec3* column) const {
-    const int last = static_cast<int>(search_columns(basis_)) - 1;
+    const std::size_t last = search_columns(basis_) - 1;
+    const render::WeightTable& table = weights_.table();
     const bool bare = coat_index_ == paint::kNoCoat;
-    const int slot = bare ? render::WeightTable::diffuse_slot() : table_.coat_diffuse_slot();
-    column[0] +=
-        scale * weight(0, slot, view.cos_o, 0) * envmap::bilinear(bare ? env.diffuse.map : coat_diffuse_, view.normal);
-    for (int k = 1; k < last; ++k) {
-      const auto lobe = static_cast<std::size_t>((k - 1) / 2);
-      const int lobe_slot = render::WeightTable::lobe_slot(lobe);
-      const Vec3 toward =
-          view.mirrored + weight(k, table_.shift_slot(lobe), view.cos_o, static_cast<int>(lobe % 4)) * view.normal;
-      column[k] += scale * weight(k, lobe_slot, view.cos_o, 0) * envmap::bilinear(env.lobes[lobe].map, toward);
+    const double c = view.cos_o;
+    column[0] += scale * weights_.at(0, weights_.diffuse_slot(), c) *
+                 envmap::bilinear(bare ? env.diffuse.map : coat_diffuse_, view.normal);
+    for (std::size_t k = 1; k < last; ++k) {
+      const std::size_t lobe = (k - 1) / 2;
+      const double shift = weights_.at(k, table.shift_slot(lobe), c, static_cast<int>(lobe % 4));
+      column[k] += scale * weights_.at(k, render::WeightTable::lobe_slot(lobe), c) *
+                   envmap::bilinear(env.lobes[lobe].map, view.mirrored + shift * view.normal);
     }
     if (basis_.mirror)
       column[last] +=
-          scale * weight(last, table_.mirror_slot(), view.cos_o, 0) * envmap::bilinear(env.mirror.map, view.mirrored);
+          scale * weights_.at(last, table.mirror_slot(), c) * envmap::bilinear(env.mirror.map, view.mirrored);
   }
 
   // As the engines have them: lamps take the place of what the maps have of the spots.
-  void take_out_spots(const envmap::PrefilteredEnvironment& env) {
+  void take_out_spots(const envmap::PrefilteredEnvironment& env, std::vector<render::Light>& lights) {
     rest_ = env;
     rest_.diffuse.map = render::diffuse_without_spots(std::move(rest_.diffuse.map), false, env.spots);
     if (coat_diffuse_.size > 0)
       coat_diffuse_ = render::diffuse_without_spots(std::move(coat_diffuse_), true, env.spots);
     for (envmap::PrefilteredLobe& lobe : rest_.lobes)
       lobe.map = render::without_spots(std::move(lobe.map), lobe.exponent, env.spots);
-    for (const envmap::Spot& spot : env.spots) lights_.push_back(render::light_of(spot));
+    for (const envmap::Spot& spot : env.spots) lights.push_back(render::light_of(spot));
     env_ = &rest_;
   }
 
-  // A slot's channel of the paint of this number.
-  double weight(int paint, int slot, double cos_o, int channel) const {
-    const double x = table_.segments > 1 ? std::sqrt(cos_o) * table_.segments : cos_o;
-    const int segment = std::min(static_cast<int>(x), table_.segments - 1);
-    const float* w = table_.at(paint, segment, slot);
-    return w[channel] + w[4 + channel] * (x - segment);
-  }
-
-  // As the engines draw a disc: lobes by their table, one part with cosine and coat of the disc and one with those of
-  // the mirror direction.
-  void add_disc(const render::Light& light, const View& view, double scale, Vec3* column) const {
-    const double cosine = dot(view.normal, light.direction), c = view.cos_o, radius = light.radius_rad;
-    if (cosine <= -std::sin(radius)) return;
-    const Vec3 white = scale * kPi * light.white;
-    const double above = brdf::disc_above(cosine, radius), bare = brdf::disc_irradiance(cosine, radius);
-    const auto let_in = [&](double to) { return brdf::coat_transmission(std::clamp(to, 0.0, 1.0), coat_index_); };
-    const double irradiance = above > 0 ? bare * let_in(bare / above) : 0, cos_r = c * let_in(c);
-    const double chord = length(view.mirrored - light.direction);
-    const auto coat = [&](const Vec3& toward) {
-      const double cos_half = std::sqrt(std::max(0.0, 0.5 + 0.5 * dot(toward, view.to_viewer)));
-      return fresnel_ ? brdf::fresnel_dielectric(std::min(1.0, cos_half), brdf::kCoatIndex) : 1;
-    };
-    const double coat_l = above * coat(light.direction), coat_r = coat(view.mirrored);
-    column[0] += irradiance * weight(0, table_.light_slot(), c, 0) * white;
-    for (std::size_t j = 0; j < basis_.exponents.size(); ++j) {
-      const brdf::DiscLobeTable::Node of = brdf::disc_lobe_table(basis_.exponents[j], radius)->at(chord);
-      const int flake = static_cast<int>(1 + 2 * j), gloss = flake + 1;
-      column[flake] += (of.cosine[0] * irradiance + of.cosine[1] * cos_r) *
-                       weight(flake, table_.directional_diffuse_slot(j), c, 0) * white;
-      column[gloss] +=
-          (of.plain[0] * coat_l + of.plain[1] * coat_r) * weight(gloss, table_.gloss_slot(j), c, 0) * white;
-    }
-    const int last = static_cast<int>(search_columns(basis_)) - 1;
-    const double mirrored =
-        basis_.mirror && light.mirrored ? render::mirrored_share(light, view.mirrored, view.spread) : 0;
+  void add_disc(std::size_t number, const View& view, double scale, Vec3* column) const {
+    const render::UnitWeights::Disc& disc = discs_[number];
+    if (dot(view.normal, disc.light.direction) <= -std::sin(disc.light.radius_rad)) return;
+    weights_.add_diffuse(disc, view.normal, view.cos_o, scale, column);
+    weights_.add_lobes(disc, view.normal, view.to_viewer, view.mirrored, scale, column);
+    const std::size_t last = search_columns(basis_) - 1;
+    const bool shown = basis_.mirror && disc.light.mirrored;
+    const double mirrored = shown ? render::mirrored_share(disc.light, view.mirrored, view.spread) : 0;
     if (mirrored > 0)
-      column[last] += weight(last, table_.lamp_mirror_slot(), c, 0) * (mirrored * scale * light.radiance());
+      column[last] += weights_.at(last, weights_.table().lamp_mirror_slot(), view.cos_o) *
+                      (mirrored * scale * disc.light.radiance());
   }
 
   void add_light(const render::Light& light, const View& view, double scale, Vec3* column) const {
-    if (light.radius_rad > 0) return add_disc(light, view, scale, column);
     const double cos_i = dot(view.normal, light.direction), c = view.cos_o;
     if (cos_i <= 0) return;
     const Vec3 apart = view.mirrored - light.direction, white = scale * kPi * light.white;
     const double cos_half = std::sqrt(0.5 + 0.5 * dot(light.direction, view.to_viewer));
     const double coat = fresnel_ ? brdf::fresnel_dielectric(cos_half, brdf::kCoatIndex) : 1;
     const double base = cos_i * brdf::coat_transmission(std::min(cos_i, 1.0), coat_index_);
-    column[0] += base * weight(0, table_.light_slot(), c, 0) * white;
+    const render::WeightTable& table = weights_.table();
+    column[0] += base * weights_.at(0, table.light_slot(), c) * white;
     for (std::size_t j = 0; j < basis_.exponents.size(); ++j) {
       const double power = math::cos_power_from_versine(0.5 * dot(apart, apart), basis_.exponents[j]);
-      const int flake = static_cast<int>(1 + 2 * j), gloss = flake + 1;
-      column[flake] += base * power * weight(flake, table_.directional_diffuse_slot(j), c, 0) * white;
-      column[gloss] += coat * power * weight(gloss, table_.gloss_slot(j), c, 0) * white;
+      const std::size_t flake = 1 + 2 * j, gloss = flake + 1;
+      column[flake] += base * power * weights_.at(flake, table.directional_diffuse_slot(j), c) * white;
+      column[gloss] += coat * power * weights_.at(gloss, table.gloss_slot(j), c) * white;
     }
   }
 
@@ -211,11 +193,12 @@ class Shading {
   formats::Basis basis_;
   int normal_, part_;                                     // channels
   std::vector<std::array<double, 2>> shifts_ = {{0, 0}};  // of the samples of a pixel from its center
-  std::vector<render::Light> lights_;
+  std::vector<render::Light> points_;                     // lamps without extent, and with it
+  std::vector<render::UnitWeights::Disc> discs_;
   double coat_index_ = paint::kNoCoat;
   envmap::CubeMap coat_diffuse_;
   bool fresnel_ = false;
-  render::WeightTable table_;
+  render::UnitWeights weights_;
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "base/angles.h"
 #include "base/text.h"
 #include "brdf/lobe_model.h"
+#include "render/spots.h"
 
 namespace goniochrome::render {
 
@@ -36,10 +37,11 @@ Result<OpenLight> OpenLight::create(const envmap::PrefilteredEnvironment& env, c
   OpenLight open;
   open.env_ = &env, open.columns_ = columns, open.tilts_ = std::move(tilts), open.coats_ = std::move(coats);
   for (const double exponent : columns.exponents) {
-    open.lobes_.push_back(env.lobe(exponent));
-    if (open.lobes_.back() == nullptr)
+    const envmap::PrefilteredLobe* lobe = env.lobe(exponent);
+    if (lobe == nullptr)
       return input_error("the environment has no lobe of exponent {}, which a transport of this basis needs",
                          shortest(exponent));
+    open.lobes_.push_back(without_spots(lobe->map, exponent, env.spots));
   }
   if (env.diffuse.map.size == 0 || env.mirror.map.size == 0)
     return input_error(
@@ -49,42 +51,39 @@ Result<OpenLight> OpenLight::create(const envmap::PrefilteredEnvironment& env, c
   std::vector<double> different = open.coats_;
   different.push_back(paint::kNoCoat);
   for (const double coat_index : different) {
-    if (open.tables_.contains(coat_index)) continue;
+    if (open.weights_.contains(coat_index)) continue;
     Scene scene;
     scene.paints = unit_paints(columns, coat_index);
     scene.env = &env;
     scene.gloss_deg.assign(scene.paints.size(), brdf::kGlossIncidence_deg);
     Effects effects = effects_of(scene);
     effects.fresnel = effects.horizon = effects.mirror = true;
-    open.tables_[coat_index] = weight_table(scene, effects);
+    open.weights_.emplace(coat_index, UnitWeights(scene, effects, columns.exponents, coat_index));
   }
-  if (open.tables_.size() > 1) open.coat_diffuse_ = coat_diffuse_map(env);
+  open.diffuse_ = diffuse_without_spots(env.diffuse.map, false, env.spots);
+  if (open.weights_.size() > 1) open.coat_diffuse_ = diffuse_without_spots(coat_diffuse_map(env), true, env.spots);
+  for (const envmap::Spot& spot : env.spots) open.spots_.push_back(open.weights_.begin()->second.disc(light_of(spot)));
   return open;
-}
-
-double OpenLight::weight(const WeightTable& table, std::size_t column, int slot, double cos_o, int channel) {
-  const double x = std::sqrt(cos_o) * table.segments;
-  const int segment = std::min(static_cast<int>(x), table.segments - 1);
-  const float* w = table.at(static_cast<int>(column), segment, slot);
-  return w[channel] + w[4 + channel] * (x - segment);
 }
 
 // A brushed surface gathers the mean over its tilted normals, as the engines have it.
 void OpenLight::at(const Vec3& n, const Vec3& to_viewer, int part, color::Rgb* light) const {
   const double cos_o = std::clamp(dot(n, to_viewer), 0.0, 1.0);
   const auto p = static_cast<std::size_t>(part);
-  const WeightTable& table = tables_.at(p < coats_.size() ? coats_[p] : paint::kNoCoat);
+  const UnitWeights& weights = weights_.at(p < coats_.size() ? coats_[p] : paint::kNoCoat);
+  const WeightTable& table = weights.table();
   std::fill_n(light, columns_.count(), color::Rgb{});
-  const bool bare = &table == &tables_.at(paint::kNoCoat);
-  light[0] = weight(table, 0, bare ? WeightTable::diffuse_slot() : table.coat_diffuse_slot(), cos_o, 0) *
-             envmap::bilinear(bare ? env_->diffuse.map : coat_diffuse_, n);
+  const bool bare = &weights == &weights_.at(paint::kNoCoat);
+  light[0] = weights.at(0, weights.diffuse_slot(), cos_o) * envmap::bilinear(bare ? diffuse_ : coat_diffuse_, n);
+  for (const UnitWeights::Disc& spot : spots_) weights.add_diffuse(spot, n, cos_o, 1, light);
   const auto add_lobes = [&](const Vec3& mirrored, double share) {
     for (std::size_t k = 1; k < columns_.mirror(); ++k) {
       const std::size_t lobe = (k - 1) / 2;
-      const Vec3 toward = mirrored + weight(table, k, table.shift_slot(lobe), cos_o, static_cast<int>(lobe % 4)) * n;
-      light[k] += share * weight(table, k, WeightTable::lobe_slot(lobe), cos_o, 0) *
-                  envmap::bilinear(lobes_[lobe]->map, toward);
+      const double shift = weights.at(k, table.shift_slot(lobe), cos_o, static_cast<int>(lobe % 4));
+      light[k] += share * weights.at(k, WeightTable::lobe_slot(lobe), cos_o) *
+                  envmap::bilinear(lobes_[lobe], mirrored + shift * n);
     }
+    for (const UnitWeights::Disc& spot : spots_) weights.add_lobes(spot, n, to_viewer, mirrored, share, light);
   };
   const Vec3 mirrored = 2 * dot(n, to_viewer) * n - to_viewer;
   if (p >= tilts_.size() || tilts_[p].size() <= 1) {
@@ -99,7 +98,7 @@ void OpenLight::at(const Vec3& n, const Vec3& to_viewer, int part, color::Rgb* l
     }
   }
   const std::size_t last = columns_.mirror();
-  light[last] = weight(table, last, table.mirror_slot(), cos_o, 0) * envmap::bilinear(env_->mirror.map, mirrored);
+  light[last] = weights.at(last, table.mirror_slot(), cos_o) * envmap::bilinear(env_->mirror.map, mirrored);
 }
 
 }  // namespace goniochrome::render

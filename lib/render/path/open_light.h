@@ -1,5 +1,5 @@
 // What each lobe of a basis gathers of an environment where no surface is in the way, by the environment's prefiltered
-// maps. goniochrome-theory(7), RENDERING and TRANSPORT.
+// maps and its bright spots. goniochrome-theory(7), RENDERING and TRANSPORT.
 #pragma once
 
 #include <map>
@@ -8,6 +8,7 @@
 #include "base/result.h"
 #include "render/effects.h"
 #include "render/path/lobe_columns.h"
+#include "render/unit_weights.h"
 
 namespace goniochrome::render {
 
@@ -24,15 +25,15 @@ class OpenLight {
 
  private:
   OpenLight() = default;
-  static double weight(const WeightTable& table, std::size_t column, int slot, double cos_o, int channel);
 
   const envmap::PrefilteredEnvironment* env_ = nullptr;
   LobeColumns columns_;
-  std::vector<const envmap::PrefilteredLobe*> lobes_;  // of the columns' exponents
+  std::vector<envmap::CubeMap> lobes_;  // of the columns' exponents; these and the next two without bright spots
   std::vector<std::vector<brdf::Tilt>> tilts_;
   std::vector<double> coats_;
-  envmap::CubeMap coat_diffuse_;          // where any part has a coat
-  std::map<double, WeightTable> tables_;  // by coat: of a paint for each column, with weight 1 there alone
+  envmap::CubeMap diffuse_, coat_diffuse_;  // the second where any part has a coat
+  std::map<double, UnitWeights> weights_;   // by coat
+  std::vector<UnitWeights::Disc> spots_;
 };
 
 }  // namespace goniochrome::render

@@ -26,7 +26,6 @@ inline const envmap::PrefilteredEnvironment& maps() {
     const envmap::Environment env = sky();
     prefilter::PrefilterRequest request;
     request.exponents = kExponents;
-    request.exponents.push_back(paint::kMirrorExponent);
     return prefilter::prefiltered(env, request, prefilter::prefilter_plan(env, request),
                                   [](const envmap::PrefilteredLobe&, double) {});
   }();

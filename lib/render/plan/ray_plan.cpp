@@ -126,7 +126,10 @@ const std::vector<std::string>& ray_effect_names() {
 }
 
 RayNoise ray_noise(double tolerance_de00, double open_de00_p95) {
-  return {kRayNoiseShare * tolerance_de00, kRayNoiseShare * std::max(tolerance_de00, open_de00_p95)};
+  const double half = kRayNoiseShare * std::max(tolerance_de00, open_de00_p95);
+  const double whole = kWholeShare * tolerance_de00;
+  const double left = std::sqrt(std::max(0.0, whole * whole - open_de00_p95 * open_de00_p95));
+  return {kRayNoiseShare * tolerance_de00, std::max(half, left)};
 }
 
 RayChoice no_rays(const std::string& reason, bool refused) {

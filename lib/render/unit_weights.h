@@ -1,0 +1,47 @@
+// The weights by which each column of a basis shows light: those of a paint with weight 1 in that column alone. What
+// gathers light by columns reads maps and lamps by them as the engines do. goniochrome-theory(7), RENDERING, Lamps.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "brdf/disc_light.h"
+#include "render/effects.h"
+
+namespace goniochrome::render {
+
+class UnitWeights {
+ public:
+  UnitWeights() = default;
+  // The scene has one paint for each column: K_D, then K_DD and K_G of each exponent, then the mirror. All of them have
+  // the coat of that index.
+  UnitWeights(const Scene& scene, const Effects& effects, std::vector<double> exponents, double coat_index);
+
+  // The channel of a slot of the column's paint, at a view with that cosine to the normal (0..1).
+  double at(std::size_t column, int slot, double cos_o, int channel = 0) const;
+  // The slot that the diffuse map or, under a coat, the coat's diffuse map is read by.
+  int diffuse_slot() const;
+  const WeightTable& table() const { return table_; }
+
+  // A lamp that is a disc of some radius, with the tables of its lobes.
+  struct Disc {
+    Light light;
+    std::vector<std::shared_ptr<const brdf::DiscLobeTable>> lobes;
+  };
+  Disc disc(const Light& light) const;
+  // Add what a disc gives to the diffuse column, and to those of the lobes about a mirror direction: one part with the
+  // cosine and the coat of the disc and one with those of the mirror direction. Mirror images are not added.
+  void add_diffuse(const Disc& disc, const Vec3& normal, double cos_o, double scale, color::Rgb* columns) const;
+  void add_lobes(const Disc& disc, const Vec3& normal, const Vec3& to_viewer, const Vec3& mirrored, double scale,
+                 color::Rgb* columns) const;
+
+ private:
+  double irradiance(const Disc& disc, double cosine) const;
+
+  WeightTable table_;
+  std::vector<double> exponents_;
+  double coat_index_ = 1;
+  bool fresnel_ = false;
+};
+
+}  // namespace goniochrome::render
