@@ -12,7 +12,6 @@ namespace goniochrome::envmap {
 
 namespace {
 
-constexpr std::size_t kMostSpots = 12;
 // Of the mean radiance: what is brighter by this is in a spot, and what is brighter by that can be a sun.
 constexpr double kBright = 3, kSunny = 30;
 // Spots go on being cut while the spread of one, by its share of the light, exceeds this.
@@ -96,11 +95,11 @@ std::vector<Excess> brighter_than(const Environment& environment, double level) 
 }
 
 // The excess in clusters, none of which spreads much of the light.
-std::vector<Cluster> clusters(const Environment& environment, double level, double whole) {
+std::vector<Cluster> clusters(const Environment& environment, double level, double whole, std::size_t most) {
   std::vector<Cluster> all;
   all.emplace_back(brighter_than(environment, level));
   const auto spread = [](const Cluster& c) { return c.light * c.variance(); };
-  while (all.size() < kMostSpots) {
+  while (all.size() < most) {
     const auto widest = std::ranges::max_element(all, {}, spread);
     if (spread(*widest) <= kSpread * whole || widest->texels.size() < 2) break;
     const Vec3 axis = widest->longer_axis();
@@ -130,11 +129,12 @@ Spot spot_of(const Cluster& cluster) {
 
 }  // namespace
 
-std::vector<Spot> bright_spots(const Environment& environment) {
+std::vector<Spot> bright_spots(const Environment& environment, int most) {
   const double whole = whole_light(environment);
-  if (!(whole > 0) || !std::isfinite(whole)) return {};
+  if (most <= 0 || !(whole > 0) || !std::isfinite(whole)) return {};
   std::vector<Spot> spots;
-  for (const Cluster& cluster : clusters(environment, kBright * whole / (4 * kPi), whole)) {
+  const double level = kBright * whole / (4 * kPi);
+  for (const Cluster& cluster : clusters(environment, level, whole, static_cast<std::size_t>(most))) {
     if (cluster.light < kLeastShare * whole || cluster.radius_rad() > kWidest_rad) continue;
     const Spot spot = spot_of(cluster);
     if (spot.radius_rad > 0) spots.push_back(spot);
@@ -146,7 +146,7 @@ std::optional<SunlitSky> sunlit_sky(const Environment& environment) {
   const double whole = whole_light(environment);
   if (!(whole > 0) || !std::isfinite(whole)) return std::nullopt;
   const double level = kSunny * whole / (4 * kPi);
-  const std::vector<Cluster> all = clusters(environment, level, whole);
+  const std::vector<Cluster> all = clusters(environment, level, whole, kUsualSpots);
   const Cluster& brightest = *std::ranges::max_element(all, {}, &Cluster::light);
   if (brightest.light < kLeastSun * whole) return std::nullopt;
   const Spot sun = spot_of(brightest);
@@ -189,7 +189,8 @@ Result<std::vector<Spot>> spots_of_text(const std::string& text) {
                          spots.size() + 1);
     spots.push_back({normalized(direction), {v[3], v[4], v[5]}, v[6]});
   }
-  if (spots.size() > kMostSpots) return input_error("{} spots, more than {}", spots.size(), kMostSpots);
+  if (spots.size() > static_cast<std::size_t>(kMostSpots))
+    return input_error("{} spots, more than {}", spots.size(), kMostSpots);
   return spots;
 }
 

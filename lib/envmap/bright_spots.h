@@ -23,9 +23,10 @@ struct Spot {
   bool operator==(const Spot&) const = default;
 };
 
-// The light that exceeds a few times the mean radiance, in at most 12 discs: the part that is spread most is cut in
+// The light that exceeds a few times the mean radiance, in at most `most` discs: the part that is spread most is cut in
 // two across its longer axis until all are compact. None where nothing is that bright, or where it is all around.
-std::vector<Spot> bright_spots(const Environment& environment);
+constexpr int kMostSpots = 32, kUsualSpots = 12;
+std::vector<Spot> bright_spots(const Environment& environment, int most = kUsualSpots);
 
 // An environment with a sun: most of what is very bright lies within a few degrees, above the horizon.
 struct SunlitSky {

@@ -70,6 +70,8 @@ TEST(BrightSpots, AStripIsCutIntoCompactSpots) {
     EXPECT_NEAR(spot.direction.y, 0.5, 0.05);
     light += spot.white.x;
   }
+  EXPECT_THAT(bright_spots(strip, 3), IsEmpty()) << "three are too wide to be spots";
+  EXPECT_THAT(bright_spots(strip, 0), IsEmpty());
   // What it exceeds the threshold by is all but a few parts in a hundred.
   EXPECT_GT(light, 0.85 * irradiance(strip, {0, 0, 1}).x / kPi);
 }
@@ -143,8 +145,8 @@ TEST(BrightSpots, BadTextIsRefused) {
   for (const char* text : {"0 0 2 1 1 1 0.1", "0 0 0 1 1 1 0.1", "0 0 1 -1 1 1 0.1", "0 0 1 1 1 1 0", "0 0 1 1 1 1 2"})
     EXPECT_THAT(message(text), HasSubstr("no direction of length 1")) << text;
   std::string many = "0 0 1 1 1 1 0.1";
-  for (int i = 0; i < 12; ++i) many += ";0 0 1 1 1 1 0.1";
-  EXPECT_THAT(message(many), HasSubstr("13 spots"));
+  for (int i = 0; i < kMostSpots; ++i) many += ";0 0 1 1 1 1 0.1";
+  EXPECT_THAT(message(many), HasSubstr("33 spots"));
 }
 
 }  // namespace

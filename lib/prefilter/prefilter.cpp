@@ -441,7 +441,7 @@ envmap::PrefilteredEnvironment prefiltered(
     else
       result.lobes.push_back(std::move(lobe));
   }
-  result.spots = envmap::bright_spots(env);
+  result.spots = envmap::bright_spots(env, request.spots);
   for (envmap::Spot& spot : result.spots) spot.direction = request.turn.to_world(spot.direction);
   return result;
 }

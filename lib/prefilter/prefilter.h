@@ -27,6 +27,7 @@ struct PrefilterRequest {
   envmap::Rotation turn = {};               // of the environment
   std::vector<int> sizes = {};              // of each exponent's map; empty: `size` says it
   bool diffuse = true;                      // false: not by itself
+  int spots = envmap::kUsualSpots;          // bright spots at most
   std::vector<KernelPointer> kernels = {};  // more lobes, which follow those of the exponents
 };
 

@@ -20,6 +20,7 @@ STUDIES = {
     "fit": "fitting: method, lobes and target against the measured colors",
     "lobes": "fewer lobes: smaller bases, the best lobes of a basis, and pruning, against the time of shading",
     "render": "rendering: effects, engine, textures and brushes against the reference integrator",
+    "spots": "bright spots of an environment that each horizon cuts by itself: their number against the exact sum",
     "edges": "edges: few samples in a pixel against hundreds",
     "scenes": "ten scenes: what the plan leaves out, and what it says that each effect is worth",
     "inverse": "paints that are searched for: sketches by their size, and panels that hide a misalignment",

@@ -29,6 +29,14 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.heading = "maps";
   spec.option("size,s", "N", "64", &o.size, "texels along a face, for every lobe")
       .more("auto gives each lobe as many as a bilinear look-up needs to err by ten times the tolerance.");
+  spec.option("spots", "N", "4", &o.spots, "most bright spots to keep beside the maps, such as the sun")
+      .from(0, envmap::kMostSpots)
+      .more(
+          "The light of the spots is in the maps as well. render-osmesa cuts each of them by the horizon of every "
+          "point, "
+          "which the maps cannot do; more of them come nearer to the truth and take longer, see the effect spots "
+          "there. "
+          "An environment without small bright parts has none.");
   spec.option("layout,l", "WHAT", "latlong", &o.layout, "how the maps lie")
       .one_of({"env", "latlong", "openexr", "mip"})
       .more(
@@ -81,6 +89,9 @@ void add_report(cli::ToolSpec& spec) {
                  {"lobes[].mean_rel_error", "mean relative error of the verified texels; null without --verify"},
                  {"lobes[].verified_texels", "number of texels verified"},
                  {"lobes[].energy_ratio", "flux of the lobe's map over the flux of the environment"},
+                 {"spots[].direction", "toward the middle of a bright spot: a unit vector"},
+                 {"spots[].radius_deg", "radius of its disc"},
+                 {"spots[].share", "part of it in the light of the environment"},
                  {"layout", "how the maps lie: env, latlong, openexr or mip"},
                  {"left_out[].exponent", "exponent that the paints name but do not need"},
                  {"left_out[].share", "largest part that it has in the reflectance of any paint"},

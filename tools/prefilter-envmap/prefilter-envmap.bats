@@ -245,3 +245,19 @@ lobes_paint() {
     [ "$status" -eq 2 ]
   done
 }
+
+@test "bright spots are kept beside the maps, as many as are wanted, and turn with them" {
+  prefilter-envmap -e 6 --report r.json "$sky" -o x.env.exr
+  [ "$(jq '.results.spots | length' r.json)" -ge 1 ]
+  jq -e '[.results.spots[].share] | add > 0.02 and . < 1' r.json
+  exrheader x.env.exr | grep -q goniochrome:brightSpots
+  prefilter-envmap -e 6 --rotate 90 --report turned.json "$sky" -o turned.env.exr
+  # +Z goes toward +X.
+  jq -e --slurpfile turned turned.json '.results.spots[0].direction as [$x, $y, $z]
+    | $turned[0].results.spots[0].direction as [$u, $v, $w]
+    | ($u - $z | fabs) < 1e-9 and ($v - $y | fabs) < 1e-9 and ($w + $x | fabs) < 1e-9' r.json
+  prefilter-envmap -e 6 --spots 0 --report none.json "$sky" -o none.env.exr
+  jq -e '.results | has("spots") | not' none.json
+  run bash -c 'exrheader none.env.exr | grep brightSpots'
+  [ "$status" -eq 1 ]
+}

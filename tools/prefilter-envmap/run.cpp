@@ -220,6 +220,13 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
     session.results()["lobes"].push_back(
         report_of(plan[i], *lobes[i], timings[i], prefilter::energy_ratio(flux, *lobes[i])));
   }
+  for (const envmap::Spot& spot : result.spots) {
+    const Vec3 light = kPi * spot.white;
+    session.results()["spots"].push_back(
+        {{"direction", {spot.direction.x, spot.direction.y, spot.direction.z}},
+         {"radius_deg", spot.radius_rad / kDegree},
+         {"share", json_number((light.x + light.y + light.z) / (flux.x + flux.y + flux.z))}});
+  }
   const Stopwatch write_clock;
   GONIO_TRY(write(options, result, session));
   session.results()["write_s"] = write_clock.elapsed_s();

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cli/tool.h"
+#include "envmap/bright_spots.h"
 
 namespace goniochrome::tool {
 
@@ -24,6 +25,7 @@ struct Options {
   std::vector<double> rotate;
   double exposure = 0;
   double horizon = -90;
+  int spots = envmap::kUsualSpots;
 };
 
 cli::ToolSpec tool_spec(Options& options);

@@ -82,6 +82,7 @@ Result<void> set_geometry(const Options& options, prefilter::PrefilterRequest& r
   if (turn.size() > 3)
     return usage_error("--rotate has {} angles: give one to three, about +Y, +X and +Z", turn.size());
   const auto angle = [&](std::size_t i) { return i < turn.size() ? turn[i] * kDegree : 0; };
+  request.spots = options.spots;
   request.turn = envmap::Rotation::about_axes(angle(0), angle(1), angle(2));
   return {};
 }

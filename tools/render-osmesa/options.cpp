@@ -137,7 +137,8 @@ void add_effects(cli::ToolSpec& spec, Options& o) {
           "part). The last two need shadow, and rays names all three. They are drawn at those pixels alone that can "
           "see the mesh, so that a convex shape is drawn as without them. Rays are traced wherever a mesh is given; "
           "auto,-rays traces none, which is much faster where the mesh blocks much light. Effects of rays that auto "
-          "decides to draw take at most 1024 samples of a point and some 32 of all points in the mean, and those that are named with a plus, as in "
+          "decides to draw take at most 1024 samples of a point and some 32 of all points in the mean, and those that "
+          "are named with a plus, as in "
           "auto,+rays, take as many as --tolerance needs. The effect floor is that of --floor shadow and needs "
           "shadow; it is priced where the environment is the background, and +floor asks for it as --floor shadow "
           "does. auto leaves out the effects that change too little, as --tolerance and --budget say.");
@@ -166,8 +167,9 @@ void add_engines(cli::ToolSpec& spec, Options& o) {
       .more(engine_sentences() +
             " The pictures of cpu and gl are the same, and auto takes the one that is predicted to be faster. "
             "Prefiltered maps know one direction at each point. They cannot tell light that changes within that part "
-            "of a broad lobe that is above the horizon, and differ from the truth by some 0.5 to 1 dE00 in the mean, "
-            "and by more at single points. integral sums blocks of the image that are as coarse as --tolerance "
+            "of a broad lobe that is above the horizon, but for bright spots, and differ from the truth by some 0.2 to "
+            "0.5 dE00 in the mean, and by more at single points. integral sums blocks of the image that are as coarse "
+            "as --tolerance "
             "allows, and draws every effect. At the default tolerance it takes several hundred times as long as the "
             "others, and a brushed paint takes another 50 times as long; --explain predicts the time. To pictures of "
             "these three, what the mesh does to light is added by rays, see --effects. path also draws parts that "
