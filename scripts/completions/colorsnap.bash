@@ -18,7 +18,7 @@ _colorsnap() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--library --filter --count --metric --geometry --weight --illuminant --mix-observers --method --threshold --off-radial --output --format --keep-going --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--library --filter --count --metric --geometry --weight --illuminant --mix-observers --method --threshold --off-radial --output --format --assign --keep-going --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

@@ -26,6 +26,7 @@ struct Options {
   double off_radial = 5;
   bool mix_observers = false;
   bool keep_going = false;
+  bool assign = false;
 };
 
 cli::ToolSpec tool_spec(Options& options);
