@@ -14,7 +14,7 @@ setup() {
   [ -z "$output" ]
   [[ "$stderr" =~ "plot-paint: 1 paints drawn"$ ]]
   xmllint --noout page.svg
-  for title in 'L\*' 'a\*' 'b\*' 'Parts of the reflectance factor' 'Reflectance factor, light at 45 deg' \
+  for title in 'L\*' 'a\*' 'b\*' 'a\*b\* plane, 15 to 110 deg' 'Color over the aspecular angle (deg)' 'Parts of the reflectance factor' 'Reflectance factor, light at 45 deg' \
     'Root of the flake, green' '10 deg, curve' '70 deg, fit'; do
     grep -q ">$title<" page.svg
   done
