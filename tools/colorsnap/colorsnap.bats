@@ -350,3 +350,15 @@ column() {
   [ "$status" -eq 3 ]
   [[ "$stderr" == *"6 of 6 library paints have no spectra"* || "$stderr" == *"5 of 5 library paints have no spectra"* ]]
 }
+
+@test "--cloud draws the library in two projections, with the queries in it" {
+  run --separate-stderr colorsnap -l lib.xml wish.xml --cloud cloud.svg -o near.tsv
+  [ "$status" -eq 0 ]
+  xmllint --noout cloud.svg
+  grep -q '>from above: 5 of 5 paints at 45as45, 1 of 1 queries<' cloud.svg
+  grep -q '>from the side: 5 of 5 paints at 45as45, 1 of 1 queries<' cloud.svg
+  [ "$(grep -o '<circle' cloud.svg | wc -l)" -eq 12 ] # five paints and a ring, twice
+  run --separate-stderr colorsnap -l lib.xml wish.xml --cloud cloud.png
+  [ "$status" -eq 2 ]
+  [[ "$stderr" == *'--cloud is "cloud.png": give a name that ends in .svg'* ]]
+}

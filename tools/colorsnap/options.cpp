@@ -119,6 +119,11 @@ void add_options(cli::ToolSpec& spec, Options& o) {
                     "the matched paints themselves, each once, in the order in which they were first met, with every "
                     "element kept",
                     "query");
+  spec.option("cloud", "FILE", "cloud.svg", &o.cloud, "SVG of the library in CIELAB with the queries in it")
+      .more(
+          "It shows the library from above (a* and b*) and from the side (a* and L*), at 45as45 or the middle one of "
+          "the geometries that are compared. Points have colors near their hue. Each query is a ring that a line joins "
+          "to its nearest paint. At most 20000 paints and 500 queries are drawn; the titles tell how many.");
   spec.flag("assign", &o.assign, "pass the queries on as paint XML, each with the code of its nearest paint")
       .more(
           "The code is where a formulation starts. A nearest paint without a code gives its name. A query without a "
@@ -133,6 +138,9 @@ void add_report(cli::ToolSpec& spec) {
       {"paint-edit testdata/paints.paints.xml#candy_blue --hue-shift 4 | colorsnap --library "
        "testdata/paints.paints.xml -k 3",
        "name the three paints that are nearest to a changed blue"},
+      {"paint-edit testdata/paints.paints.xml --hue-shift 10 | colorsnap -l testdata/paints.paints.xml -k 1 --cloud "
+       "cloud.svg -o near.tsv",
+       "see where changed paints lie in a library"},
       {"colorsnap -l testdata/paints.paints.xml --metric de00 --filter flop_index=3:10 --filter class=metallic "
        "testdata/paints.paints.xml -o near.tsv",
        "look among metallics of moderate flop, by CIEDE2000"},

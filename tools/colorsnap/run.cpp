@@ -6,6 +6,7 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "cloud.h"
 #include "finding.h"
 #include "formats/reference.h"
 #include "illuminants.h"
@@ -65,6 +66,7 @@ class Run {
     };
     GONIO_TRY(for_each_batch(batches, session_, take, left_out()));
     GONIO_TRY(sink.finish(options_.library, session_));
+    if (!options_.cloud.empty()) GONIO_TRY(cloud_.write(options_.cloud, index_));
     return finish();
   }
 
@@ -88,6 +90,7 @@ class Run {
     if (without_code > 1)
       session_.warn(fmt::format("{} more designs got the name of a paint without a code", without_code - 1));
     GONIO_TRY(sink.finish());
+    if (!options_.cloud.empty()) GONIO_TRY(cloud_.write(options_.cloud, index_));
     return finish();
   }
 
@@ -131,6 +134,7 @@ class Run {
 
   void note(const Finding& finding) {
     ++searched_;
+    if (!options_.cloud.empty()) cloud_.note(finding);
     search_s_ += finding.search_s;
     outside_ += finding.outside;
     off_radial_ += finding.off_radial;
@@ -237,6 +241,7 @@ class Run {
   library::ColorMetric metric_;
   std::vector<std::pair<paint::Geometry, double>> weights_;
   const library::LibrarySearch& search_;
+  Cloud cloud_;
   std::set<std::string> told_, compared_;
   std::size_t searched_ = 0, outside_ = 0, off_radial_ = 0, no_match_ = 0, left_out_ = 0, problems_ = 0;
   double search_s_ = 0, wall_s_ = 0;
@@ -266,6 +271,8 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
                         options.output.ends_with(".jsonl") || options.output.ends_with(".tsv");
   if (options.assign && is_table)
     return usage_error("--assign writes paint XML: leave --format out, and end the output in .xml");
+  if (!options.cloud.empty() && !options.cloud.ends_with(".svg"))
+    return usage_error("--cloud is \"{}\": give a name that ends in .svg", options.cloud);
   if (!options.illuminants.empty()) return run_under_lights(options, search, session);
   GONIO_ASSIGN(const library::LibraryIndex index, library::LibraryIndex::open(options.library, [&](std::size_t paints) {
                  session.progress(fmt::format("{}: indexing {}: {} paints", session.tool(), options.library, paints));

@@ -13,7 +13,7 @@ struct Options {
   cli::CommonOptions common;
   std::vector<std::string> inputs;
   std::string library;
-  std::string output = "-";
+  std::string output = "-", cloud;
   std::string format = "auto";
   int count = 5;
   std::string metric = "de76";
