@@ -295,11 +295,14 @@ report::Drawing squares(const Subject& s, int width, int height) {
 
 report::Drawing heading(const paint::Paint& paint, int width) {
   const color::ViewingCondition condition = paint::condition_of(paint);
-  const std::string text = fmt::format("{}{}, {}/{} deg", paint.name,
+  const std::string brushed = paint.anisotropy ? fmt::format(", brushed {} x {}", shortest(paint.anisotropy->alpha_x),
+                                                             shortest(paint.anisotropy->alpha_y))
+                                               : "";
+  const std::string text = fmt::format("{}{}, {}/{} deg{}", paint.name,
                                        paint.paint_class == paint::PaintClass::kUnknown
                                            ? ""
                                            : fmt::format(", {}", paint::paint_class_name(paint.paint_class)),
-                                       condition.illuminant, condition.observer_deg);
+                                       condition.illuminant, condition.observer_deg, brushed);
   return {width, 34,
           fmt::format("<text x=\"12\" y=\"24\" style=\"font-size:18px;font-weight:bold\">{}</text>\n",
                       xml_escaped(text, ""))};

@@ -41,6 +41,11 @@ setup() {
   ! grep -q '10 deg, fit' page.svg
 }
 
+@test "the heading tells a brushed surface" {
+  paint-edit -q "$paints#candy_red" --anisotropy 0.05,0.3 | plot-paint -q -o page.svg
+  grep -q '>candy_red, metallic, D65/10 deg, brushed 0.05 x 0.3<' page.svg
+}
+
 @test "standard input goes to standard output" {
   run --separate-stderr bash -c "plot-paint -q --paint candy_red <fitted.xml"
   [ "$status" -eq 0 ]
