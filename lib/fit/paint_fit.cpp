@@ -41,19 +41,6 @@ std::vector<double> chosen_exponents(const FitOptions& options, const FlakeTarge
   return chosen;
 }
 
-// The largest gap of a fit that is called optimal. Of 149 measured and designed paints the largest is 2e-15 for the
-// linear methods and 8e-5 for deltae, whose gap is a cosine.
-double largest_optimal_gap(FitMethod method) {
-  return method == FitMethod::kDeltaE ? 1e-3 : 1e-9;
-}
-
-// A solver says that it is done when it gains no more; the gap says how far it is from the optimum. The status is that
-// of the gap, so that the two never contradict each other.
-FitStatus status_of_gap(FitMethod method, FitStatus status, double gap) {
-  if (status == FitStatus::kTimeLimit) return status;
-  return gap <= largest_optimal_gap(method) ? FitStatus::kOptimal : FitStatus::kNotConverged;
-}
-
 // Solves for K_D and K_DD, for all views and for each of `views_deg`.
 void fit_flake(const FitOptions& options, const FlakeTarget& together, const FlakeTarget& by_view,
                const std::vector<double>& views_deg, const std::vector<double>& exponents, double first_rad,
@@ -70,10 +57,7 @@ void fit_flake(const FitOptions& options, const FlakeTarget& together, const Fla
   report.objective = flake.objective;
   report.plain_objective = flake.plain_objective;
   report.optimality_gap = flake.optimality_gap;
-  if (views_deg.empty()) {
-    report.status = status_of_gap(options.method, report.status, report.optimality_gap);
-    return;
-  }
+  if (views_deg.empty()) return;
 
   model.views_deg = views_deg;
   const FlakeFit each = flake_fit(options.method, by_view, model, deadline);
@@ -84,9 +68,9 @@ void fit_flake(const FitOptions& options, const FlakeTarget& together, const Fla
                 view.lobes);
     out.lobes.views.push_back(std::move(view));
   }
+  if (report.status == FitStatus::kOptimal) report.status = each.status;
   report.optimality_gap = std::max(report.optimality_gap, each.optimality_gap);
-  report.status =
-      status_of_gap(options.method, deadline.passed() ? FitStatus::kTimeLimit : report.status, report.optimality_gap);
+  if (deadline.passed()) report.status = FitStatus::kTimeLimit;
 }
 
 FlakeTarget flake_target(const FitOptions& options, const Target& target, const color::Xyz& white, double coat_index) {

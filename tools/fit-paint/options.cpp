@@ -103,9 +103,7 @@ void add_report(cli::ToolSpec& spec) {
       {"paints[].time_us", "time of the fit, without reading and writing XML"},
       {"paints[].objective", "weighted norm of the error over rows and channels, in L* if the weights are perceptual"},
       {"paints[].plain_objective", "the same norm without weights, in reflectance factor"},
-      {"paints[].optimality_gap",
-       "proven distance from the optimum, relative to the norm of the target; with deltae the largest cosine between "
-       "the residual and a weight that could still gain. optimal is at most 1e-9, with deltae 1e-3"},
+      {"paints[].optimality_gap", "proven distance from the optimum, relative to the norm of the target"},
       {"paints[].active_lobes", "number of lobes that have any weight, including the mirror"},
       {"paints[].unseen_exponents", "lobes that no reading sees; their flake weight is 0"},
       {"paints[].dropped_exponents", "lobes that --lobes or --prune left out"},
