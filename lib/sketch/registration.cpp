@@ -15,7 +15,8 @@ namespace goniochrome::sketch {
 namespace {
 
 constexpr double kLeastScale = 0.75, kMostScale = 1.15;  // of the scale at which the buffers just fit
-constexpr int kCoarse = 64;  // pixels along the longer side where the whole domain is searched
+constexpr int kCoarse = 64;     // pixels along the longer side where the whole domain is searched
+constexpr int kLeastSide = 24;  // pixels along the shorter side there
 constexpr std::size_t kCoarseEdges = 400, kFineEdges = 4000;
 constexpr float kLeastEdge = 0.02F, kMostEdge = 0.3F;  // one glaring edge does not outvote all others
 constexpr double kGray = 0.18;                         // behind a mesh, of the white of the display
@@ -307,7 +308,11 @@ Registration best_of(const image::Image& shown, const Picture& scan) {
       std::min(scan.rgb.width / static_cast<double>(shown.width), scan.rgb.height / static_cast<double>(shown.height));
   // The pixels of the coarser picture are not divided.
   const double finest = std::max(1.0, 1 / fitting);
-  double step = std::max(finest, std::max(shown.width, shown.height) / static_cast<double>(kCoarse));
+  const double coarse = std::min(std::max(shown.width, shown.height) / static_cast<double>(kCoarse),
+                                 std::min(shown.width, shown.height) / static_cast<double>(kLeastSide));
+  double step = std::max(finest, coarse);
+  // Where so few pixels are left that any two pictures agree, nothing is found.
+  if (std::min(shown.width, shown.height) / step < kLeastSide - 0.5) return {};
   Level level = level_of(shown, scan, fitting, step, true);
   Pose pose = climbed(level, coarse_pose(level));
   const double agreement = score(level, pose);

@@ -116,6 +116,14 @@ TEST(Registration, SomethingElseIsRefused) {
   EXPECT_THAT(found.error().message, HasSubstr("bring both to one size"));
 }
 
+TEST(Registration, APictureOfTooFewPixelsIsRefused) {
+  for (const auto& [width, height] : {std::pair{1, 1}, {7, 7}, {5000, 10}, {3, 200}}) {
+    const double scale = std::min(width / 320.0, height / 200.0);
+    EXPECT_FALSE(registration_of(buffers_of(320, 200), scan_of(320, 200, width, height, {scale, 0, 0, 0, 1})).ok())
+        << width << " x " << height;
+  }
+}
+
 // What the scan shows comes back in the pixels of the buffers: the mean light of each, white paper beyond.
 TEST(Registration, TheScanIsSeenInThePixelsOfTheBuffers) {
   const image::AovFile buffers = buffers_of(320, 200);
