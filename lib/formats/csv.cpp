@@ -283,7 +283,6 @@ struct CsvPaintReader::State {
   Result<color::ViewingCondition> condition() const;
   Result<paint::Paint> described() const;
   Result<void> add_row();
-  Result<bool> is_from_curve() const;
   Result<std::vector<paint::Geometry>> curve_geometries() const;
   Result<void> agree(const paint::Paint& row) const;
   Error error(std::string_view what) const { return records.error(what); }
@@ -392,14 +391,6 @@ Result<std::optional<paint::Paint>> CsvPaintReader::State::next_wide() {
   return std::optional(std::move(paint));
 }
 
-// Error: the cell of the column origin is neither `row` nor `curve`.
-Result<bool> CsvPaintReader::State::is_from_curve() const {
-  const std::string word = lower(text(header.column[kOrigin]));
-  if (!word.empty() && word != "row" && word != "curve")
-    return error(fmt::format("origin is \"{}\": write row, or curve for what a curve says", shown(word)));
-  return word == "curve";
-}
-
 // The geometries that the column origin of a wide table lists, separated by white space.
 Result<std::vector<paint::Geometry>> CsvPaintReader::State::curve_geometries() const {
   std::vector<paint::Geometry> geometries;
@@ -458,8 +449,10 @@ Result<void> CsvPaintReader::State::add_row() {
                                paint::geometry_name(*geometry), shown(open->name), row_lines[i]));
   if (rows.size() >= kMostRows) return error(fmt::format("more than {} rows in one sample: split it", kMostRows));
   GONIO_ASSIGN(const color::Lab value, lab({header.column[kL], header.column[kA], header.column[kB]}));
-  GONIO_ASSIGN(const bool curve, is_from_curve());
-  if (curve) from_curve.push_back(*geometry);
+  const std::string origin = lower(text(header.column[kOrigin]));
+  if (!origin.empty() && origin != "row" && origin != "curve")
+    return error(fmt::format("origin is \"{}\": write row, or curve for what a curve says", shown(origin)));
+  if (origin == "curve") from_curve.push_back(*geometry);
   rows.push_back({*geometry, value});
   row_lines.push_back(records.line());
   return {};
