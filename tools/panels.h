@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/text.h"
 #include "cli/tool.h"
 #include "image/image.h"
 #include "panels/geometry_sets.h"
@@ -48,6 +49,29 @@ inline void add_seam_options(cli::ToolSpec& spec, panels::SeamTexts& seam) {
           "judged: "
           "both are traced by rays, with a noise that is told.");
   spec.flag("open", &seam.open, "let the light of --environment come to the seam as if there were no mesh");
+}
+
+// Tells which pairs of light and viewer a run leaves out, and puts them into its report.
+inline void tell_left_out(const std::vector<panels::LightView>& glare, int below_horizon, cli::Session& session) {
+  constexpr std::size_t kNamed = 5;
+  Json& pairs = session.results()["left_out"] = Json::array();
+  std::string names;
+  for (const panels::LightView& pair : glare) {
+    pairs.push_back({{"light_deg", pair.light_deg},
+                     {"view_deg", pair.view_deg},
+                     {"azimuth_deg", pair.azimuth_deg},
+                     {"aspecular_deg", panels::aspecular_deg(pair)}});
+    if (pairs.size() <= kNamed)
+      names += fmt::format("{}{}/{}", names.empty() ? "" : ", ", shortest(pair.light_deg), shortest(pair.view_deg));
+  }
+  if (glare.size() > kNamed) names += fmt::format(" and {} more", glare.size() - kNamed);
+  if (!glare.empty())
+    session.say(
+        fmt::format("left out: {} of the pairs of light and viewer ({} deg), within {} deg of the mirror "
+                    "direction, where gloss is seen in any paint",
+                    glare.size(), names, panels::kIndexGlare_deg));
+  if (below_horizon > 0)
+    session.say(fmt::format("left out: {} viewers that lie below the horizon of the panel", below_horizon));
 }
 
 // The light at the seam where an environment is given, with the mesh in its way unless nobody wants that. Nothing, with

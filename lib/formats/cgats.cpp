@@ -437,7 +437,7 @@ Result<CgatsWriter> CgatsWriter::begin(OutputFile file, const std::string& creat
                                  cgats_text(creator), cgats_text(created)));
 }
 
-Result<void> CgatsWriter::write(const paint::Paint& paint) {
+Result<void> CgatsWriter::write(const paint::Paint& paint, const std::vector<paint::Geometry>& from_curve) {
   if (!paint.measurement || paint.measurement->rows.empty())
     return input_error("paint \"{}\" has no readings: CGATS holds readings only", paint.name);
   GONIO_TRY(check_writable(paint));
@@ -448,6 +448,7 @@ Result<void> CgatsWriter::write(const paint::Paint& paint) {
   kept.name = name, kept.code = paint.code, kept.paint_class = paint.paint_class;
   kept.measurement = paint.measurement, kept.gloss = paint.gloss;
   paints_.push_back(std::move(kept));
+  from_curve_.push_back(from_curve);
   return {};
 }
 
@@ -468,6 +469,8 @@ Result<void> CgatsWriter::finish() {
   if (classes) own.push_back("PAINT_CLASS");
   if (codes) own.push_back("PAINT_CODE");
   if (instruments) own.push_back("INSTRUMENT");
+  const bool origins = std::ranges::any_of(from_curve_, [](const auto& geometries) { return !geometries.empty(); });
+  if (origins) own.push_back("ORIGIN");
 
   std::string text = head_;
   if (!paints_.empty() && one_condition) {
@@ -484,6 +487,7 @@ Result<void> CgatsWriter::finish() {
 
   std::size_t id = 0;
   for (const paint::Paint& paint : paints_) {
+    const auto& from_curve = from_curve_[static_cast<std::size_t>(&paint - paints_.data())];
     std::string tail = fmt::format("\t{}\t{}", cgats_text(paint::condition_of(paint).illuminant),
                                    paint::condition_of(paint).observer_deg);
     for (const double angle : angles) {
@@ -493,10 +497,13 @@ Result<void> CgatsWriter::finish() {
     if (classes) tail += fmt::format("\t{}", paint::paint_class_name(paint.paint_class));
     if (codes) tail += '\t' + cgats_text(paint.code);
     if (instruments) tail += '\t' + cgats_text(paint.measurement->instrument);
-    for (const paint::LabReading& row : paint.measurement->rows)
-      GONIO_TRY(
-          file_.write(fmt::format("{}\t{}\t{}\t{}\t{}\t{}{}\n", ++id, cgats_text(paint.name), shortest(row.lab.L),
-                                  shortest(row.lab.a), shortest(row.lab.b), paint::geometry_name(row.geometry), tail)));
+    for (const paint::LabReading& row : paint.measurement->rows) {
+      const bool curve = std::ranges::find(from_curve, row.geometry) != from_curve.end();
+      const char* origin = origins ? curve ? "\tcurve" : "\trow" : "";
+      GONIO_TRY(file_.write(fmt::format("{}\t{}\t{}\t{}\t{}\t{}{}{}\n", ++id, cgats_text(paint.name),
+                                        shortest(row.lab.L), shortest(row.lab.a), shortest(row.lab.b),
+                                        paint::geometry_name(row.geometry), tail, origin)));
+    }
   }
   GONIO_TRY(file_.write("END_DATA\n"));
   return file_.commit();

@@ -27,8 +27,8 @@ class CgatsWriter {
  public:
   // `creator` and `created` (a date) go into the header.
   static Result<CgatsWriter> begin(OutputFile file, const std::string& creator, const std::string& created);
-  // Error: a paint without readings.
-  Result<void> write(const paint::Paint& paint);
+  // The readings at the geometries `from_curve` are marked in a column ORIGIN. Error: a paint without readings.
+  Result<void> write(const paint::Paint& paint, const std::vector<paint::Geometry>& from_curve = {});
   Result<void> finish();
 
  private:
@@ -36,7 +36,8 @@ class CgatsWriter {
   OutputFile file_;
   std::string head_;
   std::vector<paint::Paint> paints_;
-  std::set<std::string> names_;  // as they are written
+  std::vector<std::vector<paint::Geometry>> from_curve_;  // of each paint
+  std::set<std::string> names_;                           // as they are written
 };
 
 }  // namespace goniochrome::formats

@@ -175,11 +175,12 @@ enum Column {
   kGloss20,
   kGloss60,
   kGloss85,
+  kOrigin,
   kColumns
 };
 constexpr std::array<std::string_view, kColumns> kNames = {
-    "sample", "geometry", "illuminant", "observer", "l",       "a",      "b",
-    "class",  "code",     "instrument", "gloss20",  "gloss60", "gloss85"};
+    "sample", "geometry", "illuminant", "observer", "l",       "a",       "b",
+    "class",  "code",     "instrument", "gloss20",  "gloss60", "gloss85", "origin"};
 
 // A heading in lower case and without what spreadsheets add: `L*`, `L_15`, `L (15)`.
 std::string plain_heading(std::string_view heading) {
@@ -252,6 +253,14 @@ Result<Header> header_of(const std::vector<std::string>& cells) {
   return header;
 }
 
+// Leaves the rows that are not from the curve, if there are any.
+void drop_curve(paint::Measurement& measurement, const std::vector<paint::Geometry>& from_curve) {
+  if (from_curve.size() >= measurement.rows.size()) return;
+  std::erase_if(measurement.rows, [&](const paint::LabReading& row) {
+    return std::ranges::find(from_curve, row.geometry) != from_curve.end();
+  });
+}
+
 std::string listed(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", shown(word));
@@ -274,6 +283,7 @@ struct CsvPaintReader::State {
   Result<color::ViewingCondition> condition() const;
   Result<paint::Paint> described() const;
   Result<void> add_row();
+  Result<std::vector<paint::Geometry>> curve_geometries() const;
   Result<void> agree(const paint::Paint& row) const;
   Error error(std::string_view what) const { return records.error(what); }
 
@@ -287,6 +297,7 @@ struct CsvPaintReader::State {
   std::optional<paint::Paint> open;
   int open_line = 0;
   std::vector<int> row_lines;
+  std::vector<paint::Geometry> from_curve;
   std::string skipped;  // a sample that was there before: its rows are passed over
 };
 
@@ -374,8 +385,22 @@ Result<std::optional<paint::Paint>> CsvPaintReader::State::next_wide() {
     paint.measurement->rows.push_back({triple.geometry, value});
   }
   if (paint.measurement->rows.empty()) return error(fmt::format("sample \"{}\" has no Lab values", shown(paint.name)));
+  GONIO_ASSIGN(const std::vector<paint::Geometry> curve, curve_geometries());
+  drop_curve(*paint.measurement, curve);
   line = records.line();
   return std::optional(std::move(paint));
+}
+
+// The geometries that the column origin of a wide table lists, separated by white space.
+Result<std::vector<paint::Geometry>> CsvPaintReader::State::curve_geometries() const {
+  std::vector<paint::Geometry> geometries;
+  for (const std::string_view word : split(text(header.column[kOrigin]), ' ')) {
+    if (word.empty()) continue;
+    const auto geometry = paint::parse_geometry(word);
+    if (!geometry.ok()) return error("origin: " + geometry.error().message);
+    geometries.push_back(*geometry);
+  }
+  return geometries;
 }
 
 // Error: a further row says something else of the open sample than its first row. It may say nothing.
@@ -413,6 +438,7 @@ Result<void> CsvPaintReader::State::add_row() {
     open = std::move(row);
     open_line = records.line();
     row_lines.clear();
+    from_curve.clear();
   }
   auto geometry = paint::parse_geometry(text(header.column[kGeometry]));
   if (!geometry.ok()) return error(geometry.error().message);
@@ -423,6 +449,10 @@ Result<void> CsvPaintReader::State::add_row() {
                                paint::geometry_name(*geometry), shown(open->name), row_lines[i]));
   if (rows.size() >= kMostRows) return error(fmt::format("more than {} rows in one sample: split it", kMostRows));
   GONIO_ASSIGN(const color::Lab value, lab({header.column[kL], header.column[kA], header.column[kB]}));
+  const std::string origin = lower(text(header.column[kOrigin]));
+  if (!origin.empty() && origin != "row" && origin != "curve")
+    return error(fmt::format("origin is \"{}\": write row, or curve for what a curve says", shown(origin)));
+  if (origin == "curve") from_curve.push_back(*geometry);
   rows.push_back({*geometry, value});
   row_lines.push_back(records.line());
   return {};
@@ -441,6 +471,7 @@ Result<std::optional<paint::Paint>> CsvPaintReader::State::next_long() {
     if (open && width.ok() && name != open->name) {
       paint::Paint paint = *std::exchange(open, std::nullopt);
       line = open_line;
+      drop_curve(*paint.measurement, from_curve);
       if (!paint.measurement->rows.empty()) return std::optional(std::move(paint));
     }
     if (at_end) return std::optional<paint::Paint>();
@@ -500,6 +531,12 @@ std::string column_name(const paint::Geometry& geometry) {
   return usual ? shortest(geometry.aspecular_deg) : paint::geometry_name(geometry);
 }
 
+std::string listed_names(const std::vector<paint::Geometry>& geometries) {
+  std::string text;
+  for (const paint::Geometry& geometry : geometries) text += (text.empty() ? "" : " ") + paint::geometry_name(geometry);
+  return text;
+}
+
 std::string other_cells(const paint::Paint& paint) {
   std::string text = fmt::format(",{},{},{}", paint::paint_class_name(paint.paint_class), csv_cell(paint.code),
                                  csv_cell(paint.measurement->instrument));
@@ -519,12 +556,13 @@ Result<CsvPaintWriter> CsvPaintWriter::begin(OutputFile file, const CsvLayout& l
     head += fmt::format(",L{},a{},b{}", name, name, name);
   }
   if (layout.all_columns) head += kOtherColumns;
+  if (layout.origin) head += ",origin";
   CsvPaintWriter writer(std::move(file), layout);
   GONIO_TRY(writer.file_.write(head + "\n"));
   return writer;
 }
 
-Result<void> CsvPaintWriter::write(const paint::Paint& paint) {
+Result<void> CsvPaintWriter::write(const paint::Paint& paint, const std::vector<paint::Geometry>& from_curve) {
   if (!paint.measurement || paint.measurement->rows.empty())
     return input_error("paint \"{}\" has no Lab values: a table cannot hold it", shown(paint.name));
   GONIO_TRY(check_writable(paint));
@@ -533,9 +571,11 @@ Result<void> CsvPaintWriter::write(const paint::Paint& paint) {
   const std::string others = layout_.all_columns ? other_cells(paint) : "";
   std::string text;
   if (layout_.wide.empty()) {
-    for (const paint::LabReading& row : rows)
-      text += csv_cell(paint.name) + "," + paint::geometry_name(row.geometry) + viewing + lab_cells(row.lab) + others +
-              "\n";
+    for (const paint::LabReading& row : rows) {
+      const bool curve = std::ranges::find(from_curve, row.geometry) != from_curve.end();
+      text += csv_cell(paint.name) + "," + paint::geometry_name(row.geometry) + viewing + lab_cells(row.lab) + others;
+      text += layout_.origin ? curve ? ",curve\n" : ",row\n" : "\n";
+    }
   } else {
     std::size_t placed = 0;
     text = csv_cell(paint.name) + viewing;
@@ -546,7 +586,7 @@ Result<void> CsvPaintWriter::write(const paint::Paint& paint) {
     }
     if (placed < rows.size())
       return input_error("paint \"{}\" has rows at geometries that the table has no columns for", shown(paint.name));
-    text += others + "\n";
+    text += others + (layout_.origin ? "," + listed_names(from_curve) : "") + "\n";
   }
   GONIO_TRY(file_.write(text));
   return is_stream_ ? file_.flush() : Result<void>();

@@ -23,8 +23,9 @@ class CsvPaintReader {
   CsvPaintReader(CsvPaintReader&&) noexcept;
   ~CsvPaintReader();
 
-  // The next paint, or nothing at the end. An error loses one row: next() goes on behind it with the other rows of the
-  // same sample. In a long table the rows of one sample must stand together.
+  // The next paint, or nothing at the end. Where a column origin marks some rows of a paint as from its curve, and
+  // others not, only the latter are read: the curve is not a second measurement. An error loses one row: next() goes on
+  // behind it with the other rows of the same sample. In a long table the rows of one sample must stand together.
   Result<std::optional<paint::Paint>> next();
 
   // The line (from 1) of the first row of the paint last returned.
@@ -45,15 +46,18 @@ struct CsvLayout {
   std::vector<paint::Geometry> wide;
   // The table also has the columns class, code, instrument, gloss20, gloss60 and gloss85.
   bool all_columns = false;
+  // The table has a last column origin, which marks rows that come from the curve of a paint.
+  bool origin = false;
 };
 
 class CsvPaintWriter {
  public:
   // Begins a table on `file`.
   static Result<CsvPaintWriter> begin(OutputFile file, const CsvLayout& layout);
-  // Writes the rows of one paint and hands them on at once where the output is standard output or a pipe. Error: a
-  // paint without rows, or with one that the layout has no column for.
-  Result<void> write(const paint::Paint& paint);
+  // Writes the rows of one paint and hands them on at once where the output is standard output or a pipe. In the column
+  // origin, the rows at the geometries `from_curve` are `curve` and the others `row`; a wide table lists the former.
+  // Error: a paint without rows, or with one that the layout has no column for.
+  Result<void> write(const paint::Paint& paint, const std::vector<paint::Geometry>& from_curve = {});
   // Puts the file in place.
   Result<void> finish();
 

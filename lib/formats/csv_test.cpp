@@ -278,6 +278,31 @@ TEST(PaintCsv, BothFormsComeBackToTheLastBit) {
   }
 }
 
+// Rows of the curve are marked; they are read only where a paint has no others.
+TEST(PaintCsv, TheOriginOfRowsIsToldAndRead) {
+  const paint::Paint paint = paint_with("x", {{"15", {1, 2, 3}}, {"25", {4, 5, 6}}});
+  const paint::Geometry at_25 = *paint::parse_geometry("25");
+  const auto text = [&](const CsvLayout& layout, const std::vector<paint::Geometry>& from_curve) {
+    const ScratchFolder folder;
+    auto writer = CsvPaintWriter::begin(*OutputFile::create(folder.path("p.csv")), layout);
+    EXPECT_TRUE(writer->write(paint, from_curve).ok());
+    EXPECT_TRUE(writer->finish().ok());
+    return folder.content("p.csv");
+  };
+  const CsvLayout wide{{*paint::parse_geometry("15"), at_25}, false, true};
+  EXPECT_EQ(
+      text({{}, false, true}, {at_25}),
+      "sample,geometry,illuminant,observer,L,a,b,origin\nx,45as15,D65,10,1,2,3,row\nx,45as25,D65,10,4,5,6,curve\n");
+  EXPECT_EQ(text(wide, {at_25}),
+            "sample,illuminant,observer,L15,a15,b15,L25,a25,b25,origin\nx,D65,10,1,2,3,4,5,6,45as25\n");
+  for (const CsvLayout& layout : {CsvLayout{{}, false, true}, wide}) {
+    EXPECT_EQ(reading_of_text(text(layout, {at_25})).paints.at(0).measurement->rows.size(), 1u);
+    EXPECT_EQ(
+        reading_of_text(text(layout, {*paint::parse_geometry("15"), at_25})).paints.at(0).measurement->rows.size(), 2u);
+    EXPECT_EQ(reading_of_text(text(layout, {})).paints.at(0).measurement->rows.size(), 2u);
+  }
+}
+
 TEST(PaintCsv, EveryTextComesBackFromItsCell) {
   paint::Paint paint = paint_with("x", {{"15", {1, 2, 3}}});
   for (const char* text : {"plain", "a, \"b\"\nc", "  d ", "\"", "\"\"", "", ";"}) {

@@ -441,10 +441,10 @@ std::size_t CxfWriter::number_of(const Specification& specification) {
   return number;
 }
 
-// `part` is the ending of the object's name where an angle has its own; the `first` of them carries class, code and
-// gloss. Our tags join the parts again.
+// `part` is the ending of the object's name where an angle has its own; the `first` of them carries class, code, gloss
+// and the names of geometries from the curve. Our tags join the parts again.
 std::string CxfWriter::object(const paint::Paint& paint, const std::vector<paint::LabReading>& rows,
-                              const std::string& part, bool first) {
+                              const std::string& part, bool first, const std::string& curve) {
   std::string text = fmt::format(
       "      <cc:Object ObjectType=\"Standard\" Name=\"{}\" Id=\"o{}\">\n        "
       "<cc:CreationDate>{}</cc:CreationDate>\n"
@@ -466,6 +466,7 @@ std::string CxfWriter::object(const paint::Paint& paint, const std::vector<paint
   if (first && paint.paint_class != paint::PaintClass::kUnknown)
     tag("class", paint::paint_class_name(paint.paint_class));
   if (first && !paint.code.empty()) tag("code", paint.code);
+  if (first && !curve.empty()) tag("curve", curve);
   if (!tags.empty())
     text += "        <cc:TagCollection Name=\"goniochrome\">\n" + tags + "        </cc:TagCollection>\n";
 
@@ -479,7 +480,7 @@ std::string CxfWriter::object(const paint::Paint& paint, const std::vector<paint
   return text + "      </cc:Object>\n";
 }
 
-Result<void> CxfWriter::write(const paint::Paint& paint) {
+Result<void> CxfWriter::write(const paint::Paint& paint, const std::vector<paint::Geometry>& from_curve) {
   if (!paint.measurement || paint.measurement->rows.empty())
     return input_error("paint \"{}\" has no readings: CxF holds readings only", paint.name);
   GONIO_TRY(check_writable(paint));
@@ -487,12 +488,15 @@ Result<void> CxfWriter::write(const paint::Paint& paint) {
     if (row.lab.L < 0)
       return input_error("paint \"{}\" at {}: L* is {}: CxF3 allows none below 0", paint.name,
                          paint::geometry_name(row.geometry), shortest(row.lab.L));
-  std::string text = objects_ == 0 ? "    <cc:ObjectCollection>\n" : "";
+  std::string text = objects_ == 0 ? "    <cc:ObjectCollection>\n" : "", curve;
+  for (const paint::Geometry& geometry : from_curve)
+    curve += (curve.empty() ? "" : " ") + paint::geometry_name(geometry);
   if (!info_.one_object_per_angle) {
-    text += object(paint, paint.measurement->rows, "", true);
+    text += object(paint, paint.measurement->rows, "", true, curve);
   } else {
     for (const paint::LabReading& row : paint.measurement->rows)
-      text += object(paint, {row}, " " + paint::geometry_name(row.geometry), &row == &paint.measurement->rows.front());
+      text += object(paint, {row}, " " + paint::geometry_name(row.geometry), &row == &paint.measurement->rows.front(),
+                     curve);
   }
   return file_.write(text);
 }

@@ -32,8 +32,9 @@ class CxfWriter {
     bool one_object_per_angle = false;  // for programs that read only the first Lab of an object
   };
   static Result<CxfWriter> begin(OutputFile file, const Info& info);
-  // Error: a paint without readings, or an L* below 0, which CxF3 does not allow.
-  Result<void> write(const paint::Paint& paint);
+  // A tag `curve` names the geometries `from_curve`. Error: a paint without readings, or an L* below 0, which CxF3 does
+  // not allow.
+  Result<void> write(const paint::Paint& paint, const std::vector<paint::Geometry>& from_curve = {});
   Result<void> finish();
 
  private:
@@ -46,7 +47,7 @@ class CxfWriter {
   CxfWriter(OutputFile file, Info info) : file_(std::move(file)), info_(std::move(info)) {}
   std::size_t number_of(const Specification& specification);
   std::string object(const paint::Paint& paint, const std::vector<paint::LabReading>& rows, const std::string& part,
-                     bool first);
+                     bool first, const std::string& curve);
 
   OutputFile file_;
   Info info_;

@@ -46,9 +46,11 @@ std::optional<Space> named_space(std::string name) {
   if (name == "lin_adobergb_scene") return Space{kAdobeRgb};
   if (name == "srgb" || name == "srgb_rec709_scene" || name == "srgb_rec709_display")
     return Space{kRec709, Curve::kSrgb};
-  if (name.starts_with("gamma"))
-    if (const auto gamma = parse_number(std::string_view(name).substr(5)); gamma && *gamma > 0)
+  for (const std::string_view word : {"gammacorrected", "gamma"}) {
+    if (!name.starts_with(word)) continue;
+    if (const auto gamma = parse_number(std::string_view(name).substr(word.size())); gamma && *gamma > 0)
       return Space{kRec709, Curve::kGamma, *gamma};
+  }
   return std::nullopt;
 }
 
@@ -69,6 +71,10 @@ Result<Space> space_of(const ImagePart& part, const std::string& file) {
     return space;
   }
   if (const std::string name = text("oiio:ColorSpace"); !name.empty()) {
+    // OpenImageIO says Rec709 of PNM and DPX files, and programs that use it pass this on to PNG. Of whole numbers it
+    // means the curve of a display with these primaries, as PNM defines it, and in practice that of sRGB.
+    const bool whole_numbers = attribute_or(part.attributes, "goniochrome:integer", 0) != 0;
+    if (whole_numbers && lower(name) == "rec709") return Space{kRec709, Curve::kSrgb};
     if (const auto space = named_space(name)) return *space;
     return unknown("its color space", name);
   }

@@ -22,6 +22,9 @@ color::Lab operator+(const color::Lab& x, const color::Lab& y) {
 color::Lab operator-(const color::Lab& x, const color::Lab& y) {
   return {x.L - y.L, x.a - y.a, x.b - y.b};
 }
+color::Lab scaled(const color::Lab& x, double factor) {
+  return {x.L * factor, x.a * factor, x.b * factor};
+}
 color::Lab mixed(const color::Lab& x, const color::Lab& y, double fraction) {
   return {std::lerp(x.L, y.L, fraction), std::lerp(x.a, y.a, fraction), std::lerp(x.b, y.b, fraction)};
 }
@@ -70,7 +73,34 @@ void move_average(Locus& locus, const Edit& edit, Edited& result) {
   map_all(locus, tweak);
 }
 
-void tweak_at(Locus& locus, const Tweak& tweak, double aspecular_deg) {
+// The color that a paint shows at an angle: the mean of its readings there in the plane of incidence, else the curve.
+color::Lab shown_at(const Locus& locus, double aspecular_deg) {
+  color::Lab sum;
+  double count = 0;
+  for (const LabReading& row : locus.rows) {
+    if (row.geometry.out_of_plane || aspecular_angle_deg(row.geometry) != aspecular_deg) continue;
+    sum = sum + row.lab;
+    ++count;
+  }
+  return count > 0 ? scaled(sum, 1 / count) : lab_at(locus.appearance, aspecular_deg);
+}
+
+// The least changes dF of the face and dO of the flop, |dF|^2 + |dO|^2, under the condition that the curve changes by D
+// at the angle: w dF + (1 - w) dO = D with the weight w of the curve. By Lagrange's multiplier these are
+//   dF = D w/(w^2 + (1-w)^2),   dO = D (1-w)/(w^2 + (1-w)^2),
+// where the denominator is at least 1/2. At the face dF = D and dO = 0; from the travel on dF = 0 and dO = D. Nearer to
+// specular than the face w is above 1 and the flop would move the other way, so the face alone moves there, by D/w.
+void move_at(Locus& locus, const Tweak& tweak, double aspecular_deg) {
+  const color::Lab now = shown_at(locus, aspecular_deg), change = tweaked(now, tweak) - now;
+  const double w = lab_at({{1, 0, 0}, {}, locus.appearance.travel_deg, std::nullopt}, aspecular_deg).L;
+  const double squares = w * w + (1 - w) * (1 - w);
+  Appearance target = locus.appearance;
+  target.face = target.face + scaled(change, w >= 1 ? 1 / w : w / squares);
+  target.flop = target.flop + scaled(change, w >= 1 ? 0 : (1 - w) / squares);
+  move_to(locus, target);
+}
+
+void blend_at(Locus& locus, const Tweak& tweak, double aspecular_deg) {
   const double share = face_share(locus.appearance, aspecular_deg);
   Appearance target = locus.appearance;
   target.face = mixed(target.face, tweaked(target.face, tweak), share);
@@ -97,10 +127,14 @@ void move_travel(Locus& locus, const Edit& edit, Edited& result) {
                     shortest(locus.appearance.travel_deg), shortest(target.travel_deg)));
 }
 
+// A surface that reflects no light has no color: a* and b* end with L*.
 void clip(color::Lab& lab, const std::string& what, Edited& result) {
-  if (lab.L >= 0) return;
-  result.clipped.push_back(fmt::format("{}: L* {:.2f} to 0", what, lab.L));
-  lab.L = 0;
+  const bool colored = lab.a != 0 || lab.b != 0;
+  if (lab.L > 0 || (lab.L == 0 && !colored)) return;
+  if (lab.L < 0) result.clipped.push_back(fmt::format("{}: L* {:.2f} to 0", what, lab.L));
+  if (colored)
+    result.clipped.push_back(fmt::format("{}: chroma {:.2f} to 0, as black has none", what, color::chroma(lab)));
+  lab = {};
 }
 
 // The difference of the worst row in the plane of incidence, or of all rows if none is in it, as in
@@ -134,11 +168,39 @@ bool has_color(const Paint& paint) {
   return paint.appearance || (paint.measurement && !paint.measurement->rows.empty());
 }
 
+// The rows of the curve, in place of rows that have a residual.
+void restate(Locus& locus, Edited& result) {
+  constexpr double kSeen_de00 = 0.005;  // half a unit of the last decimal that instruments print
+  if (locus.rows.empty()) return;
+  result.restated_de00 = worst_de00(locus);
+  if (*result.restated_de00 >= kSeen_de00) result.dropped.push_back("residual of the rows");
+  for (LabReading& row : locus.rows) row.lab = lab_at(locus.appearance, aspecular_angle_deg(row.geometry));
+}
+
+// Puts readings in the place of rows, or beside them. A paint without rows gets those of its curve first.
+Result<void> set_readings(Locus& locus, const Edit& edit, bool has_curve, Edited& result) {
+  if (edit.readings.empty()) return {};
+  if (locus.rows.empty() && has_curve) locus.rows = rows_of(locus.appearance);
+  for (const LabReading& reading : edit.readings) {
+    const auto row = std::ranges::find(locus.rows, reading.geometry, &LabReading::geometry);
+    if (row == locus.rows.end())
+      locus.rows.push_back(reading);
+    else
+      row->lab = reading.lab;
+  }
+  if (states_appearance(edit)) return {};
+  GONIO_ASSIGN(const AppearanceFit fit, appearance_from_rows(locus.rows));
+  locus.appearance = fit.appearance;
+  result.fitted_de00 = fit.appearance.residual_de00;
+  return {};
+}
+
 // Puts a moved locus back. Its residual is that of the rows that it has now.
 void put_back(Paint& paint, Locus locus) {
   locus.appearance.residual_de00 = locus.rows.empty() ? std::nullopt : std::optional<double>(worst_de00(locus));
   paint.appearance = locus.appearance;
-  if (!paint.measurement) return;
+  if (!paint.measurement && locus.rows.empty()) return;
+  if (!paint.measurement) paint.measurement.emplace();
   paint.measurement->rows = std::move(locus.rows);
   paint.measurement->instrument.clear();
   paint.measurement->spectra.clear();  // they are those of the color before
@@ -149,22 +211,35 @@ void drop_lobes(Paint& paint, Edited& result) {
   paint.lobes.reset();
 }
 
+// The moves of the curve, in their order; the rows go with it.
+void move_color(Locus& locus, const Edit& edit, Edited& result) {
+  move_average(locus, edit, result);
+  if (!edit.at_deg)
+    map_all(locus, edit.tweak);
+  else if (edit.share == Share::kExact)
+    move_at(locus, edit.tweak, *edit.at_deg);
+  else
+    blend_at(locus, edit.tweak, *edit.at_deg);
+  move_ends(locus, edit);
+  move_travel(locus, edit, result);
+  if (states_appearance(edit) && !edit.keep_residual) restate(locus, result);
+}
+
 Result<void> edit_color(const Edit& edit, Edited& result) {
   Paint& paint = result.paint;
-  if (!has_color(paint)) {
+  const bool colored = has_color(paint);
+  if (!colored && edit.readings.empty()) {
     result.skipped.push_back("color: it has neither measured rows nor an appearance");
     return {};
   }
-  GONIO_ASSIGN(Locus locus, locus_of(paint));
-  if (!paint.appearance) result.fitted_de00 = locus.appearance.residual_de00;
-  result.before = locus.appearance;
-  move_average(locus, edit, result);
-  if (edit.at_deg)
-    tweak_at(locus, edit.tweak, *edit.at_deg);
-  else
-    map_all(locus, edit.tweak);
-  move_ends(locus, edit);
-  move_travel(locus, edit, result);
+  Locus locus;
+  if (colored) {
+    GONIO_ASSIGN(locus, locus_of(paint));
+    if (!paint.appearance) result.fitted_de00 = locus.appearance.residual_de00;
+    result.before = locus.appearance;
+    move_color(locus, edit, result);
+  }
+  GONIO_TRY(set_readings(locus, edit, colored, result));
   clip(locus.appearance.face, "face", result);
   clip(locus.appearance.flop, "flop", result);
   for (LabReading& row : locus.rows) clip(row.lab, geometry_name(row.geometry), result);
@@ -248,10 +323,14 @@ double face_share(const Appearance& appearance, double aspecular_deg) {
   return std::clamp((appearance.travel_deg - aspecular_deg) / (appearance.travel_deg - kFaceAngle_deg), 0.0, 1.0);
 }
 
+bool states_appearance(const Edit& edit) {
+  return edit.face || edit.flop || edit.travel_deg;
+}
+
 bool moves_color(const Edit& edit) {
-  return edit.average_hue_deg || edit.average_chroma || edit.average_lightness || edit.tweak != Tweak() || edit.face ||
-         edit.flop || edit.face_shift != color::Lab() || edit.flop_shift != color::Lab() || edit.travel_deg ||
-         edit.travel_shift_deg != 0;
+  return edit.average_hue_deg || edit.average_chroma || edit.average_lightness || edit.tweak != Tweak() ||
+         states_appearance(edit) || edit.face_shift != color::Lab() || edit.flop_shift != color::Lab() ||
+         edit.travel_shift_deg != 0 || !edit.readings.empty();
 }
 
 bool moves_gloss(const Edit& edit) {
@@ -263,7 +342,22 @@ Result<Edited> edited(const Paint& paint, const Edit& edit) {
   result.paint = paint;
   if (moves_color(edit)) GONIO_TRY(edit_color(edit, result));
   if (moves_gloss(edit)) edit_gloss(edit, result);
+  if (edit.anisotropy) {
+    result.paint.anisotropy = edit.anisotropy;
+    if (edit.anisotropy->alpha_x == 0 && edit.anisotropy->alpha_y == 0) result.paint.anisotropy.reset();
+  }
   return result;
+}
+
+bool is_distinct(const Edited& neighbor, const Paint& of) {
+  if (!neighbor.skipped.empty()) return false;
+  const bool same_gloss =
+      std::ranges::equal(neighbor.paint.gloss, of.gloss, {}, &GlossReading::gloss_units, &GlossReading::gloss_units);
+  if (!same_gloss)
+    return std::ranges::none_of(neighbor.clipped, [](const std::string& c) { return c.starts_with("gloss"); });
+  return neighbor.before &&
+         (neighbor.before->face != neighbor.after->face || neighbor.before->flop != neighbor.after->flop ||
+          neighbor.before->travel_deg != neighbor.after->travel_deg);
 }
 
 // The six directions in the a*b* plane stand 60 deg apart from 30 deg on, near the hues of the words they are named by,

@@ -131,6 +131,7 @@ Result<GeometryList> geometry_list(const GeometryTexts& texts) {
           ++list.below_horizon;
         } else if (aspecular_deg(pair) < kIndexGlare_deg - 1e-9) {
           ++list.glare;
+          list.left_out.push_back(pair);
         } else {
           list.pairs.push_back(pair);
           list.weights.push_back(light_weights[l] * view_weights[v]);

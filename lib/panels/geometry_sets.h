@@ -31,12 +31,13 @@ struct GeometryTexts {
 };
 
 // All lights with all viewers, in the order given. Pairs within kIndexGlare_deg of the mirror direction, and viewers
-// given by an aspecular angle that lie below the horizon, are left out and counted. Error (usage): a text cannot be
+// given by an aspecular angle that lie below the horizon, are left out and named. Error (usage): a text cannot be
 // read, or nothing is left.
 struct GeometryList {
   std::vector<LightView> pairs;
   std::vector<double> weights;       // of the pairs: the light's times the view's
   int glare = 0, below_horizon = 0;  // left out
+  std::vector<LightView> left_out;   // those in the glare, in the order given
 };
 Result<GeometryList> geometry_list(const GeometryTexts& texts);
 

@@ -17,6 +17,9 @@ TEST(GeometrySets, TakeListsRangesNamesAndAspecularViews) {
   }
   const GeometryList some = *geometry_list({.lights = "45", .views = "45,40,as80,as140", .azimuths = "0"});
   EXPECT_EQ(some.glare, 2);
+  ASSERT_EQ(some.left_out.size(), 2u);
+  EXPECT_EQ(some.left_out[0].view_deg, 45);
+  EXPECT_EQ(some.left_out[1].view_deg, 40);
   EXPECT_EQ(some.below_horizon, 1);
   EXPECT_EQ(some.pairs.size(), 1u);
   const GeometryList heavy = *geometry_list(

@@ -92,7 +92,7 @@ struct Renderer::State : Sight {
   std::vector<std::vector<TexturePlace>> placed;  // on textures, of the same; empty: not yet
   std::uint64_t placed_for = 0;                   // the layer
   int in_texture = -1;
-  double rasterization_ms = 0;
+  double rasterization_ms = 0;  // the last one of this view, which a plan may have made
 
   void begin() const {
     if (open_gl) open_gl->context.make_current();
@@ -474,7 +474,6 @@ Result<void> Renderer::draw(const View& view, Frame& frame) {
   if (s.ray_failure) return *s.ray_failure;
   s.begin();
   const Stopwatch whole;
-  s.rasterization_ms = 0;
   frame.gbuffer.reset();
   GONIO_TRY(s.look_at(view));
   frame.gbuffer = s.gbuffer(0);

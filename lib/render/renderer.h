@@ -32,11 +32,11 @@ struct Frame {
   image::Image picture;                    // R G B A, scene-linear radiance, premultiplied
   image::Image centers;                    // the same, of the pixel centers alone; empty unless asked for
   std::shared_ptr<const Gbuffer> gbuffer;  // of the pixel centers
-  double gbuffer_ms = 0;                   // one rasterization; 0 where the view was seen before
-  double frame_ms = 0;                     // everything but uploads
-  std::optional<Noise> noise;              // of the picture; none of engines that do not draw by random samples
-  image::Image open_centers;  // of the pixel centers without the effects of rays; empty unless centers are asked for
-  CorrectionNoise rays;       // of the effects of rays in `picture`; 0 where none are drawn
+  double gbuffer_ms = 0;       // one rasterization of the view, perhaps made for a plan; 0 where the G-buffer is given
+  double frame_ms = 0;         // everything but uploads
+  std::optional<Noise> noise;  // of the picture; none of engines that do not draw by random samples
+  image::Image open_centers;   // of the pixel centers without the effects of rays; empty unless centers are asked for
+  CorrectionNoise rays;        // of the effects of rays in `picture`; 0 where none are drawn
 };
 
 // The light that rays meet beside the lights of the scene. How many bounces it takes, and which random numbers, is told

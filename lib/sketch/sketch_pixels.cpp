@@ -33,8 +33,10 @@ Result<Channels> channels_of(const image::AovFile& file) {
 Result<void> check_sizes(const SketchInput& input) {
   const image::Image &buffers = input.buffers->image, &edited = input.edited->rgb;
   if (edited.width != buffers.width || edited.height != buffers.height)
-    return input_error("the picture is {} x {} pixels and the buffers of {} are {} x {}: bring both to one size",
-                       edited.width, edited.height, input.buffers->path, buffers.width, buffers.height);
+    return input_error(
+        "the picture is {} x {} pixels and the buffers of {} are {} x {}: bring both to one size, or "
+        "register the picture",
+        edited.width, edited.height, input.buffers->path, buffers.width, buffers.height);
   if (input.mask && (input.mask->width != buffers.width || input.mask->height != buffers.height))
     return input_error("the mask is {} x {} pixels and the buffers of {} are {} x {}: bring both to one size",
                        input.mask->width, input.mask->height, input.buffers->path, buffers.width, buffers.height);

@@ -13,12 +13,13 @@ _colorsnap() {
     --off-radial) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --format|-f) COMPREPLY=($(compgen -W "auto tsv json paints" -- "$word")); return ;;
+    --cloud) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --report) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --threads) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--library --filter --count --metric --geometry --weight --illuminant --mix-observers --method --threshold --off-radial --output --format --keep-going --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--library --filter --count --metric --geometry --weight --illuminant --mix-observers --method --threshold --off-radial --output --format --cloud --assign --keep-going --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

@@ -6,6 +6,7 @@ _sketch_fit() {
     --view) COMPREPLY=($(compgen -W "paint plain" -- "$word")); return ;;
     --exposure) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --shift) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --register) COMPREPLY=($(compgen -W "auto always never" -- "$word")); return ;;
     --env|-e) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --basis) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --mask|-m) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -21,7 +22,7 @@ _sketch_fit() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--image --buffers --view --exposure --shift --env --basis --mask --part --pixels --glare --max-de --name --residual --output --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--image --buffers --view --exposure --shift --register --env --basis --mask --part --pixels --glare --max-de --name --residual --output --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

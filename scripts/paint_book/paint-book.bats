@@ -142,7 +142,7 @@ for paint in json.loads(re.search(r'id="data">(.*?)</script>', page, re.S)[1]):
 PY
   mv taken.xml taken.paints.xml
   for file in taken.paints.xml taken.csv taken.cxf; do
-    paint-convert "$file" --to csv -o - | grep -q '^red,45as45,D65,10,42,58,38$'
+    paint-convert "$file" --to csv -o - | grep -qE '^red,45as45,D65,10,42,58,38(,row)?$'
   done
 }
 

@@ -242,6 +242,30 @@ column() {
   [ "$(colorsnap -q -l lib.xml -k 1 - wish.xml <wish.xml | column query)" = "wish wish" ]
 }
 
+@test "--assign passes the queries on with the code of their nearest paint" {
+  {
+    echo "$head"
+    paint wish 99,60,30 50,40,20 20,20,10 'code="old"'
+    paint blue 60,10,-59 30,10,-50 15,5,-40
+    paint other 79,-50,30 40,-30,20 20,-10,5 'class="pearl"'
+    echo "</paints>"
+  } >three.xml
+  run --separate-stderr colorsnap -l lib.xml --assign three.xml -o out.xml
+  [ "$status" -eq 0 ]
+  [ "$(grep -oE '<paint [^>]*' out.xml | tr '\n' ';')" = '<paint name="wish" code="c-R1";<paint name="blue" code="B1";<paint name="other" class="pearl" code="c-G1";' ]
+  [[ "$stderr" == *'library paint "B1" has no code: its name stands for it'* ]]
+  diff <(grep -o '<lab [^>]*' three.xml) <(grep -o '<lab [^>]*' out.xml)
+  # Without a match a design keeps its code, and the verdict is negative.
+  run --separate-stderr colorsnap -l lib.xml --assign --filter class=pearl wish.xml
+  [ "$status" -eq 1 ]
+  [ "$(grep -oE '<paint [^>]*' <<<"$output")" = '<paint name="wish"' ]
+  for wrong in '-f tsv' '-f json' '-o out.tsv' '-o out.jsonl'; do
+    run --separate-stderr colorsnap -l lib.xml --assign wish.xml $wrong
+    [ "$status" -eq 2 ]
+    [[ "$stderr" == *"--assign writes paint XML"* ]]
+  done
+}
+
 @test "--format paints writes each matched paint once, every element kept" {
   sed -i 's|name="R2" code="c-R2" class="solid">|&<s:mark xmlns:s="urn:example:shelf" row="7"/>|' lib.xml
   colorsnap -q -l lib.xml -k 3 -f paints - wish.xml <wish.xml >out.xml
@@ -325,4 +349,16 @@ column() {
   run --separate-stderr colorsnap -l lib.xml --illuminant A gray.xml
   [ "$status" -eq 3 ]
   [[ "$stderr" == *"6 of 6 library paints have no spectra"* || "$stderr" == *"5 of 5 library paints have no spectra"* ]]
+}
+
+@test "--cloud draws the library in two projections, with the queries in it" {
+  run --separate-stderr colorsnap -l lib.xml wish.xml --cloud cloud.svg -o near.tsv
+  [ "$status" -eq 0 ]
+  xmllint --noout cloud.svg
+  grep -q '>from above: 5 of 5 paints at 45as45, 1 of 1 queries<' cloud.svg
+  grep -q '>from the side: 5 of 5 paints at 45as45, 1 of 1 queries<' cloud.svg
+  [ "$(grep -o '<circle' cloud.svg | wc -l)" -eq 12 ] # five paints and a ring, twice
+  run --separate-stderr colorsnap -l lib.xml wish.xml --cloud cloud.png
+  [ "$status" -eq 2 ]
+  [[ "$stderr" == *'--cloud is "cloud.png": give a name that ends in .svg'* ]]
 }

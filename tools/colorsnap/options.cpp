@@ -119,6 +119,15 @@ void add_options(cli::ToolSpec& spec, Options& o) {
                     "the matched paints themselves, each once, in the order in which they were first met, with every "
                     "element kept",
                     "query");
+  spec.option("cloud", "FILE", "cloud.svg", &o.cloud, "SVG of the library in CIELAB with the queries in it")
+      .more(
+          "It shows the library from above (a* and b*) and from the side (a* and L*), at 45as45 or the middle one of "
+          "the geometries that are compared. Points have colors near their hue. Each query is a ring that a line joins "
+          "to its nearest paint. At most 20000 paints and 500 queries are drawn; the titles tell how many.");
+  spec.flag("assign", &o.assign, "pass the queries on as paint XML, each with the code of its nearest paint")
+      .more(
+          "The code is where a formulation starts. A nearest paint without a code gives its name. A query without a "
+          "match keeps its own code. paint-convert(1) --columns all hands the code over with the readings.");
   add_keep_going(spec, "keep-going", o.keep_going, "queries that cannot be read or compared");
   cli::add_common_options(spec, o.common, {.explain = true});
 }
@@ -129,11 +138,17 @@ void add_report(cli::ToolSpec& spec) {
       {"paint-edit testdata/paints.paints.xml#candy_blue --hue-shift 4 | colorsnap --library "
        "testdata/paints.paints.xml -k 3",
        "name the three paints that are nearest to a changed blue"},
+      {"paint-edit testdata/paints.paints.xml --hue-shift 10 | colorsnap -l testdata/paints.paints.xml -k 1 --cloud "
+       "cloud.svg -o near.tsv",
+       "see where changed paints lie in a library"},
       {"colorsnap -l testdata/paints.paints.xml --metric de00 --filter flop_index=3:10 --filter class=metallic "
        "testdata/paints.paints.xml -o near.tsv",
        "look among metallics of moderate flop, by CIEDE2000"},
       {"colorsnap -l testdata/paints.paints.xml -k 1 -w 45as110=2 testdata/paints.paints.xml -o start.paints.xml",
-       "write the paint nearest to each, with the flop counting twice, to start formulations from"}};
+       "write the paint nearest to each, with the flop counting twice, to start formulations from"},
+      {"paint-edit testdata/paints.paints.xml#candy_blue --hue-shift 4 | colorsnap -l testdata/paints.paints.xml "
+       "--assign | paint-convert --to csv --columns all -o handoff.csv",
+       "hand a design over with the code of the paint nearest to it"}};
   spec.report = {
       {"queries[].name", "name of the query"},
       {"queries[].status", "ok, or outside, off_radial, no_match"},

@@ -6,10 +6,10 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "cloud.h"
 #include "finding.h"
 #include "formats/reference.h"
 #include "illuminants.h"
-#include "paint_stream.h"
 #include "sink.h"
 
 namespace goniochrome::tool {
@@ -54,16 +54,46 @@ class Run {
     session_.explain(plan_text());
     GONIO_ASSIGN(formats::PaintBatches batches, formats::PaintBatches::open(options_.inputs));
     GONIO_ASSIGN(OutputFile file, OutputFile::create(options_.output));
+    session_.begin_list("queries");
+    if (options_.assign) return assign(batches, std::move(file));
     GONIO_ASSIGN(Sink sink, Sink::begin(format_of(options_.format, options_.output), !options_.illuminants.empty(),
                                         std::move(file)));
-    session_.begin_list("queries");
-    GONIO_TRY(for_each_batch(
-        batches, session_, [&](const std::vector<paint::Paint>& batch) { return answer(batch, sink); }, left_out()));
+    const auto take = [&](const std::vector<paint::Paint>& batch) -> Result<void> {
+      GONIO_ASSIGN(const auto findings, found(batch));
+      for (const auto& finding : findings)
+        if (finding) GONIO_TRY(sink.write(*finding, index_));
+      return sink.flush();
+    };
+    GONIO_TRY(for_each_batch(batches, session_, take, left_out()));
     GONIO_TRY(sink.finish(options_.library, session_));
+    if (!options_.cloud.empty()) GONIO_TRY(cloud_.write(options_.cloud, index_));
     return finish();
   }
 
  private:
+  // The queries go on as paints, in their order, those without an answer as they came.
+  Result<cli::Verdict> assign(formats::PaintBatches& batches, OutputFile file) {
+    Prolog prolog;
+    prolog.take(batches);
+    GONIO_ASSIGN(CodeSink sink, CodeSink::begin(std::move(file), std::move(prolog), session_));
+    std::size_t without_code = 0;
+    const auto take = [&](const std::vector<paint::Paint>& batch) -> Result<void> {
+      GONIO_ASSIGN(const auto findings, found(batch));
+      for (std::size_t i = 0; i < batch.size(); ++i) {
+        GONIO_ASSIGN(const std::string name, sink.write(batch[i], findings[i] ? &*findings[i] : nullptr, index_));
+        if (!name.empty() && without_code++ == 0)
+          session_.warn(fmt::format("library paint \"{}\" has no code: its name stands for it", name));
+      }
+      return {};
+    };
+    GONIO_TRY(for_each_batch(batches, session_, take, left_out()));
+    if (without_code > 1)
+      session_.warn(fmt::format("{} more designs got the name of a paint without a code", without_code - 1));
+    GONIO_TRY(sink.finish());
+    if (!options_.cloud.empty()) GONIO_TRY(cloud_.write(options_.cloud, index_));
+    return finish();
+  }
+
   // What becomes of a query that cannot be read.
   std::function<void(const Error&)> left_out() {
     if (!options_.keep_going) return {};
@@ -75,13 +105,14 @@ class Run {
     ++left_out_;
   }
 
-  Result<void> answer(const std::vector<paint::Paint>& batch, Sink& sink) {
-    std::vector<std::pair<const paint::Paint*, QueryPlan>> queries;
+  // What was found for each paint of a batch; nothing for those that were left out.
+  Result<std::vector<std::optional<Finding>>> found(const std::vector<paint::Paint>& batch) {
+    std::vector<std::pair<std::size_t, QueryPlan>> queries;
     for (const paint::Paint& paint : batch) {
       auto plan = library_.plan(paint);
       if (plan.ok()) {
         tell_once(plan->plan);
-        queries.emplace_back(&paint, std::move(*plan));
+        queries.emplace_back(static_cast<std::size_t>(&paint - batch.data()), std::move(*plan));
         continue;
       }
       const std::string message = fmt::format("paint \"{}\": {}", paint.name, plan.error().message);
@@ -89,22 +120,21 @@ class Run {
       leave_out(message);
     }
     const Stopwatch searching;
-    std::vector<Finding> findings(queries.size());
+    std::vector<std::optional<Finding>> findings(batch.size());
     parallel_for(queries.size(), 4, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
-        findings[i] = finding_of(*queries[i].first, std::move(queries[i].second), library_, metric_,
-                                 {options_.threshold, options_.off_radial});
+        findings[queries[i].first] = finding_of(batch[queries[i].first], std::move(queries[i].second), library_,
+                                                metric_, {options_.threshold, options_.off_radial});
     });
     wall_s_ += searching.elapsed_s();
-    for (const Finding& finding : findings) {
-      note(finding);
-      GONIO_TRY(sink.write(finding, index_));
-    }
-    return sink.flush();
+    for (const auto& finding : findings)
+      if (finding) note(*finding);
+    return findings;
   }
 
   void note(const Finding& finding) {
     ++searched_;
+    if (!options_.cloud.empty()) cloud_.note(finding);
     search_s_ += finding.search_s;
     outside_ += finding.outside;
     off_radial_ += finding.off_radial;
@@ -211,6 +241,7 @@ class Run {
   library::ColorMetric metric_;
   std::vector<std::pair<paint::Geometry, double>> weights_;
   const library::LibrarySearch& search_;
+  Cloud cloud_;
   std::set<std::string> told_, compared_;
   std::size_t searched_ = 0, outside_ = 0, off_radial_ = 0, no_match_ = 0, left_out_ = 0, problems_ = 0;
   double search_s_ = 0, wall_s_ = 0;
@@ -236,6 +267,12 @@ Result<cli::Verdict> run_under_lights(const Options& options, const library::Lib
 
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   GONIO_ASSIGN(const library::LibrarySearchOptions search, search_options(options));
+  const bool is_table = options.format == "tsv" || options.format == "json" || options.output.ends_with(".json") ||
+                        options.output.ends_with(".jsonl") || options.output.ends_with(".tsv");
+  if (options.assign && is_table)
+    return usage_error("--assign writes paint XML: leave --format out, and end the output in .xml");
+  if (!options.cloud.empty() && !options.cloud.ends_with(".svg"))
+    return usage_error("--cloud is \"{}\": give a name that ends in .svg", options.cloud);
   if (!options.illuminants.empty()) return run_under_lights(options, search, session);
   GONIO_ASSIGN(const library::LibraryIndex index, library::LibraryIndex::open(options.library, [&](std::size_t paints) {
                  session.progress(fmt::format("{}: indexing {}: {} paints", session.tool(), options.library, paints));

@@ -3,7 +3,6 @@
 #include <unordered_map>
 
 #include "base/text.h"
-#include "paint_stream.h"
 
 namespace goniochrome::tool {
 
@@ -60,6 +59,22 @@ Json finding_json(const Finding& finding, const library::LibraryIndex& index) {
           {"hue_shift", json_number(finding.hue_shift)},
           {"matched_hue_shift", json_number(finding.matched_hue_shift)},
           {"matches", matches}};
+}
+
+Result<CodeSink> CodeSink::begin(OutputFile file, Prolog prolog, const cli::Session& session) {
+  GONIO_ASSIGN(formats::PaintWriter writer, begin_paints(std::move(file), std::move(prolog), session));
+  return CodeSink(std::move(writer));
+}
+
+Result<std::string> CodeSink::write(paint::Paint query, const Finding* finding, const library::LibraryIndex& index) {
+  std::string without_code;
+  if (finding != nullptr && !finding->no_match()) {
+    const std::size_t nearest = finding->neighbors.front().match.paint;
+    query.code = index.code(nearest);
+    if (query.code.empty()) query.code = without_code = index.name(nearest);
+  }
+  GONIO_TRY(writer_.write(query));
+  return without_code;
 }
 
 Result<Sink> Sink::begin(Format format, bool lights, OutputFile file) {

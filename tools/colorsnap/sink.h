@@ -1,4 +1,4 @@
-// Where findings go: a table, JSON lines, or the matched paints themselves.
+// Where findings go: a table, JSON lines, the matched paints themselves, or the queries with the codes of these.
 #pragma once
 
 #include <optional>
@@ -10,11 +10,26 @@
 #include "base/json.h"
 #include "cli/tool.h"
 #include "finding.h"
+#include "paint_stream.h"
 #include "table_output.h"
 
 namespace goniochrome::tool {
 
 Json finding_json(const Finding& finding, const library::LibraryIndex& index);
+
+// Passes the queries on as paints, each with the code of the paint nearest to it, which is where a formulation starts.
+class CodeSink {
+ public:
+  static Result<CodeSink> begin(OutputFile file, Prolog prolog, const cli::Session& session);
+  // Writes the query with the code of its nearest paint, or with its own where nothing was found. Returns the name of a
+  // nearest paint that has no code; its name then stands for it.
+  Result<std::string> write(paint::Paint query, const Finding* finding, const library::LibraryIndex& index);
+  Result<void> finish() { return writer_.finish(); }
+
+ private:
+  explicit CodeSink(formats::PaintWriter writer) : writer_(std::move(writer)) {}
+  formats::PaintWriter writer_;
+};
 
 class Sink {
  public:

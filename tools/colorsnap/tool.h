@@ -13,7 +13,7 @@ struct Options {
   cli::CommonOptions common;
   std::vector<std::string> inputs;
   std::string library;
-  std::string output = "-";
+  std::string output = "-", cloud;
   std::string format = "auto";
   int count = 5;
   std::string metric = "de76";
@@ -26,6 +26,7 @@ struct Options {
   double off_radial = 5;
   bool mix_observers = false;
   bool keep_going = false;
+  bool assign = false;
 };
 
 cli::ToolSpec tool_spec(Options& options);

@@ -291,3 +291,16 @@ coated() { echo "$head<paint name=\"gray\" class=\"solid\">${gray}<coat index=\"
   without=$(goniogeom-index -q gray.xml --light 60 --view 70 | column 6)
   awk -v a="$got" -v b="$without" 'BEGIN { d = a - b; exit !(d > 0.1 || d < -0.1) }'
 }
+
+@test "pairs that are left out are told and reported" {
+  run --separate-stderr goniogeom-index gray.xml --lights 0,45 --views 0,-40 --report r.json -o i.tsv
+  [ "$status" -eq 0 ]
+  [ "$(wc -l <i.tsv)" -eq 4 ]
+  [[ "$stderr" == *"left out: 1 of the pairs of light and viewer (0/0 deg), within 10 deg of the mirror direction"* ]]
+  jq -e '.results.left_out == [{"light_deg": 0, "view_deg": 0, "azimuth_deg": 0, "aspecular_deg": 0}]' r.json
+  run --separate-stderr goniogeom-index gray.xml --lights 80 --views as45,as175 -o i.tsv
+  [[ "$stderr" == *"left out: 1 viewers that lie below the horizon of the panel"* ]]
+  run --separate-stderr goniogeom-index gray.xml --report r.json -o i.tsv
+  [[ "$stderr" != *"left out"* ]]
+  jq -e '.results.left_out == []' r.json
+}

@@ -53,7 +53,7 @@ Result<IndexRequest> request_of(const Options& options) {
     return usage_error("--curve shows a paint under the illuminant of its readings: leave out --illuminant");
   request.one_row = options.worst || request.tolerance_deg;
   GONIO_ASSIGN(panels::GeometryList list, panels::geometry_list(options.geometries));
-  request.glare = list.glare, request.below_horizon = list.below_horizon;
+  request.in_glare = std::move(list.left_out), request.below_horizon = list.below_horizon;
   for (const panels::LightView& geometry : list.pairs)
     request.pairs.push_back(panels::TiltedPair::make(geometry, options.seam_deg));
   request.geometries = std::move(list.pairs);
@@ -143,6 +143,9 @@ void add_report(cli::ToolSpec& spec) {
        "difference at 1 degree, the larger one of both signs; de_at_2deg and de_at_5deg stand beside it"},
       {"paints[].worst_deg", "smallest index of the paint; null where there is none"},
       {"worst_deg", "smallest index of all paints"},
+      {"left_out[]",
+       "light_deg, view_deg, azimuth_deg and aspecular_deg of the pairs that are left out because they are within 10 "
+       "degrees of the mirror direction"},
       {"seam_length_m",
        "with --mesh; beside it stand unit_m, misalignment_deg, gap_mm and flush_mm (low, median, high), and repairs"},
       {"paints[].de_max", "with --mesh: largest difference along the seam; de_rms is that over all places and views"},

@@ -128,7 +128,7 @@ std::string plan(const Options& options, const IndexRequest& request) {
       "below the horizon\n"
       "difference {} to {}, first crossing for + and -; about 5 us a pair and paint\n"
       "seam at {} deg from the plane of incidence\n",
-      request.pairs.size(), request.glare, panels::kIndexGlare_deg, request.below_horizon, options.metric,
+      request.pairs.size(), request.in_glare.size(), panels::kIndexGlare_deg, request.below_horizon, options.metric,
       shortest(request.threshold), shortest(options.seam_deg));
   if (!request.illuminants.empty())
     text += fmt::format("colors from spectra, under {} each\n", joined(request.illuminants, ", "));
@@ -238,6 +238,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   if (!options.seam.mesh.empty()) return run_on_seam(options, session);
   GONIO_ASSIGN(const IndexRequest request, request_of(options));
   session.explain(plan(options, request));
+  tell_left_out(request.in_glare, request.below_horizon, session);
   return Run(options, request, session)();
 }
 

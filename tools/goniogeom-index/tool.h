@@ -45,8 +45,9 @@ struct DifferenceRequest {
 // What the options mean, checked.
 struct IndexRequest : DifferenceRequest {
   std::vector<panels::LightView> geometries;
-  int glare = 0, below_horizon = 0;       // pairs left out
-  std::vector<panels::TiltedPair> pairs;  // one for each geometry
+  int below_horizon = 0;                    // pairs left out
+  std::vector<panels::LightView> in_glare;  // pairs left out
+  std::vector<panels::TiltedPair> pairs;    // one for each geometry
   std::optional<double> tolerance_deg;
   bool one_row = false;                  // for each paint: its worst geometry
   std::vector<std::string> illuminants;  // under which each paint is judged; none: that of its readings

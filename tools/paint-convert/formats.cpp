@@ -21,6 +21,7 @@ class XmlSource : public PaintSource {
   Result<std::optional<paint::Paint>> next() override { return reader_.next(); }
   std::string place() const override { return fmt::format("{}:{}", name_, reader_.line()); }
   std::string format() const override { return "paint XML"; }
+  bool holds_designs() const override { return true; }
   Prolog prolog() override {
     reader_.read_prolog();
     return {reader_.processing(), reader_.foreign()};
@@ -62,6 +63,7 @@ class NamedSource : public PaintSource {
   }
   std::string place() const override { return all_->place(); }
   std::string format() const override { return all_->format(); }
+  bool holds_designs() const override { return all_->holds_designs(); }
   Prolog prolog() override { return all_->prolog(); }
   std::vector<std::string> warnings() const override { return all_->warnings(); }
   std::vector<std::string> closing_warnings() const override { return all_->closing_warnings(); }

@@ -25,6 +25,8 @@ class PaintSource {
   virtual std::string place() const = 0;
   // "paint XML", "long table", ...
   virtual std::string format() const = 0;
+  // Whether its paints may have a face and a flop, and not rows alone.
+  virtual bool holds_designs() const { return false; }
   virtual Prolog prolog() { return {}; }
   virtual std::vector<std::string> warnings() const { return {}; }
   // What is known after the last paint only.
@@ -45,7 +47,8 @@ struct SourceSetup {
 class PaintSink {
  public:
   virtual ~PaintSink() = default;
-  virtual Result<void> write(const paint::Paint& paint) = 0;
+  // `from_curve` are the geometries of the rows that come from the curve of the paint.
+  virtual Result<void> write(const paint::Paint& paint, const std::vector<paint::Geometry>& from_curve) = 0;
   // Puts the file in place.
   virtual Result<void> finish() = 0;
 };
@@ -55,7 +58,12 @@ template <class Writer>
 class SinkOf : public PaintSink {
  public:
   explicit SinkOf(Writer writer) : writer_(std::move(writer)) {}
-  Result<void> write(const paint::Paint& paint) override { return writer_.write(paint); }
+  Result<void> write(const paint::Paint& paint, const std::vector<paint::Geometry>& from_curve) override {
+    if constexpr (requires { writer_.write(paint, from_curve); })
+      return writer_.write(paint, from_curve);
+    else
+      return writer_.write(paint);
+  }
   Result<void> finish() override { return writer_.finish(); }
 
  private:

@@ -29,7 +29,7 @@ void add_options(cli::ToolSpec& spec, Options& o) {
           "status is 1.");
   spec.heading = "readings";
   spec.option("geometry", "LIST", "15,45,110", &o.geometry, "geometries to write, such as 15 or 45as25az90")
-      .more("Several are separated by commas.");
+      .more("Several are separated by commas. Tables, CxF and CGATS get rows that are missing from the curve.");
   spec.flag("fit-appearance", &o.fit_appearance, "fit face, flop and travel to the rows of each measured paint")
       .more("The residual of the fit is written with them.");
   spec.heading = "output";
@@ -103,10 +103,14 @@ cli::ToolSpec tool_spec(Options& o) {
           "they stay that. The data are checked on the way: the report tells the share of negative samples, how far "
           "light and viewer can be swapped, whether the values are f or f cos, the noise floor, and which readings "
           "were interpolated and how far.",
-      "A measured paint keeps the rows it has; --geometry selects among them and never interpolates. A designed paint "
-      "has a face, a flop and a travel but no rows. It gets rows where readings are written: at 15, 45 and 110 degrees "
-      "and at 25, 45 and 75 degrees, which are the two sets of the industry, or at those of --geometry. What the "
-      "output cannot hold is named in a warning.",
+      "A paint that was only measured keeps the rows it has. A designed paint has a face, a flop and a travel. Where "
+      "readings are written, it has them at 15, 45 and 110 degrees and at 25, 45 and 75 degrees, which are the two "
+      "sets "
+      "of the industry: its rows, and its curve where a row is missing. --geometry does the same for any list and any "
+      "paint; the curve of a paint that was only measured is the one nearest to its rows, if it has three angles. The "
+      "last column of a table, origin, says row or curve of each reading; it is there if an input is paint XML, and "
+      "with --geometry and --fit-appearance. Paint XML has no such mark; there --geometry selects among the rows of a "
+      "measured paint. What the output cannot hold is named in a warning.",
       "Paint XML keeps the spectra of measured BRDFs and of CxF, one for each geometry. With --illuminant or "
       "--observer, a paint that has spectra gets the readings that these make in that light, and its face and flop "
       "are fitted again; its lobes and its color map, which are those of the light before, are left out. A paint "

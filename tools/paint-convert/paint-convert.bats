@@ -16,12 +16,15 @@ lab() { grep -oE '<(paint name|lab) [^>]*' "$1"; }
 @test "the sample table and the sample library turn into each other without a change" {
   paint-convert -q "$TESTDATA/paints.csv" -o p.xml
   diff <(lab p.xml) <(grep -v '<face' "$TESTDATA/paints.paints.xml" | lab /dev/stdin | sed 's/ class="[a-z]*"//; s/ code="[^"]*"//')
+  # Paint XML may hold designs, so its table has the column origin.
   paint-convert -q p.xml -o p.csv
-  cmp p.csv "$TESTDATA/paints.csv"
+  sed 's/,row$//; s/,origin$//' p.csv | cmp - "$TESTDATA/paints.csv"
+  paint-convert -q p.csv -o again.xml
+  diff <(lab p.xml) <(lab again.xml)
   paint-convert -q "$TESTDATA/paints-wide.csv" -o w.xml
   diff <(lab p.xml | sort) <(lab w.xml | sort)
   paint-convert -q p.xml --to wide -o w.csv
-  cmp w.csv "$TESTDATA/paints-wide.csv"
+  sed 's/,$//; s/,origin$//' w.csv | cmp - "$TESTDATA/paints-wide.csv"
 }
 
 @test "XML to table to XML keeps names, conditions, gloss, class and code with --columns all" {
@@ -54,8 +57,8 @@ lab() { grep -oE '<(paint name|lab) [^>]*' "$1"; }
 @test "a designed paint is handed over at both sets of the industry, or where it is asked" {
   run --separate-stderr paint-convert d.xml --to csv
   [ "$(cut -d, -f1-4 <<<"$output" | tail -n +2 | tr '\n' ' ')" = "d,45as15,D65,10 d,45as25,D65,10 d,45as45,D65,10 d,45as75,D65,10 d,45as110,D65,10 " ]
-  [ "$(sed -n 2p <<<"$output")" = "d,45as15,D65,10,60,5,-20" ]
-  [ "$(sed -n 6p <<<"$output")" = "d,45as110,D65,10,20,3,-9" ]
+  [ "$(sed -n 2p <<<"$output")" = "d,45as15,D65,10,60,5,-20,curve" ]
+  [ "$(sed -n 6p <<<"$output")" = "d,45as110,D65,10,20,3,-9,curve" ]
   run --separate-stderr paint-convert -q d.xml --to wide
   [ "$(cut -d, -f1-9 <<<"${lines[1]}")" = "d,D65,10,,,,60,5,-20" ]
   run --separate-stderr paint-convert -q d.xml --to csv --geometry 15 --geometry 45as25az90,75
@@ -67,7 +70,68 @@ lab() { grep -oE '<(paint name|lab) [^>]*' "$1"; }
   [ "$(grep -c '<lab ' <<<"$output")" -eq 3 ]
 }
 
-@test "--geometry selects rows, says what is missing and never interpolates" {
+@test "a design with rows is handed over at both sets, and the column origin tells rows from the curve" {
+  cat >design.xml <<END
+$xml_head<paint name="d" code="S7"><measurement illuminant="D65" observer="10"><lab geometry="45as15" L="61" a="5" b="-20"/>
+<lab geometry="45as45" L="27" a="3.5" b="-11"/><lab geometry="45as110" L="20" a="3" b="-9"/></measurement>
+<appearance travel="63"><face L="60" a="5" b="-20"/><flop L="20" a="3" b="-9"/></appearance></paint></paints>
+END
+  run --separate-stderr paint-convert -q design.xml --to csv --columns all
+  [ "${lines[0]}" = "$header,class,code,instrument,gloss20,gloss60,gloss85,origin" ]
+  [ "$(cut -d, -f2,9,14 <<<"$output" | tail -n +2 | tr '\n' ' ')" = "45as15,S7,row 45as25,S7,curve 45as45,S7,row 45as75,S7,curve 45as110,S7,row " ]
+  # The curve at 25 deg: 20 + 40 (38/48)^2.
+  awk -F, '$2 == "45as25" { exit !($5 - 45.06944444 < 1e-6 && 45.06944444 - $5 < 1e-6) }' <<<"$output"
+  run --separate-stderr paint-convert -q design.xml --to wide
+  [ "${lines[1]##*,}" = "45as25 45as75" ]
+  # What a table marks as the curve is no second measurement.
+  paint-convert -q design.xml -o long.csv
+  paint-convert -q design.xml --to wide -o wide.csv
+  for table in long wide; do
+    paint-convert -q $table.csv -o back.xml
+    diff <(grep -o '<lab [^>]*' design.xml) <(grep -o '<lab [^>]*' back.xml)
+  done
+  paint-convert -q design.xml -o design.cxf
+  grep -q '<cc:Tag Name="curve" Value="45as25 45as75"/>' design.cxf
+  [ "$(paint-convert -q design.cxf | grep -c '<lab ')" -eq 5 ]
+  run --separate-stderr paint-convert -q design.xml --to cgats
+  [ "$(awk -F'\t' 'NF > 8 && $1 ~ /^[1-5]$/ { print $NF }' <<<"$output" | tr '\n' ' ')" = "row curve row curve row " ]
+  # A paint that is only measured keeps the rows it has.
+  run --separate-stderr paint-convert -q <(sed 's/<appearance.*appearance>//' design.xml) --to csv
+  [ "$(grep -c row <<<"$output")" -eq 3 ]
+  [ "$(grep -c curve <<<"$output")" -eq 0 ]
+}
+
+@test "an absolute design leaves as it was stated, at both sets, with its code" {
+  paint-edit -q "$TESTDATA/paints.paints.xml#silver_fine" --face 45,55,30 --flop 20,25,12 --travel 70 --code S1 |
+    paint-convert -q --to csv --columns all -o design.csv
+  for angle in 15 25 45 75 110; do grep -q "45as$angle,.*,S1,.*,row$" design.csv; done
+  grep -q "45as15,D65,10,45,55,30," design.csv
+  grep -q "45as110,D65,10,20,25,12," design.csv
+  paint-edit -q --new n --face 45,55,30 --flop 20,25,12 --travel 70 | paint-convert -q --to csv -o new.csv
+  diff <(cut -d, -f2-7 design.csv | grep -v 45as-15) <(cut -d, -f2-7 new.csv)
+}
+
+@test "--geometry takes rows that are missing from the curve, and says so" {
+  printf '%s\n' "$header" c,15,D65,10,60,1,2 c,45,D65,10,40,1,2 c,110,D65,10,20,1,2 >c.csv
+  run --separate-stderr paint-convert c.csv --to csv --geometry 110,25,45
+  [ "$status" -eq 0 ]
+  [ "${lines[0]}" = "$header,origin" ]
+  [ "$(tail -n +2 <<<"$output" | cut -d, -f2,8 | tr '\n' ' ')" = "45as110,row 45as25,curve 45as45,row " ]
+  [[ "$stderr" == *"warning: 45as25 is not measured: it comes from the curve that is nearest to the rows (c)"* ]]
+  # Paint XML has no mark for such a row, so there it is left out.
+  run --separate-stderr paint-convert c.csv --geometry 110,25,45
+  [ "$(grep -c '<lab ' <<<"$output")" -eq 2 ]
+  [[ "$stderr" == *"warning: 45as25 is not measured (c)"* ]]
+}
+
+@test "an origin that is not understood is refused" {
+  printf '%s\n' "$header,origin" c,15,D65,10,60,1,2,guess >c.csv
+  run --separate-stderr paint-convert c.csv --to csv
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *'c.csv:2: origin is "guess": write row, or curve for what a curve says'* ]]
+}
+
+@test "--geometry selects rows, and two angles make no curve" {
   run --separate-stderr paint-convert ab.csv --to csv --geometry 45as15,25
   [ "$status" -eq 0 ]
   [ "$(tail -n +2 <<<"$output" | cut -d, -f1,2 | tr '\n' ' ')" = "a,45as15 b,45as15 " ]
@@ -89,8 +153,8 @@ lab() { grep -oE '<(paint name|lab) [^>]*' "$1"; }
   [ "$status" -eq 0 ]
   [[ "$stderr" == *"warning: rows beside the usual six geometries are left out: name the columns with --geometry (a)"* ]]
   run --separate-stderr paint-convert -q odd.csv --to wide --geometry 15,45as25az90
-  [ "${lines[0]}" = "sample,illuminant,observer,L15,a15,b15,L45as25az90,a45as25az90,b45as25az90" ]
-  [ "${lines[1]}" = "a,D65,10,1,2,3,4,5,6" ]
+  [ "${lines[0]}" = "sample,illuminant,observer,L15,a15,b15,L45as25az90,a45as25az90,b45as25az90,origin" ]
+  [ "${lines[1]}" = "a,D65,10,1,2,3,4,5,6," ]
 }
 
 @test "--fit-appearance writes face, flop, travel and the residual" {

@@ -32,6 +32,7 @@ Result<std::vector<Input>> surveyed(const Options& options, const SourceSetup& s
     GONIO_ASSIGN(auto source, open_source(path, options.from, source_setup));
     session.explain(fmt::format("{}: {}\n", path == "-" ? "standard input" : path, source->format()));
     const Prolog prolog = source->prolog();
+    setup.layout.origin = setup.layout.origin || source->holds_designs();
     setup.prolog.processing.insert(setup.prolog.processing.end(), prolog.processing.begin(), prolog.processing.end());
     setup.prolog.foreign.insert(setup.prolog.foreign.end(), prolog.foreign.begin(), prolog.foreign.end());
     const bool reopens = paths.size() > 1 && path != "-" && is_plain_file(path);
@@ -129,9 +130,10 @@ Result<void> Conversion::pass(paint::Paint paint, const PaintSource& source) {
                               inputs_[*other - 1]));
   const auto relit = bring_to_light(paint);
   if (!relit.ok()) return skip(input_error("{}: paint \"{}\": {}", source.place(), paint.name, relit.error().message));
-  const auto selected = selection_.apply(paint, remarks_);
+  std::vector<paint::Geometry> from_curve;
+  const auto selected = selection_.apply(paint, from_curve, remarks_);
   if (!selected.ok()) return skip(input_error("{}: {}", source.place(), selected.error().message));
-  GONIO_TRY(sink_.write(paint));
+  GONIO_TRY(sink_.write(paint, from_curve));
   ++written;
   if (written % 1000 == 0) session_.progress(fmt::format("{} paints", written));
   return {};

@@ -1,6 +1,8 @@
 #include "selection.h"
 
 #include <algorithm>
+#include <optional>
+#include <set>
 
 #include "base/text.h"
 #include "paint/curve.h"
@@ -38,11 +40,60 @@ Result<Selection> Selection::make(const Options& options, const OutputFormat& fo
 }
 
 formats::CsvLayout Selection::layout() const {
-  return {format_.is_wide ? chosen_ : std::vector<paint::Geometry>(), options_.columns == "all"};
+  return {format_.is_wide ? chosen_ : std::vector<paint::Geometry>(), options_.columns == "all",
+          !options_.geometry.empty() || options_.fit_appearance};
 }
 
 std::vector<paint::Geometry> Selection::requested() const {
   return options_.geometry.empty() ? std::vector<paint::Geometry>() : chosen_;
+}
+
+// The geometries at which a paint is handed over: those of --geometry, or for a design both sets of the industry.
+std::vector<paint::Geometry> Selection::wanted(const paint::Paint& paint) const {
+  if (!options_.geometry.empty()) return chosen_;
+  std::vector<paint::Geometry> sets;
+  if (paint.appearance)
+    for (const double angle : paint::kExportAngles_deg) sets.push_back({.aspecular_deg = angle});
+  return sets;
+}
+
+namespace {
+
+// The curve of a paint: its own, or the one nearest to its rows, if these stand at the three angles that fix one.
+std::optional<paint::Appearance> curve_of(const paint::Paint& paint) {
+  if (paint.appearance) return paint.appearance;
+  std::set<double> angles;
+  for (const paint::LabReading& row : paint.measurement->rows)
+    if (!row.geometry.out_of_plane) angles.insert(paint::aspecular_angle_deg(row.geometry));
+  if (angles.size() < 3) return std::nullopt;
+  const auto fit = paint::appearance_from_rows(paint.measurement->rows);
+  return fit.ok() ? std::optional(fit->appearance) : std::nullopt;
+}
+
+}  // namespace
+
+// Adds the rows that are wanted and missing, each before the first row that lies farther from specular.
+void Selection::add_missing(paint::Paint& paint, std::vector<paint::Geometry>& from_curve,
+                            formats::Remarks& remarks) const {
+  auto& rows = paint.measurement->rows;
+  std::vector<paint::Geometry> missing = wanted(paint);
+  std::erase_if(missing, [&](const paint::Geometry& geometry) {
+    return std::ranges::find(rows, geometry, &paint::LabReading::geometry) != rows.end();
+  });
+  if (missing.empty()) return;
+  const auto curve = curve_of(paint);
+  if (!curve) return;
+  for (const paint::Geometry& geometry : missing) {
+    const auto farther = std::ranges::find_if(rows, [&](const paint::LabReading& row) {
+      return !row.geometry.out_of_plane && row.geometry.aspecular_deg > geometry.aspecular_deg;
+    });
+    rows.insert(farther, {geometry, paint::lab_at(*curve, paint::aspecular_angle_deg(geometry))});
+    if (!paint.appearance)
+      remarks.note(fmt::format("{} is not measured: it comes from the curve that is nearest to the rows",
+                               paint::geometry_name(geometry)),
+                   paint.name);
+  }
+  from_curve = std::move(missing);
 }
 
 // Leaves the rows at the chosen geometries, in the order of the choice.
@@ -79,7 +130,8 @@ void Selection::note_losses(const paint::Paint& paint, bool designed, formats::R
     remarks.note("gloss, class, code and instrument are left out: --columns all keeps them", paint.name);
 }
 
-Result<void> Selection::apply(paint::Paint& paint, formats::Remarks& remarks) const {
+Result<void> Selection::apply(paint::Paint& paint, std::vector<paint::Geometry>& from_curve,
+                              formats::Remarks& remarks) const {
   const bool measured = paint.measurement && !paint.measurement->rows.empty();
   const bool needs_rows = format_.only_rows || !options_.geometry.empty();
   if (measured && options_.fit_appearance) {
@@ -89,6 +141,7 @@ Result<void> Selection::apply(paint::Paint& paint, formats::Remarks& remarks) co
                    paint.name);
     paint.appearance = fit.appearance;
   }
+  if (format_.only_rows && measured) add_missing(paint, from_curve, remarks);
   if (needs_rows && measured && !chosen_.empty()) keep_chosen(paint, remarks);
   if (needs_rows && !measured && paint.appearance) {
     paint.measurement = paint::Measurement{paint::condition_of(paint), "", paint::rows_of(*paint.appearance)};
@@ -98,6 +151,7 @@ Result<void> Selection::apply(paint::Paint& paint, formats::Remarks& remarks) co
         paint.measurement->rows.push_back(
             {geometry, paint::lab_at(*paint.appearance, paint::aspecular_angle_deg(geometry))});
     }
+    for (const paint::LabReading& row : paint.measurement->rows) from_curve.push_back(row.geometry);
   }
   if (!format_.only_rows) return {};
   if (!paint.measurement)
@@ -105,19 +159,22 @@ Result<void> Selection::apply(paint::Paint& paint, formats::Remarks& remarks) co
                        format_.title);
   if (paint.measurement->rows.empty())
     return input_error("paint \"{}\" is not measured at {}: choose other geometries", paint.name, listed(chosen_));
-  note_losses(paint, !measured, remarks);
+  note_losses(paint, !measured || options_.geometry.empty(), remarks);
   return {};
 }
 
 std::string Selection::explanation() const {
   std::string text = fmt::format("output: {}\n", format_.title);
   if (!options_.geometry.empty())
-    text += fmt::format("rows: only {}; designed paints are evaluated there\n", listed(chosen_));
+    text += fmt::format("rows: only {}; {}\n", listed(chosen_),
+                        format_.only_rows ? "those that are missing come from the curve, as the column origin says"
+                                          : "designed paints are evaluated there");
   else if (format_.is_wide)
     text += fmt::format("rows: {}, the usual six; others need --geometry\n", listed(chosen_));
   else
-    text += fmt::format("rows: all that were measured{}\n",
-                        format_.only_rows ? "; designed paints are evaluated at 15, 25, 45, 75 and 110 deg" : "");
+    text += fmt::format(
+        "rows: all that were measured{}\n",
+        format_.only_rows ? "; paints with face and flop also at 15, 25, 45, 75 and 110 deg, from the curve" : "");
   if (options_.fit_appearance) text += "face, flop and travel: fitted to the rows, about 20 microseconds a paint\n";
   if (format_.only_rows)
     text += fmt::format("left out: lobes, face and flop, maps and foreign elements{}\n",

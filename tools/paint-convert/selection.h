@@ -22,14 +22,17 @@ class Selection {
   // The geometries of --geometry; none where it was not given.
   std::vector<paint::Geometry> requested() const;
 
-  // Fits, selects and adds rows. `remarks` gets what is lost on the way. Error: the paint has nothing to write.
-  Result<void> apply(paint::Paint& paint, formats::Remarks& remarks) const;
+  // Fits, selects and adds rows. `from_curve` gets the geometries of the rows that were added, `remarks` what is lost
+  // on the way. Error: the paint has nothing to write.
+  Result<void> apply(paint::Paint& paint, std::vector<paint::Geometry>& from_curve, formats::Remarks& remarks) const;
 
   // For --explain.
   std::string explanation() const;
 
  private:
   Selection(const Options& options, const OutputFormat& format) : options_(options), format_(format) {}
+  std::vector<paint::Geometry> wanted(const paint::Paint& paint) const;
+  void add_missing(paint::Paint& paint, std::vector<paint::Geometry>& from_curve, formats::Remarks& remarks) const;
   void keep_chosen(paint::Paint& paint, formats::Remarks& remarks) const;
   void note_losses(const paint::Paint& paint, bool designed, formats::Remarks& remarks) const;
 

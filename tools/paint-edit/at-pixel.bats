@@ -25,7 +25,11 @@ tweak() { paint-edit -q one.paints.xml --image scene.exr -o out.paints.xml --rep
   [ "$(end flop)" = "20 10 0 " ]
   [ "$(jq -r '.results.pixels[0].aspecular_deg' r.json)" = 15 ]
   [ "$(jq -r '.results.pixels[0].option' r.json)" = --at-pixel ]
-  tweak --at-pixel 15,5 --lighter 6 # (75-45)/(75-15): half each
+  # The curve at 45 deg is 1/4 face and 3/4 flop. The least changes that make 6 of it are 6/(1/16 + 9/16) times these.
+  tweak --at-pixel 15,5 --lighter 6
+  [ "$(end face)" = "62.4 40 20 " ]
+  [ "$(end flop)" = "27.2 10 0 " ]
+  tweak --at-pixel 15,5 --lighter 6 --share source # (75-45)/(75-15): half each
   [ "$(end face)" = "63 40 20 " ]
   [ "$(end flop)" = "23 10 0 " ]
   tweak --at-pixel 25,5 --lighter 6

@@ -2,6 +2,7 @@
 
 #include "base/text.h"
 #include "paint_stream.h"
+#include "stated.h"
 
 namespace goniochrome::tool {
 
@@ -19,18 +20,44 @@ Result<std::optional<color::Lab>> triple(const char* option, const std::vector<d
   return usage_error("{} is given {} numbers: give three, as in {}=50,12.5,-3", option, numbers.size(), option);
 }
 
+Result<std::optional<paint::Anisotropy>> alphas(const std::vector<double>& numbers) {
+  if (numbers.empty()) return std::optional<paint::Anisotropy>();
+  if (numbers.size() != 2)
+    return usage_error("--anisotropy is given {} numbers: give two, as in --anisotropy 0.05,0.3", numbers.size());
+  if ((numbers[0] == 0) != (numbers[1] == 0))
+    return usage_error("--anisotropy is {},{}: give two numbers above 0, or 0,0 to take it away", shortest(numbers[0]),
+                       shortest(numbers[1]));
+  return std::optional(paint::Anisotropy{numbers[0], numbers[1]});
+}
+
+// What options say of names: which of them can stand together.
+Result<void> check_identity(const Options& o, bool many) {
+  if (!o.rename.empty() && !o.suffix.empty()) return usage_error("--rename and --suffix exclude each other");
+  if (o.new_name.empty()) return {};
+  if (!o.inputs.empty()) return usage_error("--new makes a paint and reads none: leave {} out", o.inputs.front());
+  if (!o.rename.empty() || !o.suffix.empty())
+    return usage_error("--new names its paint: leave --rename and --suffix out");
+  if (!o.only.empty()) return usage_error("--new makes one paint: leave --only out");
+  if (many) return usage_error("--new makes one paint: pipe it into another paint-edit for variations and gradients");
+  return {};
+}
+
 Result<void> check_contradictions(const Options& o, const paint::Edit& edit) {
-  const bool edits = paint::moves_color(edit) || paint::moves_gloss(edit);
+  const bool edits = paint::moves_color(edit) || paint::moves_gloss(edit) || edit.anisotropy || moves_identity(o);
   const bool averages = edit.average_hue_deg || edit.average_chroma || edit.average_lightness;
   if (edit.at_deg && averages)
     return usage_error("--at takes shifts: use --lightness-shift, --chroma-factor and --hue-shift with it");
   if (edit.at_deg && edit.tweak == paint::Tweak())
     return usage_error("--at lacks its move: add --lightness-shift, --chroma-factor or --hue-shift");
+  if (!edit.at_deg && edit.share == paint::Share::kSource) return usage_error("--share is for --at and --at-pixel");
+  if (edit.keep_residual && !paint::states_appearance(edit))
+    return usage_error("--keep-residual is for --face, --flop and --travel: other moves keep it anyway");
   if (edit.face && edit.face->L < 0) return usage_error("--face has L* {}: give 0 or more", shortest(edit.face->L));
   if (edit.flop && edit.flop->L < 0) return usage_error("--flop has L* {}: give 0 or more", shortest(edit.flop->L));
   if (edit.travel_deg && *edit.travel_deg <= 15)
     return usage_error("--travel is {}: it lies above 15 and up to 180", shortest(*edit.travel_deg));
   const bool many = !o.variations.empty() || o.gradient > 0;
+  GONIO_TRY(check_identity(o, many));
   if (many && edits)
     return usage_error("variations and gradients take no other move: pipe one paint-edit into another");
   if (!o.variations.empty() && o.gradient > 0) return usage_error("--variations and --gradient exclude each other");
@@ -45,6 +72,10 @@ Result<void> check_contradictions(const Options& o, const paint::Edit& edit) {
 
 }  // namespace
 
+bool moves_identity(const Options& o) {
+  return !o.rename.empty() || !o.code.empty() || !o.paint_class.empty() || !o.new_name.empty();
+}
+
 Result<paint::Edit> edit_of(const Options& o) {
   paint::Edit edit;
   GONIO_ASSIGN(edit.average_hue_deg, one("--hue", o.hue_deg));
@@ -57,6 +88,10 @@ Result<paint::Edit> edit_of(const Options& o) {
   GONIO_ASSIGN(const auto flop_shift, triple("--flop-shift", o.flop_shift));
   GONIO_ASSIGN(edit.travel_deg, one("--travel", o.travel_deg));
   GONIO_ASSIGN(edit.gloss, one("--gloss", o.gloss));
+  GONIO_ASSIGN(edit.readings, stated_readings(o.readings));
+  GONIO_ASSIGN(edit.anisotropy, alphas(o.anisotropy));
+  edit.share = o.share == "source" ? paint::Share::kSource : paint::Share::kExact;
+  edit.keep_residual = o.keep_residual;
   edit.tweak = {o.lightness_shift, o.chroma_factor, o.hue_shift_deg};
   edit.face_shift = face_shift.value_or(color::Lab());
   edit.flop_shift = flop_shift.value_or(color::Lab());
@@ -92,9 +127,13 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("at", "DEG", "45", &o.at_deg, "make the three shifts at this aspecular angle, not everywhere")
       .from(0, 180)
       .more(
-          "At 15 degrees the shifts fall on the face alone, from the travel on they fall on the flop alone, and "
-          "between "
-          "these on both in proportion.");
+          "The color at this angle changes by exactly the shifts, and face and flop change as little as that needs. Up "
+          "to 15 degrees this is the face alone, from the travel on it is the flop alone.");
+  spec.option("share", "HOW", "source", &o.share, "how a change at one angle is divided between face and flop")
+      .one_of({"exact", "source"})
+      .more(
+          "exact makes the change that was asked for. source blends face and flop as Shimizu's dissertation does, each "
+          "in proportion; the color between face and travel then changes by less, down to 0.47 of what was asked for.");
   spec.heading = "moves at a place in a picture";
   spec.option("image", "FILE", "scene.exr", &o.image, "buffers of a picture of the paint")
       .more(
@@ -115,10 +154,23 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   lab("flop-shift", "-5,0,0", o.flop_shift, "what is added to the flop");
   spec.option("travel", "DEG", "60", &o.travel_deg, "aspecular angle where the color stops changing").from(15, 180);
   spec.option("travel-shift", "DEG", "10", &o.travel_shift_deg, "what is added to the travel").from(-165, 165);
+  spec.flag("keep-residual", &o.keep_residual, "keep what the curve did not explain of the rows of a measured paint")
+      .more(
+          "Without this flag, --face, --flop, --travel and --travel-to state the rows anew, from the curve: the paint "
+          "then reads exactly what was asked for.");
+  spec.option("set", "GEOMETRY=L,A,B", "45as45=50,12.5,-3", &o.readings, "what the paint shall read at this geometry")
+      .more(
+          "The option may be given several times. It is made after all other moves of the color. The other rows stay, "
+          "and face, flop and travel are fitted to all rows, unless one of them is given on the command line.");
   spec.option("gloss", "GU", "90", &o.gloss, "gloss to reach").from(0, 100);
   spec.option("gloss-shift", "GU", "-5", &o.gloss_shift, "what is added to the gloss").from(-100, 100);
   spec.option("gloss-angle", "DEG", "20", &o.gloss_angle_deg, "angle of the gloss reading that is moved")
       .one_of({"20", "60", "85"});
+  spec.option("anisotropy", "AX,AY", "0.05,0.3", &o.anisotropy,
+              "widths of a brushed surface along X and Y; 0,0 for none")
+      .from(0, 10)
+      .in("slopes, the alpha of Ward's model")
+      .more("Flake reflection and gloss are both drawn out along the wider direction.");
   spec.heading = "many paints from one or two";
   spec.option("variations", "WHAT", "flop", &o.variations, "write each paint and its eight neighbors")
       .one_of({"face", "flop", "travel", "gloss"})
@@ -135,6 +187,14 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.heading = "input and output";
   add_only_option(spec, o.only, "edit the paints of this name, and pass the others on");
   spec.option("suffix", "TEXT", "_green", &o.suffix, "text to append to the name of every paint that is edited");
+  spec.option("rename", "NAME", "dune", &o.rename, "name of the paint that is edited, if only one is edited");
+  spec.option("code", "CODE", "RM331", &o.code, "code to give to every paint that is edited");
+  spec.option("class", "CLASS", "metallic", &o.paint_class, "class to give to every paint that is edited")
+      .one_of({"solid", "metallic", "pearl", "interference", "unknown"});
+  spec.option("new", "NAME", "dune", &o.new_name, "make a paint of this name from nothing, and read none")
+      .more(
+          "It needs --face, or readings by --set. Where --flop is given too, --travel is needed; without a flop the "
+          "paint is solid. All other moves of one paint can be given with it.");
   spec.option("output,o", "FILE", "edited.paints.xml", &o.output, "paint XML to write; - is standard output");
   cli::add_common_options(spec, o.common, {.explain = true});
 }
@@ -145,7 +205,12 @@ void add_report(cli::ToolSpec& spec) {
       {"paint-edit testdata/paints.paints.xml --only candy_blue --hue 200 --suffix _green -o greener.paints.xml",
        "turn a blue metallic toward green and keep its travel"},
       {"paint-edit testdata/paints.paints.xml --at 45 --lightness-shift 4 --chroma-factor 1.1 -o brighter.paints.xml",
-       "lighten every paint where it is seen at 45 degrees: face and flop each by its share"},
+       "lighten every paint where it is seen at 45 degrees"},
+      {"paint-edit testdata/paints.paints.xml#silver_fine --face 45,55,30 --flop 20,25,12 --travel 70 -o "
+       "design.paints.xml",
+       "state the color of a paint outright, so that it reads exactly this at 15 and 110 degrees"},
+      {"paint-edit --new dune --face 70,5,25 --flop 30,4,12 --travel 60 --gloss 90 --code S1 -o dune.paints.xml",
+       "make a paint from nothing"},
       {"render-osmesa --mesh testdata/speed-shape.obj --light 30,50 --size 640x400 --aov aspecular,mask -o scene.exr "
        "&& paint-edit testdata/paints.paints.xml#candy_red --image scene.exr --at-pixel 250,200 --lighter 3 --chroma "
        "1.1 -o tweaked.paints.xml",
@@ -167,11 +232,12 @@ void add_report(cli::ToolSpec& spec) {
       {"changes[].from", "name of the paint that it was made from; for a gradient, the names of both"},
       {"changes[].fraction", "place in a gradient, from 0 to 1"},
       {"changes[].before",
-       "face, flop (L*, a*, b*), travel_deg and gloss (gloss_60_deg and so on) before the moves; absent for a "
-       "gradient"},
+       "face, flop (L*, a*, b*), travel_deg, gloss (gloss_60_deg and so on) and anisotropy (the two alphas, where the "
+       "paint is brushed) before the moves; absent for a gradient"},
       {"changes[].after", "the same after the moves"},
       {"changes[].de00_max", "largest CIEDE2000 difference between before and after at 15, 45 and 110 degrees"},
-      {"changes[].fitted_de00", "worst row of the fit, where the paint had only rows"},
+      {"changes[].fitted_de00", "worst row of the fit, where the paint had only rows or where readings were set"},
+      {"changes[].restated_de00", "worst row against the curve before the rows were stated anew, where they were"},
       {"changes[].dropped[]", "what no longer holds and was left out"},
       {"changes[].clipped[]", "values that a move took out of their domain, and that were put at its edge"},
       {"changes[].skipped[]", "moves that this paint cannot take, and why"}};
@@ -187,12 +253,15 @@ cli::ToolSpec tool_spec(Options& o) {
   spec.description = {
       "paint-edit reads paints, makes the moves that it is told and writes the paints on. Whatever their order on the "
       "command line, moves are made in this order: first the average of the whole paint, then shifts, face, flop, "
-      "travel and gloss. Where one of these is both set and shifted, it is set first.",
+      "travel, single readings and gloss. Where one of these is both set and shifted, it is set first.",
       "A paint is edited in every form that it has. Measured rows move by as much as the curve moves at their angle, "
-      "so that what the curve did not explain of a measurement stays. A paint that has only rows is fitted first and "
+      "so that what the curve did not explain of a measurement stays. But where face, flop or travel are set outright, "
+      "the rows are stated anew from the curve, so that the paint reads what was asked for; --keep-residual keeps what "
+      "the curve did not explain there, too. A paint that has only rows is fitted first and "
       "carries face, flop and travel from then on. Lobes and color maps no longer hold after a move of the color, and "
       "lobes no longer hold after a move of the gloss. They are dropped, a message says so, and fit-paint(1) makes new "
-      "ones. Name, code and class stay.",
+      "ones. Name, code and class stay unless an option changes them. Lightness stops at 0, where chroma ends with it, "
+      "since black has no color.",
       "Some paints cannot take a move: a gray, for example, has no hue to turn. Such a move is left out with a "
       "warning, the other moves are made, and the exit status is 1."};
   spec.inputs = {"PAINTS", "paint XML files, or FILE#NAMES for some paints of one; standard input where none is given",

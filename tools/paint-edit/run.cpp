@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "paint/curve.h"
 #include "source.h"
+#include "stated.h"
 
 namespace goniochrome::tool {
 
@@ -18,16 +19,17 @@ paint::Variation variation_of(const std::string& word) {
   return word == "travel" ? paint::Variation::kTravel : paint::Variation::kGloss;
 }
 
-// Face, flop, travel and gloss as the report has them.
-Json state_json(const std::optional<paint::Appearance>& appearance, const std::vector<paint::GlossReading>& gloss) {
+// Face, flop, travel, gloss and anisotropy as the report has them.
+Json state_json(const std::optional<paint::Appearance>& appearance, const paint::Paint& paint) {
   Json json = Json::object();
   if (appearance) {
     json["face"] = lab_json(appearance->face);
     json["flop"] = lab_json(appearance->flop);
     json["travel_deg"] = appearance->travel_deg;
   }
-  for (const paint::GlossReading& reading : gloss)
+  for (const paint::GlossReading& reading : paint.gloss)
     json[fmt::format("gloss_{}_deg", shortest(reading.angle_deg))] = reading.gloss_units;
+  if (paint.anisotropy) json["anisotropy"] = {paint.anisotropy->alpha_x, paint.anisotropy->alpha_y};
   return json;
 }
 
@@ -48,6 +50,7 @@ class Run {
         wanted_(options.only.begin(), options.only.end()) {}
 
   Result<cli::Verdict> operator()() {
+    if (!options_.new_name.empty()) return make();
     GONIO_ASSIGN(PaintSource source, PaintSource::open(options_.inputs));
     GONIO_ASSIGN(formats::PaintWriter opened, begin_paints(options_.output, source.prolog(), session_));
     writer_.emplace(std::move(opened));
@@ -62,13 +65,34 @@ class Run {
   }
 
  private:
+  // A paint from nothing.
+  Result<cli::Verdict> make() {
+    GONIO_ASSIGN(const paint::Paint paint, stated_paint(options_, edit_));
+    GONIO_ASSIGN(formats::PaintWriter opened, begin_paints(options_.output, {}, session_));
+    writer_.emplace(std::move(opened));
+    GONIO_TRY(change(paint));
+    GONIO_TRY(writer_->finish());
+    return finish();
+  }
+
   Result<void> take(paint::Paint paint) {
     if (options_.gradient > 0) return lead_to(std::move(paint));
     if (!wanted_.empty() && !wanted_.contains(paint.name)) return write(paint);
     met_.insert(paint.name);
     if (!options_.variations.empty()) return vary(paint);
+    if (!options_.rename.empty() && changes_ > 0)
+      return usage_error(
+          "--rename is for one paint, and \"{}\" would be a second: choose one by --only, or give --suffix",
+          paint.name);
+    return change(paint);
+  }
+
+  Result<void> change(const paint::Paint& paint) {
     GONIO_ASSIGN(paint::Edited done, paint::edited(paint, edit_));
+    if (!options_.rename.empty()) done.paint.name = options_.rename;
     done.paint.name += options_.suffix;
+    if (!options_.code.empty()) done.paint.code = options_.code;
+    if (const auto stated = paint::paint_class_of(options_.paint_class)) done.paint.paint_class = *stated;
     tell(paint, done);
     return write(done.paint);
   }
@@ -78,8 +102,12 @@ class Run {
     for (const paint::Neighbor& neighbor : paint::neighbors(variation_of(options_.variations), options_.step)) {
       GONIO_ASSIGN(paint::Edited done, paint::edited(paint, neighbor.edit));
       done.paint.name += "." + neighbor.name;
+      if (done.skipped.empty() && !paint::is_distinct(done, paint))
+        done.skipped.push_back(fmt::format(
+            "{}: {}", done.paint.name,
+            done.clipped.empty() ? "nothing changed" : joined(done.clipped, ", ") + ", the end of the scale"));
       tell(paint, done);
-      // A neighbor beyond the domain would be a copy of the paint itself.
+      // A neighbor beyond the domain would be a copy of the paint itself or of another neighbor.
       if (done.skipped.empty()) GONIO_TRY(write(done.paint));
     }
     return {};
@@ -95,7 +123,7 @@ class Run {
       note({{"name", step.name},
             {"from", {last_->name, paint.name}},
             {"fraction", fraction},
-            {"after", state_json(step.appearance, step.gloss)}});
+            {"after", state_json(step.appearance, step)}});
       GONIO_TRY(write(step));
     }
     last_ = std::move(paint);
@@ -130,15 +158,16 @@ class Run {
   void tell(const paint::Paint& from, const paint::Edited& done) {
     for (const std::string& skipped : done.skipped) session_.warn(fmt::format("{}: left out: {}", from.name, skipped));
     for (const std::string& clipped : done.clipped)
-      session_.warn(fmt::format("{}: clipped: {}", done.paint.name, clipped));
+      if (done.skipped.empty()) session_.warn(fmt::format("{}: clipped: {}", done.paint.name, clipped));
     skipped_ += !done.skipped.empty();
     for (const std::string& dropped : done.dropped) dropped_.insert(dropped);
     Json change = {{"name", done.paint.name},
-                   {"from", from.name},
-                   {"before", state_json(done.before, from.gloss)},
-                   {"after", state_json(done.after, done.paint.gloss)}};
+                   {"before", state_json(done.before, from)},
+                   {"after", state_json(done.after, done.paint)}};
+    if (options_.new_name.empty()) change["from"] = from.name;
     if (done.before) change["de00_max"] = json_number(de00_max(*done.before, *done.after));
     if (done.fitted_de00) change["fitted_de00"] = json_number(*done.fitted_de00);
+    if (done.restated_de00) change["restated_de00"] = json_number(*done.restated_de00);
     change["dropped"] = done.dropped;
     change["clipped"] = done.clipped;
     change["skipped"] = done.skipped;
@@ -163,9 +192,10 @@ class Run {
     const std::string stale = dropped_.empty() ? ""
                                                : fmt::format("; dropped because they no longer hold: {}",
                                                              joined({dropped_.begin(), dropped_.end()}, ", "));
-    session_.say(fmt::format("paints: {} read, {} {}, {} written{}", read_, changes_,
-                             options_.variations.empty() && options_.gradient == 0 ? "edited" : "made", written_,
-                             stale));
+    session_.say(fmt::format(
+        "paints: {} read, {} {}, {} written{}", read_, changes_,
+        options_.variations.empty() && options_.gradient == 0 && options_.new_name.empty() ? "edited" : "made",
+        written_, stale));
     return negative ? cli::Verdict::kNegative : cli::Verdict::kDone;
   }
 
@@ -192,9 +222,18 @@ std::string plan_text(const Options& options, const paint::Edit& edit) {
     line("       (the costly part: the fit scans the whole domain of the travel)");
     line("dropped: lobes and color maps, which hold the old color; run fit-paint afterwards");
   }
-  if (edit.at_deg)
+  if (edit.at_deg && edit.share == paint::Share::kSource)
     line(fmt::format("at {} deg: face and flop move by R and 1 - R, R = (travel - {}) / (travel - 15) within 0 and 1",
                      shortest(*edit.at_deg), shortest(*edit.at_deg)));
+  if (edit.at_deg && edit.share == paint::Share::kExact)
+    line(fmt::format("at {} deg: the color changes by the shifts; face and flop move as little as that needs",
+                     shortest(*edit.at_deg)));
+  if (paint::states_appearance(edit))
+    line(edit.keep_residual ? "rows: keep what the curve did not explain of them"
+                            : "rows: stated anew from the curve (--keep-residual keeps what it did not explain)");
+  if (!edit.readings.empty())
+    line(fmt::format("readings: {} set{}", edit.readings.size(),
+                     paint::states_appearance(edit) ? "" : "; face, flop and travel are fitted to all rows"));
   if (paint::moves_gloss(edit))
     line(fmt::format("gloss: the reading at {} deg is moved, readings at other angles and the lobes are dropped",
                      options.gloss_angle_deg));

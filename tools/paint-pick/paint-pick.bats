@@ -168,6 +168,26 @@ board_error() { # TEXT LINE...
   [[ $output == *"cmyk.jpg is CMYK without a profile, converted without regard to its inks"* ]]
 }
 
+@test "the same scan reads the same color as PPM, PNG, TIFF and JPEG, of 8 and of 16 bits" {
+  # Signals 149,90,121 are L* 45.742, a* 28.803, b* -7.171 in sRGB.
+  awk 'BEGIN { print "P3\n40 30\n255"; for (i = 0; i < 1200; ++i) print "149 90 121" }' >scan.ppm
+  awk 'BEGIN { print "P3\n40 30\n65535"; for (i = 0; i < 1200; ++i) print 149 * 257, 90 * 257, 121 * 257 }' >deep.ppm
+  for end in png tif bmp tga dpx; do oiiotool scan.ppm -o scan.$end; done
+  for end in png tif; do oiiotool deep.ppm -d uint16 -o deep.$end; done
+  oiiotool scan.ppm --quality 100 -o scan.jpg
+  # These files say Rec709, which OpenImageIO says of whole numbers with the curve of a display.
+  oiiotool --info -v scan.png | grep -q 'oiio:ColorSpace: "Rec709"'
+  for image in scan.ppm scan.png scan.tif scan.bmp scan.tga scan.dpx deep.ppm deep.png deep.tif scan.jpg; do
+    paint-pick -q --face $image@20,15 -o out.xml --report r.json
+    # JPEG rounds Y, Cb and Cr, which moves blue by up to 1.4 codes, 0.9 in b*.
+    limit=0.002
+    [ $image = scan.jpg ] && limit=0.9
+    near "$(result 'paints[0].face[0]')" 45.742 $limit
+    near "$(result 'paints[0].face[1]')" 28.803 $limit
+    near "$(result 'paints[0].face[2]')" -7.171 $limit
+  done
+}
+
 @test "clipped spots are told" {
   oiiotool --create 20x20 3 --fill:color=1,1,1 20x20 -o white.png
   run paint-pick --face white.png@10,10 -o out.xml

@@ -6,7 +6,11 @@ cli::ToolSpec tool_spec(Options& o) {
   cli::ToolSpec spec{.name = "plot-paint", .summary = "draw paints, their curves and their lobes"};
   spec.description = {
       "plot-paint reads paints and draws each of them: L*, a* and b* against the aspecular angle, with the readings as "
-      "points, the curve that a fit follows and the color of the lobes; the part of every lobe; for each channel, a "
+      "points, the curve that a fit follows and the color of the lobes; on a page also the way of the color through "
+      "the "
+      "a*b* plane, in a ring of hues and with an arrow in the direction of the travel, and the colors side by side; "
+      "the "
+      "part of every lobe; for each channel, a "
       "polar diagram and a surface of the flake with light from 45 degrees; and, for several angles of incidence, the "
       "hemisphere of viewers as a square of colors, the target beside the fit. One paint makes a page. Several make a "
       "sheet with a row for each.",

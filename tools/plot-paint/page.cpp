@@ -10,6 +10,7 @@
 #include "display/paint_view.h"
 #include "math/cosine_power.h"
 #include "paint/curve.h"
+#include "plane.h"
 #include "report/lobe_drawings.h"
 
 namespace goniochrome::tool {
@@ -225,7 +226,8 @@ class Slices {
   }
 
  private:
-  static constexpr int kCells = 36;
+  static constexpr int kCells = 36;        // from which the exposure is taken
+  static constexpr double kFinest_px = 4;  // a cell of a square
   bool has_target() const { return meter_.has_value() || s_.curve.has_value(); }
 
   color::Rgb target(const Vec3& view) const {
@@ -260,7 +262,7 @@ class Slices {
   template <class Color>
   report::Drawing square(const char* what, Color color, int width, int height) const {
     return report::square_drawing(
-        fmt::format("{:g} deg, {}", incidence_deg_, what), kCells,
+        fmt::format("{:g} deg, {}", incidence_deg_, what), std::clamp(static_cast<int>(width / kFinest_px), kCells, 64),
         [&](double x, double y) {
           const Vec3 view = report::hemisphere_direction(x, y);
           const Vec3 mirror = {-light_.x, -light_.y, light_.z};
@@ -293,11 +295,14 @@ report::Drawing squares(const Subject& s, int width, int height) {
 
 report::Drawing heading(const paint::Paint& paint, int width) {
   const color::ViewingCondition condition = paint::condition_of(paint);
-  const std::string text = fmt::format("{}{}, {}/{} deg", paint.name,
+  const std::string brushed = paint.anisotropy ? fmt::format(", brushed {} x {}", shortest(paint.anisotropy->alpha_x),
+                                                             shortest(paint.anisotropy->alpha_y))
+                                               : "";
+  const std::string text = fmt::format("{}{}, {}/{} deg{}", paint.name,
                                        paint.paint_class == paint::PaintClass::kUnknown
                                            ? ""
                                            : fmt::format(", {}", paint::paint_class_name(paint.paint_class)),
-                                       condition.illuminant, condition.observer_deg);
+                                       condition.illuminant, condition.observer_deg, brushed);
   return {width, 34,
           fmt::format("<text x=\"12\" y=\"24\" style=\"font-size:18px;font-weight:bold\">{}</text>\n",
                       xml_escaped(text, ""))};
@@ -316,6 +321,11 @@ Result<report::Drawing> page_of(const PageInput& input) {
   GONIO_ASSIGN(const Subject s, subject_of(input));
   constexpr int kWidth = 3 * kThird;
   std::vector<report::Drawing> rows = {heading(input.paint, kWidth), lab_row(s, kThird, kColumnHeight)};
+  if (s.curve) {
+    constexpr int kPlaneHeight = 380;
+    rows.push_back(report::row_of({plane_drawing(input.paint, *s.curve, s.white, kThird, kPlaneHeight),
+                                   travel_bar(*s.curve, s.white, kWidth - kThird, kPlaneHeight)}));
+  }
   if (s.lobes) {
     rows.push_back(report::row_of({report::drawing(parts_plot(*s.lobes)), polar_plot(s), facts(s)}));
     rows.push_back(surfaces(*s.lobes));

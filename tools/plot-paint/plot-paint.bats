@@ -14,7 +14,7 @@ setup() {
   [ -z "$output" ]
   [[ "$stderr" =~ "plot-paint: 1 paints drawn"$ ]]
   xmllint --noout page.svg
-  for title in 'L\*' 'a\*' 'b\*' 'Parts of the reflectance factor' 'Reflectance factor, light at 45 deg' \
+  for title in 'L\*' 'a\*' 'b\*' 'a\*b\* plane, 15 to 110 deg' 'Color over the aspecular angle (deg)' 'Parts of the reflectance factor' 'Reflectance factor, light at 45 deg' \
     'Root of the flake, green' '10 deg, curve' '70 deg, fit'; do
     grep -q ">$title<" page.svg
   done
@@ -39,6 +39,11 @@ setup() {
   [ "$status" -eq 0 ]
   [[ "$output" =~ "1 of them without lobes: fit-paint makes them" ]]
   ! grep -q '10 deg, fit' page.svg
+}
+
+@test "the heading tells a brushed surface" {
+  paint-edit -q "$paints#candy_red" --anisotropy 0.05,0.3 | plot-paint -q -o page.svg
+  grep -q '>candy_red, metallic, D65/10 deg, brushed 0.05 x 0.3<' page.svg
 }
 
 @test "standard input goes to standard output" {

@@ -185,7 +185,8 @@ void add_engines(cli::ToolSpec& spec, Options& o) {
           "It holds for the engine path, for the effects of rays, for --aov transport and for --check-against truth. "
           "0 draws the light that comes from the environment, lights and shining parts without detour: surfaces that "
           "are seen in others are then black, but for what they emit.");
-  spec.flag("print-shader", &o.print_shader, "print the OpenGL program of the scene on standard output");
+  spec.flag("print-shader", &o.print_shader, "print the OpenGL program of the scene on standard output")
+      .more("Comments before it name what the picture shows and the program does not: textures, color maps and rays.");
 }
 
 void add_checking(cli::ToolSpec& spec, Options& o) {
@@ -290,7 +291,7 @@ void add_report(cli::ToolSpec& spec) {
        "of the engine path: whether the noise is within the tolerance in all pictures, the samples of a visible "
        "pixel, the time that tracing them took, and --bounces"},
       {"frames", "number of pictures written"},
-      {"gbuffer_ms", "time to rasterize the mesh once; 0 with --gbuffer"},
+      {"gbuffer_ms", "time to rasterize the mesh once, be it for the plan or for the picture; 0 with --gbuffer"},
       {"frame_ms", "time to draw the picture with all samples, without reading and uploading"},
       {"triangles", "number of triangles of the mesh, where it was read"},
       {"parts[]: name, material, paint", "parts of the mesh and what they wear"},

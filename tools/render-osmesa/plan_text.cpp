@@ -37,6 +37,22 @@ std::string plan_table(const render::Plan& plan) {
                             plan.de00_p95, plan.time_ms, plan.engine, plan.engine_reason);
 }
 
+std::string shader_gaps(const render::Plan& plan) {
+  const render::Effects& effects = plan.effects;
+  std::string gaps;
+  const auto gap = [&](bool shown, const char* effect, const char* what) {
+    if (shown) gaps += fmt::format("//   {}: {}\n", effect, what);
+  };
+  gap(effects.texture, "texture", "surfaces of lobes that vary over a part, evaluated on the processor");
+  gap(effects.maps, "travel", "color maps under lights, evaluated on the processor");
+  gap(effects.rays.shadow, "shadow", "light that the mesh takes from itself, traced by rays");
+  gap(effects.rays.self, "self", "the mesh in its own mirror and gloss, traced by rays");
+  gap(effects.rays.bounce, "bounce", "light that the mesh sends to itself, traced by rays");
+  gap(effects.rays.floor, "floor", "the floor and its light, traced by rays");
+  if (gaps.empty()) return "";
+  return "// The picture also shows what this program lacks. It is added to the output of the program:\n" + gaps;
+}
+
 Json plan_rows(const render::Plan& plan, bool times) {
   Json rows = Json::array();
   for (const render::PlanItem& item : plan.items) {

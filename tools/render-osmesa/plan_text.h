@@ -11,6 +11,10 @@ namespace goniochrome::tool {
 // A row for each effect: effect, needed, dE00, ms, decision, why; then the engine.
 std::string plan_table(const render::Plan& plan);
 
+// Comments for the head of the OpenGL program of the scene: what the picture shows and the program does not, and where
+// that comes from. "" where the program shows all.
+std::string shader_gaps(const render::Plan& plan);
+
 // Rows of the report: effect, needed, reason, de00_p95, cost_ms, decision, and truth_de00_p95 where it was measured.
 // Without `times` nothing in them changes from run to run: for the header of a file.
 Json plan_rows(const render::Plan& plan, bool times);

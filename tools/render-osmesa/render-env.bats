@@ -158,6 +158,11 @@ number() { sed -n '/"error": {/,/}/p' r.json | grep -m1 "\"$1\"" | sed -E 's/.*:
   [[ "$output" =~ texture-0\ +yes ]]
   [ "$(jq '[.results.plan[] | select(.effect == "texture" and .truth_de00_p95 != null)] | length' r.json)" -eq 1 ]
   [ "$(jq .results.error.checked_pixels r.json)" -eq 5 ]
+  run render-osmesa -q --mesh "$shape" -p paints.xml#matt --env small.env.exr $small --texture "$part=$texture*4" \
+    --print-shader -o wood.exr
+  [ "${lines[0]}" = "// The picture also shows what this program lacks. It is added to the output of the program:" ]
+  [[ "${lines[1]}" = "//   texture: "* ]]
+  [[ "$output" =~ "#version 330 core" ]]
   render-osmesa -q --mesh "$shape" -p paints.xml#matt --env small.env.exr $small -o plain.exr
   run cmp -s wood.exr plain.exr
   [ "$status" -eq 1 ]

@@ -250,6 +250,10 @@ refused() {
   [[ "$output" =~ "solid paints: no flake lobes" ]]
   [[ "$output" =~ "engine cpu: the faster: predicted" ]]
   [[ "$output" =~ "#version 330 core" ]]
+  [[ ! "$output" =~ "what this program lacks" ]]
+  # The plan has rasterized the view, and the report tells how long that took.
+  render-osmesa -q --mesh panels.obj --light 0,0 $front -p paints.xml#red --report r.json -o out.exr
+  jq -e '.results.gbuffer_ms > 0' r.json
 }
 
 @test "the plan is in the report and in the header" {

@@ -234,7 +234,7 @@ void Shooting::tell_plan(render::Plan plan, const std::string& shader) {
   results["engine_reason"] = plan.engine_reason;
   session_.explain(plan_table(plan));
   if (!plan.not_kept.empty()) session_.say(plan.not_kept);
-  if (options_.print_shader) std::fputs(shader.c_str(), stdout);
+  if (options_.print_shader) std::fputs((shader_gaps(plan) + shader).c_str(), stdout);
   plan_ = std::move(plan);
 }
 
@@ -306,7 +306,8 @@ Result<cli::Verdict> Shooting::shade_transport(const std::optional<display::Disp
   return view.trace_again ? cli::Verdict::kNegative : cli::Verdict::kDone;
 }
 
-// Rays find what is visible for the engine that traces them, for meshes of many triangles, and where there is no OpenGL.
+// Rays find what is visible for the engine that traces them, for meshes of many triangles, and where there is no
+// OpenGL.
 Result<render::Renderer> Shooting::make_renderer() {
   render::Effort effort;
   effort.bounces = options_.bounces;

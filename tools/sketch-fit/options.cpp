@@ -20,6 +20,13 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("exposure", "STOPS", "0.5", &o.exposure, "exposure of the picture, or auto as render-osmesa has it");
   spec.option("shift", "X,Y", "2,-1", &o.shift, "how far the picture lies to the right of and below the buffers")
       .from(-4096, 4096);
+  spec.option("register", "WHEN", "always", &o.registration, "when the picture is laid on the buffers by its edges")
+      .one_of({"auto", "always", "never"})
+      .more(
+          "A scan has another size than the buffers, and may be turned, by up to 5 degrees, and moved. auto looks for "
+          "its scale, turn and shift where the sizes differ, always looks in any case, and never refuses such a "
+          "picture. "
+          "A mask of the picture's size goes the same way.");
   spec.heading = "light";
   spec.option("env,e", "FILE", "studio.env.exr", &o.env, "prefiltered environment that the picture was rendered under");
   spec.option("basis", "FILE", "testdata/b7.basis.xml", &o.basis, "lobes that the picture was rendered with")
@@ -35,7 +42,7 @@ void add_options(cli::ToolSpec& spec, Options& o) {
       .more(
           "changed are those that were edited, all are those of the paint. auto takes the changed pixels, or all of "
           "them "
-          "where none or more than half were changed.");
+          "where none or more than half were changed, or where the picture was laid on the buffers by its edges.");
   spec.option("glare", "DEG", "15", &o.glare_deg, "aspecular angle below which a pixel shows gloss and not the paint")
       .from(0, 45);
   spec.option("max-de", "DE", "5", &o.most_de76, "median difference above which the matt color is the answer")
@@ -91,6 +98,9 @@ void add_report(cli::ToolSpec& spec) {
       {"aspecular_from_deg", "smallest aspecular angle seen; null with --env"},
       {"aspecular_to_deg", "largest aspecular angle seen; null with --env"},
       {"suggested_shift[]", "pixels by which the picture seems moved to the right and down against the buffers"},
+      {"registration",
+       "scale, turn_deg (clockwise), shift[] (pixels of the picture, of its middle) and agreement (correlation of the "
+       "edges) where the picture was laid on the buffers; else null"},
       {"color_space", "color space that the picture was taken for"},
       {"fit_s", "time of the fit, without reading and writing"}};
   spec.see_also = {"render-osmesa(1)", "fit-paint(1)", "paint-pick(1)", "goniochrome-theory(7)"};

@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "paint_stream.h"
 #include "residual.h"
+#include "sketch/registration.h"
 #include "sketch/sketch.h"
 #include "sketch/sketch_light.h"
 #include "sketch/sketch_picture.h"
@@ -25,6 +26,7 @@ struct Material {
   image::AovFile buffers;
   sketch::Picture picture;
   image::Image mask;
+  std::optional<sketch::Registration> registration;
   envmap::PrefilteredEnvironment env;
   formats::Basis basis;
   std::optional<sketch::SketchTransport> transport;
@@ -82,6 +84,36 @@ void warn_of_left_out(const image::AovFile& buffers, cli::Session& session) {
                   buffers.path, joined(light, ", ")));
 }
 
+// Lays a scan on the buffers. A mask of its size goes with it.
+Result<void> register_scan(const Options& options, Material& material) {
+  const image::Image &buffers = material.buffers.image, &scan = material.picture.rgb;
+  const bool same_size = scan.width == buffers.width && scan.height == buffers.height;
+  if (options.registration == "never" || (options.registration == "auto" && same_size)) return {};
+  GONIO_ASSIGN(material.registration, sketch::registration_of(material.buffers, material.picture));
+  if (material.mask.width == scan.width && material.mask.height == scan.height)
+    material.mask = sketch::registered(material.mask, *material.registration, buffers.width, buffers.height);
+  material.picture = sketch::registered(material.picture, *material.registration, buffers.width, buffers.height);
+  return {};
+}
+
+void tell_registration(const Material& material, const Options& options, cli::Session& session) {
+  session.results()["registration"] = nullptr;
+  if (!material.registration) return;
+  const sketch::Registration& r = *material.registration;
+  session.results()["registration"] = {
+      {"scale", r.scale}, {"turn_deg", r.turn_deg}, {"shift", {r.shift_x, r.shift_y}}, {"agreement", r.agreement}};
+  session.say(fmt::format(
+      "{} lies on the buffers at {:.3f} of their size, turned by {:.2f} deg and moved by {:.1f},{:.1f} pixels; their "
+      "edges correlate by {:.2f}",
+      options.image, r.scale, r.turn_deg, r.shift_x, r.shift_y, r.agreement));
+  constexpr double kSure = 0.85;
+  if (r.agreement < kSure)
+    session.warn(
+        fmt::format("the edges of {} and of the buffers correlate by {:.2f} only, where scans reach 0.9: look at "
+                    "--residual, or bring both to one size",
+                    options.image, r.agreement));
+}
+
 Result<void> gather(const Options& options, Material& material) {
   if (!options.shift.empty() && options.shift.size() != 2)
     return usage_error("--shift is given {} numbers: write X,Y", options.shift.size());
@@ -107,11 +139,14 @@ Result<void> gather(const Options& options, Material& material) {
     material.mask = std::move(mask.image);
     input.mask = &material.mask;
   }
+  GONIO_TRY(register_scan(options, material));
   GONIO_ASSIGN(input.gain, gain_of(options, material));
   input.buffers = &material.buffers, input.edited = &material.picture;
   input.rule = options.pixels == "all"       ? sketch::PixelRule::kAll
                : options.pixels == "changed" ? sketch::PixelRule::kChanged
                                              : sketch::PixelRule::kAuto;
+  // Where a scan is resampled, its fine detail differs from that of the picture without any edit.
+  if (material.registration && options.pixels == "auto") input.rule = sketch::PixelRule::kAll;
   if (!options.shift.empty())
     input.shift_x = static_cast<int>(std::lround(options.shift[0])),
     input.shift_y = static_cast<int>(std::lround(options.shift[1]));
@@ -288,6 +323,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   Material material;
   GONIO_TRY(gather(options, material));
   const sketch::SketchInput& input = material.input;
+  tell_registration(material, options, session);
   for (const std::string& warning : material.picture.warnings) session.warn(warning);
   if (!options.env.empty() && !material.transport) warn_of_effects(material.buffers, session);
   if (!material.transport) warn_of_left_out(material.buffers, session), tell_shadows(material.buffers, session);

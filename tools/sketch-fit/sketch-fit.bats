@@ -230,6 +230,9 @@ EOF
   oiiotool steel.png --resize 100x100 -o small.png
   run sketch-fit -i small.png -b steel.exr
   [ "$status" -eq 3 ]
+  [[ $output == *"the picture is 100 x 100 pixels, the buffers of steel.exr are 320 x 200, and their edges do not meet"* ]]
+  run sketch-fit -i small.png -b steel.exr --register never
+  [ "$status" -eq 3 ]
   [[ $output == *"the picture is 100 x 100 pixels and the buffers of steel.exr are 320 x 200"* ]]
   oiiotool steel.exr --ch R,G,B,A,mask,part,lambert -o lacking.exr
   run sketch-fit -i steel.png -b lacking.exr
@@ -376,4 +379,44 @@ EOF
       fi
     done
   done
+}
+
+@test "a scan of another size, turned and moved, is laid on the buffers" {
+  # 2.35 times the size, turned by 2.4 deg about its middle, and moved by 9,-6 pixels.
+  oiiotool ruby.png --resize 752x470 --rotate 2.4 --cshift +9-6 -o scan.tif
+  oiiotool scan.tif --quality 92 -o scan.jpg
+  for image in scan.tif scan.jpg; do
+    run sketch-fit -o found.xml --report r.json -i $image -b ruby.exr
+    [ "$status" -eq 0 ]
+    [[ $output == *"$image lies on the buffers at 2.35"* ]]
+    jq -e '.results.registration | (.scale - 2.35 | fabs < 0.005) and (.turn_deg - 2.4 | fabs < 0.1) and
+      (.shift[0] - 9 | fabs < 1) and (.shift[1] + 6 | fabs < 1) and .agreement > 0.9' r.json
+    [ "$(result status)" = fitted ]
+    # The highlight is smeared over some pixels; the flop is not.
+    below "$(distance "$(lab 45as15 found.xml)" "50 45 20")" 2.5
+    below "$(distance "$(lab 45as110 found.xml)" "12 15 6")" 1
+  done
+  # A mask of the scan goes with it.
+  oiiotool --create 752x470 1 --fill:color=1 376x470+0+0 -o mask.png
+  fit -i scan.tif -b ruby.exr -m mask.png
+  [ "$(result 'pixels_left_out.masked')" -gt 1000 ]
+  # A picture of the size of the buffers stays where it is, unless it is asked for.
+  fit -i ruby.png -b ruby.exr
+  [ "$(result registration)" = null ]
+  fit -i ruby.png -b ruby.exr --register always
+  jq -e '.results.registration | .scale - 1 | fabs < 0.001' r.json
+}
+
+@test "a scan of something else is refused, and so is any scan with --register never" {
+  oiiotool --create 700x430 3 --noise:mean=0.5:stddev=0.2 -d uint8 -o noise.png
+  for image in noise.png "$TESTDATA/contact-sheet.jpg"; do
+    run sketch-fit -i "$image" -b ruby.exr -o none.xml
+    [ "$status" -eq 3 ]
+    [[ $output == *"their edges do not meet at any scale"*"bring both to one size"* ]]
+  done
+  oiiotool ruby.png --resize 640x400 -o twice.png
+  run sketch-fit -i twice.png -b ruby.exr -o none.xml --register never
+  [ "$status" -eq 3 ]
+  [[ $output == *"bring both to one size"* ]]
+  [ ! -e none.xml ]
 }

@@ -90,7 +90,7 @@ Result<TrompeRequest> request_of(const Options& options) {
                                             : TrompeMode::kRows;
   GONIO_ASSIGN(request.single, parse_single(options, request.angle_deg));
   GONIO_ASSIGN(const panels::GeometryList list, panels::geometry_list(options.geometries));
-  request.glare = list.glare, request.below_horizon = list.below_horizon;
+  request.in_glare = list.left_out, request.below_horizon = list.below_horizon;
   for (std::size_t i = 0; i < list.pairs.size(); ++i) {
     auto view = panels::panel_view(list.pairs[i], options.seam_deg, request.angle_deg);
     if (!view) {
@@ -173,6 +173,9 @@ void add_report(cli::ToolSpec& spec) {
       {"delta.face_l ... delta.travel", "change of each parameter"},
       {"geometries[].light_deg", "beside it stand view_deg, azimuth_deg, aspecular_deg, aspecular_b_deg and weight"},
       {"geometries[].de_before", "difference there in the same paint; de_after is that with the paint found"},
+      {"left_out[]",
+       "light_deg, view_deg, azimuth_deg and aspecular_deg of the pairs that are left out because they are within 10 "
+       "degrees of the mirror direction"},
       {"undetermined[]", "parameters that the views leave open"},
       {"at_bound[]", "parameters that a bound holds back"},
       {"solid", "whether face and flop were moved together"},

@@ -73,8 +73,8 @@ std::string plan(const Options& options, const TrompeRequest& request) {
       "{} pairs of light and viewer; left out: {} within {} deg of the mirror direction, {} below the horizon, {} that "
       "do not see the second panel\n"
       "minimized: {} of dE76 over {}, by {}, from several starts; some milliseconds a paint\n",
-      request.geometries.size(), request.glare, panels::kIndexGlare_deg, request.below_horizon, request.hidden,
-      options.objective,
+      request.geometries.size(), request.in_glare.size(), panels::kIndexGlare_deg, request.below_horizon,
+      request.hidden, options.objective,
       request.mode == TrompeMode::kAll      ? "all of them"
       : request.mode == TrompeMode::kSingle ? "the one geometry of --at; the others only judge"
                                             : "those of each light, one paint for each",
@@ -158,6 +158,9 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   if (!options.seam.mesh.empty()) return run_on_seam(options, session);
   GONIO_ASSIGN(const TrompeRequest request, request_of(options));
   session.explain(plan(options, request));
+  tell_left_out(request.in_glare, request.below_horizon, session);
+  if (request.hidden > 0)
+    session.say(fmt::format("left out: {} pairs whose viewer does not see the second panel", request.hidden));
   return Run(options, request, session)();
 }
 

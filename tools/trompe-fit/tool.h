@@ -46,8 +46,8 @@ enum class TrompeMode { kAll, kSingle, kRows };
 struct TrompeRequest {
   double angle_deg = 0;
   std::vector<TrompeGeometry> geometries;
-  int glare = 0, below_horizon = 0,
-      hidden = 0;  // pairs left out; hidden are those whose viewer does not see the second panel
+  int below_horizon = 0, hidden = 0;  // pairs left out; hidden are those whose viewer does not see the second panel
+  std::vector<panels::LightView> in_glare;  // pairs left out
   TrompeMode mode = TrompeMode::kAll;
   std::optional<TrompeGeometry> single;
   panels::TrompeOptions fit;

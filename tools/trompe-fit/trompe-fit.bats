@@ -168,3 +168,10 @@ setup() {
   done
   jq -en --slurpfile a r1.json --slurpfile b r1.5.json '($a[0].results.before.rms - $b[0].results.before.rms) | fabs > 0.1'
 }
+
+@test "pairs that are left out are told and reported" {
+  run --separate-stderr trompe-fit $paints --only signal_red --angle 3 --lights 0,45 --views 0,-20 --report r.json -o b.xml
+  [ "$status" -eq 0 ]
+  [[ "$stderr" == *"left out: 1 of the pairs of light and viewer (0/0 deg), within 10 deg of the mirror direction"* ]]
+  jq -e '.results.left_out[0].light_deg == 0 and (.results.geometries | length == 3)' r.json
+}
