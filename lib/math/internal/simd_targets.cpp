@@ -10,8 +10,7 @@
 #include <atomic>
 #include <cstdint>
 
-namespace hwy {
-
+namespace goniochrome::math {
 namespace {
 
 // The instruction sets that Highway 1.0 asks for, without those of which every processor with AVX2 has all (LZCNT,
@@ -37,15 +36,18 @@ std::int64_t targets_of_this_processor() {
 std::atomic<std::int64_t> chosen_by_a_test = 0;
 
 }  // namespace
+}  // namespace goniochrome::math
+
+namespace hwy {
 
 std::int64_t SupportedTargets() {
-  static const std::int64_t targets = targets_of_this_processor();
-  const std::int64_t chosen = chosen_by_a_test;
+  static const std::int64_t targets = goniochrome::math::targets_of_this_processor();
+  const std::int64_t chosen = goniochrome::math::chosen_by_a_test;
   return chosen ? chosen : targets;
 }
 
 void SetSupportedTargetsForTest(std::int64_t targets) {
-  chosen_by_a_test = targets;
+  goniochrome::math::chosen_by_a_test = targets;
   GetChosenTarget().DeInit();
 }
 
