@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <filesystem>
@@ -143,6 +144,37 @@ Result<std::size_t> InputFile::read(std::string& buffer, std::size_t most) {
   buffer.resize(size + static_cast<std::size_t>(count < 0 ? 0 : count));
   if (count < 0) return cannot_be_read(name_);
   return static_cast<std::size_t>(count);
+}
+
+Result<InputFile> InputFile::second_reading() {
+  struct stat status;
+  off_t begin = 0;
+  if (fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode)) {
+    begin = lseek(descriptor_, 0, SEEK_CUR) - static_cast<off_t>(ahead_.size());
+  } else {
+    const char* folder = std::getenv("TMPDIR");
+    const std::string path = folder && *folder ? folder : "/tmp";
+    InputFile kept(name_, ::open(path.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600));
+    if (kept.descriptor_ < 0)
+      return input_error("{}: cannot be kept in {} to be read twice: {}", name_, path, reason());
+    for (std::string chunk;; chunk.clear()) {
+      GONIO_ASSIGN(const std::size_t count, read(chunk, kChunk));
+      if (count == 0) break;
+      for (std::string_view left = chunk; !left.empty();) {
+        const ssize_t written = ::write(kept.descriptor_, left.data(), left.size());
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) return input_error("{}: cannot be kept in {} to be read twice: {}", name_, path, reason());
+        left.remove_prefix(static_cast<std::size_t>(written));
+      }
+    }
+    if (descriptor_ > STDIN_FILENO) close(descriptor_);
+    descriptor_ = std::exchange(kept.descriptor_, -1);
+    if (lseek(descriptor_, 0, SEEK_SET) != 0) return cannot_be_read(name_);
+  }
+  // Opened anew, the file has a position of its own.
+  InputFile second(name_, ::open(fmt::format("/proc/self/fd/{}", descriptor_).c_str(), O_RDONLY | O_CLOEXEC));
+  if (second.descriptor_ < 0 || lseek(second.descriptor_, begin, SEEK_SET) != begin) return cannot_be_read(name_);
+  return second;
 }
 
 Result<std::string> InputFile::rest(std::size_t most) {

@@ -30,6 +30,10 @@ class InputFile {
   // byte only, so that a pipe is passed on as it comes.
   Result<std::size_t> read(std::string& buffer, std::size_t most);
 
+  // A second reader of all that this one has still to read, for formats that must be read twice. A pipe is first read
+  // to its end, into a temporary file without a name, which both readers then read. Error: that file cannot be made.
+  Result<InputFile> second_reading();
+
   // All that is left. Error: it is more than `most` bytes.
   Result<std::string> rest(std::size_t most);
 

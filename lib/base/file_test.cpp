@@ -7,6 +7,7 @@
 
 #include <csignal>
 #include <fstream>
+#include <string_view>
 
 #include "base/hard_case_for_test.h"
 #include "base/scratch_for_test.h"
@@ -50,6 +51,45 @@ TEST_F(Files, PeekedBytesAreReadAgain) {
   EXPECT_EQ(*file.read(first, 4), 4u);
   EXPECT_EQ(*file.rest(6), "456789");
   EXPECT_FALSE(InputFile::open(path_)->rest(9).ok());
+}
+
+// A plain file from where the first reader stands, and a pipe, of which the bytes come only once.
+TEST_F(Files, ASecondReadingGivesTheSameBytes) {
+  std::string content;
+  for (int i = 0; content.size() < 3000000; ++i) content += std::to_string(i) + "\n";
+  ASSERT_TRUE(write_file(path_, content).ok());
+  auto file = InputFile::open(path_).value();
+  std::string skipped;
+  ASSERT_EQ(*file.read(skipped, 100), 100u);
+  ASSERT_TRUE(file.peek().ok());
+  auto second = file.second_reading();
+  ASSERT_TRUE(second.ok());
+  EXPECT_EQ(second->name(), path_);
+  EXPECT_EQ(*second->rest(content.size()), content.substr(100));
+  EXPECT_EQ(*file.rest(content.size()), content.substr(100));
+
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  const pid_t writer = fork();
+  if (writer == 0) {
+    for (std::string_view left = content; !left.empty();) {
+      const ssize_t count = write(ends[1], left.data(), left.size());
+      if (count <= 0) _exit(1);
+      left.remove_prefix(static_cast<std::size_t>(count));
+    }
+    _exit(0);
+  }
+  close(ends[1]);
+  auto piped = InputFile::open("/proc/self/fd/" + std::to_string(ends[0])).value();
+  close(ends[0]);
+  ASSERT_TRUE(piped.peek().ok());
+  auto again = piped.second_reading();
+  ASSERT_TRUE(again.ok());
+  EXPECT_EQ(*again->rest(content.size()), content);
+  EXPECT_EQ(*piped.rest(content.size()), content);
+  int status = 0;
+  waitpid(writer, &status, 0);
+  EXPECT_EQ(status, 0);
 }
 
 TEST_F(Files, ScratchPathCanBeOpenedByName) {

@@ -3,15 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numeric>
+#include <optional>
 #include <random>
 
 #include "base/angles.h"
 #include "base/clock.h"
-#include "base/parallel.h"
 #include "brdf/gloss.h"
-#include "brdf/lobe_model.h"
 #include "fit/ceres_options.h"
+#include "fit/internal/basis_errors.h"
 #include "fit/internal/flake_fit.h"
 #include "math/cosine_power.h"
 #include "math/least_squares.h"
@@ -24,70 +25,6 @@ constexpr double kPolishGain = 1e-5;
 
 double row_weight(const BasisTargetOptions& options, double lightness) {
   return options.perceptual_weights ? color::lightness_slope(lightness) : 1;
-}
-
-// Adds the mean square error of the coat of a target. Of a lobe of energy 1 the share 1 - cos^(E+1) psi lies within
-// psi, whose derivative by log E is -E log(cos psi) cos^(E+1) psi.
-void add_coat_error(const std::vector<double>& exponents, const BasisTarget& target, bool with_gradient,
-                    SquaredError& result) {
-  static constexpr std::size_t kViews[] = {1, 3, 5, 8, 11};  // 20, 45, 60, 75, 85 deg
-  const std::span<const double> rings = brdf::ring_angles_rad();
-  const int rows = static_cast<int>(rings.size()), lobes = static_cast<int>(exponents.size());
-  math::Matrix m(rows, lobes + (target.mirror ? 1 : 0));
-  for (int k = 0; k < rows; ++k) {
-    for (int j = 0; j < lobes; ++j) m(k, j) = 1 - math::cos_power(rings[k], exponents[j] + 1);
-    if (target.mirror) m(k, lobes) = 1;
-  }
-  for (const std::size_t view : kViews) {
-    const double weight =
-        target.coat_weight * brdf::fresnel_dielectric(std::cos(brdf::kCoatViews_deg[view] * kDegree), brdf::kCoatIndex);
-    const double scale = weight * weight / (static_cast<double>(std::size(kViews)) * rows);
-    const std::vector<double> wanted = brdf::coat_within(*target.coat, view);
-    const math::NonNegativeFit fit = math::nnls(m, wanted);
-    for (int k = 0; k < rows; ++k) {
-      double residual = -wanted[k];
-      for (int j = 0; j < m.columns; ++j) residual += m(k, j) * fit.x[j];
-      result.value += scale * residual * residual;
-      const double log_cos = math::log_cosine(rings[k]);
-      if (!with_gradient || std::isinf(log_cos)) continue;
-      for (int j = 0; j < lobes; ++j)
-        result.gradient[j] -= 2 * scale * residual * fit.x[j] * exponents[j] * log_cos * (1 - m(k, j));
-    }
-  }
-}
-
-// At the inner optimum x the residual's dependence on x drops out (envelope theorem: x_j is either stationary or held
-// at 0), so d err^2 / d log E_j = 2/n sum w^2 r x_j E_j log(cos t) cos^E_j t.
-SquaredError squared_error(const std::vector<double>& exponents, const BasisTarget& target, bool with_gradient) {
-  const int lobes = static_cast<int>(exponents.size());
-  const int rows = static_cast<int>(target.rows.size());
-  SquaredError result{0, std::vector<double>(with_gradient ? exponents.size() : 0, 0.0)};
-  // The weighted constant and lobes are the same for all channels.
-  math::Matrix m(rows, lobes + 1);
-  for (int r = 0; r < rows; ++r) m(r, 0) = target.rows[r].weight;
-  for (int j = 0; j < lobes; ++j)
-    for (int r = 0; r < rows; ++r)
-      m(r, j + 1) = target.rows[r].weight * math::cos_power(target.rows[r].angle_deg * kDegree, exponents[j]);
-
-  std::vector<double> b(rows);
-  for (int c = 0; c < 3; ++c) {
-    for (int r = 0; r < rows; ++r) b[r] = target.rows[r].weight * target.rows[r].value[c];
-    const math::NonNegativeFit fit = math::nnls(m, b);
-    for (int r = 0; r < rows; ++r) {
-      double residual = -b[r];
-      for (int j = 0; j <= lobes; ++j) residual += m(r, j) * fit.x[j];
-      result.value += residual * residual;
-      if (!with_gradient) continue;
-      const double log_cos = std::log(std::max(std::cos(target.rows[r].angle_deg * kDegree), 1e-300));
-      for (int j = 0; j < lobes; ++j)
-        result.gradient[j] += 2 * residual * m(r, j + 1) * fit.x[j + 1] * exponents[j] * log_cos;
-    }
-  }
-  const double scale = 1.0 / std::max(3 * rows, 1);
-  result.value *= scale;
-  for (double& g : result.gradient) g *= scale;
-  if (target.coat) add_coat_error(exponents, target, with_gradient, result);
-  return result;
 }
 
 }  // namespace
@@ -160,11 +97,7 @@ double basis_de00(const std::vector<double>& exponents, const BasisTarget& targe
 
 std::vector<SquaredError> squared_basis_errors(const std::vector<double>& exponents,
                                                const std::vector<BasisTarget>& targets, bool with_gradient) {
-  std::vector<SquaredError> errors(targets.size());
-  parallel_for(targets.size(), 4, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) errors[i] = squared_error(exponents, targets[i], with_gradient);
-  });
-  return errors;
+  return BasisErrors(targets).at(exponents, with_gradient);
 }
 
 namespace {
@@ -175,9 +108,24 @@ std::vector<double> exponents_of(const std::vector<double>& logs) {
   return exponents;
 }
 
+BasisError error_of(const std::vector<SquaredError>& squares, const std::vector<double>& shares) {
+  BasisError error;
+  for (std::size_t i = 0; i < squares.size(); ++i) {
+    error.each.push_back(std::sqrt(squares[i].value));
+    error.max = std::max(error.max, error.each.back());
+    error.mean += shares[i] * error.each.back();
+  }
+  return error;
+}
+
+std::vector<double> equal_shares(std::size_t count) {
+  return std::vector<double>(count, 1 / static_cast<double>(count));
+}
+
 // The domain in log E, and how often the objective was asked for.
 struct Problem {
-  const std::vector<BasisTarget>& targets;
+  const BasisErrors& errors;
+  const std::vector<double>& shares;  // of each target in the mean
   double low, high;
   const Deadline& deadline;
   int evaluations = 0;
@@ -187,32 +135,33 @@ struct Problem {
   }
   double objective(const std::vector<double>& logs) {
     ++evaluations;
-    return basis_error(exponents_of(logs), targets).objective();
+    return error_of(errors.at(exponents_of(logs), false), shares).objective();
   }
 
-  // S_P = (mean err^P)^(1/P) + mean err, which tends to max + mean from below, and its gradient by log E.
+  // S_P = (mean err^P)^(1/P) + mean err, which tends to max + mean from below, and its gradient by log E. In the first
+  // mean all targets count alike, since it stands for the largest error.
   double smoothed(const std::vector<double>& logs, double power, std::vector<double>& gradient) {
     ++evaluations;
-    const auto errors = squared_basis_errors(exponents_of(logs), targets, true);
-    const double n = static_cast<double>(errors.size());
+    const auto squares = errors.at(exponents_of(logs), true);
+    const double n = static_cast<double>(squares.size());
     double largest = 0;
-    for (const auto& e : errors) largest = std::max(largest, e.value);
+    for (const auto& e : squares) largest = std::max(largest, e.value);
     gradient.assign(logs.size(), 0);
     if (largest == 0) return 0;
     const double top = std::sqrt(largest);
-    double powers = 0, sum = 0;
-    for (const auto& e : errors) {
-      powers += std::pow(std::sqrt(e.value) / top, power);
-      sum += std::sqrt(e.value);
+    double powers = 0, mean = 0;
+    for (std::size_t i = 0; i < squares.size(); ++i) {
+      powers += std::pow(std::sqrt(squares[i].value) / top, power);
+      mean += shares[i] * std::sqrt(squares[i].value);
     }
     const double mean_power = std::pow(powers / n, 1 / power);
-    for (const auto& e : errors) {
-      const double error = std::sqrt(e.value);
+    for (std::size_t i = 0; i < squares.size(); ++i) {
+      const double error = std::sqrt(squares[i].value);
       if (error <= 1e-12 * top) continue;
-      const double by_error = mean_power / powers * std::pow(error / top, power - 1) + 1 / n;
-      for (std::size_t j = 0; j < logs.size(); ++j) gradient[j] += by_error * e.gradient[j] / (2 * error);
+      const double by_error = mean_power / powers * std::pow(error / top, power - 1) + shares[i];
+      for (std::size_t j = 0; j < logs.size(); ++j) gradient[j] += by_error * squares[i].gradient[j] / (2 * error);
     }
-    return top * mean_power + sum / n;
+    return top * mean_power + mean;
   }
 };
 
@@ -273,39 +222,40 @@ void minimize_smoothed(Problem& problem, std::vector<double>& x, double power) {
   }
 }
 
-// The residuals of Levenberg and Marquardt's method: the RMS error of each target, with its derivative by log E.
+// The residuals of Levenberg and Marquardt's method: the RMS error of each target, with its derivative by log E, times
+// the root of what the target counts where 1 is the mean.
 class TargetErrors final : public ceres::CostFunction {
  public:
-  TargetErrors(const std::vector<BasisTarget>& targets, std::size_t lobes, int& evaluations)
-      : targets_(targets), evaluations_(evaluations) {
-    set_num_residuals(static_cast<int>(targets.size()));
+  TargetErrors(Problem& problem, std::size_t lobes) : problem_(problem) {
+    set_num_residuals(static_cast<int>(problem.shares.size()));
     mutable_parameter_block_sizes()->push_back(static_cast<int>(lobes));
   }
 
   bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
-    ++evaluations_;
+    ++problem_.evaluations;
     const auto lobes = static_cast<std::size_t>(parameter_block_sizes()[0]);
     const std::vector<double> exponents = exponents_of({parameters[0], parameters[0] + lobes});
     const bool with_gradient = jacobians && jacobians[0];
-    const auto errors = squared_basis_errors(exponents, targets_, with_gradient);
-    for (std::size_t i = 0; i < errors.size(); ++i) {
-      residuals[i] = std::sqrt(errors[i].value);
+    const auto squares = problem_.errors.at(exponents, with_gradient);
+    for (std::size_t i = 0; i < squares.size(); ++i) {
+      const double error = std::sqrt(squares[i].value);
+      const double counts = std::sqrt(problem_.shares[i] * static_cast<double>(squares.size()));
+      residuals[i] = counts * error;
       if (!with_gradient) continue;
       for (std::size_t j = 0; j < lobes; ++j)
-        jacobians[0][i * lobes + j] = residuals[i] > 0 ? errors[i].gradient[j] / (2 * residuals[i]) : 0;
+        jacobians[0][i * lobes + j] = error > 0 ? counts * squares[i].gradient[j] / (2 * error) : 0;
     }
     return true;
   }
 
  private:
-  const std::vector<BasisTarget>& targets_;
-  int& evaluations_;
+  Problem& problem_;
 };
 
 // The source's choice: a local minimum of sum err^2 over the targets, on the box [low, high]^m. [Shimizu2009] 2.3.2
 void minimize_by_levenberg_marquardt(Problem& search, std::vector<double>& logs) {
   ceres::Problem problem;
-  problem.AddResidualBlock(new TargetErrors(search.targets, logs.size(), search.evaluations), nullptr, logs.data());
+  problem.AddResidualBlock(new TargetErrors(search, logs.size()), nullptr, logs.data());
   for (std::size_t j = 0; j < logs.size(); ++j) {
     problem.SetParameterLowerBound(logs.data(), static_cast<int>(j), search.low);
     problem.SetParameterUpperBound(logs.data(), static_cast<int>(j), search.high);
@@ -383,58 +333,174 @@ double sharpest_seen(const std::vector<BasisTarget>& targets) {
 }  // namespace
 
 double basis_error(const std::vector<double>& exponents, const BasisTarget& target) {
-  return std::sqrt(squared_error(exponents, target, false).value);
+  return basis_error(exponents, std::vector{target}).max;
 }
 
 BasisError basis_error(const std::vector<double>& exponents, const std::vector<BasisTarget>& targets) {
-  BasisError error;
-  for (const SquaredError& e : squared_basis_errors(exponents, targets, false)) {
-    error.each.push_back(std::sqrt(e.value));
-    error.max = std::max(error.max, error.each.back());
-    error.mean += error.each.back() / static_cast<double>(targets.size());
-  }
-  return error;
+  return error_of(squared_basis_errors(exponents, targets, false), equal_shares(targets.size()));
 }
 
-BasisSearch search_basis(const std::vector<BasisTarget>& targets, const BasisSearchOptions& options) {
-  BasisSearch search;
-  const double high = std::max(2 * options.low, std::min(options.high, sharpest_seen(targets)));
-  const Deadline deadline(options.time_limit_s);
-  std::vector<double> smaller;
-  for (int m = options.first; m <= options.last; ++m) {
-    const Stopwatch clock;
-    Problem problem{targets, std::log(options.low), std::log(high), deadline};
-    std::vector<double> best;
-    double best_value = std::numeric_limits<double>::infinity();
-    const auto starts = starting_points(smaller, m, problem, options);
-    for (std::vector<double> x : starts) {
-      if (deadline.passed() && !best.empty()) break;
-      if (options.method == BasisMethod::kPowerMean)
-        for (const double power : {4.0, 12.0, 40.0}) minimize_smoothed(problem, x, power);
-      else
-        minimize_by_levenberg_marquardt(problem, x);
-      double value = problem.objective(x);
-      // A start that is far behind the best one cannot win by the polish.
-      if (value < 1.1 * best_value) polish(problem, x, value);
-      if (value < best_value) best = x, best_value = value;
+namespace {
+
+// The targets that a search looks at: all of them, or some that stand for all. Every target of a sorted list stands for
+// itself and its neighbors, which have nearly the same error with a basis that is regular in log space. These keep the
+// mean; the largest error is kept by those that join.
+class Chosen {
+ public:
+  Chosen(const std::vector<BasisTarget>& all, std::size_t wanted, double low, double high)
+      : all_(all), is_in_(all.size()) {
+    if (wanted == 0 || all.size() <= 2 * wanted) {
+      shares_ = equal_shares(all.size());
+      errors_.emplace(all);
+      return;
     }
-    // Where no start is as good as the smaller set, that set with one more lobe is, for a lobe can be left unused.
-    if (!smaller.empty() && best_value > search.sets.back().error.objective()) {
-      best = starting_points(smaller, m, problem, options).front();
-      best_value = problem.objective(best);
-      polish(problem, best, best_value);
+    constexpr int kProbe = 5;
+    std::vector<double> probe;
+    for (int j = 0; j < kProbe; ++j) probe.push_back(std::exp(low + (high - low) * (j + 0.5) / kProbe));
+    const std::vector<double> each = basis_error(probe, all).each;
+    std::vector<std::size_t> order(all.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, {}, [&](std::size_t i) { return each[i]; });
+    for (std::size_t k = 0; k < wanted; ++k) {
+      const std::size_t begin = k * order.size() / wanted, end = (k + 1) * order.size() / wanted;
+      take(order[(begin + end) / 2], static_cast<double>(end - begin) / static_cast<double>(order.size()));
     }
-    std::ranges::sort(best);
-    smaller = best;
-    const auto exponents = exponents_of(best);
-    search.sets.push_back({exponents, basis_error(exponents, targets), static_cast<int>(starts.size()),
-                           problem.evaluations, clock.elapsed_s()});
-    if (deadline.passed()) {
-      search.stopped = m < options.last;
+    errors_.emplace(part_);
+  }
+
+  bool are_all() const { return part_.empty(); }
+  std::size_t size() const { return shares_.size(); }
+  const BasisErrors& errors() const { return *errors_; }
+  const std::vector<double>& shares() const { return shares_; }
+
+  // Lets the worst of those targets join whose error is beyond `bound`. Returns whether there was one.
+  bool join(const std::vector<double>& each, double bound) {
+    constexpr std::size_t kAtOnce = 8;
+    std::vector<std::size_t> beyond;
+    for (std::size_t i = 0; i < each.size(); ++i)
+      if (each[i] > bound && !is_in_[i]) beyond.push_back(i);
+    std::ranges::stable_sort(beyond, std::greater<>(), [&](std::size_t i) { return each[i]; });
+    beyond.resize(std::min(beyond.size(), kAtOnce));
+    for (const std::size_t i : beyond) take(i, 0);
+    if (!beyond.empty()) errors_.emplace(part_);
+    return !beyond.empty();
+  }
+
+ private:
+  void take(std::size_t i, double share) { part_.push_back(all_[i]), shares_.push_back(share), is_in_[i] = true; }
+
+  const std::vector<BasisTarget>& all_;
+  std::vector<bool> is_in_;
+  std::vector<BasisTarget> part_;
+  std::vector<double> shares_;
+  std::optional<BasisErrors> errors_;
+};
+
+// A set that was found for one number of lobes, as logarithms.
+struct Best {
+  std::vector<double> logs;
+  double value = std::numeric_limits<double>::infinity();
+};
+
+// Descends from x, and keeps what it comes to where that is better.
+void try_start(Problem& problem, BasisMethod method, std::vector<double> x, Best& best) {
+  if (method == BasisMethod::kPowerMean)
+    for (const double power : {4.0, 12.0, 40.0}) minimize_smoothed(problem, x, power);
+  else
+    minimize_by_levenberg_marquardt(problem, x);
+  double value = problem.objective(x);
+  // A start that is far behind the best one cannot win by the polish.
+  if (value < 1.1 * best.value) polish(problem, x, value);
+  if (value < best.value) best = {x, value};
+}
+
+// The search over the numbers of lobes, one after the other.
+class Search {
+ public:
+  Search(const std::vector<BasisTarget>& targets, const BasisSearchOptions& options)
+      : targets_(targets),
+        options_(options),
+        deadline_(options.time_limit_s),
+        low_(std::log(options.low)),
+        high_(std::log(std::max(2 * options.low, std::min(options.high, sharpest_seen(targets))))),
+        chosen_(targets, options.representatives, low_, high_) {}
+
+  BasisSearch all() {
+    for (int m = options_.first; m <= options_.last; ++m) {
+      add_set(m);
+      if (!deadline_.passed()) continue;
+      search_.stopped = m < options_.last;
       break;
     }
+    return std::move(search_);
   }
-  return search;
+
+ private:
+  Problem problem() const { return {chosen_.errors(), chosen_.shares(), low_, high_, deadline_}; }
+
+  void add_set(int m) {
+    const Stopwatch clock;
+    Problem first = problem();
+    const auto starts = starting_points(smaller_, m, first, options_);
+    Best best;
+    for (const std::vector<double>& x : starts) {
+      if (deadline_.passed() && !best.logs.empty()) break;
+      try_start(first, options_.method, x, best);
+    }
+    int evaluations = first.evaluations;
+    BasisError error = basis_error(exponents_of(best.logs), targets_);
+    if (!chosen_.are_all()) meet_all(best, error, evaluations);
+    // Where no start is as good as the smaller set, that set with one more lobe is, for a lobe can be left unused.
+    if (!smaller_.empty() && error.objective() > search_.sets.back().error.objective()) {
+      Problem again = problem();
+      Best longer{starting_points(smaller_, m, again, options_).front()};
+      const std::vector<double> unpolished = longer.logs;
+      longer.value = again.objective(longer.logs);
+      polish(again, longer.logs, longer.value);
+      evaluations += again.evaluations;
+      best = longer, error = basis_error(exponents_of(best.logs), targets_);
+      if (error.objective() > search_.sets.back().error.objective())
+        best.logs = unpolished, error = basis_error(exponents_of(best.logs), targets_);
+    }
+    std::ranges::sort(best.logs);
+    smaller_ = best.logs;
+    search_.sets.push_back({exponents_of(best.logs), std::move(error), static_cast<int>(starts.size()), evaluations,
+                            static_cast<int>(chosen_.size()), clock.elapsed_s()});
+  }
+
+  // Of a search on some of the targets: the worst of the others join until none has a larger error than these, and the
+  // search goes on from where it was.
+  void meet_all(Best& best, BasisError& error, int& evaluations) {
+    constexpr double kBeyond = 1e-3;
+    constexpr int kRounds = 12;
+    std::vector<double> least = best.logs;
+    for (int round = 0; round < kRounds && !deadline_.passed(); ++round) {
+      const double bound = error_of(chosen_.errors().at(exponents_of(best.logs), false), chosen_.shares()).max;
+      const std::vector<double> each = round == 0 ? error.each : basis_error(exponents_of(best.logs), targets_).each;
+      if (!chosen_.join(each, (1 + kBeyond) * bound)) break;
+      Problem joined = problem();
+      best.value = joined.objective(best.logs);
+      try_start(joined, options_.method, best.logs, best);
+      evaluations += joined.evaluations;
+      BasisError next = basis_error(exponents_of(best.logs), targets_);
+      if (next.objective() < error.objective()) least = best.logs, error = std::move(next);
+    }
+    best.logs = least;
+  }
+
+  const std::vector<BasisTarget>& targets_;
+  const BasisSearchOptions& options_;
+  Deadline deadline_;
+  double low_, high_;
+  Chosen chosen_;
+  BasisSearch search_;
+  std::vector<double> smaller_;
+};
+
+}  // namespace
+
+BasisSearch search_basis(const std::vector<BasisTarget>& targets, const BasisSearchOptions& options) {
+  return Search(targets, options).all();
 }
 
 }  // namespace goniochrome::fit

@@ -90,6 +90,31 @@ TEST(BasisSearch, ErrorNeverRisesWithALobeAndDoesNotDependOnThreads) {
   }
 }
 
+// The search on some of the targets against the search on all. The control: what a search on as few targets of the same
+// list, without those that join, misses of the largest error.
+TEST(BasisSearch, RepresentativesStandForALargeLibrary) {
+  auto targets = planted({1.2, 5, 25, 140}, 400, 0.05);
+  for (std::size_t i = 0; i < targets.size(); i += 97)  // a few unlike the others
+    for (BasisRow& row : targets[i].rows) row.value.x += 0.3 * math::cos_power(row.angle_deg * kDegree, 55);
+  BasisSearchOptions options;
+  options.first = options.last = 3, options.starts = 3, options.representatives = 0;
+  const FoundBasis all = search_basis(targets, options).sets.front();
+  EXPECT_EQ(all.looked_at, 400);
+  options.representatives = 40;
+  const FoundBasis some = search_basis(targets, options).sets.front();
+  EXPECT_GE(some.looked_at, 40);
+  EXPECT_LE(some.looked_at, 140);
+  EXPECT_LE(some.error.objective(), 1.005 * all.error.objective());
+  EXPECT_EQ(some.error.each.size(), targets.size()) << "the errors are those of the whole library";
+  EXPECT_EQ(some.error.max, basis_error(some.exponents, targets).max);
+
+  options.representatives = 0;
+  std::vector<BasisTarget> few;
+  for (std::size_t i = 5; i < targets.size(); i += 10) few.push_back(targets[i]);
+  const FoundBasis blind = search_basis(few, options).sets.front();
+  EXPECT_GT(basis_error(blind.exponents, targets).objective(), some.error.objective());
+}
+
 // A lobe that is nothing from the second angle on meets the first one exactly, with a weight beyond all measure.
 TEST(BasisSearch, NoLobeIsSharperThanTheTargetsSee) {
   const auto targets = planted({1.2, 5, 25}, 8, 0.05);

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <map>
+#include <utility>
 
 #include "base/angles.h"
 #include "base/text.h"
@@ -28,7 +30,7 @@ struct RawObject {
   paint::Paint paint;
   std::string joined;  // the paint whose angle this object is: our tag
   std::vector<RawColor> colors;
-  bool bad = false;  // it had an error that was passed over
+  bool bad = false;  // it had an error that is passed over
 };
 
 struct Specification {
@@ -44,27 +46,33 @@ int observer_of(std::string_view word) {
   return word == "2_Degree" ? 2 : word == "10_Degree" ? 10 : 0;
 }
 
+// The specifications stand behind the objects, so a file is read twice: for them first, and then for the objects.
+enum class Pass { kSpecifications, kObjects };
+
 class CxfHandler final : public XmlHandler {
  public:
-  CxfHandler(std::string file, bool keep_going) : file_(std::move(file)), keep_going_(keep_going) {}
+  CxfHandler(std::string file, Pass pass, bool keep_going)
+      : file_(std::move(file)), pass_(pass), keep_going_(keep_going) {}
 
   Result<void> start(const XmlTag& tag) override {
     line_ = tag.line;
     if (path_.empty()) GONIO_TRY(check_root(tag));
     path_.emplace_back(tag.space == kNamespace ? tag.name : "");
     text_.clear();
+    if (pass_ == Pass::kSpecifications && inside("ObjectCollection")) return {};
     const auto attribute = [&](std::string_view name) -> std::string {
       for (const XmlAttribute& a : tag.attributes)
         if (a.name == name && a.space.empty()) return std::string(a.value);
       return "";
     };
     if (in("ObjectCollection", "Object")) {
-      objects_.emplace_back();
+      ++objects_seen_;
+      std::string& own_name = object_.emplace().paint.name;
       const std::string name = attribute("Name");
-      objects_.back().paint.name = name.empty() ? attribute("Id") : name;
-      if (objects_.back().paint.name.empty()) {
-        objects_.back().paint.name = fmt::format("line {}", tag.line);
-        remarks_.note("objects with neither Name nor Id are called by their line", objects_.back().paint.name);
+      own_name = name.empty() ? attribute("Id") : name;
+      if (own_name.empty()) {
+        own_name = fmt::format("line {}", tag.line);
+        remarks_.note("objects with neither Name nor Id are called by their line", own_name);
       }
     } else if (in("ColorValues", "ColorCIELab") || in("ColorValues", "ColorCIELCh") ||
                in("ColorValues", "ReflectanceSpectrum")) {
@@ -76,9 +84,9 @@ class CxfHandler final : public XmlHandler {
       gloss_method_ = attribute("Method");
     } else if (path_.back() == "TagCollection") {
       own_tags_ = attribute("Name") == "goniochrome";
-    } else if (in("TagCollection", "Tag") && own_tags_ && !objects_.empty()) {
+    } else if (in("TagCollection", "Tag") && own_tags_ && object_) {
       own_tag(attribute("Name"), attribute("Value"));
-    } else if (in("ColorSpecificationCollection", "ColorSpecification")) {
+    } else if (pass_ == Pass::kSpecifications && in("ColorSpecificationCollection", "ColorSpecification")) {
       specification_ = &specifications_[attribute("Id")];
     } else if (in("TristimulusSpec", "Illuminant")) {
       custom_illuminant_ = attribute("Name");
@@ -101,23 +109,30 @@ class CxfHandler final : public XmlHandler {
     line_ = line;
     const std::string content(trimmed(text_));
     text_.clear();
-    const bool of_object = inside("Object") && !objects_.empty();
+    const bool of_object = inside("Object") && object_;
     const auto result = of_object        ? end_in_object(content)
                         : specification_ ? end_in_specification(content)
                                          : Result<void>();
+    if (!result.ok() && keep_going_ && of_object) {
+      skipped_.push_back(result.error().message);
+      object_->bad = true;
+    }
+    if (object_ && in("ObjectCollection", "Object")) {
+      if (!object_->bad) objects_.push_back(std::move(*object_));
+      object_.reset();
+    }
     path_.pop_back();
-    if (result.ok() || !keep_going_ || !of_object) return result;
-    skipped_.push_back(result.error().message);
-    objects_.back().bad = true;
-    return {};
+    return of_object && keep_going_ ? Result<void>() : result;
   }
 
   Result<void> invalid(int, const std::string&) override { return {}; }
 
-  std::vector<RawObject>& objects() { return objects_; }
+  // What was read since this was last called.
+  std::vector<RawObject> take_objects() { return std::exchange(objects_, {}); }
+  std::vector<std::string> take_skipped() { return std::exchange(skipped_, {}); }
+  std::size_t objects_seen() const { return objects_seen_; }
   const std::map<std::string, Specification>& specifications() const { return specifications_; }
   Remarks& remarks() { return remarks_; }
-  std::vector<std::string>& skipped() { return skipped_; }
 
  private:
   bool in(std::string_view parent, std::string_view name) const {
@@ -145,14 +160,14 @@ class CxfHandler final : public XmlHandler {
   }
 
   void own_tag(const std::string& name, const std::string& value) {
-    RawObject& object = objects_.back();
+    RawObject& object = *object_;
     if (name == "paint") object.joined = value;
     if (name == "code") object.paint.code = value;
     if (name == "class") object.paint.paint_class = paint::paint_class_of(value).value_or(paint::PaintClass::kUnknown);
   }
 
   Result<void> end_in_object(const std::string& content) {
-    RawObject& object = objects_.back();
+    RawObject& object = *object_;
     if (in("ColorCIELab", "L")) return take(color_.lab.L, "L", content);
     if (in("ColorCIELab", "A")) return take(color_.lab.a, "A", content);
     if (in("ColorCIELab", "B")) return take(color_.lab.b, "B", content);
@@ -237,6 +252,7 @@ class CxfHandler final : public XmlHandler {
   }
 
   std::string file_;
+  Pass pass_;
   bool keep_going_;
   int line_ = 0;
   std::vector<std::string> path_;  // local names from the root; "" for elements of other vocabularies
@@ -249,17 +265,20 @@ class CxfHandler final : public XmlHandler {
   paint::Geometry angle_;
   Specification* specification_ = nullptr;  // the one that is open
 
+  std::optional<RawObject> object_;  // the one that is open
   std::vector<RawObject> objects_;
+  std::size_t objects_seen_ = 0;
   std::map<std::string, Specification> specifications_;
   Remarks remarks_;
   std::vector<std::string> skipped_;
 };
 
-// Turns raw objects into paints once all specifications are known.
+// Turns raw objects into paints.
 class CxfResolver {
  public:
-  CxfResolver(CxfHandler& handler, const ImportOptions& options)
-      : specifications_(handler.specifications()), options_(options), remarks_(handler.remarks()) {}
+  CxfResolver(const std::map<std::string, Specification>& specifications, Remarks& remarks,
+              const ImportOptions& options)
+      : specifications_(specifications), options_(options), remarks_(remarks) {}
 
   Result<void> add(RawObject object) {
     if (object.joined.empty() || object.joined != joined_) {
@@ -292,7 +311,8 @@ class CxfResolver {
     open_.reset();
   }
 
-  std::vector<paint::Paint>& paints() { return paints_; }
+  // The paints that are complete, in order.
+  std::deque<paint::Paint>& paints() { return paints_; }
 
  private:
   // The k-th of n spectra under one specification, at the angles that place() gives it.
@@ -379,7 +399,7 @@ class CxfResolver {
   UniqueNames names_;
   std::optional<OpenPaint> open_;
   std::string joined_;
-  std::vector<paint::Paint> paints_;
+  std::deque<paint::Paint> paints_;
 };
 
 }  // namespace
@@ -395,16 +415,83 @@ bool looks_cxf(std::string_view head) {
   return false;
 }
 
-Result<ImportedPaints> read_cxf(InputFile input, const ImportOptions& options) {
-  CxfHandler handler(input.name(), options.keep_going);
-  XmlStream stream(std::move(input), nullptr, handler);
+struct CxfReader::State {
+  State(InputFile input, const ImportOptions& wanted)
+      : options(wanted),
+        specifications(input.name(), Pass::kSpecifications, wanted.keep_going),
+        objects(input.name(), Pass::kObjects, wanted.keep_going),
+        resolver(specifications.specifications(), objects.remarks(), options),
+        stream(std::move(input), nullptr, objects) {}
+
+  Result<void> read_on() {
+    const auto more = stream.advance();
+    ended = !more.ok() || !*more;
+    if (!more.ok()) return more.error();
+    for (RawObject& object : objects.take_objects()) GONIO_TRY(resolver.add(std::move(object)));
+    for (std::string& message : objects.take_skipped()) skipped.push_back(std::move(message));
+    if (!ended) return {};
+    resolver.finish();
+    if (objects.objects_seen() == 0) objects.remarks().note("holds no objects", "");
+    return {};
+  }
+
+  ImportOptions options;
+  CxfHandler specifications, objects;
+  CxfResolver resolver;
+  XmlStream stream;
+  std::deque<std::string> skipped;
+  bool ended = false;
+};
+
+CxfReader::CxfReader(std::unique_ptr<State> state) : state_(std::move(state)) {}
+CxfReader::CxfReader(CxfReader&&) noexcept = default;
+CxfReader::~CxfReader() = default;
+
+Result<CxfReader> CxfReader::open(InputFile input, const ImportOptions& options) {
+  GONIO_ASSIGN(InputFile first, input.second_reading());
+  auto state = std::make_unique<State>(std::move(input), options);
+  XmlStream stream(std::move(first), nullptr, state->specifications);
   GONIO_TRY(stream.finish());
-  CxfResolver resolver(handler, options);
-  for (RawObject& object : handler.objects())
-    if (!object.bad) GONIO_TRY(resolver.add(std::move(object)));
-  resolver.finish();
-  if (handler.objects().empty()) handler.remarks().note("holds no objects", "");
-  return ImportedPaints{std::move(resolver.paints()), handler.remarks().lines(), std::move(handler.skipped())};
+  return CxfReader(std::move(state));
+}
+
+Result<std::optional<paint::Paint>> CxfReader::next() {
+  std::deque<paint::Paint>& paints = state_->resolver.paints();
+  for (;;) {
+    if (!state_->skipped.empty()) {
+      const std::string message = std::move(state_->skipped.front());
+      state_->skipped.pop_front();
+      return input_error("{}", message);
+    }
+    if (!paints.empty()) {
+      std::optional<paint::Paint> paint = std::move(paints.front());
+      paints.pop_front();
+      return paint;
+    }
+    if (state_->ended) return std::optional<paint::Paint>();
+    GONIO_TRY(state_->read_on());
+  }
+}
+
+std::vector<std::string> CxfReader::warnings() const {
+  return state_->objects.remarks().lines();
+}
+
+Result<ImportedPaints> read_cxf(InputFile input, const ImportOptions& options) {
+  GONIO_ASSIGN(CxfReader reader, CxfReader::open(std::move(input), options));
+  ImportedPaints imported;
+  for (;;) {
+    auto paint = reader.next();
+    if (!paint.ok() && !options.keep_going) return paint.error();
+    if (!paint.ok())
+      imported.skipped.push_back(paint.error().message);
+    else if (*paint)
+      imported.paints.push_back(std::move(**paint));
+    else
+      break;
+  }
+  imported.warnings = reader.warnings();
+  return imported;
 }
 
 namespace {

@@ -3,6 +3,8 @@
 // a MultiAngle with one BRDFAngle. goniochrome-paint(5).
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,10 +19,34 @@ namespace goniochrome::formats {
 // Whether a file that begins with `head` is CxF.
 bool looks_cxf(std::string_view head);
 
-// Reads objects with CIELAB, CIELCh or reflectance spectra at angles. Spectra are integrated under the illuminant and
-// observer of their specification, or else of `options`. One value under a specification of several angles stands for
-// all of them. The specifications stand at the end of the file, so the objects are held in memory until then. What
-// cannot be placed is left out with a warning. Errors name file and line.
+// Reads objects with CIELAB, CIELCh or reflectance spectra at angles, paint by paint. Spectra are integrated under the
+// illuminant and observer of their specification, or else of the options. One value under a specification of several
+// angles stands for all of them. What cannot be placed is left out with a warning.
+//
+// The specifications stand at the end of the file. It is read a first time for them, and a second time for the objects,
+// so that a library of any size passes in constant memory.
+class CxfReader {
+ public:
+  // Reads the specifications. Error: the file is no CxF3, is no XML, or has a specification that cannot be read; with
+  // file and line.
+  static Result<CxfReader> open(InputFile input, const ImportOptions& options);
+  CxfReader(CxfReader&&) noexcept;
+  ~CxfReader();
+
+  // The next paint, or nothing at the end. An error names file and line. Where the options say so, it loses one object,
+  // and next() goes on behind it; otherwise it is final.
+  Result<std::optional<paint::Paint>> next();
+
+  // What was left out or assumed so far.
+  std::vector<std::string> warnings() const;
+
+ private:
+  struct State;
+  explicit CxfReader(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+// All paints of a file.
 Result<ImportedPaints> read_cxf(InputFile input, const ImportOptions& options);
 
 // Writes each paint as it comes.

@@ -177,6 +177,30 @@ TEST_F(Cxf, RefusalsNameTheLine) {
   EXPECT_THAT(kept.skipped, ElementsAre(HasSubstr("L is \"x\"")));
 }
 
+// Paints come one by one, and an object that cannot be read is told in its place.
+TEST_F(Cxf, ReaderGivesPaintsInOrder) {
+  const std::string bad = lab("a", "<L>x</L><A>1</A><B>2</B>");
+  const std::string text =
+      cxf(object("p", lab("a")) + object("bad", bad) + object("q", lab("a")), specification("a", angles({{15, ""}})));
+  ASSERT_TRUE(write_file(path(), text).ok());
+  auto reader = CxfReader::open(InputFile::open(path()).value(), {"", 0, true});
+  ASSERT_TRUE(reader.ok());
+  std::vector<std::string> names;
+  int errors = 0;
+  for (;;) {
+    const auto paint = reader->next();
+    if (!paint.ok())
+      ++errors;
+    else if (*paint)
+      names.push_back((*paint)->name);
+    else
+      break;
+  }
+  EXPECT_THAT(names, ElementsAre("p", "q"));
+  EXPECT_EQ(errors, 1);
+  EXPECT_FALSE(reader->next()->has_value()) << "the end stays the end";
+}
+
 TEST_F(Cxf, HostileFilesAreRefused) {
   const std::string good_file = cxf(object("p", lab("a")), specification("a", angles({{15, ""}})));
   EXPECT_THAT(refusal("<!DOCTYPE CxF [<!ENTITY a \"aaaaaaaaaa\"><!ENTITY b \"&a;&a;&a;\">]>" + good_file),

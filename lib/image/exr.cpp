@@ -16,6 +16,7 @@
 #include <OpenEXR/ImfThreading.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -225,7 +226,7 @@ class MemoryOutput : public Imf::OStream {
   }
   std::uint64_t tellp() override { return position_; }
   void seekp(std::uint64_t position) override { position_ = position; }
-  const std::string& content() const { return content_; }
+  std::string take_content() { return std::move(content_); }
 
  private:
   std::string content_;
@@ -257,6 +258,16 @@ Result<PixelType> storage_type(const ImagePart& part, const std::vector<std::str
   return most > kMostHalf ? PixelType::kFloat : part.type;
 }
 
+// Whether compression is worth its time. Deflate finds next to nothing in floats of high precision: of maps that were
+// rounded to 19 bits it left 90 %, for ten times the time of writing them as they are. Where the lowest byte of a tenth
+// of the values is 0, as in empty areas and in values that were halves, it does find something.
+bool is_compressible(const ImagePart& part, PixelType type) {
+  if (type == PixelType::kHalf) return true;
+  std::size_t full = 0;
+  for (const float value : part.image.data) full += (std::bit_cast<std::uint32_t>(value) & 0xff) != 0;
+  return 10 * full < 9 * part.image.data.size();
+}
+
 void set_attributes(Imf::Header& header, const Attributes& attributes) {
   for (const auto& [name, value] : attributes) {
     const auto* text = std::get_if<std::string>(&value);
@@ -279,7 +290,7 @@ Imf::Header header_of(const ImagePart& part, PixelType type, const std::vector<s
   const Imath::Box2i data(Imath::V2i(0, 0), Imath::V2i(part.image.width - 1, part.image.height - 1));
   Imf::Header header(display, data);
   set_attributes(header, part.attributes);
-  header.compression() = Imf::ZIP_COMPRESSION;
+  header.compression() = is_compressible(part, type) ? Imf::ZIP_COMPRESSION : Imf::NO_COMPRESSION;
   header.zipCompressionLevel() = kZipLevel;
   header.setType(Imf::SCANLINEIMAGE);
   header.setName(part.name);
@@ -343,7 +354,7 @@ Result<std::string> encoded(const std::vector<ImagePart>& given) {
     Imf::MultiPartOutputFile file(stream, headers.data(), static_cast<int>(headers.size()), false, threads());
     for (std::size_t i = 0; i < parts.size(); ++i) write_part(file, static_cast<int>(i), parts[i], types[i], names[i]);
   }
-  return stream.content();
+  return stream.take_content();
 }
 
 }  // namespace

@@ -63,5 +63,26 @@ TEST(HardCase, PrefilterExponentBlocksKeepTheTolerance) {
                                    .unit = "ratio"});
 }
 
+// Lobes that are narrower than a texel have a quadrature of their own, beside texels' edges and at the poles, where
+// columns are narrow. The reference cuts texels into quarters.
+TEST(LobeTree, SharpLobesOnLatLongMapsKeepTheTolerance) {
+  constexpr double kTolerance = 1e-5;
+  std::mt19937_64 random(12);
+  for (const envmap::Environment& env : environments()) {
+    if (env.layout() != envmap::Environment::Layout::kLatLong) continue;
+    const LobeTree tree(env);
+    const Vec3 mean = (1 / (4 * kPi)) * env.flux();
+    std::vector<Vec3> directions = {{0, 1, 0}, {1e-3, -1, 1e-4}, {0.02, 1, -0.01}, {0, 0, -1}, env.direction(3, 3)};
+    for (int i = 0; i < 4; ++i) directions.push_back(random_direction(random));
+    for (Vec3& d : directions) d = normalized(d);
+    for (const double exponent : {3e3, 2e4, 1e5, 1e6})
+      for (const Vec3& d : directions) {
+        const Vec3 want = reference_lobe(env, d, exponent), got = tree.lobe(d, exponent, kTolerance);
+        for (int c = 0; c < 3; ++c)
+          EXPECT_NEAR(got[c], want[c], kTolerance * std::max(want[c], 1e-3 * mean[c])) << exponent << " " << d.y;
+      }
+  }
+}
+
 }  // namespace
 }  // namespace goniochrome::prefilter

@@ -448,11 +448,18 @@ envmap::PrefilteredEnvironment prefiltered(
 
 double energy_ratio(const Vec3& flux, const envmap::PrefilteredLobe& lobe) {
   const envmap::SphereGrid grid = envmap::map_grid(lobe.layout, lobe.map.size);
+  // The six faces of a cube have the same solid angles.
+  const int rows = grid.is_cube() ? grid.width() : grid.height();
+  std::vector<double> solid_angles;
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < grid.width(); ++column) solid_angles.push_back(grid.solid_angle(column, row));
   const float* rgb = lobe.map.texels.data();
   Vec3 sum;
-  for (int row = 0; row < grid.height(); ++row)
+  for (int row = 0; row < grid.height(); ++row) {
+    const double* solid_angle = &solid_angles[static_cast<std::size_t>(row % rows) * grid.width()];
     for (int column = 0; column < grid.width(); ++column, rgb += 3)
-      sum += grid.solid_angle(column, row) * Vec3{rgb[0], rgb[1], rgb[2]};
+      sum += solid_angle[column] * Vec3{rgb[0], rgb[1], rgb[2]};
+  }
   const double all = flux.x + flux.y + flux.z;
   return all > 0 ? (sum.x + sum.y + sum.z) / all : 1;
 }

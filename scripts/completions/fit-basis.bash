@@ -4,6 +4,7 @@ _fit_basis() {
     --lobes|-n) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --method|-m) COMPREPLY=($(compgen -W "power-mean lm" -- "$word")); return ;;
     --starts) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --representatives) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --visible) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --target|-t) COMPREPLY=($(compgen -W "measured curve" -- "$word")); return ;;
     --weights|-w) COMPREPLY=($(compgen -W "perceptual plain" -- "$word")); return ;;
@@ -20,7 +21,7 @@ _fit_basis() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--lobes --method --starts --visible --target --weights --angles --output --name --mirror --each --table --plot --explain --time-limit --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--lobes --method --starts --representatives --visible --target --weights --angles --output --name --mirror --each --table --plot --explain --time-limit --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

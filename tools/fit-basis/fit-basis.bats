@@ -38,6 +38,21 @@ quick=(--lobes 2 --starts 1 --angles 12)
   diff 1.xml 2.xml && diff 1.xml 7.xml
 }
 
+@test "a large library is searched on paints that represent it" {
+  awk 'BEGIN { print "sample,geometry,illuminant,observer,L,a,b"
+    for (i = 0; i < 120; ++i) for (k = 1; k <= 5; ++k) {
+      split("15 25 45 75 110", at, " ")
+      printf "p%d,45as%d,D65,10,%.2f,%.2f,%.2f\n", i, at[k], 15 + 60 * exp(-(at[k] - 15) / (15 + i / 3)), i % 20, i % 7 } }' |
+    paint-convert --quiet --from csv - -o library.paints.xml
+  fit-basis "${quick[@]}" --quiet --representatives 0 library.paints.xml -o all.xml --report all.json
+  fit-basis "${quick[@]}" --quiet --representatives 20 library.paints.xml -o some.xml --report some.json
+  jq -e '.results.sets[0].searched_paints == 120' all.json
+  jq -e '.results.paints == 120 and (.results.sets[0].searched_paints | . >= 20 and . < 100)' some.json
+  jq -se '.[1].results.sets[0].objective < 1.01 * .[0].results.sets[0].objective' all.json some.json
+  run fit-basis "${quick[@]}" --explain --representatives 20 library.paints.xml -o some.xml
+  [[ "$output" == *"searched on 20 paints that represent all"* ]]
+}
+
 @test "both methods, targets and weights give a basis" {
   for choice in "--method lm" "--method power-mean" "--target curve" "--weights plain" "--name mine"; do
     fit-basis "${quick[@]}" $choice --quiet "$TESTDATA/paints.paints.xml" -o b.basis.xml

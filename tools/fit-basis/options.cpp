@@ -11,7 +11,7 @@ cli::ToolSpec tool_spec(Options& o) {
       "exponents are chosen once. After that, fit-paint(1) fits single paints to them in microseconds, and "
       "prefilter-envmap(1) filters an environment once for all of them.",
       "The search adds one lobe at a time to the best smaller set, from several starts, so that the error never rises "
-      "with the number of lobes.",
+      "with the number of lobes. A large library is searched on paints that represent it; see --representatives.",
       "The basis written is the one with the most lobes. The summary line names the number of lobes from which on no "
       "further lobe changes any paint of the library visibly."};
   spec.inputs = {
@@ -28,6 +28,14 @@ cli::ToolSpec tool_spec(Options& o) {
           "the Levenberg-Marquardt search of the source. Both end in a pattern search on the exact objective, and the "
           "errors reported are exact.");
   spec.option("starts", "N", "2", &o.starts, "number of starting points for each number of lobes").from(1, 1000);
+  spec.option("representatives", "N", "0", &o.representatives,
+              "number of paints on which a library of more than twice as many is searched; 0 searches all")
+      .from(0, 1000000)
+      .more(
+          "These paints stand for the others: the mean error over the library is estimated from them. Paints that are "
+          "fitted worse than any of them join the search until there is none. The errors that are reported are those "
+          "of the whole library. On 5,000 paints max_error + mean_error comes out within 0.5 % of what the search on "
+          "all paints finds.");
   spec.option("visible", "DE00", "1", &o.visible_de00, "color difference below which a further lobe is invisible")
       .from(0);
   spec.heading = "what is fitted";
@@ -61,6 +69,7 @@ cli::ToolSpec tool_spec(Options& o) {
       {"sets[].time_s", "time of the search for this number of lobes"},
       {"sets[].starts", "number of starting points that were tried"},
       {"sets[].evaluations", "number of evaluations of the objective"},
+      {"sets[].searched_paints", "number of paints that the search looked at; the errors are those of all paints"},
       {"paints", "number of paints"},
       {"enough_lobes", "the number beyond which no paint changes by the color difference of --visible"}};
   spec.see_also = {"fit-paint(1)", "prefilter-envmap(1)"};

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/file.h"
+#include "base/parallel.h"
 #include "base/paths.h"
 #include "base/text.h"
 #include "fit/basis_search.h"
@@ -65,10 +66,12 @@ std::string list(const std::vector<double>& exponents) {
 // The dE00 of the worst paint at its worst angle, for each set.
 std::vector<double> visible_errors(const fit::BasisSearch& search, const std::vector<fit::BasisTarget>& targets) {
   std::vector<double> errors;
+  std::vector<double> each(targets.size());
   for (const fit::FoundBasis& set : search.sets) {
-    double worst = 0;
-    for (const fit::BasisTarget& target : targets) worst = std::max(worst, fit::basis_de00(set.exponents, target));
-    errors.push_back(worst);
+    parallel_for(targets.size(), 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) each[i] = fit::basis_de00(set.exponents, targets[i]);
+    });
+    errors.push_back(*std::ranges::max_element(each));
   }
   return errors;
 }
@@ -161,7 +164,8 @@ void report(const fit::BasisSearch& search, const std::vector<fit::BasisTarget>&
                     {"worst", targets[static_cast<std::size_t>(worst)].name},
                     {"time_s", set.time_s},
                     {"starts", set.starts},
-                    {"evaluations", set.evaluations}});
+                    {"evaluations", set.evaluations},
+                    {"searched_paints", set.looked_at}});
     session.say(fmt::format("{:2} lobes: largest {:.3g}, mean {:.3g}, dE00 {:.2f}, {:.2f} s: {}", set.exponents.size(),
                             set.error.max, set.error.mean, de00[i], set.time_s, list(set.exponents)));
   }
@@ -181,6 +185,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   search_options.method = options.method == "lm" ? fit::BasisMethod::kLevenbergMarquardt : fit::BasisMethod::kPowerMean;
   search_options.first = range.first, search_options.last = range.last;
   search_options.starts = options.starts;
+  search_options.representatives = static_cast<std::size_t>(options.representatives);
   search_options.seed = options.common.seed;
   search_options.time_limit_s = options.common.time_limit_s;
   session.explain(
@@ -191,6 +196,13 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
                   targets.size(), options.angles, options.starts, range.first, range.last, options.method,
                   std::ranges::count_if(targets, [](const fit::BasisTarget& t) { return t.coat.has_value(); }),
                   options.mirror ? ", with the mirror" : ""));
+
+  const std::size_t most = search_options.representatives;
+  if (most > 0 && targets.size() > 2 * most)
+    session.explain(
+        fmt::format("searched on {} paints that represent all, and on those that are fitted worse than any of these; "
+                    "--representatives 0 searches all\n",
+                    most));
 
   const fit::BasisSearch search = fit::search_basis(targets, search_options);
   const std::vector<double> de00 = visible_errors(search, targets);

@@ -18,7 +18,7 @@ struct Options {
   std::string target = "measured";
   std::string weights = "perceptual";
   std::string each, table, plot;
-  int starts = 6;
+  int starts = 6, representatives = 400;
   int angles = 40;
   double visible_de00 = 0.5;
   bool mirror = false;

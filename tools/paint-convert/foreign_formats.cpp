@@ -50,6 +50,38 @@ class ImportedSource : public PaintSource {
   std::size_t skipped_ = 0, given_ = 0;
 };
 
+// CxF is read for its specifications at the first call of next(), and then paint by paint.
+class CxfSource : public PaintSource {
+ public:
+  CxfSource(InputFile input, const formats::ImportOptions& options)
+      : name_(input.name()), options_(options), input_(std::move(input)) {}
+
+  Result<std::optional<paint::Paint>> next() override {
+    if (input_) {
+      InputFile input = std::move(*input_);
+      input_.reset();
+      GONIO_ASSIGN(formats::CxfReader reader, formats::CxfReader::open(std::move(input), options_));
+      reader_.emplace(std::move(reader));
+    }
+    return reader_ ? reader_->next() : std::optional<paint::Paint>();
+  }
+  std::string place() const override { return name_; }
+  std::string format() const override { return "CxF3"; }
+  std::vector<std::string> closing_warnings() const override {
+    std::vector<std::string> lines;
+    if (reader_)
+      for (const std::string& warning : reader_->warnings()) lines.push_back(fmt::format("{}: {}", name_, warning));
+    return lines;
+  }
+  bool takes_condition() const override { return true; }
+
+ private:
+  std::string name_;
+  formats::ImportOptions options_;
+  std::optional<InputFile> input_;
+  std::optional<formats::CxfReader> reader_;
+};
+
 Json as_json(const std::string& name, const brdf::MeasuredTraits& traits, const brdf::MeasuredChecks& told,
              const brdf::MeasuredColor& color) {
   Json json = {{"name", name},
@@ -158,7 +190,7 @@ class MeasuredSource : public PaintSource {
 }  // namespace
 
 Result<SourcePointer> open_cxf(InputFile input, const SourceSetup& setup) {
-  return SourcePointer(std::make_unique<ImportedSource>(std::move(input), setup.import, formats::read_cxf, "CxF3"));
+  return SourcePointer(std::make_unique<CxfSource>(std::move(input), setup.import));
 }
 
 Result<SourcePointer> open_cgats(InputFile input, const SourceSetup& setup) {

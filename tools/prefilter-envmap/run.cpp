@@ -213,12 +213,13 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   session.results()["verify_s"] = verify_clock.elapsed_s();
 
   const Vec3 flux = env.flux();
+  session.begin_list("lobes");
   double worst = 0;
   std::vector<envmap::PrefilteredLobe*> lobes = all_lobes(result);
   for (std::size_t i = 0; i < lobes.size(); ++i) {
     worst = std::max(worst, lobes[i]->max_error);
-    session.results()["lobes"].push_back(
-        report_of(plan[i], *lobes[i], timings[i], prefilter::energy_ratio(flux, *lobes[i])));
+    session.add("lobes",
+                [&] { return report_of(plan[i], *lobes[i], timings[i], prefilter::energy_ratio(flux, *lobes[i])); });
   }
   for (const envmap::Spot& spot : result.spots) {
     const Vec3 light = kPi * spot.white;

@@ -5,6 +5,7 @@
 
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
+#include "fit/internal/color_floor.h"
 #include "math/cosine_power.h"
 
 namespace goniochrome::fit {
@@ -79,49 +80,6 @@ void add_readings(const color::Xyz& white, double coat_index, bool by_view, Targ
             target);
     first = last;
   }
-}
-
-// The least cost of a color that a search by coordinate steps finds from x.
-template <class Cost>
-double least(color::Lab x, double step, const Cost& cost) {
-  constexpr double kSmallestStep = 1e-3;
-  double value = cost(x);
-  while (step > kSmallestStep) {
-    bool moved = false;
-    for (double color::Lab::*const channel : {&color::Lab::L, &color::Lab::a, &color::Lab::b})
-      for (const double move : {step, -step}) {
-        color::Lab next = x;
-        next.*channel += move;
-        const double next_value = cost(next);
-        if (!(next_value < value)) continue;
-        x = next, value = next_value, moved = true;
-        break;
-      }
-    if (!moved) step /= 4;
-  }
-  return value;
-}
-
-// One angle's readings: the least sum of their differences to one color, and the least of the largest, both by a search
-// from their mean and from each of them.
-void add_floor(const std::vector<color::Lab>& same, double apart, Twins& twins) {
-  const auto sum_to = [&](const color::Lab& x) {
-    double sum = 0;
-    for (const color::Lab& lab : same) sum += color::delta_e_2000(lab, x);
-    return sum;
-  };
-  const auto largest_to = [&](const color::Lab& x) {
-    double largest = 0;
-    for (const color::Lab& lab : same) largest = std::max(largest, color::delta_e_2000(lab, x));
-    return largest;
-  };
-  const double step = apart / 4;
-  const color::Lab mean = mean_of(same);
-  double sum = least(mean, step, sum_to), largest = least(mean, step, largest_to);
-  for (const color::Lab& lab : same)
-    sum = std::min(sum, least(lab, step, sum_to)), largest = std::min(largest, least(lab, step, largest_to));
-  twins.sum_de00 += sum;
-  twins.largest_de00.push_back(largest);
 }
 
 // The channel that grows most from a smaller aspecular angle to that of `at`, or from there to a larger one, and by
@@ -264,17 +222,22 @@ Twins twins_of(const std::vector<paint::LabReading>& readings) {
       if (!taken[k] && std::abs(paint::aspecular_angle_deg(readings[k].geometry) - angle) <= kSame_deg)
         same.push_back(&readings[k]), taken[k] = 1;
     double apart = 0;
-    for (const paint::LabReading* a : same)
-      for (const paint::LabReading* b : same) {
-        const double de00 = color::delta_e_2000(a->lab, b->lab);
+    const auto note_view = [&](const paint::LabReading& reading) {
+      twins.views_deg.push_back(std::round(1e6 * view_angle_deg(reading.geometry)) / 1e6);
+    };
+    for (std::size_t m = 0; m < same.size(); ++m)
+      for (std::size_t n = m + 1; n < same.size(); ++n) {
+        const double de00 = color::delta_e_2000(same[m]->lab, same[n]->lab);
         apart = std::max(apart, de00);
-        if (de00 > kVisible_de00) twins.views_deg.push_back(std::round(1e6 * view_angle_deg(a->geometry)) / 1e6);
+        if (de00 > kVisible_de00) note_view(*same[m]), note_view(*same[n]);
       }
     twins.apart_de00 = std::max(twins.apart_de00, apart);
     if (apart == 0) continue;
     std::vector<color::Lab> colors;
     for (const paint::LabReading* reading : same) colors.push_back(reading->lab);
-    add_floor(colors, apart, twins);
+    const ColorFloor floor = color_floor(colors, apart);
+    twins.sum_de00 += floor.sum_de00;
+    twins.largest_de00.push_back(floor.largest_de00);
   }
   std::ranges::sort(twins.views_deg);
   twins.views_deg.erase(std::ranges::unique(twins.views_deg).begin(), twins.views_deg.end());

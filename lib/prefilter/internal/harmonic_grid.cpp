@@ -174,22 +174,25 @@ Bump make_bump(int taps) {
 // all but periodic, so equal steps suffice.
 std::vector<double> corrections(const Bump& bump, int degree, double step) {
   constexpr int kSteps = 400;
+  double weight[kSteps], sine[kSteps];
+  for (int i = 0; i < kSteps; ++i) {
+    const double s = kPi * ((i + 0.5) / kSteps - 0.5);
+    weight[i] = std::exp(bump.beta * (std::cos(s) - 1)) * std::cos(s);
+    sine[i] = std::sin(s);
+  }
   std::vector<double> result;
   for (int n = 0; n <= degree; ++n) {
     double sum = 0;
-    for (int i = 0; i < kSteps; ++i) {
-      const double s = kPi * ((i + 0.5) / kSteps - 0.5);
-      sum += std::exp(bump.beta * (std::cos(s) - 1)) * std::cos(s) *
-             std::cos(n * step * static_cast<double>(bump.taps) / 2 * std::sin(s));
-    }
+    for (int i = 0; i < kSteps; ++i)
+      sum += weight[i] * std::cos(n * step * static_cast<double>(bump.taps) / 2 * sine[i]);
     result.push_back(1 / (sum * kPi / kSteps * static_cast<double>(bump.taps) / 2));
   }
   return result;
 }
 
-// F_m on the fine rows: [row][m][re R G B im R G B], some orders at a time.
+// F_m on the fine rows: [row][m][re R G B im R G B], some orders at a time. `correction` is that of the polar angle.
 std::vector<double> fine_rows(const Harmonics& harmonics, const std::vector<double>& k, const Grid& grid,
-                              std::size_t fine, const Bump& bump) {
+                              std::size_t fine, const std::vector<double>& correction) {
   const int degree = static_cast<int>(k.size()) - 1;
   const std::size_t orders = static_cast<std::size_t>(degree) + 1;
   const std::size_t circle = math::fast_length(static_cast<std::size_t>(2 * degree + 2), 4), half = circle / 2;
@@ -198,7 +201,6 @@ std::vector<double> fine_rows(const Harmonics& harmonics, const std::vector<doub
     theta[i] = 2 * kPi * (static_cast<double>(i) + 0.5) / static_cast<double>(circle);
   const math::Rings rings(theta);
   const math::Fft coarse_fft(circle), fine_fft(fine);
-  const std::vector<double> correction = corrections(bump, degree, grid.theta_step);
   std::vector<double> rows(grid.rows * orders * 6);
   parallel_for(orders, kOrdersAtOnce, [&](std::size_t begin, std::size_t end) {
     constexpr std::size_t kLanes = 3 * kOrdersAtOnce;
@@ -271,8 +273,8 @@ Grid make_grid(const Harmonics& harmonics, const std::vector<double>& k, const B
   const std::size_t orders = static_cast<std::size_t>(degree) + 1;
   Grid grid = blank_grid(degree, bump);
   const std::size_t fine = grid.columns, margin = static_cast<std::size_t>(-grid.first_column);
-  const std::vector<double> rows = fine_rows(harmonics, k, grid, fine, bump);
-  const std::vector<double> correction = corrections(bump, degree, grid.phi_step);
+  const std::vector<double> correction = corrections(bump, degree, grid.phi_step);  // of either angle: equal steps
+  const std::vector<double> rows = fine_rows(harmonics, k, grid, fine, correction);
   const math::Fft fft(fine);
   parallel_for(grid.rows, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     constexpr std::size_t kSeries = 3 * kRowsAtOnce;

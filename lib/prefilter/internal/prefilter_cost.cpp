@@ -52,9 +52,12 @@ double arcs_time_s(const envmap::Environment& env, double exponent, double toler
   return 4.8e-8 * arc_points(exponent == 0, tolerance) * env.height() * texels;
 }
 
-// A sharp lobe cuts few texels into many cells, a wide one walks along its horizon.
+// A sharp lobe cuts few texels into many cells, or into the pieces of a quadrature of its own (lobe_patch.cpp); a wide
+// one walks along its horizon.
 double blocks_time_s(const envmap::Environment& env, double exponent, double texels) {
-  return (exponent > 100 ? 6e-2 : 8e-5 * env.width()) * texels;
+  const bool by_pieces =
+      env.layout() == envmap::Environment::Layout::kLatLong && 2 * env.largest_texel_rad() * std::sqrt(exponent) > 0.5;
+  return (exponent > 100 ? (by_pieces ? 2.5e-4 : 6e-2) : 8e-5 * env.width()) * texels;
 }
 
 // A cell costs its own corners, the sides of texels that cross it and the texels themselves.
