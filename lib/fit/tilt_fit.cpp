@@ -57,9 +57,10 @@ std::vector<double> tilted_exponents(const formats::Basis& basis) {
 // Lobes about axes that stand about as far apart as they are wide. Few of them stay near the mirror direction, no
 // farther than twice their width: farther out, few sharp lobes show a small lamp as separate spots. On cayman in a
 // studio, 8 look-ups with axes to 3.2 standard deviations erred by 2.07 (mean CIEDE2000), to 2.2 by 1.38, and to 8 by
-// more than its plain lobes. Many lobes can stand farther out: 64 look-ups on the two films under four lights erred by
-// 0.47 to 1.30 with axes to 3.2, and by 0.6 to 1.76 to 2.2; 32 erred by up to a sixth more. The first one is the
-// diffuse part: a lobe of exponent 1 about the normal.
+// more than its plain lobes. Many lobes can stand farther out: under one small lamp,
+// 64 look-ups on film_green_violet erred by 1.30 with axes to 3.2, and by 1.76 to 2.2, where 32 look-ups gained nothing
+// (2.0 both) and lost under a sky (1.43 for 1.29). The first one is the diffuse part: a lobe of exponent 1 about the
+// normal.
 struct Candidate {
   paint::TiltedLobe lobe;
   std::size_t exponent = 0;  // its number
