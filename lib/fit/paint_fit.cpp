@@ -74,13 +74,9 @@ void fit_flake(const FitOptions& options, const FlakeTarget& together, const Fla
 }
 
 FlakeTarget flake_target(const FitOptions& options, const Target& target, const color::Xyz& white, double coat_index) {
-  FlakeTarget flake{white, {}, {}};
+  FlakeTarget flake{white, {}, {}, {}};
   for (const TargetRow& row : target.rows) flake.rows.push_back(flake_row(row, options, row.importance < 1));
-  for (const paint::LabReading& reading : target.readings)
-    flake.readings.push_back(
-        {{paint::aspecular_angle_deg(reading.geometry) * kDegree, view_angle_deg(reading.geometry)},
-         reading.lab,
-         coat_passages_at(reading.geometry, coat_index)});
+  for (const paint::LabReading& reading : target.readings) flake.readings.push_back(flake_reading(reading, coat_index));
   return flake;
 }
 
@@ -146,7 +142,7 @@ const char* fit_method_name(FitMethod method) {
 }
 
 const char* fit_status_name(FitStatus status) {
-  constexpr const char* kNames[] = {"optimal", "not_converged", "time_limit"};
+  constexpr const char* kNames[] = {"optimal", "not_converged", "stalled", "bounded", "time_limit"};
   return kNames[static_cast<int>(status)];
 }
 

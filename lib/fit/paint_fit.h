@@ -16,7 +16,8 @@
 namespace goniochrome::fit {
 
 // kL1 and kL2 make the weighted error of the reflectance factors least in that norm. kDeltaE starts from both and then
-// makes the color differences at the readings least.
+// makes the sum of squared color differences at the readings least, or over all directions of a measured BRDF; their
+// mean is nowhere more than 0.01 above that of kL1, nor is the median of many, nor the mean at the readings of a BRDF.
 enum class FitMethod { kL1, kL2, kDeltaE };
 
 // "l1" | "l2" | "deltae"
@@ -104,10 +105,12 @@ struct ViewFloor {
 enum class FitStatus {
   kOptimal,
   kNotConverged,  // a solver gave up: the weights are the best it found
+  kStalled,       // kDeltaE ended where a gap remains, as it may where hues of nearly gray colors jump
+  kBounded,       // kDeltaE ended with a gap where it would have become worse than kL1
   kTimeLimit      // the paint's time was up: the weights are the best found until then
 };
 
-// "optimal" | "not_converged" | "time_limit"
+// "optimal" | "not_converged" | "stalled" | "bounded" | "time_limit"
 const char* fit_status_name(FitStatus status);
 
 // How good a fit is, and the proof.

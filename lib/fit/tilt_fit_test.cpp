@@ -57,6 +57,22 @@ TEST(TiltFit, FollowsATravelingColorBetterTheMoreLookupsThereAre) {
   }
 }
 
+// Few lobes stay near the mirror direction, since far ones show a small lamp as spots; many may stand farther out. The
+// control is the set of 32, which stays near.
+TEST(TiltFit, ManyLookupsReachFartherAndComeCloser) {
+  const TiltFit fit = fitted({32, 64});
+  ASSERT_EQ(fit.sets.size(), 2u);
+  EXPECT_LT(fit.sets[1].mean_de00, 0.8 * fit.sets[0].mean_de00);
+  const auto farthest = [](const paint::TiltedLobes& set) {
+    double most = 0;
+    for (const paint::TiltedLobe& lobe : set.lobes)
+      most = std::max(most, std::max(std::abs(lobe.tilt_deg), lobe.out_deg) * kDegree * std::sqrt(lobe.exponent));
+    return most;
+  };
+  EXPECT_LE(farthest(fit.sets[0]), 2.2);
+  EXPECT_GT(farthest(fit.sets[1]), 2.2);
+}
+
 // The truth is the map itself, whose light from below the horizon is 0: a set sends little there at any view. A lobe of
 // exponent 20 about the mirror direction, with the same light in it, is the control: at 85 deg a third of it lies
 // below.

@@ -57,8 +57,17 @@ constexpr std::array<double, 5> kExportAngles_deg = {15, 25, 45, 75, 110};
 // What a designed paint would measure: rows at 45 deg incidence and the export angles.
 std::vector<LabReading> rows_of(const Appearance& appearance);
 
+// Where an aspecular angle (deg, 0..180) stands on the axis on which measured curves are cubics: ln(t + 5 deg). Flakes
+// turn their color fast near specular and slowly far from it, and in this place most paints change about evenly.
+// goniochrome-theory(7), PAINT REPRESENTATIONS, tells what that gains on held-out angles.
+double curve_place(double aspecular_deg);
+// The angle of a place, and how fast the place changes with the angle (1/deg).
+double angle_of_place_deg(double place);
+double curve_place_slope(double aspecular_deg);
+
 // The color of a paint at any unsigned aspecular angle. In-plane rows at the same angle are averaged.
-// - kMeasured: in each channel a monotone piecewise cubic (PCHIP) through the rows, constant beyond the ends;
+// - kMeasured: in each channel a piecewise cubic (PCHIP) in curve_place() of the angle, which passes through the rows,
+//   stays between the values of neighboring rows, and is constant beyond the ends;
 // - kCurve: the clamped quadratic of the appearance. If the paint has none, it is the quadratic in each channel that is
 //   nearest to the rows, where each row counts for the angles that are nearest to it.
 class TargetCurve {
@@ -76,8 +85,8 @@ class TargetCurve {
  private:
   Kind kind_ = Kind::kMeasured;
   std::array<ChannelCurve, 3> quadratic_;
-  std::vector<double> known_deg_;
-  std::array<std::vector<double>, 3> value_, slope_;  // per channel at the known angles
+  std::vector<double> known_deg_, place_;             // of a measured curve: the places of the known angles
+  std::array<std::vector<double>, 3> value_, slope_;  // per channel at the known angles, slopes by place
 };
 
 }  // namespace goniochrome::paint

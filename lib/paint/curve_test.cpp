@@ -265,13 +265,19 @@ TEST(TargetCurve, PassesThroughEveryRowAndStaysBetweenNeighbors) {
   EXPECT_EQ(curve->at(180), (color::Lab{22, 3, 1}));
 }
 
-TEST(TargetCurve, StraightRowsGiveAStraightLine) {
-  const auto curve = TargetCurve::make(measured({{{.aspecular_deg = 15}, {90, 0, 0}},
-                                                 {{.aspecular_deg = 25}, {80, 0, 0}},
-                                                 {{.aspecular_deg = 45}, {60, 0, 0}},
-                                                 {{.aspecular_deg = 75}, {30, 0, 0}}}),
-                                       TargetCurve::Kind::kMeasured);
-  for (double t = 15; t <= 75; t += 0.5) EXPECT_NEAR(curve->at(t).L, 105 - t, 1e-12);
+TEST(TargetCurve, RowsOnALineOverThePlaceStayOnIt) {
+  const auto line = [](double t) { return 90 - 20 * std::log((t + 5) / 20); };
+  std::vector<std::pair<Geometry, color::Lab>> rows;
+  for (const double t : {15.0, 25.0, 45.0, 75.0}) rows.push_back({{.aspecular_deg = t}, {line(t), 0, 0}});
+  const auto curve = TargetCurve::make(measured(rows), TargetCurve::Kind::kMeasured);
+  for (double t = 15; t <= 75; t += 0.5) EXPECT_NEAR(curve->at(t).L, line(t), 1e-12);
+}
+
+TEST(TargetCurve, PlacesAndAnglesAreInverse) {
+  for (double t = 0; t <= 180; t += 7.5) {
+    EXPECT_NEAR(angle_of_place_deg(curve_place(t)), t, 1e-12);
+    EXPECT_NEAR((curve_place(t + 1e-4) - curve_place(t)) / 1e-4, curve_place_slope(t), 2e-6);
+  }
 }
 
 TEST(TargetCurve, BothSidesOfSpecularAreAveragedAndOutOfPlaneLeftOut) {
@@ -283,7 +289,8 @@ TEST(TargetCurve, BothSidesOfSpecularAreAveragedAndOutOfPlaneLeftOut) {
                         TargetCurve::Kind::kMeasured);
   EXPECT_EQ(curve->known_angles_deg(), (std::vector<double>{15, 45}));
   EXPECT_EQ(curve->at(15), (color::Lab{82, 1, 0}));
-  EXPECT_NEAR(curve->at(30).L, 56, 1e-12);
+  // Two rows make a line over the place, ln(t + 5 deg): 35 deg lies halfway between 20 and 50 deg by ratio.
+  EXPECT_NEAR(curve->at(std::sqrt(20.0 * 50.0) - 5).L, 56, 1e-12);
 }
 
 // Each channel travels on its own, as the common travel of face and flop cannot, and is met where it is a quadratic.

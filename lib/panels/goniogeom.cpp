@@ -82,7 +82,7 @@ double root_between(double low, double high, double at_low, double at_high, cons
 FlakeCurve::FlakeCurve(const paint::Appearance& appearance) {
   const double travel = appearance.travel_deg, width = travel - paint::kFaceAngle_deg;
   const auto face = channels(appearance.face), flop = channels(appearance.flop);
-  Piece slope{travel, travel, {}}, plateau{180, travel, {}};
+  Piece slope{travel, travel, {}, false}, plateau{180, travel, {}, false};
   for (int c = 0; c < 3; ++c) {
     slope.coefficients[c] = {flop[c], 0, (face[c] - flop[c]) / (width * width), 0};
     plateau.coefficients[c] = {flop[c], 0, 0, 0};
@@ -105,17 +105,18 @@ Result<FlakeCurve> FlakeCurve::bare(const paint::Paint& paint, paint::TargetCurv
       FlakeCurve curve;
       const std::vector<double>& knots = target.known_angles_deg();
       const auto constant = [&](double until, double at) {
-        Piece piece{until, at, {}};
+        Piece piece{until, at, {}, false};
         const auto value = channels(target.at(at));
         for (int c = 0; c < 3; ++c) piece.coefficients[c] = {value[c], 0, 0, 0};
         curve.pieces_.push_back(piece);
       };
       constant(knots.front(), knots.front());
       for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
-        const double width = knots[i + 1] - knots[i];
-        Piece piece{knots[i + 1], knots[i], {}};
+        const double place = paint::curve_place(knots[i]), width = paint::curve_place(knots[i + 1]) - place;
+        Piece piece{knots[i + 1], knots[i], {}, true};
         std::array<std::array<double, 3>, 4> y;
-        for (int k = 0; k < 4; ++k) y[k] = channels(target.at(k == 3 ? knots[i + 1] : knots[i] + k * width / 3));
+        for (int k = 0; k < 4; ++k)
+          y[k] = channels(target.at(k == 3 ? knots[i + 1] : paint::angle_of_place_deg(place + k * width / 3)));
         for (int c = 0; c < 3; ++c) piece.coefficients[c] = cubic_through({y[0][c], y[1][c], y[2][c], y[3][c]}, width);
         curve.pieces_.push_back(piece);
       }
@@ -128,10 +129,18 @@ Result<FlakeCurve> FlakeCurve::bare(const paint::Paint& paint, paint::TargetCurv
   return FlakeCurve(appearance);
 }
 
+double FlakeCurve::Piece::x(double aspecular_deg) const {
+  return by_place ? paint::curve_place(aspecular_deg) - paint::curve_place(origin_deg) : aspecular_deg - origin_deg;
+}
+
+double FlakeCurve::Piece::steepest_x(double from_deg) const {
+  return by_place ? paint::curve_place_slope(from_deg) : 1;
+}
+
 color::Lab FlakeCurve::at(double aspecular_deg) const {
   std::size_t i = 0;
   while (i + 1 < pieces_.size() && aspecular_deg >= pieces_[i].until_deg) ++i;
-  const double x = aspecular_deg - pieces_[i].origin_deg;
+  const double x = pieces_[i].x(aspecular_deg);
   const auto value = [&](const std::array<double, 4>& c) { return c[0] + x * (c[1] + x * (c[2] + x * c[3])); };
   const auto& c = pieces_[i].coefficients;
   return {value(c[0]), value(c[1]), value(c[2])};
@@ -154,7 +163,7 @@ void FlakeCurve::tabulate_slopes() {
       if (to < from) continue;
       double squares = 0;
       for (const auto& c : piece.coefficients) {
-        const double slope = steepest_channel(c, from - piece.origin_deg, to - piece.origin_deg);
+        const double slope = piece.steepest_x(from) * steepest_channel(c, piece.x(from), piece.x(to));
         squares += slope * slope;
       }
       most = std::max(most, std::sqrt(squares));

@@ -13,14 +13,15 @@
 
 namespace goniochrome::panels {
 
-// A paint's color against aspecular angle as pieces of polynomials, with bounds of how fast it changes.
+// A paint's color against aspecular angle as pieces of polynomials in the angle or in its place, with bounds of how
+// fast it changes.
 class FlakeCurve {
  public:
   // The clamped quadratic of an appearance whose travel is in (15,180].
   explicit FlakeCurve(const paint::Appearance& appearance);
 
   // The curve of `paint`. kCurve is the clamped quadratic of the appearance that the paint states, or else of the one
-  // nearest to its rows; kMeasured is the monotone cubic through the rows, or the quadratic where there are none.
+  // nearest to its rows; kMeasured is the monotone curve through the rows, or the quadratic where there are none.
   // Error: the paint has no color, or a travel outside its domain.
   static Result<FlakeCurve> make(const paint::Paint& paint, paint::TargetCurve::Kind kind);
 
@@ -37,10 +38,16 @@ class FlakeCurve {
   double steepest(double low_deg, double high_deg) const;
 
  private:
-  // value = c0 + c1 x + c2 x^2 + c3 x^3 with x = angle - origin, up to the angle `until`.
+  // value = c0 + c1 x + c2 x^2 + c3 x^3 up to the angle `until`, with x = angle - origin in degrees or, where
+  // `by_place` is true, the difference of their paint::curve_place().
   struct Piece {
     double until_deg = 180, origin_deg = 0;
     std::array<std::array<double, 4>, 3> coefficients{};
+    bool by_place = false;
+
+    double x(double aspecular_deg) const;
+    // The most that x changes in a degree, from that angle on.
+    double steepest_x(double from_deg) const;
   };
   FlakeCurve() = default;
   static Result<FlakeCurve> bare(const paint::Paint& paint, paint::TargetCurve::Kind kind);

@@ -98,6 +98,61 @@ TEST(TracedSeam, ABlackWallHidesItsShareOfTheSkyAndAWhiteOneSendsItBack) {
   }
 }
 
+// What a dielectric of index 1.5 lets through, by the formulas of Fresnel.
+double let_through(double cosine) {
+  const double n = 1.5, inside = std::sqrt(1 - (1 - cosine * cosine) / (n * n));
+  const double s = (cosine - n * inside) / (cosine + n * inside), p = (n * cosine - inside) / (n * cosine + inside);
+  return 1 - (s * s + p * p) / 2;
+}
+
+// A coat lets light in by its angle and out to the viewer by another, and a wall takes the light that comes near the
+// horizon, of which the coat lets in least. The sum over directions above a wall of that height at that distance is
+// taken here, as a part of even light, and without what goes out to the viewer.
+double let_in_above_wall(double height, double distance) {
+  constexpr int kRows = 400, kColumns = 720;
+  double sum = 0;
+  for (int row = 0; row < kRows; ++row) {
+    // Rows of equal cos d(cos).
+    const double up = std::sqrt((row + 0.5) / kRows), flat = std::sqrt(1 - up * up);
+    for (int column = 0; column < kColumns; ++column) {
+      const double toward_wall = flat * std::cos(2 * kPi * (column + 0.5) / kColumns);
+      if (toward_wall * height < up * distance) sum += let_through(up) / (kRows * kColumns);
+    }
+  }
+  return sum;
+}
+
+TEST(TracedSeam, ACoatLetsInWhatTheWallLeaves) {
+  const mesh::Mesh mesh = panels_and_wall();
+  const envmap::PrefilteredEnvironment env = even_light();
+  const auto traced = TracedSeam::create(mesh, env);
+  ASSERT_TRUE(traced.ok()) << traced.error().message;
+  paint::LobeFit coated = matt(1e-6);
+  coated.coat_index = 1.5;
+  const double step = 1e-3 * length(Vec3{1 + kGap + kDistance, kHeight, 2 * kLong});
+  const auto let_in = [&](const std::vector<EnvironmentPanels::Light>& lights) {
+    double sum = 0;
+    const std::vector<SeamView> views = from_above();
+    for (std::size_t i = 0; i < lights.size(); ++i)
+      sum += lights[i].diffuse.y / (kPi * kRadiance) / let_through(views[i].view.y);
+    return sum / static_cast<double>(lights.size());
+  };
+  for (const auto& [side, part, distance] :
+       {std::tuple{SeamSide::kA, "a", kGap + kDistance + step}, {SeamSide::kB, "b", kDistance - step}}) {
+    const auto seen = traced->seen(coated, seam(), from_above(), side, part);
+    ASSERT_TRUE(seen.ok()) << seen.error().message;
+    const double truth = let_in_above_wall(kHeight, distance), open = let_in_above_wall(0, 1);
+    EXPECT_NEAR(let_in(seen->lights), truth, 4 * 0.0035) << part;
+    EXPECT_NEAR(let_in(seen->open), open, 5e-3) << part;  // of the maps
+    // The controls: no coat, and a coat that takes as large a part of what the wall leaves as of all.
+    const auto bare = traced->seen(matt(1e-6), seam(), from_above(), side, part);
+    ASSERT_TRUE(bare.ok());
+    EXPECT_GT(mean_diffuse(bare->lights), truth + 8 * 0.0035) << part;
+    const double hidden = 0.5 * (1 - std::cos(std::atan(kHeight / distance)));
+    EXPECT_GT(truth, open * (1 - hidden) + 1e-3) << part;
+  }
+}
+
 TEST(TracedSeam, TheDifferenceThatAWallMakesIsToldWithItsNoiseForAnyNumberOfThreads) {
   const mesh::Mesh mesh = panels_and_wall();
   const envmap::PrefilteredEnvironment env = even_light();

@@ -7,6 +7,7 @@
 #include "base/angles.h"
 #include "brdf/disc_light.h"
 #include "brdf/lobe_model.h"
+#include "math/statistics.h"
 #include "render/cpu/cpu_engine.h"
 #include "render/exact.h"
 #include "render/glints.h"
@@ -205,6 +206,64 @@ mesh::Mesh floor_and_edge() {
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
   mesh.parts = {{"all", "", 0, 4}};
   return mesh;
+}
+
+// Gloss that is narrower than a lamp, of which a little more than half is hidden. The truth is the sum over the disc
+// above the edge of F/F_45 K_G cos^E times the lamp's radiance; the control is the spread that places on the disc alone
+// would have.
+TEST(DiscLamps, GlossBesideAWideLampIsFreeOfSpecks) {
+  constexpr double kExponent = 3000, kSeen_deg = 43.5, kRadius_deg = 5, kPlace = 0.05;
+  constexpr int kBatches = 16, kSamples = 16 * kBatches, kSeeds = 60;
+  const mesh::Mesh mesh = floor_and_edge();
+  paint::LobeFit paint;
+  paint.lobes = {{kExponent, {}, {5, 5, 5}}};
+  Scene scene = lit(paint, lamp(45, 0, 2 * kRadius_deg));
+  scene.mesh = &mesh;
+  PathScene paths;
+  paths.scene = &scene;
+  const auto transport = Transport::create(paths);
+  ASSERT_TRUE(transport.ok());
+  PathOptions options;
+  options.bounces = 0;
+  const rays::Float3 eye = transport->rays().local({kPlace, 1.5, 0.1}), down = {0, -1, 0};
+  const rays::Spot spot = transport->rays().spot(transport->rays().closest(eye, down), eye, down);
+  // The mirror direction is as far from the normal as the viewer, on the side of the lamp and above the edge.
+  const Vec3 light = scene.lights[0].direction, level = normalized(Vec3{light.x, 0, light.z});
+  const double view = kSeen_deg * kDegree;
+  const Vec3 mirrored = std::sin(view) * level + Vec3{0, std::cos(view), 0};
+  const Vec3 viewer = -std::sin(view) * level + Vec3{0, std::cos(view), 0};
+  std::vector<double> shown;
+  for (int seed = 1; seed <= kSeeds; ++seed)
+    shown.push_back(
+        path_estimate(*transport, options, spot, viewer, kBatches, static_cast<std::uint64_t>(seed)).radiance.x);
+  const double mean = math::mean(shown);
+  double spread = 0;
+  for (const double value : shown) spread += (value - mean) * (value - mean) / (kSeeds - 1);
+  spread = std::sqrt(spread);
+
+  // Rings and spokes of equal solid angle.
+  constexpr int kRings = 400, kSpokes = 720;
+  const rays::Frame frame = rays::frame_about(rays::float3(light));
+  const double versine = 1 - std::cos(kRadius_deg * kDegree), extent_sr = 2 * kPi * versine;
+  const double radiance = scene.lights[0].radiance().x;
+  const double coat_45 = brdf::fresnel_dielectric(std::cos(45 * kDegree), 1.5);
+  double first = 0, second = 0;
+  for (int ring = 0; ring < kRings; ++ring) {
+    const double v = versine * (ring + 0.5) / kRings, sine = std::sqrt(v * (2 - v));
+    for (int spoke = 0; spoke < kSpokes; ++spoke) {
+      const double phi = 2 * kPi * (spoke + 0.5) / kSpokes;
+      const Vec3 d =
+          (1 - v) * light + sine * std::cos(phi) * rays::vec3(frame.x) + sine * std::sin(phi) * rays::vec3(frame.y);
+      if (d.y * (2 - kPlace) < 2 * dot(d, level)) continue;  // behind the wall, which is 2 high
+      const double coat = brdf::fresnel_dielectric(0.5 * length(d + viewer), 1.5) / coat_45;
+      const double value = 5 * coat * std::pow(std::max(0.0, dot(d, mirrored)), kExponent) * radiance * extent_sr;
+      first += value / (kRings * kSpokes), second += value * value / (kRings * kSpokes);
+    }
+  }
+  const double by_places = std::sqrt((second - first * first) / kSamples);
+  EXPECT_NEAR(mean, first, 4 * spread / std::sqrt(kSeeds) + 0.01 * first);  // the grid has steps of a hundredth
+  EXPECT_LT(spread, 0.5 * by_places);
+  EXPECT_GT(by_places, 0.05 * first);
 }
 
 // A wall whose upper edge meets the middle of the disc hides half of it: the diffuse part is halved, softly.

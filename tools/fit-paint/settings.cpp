@@ -123,7 +123,7 @@ std::string plan(const Options& options, const fit::FitOptions& fit, const forma
       basis.name, basis.exponents.size(), basis.mirror ? " and the mirror" : "", list(seen), list(unseen),
       options.target,
       options.target == "curve" ? "quadratic of face, flop and travel; misses 5-angle readings by some dE00"
-                                : "the readings, a monotone cubic between them at 3 % of their weight",
+                                : "the readings, a monotone curve between them at 10 % of their weight",
       options.method, method_plan(fit.method),
       options.illuminant.empty() ? "" : fmt::format("colors: from spectra, under {}\n", options.illuminant),
       gloss_plan(fit.assumed_gloss), fit::kGlareAngle_deg);

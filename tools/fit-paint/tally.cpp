@@ -115,6 +115,7 @@ void Tally::add(const paint::Paint& paint, const fit::PaintFit& fit) {
   const fit::PaintFitReport& r = fit.report;
   ++fitted_;
   not_converged_ += r.status == fit::FitStatus::kNotConverged;
+  stalled_ += r.status == fit::FitStatus::kStalled;
   stopped_ += r.status == fit::FitStatus::kTimeLimit;
   for (const fit::GeometryError& error : r.de00_by_geometry) errors_.add(error.de00);
   add_worst(paint, r);
@@ -159,6 +160,7 @@ std::string Tally::summary() const {
     line +=
         fmt::format(", the views gain dE00 {:.2f}", sum_gain_ / static_cast<double>(std::max<std::size_t>(fitted_, 1)));
   if (not_converged_ > 0) line += fmt::format(", {} not converged", not_converged_);
+  if (stalled_ > 0) line += fmt::format(", {} stalled", stalled_);
   if (stopped_ > 0) line += fmt::format(", {} stopped by the time limit", stopped_);
   if (failed_ > 0) line += fmt::format(", {} unfitted", failed_);
   return line + fmt::format("; {:.0f} fits/s", rate);

@@ -49,7 +49,7 @@ class Tally {
 
   const Options& options_;
   cli::Session& session_;
-  std::size_t fitted_ = 0, failed_ = 0, not_converged_ = 0, stopped_ = 0, measured_ = 0, predicted_ = 0;
+  std::size_t fitted_ = 0, failed_ = 0, not_converged_ = 0, stalled_ = 0, stopped_ = 0, measured_ = 0, predicted_ = 0;
   std::size_t resolved_ = 0;  // measured BRDFs with an albedo_error()
   double fit_s_ = 0, sum_relative_ = 0, sum_misplaced_ = 0, sum_five_ = 0, sum_gain_ = 0;
   Spread errors_;                  // of all readings

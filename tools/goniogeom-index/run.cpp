@@ -135,7 +135,7 @@ std::string plan(const Options& options, const IndexRequest& request) {
   text +=
       request.target == paint::TargetCurve::Kind::kCurve
           ? "color: face, flop and travel; a fit of some 20 us where a paint has only rows, residual in the report\n"
-          : "color: monotone cubics through the rows, constant below the first and beyond the last\n";
+          : "color: a monotone curve through the rows, constant below the first and beyond the last\n";
   return text;
 }
 

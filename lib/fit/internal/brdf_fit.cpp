@@ -201,6 +201,9 @@ Result<BrdfRows> brdf_rows(const BrdfTarget& brdf, const color::Xyz& white, cons
   if (rows.fitted.empty())
     return input_error("no direction {} deg or more from specular and at most {} deg from the normal", kGlareAngle_deg,
                        options.steepest_deg);
+  if (options.method == FitMethod::kDeltaE && brdf.paint.measurement)
+    for (const paint::LabReading& reading : brdf.paint.measurement->rows)
+      rows.flake.usual.push_back(flake_reading(reading, options.coat_index.value_or(paint::kNoCoat)));
   add_extension(options, exponents, rows);
   return rows;
 }

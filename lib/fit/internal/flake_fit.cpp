@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "math/cosine_power.h"
+#include "math/statistics.h"
 
 namespace goniochrome::fit {
 
@@ -153,15 +154,19 @@ double column_norm(const math::Matrix& m, int column, int rows) {
   return std::sqrt(sum);
 }
 
-// How far x is from stationary: for each column of the derivative its cosine to the residual, where x may still move
-// that way.
+// A gap up to this is none: on sample paints, where the search ended by itself, it was at most 1e-4.
+constexpr double kStationary = 1e-3;
+
+// How far x is from stationary: for each column of the derivative, where x may still move that way, its cosine to the
+// residual, or less where the whole residual is shorter than what is seen.
 double stationarity(const Residuals& residuals, const std::vector<double>& x) {
   std::vector<double> r;
   math::Matrix j(residuals.rows(), residuals.unknowns());
   residuals.linearize(x, r, j);
   double size = 0;
   for (const double v : r) size += v * v;
-  if (size < 1e-20) return 0;
+  // Residuals below what is seen have no direction that counts.
+  size = std::max(size, kVisible_de00 * kVisible_de00);
   double worst = 0;
   for (int k = 0; k < j.columns; ++k) {
     double gradient = 0;
@@ -250,6 +255,13 @@ class Search {
   std::vector<double> r_, right_, scale_;
 };
 
+double stationarity(const DeltaEProblem& problem, const std::vector<color::Rgb>& x) {
+  std::vector<double> flat;
+  for (const color::Rgb& rgb : x)
+    for (int c = 0; c < 3; ++c) flat.push_back(rgb[c]);
+  return stationarity(Residuals(problem), flat);
+}
+
 // The best of the local minima reached from each start, which is never worse than a start.
 FlakeFit deltae_fit(const DeltaEProblem& problem, const std::vector<std::vector<color::Rgb>>& starts,
                     const Deadline& deadline) {
@@ -267,14 +279,61 @@ FlakeFit deltae_fit(const DeltaEProblem& problem, const std::vector<std::vector<
     if (!best_x.empty() && value >= best_value) continue;
     best_value = value, best.status = status, best_x = std::move(x);
   }
-  best.optimality_gap = stationarity(residuals, best_x);
   for (std::size_t j = 0; j < best_x.size(); j += 3) best.x.push_back({best_x[j], best_x[j + 1], best_x[j + 2]});
   return best;
 }
 
 // Many small rows count more in a squared norm than in a sum of absolute values, so inferred rows have less weight in
 // the search for color differences than in the linear fits.
-constexpr double kGuideShare = 0.1;
+constexpr double kGuideShare = 0.5;
+
+// Color differences for the comparison of two fits: the mean over the readings, their median where they are many, and
+// the mean over the readings that stand for them.
+struct Differences {
+  double mean = 0, median = 0, usual = 0;
+
+  bool no_worse_than(const Differences& other) const {
+    constexpr double kUnseen_de00 = 0.01;
+    return mean <= other.mean + kUnseen_de00 && median <= other.median + kUnseen_de00 &&
+           usual <= other.usual + kUnseen_de00;
+  }
+};
+
+std::vector<double> differences_at(const std::vector<FlakeReading>& readings, const color::Xyz& white,
+                                   const FlakeModel& model, const std::vector<color::Rgb>& x) {
+  std::vector<double> de00;
+  for (const FlakeReading& reading : readings)
+    de00.push_back(
+        color::delta_e_2000(reading.lab, color::lab_from_rgb(reading.passages * shown(model, x, reading.at), white)));
+  return de00;
+}
+
+Differences differences(const FlakeTarget& target, const FlakeModel& model, const std::vector<color::Rgb>& x) {
+  constexpr std::size_t kMany = 20;
+  Differences out;
+  const std::vector<double> all = differences_at(target.readings, target.white, model, x),
+                            usual = differences_at(target.usual, target.white, model, x);
+  if (!all.empty()) out.mean = math::mean(all);
+  if (all.size() > kMany) out.median = math::median(all);
+  if (!usual.empty()) out.usual = math::mean(usual);
+  return out;
+}
+
+// The search makes the sum of squares least, by which a few large differences can fall while most of them rise. Where
+// that happens, the weights go back toward those of the l1 fit as far as needed to be no worse than it; all weights
+// between the two are non-negative too. Returns whether the weights had to go back.
+bool bound_by(const std::vector<color::Rgb>& l1, const FlakeTarget& target, const FlakeModel& model,
+              std::vector<color::Rgb>& x) {
+  constexpr int kSteps = 16;
+  const Differences bound = differences(target, model, l1);
+  const std::vector<color::Rgb> free = x;
+  for (int back = 0; back <= kSteps; ++back) {
+    const double share = static_cast<double>(back) / kSteps;
+    for (std::size_t j = 0; j < x.size(); ++j) x[j] = (1 - share) * free[j] + share * l1[j];
+    if (differences(target, model, x).no_worse_than(bound)) return back > 0;
+  }
+  return true;
+}
 
 // The weight, in each row, of the difference between what one view shows and what the next one does.
 constexpr double kSmoothnessShare = 0.1;
@@ -372,7 +431,13 @@ FlakeFit flake_fit(FitMethod method, const FlakeTarget& target, const FlakeModel
   if (method == FitMethod::kDeltaE) {
     const std::vector<std::vector<color::Rgb>> starts = {linear_fit(Norm::kL1, problem).x,
                                                          linear_fit(Norm::kL2, problem).x};
-    fit = deltae_fit(deltae_problem(target, model, problem), starts, deadline);
+    const DeltaEProblem search = deltae_problem(target, model, problem);
+    fit = deltae_fit(search, starts, deadline);
+    const bool went_back = bound_by(starts.front(), target, model, fit.x);
+    fit.optimality_gap = stationarity(search, fit.x);
+    const bool gap = fit.optimality_gap > kStationary;
+    if (went_back && fit.status != FitStatus::kTimeLimit) fit.status = gap ? FitStatus::kBounded : FitStatus::kOptimal;
+    if (gap && fit.status == FitStatus::kOptimal) fit.status = FitStatus::kStalled;
   } else {
     LinearFit best = linear_fit(norm_of(method), problem);
     fit.x = std::move(best.x);

@@ -43,7 +43,8 @@ struct FlakeReading {
 struct FlakeTarget {
   color::Xyz white;
   std::vector<FlakeRow> rows;
-  std::vector<FlakeReading> readings;  // what the fit is judged by
+  std::vector<FlakeReading> readings;    // what the fit is judged by
+  std::vector<FlakeReading> usual = {};  // of many readings, what an instrument would read of them
 };
 
 // The columns of a fit: the constant and each exponent, once for all views or once for each view.
@@ -92,8 +93,8 @@ std::vector<color::Rgb> predictions(const LinearProblem& problem, const std::vec
 struct FlakeFit {
   std::vector<color::Rgb> x;                  // one triple per column, reflectance factors
   double objective = 0, plain_objective = 0;  // over the rows, as in PaintFitReport
-  // Of a linear method that of LinearFit. Of kDeltaE the largest cosine between the residual and a free column of its
-  // derivative, which is 0 where the weights are stationary.
+  // Of a linear method that of LinearFit. Of kDeltaE the largest cosine between the residual, taken as no shorter than
+  // kVisible_de00, and a free column of its derivative; it is 0 where the weights are stationary.
   double optimality_gap = 0;
   FitStatus status = FitStatus::kOptimal;
 };

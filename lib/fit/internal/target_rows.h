@@ -28,6 +28,9 @@ struct TargetRow {
 // That row as the fit has it: the color of the base under the coat, whose error counts by what is seen of it.
 FlakeRow flake_row(const TargetRow& row, const FitOptions& options, bool inferred);
 
+// A reading as the fit has it, under a coat of that index.
+FlakeReading flake_reading(const paint::LabReading& reading, double coat_index);
+
 struct Target {
   std::vector<TargetRow> rows;
   double first_deg = 15;                    // the smallest angle at which the color is known

@@ -239,7 +239,7 @@ std::vector<float> TiltLights::column(const Set& set, std::size_t exponent, cons
 // CIEDE2000 of small differences, but for its turns of hue: the differences of lightness, chroma and hue over
 // S_L, S_C and S_H = 1, 1 + 0.045 C and 1 + 0.015 C. The derivatives of L*a*b* are taken by differences.
 Metric TiltLights::metric(const Set& set, std::size_t m, const color::Rgb& color) const {
-  constexpr double kDark = 0.004, kStep = 1e-4, kGray = 1e-3;
+  constexpr double kDark = 0.02, kStep = 1e-4, kGray = 1e-3;
   const color::Rgb at{std::max(color.x, kDark), std::max(color.y, kDark), std::max(color.z, kDark)};
   const color::Lab lab = color::lab_from_rgb(at, white());
   const double chroma = std::hypot(lab.a, lab.b);

@@ -110,21 +110,36 @@ void PointTransport::add_lights() {
   }
 }
 
-// What lamps that are discs add to sure(), as the mean over samples.
+// What lamps that are discs add to sure(), as the mean over samples. A place on the disc is drawn and, where the paint
+// has lobes narrower than the disc, a direction of the lobes, which may meet it too; together they count the light once
+// (the balance heuristic, [Veach1995] 3.1). By places alone, gloss beside a wide lamp would be specks: few of them lie
+// in a narrow lobe, and those are bright.
 color::Rgb PointTransport::lamp_shadows(const Sequence& sequence, std::uint32_t begin, std::uint32_t count,
                                         bool* any_blocked) const {
-  constexpr std::uint32_t kSet = 60;  // that nothing else draws from
+  constexpr std::uint32_t kSet = 60;         // that nothing else draws from
+  constexpr float kLeastNarrowShare = 0.1F;  // below it, what is reflected hardly changes across the disc
+  const auto lamps = static_cast<std::uint32_t>(lamps_.size());
   color::Rgb sum;
-  for (std::size_t k = 0; k < lamps_.size(); ++k) {
+  for (std::uint32_t k = 0; k < lamps; ++k) {
     const Lamp& lamp = lamps_[k];
+    const Light& light = lamp.seen.light;
+    const double half_sine = std::sin(0.5 * light.radius_rad), extent_sr = 4 * kPi * half_sine * half_sine;
+    const bool by_lobes = painted_.narrow_share(extent_sr) > kLeastNarrowShare;
+    const auto add = [&](const Reflection& reflection, const color::Rgb& sent) {
+      const bool blocked = transport_.rays_->blocked(spot_.start, reflection.direction, lamp.seen.reach);
+      if (any_blocked != nullptr && blocked) *any_blocked = true;
+      if (blocked == lamp.hidden) sum += (blocked ? -1.0 : 1.0) * reflect(reflection.f_cos, sent);
+    };
     for (std::uint32_t i = begin; i < begin + count; ++i) {
-      const std::array<double, 4> numbers = sequence.point(i, kSet + static_cast<std::uint32_t>(k));
+      const std::array<double, 4> numbers = sequence.point(i, kSet + k);
       const Transport::LampSample sample = Transport::drawn_from(lamp.seen, numbers[0], numbers[1]);
       const Reflection reflection = painted_.at(sample.direction);
-      if (!(reflection.pdf > 0)) continue;
-      const bool blocked = transport_.rays_->blocked(spot_.start, sample.direction, sample.reach);
-      if (any_blocked != nullptr && blocked) *any_blocked = true;
-      if (blocked == lamp.hidden) sum += (blocked ? -1.0 : 1.0) * reflect(reflection.f_cos, sample.light);
+      const double share = by_lobes ? 1 / (1 + extent_sr * reflection.pdf) : 1;
+      if (reflection.pdf > 0) add(reflection, share * sample.light);
+      if (!by_lobes) continue;
+      const Reflection lobe = painted_.drawn(numbers[2], numbers[3], sequence.point(i, kSet + lamps + k)[0]);
+      if (lobe.pdf > 0 && light.meets(rays::vec3(lobe.direction)))
+        add(lobe, (extent_sr / (1 + extent_sr * lobe.pdf)) * light.radiance());
     }
   }
   return sum;

@@ -225,6 +225,40 @@ TEST(TracedSurface, AMappedConvexShapeShowsTheIntegral) {
   EXPECT_GT(lobes.errors, kMostErrors);  // control: the lobes in the map's place
 }
 
+// A satin coat has gloss for each view, which a map leaves alone: under lights in its highlight a ball shows what
+// exact_radiance() has.
+TEST(TracedSurface, AMapLeavesTheGlossOfEachView) {
+  const brdf::ColorMap map = traveling_map();
+  paint::LobeFit satin = mapped_paint();
+  satin.lobes.push_back({1000, {}, {0.1, 0.1, 0.1}});
+  satin.views = {{0, satin.diffuse, {{12, {}, {0.05, 0.05, 0.05}}, {300, {}, {0.5, 0.5, 0.5}}}},
+                 {60, satin.diffuse, {{300, {}, {8, 8, 8}}, {1000, {}, {20, 20, 20}}}}};
+  LayeredStage stage(sphere_mesh(96), {satin});
+  stage.surfaces = {{nullptr, 1, &map}};
+  const Vec3 eye{0, 0, 3};
+  for (const double off : {0.2, 0.5, 0.8}) {
+    // The lamp of each place stands in the mirror direction.
+    const double view = std::asin(off);
+    stage.scene.lights.push_back({{std::sin(2 * view), 0, std::cos(2 * view)}, {0.3, 0.2, 0.1}});
+  }
+  const Transport& transport = stage.build_with_layer();
+  Worst ours, control;
+  for (const double off : {0.2, 0.5, 0.8}) {
+    const Vec3 target{off, 0, std::sqrt(1 - off * off)}, toward = normalized(target - eye);
+    const rays::Spot spot = stage.spot(eye, target);
+    const Vec3 normal = normalized(rays::vec3(spot.shading));
+    const PathEstimate estimate = path_estimate(transport, {}, spot, -toward, 2, 3);
+    Effects effects = effects_of(stage.scene);
+    effects.fresnel = true;
+    const VisiblePoint point{normal, -toward, 0};
+    judge(estimate, exact_radiance({point}, stage.scene, effects, nullptr)[0], ours);
+    effects.views = false;
+    judge(estimate, exact_radiance({point}, stage.scene, effects, nullptr)[0], control);
+  }
+  EXPECT_LT(ours.relative, 2e-3);
+  EXPECT_GT(control.relative, 0.1);
+}
+
 // Under a light, of an operator too, maps and textures show what exact_radiance() has; textures under an environment
 // as well.
 TEST(TracedSurface, AConvexShapeShowsTheReference) {

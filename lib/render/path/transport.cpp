@@ -58,10 +58,8 @@ Result<Transport> Transport::create(const PathScene& path_scene) {
   const auto tilts = tilts_for(path_scene);
   for (std::size_t part = 0; part < scene.paints.size(); ++part) {
     const double gloss_deg = part < scene.gloss_deg.size() ? scene.gloss_deg[part] : brdf::kGlossIncidence_deg;
-    paint::LobeFit lobes = scene.paints[part];
-    // A color map takes the place of the flakes' weights for all views.
-    if (is_mapped(scene, part)) lobes.views.clear();
-    auto paint = TracedPaint::create(lobes, gloss_deg, tilts[part]);
+    // A color map takes the place of diffuse and flake weights at all views; the gloss of each view stays.
+    auto paint = TracedPaint::create(scene.paints[part], gloss_deg, tilts[part]);
     if (!paint.ok()) return input_error("part {}: {}", scene.mesh->parts[part].name, paint.error().message);
     if (scene.layer != nullptr) paint->put_surface(*scene.layer, static_cast<int>(part));
     transport.paints_.push_back(*std::move(paint));
