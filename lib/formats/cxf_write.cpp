@@ -1,0 +1,137 @@
+#include <algorithm>
+#include <utility>
+
+#include "base/text.h"
+#include "formats/cxf.h"
+#include "formats/internal/xml_stream.h"
+
+namespace goniochrome::formats {
+
+namespace {
+
+// The illuminants that CxF3 has a word for.
+bool has_word(const std::string& illuminant) {
+  static const std::vector<std::string> kWords = {"A",    "B",    "C",    "D50",  "D55",  "D60", "D65", "D75",
+                                                  "E",    "F2",   "F3",   "F7",   "F9",   "F10", "F11", "F12",
+                                                  "9300", "TL84", "TL83", "UL30", "UL35", "UL50"};
+  return std::ranges::find(kWords, illuminant) != kWords.end();
+}
+
+}  // namespace
+
+Result<CxfWriter> CxfWriter::begin(OutputFile file, const Info& info) {
+  CxfWriter writer(std::move(file), info);
+  GONIO_TRY(
+      writer.file_.write(fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+                                     "<cc:CxF xmlns:cc=\"http://colorexchangeformat.com/CxF3-core\">\n"
+                                     "  <cc:FileInformation>\n"
+                                     "    <cc:Creator>{}</cc:Creator>\n    <cc:CreationDate>{}</cc:CreationDate>\n"
+                                     "    <cc:Description>{}</cc:Description>\n"
+                                     "  </cc:FileInformation>\n"
+                                     "  <cc:Resources>\n",
+                                     xml_escaped(plain_utf8(info.creator)), xml_escaped(plain_utf8(info.created)),
+                                     xml_escaped(plain_utf8(info.description)))));
+  return writer;
+}
+
+std::size_t CxfWriter::number_of(const Specification& specification) {
+  const auto known = std::ranges::find(specifications_, specification);
+  const auto number = static_cast<std::size_t>(known - specifications_.begin()) + 1;
+  if (known == specifications_.end()) specifications_.push_back(specification);
+  return number;
+}
+
+// `part` is the ending of the object's name where an angle has its own; the `first` of them carries class, code, gloss
+// and the names of geometries from the curve. Our tags join the parts again.
+std::string CxfWriter::object(const paint::Paint& paint, const std::vector<paint::LabReading>& rows,
+                              const std::string& part, bool first, const std::string& curve) {
+  std::string text = fmt::format(
+      "      <cc:Object ObjectType=\"Standard\" Name=\"{}\" Id=\"o{}\">\n        "
+      "<cc:CreationDate>{}</cc:CreationDate>\n"
+      "        <cc:ColorValues>\n",
+      xml_escaped(paint.name + part), ++objects_, xml_escaped(info_.created));
+  for (const paint::LabReading& row : rows)
+    text += fmt::format(
+        "          <cc:ColorCIELab "
+        "ColorSpecification=\"cs{}\"><cc:L>{}</cc:L><cc:A>{}</cc:A><cc:B>{}</cc:B></cc:ColorCIELab>\n",
+        number_of({paint.measurement->condition, paint.measurement->instrument, row.geometry}), shortest(row.lab.L),
+        shortest(row.lab.a), shortest(row.lab.b));
+  text += "        </cc:ColorValues>\n";
+
+  std::string tags;
+  const auto tag = [&](const char* name, std::string_view value) {
+    tags += fmt::format("          <cc:Tag Name=\"{}\" Value=\"{}\"/>\n", name, xml_escaped(value));
+  };
+  if (!part.empty()) tag("paint", paint.name);
+  if (first && paint.paint_class != paint::PaintClass::kUnknown)
+    tag("class", paint::paint_class_name(paint.paint_class));
+  if (first && !paint.code.empty()) tag("code", paint.code);
+  if (first && !curve.empty()) tag("curve", curve);
+  if (!tags.empty())
+    text += "        <cc:TagCollection Name=\"goniochrome\">\n" + tags + "        </cc:TagCollection>\n";
+
+  if (first && !paint.gloss.empty()) {
+    text += "        <cc:PhysicalAttributes>\n";
+    for (const paint::GlossReading& gloss : paint.gloss)
+      text += fmt::format("          <cc:Gloss Method=\"{} deg\">{}</cc:Gloss>\n", shortest(gloss.angle_deg),
+                          shortest(gloss.gloss_units));
+    text += "        </cc:PhysicalAttributes>\n";
+  }
+  return text + "      </cc:Object>\n";
+}
+
+Result<void> CxfWriter::write(const paint::Paint& paint, const std::vector<paint::Geometry>& from_curve) {
+  if (!paint.measurement || paint.measurement->rows.empty())
+    return input_error("paint \"{}\" has no readings: CxF holds readings only", paint.name);
+  GONIO_TRY(check_writable(paint));
+  for (const paint::LabReading& row : paint.measurement->rows)
+    if (row.lab.L < 0)
+      return input_error("paint \"{}\" at {}: L* is {}: CxF3 allows none below 0", paint.name,
+                         paint::geometry_name(row.geometry), shortest(row.lab.L));
+  std::string text = objects_ == 0 ? "    <cc:ObjectCollection>\n" : "", curve;
+  for (const paint::Geometry& geometry : from_curve)
+    curve += (curve.empty() ? "" : " ") + paint::geometry_name(geometry);
+  if (!info_.one_object_per_angle) {
+    text += object(paint, paint.measurement->rows, "", true, curve);
+  } else {
+    for (const paint::LabReading& row : paint.measurement->rows)
+      text += object(paint, {row}, " " + paint::geometry_name(row.geometry), &row == &paint.measurement->rows.front(),
+                     curve);
+  }
+  return file_.write(text);
+}
+
+Result<void> CxfWriter::finish() {
+  std::string text = objects_ ? "    </cc:ObjectCollection>\n    <cc:ColorSpecificationCollection>\n" : "";
+  for (const Specification& specification : specifications_) {
+    const paint::Geometry& geometry = specification.geometry;
+    const std::string& illuminant = specification.condition.illuminant;
+    text += fmt::format(
+        "      <cc:ColorSpecification Id=\"cs{}\">\n        <cc:TristimulusSpec>\n          {}\n"
+        "          <cc:Observer>{}_Degree</cc:Observer>\n          <cc:Method>unknown</cc:Method>\n"
+        "        </cc:TristimulusSpec>\n        <cc:MeasurementSpec>\n"
+        "          <cc:MeasurementType>Colorimetric_Reflectance</cc:MeasurementType>\n"
+        "          <cc:GeometryChoice>\n            <cc:MultiAngle>\n"
+        "              <cc:BRDFAngle Notation=\"{}\">\n"
+        "                <cc:IlluminationAngle>{}</cc:IlluminationAngle>\n"
+        "                <cc:Aspecular>{}</cc:Aspecular>\n",
+        number_of(specification),
+        has_word(illuminant)
+            ? fmt::format("<cc:Illuminant>{}</cc:Illuminant>", illuminant)
+            : fmt::format("<cc:Illuminant Name=\"{}\">Custom</cc:Illuminant>", xml_escaped(illuminant)),
+        specification.condition.observer_deg, paint::geometry_name(geometry), shortest(geometry.incidence_deg),
+        shortest(geometry.aspecular_deg));
+    if (geometry.out_of_plane)
+      text += fmt::format("                <cc:Azimuth>{}</cc:Azimuth>\n", shortest(geometry.azimuth_deg));
+    text += "              </cc:BRDFAngle>\n            </cc:MultiAngle>\n          </cc:GeometryChoice>\n";
+    if (!specification.instrument.empty())
+      text += fmt::format("          <cc:Device>\n            <cc:Model>{}</cc:Model>\n          </cc:Device>\n",
+                          xml_escaped(specification.instrument));
+    text += "        </cc:MeasurementSpec>\n      </cc:ColorSpecification>\n";
+  }
+  if (objects_) text += "    </cc:ColorSpecificationCollection>\n";
+  GONIO_TRY(file_.write(text + "  </cc:Resources>\n</cc:CxF>\n"));
+  return file_.commit();
+}
+
+}  // namespace goniochrome::formats
