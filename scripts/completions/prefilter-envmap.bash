@@ -9,6 +9,7 @@ _prefilter_envmap() {
     --exponents|-e) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --for|-p) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --size|-s) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --spots) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --layout|-l) COMPREPLY=($(compgen -W "env latlong openexr mip" -- "$word")); return ;;
     --tolerance) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --cache|-c) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -20,7 +21,7 @@ _prefilter_envmap() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--rotate --exposure --horizon --bad-pixels --basis --exponents --for --no-mirror --size --layout --tolerance --cache --verify --output --explain --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--rotate --exposure --horizon --bad-pixels --basis --exponents --for --no-mirror --size --spots --layout --tolerance --cache --verify --output --explain --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }
