@@ -20,6 +20,7 @@ constexpr double kLeastShare = 1e-3;     // of all light: less is no spot
 constexpr double kWidest_rad = 0.5;      // wider is no spot
 constexpr double kWidestSun_rad = 0.03;  // the air about a sun shines, and a probe spreads it
 constexpr double kLeastSun = 0.1;        // of all light
+constexpr double kMostWhite = 1e30;      // of a spot: far from what a float cannot hold
 
 double mean_of(const color::Rgb& c) {
   return (c.x + c.y + c.z) / 3;
@@ -137,7 +138,8 @@ std::vector<Spot> bright_spots(const Environment& environment, int most) {
   for (const Cluster& cluster : clusters(environment, level, whole, static_cast<std::size_t>(most))) {
     if (cluster.light < kLeastShare * whole || cluster.radius_rad() > kWidest_rad) continue;
     const Spot spot = spot_of(cluster);
-    if (spot.radius_rad > 0) spots.push_back(spot);
+    if (spot.radius_rad > 0 && std::max({spot.white.x, spot.white.y, spot.white.z}) <= kMostWhite)
+      spots.push_back(spot);
   }
   return spots;
 }
@@ -184,9 +186,11 @@ Result<std::vector<Spot>> spots_of_text(const std::string& text) {
       v[i] = *number;
     }
     const Vec3 direction{v[0], v[1], v[2]};
-    if (std::abs(length(direction) - 1) > 1e-6 || v[3] < 0 || v[4] < 0 || v[5] < 0 || !(v[6] > 0) || v[6] > kPi / 2)
-      return input_error("spot {} has no direction of length 1, light below 0, or a radius that is not in 0 to pi/2",
-                         spots.size() + 1);
+    const bool lit = std::min({v[3], v[4], v[5]}) >= 0 && std::max({v[3], v[4], v[5]}) <= kMostWhite;
+    if (std::abs(length(direction) - 1) > 1e-6 || !lit || !(v[6] > 0) || v[6] > kPi / 2)
+      return input_error(
+          "spot {} has no direction of length 1, light that is not in 0 to {:g}, or a radius that is not in 0 to pi/2",
+          spots.size() + 1, kMostWhite);
     spots.push_back({normalized(direction), {v[3], v[4], v[5]}, v[6]});
   }
   if (spots.size() > static_cast<std::size_t>(kMostSpots))

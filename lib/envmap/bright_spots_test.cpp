@@ -93,6 +93,7 @@ TEST(HardCase, ASpotOfOneTexelHasTheSizeOfTheTexel) {
     EXPECT_GT(spots[0].radius_rad, 0.4 * kDegree);
     EXPECT_LT(spots[0].radius_rad, 2 * kDegree);
     EXPECT_TRUE(std::isfinite(spots[0].white.x));
+    EXPECT_TRUE(spots_of_text(text_of_spots(spots)).ok());
   }
 }
 
@@ -142,7 +143,8 @@ TEST(BrightSpots, BadTextIsRefused) {
   EXPECT_THAT(message("0 0 1 1 1 1 0.1;"), HasSubstr("spot 2 has 1 numbers"));
   EXPECT_THAT(message("0 0 1 1 1 x 0.1"), HasSubstr("\"x\""));
   EXPECT_THAT(message("0 0 1 1 1 nan 0.1"), HasSubstr("spot 1"));
-  for (const char* text : {"0 0 2 1 1 1 0.1", "0 0 0 1 1 1 0.1", "0 0 1 -1 1 1 0.1", "0 0 1 1 1 1 0", "0 0 1 1 1 1 2"})
+  for (const char* text : {"0 0 2 1 1 1 0.1", "0 0 0 1 1 1 0.1", "0 0 1 -1 1 1 0.1", "0 0 1 1e300 1 1 0.1",
+                           "0 0 1 1 1 1 0", "0 0 1 1 1 1 2"})
     EXPECT_THAT(message(text), HasSubstr("no direction of length 1")) << text;
   std::string many = "0 0 1 1 1 1 0.1";
   for (int i = 0; i < kMostSpots; ++i) many += ";0 0 1 1 1 1 0.1";

@@ -449,10 +449,8 @@ SketchFit searched(const SketchInput& input, const SketchPixels& pixels, const S
     const std::vector<SketchCell> cells = sketch_cells(seen_samples(Seen(input), pixels));
     take_seen(cells, fit);
     take_found(found, fit);
-    // Lobes of any weight have no errors of their own.
-    const std::vector<double> none(3, 0.0), &error = found.search.error.size() < 3 ? none : found.search.error;
     const color::Rgb face = color::rgb_from_lab(fit.appearance.face, *color::white_point({}));
-    const std::string problem = face_problem(cells, face, error, fit, limits);
+    const std::string problem = face_problem(cells, face, found.search.error, fit, limits);
     if (!problem.empty()) return give_up(problem);
     take_extrapolated(cells, fit);
     take_gloss_range(search, found, fit);

@@ -393,7 +393,7 @@ EOF
       (.shift[0] - 9 | fabs < 1) and (.shift[1] + 6 | fabs < 1) and .agreement > 0.9' r.json
     [ "$(result status)" = fitted ]
     # The highlight is smeared over some pixels; the flop is not.
-    below "$(distance "$(lab 45as15 found.xml)" "50 45 20")" 2.5
+    below "$(distance "$(lab 45as15 found.xml)" "50 45 20")" 3
     below "$(distance "$(lab 45as110 found.xml)" "12 15 6")" 1
   done
   # A mask of the scan goes with it.

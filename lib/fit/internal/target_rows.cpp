@@ -18,7 +18,7 @@ constexpr double kStep_deg = 5;
 // what is between readings. With these weights left-out readings were predicted best at no loss at the others, see
 // goniochrome-theory(7), FITTING.
 constexpr double kInterpolatedImportance = 0.1;
-constexpr double kExtendedImportance = 0.005;
+constexpr double kExtendedImportance = 0.007;
 
 // The view of an in-plane geometry at 45 deg.
 double usual_view_deg(double aspecular_deg) {

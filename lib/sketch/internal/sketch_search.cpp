@@ -175,15 +175,18 @@ FoundPaint LobeSearch::find(const LobeSearch& first) const {
   const FreeLobes begun = first.free_lobes().find(), free = free_lobes().refined(begun);
   const paint::LobeFit lobes = lobes_of(basis_, free.weights, samples_.coat_index);
   const std::vector<double> three = numbers_of(lobes, kThree_deg, free.gloss_60_gu);
+  std::vector<double> apart;  // of the face, from that of a paint of few numbers
   for (const std::vector<double>& start : {appearance_of(three), three}) {
     const Way way = first.way(start);
+    if (apart.empty())
+      for (std::size_t i = 0; i < 3; ++i) apart.push_back(std::abs(three[i] - way.result.values[i]));
     if (way.result.cost > kHopelessCost * enough(begun)) continue;
     FoundPaint found{run(*way.fitter, parameters_of(way.result.values)), {}};
     if (found.search.cost > enough(free)) continue;
     found.weights = weights(*way.fitter, found.search.values);
     return found;
   }
-  return {{numbers_of(lobes, paint::kExportAngles_deg, free.gloss_60_gu), free.cost, 0, 0}, free.weights};
+  return {{numbers_of(lobes, paint::kExportAngles_deg, free.gloss_60_gu), free.cost, 0, 0, apart}, free.weights};
 }
 
 // The gloss of least cost among some, the rest held: the cost has a valley at each lobe of the basis.

@@ -34,7 +34,9 @@ class LobeSearch {
 
   // For light from everywhere, which tells each lobe. The lobes of any weight that explain the samples best; then, from
   // there, face, flop and travel, which are the answer where they explain the samples as well, or else the colors at
-  // three angles, or else those lobes. Ways are found in the samples of `first`, a part of these.
+  // three angles, or else those lobes; the errors of their first three numbers are then how far these are from those of
+  // face, flop and travel, as lobes of any weight have no errors of their own. Ways are found in the samples of
+  // `first`, a part of these.
   FoundPaint find(const LobeSearch& first) const;
 
   // For one lamp, whose glare is left out, so that wide gloss passes for flake: face, flop and travel, from that start
