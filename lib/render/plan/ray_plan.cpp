@@ -160,8 +160,9 @@ RayChoice ray_choice(const RayProbe& probe, const RayWishes& wishes) {
   choice.cost = cost(state.on);
   if (!state.named && wishes.automatic) {
     choice.most_samples = kMostUnaskedSamples;
-    if (choice.cost.samples > kMeanUnaskedSamples) {
-      choice.aim_de00 *= std::sqrt(choice.cost.samples / kMeanUnaskedSamples);
+    const double most_noise = std::max(wishes.tolerance_de00, wishes.open_de00_p95);
+    if (choice.cost.samples > kMeanUnaskedSamples && choice.aim_de00 < most_noise) {
+      choice.aim_de00 = std::min(most_noise, choice.aim_de00 * std::sqrt(choice.cost.samples / kMeanUnaskedSamples));
       choice.cost = cost(state.on);
     }
   }

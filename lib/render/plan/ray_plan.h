@@ -49,7 +49,7 @@ struct RayWishes {
 
 // The most samples of a point that are drawn for effects that nobody asked for by name. Most points get far fewer.
 constexpr int kMostUnaskedSamples = 1024;
-// And of all visible points in the mean: the noise is aimed at that comes to no more.
+// And of all visible points in the mean, where the noise is within the tolerance then.
 constexpr double kMeanUnaskedSamples = 32;
 
 struct RayChoice {
