@@ -121,7 +121,7 @@ setup() {
   prefilter-envmap -e 2,8,32 --size 8 "$TESTDATA/studio.exr" -o e.env.exr -q
   trompe-fit "$paints" --only silver_fine --mesh "$TESTDATA/speed-shape.obj" --seam Hood,Bumper_F --environment e.env.exr \
     --view-from 25,20 --view-from 0,30 --report r.json -q -o b.xml
-  jq -e '.results | .after.rms < 0.6 * .before.rms' r.json
+  jq -e '.results | .after.rms < 0.7 * .before.rms' r.json
 }
 
 @test "--picture shows flat panels before and after" {
