@@ -147,7 +147,7 @@ brdf() {
     --geometry 45as15,45as25,45as45,45as75,45as110
   [ "$status" -eq 0 ]
   [[ "$stderr" == *"interpolated between samples far apart: 45as75 across 43 deg"* ]]
-  paste -d, <(tail -n +2 <<<"$output") <(grep cayman "$GONIOCHROME_DATA/lab/measured-multiangle.csv") |
+  paste -d, <(tail -n +2 <<<"$output" | cut -d, -f1-7) <(grep cayman "$GONIOCHROME_DATA/lab/measured-multiangle.csv") |
     awk -F, '{ d = sqrt(($5-$12)^2 + ($6-$13)^2 + ($7-$14)^2); n += d <= 1.5 } END { exit n != 5 }'
 }
 
