@@ -70,7 +70,7 @@ TEST(BrightSpots, AStripIsCutIntoCompactSpots) {
     EXPECT_NEAR(spot.direction.y, 0.5, 0.05);
     light += spot.white.x;
   }
-  EXPECT_THAT(bright_spots(strip, 3), IsEmpty()) << "three are too wide to be spots";
+  EXPECT_THAT(bright_spots(strip, 1), IsEmpty()) << "one is too wide to be a spot";
   EXPECT_THAT(bright_spots(strip, 0), IsEmpty());
   // What it exceeds the threshold by is all but a few parts in a hundred.
   EXPECT_GT(light, 0.85 * irradiance(strip, {0, 0, 1}).x / kPi);
