@@ -137,9 +137,7 @@ void add_effects(cli::ToolSpec& spec, Options& o) {
           "part). The last two need shadow, and rays names all three. They are drawn at those pixels alone that can "
           "see the mesh, so that a convex shape is drawn as without them. Rays are traced wherever a mesh is given; "
           "auto,-rays traces none, which is much faster where the mesh blocks much light. Effects of rays that auto "
-          "decides to draw take at most 1024 samples of a point, and no more than some 32 of all points in the mean "
-          "where their noise is within --tolerance then; those that "
-          "are named with a plus, as in "
+          "decides to draw take at most 1024 samples of a point, and those that are named with a plus, as in "
           "auto,+rays, take as many as --tolerance needs. The effect floor is that of --floor shadow and needs "
           "shadow; it is priced where the environment is the background, and +floor asks for it as --floor shadow "
           "does. auto leaves out the effects that change too little, as --tolerance and --budget say.");

@@ -386,7 +386,8 @@ EOF
   oiiotool ruby.png --resize 752x470 --rotate 2.4 --cshift +9-6 -o scan.tif
   oiiotool scan.tif --quality 92 -o scan.jpg
   sketch-fit -q -i ruby.png -b ruby.exr -o direct.xml
-  for image in scan.tif scan.jpg; do
+  for setting in scan.tif:2.5 scan.jpg:3.5; do
+    image=${setting%:*}
     run sketch-fit -o found.xml --report r.json -i $image -b ruby.exr
     [ "$status" -eq 0 ]
     [[ $output == *"$image lies on the buffers at 2.35"* ]]
@@ -395,7 +396,7 @@ EOF
     [ "$(result status)" = fitted ]
     # Beside what the picture itself tells, the highlight is smeared over some pixels, and by JPEG once more; the rest is
     # not.
-    below "$(distance "$(lab 45as15 found.xml)" "$(lab 45as15 direct.xml)")" 3.5
+    below "$(distance "$(lab 45as15 found.xml)" "$(lab 45as15 direct.xml)")" ${setting#*:}
     for angle in 45 110; do
       below "$(distance "$(lab 45as$angle found.xml)" "$(lab 45as$angle direct.xml)")" 1
     done

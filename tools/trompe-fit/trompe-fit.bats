@@ -118,10 +118,13 @@ setup() {
 }
 
 @test "a seam in an environment is improved" {
-  prefilter-envmap -e 2,8,32 --size 8 "$TESTDATA/studio.exr" -o e.env.exr -q
-  trompe-fit "$paints" --only silver_fine --mesh "$TESTDATA/speed-shape.obj" --seam Hood,Bumper_F --environment e.env.exr \
-    --view-from 25,20 --view-from 0,30 --report r.json -q -o b.xml
-  jq -e '.results | .after.rms < 0.7 * .before.rms' r.json
+  seam="--mesh $TESTDATA/speed-shape.obj --seam Hood,Bumper_F --view-from 25,20 --view-from 0,30"
+  # A sun by itself ends at the horizons of both panels, and less of its step can be hidden.
+  for setting in 0:0.6 12:0.65; do
+    prefilter-envmap -e 2,8,32 --size 8 --spots ${setting%:*} "$TESTDATA/studio.exr" -o e.env.exr -q
+    trompe-fit "$paints" --only silver_fine $seam --environment e.env.exr --report r.json -q -o b.xml
+    jq -e ".results | .status == \"converged\" and .after.rms < ${setting#*:} * .before.rms" r.json
+  done
 }
 
 @test "--picture shows flat panels before and after" {

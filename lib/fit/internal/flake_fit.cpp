@@ -155,7 +155,7 @@ double column_norm(const math::Matrix& m, int column, int rows) {
 }
 
 // A gap up to this is none: on sample paints, where the search ended by itself, it was at most 1e-4.
-constexpr double kStationary = 1e-3;
+constexpr double kStationary = 1e-4;
 
 // How far x is from stationary: for each column of the derivative, where x may still move that way, its cosine to the
 // residual, or less where the whole residual is shorter than what is seen.

@@ -40,9 +40,8 @@ std::string reason_not_kept(const Plan& plan, const RayChoice& rays, const PlanR
                        open, rays.path_ms > 0 ? fmt::format(" in some {:.1g} s", rays.path_ms / 1000) : "");
   if (noise >= left)
     return start +
-           fmt::format(
-               "the noise of some {:.0f} samples a point is {:.2g}; --effects auto,+rays draws as many as it takes",
-               rays.cost.samples, noise);
+           fmt::format("the noise of {} samples a point is {:.2g}; --effects auto,+rays draws as many as it takes",
+                       rays.most_samples, noise);
   return start + fmt::format("the effects of rays that are left out are worth {:.2g}", left);
 }
 

@@ -126,10 +126,7 @@ const std::vector<std::string>& ray_effect_names() {
 }
 
 RayNoise ray_noise(double tolerance_de00, double open_de00_p95) {
-  const double half = kRayNoiseShare * std::max(tolerance_de00, open_de00_p95);
-  const double whole = kWholeShare * tolerance_de00;
-  const double left = std::sqrt(std::max(0.0, whole * whole - open_de00_p95 * open_de00_p95));
-  return {kRayNoiseShare * tolerance_de00, std::max(half, left)};
+  return {kRayNoiseShare * tolerance_de00, kRayNoiseShare * std::max(tolerance_de00, open_de00_p95)};
 }
 
 RayChoice no_rays(const std::string& reason, bool refused) {
@@ -158,14 +155,7 @@ RayChoice ray_choice(const RayProbe& probe, const RayWishes& wishes) {
   choice.aim_de00 = aim_of(wishes, state);
   const auto cost = [&](const RayEffects& effects) { return cost_of(probe, wishes, effects, choice.aim_de00); };
   choice.cost = cost(state.on);
-  if (!state.named && wishes.automatic) {
-    choice.most_samples = kMostUnaskedSamples;
-    const double most_noise = std::max(wishes.tolerance_de00, wishes.open_de00_p95);
-    if (choice.cost.samples > kMeanUnaskedSamples && choice.aim_de00 < most_noise) {
-      choice.aim_de00 = std::min(most_noise, choice.aim_de00 * std::sqrt(choice.cost.samples / kMeanUnaskedSamples));
-      choice.cost = cost(state.on);
-    }
-  }
+  if (!state.named && wishes.automatic) choice.most_samples = kMostUnaskedSamples;
   if (state.on.any())
     choice.noise_de00 = choice.aim_de00 * std::sqrt(std::max(1.0, choice.cost.most_samples / choice.most_samples));
   choice.left_out_de00_p95 = state.on == wanted ? 0 : probe.worth(wanted, state.on).de00_p95;

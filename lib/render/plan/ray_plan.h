@@ -18,12 +18,9 @@ namespace goniochrome::render {
 // The error of a point may be several times its standard deviation, so that this alone does not keep the whole picture
 // within the tolerance: --check-against truth tells.
 constexpr double kRayNoiseShare = 0.5;
-// The part that noise and open light may take together where nobody asked for the effects by name.
-constexpr double kWholeShare = 0.8;
 
-// The noise that is aimed at. Where nobody asked for the effects by name, it is what open light leaves of the
-// tolerance, and half of what the open light errs by where that is more: samples that lower it further would not bring
-// the picture much nearer to the truth.
+// The noise that is aimed at. Where nobody asked for the effects by name, it is also that part of what the maps err by:
+// samples that lower it further would not bring the picture much nearer to the truth.
 struct RayNoise {
   double asked_de00 = 0, unasked_de00 = 0;
 };
@@ -49,8 +46,6 @@ struct RayWishes {
 
 // The most samples of a point that are drawn for effects that nobody asked for by name. Most points get far fewer.
 constexpr int kMostUnaskedSamples = 1024;
-// And of all visible points in the mean, where the noise is within the tolerance then.
-constexpr double kMeanUnaskedSamples = 32;
 
 struct RayChoice {
   std::vector<PlanItem> items;
