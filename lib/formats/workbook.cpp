@@ -371,8 +371,8 @@ Result<ImportedPaints> WorkbookReader::finish() {
   if (unit_ != 1) remarks_.note("reflectances were read as percent", "");
   if (disagreements_ > 0)
     remarks_.note(
-        fmt::format("{} readings have a Lab that is not the color of their spectrum, by up to {:.2g} dE00: the "
-                    "Lab was taken",
+        fmt::format("the Lab was taken where it is not the color of the spectrum beside it: at {} of the readings, by "
+                    "up to {:.2g} dE00",
                     disagreements_, disagreement_de00_),
         worst_);
   if (result_.paints.empty() && result_.skipped.empty())

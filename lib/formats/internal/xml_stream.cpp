@@ -359,8 +359,11 @@ Result<void> XmlStream::State::read_chunk() {
   return {};
 }
 
-XmlStream::XmlStream(InputFile input, const char* schema, XmlHandler& handler)
-    : XmlStream(input.name(), reading(std::move(input)), schema, handler) {}
+XmlStream::XmlStream(InputFile input, const char* schema, XmlHandler& handler) {
+  std::string name = input.name();
+  state_ = std::make_unique<State>(std::move(name), reading(std::move(input)), handler);
+  state_->set_up(schema);
+}
 
 XmlStream::XmlStream(std::string name, XmlBytes input, const char* schema, XmlHandler& handler)
     : state_(std::make_unique<State>(std::move(name), std::move(input), handler)) {
