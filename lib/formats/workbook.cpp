@@ -7,33 +7,21 @@
 #include <utility>
 
 #include "base/text.h"
-#include "color/spectrum.h"
+#include "formats/internal/spectral_rows.h"
 #include "formats/internal/spreadsheet.h"
-#include "paint/spectra.h"
 
 namespace goniochrome::formats {
 
 namespace {
 
 constexpr int kNone = -1;
-constexpr std::size_t kFewestWavelengths = 5;
-constexpr double kFirst_nm = 300, kLast_nm = 1100;
 // How far Lab and spectrum of one reading may lie apart. Instruments weigh their spectra by tables for their own bands,
 // which changes the color by a few hundredths.
 constexpr double kAgrees_de00 = 0.2;
-// A table of reflectances whose largest is above this is in percent, where no Lab tells it. A metallic paint reflects
-// up to ten times what a white diffuser does.
-constexpr double kLargestFactor = 20;
-
 // Three columns of L*, a* and b* under one viewing condition.
 struct LabColumns {
   color::ViewingCondition condition;
   std::array<int, 3> at = {kNone, kNone, kNone};
-};
-
-struct WavelengthColumn {
-  double nm = 0;
-  int at = 0;
 };
 
 // What the columns below a row of headings mean.
@@ -82,15 +70,6 @@ color::ViewingCondition condition_in(std::string_view text) {
   return condition;
 }
 
-// The wavelength that a heading such as `400`, `400 nm` or `R400` names; 0 for none.
-double wavelength_in(std::string_view heading) {
-  std::string text = plain_heading(heading);
-  if (text.starts_with('r')) text.erase(0, 1);
-  if (text.ends_with("nm")) text.erase(text.size() - 2);
-  const double nm = parse_number(text).value_or(0);
-  return nm >= kFirst_nm && nm <= kLast_nm ? nm : 0;
-}
-
 // A heading such as `L*`, `a* (D65/10)` or `D65/10 b*`.
 struct LabHeading {
   std::size_t channel = 0;  // of L, a and b
@@ -116,31 +95,6 @@ std::optional<double> number_of_cell(std::string_view text) {
   if (const auto value = parse_number(text)) return value;
   return parse_number(with_decimal_point(text).value_or(""));
 }
-
-// Integrates spectra, most of which have the wavelengths and the light of the one before.
-class Meter {
- public:
-  Result<color::Lab> lab(const paint::SpectrumReading& spectrum, const color::ViewingCondition& condition,
-                         double unit) {
-    if (!meter_ || spectrum.from_nm != from_nm_ || spectrum.step_nm != step_nm_ ||
-        spectrum.factors.size() != factors_.size() || condition != condition_) {
-      from_nm_ = spectrum.from_nm, step_nm_ = spectrum.step_nm, condition_ = condition;
-      std::vector<double> nm;
-      for (std::size_t i = 0; i < spectrum.factors.size(); ++i)
-        nm.push_back(from_nm_ + step_nm_ * static_cast<double>(i));
-      GONIO_ASSIGN(meter_, color::SpectralColorimeter::make(nm, condition));
-    }
-    factors_ = spectrum.factors;
-    for (double& factor : factors_) factor *= unit;
-    return meter_->lab(factors_);
-  }
-
- private:
-  std::optional<color::SpectralColorimeter> meter_;
-  color::ViewingCondition condition_{"", 0};
-  double from_nm_ = 0, step_nm_ = 0;
-  std::vector<double> factors_;
-};
 
 class WorkbookReader {
  public:
@@ -175,7 +129,7 @@ class WorkbookReader {
   color::ViewingCondition stated_{"", 0};
   std::vector<Gathered> paints_;
   std::map<std::pair<std::string, std::string>, std::size_t> number_of_;
-  Meter meter_;
+  SpectralMeter meter_;
   double unit_ = 1;  // of the reflectances: 1, or .01 for percent
   double disagreement_de00_ = 0;
   std::size_t disagreements_ = 0;
@@ -195,7 +149,7 @@ Table WorkbookReader::table_below(const Sheet& sheet, std::size_t heading) const
     if (table.name == kNone && is_one_of(word, kNameHeadings)) table.name = cell.column;
     if (table.date == kNone && is_one_of(word, kDateHeadings)) table.date = cell.column;
     if (table.geometry == kNone && is_one_of(word, kGeometryHeadings)) table.geometry = cell.column;
-    if (const double nm = wavelength_in(cell.text); nm > 0) table.wavelengths.push_back({nm, cell.column});
+    if (const auto nm = wavelength_in(cell.text)) table.wavelengths.push_back({*nm, cell.column});
     if (const auto lab = lab_heading(cell.text)) {
       const auto open = std::ranges::find_if(table.colors, [&](const LabColumns& columns) {
         return columns.condition == lab->condition && columns.at[lab->channel] == kNone;
@@ -248,13 +202,10 @@ Result<void> WorkbookReader::read_lab(const Sheet& sheet, const SheetRow& row, c
 Result<void> WorkbookReader::read_spectrum(const Sheet& sheet, const SheetRow& row, const Table& table,
                                            const paint::Geometry& geometry, Gathered& gathered) {
   if (table.wavelengths.size() < kFewestWavelengths) return {};
+  if (const auto steps = check_steps(table.wavelengths); !steps.ok()) return error(sheet, row, steps.error().message);
   const double from_nm = table.wavelengths[0].nm, step_nm = table.wavelengths[1].nm - from_nm;
   std::vector<double> factors;
   for (const auto& [nm, column] : table.wavelengths) {
-    const double expected = from_nm + step_nm * static_cast<double>(factors.size());
-    if (!(step_nm > 0) || std::abs(nm - expected) > 1e-6)
-      return error(sheet, row,
-                   fmt::format("the column of {} nm stands where {} nm would: give equal steps", nm, expected));
     const std::string_view text = row.at(column);
     if (text.empty() && factors.empty()) return {};
     const auto value = number_of_cell(text);
@@ -316,7 +267,7 @@ double WorkbookReader::percent_or_factor() {
       const auto seen = std::ranges::find(paint.open.readings, spectrum.geometry,
                                           [](const SeenReading& reading) { return reading.reading.geometry; });
       if (seen == paint.open.readings.end()) continue;
-      const auto factor = meter_.lab(spectrum, seen->condition, 1);
+      const auto factor = meter_.lab(spectrum, seen->condition);
       const auto percent = meter_.lab(spectrum, seen->condition, 0.01);
       if (!factor.ok() || !percent.ok()) continue;
       as_factor += std::abs(factor->L - seen->reading.lab.L);
@@ -337,7 +288,7 @@ Result<void> WorkbookReader::integrate(Gathered& paint) {
     paint::SpectrumReading& spectrum = open.spectra[i];
     for (double& factor : spectrum.factors) factor *= unit_;
     for (const color::ViewingCondition& condition : conditions) {
-      const auto lab = meter_.lab(spectrum, condition, 1);
+      const auto lab = meter_.lab(spectrum, condition);
       if (!lab.ok()) {
         remarks_.note("spectra are not integrated: " + lab.error().message, paint.places[i]);
         continue;
