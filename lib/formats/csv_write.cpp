@@ -56,7 +56,7 @@ Result<void> CsvPaintWriter::write(const paint::Paint& paint, const std::vector<
   if (!paint.measurement || paint.measurement->rows.empty())
     return input_error("paint \"{}\" has no Lab values: a table cannot hold it", shown(paint.name));
   GONIO_TRY(check_writable(paint));
-  const auto& [condition, instrument, rows, spectra] = *paint.measurement;
+  const auto& [condition, instrument, rows, spectra, textures] = *paint.measurement;
   const std::string viewing = fmt::format(",{},{}", csv_cell(condition.illuminant), condition.observer_deg);
   const std::string others = layout_.all_columns ? other_cells(paint) : "";
   std::string text;

@@ -24,13 +24,22 @@ struct LabColumns {
   std::array<int, 3> at = {kNone, kNone, kNone};
 };
 
+// A column of sparkle, graininess or the like.
+struct TextureColumn {
+  std::string quantity, version;
+  int at = 0;
+};
+
 // What the columns below a row of headings mean.
 struct Table {
   int name = kNone, date = kNone, geometry = kNone;
   std::vector<LabColumns> colors;
   std::vector<WavelengthColumn> wavelengths;
+  std::vector<TextureColumn> textures;
 
-  bool has_values() const { return !colors.empty() || wavelengths.size() >= kFewestWavelengths; }
+  bool has_values() const {
+    return !colors.empty() || wavelengths.size() >= kFewestWavelengths || (geometry != kNone && !textures.empty());
+  }
 };
 
 // A heading in lower case without blanks, asterisks and colons, up to a bracket.
@@ -90,6 +99,20 @@ std::optional<LabHeading> lab_heading(std::string_view heading) {
   return LabHeading{channel, condition_in(before)};
 }
 
+// A heading that names a texture, and its version where it stands in brackets: `Sparkle Grade (v2)`.
+std::optional<TextureColumn> texture_heading(std::string_view heading, int column) {
+  static constexpr std::array<std::string_view, 6> kWords = {"sparkle", "grain",    "coarse",
+                                                             "glitz",   "rnigkeit", "texture"};
+  const std::string word = lower(heading);
+  if (std::ranges::none_of(kWords, [&](std::string_view known) { return word.find(known) != std::string::npos; }))
+    return std::nullopt;
+  const auto open = heading.find('('), close = heading.find(')');
+  TextureColumn texture{std::string(trimmed(heading.substr(0, open))), "", column};
+  if (open != std::string_view::npos && close != std::string_view::npos && close > open)
+    texture.version = trimmed(heading.substr(open + 1, close - open - 1));
+  return texture.quantity.empty() ? std::nullopt : std::optional(texture);
+}
+
 // The number that a cell holds, also with a decimal comma.
 std::optional<double> number_of_cell(std::string_view text) {
   if (const auto value = parse_number(text)) return value;
@@ -119,6 +142,8 @@ class WorkbookReader {
                         OpenPaint& open);
   Result<void> read_spectrum(const Sheet& sheet, const SheetRow& row, const Table& table,
                              const paint::Geometry& geometry, Gathered& gathered);
+  Result<void> read_textures(const Sheet& sheet, const SheetRow& row, const Table& table, std::string_view geometry,
+                             OpenPaint& open);
   Gathered& gathered(const std::string& name, const std::string& date);
   double percent_or_factor();
   Result<void> integrate(Gathered& paint);
@@ -150,6 +175,7 @@ Table WorkbookReader::table_below(const Sheet& sheet, std::size_t heading) const
     if (table.date == kNone && is_one_of(word, kDateHeadings)) table.date = cell.column;
     if (table.geometry == kNone && is_one_of(word, kGeometryHeadings)) table.geometry = cell.column;
     if (const auto nm = wavelength_in(cell.text)) table.wavelengths.push_back({*nm, cell.column});
+    if (auto texture = texture_heading(cell.text, cell.column)) table.textures.push_back(std::move(*texture));
     if (const auto lab = lab_heading(cell.text)) {
       const auto open = std::ranges::find_if(table.colors, [&](const LabColumns& columns) {
         return columns.condition == lab->condition && columns.at[lab->channel] == kNone;
@@ -218,15 +244,37 @@ Result<void> WorkbookReader::read_spectrum(const Sheet& sheet, const SheetRow& r
   return {};
 }
 
+Result<void> WorkbookReader::read_textures(const Sheet& sheet, const SheetRow& row, const Table& table,
+                                           std::string_view geometry, OpenPaint& open) {
+  for (const TextureColumn& column : table.textures) {
+    const std::string_view text = row.at(column.at);
+    if (text.empty()) continue;
+    const auto value = number_of_cell(text);
+    if (!value)
+      return error(sheet, row, fmt::format("{} is \"{}\": write a number", shown(column.quantity), shown(text)));
+    const auto same = [&](const paint::TextureReading& other) {
+      return other.quantity == column.quantity && other.geometry == geometry && other.version == column.version;
+    };
+    if (std::ranges::any_of(open.textures, same))
+      remarks_.note("several values of one texture: the first was taken",
+                    fmt::format("{} of {}", column.quantity, open.paint.name));
+    else
+      open.textures.push_back({column.quantity, std::string(geometry), column.version, *value});
+  }
+  return {};
+}
+
 Result<void> WorkbookReader::read_row(const Sheet& sheet, const SheetRow& row, const Table& table) {
   const std::string name(table.name == kNone ? stated_name_ : row.at(table.name));
   const std::string_view geometry_text = table.geometry == kNone ? std::string_view() : row.at(table.geometry);
   if (name.empty() && geometry_text.empty()) return {};  // a remark, a sum
   if (name.empty()) return error(sheet, row, "has no name of a sample: give it one");
   if (geometry_text.empty()) return error(sheet, row, fmt::format("\"{}\" has no geometry: write 45as15", shown(name)));
+  Gathered& paint = gathered(name, std::string(table.date == kNone ? "" : row.at(table.date)));
+  GONIO_TRY(read_textures(sheet, row, table, geometry_text, paint.open));
+  if (table.colors.empty() && table.wavelengths.empty()) return {};  // textures have geometries of their own
   const auto geometry = paint::parse_geometry(geometry_text);
   if (!geometry.ok()) return error(sheet, row, geometry.error().message);
-  Gathered& paint = gathered(name, std::string(table.date == kNone ? "" : row.at(table.date)));
   GONIO_TRY(read_lab(sheet, row, table, *geometry, paint.open));
   return read_spectrum(sheet, row, table, *geometry, paint);
 }

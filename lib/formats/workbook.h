@@ -14,8 +14,9 @@ namespace goniochrome::formats {
 bool looks_workbook(std::string_view head);
 
 // Reads every paint, which is a name and, where there is one, a date. Readings of one paint may stand on several
-// sheets. Where a geometry has a spectrum and no Lab, the Lab is integrated from it. Where it has both and they
-// disagree, the Lab is taken and a remark tells by how much. Errors name file, sheet and row.
+// sheets. Where a geometry has a spectrum and no Lab, the Lab is integrated from it. Values of texture are kept as they
+// stand. Where it has both and they disagree, the Lab is taken and a remark tells by how much. Errors name file, sheet
+// and row.
 Result<ImportedPaints> read_workbook(InputFile input, const ImportOptions& options);
 
 }  // namespace goniochrome::formats

@@ -111,6 +111,22 @@ TEST_F(Workbook, ReadsTheLayoutOfAnInstrument) {
   EXPECT_EQ(paints.paints[1].measurement->rows[0].lab, (color::Lab{20, 1, -30}));
 }
 
+TEST_F(Workbook, KeepsTexturesAsTheyStand) {
+  const auto paints = good_workbook(
+      parts_of({{"Color Data", data({kHeadings, {"red", "1", "45as15", "41.5", "-1.25", "3"}})},
+                {"Texture Data", data({{"Name", "Date/Time", "Geometry", "Sparkle Grade (v2)", "Graininess"},
+                                       {"red", "1", "15as45", "3.5", ""},
+                                       {"red", "1", "15d", "", "7"}})}}));
+  EXPECT_THAT(paints.warnings, IsEmpty());
+  const std::vector<paint::TextureReading>& textures = paints.paints.at(0).measurement->textures;
+  ASSERT_EQ(textures.size(), 2u);
+  EXPECT_EQ(textures[0].quantity, "Sparkle Grade");
+  EXPECT_EQ(textures[0].version, "v2");
+  EXPECT_EQ(textures[0].geometry, "15as45");
+  EXPECT_EQ(textures[1].geometry, "15d");
+  EXPECT_EQ(textures[1].value, 7);
+}
+
 // Columns in another order, a comma for the point in cells that are texts, other words, and a condition above the
 // table.
 TEST_F(Workbook, FindsColumnsByWhatTheyHold) {
