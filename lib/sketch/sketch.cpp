@@ -80,6 +80,13 @@ void take_found(const FoundPaint& found, SketchFit& fit) {
   fit.condition = found.search.condition;
 }
 
+// Whether a paint of few numbers explains the picture to rounding. It is then the paint that was drawn, and its lobes
+// are how far these can follow it.
+bool is_exact(const FoundPaint& found) {
+  constexpr double kExactCost = 1e-4;  // RMS 0.01 dE
+  return found.search.cost <= kExactCost;
+}
+
 // What the buffers and the picture have at each pixel, relative to the light.
 class Seen {
  public:
@@ -378,7 +385,7 @@ SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, con
   take_extrapolated(cells, fit);
   if (as_good) {
     take_shown(
-        basis, found.weights, coat, [&](double angle) { return is_seen(cells, angle); }, fit);
+        basis, found.weights, coat, [&](double angle) { return !is_exact(found) && is_seen(cells, angle); }, fit);
     const std::vector<FreeLobes> others = first.with_other_gloss(found);
     take_open_by_gloss(basis, others.front(), others, coat, fit);
   }
@@ -494,7 +501,10 @@ SketchFit searched(const SketchInput& input, const SketchPixels& pixels, const S
   weights = fit.weights = found.weights;
   take_shown(
       light.basis, weights, light.coat_index,
-      [&](double angle) { return std::ranges::find(fit.extrapolated_deg, angle) == fit.extrapolated_deg.end(); }, fit);
+      [&](double angle) {
+        return !is_exact(found) && std::ranges::find(fit.extrapolated_deg, angle) == fit.extrapolated_deg.end();
+      },
+      fit);
   const std::vector<FreeLobes> others = first.with_other_gloss(found);
   take_open_by_gloss(light.basis, others.front(), others, light.coat_index, fit);
   if (lamps != nullptr) take_thinly_seen(trust_pixels(input, pixels, difference), fit);

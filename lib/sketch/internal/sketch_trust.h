@@ -12,7 +12,8 @@ namespace goniochrome::sketch {
 
 // Reads the rows off the lobes that were found where they are told (is_told, by the aspecular angle) and differ from
 // the rows of face, flop and travel: the picture shows the lobes, which a curve of few numbers misses where the paint
-// does not follow one. Adds the rows of export angles that the paint found has no reading for.
+// does not follow one. Where such a paint explains the picture to rounding, no angle is to be told. Adds the rows of
+// export angles that the paint found has no reading for.
 void take_shown(const formats::Basis& basis, const std::vector<color::Rgb>& weights, double coat_index,
                 const std::function<bool(double angle_deg)>& is_told, SketchFit& fit);
 
