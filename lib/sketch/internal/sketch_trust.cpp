@@ -13,7 +13,7 @@ namespace goniochrome::sketch {
 
 namespace {
 
-constexpr double kApart_de00 = 0.3;      // of rows by two models, from which it matters which of them is believed
+constexpr double kApart_de00 = 1;        // of rows by two models; lobes fitted to a designed curve miss it by less
 constexpr double kOpen_de00 = 1;         // of a color, from which it is told
 constexpr double kReach_deg = 2;         // about an angle, for the pixels that show it
 constexpr double kExplained_de76 = 2;    // of a pixel that shows the paint found
