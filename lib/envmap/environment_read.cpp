@@ -15,6 +15,12 @@ namespace {
 using BadPixels = Environment::BadPixels;
 using Counts = Environment::Counts;
 
+// Inks on paper reflect light and send none, so that no environment is printed.
+Result<void> check_inks(const image::ImagePart& part, const std::string& name) {
+  if (const std::string problem = image::inks_problem(part, name); !problem.empty()) return input_error("{}", problem);
+  return {};
+}
+
 // Finds texels that are not finite or are negative in the first three channels, as stored. Error: the first by name.
 Result<Counts> checked(image::Image& image, BadPixels bad_pixels, const std::string& name) {
   Counts counts;
@@ -111,6 +117,7 @@ class EnvironmentReader {
   }
 
   static Result<Environment> from_part(image::ImagePart part, BadPixels bad_pixels, const std::string& name) {
+    GONIO_TRY(check_inks(part, name));
     GONIO_ASSIGN(Counts counts, checked(part.image, bad_pixels, name));
     const std::string envmap = envmap_attribute(part);
     GONIO_ASSIGN(image::Image rgb, image::working_space_rgb(std::move(part), name));
@@ -174,6 +181,7 @@ Result<Environment> Environment::read_faces(const std::vector<std::string>& path
   for (int face = 0; face < 6; ++face) {
     const std::string& path = paths[face];
     GONIO_ASSIGN(image::ImagePart part, image::read_image(path));
+    GONIO_TRY(check_inks(part, path));
     GONIO_ASSIGN(const Counts bad, checked(part.image, bad_pixels, path));
     GONIO_ASSIGN(const image::Image rgb, image::working_space_rgb(std::move(part), path));
     const int n = rgb.width;

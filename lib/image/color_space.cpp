@@ -147,4 +147,10 @@ Result<Image> working_space_rgb(ImagePart part, const std::string& name) {
   return to;
 }
 
+std::string inks_problem(const ImagePart& part, const std::string& name) {
+  if (!part.attributes.contains("goniochrome:inks")) return "";
+  return fmt::format("{} is CMYK, and its inks were taken for RGB without regard to its profile: convert it to RGB",
+                     name);
+}
+
 }  // namespace goniochrome::image

@@ -73,7 +73,7 @@ Result<Module> loaded_module() {
 
 // A picture on its way from the child process: numbers and texts, one after the other, and then the pixels.
 struct Numbers {
-  std::int32_t width, height, channels, is_integer, has_chromaticities;
+  std::int32_t width, height, channels, is_integer, has_chromaticities, is_inks;
   std::array<float, 8> chromaticities;
 };
 
@@ -91,7 +91,13 @@ struct Decoded {
 void take(void* context, const GoniochromeOiioImage* image) {
   auto& decoded = *static_cast<Decoded*>(context);
   ChildOutput& output = decoded.output;
-  Numbers numbers{image->width, image->height, image->channels, image->is_integer, image->chromaticities ? 1 : 0, {}};
+  Numbers numbers{image->width,
+                  image->height,
+                  image->channels,
+                  image->is_integer,
+                  image->chromaticities ? 1 : 0,
+                  image->is_inks,
+                  {}};
   if (image->chromaticities) std::copy_n(image->chromaticities, 8, numbers.chromaticities.begin());
   output.write(&numbers, sizeof numbers);
   for (const char* text : {image->color_space, image->interop_id, image->envmap}) put_text(output, text);
@@ -149,6 +155,7 @@ std::optional<ImagePart> unpacked(std::string_view bytes) {
   for (std::string& name : part.image.channel_names)
     if (!parcel.take_text(name)) return std::nullopt;
   part.attributes["goniochrome:integer"] = static_cast<int>(numbers.is_integer);
+  if (numbers.is_inks != 0) part.attributes["goniochrome:inks"] = 1;
   if (numbers.has_chromaticities != 0)
     part.attributes["chromaticities"] =
         std::vector<float>(numbers.chromaticities.begin(), numbers.chromaticities.end());

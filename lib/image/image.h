@@ -67,6 +67,7 @@ enum class Inks { kAsRgb, kKept };
 // The first part of an image, as it is stored. Its content tells the format, not its name; others are refused.
 // `attributes` has `oiio:ColorSpace`, `chromaticities`, `colorInteropID`, `ICCProfile` and `envmap` ("latlong" or
 // "cube") where the file has them, and `goniochrome:integer`, which is 1 where it holds whole numbers; these are 0..1.
+// `goniochrome:inks` is there where the file is CMYK.
 Result<ImagePart> read_image(const std::string& path, Inks inks = Inks::kAsRgb);
 
 // Writes display-referred values 0..1, rounded and clamped, as a PNG of 8 bits and RGB, with text entries for

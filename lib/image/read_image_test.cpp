@@ -11,6 +11,7 @@
 #include <jpeglib.h>
 
 #include "base/file.h"
+#include "image/color_space.h"
 #include "image/image.h"
 
 namespace goniochrome::image {
@@ -85,6 +86,8 @@ TEST_F(CmykJpeg, WhoDoesNotAskForInksGetsRgb) {
   const auto part = read(cmyk_jpeg(true, JCS_CMYK), Inks::kAsRgb);
   ASSERT_TRUE(part.ok()) << part.error().message;
   EXPECT_EQ(part->image.channel_names, (std::vector<std::string>{"R", "G", "B"}));
+  EXPECT_EQ(inks_problem(*part, "car.jpg"),
+            "car.jpg is CMYK, and its inks were taken for RGB without regard to its profile: convert it to RGB");
 }
 
 TEST_F(CmykJpeg, ACutFileIsAnError) {

@@ -14,6 +14,7 @@
 #include "sketch/internal/sketch_curve.h"
 #include "sketch/internal/sketch_gloss.h"
 #include "sketch/internal/sketch_search.h"
+#include "sketch/internal/sketch_trust.h"
 
 namespace goniochrome::sketch {
 
@@ -24,6 +25,7 @@ constexpr std::size_t kFewestCells = 8, kChunk = 8192;
 constexpr double kFace_deg = 15;                              // the least of the export angles
 constexpr double kReach_deg = 2;                              // an angle this close to one seen counts as seen
 constexpr std::size_t kSearchCells = 700, kFirstCells = 400;  // that the answer and the way to it look at
+constexpr double kTrustTo_deg = 113;                          // beyond it, no pixel is asked whether it shows a row
 constexpr double kSameCost = 1.05, kSameCostBy = 0.005;  // costs of two values of gloss that the pixels cannot tell
 
 constexpr std::size_t kMostPixels = 6000;   // of an environment's picture, looked at for the answer; more change it by
@@ -63,6 +65,7 @@ void fall_back(const color::Rgb& color, const std::string& reason, SketchFit& fi
   fit.appearance = {lab, lab, 60, std::nullopt};
   fit.rows = paint::rows_of(fit.appearance);
   fit.extrapolated_deg.clear();
+  fit.unsure.clear();
 }
 
 // Rows, face, flop, travel, gloss and condition of a search.
@@ -75,6 +78,13 @@ void take_found(const FoundPaint& found, SketchFit& fit) {
   fit.gloss_60_gu = paint.gloss.front().gloss_units;
   fit.gloss_from = "search";
   fit.condition = found.search.condition;
+}
+
+// Whether a paint of few numbers explains the picture to rounding. It is then the paint that was drawn, and its lobes
+// are how far these can follow it.
+bool is_exact(const FoundPaint& found) {
+  constexpr double kExactCost = 1e-4;  // RMS 0.01 dE
+  return found.search.cost <= kExactCost;
 }
 
 // What the buffers and the picture have at each pixel, relative to the light.
@@ -126,10 +136,9 @@ double luminance(const std::array<float, 3>& rgb) {
   return color::xyz_d65_from_rgb({rgb[0], rgb[1], rgb[2]}).Y;
 }
 
-// What the pixels within 15 deg of specular say of gloss.
+// What the pixels within 15 deg of specular say of gloss; both are empty where they say nothing.
 struct Highlight {
-  std::optional<double> by_shape;
-  double by_contrast = 0;
+  std::optional<double> by_shape, by_contrast;
 };
 
 Highlight highlight_of(const SketchInput& input, const SketchPixels& pixels, const Seen& seen,
@@ -142,33 +151,41 @@ Highlight highlight_of(const SketchInput& input, const SketchPixels& pixels, con
     const SketchSample s = seen.at(place);
     if (s.aspecular_deg >= kContrastRegion_deg) return;
     const double y = luminance(s.seen);
-    brightness.push_back(display::srgb_signal(y));
+    const color::Rgb matt = static_cast<double>(s.cos_i) * curve.reflectance(s.aspecular_deg);
+    const double matt_y = std::max(0.0, color::xyz_d65_from_rgb(as_displayed(matt, input)).Y);
+    brightness.push_back(display::srgb_signal(y) - display::srgb_signal(matt_y));
     const auto shifted = static_cast<std::size_t>(static_cast<int>(place) + input.shift_y * width + input.shift_x);
     if (input.edited->state[shifted] == Picture::kClipped) {
       ++clipped;
       return;
     }
-    const color::Rgb matt = static_cast<double>(s.cos_i) * curve.reflectance(s.aspecular_deg);
     highlight.push_back({s.aspecular_deg, y - color::xyz_d65_from_rgb(matt).Y});
   };
   for (const std::uint32_t place : pixels.glare) look(place);
   for (const std::uint32_t place : pixels.used) look(place);
   Highlight found;
   if (clipped == 0) found.by_shape = highlight_gloss(highlight);
-  found.by_contrast = contrast_gloss(brightness);
+  constexpr double kLeastContrast_gu = 5;  // less is what the curve misses
+  const double contrast = contrast_gloss(brightness);
+  if (clipped > 0 && contrast >= kLeastContrast_gu) found.by_contrast = contrast;
   return found;
 }
 
 // Takes the highlight's gloss, by shape or else by contrast. Where there is `allows`, it says whether the pixels
 // farther from specular, which show the flanks of wide lobes, agree; where they do not, the gloss of the search stays.
+// Where no highlight is seen, the gloss is undetermined: a mirror image of a point lights no pixel.
 void take_gloss(const Highlight& highlight, const std::function<bool(double)>& allows, SketchFit& fit) {
   const auto take = [&](double gloss, const char* from) {
     if (allows && !allows(gloss)) return false;
     fit.gloss_60_gu = gloss, fit.gloss_from = from;
     return true;
   };
+  if (!highlight.by_shape && !highlight.by_contrast) {
+    fit.gloss_from = "undetermined", fit.gloss_low_gu = 0, fit.gloss_high_gu = 100;
+    return;
+  }
   if (highlight.by_shape && take(*highlight.by_shape, "highlight")) return;
-  take(highlight.by_contrast, "contrast");
+  if (highlight.by_contrast) take(*highlight.by_contrast, "contrast");
 }
 
 // The same cells as light on lobes: about `most` of them, of all angles and cosines alike.
@@ -309,10 +326,11 @@ void take_seen(const std::vector<SketchCell>& cells, SketchFit& fit) {
   if (!cells.empty()) fit.seen_from_deg = cells.front().aspecular_deg, fit.seen_to_deg = cells.back().aspecular_deg;
 }
 
-// Which of the rows that were found no pixel shows.
+// Which of the export angles no pixel shows.
 void take_extrapolated(const std::vector<SketchCell>& cells, SketchFit& fit) {
-  for (const paint::LabReading& row : fit.rows)
-    if (!is_seen(cells, row.geometry.aspecular_deg)) fit.extrapolated_deg.push_back(row.geometry.aspecular_deg);
+  fit.extrapolated_deg.clear();
+  for (const double angle : paint::kExportAngles_deg)
+    if (!is_seen(cells, angle)) fit.extrapolated_deg.push_back(angle);
 }
 
 }  // namespace
@@ -328,17 +346,13 @@ SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, con
 
   // How the curve that was found is judged, and what is answered where none will do.
   SketchCurve curve;
-  const auto judge = [&] {
-    judge_sketch(
-        samples.size(), with_differences,
-        [&](std::size_t i) {
-          const SketchSample& s = samples[i];
-          const color::Rgb shown =
-              static_cast<double>(s.cos_i) * curve.reflectance(s.aspecular_deg) + curve.gloss(s.aspecular_deg);
-          return color::delta_e_76(paint_lab({s.seen[0], s.seen[1], s.seen[2]}), paint_lab(as_displayed(shown, input)));
-        },
-        fit);
+  const auto difference = [&](std::size_t i) {
+    const SketchSample& s = samples[i];
+    const color::Rgb shown =
+        static_cast<double>(s.cos_i) * curve.reflectance(s.aspecular_deg) + curve.gloss(s.aspecular_deg);
+    return color::delta_e_76(paint_lab({s.seen[0], s.seen[1], s.seen[2]}), paint_lab(as_displayed(shown, input)));
   };
+  const auto judge = [&] { judge_sketch(samples.size(), with_differences, difference, fit); };
   const auto give_up = [&](const std::string& problem) {
     curve = {}, curve.diffuse = mean_diffuse(cells);
     fall_back(curve.diffuse, problem, fit);
@@ -369,6 +383,16 @@ SketchFit sketch_point(const SketchInput& input, const SketchPixels& pixels, con
   if (as_good) take_found(found, fit);
   fit.condition = quadratic.condition;
   take_extrapolated(cells, fit);
+  if (as_good) {
+    take_shown(
+        basis, found.weights, coat, [&](double angle) { return !is_exact(found) && is_seen(cells, angle); }, fit);
+    const std::vector<FreeLobes> others = first.with_other_gloss(found);
+    take_open_by_gloss(basis, others.front(), others, coat, fit);
+  }
+  std::vector<TrustPixel> shown;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    if (samples[i].aspecular_deg < kTrustTo_deg) shown.push_back({samples[i].aspecular_deg, difference(i)});
+  take_thinly_seen(shown, fit);
   const auto allows = [&](double gloss) {
     return search.cost_with_gloss(found, gloss) <= kSameCost * found.search.cost + kSameCostBy;
   };
@@ -415,6 +439,25 @@ void take_gloss_range(const LobeSearch& search, const FoundPaint& found, SketchF
   if (fit.gloss_high_gu - fit.gloss_low_gu > kOpen_gu) fit.gloss_from = "undetermined";
 }
 
+// Some pixels about each export angle, and how far they are from the paint found.
+std::vector<TrustPixel> trust_pixels(const SketchInput& input, const SketchPixels& pixels,
+                                     const std::function<double(std::size_t)>& difference) {
+  constexpr std::size_t kMostNear = 300;
+  const image::Image& image = input.buffers->image;
+  const int aspecular = *input.buffers->channel("aspecular");
+  std::vector<TrustPixel> shown;
+  for (const double angle_deg : paint::kExportAngles_deg) {
+    std::vector<std::size_t> near;
+    for (std::size_t i = 0; i < pixels.used.size(); ++i) {
+      const float at = image.data[static_cast<std::size_t>(pixels.used[i]) * image.channels + aspecular];
+      if (std::abs(at - angle_deg) <= kReach_deg) near.push_back(i);
+    }
+    const std::size_t step = std::max<std::size_t>(1, near.size() / kMostNear);
+    for (std::size_t i = 0; i < near.size(); i += step) shown.push_back({angle_deg, difference(near[i])});
+  }
+  return shown;
+}
+
 SketchFit searched(const SketchInput& input, const SketchPixels& pixels, const SketchLight& light,
                    const SketchLimits& limits, bool with_differences, const Looked* lamps) {
   const SearchFitters fitters(light.basis, light.coat_index);
@@ -422,17 +465,15 @@ SketchFit searched(const SketchInput& input, const SketchPixels& pixels, const S
                                                     : samples_of(input, pixels.used, light, kMostPixels));
   SketchFit fit;
   std::vector<color::Rgb> weights(search_columns(light.basis));
-  const auto judge = [&] {
-    std::vector<Vec3> columns(weights.size());
-    const double scale = 1 / input.buffers->white_luminance;
-    const auto difference = [&](std::size_t i) {
-      light.shade(pixels.used[i], columns.data());
-      const color::Rgb seen = scale * edited_light(input, pixels.used[i]);
-      return color::delta_e_76(paint_lab(seen),
-                               paint_lab(as_displayed(shown_light(columns.data(), weights, light.reflection), input)));
-    };
-    judge_sketch(pixels.used.size(), with_differences, difference, fit);
+  std::vector<Vec3> columns(weights.size());
+  const double scale = 1 / input.buffers->white_luminance;
+  const auto difference = [&](std::size_t i) {
+    light.shade(pixels.used[i], columns.data());
+    const color::Rgb seen = scale * edited_light(input, pixels.used[i]);
+    return color::delta_e_76(paint_lab(seen),
+                             paint_lab(as_displayed(shown_light(columns.data(), weights, light.reflection), input)));
   };
+  const auto judge = [&] { judge_sketch(pixels.used.size(), with_differences, difference, fit); };
   const auto give_up = [&](const std::string& reason) {
     const color::Rgb matt = search.matt();
     fall_back(matt, reason, fit);
@@ -458,6 +499,15 @@ SketchFit searched(const SketchInput& input, const SketchPixels& pixels, const S
     take_found(found, fit);
   }
   weights = fit.weights = found.weights;
+  take_shown(
+      light.basis, weights, light.coat_index,
+      [&](double angle) {
+        return !is_exact(found) && std::ranges::find(fit.extrapolated_deg, angle) == fit.extrapolated_deg.end();
+      },
+      fit);
+  const std::vector<FreeLobes> others = first.with_other_gloss(found);
+  take_open_by_gloss(light.basis, others.front(), others, light.coat_index, fit);
+  if (lamps != nullptr) take_thinly_seen(trust_pixels(input, pixels, difference), fit);
   judge();
   if (fit.median_de76 > limits.median_de76) return give_up(poor_match(fit));
   return fit;

@@ -27,6 +27,13 @@ struct SketchLimits {
   double face_error_de76 = 50;
 };
 
+// A color that the picture leaves open.
+struct UnsureColor {
+  double angle_deg = 0;
+  std::optional<double> de00;  // how far the color may be off, where that is known
+  std::string reason;
+};
+
 struct SketchFit {
   std::string status = "fitted";  // or "diffuse_fallback"
   std::string reason;             // for the fallback
@@ -34,9 +41,11 @@ struct SketchFit {
   paint::Appearance appearance;
   std::vector<paint::LabReading> rows;   // at the export angles
   std::vector<double> extrapolated_deg;  // angles of those rows that no pixel shows
+  std::vector<UnsureColor> unsure;       // of the other rows
   double gloss_60_gu = 0;
   std::string gloss_from;  // "highlight", "contrast" or "search"; "undetermined" where the pixels cannot tell it
-  // The readings that explain the pixels as well, of a search that looked; else both are 0.
+  // The readings that explain the pixels as well, where they were looked for or nothing tells the gloss; else both are
+  // 0.
   double gloss_low_gu = 0, gloss_high_gu = 0;
   double condition = 0;
   double rms_de76 = 0, median_de76 = 0;  // edited picture against the paint found, relative to white
@@ -78,6 +87,10 @@ SketchFit sketch_lamps(const SketchInput& input, const SketchPixels& pixels, con
 
 // The paint found as it is written to a file: rows, face, flop, travel and gloss. A fallback is a solid paint.
 paint::Paint sketch_paint(const SketchFit& fit, const std::string& name);
+
+// Tells in fit.unsure the angles at which lobes are missing that the picture was drawn without (`left_out`, by
+// render-osmesa's names of effects).
+void take_left_out(const std::vector<std::string>& left_out, SketchFit& fit);
 
 // Whether a paint of weights >= 0 can have a color within that distance of this reflectance factor.
 bool is_paint_color(const color::Rgb& rgb, double within_de76);

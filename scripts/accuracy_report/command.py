@@ -24,6 +24,7 @@ STUDIES = {
     "edges": "edges: few samples in a pixel against hundreds",
     "scenes": "ten scenes: what the plan leaves out, and what it says that each effect is worth",
     "inverse": "paints that are searched for: sketches by their size, and panels that hide a misalignment",
+    "sketches": "round trips of sketch-fit: paints, meshes, sizes and lights, and whether each error has a warning",
     "search": "search: library size, tree and scan against brute force",
     "growth": "growth of times with probes, maps, paints, pixels and lights, and where it is steepest",
     "paths": "paths: error against time for samples, engines, effects and bounces, and growth with triangles, pixels and lights",

@@ -15,13 +15,14 @@ _prefilter_envmap() {
     --cache|-c) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --verify|-v) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --picture) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --seed) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --report) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --threads) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--rotate --exposure --horizon --bad-pixels --basis --exponents --for --no-mirror --size --spots --layout --tolerance --cache --verify --output --explain --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--rotate --exposure --horizon --bad-pixels --basis --exponents --for --no-mirror --size --spots --layout --tolerance --cache --verify --output --picture --explain --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

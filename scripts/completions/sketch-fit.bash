@@ -14,6 +14,7 @@ _sketch_fit() {
     --pixels) COMPREPLY=($(compgen -W "auto changed all" -- "$word")); return ;;
     --glare) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --max-de) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --start) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --name) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --residual) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -22,7 +23,7 @@ _sketch_fit() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--image --buffers --view --exposure --shift --register --env --basis --mask --part --pixels --glare --max-de --name --residual --output --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--image --buffers --view --exposure --shift --register --env --basis --mask --part --pixels --glare --max-de --start --name --residual --output --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

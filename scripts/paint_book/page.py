@@ -8,7 +8,7 @@ import pathlib
 import re
 
 from paint_book import library
-from paint_book.colors import srgb, strip
+from paint_book.colors import gloss_border, srgb, strip
 from paint_book.plot import plot
 
 HERE = pathlib.Path(__file__).parent
@@ -147,7 +147,7 @@ def tile(index, paint, picture, size):
     encoded = base64.b64encode(picture).decode()
     return (f'<li data-paint="{index}"><button type="button" class="tile" aria-haspopup="dialog">'
             f'<img alt="" width="{size[0]}" height="{size[1]}" src="data:image/png;base64,{encoded}">'
-            f'<span class="strip" style="background:{strip(paint)}"></span>'
+            f'<span class="strip" style="background:{strip(paint)};border:{gloss_border(paint)}"></span>'
             f'<span class="label">{text(paint.name)}<small>{text(kind)}</small></span></button></li>')
 
 
@@ -175,7 +175,7 @@ def card(index, paint, size):
     notes = "".join(f'<p class="hint">Note: {text(flag)}.</p>' for flag in paint.flags)
     return (f'<template id="card-{index}"><div class="sheet"><h2 id="card-name">{text(paint.name)}<small>{text(heading)}</small></h2>'
             f'<div><img alt="{text(paint.name)} on the mesh" width="{size[0]}" height="{size[1]}">'
-            f'<span class="strip" style="background:{strip(paint)}"></span>'
+            f'<span class="strip" style="background:{strip(paint)};border:{gloss_border(paint)}"></span>'
             '<div class="ends"><span>15\u00b0</span><span>aspecular angle</span><span>110\u00b0</span></div>'
             f'<div class="downloads" role="group" aria-label="Downloads"><span>Download</span></div></div>'
             f'<div>{plot(paint)}</div>'

@@ -234,3 +234,23 @@ PY
   run bash -c '"$@" >&-' closed "$BATS_TEST_DIRNAME/../paint-book" "$few" --env small.env.exr --basis "$TESTDATA/b5.basis.xml" --size 32x24 --quiet -o -
   [ "$status" -ne 0 ]
 }
+
+@test "chips are faceted: a picture of a paint without gloss shows a flat color for each facet" {
+  /usr/bin/python3 - <<PY
+import sys
+sys.path.insert(0, "$BATS_TEST_DIRNAME/..")
+from paint_book import chip
+
+lines = chip.chip_obj().splitlines()
+normals = [tuple(map(float, line.split()[1:])) for line in lines if line.startswith("vn")]
+faces = [line for line in lines if line.startswith("f ")]
+assert len(faces) == len(normals) == 1 + chip.SIDES * (len(chip.TILTS_DEG) - 1)
+assert normals[0] == (0, 0, 1)
+# Facets face the camera, and each ring has its own tilt.
+assert all(n[2] > 0 and abs(sum(x * x for x in n) - 1) < 1e-6 for n in normals), normals
+assert len({round(n[2], 6) for n in normals}) == len(chip.TILTS_DEG)
+PY
+  book small.paints.xml --chips --env small.env.exr --basis "$TESTDATA/b5.basis.xml" --size 96x96 -o chips.html
+  grep -q "on faceted chip under" chips.html
+  ! cmp -s chips.html small.html
+}

@@ -37,7 +37,7 @@ circle { fill: none; vector-effect: non-scaling-stroke; }
 .paint { margin: 0 0 18px; background: #f6f6f6; border: 1px solid #bdbdbd; border-radius: 8px; overflow: hidden; }
 .paint .text { padding: 10px 14px 12px; }
 h2 { margin: 0 0 6px; font-size: 17px; overflow-wrap: anywhere; }
-.strip { display: block; height: 14px; }
+.strip { display: block; height: 26px; }
 table { width: 100%; border-collapse: collapse; font-size: 13.5px; }
 th, td { padding: 3px 0; text-align: left; font-weight: 400; border-top: 1px solid #d8d8d8; font-variant-numeric: tabular-nums; }
 th { color: #555; }
@@ -130,6 +130,13 @@ std::string color_row(const char* name, const color::Lab& lab) {
       css_color(lab), name, figure(lab.L), figure(lab.a), figure(lab.b));
 }
 
+// The border of a palette's color, whose gray is the gloss: evenly from black for 0 to white for 100 gloss units.
+std::string gloss_border(const paint::Paint& paint) {
+  if (paint.gloss.empty()) return "6px dashed #808080";
+  const auto gray = std::lround(2.55 * std::clamp(paint.gloss.front().gloss_units, 0.0, 100.0));
+  return fmt::format("6px solid #{0:02x}{0:02x}{0:02x}", gray);
+}
+
 std::string paint_card(const PageOfPaint& paint) {
   const paint::Paint& p = paint.picked.paint;
   const paint::Appearance& a = *p.appearance;
@@ -139,10 +146,12 @@ std::string paint_card(const PageOfPaint& paint) {
         fmt::format("{}{} {:.1f}%", stops.empty() ? "" : ",", css_color(paint::lab_at(a, angle)), (angle - 15) / 0.95);
   std::string text = fmt::format(
       "<article class=\"paint\"><img alt=\"{0}, drawn\" src=\"{1}\">"
-      "<span class=\"strip\" title=\"color from 15 to 110 degrees from specular\" "
-      "style=\"background:linear-gradient(90deg,{2})\"></span>"
+      "<span class=\"strip\" title=\"color from 15 to 110 degrees from specular; the border shows the gloss at 60 "
+      "degrees, "
+      "black for 0 and white for 100 units, and is dashed where it was not picked\" "
+      "style=\"background:linear-gradient(90deg,{2});border:{3}\"></span>"
       "<div class=\"text\"><h2>{0}</h2><table>",
-      xml_escaped(p.name, ""), embedded(paint.picture), stops);
+      xml_escaped(p.name, ""), embedded(paint.picture), stops, gloss_border(p));
   text += color_row("Face", a.face) + color_row("Flop", a.flop);
   text += fmt::format("<tr><th scope=\"row\">Travel</th><td class=\"number\" colspan=\"3\">{:.0f}&deg;</td></tr>",
                       a.travel_deg);

@@ -61,6 +61,10 @@ void add_options(cli::ToolSpec& spec, Options& o) {
           "tolerance, the exit status is 1.");
   spec.option("output,o", "FILE", "studio.env.exr", &o.output,
               "where the prefiltered environment goes; - is standard output");
+  spec.option("picture", "FILE", "studio.png", &o.picture, "PNG to write that shows all maps side by side")
+      .more(
+          "Every map is a panorama with +Z in the middle, beside its exponent and its size. All of them have one "
+          "exposure, which shows the mean of the light as middle gray.");
   cli::add_common_options(spec, o.common, {.explain = true, .seed = "the texels to verify"});
 }
 
@@ -71,6 +75,8 @@ void add_report(cli::ToolSpec& spec) {
        "filter a studio by the seven lobes of a basis, the diffuse lobe and the mirror lobe"},
       {"prefilter-envmap -e 6,70,900 --size 64 --verify 100 --report sky.json testdata/outdoor.exr -o sky.env.exr",
        "make three lobes of 64 texels a face, and verify each at 120 texels"},
+      {"prefilter-envmap --basis testdata/b5.basis.xml testdata/outdoor.exr --picture maps.png -o outdoor.env.exr",
+       "show what each lobe makes of a sky"},
       {"prefilter-envmap -e 256,64,16,4 --layout mip --size 64 --rotate 90 testdata/studio.exr -o studio.mip.exr",
        "make one mip-mapped cube of the studio, turned by a quarter"},
       {"prefilter-envmap --basis testdata/b5.basis.xml --tolerance 1e-4 --explain testdata/studio.exr -o fine.env.exr",

@@ -261,3 +261,31 @@ lobes_paint() {
   run bash -c 'exrheader none.env.exr | grep brightSpots'
   [ "$status" -eq 1 ]
 }
+
+@test "inks are no light" {
+  base64 -d >cmyk.jpg <<<'/9j/7gAOQWRvYmUAZAAAAAAC/9sAQwAGBAUGBQQGBgUGBwcGCAoQCgoJCQoUDg8MEBcUGBgXFBYWGh0lHxobIxwWFiAsICMmJykqKRkfLTAtKDAlKCko/9sAQwEHBwcKCAoTCgoTKBoWGigoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgo/8AAFAgACAAIBAERAAIRAQMRAQQRAP/EABUAAQEAAAAAAAAAAAAAAAAAAAUI/8QAFBABAAAAAAAAAAAAAAAAAAAAAP/EABUBAQEAAAAAAAAAAAAAAAAAAAYH/8QAFBEBAAAAAAAAAAAAAAAAAAAAAP/aAA4EAQACEQMRBAAAPwBAnQ1QL//Z'
+  for images in cmyk.jpg "cmyk.jpg cmyk.jpg cmyk.jpg cmyk.jpg cmyk.jpg cmyk.jpg"; do
+    run prefilter-envmap -e 4 $images -o none.exr
+    [ "$status" -eq 3 ]
+    [[ $output == *"cmyk.jpg is CMYK, and its inks were taken for RGB without regard to its profile: convert it to RGB"* ]]
+    [ ! -e none.exr ]
+  done
+}
+
+@test "the maps are shown side by side" {
+  prefilter-envmap -q -e 4,70 --size 16 "$sky" --picture maps.png -o sky.env.exr
+  # Diffuse, two lobes and mirror: three in a row, and one.
+  run oiiotool --info maps.png
+  [[ $output == *"992 x  388, 3 channel, uint8 png"* ]] || { echo "$output"; return 1; }
+  # The sun is white in the mirror, and the diffuse map spreads its light over half of all directions.
+  brightest() { oiiotool maps.png --cut "$1" --printstats 2>&1 | awk '/Stats Max/ { print $3 }'; }
+  awk -v wide="$(brightest 320x160+8+30)" -v sharp="$(brightest 320x160+8+220)" 'BEGIN { exit !(sharp > 0.95 && wide < 0.9) }' ||
+    { echo "$(brightest 320x160+8+30) $(brightest 320x160+8+220)"; return 1; }
+  run prefilter-envmap -e 4 "$sky" --picture maps.jpg -o none.exr
+  [ "$status" -eq 2 ]
+  [[ $output == *'--picture is "maps.jpg": give a name that ends in .png'* ]]
+  run prefilter-envmap -e 4 "$sky" --layout latlong --picture maps.png -o none.exr
+  [ "$status" -eq 2 ]
+  [[ $output == *"--picture shows cubes, and --layout latlong makes none"* ]]
+  [ ! -e none.exr ]
+}

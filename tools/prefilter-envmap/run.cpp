@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "contact_sheet.h"
 #include "envmap/mip.h"
 #include "prefilter/exact_lobe.h"
 #include "prefilter/lobe_cache.h"
@@ -183,7 +184,21 @@ Result<envmap::PrefilteredEnvironment> filter(const envmap::Environment& env,
 
 }  // namespace
 
+namespace {
+
+Result<void> check_picture(const Options& options) {
+  if (options.picture.empty()) return {};
+  if (!options.picture.ends_with(".png"))
+    return usage_error("--picture is \"{}\": give a name that ends in .png", options.picture);
+  if (options.layout != "env" && options.layout != "mip")
+    return usage_error("--picture shows cubes, and --layout {} makes none: look at the output itself", options.layout);
+  return {};
+}
+
+}  // namespace
+
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
+  GONIO_TRY(check_picture(options));
   GONIO_ASSIGN(const Wanted wanted, wanted_lobes(options));
   const prefilter::PrefilterRequest& request = wanted.request;
   const Stopwatch read_clock;
@@ -230,6 +245,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   }
   const Stopwatch write_clock;
   GONIO_TRY(write(options, result, session));
+  if (!options.picture.empty()) GONIO_TRY(image::write_png(options.picture, contact_sheet(result)));
   session.results()["write_s"] = write_clock.elapsed_s();
 
   const std::string checked = options.verify == 0

@@ -22,6 +22,7 @@ struct Options {
   std::string paints;  // --for
   std::string layout = "env";
   std::string cache;
+  std::string picture;
   std::vector<double> rotate;
   double exposure = 0;
   double horizon = -90;

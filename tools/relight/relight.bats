@@ -199,3 +199,10 @@ END
   [ "$status" -ne 0 ]
   [[ "$output" == *"nowhere.csv"* ]]
 }
+
+@test "inks are told" {
+  base64 -d >cmyk.jpg <<<'/9j/7gAOQWRvYmUAZAAAAAAC/9sAQwAGBAUGBQQGBgUGBwcGCAoQCgoJCQoUDg8MEBcUGBgXFBYWGh0lHxobIxwWFiAsICMmJykqKRkfLTAtKDAlKCko/9sAQwEHBwcKCAoTCgoTKBoWGigoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgo/8AAFAgACAAIBAERAAIRAQMRAQQRAP/EABUAAQEAAAAAAAAAAAAAAAAAAAUI/8QAFBABAAAAAAAAAAAAAAAAAAAAAP/EABUBAQEAAAAAAAAAAAAAAAAAAAYH/8QAFBEBAAAAAAAAAAAAAAAAAAAAAP/aAA4EAQACEQMRBAAAPwBAnQ1QL//Z'
+  run relight --from D65 --to A cmyk.jpg -o out.exr
+  [ "$status" -eq 0 ]
+  [[ $output == *"warning: cmyk.jpg is CMYK, and its inks were taken for RGB without regard to its profile: convert it to RGB"* ]]
+}

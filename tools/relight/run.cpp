@@ -148,6 +148,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
 
   const std::string path = options.image.empty() ? "-" : options.image.front();
   GONIO_ASSIGN(const image::ImagePart part, image::read_image(path));
+  if (const std::string problem = image::inks_problem(part, path); !problem.empty()) session.warn(problem);
   GONIO_ASSIGN(image::Image image, image::working_space_rgb(part, path));
   GONIO_ASSIGN(const std::size_t negative, relit(image, change->matrix, options.negative == "keep", path));
   const double pixels = static_cast<double>(image.width) * image.height, share = static_cast<double>(negative) / pixels;

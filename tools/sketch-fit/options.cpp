@@ -52,6 +52,10 @@ void add_options(cli::ToolSpec& spec, Options& o) {
           "The matt color that explains the pixels best is also the answer where they show too few angles. The report "
           "and a warning say so, and the exit status stays 0.");
   spec.heading = "output";
+  spec.option("start", "PAINT", "fitted.xml#candy_red", &o.start, "paint that the picture was drawn in before the edit")
+      .more(
+          "The paint found keeps its gloss where the picture does not tell another one, and its code. PAINT is "
+          "FILE[#NAME]; NAME may be left out where the file holds only one paint.");
   spec.option("name", "NAME", "dawn", &o.name, "name of the paint found");
   spec.option("residual", "FILE", "residual.png", &o.residual, "PNG of the differences between picture and paint");
   spec.option("output,o", "FILE", "sketch.paints.xml", &o.output, "paint XML to write; - is standard output");
@@ -87,9 +91,13 @@ void add_report(cli::ToolSpec& spec) {
       {"flop", "L*, a*, b* of its flop"},
       {"rows[]: geometry, L, a, b", "its colors at the export angles"},
       {"extrapolated_deg[]", "those of the angles that no pixel shows"},
-      {"gloss_60_gu", "its gloss at 60 degrees; null for the fallback, and where it is undetermined"},
-      {"gloss_from", "highlight, contrast, search, or undetermined"},
-      {"gloss_range_gu", "under lamps with an extent, the least and the largest gloss that explain the pixels as well"},
+      {"unsure[]: angle_deg, de00, reason",
+       "other angles whose color the picture leaves open, with the CIEDE2000 difference by which it may be off, or "
+       "null"},
+      {"gloss_60_gu", "its gloss at 60 degrees; null for the fallback, and where it is undetermined without --start"},
+      {"gloss_from", "highlight, contrast, search, start, or undetermined"},
+      {"gloss_range_gu",
+       "under lamps, the least and the largest gloss that explain the pixels as well, where they were looked for"},
       {"condition", "condition number of the linear fit, or of the search at its end; null where nothing was fitted"},
       {"pixels_used", "number of pixels that the fit rests on"},
       {"pixels_changed", "number of pixels that could be used and were edited"},
@@ -137,8 +145,13 @@ cli::ToolSpec tool_spec(Options& o) {
       "and "
       "gloss is what explains them. It is undetermined where readings more than 10 units apart explain the pixels as "
       "well. Under a point, "
-      "gloss comes from the shape of the highlight where it is seen unclipped, and else from its contrast. With --env, "
+      "gloss comes from the shape of the highlight where it is seen unclipped, and else from its contrast with the "
+      "paint "
+      "around it; where no highlight is seen, it is undetermined. With --env, "
       "it comes from the search where other pixels contradict the highlight.",
+      "A warning names the angles whose color the picture leaves open: no pixel shows them, too few pixels do, another "
+      "gloss with another color explains the picture as well, or the picture was drawn without a lobe that is seen "
+      "there.",
       "A picture that seems to be moved against the buffers is told with the shift to give."};
   add_options(spec, o);
   add_report(spec);

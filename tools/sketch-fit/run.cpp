@@ -192,6 +192,11 @@ void report_fit(const sketch::SketchFit& fit, bool environment, Json& results) {
     results["rows"].push_back(
         {{"geometry", paint::geometry_name(row.geometry)}, {"L", row.lab.L}, {"a", row.lab.a}, {"b", row.lab.b}});
   results["extrapolated_deg"] = fit.extrapolated_deg;
+  results["unsure"] = Json::array();
+  for (const sketch::UnsureColor& one : fit.unsure)
+    results["unsure"].push_back({{"angle_deg", one.angle_deg},
+                                 {"de00", one.de00 ? json_number(*one.de00) : Json(nullptr)},
+                                 {"reason", one.reason}});
   const bool told = !fit.gloss_from.empty() && fit.gloss_from != "undetermined";
   results["gloss_60_gu"] = told ? Json(fit.gloss_60_gu) : Json(nullptr);
   results["gloss_range_gu"] = fit.gloss_high_gu > 0 ? Json({fit.gloss_low_gu, fit.gloss_high_gu}) : Json(nullptr);
@@ -209,6 +214,9 @@ void tell(const Options& options, const sketch::SketchPixels& pixels, const sket
   if (!fit.extrapolated_deg.empty())
     session.warn(fmt::format("no pixel shows {} deg from specular: the color there is extrapolated",
                              fmt::join(fit.extrapolated_deg, ", ")));
+  for (const sketch::UnsureColor& one : fit.unsure)
+    session.warn(fmt::format("the color at {} deg from specular may be off{}: {}", one.angle_deg,
+                             one.de00 ? fmt::format(" by {:.1f} dE00 or more", *one.de00) : "", one.reason));
   const paint::Appearance& a = fit.appearance;
   const std::string gloss =
       fit.gloss_from.empty() ? ""
@@ -318,10 +326,39 @@ Result<void> fit_lamps(const Material& material, const sketch::SketchLimits& lim
 
 }  // namespace
 
+namespace {
+
+// The paint of --start; none without the option.
+Result<std::optional<paint::Paint>> start_of(const Options& options) {
+  if (options.start.empty()) return std::optional<paint::Paint>();
+  GONIO_ASSIGN(std::vector<paint::Paint> paints, formats::read_paints(options.start));
+  if (paints.size() != 1)
+    return input_error("{}: --start takes one paint, and there are {}: write FILE#NAME", options.start, paints.size());
+  return std::optional(std::move(paints.front()));
+}
+
+// Where the picture does not tell the gloss, it stays that of the start.
+void keep_gloss(const std::optional<paint::Paint>& start, sketch::SketchFit& fit) {
+  constexpr double kAngle_deg = 60;
+  if (!start || fit.gloss_from != "undetermined") return;
+  for (const paint::GlossReading& reading : start->gloss)
+    if (reading.angle_deg == kAngle_deg) fit.gloss_60_gu = reading.gloss_units, fit.gloss_from = "start";
+}
+
+paint::Paint named_paint(const sketch::SketchFit& fit, const std::optional<paint::Paint>& start,
+                         const Options& options) {
+  paint::Paint paint = sketch::sketch_paint(fit, options.name);
+  if (start) paint.code = start->code;
+  return paint;
+}
+
+}  // namespace
+
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   session.explain(plan_text(options));
   Material material;
   GONIO_TRY(gather(options, material));
+  GONIO_ASSIGN(const std::optional<paint::Paint> start, start_of(options));
   const sketch::SketchInput& input = material.input;
   tell_registration(material, options, session);
   for (const std::string& warning : material.picture.warnings) session.warn(warning);
@@ -344,6 +381,8 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
     fit = sketch::sketch_point(input, pixels, material.basis, limits, differences);
     GONIO_TRY(fit_lamps(material, limits, differences, pixels, fit));
   }
+  if (!material.transport) sketch::take_left_out(material.buffers.left_out, fit);
+  keep_gloss(start, fit);
   Json& results = session.results();
   report_fit(fit, environment, results);
   if (material.transport) results["mode"] = "transport";
@@ -352,7 +391,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   results["color_space"] = material.picture.space;
   results["fit_s"] = clock.elapsed_s();
   if (differences) GONIO_TRY(write_residual(options.residual, material.buffers, pixels, fit));
-  GONIO_TRY(write_paints(options.output, {sketch::sketch_paint(fit, options.name)}, session));
+  GONIO_TRY(write_paints(options.output, {named_paint(fit, start, options)}, session));
   tell(options, pixels, fit, session);
   return cli::Verdict::kDone;
 }

@@ -15,7 +15,7 @@ struct Options {
   std::string pixels = "auto", view = "paint", exposure = "auto", registration = "auto";
   std::vector<double> shift;
   double glare_deg = 10, most_de76 = 10;
-  std::string name = "sketch", output = "-", residual;
+  std::string name = "sketch", output = "-", residual, start;
 };
 
 cli::ToolSpec tool_spec(Options& options);

@@ -16,6 +16,7 @@ struct GoniochromeOiioImage {
   const char* icc_profile;           // the bytes of an embedded ICC profile, or null
   unsigned long icc_size;
   int is_integer;  // whether the file holds whole numbers; they are 0..1 here
+  int is_inks;     // whether the file holds CMYK, be the channels here these inks or the RGB made of them
 };
 
 // Decodes `path`, which holds `bytes` bytes of the format that OpenImageIO calls `format` whatever its name says, and
@@ -32,6 +33,6 @@ using GoniochromeOiioRead = void (*)(const char* path, const char* format, unsig
 namespace goniochrome::image {
 
 // The name under which the module exports its GoniochromeOiioRead.
-constexpr const char* kOiioReadName = "goniochrome_oiio_read_4";
+constexpr const char* kOiioReadName = "goniochrome_oiio_read_5";
 
 }  // namespace goniochrome::image

@@ -36,6 +36,10 @@ std::string envmap_kind(const OIIO::ImageSpec& spec) {
   return "";
 }
 
+bool is_cmyk_tiff(const OIIO::ImageSpec& spec) {
+  return text_attribute(spec, "tiff:ColorSpace") == "CMYK";
+}
+
 // Opens the image; inks of a TIFF stay inks where they are to be kept. The inks of a JPEG are lost in any case.
 std::unique_ptr<OIIO::ImageInput> open(const Source& source, std::string& problem) {
   const auto opened = [&](bool raw) -> std::unique_ptr<OIIO::ImageInput> {
@@ -47,7 +51,7 @@ std::unique_ptr<OIIO::ImageInput> open(const Source& source, std::string& proble
     return nullptr;
   };
   auto input = opened(false);
-  if (!input || !source.keep_inks || text_attribute(input->spec(), "tiff:ColorSpace") != "CMYK") return input;
+  if (!input || !source.keep_inks || !is_cmyk_tiff(input->spec())) return input;
   return opened(true);
 }
 
@@ -63,6 +67,7 @@ void read(const Source& source, void* context, GoniochromeOiioTake take, Gonioch
   if (!input) return fail(context, problem.c_str());
   OIIO::ImageSpec spec = input->spec();
   const bool from_jpeg = source.keep_inks && is_cmyk_jpeg(spec);
+  const bool is_inks = is_cmyk_tiff(spec) || is_cmyk_jpeg(spec);
   if (from_jpeg) spec.nchannels = 4, spec.channelnames = {"C", "M", "Y", "K"};
   if (spec.depth > 1 || spec.deep) return fail(context, "volumes and deep images are not read");
   const OIIO::imagesize_t samples = spec.image_pixels() * static_cast<OIIO::imagesize_t>(spec.nchannels);
@@ -97,13 +102,14 @@ void read(const Source& source, void* context, GoniochromeOiioTake take, Gonioch
                                       chromaticities ? static_cast<const float*>(chromaticities->data()) : nullptr,
                                       icc ? static_cast<const char*>(icc->data()) : nullptr,
                                       icc ? static_cast<unsigned long>(icc->datasize()) : 0,
-                                      spec.format.is_floating_point() ? 0 : 1};
+                                      spec.format.is_floating_point() ? 0 : 1,
+                                      is_inks ? 1 : 0};
   take(context, &image);
 }
 
 }  // namespace
 
-extern "C" __attribute__((visibility("default"))) void goniochrome_oiio_read_4(const char* path, const char* format,
+extern "C" __attribute__((visibility("default"))) void goniochrome_oiio_read_5(const char* path, const char* format,
                                                                                unsigned long bytes, int keep_inks,
                                                                                void* context, GoniochromeOiioTake take,
                                                                                GoniochromeOiioFail fail) {

@@ -20,6 +20,7 @@ constexpr std::size_t kByAppearance = 8, kByThree = 10;  // numbers of a paint f
 // A paint of fewer numbers is believed where its cost is at most this part more than that of free lobes, whose gain may
 // be the noise's, or where it explains the picture to RMS 0.01 dE.
 constexpr double kSameCost = 1.05, kExactCost = 1e-4;
+constexpr double kSameCostBy = 0.005;   // and of two values of gloss that the samples cannot tell
 constexpr double kRoundingCost = 1e-6;  // RMS 0.001 dE
 constexpr double kHopelessCost = 1.5;   // of enough, in a part of the samples
 // Where lobes alone leave much open: log(1 + dE^2) of RMS 0.03, 0.14 and half a dE, and the gain that free rows must
@@ -153,6 +154,19 @@ color::Rgb LobeSearch::matt() const {
   color::Rgb color;
   for (int c = 0; c < 3; ++c) color[c] = down[c] > 0 ? kPi * up[c] / down[c] : 0;
   return color;
+}
+
+std::vector<FreeLobes> LobeSearch::with_other_gloss(const FoundPaint& found) const {
+  const FreeLobeFit fit = free_lobes();
+  const double gloss = found.search.values.back();
+  std::vector<double> readings = {gloss, 0, 10, 20, 40, 60, 75, 85, 92, 100};
+  std::vector<FreeLobes> tried(readings.size());
+  parallel_for(tried.size(), 1, [&](std::size_t i, std::size_t) {
+    tried[i] = fit.refined({found.weights, readings[i], 0});
+  });
+  const double most = kSameCost * tried.front().cost + kSameCostBy;
+  std::erase_if(tried, [&](const FreeLobes& one) { return one.cost > most; });
+  return tried;
 }
 
 double LobeSearch::cost_with_gloss(const FoundPaint& found, double gloss) const {

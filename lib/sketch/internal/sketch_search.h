@@ -43,6 +43,10 @@ class LobeSearch {
   // and more until one explains the samples exactly, or the colors at three angles where they explain them better.
   FoundPaint find_plain(const LobeSearch& first) const;
 
+  // Lobes with the gloss of a paint found, and with others whose cost is at most a part more: free flake weights that
+  // are refined from those found. The first one has the gloss found.
+  std::vector<FreeLobes> with_other_gloss(const FoundPaint& found) const;
+
   // The cost of a paint found, with another gloss (gloss units).
   double cost_with_gloss(const FoundPaint& found, double gloss) const;
 
