@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "brdf/disc_light.h"
+#include "render/gl/disc_texture.h"
 #include "render/gl/shader.h"
 #include "render/gl/tilt_shader.h"
 #include "render/internal/map_cost.h"
@@ -138,30 +138,9 @@ void GlEngine::upload_tilted(const Scene& scene) {
                                texture.rgba.data());
 }
 
-// For each light a row for each lobe, whose last texel holds first_chord and nodes_per_chord; then a row of the
-// horizon.
 void GlEngine::upload_discs() {
-  constexpr int kNodes = brdf::DiscLobeTable::kNodes;
-  std::vector<float> texels;
-  for (const Light& light : lights_) {
-    for (const Effects::LobeUse& lobe : effects_.lobes) {
-      const auto table = brdf::disc_lobe_table(lobe.exponent, light.radius_rad);
-      for (int i = 0; i < kNodes; ++i) {
-        const brdf::DiscLobeTable::Node& node = table->nodes[static_cast<std::size_t>(i)];
-        texels.insert(texels.end(), {node.cosine[0], node.cosine[1], node.plain[0], node.plain[1]});
-      }
-      texels.insert(texels.end(), {static_cast<float>(table->first_chord), static_cast<float>(table->nodes_per_chord)});
-      texels.insert(texels.end(), {0, 0});
-    }
-    for (int i = 0; i <= kNodes; ++i) {
-      const double sine = std::sin(light.radius_rad) * std::min(1.0, 2.0 * i / (kNodes - 1) - 1);
-      texels.push_back(static_cast<float>(brdf::disc_irradiance(sine, light.radius_rad)));
-      texels.push_back(static_cast<float>(brdf::disc_above(sine, light.radius_rad)));
-      texels.insert(texels.end(), {0, 0});
-    }
-  }
-  discs_ =
-      gl_->float_texture(kNodes + 1, static_cast<int>((effects_.lobes.size() + 1) * lights_.size()), texels.data());
+  const FloatTexture discs = disc_texture(lights_, effects_);
+  discs_ = gl_->float_texture(discs.columns, discs.rows, discs.rgba.data());
 }
 
 void GlEngine::load_paints(const Scene& scene) {
@@ -225,11 +204,7 @@ Result<void> GlEngine::shade(Sight& sight, int sample, float gain, bool add, ima
     gl_->set(program_, fmt::format("light_direction[{}]", i), lights_[i].direction);
     gl_->set(program_, fmt::format("light_white[{}]", i), lights_[i].white);
     if (discs_ == 0) continue;
-    const double radius = lights_[i].radius_rad;
-    gl_->set(program_, fmt::format("light_disc[{}]", i),
-             radius > 0 ? Vec3{std::sin(radius), 2 * std::sin(0.5 * radius),
-                               lights_[i].mirrored ? brdf::disc_radiance(radius) : 0}
-                        : Vec3{0, -1, 0});
+    gl_->set(program_, fmt::format("light_disc[{}]", i), disc_uniform(lights_[i]));
   }
   if (effects_.background == Background::kColor) gl_->set(program_, "background", background_color_);
   gl_->BindVertexArray(no_vertices_);

@@ -19,6 +19,9 @@ std::string glsl(double value) {
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
 
+// The first line of every program.
+constexpr const char* kHead = "#version 330 core\n";
+
 // Pixels as rays; both programs see the same, so a viewing direction needs no position.
 constexpr const char* kRays =
     R"(uniform vec3 corner, right, down;  // the ray through (x, y), in pixels from the upper left
@@ -338,8 +341,7 @@ std::string background_color(Background background, Product product) {
 }  // namespace
 
 std::string gbuffer_vertex_shader() {
-  return R"(#version 330 core
-layout(location = 0) in vec3 position;
+  return std::string(kHead) + R"(layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 vertex_normal;
 uniform mat4 clip;
 out vec3 normal;
@@ -350,12 +352,14 @@ void main() {
 )";
 }
 
-std::string gbuffer_fragment_shader() {
-  return std::string("#version 330 core\n") + kRays +
-         R"(uniform int part, first;  // first: the number of the part's first triangle
+std::string gbuffer_fragment_shader(bool with_triangles) {
+  const char* number = with_triangles ? R"(uniform int first;  // the number of the part's first triangle
+layout(location = 1) out uint triangle;
+)"
+                                      : "";
+  return std::string(kHead) + kRays + number + R"(uniform int part;
 in vec3 normal;
 layout(location = 0) out vec4 gbuffer;
-layout(location = 1) out uint triangle;
 void main() {
   float side = gl_FrontFacing ? 1.0 : -1.0;
   vec3 n = side * normalize(normal), wo = -ray();
@@ -363,14 +367,11 @@ void main() {
   float cos_o = dot(n, wo);
   if (cos_o < 1e-3) n = normalize(n + (1e-3 - cos_o) * wo);
   gbuffer = vec4(n, side * float(part + 1));
-  triangle = uint(first + gl_PrimitiveID);
-}
-)";
+)" + (with_triangles ? "  triangle = uint(first + gl_PrimitiveID);\n}\n" : "}\n");
 }
 
 std::string shading_vertex_shader() {
-  return R"(#version 330 core
-void main() {  // one triangle that covers the picture
+  return std::string(kHead) + R"(void main() {  // one triangle that covers the picture
   gl_Position = vec4(4.0 * float(gl_VertexID & 1) - 1.0, 4.0 * float(gl_VertexID >> 1) - 1.0, 0.0, 1.0);
 }
 )";
@@ -382,7 +383,7 @@ std::string shading_fragment_shader(const Effects& effects, const color::Reflect
   const ProductForms forms = effects.reflection ? product_forms(op) : ProductForms{};
   const Product product = product_of(effects, forms);
   // 1. What the program is given, and the functions that it needs.
-  std::string text = "#version 330 core\n// goniochrome-theory(7), RENDERING\n";
+  std::string text = std::string(kHead) + "// goniochrome-theory(7), RENDERING\n";
   text +=
       uniforms(effects) + tilt_uniforms(effects, tilted) + kRays + "layout(location = 0) out vec4 color;\n" + kWeight;
   if (effects.reflection && (product == Product::kOperator || effects.single_lights() > 0))
@@ -420,6 +421,12 @@ void main() {{
   if (effects.environment) text += environment_terms(effects, product, !tilted.empty());
   if (effects.single_lights() > 0) text += light_terms(effects);
   return text + "  color = vec4(radiance, 1.0);\n}\n";
+}
+
+std::string for_opengl_es(const std::string& program) {
+  return "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\n"
+         "precision highp samplerCube;\n" +
+         program.substr(std::string_view(kHead).size());
 }
 
 }  // namespace goniochrome::render
