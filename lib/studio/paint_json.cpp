@@ -23,7 +23,9 @@ Json measurement_json(const paint::Measurement& measurement) {
 Result<paint::Measurement> measurement_of(const Json& json) {
   JsonReader reader(json);
   paint::Measurement measurement;
-  measurement.condition = {reader.text("illuminant", "D65"), static_cast<int>(reader.number("observer", 10))};
+  const double observer_deg = reader.number("observer", 10);
+  if (observer_deg != 2 && observer_deg != 10) reader.fail("2 or 10", "observer");
+  measurement.condition = {reader.text("illuminant", "D65"), observer_deg == 2 ? 2 : 10};
   measurement.instrument = reader.text("instrument", "");
   for (const Json& element : reader.list("rows")) {
     JsonReader row(element);

@@ -1,6 +1,8 @@
 // What the designer did. A state holds the paint of the library that it began with, the edits since then, and the paint
 // that they made. Undo and redo go from state to state, without limit.
 
+const saidState = ({ start, steps }) => ({ start, steps });
+
 class EditHistory {
   constructor(states = [], at = states.length - 1) {
     this.states = states;
@@ -17,5 +19,8 @@ class EditHistory {
   }
   undo() { if (this.canUndo) --this.at; }
   redo() { if (this.canRedo) ++this.at; }
-  saved() { return { states: this.states, at: this.at }; }
+  // As it is saved: a state that goes on from the one before it is its last edit alone.
+  saved() {
+    return { at: this.at, states: this.states.map((state) => (state.goesOn ? { edit: state.steps.at(-1) } : saidState(state))) };
+  }
 }

@@ -133,7 +133,7 @@ class App {
       if (done.skipped.length > 0) {
         this.say("This cannot be done: " + done.skipped.join("; "));
       } else if (JSON.stringify(done.paint) !== JSON.stringify(now.paint)) {
-        this.history.push({ start: now.start, steps: [...now.steps, edit], paint: done.paint });
+        this.history.push({ start: now.start, steps: [...now.steps, edit], paint: done.paint, goesOn: true });
         this.say(done.clipped.length > 0 ? "Clipped: " + done.clipped.join("; ") : "");
       }
     });
@@ -224,22 +224,32 @@ class App {
     if (sample + 1 < kSamples) this.resting = requestAnimationFrame(() => this.rest(sample + 1));
   }
 
-  // The session: all states, and the palette.
+  // The session: the library paints and edits of all states, and the palette. Paints are made again when it is opened.
   savedSession() {
     return JSON.stringify({ kind: "paint-studio session", version: 1, title: this.data.title,
-                            history: this.history.saved(), palette: this.palette });
+                            history: this.history.saved(), palette: this.palette.map(saidState) });
+  }
+  // The state that these edits of a library paint lead to. Throws what a request refuses.
+  replayed({ start, steps }) {
+    if (!Number.isInteger(start) || !this.data.paints[start] || !Array.isArray(steps))
+      throw new Error("This file is no session of a page with this library.");
+    let paint = this.data.paints[start].paint;
+    for (const edit of steps) ({ paint } = this.engine.ask({ do: "edit", paint, edit }));
+    return { start, steps, paint };
   }
   openSession(text) {
-    const session = JSON.parse(text), states = [...(session.history?.states ?? []), ...(session.palette ?? [])];
-    const fits = (state) => Number.isInteger(state.start) && state.start >= 0 && state.start < this.data.paints.length &&
-                            Array.isArray(state.steps) && typeof state.paint?.name === "string";
-    const at = session.history?.at;
-    if (session.kind !== "paint-studio session" || states.length === 0 || !states.every(fits) ||
-        !Number.isInteger(at) || at < 0 || at >= session.history.states.length)
-      throw new Error("This file is no session of a page with this library.");
-    for (const state of states) this.engine.ask({ do: "describe", paint: state.paint });
-    this.history = new EditHistory(session.history.states, at);
-    this.palette = session.palette ?? [];
+    const session = JSON.parse(text), saved = session.history?.states, at = session.history?.at, states = [];
+    if (session.kind !== "paint-studio session" || !Array.isArray(saved) || !(saved.length > at) || !(at >= 0))
+      throw new Error("This file is no session of a page.");
+    for (const one of saved) {
+      const last = states.at(-1);
+      if (one.edit === undefined || !last) states.push(this.replayed(one));
+      else states.push({ start: last.start, steps: [...last.steps, one.edit], goesOn: true,
+                         paint: this.engine.ask({ do: "edit", paint: last.paint, edit: one.edit }).paint });
+    }
+    const palette = (session.palette ?? []).map((one) => this.replayed(one));
+    this.history = new EditHistory(states, at);
+    this.palette = palette;
     this.show();
   }
   // Browsers may refuse to store anything; the page then works without.
@@ -247,13 +257,13 @@ class App {
     try {
       localStorage.setItem(this.key, this.savedSession());
     } catch {
+      if (!this.storeRefused) this.say("The browser does not keep this session: save it as a file.");
       this.storeRefused = true;
     }
   }
   reopen() {
-    let text = null;
     try {
-      text = localStorage.getItem(this.key);
+      const text = localStorage.getItem(this.key);
       if (text) this.openSession(text);
     } catch {
       this.history = new EditHistory([this.fresh(0)]);
