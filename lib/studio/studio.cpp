@@ -186,11 +186,12 @@ Result<Json> Studio::State::write(JsonReader& request) const {
   if (request.flag("lobes")) {
     GONIO_ASSIGN(paint, fitted(paint));
   }
-  const std::string as = request.text("as"), file = request.text("file", "-"), command = request.text("command", "");
+  const std::string as = request.text("as"), file = request.text("file", "-");
+  const formats::Processing step = {"paint-studio", request.text("version", ""), request.text("command", "")};
   if (as != "xml" && as != "csv") request.fail("xml or csv", "as");
   GONIO_TRY(request.status());
   if (as == "xml") {
-    GONIO_TRY(write_xml(file, paint, command));
+    GONIO_TRY(write_xml(file, paint, step));
   } else {
     GONIO_TRY(write_csv(file, std::move(paint)));
   }

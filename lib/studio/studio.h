@@ -23,7 +23,7 @@ render::Effects page_effects(const std::vector<double>& exponents, bool mirror, 
 //   describe    paint: its curve, readings, average color, metrics and the colors of a screen.
 //   variations  paint, of ("face", "flop", "travel", "gloss"), step: answers list[] of name, edit and paint.
 //   nearest     paint, metric ("de76", "de00"), count: answers list[] of place, name, code, distance and differences.
-//   write       paint, as ("xml", "csv"), file, lobes (true: with its lobes).
+//   write       paint, as ("xml", "csv"), file, lobes (true: with its lobes), version and command of its history.
 //   color       lab[]: answers css, the color on a screen.
 // An answer that holds "error" tells in a sentence what was wrong with the request.
 class Studio {

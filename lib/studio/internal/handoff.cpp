@@ -1,16 +1,13 @@
 #include "studio/internal/handoff.h"
 
 #include "formats/csv.h"
-#include "formats/xml.h"
 #include "paint/curve.h"
 
 namespace goniochrome::studio {
 
-Result<void> write_xml(const std::string& file, const paint::Paint& paint, const std::string& command) {
+Result<void> write_xml(const std::string& file, const paint::Paint& paint, const formats::Processing& step) {
   GONIO_ASSIGN(OutputFile output, OutputFile::create(file));
-  std::vector<formats::Processing> history;
-  if (!command.empty()) history.push_back({"paint-studio", "1", command});
-  GONIO_ASSIGN(formats::PaintWriter writer, formats::PaintWriter::begin(std::move(output), history));
+  GONIO_ASSIGN(formats::PaintWriter writer, formats::PaintWriter::begin(std::move(output), {step}));
   GONIO_TRY(writer.write(paint));
   return writer.finish();
 }

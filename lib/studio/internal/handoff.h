@@ -4,12 +4,13 @@
 #include <string>
 
 #include "base/result.h"
+#include "formats/xml.h"
 #include "paint/paint.h"
 
 namespace goniochrome::studio {
 
-// One paint as paint XML; `command` is the step in its history, none where it is empty.
-Result<void> write_xml(const std::string& file, const paint::Paint& paint, const std::string& command);
+// One paint as paint XML, with a step in its history.
+Result<void> write_xml(const std::string& file, const paint::Paint& paint, const formats::Processing& step);
 
 // Its readings as a long table, or those of its curve at the export angles where it has none.
 Result<void> write_csv(const std::string& file, paint::Paint paint);

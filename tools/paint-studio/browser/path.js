@@ -25,6 +25,11 @@ async function main() {
   await quiet();
   await shot("1-open");
 
+  // A red whose face and flop are far apart.
+  await value(`(() => { const list = document.getElementById("library");
+    list.value = [...list.options].find((one) => one.textContent === "candy_red").value;
+    list.dispatchEvent(new Event("change")); })()`);
+  await quiet();
   const first = await paint();
   await browser.click("#variations .tile:nth-child(2)");
   check("a variation changes the paint", (await paint()) !== first);

@@ -29,14 +29,14 @@ function draggable(element, { begin, move, end }) {
     if (element.focus) element.focus({ preventScroll: true });
     element.setPointerCapture(event.pointerId);
     if (begin) begin(event);
-    const moving = (e) => move(e);
+    const drag = new AbortController(), signal = drag.signal;
     const done = () => {
-      element.removeEventListener("pointermove", moving);
+      drag.abort();
       if (end) end();
     };
-    element.addEventListener("pointermove", moving);
-    element.addEventListener("pointerup", done, { once: true });
-    element.addEventListener("pointercancel", done, { once: true });
+    element.addEventListener("pointermove", move, { signal });
+    element.addEventListener("pointerup", done, { signal });
+    element.addEventListener("pointercancel", done, { signal });
   });
 }
 

@@ -8,7 +8,7 @@ class Curves {
     this.hint = document.getElementById("curves-hint");
     this.plots = ["L*", "a*", "b*"].map((name, channel) => {
       const top = 8 + 105 * channel;
-      this.svg.append(drawn("rect", { x: 34, y: top, width: 378, height: 86, class: "grid" }),
+      this.svg.append(drawn("rect", { x: 34, y: top, width: 372, height: 86, class: "grid" }),
                       drawn("text", { x: 4, y: top + 10 }, name));
       const plot = { top, channel, way: drawn("polyline", { class: "way" }), seen: drawn("polyline", { class: "seen" }),
                      marks: drawn("g"), readings: drawn("g") };
@@ -19,7 +19,7 @@ class Curves {
     });
   }
 
-  x(angle) { return 34 + ((angle - 10) / 100) * 378; }
+  x(angle) { return 34 + ((angle - 10) / 100) * 372; }
   y(plot, value) { return plot.top + 86 - (86 * (value - plot.low)) / (plot.high - plot.low); }
 
   show(description, fit) {

@@ -54,7 +54,8 @@ class Handoff {
 
   write(as, lobes, ending, type) {
     const command = commandOf(this.app.data, this.app.history.now).replaceAll(/ \|\n {2}/g, " | ");
-    const { text } = this.app.engine.ask({ do: "write", paint: this.app.paint, as, lobes, command });
+    const { text } = this.app.engine.ask({ do: "write", paint: this.app.paint, as, lobes, command,
+                                           version: this.app.data.version });
     save(fileName(this.app.paint.name) + ending, text, type);
   }
 

@@ -81,7 +81,7 @@ class Tiles {
         app.engine.ask({ do: "fit", paint: next.paint });
         this.weights = app.stage.weights(app.engine.weights(), this.weights);
         const { width, height } = next.canvas;
-        const picture = app.stage.tile(cameraOf(app.view), width, height, this.weights, app.environment, app.stops);
+        const picture = app.stage.tile(cameraOf({ ...app.view, distance: 0.8 * app.view.distance }), width, height, this.weights, app.environment, app.stops);
         next.canvas.getContext("2d").putImageData(picture, 0, 0);
       } catch (error) {
         next.canvas.replaceWith(made("small", { text: error.message }));

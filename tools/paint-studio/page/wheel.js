@@ -8,7 +8,7 @@ class Wheel {
     for (const radius of [25, 50, 75, 100]) this.svg.append(drawn("circle", { r: radius, class: "grid" }));
     for (const [x, y] of [[1, 0], [0, 1]])
       this.svg.append(drawn("line", { x1: -105 * x, y1: -105 * y, x2: 105 * x, y2: 105 * y, class: "grid" }));
-    [["+a*", 94, -3], ["-a*", -108, -3], ["+b*", 3, -101], ["-b*", 3, 108]].forEach(([text, x, y]) =>
+    [["+a*", 90, -3], ["-a*", -108, -3], ["+b*", 3, -101], ["-b*", 3, 108]].forEach(([text, x, y]) =>
       this.svg.append(drawn("text", { x, y }, text)));
     this.way = drawn("polyline", { class: "way" });
     this.arrow = drawn("path", { class: "arrow" });
