@@ -1,5 +1,5 @@
 // What a page in a browser needs to draw paints in prefiltered light by WebGL 2, as the engine gl draws them: the same
-// programs, and the maps and lamps that they read. Weights come from weight_table(). goniochrome-theory(7), RENDERING.
+// programs, and the maps and lamps that they read. Weights come from page_weights(). goniochrome-theory(7), RENDERING.
 #pragma once
 
 #include <string>
@@ -16,10 +16,11 @@ struct PagePrograms {
 };
 PagePrograms page_programs();
 
-// One cube texture, by the name of its sampler.
+// One cube texture, by the name of its sampler: six faces of RGB or, where products are taken in four forms, of RGBA.
 struct PageCube {
   std::string sampler;
-  envmap::CubeMap map;
+  int size = 0, channels = 3;
+  std::vector<float> texels;
 };
 
 // A lamp as the uniforms light_direction, light_white and light_disc have it.
@@ -40,6 +41,7 @@ constexpr std::size_t kMostPageLobes = 9;
 
 // Error: a lobe or the mirror part that the environment lacks, with the command that makes it; more than
 // kMostPageLobes.
-Result<PageLight> page_light(const envmap::PrefilteredEnvironment& env, const Effects& effects);
+Result<PageLight> page_light(const envmap::PrefilteredEnvironment& env, const Effects& effects,
+                             const color::ReflectionOperator& op);
 
 }  // namespace goniochrome::render

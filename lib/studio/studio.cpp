@@ -7,6 +7,7 @@
 
 #include "fit/paint_fit.h"
 #include "library/search.h"
+#include "render/page_weights.h"
 #include "studio/internal/describe.h"
 #include "studio/internal/edit_json.h"
 #include "studio/internal/handoff.h"
@@ -20,11 +21,15 @@ render::Effects page_effects(const std::vector<double>& exponents, bool mirror, 
   effects.environment = true;
   for (const double exponent : exponents) effects.lobes.push_back({exponent, true, true});
   effects.mirror = mirror;
-  effects.fresnel = effects.coat = effects.views = true;
+  effects.fresnel = effects.coat = effects.views = effects.reflection = true;
   effects.horizon = !exponents.empty();
   effects.spots = effects.horizon ? spots : 0;
   effects.background = mirror ? render::Background::kEnvironment : render::Background::kColor;
   return effects;
+}
+
+color::ReflectionOperator page_operator() {
+  return color::fitted_operator();
 }
 
 struct Studio::State {
@@ -117,7 +122,8 @@ Result<Json> Studio::State::fit(JsonReader& request) {
   scene.paints = {fit.lobes};
   // Without a reading of gloss it is the angle at which render-osmesa takes gloss to hold.
   scene.gloss_deg = {paint.gloss.empty() ? brdf::kGlossIncidence_deg : paint.gloss.front().angle_deg};
-  weights = render::weight_table(scene, effects).rgba;
+  scene.reflection = page_operator();
+  weights = render::page_weights(scene, effects);
   Json answer = lobes_json(fit.lobes);
   answer["status"] = fit::fit_status_name(fit.report.status);
   answer["de00_max"] = json_number(fit.report.de00_max);

@@ -15,6 +15,9 @@ namespace goniochrome::studio {
 // which `spots` bright spots are cut. Lamps, textures, color maps and brushed surfaces are not drawn.
 render::Effects page_effects(const std::vector<double>& exponents, bool mirror, std::size_t spots);
 
+// How colored light and paint multiply in a page: as in pictures of render-osmesa, unless it is told otherwise.
+color::ReflectionOperator page_operator();
+
 // A session of one page. A request is an object whose member "do" names one of these:
 //   load        basis{name, exponents[], mirror}, paints[]: must come first. Answers paints, the size of the library.
 //   edit        paint, edit{}: the moves of paint-edit, by the names of its options without dashes; numbers are numbers
@@ -34,7 +37,7 @@ class Studio {
 
   Json answer(const Json& request);
 
-  // The row of the weight table for the paint that was fitted last: render::WeightTable::rgba of a single part.
+  // The row of weights of the paint that was fitted last, see render/page_weights.h.
   const std::vector<float>& weights() const;
 
  private:

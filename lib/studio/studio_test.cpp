@@ -3,11 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "base/file.h"
 #include "base/scratch_for_test.h"
 #include "fit/paint_fit.h"
 #include "formats/xml.h"
 #include "paint/edit.h"
+#include "render/page_weights.h"
 #include "studio/paint_json.h"
 
 namespace goniochrome::studio {
@@ -113,7 +116,10 @@ TEST(Studio, FitsAsTheLibraryDoesAndFillsTheWeights) {
   render::Scene scene;
   scene.paints = {fit->lobes};
   scene.gloss_deg = {60};
-  EXPECT_EQ(studio.weights(), render::weight_table(scene, page_effects(kExponents, true, 3)).rgba);
+  scene.reflection = page_operator();
+  EXPECT_EQ(studio.weights(), render::page_weights(scene, page_effects(kExponents, true, 3)));
+  // White light shows the color of the weights: the operator's forms of white, brought back, are what the table has.
+  EXPECT_EQ(studio.weights().size(), render::weight_table(scene, page_effects(kExponents, true, 3)).rgba.size());
 }
 
 TEST(Studio, FindsTheNearestPaintsInOrder) {
@@ -174,8 +180,10 @@ TEST(Studio, DescribesTheColorsOfAScreen) {
   EXPECT_EQ(described.at("rows").size(), 5U);
   EXPECT_EQ(described.at("rows")[1].at("angle"), 25.0);
   // The curve of a measured paint passes through its readings.
-  for (const Json& point : described.at("curve"))
-    if (point.at("angle") == 25.0) EXPECT_EQ(point.at("lab"), described.at("rows")[1].at("lab"));
+  const Json& curve = described.at("curve");
+  const auto at_25 = std::ranges::find_if(curve, [](const Json& point) { return point.at("angle") == 25.0; });
+  ASSERT_NE(at_25, curve.end());
+  EXPECT_EQ(at_25->at("lab"), described.at("rows")[1].at("lab"));
 }
 
 TEST(Studio, AnswersNonsenseWithAnError) {
@@ -183,11 +191,11 @@ TEST(Studio, AnswersNonsenseWithAnError) {
   for (const char* text : {R"({})", R"([])", R"({"do": "dance"})", R"({"do": "fit", "paint": {"name": "x"}})",
                            R"({"do": "nearest", "paint": {"name": "x"}})", R"({"do": "load"})"})
     EXPECT_TRUE(studio.answer(Json::parse(text)).contains("error")) << text;
-  studio = loaded();
+  Studio ready = loaded();
   for (const char* text : {R"({"do": "fit", "paint": {"name": "x"}})", R"({"do": "describe", "paint": {"name": "x"}})",
                            R"({"do": "variations", "paint": {"name": "x"}, "of": "hue"})",
                            R"({"do": "write", "paint": {"name": "x"}, "as": "pdf"})"})
-    EXPECT_TRUE(studio.answer(Json::parse(text)).contains("error")) << text;
+    EXPECT_TRUE(ready.answer(Json::parse(text)).contains("error")) << text;
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "render/camera.h"
 #include "render/page_stage.h"
+#include "render/page_weights.h"
 #include "render/scene.h"
 #include "render/trim.h"
 #include "studio/studio.h"
@@ -33,12 +34,16 @@ Json vector_json(const Vec3& v) {
 Json cube_json(const render::PageCube& cube) {
   constexpr float kMost = 60000;
   float most = 0;
-  for (const float value : cube.map.texels) most = std::max(most, std::abs(value));
+  for (const float value : cube.texels) most = std::max(most, std::abs(value));
   const float scale = most > kMost ? std::exp2(std::ceil(std::log2(most / kMost))) : 1.0F;
   std::vector<std::uint16_t> halves;
-  halves.reserve(cube.map.texels.size());
-  for (const float value : cube.map.texels) halves.push_back(Imath::half(value / scale).bits());
-  return {{"sampler", cube.sampler}, {"size", cube.map.size}, {"scale", scale}, {"texels", packed(halves)}};
+  halves.reserve(cube.texels.size());
+  for (const float value : cube.texels) halves.push_back(Imath::half(value / scale).bits());
+  return {{"sampler", cube.sampler},
+          {"size", cube.size},
+          {"channels", cube.channels},
+          {"scale", scale},
+          {"texels", packed(halves)}};
 }
 
 bool same_finish(const paint::LobeFit& a, const paint::LobeFit& b) {
@@ -105,7 +110,7 @@ PackedMesh packed_mesh(const mesh::Mesh& mesh, bool with_mirror) {
 Result<Json> packed_environment(const std::string& name, const envmap::PrefilteredEnvironment& env,
                                 const formats::Basis& basis) {
   const render::Effects effects = studio::page_effects(basis.exponents, basis.mirror, env.spots.size());
-  GONIO_ASSIGN(const render::PageLight light, render::page_light(env, effects));
+  GONIO_ASSIGN(const render::PageLight light, render::page_light(env, effects, studio::page_operator()));
   const Vec3 toward = render::orbit_direction(kAzimuth_deg, kElevation_deg);
   Json json = {{"name", name},
                {"program", light.shading_fragment},
@@ -126,9 +131,10 @@ Json packed_finishes(const std::vector<paint::LobeFit>& finishes, const formats:
   const render::Effects effects = studio::page_effects(basis.exponents, basis.mirror, 0);
   render::Scene scene;
   scene.paints = finishes;
+  scene.reflection = studio::page_operator();
   const render::WeightTable slots = render::slots_of(effects);
-  const render::WeightTable table = finishes.empty() ? slots : render::weight_table(scene, effects);
-  return {{"columns", 2 * slots.slots * slots.segments}, {"rows", finishes.size()}, {"texels", packed(table.rgba)}};
+  const std::vector<float> weights = finishes.empty() ? std::vector<float>() : render::page_weights(scene, effects);
+  return {{"columns", 2 * slots.slots * slots.segments}, {"rows", finishes.size()}, {"texels", packed(weights)}};
 }
 
 }  // namespace goniochrome::tool

@@ -51,9 +51,9 @@ needs_browser() {
     white=$(sed -n 's|^<script type="application/json" id="data">\(.*\)</script>$|\1|p' page.html |
       jq ".environments[] | select(.name == \"$light\").white")
     for paint in candy_red silver_black_flop blue_to_purple green_to_gold; do
-      render-osmesa -q --mesh "$TESTDATA/speed-shape.obj" --paint "fitted.xml#$paint" --env "$light.env.exr" --engine gl \
+      render-osmesa -q --trim --mesh "$TESTDATA/speed-shape.obj" --paint "fitted.xml#$paint" --env "$light.env.exr" --engine gl \
         --effects all,-rays --size 640x360 --samples 1 -o "$paint-$light.exr"
-      run python3 "$code/compare.py" "$paint-$light.f32" "$paint-$light.exr" "$white"
+      run /usr/bin/python3 "$code/compare.py" "$paint-$light.f32" "$paint-$light.exr" "$white"
       echo "$paint $light: mean p95 largest pixels: $output"
       awk -v numbers="$output" 'BEGIN { split(numbers, n, " "); exit !(n[1] <= 0.1 && n[2] <= 0.5 && n[4] > 20000) }'
     done

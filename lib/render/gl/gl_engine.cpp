@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "render/gl/disc_texture.h"
+#include "render/gl/gl_weights.h"
 #include "render/gl/shader.h"
 #include "render/gl/tilt_shader.h"
 #include "render/internal/map_cost.h"
@@ -25,17 +26,6 @@ constexpr MapCost kCost = {.pixel = 12,
                            .lookup = 60,
                            .pairs = false};
 constexpr double kCompileMs = 110;
-
-// The four forms of colors that lie `step` floats apart.
-std::vector<float> in_forms(const ProductForms& forms, const float* colors, std::size_t count, std::size_t step) {
-  std::vector<float> result(4 * count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const color::Rgb color{colors[step * i], colors[step * i + 1], colors[step * i + 2]};
-    for (int form = 0; form < 4; ++form)
-      result[4 * i + static_cast<std::size_t>(form)] = static_cast<float>(forms.of(form, color));
-  }
-  return result;
-}
 
 }  // namespace
 
@@ -69,7 +59,7 @@ void GlEngine::upload(const envmap::CubeMap& map, const std::string& sampler) {
     const GLenum target = GL_TEXTURE_CUBE_MAP_POSITIVE_X + static_cast<GLenum>(face);
     if (forms_.count == 4) {
       gl_->TexImage2D(target, 0, GL_RGBA32F, map.size, map.size, 0, GL_RGBA, GL_FLOAT,
-                      in_forms(forms_, map.at(face, 0, 0), texels, 3).data());
+                      in_four_forms(forms_, map.at(face, 0, 0), texels, 3).data());
     } else {
       gl_->TexImage2D(target, 0, GL_RGB32F, map.size, map.size, 0, GL_RGB, GL_FLOAT, map.at(face, 0, 0));
     }
@@ -131,7 +121,7 @@ void GlEngine::upload_tilts(const std::vector<std::vector<brdf::Tilt>>& tilts) {
 void GlEngine::upload_tilted(const Scene& scene) {
   const TiltTexture texture =
       tilt_texture(tilt_table(scene, effects_, tilt_exponents_), tilt_exponents_.size(), [&](const float* rgb) {
-        return forms_.count == 4 ? in_forms(forms_, rgb, 1, 3) : std::vector<float>{rgb[0], rgb[1], rgb[2]};
+        return forms_.count == 4 ? in_four_forms(forms_, rgb, 1, 3) : std::vector<float>{rgb[0], rgb[1], rgb[2]};
       });
   tilt_stride_ = static_cast<int>(texture.stride);
   tilted_ = gl_->float_texture(static_cast<int>(kTiltTexels), static_cast<int>(texture.rgba.size() / (4 * kTiltTexels)),
@@ -146,13 +136,7 @@ void GlEngine::upload_discs() {
 void GlEngine::load_paints(const Scene& scene) {
   const WeightTable table = weight_table(scene, effects_);
   gl_->DeleteTextures(1, &weights_);
-  std::vector<float> weights = table.rgba;
-  if (forms_.count == 4) {  // those that meet maps
-    const auto met = static_cast<std::size_t>(table.light_slot()) * 8,
-               slots = static_cast<std::size_t>(table.slots) * 8;
-    for (std::size_t at = 0; at < weights.size(); at += slots)
-      std::ranges::copy(in_forms(forms_, &table.rgba[at], met / 4, 4), &weights[at]);
-  }
+  const std::vector<float> weights = gl_weights(table, forms_);
   weights_ = gl_->float_texture(2 * table.slots * table.segments, table.parts, weights.data());
   gl_->DeleteTextures(1, &tilts_);
   tilts_ = 0;

@@ -16,7 +16,7 @@ function check(what, holds) {
 
 async function main() {
   const [page, folder] = process.argv.slice(2), url = pathToFileURL(path.resolve(page)).href;
-  const browser = await Browser.open(url, { width: 1400, height: 1300 });
+  const browser = await Browser.open(url, { width: 1000, height: 1000 });
   const value = (expression) => browser.evaluate(expression);
   const paint = async () => JSON.stringify(await value("studio.paint"));
   const shot = (name) => browser.screenshot(path.join(folder, name + ".png"));

@@ -86,18 +86,18 @@ class Stage {
 
   cube(packed) {
     const gl = this.gl, texture = gl.createTexture(), halves = numbersOf(packed.texels, Uint16Array);
-    const most = 3 * packed.size * packed.size;
+    const most = packed.channels * packed.size * packed.size, format = packed.channels === 4 ? gl.RGBA : gl.RGB;
     // Maps brighter than halves can be are floats, where those can be interpolated; else the brightest of halves.
-    let values = halves, kind = gl.RGB16F, type = gl.HALF_FLOAT;
+    let values = halves, kind = packed.channels === 4 ? gl.RGBA16F : gl.RGB16F, type = gl.HALF_FLOAT;
     if (packed.scale !== 1) {
       values = Float32Array.from(halves, (half) => numberOfHalf(half) * packed.scale);
       type = gl.FLOAT;
-      if (this.floatLinear) kind = gl.RGB32F;
+      if (this.floatLinear) kind = packed.channels === 4 ? gl.RGBA32F : gl.RGB32F;
       else values = values.map((value) => Math.min(value, 65504));
     }
     gl.bindTexture(gl.TEXTURE_CUBE_MAP, texture);
     for (let face = 0; face < 6; ++face)
-      gl.texImage2D(gl.TEXTURE_CUBE_MAP_POSITIVE_X + face, 0, kind, packed.size, packed.size, 0, gl.RGB, type,
+      gl.texImage2D(gl.TEXTURE_CUBE_MAP_POSITIVE_X + face, 0, kind, packed.size, packed.size, 0, format, type,
                     values.subarray(face * most, (face + 1) * most));
     gl.texParameteri(gl.TEXTURE_CUBE_MAP, gl.TEXTURE_MIN_FILTER, gl.LINEAR);
     gl.texParameteri(gl.TEXTURE_CUBE_MAP, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
@@ -235,6 +235,9 @@ class Stage {
     const sum = this.shade("samples", gbuffer, weights, environment, sample > 0);
     if (sample === samples - 1) this.show(sum, samples, environment, stops);
   }
+
+  // Returns when everything is drawn.
+  wait() { this.gl.readPixels(0, 0, 1, 1, this.gl.RGBA, this.gl.UNSIGNED_BYTE, new Uint8Array(4)); }
 
   // A small picture for a tile, as pixels of a canvas.
   tile(camera, width, height, weights, environment, stops) {
