@@ -24,7 +24,7 @@ render::Effects page_effects(const std::vector<double>& exponents, bool mirror, 
   effects.fresnel = effects.coat = effects.views = effects.reflection = true;
   effects.horizon = !exponents.empty();
   effects.spots = effects.horizon ? spots : 0;
-  effects.background = mirror ? render::Background::kEnvironment : render::Background::kColor;
+  effects.background = mirror ? render::Background::kEnvironment : render::Background::kNone;
   return effects;
 }
 

@@ -111,7 +111,7 @@ print(base64.b64encode(hashlib.sha256(sys.stdin.buffer.read()).digest()).decode(
 
 @test "--explain tells what is packed and what is left out" {
   needs_page
-  run make_page --explain -q hostile.paints.xml -o page.html
+  run make_page --explain hostile.paints.xml -o page.html
   [ "$status" -eq 0 ]
   [[ "$output" =~ "left out: shadows" ]]
 }

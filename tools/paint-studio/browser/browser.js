@@ -75,7 +75,7 @@ class Browser {
   }
   async until(expression, seconds = 60) {
     for (const end = Date.now() + 1000 * seconds; Date.now() < end;) {
-      if (await this.evaluate(expression)) return;
+      if (await this.evaluate(expression).catch(() => false)) return;  // a page that loads has no answer yet
       await new Promise((resolve) => setTimeout(resolve, 50));
     }
     throw new Error(`after ${seconds} s still not: ${expression}; ${this.problems.join("; ")}`);

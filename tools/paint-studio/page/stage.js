@@ -189,7 +189,6 @@ class Stage {
     for (const name of ["corner", "right", "down"]) gl.uniform3fv(program.at(name), gbuffer.view[name]);
     for (const [uniform, member] of [["light_direction", "direction"], ["light_white", "white"], ["light_disc", "disc"]])
       if (made.lamps.length > 0) gl.uniform3fv(program.at(uniform + "[0]"), made.lamps.flatMap((lamp) => lamp[member]));
-    if (program.at("background")) gl.uniform3f(program.at("background"), 0, 0, 0);
     if (add) {
       gl.enable(gl.BLEND);
       gl.blendFunc(gl.ONE, gl.ONE);
