@@ -26,13 +26,16 @@ function wasiImports(memoryOf) {
 
 // The engine of a compiled module. ask() sends a request and returns the answer; it throws what the answer calls an
 // error. weights() are those of the paint that was fitted last, copied.
-async function makeEngine(bytes) {
+// `paints` is the size of the library that it will load: memory for it is made at once, since some systems copy all of it
+// whenever it grows.
+async function makeEngine(bytes, paints = 0) {
   let memory = null;
   const { instance } = await WebAssembly.instantiate(bytes, {
     wasi_snapshot_preview1: wasiImports(() => memory),
   });
   const library = instance.exports;
   memory = library.memory;
+  memory.grow(Math.ceil((4096 * paints) / 65536));
   library._initialize();
   const encoder = new TextEncoder(), decoder = new TextDecoder();
   return {

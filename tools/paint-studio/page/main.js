@@ -280,8 +280,8 @@ class App {
 async function begin() {
   const text = (id) => document.getElementById(id).textContent;
   try {
-    const engine = await makeEngine(bytesOf(text("compiled")));
-    window.studio = new App(engine, JSON.parse(text("data")));
+    const data = JSON.parse(text("data")), engine = await makeEngine(bytesOf(text("compiled")), data.paints.length);
+    window.studio = new App(engine, data);
   } catch (error) {
     document.getElementById("status").textContent = "The page cannot start: " + error.message;
     throw error;
