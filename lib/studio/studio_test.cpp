@@ -27,9 +27,10 @@ paint::Paint metallic() {
   paint.paint_class = paint::PaintClass::kMetallic;
   paint.gloss = {{60, 88.5}};
   paint::Measurement& measurement = paint.measurement.emplace();
-  for (const double angle : {15.0, 25.0, 45.0, 75.0, 110.0})
-    measurement.rows.push_back(
-        {{.aspecular_deg = angle}, {70 - 0.4 * angle, -3.1 + 0.01 * angle, -30.7 + 0.1 * angle}});
+  for (const double angle : {15.0, 25.0, 45.0, 75.0, 110.0}) {
+    const double from_travel = std::max(0.0, (80 - angle) / 65), share = from_travel * from_travel;
+    measurement.rows.push_back({{.aspecular_deg = angle}, {30 + 40 * share, -3.1 + 2 * share, -20.7 - 10 * share}});
+  }
   return paint;
 }
 
@@ -167,7 +168,7 @@ TEST(Studio, WritesWhatTheReadersRead) {
   const std::string table = scratch.path("x.csv");
   EXPECT_EQ(studio.answer({{"do", "write"}, {"paint", paint_json(metallic())}, {"as", "csv"}, {"file", table}}),
             Json::object());
-  EXPECT_THAT(*file_content(table), HasSubstr("blue <b>,45as15,D65,10,64,"));
+  EXPECT_THAT(*file_content(table), HasSubstr("blue <b>,45as15,D65,10,70,"));
 }
 
 TEST(Studio, DescribesTheColorsOfAScreen) {
