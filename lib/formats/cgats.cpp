@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "base/text.h"
+#include "formats/internal/spectral_rows.h"
 
 namespace goniochrome::formats {
 
@@ -110,6 +111,7 @@ struct Columns {
   int name = kNone, id = kNone, geometry = kNone, illuminant = kNone, observer = kNone;
   int instrument = kNone, paint_class = kNone, code = kNone;
   std::vector<ColorColumns> colors;
+  std::vector<WavelengthColumn> wavelengths;  // five or more, or none
   std::vector<std::pair<double, int>> gloss;  // angle, column
 };
 
@@ -155,6 +157,8 @@ class CgatsParser {
     const std::string value = unquoted(rest.substr(0, rest.find('#')));
     if (key == "NUMBER_OF_SETS") {
       announced_ = parse_integer(value);
+    } else if (key == "SPECTRAL_NORM") {
+      if (const auto norm = parse_number(value); norm && *norm > 0) spectral_norm_ = *norm;
     } else if (key == "INSTRUMENTATION") {
       instrument_ = value;
     } else if (key == "MEASUREMENT_GEOMETRY") {
@@ -206,8 +210,15 @@ class CgatsParser {
         if (const auto angle = parse_number(field.substr(6))) columns_.gloss.push_back({*angle, i});
     }
     if (!find_colors("LAB_", "LAB", false)) find_colors("XYZ_", "XYZ", true);
-    if (columns_.colors.empty())
-      return error("the fields hold neither LAB_L LAB_A LAB_B nor XYZ_X XYZ_Y XYZ_Z: export one of them");
+    for (int i = 0; i < static_cast<int>(columns_.fields.size()); ++i)
+      if (const auto nm = wavelength_in(columns_.fields[static_cast<std::size_t>(i)]))
+        columns_.wavelengths.push_back({*nm, i});
+    if (columns_.wavelengths.size() < kFewestWavelengths) columns_.wavelengths.clear();
+    if (const auto steps = check_steps(columns_.wavelengths); !steps.ok()) return error(steps.error().message);
+    if (columns_.colors.empty() && columns_.wavelengths.empty())
+      return error(
+          "the fields hold neither LAB_L LAB_A LAB_B nor XYZ_X XYZ_Y XYZ_Z nor spectra such as SPECTRAL_NM_400: export "
+          "one of them");
     return {};
   }
 
@@ -314,6 +325,10 @@ class CgatsParser {
       if (!(std::abs(units) <= kMostLab)) return error(fmt::format("the gloss is {}: write gloss units", units));
       gloss.push_back({angle, units});
     }
+    std::optional<paint::SpectrumReading> measured;
+    if (!columns_.wavelengths.empty()) {
+      GONIO_ASSIGN(measured, spectrum(condition, readings));
+    }
     if (columns_.geometry == kNone || name != open_.paint.name) {
       finish_paint();
       open_.paint.name = std::move(name);
@@ -323,7 +338,35 @@ class CgatsParser {
       open_.instrument = columns_.instrument == kNone ? instrument_ : cell(columns_.instrument);
     }
     open_.readings.insert(open_.readings.end(), readings.begin(), readings.end());
+    if (measured) open_.spectra.push_back(std::move(*measured));
     return {};
+  }
+
+  // The spectrum of the row, if it has one, as factors. It becomes a reading where no color stands beside it.
+  Result<std::optional<paint::SpectrumReading>> spectrum(const color::ViewingCondition& condition,
+                                                         std::vector<SeenReading>& readings) {
+    const std::vector<WavelengthColumn>& columns = columns_.wavelengths;
+    if (cell(columns[0].at).empty()) return std::optional<paint::SpectrumReading>();
+    GONIO_ASSIGN(const auto geometry, geometry_of_row({}));
+    if (!geometry) return std::optional<paint::SpectrumReading>();
+    paint::SpectrumReading spectrum{*geometry, columns[0].nm, columns[1].nm - columns[0].nm, {}};
+    for (const WavelengthColumn& column : columns) {
+      GONIO_ASSIGN(const double value, number(column.at));
+      if (!(std::abs(value) <= kMostLab))
+        return error(fmt::format("the reflectance at {} nm is {}: write a factor", column.nm, value));
+      spectrum.factors.push_back(value / spectral_norm_.value_or(1));
+    }
+    const auto seen = std::ranges::find(readings, *geometry, [](const SeenReading& r) { return r.reading.geometry; });
+    const auto L = seen == readings.end() ? std::nullopt : std::optional(seen->reading.lab.L);
+    if (!spectral_norm_)
+      if (const auto made = meter_.make_factors(spectrum, condition, L); !made.ok()) return error(made.error().message);
+    if (seen == readings.end()) {
+      const auto lab = meter_.lab(spectrum, condition);
+      if (!lab.ok()) return error(lab.error().message);
+      if (const auto checked = check_lab(*lab); !checked.ok()) return error(checked.error().message);
+      readings.push_back({condition, {*geometry, *lab}});
+    }
+    return std::optional(std::move(spectrum));
   }
 
   // What the row states, or else the header, or else the options, or else D50/2, which is the standard's condition.
@@ -385,8 +428,10 @@ class CgatsParser {
 
   std::optional<std::int64_t> announced_;
   std::string instrument_, stated_geometry_;
+  std::optional<double> spectral_norm_;  // that stands for the perfect diffuser
   color::ViewingCondition stated_{"", 0};
   Columns columns_;
+  SpectralMeter meter_;
 
   OpenPaint open_;  // without a name while there is none
   UniqueNames names_;

@@ -16,10 +16,11 @@ namespace goniochrome::formats {
 // Whether a file that begins with `head` is CGATS text.
 bool looks_cgats(std::string_view head);
 
-// Reads LAB_ or XYZ_ columns. Names come from SAMPLE_NAME or SAMPLE_ID; the geometry comes from GEOMETRY, from the
-// endings of columns (LAB_L_45as15) or from MEASUREMENT_GEOMETRY; the viewing condition comes from columns or from any
-// of the keywords in use. What the file does not say is assumed and remarked: D50/2 and 45/0, as in ISO 13655. Errors
-// name file, line and cell.
+// Reads LAB_ or XYZ_ columns, and spectra (SPECTRAL_NM_400, nm400, SPEC_400), from which it integrates colors where
+// there are none. Names come from SAMPLE_NAME or SAMPLE_ID; the geometry comes from GEOMETRY, from the endings of
+// columns (LAB_L_45as15) or from MEASUREMENT_GEOMETRY; the viewing condition comes from columns or from any of the
+// keywords in use. What the file does not say is assumed and remarked: D50/2 and 45/0, as in ISO 13655. Errors name
+// file, line and cell.
 Result<ImportedPaints> read_cgats(InputFile input, const ImportOptions& options);
 
 // Writes paints as one table. The header counts the rows, so the paints are held in memory until finish().

@@ -128,5 +128,18 @@ TEST_F(Cgats, BadRowsArePassedOverWhenAsked) {
   EXPECT_THAT(paints.skipped, ElementsAre(HasSubstr(":9: 4 cells where the format has 5 fields: fill")));
 }
 
+// Two percent at all wavelengths are L* 116 (.02)^(1/3) - 16, whatever the light.
+TEST_F(Cgats, ReadsSpectra) {
+  std::string fields = "SAMPLE_ID", cells = "gray";
+  for (int nm = 400; nm <= 700; nm += 10) fields += fmt::format(" SPECTRAL_NM_{}", nm), cells += " 2";
+  const auto paints =
+      good(std::string(kHead) + "SPECTRAL_NORM 100\nMEASUREMENT_GEOMETRY \"45/0\"\n" + table(fields, cells));
+  const paint::Measurement& measurement = *paints.paints.at(0).measurement;
+  EXPECT_NEAR(measurement.rows.at(0).lab.L, 116 * std::cbrt(0.02) - 16, 1e-9);
+  EXPECT_EQ(measurement.rows.at(0).geometry, geometry("45as45"));
+  EXPECT_NEAR(measurement.spectra.at(0).factors.at(0), 0.02, 1e-15);
+  EXPECT_THAT(refusal(std::string(kHead) + table(fields, cells + " 3")), HasSubstr("33 cells"));
+}
+
 }  // namespace
 }  // namespace goniochrome::formats

@@ -5,160 +5,13 @@
 
 #include "base/text.h"
 #include "formats/imported.h"
+#include "formats/internal/csv_records.h"
+#include "formats/internal/spectral_rows.h"
 #include "formats/xml.h"
 
 namespace goniochrome::formats {
 
 namespace {
-
-constexpr const char* kLongHeader = "sample,geometry,illuminant,observer,L,a,b";
-constexpr std::size_t kChunk = 1 << 16;
-constexpr std::size_t kLongestRecord = 1 << 20;  // in a longer one a quotation mark was left open
-constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-
-// The records of a table: cells between separators, quoted or not, whatever the ends of lines are.
-class CsvRecords {
- public:
-  explicit CsvRecords(InputFile input) : input_(std::move(input)) {}
-
-  // Reads the next record that is not blank into `cells`. White space around cells and the quotes of quoted cells are
-  // taken off. Returns false at the end. The first record fixes the separator: `;` if it holds one, or else a tab, or
-  // else `,`. Error: file and line; it is final where the record does not end.
-  Result<bool> next(std::vector<std::string>& cells);
-
-  // The line (from 1) on which the last record began.
-  int line() const { return line_; }
-  char separator() const { return separator_; }
-  const std::string& name() const { return input_.name(); }
-  Error error(std::string_view what) const { return input_error("{}:{}: {}", name(), line_, what); }
-
- private:
-  Result<bool> next_line();
-  Result<bool> fill();
-
-  InputFile input_;
-  std::string buffer_;
-  std::size_t at_ = 0;
-  std::string record_;
-  int line_ = 0, lines_read_ = 0;
-  char separator_ = 0;
-  bool failed_ = false;
-};
-
-bool quotes_closed(std::string_view text) {
-  return std::ranges::count(text, '"') % 2 == 0;
-}
-
-char separator_of(std::string_view header) {
-  bool quoted = false;
-  bool semicolon = false, tab = false;
-  for (const char c : header) {
-    if (c == '"') quoted = !quoted;
-    semicolon = semicolon || (c == ';' && !quoted);
-    tab = tab || (c == '\t' && !quoted);
-  }
-  return semicolon ? ';' : tab ? '\t' : ',';
-}
-
-// The cell that begins at `at`, which moves behind its separator, or behind the end for the last cell. A quoted cell
-// may have white space around its quotes; anything else there is kept as it is.
-std::string cell_at(std::string_view record, std::size_t& at, char separator) {
-  std::size_t end = at;
-  bool quoted = false;
-  for (; end < record.size() && (quoted || record[end] != separator); ++end) quoted ^= record[end] == '"';
-  const std::string_view cell = trimmed(record.substr(at, end - at));
-  at = end + 1;
-  if (cell.size() < 2 || cell.front() != '"' || cell.back() != '"') return std::string(cell);
-  std::string text;
-  for (std::size_t i = 1; i + 1 < cell.size(); ++i) {
-    text += cell[i];
-    if (cell[i] == '"' && cell[i + 1] == '"' && i + 2 < cell.size()) ++i;
-  }
-  return text;
-}
-
-// Appends the next bytes to the buffer, less what was used. False at the end of the input.
-Result<bool> CsvRecords::fill() {
-  buffer_.erase(0, at_);
-  at_ = 0;
-  GONIO_ASSIGN(const std::size_t count, input_.read(buffer_, kChunk));
-  return count > 0;
-}
-
-// Appends one line to the record, without its end: LF, CR LF or CR.
-Result<bool> CsvRecords::next_line() {
-  for (;;) {
-    const std::size_t end = buffer_.find_first_of("\r\n", at_);
-    const bool needs_more = end == std::string::npos || (buffer_[end] == '\r' && end + 1 == buffer_.size());
-    if (needs_more) {
-      if (buffer_.size() - at_ > kLongestRecord) break;
-      GONIO_ASSIGN(const bool more, fill());
-      if (more) continue;
-      if (at_ == buffer_.size()) return false;
-    }
-    const std::size_t length = (end == std::string::npos ? buffer_.size() : buffer_.find_first_of("\r\n", at_)) - at_;
-    record_.append(buffer_, at_, length);
-    at_ += length;
-    if (at_ < buffer_.size()) at_ += buffer_.compare(at_, 2, "\r\n") == 0 ? 2 : 1;
-    ++lines_read_;
-    return true;
-  }
-  return error(fmt::format("a line is longer than {} bytes: give a table in text", kLongestRecord));
-}
-
-Result<bool> CsvRecords::next(std::vector<std::string>& cells) {
-  if (failed_) return false;
-  failed_ = true;  // until the record is complete
-  do {
-    record_.clear();
-    line_ = lines_read_ + 1;
-    GONIO_ASSIGN(const bool found, next_line());
-    if (!found) return false;
-    while (!quotes_closed(record_)) {
-      record_ += '\n';
-      GONIO_ASSIGN(const bool more, next_line());
-      if (!more || record_.size() > kLongestRecord)
-        return error("a quotation mark is left open: close it, or double it inside a quoted cell");
-    }
-  } while (trimmed(record_).empty());
-  failed_ = false;
-  if (separator_ == 0) {
-    if (record_.starts_with(kByteOrderMark)) record_.erase(0, kByteOrderMark.size());
-    if (record_.starts_with("\xff\xfe") || record_.starts_with("\xfe\xff"))
-      return failed_ = true, error("the table is UTF-16: save it as CSV UTF-8");
-    separator_ = separator_of(record_);
-  }
-  if (!is_plain_utf8(record_)) return error("a character is not valid UTF-8: save the table as CSV UTF-8");
-  cells.clear();
-  for (std::size_t at = 0; at <= record_.size();) cells.push_back(cell_at(record_, at, separator_));
-  return true;
-}
-
-std::string doubled_quotes(std::string_view text) {
-  std::string doubled;
-  for (const char c : text) doubled += c == '"' ? "\"\"" : std::string(1, c);
-  return doubled;
-}
-
-// Whether a spreadsheet would take the text for a formula and work it out. Apostrophes before one count as part of it,
-// so that one more can be taken off again.
-bool looks_like_formula(std::string_view text) {
-  text.remove_prefix(std::min(text.find_first_not_of('\''), text.size()));
-  return !text.empty() && std::string_view("=+-@").find(text.front()) != std::string_view::npos;
-}
-
-// A text that is none of our numbers as its cell says it, without the apostrophe that marks it as text.
-std::string_view cell_text(std::string_view cell) {
-  return cell.starts_with('\'') && looks_like_formula(cell) ? cell.substr(1) : cell;
-}
-
-// One text as it is written between commas: quoted if any reader might take it apart, and behind an apostrophe if a
-// spreadsheet would take it for a formula.
-std::string csv_cell(std::string_view text) {
-  if (looks_like_formula(text)) return "\"'" + doubled_quotes(text) + '"';
-  if (text.find_first_of(",;\t\"\r\n") == std::string_view::npos && trimmed(text) == text) return std::string(text);
-  return '"' + doubled_quotes(text) + '"';
-}
 
 // The columns that have names of their own.
 enum Column {
@@ -182,11 +35,36 @@ constexpr std::array<std::string_view, kColumns> kNames = {
     "sample", "geometry", "illuminant", "observer", "l",       "a",       "b",
     "class",  "code",     "instrument", "gloss20",  "gloss60", "gloss85", "origin"};
 
-// A heading in lower case and without what spreadsheets add: `L*`, `L_15`, `L (15)`.
+// The words of other programs for these columns.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 16> kOtherNames = {{
+    {"name", "sample"},
+    {"paint", "sample"},
+    {"samplename", "sample"},
+    {"probe", "sample"},
+    {"muster", "sample"},
+    {"bezeichnung", "sample"},
+    {"farbe", "sample"},
+    {"farbton", "sample"},
+    {"geometrie", "geometry"},
+    {"winkel", "geometry"},
+    {"messwinkel", "geometry"},
+    {"lichtart", "illuminant"},
+    {"normlichtart", "illuminant"},
+    {"beobachter", "observer"},
+    {"normalbeobachter", "observer"},
+    {"gloss", "gloss60"},
+}};
+
+// A heading in lower case and without what spreadsheets and instruments add: `L*`, `L_15`, `L (15)`, `15° L*`.
 std::string plain_heading(std::string_view heading) {
   std::string text = lower(heading);
+  for (auto at = text.find("\xc2\xb0"); at != std::string::npos; at = text.find("\xc2\xb0")) text.erase(at, 2);
   std::erase_if(text, [](char c) { return c == '*' || c == '_' || c == ' ' || c == '(' || c == ')'; });
-  return text == "name" || text == "paint" ? "sample" : text == "gloss" ? "gloss60" : text;
+  const bool angle_first = text.size() > 1 && (text[0] == '-' || (text[0] >= '0' && text[0] <= '9'));
+  if (angle_first && std::string_view("lab").find(text.back()) != std::string_view::npos)
+    std::rotate(text.begin(), text.end() - 1, text.end());
+  const auto* other = std::ranges::find(kOtherNames, text, &std::pair<std::string_view, std::string_view>::first);
+  return other != kOtherNames.end() ? std::string(other->second) : text;
 }
 
 // Lab of one geometry in a wide table: where its three columns are.
@@ -200,7 +78,9 @@ struct Header {
   std::vector<std::string> headings;  // as written
   std::array<int, kColumns> column;
   std::vector<Triple> triples;
+  std::vector<WavelengthColumn> wavelengths;  // five or more, or none
   std::vector<std::string> unknown;
+  std::string taken_for_sample;  // the heading of the first column, where no heading says where the names are
   bool is_wide() const { return column[kGeometry] < 0; }
 };
 
@@ -233,10 +113,32 @@ Result<Header> header_of(const std::vector<std::string>& cells) {
     }
     if (heading.empty()) continue;
     GONIO_ASSIGN(const bool taken, take_triple(header, heading, i));
-    if (!taken) header.unknown.push_back(cells[i]);
+    if (taken) continue;
+    if (const auto nm = wavelength_in(cells[i]))
+      header.wavelengths.push_back({*nm, i});
+    else
+      header.unknown.push_back(cells[i]);
+  }
+  if (header.wavelengths.size() < kFewestWavelengths) {
+    for (const WavelengthColumn& column : header.wavelengths)
+      header.unknown.push_back(cells[static_cast<std::size_t>(column.at)]);
+    header.wavelengths.clear();
+  }
+  GONIO_TRY(check_steps(header.wavelengths));
+  const bool has_colors = header.column[kGeometry] >= 0 || !header.triples.empty();
+  const bool first_is_free = cells[0].empty() || (!header.unknown.empty() && header.unknown[0] == cells[0]);
+  if (header.column[kSample] < 0 && has_colors && first_is_free) {
+    header.taken_for_sample = cells[0].empty() ? "first" : cells[0];
+    std::erase(header.unknown, cells[0]);
+    header.column[kSample] = 0;
   }
   if (header.column[kSample] < 0) return input_error("the header has no column \"sample\": begin with {}", kLongHeader);
+  if (header.is_wide() && !header.wavelengths.empty())
+    return input_error(
+        "the header has wavelengths and no column \"geometry\": say at which geometry each spectrum was measured");
   if (!header.is_wide()) {
+    const bool has_no_lab = header.column[kL] < 0 && header.column[kA] < 0 && header.column[kB] < 0;
+    if (has_no_lab && !header.wavelengths.empty()) return header;
     for (const Column channel : {kL, kA, kB})
       if (header.column[channel] < 0)
         return input_error("the header has no column \"{}\": begin with {}", "Lab"[channel - kL], kLongHeader);
@@ -280,6 +182,8 @@ struct CsvPaintReader::State {
   std::string_view text(int column) const { return column < 0 ? std::string_view() : cell_text(cells[column]); }
   Result<double> number(int column, Domain domain = Domain::kAny) const;
   Result<color::Lab> lab(const std::array<int, 3>& columns) const;
+  Result<std::optional<paint::SpectrumReading>> spectrum(const paint::Geometry& geometry) const;
+  Result<paint::LabReading> reading(const paint::Geometry& geometry);
   Result<color::ViewingCondition> condition() const;
   Result<paint::Paint> described() const;
   Result<void> add_row();
@@ -291,6 +195,7 @@ struct CsvPaintReader::State {
   Header header;
   std::vector<std::string> cells, warnings;
   NameLedger names;
+  SpectralMeter meter;
   int line = 0;
 
   // Long tables: the sample whose rows are being collected.
@@ -307,6 +212,9 @@ Result<void> CsvPaintReader::State::read_header() {
   auto parsed = header_of(cells);
   if (!parsed.ok()) return error(parsed.error().message);
   header = std::move(*parsed);
+  if (!header.taken_for_sample.empty())
+    warnings.push_back(
+        fmt::format("{}: the column \"{}\" is taken for the names", records.name(), shown(header.taken_for_sample)));
   if (!header.unknown.empty())
     warnings.push_back(fmt::format("{}: the columns {} are not read", records.name(), listed(header.unknown)));
   if (header.column[kIlluminant] < 0 || header.column[kObserver] < 0)
@@ -337,6 +245,44 @@ Result<color::Lab> CsvPaintReader::State::lab(const std::array<int, 3>& columns)
   GONIO_ASSIGN(value.a, number(columns[1], Domain::kLab));
   GONIO_ASSIGN(value.b, number(columns[2], Domain::kLab));
   return value;
+}
+
+// The spectrum of the row, or nothing where its cells are empty.
+Result<std::optional<paint::SpectrumReading>> CsvPaintReader::State::spectrum(const paint::Geometry& geometry) const {
+  const std::vector<WavelengthColumn>& columns = header.wavelengths;
+  if (std::ranges::all_of(columns, [&](const WavelengthColumn& column) { return cells[column.at].empty(); }))
+    return std::optional<paint::SpectrumReading>();
+  paint::SpectrumReading spectrum{geometry, columns[0].nm, columns[1].nm - columns[0].nm, {}};
+  for (const WavelengthColumn& column : columns) {
+    GONIO_ASSIGN(const double factor, number(column.at, Domain::kLab));
+    spectrum.factors.push_back(factor);
+  }
+  return std::optional(std::move(spectrum));
+}
+
+// Lab as the row states it, or from its spectrum, which the open sample keeps.
+Result<paint::LabReading> CsvPaintReader::State::reading(const paint::Geometry& geometry) {
+  const std::array<int, 3> columns = {header.column[kL], header.column[kA], header.column[kB]};
+  GONIO_ASSIGN(auto measured, spectrum(geometry));
+  const bool stated = std::ranges::any_of(columns, [&](int column) { return !text(column).empty(); });
+  paint::LabReading row{geometry, {}};
+  if (!measured && std::ranges::min(columns) < 0) return error("the row has no spectrum, and the table no L, a and b");
+  if (stated || !measured) {
+    GONIO_ASSIGN(row.lab, lab(columns));
+  }
+  if (!measured) return row;
+  const color::ViewingCondition& condition = open->measurement->condition;
+  if (const auto made = meter.make_factors(*measured, condition, stated ? std::optional(row.lab.L) : std::nullopt);
+      !made.ok())
+    return error(made.error().message);
+  if (!stated) {
+    const auto integrated = meter.lab(*measured, condition);
+    if (!integrated.ok()) return error(integrated.error().message);
+    row.lab = *integrated;
+    if (const auto checked = check_lab(row.lab); !checked.ok()) return error(checked.error().message);
+  }
+  open->measurement->spectra.push_back(std::move(*measured));
+  return row;
 }
 
 Result<color::ViewingCondition> CsvPaintReader::State::condition() const {
@@ -448,12 +394,12 @@ Result<void> CsvPaintReader::State::add_row() {
       return error(fmt::format("geometry {} of sample \"{}\" is already at line {}: keep one, or give the mean",
                                paint::geometry_name(*geometry), shown(open->name), row_lines[i]));
   if (rows.size() >= kMostRows) return error(fmt::format("more than {} rows in one sample: split it", kMostRows));
-  GONIO_ASSIGN(const color::Lab value, lab({header.column[kL], header.column[kA], header.column[kB]}));
+  GONIO_ASSIGN(const paint::LabReading reading_here, reading(*geometry));
   const std::string origin = lower(text(header.column[kOrigin]));
   if (!origin.empty() && origin != "row" && origin != "curve")
     return error(fmt::format("origin is \"{}\": write row, or curve for what a curve says", shown(origin)));
   if (origin == "curve") from_curve.push_back(*geometry);
-  rows.push_back({*geometry, value});
+  rows.push_back(reading_here);
   row_lines.push_back(records.line());
   return {};
 }
@@ -515,85 +461,6 @@ bool CsvPaintReader::is_wide() const {
 
 const std::vector<std::string>& CsvPaintReader::warnings() const {
   return state_->warnings;
-}
-
-namespace {
-
-constexpr const char* kOtherColumns = ",class,code,instrument,gloss20,gloss60,gloss85";
-
-std::string lab_cells(const color::Lab& lab) {
-  return fmt::format(",{},{},{}", shortest(lab.L), shortest(lab.a), shortest(lab.b));
-}
-
-// A heading's geometry: the aspecular angle alone in the plane of 45 deg incidence.
-std::string column_name(const paint::Geometry& geometry) {
-  const bool usual = geometry.incidence_deg == 45 && !geometry.out_of_plane && !geometry.reversed;
-  return usual ? shortest(geometry.aspecular_deg) : paint::geometry_name(geometry);
-}
-
-std::string listed_names(const std::vector<paint::Geometry>& geometries) {
-  std::string text;
-  for (const paint::Geometry& geometry : geometries) text += (text.empty() ? "" : " ") + paint::geometry_name(geometry);
-  return text;
-}
-
-std::string other_cells(const paint::Paint& paint) {
-  std::string text = fmt::format(",{},{},{}", paint::paint_class_name(paint.paint_class), csv_cell(paint.code),
-                                 csv_cell(paint.measurement->instrument));
-  for (const double angle_deg : {20.0, 60.0, 85.0}) {
-    const auto gloss = std::ranges::find(paint.gloss, angle_deg, &paint::GlossReading::angle_deg);
-    text += "," + (gloss == paint.gloss.end() ? "" : shortest(gloss->gloss_units));
-  }
-  return text;
-}
-
-}  // namespace
-
-Result<CsvPaintWriter> CsvPaintWriter::begin(OutputFile file, const CsvLayout& layout) {
-  std::string head = layout.wide.empty() ? kLongHeader : "sample,illuminant,observer";
-  for (const paint::Geometry& geometry : layout.wide) {
-    const std::string name = column_name(geometry);
-    head += fmt::format(",L{},a{},b{}", name, name, name);
-  }
-  if (layout.all_columns) head += kOtherColumns;
-  if (layout.origin) head += ",origin";
-  CsvPaintWriter writer(std::move(file), layout);
-  GONIO_TRY(writer.file_.write(head + "\n"));
-  return writer;
-}
-
-Result<void> CsvPaintWriter::write(const paint::Paint& paint, const std::vector<paint::Geometry>& from_curve) {
-  if (!paint.measurement || paint.measurement->rows.empty())
-    return input_error("paint \"{}\" has no Lab values: a table cannot hold it", shown(paint.name));
-  GONIO_TRY(check_writable(paint));
-  const auto& [condition, instrument, rows, spectra] = *paint.measurement;
-  const std::string viewing = fmt::format(",{},{}", csv_cell(condition.illuminant), condition.observer_deg);
-  const std::string others = layout_.all_columns ? other_cells(paint) : "";
-  std::string text;
-  if (layout_.wide.empty()) {
-    for (const paint::LabReading& row : rows) {
-      const bool curve = std::ranges::find(from_curve, row.geometry) != from_curve.end();
-      text += csv_cell(paint.name) + "," + paint::geometry_name(row.geometry) + viewing + lab_cells(row.lab) + others;
-      text += layout_.origin ? curve ? ",curve\n" : ",row\n" : "\n";
-    }
-  } else {
-    std::size_t placed = 0;
-    text = csv_cell(paint.name) + viewing;
-    for (const paint::Geometry& geometry : layout_.wide) {
-      const auto row = std::ranges::find(rows, geometry, &paint::LabReading::geometry);
-      placed += row != rows.end();
-      text += row == rows.end() ? ",,," : lab_cells(row->lab);
-    }
-    if (placed < rows.size())
-      return input_error("paint \"{}\" has rows at geometries that the table has no columns for", shown(paint.name));
-    text += others + (layout_.origin ? "," + listed_names(from_curve) : "") + "\n";
-  }
-  GONIO_TRY(file_.write(text));
-  return is_stream_ ? file_.flush() : Result<void>();
-}
-
-Result<void> CsvPaintWriter::finish() {
-  return file_.commit();
 }
 
 }  // namespace goniochrome::formats

@@ -311,6 +311,50 @@ TEST(PaintCsv, EveryTextComesBackFromItsCell) {
   }
 }
 
+// A spectrum of two hundredths at all wavelengths is 116 (.02)^(1/3) - 16 under any light.
+std::string spectral_table(const std::string& head, const std::string& row, double factor) {
+  std::string heads = head, cells = row;
+  for (int nm = 400; nm <= 700; nm += 20) {
+    heads += fmt::format(",{} nm", nm);
+    cells += fmt::format(",{}", factor);
+  }
+  return heads + "\n" + cells + "\n";
+}
+
+TEST(PaintCsv, ReadsSpectraAndTheirColors) {
+  const double L = 116 * std::cbrt(0.02) - 16;
+  const Reading alone = reading_of_text(spectral_table("sample,geometry", "gray,45as25", 0.02));
+  EXPECT_THAT(alone.errors, ElementsAre());
+  const paint::Measurement& measurement = *alone.paints.at(0).measurement;
+  EXPECT_NEAR(measurement.rows.at(0).lab.L, L, 1e-9);
+  EXPECT_NEAR(measurement.rows.at(0).lab.a, 0, 1e-9);
+  EXPECT_EQ(measurement.spectra.at(0).geometry, *paint::parse_geometry("25"));
+  EXPECT_EQ(measurement.spectra.at(0).to_nm(), 700);
+  const Reading percent = reading_of_text(spectral_table("sample,geometry,L,a,b", "gray,45as25,15.487,0,0", 2));
+  EXPECT_EQ(percent.paints.at(0).measurement->rows.at(0).lab.L, 15.487);
+  EXPECT_NEAR(percent.paints.at(0).measurement->spectra.at(0).factors.at(3), 0.02, 1e-12);
+  EXPECT_THAT(reading_of_text(spectral_table("sample,geometry", "gray,45as25", 21)).errors,
+              ElementsAre(HasSubstr("write factors, where 1 is the perfect diffuser")));
+  EXPECT_THAT(reading_of_text("sample,geometry,400,410,420,430,450\nx,45as15,1,1,1,1,1\n").errors,
+              ElementsAre(HasSubstr("the column of 450 nm stands where that of 440 nm would")));
+  EXPECT_THAT(reading_of_text("sample,geometry,400,410,420,430,440\nx,45as15,,,,,\n").errors,
+              ElementsAre(HasSubstr("the row has no spectrum, and the table no L, a and b")));
+}
+
+TEST(PaintCsv, ReadsTheHeadingsOfInstruments) {
+  const Reading read = reading_of_text(
+      "\xef\xbb\xbf"
+      "Blech;Lichtart;Beobachter;-15\xc2\xb0 L*;-15\xc2\xb0 a*;-15\xc2\xb0 b*;L* 45\xc2\xb0;a* 45\xc2\xb0;b* "
+      "45\xc2\xb0\nrot;D65;10;41,5;-1,25;3;20;1;2\n");
+  EXPECT_THAT(read.errors, ElementsAre());
+  const paint::Paint& paint = read.paints.at(0);
+  EXPECT_EQ(paint.name, "rot");
+  EXPECT_EQ(paint.measurement->rows.at(0).geometry, *paint::parse_geometry("-15"));
+  EXPECT_EQ(paint.measurement->rows.at(0).lab, (color::Lab{41.5, -1.25, 3}));
+  EXPECT_EQ(paint.measurement->rows.at(1).lab, (color::Lab{20, 1, 2}));
+  EXPECT_THAT(read.warnings, testing::Contains(HasSubstr("the column \"Blech\" is taken for the names")));
+}
+
 TEST(PaintCsv, ReadsMeasuredPaintsRealData) {
   const char* data = std::getenv("GONIOCHROME_DATA");
   if (!data) GTEST_SKIP() << "GONIOCHROME_DATA is not set";

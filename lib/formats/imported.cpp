@@ -92,6 +92,8 @@ Result<void> check_writable(const paint::Paint& paint) {
       finite.numbers({spectrum.from_nm, spectrum.step_nm});
       for (const double factor : spectrum.factors) finite.numbers({factor});
     }
+  if (paint.measurement)
+    for (const paint::TextureReading& texture : paint.measurement->textures) finite.numbers({texture.value});
   for (const paint::GlossReading& gloss : paint.gloss) finite.numbers({gloss.angle_deg, gloss.gloss_units});
   if (paint.appearance) finite.numbers({paint.appearance->travel_deg, paint.appearance->residual_de00.value_or(0)});
   if (paint.anisotropy) finite.numbers({paint.anisotropy->alpha_x, paint.anisotropy->alpha_y});
@@ -176,6 +178,7 @@ bool OpenPaint::complete(const ImportOptions& options, Remarks& remarks) {
         std::ranges::find(measurement.spectra, spectrum.geometry, &paint::SpectrumReading::geometry) ==
             measurement.spectra.end())
       measurement.spectra.push_back(spectrum);
+  measurement.textures = textures;
   if (others)
     remarks.note(fmt::format("readings under other illuminants or observers than {}/{} were left out: choose with "
                              "--illuminant and --observer",

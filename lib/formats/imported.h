@@ -80,6 +80,7 @@ struct OpenPaint {
   std::string instrument;
   std::vector<SeenReading> readings;
   std::vector<paint::SpectrumReading> spectra;  // the first at a geometry counts
+  std::vector<paint::TextureReading> textures;
 
   // Makes the readings into one measurement: those under the first condition that the options want, and of these the
   // first at each geometry. What is left out is remarked with the paint's name. Returns whether the paint holds

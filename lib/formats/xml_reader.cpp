@@ -54,6 +54,7 @@ class PaintHandler : public XmlHandler {
   Result<void> begin_lab(const XmlValues& values);
   Result<void> begin_spectrum(const XmlValues& values);
   Result<void> finish_spectrum();
+  Result<void> begin_texture(const XmlValues& values);
   Result<void> begin_gloss(const XmlValues& values);
   Result<void> begin_appearance(const XmlValues& values);
   Result<void> begin_coat(const XmlValues& values);
@@ -171,6 +172,8 @@ Result<void> PaintHandler::begin(Node node, const XmlValues& values) {
       return begin_lab(values);
     case Node::kSpectrum:
       return begin_spectrum(values);
+    case Node::kTexture:
+      return begin_texture(values);
     case Node::kGloss:
       return begin_gloss(values);
     case Node::kAppearance:
@@ -311,6 +314,22 @@ Result<void> PaintHandler::finish_spectrum() {
   if (spectrum.factors.size() == spectrum_values_) return {};
   return input_error("{}:{}: the spectrum at {} has {} values, and its wavelengths make {}", file_, value_line_,
                      paint::geometry_name(spectrum.geometry), spectrum.factors.size(), spectrum_values_);
+}
+
+Result<void> PaintHandler::begin_texture(const XmlValues& values) {
+  auto& textures = paint_.measurement->textures;
+  paint::TextureReading texture;
+  GONIO_TRY(values.name("quantity", texture.quantity));
+  GONIO_TRY(values.name("geometry", texture.geometry));
+  texture.version = values.text("version");
+  GONIO_TRY(values.number("value", texture.value));
+  for (const paint::TextureReading& other : textures)
+    if (other.quantity == texture.quantity && other.geometry == texture.geometry && other.version == texture.version)
+      return values.error(
+          fmt::format("a second \"{}\" at {}: keep one", shown(texture.quantity), shown(texture.geometry)));
+  if (textures.size() >= kMostRows) return values.error(fmt::format("more than {} textures in one paint", kMostRows));
+  textures.push_back(std::move(texture));
+  return {};
 }
 
 Result<void> PaintHandler::begin_appearance(const XmlValues& values) {

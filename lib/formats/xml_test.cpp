@@ -394,6 +394,28 @@ TEST(PaintXml, WriterRefusesWhatXmlCannotHold) {
 
 const std::string kRow = "<lab geometry=\"45as15\" L=\"50\" a=\"0\" b=\"0\"/>\n";
 
+TEST(PaintXml, TexturesAreReadAndWrittenAgain) {
+  const Reading reading = reading_of_text(document(
+      measured("p", kRow + "<texture quantity=\"Sparkle Grade\" geometry=\"15as45\" version=\"v2\" value=\"3.25\"/>\n"
+                           "<texture quantity=\"Graininess\" geometry=\"diffuse\" value=\"-0.5\"/>\n")));
+  ASSERT_THAT(reading.errors, ElementsAre());
+  const ScratchFolder folder;
+  ASSERT_TRUE(write_all(folder.path("out.xml"), reading.paints).ok());
+  const Reading again = reading_of(folder.path("out.xml"));
+  ASSERT_THAT(again.errors, ElementsAre());
+  for (const Reading& read : {std::cref(reading), std::cref(again)}) {
+    const std::vector<paint::TextureReading>& textures = read.paints.at(0).measurement->textures;
+    ASSERT_EQ(textures.size(), 2U);
+    EXPECT_EQ(textures[0].quantity, "Sparkle Grade");
+    EXPECT_EQ(textures[0].version, "v2");
+    EXPECT_EQ(textures[1].geometry, "diffuse");
+    EXPECT_EQ(textures[1].version, "");
+    EXPECT_EQ(textures[1].value, -0.5);
+  }
+  const std::string twice = "<texture quantity=\"S\" geometry=\"15d\" value=\"1\"/>\n";
+  EXPECT_THAT(only_error(document(measured("p", kRow + twice + twice))), HasSubstr("a second \"S\" at 15d"));
+}
+
 TEST(PaintXml, SpectraAreReadAndWrittenAgain) {
   const Reading reading = reading_of_text(document(measured(
       "p", kRow + "<spectrum geometry=\"45as15\" from=\"400\" to=\"420\" step=\"10\">\n 0.1 0.25\n1.5 </spectrum>\n"

@@ -42,6 +42,9 @@ std::string measurement_element(const paint::Measurement& measurement) {
       text += (i == 0 ? "" : " ") + shortest(spectrum.factors[i]);
     text += "</spectrum>\n";
   }
+  for (const paint::TextureReading& texture : measurement.textures)
+    text += "      <texture" + attribute("quantity", texture.quantity) + attribute("geometry", texture.geometry) +
+            optional_attribute("version", texture.version) + attribute("value", texture.value) + "/>\n";
   return text + "    </measurement>\n";
 }
 

@@ -6,12 +6,14 @@
 Files named found-*, inputs that once broke a reader, are kept, and so are grown-*, which scripts/fuzz --keep has made of
 the others.
 """
+import io
 import json
 import os
 import pathlib
 import struct
 import subprocess
 import sys
+import zipfile
 
 # Files hold the command that made them, so every path is relative to the checkout.
 BIN = pathlib.Path(sys.argv[1]).resolve() if len(sys.argv) == 2 else sys.exit(__doc__)
@@ -53,6 +55,30 @@ def paints():
 <note xmlns="urn:else"><![CDATA[<kept>]]></note><!-- said -->
 </paint></paints>
 """)
+
+
+def workbooks():
+    """Stored, so that a mutation of a byte is one of the XML; and packed."""
+    space = 'xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main"'
+    texts = ["Name", "Geometry", "L* (D65/10)", "a* (D65/10)", "b* (D65/10)", "red", "45as15", *map(str, range(400, 450, 10))]
+    cell = '<c r="{}" t="s"><v>{}</v></c>'.format
+    rows = "".join(cell(f"{'ABCDE'[i]}1", i) for i in range(5)) + "".join(cell(f"{'FGHIJ'[i]}1", 7 + i) for i in range(5))
+    numbers = "".join(f'<c r="{"CDEFGHIJ"[i]}2"><v>{v}</v></c>' for i, v in enumerate((31.7, 14.7, -10.7, .1, .2, .3, .2, .1)))
+    parts = {
+        "xl/workbook.xml": f'<workbook {space} xmlns:r="r"><sheets><sheet name="Color" sheetId="1" r:id="a"/></sheets></workbook>',
+        "xl/_rels/workbook.xml.rels": '<Relationships><Relationship Id="a" Target="worksheets/s.xml"/></Relationships>',
+        "xl/sharedStrings.xml": f"<sst {space}>" + "".join(f"<si><t>{text}</t></si>" for text in texts) + "</sst>",
+        "xl/styles.xml": f'<styleSheet {space}><cellXfs><xf numFmtId="0"/><xf numFmtId="14"/></cellXfs></styleSheet>',
+        "xl/worksheets/s.xml":
+            f'<worksheet {space}><sheetData><row r="1">{rows}</row><row r="2">{cell("A2", 5)}{cell("B2", 6)}{numbers}</row>'
+            f'<row r="3"><c r="A3" s="1"><v>45524.5</v></c><c r="B3" t="inlineStr"><is><t>45as45</t></is></c></row></sheetData>'
+            f'<mergeCells><mergeCell ref="A2:A3"/></mergeCells></worksheet>'}
+    for name, method in ("stored.xlsx", zipfile.ZIP_STORED), ("packed.xlsx", zipfile.ZIP_DEFLATED):
+        archive = io.BytesIO()
+        with zipfile.ZipFile(archive, "w", method) as file:
+            for part, content in parts.items():
+                file.writestr(zipfile.ZipInfo(part), content, method)
+        put("workbook", name, archive.getvalue())
 
 
 def bases():
@@ -147,5 +173,5 @@ def operators():
     put("operator-json", "plain.json", json.dumps({"name": "plain", "k": plain}))
 
 
-paints(), bases(), measured(), environments(), buffers(), meshes(), pictures(), operators()
+paints(), workbooks(), bases(), measured(), environments(), buffers(), meshes(), pictures(), operators()
 print(sum(f.stat().st_size for f in HERE.glob("corpus/*/*")), "bytes", file=sys.stderr)

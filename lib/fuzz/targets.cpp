@@ -16,6 +16,7 @@
 #include "formats/cgats.h"
 #include "formats/csv.h"
 #include "formats/cxf.h"
+#include "formats/workbook.h"
 #include "formats/xml.h"
 #include "image/aov_file.h"
 #include "image/hdr.h"
@@ -156,6 +157,7 @@ const std::vector<FuzzTarget>& fuzz_targets() {
       {"csv", "a.csv", read_csv},
       {"cxf", "a.cxf", read_imported<formats::read_cxf>},
       {"cgats", "a.txt", read_imported<formats::read_cgats>},
+      {"workbook", "a.xlsx", read_imported<formats::read_workbook>},
       {"measured", "a.brdf", read_measured_file},
       {"env-exr", "a.env.exr", read_env_file},
       {"obj", "a.obj", read_mesh},

@@ -203,7 +203,9 @@ void put_back(Paint& paint, Locus locus) {
   if (!paint.measurement) paint.measurement.emplace();
   paint.measurement->rows = std::move(locus.rows);
   paint.measurement->instrument.clear();
-  paint.measurement->spectra.clear();  // they are those of the color before
+  // They are those of the paint before.
+  paint.measurement->spectra.clear();
+  paint.measurement->textures.clear();
 }
 
 void drop_lobes(Paint& paint, Edited& result) {

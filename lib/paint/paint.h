@@ -30,6 +30,16 @@ struct SpectrumReading {
   double to_nm() const { return from_nm + step_nm * (static_cast<double>(factors.size()) - 1); }
 };
 
+// What an instrument tells of the texture of a paint, such as its sparkle. Such values are on the instrument's own
+// scale: they compare only with those of the same instrument and version, and nothing computes them from others.
+struct TextureReading {
+  std::string quantity;  // as the instrument calls it: "Sparkle Grade"
+  std::string
+      geometry;  // of its light: the name of a geometry, or the instrument's own word, such as "15d" or "diffuse"
+  std::string version;  // of the scale, where it is stated
+  double value = 0;
+};
+
 // What an instrument or a designer stated: Lab at several geometries, all under one viewing condition; and the spectra
 // behind them, where they are known. Whoever changes rows removes the spectra.
 struct Measurement {
@@ -37,6 +47,7 @@ struct Measurement {
   std::string instrument;
   std::vector<LabReading> rows;
   std::vector<SpectrumReading> spectra = {};
+  std::vector<TextureReading> textures = {};
 };
 
 struct GlossReading {

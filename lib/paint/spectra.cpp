@@ -76,7 +76,7 @@ Result<color::Lab> lab_of(const SpectrumReading& spectrum, const color::ViewingC
 
 Result<Measurement> under_light(const Measurement& measurement, const color::ViewingCondition& condition) {
   GONIO_TRY(check_spectra(measurement, condition));
-  Measurement result{condition, measurement.instrument, {}, measurement.spectra};
+  Measurement result{condition, measurement.instrument, {}, measurement.spectra, measurement.textures};
   Meter meter(condition);
   for (const SpectrumReading& spectrum : measurement.spectra) {
     GONIO_ASSIGN(const color::Xyz xyz, meter.xyz(spectrum));

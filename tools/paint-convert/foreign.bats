@@ -213,3 +213,50 @@ brdf() {
   [ "$status" -eq 3 ]
   [[ "$stderr" == *'paint "slope": illuminant is "F4"'* ]]
 }
+
+# A workbook of one sheet: its name, and rows whose cells are parted by |.
+workbook() {
+  python3 - "$@" <<'EOF'
+import sys, zipfile
+file, name, *rows = sys.argv[1:]
+cell = lambda text: f"<c><v>{text}</v></c>" if text.replace(".", "").replace("-", "").isdigit() else f'<c t="inlineStr"><is><t>{text}</t></is></c>'
+data = "".join("<row>" + "".join(map(cell, row.split("|"))) + "</row>" for row in rows)
+with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
+    archive.writestr("xl/workbook.xml", f'<workbook xmlns:r="r"><sheets><sheet name="{name}" r:id="a"/></sheets></workbook>')
+    archive.writestr("xl/_rels/workbook.xml.rels", '<Relationships><Relationship Id="a" Target="s.xml"/></Relationships>')
+    archive.writestr("xl/s.xml", f"<worksheet><sheetData>{data}</sheetData></worksheet>")
+EOF
+}
+
+@test "a workbook becomes paints, under any name, from a pipe, and by name" {
+  workbook a.xlsx Farbe 'Lichtart|D65/10' 'Muster|Winkel|L*|a*|b*' 'rot|45as15|41.5|-1.25|3' 'blau|45as15|20|1|-30'
+  paint-convert -q a.xlsx --to csv -o a.csv
+  [ "$(cat a.csv)" = "$(printf '%s\n' sample,geometry,illuminant,observer,L,a,b rot,45as15,D65,10,41.5,-1.25,3 blau,45as15,D65,10,20,1,-30)" ]
+  [ "$(paint-convert -q --to csv <a.xlsx)" = "$(cat a.csv)" ]
+  cp a.xlsx some.data
+  [ "$(paint-convert -q --to csv 'some.data#blau' | tail -1)" = blau,45as15,D65,10,20,1,-30 ]
+}
+
+@test "a workbook that cannot be read is refused by sheet and row" {
+  workbook a.xlsx Farbe 'Name|Geometry|L*|a*|b*' 'rot|45as15|41.5|x|3'
+  run --separate-stderr paint-convert a.xlsx -o out.xml
+  [ "$status" -eq 3 ]
+  [ "$stderr" = 'paint-convert: a.xlsx: sheet "Farbe", row 2: a* is "x": write a number' ]
+  [ ! -e out.xml ]
+  head -c 300 a.xlsx >half.xlsx
+  run --separate-stderr paint-convert half.xlsx -o out.xml
+  [ "$status" -eq 3 ]
+  [[ "$stderr" == *'half.xlsx: the workbook is damaged or cut off'* ]]
+}
+
+@test "workbooks of an instrument are read (real data)" {
+  [ -n "${GONIOCHROME_DATA:-}" ] || skip "GONIOCHROME_DATA is not set"
+  run --separate-stderr paint-convert "$GONIOCHROME_DATA"/instrument/*.xlsx -o both.xml
+  [ "$status" -eq 0 ]
+  [ "$stderr" = 'paint-convert: 2 paints read, 2 written as paint XML' ]
+  [ "$(grep -c '<lab ' both.xml)" -eq 24 ]
+  [ "$(grep -c '<spectrum .*from="400" to="700" step="10"' both.xml)" -eq 24 ]
+  paint-convert -q both.xml -o both.cxf
+  paint-convert -q both.cxf --to csv -o back.csv
+  paint-convert -q both.xml --to csv | cut -d, -f1-7 | cmp - back.csv
+}

@@ -5,6 +5,7 @@
 #include "brdf/measured.h"
 #include "formats/cgats.h"
 #include "formats/cxf.h"
+#include "formats/workbook.h"
 #include "paint/curve.h"
 #include "paint/spectra.h"
 
@@ -191,6 +192,11 @@ class MeasuredSource : public PaintSource {
 
 Result<SourcePointer> open_cxf(InputFile input, const SourceSetup& setup) {
   return SourcePointer(std::make_unique<CxfSource>(std::move(input), setup.import));
+}
+
+Result<SourcePointer> open_workbook(InputFile input, const SourceSetup& setup) {
+  return SourcePointer(
+      std::make_unique<ImportedSource>(std::move(input), setup.import, formats::read_workbook, "workbook"));
 }
 
 Result<SourcePointer> open_cgats(InputFile input, const SourceSetup& setup) {

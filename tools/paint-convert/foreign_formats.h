@@ -1,4 +1,5 @@
-// The formats of other programs as sources and sinks of paint-convert: CxF3, CGATS.17 and measured BRDFs.
+// The formats of other programs as sources and sinks of paint-convert: CxF3, CGATS.17,
+// workbooks and measured BRDFs.
 #pragma once
 
 #include <memory>
@@ -10,6 +11,7 @@ namespace goniochrome::tool {
 
 Result<std::unique_ptr<PaintSource>> open_cxf(InputFile input, const SourceSetup& setup);
 Result<std::unique_ptr<PaintSource>> open_cgats(InputFile input, const SourceSetup& setup);
+Result<std::unique_ptr<PaintSource>> open_workbook(InputFile input, const SourceSetup& setup);
 Result<std::unique_ptr<PaintSource>> open_measured(InputFile input, const SourceSetup& setup);
 
 Result<std::unique_ptr<PaintSink>> begin_cxf(OutputFile file, const SinkSetup& setup);

@@ -10,6 +10,7 @@
 #include "formats/cgats.h"
 #include "formats/cxf.h"
 #include "formats/reference.h"
+#include "formats/workbook.h"
 
 namespace goniochrome::tool {
 
@@ -96,6 +97,10 @@ bool looks_cgats_text(std::string_view, std::string_view head) {
   return formats::looks_cgats(head);
 }
 
+bool looks_workbook_file(std::string_view, std::string_view head) {
+  return formats::looks_workbook(head);
+}
+
 bool looks_table(std::string_view, std::string_view head) {
   const std::string_view line = head.substr(0, head.find_first_of("\r\n", head.find_first_not_of("\r\n \t")));
   return line.find_first_of(",;\t") != std::string_view::npos;
@@ -130,6 +135,7 @@ struct InputFormat {
 // In the order in which they are tried.
 constexpr std::array kInputs = {
     InputFormat{"measured", brdf::looks_measured, open_measured},
+    InputFormat{"workbook", looks_workbook_file, open_workbook},
     InputFormat{"cxf", looks_cxf_document, open_cxf},
     InputFormat{"xml", looks_xml, open_xml},
     InputFormat{"cgats", looks_cgats_text, open_cgats},
@@ -168,7 +174,8 @@ Result<SourcePointer> open_source(const std::string& reference, const std::strin
   });
   if (known == kInputs.end())
     return input_error(
-        "{}: is neither paint XML nor a table, CxF, CGATS or measured BRDF: name its format by --from if it is one",
+        "{}: is neither paint XML nor a table, CxF, CGATS, workbook or measured BRDF: name its format by --from if it "
+        "is one",
         input.name());
   GONIO_ASSIGN(SourcePointer source, known->open(std::move(input), setup));
   if (!names) return source;

@@ -80,8 +80,9 @@ void add_report(cli::ToolSpec& spec) {
 }  // namespace
 
 cli::ToolSpec tool_spec(Options& o) {
-  cli::ToolSpec spec{.name = "paint-convert",
-                     .summary = "convert paints between paint XML, tables, CxF and CGATS, and read measured BRDFs"};
+  cli::ToolSpec spec{
+      .name = "paint-convert",
+      .summary = "convert paints between paint XML, tables, CxF and CGATS, and read workbooks and measured BRDFs"};
   spec.description = {
       "paint-convert reads paints from any number of inputs and writes them to one output, each as soon as it is read, "
       "so that a library of any size passes in constant memory. The format of an input is found from its first bytes, "
@@ -96,6 +97,15 @@ cli::ToolSpec tool_spec(Options& o) {
       "the colors that do not. Where a sample has readings under several illuminants or observers, the first counts, "
       "or the one of --illuminant and --observer. Spectra in CxF are integrated under what their specification states. "
       "CxF is written with one color specification for each angle.",
+      "A workbook (XLSX) of a multi-angle instrument is read on all its sheets. A table is found by its headings: L*, "
+      "a* and "
+      "b*, or wavelengths, beside a column of geometries and one of names. The condition may stand in the headings, as "
+      "in "
+      "L* (D65/10), or above the table. Spectra are kept. Where a geometry has a spectrum alone, Lab is integrated "
+      "from "
+      "it; where both stand there and disagree, the Lab is taken and a warning tells the color difference. "
+      "Reflectances "
+      "in percent are told from factors by the Lab beside them.",
       "A measured BRDF (" + brdf::measured_formats() +
           ") becomes one paint, which holds what a multi-angle instrument would have read at the geometries of "
           "--geometry, by default at 15, 25, 45, 75 and 110 degrees. Spectra are integrated under --illuminant and "
@@ -116,10 +126,11 @@ cli::ToolSpec tool_spec(Options& o) {
       "are fitted again; its lobes and its color map, which are those of the light before, are left out. A paint "
       "without spectra stays as it is, and a warning says so.",
       "A wrong value stops the conversion, and the output file stays as it was."};
-  spec.inputs = {"INPUT",
-                 "paint XML, tables, CxF, CGATS or measured BRDFs, or FILE#NAMES for some paints of one; - or none is "
-                 "standard input",
-                 &o.inputs};
+  spec.inputs = {
+      "INPUT",
+      "paint XML, tables, CxF, CGATS, workbooks or measured BRDFs, or FILE#NAMES for some paints of one; - or none is "
+      "standard input",
+      &o.inputs};
   add_options(spec, o);
   add_report(spec);
   return spec;

@@ -121,6 +121,7 @@ void Selection::note_losses(const paint::Paint& paint, bool designed, formats::R
   };
   lost(paint.lobes.has_value(), "lobes are");
   lost(paint.measurement && !paint.measurement->spectra.empty(), "spectra are");
+  lost(paint.measurement && !paint.measurement->textures.empty(), "values of texture are");
   lost(paint.appearance.has_value() && !designed, "face, flop and travel are");
   lost(paint.anisotropy || paint.color_map, "anisotropy and color maps are");
   lost(!paint.foreign.empty(), "elements of other vocabularies are");

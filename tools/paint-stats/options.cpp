@@ -37,7 +37,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "says nothing; achromatic, where the face has a chroma below 1 and so no hue; through_gray, where the color "
       "passes so close to gray that the sense of the hue travel is noise; gamut, where the working space loses more "
       "than 1 dE00 of some color; no_color, where there are neither rows nor a curve.",
-      "The report holds the same figures as the table in one object."};
+      "The report and --format json hold the same figures as the table; and, as textures, what an instrument told of "
+      "sparkle, graininess or coarseness, with its geometry, the version of its scale and the instrument."};
   spec.inputs = {"PAINTS", "paint XML files, or FILE#NAMES for some paints of one; standard input where none is given",
                  &o.inputs};
   spec.heading = "selection";
@@ -86,17 +87,19 @@ cli::ToolSpec tool_spec(Options& o) {
   spec.report = {{"paints[].name", "name of the paint; beside it stand code, class, source and flags[]"}};
   for (const paint::MetricColumn& column : paint::metric_columns())
     spec.report.push_back({std::string("paints[].") + column.name, column.meaning});
-  spec.report.insert(spec.report.end(), {{"read", "number of paints read"},
-                                         {"paints[].under.NAME",
-                                          "with --illuminant: inconstancy and, with --standard, metamerism, each with "
-                                          "its CIEDE2000 difference by geometry"},
-                                         {"matched", "number of paints written"},
-                                         {"left_out", "number of paints that --keep-going left out"},
-                                         {"scores[]",
-                                          "with --score: name, model, rows, left_out, de00_mean, de00_p95, de00_max, "
-                                          "de76_mean and de76_p95 of each model of a paint"},
-                                         {"paints_per_s", "paints a second, without reading and writing"},
-                                         {"warnings[]", "messages about paints left out"}});
+  spec.report.insert(spec.report.end(),
+                     {{"read", "number of paints read"},
+                      {"paints[].under.NAME",
+                       "with --illuminant: inconstancy and, with --standard, metamerism, each with "
+                       "its CIEDE2000 difference by geometry"},
+                      {"paints[].textures[]", "quantity, geometry, version, instrument and value, where there are any"},
+                      {"matched", "number of paints written"},
+                      {"left_out", "number of paints that --keep-going left out"},
+                      {"scores[]",
+                       "with --score: name, model, rows, left_out, de00_mean, de00_p95, de00_max, "
+                       "de76_mean and de76_p95 of each model of a paint"},
+                      {"paints_per_s", "paints a second, without reading and writing"},
+                      {"warnings[]", "messages about paints left out"}});
   spec.see_also = {"colorsnap(1)", "paint-convert(1)", "paint-edit(1)"};
   return spec;
 }

@@ -34,6 +34,13 @@ Json as_json(const paint::Paint& paint, const Figures& figures) {
   Json json = {{"name", paint.name}, {"code", paint.code}, {"class", paint::paint_class_name(paint.paint_class)}};
   for (const paint::MetricColumn& column : paint::metric_columns())
     json[column.name] = json_number(numbers.*column.value);
+  if (paint.measurement)
+    for (const paint::TextureReading& texture : paint.measurement->textures)
+      json["textures"].push_back({{"quantity", texture.quantity},
+                                  {"geometry", texture.geometry},
+                                  {"version", texture.version},
+                                  {"instrument", paint.measurement->instrument},
+                                  {"value", texture.value}});
   json["source"] = paint::source_name(numbers.source);
   json["flags"] = numbers.flags;
   if (!figures.elsewhere.json.is_null()) json["under"] = figures.elsewhere.json;

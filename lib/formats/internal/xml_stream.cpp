@@ -159,10 +159,16 @@ class AttributeCounter {
   std::size_t attributes_ = 0;
 };
 
+XmlBytes reading(InputFile input) {
+  const auto file = std::make_shared<InputFile>(std::move(input));
+  return [file](std::string& buffer, std::size_t most) { return file->read(buffer, most); };
+}
+
 }  // namespace
 
 struct XmlStream::State {
-  InputFile input;
+  std::string name;
+  XmlBytes input;
   XmlHandler& handler;
   xmlSAXHandler own = {};
   xmlSAXHandlerPtr sax = &own;
@@ -181,7 +187,8 @@ struct XmlStream::State {
   std::size_t all_namespaces = 0;
   std::size_t text_bytes = 0, text_pieces = 0;  // since the last tag
 
-  State(InputFile file, XmlHandler& told) : input(std::move(file)), handler(told) {}
+  State(std::string called, XmlBytes bytes_of, XmlHandler& told)
+      : name(std::move(called)), input(std::move(bytes_of)), handler(told) {}
   ~State() {
     xmlSchemaSAXUnplug(plug);
     xmlFreeParserCtxt(parser);
@@ -190,7 +197,7 @@ struct XmlStream::State {
 
   int line() const { return parser->input ? parser->input->line : 1; }
 
-  void fail(int at, const std::string& what) { fail(input_error("{}:{}: {}", input.name(), at, what)); }
+  void fail(int at, const std::string& what) { fail(input_error("{}:{}: {}", name, at, what)); }
   void fail(const Error& what) {
     if (error) return;
     error = what;
@@ -273,7 +280,7 @@ void XmlStream::State::on_text(void* data, const xmlChar* text, int length) {
   const auto taken =
       too_long
           ? Result<void>(input_error("{}:{}: one text is longer than {} bytes, or in more than {} pieces: shorten it",
-                                     state.input.name(), state.line(), kLongestXmlToken, kMostPieces))
+                                     state.name, state.line(), kLongestXmlToken, kMostPieces))
           : state.handler.text({reinterpret_cast<const char*>(text), static_cast<std::size_t>(length)}, state.line());
   // libxml2 2.9 crashes where it is stopped within a text. What follows in this chunk is passed over.
   if (!taken.ok()) state.error = taken.error();
@@ -288,8 +295,7 @@ void XmlStream::State::on_doctype(void* data, const xmlChar*, const xmlChar*, co
 void XmlStream::State::on_error(void*, xmlErrorPtr problem) {
   if (!problem->ctxt || problem->level == XML_ERR_WARNING) return;
   State& state = of(static_cast<xmlParserCtxtPtr>(problem->ctxt)->_private);
-  if (state.at_end && state.bytes == 0)
-    return state.fail(input_error("{}: is empty: give it a document", state.input.name()));
+  if (state.at_end && state.bytes == 0) return state.fail(input_error("{}: is empty: give it a document", state.name));
   if (state.at_end && !state.open.empty())
     return state.fail(state.line(), fmt::format("the file ends inside <{}>: it was cut off", state.open.back()));
   if (state.at_end && !state.has_root)
@@ -337,7 +343,7 @@ void XmlStream::State::set_up(const char* schema) {
 // One read of the input, handed to the parser; the end of the input ends the document.
 Result<void> XmlStream::State::read_chunk() {
   chunk.clear();
-  GONIO_ASSIGN(const std::size_t count, input.read(chunk, kChunk));
+  GONIO_ASSIGN(const std::size_t count, input(chunk, kChunk));
   at_end = count == 0;
   bytes += count;
   const auto last_markup = chunk.rfind('<');
@@ -349,12 +355,18 @@ Result<void> XmlStream::State::read_chunk() {
   if (!error) xmlParseChunk(parser, chunk.data(), static_cast<int>(count), at_end);
   finished = at_end;
   if (error) return *error;
-  if (at_end && !parser->wellFormed) return input_error("{}:{}: not well-formed XML", input.name(), line());
+  if (at_end && !parser->wellFormed) return input_error("{}:{}: not well-formed XML", name, line());
   return {};
 }
 
-XmlStream::XmlStream(InputFile input, const char* schema, XmlHandler& handler)
-    : state_(std::make_unique<State>(std::move(input), handler)) {
+XmlStream::XmlStream(InputFile input, const char* schema, XmlHandler& handler) {
+  std::string name = input.name();
+  state_ = std::make_unique<State>(std::move(name), reading(std::move(input)), handler);
+  state_->set_up(schema);
+}
+
+XmlStream::XmlStream(std::string name, XmlBytes input, const char* schema, XmlHandler& handler)
+    : state_(std::make_unique<State>(std::move(name), std::move(input), handler)) {
   state_->set_up(schema);
 }
 

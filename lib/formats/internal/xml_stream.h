@@ -3,6 +3,7 @@
 // external files and the network are never used.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -47,11 +48,16 @@ class XmlHandler {
 constexpr std::size_t kLongestXmlToken = 1 << 20;
 constexpr std::size_t kDeepestXml = 256;
 
+// Appends bytes to the first argument, as many as the second or fewer, and returns how many; 0 at the end.
+using XmlBytes = std::function<Result<std::size_t>(std::string&, std::size_t)>;
+
 class XmlStream {
  public:
   // Reads `input` and tells `handler`, which must outlive the stream. `schema` is the text of an XSD that lives as long
   // as the program, or nullptr.
   XmlStream(InputFile input, const char* schema, XmlHandler& handler);
+  // Likewise from anywhere else; errors call it `name`.
+  XmlStream(std::string name, XmlBytes input, const char* schema, XmlHandler& handler);
   XmlStream(const XmlStream&) = delete;
   ~XmlStream();
 

@@ -1,0 +1,53 @@
+// Tables in text (CSV) as records of cells, whatever separates them, and cells as tables need them.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/file.h"
+#include "base/result.h"
+
+namespace goniochrome::formats {
+
+// The header of a long table.
+inline constexpr const char* kLongHeader = "sample,geometry,illuminant,observer,L,a,b";
+
+// The records of a table: cells between separators, quoted or not, whatever the ends of lines are.
+class CsvRecords {
+ public:
+  explicit CsvRecords(InputFile input) : input_(std::move(input)) {}
+
+  // Reads the next record that is not blank into `cells`. White space around cells and the quotes of quoted cells are
+  // taken off. Returns false at the end. The first record fixes the separator: `;` if it holds one, or else a tab, or
+  // else `,`. Error: file and line; it is final where the record does not end.
+  Result<bool> next(std::vector<std::string>& cells);
+
+  // The line (from 1) on which the last record began.
+  int line() const { return line_; }
+  char separator() const { return separator_; }
+  const std::string& name() const { return input_.name(); }
+  Error error(std::string_view what) const { return input_error("{}:{}: {}", name(), line_, what); }
+
+ private:
+  Result<bool> next_line();
+  Result<bool> fill();
+
+  InputFile input_;
+  std::string buffer_;
+  std::size_t at_ = 0;
+  std::string record_;
+  int line_ = 0, lines_read_ = 0;
+  char separator_ = 0;
+  bool failed_ = false;
+};
+
+// A text that is none of our numbers as its cell says it, without the apostrophe that marks it as text.
+std::string_view cell_text(std::string_view cell);
+
+// One text as it is written between commas: quoted if any reader might take it apart, and behind an apostrophe if a
+// spreadsheet would take it for a formula.
+std::string csv_cell(std::string_view text);
+
+}  // namespace goniochrome::formats

@@ -1,0 +1,402 @@
+#include "formats/workbook.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "base/text.h"
+#include "formats/internal/spectral_rows.h"
+#include "formats/internal/spreadsheet.h"
+
+namespace goniochrome::formats {
+
+namespace {
+
+constexpr int kNone = -1;
+// How far Lab and spectrum of one reading may lie apart. Instruments weigh their spectra by tables for their own bands,
+// which changes the color by a few hundredths.
+constexpr double kAgrees_de00 = 0.2;
+// Three columns of L*, a* and b* under one viewing condition.
+struct LabColumns {
+  color::ViewingCondition condition;
+  std::array<int, 3> at = {kNone, kNone, kNone};
+};
+
+// A column of sparkle, graininess or the like.
+struct TextureColumn {
+  std::string quantity, version;
+  int at = 0;
+};
+
+// What the columns below a row of headings mean.
+struct Table {
+  int name = kNone, date = kNone, geometry = kNone;
+  std::vector<LabColumns> colors;
+  std::vector<WavelengthColumn> wavelengths;
+  std::vector<TextureColumn> textures;
+
+  bool has_values() const {
+    return !colors.empty() || wavelengths.size() >= kFewestWavelengths || (geometry != kNone && !textures.empty());
+  }
+};
+
+// A heading in lower case without blanks, asterisks and colons, up to a bracket.
+std::string plain_heading(std::string_view heading) {
+  std::string text = lower(heading.substr(0, heading.find_first_of("([")));
+  std::erase_if(text, [](char c) { return std::string_view(" *_:.").find(c) != std::string_view::npos; });
+  return text;
+}
+
+template <std::size_t N>
+bool is_one_of(const std::string& word, const std::array<std::string_view, N>& words) {
+  return std::ranges::find(words, word) != words.end();
+}
+
+constexpr std::array<std::string_view, 13> kNameHeadings = {"name",   "sample",      "samplename", "standard", "paint",
+                                                            "color",  "colour",      "id",         "sampleid", "probe",
+                                                            "muster", "bezeichnung", "farbe"};
+constexpr std::array<std::string_view, 6> kDateHeadings = {"date", "date/time", "datetime", "time", "datum", "zeit"};
+constexpr std::array<std::string_view, 6> kGeometryHeadings = {"geometry", "geometrie",  "angle",
+                                                               "winkel",   "messwinkel", "messgeometrie"};
+
+// `D65/10` or `D65 10°` in a text; parts that are not there stay empty and 0.
+color::ViewingCondition condition_in(std::string_view text) {
+  static constexpr std::array<std::string_view, 12> kIlluminants = {"D50",  "D55", "D65", "D75", "F11", "F12",
+                                                                    "TL84", "F2",  "F7",  "A",   "C",   "E"};
+  color::ViewingCondition condition{"", 0};
+  std::string word;
+  for (const char c : upper(text) + " ") {
+    if ((c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9')) {
+      word += c;
+      continue;
+    }
+    if (condition.illuminant.empty() && is_one_of(word, kIlluminants)) condition.illuminant = word;
+    if (word == "2" || word == "10") condition.observer_deg = word == "2" ? 2 : 10;
+    word.clear();
+  }
+  return condition;
+}
+
+// A heading such as `L*`, `a* (D65/10)` or `D65/10 b*`.
+struct LabHeading {
+  std::size_t channel = 0;  // of L, a and b
+  color::ViewingCondition condition;
+};
+std::optional<LabHeading> lab_heading(std::string_view heading) {
+  heading = trimmed(heading);
+  std::string_view before, word = heading;
+  const auto bracket = heading.find_first_of("([");
+  if (bracket != std::string_view::npos) {
+    before = heading.substr(bracket), word = trimmed(heading.substr(0, bracket));
+  } else if (const auto blank = heading.find_last_of(" \t"); blank != std::string_view::npos) {
+    before = heading.substr(0, blank), word = heading.substr(blank + 1);
+  }
+  const std::string plain = plain_heading(word);
+  const auto channel = std::string_view("lab").find(plain);
+  if (plain.size() != 1 || channel == std::string_view::npos) return std::nullopt;
+  return LabHeading{channel, condition_in(before)};
+}
+
+// A heading that names a texture, and its version where it stands in brackets: `Sparkle Grade (v2)`.
+std::optional<TextureColumn> texture_heading(std::string_view heading, int column) {
+  static constexpr std::array<std::string_view, 6> kWords = {"sparkle", "grain",    "coarse",
+                                                             "glitz",   "rnigkeit", "texture"};
+  const std::string word = lower(heading);
+  if (std::ranges::none_of(kWords, [&](std::string_view known) { return word.find(known) != std::string::npos; }))
+    return std::nullopt;
+  const auto open = heading.find('('), close = heading.find(')');
+  TextureColumn texture{std::string(trimmed(heading.substr(0, open))), "", column};
+  if (open != std::string_view::npos && close != std::string_view::npos && close > open)
+    texture.version = trimmed(heading.substr(open + 1, close - open - 1));
+  return texture.quantity.empty() ? std::nullopt : std::optional(texture);
+}
+
+// The number that a cell holds, also with a decimal comma.
+std::optional<double> number_of_cell(std::string_view text) {
+  if (const auto value = parse_number(text)) return value;
+  return parse_number(with_decimal_point(text).value_or(""));
+}
+
+class WorkbookReader {
+ public:
+  WorkbookReader(std::string file, const ImportOptions& options) : file_(std::move(file)), options_(options) {}
+
+  Result<void> read(const Sheet& sheet);
+  Result<ImportedPaints> finish();
+
+ private:
+  // A paint whose readings are gathered over all sheets.
+  struct Gathered {
+    OpenPaint open;
+    std::vector<std::string> places;  // where each of the spectra stands
+  };
+
+  Error error(const Sheet& sheet, const SheetRow& row, const std::string& what) const {
+    return input_error("{}: sheet \"{}\", row {}: {}", file_, shown(sheet.name), row.number, what);
+  }
+  Table table_below(const Sheet& sheet, std::size_t heading) const;
+  Result<void> read_row(const Sheet& sheet, const SheetRow& row, const Table& table);
+  Result<void> read_lab(const Sheet& sheet, const SheetRow& row, const Table& table, const paint::Geometry& geometry,
+                        OpenPaint& open);
+  Result<void> read_spectrum(const Sheet& sheet, const SheetRow& row, const Table& table,
+                             const paint::Geometry& geometry, Gathered& gathered);
+  Result<void> read_textures(const Sheet& sheet, const SheetRow& row, const Table& table, std::string_view geometry,
+                             OpenPaint& open);
+  Gathered& gathered(const std::string& name, const std::string& date);
+  double percent_or_factor();
+  Result<void> integrate(Gathered& paint);
+
+  std::string file_;
+  const ImportOptions& options_;
+  std::string stated_name_;  // by the sheet that is being read, for tables without a column of names
+  color::ViewingCondition stated_{"", 0};
+  std::vector<Gathered> paints_;
+  std::map<std::pair<std::string, std::string>, std::size_t> number_of_;
+  SpectralMeter meter_;
+  double unit_ = 1;  // of the reflectances: 1, or .01 for percent
+  double disagreement_de00_ = 0;
+  std::size_t disagreements_ = 0;
+  std::string worst_;
+  Remarks remarks_;
+  ImportedPaints result_;
+  std::string sheets_;  // names of those that were looked at
+};
+
+// Reads the row of headings. A column without a known heading is that of the geometry if every cell below, until the
+// table ends, names one.
+Table WorkbookReader::table_below(const Sheet& sheet, std::size_t heading) const {
+  Table table;
+  const SheetRow& row = sheet.rows[heading];
+  for (const SheetCell& cell : row.cells) {
+    const std::string word = plain_heading(cell.text);
+    if (table.name == kNone && is_one_of(word, kNameHeadings)) table.name = cell.column;
+    if (table.date == kNone && is_one_of(word, kDateHeadings)) table.date = cell.column;
+    if (table.geometry == kNone && is_one_of(word, kGeometryHeadings)) table.geometry = cell.column;
+    if (const auto nm = wavelength_in(cell.text)) table.wavelengths.push_back({*nm, cell.column});
+    if (auto texture = texture_heading(cell.text, cell.column)) table.textures.push_back(std::move(*texture));
+    if (const auto lab = lab_heading(cell.text)) {
+      const auto open = std::ranges::find_if(table.colors, [&](const LabColumns& columns) {
+        return columns.condition == lab->condition && columns.at[lab->channel] == kNone;
+      });
+      LabColumns& columns = open != table.colors.end() ? *open : table.colors.emplace_back(LabColumns{lab->condition});
+      columns.at[lab->channel] = cell.column;
+    }
+  }
+  std::erase_if(table.colors, [](const LabColumns& columns) { return std::ranges::count(columns.at, kNone) > 0; });
+  if (table.geometry == kNone && table.has_values() && heading + 1 < sheet.rows.size())
+    for (const SheetCell& cell : sheet.rows[heading + 1].cells)
+      if (!parse_number(cell.text) && paint::parse_geometry(cell.text).ok()) table.geometry = cell.column;
+  return table;
+}
+
+WorkbookReader::Gathered& WorkbookReader::gathered(const std::string& name, const std::string& date) {
+  const auto [found, fresh] = number_of_.try_emplace({name, date}, paints_.size());
+  if (fresh) paints_.emplace_back().open.paint.name = name;
+  return paints_[found->second];
+}
+
+Result<void> WorkbookReader::read_lab(const Sheet& sheet, const SheetRow& row, const Table& table,
+                                      const paint::Geometry& geometry, OpenPaint& open) {
+  for (const LabColumns& columns : table.colors) {
+    std::array<double, 3> values{};
+    int empty = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::string_view text = row.at(columns.at[k]);
+      const auto value = number_of_cell(text);
+      empty += text.empty();
+      if (!text.empty() && !value)
+        return error(sheet, row, fmt::format("{}* is \"{}\": write a number", "Lab"[k], shown(text)));
+      values[k] = value.value_or(0);
+    }
+    if (empty == 3) continue;
+    if (empty > 0) return error(sheet, row, "one of L*, a* and b* is missing: give all three, or none");
+    const color::Lab lab{values[0], values[1], values[2]};
+    if (const auto checked = check_lab(lab); !checked.ok()) return error(sheet, row, checked.error().message);
+    color::ViewingCondition condition = columns.condition;
+    if (condition.illuminant.empty()) condition.illuminant = stated_.illuminant;
+    if (condition.observer_deg == 0) condition.observer_deg = stated_.observer_deg;
+    if (condition.illuminant.empty() || condition.observer_deg == 0)
+      remarks_.note("illuminant or observer is not stated: taken as D65/10 where the options do not say it",
+                    open.paint.name);
+    open.readings.push_back({completed(condition, options_, {"D65", 10}), {geometry, lab}});
+  }
+  return {};
+}
+
+Result<void> WorkbookReader::read_spectrum(const Sheet& sheet, const SheetRow& row, const Table& table,
+                                           const paint::Geometry& geometry, Gathered& gathered) {
+  if (table.wavelengths.size() < kFewestWavelengths) return {};
+  if (const auto steps = check_steps(table.wavelengths); !steps.ok()) return error(sheet, row, steps.error().message);
+  const double from_nm = table.wavelengths[0].nm, step_nm = table.wavelengths[1].nm - from_nm;
+  std::vector<double> factors;
+  for (const auto& [nm, column] : table.wavelengths) {
+    const std::string_view text = row.at(column);
+    if (text.empty() && factors.empty()) return {};
+    const auto value = number_of_cell(text);
+    if (!value || !(std::abs(*value) <= kMostLab))
+      return error(sheet, row, fmt::format("the reflectance at {} nm is \"{}\": write a number", nm, shown(text)));
+    factors.push_back(*value);
+  }
+  gathered.open.spectra.push_back({geometry, from_nm, step_nm, std::move(factors)});
+  gathered.places.push_back(fmt::format("{} at {}", gathered.open.paint.name, paint::geometry_name(geometry)));
+  return {};
+}
+
+Result<void> WorkbookReader::read_textures(const Sheet& sheet, const SheetRow& row, const Table& table,
+                                           std::string_view geometry, OpenPaint& open) {
+  for (const TextureColumn& column : table.textures) {
+    const std::string_view text = row.at(column.at);
+    if (text.empty()) continue;
+    const auto value = number_of_cell(text);
+    if (!value)
+      return error(sheet, row, fmt::format("{} is \"{}\": write a number", shown(column.quantity), shown(text)));
+    const auto same = [&](const paint::TextureReading& other) {
+      return other.quantity == column.quantity && other.geometry == geometry && other.version == column.version;
+    };
+    if (std::ranges::any_of(open.textures, same))
+      remarks_.note("several values of one texture: the first was taken",
+                    fmt::format("{} of {}", column.quantity, open.paint.name));
+    else
+      open.textures.push_back({column.quantity, std::string(geometry), column.version, *value});
+  }
+  return {};
+}
+
+Result<void> WorkbookReader::read_row(const Sheet& sheet, const SheetRow& row, const Table& table) {
+  const std::string name(table.name == kNone ? stated_name_ : row.at(table.name));
+  const std::string_view geometry_text = table.geometry == kNone ? std::string_view() : row.at(table.geometry);
+  if (name.empty() && geometry_text.empty()) return {};  // a remark, a sum
+  if (name.empty()) return error(sheet, row, "has no name of a sample: give it one");
+  if (geometry_text.empty()) return error(sheet, row, fmt::format("\"{}\" has no geometry: write 45as15", shown(name)));
+  Gathered& paint = gathered(name, std::string(table.date == kNone ? "" : row.at(table.date)));
+  GONIO_TRY(read_textures(sheet, row, table, geometry_text, paint.open));
+  if (table.colors.empty() && table.wavelengths.empty()) return {};  // textures have geometries of their own
+  const auto geometry = paint::parse_geometry(geometry_text);
+  if (!geometry.ok()) return error(sheet, row, geometry.error().message);
+  GONIO_TRY(read_lab(sheet, row, table, *geometry, paint.open));
+  return read_spectrum(sheet, row, table, *geometry, paint);
+}
+
+Result<void> WorkbookReader::read(const Sheet& sheet) {
+  sheets_ += fmt::format("{}\"{}\"", sheets_.empty() ? "" : ", ", shown(sheet.name));
+  if (sheet.formulas_without_value > 0)
+    remarks_.note("formulas without a stored value count as empty cells: open and save the workbook", sheet.name);
+  stated_name_.clear(), stated_ = {"", 0};
+  Table table;
+  for (std::size_t i = 0; i < sheet.rows.size(); ++i) {
+    const SheetRow& row = sheet.rows[i];
+    if (Table below = table_below(sheet, i); below.has_values()) {
+      table = std::move(below);
+      if (table.geometry != kNone) continue;
+      remarks_.note("a table without a column of geometries was left out", sheet.name);
+      table = {};
+    } else if (table.has_values()) {
+      const auto read = read_row(sheet, row, table);
+      if (!read.ok() && !options_.keep_going) return read;
+      if (!read.ok()) result_.skipped.push_back(read.error().message);
+    } else if (row.cells.size() >= 2) {  // `STANDARD: | name` and the like
+      const std::string word = plain_heading(row.cells[0].text);
+      if (is_one_of(word, kNameHeadings)) stated_name_ = row.cells[1].text;
+      if (word.find("illum") != std::string::npos || word.find("lichtart") != std::string::npos)
+        stated_ = condition_in(row.cells[1].text);
+    }
+  }
+  return {};
+}
+
+// Whether reflectances are in percent: told by the colors that stand beside them, else by their size.
+double WorkbookReader::percent_or_factor() {
+  double largest = 0, as_factor = 0, as_percent = 0;
+  for (const Gathered& paint : paints_)
+    for (const paint::SpectrumReading& spectrum : paint.open.spectra) {
+      largest = std::max(largest, *std::ranges::max_element(spectrum.factors));
+      const auto seen = std::ranges::find(paint.open.readings, spectrum.geometry,
+                                          [](const SeenReading& reading) { return reading.reading.geometry; });
+      if (seen == paint.open.readings.end()) continue;
+      const auto factor = meter_.lab(spectrum, seen->condition);
+      const auto percent = meter_.lab(spectrum, seen->condition, 0.01);
+      if (!factor.ok() || !percent.ok()) continue;
+      as_factor += std::abs(factor->L - seen->reading.lab.L);
+      as_percent += std::abs(percent->L - seen->reading.lab.L);
+    }
+  const bool told = as_factor != as_percent;
+  return (told ? as_percent < as_factor : largest > kLargestFactor) ? 0.01 : 1.0;
+}
+
+// Lab from the spectra of geometries that have none, and how far it lies from the Lab of those that have one.
+Result<void> WorkbookReader::integrate(Gathered& paint) {
+  OpenPaint& open = paint.open;
+  std::vector<color::ViewingCondition> conditions;
+  for (const SeenReading& seen : open.readings)
+    if (std::ranges::find(conditions, seen.condition) == conditions.end()) conditions.push_back(seen.condition);
+  if (conditions.empty()) conditions.push_back(completed({"", 0}, options_, {"D65", 10}));
+  for (std::size_t i = 0; i < open.spectra.size(); ++i) {
+    paint::SpectrumReading& spectrum = open.spectra[i];
+    for (double& factor : spectrum.factors) factor *= unit_;
+    for (const color::ViewingCondition& condition : conditions) {
+      const auto lab = meter_.lab(spectrum, condition);
+      if (!lab.ok()) {
+        remarks_.note("spectra are not integrated: " + lab.error().message, paint.places[i]);
+        continue;
+      }
+      const auto seen = std::ranges::find_if(open.readings, [&](const SeenReading& reading) {
+        return reading.condition == condition && reading.reading.geometry == spectrum.geometry;
+      });
+      if (seen == open.readings.end()) {
+        if (const auto checked = check_lab(*lab); !checked.ok())
+          return input_error("{}: {}: from its spectrum, {}", file_, paint.places[i], checked.error().message);
+        open.readings.push_back({condition, {spectrum.geometry, *lab}});
+        continue;
+      }
+      const double apart = color::delta_e_2000(*lab, seen->reading.lab);
+      disagreements_ += apart > kAgrees_de00;
+      if (apart > disagreement_de00_) disagreement_de00_ = apart, worst_ = paint.places[i];
+    }
+  }
+  return {};
+}
+
+Result<ImportedPaints> WorkbookReader::finish() {
+  unit_ = percent_or_factor();
+  UniqueNames names;
+  for (Gathered& paint : paints_) {
+    GONIO_TRY(integrate(paint));
+    if (!paint.open.complete(options_, remarks_)) continue;
+    paint.open.paint.name = names.own(paint.open.paint.name, remarks_);
+    result_.paints.push_back(std::move(paint.open.paint));
+  }
+  if (unit_ != 1) remarks_.note("reflectances were read as percent", "");
+  if (disagreements_ > 0)
+    remarks_.note(
+        fmt::format("the Lab was taken where it is not the color of the spectrum beside it: at {} of the readings, by "
+                    "up to {:.2g} dE00",
+                    disagreements_, disagreement_de00_),
+        worst_);
+  if (result_.paints.empty() && result_.skipped.empty())
+    return input_error(
+        "{}: none of its sheets ({}) has a table of geometries beside L*, a* and b*, or beside reflectances under "
+        "their wavelengths",
+        file_, sheets_.empty() ? "there are none" : sheets_);
+  result_.warnings = remarks_.lines();
+  return std::move(result_);
+}
+
+}  // namespace
+
+bool looks_workbook(std::string_view head) {
+  return head.starts_with("PK\x03\x04") || head.starts_with("PK\x05\x06") || head.starts_with("\xd0\xcf\x11\xe0");
+}
+
+Result<ImportedPaints> read_workbook(InputFile input, const ImportOptions& options) {
+  WorkbookReader reader(input.name(), options);
+  GONIO_ASSIGN(Spreadsheet book, Spreadsheet::open(std::move(input)));
+  for (std::size_t i = 0; i < book.sheet_count(); ++i) {
+    GONIO_ASSIGN(const Sheet sheet, book.sheet(i));
+    GONIO_TRY(reader.read(sheet));
+  }
+  return reader.finish();
+}
+
+}  // namespace goniochrome::formats
