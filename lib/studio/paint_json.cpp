@@ -17,6 +17,11 @@ Json measurement_json(const paint::Measurement& measurement) {
                                {"from", spectrum.from_nm},
                                {"step", spectrum.step_nm},
                                {"factors", spectrum.factors}});
+  for (const paint::TextureReading& texture : measurement.textures)
+    json["textures"].push_back({{"quantity", texture.quantity},
+                                {"geometry", texture.geometry},
+                                {"version", texture.version},
+                                {"value", texture.value}});
   return json;
 }
 
@@ -38,6 +43,12 @@ Result<paint::Measurement> measurement_of(const Json& json) {
     GONIO_ASSIGN(const paint::Geometry geometry, paint::parse_geometry(row.text("geometry")));
     measurement.spectra.push_back({geometry, row.number("from"), row.number("step"), row.numbers("factors")});
     GONIO_TRY(row.status());
+  }
+  for (const Json& element : reader.list("textures")) {
+    JsonReader of(element);
+    measurement.textures.push_back(
+        {of.text("quantity"), of.text("geometry", ""), of.text("version", ""), of.number("value")});
+    GONIO_TRY(of.status());
   }
   GONIO_TRY(reader.status());
   return Result(std::move(measurement));

@@ -54,12 +54,15 @@ TEST(PaintJson, KeepsEveryBit) {
   paint.coat_index = 1.55;
   paint.measurement->condition = {"A", 2};
   paint.measurement->spectra.push_back({{.aspecular_deg = 15}, 400, 10, {0.1, 0.2, 1.0 / 7}});
+  paint.measurement->textures = {{"Sparkle Grade", "15d", "2", 3.25}};
   paint.foreign = {"<x xmlns=\"urn:y\"/>"};
   const auto back = paint_of_json(Json::parse(paint_json(paint).dump()));
   ASSERT_TRUE(back.ok()) << back.error().message;
   EXPECT_EQ(paint_json(*back), paint_json(paint));
   EXPECT_EQ(back->appearance->face, paint.appearance->face);
   EXPECT_EQ(back->measurement->spectra[0].factors, paint.measurement->spectra[0].factors);
+  ASSERT_EQ(back->measurement->textures.size(), 1U);
+  EXPECT_EQ(back->measurement->textures[0].value, 3.25);
   EXPECT_EQ(back->measurement->condition, paint.measurement->condition);
 }
 
