@@ -12,6 +12,8 @@ test_packages=(
   bats coinor-libclp-dev file jq librsvg2-bin libbenchmark-dev libgmock-dev libgtest-dev libxml2-utils locales make mandoc
   openexr openimageio-tools procps python3 python3-numpy python3-openimageio strace time
 )
+# The compiler for the page of paint-studio. Not every system has it, and everything else is built without.
+studio_packages=(clang-19 lld-19 wasi-libc libc++-19-dev-wasm32 libc++abi-19-dev-wasm32 libclang-rt-19-dev-wasm32)
 demo_packages=(fonts-dejavu-core openimageio-tools python3)
 
 say() { printf '%s\n' "$*" >&2; }
@@ -37,6 +39,16 @@ install() {
   say "installing ${#missing[@]} packages: ${missing[*]}"
   "${root[@]}" apt-get update -qq
   DEBIAN_FRONTEND=noninteractive "${root[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+}
+
+# install_studio: installs the compiler for the page of paint-studio where the system offers it, and says so where not.
+install_studio() {
+  local package
+  for package in "${studio_packages[@]}"; do
+    dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' && continue
+    (install "${studio_packages[@]}") 2>/dev/null || say "paint-studio makes no pages: ${studio_packages[*]} cannot be installed"
+    return 0
+  done
 }
 
 # build PRESET [-DOPTION=VALUE...] [TOOL...]: configures and builds into build/PRESET; without tools, all of them.

@@ -25,6 +25,11 @@ execute() {
   shift
   bash -c "set -eo pipefail; $command" >out 2>err </dev/null || status=$?
   executed=$((executed + 1))
+  # The tools can be built without this compiler, and the one that needs it then says so.
+  if [ "$status" -eq 3 ] && grep -q 'there was no compiler for WebAssembly when the tools were built' err; then
+    echo "left out, for there was no compiler for WebAssembly: $command"
+    return
+  fi
   [[ " 0 $* " == *" $status "* ]] && return
   printf 'exit status %d: %s\n' "$status" "$command"
   tail -n 5 err

@@ -37,6 +37,9 @@ paint-pick -q --face seen.png@40,25 --flop seen.png@60,30
 plot-paint -q --paint $name fitted.xml
 draw-plot -q table.csv
 EOF
+  # Without the compiler for WebAssembly, this one writes nothing.
+  [ ! -f "$(dirname "$(command -v paint-studio)")/../lib/goniochrome/studio.wasm" ] ||
+    echo "paint-studio -q --mesh $TESTDATA/box.obj --env sky.env.exr -b $TESTDATA/b5.basis.xml one.xml" >>writers
   # The ending of the output where it matters: pictures and drawings.
   cat >endings <<'EOF'
 prefilter-envmap exr

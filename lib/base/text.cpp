@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <cstdlib>
+#include <type_traits>
 
 namespace goniochrome {
 
@@ -16,11 +18,31 @@ std::string_view without_plus(std::string_view text) {
   return text;
 }
 
+#ifdef __cpp_lib_to_chars
+using std::from_chars;
+#else
+// The standard library for WebAssembly has std::from_chars of whole numbers alone. strtod() takes more than that, and
+// WebAssembly has no locale but the C locale.
+std::from_chars_result from_chars(const char* first, const char* last, double& value) {
+  const std::string text(first, last);
+  char* end = nullptr;
+  if (text.find_first_not_of("0123456789.eE+-") == std::string::npos && !text.starts_with('+'))
+    value = std::strtod(text.c_str(), &end);
+  const bool read = end != nullptr && end != text.c_str() && std::isfinite(value);
+  return {read ? first + (end - text.c_str()) : first, read ? std::errc{} : std::errc::invalid_argument};
+}
+template <class Integer>
+requires std::is_integral_v<Integer> std::from_chars_result from_chars(const char* first, const char* last,
+                                                                       Integer& value) {
+  return std::from_chars(first, last, value);
+}
+#endif
+
 template <class Number>
 std::optional<Number> parsed_whole(std::string_view text) {
   text = without_plus(text);
   Number value{};
-  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const auto [end, status] = from_chars(text.data(), text.data() + text.size(), value);
   if (status != std::errc{} || end != text.data() + text.size()) return std::nullopt;
   return value;
 }

@@ -92,7 +92,7 @@ double ratio_of_response(double f) {
 }  // namespace
 
 Result<Xyz> white_point(const ViewingCondition& condition) {
-  const auto* white = std::ranges::find(kWhites, condition.illuminant, &White::illuminant);
+  const auto white = std::ranges::find(kWhites, condition.illuminant, &White::illuminant);
   if (white == kWhites.end()) {
     std::string known;
     for (const White& w : kWhites) known += fmt::format("{}{}", known.empty() ? "" : ", ", w.illuminant);

@@ -17,7 +17,7 @@ constexpr std::array kIlluminants = {"D65", "D50", "A", "C", "D55", "D75", "F2",
 constexpr std::size_t kFirstColumns = 3;
 
 std::optional<std::size_t> illuminant_column(const std::string& name) {
-  const auto* found = std::ranges::find(kIlluminants, name);
+  const auto found = std::ranges::find(kIlluminants, name);
   if (found == kIlluminants.end()) return std::nullopt;
   return static_cast<std::size_t>(found - kIlluminants.begin());
 }

@@ -104,7 +104,7 @@ Result<Header> header_of(const std::vector<std::string>& cells) {
   header.column.fill(-1);
   for (int i = 0; i < static_cast<int>(cells.size()); ++i) {
     const std::string heading = plain_heading(cells[i]);
-    const auto* known = std::ranges::find(kNames, heading);
+    const auto known = std::ranges::find(kNames, heading);
     if (known != kNames.end()) {
       int& column = header.column[known - kNames.begin()];
       if (column >= 0) return input_error("two columns are named {}: keep one", shown(cells[i]));

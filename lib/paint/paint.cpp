@@ -16,7 +16,7 @@ const char* paint_class_name(PaintClass paint_class) {
 }
 
 std::optional<PaintClass> paint_class_of(std::string_view name) {
-  const auto* found = std::ranges::find(kClassNames, name);
+  const auto found = std::ranges::find(kClassNames, name);
   if (found == kClassNames.end()) return std::nullopt;
   return static_cast<PaintClass>(found - kClassNames.begin());
 }

@@ -27,3 +27,10 @@ for file in bin/fit-paint lib/goniochrome/goniochrome-oiio.so share/man/man1/fit
     exit 1
   }
 done
+# The page of paint-studio is there where the compiler for WebAssembly is.
+for file in lib/goniochrome/studio.wasm lib/goniochrome/studio.html; do
+  [ ! -f "$build/lib/goniochrome/studio.wasm" ] || [ -s "$folder/moved/$file" ] || {
+    echo "not installed: $file"
+    exit 1
+  }
+done

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "brdf/disc_light.h"
+#include "render/gl/disc_texture.h"
+#include "render/gl/gl_weights.h"
 #include "render/gl/shader.h"
 #include "render/gl/tilt_shader.h"
 #include "render/internal/map_cost.h"
@@ -25,17 +26,6 @@ constexpr MapCost kCost = {.pixel = 12,
                            .lookup = 60,
                            .pairs = false};
 constexpr double kCompileMs = 110;
-
-// The four forms of colors that lie `step` floats apart.
-std::vector<float> in_forms(const ProductForms& forms, const float* colors, std::size_t count, std::size_t step) {
-  std::vector<float> result(4 * count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const color::Rgb color{colors[step * i], colors[step * i + 1], colors[step * i + 2]};
-    for (int form = 0; form < 4; ++form)
-      result[4 * i + static_cast<std::size_t>(form)] = static_cast<float>(forms.of(form, color));
-  }
-  return result;
-}
 
 }  // namespace
 
@@ -69,7 +59,7 @@ void GlEngine::upload(const envmap::CubeMap& map, const std::string& sampler) {
     const GLenum target = GL_TEXTURE_CUBE_MAP_POSITIVE_X + static_cast<GLenum>(face);
     if (forms_.count == 4) {
       gl_->TexImage2D(target, 0, GL_RGBA32F, map.size, map.size, 0, GL_RGBA, GL_FLOAT,
-                      in_forms(forms_, map.at(face, 0, 0), texels, 3).data());
+                      in_four_forms(forms_, map.at(face, 0, 0), texels, 3).data());
     } else {
       gl_->TexImage2D(target, 0, GL_RGB32F, map.size, map.size, 0, GL_RGB, GL_FLOAT, map.at(face, 0, 0));
     }
@@ -131,49 +121,22 @@ void GlEngine::upload_tilts(const std::vector<std::vector<brdf::Tilt>>& tilts) {
 void GlEngine::upload_tilted(const Scene& scene) {
   const TiltTexture texture =
       tilt_texture(tilt_table(scene, effects_, tilt_exponents_), tilt_exponents_.size(), [&](const float* rgb) {
-        return forms_.count == 4 ? in_forms(forms_, rgb, 1, 3) : std::vector<float>{rgb[0], rgb[1], rgb[2]};
+        return forms_.count == 4 ? in_four_forms(forms_, rgb, 1, 3) : std::vector<float>{rgb[0], rgb[1], rgb[2]};
       });
   tilt_stride_ = static_cast<int>(texture.stride);
   tilted_ = gl_->float_texture(static_cast<int>(kTiltTexels), static_cast<int>(texture.rgba.size() / (4 * kTiltTexels)),
                                texture.rgba.data());
 }
 
-// For each light a row for each lobe, whose last texel holds first_chord and nodes_per_chord; then a row of the
-// horizon.
 void GlEngine::upload_discs() {
-  constexpr int kNodes = brdf::DiscLobeTable::kNodes;
-  std::vector<float> texels;
-  for (const Light& light : lights_) {
-    for (const Effects::LobeUse& lobe : effects_.lobes) {
-      const auto table = brdf::disc_lobe_table(lobe.exponent, light.radius_rad);
-      for (int i = 0; i < kNodes; ++i) {
-        const brdf::DiscLobeTable::Node& node = table->nodes[static_cast<std::size_t>(i)];
-        texels.insert(texels.end(), {node.cosine[0], node.cosine[1], node.plain[0], node.plain[1]});
-      }
-      texels.insert(texels.end(), {static_cast<float>(table->first_chord), static_cast<float>(table->nodes_per_chord)});
-      texels.insert(texels.end(), {0, 0});
-    }
-    for (int i = 0; i <= kNodes; ++i) {
-      const double sine = std::sin(light.radius_rad) * std::min(1.0, 2.0 * i / (kNodes - 1) - 1);
-      texels.push_back(static_cast<float>(brdf::disc_irradiance(sine, light.radius_rad)));
-      texels.push_back(static_cast<float>(brdf::disc_above(sine, light.radius_rad)));
-      texels.insert(texels.end(), {0, 0});
-    }
-  }
-  discs_ =
-      gl_->float_texture(kNodes + 1, static_cast<int>((effects_.lobes.size() + 1) * lights_.size()), texels.data());
+  const FloatTexture discs = disc_texture(lights_, effects_);
+  discs_ = gl_->float_texture(discs.columns, discs.rows, discs.rgba.data());
 }
 
 void GlEngine::load_paints(const Scene& scene) {
   const WeightTable table = weight_table(scene, effects_);
   gl_->DeleteTextures(1, &weights_);
-  std::vector<float> weights = table.rgba;
-  if (forms_.count == 4) {  // those that meet maps
-    const auto met = static_cast<std::size_t>(table.light_slot()) * 8,
-               slots = static_cast<std::size_t>(table.slots) * 8;
-    for (std::size_t at = 0; at < weights.size(); at += slots)
-      std::ranges::copy(in_forms(forms_, &table.rgba[at], met / 4, 4), &weights[at]);
-  }
+  const std::vector<float> weights = gl_weights(table, forms_);
   weights_ = gl_->float_texture(2 * table.slots * table.segments, table.parts, weights.data());
   gl_->DeleteTextures(1, &tilts_);
   tilts_ = 0;
@@ -225,11 +188,7 @@ Result<void> GlEngine::shade(Sight& sight, int sample, float gain, bool add, ima
     gl_->set(program_, fmt::format("light_direction[{}]", i), lights_[i].direction);
     gl_->set(program_, fmt::format("light_white[{}]", i), lights_[i].white);
     if (discs_ == 0) continue;
-    const double radius = lights_[i].radius_rad;
-    gl_->set(program_, fmt::format("light_disc[{}]", i),
-             radius > 0 ? Vec3{std::sin(radius), 2 * std::sin(0.5 * radius),
-                               lights_[i].mirrored ? brdf::disc_radiance(radius) : 0}
-                        : Vec3{0, -1, 0});
+    gl_->set(program_, fmt::format("light_disc[{}]", i), disc_uniform(lights_[i]));
   }
   if (effects_.background == Background::kColor) gl_->set(program_, "background", background_color_);
   gl_->BindVertexArray(no_vertices_);

@@ -19,6 +19,9 @@ std::string glsl(double value) {
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
 
+// The first line of every program.
+constexpr const char* kHead = "#version 330 core\n";
+
 // Pixels as rays; both programs see the same, so a viewing direction needs no position.
 constexpr const char* kRays =
     R"(uniform vec3 corner, right, down;  // the ray through (x, y), in pixels from the upper left
@@ -187,20 +190,39 @@ const char* sum_type(Product product) {
   return product == Product::kForms ? "vec4" : "vec3";
 }
 
+// The weights that discs meet are fetched once for a point, and not again for each of its discs.
+std::string disc_weights(const Effects& effects) {
+  std::string text = "\nvec4 lit_base;\n";
+  for (std::size_t j = 0; j < effects.lobes.size(); ++j) text += fmt::format("vec3 flake_{0}, gloss_{0};\n", j);
+  return text;
+}
+
+std::string fetched_disc_weights(const Effects& effects) {
+  const WeightTable slots = slots_of(effects);
+  std::string text = fmt::format("  lit_base = W({});\n", slots.light_slot());
+  for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
+    const auto weight = [&](bool used, int slot) { return used ? fmt::format("W({}).rgb", slot) : "vec3(0.0)"; };
+    text += fmt::format("  flake_{0} = {1};\n  gloss_{0} = {2};\n", j,
+                        weight(effects.lobes[j].directional_diffuse, slots.directional_diffuse_slot(j)),
+                        weight(effects.lobes[j].gloss, slots.gloss_slot(j)));
+  }
+  return text;
+}
+
 // What the lobes send from a disc: one part with the cosine and the coat at the disc, the other with those at r.
-std::string disc_lobes(const Effects& effects, const WeightTable& slots) {
+std::string disc_lobes(const Effects& effects) {
   std::string text = fmt::format(
       "\nvec3 lit_lobes(vec3 r, vec3 l, vec3 n, vec3 wo, int light, float irradiance, float above) {{\n"
       "  float chord = distance(r, l), cos_r = max(dot(n, r), 0.0), coat = {};\n  vec3 sum = vec3(0.0);\n  vec4 of;\n",
       lit_gloss(effects) ? "fresnel(sqrt(max(0.5 + 0.5 * dot(r, wo), 0.0)))" : "1.0");
-  if (effects.coat) text += fmt::format("  cos_r *= let_in(cos_r, W({}).a);\n", slots.light_slot());
+  if (effects.coat) text += "  cos_r *= let_in(cos_r, lit_base.a);\n";
   for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
     const Effects::LobeUse& lobe = effects.lobes[j];
-    text += fmt::format("  of = disc_lobe(light, {}, chord);\n", j);
-    if (lobe.directional_diffuse)
-      text +=
-          fmt::format("  sum += (of.x * irradiance + of.y * cos_r) * W({}).rgb;\n", slots.directional_diffuse_slot(j));
-    if (lobe.gloss) text += fmt::format("  sum += (of.z * above + of.w * coat) * W({}).rgb;\n", slots.gloss_slot(j));
+    text += fmt::format(
+        "  if (flake_{0} != vec3(0.0) || gloss_{0} != vec3(0.0)) {{\n    of = disc_lobe(light, {0}, chord);\n", j);
+    if (lobe.directional_diffuse) text += fmt::format("    sum += (of.x * irradiance + of.y * cos_r) * flake_{};\n", j);
+    if (lobe.gloss) text += fmt::format("    sum += (of.z * above + of.w * coat) * gloss_{};\n", j);
+    text += "  }\n";
   }
   return text + "  return sum;\n}\n";
 }
@@ -223,7 +245,7 @@ std::string lobe_functions(const Effects& effects, Product product) {
   }
   if (effects.single_lights() == 0) return text;
   const WeightTable slots = slots_of(effects);
-  if (effects.discs()) return text + disc_lobes(effects, slots);
+  if (effects.discs()) return text + disc_lobes(effects);
   text += "\nvec3 lit_lobes(vec3 r, vec3 l, float base, float F) {  // without the gloss term's 1/cos_i\n";
   text += "  float versine = 0.5 * dot(r - l, r - l);\n  vec3 sum = vec3(0.0);\n";
   for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
@@ -274,19 +296,17 @@ std::string disc_terms(const Effects& effects) {
   std::string text = fmt::format(
       R"(
   // the lamps
-  for (int i = 0; i < {}; ++i) {{
+{}  for (int i = 0; i < {}; ++i) {{
     vec3 l = light_direction[i], disc = light_disc[i];
     float cos_i = dot(n, l);
     if (cos_i <= -disc.x) continue;
     vec2 seen = cos_i >= disc.x ? vec2(cos_i, 1.0) : disc_horizon(i, cos_i / disc.x);
 {}    vec3 reflected = {};
 )",
-      effects.single_lights(),
+      fetched_disc_weights(effects), effects.single_lights(),
       // At the mean cosine of what is seen of the disc.
-      effects.coat ? fmt::format("    seen.x *= let_in(min(seen.x / max(seen.y, 1e-6), 1.0), W({}).a);\n",
-                                 slots_of(effects).light_slot())
-                   : "",
-      effects.diffuse ? fmt::format("seen.x * W({}).rgb", slots_of(effects).light_slot()) : "vec3(0.0)");
+      effects.coat ? "    seen.x *= let_in(min(seen.x / max(seen.y, 1e-6), 1.0), lit_base.a);\n" : "",
+      effects.diffuse ? "seen.x * lit_base.rgb" : "vec3(0.0)");
   if (!effects.lobes.empty()) {
     const char* fresnel = lit_gloss(effects) ? "fresnel(sqrt(max(0.5 + 0.5 * dot(l, wo), 0.0)))" : "1.0";
     text += over_tilts(effects, "reflected", "lit_lobes", fmt::format(", l, n, wo, i, seen.x, seen.y * {}", fresnel));
@@ -338,8 +358,7 @@ std::string background_color(Background background, Product product) {
 }  // namespace
 
 std::string gbuffer_vertex_shader() {
-  return R"(#version 330 core
-layout(location = 0) in vec3 position;
+  return std::string(kHead) + R"(layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 vertex_normal;
 uniform mat4 clip;
 out vec3 normal;
@@ -350,12 +369,14 @@ void main() {
 )";
 }
 
-std::string gbuffer_fragment_shader() {
-  return std::string("#version 330 core\n") + kRays +
-         R"(uniform int part, first;  // first: the number of the part's first triangle
+std::string gbuffer_fragment_shader(bool with_triangles) {
+  const char* number = with_triangles ? R"(uniform int first;  // the number of the part's first triangle
+layout(location = 1) out uint triangle;
+)"
+                                      : "";
+  return std::string(kHead) + kRays + number + R"(uniform int part;
 in vec3 normal;
 layout(location = 0) out vec4 gbuffer;
-layout(location = 1) out uint triangle;
 void main() {
   float side = gl_FrontFacing ? 1.0 : -1.0;
   vec3 n = side * normalize(normal), wo = -ray();
@@ -363,14 +384,11 @@ void main() {
   float cos_o = dot(n, wo);
   if (cos_o < 1e-3) n = normalize(n + (1e-3 - cos_o) * wo);
   gbuffer = vec4(n, side * float(part + 1));
-  triangle = uint(first + gl_PrimitiveID);
-}
-)";
+)" + (with_triangles ? "  triangle = uint(first + gl_PrimitiveID);\n}\n" : "}\n");
 }
 
 std::string shading_vertex_shader() {
-  return R"(#version 330 core
-void main() {  // one triangle that covers the picture
+  return std::string(kHead) + R"(void main() {  // one triangle that covers the picture
   gl_Position = vec4(4.0 * float(gl_VertexID & 1) - 1.0, 4.0 * float(gl_VertexID >> 1) - 1.0, 0.0, 1.0);
 }
 )";
@@ -382,7 +400,7 @@ std::string shading_fragment_shader(const Effects& effects, const color::Reflect
   const ProductForms forms = effects.reflection ? product_forms(op) : ProductForms{};
   const Product product = product_of(effects, forms);
   // 1. What the program is given, and the functions that it needs.
-  std::string text = "#version 330 core\n// goniochrome-theory(7), RENDERING\n";
+  std::string text = std::string(kHead) + "// goniochrome-theory(7), RENDERING\n";
   text +=
       uniforms(effects) + tilt_uniforms(effects, tilted) + kRays + "layout(location = 0) out vec4 color;\n" + kWeight;
   if (effects.reflection && (product == Product::kOperator || effects.single_lights() > 0))
@@ -392,7 +410,8 @@ std::string shading_fragment_shader(const Effects& effects, const color::Reflect
   if (lit_gloss(effects)) text += fresnel_function();
   if (effects.coat && effects.single_lights() > 0) text += kLetIn;
   if (lit_lobes && !effects.discs()) text += kCosPower;
-  if (effects.single_lights() > 0 && effects.discs()) text += disc_functions(effects.lobes.size());
+  if (effects.single_lights() > 0 && effects.discs())
+    text += disc_functions(effects.lobes.size()) + disc_weights(effects);
   if (!effects.lobes.empty()) text += lobe_functions(effects, product);
   text += tilt_function(effects, tilted, product);
   // 2. Where nothing is seen the program shows the background; else it finds the view and the row of weights.
@@ -420,6 +439,12 @@ void main() {{
   if (effects.environment) text += environment_terms(effects, product, !tilted.empty());
   if (effects.single_lights() > 0) text += light_terms(effects);
   return text + "  color = vec4(radiance, 1.0);\n}\n";
+}
+
+std::string for_opengl_es(const std::string& program) {
+  return "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\n"
+         "precision highp samplerCube;\n" +
+         program.substr(std::string_view(kHead).size());
 }
 
 }  // namespace goniochrome::render

@@ -10,14 +10,18 @@
 namespace goniochrome::render {
 
 // Draws the G-buffer: unit normal, turned to the viewer, and part + 1 (negative where a surface is seen from inside);
-// and, as a second picture, the number of the triangle.
+// and, as a second picture unless it is left out, the number of the triangle.
 std::string gbuffer_vertex_shader();
-std::string gbuffer_fragment_shader();
+std::string gbuffer_fragment_shader(bool with_triangles = true);
 
 // Covers the picture, and shades each point of the G-buffer.
 std::string shading_vertex_shader();
 // The operator is written into it where the effects have it. `tilted` are the exponents of tilted lobes.
 std::string shading_fragment_shader(const Effects& effects, const color::ReflectionOperator& op,
                                     const std::vector<double>& tilted);
+
+// One of these programs for OpenGL ES 3, which is what WebGL 2 draws with: it differs in its head alone. That of the
+// G-buffer must be without triangles, whose numbers OpenGL ES 3 does not tell.
+std::string for_opengl_es(const std::string& program);
 
 }  // namespace goniochrome::render

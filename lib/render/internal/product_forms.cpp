@@ -196,4 +196,14 @@ ProductForms product_forms(const color::ReflectionOperator& op) {
   return best;
 }
 
+std::vector<float> in_four_forms(const ProductForms& forms, const float* colors, std::size_t count, std::size_t step) {
+  std::vector<float> result(4 * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const color::Rgb color{colors[step * i], colors[step * i + 1], colors[step * i + 2]};
+    for (int form = 0; form < 4; ++form)
+      result[4 * i + static_cast<std::size_t>(form)] = static_cast<float>(forms.of(form, color));
+  }
+  return result;
+}
+
 }  // namespace goniochrome::render

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <vector>
 
 #include "color/reflection.h"
 
@@ -21,5 +23,8 @@ struct ProductForms {
 // Three forms for the component-wise product, four for nearly every other operator, six for one that four would not
 // make within single precision.
 ProductForms product_forms(const color::ReflectionOperator& op);
+
+// The four forms of `count` colors that lie `step` floats apart, one color behind the other.
+std::vector<float> in_four_forms(const ProductForms& forms, const float* colors, std::size_t count, std::size_t step);
 
 }  // namespace goniochrome::render

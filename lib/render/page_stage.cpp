@@ -1,0 +1,53 @@
+#include "render/page_stage.h"
+
+#include "render/gl/disc_texture.h"
+#include "render/gl/shader.h"
+#include "render/internal/maps.h"
+#include "render/internal/product_forms.h"
+#include "render/spots.h"
+
+namespace goniochrome::render {
+
+PagePrograms page_programs() {
+  return {for_opengl_es(gbuffer_vertex_shader()), for_opengl_es(gbuffer_fragment_shader(false)),
+          for_opengl_es(shading_vertex_shader())};
+}
+
+Result<PageLight> page_light(const envmap::PrefilteredEnvironment& env, const Effects& effects,
+                             const color::ReflectionOperator& op) {
+  if (effects.lobes.size() > kMostPageLobes)
+    return input_error("the basis has {} lobes, but a page can show {}: take a basis of fewer lobes",
+                       effects.lobes.size(), kMostPageLobes);
+  Scene scene;
+  scene.env = &env;
+  scene.background = effects.background;
+  scene.reflection = op;
+  GONIO_ASSIGN(SceneMaps maps, scene_maps(scene, effects));
+  const ProductForms forms = effects.reflection ? product_forms(op) : ProductForms{};
+  PageLight light;
+  light.shading_fragment = for_opengl_es(shading_fragment_shader(effects, op, {}));
+  const auto add = [&](std::string sampler, envmap::CubeMap map) {
+    const bool in_forms = forms.count == 4;
+    std::vector<float> texels =
+        in_forms ? in_four_forms(forms, map.texels.data(), map.texels.size() / 3, 3) : std::move(map.texels);
+    light.cubes.push_back({std::move(sampler), map.size, in_forms ? 4 : 3, std::move(texels)});
+  };
+  add("diffuse", std::move(maps.diffuse.maps[0]));
+  if (maps.diffuse.maps.size() > 1) add("coat_diffuse", std::move(maps.diffuse.maps[1]));
+  // The page looks each lobe up by itself, so that it keeps the size that its file has.
+  const std::vector<envmap::Spot> spots(env.spots.begin(),
+                                        env.spots.begin() + static_cast<std::ptrdiff_t>(effects.spots));
+  for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
+    const double exponent = effects.lobes[j].exponent;
+    add(fmt::format("lobe_{}", j), without_spots(env.lobe(exponent)->map, exponent, spots));
+  }
+  if (maps.mirror.size > 0) add("mirror", std::move(maps.mirror.maps[0]));
+  const std::vector<Light> lamps = single_lights(scene, effects);
+  for (const Light& lamp : lamps) light.lamps.push_back({lamp.direction, lamp.white, disc_uniform(lamp)});
+  if (lamps.empty()) return Result(std::move(light));
+  FloatTexture discs = disc_texture(lamps, effects);
+  light.disc_columns = discs.columns, light.disc_rows = discs.rows, light.discs = std::move(discs.rgba);
+  return Result(std::move(light));
+}
+
+}  // namespace goniochrome::render

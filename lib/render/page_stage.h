@@ -1,0 +1,47 @@
+// What a page in a browser needs to draw paints in prefiltered light by WebGL 2, as the engine gl draws them: the same
+// programs, and the maps and lamps that they read. Weights come from page_weights(). goniochrome-theory(7), RENDERING.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "render/effects.h"
+
+namespace goniochrome::render {
+
+// OpenGL ES 3. The G-buffer takes the row of the paint's weights for the number of the part.
+struct PagePrograms {
+  std::string gbuffer_vertex, gbuffer_fragment, shading_vertex;
+};
+PagePrograms page_programs();
+
+// One cube texture, by the name of its sampler: six faces of RGB or, where products are taken in four forms, of RGBA.
+struct PageCube {
+  std::string sampler;
+  int size = 0, channels = 3;
+  std::vector<float> texels;
+};
+
+// A lamp as the uniforms light_direction, light_white and light_disc have it.
+struct PageLamp {
+  Vec3 direction, white, disc;
+};
+
+struct PageLight {
+  std::string shading_fragment;  // the program of this environment
+  std::vector<PageCube> cubes;
+  std::vector<PageLamp> lamps;          // its bright spots
+  int disc_columns = 0, disc_rows = 0;  // of the texture "discs"
+  std::vector<float> discs;             // its RGBA texels; empty without lamps
+};
+
+// WebGL 2 promises 16 textures. Besides lobes, the program reads seven.
+constexpr std::size_t kMostPageLobes = 9;
+
+// Error: a lobe or the mirror part that the environment lacks, with the command that makes it; more than
+// kMostPageLobes.
+Result<PageLight> page_light(const envmap::PrefilteredEnvironment& env, const Effects& effects,
+                             const color::ReflectionOperator& op);
+
+}  // namespace goniochrome::render

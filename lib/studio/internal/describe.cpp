@@ -1,0 +1,109 @@
+#include "studio/internal/describe.h"
+
+#include <cmath>
+
+#include "brdf/lobe_model.h"
+#include "display/paint_view.h"
+#include "paint/curve.h"
+#include "paint/edit.h"
+#include "paint/metrics.h"
+#include "studio/paint_json.h"
+
+namespace goniochrome::studio {
+
+namespace {
+
+// Degrees at which curves are drawn: close together near the face, where they bend.
+std::vector<double> drawn_angles_deg() {
+  std::vector<double> angles;
+  for (double angle = 10; angle <= 110; angle += angle < 50 ? 1 : 2) angles.push_back(angle);
+  return angles;
+}
+
+color::Xyz white_of(const color::ViewingCondition& condition) {
+  const auto white = color::white_point(condition);
+  return white.ok() ? *white : color::Xyz{0.9504, 1, 1.0888};
+}
+
+Json rows_json(const paint::Paint& paint, const color::ViewingCondition& condition) {
+  Json rows = Json::array();
+  if (!paint.measurement) return rows;
+  for (const paint::LabReading& row : paint.measurement->rows) {
+    rows.push_back({{"geometry", paint::geometry_name(row.geometry)},
+                    {"angle", paint::aspecular_angle_deg(row.geometry)},
+                    {"out_of_plane", row.geometry.out_of_plane},
+                    {"lab", lab_json(row.lab)},
+                    {"css", css_color(row.lab, condition)}});
+  }
+  return rows;
+}
+
+Json metrics_json(const paint::PaintMetrics& metrics) {
+  Json json = Json::object();
+  for (const paint::MetricColumn& column : paint::metric_columns())
+    json[column.name] = json_number(metrics.*column.value);
+  json["flags"] = metrics.flags;
+  return json;
+}
+
+}  // namespace
+
+std::string css_color(const color::Lab& lab, const color::ViewingCondition& condition) {
+  const color::Rgb shown =
+      color::rec709_from_rec2020(display::in_display_gamut(color::rgb_from_lab(lab, white_of(condition))));
+  std::string text = "#";
+  for (int c = 0; c < 3; ++c)
+    text += fmt::format("{:02x}", static_cast<int>(std::lround(255 * display::srgb_signal(shown[c]))));
+  return text;
+}
+
+Result<Json> description(const paint::Paint& paint) {
+  const color::ViewingCondition condition = paint::condition_of(paint);
+  GONIO_TRY([&]() -> Result<void> {
+    const auto white = color::white_point(condition);
+    return white.ok() ? Result<void>() : Result<void>(white.error());
+  }());
+  paint::Appearance appearance;
+  if (paint.appearance) {
+    appearance = *paint.appearance;
+  } else {
+    GONIO_ASSIGN(
+        const paint::AppearanceFit fit,
+        paint::appearance_from_rows(paint.measurement ? paint.measurement->rows : std::vector<paint::LabReading>()));
+    appearance = fit.appearance;
+  }
+  GONIO_ASSIGN(const paint::TargetCurve curve, paint::TargetCurve::make(paint, paint::TargetCurve::Kind::kMeasured));
+  GONIO_ASSIGN(const paint::PaintMetrics metrics, paint::metrics(paint));
+  const paint::AverageColor average = paint::average_color(appearance);
+  Json json = {{"name", paint.name}, {"code", paint.code}, {"class", paint::paint_class_name(paint.paint_class)}};
+  json["appearance"] = {{"face", lab_json(appearance.face)},
+                        {"flop", lab_json(appearance.flop)},
+                        {"travel", appearance.travel_deg},
+                        {"fitted", !paint.appearance},
+                        {"face_css", css_color(appearance.face, condition)},
+                        {"flop_css", css_color(appearance.flop, condition)}};
+  json["average"] = {{"L", average.L}, {"chroma", average.chroma}, {"hue", average.hue_deg}};
+  json["gloss"] = Json::array();
+  for (const paint::GlossReading& reading : paint.gloss)
+    json["gloss"].push_back({{"angle", reading.angle_deg}, {"units", reading.gloss_units}});
+  json["rows"] = rows_json(paint, condition);
+  json["measured"] = curve.kind() == paint::TargetCurve::Kind::kMeasured;
+  json["curve"] = Json::array();
+  for (const double angle : drawn_angles_deg()) {
+    const color::Lab lab = curve.at(angle);
+    json["curve"].push_back({{"angle", angle}, {"lab", lab_json(lab)}, {"css", css_color(lab, condition)}});
+  }
+  json["metrics"] = metrics_json(metrics);
+  return Result(std::move(json));
+}
+
+Json curve_json(const paint::LobeFit& fit, const color::ViewingCondition& condition) {
+  const color::Xyz white = white_of(condition);
+  Json curve = Json::array();
+  for (const double angle : drawn_angles_deg())
+    curve.push_back(
+        {{"angle", angle}, {"lab", lab_json(color::lab_from_rgb(brdf::flake_reflectance_factor(fit, angle), white))}});
+  return curve;
+}
+
+}  // namespace goniochrome::studio

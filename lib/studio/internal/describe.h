@@ -1,0 +1,23 @@
+// What a page shows of a paint in numbers, curves and colors.
+#pragma once
+
+#include <string>
+
+#include "base/json.h"
+#include "base/result.h"
+#include "paint/paint.h"
+
+namespace goniochrome::studio {
+
+// "#rrggbb": the color as an sRGB display shows it, under the light that the reading is relative to.
+std::string css_color(const color::Lab& lab, const color::ViewingCondition& condition);
+
+// Members: name, code, class, appearance{face, flop, travel, fitted}, average{L, chroma, hue}, gloss[], rows[] of
+// geometry, angle, lab and css, curve[] of angle, lab and css, and metrics{}. Error: a paint without color, or of an
+// unknown illuminant.
+Result<Json> description(const paint::Paint& paint);
+
+// What the lobes of a paint show at the angles of a curve: a list of angle and lab.
+Json curve_json(const paint::LobeFit& fit, const color::ViewingCondition& condition);
+
+}  // namespace goniochrome::studio

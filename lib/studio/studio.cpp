@@ -1,0 +1,241 @@
+#include "studio/studio.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "fit/paint_fit.h"
+#include "library/search.h"
+#include "render/page_weights.h"
+#include "studio/internal/describe.h"
+#include "studio/internal/edit_json.h"
+#include "studio/internal/handoff.h"
+#include "studio/internal/json_reader.h"
+#include "studio/paint_json.h"
+
+namespace goniochrome::studio {
+
+render::Effects page_effects(const std::vector<double>& exponents, bool mirror, std::size_t spots) {
+  render::Effects effects;
+  effects.environment = true;
+  for (const double exponent : exponents) effects.lobes.push_back({exponent, true, true});
+  effects.mirror = mirror;
+  effects.fresnel = effects.coat = effects.views = effects.reflection = true;
+  effects.horizon = !exponents.empty();
+  effects.spots = effects.horizon ? spots : 0;
+  effects.background = mirror ? render::Background::kEnvironment : render::Background::kNone;
+  return effects;
+}
+
+color::ReflectionOperator page_operator() {
+  return color::fitted_operator();
+}
+
+struct Studio::State {
+  std::optional<fit::PaintFitter> fitter;
+  render::Effects effects;
+  std::optional<library::LibraryIndex> index;
+  std::optional<library::LibrarySearch> by_de76, by_de00;
+  std::vector<float> weights;
+
+  Result<Json> load(JsonReader& request);
+  Result<Json> edit(JsonReader& request) const;
+  Result<Json> fit(JsonReader& request);
+  Result<Json> describe(JsonReader& request) const;
+  Result<Json> variations(JsonReader& request) const;
+  Result<Json> nearest(JsonReader& request) const;
+  Result<Json> write(JsonReader& request) const;
+  Result<Json> color(JsonReader& request) const;
+  Result<Json> answer(const Json& request);
+  Result<paint::Paint> fitted(const paint::Paint& paint) const;
+};
+
+namespace {
+
+Json edited_json(const paint::Edited& edited) {
+  return {{"paint", paint_json(edited.paint)},
+          {"dropped", edited.dropped},
+          {"clipped", edited.clipped},
+          {"skipped", edited.skipped}};
+}
+
+Json rgb_json(const color::Rgb& rgb) {
+  return Json::array({rgb.x, rgb.y, rgb.z});
+}
+
+Json lobes_json(const paint::LobeFit& fit) {
+  Json json = {{"coat", fit.coat_index}, {"diffuse", rgb_json(fit.diffuse)}, {"lobes", Json::array()}};
+  for (const paint::Lobe& lobe : fit.lobes) {
+    json["lobes"].push_back({{"exponent", lobe.is_mirror() ? Json("mirror") : Json(lobe.exponent)},
+                             {"flake", rgb_json(lobe.directional_diffuse)},
+                             {"gloss", rgb_json(lobe.gloss)}});
+  }
+  return json;
+}
+
+}  // namespace
+
+Result<Json> Studio::State::load(JsonReader& request) {
+  JsonReader of(request.member("basis"));
+  formats::Basis basis{of.text("name"), of.numbers("exponents"), of.flag("mirror")};
+  GONIO_TRY(of.status());
+  effects = page_effects(basis.exponents, basis.mirror, 0);
+  fitter.emplace(std::move(basis), fit::FitOptions{});
+  by_de76.reset(), by_de00.reset();
+  const Json& list = request.list("paints");
+  auto next = list.begin();
+  GONIO_ASSIGN(library::LibraryIndex made,
+               library::LibraryIndex::from_paints([&]() -> Result<std::optional<paint::Paint>> {
+                 if (next == list.end()) return std::optional<paint::Paint>();
+                 GONIO_ASSIGN(paint::Paint paint, paint_of_json(*next++));
+                 return std::optional(std::move(paint));
+               }));
+  index.emplace(std::move(made));
+  by_de76.emplace(*index, library::LibrarySearchOptions{});
+  by_de00.emplace(*index, library::LibrarySearchOptions{.metric = library::ColorMetric::kDe00});
+  return Json{{"paints", index->size()}};
+}
+
+Result<Json> Studio::State::edit(JsonReader& request) const {
+  GONIO_ASSIGN(const paint::Paint paint, paint_of_json(request.member("paint")));
+  GONIO_ASSIGN(const paint::Edit edit, edit_of_json(request.member("edit")));
+  GONIO_ASSIGN(const paint::Edited edited, paint::edited(paint, edit));
+  return edited_json(edited);
+}
+
+// The paint as fit-paint writes it.
+Result<paint::Paint> Studio::State::fitted(const paint::Paint& paint) const {
+  if (!fitter) return input_error("\"load\" must come first");
+  GONIO_ASSIGN(fit::PaintFit fit, fitter->fit(paint));
+  paint::Paint result = paint;
+  if (fit.lobes.coat_index != paint::kNoCoat) result.coat_index = fit.lobes.coat_index;
+  result.lobes = std::move(fit.lobes);
+  return Result(std::move(result));
+}
+
+Result<Json> Studio::State::fit(JsonReader& request) {
+  if (!fitter) return input_error("\"load\" must come first");
+  GONIO_ASSIGN(const paint::Paint paint, paint_of_json(request.member("paint")));
+  GONIO_ASSIGN(const fit::PaintFit fit, fitter->fit(paint));
+  render::Scene scene;
+  scene.paints = {fit.lobes};
+  // Without a reading of gloss it is the angle at which render-osmesa takes gloss to hold.
+  scene.gloss_deg = {paint.gloss.empty() ? brdf::kGlossIncidence_deg : paint.gloss.front().angle_deg};
+  scene.reflection = page_operator();
+  weights = render::page_weights(scene, effects);
+  Json answer = lobes_json(fit.lobes);
+  answer["status"] = fit::fit_status_name(fit.report.status);
+  answer["de00_max"] = json_number(fit.report.de00_max);
+  answer["de00_mean"] = json_number(fit.report.de00_mean);
+  answer["gamut_de00"] = json_number(fit.report.gamut_de00);
+  answer["limit"] = fit.report.limit;
+  answer["time_us"] = json_number(fit.report.time_us);
+  answer["seen"] = curve_json(fit.lobes, paint::condition_of(paint));
+  return answer;
+}
+
+Result<Json> Studio::State::describe(JsonReader& request) const {
+  GONIO_ASSIGN(const paint::Paint paint, paint_of_json(request.member("paint")));
+  return description(paint);
+}
+
+Result<Json> Studio::State::variations(JsonReader& request) const {
+  GONIO_ASSIGN(const paint::Paint paint, paint_of_json(request.member("paint")));
+  const std::string of = request.text("of");
+  static const std::map<std::string, paint::Variation, std::less<>> kKinds = {{"face", paint::Variation::kFace},
+                                                                              {"flop", paint::Variation::kFlop},
+                                                                              {"travel", paint::Variation::kTravel},
+                                                                              {"gloss", paint::Variation::kGloss}};
+  const auto kind = kKinds.find(of);
+  if (kind == kKinds.end()) request.fail("face, flop, travel or gloss", "of");
+  const double step = request.number("step", 5);
+  if (!(step > 0)) request.fail("a number above 0", "step");
+  GONIO_TRY(request.status());
+  Json list = Json::array();
+  for (const paint::Neighbor& neighbor : paint::neighbors(kind->second, step)) {
+    GONIO_ASSIGN(const paint::Edited edited, paint::edited(paint, neighbor.edit));
+    if (!edited.skipped.empty() || !paint::is_distinct(edited, paint)) continue;
+    list.push_back(
+        {{"name", neighbor.name}, {"edit", shifts_json(neighbor.edit)}, {"paint", paint_json(edited.paint)}});
+  }
+  return Json{{"list", std::move(list)}};
+}
+
+Result<Json> Studio::State::nearest(JsonReader& request) const {
+  if (!index) return input_error("\"load\" must come first");
+  GONIO_ASSIGN(const paint::Paint paint, paint_of_json(request.member("paint")));
+  const bool de00 = request.text("metric", "de76") == "de00";
+  const double count = request.number("count", 5);
+  if (!(count >= 1 && count <= 100)) request.fail("a number from 1 to 100", "count");
+  GONIO_TRY(request.status());
+  const library::LibrarySearch& search = de00 ? *by_de00 : *by_de76;
+  GONIO_ASSIGN(const library::SearchPlan plan, search.plan(paint));
+  Json list = Json::array();
+  for (const library::LibraryMatch& match : search.nearest(plan, static_cast<std::size_t>(count))) {
+    Json by_geometry = Json::object();
+    for (std::size_t i = 0; i < plan.geometries.size(); ++i)
+      by_geometry[paint::geometry_name(plan.geometries[i])] =
+          json_number(de00 ? color::delta_e_2000(plan.terms[i].lab, match.lab[i])
+                           : color::delta_e_76(plan.terms[i].lab, match.lab[i]));
+    list.push_back({{"place", match.paint},
+                    {"name", std::string(index->name(match.paint))},
+                    {"code", std::string(index->code(match.paint))},
+                    {"distance", json_number(match.distance)},
+                    {"de_by_geometry", std::move(by_geometry)}});
+  }
+  return Json{{"list", std::move(list)}, {"left_out", plan.left_out}};
+}
+
+Result<Json> Studio::State::write(JsonReader& request) const {
+  GONIO_ASSIGN(paint::Paint paint, paint_of_json(request.member("paint")));
+  if (request.flag("lobes")) {
+    GONIO_ASSIGN(paint, fitted(paint));
+  }
+  const std::string as = request.text("as"), file = request.text("file", "-");
+  const formats::Processing step = {"paint-studio", request.text("version", ""), request.text("command", "")};
+  if (as != "xml" && as != "csv") request.fail("xml or csv", "as");
+  GONIO_TRY(request.status());
+  if (as == "xml") {
+    GONIO_TRY(write_xml(file, paint, step));
+  } else {
+    GONIO_TRY(write_csv(file, std::move(paint)));
+  }
+  return Json::object();
+}
+
+Result<Json> Studio::State::color(JsonReader& request) const {
+  const color::Lab lab = request.lab("lab");
+  GONIO_TRY(request.status());
+  return Json{{"css", css_color(lab, {})}};
+}
+
+Result<Json> Studio::State::answer(const Json& json) {
+  JsonReader request(json);
+  const std::string wanted = request.text("do");
+  if (wanted == "load") return load(request);
+  if (wanted == "edit") return edit(request);
+  if (wanted == "fit") return fit(request);
+  if (wanted == "describe") return describe(request);
+  if (wanted == "variations") return variations(request);
+  if (wanted == "nearest") return nearest(request);
+  if (wanted == "write") return write(request);
+  if (wanted == "color") return color(request);
+  return input_error("\"do\" is \"{}\": it is none of the requests", wanted);
+}
+
+Studio::Studio() : state_(std::make_unique<State>()) {}
+Studio::Studio(Studio&&) noexcept = default;
+Studio::~Studio() = default;
+
+Json Studio::answer(const Json& request) {
+  Result<Json> answer = state_->answer(request);
+  if (!answer.ok()) return {{"error", answer.error().message}};
+  return std::move(answer).value();
+}
+
+const std::vector<float>& Studio::weights() const {
+  return state_->weights;
+}
+
+}  // namespace goniochrome::studio

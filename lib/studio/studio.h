@@ -1,0 +1,48 @@
+// What a page for the design of paints asks of the library: requests and answers as JSON, so that the same arithmetic
+// serves a browser, where it runs as WebAssembly, and the tools. A page computes no color by itself.
+#pragma once
+
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "base/json.h"
+#include "render/effects.h"
+
+namespace goniochrome::studio {
+
+// The effects that a page draws: everything that a paint of this basis can call for in the light of an environment from
+// which `spots` bright spots are cut. Lamps, textures, color maps and brushed surfaces are not drawn.
+render::Effects page_effects(const std::vector<double>& exponents, bool mirror, std::size_t spots);
+
+// How colored light and paint multiply in a page: as in pictures of render-osmesa, unless it is told otherwise.
+color::ReflectionOperator page_operator();
+
+// A session of one page. A request is an object whose member "do" names one of these:
+//   load        basis{name, exponents[], mirror}, paints[]: must come first. Answers paints, the size of the library.
+//   edit        paint, edit{}: the moves of paint-edit, by the names of its options without dashes; numbers are numbers
+//               and colors are lists. Answers paint, dropped[], clipped[], skipped[].
+//   fit         paint: fits it as fit-paint does by default, and fills weights(). Answers lobes and the report.
+//   describe    paint: its curve, readings, average color, metrics and the colors of a screen.
+//   variations  paint, of ("face", "flop", "travel", "gloss"), step: answers list[] of name, edit and paint.
+//   nearest     paint, metric ("de76", "de00"), count: answers list[] of place, name, code, distance and differences.
+//   write       paint, as ("xml", "csv"), file, lobes (true: with its lobes), version and command of its history.
+//   color       lab[]: answers css, the color on a screen.
+// An answer that holds "error" tells in a sentence what was wrong with the request.
+class Studio {
+ public:
+  Studio();
+  Studio(Studio&&) noexcept;
+  ~Studio();
+
+  Json answer(const Json& request);
+
+  // The row of weights of the paint that was fitted last, see render/page_weights.h.
+  const std::vector<float>& weights() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace goniochrome::studio

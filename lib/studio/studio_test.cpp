@@ -1,0 +1,206 @@
+#include "studio/studio.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "base/file.h"
+#include "base/scratch_for_test.h"
+#include "fit/paint_fit.h"
+#include "formats/xml.h"
+#include "paint/edit.h"
+#include "render/page_weights.h"
+#include "studio/paint_json.h"
+
+namespace goniochrome::studio {
+namespace {
+
+using ::testing::HasSubstr;
+
+const std::vector<double> kExponents = {1.3, 6, 20, 70};
+
+paint::Paint metallic() {
+  paint::Paint paint;
+  paint.name = "blue <b>";
+  paint.code = "B1";
+  paint.paint_class = paint::PaintClass::kMetallic;
+  paint.gloss = {{60, 88.5}};
+  paint::Measurement& measurement = paint.measurement.emplace();
+  for (const double angle : {15.0, 25.0, 45.0, 75.0, 110.0}) {
+    const double from_travel = std::max(0.0, (80 - angle) / 65), share = from_travel * from_travel;
+    measurement.rows.push_back({{.aspecular_deg = angle}, {30 + 40 * share, -3.1 + 2 * share, -20.7 - 10 * share}});
+  }
+  return paint;
+}
+
+Studio loaded() {
+  Studio studio;
+  paint::Paint other = metallic();
+  other.name = "other";
+  for (paint::LabReading& row : other.measurement->rows) row.lab.L += 20;
+  const Json answer = studio.answer({{"do", "load"},
+                                     {"basis", {{"name", "b4"}, {"exponents", kExponents}, {"mirror", true}}},
+                                     {"paints", {paint_json(other), paint_json(metallic())}}});
+  EXPECT_EQ(answer, Json({{"paints", 2}}));
+  return studio;
+}
+
+TEST(PaintJson, KeepsEveryBit) {
+  paint::Paint paint = metallic();
+  paint.appearance = paint::Appearance{{0.1, -1.0 / 3, 2e-17}, {1e5, 0, -0.0}, 61.7, 0.123456789012345678};
+  paint.anisotropy = paint::Anisotropy{0.05, 0.3};
+  paint.color_map = paint::ColorMapReference{"x.exr", 1.6};
+  paint.coat_index = 1.55;
+  paint.measurement->condition = {"A", 2};
+  paint.measurement->spectra.push_back({{.aspecular_deg = 15}, 400, 10, {0.1, 0.2, 1.0 / 7}});
+  paint.measurement->textures = {{"Sparkle Grade", "15d", "2", 3.25}};
+  paint.foreign = {"<x xmlns=\"urn:y\"/>"};
+  const auto back = paint_of_json(Json::parse(paint_json(paint).dump()));
+  ASSERT_TRUE(back.ok()) << back.error().message;
+  EXPECT_EQ(paint_json(*back), paint_json(paint));
+  EXPECT_EQ(back->appearance->face, paint.appearance->face);
+  EXPECT_EQ(back->measurement->spectra[0].factors, paint.measurement->spectra[0].factors);
+  ASSERT_EQ(back->measurement->textures.size(), 1U);
+  EXPECT_EQ(back->measurement->textures[0].value, 3.25);
+  EXPECT_EQ(back->measurement->condition, paint.measurement->condition);
+}
+
+TEST(PaintJson, RefusesWhatIsNoPaint) {
+  for (const char* text : {R"({})", R"([])", R"({"name": 5})", R"({"name": "x", "gloss": [[60]]})",
+                           R"({"name": "x", "appearance": {"face": [1, 2], "flop": [1, 2, 3], "travel": 60}})",
+                           R"({"name": "x", "measurement": {"rows": [{"geometry": "45as", "lab": [1, 2, 3]}]}})"})
+    EXPECT_FALSE(paint_of_json(Json::parse(text)).ok()) << text;
+}
+
+TEST(Studio, EditsAsTheLibraryDoes) {
+  Studio studio = loaded();
+  const Json answer = studio.answer({{"do", "edit"},
+                                     {"paint", paint_json(metallic())},
+                                     {"edit",
+                                      {{"hue-shift", 12.5},
+                                       {"face-shift", {1, 2, 3}},
+                                       {"travel-shift", 5},
+                                       {"gloss", 60},
+                                       {"set", {{{"geometry", "45as45"}, {"lab", {50, 1, 2}}}}}}}});
+  paint::Edit edit;
+  edit.tweak.hue_deg = 12.5;
+  edit.face_shift = {1, 2, 3};
+  edit.travel_shift_deg = 5;
+  edit.gloss = 60;
+  edit.readings = {{{.aspecular_deg = 45}, {50, 1, 2}}};
+  const auto edited = paint::edited(metallic(), edit);
+  ASSERT_TRUE(edited.ok());
+  EXPECT_EQ(answer.at("paint"), paint_json(edited->paint));
+}
+
+TEST(Studio, RefusesEditsThatPaintEditRefuses) {
+  Studio studio = loaded();
+  for (const char* text :
+       {R"({"hew": 5})", R"({"travel": 15})", R"({"gloss": 101})", R"({"face": [1, 2]})", R"({"face": [-1, 2, 3]})",
+        R"({"hue": "5"})", R"({"set": [{"geometry": "x", "lab": [1, 2, 3]}]})"})
+    EXPECT_TRUE(studio.answer({{"do", "edit"}, {"paint", paint_json(metallic())}, {"edit", Json::parse(text)}})
+                    .contains("error"))
+        << text;
+}
+
+TEST(Studio, FitsAsTheLibraryDoesAndFillsTheWeights) {
+  Studio studio = loaded();
+  const Json answer = studio.answer({{"do", "fit"}, {"paint", paint_json(metallic())}});
+  ASSERT_FALSE(answer.contains("error")) << answer;
+  const fit::PaintFitter fitter({"b4", kExponents, true}, {});
+  const auto fit = fitter.fit(metallic());
+  ASSERT_TRUE(fit.ok());
+  EXPECT_EQ(answer.at("diffuse")[0], fit->lobes.diffuse.x);
+  ASSERT_EQ(answer.at("lobes").size(), fit->lobes.lobes.size());
+  for (std::size_t i = 0; i < fit->lobes.lobes.size(); ++i) {
+    EXPECT_EQ(answer.at("lobes")[i].at("flake")[2], fit->lobes.lobes[i].directional_diffuse.z);
+    EXPECT_EQ(answer.at("lobes")[i].at("gloss")[0], fit->lobes.lobes[i].gloss.x);
+  }
+  render::Scene scene;
+  scene.paints = {fit->lobes};
+  scene.gloss_deg = {60};
+  scene.reflection = page_operator();
+  EXPECT_EQ(studio.weights(), render::page_weights(scene, page_effects(kExponents, true, 3)));
+  // White light shows the color of the weights: the operator's forms of white, brought back, are what the table has.
+  EXPECT_EQ(studio.weights().size(), render::weight_table(scene, page_effects(kExponents, true, 3)).rgba.size());
+}
+
+TEST(Studio, FindsTheNearestPaintsInOrder) {
+  Studio studio = loaded();
+  const Json list = studio.answer({{"do", "nearest"}, {"paint", paint_json(metallic())}, {"count", 5}}).at("list");
+  ASSERT_EQ(list.size(), 2U);
+  EXPECT_EQ(list[0].at("name"), "blue <b>");
+  EXPECT_EQ(list[0].at("distance"), 0.0);
+  EXPECT_EQ(list[1].at("place"), 0);
+  // Five readings that are 20 lighter each; a sum of five differences of doubles near 50, each to an ulp.
+  EXPECT_NEAR(list[1].at("distance").get<double>(), 100, 1e-12);
+}
+
+TEST(Studio, VariationsAreEditsThatMakeTheirPaints) {
+  Studio studio = loaded();
+  for (const char* of : {"face", "flop", "travel", "gloss"}) {
+    const Json list =
+        studio.answer({{"do", "variations"}, {"paint", paint_json(metallic())}, {"of", of}, {"step", 2}}).at("list");
+    EXPECT_EQ(list.size(), 8U) << of;
+    for (const Json& one : list)
+      EXPECT_EQ(
+          studio.answer({{"do", "edit"}, {"paint", paint_json(metallic())}, {"edit", one.at("edit")}}).at("paint"),
+          one.at("paint"))
+          << one.at("name");
+  }
+}
+
+TEST(Studio, WritesWhatTheReadersRead) {
+  Studio studio = loaded();
+  const ScratchFolder scratch;
+  const std::string path = scratch.path("x.paints.xml");
+  EXPECT_EQ(studio.answer({{"do", "write"},
+                           {"paint", paint_json(metallic())},
+                           {"as", "xml"},
+                           {"file", path},
+                           {"lobes", true},
+                           {"command", "a \"step\""}}),
+            Json::object());
+  const auto paints = formats::read_paints(path);
+  ASSERT_TRUE(paints.ok()) << paints.error().message;
+  ASSERT_EQ(paints->size(), 1U);
+  EXPECT_TRUE((*paints)[0].lobes.has_value());
+  EXPECT_EQ((*paints)[0].name, "blue <b>");
+  EXPECT_EQ((*paints)[0].measurement->rows[2].lab, metallic().measurement->rows[2].lab);
+  const std::string table = scratch.path("x.csv");
+  EXPECT_EQ(studio.answer({{"do", "write"}, {"paint", paint_json(metallic())}, {"as", "csv"}, {"file", table}}),
+            Json::object());
+  EXPECT_THAT(*file_content(table), HasSubstr("blue <b>,45as15,D65,10,70,"));
+}
+
+TEST(Studio, DescribesTheColorsOfAScreen) {
+  Studio studio = loaded();
+  EXPECT_EQ(studio.answer({{"do", "color"}, {"lab", {100, 0, 0}}}).at("css"), "#ffffff");
+  EXPECT_EQ(studio.answer({{"do", "color"}, {"lab", {0, 0, 0}}}).at("css"), "#000000");
+  // L* 53.585 is a reflectance factor of .2140, whose sRGB signal is .5 (IEC 61966-2-1).
+  EXPECT_EQ(studio.answer({{"do", "color"}, {"lab", {53.585, 0, 0}}}).at("css"), "#808080");
+  const Json described = studio.answer({{"do", "describe"}, {"paint", paint_json(metallic())}});
+  EXPECT_EQ(described.at("rows").size(), 5U);
+  EXPECT_EQ(described.at("rows")[1].at("angle"), 25.0);
+  // The curve of a measured paint passes through its readings.
+  const Json& curve = described.at("curve");
+  const auto at_25 = std::ranges::find_if(curve, [](const Json& point) { return point.at("angle") == 25.0; });
+  ASSERT_NE(at_25, curve.end());
+  EXPECT_EQ(at_25->at("lab"), described.at("rows")[1].at("lab"));
+}
+
+TEST(Studio, AnswersNonsenseWithAnError) {
+  Studio studio;
+  for (const char* text : {R"({})", R"([])", R"({"do": "dance"})", R"({"do": "fit", "paint": {"name": "x"}})",
+                           R"({"do": "nearest", "paint": {"name": "x"}})", R"({"do": "load"})"})
+    EXPECT_TRUE(studio.answer(Json::parse(text)).contains("error")) << text;
+  Studio ready = loaded();
+  for (const char* text : {R"({"do": "fit", "paint": {"name": "x"}})", R"({"do": "describe", "paint": {"name": "x"}})",
+                           R"({"do": "variations", "paint": {"name": "x"}, "of": "hue"})",
+                           R"({"do": "write", "paint": {"name": "x"}, "as": "pdf"})"})
+    EXPECT_TRUE(ready.answer(Json::parse(text)).contains("error")) << text;
+}
+
+}  // namespace
+}  // namespace goniochrome::studio

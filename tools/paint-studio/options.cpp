@@ -1,0 +1,52 @@
+#include "tool.h"
+
+namespace goniochrome::tool {
+
+cli::ToolSpec tool_spec(Options& o) {
+  cli::ToolSpec spec{.name = "paint-studio", .summary = "write a page in which a paint is designed by hand and eye"};
+  spec.description = {
+      "paint-studio packs a mesh, prefiltered environments, a basis and a library of paints into one HTML page. The "
+      "page opens from a file in any browser that has WebGL 2, and needs no network. A designer starts from a paint "
+      "of the library, changes its face, flop, travel and gloss, and sees it on the mesh at once, beside its "
+      "curves, its nine variations and the paints of the library that are nearest to it.",
+      "The arithmetic of the page is that of the other tools: the same sources, compiled to WebAssembly. Edits are "
+      "those of paint-edit(1), the lobes are fitted as fit-paint(1) does by default, distances are those of "
+      "colorsnap(1), and the picture is drawn by the programs of the engine gl of render-osmesa(1). The page shows "
+      "the command line that makes the same paint from the same library, and hands the paint over as paint XML or "
+      "CSV.",
+      "All parts of the mesh wear the design, but for those that nobody paints, such as glass and tires: these are "
+      "told by their names, as in render-osmesa. The page shows no shadows and no light from one part to another, "
+      "no color maps and no brushed surfaces. A warning tells how many paints have them.",
+      "The compiled library lies in ../lib/goniochrome beside the program, as the files studio.wasm and "
+      "studio.html, or in $GONIOCHROME_MODULE_PATH. Where the compiler for WebAssembly was missing when the tools "
+      "were built, paint-studio says which packages it takes, and the exit status is 3."};
+  spec.inputs = {"PAINTS", "paint XML files, or FILE#NAMES for some paints of one; standard input where none is given",
+                 &o.paints};
+  spec.heading = "what the page holds";
+  spec.option("mesh,m", "FILE", "testdata/speed-shape.obj", &o.mesh, "mesh that wears the paint (OBJ, OFF, PLY or STL)")
+      .needed();
+  spec.option("env,e", "FILE", "studio.env.exr", &o.environments,
+              "prefiltered environment, made by prefilter-envmap(1)")
+      .needed()
+      .more("Each environment must have the lobes of the basis.");
+  spec.option("basis,b", "FILE", "testdata/b7.basis.xml", &o.basis, "basis that the page fits paints to").needed();
+  spec.option("title", "TEXT", "Spring", &o.title, "title of the page; the name of the mesh by default");
+  spec.heading = "output";
+  spec.option("output,o", "FILE", "studio.html", &o.output, "page to write; - is standard output");
+  cli::add_common_options(spec, o.common, {.explain = true});
+  spec.examples = {
+      {"prefilter-envmap testdata/studio.exr --basis testdata/b5.basis.xml -o studio.env.exr && paint-studio --mesh "
+       "testdata/speed-shape.obj --env studio.env.exr --basis testdata/b5.basis.xml testdata/paints.paints.xml -o "
+       "studio.html",
+       "make a page of the sample paints in the light of a photographer's studio"}};
+  spec.report = {{"bytes", "size of the page"},
+                 {"code_bytes", "size of the page without its data: markup, scripts and the compiled library"},
+                 {"paints", "number of paints"},
+                 {"triangles", "number of triangles of the mesh"},
+                 {"environments[]", "name and bytes of each environment in the page"},
+                 {"warnings[]", "the warnings of the run"}};
+  spec.see_also = {"paint-edit(1)", "fit-paint(1)", "colorsnap(1)", "render-osmesa(1)", "prefilter-envmap(1)"};
+  return spec;
+}
+
+}  // namespace goniochrome::tool

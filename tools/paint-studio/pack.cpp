@@ -1,0 +1,140 @@
+#include "pack.h"
+
+#include <Imath/half.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "base/text.h"
+#include "render/camera.h"
+#include "render/page_stage.h"
+#include "render/page_weights.h"
+#include "render/scene.h"
+#include "render/trim.h"
+#include "studio/studio.h"
+
+namespace goniochrome::tool {
+
+namespace {
+
+// The first view of a page, which is that of render-osmesa.
+constexpr double kAzimuth_deg = 35, kElevation_deg = 12, kFov_deg = 30;
+
+template <class Number>
+std::string packed(const std::vector<Number>& numbers) {
+  return base64({reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Number)});
+}
+
+Json vector_json(const Vec3& v) {
+  return Json::array({v.x, v.y, v.z});
+}
+
+// Halves reach to 65504: brighter maps are scaled down, and the page scales them up again into floats.
+Json cube_json(const render::PageCube& cube) {
+  constexpr float kMost = 60000;
+  float most = 0;
+  for (const float value : cube.texels) most = std::max(most, std::abs(value));
+  const float scale = most > kMost ? std::exp2(std::ceil(std::log2(most / kMost))) : 1.0F;
+  std::vector<std::uint16_t> halves;
+  halves.reserve(cube.texels.size());
+  for (const float value : cube.texels) halves.push_back(Imath::half(value / scale).bits());
+  return {{"sampler", cube.sampler},
+          {"size", cube.size},
+          {"channels", cube.channels},
+          {"scale", scale},
+          {"texels", packed(halves)}};
+}
+
+bool same_finish(const paint::LobeFit& a, const paint::LobeFit& b) {
+  return a.diffuse == b.diffuse && a.coat_index == b.coat_index && a.lobes.size() == b.lobes.size();
+}
+
+}  // namespace
+
+std::string base64(std::string_view bytes) {
+  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+    for (std::size_t k = 0; k < 4; ++k) text += i + k > bytes.size() ? '=' : kDigits[group >> (18 - 6 * k) & 63];
+  }
+  return text;
+}
+
+PackedMesh packed_mesh(const mesh::Mesh& mesh, bool with_mirror) {
+  PackedMesh result;
+  const mesh::Box box = mesh::bounding_box(mesh);
+  const Vec3 size = box.high - box.low;
+  std::vector<std::uint16_t> positions;
+  std::vector<std::int16_t> normals;
+  for (const Vec3& p : mesh.positions)
+    for (int c = 0; c < 3; ++c)
+      positions.push_back(
+          static_cast<std::uint16_t>(size[c] > 0 ? std::lround((p[c] - box.low[c]) / size[c] * 65535) : 0));
+  for (const Vec3& n : mesh.normals)
+    for (int c = 0; c < 3; ++c)
+      normals.push_back(static_cast<std::int16_t>(std::lround(std::clamp(n[c], -1.0, 1.0) * 32767)));
+  std::vector<std::uint32_t> corners;
+  for (const auto& triangle : mesh.triangles) corners.insert(corners.end(), triangle.begin(), triangle.end());
+  Json parts = Json::array();
+  for (const mesh::MeshPart& part : mesh.parts) {
+    std::size_t row = 0;
+    if (const auto finish = render::trim_of(part, with_mirror)) {
+      const auto known = std::ranges::find_if(result.finishes,
+                                              [&](const paint::LobeFit& other) { return same_finish(*finish, other); });
+      row = 1 + static_cast<std::size_t>(known - result.finishes.begin());
+      if (known == result.finishes.end()) result.finishes.push_back(*finish);
+    }
+    parts.push_back({{"name", shown(part.name)}, {"first", part.first}, {"count", part.count}, {"row", row}});
+  }
+  const render::Camera camera = render::Camera::orbit(mesh, kAzimuth_deg, kElevation_deg, 1, kFov_deg, 16.0 / 9);
+  result.json = {{"low", vector_json(box.low)},
+                 {"high", vector_json(box.high)},
+                 {"positions", packed(positions)},
+                 {"normals", packed(normals)},
+                 {"corners", packed(corners)},
+                 {"parts", std::move(parts)},
+                 {"view",
+                  {{"azimuth", kAzimuth_deg},
+                   {"elevation", kElevation_deg},
+                   {"fov", kFov_deg},
+                   {"target", vector_json(camera.target)},
+                   {"distance", length(camera.eye - camera.target)}}}};
+  return result;
+}
+
+Result<Json> packed_environment(const std::string& name, const envmap::PrefilteredEnvironment& env,
+                                const formats::Basis& basis) {
+  const render::Effects effects = studio::page_effects(basis.exponents, basis.mirror, env.spots.size());
+  GONIO_ASSIGN(const render::PageLight light, render::page_light(env, effects, studio::page_operator()));
+  const Vec3 toward = render::orbit_direction(kAzimuth_deg, kElevation_deg);
+  Json json = {{"name", name},
+               {"program", light.shading_fragment},
+               {"white", render::metered_white(&env, {}, toward)},
+               {"cubes", Json::array()},
+               {"lamps", Json::array()}};
+  for (const render::PageCube& cube : light.cubes) json["cubes"].push_back(cube_json(cube));
+  for (const render::PageLamp& lamp : light.lamps)
+    json["lamps"].push_back({{"direction", vector_json(lamp.direction)},
+                             {"white", vector_json(lamp.white)},
+                             {"disc", vector_json(lamp.disc)}});
+  if (!light.discs.empty())
+    json["discs"] = {{"columns", light.disc_columns}, {"rows", light.disc_rows}, {"texels", packed(light.discs)}};
+  return Result(std::move(json));
+}
+
+Json packed_finishes(const std::vector<paint::LobeFit>& finishes, const formats::Basis& basis) {
+  const render::Effects effects = studio::page_effects(basis.exponents, basis.mirror, 0);
+  render::Scene scene;
+  scene.paints = finishes;
+  scene.reflection = studio::page_operator();
+  const render::WeightTable slots = render::slots_of(effects);
+  const std::vector<float> weights = finishes.empty() ? std::vector<float>() : render::page_weights(scene, effects);
+  return {{"columns", 2 * slots.slots * slots.segments}, {"rows", finishes.size()}, {"texels", packed(weights)}};
+}
+
+}  // namespace goniochrome::tool

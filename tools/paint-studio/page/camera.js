@@ -1,0 +1,53 @@
+// The camera of the stage, which goes around the middle of the mesh. It has the conventions of render-osmesa: +Y is up,
+// azimuth 0 is +Z and grows toward +X, and pixels are counted from the upper left corner.
+
+const added = (a, b, scale = 1) => a.map((value, i) => value + scale * b[i]);
+const dotted = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const crossed = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+const scaled = (a, scale) => a.map((value) => value * scale);
+const unit = (a) => scaled(a, 1 / Math.hypot(...a));
+
+function orbitDirection(azimuth, elevation) {
+  const a = (azimuth * Math.PI) / 180, e = (elevation * Math.PI) / 180;
+  return [Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e)];
+}
+
+// {eye, target, fov} of a view {azimuth, elevation, distance, target, fov}.
+function cameraOf(view) {
+  return { eye: added(view.target, orbitDirection(view.azimuth, view.elevation), view.distance), target: view.target,
+           fov: view.fov };
+}
+
+// The rays through the pixels of a picture, and the matrix that takes the mesh there, with y down. `shift` moves the
+// point of every pixel that is sampled.
+function projected(camera, width, height, box, shift) {
+  const forward = unit(added(camera.target, camera.eye, -1));
+  const right = unit(crossed(forward, [0, 1, 0])), down = crossed(forward, right);
+  const pixel = (2 * Math.tan((0.5 * camera.fov * Math.PI) / 180)) / height;
+  let corner = added(added(forward, right, -0.5 * width * pixel), down, -0.5 * height * pixel);
+  corner = added(added(corner, right, shift[0] * pixel), down, shift[1] * pixel);
+  let nearest = Infinity, farthest = 0;
+  for (let c = 0; c < 8; ++c) {
+    const point = [0, 1, 2].map((axis) => (c & (1 << axis) ? box.high[axis] : box.low[axis]));
+    const depth = dotted(added(point, camera.eye, -1), forward);
+    nearest = Math.min(nearest, depth);
+    farthest = Math.max(farthest, depth);
+  }
+  const size = Math.hypot(...added(box.high, box.low, -1));
+  const far = Math.max(1.001 * farthest, 1e-3 * size), near = Math.max(0.999 * nearest, 1e-4 * far);
+  const x = added(scaled(right, 2 / (width * pixel)), forward, (-2 * shift[0]) / width);
+  const y = added(scaled(down, 2 / (height * pixel)), forward, (-2 * shift[1]) / height);
+  const z = scaled(forward, (far + near) / (far - near)), e = camera.eye;
+  const clip = [0, 1, 2].flatMap((axis) => [x[axis], y[axis], z[axis], forward[axis]]);
+  clip.push(-dotted(x, e), -dotted(y, e), -dotted(z, e) - (2 * far * near) / (far - near), -dotted(forward, e));
+  return { corner, right: scaled(right, pixel), down: scaled(down, pixel), clip: new Float32Array(clip) };
+}
+
+// Where the samples of a pixel lie: a grid turned so that no two share a row or a column.
+function sampleShifts(samples) {
+  const k = Math.round(Math.sqrt(samples)), shifts = [];
+  for (let i = 0; i < k; ++i)
+    for (let j = 0; j < k; ++j)
+      shifts.push([(i * k + (k - 1 - j) + 0.5) / samples - 0.5, (j * k + i + 0.5) / samples - 0.5]);
+  return shifts;
+}

@@ -1,0 +1,128 @@
+// Fields and sliders of numbers. Elements are made by script, so that names of paints are text and never markup.
+
+function made(tag, attributes = {}, children = []) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
+    else if (name === "text") element.textContent = value;
+    else element.setAttribute(name, value);
+  }
+  element.append(...children);
+  return element;
+}
+
+function drawn(tag, attributes = {}, text = null) {
+  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  if (text !== null) element.textContent = text;
+  return element;
+}
+
+const rounded = (value, digits = 2) => Number(value.toFixed(digits));
+const clamped = (value, low, high) => Math.min(high, Math.max(low, value));
+
+// What is dragged, by mouse, pen or touch: begin() and move() get the event, end() comes when it is let go.
+function draggable(element, { begin, move, end }) {
+  element.addEventListener("pointerdown", (event) => {
+    if (event.button !== 0) return;
+    event.preventDefault();
+    if (element.focus) element.focus({ preventScroll: true });
+    element.setPointerCapture(event.pointerId);
+    if (begin) begin(event);
+    const drag = new AbortController(), signal = drag.signal;
+    const done = () => {
+      drag.abort();
+      if (end) end();
+    };
+    element.addEventListener("pointermove", move, { signal });
+    element.addEventListener("pointerup", done, { signal });
+    element.addEventListener("pointercancel", done, { signal });
+  });
+}
+
+const lowest = { L: 0, a: -128, b: -128 }, highest = { L: 150, a: 128, b: 128 };
+
+// The fields of face and flop, and the sliders of travel and gloss. `app` has preview(), commit() and the description.
+class NumberControls {
+  constructor(app) {
+    this.app = app;
+    this.fields = {};
+    const grid = made("div", { class: "fields" });
+    for (const end of ["face", "flop"]) {
+      this.fields[end + "-swatch"] = made("span", { class: "swatch", "aria-hidden": "true" });
+      grid.append(made("span", {}, [this.fields[end + "-swatch"], " " + end]));
+      ["L", "a", "b"].forEach((channel) => {
+        const field = made("input", { type: "number", step: "0.5", min: lowest[channel], max: highest[channel],
+                                      "aria-label": `${channel}* of the ${end}`,
+                                      onchange: () => this.commitColor(end) });
+        this.fields[end + channel] = field;
+        grid.append(made("label", {}, [channel + "*", field]));
+      });
+    }
+    const keep = made("input", { type: "checkbox", id: "keep-residual" });
+    this.fields.keep = keep;
+    document.getElementById("numbers").append(
+      grid, this.slider("travel", 15.5, 180, 0.5, "°"), this.slider("gloss", 0, 100, 0.5, "GU"),
+      made("label", {}, [keep, "keep what the readings have beside the curve"]));
+    const averages = document.getElementById("averages");
+    averages.append(this.slider("lightness", 0, 120, 0.5, ""), this.slider("chroma", 0, 140, 0.5, ""),
+                    this.slider("hue", 0, 360, 1, "°"));
+  }
+
+  slider(name, low, high, step, unit) {
+    const range = made("input", { type: "range", min: low, max: high, step, "aria-label": name,
+                                  oninput: () => this.app.preview(this.edit(name, Number(range.value))),
+                                  onchange: () => this.app.commit(this.edit(name, Number(range.value))) });
+    const field = made("input", { type: "number", min: low, max: high, step, "aria-label": name,
+                                  onchange: () => this.commitNumber(name, low, high) });
+    this.fields[name + "-range"] = range;
+    this.fields[name] = field;
+    return made("div", { class: "slider" }, [made("span", { text: name }), range, field, made("span", { text: unit })]);
+  }
+
+  // The edit that states one number.
+  edit(name, value) {
+    const edit = { [name]: value };
+    if (name === "travel") Object.assign(edit, this.residual());
+    if (name === "gloss" && this.app.glossAngle() !== 60) edit["gloss-angle"] = this.app.glossAngle();
+    return edit;
+  }
+  residual() { return this.fields.keep.checked ? { "keep-residual": true } : {}; }
+
+  commitNumber(name, low, high) {
+    const value = this.fields[name].valueAsNumber;
+    if (Number.isFinite(value)) this.app.commit(this.edit(name, clamped(value, low, high)));
+    else this.app.show();
+  }
+  commitColor(end) {
+    const lab = ["L", "a", "b"].map((channel) => this.fields[end + channel].valueAsNumber);
+    if (lab.every(Number.isFinite)) {
+      const within = lab.map((value, i) => clamped(value, lowest["Lab"[i]], highest["Lab"[i]]));
+      this.app.commit({ [end]: within, ...this.residual() });
+    } else {
+      this.app.show();
+    }
+  }
+
+  show(description) {
+    const { appearance, average, gloss } = description;
+    const set = (field, value) => {
+      if (document.activeElement !== field) field.value = value;
+    };
+    for (const end of ["face", "flop"]) {
+      ["L", "a", "b"].forEach((channel, i) => set(this.fields[end + channel], rounded(appearance[end][i])));
+      this.fields[end + "-swatch"].style.background = appearance[end + "_css"];
+    }
+    const numbers = { travel: appearance.travel, gloss: gloss.length > 0 ? gloss[0].units : 0,
+                      lightness: average.L, chroma: average.chroma, hue: average.hue };
+    for (const [name, value] of Object.entries(numbers)) {
+      set(this.fields[name], rounded(value));
+      set(this.fields[name + "-range"], value);
+    }
+    const gray = average.chroma < 1e-6;
+    for (const name of ["hue", "chroma"]) {
+      this.fields[name].disabled = gray;
+      this.fields[name + "-range"].disabled = gray;
+    }
+  }
+}

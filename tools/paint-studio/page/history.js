@@ -1,0 +1,26 @@
+// What the designer did. A state holds the paint of the library that it began with, the edits since then, and the paint
+// that they made. Undo and redo go from state to state, without limit.
+
+const saidState = ({ start, steps }) => ({ start, steps });
+
+class EditHistory {
+  constructor(states = [], at = states.length - 1) {
+    this.states = states;
+    this.at = at;
+  }
+  get now() { return this.states[this.at]; }
+  get canUndo() { return this.at > 0; }
+  get canRedo() { return this.at < this.states.length - 1; }
+  // Goes on from here: what was undone before is forgotten.
+  push(state) {
+    this.states.length = this.at + 1;
+    this.states.push(state);
+    this.at = this.states.length - 1;
+  }
+  undo() { if (this.canUndo) --this.at; }
+  redo() { if (this.canRedo) ++this.at; }
+  // As it is saved: a state that goes on from the one before it is its last edit alone.
+  saved() {
+    return { at: this.at, states: this.states.map((state) => (state.goesOn ? { edit: state.steps.at(-1) } : saidState(state))) };
+  }
+}

@@ -1,0 +1,46 @@
+cmake_minimum_required(VERSION 3.25)
+# Joins page.html, page.css and the scripts. The marks @TITLE@, @MODULE@ and @DATA@ stay for the tool. The policy of the
+# page allows this script and this style alone, by their hashes.
+
+# A hash as the policy has it: SHA-256 in base64.
+function(policy_hash text result)
+  string(SHA256 hex "${text}")
+  string(APPEND hex "00")  # to whole groups of three bytes; the last digit of base64 is then "="
+  set(digits "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/")
+  set(base64 "")
+  foreach(at RANGE 0 60 6)
+    string(SUBSTRING ${hex} ${at} 6 group)
+    foreach(shift 18 12 6 0)
+      math(EXPR digit "(0x${group} >> ${shift}) & 63")
+      string(SUBSTRING ${digits} ${digit} 1 one)
+      string(APPEND base64 ${one})
+    endforeach()
+  endforeach()
+  string(SUBSTRING ${base64} 0 43 base64)
+  set(${result} "sha256-${base64}=" PARENT_SCOPE)
+endfunction()
+
+# The page with `text` in the place of a mark, whatever is in that text.
+macro(put mark text)
+  string(FIND "${page}" "${mark}" at)
+  string(LENGTH "${mark}" length)
+  string(SUBSTRING "${page}" 0 ${at} before)
+  math(EXPR at "${at} + ${length}")
+  string(SUBSTRING "${page}" ${at} -1 after)
+  set(page "${before}${${text}}${after}")
+endmacro()
+
+file(READ ${HTML} page)
+file(READ ${STYLE} style)
+set(code "")
+foreach(script ${SCRIPTS})
+  file(READ ${script} text)
+  string(APPEND code "${text}\n")
+endforeach()
+policy_hash("${code}" code_hash)
+policy_hash("${style}" style_hash)
+put(@SCRIPT_HASH@ code_hash)
+put(@STYLE_HASH@ style_hash)
+put(@STYLE@ style)
+put(@SCRIPT@ code)
+file(WRITE ${PAGE} "${page}")

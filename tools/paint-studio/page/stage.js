@@ -1,0 +1,263 @@
+// The picture: the mesh under prefiltered light, drawn by the project's own programs in WebGL 2. goniochrome-theory(7),
+// RENDERING.
+
+class Stage {
+  // Throws a sentence where the browser cannot draw the page.
+  constructor(canvas, data) {
+    const gl = canvas.getContext("webgl2", { antialias: false, alpha: false, depth: false, preserveDrawingBuffer: true });
+    if (!gl) throw new Error("This browser has no WebGL 2, with which the picture is drawn.");
+    if (!gl.getExtension("EXT_color_buffer_float"))
+      throw new Error("The graphics of this computer cannot draw float pictures, which the page needs.");
+    this.gl = gl;
+    this.canvas = canvas;
+    this.data = data;
+    this.floatLinear = gl.getExtension("OES_texture_float_linear") !== null;
+    this.sumKind = gl.getExtension("EXT_float_blend") !== null ? gl.RGBA32F : gl.RGBA16F;
+    this.mesh = unpackedMesh(data.mesh);
+    this.columns = data.finishes.columns;
+    if (this.columns > gl.getParameter(gl.MAX_TEXTURE_SIZE))
+      throw new Error("The graphics of this computer cannot hold the weights of this basis.");
+    this.finishes = numbersOf(data.finishes.texels, Float32Array);
+    this.rows = 1 + data.finishes.rows;
+    this.gbufferProgram = this.program(data.programs.gbuffer_vertex, data.programs.gbuffer_fragment);
+    this.displayProgram = this.program(data.programs.shading_vertex, data.programs.display_fragment);
+    this.noVertices = gl.createVertexArray();
+    this.environments = data.environments.map(() => null);
+    this.gbuffers = new Map();
+    this.targets = new Map();
+    this.uploadMesh();
+    gl.frontFace(gl.CW);  // counter-clockwise, seen with y down
+  }
+
+  program(vertex, fragment) {
+    const gl = this.gl, program = gl.createProgram();
+    for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
+      const shader = gl.createShader(kind);
+      gl.shaderSource(shader, text);
+      gl.compileShader(shader);
+      gl.attachShader(program, shader);
+      if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
+    }
+    gl.linkProgram(program);
+    if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
+    const places = new Map();
+    return { program, at: (name) => {
+      if (!places.has(name)) places.set(name, gl.getUniformLocation(program, name));
+      return places.get(name);
+    } };
+  }
+
+  uploadMesh() {
+    const gl = this.gl, buffer = (target, values) => {
+      gl.bindBuffer(target, gl.createBuffer());
+      gl.bufferData(target, values, gl.STATIC_DRAW);
+    };
+    this.meshVertices = gl.createVertexArray();
+    gl.bindVertexArray(this.meshVertices);
+    [this.mesh.positions, this.mesh.normals].forEach((values, index) => {
+      buffer(gl.ARRAY_BUFFER, values);
+      gl.vertexAttribPointer(index, 3, gl.FLOAT, false, 0, 0);
+      gl.enableVertexAttribArray(index);
+    });
+    buffer(gl.ELEMENT_ARRAY_BUFFER, this.mesh.corners);
+  }
+
+  floatTexture(columns, rows, values, kind = this.gl.RGBA32F) {
+    const gl = this.gl, texture = gl.createTexture();
+    gl.bindTexture(gl.TEXTURE_2D, texture);
+    gl.texImage2D(gl.TEXTURE_2D, 0, kind, columns, rows, 0, gl.RGBA, gl.FLOAT, values);
+    for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER])
+      gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
+    return texture;
+  }
+
+  // The weights of a paint, as the engine has them, with those of the finishes below.
+  weights(values, texture = null) {
+    const gl = this.gl;
+    if (texture === null) {
+      const all = new Float32Array(4 * this.columns * this.rows);
+      all.set(this.finishes, 4 * this.columns);
+      texture = this.floatTexture(this.columns, this.rows, all);
+    }
+    gl.bindTexture(gl.TEXTURE_2D, texture);
+    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, this.columns, 1, gl.RGBA, gl.FLOAT, values);
+    return texture;
+  }
+
+  cube(packed) {
+    const gl = this.gl, texture = gl.createTexture(), halves = numbersOf(packed.texels, Uint16Array);
+    const most = packed.channels * packed.size * packed.size, format = packed.channels === 4 ? gl.RGBA : gl.RGB;
+    // Maps brighter than halves can be are floats, where those can be interpolated; else the brightest of halves.
+    let values = halves, kind = packed.channels === 4 ? gl.RGBA16F : gl.RGB16F, type = gl.HALF_FLOAT;
+    if (packed.scale !== 1) {
+      values = Float32Array.from(halves, (half) => numberOfHalf(half) * packed.scale);
+      type = gl.FLOAT;
+      if (this.floatLinear) kind = packed.channels === 4 ? gl.RGBA32F : gl.RGB32F;
+      else values = values.map((value) => Math.min(value, 65504));
+    }
+    gl.bindTexture(gl.TEXTURE_CUBE_MAP, texture);
+    for (let face = 0; face < 6; ++face)
+      gl.texImage2D(gl.TEXTURE_CUBE_MAP_POSITIVE_X + face, 0, kind, packed.size, packed.size, 0, format, type,
+                    values.subarray(face * most, (face + 1) * most));
+    gl.texParameteri(gl.TEXTURE_CUBE_MAP, gl.TEXTURE_MIN_FILTER, gl.LINEAR);
+    gl.texParameteri(gl.TEXTURE_CUBE_MAP, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
+    return { sampler: packed.sampler, texture };
+  }
+
+  // The program and the textures of an environment, made when it is first shown.
+  environment(number) {
+    if (this.environments[number]) return this.environments[number];
+    const packed = this.data.environments[number];
+    const made = { shading: this.program(this.data.programs.shading_vertex, packed.program),
+                   cubes: packed.cubes.map((cube) => this.cube(cube)), lamps: packed.lamps, white: packed.white };
+    if (packed.discs)
+      made.discs = this.floatTexture(packed.discs.columns, packed.discs.rows, numbersOf(packed.discs.texels, Float32Array));
+    this.environments[number] = made;
+    return made;
+  }
+
+  // A texture to draw into, kept by its name and made anew where the size changes.
+  target(name, width, height, kind, withDepth) {
+    const gl = this.gl, known = this.targets.get(name);
+    if (known && known.width === width && known.height === height) return known;
+    if (known) {
+      gl.deleteTexture(known.texture);
+      gl.deleteFramebuffer(known.framebuffer);
+      if (known.depth) gl.deleteRenderbuffer(known.depth);
+    }
+    const made = { width, height, framebuffer: gl.createFramebuffer(), texture: gl.createTexture(), key: "" };
+    gl.bindTexture(gl.TEXTURE_2D, made.texture);
+    gl.texStorage2D(gl.TEXTURE_2D, 1, kind, width, height);
+    for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER])
+      gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, made.framebuffer);
+    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, made.texture, 0);
+    if (withDepth) {
+      made.depth = gl.createRenderbuffer();
+      gl.bindRenderbuffer(gl.RENDERBUFFER, made.depth);
+      gl.renderbufferStorage(gl.RENDERBUFFER, gl.DEPTH_COMPONENT32F, width, height);
+      gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, made.depth);
+    }
+    this.targets.set(name, made);
+    return made;
+  }
+
+  // What is visible at one point of every pixel. It is drawn again only where the view changed.
+  gbuffer(name, camera, width, height, shift) {
+    const gl = this.gl, target = this.target("gbuffer " + name, width, height, gl.RGBA32F, true);
+    const key = JSON.stringify([camera, shift]);
+    if (target.key === key) return target;
+    const view = projected(camera, width, height, this.mesh, shift), program = this.gbufferProgram;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target.framebuffer);
+    gl.viewport(0, 0, width, height);
+    gl.enable(gl.DEPTH_TEST);
+    gl.disable(gl.BLEND);
+    gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 0]);
+    gl.clearBufferfv(gl.DEPTH, 0, [1]);
+    gl.useProgram(program.program);
+    gl.uniformMatrix4fv(program.at("clip"), false, view.clip);
+    for (const name of ["corner", "right", "down"]) gl.uniform3fv(program.at(name), view[name]);
+    gl.bindVertexArray(this.meshVertices);
+    for (const part of this.mesh.parts) {
+      gl.uniform1i(program.at("part"), part.row);
+      gl.drawElements(gl.TRIANGLES, 3 * part.count, gl.UNSIGNED_INT, 12 * part.first);
+    }
+    gl.disable(gl.DEPTH_TEST);
+    target.key = key;
+    target.view = view;
+    return target;
+  }
+
+  // Shades a G-buffer into the sum of that name, or adds to it.
+  shade(name, gbuffer, weights, environment, add) {
+    const gl = this.gl, made = this.environment(environment), program = made.shading;
+    const target = this.target("sum " + name, gbuffer.width, gbuffer.height, this.sumKind, false);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target.framebuffer);
+    gl.viewport(0, 0, gbuffer.width, gbuffer.height);
+    gl.useProgram(program.program);
+    let texture = 0;
+    const bind = (sampler, kind, what) => {
+      gl.activeTexture(gl.TEXTURE0 + texture);
+      gl.bindTexture(kind, what);
+      gl.uniform1i(program.at(sampler), texture++);
+    };
+    bind("gbuffer", gl.TEXTURE_2D, gbuffer.texture);
+    bind("weights", gl.TEXTURE_2D, weights);
+    if (made.discs) bind("discs", gl.TEXTURE_2D, made.discs);
+    for (const cube of made.cubes) bind(cube.sampler, gl.TEXTURE_CUBE_MAP, cube.texture);
+    gl.activeTexture(gl.TEXTURE0);
+    for (const name of ["corner", "right", "down"]) gl.uniform3fv(program.at(name), gbuffer.view[name]);
+    for (const [uniform, member] of [["light_direction", "direction"], ["light_white", "white"], ["light_disc", "disc"]])
+      if (made.lamps.length > 0) gl.uniform3fv(program.at(uniform + "[0]"), made.lamps.flatMap((lamp) => lamp[member]));
+    if (add) {
+      gl.enable(gl.BLEND);
+      gl.blendFunc(gl.ONE, gl.ONE);
+    } else {
+      gl.disable(gl.BLEND);
+    }
+    gl.bindVertexArray(this.noVertices);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    gl.disable(gl.BLEND);
+    return target;
+  }
+
+  // Brings a sum of samples to the screen, or into a framebuffer.
+  show(sum, samples, environment, stops, framebuffer = null) {
+    const gl = this.gl, program = this.displayProgram;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
+    gl.viewport(0, 0, sum.width, sum.height);
+    gl.useProgram(program.program);
+    gl.activeTexture(gl.TEXTURE0);
+    gl.bindTexture(gl.TEXTURE_2D, sum.texture);
+    gl.uniform1i(program.at("picture"), 0);
+    gl.uniform1i(program.at("rows"), sum.height);
+    gl.uniform1f(program.at("share"), 1 / samples);
+    gl.uniform1f(program.at("gain"), 2 ** stops / (this.environment(environment).white || 1));
+    gl.bindVertexArray(this.noVertices);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+  }
+
+  // Draws a picture by the pixel centers alone.
+  draw(camera, width, height, weights, environment, stops) {
+    if (this.canvas.width !== width || this.canvas.height !== height) {
+      this.canvas.width = width;
+      this.canvas.height = height;
+    }
+    const gbuffer = this.gbuffer("centers", camera, width, height, [0, 0]);
+    this.show(this.shade("centers", gbuffer, weights, environment, false), 1, environment, stops);
+  }
+
+  // One more sample of a smoother picture; shows it after the last one.
+  refine(camera, weights, environment, stops, sample, samples) {
+    const { width, height } = this.canvas;
+    const gbuffer = this.gbuffer("samples", camera, width, height, sampleShifts(samples)[sample]);
+    const sum = this.shade("samples", gbuffer, weights, environment, sample > 0);
+    if (sample === samples - 1) this.show(sum, samples, environment, stops);
+  }
+
+  // Returns when everything is drawn.
+  wait() { this.gl.readPixels(0, 0, 1, 1, this.gl.RGBA, this.gl.UNSIGNED_BYTE, new Uint8Array(4)); }
+
+  // A small picture for a tile, as pixels of a canvas.
+  tile(camera, width, height, weights, environment, stops) {
+    const gl = this.gl, gbuffer = this.gbuffer("tile", camera, width, height, [0, 0]);
+    const sum = this.shade("tile", gbuffer, weights, environment, false);
+    const target = this.target("tile screen", width, height, gl.RGBA8, false);
+    this.show(sum, 1, environment, stops, target.framebuffer);
+    const pixels = new Uint8ClampedArray(4 * width * height), picture = new ImageData(width, height);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+    for (let y = 0; y < height; ++y)  // rows come from below
+      picture.data.set(pixels.subarray(4 * width * (height - 1 - y), 4 * width * (height - y)), 4 * width * y);
+    return picture;
+  }
+
+  // The radiance of every pixel center, as floats from the upper left corner.
+  radiance(camera, width, height, weights, environment) {
+    const gl = this.gl, gbuffer = this.gbuffer("radiance", camera, width, height, [0, 0]);
+    const sum = this.shade("radiance", gbuffer, weights, environment, false);
+    const values = new Float32Array(4 * width * height);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, sum.framebuffer);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, values);
+    return values;
+  }
+}

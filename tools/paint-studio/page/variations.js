@@ -1,0 +1,92 @@
+// Small pictures of paints: the nine variations, the nearest paints of the library, and the palette. They are drawn one
+// by one while the page has nothing else to do, each with the view and the light of the large picture.
+
+class Tiles {
+  constructor(app) {
+    this.app = app;
+    this.waiting = [];
+    this.weights = null;
+    document.getElementById("variation-kind").addEventListener("change", () => this.variations());
+    document.getElementById("variation-step").addEventListener("change", () => this.variations());
+    document.getElementById("keep").addEventListener("click", () => app.keep());
+  }
+
+  // A button with a picture. It calls chosen() when it is pressed.
+  tile(paint, name, note, chosen, current = false) {
+    const canvas = made("canvas", { width: 208, height: 117, "aria-hidden": "true" });
+    const button = made("button", { type: "button", class: "tile", onclick: chosen },
+                        [canvas, made("span", { text: name }), ...(note ? [made("small", { text: note })] : [])]);
+    if (current) button.setAttribute("aria-current", "true");
+    this.waiting.push({ canvas, paint });
+    return button;
+  }
+
+  // The nine variations: the paint itself, and its neighbors.
+  variations() {
+    const app = this.app, of = document.getElementById("variation-kind").value;
+    const step = document.getElementById("variation-step").valueAsNumber, place = document.getElementById("variations");
+    if (!(step > 0)) return;
+    const list = app.engine.ask({ do: "variations", paint: app.paint, of, step }).list;
+    const tiles = list.map((one) => this.tile(one.paint, one.name, "", () => app.commit(one.edit)));
+    tiles.splice(Math.ceil(tiles.length / 2), 0, this.tile(app.paint, "as it is", "", () => {}, true));
+    place.replaceChildren(...tiles);
+    this.go();
+  }
+
+  nearest() {
+    const app = this.app, place = document.getElementById("nearest"), metric = document.getElementById("metric").value;
+    let answer;
+    try {
+      answer = app.engine.ask({ do: "nearest", paint: app.paint, metric, count: 5 });
+    } catch (error) {
+      place.replaceChildren(made("p", { class: "hint", text: error.message }));
+      return;
+    }
+    place.replaceChildren(...answer.list.map((match) => {
+      const differences = Object.entries(match.de_by_geometry).map(([geometry, de]) => `${geometry} ${de.toFixed(1)}`);
+      const note = `${match.code ? match.code + ", " : ""}sum ${match.distance.toFixed(2)}: ${differences.join(", ")}`;
+      return this.tile(app.data.paints[match.place].paint, match.name, note, () => app.start(match.place));
+    }));
+    this.go();
+  }
+
+  palette() {
+    const app = this.app, place = document.getElementById("palette");
+    place.replaceChildren(...app.palette.map((state, number) =>
+      this.tile(state.paint, `${number + 1}: ${state.paint.name}`, "", () => app.restore(state))));
+    this.go();
+  }
+
+  // All of them again, after the view or the light changed.
+  again() {
+    this.waiting = [];
+    this.variations();
+    this.nearest();
+    this.palette();
+  }
+
+  go() {
+    if (this.timer === undefined) this.timer = setTimeout(() => this.drawNext(), 30);
+  }
+  stop() {
+    clearTimeout(this.timer);
+    this.timer = undefined;
+  }
+  drawNext() {
+    this.timer = undefined;
+    const next = this.waiting.shift(), app = this.app;
+    if (!next) return;
+    if (next.canvas.isConnected) {
+      try {
+        app.engine.ask({ do: "fit", paint: next.paint });
+        this.weights = app.stage.weights(app.engine.weights(), this.weights);
+        const { width, height } = next.canvas;
+        const picture = app.stage.tile(cameraOf({ ...app.view, distance: 0.8 * app.view.distance }), width, height, this.weights, app.environment, app.stops);
+        next.canvas.getContext("2d").putImageData(picture, 0, 0);
+      } catch (error) {
+        next.canvas.replaceWith(made("small", { text: error.message }));
+      }
+    }
+    this.go();
+  }
+}

@@ -1,0 +1,145 @@
+#include <cstdlib>
+#include <filesystem>
+
+#include "base/file.h"
+#include "base/paths.h"
+#include "base/text.h"
+#include "formats/reference.h"
+#include "formats/xml.h"
+#include "pack.h"
+#include "render/page_stage.h"
+#include "studio/display_program.h"
+#include "studio/paint_json.h"
+#include "tool.h"
+
+namespace goniochrome::tool {
+
+namespace {
+
+constexpr const char* kPackages =
+    "clang-19 lld-19 wasi-libc libc++-19-dev-wasm32 libc++abi-19-dev-wasm32 libclang-rt-19-dev-wasm32";
+
+// The part of the page of that name: in $GONIOCHROME_MODULE_PATH where that is set, else in ../lib/goniochrome beside
+// the program. Error: it is not there, with the remedy.
+Result<std::string> page_part(const std::string& name) {
+  const char* folder = std::getenv("GONIOCHROME_MODULE_PATH");
+  const std::filesystem::path program = link_target("/proc/self/exe").value_or("");
+  const std::string path = folder != nullptr
+                               ? (std::filesystem::path(folder) / name).string()
+                               : (program.parent_path().parent_path() / "lib" / "goniochrome" / name).string();
+  if (is_plain_file(path)) return file_content(path);
+  return input_error(
+      "{}: is missing, because there was no compiler for WebAssembly when the tools were built: install {} and build "
+      "them again",
+      path, kPackages);
+}
+
+std::string name_of(const std::string& path) {
+  std::string name = std::filesystem::path(path).filename().string();
+  return plain_utf8(name.substr(0, name.find('.')));
+}
+
+// The data stands in an element of the type application/json, which ends at the first "</". A browser reads nothing
+// else in it.
+std::string script_text(const Json& json) {
+  std::string text;
+  for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) {
+    if (c == '<')
+      text += "\\u003c";
+    else
+      text += c;
+  }
+  return text;
+}
+
+Result<Json> packed_paints(const Options& options, cli::Session& session) {
+  Json list = Json::array();
+  std::size_t mapped = 0, brushed = 0;
+  for (const std::string& path : options.paints.empty() ? std::vector<std::string>{"-"} : options.paints) {
+    GONIO_ASSIGN(const std::vector<paint::Paint> paints, formats::read_paints(path));
+    for (const paint::Paint& paint : paints) {
+      if (!paint.measurement && !paint.appearance)
+        return input_error("{}: the paint \"{}\" has neither readings nor a face and a flop: give it a color", path,
+                           shown(paint.name));
+      mapped += paint.color_map.has_value(), brushed += paint.anisotropy.has_value();
+      list.push_back({{"file", plain_utf8(formats::paint_reference(path).file)}, {"paint", studio::paint_json(paint)}});
+    }
+  }
+  if (list.empty()) return input_error("there is no paint: a page starts from one or more");
+  if (mapped > 0) session.warn(fmt::format("{} paints have a color map, which the page does not draw", mapped));
+  if (brushed > 0) session.warn(fmt::format("{} paints are brushed, and the page draws them as not brushed", brushed));
+  return Result(std::move(list));
+}
+
+// Puts `text` in the place of the mark in the page.
+Result<void> fill(std::string& page, const std::string& mark, const std::string& text) {
+  const auto at = page.find(mark);
+  if (at == std::string::npos) return Error{ErrorKind::kBug, fmt::format("studio.html lacks {}", mark)};
+  page.replace(at, mark.size(), text);
+  return {};
+}
+
+std::string plan_text(const Options& options) {
+  return fmt::format(
+      "mesh {}: positions and normals in 16 bits an axis\n"
+      "environments: {}, each lobe of the basis as half floats\n"
+      "left out: shadows, light from one part to another, color maps, brushed surfaces and lamps\n",
+      options.mesh, joined(options.environments, ", "));
+}
+
+}  // namespace
+
+Result<cli::Verdict> run(const Options& options, cli::Session& session) {
+  GONIO_ASSIGN(std::string page, page_part("studio.html"));
+  GONIO_ASSIGN(const std::string module, page_part("studio.wasm"));
+  session.explain(plan_text(options));
+  GONIO_ASSIGN(const formats::Basis basis, formats::read_basis(options.basis));
+  GONIO_ASSIGN(const mesh::Mesh mesh, mesh::read_mesh(options.mesh));
+  GONIO_ASSIGN(Json paints, packed_paints(options, session));
+  PackedMesh packed = packed_mesh(mesh, basis.mirror);
+  const render::PagePrograms programs = render::page_programs();
+  const std::string title = options.title.empty() ? name_of(options.mesh) : plain_utf8(options.title);
+
+  Json data = {{"version", cli::Session::version()},
+               {"command", plain_utf8(session.command_line())},
+               {"title", title},
+               {"basis", {{"name", basis.name}, {"exponents", basis.exponents}, {"mirror", basis.mirror}}},
+               {"basis_file", plain_utf8(options.basis)},
+               {"mesh", std::move(packed.json)},
+               {"finishes", packed_finishes(packed.finishes, basis)},
+               {"programs",
+                {{"gbuffer_vertex", programs.gbuffer_vertex},
+                 {"gbuffer_fragment", programs.gbuffer_fragment},
+                 {"shading_vertex", programs.shading_vertex},
+                 {"display_fragment", studio::display_program()}}},
+               {"paints", std::move(paints)},
+               {"environments", Json::array()}};
+  Json& results = session.results();
+  for (const std::string& path : options.environments) {
+    session.progress(fmt::format("packing {}", path));
+    GONIO_ASSIGN(const envmap::PrefilteredEnvironment env, envmap::read_env(path));
+    auto environment = packed_environment(name_of(path), env, basis);
+    if (!environment.ok()) return input_error("{}: {}", path, environment.error().message);
+    results["environments"].push_back({{"name", name_of(path)}, {"bytes", environment->dump().size()}});
+    data["environments"].push_back(std::move(*environment));
+  }
+
+  const std::string library = base64(module);
+  const std::size_t code = page.size() + library.size();
+  GONIO_TRY(fill(page, "@TITLE@", xml_escaped(title)));
+  GONIO_TRY(fill(page, "@MODULE@", library));
+  GONIO_TRY(fill(page, "@DATA@", script_text(data)));
+  GONIO_ASSIGN(OutputFile file, OutputFile::create(options.output));
+  GONIO_TRY(file.write(page));
+  GONIO_TRY(file.commit());
+  results["bytes"] = page.size();
+  results["code_bytes"] = code;
+  results["paints"] = data["paints"].size();
+  results["triangles"] = mesh.triangles.size();
+  session.say(fmt::format("page: {:.1f} MB, of which {:.1f} MB are data; {} paints, {} environments, {} triangles",
+                          static_cast<double>(page.size()) / 1e6, static_cast<double>(page.size() - code) / 1e6,
+                          data["paints"].size(), options.environments.size(), mesh.triangles.size()));
+  return cli::Verdict::kDone;
+}
+
+}  // namespace goniochrome::tool

@@ -1,0 +1,11 @@
+// What WebAssembly has in the place of files and threads.
+#pragma once
+
+#include <string>
+
+namespace goniochrome::studio {
+
+// All that was written to an OutputFile since it was cleared last.
+std::string& written_text();
+
+}  // namespace goniochrome::studio
