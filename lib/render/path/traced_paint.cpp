@@ -259,7 +259,9 @@ Float3 PaintedPoint::toward_disc(const Light& light, bool tabled) const {
   const double cosine = dot(n, light.direction), radius = light.radius_rad;
   if (cosine <= -std::sin(radius)) return {};
   const double irradiance = brdf::disc_irradiance(cosine, radius), above = brdf::disc_above(cosine, radius);
-  Float3 f = static_cast<float>(irradiance) * diffuse_;
+  // Through the coat at the mean cosine of what is seen, and for the rest of a lobe at that of its axis.
+  const double passing = above > 0 ? irradiance * let_in(static_cast<float>(std::min(1.0, irradiance / above))) : 0;
+  Float3 f = static_cast<float>(passing) * diffuse_;
   if (paint_ != nullptr) {
     for (const DiscDirection& part : disc_directions(light))
       if (dot(n, part.direction) > 0) f = f + static_cast<float>(part.weight) * mapped(float3(part.direction));
@@ -278,7 +280,8 @@ Float3 PaintedPoint::toward_disc(const Light& light, bool tabled) const {
   const auto add_lobes = [&](const Float3& axis, float share) {
     const Vec3 r = rays::vec3(axis);
     const double chord = length(r - light.direction);
-    const auto wide = static_cast<float>(irradiance), cos_r = static_cast<float>(std::max(0.0, dot(n, r)));
+    const auto wide = static_cast<float>(passing), cosine_r = static_cast<float>(std::max(0.0, dot(n, r)));
+    const float cos_r = cosine_r * let_in(std::min(1.0F, cosine_r));
     const float coat_r = coat(r);
     for (int j = 0; j < count_; ++j) {
       const double exponent = lobes_[j].exponent;
