@@ -89,10 +89,12 @@ Result<Request> request_of(const Options& options) {
   request.floor_named = has_floor;
   if (wants_rays && !traces)
     return usage_error(
-        "--engine {} draws neither parts that shine nor lamps at a place nor light in bands nor {}: leave out --{}, or "
+        "--engine {} draws neither parts that shine nor lamps at a place nor {}: leave out --{}, or "
         "take --engine path",
         options.engine,
-        named.kind == FloorRequest::Kind::kPaint ? "floors that wear a paint" : "floors without effects of rays",
+        named.kind == FloorRequest::Kind::kPaint ? "floors that wear a paint"
+        : spectral                               ? "light in bands"
+                                                 : "floors without effects of rays",
         of_rays);
   if ((wants_rays || has_floor) && !options.gbuffer.empty())
     return usage_error("--{} needs the mesh: --gbuffer holds one view of surfaces without it", of_rays);
