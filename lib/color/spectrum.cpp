@@ -78,6 +78,24 @@ Triple weighted_observer(double nm, std::size_t illuminant, int observer_deg) {
 
 }  // namespace
 
+Result<double> illuminant_power(double nm, const std::string& name) {
+  const auto column = illuminant_column(name);
+  if (!column) return input_error("illuminant is \"{}\": {} are known", name, spectral_illuminants());
+  const double at = (nm - kCieStart_nm) / kCieStep_nm;
+  if (!(at >= 0 && at <= kCieRows - 1)) return input_error("the tables of illuminants end at 360 and 780 nm");
+  const auto i = std::min(static_cast<std::size_t>(at), kCieTable.size() - 2);
+  return std::lerp(illuminant_power(i, *column), illuminant_power(i + 1, *column), at - static_cast<double>(i));
+}
+
+double interpolated(std::span<const double> wavelengths_nm, std::span<const double> values, double nm) {
+  const double inside_nm = std::clamp(nm, wavelengths_nm.front(), wavelengths_nm.back());
+  const Window window = window_around(wavelengths_nm, inside_nm);
+  double sum = 0;
+  for (std::size_t k = window.first; k < window.first + window.count; ++k)
+    sum += values[k] * lagrange_weight(wavelengths_nm, window, k, inside_nm);
+  return sum;
+}
+
 std::string spectral_illuminants() {
   std::string all;
   for (std::size_t i = 0; i < kIlluminants.size(); ++i)

@@ -15,6 +15,14 @@ namespace goniochrome::color {
 // The illuminants under which spectra are integrated, for help and messages: "D65, D50, ... or F11".
 std::string spectral_illuminants();
 
+// The relative power of such an illuminant at a wavelength of 360 to 780 nm: along straight lines between the values of
+// the table; of lamps with lines too, whose values each stand for the light of 5 nm. Error: the names.
+Result<double> illuminant_power(double nm, const std::string& name);
+
+// The Lagrange cubic through four of the values, and outside of the wavelengths the outermost value. The wavelengths
+// ascend, and there are at least two.
+double interpolated(std::span<const double> wavelengths_nm, std::span<const double> values, double nm);
+
 // Turns reflectance factors at fixed wavelengths into XYZ and Lab under one viewing condition. Lab is relative to the
 // white that the perfect diffuser has in the same sum, so it needs no second table.
 class SpectralColorimeter {

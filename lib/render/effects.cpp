@@ -11,6 +11,7 @@
 #include "envmap/weighted_diffuse.h"
 #include "render/internal/lobe_curves.h"
 #include "render/internal/tilt_table.h"
+#include "render/internal/worn_lobes.h"
 #include "render/spots.h"
 #include "render/surface_layer.h"
 
@@ -182,10 +183,8 @@ Effects effects_of(const Scene& scene) {
   for (const double exponent : lobe_exponents(scene.paints)) {
     Effects::LobeUse use{exponent, false, false};
     for (const paint::LobeFit& paint : scene.paints) {
-      const paint::Lobe* lobe = find_lobe(paint, exponent);
-      if (lobe == nullptr) continue;
-      use.directional_diffuse |= lobe->directional_diffuse != color::Rgb{};
-      use.gloss |= lobe->gloss != color::Rgb{};
+      use.directional_diffuse |= wears_lobe(paint, exponent, LobeWeight::kDirectionalDiffuse);
+      use.gloss |= wears_lobe(paint, exponent, LobeWeight::kGloss);
     }
     gloss |= use.gloss;
     effects.lobes.push_back(use);
@@ -256,8 +255,9 @@ std::vector<std::vector<brdf::Tilt>> tilts_of(const Scene& scene, const Effects&
     if (!(alpha.alpha_x > 0) || effects.lobes.empty()) continue;
     double sharpest = 0;
     for (const Effects::LobeUse& use : effects.lobes) {
-      const paint::Lobe* lobe = find_lobe(scene.paints[part], use.exponent);
-      if (lobe != nullptr && (lobe->directional_diffuse != color::Rgb{} || lobe->gloss != color::Rgb{}))
+      const paint::LobeFit& paint = scene.paints[part];
+      if (wears_lobe(paint, use.exponent, LobeWeight::kDirectionalDiffuse) ||
+          wears_lobe(paint, use.exponent, LobeWeight::kGloss))
         sharpest = use.exponent;
     }
     if (sharpest == 0) continue;

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/angles.h"
+#include "brdf/lobe_model.h"
 #include "color/color.h"
 #include "render/renderer.h"
 #include "render/scenes_for_test.h"
@@ -80,6 +82,57 @@ TEST(Engines, AgreeOnSamplesBackgroundsAndParts) {
     scene.background = background;
     scene.background_color = {0.1, 0.2, 0.4};
     for (const int samples : {1, 4, 16}) EXPECT_LT(disagreement(scene, effects_of(scene), samples), kAgreed);
+  }
+}
+
+// A satin coat may have a lobe at one view that it has at no other, and not among the weights for all views. Under a
+// lamp each point of a ball shows pi f cos times the lamp's white, by the weights of its view.
+TEST(Engines, DrawLobesThatStandInAViewAlone) {
+  const mesh::Mesh mesh = sphere_mesh(96);
+  paint::LobeFit satin;
+  satin.diffuse = {0.05, 0.04, 0.03};
+  satin.lobes = {{12, {}, {0.05, 0.05, 0.05}}};
+  satin.views = {{0, satin.diffuse, satin.lobes},
+                 {70, satin.diffuse, {{12, {}, {0.05, 0.05, 0.05}}, {80, {0.1, 0.2, 0.3}, {4, 4, 4}}}}};
+  const Light lamp{normalized({2, 0.4, -0.5}), {1, 0.9, 0.8}};
+  Scene scene{&mesh, {satin}, nullptr, {lamp}, Background::kNone, {}};
+  const Effects effects = effects_of(scene);
+  ASSERT_EQ(effects.lobes.size(), 2U);
+  for (const char* engine : {"gl", "cpu"}) {
+    auto renderer = Renderer::create();
+    ASSERT_TRUE(renderer.ok());
+    const auto loaded = renderer->load(scene, effects, engine);
+    ASSERT_TRUE(loaded.ok()) << loaded.error().message;
+    Frame frame;
+    ASSERT_TRUE(renderer->draw({Camera::orbit(mesh, 30, 20, 0.9, 30, 1.5), 120, 80, 1, true}, frame).ok());
+    const Gbuffer& g = *frame.gbuffer;
+    double worst = 0, control = 0;
+    int lit = 0;
+    for (int y = 0; y < g.height; ++y) {
+      for (int x = 0; x < g.width; ++x) {
+        if (g.part(x, y) < 0) continue;
+        const Vec3 normal = normalized(g.normal(x, y)), viewer = g.to_viewer(x, y);
+        const double cos_i = dot(normal, lamp.direction), cos_o = dot(normal, viewer);
+        if (cos_i < 0.02 || cos_o < 0.1) continue;
+        const auto truth = [&](const paint::LobeFit& paint) {
+          const paint::LobeFit here = brdf::at_view(paint, std::acos(cos_o) / kDegree);
+          return kPi * cos_i * (brdf::coated_brdf(here, lamp.direction, viewer, normal) * lamp.white);
+        };
+        paint::LobeFit without = satin;
+        without.views.back().lobes.pop_back();
+        const color::Rgb right = truth(satin), wrong = truth(without);
+        const float* drawn = frame.picture.pixel(x, y);
+        for (int c = 0; c < 3; ++c) {
+          worst = std::max(worst, std::abs(drawn[c] - right[c]) / right[c]);
+          control = std::max(control, std::abs(wrong[c] - right[c]) / right[c]);
+        }
+        ++lit;
+      }
+    }
+    EXPECT_GT(lit, 500);
+    // Weights by the view are tables along cos, straight between their nodes.
+    EXPECT_LT(worst, 0.03) << engine;
+    EXPECT_GT(control, 0.5) << "a lobe that is left out";
   }
 }
 

@@ -7,6 +7,7 @@
 #include "base/angles.h"
 #include "base/parallel.h"
 #include "brdf/lobe_model.h"
+#include "render/internal/worn_lobes.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {
@@ -66,7 +67,7 @@ void add_glints(const Scene& scene, const Effects& effects, const Gbuffer& gbuff
         if (part < 0) continue;
         if (scene.layer != nullptr && scene.layer->surface(part).texture != nullptr) continue;
         const paint::LobeFit& paint = scene.paints[static_cast<std::size_t>(part)];
-        if (find_lobe(paint, paint::kMirrorExponent) == nullptr) continue;
+        if (!wears_lobe(paint, paint::kMirrorExponent, LobeWeight::kGloss)) continue;
         const Vec3 r = mirrors.at(x, y);
         color::Rgb sum;
         double spread = -1;
@@ -79,7 +80,9 @@ void add_glints(const Scene& scene, const Effects& effects, const Gbuffer& gbuff
           const paint::LobeFit here = effects.views ? brdf::at_view(paint, std::acos(cos_o) / kDegree) : paint;
           const double fresnel =
               brdf::fresnel_dielectric(effects.fresnel ? cos_o : std::numbers::sqrt2 / 2, brdf::kCoatIndex);
-          const color::Rgb k = fresnel * find_lobe(here, paint::kMirrorExponent)->gloss;
+          const paint::Lobe* mirror = find_lobe(here, paint::kMirrorExponent);
+          if (mirror == nullptr) continue;
+          const color::Rgb k = fresnel * mirror->gloss;
           const color::Rgb light_seen = missing * light.radiance();
           sum += effects.reflection ? color::reflected(scene.reflection, k, light_seen) : k * light_seen;
         }

@@ -6,6 +6,7 @@
 #include "base/angles.h"
 #include "brdf/disc_light.h"
 #include "color/color.h"
+#include "render/internal/worn_lobes.h"
 
 namespace goniochrome::render {
 
@@ -78,12 +79,24 @@ Vec3 disc_direction(const Light& light, double u, double v) {
   return (1 - versine) * light.direction + across * std::cos(phi) * x + across * std::sin(phi) * y;
 }
 
+bool wears_lobe(const paint::LobeFit& paint, double exponent, LobeWeight weight) {
+  const auto has = [&](const paint::Lobe& lobe) {
+    return lobe.exponent == exponent &&
+           (weight == LobeWeight::kGloss ? lobe.gloss : lobe.directional_diffuse) != color::Rgb{};
+  };
+  return std::ranges::any_of(paint.lobes, has) ||
+         std::ranges::any_of(paint.views, [&](const auto& view) { return std::ranges::any_of(view.lobes, has); });
+}
+
 std::vector<double> lobe_exponents(const std::vector<paint::LobeFit>& paints) {
   std::vector<double> exponents;
-  for (const paint::LobeFit& paint : paints) {
-    for (const paint::Lobe& lobe : paint.lobes) {
+  const auto gather = [&](const std::vector<paint::Lobe>& lobes) {
+    for (const paint::Lobe& lobe : lobes)
       if (!lobe.is_mirror() && has_weight(lobe)) exponents.push_back(lobe.exponent);
-    }
+  };
+  for (const paint::LobeFit& paint : paints) {
+    gather(paint.lobes);
+    for (const paint::ViewLobes& view : paint.views) gather(view.lobes);
   }
   std::sort(exponents.begin(), exponents.end());
   exponents.erase(std::unique(exponents.begin(), exponents.end()), exponents.end());
@@ -91,9 +104,9 @@ std::vector<double> lobe_exponents(const std::vector<paint::LobeFit>& paints) {
 }
 
 bool has_mirror(const std::vector<paint::LobeFit>& paints) {
-  return std::any_of(paints.begin(), paints.end(), [](const paint::LobeFit& paint) {
-    const paint::Lobe* mirror = find_lobe(paint, paint::kMirrorExponent);
-    return mirror != nullptr && has_weight(*mirror);
+  return std::ranges::any_of(paints, [](const paint::LobeFit& paint) {
+    return wears_lobe(paint, paint::kMirrorExponent, LobeWeight::kGloss) ||
+           wears_lobe(paint, paint::kMirrorExponent, LobeWeight::kDirectionalDiffuse);
   });
 }
 

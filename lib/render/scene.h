@@ -48,6 +48,7 @@ Vec3 disc_direction(const Light& light, double u, double v);
 enum class Background { kNone, kColor, kEnvironment };
 
 class SurfaceLayer;
+struct SceneSpectra;
 
 // A level floor that reaches to the horizon.
 struct Ground {
@@ -74,6 +75,9 @@ struct Scene {
   const envmap::BlockTree* texels = nullptr;  // of the image that env was made from, for engines that sum it
   std::vector<color::Rgb> emission = {};      // radiance of each part that shines by itself; none where there are fewer
   std::optional<Ground> ground = {};
+  // The spectra of all paints and lamps, for engines that follow light in bands of wavelength (SceneSpectra, in
+  // spectra.h). None: light and paint have three channels.
+  const SceneSpectra* spectra = nullptr;
 };
 
 // Whether the scene has what only engines that trace rays can draw: a floor, parts that shine by themselves, or lamps

@@ -11,6 +11,7 @@ _render_osmesa() {
     --env|-e) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --light) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --emit) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --spectral) COMPREPLY=($(compgen -W "auto on off" -- "$word")); return ;;
     --floor) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --eye-height) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --operator) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -42,7 +43,7 @@ _render_osmesa() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--mesh --gbuffer --paint --part --trim --split --texture --texture-maps --env --light --emit --floor --eye-height --operator --critical-angle --exposure --background --orbit --camera --fov --size --samples --turntable --light-sweep --effects --tolerance --budget --engine --bounces --print-shader --check --check-against --check-source --output --view --aov --explain --time-limit --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--mesh --gbuffer --paint --part --trim --split --texture --texture-maps --env --light --emit --spectral --floor --eye-height --operator --critical-angle --exposure --background --orbit --camera --fov --size --samples --turntable --light-sweep --effects --tolerance --budget --engine --bounces --print-shader --check --check-against --check-source --output --view --aov --explain --time-limit --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

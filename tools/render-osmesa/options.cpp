@@ -1,3 +1,4 @@
+#include "color/spectrum.h"
 #include "render/engine.h"
 #include "tool.h"
 
@@ -54,21 +55,40 @@ void add_surfaces(cli::ToolSpec& spec, Options& o) {
 void add_light(cli::ToolSpec& spec, Options& o) {
   spec.heading = "light";
   spec.option("env,e", "FILE", "studio.env.exr", &o.env, "prefiltered environment (*.env.exr)");
-  spec.option("light", "WHERE[,RGB][@EXTENT]", "-60,20,0.5,0.5,0.6@2", &o.lights, "lamp")
+  spec.option("light", "WHERE[,LIGHT][@EXTENT]", "-60,20,0.5,0.5,0.6@2", &o.lights, "lamp")
       .in("degrees for angles and for the extent")
       .more(
           "WHERE is AZIMUTH,ELEVATION or a vector X,Y,Z toward a lamp that is far away, or place:X,Y,Z for a lamp "
-          "that stands at that place, in units of the mesh. R,G,B may follow; it is what a perfect white diffuser "
-          "shows that faces the lamp, and 1,1,1 if not given. EXTENT is the angle that the lamp spans, from 0 to 180, "
+          "that stands at that place, in units of the mesh. LIGHT may follow, R,G,B or a name as --spectral has it; it "
+          "is "
+          "what a perfect white diffuser shows that faces the lamp, and 1,1,1 if not given. EXTENT is the angle that "
+          "the lamp spans, from 0 to 180, "
           "and 0.53 as that of the sun if not given. The lamp is a disc of even radiance, and a wider one sends as "
           "much light as a narrow one. Its highlight and its mirror image are those of the disc; with the extent 0 "
           "it is a point, which has no mirror image. A lamp at a place is a sphere, has that extent and that white "
           "in the middle of the mesh, and its light falls with the square of the distance; the engine path draws "
           "it.");
-  spec.option("emit", "PART=R,G,B", "Lamp=20,18,15", &o.emissions, "make a part or material shine by itself")
+  spec.option("emit", "PART=LIGHT", "Lamp=20,18,15", &o.emissions, "make a part or material shine by itself")
       .more(
-          "R,G,B is the radiance of both sides of the part, in linear Rec.2020, beside what its paint reflects. Only "
-          "the engine path draws such parts, and auto takes it for them.");
+          "LIGHT is the radiance of both sides of the part, beside what its paint reflects: R,G,B in linear Rec.2020, "
+          "or "
+          "a light by its name, with a factor, as in A*20. Only the engine path draws such parts, and auto takes it "
+          "for "
+          "them.");
+  spec.option("spectral", "WHEN", "on", &o.spectral, "follow light in bands of wavelength: auto, on or off")
+      .one_of({"auto", "on", "off"})
+      .more(
+          "The engine path then multiplies light and paint in 31 bands from 400 to 700 nm, not in three channels, so "
+          "that --operator has no part in it. Lamps need a spectrum: a LIGHT of --light and of --emit that is named, "
+          "as "
+          "D65, A or F11 (" +
+          color::spectral_illuminants() +
+          "), or a column of a table of spectra, as lights.csv#HP1. It has the luminance 1, and may be multiplied by "
+          "numbers and by filters, which are columns of tables too: D65*filters.csv#cyan*20. Paints need spectra in "
+          "their paint XML, unless their weights are gray, which is taken as even over all bands. Environments, "
+          "textures and color maps have no spectra. auto follows bands where the engine path draws, a lamp is named, "
+          "and nothing lacks a spectrum; what lacks one is told. on takes the engine path, and is an error where "
+          "anything lacks a spectrum.");
   spec.option("floor", "WHAT[,HEIGHT]", "shadow", &o.floor, "level floor: none, shadow or a PAINT")
       .in("units of the mesh for the height")
       .more(
@@ -237,7 +257,9 @@ void add_output(cli::ToolSpec& spec, Options& o) {
           "brings all buffers and, in parts of their own, the light that each lobe of the basis gathers at each "
           "pixel, with shadows and with light that surfaces send to each other; it is traced until its noise is "
           "within --tolerance. --gbuffer then shows other paints in it within milliseconds. goniochrome-paint(5) "
-          "describes the parts.");
+          "describes the parts. A part that wears a color map or a texture has no such light: what stands for a map are "
+          "lobes in directions of its own, which differ from paint to paint and from view to view, and a transport holds "
+          "the light about the mirror direction alone.");
 }
 
 // The examples, the keys of --report, and the pages to see.
@@ -289,6 +311,12 @@ void add_report(cli::ToolSpec& spec) {
       {"noise_reached, samples_mean, path_s, bounces",
        "of the engine path: whether the noise is within the tolerance in all pictures, the samples of a visible "
        "pixel, the time that tracing them took, and --bounces"},
+      {"spectral: bands, observer_deg, lacks, even",
+       "where a lamp has a spectrum: bands of wavelength, or 0 where light has three channels; the standard observer; "
+       "what lacks a spectrum; gray paints that were taken as even"},
+      {"spectral: misfit_de00, readings_de00",
+       "how far the lobes in bands are from those in three channels, by daylight, and how far from the spectra of the "
+       "paints, by illuminant A: CIEDE2000 of the worst"},
       {"frames", "number of pictures written"},
       {"gbuffer_ms", "time to rasterize the mesh once, be it for the plan or for the picture; 0 with --gbuffer"},
       {"frame_ms", "time to draw the picture with all samples, without reading and uploading"},

@@ -105,8 +105,37 @@ Result<std::vector<Assignment>> assignments(const std::vector<std::string>& opti
   return all;
 }
 
-// The parts that a word means: the part of that name, or all of that material.
-Result<std::vector<std::size_t>> parts_meant(const mesh::Mesh& mesh, const std::string& word) {
+// --texture, part by part: FILE, or FILE*N.
+Result<void> lay_textures(const mesh::Mesh& mesh, const Options& options, DressedMesh& result) {
+  for (const std::string& option : options.textures) {
+    const auto equals = option.find('=');
+    if (equals == 0 || equals == std::string::npos || equals + 1 == option.size())
+      return usage_error("--texture is \"{}\": write PART=FILE.exr, or PART=FILE.exr*N to lay it N times", option);
+    std::string file = option.substr(equals + 1);
+    double repeat = 1;
+    if (const auto star = file.rfind('*'); star != std::string::npos) {
+      const auto times = parse_number(file.substr(star + 1));
+      if (!times || *times <= 0) return usage_error("--texture is \"{}\": the number after * must be above 0", option);
+      repeat = *times;
+      file.resize(star);
+    }
+    GONIO_ASSIGN(const std::vector<std::size_t> parts, parts_of(mesh, option.substr(0, equals)));
+    GONIO_ASSIGN(brdf::SbrdfTexture texture, image::read_sbrdf(file));
+    result.textures.push_back(std::make_shared<brdf::SbrdfTexture>(std::move(texture)));
+    for (const std::size_t part : parts) {
+      result.paints[part] = {};
+      result.anisotropy[part] = {};
+      result.worn[part].reset();
+      result.surfaces[part] = {result.textures.back().get(), repeat, nullptr};
+      result.names[part] = file;
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<std::vector<std::size_t>> parts_of(const mesh::Mesh& mesh, const std::string& word) {
   std::vector<std::size_t> named, made_of;
   for (std::size_t i = 0; i < mesh.parts.size(); ++i) {
     if (mesh.parts[i].name == word) named.push_back(i);
@@ -126,35 +155,6 @@ Result<std::vector<std::size_t>> parts_meant(const mesh::Mesh& mesh, const std::
                      listed(parts), materials.empty() ? "" : "; its materials are " + listed(materials, 30));
 }
 
-// --texture, part by part: FILE, or FILE*N.
-Result<void> lay_textures(const mesh::Mesh& mesh, const Options& options, DressedMesh& result) {
-  for (const std::string& option : options.textures) {
-    const auto equals = option.find('=');
-    if (equals == 0 || equals == std::string::npos || equals + 1 == option.size())
-      return usage_error("--texture is \"{}\": write PART=FILE.exr, or PART=FILE.exr*N to lay it N times", option);
-    std::string file = option.substr(equals + 1);
-    double repeat = 1;
-    if (const auto star = file.rfind('*'); star != std::string::npos) {
-      const auto times = parse_number(file.substr(star + 1));
-      if (!times || *times <= 0) return usage_error("--texture is \"{}\": the number after * must be above 0", option);
-      repeat = *times;
-      file.resize(star);
-    }
-    GONIO_ASSIGN(const std::vector<std::size_t> parts, parts_meant(mesh, option.substr(0, equals)));
-    GONIO_ASSIGN(brdf::SbrdfTexture texture, image::read_sbrdf(file));
-    result.textures.push_back(std::make_shared<brdf::SbrdfTexture>(std::move(texture)));
-    for (const std::size_t part : parts) {
-      result.paints[part] = {};
-      result.anisotropy[part] = {};
-      result.surfaces[part] = {result.textures.back().get(), repeat, nullptr};
-      result.names[part] = file;
-    }
-  }
-  return {};
-}
-
-}  // namespace
-
 Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options) {
   PaintShelf shelf;
   paint::LobeFit gray;
@@ -165,6 +165,7 @@ Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options) {
   result.gloss_deg.assign(parts_there, kUnreadGlossDeg);
   result.anisotropy.resize(parts_there);
   result.surfaces.resize(parts_there);
+  result.worn.resize(parts_there);
   result.names.resize(parts_there);
   const auto wear = [&](std::size_t part, const paint::Paint& paint, const brdf::ColorMap* map) {
     result.paints[part] = *paint.lobes;
@@ -173,6 +174,7 @@ Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options) {
     result.anisotropy[part] = paint.anisotropy.value_or(paint::Anisotropy{});
     result.surfaces[part] = {nullptr, 1, map};
     result.names[part] = paint.name;
+    result.worn[part] = std::make_shared<const paint::Paint>(paint);
   };
   if (!options.paint.empty()) {
     GONIO_ASSIGN(const paint::Paint paint, shelf.paint(options.paint));
@@ -184,12 +186,13 @@ Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options) {
     if (!trim) continue;
     result.paints[part] = *trim, result.gloss_deg[part] = kUnreadGlossDeg;
     result.anisotropy[part] = {}, result.surfaces[part] = {}, result.names[part] = "trim";
+    result.worn[part].reset();
   }
   // A part's own name is meant before its material, wherever it stands on the command line.
   GONIO_ASSIGN(const std::vector<Assignment> all, assignments(options.parts));
   for (const bool by_name : {false, true}) {
     for (const Assignment& assignment : all) {
-      GONIO_ASSIGN(const std::vector<std::size_t> parts, parts_meant(mesh, assignment.part));
+      GONIO_ASSIGN(const std::vector<std::size_t> parts, parts_of(mesh, assignment.part));
       if ((mesh.parts[parts.front()].name == assignment.part) != by_name) continue;
       GONIO_ASSIGN(const paint::Paint paint, shelf.paint(assignment.reference));
       GONIO_ASSIGN(const brdf::ColorMap* map, shelf.color_map(assignment.reference, paint));
@@ -204,16 +207,15 @@ Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options) {
   return result;
 }
 
-Result<paint::LobeFit> lobes_of_paint(const std::string& reference) {
+Result<paint::Paint> paint_named(const std::string& reference) {
   PaintShelf shelf;
-  GONIO_ASSIGN(const paint::Paint paint, shelf.paint(reference));
-  return *paint.lobes;
+  return shelf.paint(reference);
 }
 
 Result<std::vector<color::Rgb>> emission_of(const mesh::Mesh& mesh, const std::vector<Emission>& emissions) {
   std::vector<color::Rgb> all(emissions.empty() ? 0 : mesh.parts.size());
   for (const Emission& emission : emissions) {
-    GONIO_ASSIGN(const std::vector<std::size_t> parts, parts_meant(mesh, emission.part));
+    GONIO_ASSIGN(const std::vector<std::size_t> parts, parts_of(mesh, emission.part));
     for (const std::size_t part : parts) all[part] = emission.radiance;
   }
   return all;

@@ -20,15 +20,19 @@ struct DressedMesh {
   std::vector<render::PartSurface> surfaces;  // textures and color maps, held by the two below
   std::vector<std::shared_ptr<const brdf::SbrdfTexture>> textures;
   std::vector<std::shared_ptr<const brdf::ColorMap>> color_maps;
-  std::vector<std::string> names;      // of those paints; "" where none was given
-  std::vector<std::string> unpainted;  // names of the parts that wear the gray of unpainted parts
+  std::vector<std::shared_ptr<const paint::Paint>> worn;  // as they were read; null where none was
+  std::vector<std::string> names;                         // of those paints; "" where none was given
+  std::vector<std::string> unpainted;                     // names of the parts that wear the gray of unpainted parts
 };
 
 // Resolves --part and --paint. Error: an unknown part, paint or file, or a paint without lobes, with what there is.
 Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options);
 
-// The lobes of FILE#NAME.
-Result<paint::LobeFit> lobes_of_paint(const std::string& reference);
+// FILE#NAME, which has lobes.
+Result<paint::Paint> paint_named(const std::string& reference);
+
+// The parts that a word means: the part of that name, or all of that material. Error (usage): what there is.
+Result<std::vector<std::size_t>> parts_of(const mesh::Mesh& mesh, const std::string& word);
 
 // The radiance of each part by --emit. Error: an unknown part.
 struct Emission;

@@ -33,8 +33,9 @@ Result<Request> request_of(const Options& options) {
   GONIO_TRY(check_surfaces(options));
   GONIO_ASSIGN(request.size, parse_size(options.size));
   for (const std::string& text : options.lights) {
-    GONIO_ASSIGN(const render::Light light, parse_light(text));
-    request.lights.push_back(light);
+    std::optional<color::Bands> bands;
+    GONIO_ASSIGN(const render::Light light, parse_light(text, bands));
+    request.lights.push_back(light), request.light_bands.push_back(bands);
   }
   GONIO_ASSIGN(request.stops, parse_exposure(options.exposure));
   request.aovs = aov_names(options.aovs);
@@ -67,9 +68,14 @@ Result<Request> request_of(const Options& options) {
   const bool places = std::ranges::any_of(request.lights, [](const render::Light& l) { return l.place.has_value(); });
   // Only one engine has parts that shine, lamps at a place, floors that wear a paint, and floors where no effects of
   // rays are drawn.
-  const bool wants_rays = !request.emissions.empty() || places || named.kind == FloorRequest::Kind::kPaint ||
+  const bool spectral = options.spectral == "on";
+  const bool wants_rays = !request.emissions.empty() || places || spectral ||
+                          named.kind == FloorRequest::Kind::kPaint ||
                           (has_floor && render::leave_out_rays(options.effects));
-  const char* of_rays = !request.emissions.empty() ? "emit" : places ? "light place:..." : "floor";
+  const char* of_rays = !request.emissions.empty() ? "emit"
+                        : places                   ? "light place:..."
+                        : spectral                 ? "spectral on"
+                                                   : "floor";
   const auto tracer = std::ranges::find_if(render::engines(), [](const auto* engine) { return engine->traces_rays; });
   const std::string engine = options.engine == "auto" && wants_rays ? (*tracer)->name : options.engine;
   if (engine != "auto") {
@@ -83,9 +89,12 @@ Result<Request> request_of(const Options& options) {
   request.floor_named = has_floor;
   if (wants_rays && !traces)
     return usage_error(
-        "--engine {} draws neither parts that shine nor lamps at a place nor {}: leave out --{}, or take --engine path",
+        "--engine {} draws neither parts that shine nor lamps at a place nor {}: leave out --{}, or "
+        "take --engine path",
         options.engine,
-        named.kind == FloorRequest::Kind::kPaint ? "floors that wear a paint" : "floors without effects of rays",
+        named.kind == FloorRequest::Kind::kPaint ? "floors that wear a paint"
+        : spectral                               ? "light in bands"
+                                                 : "floors without effects of rays",
         of_rays);
   if ((wants_rays || has_floor) && !options.gbuffer.empty())
     return usage_error("--{} needs the mesh: --gbuffer holds one view of surfaces without it", of_rays);

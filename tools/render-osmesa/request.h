@@ -18,6 +18,7 @@ struct Request {
   PictureSize size;  // with --gbuffer, that of the file
   int samples = 1;
   std::vector<render::Light> lights;
+  std::vector<std::optional<color::Bands>> light_bands;  // of each that is named
   std::optional<double> stops;
   std::vector<std::string> aovs;
   bool transport = false;  // among the buffers

@@ -9,6 +9,7 @@
 #include "brdf/disc_light.h"
 #include "paints.h"
 #include "render/engine.h"
+#include "spectra.h"
 
 namespace goniochrome::tool {
 
@@ -68,13 +69,26 @@ Result<PictureSize> parse_size(const std::string& text) {
   return usage_error("--size is \"{}\": write WIDTHxHEIGHT in pixels, 1x1 to {}x{}, or auto", text, kMost, kMost);
 }
 
-Result<render::Light> parse_light(const std::string& text) {
+Result<render::Light> parse_light(const std::string& text, std::optional<color::Bands>& bands) {
+  bands.reset();
   const auto error = [&](const char* what) { return usage_error("--light is \"{}\": {}", text, what); };
   constexpr std::string_view kPlace = "place:";
   const bool placed = text.starts_with(kPlace);
   const std::string without = placed ? text.substr(kPlace.size()) : text;
   const std::size_t at = without.find('@');
-  const auto values = numbers(without.substr(0, at));
+  std::string where = without.substr(0, at);
+  // A last piece that is no number names the light.
+  if (const auto comma = where.rfind(','); comma != std::string::npos && std::ranges::count(where, ',') > 1) {
+    const std::string word = where.substr(comma + 1);
+    if (!trimmed(word).empty() && !parse_number(trimmed(word))) {
+      const auto light = light_of_word(word);
+      if (!light.ok())
+        return Error{light.error().kind, fmt::format("--light is \"{}\": {}", text, light.error().message)};
+      bands = *light;
+      where.resize(comma);
+    }
+  }
+  const auto values = numbers(where);
   if (!values || values->size() < 2 || values->size() == 4 || values->size() > 6) {
     return error(
         "write AZ,EL or X,Y,Z or place:X,Y,Z, after it R,G,B if the light is not 1,1,1, and after that @DEGREES if "
@@ -95,7 +109,9 @@ Result<render::Light> parse_light(const std::string& text) {
   if (!placed && !(length(light.direction) > 0)) return error("the vector to the light has no length");
   if (!placed) light.direction = normalized(light.direction);
   if (v.size() >= 5) light.white = {v[v.size() - 3], v[v.size() - 2], v[v.size() - 1]};
-  if (std::min({light.white.x, light.white.y, light.white.z}) < 0) return error("light cannot be negative");
+  if (bands && v.size() >= 5) return error("its color is given twice: leave out one of both");
+  if (bands) light.white = color_of(*bands);
+  if (!bands && std::min({light.white.x, light.white.y, light.white.z}) < 0) return error("light cannot be negative");
   return light;
 }
 
@@ -165,11 +181,21 @@ Result<std::vector<Emission>> parse_emissions(const std::vector<std::string>& te
   std::vector<Emission> all;
   for (const std::string& text : texts) {
     const auto equals = text.rfind('=');
-    const auto rgb = equals == std::string::npos ? std::nullopt : numbers(text.substr(equals + 1));
-    if (equals == 0 || !rgb || rgb->size() != 3) return usage_error("--emit is \"{}\": write PART=R,G,B", text);
+    const std::string light = equals == std::string::npos ? "" : text.substr(equals + 1);
+    const auto rgb = equals == std::string::npos ? std::nullopt : numbers(light);
+    const bool named = equals != 0 && !light.empty() && !parse_number(trimmed(light.substr(0, light.find(','))));
+    if (named) {
+      const auto bands = light_of_word(light);
+      if (!bands.ok())
+        return Error{bands.error().kind, fmt::format("--emit is \"{}\": {}", text, bands.error().message)};
+      all.push_back({text.substr(0, equals), color_of(*bands), *bands});
+      continue;
+    }
+    if (equals == 0 || !rgb || rgb->size() != 3)
+      return usage_error("--emit is \"{}\": write PART=R,G,B or PART=LIGHT", text);
     if (std::min({(*rgb)[0], (*rgb)[1], (*rgb)[2]}) < 0)
       return usage_error("--emit is \"{}\": light cannot be negative", text);
-    all.push_back({text.substr(0, equals), {(*rgb)[0], (*rgb)[1], (*rgb)[2]}});
+    all.push_back({text.substr(0, equals), {(*rgb)[0], (*rgb)[1], (*rgb)[2]}, {}});
   }
   return all;
 }
@@ -182,7 +208,8 @@ Result<void> set_ground(const FloorRequest& request, const Options& options, ren
   ground.height = request.height.value_or(box.low.y);
   if (request.kind == FloorRequest::Kind::kPaint) {
     ground.kind = render::Ground::Kind::kPaint;
-    GONIO_ASSIGN(ground.paint, lobes_of_paint(request.paint));
+    GONIO_ASSIGN(const paint::Paint paint, paint_named(request.paint));
+    ground.paint = *paint.lobes;
   } else {
     if (scene.env == nullptr) return usage_error("--floor shadow shows the ground of an environment: give --env");
     const double eye = options.eye_height > 0 ? options.eye_height : std::max({size.x, size.y, size.z}) / 3;

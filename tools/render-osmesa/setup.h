@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "color/bands.h"
 #include "color/reflection.h"
 #include "render/camera.h"
 #include "render/scene.h"
@@ -24,8 +25,8 @@ struct PictureSize {
 // what it takes.
 Result<PictureSize> parse_size(const std::string& text);
 
-// AZ,EL or X,Y,Z, then R,G,B if the light is not 1,1,1.
-Result<render::Light> parse_light(const std::string& text);
+// AZ,EL or X,Y,Z, then R,G,B or a light by its name if it is not 1,1,1. Of a light by its name `bands` is told.
+Result<render::Light> parse_light(const std::string& text, std::optional<color::Bands>& bands);
 // Gives lamps at a place the direction and the distance that they have from the middle of the mesh. Error (usage): a
 // lamp stands there.
 Result<void> stand_lamps(const mesh::Mesh& mesh, std::vector<render::Light>& lights);
@@ -44,6 +45,7 @@ Result<FloorRequest> parse_floor(const std::string& text, bool usual);
 struct Emission {
   std::string part;
   color::Rgb radiance;
+  std::optional<color::Bands> bands = {};  // where a light is named: relative to daylight
 };
 Result<std::vector<Emission>> parse_emissions(const std::vector<std::string>& texts);
 

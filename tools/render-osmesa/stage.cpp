@@ -9,6 +9,7 @@
 #include "image/aov_file.h"
 #include "prefilter/lobe_tree.h"
 #include "render/aov.h"
+#include "spectra.h"
 
 namespace goniochrome::tool {
 
@@ -228,6 +229,7 @@ Result<void> set_stage(const Options& options, Request& request, Stage& stage, c
   if (summed && stage.source.environment) scene.texels = &stage.texels.emplace(*stage.source.environment);
   if (request.engine != nullptr && request.engine->traces_rays) GONIO_TRY(set_ground(request.floor, options, scene));
   GONIO_ASSIGN(scene.emission, emission_of(stage.mesh, request.emissions));
+  GONIO_TRY(set_spectra(options, request, stage, session));
   return set_background(scene, options.background);
 }
 

@@ -13,6 +13,7 @@
 #include "paints.h"
 #include "render/gbuffer.h"
 #include "render/renderer.h"
+#include "render/spectra.h"
 #include "render/surface_layer.h"
 #include "request.h"
 #include "transport_view.h"
@@ -35,10 +36,11 @@ struct Stage {
   render::Scene scene;
   std::optional<render::MipCube> mip;
   std::unique_ptr<render::SurfaceLayer> layer;
-  Source source;                            // where the picture is checked, or sums it
-  std::optional<envmap::BlockTree> texels;  // of the source
-  std::optional<envmap::Environment> sky;   // that rays meet: the environment at the resolution of its mirror part
-  std::optional<render::RaySetup> rays;     // none with engines that trace by themselves
+  Source source;                                // where the picture is checked, or sums it
+  std::optional<envmap::BlockTree> texels;      // of the source
+  std::optional<envmap::Environment> sky;       // that rays meet: the environment at the resolution of its mirror part
+  std::optional<render::SceneSpectra> spectra;  // of all paints and lamps, where the picture is drawn in bands
+  std::optional<render::RaySetup> rays;         // none with engines that trace by themselves
 };
 
 // Reads what the options name, tells the session about the mesh, and dresses it in the first of the paints. A floor

@@ -29,6 +29,7 @@ struct Options {
   std::vector<std::string> aovs;
   std::string effects = "auto", engine = "auto";
   std::string reflection = color::kDefaultOperator;
+  std::string spectral = "auto";
   std::string critical_angle = "slide";
   std::vector<std::string> textures;
   std::string texture_maps = "cubes";

@@ -6,6 +6,7 @@
 
 #include "base/angles.h"
 #include "brdf/tilted_lobes.h"
+#include "render/internal/worn_lobes.h"
 
 namespace goniochrome::render {
 
@@ -127,8 +128,8 @@ void leave_to_tilts(const Scene& scene, Effects& effects) {
   for (Effects::LobeUse& use : effects.lobes) {
     use.directional_diffuse =
         use.directional_diffuse && std::ranges::any_of(scene.paints, [&](const paint::LobeFit& paint) {
-          const paint::Lobe* lobe = find_lobe(paint, use.exponent);
-          return lobe != nullptr && lobe->directional_diffuse != color::Rgb{} && drawn_tilts(paint, effects) == nullptr;
+          return wears_lobe(paint, use.exponent, LobeWeight::kDirectionalDiffuse) &&
+                 drawn_tilts(paint, effects) == nullptr;
         });
   }
   std::erase_if(effects.lobes, [](const Effects::LobeUse& use) { return !use.directional_diffuse && !use.gloss; });

@@ -66,7 +66,8 @@ EmitterSample Emitters::drawn(const Float3& from, double choice, double u, doubl
   const float distance = rays::length(apart);
   if (!(distance > 0)) return {};
   const Float3 direction = (1 / distance) * apart;
-  return {direction, distance, pdf(triangle, direction, distance), radiance(scene_->part(triangle))};
+  const int part = scene_->part(triangle);
+  return {direction, distance, pdf(triangle, direction, distance), radiance(part), part};
 }
 
 float Emitters::pdf(std::uint32_t triangle, const Float3& direction, float distance) const {

@@ -15,6 +15,7 @@ struct EmitterSample {
   float distance = 0;      // local
   float pdf = 0;           // 1/sr; 0: nothing was drawn
   color::Rgb radiance;
+  int part = 0;  // that it is on
 };
 
 // The shining triangles, drawn by their area times the mean of the channels of their radiance. Both sides shine.

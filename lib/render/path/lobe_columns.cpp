@@ -121,16 +121,20 @@ bool LobeKernels::toward_disc(const Light& light, bool tabled, float* values) co
   const auto coat = [&](const Vec3& toward) {
     return coat_reflectance(static_cast<float>(std::min(1.0, 0.5 * length(toward + viewer))));
   };
-  const double coat_l = brdf::disc_above(cosine, radius) * coat(light.direction);
-  values[LobeColumns::diffuse()] = static_cast<float>(irradiance);
+  const double above = brdf::disc_above(cosine, radius), coat_l = above * coat(light.direction);
+  const auto passages = [&](double cos_i) { return point_.passages(static_cast<float>(std::min(1.0, cos_i))); };
+  // Through the coat at the mean cosine of what is seen, and for the rest of a lobe at that of its axis.
+  const double passing = above > 0 ? irradiance * passages(irradiance / above) : 0;
+  values[LobeColumns::diffuse()] = static_cast<float>(passing);
   const auto add = [&](const Float3& axis, double share) {
     const Vec3 r = rays::vec3(axis);
-    const double chord = length(r - light.direction), cos_r = std::max(0.0, dot(n, r)), coat_r = coat(r);
+    const double chord = length(r - light.direction), coat_r = coat(r);
+    const double cosine_r = std::max(0.0, dot(n, r)), cos_r = cosine_r * passages(cosine_r);
     for (std::size_t j = 0; j < columns_.exponents.size(); ++j) {
       const double exponent = columns_.exponents[j];
       const brdf::DiscLobeTable::Node of =
           tabled ? brdf::disc_lobe_table(exponent, radius)->at(chord) : brdf::disc_lobe_node(exponent, radius, chord);
-      values[LobeColumns::flake(j)] += static_cast<float>(share * (of.cosine[0] * irradiance + of.cosine[1] * cos_r));
+      values[LobeColumns::flake(j)] += static_cast<float>(share * (of.cosine[0] * passing + of.cosine[1] * cos_r));
       values[LobeColumns::gloss(j)] += static_cast<float>(share * (of.plain[0] * coat_l + of.plain[1] * coat_r));
     }
   };

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "base/angles.h"
+#include "render/path/spectral_paths.h"
 #include "render/path/transport.h"
 
 namespace goniochrome::render {
@@ -39,6 +40,11 @@ PointTransport::PointTransport(const Transport& transport, const PathOptions& op
       is_laid_(transport.is_laid(spot)),
       correction_(options.correction || is_laid_),
       over_ground_(!is_laid_ && transport.shaded_ != nullptr && transport.environment_ != nullptr) {
+  if (transport.spectral_ != nullptr) {
+    sure_ = transport.spectral_->emitted(spot);
+    certain_ = painted_.black();
+    return;
+  }
   sure_ = is_laid_ ? transport.open_ground(spot) : transport.emitters_.radiance(spot.part);
   if (is_laid_) {
     narrow_to_mesh();
@@ -334,10 +340,14 @@ LightShares PointTransport::mirrored(const Sequence& sequence, std::uint32_t beg
 
 LightShares PointTransport::batch_shares(std::uint64_t seed, std::uint32_t begin, std::uint32_t count,
                                          bool* any_blocked) const {
-  if (any_blocked != nullptr) *any_blocked = mirror_samples_ > 0;
+  if (any_blocked != nullptr) *any_blocked = mirror_samples_ > 0 || transport_.spectral_ != nullptr;
   if (certain_) return {};
   const Sequence sequence(seed, kBatch);
   LightShares sum;
+  if (transport_.spectral_ != nullptr) {
+    sum.direct = transport_.spectral_->shown(transport_, options_, spot_, to_viewer_, sequence, begin, count);
+    return sum;
+  }
   sum.direct += lamp_shadows(sequence, begin, count, any_blocked);
   if (painted_.lobes_weight() > 0) {
     for (std::uint32_t first = begin; first < begin + count; first += kFan) {

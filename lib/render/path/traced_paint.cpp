@@ -100,6 +100,8 @@ PaintedPoint::PaintedPoint(const TracedPaint& paint, const Float3& normal, const
     low = above == paint.views_.begin() ? high : &above[-1];
     if (high != low && high->view_deg > low->view_deg)
       share = std::clamp((view_deg - low->view_deg) / (high->view_deg - low->view_deg), 0.0F, 1.0F);
+    between_ = {static_cast<std::size_t>(low - paint.views_.data()),
+                static_cast<std::size_t>(high - paint.views_.data()), share};
   }
   coat_index_ = paint.coat_index_;
   let_out_ = let_in(cos_o_);
@@ -116,6 +118,7 @@ PaintedPoint::PaintedPoint(const TracedPaint& paint, const Float3& normal, const
   total_ = diffuse_chance_;
   for (std::size_t j = 0; j < low->lobes.size(); ++j) {
     Lobe& lobe = lobes_[count_];
+    lobe.number = static_cast<int>(j);
     lobe.exponent = low->lobes[j].exponent, lobe.normalization = low->lobes[j].normalization;
     lobe.directional_diffuse =
         let_out_ * blend(low->lobes[j].directional_diffuse, high->lobes[j].directional_diffuse, share);
@@ -254,12 +257,33 @@ Reflection PaintedPoint::at(const Float3& to_light) const {
   return {to_light, f_cos, pdf / total_};
 }
 
+PaintedPoint::Shares PaintedPoint::shares(const Float3& to_light) const {
+  Shares shares;
+  const float cos_i = rays::dot(normal_, to_light);
+  if (!(cos_i > 0) || !(total_ > 0)) return shares;
+  const float base = passages(cos_i) * cos_i;
+  shares.diffuse = base;
+  shares.pdf = diffuse_chance_ * cos_i / kFloatPi;
+  if (count_ > 0) {
+    const float fresnel = coat_reflectance(std::min(1.0F, 0.5F * rays::length(to_light + viewer_)));
+    visit_lobes(to_light, [&](const Lobe& lobe, float power) {
+      shares.directional_diffuse[lobe.number] = power * base;
+      shares.gloss[lobe.number] = power * fresnel;
+      shares.pdf += lobe.chance * lobe.normalization * power / axes_total_;
+    });
+  }
+  shares.pdf /= total_;
+  return shares;
+}
+
 Float3 PaintedPoint::toward_disc(const Light& light, bool tabled) const {
   const Vec3 n = rays::vec3(normal_), viewer = rays::vec3(viewer_);
   const double cosine = dot(n, light.direction), radius = light.radius_rad;
   if (cosine <= -std::sin(radius)) return {};
   const double irradiance = brdf::disc_irradiance(cosine, radius), above = brdf::disc_above(cosine, radius);
-  Float3 f = static_cast<float>(irradiance) * diffuse_;
+  // Through the coat at the mean cosine of what is seen, and for the rest of a lobe at that of its axis.
+  const double passing = above > 0 ? irradiance * let_in(static_cast<float>(std::min(1.0, irradiance / above))) : 0;
+  Float3 f = static_cast<float>(passing) * diffuse_;
   if (paint_ != nullptr) {
     for (const DiscDirection& part : disc_directions(light))
       if (dot(n, part.direction) > 0) f = f + static_cast<float>(part.weight) * mapped(float3(part.direction));
@@ -278,7 +302,8 @@ Float3 PaintedPoint::toward_disc(const Light& light, bool tabled) const {
   const auto add_lobes = [&](const Float3& axis, float share) {
     const Vec3 r = rays::vec3(axis);
     const double chord = length(r - light.direction);
-    const auto wide = static_cast<float>(irradiance), cos_r = static_cast<float>(std::max(0.0, dot(n, r)));
+    const auto wide = static_cast<float>(passing), cosine_r = static_cast<float>(std::max(0.0, dot(n, r)));
+    const float cos_r = cosine_r * let_in(std::min(1.0F, cosine_r));
     const float coat_r = coat(r);
     for (int j = 0; j < count_; ++j) {
       const double exponent = lobes_[j].exponent;

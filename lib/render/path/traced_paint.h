@@ -107,6 +107,22 @@ class PaintedPoint {
   };
   Parts parts(const rays::Float3& to_light) const;
 
+  // What each weight of the paint counts in f cos_i: K_D, and of each lobe of the paint, by its number among those with
+  // weight, K_DD and K_G; and the density that drawn() gives the direction. So that other weights than those in three
+  // channels can be taken. Not for textures and color maps.
+  struct Shares {
+    float pdf = 0;  // 1/sr; 0: below the horizon, no light
+    float diffuse = 0;
+    float directional_diffuse[kMostTracedLobes] = {}, gloss[kMostTracedLobes] = {};
+  };
+  Shares shares(const rays::Float3& to_light) const;
+  // Between which views of the paint the viewer is, and how far from the first to the second.
+  struct Between {
+    std::size_t low = 0, high = 0;
+    float share = 0;
+  };
+  const Between& between() const { return between_; }
+
   // The integral of f cos_i over the disc of a lamp that has no place, relative to pi sin^2 of its radius and as if
   // nothing stood in the way; 0 below the horizon. The coat's reflectance and what the horizon takes are those of the
   // middle of the disc and of the mirror direction, in shares; render/exact.h has them for each direction.
@@ -151,6 +167,7 @@ class PaintedPoint {
   struct Lobe {
     float exponent, normalization, chance;
     rays::Float3 directional_diffuse, gloss;
+    int number;  // among those of the paint
   };
   // A lobe exp(log_peak) cos^exponent about its own axis.
   struct TexelLobe {
@@ -177,6 +194,7 @@ class PaintedPoint {
   float let_out_ = 1;  // what the coat lets out to the viewer: diffuse_ and the lobes' K_DD hold it
   float cos_o_ = 1, diffuse_chance_ = 0, total_ = 0;
   int count_ = 0;
+  Between between_;
   Lobe lobes_[kMostTracedLobes];
   std::vector<Axis> axes_;  // of tilts; none: mirrored_ alone
   float axes_total_ = 1;

@@ -6,6 +6,7 @@
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
 #include "render/effects.h"
+#include "render/path/spectral_paths.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {
@@ -40,6 +41,7 @@ std::vector<std::vector<brdf::Tilt>> tilts_for(const PathScene& scene) {
 Result<Transport> Transport::create(const PathScene& path_scene) {
   const Scene& scene = *path_scene.scene;
   if (scene.mesh == nullptr) return input_error("a scene without a mesh: there is nothing to trace");
+  if (scene.spectra != nullptr && path_scene.environment == nullptr) return SpectralPaths::transport(path_scene);
   if (scene.paints.size() != scene.mesh->parts.size())
     return input_error("{} paints for {} parts of the mesh: each part needs one", scene.paints.size(),
                        scene.mesh->parts.size());

@@ -19,6 +19,8 @@
 
 namespace goniochrome::render {
 
+class SpectralPaths;
+
 // What paths meet.
 struct PathScene {
   const Scene* scene = nullptr;  // its mesh, paints, lights and product of colors; its maps are not used
@@ -83,6 +85,7 @@ constexpr int kFan = 8;  // and how many of them are traced together
 class Transport {
  public:
   // All that the scene refers to must outlive it. Error: as RayScene, TracedPaint and Emitters have them.
+  // A scene with spectra and without an environment is followed in bands, see SpectralPaths.
   static Result<Transport> create(const PathScene& scene);
 
   const rays::RayScene& rays() const { return *rays_; }
@@ -104,6 +107,7 @@ class Transport {
  private:
   friend class PointTransport;
   friend class LobePoint;
+  friend class SpectralPaths;
   explicit Transport(std::shared_ptr<const rays::RayScene> rays) : rays_(std::move(rays)) {}
   color::Rgb bounced(rays::Hit hit, rays::Float3 origin, rays::Float3 direction, const PathOptions& options,
                      const Sequence& sequence, std::uint32_t index, std::uint32_t set) const;
@@ -168,6 +172,9 @@ class Transport {
   Emitters emitters_;
   std::vector<Light> lights_;
   const color::ReflectionOperator* reflection_ = nullptr;  // null: channel by channel
+  // Of a scene with spectra: all that its points show. Paints, emitters and lights are then gray, and what directions
+  // and lamps are drawn by.
+  std::shared_ptr<const SpectralPaths> spectral_;
 };
 
 // One visible point.

@@ -6,6 +6,7 @@
 #include "base/angles.h"
 #include "base/text.h"
 #include "color/color.h"
+#include "render/internal/worn_lobes.h"
 #include "render/plan/ray_plan.h"
 #include "render/surface_layer.h"
 
@@ -36,8 +37,7 @@ void remove_weight(Effects& effects, double exponent, bool gloss) {
 
 int wearing(const Scene& scene, double exponent, bool gloss) {
   return static_cast<int>(std::count_if(scene.paints.begin(), scene.paints.end(), [&](const paint::LobeFit& paint) {
-    const paint::Lobe* lobe = find_lobe(paint, exponent);
-    return lobe != nullptr && (gloss ? lobe->gloss : lobe->directional_diffuse) != color::Rgb{};
+    return wears_lobe(paint, exponent, gloss ? LobeWeight::kGloss : LobeWeight::kDirectionalDiffuse);
   }));
 }
 
@@ -52,7 +52,7 @@ void add_lobes(const Scene& scene, const Effects& all, bool gloss, std::vector<E
                     fmt::format("{} on {} visible part{}", gloss ? "gloss" : "flake", parts, parts == 1 ? "" : "s"),
                     [=](Effects& e) { remove_weight(e, exponent, gloss); }, gloss});
     list.back().left_to_tilts = !gloss && std::ranges::any_of(scene.paints, [&](const paint::LobeFit& paint) {
-      return !paint.tilts.empty() && find_lobe(paint, exponent) != nullptr;
+      return !paint.tilts.empty() && wears_lobe(paint, exponent, LobeWeight::kDirectionalDiffuse);
     });
   }
   if (list.size() == before) {
