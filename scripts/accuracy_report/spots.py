@@ -34,7 +34,7 @@ def study(run):
     figure = Figure("spots", "The 95th percentile of dE00 to the exact sum of the light, against the time of shading", readings,
                     "time of shading every pixel once (s)", "dE00, 95 %", apart=True,
                     note="From left to right more of the light is in spots. Nothing is in the way of the light here.")
-    head = ("light", "spots found", "dE00 mean", "95 %", "shading (ms)", "prefilter (s)")
+    head = ("setting", "spots found", "dE00 mean", "95 %", "shading (ms)", "prefilter (s)")
     return Study("Bright spots", "prefilter-envmap --spots N keeps the bright part of an environment as up to N discs, which "
                  "render-osmesa cuts by the horizon of each point; maps alone know one direction at each point, and cannot. An "
                  "environment without small bright parts has fewer spots, or none.",
