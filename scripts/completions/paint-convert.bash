@@ -1,7 +1,7 @@
 _paint_convert() {
   local word=${COMP_WORDS[COMP_CWORD]}
   case ${COMP_WORDS[COMP_CWORD-1]} in
-    --from) COMPREPLY=($(compgen -W "auto measured cxf xml cgats csv" -- "$word")); return ;;
+    --from) COMPREPLY=($(compgen -W "auto measured workbook cxf xml cgats csv" -- "$word")); return ;;
     --illuminant) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --observer) COMPREPLY=($(compgen -W "auto 2 10" -- "$word")); return ;;
     --aperture) COMPREPLY=($(compgen -f -- "$word")); return ;;
