@@ -257,8 +257,10 @@ void add_output(cli::ToolSpec& spec, Options& o) {
           "brings all buffers and, in parts of their own, the light that each lobe of the basis gathers at each "
           "pixel, with shadows and with light that surfaces send to each other; it is traced until its noise is "
           "within --tolerance. --gbuffer then shows other paints in it within milliseconds. goniochrome-paint(5) "
-          "describes the parts. A part that wears a color map or a texture has no such light: what stands for a map are "
-          "lobes in directions of its own, which differ from paint to paint and from view to view, and a transport holds "
+          "describes the parts. A part that wears a color map or a texture has no such light: what stands for a map "
+          "are "
+          "lobes in directions of its own, which differ from paint to paint and from view to view, and a transport "
+          "holds "
           "the light about the mirror direction alone.");
 }
 

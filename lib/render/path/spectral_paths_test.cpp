@@ -65,7 +65,7 @@ double de00(const color::Rgb& x, const color::Rgb& y, double white) {
 // Inside a closed box whose walls have the reflectance r and shine with e, every point shows e/(1 - r) in each band.
 TEST(SpectralPaths, ShowAFurnaceBandByBand) {
   const Bands r = bands_by([](double nm) { return 0.05 + 0.85 / (1 + std::exp((590 - nm) / 8)); });  // a red
-  const Bands e = bands_by([](double nm) { return nm > 480 && nm < 620 ? 1.0 : 0.02; });            // greenish light
+  const Bands e = bands_by([](double nm) { return nm > 480 && nm < 620 ? 1.0 : 0.02; });             // greenish light
   Bands truth{};
   for (std::size_t b = 0; b < truth.size(); ++b) truth[b] = e[b] / (1 - r[b]);
   PathStage stage(box_mesh(true), {paint::LobeFit{}});
