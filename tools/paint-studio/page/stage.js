@@ -236,7 +236,11 @@ class Stage {
   }
 
   // Returns when everything is drawn.
-  wait() { this.gl.readPixels(0, 0, 1, 1, this.gl.RGBA, this.gl.UNSIGNED_BYTE, new Uint8Array(4)); }
+  wait() {
+    const gl = this.gl;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);  // the others hold floats, which cannot be read as bytes
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+  }
 
   // A small picture for a tile, as pixels of a canvas.
   tile(camera, width, height, weights, environment, stops) {
