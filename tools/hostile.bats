@@ -565,3 +565,17 @@ without_threads() {
     done
   done
 }
+
+@test "no amount of memory lets a tool abort before it begins" {
+  if sanitized; then skip "a sanitizer takes terabytes of addresses for itself"; fi
+  # The band in which its first constructors find none is some 70 kB wide.
+  for kilobytes in $(seq 38000 40 62000); do
+    status=0
+    (ulimit -v "$kilobytes" && exec paint-convert -q "$TESTDATA/paints.paints.xml" --to csv -o start.csv) 2>err.txt || status=$?
+    case $status in
+      0 | 3) ;;
+      127) [[ $(<err.txt) != *terminate* ]] ;;  # the system cannot even load it
+      *) echo "$kilobytes: $status: $(<err.txt)"; false ;;
+    esac
+  done
+}

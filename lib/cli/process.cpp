@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstddef>
+#include <cstdio>
 #include <cstring>
 
 namespace goniochrome::cli {
@@ -32,6 +33,21 @@ std::size_t out_of_memory_size = 0;
   std::raise(number);
 }
 
+void catch_crashes() {
+#if !defined(__SANITIZE_ADDRESS__)
+  for (const int number : {SIGSEGV, SIGBUS, SIGABRT, SIGILL, SIGFPE, SIGTRAP}) std::signal(number, explain_crash);
+#endif
+}
+
+// Runs before the constructors of the program's own global objects. With very little memory one of them is the first to
+// get none, and then there is none for the exception either, so that the C++ library aborts.
+[[gnu::constructor(101)]] void expect_no_memory_at_start() {
+  const int size = std::snprintf(out_of_memory, sizeof out_of_memory,
+                                 "%s: out of memory: there is too little to start\n", program_invocation_short_name);
+  out_of_memory_size = std::min(sizeof out_of_memory - 1, static_cast<std::size_t>(std::max(size, 0)));
+  catch_crashes();
+}
+
 }  // namespace
 
 void open_closed_descriptors() {
@@ -53,9 +69,7 @@ void expect_memory_to_run_out(const std::string& tool) {
   const std::string text = tool + ": out of memory: a library that it uses could not go on\n";
   out_of_memory_size = std::min(text.size(), sizeof out_of_memory);
   std::memcpy(out_of_memory, text.data(), out_of_memory_size);
-#if !defined(__SANITIZE_ADDRESS__)
-  for (const int number : {SIGSEGV, SIGBUS, SIGABRT, SIGILL, SIGFPE, SIGTRAP}) std::signal(number, explain_crash);
-#endif
+  catch_crashes();
 }
 
 }  // namespace goniochrome::cli
