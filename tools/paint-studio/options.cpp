@@ -59,7 +59,8 @@ cli::ToolSpec tool_spec(Options& o) {
                  {"triangles", "number of triangles of the mesh"},
                  {"environments[]", "name and bytes of each environment in the page"},
                  {"warnings[]", "the warnings of the run"}};
-  spec.see_also = {"paint-edit(1)", "paint-pick(1)", "fit-paint(1)", "colorsnap(1)", "render-osmesa(1)", "prefilter-envmap(1)"};
+  spec.see_also = {"paint-edit(1)", "paint-pick(1)",    "fit-paint(1)",
+                   "colorsnap(1)",  "render-osmesa(1)", "prefilter-envmap(1)"};
   return spec;
 }
 
