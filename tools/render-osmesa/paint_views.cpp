@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "open_views.h"
 #include "plan_text.h"
 #include "render/aov.h"
 #include "render/effect_union.h"
@@ -167,6 +168,12 @@ Result<std::unique_ptr<PaintViews>> paint_views(const Options& options, const Re
   GONIO_ASSIGN(render::Renderer renderer, make_renderer(options, request, stage, session));
   auto views = std::make_unique<EngineViews>(options, request, stage, session, std::move(renderer));
   GONIO_TRY(views->begin());
+  if (has_open_views(options, request, stage)) {
+    session.explain(
+        "the light of each lobe is looked up once, for every sample of the pixels, and serves all paints: no effect is "
+        "left out, and no rays are traced\n");
+    return open_views(options, request, stage, std::move(views));
+  }
   return std::unique_ptr<PaintViews>(std::move(views));
 }
 

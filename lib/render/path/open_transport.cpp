@@ -1,0 +1,60 @@
+#include "render/path/open_transport.h"
+
+#include "base/parallel.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+constexpr std::size_t kPointsTogether = 256;
+
+}  // namespace
+
+LobeTransport open_transport(const OpenLight& light, const LobeColumns& columns, const WornPaints& worn,
+                             const std::vector<std::shared_ptr<const Gbuffer>>& samples) {
+  LobeTransport t;
+  const std::size_t width = static_cast<std::size_t>(samples.front()->width),
+                    of_sample = width * static_cast<std::size_t>(samples.front()->height);
+  t.width = samples.front()->width, t.height = samples.front()->height * static_cast<int>(samples.size());
+  t.columns = columns, t.worn = worn;
+  for (std::size_t s = 0; s < samples.size(); ++s)
+    for (std::size_t i = 0; i < of_sample; ++i) {
+      const float part = samples[s]->data[4 * i + 3];
+      if (part == 0) continue;
+      t.places.push_back(static_cast<std::uint32_t>(s * of_sample + i));
+      t.part.push_back(static_cast<int>(std::abs(part)) - 1);
+    }
+  t.direct.resize(t.places.size() * t.floats());
+  t.bounced.assign(t.places.size() * t.floats(), 0.0F);
+  parallel_for(t.places.size(), kPointsTogether, [&](std::size_t begin, std::size_t end) {
+    std::vector<color::Rgb> columns_of_point(columns.count());
+    for (std::size_t k = begin; k < end; ++k) {
+      const Gbuffer& seen = *samples[t.places[k] / of_sample];
+      const std::size_t pixel = t.places[k] % of_sample;
+      const int x = static_cast<int>(pixel % width), y = static_cast<int>(pixel / width);
+      light.at(seen.normal(x, y), seen.to_viewer(x, y), t.part[k], columns_of_point.data());
+      for (std::size_t column = 0; column < columns_of_point.size(); ++column)
+        for (int c = 0; c < 3; ++c)
+          t.direct[k * t.floats() + 3 * column + static_cast<std::size_t>(c)] =
+              static_cast<float>(columns_of_point[column][c]);
+    }
+  });
+  return t;
+}
+
+void put_mean(const image::Image& stacked, int count, image::Image& picture) {
+  picture.width = stacked.width, picture.height = stacked.height / count, picture.channels = 4;
+  picture.channel_names = {"R", "G", "B", "A"};
+  const std::size_t floats = stacked.data.size() / static_cast<std::size_t>(count);
+  picture.data.resize(floats);
+  const float gain = 1.0F / static_cast<float>(count);
+  parallel_for(floats, std::size_t{1} << 15, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      float sum = 0;
+      for (int s = 0; s < count; ++s) sum += stacked.data[static_cast<std::size_t>(s) * floats + i];
+      picture.data[i] = gain * sum;
+    }
+  });
+}
+
+}  // namespace goniochrome::render
