@@ -151,6 +151,25 @@ struct RoomCase {
   double exposure = 1;  // makes the mean luminance that walls receive 1
 };
 
+// The first wall is the ceiling.
+RoomCase room(const Observer& eye, const Spectrum& light, const std::array<Spectrum, Room::kWalls>& walls) {
+  const auto out = Room::radiosity<Spectrum>(
+      light, Spectrum(light.size(), 0.0), [&](std::size_t i, const Spectrum& e) { return times(walls[i], e); },
+      [](Spectrum& sum, double share, const Spectrum& e) {
+        for (std::size_t k = 0; k < e.size(); ++k) sum[k] += share * e[k];
+      });
+  RoomCase made;
+  made.light = eye.rgb(light);
+  double luminance = 0;
+  for (std::size_t i = 0; i < Room::kWalls; ++i) {
+    made.paints[i] = eye.rgb(walls[i]), made.truth[i] = eye.rgb(out[i]);
+    for (std::size_t j = 1; j < Room::kWalls; ++j)
+      luminance += Room::form_factor(j, i) * eye.xyz(out[i]).Y / (Room::kWalls - 1);
+  }
+  made.exposure = 1 / luminance;
+  return made;
+}
+
 // With `white`, two walls that face each other have colors, as in a Cornell box, and the others are white.
 std::vector<RoomCase> rooms(const Observer& eye, const std::vector<Spectrum>& lights,
                             const std::vector<Spectrum>& paints, int count, const Spectrum* white = nullptr) {
@@ -162,21 +181,7 @@ std::vector<RoomCase> rooms(const Observer& eye, const std::vector<Spectrum>& li
     for (Spectrum& wall : walls) wall = paints[random() % paints.size()];
     if (white != nullptr) walls[1] = walls[4] = walls[5] = *white;
     walls[0].assign(light.size(), 0.8);
-    const auto out = Room::radiosity<Spectrum>(
-        light, Spectrum(light.size(), 0.0), [&](std::size_t i, const Spectrum& e) { return times(walls[i], e); },
-        [](Spectrum& sum, double share, const Spectrum& e) {
-          for (std::size_t k = 0; k < e.size(); ++k) sum[k] += share * e[k];
-        });
-    RoomCase room;
-    room.light = eye.rgb(light);
-    double luminance = 0;
-    for (std::size_t i = 0; i < Room::kWalls; ++i) {
-      room.paints[i] = eye.rgb(walls[i]), room.truth[i] = eye.rgb(out[i]);
-      for (std::size_t j = 1; j < Room::kWalls; ++j)
-        luminance += Room::form_factor(j, i) * eye.xyz(out[i]).Y / (Room::kWalls - 1);
-    }
-    room.exposure = 1 / luminance;
-    result.push_back(room);
+    result.push_back(room(eye, light, walls));
   }
   return result;
 }
@@ -281,6 +286,30 @@ TEST_F(ReflectionEvidence, TheDefaultIsBetterThanThePlainProductInEveryClassThat
       EXPECT_LT(ours.at(kind), near ? 1.02 * error : error) << kind << ", " << name;
     }
   }
+}
+
+// A box that is open in front, with a red and a green wall. In daylight the plain product is closer; in colored light
+// it is not.
+TEST_F(ReflectionEvidence, ASingleBoxCanBeTheOtherWayRound) {
+  const auto patch = [&](const std::string& name) {
+    for (const Column& column : columns("published-reflectances.csv"))
+      if (column.name == name) return column.values;
+    return Spectrum();
+  };
+  const Spectrum white = patch("ISO white 9.5"), black(white.size(), 0.0), even(white.size(), 1.0);
+  const std::array<Spectrum, Room::kWalls> walls = {white, white, patch("ISO red"), patch("ISO green"), white, black};
+  const auto error = [&](const ReflectionOperator& op, const Spectrum& light) {
+    RoomCase box = room(eye, eye.normalized(light), walls);
+    box.truth[5] = {};
+    double luminance = 0;  // of the four walls
+    for (std::size_t i = 1; i < 5; ++i) luminance += xyz_d65_from_rgb(box.truth[i]).Y / 4;
+    box.exposure = 0.18 / luminance;
+    return mean_error(op, {box}) * 5 / 4;
+  };
+  EXPECT_NEAR(error(fitted_operator(), even), 0.30, 0.01);
+  EXPECT_NEAR(error(component_wise(), even), 0.26, 0.01);
+  EXPECT_NEAR(error(fitted_operator(), patch("ISO cyan")), 0.77, 0.01);
+  EXPECT_NEAR(error(component_wise(), patch("ISO cyan")), 1.09, 0.01);
 }
 
 // The pairs of scripts/fit-operator: a step of 0.02 in any of the nine numbers makes their error larger. The table has
