@@ -6,7 +6,7 @@ top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build_packages=(
   g++ cmake ninja-build ccache pkg-config
   libcgal-dev libceres-dev libcli11-dev libeigen3-dev libembree-dev libfmt-dev libhwy-dev libimath-dev libjpeg-dev liblcms2-dev
-  libopencolorio-dev libopenexr-dev libopenimageio-dev libosmesa6-dev libpng-dev libtbb-dev libxml2-dev libzip-dev nlohmann-json3-dev
+  libopencolorio-dev libopenexr-dev libopenimageio-dev libosmesa6-dev libtbb-dev libxml2-dev libzip-dev nlohmann-json3-dev zlib1g-dev
 )
 test_packages=(
   bats coinor-libclp-dev file jq librsvg2-bin libbenchmark-dev libgmock-dev libgtest-dev libxml2-utils locales make mandoc

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
+#include <limits>
 
 #include "base/parallel.h"
 #include "base/text.h"
@@ -111,8 +113,7 @@ Result<Choice> find_view(const std::vector<Choice>& all, const std::string& want
 
 struct Display::State {
   std::string name;
-  bool paint = false;  // paint_view() first
-  ocio::ConstCPUProcessorRcPtr processor;
+  ocio::ConstCPUProcessorRcPtr processor;  // none: the view "Paint", which needs no OpenColorIO
 };
 
 Display::Display(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -126,6 +127,12 @@ const std::string& Display::name() const {
 Result<Display> Display::make(const std::string& view) {
   const char* path = std::getenv("OCIO");
   const bool own = path != nullptr && *path != '\0';
+  const std::string wanted = lower(view);
+  if (!own && (wanted.empty() || wanted == lower(kPaint) || wanted == lower(std::string(kSrgb) + "/" + kPaint))) {
+    auto state = std::make_unique<State>();
+    state->name = std::string(kSrgb) + " / " + kPaint;
+    return Display(std::move(state));
+  }
   try {
     ocio::SetLoggingLevel(ocio::LOGGING_LEVEL_NONE);
     const ocio::ConstConfigRcPtr config = own ? ocio::Config::CreateFromFile(path) : built_in_config();
@@ -135,8 +142,7 @@ Result<Display> Display::make(const std::string& view) {
     GONIO_ASSIGN(const Choice choice, find_view(all, view));
     auto state = std::make_unique<State>();
     state->name = choice.display + " / " + choice.view;
-    state->paint = !own && choice.view == kPaint;
-    state->processor = processor(config, choice.display.c_str(), state->paint ? kPlain : choice.view.c_str());
+    state->processor = processor(config, choice.display.c_str(), choice.view.c_str());
     return Display(std::move(state));
   } catch (const ocio::Exception& refused) {
     if (!own) return Error{ErrorKind::kBug, fmt::format("OpenColorIO: {}", refused.what())};
@@ -145,6 +151,73 @@ Result<Display> Display::make(const std::string& view) {
         "the built-in views",
         path, refused.what());
   }
+}
+
+namespace {
+
+// What is in front of the backdrop, in the working space.
+color::Rgb over_backdrop(const float* rgba, double gain) {
+  return gain * color::Rgb{rgba[0], rgba[1], rgba[2]} + (1 - rgba[3]) * kBackdrop;
+}
+
+// The view "Paint" of it, linear Rec.709.
+color::Rgb painted(const float* rgba, double gain) {
+  return paint_view(color::rec709_from_rec2020(over_backdrop(rgba, gain)));
+}
+
+// The codes of an 8-bit sRGB display: code k is shown from the light on whose signal is (k - 1/2)/255.
+class SrgbCodes {
+ public:
+  SrgbCodes() {
+    for (std::size_t k = 0; k < 255; ++k) ends_[k] = light_of((static_cast<double>(k) + 0.5) / 255);
+    ends_[255] = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0, k = 0; i < kSteps; ++i) {
+      while (ends_[k] <= static_cast<double>(i) / kSteps) ++k;
+      first_[i] = static_cast<std::uint8_t>(k);
+    }
+  }
+
+  // Light below 0, or a NaN, counts as 0.
+  std::uint8_t code(double light) const {
+    if (!(light > 0)) return 0;
+    if (light >= 1) return 255;
+    std::size_t k = first_[static_cast<std::size_t>(light * kSteps)];
+    while (ends_[k] <= light) ++k;
+    return static_cast<std::uint8_t>(k);
+  }
+
+ private:
+  static constexpr std::size_t kSteps = 4096;
+  // The inverse of srgb_signal().
+  static double light_of(double signal) {
+    return signal <= 12.92 * 0.0031308 ? signal / 12.92 : std::pow((signal + 0.055) / 1.055, 2.4);
+  }
+
+  double ends_[256];
+  std::uint8_t first_[kSteps];  // the code of the lower end of each step
+};
+
+}  // namespace
+
+Result<void> Display::show(const image::Image& picture, double stops, image::ByteImage& shown) const {
+  if (state_->processor) {
+    GONIO_ASSIGN(const image::Image signals, image(picture, stops));
+    image::put_bytes(signals, shown);
+    return {};
+  }
+  static const SrgbCodes codes;
+  const std::size_t pixels = static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
+  const double gain = std::exp2(stops);
+  shown.width = picture.width, shown.height = picture.height;
+  shown.rgb.resize(3 * pixels);
+  parallel_for(pixels, 1 << 14, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const color::Rgb c = painted(&picture.data[4 * i], gain);
+      for (int channel = 0; channel < 3; ++channel)
+        shown.rgb[3 * i + static_cast<std::size_t>(channel)] = codes.code(c[channel]);
+    }
+  });
+  return {};
 }
 
 Result<image::Image> Display::image(const image::Image& picture, double stops) const {
@@ -156,10 +229,11 @@ Result<image::Image> Display::image(const image::Image& picture, double stops) c
     parallel_for(pixels, 1 << 14, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const float* p = &picture.data[4 * i];
-        color::Rgb c = gain * color::Rgb{p[0], p[1], p[2]} + (1 - p[3]) * kBackdrop;
-        if (state_->paint) c = color::rec2020_from_rec709(paint_view(color::rec709_from_rec2020(c)));
-        for (int channel = 0; channel < 3; ++channel) shown.data[3 * i + channel] = static_cast<float>(c[channel]);
+        const color::Rgb c = state_->processor ? over_backdrop(p, gain) : painted(p, gain);
+        for (int channel = 0; channel < 3; ++channel)
+          shown.data[3 * i + channel] = static_cast<float>(state_->processor ? c[channel] : srgb_signal(c[channel]));
       }
+      if (!state_->processor) return;
       ocio::PackedImageDesc run(&shown.data[3 * begin], static_cast<long>(end - begin), 1, 3);
       state_->processor->apply(run);
       for (std::size_t i = 3 * begin; i < 3 * end; ++i) shown.data[i] = std::clamp(shown.data[i], 0.0F, 1.0F);

@@ -44,6 +44,30 @@ TEST(Display, BuiltInViewsShowTheirSignalsAndOthersAreRefused) {
               HasSubstr("no view \"filmic\": there are \"Paint\", \"Un-tone-mapped\", \"ACES SDR\""));
 }
 
+// Every code, half a code on both sides of each end, and what lies outside of 0..1.
+TEST(Display, BytesOfThePaintViewAreTheNearestCodes) {
+  unsetenv("OCIO");
+  const auto display = Display::make("");
+  ASSERT_TRUE(display.ok());
+  std::vector<double> lights = {-1, 0, 1e-9, 0.0031307, 0.0031309};
+  for (int i = 0; i < 3000; ++i) lights.push_back(0.8 * i / 3000);  // up to the knee light is shown as it is
+  image::Image picture{static_cast<int>(lights.size()), 1, 4, {}, {}};
+  for (const double light : lights)
+    picture.data.insert(picture.data.end(),
+                        {static_cast<float>(light), static_cast<float>(light), static_cast<float>(light), 1.0F});
+  image::ByteImage shown;
+  ASSERT_TRUE(display->show(picture, 0, shown).ok());
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const double light = picture.data[4 * i];
+    const double code = 255 * srgb_signal(color::rec709_from_rec2020({light, light, light}).x);
+    EXPECT_LE(std::abs(shown.rgb[3 * i] - code), 0.5 + 1e-9) << lights[i];
+  }
+  // Other views go through OpenColorIO, and agree where light is shown as it is.
+  image::ByteImage plain;
+  ASSERT_TRUE(Display::make("Un-tone-mapped")->show(picture, 0, plain).ok());
+  for (std::size_t i = 0; i < shown.rgb.size(); ++i) EXPECT_LE(std::abs(shown.rgb[i] - plain.rgb[i]), 1);
+}
+
 TEST(Display, ABadConfigurationIsRefusedByName) {
   setenv("OCIO", "/nowhere/config.ocio", 1);
   const auto refused = Display::make("");

@@ -8,6 +8,7 @@ _paint_pick() {
     --buffers) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --palette) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --board|-b) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --probe) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --mesh|-m) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --env|-e) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --basis) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -18,7 +19,7 @@ _paint_pick() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--face --flop --gloss --travel --retro --buffers --palette --board --mesh --env --basis --name --output --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--face --flop --gloss --travel --retro --buffers --palette --board --probe --mesh --env --basis --name --output --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

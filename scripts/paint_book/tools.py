@@ -14,10 +14,14 @@ class Tools:
 
     def run(self, name, *words, given=b""):
         """Runs a tool with `given` as its standard input and returns its standard output, as bytes."""
+        return run_tool(self.program(name), *words, given=given)
+
+    def program(self, name):
+        """The path of a tool."""
         program = shutil.which(name, path=self.folder)
         if not program:
             raise Failed(f"{name} is not in {self.folder}: build the project (scripts/demo does) or give --bin")
-        return run_tool(program, *words, given=given)
+        return program
 
     def paint_xml(self, library, basis, gloss, folder):
         """The path of the library as paint XML in which every paint is fitted to `basis`, or keeps its lobes if that is None.
@@ -39,11 +43,13 @@ class Tools:
         self.run("prefilter-envmap", env, "--basis", basis, "-o", filtered)
         return filtered
 
-    def picture(self, paint, mesh, env, size, orbit, out):
-        """The bytes of a PNG of a paint on a mesh."""
-        self.run("render-osmesa", "--mesh", mesh, "--paint", paint, "--trim", "--env", env, "--size", f"{size[0]}x{size[1]}",
-                 "--orbit", orbit, "--samples", 4, "--background", BACKGROUND, "--effects", "auto,-rays", "--threads", 1, "-o", out)
-        return out.read_bytes()
+    def pictures(self, paints, mesh, env, size, orbit, folder):
+        """Draws 0001.png, 0002.png, ... in `folder`: the paints of a paint XML file, in order, on a mesh."""
+        program = self.program("render-osmesa")
+        # A book shows all of its paints, so that a paint that cannot be drawn, exit status 1, is an error here.
+        run_tool(program, "--mesh", mesh, "--paint", paints, "--trim", "--env", env, "--size", f"{size[0]}x{size[1]}",
+                 "--orbit", orbit, "--samples", 4, "--background", BACKGROUND, "--effects", "auto,-rays", "-o",
+                 folder / "{index}.png", done=(0,))
 
     def handoff(self, document, kind):
         """The text of a paint, which is given as paint XML, in another format. It contains no path of this machine."""

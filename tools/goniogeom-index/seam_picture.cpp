@@ -80,8 +80,8 @@ Result<image::Image> seam_picture(const mesh::Mesh& mesh, const SeamRequest& req
   const Vec3 to_eye = normalized(camera.eye - camera.target), side = normalized(cross({0, 1, 0}, to_eye));
   scene.lights = {{normalized(to_eye + 0.8 * Vec3{0, 1, 0} + 0.7 * side), {0.75, 0.75, 0.75}},
                   {normalized(to_eye - 0.9 * side), {0.3, 0.3, 0.3}}};
-  GONIO_ASSIGN(render::Renderer renderer, render::Renderer::create());
-  GONIO_TRY(renderer.load(scene));
+  render::Renderer renderer = render::Renderer::tracing();
+  GONIO_TRY(renderer.load(scene, "cpu"));
   GONIO_ASSIGN(const render::Frame frame, renderer.draw(camera, kWidth, kHeight, 4));
   GONIO_ASSIGN(const display::Display display, display::Display::make(""));
   GONIO_ASSIGN(image::Image image, display.image(frame.picture, 0));

@@ -92,7 +92,7 @@ Result<PaintDrawing> PaintDrawing::make(const Options& options) {
   state->description = fmt::format("on {} under {}", options.mesh.empty() ? "a ball" : file(options.mesh),
                                    options.env.empty() ? "two lamps" : file(options.env));
   state->fitter.emplace(basis, fit::FitOptions{});
-  GONIO_ASSIGN(render::Renderer renderer, render::Renderer::create());
+  render::Renderer renderer = render::Renderer::tracing();
   state->renderer.emplace(std::move(renderer));
   GONIO_ASSIGN(display::Display display, display::Display::make(""));
   state->display.emplace(std::move(display));
@@ -112,7 +112,7 @@ Result<std::string> PaintDrawing::png(const paint::Paint& paint) {
   for (std::size_t part = 0; part < state_->mesh.parts.size(); ++part) {
     if (const auto trim = render::trim_of(state_->mesh.parts[part], with_mirror)) state_->scene.paints[part] = *trim;
   }
-  GONIO_TRY(state_->renderer->load(state_->scene));
+  GONIO_TRY(state_->renderer->load(state_->scene, "cpu"));
   const render::Camera camera =
       render::Camera::orbit(state_->mesh, 35, 12, kDistance, 30, static_cast<double>(kWidth) / kHeight);
   GONIO_ASSIGN(const render::Frame frame, state_->renderer->draw(camera, kWidth, kHeight, kSamples));

@@ -12,7 +12,7 @@ cli::ToolSpec tool_spec(Options& o) {
       "dropper, which has a radius of 5 pixels where none is given. Where only one of face and flop is picked, the "
       "paint is solid.",
       "Instead of single droppers, --palette proposes paints for one picture, and --board reads a whole mood board."};
-  spec.inputs = {"IMAGE", "the picture of --palette", &o.images, 0, 1};
+  spec.inputs = {"IMAGE", "the picture of --palette or --probe", &o.images, 0, 1};
   spec.heading = "droppers";
   spec.option("face", "DROPPER", "sheet.jpg@250,120", &o.face, "where the color near specular is");
   spec.option("flop", "DROPPER", "sheet.jpg@330,180", &o.flop, "where the color far from specular is");
@@ -41,6 +41,19 @@ cli::ToolSpec tool_spec(Options& o) {
           "output "
           "is the paints, or a page where its name ends in .html. The page needs no other file; it shows the pictures, "
           "the droppers on them, and a drawing of every paint.");
+  spec.heading = "single pixels";
+  spec.option("probe", "X,Y", "320,180", &o.probes, "tell what this pixel of a picture with buffers shows")
+      .in("pixels from the upper left, from 0")
+      .more(
+          "The picture is an EXR of render-osmesa(1) with --aov normal,part. The option may be repeated, and - reads "
+          "X,Y "
+          "from the lines of standard input and answers each at once. The output is a table with the part and its "
+          "material; the angle between the mirror direction of the viewer and each light of the picture, or, where it "
+          "has none, to where the environment's irradiance is largest; the angle of the viewer from the normal; the "
+          "normal; the radiance in linear Rec.2020, without the exposure of the file; and L*, a* and b* of that "
+          "radiance "
+          "relative to the brightest that a white diffuser can be in this light. Beside the mesh there is a color "
+          "alone.");
   spec.heading = "page of a board";
   spec.option("mesh,m", "FILE", "testdata/speed-shape.obj", &o.mesh,
               "mesh that the paints are drawn on; glass, tires and the like are dressed")
@@ -51,13 +64,17 @@ cli::ToolSpec tool_spec(Options& o) {
       .more("Without it there are seven, with exponents from 1.3 to 3000. An environment brings its own.");
   spec.heading = "output";
   spec.option("name", "NAME", "spring", &o.name, "name of the paint; palettes number it");
-  spec.option("output,o", "FILE", "picked.paints.xml", &o.output, "paint XML to write, or the page of a board, .html");
+  spec.option("output,o", "FILE", "picked.paints.xml", &o.output,
+              "paint XML to write, the page of a board, .html, or the table of --probe");
   cli::add_common_options(spec, o.common);
   spec.examples = {{"paint-pick --face testdata/contact-sheet.jpg@250,120 --flop testdata/contact-sheet.jpg@330,180 -o "
                     "picked.paints.xml",
                     "make a paint of two spots of a picture"},
                    {"paint-pick --palette 8 testdata/contact-sheet.jpg -o palette.paints.xml",
-                    "propose eight paints from one picture"}};
+                    "propose eight paints from one picture"},
+                   {"render-osmesa -q --mesh testdata/speed-shape.obj --light 30,50 --aov normal,part -o view.exr && "
+                    "paint-pick view.exr --probe 640,360",
+                    "tell which part is in the middle of a picture, at which angles, and its color"}};
   spec.report = {{"samples[].dropper", "face, flop or gloss"},
                  {"samples[].paint", "name of its paint"},
                  {"samples[].image", "its picture"},
@@ -69,6 +86,8 @@ cli::ToolSpec tool_spec(Options& o) {
                  {"samples[].lab", "L*, a*, b* of the mean light, or with --buffers of the reflectance found"},
                  {"samples[].lit", "whether the light under the dropper was taken from --buffers"},
                  {"samples[].gloss_gu", "gloss by contrast, in gloss units"},
+                 {"probes[]: x, y, part, material, aspecular_deg, view_deg, normal, rgb, lab",
+                  "each pixel of --probe, with one aspecular angle for each light; null where the mesh is not seen"},
                  {"paints[].name", "name of a paint"},
                  {"paints[].face", "L*, a*, b* of its face"},
                  {"paints[].flop", "L*, a*, b* of its flop"},

@@ -8,6 +8,7 @@
 #include "image/aov_file.h"
 #include "page.h"
 #include "paint_stream.h"
+#include "probe.h"
 #include "sketch/pick.h"
 #include "sketch/traced_light.h"
 
@@ -193,16 +194,18 @@ Result<cli::Verdict> run_droppers(const Options& options, cli::Session& session)
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   const bool droppers = !options.face.empty() || !options.flop.empty() || !options.gloss.empty();
   const bool as_page = options.output.ends_with(".html");
-  const int ways = droppers + (options.palette > 0) + !options.board.empty();
+  const int ways = droppers + (options.palette > 0) + !options.board.empty() + !options.probes.empty();
   if (ways == 0)
-    return usage_error("there is nothing to pick: give --face and --flop, --palette N with a picture, or --board");
-  if (ways > 1) return usage_error("droppers, --palette and --board exclude each other");
+    return usage_error(
+        "there is nothing to pick: give --face and --flop, --palette N with a picture, --board, or --probe X,Y");
+  if (ways > 1) return usage_error("droppers, --palette, --board and --probe exclude each other");
   if (as_page && options.board.empty())
     return usage_error("--output is \"{}\": a page shows a --board", options.output);
   if (!as_page && !(options.mesh.empty() && options.env.empty() && options.basis.empty()))
     return usage_error("--mesh, --env and --basis are for the page of a board: give -o NAME.html");
   if (!options.basis.empty() && !options.env.empty())
     return usage_error("--basis is for lamps: an environment brings its own");
+  if (!options.probes.empty()) return run_probe(options, session);
   if (options.palette == 0 && !options.images.empty())
     return usage_error("the picture {} is given and no --palette: name it in a dropper", options.images.front());
   if (!droppers && !options.buffers.empty()) return usage_error("--buffers is for droppers: give --face or --flop");

@@ -10,7 +10,7 @@ namespace goniochrome::tool {
 
 struct Options {
   cli::CommonOptions common;
-  std::vector<std::string> images;
+  std::vector<std::string> images, probes;
   std::string face, flop, gloss, buffers;
   double travel_deg = 60;
   bool retro = false;

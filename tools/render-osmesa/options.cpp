@@ -27,7 +27,14 @@ void add_surfaces(cli::ToolSpec& spec, Options& o) {
           "and --light it is shaded in that light, with its shadows. Bounced light, which was traced in other paints, "
           "is scaled to the new ones; the error of that is told, and where it is beyond --tolerance the exit status "
           "is 1.");
-  spec.option("paint,p", "PAINT", "fitted.xml#candy_red", &o.paint, "paint of all parts that --part does not name");
+  spec.option("paint,p", "PAINT", "fitted.xml#candy_red", &o.paint, "paint of all parts that --part does not name")
+      .more(
+          "Several paints, one picture of each, are drawn where --output has words in braces, or with --sheet or --to: "
+          "PAINT is then FILE for all paints of a file, FILE#NAMES for those whose names fit, in which * stands for "
+          "any "
+          "text, or - for a stream of paint XML on standard input.");
+  spec.option("basis", "FILE", "b7.basis.xml", &o.basis, "fit paints without lobes to this basis, as fit-paint(1) does")
+      .more("Without it, a paint that has no lobes cannot be drawn. It must be the basis of the environment.");
   spec.option("part", "PART=PAINT", "Glass=fitted.xml#silver_fine", &o.parts, "paint of a part or material")
       .more(
           "The part of that name is painted, or, where no part has it, every part of that material. The material of a "
@@ -238,7 +245,28 @@ void add_checking(cli::ToolSpec& spec, Options& o) {
 void add_output(cli::ToolSpec& spec, Options& o) {
   spec.heading = "output";
   spec.option("output,o", "FILE", "candy.png", &o.output, "picture to write: .exr or .png; - is EXR on standard output")
-      .needed();
+      .needed()
+      .more(
+          "With {name}, {code} or {index} in it, each paint of --paint gets a file of its own: by its name, by its "
+          "code "
+          "or, where it has none, its name, or by its number from 0001. Characters that a file's name cannot have "
+          "become _, and of paints that would get the same file, the second gets -2, the third -3 and so on. The mesh, "
+          "the environment and what is visible are read and made once for all paints. No effect is left out for one "
+          "paint, since others may show it, and no rays are traced for each paint: a transport of --gbuffer brings "
+          "shadows and bounced light. A paint that cannot be drawn is reported, the others are drawn, and the exit "
+          "status is 1.");
+  spec.option("sheet", "COLSxROWS", "3x3", &o.sheet, "contact sheets of several paints, with their names")
+      .more(
+          "The sheets are PNGs, and the pictures on them have the size of --size or of --gbuffer. If there may be more "
+          "paints than fit on one sheet, --output must have {index}. On sheets of 3x3, a paint that is followed by its "
+          "variations, as paint-edit(1) writes them, stands in the middle of a sheet of its own.");
+  spec.option("to", "FORMAT", "y4m", &o.to, "write frames on standard output for programs that read films")
+      .one_of({"y4m", "ppm"})
+      .more(
+          "There is a frame for each paint of --paint, or for each picture of --turntable or --light-sweep. y4m is "
+          "YUV4MPEG2 with 4:4:4 samples by BT.709 and 25 frames a second; ppm is one PPM picture (P6) behind the "
+          "other. "
+          "It needs -o -.");
   spec.option("view", "NAME", "'ACES SDR'", &o.view, "display view of a PNG: Paint, ACES SDR or Un-tone-mapped")
       .more(
           "Paint, the default, keeps colors exact up to 80 % of display white, and the hue of every highlight. ACES "
@@ -285,7 +313,13 @@ void add_report(cli::ToolSpec& spec) {
        "write the buffers that a sketch is fitted from"},
       {"render-osmesa --mesh testdata/speed-shape.obj --light 30,50 --aov normal,part -o view.exr && render-osmesa "
        "--gbuffer view.exr --light 30,50 --light-sweep 12 -o sweep.png",
-       "rasterize the mesh once, and move the light around it"}};
+       "rasterize the mesh once, and move the light around it"},
+      {"paint-edit testdata/paints.paints.xml#candy_red --variations face | render-osmesa --paint - --basis "
+       "testdata/b7.basis.xml --mesh testdata/speed-shape.obj --light 30,50 --size 320x180 --sheet 3x3 -o sheet.png",
+       "show a paint among its eight variations on one sheet"},
+      {"render-osmesa --paint testdata/paints.paints.xml --basis testdata/b7.basis.xml --mesh testdata/speed-shape.obj "
+       "--light 30,50 --size 320x180 -o '{name}.png'",
+       "draw a picture of each paint of a library"}};
   spec.report = {
       {"plan[]: effect, needed, reason, de00_p95, cost_ms, decision",
        "what each effect is worth, and whether it is drawn; with --check and --explain, truth_de00_p95 stands beside "
@@ -324,6 +358,13 @@ void add_report(cli::ToolSpec& spec) {
        "how far the lobes in bands are from those in three channels, by daylight, and how far from the spectra of the "
        "paints, by illuminant A: CIEDE2000 of the worst"},
       {"frames", "number of pictures written"},
+      {"pictures[]: name, status, message, file, sheet, cell, time_ms",
+       "with several paints: each of them in order, done or failed with a message, its file or its place on the "
+       "sheets, "
+       "counted from 1, and the time from when it was read to when it was written"},
+      {"pictures[]: bounced_de00_p95", "with several paints and a transport: the error of scaling bounced light"},
+      {"failed, files, pictures_per_s", "with several paints: those without a picture, files written, and the rate"},
+      {"picture_ms: p50, p99, max", "with several paints: the time of a picture, from reading its paint to writing it"},
       {"gbuffer_ms", "time to rasterize the mesh once, be it for the plan or for the picture; 0 with --gbuffer"},
       {"frame_ms", "time to draw the picture with all samples, without reading and uploading"},
       {"triangles", "number of triangles of the mesh, where it was read"},

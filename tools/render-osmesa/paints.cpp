@@ -6,6 +6,7 @@
 
 #include "base/angles.h"
 #include "base/text.h"
+#include "formats/basis.h"
 #include "formats/reference.h"
 #include "formats/xml.h"
 #include "image/surface_file.h"
@@ -36,9 +37,17 @@ std::string nearest_of(const std::string& wanted, const std::vector<std::string>
   return fmt::format("did you mean \"{}\"? ", *nearest);
 }
 
+// A file that is named beside another one.
+std::string path_beside(const std::string& file, const std::string& name) {
+  return (std::filesystem::path(file).parent_path() / name).string();
+}
+
 // The paints of all files named, each file read once.
 class PaintShelf {
  public:
+  // With a fitter, paints without lobes are fitted.
+  explicit PaintShelf(std::optional<fit::PaintFitter> fitter) : fitter_(std::move(fitter)) {}
+
   // `reference` is FILE or FILE#NAME.
   Result<paint::Paint> paint(const std::string& reference) {
     const auto [file, name] = formats::paint_reference(reference);
@@ -49,27 +58,28 @@ class PaintShelf {
     std::vector<std::string> names;
     for (const paint::Paint& paint : paints) names.push_back(paint.name);
     if (!name) {
-      if (paints.size() == 1) return with_lobes(paints.front(), file);
-      return usage_error("{} holds {} paints: write {}#NAME: it holds {}", file, paints.size(), file, listed(names));
+      if (paints.size() == 1) return with_lobes(paints.front(), fitter(), file);
+      return usage_error(
+          "{} holds {} paints: write {}#NAME for one of them, braces in --output for a picture of each, as in "
+          "-o '{{name}}.png', or --sheet 3x3: it holds {}",
+          file, paints.size(), file, listed(names));
     }
     const auto found = std::find(names.begin(), names.end(), *name);
     if (found == names.end())
       return usage_error("{} holds no paint \"{}\": {}it holds {}", file, *name, nearest_of(*name, names),
                          listed(names));
-    return with_lobes(paints[static_cast<std::size_t>(found - names.begin())], file);
+    return with_lobes(paints[static_cast<std::size_t>(found - names.begin())], fitter(), file);
   }
 
   // The color map that the paint of a reference names, relative to its file; null where it names none.
   Result<const brdf::ColorMap*> color_map(const std::string& reference, const paint::Paint& paint) {
     if (!paint.color_map) return static_cast<const brdf::ColorMap*>(nullptr);
-    const std::filesystem::path file = formats::paint_reference(reference).file;
-    const std::string path = (file.parent_path() / paint.color_map->href).string();
-    if (!maps_.contains(path)) {
-      GONIO_ASSIGN(brdf::ColorMap map, image::read_color_map(path));
-      map.index = paint.color_map->index;
-      maps_[path] = std::make_shared<brdf::ColorMap>(std::move(map));
+    const std::string file = formats::paint_reference(reference).file;
+    std::shared_ptr<const brdf::ColorMap>& map = maps_[path_beside(file, paint.color_map->href)];
+    if (map == nullptr) {
+      GONIO_ASSIGN(map, color_map_of(paint, file));
     }
-    return maps_[path].get();
+    return map.get();
   }
   std::vector<std::shared_ptr<const brdf::ColorMap>> color_maps() const {
     std::vector<std::shared_ptr<const brdf::ColorMap>> all;
@@ -78,13 +88,9 @@ class PaintShelf {
   }
 
  private:
-  static Result<paint::Paint> with_lobes(const paint::Paint& paint, const std::string& file) {
-    if (paint.lobes) return paint;
-    return input_error(
-        "{}: the paint \"{}\" has no lobes: fit it first, as in `fit-paint {} --basis BASIS.xml -o FITTED.xml`", file,
-        paint.name, file);
-  }
+  const fit::PaintFitter* fitter() const { return fitter_ ? &*fitter_ : nullptr; }
 
+  std::optional<fit::PaintFitter> fitter_;
   std::map<std::string, std::vector<paint::Paint>> files_;
   std::map<std::string, std::shared_ptr<const brdf::ColorMap>> maps_;
 };
@@ -155,8 +161,47 @@ Result<std::vector<std::size_t>> parts_of(const mesh::Mesh& mesh, const std::str
                      listed(parts), materials.empty() ? "" : "; its materials are " + listed(materials, 30));
 }
 
+Result<std::optional<fit::PaintFitter>> fitter_of(const Options& options) {
+  if (options.basis.empty()) return std::optional<fit::PaintFitter>();
+  GONIO_ASSIGN(formats::Basis basis, formats::read_basis(options.basis));
+  return std::optional<fit::PaintFitter>(std::in_place, std::move(basis), fit::FitOptions{});
+}
+
+Result<paint::Paint> with_lobes(paint::Paint paint, const fit::PaintFitter* fitter, const std::string& file) {
+  if (paint.lobes) return paint;
+  if (fitter == nullptr)
+    return input_error(
+        "{}: the paint \"{}\" has no lobes: give --basis BASIS.xml to fit it here, or fit it first, as in `fit-paint "
+        "{} "
+        "--basis BASIS.xml -o FITTED.xml`",
+        file, paint.name, file);
+  auto fit = fitter->fit(paint);
+  if (!fit.ok())
+    return Error{fit.error().kind, fmt::format("{}: the paint \"{}\": {}", file, paint.name, fit.error().message)};
+  if (fit->lobes.coat_index != paint::kNoCoat) paint.coat_index = fit->lobes.coat_index;
+  paint.lobes = std::move(fit->lobes);
+  return paint;
+}
+
+Result<std::shared_ptr<const brdf::ColorMap>> color_map_of(const paint::Paint& paint, const std::string& file) {
+  if (!paint.color_map) return std::shared_ptr<const brdf::ColorMap>();
+  GONIO_ASSIGN(brdf::ColorMap map, image::read_color_map(path_beside(file, paint.color_map->href)));
+  map.index = paint.color_map->index;
+  return std::shared_ptr<const brdf::ColorMap>(std::make_shared<brdf::ColorMap>(std::move(map)));
+}
+
+void put_on(std::size_t part, const paint::Paint& paint, const brdf::ColorMap* map, DressedMesh& dress) {
+  dress.paints[part] = *paint.lobes;
+  if (map == nullptr) dress.paints[part].tilts.clear();  // they stand for a map
+  dress.gloss_deg[part] = paint.gloss.empty() ? kUnreadGlossDeg : paint.gloss.front().angle_deg;
+  dress.anisotropy[part] = paint.anisotropy.value_or(paint::Anisotropy{});
+  dress.surfaces[part] = {nullptr, 1, map};
+  dress.names[part] = paint.name;
+}
+
 Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options) {
-  PaintShelf shelf;
+  GONIO_ASSIGN(auto fitter, fitter_of(options));
+  PaintShelf shelf(std::move(fitter));
   paint::LobeFit gray;
   gray.diffuse = (kUnpaintedReflectance / kPi) * color::Rgb{1, 1, 1};
   const std::size_t parts_there = mesh.parts.size();
@@ -168,12 +213,7 @@ Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options) {
   result.worn.resize(parts_there);
   result.names.resize(parts_there);
   const auto wear = [&](std::size_t part, const paint::Paint& paint, const brdf::ColorMap* map) {
-    result.paints[part] = *paint.lobes;
-    if (map == nullptr) result.paints[part].tilts.clear();  // they stand for a map
-    result.gloss_deg[part] = paint.gloss.empty() ? kUnreadGlossDeg : paint.gloss.front().angle_deg;
-    result.anisotropy[part] = paint.anisotropy.value_or(paint::Anisotropy{});
-    result.surfaces[part] = {nullptr, 1, map};
-    result.names[part] = paint.name;
+    put_on(part, paint, map, result);
     result.worn[part] = std::make_shared<const paint::Paint>(paint);
   };
   if (!options.paint.empty()) {
@@ -207,8 +247,9 @@ Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options) {
   return result;
 }
 
-Result<paint::Paint> paint_named(const std::string& reference) {
-  PaintShelf shelf;
+Result<paint::Paint> paint_named(const std::string& reference, const Options& options) {
+  GONIO_ASSIGN(auto fitter, fitter_of(options));
+  PaintShelf shelf(std::move(fitter));
   return shelf.paint(reference);
 }
 

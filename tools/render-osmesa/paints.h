@@ -2,10 +2,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/result.h"
+#include "fit/paint_fit.h"
 #include "mesh/mesh.h"
 #include "paint/paint.h"
 #include "render/surface_layer.h"
@@ -28,8 +30,21 @@ struct DressedMesh {
 // Resolves --part and --paint. Error: an unknown part, paint or file, or a paint without lobes, with what there is.
 Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options);
 
-// FILE#NAME, which has lobes.
-Result<paint::Paint> paint_named(const std::string& reference);
+// Fits paints as fit-paint(1) does without further options; none without --basis.
+Result<std::optional<fit::PaintFitter>> fitter_of(const Options& options);
+
+// The paint with its lobes, which are fitted where it has none and there is a fitter. Error: it has none; `file` is
+// where it comes from.
+Result<paint::Paint> with_lobes(paint::Paint paint, const fit::PaintFitter* fitter, const std::string& file);
+
+// The color map that a paint of `file` names, or null.
+Result<std::shared_ptr<const brdf::ColorMap>> color_map_of(const paint::Paint& paint, const std::string& file);
+
+// Puts the paint on a part. A map must outlive the mesh.
+void put_on(std::size_t part, const paint::Paint& paint, const brdf::ColorMap* map, DressedMesh& dress);
+
+// FILE#NAME, which has lobes or can be fitted.
+Result<paint::Paint> paint_named(const std::string& reference, const Options& options);
 
 // The parts that a word means: the part of that name, or all of that material. Error (usage): what there is.
 Result<std::vector<std::size_t>> parts_of(const mesh::Mesh& mesh, const std::string& word);

@@ -41,7 +41,9 @@ Result<Request> request_of(const Options& options) {
   request.aovs = aov_names(options.aovs);
   GONIO_TRY(take_transport(options, request));
   const std::string extension = lower(std::filesystem::path(options.output).extension().string());
-  request.png = extension == ".png";
+  request.png = extension == ".png" || !options.to.empty();
+  if (!options.to.empty() && options.output != "-")
+    return usage_error("--to {} goes on standard output: give -o -", options.to);
   if (!request.png && extension != ".exr" && options.output != "-") {
     return usage_error("--output is \"{}\": write a name that ends in .exr or .png", options.output);
   }

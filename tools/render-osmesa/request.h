@@ -22,7 +22,7 @@ struct Request {
   std::optional<double> stops;
   std::vector<std::string> aovs;
   bool transport = false;  // among the buffers
-  bool png = false;
+  bool png = false;        // whether pictures are as a display shows them: PNG or frames
   color::ReflectionOperator reflection;
   render::PlanRequest plan;
   const render::EngineInfo* engine = nullptr;  // null: the plan chooses

@@ -4,71 +4,26 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/file.h"
 #include "base/paths.h"
 #include "base/text.h"
 #include "display/display.h"
+#include "image/frames.h"
 #include "picture_file.h"
 #include "plan_text.h"
 #include "render/aov.h"
 #include "render/left_out.h"
+#include "sight.h"
 #include "stage.h"
+#include "stream.h"
 #include "truth_check.h"
 
 namespace goniochrome::tool {
 
 namespace {
 
-// From this many triangles on, rays find what is visible unless OpenGL is asked for. For 4 million triangles a tree of
-// rays is built in 1 s on two cores, and a view of 1280x720 takes 0.1 s; OSMesa rasterizes such a view in 0.7 s, five
-// times for a picture of 4 samples a pixel.
-constexpr std::size_t kTracedFrom = 1000000;
-
 // Pixels that the truth of each effect is measured at; it takes an integration for each of them.
 constexpr int kMostTruth = 100;
-
-// A camera that sees the mesh from inside, or not at all, is legal and hardly ever meant; and so are single parts of
-// which only back sides are seen.
-void tell_visibility(const render::Gbuffer& gbuffer, const mesh::Mesh& mesh, cli::Session& session) {
-  constexpr std::size_t kMany = 20, kMostNames = 6;  // fewer pixels may be those of a rim
-  std::size_t seen = 0, from_inside = 0;
-  std::vector<std::size_t> fronts(mesh.parts.size()), backs(mesh.parts.size());
-  for (std::size_t i = 3; i < gbuffer.data.size(); i += 4) {
-    seen += gbuffer.data[i] != 0;
-    from_inside += gbuffer.data[i] < 0;
-    if (gbuffer.data[i] == 0) continue;
-    const auto part = static_cast<std::size_t>(std::abs(gbuffer.data[i])) - 1;
-    ++(gbuffer.data[i] < 0 ? backs : fronts)[part];
-  }
-  std::string turned;
-  std::size_t count = 0;
-  for (std::size_t part = 0; part < backs.size(); ++part) {
-    if (backs[part] < kMany || fronts[part] > backs[part] / 100) continue;
-    if (++count <= kMostNames) turned += (turned.empty() ? "" : ", ") + mesh.parts[part].name;
-  }
-  if (count > kMostNames) turned += ", ...";
-  if (count > 0 && 2 * from_inside <= seen) {
-    session.warn(fmt::format("{} show{} {} back{} alone: {} faces may be turned inside out", turned,
-                             count == 1 ? "s" : "", count == 1 ? "its" : "their", count == 1 ? "" : "s",
-                             count == 1 ? "its" : "their"));
-  }
-  if (seen == 0) {
-    session.warn("the mesh is not in the picture: check --camera or --orbit");
-  } else if (2 * from_inside > seen) {
-    session.warn(
-        fmt::format("{} % of what is seen are back sides: the camera is inside the mesh, or its faces are turned",
-                    100 * from_inside / seen));
-  }
-}
-
-std::string explanation(const Options& options, const mesh::Mesh& mesh, const DressedMesh& dress) {
-  std::string text = options.gbuffer.empty()
-                         ? fmt::format("mesh: {} triangles, {} parts\n", mesh.triangles.size(), mesh.parts.size())
-                         : fmt::format("buffers of {}: {} parts\n", options.gbuffer, mesh.parts.size());
-  for (std::size_t i = 0; i < mesh.parts.size(); ++i) {
-    text += fmt::format("  {:24} {}\n", mesh.parts[i].name, dress.names[i].empty() ? "(gray)" : dress.names[i]);
-  }
-  return text;
-}
 
 void check(const Options& options, const render::Frame& frame, const render::Scene& scene, const Source& source,
            double white, cli::Session& session) {
@@ -122,23 +77,6 @@ void put_right_half(const render::Frame& other, render::Frame& frame) {
   }
 }
 
-constexpr double kMiddleGray = 0.18;
-
-// Of what is seen of the mesh: what a scene that only its own parts light is exposed by.
-double mean_luminance(const render::Frame& frame) {
-  double sum = 0;
-  std::size_t count = 0;
-  for (int y = 0; y < frame.gbuffer->height; ++y) {
-    for (int x = 0; x < frame.gbuffer->width; ++x) {
-      if (frame.gbuffer->part(x, y) < 0) continue;
-      const float* rgb = frame.picture.pixel(x, y);
-      sum += color::xyz_d65_from_rgb({rgb[0], rgb[1], rgb[2]}).Y / color::xyz_d65_from_rgb({1, 1, 1}).Y;
-      ++count;
-    }
-  }
-  return count > 0 ? sum / static_cast<double>(count) : 0;
-}
-
 // A run that draws: its shots share one context and one upload.
 class Shooting {
  public:
@@ -152,7 +90,6 @@ class Shooting {
     return {shot.camera, std::max(1, request_.size.width / shrink), std::max(1, request_.size.height / shrink),
             shrink > 1 ? 1 : request_.samples, shrink == 1 && options_.check > 0};
   }
-  Result<render::Renderer> make_renderer();
   // Whether the picture is drawn by rays alone.
   bool by_rays() const {
     const auto engine = render::engine_named(plan_.engine);
@@ -167,6 +104,7 @@ class Shooting {
   Result<void> draw(render::Renderer& renderer, const Shot& shot, bool first);
   Result<cli::Verdict> shade_transport(const std::optional<display::Display>& display);
   Result<void> write(const Shot& shot, const std::optional<display::Display>& display, double stops);
+  Result<void> write_frame(const image::ByteImage& shown);
   Result<cli::Verdict> check_picture();
   void tell_plan(render::Plan plan, const std::string& shader);
 
@@ -179,8 +117,9 @@ class Shooting {
   render::DiffuseWhite white_;
   render::Plan plan_;
   render::Frame frame_;
-  double automatic_stops_ = 0;  // of a PNG
-  bool stopped_ = false;        // before the noise was within the tolerance
+  double automatic_stops_ = 0;        // of a PNG
+  std::optional<OutputFile> frames_;  // of --to
+  bool stopped_ = false;              // before the noise was within the tolerance
 };
 
 // The scene with the floor of its picture, wherever that is drawn.
@@ -279,8 +218,22 @@ Result<void> Shooting::write(const Shot& shot, const std::optional<display::Disp
     return write_exr_picture(options_, request_, shot, frame_, drawn, plan_, white_, stops, automatic_stops_,
                              traced ? &traced->file : nullptr, session_);
   }
-  GONIO_ASSIGN(const image::Image shown, display->image(frame_.picture, stops));
-  return image::write_png(shot.output, shown, provenance(session_));
+  image::ByteImage shown;
+  GONIO_TRY(display->show(frame_.picture, stops, shown));
+  if (!options_.to.empty()) return write_frame(shown);
+  return write_file(shot.output, image::png_content(shown, provenance(session_)));
+}
+
+// One frame of a sequence on standard output.
+Result<void> Shooting::write_frame(const image::ByteImage& shown) {
+  const auto format = options_.to == "ppm" ? image::FrameFormat::kPpm : image::FrameFormat::kY4m;
+  if (!frames_) {
+    GONIO_ASSIGN(OutputFile out, OutputFile::create("-"));
+    frames_.emplace(std::move(out));
+    GONIO_TRY(frames_->write(image::frames_head(format, shown.width, shown.height)));
+  }
+  GONIO_TRY(frames_->write(image::frame_content(format, shown)));
+  return frames_->flush();
 }
 
 // Other paints in the light that was traced; nothing is planned, since all is there.
@@ -304,33 +257,6 @@ Result<cli::Verdict> Shooting::shade_transport(const std::optional<display::Disp
                            request_.size.height, view.frame_ms, options_.gbuffer, stops,
                            display ? ", " + display->name() : ""));
   return view.trace_again ? cli::Verdict::kNegative : cli::Verdict::kDone;
-}
-
-// Rays find what is visible for the engine that traces them, for meshes of many triangles, and where there is no
-// OpenGL.
-Result<render::Renderer> Shooting::make_renderer() {
-  render::Effort effort;
-  effort.bounces = options_.bounces;
-  effort.time_limit_s = session_.common().time_limit_s;
-  effort.seed = session_.common().seed;
-  effort.progress = [this](double noise, double seconds) {
-    session_.progress(fmt::format("noise {:.2f} dE00 after {:.1f} s", noise, seconds));
-  };
-  const auto ready = [&](render::Renderer renderer) {
-    renderer.set_effort(std::move(effort));
-    if (stage_.rays) renderer.set_rays(*stage_.rays);
-    return Result<render::Renderer>(std::move(renderer));
-  };
-  if (stage_.gbuffer) return ready(render::Renderer::shading(stage_.gbuffer));
-  if (request_.engine != nullptr && request_.engine->traces_rays)
-    return ready(render::Renderer::tracing(stage_.scene.ground));
-  const bool needs_opengl = request_.engine != nullptr && request_.engine->needs_opengl;
-  if (stage_.mesh.triangles.size() >= kTracedFrom && !needs_opengl) return ready(render::Renderer::tracing());
-  auto renderer = render::Renderer::create();
-  if (renderer.ok()) return ready(*std::move(renderer));
-  if (needs_opengl) return renderer;
-  session_.say(fmt::format("{}: rays find what is visible", renderer.error().message));
-  return ready(render::Renderer::tracing());
 }
 
 // Of the effects of rays that an engine without rays was given.
@@ -373,7 +299,7 @@ Result<cli::Verdict> Shooting::shoot(const std::optional<display::Display>& disp
   if (request_.transport) GONIO_TRY(can_trace_view(stage_.scene));
   GONIO_ASSIGN(shots_, shots_of(options_, stage_.mesh, request_.size, stage_.scene.lights));
   leave_out_hidden_floor();
-  GONIO_ASSIGN(render::Renderer renderer, make_renderer());
+  GONIO_ASSIGN(render::Renderer renderer, make_renderer(options_, request_, stage_, session_));
   GONIO_TRY(look(renderer));
   tell_visibility(*looks_.front(), stage_.mesh, session_);
   white_ = render::diffuse_white(stage_.scene.env, stage_.scene.lights);
@@ -452,7 +378,8 @@ Result<cli::Verdict> Shooting::check_picture() {
 
 }  // namespace
 
-Result<cli::Verdict> run(const Options& options, cli::Session& session) {
+Result<cli::Verdict> run(const Options& asked, cli::Session& session) {
+  GONIO_ASSIGN(const Options options, is_stream(asked) ? stream_options(asked) : Result<Options>(asked));
   GONIO_ASSIGN(Request request, request_of(options));
   std::optional<display::Display> display;
   if (request.png) {
@@ -464,6 +391,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   Stage stage;
   GONIO_TRY(set_stage(options, request, stage, session));
   if (stage.gbuffer) request.size = {stage.gbuffer->width, stage.gbuffer->height};
+  if (is_stream(options)) return draw_stream(options, request, stage, display, session);
   return Shooting(options, std::move(request), stage, session).shoot(display);
 }
 

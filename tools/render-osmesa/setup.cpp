@@ -208,7 +208,7 @@ Result<void> set_ground(const FloorRequest& request, const Options& options, ren
   ground.height = request.height.value_or(box.low.y);
   if (request.kind == FloorRequest::Kind::kPaint) {
     ground.kind = render::Ground::Kind::kPaint;
-    GONIO_ASSIGN(const paint::Paint paint, paint_named(request.paint));
+    GONIO_ASSIGN(const paint::Paint paint, paint_named(request.paint, options));
     ground.paint = *paint.lobes;
   } else {
     if (scene.env == nullptr) return usage_error("--floor shadow shows the ground of an environment: give --env");
@@ -241,7 +241,8 @@ Result<std::vector<Shot>> shots_of(const Options& options, const mesh::Mesh& mes
     return usage_error("--turntable and --light-sweep exclude each other");
   const int count = std::max(options.turntable, options.light_sweep);
   if (count == 0) return std::vector<Shot>{{camera, lights, options.output}};
-  if (options.output == "-") return usage_error("a sequence does not go on standard output: give --output a name");
+  if (options.output == "-" && options.to.empty())
+    return usage_error("a sequence goes on standard output as frames: give --output a name, or --to y4m");
   if (options.light_sweep > 0 && lights.empty()) return usage_error("--light-sweep needs a --light to move");
   const std::vector<std::string> names = shot_names(options);
   std::vector<Shot> shots;

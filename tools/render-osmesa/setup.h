@@ -58,10 +58,10 @@ struct Shot {
   std::vector<render::Light> lights;
   std::string output;
 };
-// The files that they are written to. A sequence on standard output, which is refused, has names all the same.
+// The files that they are written to. A sequence on standard output has names all the same.
 std::vector<std::string> shot_names(const Options& options);
-// The pictures that --turntable or --light-sweep ask for, else the one. Error: a sequence on standard output, both at
-// once, or a sweep without a light.
+// The pictures that --turntable or --light-sweep ask for, else the one. Error: an EXR sequence on standard output, both
+// at once, or a sweep without a light.
 Result<std::vector<Shot>> shots_of(const Options& options, const mesh::Mesh& mesh, const PictureSize& size,
                                    const std::vector<render::Light>& lights);
 

@@ -4,8 +4,8 @@
 #include <set>
 
 #include "base/text.h"
-#include "color/spectrum.h"
 #include "brdf/band_lobes.h"
+#include "color/spectrum.h"
 #include "formats/spectrum_table.h"
 #include "stage.h"
 
@@ -128,7 +128,7 @@ class Gathering {
       lacks.emplace_back("the floor shows the environment");
       return {};
     }
-    GONIO_ASSIGN(const paint::Paint paint, paint_named(request_.floor.paint));
+    GONIO_ASSIGN(const paint::Paint paint, paint_named(request_.floor.paint, options_));
     auto lobes = brdf::band_lobes(paint, spectra.eye);
     if (!lobes.ok()) {
       lacks.push_back(fmt::format("the paint of the floor: {}", lobes.error().message));

@@ -10,6 +10,7 @@
 #include "prefilter/lobe_tree.h"
 #include "render/aov.h"
 #include "spectra.h"
+#include "stream.h"
 
 namespace goniochrome::tool {
 
@@ -27,13 +28,13 @@ void tell_repairs(const mesh::Mesh& mesh, cli::Session& session) {
   }
 }
 
-void tell_parts(const mesh::Mesh& mesh, const DressedMesh& dress, cli::Session& session) {
+void tell_parts(const mesh::Mesh& mesh, const DressedMesh& dress, bool streamed, cli::Session& session) {
   Json& results = session.results();
   for (std::size_t i = 0; i < mesh.parts.size(); ++i) {
     const Json paint = dress.names[i].empty() ? Json(nullptr) : Json(dress.names[i]);
     results["parts"].push_back({{"name", mesh.parts[i].name}, {"material", mesh.parts[i].material}, {"paint", paint}});
   }
-  if (dress.unpainted.empty()) return;
+  if (dress.unpainted.empty() || streamed) return;
   std::string names;
   for (std::size_t i = 0; i < std::min<std::size_t>(6, dress.unpainted.size()); ++i) {
     names += (i == 0 ? "" : ", ") + dress.unpainted[i];
@@ -202,8 +203,10 @@ Result<void> set_stage(const Options& options, Request& request, Stage& stage, c
   } else {
     GONIO_TRY(set_gbuffer(options, request, stage, session));
   }
-  GONIO_TRY(dress_stage(options, stage));
-  tell_parts(stage.mesh, stage.dresses.front(), session);
+  Options base = options;
+  if (is_stream(options)) base.paint.clear();  // its paints come one by one
+  GONIO_TRY(dress_stage(base, stage));
+  tell_parts(stage.mesh, stage.dresses.front(), is_stream(options), session);
   render::Scene& scene = stage.scene;
   scene.mesh = &stage.mesh;
   scene.lights = request.lights;

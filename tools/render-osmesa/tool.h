@@ -12,7 +12,8 @@ namespace goniochrome::tool {
 
 struct Options {
   cli::CommonOptions common;
-  std::string mesh, gbuffer, paint, env, output;
+  std::string mesh, gbuffer, paint, basis, env, output;
+  std::string sheet, to;
   std::vector<std::string> parts, lights, emissions;
   std::string floor = "auto";
   bool trim = false;
@@ -28,6 +29,7 @@ struct Options {
   std::string background = "none";
   std::vector<std::string> aovs;
   std::string effects = "auto", engine = "auto";
+  bool rays_are_refused = false;  // whether --effects says so, in a stream, whose effects are others
   std::string reflection = color::kDefaultOperator;
   std::string spectral = "auto";
   std::string critical_angle = "slide";

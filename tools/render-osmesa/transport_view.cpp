@@ -147,16 +147,40 @@ Result<std::optional<KeptTransport>> kept_transport(const image::AovFile& file, 
   return std::optional<KeptTransport>(std::move(kept));
 }
 
-Result<ShadedView> shaded_view(const KeptTransport& kept, const render::Gbuffer& gbuffer, const DressedMesh& dress,
-                               const render::Scene& scene, cli::Session& session) {
-  const render::LobeTransport& light = kept.light;
+struct ViewShader::State {
+  const KeptTransport& kept;
+  const render::Gbuffer& gbuffer;
+  const render::Scene& scene;
+  std::unique_ptr<render::TransportShader> shader;  // none: not yet
+  bool with_views = false;                          // of the shader
+  double load_ms = 0;
+
+  // Lays the light out, once, and once more where a paint comes that changes with the view.
+  void lay_out(bool views) {
+    if (shader && (with_views || !views)) return;
+    const Stopwatch laying;
+    with_views = views;
+    shader = std::make_unique<render::TransportShader>(kept.light,
+                                                       views ? view_angles(kept.light, gbuffer) : std::vector<float>());
+    load_ms = 1000 * laying.elapsed_s();
+  }
+};
+
+ViewShader::ViewShader(const KeptTransport& kept, const render::Gbuffer& gbuffer, const render::Scene& scene)
+    : state_(new State{kept, gbuffer, scene, nullptr}) {}
+ViewShader::~ViewShader() = default;
+
+Result<ShadedPaint> ViewShader::shade(const DressedMesh& dress, image::Image& picture) {
+  State& s = *state_;
+  const render::LobeTransport& light = s.kept.light;
   std::vector<render::TransportPaint> paints;
   std::vector<std::vector<color::Rgb>> weights;
-  bool with_views = false, coat_changed = false;
+  bool with_views = false;
+  ShadedPaint result;
   for (std::size_t part = 0; part < dress.paints.size(); ++part) {
     const double coat = part < light.worn.coats.size() ? light.worn.coats[part] : paint::kNoCoat;
     const paint::LobeFit fit = brdf::under_coat(dress.paints[part], coat);
-    coat_changed |= (coat == paint::kNoCoat) != (dress.paints[part].coat_index == paint::kNoCoat);
+    result.coat_changed |= (coat == paint::kNoCoat) != (dress.paints[part].coat_index == paint::kNoCoat);
     const auto named = [&](const Error& error) {
       return Error{error.kind, dress.names[part].empty() ? error.message : dress.names[part] + ": " + error.message};
     };
@@ -165,7 +189,7 @@ Result<ShadedView> shaded_view(const KeptTransport& kept, const render::Gbuffer&
       return input_error(
           "{}: is brushed otherwise than the paint of part {} was when its light was traced: render again with "
           "--aov transport in this paint",
-          dress.names[part], scene.mesh->parts[part].name);
+          dress.names[part], s.scene.mesh->parts[part].name);
     auto paint = render::transport_paint(light.columns, fit, dress.gloss_deg[part]);
     if (!paint.ok()) return named(paint.error());
     auto flat = render::column_weights(light.columns, fit.diffuse, fit.lobes, dress.gloss_deg[part]);
@@ -173,51 +197,68 @@ Result<ShadedView> shaded_view(const KeptTransport& kept, const render::Gbuffer&
     with_views |= paint->view_deg.size() > 1;
     paints.push_back(*std::move(paint)), weights.push_back(*std::move(flat));
   }
-  if (coat_changed)
-    session.warn(
-        "a paint has a coat and took the place of one without it, or the other way round: toward grazing the picture "
-        "is that of the paint whose light was traced");
   if (light.worn.has_floor) {  // in the paint that it wore
     weights.push_back(light.worn.weights[static_cast<std::size_t>(light.worn.groups.of_part.back())]);
     paints.push_back({{0}, {weights.back()}});
   }
-  if (kept.reflection.k != scene.reflection.k && light.bounces > 0)
+  if (s.kept.reflection.k != s.scene.reflection.k && light.bounces > 0)
     return usage_error("--operator is another than that of --gbuffer: bounced light was traced with that one");
   const color::ReflectionOperator* reflection =
-      scene.reflection.k != color::component_wise().k ? &scene.reflection : nullptr;
-  const Stopwatch laying;
-  const render::TransportShader shader(light, with_views ? view_angles(light, gbuffer) : std::vector<float>());
-  const double load_ms = 1000 * laying.elapsed_s();
+      s.scene.reflection.k != color::component_wise().k ? &s.scene.reflection : nullptr;
+  s.lay_out(with_views);
   const Stopwatch judging;
   const render::BounceScale scale = render::bounce_scale(light, weights, reflection);
-  const double judge_ms = 1000 * judging.elapsed_s();
-  ShadedView view{{gbuffer.width, gbuffer.height, 4, {}, {"R", "G", "B", "A"}}, 0, false};
-  view.picture.data.assign(4 * static_cast<std::size_t>(gbuffer.width) * static_cast<std::size_t>(gbuffer.height), 0);
+  result.scale_ms = 1000 * judging.elapsed_s();
+  result.scaled = scale.changed, result.bounced_de00_p95 = scale.error_p95_de00;
+  const std::size_t floats = 4 * static_cast<std::size_t>(s.gbuffer.width) * static_cast<std::size_t>(s.gbuffer.height);
+  if (picture.data.size() != floats) {  // else it has the background, and shading changes all other pixels
+    picture = {s.gbuffer.width, s.gbuffer.height, 4, {}, {"R", "G", "B", "A"}};
+    picture.data.assign(floats, 0);
+    put_background(s.gbuffer, s.scene, picture);
+  }
   const Stopwatch shading;
-  shader.shade(paints, reflection, scale, 1, view.picture);
-  view.frame_ms = 1000 * shading.elapsed_s();
-  put_background(gbuffer, scene, view.picture);
+  s.shader->shade(paints, reflection, scale, 1, picture);
+  result.frame_ms = 1000 * shading.elapsed_s();
+  return result;
+}
+
+Json ViewShader::figures(const ShadedPaint& shaded, double tolerance) const {
+  const double points = static_cast<double>(state_->kept.light.places.size());
+  return {{"points", state_->kept.light.places.size()},
+          {"columns", state_->kept.light.columns.count()},
+          {"bytes_per_point", static_cast<double>(state_->shader->bytes()) / std::max<double>(1, points)},
+          {"load_ms", state_->load_ms},
+          {"scale_ms", shaded.scale_ms},
+          {"bounced_de00_p95", json_number(shaded.bounced_de00_p95)},
+          {"trace_again", shaded.bounced_de00_p95 > tolerance}};
+}
+
+void tell_coat(cli::Session& session) {
+  session.warn(
+      "a paint has a coat and took the place of one without it, or the other way round: toward grazing the picture "
+      "is that of the paint whose light was traced");
+}
+
+Result<ShadedView> shaded_view(const KeptTransport& kept, const render::Gbuffer& gbuffer, const DressedMesh& dress,
+                               const render::Scene& scene, cli::Session& session) {
+  ViewShader shader(kept, gbuffer, scene);
+  ShadedView view;
+  GONIO_ASSIGN(const ShadedPaint shaded, shader.shade(dress, view.picture));
+  view.frame_ms = shaded.frame_ms;
+  if (shaded.coat_changed) tell_coat(session);
   const double tolerance = session.common().tolerance;
-  view.trace_again = scale.error_p95_de00 > tolerance;
-  session.results()["transport"] = {
-      {"points", light.places.size()},
-      {"columns", light.columns.count()},
-      {"bytes_per_point",
-       static_cast<double>(shader.bytes()) / std::max<double>(1, static_cast<double>(light.places.size()))},
-      {"load_ms", load_ms},
-      {"scale_ms", judge_ms},
-      {"bounced_de00_p95", json_number(scale.error_p95_de00)},
-      {"trace_again", view.trace_again}};
-  if (!scale.changed) {
+  view.trace_again = shaded.bounced_de00_p95 > tolerance;
+  session.results()["transport"] = shader.figures(shaded, tolerance);
+  if (!shaded.scaled) {
     session.say("bounced light is that of these paints");
   } else if (!view.trace_again) {
     session.say(fmt::format("bounced light was traced in other paints and scaled to these: off by {:.2f} dE00 (p95)",
-                            scale.error_p95_de00));
+                            shaded.bounced_de00_p95));
   } else {
     session.warn(fmt::format(
         "bounced light was traced in other paints; scaled to these it is off by {:.2f} dE00 (p95), above --tolerance "
         "{}: trace again with --aov transport in these paints",
-        scale.error_p95_de00, tolerance));
+        shaded.bounced_de00_p95, tolerance));
   }
   return view;
 }

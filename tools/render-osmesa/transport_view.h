@@ -1,6 +1,7 @@
 // --aov transport: the light of a view by lobes; and pictures of other paints from it.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,6 +43,36 @@ struct KeptTransport {
 // Nothing where the file has none, or where the command line has other light, which is told.
 Result<std::optional<KeptTransport>> kept_transport(const image::AovFile& file, const Options& options,
                                                     const std::vector<render::Light>& lights, cli::Session& session);
+
+// What shading a view in some paints made known.
+struct ShadedPaint {
+  double frame_ms = 0, scale_ms = 0;  // to shade; and to scale bounced light
+  bool scaled = false;                // whether bounced light was traced in other paints
+  double bounced_de00_p95 = 0;        // what scaling it errs by
+  bool coat_changed = false;          // whether a coat took the place of none, or none that of a coat
+};
+
+// Shows one view in any number of paints. What is given must outlive it; of the scene, the mesh's parts, the operator,
+// the environment and the background are read.
+class ViewShader {
+ public:
+  ViewShader(const KeptTransport& kept, const render::Gbuffer& gbuffer, const render::Scene& scene);
+  ~ViewShader();
+
+  // Makes `picture` that of these paints, R G B A, with the scene's background. A picture that shade() made before is
+  // drawn over. Error: a paint that the transport cannot show.
+  Result<ShadedPaint> shade(const DressedMesh& dress, image::Image& picture);
+
+  // `transport` of the report.
+  Json figures(const ShadedPaint& shaded, double tolerance) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+// Warns of ShadedPaint::coat_changed.
+void tell_coat(cli::Session& session);
 
 // The picture of these paints, R G B A, with the scene's background, and how long its shading took. Tells what scaling
 // the bounced light errs by. Error: a paint that the transport cannot show.

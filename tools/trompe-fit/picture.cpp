@@ -133,7 +133,7 @@ Result<std::array<image::Image, 2>> seam_halves(const SeamPair& pair) {
   paint::LobeFit black;
   black.diffuse = (0.01 / M_PI) * color::Rgb{1, 1, 1};
 
-  GONIO_ASSIGN(render::Renderer renderer, render::Renderer::create());
+  render::Renderer renderer = render::Renderer::tracing();
   const render::Camera camera =
       panels::seam_camera_from(*pair.seam, pair.viewer, static_cast<double>(kHalfWidth) / kHalfHeight, 10, 1.15);
   std::array<image::Image, 2> halves;
@@ -146,7 +146,7 @@ Result<std::array<image::Image, 2>> seam_halves(const SeamPair& pair) {
       scene.paints.push_back(std::ranges::find(pair.dark, part.name) != pair.dark.end() ? black
                              : after == 1 && part.name == pair.part_b                   ? b
                                                                                         : a);
-    GONIO_TRY(renderer.load(scene));
+    GONIO_TRY(renderer.load(scene, "cpu"));
     GONIO_ASSIGN(render::Frame frame, renderer.draw(camera, kHalfWidth, kHalfHeight, 16));
     halves[static_cast<std::size_t>(after)] = std::move(frame.picture);
   }

@@ -1,0 +1,32 @@
+// Pictures as a display takes them: 8 bits for each of red, green and blue.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "image/image.h"
+
+namespace goniochrome::image {
+
+// R G B by pixels, row 0 at the top.
+struct ByteImage {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgb;
+
+  std::uint8_t* pixel(int x, int y) { return &rgb[3 * (static_cast<std::size_t>(y) * width + x)]; }
+  const std::uint8_t* pixel(int x, int y) const { return &rgb[3 * (static_cast<std::size_t>(y) * width + x)]; }
+};
+
+// Values 0..1 as whole numbers 0..255, rounded to the nearest; others are clamped and a NaN is 0. One channel is gray;
+// channels after the third are left out.
+ByteImage byte_image(const Image& image);
+// The same into `bytes`, whose memory is used again.
+void put_bytes(const Image& image, ByteImage& bytes);
+
+// The bytes of a PNG, with text entries for provenance. Its rows are compressed on all cores, and it is the same on any
+// number of them.
+std::string png_content(const ByteImage& image, const Attributes& text = {});
+
+}  // namespace goniochrome::image

@@ -1,0 +1,173 @@
+#include "paint_views.h"
+
+#include <cmath>
+#include <utility>
+
+#include "plan_text.h"
+#include "render/aov.h"
+#include "render/effect_union.h"
+#include "sight.h"
+#include "stream.h"
+
+namespace goniochrome::tool {
+
+Wardrobe::Wardrobe(const DressedMesh& base) : dress_(base), parts_(free_parts(base)) {}
+
+const DressedMesh& Wardrobe::in(const SourcePaint& paint) {
+  for (const std::size_t part : parts_) put_on(part, paint.paint, paint.map.get(), dress_);
+  map_ = paint.map;
+  return dress_;
+}
+
+std::vector<std::size_t> free_parts(const DressedMesh& dress) {
+  std::vector<std::size_t> parts;
+  for (std::size_t part = 0; part < dress.names.size(); ++part)
+    if (dress.names[part].empty()) parts.push_back(part);
+  return parts;
+}
+
+namespace {
+
+class TransportViews : public PaintViews {
+ public:
+  TransportViews(const Options& options, const Request& request, Stage& stage, cli::Session& session)
+      : session_(session), wardrobe_(stage.dresses.front()), shader_(*stage.transport, *stage.gbuffer, stage.scene) {
+    automatic_stops = stage.transport->automatic_stops;
+    stops = request.stops.value_or(request.png ? automatic_stops : 0);
+    white_luminance = stage.transport->white_luminance;
+    auto plan = std::make_shared<render::Plan>();
+    plan->engine = "transport", plan->engine_reason = options.gbuffer + " holds the light by lobes";
+    plan_ = std::move(plan);
+  }
+
+  Result<void> draw(const SourcePaint& paint, PaintView& view) override {
+    GONIO_ASSIGN(const ShadedPaint shaded, shader_.shade(wardrobe_.in(paint), view.picture));
+    view.shading_ms = shaded.frame_ms + shaded.scale_ms;
+    view.bounced_de00_p95 = shaded.bounced_de00_p95;
+    session_.results()["transport"] = shader_.figures(shaded, session_.common().tolerance);
+    if (shaded.coat_changed && !std::exchange(is_coat_told_, true)) tell_coat(session_);
+    return {};
+  }
+
+  std::string engine() const override { return plan_->engine; }
+  std::string engine_reason() const override { return plan_->engine_reason; }
+  std::shared_ptr<const render::Plan> plan() const override { return plan_; }
+
+ private:
+  cli::Session& session_;
+  Wardrobe wardrobe_;
+  ViewShader shader_;
+  std::shared_ptr<const render::Plan> plan_;
+  bool is_coat_told_ = false;
+};
+
+// An engine draws the effects that any of the paints so far has called for. The plan of a paint would leave out what is
+// not seen in that paint, which says nothing about the others.
+class EngineViews : public PaintViews {
+ public:
+  EngineViews(const Options& options, const Request& request, Stage& stage, cli::Session& session,
+              render::Renderer renderer)
+      : options_(options),
+        request_(request),
+        stage_(stage),
+        session_(session),
+        wardrobe_(stage.dresses.front()),
+        renderer_(std::move(renderer)) {}
+
+  Result<void> begin() {
+    if (options_.gbuffer.empty()) {
+      GONIO_ASSIGN(camera_, camera_of(options_, stage_.mesh, request_.size));
+    }
+    GONIO_ASSIGN(auto seen, renderer_.look(stage_.mesh, view()));
+    looks_ = {seen};
+    tell_visibility(*seen, stage_.mesh, session_);
+    const render::DiffuseWhite white = render::diffuse_white(stage_.scene.env, stage_.scene.lights);
+    white_luminance = white.luminance;
+    request_.plan.white_luminance = white.luminance;
+    request_.plan.tolerance_de00 = session_.common().tolerance;
+    request_.plan.pixels = static_cast<double>(request_.size.width) * request_.size.height;
+    const Vec3 to_camera = -seen->rays.direction(0.5 * seen->width, 0.5 * seen->height);
+    const double metered = render::metered_white(stage_.scene.env, stage_.scene.lights, to_camera);
+    automatic_stops = metered > 0 ? -std::log2(metered) : 0;
+    stops = request_.stops.value_or(request_.png ? automatic_stops : 0);
+    return {};
+  }
+
+  Result<void> draw(const SourcePaint& paint, PaintView& view_of_paint) override {
+    wear(wardrobe_.in(paint), options_, stage_);
+    GONIO_TRY(load());
+    std::swap(frame_.picture, view_of_paint.picture);
+    const Result<void> drawn = renderer_.draw(view(), frame_);
+    std::swap(frame_.picture, view_of_paint.picture);
+    GONIO_TRY(drawn);
+    view_of_paint.shading_ms = frame_.frame_ms;
+    gbuffer_ms = frame_.gbuffer_ms;
+    return {};
+  }
+
+  std::string engine() const override { return plan_ ? plan_->engine : ""; }
+  std::string engine_reason() const override { return plan_ ? plan_->engine_reason : ""; }
+  std::shared_ptr<const render::Plan> plan() const override { return plan_; }
+
+ private:
+  render::View view() const { return {camera_, request_.size.width, request_.size.height, request_.samples, false}; }
+
+  // Loads what the paint that is worn calls for, unless that is loaded.
+  Result<void> load() {
+    const render::Effects wanted = render::effects_of(stage_.scene);
+    if (plan_ && render::covers(covered_, wanted)) {
+      renderer_.load_paints(stage_.scene);
+      return {};
+    }
+    GONIO_ASSIGN(render::Plan plan, renderer_.load(stage_.scene, looks_, request_.plan));
+    const bool is_first = plan_ == nullptr;
+    if (is_first) tell(plan);
+    // Every paint of the environment's basis is drawn without loading again.
+    const bool all_lobes = is_first && stage_.scene.env != nullptr && options_.effects == kStreamEffects;
+    covered_ = is_first ? wanted : render::united(covered_, wanted);
+    if (!is_first) plan.effects = render::united(plan_->effects, plan.effects);
+    if (all_lobes) {
+      covered_ = render::with_all_lobes(covered_, *stage_.scene.env);
+      plan.effects = render::with_all_lobes(plan.effects, *stage_.scene.env);
+    }
+    if (!is_first || all_lobes) GONIO_TRY(renderer_.load(stage_.scene, plan.effects, plan.engine));
+    request_.plan.engine = plan.engine;
+    plan_ = std::make_shared<render::Plan>(std::move(plan));
+    return {};
+  }
+
+  void tell(const render::Plan& plan) {
+    for (Json& row : plan_rows(plan, true)) session_.results()["plan"].push_back(std::move(row));
+    session_.explain(plan_table(plan));
+    for (const std::string& remark : renderer_.remarks()) session_.warn(remark);
+  }
+
+  const Options& options_;
+  Request request_;
+  Stage& stage_;
+  cli::Session& session_;
+  Wardrobe wardrobe_;
+  render::Renderer renderer_;
+  render::Camera camera_;
+  std::vector<std::shared_ptr<const render::Gbuffer>> looks_;
+  render::Effects covered_;  // what the paints so far call for
+  std::shared_ptr<const render::Plan> plan_;
+  render::Frame frame_;  // without its picture
+};
+
+}  // namespace
+
+Result<std::unique_ptr<PaintViews>> paint_views(const Options& options, const Request& request, Stage& stage,
+                                                cli::Session& session) {
+  if (free_parts(stage.dresses.front()).empty())
+    return usage_error("every part wears what --part, --trim or --texture says: leave one for the paints of --paint");
+  session.explain(explanation(options, stage.mesh, stage.dresses.front()));
+  if (stage.transport)
+    return std::unique_ptr<PaintViews>(std::make_unique<TransportViews>(options, request, stage, session));
+  GONIO_ASSIGN(render::Renderer renderer, make_renderer(options, request, stage, session));
+  auto views = std::make_unique<EngineViews>(options, request, stage, session, std::move(renderer));
+  GONIO_TRY(views->begin());
+  return std::unique_ptr<PaintViews>(std::move(views));
+}
+
+}  // namespace goniochrome::tool

@@ -1,0 +1,63 @@
+// One view of one mesh in the paints of a stream: what does not depend on the paints is made once.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "paint_source.h"
+#include "render/exact.h"
+#include "render/renderer.h"
+#include "request.h"
+#include "stage.h"
+#include "transport_view.h"
+
+namespace goniochrome::tool {
+
+// A picture of a paint, as far as it was shaded.
+struct PaintView {
+  image::Image picture;  // R G B A
+  double shading_ms = 0;
+  double bounced_de00_p95 = 0;  // what scaling bounced light errs by, with a transport
+};
+
+// The parts that the paints of a stream are put on: those that nothing else dresses.
+std::vector<std::size_t> free_parts(const DressedMesh& dress);
+
+// What a stream wears: a dress whose free parts wear one paint after the other.
+class Wardrobe {
+ public:
+  explicit Wardrobe(const DressedMesh& base);
+  const DressedMesh& in(const SourcePaint& paint);
+
+ private:
+  DressedMesh dress_;
+  std::vector<std::size_t> parts_;
+  std::shared_ptr<const brdf::ColorMap> map_;  // that the dress refers to
+};
+
+class PaintViews {
+ public:
+  virtual ~PaintViews() = default;
+
+  // Draws the stage in the paint, on every part that nothing else dresses. The picture's memory is used again. Error:
+  // the paint cannot be shown.
+  virtual Result<void> draw(const SourcePaint& paint, PaintView& view) = 0;
+
+  // What shades, and why, as the report has it.
+  virtual std::string engine() const = 0;
+  virtual std::string engine_reason() const = 0;
+  // What the picture drawn last shows.
+  virtual std::shared_ptr<const render::Plan> plan() const = 0;
+
+  double stops = 0, automatic_stops = 0;  // exposure in force, and that of a PNG
+  double white_luminance = 0;
+  double gbuffer_ms = 0;
+};
+
+// From the transport of the stage where it has one, else by an engine. The first dress of the stage has what --part,
+// --trim and --texture put on. Error: nothing is left for the paints; what the engine lacks.
+Result<std::unique_ptr<PaintViews>> paint_views(const Options& options, const Request& request, Stage& stage,
+                                                cli::Session& session);
+
+}  // namespace goniochrome::tool

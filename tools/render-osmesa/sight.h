@@ -1,0 +1,29 @@
+// What finds the surfaces that a picture shows, and what is to be told about them.
+#pragma once
+
+#include "render/gbuffer.h"
+#include "render/renderer.h"
+#include "request.h"
+#include "stage.h"
+
+namespace goniochrome::tool {
+
+// Rays find what is visible for the engine that traces them, for meshes of many triangles, and where there is no
+// OpenGL. Error: no OpenGL for an engine that needs it.
+Result<render::Renderer> make_renderer(const Options& options, const Request& request, const Stage& stage,
+                                       cli::Session& session);
+
+// Warns of a camera that sees the mesh from inside, or not at all, which is legal and hardly ever meant; and of single
+// parts of which only back sides are seen.
+void tell_visibility(const render::Gbuffer& gbuffer, const mesh::Mesh& mesh, cli::Session& session);
+
+// Of what is seen of the mesh: what a scene that only its own parts light is exposed by.
+double mean_luminance(const render::Frame& frame);
+
+// The mean luminance that a picture is exposed to show.
+constexpr double kMiddleGray = 0.18;
+
+// What the parts wear, for --explain.
+std::string explanation(const Options& options, const mesh::Mesh& mesh, const DressedMesh& dress);
+
+}  // namespace goniochrome::tool

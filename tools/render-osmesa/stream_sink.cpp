@@ -1,0 +1,169 @@
+#include "stream_sink.h"
+
+#include <utility>
+
+#include "base/file.h"
+#include "base/file_names.h"
+#include "base/text.h"
+#include "image/frames.h"
+#include "picture_file.h"
+
+namespace goniochrome::tool {
+
+namespace {
+
+Result<void> show(const SinkSetup& setup, StreamSlot& slot) {
+  return setup.display->show(slot.view.picture, setup.views.stops, slot.shown);
+}
+
+// A file for each paint.
+class FileSink : public StreamSink {
+ public:
+  FileSink(const SinkSetup& setup, FileNames names) : setup_(setup), names_(std::move(names)) {}
+
+  Result<void> place(StreamSlot& slot) override {
+    if (slot.source.failure) return {};
+    slot.file = names_.next(slot.source.number, slot.source.paint.name, slot.source.paint.code);
+    return {};
+  }
+
+  Result<void> finish(StreamSlot& slot) override {
+    if (setup_.display == nullptr) return write_scene_linear(slot);
+    GONIO_TRY(show(setup_, slot));
+    image::Attributes text = provenance(setup_.session);
+    text["goniochrome:paint"] = slot.source.paint.name;
+    return write_file(slot.file, image::png_content(slot.shown, text));
+  }
+
+  Result<void> settle(StreamSlot& slot) override {
+    files_ += slot.source.failure ? 0 : 1;
+    return {};
+  }
+  std::size_t files() const override { return files_; }
+
+ private:
+  Result<void> write_scene_linear(StreamSlot& slot) const {
+    render::Frame frame;
+    std::swap(frame.picture, slot.view.picture);
+    const render::DiffuseWhite white{setup_.views.white_luminance, {0, 1, 0}};
+    const Result<void> written =
+        write_exr_picture(setup_.options, setup_.request, {{}, {}, slot.file}, frame, setup_.stage.scene, *slot.plan,
+                          white, setup_.views.stops, setup_.views.automatic_stops, nullptr, setup_.session);
+    std::swap(frame.picture, slot.view.picture);
+    return written;
+  }
+
+  SinkSetup setup_;
+  FileNames names_;
+  std::size_t files_ = 0;
+};
+
+// Contact sheets, one of them in memory at a time.
+class SheetSink : public StreamSink {
+ public:
+  SheetSink(const SinkSetup& setup, FileNames names, const SheetSize& size)
+      : setup_(setup), names_(std::move(names)), size_(size), places_(size.columns, size.rows) {}
+
+  bool looks_ahead() const override { return true; }
+
+  Result<void> place(StreamSlot& slot) override {
+    slot.place = places_.next(slot.source.paint.name, slot.source.follower);
+    return {};
+  }
+
+  Result<void> finish(StreamSlot& slot) override { return show(setup_, slot); }
+
+  Result<void> settle(StreamSlot& slot) override {
+    if (sheet_ && slot.place.sheet != number_) {
+      if (!names_.has("index"))
+        return usage_error(
+            "--output is \"{}\": there are more paints than a sheet of {} x {} has room for: write {{index}} into it, "
+            "as in 'sheet-{{index}}.png'",
+            setup_.options.output, size_.columns, size_.rows);
+      GONIO_TRY(end());
+    }
+    if (!sheet_) sheet_.emplace(size_.columns, size_.rows, setup_.request.size.width, setup_.request.size.height);
+    number_ = slot.place.sheet;
+    const std::string name = slot.source.paint.name.empty() ? "?" : slot.source.paint.name;
+    sheet_->put(slot.place.cell, slot.source.failure ? nullptr : &slot.shown,
+                slot.source.failure ? name + ": failed" : name);
+    return {};
+  }
+
+  Result<void> end() override {
+    if (!sheet_) return {};
+    const std::string content = image::png_content(sheet_->picture(), provenance(setup_.session));
+    sheet_.reset();
+    return write_file(names_.next(++files_, "", ""), content);
+  }
+  std::size_t files() const override { return files_; }
+
+ private:
+  SinkSetup setup_;
+  FileNames names_;
+  SheetSize size_;
+  image::SheetPlaces places_;
+  std::optional<image::ContactSheet> sheet_;
+  std::size_t number_ = 0, files_ = 0;
+};
+
+// Frames on standard output.
+class FrameSink : public StreamSink {
+ public:
+  FrameSink(const SinkSetup& setup, image::FrameFormat format, OutputFile out)
+      : setup_(setup), format_(format), out_(std::move(out)) {}
+
+  Result<void> finish(StreamSlot& slot) override {
+    GONIO_TRY(show(setup_, slot));
+    slot.content = image::frame_content(format_, slot.shown);
+    return {};
+  }
+
+  Result<void> settle(StreamSlot& slot) override {
+    if (slot.source.failure) return {};
+    if (frames_++ == 0)
+      GONIO_TRY(out_.write(image::frames_head(format_, setup_.request.size.width, setup_.request.size.height)));
+    GONIO_TRY(out_.write(slot.content));
+    return out_.flush();
+  }
+
+  Result<void> end() override { return out_.commit(); }
+  std::size_t files() const override { return 0; }
+
+ private:
+  SinkSetup setup_;
+  image::FrameFormat format_;
+  OutputFile out_;
+  std::size_t frames_ = 0;
+};
+
+}  // namespace
+
+Result<SheetSize> parse_sheet(const std::string& text) {
+  constexpr std::int64_t kMost = 64;
+  const auto pieces = split(text, 'x');
+  if (pieces.size() == 2) {
+    const auto columns = parse_integer(pieces[0]), rows = parse_integer(pieces[1]);
+    if (columns && rows && *columns >= 1 && *rows >= 1 && *columns <= kMost && *rows <= kMost)
+      return SheetSize{static_cast<int>(*columns), static_cast<int>(*rows)};
+  }
+  return usage_error("--sheet is \"{}\": write COLSxROWS, 1x1 to {}x{}, as in 3x3", text, kMost, kMost);
+}
+
+Result<std::unique_ptr<StreamSink>> stream_sink(const SinkSetup& setup) {
+  const Options& options = setup.options;
+  if (!options.to.empty()) {
+    GONIO_ASSIGN(OutputFile out, OutputFile::create("-"));
+    const auto format = options.to == "ppm" ? image::FrameFormat::kPpm : image::FrameFormat::kY4m;
+    return std::unique_ptr<StreamSink>(std::make_unique<FrameSink>(setup, format, std::move(out)));
+  }
+  const bool is_sheet = !options.sheet.empty();
+  const std::vector<std::string> words =
+      is_sheet ? std::vector<std::string>{"index"} : std::vector<std::string>{"name", "code", "index"};
+  GONIO_ASSIGN(FileNames names, FileNames::create(options.output, words, "--output"));
+  if (!is_sheet) return std::unique_ptr<StreamSink>(std::make_unique<FileSink>(setup, std::move(names)));
+  GONIO_ASSIGN(const SheetSize size, parse_sheet(options.sheet));
+  return std::unique_ptr<StreamSink>(std::make_unique<SheetSink>(setup, std::move(names), size));
+}
+
+}  // namespace goniochrome::tool
