@@ -160,7 +160,7 @@ renamed() {
 venv_with() {
   venv=$BATS_TEST_DIRNAME/../../build/paint-export-checks
   if ! "$venv/bin/python" -c "import $1" 2>/dev/null; then
-    { /usr/bin/python3 -m venv "$venv" && timeout 300 "$venv/bin/pip" install -q "$2"; } >/dev/null 2>&1 || skip "pip cannot install the package $2"
+    { /usr/bin/python3 -m venv "$venv" && timeout 120 "$venv/bin/pip" install -q "$2"; } >/dev/null 2>&1 || skip "pip cannot install the package $2"
   fi
 }
 
@@ -195,7 +195,7 @@ PY
 @test "the validator of Khronos finds no fault in a glTF file" {
   node=$BATS_TEST_DIRNAME/../../build/paint-export-checks-npm
   command -v npm >/dev/null || skip "npm is not there"
-  [ -d "$node/node_modules/gltf-validator" ] || { mkdir -p "$node" && (cd "$node" && timeout 300 npm install --silent gltf-validator) >/dev/null 2>&1; } ||
+  [ -d "$node/node_modules/gltf-validator" ] || { mkdir -p "$node" && (cd "$node" && timeout 120 npm install --silent gltf-validator) >/dev/null 2>&1; } ||
     skip "npm cannot install the package gltf-validator"
   paint-export -q --to gltf "$fitted" >/dev/null
   NODE_PATH=$node/node_modules node -e '
