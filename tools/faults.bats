@@ -36,6 +36,7 @@ sketch-fit -q -i seen.png -b seen.exr
 paint-pick -q --face seen.png@40,25 --flop seen.png@60,30
 plot-paint -q --paint $name fitted.xml
 draw-plot -q table.csv
+paint-export -q --to gltf fitted.xml#$name
 EOF
   # Without the compiler for WebAssembly, this one writes nothing.
   [ ! -f "$(dirname "$(command -v paint-studio)")/../lib/goniochrome/studio.wasm" ] ||

@@ -403,6 +403,7 @@ every_tool() {
   printf 'P6\n16 8\n255\n' >p.ppm && head -c 384 "$TESTDATA/contact-sheet.jpg" >>p.ppm
   printf 'series,x,y\na,1,0.5\na,2,0.25\n' >table.csv
   printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n' >tri.off
+  fit-paint -q -b "$TESTDATA/b5.basis.xml" one.xml -o fit.xml
   cat <<LIST
 csv paint-convert -q $TESTDATA/paints.paints.xml --to csv
 xml paint-edit -q one.xml --hue-shift 90
@@ -417,6 +418,7 @@ xml trompe-fit -q one.xml --angle 2
 tsv colorsnap -q -l $TESTDATA/paints.paints.xml -k 1 one.xml
 xml paint-pick -q --face p.ppm@4,4
 svg plot-paint -q one.xml
+gltf paint-export -q --to gltf fit.xml
 svg draw-plot -q table.csv
 png render-osmesa -q --engine cpu --mesh tri.off --light 0,20 --size 16x12 --samples 1
 png render-osmesa -q --mesh tri.off --light 0,20 --size 160x120
@@ -444,7 +446,7 @@ LIST
       awk '{ exit !($1 + $2 <= 1) }' used
     done
   done < <(every_tool)
-  [ "$tried" -eq 160 ]
+  [ "$tried" -eq 170 ]
   [ "$short" -ge 20 ]
 }
 

@@ -1,4 +1,5 @@
-// RGL's adaptive measurements as tensor files ([DupuyJakob2018]): RGB over a warped square for each angle of incidence.
+// RGL's adaptive measurements as tensor files ([DupuyJakob2018]): RGB or a spectrum over a warped square for each angle
+// of incidence.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -129,8 +130,8 @@ double line_integral(double a, double b, double t) {
 }
 
 struct RglTables {
-  std::vector<double> theta_rad;  // angles of incidence, ascending
-  Tensor sigma, ndf, rgb;
+  std::vector<double> theta_rad;      // angles of incidence, ascending
+  Tensor sigma, ndf, colors;          // colors: of RGB, or of each wavelength
   std::size_t height = 0, width = 0;  // of the density of visible normals
   std::vector<Density> visible;       // one per angle of incidence
 };
@@ -147,7 +148,7 @@ class RglBrdf final : public MeasuredBrdf {
     const double u = std::sqrt(polar_angle(half) * 2 / kPi);
     double v = turn / (2 * kPi) + 0.5;
     v -= std::floor(v);
-    MeasuredValue result{.f = {0, 0, 0}};
+    MeasuredValue result{.f = std::vector<double>(tables_.colors.shape[2])};
     const auto above = std::upper_bound(tables_.theta_rad.begin(), tables_.theta_rad.end(), theta_i);
     const auto slice = std::clamp<std::ptrdiff_t>(above - tables_.theta_rad.begin() - 1, 0,
                                                   static_cast<std::ptrdiff_t>(tables_.theta_rad.size()) - 2);
@@ -160,7 +161,7 @@ class RglBrdf final : public MeasuredBrdf {
   }
 
  private:
-  // [DupuyJakob2018] and its data format: f cos(theta_o) = D(h) / (4 sigma(wi)) * rgb(s), where s is where the half
+  // [DupuyJakob2018] and its data format: f cos(theta_o) = D(h) / (4 sigma(wi)) * color(s), where s is where the half
   // vector (u, v) falls after the density of visible normals has been flattened: row first, then within the row.
   void add(const Cell& incidence, double theta_i, double u, double v, double scale, std::vector<double>& f) const {
     const std::size_t w = tables_.width;
@@ -187,11 +188,11 @@ class RglBrdf final : public MeasuredBrdf {
     };
     const double facets =
         of_square(tables_.ndf, u, v) / (4 * of_square(tables_.sigma, std::sqrt(theta_i * 2 / kPi), 0.5));
-    const std::size_t rows = tables_.rgb.shape[3], columns = tables_.rgb.shape[4], size = rows * columns;
+    const std::size_t rows = tables_.colors.shape[3], columns = tables_.colors.shape[4], size = rows * columns;
     const Patch texel(rows, columns, std::clamp(s, 0.0, 1.0), std::clamp(t, 0.0, 1.0));
-    for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t c = 0; c < f.size(); ++c) {
       const auto table = [&](std::size_t slice) {
-        return texel.of(std::span(tables_.rgb.values).subspan((slice * 3 + c) * size, size));
+        return texel.of(std::span(tables_.colors.values).subspan((slice * f.size() + c) * size, size));
       };
       f[c] += scale * facets * std::lerp(table(incidence.low), table(incidence.low + 1), incidence.weight);
     }
@@ -206,8 +207,6 @@ bool looks_rgl(std::string_view, std::string_view head) {
 
 Result<MeasuredPointer> read_rgl(const std::string& path, std::string_view bytes) {
   GONIO_ASSIGN(const TensorFile file, TensorFile::parse(path, bytes));
-  if (!file.has("rgb") && file.has("spectra"))
-    return input_error("{}: is the spectral variant: take the file that ends in _rgb.bsdf", path);
   GONIO_ASSIGN(const Tensor* phi, file.field("phi_i", 1));
   if (phi->values.size() > 2)
     return input_error("{}: is anisotropic ({} incident azimuths): aspecular color needs an isotropic sample", path,
@@ -216,32 +215,41 @@ Result<MeasuredPointer> read_rgl(const std::string& path, std::string_view bytes
   GONIO_ASSIGN(const Tensor* sigma, file.field("sigma", 2));
   GONIO_ASSIGN(const Tensor* ndf, file.field("ndf", 2));
   GONIO_ASSIGN(const Tensor* visible, file.field("vndf", 4));
-  GONIO_ASSIGN(const Tensor* rgb, file.field("rgb", 5));
+  const bool is_spectral = !file.has("rgb") && file.has("spectra");
+  GONIO_ASSIGN(const Tensor* colors, file.field(is_spectral ? "spectra" : "rgb", 5));
+  std::vector<double> wavelengths;
+  if (is_spectral) {
+    GONIO_ASSIGN(const Tensor* nm, file.field("wavelengths", 1));
+    wavelengths = nm->values;
+    if (wavelengths.size() < 2 || !std::ranges::is_sorted(wavelengths, std::less_equal<>()))
+      return input_error("{}: its wavelengths do not ascend", path);
+  }
   const std::size_t slices = theta->values.size(), first = phi->values.size();
   const auto at_least_two = [](const Tensor& t, std::size_t from) {
     return std::all_of(t.shape.begin() + static_cast<std::ptrdiff_t>(from), t.shape.end(),
                        [](auto n) { return n >= 2; });
   };
   if (slices < 2 || !std::ranges::is_sorted(theta->values, std::less_equal<>()) || visible->shape[0] != first ||
-      visible->shape[1] != slices || rgb->shape[0] != first || rgb->shape[1] != slices || rgb->shape[2] != 3 ||
-      !at_least_two(*visible, 2) || !at_least_two(*rgb, 3) || !at_least_two(*sigma, 0) || !at_least_two(*ndf, 0))
+      visible->shape[1] != slices || colors->shape[0] != first || colors->shape[1] != slices ||
+      colors->shape[2] != (is_spectral ? wavelengths.size() : 3) || !at_least_two(*visible, 2) ||
+      !at_least_two(*colors, 3) || !at_least_two(*sigma, 0) || !at_least_two(*ndf, 0))
     return input_error("{}: the sizes of its fields do not fit together", path);
 
-  RglTables tables{theta->values, *sigma, *ndf, *rgb, visible->shape[2], visible->shape[3], {}};
+  RglTables tables{theta->values, *sigma, *ndf, *colors, visible->shape[2], visible->shape[3], {}};
   const std::size_t size = tables.height * tables.width;
   for (std::size_t k = 0; k < slices; ++k) {
     tables.visible.push_back(density(std::span(visible->values).subspan(k * size, size), tables.height, tables.width));
     if (!std::isfinite(tables.visible.back().over_rows.back()))
       return input_error("{}: the density of visible normals is empty at {} deg", path, theta->values[k] / kDegree);
   }
-  MeasuredTraits traits{.format = "rgl", .description = file.description()};
+  MeasuredTraits traits{.format = "rgl", .description = file.description(), .wavelengths_nm = wavelengths};
   double negative_square = 0;
-  for (const double value : rgb->values) count_sample(value, traits, negative_square);
+  for (const double value : colors->values) count_sample(value, traits, negative_square);
   return MeasuredPointer(std::make_unique<RglBrdf>(std::move(traits), std::move(tables)));
 }
 
 }  // namespace
 
-const MeasuredFormat kRgl = {looks_rgl, read_rgl, "RGL _rgb.bsdf"};
+const MeasuredFormat kRgl = {looks_rgl, read_rgl, "RGL .bsdf"};
 
 }  // namespace goniochrome::brdf

@@ -22,7 +22,7 @@ struct ReflectionOperator {
 ReflectionOperator component_wise();
 
 // The default for rendering: fitted in the working space to published reflectances and lights (scripts/fit-operator),
-// so that the mean CIEDE2000 difference from spectral products is least. reflection_evidence_test.cpp holds its error
+// so that the mean CIEDE2000 difference from spectral rooms is small. reflection_evidence_test.cpp holds its error
 // on spectra that were held out beside that of every other operator here.
 ReflectionOperator fitted_operator();
 

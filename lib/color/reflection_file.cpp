@@ -50,8 +50,8 @@ bool is_path(const std::string& text) {
 }  // namespace
 
 std::string operator_sentences() {
-  return "fitted is a bilinear product that is fitted to published spectra, and of all products here it has the "
-         "least error on spectra that were held out: goniochrome-theory(7), COLORED LIGHT, has the table. plain "
+  return "fitted is a bilinear product that is fitted to published spectra, and errs less than plain on every kind of "
+         "spectra that were held out: goniochrome-theory(7), COLORED LIGHT, has the table. plain "
          "multiplies each channel by itself. iso is the published table for camera sensors, applied to Rec.2020 "
          "values; it was the default before. iso709 is the same table in the primaries of Rec.709, for which it was "
          "made. estimated comes from color-matching functions. none is another name for plain, and working and "

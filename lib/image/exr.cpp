@@ -29,6 +29,7 @@
 #include "image/exr.h"
 #include "image/image.h"
 #include "image/internal/exr.h"
+#include "image/internal/exr_header.h"
 
 namespace goniochrome::image {
 
@@ -51,31 +52,6 @@ std::size_t most_samples_a_byte(Imf::Compression compression) {
     default:
       return 1032;
   }
-}
-
-// Whether every attribute of every header ends within the file. The library allocates the length that an attribute
-// states before it reads it. A header is a list of name, type, length and value, ended by an empty name; so is the list
-// of the headers of several parts (bit 12 of the version).
-bool header_ends_within(const std::string& content) {
-  if (content.size() < 8) return false;
-  const bool several = (static_cast<unsigned char>(content[5]) & 0x10) != 0;
-  std::size_t at = 8;
-  const auto skip_text = [&] {
-    at = content.find('\0', at);
-    return at != std::string::npos && ++at < content.size();
-  };
-  do {
-    while (at < content.size() && content[at] != '\0') {
-      std::int32_t length = 0;
-      if (!skip_text() || !skip_text() || content.size() - at < sizeof length) return false;
-      std::memcpy(&length, content.data() + at, sizeof length);
-      at += sizeof length;
-      if (length < 0 || static_cast<std::size_t>(length) > content.size() - at) return false;
-      at += static_cast<std::size_t>(length);
-    }
-    ++at;
-  } while (several && at < content.size() && content[at] != '\0');
-  return at < content.size();
 }
 
 class MemoryInput : public Imf::IStream {
@@ -185,7 +161,8 @@ void use_threads() {
 Result<std::vector<ImagePart>> decoded_exr(const std::string& content, const std::string& name) {
   use_threads();
   // The library itself tells that a file is no EXR file at all.
-  if (is_exr(content) && !header_ends_within(content)) return input_error("{}: is cut off within its header", name);
+  if (is_exr(content) && !is_sound_exr_header(content))
+    return input_error("{}: its header is damaged or cut off", name);
   try {
     MemoryInput stream(content, name);
     Imf::MultiPartInputFile file(stream, threads());

@@ -446,4 +446,12 @@ Result<LibraryIndex> LibraryIndex::from_paints(const std::function<Result<std::o
   return index;
 }
 
+Result<LibraryIndex> LibraryIndex::from_bytes(std::string bytes) {
+  return view_of(std::make_unique<Bytes>(std::move(bytes)));
+}
+
+std::string_view LibraryIndex::content() const {
+  return bytes_->view();
+}
+
 }  // namespace goniochrome::library

@@ -49,6 +49,10 @@ class LibraryIndex {
   // An index in memory over the paints that `next` gives until it gives none.
   static Result<LibraryIndex> from_paints(const std::function<Result<std::optional<paint::Paint>>()>& next);
 
+  // An index over bytes that content() gave, in this program or in another one. Error: they are damaged.
+  static Result<LibraryIndex> from_bytes(std::string bytes);
+  std::string_view content() const;
+
   LibraryIndex(LibraryIndex&&) noexcept;
   LibraryIndex& operator=(LibraryIndex&&) noexcept;
   ~LibraryIndex();

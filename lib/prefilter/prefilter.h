@@ -37,8 +37,9 @@ struct LobePlan {
     kHarmonics,        // zonal harmonics with a bound on what is left out
     kBrightHarmonics,  // the same for the rest after the brightest texels; texels beyond the bound by blocks
     kArcs,             // exponents 0 and 1 of the rest by sums along rows, and the brightest texels
-    kBlocks,           // the tree of texel blocks
-    kMirror,           // exact overlaps
+    kHorizon,  // exponents below 1: harmonics of a smoother kernel, bands beside the horizon, the brightest texels
+    kBlocks,   // the tree of texel blocks
+    kMirror,   // exact overlaps
   };
   double exponent = 1;        // of the kernel; of one that is no cosine power, of the power that is as sharp
   KernelPointer kernel = {};  // none: the mirror

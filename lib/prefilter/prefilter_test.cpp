@@ -174,6 +174,21 @@ TEST(HardCase, PrefilterExponentEveryLobeKeepsATightTolerance) {
   expect_every_lobe_within(1e-4);
 }
 
+// Exponents below 1 have a step or a vertical slope at the horizon, which harmonics do not reach.
+TEST(HardCase, PrefilterExponentFlatLobesKeepATightTolerance) {
+  const envmap::Environment flat = outdoors(128);
+  envmap::CubeMap map(48);
+  map.texels = mirror_values(flat, envmap::map_grid(Layout::kCube, 48), {});
+  for (const envmap::Environment& env : {flat, envmap::Environment::from_cube(map, "cube")}) {
+    const PrefilterRequest request = {{0, 0.3, 0.5, 0.9}, false, 8, 1e-5, Layout::kCube, {}, {}, false};
+    const std::vector<LobePlan> plan = prefilter_plan(env, request);
+    for (const LobePlan& lobe : plan) EXPECT_EQ(lobe.method, LobePlan::Method::kHorizon) << lobe.exponent;
+    const envmap::PrefilteredEnvironment result = run(env, request);
+    for (const envmap::PrefilteredLobe& lobe : result.lobes)
+      EXPECT_LE(lobe_error(env, lobe, 6, 3, 1).max, request.tolerance) << lobe.exponent << " " << int(env.layout());
+  }
+}
+
 // Texels of 11 degrees, one of them a sun: a wide lobe bends at the horizon within them.
 TEST(HardCase, PrefilterExponentCoarseProbesKeepTheTolerance) {
   const envmap::Environment flat = outdoors(16);

@@ -50,4 +50,13 @@ Result<PageLight> page_light(const envmap::PrefilteredEnvironment& env, const Ef
   return Result(std::move(light));
 }
 
+PageMovableLamp page_movable_lamp(Effects effects, const color::ReflectionOperator& op, double radius_rad) {
+  Light lamp;
+  lamp.radius_rad = radius_rad;
+  const FloatTexture discs = disc_texture({lamp}, effects);
+  effects.lights = 1;
+  effects.extent = true;
+  return {for_opengl_es(shading_fragment_shader(effects, op, {})), disc_uniform(lamp), discs.rgba};
+}
+
 }  // namespace goniochrome::render

@@ -36,6 +36,13 @@ struct PageLight {
   std::vector<float> discs;             // its RGBA texels; empty without lamps
 };
 
+// What a page needs to draw one more lamp in an environment: a disc far away, which the page moves and dims.
+struct PageMovableLamp {
+  std::string shading_fragment;  // the program of the environment with this lamp before its others
+  Vec3 disc;                     // as light_disc has it
+  std::vector<float> discs;      // texels that go before those of the others
+};
+
 // WebGL 2 promises 16 textures. Besides lobes, the program reads seven.
 constexpr std::size_t kMostPageLobes = 9;
 
@@ -43,5 +50,9 @@ constexpr std::size_t kMostPageLobes = 9;
 // kMostPageLobes.
 Result<PageLight> page_light(const envmap::PrefilteredEnvironment& env, const Effects& effects,
                              const color::ReflectionOperator& op);
+
+// `effects` are those of page_light(), without the lamp. radius_rad is that of the disc as it is seen,
+// above 0 and up to kWidestDisc_rad.
+PageMovableLamp page_movable_lamp(Effects effects, const color::ReflectionOperator& op, double radius_rad);
 
 }  // namespace goniochrome::render

@@ -12,6 +12,7 @@
 #include "brdf/true_coat_for_test.h"
 #include "color/color.h"
 #include "render/exact.h"
+#include "render/path/traced_paint.h"
 
 namespace goniochrome::render {
 namespace {
@@ -87,6 +88,24 @@ color::Rgb coat_light(const TrueCoat& coat, const Vec3& normal, const Sky& sky, 
   return sum;
 }
 
+// The same as paths draw it: directions that a point of the paint draws.
+color::Rgb path_light(const TracedPaint& paint, const Vec3& normal, const Sky& sky, int count) {
+  const PaintedPoint point(paint, rays::float3(normal), {0, 0, 1});
+  constexpr double kGolden = 1.22074408460575947536;  // evenly spread triples [Roberts]
+  constexpr double kSteps[] = {1 / kGolden, 1 / (kGolden * kGolden), 1 / (kGolden * kGolden * kGolden)};
+  color::Rgb sum;
+  for (int i = 0; i < count; ++i) {
+    const auto number = [&](int k) { return std::fmod(0.5 + i * kSteps[k], 1); };
+    const Reflection drawn = point.drawn(number(0), number(1), number(2));
+    if (!(drawn.pdf > 0)) continue;
+    const float* seen = sky.rest.lookup(rays::vec3(drawn.direction));
+    sum += (1.0 / drawn.pdf / count) * rays::vec3(drawn.f_cos) * color::Rgb{seen[0], seen[1], seen[2]};
+  }
+  for (const Sky::Bright& texel : sky.bright)
+    sum += rays::vec3(point.at(rays::float3(texel.direction)).f_cos) * texel.light;
+  return sum;
+}
+
 struct Picture {
   double p95 = 0, mean = 0;
 };
@@ -127,6 +146,16 @@ class Studio {
     for (const Vec3& normal : normals_) light.push_back(coat_light(coat, normal, sky_, 8000));
     return light;
   }
+  // Of the gloss alone.
+  std::vector<color::Rgb> by_paths(paint::LobeFit fit, double gloss_deg) const {
+    fit.diffuse = {};
+    for (paint::ViewLobes& view : fit.views) view.diffuse = {};
+    TracedPaint paint = *TracedPaint::create(fit, gloss_deg, {});
+    paint.put_coat(fit, gloss_deg);
+    std::vector<color::Rgb> light;
+    for (const Vec3& normal : normals_) light.push_back(path_light(paint, normal, sky_, 8000));
+    return light;
+  }
   double white() const { return white_; }
 
  private:
@@ -145,9 +174,15 @@ paint::LobeFit base_paint(const color::Rgb& reflectance) {
   return fit;
 }
 
+// p95 of pictures, dE00, ascending.
 struct Compared {
-  double median = 0, worst = 0, textbook = 0, textbook_worst = 0;  // p95 of pictures, dE00
+  std::vector<double> lobes, textbook;
+  std::vector<double> one_scale, two_scales;  // by paths
 };
+
+double median(const std::vector<double>& ascending) {
+  return ascending[ascending.size() / 2];
+}
 
 // Balls in every `step`th coat. The textbook is the lobe of the reading at 60 deg for all views.
 Compared compared(const Studio& studio, const color::Rgb& reflectance, std::size_t step) {
@@ -155,7 +190,7 @@ Compared compared(const Studio& studio, const color::Rgb& reflectance, std::size
   const paint::LobeFit base = base_paint(reflectance);
   const std::vector<color::Rgb> bare = studio.shown(base, 60);
   const std::vector<TrueCoat> coats = brdf::true_coats();
-  std::vector<double> ours, textbook;
+  Compared result;
   for (std::size_t i = 0; i < coats.size(); i += step) {
     std::vector<paint::GlossReading> readings;
     for (const brdf::TestMeter& meter : brdf::kTestMeters)
@@ -167,38 +202,52 @@ Compared compared(const Studio& studio, const color::Rgb& reflectance, std::size
     EXPECT_TRUE(brdf::set_gloss(table, {readings[1]}, one).ok());
     std::vector<color::Rgb> truth = studio.coat(coats[i]);
     for (std::size_t k = 0; k < truth.size(); ++k) truth[k] += bare[k];
-    ours.push_back(difference(studio.shown(fit, 20), truth, studio.white()).p95);
-    textbook.push_back(difference(studio.shown(one, 60), truth, studio.white()).p95);
+    const auto off = [&](const std::vector<color::Rgb>& picture) {
+      return difference(picture, truth, studio.white()).p95;
+    };
+    result.lobes.push_back(off(studio.shown(fit, 20)));
+    result.textbook.push_back(off(studio.shown(one, 60)));
+    std::vector<color::Rgb> paths = studio.by_paths(fit, 20);
+    for (std::size_t k = 0; k < paths.size(); ++k) paths[k] += bare[k];
+    (coats[i].k > 0 ? result.two_scales : result.one_scale).push_back(off(paths));
   }
-  std::ranges::sort(ours), std::ranges::sort(textbook);
-  return {ours[ours.size() / 2], ours.back(), textbook[textbook.size() / 2], textbook.back()};
+  for (std::vector<double>* all : {&result.lobes, &result.textbook, &result.one_scale, &result.two_scales})
+    std::ranges::sort(*all);
+  return result;
 }
 
-void check_pictures(const std::string& name, const std::string& file, double most_of_textbook) {
+void check_pictures(const std::string& name, const std::string& file, double most_of_textbook, double most_median) {
   const Studio studio(file);
   for (const color::Rgb& reflectance : {color::Rgb{0.02, 0.03, 0.07}, color::Rgb{0.2, 0.25, 0.4}}) {
     const Compared c = compared(studio, reflectance, 5);
-    printf("%s, base %.2f: p95 dE00 median %.2f worst %.2f, textbook %.2f %.2f\n", name.c_str(), reflectance.y,
-           c.median, c.worst, c.textbook, c.textbook_worst);
-    EXPECT_LE(c.median, most_of_textbook * c.textbook);
-    EXPECT_LE(c.worst, c.textbook_worst);
+    std::printf("%s, base %.2f, p95 dE00, median and worst: lobes %.2f %.2f, textbook %.2f %.2f, ", name.c_str(),
+                reflectance.y, median(c.lobes), c.lobes.back(), median(c.textbook), c.textbook.back());
+    std::printf("paths, one scale %.2f %.2f, two scales %.2f %.2f\n", median(c.one_scale), c.one_scale.back(),
+                median(c.two_scales), c.two_scales.back());
+    EXPECT_LE(median(c.lobes), most_of_textbook * median(c.textbook));
+    EXPECT_LE(c.lobes.back(), c.textbook.back());
+    EXPECT_LE(c.one_scale.back(), 1);
+    EXPECT_LE(median(c.two_scales), most_median);
+    EXPECT_LE(c.two_scales.back(), 2);
   }
 }
 
-// In a studio the error is less than half of the textbook's. It is not below 1: lobes are round about the mirror
-// direction, and the light of a rough surface at oblique views is wider in the plane of incidence than across it and
-// leans away from the normal. The truth itself, turned at random about the mirror direction, errs as much. In the sun
-// little is won, because the sun shows the shape of a lobe and hardly its energy.
+// In a studio the error of lobes is less than half of the textbook's. It is not below 1: lobes are round about the
+// mirror direction, and the light of a rough surface at oblique views is wider in the plane of incidence than across it
+// and leans away from the normal. The truth itself, turned at random about the mirror direction, errs as much. In the
+// sun little is won, because the sun shows the shape of a lobe and hardly its energy. Paths draw the coat that the
+// readings tell as a rough surface. Three readings tell the haze of two scales only roughly, and where that is off, so
+// are pictures.
 TEST(Satin, PicturesAreNearTheRoughDielectric) {
-  check_pictures("studio", testdata("studio.exr"), 0.5);
-  check_pictures("outdoor", testdata("outdoor.exr"), 1.2);
+  check_pictures("studio", testdata("studio.exr"), 0.5, 1);
+  check_pictures("outdoor", testdata("outdoor.exr"), 1.2, 1);
 }
 
 TEST(Satin, PicturesAreNearTheRoughDielectricRealData) {
   const char* data = std::getenv("GONIOCHROME_DATA");
   if (data == nullptr) GTEST_SKIP() << "GONIOCHROME_DATA is not set";
   for (const char* probe : {"studio_small_03_1k.hdr", "rooitou_park_1k.hdr"})
-    check_pictures(probe, std::string(data) + "/probes/" + probe, 1.2);
+    check_pictures(probe, std::string(data) + "/probes/" + probe, 1.2, 1.5);
 }
 
 }  // namespace

@@ -201,6 +201,7 @@ Result<TruthError> truth_error(const Frame& frame, const Scene& scene, const Ray
   paths.environment = request.environment;
   paths.emission = scene.emission;
   paths.ground = scene.ground;
+  paths.rough_coats = request.whole;
   GONIO_ASSIGN(const Transport transport, Transport::create(paths));
   Judge judge(frame, scene, drawn, request);
   judge.refine(transport, *scene.mesh);

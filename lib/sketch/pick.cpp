@@ -7,9 +7,8 @@
 
 #include "base/file.h"
 #include "base/text.h"
-#include "display/paint_view.h"
 #include "paint/curve.h"
-#include "sketch/internal/sketch_gloss.h"
+#include "sketch/dropper.h"
 #include "sketch/sketch_picture.h"
 
 namespace goniochrome::sketch {
@@ -244,9 +243,8 @@ Result<PickSample> pick(const image::ImagePart& image, const std::string& path, 
   const PictureView view = light != nullptr ? PictureView::kPaint : PictureView::kPlain;
   GONIO_ASSIGN(const Picture picture, picture_of(piece_of(image, x0, y0, x1, y1, 1), path, view));
   PickSample sample{dropper, path, 0, 0, 0, {}, false, 0, picture.warnings};
-  color::Rgb sum;
+  std::vector<color::Rgb> lights;
   std::array<color::Rgb, 3> diffusers{};
-  std::vector<double> brightness;
   for (int y = 0; y < picture.rgb.height; ++y)
     for (int x = 0; x < picture.rgb.width; ++x) {
       if (std::hypot(x0 + x - dropper.x, y0 + y - dropper.y) > dropper.radius) continue;
@@ -264,25 +262,23 @@ Result<PickSample> pick(const image::ImagePart& image, const std::string& path, 
         for (std::size_t c = 0; c < 3; ++c) diffusers[c] += (*here)[c];
       }
       sample.clipped += state == Picture::kClipped;
-      ++sample.pixels, sum += shown;
-      brightness.push_back(display::srgb_signal(color::xyz_d65_from_rgb(shown).Y));
+      ++sample.pixels, lights.push_back(shown);
     }
   if (sample.pixels == 0 && light != nullptr)
     return input_error("{}: no light was traced for the pixels about {},{}: put the dropper on the mesh", path,
                        dropper.x, dropper.y);
   if (sample.pixels == 0)
     return input_error("{}: every pixel about {},{} is transparent: move the dropper", path, dropper.x, dropper.y);
-  color::Rgb reflectance = (1.0 / sample.pixels) * sum;
+  const DropperColor found = dropper_color(lights);
+  sample.lab = found.lab, sample.gloss = found.gloss;
   if (light != nullptr) {
-    const auto explained =
-        reflectance_of((picture.scene_linear ? light->gain_linear : light->gain_display) * sum, diffusers);
+    const double gain = picture.scene_linear ? light->gain_linear : light->gain_display;
+    const auto explained = reflectance_of(gain * sample.pixels * found.mean, diffusers);
     if (!explained)
       return input_error("{}: the pixels about {},{} get no light: put the dropper elsewhere", path, dropper.x,
                          dropper.y);
-    reflectance = *explained, sample.lit = true;
+    sample.lab = color::lab_from_rgb(*explained, *color::white_point({})), sample.lit = true;
   }
-  sample.lab = color::lab_from_rgb(reflectance, *color::white_point({}));
-  sample.gloss = contrast_gloss(brightness);
   return sample;
 }
 

@@ -60,4 +60,41 @@ void main() {{
                      color::xyz_d65_from_rgb({0, 1, 0}).Y, color::xyz_d65_from_rgb({0, 0, 1}).Y, to_rec709);
 }
 
+std::string overlay_program() {
+  return R"(#version 300 es
+precision highp float;
+precision highp sampler2D;
+uniform sampler2D gbuffer;  // normal, part + 1
+uniform vec3 corner, right, down;  // the ray through a pixel, from the upper left
+uniform vec3 toward;  // the light
+uniform float travel, edge;  // degrees
+uniform int rows;
+out vec4 color;  // times its share of the pixel
+
+vec4 over(vec4 below, vec3 above, float share) { return vec4(share * above, share) + (1.0 - share) * below; }
+
+void main() {
+  ivec2 at = ivec2(int(gl_FragCoord.x), rows - 1 - int(gl_FragCoord.y));
+  vec4 point = texelFetch(gbuffer, at, 0);
+  vec3 wo = -normalize(corner + gl_FragCoord.x * right + (float(rows) - gl_FragCoord.y) * down);
+  vec3 r = 2.0 * dot(point.xyz, wo) * point.xyz - wo;
+  float angle = degrees(atan(length(cross(r, toward)), dot(r, toward)));
+  float pixel = clamp(fwidth(angle), 0.02, 3.0);
+  color = vec4(0.0);
+  if (point.w == 0.0 || dot(point.xyz, toward) <= 0.0) return;
+  if (angle < edge) {
+    bool even = ((at.x / 6 + at.y / 6) & 1) == 0;
+    color = over(color, vec3(even ? 1.0 : 0.0), 0.45);
+  }
+  float angles[3] = float[3](15.0, 45.0, travel);
+  vec3 colors[3] = vec3[3](vec3(1.0, 0.83, 0.1), vec3(0.2, 0.9, 1.0), vec3(1.0, 0.45, 0.9));
+  for (int i = 0; i < 3; ++i) {
+    float apart = abs(angle - angles[i]) / pixel;
+    color = over(color, vec3(0.0), 0.6 * (1.0 - smoothstep(2.0, 3.0, apart)));
+    color = over(color, colors[i], 1.0 - smoothstep(0.8, 1.6, apart));
+  }
+}
+)";
+}
+
 }  // namespace goniochrome::studio

@@ -11,4 +11,9 @@ namespace goniochrome::studio {
 // shows a gray backdrop, as pictures of render-osmesa do.
 std::string display_program();
 
+// The fragment program that draws over a picture where its surface is seen at 15 and at 45 degrees from the mirror
+// direction of a light and at the travel, as rings in yellow, blue and pink, and the highlight of the light as a
+// checker. It reads the G-buffer. OpenGL ES 3. [Shimizu2009] 3.6.1
+std::string overlay_program();
+
 }  // namespace goniochrome::studio

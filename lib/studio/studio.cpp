@@ -1,17 +1,24 @@
 #include "studio/studio.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 
+#include "brdf/highlight.h"
 #include "fit/paint_fit.h"
 #include "library/search.h"
+#include "library/verdict.h"
+#include "paint/curve.h"
 #include "render/page_weights.h"
+#include "sketch/dropper.h"
 #include "studio/internal/describe.h"
 #include "studio/internal/edit_json.h"
 #include "studio/internal/handoff.h"
 #include "studio/internal/json_reader.h"
+#include "studio/internal/library_pane.h"
 #include "studio/paint_json.h"
 
 namespace goniochrome::studio {
@@ -37,7 +44,9 @@ struct Studio::State {
   render::Effects effects;
   std::optional<library::LibraryIndex> index;
   std::optional<library::LibrarySearch> by_de76, by_de00;
+  std::optional<LibraryPane> pane;
   std::vector<float> weights;
+  std::string attached;
 
   Result<Json> load(JsonReader& request);
   Result<Json> edit(JsonReader& request) const;
@@ -47,6 +56,10 @@ struct Studio::State {
   Result<Json> nearest(JsonReader& request) const;
   Result<Json> write(JsonReader& request) const;
   Result<Json> color(JsonReader& request) const;
+  Result<Json> at(JsonReader& request) const;
+  Result<Json> gloss(JsonReader& request) const;
+  Result<Json> dropper(JsonReader& request) const;
+  Result<Json> gradient(JsonReader& request) const;
   Result<Json> answer(const Json& request);
   Result<paint::Paint> fitted(const paint::Paint& paint) const;
 };
@@ -82,19 +95,22 @@ Result<Json> Studio::State::load(JsonReader& request) {
   GONIO_TRY(of.status());
   effects = page_effects(basis.exponents, basis.mirror, 0);
   fitter.emplace(std::move(basis), fit::FitOptions{});
-  by_de76.reset(), by_de00.reset();
-  const Json& list = request.list("paints");
-  auto next = list.begin();
-  GONIO_ASSIGN(library::LibraryIndex made,
-               library::LibraryIndex::from_paints([&]() -> Result<std::optional<paint::Paint>> {
-                 if (next == list.end()) return std::optional<paint::Paint>();
-                 GONIO_ASSIGN(paint::Paint paint, paint_of_json(*next++));
-                 return std::optional(std::move(paint));
-               }));
-  index.emplace(std::move(made));
+  by_de76.reset(), by_de00.reset(), pane.reset();
+  if (request.flag("attached")) {
+    GONIO_ASSIGN(index, library::LibraryIndex::from_bytes(std::exchange(attached, {})));
+  } else {
+    const Json& list = request.list("paints");
+    auto next = list.begin();
+    GONIO_ASSIGN(index, library::LibraryIndex::from_paints([&]() -> Result<std::optional<paint::Paint>> {
+                   if (next == list.end()) return std::optional<paint::Paint>();
+                   GONIO_ASSIGN(paint::Paint paint, paint_of_json(*next++));
+                   return std::optional(std::move(paint));
+                 }));
+  }
   by_de76.emplace(*index, library::LibrarySearchOptions{});
   by_de00.emplace(*index, library::LibrarySearchOptions{.metric = library::ColorMetric::kDe00});
-  return Json{{"paints", index->size()}};
+  pane.emplace(*index);
+  return Json{{"paints", index->size()}, {"geometries", pane->geometries()}};
 }
 
 Result<Json> Studio::State::edit(JsonReader& request) const {
@@ -132,6 +148,8 @@ Result<Json> Studio::State::fit(JsonReader& request) {
   answer["limit"] = fit.report.limit;
   answer["time_us"] = json_number(fit.report.time_us);
   answer["seen"] = curve_json(fit.lobes, paint::condition_of(paint));
+  if (const double extent_deg = request.number("extent", 0); extent_deg > 0)
+    answer["highlight"] = json_number(brdf::highlight_edge_deg(fit.lobes, extent_deg));
   return answer;
 }
 
@@ -172,19 +190,26 @@ Result<Json> Studio::State::nearest(JsonReader& request) const {
   const library::LibrarySearch& search = de00 ? *by_de00 : *by_de76;
   GONIO_ASSIGN(const library::SearchPlan plan, search.plan(paint));
   Json list = Json::array();
+  std::optional<library::Verdict> verdict;
   for (const library::LibraryMatch& match : search.nearest(plan, static_cast<std::size_t>(count))) {
     Json by_geometry = Json::object();
     for (std::size_t i = 0; i < plan.geometries.size(); ++i)
       by_geometry[paint::geometry_name(plan.geometries[i])] =
           json_number(de00 ? color::delta_e_2000(plan.terms[i].lab, match.lab[i])
                            : color::delta_e_76(plan.terms[i].lab, match.lab[i]));
+    if (!verdict)
+      verdict = library::verdict(paint, *index, match.paint,
+                                 match.distance / static_cast<double>(plan.geometries.size()), {});
     list.push_back({{"place", match.paint},
                     {"name", std::string(index->name(match.paint))},
                     {"code", std::string(index->code(match.paint))},
                     {"distance", json_number(match.distance)},
                     {"de_by_geometry", std::move(by_geometry)}});
   }
-  return Json{{"list", std::move(list)}, {"left_out", plan.left_out}};
+  return Json{{"list", std::move(list)},
+              {"left_out", plan.left_out},
+              {"outside", verdict && verdict->outside},
+              {"off_radial", verdict && verdict->off_radial}};
 }
 
 Result<Json> Studio::State::write(JsonReader& request) const {
@@ -194,10 +219,12 @@ Result<Json> Studio::State::write(JsonReader& request) const {
   }
   const std::string as = request.text("as"), file = request.text("file", "-");
   const formats::Processing step = {"paint-studio", request.text("version", ""), request.text("command", "")};
-  if (as != "xml" && as != "csv") request.fail("xml or csv", "as");
+  if (as != "xml" && as != "csv" && as != "cxf") request.fail("xml, csv or cxf", "as");
   GONIO_TRY(request.status());
   if (as == "xml") {
     GONIO_TRY(write_xml(file, paint, step));
+  } else if (as == "cxf") {
+    GONIO_TRY(write_cxf(file, std::move(paint), step, request.text("created", "")));
   } else {
     GONIO_TRY(write_csv(file, std::move(paint)));
   }
@@ -208,6 +235,57 @@ Result<Json> Studio::State::color(JsonReader& request) const {
   const color::Lab lab = request.lab("lab");
   GONIO_TRY(request.status());
   return Json{{"css", css_color(lab, {})}};
+}
+
+// The color of the curve at an aspecular angle.
+Result<Json> Studio::State::at(JsonReader& request) const {
+  GONIO_ASSIGN(const paint::Paint paint, paint_of_json(request.member("paint")));
+  const double angle = request.number("angle");
+  if (!(angle >= 0 && angle <= 180)) request.fail("an angle from 0 to 180", "angle");
+  GONIO_TRY(request.status());
+  GONIO_ASSIGN(const paint::TargetCurve curve, paint::TargetCurve::make(paint, paint::TargetCurve::Kind::kMeasured));
+  const color::Lab lab = curve.at(angle);
+  return Json{{"lab", lab_json(lab)},
+              {"chroma", json_number(color::chroma(lab))},
+              {"hue", json_number(color::hue_deg(lab))},
+              {"css", css_color(lab, paint::condition_of(paint))}};
+}
+
+Result<Json> Studio::State::gloss(JsonReader& request) const {
+  const double edge_deg = request.number("edge"), meter_deg = request.number("meter", 60),
+               extent_deg = request.number("extent");
+  GONIO_TRY(request.status());
+  GONIO_ASSIGN(const double units, brdf::gloss_of_edge(edge_deg, meter_deg, extent_deg));
+  return Json{{"units", json_number(units)}};
+}
+
+// Signals are those of an sRGB picture, 0..255, red, green and blue of one pixel after the other.
+Result<Json> Studio::State::dropper(JsonReader& request) const {
+  const std::vector<double> signals = request.numbers("signals");
+  if (signals.empty() || signals.size() % 3 != 0) request.fail("three signals for each pixel", "signals");
+  GONIO_TRY(request.status());
+  std::vector<color::Rgb> lights;
+  for (std::size_t i = 0; i < signals.size(); i += 3)
+    lights.push_back(sketch::light_of_srgb(signals[i] / 255, signals[i + 1] / 255, signals[i + 2] / 255));
+  const sketch::DropperColor found = sketch::dropper_color(lights);
+  return Json{{"lab", lab_json(found.lab)}, {"gloss", json_number(found.gloss)}, {"css", css_color(found.lab, {})}};
+}
+
+// As paint-edit --gradient makes and names them.
+Result<Json> Studio::State::gradient(JsonReader& request) const {
+  GONIO_ASSIGN(const paint::Paint from, paint_of_json(request.member("from")));
+  GONIO_ASSIGN(const paint::Paint to, paint_of_json(request.member("to")));
+  const double count = request.number("count");
+  if (!(count >= 1 && count <= 100 && count == std::floor(count)))
+    request.fail("a whole number from 1 to 100", "count");
+  GONIO_TRY(request.status());
+  Json list = Json::array();
+  for (int i = 1; i <= static_cast<int>(count); ++i) {
+    GONIO_ASSIGN(paint::Paint step, paint::between(from, to, i / (count + 1)));
+    step.name = fmt::format("{}-{}.{}", from.name, to.name, i);
+    list.push_back(paint_json(step));
+  }
+  return Json{{"list", std::move(list)}};
 }
 
 Result<Json> Studio::State::answer(const Json& json) {
@@ -221,6 +299,14 @@ Result<Json> Studio::State::answer(const Json& json) {
   if (wanted == "nearest") return nearest(request);
   if (wanted == "write") return write(request);
   if (wanted == "color") return color(request);
+  if (wanted == "at") return at(request);
+  if (wanted == "gloss") return gloss(request);
+  if (wanted == "dropper") return dropper(request);
+  if (wanted == "gradient") return gradient(request);
+  if (wanted == "filter" || wanted == "rows" || wanted == "cloud") {
+    if (!pane) return input_error("\"load\" must come first");
+    return wanted == "filter" ? pane->filter(request) : wanted == "rows" ? pane->rows(request) : pane->cloud(request);
+  }
   return input_error("\"do\" is \"{}\": it is none of the requests", wanted);
 }
 
@@ -236,6 +322,34 @@ Json Studio::answer(const Json& request) {
 
 const std::vector<float>& Studio::weights() const {
   return state_->weights;
+}
+
+std::string& Studio::attached() {
+  return state_->attached;
+}
+
+namespace {
+
+template <class Element>
+std::span<const std::byte> bytes_of(const std::vector<Element>& list) {
+  return std::as_bytes(std::span(list));
+}
+
+}  // namespace
+
+std::span<const std::byte> Studio::list(List which) const {
+  if (which == List::kWeights) return bytes_of(state_->weights);
+  if (!state_->pane) return {};
+  switch (which) {
+    case List::kFiltered:
+      return bytes_of(state_->pane->list());
+    case List::kCloud:
+      return bytes_of(state_->pane->cloud());
+    case List::kCloudColors:
+      return bytes_of(state_->pane->cloud_colors());
+    default:
+      return bytes_of(state_->pane->cloud_paints());
+  }
 }
 
 }  // namespace goniochrome::studio

@@ -2,8 +2,10 @@
 // serves a browser, where it runs as WebAssembly, and the tools. A page computes no color by itself.
 #pragma once
 
+#include <cstddef>
 #include <memory>
-#include <string_view>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "base/json.h"
@@ -19,15 +21,27 @@ render::Effects page_effects(const std::vector<double>& exponents, bool mirror, 
 color::ReflectionOperator page_operator();
 
 // A session of one page. A request is an object whose member "do" names one of these:
-//   load        basis{name, exponents[], mirror}, paints[]: must come first. Answers paints, the size of the library.
+//   load        basis{name, exponents[], mirror}, paints[]: must come first. With attached true, attached() holds the
+//               content of a library::LibraryIndex in the place of paints[]. Answers paints, the size of the library,
+//               and geometries[] of geometry and angle.
 //   edit        paint, edit{}: the moves of paint-edit, by the names of its options without dashes; numbers are numbers
 //               and colors are lists. Answers paint, dropped[], clipped[], skipped[].
-//   fit         paint: fits it as fit-paint does by default, and fills weights(). Answers lobes and the report.
+//   fit         paint, extent: fits it as fit-paint does by default, and fills weights(). Answers lobes and the report,
+//               and highlight, the angle where the highlight of a lamp of that extent falls to half.
 //   describe    paint: its curve, readings, average color, metrics and the colors of a screen.
 //   variations  paint, of ("face", "flop", "travel", "gloss"), step: answers list[] of name, edit and paint.
-//   nearest     paint, metric ("de76", "de00"), count: answers list[] of place, name, code, distance and differences.
-//   write       paint, as ("xml", "csv"), file, lobes (true: with its lobes), version and command of its history.
+//   nearest     paint, metric ("de76", "de00"), count: answers list[] of place, name, code, distance and differences,
+//               and colorsnap's verdicts outside and off_radial.
+//   write       paint, as ("xml", "csv", "cxf"), file, lobes (true: with its lobes), version and command of its
+//               history, created (date and time, for CxF).
 //   color       lab[]: answers css, the color on a screen.
+//   at          paint, angle: answers lab, chroma, hue and css of its curve at that aspecular angle.
+//   gloss       edge, extent, meter: answers units, the gloss whose highlight falls to half at that angle.
+//   dropper     signals[] of an sRGB picture: answers lab, css, and gloss by contrast.
+//   gradient    from, to, count: answers list[] of the paints that paint-edit --gradient puts between them.
+//   filter      text, classes[], ranges[] of metric, low and high, order: answers count, and fills list kFiltered.
+//   rows        places[]: answers list[] of name, code, class and colors[].
+//   cloud       geometry: answers count, and fills the lists kCloud (three floats each), kCloudColors and kCloudPaints.
 // An answer that holds "error" tells in a sentence what was wrong with the request.
 class Studio {
  public:
@@ -39,6 +53,13 @@ class Studio {
 
   // The row of weights of the paint that was fitted last, see render/page_weights.h.
   const std::vector<float>& weights() const;
+
+  // What answers fill, in the machine's own number format: floats of weights and clouds, else 32-bit whole numbers.
+  enum class List { kWeights, kFiltered, kCloud, kCloudColors, kCloudPaints };
+  std::span<const std::byte> list(List which) const;
+
+  // Bytes for "load", which takes them.
+  std::string& attached();
 
  private:
   struct State;

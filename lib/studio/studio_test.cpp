@@ -4,11 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
+#include <optional>
 
 #include "base/file.h"
 #include "base/scratch_for_test.h"
 #include "fit/paint_fit.h"
+#include "formats/cxf.h"
 #include "formats/xml.h"
+#include "library/index.h"
+#include "paint/curve.h"
 #include "paint/edit.h"
 #include "render/page_weights.h"
 #include "studio/paint_json.h"
@@ -42,7 +47,8 @@ Studio loaded() {
   const Json answer = studio.answer({{"do", "load"},
                                      {"basis", {{"name", "b4"}, {"exponents", kExponents}, {"mirror", true}}},
                                      {"paints", {paint_json(other), paint_json(metallic())}}});
-  EXPECT_EQ(answer, Json({{"paints", 2}}));
+  EXPECT_EQ(answer.value("paints", 0), 2);
+  EXPECT_EQ(answer.at("geometries").size(), 5U);
   return studio;
 }
 
@@ -172,6 +178,143 @@ TEST(Studio, WritesWhatTheReadersRead) {
   EXPECT_EQ(studio.answer({{"do", "write"}, {"paint", paint_json(metallic())}, {"as", "csv"}, {"file", table}}),
             Json::object());
   EXPECT_THAT(*file_content(table), HasSubstr("blue <b>,45as15,D65,10,70,"));
+}
+
+TEST(Studio, WritesCxfThatTheReaderReads) {
+  Studio studio = loaded();
+  const ScratchFolder scratch;
+  const std::string path = scratch.path("x.cxf");
+  paint::Paint designed;
+  designed.name = "designed";
+  designed.code = "N1";
+  designed.appearance = paint::Appearance{{60, 10, -20}, {20, 3, -30}, 70, std::nullopt};
+  EXPECT_EQ(studio.answer({{"do", "write"},
+                           {"paint", paint_json(designed)},
+                           {"as", "cxf"},
+                           {"file", path},
+                           {"created", "2026-11-21T10:00:00Z"}}),
+            Json::object());
+  auto input = InputFile::open(path);
+  ASSERT_TRUE(input.ok());
+  const auto read = formats::read_cxf(std::move(*input), {});
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  ASSERT_EQ(read->paints.size(), 1U);
+  EXPECT_EQ(read->paints[0].code, "N1");
+  const std::vector<paint::LabReading> rows = paint::rows_of(*designed.appearance);
+  ASSERT_EQ(read->paints[0].measurement->rows.size(), rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(read->paints[0].measurement->rows[i].geometry, rows[i].geometry);
+    EXPECT_EQ(read->paints[0].measurement->rows[i].lab, rows[i].lab);
+  }
+}
+
+// The library of loaded() has L* 20 higher than the paint that is asked for.
+TEST(Studio, FiltersAndListsTheLibrary) {
+  Studio studio = loaded();
+  const auto places = [&](const Json& request) {
+    Json whole = request;
+    whole["do"] = "filter";
+    const Json answer = studio.answer(whole);
+    EXPECT_FALSE(answer.contains("error")) << answer;
+    const auto bytes = studio.list(Studio::List::kFiltered);
+    std::vector<std::uint32_t> list(bytes.size() / sizeof(std::uint32_t));
+    std::memcpy(list.data(), bytes.data(), bytes.size());
+    EXPECT_EQ(answer.value("count", std::size_t{99}), list.size());
+    return list;
+  };
+  using Places = std::vector<std::uint32_t>;
+  EXPECT_EQ(places(Json::object()), (Places{0, 1}));
+  EXPECT_EQ(places({{"text", "OTH"}}), Places{0});
+  EXPECT_EQ(places({{"text", "b1"}}), (Places{0, 1})) << "both have the code B1";
+  EXPECT_EQ(places({{"classes", {"pearl"}}}), Places{});
+  EXPECT_EQ(places({{"ranges", {{{"metric", "L15"}, {"low", 80}}}}}), Places{0});
+  EXPECT_EQ(places({{"order", "L15"}}), (Places{1, 0}));
+  EXPECT_TRUE(studio.answer({{"do", "filter"}, {"order", "L16"}}).contains("error"));
+  const Json rows = studio.answer({{"do", "rows"}, {"places", {1}}}).at("list");
+  EXPECT_EQ(rows[0].at("name"), "blue <b>");
+  EXPECT_EQ(rows[0].at("colors").size(), 5U);
+  EXPECT_TRUE(studio.answer({{"do", "rows"}, {"places", {2}}}).contains("error"));
+}
+
+TEST(Studio, TheCloudHoldsEveryPaintAtAnAngle) {
+  Studio studio = loaded();
+  EXPECT_EQ(studio.answer({{"do", "cloud"}, {"geometry", "45as25"}}).at("count"), 2);
+  std::vector<float> points(6);
+  const auto bytes = studio.list(Studio::List::kCloud);
+  ASSERT_EQ(bytes.size(), points.size() * sizeof(float));
+  std::memcpy(points.data(), bytes.data(), bytes.size());
+  const auto L = static_cast<float>(metallic().measurement->rows[1].lab.L);
+  EXPECT_EQ(std::minmax(points[0], points[3]), std::minmax(L, L + 20.0F));
+  EXPECT_EQ(studio.answer({{"do", "cloud"}, {"geometry", "25as25"}}).at("count"), 0);
+}
+
+// An index that was packed elsewhere answers as one that is made of the paints.
+TEST(Studio, TakesAnIndexInThePlaceOfPaints) {
+  std::vector<paint::Paint> paints = {metallic(), metallic()};
+  paints[1].name = "second";
+  auto next = paints.begin();
+  const auto index = library::LibraryIndex::from_paints([&]() -> Result<std::optional<paint::Paint>> {
+    return next == paints.end() ? std::optional<paint::Paint>() : std::optional(*next++);
+  });
+  ASSERT_TRUE(index.ok());
+  Studio studio;
+  studio.attached() = std::string(index->content());
+  const Json answer = studio.answer(
+      {{"do", "load"}, {"basis", {{"name", "b4"}, {"exponents", kExponents}, {"mirror", true}}}, {"attached", true}});
+  EXPECT_EQ(answer.value("paints", 0), 2) << answer;
+  EXPECT_EQ(studio.answer({{"do", "nearest"}, {"paint", paint_json(metallic())}}).at("list").size(), 2U);
+  Studio damaged;
+  damaged.attached() = "no index";
+  EXPECT_TRUE(damaged
+                  .answer({{"do", "load"},
+                           {"basis", {{"name", "b4"}, {"exponents", kExponents}, {"mirror", true}}},
+                           {"attached", true}})
+                  .contains("error"));
+}
+
+TEST(Studio, TellsTheColorAtAnAngleAndMovesIt) {
+  Studio studio = loaded();
+  paint::Paint designed;
+  designed.name = "designed";
+  designed.appearance = paint::Appearance{{60, 10, -20}, {20, 3, -30}, 70, std::nullopt};
+  const auto at = [&](const Json& paint) {
+    return studio.answer({{"do", "at"}, {"paint", paint}, {"angle", 40}}).at("lab");
+  };
+  const double share = (70.0 - 40) / (70 - 15);
+  // The clamped quadratic of [Shimizu2009] 3.3.2 at 40 deg, to some ulp of its terms.
+  EXPECT_NEAR(at(paint_json(designed))[0].get<double>(), 20 + 40 * share * share, 1e-12);
+  const Json edited =
+      studio.answer({{"do", "edit"}, {"paint", paint_json(designed)}, {"edit", {{"at", 40}, {"lightness-shift", 3}}}});
+  EXPECT_NEAR(at(edited.at("paint"))[0].get<double>(), 23 + 40 * share * share, 1e-9);
+  EXPECT_TRUE(studio.answer({{"do", "at"}, {"paint", paint_json(designed)}, {"angle", 181}}).contains("error"));
+}
+
+TEST(Studio, GradientsAreEvenStepsInLab) {
+  Studio studio = loaded();
+  paint::Paint other = metallic();
+  other.name = "other";
+  for (paint::LabReading& row : other.measurement->rows) row.lab.L += 20;
+  const Json list =
+      studio.answer({{"do", "gradient"}, {"from", paint_json(metallic())}, {"to", paint_json(other)}, {"count", 3}})
+          .at("list");
+  ASSERT_EQ(list.size(), 3U);
+  EXPECT_EQ(list[1].at("name"), "blue <b>-other.2");
+  EXPECT_NEAR(list[1].at("measurement").at("rows")[0].at("lab")[0].get<double>(),
+              metallic().measurement->rows[0].lab.L + 10, 1e-12);
+  EXPECT_TRUE(
+      studio.answer({{"do", "gradient"}, {"from", paint_json(metallic())}, {"to", paint_json(other)}, {"count", 2.5}})
+          .contains("error"));
+}
+
+TEST(Studio, DroppersReadSignals) {
+  Studio studio = loaded();
+  const Json found = studio.answer({{"do", "dropper"}, {"signals", {119, 119, 119, 119, 119, 119}}});
+  EXPECT_NEAR(found.at("lab")[0].get<double>(), 50.03, 0.01);  // as in sketch/dropper_test.cpp
+  EXPECT_EQ(found.at("gloss"), 0);
+  EXPECT_EQ(found.at("css"), "#777777");
+  for (const char* text : {R"({"do": "dropper", "signals": []})", R"({"do": "dropper", "signals": [1, 2]})",
+                           R"({"do": "gloss", "edge": 5})", R"({"do": "gloss", "edge": 5, "extent": 4, "meter": 61})"})
+    EXPECT_TRUE(studio.answer(Json::parse(text)).contains("error")) << text;
 }
 
 TEST(Studio, DescribesTheColorsOfAScreen) {

@@ -4,8 +4,10 @@ import base64
 import html
 import json
 import math
+import os
 import pathlib
 import re
+import urllib.parse
 
 from paint_book import library
 from paint_book.colors import gloss_border, srgb, strip
@@ -30,8 +32,14 @@ def number(value, digits=1):
     return "n/a" if value is None else f"{value:.{digits}f}"
 
 
-def page(title, summary, paints, pictures, documents, size):
-    """The HTML. `pictures[i]` is a PNG, as bytes; `documents[i]` has the texts of FILES; `size` is that of a picture in pixels."""
+def address_beside(file, page_file):
+    """The address of `file` in links of `page_file`."""
+    return urllib.parse.quote(os.path.relpath(file, pathlib.Path(page_file).parent))
+
+
+def page(title, summary, paints, pictures, documents, size, studio=None):
+    """The HTML. `pictures[i]` is a PNG, as bytes; `documents[i]` has the texts of FILES; `size` is that of a picture in pixels.
+    `studio` is the address of a page of paint-studio, or None."""
     filed = {}
     for index, paint in enumerate(paints):
         filed.setdefault(paint.place(), []).append(index)
@@ -44,7 +52,7 @@ def page(title, summary, paints, pictures, documents, size):
              "ranges": "".join(range_slider(index, paints) for index in INDICES),
              "groups": group_links(sets, filed),
              "sets": "".join(set_section(key, filed, paints, pictures, size) for key in sets),
-             "cards": "\n".join(card(index, paint, size) for index, paint in enumerate(paints)),
+             "cards": "\n".join(card(index, paint, size, studio) for index, paint in enumerate(paints)),
              "data": data(paints, documents)}
     return re.sub(r"{{([a-z]+)}}", lambda mark: parts[mark[1]], (HERE / "page.html").read_text())
 
@@ -155,7 +163,7 @@ def lab_cells(lab):
     return "".join(f"<td>{number(value, 2)}</td>" for value in lab)
 
 
-def card(index, paint, size):
+def card(index, paint, size, studio):
     """The card of a paint. Its picture is missing here: page.js takes it from the tile."""
     heading = ", ".join(filter(None, [paint.code and f"code {paint.code}", paint.paint_class, paint.condition]))
     rows = [(row.geometry, row.lab) for row in paint.rows]
@@ -172,12 +180,14 @@ def card(index, paint, size):
     if paint.fit:
         facts.append(("Picture off the readings, mean dE00", number(paint.fit["mean"], 2)))
     figures = "".join(f'<tr><th scope="row">{text(name)}</th><td>{value}</td></tr>' for name, value in facts)
+    opened = f"{studio}#paint={urllib.parse.quote(paint.name, safe='')}" if studio else ""
+    link = f'<a href="{text(opened)}">Open in the studio</a>' if studio else ""
     notes = "".join(f'<p class="hint">Note: {text(flag)}.</p>' for flag in paint.flags)
     return (f'<template id="card-{index}"><div class="sheet"><h2 id="card-name">{text(paint.name)}<small>{text(heading)}</small></h2>'
             f'<div><img alt="{text(paint.name)} on the mesh" width="{size[0]}" height="{size[1]}">'
             f'<span class="strip" style="background:{strip(paint)};border:{gloss_border(paint)}"></span>'
             '<div class="ends"><span>15\u00b0</span><span>aspecular angle</span><span>110\u00b0</span></div>'
-            f'<div class="downloads" role="group" aria-label="Downloads"><span>Download</span></div></div>'
+            f'<div class="downloads" role="group" aria-label="Downloads"><span>Download</span></div>{link}</div>'
             f'<div>{plot(paint)}</div>'
             '<table><caption>Color</caption><thead><tr><th>geometry</th><th>L*</th><th>a*</th><th>b*</th></tr></thead>'
             f'<tbody>{table}</tbody></table>'

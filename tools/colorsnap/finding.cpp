@@ -2,9 +2,7 @@
 
 #include <cmath>
 
-#include "base/angles.h"
 #include "base/clock.h"
-#include "paint/metrics.h"
 
 namespace goniochrome::tool {
 
@@ -44,10 +42,6 @@ std::string Finding::status() const {
   return off_radial ? "off_radial" : "ok";
 }
 
-double signed_hue_shift(double hue_shift_index, double hue_travel_deg) {
-  return std::copysign(hue_shift_index, std::sin(hue_travel_deg * kDegree));
-}
-
 Result<QueryPlan> Searched::plan(const paint::Paint& query) const {
   QueryPlan result;
   if (lights_ == nullptr) {
@@ -74,7 +68,7 @@ std::vector<Neighbor> Searched::nearest(const QueryPlan& plan, library::ColorMet
 }
 
 Finding finding_of(const paint::Paint& query, QueryPlan plan, const Searched& library, library::ColorMetric metric,
-                   const FindingLimits& limits) {
+                   const library::VerdictLimits& limits) {
   Finding finding;
   finding.query = query.name;
   const Stopwatch searching;
@@ -85,14 +79,10 @@ Finding finding_of(const paint::Paint& query, QueryPlan plan, const Searched& li
   if (finding.no_match()) return finding;
 
   const Neighbor& nearest = finding.neighbors.front();
-  finding.outside = nearest.mean_de > limits.outside;
-  if (const auto numbers = paint::metrics(query, paint::CurveFit::kWhereNeeded); numbers.ok())
-    finding.hue_shift = signed_hue_shift(numbers->hue_shift_index, numbers->hue_travel_deg);
-  const auto of_match = [&](const char* name) {
-    return library.index().metric(nearest.match.paint, *paint::find_metric(name));
-  };
-  finding.matched_hue_shift = signed_hue_shift(of_match("hue_shift_index"), of_match("hue_travel_deg"));
-  finding.off_radial = std::abs(finding.hue_shift - finding.matched_hue_shift) > limits.off_radial;
+  const library::Verdict verdict =
+      library::verdict(query, library.index(), nearest.match.paint, nearest.mean_de, limits);
+  finding.hue_shift = verdict.hue_shift, finding.matched_hue_shift = verdict.matched_hue_shift;
+  finding.outside = verdict.outside, finding.off_radial = verdict.off_radial;
   return finding;
 }
 

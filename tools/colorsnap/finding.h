@@ -7,6 +7,7 @@
 
 #include "library/lights.h"
 #include "library/search.h"
+#include "library/verdict.h"
 
 namespace goniochrome::tool {
 
@@ -31,15 +32,6 @@ struct Finding {
   bool no_match() const { return neighbors.empty(); }
   // "ok", or "outside", "off_radial", "outside,off_radial", "no_match".
   std::string status() const;
-};
-
-// Tells how far the flop leaves the line through the origin and the face's a*b*, and to which side: it is the hue-shift
-// index, with a negative sign where the hue turns clockwise.
-double signed_hue_shift(double hue_shift_index, double hue_travel_deg);
-
-struct FindingLimits {
-  double outside = 10;    // mean difference
-  double off_radial = 5;  // difference of hue shifts
 };
 
 // How a query is compared: in the light of the readings, or in several.
@@ -71,6 +63,6 @@ class Searched {
 // Searches the library and judges the design. `query` must be the paint of the plan. Several threads may call it at
 // once.
 Finding finding_of(const paint::Paint& query, QueryPlan plan, const Searched& library, library::ColorMetric metric,
-                   const FindingLimits& limits);
+                   const library::VerdictLimits& limits);
 
 }  // namespace goniochrome::tool

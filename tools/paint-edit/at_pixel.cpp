@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "base/angles.h"
 #include "base/text.h"
-#include "brdf/disc_light.h"
-#include "brdf/gloss.h"
+#include "brdf/highlight.h"
 #include "image/aov_file.h"
 #include "sketch/traced_light.h"
 
@@ -61,43 +58,6 @@ Result<void> place_tweak(Options& o) {
 
 }  // namespace
 
-namespace {
-
-// The exponent of the lobe whose highlight under a disc of this radius falls to half at this angle: of
-// cos^e(edge) = 1/2 under a point, and by bisection under a disc. An edge within the disc is that of a mirror.
-double edge_exponent(double edge_rad, double radius_rad) {
-  constexpr double kSharpest = 1e6;
-  const double sine = std::sin(edge_rad);
-  const double of_point = std::numbers::ln2 / std::max(-0.5 * std::log1p(-sine * sine), 1e-12);
-  if (!(radius_rad > 0)) return std::min(kSharpest, of_point);
-  const auto falls_before = [&](double exponent) {
-    return brdf::lobe_of_disc(exponent, radius_rad, edge_rad).power <
-           0.5 * brdf::lobe_of_disc(exponent, radius_rad, 0).power;
-  };
-  double low = std::min(kSharpest, of_point), high = kSharpest;
-  if (!falls_before(high)) return kSharpest;
-  for (int i = 0; i < 60; ++i) {
-    const double middle = std::sqrt(low * high);
-    (falls_before(middle) ? high : low) = middle;
-  }
-  return std::sqrt(low * high);
-}
-
-}  // namespace
-
-// The highlight falls to half at the edge, which gives the exponent of a single lobe. The total energy of the lobe is
-// the Fresnel reflectance of the coat; see goniochrome-theory(7), GLOSS.
-Result<double> gloss_of_edge(double edge_deg, double meter_deg, double extent_deg) {
-  const double exponent = edge_exponent(std::clamp(edge_deg, 0.0, 89.0) * kDegree, 0.5 * extent_deg * kDegree);
-  const double energy = brdf::fresnel_dielectric(std::cos(meter_deg * kDegree), brdf::kCoatIndex);
-  const double weight = energy * (exponent + 1) / (2 * kPi);
-  const brdf::GlossTable table({exponent});
-  GONIO_ASSIGN(const brdf::GlossColumns* meter, table.at(meter_deg));
-  paint::LobeFit lobe;
-  lobe.lobes.push_back({exponent, {}, {weight, weight, weight}});
-  return std::clamp(brdf::gloss_units(table, *meter, lobe), 0.0, 100.0);
-}
-
 Result<PlacedOptions> placed(const Options& options) {
   GONIO_TRY(check_places(options));
   PlacedOptions result{options, {}, ""};
@@ -133,8 +93,8 @@ Result<PlacedOptions> placed(const Options& options) {
   }
   if (!o.gloss_to.empty()) {
     GONIO_ASSIGN(const double angle, look("--gloss-to", o.gloss_to, true));
-    GONIO_ASSIGN(const double gloss, gloss_of_edge(angle, *parse_number(o.gloss_angle_deg),
-                                                   file.lights.empty() ? 0 : file.lights.front().extent_deg));
+    GONIO_ASSIGN(const double gloss, brdf::gloss_of_edge(angle, *parse_number(o.gloss_angle_deg),
+                                                         file.lights.empty() ? 0 : file.lights.front().extent_deg));
     o.gloss = {gloss};
   }
   return result;

@@ -33,8 +33,4 @@ struct PlacedOptions {
 };
 Result<PlacedOptions> placed(const Options& options);
 
-// The reading of a gloss meter (GU) on the lobe whose highlight, under a lamp that spans `extent_deg`, falls to half
-// its brightness at this aspecular angle (deg, 0..90). No lobe ends within the lamp: there the answer is the sharpest.
-Result<double> gloss_of_edge(double edge_deg, double meter_deg, double extent_deg);
-
 }  // namespace goniochrome::tool

@@ -8,15 +8,29 @@ cli::ToolSpec tool_spec(Options& o) {
       "paint-studio packs a mesh, prefiltered environments, a basis and a library of paints into one HTML page. The "
       "page opens from a file in any browser that has WebGL 2, and needs no network. A designer starts from a paint "
       "of the library, changes its face, flop, travel and gloss, and sees it on the mesh at once, beside its "
-      "curves, its nine variations and the paints of the library that are nearest to it.",
+      "curves, its nine variations and the paints of the library that are nearest to it. All of it works by mouse, "
+      "by touch and by keyboard.",
+      "On the picture, dragging goes around the mesh, turns the light, moves a lamp by its highlight, ends the "
+      "travel, or sets the gloss by the width of the highlight. The page tells the aspecular angle under the pointer "
+      "and the color that the paint has at this angle, and marks both in the curves. A cross has buttons that change "
+      "the lightness, chroma or hue of exactly the color below it, as paint-edit --at does. Rings show where the mesh "
+      "is seen at 15 and at 45 degrees and at the travel, and a checker shows the highlight. Angles are those to the "
+      "lamp, or without it to the brightest light of the environment. A border divides the picture between the paint "
+      "and another one, of the library, the palette or the history.",
+      "Pictures can be added, dropped or pasted. Droppers take the face, the flop and the gloss from them as "
+      "paint-pick(1) does, and the page shows the command. The library is a list with a search by name and code and "
+      "with filters by metrics, and a cloud of points in L*a*b* at a chosen angle, in which the design is marked. The "
+      "page tells, as colorsnap(1) does, where a design lies outside the library and where its hue turns in another "
+      "way than that of its nearest paint.",
       "The arithmetic of the page is that of the other tools: the same sources, compiled to WebAssembly. Edits are "
       "those of paint-edit(1), the lobes are fitted as fit-paint(1) does by default, distances are those of "
       "colorsnap(1), and the picture is drawn by the programs of the engine gl of render-osmesa(1). The page shows "
-      "the command line that makes the same paint from the same library, and hands the paint over as paint XML or "
-      "CSV.",
+      "the command line that makes the same paint from the same library. It hands the paint over as paint XML, as "
+      "CSV, and as CxF with the code of the nearest paint. It opens paint XML files, and saves sessions.",
       "All parts of the mesh wear the design, but for those that nobody paints, such as glass and tires: these are "
       "told by their names, as in render-osmesa. The page shows no shadows and no light from one part to another, "
-      "no color maps and no brushed surfaces. A warning tells how many paints have them.",
+      "no color maps and no brushed surfaces. A warning tells how many paints have them. While something moves, and "
+      "first after each change, slow computers draw the picture with fewer pixels.",
       "The compiled library lies in ../lib/goniochrome beside the program, as the files studio.wasm and "
       "studio.html, or in $GONIOCHROME_MODULE_PATH. Where the compiler for WebAssembly was missing when the tools "
       "were built, paint-studio says which packages it takes, and the exit status is 3."};
@@ -45,7 +59,8 @@ cli::ToolSpec tool_spec(Options& o) {
                  {"triangles", "number of triangles of the mesh"},
                  {"environments[]", "name and bytes of each environment in the page"},
                  {"warnings[]", "the warnings of the run"}};
-  spec.see_also = {"paint-edit(1)", "fit-paint(1)", "colorsnap(1)", "render-osmesa(1)", "prefilter-envmap(1)"};
+  spec.see_also = {"paint-edit(1)", "paint-pick(1)",    "fit-paint(1)",
+                   "colorsnap(1)",  "render-osmesa(1)", "prefilter-envmap(1)"};
   return spec;
 }
 

@@ -5,18 +5,26 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
+#include <set>
 
+#include "base/angles.h"
 #include "base/text.h"
+#include "library/index.h"
 #include "render/camera.h"
 #include "render/page_stage.h"
 #include "render/page_weights.h"
 #include "render/scene.h"
 #include "render/trim.h"
+#include "studio/paint_json.h"
 #include "studio/studio.h"
 
 namespace goniochrome::tool {
 
 namespace {
+
+// The disc of the lamp that a page has beside the environment, as wide as a softbox some way off.
+constexpr double kLampRadius_rad = 2 * kDegree;
 
 // The first view of a page, which is that of render-osmesa.
 constexpr double kAzimuth_deg = 35, kElevation_deg = 12, kFov_deg = 30;
@@ -46,6 +54,15 @@ Json cube_json(const render::PageCube& cube) {
           {"texels", packed(halves)}};
 }
 
+// Where most of the light comes from: the brightest spot, or, without spots, the brightest side.
+Json brightest_json(const envmap::PrefilteredEnvironment& env) {
+  const auto luminance = [](const envmap::Spot& spot) { return color::xyz_d65_from_rgb(spot.white).Y; };
+  const auto spot = std::ranges::max_element(env.spots, {}, luminance);
+  if (spot == env.spots.end())
+    return {{"direction", vector_json(render::diffuse_white(&env, {}).direction)}, {"extent", 0}};
+  return {{"direction", vector_json(spot->direction)}, {"extent", 2 * spot->radius_rad / kDegree}};
+}
+
 bool same_finish(const paint::LobeFit& a, const paint::LobeFit& b) {
   return a.diffuse == b.diffuse && a.coat_index == b.coat_index && a.lobes.size() == b.lobes.size();
 }
@@ -63,6 +80,46 @@ std::string base64(std::string_view bytes) {
     for (std::size_t k = 0; k < 4; ++k) text += i + k > bytes.size() ? '=' : kDigits[group >> (18 - 6 * k) & 63];
   }
   return text;
+}
+
+void PackedLibrary::add(const std::string& file, const paint::Paint& paint) {
+  Json json = studio::paint_json(paint);
+  const std::set<std::string> brief = {"name", "code", "class", "measurement", "gloss"};
+  const std::set<std::string> of_measurement = {"illuminant", "observer", "instrument", "rows"};
+  const auto only = [](const Json& object, const std::set<std::string>& names) {
+    return std::ranges::all_of(object.items(), [&](const auto& member) { return names.contains(member.key()); });
+  };
+  Json line;
+  if (json.contains("measurement") && only(json, brief) && only(json["measurement"], of_measurement)) {
+    Json layout = json["measurement"], numbers = Json::array();
+    layout["file"] = file, layout["rows"] = Json::array(), layout["gloss"] = Json::array();
+    for (const Json& row : json["measurement"]["rows"]) {
+      layout["rows"].push_back(row["geometry"]);
+      for (const Json& number : row["lab"]) numbers.push_back(number);
+    }
+    for (const paint::GlossReading& reading : paint.gloss) {
+      layout["gloss"].push_back(reading.angle_deg);
+      numbers.push_back(reading.gloss_units);
+    }
+    const auto number = numbers_.try_emplace(layout.dump(), layouts_.size());
+    if (number.second) layouts_.push_back(std::move(layout));
+    line = {number.first->second, json["name"], json.value("code", ""), json.value("class", "")};
+    line.insert(line.end(), numbers.begin(), numbers.end());
+  } else {
+    line = {{"file", file}, {"paint", std::move(json)}};
+  }
+  if (!lines_.empty()) lines_ += '\n';
+  lines_ += line.dump(-1, ' ', false, Json::error_handler_t::replace);
+  paints_.push_back(paint);
+}
+
+Result<std::string> PackedLibrary::index() const {
+  auto next = paints_.begin();
+  GONIO_ASSIGN(const library::LibraryIndex index,
+               library::LibraryIndex::from_paints([&]() -> Result<std::optional<paint::Paint>> {
+                 return next == paints_.end() ? std::optional<paint::Paint>() : std::optional(*next++);
+               }));
+  return std::string(index.content());
 }
 
 PackedMesh packed_mesh(const mesh::Mesh& mesh, bool with_mirror) {
@@ -112,19 +169,31 @@ Result<Json> packed_environment(const std::string& name, const envmap::Prefilter
   const render::Effects effects = studio::page_effects(basis.exponents, basis.mirror, env.spots.size());
   GONIO_ASSIGN(const render::PageLight light, render::page_light(env, effects, studio::page_operator()));
   const Vec3 toward = render::orbit_direction(kAzimuth_deg, kElevation_deg);
-  Json json = {{"name", name},
-               {"program", light.shading_fragment},
-               {"white", render::metered_white(&env, {}, toward)},
-               {"cubes", Json::array()},
-               {"lamps", Json::array()}};
+  Json json = {
+      {"name", name},
+      {"program", light.shading_fragment},
+      {"white", render::metered_white(&env, {}, toward)},
+      {"cubes", Json::array()},
+      {"lamp_program", render::page_movable_lamp(effects, studio::page_operator(), kLampRadius_rad).shading_fragment},
+      {"brightest", brightest_json(env)},
+      {"lamps", Json::array()}};
   for (const render::PageCube& cube : light.cubes) json["cubes"].push_back(cube_json(cube));
   for (const render::PageLamp& lamp : light.lamps)
     json["lamps"].push_back({{"direction", vector_json(lamp.direction)},
                              {"white", vector_json(lamp.white)},
                              {"disc", vector_json(lamp.disc)}});
-  if (!light.discs.empty())
-    json["discs"] = {{"columns", light.disc_columns}, {"rows", light.disc_rows}, {"texels", packed(light.discs)}};
+  if (!light.discs.empty()) json["discs"] = {{"texels", packed(light.discs)}};
   return Result(std::move(json));
+}
+
+Json packed_lamp(const formats::Basis& basis) {
+  const render::Effects effects = studio::page_effects(basis.exponents, basis.mirror, 0);
+  const render::PageMovableLamp lamp = render::page_movable_lamp(effects, studio::page_operator(), kLampRadius_rad);
+  const std::size_t rows = basis.exponents.size() + 1;
+  return {{"extent", 2 * kLampRadius_rad / kDegree},
+          {"disc", vector_json(lamp.disc)},
+          {"columns", lamp.discs.size() / (4 * rows)},
+          {"discs", packed(lamp.discs)}};
 }
 
 Json packed_finishes(const std::vector<paint::LobeFit>& finishes, const formats::Basis& basis) {

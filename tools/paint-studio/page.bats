@@ -22,6 +22,21 @@ setup() {
   command -v node >/dev/null || skip "Node is not installed"
 }
 
+# The readings of two tables are equal to nine digits, since two C libraries made them.
+same_readings() {
+  python3 - "$@" <<'PY'
+import csv, sys
+one, two = (list(csv.reader(open(path))) for path in sys.argv[1:])
+assert len(one) == len(two) > 1
+for a, b in zip(one, two):
+    for x, y in zip(a, b):
+        try:
+            assert abs(float(x) - float(y)) <= 1e-9 * max(1, abs(float(x))), (x, y)
+        except ValueError:
+            assert x == y, (x, y)
+PY
+}
+
 needs_browser() {
   [ -x "${CHROMIUM:-/usr/bin/chromium}" ] || skip "Chromium is not installed"
 }
@@ -60,6 +75,83 @@ needs_browser() {
   done
 }
 
+@test "paints come into the page and leave it as the tools have them" {
+  needs_browser
+  cp "$TESTDATA/paints.paints.xml" library.paints.xml
+  paint-studio -q --mesh "$TESTDATA/box.obj" --env studio.env.exr --basis "$TESTDATA/b5.basis.xml" library.paints.xml -o files.html
+  run node "$code/files.js" files.html . "$TESTDATA/travel.paints.xml"
+  echo "$output"
+  [ "$status" -eq 0 ]
+  jq -r '.[]' opened.json | grep -v '<processing' >opened.xml
+  diff <(grep -E '<(paint|lab|face|flop|gloss) ' "$TESTDATA/travel.paints.xml") <(grep -E '<(paint|lab|face|flop|gloss) ' opened.xml)
+  bash -euo pipefail gradient-command.txt
+  paint-convert -q design.paints.xml --columns all -o theirs.csv
+  paint-convert -q gradient.fitted.paints.xml --columns all -o ours.csv
+  same_readings theirs.csv ours.csv
+  # The CxF has the readings of the design, under the code of the nearest paint.
+  paint-convert -q gradient.cxf -o from-cxf.xml
+  code=$(sed -n 's/.*code \([^ ]*\) of the nearest paint.*/\1/p' cxf-status.txt)
+  [ -z "$code" ] || grep -q "code=\"$code\"" from-cxf.xml
+  diff <(grep '<lab ' gradient.fitted.paints.xml) <(grep '<lab ' from-cxf.xml)
+}
+
+# The lamp beside the environment; and the environment turned by a right angle, which is the mesh and the camera turned the
+# other way.
+@test "the lamp and the turned light are those of render-osmesa" {
+  needs_browser
+  [ -s candy_red-studio-lamp.f32 ] || skip "the pictures were not drawn"
+  awk '/^vn? / { printf "%s %s %s %s\n", $1, -$4, $3, $2; next } { print }' "$TESTDATA/speed-shape.obj" >turned.obj
+  for light in studio outdoor; do
+    white=$(sed -n 's|^<script type="application/json" id="data">\(.*\)</script>$|\1|p' page.html |
+      jq ".environments[] | select(.name == \"$light\").white")
+    half=$(jq -n "$white / 2")
+    render-osmesa -q --trim --mesh "$TESTDATA/speed-shape.obj" --paint "fitted.xml#candy_red" --env "$light.env.exr" --engine gl \
+      --light "-25,40,$half,$half,$half@4" --effects all,-rays --size 640x360 --samples 1 -o "lamp-$light.exr"
+    render-osmesa -q --trim --mesh turned.obj --paint "fitted.xml#candy_red" --env "$light.env.exr" --engine gl \
+      --orbit -55,12 --effects all,-rays --size 640x360 --samples 1 -o "turned-$light.exr"
+    for what in lamp turned; do
+      run /usr/bin/python3 "$code/compare.py" "candy_red-$light-$what.f32" "$what-$light.exr" "$white"
+      echo "$what $light: mean p95 largest pixels: $output"
+      awk -v numbers="$output" 'BEGIN { split(numbers, n, " "); exit !(n[1] <= 0.1 && n[2] <= 0.5 && n[4] > 20000) }'
+    done
+  done
+}
+
+@test "the picture answers to mouse, finger and keyboard" {
+  needs_browser
+  run node "$code/surface.js" page.html .
+  echo "$output"
+  [ "$status" -eq 0 ]
+}
+
+@test "droppers take from a picture what paint-pick takes" {
+  needs_browser
+  run node "$code/droppers.js" page.html .
+  echo "$output"
+  [ "$status" -eq 0 ]
+  bash -euo pipefail pick-command.txt
+  paint-convert -q picked.paints.xml --columns all -o picked.csv
+  # The page rounds colors to hundredths and gloss to tenths.
+  python3 - taken.json picked.paints.xml <<'PY'
+import json, sys
+import xml.etree.ElementTree as tree
+taken, space = json.load(open(sys.argv[1])), "{urn:goniochrome:paint:1}"
+paint = tree.parse(sys.argv[2]).getroot().find(space + "paint")
+for end in ("face", "flop"):
+    theirs = paint.find(f"{space}appearance/{space}{end}")
+    for value, name in zip(taken[end], "Lab"):
+        assert abs(value - float(theirs.get(name))) <= 0.0051, (end, name, value, theirs.get(name))
+assert abs(taken["gloss"] - float(paint.find(space + "gloss").text)) <= 0.051
+PY
+}
+
+@test "the library is searched, filtered and seen in L*a*b*" {
+  needs_browser
+  run node "$code/library.js" page.html .
+  echo "$output"
+  [ "$status" -eq 0 ]
+}
+
 @test "a designer's path by mouse and keyboard makes the paint that the shown commands make" {
   needs_browser
   run node "$code/path.js" page.html .
@@ -69,18 +161,7 @@ needs_browser() {
   fit-paint -q -b "$TESTDATA/b5.basis.xml" saved.paints.xml -o by-tools.xml
   paint-convert -q design.paints.xml --columns all -o theirs.csv
   paint-convert -q saved.fitted.paints.xml --columns all -o ours.csv
-  # The readings are equal to nine digits, since two C libraries made them.
-  python3 - theirs.csv ours.csv <<'PY'
-import csv, sys
-one, two = (list(csv.reader(open(path))) for path in sys.argv[1:])
-assert len(one) == len(two) > 1
-for a, b in zip(one, two):
-    for x, y in zip(a, b):
-        try:
-            assert abs(float(x) - float(y)) <= 1e-9 * max(1, abs(float(x))), (x, y)
-        except ValueError:
-            assert x == y, (x, y)
-PY
+  same_readings theirs.csv ours.csv
   cp "$TESTDATA/paints.paints.xml" library.paints.xml  # an index is written beside it
   colorsnap -q --library library.paints.xml saved.paints.xml >/dev/null || [ $? -eq 1 ]
   grep -q '^sample,geometry,illuminant' saved.csv

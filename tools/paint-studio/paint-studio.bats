@@ -88,10 +88,10 @@ print(base64.b64encode(hashlib.sha256(sys.stdin.buffer.read()).digest()).decode(
   [[ "$output" =~ "1 paints have a color map, which the page does not draw" ]]
   ! grep -q 'onerror=alert(1)>' page.html || ! grep -q '<img' page.html
   ! grep -q '<title><script>' page.html
-  [ "$(grep -o '</script>' page.html | wc -l)" -eq 3 ]
-  # The data is JSON, and holds the name as it is.
-  sed -n 's|^<script type="application/json" id="data">\(.*\)</script>$|\1|p' page.html >data.json
-  [ "$(jq -r '.paints[0].paint.name' data.json)" = '</script><img src=x onerror=alert(1)>' ]
+  [ "$(grep -o '</script>' page.html | wc -l)" -eq 5 ]
+  # The paints are JSON, and hold the name as it is.
+  sed -n 's|^<script type="application/json" id="paints">\(.*\)</script>$|\1|p' page.html >paint.json
+  [ "$(jq -r '.paint.name' paint.json)" = '</script><img src=x onerror=alert(1)>' ]
 }
 
 @test "an environment without a lobe of the basis, a paint without color and a missing file are errors" {

@@ -9,7 +9,6 @@
 #include "pack.h"
 #include "render/page_stage.h"
 #include "studio/display_program.h"
-#include "studio/paint_json.h"
 #include "tool.h"
 
 namespace goniochrome::tool {
@@ -39,11 +38,12 @@ std::string name_of(const std::string& path) {
   return plain_utf8(name.substr(0, name.find('.')));
 }
 
-// The data stands in an element of the type application/json, which ends at the first "</". A browser reads nothing
-// else in it.
-std::string script_text(const Json& json) {
+// JSON stands in an element of the type application/json, which ends at the first "</". A browser reads nothing else
+// in it.
+std::string script_text(std::string_view json) {
   std::string text;
-  for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) {
+  text.reserve(json.size());
+  for (const char c : json) {
     if (c == '<')
       text += "\\u003c";
     else
@@ -52,8 +52,8 @@ std::string script_text(const Json& json) {
   return text;
 }
 
-Result<Json> packed_paints(const Options& options, cli::Session& session) {
-  Json list = Json::array();
+Result<PackedLibrary> packed_paints(const Options& options, cli::Session& session) {
+  PackedLibrary list;
   std::size_t mapped = 0, brushed = 0;
   for (const std::string& path : options.paints.empty() ? std::vector<std::string>{"-"} : options.paints) {
     GONIO_ASSIGN(const std::vector<paint::Paint> paints, formats::read_paints(path));
@@ -62,10 +62,10 @@ Result<Json> packed_paints(const Options& options, cli::Session& session) {
         return input_error("{}: the paint \"{}\" has neither readings nor a face and a flop: give it a color", path,
                            shown(paint.name));
       mapped += paint.color_map.has_value(), brushed += paint.anisotropy.has_value();
-      list.push_back({{"file", plain_utf8(formats::paint_reference(path).file)}, {"paint", studio::paint_json(paint)}});
+      list.add(plain_utf8(formats::paint_reference(path).file), paint);
     }
   }
-  if (list.empty()) return input_error("there is no paint: a page starts from one or more");
+  if (list.size() == 0) return input_error("there is no paint: a page starts from one or more");
   if (mapped > 0) session.warn(fmt::format("{} paints have a color map, which the page does not draw", mapped));
   if (brushed > 0) session.warn(fmt::format("{} paints are brushed, and the page draws them as not brushed", brushed));
   return Result(std::move(list));
@@ -83,7 +83,7 @@ std::string plan_text(const Options& options) {
   return fmt::format(
       "mesh {}: positions and normals in 16 bits an axis\n"
       "environments: {}, each lobe of the basis as half floats\n"
-      "left out: shadows, light from one part to another, color maps, brushed surfaces and lamps\n",
+      "left out: shadows, light from one part to another, color maps and brushed surfaces\n",
       options.mesh, joined(options.environments, ", "));
 }
 
@@ -95,7 +95,8 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   session.explain(plan_text(options));
   GONIO_ASSIGN(const formats::Basis basis, formats::read_basis(options.basis));
   GONIO_ASSIGN(const mesh::Mesh mesh, mesh::read_mesh(options.mesh));
-  GONIO_ASSIGN(Json paints, packed_paints(options, session));
+  GONIO_ASSIGN(const PackedLibrary paints, packed_paints(options, session));
+  GONIO_ASSIGN(const std::string index, paints.index());
   PackedMesh packed = packed_mesh(mesh, basis.mirror);
   const render::PagePrograms programs = render::page_programs();
   const std::string title = options.title.empty() ? name_of(options.mesh) : plain_utf8(options.title);
@@ -107,12 +108,14 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
                {"basis_file", plain_utf8(options.basis)},
                {"mesh", std::move(packed.json)},
                {"finishes", packed_finishes(packed.finishes, basis)},
+               {"lamp", packed_lamp(basis)},
                {"programs",
                 {{"gbuffer_vertex", programs.gbuffer_vertex},
                  {"gbuffer_fragment", programs.gbuffer_fragment},
                  {"shading_vertex", programs.shading_vertex},
-                 {"display_fragment", studio::display_program()}}},
-               {"paints", std::move(paints)},
+                 {"display_fragment", studio::display_program()},
+                 {"overlay_fragment", studio::overlay_program()}}},
+               {"layouts", paints.layouts()},
                {"environments", Json::array()}};
   Json& results = session.results();
   for (const std::string& path : options.environments) {
@@ -128,17 +131,19 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   const std::size_t code = page.size() + library.size();
   GONIO_TRY(fill(page, "@TITLE@", xml_escaped(title)));
   GONIO_TRY(fill(page, "@MODULE@", library));
-  GONIO_TRY(fill(page, "@DATA@", script_text(data)));
+  GONIO_TRY(fill(page, "@INDEX@", base64(index)));
+  GONIO_TRY(fill(page, "@PAINTS@", script_text(paints.lines())));
+  GONIO_TRY(fill(page, "@DATA@", script_text(data.dump(-1, ' ', false, Json::error_handler_t::replace))));
   GONIO_ASSIGN(OutputFile file, OutputFile::create(options.output));
   GONIO_TRY(file.write(page));
   GONIO_TRY(file.commit());
   results["bytes"] = page.size();
   results["code_bytes"] = code;
-  results["paints"] = data["paints"].size();
+  results["paints"] = paints.size();
   results["triangles"] = mesh.triangles.size();
   session.say(fmt::format("page: {:.1f} MB, of which {:.1f} MB are data; {} paints, {} environments, {} triangles",
                           static_cast<double>(page.size()) / 1e6, static_cast<double>(page.size() - code) / 1e6,
-                          data["paints"].size(), options.environments.size(), mesh.triangles.size()));
+                          paints.size(), options.environments.size(), mesh.triangles.size()));
   return cli::Verdict::kDone;
 }
 

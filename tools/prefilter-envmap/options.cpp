@@ -83,7 +83,7 @@ void add_report(cli::ToolSpec& spec) {
        "show the method, the error and the time of each lobe before the work starts"}};
   spec.report = {{"lobes[].exponent", "exponent of the lobe; \"mirror\" for the environment itself"},
                  {"lobes[].size", "texels along a face"},
-                 {"lobes[].method", "harmonics, harmonics+bright, arcs+bright, blocks or overlaps"},
+                 {"lobes[].method", "harmonics, harmonics+bright, harmonics+horizon, arcs+bright, blocks or overlaps"},
                  {"lobes[].cached", "whether the lobe came from the cache"},
                  {"lobes[].degree", "degree of the harmonics"},
                  {"lobes[].storage", "half or float"},
@@ -137,8 +137,9 @@ cli::ToolSpec tool_spec(Options& o) {
       "first. Several methods are used. Smooth lobes are filtered by zonal harmonics, with a proven bound on the "
       "degrees that are left out. Lobes that bend at the horizon are filtered by harmonics of all but the brightest "
       "texels, which are convolved one by one; for the diffuse lobe at the smallest tolerances, sums along the arcs "
-      "that a hemisphere cuts from the rows take their place. Very sharp and very wide lobes are filtered by a walk "
-      "over blocks of texels. --explain shows the choice for each lobe."};
+      "that a hemisphere cuts from the rows take their place. Lobes of exponents below 1 end too steeply at the "
+      "horizon for harmonics alone, so the texels in a band beside the horizon are summed one by one as well. Very "
+      "sharp lobes are filtered by a walk over blocks of texels. --explain shows the choice for each lobe."};
   spec.inputs = {"IMAGE", "an HDR image, or six, one for each face of a cube; - or none is standard input", &o.images,
                  0, 6};
   add_options(spec, o);

@@ -136,6 +136,9 @@ within() { awk -v limit="$1" '$1 > limit { bad = 1 } { n++ } END { exit bad || !
   prefilter-envmap -q -e 70 --no-mirror --size 4 --tolerance 1e-6 --verify 2 coarse.hdr -o x.env.exr --report r.json
   values max_rel_error | within 1e-6
   values method | grep -qx 'arcs+bright'
+  prefilter-envmap -q -e 0,0.3 --no-mirror --size 4 --tolerance 1e-5 --verify 2 coarse.hdr -o x.env.exr --report r.json
+  values max_rel_error | within 1e-5
+  values method | grep -qx 'harmonics+horizon'
 }
 
 @test "a killed run leaves the old file" {

@@ -196,7 +196,11 @@ void add_engines(cli::ToolSpec& spec, Options& o) {
             "environment was made from, and needs neither prefiltered maps nor OpenGL. It draws samples until the "
             "noise of the picture, estimated from them, is within --tolerance: that is the 95th percentile, over the "
             "visible pixels, of "
-            "the CIEDE2000 difference of one standard deviation. auto takes path where the prefiltered maps are "
+            "the CIEDE2000 difference of one standard deviation. A satin coat, see fit-paint --satin, is drawn by "
+            "path as the rough surface that has the readings of the paint. The other engines, and what their pictures "
+            "are compared with, draw the lobes that stand for it: these are round, and typically differ from the rough "
+            "surface by 1 to 3 dE00 at 95 of 100 points in a studio, and by more in the sun. auto takes path where the "
+            "prefiltered maps are "
             "predicted not to keep --tolerance, and path is predicted to be faster than they and their rays.");
   spec.option("bounces", "N", "8", &o.bounces, "surfaces that may pass light on to what is seen")
       .from(0, 4096)

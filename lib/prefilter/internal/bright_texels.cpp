@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "envmap/patch.h"
 #include "math/quadrature.h"
+#include "prefilter/internal/lobe_patch.h"
 #include "prefilter/internal/lobe_rows.h"
 
 namespace goniochrome::prefilter {
@@ -62,7 +63,7 @@ std::size_t bright_count(const envmap::Environment& env) {
   return std::min(all, static_cast<std::size_t>(kMostBright));
 }
 
-BrightTexels::BrightTexels(const envmap::Environment& env, int most) : rest_(without_bright(env, most)) {
+BrightTexels::BrightTexels(const envmap::Environment& env, int most) : env_(&env), rest_(without_bright(env, most)) {
   gauss_.per_texel = 4;
   for (int row = 0; row < env.height(); ++row)
     for (int column = 0; column < env.width(); ++column) {
@@ -75,7 +76,8 @@ BrightTexels::BrightTexels(const envmap::Environment& env, int most) : rest_(wit
           (1 / area) * envmap::moment_of_cell(env, {double(column), double(row), column + 1.0, row + 1.0});
       const auto at = [&](double x, double y) { return env.direction_at(column + x, row + y); };
       texels_.push_back({area * excess, centroid, 2 * (at(0.75, 0.5) - at(0.25, 0.5)),
-                         2 * (at(0.5, 0.75) - at(0.5, 0.25)), env.radius_rad(column, row, column + 1, row + 1)});
+                         2 * (at(0.5, 0.75) - at(0.5, 0.25)), env.radius_rad(column, row, column + 1, row + 1), excess,
+                         column, row});
       largest_radius_ = std::max(largest_radius_, texels_.back().radius_rad);
       centroids_.add(centroid, area * excess);
       for (const double i : math::kGaussPair)
@@ -89,9 +91,20 @@ void BrightTexels::Points::add(const Vec3& at, const Vec3& rgb) {
   for (int c = 0; c < 3; ++c) flux.push_back(static_cast<float>(rgb[c]));
 }
 
+// Step 1: as a parallelogram on which t is linear but for r/5 of its change; of cos^E a texel of radius r counts there
+// r^E at most, so that is little. Step 2: where it is too much, by recursion.
+Vec3 BrightTexels::beside_edge(const Vec3& d, const ZonalKernel& kernel, const Texel& texel, double allowed) const {
+  const double most = std::max({texel.flux.x, texel.flux.y, texel.flux.z}) * kernel.near_edge(2 * texel.radius_rad);
+  if (most * texel.radius_rad / 5 <= allowed)
+    return kernel.linear_mean(dot(d, texel.centroid), dot(d, texel.across), dot(d, texel.down)) * texel.flux;
+  const double relative = std::max(allowed / most, 1e-8);
+  const envmap::Cell cell = {double(texel.column), double(texel.row), texel.column + 1.0, texel.row + 1.0};
+  return lobe_over_cell(*env_, cell, d, kernel, relative, relative) * texel.excess;
+}
+
 // The centroid is exact for the cosine alone; for cos^E it errs by E |E-1| h^2/(24 t^2) of the texel, much near the
 // horizon.
-Vec3 BrightTexels::lobe(const Vec3& d, const ZonalKernel& kernel) const {
+Vec3 BrightTexels::lobe(const Vec3& d, const ZonalKernel& kernel, double allowed) const {
   const bool linear = kernel.shape() == ZonalKernel::Shape::kCosine;
   const Points& points = linear ? centroids_ : gauss_;
   // Step 1: every texel as points.
@@ -101,8 +114,7 @@ Vec3 BrightTexels::lobe(const Vec3& d, const ZonalKernel& kernel) const {
                     sum);
   Vec3 total = {sum[0], sum[1], sum[2]};
   if (!kernel.edge().exists()) return kernel.scale() * total;
-  // Step 2: where the edge cuts a texel, or the kernel bends beside it, the points are replaced by the patch, on which
-  // t is linear but for r/5 of its change; of cos^E a texel of radius r counts there r^E at most, so that is little.
+  // Step 2: where the edge cuts a texel, or the kernel bends beside it, the points are replaced by the patch.
   const double reach = linear ? 1 : 4, edge = kernel.edge().cosine;
   thread_local std::vector<std::size_t> near;
   near.resize(texels_.size());
@@ -118,7 +130,7 @@ Vec3 BrightTexels::lobe(const Vec3& d, const ZonalKernel& kernel) const {
       const double value = kernel.value(dot(d, {points.x[k], points.y[k], points.z[k]}));
       for (int c = 0; c < 3; ++c) total[c] -= value * points.flux[3 * k + c];
     }
-    total += kernel.linear_mean(t, dot(d, texel.across), dot(d, texel.down)) * texel.flux;
+    total += beside_edge(d, kernel, texel, allowed / kernel.scale());
   }
   return kernel.scale() * total;
 }

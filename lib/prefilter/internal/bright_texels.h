@@ -2,6 +2,7 @@
 // goniochrome-theory(7), PREFILTERING, Bright texels.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "envmap/environment.h"
@@ -18,21 +19,27 @@ std::size_t bright_count(const envmap::Environment& env);
 // bright texels are what exceeds that.
 class BrightTexels {
  public:
-  // Splits off at most `most` texels, those above 50 times the mean.
+  // Splits off at most `most` texels, those above 50 times the mean. The environment must outlive this.
   BrightTexels(const envmap::Environment& env, int most);
 
   std::size_t count() const { return texels_.size(); }
   const envmap::Clip& rest() const { return rest_; }
 
-  // Their part of the map at d, each texel a constant patch.
-  Vec3 lobe(const Vec3& d, const ZonalKernel& kernel) const;
+  // Their part of the map at d, each texel a constant patch. One that the edge of the kernel cuts is taken as flat
+  // where that costs no more than `allowed` of any channel of the map, and else by recursion.
+  Vec3 lobe(const Vec3& d, const ZonalKernel& kernel, double allowed = std::numeric_limits<double>::infinity()) const;
 
  private:
   struct Texel {
     Vec3 flux;                    // of the excess
     Vec3 centroid, across, down;  // mean direction, and how it changes from side to side
     double radius_rad;
+    Vec3 excess;  // of radiance
+    int column, row;
   };
+  Vec3 beside_edge(const Vec3& d, const ZonalKernel& kernel, const Texel& texel, double allowed) const;
+
+  const envmap::Environment* env_;
   envmap::Clip rest_;
   std::vector<Texel> texels_;
   double largest_radius_ = 0;

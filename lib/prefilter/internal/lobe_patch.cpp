@@ -6,6 +6,7 @@
 
 #include "base/angles.h"
 #include "math/quadrature.h"
+#include "prefilter/internal/lobe_rows.h"
 
 namespace goniochrome::prefilter {
 
@@ -78,18 +79,38 @@ double reach_rad(double sharpness) {
   return widths / sharpness;
 }
 
-// The nodes of an eight-point rule on equal pieces of [begin, end], and their weights.
+// The nodes of an eight-point rule on equal pieces of an angle that starts at 0: sine and cosine, and their weights.
 struct Nodes {
-  Nodes(double begin, double end, int pieces) {
+  Nodes() = default;
+  Nodes(double width_rad, int pieces) {
     static const std::vector<math::QuadraturePoint> rule = math::gauss_legendre(8);
-    const double half = (end - begin) / (2 * pieces);
+    const double half = width_rad / (2 * pieces);
     for (int k = 0; k < pieces; ++k)
       for (const math::QuadraturePoint& point : rule) {
-        at.push_back(begin + half * (2 * k + 1 + point.position));
-        weight.push_back(half * point.weight);
+        const double angle = half * (2 * k + 1 + point.position);
+        sine.push_back(std::sin(angle)), cosine.push_back(std::cos(angle)), weight.push_back(half * point.weight);
       }
   }
-  std::vector<double> at, weight;
+  std::size_t count() const { return weight.size(); }
+  std::vector<double> sine, cosine, weight;
+};
+
+// All texels of a map are equally wide and equally high, so that their nodes are a turn apart. Nodes are kept for the
+// last width that was asked for, by the number of pieces.
+class KeptNodes {
+ public:
+  const Nodes& of(double width_rad, int pieces) {
+    if (width_rad != width_rad_) by_pieces_.clear();
+    width_rad_ = width_rad;
+    const std::size_t wanted = static_cast<std::size_t>(pieces);
+    if (wanted >= by_pieces_.size()) by_pieces_.resize(wanted + 1);
+    if (by_pieces_[wanted].count() == 0) by_pieces_[wanted] = Nodes(width_rad, pieces);
+    return by_pieces_[wanted];
+  }
+
+ private:
+  double width_rad_ = 0;
+  std::vector<Nodes> by_pieces_;
 };
 
 // The pieces, in lobe widths, on which the eight-point rule errs by less than `relative` of the lobe's top. Of
@@ -109,22 +130,26 @@ double over_sharp_texel(const Task& task, const Cell& cell, double sharpness) {
   const auto pieces = [&](double width_rad) {
     return std::max(1, static_cast<int>(std::ceil(width_rad * sharpness / piece)));
   };
-  const Nodes down(theta0, theta1, pieces(theta1 - theta0));
-  const double longitude0 = 2 * kPi * 0.5 - column_rad * cell.column1;
-  const double longitude1 = 2 * kPi * 0.5 - column_rad * cell.column0;
-  const Nodes across(longitude0, longitude1, pieces((longitude1 - longitude0) * ring));
-  std::vector<double> level(across.at.size());
-  for (std::size_t i = 0; i < level.size(); ++i)
-    level[i] = task.d.x * std::sin(across.at[i]) + task.d.z * std::cos(across.at[i]);
-  const double reach = reach_rad(sharpness), theta_d = std::atan2(std::hypot(task.d.x, task.d.z), task.d.y);
+  thread_local KeptNodes kept_down, kept_across;
+  thread_local std::vector<double> level, weight;
+  const Nodes& down = kept_down.of(row_rad, pieces(row_rad));
+  const Nodes& across = kept_across.of(column_rad, pieces(column_rad * ring));
+  // Longitude falls with the columns: d.x sin + d.z cos of it, counted from the side of the first column.
+  const double side = kPi - column_rad * cell.column0, x = task.d.x, z = task.d.z;
+  const double along = x * std::sin(side) + z * std::cos(side), beside = z * std::sin(side) - x * std::cos(side);
+  level.assign(across.count() + rows::kPadding, 0), weight.assign(across.count() + rows::kPadding, 0);
+  for (std::size_t i = 0; i < across.count(); ++i) {
+    level[i] = along * across.cosine[i] + beside * across.sine[i];
+    weight[i] = across.weight[i];
+  }
+  const double sin0 = std::sin(theta0), cos0 = std::cos(theta0);
   double sum = 0;
-  for (std::size_t j = 0; j < down.at.size(); ++j) {
-    if (std::fabs(down.at[j] - theta_d) > reach) continue;
-    const double sine = std::sin(down.at[j]), height = task.d.y * std::cos(down.at[j]);
-    double row = 0;
-    for (std::size_t i = 0; i < level.size(); ++i)
-      row += across.weight[i] * task.kernel.value(height + sine * level[i]);
-    sum += down.weight[j] * sine * row;
+  for (std::size_t j = 0; j < down.count(); ++j) {
+    const double sine = sin0 * down.cosine[j] + cos0 * down.sine[j],
+                 cosine = cos0 * down.cosine[j] - sin0 * down.sine[j];
+    sum += down.weight[j] * sine *
+           rows::sum_of_powers(weight.data(), level.data(), across.count(), task.d.y * cosine, sine,
+                               task.kernel.exponent());
   }
   return sum;
 }

@@ -6,6 +6,7 @@
 #include <hwy/highway.h>
 
 #include <cmath>
+#include <cstdint>
 // After highway.h:
 #include <hwy/contrib/math/math-inl.h>
 
@@ -95,6 +96,160 @@ void Points(const float* rgb, std::size_t points, const double* x, const double*
       sum);
 }
 
+double SumOfPowers(const double* weight, const double* level, std::size_t count, double a, double b, double exponent) {
+  const hn::CappedTag<double, kPadding> d;
+  auto sum = hn::Zero(d);
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const auto t = hn::MulAdd(hn::Set(d, b), hn::LoadU(d, level + i), hn::Set(d, a));
+    sum = hn::MulAdd(hn::LoadU(d, weight + i), power(d, t, exponent), sum);
+  }
+  return hn::GetLane(hn::SumOfLanes(d, sum));
+}
+
+// The four numbers from each index on. Four vectors are loaded and transposed where vectors have four lanes, since that
+// took a third of the time of four gathers on a Zen 3.
+template <class Tag, class Index>
+HWY_INLINE void four_of_each(Tag d, const double* from, Index index, hn::Vec<Tag>& c0, hn::Vec<Tag>& c1,
+                             hn::Vec<Tag>& c2, hn::Vec<Tag>& c3) {
+#if HWY_TARGET == HWY_AVX2
+  alignas(16) std::int32_t at[4];
+  hn::Store(index, hn::Rebind<std::int32_t, Tag>(), at);
+  const auto r0 = hn::LoadU(d, from + at[0]), r1 = hn::LoadU(d, from + at[1]);
+  const auto r2 = hn::LoadU(d, from + at[2]), r3 = hn::LoadU(d, from + at[3]);
+  const auto even01 = hn::InterleaveLower(d, r0, r1), odd01 = hn::InterleaveUpper(d, r0, r1);
+  const auto even23 = hn::InterleaveLower(d, r2, r3), odd23 = hn::InterleaveUpper(d, r2, r3);
+  c0 = hn::ConcatLowerLower(d, even23, even01), c1 = hn::ConcatLowerLower(d, odd23, odd01);
+  c2 = hn::ConcatUpperUpper(d, even23, even01), c3 = hn::ConcatUpperUpper(d, odd23, odd01);
+#else
+  const auto wide = hn::PromoteTo(hn::RebindToSigned<Tag>(), index);
+  c0 = hn::GatherIndex(d, from, wide), c1 = hn::GatherIndex(d, from + 1, wide);
+  c2 = hn::GatherIndex(d, from + 2, wide), c3 = hn::GatherIndex(d, from + 3, wide);
+#endif
+}
+
+// F at x: the interval, and the cubic in it. The end intervals are lines and serve all beyond.
+template <class Tag>
+HWY_INLINE hn::Vec<Tag> antiderivative(Tag d, const SecondIntegral& band, hn::Vec<Tag> x) {
+  const hn::Rebind<std::int32_t, Tag> di;
+  const double last = static_cast<double>(band.coefficients.size() / 4 - 1);
+  const auto y = hn::Mul(hn::Sub(x, hn::Set(d, band.begin)), hn::Set(d, band.per_unit));
+  const auto interval = hn::Min(hn::Max(hn::Floor(y), hn::Zero(d)), hn::Set(d, last));
+  const auto z = hn::Sub(y, interval);
+  const auto index = hn::ShiftLeft<2>(hn::DemoteTo(di, interval));
+  hn::Vec<Tag> c0, c1, c2, c3;
+  four_of_each(d, band.coefficients.data(), index, c0, c1, c2, c3);
+  return hn::MulAdd(hn::MulAdd(hn::MulAdd(c3, z, c2), z, c1), z, c0);
+}
+
+// As SecondIntegral::mean().
+template <class Tag>
+HWY_INLINE hn::Vec<Tag> cut_mean(Tag d, const SecondIntegral& band, hn::Vec<Tag> middle, hn::Vec<Tag> along,
+                                 hn::Vec<Tag> down) {
+  const auto half = hn::Set(d, 0.5);
+  const auto wide = hn::Mul(half, hn::Add(along, down)), narrow = hn::Mul(half, hn::Sub(along, down));
+  const auto outer =
+      hn::Add(antiderivative(d, band, hn::Add(middle, wide)), antiderivative(d, band, hn::Sub(middle, wide)));
+  const auto inner =
+      hn::Add(antiderivative(d, band, hn::Add(middle, narrow)), antiderivative(d, band, hn::Sub(middle, narrow)));
+  return hn::Div(hn::Sub(outer, inner), hn::Mul(along, down));
+}
+
+// As SecondIntegral::far_mean().
+template <class Tag>
+HWY_INLINE hn::Vec<Tag> far_mean(Tag d, const SecondIntegral& band, hn::Vec<Tag> middle, hn::Vec<Tag> along,
+                                 hn::Vec<Tag> down) {
+  const hn::Rebind<std::int32_t, Tag> di;
+  const double last = static_cast<double>(band.means.size() / 4 - 1);
+  const auto y =
+      hn::Min(hn::Max(hn::Mul(hn::Sub(middle, hn::Set(d, band.means_begin)), hn::Set(d, band.per_unit)), hn::Zero(d)),
+              hn::Set(d, last));
+  const auto interval = hn::Floor(y), z = hn::Sub(y, interval);
+  hn::Vec<Tag> m0, change0, m1, change1;
+  four_of_each(d, band.means.data(), hn::ShiftLeft<2>(hn::DemoteTo(di, interval)), m0, change0, m1, change1);
+  const auto square = hn::MulAdd(along, along, hn::Mul(down, down));
+  const auto more = hn::MulSub(square, hn::Set(d, 1.0 / 12), hn::Set(d, band.variance));
+  return hn::MulAdd(more, hn::MulAdd(change1, z, m1), hn::MulAdd(change0, z, m0));
+}
+
+template <class Tag>
+HWY_INLINE hn::Vec<Tag> mean_of_band(Tag d, const SecondIntegral& band, hn::Vec<Tag> middle, hn::Vec<Tag> along,
+                                     hn::Vec<Tag> down, double least) {
+  along = hn::Max(hn::Abs(along), hn::Set(d, least));
+  down = hn::Max(hn::Abs(down), hn::Set(d, least));
+  if (hn::AllTrue(d, hn::Gt(hn::Abs(middle), hn::Set(d, band.cut)))) return far_mean(d, band, middle, along, down);
+  return cut_mean(d, band, middle, along, down);
+}
+
+using Padded = hn::CappedTag<double, kPadding>;
+using Lanes = hn::Vec<Padded>;
+
+// Adds a row to the lanes of three sums. kPadding more texels may be read: they do not count.
+template <class Kernel>
+HWY_INLINE void add_padded(const float* rgb, std::size_t columns, const Kernel& kernel, Lanes& red, Lanes& green,
+                           Lanes& blue) {
+  const Padded d;
+  const hn::Rebind<float, Padded> df;
+  const std::size_t lanes = hn::Lanes(d);
+  for (std::size_t j = 0; j < columns; j += lanes) {
+    hn::Vec<decltype(df)> r, g, b;
+    hn::LoadInterleaved3(df, rgb + 3 * j, r, g, b);
+    const auto k = hn::IfThenElseZero(hn::FirstN(d, columns - j), kernel(d, j));
+    red = hn::MulAdd(k, hn::PromoteTo(d, r), red);
+    green = hn::MulAdd(k, hn::PromoteTo(d, g), green);
+    blue = hn::MulAdd(k, hn::PromoteTo(d, b), blue);
+  }
+}
+
+HWY_INLINE void add_lanes(Lanes red, Lanes green, Lanes blue, double sum[3]) {
+  const Padded d;
+  sum[0] += hn::GetLane(hn::SumOfLanes(d, red));
+  sum[1] += hn::GetLane(hn::SumOfLanes(d, green));
+  sum[2] += hn::GetLane(hn::SumOfLanes(d, blue));
+}
+
+void LatLongBands(const float* rgb, const double* sine, const double* cosine, const LatLongBand* parts,
+                  std::size_t count, const SecondIntegral& band, double sum[3]) {
+  const Padded lanes;
+  Lanes red = hn::Zero(lanes), green = red, blue = red;
+  for (std::size_t i = 0; i < count; ++i) {
+    const LatLongBand& at = parts[i];
+    add_padded(
+        rgb + 3 * at.first, at.columns,
+        [&](auto d, std::size_t j) HWY_ATTR {
+          const auto s = hn::LoadU(d, sine + at.column + j), c = hn::LoadU(d, cosine + at.column + j);
+          const auto middle = hn::MulAdd(hn::Set(d, at.b), s, hn::MulAdd(hn::Set(d, at.c), c, hn::Set(d, at.a)));
+          const auto along =
+              hn::Mul(hn::Set(d, at.width), hn::MulSub(hn::Set(d, at.b), c, hn::Mul(hn::Set(d, at.c), s)));
+          const auto down = hn::MulAdd(hn::Set(d, at.f), s, hn::MulAdd(hn::Set(d, at.g), c, hn::Set(d, at.e)));
+          return hn::Mul(hn::Set(d, at.area), mean_of_band(d, band, middle, along, down, at.least));
+        },
+        red, green, blue);
+  }
+  add_lanes(red, green, blue, sum);
+}
+
+void CubeBandRow(const float* rgb, std::size_t columns, const double* s, const double* width, const CubeBand& at,
+                 const SecondIntegral& band, double sum[3]) {
+  const Padded lanes;
+  Lanes red = hn::Zero(lanes), green = red, blue = red;
+  add_padded(
+      rgb, columns,
+      [&](auto d, std::size_t j) HWY_ATTR {
+        const auto x = hn::LoadU(d, s + j), w = hn::LoadU(d, width + j);
+        const auto norm2 = hn::MulAdd(x, x, hn::Set(d, at.m));
+        const auto inverse = hn::Div(hn::Set(d, 1.0), hn::Sqrt(norm2)), inverse2 = hn::Mul(inverse, inverse);
+        const auto middle = hn::Mul(hn::MulAdd(hn::Set(d, at.q), x, hn::Set(d, at.p)), inverse);
+        const auto slope = hn::Mul(middle, inverse2);
+        const auto along = hn::Mul(w, hn::MulSub(hn::Set(d, at.q), inverse, hn::Mul(slope, x)));
+        const auto down =
+            hn::Mul(hn::Set(d, at.down), hn::MulSub(hn::Set(d, at.r), inverse, hn::Mul(slope, hn::Set(d, at.t))));
+        const auto area = hn::Mul(hn::Mul(w, hn::Set(d, at.down)), hn::Mul(inverse, inverse2));
+        return hn::Mul(area, mean_of_band(d, band, middle, along, down, at.least));
+      },
+      red, green, blue);
+  add_lanes(red, green, blue, sum);
+}
+
 // Step 1: a vector of points at a time, which mostly has none near. Step 2: those of a vector that has, one by one.
 // Step 3: the last points, by a vector that reaches back, or one by one where they do not fill a vector.
 std::size_t Near(std::size_t points, const double* x, const double* y, const double* z, const double direction[3],
@@ -136,6 +291,9 @@ HWY_EXPORT(LatLongRow);
 HWY_EXPORT(CubeRow);
 HWY_EXPORT(Points);
 HWY_EXPORT(Near);
+HWY_EXPORT(SumOfPowers);
+HWY_EXPORT(LatLongBands);
+HWY_EXPORT(CubeBandRow);
 
 void add_lat_long_row(const float* rgb, std::size_t columns, const double* sine, const double* cosine, double a,
                       double b, double c, double exponent, double sum[3]) {
@@ -155,6 +313,21 @@ void add_points(const float* rgb, std::size_t points, const double* x, const dou
 std::size_t points_near(std::size_t points, const double* x, const double* y, const double* z, const double d[3],
                         double cosine, double margin, std::size_t* found) {
   return HWY_DYNAMIC_DISPATCH(Near)(points, x, y, z, d, cosine, margin, found);
+}
+
+double sum_of_powers(const double* weight, const double* level, std::size_t count, double a, double b,
+                     double exponent) {
+  return HWY_DYNAMIC_DISPATCH(SumOfPowers)(weight, level, count, a, b, exponent);
+}
+
+void add_lat_long_bands(const float* rgb, const double* sine, const double* cosine, const LatLongBand* parts,
+                        std::size_t count, const SecondIntegral& band, double sum[3]) {
+  HWY_DYNAMIC_DISPATCH(LatLongBands)(rgb, sine, cosine, parts, count, band, sum);
+}
+
+void add_cube_band(const float* rgb, std::size_t columns, const double* s, const double* width, const CubeBand& at,
+                   const SecondIntegral& band, double sum[3]) {
+  HWY_DYNAMIC_DISPATCH(CubeBandRow)(rgb, columns, s, width, at, band, sum);
 }
 
 }  // namespace goniochrome::prefilter::rows

@@ -4,6 +4,8 @@
 
 #include <cstddef>
 
+#include "prefilter/internal/horizon_table.h"
+
 namespace goniochrome::prefilter::rows {
 
 // A row of a lat-long map at polar angle theta: adds the sum over columns of rgb[3j+c] max(0, a + b sine[j] +
@@ -23,5 +25,34 @@ void add_points(const float* rgb, std::size_t points, const double* x, const dou
 // all. Returns how many.
 std::size_t points_near(std::size_t points, const double* x, const double* y, const double* z, const double d[3],
                         double cosine, double margin, std::size_t* found);
+
+// Texels beyond the end of a band that its sums may read, and do not count.
+constexpr std::size_t kPadding = 16;
+
+// The sum over `count` nodes of weight[i] max(0, a + b level[i])^exponent. Both arrays are kPadding longer, with
+// weights of 0.
+double sum_of_powers(const double* weight, const double* level, std::size_t count, double a, double b, double exponent);
+
+// A part of a row of a lat-long map: the cosine is a + b sine[j] + c cosine[j] in the middle of a texel, changes by
+// width (b cosine[j] - c sine[j]) along the row and by e + f sine[j] + g cosine[j] down, each taken as `least` or more.
+// Texels have the solid angle `area`.
+struct LatLongBand {
+  double a, b, c, width, e, f, g, least, area;
+  std::size_t first, columns;  // of the texels of the map, row by row
+  std::size_t column;          // where sine and cosine begin
+};
+// Adds rgb[3j+c] area times the mean over texel j of the function whose second antiderivative is `band`, over all
+// parts.
+void add_lat_long_bands(const float* rgb, const double* sine, const double* cosine, const LatLongBand* parts,
+                        std::size_t count, const SecondIntegral& band, double sum[3]);
+
+// A row of a cube's face at the height t, `down` high: directions (p + q s[j]) / n with n^2 = m + s[j]^2, where p grows
+// by r for each unit of t; texels are width[j] wide.
+struct CubeBand {
+  double p, q, m, t, r, down, least;
+};
+// The same, times the solid angle of texel j.
+void add_cube_band(const float* rgb, std::size_t columns, const double* s, const double* width, const CubeBand& at,
+                   const SecondIntegral& band, double sum[3]);
 
 }  // namespace goniochrome::prefilter::rows

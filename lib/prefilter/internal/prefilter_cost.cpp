@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "prefilter/internal/arc_sums.h"
 #include "prefilter/internal/bright_texels.h"
+#include "prefilter/internal/horizon_band.h"
 #include "prefilter/internal/mirror.h"
 
 // Processor seconds on one core. The constants are fits to timed runs of probes of 512 x 256 to 4096 x 2048 texels, to
@@ -52,12 +53,19 @@ double arcs_time_s(const envmap::Environment& env, double exponent, double toler
   return 4.8e-8 * arc_points(exponent == 0, tolerance) * env.height() * texels;
 }
 
+// Bands about as wide as a tolerance of 1e-5 wants them, texel by texel, and the rows that they cross. The deeper the
+// tolerance, the wider is the band.
+double horizon_time_s(const envmap::Environment& env, int degree, double tolerance, double texels) {
+  const double reach = std::clamp(8 - 2 * std::log10(tolerance / 1e-5), 2.0, 40.0) / degree;
+  return (1.7e-8 * HorizonBand::texels_beside(env, reach) + 6e-8 * env.height()) * texels;
+}
+
 // A sharp lobe cuts few texels into many cells, or into the pieces of a quadrature of its own (lobe_patch.cpp); a wide
 // one walks along its horizon.
 double blocks_time_s(const envmap::Environment& env, double exponent, double texels) {
   const bool by_pieces =
       env.layout() == envmap::Environment::Layout::kLatLong && 2 * env.largest_texel_rad() * std::sqrt(exponent) > 0.5;
-  return (exponent > 100 ? (by_pieces ? 2.5e-4 : 6e-2) : 8e-5 * env.width()) * texels;
+  return (exponent > 100 ? (by_pieces ? 1.4e-4 : 6e-2) : 8e-5 * env.width()) * texels;
 }
 
 // A cell costs its own corners, the sides of texels that cross it and the texels themselves.
@@ -85,11 +93,12 @@ void predict_times(const envmap::Environment& env, const PrefilterRequest& reque
     const envmap::SphereGrid grid = envmap::map_grid(request.layout, lobe.size);
     const double texels = static_cast<double>(grid.width()) * grid.height();
     double time_s = 0;
-    if (lobe.method == Method::kHarmonics || lobe.method == Method::kBrightHarmonics) {
+    if (lobe.method == Method::kHarmonics || lobe.method == Method::kBrightHarmonics ||
+        lobe.method == Method::kHorizon) {
       if (angles_size != lobe.size) time_s += angles_time_s(texels);
       angles_size = lobe.size;
     }
-    if (lobe.method == Method::kBrightHarmonics || lobe.method == Method::kArcs) {
+    if (lobe.method == Method::kBrightHarmonics || lobe.method == Method::kArcs || lobe.method == Method::kHorizon) {
       if (!parted) time_s += parting_time_s(env), bright = static_cast<double>(bright_count(env));
       parted = true;
       time_s += bright_time_s(bright, lobe.exponent, texels);
@@ -111,6 +120,11 @@ void predict_times(const envmap::Environment& env, const PrefilterRequest& reque
         break;
       case Method::kArcs:
         time_s += arcs_time_s(env, lobe.exponent, request.tolerance, texels);
+        break;
+      case Method::kHorizon:
+        if (!rest_transformed) time_s += transform_time_s(env, lobe.degree);
+        rest_transformed = true;
+        time_s += evaluation_time_s(lobe.degree, texels) + horizon_time_s(env, lobe.degree, request.tolerance, texels);
         break;
       case Method::kBlocks:
         time_s += blocks_time_s(env, lobe.exponent, texels);

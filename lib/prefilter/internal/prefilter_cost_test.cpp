@@ -73,11 +73,12 @@ TEST(PrefilterCost, EveryMethodHasItsPrice) {
   const envmap::Environment env = gray(256);
   const auto plan = prefilter_plan(env, {{0, 0.3, 250, 1e5}, true, 32, 1e-4});
   using Method = LobePlan::Method;
-  const std::vector<Method> want = {Method::kBrightHarmonics, Method::kBrightHarmonics, Method::kBlocks,
-                                    Method::kHarmonics,       Method::kBlocks,          Method::kMirror};
+  const std::vector<Method> want = {Method::kBrightHarmonics, Method::kHorizon, Method::kHorizon,
+                                    Method::kHarmonics,       Method::kBlocks,  Method::kMirror};
   ASSERT_EQ(plan.size(), want.size());
   for (std::size_t i = 0; i < want.size(); ++i) EXPECT_EQ(plan[i].method, want[i]) << i;
-  for (const std::size_t dear : {2, 4}) EXPECT_GT(plan[dear].predicted_time_s, 10 * plan[3].predicted_time_s);
+  EXPECT_GT(plan[2].predicted_time_s, 2 * plan[3].predicted_time_s);
+  EXPECT_GT(plan[4].predicted_time_s, 10 * plan[3].predicted_time_s);
   EXPECT_EQ(prefilter_plan(env, {{}, false, 32, 1e-6})[0].method, Method::kArcs);
 }
 

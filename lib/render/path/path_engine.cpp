@@ -43,6 +43,7 @@ Result<void> PathEngine::load(const Scene& scene, const Effects& effects) {
   path.emission = scene.emission;
   path.ground = scene.ground;
   path.rays = sight_.traced_mesh();
+  path.rough_coats = true;
   path.tilt_tolerance = effects.tilt_tolerance;
   GONIO_ASSIGN(Transport transport, Transport::create(path));
   transport_.emplace(std::move(transport));

@@ -104,6 +104,7 @@ Result<Transport> SpectralPaths::transport(const PathScene& path_scene) {
   const Scene mean = mean_scene(*path_scene.scene);
   PathScene means = path_scene;
   means.scene = &mean;
+  means.rough_coats = false;
   means.emission.clear();
   for (const color::Bands& bands : spectra.emission) means.emission.push_back(gray(color::mean(bands)));
   if (means.ground) means.ground->paint = paint::mean_lobes(*spectra.floor);

@@ -86,6 +86,17 @@ Result<TracedPaint> TracedPaint::create(const paint::LobeFit& paint, double glos
   return traced;
 }
 
+void TracedPaint::put_coat(const paint::LobeFit& paint, double gloss_deg) {
+  if (!tilts_.empty() || layer_ != nullptr) return;
+  const std::optional<brdf::RoughCoat> coat = brdf::coat_of_lobes(paint, gloss_deg);
+  if (!coat) return;
+  coat_.emplace(*coat, brdf::mirror_index(paint.coat_index));
+  for (Weights& view : views_) {
+    view.mirror = {};
+    for (Lobe& lobe : view.lobes) lobe.gloss = {};
+  }
+}
+
 PaintedPoint::PaintedPoint(const TracedPaint& paint, const Float3& normal, const Float3& to_viewer)
     : normal_(normal), viewer_(to_viewer), frame_(rays::frame_about(normal)) {
   cos_o_ = std::max(rays::dot(normal, to_viewer), 1e-6F);
@@ -115,7 +126,8 @@ PaintedPoint::PaintedPoint(const TracedPaint& paint, const Float3& normal, const
     diffuse_chance_ = std::max(diffuse_chance_, kCosineShare * paint.map_level_);
     diffuse_ = {};
   }
-  total_ = diffuse_chance_;
+  if (paint.coat_) coat_ = &*paint.coat_, coat_chance_ = coat_mirror();
+  total_ = diffuse_chance_ + coat_chance_;
   for (std::size_t j = 0; j < low->lobes.size(); ++j) {
     Lobe& lobe = lobes_[count_];
     lobe.number = static_cast<int>(j);
@@ -174,6 +186,15 @@ Float3 PaintedPoint::diffuse_albedo() const {
   return static_cast<float>(kPi * brdf::mean_coat_transmission(coat_index_)) * diffuse_;
 }
 
+Vec3 PaintedPoint::local(const Float3& direction) const {
+  return {rays::dot(direction, frame_.x), rays::dot(direction, frame_.y), rays::dot(direction, normal_)};
+}
+
+Float3 PaintedPoint::coat_direction(double choice, float u, float v) const {
+  const Float3 drawn = float3(coat_->drawn(local(viewer_), choice, u, v));
+  return drawn.x * frame_.x + drawn.y * frame_.y + drawn.z * normal_;
+}
+
 float PaintedPoint::mirror_weight() const {
   return mean_size(mirror_);
 }
@@ -184,6 +205,7 @@ float PaintedPoint::narrow_share(double light_sr) const {
     return static_cast<float>(light_sr / (light_sr + 1 / normalization));
   };
   float sum = diffuse_chance_ * narrow(1 / kFloatPi);
+  if (coat_ != nullptr) sum += coat_chance_ * static_cast<float>(coat_->narrow_share(light_sr, cos_o_));
   for (int j = 0; j < count_; ++j) sum += lobes_[j].chance * narrow(lobes_[j].normalization);
   for (const TexelLobe& lobe : texels_) sum += lobe.chance * narrow(lobe.normalization);
   return sum / total_;
@@ -226,6 +248,11 @@ PaintedPoint::Parts PaintedPoint::parts(const Float3& to_light) const {
   visit_texels(to_light, [&](const TexelLobe& lobe, float power) {
     parts.lobes = parts.lobes + (std::exp(lobe.log_peak) * power * cos_i) * lobe.color;
   });
+  if (coat_ != nullptr) {
+    const auto sent = static_cast<float>(coat_->sent(local(to_light), local(viewer_)).f_cos);
+    parts.gloss = {sent, sent, sent};
+    parts.lobes = parts.lobes + parts.gloss;
+  }
   if (count_ == 0) return parts;
   const float fresnel = coat_reflectance(std::min(1.0F, 0.5F * rays::length(to_light + viewer_)));
   visit_lobes(to_light, [&](const Lobe& lobe, float power) {
@@ -247,6 +274,12 @@ Reflection PaintedPoint::at(const Float3& to_light) const {
     f_cos = f_cos + (std::exp(lobe.log_peak) * power * cos_i) * lobe.color;
     pdf += lobe.chance * lobe.normalization * power;
   });
+  if (coat_ != nullptr) {
+    const brdf::CoatFacets::Sent sent = coat_->sent(local(to_light), local(viewer_));
+    const auto gray = static_cast<float>(sent.f_cos);
+    f_cos = f_cos + Float3{gray, gray, gray};
+    pdf += coat_chance_ * static_cast<float>(sent.pdf);
+  }
   if (count_ > 0) {
     const float fresnel = coat_reflectance(std::min(1.0F, 0.5F * rays::length(to_light + viewer_)));
     visit_lobes(to_light, [&](const Lobe& lobe, float power) {
@@ -287,6 +320,11 @@ Float3 PaintedPoint::toward_disc(const Light& light, bool tabled) const {
   if (paint_ != nullptr) {
     for (const DiscDirection& part : disc_directions(light))
       if (dot(n, part.direction) > 0) f = f + static_cast<float>(part.weight) * mapped(float3(part.direction));
+  }
+  if (coat_ != nullptr) {
+    const Vec3 middle = local(float3(light.direction));
+    const auto gray = static_cast<float>(coat_->over_disc(local(viewer_), normalized(middle), radius));
+    f = f + Float3{gray, gray, gray};
   }
   for (const TexelLobe& lobe : texels_) {
     const Vec3 axis = rays::vec3(lobe.axis);
@@ -329,11 +367,15 @@ Float3 PaintedPoint::drawn_about(const Float3& axis, float exponent, float u, fl
 Float3 PaintedPoint::direction(double choice, double u, double v) const {
   const auto a = static_cast<float>(u), b = static_cast<float>(v);
   double left = choice * total_;
-  if (left < diffuse_chance_ || (count_ == 0 && texels_.empty())) {
+  if (left < diffuse_chance_ || (count_ == 0 && texels_.empty() && coat_ == nullptr)) {
     const float r = std::sqrt(a), phi = 2 * kFloatPi * b;
     return (r * std::cos(phi)) * frame_.x + (r * std::sin(phi)) * frame_.y + std::sqrt(1 - a) * normal_;
   }
   left -= diffuse_chance_;
+  if (coat_ != nullptr) {
+    if (left < coat_chance_ || count_ == 0) return coat_direction(std::min(left / coat_chance_, 1.0), a, b);
+    left -= coat_chance_;
+  }
   if (!texels_.empty()) {
     std::size_t k = 0;
     while (k + 1 < texels_.size() && left >= texels_[k].chance) left -= texels_[k++].chance;

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "base/result.h"
+#include "brdf/coat_facets.h"
 #include "brdf/color_map.h"
 #include "brdf/ward.h"
 #include "paint/paint.h"
@@ -33,8 +35,13 @@ class TracedPaint {
   // what directions are drawn by. The layer must outlive the paint.
   void put_surface(const SurfaceLayer& layer, int part);
 
+  // Draws the rough coat that its gloss lobes and its mirror stand for, in their place; nothing where they stand for
+  // none, see brdf::coat_of_lobes(), or where the paint is brushed. `paint` and `gloss_deg` are those of create().
+  // Shares have no such coat.
+  void put_coat(const paint::LobeFit& paint, double gloss_deg);
+
   // Whether all that it shows are its lobes, its diffuse part and its mirror, which is not so with a texture or a map.
-  bool is_lobe_model() const { return map_ == nullptr && layer_ == nullptr; }
+  bool is_lobe_model() const { return map_ == nullptr && layer_ == nullptr && !coat_; }
   // Whether it sends back more light than it gets, in some channel to some viewer. Its diffuse part is known exactly,
   // that of its lobes by quadrature to 1 %: a paint is told whose sum is beyond 1 by more than that. Of a texture those
   // texels are asked whose lobes could be the brightest, some twenty.
@@ -54,7 +61,8 @@ class TracedPaint {
   };
   std::vector<Weights> views_;  // one, or ascending in view_deg
   double coat_index_ = paint::kNoCoat;
-  std::vector<brdf::Tilt> tilts_;  // none: isotropic
+  std::vector<brdf::Tilt> tilts_;         // none: isotropic
+  std::optional<brdf::CoatFacets> coat_;  // in the place of gloss lobes and mirror
   const brdf::ColorMap* map_ = nullptr;
   brdf::CriticalAngle treatment_ = brdf::CriticalAngle::kSlide;
   float map_level_ = 0;                  // the mean size of the map's factors
@@ -187,12 +195,16 @@ class PaintedPoint {
   void visit_texels(const rays::Float3& to_light, const Visit& visit) const;
 
   float let_in(float cos_i) const;
+  // A direction in the frame whose z is the normal.
+  Vec3 local(const rays::Float3& direction) const;
+  rays::Float3 coat_direction(double choice, float u, float v) const;
 
   rays::Float3 normal_, viewer_, mirrored_, mirror_, diffuse_;
   rays::Frame frame_;
   double coat_index_ = paint::kNoCoat;
   float let_out_ = 1;  // what the coat lets out to the viewer: diffuse_ and the lobes' K_DD hold it
-  float cos_o_ = 1, diffuse_chance_ = 0, total_ = 0;
+  float cos_o_ = 1, diffuse_chance_ = 0, coat_chance_ = 0, total_ = 0;
+  const brdf::CoatFacets* coat_ = nullptr;  // in the place of gloss lobes and mirror
   int count_ = 0;
   Between between_;
   Lobe lobes_[kMostTracedLobes];

@@ -60,6 +60,7 @@ void TracedPaint::put_surface(const SurfaceLayer& layer, int part) {
     views_.assign(1, {});
     coat_index_ = paint::kNoCoat;
     tilts_.clear();
+    coat_.reset();
     layer_ = &layer, part_ = part;
     return;
   }
@@ -157,9 +158,6 @@ void PaintedPoint::add_texel_lobe(const Vec3& axis, double exponent, const color
 
 // cos_i map/pi: a map holds reflectance factors. Isolines do not change when both directions turn about the normal.
 Float3 PaintedPoint::mapped(const Float3& to_light) const {
-  const auto local = [&](const Float3& d) {
-    return Vec3{rays::dot(d, frame_.x), rays::dot(d, frame_.y), rays::dot(d, normal_)};
-  };
   const Vec3 light = local(to_light);
   return float3(light.z / kPi * brdf::reflectance_factor(*paint_->map_, light, local(viewer_), paint_->treatment_));
 }

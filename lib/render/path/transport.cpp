@@ -64,11 +64,13 @@ Result<Transport> Transport::create(const PathScene& path_scene) {
     auto paint = TracedPaint::create(scene.paints[part], gloss_deg, tilts[part]);
     if (!paint.ok()) return input_error("part {}: {}", scene.mesh->parts[part].name, paint.error().message);
     if (scene.layer != nullptr) paint->put_surface(*scene.layer, static_cast<int>(part));
+    if (path_scene.rough_coats) paint->put_coat(scene.paints[part], gloss_deg);
     transport.paints_.push_back(*std::move(paint));
   }
   if (ground) {
     auto paint = TracedPaint::create(ground->paint, brdf::kGlossIncidence_deg, {});
     if (!paint.ok()) return input_error("floor: {}", paint.error().message);
+    if (path_scene.rough_coats) paint->put_coat(ground->paint, brdf::kGlossIncidence_deg);
     transport.paints_.push_back(*std::move(paint));
   }
   if (path_scene.environment != nullptr) {

@@ -13,7 +13,6 @@ namespace goniochrome::sketch {
 
 namespace {
 
-constexpr double kFullContrast = 0.5;  // of brightness, for 100 gloss units
 constexpr double kNearSpecular_deg = 1.5;
 constexpr double kBin_deg = 0.5;
 constexpr double kLeastReading = 0.5;  // gloss units; less is noise
@@ -45,19 +44,6 @@ std::vector<HighlightSample> binned(const std::vector<HighlightSample>& samples)
 }
 
 }  // namespace
-
-double contrast_gloss(std::vector<double>& brightness) {
-  if (brightness.size() < 2) return 0;
-  const std::size_t tenth = std::max<std::size_t>(1, brightness.size() / 10);
-  const auto split = [&](std::size_t at) {
-    std::nth_element(brightness.begin(), brightness.begin() + static_cast<std::ptrdiff_t>(at), brightness.end());
-  };
-  split(tenth);
-  const double darkest = math::mean({brightness.data(), tenth});
-  split(brightness.size() - tenth);
-  const double brightest = math::mean({brightness.data() + brightness.size() - tenth, tenth});
-  return std::min(100.0, 100 * (brightest - darkest) / kFullContrast);
-}
 
 std::optional<double> highlight_gloss(const std::vector<HighlightSample>& samples) {
   const std::vector<HighlightSample> means = binned(samples);

@@ -5,11 +5,9 @@
 #include <optional>
 #include <vector>
 
-namespace goniochrome::sketch {
+#include "sketch/dropper.h"
 
-// Gloss units by the contrast of display signals (0..1): (mean of the brightest tenth - mean of the darkest tenth)/0.5
-// * 100, at most 100; 0 for less than two values. Reorders its argument.
-double contrast_gloss(std::vector<double>& brightness);
+namespace goniochrome::sketch {
 
 // A pixel of the highlight: how much brighter it is than the paint without gloss, relative to a white that faces the
 // lamp.

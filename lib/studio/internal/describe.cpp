@@ -20,11 +20,6 @@ std::vector<double> drawn_angles_deg() {
   return angles;
 }
 
-color::Xyz white_of(const color::ViewingCondition& condition) {
-  const auto white = color::white_point(condition);
-  return white.ok() ? *white : color::Xyz{0.9504, 1, 1.0888};
-}
-
 Json rows_json(const paint::Paint& paint, const color::ViewingCondition& condition) {
   Json rows = Json::array();
   if (!paint.measurement) return rows;
@@ -48,13 +43,22 @@ Json metrics_json(const paint::PaintMetrics& metrics) {
 
 }  // namespace
 
-std::string css_color(const color::Lab& lab, const color::ViewingCondition& condition) {
-  const color::Rgb shown =
-      color::rec709_from_rec2020(display::in_display_gamut(color::rgb_from_lab(lab, white_of(condition))));
-  std::string text = "#";
+color::Xyz screen_white(const color::ViewingCondition& condition) {
+  const auto white = color::white_point(condition);
+  return white.ok() ? *white : color::Xyz{0.9504, 1, 1.0888};
+}
+
+std::array<int, 3> screen_color(const color::Lab& lab, const color::Xyz& white) {
+  const color::Rgb shown = color::rec709_from_rec2020(display::in_display_gamut(color::rgb_from_lab(lab, white)));
+  std::array<int, 3> rgb{};
   for (int c = 0; c < 3; ++c)
-    text += fmt::format("{:02x}", static_cast<int>(std::lround(255 * display::srgb_signal(shown[c]))));
-  return text;
+    rgb[static_cast<std::size_t>(c)] = static_cast<int>(std::lround(255 * display::srgb_signal(shown[c])));
+  return rgb;
+}
+
+std::string css_color(const color::Lab& lab, const color::ViewingCondition& condition) {
+  const std::array<int, 3> rgb = screen_color(lab, screen_white(condition));
+  return fmt::format("#{:02x}{:02x}{:02x}", rgb[0], rgb[1], rgb[2]);
 }
 
 Result<Json> description(const paint::Paint& paint) {
@@ -98,7 +102,7 @@ Result<Json> description(const paint::Paint& paint) {
 }
 
 Json curve_json(const paint::LobeFit& fit, const color::ViewingCondition& condition) {
-  const color::Xyz white = white_of(condition);
+  const color::Xyz white = screen_white(condition);
   Json curve = Json::array();
   for (const double angle : drawn_angles_deg())
     curve.push_back(

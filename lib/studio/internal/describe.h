@@ -1,6 +1,7 @@
 // What a page shows of a paint in numbers, curves and colors.
 #pragma once
 
+#include <array>
 #include <string>
 
 #include "base/json.h"
@@ -8,6 +9,12 @@
 #include "paint/paint.h"
 
 namespace goniochrome::studio {
+
+// The white that readings of this condition are relative to; that of D65 where the illuminant is unknown.
+color::Xyz screen_white(const color::ViewingCondition& condition);
+
+// The color as an sRGB display shows it, in 0..255.
+std::array<int, 3> screen_color(const color::Lab& lab, const color::Xyz& white);
 
 // "#rrggbb": the color as an sRGB display shows it, under the light that the reading is relative to.
 std::string css_color(const color::Lab& lab, const color::ViewingCondition& condition);

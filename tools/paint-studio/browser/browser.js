@@ -102,8 +102,22 @@ class Browser {
     for (let i = 1; i <= steps; ++i) await this.mouse("mouseMoved", x + (dx * i) / steps, y + (dy * i) / steps);
     await this.mouse("mouseReleased", x + dx, y + dy);
   }
+  // The same by a finger.
+  async touchDrag(from, to, steps = 5) {
+    const touch = (type, points) => this.send("Input.dispatchTouchEvent", { type, touchPoints: points });
+    await touch("touchStart", [from]);
+    for (let i = 1; i <= steps; ++i)
+      await touch("touchMove", [{ x: from.x + ((to.x - from.x) * i) / steps, y: from.y + ((to.y - from.y) * i) / steps }]);
+    await touch("touchEnd", []);
+  }
+  async mouseDrag(from, to, steps = 5) {
+    await this.mouse("mousePressed", from.x, from.y);
+    for (let i = 1; i <= steps; ++i)
+      await this.mouse("mouseMoved", from.x + ((to.x - from.x) * i) / steps, from.y + ((to.y - from.y) * i) / steps);
+    await this.mouse("mouseReleased", to.x, to.y);
+  }
   async key(key, modifiers = 0) {
-    const code = { ArrowUp: 38, ArrowDown: 40, ArrowLeft: 37, ArrowRight: 39, z: 90, y: 89, Tab: 9, Enter: 13 }[key];
+    const code = { ArrowUp: 38, ArrowDown: 40, ArrowLeft: 37, ArrowRight: 39, z: 90, y: 89, Tab: 9, Enter: 13, Home: 36, End: 35 }[key];
     for (const type of ["keyDown", "keyUp"])
       await this.send("Input.dispatchKeyEvent", { type, key, modifiers, windowsVirtualKeyCode: code });
   }

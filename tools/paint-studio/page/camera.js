@@ -12,6 +12,24 @@ function orbitDirection(azimuth, elevation) {
   return [Math.sin(a) * Math.cos(e), Math.sin(e), Math.cos(a) * Math.cos(e)];
 }
 
+// A direction as an environment sees it that was turned by these degrees about +Y, toward growing azimuths.
+function turnedAgainst(v, degrees) {
+  const c = Math.cos((degrees * Math.PI) / 180), s = Math.sin((degrees * Math.PI) / 180);
+  return [c * v[0] - s * v[2], v[1], s * v[0] + c * v[2]];
+}
+
+// Azimuth and elevation of a direction, in degrees.
+function anglesOf(direction) {
+  const [x, y, z] = unit(direction);
+  return { azimuth: (Math.atan2(x, z) * 180) / Math.PI, elevation: (Math.asin(Math.min(1, Math.max(-1, y))) * 180) / Math.PI };
+}
+
+// The direction from which light is mirrored to the viewer, and its angle to a direction in degrees.
+const mirrored = ({ normal, wo }) => added(scaled(normal, 2 * dotted(normal, wo)), wo, -1);
+function angleBetween(a, b) {
+  return (Math.atan2(Math.hypot(...crossed(a, b)), dotted(a, b)) * 180) / Math.PI;
+}
+
 // {eye, target, fov} of a view {azimuth, elevation, distance, target, fov}.
 function cameraOf(view) {
   return { eye: added(view.target, orbitDirection(view.azimuth, view.elevation), view.distance), target: view.target,

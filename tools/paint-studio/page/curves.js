@@ -10,9 +10,9 @@ class Curves {
       const top = 8 + 105 * channel;
       this.svg.append(drawn("rect", { x: 34, y: top, width: 372, height: 86, class: "grid" }),
                       drawn("text", { x: 4, y: top + 10 }, name));
-      const plot = { top, channel, way: drawn("polyline", { class: "way" }), seen: drawn("polyline", { class: "seen" }),
+      const plot = { top, channel, sight: drawn("path", { class: "sight" }), way: drawn("polyline", { class: "way" }), seen: drawn("polyline", { class: "seen" }),
                      marks: drawn("g"), readings: drawn("g") };
-      this.svg.append(plot.marks, plot.seen, plot.way, plot.readings);
+      this.svg.append(plot.marks, plot.seen, plot.way, plot.sight, plot.readings);
       for (const angle of [15, 25, 45, 75, 110])
         this.svg.append(drawn("text", { x: this.x(angle) - 6, y: top + 95 }, angle + "°"));
       return plot;
@@ -44,6 +44,19 @@ class Curves {
     this.hint.textContent = rows.length > 0
       ? "Drag a reading, or focus it and use the up and down keys. The broken line is what the lobes show."
       : "This paint is designed: face, flop and travel make its curve. The broken line is what the lobes show.";
+  }
+
+  // A cross at the color of one angle in every plot: {angle, lab}, or null for none.
+  point(at) {
+    for (const plot of this.plots) {
+      const inside = at !== null && at.angle >= 10 && at.angle <= 110 && plot.high > plot.low;
+      if (!inside) {
+        plot.sight.setAttribute("d", "");
+        continue;
+      }
+      const x = this.x(at.angle), y = clamped(this.y(plot, at.lab[plot.channel]), plot.top, plot.top + 86);
+      plot.sight.setAttribute("d", `M${x},${plot.top}v86M${x - 9},${y}h18`);
+    }
   }
 
   // Readings keep their elements while they are the same, so that dragging and the keyboard do not lose them.

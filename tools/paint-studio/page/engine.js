@@ -24,18 +24,17 @@ function wasiImports(memoryOf) {
   };
 }
 
+const lists = ["weights", "filtered", "cloud", "cloudColors", "cloudPaints"];
+
 // The engine of a compiled module. ask() sends a request and returns the answer; it throws what the answer calls an
 // error. weights() are those of the paint that was fitted last, copied.
-// `paints` is the size of the library that it will load: memory for it is made at once, since some systems copy all of it
-// whenever it grows.
-async function makeEngine(bytes, paints = 0) {
+async function makeEngine(bytes) {
   let memory = null;
   const { instance } = await WebAssembly.instantiate(bytes, {
     wasi_snapshot_preview1: wasiImports(() => memory),
   });
   const library = instance.exports;
   memory = library.memory;
-  memory.grow(Math.ceil((4096 * paints) / 65536));
   library._initialize();
   const encoder = new TextEncoder(), decoder = new TextDecoder();
   return {
@@ -48,9 +47,17 @@ async function makeEngine(bytes, paints = 0) {
       if (answer.error !== undefined) throw new Error(answer.error);
       return answer;
     },
-    weights() {
-      return new Float32Array(memory.buffer, library.studio_weights(), library.studio_weight_count()).slice();
+    // Memory of the library for bytes that the next request "load" takes.
+    attach(length) {
+      const at = library.studio_attach(length);  // before its memory is looked at, which may move
+      return new Uint8Array(memory.buffer, at, length);
     },
+    // A list that an answer filled, copied: weights, filtered, cloud, cloudColors or cloudPaints.
+    list(name) {
+      const number = lists.indexOf(name), Kind = name === "weights" || name === "cloud" ? Float32Array : Uint32Array;
+      return new Kind(memory.buffer, library.studio_list(number), library.studio_list_bytes(number) / 4).slice();
+    },
+    weights() { return this.list("weights"); },
     bytes: () => memory.buffer.byteLength,
   };
 }

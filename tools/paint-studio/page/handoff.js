@@ -14,14 +14,27 @@ function optionsOf(edit) {
   });
 }
 
+// The commands that make the paint of a state, without the fit. A paint of a gradient needs a line before it, which writes
+// the gradient; `lines` gets it.
+function editsOf(library, state, lines) {
+  const { file, paint, gradient } = state.own ?? library.at(state.start), source = quoted(`${file}#${paint.name}`);
+  if (gradient) {
+    const [from, to] = gradient.ends.map((end) => {
+      const edits = editsOf(library, end, lines);
+      return edits.length === 1 && !edits[0].startsWith("paint-edit") ? edits[0] : `<(${edits.join(" | ")})`;
+    });
+    lines.push(`paint-edit ${from} ${to} --gradient ${gradient.count} -o ${quoted(file)}`);
+  }
+  if (state.steps.length === 0) return [source];
+  return state.steps.map((edit, i) => `paint-edit ${i === 0 ? source + " " : ""}${optionsOf(edit).join(" ")}`);
+}
+
 // The commands that make the paint of a state from its library, and fit it to the basis of the page.
-function commandOf(data, state, output = "design.paints.xml") {
-  const { file, paint } = data.paints[state.start];
-  const source = quoted(`${file}#${paint.name}`);
-  const fit = `fit-paint --basis ${quoted(data.basis_file)}`;
-  if (state.steps.length === 0) return `${fit} ${source} -o ${quoted(output)}`;
-  const edits = state.steps.map((edit, i) => `paint-edit ${i === 0 ? source + " " : ""}${optionsOf(edit).join(" ")}`);
-  return [...edits, `${fit} -o ${quoted(output)}`].join(" |\n  ");
+function commandOf(data, library, state, output = "design.paints.xml") {
+  const lines = [], edits = editsOf(library, state, lines), fit = `fit-paint --basis ${quoted(data.basis_file)}`;
+  if (state.steps.length === 0) lines.push(`${fit} ${edits[0]} -o ${quoted(output)}`);
+  else lines.push([...edits, `${fit} -o ${quoted(output)}`].join(" |\n  "));
+  return lines.join("\n");
 }
 
 function save(name, text, type) {
@@ -35,6 +48,40 @@ function save(name, text, type) {
 // A name that every file system takes.
 const fileName = (name) => name.replace(/[^A-Za-z0-9_.-]+/g, "_") || "paint";
 
+// The paints of a text of paint XML, as requests take them. Throws a sentence where it is none.
+function paintsOf(text, name) {
+  const space = "urn:goniochrome:paint:1", root = new DOMParser().parseFromString(text, "application/xml").documentElement;
+  if (root.namespaceURI !== space || root.localName !== "paints") throw new Error(`${name} is no paint XML.`);
+  const children = (element, tag) => [...element.children].filter((one) => one.namespaceURI === space && one.localName === tag);
+  const words = (element, ...names) => Object.fromEntries(names.filter((one) => element.hasAttribute(one)).map((one) => [one, element.getAttribute(one)]));
+  const number = (element, attribute) => {
+    const value = Number(element.getAttribute(attribute) || NaN);
+    if (!Number.isFinite(value)) throw new Error(`${name}: ${attribute} of ${element.localName} is "${element.getAttribute(attribute) ?? ""}": a number is wanted.`);
+    return value;
+  };
+  const lab = (element) => ["L", "a", "b"].map((one) => number(element, one)), numbers = (element) => element.textContent.trim().split(/\s+/).map(Number);
+  const measurement = (element) => ({
+    ...words(element, "illuminant", "instrument"), ...(element.hasAttribute("observer") && { observer: number(element, "observer") }),
+    rows: children(element, "lab").map((row) => ({ geometry: row.getAttribute("geometry"), lab: lab(row) })),
+    spectra: children(element, "spectrum").map((one) => ({ geometry: one.getAttribute("geometry"), from: number(one, "from"), step: number(one, "step"), factors: numbers(one) })),
+    textures: children(element, "texture").map((one) => ({ ...words(one, "quantity", "geometry", "version"), value: number(one, "value") })),
+  });
+  const appearance = (element) => ({ face: lab(children(element, "face")[0]), flop: lab(children(element, "flop")[0]), travel: number(element, "travel") });
+  const paints = children(root, "paint").map((element) => {
+    const one = (tag) => children(element, tag)[0], paint = { name: element.getAttribute("name") ?? "", ...words(element, "code", "class") };
+    if (one("measurement")) paint.measurement = measurement(one("measurement"));
+    const gloss = children(element, "gloss").map((reading) => [number(reading, "angle"), numbers(reading)[0]]);
+    if (gloss.length > 0) paint.gloss = gloss;
+    if (one("appearance")) paint.appearance = appearance(one("appearance"));
+    if (one("anisotropy")) paint.anisotropy = [number(one("anisotropy"), "alphaX"), number(one("anisotropy"), "alphaY")];
+    if (one("colorMap")) paint.color_map = { href: one("colorMap").getAttribute("href") ?? "", index: number(one("colorMap"), "index") };
+    if (one("coat")) paint.coat = number(one("coat"), "index");
+    return paint;
+  });
+  if (paints.length === 0) throw new Error(`${name} has no paint.`);
+  return paints;
+}
+
 class Handoff {
   constructor(app) {
     this.app = app;
@@ -42,6 +89,7 @@ class Handoff {
     press("save-xml", () => this.write("xml", false, ".paints.xml", "application/xml"));
     press("save-fitted", () => this.write("xml", true, ".fitted.paints.xml", "application/xml"));
     press("save-csv", () => this.write("csv", false, ".csv", "text/csv"));
+    press("save-cxf", () => this.writeCxf());
     press("save-session", () => save(fileName(app.paint.name) + ".session.json", app.savedSession(), "application/json"));
     press("copy", () => this.copy());
     const open = document.getElementById("open-session");
@@ -50,11 +98,26 @@ class Handoff {
       open.value = "";
       if (file) file.text().then((text) => app.attempt(() => app.openSession(text)));
     });
+    const paints = document.getElementById("open-paints");
+    paints.addEventListener("change", () => {
+      const file = paints.files[0];
+      paints.value = "";
+      if (file) file.text().then((text) => app.attempt(() => app.openPaints(file.name, paintsOf(text, file.name))));
+    });
   }
 
-  write(as, lobes, ending, type) {
-    const command = commandOf(this.app.data, this.app.history.now).replaceAll(/ \|\n {2}/g, " | ");
-    const { text } = this.app.engine.ask({ do: "write", paint: this.app.paint, as, lobes, command,
+  // The design as CxF, under the code of the nearest paint of the library.
+  writeCxf() {
+    const { app } = this, paint = { ...app.paint }, metric = document.getElementById("metric").value;
+    const nearest = app.attempt(() => app.engine.ask({ do: "nearest", paint, metric, count: 1 }).list[0]);
+    if (nearest?.code) paint.code = nearest.code;
+    this.write("cxf", false, ".cxf", "application/xml", paint, { created: new Date().toISOString().slice(0, 19) + "Z" });
+    app.say(nearest?.code ? `The file has the code ${nearest.code} of the nearest paint, ${nearest.name}.` : "The nearest paint has no code, so that the file has none of it.");
+  }
+
+  write(as, lobes, ending, type, paint = this.app.paint, more = {}) {
+    const command = commandOf(this.app.data, this.app.library, this.app.history.now).replaceAll(/ \|\n {2}/g, " | ").replaceAll("\n", "; ");
+    const { text } = this.app.engine.ask({ do: "write", paint, as, lobes, command, ...more,
                                            version: this.app.data.version });
     save(fileName(this.app.paint.name) + ending, text, type);
   }
@@ -73,7 +136,7 @@ class Handoff {
     else fallback();
   }
 
-  show() { document.getElementById("command").textContent = commandOf(this.app.data, this.app.history.now); }
+  show() { document.getElementById("command").textContent = commandOf(this.app.data, this.app.library, this.app.history.now); }
 }
 
 if (typeof module !== "undefined") module.exports = { commandOf, optionsOf };

@@ -1,7 +1,7 @@
-// What the designer did. A state holds the paint of the library that it began with, the edits since then, and the paint
-// that they made. Undo and redo go from state to state, without limit.
+// What the designer did. A state holds the paint that it began with, the edits since then, and the paint that they made.
+// The first is the number `start` of a paint of the library, or `own`, {file, paint}, of a file that was opened. Undo and redo go from state to state, without limit.
 
-const saidState = ({ start, steps }) => ({ start, steps });
+const saidState = ({ start, own, steps }) => (own ? { own, steps } : { start, steps });
 
 class EditHistory {
   constructor(states = [], at = states.length - 1) {

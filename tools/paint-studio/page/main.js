@@ -1,32 +1,59 @@
 // The page as a whole: it shows the paint of the history, or the preview of an edit that is being made.
 
+const mostListed = 500;  // paints in a list that the browser unfolds
+
 class App {
-  constructor(engine, data) {
+  constructor(engine, data, library) {
     this.engine = engine;
     this.data = data;
-    this.view = { ...data.mesh.view };
-    this.environment = 0;
-    this.stops = 0;
+    this.library = library;
     this.palette = [];
-    this.dragScale = 1;
-    this.key = "paint-studio " + data.title + " " + data.basis.name + " " + data.paints.length;
-    engine.ask({ do: "load", basis: data.basis, paints: data.paints.map((one) => one.paint) });
-    this.canvas = document.getElementById("stage");
-    this.stage = new Stage(this.canvas, data);
+    this.highlight = 0;  // degrees, of the highlight of the light
+    this.compared = { choice: "none", name: "", weights: null };
+    this.key = "paint-studio " + data.title + " " + data.basis.name + " " + library.count;
+    ({ geometries: this.geometries } = engine.ask({ do: "load", basis: data.basis, attached: true }));
+    this.stageView = new StageView(this);
+    this.stage = this.stageView.stage;
     this.controls = new NumberControls(this);
     this.wheel = new Wheel(this);
     this.curves = new Curves(this);
     this.tiles = new Tiles(this);
     this.handoff = new Handoff(this);
+    this.surface = new Surface(this);
+    this.pictures = new Pictures(this);
+    this.panel = new LibraryPanel(this);
+    this.cloud = new Cloud(this);
     this.makeHeader();
-    this.makeStage();
     this.history = new EditHistory([this.fresh(0)]);
     this.reopen();
     this.show();
-    new ResizeObserver(() => this.redraw()).observe(this.canvas);
+    this.follow();
+    window.addEventListener("hashchange", () => this.follow());
+  }
+  // An address that ends with #paint=NAME starts from the paint of that name, as links of other pages ask for.
+  follow() {
+    const name = new URLSearchParams(location.hash.slice(1)).get("paint");
+    if (name === null) return;
+    location.hash = "";
+    this.attempt(() => {
+      this.engine.ask({ do: "filter", text: name });
+      const place = this.engine.list("filtered").find((i) => this.library.paint(i).name === name);
+      if (place === undefined) throw new Error(`This library has no paint named ${name}.`);
+      this.start(place);
+    });
   }
 
-  fresh(number) { return { start: number, steps: [], paint: this.data.paints[number].paint }; }
+  fresh(number) { return { start: number, steps: [], paint: this.library.paint(number) }; }
+  // {file, paint} that a state began with.
+  origin({ start, own }) { return own ?? this.library.at(start); }
+  // Paints of a file that was opened: the design begins with the first, and all of them are in the palette.
+  openPaints(file, paints) {
+    const states = paints.map((paint) => ({ own: { file, paint }, steps: [], paint }));
+    for (const state of states) this.engine.ask({ do: "describe", paint: state.paint });
+    if (states.length > 1) this.palette.push(...states);
+    this.restore(states[0]);
+    this.say(states.length > 1 ? `${states.length} paints of ${file} are in the palette.` : "");
+  }
   glossAngle() { return this.paint.gloss && this.paint.gloss.length > 0 ? this.paint.gloss[0][0] : 60; }
 
   say(text) { document.getElementById("status").textContent = text; }
@@ -43,8 +70,11 @@ class App {
   makeHeader() {
     const byId = (id) => document.getElementById(id), library = byId("library");
     byId("title").textContent = this.data.title;
-    this.data.paints.forEach((one, i) => library.append(made("option", { value: i, text: one.paint.name })));
-    library.addEventListener("change", () => this.start(Number(library.value)));
+    const shown = this.library.count <= mostListed ? this.library.count : 0;  // of more, the list of the library shows all
+    for (let i = 0; i < shown; ++i) library.append(made("option", { value: i, text: this.library.paint(i).name }));
+    library.addEventListener("change", () => { if (library.value !== "own") this.start(Number(library.value)); });
+    byId("compare").addEventListener("change", () => this.compare(byId("compare").value));
+    byId("gradient").addEventListener("click", () => this.attempt(() => this.gradient()));
     byId("undo").addEventListener("click", () => this.turn("undo"));
     byId("redo").addEventListener("click", () => this.turn("redo"));
     byId("metric").addEventListener("change", () => this.tiles.nearest());
@@ -57,60 +87,10 @@ class App {
     });
   }
 
-  makeStage() {
-    const byId = (id) => document.getElementById(id), lights = byId("environment"), exposure = byId("exposure");
-    this.data.environments.forEach((one, i) => lights.append(made("option", { value: i, text: one.name })));
-    lights.addEventListener("change", () => {
-      this.environment = Number(lights.value);
-      this.redraw();
-      this.tiles.again();
-    });
-    exposure.addEventListener("input", () => {
-      this.stops = Number(exposure.value);
-      byId("exposure-value").textContent = exposure.value;
-      this.redraw();
-    });
-    exposure.addEventListener("change", () => this.tiles.again());
-    byId("reset-view").addEventListener("click", () => this.look({ ...this.data.mesh.view }));
-    let from = null;
-    draggable(this.canvas, {
-      begin: (event) => { from = { x: event.clientX, y: event.clientY, view: { ...this.view } }; },
-      move: (event) => this.look({
-        ...from.view,
-        azimuth: from.view.azimuth - 0.4 * (event.clientX - from.x),
-        elevation: clamped(from.view.elevation + 0.3 * (event.clientY - from.y), -85, 85),
-      }, true),
-      end: () => this.settle(),
-    });
-    this.canvas.addEventListener("wheel", (event) => {
-      event.preventDefault();
-      this.closer(event.deltaY > 0 ? 1.08 : 1 / 1.08);
-    }, { passive: false });
-    this.canvas.addEventListener("keydown", (event) => {
-      const turn = { ArrowLeft: [5, 0], ArrowRight: [-5, 0], ArrowUp: [0, 5], ArrowDown: [0, -5] }[event.key];
-      if (turn) this.look({ ...this.view, azimuth: this.view.azimuth + turn[0],
-                            elevation: clamped(this.view.elevation + turn[1], -85, 85) });
-      else if (event.key === "+" || event.key === "=") this.closer(1 / 1.1);
-      else if (event.key === "-") this.closer(1.1);
-      else return;
-      event.preventDefault();
-    });
-  }
-
-  closer(factor) {
-    const usual = this.data.mesh.view.distance;
-    this.look({ ...this.view, distance: clamped(this.view.distance * factor, 0.3 * usual, 4 * usual) });
-  }
-  look(view, moving = false) {
-    this.view = view;
-    this.redraw(moving);
-    if (!moving) this.settle();
-  }
-  // After the view came to rest: the small pictures follow.
-  settle() {
-    clearTimeout(this.settling);
-    this.settling = setTimeout(() => this.tiles.again(), 250);
-    this.redraw();
+  // After the light changed: what counts angles from it.
+  lightChanged() {
+    if (this.paint) this.highlight = this.engine.ask({ do: "fit", paint: this.paint, extent: Math.max(0.1, this.stageView.light.extent) }).highlight;
+    this.surface?.again();
   }
 
   // The paint that an edit would make, shown while it is being made.
@@ -121,6 +101,8 @@ class App {
     this.frame = requestAnimationFrame(() => {
       this.frame = undefined;
       if (this.wanted) this.attempt(() => this.display(this.edited(this.wanted).paint, true));
+      // Where the computer is fast, the variations follow while a handle is dragged.
+      if (this.stageView.full_ms > 0 && this.stageView.full_ms < 16) this.tiles.variations();
     });
   }
   edited(edit) { return this.engine.ask({ do: "edit", paint: this.history.now.paint, edit }); }
@@ -133,7 +115,7 @@ class App {
       if (done.skipped.length > 0) {
         this.say("This cannot be done: " + done.skipped.join("; "));
       } else if (JSON.stringify(done.paint) !== JSON.stringify(now.paint)) {
-        this.history.push({ start: now.start, steps: [...now.steps, edit], paint: done.paint, goesOn: true });
+        this.history.push({ start: now.start, own: now.own, steps: [...now.steps, edit], paint: done.paint, goesOn: true });
         this.say(done.clipped.length > 0 ? "Clipped: " + done.clipped.join("; ") : "");
       }
     });
@@ -148,9 +130,18 @@ class App {
     this.history[way]();
     this.show();
   }
+  // The paint that the design began with, in the list of the header.
+  showStart({ start, own }) {
+    const list = document.getElementById("library");
+    list.querySelector("option[data-more]")?.remove();
+    if (own) list.append(made("option", { value: "own", text: `${own.paint.name} of ${own.file}`, "data-more": "" }));
+    else if (start >= list.options.length) list.append(made("option", { value: start, text: this.library.paint(start).name, "data-more": "" }));
+    list.value = own ? "own" : String(start);
+  }
   keep() {
     this.palette.push(this.history.now);
     this.tiles.palette();
+    this.showChoices();
     this.store();
   }
 
@@ -160,26 +151,99 @@ class App {
     this.attempt(() => this.display(now.paint, false));
     document.getElementById("undo").disabled = !this.history.canUndo;
     document.getElementById("redo").disabled = !this.history.canRedo;
-    document.getElementById("library").value = String(now.start);
+    this.showStart(now);
+    this.showChoices();
     this.handoff.show();
     this.attempt(() => this.tiles.again());
     this.store();
   }
 
-  // Shows one paint; `moving` while an edit is being made.
+  // Shows one paint; `moving` while an edit is being made. The picture is asked for first: while it is drawn, the rest of
+  // the page follows.
   display(paint, moving) {
     const begin = performance.now();
-    const fit = this.engine.ask({ do: "fit", paint });
+    const fit = this.engine.ask({ do: "fit", paint, extent: Math.max(0.1, this.stageView.light.extent) });
     const fitted = performance.now();
     this.paint = paint;
+    this.highlight = fit.highlight;
     this.weights = this.stage.weights(this.engine.weights(), this.weights ?? null);
     this.description = this.engine.ask({ do: "describe", paint });
-    this.controls.show(this.description);
+    if (moving) this.stageView.drawNow(true);
+    else this.stageView.redraw();
     this.wheel.show(this.description);
+    // Where graphics are drawn by the processor, the panels cost more than the picture: they follow a few times a second.
+    clearTimeout(this.panelsSoon);
+    const now = performance.now(), slow = this.stageView.full_ms > firstBudget_ms / 2;
+    if (!moving || !slow || now - (this.panelsShown ?? 0) > 300) this.showPanels(fit, moving);
+    else this.panelsSoon = setTimeout(() => this.showPanels(fit, moving), 300);
+    this.times = { fit_us: fit.time_us, request_ms: fitted - begin, show_ms: performance.now() - begin };
+  }
+  showPanels(fit, moving) {
+    this.panelsShown = performance.now();
+    this.controls.show(this.description);
     this.curves.show(this.description, fit);
     this.showFigures(fit);
-    this.redraw(moving);
-    this.times = { fit_us: fit.time_us, request_ms: fitted - begin, show_ms: performance.now() - begin };
+    this.stageView.showBorder();
+    this.surface.again();
+    if (!moving) this.cloud.show();
+  }
+
+  // Puts the paint beside another one: "none", "start", "step N" of the history, "palette N" or "library N".
+  compare(choice) {
+    const [kind, number] = choice.split(" ");
+    this.compared = { choice };
+    const found = this.comparedState()?.paint ?? null;
+    this.compared = { choice: found ? choice : "none", name: found ? found.name : "", weights: null };
+    if (found) {
+      this.attempt(() => {
+        this.engine.ask({ do: "fit", paint: found });
+        this.comparedWeights = this.stage.weights(this.engine.weights(), this.comparedWeights ?? null);
+        this.compared.weights = this.comparedWeights;
+      });
+      if (kind === "step") this.compared.name += `, step ${number}`;
+      if (kind === "start") this.compared.name += ", as it was";
+    }
+    this.stageView.showBorder();
+    this.stageView.redraw();
+  }
+  // Paints between the design and the one that it is compared with, into the palette.
+  gradient() {
+    const field = document.getElementById("gradient-steps"), count = clamped(Math.round(field.valueAsNumber || 3), 1, 24), to = this.comparedState();
+    if (!to) return this.say("Choose a paint to compare with: the gradient leads to it.");
+    const from = this.history.now, { list } = this.engine.ask({ do: "gradient", from: from.paint, to: to.paint, count });
+    const states = [from, to].map(saidState);
+    this.palette.push(...list.map((paint) => ({ own: { file: "gradient.paints.xml", paint, gradient: { ends: states, count } }, steps: [], paint })));
+    this.tiles.palette();
+    this.showChoices();
+    this.store();
+    return this.say(`${count} paints between ${from.paint.name} and ${to.paint.name} are in the palette.`);
+  }
+  // The state of the paint that the design is compared with; null for none.
+  comparedState() {
+    const [kind, number] = this.compared.choice.split(" "), { states, now } = this.history;
+    return { none: () => null, start: () => ({ start: now.start, own: now.own, steps: [], paint: this.origin(now).paint }), step: () => states[number] ?? null,
+             palette: () => this.palette[number] ?? null, library: () => this.fresh(Number(number)) }[kind]();
+  }
+  compareWith(place) {
+    const list = document.getElementById("compare"), value = `library ${place}`;
+    if (![...list.options].some((one) => one.value === value)) list.append(made("option", { value, text: this.library.paint(place).name }));
+    list.value = value;
+    this.compare(value);
+  }
+  // What the paint can be compared with, anew after the history or the palette changed.
+  showChoices() {
+    const list = document.getElementById("compare"), group = (label, options) => options.length > 0 && list.append(made("optgroup", { label }, options));
+    const option = (value, text) => made("option", { value, text });
+    list.replaceChildren(option("none", "nothing"), option("start", "the paint it began with"));
+    const { states, at } = this.history, first = Math.max(0, states.length - 40);
+    group("History", states.slice(first).map((state, i) => [first + i, state]).filter(([i]) => i !== at).map(([i, state]) =>
+      option(`step ${i}`, `step ${i}: ${state.paint.name}${state.steps.length > 0 ? ", " + Object.keys(state.steps.at(-1)).join(" ") : ""}`)));
+    group("Palette", this.palette.map((state, i) => option(`palette ${i}`, `${i + 1}: ${state.paint.name}`)));
+    const { choice } = this.compared, number = Number(choice.slice(8));
+    const listed = this.library.count <= mostListed ? [...Array(this.library.count).keys()] : choice.startsWith("library") ? [number] : [];
+    group("Library", listed.map((i) => option(`library ${i}`, this.library.paint(i).name)));
+    list.value = choice;
+    if (list.value !== choice) this.compare("none");
   }
 
   showFigures(fit) {
@@ -194,53 +258,19 @@ class App {
       ...rows.flatMap(([name, value]) => [made("dt", { text: name }), made("dd", { text: value })]));
   }
 
-  // Draws the picture: while something moves by few pixels where the computer is slow, at rest with many samples.
-  redraw(moving = false) {
-    if (!this.weights) return;
-    cancelAnimationFrame(this.resting);
-    clearTimeout(this.restSoon);
-    if (this.drawing !== undefined) cancelAnimationFrame(this.drawing);
-    this.drawing = requestAnimationFrame((now) => {
-      this.drawing = undefined;
-      if (moving && this.lastFrame !== undefined && now - this.lastFrame < 400) {
-        const frame = now - this.lastFrame;
-        if (frame > 60) this.dragScale = Math.max(0.3, 0.85 * this.dragScale);
-        else if (frame < 22) this.dragScale = Math.min(1, 1.1 * this.dragScale);
-      }
-      this.lastFrame = moving ? now : undefined;
-      const [width, height] = this.size(moving ? this.dragScale : 1);
-      this.stage.draw(cameraOf(this.view), width, height, this.weights, this.environment, this.stops);
-      if (!moving) this.restSoon = setTimeout(() => this.rest(0), 150);
-    });
-  }
-  size(scale) {
-    const ratio = Math.min(window.devicePixelRatio || 1, 2) * scale;
-    return [Math.max(16, Math.round(this.canvas.clientWidth * ratio)), Math.max(9, Math.round(this.canvas.clientHeight * ratio))];
-  }
-  // Sharpens a picture at rest, one sample at a time: of 16 to a pixel where the first took little time, else of 4.
-  rest(sample, samples = 4) {
-    const begin = performance.now();
-    this.stage.refine(cameraOf(this.view), this.weights, this.environment, this.stops, sample, samples);
-    if (sample === 0 && samples === 4) {
-      this.stage.wait();
-      if (performance.now() - begin < 40) samples = 16;
-      if (samples === 16) sample = -1;
-    }
-    if (sample + 1 < samples) this.resting = requestAnimationFrame(() => this.rest(sample + 1, samples));
-  }
-
   // The session: the library paints and edits of all states, and the palette. Paints are made again when it is opened.
   savedSession() {
     return JSON.stringify({ kind: "paint-studio session", version: 1, title: this.data.title,
                             history: this.history.saved(), palette: this.palette.map(saidState) });
   }
   // The state that these edits of a library paint lead to. Throws what a request refuses.
-  replayed({ start, steps }) {
-    if (!Number.isInteger(start) || !this.data.paints[start] || !Array.isArray(steps))
-      throw new Error("This file is no session of a page with this library.");
-    let paint = this.data.paints[start].paint;
+  replayed({ start, own, steps }) {
+    const known = own ? typeof own.file === "string" : Number.isInteger(start) && start >= 0 && start < this.library.count;
+    if (!known || !Array.isArray(steps)) throw new Error("This file is no session of a page with this library.");
+    let { paint } = this.origin({ start, own });
+    if (own) this.engine.ask({ do: "describe", paint });  // refuses what is no paint
     for (const edit of steps) ({ paint } = this.engine.ask({ do: "edit", paint, edit }));
-    return { start, steps, paint };
+    return { start, own, steps, paint };
   }
   openSession(text) {
     const session = JSON.parse(text), saved = session.history?.states, at = session.history?.at, states = [];
@@ -249,7 +279,7 @@ class App {
     for (const one of saved) {
       const last = states.at(-1);
       if (one.edit === undefined || !last) states.push(this.replayed(one));
-      else states.push({ start: last.start, steps: [...last.steps, one.edit], goesOn: true,
+      else states.push({ start: last.start, own: last.own, steps: [...last.steps, one.edit], goesOn: true,
                          paint: this.engine.ask({ do: "edit", paint: last.paint, edit: one.edit }).paint });
     }
     const palette = (session.palette ?? []).map((one) => this.replayed(one));
@@ -277,11 +307,26 @@ class App {
   }
 }
 
+// What an element of the page held, which is then no longer kept.
+function taken(id) {
+  const element = document.getElementById(id), text = element.textContent;
+  element.remove();
+  return text;
+}
+
+// Fills memory with what base64 says, piece by piece.
+function decode(base64, bytesFor) {
+  const padding = base64.endsWith("==") ? 2 : base64.endsWith("=") ? 1 : 0;
+  const target = bytesFor((base64.length / 4) * 3 - padding), piece = 1 << 20;
+  for (let at = 0; at < base64.length; at += piece) target.set(bytesOf(base64.slice(at, at + piece)), (at / 4) * 3);
+}
+
 async function begin() {
-  const text = (id) => document.getElementById(id).textContent;
   try {
-    const data = JSON.parse(text("data")), engine = await makeEngine(bytesOf(text("compiled")), data.paints.length);
-    window.studio = new App(engine, data);
+    const data = JSON.parse(taken("data")), engine = await makeEngine(bytesOf(taken("compiled")));
+    decode(taken("index"), (length) => engine.attach(length));
+    window.studio = new App(engine, data, new PaintStore(taken("paints"), data.layouts));
+    window.studioOpened_ms = performance.now();
   } catch (error) {
     document.getElementById("status").textContent = "The page cannot start: " + error.message;
     throw error;

@@ -25,6 +25,8 @@ class Stage {
     this.environments = data.environments.map(() => null);
     this.gbuffers = new Map();
     this.targets = new Map();
+    this.turn = 0;     // of the environment about +Y, in degrees, as the camera's azimuth counts
+    this.lamp = null;  // {direction, white}: where it stands beside the mesh, and what a white surface facing it shows
     this.uploadMesh();
     gl.frontFace(gl.CW);  // counter-clockwise, seen with y down
   }
@@ -49,17 +51,34 @@ class Stage {
 
   uploadMesh() {
     const gl = this.gl, buffer = (target, values) => {
-      gl.bindBuffer(target, gl.createBuffer());
+      const made = gl.createBuffer();
+      gl.bindBuffer(target, made);
       gl.bufferData(target, values, gl.STATIC_DRAW);
+      return made;
     };
     this.meshVertices = gl.createVertexArray();
     gl.bindVertexArray(this.meshVertices);
     [this.mesh.positions, this.mesh.normals].forEach((values, index) => {
-      buffer(gl.ARRAY_BUFFER, values);
+      this.normalBuffer = buffer(gl.ARRAY_BUFFER, values);
       gl.vertexAttribPointer(index, 3, gl.FLOAT, false, 0, 0);
       gl.enableVertexAttribArray(index);
     });
     buffer(gl.ELEMENT_ARRAY_BUFFER, this.mesh.corners);
+  }
+
+  // Turns the environment. Normals and rays are turned against it instead, so that the maps stay as they are.
+  turnTo(degrees) {
+    if (this.turn === degrees) return;
+    this.turn = degrees;
+    const gl = this.gl, from = this.mesh.normals, turned = new Float32Array(from.length);
+    const c = Math.cos((degrees * Math.PI) / 180), s = Math.sin((degrees * Math.PI) / 180);
+    for (let i = 0; i < from.length; i += 3) {
+      turned[i] = c * from[i] - s * from[i + 2];
+      turned[i + 1] = from[i + 1];
+      turned[i + 2] = s * from[i] + c * from[i + 2];
+    }
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.normalBuffer);
+    gl.bufferSubData(gl.ARRAY_BUFFER, 0, turned);
   }
 
   floatTexture(columns, rows, values, kind = this.gl.RGBA32F) {
@@ -108,11 +127,32 @@ class Stage {
   environment(number) {
     if (this.environments[number]) return this.environments[number];
     const packed = this.data.environments[number];
-    const made = { shading: this.program(this.data.programs.shading_vertex, packed.program),
-                   cubes: packed.cubes.map((cube) => this.cube(cube)), lamps: packed.lamps, white: packed.white };
-    if (packed.discs)
-      made.discs = this.floatTexture(packed.discs.columns, packed.discs.rows, numbersOf(packed.discs.texels, Float32Array));
+    const made = { cubes: packed.cubes.map((cube) => this.cube(cube)), white: packed.white };
     this.environments[number] = made;
+    return made;
+  }
+
+  // How an environment is shaded: its program, lamps and their discs. With the lamp of the page these are others, which
+  // are made when they are first needed.
+  shading(number) {
+    const made = this.environment(number), packed = this.data.environments[number], lamp = this.data.lamp;
+    if (this.lamp === null)
+      return (made.plain ??= this.shadingOf(packed.program, packed.lamps, packed.discs ? numbersOf(packed.discs.texels, Float32Array) : null));
+    if (!made.withLamp) {
+      const first = numbersOf(lamp.discs, Float32Array);
+      const others = packed.discs ? numbersOf(packed.discs.texels, Float32Array) : new Float32Array(0);
+      const discs = new Float32Array(first.length + others.length);
+      discs.set(first);
+      discs.set(others, first.length);
+      made.withLamp = this.shadingOf(packed.lamp_program, [{ disc: lamp.disc }, ...packed.lamps], discs);
+    }
+    const direction = turnedAgainst(this.lamp.direction, this.turn);
+    Object.assign(made.withLamp.lamps[0], { direction, white: this.lamp.white });
+    return made.withLamp;
+  }
+  shadingOf(program, lamps, discs) {
+    const made = { ...this.program(this.data.programs.shading_vertex, program), lamps: [...lamps] }, columns = this.data.lamp.columns;
+    if (discs) made.discs = this.floatTexture(columns, discs.length / (4 * columns), discs);
     return made;
   }
 
@@ -145,9 +185,10 @@ class Stage {
   // What is visible at one point of every pixel. It is drawn again only where the view changed.
   gbuffer(name, camera, width, height, shift) {
     const gl = this.gl, target = this.target("gbuffer " + name, width, height, gl.RGBA32F, true);
-    const key = JSON.stringify([camera, shift]);
+    const key = JSON.stringify([camera, shift, this.turn]);
     if (target.key === key) return target;
     const view = projected(camera, width, height, this.mesh, shift), program = this.gbufferProgram;
+    for (const name of ["corner", "right", "down"]) view[name] = turnedAgainst(view[name], this.turn);
     gl.bindFramebuffer(gl.FRAMEBUFFER, target.framebuffer);
     gl.viewport(0, 0, width, height);
     gl.enable(gl.DEPTH_TEST);
@@ -168,9 +209,10 @@ class Stage {
     return target;
   }
 
-  // Shades a G-buffer into the sum of that name, or adds to it.
+  // Shades a G-buffer into the sum of that name, or adds to it. `weights` are those of one paint, or {left, right, at}: of
+  // two, which meet at that part of the width.
   shade(name, gbuffer, weights, environment, add) {
-    const gl = this.gl, made = this.environment(environment), program = made.shading;
+    const gl = this.gl, made = this.environment(environment), program = this.shading(environment);
     const target = this.target("sum " + name, gbuffer.width, gbuffer.height, this.sumKind, false);
     gl.bindFramebuffer(gl.FRAMEBUFFER, target.framebuffer);
     gl.viewport(0, 0, gbuffer.width, gbuffer.height);
@@ -182,13 +224,11 @@ class Stage {
       gl.uniform1i(program.at(sampler), texture++);
     };
     bind("gbuffer", gl.TEXTURE_2D, gbuffer.texture);
-    bind("weights", gl.TEXTURE_2D, weights);
-    if (made.discs) bind("discs", gl.TEXTURE_2D, made.discs);
+    if (program.discs) bind("discs", gl.TEXTURE_2D, program.discs);
     for (const cube of made.cubes) bind(cube.sampler, gl.TEXTURE_CUBE_MAP, cube.texture);
-    gl.activeTexture(gl.TEXTURE0);
     for (const name of ["corner", "right", "down"]) gl.uniform3fv(program.at(name), gbuffer.view[name]);
     for (const [uniform, member] of [["light_direction", "direction"], ["light_white", "white"], ["light_disc", "disc"]])
-      if (made.lamps.length > 0) gl.uniform3fv(program.at(uniform + "[0]"), made.lamps.flatMap((lamp) => lamp[member]));
+      if (program.lamps.length > 0) gl.uniform3fv(program.at(uniform + "[0]"), program.lamps.flatMap((lamp) => lamp[member]));
     if (add) {
       gl.enable(gl.BLEND);
       gl.blendFunc(gl.ONE, gl.ONE);
@@ -196,8 +236,19 @@ class Stage {
       gl.disable(gl.BLEND);
     }
     gl.bindVertexArray(this.noVertices);
+    const border = weights.left ? Math.round(weights.at * gbuffer.width) : gbuffer.width;
+    bind("weights", gl.TEXTURE_2D, weights.left ?? weights);
+    gl.enable(gl.SCISSOR_TEST);
+    gl.scissor(0, 0, border, gbuffer.height);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
+    if (weights.left) {
+      gl.bindTexture(gl.TEXTURE_2D, weights.right);
+      gl.scissor(border, 0, gbuffer.width - border, gbuffer.height);
+      gl.drawArrays(gl.TRIANGLES, 0, 3);
+    }
+    gl.disable(gl.SCISSOR_TEST);
     gl.disable(gl.BLEND);
+    gl.activeTexture(gl.TEXTURE0);
     return target;
   }
 
@@ -217,22 +268,67 @@ class Stage {
     gl.drawArrays(gl.TRIANGLES, 0, 3);
   }
 
-  // Draws a picture by the pixel centers alone.
-  draw(camera, width, height, weights, environment, stops) {
+  // Draws a picture by the pixel centers alone, into the targets of that name. `overlay` is null, or what the program of that name draws over it.
+  draw(name, camera, width, height, weights, environment, stops, overlay = null) {
     if (this.canvas.width !== width || this.canvas.height !== height) {
       this.canvas.width = width;
       this.canvas.height = height;
     }
-    const gbuffer = this.gbuffer("centers", camera, width, height, [0, 0]);
-    this.show(this.shade("centers", gbuffer, weights, environment, false), 1, environment, stops);
+    const gbuffer = this.gbuffer(name, camera, width, height, [0, 0]);
+    this.show(this.shade(name, gbuffer, weights, environment, false), 1, environment, stops);
+    if (overlay) this.drawOver(gbuffer, overlay);
   }
 
   // One more sample of a smoother picture; shows it after the last one.
-  refine(camera, weights, environment, stops, sample, samples) {
+  refine(camera, weights, environment, stops, sample, samples, overlay = null) {
     const { width, height } = this.canvas;
     const gbuffer = this.gbuffer("samples", camera, width, height, sampleShifts(samples)[sample]);
     const sum = this.shade("samples", gbuffer, weights, environment, sample > 0);
-    if (sample === samples - 1) this.show(sum, samples, environment, stops);
+    if (sample !== samples - 1) return;
+    this.show(sum, samples, environment, stops);
+    if (overlay) this.drawOver(this.gbuffer("centers", camera, width, height, [0, 0]), overlay);
+  }
+
+  // Rings and the highlight of the light from `toward`, as the environment sees it, over what the canvas shows.
+  drawOver(gbuffer, { toward, travel, edge }) {
+    const gl = this.gl;
+    this.overlayProgram ??= this.program(this.data.programs.shading_vertex, this.data.programs.overlay_fragment);
+    const program = this.overlayProgram;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.viewport(0, 0, gbuffer.width, gbuffer.height);
+    gl.useProgram(program.program);
+    gl.activeTexture(gl.TEXTURE0);
+    gl.bindTexture(gl.TEXTURE_2D, gbuffer.texture);
+    gl.uniform1i(program.at("gbuffer"), 0);
+    gl.uniform1i(program.at("rows"), gbuffer.height);
+    for (const name of ["corner", "right", "down"]) gl.uniform3fv(program.at(name), gbuffer.view[name]);
+    gl.uniform3fv(program.at("toward"), toward);
+    gl.uniform1f(program.at("travel"), travel);
+    gl.uniform1f(program.at("edge"), edge);
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+    gl.bindVertexArray(this.noVertices);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    gl.disable(gl.BLEND);
+  }
+
+  // What is seen at a place of the picture, 0..1 from its upper left corner: the normal and the direction to the viewer,
+  // as the environment sees them; null beside the mesh. The buffer that tells it is kept while the view stays.
+  surfaceAt(camera, aspect, x, y) {
+    const gl = this.gl, width = 640, height = Math.round(width / aspect), known = this.surface;
+    const gbuffer = this.gbuffer("surface", camera, width, height, [0, 0]);
+    if (!known || known.key !== gbuffer.key || known.height !== height) {
+      const values = new Float32Array(4 * width * height);
+      gl.bindFramebuffer(gl.FRAMEBUFFER, gbuffer.framebuffer);
+      gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, values);
+      this.surface = { key: gbuffer.key, height, values };
+    }
+    const column = Math.floor(clamped(x, 0, 1) * width), row = Math.floor(clamped(y, 0, 1) * height);
+    const at = 4 * (clamped(row, 0, height - 1) * width + clamped(column, 0, width - 1)), values = this.surface.values;
+    if (values[at + 3] === 0) return null;
+    const { corner, right, down } = gbuffer.view;
+    const ray = added(added(corner, right, column + 0.5), down, row + 0.5);
+    return { normal: [...values.subarray(at, at + 3)], wo: scaled(unit(ray), -1) };
   }
 
   // Returns when everything is drawn.

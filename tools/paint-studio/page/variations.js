@@ -21,6 +21,16 @@ class Tiles {
     return button;
   }
 
+  // Puts tiles in a place. Until a tile is drawn it shows what stood there before.
+  put(place, tiles) {
+    tiles.forEach((tile, i) => {
+      const before = place.children[i]?.querySelector("canvas");
+      if (before) tile.querySelector("canvas").getContext("2d").drawImage(before, 0, 0);
+    });
+    place.replaceChildren(...tiles);
+    this.go();
+  }
+
   // The nine variations: the paint itself, and its neighbors.
   variations() {
     const app = this.app, of = document.getElementById("variation-kind").value;
@@ -29,32 +39,34 @@ class Tiles {
     const list = app.engine.ask({ do: "variations", paint: app.paint, of, step }).list;
     const tiles = list.map((one) => this.tile(one.paint, one.name, "", () => app.commit(one.edit)));
     tiles.splice(Math.ceil(tiles.length / 2), 0, this.tile(app.paint, "as it is", "", () => {}, true));
-    place.replaceChildren(...tiles);
-    this.go();
+    this.put(place, tiles);
   }
 
   nearest() {
     const app = this.app, place = document.getElementById("nearest"), metric = document.getElementById("metric").value;
     let answer;
+    document.getElementById("verdict").textContent = "";
     try {
       answer = app.engine.ask({ do: "nearest", paint: app.paint, metric, count: 5 });
     } catch (error) {
       place.replaceChildren(made("p", { class: "hint", text: error.message }));
       return;
     }
-    place.replaceChildren(...answer.list.map((match) => {
+    const verdicts = [];
+    if (answer.outside) verdicts.push("The design lies outside the library: its nearest paint differs by more than 10 on average.");
+    if (answer.off_radial) verdicts.push("Its hue turns in another way than that of its nearest paint (off-radial).");
+    document.getElementById("verdict").textContent = verdicts.join(" ");
+    this.put(place, answer.list.map((match) => {
       const differences = Object.entries(match.de_by_geometry).map(([geometry, de]) => `${geometry} ${de.toFixed(1)}`);
       const note = `${match.code ? match.code + ", " : ""}sum ${match.distance.toFixed(2)}: ${differences.join(", ")}`;
-      return this.tile(app.data.paints[match.place].paint, match.name, note, () => app.start(match.place));
+      return this.tile(app.library.paint(match.place), match.name, note, () => app.start(match.place));
     }));
-    this.go();
   }
 
   palette() {
     const app = this.app, place = document.getElementById("palette");
-    place.replaceChildren(...app.palette.map((state, number) =>
+    this.put(place, app.palette.map((state, number) =>
       this.tile(state.paint, `${number + 1}: ${state.paint.name}`, "", () => app.restore(state))));
-    this.go();
   }
 
   // All of them again, after the view or the light changed.
@@ -66,22 +78,23 @@ class Tiles {
   }
 
   go() {
-    if (this.timer === undefined) this.timer = setTimeout(() => this.drawNext(), 30);
+    if (this.timer === undefined) this.timer = whenIdle(() => this.drawNext());
   }
   stop() {
-    clearTimeout(this.timer);
+    if (this.timer !== undefined) cancelIdle(this.timer);
     this.timer = undefined;
   }
   drawNext() {
     this.timer = undefined;
-    const next = this.waiting.shift(), app = this.app;
+    while (this.waiting.length > 0 && !this.waiting[0].canvas.isConnected) this.waiting.shift();
+    const next = this.waiting.shift(), app = this.app, { view } = app.stageView;
     if (!next) return;
     if (next.canvas.isConnected) {
       try {
         app.engine.ask({ do: "fit", paint: next.paint });
         this.weights = app.stage.weights(app.engine.weights(), this.weights);
         const { width, height } = next.canvas;
-        const picture = app.stage.tile(cameraOf({ ...app.view, distance: 0.8 * app.view.distance }), width, height, this.weights, app.environment, app.stops);
+        const picture = app.stage.tile(cameraOf({ ...view, distance: 0.8 * view.distance }), width, height, this.weights, app.stageView.environment, app.stageView.stops);
         next.canvas.getContext("2d").putImageData(picture, 0, 0);
       } catch (error) {
         next.canvas.replaceWith(made("small", { text: error.message }));

@@ -1,5 +1,6 @@
 // The functions that the page calls. A request is written into the memory that studio_request() gives; studio_call()
 // answers it; studio_answer() tells where the answer stands. Texts are UTF-8.
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -40,10 +41,17 @@ STUDIO_EXPORT(studio_answer) const char* studio_answer() {
   return answer_text.data();
 }
 
-// The weights of the paint that was fitted last, and how many there are.
-STUDIO_EXPORT(studio_weights) const float* studio_weights() {
-  return session().weights().data();
+// Memory for that many bytes, which the request "load" then takes.
+STUDIO_EXPORT(studio_attach) char* studio_attach(std::uint32_t bytes) {
+  std::string& attached = session().attached();
+  attached.resize(bytes);
+  return attached.data();
 }
-STUDIO_EXPORT(studio_weight_count) std::uint32_t studio_weight_count() {
-  return static_cast<std::uint32_t>(session().weights().size());
+
+// A list that an answer filled, by its number in Studio::List, and its size in bytes.
+STUDIO_EXPORT(studio_list) const std::byte* studio_list(std::uint32_t which) {
+  return session().list(static_cast<goniochrome::studio::Studio::List>(which)).data();
+}
+STUDIO_EXPORT(studio_list_bytes) std::uint32_t studio_list_bytes(std::uint32_t which) {
+  return static_cast<std::uint32_t>(session().list(static_cast<goniochrome::studio::Studio::List>(which)).size());
 }

@@ -1,0 +1,28 @@
+// What a search says of a design: whether paints like it exist, and whether its hue turns like theirs. [Shimizu2009]
+// 5.3.5; goniochrome-theory(7), NEAREST PAINT.
+#pragma once
+
+#include "library/index.h"
+#include "paint/paint.h"
+
+namespace goniochrome::library {
+
+// Tells how far the flop leaves the line through the origin and the face's a*b*, and to which side: it is the hue-shift
+// index, with a negative sign where the hue turns clockwise.
+double signed_hue_shift(double hue_shift_index, double hue_travel_deg);
+
+struct VerdictLimits {
+  double outside = 10;    // mean difference
+  double off_radial = 5;  // difference of hue shifts
+};
+
+struct Verdict {
+  double hue_shift = 0, matched_hue_shift = 0;  // NaN where there is none
+  bool outside = false, off_radial = false;
+};
+
+// `match` is the nearest paint of the index, and mean_de the mean of its color differences from `query`.
+Verdict verdict(const paint::Paint& query, const LibraryIndex& index, std::size_t match, double mean_de,
+                const VerdictLimits& limits);
+
+}  // namespace goniochrome::library

@@ -1,0 +1,159 @@
+// glTF 2.0: a sphere that wears the paint, as web viewers show it. The base is the dielectric of the core model, whose
+// reflectance along the normal is a color of its own (KHR_materials_specular with the index 0 of KHR_materials_ior,
+// which stands for a reflectance of 1), under KHR_materials_clearcoat. So face and flop have different colors, and one
+// roughness. Which parameters are the nearest is found by the color difference over all angles.
+#include <algorithm>
+#include <cmath>
+
+#include "base/angles.h"
+#include "base/json.h"
+#include "materials/internal/ggx.h"
+#include "materials/internal/one_lobe.h"
+
+namespace goniochrome::materials {
+
+namespace {
+
+constexpr double kSharpest = 1e-4;  // a roughness of 0 as evaluated, alpha
+
+double square(double x) {
+  return x * x;
+}
+
+// The specification's model, its Appendix B and those of the extensions: the coat lies over the base by the reflectance
+// that the viewer's angle has, and the base mixes a diffuse and a microfacet part by the largest channel of Fresnel's.
+color::Rgb seen(const OneLobe& p, const Vec3& light, const Vec3& view) {
+  const double grazing = schlick(half_cosine(light, view));
+  const double facets = ggx(std::max(square(p.roughness), kSharpest), light, view);
+  color::Rgb fresnel;
+  for (int c = 0; c < 3; ++c) fresnel[c] = std::lerp(std::min(p.specular[c], 1.0) * p.strength, p.strength, grazing);
+  const double diffuse = (1 - std::max({fresnel.x, fresnel.y, fresnel.z})) / kPi;
+  const color::Rgb base = diffuse * p.base + facets * fresnel;
+  if (p.clearcoat == 0) return base;
+  const double coat = p.clearcoat * std::lerp(0.04, 1.0, schlick(view.z));
+  const double shine = coat * ggx(std::max(square(p.clearcoat_roughness), kSharpest), light, view);
+  return (1 - coat) * base + color::Rgb{shine, shine, shine};
+}
+
+Json color_json(const color::Rgb& rgb) {
+  return {rgb.x, rgb.y, rgb.z};
+}
+
+std::string base64(const std::string& bytes) {
+  static constexpr char kLetters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const auto byte = [&](std::size_t k) {
+      return i + k < bytes.size() ? static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[i + k])) : 0U;
+    };
+    const std::uint32_t three = byte(0) << 16 | byte(1) << 8 | byte(2);
+    for (std::size_t k = 0; k < 4; ++k) text += i + k > bytes.size() ? '=' : kLetters[three >> (18 - 6 * k) & 63];
+  }
+  return text;
+}
+
+// A sphere of radius 1: positions, which are its normals too, and triangles, counterclockwise from outside.
+struct Sphere {
+  std::string positions, triangles;
+  std::size_t points = 0, indices = 0;
+};
+
+Sphere sphere() {
+  constexpr int kColumns = 64, kRows = 32;
+  Sphere result;
+  const auto put = [](std::string& bytes, auto value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  for (int j = 0; j <= kRows; ++j)
+    for (int i = 0; i <= kColumns; ++i) {
+      const Vec3 v = direction(kPi * j / kRows, 2 * kPi * (i % kColumns) / kColumns);
+      for (const double x : {v.x, v.z, -v.y}) put(result.positions, static_cast<float>(x));
+      ++result.points;
+    }
+  for (int j = 0; j < kRows; ++j)
+    for (int i = 0; i < kColumns; ++i) {
+      const int a = j * (kColumns + 1) + i, b = a + kColumns + 1;
+      // At the poles one of the two triangles of a cell has no area.
+      if (j > 0)
+        for (const int k : {a, b, a + 1}) put(result.triangles, static_cast<std::uint16_t>(k)), ++result.indices;
+      if (j + 1 < kRows)
+        for (const int k : {a + 1, b, b + 1}) put(result.triangles, static_cast<std::uint16_t>(k)), ++result.indices;
+    }
+  return result;
+}
+
+// The geometry, which is the same in every file.
+const Json& sphere_json() {
+  static const Json json = [] {
+    const Sphere mesh = sphere();
+    const std::size_t split = mesh.positions.size();
+    Json part = {
+        {"scene", 0},
+        {"scenes", {{{"nodes", {0}}}}},
+        {"nodes", {{{"mesh", 0}}}},
+        {"meshes",
+         {{{"primitives", {{{"attributes", {{"POSITION", 0}, {"NORMAL", 0}}}, {"indices", 1}, {"material", 0}}}}}}}};
+    part["accessors"] = Json::array();
+    part["accessors"].push_back({{"bufferView", 0},
+                                 {"componentType", 5126},
+                                 {"count", mesh.points},
+                                 {"type", "VEC3"},
+                                 {"min", {-1, -1, -1}},
+                                 {"max", {1, 1, 1}}});
+    part["accessors"].push_back(
+        {{"bufferView", 1}, {"componentType", 5123}, {"count", mesh.indices}, {"type", "SCALAR"}});
+    part["bufferViews"] = Json::array();
+    part["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", 0}, {"byteLength", split}, {"target", 34962}});
+    part["bufferViews"].push_back(
+        {{"buffer", 0}, {"byteOffset", split}, {"byteLength", mesh.triangles.size()}, {"target", 34963}});
+    part["buffers"] = Json::array();
+    part["buffers"].push_back(
+        {{"byteLength", split + mesh.triangles.size()},
+         {"uri", "data:application/octet-stream;base64," + base64(mesh.positions + mesh.triangles)}});
+    return part;
+  }();
+  return json;
+}
+
+std::string written(const OneLobe& p, const Naming& naming, const Shown& shown) {
+  Json material = {
+      {"name", naming.display},
+      {"pbrMetallicRoughness",
+       {{"baseColorFactor", {p.base.x, p.base.y, p.base.z, 1}},
+        {"metallicFactor", 0},
+        {"roughnessFactor", p.roughness}}},
+      {"extensions",
+       {{"KHR_materials_ior", {{"ior", 0}}},
+        {"KHR_materials_specular", {{"specularFactor", p.strength}, {"specularColorFactor", color_json(p.specular)}}}}},
+      {"extras",
+       {{"identifier", naming.identifier},
+        {"de00_mean", rounded(shown.de00_mean)},
+        {"de00_max", rounded(shown.de00_max)}}}};
+  Json used = {"KHR_materials_ior", "KHR_materials_specular"};
+  if (p.clearcoat > 0) {
+    material["extensions"]["KHR_materials_clearcoat"] = {{"clearcoatFactor", p.clearcoat},
+                                                         {"clearcoatRoughnessFactor", p.clearcoat_roughness}};
+    used.push_back("KHR_materials_clearcoat");
+  }
+  Json document = {{"asset", {{"version", "2.0"}, {"generator", naming.provenance}}}, {"extensionsUsed", used}};
+  document["materials"] = Json::array({material});
+  document.update(sphere_json());
+  return document.dump(1) + "\n";
+}
+
+Result<Material> gltf_material(const paint::Paint& fitted, const Naming& naming) {
+  GONIO_ASSIGN(const paint::Paint paint, exported(fitted));
+  const OneLobe p = rounded(nearest_one_lobe(paint, seen, true));
+  Material material;
+  material.shown = shown(
+      paint, [&](const Vec3& light, const Vec3& view) { return color::rec2020_from_rec709(seen(p, light, view)); });
+  material.bytes = written(p, naming, material.shown);
+  return material;
+}
+
+}  // namespace
+
+const Target kGltf = {"gltf", ".gltf", "a sphere with the nearest parameters of glTF 2.0, for web viewers",
+                      gltf_material};
+
+}  // namespace goniochrome::materials

@@ -1,0 +1,79 @@
+#include "materials/internal/ggx.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "base/angles.h"
+
+namespace goniochrome::materials {
+
+double ggx(double alpha, const Vec3& to_light, const Vec3& to_viewer) {
+  const double a2 = alpha * alpha;
+  const Vec3 half = normalized(to_light + to_viewer);
+  // 1 - (1 - a2) z^2, which does not cancel for sharp lobes: the square of the sine is that of the vector itself.
+  const double sine2 = half.x * half.x + half.y * half.y, d = sine2 + a2 * half.z * half.z;
+  const auto slope = [&](double c) { return std::sqrt(a2 + (1 - a2) * c * c); };
+  const double masking = slope(to_light.z) * to_viewer.z + slope(to_viewer.z) * to_light.z;
+  return a2 / (kPi * d * d) / (2 * masking);
+}
+
+double half_cosine(const Vec3& to_light, const Vec3& to_viewer) {
+  return std::min(1.0, length(to_light + to_viewer) / 2);
+}
+
+double schlick(double cosine) {
+  const double m = std::clamp(1 - cosine, 0.0, 1.0), m2 = m * m;
+  return m2 * m2 * m;
+}
+
+// Half vectors are taken with the density D cos: tan^2(theta_h) = alpha^2 u/(1 - u). Light there reflects
+// D G/(4 cos_o) dw_i = G (o.h)/(cos_o cos_h) times that density.
+FacetAlbedo facet_albedo(double alpha, double cosine) {
+  if (alpha <= 0) return {1, schlick(cosine)};
+  constexpr int kRings = 48, kTurns = 24;
+  const double c = std::clamp(cosine, 1e-3, 1.0), s = std::sqrt(1 - c * c), a2 = alpha * alpha;
+  const auto slope = [&](double x) { return std::sqrt(a2 + (1 - a2) * x * x); };
+  FacetAlbedo sum{0, 0};
+  for (int ring = 0; ring < kRings; ++ring) {
+    // Rings are dense toward u = 1, the steep facets, where the light goes below the horizon.
+    const double left = 1 - (ring + 0.5) / kRings, tan2 = a2 * (1 / (left * left) - 1), z = 1 / std::sqrt(1 + tan2);
+    for (int turn = 0; turn < kTurns; ++turn) {
+      const double azimuth = kPi * (turn + 0.5) / kTurns, x = std::sqrt(1 - z * z) * std::cos(azimuth);
+      const double along = s * x + c * z, light = 2 * along * z - c;
+      if (along <= 0 || light <= 0) continue;
+      const double masking = 2 * light * c / (slope(light) * c + slope(c) * light);
+      const double share = 2 * left * masking * along / (c * z) / (kRings * kTurns);
+      sum.all += share;
+      sum.grazing += share * schlick(along);
+    }
+  }
+  return sum;
+}
+
+// The table is even in the square root of alpha, which is what most models call roughness, and in the cosine.
+FacetAlbedo quick_facet_albedo(double alpha, double cosine) {
+  constexpr std::size_t kAlphas = 33, kCosines = 49;
+  static const std::vector<FacetAlbedo> table = [] {
+    std::vector<FacetAlbedo> all;
+    for (std::size_t i = 0; i < kAlphas; ++i)
+      for (std::size_t j = 0; j < kCosines; ++j) {
+        const double root = static_cast<double>(i) / (kAlphas - 1);
+        all.push_back(facet_albedo(root * root, static_cast<double>(j) / (kCosines - 1)));
+      }
+    return all;
+  }();
+  const double x = std::sqrt(std::clamp(alpha, 0.0, 1.0)) * (kAlphas - 1);
+  const double y = std::clamp(cosine, 0.0, 1.0) * (kCosines - 1);
+  const std::size_t i = std::min(static_cast<std::size_t>(x), kAlphas - 2);
+  const std::size_t j = std::min(static_cast<std::size_t>(y), kCosines - 2);
+  const double s = x - static_cast<double>(i), t = y - static_cast<double>(j);
+  const auto mixed = [&](double FacetAlbedo::*part) {
+    const auto at = [&](std::size_t k) { return table[k].*part; };
+    const std::size_t k = i * kCosines + j;
+    return std::lerp(std::lerp(at(k), at(k + 1), t), std::lerp(at(k + kCosines), at(k + kCosines + 1), t), s);
+  };
+  return {mixed(&FacetAlbedo::all), mixed(&FacetAlbedo::grazing)};
+}
+
+}  // namespace goniochrome::materials

@@ -1,0 +1,74 @@
+// Paints as the materials of other renderers. A target writes the lobes of a paint in the terms of another program, and
+// tells what that program will show of it, by the program's own model. goniochrome-theory(7), EXPORT.
+#pragma once
+
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.h"
+#include "paint/paint.h"
+
+namespace goniochrome::materials {
+
+// How far the target is from the lobes of the paint at one geometry.
+struct DifferenceAt {
+  paint::Geometry geometry;
+  double de00 = 0;
+};
+
+// What the target will show, in CIEDE2000 under the condition of the paint. The mirror direction is not among the
+// geometries, since no instrument reads there.
+struct Shown {
+  double de00_mean = 0, de00_max = 0;  // over compared_geometries(), from the lobes of the paint
+  std::vector<DifferenceAt> by_geometry;
+  std::optional<double> readings_de00_mean;  // from the paint's own readings, where it has any
+};
+
+// The geometries at which every target is compared: light at 15, 45 and 65 deg, viewers in the plane of incidence from
+// 15 to 110 deg off the mirror direction, and one out of it.
+const std::vector<paint::Geometry>& compared_geometries();
+
+// What the paint is called in a file.
+struct Naming {
+  std::string identifier;  // letters, digits and underscores: a name in every format
+  std::string display;     // the paint's own name
+  std::string provenance;  // the tool, its version and its command line
+};
+
+struct Material {
+  std::string bytes;  // of the file
+  Shown shown;
+};
+
+struct Target {
+  const char* name;    // on the command line
+  const char* ending;  // of its files, with the dot
+  const char* what;    // for people: what the file is and who reads it
+  // The file for a fitted paint. Error: the paint has no lobes.
+  Result<Material> (*material)(const paint::Paint& paint, const Naming& naming);
+};
+extern const Target kRgl, kRglSpectral, kMaterialX, kGltf, kUsd, kStandardSurface;
+
+// All targets, in the order in which help names them.
+std::span<const Target* const> targets();
+
+// What of a paint no target can take along, as parts of a sentence: "its color map". Empty for most paints.
+std::vector<std::string> left_out(const paint::Paint& paint);
+
+// Makes identifiers out of names, each only once in its life and unlike all others also where a file system does not
+// tell capitals from small letters.
+class Identifiers {
+ public:
+  // `name` with an underscore in place of everything but ASCII letters, digits and underscores; cut to 64 letters; with
+  // an underscore before a digit; and with a number behind it where it is already taken.
+  std::string of(std::string_view name);
+
+ private:
+  std::set<std::string> taken_;
+};
+
+}  // namespace goniochrome::materials

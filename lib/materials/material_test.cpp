@@ -1,0 +1,60 @@
+#include "materials/material.h"
+
+#include <gtest/gtest.h>
+
+#include "materials/internal/paints_for_test.h"
+
+namespace goniochrome::materials {
+namespace {
+
+TEST(Identifiers, HoldNothingThatAFormatOrAFileSystemMinds) {
+  Identifiers names;
+  EXPECT_EQ(names.of("candy_red"), "candy_red");
+  EXPECT_EQ(names.of("../../evil"), "_evil");
+  EXPECT_EQ(names.of("9 lives"), "_9_lives");
+  EXPECT_EQ(names.of("Gr\xc3\xbcn"), "Gr_n");
+  EXPECT_EQ(names.of(""), "paint");
+  EXPECT_EQ(names.of(std::string(1000, 'n')).size(), 64U);
+  EXPECT_EQ(names.of(std::string("a\0b", 3)), "a_b");
+}
+
+TEST(Identifiers, AreAllDifferent) {
+  Identifiers names;
+  EXPECT_EQ(names.of("a b"), "a_b");
+  EXPECT_EQ(names.of("a/b"), "a_b_2");
+  EXPECT_EQ(names.of("a_b_2"), "a_b_2_2");
+  EXPECT_EQ(names.of("A_B"), "A_B_3");
+}
+
+TEST(Material, EveryTargetRefusesAPaintWithoutLobes) {
+  paint::Paint bare;
+  bare.name = "bare";
+  for (const Target* target : targets()) {
+    const auto material = target->material(bare, {"bare", "bare", "test"});
+    ASSERT_FALSE(material.ok());
+    EXPECT_EQ(material.error().message, "paint \"bare\" has no lobes: fit it by fit-paint first");
+  }
+}
+
+// A diffuse paint without a coat is the same in every model here: each of them has a diffuse part of its own.
+TEST(Material, ADiffusePaintIsExactInEveryTarget) {
+  const paint::Paint paint = paint_for_test("matt", {0.1, 0.12, 0.09}, {}, paint::kNoCoat);
+  for (const Target* target : targets()) {
+    if (target == &kRglSpectral) continue;  // a colored paint has to have spectra
+    const auto material = target->material(paint, {"matt", "matt", "test"});
+    ASSERT_TRUE(material.ok());
+    EXPECT_LE(material->shown.de00_max, 0.3) << target->name;
+  }
+}
+
+// A graph has many lobes, of which each has its color; glTF has one roughness. The readings between face and flop need
+// several.
+TEST(Material, AGraphIsNearerThanTheParametersOfOneLobe) {
+  const paint::Paint paint = silver_for_test();
+  const auto graph = kMaterialX.material(paint, {"a", "a", "test"}), one = kGltf.material(paint, {"a", "a", "test"});
+  ASSERT_TRUE(graph.ok() && one.ok());
+  EXPECT_LT(graph->shown.de00_mean, one->shown.de00_mean);
+}
+
+}  // namespace
+}  // namespace goniochrome::materials

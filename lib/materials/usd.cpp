@@ -1,0 +1,86 @@
+// USD: a material with the nearest parameters of UsdPreviewSurface, which every renderer of USD has. Its lighting is
+// only sketched in its specification; the model here is that of the reference viewer, hdStorm: the diffuse part gives
+// way to the lobe by 1 - F, channel by channel, and the clear coat is added on top.
+#include <algorithm>
+#include <cmath>
+
+#include "base/angles.h"
+#include "materials/internal/ggx.h"
+#include "materials/internal/one_lobe.h"
+
+namespace goniochrome::materials {
+
+namespace {
+
+constexpr double kLeastRoughness = 0.001, kCoatReflectance = 0.04;  // an index of 1.5
+
+// D G/(4 cos_i cos_o) with the facets of GGX and Schlick's masking c/(c (1 - k) + k), k = alpha/2.
+double facets(double roughness, const Vec3& light, const Vec3& view) {
+  const double alpha = std::max(roughness, kLeastRoughness) * std::max(roughness, kLeastRoughness), k = alpha / 2;
+  const Vec3 half = normalized(light + view);
+  const double d = half.x * half.x + half.y * half.y + alpha * alpha * half.z * half.z;
+  const double masking = (light.z * (1 - k) + k) * (view.z * (1 - k) + k);
+  return alpha * alpha / (kPi * d * d) / (4 * masking);
+}
+
+color::Rgb seen(const OneLobe& p, const Vec3& light, const Vec3& view) {
+  const double grazing = schlick(half_cosine(light, view));
+  const double lobe = facets(p.roughness, light, view);
+  const double coat =
+      p.clearcoat * std::lerp(kCoatReflectance, 1.0, grazing) * facets(p.clearcoat_roughness, light, view);
+  color::Rgb f;
+  for (int c = 0; c < 3; ++c) {
+    const double fresnel = std::lerp(p.specular[c], 1.0, grazing);
+    f[c] = (1 - fresnel) * p.base[c] / kPi + fresnel * lobe + coat;
+  }
+  return f;
+}
+
+// A text between quotes.
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    if (c == '\n' || c == '\r' || c == '\t')
+      result += ' ';
+    else
+      result += c;
+  }
+  return result + "\"";
+}
+
+std::string written(const OneLobe& p, const Naming& naming) {
+  const auto color = [](const color::Rgb& rgb) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", rgb.x, rgb.y, rgb.z); };
+  return fmt::format(
+      "#usda 1.0\n"
+      "(\n    defaultPrim = \"{0}\"\n    doc = {1}\n    metersPerUnit = 1\n    upAxis = \"Y\"\n)\n\n"
+      "def Material \"{0}\" (\n    displayName = {2}\n)\n{{\n"
+      "    token outputs:surface.connect = </{0}/surface.outputs:surface>\n\n"
+      "    def Shader \"surface\"\n    {{\n"
+      "        uniform token info:id = \"UsdPreviewSurface\"\n"
+      "        int inputs:useSpecularWorkflow = 1\n"
+      "        color3f inputs:diffuseColor = {3}\n"
+      "        color3f inputs:specularColor = {4}\n"
+      "        float inputs:roughness = {5:.6g}\n"
+      "        float inputs:clearcoat = {6:.6g}\n"
+      "        float inputs:clearcoatRoughness = {7:.6g}\n"
+      "        float inputs:ior = 1.5\n"
+      "        token outputs:surface\n    }}\n}}\n",
+      naming.identifier, quoted(naming.provenance), quoted(naming.display), color(p.base), color(p.specular),
+      p.roughness, p.clearcoat, p.clearcoat_roughness);
+}
+
+Result<Material> usd_material(const paint::Paint& fitted, const Naming& naming) {
+  GONIO_ASSIGN(const paint::Paint paint, exported(fitted));
+  const OneLobe p = rounded(nearest_one_lobe(paint, seen, false));
+  return Material{written(p, naming), shown(paint, [&](const Vec3& light, const Vec3& view) {
+                    return color::rec2020_from_rec709(seen(p, light, view));
+                  })};
+}
+
+}  // namespace
+
+const Target kUsd = {"usda", ".usda", "a material of USD with the nearest parameters of UsdPreviewSurface",
+                     usd_material};
+
+}  // namespace goniochrome::materials

@@ -1,0 +1,53 @@
+"""Evaluates the graph of BSDF nodes in a .mtlx file, after the specification of MaterialX's physically based nodes."""
+
+import xml.etree.ElementTree
+
+import numpy
+
+from facets import dielectric, ggx, reflected
+
+
+def evaluated(nodes, name, light, view):
+    """(f of a node in RGB, what it lets through to the node below)"""
+    node = nodes[name]
+    inputs = {given.get("name"): given for given in node}
+    def numbers(key, default):
+        return numpy.array([float(x) for x in inputs[key].get("value").split(",")]) if key in inputs else numpy.array([default])
+    def below(key):
+        return evaluated(nodes, inputs[key].get("nodename"), light, view)
+    if node.tag == "standard_surface":  # as MaterialX defines it, without the parts that these files leave at 0
+        def layer(weight, index, roughness):
+            alpha = max(roughness[0] ** 2, 1e-4)
+            all_light, f = reflected(alpha, view, lambda c: 1), dielectric(numpy.linalg.norm(light + view) / 2, index[0])
+            more, f0 = 1 + f * (1 - all_light) / all_light, ((index[0] - 1) / (index[0] + 1)) ** 2
+            given = reflected(alpha, view, lambda c: f0 + (1 - f0) * (1 - numpy.clip(c, 0, 1)) ** 5)
+            return weight * f * more * ggx(alpha, light, view), 1 - weight * more * given
+        lobe, through = layer(1, numbers("specular_IOR", 1.5), numbers("specular_roughness", 0.2))
+        coat, below_coat = layer(numbers("coat", 0), numbers("coat_IOR", 1.5), numbers("coat_roughness", 0.1))
+        return coat + below_coat * (numbers("specular_color", 1) * lobe + through * numbers("base_color", 0.8) / numpy.pi), 0
+    if node.tag == "add":
+        return below("in1")[0] + below("in2")[0], 0
+    if node.tag == "multiply":
+        return below("in1")[0] * numpy.clip(numbers("in2", 1), 0, 1), 0
+    if node.tag == "layer":
+        top, through = below("top")
+        return top + through * below("base")[0], 0
+    if node.tag == "oren_nayar_diffuse_bsdf":
+        return numbers("color", 0.18) / numpy.pi, 0
+    alpha, weight, index = numbers("roughness", 0.05)[0], numbers("weight", 1)[0], numbers("ior", 1.5)[0]
+    def schlick(f0, f90, power):
+        return lambda c: f0 + (f90 - f0) * (1 - numpy.clip(c, 0, 1)) ** power
+    fresnel = average = schlick(numbers("color0", 1)[0], numbers("color90", 1)[0], numbers("exponent", 5)[0])
+    if node.tag == "dielectric_bsdf":
+        fresnel, average = lambda c: dielectric(c, index), schlick(((index - 1) / (index + 1)) ** 2, 1, 5)
+    f, all_light = fresnel(numpy.linalg.norm(light + view) / 2), reflected(alpha, view, lambda c: 1)
+    more = 1 + f * (1 - all_light) / all_light
+    return weight * f * more * ggx(alpha, light, view) * numpy.ones(3), 1 - weight * more * reflected(alpha, view, average)
+
+
+def reflection(path, lights, views):
+    """f of each pair of directions, one a row, in Rec.709."""
+    nodes = {node.get("name"): node for node in xml.etree.ElementTree.parse(path).getroot()}
+    surface = next(node for node in nodes.values() if node.tag in ("surface", "standard_surface"))
+    surface = surface.get("name") if surface.tag == "standard_surface" else surface.find("input").get("nodename")
+    return numpy.array([evaluated(nodes, surface, light, view)[0] for light, view in zip(lights, views)])

@@ -1,0 +1,114 @@
+// Gives a page a picture and takes face, flop and gloss from it, by mouse, finger and keyboard. Writes the picture, the
+// paint-pick command that the page shows, and what the page took, as taken.json.
+//
+//   node droppers.js PAGE.html FOLDER
+"use strict";
+const fs = require("node:fs");
+const path = require("node:path");
+const zlib = require("node:zlib");
+const { pathToFileURL } = require("node:url");
+const { Browser } = require("./browser.js");
+
+const problems = [];
+function check(what, holds) {
+  if (!holds) problems.push(what);
+}
+
+// A PNG of the signals that color(x, y) gives, without loss.
+function png(width, height, color) {
+  const chunk = (kind, data) => {
+    const body = Buffer.concat([Buffer.from(kind), data]), frame = Buffer.alloc(8);
+    frame.writeUInt32BE(data.length, 0);
+    frame.writeUInt32BE(zlib.crc32 ? zlib.crc32(body) : crc(body), 4);
+    return Buffer.concat([frame.subarray(0, 4), body, frame.subarray(4)]);
+  };
+  const crc = (bytes) => {
+    let c = 0xffffffff;
+    for (const byte of bytes) {
+      c ^= byte;
+      for (let k = 0; k < 8; ++k) c = c & 1 ? (c >>> 1) ^ 0xedb88320 : c >>> 1;
+    }
+    return (c ^ 0xffffffff) >>> 0;
+  };
+  const head = Buffer.alloc(13), rows = [];
+  head.writeUInt32BE(width, 0);
+  head.writeUInt32BE(height, 4);
+  head.set([8, 2, 0, 0, 0], 8);
+  for (let y = 0; y < height; ++y) rows.push(Buffer.from([0, ...Array.from({ length: width }, (_, x) => color(x, y)).flat()]));
+  return Buffer.concat([Buffer.from([0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a]), chunk("IHDR", head), chunk("IDAT", zlib.deflateSync(Buffer.concat(rows))), chunk("IEND", Buffer.alloc(0))]);
+}
+
+async function main() {
+  const [page, folder] = process.argv.slice(2), url = pathToFileURL(path.resolve(page)).href;
+  const picture = path.join(path.resolve(folder), "two colors.png");
+  // Light orange on the left, dark blue on the right, with a texture, and a highlight below.
+  fs.writeFileSync(picture, png(320, 200, (x, y) => {
+    const grain = (x * 7 + y * 13) % 23;
+    if (y > 150) return x > 140 && x < 180 ? [250, 248, 240] : [60 + grain, 58, 50];
+    return x < 160 ? [210 + grain, 140 + (y >> 3), 60] : [30, 40 + grain, 90 + (y >> 3)];
+  }));
+  const browser = await Browser.open(url, { width: 1000, height: 1000 });
+  const value = (expression) => browser.evaluate(expression);
+  const quiet = () => browser.until("studio.tiles.waiting.length === 0 && studio.tiles.timer === undefined");
+  await browser.until("window.studio !== undefined");
+  await quiet();
+  const { root } = await browser.send("DOM.getDocument");
+  const { nodeId } = await browser.send("DOM.querySelector", { nodeId: root.nodeId, selector: "#add-pictures" });
+  await browser.send("DOM.setFileInputFiles", { nodeId, files: [picture] });
+  await browser.until("studio.pictures.current !== null && studio.pictures.place.querySelector('canvas')?.clientWidth > 0");
+  await value("document.getElementById('picture-panel').scrollIntoView()");
+  const at = (x, y) => value(`(() => { const { canvas } = studio.pictures.current, box = canvas.getBoundingClientRect();
+    return { x: box.left + ((${x} + 0.5) / canvas.width) * box.width, y: box.top + ((${y} + 0.5) / canvas.height) * box.height }; })()`);
+  const kind = (name) => browser.click(`input[name=dropper][value=${name}]`);
+  await browser.mouseDrag(await at(60, 100), await at(80, 70));
+  check("the dropper of the face lies where the mouse let it go", JSON.stringify(await value("studio.pictures.droppers.face.at")) === "[80,70]");
+  await kind("flop");
+  await browser.touchDrag(await at(200, 100), await at(240, 60));
+  check("that of the flop where the finger let it go", JSON.stringify(await value("studio.pictures.droppers.flop.at")) === "[240,60]");
+  await value("studio.pictures.current.canvas.focus()");
+  await browser.key("ArrowDown", 8);
+  await browser.key("ArrowLeft");
+  check("arrow keys move it", JSON.stringify(await value("studio.pictures.droppers.flop.at")) === "[239,70]");
+  await kind("gloss");
+  await value("document.getElementById('dropper-radius').value = 12");
+  await browser.mouseDrag(await at(100, 180), await at(142, 178));
+  const appearance = await value("studio.description.appearance"), command = await value("document.getElementById('pick-command').textContent");
+  const taken = { face: appearance.face, flop: appearance.flop, gloss: await value("studio.paint.gloss[0][1]") };
+  fs.writeFileSync(path.join(folder, "taken.json"), JSON.stringify(taken));
+  fs.writeFileSync(path.join(folder, "pick-command.txt"), command);
+  check("the paint has the droppers' colors", appearance.face[0] > appearance.flop[0]);
+  await browser.screenshot(path.join(folder, "droppers.png"));
+  // A flop that is lighter trades places with the face, unless that is to be kept.
+  await kind("flop");
+  await value("studio.pictures.current.canvas.focus()");
+  for (let i = 0; i < 12; ++i) await browser.key("ArrowLeft", 8);
+  check("face and flop trade places", (await value("studio.description.appearance.face[0] >= studio.description.appearance.flop[0]")));
+  await browser.click("#retro");
+  await value("studio.pictures.current.canvas.focus()");
+  await browser.key("ArrowDown");
+  const retro = await value("studio.description.appearance"), before = retro.face[0];
+  await browser.click("#swap");
+  check("the button trades them", Math.abs((await value("studio.description.appearance.flop[0]")) - before) < 0.01);
+  // Zooming, and a file that is no picture.
+  await value("(() => { const zoom = document.getElementById('zoom'); zoom.value = 2; zoom.dispatchEvent(new Event('input')); })()");
+  check("the picture is shown four times as wide", (await value("studio.pictures.current.canvas.clientWidth")) === 1280);
+  await kind("move");
+  const from = await browser.middle("#picture");
+  await browser.mouseDrag(from, { x: from.x - 80, y: from.y });
+  check("the picture moves below the mouse", (await value("studio.pictures.place.scrollLeft")) === 80);
+  const wrong = path.join(path.resolve(folder), "wrong.png");
+  fs.writeFileSync(wrong, "no picture");
+  await browser.send("DOM.setFileInputFiles", { nodeId, files: [wrong] });
+  await browser.until("document.getElementById('status').textContent.includes('wrong.png is no picture')", 10);
+  check("nothing was added", (await value("studio.pictures.all.length")) === 1);
+  await browser.close();
+  problems.push(...browser.problems);
+  for (const problem of problems) console.log("wrong: " + problem);
+  console.log(problems.length === 0 ? "the droppers take what they are on" : `${problems.length} things are wrong`);
+  process.exit(problems.length === 0 ? 0 : 1);
+}
+
+main().catch((error) => {
+  console.error(error.stack);
+  process.exit(1);
+});

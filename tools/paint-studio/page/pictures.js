@@ -1,0 +1,203 @@
+// Pictures that are dropped on the page, and the droppers that take face, flop and gloss from them, as those of
+// paint-pick(1). [Shimizu2009] 3.5
+
+const mostPixels = 4096;  // of a side; larger pictures are made smaller
+
+class Pictures {
+  constructor(app) {
+    this.app = app;
+    this.all = [];  // {name, canvas, context, zoom}
+    this.droppers = {};  // of face, flop and gloss: {picture, at, radius} and what was found there
+    this.current = null;
+    this.place = document.getElementById("picture");
+    this.tabs = document.getElementById("picture-tabs");
+    this.kind = "face";
+    const input = document.getElementById("add-pictures");
+    input.addEventListener("change", () => {
+      this.add([...input.files]);
+      input.value = "";
+    });
+    document.addEventListener("dragover", (event) => {
+      if ([...event.dataTransfer.types].includes("Files")) event.preventDefault();
+    });
+    document.addEventListener("drop", (event) => {
+      const files = [...event.dataTransfer.files];
+      if (files.length === 0) return;
+      event.preventDefault();
+      this.add(files);
+    });
+    document.addEventListener("paste", (event) => {
+      const files = [...event.clipboardData.files];
+      if (files.length > 0) this.add(files);
+    });
+    document.querySelectorAll("input[name=dropper]").forEach((radio) => radio.addEventListener("change", () => {
+      this.kind = radio.value;
+      this.showMarks();
+    }));
+    document.getElementById("zoom").addEventListener("input", (event) => this.zoomTo(2 ** Number(event.target.value)));
+    document.getElementById("remove-picture").addEventListener("click", () => this.remove());
+    document.getElementById("swap").addEventListener("click", () => this.swap());
+    this.show();
+  }
+
+  async add(files) {
+    for (const file of files) {
+      try {
+        const bitmap = await createImageBitmap(file);
+        const scale = Math.min(1, mostPixels / Math.max(bitmap.width, bitmap.height));
+        const canvas = made("canvas", { width: Math.max(1, Math.round(scale * bitmap.width)), height: Math.max(1, Math.round(scale * bitmap.height)), tabindex: 0,
+                                        role: "application", "aria-label": `Picture ${file.name}. Arrow keys move the dropper, with Shift by ten pixels.` });
+        const context = canvas.getContext("2d", { willReadFrequently: true });
+        context.drawImage(bitmap, 0, 0, canvas.width, canvas.height);
+        bitmap.close();
+        if (scale < 1) this.app.say(`${file.name} was made smaller: its sides have at most ${mostPixels} pixels here.`);
+        const picture = { name: file.name, canvas, context, zoom: 0 };
+        this.listen(picture);
+        this.all.push(picture);
+        this.current = picture;
+      } catch {
+        this.app.say(`${file.name} is no picture that this browser reads.`);
+      }
+    }
+    this.show();
+  }
+  remove() {
+    const at = this.all.indexOf(this.current);
+    for (const [kind, dropper] of Object.entries(this.droppers)) if (dropper.picture === this.current) delete this.droppers[kind];
+    this.all.splice(at, 1);
+    this.current = this.all[Math.max(0, at - 1)] ?? null;
+    this.show();
+  }
+
+  listen(picture) {
+    const { canvas } = picture;
+    let last = null, from = null;
+    const pixelOf = (event) => {
+      const box = canvas.getBoundingClientRect();
+      return [clamped(Math.floor(((event.clientX - box.left) / box.width) * canvas.width), 0, canvas.width - 1),
+              clamped(Math.floor(((event.clientY - box.top) / box.height) * canvas.height), 0, canvas.height - 1)];
+    };
+    const dropped = (event) => {
+      if (this.kind === "move") {
+        this.place.scrollLeft = from.left - (event.clientX - from.x);
+        this.place.scrollTop = from.top - (event.clientY - from.y);
+      } else {
+        last = this.drop(picture, pixelOf(event)) ?? last;
+        if (last) this.app.preview(last);
+      }
+    };
+    draggable(canvas, {
+      begin: (event) => {
+        last = null;
+        from = { x: event.clientX, y: event.clientY, left: this.place.scrollLeft, top: this.place.scrollTop };
+        dropped(event);
+      },
+      move: dropped,
+      end: () => { if (last) this.app.commit(last); },
+    });
+    canvas.addEventListener("keydown", (event) => {
+      const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
+      if (!step || this.kind === "move") return;
+      event.preventDefault();
+      const size = event.shiftKey ? 10 : 1, here = this.droppers[this.kind], now = here?.picture === picture ? here.at : [canvas.width >> 1, canvas.height >> 1];
+      const edit = this.drop(picture, [clamped(now[0] + size * step[0], 0, canvas.width - 1), clamped(now[1] + size * step[1], 0, canvas.height - 1)]);
+      if (edit) this.app.commit(edit);
+    });
+    canvas.addEventListener("wheel", (event) => {
+      if (!event.ctrlKey) return;
+      event.preventDefault();
+      this.zoomTo(this.zoomOf(picture) * (event.deltaY > 0 ? 1 / 1.15 : 1.15));
+    }, { passive: false });
+  }
+
+  // The edit that a dropper at this pixel stands for, or null where it finds nothing.
+  drop(picture, [x, y]) {
+    const radius = clamped(document.getElementById("dropper-radius").valueAsNumber || 0, 0, 200), reach = Math.ceil(radius);
+    const { canvas, context } = picture, left = Math.max(0, x - reach), top = Math.max(0, y - reach);
+    const width = Math.min(canvas.width, x + reach + 1) - left, height = Math.min(canvas.height, y + reach + 1) - top;
+    const { data } = context.getImageData(left, top, width, height), signals = [];
+    for (let row = 0; row < height; ++row)
+      for (let column = 0; column < width; ++column) {
+        const at = 4 * (row * width + column);
+        if (Math.hypot(left + column - x, top + row - y) <= radius && data[at + 3] === 255) signals.push(data[at], data[at + 1], data[at + 2]);
+      }
+    if (signals.length === 0) {
+      this.app.say("Every pixel below the dropper is transparent: move it.");
+      return null;
+    }
+    const found = this.app.attempt(() => this.app.engine.ask({ do: "dropper", signals }));
+    if (!found) return null;
+    this.droppers[this.kind] = { picture, at: [x, y], radius, ...found };
+    this.showMarks();
+    return this.edit(this.kind, found);
+  }
+  // With two droppers for the color, both ends are theirs, and a flop that is lighter than the face trades places with it.
+  edit(kind, { lab, gloss }) {
+    if (kind === "gloss") return this.app.controls.edit("gloss", rounded(gloss, 1));
+    const { face, flop } = this.droppers, color = (of) => of.lab.map((value) => rounded(value));
+    if (!face || !flop) return { [kind]: color({ lab }) };
+    const swapped = !document.getElementById("retro").checked && flop.lab[0] > face.lab[0];
+    return swapped ? { face: color(flop), flop: color(face) } : { face: color(face), flop: color(flop) };
+  }
+  swap() {
+    const { face, flop } = this.app.description.appearance, color = (lab) => lab.map((value) => rounded(value));
+    this.app.commit({ face: color(flop), flop: color(face) });
+  }
+
+  zoomOf(picture) { return picture.zoom || Math.min(1, this.place.clientWidth / picture.canvas.width); }
+  zoomTo(zoom) {
+    if (!this.current) return;
+    this.current.zoom = clamped(zoom, 1 / 16, 16);
+    this.showZoom();
+  }
+  showZoom() {
+    const { canvas } = this.current, zoom = this.zoomOf(this.current);
+    canvas.style.width = `${zoom * canvas.width}px`;
+    document.getElementById("zoom").value = Math.log2(zoom);
+    this.showMarks();
+  }
+
+  // The pictures' tabs, and the one that is open with its droppers.
+  show() {
+    document.getElementById("picture-panel").hidden = !this.current;
+    this.tabs.replaceChildren(...this.all.map((picture) => {
+      const tab = made("button", { type: "button", role: "tab", "aria-selected": picture === this.current, tabindex: picture === this.current ? 0 : -1, text: picture.name,
+                                   onclick: () => { this.current = picture; this.show(); } });
+      tab.addEventListener("keydown", (event) => {
+        const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+        if (!step) return;
+        event.preventDefault();
+        this.current = this.all[(this.all.indexOf(picture) + step + this.all.length) % this.all.length];
+        this.show();
+        this.tabs.querySelector("[aria-selected=true]").focus();
+      });
+      return tab;
+    }));
+    if (!this.current) return;
+    this.marks = {};
+    for (const kind of ["face", "flop", "gloss"]) this.marks[kind] = made("span", { class: `dropper ${kind}`, "aria-hidden": "true", text: kind });
+    this.place.replaceChildren(made("div", { class: "sheet" }, [this.current.canvas, ...Object.values(this.marks)]));
+    this.showZoom();
+  }
+  showMarks() {
+    if (!this.current) return;
+    const { canvas } = this.current, { droppers } = this, parts = [];
+    this.place.classList.toggle("moving", this.kind === "move");
+    for (const [kind, mark] of Object.entries(this.marks)) {
+      const dropper = droppers[kind];
+      mark.hidden = dropper?.picture !== this.current;
+      if (!dropper) continue;
+      parts.push(`--${kind} ${quoted(`${dropper.picture.name}@${dropper.at.join(",")},${dropper.radius}`)}`);
+      mark.style.left = `${((dropper.at[0] + 0.5) / canvas.width) * 100}%`;
+      mark.style.top = `${((dropper.at[1] + 0.5) / canvas.height) * 100}%`;
+      mark.style.background = dropper.css;
+      mark.style.color = dropper.lab[0] > 50 ? "#000" : "#fff";
+    }
+    const reading = droppers[this.kind];
+    document.getElementById("dropper-text").textContent = reading
+      ? `${this.kind}: L* ${reading.lab[0].toFixed(1)}, a* ${reading.lab[1].toFixed(1)}, b* ${reading.lab[2].toFixed(1)}; contrast stands for ${reading.gloss.toFixed(0)} gloss units`
+      : "Point at the picture with a dropper, or focus it and use the arrow keys.";
+    document.getElementById("pick-command").textContent = parts.length > 0
+      ? `paint-pick ${parts.join(" ")}${document.getElementById("retro").checked ? " --retro" : ""} --travel ${rounded(this.app.description?.appearance.travel ?? 60, 1)} -o picked.paints.xml` : "";
+  }
+}

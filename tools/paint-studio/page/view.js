@@ -1,0 +1,226 @@
+// The large picture: its camera, its light, the border between two paints, and when it is drawn. While something moves it
+// has few pixels where the computer is slow; at rest it is drawn in full and then with many samples.
+
+// Calls an action when the page has nothing else to do.
+const whenIdle = (action) => (window.requestIdleCallback ? requestIdleCallback(action, { timeout: 400 }) : setTimeout(action, 30));
+const cancelIdle = (number) => (window.requestIdleCallback ? cancelIdleCallback(number) : clearTimeout(number));
+
+const firstBudget_ms = 70;  // a picture that takes longer is drawn with fewer pixels first
+const scales = [1, 0.7, 0.5, 0.35];  // few, so that what is visible is seldom drawn anew
+
+class StageView {
+  constructor(app) {
+    this.app = app;
+    this.canvas = document.getElementById("stage");
+    this.stage = new Stage(this.canvas, app.data);
+    this.view = { ...app.data.mesh.view };
+    this.environment = 0;
+    this.stops = 0;
+    this.lamp = { on: false, azimuth: 20, elevation: 45, stops: 0 };
+    this.border = 0.5;
+    this.level = 0;  // of `scales`, while something moves
+    this.slow = this.fast = 0;  // frames in a row
+    this.full_ms = 0;  // what a picture of all pixels took, once that is known
+    this.makeControls();
+    new ResizeObserver(() => this.redraw()).observe(this.canvas);
+  }
+
+  get camera() { return cameraOf(this.view); }
+  get weights() {
+    const own = this.app.weights, other = this.app.compared.weights;
+    return other ? { left: own, right: other, at: this.border } : own;
+  }
+  // Where the light stands that angles are counted from, as the environment sees it, and the angle that it spans.
+  get light() {
+    const { direction, extent } = this.app.data.environments[this.environment].brightest;
+    if (this.lamp.on) return { toward: turnedAgainst(this.lampDirection, this.stage.turn), extent: this.app.data.lamp.extent };
+    return { toward: direction, extent };
+  }
+  get lampDirection() { return orbitDirection(this.lamp.azimuth, this.lamp.elevation); }
+  get overlay() {
+    if (!document.getElementById("overlay").checked || !this.app.description) return null;
+    return { toward: this.light.toward, travel: this.app.description.appearance.travel, edge: this.app.highlight };
+  }
+
+  makeControls() {
+    const byId = (id) => document.getElementById(id), lights = byId("environment"), exposure = byId("exposure");
+    this.app.data.environments.forEach((one, i) => lights.append(made("option", { value: i, text: one.name })));
+    lights.addEventListener("change", () => {
+      this.environment = Number(lights.value);
+      this.setLamp({});  // its brightness is relative to the environment's
+    });
+    exposure.addEventListener("input", () => {
+      this.stops = Number(exposure.value);
+      byId("exposure-value").textContent = exposure.value;
+      this.redraw(true);
+    });
+    exposure.addEventListener("change", () => this.settle());
+    byId("reset-view").addEventListener("click", () => this.look({ ...this.app.data.mesh.view }));
+    const turn = byId("turn"), range = byId("turn-range");
+    range.addEventListener("input", () => this.turnTo(Number(range.value), true));
+    range.addEventListener("change", () => this.turnTo(Number(range.value)));
+    turn.addEventListener("change", () => this.turnTo(turn.valueAsNumber));
+    byId("lamp").addEventListener("change", () => this.setLamp({ on: byId("lamp").checked }));
+    for (const [name, low, high] of [["azimuth", -180, 180], ["elevation", -90, 90], ["stops", -6, 6]]) {
+      const field = byId("lamp-" + name);
+      field.addEventListener("change", () => {
+        if (Number.isFinite(field.valueAsNumber)) this.setLamp({ on: true, [name]: clamped(field.valueAsNumber, low, high) });
+        else this.showLamp();
+      });
+    }
+    byId("overlay").addEventListener("change", () => this.redraw());
+    this.makeBorder();
+    this.canvas.addEventListener("wheel", (event) => {
+      event.preventDefault();
+      this.closer(event.deltaY > 0 ? 1.08 : 1 / 1.08);
+    }, { passive: false });
+    this.showLamp();
+  }
+
+  // The handle of the border between the paint and the one that it is compared with.
+  makeBorder() {
+    const handle = document.getElementById("border");
+    const to = (part, moving) => {
+      this.border = clamped(part, 0, 1);
+      this.showBorder();
+      this.redraw(moving);
+    };
+    draggable(handle, {
+      move: (event) => {
+        const box = this.canvas.getBoundingClientRect();
+        to((event.clientX - box.left) / box.width, true);
+      },
+      end: () => this.redraw(),
+    });
+    handle.addEventListener("keydown", (event) => {
+      const step = { ArrowLeft: -0.02, ArrowRight: 0.02, Home: -1, End: 1 }[event.key];
+      if (!step) return;
+      event.preventDefault();
+      to(this.border + step * (event.shiftKey ? 5 : 1), false);
+    });
+  }
+  showBorder() {
+    const handle = document.getElementById("border"), shown = this.app.compared.weights !== null;
+    handle.hidden = !shown;
+    handle.style.left = `${100 * this.border}%`;
+    handle.setAttribute("aria-valuenow", Math.round(100 * this.border));
+    for (const side of ["left", "right"]) document.getElementById("side-" + side).hidden = !shown;
+    document.getElementById("side-right").textContent = this.app.compared.name;
+    document.getElementById("side-left").textContent = this.app.paint ? this.app.paint.name : "";
+  }
+
+  // The environment turned by these degrees.
+  turnTo(degrees, moving = false) {
+    if (!Number.isFinite(degrees)) return this.showLamp();
+    const turned = ((((degrees + 180) % 360) + 360) % 360) - 180;
+    this.stage.turnTo(turned);
+    document.getElementById("turn").value = rounded(turned, 1);
+    document.getElementById("turn-range").value = turned;
+    this.lightChanged(moving);
+  }
+  // Members of the lamp: on, azimuth, elevation, stops.
+  setLamp(members, moving = false) {
+    Object.assign(this.lamp, members);
+    const white = 2 ** this.lamp.stops * (this.app.data.environments[this.environment].white || 1);
+    this.stage.lamp = this.lamp.on ? { direction: this.lampDirection, white: [white, white, white] } : null;
+    this.showLamp();
+    this.lightChanged(moving);
+  }
+  showLamp() {
+    const set = (id, value) => { document.getElementById(id).value = rounded(value, 1); };
+    document.getElementById("lamp").checked = this.lamp.on;
+    for (const name of ["azimuth", "elevation", "stops"]) set("lamp-" + name, this.lamp[name]);
+    set("turn", this.stage.turn);
+  }
+  lightChanged(moving = false) {
+    this.app.lightChanged();
+    if (moving) this.redraw(true);
+    else this.settle();
+  }
+
+  closer(factor) {
+    const usual = this.app.data.mesh.view.distance;
+    this.look({ ...this.view, distance: clamped(this.view.distance * factor, 0.3 * usual, 4 * usual) });
+  }
+  look(view, moving = false) {
+    this.view = view;
+    if (moving) this.redraw(true);
+    else this.settle();
+  }
+  // After the view or the light came to rest: the small pictures follow.
+  settle() {
+    clearTimeout(this.settling);
+    this.settling = setTimeout(() => this.app.tiles.again(), 250);
+    this.redraw();
+  }
+
+  // Asks for a picture in the next frame.
+  redraw(moving = false) {
+    if (!this.app.weights) return;
+    if (this.drawing !== undefined) cancelAnimationFrame(this.drawing);
+    this.drawing = requestAnimationFrame((now) => this.drawNow(moving, now));
+  }
+  // Draws it at once: the frame is known that it belongs to.
+  drawNow(moving, now = performance.now()) {
+    if (this.drawing !== undefined) cancelAnimationFrame(this.drawing);
+    this.drawing = undefined;
+    this.rest(null);
+    if (moving && this.lastFrame !== undefined && now - this.lastFrame < 400) this.pace(now - this.lastFrame);
+    this.lastFrame = moving ? now : undefined;
+    const first = scales.find((scale) => scale * scale * this.full_ms <= firstBudget_ms) ?? scales.at(-1);
+    const scale = moving ? Math.min(scales[this.level], first) : first, [width, height] = this.size(scale);
+    this.stage.draw(scale < 1 ? "first" : "centers", this.camera, width, height, this.weights, this.environment, this.stops, this.overlay);
+    if (!moving) this.rest(() => this.sharpen(scale));
+  }
+  // Takes fewer pixels after slow frames, and more after fast ones.
+  pace(frame_ms) {
+    this.slow = frame_ms > 70 ? this.slow + 1 : 0;
+    this.fast = frame_ms < 25 ? this.fast + 1 : 0;
+    if (this.slow >= 2) this.level = Math.min(scales.length - 1, this.level + 1);
+    if (this.fast >= 8) this.level = Math.max(0, this.level - 1);
+    if (this.slow >= 2 || this.fast >= 8) this.slow = this.fast = 0;
+  }
+  size(scale) {
+    const ratio = Math.min(window.devicePixelRatio || 1, 2) * scale;
+    return [Math.max(16, Math.round(this.canvas.clientWidth * ratio)), Math.max(9, Math.round(this.canvas.clientHeight * ratio))];
+  }
+
+  // Plans the next step of sharpening, in the place of the one that was planned before.
+  rest(step) {
+    clearTimeout(this.resting);
+    cancelIdle(this.restingIdle);
+    this.resting = step ? setTimeout(() => { this.restingIdle = whenIdle(step); }, 60) : undefined;
+  }
+  // All pixels, and then samples of them: 16 to a pixel where the first picture took little time, else 4.
+  sharpen(scale) {
+    const begin = performance.now(), [width, height] = this.size(1);
+    if (scale < 1 || this.full_ms === 0) {
+      this.stage.draw("centers", this.camera, width, height, this.weights, this.environment, this.stops, this.overlay);
+      this.stage.wait();
+      const took = performance.now() - begin;
+      this.full_ms = this.full_ms === 0 ? took : 0.5 * (this.full_ms + took);
+    }
+    this.sample(0, this.full_ms < 40 ? 16 : 4);
+  }
+  sample(number, samples) {
+    this.rest(() => {
+      const begin = performance.now();
+      this.stage.refine(this.camera, this.weights, this.environment, this.stops, number, samples, this.overlay);
+      if (number === 0) {
+        this.stage.wait();
+        this.full_ms = 0.5 * (this.full_ms + performance.now() - begin);
+      }
+      if (number + 1 < samples) this.sample(number + 1, samples);
+    });
+  }
+
+  // What is seen under a place of the window: null beside the mesh. `angle` is the aspecular angle to the light.
+  pointAt(clientX, clientY) {
+    const box = this.canvas.getBoundingClientRect();
+    const seen = this.stage.surfaceAt(this.camera, box.width / box.height, (clientX - box.left) / box.width,
+                                      (clientY - box.top) / box.height);
+    if (!seen) return null;
+    const mirror = mirrored(seen), { toward } = this.light;
+    return { ...seen, mirror, angle: angleBetween(mirror, toward), lit: dotted(seen.normal, toward) > 0 };
+  }
+}
