@@ -1,6 +1,7 @@
 #include "brdf/disc_light.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <mutex>
@@ -220,6 +221,21 @@ std::shared_ptr<const DiscLobeTable> disc_lobe_table(double exponent, double rad
   const std::scoped_lock lock(mutex);
   if (tables.size() >= kMost) tables.clear();
   return tables.emplace(key, std::move(made)).first->second;
+}
+
+DiscLobeTable::Node disc_lobe(double exponent, double radius_rad, double chord) {
+  struct Known {
+    double exponent = 0, radius_rad = 0;
+    std::shared_ptr<const DiscLobeTable> table;
+  };
+  constexpr std::size_t kKnown = 32;
+  thread_local std::array<Known, kKnown> known;
+  thread_local std::size_t next = 0;
+  for (const Known& one : known)
+    if (one.table != nullptr && one.exponent == exponent && one.radius_rad == radius_rad) return one.table->at(chord);
+  Known& one = known[next++ % kKnown];
+  one = {exponent, radius_rad, disc_lobe_table(exponent, radius_rad)};
+  return one.table->at(chord);
 }
 
 }  // namespace goniochrome::brdf

@@ -70,5 +70,8 @@ DiscLobeTable::Node disc_lobe_node(double exponent, double radius_rad, double ch
 
 // The table of this lobe and disc. Tables are kept, so that asking again costs nothing. Any number of threads.
 std::shared_ptr<const DiscLobeTable> disc_lobe_table(double exponent, double radius_rad);
+// What that table has at a chord. Each thread remembers the tables that it asked for last, so that asking at every
+// point of a picture waits for no other thread.
+DiscLobeTable::Node disc_lobe(double exponent, double radius_rad, double chord);
 
 }  // namespace goniochrome::brdf

@@ -234,19 +234,20 @@ bool RayScene::blocked(const Float3& origin, const Float3& direction, float dist
 
 unsigned RayScene::blocked(const Fan& fan) const {
   RTCIntersectContext context = incoherent();
+  if (fan.narrow) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   RTCRay8 rays{};
   alignas(32) int valid[8];
   unsigned result = 0;
   for (unsigned i = 0; i < 8; ++i) {
     bool trace = (fan.wanted >> i & 1U) != 0;
-    if (trace && floor_distance(fan.origin, {fan.x[i], fan.y[i], fan.z[i]}) < kInfinite) {
+    if (trace && floor_distance(fan.origin, {fan.x[i], fan.y[i], fan.z[i]}) < fan.reach) {
       result |= 1U << i;
       trace = false;
     }
     valid[i] = trace ? -1 : 0;
     rays.org_x[i] = fan.origin.x, rays.org_y[i] = fan.origin.y, rays.org_z[i] = fan.origin.z;
     rays.dir_x[i] = fan.x[i], rays.dir_y[i] = fan.y[i], rays.dir_z[i] = fan.z[i];
-    rays.tfar[i] = kInfinite;
+    rays.tfar[i] = fan.reach;
     rays.mask[i] = ~0U;
   }
   rtcOccluded8(valid, state_->scene.get(), &context, &rays);

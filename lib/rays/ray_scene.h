@@ -59,6 +59,10 @@ struct Fan {
   Float3 origin;
   alignas(32) float x[8], y[8], z[8];  // directions, unit
   unsigned wanted = 0;
+  // Where blocked() stops to look, in local units.
+  float reach = std::numeric_limits<float>::infinity();
+  // Whether the rays go nearly the same way, as those to a lamp do: they are then traced together, which is faster.
+  bool narrow = false;
 };
 
 // Immutable; every function may be called from any thread, and what it returns does not depend on the number of threads

@@ -293,5 +293,48 @@ TEST(DiscLamps, PathsDrawSoftShadows) {
   EXPECT_NEAR(half, kPi * 0.2 * (0.5 * std::cos(45 * kDegree) + 0.5 * cap), 0.02 * whole);
 }
 
+// Whether samples tell what of a disc is hidden or what is free is decided by eight fixed rays, and must not show: all
+// along the border of a shadow the light is that of the part of the disc above the wall's edge, summed on a grid. The
+// control is the light that these few rays would tell by themselves.
+TEST(DiscLamps, SoftShadowsAreUnbiasedAllAlong) {
+  const mesh::Mesh mesh = floor_and_edge();
+  paint::LobeFit paint;
+  paint.diffuse = {0.2, 0.2, 0.2};
+  Scene scene = lit(paint, lamp(45, 0, 10));
+  scene.mesh = &mesh;
+  PathScene paths;
+  paths.scene = &scene;
+  const auto transport = Transport::create(paths);
+  ASSERT_TRUE(transport.ok());
+  PathOptions options;
+  options.bounces = 0;
+  const Light& light = scene.lights[0];
+  const Vec3 level = normalized(Vec3{light.direction.x, 0, light.direction.z});
+  const double whole = kPi * 0.2 * std::cos(45 * kDegree);
+  constexpr int kGrid = 200, kBatches = 1000;
+  double worst_of_few = 0;
+  for (const double x : {-0.35, -0.25, -0.12, -0.04, 0.06, 0.13, 0.22, 0.3}) {
+    double above = 0, all = 0, few = 0, of_few = 0;
+    const auto free = [&](const Vec3& d) { return d.y * (2 - x) >= 2 * dot(d, level); };
+    for (int i = 0; i < kGrid; ++i) {
+      for (int j = 0; j < kGrid; ++j) {
+        const Vec3 d = disc_direction(light, (i + 0.5) / kGrid, (j + 0.5) / kGrid);
+        all += d.y, above += free(d) ? d.y : 0;
+      }
+    }
+    for (int j = 0; j < 8; ++j) {
+      const Vec3 d = disc_direction(light, 0.5, (j + 0.5) / 8);
+      of_few += d.y, few += free(d) ? d.y : 0;
+    }
+    const rays::Float3 eye = transport->rays().local({x, 1.5, 0.1}), down = {0, -1, 0};
+    const rays::Spot spot = transport->rays().spot(transport->rays().closest(eye, down), eye, down);
+    const PathEstimate shown = path_estimate(*transport, options, spot, {0, 1, 0}, kBatches, 7);
+    // Four standard deviations, and what the grid leaves of an edge that cuts one cell in each of its rows.
+    EXPECT_NEAR(shown.radiance.x, whole * above / all, 4 * std::sqrt(shown.covariance[0]) + 0.003 * whole) << x;
+    worst_of_few = std::max(worst_of_few, std::abs(few / of_few - above / all));
+  }
+  EXPECT_GT(worst_of_few, 0.05);
+}
+
 }  // namespace
 }  // namespace goniochrome::render

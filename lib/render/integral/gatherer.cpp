@@ -206,7 +206,7 @@ color::Rgb Gatherer::lobes_toward_disc(const Light& light, bool mapped) const {
         f += m.share * lobe_over_disc(lobe, m.direction, light, mapped);
         continue;
       }
-      const brdf::DiscLobeTable::Node of = brdf::disc_lobe_table(lobe.exponent, radius)->at(chord);
+      const brdf::DiscLobeTable::Node of = brdf::disc_lobe(lobe.exponent, radius, chord);
       f += m.share *
            ((of.cosine[0] * irradiance * in_l + of.cosine[1] * cos_r * let_in(cos_r)) * lobe.directional_diffuse +
             (of.plain[0] * above * coat_l + of.plain[1] * coat_r) * lobe.gloss);

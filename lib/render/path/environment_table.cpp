@@ -68,19 +68,29 @@ EnvironmentTable::EnvironmentTable(const envmap::Environment& environment)
   for (int row = 0; row < height_; ++row)
     add_guide(&columns_[static_cast<std::size_t>(row) * (static_cast<std::size_t>(width_) + 1)], width_, kColumnGuide,
               column_guide_);
+  lay_shares();
 }
 
 // As the tables have it, whose floats round: what is drawn and what at() says are the same.
-double EnvironmentTable::texel_share(int column, int row) const {
-  const auto r = static_cast<std::size_t>(row);
-  const float* cumulative = &columns_[r * (static_cast<std::size_t>(width_) + 1)] + column;
-  return (rows_[r + 1] - rows_[r]) * (static_cast<double>(cumulative[1]) - cumulative[0]);
+void EnvironmentTable::lay_shares() {
+  const auto width = static_cast<std::size_t>(width_);
+  shares_.reserve(width * static_cast<std::size_t>(height_));
+  for (std::size_t row = 0; row < static_cast<std::size_t>(height_); ++row) {
+    const float* cumulative = &columns_[row * (width + 1)];
+    for (std::size_t column = 0; column < width; ++column)
+      shares_.push_back(static_cast<float>((rows_[row + 1] - rows_[row]) *
+                                           (static_cast<double>(cumulative[column + 1]) - cumulative[column])));
+  }
+  for (int i = 0; environment_->grid().is_cube() && i <= width_; ++i)
+    edges_.push_back(environment_->grid().face_coordinate(i));
 }
 
-double EnvironmentTable::density_at(double column, double at_row, int row) const {
-  return environment_->layout() == envmap::Environment::Layout::kLatLong
-             ? row_solid_angle_[static_cast<std::size_t>(row)]
-             : environment_->solid_angle_density(column, at_row);
+// SphereGrid::solid_angle_density() of a direction within this texel: 1 + s^2 + t^2 of a unit direction is one over the
+// square of its component along the face's axis, which is the largest.
+double EnvironmentTable::cube_density(const Float3& direction, int column, int row) const {
+  const double along = std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
+  const auto c = static_cast<std::size_t>(column), r = static_cast<std::size_t>(row % width_);
+  return (edges_[c + 1] - edges_[c]) * (edges_[r + 1] - edges_[r]) * (along * along * along);
 }
 
 // Of a lat-long map directions are even in solid angle within a texel: in longitude and in the cosine from the pole.
@@ -103,23 +113,36 @@ EnvironmentTable::Place EnvironmentTable::place(double u, double v) const {
             row,
             row_solid_angle_[r]};
   }
+  if (!edges_.empty()) {
+    const auto c = static_cast<std::size_t>(column), t = static_cast<std::size_t>(row % width_);
+    const double across = edges_[c] + right * (edges_[c + 1] - edges_[c]),
+                 along = edges_[t] + down * (edges_[t + 1] - edges_[t]);
+    const Float3 direction = rays::float3(envmap::cube_direction(row / width_, across + 1, along + 1, 2));
+    return {direction, column, row, cube_density(direction, column, row)};
+  }
   return {rays::float3(environment_->direction_at(column + right, row + down)), column, row,
           environment_->solid_angle_density(column + right, row + down)};
 }
 
+LightSample EnvironmentTable::light(const Float3& direction, int column, int row, double density) const {
+  const auto at = static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column);
+  return {direction, density > 0 ? static_cast<float>(shares_[at] / density) : 0.0F,
+          texel_radiance(*environment_, column, row)};
+}
+
 LightSample EnvironmentTable::light(const Place& place) const {
-  if (!(place.density > 0)) return {};
-  return {place.direction, static_cast<float>(texel_share(place.column, place.row) / place.density),
-          texel_radiance(*environment_, place.column, place.row)};
+  return place.density > 0 ? light(place.direction, place.column, place.row, place.density) : LightSample{};
 }
 
 LightSample EnvironmentTable::at(const Float3& direction) const {
   const envmap::GridPosition at = environment_->grid().position(rays::vec3(direction));
   const int column = std::clamp(static_cast<int>(at.column), 0, width_ - 1);
   const int row = std::clamp(static_cast<int>(at.row), 0, height_ - 1);
-  const double density = density_at(at.column, at.row, row);
-  return {direction, density > 0 ? static_cast<float>(texel_share(column, row) / density) : 0.0F,
-          texel_radiance(*environment_, column, row)};
+  const double density = !edges_.empty() ? cube_density(direction, column, row)
+                         : environment_->layout() == envmap::Environment::Layout::kLatLong
+                             ? row_solid_angle_[static_cast<std::size_t>(row)]
+                             : environment_->solid_angle_density(at.column, at.row);
+  return light(direction, column, row, density);
 }
 
 color::Rgb EnvironmentTable::radiance(const Float3& direction) const {

@@ -44,8 +44,9 @@ class EnvironmentTable {
   double extent_sr() const { return extent_sr_; }
 
  private:
-  double texel_share(int column, int row) const;
-  double density_at(double column, double at_row, int row) const;
+  LightSample light(const rays::Float3& direction, int column, int row, double density) const;
+  void lay_shares();
+  double cube_density(const rays::Float3& direction, int column, int row) const;
 
   const envmap::Environment* environment_;
   int width_ = 0, height_ = 0;
@@ -53,6 +54,8 @@ class EnvironmentTable {
   std::vector<double> row_solid_angle_, row_cosine_;  // of a lat-long map: of a texel, and of the rows' upper edges
   std::vector<double> rows_;                          // cumulative share of the rows, height + 1
   std::vector<float> columns_;                        // cumulative share within each row, width + 1 each
+  std::vector<float> shares_;                         // of all light, by texel, row by row
+  std::vector<double> edges_;                         // of a cube: of the cells of a face, -1..1; width + 1
   // For each of equal steps of a number the interval where a search for it begins.
   std::vector<std::uint16_t> row_guide_, column_guide_;
 };

@@ -133,7 +133,7 @@ bool LobeKernels::toward_disc(const Light& light, bool tabled, float* values) co
     for (std::size_t j = 0; j < columns_.exponents.size(); ++j) {
       const double exponent = columns_.exponents[j];
       const brdf::DiscLobeTable::Node of =
-          tabled ? brdf::disc_lobe_table(exponent, radius)->at(chord) : brdf::disc_lobe_node(exponent, radius, chord);
+          tabled ? brdf::disc_lobe(exponent, radius, chord) : brdf::disc_lobe_node(exponent, radius, chord);
       values[LobeColumns::flake(j)] += static_cast<float>(share * (of.cosine[0] * passing + of.cosine[1] * cos_r));
       values[LobeColumns::gloss(j)] += static_cast<float>(share * (of.plain[0] * coat_l + of.plain[1] * coat_r));
     }

@@ -14,15 +14,59 @@ namespace {
 
 // Points that one thread takes at a time.
 constexpr std::size_t kTogether = 64;
-// The batches of the first round: two are the fewest that tell a variance.
-constexpr int kFirstBatches = 2;
-// A point's own variance counts as its batches less one, that of its neighborhood as so many.
+// The fans of the first round. A fan is the least that can be traced, and most points need no more than a few.
+constexpr int kFirstFans = 2;
+// No round draws more than so many times the fans that a point has.
+constexpr int kGrowth = 3;
+// A point's own variance counts by its freedom, that of its neighborhood as so many.
 constexpr double kNeighborhood = 4;
 constexpr int kReach = 2;  // pixels to each side of the neighborhood
 
 std::uint64_t seed_of(std::uint64_t seed, std::uint64_t point, int batch) {
   return mixed(mixed(seed, point), static_cast<std::uint64_t>(batch));
 }
+
+// Of a round of so many fans at a point: as few sequences as tell a variance, each of as many directions as it takes,
+// for the longer a sequence is, the more evenly it covers what the point sees.
+struct Round {
+  static constexpr int kSequences = 2;
+  int length = 1;  // of each sequence, in fans: a power of two
+
+  // No more than asked for, but at least one fan of each sequence.
+  explicit Round(int fans) {
+    while (2 * length * kSequences <= fans) length *= 2;
+  }
+  int fans() const { return kSequences * length; }
+};
+
+// Independent estimates of what a point shows, gathered round by round. A round counts by its fans, whatever it found.
+class Gathered {
+ public:
+  // The means over the sequences of a round.
+  void add(const Round& round, const color::Rgb (&means)[Round::kSequences]) {
+    Estimates of_round;
+    for (const color::Rgb& mean : means) of_round.add(mean);
+    const double before = fans_, added = round.fans(), all = before + added, share = added / all;
+    mean_ = (1 - share) * mean_ + share * of_round.mean();
+    const Covariance now = of_round.covariance();
+    for (std::size_t k = 0; k < now.size(); ++k) {
+      const double old = before > 0 ? (1 - share) * (1 - share) * of_fan_[k] / before : 0;
+      of_fan_[k] = all * (old + share * share * now[k] / Round::kSequences);
+    }
+    fans_ += round.fans(), freedom_ += Round::kSequences - 1;
+  }
+
+  const color::Rgb& mean() const { return mean_; }
+  int fans() const { return fans_; }
+  int freedom() const { return freedom_; }  // of the covariance
+  // Of the mean, times fans(): what a fan counts.
+  const Covariance& of_fan() const { return of_fan_; }
+
+ private:
+  color::Rgb mean_;
+  Covariance of_fan_{};
+  int fans_ = 0, freedom_ = 0;
+};
 
 class Picture {
  public:
@@ -59,7 +103,7 @@ class Picture {
   }
 
   PathPicture draw() {
-    std::vector<int> more(points_.size(), kFirstBatches);
+    std::vector<int> more(points_.size(), kFirstFans);
     double noise = 0;
     bool reached = false;
     while (true) {
@@ -131,9 +175,9 @@ class Picture {
   }
 
   struct State {
-    Estimates sums;
+    Gathered sums;
     color::Rgb sure;
-    double needed = 0;  // batches that bring the noise of the neighborhood to the tolerance
+    double needed = 0;  // fans that bring the noise of the neighborhood to the tolerance
     bool certain = false;
     bool hidden = false;          // most of its light: all that is left is summed, from which the base is taken
     std::uint16_t uncertain = 0;  // samples of the pixel whose light is not known without paths
@@ -142,9 +186,6 @@ class Picture {
   std::size_t place(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(surface_.gbuffer.width) + static_cast<std::size_t>(x);
   }
-
-  // Most of a floor is easy, so that its first round is half as long.
-  static int batch_of(const PathPoint& point) { return point.floor ? kFan : kBatch; }
 
   // Chunks are taken in a scattered order, so that a picture that time cut short is noisy evenly.
   void sample(const std::vector<int>& more) {
@@ -174,19 +215,24 @@ class Picture {
     return step;
   }
 
-  void sample(std::size_t i, int batches) {
-    if (count_ > 1) return sample_spread(i, batches);
+  void sample(std::size_t i, int fans) {
+    if (count_ > 1) return sample_spread(i, fans);
     State& state = states_[i];
-    PathPoint& point = points_[i];
+    const PathPoint& point = points_[i];
     const Gbuffer& g = surface_.gbuffer;
     const rays::Spot spot = spot_at(transport_.rays(), surface_, point.x, point.y);
     const PointTransport at(transport_, options_of(i), spot, rays::float3(g.to_viewer(point.x, point.y)));
     state.certain = at.certain();
     state.sure = at.sure();
     if (state.certain) return;
-    const auto count = static_cast<std::uint32_t>(batch_of(point));
-    for (int k = 0; k < batches; ++k)
-      state.sums.add(at.part_of_batch(seed_of(request_.seed, i, state.sums.count()), 0, count));
+    const Round round(fans);
+    color::Rgb means[Round::kSequences];
+    for (int k = 0; k < round.fans(); ++k) {
+      const int which = k / round.length, of_sequence = k % round.length;
+      means[which] +=
+          (1.0 / round.length) * at.fan_of(sequence(i, which, round), kFan * static_cast<std::uint32_t>(of_sequence));
+    }
+    state.sums.add(round, means);
   }
 
   // What a sample of a pixel sees, which is something.
@@ -205,22 +251,28 @@ class Picture {
     return {transport_, options_of(i), spot, -direction};
   }
 
-  // Each batch is shared by two samples of the pixel, half of it each, or where the floor alone is seen is half as long
-  // and of one sample. The batches take the samples in turn from one drawn by chance: the mean over all batches has the
-  // right expectation, and the differences between samples count as noise while not all have been seen.
-  void sample_spread(std::size_t i, int batches) {
+  // The sequences of a round at a point; those of other rounds are others.
+  Sequence sequence(std::size_t i, int which, const Round& round) const {
+    return Sequence(seed_of(request_.seed, i, states_[i].sums.fans() + which),
+                    static_cast<std::uint32_t>(kFan * round.length));
+  }
+
+  // The fans take the samples of the pixel in turn from one drawn by chance: the mean over all fans has the right
+  // expectation, and the differences between samples count as noise while not all have been seen.
+  void sample_spread(std::size_t i, int fans) {
     State& state = states_[i];
-    const PathPoint& point = points_[i];
-    const auto count = static_cast<unsigned>(count_), shared = point.floor ? 1U : 2U;
-    const unsigned covered = coverage_.any[place(point.x, point.y)];
-    const bool first_time = state.sums.count() == 0;
+    const Round round(fans);
+    const auto count = static_cast<unsigned>(count_);
+    const unsigned covered = coverage_.any[place(points_[i].x, points_[i].y)];
+    const bool first_time = state.sums.fans() == 0;
     if (first_time) state.uncertain = 0, state.sure = {};
-    std::vector<color::Rgb> values(static_cast<std::size_t>(batches));
-    const auto first = static_cast<unsigned>(state.sums.count());
-    const auto start = static_cast<unsigned>(mixed(request_.seed, i) >> 32);
+    const unsigned first =
+        (static_cast<unsigned>(mixed(request_.seed, i) >> 32) + static_cast<unsigned>(state.sums.fans())) % count;
+    color::Rgb means[Round::kSequences];
     for (unsigned sample = 0; sample < count; ++sample) {
       if ((covered >> sample & 1U) == 0) continue;
-      if (!first_time && (state.uncertain >> sample & 1U) == 0) continue;
+      auto fan = static_cast<int>((sample + count - first) % count);
+      if (!first_time && (fan >= round.fans() || (state.uncertain >> sample & 1U) == 0)) continue;
       rays::Spot spot;
       const PointTransport at = transport_at(i, sample, spot);
       if (first_time) {
@@ -228,32 +280,27 @@ class Picture {
         if (!at.certain()) state.uncertain = static_cast<std::uint16_t>(state.uncertain | 1U << sample);
       }
       if (at.certain()) continue;
-      for (unsigned k = 0; k < values.size(); ++k) {
-        for (unsigned half = 0; half < shared; ++half) {
-          if ((start + shared * (first + k) + half) % count != sample) continue;
-          const std::uint64_t seed = seed_of(request_.seed, i, static_cast<int>(first + k));
-          values[k] += (1.0 / shared) * at.part_of_batch(seed, kFan * half, kFan);
-        }
+      for (; fan < round.fans(); fan += static_cast<int>(count)) {
+        const int which = fan / round.length, of_sequence = fan % round.length;
+        means[which] +=
+            (1.0 / round.length) * at.fan_of(sequence(i, which, round), kFan * static_cast<std::uint32_t>(of_sequence));
       }
     }
     state.certain = state.uncertain == 0;
-    if (state.certain) return;
-    for (const color::Rgb& value : values) state.sums.add(value);
+    if (!state.certain) state.sums.add(round, means);
   }
 
   // Radiance, error and noise of every point from its sums; the 95th percentile of the noise.
   double judge() {
-    std::vector<Covariance> own(points_.size());
     parallel_for(points_.size(), 1024, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        own[i] = states_[i].sums.covariance();
         points_[i].radiance = states_[i].sure + states_[i].sums.mean();
         if (states_[i].hidden) points_[i].radiance += -1.0 * base_at(points_[i]);
-        points_[i].samples = batch_of(points_[i]) * states_[i].sums.count();
+        points_[i].samples = kFan * states_[i].sums.fans();
       }
     });
     parallel_for(points_.size(), 1024, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) judge(i, own);
+      for (std::size_t i = begin; i < end; ++i) judge(i);
     });
     return worse_percentile([this](std::size_t i) { return points_[i].noise_de00; });
   }
@@ -268,13 +315,14 @@ class Picture {
 
   // Few estimates tell little of their variance, and a point none of whose rays was blocked knows nothing of its
   // neighbor's shadow: the mean over the neighborhood stands in.
-  void judge(std::size_t i, const std::vector<Covariance>& own) {
+  void judge(std::size_t i) {
     PathPoint& point = points_[i];
     State& state = states_[i];
     point.covariance = {};
     point.noise_de00 = state.needed = 0;
-    const int n = state.sums.count();
-    if (n < 2) return;
+    const int fans = state.sums.fans();
+    if (fans == 0) return;
+    const Covariance& own = state.sums.of_fan();
     Covariance around{};
     color::Rgb light;
     int count = 0;
@@ -282,19 +330,20 @@ class Picture {
       for (int x = std::max(0, point.x - kReach); x <= std::min(surface_.gbuffer.width - 1, point.x + kReach); ++x) {
         const std::int32_t number = number_[place(x, y)];
         const auto other = static_cast<std::size_t>(number);
-        if (number < 0 || other == i || states_[other].sums.count() < 2) continue;
+        if (number < 0 || other == i || states_[other].sums.fans() == 0) continue;
         ++count;
         light += points_[other].radiance;
-        for (std::size_t k = 0; k < 6; ++k) around[k] += own[other][k];
+        for (std::size_t k = 0; k < 6; ++k) around[k] += states_[other].sums.of_fan()[k];
       }
     }
+    const double freedom = state.sums.freedom();
     for (std::size_t k = 0; k < 6; ++k)
       point.covariance[k] =
-          ((n - 1) * own[i][k] + kNeighborhood * (around[k] + own[i][k]) / (count + 1)) / (n - 1 + kNeighborhood) / n;
+          (freedom * own[k] + kNeighborhood * (around[k] + own[k]) / (count + 1)) / (freedom + kNeighborhood) / fans;
     point.noise_de00 = noise_of(i, point.radiance, point.covariance);
     // How many samples a point is to get is decided by its neighbors alone: were its own sums asked, it would stop
     // where they happen to be bright, and the mean would be too.
-    if (count == 0) around = own[i], light = point.radiance, count = 1;
+    if (count == 0) around = own, light = point.radiance, count = 1;
     for (double& element : around) element /= count;
     const double excess = noise_of(i, (1.0 / count) * light, around) / tolerance();
     state.needed = excess * excess;
@@ -312,18 +361,18 @@ class Picture {
 
   double tolerance() const { return request_.tolerance_de00 > 0 ? request_.tolerance_de00 : 1e-9; }
 
-  // How many batches each point is to get next: as many as its neighborhood's noise asks for, at most as many as it
-  // has. The twentieth part of the points that would need most get no more than the rest. Where the neighborhoods are
-  // content but the picture is not, all is scaled by what it lacks. Whether there are any.
+  // How many fans each point is to get next: as many as its neighborhood's noise asks for, at most so many
+  // times what it has. The twentieth part of the points that would need most get no more than the rest. Where the
+  // neighborhoods are content but the picture is not, all is scaled by what it lacks. Whether there are any.
   bool plan(double noise, std::vector<int>& more) const {
     const double typical = worse_percentile([this](std::size_t i) { return states_[i].needed; });
-    const double limit = request_.most_samples / kBatch, lacking = noise / tolerance();
+    const double limit = request_.most_samples / kFan, lacking = noise / tolerance();
     for (double scale = 1;; scale *= 1.1 * std::max(1.0, lacking * lacking)) {
       const double most = std::min(std::ceil(1.05 * scale * typical), limit);
       bool any = false, limited = true;
       for (std::size_t i = 0; i < points_.size(); ++i) {
-        const double n = states_[i].sums.count(), wanted = std::min(std::ceil(scale * states_[i].needed), most) - n;
-        more[i] = static_cast<int>(std::clamp(wanted, 0.0, n));
+        const double n = states_[i].sums.fans(), wanted = std::min(std::ceil(scale * states_[i].needed), most) - n;
+        more[i] = static_cast<int>(std::clamp(wanted, 0.0, kGrowth * n));
         any = any || more[i] > 0;
         limited = limited && (n == 0 || states_[i].needed == 0 || n >= limit);
       }

@@ -130,6 +130,31 @@ TEST(PathPicture, ItsMeanIsTheTruthWhateverIsSampledMore) {
   EXPECT_LT(sigma, 0.005 * fine);
 }
 
+// Many samples of a point are drawn from long sequences, which cover what it sees more evenly than as many by
+// themselves: to the same noise it takes fewer of them. The control is the number that the spread of short ones asks
+// for.
+TEST(PathPicture, LongSequencesNeedFewerSamples) {
+  const auto stage = ball_in_a_cup();
+  const VisibleSurface surface = seen_from_above(*stage, 16, 12);
+  PathRequest request;
+  request.options.bounces = 2;
+  request.white_luminance = 1.2;
+  request.tolerance_de00 = 0.25;
+  const PathPicture picture = path_picture(*stage->transport, surface, nullptr, request);
+  ASSERT_TRUE(picture.reached);
+  double drawn = 0, short_ones = 0;
+  for (const PathPoint& point : picture.points) {
+    const rays::Spot spot = spot_at(stage->transport->rays(), surface, point.x, point.y);
+    const PathEstimate estimate =
+        path_estimate(*stage->transport, request.options, spot, surface.gbuffer.to_viewer(point.x, point.y), 64, 5);
+    const double noise = noise_de00(estimate.radiance, estimate.covariance, request.white_luminance);
+    if (!(point.noise_de00 > 0)) continue;
+    drawn += point.samples, short_ones += 64 * kBatch * std::pow(noise / point.noise_de00, 2);
+  }
+  ASSERT_GT(drawn, 0);
+  EXPECT_LT(drawn, 0.9 * short_ones);
+}
+
 TEST(PathPicture, AConvexShapeIsDrawnWithoutASample) {
   PathStage stage(sphere_mesh(64), {glossy()});
   stage.environment = even_environment();

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "base/angles.h"
@@ -100,52 +101,81 @@ void PointTransport::add_lights() {
     const double sine = rays::dot(spot_.shading, rays::float3(light.direction));
     if (sine <= -std::sin(light.radius_rad)) continue;
     const color::Rgb whole = reflect(painted_.toward_disc(light, !lamp.is_placed), kPi * light.white);
-    constexpr std::uint32_t kProbes = 16;
-    std::uint32_t blocked = 0, above = 0;
-    const Sequence sequence(mixed(0x1A3B, i), kProbes);
-    for (std::uint32_t k = 0; k < kProbes && !open_; ++k) {
-      const std::array<double, 4> numbers = sequence.point(k, 0);
-      const Transport::LampSample sample = Transport::drawn_from(lamp, numbers[0], numbers[1]);
-      if (!(rays::dot(sample.direction, spot_.shading) > 0)) continue;
-      ++above;
-      if (transport_.rays_->blocked(spot_.start, sample.direction, sample.reach)) ++blocked;
+    const Sequence::Set probes = Sequence(mixed(0x1A3B, i), kFan).set(0);
+    rays::Fan fan = lamp_fan(lamp);
+    for (std::uint32_t k = 0; k < kFan && !open_; ++k) {
+      const std::array<double, 4> numbers = probes.point(k);
+      aim(fan, k, Transport::drawn_from(lamp, numbers[0], numbers[1]).direction);
     }
+    const int above = std::popcount(fan.wanted);
+    const int blocked = above > 0 ? std::popcount(transport_.rays_->blocked(fan)) : 0;
     const bool hidden = 2 * blocked <= above;
     if (hidden != correction_) sure_ += (correction_ ? -1.0 : 1.0) * whole;
     if (!open_) lamps_.push_back({lamp, hidden});
   }
 }
 
+rays::Fan PointTransport::lamp_fan(const Transport::SeenLamp& lamp) const {
+  constexpr double kNarrow_rad = 0.2;
+  rays::Fan fan;
+  fan.origin = spot_.start;
+  fan.reach = lamp.reach;
+  fan.narrow = lamp.light.radius_rad < kNarrow_rad;
+  return fan;
+}
+
+void PointTransport::aim(rays::Fan& fan, std::uint32_t ray, const Float3& direction) const {
+  fan.x[ray] = direction.x, fan.y[ray] = direction.y, fan.z[ray] = direction.z;
+  if (rays::dot(direction, painted_.normal()) > 0) fan.wanted |= 1U << ray;
+}
+
 // What lamps that are discs add to sure(), as the mean over samples. A place on the disc is drawn and, where the paint
 // has lobes narrower than the disc, a direction of the lobes, which may meet it too; together they count the light once
 // (the balance heuristic, [Veach1995] 3.1). By places alone, gloss beside a wide lamp would be specks: few of them lie
-// in a narrow lobe, and those are bright.
+// in a narrow lobe, and those are bright. The paint is asked for those rays alone that add anything.
 color::Rgb PointTransport::lamp_shadows(const Sequence& sequence, std::uint32_t begin, std::uint32_t count,
                                         bool* any_blocked) const {
   constexpr std::uint32_t kSet = 60;         // that nothing else draws from
   constexpr float kLeastNarrowShare = 0.1F;  // below it, what is reflected hardly changes across the disc
   const auto lamps = static_cast<std::uint32_t>(lamps_.size());
   color::Rgb sum;
+  if (!(painted_.lobes_weight() > 0)) return sum;
   for (std::uint32_t k = 0; k < lamps; ++k) {
     const Lamp& lamp = lamps_[k];
     const Light& light = lamp.seen.light;
-    const double half_sine = std::sin(0.5 * light.radius_rad), extent_sr = 4 * kPi * half_sine * half_sine;
+    const double extent_sr = 2 * kPi * lamp.seen.versine;
     const bool by_lobes = painted_.narrow_share(extent_sr) > kLeastNarrowShare;
-    const auto add = [&](const Reflection& reflection, const color::Rgb& sent) {
-      const bool blocked = transport_.rays_->blocked(spot_.start, reflection.direction, lamp.seen.reach);
-      if (any_blocked != nullptr && blocked) *any_blocked = true;
-      if (blocked == lamp.hidden) sum += (blocked ? -1.0 : 1.0) * reflect(reflection.f_cos, sent);
+    const Sequence::Set places = sequence.set(kSet + k), lobes = sequence.set(kSet + lamps + k);
+    // Calls visit(what the paint shows) for the rays of a fan that add anything.
+    const auto visit = [&](const rays::Fan& fan, const auto& visit_one) {
+      if (fan.wanted == 0) return;
+      const unsigned blocked = transport_.rays_->blocked(fan);
+      if (any_blocked != nullptr && blocked != 0) *any_blocked = true;
+      for (unsigned left = fan.wanted & (lamp.hidden ? blocked : ~blocked); left != 0; left &= left - 1) {
+        const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
+        const Reflection reflection = painted_.at({fan.x[i], fan.y[i], fan.z[i]});
+        if (reflection.pdf > 0) visit_one(reflection);
+      }
     };
-    for (std::uint32_t i = begin; i < begin + count; ++i) {
-      const std::array<double, 4> numbers = sequence.point(i, kSet + k);
-      const Transport::LampSample sample = Transport::drawn_from(lamp.seen, numbers[0], numbers[1]);
-      const Reflection reflection = painted_.at(sample.direction);
-      const double share = by_lobes ? 1 / (1 + extent_sr * reflection.pdf) : 1;
-      if (reflection.pdf > 0) add(reflection, share * sample.light);
-      if (!by_lobes) continue;
-      const Reflection lobe = painted_.drawn(numbers[2], numbers[3], sequence.point(i, kSet + lamps + k)[0]);
-      if (lobe.pdf > 0 && light.meets(rays::vec3(lobe.direction)))
-        add(lobe, (extent_sr / (1 + extent_sr * lobe.pdf)) * light.radiance());
+    for (std::uint32_t first = begin; first < begin + count; first += kFan) {
+      rays::Fan to_places = lamp_fan(lamp.seen), to_lobes = to_places;
+      for (std::uint32_t i = 0; i < kFan; ++i) {
+        const std::array<double, 4> numbers = places.point(first + i);
+        aim(to_places, i, Transport::drawn_from(lamp.seen, numbers[0], numbers[1]).direction);
+        if (!by_lobes) continue;
+        const Float3 direction = painted_.direction(numbers[2], numbers[3], lobes.point(first + i)[0]);
+        aim(to_lobes, i, direction);
+        if (!light.meets(rays::vec3(direction))) to_lobes.wanted &= ~(1U << i);
+      }
+      const color::Rgb whole = Transport::drawn_from(lamp.seen, 0, 0).light;  // the same for every place
+      const double sign = lamp.hidden ? -1.0 : 1.0;
+      visit(to_places, [&](const Reflection& place) {
+        const double share = by_lobes ? 1 / (1 + extent_sr * place.pdf) : 1;
+        sum += sign * reflect(place.f_cos, share * whole);
+      });
+      visit(to_lobes, [&](const Reflection& lobe) {
+        sum += sign * reflect(lobe.f_cos, (extent_sr / (1 + extent_sr * lobe.pdf)) * light.radiance());
+      });
     }
   }
   return sum;
@@ -338,11 +368,10 @@ LightShares PointTransport::mirrored(const Sequence& sequence, std::uint32_t beg
   return shares;
 }
 
-LightShares PointTransport::batch_shares(std::uint64_t seed, std::uint32_t begin, std::uint32_t count,
-                                         bool* any_blocked) const {
+LightShares PointTransport::shares_of(const Sequence& sequence, std::uint32_t begin, std::uint32_t count,
+                                      bool* any_blocked) const {
   if (any_blocked != nullptr) *any_blocked = mirror_samples_ > 0 || transport_.spectral_ != nullptr;
   if (certain_) return {};
-  const Sequence sequence(seed, kBatch);
   LightShares sum;
   if (transport_.spectral_ != nullptr) {
     sum.direct = transport_.spectral_->shown(transport_, options_, spot_, to_viewer_, sequence, begin, count);
@@ -350,12 +379,13 @@ LightShares PointTransport::batch_shares(std::uint64_t seed, std::uint32_t begin
   }
   sum.direct += lamp_shadows(sequence, begin, count, any_blocked);
   if (painted_.lobes_weight() > 0) {
+    const Sequence::Set numbers = sequence.set(0);
     for (std::uint32_t first = begin; first < begin + count; first += kFan) {
       Ray rays[kFan];
       rays::Fan fan;
       fan.origin = spot_.start;
       for (std::uint32_t i = 0; i < 8; ++i) {
-        rays[i] = drawn_ray(sequence.point(first + i, 0), i);
+        rays[i] = drawn_ray(numbers.point(first + i), i);
         fan.x[i] = rays[i].direction.x, fan.y[i] = rays[i].direction.y, fan.z[i] = rays[i].direction.z;
         if (rays[i].above && rays::dot(rays[i].direction, mesh_axis_) >= mesh_cosine_) fan.wanted |= 1U << i;
       }
@@ -384,8 +414,7 @@ LightShares PointTransport::batch_shares(std::uint64_t seed, std::uint32_t begin
       for (std::uint32_t i = begin; i < begin + count; ++i) sum.direct += emitter_sample(sequence.point(i, 1));
   }
   const std::uint32_t mirrors = mirror_samples_ > 0 ? std::max(1U, mirror_samples_ * count / kBatch) : 0;
-  if (mirrors > 0)
-    sum += static_cast<double>(count) / mirrors * mirrored(Sequence(mixed(seed, 0x4D), kBatch), begin, mirrors);
+  if (mirrors > 0) sum += static_cast<double>(count) / mirrors * mirrored(sequence.other(0x4D), begin, mirrors);
   return (1.0 / count) * sum;
 }
 

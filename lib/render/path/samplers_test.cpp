@@ -77,6 +77,40 @@ TEST(Samplers, TheEnvironmentsDensityAgreesWithWhatIsDrawn) {
   EXPECT_NEAR(integral / environment.flux().x, 1, 0.02);  // relative spread of the ratio .7: five deviations are .025
 }
 
+// The density of a cube's texels is that of their grid at every direction: of cubes whose texels lie on the edges of
+// faces too, whose outer cells are half as wide. The control takes all cells to be of one size.
+TEST(Samplers, TheDensityOnACubeIsThatOfItsGrid) {
+  const auto value = [](const Vec3& d) { return Vec3{1.1 + d.x, d.y > 0.5 ? 5.0 : 0.2, 1 + d.z * d.z}; };
+  const envmap::CubeMap map = cube_of(8, value);
+  image::Image strip{8, 48, 3, map.texels, {}};
+  const auto edges = envmap::Environment::from_cube_edges(strip, envmap::Environment::BadPixels::kError, "edges");
+  ASSERT_TRUE(edges.ok());
+  TestNumbers next(11);
+  double control = 0;
+  for (const envmap::Environment& environment : {envmap::Environment::from_cube(map, "cube"), *edges}) {
+    const EnvironmentTable table(environment);
+    const Vec3 flux = environment.flux();
+    const double total = (flux.x + flux.y + flux.z) / 3;
+    for (int i = 0; i < 2000; ++i) {
+      const LightSample drawn = table.drawn(next(), next());
+      const envmap::GridPosition at = environment.grid().position(rays::vec3(drawn.direction));
+      const int column = static_cast<int>(at.column), row = static_cast<int>(at.row);
+      const float* rgb = environment.radiance(column, row);
+      const double mean = (static_cast<double>(rgb[0]) + rgb[1] + rgb[2]) / 3,
+                   of_texel = mean * environment.solid_angle(column, row) / total,
+                   density = environment.solid_angle_density(at.column, at.row), size = environment.width();
+      if (std::abs(at.column - std::round(at.column)) < 1e-3 || std::abs(at.row - std::round(at.row)) < 1e-3) continue;
+      // Shares are cumulated in floats.
+      EXPECT_NEAR(table.at(drawn.direction).pdf, of_texel / density, 1e-4 * of_texel / density);
+      EXPECT_NEAR(drawn.pdf, of_texel / density, 1e-4 * of_texel / density);
+      const Vec3 d = rays::vec3(drawn.direction);
+      const double along = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+      control = std::max(control, std::abs(4 / (size * size) * along * along * along / density - 1));
+    }
+  }
+  EXPECT_GT(control, 0.1);
+}
+
 paint::LobeFit glossy() {
   paint::LobeFit paint;
   paint.diffuse = {0.1, 0.05, 0.02};

@@ -58,22 +58,40 @@ constexpr std::uint32_t scrambled(std::uint32_t x, std::uint32_t seed) {
   return x;
 }
 
+// The first points of the sequence before they are scrambled, which are all that most paths ask for.
+constexpr std::uint32_t kTabled = 256;
+using Coordinates = std::array<std::uint32_t, 4>;
+
+constexpr Coordinates coordinates(std::uint32_t index) {
+  Coordinates x{};
+  for (std::size_t d = 0; d < x.size(); ++d)
+    for (std::size_t k = 0; k < kBits && index >> k != 0; ++k)
+      if ((index >> k & 1U) != 0) x[d] ^= kColumns[d][k];
+  return x;
+}
+
+constexpr std::array<Coordinates, kTabled> kFirst = [] {
+  std::array<Coordinates, kTabled> first{};
+  for (std::uint32_t i = 0; i < kTabled; ++i) first[i] = coordinates(i);
+  return first;
+}();
+
 }  // namespace
+
+Sequence::Set::Set(std::uint64_t seed, std::uint32_t set, std::uint32_t mask) : mask_(mask) {
+  const std::uint64_t own = mixed(seed, set), other = mixed(own, 1), third = mixed(own, 2);
+  seeds_ = {static_cast<std::uint32_t>(own), static_cast<std::uint32_t>(own >> 32), static_cast<std::uint32_t>(other),
+            static_cast<std::uint32_t>(other >> 32)};
+  order_ = static_cast<std::uint32_t>(third);
+}
 
 // Each set takes its points in an order of its own, itself an Owen scramble of the index, which leaves every block of
 // 2^k points together.
-std::array<double, 4> Sequence::point(std::uint32_t index, std::uint32_t set) const {
-  const std::uint64_t own = mixed(seed_, set), other = mixed(own, 1), third = mixed(own, 2);
-  const std::uint32_t seeds[5] = {static_cast<std::uint32_t>(own), static_cast<std::uint32_t>(own >> 32),
-                                  static_cast<std::uint32_t>(other), static_cast<std::uint32_t>(other >> 32),
-                                  static_cast<std::uint32_t>(third)};
-  const std::uint32_t shuffled = reversed(scrambled(reversed(index), seeds[4])) & mask_;
+std::array<double, 4> Sequence::Set::point(std::uint32_t index) const {
+  const std::uint32_t shuffled = reversed(scrambled(reversed(index), order_)) & mask_;
+  const Coordinates x = shuffled < kTabled ? kFirst[shuffled] : coordinates(shuffled);
   std::array<double, 4> point{};
-  for (std::size_t d = 0; d < 4; ++d) {
-    std::uint32_t x = 0;
-    for (std::size_t k = 0; shuffled >> k != 0; ++k) x ^= (0U - (shuffled >> k & 1U)) & kColumns[d][k];
-    point[d] = reversed(scrambled(x, seeds[d])) * 0x1p-32;
-  }
+  for (std::size_t d = 0; d < 4; ++d) point[d] = reversed(scrambled(x[d], seeds_[d])) * 0x1p-32;
   return point;
 }
 

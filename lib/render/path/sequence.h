@@ -20,10 +20,25 @@ constexpr std::uint64_t mixed(std::uint64_t a, std::uint64_t b) {
 // independent of each other, and so are sequences of different seeds.
 class Sequence {
  public:
+  // One set, whose scramble is made once for all of its points.
+  class Set {
+   public:
+    std::array<double, 4> point(std::uint32_t index) const;
+
+   private:
+    friend class Sequence;
+    Set(std::uint64_t seed, std::uint32_t set, std::uint32_t mask);
+    std::array<std::uint32_t, 4> seeds_;
+    std::uint32_t order_, mask_;
+  };
+
   // `points`: of each set, a power of two; beyond them they come again. The fewer, the faster.
   explicit Sequence(std::uint64_t seed, std::uint32_t points = 1024) : seed_(seed), mask_(points - 1) {}
 
-  std::array<double, 4> point(std::uint32_t index, std::uint32_t set) const;
+  std::array<double, 4> point(std::uint32_t index, std::uint32_t set) const { return this->set(set).point(index); }
+  Set set(std::uint32_t number) const { return {seed_, number, mask_}; }
+  // Another sequence of as many points.
+  Sequence other(std::uint64_t number) const { return Sequence(mixed(seed_, number), mask_ + 1); }
 
  private:
   std::uint64_t seed_;

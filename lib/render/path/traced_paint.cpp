@@ -346,7 +346,7 @@ Float3 PaintedPoint::toward_disc(const Light& light, bool tabled) const {
     for (int j = 0; j < count_; ++j) {
       const double exponent = lobes_[j].exponent;
       const brdf::DiscLobeTable::Node of =
-          tabled ? brdf::disc_lobe_table(exponent, radius)->at(chord) : brdf::disc_lobe_node(exponent, radius, chord);
+          tabled ? brdf::disc_lobe(exponent, radius, chord) : brdf::disc_lobe_node(exponent, radius, chord);
       f = f + (share * (of.cosine[0] * wide + of.cosine[1] * cos_r)) * lobes_[j].directional_diffuse +
           (share * (of.plain[0] * coat_l + of.plain[1] * coat_r)) * lobes_[j].gloss;
     }

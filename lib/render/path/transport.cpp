@@ -87,6 +87,7 @@ Result<Transport> Transport::create(const PathScene& path_scene) {
   }
   GONIO_ASSIGN(transport.emitters_, Emitters::create(*transport.rays_, path_scene.emission));
   transport.lights_ = scene.lights;
+  for (const Light& light : scene.lights) transport.seen_.emplace_back(light);
   if (scene.reflection.k != color::component_wise().k) transport.reflection_ = &scene.reflection;
   return transport;
 }
@@ -120,8 +121,8 @@ double Transport::ground_pdf(const Float3& from, const Float3& direction) const 
 // Directions even by the cosine. Light from the ground counts by what the mesh leaves of it.
 double Transport::open_share(const Spot& spot) const {
   if (!rays_->has_floor() && !rays_->any_above(spot.start, spot.shading, 0)) return 1;
-  constexpr std::uint32_t kDirections = 16;
-  const Sequence sequence(0x09E4, kDirections);
+  constexpr std::uint32_t kDirections = 8;
+  const Sequence::Set sequence = Sequence(0x09E4, kDirections).set(0);
   const rays::Frame frame = rays::frame_about(spot.shading);
   double open = 0;
   for (std::uint32_t first = 0; first < kDirections; first += kFan) {
@@ -129,7 +130,7 @@ double Transport::open_share(const Spot& spot) const {
     fan.origin = spot.start;
     Float3 directions[kFan];
     for (std::uint32_t i = 0; i < kFan; ++i) {
-      const std::array<double, 4> numbers = sequence.point(first + i, 0);
+      const std::array<double, 4> numbers = sequence.point(first + i);
       const auto across = static_cast<float>(std::sqrt(numbers[0])),
                  phi = 2 * rays::kFloatPi * static_cast<float>(numbers[1]);
       directions[i] = (across * std::cos(phi)) * frame.x + (across * std::sin(phi)) * frame.y +
@@ -214,24 +215,34 @@ struct Transport::Next {
   Hit hit;
 };
 
+Transport::SeenLamp::SeenLamp(const Light& of) : light(of) {
+  const double half = std::sin(0.5 * light.radius_rad);
+  const Vec3 other = std::abs(light.direction.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  across = normalized(cross(other, light.direction)), along = cross(light.direction, across);
+  versine = 2 * half * half;
+}
+
 Transport::SeenLamp Transport::seen_lamp(std::size_t lamp, const Float3& from) const {
-  SeenLamp seen{lights_[lamp]};
-  if (!seen.light.place) return seen;
+  if (!lights_[lamp].place) return seen_[lamp];
   const Vec3 position = rays_->world(from);
-  const double distance = length(seen.light.place->position - position);
-  seen.light = light_at(seen.light, position), seen.is_placed = true;
+  const double distance = length(lights_[lamp].place->position - position);
+  SeenLamp seen(light_at(lights_[lamp], position));
+  seen.is_placed = true;
   const double surface = distance * (1 - std::sin(seen.light.radius_rad));
   seen.reach = kShort * static_cast<float>(rays_->scale() * surface);
   return seen;
 }
 
+// disc_direction() and the solid angle by pi sin^2 of the radius, which is 1/cos^2 of half of it.
 Transport::LampSample Transport::drawn_from(const SeenLamp& lamp, double u, double v) {
   const Light& light = lamp.light;
   const color::Rgb whole = kPi * light.white;
   if (!(light.radius_rad > 0)) return {rays::float3(light.direction), lamp.reach, whole};
-  const double cos_half = std::cos(0.5 * light.radius_rad);
-  // The solid angle by pi sin^2 of the radius is 1/cos^2 of half of it.
-  return {rays::float3(disc_direction(light, u, v)), lamp.reach, (1 / (cos_half * cos_half)) * whole};
+  const double versine = lamp.versine * u, ring = std::sqrt(versine * (2 - versine));
+  const float phi = 2 * rays::kFloatPi * static_cast<float>(v);
+  const Vec3 direction = (1 - versine) * light.direction + (ring * static_cast<double>(std::cos(phi))) * lamp.across +
+                         (ring * static_cast<double>(std::sin(phi))) * lamp.along;
+  return {rays::float3(direction), lamp.reach, (2 / (2 - lamp.versine)) * whole};
 }
 
 Transport::LampSample Transport::drawn_lamp(const Float3& from, double choice, double v) const {

@@ -142,6 +142,11 @@ class Transport {
     Light light;
     float reach = std::numeric_limits<float>::infinity();
     bool is_placed = false;
+    // Of a disc: two unit vectors across its direction, and 1 - cos of its radius.
+    Vec3 across, along;
+    double versine = 0;
+
+    explicit SeenLamp(const Light& light);
   };
   SeenLamp seen_lamp(std::size_t lamp, const rays::Float3& from) const;
   // A direction to a lamp, drawn evenly from its disc by numbers in [0,1), and the radiance times solid angle of the
@@ -174,6 +179,7 @@ class Transport {
   const envmap::Environment* mirrored_ = nullptr;  // in its place in mirrors
   Emitters emitters_;
   std::vector<Light> lights_;
+  std::vector<SeenLamp> seen_;  // those that have no place, as every point sees them; of the others only the number
   const color::ReflectionOperator* reflection_ = nullptr;  // null: channel by channel
   // Of a scene with spectra: all that its points show. Paints, emitters and lights are then gray, and what directions
   // and lamps are drawn by.
@@ -200,15 +206,26 @@ class PointTransport {
   }
   // The same by shares. `any_blocked`, unless null, is told whether any ray of the samples was blocked.
   LightShares batch_shares(std::uint64_t seed, std::uint32_t first = 0, std::uint32_t count = kBatch,
-                           bool* any_blocked = nullptr) const;
+                           bool* any_blocked = nullptr) const {
+    return shares_of(Sequence(seed, kBatch), first, count, any_blocked);
+  }
+  // The mean of kFan samples of any sequence, from the number `first` on, which is a multiple of kFan.
+  color::Rgb fan_of(const Sequence& sequence, std::uint32_t first) const {
+    return shares_of(sequence, first, kFan, nullptr).sum();
+  }
 
  private:
   struct Ray;
+  LightShares shares_of(const Sequence& sequence, std::uint32_t first, std::uint32_t count, bool* any_blocked) const;
   void narrow_to_mesh();
   void add_lights();
   void add_mirror();
   double drawn_pdf(const rays::Float3& direction, const Reflection& reflection) const;
   Ray drawn_ray(const std::array<double, 4>& numbers, std::uint32_t of_fan) const;
+  // Rays to a lamp, none of which is aimed yet.
+  rays::Fan lamp_fan(const Transport::SeenLamp& lamp) const;
+  // Sends a ray of a fan there if that is above the horizon.
+  void aim(rays::Fan& fan, std::uint32_t ray, const rays::Float3& direction) const;
   color::Rgb lamp_shadows(const Sequence& sequence, std::uint32_t begin, std::uint32_t count, bool* any_blocked) const;
   LightShares shown(const Ray& ray, bool blocked, const Sequence& sequence, std::uint32_t index) const;
   LightShares shown_over_ground(const Ray& ray, const rays::Hit& hit, const Sequence& sequence,

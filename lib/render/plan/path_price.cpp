@@ -15,7 +15,7 @@ double path_frame_ms(const ProbeSetting& setting, const std::vector<RayPoint>& p
                      double visible_points) {
   constexpr std::size_t kMost = 192;
   constexpr int kBatches = 6;
-  constexpr double kFewest = 2;
+  constexpr double kFewest = 1;  // the first round
   if (points.empty() || !(tolerance_de00 > 0)) return 0;
   const std::size_t step = std::max<std::size_t>(1, points.size() / kMost), count = points.size() / step;
   PathOptions options;
@@ -36,9 +36,9 @@ double path_frame_ms(const ProbeSetting& setting, const std::vector<RayPoint>& p
     }
   });
   const double batch_ms = 1000 * clock.elapsed_s() / (static_cast<double>(count) * kBatches);
-  const double most = std::max(kFewest, std::ceil(1.05 * percentile_95(needed)));
+  const double most = std::max(kFewest, 1.05 * percentile_95(needed));
   double batches = 0;
-  for (const double n : needed) batches += std::clamp(std::ceil(n), kFewest, most);
+  for (const double n : needed) batches += std::clamp(n, kFewest, most);
   return visible_points * batches / static_cast<double>(count) * batch_ms;
 }
 

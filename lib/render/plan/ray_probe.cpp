@@ -76,10 +76,10 @@ RayProbe RayProbe::traced(const ProbeSetting& setting, const std::vector<RayPoin
   if (points.empty()) return probe;
   probe.floor_points_ = setting.without_floor != nullptr ? std::min(kFloorPoints, points.size()) : 0;
   probe.add_points(points, base, std::min(kFirstPoints, points.size()));
+  const std::size_t first_points = probe.size();
   const Stopwatch clock;
   probe.trace(setting, std::vector<int>(probe.size(), kFirstFans));
-  probe.passed_ms_ =
-      1000 * clock.elapsed_s() * kBatch / (kFan * kFirstFans * static_cast<double>(probe.size() + probe.floor_points_));
+  const double first_round_ms = 1000 * clock.elapsed_s();
   if (probe.free() && probe.floor_points_ == 0) return probe;
   // Where nothing is sharp yet, more points help those percentiles that few points decide.
   for (const bool all : {false, true}) {
@@ -97,17 +97,27 @@ RayProbe RayProbe::traced(const ProbeSetting& setting, const std::vector<RayPoin
     std::fill(more.begin() + static_cast<std::ptrdiff_t>(before), more.end(), kFirstFans);
     probe.trace(setting, more);
   }
+  probe.time(setting, first_round_ms / static_cast<double>(first_points + probe.floor_points_));
+  return probe;
+}
 
+// What the first round took is that of its points and of their fans. A few points are traced twice more without light
+// that is passed on, in few fans and in many, which tells one from the other.
+void RayProbe::time(const ProbeSetting& setting, double of_point_ms) {
+  constexpr int kFew = 2, kMany = 10;
   RayProbe plain;
-  for (std::size_t i = 0; i < std::min(probe.size(), kTimed); ++i)
-    plain.points_.push_back({probe.points_[i].at, {}, {}, {}});
+  for (std::size_t i = 0; i < std::min(size(), kTimed); ++i) plain.points_.push_back({points_[i].at, {}, {}, {}});
   ProbeSetting without = setting;
   without.bounces = 0;
-  const Stopwatch plain_clock;
-  plain.trace(without, std::vector<int>(plain.size(), kBatch / kFan));
-  probe.direct_ms_ =
-      std::min(probe.passed_ms_, 1000 * plain_clock.elapsed_s() / static_cast<double>(plain.points_.size()));
-  return probe;
+  const auto traced_ms = [&](int fans) {
+    const Stopwatch clock;
+    plain.trace(without, std::vector<int>(plain.size(), fans));
+    return 1000 * clock.elapsed_s() / static_cast<double>(plain.size());
+  };
+  const double few_ms = traced_ms(kFew), many_ms = traced_ms(kMany);
+  direct_ms_ = std::clamp((many_ms - few_ms) / (kMany - kFew), 0.0, of_point_ms / kFirstFans);
+  point_ms_ = std::clamp(few_ms - kFew * direct_ms_, 0.0, of_point_ms);
+  passed_ms_ = std::max(direct_ms_, (of_point_ms - point_ms_) / kFirstFans);
 }
 
 // Up to so many of them, those that are there already among them.
@@ -304,17 +314,18 @@ RayCost RayProbe::cost_of(Light Point::*of, std::size_t count, const RayEffects&
     for (const LightShares& fan : light.fans) values.add(fan.shown(effects));
     const color::Rgb shown = light.sure.shown(effects) + mean_of(light.fans, 0, 1).shown(effects);
     const double one = noise_de00(points_[i].base + shown, values.covariance(), white_) / tolerance;
-    needed.push_back(light.certain ? 0 : one * one * kFan / kBatch);
+    needed.push_back(light.certain ? 0 : one * one);
   }
   const double most = std::max(kFewest, std::ceil(1.05 * percentile_95(needed)));
-  double batches = 0;
+  double fans = 0;
   for (std::size_t i = 0; i < count; ++i)
-    batches += (points_[i].*of).certain ? 0 : std::clamp(std::ceil(needed[i]), kFewest, most);
+    fans += (points_[i].*of).certain ? 0 : std::clamp(std::ceil(needed[i]), kFewest, most);
   const auto n = static_cast<double>(count);
   cost.traced_share = static_cast<double>(traced) / n;
-  cost.samples = kBatch * groups * batches / n;
-  cost.most_samples = kBatch * groups * most;
-  cost.ms = groups * visible_points * batches / n * (effects.self || effects.bounce ? passed_ms_ : direct_ms_);
+  cost.samples = kFan * groups * fans / n;
+  cost.most_samples = kFan * groups * most;
+  const double of_fan_ms = effects.self || effects.bounce ? passed_ms_ : direct_ms_;
+  cost.ms = visible_points * (groups * fans / n * of_fan_ms + samples * point_ms_);
   return cost;
 }
 

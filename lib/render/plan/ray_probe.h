@@ -104,6 +104,7 @@ class RayProbe {
   void add_points(const std::vector<RayPoint>& points, const std::vector<color::Rgb>& base, std::size_t count);
   void trace(const ProbeSetting& setting, const std::vector<int>& more);
   void refine(const ProbeSetting& setting);
+  void time(const ProbeSetting& setting, double of_point_ms);
   Change change(std::size_t point, const Comparison& comparison) const;
   std::vector<Change> changes(const Comparison& comparison) const;
   std::size_t count_for(const Comparison& comparison) const;
@@ -119,7 +120,8 @@ class RayProbe {
   std::size_t floor_points_ = 0;  // the first of them
   double white_ = 1, visible_points_ = 0;
   std::size_t blocked_ = 0;
-  double passed_ms_ = 0, direct_ms_ = 0;  // of a batch, with light passed on and without
+  // Of a fan, with light passed on and without, and of a point apart from its fans.
+  double passed_ms_ = 0, direct_ms_ = 0, point_ms_ = 0;
 };
 
 }  // namespace goniochrome::render
