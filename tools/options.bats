@@ -9,13 +9,14 @@ setup() {
 }
 
 # options TOOL: one line for each option that takes a value: its name; `required` or `-`; and `bounded` where it is a
-# number with two bounds, `checked` where it is another number or a choice, else `free`.
+# number with two bounds, `checked` where it is another number or a choice, else `free`; and a value that it takes, if it is a
+# choice, else x.
 options() {
   "$1" --generate=man | sed 's/\\-/-/g; s/\\f[BIR]//g' | awk '
     /^\.TP/ { head = 1; next }
     head && /^(-[a-z], )?--[a-z]/ { name = $0; sub(/^-., /, "", name); split(name, word, " "); name = word[1]; value = word[2]; head = 0; next }
     name != "" && value != "" {
-      print name, /The option is required/ ? "required" : "-", /The value is [^.]*from -?[0-9.]+ to / ? "bounded" : /The value is (one of |.* or more\.|.* or less\.)/ ? "checked" : "free"
+      print name, /The option is required/ ? "required" : "-", /The value is [^.]*from -?[0-9.]+ to / ? "bounded" : /The value is (one of |.* or more\.|.* or less\.)/ ? "checked" : "free", match($0, /one of [^ ,.]+/) ? substr($0, RSTART + 7, RLENGTH - 7) : "x"
     }
     { name = ""; head = 0 }'
 }
@@ -36,9 +37,9 @@ options() {
 @test "a value that is no choice or out of the domain is a usage error that says what is right" {
   checked=0
   for tool in $tools; do
-    required=$(options "$tool" | awk '$2 == "required" { print $1 "=x" }')
-    while read -r option _ kind; do
+    while read -r option _ kind _; do
       [ "$kind" != free ] || continue
+      required=$(options "$tool" | awk -v asked="$option" '$2 == "required" && $1 != asked { print $1 "=" $4 }')
       values=(wrong '')
       [ "$kind" = checked ] || values+=(1e299 -1e299)
       for value in "${values[@]}"; do

@@ -1,4 +1,4 @@
-// Facets are drawn among those that the viewer sees [Heitz 2018]: the facets are stretched to those of slope 1, whose
+// Facets are drawn among those that the viewer sees [Heitz2018]: the facets are stretched to those of slope 1, whose
 // visible part is that of a hemisphere, drawn as a disc, and stretched back. The density of a facet h of slope a is
 // then G1(wo) D(h) (wo.h)/cos_o, and that of the light which it mirrors, which turns by twice the angle of h,
 //
