@@ -3,9 +3,9 @@
 //   f cos_i cos_o = F(wi.h) D(h) G(wi,wo) / 4,   D = a^2 / (pi cos^4 t (a^2 + tan^2 t)^2),   t the angle of h
 //
 // with the masking G = 1/(1 + L(wi) + L(wo)), L = (sqrt(1 + a^2 tan^2) - 1)/2, of heights that belong together
-// [Heitz2014]. Both scales of a coat are such terms of slopes a of their own; all that a coat reads or sends is therefore
-// a sum of two values of one table over log a, weighted by the shares of the two scales. A reading takes them at the
-// angle of the meter, and each ring at its own mean of (wi.h)^2.
+// [Heitz2014]. Both scales of a coat are such terms of slopes a of their own; all that a coat reads or sends is
+// therefore a sum of two values of one table over log a, weighted by the shares of the two scales. A reading takes them
+// at the angle of the meter, and each ring at its own mean of (wi.h)^2.
 #include "brdf/rough_coat.h"
 
 #include <algorithm>
