@@ -199,7 +199,7 @@ refused() {
   refused 2 'holds no paint "rde": did you mean "red"? it holds red, green, white, bare' --mesh panels.obj $light -p paints.xml#rde
   refused 2 'holds 4 paints: write paints.xml#NAME' --mesh panels.obj $light -p paints.xml
   refused 2 'write PART=FILE.xml#PAINT' --mesh panels.obj $light --part paints.xml
-  refused 3 '"bare" has no lobes: fit it first, as in `fit-paint paints.xml' --mesh panels.obj $light -p paints.xml#bare
+  refused 3 '"bare" has no lobes: give --basis BASIS.xml to fit it here, or fit it first, as in `fit-paint paints.xml' --mesh panels.obj $light -p paints.xml#bare
   refused 3 'nowhere.xml' --mesh panels.obj $light -p nowhere.xml#red
 }
 
