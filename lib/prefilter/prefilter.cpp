@@ -14,6 +14,7 @@
 #include "prefilter/internal/harmonic_grid.h"
 #include "prefilter/internal/harmonics.h"
 #include "prefilter/internal/horizon_band.h"
+#include "prefilter/internal/local_sums.h"
 #include "prefilter/internal/mirror.h"
 #include "prefilter/internal/prefilter_cost.h"
 #include "prefilter/lobe_tree.h"
@@ -34,9 +35,11 @@ constexpr int kWideDegree = 512;
 // Such lobes have exponents below this. Down to a tolerance of 1e-6, plain harmonics need 280 degrees for 5.3 and 28
 // for 19, and fail again beyond 1e4, where the lobe is sharp and not bent.
 constexpr double kSharpestWide = 20;
-// The tolerance below which arcs take the place of kWideDegree degrees for exponent 1. In one room the bound left 4 of
-// 384 texels at 5e-5, 49 at 2e-5 and 77 at 1e-5; in another 0, 0 and 10.
-constexpr double kArcs = 2e-5;
+// The tolerance below which kWideDegree degrees do not serve exponent 1. In one room the bound left 4 of 384 texels at
+// 5e-5, 49 at 2e-5 and 77 at 1e-5; in another 0, 0 and 10.
+constexpr double kBent = 2e-5;
+// The tolerance below which arcs take the place of bands for it.
+constexpr double kArcs = 4e-6;
 // The same for exponent 0, whose arcs are themselves good to 2e-5 of the mean (theory: Arcs).
 constexpr double kArcsOfSteps = 5e-5;
 // The tolerance above which such harmonics serve exponents below 1. For 0.3 the bound left 14 of 96 texels at 1e-3, 16
@@ -106,10 +109,10 @@ LobePlan lobe_plan(const envmap::Environment& env, const PrefilterRequest& reque
   const bool arcs = arcs_serve(env, *plan.kernel, tolerance);
   if (plan.degree >= 0) return plan;
   plan.degree = 0;
-  const bool flat = plan.exponent < 1 && dynamic_cast<const CosineKernel*>(plan.kernel.get());
+  const bool bent = plan.exponent < 1 ? tolerance <= kBands : plan.exponent == 1 && tolerance < kBent;
   if (arcs && tolerance < kArcs) {
     plan.method = Method::kArcs;
-  } else if (flat && tolerance <= kBands && HorizonBand::serves(env)) {
+  } else if (bent && dynamic_cast<const CosineKernel*>(plan.kernel.get()) && HorizonBand::serves(env)) {
     plan.method = Method::kHorizon;
     plan.degree = kWideDegree;
   } else if (plan.kernel->edge().exists() && (plan.exponent >= 1 || arcs || tolerance > kFlatLobes) &&
@@ -117,7 +120,7 @@ LobePlan lobe_plan(const envmap::Environment& env, const PrefilterRequest& reque
     plan.method = Method::kBrightHarmonics;
     plan.degree = kWideDegree;
   } else {
-    plan.method = Method::kBlocks;
+    plan.method = LocalSums::serve(env, *plan.kernel, tolerance) ? Method::kLocal : Method::kBlocks;
   }
   return plan;
 }
@@ -186,6 +189,10 @@ class Workshop {
     if (!harmonics_) harmonics_.emplace(harmonics_of(env_, sharpest_->multipliers(degree_)));
     return *harmonics_;
   }
+  const LocalSums& local() {
+    if (!local_) local_.emplace(env_);
+    return *local_;
+  }
   const LobeTree& tree() {
     if (!tree_) tree_.emplace(fine());
     return *tree_;
@@ -220,6 +227,17 @@ class Workshop {
     return *angles_;
   }
   const envmap::Rotation& turn() const { return turn_; }
+  // Of the texels of a size, row by row, in the environment's frame.
+  std::vector<Vec3> directions(int size) const {
+    const envmap::SphereGrid texels = grid(size);
+    const std::size_t width = static_cast<std::size_t>(texels.width());
+    std::vector<Vec3> all(width * static_cast<std::size_t>(texels.height()));
+    parallel_for(all.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        all[i] = turn_.to_environment(texels.direction(static_cast<int>(i % width), static_cast<int>(i / width)));
+    });
+    return all;
+  }
 
  private:
   const envmap::Environment& env_;
@@ -234,6 +252,7 @@ class Workshop {
   std::optional<Harmonics> harmonics_, rest_;
   std::vector<Vec3> rest_rms_;
   std::optional<LobeTree> tree_;
+  std::optional<LocalSums> local_;
   std::unique_ptr<BrightTexels> bright_;
   std::optional<HorizonBand> band_;
   std::optional<GridAngles> angles_;
@@ -249,6 +268,12 @@ void for_each_texel(const envmap::SphereGrid& grid, const envmap::Rotation& turn
       body(turn.to_environment(grid.direction(static_cast<int>(i % width), static_cast<int>(i / width))),
            &values[3 * i]);
   });
+}
+
+// The share of a lobe that local sums leave out: a tenth of the tolerance at the floor, were it the brightest texel's.
+double left_out_by_local_sums(const Vec3& flux, double most, double tolerance) {
+  const double mean = std::max({flux.x, flux.y, flux.z}) / (4 * kPi);
+  return 0.1 * tolerance * kFloor * kFloor * (mean > 0 ? std::min(1.0, mean / most) : 1);
 }
 
 // How many taps keep the interpolation below a tenth of the tolerance at the floor: the largest value of a lobe map is
@@ -322,12 +347,19 @@ class WideLobe {
     const HorizonParts wide(kernel, shop_.rest_rms(), {}, band.side_rad());
     const envmap::SphereGrid grid = shop_.grid(plan_.size);
     std::vector<float> texels = sum(narrow.multipliers(), grid, shop_.angles(plan_.size));
-    for_each_texel(grid, shop_.turn(), texels, [&](const Vec3& d, float* rgb) {
-      const Vec3 smooth = {rgb[0], rgb[1], rgb[2]};
-      Vec3 value = smooth + kernel.scale() * band.sum(d, narrow.band());
-      if (!fits(value, kPeak * narrow.left_out())) value = smooth + kernel.scale() * band.sum(d, wide.band());
-      for (int c = 0; c < 3; ++c) rgb[c] = static_cast<float>(std::max(0.0, value[c]));
-    });
+    const std::vector<Vec3> directions = shop_.directions(plan_.size);
+    const auto smooth = [&](std::size_t i) { return Vec3{texels[3 * i], texels[3 * i + 1], texels[3 * i + 2]}; };
+    const std::vector<Vec3> sums = band.sums(directions, narrow.band());
+    std::vector<Vec3> values(directions.size()), dark_directions;
+    std::vector<std::size_t> dark;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      values[i] = smooth(i) + kernel.scale() * sums[i];
+      if (!fits(values[i], kPeak * narrow.left_out())) dark.push_back(i), dark_directions.push_back(directions[i]);
+    }
+    const std::vector<Vec3> wider = band.sums(dark_directions, wide.band());
+    for (std::size_t i = 0; i < dark.size(); ++i) values[dark[i]] = smooth(dark[i]) + kernel.scale() * wider[i];
+    for (std::size_t i = 0; i < values.size(); ++i)
+      for (int c = 0; c < 3; ++c) texels[3 * i + c] = static_cast<float>(std::max(0.0, values[i][c]));
     Vec3 least;
     for (int c = 0; c < 3; ++c) least[c] = kPeak * std::min(narrow.left_out()[c], wide.left_out()[c]);
     patch_up(texels, least);
@@ -403,6 +435,17 @@ bool is_named_by_exponent(const LobePlan& plan) {
   return !plan.kernel || dynamic_cast<const CosineKernel*>(plan.kernel.get());
 }
 
+std::vector<float> local_lobe(const LobePlan& plan, double tolerance, Workshop& shop) {
+  const std::vector<Vec3> directions = shop.directions(plan.size);
+  const std::vector<Vec3> lobe = shop.local().lobe(directions, CosineKernel(plan.exponent),
+                                                   left_out_by_local_sums(shop.flux(), shop.largest(), tolerance));
+  std::vector<float> values;
+  values.reserve(3 * lobe.size());
+  for (const Vec3& value : lobe)
+    for (int c = 0; c < 3; ++c) values.push_back(static_cast<float>(value[c]));
+  return values;
+}
+
 std::vector<float> lobe_by_plan(const LobePlan& plan, double tolerance, Workshop& shop) {
   switch (plan.method) {
     case Method::kMirror:
@@ -414,6 +457,8 @@ std::vector<float> lobe_by_plan(const LobePlan& plan, double tolerance, Workshop
     case Method::kArcs:
     case Method::kHorizon:
       return WideLobe(plan, tolerance, shop).values();
+    case Method::kLocal:
+      return local_lobe(plan, tolerance, shop);
     case Method::kBlocks:
       break;
   }
@@ -439,6 +484,8 @@ const char* method_name(Method method) {
       return "arcs+bright";
     case Method::kHorizon:
       return "harmonics+horizon";
+    case Method::kLocal:
+      return "local sums";
     case Method::kBlocks:
       return "blocks";
     case Method::kMirror:

@@ -81,39 +81,40 @@ void add_report(cli::ToolSpec& spec) {
        "make one mip-mapped cube of the studio, turned by a quarter"},
       {"prefilter-envmap --basis testdata/b5.basis.xml --tolerance 1e-4 --explain testdata/studio.exr -o fine.env.exr",
        "show the method, the error and the time of each lobe before the work starts"}};
-  spec.report = {{"lobes[].exponent", "exponent of the lobe; \"mirror\" for the environment itself"},
-                 {"lobes[].size", "texels along a face"},
-                 {"lobes[].method", "harmonics, harmonics+bright, harmonics+horizon, arcs+bright, blocks or overlaps"},
-                 {"lobes[].cached", "whether the lobe came from the cache"},
-                 {"lobes[].degree", "degree of the harmonics"},
-                 {"lobes[].storage", "half or float"},
-                 {"lobes[].predicted_time_s", "time that was expected"},
-                 {"lobes[].time_s", "time that it took; the first lobe of a method also pays for its tables"},
-                 {"lobes[].predicted_error", "relative error that was allowed for, rounding included"},
-                 {"lobes[].lookup_error", "relative error that a bilinear look-up between texels typically adds"},
-                 {"lobes[].max_rel_error", "largest relative error of the verified texels; null without --verify"},
-                 {"lobes[].mean_rel_error", "mean relative error of the verified texels; null without --verify"},
-                 {"lobes[].verified_texels", "number of texels verified"},
-                 {"lobes[].energy_ratio", "flux of the lobe's map over the flux of the environment"},
-                 {"spots[].direction", "toward the middle of a bright spot: a unit vector"},
-                 {"spots[].radius_deg", "radius of its disc"},
-                 {"spots[].share", "part of it in the light of the environment"},
-                 {"layout", "how the maps lie: env, latlong, openexr or mip"},
-                 {"left_out[].exponent", "exponent that the paints name but do not need"},
-                 {"left_out[].share", "largest part that it has in the reflectance of any paint"},
-                 {"source.path", "the image"},
-                 {"source.layout", "lat-long, cube, cube with texel centers on the edges, or angular probe"},
-                 {"source.width", "texels across"},
-                 {"source.height", "texels down"},
-                 {"source.nan", "number of texels that were not a number and were set to zero"},
-                 {"source.infinite", "number of texels that were infinite and were set to zero"},
-                 {"source.negative", "number of texels that were negative and were set to zero"},
-                 {"source.out_of_gamut", "number of texels with a color beyond Rec.2020, which were clipped"},
-                 {"read_s", "time of reading"},
-                 {"filter_s", "time of filtering"},
-                 {"verify_s", "time of verifying"},
-                 {"write_s", "time of writing"},
-                 {"warnings[]", "what was replaced or is outside the tolerance"}};
+  spec.report = {
+      {"lobes[].exponent", "exponent of the lobe; \"mirror\" for the environment itself"},
+      {"lobes[].size", "texels along a face"},
+      {"lobes[].method", "harmonics, harmonics+bright, harmonics+horizon, arcs+bright, local sums, blocks or overlaps"},
+      {"lobes[].cached", "whether the lobe came from the cache"},
+      {"lobes[].degree", "degree of the harmonics"},
+      {"lobes[].storage", "half or float"},
+      {"lobes[].predicted_time_s", "time that was expected"},
+      {"lobes[].time_s", "time that it took; the first lobe of a method also pays for its tables"},
+      {"lobes[].predicted_error", "relative error that was allowed for, rounding included"},
+      {"lobes[].lookup_error", "relative error that a bilinear look-up between texels typically adds"},
+      {"lobes[].max_rel_error", "largest relative error of the verified texels; null without --verify"},
+      {"lobes[].mean_rel_error", "mean relative error of the verified texels; null without --verify"},
+      {"lobes[].verified_texels", "number of texels verified"},
+      {"lobes[].energy_ratio", "flux of the lobe's map over the flux of the environment"},
+      {"spots[].direction", "toward the middle of a bright spot: a unit vector"},
+      {"spots[].radius_deg", "radius of its disc"},
+      {"spots[].share", "part of it in the light of the environment"},
+      {"layout", "how the maps lie: env, latlong, openexr or mip"},
+      {"left_out[].exponent", "exponent that the paints name but do not need"},
+      {"left_out[].share", "largest part that it has in the reflectance of any paint"},
+      {"source.path", "the image"},
+      {"source.layout", "lat-long, cube, cube with texel centers on the edges, or angular probe"},
+      {"source.width", "texels across"},
+      {"source.height", "texels down"},
+      {"source.nan", "number of texels that were not a number and were set to zero"},
+      {"source.infinite", "number of texels that were infinite and were set to zero"},
+      {"source.negative", "number of texels that were negative and were set to zero"},
+      {"source.out_of_gamut", "number of texels with a color beyond Rec.2020, which were clipped"},
+      {"read_s", "time of reading"},
+      {"filter_s", "time of filtering"},
+      {"verify_s", "time of verifying"},
+      {"write_s", "time of writing"},
+      {"warnings[]", "what was replaced or is outside the tolerance"}};
   spec.see_also = {"fit-basis(1)", "render-osmesa(1)", "goniochrome-paint(5)", "goniochrome-theory(7)"};
 }
 
@@ -136,10 +137,11 @@ cli::ToolSpec tool_spec(Options& o) {
       "Every texel counts as a patch of constant radiance with its exact solid angle; a lat-long map is not resampled "
       "first. Several methods are used. Smooth lobes are filtered by zonal harmonics, with a proven bound on the "
       "degrees that are left out. Lobes that bend at the horizon are filtered by harmonics of all but the brightest "
-      "texels, which are convolved one by one; for the diffuse lobe at the smallest tolerances, sums along the arcs "
-      "that a hemisphere cuts from the rows take their place. Lobes of exponents below 1 end too steeply at the "
-      "horizon for harmonics alone, so the texels in a band beside the horizon are summed one by one as well. Very "
-      "sharp lobes are filtered by a walk over blocks of texels. --explain shows the choice for each lobe."};
+      "texels, which are convolved one by one. Lobes of exponents below 1 end too steeply at the horizon for harmonics "
+      "alone, and so does the diffuse lobe at small tolerances: the texels in a band beside the horizon are summed one "
+      "by one as well. For the diffuse lobe at the smallest tolerances, sums along the arcs that a hemisphere cuts "
+      "from the rows take their place. Very sharp lobes are sums over the texels that they reach, or walks over blocks "
+      "of texels where these are too many. --explain shows the choice for each lobe."};
   spec.inputs = {"IMAGE", "an HDR image, or six, one for each face of a cube; - or none is standard input", &o.images,
                  0, 6};
   add_options(spec, o);

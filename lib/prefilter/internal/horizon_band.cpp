@@ -30,17 +30,19 @@ HorizonBand::Row HorizonBand::row_of(const envmap::Environment& env, int row) {
 HorizonBand::HorizonBand(const envmap::Environment& env, const envmap::Clip& clip)
     : grid_(env.grid()), stride_(static_cast<std::size_t>(env.width()) + rows::kPadding) {
   const std::size_t width = static_cast<std::size_t>(env.width());
-  rgb_.resize(3 * stride_ * static_cast<std::size_t>(env.height()));
-  parallel_for(static_cast<std::size_t>(env.height()), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t row = begin; row < end; ++row)
-      for (std::size_t column = 0; column < stride_; ++column) {
-        const std::array<float, 3> left =
-            clip.left_of(env.radiance(static_cast<int>(column % width), static_cast<int>(row)));
-        std::copy(left.begin(), left.end(), &rgb_[3 * (row * stride_ + column)]);
-      }
-  });
-  if (!grid_.is_cube())
+  if (grid_.is_cube()) {
+    rgb_.resize(3 * stride_ * static_cast<std::size_t>(env.height()));
+    parallel_for(static_cast<std::size_t>(env.height()), 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t row = begin; row < end; ++row)
+        for (std::size_t column = 0; column < width; ++column) {
+          const std::array<float, 3> left = clip.left_of(env.radiance(static_cast<int>(column), static_cast<int>(row)));
+          std::copy(left.begin(), left.end(), &rgb_[3 * (row * stride_ + column)]);
+        }
+    });
+  } else {
+    strips_.emplace(env, clip);
     for (int row = 0; row < env.height(); ++row) rows_.push_back(row_of(env, row));
+  }
   for (std::size_t j = 0; j < stride_; ++j) {
     const double column = static_cast<double>(j % width);
     if (grid_.is_cube()) {
@@ -58,24 +60,38 @@ double HorizonBand::texels_beside(const envmap::Environment& env, double reach) 
   return 4 * kPi * (reach + 0.7 * across) / (across * across);
 }
 
-Vec3 HorizonBand::sum(const Vec3& d, const SecondIntegral& band) const {
-  if (band.reach == 0) return {};
-  double total[3] = {0, 0, 0};
-  if (grid_.is_cube())
-    add_faces(d, band, total);
-  else
-    add_rows(d, band, total);
-  return {total[0], total[1], total[2]};
+std::vector<Vec3> HorizonBand::sums(const std::vector<Vec3>& directions, const SecondIntegral& band) const {
+  if (band.reach == 0) return std::vector<Vec3>(directions.size());
+  if (strips_)
+    return strips_->sums(directions,
+                         [&](const StripMap::Seat& seat, Strips& strips) { weigh_rows(seat, band, strips); });
+  std::vector<Vec3> result(directions.size());
+  parallel_for(directions.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      double total[3] = {0, 0, 0};
+      add_faces(directions[i], band, total);
+      result[i] = {total[0], total[1], total[2]};
+    }
+  });
+  return result;
 }
 
 // At the polar angle of a row the cosine is A + B cos q, with q the difference of longitudes: the band is where cos q
 // lies between two bounds, on both sides of the direction. Columns run against the longitude.
-void HorizonBand::add_rows(const Vec3& d, const SecondIntegral& band, double total[3]) const {
+void HorizonBand::weigh_rows(const StripMap::Seat& seat, const SecondIntegral& band, Strips& strips) const {
   const int width = grid_.width(), height = grid_.height();
+  const Vec3& d = seat.d;
   const double row_rad = kPi / height, column_rad = 2 * kPi / width, across = std::hypot(d.x, d.z);
-  const double middle = (0.5 - std::atan2(d.x, d.z) / (2 * kPi)) * width - 0.5;  // the column that looks along d
-  thread_local std::vector<rows::LatLongBand> parts;
-  parts.clear();
+  const double middle = seat.column - 0.5;  // the column that looks along d
+  struct Run {
+    int row, begin, count;
+    std::size_t from;  // of its weights
+  };
+  thread_local std::vector<Run> runs;
+  thread_local std::vector<float> weights;
+  thread_local rows::CutTexels cut;
+  runs.clear(), cut.count = 0;
+  std::size_t used = 0;
   for (int row = 0; row < height; ++row) {
     const auto [ring, level, area] = rows_[static_cast<std::size_t>(row)];
     const double a = d.y * level, b = across * ring;
@@ -84,18 +100,16 @@ void HorizonBand::add_rows(const Vec3& d, const SecondIntegral& band, double tot
     if (a + b < -reach || a - b > reach) continue;
     const double near = b > 0 ? std::acos(std::clamp((reach - a) / b, -1.0, 1.0)) : 0;
     const double far = b > 0 ? std::acos(std::clamp((-reach - a) / b, -1.0, 1.0)) : kPi;
-    rows::LatLongBand at = {a,
-                            d.x * ring,
-                            d.z * ring,
-                            column_rad,
-                            -d.y * ring * row_rad,
-                            d.x * level * row_rad,
-                            d.z * level * row_rad,
-                            kLeastChange * row_rad,
-                            area,
-                            0,
-                            0,
-                            0};
+    rows::LatLongBand part = {a,
+                              d.x * ring,
+                              d.z * ring,
+                              column_rad,
+                              -d.y * ring * row_rad,
+                              d.x * level * row_rad,
+                              d.z * level * row_rad,
+                              kLeastChange * row_rad,
+                              area,
+                              0};
     // Columns first, first + 1, ..., around the row.
     const auto add = [&](double first, double last) {
       int begin = static_cast<int>(std::ceil(first));
@@ -103,10 +117,13 @@ void HorizonBand::add_rows(const Vec3& d, const SecondIntegral& band, double tot
       begin = ((begin % width) + width) % width;
       while (count > 0) {
         const int piece = std::min(count, width - begin);
-        at.column = static_cast<std::size_t>(begin);
-        at.first = static_cast<std::size_t>(row) * stride_ + at.column;
-        at.columns = static_cast<std::size_t>(piece);
-        parts.push_back(at);
+        const std::size_t column = static_cast<std::size_t>(begin);
+        part.columns = static_cast<std::size_t>(piece);
+        if (weights.size() < used + part.columns + rows::kPadding)
+          weights.resize(2 * (used + part.columns + rows::kPadding));
+        rows::lat_long_band_weights(&first_[column], &second_[column], part, band, weights.data(), used, cut);
+        runs.push_back({row, begin, piece, used});
+        used += part.columns;
         count -= piece, begin = 0;
       }
     };
@@ -120,7 +137,8 @@ void HorizonBand::add_rows(const Vec3& d, const SecondIntegral& band, double tot
     else
       add(middle + nearest, middle + farthest), add(middle - farthest, middle - nearest);
   }
-  rows::add_lat_long_bands(rgb_.data(), first_.data(), second_.data(), parts.data(), parts.size(), band, total);
+  rows::cut_band_weights(cut, band, weights.data());
+  for (const Run& run : runs) strips.add(run.row, run.begin, &weights[run.from], static_cast<std::size_t>(run.count));
 }
 
 // On a row of a face the cosine is (p + q s) / n with n^2 = m + s^2, so that |p + q s| is at most the reach times the

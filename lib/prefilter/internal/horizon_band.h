@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "base/angles.h"
 #include "envmap/environment.h"
 #include "prefilter/internal/horizon_table.h"
+#include "prefilter/internal/strip_map.h"
 
 namespace goniochrome::prefilter {
 
@@ -18,9 +20,10 @@ class HorizonBand {
 
   static bool serves(const envmap::Environment& env) { return env.layout() != envmap::SphereGrid::Layout::kAngular; }
 
-  // The integral of L times the function of the cosine to d whose second antiderivative is given. Over every texel the
-  // cosine is taken as linear: a texel of radius r that the horizon cuts errs by r/5 of itself or less.
-  Vec3 sum(const Vec3& d, const SecondIntegral& band) const;
+  // For each direction d the integral of L times the function of the cosine to d whose second antiderivative is given.
+  // Over every texel the cosine is taken as linear: a texel of radius r that the horizon cuts errs by r/5 of itself or
+  // less.
+  std::vector<Vec3> sums(const std::vector<Vec3>& directions, const SecondIntegral& band) const;
 
   // The width of a texel in the middle of the map.
   double side_rad() const { return grid_.is_cube() ? 2.0 / grid_.width() : kPi / grid_.height(); }
@@ -29,11 +32,12 @@ class HorizonBand {
   static double texels_beside(const envmap::Environment& env, double reach);
 
  private:
-  void add_rows(const Vec3& d, const SecondIntegral& band, double total[3]) const;
+  void weigh_rows(const StripMap::Seat& seat, const SecondIntegral& band, Strips& strips) const;
   void add_faces(const Vec3& d, const SecondIntegral& band, double total[3]) const;
 
   envmap::SphereGrid grid_;
-  std::vector<float> rgb_;  // rows of stride_ texels; the first of a row follow its last once more
+  std::optional<StripMap> strips_;  // of a lat-long map
+  std::vector<float> rgb_;          // of a cube, in rows of stride_ texels
   std::size_t stride_ = 0;
   struct Row {
     double ring, level, area;  // distance of the centroids from the axis, height above the equator; solid angle

@@ -120,13 +120,15 @@ double piece_for(double relative) {
   return std::min(4.0, 1.5 * std::pow(relative / 5e-12, 1.0 / 17));
 }
 
-// A whole texel of a lat-long map under a cosine lobe that is narrower than it: the sines and cosines belong to the
-// rows and the columns of the nodes, so that a node costs one power.
-double over_sharp_texel(const Task& task, const Cell& cell, double sharpness) {
-  const double row_rad = kPi / task.env.height(), column_rad = 2 * kPi / task.env.width();
-  const double theta0 = row_rad * cell.row0, theta1 = row_rad * cell.row1;
+}  // namespace
+
+// The sines and cosines belong to the rows and the columns of the nodes, so that a node costs one power.
+double sharp_lobe_over_texel(const Environment& env, int column, int row, const Vec3& d, double exponent,
+                             double relative) {
+  const double row_rad = kPi / env.height(), column_rad = 2 * kPi / env.width(), sharpness = std::sqrt(exponent);
+  const double theta0 = row_rad * row, theta1 = row_rad * (row + 1);
   const double ring = theta0 < kPi / 2 && theta1 > kPi / 2 ? 1 : std::max(std::sin(theta0), std::sin(theta1));
-  const double piece = piece_for(task.relative);
+  const double piece = piece_for(relative);
   const auto pieces = [&](double width_rad) {
     return std::max(1, static_cast<int>(std::ceil(width_rad * sharpness / piece)));
   };
@@ -135,7 +137,7 @@ double over_sharp_texel(const Task& task, const Cell& cell, double sharpness) {
   const Nodes& down = kept_down.of(row_rad, pieces(row_rad));
   const Nodes& across = kept_across.of(column_rad, pieces(column_rad * ring));
   // Longitude falls with the columns: d.x sin + d.z cos of it, counted from the side of the first column.
-  const double side = kPi - column_rad * cell.column0, x = task.d.x, z = task.d.z;
+  const double side = kPi - column_rad * column, x = d.x, z = d.z;
   const double along = x * std::sin(side) + z * std::cos(side), beside = z * std::sin(side) - x * std::cos(side);
   level.assign(across.count() + rows::kPadding, 0), weight.assign(across.count() + rows::kPadding, 0);
   for (std::size_t i = 0; i < across.count(); ++i) {
@@ -148,13 +150,10 @@ double over_sharp_texel(const Task& task, const Cell& cell, double sharpness) {
     const double sine = sin0 * down.cosine[j] + cos0 * down.sine[j],
                  cosine = cos0 * down.cosine[j] - sin0 * down.sine[j];
     sum += down.weight[j] * sine *
-           rows::sum_of_powers(weight.data(), level.data(), across.count(), task.d.y * cosine, sine,
-                               task.kernel.exponent());
+           rows::sum_of_powers(weight.data(), level.data(), across.count(), d.y * cosine, sine, exponent);
   }
   return sum;
 }
-
-}  // namespace
 
 double lobe_over_cell(const Environment& env, const Cell& cell, const Vec3& d, const ZonalKernel& kernel,
                       double relative, double at_edge) {
@@ -171,7 +170,8 @@ double lobe_over_cell(const Environment& env, const Cell& cell, const Vec3& d, c
         envmap::angle_between(env.direction_at((cell.column0 + cell.column1) / 2, (cell.row0 + cell.row1) / 2), d);
     if (theta - radius > reach_rad(sharpness)) return 0;
     if (theta + radius < kernel.edge().angle_rad)
-      return over_sharp_texel({env, d, kernel, relative, edge_radius}, cell, sharpness);
+      return sharp_lobe_over_texel(env, static_cast<int>(cell.column0), static_cast<int>(cell.row0), d,
+                                   kernel.exponent(), relative);
   }
   return integrate({env, d, kernel, relative, edge_radius}, cell, 0);
 }

@@ -13,4 +13,9 @@ namespace goniochrome::prefilter {
 double lobe_over_cell(const envmap::Environment& env, const envmap::Cell& cell, const Vec3& d,
                       const ZonalKernel& kernel, double relative, double at_edge);
 
+// The same for a whole texel of a lat-long map under max(0, cos)^E of a large exponent, the width of which is
+// 1/sqrt(E).
+double sharp_lobe_over_texel(const envmap::Environment& env, int column, int row, const Vec3& d, double exponent,
+                             double relative);
+
 }  // namespace goniochrome::prefilter

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "prefilter/internal/horizon_table.h"
 
@@ -38,20 +39,34 @@ double sum_of_powers(const double* weight, const double* level, std::size_t coun
 // Texels have the solid angle `area`.
 struct LatLongBand {
   double a, b, c, width, e, f, g, least, area;
-  std::size_t first, columns;  // of the texels of the map, row by row
-  std::size_t column;          // where sine and cosine begin
+  std::size_t columns;
 };
-// Adds rgb[3j+c] area times the mean over texel j of the function whose second antiderivative is `band`, over all
-// parts.
-void add_lat_long_bands(const float* rgb, const double* sine, const double* cosine, const LatLongBand* parts,
-                        std::size_t count, const SecondIntegral& band, double sum[3]);
+// Texels that lie so near to the horizon, or are so large, that the four corners are needed.
+struct CutTexels {
+  std::vector<double> middle, along, down, area;
+  std::vector<std::size_t> at;  // of the weight
+  std::size_t count = 0;
+};
+// The solid angle of each texel of the part times the mean over it of the function whose second antiderivative is
+// `band`, to weights[from], weights[from + 1], ... Cut texels are not weighed, and added to `cut` instead. Sine, cosine
+// and weights have kPadding more places.
+void lat_long_band_weights(const double* sine, const double* cosine, const LatLongBand& part,
+                           const SecondIntegral& band, float* weights, std::size_t from, CutTexels& cut);
+// The same of the cut texels.
+void cut_band_weights(const CutTexels& cut, const SecondIntegral& band, float* weights);
+
+// A strip is kStrip neighboring texels of a row. Adds the sum over strips of the floats from rgb[at[i]] on, each times
+// a weight of its own, to sum[c].
+constexpr std::size_t kStrip = 16;
+void add_strips(const float* rgb, const std::size_t* at, const float* weights, std::size_t strips, double sum[3]);
 
 // A row of a cube's face at the height t, `down` high: directions (p + q s[j]) / n with n^2 = m + s[j]^2, where p grows
 // by r for each unit of t; texels are width[j] wide.
 struct CubeBand {
   double p, q, m, t, r, down, least;
 };
-// The same, times the solid angle of texel j.
+// Adds rgb[3j+c] times the solid angle of texel j and the mean over it of the function whose second antiderivative is
+// `band`.
 void add_cube_band(const float* rgb, std::size_t columns, const double* s, const double* width, const CubeBand& at,
                    const SecondIntegral& band, double sum[3]);
 

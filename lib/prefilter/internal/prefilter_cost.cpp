@@ -7,6 +7,7 @@
 #include "prefilter/internal/arc_sums.h"
 #include "prefilter/internal/bright_texels.h"
 #include "prefilter/internal/horizon_band.h"
+#include "prefilter/internal/local_sums.h"
 #include "prefilter/internal/mirror.h"
 
 // Processor seconds on one core. The constants are fits to timed runs of probes of 512 x 256 to 4096 x 2048 texels, to
@@ -53,11 +54,19 @@ double arcs_time_s(const envmap::Environment& env, double exponent, double toler
   return 4.8e-8 * arc_points(exponent == 0, tolerance) * env.height() * texels;
 }
 
+// About how many texels of a cube of maps share their weights (strip_map.h).
+double directions_alike(const envmap::Rotation& turn) {
+  if (turn.is_identity()) return 16;
+  return std::fabs(turn.to_environment({0, 1, 0}).y) > 1 - 1e-9 ? 8 : 2;
+}
+
 // Bands about as wide as a tolerance of 1e-5 wants them, texel by texel, and the rows that they cross. The deeper the
 // tolerance, the wider is the band.
-double horizon_time_s(const envmap::Environment& env, int degree, double tolerance, double texels) {
+double horizon_time_s(const envmap::Environment& env, int degree, double tolerance, double texels, double alike) {
   const double reach = std::clamp(8 - 2 * std::log10(tolerance / 1e-5), 2.0, 40.0) / degree;
-  return (1.7e-8 * HorizonBand::texels_beside(env, reach) + 6e-8 * env.height()) * texels;
+  const double weigh = 1.7e-8 * HorizonBand::texels_beside(env, reach) + 6e-8 * env.height();
+  if (env.grid().is_cube()) return weigh * texels;
+  return (weigh / alike + 1e-9 * HorizonBand::texels_beside(env, reach)) * texels;
 }
 
 // A sharp lobe cuts few texels into many cells, or into the pieces of a quadrature of its own (lobe_patch.cpp); a wide
@@ -66,6 +75,12 @@ double blocks_time_s(const envmap::Environment& env, double exponent, double tex
   const bool by_pieces =
       env.layout() == envmap::Environment::Layout::kLatLong && 2 * env.largest_texel_rad() * std::sqrt(exponent) > 0.5;
   return (exponent > 100 ? (by_pieces ? 1.4e-4 : 6e-2) : 8e-5 * env.width()) * texels;
+}
+
+// The weights of the texels, in pieces of 8 x 8 nodes, are found once for all directions that lie alike to the texels.
+double local_time_s(const envmap::Environment& env, double exponent, double texels, double alike) {
+  const double pieces = std::max(1.0, kPi / env.height() * std::sqrt(exponent) / 1.3);
+  return LocalSums::texels_within(env, exponent) * (3e-7 * pieces * pieces / alike + 1e-9) * texels;
 }
 
 // A cell costs its own corners, the sides of texels that cross it and the texels themselves.
@@ -86,6 +101,7 @@ void predict_times(const envmap::Environment& env, const PrefilterRequest& reque
   int highest = 0;
   for (const LobePlan& lobe : plan)
     if (lobe.method == Method::kHarmonics) highest = std::max(highest, lobe.degree);
+  const double alike = directions_alike(request.turn);
   bool transformed = false, parted = false, rest_transformed = false;
   int angles_size = 0;
   double bright = 0;
@@ -124,7 +140,11 @@ void predict_times(const envmap::Environment& env, const PrefilterRequest& reque
       case Method::kHorizon:
         if (!rest_transformed) time_s += transform_time_s(env, lobe.degree);
         rest_transformed = true;
-        time_s += evaluation_time_s(lobe.degree, texels) + horizon_time_s(env, lobe.degree, request.tolerance, texels);
+        time_s +=
+            evaluation_time_s(lobe.degree, texels) + horizon_time_s(env, lobe.degree, request.tolerance, texels, alike);
+        break;
+      case Method::kLocal:
+        time_s += local_time_s(env, lobe.exponent, texels, alike);
         break;
       case Method::kBlocks:
         time_s += blocks_time_s(env, lobe.exponent, texels);
