@@ -386,8 +386,8 @@ void add_report(cli::ToolSpec& spec) {
        "95th percentile of what each cause alone changes: maps and their look-up; shadow and self, if they were left "
        "out; bounce, if it was left out; the noise of the effects of rays"},
       {"error: worth",
-       "what shadow, self and bounce are worth in the truth, by the 95th percentile over the checked pixels, as "
-       "the plan predicts it"},
+       "what shadow, self, bounce and floor are worth in the truth, by the 95th percentile over the checked pixels, "
+       "and for a floor over as many beside the mesh, as the plan predicts it"},
       {"error: fit", "95th percentile of what the paints of the pixels miss of their own readings"},
       {"left_out: de00_mean, de00_p95, de00_max",
        "with --check: how far the picture is from that with all effects, over all visible pixels"},
