@@ -10,6 +10,7 @@
 #include "render/internal/seen.h"
 #include "render/path/noise.h"
 #include "render/path/transport.h"
+#include "render/plan/floor_probe.h"
 #include "render/plan/ray_probe.h"
 
 namespace goniochrome::render {
@@ -37,7 +38,7 @@ struct PointTruth {
     if (batches.count() > 0) result += (1.0 / batches.count()) * sum;
     return result;
   }
-  // The mean of every second batch, and of the others.
+  // The mean of every second batch, and of the others; nothing of fewer than two batches.
   std::array<LightShares, 2> halves() const {
     LightShares odd = sum;
     odd += -1.0 * even;
@@ -54,6 +55,21 @@ struct PointTruth {
     return result;
   }
 };
+
+// The difference of two estimates, without what their noise adds to it on average: theory(7), PLAN, Effects of rays.
+// `difference` takes the shares of both.
+template <class Difference>
+double noiseless(const PointTruth& a, const PointTruth& b, const Difference& difference) {
+  const auto squared = [&](const LightShares& of_a, const LightShares& of_b) {
+    const double d = difference(of_a, of_b);
+    return d * d;
+  };
+  const double whole = squared(a.mean(), b.mean());
+  if (std::max(a.batches.count(), b.batches.count()) < 2) return std::sqrt(whole);
+  const auto halves_a = a.halves(), halves_b = b.halves();
+  const double halves = 0.5 * (squared(halves_a[0], halves_b[0]) + squared(halves_a[1], halves_b[1]));
+  return std::sqrt(std::max(0.0, 2 * whole - halves));
+}
 
 color::Rgb pixel_of(const image::Image& image, const std::array<int, 2>& place) {
   const float* p = image.pixel(place[0], place[1]);
@@ -73,9 +89,12 @@ class Judge {
                             : exact_radiance(sample_.points, scene, effects_of(scene), request.environment)),
         truth_(sample_.places.size()) {}
 
-  void refine(const Transport& transport, const mesh::Mesh& mesh) {
+  // `bare`, unless null, is the same without the floor of `transport`.
+  void refine(const Transport& transport, const Transport* bare, const mesh::Mesh& mesh) {
+    if (bare != nullptr) bare_.resize(truth_.size());
     for (int batches = kFirst; batches <= kMost; batches *= 4) {
-      trace(transport, mesh, batches);
+      trace(transport, mesh, batches, truth_);
+      if (bare != nullptr) trace(*bare, mesh, batches, bare_);
       noise_ = percentile(&Judge::noise);
       total_ = percentile(&Judge::total);
       if (noise_ <= std::max(kUnseen, kPart * total_)) break;
@@ -103,6 +122,7 @@ class Judge {
       error.worth.shadow = worth({false, false, false});
       error.worth.self = worth({true, false, true});
       error.worth.bounce = worth({true, true, false});
+      error.worth.floor = std::max(floor_on_mesh(), floor_beside_);
     }
     std::vector<double> fit;
     for (const VisiblePoint& point : sample_.points)
@@ -111,22 +131,48 @@ class Judge {
     return error;
   }
 
+  // Compares the floor beside the mesh with what pixels there show without it.
+  void look_beside(const Transport& over_floor, const Scene& scene) {
+    const FloorPixels pixels = floor_pixels(over_floor, scene, request_.environment, {frame_.gbuffer},
+                                            static_cast<std::size_t>(request_.count));
+    PathOptions options;
+    options.bounces = request_.bounces;
+    std::vector<double> values(pixels.points.size());
+    parallel_for(values.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        PointTruth truth;
+        add_batches(over_floor, options, pixels.points[i].at, mixed(seed(), ~i), kFloorBatches, truth);
+        values[i] = noiseless(truth, truth, [&](const LightShares& shown, const LightShares&) {
+          return seen_difference(shown.sum(), pixels.points[i].instead, white_);
+        });
+      }
+    });
+    floor_beside_ = percentile_95(std::move(values));
+  }
+
  private:
-  void trace(const Transport& transport, const mesh::Mesh& mesh, int batches) {
+  static constexpr int kFloorBatches = 64;
+
+  std::uint64_t seed() const { return mixed(request_.seed, 0x7472757468); }  // not that of the picture
+
+  static void add_batches(const Transport& transport, const PathOptions& options, const RayPoint& at,
+                          std::uint64_t seed, int batches, PointTruth& truth) {
+    const PointTransport point(transport, options, at.spot, at.to_viewer);
+    truth.certain = point.certain();
+    truth.sure = {point.sure(), {}, {}};
+    while (!truth.certain && truth.batches.count() < batches)
+      truth.add(point.batch_shares(mixed(seed, static_cast<std::uint64_t>(truth.batches.count()))));
+  }
+
+  void trace(const Transport& transport, const mesh::Mesh& mesh, int batches, std::vector<PointTruth>& truth) const {
     PathOptions options;
     options.bounces = request_.bounces;
     options.correction = !request_.whole;
-    const std::uint64_t seed = mixed(request_.seed, 0x7472757468);  // not that of the picture
-    parallel_for(truth_.size(), 1, [&](std::size_t begin, std::size_t end) {
+    parallel_for(truth.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const auto [x, y] = sample_.places[i];
         const RayPoint at = ray_point(transport.rays(), mesh, *frame_.gbuffer, x, y);
-        const PointTransport point(transport, options, at.spot, at.to_viewer);
-        PointTruth& truth = truth_[i];
-        truth.certain = point.certain();
-        truth.sure = {point.sure(), {}, {}};
-        while (!truth.certain && truth.batches.count() < batches)
-          truth.add(point.batch_shares(mixed(mixed(seed, i), static_cast<std::uint64_t>(truth.batches.count()))));
+        add_batches(transport, options, at, mixed(seed(), i), batches, truth[i]);
       }
     });
   }
@@ -136,24 +182,23 @@ class Judge {
     for (std::size_t i = 0; i < truth_.size(); ++i) values.push_back((this->*of)(i));
     return percentile_95(std::move(values));
   }
-  // As plans have it, in the same way free of noise: theory(7), PLAN, Effects of rays.
+  // As plans have it.
   double worth(const RayEffects& without) const {
     constexpr RayEffects kAll{true, true, true};
     std::vector<double> values;
-    for (std::size_t i = 0; i < truth_.size(); ++i) {
-      const auto squared = [&](const LightShares& mean) {
-        const double d = seen_difference(open_[i] + mean.shown(kAll), open_[i] + mean.shown(without), white_);
-        return d * d;
-      };
-      const double whole = squared(truth_[i].mean());
-      if (truth_[i].batches.count() < 2) {
-        values.push_back(std::sqrt(whole));
-        continue;
-      }
-      const auto halves = truth_[i].halves();
-      values.push_back(std::sqrt(std::max(0.0, 2 * whole - 0.5 * (squared(halves[0]) + squared(halves[1])))));
-    }
+    for (std::size_t i = 0; i < truth_.size(); ++i)
+      values.push_back(noiseless(truth_[i], truth_[i], [&](const LightShares& mean, const LightShares&) {
+        return seen_difference(open_[i] + mean.shown(kAll), open_[i] + mean.shown(without), white_);
+      }));
     return percentile_95(std::move(values));
+  }
+  double floor_on_mesh() const {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < bare_.size(); ++i)
+      values.push_back(noiseless(truth_[i], bare_[i], [&](const LightShares& over, const LightShares& bare) {
+        return seen_difference(open_[i] + over.sum(), open_[i] + bare.sum(), white_);
+      }));
+    return values.empty() ? 0 : percentile_95(std::move(values));
   }
   color::Rgb truth(std::size_t i) const { return open_[i] + truth_[i].mean().sum(); }
   color::Rgb picture(std::size_t i) const { return pixel_of(frame_.centers, sample_.places[i]); }
@@ -186,9 +231,9 @@ class Judge {
   const TruthRequest& request_;
   double white_;
   PixelSample sample_;
-  std::vector<color::Rgb> open_;  // without the mesh in the way
-  std::vector<PointTruth> truth_;
-  double noise_ = 0, total_ = 0;
+  std::vector<color::Rgb> open_;          // without the mesh in the way
+  std::vector<PointTruth> truth_, bare_;  // bare: without the floor; empty where there is none
+  double noise_ = 0, total_ = 0, floor_beside_ = 0;
 };
 
 }  // namespace
@@ -203,8 +248,15 @@ Result<TruthError> truth_error(const Frame& frame, const Scene& scene, const Ray
   paths.ground = scene.ground;
   paths.rough_coats = request.whole;
   GONIO_ASSIGN(const Transport transport, Transport::create(paths));
+  std::optional<Transport> bare;
+  if (scene.ground && !request.whole) {
+    paths.ground.reset();
+    paths.rays = nullptr;
+    GONIO_ASSIGN(bare, Transport::create(paths));
+  }
   Judge judge(frame, scene, drawn, request);
-  judge.refine(transport, *scene.mesh);
+  judge.refine(transport, bare ? &*bare : nullptr, *scene.mesh);
+  if (bare) judge.look_beside(transport, scene);
   TruthError error = judge.error(scene);
   error.total.time_s = clock.elapsed_s();
   return error;

@@ -23,6 +23,7 @@ struct TruthShares {
 // What each effect of rays is worth in the truth, as a plan has it: the change by leaving it out, noise taken off.
 struct TrueWorth {
   double shadow = 0, self = 0, bounce = 0;
+  double floor = 0;  // 0 where the scene has none
 };
 
 struct TruthError {

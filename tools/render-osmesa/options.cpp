@@ -23,7 +23,8 @@ void add_surfaces(cli::ToolSpec& spec, Options& o) {
           "The file is an EXR that was made with --aov normal,part. Its buffers and its attributes goniochrome:rays, "
           "parts and materials hold all that the engine cpu needs, so that other paints or other light are shown "
           "without the mesh and without rasterizing. The picture is that of --samples 1, bit for bit; view and size "
-          "are the file's. Textures need the mesh. A file of --aov transport holds the light as well: without --env "
+          "are the file's, and with a transport --samples tells how many of its points are a pixel. Textures need the "
+          "mesh. A file of --aov transport holds the light as well: without --env "
           "and --light it is shaded in that light, with its shadows. Bounced light, which was traced in other paints, "
           "is scaled to the new ones; the error of that is told, and where it is beyond --tolerance the exit status "
           "is 1.");
@@ -140,7 +141,9 @@ void add_camera(cli::ToolSpec& spec, Options& o) {
       .in("pixels");
   spec.option("samples", "N", "16", &o.samples, "samples in each pixel: 1, 4 or 16")
       .from(0, 16)
-      .more("0 takes 4, or 1 with --gbuffer.");
+      .more(
+          "0 takes 4, or 1 with --gbuffer. With a transport of --gbuffer, 4 shows 2x2 of its points as one pixel, so "
+          "that edges are smooth and the picture is half as wide and high; 16 shows 4x4 of them.");
   spec.option("turntable", "N", "36", &o.turntable, "write N pictures with the camera going once around")
       .from(0, 9999)
       .more("The camera goes around the vertical axis. The pictures are NAME-0001.exr and so on.");
@@ -383,8 +386,8 @@ void add_report(cli::ToolSpec& spec) {
        "95th percentile of what each cause alone changes: maps and their look-up; shadow and self, if they were left "
        "out; bounce, if it was left out; the noise of the effects of rays"},
       {"error: worth",
-       "what shadow, self and bounce are worth in the truth, by the 95th percentile over the checked pixels, as "
-       "the plan predicts it"},
+       "what shadow, self, bounce and floor are worth in the truth, by the 95th percentile over the checked pixels, "
+       "and for a floor over as many beside the mesh, as the plan predicts it"},
       {"error: fit", "95th percentile of what the paints of the pixels miss of their own readings"},
       {"left_out: de00_mean, de00_p95, de00_max",
        "with --check: how far the picture is from that with all effects, over all visible pixels"},

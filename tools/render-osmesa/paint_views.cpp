@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "image/shrink.h"
 #include "open_views.h"
 #include "plan_text.h"
 #include "render/aov.h"
@@ -32,7 +33,10 @@ namespace {
 class TransportViews : public PaintViews {
  public:
   TransportViews(const Options& options, const Request& request, Stage& stage, cli::Session& session)
-      : session_(session), wardrobe_(stage.dresses.front()), shader_(*stage.transport, *stage.gbuffer, stage.scene) {
+      : session_(session),
+        points_across_(request.points_across()),
+        wardrobe_(stage.dresses.front()),
+        shader_(*stage.transport, *stage.gbuffer, stage.scene) {
     automatic_stops = stage.transport->automatic_stops;
     stops = request.stops.value_or(request.png ? automatic_stops : 0);
     white_luminance = stage.transport->white_luminance;
@@ -42,7 +46,9 @@ class TransportViews : public PaintViews {
   }
 
   Result<void> draw(const SourcePaint& paint, PaintView& view) override {
-    GONIO_ASSIGN(const ShadedPaint shaded, shader_.shade(wardrobe_.in(paint), view.picture));
+    image::Image& points = points_across_ > 1 ? points_ : view.picture;
+    GONIO_ASSIGN(const ShadedPaint shaded, shader_.shade(wardrobe_.in(paint), points));
+    if (points_across_ > 1) image::shrink(points_, points_across_, view.picture);
     view.shading_ms = shaded.frame_ms + shaded.scale_ms;
     view.bounced_de00_p95 = shaded.bounced_de00_p95;
     session_.results()["transport"] = shader_.figures(shaded, session_.common().tolerance);
@@ -56,8 +62,10 @@ class TransportViews : public PaintViews {
 
  private:
   cli::Session& session_;
+  int points_across_;
   Wardrobe wardrobe_;
   ViewShader shader_;
+  image::Image points_;  // what all points show, where pixels are squares of them
   std::shared_ptr<const render::Plan> plan_;
   bool is_coat_told_ = false;
 };

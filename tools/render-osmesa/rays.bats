@@ -103,6 +103,14 @@ of() { jq -r ".results.plan[] | select(.effect == \"$2\") | .$1" r.json; }
   jq -e '.results.error | .occlusion < 1e-6 and .bounce < 2.1' r.json
 }
 
+@test "the check tells what the floor is worth, as the plan predicts it" {
+  render-osmesa -q $scene --engine cpu --tolerance 2 --background env --check 400 -o out.exr --report r.json || [ $? -eq 1 ]
+  jq -e --argjson plan "$(of de00_p95 floor)" '.results.error.worth.floor | . > 1 and $plan < 1.3 * . and . < 1.3 * $plan' r.json
+  # The control has none.
+  render-osmesa -q $scene --engine cpu --tolerance 2 --check 40 -o out.exr --report r.json || [ $? -eq 1 ]
+  jq -e '.results.error.worth | .floor == 0 and .shadow > 1' r.json
+}
+
 @test "from below the floor is left out, and above the lowest point of the mesh only rays alone draw it" {
   run render-osmesa $scene --tolerance 2 --floor shadow --camera 0,-9,9,0,0,0,30 -o out.exr --report r.json
   [ "$status" -eq 0 ]

@@ -57,7 +57,7 @@ Result<Request> request_of(const Options& options) {
   GONIO_TRY(render::check_effects(options.effects));
   request.plan.effects = options.effects;
   request.plan.budget_ms = options.budget_ms;
-  request.samples = !options.gbuffer.empty() ? 1 : options.samples > 0 ? options.samples : 4;
+  request.samples = options.samples > 0 ? options.samples : options.gbuffer.empty() ? 4 : 1;
   request.plan.samples = request.samples;
   const std::optional<bool> floor_forced = render::floor_forced(options.effects);
   const std::string floor = options.floor != "auto" || !floor_forced ? options.floor

@@ -15,8 +15,10 @@
 namespace goniochrome::tool {
 
 struct Request {
-  PictureSize size;  // with --gbuffer, that of the file
+  PictureSize size;  // with --gbuffer, that of the file, or of squares of its points
   int samples = 1;
+  // How many points stand beside each other in a pixel.
+  int points_across() const { return samples >= 16 ? 4 : samples >= 4 ? 2 : 1; }
   std::vector<render::Light> lights;
   std::vector<std::optional<color::Bands>> light_bands;  // of each that is named
   std::optional<double> stops;

@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "display/display.h"
 #include "image/frames.h"
+#include "image/shrink.h"
 #include "picture_file.h"
 #include "plan_text.h"
 #include "render/aov.h"
@@ -240,7 +241,8 @@ Result<void> Shooting::write_frame(const image::ByteImage& shown) {
 Result<cli::Verdict> Shooting::shade_transport(const std::optional<display::Display>& display) {
   const KeptTransport& kept = *stage_.transport;
   GONIO_ASSIGN(ShadedView view, shaded_view(kept, *stage_.gbuffer, stage_.dresses.front(), stage_.scene, session_));
-  frame_.picture = std::move(view.picture), frame_.gbuffer = stage_.gbuffer;
+  image::shrink(view.picture, request_.points_across(), frame_.picture);
+  frame_.gbuffer = stage_.gbuffer;
   white_ = {kept.white_luminance, {0, 1, 0}};
   plan_.engine = "transport", plan_.engine_reason = options_.gbuffer + " holds the light by lobes";
   stage_.scene.lights.clear();
@@ -390,7 +392,10 @@ Result<cli::Verdict> run(const Options& asked, cli::Session& session) {
   for (const std::string& name : shot_names(options)) GONIO_TRY(can_be_written(name));
   Stage stage;
   GONIO_TRY(set_stage(options, request, stage, session));
-  if (stage.gbuffer) request.size = {stage.gbuffer->width, stage.gbuffer->height};
+  if (stage.gbuffer) {
+    const int side = request.points_across();
+    request.size = {stage.gbuffer->width / side, stage.gbuffer->height / side};
+  }
   if (is_stream(options)) return draw_stream(options, request, stage, display, session);
   return Shooting(options, std::move(request), stage, session).shoot(display);
 }

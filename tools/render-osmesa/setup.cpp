@@ -44,8 +44,6 @@ Result<void> check_surfaces(const Options& options) {
       return usage_error("--gbuffer and --{} exclude each other: {} holds one view of surfaces without their mesh",
                          name, options.gbuffer);
   }
-  if (options.samples != 0 && options.samples != 1)
-    return usage_error("--samples is {}: --gbuffer holds pixel centers, 1 sample each", options.samples);
   std::string others;
   bool fits = true;
   for (const render::EngineInfo* engine : render::engines()) {

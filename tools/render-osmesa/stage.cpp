@@ -112,6 +112,20 @@ Result<void> dress_stage(const Options& options, Stage& stage) {
   return {};
 }
 
+// A transport may show squares of its points as pixels.
+Result<void> check_samples(const Options& options, const Request& request, const Stage& stage) {
+  if (request.samples == 1) return {};
+  if (!stage.transport)
+    return usage_error("--samples is {}: --gbuffer holds pixel centers, 1 sample each", request.samples);
+  const int side = request.points_across();
+  if (stage.gbuffer->width % side != 0 || stage.gbuffer->height % side != 0)
+    return usage_error("--samples is {}: {} has {} x {} points, which are no whole squares of {} x {}", request.samples,
+                       options.gbuffer, stage.gbuffer->width, stage.gbuffer->height, side, side);
+  if (!request.aovs.empty())
+    return usage_error("--samples is {}, and --aov holds pixel centers: leave one of them out", request.samples);
+  return {};
+}
+
 // The buffers of --gbuffer, and a mesh that has their parts.
 Result<void> set_gbuffer(const Options& options, const Request& request, Stage& stage, cli::Session& session) {
   GONIO_ASSIGN(const image::AovFile buffers, image::read_aov_file(options.gbuffer));
@@ -128,7 +142,7 @@ Result<void> set_gbuffer(const Options& options, const Request& request, Stage& 
     return usage_error("--check compares with light that nothing blocks: leave it out, or give --mesh");
   if (stage.transport && !options.split.empty())
     return usage_error("--split is not drawn from a transport: draw two pictures");
-  return {};
+  return check_samples(options, request, stage);
 }
 
 // The floor of a picture by an engine with prefiltered maps.

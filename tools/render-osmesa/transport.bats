@@ -57,7 +57,7 @@ figure() { grep -m1 "\"$1\"" "$2" | sed -E 's/.*: ([-0-9.e+a-z]+),?$/\1/'; }
   render-osmesa -q --mesh walls.obj --size 32x24 --samples 1 --camera 0.6,0.8,4,0,-0.3,0,30 -p fitted.xml#silver_fine \
     --env studio.env.exr --engine cpu --effects auto,-rays -o open.exr
   for picture in same open; do
-    oiiotool path.exr --ch R,G,B $picture.exr --ch R,G,B --absdiff --stats | awk '/Stats Avg/ { print $4 }' >$picture.txt
+    oiiotool path.exr --ch R,G,B $picture.exr --ch R,G,B --absdiff --printstats | awk '/Stats Avg/ { print $4 }' >$picture.txt
   done
   # The mean of what the noise of both leaves, against the light that the maps alone have.
   awk -v a="$(cat same.txt)" -v b="$(cat open.txt)" 'BEGIN { exit !(a < 0.35 * b) }'
@@ -105,4 +105,27 @@ figure() { grep -m1 "\"$1\"" "$2" | sed -E 's/.*: ([-0-9.e+a-z]+),?$/\1/'; }
   # Many of the 768 pixels show the floor, and none of them the paint.
   walls=$(render-osmesa -q --gbuffer view.exr -p fitted.xml#silver_fine -o walls.exr && oiiotool --stats walls.exr | awk '/Stats Avg/ { print $6 }')
   awk -v p="$(figure pixels_used sketch.json)" -v share="$walls" 'BEGIN { exit !(p > 50 && p <= 768 * share) }'
+}
+
+@test "several points are a pixel: their mean, in single pictures and in streams" {
+  render-osmesa -q --gbuffer view.exr -p fitted.xml#silver_fine -o points.exr
+  render-osmesa -q --gbuffer view.exr -p fitted.xml#silver_fine --samples 4 -o pixels.exr --report pixels.json
+  oiiotool points.exr --resize:filter=box 16x12 -o means.exr
+  oiiotool points.exr --resample:interp=0 16x12 -o single.exr
+  apart() { oiiotool "$1" "$2" --absdiff --printstats | awk '/Stats Max/ { m = 0; for (i = 3; i <= 5; ++i) if ($i > m) m = $i; print m }'; }
+  # Halves of values below 4; the control takes one point of four.
+  awk -v a="$(apart pixels.exr means.exr)" 'BEGIN { exit !(a < 0.004) }'
+  awk -v a="$(apart pixels.exr single.exr)" 'BEGIN { exit !(a > 0.02) }'
+  render-osmesa -q --gbuffer view.exr -p fitted.xml#silver_fine --samples 16 -o four.exr
+  [[ "$(oiiotool --info four.exr)" =~ "8 x    6" ]]
+  render-osmesa -q --gbuffer view.exr -p 'fitted.xml#silver_fine' --samples 4 -o '{name}.exr'
+  [ "$(oiiotool silver_fine.exr pixels.exr --diff | tail -1)" = PASS ]
+  run render-osmesa --gbuffer view.exr -p fitted.xml#silver_fine --samples 4 --aov normal -o out.exr
+  [ "$status" -eq 2 ]
+  [[ "$output" =~ "--aov holds pixel centers" ]]
+  render-osmesa -q --mesh walls.obj --size 10x6 --samples 1 -p fitted.xml#silver_fine --env studio.env.exr --aov transport \
+    --tolerance 30 -o odd.exr
+  run render-osmesa --gbuffer odd.exr -p fitted.xml#silver_fine --samples 16 -o out.exr
+  [ "$status" -eq 2 ]
+  [[ "$output" =~ "10 x 6 points, which are no whole squares of 4 x 4" ]]
 }
