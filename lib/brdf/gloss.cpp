@@ -113,6 +113,10 @@ Error no_meter(double angle_deg) {
   return input_error("gloss angle {} deg: gloss meters have 20, 60 or 85", angle_deg);
 }
 
+bool is_meter(double angle_deg) {
+  return std::ranges::find(kGlossAngles_deg, angle_deg) != std::end(kGlossAngles_deg);
+}
+
 // The reading of a smooth surface of that index.
 double smooth_reading(double angle_deg, double index) {
   double standard = 0, smooth = 0;
@@ -121,6 +125,18 @@ double smooth_reading(double angle_deg, double index) {
     smooth += in.weight * in.cos_normal * fresnel_dielectric(in.cos_normal, index);
   }
   return 100 * smooth / standard;
+}
+
+// The least index of a coat, up to that of black glass, that is high enough.
+template <class Enough>
+double least_index(const Enough& enough) {
+  double low = kCoatIndex, high = kBlackGlassIndex;
+  if (enough(low)) return low;
+  while (high - low > 1e-12) {
+    const double middle = 0.5 * (low + high);
+    (enough(middle) ? high : low) = middle;
+  }
+  return high;
 }
 
 double mirror_reading(const GlossColumns& meter, double coat_index) {
@@ -284,8 +300,13 @@ Result<const GlossColumns*> GlossTable::at(double angle_deg) const {
 }
 
 Result<double> smooth_gloss(double angle_deg, double coat_index) {
-  if (std::ranges::find(kGlossAngles_deg, angle_deg) == std::end(kGlossAngles_deg)) return no_meter(angle_deg);
+  if (!is_meter(angle_deg)) return no_meter(angle_deg);
   return smooth_reading(angle_deg, mirror_index(coat_index));
+}
+
+double coat_index_of_mirror(double brighter, double cosine) {
+  const double wanted = brighter * fresnel_dielectric(cosine, kCoatIndex);
+  return least_index([&](double tried) { return fresnel_dielectric(cosine, tried) >= wanted; });
 }
 
 Result<double> coat_index_of(const std::vector<paint::GlossReading>& readings) {
@@ -293,13 +314,8 @@ Result<double> coat_index_of(const std::vector<paint::GlossReading>& readings) {
   for (const paint::GlossReading& reading : readings) {
     if (!(reading.gloss_units > 0)) continue;
     const double gu = std::min(reading.gloss_units, 100.0);
-    GONIO_ASSIGN(const double usual, smooth_gloss(reading.angle_deg, kCoatIndex));
-    double low = kCoatIndex, high = gu > usual ? kBlackGlassIndex : low;
-    while (high - low > 1e-12) {
-      const double middle = 0.5 * (low + high);
-      (smooth_reading(reading.angle_deg, middle) < gu ? low : high) = middle;
-    }
-    index = std::max(index, high);
+    if (!is_meter(reading.angle_deg)) return no_meter(reading.angle_deg);
+    index = std::max(index, least_index([&](double tried) { return smooth_reading(reading.angle_deg, tried) >= gu; }));
   }
   return index;
 }

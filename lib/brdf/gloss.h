@@ -51,6 +51,10 @@ Result<double> smooth_gloss(double angle_deg, double coat_index);
 // above 0. Error: an angle that no meter has.
 Result<double> coat_index_of(const std::vector<paint::GlossReading>& readings);
 
+// The index, from kCoatIndex to kBlackGlassIndex, of the smooth coat whose mirror image is `brighter` times that of
+// kCoatIndex, at an incidence of that cosine.
+double coat_index_of_mirror(double brighter, double cosine);
+
 // The reading in GU of a whole paint: diffuse, flake, gloss lobes and mirror, by luminance. What the coat leaves of the
 // base's light is taken at the meter's angle. Exponents of `fit` that the table does not hold count as 0. The gloss
 // weights hold at the incidence `gloss_deg` and follow coat_fresnel() from there; without it, they hold at the meter's

@@ -52,28 +52,16 @@ double lagrange_weight(std::span<const double> nodes, const Window& window, std:
 }
 
 using Triple = std::array<double, 3>;
-constexpr int kCieSteps_1nm = static_cast<int>((kCieRows - 1) * kCieStep_nm);
 
-// Illuminant times color-matching functions at a wavelength of the table's range.
-Triple weighted_observer(double nm, std::size_t illuminant, int observer_deg) {
-  static const std::array<double, kCieRows> kWavelengths_nm = [] {
-    std::array<double, kCieRows> all{};
-    for (std::size_t i = 0; i < all.size(); ++i) all[i] = kCieTable[i].wavelength_nm;
-    return all;
-  }();
-  const double at = (nm - kCieStart_nm) / kCieStep_nm;
-  const auto i = std::min(static_cast<std::size_t>(at), kCieTable.size() - 2);
-  const double between = at - static_cast<double>(i);
+// Illuminant times color-matching functions, `row` nm above the first wavelength of the tables.
+Triple weighted_observer(std::size_t row, std::size_t illuminant, int observer_deg) {
+  constexpr auto kStep = static_cast<std::size_t>(kCieStep_nm);
+  const std::size_t i = std::min(row / kStep, kCieTable.size() - 2);
+  const double between = static_cast<double>(row - kStep * i) / kCieStep_nm;
   if (illuminant >= kFirstLamp && between != 0 && between != 1) return {};
   const double light = std::lerp(illuminant_power(i, illuminant), illuminant_power(i + 1, illuminant), between);
-  Triple result{};
-  const Window window = window_around(kWavelengths_nm, nm);
-  for (std::size_t k = window.first; k < window.first + window.count; ++k) {
-    const double share = light * lagrange_weight(kWavelengths_nm, window, k, nm);
-    const Triple& observer = observer_deg == 2 ? kCieTable[k].observer_2 : kCieTable[k].observer_10;
-    for (std::size_t c = 0; c < 3; ++c) result[c] += share * observer[c];
-  }
-  return result;
+  const Triple& observer = observer_deg == 2 ? kCieObservers[row].observer_2 : kCieObservers[row].observer_10;
+  return {light * observer[0], light * observer[1], light * observer[2]};
 }
 
 }  // namespace
@@ -104,10 +92,9 @@ std::string spectral_illuminants() {
 }
 
 // X = k sum_l S(l) xbar(l) R(l) over every nanometer, k = 1 / sum_l S(l) ybar(l) (CIE 15:2004, 7.1). The 5 nm of the
-// tables become 1 nm as their makers say: the illuminants (but for lamps with lines) along straight lines, the
-// color-matching functions along cubics. R between the measured wavelengths is the Lagrange cubic through four of them;
-// beyond them the outermost value is held. All this is linear in R, so it folds into one weight per measured
-// wavelength.
+// illuminants (but for lamps with lines) become 1 nm along straight lines, as their makers say. R between the measured
+// wavelengths is the Lagrange cubic through four of them; beyond them the outermost value is held. All this is linear
+// in R, so it folds into one weight per measured wavelength.
 Result<SpectralColorimeter> SpectralColorimeter::make(std::span<const double> wavelengths_nm,
                                                       const ViewingCondition& condition) {
   const auto illuminant = illuminant_column(condition.illuminant);
@@ -123,9 +110,9 @@ Result<SpectralColorimeter> SpectralColorimeter::make(std::span<const double> wa
   SpectralColorimeter result;
   result.weights_.assign(wavelengths_nm.size(), {});
   Triple total{}, held{};
-  for (int step = 0; step <= kCieSteps_1nm; ++step) {
-    const double nm = kCieStart_nm + step;
-    const Triple power = weighted_observer(nm, *illuminant, condition.observer_deg);
+  for (std::size_t row = 0; row < kCieObservers.size(); ++row) {
+    const double nm = kCieStart_nm + static_cast<double>(row);
+    const Triple power = weighted_observer(row, *illuminant, condition.observer_deg);
     const double inside_nm = std::clamp(nm, wavelengths_nm.front(), wavelengths_nm.back());
     const Window window = window_around(wavelengths_nm, inside_nm);
     for (std::size_t c = 0; c < 3; ++c) {

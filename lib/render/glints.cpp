@@ -18,8 +18,6 @@ constexpr double kSmall = 0.18;      // of the lamp's radius: narrower spreads c
 constexpr double kWidest_rad = 0.3;  // at outlines the spread is no measure
 constexpr double kWidened = 2;       // the image holds at least so many samples
 
-// Half of the change of the mirror direction between the pixels beside this one; nothing where no neighbor shows the
-// same part.
 class Mirrors {
  public:
   explicit Mirrors(const Gbuffer& gbuffer) : g_(gbuffer) {}
@@ -28,23 +26,23 @@ class Mirrors {
     const Vec3 n = g_.normal(x, y), viewer = g_.to_viewer(x, y);
     return 2 * dot(n, viewer) * n - viewer;
   }
-  Vec3 change(int x, int y, int dx, int dy) const {
-    const int part = g_.part(x, y);
-    const bool after = same(x + dx, y + dy, part), before = same(x - dx, y - dy, part);
-    const Vec3 to = after ? at(x + dx, y + dy) : at(x, y), from = before ? at(x - dx, y - dy) : at(x, y);
-    return (after && before ? 0.5 : 1.0) * (to - from);
+  double spread(int x, int y) const {
+    const auto direction = [&](int i, int j) { return at(i, j); };
+    const auto same = [&](int i, int j) {
+      return i >= 0 && j >= 0 && i < g_.width && j < g_.height && g_.part(i, j) == g_.part(x, y);
+    };
+    return mirror_spread(change_beside(direction, same, x, y, 1, 0), change_beside(direction, same, x, y, 0, 1));
   }
-  // The radius of a disc of the solid angle that the pixel sees by reflection.
-  double spread(int x, int y) const { return std::sqrt(length(cross(change(x, y, 1, 0), change(x, y, 0, 1))) / kPi); }
 
  private:
-  bool same(int x, int y, int part) const {
-    return x >= 0 && y >= 0 && x < g_.width && y < g_.height && g_.part(x, y) == part;
-  }
   const Gbuffer& g_;
 };
 
 }  // namespace
+
+double mirror_spread(const Vec3& right, const Vec3& down) {
+  return std::sqrt(length(cross(right, down)) / kPi);
+}
 
 double mirrored_share(const Light& light, const Vec3& mirrored, double spread_rad) {
   const double radius = light.radius_rad;
@@ -58,6 +56,9 @@ double mirrored_share(const Light& light, const Vec3& mirrored, double spread_ra
 
 void add_glints(const Scene& scene, const Effects& effects, const Gbuffer& gbuffer, float weight, image::Image& rgba) {
   if (!effects.mirror || !effects.extent || effects.lights == 0) return;
+  std::vector<paint::LobeFit> paints;
+  for (const paint::LobeFit& paint : scene.paints)
+    paints.push_back(effects.coat ? paint : brdf::under_coat(paint, paint::kNoCoat));
   const Mirrors mirrors(gbuffer);
   const double of_sample = std::sqrt(static_cast<double>(weight));
   parallel_for(static_cast<std::size_t>(gbuffer.height), 8, [&](std::size_t begin, std::size_t end) {
@@ -66,7 +67,7 @@ void add_glints(const Scene& scene, const Effects& effects, const Gbuffer& gbuff
         const int part = gbuffer.part(x, y);
         if (part < 0) continue;
         if (scene.layer != nullptr && scene.layer->surface(part).texture != nullptr) continue;
-        const paint::LobeFit& paint = scene.paints[static_cast<std::size_t>(part)];
+        const paint::LobeFit& paint = paints[static_cast<std::size_t>(part)];
         if (!wears_lobe(paint, paint::kMirrorExponent, LobeWeight::kGloss)) continue;
         const Vec3 r = mirrors.at(x, y);
         color::Rgb sum;
@@ -78,8 +79,8 @@ void add_glints(const Scene& scene, const Effects& effects, const Gbuffer& gbuff
           if (missing == 0) continue;
           const double cos_o = std::clamp(dot(gbuffer.normal(x, y), gbuffer.to_viewer(x, y)), 0.0, 1.0);
           const paint::LobeFit here = effects.views ? brdf::at_view(paint, std::acos(cos_o) / kDegree) : paint;
-          const double fresnel =
-              brdf::fresnel_dielectric(effects.fresnel ? cos_o : std::numbers::sqrt2 / 2, brdf::kCoatIndex);
+          const double fresnel = brdf::fresnel_dielectric(effects.fresnel ? cos_o : std::numbers::sqrt2 / 2,
+                                                          brdf::mirror_index(paint.coat_index));
           const paint::Lobe* mirror = find_lobe(here, paint::kMirrorExponent);
           if (mirror == nullptr) continue;
           const color::Rgb k = fresnel * mirror->gloss;

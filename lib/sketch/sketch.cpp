@@ -7,6 +7,7 @@
 
 #include "base/angles.h"
 #include "base/parallel.h"
+#include "brdf/gloss.h"
 #include "brdf/lobe_model.h"
 #include "display/paint_view.h"
 #include "math/statistics.h"
@@ -430,13 +431,33 @@ Looked looked_under_lamps(const SketchInput& input, const SketchPixels& pixels) 
 // Which readings explain the pixels as well as the one that was found.
 void take_gloss_range(const LobeSearch& search, const FoundPaint& found, SketchFit& fit) {
   constexpr double kStep_gu = 2.5, kOpen_gu = 10;
-  const double most = kSameCost * found.search.cost + kSameCostBy;
   fit.gloss_low_gu = fit.gloss_high_gu = fit.gloss_60_gu;
   for (double gloss = 0; gloss <= 100; gloss += kStep_gu) {
-    if (search.cost_with_gloss(found, gloss) > most) continue;
+    if (!search.explains_as_well(found, gloss)) continue;
     fit.gloss_low_gu = std::min(fit.gloss_low_gu, gloss), fit.gloss_high_gu = std::max(fit.gloss_high_gu, gloss);
   }
   if (fit.gloss_high_gu - fit.gloss_low_gu > kOpen_gu) fit.gloss_from = "undetermined";
+}
+
+// The reading of a paint whose mirror image is brighter than that of the usual coat, and which is therefore of a coat
+// of a higher index. The search brightens the image by as much as the meter reads more at 60 deg. An index counts more
+// at the steeper incidence of a highlight, so that it is sought from the brightness there.
+double gloss_of_index(const SketchInput& input, const SketchPixels& pixels, const FoundPaint& found, double gloss) {
+  const double usual = *brdf::smooth_gloss(60, brdf::kCoatIndex), found_gloss = found.search.values.back();
+  const double base = found_gloss - found.weights.back().y * usual;  // what is read of diffuse and flake light
+  const double brighter = (gloss - base) / usual;
+  if (!(found.weights.back().y > 1 && brighter > 1) || pixels.used.empty()) return gloss;
+  const image::AovFile& buffers = *input.buffers;
+  const int aspecular = *buffers.channel("aspecular"), normal = *buffers.channel("normal.X");
+  const auto pixel = [&](std::uint32_t place) {
+    return &buffers.image.data[static_cast<std::size_t>(place) * buffers.image.channels];
+  };
+  const std::uint32_t place =
+      *std::ranges::min_element(pixels.used, {}, [&](std::uint32_t p) { return pixel(p)[aspecular]; });
+  const float* n = pixel(place) + normal;
+  const int x = static_cast<int>(place) % buffers.image.width, y = static_cast<int>(place) / buffers.image.width;
+  const double cosine = std::clamp(dot(Vec3{n[0], n[1], n[2]}, buffers.to_viewer(x, y)), 0.0, 1.0);
+  return std::min(100.0, base + *brdf::smooth_gloss(60, brdf::coat_index_of_mirror(brighter, cosine)));
 }
 
 // Some pixels about each export angle, and how far they are from the paint found.
@@ -495,6 +516,8 @@ SketchFit searched(const SketchInput& input, const SketchPixels& pixels, const S
     if (!problem.empty()) return give_up(problem);
     take_extrapolated(cells, fit);
     take_gloss_range(search, found, fit);
+    for (double* gloss : {&fit.gloss_60_gu, &fit.gloss_low_gu, &fit.gloss_high_gu})
+      *gloss = gloss_of_index(input, pixels, found, *gloss);
   } else {
     take_found(found, fit);
   }

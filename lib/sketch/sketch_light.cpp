@@ -67,7 +67,7 @@ class Shading {
     scene.env = env;
     for (const image::AovLight& light : buffers.lights) scene.lights.push_back(render::light_of(light));
     scene.gloss_deg.assign(scene.paints.size(), kGloss_deg);
-    if (!drawn(buffers, "extent"))
+    if (!lamps_are_discs(buffers))
       for (render::Light& lamp : scene.lights) lamp.radius_rad = 0;
     render::Effects effects = render::effects_of(scene);
     effects.fresnel = fresnel_ = drawn(buffers, "fresnel");
@@ -94,9 +94,7 @@ class Shading {
     const std::size_t columns = search_columns(basis_);
     std::fill_n(column, columns, Vec3{});
     const double share = 1 / (buffers_.white_luminance * static_cast<double>(shifts_.size()));
-    // The mirror direction turns by twice as much as the normal, and less across a plane that is seen aslant.
-    const double turned = 4 * length(cross(right, down)) * std::max(0.0, dot(n, buffers_.to_viewer(x, y)));
-    const double spread = std::sqrt(turned / kPi / static_cast<double>(shifts_.size()));
+    const double spread = mirror_spread(x, y) / std::sqrt(static_cast<double>(shifts_.size()));
     for (const auto& [dx, dy] : shifts_)
       add_sample(normalized(n + dx * right + dy * down), buffers_.to_viewer(x + dx, y + dy), spread, share, column);
   }
@@ -118,6 +116,20 @@ class Shading {
     if (x0 < 0 || y0 < 0 || x1 >= buffers_.image.width || y1 >= buffers_.image.height) return {};
     if (buffers_.image.pixel(x0, y0)[part_] != buffers_.image.pixel(x1, y1)[part_]) return {};
     return 0.5 * (normal(x1, y1) - normal(x0, y0));
+  }
+
+  // Of the pixel, as the renderer has it.
+  double mirror_spread(int x, int y) const {
+    const auto mirrored = [&](int i, int j) {
+      const Vec3 n = normal(i, j), viewer = buffers_.to_viewer(i, j);
+      return 2 * dot(n, viewer) * n - viewer;
+    };
+    const auto same = [&](int i, int j) {
+      return i >= 0 && j >= 0 && i < buffers_.image.width && j < buffers_.image.height &&
+             buffers_.image.pixel(i, j)[part_] == buffers_.image.pixel(x, y)[part_];
+    };
+    return render::mirror_spread(render::change_beside(mirrored, same, x, y, 1, 0),
+                                 render::change_beside(mirrored, same, x, y, 0, 1));
   }
 
   void add_sample(const Vec3& n, const Vec3& wo, double spread, double scale, Vec3* column) const {
@@ -226,6 +238,11 @@ Result<SketchLight> light_by(const image::AovFile& buffers, const envmap::Prefil
 }
 
 }  // namespace
+
+bool lamps_are_discs(const image::AovFile& buffers) {
+  return std::ranges::any_of(buffers.lights, [](const image::AovLight& light) { return light.extent_deg > 0; }) &&
+         std::ranges::find(buffers.left_out, "extent") == buffers.left_out.end();
+}
 
 Result<SketchLight> sketch_light(const image::AovFile& buffers, const envmap::PrefilteredEnvironment& env) {
   return light_by(buffers, &env, basis_of(env));

@@ -12,6 +12,11 @@
 
 namespace goniochrome::sketch {
 
+// Whether lamps of the buffers are discs in the picture. The plan leaves extents out where no lobe of the paint that it
+// draws is narrow enough to show them; another paint under the same lamps would. They are points where the plan was
+// told to leave out what is seen of them.
+bool lamps_are_discs(const image::AovFile& buffers);
+
 // The light of the environment and of the lamps of the buffers in every lobe, as render-osmesa drew it: with the
 // effects `fresnel`, `coat`, `horizon` and `operator` where the buffers' header says that they were drawn. Both
 // arguments must outlive the result. Error: the buffers lack normals or rays.

@@ -129,6 +129,9 @@ TEST(SketchLight, KnowsTheExtentOfLamps) {
     Drawing drawing = draw(env, {"fresnel", "horizon", "extent"}, 1, extent_deg);
     EXPECT_LT(difference(drawing, *sketch_light(drawing.buffers, env), 80, false), 2e-3) << extent_deg;
     drawing.buffers.drawn.pop_back();
+    EXPECT_TRUE(lamps_are_discs(drawing.buffers));  // the paint that was drawn does not show it, others may
+    drawing.buffers.left_out = {"extent"};
+    EXPECT_FALSE(lamps_are_discs(drawing.buffers));
     EXPECT_GT(difference(drawing, *sketch_light(drawing.buffers, env), 80, false), 0.02) << extent_deg;
   }
 }

@@ -305,10 +305,7 @@ namespace {
 // the pixels as well as the curve does.
 Result<void> fit_lamps(const Material& material, const sketch::SketchLimits& limits, bool differences,
                        sketch::SketchPixels& pixels, sketch::SketchFit& fit) {
-  const std::vector<image::AovLight>& lights = material.buffers.lights;
-  const bool discs = std::ranges::any_of(lights, [](const image::AovLight& light) { return light.extent_deg > 0; });
-  const std::vector<std::string>& drawn = material.buffers.drawn;
-  if (!discs || std::ranges::find(drawn, "extent") == drawn.end() || !material.buffers.has_rays ||
+  if (!sketch::lamps_are_discs(material.buffers) || !material.buffers.has_rays ||
       !material.buffers.channel("normal.X").ok())
     return {};
   GONIO_ASSIGN(const sketch::SketchLight light, sketch::lamp_light(material.buffers, material.basis));

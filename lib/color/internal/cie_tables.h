@@ -1,4 +1,5 @@
-// The CIE's tables at every 5 nm: color-matching functions of both standard observers, and three illuminants.
+// The CIE's tables: color-matching functions of both standard observers and illuminants at every 5 nm, and the
+// functions at every nm.
 #pragma once
 
 #include <array>
@@ -16,6 +17,14 @@ struct CieRow {
 constexpr int kCieRows = 85;
 constexpr double kCieStart_nm = 360, kCieStep_nm = 5;  // to 780 nm
 extern const std::array<CieRow, kCieRows> kCieTable;
+
+struct CieObserver {
+  std::array<double, 3> observer_2, observer_10;
+};
+
+// At every nm from kCieStart_nm to 780 nm.
+constexpr int kCieObserverRows = 421;
+extern const std::array<CieObserver, kCieObserverRows> kCieObservers;
 
 // Further illuminants at the same wavelengths: C, D55, D75, F2, F7 and F11, relative.
 constexpr std::size_t kMoreIlluminants = 6;

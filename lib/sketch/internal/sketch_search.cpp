@@ -175,6 +175,27 @@ double LobeSearch::cost_with_gloss(const FoundPaint& found, double gloss) const 
                                                                     : found.search.cost;
 }
 
+bool LobeSearch::explains_as_well(const FoundPaint& found, double gloss) const {
+  constexpr double kApart_de76 = 0.5;
+  paint::LobeFit lobes = lobes_of(basis_, found.weights, samples_.coat_index);
+  if (!brdf::set_gloss(fitters_.gloss, {{60, gloss}}, lobes).ok()) return false;
+  const std::vector<color::Rgb> other = weights_of(basis_, lobes);
+  double own = 0, cost = 0, all = 0;
+  for (std::size_t i = 0; i < target_.size(); ++i) {
+    const auto shown = [&](const std::vector<color::Rgb>& w) {
+      return samples_.shown(shown_light(samples_.columns_of(i), w, samples_.reflection));
+    };
+    const color::Lab here = shown(found.weights), there = shown(other);
+    if (color::delta_e_76(here, there) < kApart_de76) continue;
+    const auto off = [&](const color::Lab& lab) {
+      const double de = color::delta_e_76(lab, target_[i]);
+      return samples_.importance[i] * std::log1p(de * de);
+    };
+    own += off(here), cost += off(there), all += samples_.importance[i];
+  }
+  return cost <= kSameCost * own + kSameCostBy * all;
+}
+
 // The two ways from a paint to its lobes make different pictures, and which of them made this one is not known: both
 // are gone, the second from where the first arrived.
 LobeSearch::Way LobeSearch::way(const std::vector<double>& start) const {

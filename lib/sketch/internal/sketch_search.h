@@ -50,6 +50,10 @@ class LobeSearch {
   // The cost of a paint found, with another gloss (gloss units).
   double cost_with_gloss(const FoundPaint& found, double gloss) const;
 
+  // Whether a paint found explains the samples as well with another gloss (gloss units). The samples that show both
+  // alike cannot tell them apart, however many there are, so that the others alone are asked.
+  bool explains_as_well(const FoundPaint& found, double gloss) const;
+
   // The matt reflectance factor that explains the samples best.
   color::Rgb matt() const;
 
