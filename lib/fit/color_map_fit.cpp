@@ -32,6 +32,7 @@ struct Knot {
   Place place;
   color::Lab lab;
   double aspecular_air_deg = 0;
+  std::vector<ColorMapRow> rows = {};  // of which this is the mean
 };
 
 // The smoothest surface through scattered colors that does not overshoot far from them: a constant plus a cone at each
@@ -130,17 +131,18 @@ class AspecularCurve {
   std::vector<double> held_out_;
 };
 
-// Rows of one place, to a fifth of a degree, become their mean. `counts` gets the number of rows behind each.
-std::vector<Knot> merged(const std::vector<Knot>& knots, std::vector<int>& counts) {
+// Rows of one place, to a fifth of a degree, become their mean.
+std::vector<Knot> merged(const std::vector<Knot>& knots) {
   std::vector<Knot> result;
   for (const Knot& knot : knots) {
     const auto same =
         std::ranges::find_if(result, [&](const Knot& k) { return distance(k.place, knot.place) < kSamePlace_deg; });
     if (same == result.end()) {
-      result.push_back(knot), counts.push_back(1);
+      result.push_back(knot);
       continue;
     }
-    const int n = ++counts[static_cast<std::size_t>(same - result.begin())];
+    same->rows.insert(same->rows.end(), knot.rows.begin(), knot.rows.end());
+    const auto n = static_cast<double>(same->rows.size());
     same->lab.L += (knot.lab.L - same->lab.L) / n;
     same->lab.a += (knot.lab.a - same->lab.a) / n;
     same->lab.b += (knot.lab.b - same->lab.b) / n;
@@ -202,31 +204,55 @@ void sort_row(const ColorMapRow& row, bool into_map, const ColorMapOptions& opti
     usable.others.push_back(row);
     return;
   }
-  usable.knots.push_back({place_of(angles), row.lab, angle_deg});
+  usable.knots.push_back({place_of(angles), row.lab, angle_deg, {row}});
   ++fit.rows;
 }
 
-double sum_of(const std::vector<double>& errors, const std::vector<int>& counts) {
-  double sum = 0;
-  for (std::size_t i = 0; i < errors.size(); ++i) sum += errors[i] * counts[i];
-  return sum;
-}
+// A real row, and how far the predictions of both models from other rows are from it.
+struct Compared {
+  ColorMapRow row;
+  double isolines_de76, aspecular_de76;
+};
 
-// Predicts every row from the others by both models, and takes the better one.
-void choose_model(const Usable& usable, const std::vector<int>& counts, const Cones& cones, const AspecularCurve& curve,
-                  const ColorMapOptions& options, ColorMapFit& fit) {
-  double isolines = sum_of(cones.held_out_de76(), counts), aspecular = sum_of(curve.held_out_de76(), counts);
+std::vector<Compared> comparisons(const Usable& usable, const std::vector<Knot>& knots, const Cones& cones,
+                                  const AspecularCurve& curve, double index) {
+  std::vector<Compared> all;
+  for (std::size_t i = 0; i < knots.size(); ++i)
+    for (const ColorMapRow& row : knots[i].rows)
+      all.push_back({row, cones.held_out_de76()[i], curve.held_out_de76()[i]});
   for (const ColorMapRow& row : usable.others) {
     const brdf::InPlaneAngles in_plane =
-        brdf::equivalent_in_plane_angles(row.light, row.view, options.index, brdf::CriticalAngle::kSlide);
+        brdf::equivalent_in_plane_angles(row.light, row.view, index, brdf::CriticalAngle::kSlide);
     const auto direction = [](double angle_rad) { return Vec3{std::sin(angle_rad), 0, std::cos(angle_rad)}; };
     const Place place =
-        place_of(brdf::flake_angles(direction(in_plane.light_rad), direction(in_plane.view_rad), options.index));
-    isolines += color::delta_e_76(cones.at(place), row.lab);
-    aspecular += color::delta_e_76(curve.at(aspecular_deg(row.light, row.view)), row.lab);
+        place_of(brdf::flake_angles(direction(in_plane.light_rad), direction(in_plane.view_rad), index));
+    all.push_back({row, color::delta_e_76(cones.at(place), row.lab),
+                   color::delta_e_76(curve.at(aspecular_deg(row.light, row.view)), row.lab)});
   }
-  fit.compared_rows = fit.rows + static_cast<int>(usable.others.size());
-  fit.isolines_de76 = isolines / fit.compared_rows, fit.aspecular_de76 = aspecular / fit.compared_rows;
+  return all;
+}
+
+// The standard error of the mean of isolines_de76 - aspecular_de76, from the sums over the rows of each light: with n
+// rows of mean m under L lights, (L/(L-1) sum_l (sum_l d - n_l m)^2)^(1/2)/n.
+std::optional<double> difference_error(const std::vector<Compared>& all, double mean) {
+  std::map<long, double> lights;  // by their angle from the normal, to a degree
+  for (const Compared& one : all)
+    lights[std::lround(std::acos(std::clamp(one.row.light.z, -1.0, 1.0)) / kDegree)] +=
+        one.isolines_de76 - one.aspecular_de76 - mean;
+  if (lights.size() < 2) return std::nullopt;
+  double squares = 0;
+  for (const auto& [light, sum] : lights) squares += sum * sum;
+  const auto count = static_cast<double>(lights.size());
+  return std::sqrt(count / (count - 1) * squares) / static_cast<double>(all.size());
+}
+
+// Takes the model that predicts rows from others better.
+void choose_model(const std::vector<Compared>& all, const ColorMapOptions& options, ColorMapFit& fit) {
+  fit.compared_rows = static_cast<int>(all.size());
+  for (const Compared& one : all)
+    fit.isolines_de76 += one.isolines_de76 / fit.compared_rows,
+        fit.aspecular_de76 += one.aspecular_de76 / fit.compared_rows;
+  fit.difference_error_de76 = difference_error(all, fit.isolines_de76 - fit.aspecular_de76);
   fit.map.aspecular = options.model == ColorMapModel::kAspecular ||
                       (options.model == ColorMapModel::kBetter && fit.aspecular_de76 < fit.isolines_de76);
   fit.held_out_de76 = fit.map.aspecular ? fit.aspecular_de76 : fit.isolines_de76;
@@ -242,8 +268,7 @@ Result<ColorMapFit> fit_checked(const std::vector<ColorMapRow>& rows, const std:
   std::map<long, int> incidences;
   for (const Knot& knot : usable.knots) ++incidences[std::lround(knot.place.incidence_deg)];
   fit.illuminations = static_cast<int>(incidences.size());
-  std::vector<int> counts;
-  const std::vector<Knot> distinct = merged(usable.knots, counts);
+  const std::vector<Knot> distinct = merged(usable.knots);
   if (distinct.size() < 4 || fit.illuminations < 2)
     return input_error(
         "a color map takes 4 readings at 2 angles of incidence or more, at least {:g} deg from specular and at most "
@@ -252,7 +277,7 @@ Result<ColorMapFit> fit_checked(const std::vector<ColorMapRow>& rows, const std:
   const Cones cones(distinct);
   const AspecularCurve curve(distinct);
   fit.map = brdf::color_map_of_size(options.size, options.index);
-  choose_model(usable, counts, cones, curve, options, fit);
+  choose_model(comparisons(usable, distinct, cones, curve, options.index), options, fit);
   fit.negative_share = fill(fit.map, cones, curve, white);
   return fit;
 }
@@ -313,7 +338,7 @@ Result<ColorMapFit> fit_color_map(const brdf::MeasuredBrdf& brdf, const color::V
   GONIO_ASSIGN(const auto rows, measured_rows(brdf, meter, pairs_in_plane()));
   std::vector<paint::DirectionPair> beside = brdf.samples();
   std::erase_if(beside, [](const paint::DirectionPair& pair) {
-    return std::abs(cross(pair.light, pair.view).z) < 1e-3;  // in plane: what the map goes through
+    return std::abs(cross(pair.light, pair.view).z) < 1e-3;  // what the map goes through
   });
   GONIO_ASSIGN(const auto checks, measured_rows(brdf, meter, beside));
   return fit_checked(rows, checks, meter.white(), options);

@@ -2,6 +2,7 @@
 // incidence or from a measured BRDF. goniochrome-theory(7), ISOCHROMATIC LINES.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "base/result.h"
@@ -38,6 +39,9 @@ struct ColorMapFit {
   // the one of the model that the map has.
   double isolines_de76 = 0, aspecular_de76 = 0, held_out_de76 = 0;
   int compared_rows = 0;
+  // The standard error of the difference between both means. The rows of one light err together, so that it is found
+  // from the lights. Nothing where all rows have one light.
+  std::optional<double> difference_error_de76;
   double negative_share = 0;  // of texels with a negative channel: colors outside the working space
 };
 

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "base/angles.h"
+#include "base/random_for_test.h"
 #include "base/scratch_for_test.h"
 #include "color/spectrum.h"
 
@@ -160,6 +161,30 @@ TEST(ColorMapFit, TheModelThatPredictsHeldOutRowsBetterIsTaken) {
   const color::Rgb there = brdf::reflectance_factor(matt->map, wi, wo, brdf::CriticalAngle::kClip),
                    back = brdf::reflectance_factor(matt->map, wo, wi, brdf::CriticalAngle::kIndexOne);
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(there[c], back[c], 1e-9);
+}
+
+// Its mean over many draws of rows whose errors are the lights' own, beside the spread of the difference over the
+// draws.
+TEST(ColorMapFit, TheErrorOfTheDifferenceIsItsSpread) {
+  TestNumbers next(11);
+  double sum = 0, squares = 0, told = 0;
+  constexpr int kDraws = 60;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    std::vector<ColorMapRow> rows = in_plane_rows(12.5);
+    double shift = 0, last_light = 0;
+    for (ColorMapRow& row : rows) {
+      if (row.light.z != last_light) shift = 12 * (next() - 0.5), last_light = row.light.z;
+      row.lab.b += shift;
+    }
+    const auto fit = fit_color_map(rows, white(), {16, 1.5});
+    ASSERT_TRUE(fit.ok() && fit->difference_error_de76);
+    const double difference = fit->isolines_de76 - fit->aspecular_de76;
+    sum += difference, squares += difference * difference, told += *fit->difference_error_de76 / kDraws;
+  }
+  const double spread = std::sqrt((squares - sum * sum / kDraws) / (kDraws - 1));
+  // Six lights tell a spread to a third; between lights the paint itself differs, so that the error told is the larger.
+  EXPECT_GT(told, 0.7 * spread);
+  EXPECT_LT(told, 5 * spread);
 }
 
 // The held-out error is what it says: each row is left out in turn, the map is made from the others, and is asked for

@@ -111,42 +111,6 @@ TEST(Coat, NoPaintSendsBackMoreThanItGetsWithoutAMirror) {
   EXPECT_LE(moved, 1e-9);
 }
 
-// The same in pictures of every engine. Prefiltered engines draw the coat by straight pieces, 2e-3; paths have noise.
-TEST(Coat, NoPixelOfAnyEngineIsBrighterThanTheEvenSky) {
-  const mesh::Mesh mesh = sphere_mesh(48);
-  const envmap::PrefilteredEnvironment env = constant_env({1, 1, 1}, basis().exponents);
-  const envmap::Environment sky = even_sky();
-  const envmap::BlockTree blocks{sky};
-  Scene scene;
-  scene.mesh = &mesh, scene.env = &env, scene.texels = &blocks, scene.gloss_deg = {60};
-  const View view{Camera::orbit(mesh, 30, 20, 1, 30, 1), 24, 24, 1, false};
-  for (const EngineInfo* engine : engines()) {
-    const bool is_exact = engine->needs_texels || engine->needs_mesh;
-    auto renderer = Renderer::create();
-    ASSERT_TRUE(renderer.ok());
-    double most = 0, most_textbook = 0;
-    const std::size_t step = is_exact ? 6 : 1;
-    for (std::size_t i = 0; i < fitted_paints().size(); i += step) {
-      for (const bool coat : {true, false}) {
-        if (!coat && is_exact && i > 0) continue;
-        scene.paints = {coat ? fitted_paints()[i] : brdf::under_coat(fitted_paints()[i], paint::kNoCoat)};
-        ASSERT_TRUE(renderer->load(scene, engine->name).ok()) << engine->name;
-        Frame frame;
-        ASSERT_TRUE(renderer->draw(view, frame).ok()) << engine->name;
-        double& brightest = coat ? most : most_textbook;
-        for (int y = 0; y < 24; ++y)
-          for (int x = 0; x < 24; ++x) {
-            const float* pixel = frame.picture.pixel(x, y);
-            if (frame.gbuffer->part(x, y) >= 0)
-              brightest = std::max(brightest, largest({pixel[0], pixel[1], pixel[2]}));
-          }
-      }
-    }
-    EXPECT_LE(most, 1 + (is_exact ? 5e-3 : 2e-3)) << engine->name;
-    EXPECT_GT(most_textbook, 1.02) << engine->name;
-  }
-}
-
 // Lamps: each engine has the passage of the lamp's own direction, so that only floats part it from the exact sum. The
 // control leaves that passage out.
 TEST(Coat, LampsPassItAtTheirOwnAngle) {

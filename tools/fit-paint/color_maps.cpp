@@ -11,7 +11,7 @@ namespace goniochrome::tool {
 
 namespace {
 
-constexpr int kWarningsShown = 5;
+constexpr int kWarningsShown = 5, kModelsTold = 5;
 
 bool is_plain(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
@@ -72,6 +72,7 @@ Result<std::optional<brdf::ColorMap>> ColorMaps::add(paint::Paint& paint, const 
                                     {"goniochrome:heldOutAspecular", static_cast<float>(fit->aspecular_de76)}}));
   paint.color_map = paint::ColorMapReference{(folder_from_output(options_) / name).generic_string(), asked.index};
   ++made_;
+  tell_model(*fit, paint.name);
   sum_held_out_ += fit->held_out_de76;
   if (fit->map.aspecular) ++aspecular_;
   session_.add("color_maps", [&] {
@@ -85,11 +86,28 @@ Result<std::optional<brdf::ColorMap>> ColorMaps::add(paint::Paint& paint, const 
                 {"model", fit->map.aspecular ? "aspecular" : "isolines"},
                 {"isolines_de76", json_number(fit->isolines_de76)},
                 {"aspecular_de76", json_number(fit->aspecular_de76)},
+                {"difference_error_de76",
+                 fit->difference_error_de76 ? json_number(*fit->difference_error_de76) : Json(nullptr)},
                 {"compared_rows", fit->compared_rows},
                 {"held_out_de76", json_number(fit->held_out_de76)},
                 {"negative_share", fit->negative_share}};
   });
   return std::optional<brdf::ColorMap>(fit->map);
+}
+
+// Which model the map of a paint has, and how sure it is that this is the better one.
+void ColorMaps::tell_model(const fit::ColorMapFit& fit, const std::string& name) {
+  if (++told_ > kModelsTold) return;
+  constexpr double kSure = 2;  // standard errors
+  const double apart = std::abs(fit.isolines_de76 - fit.aspecular_de76);
+  const bool sure = fit.difference_error_de76 && apart >= kSure * *fit.difference_error_de76;
+  session_.say(fmt::format(
+      "{}: the map goes by {}: {} readings are predicted to {:.2f} dE76 by isolines and to {:.2f} by the aspecular "
+      "angle, which differ by {:.2f}{}{}",
+      name, fit.map.aspecular ? "the aspecular angle" : "isolines", fit.compared_rows, fit.isolines_de76,
+      fit.aspecular_de76, apart,
+      fit.difference_error_de76 ? fmt::format(" with a standard error of {:.2f}", *fit.difference_error_de76) : "",
+      sure ? "" : ": they do not tell which is better"));
 }
 
 void ColorMaps::finish() {

@@ -30,11 +30,12 @@ class ColorMaps {
 
  private:
   std::string file_name(const std::string& paint);
+  void tell_model(const fit::ColorMapFit& fit, const std::string& name);
 
   const Options& options_;
   cli::Session& session_;
   std::set<std::string> names_;
-  int made_ = 0, without_ = 0, aspecular_ = 0;
+  int made_ = 0, without_ = 0, aspecular_ = 0, told_ = 0;
   double sum_held_out_ = 0;
 };
 

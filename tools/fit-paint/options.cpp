@@ -77,7 +77,8 @@ void add_options(cli::ToolSpec& spec, Options& o) {
           "isolines see the same flakes at the same angle, which follows interference paints out of the plane. "
           "aspecular takes the color from the aspecular angle alone, which is closer on near-matt paints. better "
           "leaves out each reading in turn, predicts it from the others by both, and takes the model that errs "
-          "less; the report and the file tell both errors.");
+          "less; the report and the file tell both errors. A message tells whether the two errors differ by more "
+          "than two standard errors.");
   spec.option("tilts", "none|N,...", "8,16", &o.tilts, "look-ups of tilted lobes that stand for a color map")
       .more(
           "A paint that has a color map by isolines also gets tilted lobes, by which pictures under image light come "
@@ -150,6 +151,9 @@ void add_report(cli::ToolSpec& spec) {
       {"color_maps[].isolines_de76", "mean CIE 1976 difference of a reading that isolines predict from the others"},
       {"color_maps[].aspecular_de76", "the same for the aspecular angle alone"},
       {"color_maps[].held_out_de76", "the one of these two for the model that the map has"},
+      {"color_maps[].difference_error_de76",
+       "standard error of the difference of both means, found from the lights, as readings of one light err together; "
+       "null where there is only one"},
       {"color_maps[].compared_rows",
        "number of readings behind these figures; they are measured, and none of them is interpolated from others"},
       {"color_maps[].negative_share", "share of the map that is outside the working space"},

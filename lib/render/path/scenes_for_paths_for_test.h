@@ -74,6 +74,7 @@ struct PathStage {
   std::vector<color::Rgb> emission;
   std::optional<Ground> ground;
   std::optional<Transport> transport;
+  bool rough_coats = false;
 
   PathStage(mesh::Mesh m, std::vector<paint::LobeFit> paints) : mesh(std::move(m)) {
     scene.mesh = &mesh;
@@ -88,6 +89,7 @@ struct PathStage {
     path.environment = environment ? &*environment : nullptr;
     path.emission = emission;
     path.ground = ground;
+    path.rough_coats = rough_coats;
     auto made = Transport::create(path);
     if (!made.ok()) throw std::runtime_error(made.error().message);
     transport.emplace(*std::move(made));

@@ -56,6 +56,18 @@ Scene mean_scene(const Scene& scene) {
   return mean;
 }
 
+// Whether gloss and mirror are the same in all bands, so that a rough coat can stand for them.
+bool is_coat_gray(const paint::BandLobes& lobes) {
+  const auto even = [](const color::Bands& bands) {
+    constexpr double kEven = 1e-9;
+    const double mean = color::mean(bands);
+    return std::ranges::all_of(bands, [&](double v) { return std::abs(v - mean) <= kEven * std::abs(mean); });
+  };
+  return std::ranges::all_of(lobes.views, [&](const paint::BandWeights& view) {
+    return even(view.mirror) && std::ranges::all_of(view.gloss, even);
+  });
+}
+
 Result<void> check_spectra(const PathScene& path_scene) {
   const Scene& scene = *path_scene.scene;
   const SceneSpectra& spectra = *scene.spectra;
@@ -76,14 +88,15 @@ Result<void> check_spectra(const PathScene& path_scene) {
 
 }  // namespace
 
-// The numbers of lobes are those of TracedPaint: ascending exponents of the lobes with weight.
-SpectralPaths::Paint SpectralPaths::laid_out(const paint::BandLobes& lobes, double gloss_deg) {
+// The numbers of lobes are those of TracedPaint: ascending exponents of the lobes with weight. A rough coat stands for
+// gloss and mirror.
+SpectralPaths::Paint SpectralPaths::laid_out(const paint::BandLobes& lobes, double gloss_deg, bool rough) {
   const double gloss_scale = 1 / brdf::fresnel_dielectric(std::cos(gloss_deg * kDegree), brdf::kCoatIndex);
   Paint paint;
   paint.views.resize(lobes.views.size());
   for (std::size_t v = 0; v < lobes.views.size(); ++v) {
     paint.views[v].diffuse = floats(lobes.views[v].diffuse);
-    paint.views[v].mirror = floats(lobes.views[v].mirror);
+    paint.views[v].mirror = floats(lobes.views[v].mirror, rough ? 0 : 1);
   }
   for (std::size_t j = 0; j < lobes.exponents.size(); ++j) {
     const bool any = std::ranges::any_of(lobes.views, [&](const paint::BandWeights& view) {
@@ -92,7 +105,7 @@ SpectralPaths::Paint SpectralPaths::laid_out(const paint::BandLobes& lobes, doub
     if (!any) continue;
     for (std::size_t v = 0; v < lobes.views.size(); ++v) {
       paint.views[v].directional_diffuse.push_back(floats(lobes.views[v].directional_diffuse[j]));
-      paint.views[v].gloss.push_back(floats(lobes.views[v].gloss[j], gloss_scale));
+      paint.views[v].gloss.push_back(floats(lobes.views[v].gloss[j], rough ? 0 : gloss_scale));
     }
   }
   return paint;
@@ -104,7 +117,8 @@ Result<Transport> SpectralPaths::transport(const PathScene& path_scene) {
   const Scene mean = mean_scene(*path_scene.scene);
   PathScene means = path_scene;
   means.scene = &mean;
-  means.rough_coats = false;
+  means.rough_coats = path_scene.rough_coats && std::ranges::all_of(spectra.paints, is_coat_gray) &&
+                      (!spectra.floor || is_coat_gray(*spectra.floor));
   means.emission.clear();
   for (const color::Bands& bands : spectra.emission) means.emission.push_back(gray(color::mean(bands)));
   if (means.ground) means.ground->paint = paint::mean_lobes(*spectra.floor);
@@ -114,9 +128,11 @@ Result<Transport> SpectralPaths::transport(const PathScene& path_scene) {
   paths->eye_ = spectra.eye.weights();
   for (std::size_t part = 0; part < spectra.paints.size(); ++part) {
     const double gloss_deg = part < mean.gloss_deg.size() ? mean.gloss_deg[part] : brdf::kGlossIncidence_deg;
-    paths->paints_.push_back(laid_out(spectra.paints[part], gloss_deg));
+    paths->paints_.push_back(laid_out(spectra.paints[part], gloss_deg, transport.paints_[part].has_rough_coat()));
   }
-  if (spectra.floor) paths->paints_.push_back(laid_out(*spectra.floor, brdf::kGlossIncidence_deg));
+  if (spectra.floor)
+    paths->paints_.push_back(
+        laid_out(*spectra.floor, brdf::kGlossIncidence_deg, transport.paints_.back().has_rough_coat()));
   for (const color::Bands& bands : spectra.emission) paths->emission_.push_back(floats(bands));
   // The mean is the radiance of the transport's own lamps, which grow with nearness.
   for (const color::Bands& bands : spectra.lights) {
@@ -149,6 +165,7 @@ class SpectralPaths::Vertex {
       sum.fill(kInversePi * shares.diffuse);
       return sum;
     }
+    sum.fill(shares.coat);
     blend([&](const View& view, float part) {
       add(sum, part * shares.diffuse, view.diffuse);
       for (std::size_t j = 0; j < view.gloss.size(); ++j) {

@@ -37,7 +37,7 @@ class SpectralPaths {
   };
   class Vertex;
   struct Next;
-  static Paint laid_out(const paint::BandLobes& lobes, double gloss_deg);
+  static Paint laid_out(const paint::BandLobes& lobes, double gloss_deg, bool rough);
   void add_direct(const Transport& transport, const Vertex& vertex, const Carrier& path,
                   const std::array<double, 4>& emitter, const std::array<double, 4>& lamp, Carrier& sum) const;
   Next next_ray(const Transport& transport, const Vertex& vertex, const std::array<double, 4>& numbers,

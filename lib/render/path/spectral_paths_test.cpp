@@ -7,6 +7,9 @@
 #include <cmath>
 
 #include "base/angles.h"
+#include "base/testdata_for_test.h"
+#include "fit/paint_fit.h"
+#include "formats/xml.h"
 #include "render/path/scenes_for_paths_for_test.h"
 
 namespace goniochrome::render {
@@ -113,6 +116,55 @@ TEST(SpectralPaths, CountBouncesAsThreeChannelsDo) {
     for (int c = 0; c < 3; ++c)
       EXPECT_NEAR(seen.radiance[c], expected[c], 4 * std::sqrt(seen.covariance[static_cast<std::size_t>(c)]) + 1e-5)
           << bounces;
+  }
+}
+
+// A rough coat in bands is that in three channels, by light of a wall, and by that of a narrow lamp, whose disc
+// channels see by a sum of a few hundred directions; the control is a scene whose coats stay lobes.
+TEST(SpectralPaths, DrawRoughCoats) {
+  const formats::Basis basis = *formats::read_basis(testdata("b7.basis.xml"));
+  paint::Paint satin;
+  satin.measurement = paint::Measurement{{}, "", {{{45, 45}, {40, 0, 0}}}};
+  satin.gloss = {{20, 18}, {60, 60}, {85, 88}};
+  const paint::LobeFit fitted = fit::PaintFitter(basis, {}).fit(satin)->lobes;
+  ASSERT_FALSE(fitted.views.empty());
+  for (const bool lamp : {false, true}) {
+    const auto make = [&](bool spectral, bool rough, SceneSpectra& spectra) {
+      auto stage = std::make_unique<PathStage>(box_mesh(false), std::vector<paint::LobeFit>(5, fitted));
+      stage->rough_coats = rough;
+      stage->scene.gloss_deg.assign(5, 20);
+      if (lamp) {
+        Light light;
+        light.direction = normalized({0.2, 1, 0.3}), light.radius_rad = 0.02, light.white = {2, 2, 2};
+        stage->scene.lights = {light};
+      } else {
+        stage->emission = {{}, {}, {}, {}, {1, 1, 1}};
+      }
+      if (spectral) {
+        for (const paint::LobeFit& paint : stage->scene.paints) spectra.paints.push_back(even(paint));
+        for (const Light& light : stage->scene.lights) spectra.lights.push_back(color::even_bands(light.white.y));
+        for (const color::Rgb& e : stage->emission) spectra.emission.push_back(color::even_bands(e.y));
+        stage->scene.spectra = &spectra;
+      }
+      stage->build();
+      return stage;
+    };
+    SceneSpectra unused{eye(), {}, {}, {}, {}}, with{eye(), {}, {}, {}, {}}, without{eye(), {}, {}, {}, {}};
+    const auto channels = make(false, true, unused), bands = make(true, true, with), lobes = make(true, false, without);
+    PathOptions options;
+    options.bounces = lamp ? 0 : 6;
+    double control = 0;
+    for (const Vec3& to : {Vec3{0.1, -1, 0.1}, Vec3{-1, -0.2, 0.3}, Vec3{0.2, -0.3, -1}}) {
+      const Vec3 from{0.3, 0.2, 0.2};
+      const PathEstimate a = channels->seen(options, from, to, 2500), b = bands->seen(options, from, to, 2500, 7),
+                         c = lobes->seen(options, from, to, 2500, 11);
+      const double sigma = std::sqrt(a.covariance[1] + b.covariance[1]);
+      EXPECT_LT(sigma, 0.03 * a.radiance.y);
+      const double apart = 4 * sigma + 1e-5 + (lamp ? 1e-3 * a.radiance.y : 0);
+      EXPECT_NEAR(a.radiance.y, b.radiance.y, apart) << lamp;
+      control = std::max(control, std::abs(c.radiance.y - a.radiance.y) / apart);
+    }
+    EXPECT_GT(control, 1.5) << lamp;
   }
 }
 

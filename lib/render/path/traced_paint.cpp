@@ -297,6 +297,11 @@ PaintedPoint::Shares PaintedPoint::shares(const Float3& to_light) const {
   const float base = passages(cos_i) * cos_i;
   shares.diffuse = base;
   shares.pdf = diffuse_chance_ * cos_i / kFloatPi;
+  if (coat_ != nullptr) {
+    const brdf::CoatFacets::Sent sent = coat_->sent(local(to_light), local(viewer_));
+    shares.coat = static_cast<float>(sent.f_cos);
+    shares.pdf += coat_chance_ * static_cast<float>(sent.pdf);
+  }
   if (count_ > 0) {
     const float fresnel = coat_reflectance(std::min(1.0F, 0.5F * rays::length(to_light + viewer_)));
     visit_lobes(to_light, [&](const Lobe& lobe, float power) {

@@ -37,8 +37,8 @@ class TracedPaint {
 
   // Draws the rough coat that its gloss lobes and its mirror stand for, in their place; nothing where they stand for
   // none, see brdf::coat_of_lobes(), or where the paint is brushed. `paint` and `gloss_deg` are those of create().
-  // Shares have no such coat.
   void put_coat(const paint::LobeFit& paint, double gloss_deg);
+  bool has_rough_coat() const { return coat_.has_value(); }
 
   // Whether all that it shows are its lobes, its diffuse part and its mirror, which is not so with a texture or a map.
   bool is_lobe_model() const { return map_ == nullptr && layer_ == nullptr && !coat_; }
@@ -116,11 +116,11 @@ class PaintedPoint {
   Parts parts(const rays::Float3& to_light) const;
 
   // What each weight of the paint counts in f cos_i: K_D, and of each lobe of the paint, by its number among those with
-  // weight, K_DD and K_G; and the density that drawn() gives the direction. So that other weights than those in three
-  // channels can be taken. Not for textures and color maps.
+  // weight, K_DD and K_G; f cos_i of a rough coat; and the density that drawn() gives the direction. So that other
+  // weights than those in three channels can be taken. Not for textures and color maps.
   struct Shares {
     float pdf = 0;  // 1/sr; 0: below the horizon, no light
-    float diffuse = 0;
+    float diffuse = 0, coat = 0;
     float directional_diffuse[kMostTracedLobes] = {}, gloss[kMostTracedLobes] = {};
   };
   Shares shares(const rays::Float3& to_light) const;

@@ -34,7 +34,7 @@ struct PathScene {
   // Of that environment, where it is there already; else it is made.
   std::shared_ptr<const EnvironmentTable> table = nullptr;
   // Whether satin coats are drawn as rough surfaces, and not by the lobes that stand for them: for pictures that are
-  // drawn by paths alone. Light in bands has lobes.
+  // drawn by paths alone.
   bool rough_coats = false;
   double tilt_tolerance = 1e-3;  // of the tilted normals of brushed paints, relative to the lobe's peak
 };
