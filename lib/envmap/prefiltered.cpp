@@ -87,12 +87,16 @@ image::ImagePart part_of(const std::string& name, const PrefilteredLobe& lobe, c
   return part;
 }
 
-double number_attribute(const image::ImagePart& part, const std::string& name) {
-  const auto found = part.attributes.find(name);
-  if (found == part.attributes.end()) return 0;
+double number_attribute(const image::Attributes& attributes, const std::string& name) {
+  const auto found = attributes.find(name);
+  if (found == attributes.end()) return 0;
   if (const auto* number = std::get_if<float>(&found->second)) return *number;
   const auto* whole = std::get_if<int>(&found->second);
   return whole ? *whole : 0;
+}
+
+double number_attribute(const image::ImagePart& part, const std::string& name) {
+  return number_attribute(part.attributes, name);
 }
 
 std::string text_attribute(const image::ImagePart& part, const std::string& name) {
@@ -166,17 +170,25 @@ const PrefilteredLobe* PrefilteredEnvironment::lobe(double exponent) const {
   return same(diffuse) && diffuse.map.size > 0 ? &diffuse : nullptr;
 }
 
-Result<PrefilteredEnvironment> read_env(const std::string& path) {
+Result<PrefilteredEnvironment> read_env(const std::string& path, const std::function<bool(double)>& is_wanted) {
   GONIO_ASSIGN(InputFile input, InputFile::open(path));
   GONIO_ASSIGN(const std::string content, input.rest(std::string::npos));
   if (content.empty()) return input_error("{}: is empty: name an EXR file", input.name());
-  GONIO_ASSIGN(std::vector<image::ImagePart> parts, image::decoded_exr(content, input.name()));
+  image::ExrWanted wanted;
+  if (is_wanted) {
+    wanted.part = [&](const std::string& name, const image::Attributes& attributes) {
+      if (name == "mirror") return is_wanted(paint::kMirrorExponent);
+      return !name.starts_with("lobe-") || is_wanted(number_attribute(attributes, kExponent));
+    };
+  }
+  GONIO_ASSIGN(std::vector<image::ImagePart> parts, image::decoded_exr(content, input.name(), wanted));
   if (!text_attribute(parts.front(), "goniochrome:exponents").empty()) return read_mip(content, input.name());
   PrefilteredEnvironment env;
   env.mirror.exponent = paint::kMirrorExponent;
   for (image::ImagePart& part : parts) {
     const std::string name = part.name;
     if (name != "diffuse" && name != "mirror" && !name.starts_with("lobe-")) continue;
+    if (part.image.data.empty()) continue;  // not wanted
     if (env.source.empty()) env.source = text_attribute(part, "goniochrome:source");
     if (name == "diffuse") {
       auto spots = spots_of_text(text_attribute(part, kSpots));

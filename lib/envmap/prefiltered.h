@@ -2,6 +2,7 @@
 // goniochrome-theory(7), PREFILTERING; the file format is in goniochrome-paint(5).
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -50,8 +51,10 @@ struct PrefilteredEnvironment {
   const PrefilteredLobe* lobe(double exponent) const;
 };
 
-// Reads parts diffuse, lobe-NNN and mirror, or the levels of a mip-mapped cube. Error: the part, and what is wrong.
-Result<PrefilteredEnvironment> read_env(const std::string& path);
+// Reads parts diffuse, lobe-NNN and mirror, or the levels of a mip-mapped cube. Of the lobes and the mirror it reads
+// only those whose exponent is wanted; without the function it reads all. Error: the part, and what is wrong.
+Result<PrefilteredEnvironment> read_env(const std::string& path,
+                                        const std::function<bool(double exponent)>& is_wanted = {});
 
 // Writes the parts; half floats unless a value or the tolerance needs float. `command` is kept for provenance. Lat-long
 // maps and cubes with texel centers on the edges are written by OpenEXR's own conventions, tagged `envmap`.

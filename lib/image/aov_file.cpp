@@ -6,6 +6,7 @@
 
 #include "base/json.h"
 #include "base/text.h"
+#include "image/exr.h"
 
 namespace goniochrome::image {
 
@@ -122,8 +123,8 @@ std::string drawn_by_rays(const ImagePart& picture) {
   return file.drawn_by_rays;
 }
 
-Result<AovFile> read_aov_file(const std::string& path) {
-  GONIO_ASSIGN(auto read, read_exr(path));
+Result<AovFile> read_aov_file(const std::string& path, const std::vector<std::string>& channels) {
+  GONIO_ASSIGN(auto read, read_exr(path, {.part = {}, .channels = channels}));
   const Attributes& attributes = read.front().attributes;
   const auto text = [&](const char* name) { return attribute_or<std::string>(attributes, name, ""); };
   AovFile file;

@@ -57,7 +57,8 @@ struct AovFile {
 // AovFile::drawn_by_rays of a picture that was read without its buffers; "" where it does not tell.
 std::string drawn_by_rays(const ImagePart& picture);
 
-// Error: the file is not an EXR file, or its header is not one that render-osmesa writes.
-Result<AovFile> read_aov_file(const std::string& path);
+// The file, or of its picture and buffers only the channels named, in that order and as far as it has them. Error: it
+// is not an EXR file, or its header is not one that render-osmesa writes.
+Result<AovFile> read_aov_file(const std::string& path, const std::vector<std::string>& channels = {});
 
 }  // namespace goniochrome::image

@@ -110,8 +110,17 @@ std::vector<std::string> ordered_channels(const Imf::ChannelList& list) {
   return names;
 }
 
+// The channels that are wanted, as far as the part has them; all where none is named.
+std::vector<std::string> wanted_channels(const Imf::ChannelList& list, const std::vector<std::string>& wanted) {
+  if (wanted.empty()) return ordered_channels(list);
+  std::vector<std::string> names;
+  for (const std::string& name : wanted)
+    if (list.findChannel(name)) names.push_back(name);
+  return names;
+}
+
 Result<ImagePart> decoded_part(Imf::MultiPartInputFile& file, int index, const std::string& file_name,
-                               std::size_t file_bytes) {
+                               std::size_t file_bytes, const ExrWanted& wanted) {
   const Imf::Header& header = file.header(index);
   ImagePart part;
   if (header.hasName()) part.name = header.name();
@@ -119,14 +128,17 @@ Result<ImagePart> decoded_part(Imf::MultiPartInputFile& file, int index, const s
   if (header.hasType() && Imf::isDeepData(header.type()))
     return input_error("{}: holds deep data: flatten it first", where);
   if (!file.partComplete(index)) return input_error("{}: is cut off: some scan lines are missing", where);
+  part.attributes = attributes_of(header);
+  if (wanted.part && !wanted.part(part.name, part.attributes)) return part;
 
   const Imath::Box2i& window = header.dataWindow();
   Image& image = part.image;
   image.width = window.max.x - window.min.x + 1;
   image.height = window.max.y - window.min.y + 1;
-  image.channel_names = ordered_channels(header.channels());
+  image.channel_names = wanted_channels(header.channels(), index == 0 ? wanted.channels : std::vector<std::string>());
   image.channels = static_cast<int>(image.channel_names.size());
   const std::size_t samples = static_cast<std::size_t>(image.width) * image.height * image.channels;
+  if (image.channels == 0 && index == 0 && !wanted.channels.empty()) return part;
   if (samples == 0) return input_error("{}: holds no pixels", where);
   if (samples > kMostSamples || samples / most_samples_a_byte(header.compression()) > file_bytes)
     return input_error("{}: {} x {} pixels are too many for a file of {} bytes", where, image.width, image.height,
@@ -144,7 +156,6 @@ Result<ImagePart> decoded_part(Imf::MultiPartInputFile& file, int index, const s
     buffer.insert(image.channel_names[c],
                   Imf::Slice::Make(Imf::FLOAT, image.data.data() + c, window, x_stride, y_stride));
   }
-  part.attributes = attributes_of(header);
   Imf::InputPart input(file, index);
   input.setFrameBuffer(buffer);
   input.readPixels(window.min.y, window.max.y);
@@ -158,7 +169,8 @@ void use_threads() {
 
 }  // namespace
 
-Result<std::vector<ImagePart>> decoded_exr(const std::string& content, const std::string& name) {
+Result<std::vector<ImagePart>> decoded_exr(const std::string& content, const std::string& name,
+                                           const ExrWanted& wanted) {
   use_threads();
   // The library itself tells that a file is no EXR file at all.
   if (is_exr(content) && !is_sound_exr_header(content))
@@ -168,7 +180,7 @@ Result<std::vector<ImagePart>> decoded_exr(const std::string& content, const std
     Imf::MultiPartInputFile file(stream, threads());
     std::vector<ImagePart> parts;
     for (int i = 0; i < file.parts(); ++i) {
-      GONIO_ASSIGN(auto part, decoded_part(file, i, name, content.size()));
+      GONIO_ASSIGN(auto part, decoded_part(file, i, name, content.size(), wanted));
       parts.push_back(std::move(part));
     }
     return parts;
@@ -180,10 +192,14 @@ Result<std::vector<ImagePart>> decoded_exr(const std::string& content, const std
 }
 
 Result<std::vector<ImagePart>> read_exr(const std::string& path) {
+  return read_exr(path, {});
+}
+
+Result<std::vector<ImagePart>> read_exr(const std::string& path, const ExrWanted& wanted) {
   GONIO_ASSIGN(InputFile input, InputFile::open(path));
   GONIO_ASSIGN(const std::string content, input.rest(std::string::npos));
   if (content.empty()) return input_error("{}: is empty: name an EXR file", input.name());
-  return decoded_exr(content, input.name());
+  return decoded_exr(content, input.name(), wanted);
 }
 
 namespace {
@@ -263,11 +279,12 @@ void set_attributes(Imf::Header& header, const Attributes& attributes) {
 }
 
 Imf::Header header_of(const ImagePart& part, PixelType type, const std::vector<std::string>& names,
-                      const Imath::Box2i& display) {
+                      const Imath::Box2i& display, ExrStorage storage) {
   const Imath::Box2i data(Imath::V2i(0, 0), Imath::V2i(part.image.width - 1, part.image.height - 1));
   Imf::Header header(display, data);
   set_attributes(header, part.attributes);
-  header.compression() = is_compressible(part, type) ? Imf::ZIP_COMPRESSION : Imf::NO_COMPRESSION;
+  const bool packed = storage == ExrStorage::kZip && is_compressible(part, type);
+  header.compression() = packed ? Imf::ZIP_COMPRESSION : Imf::NO_COMPRESSION;
   header.zipCompressionLevel() = kZipLevel;
   header.setType(Imf::SCANLINEIMAGE);
   header.setName(part.name);
@@ -303,7 +320,7 @@ void write_part(Imf::MultiPartOutputFile& file, int index, const ImagePart& part
   output.writePixels(image.height);
 }
 
-Result<std::string> encoded(const std::vector<ImagePart>& given) {
+Result<std::string> encoded(const std::vector<ImagePart>& given, ExrStorage storage) {
   std::vector<ImagePart> unnamed;  // only filled where names are missing
   const bool name_all = std::any_of(given.begin(), given.end(), [](const ImagePart& p) { return p.name.empty(); });
   if (name_all) {
@@ -323,7 +340,7 @@ Result<std::string> encoded(const std::vector<ImagePart>& given) {
     names.push_back(channel_names(part.image));
     GONIO_ASSIGN(const PixelType type, storage_type(part, names.back()));
     types.push_back(type);
-    headers.push_back(header_of(part, type, names.back(), display));
+    headers.push_back(header_of(part, type, names.back(), display, storage));
   }
   use_threads();
   MemoryOutput stream;
@@ -336,17 +353,21 @@ Result<std::string> encoded(const std::vector<ImagePart>& given) {
 
 }  // namespace
 
-Result<void> write_exr(const std::string& path, const std::vector<ImagePart>& parts) {
-  const std::string shown = path.empty() || path == "-" ? "standard output" : path;
+Result<std::string> exr_content(const std::string& name, const std::vector<ImagePart>& parts, ExrStorage storage) {
   try {
-    auto content = encoded(parts);
-    if (!content.ok()) return input_error("{}: {}", shown, content.error().message);
-    return write_file(path, content.value());
+    auto content = encoded(parts, storage);
+    if (!content.ok()) return input_error("{}: {}", name, content.error().message);
+    return content;
   } catch (const std::bad_alloc&) {
-    return input_error("{}: cannot be written as EXR: there is too little memory for it", shown);
+    return input_error("{}: cannot be written as EXR: there is too little memory for it", name);
   } catch (const std::exception& e) {
-    return input_error("{}: cannot be written as EXR: {}", shown, e.what());
+    return input_error("{}: cannot be written as EXR: {}", name, e.what());
   }
+}
+
+Result<void> write_exr(const std::string& path, const std::vector<ImagePart>& parts) {
+  GONIO_ASSIGN(const std::string content, exr_content(path.empty() || path == "-" ? "standard output" : path, parts));
+  return write_file(path, content);
 }
 
 }  // namespace goniochrome::image

@@ -1,6 +1,7 @@
 // EXR pictures in memory.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -8,7 +9,17 @@
 
 namespace goniochrome::image {
 
-// All parts of an EXR file held in memory; `name` is what errors call it.
-Result<std::vector<ImagePart>> decoded_exr(const std::string& content, const std::string& name);
+// What is decoded of an EXR file, which takes most of the time of reading one.
+struct ExrWanted {
+  // Whether the pixels of a part are wanted, by its name and attributes; without the function those of all parts are.
+  std::function<bool(const std::string& name, const Attributes& attributes)> part = {};
+  // The channels of the first part that are wanted, in their order in a pixel, as far as it has them; empty: all.
+  std::vector<std::string> channels = {};
+};
+
+// All parts of an EXR file held in memory; `name` is what errors call it. A part that is not wanted has no pixels.
+Result<std::vector<ImagePart>> decoded_exr(const std::string& content, const std::string& name,
+                                           const ExrWanted& wanted = {});
+Result<std::vector<ImagePart>> read_exr(const std::string& path, const ExrWanted& wanted);
 
 }  // namespace goniochrome::image

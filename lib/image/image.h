@@ -60,6 +60,12 @@ Result<std::vector<ImagePart>> read_exr(const std::string& path);
 // its number.
 Result<void> write_exr(const std::string& path, const std::vector<ImagePart>& parts);
 
+// The bytes of that file, or of one that is not compressed; `name` is what errors call it. Without compression,
+// pictures of one size whose attributes have the same lengths take the same number of bytes.
+enum class ExrStorage { kZip, kPlain };
+Result<std::string> exr_content(const std::string& name, const std::vector<ImagePart>& parts,
+                                ExrStorage storage = ExrStorage::kZip);
+
 // What a CMYK JPEG or TIFF becomes: RGB without regard to its profile, or four channels C, M, Y and K, where 1 is full
 // ink.
 enum class Inks { kAsRgb, kKept };

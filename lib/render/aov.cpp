@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "base/angles.h"
+#include "base/parallel.h"
 #include "paint/geometry.h"
 
 namespace goniochrome::render {
@@ -102,8 +103,8 @@ Result<Gbuffer> gbuffer_of(const image::AovFile& buffers) {
   const image::Image& image = buffers.image;
   Gbuffer gbuffer{image.width, image.height, {}, {buffers.corner, buffers.right, buffers.down}};
   gbuffer.data.resize(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 4);
-  float* to = gbuffer.data.data();
-  for (int y = 0; y < image.height; ++y) {
+  const auto take_row = [&](int y) -> Result<void> {
+    float* to = &gbuffer.data[4 * gbuffer.index(0, y)];
     for (int x = 0; x < image.width; ++x, to += 4) {
       const float* pixel = image.pixel(x, y);
       const float part = pixel[part_channel];
@@ -119,7 +120,14 @@ Result<Gbuffer> gbuffer_of(const image::AovFile& buffers) {
                            buffers.path, x, y, length(normal));
       to[0] = pixel[normal_x], to[1] = pixel[normal_y], to[2] = pixel[normal_z], to[3] = part;
     }
-  }
+    return {};
+  };
+  std::vector<char> is_bad(static_cast<std::size_t>(image.height), 0);
+  parallel_for(is_bad.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t y = begin; y < end; ++y) is_bad[y] = take_row(static_cast<int>(y)).ok() ? 0 : 1;
+  });
+  if (const auto bad = std::ranges::find(is_bad, 1); bad != is_bad.end())
+    return take_row(static_cast<int>(bad - is_bad.begin())).error();
   return gbuffer;
 }
 

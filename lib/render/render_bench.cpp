@@ -46,10 +46,10 @@ std::unique_ptr<BenchScene> bench_scene(int lobes) {
 }
 
 // The largest relative difference of any pixel between the two engines.
-double disagreement(const BenchScene& bench, const View& view) {
+double disagreement(const BenchScene& bench, const View& view, OpenGlBy by = OpenGlBy::kSoftware) {
   Frame frames[2], *frame = frames;
   for (const char* engine : {"gl", "cpu"}) {
-    auto renderer = Renderer::create();
+    auto renderer = Renderer::create(by);
     if (!renderer.ok() || !renderer->load(bench.scene, engine).ok()) return 1;
     if (!renderer->draw(view, *frame++).ok()) return 1;
   }
@@ -65,14 +65,15 @@ View bench_view(const BenchScene& bench, double azimuth_deg, int samples) {
   return {Camera::orbit(bench.mesh, azimuth_deg, 12, 1, 30, 16.0 / 9), 1280, 720, samples, false};
 }
 
-void time_frames(benchmark::State& state, bool view_moves) {
+void time_frames(benchmark::State& state, bool view_moves, OpenGlBy by = OpenGlBy::kSoftware) {
   const char* engine = state.range(0) == 0 ? "gl" : "cpu";
   const int lobes = static_cast<int>(state.range(1)), samples = static_cast<int>(state.range(2));
+  auto renderer = Renderer::create(by);
+  if (!renderer.ok()) return state.SkipWithError(("skipped: " + renderer.error().message).c_str());
   const auto bench = bench_scene(lobes);
-  const double error = disagreement(*bench, bench_view(*bench, 35, samples));
+  const double error = disagreement(*bench, bench_view(*bench, 35, samples), by);
   if (error > 1e-3) return state.SkipWithError("the engines disagree");
-  auto renderer = Renderer::create();
-  if (!renderer.ok() || !renderer->load(bench->scene, engine).ok()) return state.SkipWithError("no renderer");
+  if (!renderer->load(bench->scene, engine).ok()) return state.SkipWithError("nothing loaded");
   Frame frame;
   if (!renderer->draw(bench_view(*bench, 35, samples), frame).ok()) return state.SkipWithError("nothing drawn");
   double azimuth_deg = 35, gbuffer_ms = 0;
@@ -90,7 +91,8 @@ void time_frames(benchmark::State& state, bool view_moves) {
   state.counters["gbuffer_ms"] = gbuffer_ms;
   state.counters["seen"] = static_cast<double>(seen);
   state.counters["triangles"] = static_cast<double>(bench->mesh.triangles.size());
-  state.SetLabel(engine);
+  state.counters["pictures_per_s"] = benchmark::Counter(1, benchmark::Counter::kIsIterationInvariantRate);
+  state.SetLabel(fmt::format("{}, {}", engine, renderer->opengl()));
 }
 
 // 1280 x 720, diffuse, flake and gloss in every lobe, all effects; arguments: engine (0 gl, 1 cpu), lobes, samples.
@@ -110,6 +112,22 @@ void frames(benchmark::internal::Benchmark* b) {
 }
 BENCHMARK(BM_PaintEdited)->Apply(frames);
 BENCHMARK(BM_ViewChanged)->Apply(frames);
+
+// The same on a GPU, where there is one: edits of the paint, and frames in which the view moves as well. The time of a
+// picture includes reading it back.
+void BM_GpuPaintEdited(benchmark::State& state) {
+  time_frames(state, false, OpenGlBy::kGpu);
+}
+void BM_GpuViewChanged(benchmark::State& state) {
+  time_frames(state, true, OpenGlBy::kGpu);
+}
+void gpu_frames(benchmark::internal::Benchmark* b) {
+  for (const int lobes : {1, 5, 7})
+    for (const int samples : {1, 4}) b->Args({0, lobes, samples});
+  b->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+}
+BENCHMARK(BM_GpuPaintEdited)->Apply(gpu_frames);
+BENCHMARK(BM_GpuViewChanged)->Apply(gpu_frames);
 
 // Brushed metal with 5 lobes in so many tilted normals, under light that changes fast; the truth has 400.
 void BM_Tilts(benchmark::State& state) {

@@ -333,8 +333,8 @@ Renderer::Renderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer::~Renderer() = default;
 
-Result<Renderer> Renderer::create() {
-  GONIO_ASSIGN(GlContext context, GlContext::create());
+Result<Renderer> Renderer::create(OpenGlBy by) {
+  GONIO_ASSIGN(GlContext context, GlContext::create(by));
   auto state = std::make_unique<State>();
   state->open_gl = std::make_unique<OpenGl>(std::move(context));
   GONIO_ASSIGN(state->open_gl->rasterizer, Rasterizer::create(state->open_gl->context));
@@ -368,6 +368,10 @@ void Renderer::set_effort(Effort effort) {
 std::string Renderer::opengl() const {
   state_->begin();
   return state_->open_gl ? state_->open_gl->context.engine() : "";
+}
+
+std::string Renderer::opengl_library() const {
+  return state_->open_gl ? state_->open_gl->context.library() : "";
 }
 
 std::string Renderer::shader() const {

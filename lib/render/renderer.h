@@ -1,5 +1,5 @@
-// The renderer draws scenes into pictures of scene-linear radiance. OpenGL on OSMesa rasterizes what a view shows, or
-// rays find it; then one of the engines shades it. The renderer keeps what the next picture can use again: the mesh in
+// The renderer draws scenes into pictures of scene-linear radiance. OpenGL rasterizes what a view shows, or rays find
+// it; then one of the engines shades it. The renderer keeps what the next picture can use again: the mesh in
 // OpenGL, the G-buffers of the last view, and the engines. goniochrome-theory(7), RENDERING.
 #pragma once
 
@@ -14,6 +14,7 @@
 #include "render/effects.h"
 #include "render/engine.h"
 #include "render/gbuffer.h"
+#include "render/gl/gl_choice.h"
 #include "render/path/ray_correction.h"
 #include "render/plan.h"
 #include "render/scene.h"
@@ -52,8 +53,8 @@ struct RaySetup {
 
 class Renderer {
  public:
-  // Error: no OpenGL on this machine.
-  static Result<Renderer> create();
+  // Error: no such OpenGL on this machine.
+  static Result<Renderer> create(OpenGlBy by = OpenGlBy::kSoftware);
   // A renderer without mesh and OpenGL, which shades this G-buffer again and again. Every view that it draws shows the
   // G-buffer, and the camera of the view is ignored; of the mesh of the scene only the parts are used. Its other
   // functions fail for engines that need the mesh, for textures, and for more than one sample.
@@ -96,6 +97,8 @@ class Renderer {
 
   // "llvmpipe (LLVM 15.0.6, 256 bits)"; "" without OpenGL
   std::string opengl() const;
+  // The library that OpenGL comes from, "OSMesa" or "EGL"; "" without OpenGL.
+  std::string opengl_library() const;
   // What the engine has to say about the scene that was loaded.
   std::vector<std::string> remarks() const;
   // Whether rays find what is visible.

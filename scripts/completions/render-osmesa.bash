@@ -36,7 +36,7 @@ _render_osmesa() {
     --check-source) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --sheet) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --to) COMPREPLY=($(compgen -W "y4m ppm" -- "$word")); return ;;
+    --to) COMPREPLY=($(compgen -W "y4m ppm exr" -- "$word")); return ;;
     --view) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --aov) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --time-limit) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -46,7 +46,7 @@ _render_osmesa() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--mesh --gbuffer --paint --basis --part --trim --split --texture --texture-maps --env --light --emit --spectral --floor --eye-height --operator --critical-angle --exposure --background --orbit --camera --fov --size --samples --turntable --light-sweep --effects --tolerance --budget --engine --bounces --print-shader --check --check-against --check-source --output --sheet --to --view --aov --explain --time-limit --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--mesh --gbuffer --paint --basis --part --trim --split --texture --texture-maps --env --light --emit --spectral --floor --eye-height --operator --critical-angle --exposure --background --orbit --camera --fov --size --samples --turntable --light-sweep --effects --tolerance --budget --engine --gpu --bounces --print-shader --check --check-against --check-source --output --sheet --to --view --aov --explain --time-limit --seed --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

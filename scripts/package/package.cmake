@@ -57,8 +57,8 @@ set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-# OSMesa is opened at run time by the engine gl alone, and the other engines draw without it.
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libosmesa6, python3")
+# OSMesa, or EGL in its place, is opened at run time by the engine gl alone, and the other engines draw without it.
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libosmesa6 | libegl1, libosmesa6 | libgl1-mesa-dri, python3")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "snakemake, parallel, openimageio-tools, python3-numpy, python3-openimageio")
 set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_LIST_DIR}/debian-files.cmake)
 set(CPACK_GONIOCHROME_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)

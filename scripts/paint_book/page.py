@@ -37,9 +37,10 @@ def address_beside(file, page_file):
     return urllib.parse.quote(os.path.relpath(file, pathlib.Path(page_file).parent))
 
 
-def page(title, summary, paints, pictures, documents, size, studio=None):
+def page(title, summary, paints, pictures, documents, size, studio=None, beside=None):
     """The HTML. `pictures[i]` is a PNG, as bytes; `documents[i]` has the texts of FILES; `size` is that of a picture in pixels.
-    `studio` is the address of a page of paint-studio, or None."""
+    `studio` is the address of a page of paint-studio, or None. `beside` is what page.js needs to know of the folder that has
+    pictures, cards and texts, which are then not in the page, or None."""
     filed = {}
     for index, paint in enumerate(paints):
         filed.setdefault(paint.place(), []).append(index)
@@ -52,19 +53,38 @@ def page(title, summary, paints, pictures, documents, size, studio=None):
              "ranges": "".join(range_slider(index, paints) for index in INDICES),
              "groups": group_links(sets, filed),
              "sets": "".join(set_section(key, filed, paints, pictures, size) for key in sets),
-             "cards": "\n".join(card(index, paint, size, studio) for index, paint in enumerate(paints)),
-             "data": data(paints, documents)}
+             "cards": "" if beside else "\n".join(
+                 f'<template id="card-{index}">{card(paint, size, studio)}</template>' for index, paint in enumerate(paints)),
+             "data": in_script(rows_beside(paints) if beside else rows_inside(paints, documents)),
+             "beside": f'<script type="application/json" id="beside">{in_script(beside)}</script>' if beside else ""}
     return re.sub(r"{{([a-z]+)}}", lambda mark: parts[mark[1]], (HERE / "page.html").read_text())
 
 
-def data(paints, documents):
-    """What page.js needs of each paint, as JSON that contains no "<" and therefore cannot end its own element."""
-    rows = [{"name": paint.name, "code": paint.code, "class": paint.paint_class,
-             **{index: paint.indices[index] for index in INDICES},
-             "files": [{"name": f"{file_stem(paint.name)}.{ending}", "type": kind, "text": document}
-                       for (ending, kind), document in zip(FILES, texts)]}
-            for paint, texts in zip(paints, documents)]
-    return json.dumps(rows, ensure_ascii=False, allow_nan=False).replace("<", "\\u003c")
+def in_script(value):
+    """JSON that contains no "<" and therefore cannot end its own element."""
+    return json.dumps(value, ensure_ascii=False, allow_nan=False).replace("<", "\\u003c")
+
+
+def found_by(paint):
+    """What a paint is searched and filtered by."""
+    return {"name": paint.name, "code": paint.code, "class": paint.paint_class,
+            **{index: paint.indices[index] for index in INDICES}}
+
+
+def downloads(paint, texts):
+    return [{"name": f"{file_stem(paint.name)}.{ending}", "type": kind, "text": document}
+            for (ending, kind), document in zip(FILES, texts)]
+
+
+def rows_inside(paints, documents):
+    """What page.js needs of each paint whose tile is in the page."""
+    return [{**found_by(paint), "files": downloads(paint, texts)} for paint, texts in zip(paints, documents)]
+
+
+def rows_beside(paints):
+    """What page.js makes the tile of each paint from."""
+    return [{**found_by(paint), "kind": kind_of(paint), "strip": strip(paint), "border": gloss_border(paint)}
+            for paint in paints]
 
 
 def file_stem(name):
@@ -142,29 +162,35 @@ def group_name(group):
 def set_section(key, filed, paints, pictures, size):
     groups = []
     for group in groups_of(key, filed):
-        tiles = "\n".join(tile(index, paints[index], pictures[index], size) for index in filed[key, group])
+        members = filed[key, group]
+        tiles = "\n".join(tile(index, paints[index], pictures[index], size) for index in members) if pictures else ""
+        order = "" if pictures else f' data-paints="{json.dumps(members, separators=(",", ":"))}"'
         groups.append(f'<section class="group" aria-labelledby="{key}-{group}"><h3 id="{key}-{group}">'
-                      f'{swatch(group)}{group_name(group)} <span class="count"></span></h3><ul class="tiles">\n{tiles}\n</ul></section>\n')
+                      f'{swatch(group)}{group_name(group)} <span class="count"></span></h3>'
+                      f'<ul class="tiles"{order}>\n{tiles}\n</ul></section>\n')
     return (f'<section class="set" aria-labelledby="{key}"><h2 id="{key}">{library.SETS[key][0]} <span class="count"></span>'
             f"</h2>\n{''.join(groups)}</section>\n")
 
 
-def tile(index, paint, picture, size):
+def kind_of(paint):
     flop = paint.indices["flop_index"]
-    kind = paint.paint_class if flop is None else f"{paint.paint_class}, flop {number(flop)}"
+    return paint.paint_class if flop is None else f"{paint.paint_class}, flop {number(flop)}"
+
+
+def tile(index, paint, picture, size):
     encoded = base64.b64encode(picture).decode()
     return (f'<li data-paint="{index}"><button type="button" class="tile" aria-haspopup="dialog">'
             f'<img alt="" width="{size[0]}" height="{size[1]}" src="data:image/png;base64,{encoded}">'
             f'<span class="strip" style="background:{strip(paint)};border:{gloss_border(paint)}"></span>'
-            f'<span class="label">{text(paint.name)}<small>{text(kind)}</small></span></button></li>')
+            f'<span class="label">{text(paint.name)}<small>{text(kind_of(paint))}</small></span></button></li>')
 
 
 def lab_cells(lab):
     return "".join(f"<td>{number(value, 2)}</td>" for value in lab)
 
 
-def card(index, paint, size, studio):
-    """The card of a paint. Its picture is missing here: page.js takes it from the tile."""
+def card(paint, size, studio, beside=False):
+    """The card of a paint. Its picture is missing here: page.js takes it from the tile, or from the sheet `beside` the page."""
     heading = ", ".join(filter(None, [paint.code and f"code {paint.code}", paint.paint_class, paint.condition]))
     rows = [(row.geometry, row.lab) for row in paint.rows]
     if paint.appearance:
@@ -183,12 +209,15 @@ def card(index, paint, size, studio):
     opened = f"{studio}#paint={urllib.parse.quote(paint.name, safe='')}" if studio else ""
     link = f'<a href="{text(opened)}">Open in the studio</a>' if studio else ""
     notes = "".join(f'<p class="hint">Note: {text(flag)}.</p>' for flag in paint.flags)
-    return (f'<template id="card-{index}"><div class="sheet"><h2 id="card-name">{text(paint.name)}<small>{text(heading)}</small></h2>'
-            f'<div><img alt="{text(paint.name)} on the mesh" width="{size[0]}" height="{size[1]}">'
+    label = f"{text(paint.name)} on the mesh"
+    picture = (f'<span class="picture" role="img" aria-label="{label}"></span>' if beside else
+               f'<img alt="{label}" width="{size[0]}" height="{size[1]}">')
+    return (f'<div class="sheet"><h2 id="card-name">{text(paint.name)}<small>{text(heading)}</small></h2>'
+            f'<div>{picture}'
             f'<span class="strip" style="background:{strip(paint)};border:{gloss_border(paint)}"></span>'
             '<div class="ends"><span>15\u00b0</span><span>aspecular angle</span><span>110\u00b0</span></div>'
             f'<div class="downloads" role="group" aria-label="Downloads"><span>Download</span></div>{link}</div>'
             f'<div>{plot(paint)}</div>'
             '<table><caption>Color</caption><thead><tr><th>geometry</th><th>L*</th><th>a*</th><th>b*</th></tr></thead>'
             f'<tbody>{table}</tbody></table>'
-            f'<div><table><caption>Figures</caption><tbody>{figures}</tbody></table>{notes}</div></div></template>')
+            f'<div><table><caption>Figures</caption><tbody>{figures}</tbody></table>{notes}</div></div>')

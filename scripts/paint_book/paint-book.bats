@@ -262,3 +262,37 @@ PY
   grep -q "on faceted chip under" chips.html
   ! cmp -s chips.html small.html
 }
+
+@test "--beside: pictures and cards lie in a folder, with the same texts, and a paint without a picture is named" {
+  book small.paints.xml --env small.env.exr --basis "$TESTDATA/b5.basis.xml" --size 96x64 --beside -o beside.html
+  [ -s beside.files/tiles-0001.png ]
+  /usr/bin/python3 - small.html beside.html <<'PY'
+import json, re, sys
+inside, beside = (open(name, encoding="utf-8").read() for name in sys.argv[1:])
+def rows(page):
+    return json.loads(re.search(r'id="data">(.*?)</script>', page, re.S)[1])
+facts = json.loads(re.search(r'id="beside">(.*?)</script>', beside, re.S)[1])
+assert facts["folder"] == "beside.files" and facts["tile"] == [96, 64], facts
+assert facts["left"] + facts["columns"] * facts["right"] == facts["width"], "sheets as wide as their tiles"
+assert facts["rows"] * facts["down"] + facts["top"] == facts["height"]
+script = open("beside.files/cards-0001.js", encoding="utf-8").read()
+cards = json.loads(script[script.index(",") + 1:script.rindex(")")])
+assert [row["name"] for row in rows(inside)] == [row["name"] for row in rows(beside)]
+def untimed(text):
+    return re.sub(r"\d{4}-\d\d-\d\dT[\d:]+Z", "", text)
+for one, other in zip(rows(inside), cards):
+    assert [(f["name"], untimed(f["text"])) for f in one["files"]] == [(f["name"], untimed(f["text"])) for f in other["files"]], one["name"]
+listed = sorted(index for order in re.findall(r'data-paints="(\[[^"]*\])"', beside) for index in json.loads(order))
+assert listed == list(range(4)), listed
+assert "data:image" not in beside
+PY
+  paint-convert -q small.paints.xml -o - | fit-paint -q --basis "$TESTDATA/b5.basis.xml" --method l2 - -o fitted.paints.xml
+  # One paint has a lobe that the environment lacks.
+  /usr/bin/python3 -c 'import re; s = open("fitted.paints.xml").read(); at = s.index("<lobes"); print(s[:at] + re.sub(r"exponent=\"[0-9.]+\"", "exponent=\"77\"", s[at:], count=1), end="")' >bad.paints.xml
+  run book bad.paints.xml --fitted --env small.env.exr --size 96x64 --beside -o bad.html
+  [ "$status" -eq 1 ]
+  [[ "$output" =~ "paint-book: no picture: the paint \"red\"" ]]
+  [ -s bad.html ]
+  run book small.paints.xml --beside -o -
+  [ "$status" -eq 2 ]
+}

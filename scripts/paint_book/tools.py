@@ -1,5 +1,6 @@
 """The tools of the toolchain, as functions of a paint book."""
 
+import json
 import shutil
 
 from shared.tools import Failed, run_tool, tools_folder
@@ -50,6 +51,15 @@ class Tools:
         run_tool(program, "--mesh", mesh, "--paint", paints, "--trim", "--env", env, "--size", f"{size[0]}x{size[1]}",
                  "--orbit", orbit, "--samples", 4, "--background", BACKGROUND, "--effects", "auto,-rays", "-o",
                  folder / "{index}.png", done=(0,))
+
+    def sheets(self, paints, mesh, env, size, orbit, cells, pattern):
+        """Draws the same pictures as tiles of sheets of that many columns and rows. Returns the messages of the paints that
+        could not be drawn, whose tiles are empty."""
+        report = run_tool(self.program("render-osmesa"), "--mesh", mesh, "--paint", paints, "--trim", "--env", env,
+                          "--size", f"{size[0]}x{size[1]}", "--orbit", orbit, "--samples", 4, "--background", BACKGROUND,
+                          "--effects", "auto,-rays", "--sheet", f"{cells[0]}x{cells[1]}", "-o", pattern, "--quiet",
+                          "--report", "-")
+        return [one["message"] for one in json.loads(report)["results"]["pictures"] if one["status"] == "failed"]
 
     def handoff(self, document, kind):
         """The text of a paint, which is given as paint XML, in another format. It contains no path of this machine."""

@@ -211,7 +211,13 @@ void add_engines(cli::ToolSpec& spec, Options& o) {
             "are compared with, draw the lobes that stand for it: these are round, and typically differ from the rough "
             "surface by 1 to 3 dE00 at 95 of 100 points in a studio, and by more in the sun. auto takes path where the "
             "prefiltered maps are "
-            "predicted not to keep --tolerance, and path is predicted to be faster than they and their rays.");
+            "predicted not to keep --tolerance, and path is predicted to be faster than they and their rays. OpenGL is "
+            "OSMesa where that is installed, and else the software renderer of EGL; --explain tells which. Where there "
+            "is neither, rays find what is visible for the other engines, and gl is an error.");
+  spec.flag("gpu", &o.gpu, "draw on a GPU, by the engine gl")
+      .more(
+          "The GPU is the first on which EGL makes an OpenGL 3.3 context; where there is none, it is an error. "
+          "Pictures of GPUs have not been compared with those of the processor yet.");
   spec.option("bounces", "N", "8", &o.bounces, "surfaces that may pass light on to what is seen")
       .from(0, 4096)
       .more(
@@ -264,11 +270,12 @@ void add_output(cli::ToolSpec& spec, Options& o) {
           "paints than fit on one sheet, --output must have {index}. On sheets of 3x3, a paint that is followed by its "
           "variations, as paint-edit(1) writes them, stands in the middle of a sheet of its own.");
   spec.option("to", "FORMAT", "y4m", &o.to, "write frames on standard output for programs that read films")
-      .one_of({"y4m", "ppm"})
+      .one_of({"y4m", "ppm", "exr"})
       .more(
           "There is a frame for each paint of --paint, or for each picture of --turntable or --light-sweep. y4m is "
           "YUV4MPEG2 with 4:4:4 samples by BT.709 and 25 frames a second; ppm is one PPM picture (P6) behind the "
-          "other. "
+          "other. exr is one scene-linear EXR picture of half floats behind the other, without compression, so that "
+          "all of them have as many bytes as the first, unless a value is too large for a half float. "
           "It needs -o -.");
   spec.option("view", "NAME", "'ACES SDR'", &o.view, "display view of a PNG: Paint, ACES SDR or Un-tone-mapped")
       .more(
@@ -348,6 +355,7 @@ void add_report(cli::ToolSpec& spec) {
        "with --gbuffer: time to lay out the light and to scale what bounced, the error of that, and whether it is "
        "beyond the tolerance"},
       {"opengl", "the OpenGL renderer; null with --gbuffer, and where rays find what is visible"},
+      {"opengl_library", "where it comes from: OSMesa or EGL; null without"},
       {"noise_de00_p95, noise_de00_mean",
        "of the engine path: CIEDE2000 of one standard deviation of the noise, over the visible pixels of the last "
        "picture"},

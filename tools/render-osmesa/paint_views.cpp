@@ -90,6 +90,7 @@ class EngineViews : public PaintViews {
     GONIO_ASSIGN(auto seen, renderer_.look(stage_.mesh, view()));
     looks_ = {seen};
     tell_visibility(*seen, stage_.mesh, session_);
+    tell_opengl(renderer_, session_);
     const render::DiffuseWhite white = render::diffuse_white(stage_.scene.env, stage_.scene.lights);
     white_luminance = white.luminance;
     request_.plan.white_luminance = white.luminance;

@@ -46,10 +46,12 @@ image::Attributes provenance(const cli::Session& session) {
           {"goniochrome:command", session.command_line()}};
 }
 
-Result<void> write_exr_picture(const Options& options, const Request& request, const Shot& shot,
-                               const render::Frame& frame, const render::Scene& scene, const render::Plan& plan,
-                               const render::DiffuseWhite& white, double stops, double automatic,
-                               const render::TransportParts* transport, const cli::Session& session) {
+Result<std::vector<image::ImagePart>> exr_picture(const Options& options, const Request& request,
+                                                  const render::Frame& frame, const render::Scene& scene,
+                                                  const render::Plan& plan, const render::DiffuseWhite& white,
+                                                  double stops, double automatic,
+                                                  const render::TransportParts* transport,
+                                                  const cli::Session& session) {
   image::ImagePart part{"picture", frame.picture, provenance(session), image::PixelType::kHalf};
   part.attributes["goniochrome:plan"] = plan_rows(plan, false).dump(-1, ' ', false, Json::error_handler_t::replace);
   part.attributes["goniochrome:engine"] = plan.engine;
@@ -88,7 +90,12 @@ Result<void> write_exr_picture(const Options& options, const Request& request, c
   if (transport != nullptr) part.attributes[render::kTransportAttribute] = transport->header;
   parts.push_back(std::move(part));
   if (transport != nullptr) parts.insert(parts.end(), transport->parts.begin(), transport->parts.end());
-  return image::write_exr(shot.output, parts);
+  return parts;
+}
+
+Result<std::string> exr_frame(std::vector<image::ImagePart> picture) {
+  picture.front().attributes.erase("goniochrome:plan");
+  return image::exr_content("standard output", picture, image::ExrStorage::kPlain);
 }
 
 }  // namespace goniochrome::tool

@@ -12,11 +12,15 @@ namespace goniochrome::tool {
 // The tool, its version and its command line.
 image::Attributes provenance(const cli::Session& session);
 
-// Writes the picture with the buffers of --aov and with the parts of a transport, where there is one. `stops`: the
-// exposure of the picture; `automatic`: the one that a PNG would get. Error: as image::write_exr().
-Result<void> write_exr_picture(const Options& options, const Request& request, const Shot& shot,
-                               const render::Frame& frame, const render::Scene& scene, const render::Plan& plan,
-                               const render::DiffuseWhite& white, double stops, double automatic,
-                               const render::TransportParts* transport, const cli::Session& session);
+// The parts of an EXR file: the picture with the buffers of --aov, and the parts of a transport, where there is one.
+// `stops`: the exposure of the picture; `automatic`: the one that a PNG would get.
+Result<std::vector<image::ImagePart>> exr_picture(const Options& options, const Request& request,
+                                                  const render::Frame& frame, const render::Scene& scene,
+                                                  const render::Plan& plan, const render::DiffuseWhite& white,
+                                                  double stops, double automatic,
+                                                  const render::TransportParts* transport, const cli::Session& session);
+
+// The picture as a frame of --to exr: not compressed and without its plan, so that all frames have the same size.
+Result<std::string> exr_frame(std::vector<image::ImagePart> picture);
 
 }  // namespace goniochrome::tool

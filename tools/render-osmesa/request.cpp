@@ -28,6 +28,17 @@ Result<void> take_transport(const Options& options, Request& request) {
 
 }  // namespace
 
+Result<Options> with_engine_of_gpu(const Options& options) {
+  if (!options.gpu) return options;
+  const auto able = std::ranges::find_if(render::engines(), [](const auto* engine) { return engine->needs_opengl; });
+  Options with = options;
+  with.engine = (*able)->name;
+  if (options.engine != "auto" && options.engine != with.engine)
+    return usage_error("--engine {} draws on the processor: leave out --gpu, or take --engine {}", options.engine,
+                       with.engine);
+  return with;
+}
+
 Result<Request> request_of(const Options& options) {
   Request request;
   GONIO_TRY(check_surfaces(options));
@@ -41,7 +52,7 @@ Result<Request> request_of(const Options& options) {
   request.aovs = aov_names(options.aovs);
   GONIO_TRY(take_transport(options, request));
   const std::string extension = lower(std::filesystem::path(options.output).extension().string());
-  request.png = extension == ".png" || !options.to.empty();
+  request.png = extension == ".png" || (!options.to.empty() && options.to != "exr");
   if (!options.to.empty() && options.output != "-")
     return usage_error("--to {} goes on standard output: give -o -", options.to);
   if (!request.png && extension != ".exr" && options.output != "-") {

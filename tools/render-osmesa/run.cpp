@@ -105,7 +105,7 @@ class Shooting {
   Result<void> draw(render::Renderer& renderer, const Shot& shot, bool first);
   Result<cli::Verdict> shade_transport(const std::optional<display::Display>& display);
   Result<void> write(const Shot& shot, const std::optional<display::Display>& display, double stops);
-  Result<void> write_frame(const image::ByteImage& shown);
+  Result<void> write_frame(const std::string& content);
   Result<cli::Verdict> check_picture();
   void tell_plan(render::Plan plan, const std::string& shader);
 
@@ -216,24 +216,30 @@ Result<void> Shooting::write(const Shot& shot, const std::optional<display::Disp
       frame_.gbuffer = traced->gbuffer;
       stopped_ |= !traced->reached;
     }
-    return write_exr_picture(options_, request_, shot, frame_, drawn, plan_, white_, stops, automatic_stops_,
-                             traced ? &traced->file : nullptr, session_);
+    GONIO_ASSIGN(std::vector<image::ImagePart> picture,
+                 exr_picture(options_, request_, frame_, drawn, plan_, white_, stops, automatic_stops_,
+                             traced ? &traced->file : nullptr, session_));
+    if (options_.to.empty()) return image::write_exr(shot.output, picture);
+    GONIO_ASSIGN(const std::string content, exr_frame(std::move(picture)));
+    return write_frame(content);
   }
   image::ByteImage shown;
   GONIO_TRY(display->show(frame_.picture, stops, shown));
-  if (!options_.to.empty()) return write_frame(shown);
+  if (!options_.to.empty()) {
+    const auto format = options_.to == "ppm" ? image::FrameFormat::kPpm : image::FrameFormat::kY4m;
+    const std::string head = frames_ ? "" : image::frames_head(format, shown.width, shown.height);
+    return write_frame(head + image::frame_content(format, shown));
+  }
   return write_file(shot.output, image::png_content(shown, provenance(session_)));
 }
 
 // One frame of a sequence on standard output.
-Result<void> Shooting::write_frame(const image::ByteImage& shown) {
-  const auto format = options_.to == "ppm" ? image::FrameFormat::kPpm : image::FrameFormat::kY4m;
+Result<void> Shooting::write_frame(const std::string& content) {
   if (!frames_) {
     GONIO_ASSIGN(OutputFile out, OutputFile::create("-"));
     frames_.emplace(std::move(out));
-    GONIO_TRY(frames_->write(image::frames_head(format, shown.width, shown.height)));
   }
-  GONIO_TRY(frames_->write(image::frame_content(format, shown)));
+  GONIO_TRY(frames_->write(content));
   return frames_->flush();
 }
 
@@ -310,6 +316,7 @@ Result<cli::Verdict> Shooting::shoot(const std::optional<display::Display>& disp
   request_.plan.frames = static_cast<int>(shots_.size());
   request_.plan.pixels = static_cast<double>(request_.size.width) * request_.size.height;
   session_.explain(explanation(options_, stage_.mesh, stage_.dresses.front()));
+  tell_opengl(renderer, session_);
   const render::Rays& through = looks_.front()->rays;
   const Vec3 to_camera = -through.direction(0.5 * looks_.front()->width, 0.5 * looks_.front()->height);
   double metered = render::metered_white(stage_.scene.env, stage_.scene.lights, to_camera);
@@ -331,7 +338,6 @@ Result<cli::Verdict> Shooting::shoot(const std::optional<display::Display>& disp
     GONIO_TRY(write(shot, display, stops));
   }
   Json& results = session_.results();
-  results["opengl"] = stage_.gbuffer || renderer.traces() ? Json(nullptr) : Json(renderer.opengl());
   results["gbuffer_ms"] = frame_.gbuffer_ms;
   results["frame_ms"] = frame_ms;
   results["frames"] = shots_.size();
@@ -381,7 +387,8 @@ Result<cli::Verdict> Shooting::check_picture() {
 }  // namespace
 
 Result<cli::Verdict> run(const Options& asked, cli::Session& session) {
-  GONIO_ASSIGN(const Options options, is_stream(asked) ? stream_options(asked) : Result<Options>(asked));
+  GONIO_ASSIGN(const Options drawn, with_engine_of_gpu(asked));
+  GONIO_ASSIGN(const Options options, is_stream(drawn) ? stream_options(drawn) : Result<Options>(drawn));
   GONIO_ASSIGN(Request request, request_of(options));
   std::optional<display::Display> display;
   if (request.png) {

@@ -33,7 +33,7 @@ Result<render::Renderer> make_renderer(const Options& options, const Request& re
     return ready(render::Renderer::tracing(stage.scene.ground));
   const bool needs_opengl = request.engine != nullptr && request.engine->needs_opengl;
   if (stage.mesh.triangles.size() >= kTracedFrom && !needs_opengl) return ready(render::Renderer::tracing());
-  auto renderer = render::Renderer::create();
+  auto renderer = render::Renderer::create(options.gpu ? render::OpenGlBy::kGpu : render::OpenGlBy::kSoftware);
   if (renderer.ok()) return ready(*std::move(renderer));
   if (needs_opengl) return renderer;
   session.say(fmt::format("{}: rays find what is visible", renderer.error().message));
@@ -84,6 +84,15 @@ double mean_luminance(const render::Frame& frame) {
     }
   }
   return count > 0 ? sum / static_cast<double>(count) : 0;
+}
+
+void tell_opengl(const render::Renderer& renderer, cli::Session& session) {
+  const std::string device = renderer.opengl();
+  const auto or_null = [](const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); };
+  session.results()["opengl"] = or_null(device);
+  session.results()["opengl_library"] = or_null(renderer.opengl_library());
+  if (!device.empty()) session.explain(fmt::format("OpenGL: {}, by {}\n", device, renderer.opengl_library()));
+  if (renderer.traces()) session.explain("rays find what is visible\n");
 }
 
 std::string explanation(const Options& options, const mesh::Mesh& mesh, const DressedMesh& dress) {

@@ -26,4 +26,7 @@ constexpr double kMiddleGray = 0.18;
 // What the parts wear, for --explain.
 std::string explanation(const Options& options, const mesh::Mesh& mesh, const DressedMesh& dress);
 
+// Tells by --explain and the report which OpenGL draws, or that rays find what is visible.
+void tell_opengl(const render::Renderer& renderer, cli::Session& session);
+
 }  // namespace goniochrome::tool

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 
 #include "base/paths.h"
 #include "base/text.h"
@@ -128,7 +129,8 @@ Result<void> check_samples(const Options& options, const Request& request, const
 
 // The buffers of --gbuffer, and a mesh that has their parts.
 Result<void> set_gbuffer(const Options& options, const Request& request, Stage& stage, cli::Session& session) {
-  GONIO_ASSIGN(const image::AovFile buffers, image::read_aov_file(options.gbuffer));
+  GONIO_ASSIGN(const image::AovFile buffers,
+               image::read_aov_file(options.gbuffer, {"normal.X", "normal.Y", "normal.Z", "part"}));
   GONIO_ASSIGN(render::Gbuffer gbuffer, render::gbuffer_of(buffers));
   stage.gbuffer = std::make_shared<const render::Gbuffer>(std::move(gbuffer));
   GONIO_ASSIGN(stage.transport, kept_transport(buffers, options, request.lights, session));
@@ -143,6 +145,22 @@ Result<void> set_gbuffer(const Options& options, const Request& request, Stage& 
   if (stage.transport && !options.split.empty())
     return usage_error("--split is not drawn from a transport: draw two pictures");
   return check_samples(options, request, stage);
+}
+
+// Whether a map of the environment is looked up by one picture of these paints, by its exponent; null where all may be.
+std::function<bool(double)> looked_up_maps(const Options& options, const Request& request, const Stage& stage) {
+  const bool sums = request.engine != nullptr && (request.engine->needs_texels || request.engine->traces_rays);
+  if (is_stream(options) || !options.textures.empty() || options.check > 0 || request.transport || sums) return {};
+  std::vector<paint::LobeFit> paints;
+  for (const DressedMesh& dress : stage.dresses) paints.insert(paints.end(), dress.paints.begin(), dress.paints.end());
+  if (std::ranges::any_of(paints, [](const paint::LobeFit& paint) { return !paint.tilts.empty(); })) return {};
+  const bool rays = options.gbuffer.empty() && !render::leave_out_rays(options.effects);
+  const bool mirror = rays || render::has_mirror(paints) || options.background == "env";
+  return [mirror, exponents = render::lobe_exponents(paints)](double exponent) {
+    if (paint::is_mirror(exponent)) return mirror;
+    // A file holds exponents as floats.
+    return std::ranges::any_of(exponents, [&](double of) { return std::abs(of - exponent) <= 1e-6 * of; });
+  };
 }
 
 // The floor of a picture by an engine with prefiltered maps.
@@ -231,9 +249,9 @@ Result<void> set_stage(const Options& options, Request& request, Stage& stage, c
   }
   scene.reflection = request.reflection;
   if (!options.env.empty()) {
-    GONIO_ASSIGN(stage.env, envmap::read_env(options.env));
+    GONIO_ASSIGN(stage.env, envmap::read_env(options.env, looked_up_maps(options, request, stage)));
     scene.env = &stage.env;
-    if (options.texture_maps == "mip") {
+    if (options.texture_maps == "mip" && !options.textures.empty()) {
       GONIO_ASSIGN(stage.mip, render::mip_cube(stage.env));
     }
   }

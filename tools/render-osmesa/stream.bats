@@ -159,6 +159,21 @@ size() { oiiotool --info "$1" | sed -E 's/.*: +([0-9]+) x +([0-9]+),.*/\1x\2/'; 
   [ "$(oiiotool first.ppm first.png --diff | tail -1)" = PASS ]
 }
 
+@test "frames of EXR are the scene-linear pictures, all of one size" {
+  render-osmesa -q $kept --paint "$fitted" --tolerance 50 -o '{index}.exr'
+  render-osmesa -q $kept --paint "$fitted" --tolerance 50 --to exr -o - >frames
+  count=$(grep -c '<paint ' "$fitted")
+  [ $(($(stat -c %s frames) % count)) -eq 0 ]
+  split -a 3 -d -b $(($(stat -c %s frames) / count)) frames frame-
+  for ((i = 0; i < count; ++i)); do
+    mv "$(printf 'frame-%03d' "$i")" frame.exr
+    [ "$(oiiotool --fail 0 --warn 0 frame.exr "$(printf '%04d.exr' $((i + 1)))" --diff | tail -1)" = PASS ]
+  done
+  [ "$(oiiotool --fail 0 --warn 0 frame.exr 0001.exr --diff | tail -1)" = FAILURE ]
+  render-osmesa -q $walls --paint "$fitted#candy_red" --effects auto,-rays --turntable 3 --to exr -o - >turn
+  [ $(($(stat -c %s turn) % 3)) -eq 0 ]
+}
+
 @test "several paints and one name are an error that tells the ways out" {
   run render-osmesa $walls --paint "$fitted" -o x.png
   [ "$status" -eq 2 ]

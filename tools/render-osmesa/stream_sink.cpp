@@ -16,6 +16,17 @@ Result<void> show(const SinkSetup& setup, StreamSlot& slot) {
   return setup.display->show(slot.view.picture, setup.views.stops, slot.shown);
 }
 
+// The parts of an EXR file.
+Result<std::vector<image::ImagePart>> scene_linear(const SinkSetup& setup, StreamSlot& slot) {
+  render::Frame frame;
+  std::swap(frame.picture, slot.view.picture);
+  const render::DiffuseWhite white{setup.views.white_luminance, {0, 1, 0}};
+  auto parts = exr_picture(setup.options, setup.request, frame, setup.stage.scene, *slot.plan, white, setup.views.stops,
+                           setup.views.automatic_stops, nullptr, setup.session);
+  std::swap(frame.picture, slot.view.picture);
+  return parts;
+}
+
 // A file for each paint.
 class FileSink : public StreamSink {
  public:
@@ -43,14 +54,8 @@ class FileSink : public StreamSink {
 
  private:
   Result<void> write_scene_linear(StreamSlot& slot) const {
-    render::Frame frame;
-    std::swap(frame.picture, slot.view.picture);
-    const render::DiffuseWhite white{setup_.views.white_luminance, {0, 1, 0}};
-    const Result<void> written =
-        write_exr_picture(setup_.options, setup_.request, {{}, {}, slot.file}, frame, setup_.stage.scene, *slot.plan,
-                          white, setup_.views.stops, setup_.views.automatic_stops, nullptr, setup_.session);
-    std::swap(frame.picture, slot.view.picture);
-    return written;
+    GONIO_ASSIGN(const std::vector<image::ImagePart> picture, scene_linear(setup_, slot));
+    return image::write_exr(slot.file, picture);
   }
 
   SinkSetup setup_;
@@ -114,6 +119,11 @@ class FrameSink : public StreamSink {
       : setup_(setup), format_(format), out_(std::move(out)) {}
 
   Result<void> finish(StreamSlot& slot) override {
+    if (setup_.display == nullptr) {
+      GONIO_ASSIGN(std::vector<image::ImagePart> picture, scene_linear(setup_, slot));
+      GONIO_ASSIGN(slot.content, exr_frame(std::move(picture)));
+      return {};
+    }
     GONIO_TRY(show(setup_, slot));
     slot.content = image::frame_content(format_, slot.shown);
     return {};
@@ -121,7 +131,7 @@ class FrameSink : public StreamSink {
 
   Result<void> settle(StreamSlot& slot) override {
     if (slot.source.failure) return {};
-    if (frames_++ == 0)
+    if (frames_++ == 0 && setup_.display != nullptr)
       GONIO_TRY(out_.write(image::frames_head(format_, setup_.request.size.width, setup_.request.size.height)));
     GONIO_TRY(out_.write(slot.content));
     return out_.flush();

@@ -29,6 +29,7 @@ struct Options {
   std::string background = "none";
   std::vector<std::string> aovs;
   std::string effects = "auto", engine = "auto";
+  bool gpu = false;
   bool rays_are_refused = false;  // whether --effects says so, in a stream, whose effects are others
   std::string reflection = color::kDefaultOperator;
   std::string spectral = "auto";

@@ -1,94 +1,17 @@
 #include "render/gl/gl.h"
 
-#include <GL/osmesa.h>
-#include <dlfcn.h>
-#include <sys/mman.h>
-
-#include <cstdlib>
-
-#include "base/parallel.h"
+#include "render/gl/gl_driver.h"
 
 namespace goniochrome::render {
 
-namespace {
+GlContext::GlContext(std::shared_ptr<const GlDriver> driver) : driver_(std::move(driver)) {}
 
-// OSMesa wants a window to draw in; everything here goes to framebuffer objects instead.
-constexpr int kWindow = 4;
-unsigned char window_pixels[kWindow * kWindow * 4];
-
-// OSMesa brings a compiler of 100 MB with it: tools that may draw, but do not, start without it.
-constexpr const char* kLibrary = "libOSMesa.so.8";
-struct OSMesa {
-  decltype(&OSMesaCreateContextAttribs) create = nullptr;
-  decltype(&OSMesaMakeCurrent) make_current = nullptr;
-  decltype(&OSMesaDestroyContext) destroy = nullptr;
-  decltype(&OSMesaGetProcAddress) address = nullptr;
-};
-
-// The library, loaded once. Error: it is not there, or is another one.
-Result<const OSMesa*> osmesa() {
-  static std::string reason;
-  static const OSMesa loaded = [] {
-    OSMesa library;
-    if (void* handle = dlopen(kLibrary, RTLD_NOW | RTLD_LOCAL)) {
-      const auto find = [&](auto& function, const char* name) {
-        function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(dlsym(handle, name));
-      };
-      find(library.create, "OSMesaCreateContextAttribs");
-      find(library.make_current, "OSMesaMakeCurrent");
-      find(library.destroy, "OSMesaDestroyContext");
-      find(library.address, "OSMesaGetProcAddress");
-    } else if (const char* why = dlerror()) {
-      reason = fmt::format(" ({})", why);
-    }
-    return library;
-  }();
-  if (loaded.create && loaded.make_current && loaded.destroy && loaded.address) return &loaded;
-  return input_error("{} of Mesa 22 or later cannot be loaded{}: install libosmesa6, or give more memory", kLibrary,
-                     reason);
-}
-
-// Whether as much address space is to be had as Mesa takes beside its libraries: short of it, it crashes.
-bool has_room() {
-  constexpr std::size_t kRoom = std::size_t{448} << 20;
-  void* room = mmap(nullptr, kRoom, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  return room != MAP_FAILED && munmap(room, kRoom) == 0;
-}
-
-void destroy(void* context) {
-  (*osmesa())->destroy(static_cast<OSMesaContext>(context));
-}
-
-}  // namespace
-
-GlContext::GlContext(void* context) : context_(context, destroy) {}
-
-Result<GlContext> GlContext::create() {
-  // Read once, when the first context of the process is made.
-  setenv("LP_NUM_THREADS", std::to_string(threads()).c_str(), 0);
-  const int wanted[] = {OSMESA_FORMAT,
-                        OSMESA_RGBA,
-                        OSMESA_DEPTH_BITS,
-                        0,
-                        OSMESA_PROFILE,
-                        OSMESA_CORE_PROFILE,
-                        OSMESA_CONTEXT_MAJOR_VERSION,
-                        3,
-                        OSMESA_CONTEXT_MINOR_VERSION,
-                        3,
-                        0};
-  GONIO_ASSIGN(const OSMesa* library, osmesa());
-  if (!has_room())
-    return input_error("OpenGL takes some 450 MB of address space, which are not there: give more memory");
-  void* context = library->create(wanted, nullptr);
-  if (context == nullptr) {
-    return input_error("OSMesa makes no OpenGL 3.3 core context: install libosmesa6 of Mesa 22 or later");
-  }
-  GlContext gl(context);
-  gl.make_current();
-#define GONIO_GL_LOAD(type, name)                                 \
-  gl.name = reinterpret_cast<type>(library->address("gl" #name)); \
-  if (gl.name == nullptr) return input_error("OSMesa lacks gl" #name ": install libosmesa6 of Mesa 22 or later");
+Result<GlContext> GlContext::create(OpenGlBy by) {
+  GONIO_ASSIGN(std::shared_ptr<const GlDriver> driver, make_gl_driver(by));
+  GlContext gl(std::move(driver));
+#define GONIO_GL_LOAD(type, name)                                    \
+  gl.name = reinterpret_cast<type>(gl.driver_->address("gl" #name)); \
+  if (gl.name == nullptr) return input_error("the OpenGL of {} lacks gl" #name ": update its driver", gl.library());
   GONIO_GL_FUNCTIONS(GONIO_GL_LOAD)
 #undef GONIO_GL_LOAD
   gl.Enable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
@@ -96,8 +19,15 @@ Result<GlContext> GlContext::create() {
 }
 
 void GlContext::make_current() const {
-  (*osmesa())->make_current(static_cast<OSMesaContext>(context_.get()), window_pixels, GL_UNSIGNED_BYTE, kWindow,
-                            kWindow);
+  driver_->make_current();
+}
+
+const char* GlContext::library() const {
+  return driver_->name();
+}
+
+bool GlContext::on_gpu() const {
+  return driver_->on_gpu();
 }
 
 Result<GLuint> GlContext::program(const std::string& vertex, const std::string& fragment) const {

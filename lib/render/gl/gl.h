@@ -1,4 +1,4 @@
-// OpenGL on OSMesa, the software renderer of Mesa: one context without a window, and the functions that are used.
+// OpenGL: one context without a window, and the functions that are used.
 #pragma once
 
 #include <GL/glcorearb.h>
@@ -8,6 +8,7 @@
 
 #include "base/result.h"
 #include "render/camera.h"
+#include "render/gl/gl_choice.h"
 
 // Every OpenGL function in use. libepoxy aborts under OSMesa, so they are looked up here, by name.
 #define GONIO_GL_FUNCTIONS(X)                                  \
@@ -72,11 +73,13 @@
 
 namespace goniochrome::render {
 
+class GlDriver;
+
 // A core profile context without a window. Everything made in it goes with it.
 class GlContext {
  public:
-  // Error: OSMesa cannot make one, or lacks a function.
-  static Result<GlContext> create();
+  // Error: there is no such OpenGL on this machine, with what to install; it lacks a function.
+  static Result<GlContext> create(OpenGlBy by = OpenGlBy::kSoftware);
 
   void make_current() const;
 
@@ -97,14 +100,18 @@ class GlContext {
   void set(GLuint program, const std::string& name, const Vec3& value) const;
   // "llvmpipe (LLVM 15.0.6, 256 bits)"
   std::string engine() const;
+  // What made the context: "OSMesa" or "EGL".
+  const char* library() const;
+  // Whether it draws on a GPU. GPUs interpolate between texels in steps of 1/256.
+  bool on_gpu() const;
 
 #define GONIO_GL_MEMBER(type, name) type name = nullptr;
   GONIO_GL_FUNCTIONS(GONIO_GL_MEMBER)
 #undef GONIO_GL_MEMBER
 
  private:
-  explicit GlContext(void* context);
-  std::unique_ptr<void, void (*)(void*)> context_;
+  explicit GlContext(std::shared_ptr<const GlDriver> driver);
+  std::shared_ptr<const GlDriver> driver_;
 };
 
 }  // namespace goniochrome::render

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "render/gl/disc_texture.h"
+#include "render/gl/exact_lookups.h"
 #include "render/gl/gl_weights.h"
 #include "render/gl/shader.h"
 #include "render/gl/tilt_shader.h"
@@ -25,6 +27,18 @@ constexpr MapCost kCost = {.pixel = 12,
                            .tilted = 40,
                            .lookup = 60,
                            .pairs = false};
+// Of a GPU: reading the picture back is all that is felt.
+constexpr MapCost kGpuCost = {.pixel = 5,
+                              .point = 0.1,
+                              .block = 0.05,
+                              .direction = 0,
+                              .light = 0.05,
+                              .lit_lobe = 0.05,
+                              .disc_lobe = 0.1,
+                              .view = 0.05,
+                              .tilted = 0.1,
+                              .lookup = 0.1,
+                              .pairs = false};
 constexpr double kCompileMs = 110;
 
 }  // namespace
@@ -46,7 +60,11 @@ Result<void> GlEngine::can_shade(const Scene&) const {
 }
 
 Price GlEngine::price(const Workload& work, const Effects& effects) const {
-  return {frame_ms(work, effects, kCost), kCompileMs, "to compile"};
+  if (gl_ == nullptr || !gl_->on_gpu()) return {frame_ms(work, effects, kCost), kCompileMs, "to compile"};
+  // The speed and the number of the cores count for the processor alone.
+  Workload on_gpu = work;
+  on_gpu.speed = threads();
+  return {frame_ms(on_gpu, effects, kGpuCost), kCompileMs, "to compile"};
 }
 
 // Float texels: a half would have to be rounded first, since llvmpipe truncates, and is no faster to fetch.
@@ -64,14 +82,16 @@ void GlEngine::upload(const envmap::CubeMap& map, const std::string& sampler) {
       gl_->TexImage2D(target, 0, GL_RGB32F, map.size, map.size, 0, GL_RGB, GL_FLOAT, map.at(face, 0, 0));
     }
   }
-  gl_->TexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  gl_->TexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  const GLint filter = gl_->on_gpu() ? GL_NEAREST : GL_LINEAR;  // with_exact_lookups() interpolates
+  gl_->TexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MIN_FILTER, filter);
+  gl_->TexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MAG_FILTER, filter);
   cubes_.emplace_back(sampler, texture);
 }
 
 Result<void> GlEngine::load(const Scene& scene, const Effects& effects) {
   GONIO_ASSIGN(const SceneMaps maps, scene_maps(scene, effects));
-  const std::string text = shading_fragment_shader(effects, scene.reflection, tilt_exponents(scene, effects));
+  std::string text = shading_fragment_shader(effects, scene.reflection, tilt_exponents(scene, effects));
+  if (gl_->on_gpu()) text = with_exact_lookups(text);
   if (text != text_) {
     if (program_ != 0) gl_->DeleteProgram(program_);
     GONIO_ASSIGN(program_, gl_->program(shading_vertex_shader(), text));
