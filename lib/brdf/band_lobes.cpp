@@ -8,6 +8,7 @@
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
 #include "color/spectrum.h"
+#include "math/elementary.h"
 #include "math/least_squares.h"
 #include "paint/spectra.h"
 
@@ -96,7 +97,7 @@ bool has_weight(const paint::Lobe& lobe) {
 }
 
 double angle_deg(const Vec3& direction) {
-  return std::atan2(std::hypot(direction.x, direction.y), direction.z) / kDegree;
+  return math::atan2(math::hypot(direction.x, direction.y), direction.z) / kDegree;
 }
 
 // What an instrument reads of a paint at a geometry, in one channel.

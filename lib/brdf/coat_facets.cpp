@@ -13,6 +13,7 @@
 #include "base/angles.h"
 #include "brdf/gloss.h"
 #include "brdf/lobe_model.h"
+#include "math/elementary.h"
 
 namespace goniochrome::brdf {
 
@@ -31,10 +32,10 @@ double facet_density(const Vec3& half, double slope) {
 
 Vec3 visible_facet(const Vec3& out, double slope, double u, double v) {
   const Vec3 seen = normalized({slope * out.x, slope * out.y, out.z});
-  const double across = std::hypot(seen.x, seen.y);
+  const double across = math::hypot(seen.x, seen.y);
   const Vec3 x = across > 1e-12 ? Vec3{-seen.y / across, seen.x / across, 0} : Vec3{1, 0, 0}, y = cross(seen, x);
-  const double r = std::sqrt(u), p = r * std::cos(2 * kPi * v), raised = 0.5 * (1 + seen.z);
-  const double q = (1 - raised) * std::sqrt(1 - p * p) + raised * r * std::sin(2 * kPi * v);
+  const double r = std::sqrt(u), p = r * math::cos(2 * kPi * v), raised = 0.5 * (1 + seen.z);
+  const double q = (1 - raised) * std::sqrt(1 - p * p) + raised * r * math::sin(2 * kPi * v);
   const Vec3 h = p * x + q * y + std::sqrt(std::max(0.0, 1 - p * p - q * q)) * seen;
   return normalized({slope * h.x, slope * h.y, std::max(1e-12, h.z)});
 }
@@ -94,7 +95,7 @@ Vec3 CoatFacets::drawn(const Vec3& to_viewer, double choice, double u, double v)
 // a wider one.
 double CoatFacets::over_disc(const Vec3& to_viewer, const Vec3& middle, double radius_rad) const {
   constexpr int kDirections = 384;
-  const double versine = 2 * std::pow(std::sin(0.5 * radius_rad), 2), disc_pdf = 1 / (2 * kPi * versine);
+  const double versine = 2 * math::pow(math::sin(0.5 * radius_rad), 2), disc_pdf = 1 / (2 * kPi * versine);
   const Vec3 x = normalized(cross(middle, std::abs(middle.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0})),
              y = cross(middle, x);
   double sum = 0;
@@ -107,13 +108,13 @@ double CoatFacets::over_disc(const Vec3& to_viewer, const Vec3& middle, double r
   for (int i = 0; i < kDirections; ++i) {
     const auto [u, v] = spread_pair(i);
     const double low = u * versine, sine = std::sqrt(low * (2 - low));
-    add((1 - low) * middle + (sine * std::cos(2 * kPi * v)) * x + (sine * std::sin(2 * kPi * v)) * y);
+    add((1 - low) * middle + (sine * math::cos(2 * kPi * v)) * x + (sine * math::sin(2 * kPi * v)) * y);
     const auto [a, b] = spread_pair(i < sharp ? i : i - sharp);
     const Vec3 mirrored = mirrored_by(visible_facet(to_viewer, i < sharp ? coat_.slope : coat_.haze, a, b), to_viewer),
                apart = mirrored - middle;
     if (dot(apart, apart) <= 2 * versine) add(mirrored);
   }
-  const double sine = std::sin(radius_rad);
+  const double sine = math::sin(radius_rad);
   return sum / kDirections / (kPi * sine * sine);
 }
 

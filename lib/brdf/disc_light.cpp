@@ -10,6 +10,7 @@
 #include "base/angles.h"
 #include "base/parallel.h"
 #include "math/cosine_power.h"
+#include "math/elementary.h"
 #include "math/quadrature.h"
 
 namespace goniochrome::brdf {
@@ -36,7 +37,7 @@ double square(double x) {
 
 // Where the rim of the disc meets the horizon, seen from its middle: the angle from straight down.
 double rim_azimuth(double sine, double cosine_elevation, double radius) {
-  return std::acos(std::clamp(sine * std::cos(radius) / (cosine_elevation * std::sin(radius)), -1.0, 1.0));
+  return math::acos(std::clamp(sine * math::cos(radius) / (cosine_elevation * math::sin(radius)), -1.0, 1.0));
 }
 
 // Half of the angle about r that the ring of radius t spends within the disc of radius `radius` about l, with r and l
@@ -52,22 +53,22 @@ double half_arc(double t, double between, double radius, double inner_gap, doubl
   } else {
     by_radius = 0.5 * inner_gap, by_between = radius - between + 0.5 * inner_gap;
   }
-  const double above = std::sin(by_between) * std::sin(std::max(0.0, 0.5 * outer_gap)),
-               below = std::sin(s) * std::sin(by_radius);
-  return 2 * std::atan2(std::sqrt(std::max(0.0, above)), std::sqrt(std::max(0.0, below)));
+  const double above = math::sin(by_between) * math::sin(std::max(0.0, 0.5 * outer_gap)),
+               below = math::sin(s) * math::sin(by_radius);
+  return 2 * math::atan2(std::sqrt(std::max(0.0, above)), std::sqrt(std::max(0.0, below)));
 }
 
 // The largest angle at which cos^E is above exp(-kTail) of its value at the angle `from`.
 double reach_from(double from, double exponent) {
   const double log_start = math::log_cosine(from);
   if (std::isinf(log_start)) return from;
-  return exponent > 0 ? std::acos(std::exp(std::max(-700.0, log_start - kTail / exponent))) : kPi / 2;
+  return exponent > 0 ? math::acos(math::exp(std::max(-700.0, log_start - kTail / exponent))) : kPi / 2;
 }
 
 }  // namespace
 
 double disc_radiance(double radius_rad) {
-  return 1 / (kPi * square(std::sin(radius_rad)));
+  return 1 / (kPi * square(math::sin(radius_rad)));
 }
 
 // By Stokes' theorem the irradiance is half the integral of n.(x cross dx) along the border of the part above the
@@ -75,33 +76,33 @@ double disc_radiance(double radius_rad) {
 // the middle, psi_0 the azimuth of a crossing and beta half of that arc:
 //   E = (pi - psi_0) sin^2 R sin e - sin R cos R cos e sin psi_0 + beta,   cos beta = cos R / cos e
 double disc_irradiance(double cosine, double radius_rad) {
-  const double sine_radius = std::sin(radius_rad), cos_elevation = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+  const double sine_radius = math::sin(radius_rad), cos_elevation = std::sqrt(std::max(0.0, 1 - cosine * cosine));
   if (cosine >= sine_radius) return cosine;
   if (cosine <= -sine_radius) return 0;
   const double u = cosine / sine_radius;
   if (radius_rad < kFlat_rad) {
     const double w = std::sqrt(1 - u * u);
-    return sine_radius * (u * (kPi / 2 + std::asin(u)) + w * (2 + u * u) / 3) / kPi;
+    return sine_radius * (u * (kPi / 2 + math::asin(u)) + w * (2 + u * u) / 3) / kPi;
   }
   const double azimuth = rim_azimuth(cosine, cos_elevation, radius_rad);
   const double sin2_half_arc = std::max(0.0, square(sine_radius) - square(cosine)) / square(cos_elevation);
-  const double beta = std::atan2(std::sqrt(sin2_half_arc), std::cos(radius_rad) / cos_elevation);
+  const double beta = math::atan2(std::sqrt(sin2_half_arc), math::cos(radius_rad) / cos_elevation);
   const double irradiance = (kPi - azimuth) * square(sine_radius) * cosine -
-                            sine_radius * std::cos(radius_rad) * cos_elevation * std::sin(azimuth) + beta;
+                            sine_radius * math::cos(radius_rad) * cos_elevation * math::sin(azimuth) + beta;
   return std::max(0.0, irradiance / (kPi * square(sine_radius)));
 }
 
 // What is below is a sector of the disc less a spherical triangle: pi - 2 alpha - 2 psi_0 cos R, with
 // sin alpha = sin e / sin R.
 double disc_above(double cosine, double radius_rad) {
-  const double sine_radius = std::sin(radius_rad);
+  const double sine_radius = math::sin(radius_rad);
   if (cosine >= sine_radius) return 1;
   if (cosine <= -sine_radius) return 0;
   const double u = cosine / sine_radius;
-  if (radius_rad < kFlat_rad) return 1 - (std::acos(u) - u * std::sqrt(1 - u * u)) / kPi;
+  if (radius_rad < kFlat_rad) return 1 - (math::acos(u) - u * std::sqrt(1 - u * u)) / kPi;
   const double azimuth = rim_azimuth(cosine, std::sqrt(1 - cosine * cosine), radius_rad);
-  const double below = kPi - 2 * std::asin(u) - 2 * azimuth * std::cos(radius_rad),
-               whole = 4 * kPi * square(std::sin(0.5 * radius_rad));
+  const double below = kPi - 2 * math::asin(u) - 2 * azimuth * math::cos(radius_rad),
+               whole = 4 * kPi * square(math::sin(0.5 * radius_rad));
   return std::clamp(1 - below / whole, 0.0, 1.0);
 }
 
@@ -136,26 +137,26 @@ LobeOfDisc lobe_of_disc(double exponent, double radius_rad, double between_rad) 
   double power = 0, along_r = 0, along_e = 0;
   if (between_rad < radius_rad) {
     const double log_inner = math::log_cosine(rings.first);
-    power = 2 * kPi / (exponent + 1) * -std::expm1((exponent + 1) * log_inner);
-    along_r = 2 * kPi / (exponent + 2) * -std::expm1((exponent + 2) * log_inner);
+    power = 2 * kPi / (exponent + 1) * -math::expm1((exponent + 1) * log_inner);
+    along_r = 2 * kPi / (exponent + 2) * -math::expm1((exponent + 2) * log_inner);
   }
   if (rings.width > 0) {
     for (const math::QuadraturePoint& point : ring_rule()) {
-      const double x = kPi / 4 * (1 + point.position), share = square(std::sin(x));
+      const double x = kPi / 4 * (1 + point.position), share = square(math::sin(x));
       const double t = rings.first + share * rings.width, psi = rings.half_arc(share);
       const double weight =
-          kPi / 4 * point.weight * rings.width * std::sin(2 * x) * std::sin(t) * math::cos_power(t, exponent);
+          kPi / 4 * point.weight * rings.width * math::sin(2 * x) * math::sin(t) * math::cos_power(t, exponent);
       power += weight * 2 * psi;
-      along_r += weight * 2 * psi * std::cos(t);
-      along_e += weight * 2 * std::sin(psi) * std::sin(t);
+      along_r += weight * 2 * psi * math::cos(t);
+      along_e += weight * 2 * math::sin(psi) * math::sin(t);
     }
   }
   // e = (l - cos(between) r)/sin(between). Where both directions agree there is no e, and nothing along it.
   LobeOfDisc lobe{scale * power, 0, scale * along_r};
-  const double sine_between = std::sin(between_rad);
+  const double sine_between = math::sin(between_rad);
   if (sine_between > 1e-12) {
     lobe.by_light = scale * along_e / sine_between;
-    lobe.by_mirror = std::max(0.0, scale * along_r - lobe.by_light * std::cos(between_rad));
+    lobe.by_mirror = std::max(0.0, scale * along_r - lobe.by_light * math::cos(between_rad));
   }
   return lobe;
 }
@@ -175,7 +176,7 @@ DiscLobeTable::Node DiscLobeTable::at(double chord) const {
 }
 
 DiscLobeTable::Node disc_lobe_node(double exponent, double radius_rad, double chord) {
-  const LobeOfDisc lobe = lobe_of_disc(exponent, radius_rad, 2 * std::asin(std::min(1.0, 0.5 * chord)));
+  const LobeOfDisc lobe = lobe_of_disc(exponent, radius_rad, 2 * math::asin(std::min(1.0, 0.5 * chord)));
   const double both = lobe.by_light + lobe.by_mirror;
   DiscLobeTable::Node node;
   node.cosine[0] = static_cast<float>(lobe.by_light), node.cosine[1] = static_cast<float>(lobe.by_mirror);
@@ -192,8 +193,8 @@ std::shared_ptr<const DiscLobeTable> made_table(double exponent, double radius) 
   // Nine standard deviations of the lobe to both sides of the rim.
   const double reach = 9 / std::sqrt(exponent + 0.5);
   const double first = std::max(0.0, radius - reach), last = std::min({kPi, radius + reach, radius + kPi / 2});
-  const double last_chord = 2 * std::sin(0.5 * last);
-  table->first_chord = 2 * std::sin(0.5 * first);
+  const double last_chord = 2 * math::sin(0.5 * last);
+  table->first_chord = 2 * math::sin(0.5 * first);
   table->nodes_per_chord = (DiscLobeTable::kNodes - 1) / (last_chord - table->first_chord);
   table->nodes.resize(DiscLobeTable::kNodes + 1);
   parallel_for(DiscLobeTable::kNodes - 1, 64, [&](std::size_t begin, std::size_t end) {

@@ -22,6 +22,7 @@
 #include "brdf/internal/gloss_meter.h"
 #include "brdf/rough_coat.h"
 #include "math/cosine_power.h"
+#include "math/elementary.h"
 #include "math/least_squares.h"
 #include "math/quadrature.h"
 
@@ -33,7 +34,7 @@ struct Aperture {
   double half_par, half_perp;  // in the tangent plane
 };
 Aperture aperture(double par_deg, double perp_deg) {
-  return {std::tan(par_deg / 2 * kDegree), std::tan(perp_deg / 2 * kDegree)};
+  return {math::tan(par_deg / 2 * kDegree), math::tan(perp_deg / 2 * kDegree)};
 }
 
 struct Sample {
@@ -43,7 +44,7 @@ struct Sample {
 
 Sample sample(double p, double q, double weight, double angle_deg) {
   const double length = std::sqrt(1 + p * p + q * q);
-  const double cos_normal = (std::cos(angle_deg * kDegree) - p * std::sin(angle_deg * kDegree)) / length;
+  const double cos_normal = (math::cos(angle_deg * kDegree) - p * math::sin(angle_deg * kDegree)) / length;
   return {p, q, weight / (length * length * length), cos_normal};
 }
 
@@ -152,7 +153,7 @@ std::vector<double> one_reading(const GlossTable& table, const GlossColumns& met
   std::vector<double> weights(lobes + 1, 0.0);
   if (gu <= 0) return weights;
   // Each column with the energy of the smooth coat, in the order of rising readings.
-  const double energy = fresnel_dielectric(std::cos(meter.angle_deg * kDegree), kCoatIndex);
+  const double energy = fresnel_dielectric(math::cos(meter.angle_deg * kDegree), kCoatIndex);
   const auto full_weight = [&](std::size_t j) {
     return j == lobes ? 1.0 : energy * (table.exponents()[j] + 1) / (2 * kPi);
   };
@@ -203,8 +204,8 @@ void meet_reading(const GlossTable& table, const GlossColumns& meter, double gu,
                   double coat_index, std::vector<double>& weights) {
   const std::size_t lobes = table.exponents().size();
   if (weights.empty() || (lobes == 0 && !has_mirror)) return;
-  const double fresnel = coat_fresnel(std::cos(meter.angle_deg * kDegree), gloss_deg),
-               at_meter = fresnel_dielectric(std::cos(meter.angle_deg * kDegree), kCoatIndex);
+  const double fresnel = coat_fresnel(math::cos(meter.angle_deg * kDegree), gloss_deg),
+               at_meter = fresnel_dielectric(math::cos(meter.angle_deg * kDegree), kCoatIndex);
   const double mirror = mirror_reading(meter, coat_index);
   const auto energy = [&](std::size_t j) {
     return j == lobes ? at_meter : fresnel * 2 * kPi / (table.exponents()[j] + 1);
@@ -226,7 +227,7 @@ void meet_reading(const GlossTable& table, const GlossColumns& meter, double gu,
 std::vector<double> coat_weights(const GlossTable& table, const RoughCoat& coat, std::size_t view, double gloss_deg,
                                  bool has_mirror, double coat_index) {
   constexpr double kAllWeight = 30, kReadingWeight = 3;  // of 1 GU
-  const double cosine = std::cos(kCoatViews_deg[view] * kDegree), smooth = fresnel_dielectric(cosine, kCoatIndex),
+  const double cosine = math::cos(kCoatViews_deg[view] * kDegree), smooth = fresnel_dielectric(cosine, kCoatIndex),
                brighter = fresnel_dielectric(cosine, mirror_index(coat_index)) / smooth;
   const auto& lobes = table.within(view);
   std::vector<double> wanted = coat_within(coat, view);
@@ -244,7 +245,7 @@ std::vector<double> coat_weights(const GlossTable& table, const RoughCoat& coat,
   for (int j = 0; j < m.columns; ++j) energy += m(rows - 2, j) / kAllWeight * best[j];
   const double bound = std::min(1.0, brighter / std::max(energy, 1e-300));
   std::vector<double> weights(lobes.size() + 1, 0.0);
-  const double fresnel = fresnel_dielectric(std::cos(gloss_deg * kDegree), kCoatIndex);
+  const double fresnel = fresnel_dielectric(math::cos(gloss_deg * kDegree), kCoatIndex);
   for (int j = 0; j < m.columns; ++j)
     weights[j] = bound * best[j] * (j < count ? fresnel * (table.exponents()[j] + 1) / (2 * kPi) : 1);
   if (const Result<const GlossColumns*> meter = table.at(kCoatViews_deg[view]); meter.ok())
@@ -321,7 +322,7 @@ Result<double> coat_index_of(const std::vector<paint::GlossReading>& readings) {
 }
 
 double gloss_units(const GlossTable& table, const GlossColumns& meter, const paint::LobeFit& fit, double gloss_deg) {
-  const double cosine = std::cos(meter.angle_deg * kDegree), base = coat_passages(fit.coat_index, cosine, cosine);
+  const double cosine = math::cos(meter.angle_deg * kDegree), base = coat_passages(fit.coat_index, cosine, cosine);
   const double fresnel = gloss_deg == meter.angle_deg ? 1 : coat_fresnel(cosine, gloss_deg);
   const paint::LobeFit seen = at_view(fit, meter.angle_deg);
   double gu = base * meter.diffuse * luminance(seen.diffuse);

@@ -7,6 +7,7 @@
 #include "base/angles.h"
 #include "brdf/disc_light.h"
 #include "brdf/gloss.h"
+#include "math/elementary.h"
 
 namespace goniochrome::brdf {
 
@@ -16,8 +17,8 @@ namespace {
 // cos^e(edge) = 1/2 under a point, and by bisection under a disc. An edge within the disc is that of a mirror.
 double edge_exponent(double edge_rad, double radius_rad) {
   constexpr double kSharpest = 1e6;
-  const double sine = std::sin(edge_rad);
-  const double of_point = std::numbers::ln2 / std::max(-0.5 * std::log1p(-sine * sine), 1e-12);
+  const double sine = math::sin(edge_rad);
+  const double of_point = std::numbers::ln2 / std::max(-0.5 * math::log1p(-sine * sine), 1e-12);
   if (!(radius_rad > 0)) return std::min(kSharpest, of_point);
   const auto falls_before = [&](double exponent) {
     return lobe_of_disc(exponent, radius_rad, edge_rad).power < 0.5 * lobe_of_disc(exponent, radius_rad, 0).power;
@@ -37,7 +38,7 @@ double edge_exponent(double edge_rad, double radius_rad) {
 // the Fresnel reflectance of the coat; see goniochrome-theory(7), GLOSS.
 Result<double> gloss_of_edge(double edge_deg, double meter_deg, double extent_deg) {
   const double exponent = edge_exponent(std::clamp(edge_deg, 0.0, 89.0) * kDegree, 0.5 * extent_deg * kDegree);
-  const double energy = fresnel_dielectric(std::cos(meter_deg * kDegree), kCoatIndex);
+  const double energy = fresnel_dielectric(math::cos(meter_deg * kDegree), kCoatIndex);
   const double weight = energy * (exponent + 1) / (2 * kPi);
   const GlossTable table({exponent});
   GONIO_ASSIGN(const GlossColumns* meter, table.at(meter_deg));

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/elementary.h"
+
 namespace goniochrome::brdf {
 
 namespace {
@@ -111,7 +113,7 @@ Sines sines(const InCoat& in, const InPlane& pair) {
 
 FlakeAngles flake_angles(const Vec3& to_light, const Vec3& to_viewer, double index) {
   const InCoat in(to_light, to_viewer, index);
-  return {std::atan2(std::sqrt(in.s2), in.sigma), std::atan2(std::sqrt(in.D2), std::sqrt(in.H2))};
+  return {math::atan2(std::sqrt(in.s2), in.sigma), math::atan2(std::sqrt(in.D2), std::sqrt(in.H2))};
 }
 
 std::optional<CriticalAngle> critical_angle_of(std::string_view name) {
@@ -151,10 +153,10 @@ InPlaneAngles equivalent_in_plane_angles(const Vec3& to_light, const Vec3& to_vi
   Sines sine = sines(in, pair);
   if (beyond) sine.far = 1;
   if (moved) sine.near = (pair.same_side ? 1 : -1) * other_leg(pair.cos_near);
-  const double far_rad = std::atan2(sine.far, pair.cos_far), near_rad = std::atan2(sine.near, pair.cos_near);
+  const double far_rad = math::atan2(sine.far, pair.cos_far), near_rad = math::atan2(sine.near, pair.cos_near);
   const double steeper = to_viewer.z - to_light.z;
   const bool light_is_far =
-      steeper != 0 ? steeper > 0 : std::hypot(to_light.x, to_light.y) >= std::hypot(to_viewer.x, to_viewer.y);
+      steeper != 0 ? steeper > 0 : math::hypot(to_light.x, to_light.y) >= math::hypot(to_viewer.x, to_viewer.y);
   if (light_is_far) return {far_rad, near_rad};
   return near_rad >= 0 ? InPlaneAngles{near_rad, far_rad} : InPlaneAngles{-near_rad, -far_rad};
 }

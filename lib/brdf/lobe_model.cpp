@@ -6,6 +6,7 @@
 #include "base/angles.h"
 #include "brdf/coat.h"
 #include "math/cosine_power.h"
+#include "math/elementary.h"
 #include "math/quadrature.h"
 
 namespace goniochrome::brdf {
@@ -55,8 +56,8 @@ double instrument_view_deg(double aspecular_deg) {
 double coat_passages_to_reading(double coat_index, double aspecular_deg, double cos_i, double cos_o) {
   if (coat_index == paint::kNoCoat) return 1;
   return coat_passages(coat_index, std::clamp(cos_i, 0.0, 1.0), std::clamp(cos_o, 0.0, 1.0)) /
-         coat_passages(coat_index, std::cos(kInstrumentLight_deg * kDegree),
-                       std::cos(instrument_view_deg(aspecular_deg) * kDegree));
+         coat_passages(coat_index, math::cos(kInstrumentLight_deg * kDegree),
+                       math::cos(instrument_view_deg(aspecular_deg) * kDegree));
 }
 
 double coat_passages(double coat_index, double cos_i, double cos_o) {
@@ -68,9 +69,9 @@ paint::LobeFit under_coat(const paint::LobeFit& fit, double coat_index) {
   if (coat_index == fit.coat_index) return other;
   other.coat_index = coat_index;
   constexpr double kBase_deg = 45, kMirror_deg = 60;
-  const auto passages = [](double index) { return coat_passages(index, std::cos(kBase_deg * kDegree), 1); };
+  const auto passages = [](double index) { return coat_passages(index, math::cos(kBase_deg * kDegree), 1); };
   const auto mirrored = [](double index) {
-    return fresnel_dielectric(std::cos(kMirror_deg * kDegree), mirror_index(index));
+    return fresnel_dielectric(math::cos(kMirror_deg * kDegree), mirror_index(index));
   };
   const double base = passages(fit.coat_index) / passages(coat_index),
                mirror = mirrored(fit.coat_index) / mirrored(coat_index);
@@ -118,7 +119,7 @@ color::Rgb brdf(const paint::LobeFit& fit, const Vec3& to_light, const Vec3& to_
                 double fresnel) {
   const double cos_i = dot(normal, to_light), cos_o = dot(normal, to_viewer);
   if (cos_i <= 0 || cos_o <= 0) return {};
-  const double view_rad = fit.views.empty() ? 0 : std::atan2(length(cross(normal, to_viewer)), cos_o);
+  const double view_rad = fit.views.empty() ? 0 : math::atan2(length(cross(normal, to_viewer)), cos_o);
   return brdf_by_angles(fit, paint::aspecular_angle_rad(to_light, to_viewer, normal), view_rad / kDegree,
                         coat_passages(fit.coat_index, std::min(cos_i, 1.0), std::min(cos_o, 1.0)), fresnel / cos_i);
 }
@@ -162,7 +163,7 @@ color::Rgb brdf(const paint::LobeFit& fit, const Vec3& to_light, const Vec3& to_
 
 double coat_fresnel(double cos_half, double gloss_deg) {
   return fresnel_dielectric(std::min(cos_half, 1.0), kCoatIndex) /
-         fresnel_dielectric(std::cos(gloss_deg * kDegree), kCoatIndex);
+         fresnel_dielectric(math::cos(gloss_deg * kDegree), kCoatIndex);
 }
 
 color::Rgb coated_brdf(const paint::LobeFit& fit, const Vec3& to_light, const Vec3& to_viewer, const Vec3& normal,
@@ -172,8 +173,8 @@ color::Rgb coated_brdf(const paint::LobeFit& fit, const Vec3& to_light, const Ve
 
 color::Rgb flake_reflectance_factor(const paint::LobeFit& fit, double aspecular_deg, double light_deg,
                                     double view_deg) {
-  const double passages = coat_passages(fit.coat_index, std::max(0.0, std::cos(light_deg * kDegree)),
-                                        std::max(0.0, std::cos(view_deg * kDegree)));
+  const double passages = coat_passages(fit.coat_index, std::max(0.0, math::cos(light_deg * kDegree)),
+                                        std::max(0.0, math::cos(view_deg * kDegree)));
   return kPi * lobes_at(fit.diffuse, fit.lobes, aspecular_deg * kDegree, passages, 0);
 }
 

@@ -18,6 +18,7 @@
 #include "brdf/gloss.h"
 #include "brdf/internal/gloss_meter.h"
 #include "math/cosine_power.h"
+#include "math/elementary.h"
 #include "math/quadrature.h"
 
 namespace goniochrome::brdf {
@@ -56,7 +57,7 @@ std::vector<math::QuadraturePoint> dense_points(double center, double half, doub
     const double middle = (cuts[side] + cuts[side + 1]) / 2, reach = (cuts[side + 1] - cuts[side]) / 2;
     for (const auto& [x, w] : rule) {
       const double t = middle + reach * x;
-      points.push_back({center + width * std::sinh(t), reach * w * width * std::cosh(t)});
+      points.push_back({center + width * math::sinh(t), reach * w * width * math::cosh(t)});
     }
   }
   return points;
@@ -82,9 +83,9 @@ std::optional<std::size_t> view_of(double meter_deg) {
 template <class Function>
 double window_reading(const Meter& meter, double width_par, double width_perp, const Function& f) {
   static const std::vector<math::QuadraturePoint> rule = math::gauss_legendre(3);
-  const double t = meter.angle_deg * kDegree, sine = std::sin(t), cosine = std::cos(t);
+  const double t = meter.angle_deg * kDegree, sine = math::sin(t), cosine = math::cos(t);
   const auto direction = [&](double p, double q) { return Vec3{sine + p * cosine, q, cosine - p * sine}; };
-  const auto half = [](double width_deg) { return std::tan(width_deg / 2 * kDegree); };
+  const auto half = [](double width_deg) { return math::tan(width_deg / 2 * kDegree); };
   double read = 0, standard = 0;
   for (const auto& [x, wx] : rule)
     for (const auto& [y, wy] : rule) {  // one half of the source; the other is its mirror image
@@ -106,7 +107,7 @@ double window_reading(const Meter& meter, double width_par, double width_perp, c
 
 // Of one scale that gets all the light.
 double facets_reading(const Meter& meter, double slope) {
-  return window_reading(meter, 2 * slope, 2 * slope * std::cos(meter.angle_deg * kDegree),
+  return window_reading(meter, 2 * slope, 2 * slope * math::cos(meter.angle_deg * kDegree),
                         [&](const Vec3& in, const Vec3& out) { return facets(in, out, slope); });
 }
 
@@ -114,7 +115,7 @@ const std::array<double, kRings + 1>& ring_angles() {
   static const auto made = [] {
     std::array<double, kRings + 1> angles{};
     for (int k = 0; k < kRings; ++k)
-      angles[k] = kFirstRing_deg * std::pow(90 / kFirstRing_deg, k / (kRings - 1.0)) * kDegree;
+      angles[k] = kFirstRing_deg * math::pow(90 / kFirstRing_deg, k / (kRings - 1.0)) * kDegree;
     angles[kRings] = kPi;
     return angles;
   }();
@@ -126,7 +127,7 @@ const std::array<double, kRings + 1>& ring_angles() {
 template <class Function>
 Rings within_rings(double view_deg, int around, const Function& g) {
   static const std::vector<math::QuadraturePoint> rule = math::gauss_legendre(3);
-  const double sine = std::sin(view_deg * kDegree), cosine = std::cos(view_deg * kDegree);
+  const double sine = math::sin(view_deg * kDegree), cosine = math::cos(view_deg * kDegree);
   const Vec3 axis = {-sine, 0, cosine}, toward = {cosine, 0, sine};
   Rings within{};
   double sum = 0, low = 0;
@@ -137,12 +138,13 @@ Rings within_rings(double view_deg, int around, const Function& g) {
       const double squeeze = std::min(1.0, cosine + angle);
       double ring = 0;
       for (int i = 0; i < around; ++i) {
-        const double step = kPi * (i + 0.5) / around, c = std::cos(step), s = squeeze * std::sin(step);
-        const double norm = std::hypot(c, s), along = std::sin(angle) * c / norm, beside = std::sin(angle) * s / norm;
-        const Vec3 in = std::cos(angle) * axis + along * toward + Vec3{0, beside, 0};
+        const double step = kPi * (i + 0.5) / around, c = math::cos(step), s = squeeze * math::sin(step);
+        const double norm = math::hypot(c, s), along = math::sin(angle) * c / norm,
+                     beside = math::sin(angle) * s / norm;
+        const Vec3 in = math::cos(angle) * axis + along * toward + Vec3{0, beside, 0};
         ring += squeeze / (norm * norm) * g(angle, in);
       }
-      sum += w * (high - low) / 2 * std::sin(angle) * 2 * kPi / around * ring;
+      sum += w * (high - low) / 2 * math::sin(angle) * 2 * kPi / around * ring;
     }
     within[k] = sum, low = high;
   }
@@ -151,7 +153,7 @@ Rings within_rings(double view_deg, int around, const Function& g) {
 
 Vec3 viewer(std::size_t view) {
   const double t = kCoatViews_deg[view] * kDegree;
-  return {std::sin(t), 0, std::cos(t)};
+  return {math::sin(t), 0, math::cos(t)};
 }
 
 // What each ring adds, without and with (wi.h)^2.
@@ -178,7 +180,7 @@ struct Tables {
   std::array<std::array<FacetRings, kViewCount>, kSlopes> rings;
 
   static double slope(int node) {
-    return kLeastSlope * std::pow(kMostSlope / kLeastSlope, static_cast<double>(node) / (kSlopes - 1));
+    return kLeastSlope * math::pow(kMostSlope / kLeastSlope, static_cast<double>(node) / (kSlopes - 1));
   }
   Tables() {
     parallel_for(kSlopes, 1, [&](std::size_t node, std::size_t) {
@@ -196,8 +198,8 @@ struct Tables {
     std::array<double, 4> weight;
   };
   static Place place(double a) {
-    const double at = std::log(std::clamp(a, kLeastSlope, kMostSlope) / kLeastSlope) /
-                      std::log(kMostSlope / kLeastSlope) * (kSlopes - 1);
+    const double at = math::log(std::clamp(a, kLeastSlope, kMostSlope) / kLeastSlope) /
+                      math::log(kMostSlope / kLeastSlope) * (kSlopes - 1);
     const int first = std::clamp(static_cast<int>(at) - 1, 0, kSlopes - 4);
     const double t = at - first;
     return {first,
@@ -227,7 +229,7 @@ double reading_at(const RoughCoat& coat, std::size_t view) {
 constexpr double kSeriesSlope = 0.009, kSeriesPower = 1.5, kSeriesMost = 13;
 
 RoughCoat of_series(double k) {
-  const double slope = kSeriesSlope * std::pow(k, kSeriesPower);
+  const double slope = kSeriesSlope * math::pow(k, kSeriesPower);
   return {k, slope, std::max(RoughCoat::kHaze, slope)};
 }
 
@@ -257,7 +259,7 @@ class CoatSearch {
     double cost;
   };
   Found from(const RoughCoat& start) const {
-    Point x = {std::log(start.slope), start.k, std::log(start.haze)};
+    Point x = {math::log(start.slope), start.k, math::log(start.haze)};
     std::vector<double> r = residuals(x);
     double cost = squares(r), damping = 1e-3;
     for (int round = 0; round < 60 && damping < 1e9; ++round) {
@@ -279,10 +281,10 @@ class CoatSearch {
   using Point = std::array<double, 3>;
   static constexpr double kReading_gu = 0.2, kApart[] = {2, 0.7};  // standard deviations: a reading, k, log haze
 
-  static RoughCoat coat(const Point& x) { return {x[1], std::exp(x[0]), std::exp(x[2])}; }
+  static RoughCoat coat(const Point& x) { return {x[1], math::exp(x[0]), math::exp(x[2])}; }
   static Point clamped(const Point& x) {
-    return {std::clamp(x[0], std::log(kLeastSlope), std::log(kMostSlope)), std::clamp(x[1], 0.0, kSeriesMost),
-            std::clamp(x[2], std::log(0.03), std::log(kMostSlope))};
+    return {std::clamp(x[0], math::log(kLeastSlope), math::log(kMostSlope)), std::clamp(x[1], 0.0, kSeriesMost),
+            std::clamp(x[2], math::log(0.03), math::log(kMostSlope))};
   }
   static double squares(const std::vector<double>& r) {
     double sum = 0;
@@ -293,8 +295,8 @@ class CoatSearch {
     const RoughCoat here = coat(x);
     std::vector<double> r;
     for (const Wanted& wanted : wanted_) r.push_back((reading_at(here, wanted.view) - wanted.gu) / kReading_gu);
-    r.push_back((here.k - std::pow(here.slope / kSeriesSlope, 1 / kSeriesPower)) / kApart[0]);
-    r.push_back((x[2] - std::log(RoughCoat::kHaze)) / kApart[1]);
+    r.push_back((here.k - math::pow(here.slope / kSeriesSlope, 1 / kSeriesPower)) / kApart[0]);
+    r.push_back((x[2] - math::log(RoughCoat::kHaze)) / kApart[1]);
     return r;
   }
   // The solution of (J'J + d diag) s = -J'r, by elimination: three unknowns.
@@ -331,7 +333,7 @@ class CoatSearch {
 }  // namespace
 
 double sharp_share(const RoughCoat& coat, double cosine) {
-  return std::exp(-coat.k * cosine * cosine);
+  return math::exp(-coat.k * cosine * cosine);
 }
 
 Result<double> coat_reading(const RoughCoat& coat, double angle_deg, double index) {
@@ -382,7 +384,7 @@ std::vector<double> coat_within(const RoughCoat& coat, std::size_t view) {
         light += at.weight[n] * rings.light[k], times_cos2 += at.weight[n] * rings.times_cos2[k];
       }
       if (!(light > 0)) continue;
-      const double share = std::exp(-coat.k * std::clamp(times_cos2 / light, 0.0, 1.0));
+      const double share = math::exp(-coat.k * std::clamp(times_cos2 / light, 0.0, 1.0));
       within[k] += (sharp ? share : 1 - share) * light;
     }
   }

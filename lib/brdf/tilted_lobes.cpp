@@ -1,9 +1,9 @@
 #include "brdf/tilted_lobes.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/angles.h"
+#include "math/elementary.h"
 
 namespace goniochrome::brdf {
 
@@ -11,7 +11,7 @@ namespace {
 
 // The share of its full tilt that an axis has at a view.
 double taper(double view_deg) {
-  return std::min(1.0, std::sin(view_deg * kDegree) / std::sin(kFullTilt_deg * kDegree));
+  return std::min(1.0, math::sin(view_deg * kDegree) / math::sin(kFullTilt_deg * kDegree));
 }
 
 // In-plane angle from the normal, and the angle out of the plane, in radians.
@@ -27,7 +27,7 @@ AxisAngles axis_angles(const paint::TiltedLobe& lobe, double view_deg) {
 
 Vec3 tilted_axis(const paint::TiltedLobe& lobe, double view_deg) {
   const auto [in, out] = axis_angles(lobe, view_deg);
-  return {std::sin(in) * std::cos(out), std::sin(out), std::cos(in) * std::cos(out)};
+  return {math::sin(in) * math::cos(out), math::sin(out), math::cos(in) * math::cos(out)};
 }
 
 // With t the viewer's angle, r = sin t x + cos t n and n x o = -sin t y. Hence x = (r - cos t n)/sin t, and the sign of
@@ -35,10 +35,10 @@ Vec3 tilted_axis(const paint::TiltedLobe& lobe, double view_deg) {
 // the normal itself any of them serves, since r = n and n x o = 0, and what remains is a + s = 1.
 AxisSum axis_sum(const paint::TiltedLobe& lobe, double view_deg) {
   constexpr double kLeast_deg = 1e-4;
-  const double view = std::max(view_deg, kLeast_deg), sine = std::sin(view * kDegree);
+  const double view = std::max(view_deg, kLeast_deg), sine = math::sin(view * kDegree);
   const Vec3 axis = tilted_axis(lobe, view);
   const double a = axis.x / sine;
-  return {a, axis.z - a * std::cos(view * kDegree), axis.y / sine};
+  return {a, axis.z - a * math::cos(view * kDegree), axis.y / sine};
 }
 
 paint::TiltedView at_view(const paint::TiltedLobes& set, double view_deg) {
@@ -62,7 +62,7 @@ color::Rgb reflected_part(const paint::TiltedLobes& set, const Vec3& to_light, d
     double power = 0;
     for (const double side : {1.0, -1.0}) {
       const double cosine = dot({axis.x, side * axis.y, axis.z}, to_light);
-      if (cosine > 0) power += 0.5 * std::pow(cosine, lobe.exponent);
+      if (cosine > 0) power += 0.5 * math::pow(cosine, lobe.exponent);
     }
     sum += (lobe.exponent + 1) / (2 * kPi) * power * view.weights[k];
   }

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "base/angles.h"
+#include "math/elementary.h"
 
 namespace goniochrome::brdf {
 
@@ -24,10 +25,10 @@ namespace goniochrome::brdf {
 double ward(const Vec3& to_light, const Vec3& to_viewer, const paint::Anisotropy& alpha) {
   if (to_light.z <= 0 || to_viewer.z <= 0) return 0;
   const Vec3 sum = to_light + to_viewer;
-  const double size = std::hypot(sum.x, sum.y, sum.z), x = sum.x / size / alpha.alpha_x,
+  const double size = math::hypot(sum.x, sum.y, sum.z), x = sum.x / size / alpha.alpha_x,
                y = sum.y / size / alpha.alpha_y;
   const double exponent = 2 * (x * x + y * y) / (1 + sum.z / size);
-  return std::exp(-exponent) / (2 * kPi * alpha.alpha_x * alpha.alpha_y * sum.z);
+  return math::exp(-exponent) / (2 * kPi * alpha.alpha_x * alpha.alpha_y * sum.z);
 }
 
 double lobe_alpha(double exponent) {
@@ -49,10 +50,10 @@ struct Sampling {
   double spread() const { return std::sqrt((wide - narrow) * (wide + narrow)); }
 
   double missed(double step) const {
-    const double q = std::exp(-std::pow(kPi * spread() * narrow / (wide * step), 2));
+    const double q = math::exp(-math::pow(kPi * spread() * narrow / (wide * step), 2));
     return 2 * q / (1 - q);
   }
-  double beyond(double reach) const { return 2 * (wide / spread()) * std::exp(-std::pow(reach / spread(), 2)); }
+  double beyond(double reach) const { return 2 * (wide / spread()) * math::exp(-math::pow(reach / spread(), 2)); }
 
   // The reach at which both errors of `count` tilts are equal, where their sum is about least.
   double reach(int count) const {
@@ -104,7 +105,7 @@ Result<TiltSet> ward_tilts(const paint::Anisotropy& alpha, double narrow_alpha, 
   for (int k = 0; k < count; ++k) {
     const double t = (k - 0.5 * (count - 1)) * step;
     if (std::abs(t) >= std::numbers::sqrt2) continue;  // below the horizon
-    const double weight = std::exp(-std::pow(t / sampling.spread(), 2));
+    const double weight = math::exp(-math::pow(t / sampling.spread(), 2));
     set.tilts.push_back({tilted(t, alpha.alpha_x > alpha.alpha_y), weight});
     total += weight;
   }

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+
+#include "math/elementary.h"
 
 namespace goniochrome::color {
 
@@ -83,7 +84,7 @@ constexpr std::array kWhites = {
 // finite and invertible down to zero and below.
 constexpr double kKnee = 6.0 / 29.0;
 double response(double ratio) {
-  return ratio > kKnee * kKnee * kKnee ? std::cbrt(ratio) : ratio / (3 * kKnee * kKnee) + 4.0 / 29.0;
+  return ratio > kKnee * kKnee * kKnee ? math::cbrt(ratio) : ratio / (3 * kKnee * kKnee) + 4.0 / 29.0;
 }
 double ratio_of_response(double f) {
   return f > kKnee ? f * f * f : 3 * kKnee * kKnee * (f - 4.0 / 29.0);

@@ -2,6 +2,7 @@
 
 #include "base/angles.h"
 #include "color/color.h"
+#include "math/elementary.h"
 
 namespace goniochrome::color {
 
@@ -12,15 +13,15 @@ constexpr double kNoHue = 1e-9;
 
 // atan2 turned into [0,360); 0 where there is no hue.
 double hue_of(double a, double b) {
-  if (std::hypot(a, b) < kNoHue) return 0;
-  const double degrees = std::atan2(b, a) * (180 / kPi);  // fits by color differences keep their last digits by it
+  if (math::hypot(a, b) < kNoHue) return 0;
+  const double degrees = math::atan2(b, a) * (180 / kPi);  // fits by color differences keep their last digits by it
   if (degrees >= 0) return degrees;
   return degrees + 360 < 360 ? degrees + 360 : 0;
 }
 
 // sqrt(C^7/(C^7 + 25^7)), which pulls gray axes together and turns blues.
 double chroma_weight(double c) {
-  const double c7 = std::pow(c, 7);
+  const double c7 = math::pow(c, 7);
   return std::sqrt(c7 / (c7 + 6103515625.0));
 }
 
@@ -36,10 +37,10 @@ struct Terms {
 // asked with a margin of 1e-9: opposite hues (pair 14 of the published test data) always take the side of the mean
 // that the paper defines, whatever the rounding.
 Terms de00_terms(const Lab& x, const Lab& y) {
-  const double mean_ab = (std::hypot(x.a, x.b) + std::hypot(y.a, y.b)) / 2;
+  const double mean_ab = (math::hypot(x.a, x.b) + math::hypot(y.a, y.b)) / 2;
   const double stretch = 1 + 0.5 * (1 - chroma_weight(mean_ab));
   const double ax = stretch * x.a, ay = stretch * y.a;
-  const double cx = std::hypot(ax, x.b), cy = std::hypot(ay, y.b);
+  const double cx = math::hypot(ax, x.b), cy = math::hypot(ay, y.b);
   const double hx = hue_of(ax, x.b), hy = hue_of(ay, y.b);
   const bool gray = cx < kNoHue || cy < kNoHue;
   const bool near = std::abs(hy - hx) <= 180 + 1e-9;
@@ -53,17 +54,17 @@ Terms de00_terms(const Lab& x, const Lab& y) {
     turn += turn > 0 ? -360 : 360;
     hue = (hue < 360 ? hue + 360 : hue - 360) / 2;
   }
-  const double dL = y.L - x.L, dC = cy - cx, dH = 2 * std::sqrt(cx * cy) * std::sin(turn / 2 * kDegree);
+  const double dL = y.L - x.L, dC = cy - cx, dH = 2 * std::sqrt(cx * cy) * math::sin(turn / 2 * kDegree);
   const double mean_L = (x.L + y.L) / 2, mean_C = (cx + cy) / 2;
 
-  const double T = 1 - 0.17 * std::cos((hue - 30) * kDegree) + 0.24 * std::cos(2 * hue * kDegree) +
-                   0.32 * std::cos((3 * hue + 6) * kDegree) - 0.20 * std::cos((4 * hue - 63) * kDegree);
+  const double T = 1 - 0.17 * math::cos((hue - 30) * kDegree) + 0.24 * math::cos(2 * hue * kDegree) +
+                   0.32 * math::cos((3 * hue + 6) * kDegree) - 0.20 * math::cos((4 * hue - 63) * kDegree);
   const double offset = (mean_L - 50) * (mean_L - 50);
   const double sL = 1 + 0.015 * offset / std::sqrt(20 + offset);
   const double sC = 1 + 0.045 * mean_C;
   const double sH = 1 + 0.015 * mean_C * T;
   const double bump = (hue - 275) / 25;
-  const double rT = -2 * chroma_weight(mean_C) * std::sin(60 * std::exp(-bump * bump) * kDegree);
+  const double rT = -2 * chroma_weight(mean_C) * math::sin(60 * math::exp(-bump * bump) * kDegree);
 
   return {dL / sL, dC / sC, dH / sH, rT};
 }
@@ -71,7 +72,7 @@ Terms de00_terms(const Lab& x, const Lab& y) {
 }  // namespace
 
 double delta_e_76(const Lab& x, const Lab& y) {
-  return std::hypot(x.L - y.L, x.a - y.a, x.b - y.b);
+  return math::hypot(x.L - y.L, x.a - y.a, x.b - y.b);
 }
 
 double delta_e_2000(const Lab& x, const Lab& y) {
@@ -90,7 +91,7 @@ double hue_deg(const Lab& lab) {
 }
 
 double chroma(const Lab& lab) {
-  return std::hypot(lab.a, lab.b);
+  return math::hypot(lab.a, lab.b);
 }
 
 }  // namespace goniochrome::color

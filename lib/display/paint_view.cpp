@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/elementary.h"
+
 namespace goniochrome::display {
 
 namespace {
@@ -55,7 +57,7 @@ color::Rgb in_display_gamut(const color::Rgb& rgb) {
 
 double srgb_signal(double light) {
   const double v = std::clamp(light, 0.0, 1.0);
-  return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
+  return v <= 0.0031308 ? 12.92 * v : 1.055 * math::pow(v, 1 / 2.4) - 0.055;
 }
 
 // dv/dcode of v = ((c + .055)/1.055)^2.4 is below 2.3 sqrt(v) for v in 0..1; the line near black adds the constant. The

@@ -1,7 +1,6 @@
 #include "fit/paint_fit.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/angles.h"
 #include "base/clock.h"
@@ -11,6 +10,7 @@
 #include "fit/internal/flake_fit.h"
 #include "fit/internal/lobe_choice.h"
 #include "fit/internal/target_rows.h"
+#include "math/elementary.h"
 
 namespace goniochrome::fit {
 
@@ -86,7 +86,7 @@ std::vector<GeometryError> errors_at(const std::vector<paint::LabReading>& readi
   std::vector<GeometryError> errors;
   for (const paint::LabReading& reading : readings) {
     const Vec3 light = paint::directions(reading.geometry).light;
-    const double light_deg = std::atan2(std::hypot(light.x, light.y), light.z) / kDegree,
+    const double light_deg = math::atan2(math::hypot(light.x, light.y), light.z) / kDegree,
                  view_deg = view_angle_deg(reading.geometry);
     const color::Rgb predicted = brdf::flake_reflectance_factor(
         brdf::at_view(fit, view_deg), paint::aspecular_angle_deg(reading.geometry), light_deg, view_deg);
@@ -217,7 +217,7 @@ Result<PaintFit> PaintFitter::fit(const paint::Paint& paint) const {
   double gloss_deg = readings.empty() ? brdf::kGlossIncidence_deg : readings.front().angle_deg;
   if (paint.gloss.empty() && !readings.empty()) {
     // The paint will not state this reading, so that its weights are taken to hold at the usual incidence.
-    scale_gloss(brdf::coat_fresnel(std::cos(brdf::kGlossIncidence_deg * kDegree), gloss_deg), out.lobes);
+    scale_gloss(brdf::coat_fresnel(math::cos(brdf::kGlossIncidence_deg * kDegree), gloss_deg), out.lobes);
     gloss_deg = brdf::kGlossIncidence_deg;
   }
   for (const double angle : brdf::kGlossAngles_deg) {

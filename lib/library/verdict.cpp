@@ -3,12 +3,13 @@
 #include <cmath>
 
 #include "base/angles.h"
+#include "math/elementary.h"
 #include "paint/metrics.h"
 
 namespace goniochrome::library {
 
 double signed_hue_shift(double hue_shift_index, double hue_travel_deg) {
-  return std::copysign(hue_shift_index, std::sin(hue_travel_deg * kDegree));
+  return std::copysign(hue_shift_index, math::sin(hue_travel_deg * kDegree));
 }
 
 Verdict verdict(const paint::Paint& query, const LibraryIndex& index, std::size_t match, double mean_de,

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "base/angles.h"
+#include "math/elementary.h"
 
 namespace goniochrome::math {
 
@@ -14,8 +15,8 @@ namespace goniochrome::math {
 double log_cosine(double angle_rad) {
   const double angle = std::abs(angle_rad);
   if (angle >= kPi / 2) return -std::numeric_limits<double>::infinity();
-  const double s = std::sin(angle);
-  return s * s <= 0.5 ? 0.5 * std::log1p(-s * s) : std::log(std::cos(angle));
+  const double s = math::sin(angle);
+  return s * s <= 0.5 ? 0.5 * math::log1p(-s * s) : math::log(math::cos(angle));
 }
 
 double cos_power(double angle_rad, double exponent) {
@@ -25,12 +26,12 @@ double cos_power(double angle_rad, double exponent) {
 double cos_power_from_versine(double versine, double exponent) {
   if (versine >= 1) return 0;
   if (exponent == 0) return 1;
-  return std::exp(exponent * std::log1p(-versine));
+  return math::exp(exponent * math::log1p(-versine));
 }
 
 double cosine_power(double t, double exponent) {
   if (t <= 0) return 0;
-  return exponent == 0 ? 1 : exponent == 1 ? t : std::exp(exponent * std::log(std::min(t, 1.0)));
+  return exponent == 0 ? 1 : exponent == 1 ? t : math::exp(exponent * math::log(std::min(t, 1.0)));
 }
 
 }  // namespace goniochrome::math

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "math/elementary.h"
+
 namespace goniochrome::math {
 
 // The logarithm of cos(angle), to a few ulp of itself; minus infinity from 90 degrees on.
@@ -11,7 +13,7 @@ double log_cosine(double angle_rad);
 
 // cos^E from that logarithm, for callers that raise one cosine to many exponents.
 inline double power_of_cosine(double log_cosine, double exponent) {
-  return std::isinf(log_cosine) ? 0 : std::exp(exponent * log_cosine);
+  return std::isinf(log_cosine) ? 0 : math::exp(exponent * log_cosine);
 }
 
 // cos(angle)^exponent for 0 <= angle_rad <= pi/2 (0 beyond), exponent 0..1e6, relative error <= 1e-12.

@@ -20,6 +20,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "math/elementary.h"
 #include "math/least_squares.h"
 
 namespace goniochrome::math {
@@ -145,7 +146,7 @@ void ActiveSet::leave(int p) {
   order_.insert(order_.begin() + passive_, j);
   for (int k = p; k < passive_; ++k) {
     double* pivot = column(order_[k]);
-    const double r = std::hypot(pivot[k], pivot[k + 1]);
+    const double r = math::hypot(pivot[k], pivot[k + 1]);
     if (r == 0) continue;
     const double c = pivot[k] / r, s = pivot[k + 1] / r;
     const auto rotated = [&](double* target) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/angles.h"
+#include "math/elementary.h"
 
 namespace goniochrome::math {
 
@@ -12,7 +13,7 @@ namespace goniochrome::math {
 std::vector<QuadraturePoint> gauss_legendre(int n) {
   std::vector<QuadraturePoint> points(static_cast<std::size_t>(std::max(n, 0)));
   for (int k = 0; k < n; ++k) {
-    double x = -std::cos(kPi * (k + 0.75) / (n + 0.5)), slope = 1;
+    double x = -math::cos(kPi * (k + 0.75) / (n + 0.5)), slope = 1;
     if (2 * k + 1 == n) x = 0;
     for (int step = 0; step < 20; ++step) {
       double p = 1, before = 0;

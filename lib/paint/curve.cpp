@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/text.h"
+#include "math/elementary.h"
 
 namespace goniochrome::paint {
 
@@ -357,11 +358,11 @@ Result<TargetCurve> TargetCurve::make(const Paint& paint, Kind kind) {
 constexpr double kPlaceOffset_deg = 5;
 
 double curve_place(double aspecular_deg) {
-  return std::log(aspecular_deg + kPlaceOffset_deg);
+  return math::log(aspecular_deg + kPlaceOffset_deg);
 }
 
 double angle_of_place_deg(double place) {
-  return std::exp(place) - kPlaceOffset_deg;
+  return math::exp(place) - kPlaceOffset_deg;
 }
 
 double curve_place_slope(double aspecular_deg) {

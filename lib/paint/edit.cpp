@@ -6,6 +6,7 @@
 
 #include "base/angles.h"
 #include "base/text.h"
+#include "math/elementary.h"
 #include "paint/curve.h"
 #include "paint/metrics.h"
 
@@ -316,8 +317,8 @@ AverageColor average_color(const Appearance& appearance) {
 
 color::Lab tweaked(const color::Lab& lab, const Tweak& tweak) {
   const double turn_rad = tweak.hue_deg * kDegree;
-  const double c = tweak.chroma_factor * std::cos(turn_rad);
-  const double s = tweak.chroma_factor * std::sin(turn_rad);
+  const double c = tweak.chroma_factor * math::cos(turn_rad);
+  const double s = tweak.chroma_factor * math::sin(turn_rad);
   return {lab.L + tweak.lightness, c * lab.a - s * lab.b, s * lab.a + c * lab.b};
 }
 
@@ -378,7 +379,7 @@ std::vector<Neighbor> neighbors(Variation variation, double step) {
     constexpr std::array kNames = {"red", "yellow", "green", "cyan", "blue", "magenta"};
     for (std::size_t i = 0; i < kNames.size(); ++i) {
       const double hue_rad = (30 + 60.0 * static_cast<double>(i)) * kDegree;
-      add(kNames[i], {0, step * std::cos(hue_rad), step * std::sin(hue_rad)});
+      add(kNames[i], {0, step * math::cos(hue_rad), step * math::sin(hue_rad)});
     }
     return result;
   }

@@ -6,6 +6,8 @@
 
 #include "base/angles.h"
 #include "base/text.h"
+#include "math/elementary.h"
+#include "math/twice.h"
 
 namespace goniochrome::paint {
 
@@ -53,32 +55,8 @@ std::optional<Geometry> syntax(std::string_view text) {
   return geometry;
 }
 
-// The sum of two doubles and its rounding error, exactly (Knuth); likewise the product, by fused multiply-add. A value
-// is carried as such an unevaluated sum: twice the digits of a double.
-struct Twice {
-  double high = 0, low = 0;
-};
-Twice sum_of(double a, double b) {
-  const double s = a + b, bb = s - a;
-  return {s, (a - (s - bb)) + (b - bb)};
-}
-Twice product_of(double a, double b) {
-  const double p = a * b;
-  return {p, std::fma(a, b, -p)};
-}
-Twice operator+(Twice a, Twice b) {
-  Twice s = sum_of(a.high, b.high);
-  const Twice t = sum_of(a.low, b.low);
-  s = sum_of(s.high, s.low + t.high);
-  return sum_of(s.high, s.low + t.low);
-}
-Twice operator-(Twice a) {
-  return {-a.high, -a.low};
-}
-Twice operator*(Twice a, double b) {
-  const Twice p = product_of(a.high, b);
-  return sum_of(p.high, p.low + a.low * b);
-}
+using math::product_of;
+using math::Twice;
 
 Twice dot_of(const Vec3& a, const Vec3& b) {
   return product_of(a.x, b.x) + product_of(a.y, b.y) + product_of(a.z, b.z);
@@ -117,9 +95,9 @@ std::string geometry_name(const Geometry& geometry) {
 DirectionPair directions(const Geometry& geometry) {
   const double t = geometry.incidence_deg * kDegree, as = geometry.aspecular_deg * kDegree;
   const double az = geometry.azimuth_deg * kDegree;
-  const Vec3 s{std::sin(t), 0, std::cos(t)}, g{std::cos(t), 0, -std::sin(t)}, y{0, 1, 0};
-  const Vec3 away = geometry.out_of_plane ? std::cos(az) * g + std::sin(az) * y : -g;
-  DirectionPair pair{{-std::sin(t), 0, std::cos(t)}, std::cos(as) * s + std::sin(as) * away};
+  const Vec3 s{math::sin(t), 0, math::cos(t)}, g{math::cos(t), 0, -math::sin(t)}, y{0, 1, 0};
+  const Vec3 away = geometry.out_of_plane ? math::cos(az) * g + math::sin(az) * y : -g;
+  DirectionPair pair{{-math::sin(t), 0, math::cos(t)}, math::cos(as) * s + math::sin(as) * away};
   if (geometry.reversed) std::swap(pair.light, pair.view);
   return pair;
 }
@@ -139,7 +117,7 @@ double aspecular_angle_rad(const Vec3& to_light, const Vec3& to_viewer, const Ve
   const Vec3& v = to_viewer;
   const auto cross_part = [&](int i, int j) { return (m[i] * v[j] + -(m[j] * v[i])).high; };
   const double along = (m[0] * v.x + m[1] * v.y + m[2] * v.z).high;
-  return std::atan2(std::hypot(cross_part(1, 2), cross_part(2, 0), cross_part(0, 1)), along);
+  return math::atan2(math::hypot(cross_part(1, 2), cross_part(2, 0), cross_part(0, 1)), along);
 }
 
 }  // namespace goniochrome::paint

@@ -8,6 +8,7 @@
 
 #include "base/angles.h"
 #include "base/text.h"
+#include "math/elementary.h"
 #include "paint/curve.h"
 
 namespace goniochrome::paint {
@@ -17,7 +18,7 @@ namespace {
 constexpr double kNone = PaintMetrics::kNone;
 
 double signed_flop(double difference, double L45) {
-  return std::copysign(2.69 * std::pow(std::abs(difference), 1.11) / std::pow(L45, 0.86), difference);
+  return std::copysign(2.69 * math::pow(std::abs(difference), 1.11) / math::pow(L45, 0.86), difference);
 }
 
 // The distance of the origin from the step between two points of the a*b* plane.
@@ -25,7 +26,7 @@ double least_chroma(const color::Lab& from, const color::Lab& to) {
   const double da = to.a - from.a, db = to.b - from.b;
   const double length2 = da * da + db * db;
   const double along = length2 > 0 ? std::clamp(-(from.a * da + from.b * db) / length2, 0.0, 1.0) : 0;
-  return std::hypot(from.a + along * da, from.b + along * db);
+  return math::hypot(from.a + along * da, from.b + along * db);
 }
 
 // A row on the curve's own path: light at 45 deg, in plane, on the normal's side of specular.
@@ -114,7 +115,7 @@ HueTravel hue_travel(std::span<const color::Lab> path) {
   HueTravel travel;
   for (std::size_t i = 1; i < path.size(); ++i) {
     const color::Lab &from = path[i - 1], &to = path[i];
-    travel.degrees += std::atan2(from.a * to.b - from.b * to.a, from.a * to.a + from.b * to.b) * (180 / kPi);
+    travel.degrees += math::atan2(from.a * to.b - from.b * to.a, from.a * to.a + from.b * to.b) * (180 / kPi);
     if (least_chroma(from, to) < kLeastChroma) travel.through_gray = true;
   }
   return travel;

@@ -9,6 +9,7 @@
 #include "brdf/lobe_model.h"
 #include "brdf/tilted_lobes.h"
 #include "envmap/weighted_diffuse.h"
+#include "math/elementary.h"
 #include "render/internal/lobe_curves.h"
 #include "render/internal/tilt_table.h"
 #include "render/internal/worn_lobes.h"
@@ -36,7 +37,8 @@ class SlotValues {
         mapped_(mapped),
         even_(brdf::mean_coat_transmission(coat_index)),
         values_(static_cast<std::size_t>(table.slots)) {
-    if (effects.fresnel) fresnel_scale_ = 1 / brdf::fresnel_dielectric(std::cos(gloss_deg * kDegree), brdf::kCoatIndex);
+    if (effects.fresnel)
+      fresnel_scale_ = 1 / brdf::fresnel_dielectric(math::cos(gloss_deg * kDegree), brdf::kCoatIndex);
   }
 
   // `lit` is what lights meet. `node` counts the ends of the segments; a table of one segment has the view cos_o = 0 at
@@ -116,9 +118,9 @@ void fill_part(const Scene& scene, const Effects& effects, std::size_t part, con
   std::vector<SlotValues::Texel> before;
   for (int node = 0; node <= table.segments; ++node) {
     const double x = static_cast<double>(node) / table.segments, cos_o = table.segments > 1 ? x * x : x;
-    const paint::LobeFit here_paint = with_views ? brdf::at_view(paint, std::acos(cos_o) / kDegree) : paint;
+    const paint::LobeFit here_paint = with_views ? brdf::at_view(paint, math::acos(cos_o) / kDegree) : paint;
     const std::vector<SlotValues::Texel>& here =
-        values.at(tilts != nullptr ? beside_tilts(here_paint, *tilts, std::acos(cos_o) / kDegree) : here_paint,
+        values.at(tilts != nullptr ? beside_tilts(here_paint, *tilts, math::acos(cos_o) / kDegree) : here_paint,
                   effects.maps ? paint : here_paint, cos_o, node);
     if (node > 0) {
       for (std::size_t slot = 0; slot < here.size(); ++slot, rows += 8) {

@@ -6,6 +6,7 @@
 #include "base/angles.h"
 #include "brdf/disc_light.h"
 #include "color/color.h"
+#include "math/elementary.h"
 #include "render/internal/worn_lobes.h"
 
 namespace goniochrome::render {
@@ -32,13 +33,13 @@ color::Rgb Light::radiance() const {
 }
 
 bool Light::meets(const Vec3& toward) const {
-  return radius_rad > 0 && length(toward - direction) <= 2 * std::sin(0.5 * radius_rad);
+  return radius_rad > 0 && length(toward - direction) <= 2 * math::sin(0.5 * radius_rad);
 }
 
 Light light_at(const Light& light, const Vec3& position) {
   if (!light.place) return light;
   const Vec3 toward = light.place->position - position;
-  const double distance = length(toward), radius = light.place->distance * std::sin(light.radius_rad);
+  const double distance = length(toward), radius = light.place->distance * math::sin(light.radius_rad);
   Light seen = light;
   seen.place.reset();
   // A point lamp has no surface that a point of the mesh could touch; there it is as bright as that close by.
@@ -46,7 +47,7 @@ Light light_at(const Light& light, const Vec3& position) {
   if (distance > 0) seen.direction = (1 / distance) * toward;
   const double closer = light.place->distance / far;
   seen.white = closer * closer * light.white;
-  seen.radius_rad = std::asin(std::min(1.0, radius / far));
+  seen.radius_rad = math::asin(std::min(1.0, radius / far));
   return seen;
 }
 
@@ -57,7 +58,7 @@ std::vector<DiscDirection> disc_directions(const Light& light) {
   if (light.radius_rad < kNarrow_rad) return {{light.direction, 1}};
   const Vec3 other = std::abs(light.direction.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
   const Vec3 x = normalized(cross(other, light.direction)), y = cross(light.direction, x);
-  const double half = std::sin(0.5 * light.radius_rad), sine = std::sin(light.radius_rad);
+  const double half = math::sin(0.5 * light.radius_rad), sine = math::sin(light.radius_rad);
   const double weight = 4 * half * half / (sine * sine) / (kRings * kSteps);
   std::vector<DiscDirection> all;
   for (int ring = 0; ring < kRings; ++ring) {
@@ -65,18 +66,18 @@ std::vector<DiscDirection> disc_directions(const Light& light) {
     for (int step = 0; step < kSteps; ++step) {
       const double phi = 2 * kPi * (step + 0.5 * (ring % 2)) / kSteps;
       all.push_back(
-          {(1 - versine) * light.direction + across * std::cos(phi) * x + across * std::sin(phi) * y, weight});
+          {(1 - versine) * light.direction + across * math::cos(phi) * x + across * math::sin(phi) * y, weight});
     }
   }
   return all;
 }
 
 Vec3 disc_direction(const Light& light, double u, double v) {
-  const double half = std::sin(0.5 * light.radius_rad);
+  const double half = math::sin(0.5 * light.radius_rad);
   const double versine = 2 * half * half * u, across = std::sqrt(versine * (2 - versine)), phi = 2 * kPi * v;
   const Vec3 other = std::abs(light.direction.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
   const Vec3 x = normalized(cross(other, light.direction)), y = cross(light.direction, x);
-  return (1 - versine) * light.direction + across * std::cos(phi) * x + across * std::sin(phi) * y;
+  return (1 - versine) * light.direction + across * math::cos(phi) * x + across * math::sin(phi) * y;
 }
 
 bool wears_lobe(const paint::LobeFit& paint, double exponent, LobeWeight weight) {

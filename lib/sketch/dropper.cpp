@@ -1,9 +1,9 @@
 #include "sketch/dropper.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "display/paint_view.h"
+#include "math/elementary.h"
 #include "math/statistics.h"
 
 namespace goniochrome::sketch {
@@ -13,7 +13,7 @@ namespace {
 constexpr double kFullContrast = 0.5;  // of brightness, for 100 gloss units
 
 double light_of_signal(double v) {  // IEC 61966-2-1
-  return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+  return v <= 0.04045 ? v / 12.92 : math::pow((v + 0.055) / 1.055, 2.4);
 }
 
 }  // namespace

@@ -1,13 +1,13 @@
 #include "fit/internal/brdf_fit.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/angles.h"
 #include "brdf/isoline.h"
 #include "brdf/lobe_model.h"
 #include "fit/internal/target_rows.h"
 #include "math/cosine_power.h"
+#include "math/elementary.h"
 #include "math/least_squares.h"
 #include "math/statistics.h"
 
@@ -26,12 +26,12 @@ constexpr double kReach = 0.01;
 
 // What a gloss weight of 1 counts there.
 double coat_scale(const BrdfSample& sample) {
-  return brdf::coat_fresnel(half_angle_cosine(sample)) / std::cos(sample.light_deg * kDegree);
+  return brdf::coat_fresnel(half_angle_cosine(sample)) / math::cos(sample.light_deg * kDegree);
 }
 
 // What a coat leaves of the base's light there.
 double passages(const BrdfSample& sample, double coat_index) {
-  return brdf::coat_passages(coat_index, std::cos(sample.light_deg * kDegree), std::cos(sample.view_deg * kDegree));
+  return brdf::coat_passages(coat_index, math::cos(sample.light_deg * kDegree), math::cos(sample.view_deg * kDegree));
 }
 
 // What the lobes show there, gloss included: reflectance factors of the working space.
@@ -96,9 +96,9 @@ std::vector<double> color_errors(const BrdfRows& rows, const color::Xyz& white, 
 double aspecular_of_flakes_deg(const BrdfSample& sample) {
   const paint::DirectionPair pair = directions_of(sample);
   const double flake = brdf::flake_angles(pair.light, pair.view, brdf::kCoatIndex).flake_rad;
-  const double light_in_coat = std::asin(std::sin(45 * kDegree) / brdf::kCoatIndex);
-  const double sine = brdf::kCoatIndex * std::sin(2 * flake - light_in_coat);
-  return 45 + std::asin(std::clamp(sine, -1.0, 1.0)) / kDegree;
+  const double light_in_coat = math::asin(math::sin(45 * kDegree) / brdf::kCoatIndex);
+  const double sine = brdf::kCoatIndex * math::sin(2 * flake - light_in_coat);
+  return 45 + math::asin(std::clamp(sine, -1.0, 1.0)) / kDegree;
 }
 
 // Positions of the sharp lobes, ascending.

@@ -7,6 +7,7 @@
 #include "brdf/lobe_model.h"
 #include "fit/internal/color_floor.h"
 #include "math/cosine_power.h"
+#include "math/elementary.h"
 
 namespace goniochrome::fit {
 
@@ -26,7 +27,7 @@ double usual_view_deg(double aspecular_deg) {
 }
 
 double usual_passages(double aspecular_deg, double coat_index) {
-  return brdf::coat_passages(coat_index, std::cos(45 * kDegree), std::cos(usual_view_deg(aspecular_deg) * kDegree));
+  return brdf::coat_passages(coat_index, math::cos(45 * kDegree), math::cos(usual_view_deg(aspecular_deg) * kDegree));
 }
 
 // The color of the base of which a coat leaves `lab`.
@@ -105,7 +106,7 @@ std::pair<int, double> steepest_rise(const std::vector<paint::LabReading>& readi
 
 double view_angle_deg(const paint::Geometry& geometry) {
   const Vec3 view = paint::directions(geometry).view;
-  return std::atan2(std::hypot(view.x, view.y), view.z) / kDegree;
+  return math::atan2(math::hypot(view.x, view.y), view.z) / kDegree;
 }
 
 std::vector<double> seen_exponents(const std::vector<double>& exponents, double first_rad) {
@@ -149,17 +150,17 @@ FlakeRow flake_row(const TargetRow& row, const FitOptions& options, bool inferre
 // lobes can have, and it leaves no reason for a sharp lobe with an arbitrary weight.
 std::vector<TargetRow> extension_to_specular(const HighlightEnd& end, double steepest, const color::Xyz& white,
                                              double importance, double coat_index) {
-  const double cos_a = std::cos(end.a_deg * kDegree), cos_b = std::cos(end.b_deg * kDegree);
+  const double cos_a = math::cos(end.a_deg * kDegree), cos_b = math::cos(end.b_deg * kDegree);
   color::Rgb exponent;
   for (int c = 0; c < 3; ++c) {
     if (end.at_a[c] <= end.at_b[c] || cos_b <= 0) continue;
-    exponent[c] =
-        end.at_b[c] > 0 ? std::min(steepest, std::log(end.at_a[c] / end.at_b[c]) / std::log(cos_a / cos_b)) : steepest;
+    exponent[c] = end.at_b[c] > 0 ? std::min(steepest, math::log(end.at_a[c] / end.at_b[c]) / math::log(cos_a / cos_b))
+                                  : steepest;
   }
   std::vector<TargetRow> rows;
   for (double t = 0; t < end.a_deg - kStep_deg / 2; t += kStep_deg) {
     TargetRow row = {t, usual_view_deg(t), end.at_a, importance, 0};
-    for (int c = 0; c < 3; ++c) row.reflectance_factor[c] *= std::pow(std::cos(t * kDegree) / cos_a, exponent[c]);
+    for (int c = 0; c < 3; ++c) row.reflectance_factor[c] *= math::pow(math::cos(t * kDegree) / cos_a, exponent[c]);
     row.passages = usual_passages(t, coat_index);
     row.lightness = color::lab_from_rgb(row.passages * row.reflectance_factor, white).L;
     rows.push_back(row);

@@ -8,6 +8,7 @@
 
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
+#include "math/elementary.h"
 #include "math/quadrature.h"
 
 namespace goniochrome::render {
@@ -20,7 +21,7 @@ constexpr int kPolar = 24, kAround = 8, kAroundCoat = 16;
 // a + b cos p with a = cos t cos_o, b = sin t sin_o.
 double half_arc(double a, double b) {
   if (a >= b) return kPi;
-  return a <= -b ? 0 : std::acos(-a / b);
+  return a <= -b ? 0 : math::acos(-a / b);
 }
 
 // The first moment of what is gathered: along r, and along e, the direction across r toward the normal.
@@ -55,18 +56,18 @@ LobeIntegrals lobe_integrals(double exponent, double cos_o, bool horizon, double
   Moment cosine, plain;
   for (const math::QuadraturePoint& point : points) {
     const double weight = 0.5 * point.weight;
-    const double cos_t = std::pow(0.5 * (1 + point.position), 1 / (exponent + 1));
+    const double cos_t = math::pow(0.5 * (1 + point.position), 1 / (exponent + 1));
     const double sin_t = std::sqrt(std::max(0.0, 1 - cos_t * cos_t));
     const double a = cos_t * cos_o, b = sin_t * sin_o, arc = half_arc(a, b);
-    const double chord = std::sin(arc), with_cosine = weight * 2 * (a * arc + b * chord);
+    const double chord = math::sin(arc), with_cosine = weight * 2 * (a * arc + b * chord);
     sum.plain += weight * 2 * arc;
     if (coat_index == paint::kNoCoat) {
       sum.cosine += with_cosine;
       cosine.along += cos_t * with_cosine;
-      cosine.across += sin_t * weight * (2 * a * chord + b * (arc + chord * std::cos(arc)));
+      cosine.across += sin_t * weight * (2 * a * chord + b * (arc + chord * math::cos(arc)));
     }
     for (int i = 0; coat_index != paint::kNoCoat && i < kAroundCoat; ++i) {
-      const double cos_p = std::cos(arc * (i + 0.5) / kAroundCoat), c = std::clamp(a + b * cos_p, 0.0, 1.0);
+      const double cos_p = math::cos(arc * (i + 0.5) / kAroundCoat), c = std::clamp(a + b * cos_p, 0.0, 1.0);
       const double let_in = weight * 2 * arc / kAroundCoat * c * brdf::coat_transmission(c, coat_index);
       sum.cosine += let_in;
       cosine.along += cos_t * let_in;
@@ -75,7 +76,7 @@ LobeIntegrals lobe_integrals(double exponent, double cos_o, bool horizon, double
     plain.along += cos_t * weight * 2 * arc;
     plain.across += sin_t * weight * 2 * chord;
     for (int i = 0; i < kAround; ++i) {
-      const double cos_between = cos_t * cos_2o + sin_t * sin_2o * std::cos(arc * (i + 0.5) / kAround);
+      const double cos_between = cos_t * cos_2o + sin_t * sin_2o * math::cos(arc * (i + 0.5) / kAround);
       const double cos_half = std::sqrt(std::clamp(0.5 * (1 + cos_between), 0.0, 1.0));
       sum.fresnel += weight * 2 * arc / kAround * brdf::fresnel_dielectric(cos_half, brdf::kCoatIndex);
     }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/angles.h"
+#include "math/elementary.h"
 
 namespace goniochrome::render {
 
@@ -71,10 +72,10 @@ std::optional<Vec3> three_roots(const std::array<double, 4>& k) {
   const double b = k[2] / k[3], c = k[1] / k[3], d = k[0] / k[3];
   const double p = c - b * b / 3, q = 2 * b * b * b / 27 - b * c / 3 + d;
   if (!(4 * p * p * p + 27 * q * q < 0)) return std::nullopt;
-  const double radius = 2 * std::sqrt(-p / 3), angle = std::acos(std::clamp(3 * q / (p * radius), -1.0, 1.0)) / 3;
+  const double radius = 2 * std::sqrt(-p / 3), angle = math::acos(std::clamp(3 * q / (p * radius), -1.0, 1.0)) / 3;
   Vec3 roots;
   for (int i = 0; i < 3; ++i) {
-    double t = radius * std::cos(angle - 2 * kPi * i / 3) - b / 3;
+    double t = radius * math::cos(angle - 2 * kPi * i / 3) - b / 3;
     for (int step = 0; step < 2; ++step) {
       const double slope = (3 * t + 2 * b) * t + c;
       if (slope != 0) t -= (((t + b) * t + c) * t + d) / slope;
@@ -174,7 +175,7 @@ ProductForms product_forms(const color::ReflectionOperator& op) {
   double least = kMostGrowth;
   for (int i = 0; i < kChoices && conics.size() == 3; ++i) {
     const double z = (i + 0.5) / kChoices, s = std::sqrt(1 - z * z);
-    const Vec3 a{s * std::cos(kGoldenAngle * i), s * std::sin(kGoldenAngle * i), z};
+    const Vec3 a{s * math::cos(kGoldenAngle * i), s * math::sin(kGoldenAngle * i), z};
     const Vec3 values{on_conic(conics[0], a, a), on_conic(conics[1], a, a), on_conic(conics[2], a, a)};
     if (!(length(values) > 1e-12)) continue;
     const Vec3 v = normalized(values);

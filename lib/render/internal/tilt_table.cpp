@@ -1,11 +1,11 @@
 #include "render/internal/tilt_table.h"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "base/angles.h"
 #include "brdf/tilted_lobes.h"
+#include "math/elementary.h"
 #include "render/internal/worn_lobes.h"
 
 namespace goniochrome::render {
@@ -18,7 +18,7 @@ struct Node {
   std::vector<brdf::AxisSum> axes;
 };
 Node node_at(const paint::TiltedLobes& set, double cos_o) {
-  const double view_deg = std::acos(std::clamp(cos_o, 0.0, 1.0)) / kDegree;
+  const double view_deg = math::acos(std::clamp(cos_o, 0.0, 1.0)) / kDegree;
   Node node{brdf::at_view(set, view_deg), {}};
   for (const paint::TiltedLobe& lobe : set.lobes) node.axes.push_back(brdf::axis_sum(lobe, view_deg));
   return node;
@@ -115,7 +115,7 @@ double mean_lookups(const Scene& scene, int level, const std::vector<VisiblePoin
   for (const VisiblePoint& point : points) {
     const paint::TiltedLobes* set = set_of(scene.paints[static_cast<std::size_t>(point.part)], level);
     if (set == nullptr) continue;
-    const double view_deg = std::acos(std::clamp(dot(point.normal, point.to_viewer), 0.0, 1.0)) / kDegree;
+    const double view_deg = math::acos(std::clamp(dot(point.normal, point.to_viewer), 0.0, 1.0)) / kDegree;
     const paint::TiltedView view = brdf::at_view(*set, view_deg);
     for (std::size_t k = 0; k < set->lobes.size(); ++k)
       if (view.weights[k] != color::Rgb{}) sum += set->lobes[k].lookups();

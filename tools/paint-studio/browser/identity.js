@@ -1,5 +1,5 @@
-// Compares the arithmetic of the page with that of the tools on random paints and edits: paint-edit, fit-paint and
-// colorsnap must be in $PATH. Prints one line for each, and fails where a number differs by more than its bound.
+// Compares the arithmetic of the page with that of the tools on random paints and edits: paint-edit, fit-paint, paint-stats
+// and colorsnap must be in $PATH. Prints one line for each.
 //
 //   node identity.js studio.wasm b7.basis.xml [PAINTS [SEED]]
 "use strict";
@@ -53,7 +53,7 @@ function randomEdits(random) {
     { hue: between(0, 360) }, { chroma: between(0, 80) }, { lightness: between(5, 95) }, { "hue-shift": between(-180, 180) },
     { "chroma-factor": between(0, 2), "lightness-shift": between(-5, 5) },
     { at: between(15, 110), "lightness-shift": between(-6, 6), "hue-shift": between(-20, 20) },
-    { face: lab(), "keep-residual": true }, { set: [{ geometry: "45as45", lab: lab() }] },
+    { anisotropy: [between(0.01, 1), between(0.01, 1)] }, { face: lab(), "keep-residual": true }, { set: [{ geometry: "45as45", lab: lab() }] },
   ];
 }
 
@@ -103,7 +103,7 @@ async function main() {
     if (status !== 0 && status !== 1) throw new Error(`${tool} ${options.join(" ")}: ${stderr}`);
     return stdout.toString();
   };
-  const tallies = { edit: new Tally("edits"), fit: new Tally("fits"), near: new Tally("nearest paints") };
+  const tallies = { edit: new Tally("edits"), fit: new Tally("fits"), stats: new Tally("metrics"), near: new Tally("nearest paints") };
   try {
     write("library.xml", paints);
     const edited = [];
@@ -127,6 +127,13 @@ async function main() {
       const by = difference(ours, fitted[i] ?? "", 0.01);
       tallies.fit.add(by);
       if (by > 1e-6 && process.env.SHOW) console.log(ours, fitted[i]);
+    });
+    run("paint-stats", ["--quiet", "--report", at("stats.json"), "-o", "/dev/null", at("edited.xml")]);
+    const stats = JSON.parse(fs.readFileSync(at("stats.json"), "utf8")).results.paints;
+    edited.forEach((paint, i) => {
+      const { flags, ...ours } = engine.ask({ do: "describe", paint }).metrics, names = Object.keys(ours), theirs = stats[i];
+      const form = JSON.stringify(flags) !== JSON.stringify(theirs.flags) || names.some((name) => (ours[name] === null) !== (theirs[name] === null));
+      tallies.stats.add(form ? Infinity : Math.max(...names.map((name) => Math.abs(ours[name] - theirs[name]) / Math.max(1, Math.abs(ours[name])))));
     });
     run("colorsnap", ["--quiet", "--library", at("library.xml"), "--report", at("near.json"), "-o", "/dev/null", at("edited.xml")]);
     const queries = JSON.parse(fs.readFileSync(at("near.json"), "utf8")).results.queries;
