@@ -31,9 +31,11 @@ std::optional<std::string> link_target(const std::string& path) {
 }
 
 std::string relative_path(const std::string& path, const std::string& folder) {
-  std::error_code failure;
-  const std::string relative = std::filesystem::proximate(path, folder, failure).string();
-  return failure ? path : relative;
+  // A name that is not there yet would stay relative to the current folder, and could not be seen from another one.
+  std::error_code failure, wrong;
+  const std::filesystem::path whole = std::filesystem::absolute(path, wrong);
+  const std::string relative = std::filesystem::proximate(whole, folder, failure).string();
+  return failure || wrong ? path : relative;
 }
 
 Result<void> make_folder(const std::string& path) {

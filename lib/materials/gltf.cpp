@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/angles.h"
+#include "base/encode.h"
 #include "base/json.h"
 #include "materials/internal/ggx.h"
 #include "materials/internal/one_lobe.h"
@@ -37,19 +38,6 @@ color::Rgb seen(const OneLobe& p, const Vec3& light, const Vec3& view) {
 
 Json color_json(const color::Rgb& rgb) {
   return {rgb.x, rgb.y, rgb.z};
-}
-
-std::string base64(const std::string& bytes) {
-  static constexpr char kLetters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const auto byte = [&](std::size_t k) {
-      return i + k < bytes.size() ? static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[i + k])) : 0U;
-    };
-    const std::uint32_t three = byte(0) << 16 | byte(1) << 8 | byte(2);
-    for (std::size_t k = 0; k < 4; ++k) text += i + k > bytes.size() ? '=' : kLetters[three >> (18 - 6 * k) & 63];
-  }
-  return text;
 }
 
 // A sphere of radius 1: positions, which are its normals too, and triangles, counterclockwise from outside.

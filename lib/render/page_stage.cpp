@@ -1,5 +1,8 @@
 #include "render/page_stage.h"
 
+#include <tuple>
+#include <utility>
+
 #include "render/gl/disc_texture.h"
 #include "render/gl/shader.h"
 #include "render/internal/maps.h"
@@ -13,6 +16,17 @@ PagePrograms page_programs() {
           for_opengl_es(shading_vertex_shader())};
 }
 
+namespace {
+
+// The programs for paints that are not brushed, and for those that are.
+std::pair<std::string, std::string> shading_fragments(Effects effects, const color::ReflectionOperator& op) {
+  std::string plain = for_opengl_es(shading_fragment_shader(effects, op, {}));
+  effects.anisotropy = true;
+  return {std::move(plain), for_opengl_es(shading_fragment_shader(effects, op, {}))};
+}
+
+}  // namespace
+
 Result<PageLight> page_light(const envmap::PrefilteredEnvironment& env, const Effects& effects,
                              const color::ReflectionOperator& op) {
   if (effects.lobes.size() > kMostPageLobes)
@@ -25,7 +39,7 @@ Result<PageLight> page_light(const envmap::PrefilteredEnvironment& env, const Ef
   GONIO_ASSIGN(SceneMaps maps, scene_maps(scene, effects));
   const ProductForms forms = effects.reflection ? product_forms(op) : ProductForms{};
   PageLight light;
-  light.shading_fragment = for_opengl_es(shading_fragment_shader(effects, op, {}));
+  std::tie(light.shading_fragment, light.brushed_fragment) = shading_fragments(effects, op);
   const auto add = [&](std::string sampler, envmap::CubeMap map) {
     const bool in_forms = forms.count == 4;
     std::vector<float> texels =
@@ -56,7 +70,8 @@ PageMovableLamp page_movable_lamp(Effects effects, const color::ReflectionOperat
   const FloatTexture discs = disc_texture({lamp}, effects);
   effects.lights = 1;
   effects.extent = true;
-  return {for_opengl_es(shading_fragment_shader(effects, op, {})), disc_uniform(lamp), discs.rgba};
+  auto [plain, brushed] = shading_fragments(effects, op);
+  return {std::move(plain), std::move(brushed), disc_uniform(lamp), discs.rgba};
 }
 
 }  // namespace goniochrome::render

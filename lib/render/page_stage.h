@@ -30,6 +30,7 @@ struct PageLamp {
 
 struct PageLight {
   std::string shading_fragment;  // the program of this environment
+  std::string brushed_fragment;  // the same for brushed paints, which reads the texture "tilts"
   std::vector<PageCube> cubes;
   std::vector<PageLamp> lamps;          // its bright spots
   int disc_columns = 0, disc_rows = 0;  // of the texture "discs"
@@ -39,6 +40,7 @@ struct PageLight {
 // What a page needs to draw one more lamp in an environment: a disc far away, which the page moves and dims.
 struct PageMovableLamp {
   std::string shading_fragment;  // the program of the environment with this lamp before its others
+  std::string brushed_fragment;  // the same for brushed paints
   Vec3 disc;                     // as light_disc has it
   std::vector<float> discs;      // texels that go before those of the others
 };

@@ -45,7 +45,7 @@ struct Studio::State {
   std::optional<library::LibraryIndex> index;
   std::optional<library::LibrarySearch> by_de76, by_de00;
   std::optional<LibraryPane> pane;
-  std::vector<float> weights;
+  std::vector<float> weights, tilts;
   std::string attached;
 
   Result<Json> load(JsonReader& request);
@@ -140,6 +140,11 @@ Result<Json> Studio::State::fit(JsonReader& request) {
   scene.gloss_deg = {paint.gloss.empty() ? brdf::kGlossIncidence_deg : paint.gloss.front().angle_deg};
   scene.reflection = page_operator();
   weights = render::page_weights(scene, effects);
+  tilts.clear();
+  if (paint.anisotropy) {
+    scene.anisotropy = {*paint.anisotropy};
+    tilts = render::tilt_texels(render::tilts_of(scene, effects));
+  }
   Json answer = lobes_json(fit.lobes);
   answer["status"] = fit::fit_status_name(fit.report.status);
   answer["de00_max"] = json_number(fit.report.de00_max);
@@ -339,6 +344,7 @@ std::span<const std::byte> bytes_of(const std::vector<Element>& list) {
 
 std::span<const std::byte> Studio::list(List which) const {
   if (which == List::kWeights) return bytes_of(state_->weights);
+  if (which == List::kTilts) return bytes_of(state_->tilts);
   if (!state_->pane) return {};
   switch (which) {
     case List::kFiltered:

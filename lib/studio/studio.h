@@ -54,8 +54,9 @@ class Studio {
   // The row of weights of the paint that was fitted last, see render/page_weights.h.
   const std::vector<float>& weights() const;
 
-  // What answers fill, in the machine's own number format: floats of weights and clouds, else 32-bit whole numbers.
-  enum class List { kWeights, kFiltered, kCloud, kCloudColors, kCloudPaints };
+  // What answers fill, in the machine's own number format: floats of weights, tilts and clouds, else 32-bit whole
+  // numbers.
+  enum class List { kWeights, kFiltered, kCloud, kCloudColors, kCloudPaints, kTilts };
   std::span<const std::byte> list(List which) const;
 
   // Bytes for "load", which takes them.

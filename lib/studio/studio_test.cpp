@@ -100,11 +100,36 @@ TEST(Studio, EditsAsTheLibraryDoes) {
   EXPECT_EQ(answer.at("paint"), paint_json(edited->paint));
 }
 
+TEST(Studio, BrushesAPaintAndTellsItsTilts) {
+  Studio studio = loaded();
+  const Json edit = {{"anisotropy", {0.05, 0.3}}};
+  const Json brushed = studio.answer({{"do", "edit"}, {"paint", paint_json(metallic())}, {"edit", edit}}).at("paint");
+  EXPECT_EQ(brushed.at("anisotropy"), Json::array({0.05, 0.3}));
+  EXPECT_EQ(studio.answer({{"do", "describe"}, {"paint", brushed}}).at("anisotropy"), Json::array({0.05, 0.3}));
+  ASSERT_FALSE(studio.answer({{"do", "fit"}, {"paint", brushed}}).contains("error"));
+  const std::span<const std::byte> bytes = studio.list(Studio::List::kTilts);
+  std::vector<float> tilts(bytes.size() / sizeof(float));
+  std::memcpy(tilts.data(), bytes.data(), bytes.size());
+  ASSERT_GT(tilts.size(), 4U);
+  // The shares add up to 1, and the normals spread along Y more than along X, as the widths do.
+  double sum = 0, along_x = 0, along_y = 0;
+  for (std::size_t i = 0; i < tilts.size(); i += 4) {
+    sum += tilts[i + 3];
+    along_x += tilts[i + 3] * tilts[i] * tilts[i];
+    along_y += tilts[i + 3] * tilts[i + 1] * tilts[i + 1];
+  }
+  EXPECT_NEAR(sum, 1, 1e-5);
+  EXPECT_GT(along_y, 4 * along_x);
+  ASSERT_FALSE(studio.answer({{"do", "fit"}, {"paint", paint_json(metallic())}}).contains("error"));
+  EXPECT_TRUE(studio.list(Studio::List::kTilts).empty());
+}
+
 TEST(Studio, RefusesEditsThatPaintEditRefuses) {
   Studio studio = loaded();
   for (const char* text :
        {R"({"hew": 5})", R"({"travel": 15})", R"({"gloss": 101})", R"({"face": [1, 2]})", R"({"face": [-1, 2, 3]})",
-        R"({"hue": "5"})", R"({"set": [{"geometry": "x", "lab": [1, 2, 3]}]})"})
+        R"({"hue": "5"})", R"({"set": [{"geometry": "x", "lab": [1, 2, 3]}]})", R"({"anisotropy": [0.1]})",
+        R"({"anisotropy": [0.1, 0]})", R"({"anisotropy": [0.1, 11]})"})
     EXPECT_TRUE(studio.answer({{"do", "edit"}, {"paint", paint_json(metallic())}, {"edit", Json::parse(text)}})
                     .contains("error"))
         << text;

@@ -12,6 +12,7 @@ _paint_pick() {
     --mesh|-m) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --env|-e) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --basis) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --studio) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --name) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --report) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -19,7 +20,7 @@ _paint_pick() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--face --flop --gloss --travel --retro --buffers --palette --board --probe --mesh --env --basis --name --output --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--face --flop --gloss --travel --retro --buffers --palette --board --probe --mesh --env --basis --studio --name --output --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

@@ -62,6 +62,10 @@ cli::ToolSpec tool_spec(Options& o) {
       .more("Without it they are drawn under two lamps.");
   spec.option("basis", "FILE", "testdata/b7.basis.xml", &o.basis, "lobes that the paints are drawn with under lamps")
       .more("Without it there are seven, with exponents from 1.3 to 3000. An environment brings its own.");
+  spec.option("studio", "FILE", "studio.html", &o.studio, "page of paint-studio(1) in which each paint can be opened")
+      .more(
+          "Each paint of the page gets a link, at which the studio starts from it. The studio's page need not be there "
+          "yet, and both pages must be moved together.");
   spec.heading = "output";
   spec.option("name", "NAME", "spring", &o.name, "name of the paint; palettes number it");
   spec.option("output,o", "FILE", "picked.paints.xml", &o.output,

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/encode.h"
 #include "base/text.h"
 #include "display/paint_view.h"
 #include "paint/curve.h"
 #include "report/plot.h"
 #include "sketch/sketch_picture.h"
+#include "studio/paint_json.h"
 
 namespace goniochrome::tool {
 
@@ -47,18 +49,6 @@ td.number { text-align: right; }
 @media (max-width: 800px) { .frame { grid-template-columns: minmax(0, 1fr); padding: 14px; } .board { position: static; columns: 1; } }
 @media print { :root { background: #fff; } }
 )";
-
-std::string base64(const std::string& bytes) {
-  constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0);
-    for (std::size_t k = 0; k < 4; ++k) text += i + k > bytes.size() ? '=' : kDigits[group >> (18 - 6 * k) & 63];
-  }
-  return text;
-}
 
 std::string embedded(const std::string& png) {
   return "data:image/png;base64," + base64(png);
@@ -137,7 +127,15 @@ std::string gloss_border(const paint::Paint& paint) {
   return fmt::format("6px solid #{0:02x}{0:02x}{0:02x}", gray);
 }
 
-std::string paint_card(const PageOfPaint& paint) {
+// The address at which the studio starts from the paint. The studio shows by which commands the paint is made.
+std::string studio_address(const paint::Paint& paint, const StudioLink& studio) {
+  const Json design = {
+      {"file", "picked.paints.xml"}, {"board", plain_utf8(studio.board)}, {"paint", studio::paint_json(paint)}};
+  return percent_encoded(studio.address, "/") +
+         "#design=" + percent_encoded(design.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+std::string paint_card(const PageOfPaint& paint, const StudioLink& studio) {
   const paint::Paint& p = paint.picked.paint;
   const paint::Appearance& a = *p.appearance;
   std::string stops;
@@ -159,13 +157,16 @@ std::string paint_card(const PageOfPaint& paint) {
   text += fmt::format(
       "<tr><th scope=\"row\">Gloss at 60&deg;</th><td class=\"number\" colspan=\"3\">{}</td></tr></table>", gloss);
   if (paint.picked.swapped) text += "<p class=\"note\">Face and flop traded places: the flop was the lighter one.</p>";
+  if (!studio.address.empty())
+    text += fmt::format("<p class=\"note\"><a href=\"{}\">Open in the studio</a></p>", studio_address(p, studio));
   return text + "</div></article>\n";
 }
 
 }  // namespace
 
 Result<std::string> board_page(const sketch::Board& board, const std::vector<PageImage>& images,
-                               const std::vector<PageOfPaint>& paints, const std::string& lit_by) {
+                               const std::vector<PageOfPaint>& paints, const std::string& lit_by,
+                               const StudioLink& studio) {
   const std::string title = xml_escaped(board.title.empty() ? "Mood board" : board.title, "");
   std::string page = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
@@ -182,7 +183,7 @@ Result<std::string> board_page(const sketch::Board& board, const std::vector<Pag
                         xml_escaped(image.image.name, ""), embedded(png), dropper_marks(image, paints));
   }
   page += "</section>\n<main>\n";
-  for (const PageOfPaint& paint : paints) page += paint_card(paint);
+  for (const PageOfPaint& paint : paints) page += paint_card(paint, studio);
   return page + "</main>\n</div>\n</body>\n</html>\n";
 }
 

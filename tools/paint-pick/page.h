@@ -21,8 +21,15 @@ struct PageImage {
   image::ImagePart content;
 };
 
+// Where a page of paint-studio lies, as the page of the board sees it; empty for none. `board` is the file of the
+// board.
+struct StudioLink {
+  std::string address, board;
+};
+
 // Returns one HTML page that needs no other file. `lit_by` says how the paints were drawn.
 Result<std::string> board_page(const sketch::Board& board, const std::vector<PageImage>& images,
-                               const std::vector<PageOfPaint>& paints, const std::string& lit_by);
+                               const std::vector<PageOfPaint>& paints, const std::string& lit_by,
+                               const StudioLink& studio);
 
 }  // namespace goniochrome::tool

@@ -98,6 +98,24 @@ EOF
   [ "$(result 'samples | length')" -eq 4 ]
 }
 
+@test "with --studio each paint of the page opens in the studio, by an address that is no markup" {
+  write_board
+  mkdir -p other
+  paint-pick -q --board board.txt -o other/linked.html --studio 'my "studio".html'
+  [ "$(grep -o 'href="../my%20%22studio%22.html#design=[^"]*"' other/linked.html | wc -l)" -eq 2 ]
+  paint-pick -q --board board.txt -o picked.xml
+  python3 - other/linked.html picked.xml <<'PY'
+import json, re, sys, urllib.parse
+import xml.etree.ElementTree as tree
+designs = [json.loads(urllib.parse.unquote(one)) for one in re.findall(r'#design=([^"]*)"', open(sys.argv[1]).read())]
+space = "{urn:goniochrome:paint:1}"
+for design, paint in zip(designs, tree.parse(sys.argv[2]).getroot().findall(space + "paint"), strict=True):
+    assert design["board"] == "board.txt" and design["paint"]["name"] == paint.get("name")
+    face = paint.find(f"{space}appearance/{space}face")
+    assert design["paint"]["appearance"]["face"] == [float(face.get(one)) for one in "Lab"]
+PY
+}
+
 @test "a board as a page needs nothing beside itself" {
   write_board
   paint-pick -q --board board.txt -o board.html
@@ -217,7 +235,7 @@ usage_error() { # TEXT ARGUMENTS...
   usage_error '--palette takes a picture: name one' --palette 4
   usage_error 'the picture two.png is given and no --palette' --face two.png@1,1 two.png
   usage_error 'exclude each other' --palette 4 --face two.png@1,1 two.png
-  usage_error '--mesh, --env and --basis are for the page of a board' --face two.png@1,1 --mesh x.obj
+  usage_error '--mesh, --env, --basis and --studio are for the page of a board' --face two.png@1,1 --mesh x.obj
   run paint-pick --face two.png@1,1 -o page.html
   [ "$status" -eq 2 ]
   [[ $output == *'--output is "page.html": a page shows a --board'* ]]

@@ -1,8 +1,10 @@
 #include "tool.h"
 
 #include <cmath>
+#include <filesystem>
 #include <map>
 
+#include "base/paths.h"
 #include "base/text.h"
 #include "drawing.h"
 #include "image/aov_file.h"
@@ -113,6 +115,12 @@ Result<void> write(const std::string& path, const std::vector<PageOfPaint>& page
   return write_paints(path, paints, session);
 }
 
+StudioLink studio_link(const Options& options) {
+  if (options.studio.empty()) return {};
+  const std::string folder = std::filesystem::path(options.output).parent_path().string();
+  return {relative_path(options.studio, folder.empty() ? "." : folder), options.board};
+}
+
 Result<cli::Verdict> run_board(const Options& options, bool as_page, cli::Session& session) {
   GONIO_ASSIGN(const sketch::Board board, sketch::read_board(options.board));
   Shelf shelf;
@@ -139,7 +147,7 @@ Result<cli::Verdict> run_board(const Options& options, bool as_page, cli::Sessio
     GONIO_ASSIGN(const image::ImagePart* content, shelf.image(image.path));
     images.push_back({image, *content});
   }
-  GONIO_ASSIGN(const std::string page, board_page(board, images, paints, drawing.described()));
+  GONIO_ASSIGN(const std::string page, board_page(board, images, paints, drawing.described(), studio_link(options)));
   GONIO_TRY(write_file(options.output, page));
   return cli::Verdict::kDone;
 }
@@ -201,8 +209,8 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   if (ways > 1) return usage_error("droppers, --palette, --board and --probe exclude each other");
   if (as_page && options.board.empty())
     return usage_error("--output is \"{}\": a page shows a --board", options.output);
-  if (!as_page && !(options.mesh.empty() && options.env.empty() && options.basis.empty()))
-    return usage_error("--mesh, --env and --basis are for the page of a board: give -o NAME.html");
+  if (!as_page && !(options.mesh.empty() && options.env.empty() && options.basis.empty() && options.studio.empty()))
+    return usage_error("--mesh, --env, --basis and --studio are for the page of a board: give -o NAME.html");
   if (!options.basis.empty() && !options.env.empty())
     return usage_error("--basis is for lamps: an environment brings its own");
   if (!options.probes.empty()) return run_probe(options, session);

@@ -17,7 +17,7 @@ struct Options {
   std::string name = "picked";
   int palette = 0;
   std::string board, output = "-";
-  std::string mesh, env, basis;
+  std::string mesh, env, basis, studio;
 };
 
 cli::ToolSpec tool_spec(Options& options);

@@ -17,7 +17,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "is seen at 15 and at 45 degrees and at the travel, and a checker shows the highlight. Angles are those to the "
       "lamp, or without it to the brightest light of the environment. A border divides the picture between the paint "
       "and another one, of the library, the palette or the history.",
-      "Pictures can be added, dropped or pasted. Droppers take the face, the flop and the gloss from them as "
+      "Pictures can be added, dropped or pasted, and stand on boards with a zoom of their own. Droppers take the face, "
+      "the flop and the gloss from them as "
       "paint-pick(1) does, and the page shows the command. The library is a list with a search by name and code and "
       "with filters by metrics, and a cloud of points in L*a*b* at a chosen angle, in which the design is marked. The "
       "page tells, as colorsnap(1) does, where a design lies outside the library and where its hue turns in another "
@@ -28,8 +29,9 @@ cli::ToolSpec tool_spec(Options& o) {
       "the command line that makes the same paint from the same library. It hands the paint over as paint XML, as "
       "CSV, and as CxF with the code of the nearest paint. It opens paint XML files, and saves sessions.",
       "All parts of the mesh wear the design, but for those that nobody paints, such as glass and tires: these are "
-      "told by their names, as in render-osmesa. The page shows no shadows and no light from one part to another, "
-      "no color maps and no brushed surfaces. A warning tells how many paints have them. While something moves, and "
+      "told by their names, as in render-osmesa. The page shows no shadows, no light from one part to another and no "
+      "color maps. A warning tells how many paints have these. Brushed paints take longer to draw. While something "
+      "moves, and "
       "first after each change, slow computers draw the picture with fewer pixels.",
       "The compiled library lies in ../lib/goniochrome beside the program, as the files studio.wasm and "
       "studio.html, or in $GONIOCHROME_MODULE_PATH. Where the compiler for WebAssembly was missing when the tools "
@@ -57,7 +59,7 @@ cli::ToolSpec tool_spec(Options& o) {
                  {"code_bytes", "size of the page without its data: markup, scripts and the compiled library"},
                  {"paints", "number of paints"},
                  {"triangles", "number of triangles of the mesh"},
-                 {"environments[]", "name and bytes of each environment in the page"},
+                 {"environments[]", "name of each environment, and its bytes before they are compressed"},
                  {"warnings[]", "the warnings of the run"}};
   spec.see_also = {"paint-edit(1)", "paint-pick(1)",    "fit-paint(1)",
                    "colorsnap(1)",  "render-osmesa(1)", "prefilter-envmap(1)"};

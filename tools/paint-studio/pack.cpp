@@ -29,17 +29,12 @@ constexpr double kLampRadius_rad = 2 * kDegree;
 // The first view of a page, which is that of render-osmesa.
 constexpr double kAzimuth_deg = 35, kElevation_deg = 12, kFov_deg = 30;
 
-template <class Number>
-std::string packed(const std::vector<Number>& numbers) {
-  return base64({reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Number)});
-}
-
 Json vector_json(const Vec3& v) {
   return Json::array({v.x, v.y, v.z});
 }
 
 // Halves reach to 65504: brighter maps are scaled down, and the page scales them up again into floats.
-Json cube_json(const render::PageCube& cube) {
+Json cube_json(const render::PageCube& cube, PackedNumbers& numbers) {
   constexpr float kMost = 60000;
   float most = 0;
   for (const float value : cube.texels) most = std::max(most, std::abs(value));
@@ -51,7 +46,7 @@ Json cube_json(const render::PageCube& cube) {
           {"size", cube.size},
           {"channels", cube.channels},
           {"scale", scale},
-          {"texels", packed(halves)}};
+          {"texels", numbers.add_smooth(halves, static_cast<std::size_t>(cube.channels))}};
 }
 
 // Where most of the light comes from: the brightest spot, or, without spots, the brightest side.
@@ -68,19 +63,6 @@ bool same_finish(const paint::LobeFit& a, const paint::LobeFit& b) {
 }
 
 }  // namespace
-
-std::string base64(std::string_view bytes) {
-  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-    for (std::size_t k = 0; k < 4; ++k) text += i + k > bytes.size() ? '=' : kDigits[group >> (18 - 6 * k) & 63];
-  }
-  return text;
-}
 
 void PackedLibrary::add(const std::string& file, const paint::Paint& paint) {
   Json json = studio::paint_json(paint);
@@ -122,7 +104,7 @@ Result<std::string> PackedLibrary::index() const {
   return std::string(index.content());
 }
 
-PackedMesh packed_mesh(const mesh::Mesh& mesh, bool with_mirror) {
+PackedMesh packed_mesh(const mesh::Mesh& mesh, bool with_mirror, PackedNumbers& numbers) {
   PackedMesh result;
   const mesh::Box box = mesh::bounding_box(mesh);
   const Vec3 size = box.high - box.low;
@@ -151,9 +133,9 @@ PackedMesh packed_mesh(const mesh::Mesh& mesh, bool with_mirror) {
   const render::Camera camera = render::Camera::orbit(mesh, kAzimuth_deg, kElevation_deg, 1, kFov_deg, 16.0 / 9);
   result.json = {{"low", vector_json(box.low)},
                  {"high", vector_json(box.high)},
-                 {"positions", packed(positions)},
-                 {"normals", packed(normals)},
-                 {"corners", packed(corners)},
+                 {"positions", numbers.add(positions)},
+                 {"normals", numbers.add(normals)},
+                 {"corners", numbers.add(corners)},
                  {"parts", std::move(parts)},
                  {"view",
                   {{"azimuth", kAzimuth_deg},
@@ -165,45 +147,47 @@ PackedMesh packed_mesh(const mesh::Mesh& mesh, bool with_mirror) {
 }
 
 Result<Json> packed_environment(const std::string& name, const envmap::PrefilteredEnvironment& env,
-                                const formats::Basis& basis) {
+                                const formats::Basis& basis, PackedNumbers& numbers) {
   const render::Effects effects = studio::page_effects(basis.exponents, basis.mirror, env.spots.size());
   GONIO_ASSIGN(const render::PageLight light, render::page_light(env, effects, studio::page_operator()));
   const Vec3 toward = render::orbit_direction(kAzimuth_deg, kElevation_deg);
-  Json json = {
-      {"name", name},
-      {"program", light.shading_fragment},
-      {"white", render::metered_white(&env, {}, toward)},
-      {"cubes", Json::array()},
-      {"lamp_program", render::page_movable_lamp(effects, studio::page_operator(), kLampRadius_rad).shading_fragment},
-      {"brightest", brightest_json(env)},
-      {"lamps", Json::array()}};
-  for (const render::PageCube& cube : light.cubes) json["cubes"].push_back(cube_json(cube));
-  for (const render::PageLamp& lamp : light.lamps)
-    json["lamps"].push_back({{"direction", vector_json(lamp.direction)},
-                             {"white", vector_json(lamp.white)},
-                             {"disc", vector_json(lamp.disc)}});
-  if (!light.discs.empty()) json["discs"] = {{"texels", packed(light.discs)}};
+  render::PageMovableLamp lamp = render::page_movable_lamp(effects, studio::page_operator(), kLampRadius_rad);
+  Json json = {{"name", name},
+               {"program", light.shading_fragment},
+               {"brushed_program", light.brushed_fragment},
+               {"white", render::metered_white(&env, {}, toward)},
+               {"cubes", Json::array()},
+               {"lamp_program", std::move(lamp.shading_fragment)},
+               {"brushed_lamp_program", std::move(lamp.brushed_fragment)},
+               {"brightest", brightest_json(env)},
+               {"lamps", Json::array()}};
+  for (const render::PageCube& cube : light.cubes) json["cubes"].push_back(cube_json(cube, numbers));
+  for (const render::PageLamp& spot : light.lamps)
+    json["lamps"].push_back({{"direction", vector_json(spot.direction)},
+                             {"white", vector_json(spot.white)},
+                             {"disc", vector_json(spot.disc)}});
+  if (!light.discs.empty()) json["discs"] = {{"texels", numbers.add(light.discs)}};
   return Result(std::move(json));
 }
 
-Json packed_lamp(const formats::Basis& basis) {
+Json packed_lamp(const formats::Basis& basis, PackedNumbers& numbers) {
   const render::Effects effects = studio::page_effects(basis.exponents, basis.mirror, 0);
   const render::PageMovableLamp lamp = render::page_movable_lamp(effects, studio::page_operator(), kLampRadius_rad);
   const std::size_t rows = basis.exponents.size() + 1;
   return {{"extent", 2 * kLampRadius_rad / kDegree},
           {"disc", vector_json(lamp.disc)},
           {"columns", lamp.discs.size() / (4 * rows)},
-          {"discs", packed(lamp.discs)}};
+          {"discs", numbers.add(lamp.discs)}};
 }
 
-Json packed_finishes(const std::vector<paint::LobeFit>& finishes, const formats::Basis& basis) {
+Json packed_finishes(const std::vector<paint::LobeFit>& finishes, const formats::Basis& basis, PackedNumbers& numbers) {
   const render::Effects effects = studio::page_effects(basis.exponents, basis.mirror, 0);
   render::Scene scene;
   scene.paints = finishes;
   scene.reflection = studio::page_operator();
   const render::WeightTable slots = render::slots_of(effects);
   const std::vector<float> weights = finishes.empty() ? std::vector<float>() : render::page_weights(scene, effects);
-  return {{"columns", 2 * slots.slots * slots.segments}, {"rows", finishes.size()}, {"texels", packed(weights)}};
+  return {{"columns", 2 * slots.slots * slots.segments}, {"rows", finishes.size()}, {"texels", numbers.add(weights)}};
 }
 
 }  // namespace goniochrome::tool

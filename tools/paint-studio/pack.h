@@ -1,9 +1,8 @@
-// The data of a page as JSON. Numbers of meshes, maps and weights stand in it as base64 of little-endian binary.
+// The data of a page as JSON. Numbers of meshes, maps and weights stand beside it, and the JSON has their places.
 #pragma once
 
 #include <map>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "base/json.h"
@@ -11,11 +10,10 @@
 #include "envmap/prefiltered.h"
 #include "formats/basis.h"
 #include "mesh/mesh.h"
+#include "numbers.h"
 #include "paint/paint.h"
 
 namespace goniochrome::tool {
-
-std::string base64(std::string_view bytes);
 
 // The paints of a page: an index that the compiled library searches, and a line of JSON for each paint. Lines of paints
 // that hold nothing but readings and gloss are lists: the number of their layout, name, code, class, and then the
@@ -43,17 +41,17 @@ struct PackedMesh {
   Json json;
   std::vector<paint::LobeFit> finishes;
 };
-PackedMesh packed_mesh(const mesh::Mesh& mesh, bool with_mirror);
+PackedMesh packed_mesh(const mesh::Mesh& mesh, bool with_mirror, PackedNumbers& numbers);
 
 // Cubes as half floats, with the program that draws by them. `white` is the luminance that exposure 0 brings to 1.
 // Error: an environment that lacks a lobe of the basis.
 Result<Json> packed_environment(const std::string& name, const envmap::PrefilteredEnvironment& env,
-                                const formats::Basis& basis);
+                                const formats::Basis& basis, PackedNumbers& numbers);
 
 // The lamp that a page has beside its environments: its extent in degrees, and its disc as the programs read it.
-Json packed_lamp(const formats::Basis& basis);
+Json packed_lamp(const formats::Basis& basis, PackedNumbers& numbers);
 
 // The rows of weights of these finishes, one behind the other, and the size of a row.
-Json packed_finishes(const std::vector<paint::LobeFit>& finishes, const formats::Basis& basis);
+Json packed_finishes(const std::vector<paint::LobeFit>& finishes, const formats::Basis& basis, PackedNumbers& numbers);
 
 }  // namespace goniochrome::tool

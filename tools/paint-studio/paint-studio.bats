@@ -88,7 +88,7 @@ print(base64.b64encode(hashlib.sha256(sys.stdin.buffer.read()).digest()).decode(
   [[ "$output" =~ "1 paints have a color map, which the page does not draw" ]]
   ! grep -q 'onerror=alert(1)>' page.html || ! grep -q '<img' page.html
   ! grep -q '<title><script>' page.html
-  [ "$(grep -o '</script>' page.html | wc -l)" -eq 5 ]
+  [ "$(grep -o '</script>' page.html | wc -l)" -eq 6 ]
   # The paints are JSON, and hold the name as it is.
   sed -n 's|^<script type="application/json" id="paints">\(.*\)</script>$|\1|p' page.html >paint.json
   [ "$(jq -r '.paint.name' paint.json)" = '</script><img src=x onerror=alert(1)>' ]

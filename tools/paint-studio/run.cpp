@@ -54,20 +54,19 @@ std::string script_text(std::string_view json) {
 
 Result<PackedLibrary> packed_paints(const Options& options, cli::Session& session) {
   PackedLibrary list;
-  std::size_t mapped = 0, brushed = 0;
+  std::size_t mapped = 0;
   for (const std::string& path : options.paints.empty() ? std::vector<std::string>{"-"} : options.paints) {
     GONIO_ASSIGN(const std::vector<paint::Paint> paints, formats::read_paints(path));
     for (const paint::Paint& paint : paints) {
       if (!paint.measurement && !paint.appearance)
         return input_error("{}: the paint \"{}\" has neither readings nor a face and a flop: give it a color", path,
                            shown(paint.name));
-      mapped += paint.color_map.has_value(), brushed += paint.anisotropy.has_value();
+      mapped += paint.color_map.has_value();
       list.add(plain_utf8(formats::paint_reference(path).file), paint);
     }
   }
   if (list.size() == 0) return input_error("there is no paint: a page starts from one or more");
   if (mapped > 0) session.warn(fmt::format("{} paints have a color map, which the page does not draw", mapped));
-  if (brushed > 0) session.warn(fmt::format("{} paints are brushed, and the page draws them as not brushed", brushed));
   return Result(std::move(list));
 }
 
@@ -83,7 +82,7 @@ std::string plan_text(const Options& options) {
   return fmt::format(
       "mesh {}: positions and normals in 16 bits an axis\n"
       "environments: {}, each lobe of the basis as half floats\n"
-      "left out: shadows, light from one part to another, color maps and brushed surfaces\n",
+      "left out: shadows, light from one part to another, and color maps\n",
       options.mesh, joined(options.environments, ", "));
 }
 
@@ -97,7 +96,8 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   GONIO_ASSIGN(const mesh::Mesh mesh, mesh::read_mesh(options.mesh));
   GONIO_ASSIGN(const PackedLibrary paints, packed_paints(options, session));
   GONIO_ASSIGN(const std::string index, paints.index());
-  PackedMesh packed = packed_mesh(mesh, basis.mirror);
+  PackedNumbers numbers;
+  PackedMesh packed = packed_mesh(mesh, basis.mirror, numbers);
   const render::PagePrograms programs = render::page_programs();
   const std::string title = options.title.empty() ? name_of(options.mesh) : plain_utf8(options.title);
 
@@ -107,8 +107,8 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
                {"basis", {{"name", basis.name}, {"exponents", basis.exponents}, {"mirror", basis.mirror}}},
                {"basis_file", plain_utf8(options.basis)},
                {"mesh", std::move(packed.json)},
-               {"finishes", packed_finishes(packed.finishes, basis)},
-               {"lamp", packed_lamp(basis)},
+               {"finishes", packed_finishes(packed.finishes, basis, numbers)},
+               {"lamp", packed_lamp(basis, numbers)},
                {"programs",
                 {{"gbuffer_vertex", programs.gbuffer_vertex},
                  {"gbuffer_fragment", programs.gbuffer_fragment},
@@ -121,17 +121,20 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   for (const std::string& path : options.environments) {
     session.progress(fmt::format("packing {}", path));
     GONIO_ASSIGN(const envmap::PrefilteredEnvironment env, envmap::read_env(path));
-    auto environment = packed_environment(name_of(path), env, basis);
+    const std::size_t before = numbers.bytes().size();
+    auto environment = packed_environment(name_of(path), env, basis, numbers);
     if (!environment.ok()) return input_error("{}: {}", path, environment.error().message);
-    results["environments"].push_back({{"name", name_of(path)}, {"bytes", environment->dump().size()}});
+    results["environments"].push_back(
+        {{"name", name_of(path)}, {"bytes", environment->dump().size() + numbers.bytes().size() - before}});
     data["environments"].push_back(std::move(*environment));
   }
 
-  const std::string library = base64(module);
+  const std::string library = compressed_text(module);
   const std::size_t code = page.size() + library.size();
   GONIO_TRY(fill(page, "@TITLE@", xml_escaped(title)));
   GONIO_TRY(fill(page, "@MODULE@", library));
-  GONIO_TRY(fill(page, "@INDEX@", base64(index)));
+  GONIO_TRY(fill(page, "@INDEX@", compressed_text(index)));
+  GONIO_TRY(fill(page, "@NUMBERS@", compressed_text(numbers.bytes())));
   GONIO_TRY(fill(page, "@PAINTS@", script_text(paints.lines())));
   GONIO_TRY(fill(page, "@DATA@", script_text(data.dump(-1, ' ', false, Json::error_handler_t::replace))));
   GONIO_ASSIGN(OutputFile file, OutputFile::create(options.output));

@@ -10,6 +10,7 @@
 #include "render/gl/shader.h"
 #include "render/gl/tilt_shader.h"
 #include "render/internal/map_cost.h"
+#include "render/page_weights.h"
 
 namespace goniochrome::render {
 
@@ -125,17 +126,9 @@ Result<void> GlEngine::load(const Scene& scene, const Effects& effects) {
 }
 
 void GlEngine::upload_tilts(const std::vector<std::vector<brdf::Tilt>>& tilts) {
-  std::size_t most = 1;
-  for (const std::vector<brdf::Tilt>& part : tilts) most = std::max(most, part.size());
-  std::vector<float> texels(4 * most * tilts.size(), 0.0F);
-  for (std::size_t part = 0; part < tilts.size(); ++part) {
-    float* to = &texels[4 * most * part];
-    for (const brdf::Tilt& tilt : tilts[part]) {
-      for (int c = 0; c < 3; ++c) *to++ = static_cast<float>(tilt.normal[c]);
-      *to++ = static_cast<float>(tilt.weight);
-    }
-  }
-  tilts_ = gl_->float_texture(static_cast<int>(most), static_cast<int>(tilts.size()), texels.data());
+  const std::vector<float> texels = tilt_texels(tilts);
+  tilts_ = gl_->float_texture(static_cast<int>(texels.size() / (4 * tilts.size())), static_cast<int>(tilts.size()),
+                              texels.data());
 }
 
 void GlEngine::upload_tilted(const Scene& scene) {

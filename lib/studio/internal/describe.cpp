@@ -90,6 +90,8 @@ Result<Json> description(const paint::Paint& paint) {
   json["gloss"] = Json::array();
   for (const paint::GlossReading& reading : paint.gloss)
     json["gloss"].push_back({{"angle", reading.angle_deg}, {"units", reading.gloss_units}});
+  const paint::Anisotropy brushed = paint.anisotropy.value_or(paint::Anisotropy{});
+  json["anisotropy"] = {brushed.alpha_x, brushed.alpha_y};
   json["rows"] = rows_json(paint, condition);
   json["measured"] = curve.kind() == paint::TargetCurve::Kind::kMeasured;
   json["curve"] = Json::array();

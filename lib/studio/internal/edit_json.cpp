@@ -1,8 +1,10 @@
 #include "studio/internal/edit_json.h"
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "base/text.h"
 #include "studio/internal/json_reader.h"
@@ -62,6 +64,13 @@ const std::map<std::string, Take, std::less<>>& moves() {
       {"set", take_readings},
       {"gloss", [](JsonReader& r, const char* k, paint::Edit& e) { e.gloss = within(r, k, 0, 100); }},
       {"gloss-shift", [](JsonReader& r, const char* k, paint::Edit& e) { e.gloss_shift = within(r, k, -100, 100); }},
+      {"anisotropy",
+       [](JsonReader& r, const char* k, paint::Edit& e) {
+         const std::vector<double> alpha = r.numbers(k, 2);
+         const bool within = std::ranges::all_of(alpha, [](double a) { return a >= 0 && a <= 10; });
+         if (!within || (alpha[0] == 0) != (alpha[1] == 0)) return r.fail("two numbers above 0 and up to 10, or 0,0", k);
+         e.anisotropy = paint::Anisotropy{alpha[0], alpha[1]};
+       }},
       {"gloss-angle", [](JsonReader& r, const char* k, paint::Edit& e) { e.gloss_angle_deg = within(r, k, 20, 85); }}};
   return all;
 }

@@ -6,13 +6,7 @@
 const fs = require("node:fs");
 const path = require("node:path");
 const zlib = require("node:zlib");
-const { pathToFileURL } = require("node:url");
-const { Browser } = require("./browser.js");
-
-const problems = [];
-function check(what, holds) {
-  if (!holds) problems.push(what);
-}
+const { check, drive } = require("./drive.js");
 
 // A PNG of the signals that color(x, y) gives, without loss.
 function png(width, height, color) {
@@ -38,8 +32,7 @@ function png(width, height, color) {
   return Buffer.concat([Buffer.from([0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a]), chunk("IHDR", head), chunk("IDAT", zlib.deflateSync(Buffer.concat(rows))), chunk("IEND", Buffer.alloc(0))]);
 }
 
-async function main() {
-  const [page, folder] = process.argv.slice(2), url = pathToFileURL(path.resolve(page)).href;
+drive("the droppers take what they are on", { width: 1000, height: 1000 }, async ({ browser, folder, value, shot, quiet, give }) => {
   const picture = path.join(path.resolve(folder), "two colors.png");
   // Light orange on the left, dark blue on the right, with a texture, and a highlight below.
   fs.writeFileSync(picture, png(320, 200, (x, y) => {
@@ -47,14 +40,8 @@ async function main() {
     if (y > 150) return x > 140 && x < 180 ? [250, 248, 240] : [60 + grain, 58, 50];
     return x < 160 ? [210 + grain, 140 + (y >> 3), 60] : [30, 40 + grain, 90 + (y >> 3)];
   }));
-  const browser = await Browser.open(url, { width: 1000, height: 1000 });
-  const value = (expression) => browser.evaluate(expression);
-  const quiet = () => browser.until("studio.tiles.waiting.length === 0 && studio.tiles.timer === undefined");
-  await browser.until("window.studio !== undefined");
   await quiet();
-  const { root } = await browser.send("DOM.getDocument");
-  const { nodeId } = await browser.send("DOM.querySelector", { nodeId: root.nodeId, selector: "#add-pictures" });
-  await browser.send("DOM.setFileInputFiles", { nodeId, files: [picture] });
+  await give("#add-pictures", [picture]);
   await browser.until("studio.pictures.current !== null && studio.pictures.place.querySelector('canvas')?.clientWidth > 0");
   await value("document.getElementById('picture-panel').scrollIntoView()");
   const at = (x, y) => value(`(() => { const { canvas } = studio.pictures.current, box = canvas.getBoundingClientRect();
@@ -77,7 +64,7 @@ async function main() {
   fs.writeFileSync(path.join(folder, "taken.json"), JSON.stringify(taken));
   fs.writeFileSync(path.join(folder, "pick-command.txt"), command);
   check("the paint has the droppers' colors", appearance.face[0] > appearance.flop[0]);
-  await browser.screenshot(path.join(folder, "droppers.png"));
+  await shot("droppers");
   // A flop that is lighter trades places with the face, unless that is to be kept.
   await kind("flop");
   await value("studio.pictures.current.canvas.focus()");
@@ -98,17 +85,32 @@ async function main() {
   check("the picture moves below the mouse", (await value("studio.pictures.place.scrollLeft")) === 80);
   const wrong = path.join(path.resolve(folder), "wrong.png");
   fs.writeFileSync(wrong, "no picture");
-  await browser.send("DOM.setFileInputFiles", { nodeId, files: [wrong] });
+  await give("#add-pictures", [wrong]);
   await browser.until("document.getElementById('status').textContent.includes('wrong.png is no picture')", 10);
   check("nothing was added", (await value("studio.pictures.all.length")) === 1);
-  await browser.close();
-  problems.push(...browser.problems);
-  for (const problem of problems) console.log("wrong: " + problem);
-  console.log(problems.length === 0 ? "the droppers take what they are on" : `${problems.length} things are wrong`);
-  process.exit(problems.length === 0 ? 0 : 1);
-}
 
-main().catch((error) => {
-  console.error(error.stack);
-  process.exit(1);
+  // A second picture stands beside the first, and droppers on both make one paint; another board has its own.
+  const second = path.join(path.resolve(folder), "third color.png");
+  fs.writeFileSync(second, png(200, 120, (x, y) => [40, 120 + (x >> 3), 90 + (y >> 3)]));
+  await give("#add-pictures", [second]);
+  await browser.until("studio.pictures.all.length === 2");
+  await value("studio.pictures.zoomTo(1)");
+  await value("document.getElementById('picture-panel').scrollIntoView()");
+  check("both pictures are in sight", (await value("[...document.querySelectorAll('#picture canvas')].map((one) => one.clientWidth).join()")) === "320,200");
+  await kind("flop");
+  await browser.mouseDrag(await at(20, 100), await at(50, 60));
+  check("a dropper lies on the second picture", (await value("studio.pictures.droppers.flop.picture === studio.pictures.all[1] && studio.pictures.droppers.face.picture === studio.pictures.all[0]")));
+  check("both pictures are in the command", /--face '?two.*--flop '?third/.test(await value("document.getElementById('pick-command').textContent")));
+  check("each picture has its marks", (await value("[...document.querySelectorAll('.sheet')].map((one) => one.querySelectorAll('.dropper').length).join()")) === "2,1");
+  await shot("droppers-2");
+  await browser.click("#new-board");
+  check("the new board is empty", (await value("document.querySelectorAll('#picture canvas').length")) === 0);
+  await give("#add-pictures", [second]);
+  await browser.until("studio.pictures.all.length === 3");
+  await value("document.querySelector('#picture-tabs [aria-selected=true]').focus()");
+  await browser.key("ArrowLeft");
+  check("arrow keys change the board", (await value("document.querySelector('#picture-tabs [aria-selected=true]').textContent")) === "Board 1 (2)");
+  await browser.click("#remove-picture");
+  await browser.click("#remove-picture");
+  check("an empty board goes", (await value("studio.pictures.boards.map((board) => board.name).join()")) === "Board 2");
 });

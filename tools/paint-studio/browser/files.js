@@ -5,27 +5,10 @@
 "use strict";
 const fs = require("node:fs");
 const path = require("node:path");
-const { pathToFileURL } = require("node:url");
-const { Browser } = require("./browser.js");
+const { check, drive } = require("./drive.js");
 
-const problems = [];
-function check(what, holds) {
-  if (!holds) problems.push(what);
-}
-
-async function main() {
-  const [page, folder, paints] = process.argv.slice(2), url = pathToFileURL(path.resolve(page)).href;
-  const browser = await Browser.open(url, { width: 1000, height: 1000 });
-  const value = (expression) => browser.evaluate(expression), status = () => value("document.getElementById('status').textContent");
-  await browser.until("window.studio !== undefined");
-  const open = async (file) => {
-    const { root } = await browser.send("DOM.getDocument");
-    const { nodeId } = await browser.send("DOM.querySelector", { nodeId: root.nodeId, selector: "#open-paints" });
-    await browser.send("DOM.setFileInputFiles", { nodeId, files: [path.resolve(file)] });
-  };
-  const choose = (id, text) => value(`(() => { const list = document.getElementById("${id}");
-    list.value = [...list.options].find((one) => one.textContent === ${JSON.stringify(text)}).value;
-    list.dispatchEvent(new Event("change")); })()`);
+drive("paints come and go", { width: 1000, height: 1000 }, async ({ browser, folder, value, status, choose, give }, paints) => {
+  const open = (file) => give("#open-paints", [file]);
 
   // Paint XML: all of its paints come, and a file of another kind is refused.
   const count = (fs.readFileSync(paints, "utf8").match(/<paint /g) ?? []).length;
@@ -40,6 +23,7 @@ async function main() {
 
   // A gradient, one of its paints and an edit of it; the session brings it back.
   await choose("library", "candy_red");
+  await value("studio.commit({ travel: 48 })");
   await choose("compare", "silver_fine");
   await browser.click("#gradient");
   check("the gradient is told: " + (await status()), (await status()).startsWith("3 paints between candy_red and silver_fine"));
@@ -64,14 +48,4 @@ async function main() {
   await browser.until("studio.paint.name === 'silver_fine' && location.hash === ''", 10);
   await value("location.hash = '#paint=no%20such'");
   await browser.until("document.getElementById('status').textContent.includes('no paint named no such')", 10);
-  await browser.close();
-  problems.push(...browser.problems);
-  for (const problem of problems) console.log("wrong: " + problem);
-  console.log(problems.length === 0 ? "paints come and go" : `${problems.length} things are wrong`);
-  process.exit(problems.length === 0 ? 0 : 1);
-}
-
-main().catch((error) => {
-  console.error(error.stack);
-  process.exit(1);
 });

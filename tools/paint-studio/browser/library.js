@@ -3,22 +3,11 @@
 //
 //   node library.js PAGE.html FOLDER
 "use strict";
-const path = require("node:path");
-const { pathToFileURL } = require("node:url");
-const { Browser } = require("./browser.js");
+const { check, drive } = require("./drive.js");
 
-const problems = [];
-function check(what, holds) {
-  if (!holds) problems.push(what);
-}
-
-async function main() {
-  const [page, folder] = process.argv.slice(2), url = pathToFileURL(path.resolve(page)).href;
-  const browser = await Browser.open(url, { width: 1280, height: 1000 });
-  const value = (expression) => browser.evaluate(expression);
-  await browser.until("window.studio !== undefined && studio.panel !== undefined");
+drive("the library answers", { width: 1280, height: 1000 }, async ({ browser, value, shot, quiet }) => {
   const open_ms = await value("studioOpened_ms");
-  await browser.until("studio.tiles.waiting.length === 0 && studio.tiles.timer === undefined", 120);
+  await quiet(120);
   await browser.send("HeapProfiler.collectGarbage");
   const memory = await value("({ heap_mb: performance.memory.usedJSHeapSize / 1e6, compiled_mb: studio.engine.bytes() / 1e6 })");
   const type = (text) => value(`(() => { const field = document.getElementById("search"); field.value = ${JSON.stringify(text)}; field.dispatchEvent(new Event("input")); return studio.panel.filter_ms; })()`);
@@ -39,7 +28,7 @@ async function main() {
   await browser.until("document.querySelector('.paint-row[aria-selected=true]') !== null");
   check("the last paint is chosen", (await value("document.querySelector('.paint-row[aria-selected=true]').getAttribute('aria-posinset')")) === String(passing));
   check("few rows are elements", (await value("document.querySelectorAll('.paint-row').length")) < 40);
-  await browser.screenshot(path.join(folder, "library-1.png"));
+  await shot("library-1");
   const chosen = await value("studio.panel.place");
   await browser.click("#chosen button:nth-of-type(1)");
   check("the design starts from the chosen paint", (await value("studio.history.now.start")) === chosen);
@@ -65,16 +54,6 @@ async function main() {
     return { x: box.left + (x / cloud.canvas.width) * box.width, y: box.top + (y / cloud.canvas.height) * box.height }; })()`);
   await browser.mouseDrag(point, point, 1);
   check("a click on a point chooses a paint", (await value("studio.cloud.paints.includes(studio.panel.place)")));
-  await browser.screenshot(path.join(folder, "library-2.png"));
-  await browser.close();
-  problems.push(...browser.problems);
+  await shot("library-2");
   console.log(JSON.stringify({ open_ms, ...memory, filter_ms: Math.max(...times), cloud_ms, turn_ms, count }));
-  for (const problem of problems) console.log("wrong: " + problem);
-  console.log(problems.length === 0 ? "the library answers" : `${problems.length} things are wrong`);
-  process.exit(problems.length === 0 ? 0 : 1);
-}
-
-main().catch((error) => {
-  console.error(error.stack);
-  process.exit(1);
 });

@@ -6,22 +6,10 @@
 "use strict";
 const fs = require("node:fs");
 const path = require("node:path");
-const { pathToFileURL } = require("node:url");
-const { Browser } = require("./browser.js");
+const { check, drive } = require("./drive.js");
 
-const problems = [];
-function check(what, holds) {
-  if (!holds) problems.push(what);
-}
-
-async function main() {
-  const [page, folder] = process.argv.slice(2), url = pathToFileURL(path.resolve(page)).href;
-  const browser = await Browser.open(url, { width: 1000, height: 1000 });
-  const value = (expression) => browser.evaluate(expression);
+drive("the path was walked", { width: 1000, height: 1000 }, async ({ browser, folder, value, shot, quiet, checkNames }) => {
   const paint = async () => JSON.stringify(await value("studio.paint"));
-  const shot = (name) => browser.screenshot(path.join(folder, name + ".png"));
-  const quiet = () => browser.until("studio.tiles.waiting.length === 0 && studio.tiles.timer === undefined");
-  await browser.until("window.studio !== undefined");
   await quiet();
   await shot("1-open");
 
@@ -86,17 +74,5 @@ async function main() {
   await quiet();
   await shot("4-narrow");
   check("nothing is wider than the window", (await value("document.documentElement.scrollWidth")) <= 360);
-  const unnamed = await value(`[...document.querySelectorAll("button, input, select, [role=slider]")].filter((one) =>
-    !(one.getAttribute("aria-label") || one.textContent.trim() || one.labels?.length)).map((one) => one.outerHTML)`);
-  check("every control has a name: " + unnamed.join(" "), unnamed.length === 0);
-  await browser.close();
-  problems.push(...browser.problems);
-  for (const problem of problems) console.log("wrong: " + problem);
-  console.log(problems.length === 0 ? "the path was walked" : `${problems.length} things are wrong`);
-  process.exit(problems.length === 0 ? 0 : 1);
-}
-
-main().catch((error) => {
-  console.error(error.stack);
-  process.exit(1);
+  await checkNames();
 });

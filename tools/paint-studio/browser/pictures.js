@@ -20,7 +20,7 @@ async function main() {
         const one = app.library.paint(all.find((i) => app.library.paint(i).name === ${JSON.stringify(paint)}));
         app.tiles.stop();
         app.engine.ask({ do: "fit", paint: one });
-        const weights = app.stage.weights(app.engine.weights());
+        const weights = app.stage.weights(app.engine);
         const values = app.stage.radiance(cameraOf(app.data.mesh.view), ${width}, ${height}, weights, ${number});
         const bytes = new Uint8Array(values.buffer);
         let text = "";
@@ -35,7 +35,7 @@ async function main() {
       const base64 = await browser.evaluate(`(() => {
         const app = studio, all = [...Array(app.library.count).keys()];
         app.engine.ask({ do: "fit", paint: app.library.paint(all.find((i) => app.library.paint(i).name === ${JSON.stringify(paints[0])})) });
-        const weights = app.stage.weights(app.engine.weights());
+        const weights = app.stage.weights(app.engine);
         app.stageView.environment = ${number};
         ${before}
         const values = app.stage.radiance(cameraOf(app.data.mesh.view), ${width}, ${height}, weights, ${number});
@@ -61,7 +61,7 @@ async function main() {
       const { paint } = app.edited({ "hue-shift": 3 * i + 1 });
       const fit = app.engine.ask({ do: "fit", paint });
       fits.push(fit.time_us / 1000);
-      app.weights = app.stage.weights(app.engine.weights(), app.weights);
+      app.weights = app.stage.weights(app.engine, app.weights);
       app.stage.draw("centers", cameraOf(app.data.mesh.view), ${width}, ${height}, app.weights, 0, 0);
       gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
       all.push(performance.now() - begin);

@@ -4,26 +4,9 @@
 //
 //   node surface.js PAGE.html FOLDER
 "use strict";
-const path = require("node:path");
-const { pathToFileURL } = require("node:url");
-const { Browser } = require("./browser.js");
+const { check, drive } = require("./drive.js");
 
-const problems = [];
-function check(what, holds) {
-  if (!holds) problems.push(what);
-}
-
-async function main() {
-  const [page, folder] = process.argv.slice(2), url = pathToFileURL(path.resolve(page)).href;
-  const browser = await Browser.open(url, { width: 1000, height: 1000 });
-  const value = (expression) => browser.evaluate(expression);
-  const quiet = () => browser.until("studio.tiles.waiting.length === 0 && studio.tiles.timer === undefined");
-  const shot = (name) => browser.screenshot(path.join(folder, name + ".png"));
-  const choose = (id, text) => value(`(() => { const list = document.getElementById("${id}");
-    list.value = [...list.options].find((one) => one.textContent.includes(${JSON.stringify(text)})).value;
-    list.dispatchEvent(new Event("change")); })()`);
-  const fill = (id, number) => value(`(() => { const field = document.getElementById("${id}"); field.value = ${number};
-    field.dispatchEvent(new Event("change")); })()`);
+drive("the picture answers", { width: 1000, height: 1000 }, async ({ browser, value, shot, quiet, choose, fill, checkNames }) => {
   const kind = (name) => browser.click(`#drag-kinds input[value=${name}]`);
   // A place of the window where the mesh is painted and the light is seen at about this angle.
   const place = (degrees) => value(`(() => {
@@ -37,7 +20,6 @@ async function main() {
     return best;
   })()`);
   const angleAt = (at) => value(`studio.stageView.pointAt(${at.x}, ${at.y})?.angle`);
-  await browser.until("window.studio !== undefined");
   await choose("library", "candy_red");
   await quiet();
   await value("document.getElementById('stage').scrollIntoView()");
@@ -136,7 +118,7 @@ async function main() {
   check("arrow keys move the cross", (await value("studio.surface.seen?.angle")) !== angle);
 
   // The border between two paints.
-  await choose("compare", "began with");
+  await choose("compare", "began with", true);
   check("there are two paints", await value("studio.stageView.weights.left !== undefined && !document.getElementById('border').hidden"));
   const border = await browser.middle("#border"), box = await value("(() => { const b = studio.stageView.canvas.getBoundingClientRect(); return { left: b.left, width: b.width }; })()");
   await browser.touchDrag(border, { x: box.left + 0.25 * box.width, y: border.y });
@@ -160,17 +142,5 @@ async function main() {
   check("each side shows its paint: " + sides, sides[0] === 0 && sides[1] === 0 && sides[2] > 1);
   await quiet();
   await shot("surface-4-two");
-  const unnamed = await value(`[...document.querySelectorAll("button, input, select, [role=slider]")].filter((one) =>
-    !(one.getAttribute("aria-label") || one.textContent.trim() || one.labels?.length)).map((one) => one.outerHTML)`);
-  check("every control has a name: " + unnamed.join(" "), unnamed.length === 0);
-  await browser.close();
-  problems.push(...browser.problems);
-  for (const problem of problems) console.log("wrong: " + problem);
-  console.log(problems.length === 0 ? "the picture answers" : `${problems.length} things are wrong`);
-  process.exit(problems.length === 0 ? 0 : 1);
-}
-
-main().catch((error) => {
-  console.error(error.stack);
-  process.exit(1);
+  await checkNames();
 });

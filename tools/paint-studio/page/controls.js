@@ -63,7 +63,7 @@ class NumberControls {
     this.fields.keep = keep;
     document.getElementById("numbers").append(
       grid, this.slider("travel", 15.5, 180, 0.5, "°"), this.slider("gloss", 0, 100, 0.5, "GU"),
-      made("label", {}, [keep, "keep what the readings have beside the curve"]));
+      made("label", {}, [keep, "keep what the readings have beside the curve"]), this.brushed());
     const averages = document.getElementById("averages");
     averages.append(this.slider("lightness", 0, 120, 0.5, ""), this.slider("chroma", 0, 140, 0.5, ""),
                     this.slider("hue", 0, 360, 1, "°"));
@@ -78,6 +78,26 @@ class NumberControls {
     this.fields[name + "-range"] = range;
     this.fields[name] = field;
     return made("div", { class: "slider" }, [made("span", { text: name }), range, field, made("span", { text: unit })]);
+  }
+
+  // The widths of a brushed surface, as slopes.
+  brushed() {
+    ["x", "y"].forEach((axis, i) => {
+      const along = i === 0 ? "sideways" : "upward", field = made("input", { type: "number", min: 0, max: 10, step: 0.01, "aria-label": `width of the highlight ${along}`,
+                                                                            onchange: () => this.commitBrushed(i) });
+      this.fields["brushed-" + axis] = field;
+    });
+    return made("div", { class: "slider", role: "group", "aria-label": "Brushed surface" },
+                [made("span", { text: "brushed" }), made("label", {}, ["sideways", this.fields["brushed-x"]]), made("label", {}, ["upward", this.fields["brushed-y"]]), made("span", { text: "0 for none" })]);
+  }
+  // A surface has both widths or none: where the other field has 0, it takes the same width.
+  commitBrushed(changed) {
+    const alphas = ["x", "y"].map((axis) => this.fields["brushed-" + axis].valueAsNumber), width = alphas[changed];
+    if (!Number.isFinite(width)) return this.app.show();
+    const within = clamped(width, 0, 10), other = alphas[1 - changed];
+    const both = [within, within];
+    if (within > 0 && other > 0) both[1 - changed] = clamped(other, 0, 10);
+    return this.app.commit({ anisotropy: both });
   }
 
   // The edit that states one number.
@@ -119,6 +139,7 @@ class NumberControls {
       set(this.fields[name], rounded(value));
       set(this.fields[name + "-range"], value);
     }
+    ["x", "y"].forEach((axis, i) => set(this.fields["brushed-" + axis], rounded(description.anisotropy[i], 4)));
     const gray = average.chroma < 1e-6;
     for (const name of ["hue", "chroma"]) {
       this.fields[name].disabled = gray;

@@ -24,10 +24,11 @@ function wasiImports(memoryOf) {
   };
 }
 
-const lists = ["weights", "filtered", "cloud", "cloudColors", "cloudPaints"];
+const lists = ["weights", "filtered", "cloud", "cloudColors", "cloudPaints", "tilts"];
+const ofFloats = ["weights", "cloud", "tilts"];
 
 // The engine of a compiled module. ask() sends a request and returns the answer; it throws what the answer calls an
-// error. weights() are those of the paint that was fitted last, copied.
+// error.
 async function makeEngine(bytes) {
   let memory = null;
   const { instance } = await WebAssembly.instantiate(bytes, {
@@ -52,12 +53,12 @@ async function makeEngine(bytes) {
       const at = library.studio_attach(length);  // before its memory is looked at, which may move
       return new Uint8Array(memory.buffer, at, length);
     },
-    // A list that an answer filled, copied: weights, filtered, cloud, cloudColors or cloudPaints.
+    // A list that an answer filled, copied: weights or tilts of the paint that was fitted last, filtered, cloud, cloudColors
+    // or cloudPaints.
     list(name) {
-      const number = lists.indexOf(name), Kind = name === "weights" || name === "cloud" ? Float32Array : Uint32Array;
+      const number = lists.indexOf(name), Kind = ofFloats.includes(name) ? Float32Array : Uint32Array;
       return new Kind(memory.buffer, library.studio_list(number), library.studio_list_bytes(number) / 4).slice();
     },
-    weights() { return this.list("weights"); },
     bytes: () => memory.buffer.byteLength,
   };
 }

@@ -17,11 +17,16 @@ function optionsOf(edit) {
 // The commands that make the paint of a state, without the fit. A paint of a gradient needs a line before it, which writes
 // the gradient; `lines` gets it.
 function editsOf(library, state, lines) {
-  const { file, paint, gradient } = state.own ?? library.at(state.start), source = quoted(`${file}#${paint.name}`);
+  const { file, paint, gradient, board } = state.own ?? library.at(state.start), source = quoted(`${file}#${paint.name}`);
+  if (board) lines.push(`paint-pick --board ${quoted(board)} -o ${quoted(file)}`);
   if (gradient) {
-    const [from, to] = gradient.ends.map((end) => {
+    // An end that was edited is written first, as a file of its own.
+    const [from, to] = gradient.ends.map((end, i) => {
       const edits = editsOf(library, end, lines);
-      return edits.length === 1 && !edits[0].startsWith("paint-edit") ? edits[0] : `<(${edits.join(" | ")})`;
+      if (edits.length === 1 && !edits[0].startsWith("paint-edit")) return edits[0];
+      const ending = quoted(file.replace(/\.paints\.xml$/, "") + `.${["from", "to"][i]}.paints.xml`);
+      lines.push(`${edits.join(" | ")} -o ${ending}`);
+      return ending;
     });
     lines.push(`paint-edit ${from} ${to} --gradient ${gradient.count} -o ${quoted(file)}`);
   }

@@ -1,5 +1,5 @@
 cmake_minimum_required(VERSION 3.25)
-# Joins page.html, page.css and the scripts. The marks @TITLE@, @MODULE@ and @DATA@ stay for the tool. The policy of the
+# Joins page.html, page.css and the scripts. The marks of the data, such as @TITLE@ and @MODULE@, stay for the tool. The policy of the
 # page allows this script and this style alone, by their hashes.
 
 # A hash as the policy has it: SHA-256 in base64.

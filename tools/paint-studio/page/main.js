@@ -30,11 +30,14 @@ class App {
     this.follow();
     window.addEventListener("hashchange", () => this.follow());
   }
-  // An address that ends with #paint=NAME starts from the paint of that name, as links of other pages ask for.
+  // An address that ends with #paint=NAME starts from the paint of that name, and one with #design={file, paint, board} from
+  // that paint, which paint-pick made of a mood board. Links of other pages ask for them.
   follow() {
-    const name = new URLSearchParams(location.hash.slice(1)).get("paint");
-    if (name === null) return;
+    const words = new URLSearchParams(location.hash.slice(1)), name = words.get("paint"), design = words.get("design");
+    if (name === null && design === null) return;
     location.hash = "";
+    if (design !== null) this.attempt(() => this.restore(this.picked(design)));
+    if (name === null) return;
     this.attempt(() => {
       this.engine.ask({ do: "filter", text: name });
       const place = this.engine.list("filtered").find((i) => this.library.paint(i).name === name);
@@ -43,6 +46,18 @@ class App {
     });
   }
 
+  // The state of a paint that an address holds. Throws a sentence where it is none.
+  picked(text) {
+    let own = null;
+    try {
+      own = JSON.parse(text);
+    } catch {
+      own = null;
+    }
+    if (typeof own?.file !== "string" || typeof own.board !== "string") throw new Error("The address of this page holds no paint.");
+    this.engine.ask({ do: "describe", paint: own.paint });
+    return { own: { file: own.file, board: own.board, paint: own.paint }, steps: [], paint: own.paint };
+  }
   fresh(number) { return { start: number, steps: [], paint: this.library.paint(number) }; }
   // {file, paint} that a state began with.
   origin({ start, own }) { return own ?? this.library.at(start); }
@@ -166,7 +181,7 @@ class App {
     const fitted = performance.now();
     this.paint = paint;
     this.highlight = fit.highlight;
-    this.weights = this.stage.weights(this.engine.weights(), this.weights ?? null);
+    this.weights = this.stage.weights(this.engine, this.weights ?? null);
     this.description = this.engine.ask({ do: "describe", paint });
     if (moving) this.stageView.drawNow(true);
     else this.stageView.redraw();
@@ -197,7 +212,7 @@ class App {
     if (found) {
       this.attempt(() => {
         this.engine.ask({ do: "fit", paint: found });
-        this.comparedWeights = this.stage.weights(this.engine.weights(), this.comparedWeights ?? null);
+        this.comparedWeights = this.stage.weights(this.engine, this.comparedWeights ?? null);
         this.compared.weights = this.comparedWeights;
       });
       if (kind === "step") this.compared.name += `, step ${number}`;
@@ -307,24 +322,12 @@ class App {
   }
 }
 
-// What an element of the page held, which is then no longer kept.
-function taken(id) {
-  const element = document.getElementById(id), text = element.textContent;
-  element.remove();
-  return text;
-}
-
-// Fills memory with what base64 says, piece by piece.
-function decode(base64, bytesFor) {
-  const padding = base64.endsWith("==") ? 2 : base64.endsWith("=") ? 1 : 0;
-  const target = bytesFor((base64.length / 4) * 3 - padding), piece = 1 << 20;
-  for (let at = 0; at < base64.length; at += piece) target.set(bytesOf(base64.slice(at, at + piece)), (at / 4) * 3);
-}
-
 async function begin() {
   try {
-    const data = JSON.parse(taken("data")), engine = await makeEngine(bytesOf(taken("compiled")));
-    decode(taken("index"), (length) => engine.attach(length));
+    if (typeof DecompressionStream === "undefined") throw new Error("This browser cannot decompress the data of the page: it takes a newer one.");
+    const data = JSON.parse(taken("data")), engine = await makeEngine(await inflated("compiled"));
+    await inflated("index", (size) => engine.attach(size));
+    pageNumbers = await inflated("binary");
     window.studio = new App(engine, data, new PaintStore(taken("paints"), data.layouts));
     window.studioOpened_ms = performance.now();
   } catch (error) {

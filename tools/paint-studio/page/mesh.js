@@ -1,4 +1,4 @@
-// The data of the page: base64 to numbers, and the mesh as WebGL takes it.
+// The data of the page: what stands in it compressed, its numbers, and the mesh as WebGL takes it.
 
 function bytesOf(base64) {
   const text = atob(base64);
@@ -7,7 +7,40 @@ function bytesOf(base64) {
   return bytes;
 }
 
-const numbersOf = (base64, Kind) => new Kind(bytesOf(base64).buffer);
+// What an element of the page held, which is then no longer kept.
+function taken(id) {
+  const element = document.getElementById(id), text = element.textContent;
+  element.remove();
+  return text;
+}
+
+// The bytes that an element holds as base64 of a gzip member, whose last word is the size of what it holds. They are put
+// where bytesFor(size) says.
+async function inflated(id, bytesFor = (size) => new Uint8Array(size)) {
+  const text = taken(id), pieces = [], piece = 1 << 20;
+  for (let at = 0; at < text.length; at += piece) pieces.push(bytesOf(text.slice(at, at + piece)));
+  const packed = new Blob(pieces), last = new DataView(await packed.slice(-4).arrayBuffer());
+  const target = bytesFor(last.getUint32(0, true)), reader = packed.stream().pipeThrough(new DecompressionStream("gzip")).getReader();
+  for (let at = 0;;) {
+    const { done, value } = await reader.read();
+    if (done) return target;
+    target.set(value, at);
+    at += value.length;
+  }
+}
+
+let pageNumbers = null;  // the bytes of all of them
+
+// Numbers at a place, [first byte, count].
+const numbersOf = ([at, count], Kind) => new Kind(pageNumbers.buffer, at, count);
+
+// The texels of a smooth map of 16 bits: each is told by its difference from that of the texel before, and the low bytes
+// of all stand before the high bytes.
+function smoothNumbersOf([at, count], channels) {
+  const bytes = numbersOf([at, 2 * count], Uint8Array), values = new Uint16Array(count);
+  for (let i = 0; i < count; ++i) values[i] = (i >= channels ? values[i - channels] : 0) + bytes[i] + (bytes[count + i] << 8);
+  return values;
+}
 
 // A half float as a number.
 function numberOfHalf(half) {

@@ -1,14 +1,16 @@
-// Pictures that are dropped on the page, and the droppers that take face, flop and gloss from them, as those of
-// paint-pick(1). [Shimizu2009] 3.5
+// Boards of pictures that are dropped on the page, and the droppers that take face, flop and gloss from them, as those of
+// paint-pick(1). Each board has a tab, and its pictures stand beside each other. [Shimizu2009] 3.5
 
 const mostPixels = 4096;  // of a side; larger pictures are made smaller
 
 class Pictures {
   constructor(app) {
     this.app = app;
-    this.all = [];  // {name, canvas, context, zoom}
+    this.boards = [];  // {name, pictures, zoom}: pictures are {name, canvas, context}; a zoom of 0 fits them into the panel
+    this.board = null;
+    this.made = 0;  // boards so far, for their names
     this.droppers = {};  // of face, flop and gloss: {picture, at, radius} and what was found there
-    this.current = null;
+    this.current = null;  // the picture of the board that was used last
     this.place = document.getElementById("picture");
     this.tabs = document.getElementById("picture-tabs");
     this.kind = "face";
@@ -35,9 +37,30 @@ class Pictures {
       this.showMarks();
     }));
     document.getElementById("zoom").addEventListener("input", (event) => this.zoomTo(2 ** Number(event.target.value)));
+    document.getElementById("new-board").addEventListener("click", () => {
+      this.addBoard();
+      this.show();
+    });
     document.getElementById("remove-picture").addEventListener("click", () => this.remove());
     document.getElementById("swap").addEventListener("click", () => this.swap());
     this.show();
+  }
+
+  get all() { return this.boards.flatMap((board) => board.pictures); }
+  addBoard() {
+    this.board = { name: `Board ${++this.made}`, pictures: [], zoom: 0 };
+    this.boards.push(this.board);
+    this.current = null;
+  }
+  openBoard(board) {
+    this.board = board;
+    this.current = board.pictures.at(-1) ?? null;
+    this.show();
+  }
+  use(picture) {
+    if (this.current === picture) return;
+    this.current = picture;
+    this.showMarks();
   }
 
   async add(files) {
@@ -51,9 +74,10 @@ class Pictures {
         context.drawImage(bitmap, 0, 0, canvas.width, canvas.height);
         bitmap.close();
         if (scale < 1) this.app.say(`${file.name} was made smaller: its sides have at most ${mostPixels} pixels here.`);
-        const picture = { name: file.name, canvas, context, zoom: 0 };
+        const picture = { name: file.name, canvas, context };
         this.listen(picture);
-        this.all.push(picture);
+        if (!this.board) this.addBoard();
+        this.board.pictures.push(picture);
         this.current = picture;
       } catch {
         this.app.say(`${file.name} is no picture that this browser reads.`);
@@ -61,11 +85,17 @@ class Pictures {
     }
     this.show();
   }
+  // Takes the picture that was used last away, and a board that has none with it.
   remove() {
-    const at = this.all.indexOf(this.current);
+    const { pictures } = this.board, at = pictures.indexOf(this.current);
     for (const [kind, dropper] of Object.entries(this.droppers)) if (dropper.picture === this.current) delete this.droppers[kind];
-    this.all.splice(at, 1);
-    this.current = this.all[Math.max(0, at - 1)] ?? null;
+    if (at >= 0) pictures.splice(at, 1);
+    this.current = pictures[Math.max(0, at - 1)] ?? null;
+    if (pictures.length === 0) {
+      this.boards.splice(this.boards.indexOf(this.board), 1);
+      this.board = this.boards.at(-1) ?? null;
+      this.current = this.board?.pictures.at(-1) ?? null;
+    }
     this.show();
   }
 
@@ -88,6 +118,7 @@ class Pictures {
     };
     draggable(canvas, {
       begin: (event) => {
+        this.use(picture);
         last = null;
         from = { x: event.clientX, y: event.clientY, left: this.place.scrollLeft, top: this.place.scrollTop };
         dropped(event);
@@ -95,6 +126,7 @@ class Pictures {
       move: dropped,
       end: () => { if (last) this.app.commit(last); },
     });
+    canvas.addEventListener("focus", () => this.use(picture));
     canvas.addEventListener("keydown", (event) => {
       const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
       if (!step || this.kind === "move") return;
@@ -144,50 +176,59 @@ class Pictures {
     this.app.commit({ face: color(flop), flop: color(face) });
   }
 
-  zoomOf(picture) { return picture.zoom || Math.min(1, this.place.clientWidth / picture.canvas.width); }
+  // Pixels of the window for a pixel of the picture. Without a zoom, one picture takes the width of the panel, and several
+  // take half of it.
+  zoomOf({ canvas }) { return this.board.zoom || Math.min(1, (this.place.clientWidth / canvas.width) * (this.board.pictures.length > 1 ? 0.48 : 1)); }
   zoomTo(zoom) {
-    if (!this.current) return;
-    this.current.zoom = clamped(zoom, 1 / 16, 16);
+    if (!this.board) return;
+    this.board.zoom = clamped(zoom, 1 / 16, 16);
     this.showZoom();
   }
   showZoom() {
-    const { canvas } = this.current, zoom = this.zoomOf(this.current);
-    canvas.style.width = `${zoom * canvas.width}px`;
-    document.getElementById("zoom").value = Math.log2(zoom);
+    for (const picture of this.board.pictures) picture.canvas.style.width = `${this.zoomOf(picture) * picture.canvas.width}px`;
+    if (this.current) document.getElementById("zoom").value = Math.log2(this.zoomOf(this.current));
     this.showMarks();
   }
 
-  // The pictures' tabs, and the one that is open with its droppers.
+  // The boards' tabs, and the pictures of the one that is open, with the droppers on them.
   show() {
-    document.getElementById("picture-panel").hidden = !this.current;
-    this.tabs.replaceChildren(...this.all.map((picture) => {
-      const tab = made("button", { type: "button", role: "tab", "aria-selected": picture === this.current, tabindex: picture === this.current ? 0 : -1, text: picture.name,
-                                   onclick: () => { this.current = picture; this.show(); } });
+    document.getElementById("picture-panel").hidden = !this.board;
+    this.tabs.replaceChildren(...this.boards.map((board) => {
+      const chosen = board === this.board;
+      const tab = made("button", { type: "button", role: "tab", "aria-selected": chosen, tabindex: chosen ? 0 : -1, text: `${board.name} (${board.pictures.length})`,
+                                   onclick: () => this.openBoard(board) });
       tab.addEventListener("keydown", (event) => {
         const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
         if (!step) return;
         event.preventDefault();
-        this.current = this.all[(this.all.indexOf(picture) + step + this.all.length) % this.all.length];
-        this.show();
+        this.openBoard(this.boards[(this.boards.indexOf(board) + step + this.boards.length) % this.boards.length]);
         this.tabs.querySelector("[aria-selected=true]").focus();
       });
       return tab;
     }));
-    if (!this.current) return;
+    document.getElementById("remove-picture").disabled = !this.current;
     this.marks = {};
     for (const kind of ["face", "flop", "gloss"]) this.marks[kind] = made("span", { class: `dropper ${kind}`, "aria-hidden": "true", text: kind });
-    this.place.replaceChildren(made("div", { class: "sheet" }, [this.current.canvas, ...Object.values(this.marks)]));
+    this.sheets = new Map();
+    if (!this.board) return;
+    for (const picture of this.board.pictures) this.sheets.set(picture, made("div", { class: "sheet" }, [picture.canvas]));
+    const hint = made("p", { class: "hint", text: "This board is empty: add pictures, or drop or paste them." });
+    this.place.replaceChildren(...(this.sheets.size > 0 ? this.sheets.values() : [hint]));
     this.showZoom();
   }
   showMarks() {
-    if (!this.current) return;
-    const { canvas } = this.current, { droppers } = this, parts = [];
+    const { droppers } = this, parts = [];
     this.place.classList.toggle("moving", this.kind === "move");
+    for (const [picture, sheet] of this.sheets) sheet.classList.toggle("current", this.sheets.size > 1 && picture === this.current);
     for (const [kind, mark] of Object.entries(this.marks)) {
-      const dropper = droppers[kind];
-      mark.hidden = dropper?.picture !== this.current;
-      if (!dropper) continue;
-      parts.push(`--${kind} ${quoted(`${dropper.picture.name}@${dropper.at.join(",")},${dropper.radius}`)}`);
+      const dropper = droppers[kind], sheet = dropper && this.sheets.get(dropper.picture);
+      if (dropper) parts.push(`--${kind} ${quoted(`${dropper.picture.name}@${dropper.at.join(",")},${dropper.radius}`)}`);
+      if (!sheet) {
+        mark.remove();
+        continue;
+      }
+      const { canvas } = dropper.picture;
+      sheet.append(mark);
       mark.style.left = `${((dropper.at[0] + 0.5) / canvas.width) * 100}%`;
       mark.style.top = `${((dropper.at[1] + 0.5) / canvas.height) * 100}%`;
       mark.style.background = dropper.css;

@@ -90,21 +90,31 @@ class Stage {
     return texture;
   }
 
-  // The weights of a paint, as the engine has them, with those of the finishes below.
-  weights(values, texture = null) {
-    const gl = this.gl;
-    if (texture === null) {
+  // What the programs read of the paint that the engine fitted last: {texture, tilts}, in the place of `made` where that is
+  // given. The texture has its weights, and those of the finishes below. `tilts` is null where it is not brushed.
+  weights(engine, made = null) {
+    const gl = this.gl, tilts = engine.list("tilts");
+    if (made === null) {
       const all = new Float32Array(4 * this.columns * this.rows);
       all.set(this.finishes, 4 * this.columns);
-      texture = this.floatTexture(this.columns, this.rows, all);
+      made = { texture: this.floatTexture(this.columns, this.rows, all), tilts: null };
     }
-    gl.bindTexture(gl.TEXTURE_2D, texture);
-    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, this.columns, 1, gl.RGBA, gl.FLOAT, values);
-    return texture;
+    gl.bindTexture(gl.TEXTURE_2D, made.texture);
+    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, this.columns, 1, gl.RGBA, gl.FLOAT, engine.list("weights"));
+    if (made.tilts) gl.deleteTexture(made.tilts);
+    made.tilts = tilts.length > 4 ? this.tiltTexture(tilts) : null;
+    return made;
+  }
+  // The tilts of a brushed paint; finishes have their own normal alone.
+  tiltTexture(tilts) {
+    const columns = tilts.length / 4, all = new Float32Array(tilts.length * this.rows);
+    all.set(tilts);
+    for (let row = 1; row < this.rows; ++row) all.set([0, 0, 1, 1], row * tilts.length);
+    return this.floatTexture(columns, this.rows, all);
   }
 
   cube(packed) {
-    const gl = this.gl, texture = gl.createTexture(), halves = numbersOf(packed.texels, Uint16Array);
+    const gl = this.gl, texture = gl.createTexture(), halves = smoothNumbersOf(packed.texels, packed.channels);
     const most = packed.channels * packed.size * packed.size, format = packed.channels === 4 ? gl.RGBA : gl.RGB;
     // Maps brighter than halves can be are floats, where those can be interpolated; else the brightest of halves.
     let values = halves, kind = packed.channels === 4 ? gl.RGBA16F : gl.RGB16F, type = gl.HALF_FLOAT;
@@ -132,23 +142,23 @@ class Stage {
     return made;
   }
 
-  // How an environment is shaded: its program, lamps and their discs. With the lamp of the page these are others, which
-  // are made when they are first needed.
-  shading(number) {
+  // How an environment is shaded: its program, lamps and their discs. With the lamp of the page, and for brushed paints,
+  // these are others, which are made when they are first needed.
+  shading(number, brushed) {
     const made = this.environment(number), packed = this.data.environments[number], lamp = this.data.lamp;
-    if (this.lamp === null)
-      return (made.plain ??= this.shadingOf(packed.program, packed.lamps, packed.discs ? numbersOf(packed.discs.texels, Float32Array) : null));
-    if (!made.withLamp) {
-      const first = numbersOf(lamp.discs, Float32Array);
-      const others = packed.discs ? numbersOf(packed.discs.texels, Float32Array) : new Float32Array(0);
+    const discsOf = () => (packed.discs ? numbersOf(packed.discs.texels, Float32Array) : null);
+    const kind = (brushed ? "brushed_" : "") + (this.lamp ? "lamp_program" : "program");
+    if (this.lamp === null) return (made[kind] ??= this.shadingOf(packed[kind], packed.lamps, discsOf()));
+    if (!made[kind]) {
+      const first = numbersOf(lamp.discs, Float32Array), others = discsOf() ?? new Float32Array(0);
       const discs = new Float32Array(first.length + others.length);
       discs.set(first);
       discs.set(others, first.length);
-      made.withLamp = this.shadingOf(packed.lamp_program, [{ disc: lamp.disc }, ...packed.lamps], discs);
+      made[kind] = this.shadingOf(packed[kind], [{ disc: lamp.disc }, ...packed.lamps], discs);
     }
     const direction = turnedAgainst(this.lamp.direction, this.turn);
-    Object.assign(made.withLamp.lamps[0], { direction, white: this.lamp.white });
-    return made.withLamp;
+    Object.assign(made[kind].lamps[0], { direction, white: this.lamp.white });
+    return made[kind];
   }
   shadingOf(program, lamps, discs) {
     const made = { ...this.program(this.data.programs.shading_vertex, program), lamps: [...lamps] }, columns = this.data.lamp.columns;
@@ -212,23 +222,9 @@ class Stage {
   // Shades a G-buffer into the sum of that name, or adds to it. `weights` are those of one paint, or {left, right, at}: of
   // two, which meet at that part of the width.
   shade(name, gbuffer, weights, environment, add) {
-    const gl = this.gl, made = this.environment(environment), program = this.shading(environment);
-    const target = this.target("sum " + name, gbuffer.width, gbuffer.height, this.sumKind, false);
+    const gl = this.gl, target = this.target("sum " + name, gbuffer.width, gbuffer.height, this.sumKind, false);
     gl.bindFramebuffer(gl.FRAMEBUFFER, target.framebuffer);
     gl.viewport(0, 0, gbuffer.width, gbuffer.height);
-    gl.useProgram(program.program);
-    let texture = 0;
-    const bind = (sampler, kind, what) => {
-      gl.activeTexture(gl.TEXTURE0 + texture);
-      gl.bindTexture(kind, what);
-      gl.uniform1i(program.at(sampler), texture++);
-    };
-    bind("gbuffer", gl.TEXTURE_2D, gbuffer.texture);
-    if (program.discs) bind("discs", gl.TEXTURE_2D, program.discs);
-    for (const cube of made.cubes) bind(cube.sampler, gl.TEXTURE_CUBE_MAP, cube.texture);
-    for (const name of ["corner", "right", "down"]) gl.uniform3fv(program.at(name), gbuffer.view[name]);
-    for (const [uniform, member] of [["light_direction", "direction"], ["light_white", "white"], ["light_disc", "disc"]])
-      if (program.lamps.length > 0) gl.uniform3fv(program.at(uniform + "[0]"), program.lamps.flatMap((lamp) => lamp[member]));
     if (add) {
       gl.enable(gl.BLEND);
       gl.blendFunc(gl.ONE, gl.ONE);
@@ -236,14 +232,12 @@ class Stage {
       gl.disable(gl.BLEND);
     }
     gl.bindVertexArray(this.noVertices);
-    const border = weights.left ? Math.round(weights.at * gbuffer.width) : gbuffer.width;
-    bind("weights", gl.TEXTURE_2D, weights.left ?? weights);
     gl.enable(gl.SCISSOR_TEST);
-    gl.scissor(0, 0, border, gbuffer.height);
-    gl.drawArrays(gl.TRIANGLES, 0, 3);
-    if (weights.left) {
-      gl.bindTexture(gl.TEXTURE_2D, weights.right);
-      gl.scissor(border, 0, gbuffer.width - border, gbuffer.height);
+    const border = weights.left ? Math.round(weights.at * gbuffer.width) : gbuffer.width;
+    for (const [paint, begin, end] of [[weights.left ?? weights, 0, border], [weights.right, border, gbuffer.width]]) {
+      if (end === begin) continue;
+      this.useShading(gbuffer, paint, environment);
+      gl.scissor(begin, 0, end - begin, gbuffer.height);
       gl.drawArrays(gl.TRIANGLES, 0, 3);
     }
     gl.disable(gl.SCISSOR_TEST);
@@ -251,21 +245,47 @@ class Stage {
     gl.activeTexture(gl.TEXTURE0);
     return target;
   }
+  // Chooses the program of a paint in an environment, with all that it reads.
+  useShading(gbuffer, { texture, tilts }, environment) {
+    const gl = this.gl, made = this.environment(environment), program = this.shading(environment, tilts !== null);
+    gl.useProgram(program.program);
+    let unit = 0;
+    const bind = (sampler, kind, what) => {
+      gl.activeTexture(gl.TEXTURE0 + unit);
+      gl.bindTexture(kind, what);
+      gl.uniform1i(program.at(sampler), unit++);
+    };
+    bind("gbuffer", gl.TEXTURE_2D, gbuffer.texture);
+    bind("weights", gl.TEXTURE_2D, texture);
+    if (tilts) bind("tilts", gl.TEXTURE_2D, tilts);
+    if (program.discs) bind("discs", gl.TEXTURE_2D, program.discs);
+    for (const cube of made.cubes) bind(cube.sampler, gl.TEXTURE_CUBE_MAP, cube.texture);
+    for (const name of ["corner", "right", "down"]) gl.uniform3fv(program.at(name), gbuffer.view[name]);
+    for (const [uniform, member] of [["light_direction", "direction"], ["light_white", "white"], ["light_disc", "disc"]])
+      if (program.lamps.length > 0) gl.uniform3fv(program.at(uniform + "[0]"), program.lamps.flatMap((lamp) => lamp[member]));
+  }
+
+  // Covers a framebuffer, or the screen where it is null, by what a program makes of a target. `set` sets its other uniforms.
+  cover(framebuffer, program, sampler, source, set) {
+    const gl = this.gl;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
+    gl.viewport(0, 0, source.width, source.height);
+    gl.useProgram(program.program);
+    gl.activeTexture(gl.TEXTURE0);
+    gl.bindTexture(gl.TEXTURE_2D, source.texture);
+    gl.uniform1i(program.at(sampler), 0);
+    gl.uniform1i(program.at("rows"), source.height);
+    set(program);
+    gl.bindVertexArray(this.noVertices);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+  }
 
   // Brings a sum of samples to the screen, or into a framebuffer.
   show(sum, samples, environment, stops, framebuffer = null) {
-    const gl = this.gl, program = this.displayProgram;
-    gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
-    gl.viewport(0, 0, sum.width, sum.height);
-    gl.useProgram(program.program);
-    gl.activeTexture(gl.TEXTURE0);
-    gl.bindTexture(gl.TEXTURE_2D, sum.texture);
-    gl.uniform1i(program.at("picture"), 0);
-    gl.uniform1i(program.at("rows"), sum.height);
-    gl.uniform1f(program.at("share"), 1 / samples);
-    gl.uniform1f(program.at("gain"), 2 ** stops / (this.environment(environment).white || 1));
-    gl.bindVertexArray(this.noVertices);
-    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    this.cover(framebuffer, this.displayProgram, "picture", sum, (program) => {
+      this.gl.uniform1f(program.at("share"), 1 / samples);
+      this.gl.uniform1f(program.at("gain"), 2 ** stops / (this.environment(environment).white || 1));
+    });
   }
 
   // Draws a picture by the pixel centers alone, into the targets of that name. `overlay` is null, or what the program of that name draws over it.
@@ -293,22 +313,14 @@ class Stage {
   drawOver(gbuffer, { toward, travel, edge }) {
     const gl = this.gl;
     this.overlayProgram ??= this.program(this.data.programs.shading_vertex, this.data.programs.overlay_fragment);
-    const program = this.overlayProgram;
-    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    gl.viewport(0, 0, gbuffer.width, gbuffer.height);
-    gl.useProgram(program.program);
-    gl.activeTexture(gl.TEXTURE0);
-    gl.bindTexture(gl.TEXTURE_2D, gbuffer.texture);
-    gl.uniform1i(program.at("gbuffer"), 0);
-    gl.uniform1i(program.at("rows"), gbuffer.height);
-    for (const name of ["corner", "right", "down"]) gl.uniform3fv(program.at(name), gbuffer.view[name]);
-    gl.uniform3fv(program.at("toward"), toward);
-    gl.uniform1f(program.at("travel"), travel);
-    gl.uniform1f(program.at("edge"), edge);
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
-    gl.bindVertexArray(this.noVertices);
-    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    this.cover(null, this.overlayProgram, "gbuffer", gbuffer, (program) => {
+      for (const name of ["corner", "right", "down"]) gl.uniform3fv(program.at(name), gbuffer.view[name]);
+      gl.uniform3fv(program.at("toward"), toward);
+      gl.uniform1f(program.at("travel"), travel);
+      gl.uniform1f(program.at("edge"), edge);
+    });
     gl.disable(gl.BLEND);
   }
 

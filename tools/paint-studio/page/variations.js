@@ -92,7 +92,7 @@ class Tiles {
     if (next.canvas.isConnected) {
       try {
         app.engine.ask({ do: "fit", paint: next.paint });
-        this.weights = app.stage.weights(app.engine.weights(), this.weights);
+        this.weights = app.stage.weights(app.engine, this.weights);
         const { width, height } = next.canvas;
         const picture = app.stage.tile(cameraOf({ ...view, distance: 0.8 * view.distance }), width, height, this.weights, app.stageView.environment, app.stageView.stops);
         next.canvas.getContext("2d").putImageData(picture, 0, 0);
