@@ -87,7 +87,7 @@ class NumberControls {
                                                                             onchange: () => this.commitBrushed(i) });
       this.fields["brushed-" + axis] = field;
     });
-    return made("div", { class: "slider", role: "group", "aria-label": "Brushed surface" },
+    return made("div", { class: "row", role: "group", "aria-label": "Brushed surface" },
                 [made("span", { text: "brushed" }), made("label", {}, ["sideways", this.fields["brushed-x"]]), made("label", {}, ["upward", this.fields["brushed-y"]]), made("span", { text: "0 for none" })]);
   }
   // A surface has both widths or none: where the other field has 0, it takes the same width.
