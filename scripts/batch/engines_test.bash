@@ -41,12 +41,14 @@ undisturbed() {
   local_run undisturbed
 }
 
+# Bats 1.8 takes a skip in setup_file for a failure.
 setup_file() {
-  command -v snakemake >/dev/null || skip "snakemake is not installed"
+  command -v snakemake >/dev/null || return 0
   cd "$BATS_FILE_TMPDIR"
   undisturbed
 }
 
 setup() {
+  command -v snakemake >/dev/null || skip "snakemake is not installed"
   cd "$BATS_FILE_TMPDIR"
 }
