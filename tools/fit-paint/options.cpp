@@ -48,8 +48,7 @@ void add_options(cli::ToolSpec& spec, Options& o) {
           "approximation, and the report holds the proof: the duality gap of l1, the optimality residual of l2. deltae "
           "starts from both and makes the squares of the color differences least, at the readings or over all "
           "directions of a measured BRDF. Its mean difference is nowhere more than 0.01 above that of l1. It is "
-          "slower, "
-          "and the report tells how far from stationary it ended.");
+          "slower, and the report tells how far from stationary it ended.");
   spec.option("lobes,n", "N", "3", &o.lobes, "use the best N flake lobes of the basis; 0 uses all")
       .from(0, 1000)
       .more("Of a measured BRDF at most N lobes are used, and each of them has to lower the error by 1 %.");

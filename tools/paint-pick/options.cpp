@@ -24,10 +24,9 @@ cli::ToolSpec tool_spec(Options& o) {
   spec.option("buffers", "FILE", "view.exr", &o.buffers, "light that was traced for the picture under the droppers")
       .more(
           "render-osmesa(1) writes it with --aov transport. The color found is then that of the matt surface which "
-          "would "
-          "show what the dropper sees in this light, with shadows and with light that other surfaces send. Pictures "
-          "without linear light must have render-osmesa's default view and automatic exposure. Without this option a "
-          "dropper in a shadow finds a darker paint.");
+          "would show what the dropper sees in this light, with shadows and with light that other surfaces send. "
+          "Pictures without linear light must have render-osmesa's default view and automatic exposure. Without this "
+          "option a dropper in a shadow finds a darker paint.");
   spec.heading = "palettes and mood boards";
   spec.option("palette", "N", "8", &o.palette, "propose up to N paints from one picture; 0 for none")
       .from(0, 64)
@@ -38,22 +37,19 @@ cli::ToolSpec tool_spec(Options& o) {
       .more(
           "A mood board is a text file. Its lines are title TEXT, image NAME PATH (relative to the board) and paint "
           "NAME, and below a paint face NAME@X,Y[,R], flop, gloss, travel DEG and retro; # begins a comment. The "
-          "output "
-          "is the paints, or a page where its name ends in .html. The page needs no other file; it shows the pictures, "
-          "the droppers on them, and a drawing of every paint.");
+          "output is the paints, or a page where its name ends in .html. The page needs no other file; it shows the "
+          "pictures, the droppers on them, and a drawing of every paint.");
   spec.heading = "single pixels";
   spec.option("probe", "X,Y", "320,180", &o.probes, "tell what this pixel of a picture with buffers shows")
       .in("pixels from the upper left, from 0")
       .more(
           "The picture is an EXR of render-osmesa(1) with --aov normal,part. The option may be repeated, and - reads "
-          "X,Y "
-          "from the lines of standard input and answers each at once. The output is a table with the part and its "
+          "X,Y from the lines of standard input and answers each at once. The output is a table with the part and its "
           "material; the angle between the mirror direction of the viewer and each light of the picture, or, where it "
           "has none, to where the environment's irradiance is largest; the angle of the viewer from the normal; the "
           "normal; the radiance in linear Rec.2020, without the exposure of the file; and L*, a* and b* of that "
-          "radiance "
-          "relative to the brightest that a white diffuser can be in this light. Beside the mesh there is a color "
-          "alone.");
+          "radiance relative to the brightest that a white diffuser can be in this light. Beside the mesh there is a "
+          "color alone.");
   spec.heading = "page of a board";
   spec.option("mesh,m", "FILE", "testdata/speed-shape.obj", &o.mesh,
               "mesh that the paints are drawn on; glass, tires and the like are dressed")

@@ -33,10 +33,8 @@ void add_options(cli::ToolSpec& spec, Options& o) {
       .from(0, envmap::kMostSpots)
       .more(
           "The light of the spots is in the maps as well. render-osmesa cuts each of them by the horizon of every "
-          "point, "
-          "which the maps cannot do; more of them come nearer to the truth and take longer, see the effect spots "
-          "there. "
-          "An environment without small bright parts has none.");
+          "point, which the maps cannot do; more of them come nearer to the truth and take longer, see the effect "
+          "spots there. An environment without small bright parts has none.");
   spec.option("layout,l", "WHAT", "latlong", &o.layout, "how the maps lie")
       .one_of({"env", "latlong", "openexr", "mip"})
       .more(
@@ -44,8 +42,7 @@ void add_options(cli::ToolSpec& spec, Options& o) {
           "and openexr has cubes with texel centers on the edges; both follow OpenEXR's own conventions, for other "
           "programs. mip has one mip-mapped cube, for paints whose exponent varies from point to point. The sharpest "
           "exponent is in its finest level, and each coarser level has the next one, or a quarter of the exponent "
-          "after "
-          "the last; the attribute goniochrome:exponents says which.");
+          "after the last; the attribute goniochrome:exponents says which.");
   cli::add_tolerance(spec, o.common, "X", "largest error of a texel, relative to the texel")
       .more(
           "The error is the difference from the sum over all texels of the image in double precision, and includes the "

@@ -32,8 +32,7 @@ void add_surfaces(cli::ToolSpec& spec, Options& o) {
       .more(
           "Several paints, one picture of each, are drawn where --output has words in braces, or with --sheet or --to: "
           "PAINT is then FILE for all paints of a file, FILE#NAMES for those whose names fit, in which * stands for "
-          "any "
-          "text, or - for a stream of paint XML on standard input.");
+          "any text, or - for a stream of paint XML on standard input.");
   spec.option("basis", "FILE", "b7.basis.xml", &o.basis, "fit paints without lobes to this basis, as fit-paint(1) does")
       .more("Without it, a paint that has no lobes cannot be drawn. It must be the basis of the environment.");
   spec.option("part", "PART=PAINT", "Glass=fitted.xml#silver_fine", &o.parts, "paint of a part or material")
@@ -66,30 +65,25 @@ void add_light(cli::ToolSpec& spec, Options& o) {
   spec.option("light", "WHERE[,LIGHT][@EXTENT]", "-60,20,0.5,0.5,0.6@2", &o.lights, "lamp")
       .in("degrees for angles and for the extent")
       .more(
-          "WHERE is AZIMUTH,ELEVATION or a vector X,Y,Z toward a lamp that is far away, or place:X,Y,Z for a lamp "
-          "that stands at that place, in units of the mesh. LIGHT may follow, R,G,B or a name as --spectral has it; it "
-          "is "
+          "WHERE is AZIMUTH,ELEVATION or a vector X,Y,Z toward a lamp that is far away, or place:X,Y,Z for a lamp that "
+          "stands at that place, in units of the mesh. LIGHT may follow, R,G,B or a name as --spectral has it; it is "
           "what a perfect white diffuser shows that faces the lamp, and 1,1,1 if not given. EXTENT is the angle that "
-          "the lamp spans, from 0 to 180, "
-          "and 0.53 as that of the sun if not given. The lamp is a disc of even radiance, and a wider one sends as "
-          "much light as a narrow one. Its highlight and its mirror image are those of the disc; with the extent 0 "
-          "it is a point, which has no mirror image. A lamp at a place is a sphere, has that extent and that white "
-          "in the middle of the mesh, and its light falls with the square of the distance; the engine path draws "
-          "it.");
+          "the lamp spans, from 0 to 180, and 0.53 as that of the sun if not given. The lamp is a disc of even "
+          "radiance, and a wider one sends as much light as a narrow one. Its highlight and its mirror image are those "
+          "of the disc; with the extent 0 it is a point, which has no mirror image. A lamp at a place is a sphere, has "
+          "that extent and that white in the middle of the mesh, and its light falls with the square of the distance; "
+          "the engine path draws it.");
   spec.option("emit", "PART=LIGHT", "Lamp=20,18,15", &o.emissions, "make a part or material shine by itself")
       .more(
           "LIGHT is the radiance of both sides of the part, beside what its paint reflects: R,G,B in linear Rec.2020, "
-          "or "
-          "a light by its name, with a factor, as in A*20. Only the engine path draws such parts, and auto takes it "
-          "for "
-          "them.");
+          "or a light by its name, with a factor, as in A*20. Only the engine path draws such parts, and auto takes it "
+          "for them.");
   spec.option("spectral", "WHEN", "on", &o.spectral, "follow light in bands of wavelength: auto, on or off")
       .one_of({"auto", "on", "off"})
       .more(
           "The engine path then multiplies light and paint in 31 bands from 400 to 700 nm, not in three channels, so "
           "that --operator has no part in it. Lamps need a spectrum: a LIGHT of --light and of --emit that is named, "
-          "as "
-          "D65, A or F11 (" +
+          "as D65, A or F11 (" +
           color::spectral_illuminants() +
           "), or a column of a table of spectra, as lights.csv#HP1. It has the luminance 1, and may be multiplied by "
           "numbers and by filters, which are columns of tables too: D65*filters.csv#cyan*20. Paints need spectra in "
@@ -257,8 +251,7 @@ void add_output(cli::ToolSpec& spec, Options& o) {
       .needed()
       .more(
           "With {name}, {code} or {index} in it, each paint of --paint gets a file of its own: by its name, by its "
-          "code "
-          "or, where it has none, its name, or by its number from 0001. Characters that a file's name cannot have "
+          "code or, where it has none, its name, or by its number from 0001. Characters that a file's name cannot have "
           "become _, and of paints that would get the same file, the second gets -2, the third -3 and so on. The mesh, "
           "the environment and what is visible are read and made once for all paints. No effect is left out for one "
           "paint, since others may show it, and no rays are traced for each paint: a transport of --gbuffer brings "
@@ -287,23 +280,21 @@ void add_output(cli::ToolSpec& spec, Options& o) {
       .more(
           "error, of the engine path alone, is the noise of each pixel as CIEDE2000, one standard deviation. The "
           "others hold the pixel centers. normal is turned to the viewer (normal.X .Y .Z). aspecular is the angle in "
-          "degrees between the view and the mirror direction of the first light, and lambert the cosine between "
-          "normal and that light; without --light, it is the direction in which the environment's irradiance is "
-          "largest, and goniochrome:aovLight holds it. mask is 1 on the mesh. part is a number from 1, and the "
-          "attribute goniochrome:parts names the parts. More attributes say what is needed to shade the buffers "
-          "again: goniochrome:rays (corner;right;down: the ray through the point x,y is the sum of the first, x "
-          "times the second and y times the third, in pixels from the upper left), goniochrome:lights (direction, "
-          "white and extent of each in degrees, and of a lamp at a place that place and its distance from the middle "
-          "of the mesh), goniochrome:operator (the 27 coefficients k[c][d][e] of colored light, with e running "
-          "fastest), goniochrome:samples (those of a pixel of the picture) and goniochrome:environment. transport "
-          "brings all buffers and, in parts of their own, the light that each lobe of the basis gathers at each "
-          "pixel, with shadows and with light that surfaces send to each other; it is traced until its noise is "
-          "within --tolerance. --gbuffer then shows other paints in it within milliseconds. goniochrome-paint(5) "
-          "describes the parts. A part that wears a color map or a texture has no such light: what stands for a map "
-          "are "
-          "lobes in directions of its own, which differ from paint to paint and from view to view, and a transport "
-          "holds "
-          "the light about the mirror direction alone.");
+          "degrees between the view and the mirror direction of the first light, and lambert the cosine between normal "
+          "and that light; without --light, it is the direction in which the environment's irradiance is largest, and "
+          "goniochrome:aovLight holds it. mask is 1 on the mesh. part is a number from 1, and the attribute "
+          "goniochrome:parts names the parts. More attributes say what is needed to shade the buffers again: "
+          "goniochrome:rays (corner;right;down: the ray through the point x,y is the sum of the first, x times the "
+          "second and y times the third, in pixels from the upper left), goniochrome:lights (direction, white and "
+          "extent of each in degrees, and of a lamp at a place that place and its distance from the middle of the "
+          "mesh), goniochrome:operator (the 27 coefficients k[c][d][e] of colored light, with e running fastest), "
+          "goniochrome:samples (those of a pixel of the picture) and goniochrome:environment. transport brings all "
+          "buffers and, in parts of their own, the light that each lobe of the basis gathers at each pixel, with "
+          "shadows and with light that surfaces send to each other; it is traced until its noise is within "
+          "--tolerance. --gbuffer then shows other paints in it within milliseconds. goniochrome-paint(5) describes "
+          "the parts. A part that wears a color map or a texture has no such light: what stands for a map are lobes in "
+          "directions of its own, which differ from paint to paint and from view to view, and a transport holds the "
+          "light about the mirror direction alone.");
 }
 
 // The examples, the keys of --report, and the pages to see.
@@ -371,8 +362,7 @@ void add_report(cli::ToolSpec& spec) {
       {"frames", "number of pictures written"},
       {"pictures[]: name, status, message, file, sheet, cell, time_ms",
        "with several paints: each of them in order, done or failed with a message, its file or its place on the "
-       "sheets, "
-       "counted from 1, and the time from when it was read to when it was written"},
+       "sheets, counted from 1, and the time from when it was read to when it was written"},
       {"pictures[]: bounced_de00_p95", "with several paints and a transport: the error of scaling bounced light"},
       {"failed, files, pictures_per_s", "with several paints: those without a picture, files written, and the rate"},
       {"picture_ms: p50, p99, max", "with several paints: the time of a picture, from reading its paint to writing it"},
