@@ -18,6 +18,9 @@ constexpr std::size_t kTogether = 64;
 constexpr int kFirstFans = 2;
 // No round draws more than so many times the fans that a point has.
 constexpr int kGrowth = 3;
+// A round draws no less than this part of all fans so far: after each the noise of every point is judged anew, which
+// takes the time of a fan for every twenty of them.
+constexpr double kLeastRound = 1.0 / 16;
 // A point's own variance counts by its freedom, that of its neighborhood as so many.
 constexpr double kNeighborhood = 4;
 constexpr int kReach = 2;  // pixels to each side of the neighborhood
@@ -363,21 +366,30 @@ class Picture {
 
   // How many fans each point is to get next: as many as its neighborhood's noise asks for, at most so many
   // times what it has. The twentieth part of the points that would need most get no more than the rest. Where the
-  // neighborhoods are content but the picture is not, all is scaled by what it lacks. Whether there are any.
+  // neighborhoods are content but the picture is not, or would draw too little for a round, all is scaled by what it
+  // lacks, unless points that got all that they may get keep the picture from its tolerance. Whether there are any.
   bool plan(double noise, std::vector<int>& more) const {
     const double typical = worse_percentile([this](std::size_t i) { return states_[i].needed; });
     const double limit = request_.most_samples / kFan, lacking = noise / tolerance();
+    const bool in_vain =
+        request_.tolerance_de00 > 0 && tolerance() < worse_percentile([&](std::size_t i) {
+                                         return states_[i].sums.fans() >= limit ? points_[i].noise_de00 : 0;
+                                       });
+    double drawn = 0;
+    for (const State& state : states_) drawn += state.sums.fans();
     for (double scale = 1;; scale *= 1.1 * std::max(1.0, lacking * lacking)) {
       const double most = std::min(std::ceil(1.05 * scale * typical), limit);
-      bool any = false, limited = true;
+      double asked = 0;
+      bool limited = true;
       for (std::size_t i = 0; i < points_.size(); ++i) {
         const double n = states_[i].sums.fans(), wanted = std::min(std::ceil(scale * states_[i].needed), most) - n;
         more[i] = static_cast<int>(std::clamp(wanted, 0.0, kGrowth * n));
-        any = any || more[i] > 0;
+        asked += more[i];
         limited = limited && (n == 0 || states_[i].needed == 0 || n >= limit);
       }
-      if (any) return true;
-      if (limited || scale > 1e6) return false;
+      if (asked >= kLeastRound * drawn && asked > 0) return true;
+      if (in_vain) return false;
+      if (limited || scale > 1e6) return asked > 0;
     }
   }
 

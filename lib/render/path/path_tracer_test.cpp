@@ -189,6 +189,29 @@ TEST(PathPicture, StopsWhenItsTimeIsUpAndSaysHowFarItCame) {
   EXPECT_GT(told, 0);
 }
 
+// Judging the noise of a picture takes time, so that a picture that its limit keeps from the tolerance is given up, and
+// none is brought to it by a few points at a time: here that took 79 and 42 rounds.
+TEST(PathPicture, TakesFewRounds) {
+  const auto stage = ball_in_a_cup();
+  const VisibleSurface surface = seen_from_above(*stage, 32, 24);
+  int rounds = 0;
+  PathRequest request;
+  request.progress = [&](double, double) { ++rounds; };
+  request.most_samples = 2048;
+  for (const double tolerance : {0.5, 1.0}) {
+    rounds = 0;
+    request.tolerance_de00 = tolerance;
+    const PathPicture picture = path_picture(*stage->transport, surface, nullptr, request);
+    EXPECT_EQ(picture.reached, tolerance == 1.0);
+    EXPECT_LE(rounds, 16);
+    if (picture.reached) continue;
+    int noisy = 0, at_limit = 0;
+    for (const PathPoint& point : picture.points)
+      if (point.noise_de00 > tolerance) ++noisy, at_limit += point.samples >= request.most_samples;
+    EXPECT_GT(2 * at_limit, noisy) << "most points that are too noisy got what they may";
+  }
+}
+
 // Where light grazes a smooth ball of few triangles its facets would shade each other, and the border of light and
 // shadow would be jagged. Over a plane that is there twice, at three sizes, every pixel of the lit side shows the
 // cosine of its smooth normal. The control starts its rays on the flat triangles.
