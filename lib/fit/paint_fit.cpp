@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "brdf/lobe_model.h"
 #include "fit/internal/brdf_fit.h"
+#include "fit/internal/coat_readings.h"
 #include "fit/internal/flake_fit.h"
 #include "fit/internal/lobe_choice.h"
 #include "fit/internal/target_rows.h"
@@ -41,26 +42,27 @@ std::vector<double> chosen_exponents(const FitOptions& options, const FlakeTarge
   return chosen;
 }
 
-// Solves for K_D and K_DD, for all views and for each of `views_deg`.
-void fit_flake(const FitOptions& options, const FlakeTarget& together, const FlakeTarget& by_view,
-               const std::vector<double>& views_deg, const std::vector<double>& exponents, double first_rad,
-               PaintFit& out) {
+// Solves for K_D and K_DD, for all views and for each of `views_deg`. Returns where the rows stand that the lobes meet
+// without a coat and not under it.
+std::vector<FlakePoint> fit_flake(const FitOptions& options, const FlakeTarget& together, const FlakeTarget& by_view,
+                                  const std::vector<double>& views_deg, const std::vector<double>& exponents,
+                                  double first_rad, PaintFit& out) {
   const Deadline deadline(options.time_limit_s);
   PaintFitReport& report = out.report;
   const std::vector<double> seen = seen_exponents(exponents, first_rad);
   FlakeModel model{chosen_exponents(options, together, seen, deadline)};
   report.unseen = difference(exponents, seen);
   report.dropped = difference(seen, model.exponents);
-  const FlakeFit flake = flake_fit(options.method, together, model, deadline);
+  const auto [flake, lost] = fit_under_coat(options.method, together, model, deadline);
   set_weights(model.exponents, flake.x.data(), out.lobes.diffuse, out.lobes.lobes);
   report.status = deadline.passed() ? FitStatus::kTimeLimit : flake.status;
   report.objective = flake.objective;
   report.plain_objective = flake.plain_objective;
   report.optimality_gap = flake.optimality_gap;
-  if (views_deg.empty()) return;
+  if (views_deg.empty()) return lost;
 
   model.views_deg = views_deg;
-  const FlakeFit each = flake_fit(options.method, by_view, model, deadline);
+  const auto [each, lost_by_view] = fit_under_coat(options.method, by_view, model, deadline);
   for (std::size_t v = 0; v < model.views_deg.size(); ++v) {
     paint::ViewLobes view{model.views_deg[v], {}, out.lobes.lobes};
     for (paint::Lobe& lobe : view.lobes) lobe.directional_diffuse = {};
@@ -71,6 +73,7 @@ void fit_flake(const FitOptions& options, const FlakeTarget& together, const Fla
   if (report.status == FitStatus::kOptimal) report.status = each.status;
   report.optimality_gap = std::max(report.optimality_gap, each.optimality_gap);
   if (deadline.passed()) report.status = FitStatus::kTimeLimit;
+  return lost_by_view;
 }
 
 FlakeTarget flake_target(const FitOptions& options, const Target& target, const color::Xyz& white, double coat_index) {
@@ -78,6 +81,44 @@ FlakeTarget flake_target(const FitOptions& options, const Target& target, const 
   for (const TargetRow& row : target.rows) flake.rows.push_back(flake_row(row, options, row.importance < 1));
   for (const paint::LabReading& reading : target.readings) flake.readings.push_back(flake_reading(reading, coat_index));
   return flake;
+}
+
+// The readings of a paint as the fit has them, with the rows that would be without the coat. A curve is no reading, and
+// has none.
+Result<FlakeTarget> coated_target(const FitOptions& options, const paint::Paint& paint, const Target& target,
+                                  const color::Xyz& white, const std::vector<double>& exponents, double coat_index,
+                                  bool by_view) {
+  FlakeTarget flake = flake_target(options, target, white, coat_index);
+  if (coat_index == paint::kNoCoat || options.target != paint::TargetCurve::Kind::kMeasured) return flake;
+  GONIO_ASSIGN(const Target bare, target_rows(paint, options.target, white, exponents, paint::kNoCoat, by_view));
+  flake.without_coat = flake_target(options, bare, white, paint::kNoCoat).rows;
+  return flake;
+}
+
+// The views of the readings, ascending.
+std::vector<double> views_of(const std::vector<paint::LabReading>& readings) {
+  std::vector<double> views;
+  for (const paint::LabReading& reading : readings) views.push_back(named_view_deg(reading.geometry));
+  std::ranges::sort(views);
+  views.erase(std::ranges::unique(views).begin(), views.end());
+  return views;
+}
+
+// Those of the differences at the readings that stand at one of `lost`, which tell views apart where `by_view`.
+std::vector<GeometryError> errors_lost(const std::vector<paint::LabReading>& readings,
+                                       const std::vector<GeometryError>& errors, const std::vector<FlakePoint>& lost,
+                                       bool by_view) {
+  constexpr double kSame_deg = 1e-5;
+  std::vector<GeometryError> told;
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    const paint::Geometry& geometry = readings[i].geometry;
+    if (std::ranges::any_of(lost, [&](const FlakePoint& at) {
+          return std::abs(at.aspecular_rad / kDegree - paint::aspecular_angle_deg(geometry)) < kSame_deg &&
+                 (!by_view || std::abs(at.view_deg - view_angle_deg(geometry)) < kSame_deg);
+        }))
+      told.push_back(errors[i]);
+  }
+  return told;
 }
 
 // The color differences at the readings.
@@ -181,7 +222,7 @@ void PaintFitter::finish(const std::vector<paint::LabReading>& readings, const c
   report.de00_mean = mean_de00(report.de00_by_geometry);
   fit.max_de00 = report.de00_max, fit.mean_de00 = report.de00_mean;
   if (report.de00_max > kVisible_de00)
-    report.limit = fit_limit(readings, report.de00_by_geometry, white, !fit.views.empty());
+    report.limit = fit_limit(readings, report.de00_by_geometry, white, fit.coat_index, !fit.views.empty());
   if (fit.views.empty()) return;
   paint::LobeFit together = fit;
   together.views.clear();
@@ -196,15 +237,21 @@ Result<PaintFit> PaintFitter::fit(const paint::Paint& paint) const {
   PaintFit out = started(coat);
   GONIO_ASSIGN(const color::Xyz white, color::white_point(paint::condition_of(paint)));
   GONIO_ASSIGN(const Target target, target_rows(paint, options_.target, white, basis_.exponents, coat));
-  const FlakeTarget together = flake_target(options_, target, white, coat);
+  GONIO_ASSIGN(const FlakeTarget together,
+               coated_target(options_, paint, target, white, basis_.exponents, coat, false));
   const double first_rad = target.first_deg * kDegree;
+  const auto fit_views = [&](const std::vector<double>& views_deg) -> Result<std::vector<FlakePoint>> {
+    if (views_deg.empty()) return fit_flake(options_, together, together, {}, basis_.exponents, first_rad, out);
+    GONIO_ASSIGN(const Target rows, target_rows(paint, options_.target, white, basis_.exponents, coat, true));
+    GONIO_ASSIGN(const FlakeTarget by_view, coated_target(options_, paint, rows, white, basis_.exponents, coat, true));
+    return fit_flake(options_, together, by_view, views_deg, basis_.exponents, first_rad, out);
+  };
   const Twins twins = twins_of(target.readings);
-  const std::vector<double>& views = options_.views_where_needed ? twins.views_deg : options_.views_deg;
-  if (views.empty()) {
-    fit_flake(options_, together, together, views, basis_.exponents, first_rad, out);
-  } else {
-    GONIO_ASSIGN(const Target apart, target_rows(paint, options_.target, white, basis_.exponents, coat, true));
-    fit_flake(options_, together, flake_target(options_, apart, white, coat), views, basis_.exponents, first_rad, out);
+  GONIO_ASSIGN(std::vector<FlakePoint> lost,
+               fit_views(options_.views_where_needed ? twins.views_deg : options_.views_deg));
+  if (options_.views_where_needed && !lost.empty()) {
+    out = started(coat);
+    GONIO_ASSIGN(lost, fit_views(views_of(target.readings)));
   }
   out.report.floor = {twins.apart_de00, twins.sum_de00 / static_cast<double>(target.readings.size()),
                       twins.largest_de00};
@@ -227,6 +274,7 @@ Result<PaintFit> PaintFitter::fit(const paint::Paint& paint) const {
                                 stated == readings.end() ? std::nullopt : std::optional(stated->gloss_units)});
   }
   finish(target.readings, white, out);
+  out.report.lost_to_coat = errors_lost(target.readings, out.report.de00_by_geometry, lost, !out.lobes.views.empty());
   out.report.time_us = clock.elapsed_s() * 1e6;
   return out;
 }

@@ -40,7 +40,8 @@ struct FitOptions {
   double prune_de00 = 0;               // --prune: lobes that move no color by more are dropped; 0: none are
   std::vector<double> views_deg = {};  // weights at these angles of the viewer too; empty: none
   bool views_where_needed = false;     // in place of views_deg, the views of readings that differ at one aspecular
-                                       // angle; of a measured BRDF, views every 15 deg
+                                       // angle or that a coat keeps from being met; of a measured BRDF, views every
+                                       // 15 deg
   Satin satin = Satin::kBySeveral;
   double steepest_deg = 75;  // measured BRDFs: directions farther from the normal are left out
   double time_limit_s = 0;   // for one paint; 0: none
@@ -122,6 +123,9 @@ struct PaintFitReport {
   int active_lobes = 0;        // lobes with any weight, the mirror included
   std::vector<GeometryError> de00_by_geometry;  // against the readings (or the designed curve at 15, 45 and 110 deg)
   double de00_max = 0, de00_mean = 0;
+  // The readings that the lobes meet exactly without the paint's coat and not under it, with their differences under
+  // it. kDeltaE tells none.
+  std::vector<GeometryError> lost_to_coat;
   ViewFloor floor;
   std::string limit;               // why the worst reading is not met any better, in words; empty where all are met
   double gamut_de00 = 0;           // the largest color change from negative working-space channels of the target

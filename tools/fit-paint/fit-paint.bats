@@ -320,6 +320,22 @@ cornell() {
   [ "$(grep -c '"simulated_gu"' r.json)" -eq 3 ]
 }
 
+@test "readings that only the coat keeps from being met are told, and --views auto meets them" {
+  run --separate-stderr fit-paint -b "$basis" "$paints" -o out.xml --report r.json
+  lost=$(sed -nE 's/^    "lost_to_coat": ([0-9]+),?$/\1/p' r.json)
+  [ "$lost" -gt 0 ]
+  [[ "$stderr" =~ "$lost readings that lobes meet without a coat are off by up to dE00 1."[0-9]+" under it".*"--views auto meets them" ]]
+  [ "$(jq '[.results.paints[].lost_to_coat[]] | length' r.json)" -eq "$lost" ]
+  jq -e '.results.paints[] | select(.name == "reference_gray") | .lost_to_coat["45as110"] > 1' r.json
+  jq -e '.results.paints[] | select(.name == "reference_gray") | .limit | test("under the coat grows by 9 %")' r.json
+  fit-paint -q -b "$basis" --coat none "$paints" -o out.xml --report r.json
+  jq -e '.results.lost_to_coat == 0 and ([.results.paints[].lost_to_coat[]] == [])' r.json
+  run --separate-stderr fit-paint -b "$basis" --views auto "$paints" -o out.xml --report r.json
+  [[ ! "$stderr" =~ "under it" ]]
+  jq -e '.results.lost_to_coat == 0' r.json
+  jq -e '.results.paints[] | select(.name == "reference_gray") | .de00_max < 1e-6' r.json
+}
+
 @test "--paint-time-limit stops a paint, writes the best and exits 4" {
   cornell metal.brdf
   run fit-paint -b "$basis" --method deltae --paint-time-limit 0.000001 metal.brdf -o out.xml --report r.json

@@ -25,8 +25,10 @@ void add_options(cli::ToolSpec& spec, Options& o) {
           "angles 20, 60 and 85. 0 leaves the paints matt.");
   spec.option("coat", "INDEX", "1.5", &o.coat, "refractive index of the clear coat of every paint; none is no coat")
       .more(
-          "The coat takes from the base what it reflects itself. The readings are met all the same, because the base "
-          "is fitted to what the coat leaves of it at each geometry. auto gives a coat to every paint with gloss, "
+          "The coat takes from the base what it reflects itself. The base is fitted to what the coat leaves of it at "
+          "each geometry, so that what is read stays the same. Readings that are met without a coat are met with it, "
+          "except where no lobes do, as where the base would have to grow away from specular: there the report names "
+          "them under lost_to_coat, and --views auto meets them. auto gives a coat to every paint with gloss, "
           "stated or assumed, and to every paint that states a coat; its index is 1.5, or as much as the gloss asks "
           "for. Measured BRDFs have none unless it is given here.");
   spec.option("satin", "WHICH", "all", &o.satin, "which paints get the gloss of a rough coat, by views")
@@ -62,7 +64,9 @@ void add_options(cli::ToolSpec& spec, Options& o) {
           "interference paint. Between the views they are linear. The weights for all views stay in front of them, and "
           "the report tells what the views gain. A multi-angle instrument sees each view once or twice; between its "
           "readings, the weights rest on smoothness and not on data. auto takes the views of readings that differ "
-          "visibly at one aspecular angle, and none for other paints.");
+          "visibly at one aspecular angle; of all readings, where a coat keeps one from being met that is met without "
+          "it; "
+          "and none for other paints.");
   spec.option("paint-time-limit", "S", "0.5", &o.paint_time_limit_s, "longest time for one paint; 0 is no limit")
       .from(0)
       .more("After this time the best weights so far are taken.");
@@ -114,6 +118,8 @@ void add_report(cli::ToolSpec& spec) {
       {"paints[].de00_max", "largest CIEDE2000 difference at the readings"},
       {"paints[].de00_mean", "mean CIEDE2000 difference at the readings"},
       {"paints[].de00_by_geometry", "difference at each geometry"},
+      {"paints[].lost_to_coat",
+       "by l1 and l2: the readings that are met exactly without the coat and not with it, with their differences"},
       {"paints[].limit",
        "what keeps the worst reading from being met better: the working space, two sides of specular, a channel that "
        "grows away from specular, or the basis; empty below dE00 0.5"},
@@ -169,6 +175,7 @@ void add_report(cli::ToolSpec& spec) {
       {"de00_p95", "difference that 95 % of the readings are below, to 0.01"},
       {"worst[]", "the five worst paints: name, geometry, de00 and limit"},
       {"contradicting", "number of paints with readings at one aspecular angle that differ visibly"},
+      {"lost_to_coat", "number of readings that are met exactly without a coat and not with it"},
       {"floor_de00_mean", "least de00_mean that weights for all views can have"},
       {"floor_de00_p95", "least de00_p95 that weights for all views can have"},
       {"warnings[]", "first messages about failed paints"}};

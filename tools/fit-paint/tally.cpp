@@ -50,6 +50,7 @@ Json report_of(const paint::Paint& paint, const fit::PaintFit& fit) {
                  {"de00_max", json_number(r.de00_max)},
                  {"de00_mean", json_number(r.de00_mean)},
                  {"de00_by_geometry", by_geometry(r.de00_by_geometry)},
+                 {"lost_to_coat", by_geometry(r.lost_to_coat)},
                  {"limit", r.limit},
                  {"floor_de00_mean", json_number(r.floor.de00_mean)},
                  {"apart_de00", json_number(r.floor.apart_de00)},
@@ -120,6 +121,8 @@ void Tally::add(const paint::Paint& paint, const fit::PaintFit& fit) {
   for (const fit::GeometryError& error : r.de00_by_geometry) errors_.add(error.de00);
   add_worst(paint, r);
   contradicting_ += r.floor.apart_de00 > fit::kVisible_de00;
+  for (const fit::GeometryError& lost : r.lost_to_coat)
+    ++lost_to_coat_, largest_lost_ = std::max(largest_lost_, lost.de00);
   sum_floor_ += r.floor.de00_mean * static_cast<double>(r.de00_by_geometry.size());
   for (const double floor : r.floor.largest_de00) floors_.add(floor);
   if (r.views) sum_gain_ += r.views->gain_de00();
@@ -183,6 +186,7 @@ cli::Verdict Tally::finish() {
   results["de00_mean"] = errors_.mean();
   results["de00_p95"] = p95(errors_);
   results["contradicting"] = contradicting_;
+  results["lost_to_coat"] = lost_to_coat_;
   results["floor_de00_mean"] = sum_floor_ / readings;
   results["floor_de00_p95"] = floors_.all_but(0.05 * readings);
   results["worst"] = Json::array();
@@ -199,6 +203,11 @@ cli::Verdict Tally::finish() {
         fmt::format("{}: {} paints contradict themselves at one aspecular angle: no weights for all views come "
                     "below {}; --views auto does",
                     session_.tool(), contradicting_, floor()));
+  if (lost_to_coat_ > 0)
+    session_.say(fmt::format(
+        "{}: {} readings that lobes meet without a coat are off by up to dE00 {:.2f} under it, where no "
+        "weights for all views meet them{}",
+        session_.tool(), lost_to_coat_, largest_lost_, options_.views.empty() ? "; --views auto meets them" : ""));
   if (stopped_ > 0) return cli::Verdict::kStopped;
   return failed_ > 0 || not_converged_ > 0 ? cli::Verdict::kNegative : cli::Verdict::kDone;
 }

@@ -54,6 +54,8 @@ class Tally {
   double fit_s_ = 0, sum_relative_ = 0, sum_misplaced_ = 0, sum_five_ = 0, sum_gain_ = 0;
   Spread errors_;                  // of all readings
   std::size_t contradicting_ = 0;  // paints
+  std::size_t lost_to_coat_ = 0;   // readings
+  double largest_lost_ = 0;        // dE00 of these
   double sum_floor_ = 0;           // over all readings
   Spread floors_;                  // of the worse readings at shared angles
   std::vector<Bad> worst_;         // the worst paints, worst first

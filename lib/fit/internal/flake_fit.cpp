@@ -365,6 +365,10 @@ void add_smoothness(const FlakeTarget& target, const FlakeModel& model, LinearPr
   problem.shape = std::move(all);
 }
 
+// An error in a row that weighs so much more costs the l1 fit more than all other rows gain by it. The fit then meets
+// such rows exactly where it can, and the other rows are the best that is left.
+constexpr double kHeldWeight = 1e4;
+
 DeltaEProblem deltae_problem(const FlakeTarget& target, const FlakeModel& model, const LinearProblem& linear) {
   DeltaEProblem problem;
   problem.columns = model.columns();
@@ -427,6 +431,9 @@ LinearProblem linear_problem(const FlakeTarget& target, const FlakeModel& model)
 FlakeFit flake_fit(FitMethod method, const FlakeTarget& target, const FlakeModel& model, const Deadline& deadline) {
   LinearProblem problem = linear_problem(target, model);
   if (model.views_deg.size() > 1) add_smoothness(target, model, problem);
+  const std::vector<double> weight = problem.weight;
+  for (std::size_t i = 0; i < target.rows.size(); ++i)
+    if (target.rows[i].held) problem.weight[i] *= kHeldWeight;
   FlakeFit fit;
   if (method == FitMethod::kDeltaE) {
     const std::vector<std::vector<color::Rgb>> starts = {linear_fit(Norm::kL1, problem).x,
@@ -444,6 +451,7 @@ FlakeFit flake_fit(FitMethod method, const FlakeTarget& target, const FlakeModel
     fit.optimality_gap = best.optimality_gap;
     if (!best.converged) fit.status = FitStatus::kNotConverged;
   }
+  problem.weight = weight;
   fit.objective = error_norm(norm_of(method), problem, fit.x);
   fit.plain_objective = error_norm(norm_of(method), problem, fit.x, true);
   return fit;

@@ -32,6 +32,7 @@ struct FlakeRow {
   color::Rgb value;       // reflectance factor under the coat, channels >= 0
   double weight = 1;      // of the error
   bool inferred = false;  // the row was not read; it steers the weights between and beyond the readings
+  bool held = false;      // the row is met if weights >= 0 can meet it together with all others that are held
 };
 
 struct FlakeReading {
@@ -43,8 +44,9 @@ struct FlakeReading {
 struct FlakeTarget {
   color::Xyz white;
   std::vector<FlakeRow> rows;
-  std::vector<FlakeReading> readings;    // what the fit is judged by
-  std::vector<FlakeReading> usual = {};  // of many readings, what an instrument would read of them
+  std::vector<FlakeReading> readings;       // what the fit is judged by
+  std::vector<FlakeReading> usual = {};     // of many readings, what an instrument would read of them
+  std::vector<FlakeRow> without_coat = {};  // under a coat: `rows` as they would be without it; otherwise empty
 };
 
 // The columns of a fit: the constant and each exponent, once for all views or once for each view.

@@ -84,16 +84,19 @@ void add_readings(const color::Xyz& white, double coat_index, bool by_view, Targ
   }
 }
 
-// The channel that grows most from a smaller aspecular angle to that of `at`, or from there to a larger one, and by
-// which part of itself it grows. Sums of lobes never grow so.
+// The channel of the base that grows most from a smaller aspecular angle to that of `at`, or from there to a larger
+// one, and by which part of itself it grows. Sums of lobes never grow so.
 std::pair<int, double> steepest_rise(const std::vector<paint::LabReading>& readings, const paint::LabReading& at,
-                                     const color::Xyz& white) {
+                                     const color::Xyz& white, double coat_index) {
   std::pair<int, double> most = {0, 0};
   const double angle = paint::aspecular_angle_deg(at.geometry);
-  const color::Rgb here = color::rgb_from_lab(at.lab, white);
+  const auto base = [&](const paint::LabReading& reading) {
+    return (1 / coat_passages_at(reading.geometry, coat_index)) * color::rgb_from_lab(reading.lab, white);
+  };
+  const color::Rgb here = base(at);
   for (const paint::LabReading& other : readings) {
     const double step = paint::aspecular_angle_deg(other.geometry) - angle;
-    const color::Rgb there = color::rgb_from_lab(other.lab, white);
+    const color::Rgb there = base(other);
     for (int c = 0; c < 3; ++c) {
       const double low = step > 0 ? here[c] : there[c], high = step > 0 ? there[c] : here[c];
       if (std::abs(step) > 0.5 && low > 0 && high / low - 1 > most.second) most = {c, high / low - 1};
@@ -107,6 +110,10 @@ std::pair<int, double> steepest_rise(const std::vector<paint::LabReading>& readi
 double view_angle_deg(const paint::Geometry& geometry) {
   const Vec3 view = paint::directions(geometry).view;
   return math::atan2(math::hypot(view.x, view.y), view.z) / kDegree;
+}
+
+double named_view_deg(const paint::Geometry& geometry) {
+  return std::round(1e6 * view_angle_deg(geometry)) / 1e6;
 }
 
 std::vector<double> seen_exponents(const std::vector<double>& exponents, double first_rad) {
@@ -231,7 +238,7 @@ Twins twins_of(const std::vector<paint::LabReading>& readings) {
         same.push_back(&readings[k]), taken[k] = 1;
     double apart = 0;
     const auto note_view = [&](const paint::LabReading& reading) {
-      twins.views_deg.push_back(std::round(1e6 * view_angle_deg(reading.geometry)) / 1e6);
+      twins.views_deg.push_back(named_view_deg(reading.geometry));
     };
     for (std::size_t m = 0; m < same.size(); ++m)
       for (std::size_t n = m + 1; n < same.size(); ++n) {
@@ -253,7 +260,7 @@ Twins twins_of(const std::vector<paint::LabReading>& readings) {
 }
 
 std::string fit_limit(const std::vector<paint::LabReading>& readings, const std::vector<GeometryError>& errors,
-                      const color::Xyz& white, bool by_view) {
+                      const color::Xyz& white, double coat_index, bool by_view) {
   const auto worst = std::ranges::max_element(errors, {}, &GeometryError::de00) - errors.begin();
   const paint::LabReading& reading = readings[static_cast<std::size_t>(worst)];
   const double error = errors[static_cast<std::size_t>(worst)].de00,
@@ -266,11 +273,11 @@ std::string fit_limit(const std::vector<paint::LabReading>& readings, const std:
       apart = std::max(apart, color::delta_e_2000(other.lab, reading.lab));
   if (!by_view && apart >= error) return fmt::format("its two sides of specular differ by dE00 {:.2f}", apart);
   constexpr double kClearRise = 0.02;
-  const auto [channel, rise] = steepest_rise(readings, reading, white);
+  const auto [channel, rise] = steepest_rise(readings, reading, white, coat_index);
   constexpr const char* kChannels[] = {"red", "green", "blue"};
   if (rise > kClearRise)
-    return fmt::format("its {} grows by {:.0f} % away from specular, which no lobes do", kChannels[channel],
-                       100 * rise);
+    return fmt::format("its {}{} grows by {:.0f} % away from specular, which no lobes do", kChannels[channel],
+                       coat_index == paint::kNoCoat ? "" : " under the coat", 100 * rise);
   return "its curve is not one of the basis's lobes";
 }
 

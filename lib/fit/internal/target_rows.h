@@ -62,8 +62,10 @@ std::vector<double> seen_exponents(const std::vector<double>& exponents, double 
 // The sharpest of them; 0 where there is none.
 double steepest_seen(const std::vector<double>& exponents, double first_rad);
 
-// The angle of the viewer of a geometry from the normal.
+// The angle of the viewer of a geometry from the normal, and the same to 1e-6 deg, as lobes by views name it.
 double view_angle_deg(const paint::Geometry& geometry);
+double named_view_deg(const paint::Geometry& geometry);
+
 // What a coat leaves of the base's light there.
 double coat_passages_at(const paint::Geometry& geometry, double coat_index);
 
@@ -85,9 +87,10 @@ struct Twins {
 Twins twins_of(const std::vector<paint::LabReading>& readings);
 
 // What limits the worst reading of a fit, in words: its color is outside the working space, its twin on the other side
-// of specular has another color (of a fit for all views), or a channel grows away from specular; where none of these is
-// true, it is the exponents of the basis. `errors` are those of the readings, in their order; at least one.
+// of specular has another color (of a fit for all views), or a channel of the base under the coat grows away from
+// specular; where none of these is true, it is the exponents of the basis. `errors` are those of the readings, in their
+// order; at least one.
 std::string fit_limit(const std::vector<paint::LabReading>& readings, const std::vector<GeometryError>& errors,
-                      const color::Xyz& white, bool by_view);
+                      const color::Xyz& white, double coat_index, bool by_view);
 
 }  // namespace goniochrome::fit
