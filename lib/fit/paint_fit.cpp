@@ -83,13 +83,15 @@ FlakeTarget flake_target(const FitOptions& options, const Target& target, const 
   return flake;
 }
 
-// The readings of a paint as the fit has them, with the rows that would be without the coat. A curve is no reading, and
-// has none.
+// The readings of a paint as the fit has them, with the rows that would be without the coat. Designed colors and curves
+// are no readings and have none: a search for the paint of a picture changes its design in small steps, and rows that
+// are held for one design and lost for the next would make its way rough.
 Result<FlakeTarget> coated_target(const FitOptions& options, const paint::Paint& paint, const Target& target,
                                   const color::Xyz& white, const std::vector<double>& exponents, double coat_index,
                                   bool by_view) {
   FlakeTarget flake = flake_target(options, target, white, coat_index);
-  if (coat_index == paint::kNoCoat || options.target != paint::TargetCurve::Kind::kMeasured) return flake;
+  if (coat_index == paint::kNoCoat || !paint.measurement || options.target != paint::TargetCurve::Kind::kMeasured)
+    return flake;
   GONIO_ASSIGN(const Target bare, target_rows(paint, options.target, white, exponents, paint::kNoCoat, by_view));
   flake.without_coat = flake_target(options, bare, white, paint::kNoCoat).rows;
   return flake;
