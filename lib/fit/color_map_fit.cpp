@@ -35,16 +35,17 @@ struct Knot {
   std::vector<ColorMapRow> rows = {};  // of which this is the mean
 };
 
-// The smoothest surface through scattered colors that does not overshoot far from them: a constant plus a cone at each
-// knot, Lab(p) = c + sum_i w_i |p - p_i| with sum_i w_i = 0. The system is regular for any distinct knots (|p| is
-// conditionally negative definite), and at large distances the surface levels off.
+// A surface through scattered colors that does not overshoot far from them: a constant plus a cone at each knot,
+// Lab(p) = c + sum_i w_i |p - p_i|^power with sum_i w_i = 0 and 0 < power <= 1. The system is regular for any distinct
+// knots (|p|^power is conditionally negative definite). At large distances the surface levels off, which it would not
+// do for larger powers. A power of 1 is the smoothest; smaller ones tell less of a color to its neighbors.
 class Cones {
  public:
-  explicit Cones(std::vector<Knot> knots) : knots_(std::move(knots)) {
+  Cones(std::vector<Knot> knots, double power) : knots_(std::move(knots)), power_(power) {
     const Eigen::Index n = static_cast<Eigen::Index>(knots_.size());
     Eigen::MatrixXd system = Eigen::MatrixXd::Zero(n + 1, n + 1), colors = Eigen::MatrixXd::Zero(n + 1, 3);
     for (Eigen::Index i = 0; i < n; ++i) {
-      for (Eigen::Index j = 0; j < n; ++j) system(i, j) = distance(place(i), place(j));
+      for (Eigen::Index j = 0; j < n; ++j) system(i, j) = cone(distance(place(i), place(j)));
       system(i, n) = system(n, i) = 1;
       const color::Lab& lab = knots_[static_cast<std::size_t>(i)].lab;
       colors.row(i) << lab.L, lab.a, lab.b;
@@ -58,7 +59,7 @@ class Cones {
   color::Lab at(const Place& p) const {
     const Eigen::Index n = static_cast<Eigen::Index>(knots_.size());
     Eigen::RowVector3d sum = weights_.row(n);
-    for (Eigen::Index i = 0; i < n; ++i) sum += distance(place(i), p) * weights_.row(i);
+    for (Eigen::Index i = 0; i < n; ++i) sum += cone(distance(place(i), p)) * weights_.row(i);
     return {sum[0], sum[1], sum[2]};
   }
   double nearest_deg(const Place& p) const {
@@ -68,13 +69,29 @@ class Cones {
   }
   // For each knot, the difference from what all others predict.
   const std::vector<double>& held_out_de76() const { return held_out_; }
+  double sum_held_out_de76() const { return std::accumulate(held_out_.begin(), held_out_.end(), 0.0); }
+  double power() const { return power_; }
 
  private:
   const Place& place(Eigen::Index i) const { return knots_[static_cast<std::size_t>(i)].place; }
+  double cone(double distance_deg) const { return power_ == 1 ? distance_deg : std::pow(distance_deg, power_); }
   std::vector<Knot> knots_;
+  double power_;
   Eigen::MatrixXd weights_;
   std::vector<double> held_out_;
 };
+
+// The cones of the power that predicts left-out knots best. Powers are tried from 1 downward as long as that helps.
+Cones best_cones(const std::vector<Knot>& knots, std::optional<double> power) {
+  Cones best(knots, power.value_or(1));
+  for (const double smaller : {0.75, 0.5}) {
+    if (power) break;
+    Cones next(knots, smaller);
+    if (!(next.sum_held_out_de76() < best.sum_held_out_de76())) break;
+    best = std::move(next);
+  }
+  return best;
+}
 
 // The rival: the color as a function of the aspecular angle in air, a straight line through the neighbors of each
 // angle. They are weighted by a bell curve, whose width is the one that predicts left-out knots best.
@@ -274,7 +291,8 @@ Result<ColorMapFit> fit_checked(const std::vector<ColorMapRow>& rows, const std:
         "a color map takes 4 readings at 2 angles of incidence or more, at least {:g} deg from specular and at most "
         "{:g} deg from the normal: here are {} at {}",
         kGlare_deg, kGrazing_deg, distinct.size(), fit.illuminations);
-  const Cones cones(distinct);
+  const Cones cones = best_cones(distinct, options.isolines_power);
+  fit.isolines_power = cones.power();
   const AspecularCurve curve(distinct);
   fit.map = brdf::color_map_of_size(options.size, options.index);
   choose_model(comparisons(usable, distinct, cones, curve, options.index), options, fit);

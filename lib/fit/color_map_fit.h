@@ -20,6 +20,7 @@ struct ColorMapOptions {
   int size = 128;
   double index = 1.5;
   ColorMapModel model = ColorMapModel::kBetter;  // the one that predicts held-out readings better
+  std::optional<double> isolines_power = {};     // above 0 to 1; none: what predicts held-out readings best
 };
 
 // One measured color: unit directions in the frame z = normal, and Lab.
@@ -39,6 +40,7 @@ struct ColorMapFit {
   // the one of the model that the map has.
   double isolines_de76 = 0, aspecular_de76 = 0, held_out_de76 = 0;
   int compared_rows = 0;
+  double isolines_power = 1;  // how far a reading tells the color at other places; 1 is the smoothest map
   // The standard error of the difference between both means. The rows of one light err together, so that it is found
   // from the lights. Nothing where all rows have one light.
   std::optional<double> difference_error_de76;

@@ -163,6 +163,27 @@ TEST(ColorMapFit, TheModelThatPredictsHeldOutRowsBetterIsTaken) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(there[c], back[c], 1e-9);
 }
 
+// Rows with errors of their own are told by their neighbors less, and then a smaller power is closer to the paint
+// beside the plane, where nothing was read. Rows without errors keep the smoothest map. The controls force the other
+// power.
+TEST(ColorMapFit, RowsWithErrorsGetASmallerPower) {
+  const auto fitted = [](const std::vector<ColorMapRow>& rows, std::optional<double> power) {
+    return *fit_color_map(rows, white(), {128, 1.5, ColorMapModel::kIsolines, power});
+  };
+  TestNumbers next(5);
+  std::vector<ColorMapRow> rows = in_plane_rows(7.5);
+  const ColorMapFit smooth = fitted(rows, {}), forced = fitted(rows, 0.5);
+  EXPECT_EQ(smooth.isolines_power, 1);
+  EXPECT_LT(smooth.isolines_de76, forced.isolines_de76);
+  EXPECT_LT(mean_out_of_plane_de76(smooth.map, flake_paint), mean_out_of_plane_de76(forced.map, flake_paint));
+  for (ColorMapRow& row : rows)
+    row.lab = {row.lab.L + 8 * (next() - 0.5), row.lab.a + 8 * (next() - 0.5), row.lab.b + 8 * (next() - 0.5)};
+  const ColorMapFit noisy = fitted(rows, {}), stiff = fitted(rows, 1);
+  EXPECT_LT(noisy.isolines_power, 1);
+  EXPECT_LT(noisy.isolines_de76, stiff.isolines_de76);
+  EXPECT_LT(mean_out_of_plane_de76(noisy.map, flake_paint), mean_out_of_plane_de76(stiff.map, flake_paint));
+}
+
 // Its mean over many draws of rows whose errors are the lights' own, beside the spread of the difference over the
 // draws.
 TEST(ColorMapFit, TheErrorOfTheDifferenceIsItsSpread) {

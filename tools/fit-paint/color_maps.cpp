@@ -84,6 +84,7 @@ Result<std::optional<brdf::ColorMap>> ColorMaps::add(paint::Paint& paint, const 
                 {"beyond_rows", fit->beyond_rows},
                 {"illuminations", fit->illuminations},
                 {"model", fit->map.aspecular ? "aspecular" : "isolines"},
+                {"isolines_power", fit->isolines_power},
                 {"isolines_de76", json_number(fit->isolines_de76)},
                 {"aspecular_de76", json_number(fit->aspecular_de76)},
                 {"difference_error_de76",

@@ -153,6 +153,9 @@ void add_report(cli::ToolSpec& spec) {
        "readings out of plane for which the map has no place, because they are beyond the critical angle; the map is "
        "compared with them"},
       {"color_maps[].model", "isolines or aspecular"},
+      {"color_maps[].isolines_power",
+       "1, 0.75 or 0.5, whichever predicts readings from others best: the smaller, the less a reading tells of other "
+       "places"},
       {"color_maps[].isolines_de76", "mean CIE 1976 difference of a reading that isolines predict from the others"},
       {"color_maps[].aspecular_de76", "the same for the aspecular angle alone"},
       {"color_maps[].held_out_de76", "the one of these two for the model that the map has"},
