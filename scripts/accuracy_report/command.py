@@ -22,6 +22,7 @@ STUDIES = {
     "render": "rendering: effects, engine, textures and brushes against the reference integrator",
     "spots": "bright spots of an environment that each horizon cuts by itself: their number against the exact sum",
     "edges": "edges: few samples in a pixel against hundreds",
+    "interference": "paints with a color map in image light: sets of tilted lobes against the integral of the map",
     "scenes": "ten scenes: what the plan leaves out, and what it says that each effect is worth",
     "inverse": "paints that are searched for: sketches by their size, and panels that hide a misalignment",
     "sketches": "round trips of sketch-fit: paints, meshes, sizes and lights, and whether each error has a warning",
