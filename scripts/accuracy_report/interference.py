@@ -126,7 +126,7 @@ def study(run):
     scenes = dict.fromkeys(r.numbers["scene"] for r in readings)
 
     def best(most_times):
-        """The scenes whose closest set within so many frame times errs by at most some mean and 95th percentile."""
+        """The reading of each scene that errs least within so many times the frame time of its lobes."""
         for scene in scenes:
             usable = [r for r in readings if r.numbers["scene"] == scene and r.numbers["times_lobes"] <= most_times
                       and not r.setting.startswith("planned")]
