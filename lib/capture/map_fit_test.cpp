@@ -117,10 +117,6 @@ MapFit fitted(const Camera& camera, const MapFitOptions& options) {
   auto fit = Studio(camera).fit(options);
   EXPECT_TRUE(fit.ok()) << (fit.ok() ? "" : fit.error().message);
   if (!fit.ok()) return {};
-  if (std::getenv("TELL"))
-    fmt::print("{} photos, {} lobes, {}: fit {:.4f} held out {:.4f} uncertain {} of {}, left out {:.4f}, {:.2f} s\n",
-               camera.photos, options.lobes, method_name(fit->method), fit->rel_error_median, fit->holdout_rel_error,
-               fit->uncertain, fit->texels, fit->left_out_share, fit->fit_s);
   return std::move(*fit);
 }
 

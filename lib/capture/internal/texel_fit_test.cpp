@@ -5,7 +5,6 @@
 #include <cmath>
 #include <vector>
 
-#include "base/clock.h"
 #include "base/hard_case_for_test.h"
 #include "capture/internal/truth_for_test.h"
 #include "math/statistics.h"
@@ -64,16 +63,11 @@ double error_of(const TexelOptions& options, const Spoiling& how, int photograph
   TexelFitter fitter(options);
   const auto poses = gantry(photographs, 1), elsewhere = gantry(60, 99);
   std::vector<double> errors;
-  const Stopwatch clock;
   for (int i = 0; i < kTexels; ++i) {
     const TrueTexel texel = metal ? brushed(i / 120.0) : varnished(i / 120.0);
     const TexelFit fit = fitter.fit(photographed(texel, poses, how, static_cast<std::uint64_t>(i) + 7), {});
     errors.push_back(error_elsewhere(texel, fit, elsewhere));
   }
-  if (std::getenv("TELL"))
-    fmt::print("lobes {} metal {} n {} robust {}: median {:.4f} p95 {:.4f} {:.0f} us\n", options.lobes, metal,
-               photographs, options.robust, math::median(errors), math::percentile_95(errors),
-               clock.elapsed_s() / kTexels * 1e6);
   return math::median(errors);
 }
 
