@@ -19,6 +19,7 @@ setup_file() {
   render-osmesa -q $scene --aov normal,aspecular,lambert,mask,part -o seen.exr
   render-osmesa -q $scene -o seen.png
   printf 'series,x,y\na,1,0.5\na,2,0.25\n' >table.csv
+  sed "s#^stripes#$TESTDATA/capture/&#; 12q" "$TESTDATA/capture/photos.csv" >photos.csv
   # Every tool that writes, with all but its output.
   cat >writers <<EOF
 paint-convert -q many.xml --to csv
@@ -37,6 +38,7 @@ paint-pick -q --face seen.png@40,25 --flop seen.png@60,30
 plot-paint -q --paint $name fitted.xml
 draw-plot -q table.csv
 paint-export -q --to gltf fitted.xml#$name
+fit-sbrdf -q -n 1 --width 2 photos.csv
 EOF
   # Without the compiler for WebAssembly, this one writes nothing.
   [ ! -f "$(dirname "$(command -v paint-studio)")/../lib/goniochrome/studio.wasm" ] ||

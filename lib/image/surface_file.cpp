@@ -1,7 +1,10 @@
 #include "image/surface_file.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
+#include <utility>
 
 namespace goniochrome::image {
 
@@ -69,6 +72,9 @@ std::vector<std::string> channels_of(int lobes) {
   return names;
 }
 
+// What a fitted texture tells of its texels besides their surface.
+constexpr std::array<std::string_view, 3> kBeside = {"alpha", "certainty", "error"};
+
 bool may_be_negative(const std::string& name) {
   return name.starts_with("frame.") || name.ends_with(".x") || name.ends_with(".y") || name.ends_with(".z");
 }
@@ -109,7 +115,7 @@ Result<std::vector<int>> sources(const std::vector<std::string>& wanted, const s
   }
   if ((result[3] < 0) != (result[4] < 0)) return input_error("{}: give frame.c and frame.s, or neither", path);
   for (const std::string& name : given)
-    if (std::ranges::find(wanted, name) == wanted.end())
+    if (std::ranges::find(wanted, name) == wanted.end() && std::ranges::find(kBeside, name) == kBeside.end())
       return input_error("{}: channel {} is not known: there are diffuse, frame and lobe0 to lobe15", path, name);
   return result;
 }
@@ -139,6 +145,20 @@ Result<brdf::SbrdfTexture> read_sbrdf(const std::string& path) {
     }
   }
   return texture;
+}
+
+Result<void> write_sbrdf(const std::string& path, const brdf::SbrdfTexture& texture, const Attributes& attributes,
+                         const std::vector<ImagePart>& beside) {
+  std::vector<std::string> names = channels_of(texture.lobes);
+  const auto channels = static_cast<int>(names.size());
+  ImagePart part{"sbrdf",
+                 {texture.width, texture.height, channels, texture.values, std::move(names)},
+                 attributes,
+                 PixelType::kFloat};
+  part.attributes["colorInteropID"] = std::string("lin_rec2020_scene");
+  std::vector<ImagePart> parts = {std::move(part)};
+  parts.insert(parts.end(), beside.begin(), beside.end());
+  return write_exr(path, parts);
 }
 
 }  // namespace goniochrome::image

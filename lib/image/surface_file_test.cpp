@@ -97,6 +97,18 @@ TEST_F(SbrdfFile, PartsOfOneSizeAreOneTexture) {
   EXPECT_NE(told.find("part lobe is 4 x 1, but part diffuse is 2 x 1"), std::string::npos) << told;
 }
 
+TEST_F(SbrdfFile, ReadsBackWhatWasWrittenWhateverStandsBeside) {
+  const brdf::SbrdfTexture texture{1, 2, 1, {0.1F, 0.2F, 0.3F, 0.6F,  0.8F, 1, 2, 3, -1, -0.5F, 1, 40.7F,
+                                             0.5F, 0.4F, 0.3F, -0.6F, 0.8F, 3, 2, 1, -1, -1,    1, 7}};
+  const ImagePart beside{"capture", {1, 2, 3, {1, 0.5F, 0.01F, 0, 0, 0}, {"alpha", "certainty", "error"}}, {}};
+  ASSERT_TRUE(write_sbrdf(path_, texture, {{"made", std::string("here")}}, {beside}).ok());
+  const auto back = read_sbrdf(path_);
+  ASSERT_TRUE(back.ok()) << back.error().message;
+  EXPECT_EQ(back->height, 2);
+  EXPECT_EQ(back->values, texture.values);
+  EXPECT_EQ(read_exr(path_)->at(1).image.channel_names[1], "certainty");
+}
+
 TEST_F(SbrdfFile, TellsWhatIsWrong) {
   const std::vector<float> good = {0.1F, 0.2F, 0.3F, 1, 2, 3, -1, -0.5F, 1, 40};
   const auto told = [&](std::vector<std::string> channels, std::vector<float> values) {
