@@ -447,7 +447,7 @@ LIST
       awk '{ exit !($1 + $2 <= 1) }' used
     done
   done < <(every_tool)
-  [ "$tried" -eq 170 ]
+  [ "$tried" -eq 180 ]
   [ "$short" -ge 20 ]
 }
 
