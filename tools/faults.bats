@@ -39,6 +39,7 @@ plot-paint -q --paint $name fitted.xml
 draw-plot -q table.csv
 paint-export -q --to gltf fitted.xml#$name
 fit-sbrdf -q -n 1 --width 2 photos.csv
+paint-sbrdf -q fitted.xml#$name --size 8x8
 EOF
   # Without the compiler for WebAssembly, this one writes nothing.
   [ ! -f "$(dirname "$(command -v paint-studio)")/../lib/goniochrome/studio.wasm" ] ||
@@ -48,6 +49,7 @@ EOF
 prefilter-envmap exr
 render-osmesa exr
 relight exr
+paint-sbrdf exr
 plot-paint svg
 draw-plot svg
 EOF
@@ -307,6 +309,7 @@ seen.exr sketch-fit -q -i CUT -b seen.exr
 seen.exr paint-pick -q --face CUT@40,25
 seen.exr render-osmesa -q --gbuffer CUT --light 0,20
 brushed.sbrdf.exr render-osmesa -q --mesh $TESTDATA/box.obj --size 16x16 --env sky.env.exr --texture White=CUT
+brushed.sbrdf.exr paint-sbrdf -q CUT
 EOF
 }
 

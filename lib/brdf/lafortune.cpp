@@ -42,6 +42,9 @@ LobeFetch environment_fetch(const LafortuneLobe& lobe, const Vec3& to_viewer) {
   return {{p.x / size, p.y / size, cosine}, scaled_color((cosine * energy) * lobe.albedo, size, lobe.exponent)};
 }
 
+// A float of a file stands for the number that it was made from, so that such a lobe is looked up in one map.
+constexpr double kSameExponent = 1e-6;
+
 ExponentBlend exponent_blend(double exponent, const std::vector<double>& stored) {
   const auto upper = std::upper_bound(stored.begin(), stored.end(), exponent);
   const int last = static_cast<int>(stored.size()) - 1;
@@ -50,7 +53,9 @@ ExponentBlend exponent_blend(double exponent, const std::vector<double>& stored)
   const int lower = static_cast<int>(upper - stored.begin()) - 1;
   const double low = stored[static_cast<std::size_t>(lower)];
   if (low <= 0) return {lower, 0};
-  return {lower, std::log(exponent / low) / std::log(*upper / low)};
+  const double weight = std::log(exponent / low) / std::log(*upper / low);
+  if (weight > 1 - kSameExponent) return {lower + 1, 0};
+  return {lower, weight < kSameExponent ? 0 : weight};
 }
 
 }  // namespace goniochrome::brdf

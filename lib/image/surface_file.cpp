@@ -120,6 +120,43 @@ Result<std::vector<int>> sources(const std::vector<std::string>& wanted, const s
   return result;
 }
 
+Result<void> check_axes(const brdf::SbrdfTexture& texture, const std::string& path) {
+  for (int row = 0; row < texture.height; ++row) {
+    for (int column = 0; column < texture.width; ++column) {
+      const float* at = texture.texel(column, row) + 5;
+      for (int lobe = 0; lobe < texture.lobes; ++lobe, at += 7) {
+        if ((at[0] > 0 || at[1] > 0 || at[2] > 0) && at[3] == 0 && at[4] == 0 && at[5] == 0)
+          return input_error(
+              "{}: the axes of lobe{} of texel ({},{}) are 0, but its albedo is not: give x, y and z, which are -1, -1 "
+              "and 1 for a lobe about the mirror direction",
+              path, lobe, column, row);
+      }
+    }
+  }
+  return {};
+}
+
+// Whether half floats keep every exponent, for which maps were filtered, and |p|^n of every lobe within 1/256: their
+// steps at 1 are 2^-10, of which half is rounded away.
+float lost_in_half(float value) {
+  return std::remainder(value, std::ldexp(1.0F, std::ilogb(value) - 10));
+}
+
+bool halves_do(const brdf::SbrdfTexture& texture) {
+  const auto stride = static_cast<std::size_t>(texture.stride());
+  for (std::size_t i = 0; i < texture.values.size(); i += stride) {
+    for (std::size_t k = i + 5; k < i + stride; k += 7) {
+      const float exponent = texture.values[k + 6];
+      if (exponent != 0 && lost_in_half(exponent) != 0) return false;
+      for (std::size_t axis = k + 3; axis < k + 6; ++axis) {
+        const float value = texture.values[axis];
+        if (value != 0 && exponent * std::abs(lost_in_half(value) / value) > 1.0F / 256) return false;
+      }
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 Result<brdf::SbrdfTexture> read_sbrdf(const std::string& path) {
@@ -144,6 +181,7 @@ Result<brdf::SbrdfTexture> read_sbrdf(const std::string& path) {
       }
     }
   }
+  GONIO_TRY(check_axes(texture, path));
   return texture;
 }
 
@@ -151,10 +189,9 @@ Result<void> write_sbrdf(const std::string& path, const brdf::SbrdfTexture& text
                          const std::vector<ImagePart>& beside) {
   std::vector<std::string> names = channels_of(texture.lobes);
   const auto channels = static_cast<int>(names.size());
-  ImagePart part{"sbrdf",
-                 {texture.width, texture.height, channels, texture.values, std::move(names)},
-                 attributes,
-                 PixelType::kFloat};
+  const PixelType type = halves_do(texture) ? PixelType::kHalf : PixelType::kFloat;
+  ImagePart part{
+      "sbrdf", {texture.width, texture.height, channels, texture.values, std::move(names)}, attributes, type};
   part.attributes["colorInteropID"] = std::string("lin_rec2020_scene");
   std::vector<ImagePart> parts = {std::move(part)};
   parts.insert(parts.end(), beside.begin(), beside.end());

@@ -22,11 +22,13 @@ Result<void> write_color_map(const std::string& path, const brdf::ColorMap& map,
 // Reads a texture (`*.sbrdf.exr`) from one part, or from several parts of one size. Its channels are diffuse.R .G .B;
 // for each lobe k from 0, lobe<k>.R .G .B (albedo), .x .y .z (axes) and .n (exponent); and frame.c and frame.s where
 // lobes turn. Colors are linear working space, in 1/sr. The channels alpha, certainty and error, which a fitted texture
-// has besides, are passed over. Error: a channel that is missing or not known, or a texel whose
-// albedo or exponent is negative or which holds a value that is not finite.
+// has besides, are passed over. Error: a channel that is missing or not known, or a texel whose albedo or exponent is
+// negative or which holds a value that is not finite; a lobe that reflects but has axes of length 0.
 Result<brdf::SbrdfTexture> read_sbrdf(const std::string& path);
 
-// Writes a texture as floats with `attributes` (provenance), and after it the parts `beside`.
+// Writes a texture with `attributes` (provenance), and after it the parts `beside`. It is stored in half precision
+// unless that would change an exponent, for which maps were filtered, or the strength of a lobe by more than 1/256,
+// which is the length of p to the power of the exponent.
 Result<void> write_sbrdf(const std::string& path, const brdf::SbrdfTexture& texture, const Attributes& attributes,
                          const std::vector<ImagePart>& beside = {});
 

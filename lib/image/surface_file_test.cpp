@@ -128,7 +128,30 @@ TEST_F(SbrdfFile, TellsWhatIsWrong) {
   values = good;
   values[9] = -1;
   EXPECT_NE(told(kChannels, values).find("lobe0.n of texel (0,0) is -1"), std::string::npos);
+  values = good;
+  values[6] = values[7] = values[8] = 0;
+  EXPECT_NE(told(kChannels, values).find("the axes of lobe0 of texel (0,0) are 0"), std::string::npos);
+  values[3] = values[4] = values[5] = 0;  // a lobe that reflects nothing needs no axes
+  EXPECT_EQ(told(kChannels, values), "nothing");
   EXPECT_NE(told({"R", "G", "B"}, {1, 1, 1}).find("diffuse.R is missing"), std::string::npos);
+}
+
+TEST_F(SbrdfFile, ReadsBackWhatWasWritten) {
+  const brdf::SbrdfTexture plain{2, 1, 1, {0.5F, 0.25F, 0, 1, 0, 1, 2, 3, -1, -0.5F, 1, 40,  //
+                                           0,    0.5F,  1, 0, 1, 4, 5, 6, -1, -1,    1, 8}};
+  ASSERT_TRUE(write_sbrdf(path_, plain, {{"made", std::string("here")}}).ok());
+  const auto parts = read_exr(path_);
+  EXPECT_EQ(parts->front().type, PixelType::kHalf);
+  EXPECT_EQ(attribute_or<std::string>(parts->front().attributes, "made", ""), "here");
+  EXPECT_EQ(read_sbrdf(path_)->values, plain.values);
+  // The axis 1.0005 of a lobe of 3000 makes it 4.5 times as strong; a half would make it 1. So would 1.3 another
+  // number.
+  for (const auto& [at, value] : {std::pair{8U, -1.0005F}, {11U, 1.3F}}) {
+    brdf::SbrdfTexture sharp = plain;
+    sharp.values[11] = 3000, sharp.values[at] = value;
+    ASSERT_TRUE(write_sbrdf(path_, sharp, {}).ok());
+    EXPECT_EQ(read_sbrdf(path_)->values, sharp.values);
+  }
 }
 
 TEST_F(SbrdfFile, ReadsTheTexturesOfTheTestData) {

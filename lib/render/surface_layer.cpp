@@ -25,8 +25,10 @@ SurfaceLayer::SurfaceLayer(const Scene& scene, std::vector<PartSurface> surfaces
     : scene_(scene), surfaces_(std::move(surfaces)), treatment_(treatment), id_(next_id()) {
   surfaces_.resize(scene.mesh->parts.size());
   std::vector<bool> parts;
+  std::vector<TextureLaying> layings;
   for (const PartSurface& surface : surfaces_) {
     parts.push_back(surface.texture != nullptr);
+    layings.push_back(surface.laying);
     empty_ = empty_ && surface.texture == nullptr && surface.color_map == nullptr;
     mapped_ = mapped_ || (surface.color_map != nullptr && !scene.lights.empty());
     if (surface.texture == nullptr) continue;
@@ -38,7 +40,7 @@ SurfaceLayer::SurfaceLayer(const Scene& scene, std::vector<PartSurface> surfaces
   std::vector<const brdf::SbrdfTexture*> all = textures_;
   for (const brdf::SbrdfTexture& mean : means_) all.push_back(&mean);
   shader_ = std::make_unique<const SbrdfShader>(scene.env, mip, all);
-  layout_ = std::make_unique<const TextureLayout>(*scene.mesh, parts);
+  layout_ = std::make_unique<const TextureLayout>(*scene.mesh, parts, std::move(layings));
 }
 
 SurfaceLayer::~SurfaceLayer() = default;

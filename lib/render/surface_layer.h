@@ -22,6 +22,7 @@ struct PartSurface {
   const brdf::SbrdfTexture* texture = nullptr;
   double repeat = 1;  // how many times the texture is laid where its coordinates run from 0 to 1
   const brdf::ColorMap* color_map = nullptr;
+  TextureLaying laying = {};
 };
 
 class SurfaceLayer {

@@ -46,11 +46,19 @@ void add_surfaces(cli::ToolSpec& spec, Options& o) {
           "and metal are gray under a coat. --part goes before --trim, and --trim before --paint.");
   spec.option("split", "PAINT,PAINT", "a.xml#red,a.xml#blue", &o.split, "draw the halves of the picture in two paints")
       .more("Both stand in the place of --paint: the first on the left, the second on the right.");
-  spec.option("texture", "PART=FILE", "Hood=flakes.exr*4", &o.textures, "surface that varies over a part or material")
+  spec.option("texture", "PART=FILE[,WORD=VALUE]", "Hood=flakes.exr,project=decal,axis=y", &o.textures,
+              "surface that varies over a part or material")
       .more(
-          "The texture is an EXR of generalized cosine lobes and stands in the place of a paint. FILE*N repeats it N "
-          "times. It is laid by the texture coordinates of the mesh, or around the vertical axis where there are "
-          "none. Without the effect texture, the part shows the mean texel.");
+          "The texture is an EXR of generalized cosine lobes, as paint-sbrdf(1) makes, and stands in the place of a "
+          "paint. FILE*N repeats it N times. project=uv lays it by the texture coordinates of the mesh, and box along "
+          "the coordinate axis that is nearest to the normal; without the word it is uv, or box where there are no "
+          "coordinates, which is told. planar lays it along axis (x, y, z, -x, ... or X,Y,Z), so that it reads right "
+          "from both sides; decal does so once and from one side, and the rest of the part shows the texels of its "
+          "edge; cylinder and sphere lay it around axis. scale is the width of the texture in units of the mesh, "
+          "center "
+          "(X,Y,Z) the place of its middle, and turn an angle in degrees. Without them the texture covers the parts "
+          "once, about the middle of their box, and axis is y, or for planar the thinnest side of the box. "
+          "Without the effect texture, the part shows the mean texel.");
   spec.option("texture-maps", "WHAT", "mip", &o.texture_maps, "where the lobes of textures are looked up")
       .one_of({"cubes", "mip"})
       .more(
@@ -370,6 +378,9 @@ void add_report(cli::ToolSpec& spec) {
       {"frame_ms", "time to draw the picture with all samples, without reading and uploading"},
       {"triangles", "number of triangles of the mesh, where it was read"},
       {"parts[]: name, material, paint", "parts of the mesh and what they wear"},
+      {"textures[]: part, file, projection, width",
+       "what --texture laid where; projection is uv, planar, box, cylinder, sphere or decal, and width that of the "
+       "texture in units of the mesh, or null"},
       {"exposure_stops", "exposure in force"},
       {"view", "display and view of a PNG"},
       {"white_luminance", "the brightest that a white diffuser can be in this light"},

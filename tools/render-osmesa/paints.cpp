@@ -12,6 +12,7 @@
 #include "image/surface_file.h"
 #include "render/trim.h"
 #include "setup.h"
+#include "textures.h"
 
 namespace goniochrome::tool {
 
@@ -111,34 +112,6 @@ Result<std::vector<Assignment>> assignments(const std::vector<std::string>& opti
   return all;
 }
 
-// --texture, part by part: FILE, or FILE*N.
-Result<void> lay_textures(const mesh::Mesh& mesh, const Options& options, DressedMesh& result) {
-  for (const std::string& option : options.textures) {
-    const auto equals = option.find('=');
-    if (equals == 0 || equals == std::string::npos || equals + 1 == option.size())
-      return usage_error("--texture is \"{}\": write PART=FILE.exr, or PART=FILE.exr*N to lay it N times", option);
-    std::string file = option.substr(equals + 1);
-    double repeat = 1;
-    if (const auto star = file.rfind('*'); star != std::string::npos) {
-      const auto times = parse_number(file.substr(star + 1));
-      if (!times || *times <= 0) return usage_error("--texture is \"{}\": the number after * must be above 0", option);
-      repeat = *times;
-      file.resize(star);
-    }
-    GONIO_ASSIGN(const std::vector<std::size_t> parts, parts_of(mesh, option.substr(0, equals)));
-    GONIO_ASSIGN(brdf::SbrdfTexture texture, image::read_sbrdf(file));
-    result.textures.push_back(std::make_shared<brdf::SbrdfTexture>(std::move(texture)));
-    for (const std::size_t part : parts) {
-      result.paints[part] = {};
-      result.anisotropy[part] = {};
-      result.worn[part].reset();
-      result.surfaces[part] = {result.textures.back().get(), repeat, nullptr};
-      result.names[part] = file;
-    }
-  }
-  return {};
-}
-
 }  // namespace
 
 Result<std::vector<std::size_t>> parts_of(const mesh::Mesh& mesh, const std::string& word) {
@@ -195,7 +168,7 @@ void put_on(std::size_t part, const paint::Paint& paint, const brdf::ColorMap* m
   if (map == nullptr) dress.paints[part].tilts.clear();  // they stand for a map
   dress.gloss_deg[part] = paint.gloss.empty() ? kUnreadGlossDeg : paint.gloss.front().angle_deg;
   dress.anisotropy[part] = paint.anisotropy.value_or(paint::Anisotropy{});
-  dress.surfaces[part] = {nullptr, 1, map};
+  dress.surfaces[part] = {nullptr, 1, map, {}};
   dress.names[part] = paint.name;
 }
 

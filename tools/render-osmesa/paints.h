@@ -15,6 +15,12 @@
 
 namespace goniochrome::tool {
 
+// How a map of --texture lies on its parts.
+struct LaidTexture {
+  std::string part, file, projection;
+  std::optional<double> width;  // of the map in units of the mesh, where it is projected along an axis
+};
+
 struct DressedMesh {
   std::vector<paint::LobeFit> paints;         // for each part of the mesh
   std::vector<double> gloss_deg;              // at which their gloss was read; 45 where it was not
@@ -24,7 +30,9 @@ struct DressedMesh {
   std::vector<std::shared_ptr<const brdf::ColorMap>> color_maps;
   std::vector<std::shared_ptr<const paint::Paint>> worn;  // as they were read; null where none was
   std::vector<std::string> names;                         // of those paints; "" where none was given
-  std::vector<std::string> unpainted;                     // names of the parts that wear the gray of unpainted parts
+  std::vector<LaidTexture> laid;
+  std::vector<std::string> unplaced;   // parts of --texture without texture coordinates, of which nothing was said
+  std::vector<std::string> unpainted;  // names of the parts that wear the gray of unpainted parts
 };
 
 // Resolves --part and --paint. Error: an unknown part, paint or file, or a paint without lobes, with what there is.

@@ -35,6 +35,21 @@ void tell_parts(const mesh::Mesh& mesh, const DressedMesh& dress, bool streamed,
     const Json paint = dress.names[i].empty() ? Json(nullptr) : Json(dress.names[i]);
     results["parts"].push_back({{"name", mesh.parts[i].name}, {"material", mesh.parts[i].material}, {"paint", paint}});
   }
+  for (const LaidTexture& laid : dress.laid) {
+    results["textures"].push_back({{"part", laid.part},
+                                   {"file", laid.file},
+                                   {"projection", laid.projection},
+                                   {"width", laid.width ? json_number(*laid.width) : Json(nullptr)}});
+    session.explain(fmt::format(
+        "{} on {}: {}{}\n", laid.file, laid.part,
+        laid.projection == "uv" ? "by the texture coordinates of the mesh" : "projected by " + laid.projection,
+        laid.width ? fmt::format(", {:.4g} units of the mesh wide", *laid.width) : ""));
+  }
+  for (const std::string& part : dress.unplaced)
+    session.warn(
+        fmt::format("{} has no texture coordinates: its texture is projected by a box; --texture "
+                    "PART=FILE,project=cylinder and the like choose",
+                    part));
   if (dress.unpainted.empty() || streamed) return;
   std::string names;
   for (std::size_t i = 0; i < std::min<std::size_t>(6, dress.unpainted.size()); ++i) {

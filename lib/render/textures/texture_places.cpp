@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "base/angles.h"
 #include "base/parallel.h"
@@ -58,9 +59,10 @@ Vec3 along_u(const std::array<Vec3, 3>& p, const std::array<Uv, 3>& uv) {
 
 }  // namespace
 
-TextureLayout::TextureLayout(const mesh::Mesh& mesh, const std::vector<bool>& parts)
-    : mesh_(mesh), faces_(mesh.parts.size()), tangents_(mesh.positions.size()) {
+TextureLayout::TextureLayout(const mesh::Mesh& mesh, const std::vector<bool>& parts, std::vector<TextureLaying> layings)
+    : mesh_(mesh), layings_(std::move(layings)), faces_(mesh.parts.size()), tangents_(mesh.positions.size()) {
   const Unwrapped unwrapped(mesh);
+  layings_.resize(mesh.parts.size());
   for (std::size_t part = 0; part < mesh.parts.size(); ++part) {
     if (part >= parts.size() || !parts[part]) continue;
     for (std::size_t i = mesh.parts[part].first; i < mesh.parts[part].first + mesh.parts[part].count; ++i) {
@@ -97,6 +99,14 @@ TexturePlace TextureLayout::place(const MeshPoint& point, const Corners& corners
 
 TexturePlace TextureLayout::place(int part, const MeshPoint& point) const {
   const auto at = static_cast<std::size_t>(part);
+  if (layings_[at].projection != Projection::kOwn) {
+    Vec3 position, normal;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t vertex = mesh_.triangles[point.triangle][k];
+      position += point.shares[k] * mesh_.positions[vertex], normal += point.shares[k] * mesh_.normals[vertex];
+    }
+    return projected(layings_[at], position, normal);
+  }
   return place(point, faces_[at][point.triangle - mesh_.parts[at].first]);
 }
 

@@ -7,16 +7,19 @@
 
 #include "mesh/mesh.h"
 #include "render/gbuffer.h"
+#include "render/textures/projection.h"
 
 namespace goniochrome::render {
 
-// A mesh laid out for textures. Texture coordinates are the mesh's own; where it has none, u runs once around the
-// vertical axis through the middle of the bounding box and v upward in the same measure. Tangents run along u and are
-// the means over the triangles at a vertex, by area, so that a smooth surface has smooth tangents.
+// A mesh laid out for textures. Unless a part is projected, texture coordinates are the mesh's own; where it has none,
+// u runs once around the vertical axis through the middle of the bounding box and v upward in the same measure.
+// Tangents run along u and are the means over the triangles at a vertex, by area, so that a smooth surface has smooth
+// tangents.
 class TextureLayout {
  public:
-  // For these parts of the mesh, which must outlive it.
-  TextureLayout(const mesh::Mesh& mesh, const std::vector<bool>& parts);
+  // For these parts of the mesh, which must outlive it. Each is laid as `layings` has it, and in the way of the mesh
+  // where there are fewer.
+  TextureLayout(const mesh::Mesh& mesh, const std::vector<bool>& parts, std::vector<TextureLaying> layings = {});
 
   // The places of what a G-buffer of the mesh shows, pixel by pixel; those of other parts, and of nothing, are left at
   // 0. The G-buffer must have triangles. Bit-identical for any number of threads.
@@ -31,6 +34,7 @@ class TextureLayout {
   TexturePlace place(const MeshPoint& point, const Corners& corners) const;
 
   const mesh::Mesh& mesh_;
+  std::vector<TextureLaying> layings_;       // of each part
   std::vector<std::vector<Corners>> faces_;  // of the triangles of each part, in order; none of parts without a texture
   std::vector<Vec3> tangents_;               // of the vertices
 };

@@ -1,0 +1,109 @@
+#!/usr/bin/env bats
+# How --texture lays maps on meshes, with and without texture coordinates.
+
+setup() {
+  cd "$BATS_TEST_TMPDIR"
+  # A cube from -1 to 1 without texture coordinates, and a square in z = 0 that has them.
+  { for z in -1 1; do for y in -1 1; do for x in -1 1; do echo "v $x $y $z"; done; done; done
+    echo "o Cube"
+    printf 'f %s\n' "1 3 4 2" "5 6 8 7" "1 2 6 5" "3 7 8 4" "1 5 7 3" "2 4 8 6"; } >cube.obj
+  printf 'v %s\n' "-1 -1 0" "1 -1 0" "1 1 0" "-1 1 0" >square.obj
+  printf 'vt %s\n' "0 0" "1 0" "1 1" "0 1" >>square.obj
+  printf 'o Square\nf 1/1 2/2 3/3 4/4\n' >>square.obj
+  # Red at the left, blue at the right, green above both.
+  printf 'P6\n2 2\n255\n\0\377\0\0\377\0\377\0\0\0\0\377' >four.ppm
+  paint-sbrdf -q four.ppm -o four.sbrdf.exr
+  azimuth=0
+  lit="--light 0,30@0 --size 32x32 --samples 1 --effects auto,-rays"
+}
+
+# texel FILE X Y: the strongest channel of a pixel.
+texel() {
+  oiiotool "$1" --ch R,G,B --cut "1x1+$2+$3" -d float -o pixel.exr
+  oiiotool --dumpdata pixel.exr | tail -1 | awk '{ r = $(NF-2); g = $(NF-1); b = $NF
+    print (r + g + b < 1e-6 ? "none" : r >= g && r >= b ? "red" : g >= b ? "green" : "blue") }'
+}
+
+draw() { # draw NAME MESH TEXTURE: also its report, seen and lit from the azimuth
+  # shellcheck disable=SC2086
+  render-osmesa -q --mesh "$2" --texture "$3" ${lit/0,30/$azimuth,30} --orbit "$azimuth,0,0.9" --report "$1.json" -o "$1.exr"
+}
+
+@test "a mesh with texture coordinates uses them, and the report says so" {
+  draw uv square.obj Square=four.sbrdf.exr
+  [ "$(texel uv.exr 11 19) $(texel uv.exr 20 19) $(texel uv.exr 11 11)" = "red blue green" ]
+  [ "$(jq -c '.results.textures' uv.json)" = '[{"part":"Square","file":"four.sbrdf.exr","projection":"uv","width":null}]' ]
+  draw planar square.obj Square=four.sbrdf.exr,project=planar
+  [ "$(texel planar.exr 11 19) $(texel planar.exr 20 19) $(texel planar.exr 11 11)" = "red blue green" ]
+  [ "$(jq -c '.results.textures[0] | [.projection, .width]' planar.json)" = '["planar",2]' ]
+}
+
+@test "a mesh without texture coordinates gets a box, which is told" {
+  # shellcheck disable=SC2086
+  run render-osmesa --mesh cube.obj --texture Cube=four.sbrdf.exr $lit --orbit 0,0,0.9 --report box.json --explain -o box.exr
+  [ "$status" -eq 0 ]
+  [[ "$output" == *"Cube has no texture coordinates: its texture is projected by a box"* ]]
+  [[ "$output" == *"four.sbrdf.exr on Cube: projected by box, 2 units of the mesh wide"* ]]
+  [ "$(texel box.exr 11 19) $(texel box.exr 20 19) $(texel box.exr 11 11)" = "red blue green" ]
+  # Every side shows it the right way round.
+  for azimuth in 90 180 270; do
+    draw side cube.obj Cube=four.sbrdf.exr,project=box
+    [ "$(texel side.exr 11 19) $(texel side.exr 20 19) $(texel side.exr 11 11)" = "red blue green" ] || { echo "$azimuth"; false; }
+  done
+  run render-osmesa --mesh cube.obj --texture Cube=four.sbrdf.exr,project=box $lit -o named.exr
+  [[ "$output" != *"has no texture coordinates"* ]]
+  run render-osmesa --mesh cube.obj --texture Cube=four.sbrdf.exr,project=uv $lit -o none.exr
+  [ "$status" -eq 3 ] && [[ "$output" == *"give project=box"* ]] && [ ! -e none.exr ]
+}
+
+@test "axis, scale, center and turn place it" {
+  draw half cube.obj Cube=four.sbrdf.exr,project=planar,axis=z,scale=4,center=1,1,0
+  # A texture of four units about the corner: what is seen is its lower left quarter.
+  for place in "11 19" "20 19" "20 11"; do [ "$(texel half.exr $place)" = red ] || { echo "$place"; false; }; done
+  [ "$(jq '.results.textures[0].width' half.json)" = 4 ]
+  draw turned cube.obj Cube=four.sbrdf.exr,project=planar,axis=z,turn=180
+  [ "$(texel turned.exr 20 11) $(texel turned.exr 11 11) $(texel turned.exr 11 19)" = "red blue green" ]
+  azimuth=180
+  draw behind cube.obj Cube=four.sbrdf.exr,project=planar,axis=z
+  [ "$(texel behind.exr 11 19) $(texel behind.exr 20 19)" = "red blue" ]
+  draw twice cube.obj 'Cube=four.sbrdf.exr*2,project=planar,axis=z'
+  [ "$(jq '.results.textures[0].width' twice.json)" = 1 ]
+}
+
+@test "a decal lies once and on one side" {
+  draw decal cube.obj Cube=four.sbrdf.exr,project=decal,axis=z,scale=1
+  [ "$(texel decal.exr 14 17) $(texel decal.exr 17 17) $(texel decal.exr 9 21)" = "red blue red" ]
+  azimuth=180
+  draw behind cube.obj Cube=four.sbrdf.exr,project=decal,axis=z
+  [ "$(texel behind.exr 11 19) $(texel behind.exr 20 19) $(texel behind.exr 20 11)" = "red red red" ]
+}
+
+@test "a cylinder and a sphere go around the axis" {
+  for project in cylinder sphere; do
+    draw $project cube.obj Cube=four.sbrdf.exr,project=$project
+    [ "$(texel $project.exr 11 22) $(texel $project.exr 20 22) $(texel $project.exr 14 11)" = "red blue green" ] || { echo $project; false; }
+    [ "$(jq -r '.results.textures[0].projection' $project.json)" = $project ]
+  done
+}
+
+@test "words that are wrong are usage errors" {
+  while read -r words told; do
+    # shellcheck disable=SC2086
+    run render-osmesa --mesh cube.obj --texture "Cube=four.sbrdf.exr$words" $lit -o none.exr
+    [ "$status" -eq 2 ] && [[ "$output" == *"$told"* ]] && [ ! -e none.exr ] || { echo "$words: $status $output"; false; }
+  done <<'LIST'
+,project=pinwheel there is no projection "pinwheel"
+,project=planar,axis=w axis is x, y, z
+,project=planar,axis=0,0,0 axis is x, y, z
+,project=box,axis=x a box has no axis
+,project=planar,scale=0 scale is the width
+,project=planar,center=1,2 center is a place
+,project=planar,turn=much turn is a number
+,project=planar,size=3 "size" is none of
+*2,project=decal a decal is laid once
+*0 the number after *
+LIST
+  # shellcheck disable=SC2086
+  run render-osmesa --mesh square.obj --texture Square=four.sbrdf.exr,scale=2 $lit -o none.exr
+  [ "$status" -eq 2 ] && [[ "$output" == *"name a projection"* ]]
+}

@@ -1,0 +1,238 @@
+#include "textures.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "base/angles.h"
+#include "base/text.h"
+#include "image/surface_file.h"
+
+namespace goniochrome::tool {
+
+namespace {
+
+using render::Projection;
+
+const std::array<std::pair<const char*, Projection>, 6> kProjections = {{{"uv", Projection::kOwn},
+                                                                         {"planar", Projection::kPlanar},
+                                                                         {"box", Projection::kBox},
+                                                                         {"cylinder", Projection::kCylinder},
+                                                                         {"sphere", Projection::kSphere},
+                                                                         {"decal", Projection::kDecal}}};
+const std::array<const char*, 5> kWords = {"project", "axis", "scale", "center", "turn"};
+
+const char* name_of(Projection projection) {
+  return std::ranges::find(kProjections, projection, &std::pair<const char*, Projection>::second)->first;
+}
+
+// PART=FILE[*N][,WORD=VALUE...], as it is written.
+struct Texture {
+  std::string part, file;
+  double repeat = 1;
+  std::map<std::string, std::string> words;
+};
+
+Error wrong(const std::string& option, const std::string& why) {
+  return usage_error("--texture is \"{}\": {}", option, why);
+}
+
+// Where the first ,WORD= begins.
+std::size_t words_of(const std::string& text) {
+  std::size_t first = std::string::npos;
+  for (const char* word : kWords) first = std::min(first, text.find(fmt::format(",{}=", word)));
+  return first;
+}
+
+Result<Texture> parsed(const std::string& option) {
+  const auto equals = option.find('=');
+  if (equals == 0 || equals == std::string::npos || equals + 1 == option.size())
+    return wrong(option, "write PART=FILE.exr, or PART=FILE.exr*N to lay it N times");
+  Texture texture{option.substr(0, equals), option.substr(equals + 1), 1, {}};
+  if (const auto comma = words_of(texture.file); comma != std::string::npos) {
+    const std::string rest = texture.file.substr(comma + 1);
+    texture.file.resize(comma);
+    std::string last;
+    for (const std::string_view piece : split(rest, ',')) {
+      const auto at = piece.find('=');
+      if (at == std::string_view::npos) {
+        texture.words[last] += "," + std::string(piece);  // of a value with commas
+        continue;
+      }
+      last = piece.substr(0, at);
+      if (std::ranges::find(kWords, last) == kWords.end())
+        return wrong(option, fmt::format("\"{}\" is none of project, axis, scale, center and turn", last));
+      texture.words[last] = piece.substr(at + 1);
+    }
+  }
+  if (const auto star = texture.file.rfind('*'); star != std::string::npos) {
+    const auto times = parse_number(texture.file.substr(star + 1));
+    if (!times || *times <= 0) return wrong(option, "the number after * must be above 0");
+    texture.repeat = *times;
+    texture.file.resize(star);
+  }
+  return texture;
+}
+
+// x, y, z with or without a sign, or three numbers.
+std::optional<Vec3> vector_of(const std::string& text) {
+  const bool negative = text.starts_with('-'), is_signed = negative || text.starts_with('+');
+  const std::string letter = lower(text).substr(is_signed ? 1 : 0);
+  Vec3 result;
+  if (letter == "x" || letter == "y" || letter == "z") {
+    result[letter[0] - 'x'] = negative ? -1 : 1;
+    return result;
+  }
+  const auto numbers = split(text, ',');
+  if (numbers.size() != 3) return std::nullopt;
+  for (int c = 0; c < 3; ++c) {
+    const auto number = parse_number(numbers[static_cast<std::size_t>(c)]);
+    if (!number) return std::nullopt;
+    result[c] = *number;
+  }
+  return result;
+}
+
+mesh::Box box_of(const mesh::Mesh& mesh, const std::vector<std::size_t>& parts) {
+  constexpr double kFar = std::numeric_limits<double>::max();
+  mesh::Box box{{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
+  for (const std::size_t part : parts) {
+    for (std::size_t i = mesh.parts[part].first; i < mesh.parts[part].first + mesh.parts[part].count; ++i) {
+      for (const std::uint32_t vertex : mesh.triangles[i]) {
+        for (int c = 0; c < 3; ++c) {
+          box.low[c] = std::min(box.low[c], mesh.positions[vertex][c]);
+          box.high[c] = std::max(box.high[c], mesh.positions[vertex][c]);
+        }
+      }
+    }
+  }
+  return box;
+}
+
+// Whether texture coordinates lay any of the part out: those that are the same everywhere do not.
+bool has_coordinates(const mesh::Mesh& mesh, std::size_t part) {
+  if (mesh.texture.empty()) return false;
+  const auto& first = mesh.texture[mesh.triangles[mesh.parts[part].first][0]];
+  for (std::size_t i = mesh.parts[part].first; i < mesh.parts[part].first + mesh.parts[part].count; ++i)
+    for (const std::uint32_t vertex : mesh.triangles[i])
+      if (mesh.texture[vertex] != first) return true;
+  return false;
+}
+
+// The least width at which a texture covers the box in the projection along the axis.
+double covering_width(const mesh::Box& box, const render::TextureLaying& laying) {
+  const auto [across, up] = render::texture_axes(laying.axis, laying.turn_rad);
+  const Vec3 size = box.high - box.low;
+  const auto extent = [&](const Vec3& way) {
+    return std::abs(way.x) * size.x + std::abs(way.y) * size.y + std::abs(way.z) * size.z;
+  };
+  return std::max(extent(across), extent(up) / laying.aspect);
+}
+
+// What the words say, completed by what suits the box of the parts.
+Result<render::TextureLaying> laying_of(const std::string& option, const Texture& texture, Projection projection,
+                                        const mesh::Box& box, const brdf::SbrdfTexture& map) {
+  render::TextureLaying laying;
+  laying.projection = projection;
+  laying.aspect = static_cast<double>(map.height) / map.width;
+  laying.half_texel_u = 0.5 / map.width, laying.half_texel_v = 0.5 / map.height;
+  laying.center = 0.5 * (box.low + box.high);
+  const Vec3 size = box.high - box.low;
+  const auto word = [&](const char* name) -> const std::string* {
+    const auto found = texture.words.find(name);
+    return found == texture.words.end() ? nullptr : &found->second;
+  };
+  if (const std::string* text = word("axis")) {
+    const auto axis = vector_of(*text);
+    if (!axis || !(length(*axis) > 0) || projection == Projection::kBox)
+      return wrong(option, projection == Projection::kBox ? "a box has no axis: leave axis out, or take planar"
+                                                          : "axis is x, y, z, -x, -y, -z or three numbers");
+    laying.axis = normalized(*axis);
+  } else if (projection == Projection::kPlanar) {
+    // The thinnest side of the box.
+    laying.axis = size.x <= size.y && size.x <= size.z ? Vec3{1, 0, 0}
+                  : size.y <= size.z                   ? Vec3{0, 1, 0}
+                                                       : Vec3{0, 0, 1};
+  }
+  if (const std::string* text = word("center")) {
+    const auto center = vector_of(*text);
+    if (!center || text->find(',') == std::string::npos)
+      return wrong(option, "center is a place of the mesh, such as center=0,0.5,1");
+    laying.center = *center;
+  }
+  if (const std::string* text = word("turn")) {
+    const auto turn = parse_number(*text);
+    if (!turn) return wrong(option, "turn is a number of degrees");
+    laying.turn_rad = *turn * kDegree;
+  }
+  const std::string* text = word("scale");
+  const auto scale = text == nullptr ? std::optional<double>(0) : parse_number(*text);
+  if (!scale || (text != nullptr && !(*scale > 0)))
+    return wrong(option, "scale is the width of the texture in units of the mesh, above 0");
+  const bool turns = projection == Projection::kCylinder || projection == Projection::kSphere;
+  laying.radius = std::max(0.5 * length(size - dot(size, laying.axis) * laying.axis) / std::sqrt(2.0), 1e-300);
+  laying.around = std::max(1.0, std::round(*scale > 0 ? 2 * kPi * laying.radius / *scale
+                                           : turns    ? texture.repeat
+                                                      : 1.0));
+  if (*scale > 0)
+    laying.width = *scale;
+  else if (projection == Projection::kBox)
+    laying.width = std::max({size.x, size.y, size.z});
+  else if (!turns)
+    laying.width = covering_width(box, laying);
+  laying.width = std::max(laying.width, 1e-300);
+  if (!turns) laying.width /= texture.repeat;
+  if (projection == Projection::kDecal && texture.repeat != 1)
+    return wrong(option, "a decal is laid once: leave * out, or take planar");
+  return laying;
+}
+
+}  // namespace
+
+Result<void> lay_textures(const mesh::Mesh& mesh, const Options& options, DressedMesh& dress) {
+  for (const std::string& option : options.textures) {
+    GONIO_ASSIGN(const Texture texture, parsed(option));
+    GONIO_ASSIGN(const std::vector<std::size_t> parts, parts_of(mesh, texture.part));
+    const bool placed = std::ranges::all_of(parts, [&](std::size_t part) { return has_coordinates(mesh, part); });
+    Projection projection = placed ? Projection::kOwn : Projection::kBox;
+    if (const auto word = texture.words.find("project"); word != texture.words.end()) {
+      const auto known = std::ranges::find_if(kProjections, [&](const auto& p) { return word->second == p.first; });
+      if (known == kProjections.end())
+        return wrong(option,
+                     fmt::format("there is no projection \"{}\": give uv, planar, box, cylinder, sphere or decal",
+                                 word->second));
+      projection = known->second;
+      if (projection == Projection::kOwn && !placed)
+        return input_error(
+            "{}: the mesh has no texture coordinates there: give project=box, planar, cylinder, sphere or decal",
+            texture.part);
+    } else if (!placed) {
+      dress.unplaced.push_back(texture.part);
+    }
+    if (projection == Projection::kOwn && texture.words.size() > texture.words.count("project"))
+      return wrong(option,
+                   "texture coordinates have no axis, scale, center and turn: name a projection, as project=planar");
+    GONIO_ASSIGN(brdf::SbrdfTexture map, image::read_sbrdf(texture.file));
+    dress.textures.push_back(std::make_shared<brdf::SbrdfTexture>(std::move(map)));
+    GONIO_ASSIGN(const render::TextureLaying laying,
+                 laying_of(option, texture, projection, box_of(mesh, parts), *dress.textures.back()));
+    const double repeat = projection == Projection::kOwn ? texture.repeat : 1;
+    for (const std::size_t part : parts) {
+      dress.paints[part] = {};
+      dress.anisotropy[part] = {};
+      dress.worn[part].reset();
+      dress.surfaces[part] = {dress.textures.back().get(), repeat, nullptr, laying};
+      dress.names[part] = texture.file;
+    }
+    const bool flat =
+        projection == Projection::kPlanar || projection == Projection::kBox || projection == Projection::kDecal;
+    LaidTexture laid{texture.part, texture.file, name_of(projection), std::nullopt};
+    if (flat) laid.width = laying.width;
+    dress.laid.push_back(laid);
+  }
+  return {};
+}
+
+}  // namespace goniochrome::tool
