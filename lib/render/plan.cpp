@@ -521,7 +521,7 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   plan.items.insert(plan.items.end(), by_rays.items.begin(), by_rays.items.end());
   const auto tracer = std::ranges::find_if(engines, [](const Engine* of) { return of->info().traces_rays; });
   const bool may_take = asked == nullptr && words.start == Start::kAuto && words.forced.empty();
-  plan.path_ms = by_rays.path_ms;
+  plan.path_ms = by_rays.path_ms, plan.path_samples = by_rays.path_samples;
   if (may_take && tracer != engines.end() && !plan.not_kept.empty() && by_rays.path_ms > 0 &&
       by_rays.path_ms < plan.predicted_ms() + plan.rays_ms)
     take_rays_alone(all, by_rays, request.tolerance_de00, **tracer, plan);

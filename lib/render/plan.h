@@ -3,6 +3,7 @@
 // affordable. goniochrome-theory(7), PLAN.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -30,6 +31,9 @@ struct RayContext {
   const Transport* over_floor = nullptr;
   bool floor_forced = false;                         // whether that is asked for by name
   const envmap::Environment* environment = nullptr;  // that rays meet
+  // What the engine path would trace, floor and all, made when it is asked for; null: it cannot. Empty: that engine is
+  // not priced.
+  std::function<const Transport*()> alone;
   int bounces = 8;
   std::uint64_t seed = 1;
   std::string absent = "no rays are traced";  // why there is no transport
@@ -84,6 +88,7 @@ struct Plan {
   double rays_ms = 0;               // predicted for the effects of rays of one frame that are on
   double ray_pricing_ms = 0;        // of the time that planning took: what the effects of rays are worth
   double path_ms = 0;               // predicted for a frame by rays alone within the tolerance; 0: not priced
+  double path_samples = 0;          // of a pixel then, the mean
   double rays_noise_de00 = 0;       // the noise of these that is aimed at: a standard deviation at 95 of 100 points
   // What the open light as planned misses of the exact sum, at some of the points, with the effects left out that the
   // plan leaves out of it; none where it was not measured.

@@ -10,6 +10,7 @@
 #include "render/gl/shader.h"
 #include "render/glints.h"
 #include "render/internal/tilt_table.h"
+#include "render/path/path_engine.h"
 #include "render/path/visible_surface.h"
 #include "render/plan/ray_plan.h"
 #include "render/spots.h"
@@ -410,7 +411,16 @@ Result<Plan> Renderer::load(const Scene& scene, const std::vector<std::shared_pt
   // Rays meet parts that the camera does not see.
   const Scene seen = asked != nullptr && asked->traces_rays ? scene : seen_scene(scene, gbuffers);
   RayContext rays;
-  std::optional<Transport> over_floor;
+  std::optional<Transport> over_floor, alone;
+  Scene complete;
+  rays.alone = [&]() -> const Transport* {
+    complete = s.completed(scene);
+    if (complete.texels == nullptr || s.ray_mesh == nullptr) return nullptr;
+    std::shared_ptr<const rays::RayScene> mesh = s.ray_mesh;
+    if (complete.ground) mesh = std::make_shared<const rays::RayScene>(mesh->over({complete.ground->height}));
+    auto made = Transport::create(path_scene_of(complete, std::move(mesh)));
+    return made.ok() ? &alone.emplace(*std::move(made)) : nullptr;
+  };
   rays.absent.clear();
   if (s.ray_setup && !(asked != nullptr && asked->traces_rays)) {
     rays.bounces = s.effort_asked.bounces, rays.seed = s.effort_asked.seed, rays.absent = s.ray_setup->absent;

@@ -343,6 +343,9 @@ void add_report(cli::ToolSpec& spec) {
       {"plan_de00_p95, plan_ms, plan_rays_ms",
        "change by all effects that are left out together, the time that planning took, and the part of it in which "
        "the effects of rays were priced"},
+      {"plan_path_ms, plan_path_samples",
+       "predicted for a picture by the engine path within the tolerance: its time, and the samples of a pixel; null "
+       "where prefiltered maps keep it, so that it was not priced"},
       {"engine, engine_reason", "what shaded the picture (gl, cpu, integral, path or transport), and why"},
       {"transport: points, columns, bytes_per_point",
        "with --aov transport, or --gbuffer of it: visible pixels, columns of light, and what a pixel takes in memory"},

@@ -33,6 +33,8 @@ std::string plan_table(const render::Plan& plan) {
   if (plan.open_de00_p95)
     text += fmt::format("open light as planned: dE00 {:.2f} to its exact sum (p95)\n", *plan.open_de00_p95);
   if (plan.whole_de00_p95) text += fmt::format("the whole: dE00 {:.2f} (p95) predicted\n", *plan.whole_de00_p95);
+  if (plan.path_ms > 0)
+    text += fmt::format("rays alone would keep the tolerance in {:.0f} ms, predicted for a picture\n", plan.path_ms);
   return text + fmt::format("left out together: dE00 {:.2f} (p95); planned in {:.1f} ms\nengine {}: {}\n",
                             plan.de00_p95, plan.time_ms, plan.engine, plan.engine_reason);
 }

@@ -170,6 +170,8 @@ void Shooting::tell_plan(render::Plan plan, const std::string& shader) {
   results["plan_whole_de00_p95"] = plan.whole_de00_p95 ? json_number(*plan.whole_de00_p95) : Json(nullptr);
   results["plan_ms"] = plan.time_ms;
   results["plan_rays_ms"] = plan.ray_pricing_ms;
+  results["plan_path_ms"] = plan.path_ms > 0 ? json_number(plan.path_ms) : Json(nullptr);
+  results["plan_path_samples"] = plan.path_ms > 0 ? json_number(plan.path_samples) : Json(nullptr);
   results["engine"] = plan.engine;
   results["engine_reason"] = plan.engine_reason;
   session_.explain(plan_table(plan));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/parallel.h"
 #include "render/path/path_tracer.h"
@@ -22,6 +23,17 @@ const EngineInfo PathEngine::kInfo = {
     .needs_mesh = true,
     .make = [](Sight& sight) -> std::unique_ptr<Engine> { return std::make_unique<PathEngine>(sight); }};
 
+PathScene path_scene_of(const Scene& scene, std::shared_ptr<const rays::RayScene> rays) {
+  PathScene path;
+  path.scene = &scene;
+  path.environment = scene.texels != nullptr ? &scene.texels->environment() : nullptr;
+  path.emission = scene.emission;
+  path.ground = scene.ground;
+  path.rays = std::move(rays);
+  path.rough_coats = true;
+  return path;
+}
+
 Result<void> PathEngine::can_shade(const Scene& scene) const {
   if (!sight_.shows_mesh() || scene.mesh == nullptr || scene.mesh->triangles.empty())
     return usage_error("the engine path traces rays through a mesh: a G-buffer that is given is shaded by cpu");
@@ -37,13 +49,7 @@ Result<void> PathEngine::load(const Scene& scene, const Effects& effects) {
   scene_ = scene, effects_ = effects;
   white_luminance_ = diffuse_white(scene.env, scene.lights).luminance;
   transport_.reset();
-  PathScene path;
-  path.scene = &scene_;
-  path.environment = scene.texels != nullptr ? &scene.texels->environment() : nullptr;
-  path.emission = scene.emission;
-  path.ground = scene.ground;
-  path.rays = sight_.traced_mesh();
-  path.rough_coats = true;
+  PathScene path = path_scene_of(scene_, sight_.traced_mesh());
   path.tilt_tolerance = effects.tilt_tolerance;
   GONIO_ASSIGN(Transport transport, Transport::create(path));
   transport_.emplace(std::move(transport));

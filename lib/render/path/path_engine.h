@@ -2,12 +2,17 @@
 // floors and parts that shine, without prefiltered maps and without OpenGL. goniochrome-theory(7), PATHS.
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "render/engine.h"
 #include "render/path/transport.h"
 
 namespace goniochrome::render {
+
+// What the engine follows paths through in a scene that it can shade. The scene must outlive it. `rays`: its mesh with
+// its floor, where they are there already; null: they are made.
+PathScene path_scene_of(const Scene& scene, std::shared_ptr<const rays::RayScene> rays);
 
 class PathEngine : public Engine {
  public:

@@ -121,7 +121,9 @@ class Picture {
     picture.reached = reached;
     picture.noise_p95_de00 = noise;
     const double count = std::max<double>(1, static_cast<double>(points_.size()));
-    for (const PathPoint& point : points_) {
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      PathPoint& point = points_[i];
+      point.needed_samples = kFan * states_[i].needed;
       picture.noise_mean_de00 += point.noise_de00;
       picture.samples_mean += point.samples;
       picture.free_share += point.samples == 0 ? 1 : 0;

@@ -41,7 +41,7 @@ FloorPixels floor_pixels(const Transport& over_floor, const Scene& scene, const 
       const float distance = traced.floor_distance(eye, direction);
       if (!(distance < std::numeric_limits<float>::infinity())) continue;
       const rays::Spot spot = traced.spot({rays::kFloor, 0, 0, distance}, eye, direction);
-      found.push_back({{spot, -direction}, behind(scene, environment, toward)});
+      found.push_back({{g.get(), x, y}, {spot, -direction}, behind(scene, environment, toward)});
     }
   }
   if (found.empty()) return pixels;

@@ -7,12 +7,14 @@
 #include <vector>
 
 #include "render/gbuffer.h"
+#include "render/plan.h"
 #include "render/plan/ray_probe.h"
 
 namespace goniochrome::render {
 
 // A point of the floor, and what the picture shows there without it.
 struct FloorPoint {
+  ProbePixel pixel;
   RayPoint at;
   color::Rgb instead;
 };

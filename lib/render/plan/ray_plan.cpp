@@ -251,9 +251,25 @@ RayChoice planned_rays(const Scene& scene, const std::vector<std::shared_ptr<con
   setting.white_luminance = request.white_luminance;
   setting.bounces = rays.bounces, setting.seed = rays.seed;
   setting.visible_points = static_cast<double>(gbuffers.size()) * points_drawn / request.samples;
+  double shown = 0;
+  for (const auto& g : gbuffers) shown += static_cast<double>(g->data.size() / 4);
+  const auto of_picture = [&](const FloorPixels& pixels) {
+    return request.pixels > 0 && shown > 0 ? pixels.count * request.pixels / shown : pixels.count;
+  };
   const auto with_path_price = [&](RayChoice choice) {
-    if (open_de00 > request.tolerance_de00)
-      choice.path_ms = path_frame_ms(setting, ray_points, request.tolerance_de00, wishes.visible_points);
+    const Transport* alone = open_de00 > request.tolerance_de00 && rays.alone ? rays.alone() : nullptr;
+    if (alone == nullptr) return choice;
+    constexpr std::size_t kPixels = 32;
+    PathWork work;
+    work.mesh = probe_pixels(gbuffers, kPixels), work.mesh_pixels = wishes.visible_points;
+    const FloorPixels floor = floor_pixels(*alone, scene, rays.environment, gbuffers, kPixels);
+    for (const FloorPoint& point : floor.points) work.floor.push_back(point.pixel);
+    work.floor_pixels = of_picture(floor);
+    work.pixel_samples = request.samples;
+    work.white_luminance = request.white_luminance, work.tolerance_de00 = request.tolerance_de00;
+    work.bounces = rays.bounces, work.seed = rays.seed;
+    const PathPrice price = path_price(*alone, work);
+    choice.path_ms = price.ms, choice.path_samples = price.samples;
     return choice;
   };
 
@@ -263,17 +279,14 @@ RayChoice planned_rays(const Scene& scene, const std::vector<std::shared_ptr<con
     setting.transport = rays.over_floor, setting.without_floor = rays.transport;
     constexpr std::size_t kFloorPixels = 384;
     const FloorPixels pixels = floor_pixels(*rays.over_floor, scene, rays.environment, gbuffers, kFloorPixels);
-    double shown = 0;
-    for (const auto& g : gbuffers) shown += static_cast<double>(g->data.size() / 4);
     const RayProbe probe = RayProbe::traced(setting, ray_points, base);
     const FloorProbe beside(*rays.over_floor, request.white_luminance, pixels);
-    wishes.floor_pixels = request.pixels > 0 && shown > 0 ? pixels.count * request.pixels / shown : pixels.count;
+    wishes.floor_pixels = of_picture(pixels);
     wishes.of_floor = &beside;
     floor = floor_choice(probe, beside, wishes, rays.floor_forced);
     if (floor.on) {
       wishes.floor = true;
       RayChoice choice = with_path_price(ray_choice(probe, wishes));
-      if (choice.path_ms > 0) choice.path_ms += beside.cost_ms(wishes.floor_pixels, 1);
       choice.items.push_back(std::move(floor.item));
       return choice;
     }

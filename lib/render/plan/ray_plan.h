@@ -56,6 +56,7 @@ struct RayChoice {
   double aim_de00 = 0.25;        // noise that is aimed at
   double noise_de00 = 0;         // that is to be expected of what is drawn
   double path_ms = 0;            // of a frame by the engine path, within the tolerance; 0: not known
+  double path_samples = 0;       // of a pixel then, the mean
 };
 
 // Effects that need another one are off with it: `self` and `bounce` need `shadow`. Forcing one of them on forces
