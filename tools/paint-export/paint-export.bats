@@ -34,6 +34,22 @@ read_back() {
   [ "$(wc -l <silver.csv)" -gt 5 ]
 }
 
+# Half vectors near 90 deg once stood for the light of the mirror direction, where the viewer stands on the normal; then a
+# renderer sent 996 of 1000 samples below the horizon.
+@test "a table for Mitsuba sends samples where light is, also for viewers on the normal" {
+  /usr/bin/python3 -c 'import numpy' 2>/dev/null || skip "python3-numpy is not there"
+  paint-export -q --to rgl "$fitted" >/dev/null
+  /usr/bin/python3 - "$readers" ./*.bsdf <<'PY'
+import sys
+sys.dont_write_bytecode = True
+sys.path.insert(0, sys.argv[1])
+import rgl
+shares = [(rgl.share_above_horizon(path, viewer), viewer, path) for path in sys.argv[2:] for viewer in (0, 1, 12)]
+print(*shares, sep="\n")
+assert min(shares)[0] > 0.98
+PY
+}
+
 # A reflectance of 0.8 from 600 nm on and of 0.2 below, at 45as45, on a matt paint.
 @test "a spectral table has the spectrum of the paint, and a paint without one is told so" {
   spectrum=$(for nm in $(seq 400 10 700); do [ "$nm" -ge 600 ] && echo 0.8 || echo 0.2; done | tr '\n' ' ')
