@@ -15,7 +15,7 @@ namespace goniochrome::materials {
 namespace {
 
 std::unique_ptr<brdf::MeasuredBrdf> table_of(const paint::Paint& paint) {
-  const auto material = kRgl.material(paint, {"x", "x", "test"});
+  const auto material = kRgl.material(paint, {"x", "x", "test", {}});
   EXPECT_TRUE(material.ok());
   auto read = brdf::read_measured("x.bsdf", material->bytes);
   EXPECT_TRUE(read.ok()) << (read.ok() ? "" : read.error().message);
@@ -24,7 +24,7 @@ std::unique_ptr<brdf::MeasuredBrdf> table_of(const paint::Paint& paint) {
 
 TEST(Rgl, ReadsBackAsThePaint) {
   for (const paint::Paint& paint : {silver_for_test(), white_for_test(), satin_for_test()}) {
-    const auto material = kRgl.material(paint, {"x", "x", "test"});
+    const auto material = kRgl.material(paint, {"x", "x", "test", {}});
     ASSERT_TRUE(material.ok());
     EXPECT_LE(material->shown.de00_mean, 0.3) << paint.name;
     EXPECT_LE(material->shown.de00_max, 1) << paint.name;
@@ -37,7 +37,7 @@ TEST(Rgl, GrayReadsBackInBandsToo) {
   const paint::Paint paint = paint_for_test(
       "gray", {0.05, 0.05, 0.05},
       {{20, {0.2, 0.2, 0.2}, {}}, {250, {}, {0.5, 0.5, 0.5}}, {paint::kMirrorExponent, {}, {0.5, 0.5, 0.5}}}, 1.5);
-  const auto material = kRglSpectral.material(paint, {"x", "x", "test"});
+  const auto material = kRglSpectral.material(paint, {"x", "x", "test", {}});
   ASSERT_TRUE(material.ok()) << material.error().message;
   EXPECT_LE(material->shown.de00_mean, 0.3);
   EXPECT_LE(material->shown.de00_max, 1);

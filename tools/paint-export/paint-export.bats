@@ -23,6 +23,7 @@ read_back() {
   done >both
   cat both
   [ "$(wc -l <both)" -eq 6 ]
+  ! grep -i nan both
   awk 'function near(a, b) { d = a - b; if (d < 0) d = -d; return d <= 0.05 + 0.1 * a } !near($2, $4) || !near($3, $5) { bad = 1 } END { exit bad }' both
 }
 
@@ -83,6 +84,23 @@ PY
   run --separate-stderr paint-export -q --to rgl-spectral "$fitted#candy_red" -o x.bsdf
   [ "$status" -eq 3 ]
   [[ "$stderr" = *'"candy_red": '*spectr* ]]
+}
+
+@test "a material of MDL and its table read back as told, within 0.3 dE00 in the mean" {
+  read_back mdl mdl
+  awk '$2 > 0.3 { exit 1 }' both
+  [ "$(jq -r '.results.paints[0].companion' r.json)" = arctic_white.mbsdf ]
+  # Our own reader of measured BRDFs takes the table.
+  paint-convert -q silver_fine.mbsdf --to csv -o silver.csv
+  [ "$(wc -l <silver.csv)" -gt 5 ]
+  # The second file follows the name of the first, and there is no place for it on standard output.
+  paint-export -q --to mdl "$fitted#jet_black" -o 'my-{name}' >/dev/null
+  grep -F '"./my-jet_black.mbsdf"' my-jet_black.mdl
+  [ -s my-jet_black.mbsdf ]
+  for wrong in - black.mbsdf; do
+    run paint-export -q --to mdl "$fitted#jet_black" -o $wrong
+    [ "$status" -eq 2 ]
+  done
 }
 
 @test "a graph of MaterialX reads back as told" {
