@@ -30,14 +30,14 @@ double mirror_weight(const paint::LobeFit& lobes) {
   return std::min(gloss.mirror + gloss.satin, 1.0);
 }
 
-// The paint without these lobes.
+// The paint without the gloss of these lobes.
 paint::LobeFit without_mirror(paint::LobeFit lobes) {
-  const auto drop = [](std::vector<paint::Lobe>& all) {
-    std::erase_if(
-        all, [](const paint::Lobe& lobe) { return lobe.exponent >= kSharpestExponent && lobe.gloss != color::Rgb{}; });
+  const auto clear = [](std::vector<paint::Lobe>& all) {
+    for (paint::Lobe& lobe : all)
+      if (lobe.exponent >= kSharpestExponent) lobe.gloss = {};
   };
-  drop(lobes.lobes);
-  for (paint::ViewLobes& view : lobes.views) drop(view.lobes);
+  clear(lobes.lobes);
+  for (paint::ViewLobes& view : lobes.views) clear(view.lobes);
   return lobes;
 }
 
