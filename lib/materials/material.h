@@ -37,11 +37,13 @@ struct Naming {
   std::string identifier;  // letters, digits and underscores: a name in every format
   std::string display;     // the paint's own name
   std::string provenance;  // the tool, its version and its command line
+  std::string file_stem;   // of the file without folder and ending, for a file that names another one
 };
 
 struct Material {
   std::string bytes;  // of the file
   Shown shown;
+  std::string companion = {};  // bytes of the second file, of targets that have one
 };
 
 struct Target {
@@ -50,8 +52,9 @@ struct Target {
   const char* what;    // for people: what the file is and who reads it
   // The file for a fitted paint. Error: the paint has no lobes.
   Result<Material> (*material)(const paint::Paint& paint, const Naming& naming);
+  const char* companion = nullptr;  // ending of a second file beside the first, with the dot
 };
-extern const Target kRgl, kRglSpectral, kMaterialX, kGltf, kUsd, kStandardSurface;
+extern const Target kRgl, kRglSpectral, kMaterialX, kGltf, kUsd, kStandardSurface, kMdl;
 
 // All targets, in the order in which help names them.
 std::span<const Target* const> targets();

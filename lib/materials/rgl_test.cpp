@@ -8,13 +8,14 @@
 #include "brdf/measured.h"
 #include "color/color.h"
 #include "materials/internal/paints_for_test.h"
+#include "materials/internal/shown.h"
 #include "materials/material.h"
 
 namespace goniochrome::materials {
 namespace {
 
 std::unique_ptr<brdf::MeasuredBrdf> table_of(const paint::Paint& paint) {
-  const auto material = kRgl.material(paint, {"x", "x", "test"});
+  const auto material = kRgl.material(paint, {"x", "x", "test", {}});
   EXPECT_TRUE(material.ok());
   auto read = brdf::read_measured("x.bsdf", material->bytes);
   EXPECT_TRUE(read.ok()) << (read.ok() ? "" : read.error().message);
@@ -23,7 +24,7 @@ std::unique_ptr<brdf::MeasuredBrdf> table_of(const paint::Paint& paint) {
 
 TEST(Rgl, ReadsBackAsThePaint) {
   for (const paint::Paint& paint : {silver_for_test(), white_for_test(), satin_for_test()}) {
-    const auto material = kRgl.material(paint, {"x", "x", "test"});
+    const auto material = kRgl.material(paint, {"x", "x", "test", {}});
     ASSERT_TRUE(material.ok());
     EXPECT_LE(material->shown.de00_mean, 0.3) << paint.name;
     EXPECT_LE(material->shown.de00_max, 1) << paint.name;
@@ -36,7 +37,7 @@ TEST(Rgl, GrayReadsBackInBandsToo) {
   const paint::Paint paint = paint_for_test(
       "gray", {0.05, 0.05, 0.05},
       {{20, {0.2, 0.2, 0.2}, {}}, {250, {}, {0.5, 0.5, 0.5}}, {paint::kMirrorExponent, {}, {0.5, 0.5, 0.5}}}, 1.5);
-  const auto material = kRglSpectral.material(paint, {"x", "x", "test"});
+  const auto material = kRglSpectral.material(paint, {"x", "x", "test", {}});
   ASSERT_TRUE(material.ok()) << material.error().message;
   EXPECT_LE(material->shown.de00_mean, 0.3);
   EXPECT_LE(material->shown.de00_max, 1);
@@ -88,7 +89,7 @@ TEST(Rgl, GlossHoldsAtTheAngleOfItsReading) {
 TEST(Rgl, KeepsTheLightOfTheMirror) {
   const paint::Paint paint = mirror_for_test();
   const auto table = table_of(paint);
-  for (const double view_deg : {0.0, 30.0, 60.0}) {
+  for (const double view_deg : {0.0, 30.0, 60.0, 80.0, 82.0, 84.0, 85.2, 86.0}) {
     const Vec3 view{std::sin(view_deg * kDegree), 0, std::cos(view_deg * kDegree)};
     const Vec3 mirrored{-view.x, 0, view.z}, across{0, 1, 0}, up = cross(mirrored, across);
     double sum = 0;
@@ -102,6 +103,32 @@ TEST(Rgl, KeepsTheLightOfTheMirror) {
       }
     const double expected = brdf::fresnel_dielectric(view.z, 1.5);
     EXPECT_NEAR(sum / expected, 1, 0.03) << view_deg;
+  }
+}
+
+// Toward grazing views as well, where Fresnel's reflectance, the cosine of the viewer and the place of the horizon
+// change within a step of the table: the light of the table is that of the paint, summed over all lights in polar
+// coordinates about the mirror direction. The mirror, which the table widens, is left out. A table with a warp that did
+// not follow the lobes reflected 7 % too much of this paint at 85 deg, and 50 % at 88.
+TEST(Rgl, KeepsTheLightOfAGlossLobeTowardGrazingViews) {
+  const paint::Paint paint =
+      paint_for_test("gloss", {0.3, 0.3, 0.29}, {{20, {0.005, 0.005, 0.005}, {}}, {3000, {}, {15, 15, 15}}}, 1.5);
+  const auto table = table_of(paint);
+  for (const double view_deg : {0.0, 1.2, 60.0, 75.0, 80.0, 82.0, 83.7, 85.0, 86.5, 88.0}) {
+    const Vec3 view = direction(view_deg * kDegree, 0), mirrored{-view.x, 0, view.z}, across{0, 1, 0},
+               up = cross(mirrored, across);
+    double sum = 0, expected = 0;
+    constexpr int kRings = 300, kTurns = 120;
+    for (int i = 0; i < kRings; ++i)
+      for (int j = 0; j < kTurns; ++j) {
+        const double u = (i + 0.5) / kRings, t = kPi * u * u * u, a = 2 * kPi * (j + 0.5) / kTurns;
+        const Vec3 light = std::cos(t) * mirrored + std::sin(t) * (std::cos(a) * across + std::sin(a) * up);
+        if (light.z <= 0) continue;
+        const double share = light.z * std::sin(t) * 3 * kPi * u * u / kRings * 2 * kPi / kTurns;
+        sum += table->value(view, light).f[1] * share;
+        expected += color::rec709_from_rec2020(brdf::coated_brdf(*paint.lobes, light, view, {0, 0, 1})).y * share;
+      }
+    EXPECT_NEAR(sum / expected, 1, view_deg < 84 ? 0.02 : 0.05) << view_deg;
   }
 }
 

@@ -33,12 +33,17 @@ cli::ToolSpec tool_spec(Options& o) {
       "geometries: light at 15, 45 and 65 degrees, viewers in the plane of incidence from 15 to 110 degrees off the "
       "mirror direction, and one beside the plane. The column readings is the mean difference from the readings of the "
       "paint itself, which the error of its fit is part of; it is n/a where it has none.",
-      "A table holds every paint, but not a mirror: the mirror image in the coat is widened to an orange peel with "
+      "A table for Mitsuba holds every paint, but not a mirror: the mirror image in the coat is widened to an orange "
+      "peel with "
       "slopes of 0.01. The bands of a spectral table come from the spectra that a paint keeps, and a colored paint "
       "without spectra has none. All other files have linear Rec.709 colors. In a table of RGB, a color outside of "
       "Rec.709 has a value below 0, which Mitsuba carries through to its picture. The other targets know no light "
       "below "
       "0, and what they show of such a color is cut; the difference tells how much that is.",
+      "A material of MDL has two files: NAME.mdl lays the mirror of the coat, as a layer, over the table NAME.mbsdf, "
+      "whose cells are 1 degree wide. Lobes of an exponent of 1000 and more are narrower than these, and the mirror "
+      "gets "
+      "their light.",
       "The targets other than tables have few parameters, and the nearest are taken by the color difference over all "
       "angles. A graph of MaterialX has several lobes. Standard Surface, glTF and USD have one, and a metallic paint "
       "is "
@@ -76,6 +81,7 @@ cli::ToolSpec tool_spec(Options& o) {
   spec.report = {{"paints[].name", "name of the paint"},
                  {"paints[].target", "the target"},
                  {"paints[].file", "the file that was written"},
+                 {"paints[].companion", "the second file of a target that has two; null for others"},
                  {"paints[].de00_mean", "mean CIEDE2000 difference of the target from the lobes, over the geometries"},
                  {"paints[].de00_max", "the largest of these differences"},
                  {"paints[].de00_by_geometry", "the difference at each geometry"},

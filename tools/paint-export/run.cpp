@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <filesystem>
 #include <optional>
 #include <span>
 
@@ -27,13 +28,14 @@ const materials::Target& target_of(const std::string& name) {
 }
 
 Json json_of(const paint::Paint& paint, const materials::Target& target, const std::string& file,
-             const materials::Shown& shown, const std::vector<std::string>& left_out) {
+             const std::string& companion, const materials::Shown& shown, const std::vector<std::string>& left_out) {
   Json by_geometry = Json::object();
   for (const auto& [geometry, de00] : shown.by_geometry)
     by_geometry[paint::geometry_name(geometry)] = json_number(de00);
   return {{"name", paint.name},
           {"target", target.name},
           {"file", file},
+          {"companion", companion.empty() ? Json(nullptr) : Json(companion)},
           {"de00_mean", json_number(shown.de00_mean)},
           {"de00_max", json_number(shown.de00_max)},
           {"de00_by_geometry", std::move(by_geometry)},
@@ -73,8 +75,10 @@ class Run {
   Result<void> take(std::span<const paint::Paint> paints) {
     const Stopwatch clock;
     std::vector<materials::Naming> names(paints.size());
-    for (std::size_t i = 0; i < paints.size(); ++i)
-      names[i] = {identifiers_.of(paints[i].name), plain_utf8(paints[i].name), plain_utf8(session_.provenance())};
+    for (std::size_t i = 0; i < paints.size(); ++i) {
+      names[i] = {identifiers_.of(paints[i].name), plain_utf8(paints[i].name), plain_utf8(session_.provenance()), {}};
+      names[i].file_stem = std::filesystem::path(pattern_with(names[i].identifier)).stem().string();
+    }
     std::vector<std::optional<Result<materials::Material>>> made(paints.size());
     parallel_for(paints.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) made[i].emplace(target_.material(paints[i], names[i]));
@@ -97,6 +101,8 @@ class Run {
   Result<void> write(const paint::Paint& paint, const materials::Naming& naming, const materials::Material& material) {
     GONIO_ASSIGN(const std::string file, file_of(paint, naming.identifier));
     GONIO_TRY(write_file(file, material.bytes));
+    const std::string companion = target_.companion ? companion_of(file) : std::string();
+    if (target_.companion) GONIO_TRY(write_file(companion, material.companion));
     const std::vector<std::string> left_out = materials::left_out(paint);
     for (const std::string& what : left_out)
       session_.warn(fmt::format("{}: {} is left out: {} has no place for it", paint.name, what, target_.name));
@@ -104,7 +110,7 @@ class Run {
     ++written_;
     sum_ += shown.de00_mean;
     worst_ = std::max(worst_, shown.de00_max);
-    session_.add("paints", [&] { return json_of(paint, target_, file, shown, left_out); });
+    session_.add("paints", [&] { return json_of(paint, target_, file, companion, shown, left_out); });
     return tell(fmt::format(
         "{}\t{}\t{:.3f}\t{:.3f}\t{}\n", table_field(paint.name), table_field(file), shown.de00_mean, shown.de00_max,
         shown.readings_de00_mean ? fmt::format("{:.3f}", *shown.readings_de00_mean) : std::string("n/a")));
@@ -112,15 +118,23 @@ class Run {
 
   // The pattern with the identifier in it; the ending is added where it stops there.
   Result<std::string> file_of(const paint::Paint& paint, const std::string& identifier) const {
-    std::string file = options_.output;
-    const auto at = file.find(kName);
-    if (at == std::string::npos) {
-      if (written_ == 0) return file;
+    if (options_.output.find(kName) == std::string::npos && written_ > 0)
       return usage_error("--output {}: \"{}\" would be written over the paint before it: put {{name}} into the pattern",
                          options_.output, paint.name);
-    }
+    return pattern_with(identifier);
+  }
+
+  std::string pattern_with(const std::string& identifier) const {
+    std::string file = options_.output;
+    const auto at = file.find(kName);
+    if (at == std::string::npos) return file;
     if (file.ends_with(kName)) file += target_.ending;
     return file.replace(at, kName.size(), identifier);
+  }
+
+  // The second file stands beside the first, under the same name with an ending of its own.
+  std::string companion_of(const std::string& file) const {
+    return std::filesystem::path(file).replace_extension(target_.companion).string();
   }
 
   void leave_out(const Error& error) {
@@ -157,6 +171,11 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   if (options.output.empty())
     return usage_error("--output is empty: give a pattern such as 'materials/{{name}}', or - for standard output");
   const materials::Target& target = target_of(options.to);
+  if (options.output == "-" && target.companion)
+    return usage_error("--output -: a material for {} has two files: give a pattern such as '{{name}}'", target.name);
+  if (target.companion && std::filesystem::path(options.output).extension() == target.companion)
+    return usage_error("--output {}: {} is the ending of the second file, which stands beside the first one",
+                       options.output, target.companion);
   session.explain(fmt::format("target {}: {}\nleft out: flakes, color maps and anisotropy, which it has no place for\n",
                               target.name, target.what));
   return Run(options, session).all();

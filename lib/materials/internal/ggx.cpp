@@ -8,14 +8,18 @@
 
 namespace goniochrome::materials {
 
+double ggx_masking(double alpha, const Vec3& to_light, const Vec3& to_viewer) {
+  const double a2 = alpha * alpha;
+  const auto slope = [&](double c) { return std::sqrt(a2 + (1 - a2) * c * c); };
+  return 1 / (2 * (slope(to_light.z) * to_viewer.z + slope(to_viewer.z) * to_light.z));
+}
+
 double ggx(double alpha, const Vec3& to_light, const Vec3& to_viewer) {
   const double a2 = alpha * alpha;
   const Vec3 half = normalized(to_light + to_viewer);
   // 1 - (1 - a2) z^2, which does not cancel for sharp lobes: the square of the sine is that of the vector itself.
   const double sine2 = half.x * half.x + half.y * half.y, d = sine2 + a2 * half.z * half.z;
-  const auto slope = [&](double c) { return std::sqrt(a2 + (1 - a2) * c * c); };
-  const double masking = slope(to_light.z) * to_viewer.z + slope(to_viewer.z) * to_light.z;
-  return a2 / (kPi * d * d) / (2 * masking);
+  return a2 / (kPi * d * d) * ggx_masking(alpha, to_light, to_viewer);
 }
 
 double half_cosine(const Vec3& to_light, const Vec3& to_viewer) {

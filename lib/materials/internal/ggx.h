@@ -9,6 +9,9 @@ namespace goniochrome::materials {
 // D G / (4 cos_i cos_o) in 1/sr, for unit directions above the surface and a roughness alpha > 0.
 double ggx(double alpha, const Vec3& to_light, const Vec3& to_viewer);
 
+// Its part G / (4 cos_i cos_o).
+double ggx_masking(double alpha, const Vec3& to_light, const Vec3& to_viewer);
+
 // The cosine of the angle between either direction and the half vector.
 double half_cosine(const Vec3& to_light, const Vec3& to_viewer);
 

@@ -3,12 +3,21 @@
 import numpy
 
 
-def ggx(alpha, light, view):
-    """D G / (4 cos_i cos_o) with the height-correlated G of Smith; the last axis has the vector."""
+def ggx(alpha, light, view, beside=None):
+    """D G / (4 cos_i cos_o) with the height-correlated G of Smith; the last axis has the vector.
+
+    With `beside`, alpha is the roughness along the viewer's plane, that the other one beside it, and G has their geometric mean.
+    """
+    if alpha == 0:  # a mirror reflects into one direction alone
+        return numpy.zeros(numpy.broadcast(light, view).shape[:-1])
     half = light + view
     half = half / numpy.linalg.norm(half, axis=-1, keepdims=True)
-    d = alpha ** 2 / (numpy.pi * ((alpha ** 2 - 1) * half[..., 2] ** 2 + 1) ** 2)
-    a, b = (numpy.sqrt(1 + alpha ** 2 * (1 / c ** 2 - 1)) for c in (light[..., 2], view[..., 2]))
+    beside = alpha if beside is None else beside
+    plane = numpy.hypot(view[..., 0], view[..., 1])
+    x, y = (numpy.where(plane > 0, view[..., k] / numpy.maximum(plane, 1e-30), 1 - k) for k in (0, 1))
+    along, across = half[..., 0] * x + half[..., 1] * y, half[..., 1] * x - half[..., 0] * y
+    d = 1 / (numpy.pi * alpha * beside * ((along / alpha) ** 2 + (across / beside) ** 2 + half[..., 2] ** 2) ** 2)
+    a, b = (numpy.sqrt(1 + alpha * beside * (1 / c ** 2 - 1)) for c in (light[..., 2], view[..., 2]))
     return d * 2 / (a + b) / (4 * light[..., 2] * view[..., 2])
 
 

@@ -7,12 +7,34 @@ import numpy
 from facets import dielectric, ggx, reflected
 
 
+# Nodes of numbers, vectors and colors.
+OPERATIONS = {
+    "add": lambda a, b: a + b, "subtract": lambda a, b: a - b, "multiply": lambda a, b: a * b, "divide": lambda a, b: a / b,
+    "max": numpy.maximum, "min": numpy.minimum, "dotproduct": lambda a, b: (a * b).sum(keepdims=True),
+    "combine2": lambda a, b: numpy.concatenate([a, b])}
+
+
+def computed(nodes, given, view):
+    """The numbers of an input, which it has itself or from other nodes."""
+    if given.get("value") is not None:
+        return numpy.array([float(x) for x in given.get("value").split(",")])
+    node = nodes[given.get("nodename")]
+    if node.tag == "viewdirection":  # from the viewer
+        return -view
+    if node.tag == "normal":
+        return numpy.array((0.0, 0, 1))
+    inputs = {entry.get("name"): entry for entry in node}
+    if node.tag == "absval":
+        return abs(computed(nodes, inputs["in"], view))
+    return OPERATIONS[node.tag](computed(nodes, inputs["in1"], view), computed(nodes, inputs["in2"], view))
+
+
 def evaluated(nodes, name, light, view):
     """(f of a node in RGB, what it lets through to the node below)"""
     node = nodes[name]
     inputs = {given.get("name"): given for given in node}
     def numbers(key, default):
-        return numpy.array([float(x) for x in inputs[key].get("value").split(",")]) if key in inputs else numpy.array([default])
+        return computed(nodes, inputs[key], view) if key in inputs else numpy.array([default])
     def below(key):
         return evaluated(nodes, inputs[key].get("nodename"), light, view)
     if node.tag == "standard_surface":  # as MaterialX defines it, without the parts that these files leave at 0
@@ -34,15 +56,18 @@ def evaluated(nodes, name, light, view):
         return top + through * below("base")[0], 0
     if node.tag == "oren_nayar_diffuse_bsdf":
         return numbers("color", 0.18) / numpy.pi, 0
-    alpha, weight, index = numbers("roughness", 0.05)[0], numbers("weight", 1)[0], numbers("ior", 1.5)[0]
+    alpha, beside = numpy.resize(numbers("roughness", 0.05), 2)
+    if alpha != beside:  # then the tangent has to be the view direction
+        assert numpy.linalg.norm(numpy.cross(numbers("tangent", 0), view)) < 0.003
+    mean, weight, index = (alpha * beside) ** 0.5, numbers("weight", 1)[0], numbers("ior", 1.5)[0]
     def schlick(f0, f90, power):
         return lambda c: f0 + (f90 - f0) * (1 - numpy.clip(c, 0, 1)) ** power
     fresnel = average = schlick(numbers("color0", 1)[0], numbers("color90", 1)[0], numbers("exponent", 5)[0])
     if node.tag == "dielectric_bsdf":
         fresnel, average = lambda c: dielectric(c, index), schlick(((index - 1) / (index + 1)) ** 2, 1, 5)
-    f, all_light = fresnel(numpy.linalg.norm(light + view) / 2), reflected(alpha, view, lambda c: 1)
+    f, all_light = fresnel(numpy.linalg.norm(light + view) / 2), reflected(mean, view, lambda c: 1)
     more = 1 + f * (1 - all_light) / all_light
-    return weight * f * more * ggx(alpha, light, view) * numpy.ones(3), 1 - weight * more * reflected(alpha, view, average)
+    return weight * f * more * ggx(alpha, light, view, beside) * numpy.ones(3), 1 - weight * more * reflected(mean, view, average)
 
 
 def reflection(path, lights, views):

@@ -58,3 +58,29 @@ def reflection(path, lights, views):
     """f of each pair of directions, one a row."""
     file = fields(path)
     return numpy.array([value(file, view, light) for light, view in zip(lights, views)])
+
+
+def share_above_horizon(path, viewer):
+    """The share of a renderer's samples of lights that stand above the horizon, for a viewer at that place among the file's angles.
+
+    A sample is drawn by the luminance of the square, then by the density of half vectors.
+    """
+    file = fields(path)
+    theta, luminance, density = file["theta_i"][viewer], file["luminance"][0, viewer], file["vndf"][0, viewer]
+    middles = numpy.linspace(0, 1, 2 * len(luminance) + 1)[1::2]
+    def gathered(values):
+        return numpy.concatenate([[0], numpy.cumsum((values[1:] + values[:-1]) / 2)])
+    def between(rows, at):
+        low = min(int(at), len(rows) - 2)
+        return rows[low] + (at - low) * (rows[low + 1] - rows[low])
+    sums, drawn, above = gathered(density.sum(1)), 0.0, 0.0
+    for t in middles:
+        y = numpy.interp(t * sums[-1], sums, numpy.arange(len(sums)))
+        row = gathered(between(density, y))
+        u = numpy.interp(middles * row[-1], row, numpy.linspace(0, 1, len(row)))
+        half, azimuth = u ** 2 * numpy.pi / 2, (2 * y / (len(sums) - 1) - 1) * numpy.pi
+        along = numpy.sin(half) * numpy.cos(azimuth) * numpy.sin(theta) + numpy.cos(half) * numpy.cos(theta)
+        weights = [bilinear(luminance, s, t) for s in middles]
+        drawn += numpy.sum(weights)
+        above += numpy.sum(weights * (2 * along * numpy.cos(half) > numpy.cos(theta)))
+    return above / drawn

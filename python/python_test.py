@@ -1,0 +1,106 @@
+"""Tests of the module goniochrome: python_test.py TESTDATA, with the package on PYTHONPATH. Without numpy it ends by 77."""
+
+import gc
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.dont_write_bytecode = True
+try:
+    import numpy
+except ImportError:
+    print("skipped: python3-numpy is not there")
+    sys.exit(77)
+import goniochrome
+
+DATA = sys.argv.pop(1) if len(sys.argv) > 1 else "testdata"
+
+
+class Module(unittest.TestCase):
+    def setUp(self):
+        self.paints = goniochrome.read_paints(DATA + "/paints.paints.xml#silver_fine,jet_black")
+        self.silver, self.black = sorted(self.paints, key=lambda paint: paint.name, reverse=True)
+        self.basis = goniochrome.read_basis(DATA + "/b7.basis.xml")
+
+    def test_a_fit_is_that_of_the_tool(self):
+        fitted = goniochrome.fit(self.paints, self.basis)
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder)
+            subprocess.run(["fit-paint", "-q", "-b", DATA + "/b7.basis.xml", DATA + "/paints.paints.xml#silver_fine,jet_black", "-o",
+                            path / "tool.xml"], check=True)
+            goniochrome.write_paints(str(path / "module.xml"), fitted)
+            tool, module = (goniochrome.read_paints(str(path / name)) for name in ("tool.xml", "module.xml"))
+        for one, two in zip(tool, module, strict=True):
+            self.assertEqual(one.lobes.coat_index, two.lobes.coat_index)
+            numpy.testing.assert_array_equal(one.lobes.diffuse, two.lobes.diffuse)
+            for a, b in zip(one.lobes.lobes, two.lobes.lobes, strict=True):
+                self.assertEqual(a.exponent, b.exponent)
+                numpy.testing.assert_array_equal(a.directional_diffuse, b.directional_diffuse)
+                numpy.testing.assert_array_equal(a.gloss, b.gloss)
+
+    def test_the_lobes_show_the_readings(self):
+        (fitted,) = goniochrome.fit([self.silver], self.basis, method="deltae")
+        light, view = goniochrome.directions(fitted.geometries)
+        self.assertEqual(light.shape, (len(fitted.geometries), 3))
+        shown = goniochrome.lab_from_rgb(numpy.pi * fitted.brdf(light, view), fitted.illuminant, fitted.observer_deg)
+        apart = goniochrome.delta_e_2000(fitted.readings, shown)
+        # The mean of the fit, which has its own share of gloss at the reading next to specular.
+        self.assertAlmostEqual(apart.mean(), fitted.lobes.mean_de00, delta=0.05)
+
+    def test_color_differences(self):
+        # A pair of Sharma, Wu and Dalal 2005.
+        one, two = numpy.array([50, 2.6772, -79.7751]), numpy.array([50, 0, -82.7485])
+        self.assertAlmostEqual(float(goniochrome.delta_e_2000(one, two)), 2.0425, places=4)
+        many = numpy.tile(one, (4, 5, 1))
+        self.assertEqual(goniochrome.delta_e_2000(many, two).shape, (4, 5))
+        self.assertAlmostEqual(float(goniochrome.delta_e_76(one, two)), float(numpy.linalg.norm(one - two)))
+        lab = goniochrome.lab_from_rgb(goniochrome.rgb_from_lab(many))
+        numpy.testing.assert_allclose(lab, many, atol=1e-9)
+
+    def test_geometries_and_curves(self):
+        self.assertEqual(goniochrome.aspecular_deg("45as-15"), 15)
+        curve = self.silver.curve([15, 110])
+        self.assertGreater(curve[0, 0], curve[1, 0] + 20)
+        self.assertGreater(self.silver.metrics["flop_index"], 5)
+        self.assertLess(abs(self.black.metrics["flop_index"]), self.silver.metrics["flop_index"])
+
+    def test_an_environment_is_not_copied_and_outlives_its_name(self):
+        environment = goniochrome.read_environment(DATA + "/studio.exr")
+        texels = environment.texels
+        self.assertEqual(texels.dtype, numpy.float32)
+        self.assertEqual(texels.__array_interface__["data"], environment.texels.__array_interface__["data"])
+        self.assertFalse(texels.flags.owndata or texels.flags.writeable)
+        before = float(texels.sum())
+        solid, directions = environment.solid_angles(), environment.directions()
+        self.assertAlmostEqual(float(solid.sum()), 4 * numpy.pi, places=5)
+        self.assertEqual(directions.shape, texels.shape)
+        del environment
+        gc.collect()
+        self.assertEqual(before, float(texels.sum()))
+
+    def test_errors_say_what_is_wrong(self):
+        for wrong, words in ((lambda: goniochrome.read_paints("none.xml"), "none.xml"),
+                             (lambda: goniochrome.directions(["45xx"]), "45xx"),
+                             (lambda: goniochrome.delta_e_2000(numpy.zeros(4), numpy.zeros(3)), "three numbers"),
+                             (lambda: self.silver.brdf([0, 0, 1], [0, 0, 1]), "has no lobes"),
+                             (lambda: goniochrome.fit(self.paints, self.basis, method="best"), "deltae")):
+            with self.assertRaisesRegex(goniochrome.Error, words):
+                wrong()
+
+    def test_the_stubs_name_what_there_is(self):
+        stubs = (pathlib.Path(goniochrome.__file__).parent / "__init__.pyi").read_text()
+        for name in goniochrome.__all__:
+            self.assertRegex(stubs, rf"(class|def) {name}\b")
+            for member in vars(getattr(goniochrome, name)) if isinstance(getattr(goniochrome, name), type) else ():
+                if not member.startswith("_"):
+                    self.assertIn(f"def {member}(", stubs)
+
+    def test_the_example_runs(self):
+        done = subprocess.run([sys.executable, pathlib.Path(__file__).parent / "example.py", DATA], capture_output=True, text=True, check=True)
+        self.assertIn("flop index", done.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()
