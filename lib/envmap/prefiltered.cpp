@@ -6,10 +6,12 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <map>
 
 #include "base/file.h"
 #include "base/parallel.h"
 #include "envmap/mip.h"
+#include "envmap/open_maps.h"
 #include "image/exr.h"
 
 namespace goniochrome::envmap {
@@ -23,6 +25,11 @@ constexpr double kFloor = 1e-3;             // errors are relative to the local 
 constexpr const char* kTexels = "goniochrome:texels";
 constexpr const char* kExponent = "goniochrome:exponent";
 constexpr const char* kSpots = "goniochrome:brightSpots";
+// Of parts with maps that follow from others. A reader that knows another version makes them itself.
+constexpr const char* kVersion = "goniochrome:version";
+constexpr int kKnownVersion = 1;
+constexpr const char* kOpen = "open-";  // before the name of the part that the spots are taken out of
+constexpr const char* kCoat = "coat-diffuse";
 
 double mean_value(const CubeMap& map) {
   double sum = 0;
@@ -87,6 +94,19 @@ image::ImagePart part_of(const std::string& name, const PrefilteredLobe& lobe, c
   return part;
 }
 
+// A map that follows from that of `lobe`, and has its size.
+image::ImagePart part_of_map(const std::string& name, const CubeMap& map, const PrefilteredLobe& lobe) {
+  image::ImagePart part;
+  part.name = name;
+  part.type = storage_type(lobe);
+  part.image = {map.size, 6 * map.size, 3, map.texels, {}};
+  part.attributes = {{kTexels, std::string("center")},
+                     {kExponent, static_cast<float>(lobe.exponent)},
+                     {kVersion, kKnownVersion},
+                     {"colorInteropID", std::string("lin_rec2020_scene")}};
+  return part;
+}
+
 double number_attribute(const image::Attributes& attributes, const std::string& name) {
   const auto found = attributes.find(name);
   if (found == attributes.end()) return 0;
@@ -129,6 +149,37 @@ Result<PrefilteredLobe> lobe_of(image::ImagePart part, const std::string& path) 
   lobe.map.size = image.width;
   lobe.map.texels = std::move(part.image.data);
   return lobe;
+}
+
+// The parts with maps that follow from others, by their names.
+using OtherMaps = std::map<std::string, MapPointer>;
+
+// Takes the map of the part of that name, which must be as large as that of the lobe. Null where there is none.
+Result<MapPointer> other_map(const OtherMaps& maps, const std::string& name, const PrefilteredLobe& lobe,
+                             const std::string& path) {
+  const auto found = maps.find(name);
+  if (found == maps.end()) return MapPointer();
+  if (found->second->size != lobe.map.size)
+    return input_error(
+        "{}: part {}: has {} texels along a face, and the map that it follows from has {}: write it with "
+        "prefilter-envmap",
+        path, name, found->second->size, lobe.map.size);
+  return found->second;
+}
+
+// Gives the maps that follow from others to those which they follow from.
+Result<void> join(const OtherMaps& maps, const std::map<double, std::string>& names, const std::string& path,
+                  PrefilteredEnvironment& env) {
+  GONIO_ASSIGN(env.coat_diffuse, other_map(maps, kCoat, env.diffuse, path));
+  if (env.spots.empty()) return {};
+  GONIO_ASSIGN(env.open_coat_diffuse, other_map(maps, std::string(kOpen) + kCoat, env.diffuse, path));
+  GONIO_ASSIGN(env.diffuse.open, other_map(maps, std::string(kOpen) + "diffuse", env.diffuse, path));
+  for (PrefilteredLobe& lobe : env.lobes) {
+    const auto name = names.find(lobe.exponent);
+    if (name == names.end()) continue;
+    GONIO_ASSIGN(lobe.open, other_map(maps, kOpen + name->second, lobe, path));
+  }
+  return {};
 }
 
 }  // namespace
@@ -178,17 +229,27 @@ Result<PrefilteredEnvironment> read_env(const std::string& path, const std::func
   if (is_wanted) {
     wanted.part = [&](const std::string& name, const image::Attributes& attributes) {
       if (name == "mirror") return is_wanted(paint::kMirrorExponent);
-      return !name.starts_with("lobe-") || is_wanted(number_attribute(attributes, kExponent));
+      const bool of_lobe = name.starts_with("lobe-") || name.starts_with(std::string(kOpen) + "lobe-");
+      return !of_lobe || is_wanted(number_attribute(attributes, kExponent));
     };
   }
   GONIO_ASSIGN(std::vector<image::ImagePart> parts, image::decoded_exr(content, input.name(), wanted));
   if (!text_attribute(parts.front(), "goniochrome:exponents").empty()) return read_mip(content, input.name());
   PrefilteredEnvironment env;
   env.mirror.exponent = paint::kMirrorExponent;
+  OtherMaps others;
+  std::map<double, std::string> names;
   for (image::ImagePart& part : parts) {
     const std::string name = part.name;
-    if (name != "diffuse" && name != "mirror" && !name.starts_with("lobe-")) continue;
+    const bool is_other = name == kCoat || name.starts_with(kOpen);
+    if (name != "diffuse" && name != "mirror" && !name.starts_with("lobe-") && !is_other) continue;
     if (part.image.data.empty()) continue;  // not wanted
+    if (is_other) {
+      if (number_attribute(part.attributes, kVersion) != kKnownVersion) continue;
+      GONIO_ASSIGN(PrefilteredLobe lobe, lobe_of(std::move(part), path));
+      others[name] = std::make_shared<const CubeMap>(std::move(lobe.map));
+      continue;
+    }
     if (env.source.empty()) env.source = text_attribute(part, "goniochrome:source");
     if (name == "diffuse") {
       auto spots = spots_of_text(text_attribute(part, kSpots));
@@ -203,13 +264,14 @@ Result<PrefilteredEnvironment> read_env(const std::string& path, const std::func
     else if (name == "mirror")
       env.mirror = std::move(lobe);
     else
-      env.lobes.push_back(std::move(lobe));
+      names[lobe.exponent] = name, env.lobes.push_back(std::move(lobe));
   }
   if (env.diffuse.map.size == 0)
     return input_error("{}: has no part `diffuse`: it is not a prefiltered environment; make one with prefilter-envmap",
                        path);
   std::sort(env.lobes.begin(), env.lobes.end(),
             [](const PrefilteredLobe& a, const PrefilteredLobe& b) { return a.exponent < b.exponent; });
+  GONIO_TRY(join(others, names, path, env));
   return env;
 }
 
@@ -219,6 +281,14 @@ Result<void> write_env(const std::string& path, const PrefilteredEnvironment& en
   for (std::size_t i = 0; i < env.lobes.size(); ++i)
     parts.push_back(part_of(fmt::format("lobe-{:03}", i), env.lobes[i], env.source, command));
   if (env.mirror.map.size > 0) parts.push_back(part_of("mirror", env.mirror, env.source, command));
+  const auto add = [&](const std::string& name, const MapPointer& map, const PrefilteredLobe& lobe) {
+    if (map != nullptr && lobe.layout == SphereGrid::Layout::kCube) parts.push_back(part_of_map(name, *map, lobe));
+  };
+  add(kCoat, env.coat_diffuse, env.diffuse);
+  add(std::string(kOpen) + kCoat, env.open_coat_diffuse, env.diffuse);
+  add(std::string(kOpen) + "diffuse", env.diffuse.open, env.diffuse);
+  for (std::size_t i = 0; i < env.lobes.size(); ++i)
+    add(fmt::format("{}lobe-{:03}", kOpen, i), env.lobes[i].open, env.lobes[i]);
   return image::write_exr(path, parts);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -23,9 +24,10 @@ struct PrefilteredLobe {
   double tolerance = 0;                  // asked for; relative
   double max_error = 0, mean_error = 0;  // measured on the verified texels; relative
   int verified_texels = 0;
-  double predicted_error = 0;  // of the stored texels; relative
-  double lookup_error = 0;     // what a bilinear lookup between them adds; relative
-  std::string method;          // how it was computed
+  double predicted_error = 0;                // of the stored texels; relative
+  double lookup_error = 0;                   // what a bilinear lookup between them adds; relative
+  std::string method;                        // how it was computed
+  std::shared_ptr<const CubeMap> open = {};  // the map without the bright spots; null where it was not made
 
   bool is_mirror() const { return paint::is_mirror(exponent); }
 };
@@ -46,18 +48,22 @@ struct PrefilteredEnvironment {
   PrefilteredLobe mirror;              // the environment itself, exponent inf; size 0 where absent
   std::string source;
   std::vector<Spot> spots;  // the bright part of the light in the maps, once more; none where it is not known
+  // The diffuse map under a coat, with and without the bright spots; null where they were not made.
+  std::shared_ptr<const CubeMap> coat_diffuse = {}, open_coat_diffuse = {};
 
   // The lobe of this exponent (to 1e-6 relative), or null.
   const PrefilteredLobe* lobe(double exponent) const;
 };
 
 // Reads parts diffuse, lobe-NNN and mirror, or the levels of a mip-mapped cube. Of the lobes and the mirror it reads
-// only those whose exponent is wanted; without the function it reads all. Error: the part, and what is wrong.
+// only those whose exponent is wanted; without the function it reads all. Error: the part, and what is wrong. Maps that
+// follow from others, see open_maps.h, are read where the file has them in a version that is known here.
 Result<PrefilteredEnvironment> read_env(const std::string& path,
                                         const std::function<bool(double exponent)>& is_wanted = {});
 
 // Writes the parts; half floats unless a value or the tolerance needs float. `command` is kept for provenance. Lat-long
-// maps and cubes with texel centers on the edges are written by OpenEXR's own conventions, tagged `envmap`.
+// maps and cubes with texel centers on the edges are written by OpenEXR's own conventions, tagged `envmap`. Maps that
+// follow from others are written where they were made, by parts that readers which do not know them pass over.
 Result<void> write_env(const std::string& path, const PrefilteredEnvironment& env, const std::string& command);
 
 }  // namespace goniochrome::envmap

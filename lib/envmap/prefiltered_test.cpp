@@ -10,6 +10,8 @@
 #include <random>
 
 #include "envmap/mip.h"
+#include "envmap/open_maps.h"
+#include "image/exr.h"
 
 namespace goniochrome::envmap {
 namespace {
@@ -117,6 +119,92 @@ TEST_F(EnvFile, MipMappedCubesComeBackAsLobes) {
   for (PrefilteredLobe& level : levels) level.exponent *= 3;
   ASSERT_TRUE(write_mip(path("n.exr"), levels, "sky.exr", "test").ok());
   EXPECT_THAT(read_env(path("n.exr")).error().message, HasSubstr("no level has the exponent 1"));
+}
+
+PrefilteredEnvironment env_with_spots() {
+  PrefilteredEnvironment env = small_env();
+  env.spots = {{normalized({1, 2, 3}), {0.05, 0.04, 0.03}, 0.1}, {normalized({-3, 1, 0}), {0.02, 0.02, 0.03}, 0.4}};
+  for (PrefilteredLobe* lobe : {&env.diffuse, &env.lobes[0], &env.lobes[1], &env.mirror}) round_to_storage(*lobe);
+  return env;
+}
+
+// The largest difference of two maps, relative to the second, and absolute below the smallest normal half.
+double apart(const CubeMap& a, const CubeMap& b) {
+  EXPECT_EQ(a.texels.size(), b.texels.size());
+  double most = 0;
+  for (std::size_t i = 0; i < a.texels.size(); ++i)
+    most = std::max<double>(most, std::abs(a.texels[i] - b.texels[i]) / std::max(0x1p-14F, std::abs(b.texels[i])));
+  return most;
+}
+
+// The control is how far the maps with the spots are from those without.
+TEST_F(EnvFile, MapsThatFollowFromOthersComeBackRoundedToTheHalvesOfTheFile) {
+  PrefilteredEnvironment env = env_with_spots();
+  ASSERT_TRUE(write_env(path("plain.env.exr"), env, "test").ok());
+  keep_open_maps(env);
+  ASSERT_TRUE(write_env(path("kept.env.exr"), env, "test").ok());
+  const auto plain = read_env(path("plain.env.exr")), kept = read_env(path("kept.env.exr"));
+  ASSERT_TRUE(plain.ok() && kept.ok());
+  EXPECT_EQ(plain->coat_diffuse, nullptr);
+  EXPECT_EQ(plain->lobes[1].open, nullptr);
+  // Readers that do not know them find the same environment as in a file without them.
+  EXPECT_EQ(kept->spots, plain->spots);
+  EXPECT_EQ(kept->diffuse.map.texels, plain->diffuse.map.texels);
+  EXPECT_EQ(kept->lobes[1].map.texels, plain->lobes[1].map.texels);
+  const std::size_t all = env.spots.size();
+  const auto check = [&](const MapPointer& read, const MapPointer& made, const CubeMap& with_spots) {
+    ASSERT_NE(read, nullptr);
+    EXPECT_LE(apart(*read, *made), 0x1p-11);
+    EXPECT_GT(apart(*read, with_spots), 0.01);
+  };
+  check(kept->diffuse.open, open_diffuse_map(*plain, all), plain->diffuse.map);
+  check(kept->open_coat_diffuse, open_coat_diffuse_map(*plain, all), *coat_diffuse_map(*plain));
+  ASSERT_NE(kept->coat_diffuse, nullptr);
+  EXPECT_LE(apart(*kept->coat_diffuse, *coat_diffuse_map(*plain)), 0x1p-11);
+  for (std::size_t i = 0; i < 2; ++i) {
+    ASSERT_NE(kept->lobes[i].open, nullptr);
+    EXPECT_LE(apart(*kept->lobes[i].open, *open_map(*plain, plain->lobes[i], all)), 0x1p-11);
+  }
+  EXPECT_GT(apart(*kept->lobes[0].open, plain->lobes[0].map), 0.01);
+  // Of fewer spots, and of none, maps are made anew.
+  EXPECT_EQ(open_map(*kept, kept->lobes[1], 1)->texels, open_map(*plain, plain->lobes[1], 1)->texels);
+  EXPECT_EQ(open_map(*kept, kept->lobes[1], 0).get(), &kept->lobes[1].map);
+}
+
+TEST_F(EnvFile, LobesThatAreNotWantedAreNotDecoded) {
+  PrefilteredEnvironment env = env_with_spots();
+  keep_open_maps(env);
+  ASSERT_TRUE(write_env(path("kept.env.exr"), env, "test").ok());
+  const auto read = read_env(path("kept.env.exr"), [](double exponent) { return std::abs(exponent - 70) < 1; });
+  ASSERT_TRUE(read.ok());
+  ASSERT_EQ(read->lobes.size(), 1U);
+  EXPECT_EQ(read->lobes[0].map.size, 8);
+  ASSERT_NE(read->lobes[0].open, nullptr);
+  EXPECT_EQ(read->lobes[0].open->size, 8);
+}
+
+TEST_F(EnvFile, PartsOfAnotherVersionAreLeftAloneAndThoseOfAnotherSizeAreRefused) {
+  PrefilteredEnvironment env = env_with_spots();
+  keep_open_maps(env);
+  ASSERT_TRUE(write_env(path("kept.env.exr"), env, "test").ok());
+  const auto changed = [&](const std::string& name, auto change) {
+    auto parts = image::read_exr(path("kept.env.exr"), {});
+    EXPECT_TRUE(parts.ok());
+    for (image::ImagePart& part : *parts)
+      if (part.name == "open-lobe-001") change(part);
+    EXPECT_TRUE(image::write_exr(path(name), *parts).ok());
+    return read_env(path(name));
+  };
+  const auto later = changed("later.env.exr", [](auto& part) { part.attributes["goniochrome:version"] = 2; });
+  ASSERT_TRUE(later.ok());
+  EXPECT_EQ(later->lobes[1].open, nullptr);
+  EXPECT_NE(later->lobes[0].open, nullptr);
+  const auto small = changed("small.env.exr", [](auto& part) {
+    part.image = {4, 24, 3, std::vector<float>(4 * 24 * 3, 1.0F), part.image.channel_names};
+  });
+  ASSERT_FALSE(small.ok());
+  EXPECT_THAT(small.error().message, HasSubstr("part open-lobe-001: has 4 texels along a face, and the map that it "
+                                               "follows from has 8"));
 }
 
 TEST_F(EnvFile, OtherFilesAreRefusedByPart) {

@@ -1,4 +1,4 @@
-#include "envmap/weighted_diffuse.h"
+#include "envmap/internal/weighted_diffuse.h"
 
 #include <gtest/gtest.h>
 

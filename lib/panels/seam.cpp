@@ -149,7 +149,7 @@ Result<EnvironmentPanels> EnvironmentPanels::make(const envmap::PrefilteredEnvir
   for (std::size_t i = 0; i < diffuse.texels.size(); i += 3) most = std::max(most, luminance(&diffuse.texels[i]));
   if (!(most > 0)) return input_error("the environment is black: there is no white to compare with");
   panels.luminance_ = most;
-  if (coat_index != paint::kNoCoat) panels.coat_diffuse_ = render::coat_diffuse_map(env);
+  if (coat_index != paint::kNoCoat) panels.coat_diffuse_ = envmap::coat_diffuse_map(env);
   panels.condition_ = condition;
   GONIO_ASSIGN(panels.white_, color::white_point(condition));
   panels.fitter_ = std::make_shared<const fit::PaintFitter>(appearance_fitter(panels.exponents_));
@@ -164,7 +164,7 @@ EnvironmentPanels::Light EnvironmentPanels::light(const Vec3& normal, const Vec3
   const bool coated = coat_index_ != paint::kNoCoat;
   const double let_out = coated ? brdf::coat_transmission(std::min(cosine, 1.0), coat_index_) : 1;
   const color::Rgb diffuse =
-      coated ? let_out * brdf::mean_coat_transmission(coat_index_) * kPi * envmap::bilinear(coat_diffuse_, normal)
+      coated ? let_out * brdf::mean_coat_transmission(coat_index_) * kPi * envmap::bilinear(*coat_diffuse_, normal)
              : kPi * envmap::bilinear(env_->diffuse.map, normal);
   Light light{diffuse, {}, cosine * let_out * let_out};
   for (const envmap::PrefilteredLobe& lobe : env_->lobes)

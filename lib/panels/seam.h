@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "envmap/prefiltered.h"
+#include "envmap/open_maps.h"
 #include "mesh/mesh.h"
 #include "mesh/seam.h"
 #include "panels/geometry_sets.h"
@@ -91,7 +91,7 @@ class EnvironmentPanels {
   const envmap::PrefilteredEnvironment* env_ = nullptr;
   std::vector<double> exponents_;
   double coat_index_ = paint::kNoCoat;
-  envmap::CubeMap coat_diffuse_;  // where there is a coat
+  envmap::MapPointer coat_diffuse_;  // where there is a coat
   color::ViewingCondition condition_;
   color::Xyz white_;
   double luminance_ = 1;

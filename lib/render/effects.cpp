@@ -8,7 +8,6 @@
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
 #include "brdf/tilted_lobes.h"
-#include "envmap/weighted_diffuse.h"
 #include "math/elementary.h"
 #include "render/internal/lobe_curves.h"
 #include "render/internal/tilt_table.h"
@@ -274,10 +273,6 @@ std::vector<std::vector<brdf::Tilt>> tilts_of(const Scene& scene, const Effects&
     if (set.ok()) tilts[part] = std::move(set->tilts);
   }
   return tilts;
-}
-
-envmap::CubeMap coat_diffuse_map(const envmap::PrefilteredEnvironment& env) {
-  return envmap::weighted_diffuse(env, [](double c) { return brdf::coat_transmission(c, brdf::kCoatIndex); });
 }
 
 WeightTable slots_of(const Effects& effects) {

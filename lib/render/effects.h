@@ -126,10 +126,6 @@ struct WeightTable {
                  8];
   }
 };
-// The diffuse map of a base under a coat: light counts with what a coat of kCoatIndex lets in from where it comes,
-// relative to its mean over the hemisphere. Other coats differ from it by 1 part in 100 at most where light matters.
-envmap::CubeMap coat_diffuse_map(const envmap::PrefilteredEnvironment& env);
-
 // The table's sizes, without its weights.
 WeightTable slots_of(const Effects& effects);
 WeightTable weight_table(const Scene& scene, const Effects& effects);

@@ -7,7 +7,6 @@
 #include "render/gl/shader.h"
 #include "render/internal/maps.h"
 #include "render/internal/product_forms.h"
-#include "render/spots.h"
 
 namespace goniochrome::render {
 
@@ -40,22 +39,20 @@ Result<PageLight> page_light(const envmap::PrefilteredEnvironment& env, const Ef
   const ProductForms forms = effects.reflection ? product_forms(op) : ProductForms{};
   PageLight light;
   std::tie(light.shading_fragment, light.brushed_fragment) = shading_fragments(effects, op);
-  const auto add = [&](std::string sampler, envmap::CubeMap map) {
+  const auto add = [&](std::string sampler, const envmap::CubeMap& map) {
     const bool in_forms = forms.count == 4;
     std::vector<float> texels =
-        in_forms ? in_four_forms(forms, map.texels.data(), map.texels.size() / 3, 3) : std::move(map.texels);
+        in_forms ? in_four_forms(forms, map.texels.data(), map.texels.size() / 3, 3) : map.texels;
     light.cubes.push_back({std::move(sampler), map.size, in_forms ? 4 : 3, std::move(texels)});
   };
-  add("diffuse", std::move(maps.diffuse.maps[0]));
-  if (maps.diffuse.maps.size() > 1) add("coat_diffuse", std::move(maps.diffuse.maps[1]));
+  add("diffuse", *maps.diffuse.maps[0]);
+  if (maps.diffuse.maps.size() > 1) add("coat_diffuse", *maps.diffuse.maps[1]);
   // The page looks each lobe up by itself, so that it keeps the size that its file has.
-  const std::vector<envmap::Spot> spots(env.spots.begin(),
-                                        env.spots.begin() + static_cast<std::ptrdiff_t>(effects.spots));
   for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
     const double exponent = effects.lobes[j].exponent;
-    add(fmt::format("lobe_{}", j), without_spots(env.lobe(exponent)->map, exponent, spots));
+    add(fmt::format("lobe_{}", j), *envmap::open_map(env, *env.lobe(exponent), effects.spots));
   }
-  if (maps.mirror.size > 0) add("mirror", std::move(maps.mirror.maps[0]));
+  if (maps.mirror.size > 0) add("mirror", *maps.mirror.maps[0]);
   const std::vector<Light> lamps = single_lights(scene, effects);
   for (const Light& lamp : lamps) light.lamps.push_back({lamp.direction, lamp.white, disc_uniform(lamp)});
   if (lamps.empty()) return Result(std::move(light));

@@ -2,10 +2,13 @@
 #include "render/spots.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
+#include "envmap/open_maps.h"
 #include "prefilter/prefilter.h"
 #include "render/exact.h"
 #include "render/internal/seen.h"
@@ -97,7 +100,7 @@ TEST(Spots, AreTheSameInBothEnginesOfMaps) {
 TEST(Spots, MapsLoseWhatTheLampsGive) {
   const Hall hall;
   const envmap::PrefilteredLobe& lobe = *hall.env.lobe(6);
-  const envmap::CubeMap rest = without_spots(lobe.map, 6, hall.env.spots);
+  const envmap::CubeMap rest = envmap::without_spots(lobe.map, 6, hall.env.spots);
   double most = 0, negative = 0;
   for (std::size_t i = 0; i < rest.texels.size(); ++i) {
     most = std::max<double>(most, rest.texels[i]);
@@ -106,6 +109,42 @@ TEST(Spots, MapsLoseWhatTheLampsGive) {
   const double before = *std::ranges::max_element(lobe.map.texels);
   EXPECT_LT(most, 0.2 * before) << "the spots are taken out";
   EXPECT_GT(negative, -0.01 * before) << "and no more than they give";
+}
+
+// Files keep the maps without spots as halves; the control is a picture without spots.
+TEST(Spots, PicturesOfKeptMapsAreThoseOfMadeMaps) {
+  const auto folder = std::filesystem::temp_directory_path() / fmt::format("goniochrome-spots-{}", getpid());
+  std::filesystem::create_directories(folder);
+  const std::string path = (folder / "kept.env.exr").string();
+  Hall hall(true);
+  const Effects all = effects_of(hall.scene);
+  const Frame made = hall.drawn(all, "cpu");
+  Effects without = all;
+  without.spots = 0;
+  const Frame control = hall.drawn(without, "cpu");
+  envmap::keep_open_maps(hall.env);
+  EXPECT_EQ(hall.drawn(all, "cpu").picture.data, made.picture.data) << "maps in memory are the same to the last bit";
+  for (envmap::PrefilteredLobe* lobe : {&hall.env.lobes[0], &hall.env.lobes[1]}) EXPECT_NE(lobe->open, nullptr);
+  for (envmap::PrefilteredLobe& lobe : hall.env.lobes) lobe.tolerance = 1e-3;  // halves
+  hall.env.diffuse.tolerance = 1e-3;
+  ASSERT_TRUE(envmap::write_env(path, hall.env, "test").ok());
+  auto read = envmap::read_env(path);
+  std::filesystem::remove_all(folder);
+  ASSERT_TRUE(read.ok());
+  // Only the kept maps are those of the file.
+  for (std::size_t i = 0; i < hall.env.lobes.size(); ++i) hall.env.lobes[i].open = read->lobes[i].open;
+  hall.env.diffuse.open = read->diffuse.open, hall.env.open_coat_diffuse = read->open_coat_diffuse;
+  const Frame kept = hall.drawn(all, "cpu");
+  const auto most = [&](const Frame& of) {
+    double largest = 0;
+    for (std::size_t i = 0; i < made.picture.data.size(); ++i)
+      largest = std::max<double>(
+          largest, std::abs(of.picture.data[i] - made.picture.data[i]) / std::max(0.01F, made.picture.data[i]));
+    return largest;
+  };
+  EXPECT_NE(kept.picture.data, made.picture.data) << "halves were read";
+  EXPECT_LE(most(kept), 0x1p-10);
+  EXPECT_GT(most(control), 0x1p-6);
 }
 
 TEST(Spots, APlanLeavesThemOutWhereTheyAreNotSeen) {

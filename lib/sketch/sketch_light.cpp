@@ -7,6 +7,7 @@
 
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
+#include "envmap/open_maps.h"
 #include "math/cosine_power.h"
 #include "render/aov.h"
 #include "render/effects.h"
@@ -61,7 +62,7 @@ class Shading {
     render::Scene scene;
     if (drawn(buffers, "coat")) {
       coat_index_ = brdf::kCoatIndex;
-      if (env != nullptr) coat_diffuse_ = render::coat_diffuse_map(*env);
+      if (env != nullptr) coat_diffuse_ = envmap::coat_diffuse_map(*env);
     }
     scene.paints = unit_paints(basis_, coat_index_);
     scene.env = env;
@@ -145,7 +146,7 @@ class Shading {
     const bool bare = coat_index_ == paint::kNoCoat;
     const double c = view.cos_o;
     column[0] += scale * weights_.at(0, weights_.diffuse_slot(), c) *
-                 envmap::bilinear(bare ? env.diffuse.map : coat_diffuse_, view.normal);
+                 envmap::bilinear(bare ? env.diffuse.map : *coat_diffuse_, view.normal);
     for (std::size_t k = 1; k < last; ++k) {
       const std::size_t lobe = (k - 1) / 2;
       const double shift = weights_.at(k, table.shift_slot(lobe), c, static_cast<int>(lobe % 4));
@@ -160,11 +161,10 @@ class Shading {
   // As the engines have them: lamps take the place of what the maps have of the spots.
   void take_out_spots(const envmap::PrefilteredEnvironment& env, std::vector<render::Light>& lights) {
     rest_ = env;
-    rest_.diffuse.map = render::diffuse_without_spots(std::move(rest_.diffuse.map), false, env.spots);
-    if (coat_diffuse_.size > 0)
-      coat_diffuse_ = render::diffuse_without_spots(std::move(coat_diffuse_), true, env.spots);
-    for (envmap::PrefilteredLobe& lobe : rest_.lobes)
-      lobe.map = render::without_spots(std::move(lobe.map), lobe.exponent, env.spots);
+    rest_.diffuse.map = *envmap::open_diffuse_map(env, env.spots.size());
+    if (coat_diffuse_ != nullptr) coat_diffuse_ = envmap::open_coat_diffuse_map(env, env.spots.size());
+    for (std::size_t i = 0; i < env.lobes.size(); ++i)
+      rest_.lobes[i].map = *envmap::open_map(env, env.lobes[i], env.spots.size());
     for (const envmap::Spot& spot : env.spots) lights.push_back(render::light_of(spot));
     env_ = &rest_;
   }
@@ -208,7 +208,7 @@ class Shading {
   std::vector<render::Light> points_;                     // lamps without extent, and with it
   std::vector<render::UnitWeights::Disc> discs_;
   double coat_index_ = paint::kNoCoat;
-  envmap::CubeMap coat_diffuse_;
+  envmap::MapPointer coat_diffuse_;
   bool fresnel_ = false;
   render::UnitWeights weights_;
 };

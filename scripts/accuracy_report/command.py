@@ -1,6 +1,5 @@
 """The command line: which studies run, with which files, and where the page goes."""
 
-import argparse
 import importlib
 import os
 import pathlib
@@ -8,6 +7,7 @@ import sys
 import time
 
 from shared import packages
+from shared.manual import Manual, parser_of
 from shared.tools import DATA, Failed, tools_folder
 
 from . import page, target
@@ -34,20 +34,28 @@ STUDIES = {
 }
 
 
+MANUAL = Manual(
+    "accuracy-report", "measure the error and the time of every option that sets an accuracy", [
+        "accuracy-report varies the settings of the tools, holds each result against an exact reference, and writes an HTML page, "
+        "a CSV of every reading, and the plots as SVG. A default setting is dominated if another setting is better in time or "
+        "error and not worse in the other.",
+        "The studies need the Python modules numpy and OpenImageIO. Where they are missing, their Debian packages are installed, "
+        "which takes root or sudo."],
+    "0: the work is done. 1: a default setting is dominated, or --target-de00 is not reached. 2: the command line is wrong. 3: an "
+    "input is wrong, a file cannot be read or written, or a tool failed.",
+    [("Compare ways to search a library, in a few seconds", "accuracy-report --quick search -o accuracy")],
+    ["goniochrome-accuracy(7)", "render-osmesa(1)", "paint-batch(1)"])
+
+
 def parse(arguments):
-    parser = argparse.ArgumentParser(
-        prog="accuracy-report",
-        description="Vary the settings of the tools, hold each result against an exact reference, and write an HTML page, a "
-        "CSV of every reading, and the plots as SVG. The exit status is 1 if a default setting is dominated: if another setting "
-        "is better in time or error and not worse in the other.",
-    )
+    parser = parser_of(MANUAL)
     listed = "; ".join(f"{n} ({STUDIES[n]})" for n in STUDIES)
     parser.add_argument("studies", nargs="*", metavar="STUDY", help="the studies to run, by default all: " + listed)
     parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("accuracy"), metavar="DIR",
                         help="the folder to write to [accuracy]")
     parser.add_argument("--quick", action="store_true", help="try fewer settings, which takes about a minute")
     parser.add_argument("--bin", type=pathlib.Path, metavar="DIR",
-                        help="the folder of the tools [PATH, then build/release/bin]")
+                        help="the folder of the tools [that of the installed command, then PATH, then build/release/bin]")
     parser.add_argument("--paints", type=pathlib.Path, default=DATA / "paints.paints.xml", metavar="FILE",
                         help="the library to use [that of testdata]")
     parser.add_argument("--probe", type=pathlib.Path, default=DATA / "studio.exr", metavar="FILE",
@@ -72,7 +80,6 @@ def parse(arguments):
             print(f"accuracy-report: {path}: there is no such file", file=sys.stderr)
             sys.exit(3)
     return options
-
 
 
 def main(arguments=None):

@@ -87,6 +87,49 @@ setup() {
   cmp one/report.tsv again/report.tsv
 }
 
+@test "one run draws all paints of a shard, and a shard that is killed while it draws keeps what was drawn" {
+  mkdir counted
+  printf '#!/bin/sh\necho run >>"%s/runs"\nexec %q "$@"\n' "$PWD" "$(command -v render-osmesa)" >counted/render-osmesa
+  chmod +x counted/render-osmesa
+  for tool in fit-paint paint-stats goniogeom-index colorsnap; do ln -s "$(command -v "$tool")" counted/; done
+  cp -r one killed
+  sed -i "s|$PWD/one|$PWD/killed|g" killed/plan.json
+  rm -r killed/shards killed/pictures/*/*.png
+  PATH=$PWD/counted:$PATH batch shard killed 0
+  [ "$(wc -l <runs)" -eq 1 ]
+  diff -r one/pictures killed/pictures
+  # What a killed run leaves: pictures that have not got their names yet, and a part of one.
+  rm killed/shards/0000/done.json
+  mkdir killed/shards/0000/drawn
+  scene=$(jq -r '.scenes[0].name' killed/plan.json)
+  jq -n --arg scene "$scene" '{scene: $scene, numbers: [2, 4, 5]}' >killed/shards/0000/drawn/numbers.json
+  cp -p "killed/pictures/$scene/000002.png" killed/shards/0000/drawn/0001.png
+  touch -d 2000-01-01 "killed/pictures/$scene"/*.png killed/shards/0000/drawn/0001.png
+  rm "killed/pictures/$scene"/00000{2,4,5}.png
+  echo part >killed/shards/0000/drawn/.0002.png.partial
+  batch shard killed 0
+  diff -r one/pictures killed/pictures
+  [ "$(find killed/pictures -name '*.png' -newermt 2001-01-01 | wc -l)" -eq 2 ]
+  [ ! -e killed/shards/0000/drawn ]
+  batch merge killed
+  cmp one/report.tsv killed/report.tsv
+}
+
+@test "brushed paints are drawn by runs of their own, so that no picture depends on the paints before it" {
+  {
+    sed '/<\/paints>/d' metallic.xml | awk '/<paint / && ++n > 3 { exit } { print }'
+    awk '/<paint /, /<\/paint>/' metallic.xml | awk '{ print } /<\/paint>/ { exit }' |
+      sed 's|name="[^"]*"|name="brushed"|; s|</paint>|<anisotropy alphaX="0.05" alphaY="0.3"/></paint>|'
+    echo '</paints>'
+  } >brushed.xml
+  for size in 100 1; do
+    batch plan brushed.xml --out "brushed-$size" --size 64x48 --env-size 16 --basis "$TESTDATA/b5.basis.xml" --shard-paints "$size"
+    for n in $(batch list "brushed-$size"); do batch shard "brushed-$size" "$n"; done
+  done
+  [ "$(find brushed-1/pictures -name '*.png' | wc -l)" -eq 4 ]
+  diff -r brushed-100/pictures brushed-1/pictures
+}
+
 @test "the plan tells its estimate, and the merged report tells the time beside it" {
   run batch plan library.paints.xml --out told --env --explain --basis "$TESTDATA/b5.basis.xml"
   [ "$status" -eq 0 ]

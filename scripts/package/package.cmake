@@ -36,7 +36,16 @@ install(
   PATTERN "*.bats" EXCLUDE
   PATTERN "*_test.py" EXCLUDE
   PATTERN "*_test.bash" EXCLUDE)
-install(PROGRAMS ${PROJECT_SOURCE_DIR}/scripts/paint-book DESTINATION ${CMAKE_INSTALL_DATADIR}/goniochrome/scripts)
+install(PROGRAMS ${PROJECT_SOURCE_DIR}/scripts/paint-book ${PROJECT_SOURCE_DIR}/scripts/accuracy-report
+                 ${PROJECT_SOURCE_DIR}/scripts/common.sh DESTINATION ${CMAKE_INSTALL_DATADIR}/goniochrome/scripts)
+# They are commands by links, because Python looks for the modules of a script beside the file that a link leads to.
+foreach(script paint-book batch/paint-batch accuracy-report)
+  get_filename_component(command ${script} NAME)
+  file(RELATIVE_PATH target ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_DATADIR}/goniochrome/scripts/${script})
+  file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/commands)
+  file(CREATE_LINK ${target} ${PROJECT_BINARY_DIR}/commands/${command} SYMBOLIC)
+  install(FILES ${PROJECT_BINARY_DIR}/commands/${command} TYPE BIN)
+endforeach()
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME goniochrome)
@@ -59,7 +68,7 @@ set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # OSMesa, or EGL in its place, is opened at run time by the engine gl alone, and the other engines draw without it.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libosmesa6 | libegl1, libosmesa6 | libgl1-mesa-dri, python3")
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "snakemake, parallel, openimageio-tools, python3-numpy, python3-openimageio")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "bash-completion, snakemake, parallel, openimageio-tools, python3-numpy, python3-openimageio")
 set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_LIST_DIR}/debian-files.cmake)
 set(CPACK_GONIOCHROME_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 include(CPack)

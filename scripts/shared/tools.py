@@ -1,5 +1,6 @@
 """Where the tools of the toolchain are, and how a script runs them."""
 
+import os
 import pathlib
 import shutil
 import subprocess
@@ -17,9 +18,18 @@ class Failed(Exception):
 
 
 def tools_folder():
-    """The folder of the tools that are in PATH; if there are none, the folder of this checkout's release build."""
+    """The folder of the tools: that which they were installed in with this script, else that of those in PATH, else that of this
+    checkout's release build."""
+    prefix = SCRIPTS.parents[2]
+    if SCRIPTS == prefix / "share/goniochrome/scripts" and (prefix / "bin/render-osmesa").exists():
+        return prefix / "bin"
     found = shutil.which("render-osmesa")
     return pathlib.Path(found).parent.absolute() if found else SCRIPTS.parent / "build/release/bin"
+
+
+def put_tools_into_path():
+    """Lets this process and those that it starts find the tools by their names."""
+    os.environ["PATH"] = os.pathsep.join([str(tools_folder()), os.environ.get("PATH", os.defpath)])
 
 
 def run_tool(program, *words, done=(0, 1), given=b"", cwd=None, command=""):

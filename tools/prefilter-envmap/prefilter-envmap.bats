@@ -28,8 +28,14 @@ within() { awk -v limit="$1" '$1 > limit { bad = 1 } { n++ } END { exit bad || !
   prefilter-envmap -q -e 6,70 --size 8 --verify 4 "$sky" -o sky.env.exr
   exrheader sky.env.exr >header
   for name in diffuse lobe-000 lobe-001 mirror; do grep -q "\"$name\"" header; done
-  [ "$(grep -c 'goniochrome:texels.*"center"' header)" -eq 4 ]
-  [ "$(grep -c 'colorInteropID.*"lin_rec2020_scene"' header)" -eq 4 ]
+  # Those that follow from them.
+  for name in coat-diffuse open-coat-diffuse open-diffuse open-lobe-000 open-lobe-001; do grep -q "\"$name\"" header; done
+  [ "$(grep -c 'goniochrome:version (type int): 1' header)" -eq 5 ]
+  [ "$(grep -c 'goniochrome:texels.*"center"' header)" -eq 9 ]
+  [ "$(grep -c 'colorInteropID.*"lin_rec2020_scene"' header)" -eq 9 ]
+  # An environment without bright spots has one such part.
+  prefilter-envmap -q -e 6 --size 8 --verify 4 --spots 0 "$sky" -o even.env.exr
+  [ "$(exrheader even.env.exr | grep -c 'goniochrome:version')" -eq 1 ]
   grep -q 'goniochrome:exponent (type float): 70' header
   grep -q 'goniochrome:maxError' header
   grep -q 'goniochrome:command.*prefilter-envmap [0-9.]*: prefilter-envmap -q -e 6,70' header

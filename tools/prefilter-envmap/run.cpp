@@ -10,6 +10,7 @@
 #include "base/text.h"
 #include "contact_sheet.h"
 #include "envmap/mip.h"
+#include "envmap/open_maps.h"
 #include "prefilter/exact_lobe.h"
 #include "prefilter/lobe_cache.h"
 #include "prefilter/prefilter.h"
@@ -141,8 +142,9 @@ bool verify(const Options& options, const envmap::Environment& env, const envmap
   return within;
 }
 
-Result<void> write(const Options& options, const envmap::PrefilteredEnvironment& result, const cli::Session& session) {
+Result<void> write(const Options& options, envmap::PrefilteredEnvironment& result, const cli::Session& session) {
   const std::string command = session.provenance();
+  if (options.layout == "env") envmap::keep_open_maps(result);
   if (options.layout == "mip") return envmap::write_mip(options.output, result.lobes, result.source, command);
   return envmap::write_env(options.output, result, command);
 }

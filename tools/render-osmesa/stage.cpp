@@ -7,6 +7,7 @@
 
 #include "base/paths.h"
 #include "base/text.h"
+#include "envmap/open_maps.h"
 #include "image/aov_file.h"
 #include "prefilter/lobe_tree.h"
 #include "render/aov.h"
@@ -265,6 +266,7 @@ Result<void> set_stage(const Options& options, Request& request, Stage& stage, c
   scene.reflection = request.reflection;
   if (!options.env.empty()) {
     GONIO_ASSIGN(stage.env, envmap::read_env(options.env, looked_up_maps(options, request, stage)));
+    envmap::keep_open_maps(stage.env);  // those that the file lacks
     scene.env = &stage.env;
     if (options.texture_maps == "mip" && !options.textures.empty()) {
       GONIO_ASSIGN(stage.mip, render::mip_cube(stage.env));

@@ -39,14 +39,14 @@ void put_forms(const ProductForms& forms, const float* rgb, float* to) {
   for (int form = 0; form < forms.count; ++form) to[form] = static_cast<float>(forms.of(form, color));
 }
 
-std::vector<float> interleaved(const std::vector<envmap::CubeMap>& maps, const ProductForms& forms,
+std::vector<float> interleaved(const std::vector<envmap::MapPointer>& maps, const ProductForms& forms,
                                std::size_t stride) {
-  const std::size_t wide = static_cast<std::size_t>(maps.front().size) + 2, texels = wide * wide;
+  const std::size_t wide = static_cast<std::size_t>(maps.front()->size) + 2, texels = wide * wide;
   std::vector<float> data(6 * texels * stride + kBlock, 0.0F);  // the last texel is read by the block
   parallel_for(6 * maps.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t job = begin; job < end; ++job) {
       const std::size_t face = job / maps.size(), map = job % maps.size();
-      const std::vector<float> texel = bordered_face(maps[map], static_cast<int>(face));
+      const std::vector<float> texel = bordered_face(*maps[map], static_cast<int>(face));
       float* to = &data[face * texels * stride + floats_of(forms) * map];
       for (std::size_t i = 0; i < texels; ++i) put_forms(forms, &texel[3 * i], to + i * stride);
     }

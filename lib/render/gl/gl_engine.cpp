@@ -103,13 +103,13 @@ Result<void> GlEngine::load(const Scene& scene, const Effects& effects) {
   gl_->BlendFunc(GL_ONE, GL_ONE);
   for (const auto& [sampler, texture] : cubes_) gl_->DeleteTextures(1, &texture);
   cubes_.clear();
-  if (maps.diffuse.size > 0) upload(maps.diffuse.maps[0], "diffuse");
-  if (maps.diffuse.maps.size() > 1) upload(maps.diffuse.maps[1], "coat_diffuse");
+  if (maps.diffuse.size > 0) upload(*maps.diffuse.maps[0], "diffuse");
+  if (maps.diffuse.maps.size() > 1) upload(*maps.diffuse.maps[1], "coat_diffuse");
   for (const MapClass& lobes : maps.lobes) {
     for (std::size_t i = 0; i < lobes.slots.size(); ++i)
-      upload(lobes.maps[i], fmt::format("lobe_{}", lobes.slots[i] - 1));
+      upload(*lobes.maps[i], fmt::format("lobe_{}", lobes.slots[i] - 1));
   }
-  if (maps.mirror.size > 0) upload(maps.mirror.maps[0], "mirror");
+  if (maps.mirror.size > 0) upload(*maps.mirror.maps[0], "mirror");
   tilt_exponents_ = tilt_exponents(scene, effects);
   for (const double exponent : tilt_exponents_) {
     const std::string sampler = tilt_sampler(effects, tilt_exponents_, exponent);

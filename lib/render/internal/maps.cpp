@@ -6,7 +6,6 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "render/internal/tilt_table.h"
-#include "render/spots.h"
 
 namespace goniochrome::render {
 
@@ -28,8 +27,9 @@ Result<void> check_lobe(const envmap::PrefilteredEnvironment& env, double expone
       shortest(exponent), env.source.empty() ? "SOURCE" : env.source, list);
 }
 
-envmap::CubeMap resized(const envmap::CubeMap& map, int size) {
-  if (map.size == size) return map;
+envmap::MapPointer resized(envmap::MapPointer from, int size) {
+  const envmap::CubeMap& map = *from;
+  if (map.size == size) return from;
   envmap::CubeMap result(size);
   parallel_for(static_cast<std::size_t>(6 * size), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -40,11 +40,12 @@ envmap::CubeMap resized(const envmap::CubeMap& map, int size) {
       }
     }
   });
-  return result;
+  return std::make_shared<const envmap::CubeMap>(std::move(result));
 }
 
-MapClass single(int slot, const envmap::CubeMap& map) {
-  return {map.size, {slot}, {map}, false};
+MapClass single(int slot, envmap::MapPointer map) {
+  const int size = map->size;
+  return {size, {slot}, {std::move(map)}, false};
 }
 
 }  // namespace
@@ -75,13 +76,10 @@ Result<SceneMaps> scene_maps(const Scene& scene, const Effects& effects) {
   SceneMaps maps;
   if (!effects.environment) return maps;
   const envmap::PrefilteredEnvironment& env = *scene.env;
-  const std::vector<envmap::Spot> spots(env.spots.begin(),
-                                        env.spots.begin() + static_cast<std::ptrdiff_t>(effects.spots));
-  if (effects.diffuse)
-    maps.diffuse = single(WeightTable::diffuse_slot(), diffuse_without_spots(env.diffuse.map, false, spots));
+  if (effects.diffuse) maps.diffuse = single(WeightTable::diffuse_slot(), envmap::open_diffuse_map(env, effects.spots));
   if (effects.diffuse && effects.coat) {
     maps.diffuse.slots.push_back(slots_of(effects).coat_diffuse_slot());
-    maps.diffuse.maps.push_back(diffuse_without_spots(coat_diffuse_map(env), true, spots));
+    maps.diffuse.maps.push_back(envmap::open_coat_diffuse_map(env, effects.spots));
   }
   for (const Effects::LobeUse& use : effects.lobes) GONIO_TRY(check_lobe(env, use.exponent, effects));
   for (const double exponent : tilt_exponents(scene, effects)) GONIO_TRY(check_lobe(env, exponent, effects));
@@ -90,7 +88,7 @@ Result<SceneMaps> scene_maps(const Scene& scene, const Effects& effects) {
     for (const std::size_t j : of.lobes) {
       into.slots.push_back(WeightTable::lobe_slot(j));
       const double exponent = effects.lobes[j].exponent;
-      into.maps.push_back(resized(without_spots(env.lobe(exponent)->map, exponent, spots), into.size));
+      into.maps.push_back(resized(envmap::open_map(env, *env.lobe(exponent), effects.spots), into.size));
     }
     maps.lobes.push_back(std::move(into));
   }
@@ -100,7 +98,7 @@ Result<SceneMaps> scene_maps(const Scene& scene, const Effects& effects) {
           "the environment has no mirror part, which {} needs: make it with a basis that holds <mirror/>",
           effects.mirror ? "a paint with a mirror lobe" : "--background env");
     }
-    maps.mirror = single(1 + static_cast<int>(effects.lobes.size()), env.mirror.map);
+    maps.mirror = single(1 + static_cast<int>(effects.lobes.size()), envmap::plain_map(env.mirror));
   }
   return maps;
 }

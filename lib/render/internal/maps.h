@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "envmap/prefiltered.h"
+#include "envmap/open_maps.h"
 #include "render/effects.h"
 
 namespace goniochrome::render {
@@ -13,9 +13,9 @@ namespace goniochrome::render {
 // Maps that are sampled together, all with faces of one size.
 struct MapClass {
   int size = 0;
-  std::vector<int> slots;             // of the weight table, ascending
-  std::vector<envmap::CubeMap> maps;  // one for each slot
-  bool shifted = false;               // a single lobe, met by r + s n
+  std::vector<int> slots;                // of the weight table, ascending
+  std::vector<envmap::MapPointer> maps;  // one for each slot
+  bool shifted = false;                  // a single lobe, met by r + s n
 };
 
 struct SceneMaps {
@@ -35,7 +35,7 @@ std::vector<LobeClass> lobe_classes(const envmap::PrefilteredEnvironment& env, c
 // The maps of the scene's environment that the effects need, without the bright spots that they cut one by one; the
 // mirror part keeps these. A lobe's map is brought to the size of its class by
 // bilinear interpolation between its own texels. Error: a lobe or the mirror part that the environment lacks, with the
-// command that makes it.
+// command that makes it. The maps may be those of the environment, which must outlive them.
 Result<SceneMaps> scene_maps(const Scene& scene, const Effects& effects);
 
 // A face with the texels of its neighbors around it, as seamless filtering has them (a corner is the mean of the three

@@ -41,7 +41,7 @@ Result<OpenLight> OpenLight::create(const envmap::PrefilteredEnvironment& env, c
     if (lobe == nullptr)
       return input_error("the environment has no lobe of exponent {}, which a transport of this basis needs",
                          shortest(exponent));
-    open.lobes_.push_back(without_spots(lobe->map, exponent, env.spots));
+    open.lobes_.push_back(envmap::open_map(env, *lobe, env.spots.size()));
   }
   if (env.diffuse.map.size == 0 || env.mirror.map.size == 0)
     return input_error(
@@ -60,8 +60,8 @@ Result<OpenLight> OpenLight::create(const envmap::PrefilteredEnvironment& env, c
     effects.fresnel = effects.horizon = effects.mirror = true;
     open.weights_.emplace(coat_index, UnitWeights(scene, effects, columns.exponents, coat_index));
   }
-  open.diffuse_ = diffuse_without_spots(env.diffuse.map, false, env.spots);
-  if (open.weights_.size() > 1) open.coat_diffuse_ = diffuse_without_spots(coat_diffuse_map(env), true, env.spots);
+  open.diffuse_ = envmap::open_diffuse_map(env, env.spots.size());
+  if (open.weights_.size() > 1) open.coat_diffuse_ = envmap::open_coat_diffuse_map(env, env.spots.size());
   for (const envmap::Spot& spot : env.spots) open.spots_.push_back(open.weights_.begin()->second.disc(light_of(spot)));
   return open;
 }
@@ -74,14 +74,14 @@ void OpenLight::at(const Vec3& n, const Vec3& to_viewer, int part, color::Rgb* l
   const WeightTable& table = weights.table();
   std::fill_n(light, columns_.count(), color::Rgb{});
   const bool bare = &weights == &weights_.at(paint::kNoCoat);
-  light[0] = weights.at(0, weights.diffuse_slot(), cos_o) * envmap::bilinear(bare ? diffuse_ : coat_diffuse_, n);
+  light[0] = weights.at(0, weights.diffuse_slot(), cos_o) * envmap::bilinear(bare ? *diffuse_ : *coat_diffuse_, n);
   for (const UnitWeights::Disc& spot : spots_) weights.add_diffuse(spot, n, cos_o, 1, light);
   const auto add_lobes = [&](const Vec3& mirrored, double share) {
     for (std::size_t k = 1; k < columns_.mirror(); ++k) {
       const std::size_t lobe = (k - 1) / 2;
       const double shift = weights.at(k, table.shift_slot(lobe), cos_o, static_cast<int>(lobe % 4));
       light[k] += share * weights.at(k, WeightTable::lobe_slot(lobe), cos_o) *
-                  envmap::bilinear(lobes_[lobe], mirrored + shift * n);
+                  envmap::bilinear(*lobes_[lobe], mirrored + shift * n);
     }
     for (const UnitWeights::Disc& spot : spots_) weights.add_lobes(spot, n, to_viewer, mirrored, share, light);
   };

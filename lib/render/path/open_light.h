@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "envmap/open_maps.h"
 #include "render/effects.h"
 #include "render/path/lobe_columns.h"
 #include "render/unit_weights.h"
@@ -28,11 +29,11 @@ class OpenLight {
 
   const envmap::PrefilteredEnvironment* env_ = nullptr;
   LobeColumns columns_;
-  std::vector<envmap::CubeMap> lobes_;  // of the columns' exponents; these and the next two without bright spots
+  std::vector<envmap::MapPointer> lobes_;  // of the columns' exponents; these and the next two without bright spots
   std::vector<std::vector<brdf::Tilt>> tilts_;
   std::vector<double> coats_;
-  envmap::CubeMap diffuse_, coat_diffuse_;  // the second where any part has a coat
-  std::map<double, UnitWeights> weights_;   // by coat
+  envmap::MapPointer diffuse_, coat_diffuse_;  // the second where any part has a coat
+  std::map<double, UnitWeights> weights_;      // by coat
   std::vector<UnitWeights::Disc> spots_;
 };
 

@@ -98,10 +98,10 @@ def announced(options, paints, scenes, typical):
     """The text that tells what the search will do, with a time from typical costs."""
     samples, bases = min(SAMPLES, paints), 1 if options.basis else len(BASES)
     pictures = samples * scenes
-    timed_s = bases * len(TOLERANCES) * (len(options.env) * typical["environment_s"] + pictures * typical["picture_s"])
+    timed_s = bases * len(TOLERANCES) * (len(options.env) * typical["environment_s"] + pictures * typical["alone_s"])
     timed_s += bases * len(INTEGRALS) * pictures * typical["integral_s"]
     pixels = (bases + 3) * CHOOSING + 2 * PROVING  # the checks of the bases, of the cheapest settings, and of what proves them
-    checks_s = pictures * (pixels * typical["check_pixel_s"] + (bases + 5) * typical["picture_s"])
+    checks_s = pictures * (pixels * typical["check_pixel_s"] + (bases + 5) * typical["alone_s"])
     return (f"  choose, once, for a mean dE00 of {options.target_de00:g}: "
             f"the cheapest of {bases} bas{'es' if bases > 1 else 'is'}, {len(METHODS)} methods with and without views, "
             f"{len(TOLERANCES)} tolerances of environments, {len(EFFECTS) + 1} of effects and {len(INTEGRALS)} of the integral, "

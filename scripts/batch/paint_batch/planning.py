@@ -13,11 +13,12 @@ from .steps import Shard, scene_name
 from .tools import Tools
 
 PROBE = 400  # paints, spread over the library, whose cost is measured
-PICTURED = 3  # those of them that are drawn
+PICTURED = 3  # those of them that are drawn with a check, each by a run of its own
+STREAMED = 20  # those of them that are drawn by a stream
 JOB_S = 0.5  # the seconds that a workflow engine and Python add to a shard
 
 # Seconds on a core of a server of 2020, for the plan that is printed before anything is measured.
-TYPICAL = {"clean_s": 0.0001, "environment_s": 1.0, "stream_s": 0.0005, "picture_s": 0.25, "integral_s": 2.0,
+TYPICAL = {"clean_s": 0.0001, "environment_s": 1.0, "stream_s": 0.0005, "picture_s": 0.03, "alone_s": 0.25, "integral_s": 2.0,
            "check_pixel_s": 0.01, "start_s": 0.1}
 
 
@@ -33,13 +34,14 @@ def announce(options):
     """Prints what will be done, with a time from typical costs. The measured time follows after the preparation."""
     paints = roughly_counted(options.library)
     scenes = len(options.env) * len(options.mesh) * len(options.view)
-    pictured_s = min(PICTURED, paints) * scenes * TYPICAL["picture_s"]
+    pictured_s = (min(PICTURED, paints) * TYPICAL["alone_s"] if options.target_de00 else
+                  min(STREAMED, paints) * TYPICAL["picture_s"] + 2 * TYPICAL["alone_s"]) * scenes
     probed_s = min(PROBE, paints) * 2 * TYPICAL["stream_s"] + pictured_s + 2 * TYPICAL["start_s"]
     unfiltered = sum(not env.endswith(".env.exr") for env in options.env)
     prepare_s = paints * TYPICAL["clean_s"] + unfiltered * TYPICAL["environment_s"] + probed_s
     picture_s, choice, checked = TYPICAL["picture_s"], "", ""
     if options.target_de00:
-        picture_s += options.check * TYPICAL["check_pixel_s"]
+        picture_s = TYPICAL["alone_s"] + options.check * TYPICAL["check_pixel_s"]
         choice, checked = choosing.announced(options, paints, scenes, TYPICAL), f", each checked at {options.check} pixels"
     work_s = paints * (TYPICAL["stream_s"] + scenes * picture_s)
     print(f"plan: {options.library}, about {paints} paints\n{choice}"
@@ -104,7 +106,8 @@ def stream_seconds(work, paints, folder):
 
 
 def measured(plan, out, places):
-    """The seconds of a paint, of a picture and of a start of all tools, from PROBE paints, of which PICTURED are drawn."""
+    """The seconds of a paint, of a picture and of a start of all tools, from PROBE paints, of which STREAMED are drawn or, with
+    --target-de00, PICTURED."""
     paints = library.spread(out / "library.paints.xml", places, PROBE)
     with tempfile.TemporaryDirectory(prefix="paint-batch-") as scratch:
         folder = pathlib.Path(scratch)
@@ -113,11 +116,30 @@ def measured(plan, out, places):
         start_s = stream_seconds(work, paints[:1], folder)
         stream_s = max(0, stream_seconds(work, paints, folder) - start_s) / max(1, len(paints) - 1)
         fitted = [fit[0] for fit in work.tools.lines(work.fit, paints, folder) if not isinstance(fit, Failed)]
-        cost = {"picture_s": picture_seconds(plan, work, fitted, lambda scene, paint: work.draw(scene, paint, folder, "p.png"))}
-        if work.target:
-            checked_s = picture_seconds(plan, work, fitted, lambda scene, paint: work.checked(scene, 0, paint, folder, "p.png"))
-            cost = {"picture_s": checked_s, "check_s": max(0, checked_s - cost["picture_s"])}
-    return {"start_s": start_s + JOB_S, "stream_s": stream_s, **cost}
+        if not work.target:
+            picture_s, scenes_s = streamed_seconds(plan, work, fitted[:STREAMED], folder)
+            return {"start_s": start_s + scenes_s + JOB_S, "stream_s": stream_s, "picture_s": picture_s}
+        drawn_s = picture_seconds(plan, work, fitted, lambda scene, paint: work.draw(scene, paint, folder, "p.png"))
+        checked_s = picture_seconds(plan, work, fitted, lambda scene, paint: work.checked(scene, 0, paint, folder, "p.png"))
+    return {"start_s": start_s + JOB_S, "stream_s": stream_s, "picture_s": checked_s, "check_s": max(0, checked_s - drawn_s)}
+
+
+def streamed_seconds(plan, work, fitted, folder):
+    """(the seconds of a picture in a stream, the seconds that a shard takes to begin the streams of all scenes)"""
+    def seconds(count):
+        work.tools.seconds = {}
+        for scene in plan["scenes"]:
+            with contextlib.suppress(Failed):
+                work.render(scene, fitted[:count], folder, "p{index}.png")
+        return work.tools.seconds.get("render-osmesa", 0)
+
+    if not fitted or not plan["scenes"]:
+        return 0.0, 0.0
+    one_s, scenes = seconds(1), len(plan["scenes"])
+    if len(fitted) == 1:
+        return one_s / scenes, 0.0
+    picture_s = max(0, seconds(len(fitted)) - one_s) / (len(fitted) - 1) / scenes
+    return picture_s, max(0, one_s - scenes * picture_s)
 
 
 def picture_seconds(plan, work, fitted, draw):

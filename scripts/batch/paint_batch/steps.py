@@ -1,7 +1,10 @@
 """What is done with a shard: the fit, indices, panel check, nearest paint and pictures of every paint, and its row."""
 
 import json
+import os
 import pathlib
+import re
+import shutil
 import tempfile
 
 from shared.files import write_whole
@@ -12,6 +15,9 @@ from .tools import Tools, json_lines
 
 COLUMNS = ["paint", "name", "class", "fit", "de00_max", "de00_mean", "gamut_de00", "flop_index", "chroma_index",
            "hue_shift_index", "worst_deg", "nearest", "nearest_distance", "pictures", "failed"]
+# A paint with one of these is drawn by a run of its own. In a stream its picture could depend on the paints before it, by effects
+# that these call for.
+ALONE = re.compile("<(anisotropy|colorMap|tilts)[ />]")
 TARGETED = ["worst_scene", "picture_de00", "total_de00", "within"]  # more columns with --target-de00
 
 
@@ -47,8 +53,9 @@ class Checks:
 
 
 class Shard:
-    def __init__(self, plan, out, checks=None):
-        self.plan, self.out, self.checks, self.tools = plan, out, checks, Tools()
+    def __init__(self, plan, out, checks=None, drawn=None):
+        """`drawn` is a folder beside the pictures, in which those of streams are written until they get their names."""
+        self.plan, self.out, self.checks, self.drawn, self.tools = plan, out, checks, drawn, Tools()
         self.target = plan.get("target")
 
     def fit(self, given, folder):
@@ -85,12 +92,59 @@ class Shard:
 
         A picture contains the command that made it. With this link the paths in it are the same for any shard and any folder.
         """
-        write_whole(folder / "alone.paints.xml", library.document([paint]))
+        self.render(scene, [paint], folder, picture, *more)
+
+    def render(self, scene, paints, folder, pattern, *more):
+        """Draws paints by one run of render-osmesa, in `folder`, where "out" is a link to the batch."""
+        write_whole(folder / "given.paints.xml", library.document(paints))
         if not (folder / "out").exists():
             (folder / "out").symlink_to(self.out, target_is_directory=True)
         self.tools.run("render-osmesa", "-q", "--threads", 1, "--mesh", scene["mesh"], "--env", scene["env"], "--paint",
-                       "alone.paints.xml", *frame_words(scene["view"], self.plan["size"]), *self.chosen("render"), *more,
-                       "-o", picture, cwd=folder)
+                       "given.paints.xml", *frame_words(scene["view"], self.plan["size"]), *self.chosen("render"), *more,
+                       "-o", pattern, cwd=folder)
+
+    def draw_stream(self, scene, paints, folder):
+        """Draws paints, given as {number: text}, by one run, and returns why those without a picture have none, by number.
+
+        The run writes each picture whole, as soon as it is drawn, into the folder `drawn`. If this process is killed, the next one
+        finds there what was drawn.
+        """
+        self.settle(scene)
+        numbers = [number for number in paints if not picture_path(self.out, scene, number).exists()]
+        if not numbers:
+            return {}
+        self.drawn.mkdir(exist_ok=True)
+        files.write_json(self.drawn / "numbers.json", {"scene": scene["name"], "numbers": numbers})
+        if not (folder / "drawn").exists():
+            (folder / "drawn").symlink_to(self.drawn, target_is_directory=True)
+        report, failed = folder / "drawn.json", {}
+        report.unlink(missing_ok=True)
+        try:
+            self.render(scene, [paints[number] for number in numbers], folder, "drawn/{index}.png", "--report", "drawn.json")
+            told = files.read_json(report)["results"]["pictures"]
+            failed = {number: Failed(one["message"]) for number, one in zip(numbers, told) if one["status"] == "failed"}
+        except Failed as error:
+            if len(numbers) == 1:
+                return {numbers[0]: error}
+            self.settle(scene)
+            half = {number: paints[number] for number in numbers[: len(numbers) // 2]}
+            rest = {number: paints[number] for number in numbers[len(numbers) // 2 :]}
+            return self.draw_stream(scene, half, folder) | self.draw_stream(scene, rest, folder)
+        self.settle(scene)
+        return {number: failed.get(number) or Failed("it was not drawn") for number in numbers
+                if not picture_path(self.out, scene, number).exists()}
+
+    def settle(self, scene):
+        """Gives the pictures of a stream of this scene, which may have been killed, their names."""
+        if self.drawn is None or not (self.drawn / "numbers.json").exists():
+            return
+        begun = files.read_json(self.drawn / "numbers.json")
+        if begun["scene"] != scene["name"]:
+            return
+        for index, number in enumerate(begun["numbers"], 1):
+            if (picture := self.drawn / f"{index:04}.png").exists():
+                os.replace(picture, picture_path(self.out, scene, number))
+        (self.drawn / "numbers.json").unlink()
 
     def checked(self, scene, number, paint, folder, picture):
         """Draws a picture; returns its mean dE00 to the reference integrator, at random pixels that differ for every paint."""
@@ -101,39 +155,58 @@ class Shard:
             raise Failed(f"{scene['name']}: not a pixel of the mesh is in the picture")
         return error["de00_mean"]
 
-    def pictures(self, number, paint, folder):
-        """Draws the pictures of a paint that are not there yet; returns {scene: mean dE00} if there is a target, else {}."""
+    def checked_pictures(self, number, paint, folder):
+        """Draws the pictures of a paint that are not there yet; returns {scene: mean dE00}."""
         found = {}
         for scene in self.plan["scenes"]:
             picture = picture_path("out", scene, number)
             there = picture_path(self.out, scene, number).exists()
-            if self.target:
-                if not there or str(picture) not in self.checks.found:
-                    self.checks.add(str(picture), self.checked(scene, number, paint, folder, picture))
-                found[scene["name"]] = self.checks.found[str(picture)]
-            elif not there:
-                self.draw(scene, paint, folder, picture)
+            if not there or str(picture) not in self.checks.found:
+                self.checks.add(str(picture), self.checked(scene, number, paint, folder, picture))
+            found[scene["name"]] = self.checks.found[str(picture)]
         return found
+
+    def pictures(self, paints, folder):
+        """Draws the pictures of paints, given as {number: text}; returns why those without all pictures have none, by number."""
+        failed = {}
+        for scene in self.plan["scenes"]:
+            streamed = {number: paint for number, paint in paints.items() if not ALONE.search(paint)}
+            failed |= self.draw_stream(scene, streamed, folder)
+            for number, paint in paints.items():
+                if number in streamed or picture_path(self.out, scene, number).exists():
+                    continue
+                try:
+                    self.draw(scene, paint, folder, picture_path("out", scene, number))
+                except Failed as error:
+                    failed[number] = error
+        return failed
 
     def rows(self, first, paints, folder):
         """[(row, fitted text)] of the paints; the row of a paint that fails has the message, and its pictures are not drawn."""
         steps = {"fit": self.fit, "stats": self.stats, "index": self.index, "snap": self.snap}
         results = {name: self.tools.lines(step, paints, folder) for name, step in steps.items()}
-        rows = []
+        rows, given = [], {}
         for i, paint in enumerate(paints):
             got = {name: result[i] for name, result in results.items()}
             fitted = paint if isinstance(got["fit"], Failed) else got["fit"][0]
             row = row_of(first + i, got) | dict.fromkeys(TARGETED if self.target else ())
             if "fit" not in row["failed"]:
-                try:
-                    found = self.pictures(first + i, fitted, folder)
+                given[first + i] = fitted
+            rows.append((row, fitted))
+        failed = {} if self.target else self.pictures(given, folder)
+        for row, fitted in rows:
+            number = row["paint"]
+            try:
+                if number in failed:
+                    raise failed[number]
+                if number in given:
+                    found = self.checked_pictures(number, fitted, folder) if self.target else {}
                     row["pictures"] = len(self.plan["scenes"])
                     if found and row["de00_mean"] is not None:
                         row |= verdict(row["de00_mean"], found, self.target["de00"])
-                except Failed as error:
-                    row["failed"]["picture"] = without(error, folder)
+            except Failed as error:
+                row["failed"]["picture"] = str(error)
             row["failed"] = {step: without(message, folder) for step, message in row["failed"].items()}
-            rows.append((row, fitted))
         return rows
 
 
@@ -184,12 +257,13 @@ def run_shard(out, number):
             print("begun", file=log)
         for scene in plan["scenes"]:
             picture_path(out, scene, 0).parent.mkdir(parents=True, exist_ok=True)
-        work = Shard(plan, out, Checks(folder / "checks"))
+        work = Shard(plan, out, Checks(folder / "checks"), folder / "drawn")
         with tempfile.TemporaryDirectory(prefix="paint-batch-") as scratch:
             paints = library.paints_at(out / "library.paints.xml", *shard["places"])
             rows = work.rows(shard["first"], paints, pathlib.Path(scratch))
         write_whole(folder / "fitted.txt", "".join(f"  {fitted}\n" for _, fitted in rows))
         files.write_json(folder / "rows.json", [row for row, _ in rows])
+        shutil.rmtree(folder / "drawn", ignore_errors=True)
         with open(folder / "log", "a", encoding="utf-8") as log:
             print("finished", file=log)
         files.write_json(folder / "done.json", {"tools_s": work.tools.seconds})
