@@ -8,7 +8,7 @@
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
 #include "fit/paint_fit.h"
-#include "render/path/packed_view.h"
+#include "render/light_transport.h"
 #include "studio/paint_json.h"
 #include "studio/studio.h"
 

@@ -10,8 +10,7 @@
 #include "base/json.h"
 #include "base/result.h"
 #include "paint/paint.h"
-#include "render/path/packed_view.h"
-#include "render/path/shown_paints.h"
+#include "render/light_transport.h"
 #include "studio/internal/json_reader.h"
 
 namespace goniochrome::studio {
