@@ -30,9 +30,10 @@ cli::ToolSpec tool_spec(Options& o) {
       "CSV, and as CxF with the code of the nearest paint. It opens paint XML files, and saves sessions.",
       "All parts of the mesh wear the design, but for those that nobody paints, such as glass and tires: these are "
       "told by their names, as in render-osmesa. Beside the traced views of --transport, the page shows no shadows and "
-      "no light from one part to another. It shows no color maps anywhere, and a warning tells how many paints have "
-      "these. Brushed paints take longer to draw. While something moves, and first after each change, slow computers "
-      "draw the picture with fewer pixels.",
+      "no light from one part to another, and the ground of the environment lies below the mesh as render-osmesa lays "
+      "it, as it is where nothing stands on it. It shows no color maps anywhere, and a warning tells how many paints "
+      "have these. Brushed paints take longer to draw. While something moves, and first after each change, slow "
+      "computers draw the picture with fewer pixels.",
       "The compiled library lies in ../lib/goniochrome beside the program, as the files studio.wasm and "
       "studio.html, or in $GONIOCHROME_MODULE_PATH. Where the compiler for WebAssembly was missing when the tools "
       "were built, paint-studio says which packages it takes, and the exit status is 3."};

@@ -73,6 +73,28 @@ needs_browser() {
   done
 }
 
+# Most of the ground is so far from the mesh that nothing takes its light away.
+@test "the ground lies where render-osmesa lays it" {
+  needs_browser
+  fit-paint -q -b "$TESTDATA/b5.basis.xml" "$TESTDATA/paints.paints.xml" -o fitted.xml
+  run node "$code/pictures.js" page.html . 640x360 candy_red
+  echo "$output"
+  [ "$status" -eq 0 ]
+  for light in studio outdoor; do
+    white=$(sed -n 's|^<script type="application/json" id="data">\(.*\)</script>$|\1|p' page.html |
+      jq ".environments[] | select(.name == \"$light\").white")
+    render-osmesa -q --trim --mesh "$TESTDATA/speed-shape.obj" -p "fitted.xml#candy_red" --env "$light.env.exr" \
+      --background env --floor shadow --size 640x360 --samples 1 --aov mask --tolerance 2 -o "ground-$light.exr"
+    run /usr/bin/python3 "$code/compare.py" "candy_red-$light.f32" "ground-$light.exr" "$white" beside
+    echo "$light: mean p95 largest pixels median: $output"
+    awk -v numbers="$output" 'BEGIN { split(numbers, n, " "); exit !(n[4] > 100000 && n[5] <= 0.1) }'
+    # The control: the environment far away, as it is without the ground.
+    run /usr/bin/python3 "$code/compare.py" "candy_red-$light-groundless.f32" "ground-$light.exr" "$white" beside
+    echo "$light without ground: $output"
+    awk -v numbers="$output" 'BEGIN { split(numbers, n, " "); exit !(n[5] > 0.5) }'
+  done
+}
+
 # Two views with floors of both kinds, traced in a paint that is none of the four.
 @test "traced views show every paint as render-osmesa --gbuffer does" {
   needs_browser

@@ -78,6 +78,8 @@ drive("the views were looked at", { width: 1000, height: 1000 }, async ({ browse
   await drawn();
   check("a brushed paint is refused: " + (await status()), (await status()).includes("brushed otherwise"));
   await value("studio.turn('undo')");
+  await drawn();
+  check("what was said of it is taken back: " + (await status()), (await status()) === "");
 
   // The other views, and back to a light.
   for (const view of views.slice(1)) {

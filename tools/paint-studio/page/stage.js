@@ -25,6 +25,7 @@ class Stage {
     this.environments = data.environments.map(() => null);
     this.gbuffers = new Map();
     this.targets = new Map();
+    this.ground = true;  // whether the environment lies on the ground
     this.turn = 0;     // of the environment about +Y, in degrees, as the camera's azimuth counts
     this.lamp = null;  // {direction, white}: where it stands beside the mesh, and what a white surface facing it shows
     this.uploadMesh();
@@ -215,7 +216,7 @@ class Stage {
     }
     gl.disable(gl.DEPTH_TEST);
     target.key = key;
-    target.view = view;
+    target.view = { ...view, eye: camera.eye };
     return target;
   }
 
@@ -261,6 +262,9 @@ class Stage {
     if (program.discs) bind("discs", gl.TEXTURE_2D, program.discs);
     for (const cube of made.cubes) bind(cube.sampler, gl.TEXTURE_CUBE_MAP, cube.texture);
     for (const name of ["corner", "right", "down"]) gl.uniform3fv(program.at(name), gbuffer.view[name]);
+    const { seen_from, drop } = this.data.mesh.ground;
+    gl.uniform3fv(program.at("ground_eye"), turnedAgainst(added(gbuffer.view.eye, seen_from, -1), this.turn));
+    gl.uniform1f(program.at("ground_drop"), this.ground ? drop : 0);
     for (const [uniform, member] of [["light_direction", "direction"], ["light_white", "white"], ["light_disc", "disc"]])
       if (program.lamps.length > 0) gl.uniform3fv(program.at(uniform + "[0]"), program.lamps.flatMap((lamp) => lamp[member]));
   }

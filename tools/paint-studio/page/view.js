@@ -73,6 +73,10 @@ class StageView {
       });
     }
     byId("overlay").addEventListener("change", () => this.redraw());
+    byId("ground").addEventListener("change", () => {
+      this.stage.ground = byId("ground").checked;
+      this.settle();
+    });
     this.makeBorder();
     this.canvas.addEventListener("wheel", (event) => {
       event.preventDefault();
@@ -85,7 +89,8 @@ class StageView {
   choose(value) {
     this.traced = value.startsWith("view ") ? Number(value.slice(5)) : null;
     const fixed = this.traced !== null, view = this.app.data.views[this.traced];
-    for (const one of document.querySelectorAll("#turn, #turn-range, #lamp, #lamp-azimuth, #lamp-elevation, #lamp-stops, #reset-view, #drag-kinds .around"))
+    this.takeBack();
+    for (const one of document.querySelectorAll("#turn, #turn-range, #lamp, #lamp-azimuth, #lamp-elevation, #lamp-stops, #reset-view, #ground, #drag-kinds .around"))
       one.disabled = fixed;
     this.canvas.style.aspectRatio = fixed ? `${view.width} / ${view.height}` : "";
     this.app.surface.setKind(this.app.surface.kind);
@@ -206,11 +211,19 @@ class StageView {
       this.app.traced.draw(this.traced, this.weights, this.stops, this.overlay, moving);
       return true;
     });
-    if (!drawn) {
+    if (drawn) {
+      this.takeBack();
+    } else {
       this.app.traced.answer = null;
       this.stage.blank();
+      this.refusal = document.getElementById("status").textContent;
     }
     this.showTraced();
+  }
+  // Takes back what was said of a paint that a view cannot show.
+  takeBack() {
+    if (this.refusal && document.getElementById("status").textContent === this.refusal) this.app.say("");
+    this.refusal = "";
   }
   // Takes fewer pixels after slow frames, and more after fast ones.
   pace(frame_ms) {
