@@ -143,6 +143,10 @@ Result<AovFile> read_aov_file(const std::string& path, const std::vector<std::st
     file.light = {v[0], v[1], v[2]};
   }
   GONIO_TRY(take_rays(text("goniochrome:rays"), file));
+  if (const auto eye = text("goniochrome:eye"); !eye.empty()) {
+    GONIO_ASSIGN(const auto v, numbers(eye, 3, file.path, "goniochrome:eye"));
+    file.eye = Vec3{v[0], v[1], v[2]};
+  }
   GONIO_TRY(take_lights(text("goniochrome:lights"), file));
   GONIO_TRY(take_operator(text("goniochrome:operator"), file));
   file.parts = names_of(attributes, "goniochrome:parts");

@@ -2,6 +2,7 @@
 // angles, parts), and what the header tells of camera, lights and effects. goniochrome-theory(7), SKETCH FITTING.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,7 @@ struct AovFile {
   std::vector<AovLight> lights;  // all lights of the picture
   std::string environment;       // "" for none
   bool has_rays = false;
+  std::optional<Vec3> eye;   // where the rays begin; files of earlier versions do not tell it
   Vec3 corner, right, down;  // the ray through x, y (pixels from the upper left) is corner + x right + y down
   std::vector<std::string> parts, materials;  // one material for each part, "" where the mesh named none
   std::string command;                        // the command that made the file

@@ -6,6 +6,8 @@
 #include "render/path/bounce_scale.h"       // IWYU pragma: export
 #include "render/path/lobe_transport.h"     // IWYU pragma: export
 #include "render/path/open_transport.h"     // IWYU pragma: export
+#include "render/path/packed_view.h"        // IWYU pragma: export
+#include "render/path/shown_paints.h"       // IWYU pragma: export
 #include "render/path/transport_file.h"     // IWYU pragma: export
 #include "render/path/transport_shading.h"  // IWYU pragma: export
 #include "render/path/visible_surface.h"    // IWYU pragma: export

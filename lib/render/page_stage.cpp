@@ -19,9 +19,9 @@ namespace {
 
 // The programs for paints that are not brushed, and for those that are.
 std::pair<std::string, std::string> shading_fragments(Effects effects, const color::ReflectionOperator& op) {
-  std::string plain = for_opengl_es(shading_fragment_shader(effects, op, {}));
+  std::string plain = for_opengl_es(shading_fragment_shader(effects, op, {}, true));
   effects.anisotropy = true;
-  return {std::move(plain), for_opengl_es(shading_fragment_shader(effects, op, {}))};
+  return {std::move(plain), for_opengl_es(shading_fragment_shader(effects, op, {}, true))};
 }
 
 }  // namespace

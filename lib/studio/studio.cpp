@@ -19,6 +19,7 @@
 #include "studio/internal/handoff.h"
 #include "studio/internal/json_reader.h"
 #include "studio/internal/library_pane.h"
+#include "studio/internal/view_pane.h"
 #include "studio/paint_json.h"
 
 namespace goniochrome::studio {
@@ -46,6 +47,8 @@ struct Studio::State {
   std::optional<library::LibrarySearch> by_de76, by_de00;
   std::optional<LibraryPane> pane;
   std::vector<float> weights, tilts;
+  std::map<int, ViewPane> views;
+  const ViewPane* shown_view = nullptr;
   std::string attached;
 
   Result<Json> load(JsonReader& request);
@@ -60,6 +63,8 @@ struct Studio::State {
   Result<Json> gloss(JsonReader& request) const;
   Result<Json> dropper(JsonReader& request) const;
   Result<Json> gradient(JsonReader& request) const;
+  Result<Json> view(JsonReader& request);
+  Result<Json> show(JsonReader& request);
   Result<Json> answer(const Json& request);
   Result<paint::Paint> fitted(const paint::Paint& paint) const;
 };
@@ -71,6 +76,11 @@ Json edited_json(const paint::Edited& edited) {
           {"dropped", edited.dropped},
           {"clipped", edited.clipped},
           {"skipped", edited.skipped}};
+}
+
+// Without a reading of gloss it is the angle at which render-osmesa takes gloss to hold.
+double gloss_angle_deg(const paint::Paint& paint) {
+  return paint.gloss.empty() ? brdf::kGlossIncidence_deg : paint.gloss.front().angle_deg;
 }
 
 Json rgb_json(const color::Rgb& rgb) {
@@ -136,8 +146,7 @@ Result<Json> Studio::State::fit(JsonReader& request) {
   GONIO_ASSIGN(const fit::PaintFit fit, fitter->fit(paint));
   render::Scene scene;
   scene.paints = {fit.lobes};
-  // Without a reading of gloss it is the angle at which render-osmesa takes gloss to hold.
-  scene.gloss_deg = {paint.gloss.empty() ? brdf::kGlossIncidence_deg : paint.gloss.front().angle_deg};
+  scene.gloss_deg = {gloss_angle_deg(paint)};
   scene.reflection = page_operator();
   weights = render::page_weights(scene, effects);
   tilts.clear();
@@ -293,6 +302,29 @@ Result<Json> Studio::State::gradient(JsonReader& request) const {
   return Json{{"list", std::move(list)}};
 }
 
+Result<Json> Studio::State::view(JsonReader& request) {
+  const int number = static_cast<int>(request.number("view"));
+  if (shown_view != nullptr && views.contains(number) && shown_view == &views.at(number)) shown_view = nullptr;
+  const std::string bytes = std::exchange(attached, {});
+  GONIO_ASSIGN(ViewPane made, ViewPane::make(bytes, request));
+  Json answer = {{"width", made.width()}, {"height", made.height()}};
+  views.insert_or_assign(number, std::move(made));
+  return Result(std::move(answer));
+}
+
+Result<Json> Studio::State::show(JsonReader& request) {
+  if (!fitter) return input_error("\"load\" must come first");
+  GONIO_ASSIGN(const paint::Paint paint, paint_of_json(request.member("paint")));
+  const auto view = views.find(static_cast<int>(request.number("view", -1)));
+  if (view == views.end()) request.fail("the number of a view that was loaded", "view");
+  const bool small = request.flag("small");
+  GONIO_TRY(request.status());
+  GONIO_ASSIGN(const fit::PaintFit fit, fitter->fit(paint));
+  GONIO_ASSIGN(Json answer, view->second.show(paint, fit.lobes, gloss_angle_deg(paint), small));
+  shown_view = &view->second;
+  return Result(std::move(answer));
+}
+
 Result<Json> Studio::State::answer(const Json& json) {
   JsonReader request(json);
   const std::string wanted = request.text("do");
@@ -308,6 +340,8 @@ Result<Json> Studio::State::answer(const Json& json) {
   if (wanted == "gloss") return gloss(request);
   if (wanted == "dropper") return dropper(request);
   if (wanted == "gradient") return gradient(request);
+  if (wanted == "view") return view(request);
+  if (wanted == "show") return show(request);
   if (wanted == "filter" || wanted == "rows" || wanted == "cloud") {
     if (!pane) return input_error("\"load\" must come first");
     return wanted == "filter" ? pane->filter(request) : wanted == "rows" ? pane->rows(request) : pane->cloud(request);
@@ -345,6 +379,8 @@ std::span<const std::byte> bytes_of(const std::vector<Element>& list) {
 std::span<const std::byte> Studio::list(List which) const {
   if (which == List::kWeights) return bytes_of(state_->weights);
   if (which == List::kTilts) return bytes_of(state_->tilts);
+  if (which == List::kPicture)
+    return state_->shown_view != nullptr ? bytes_of(state_->shown_view->picture()) : std::span<const std::byte>{};
   if (!state_->pane) return {};
   switch (which) {
     case List::kFiltered:

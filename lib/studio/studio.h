@@ -42,6 +42,14 @@ color::ReflectionOperator page_operator();
 //   filter      text, classes[], ranges[] of metric, low and high, order: answers count, and fills list kFiltered.
 //   rows        places[]: answers list[] of name, code, class and colors[].
 //   cloud       geometry: answers count, and fills the lists kCloud (three floats each), kCloudColors and kCloudPaints.
+//   view        view, parts[] of name and material, mirrors (whether the finishes of parts that nobody paints mirror),
+//               operator[27]: attached() holds a view as render::packed_view() makes it, which has that number from now
+//               on. Answers width and height.
+//   show        view, paint, small: fits the paint and fills list kPicture with the view in that paint, radiance as R G
+//   B
+//               A of each pixel from the upper left; of fewer pixels where small is true. Answers width, height, scaled
+//               (whether bounced light was traced in other paints), bounced_de00_p95 (what scaling it errs by),
+//               trace_again (whether that is more than render-osmesa takes) and coat_changed.
 // An answer that holds "error" tells in a sentence what was wrong with the request.
 class Studio {
  public:
@@ -54,12 +62,12 @@ class Studio {
   // The row of weights of the paint that was fitted last, see render/page_weights.h.
   const std::vector<float>& weights() const;
 
-  // What answers fill, in the machine's own number format: floats of weights, tilts and clouds, else 32-bit whole
-  // numbers.
-  enum class List { kWeights, kFiltered, kCloud, kCloudColors, kCloudPaints, kTilts };
+  // What answers fill, in the machine's own number format: floats of weights, tilts, clouds and pictures, else
+  // 32-bit whole numbers.
+  enum class List { kWeights, kFiltered, kCloud, kCloudColors, kCloudPaints, kTilts, kPicture };
   std::span<const std::byte> list(List which) const;
 
-  // Bytes for "load", which takes them.
+  // Bytes for "load" or "view", which takes them.
   std::string& attached();
 
  private:

@@ -3,6 +3,7 @@ _paint_studio() {
   case ${COMP_WORDS[COMP_CWORD-1]} in
     --mesh|-m) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --env|-e) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --transport) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --basis|-b) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --title) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -11,7 +12,7 @@ _paint_studio() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--mesh --env --basis --title --output --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--mesh --env --transport --basis --title --output --explain --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

@@ -29,10 +29,11 @@ cli::ToolSpec tool_spec(Options& o) {
       "the command line that makes the same paint from the same library. It hands the paint over as paint XML, as "
       "CSV, and as CxF with the code of the nearest paint. It opens paint XML files, and saves sessions.",
       "All parts of the mesh wear the design, but for those that nobody paints, such as glass and tires: these are "
-      "told by their names, as in render-osmesa. The page shows no shadows, no light from one part to another and no "
-      "color maps. A warning tells how many paints have these. Brushed paints take longer to draw. While something "
-      "moves, and "
-      "first after each change, slow computers draw the picture with fewer pixels.",
+      "told by their names, as in render-osmesa. Beside the traced views of --transport, the page shows no shadows and "
+      "no light from one part to another, and the ground of the environment lies below the mesh as render-osmesa lays "
+      "it, as it is where nothing stands on it. It shows no color maps anywhere, and a warning tells how many paints "
+      "have these. Brushed paints take longer to draw. While something moves, and first after each change, slow "
+      "computers draw the picture with fewer pixels.",
       "The compiled library lies in ../lib/goniochrome beside the program, as the files studio.wasm and "
       "studio.html, or in $GONIOCHROME_MODULE_PATH. Where the compiler for WebAssembly was missing when the tools "
       "were built, paint-studio says which packages it takes, and the exit status is 3."};
@@ -45,6 +46,15 @@ cli::ToolSpec tool_spec(Options& o) {
               "prefiltered environment, made by prefilter-envmap(1)")
       .needed()
       .more("Each environment must have the lobes of the basis.");
+  spec.option("transport", "FILE", "view.exr", &o.transports,
+              "traced view of the mesh, made by render-osmesa(1) with --aov transport")
+      .more(
+          "The page lists it beside the lights. It shows every edit of the paint on it with shadows, with the floor "
+          "and with the light that parts send to each other: light that comes straight to the mesh exactly, and light "
+          "that it sends to itself scaled to the paint, as render-osmesa --gbuffer does from the same file. The page "
+          "says where a paint is so far from the one that was traced that this is doubtful. A view stays as it is, and "
+          "neither its camera nor its light can be moved. The file needs the lobes of the basis and the parts of the "
+          "mesh. Its light is packed in some 30 bytes a point, and what that changes is told.");
   spec.option("basis,b", "FILE", "testdata/b7.basis.xml", &o.basis, "basis that the page fits paints to").needed();
   spec.option("title", "TEXT", "Spring", &o.title, "title of the page; the name of the mesh by default");
   spec.heading = "output";
@@ -55,12 +65,16 @@ cli::ToolSpec tool_spec(Options& o) {
        "testdata/speed-shape.obj --env studio.env.exr --basis testdata/b5.basis.xml testdata/paints.paints.xml -o "
        "studio.html",
        "make a page of the sample paints in the light of a photographer's studio"}};
-  spec.report = {{"bytes", "size of the page"},
-                 {"code_bytes", "size of the page without its data: markup, scripts and the compiled library"},
-                 {"paints", "number of paints"},
-                 {"triangles", "number of triangles of the mesh"},
-                 {"environments[]", "name of each environment, and its bytes before they are compressed"},
-                 {"warnings[]", "the warnings of the run"}};
+  spec.report = {
+      {"bytes", "size of the page"},
+      {"code_bytes", "size of the page without its data: markup, scripts and the compiled library"},
+      {"paints", "number of paints"},
+      {"triangles", "number of triangles of the mesh"},
+      {"environments[]", "name of each environment, and its bytes before they are compressed"},
+      {"transports[]",
+       "name, points and columns of each traced view, bytes before and page_bytes after they are compressed, "
+       "rounding_de00_mean and rounding_de00_p95: what packing changes in paints of the page"},
+      {"warnings[]", "the warnings of the run"}};
   spec.see_also = {"paint-edit(1)", "paint-pick(1)",    "fit-paint(1)",
                    "colorsnap(1)",  "render-osmesa(1)", "prefilter-envmap(1)"};
   return spec;

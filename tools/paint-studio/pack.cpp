@@ -130,19 +130,24 @@ PackedMesh packed_mesh(const mesh::Mesh& mesh, bool with_mirror, PackedNumbers& 
     }
     parts.push_back({{"name", shown(part.name)}, {"first", part.first}, {"count", part.count}, {"row", row}});
   }
+  // The ground as render-osmesa lays it: seen from a third of the longest side above the middle.
+  const double eye_height = std::max({size.x, size.y, size.z}) / 3;
+  const Vec3 middle = 0.5 * (box.low + box.high);
   const render::Camera camera = render::Camera::orbit(mesh, kAzimuth_deg, kElevation_deg, 1, kFov_deg, 16.0 / 9);
-  result.json = {{"low", vector_json(box.low)},
-                 {"high", vector_json(box.high)},
-                 {"positions", numbers.add(positions)},
-                 {"normals", numbers.add(normals)},
-                 {"corners", numbers.add(corners)},
-                 {"parts", std::move(parts)},
-                 {"view",
-                  {{"azimuth", kAzimuth_deg},
-                   {"elevation", kElevation_deg},
-                   {"fov", kFov_deg},
-                   {"target", vector_json(camera.target)},
-                   {"distance", length(camera.eye - camera.target)}}}};
+  result.json = {
+      {"low", vector_json(box.low)},
+      {"high", vector_json(box.high)},
+      {"positions", numbers.add(positions)},
+      {"normals", numbers.add(normals)},
+      {"corners", numbers.add(corners)},
+      {"parts", std::move(parts)},
+      {"ground", {{"seen_from", vector_json({middle.x, box.low.y + eye_height, middle.z})}, {"drop", eye_height}}},
+      {"view",
+       {{"azimuth", kAzimuth_deg},
+        {"elevation", kElevation_deg},
+        {"fov", kFov_deg},
+        {"target", vector_json(camera.target)},
+        {"distance", length(camera.eye - camera.target)}}}};
   return result;
 }
 

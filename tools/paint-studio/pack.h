@@ -23,6 +23,7 @@ class PackedLibrary {
   // Takes a paint of a file of that name.
   void add(const std::string& file, const paint::Paint& paint);
   std::size_t size() const { return paints_.size(); }
+  const std::vector<paint::Paint>& paints() const { return paints_; }
   const std::string& lines() const { return lines_; }
   const Json& layouts() const { return layouts_; }
   // The content of its index. Error: a paint whose metrics cannot be computed.

@@ -73,6 +73,59 @@ needs_browser() {
   done
 }
 
+# Most of the ground is so far from the mesh that nothing takes its light away.
+@test "the ground lies where render-osmesa lays it" {
+  needs_browser
+  fit-paint -q -b "$TESTDATA/b5.basis.xml" "$TESTDATA/paints.paints.xml" -o fitted.xml
+  run node "$code/pictures.js" page.html . 640x360 candy_red
+  echo "$output"
+  [ "$status" -eq 0 ]
+  for light in studio outdoor; do
+    white=$(sed -n 's|^<script type="application/json" id="data">\(.*\)</script>$|\1|p' page.html |
+      jq ".environments[] | select(.name == \"$light\").white")
+    render-osmesa -q --trim --mesh "$TESTDATA/speed-shape.obj" -p "fitted.xml#candy_red" --env "$light.env.exr" \
+      --background env --floor shadow --size 640x360 --samples 1 --aov mask --tolerance 2 -o "ground-$light.exr"
+    run /usr/bin/python3 "$code/compare.py" "candy_red-$light.f32" "ground-$light.exr" "$white" beside
+    echo "$light: mean p95 largest pixels median: $output"
+    awk -v numbers="$output" 'BEGIN { split(numbers, n, " "); exit !(n[4] > 100000 && n[5] <= 0.1) }'
+    # The control: the environment far away, as it is without the ground.
+    run /usr/bin/python3 "$code/compare.py" "candy_red-$light-groundless.f32" "ground-$light.exr" "$white" beside
+    echo "$light without ground: $output"
+    awk -v numbers="$output" 'BEGIN { split(numbers, n, " "); exit !(n[5] > 0.5) }'
+  done
+}
+
+# Two views with floors of both kinds, traced in a paint that is none of the four.
+@test "traced views show every paint as render-osmesa --gbuffer does" {
+  needs_browser
+  paints=(candy_red silver_black_flop blue_to_purple green_to_gold)
+  fit-paint -q -b "$TESTDATA/b5.basis.xml" "$TESTDATA/paints.paints.xml" -o fitted.xml
+  traced() { render-osmesa -q --trim --mesh "$TESTDATA/speed-shape.obj" -p fitted.xml#silver_fine --size 320x180 --samples 1 \
+    --engine path --aov transport --tolerance 6 "$@"; }
+  traced --env studio.env.exr --floor shadow --background env -o studio-view.exr
+  traced --env outdoor.env.exr --floor fitted.xml#signal_white --orbit -40,20 -o outdoor-view.exr
+  paint-studio -q --mesh "$TESTDATA/speed-shape.obj" --env studio.env.exr --basis "$TESTDATA/b5.basis.xml" \
+    --transport studio-view.exr --transport outdoor-view.exr "$TESTDATA/paints.paints.xml" -o views.html --report views.json
+  [ "$(jq '.results.transports | length' views.json)" -eq 2 ]
+  [ "$(jq '.results.transports | map(.rounding_de00_p95 <= 0.1) | all' views.json)" = true ]
+  run node "$code/views.js" views.html . "${paints[@]}"
+  echo "$output"
+  [ "$status" -eq 0 ]
+  for view in studio-view outdoor-view; do
+    white=$(sed -n 's|^<script type="application/json" id="data">\(.*\)</script>$|\1|p' views.html |
+      jq ".views[] | select(.name == \"$view\").white")
+    for paint in "${paints[@]}"; do
+      render-osmesa -q --trim --gbuffer "$view.exr" -p "fitted.xml#$paint" --tolerance 100 -o "$paint-$view.exr"
+      run /usr/bin/python3 "$code/compare.py" "$paint-$view.f32" "$paint-$view.exr" "$white"
+      echo "$paint $view: mean p95 largest pixels: $output"
+      awk -v numbers="$output" 'BEGIN { split(numbers, n, " "); exit !(n[1] <= 0.1 && n[2] <= 0.5 && n[4] > 10000) }'
+    done
+  done
+  # The control: another paint is far off.
+  run /usr/bin/python3 "$code/compare.py" candy_red-studio-view.f32 green_to_gold-studio-view.exr 1
+  awk -v numbers="$output" 'BEGIN { split(numbers, n, " "); exit !(n[1] > 2) }'
+}
+
 @test "paints come into the page and leave it as the tools have them" {
   needs_browser
   cp "$TESTDATA/paints.paints.xml" library.paints.xml

@@ -115,3 +115,39 @@ print(base64.b64encode(hashlib.sha256(sys.stdin.buffer.read()).digest()).decode(
   [ "$status" -eq 0 ]
   [[ "$output" =~ "left out: shadows" ]]
 }
+
+@test "a traced view of another mesh or basis, a cut one and one without light are refused" {
+  needs_page
+  cat >grown.obj <<OBJ
+$(awk '$1 == "v" { print "v", 1.2 * $2, $3, $4; next } { print }' "$mesh")
+OBJ
+  fit-paint -q --basis small.basis.xml "$TESTDATA/paints.paints.xml#silver_fine" -o worn.xml
+  view=(--size 48x32 --samples 1 --env small.env.exr -p worn.xml --tolerance 20)
+  render-osmesa -q --mesh "$mesh" "${view[@]}" --aov transport -o view.exr
+  run make_page "$TESTDATA/paints.paints.xml" --transport view.exr -o page.html --report r.json --explain
+  [ "$status" -eq 0 ]
+  [[ "$output" =~ "traced views: view.exr" ]]
+  [[ "$output" =~ "rounding changes paints by 0.0" ]]
+  [ "$(jq '.results.transports[0].name' r.json)" = '"view"' ]
+  [ "$(jq '.results.transports[0].points > 200' r.json)" = true ]
+  refused() {
+    run paint-studio --mesh "$1" --env small.env.exr --basis "$2" "$TESTDATA/paints.paints.xml" --transport "$3" -o none.html
+    [ "$status" -eq 3 ]
+    [ "$(grep -c "$3" <<<"$output")" -eq 1 ]
+    [ ! -e none.html ]
+  }
+  refused grown.obj small.basis.xml view.exr
+  [[ "$output" =~ "shows another mesh: ".*" points are not on this one" ]]
+  refused "$TESTDATA/speed-shape.obj" small.basis.xml view.exr
+  [[ "$output" =~ "view.exr: shows another mesh: " ]]
+  head -c 9000 view.exr >cut.exr
+  refused "$mesh" small.basis.xml cut.exr
+  render-osmesa -q --mesh "$mesh" "${view[@]}" --aov normal,part -o bare.exr
+  refused "$mesh" small.basis.xml bare.exr
+  [[ "$output" =~ "render it with --aov transport" ]]
+  # A basis of another lobe, whose environment is there.
+  prefilter-envmap -q "$TESTDATA/studio.exr" --exponents 1.3,20,33 --size 16 -o small.env.exr
+  sed 's|</basis>|<exponent>33</exponent></basis>|' small.basis.xml >larger.basis.xml
+  refused "$mesh" larger.basis.xml view.exr
+  [[ "$output" =~ "holds the light of lobes of the exponents 1.3, 20, and the basis small has 1.3, 20, 33" ]]
+}

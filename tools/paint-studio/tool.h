@@ -12,7 +12,7 @@ struct Options {
   cli::CommonOptions common;
   std::vector<std::string> paints;
   std::string mesh, basis, output = "-", title;
-  std::vector<std::string> environments;
+  std::vector<std::string> environments, transports;
 };
 
 cli::ToolSpec tool_spec(Options& options);

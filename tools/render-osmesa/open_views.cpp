@@ -64,9 +64,7 @@ class OpenViews : public PaintViews {
     }
     const Stopwatch shading;
     prepare(stacked_);
-    const render::Scene& scene = stage_.scene;
-    const color::ReflectionOperator* reflection =
-        scene.reflection.k != color::component_wise().k ? &scene.reflection : nullptr;
+    const color::ReflectionOperator* reflection = render::operator_or_null(stage_.scene.reflection);
     const render::BounceScale none{false, std::vector<color::Rgb>(open->classes, color::Rgb{1, 1, 1})};
     open->shader->shade(worn, reflection, none, 1, stacked_);
     render::put_mean(stacked_, static_cast<int>(samples_.size()), view.picture);

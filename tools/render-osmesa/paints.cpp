@@ -172,7 +172,7 @@ void put_on(std::size_t part, const paint::Paint& paint, const brdf::ColorMap* m
   dress.names[part] = paint.name;
 }
 
-Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options) {
+Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options, bool with_mirrors) {
   GONIO_ASSIGN(auto fitter, fitter_of(options));
   PaintShelf shelf(std::move(fitter));
   paint::LobeFit gray;
@@ -195,7 +195,7 @@ Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options) {
     for (std::size_t part = 0; part < mesh.parts.size(); ++part) wear(part, paint, map);
   }
   for (std::size_t part = 0; options.trim && part < mesh.parts.size(); ++part) {
-    const auto trim = render::trim_of(mesh.parts[part], !options.env.empty());
+    const auto trim = render::trim_of(mesh.parts[part], with_mirrors);
     if (!trim) continue;
     result.paints[part] = *trim, result.gloss_deg[part] = kUnreadGlossDeg;
     result.anisotropy[part] = {}, result.surfaces[part] = {}, result.names[part] = "trim";
@@ -237,7 +237,8 @@ Result<std::vector<color::Rgb>> emission_of(const mesh::Mesh& mesh, const std::v
 
 Result<DressedMesh> dressed_in(const mesh::Mesh& mesh, Options options, const std::string& paint) {
   options.paint = paint;
-  return dressed(mesh, options);
+  const bool with_mirrors = !options.env.empty();
+  return dressed(mesh, options, with_mirrors);
 }
 
 }  // namespace goniochrome::tool

@@ -35,8 +35,9 @@ struct DressedMesh {
   std::vector<std::string> unpainted;  // names of the parts that wear the gray of unpainted parts
 };
 
-// Resolves --part and --paint. Error: an unknown part, paint or file, or a paint without lobes, with what there is.
-Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options);
+// Resolves --part and --paint. Finishes of --trim mirror where `with_mirrors`. Error: an unknown part, paint or file,
+// or a paint without lobes, with what there is.
+Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options, bool with_mirrors);
 
 // Fits paints as fit-paint(1) does without further options; none without --basis.
 Result<std::optional<fit::PaintFitter>> fitter_of(const Options& options);

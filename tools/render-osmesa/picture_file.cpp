@@ -20,6 +20,7 @@ void describe_view(const Options& options, const render::Rays& rays, const std::
                    image::Attributes& attributes) {
   attributes["goniochrome:rays"] =
       fmt::format("{};{};{}", spelled(rays.corner), spelled(rays.right), spelled(rays.down));
+  if (options.gbuffer.empty()) attributes["goniochrome:eye"] = spelled(rays.eye);  // buffers do not have it
   std::string all;
   for (const render::Light& light : lights)
     all += fmt::format("{}{},{},{}{}", all.empty() ? "" : ";", spelled(light.direction), spelled(light.white),

@@ -112,7 +112,9 @@ Result<Source> source_of(const Options& options, const render::Scene& scene, cli
 
 Result<void> dress_stage(const Options& options, Stage& stage) {
   if (options.split.empty()) {
-    GONIO_ASSIGN(DressedMesh dress, dressed(stage.mesh, options));
+    // A transport has the light that mirrors show of its own environment.
+    const bool with_mirrors = !options.env.empty() || (stage.transport && !stage.transport->environment.empty());
+    GONIO_ASSIGN(DressedMesh dress, dressed(stage.mesh, options, with_mirrors));
     stage.dresses.push_back(std::move(dress));
     return {};
   }

@@ -7,7 +7,6 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "base/text.h"
-#include "brdf/lobe_model.h"
 #include "envmap/cube_map.h"
 #include "render/aov.h"
 #include "render/effects.h"
@@ -50,17 +49,6 @@ bool same_light(const KeptTransport& kept, const std::vector<render::Light>& lig
                              std::abs(a.radius_rad - render::light_of(b).radius_rad) < 1e-9 &&
                              a.place.has_value() == b.is_placed;
                     });
-}
-
-// Of each point, the angle of the viewer from the normal.
-std::vector<float> view_angles(const render::LobeTransport& light, const render::Gbuffer& gbuffer) {
-  std::vector<float> angles(light.places.size());
-  for (std::size_t i = 0; i < angles.size(); ++i) {
-    const int x = static_cast<int>(light.places[i]) % light.width, y = static_cast<int>(light.places[i]) / light.width;
-    const Vec3 n = gbuffer.normal(x, y), v = gbuffer.to_viewer(x, y);
-    angles[i] = static_cast<float>(std::atan2(length(cross(n, v)), dot(n, v)) / kDegree);
-  }
-  return angles;
 }
 
 // What is seen beside the mesh.
@@ -160,8 +148,8 @@ struct ViewShader::State {
     if (shader && (with_views || !views)) return;
     const Stopwatch laying;
     with_views = views;
-    shader = std::make_unique<render::TransportShader>(kept.light,
-                                                       views ? view_angles(kept.light, gbuffer) : std::vector<float>());
+    shader = std::make_unique<render::TransportShader>(
+        kept.light, views ? render::view_angles_deg(kept.light, gbuffer) : std::vector<float>());
     load_ms = 1000 * laying.elapsed_s();
   }
 };
@@ -173,41 +161,19 @@ ViewShader::~ViewShader() = default;
 Result<ShadedPaint> ViewShader::shade(const DressedMesh& dress, image::Image& picture) {
   State& s = *state_;
   const render::LobeTransport& light = s.kept.light;
-  std::vector<render::TransportPaint> paints;
-  std::vector<std::vector<color::Rgb>> weights;
-  bool with_views = false;
+  std::vector<render::PartPaint> parts;
+  for (std::size_t part = 0; part < dress.paints.size(); ++part)
+    parts.push_back({&dress.paints[part], dress.anisotropy[part], dress.gloss_deg[part], dress.names[part],
+                     s.scene.mesh->parts[part].name});
+  GONIO_ASSIGN(const render::ShownPaints shown, render::shown_paints(light.columns, light.worn, parts));
   ShadedPaint result;
-  for (std::size_t part = 0; part < dress.paints.size(); ++part) {
-    const double coat = part < light.worn.coats.size() ? light.worn.coats[part] : paint::kNoCoat;
-    const paint::LobeFit fit = brdf::under_coat(dress.paints[part], coat);
-    result.coat_changed |= (coat == paint::kNoCoat) != (dress.paints[part].coat_index == paint::kNoCoat);
-    const auto named = [&](const Error& error) {
-      return Error{error.kind, dress.names[part].empty() ? error.message : dress.names[part] + ": " + error.message};
-    };
-    if (light.worn.brushed.size() > part && (light.worn.brushed[part].alpha_x != dress.anisotropy[part].alpha_x ||
-                                             light.worn.brushed[part].alpha_y != dress.anisotropy[part].alpha_y))
-      return input_error(
-          "{}: is brushed otherwise than the paint of part {} was when its light was traced: render again with "
-          "--aov transport in this paint",
-          dress.names[part], s.scene.mesh->parts[part].name);
-    auto paint = render::transport_paint(light.columns, fit, dress.gloss_deg[part]);
-    if (!paint.ok()) return named(paint.error());
-    auto flat = render::column_weights(light.columns, fit.diffuse, fit.lobes, dress.gloss_deg[part]);
-    if (!flat.ok()) return named(flat.error());
-    with_views |= paint->view_deg.size() > 1;
-    paints.push_back(*std::move(paint)), weights.push_back(*std::move(flat));
-  }
-  if (light.worn.has_floor) {  // in the paint that it wore
-    weights.push_back(light.worn.weights[static_cast<std::size_t>(light.worn.groups.of_part.back())]);
-    paints.push_back({{0}, {weights.back()}});
-  }
+  result.coat_changed = shown.coat_changed;
   if (s.kept.reflection.k != s.scene.reflection.k && light.bounces > 0)
     return usage_error("--operator is another than that of --gbuffer: bounced light was traced with that one");
-  const color::ReflectionOperator* reflection =
-      s.scene.reflection.k != color::component_wise().k ? &s.scene.reflection : nullptr;
-  s.lay_out(with_views);
+  const color::ReflectionOperator* reflection = render::operator_or_null(s.scene.reflection);
+  s.lay_out(shown.with_views);
   const Stopwatch judging;
-  const render::BounceScale scale = render::bounce_scale(light, weights, reflection);
+  const render::BounceScale scale = render::bounce_scale(light, shown.weights, reflection);
   result.scale_ms = 1000 * judging.elapsed_s();
   result.scaled = scale.changed, result.bounced_de00_p95 = scale.error_p95_de00;
   const std::size_t floats = 4 * static_cast<std::size_t>(s.gbuffer.width) * static_cast<std::size_t>(s.gbuffer.height);
@@ -217,7 +183,7 @@ Result<ShadedPaint> ViewShader::shade(const DressedMesh& dress, image::Image& pi
     put_background(s.gbuffer, s.scene, picture);
   }
   const Stopwatch shading;
-  s.shader->shade(paints, reflection, scale, 1, picture);
+  s.shader->shade(shown.paints, reflection, scale, 1, picture);
   result.frame_ms = 1000 * shading.elapsed_s();
   return result;
 }

@@ -342,11 +342,22 @@ std::string light_terms(const Effects& effects) {
          fmt::format("    radiance += {} * {};\n  }}\n", glsl(kPi), times(effects, "light_white[i]", "reflected"));
 }
 
-std::string background_color(Background background, Product product) {
+// What stands on the ground where a ray meets it was seen from ground_eye = 0; elsewhere it is the ray's own direction.
+constexpr const char* kLaidGround = R"(uniform vec3 ground_eye;
+uniform float ground_drop;
+vec3 laid(vec3 ray) {
+  float rise = ground_eye.y + ground_drop;
+  return ground_drop > 0.0 && rise > 0.0 && ray.y < 0.0 ? ground_eye - (rise / ray.y) * ray : ray;
+}
+)";
+
+std::string background_color(Background background, Product product, bool laid_ground) {
   switch (background) {
-    case Background::kEnvironment:
-      return product == Product::kForms ? "vec4(unreflected(textureLod(mirror, -wo, 0.0)), 1.0)"
-                                        : "vec4(textureLod(mirror, -wo, 0.0).rgb, 1.0)";
+    case Background::kEnvironment: {
+      const std::string seen = fmt::format("textureLod(mirror, {}, 0.0)", laid_ground ? "laid(-wo)" : "-wo");
+      return product == Product::kForms ? fmt::format("vec4(unreflected({}), 1.0)", seen)
+                                        : fmt::format("vec4({}.rgb, 1.0)", seen);
+    }
     case Background::kColor:
       return "vec4(background, 1.0)";
     case Background::kNone:
@@ -395,7 +406,7 @@ std::string shading_vertex_shader() {
 }
 
 std::string shading_fragment_shader(const Effects& effects, const color::ReflectionOperator& op,
-                                    const std::vector<double>& tilted) {
+                                    const std::vector<double>& tilted, bool laid_ground) {
   const bool lit_lobes = effects.single_lights() > 0 && !effects.lobes.empty();
   const ProductForms forms = effects.reflection ? product_forms(op) : ProductForms{};
   const Product product = product_of(effects, forms);
@@ -414,6 +425,8 @@ std::string shading_fragment_shader(const Effects& effects, const color::Reflect
     text += disc_functions(effects.lobes.size()) + disc_weights(effects);
   if (!effects.lobes.empty()) text += lobe_functions(effects, product);
   text += tilt_function(effects, tilted, product);
+  laid_ground = laid_ground && effects.background == Background::kEnvironment;
+  if (laid_ground) text += kLaidGround;
   // 2. Where nothing is seen the program shows the background; else it finds the view and the row of weights.
   text += fmt::format(R"(
 void main() {{
@@ -429,7 +442,7 @@ void main() {{
   row = int(abs(point.w)) - 1;
 {}  vec3 radiance = vec3(0.0);
 )",
-                      background_color(effects.background, product), row_of_view(effects));
+                      background_color(effects.background, product, laid_ground), row_of_view(effects));
   // 3. The sum of what the environment and the lights show.
   if (effects.anisotropy) {
     text += R"(  int tilt_count = textureSize(tilts, 0).x;

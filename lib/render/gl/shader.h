@@ -16,9 +16,12 @@ std::string gbuffer_fragment_shader(bool with_triangles = true);
 
 // Covers the picture, and shades each point of the G-buffer.
 std::string shading_vertex_shader();
-// The operator is written into it where the effects have it. `tilted` are the exponents of tilted lobes.
+// The operator is written into it where the effects have it. `tilted` are the exponents of tilted lobes. With
+// `laid_ground` an environment in the background may lie on the ground: ground_eye is the camera's eye relative to the
+// point above the ground from which the environment was seen, and ground_drop how far below that the ground lies; 0 for
+// no ground. goniochrome-theory(7), PATHS, Ground.
 std::string shading_fragment_shader(const Effects& effects, const color::ReflectionOperator& op,
-                                    const std::vector<double>& tilted);
+                                    const std::vector<double>& tilted, bool laid_ground = false);
 
 // One of these programs for OpenGL ES 3, which is what WebGL 2 draws with: it differs in its head alone. That of the
 // G-buffer must be without triangles, whose numbers OpenGL ES 3 does not tell.

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angles.h"
 #include "base/parallel.h"
+#include "math/elementary.h"
 #include "render/path/transport_kernel.h"
 
 namespace goniochrome::render {
@@ -104,6 +106,16 @@ Result<TransportPaint> transport_paint(const LobeColumns& columns, const paint::
     result.view_deg.push_back(view.view_deg), result.weights.push_back(std::move(weights));
   }
   return result;
+}
+
+std::vector<float> view_angles_deg(const LobeTransport& t, const Gbuffer& gbuffer) {
+  std::vector<float> angles(t.places.size());
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    const int x = static_cast<int>(t.places[i]) % t.width, y = static_cast<int>(t.places[i]) / t.width;
+    const Vec3 n = gbuffer.normal(x, y), v = gbuffer.to_viewer(x, y);
+    angles[i] = static_cast<float>(math::atan2(length(cross(n, v)), dot(n, v)) / kDegree);
+  }
+  return angles;
 }
 
 TransportShader::TransportShader(const LobeTransport& t, std::vector<float> view_deg)

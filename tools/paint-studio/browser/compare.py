@@ -2,7 +2,8 @@
 """Compares a picture of a page with one of render-osmesa, by CIEDE2000 at an exposure that brings white to 1.
 
 compare.py PICTURE.f32 PICTURE.exr WHITE prints the mean, the 95th percentile and the largest difference over the pixels
-that show the mesh in both.
+that show the mesh in both, how many these are, and the median difference. With one more word, "beside", it takes the
+pixels that do not show the mesh.
 """
 
 import pathlib
@@ -21,11 +22,12 @@ def main():
     theirs = numpy.stack([reference[name] for name in "RGBA"], -1)
     ours = numpy.fromfile(page, "<f4").reshape(theirs.shape)
     mesh = (theirs[..., 3] == 1) & (ours[..., 3] == 1)
-    if "gbuffer.mask" in reference:
-        mesh &= reference["gbuffer.mask"] > 0
+    if "mask" in reference:
+        mesh &= (reference["mask"] > 0) != (sys.argv[4:] == ["beside"])
     lab = [colors.lab(numpy.maximum(picture[mesh][:, :3], 0) @ TO_XYZ.T / white) for picture in (ours, theirs)]
     difference = colors.de2000(*lab)
-    print(f"{difference.mean():.4f} {numpy.percentile(difference, 95):.4f} {difference.max():.3f} {mesh.sum()}")
+    print(f"{difference.mean():.4f} {numpy.percentile(difference, 95):.4f} {difference.max():.3f}", end=" ")
+    print(f"{mesh.sum()} {numpy.median(difference):.4f}")
 
 
 main()

@@ -29,7 +29,7 @@ async function main() {
       })()`);
       fs.writeFileSync(path.join(folder, `${paint}-${environments[number]}.f32`), Buffer.from(base64, "base64"));
     }
-  // The first paint with the lamp of the page, and in each environment turned by a right angle.
+  // The first paint with the lamp of the page, in each environment turned by a right angle, and without its ground.
   const variant = async (name, before, after) => {
     for (let number = 0; number < environments.length; ++number) {
       const base64 = await browser.evaluate(`(() => {
@@ -50,6 +50,7 @@ async function main() {
   };
   await variant("lamp", "app.stageView.setLamp({ on: true, azimuth: -25, elevation: 40, stops: -1 });", "app.stageView.setLamp({ on: false });");
   await variant("turned", "app.stageView.turnTo(90);", "app.stageView.turnTo(0);");
+  await variant("groundless", "app.stage.ground = false;", "app.stage.ground = true;");
   // From an edit to its pixels, which are read back so that nothing is still to be drawn.
   const times = await browser.evaluate(`(() => {
     const app = studio, all = [], fits = [], gl = app.stage.gl, pixel = new Uint8Array(4);

@@ -24,8 +24,8 @@ function wasiImports(memoryOf) {
   };
 }
 
-const lists = ["weights", "filtered", "cloud", "cloudColors", "cloudPaints", "tilts"];
-const ofFloats = ["weights", "cloud", "tilts"];
+const lists = ["weights", "filtered", "cloud", "cloudColors", "cloudPaints", "tilts", "picture"];
+const ofFloats = ["weights", "cloud", "tilts", "picture"];
 
 // The engine of a compiled module. ask() sends a request and returns the answer; it throws what the answer calls an
 // error.
@@ -48,13 +48,13 @@ async function makeEngine(bytes) {
       if (answer.error !== undefined) throw new Error(answer.error);
       return answer;
     },
-    // Memory of the library for bytes that the next request "load" takes.
+    // Memory of the library for bytes that the next request "load" or "view" takes.
     attach(length) {
       const at = library.studio_attach(length);  // before its memory is looked at, which may move
       return new Uint8Array(memory.buffer, at, length);
     },
-    // A list that an answer filled, copied: weights or tilts of the paint that was fitted last, filtered, cloud, cloudColors
-    // or cloudPaints.
+    // A list that an answer filled, copied: weights or tilts of the paint that was fitted last, filtered, cloud,
+    // cloudColors, cloudPaints, or the picture of a view.
     list(name) {
       const number = lists.indexOf(name), Kind = ofFloats.includes(name) ? Float32Array : Uint32Array;
       return new Kind(memory.buffer, library.studio_list(number), library.studio_list_bytes(number) / 4).slice();

@@ -12,6 +12,7 @@ class App {
     this.compared = { choice: "none", name: "", weights: null };
     this.key = "paint-studio " + data.title + " " + data.basis.name + " " + library.count;
     ({ geometries: this.geometries } = engine.ask({ do: "load", basis: data.basis, attached: true }));
+    this.traced = new TracedViews(this);
     this.stageView = new StageView(this);
     this.stage = this.stageView.stage;
     this.controls = new NumberControls(this);
@@ -182,6 +183,7 @@ class App {
     this.paint = paint;
     this.highlight = fit.highlight;
     this.weights = this.stage.weights(this.engine, this.weights ?? null);
+    this.weights.paint = paint;
     this.description = this.engine.ask({ do: "describe", paint });
     if (moving) this.stageView.drawNow(true);
     else this.stageView.redraw();
@@ -213,6 +215,7 @@ class App {
       this.attempt(() => {
         this.engine.ask({ do: "fit", paint: found });
         this.comparedWeights = this.stage.weights(this.engine, this.comparedWeights ?? null);
+        this.comparedWeights.paint = found;
         this.compared.weights = this.comparedWeights;
       });
       if (kind === "step") this.compared.name += `, step ${number}`;

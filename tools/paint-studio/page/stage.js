@@ -25,6 +25,7 @@ class Stage {
     this.environments = data.environments.map(() => null);
     this.gbuffers = new Map();
     this.targets = new Map();
+    this.ground = true;  // whether the environment lies on the ground
     this.turn = 0;     // of the environment about +Y, in degrees, as the camera's azimuth counts
     this.lamp = null;  // {direction, white}: where it stands beside the mesh, and what a white surface facing it shows
     this.uploadMesh();
@@ -215,7 +216,7 @@ class Stage {
     }
     gl.disable(gl.DEPTH_TEST);
     target.key = key;
-    target.view = view;
+    target.view = { ...view, eye: camera.eye };
     return target;
   }
 
@@ -261,6 +262,9 @@ class Stage {
     if (program.discs) bind("discs", gl.TEXTURE_2D, program.discs);
     for (const cube of made.cubes) bind(cube.sampler, gl.TEXTURE_CUBE_MAP, cube.texture);
     for (const name of ["corner", "right", "down"]) gl.uniform3fv(program.at(name), gbuffer.view[name]);
+    const { seen_from, drop } = this.data.mesh.ground;
+    gl.uniform3fv(program.at("ground_eye"), turnedAgainst(added(gbuffer.view.eye, seen_from, -1), this.turn));
+    gl.uniform1f(program.at("ground_drop"), this.ground ? drop : 0);
     for (const [uniform, member] of [["light_direction", "direction"], ["light_white", "white"], ["light_disc", "disc"]])
       if (program.lamps.length > 0) gl.uniform3fv(program.at(uniform + "[0]"), program.lamps.flatMap((lamp) => lamp[member]));
   }
@@ -282,18 +286,43 @@ class Stage {
 
   // Brings a sum of samples to the screen, or into a framebuffer.
   show(sum, samples, environment, stops, framebuffer = null) {
-    this.cover(framebuffer, this.displayProgram, "picture", sum, (program) => {
+    this.display(sum, samples, this.environment(environment).white, stops, framebuffer);
+  }
+  // `white` is the luminance that exposure 0 brings to 1.
+  display(picture, samples, white, stops, framebuffer) {
+    this.cover(framebuffer, this.displayProgram, "picture", picture, (program) => {
       this.gl.uniform1f(program.at("share"), 1 / samples);
-      this.gl.uniform1f(program.at("gain"), 2 ** stops / (this.environment(environment).white || 1));
+      this.gl.uniform1f(program.at("gain"), 2 ** stops / (white || 1));
     });
+  }
+  // Brings one picture to the screen, or two that meet at the column `border`.
+  showSides(pictures, border, white, stops) {
+    const gl = this.gl, { width, height } = pictures[0];
+    gl.enable(gl.SCISSOR_TEST);
+    for (const [picture, begin, end] of [[pictures[0], 0, border], [pictures[1], border, width]]) {
+      if (end === begin) continue;
+      gl.scissor(begin, 0, end - begin, height);
+      this.display(picture, 1, white, stops, null);
+    }
+    gl.disable(gl.SCISSOR_TEST);
+  }
+  // Radiance as a texture, in the place of `made` where that is given.
+  pictureTexture(width, height, values, made = null) {
+    if (made === null) return this.floatTexture(width, height, values);
+    const gl = this.gl;
+    gl.bindTexture(gl.TEXTURE_2D, made);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, width, height, 0, gl.RGBA, gl.FLOAT, values);
+    return made;
+  }
+  resize(width, height) {
+    if (this.canvas.width === width && this.canvas.height === height) return;
+    this.canvas.width = width;
+    this.canvas.height = height;
   }
 
   // Draws a picture by the pixel centers alone, into the targets of that name. `overlay` is null, or what the program of that name draws over it.
   draw(name, camera, width, height, weights, environment, stops, overlay = null) {
-    if (this.canvas.width !== width || this.canvas.height !== height) {
-      this.canvas.width = width;
-      this.canvas.height = height;
-    }
+    this.resize(width, height);
     const gbuffer = this.gbuffer(name, camera, width, height, [0, 0]);
     this.show(this.shade(name, gbuffer, weights, environment, false), 1, environment, stops);
     if (overlay) this.drawOver(gbuffer, overlay);
@@ -343,6 +372,14 @@ class Stage {
     return { normal: [...values.subarray(at, at + 3)], wo: scaled(unit(ray), -1) };
   }
 
+  // Shows nothing.
+  blank() {
+    const gl = this.gl;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.clearColor(0.46, 0.46, 0.46, 1);
+    gl.clear(gl.COLOR_BUFFER_BIT);
+  }
+
   // Returns when everything is drawn.
   wait() {
     const gl = this.gl;
@@ -352,10 +389,14 @@ class Stage {
 
   // A small picture for a tile, as pixels of a canvas.
   tile(camera, width, height, weights, environment, stops) {
-    const gl = this.gl, gbuffer = this.gbuffer("tile", camera, width, height, [0, 0]);
-    const sum = this.shade("tile", gbuffer, weights, environment, false);
-    const target = this.target("tile screen", width, height, gl.RGBA8, false);
-    this.show(sum, 1, environment, stops, target.framebuffer);
+    const gbuffer = this.gbuffer("tile", camera, width, height, [0, 0]);
+    return this.pixels(this.shade("tile", gbuffer, weights, environment, false), this.environment(environment).white, stops);
+  }
+  // What a screen shows of a picture, as pixels of a canvas.
+  pixels(radiance, white, stops) {
+    const gl = this.gl, { width, height } = radiance, target = this.target("tile screen", width, height, gl.RGBA8, false);
+    this.display(radiance, 1, white, stops, target.framebuffer);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target.framebuffer);
     const pixels = new Uint8ClampedArray(4 * width * height), picture = new ImageData(width, height);
     gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
     for (let y = 0; y < height; ++y)  // rows come from below

@@ -25,10 +25,13 @@ class Surface {
     this.canvas.addEventListener("keydown", (event) => this.key(event));
   }
 
+  // Whether dragging would move the camera or the light of a traced view, which stay.
+  get fixed() { return this.app.stageView.traced !== null && ["view", "light", "lamp"].includes(this.kind); }
+
   setKind(kind) {
     this.kind = kind;
-    document.getElementById("drag-hint").textContent = dragKinds[kind];
-    if (kind === "lamp" && !this.app.stageView.lamp.on) this.app.stageView.setLamp({ on: true });
+    document.getElementById("drag-hint").textContent = this.fixed ? "The camera and the light of a traced view stay as they are." : dragKinds[kind];
+    if (kind === "lamp" && !this.fixed && !this.app.stageView.lamp.on) this.app.stageView.setLamp({ on: true });
     if (kind === "color") this.placeCross(this.cross ?? [0.5, 0.5]);
     else this.placeCross(null);
   }
@@ -46,7 +49,7 @@ class Surface {
       end: () => {
         if (this.kind === "travel" || this.kind === "gloss") {
           if (last) this.app.commit(last);
-        } else if (this.kind !== "color") {
+        } else if (this.kind !== "color" && !this.fixed) {
           view.settle();
         }
       },
@@ -68,6 +71,7 @@ class Surface {
   // One move of a drag; the edit that it stands for, if it is one.
   dragged(event, from) {
     const view = this.app.stageView, dx = event.clientX - from.x, dy = event.clientY - from.y;
+    if (this.fixed) return null;
     if (this.kind === "view") {
       view.look({ ...from.view, azimuth: from.view.azimuth - 0.4 * dx, elevation: clamped(from.view.elevation + 0.3 * dy, -85, 85) }, true);
     } else if (this.kind === "light") {
@@ -111,6 +115,7 @@ class Surface {
   }
   stepped([x, y], size) {
     const { app } = this, view = app.stageView, step = x + y;
+    if (this.fixed) return;
     if (this.kind === "view") {
       view.look({ ...view.view, azimuth: view.view.azimuth - 5 * x, elevation: clamped(view.view.elevation + 5 * y, -85, 85) });
     } else if (this.kind === "light") {
@@ -171,7 +176,7 @@ class Surface {
   show(seen) {
     this.seen = seen && seen.lit ? seen : null;
     this.seenColor = this.seen ? this.app.attempt(() => this.app.engine.ask({ do: "at", paint: this.app.paint, angle: seen.angle })) : null;
-    const lightName = this.app.stageView.lamp.on ? "the lamp" : "the brightest light";
+    const view = this.app.stageView, lightName = view.traced === null && view.lamp.on ? "the lamp" : "the brightest light";
     document.querySelectorAll("#tweaks button").forEach((button) => {
       const chroma = button.dataset.kind.includes("chroma") || button.dataset.kind.includes("hue");
       button.disabled = !this.seenColor || (chroma && this.seenColor.chroma < 0.5);

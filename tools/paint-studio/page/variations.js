@@ -91,15 +91,28 @@ class Tiles {
     if (!next) return;
     if (next.canvas.isConnected) {
       try {
-        app.engine.ask({ do: "fit", paint: next.paint });
-        this.weights = app.stage.weights(app.engine, this.weights);
-        const { width, height } = next.canvas;
-        const picture = app.stage.tile(cameraOf({ ...view, distance: 0.8 * view.distance }), width, height, this.weights, app.stageView.environment, app.stageView.stops);
-        next.canvas.getContext("2d").putImageData(picture, 0, 0);
+        if (app.stageView.traced !== null) this.drawTraced(next);
+        else this.drawTile(next, view);
       } catch (error) {
         next.canvas.replaceWith(made("small", { text: error.message }));
       }
     }
     this.go();
+  }
+  drawTile({ canvas, paint }, view) {
+    const { app } = this, { width, height } = canvas;
+    app.engine.ask({ do: "fit", paint });
+    this.weights = app.stage.weights(app.engine, this.weights);
+    const picture = app.stage.tile(cameraOf({ ...view, distance: 0.8 * view.distance }), width, height, this.weights, app.stageView.environment, app.stageView.stops);
+    canvas.getContext("2d").putImageData(picture, 0, 0);
+  }
+  // The whole traced view, in the middle of the tile.
+  drawTraced({ canvas, paint }) {
+    const { app } = this, picture = app.traced.tile(app.stageView.traced, paint, app.stageView.stops);
+    const whole = made("canvas", { width: picture.width, height: picture.height }), scale = Math.min(canvas.width / picture.width, canvas.height / picture.height);
+    whole.getContext("2d").putImageData(picture, 0, 0);
+    const context = canvas.getContext("2d"), width = scale * picture.width, height = scale * picture.height;
+    context.clearRect(0, 0, canvas.width, canvas.height);
+    context.drawImage(whole, (canvas.width - width) / 2, (canvas.height - height) / 2, width, height);
   }
 }

@@ -15,6 +15,7 @@ class StageView {
     this.stage = new Stage(this.canvas, app.data);
     this.view = { ...app.data.mesh.view };
     this.environment = 0;
+    this.traced = null;  // the number of the traced view that is shown
     this.stops = 0;
     this.lamp = { on: false, azimuth: 20, elevation: 45, stops: 0 };
     this.border = 0.5;
@@ -25,13 +26,17 @@ class StageView {
     new ResizeObserver(() => this.redraw()).observe(this.canvas);
   }
 
-  get camera() { return cameraOf(this.view); }
+  get camera() { return this.traced !== null ? this.app.data.views[this.traced].camera : cameraOf(this.view); }
   get weights() {
     const own = this.app.weights, other = this.app.compared.weights;
     return other ? { left: own, right: other, at: this.border } : own;
   }
   // Where the light stands that angles are counted from, as the environment sees it, and the angle that it spans.
   get light() {
+    if (this.traced !== null) {
+      const { direction, extent } = this.app.data.views[this.traced].brightest;
+      return { toward: turnedAgainst(direction, this.stage.turn), extent };
+    }
     const { direction, extent } = this.app.data.environments[this.environment].brightest;
     if (this.lamp.on) return { toward: turnedAgainst(this.lampDirection, this.stage.turn), extent: this.app.data.lamp.extent };
     return { toward: direction, extent };
@@ -45,10 +50,9 @@ class StageView {
   makeControls() {
     const byId = (id) => document.getElementById(id), lights = byId("environment"), exposure = byId("exposure");
     this.app.data.environments.forEach((one, i) => lights.append(made("option", { value: i, text: one.name })));
-    lights.addEventListener("change", () => {
-      this.environment = Number(lights.value);
-      this.setLamp({});  // its brightness is relative to the environment's
-    });
+    const views = this.app.data.views.map((one, i) => made("option", { value: `view ${i}`, text: one.name }));
+    if (views.length > 0) lights.append(made("optgroup", { label: "Traced views" }, views));
+    lights.addEventListener("change", () => this.choose(lights.value));
     exposure.addEventListener("input", () => {
       this.stops = Number(exposure.value);
       byId("exposure-value").textContent = exposure.value;
@@ -69,12 +73,40 @@ class StageView {
       });
     }
     byId("overlay").addEventListener("change", () => this.redraw());
+    byId("ground").addEventListener("change", () => {
+      this.stage.ground = byId("ground").checked;
+      this.settle();
+    });
     this.makeBorder();
     this.canvas.addEventListener("wheel", (event) => {
       event.preventDefault();
       this.closer(event.deltaY > 0 ? 1.08 : 1 / 1.08);
     }, { passive: false });
     this.showLamp();
+  }
+
+  // Shows the mesh in an environment, by its number, or a traced view, "view" and its number.
+  choose(value) {
+    this.traced = value.startsWith("view ") ? Number(value.slice(5)) : null;
+    const fixed = this.traced !== null, view = this.app.data.views[this.traced];
+    this.takeBack();
+    for (const one of document.querySelectorAll("#turn, #turn-range, #lamp, #lamp-azimuth, #lamp-elevation, #lamp-stops, #reset-view, #ground, #drag-kinds .around"))
+      one.disabled = fixed;
+    this.canvas.style.aspectRatio = fixed ? `${view.width} / ${view.height}` : "";
+    this.app.surface.setKind(this.app.surface.kind);
+    if (fixed) {
+      this.lightChanged();
+    } else {
+      this.environment = Number(value);
+      this.setLamp({});  // its brightness is relative to the environment's
+    }
+    this.showTraced();
+  }
+  // What is said of a traced view.
+  showTraced() {
+    const place = document.getElementById("traced-text"), text = this.traced === null ? "" : this.app.traced.text(this.traced);
+    place.hidden = this.traced === null;
+    if (place.textContent !== text) place.textContent = text;
   }
 
   // The handle of the border between the paint and the one that it is compared with.
@@ -139,6 +171,7 @@ class StageView {
   }
 
   closer(factor) {
+    if (this.traced !== null) return;
     const usual = this.app.data.mesh.view.distance;
     this.look({ ...this.view, distance: clamped(this.view.distance * factor, 0.3 * usual, 4 * usual) });
   }
@@ -167,10 +200,30 @@ class StageView {
     this.rest(null);
     if (moving && this.lastFrame !== undefined && now - this.lastFrame < 400) this.pace(now - this.lastFrame);
     this.lastFrame = moving ? now : undefined;
+    if (this.traced !== null) return this.drawTraced(moving);
     const first = scales.find((scale) => scale * scale * this.full_ms <= firstBudget_ms) ?? scales.at(-1);
     const scale = moving ? Math.min(scales[this.level], first) : first, [width, height] = this.size(scale);
     this.stage.draw(scale < 1 ? "first" : "centers", this.camera, width, height, this.weights, this.environment, this.stops, this.overlay);
     if (!moving) this.rest(() => this.sharpen(scale));
+  }
+  drawTraced(moving) {
+    const drawn = this.app.attempt(() => {
+      this.app.traced.draw(this.traced, this.weights, this.stops, this.overlay, moving);
+      return true;
+    });
+    if (drawn) {
+      this.takeBack();
+    } else {
+      this.app.traced.answer = null;
+      this.stage.blank();
+      this.refusal = document.getElementById("status").textContent;
+    }
+    this.showTraced();
+  }
+  // Takes back what was said of a paint that a view cannot show.
+  takeBack() {
+    if (this.refusal && document.getElementById("status").textContent === this.refusal) this.app.say("");
+    this.refusal = "";
   }
   // Takes fewer pixels after slow frames, and more after fast ones.
   pace(frame_ms) {

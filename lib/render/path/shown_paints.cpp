@@ -1,0 +1,44 @@
+#include "render/path/shown_paints.h"
+
+#include <utility>
+
+#include "brdf/lobe_model.h"
+
+namespace goniochrome::render {
+
+Result<ShownPaints> shown_paints(const LobeColumns& columns, const WornPaints& worn,
+                                 const std::vector<PartPaint>& parts) {
+  ShownPaints shown;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const PartPaint& part = parts[i];
+    const double coat = i < worn.coats.size() ? worn.coats[i] : paint::kNoCoat;
+    const paint::LobeFit fit = brdf::under_coat(*part.paint, coat);
+    shown.coat_changed |= (coat == paint::kNoCoat) != (part.paint->coat_index == paint::kNoCoat);
+    const auto named = [&](const Error& error) {
+      return Error{error.kind, part.name.empty() ? error.message : part.name + ": " + error.message};
+    };
+    if (i < worn.brushed.size() &&
+        (worn.brushed[i].alpha_x != part.anisotropy.alpha_x || worn.brushed[i].alpha_y != part.anisotropy.alpha_y))
+      return input_error(
+          "{}: is brushed otherwise than the paint of part {} was when its light was traced: render again with "
+          "--aov transport in this paint",
+          part.name, part.part);
+    auto paint = transport_paint(columns, fit, part.gloss_deg);
+    if (!paint.ok()) return named(paint.error());
+    auto flat = column_weights(columns, fit.diffuse, fit.lobes, part.gloss_deg);
+    if (!flat.ok()) return named(flat.error());
+    shown.with_views |= paint->view_deg.size() > 1;
+    shown.paints.push_back(*std::move(paint)), shown.weights.push_back(*std::move(flat));
+  }
+  if (worn.has_floor) {
+    shown.weights.push_back(worn.weights[static_cast<std::size_t>(worn.groups.of_part.back())]);
+    shown.paints.push_back({{0}, {shown.weights.back()}});
+  }
+  return Result(std::move(shown));
+}
+
+const color::ReflectionOperator* operator_or_null(const color::ReflectionOperator& reflection) {
+  return reflection.k != color::component_wise().k ? &reflection : nullptr;
+}
+
+}  // namespace goniochrome::render
