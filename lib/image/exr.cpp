@@ -119,6 +119,14 @@ std::vector<std::string> wanted_channels(const Imf::ChannelList& list, const std
   return names;
 }
 
+// Throws if the file ends before the last scan lines of a part: those of one that is passed over must be there as well.
+void expect_last_line(Imf::MultiPartInputFile& file, int index, const Imath::Box2i& window) {
+  if (file.header(index).hasTileDescription()) return;
+  const char* bytes = nullptr;
+  int size = 0;
+  Imf::InputPart(file, index).rawPixelData(window.max.y, bytes, size);
+}
+
 Result<ImagePart> decoded_part(Imf::MultiPartInputFile& file, int index, const std::string& file_name,
                                std::size_t file_bytes, const ExrWanted& wanted) {
   const Imf::Header& header = file.header(index);
@@ -129,9 +137,12 @@ Result<ImagePart> decoded_part(Imf::MultiPartInputFile& file, int index, const s
     return input_error("{}: holds deep data: flatten it first", where);
   if (!file.partComplete(index)) return input_error("{}: is cut off: some scan lines are missing", where);
   part.attributes = attributes_of(header);
-  if (wanted.part && !wanted.part(part.name, part.attributes)) return part;
-
   const Imath::Box2i& window = header.dataWindow();
+  if (wanted.part && !wanted.part(part.name, part.attributes)) {
+    expect_last_line(file, index, window);
+    return part;
+  }
+
   Image& image = part.image;
   image.width = window.max.x - window.min.x + 1;
   image.height = window.max.y - window.min.y + 1;

@@ -58,7 +58,7 @@ number() { sed -n '/"error": {/,/}/p' r.json | grep -m1 "\"$1\"" | sed -E 's/.*:
   rays=$(grep -A1 'goniochrome:rays' header | grep -oE '"[^"]+"')
   [ "$(tr -cd ';' <<<"$rays" | wc -c)" -eq 2 ]
   [ "$(tr -cd ',' <<<"$rays" | wc -c)" -eq 6 ]
-  [[ "$(grep -A1 'goniochrome:eye' header | grep -oE '"[^"]+"')" =~ ^'"'[-0-9.e+]+,[-0-9.e+]+,[-0-9.e+]+'"'$ ]]
+  [[ "$(grep 'goniochrome:eye' header | grep -oE '"[^"]+"')" =~ ^'"'[-0-9.e+]+,[-0-9.e+]+,[-0-9.e+]+'"'$ ]]
 }
 
 @test "a lobe that the environment lacks is named, with the command that makes it" {
