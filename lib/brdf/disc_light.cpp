@@ -25,9 +25,21 @@ constexpr double kTail = 40;
 // Of Gauss's rule over the rings of a lobe, which are at most 9 standard deviations wide together. The substitution of
 // lobe_of_disc() makes the integrand smooth at both ends, so that the error falls exponentially with the rings.
 constexpr int kRings = 48;
+// The same for the nodes of tables, which are floats and between which lines are drawn: they err by less than 1e-6 of
+// the largest value.
+constexpr int kRingsOfNodes = 20;
 
-const std::vector<math::QuadraturePoint>& ring_rule() {
-  static const std::vector<math::QuadraturePoint> rule = math::gauss_legendre(kRings);
+// A ring at the part sin^2(x) of the way across the rings, and its weight times the derivative of that.
+struct RingPoint {
+  double share, weight;
+};
+
+std::vector<RingPoint> ring_rule(int rings) {
+  std::vector<RingPoint> rule;
+  for (const math::QuadraturePoint& point : math::gauss_legendre(rings)) {
+    const double x = kPi / 4 * (1 + point.position);
+    rule.push_back({math::sin(x) * math::sin(x), kPi / 4 * point.weight * math::sin(2 * x)});
+  }
   return rule;
 }
 
@@ -122,12 +134,14 @@ DiscRings disc_rings(double exponent, double radius_rad, double between_rad) {
   return rings;
 }
 
+namespace {
+
 // Ring by ring about r. Rings that are whole within the disc have a closed form; of the others the part of the ring
 // within the disc is an arc of half-angle psi about the direction to l, so that with e the unit vector from r toward l
 //   power = integral of cos^E t sin t 2 psi dt,   moment = integral of cos^E t sin t (2 psi cos t r + 2 sin psi sin t
 //   e)
 // The arc has the slope of a square root at both ends, which t = a + (b - a) sin^2(x) takes away.
-LobeOfDisc lobe_of_disc(double exponent, double radius_rad, double between_rad) {
+LobeOfDisc lobe_by_rule(const std::vector<RingPoint>& rule, double exponent, double radius_rad, double between_rad) {
   if (!(radius_rad > 0)) {
     const double power = math::cos_power(between_rad, exponent);
     return {power, power, 0};
@@ -141,11 +155,9 @@ LobeOfDisc lobe_of_disc(double exponent, double radius_rad, double between_rad) 
     along_r = 2 * kPi / (exponent + 2) * -math::expm1((exponent + 2) * log_inner);
   }
   if (rings.width > 0) {
-    for (const math::QuadraturePoint& point : ring_rule()) {
-      const double x = kPi / 4 * (1 + point.position), share = square(math::sin(x));
-      const double t = rings.first + share * rings.width, psi = rings.half_arc(share);
-      const double weight =
-          kPi / 4 * point.weight * rings.width * math::sin(2 * x) * math::sin(t) * math::cos_power(t, exponent);
+    for (const RingPoint& point : rule) {
+      const double t = rings.first + point.share * rings.width, psi = rings.half_arc(point.share);
+      const double weight = point.weight * rings.width * math::sin(t) * math::cos_power(t, exponent);
       power += weight * 2 * psi;
       along_r += weight * 2 * psi * math::cos(t);
       along_e += weight * 2 * math::sin(psi) * math::sin(t);
@@ -159,6 +171,13 @@ LobeOfDisc lobe_of_disc(double exponent, double radius_rad, double between_rad) 
     lobe.by_mirror = std::max(0.0, scale * along_r - lobe.by_light * math::cos(between_rad));
   }
   return lobe;
+}
+
+}  // namespace
+
+LobeOfDisc lobe_of_disc(double exponent, double radius_rad, double between_rad) {
+  static const std::vector<RingPoint> rule = ring_rule(kRings);
+  return lobe_by_rule(rule, exponent, radius_rad, between_rad);
 }
 
 DiscLobeTable::Node DiscLobeTable::at(double chord) const {
@@ -176,7 +195,8 @@ DiscLobeTable::Node DiscLobeTable::at(double chord) const {
 }
 
 DiscLobeTable::Node disc_lobe_node(double exponent, double radius_rad, double chord) {
-  const LobeOfDisc lobe = lobe_of_disc(exponent, radius_rad, 2 * math::asin(std::min(1.0, 0.5 * chord)));
+  static const std::vector<RingPoint> rule = ring_rule(kRingsOfNodes);
+  const LobeOfDisc lobe = lobe_by_rule(rule, exponent, radius_rad, 2 * math::asin(std::min(1.0, 0.5 * chord)));
   const double both = lobe.by_light + lobe.by_mirror;
   DiscLobeTable::Node node;
   node.cosine[0] = static_cast<float>(lobe.by_light), node.cosine[1] = static_cast<float>(lobe.by_mirror);

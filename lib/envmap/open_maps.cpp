@@ -6,6 +6,7 @@
 #include "brdf/disc_light.h"
 #include "brdf/lobe_model.h"
 #include "envmap/internal/weighted_diffuse.h"
+#include "math/elementary.h"
 
 namespace goniochrome::envmap {
 
@@ -48,13 +49,17 @@ CubeMap without_spots(CubeMap map, double exponent, const std::vector<Spot>& spo
 
 CubeMap diffuse_without_spots(CubeMap map, bool coated, const std::vector<Spot>& spots) {
   const double even = brdf::mean_coat_transmission(brdf::kCoatIndex);
+  std::vector<double> sines;
+  for (const Spot& spot : spots) sines.push_back(math::sin(spot.radius_rad));
   take_out(
       spots,
       [&](std::size_t k, const Vec3& normal) {
         const double cosine = dot(normal, spots[k].direction), radius = spots[k].radius_rad;
-        const double irradiance = brdf::disc_irradiance(cosine, radius);
+        if (cosine <= -sines[k]) return 0.0;
+        const bool whole = cosine >= sines[k];  // above the horizon
+        const double irradiance = whole ? cosine : brdf::disc_irradiance(cosine, radius);
         if (!coated || !(irradiance > 0)) return irradiance;
-        const double mean_cosine = std::min(1.0, irradiance / brdf::disc_above(cosine, radius));
+        const double mean_cosine = whole ? cosine : std::min(1.0, irradiance / brdf::disc_above(cosine, radius));
         return irradiance * brdf::coat_transmission(mean_cosine, brdf::kCoatIndex) / even;
       },
       map);
