@@ -68,21 +68,8 @@ EnvironmentTable::EnvironmentTable(const envmap::Environment& environment)
   for (int row = 0; row < height_; ++row)
     add_guide(&columns_[static_cast<std::size_t>(row) * (static_cast<std::size_t>(width_) + 1)], width_, kColumnGuide,
               column_guide_);
-  lay_shares();
-}
-
-// As the tables have it, whose floats round: what is drawn and what at() says are the same.
-void EnvironmentTable::lay_shares() {
-  const auto width = static_cast<std::size_t>(width_);
-  shares_.reserve(width * static_cast<std::size_t>(height_));
-  for (std::size_t row = 0; row < static_cast<std::size_t>(height_); ++row) {
-    const float* cumulative = &columns_[row * (width + 1)];
-    for (std::size_t column = 0; column < width; ++column)
-      shares_.push_back(static_cast<float>((rows_[row + 1] - rows_[row]) *
-                                           (static_cast<double>(cumulative[column + 1]) - cumulative[column])));
-  }
-  for (int i = 0; environment_->grid().is_cube() && i <= width_; ++i)
-    edges_.push_back(environment_->grid().face_coordinate(i));
+  for (int i = 0; environment.grid().is_cube() && i <= width_; ++i)
+    edges_.push_back(environment.grid().face_coordinate(i));
 }
 
 // SphereGrid::solid_angle_density() of a direction within this texel: 1 + s^2 + t^2 of a unit direction is one over the
@@ -93,14 +80,25 @@ double EnvironmentTable::cube_density(const Float3& direction, int column, int r
   return (edges_[c + 1] - edges_[c]) * (edges_[r + 1] - edges_[r]) * (along * along * along);
 }
 
+std::size_t EnvironmentTable::row_at(double u) const {
+  return static_cast<std::size_t>(interval(rows_.data(), height_, u, row_guide_.data(), kRowGuide));
+}
+
+void EnvironmentTable::fetch(double u, double v) const {
+  if (dark()) return;
+  const std::size_t row = row_at(u);
+  __builtin_prefetch(&column_guide_[row * kColumnGuide + static_cast<std::size_t>(v * kColumnGuide)]);
+}
+
 // Of a lat-long map directions are even in solid angle within a texel: in longitude and in the cosine from the pole.
 // Elsewhere they are even in column and row, for the density hardly changes over a texel.
 EnvironmentTable::Place EnvironmentTable::place(double u, double v) const {
   if (dark()) return {};
-  const int row = interval(rows_.data(), height_, u, row_guide_.data(), kRowGuide);
-  const auto r = static_cast<std::size_t>(row);
-  const float* cumulative = &columns_[r * (static_cast<std::size_t>(width_) + 1)];
+  const std::size_t r = row_at(u);
+  const auto row = static_cast<int>(r);
+  const float* cumulative = this->cumulative(r);
   const int column = interval(cumulative, width_, v, &column_guide_[r * kColumnGuide], kColumnGuide);
+  __builtin_prefetch(environment_->radiance(column, row));
   const double down = std::clamp((u - rows_[r]) / (rows_[r + 1] - rows_[r]), 0.0, 1.0);
   const double right = std::clamp(
       (v - cumulative[column]) / (static_cast<double>(cumulative[column + 1]) - cumulative[column]), 0.0, 1.0);
@@ -124,9 +122,12 @@ EnvironmentTable::Place EnvironmentTable::place(double u, double v) const {
           environment_->solid_angle_density(column + right, row + down)};
 }
 
+// The share as the tables have it, whose floats round: what is drawn and what at() says are the same.
 LightSample EnvironmentTable::light(const Float3& direction, int column, int row, double density) const {
-  const auto at = static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column);
-  return {direction, density > 0 ? static_cast<float>(shares_[at] / density) : 0.0F,
+  const auto r = static_cast<std::size_t>(row);
+  const float* edge = cumulative(r) + column;
+  const double share = (rows_[r + 1] - rows_[r]) * (static_cast<double>(edge[1]) - edge[0]);
+  return {direction, density > 0 ? static_cast<float>(static_cast<float>(share) / density) : 0.0F,
           texel_radiance(*environment_, column, row)};
 }
 

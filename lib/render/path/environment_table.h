@@ -31,6 +31,9 @@ class EnvironmentTable {
     double density = 0;  // solid angle for each texel there; 0: nothing was drawn
   };
   Place place(double u, double v) const;
+  // Begins to fetch what place(u, v) and light() of it will read: the tables are larger than the caches near the
+  // processor. For numbers that are known well before the place is asked for.
+  void fetch(double u, double v) const;
   LightSample light(const Place& place) const;
   LightSample drawn(double u, double v) const { return light(place(u, v)); }
   // The probability density by which drawn() gives this direction, and the radiance that comes from there: that of the
@@ -45,7 +48,8 @@ class EnvironmentTable {
 
  private:
   LightSample light(const rays::Float3& direction, int column, int row, double density) const;
-  void lay_shares();
+  std::size_t row_at(double u) const;
+  const float* cumulative(std::size_t row) const { return &columns_[row * (static_cast<std::size_t>(width_) + 1)]; }
   double cube_density(const rays::Float3& direction, int column, int row) const;
 
   const envmap::Environment* environment_;
@@ -54,7 +58,6 @@ class EnvironmentTable {
   std::vector<double> row_solid_angle_, row_cosine_;  // of a lat-long map: of a texel, and of the rows' upper edges
   std::vector<double> rows_;                          // cumulative share of the rows, height + 1
   std::vector<float> columns_;                        // cumulative share within each row, width + 1 each
-  std::vector<float> shares_;                         // of all light, by texel, row by row
   std::vector<double> edges_;                         // of a cube: of the cells of a face, -1..1; width + 1
   // For each of equal steps of a number the interval where a search for it begins.
   std::vector<std::uint16_t> row_guide_, column_guide_;

@@ -361,6 +361,8 @@ color::Rgb Transport::bounced(Hit hit, Float3 origin, Float3 direction, const Pa
   for (int bounce = 1, surfaces = 0;; ++bounce) {
     if (shaded_ != nullptr && is_laid(hit))
       return sum + path.shown(met_ground(hit, origin, direction, sequence.point(index, set)[0]).sum());
+    const std::array<double, 4> to_light = sequence.point(index, set), onward = sequence.point(index, set + 1);
+    if (environment_) environment_->fetch(to_light[0], to_light[1]);
     const Vertex vertex(*this, rays_->spot(hit, origin, direction), -direction);
     if (vertex.is_laid) {
       sum += path.shown(vertex.open);
@@ -368,7 +370,7 @@ color::Rgb Transport::bounced(Hit hit, Float3 origin, Float3 direction, const Pa
       break;
     }
     if (vertex.painted.black()) break;
-    const std::array<double, 4> to_light = sequence.point(index, set++), onward = sequence.point(index, set++);
+    set += 2;
     sum += direct_light(vertex, path, to_light, onward[3]);
     const Next next = next_ray(vertex, path, onward);
     if (!(next.pdf > 0)) break;

@@ -303,7 +303,7 @@ RayCost RayProbe::cost_of(Light Point::*of, std::size_t count, const RayEffects&
                           double visible_points, int samples) const {
   RayCost cost;
   if (!effects.shadow || count == 0) return cost;
-  constexpr double kFewest = 2;
+  constexpr double kFewest = 1;
   const double groups = std::ceil(samples / 4.0), tolerance = tolerance_de00 * std::sqrt(groups);
   std::vector<double> needed;
   std::size_t traced = 0;
