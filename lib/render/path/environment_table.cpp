@@ -42,13 +42,16 @@ EnvironmentTable::EnvironmentTable(const envmap::Environment& environment)
   rows_.assign(static_cast<std::size_t>(height_) + 1, 0.0);
   columns_.assign(static_cast<std::size_t>(height_) * (static_cast<std::size_t>(width_) + 1), 0.0F);
   std::vector<double> sums(static_cast<std::size_t>(width_) + 1, 0.0);
+  std::vector<double> row_sums;
   double squares = 0, sphere = 0;
   for (int row = 0; row < height_; ++row) {
+    double rising = 0;
     for (int column = 0; column < width_; ++column) {
       const color::Rgb light = texel_radiance(environment, column, row);
       const double mean = (light.x + light.y + light.z) / 3, solid_angle = environment.solid_angle(column, row);
       const auto at = static_cast<std::size_t>(column);
       sums[at + 1] = sums[at] + mean * solid_angle;
+      rising += solid_angle * environment.direction_at(column + 0.5, row + 0.5).y;
       squares += mean * mean * solid_angle;
       sphere += solid_angle;
     }
@@ -57,12 +60,23 @@ EnvironmentTable::EnvironmentTable(const envmap::Environment& environment)
     const double sum = sums.back();
     float* cumulative = &columns_[static_cast<std::size_t>(row) * (static_cast<std::size_t>(width_) + 1)];
     for (std::size_t i = 0; i < sums.size(); ++i) cumulative[i] = sum > 0 ? static_cast<float>(sums[i] / sum) : 0.0F;
-    rows_[static_cast<std::size_t>(row) + 1] = rows_[static_cast<std::size_t>(row)] + sum;
+    row_sums.push_back(sum), below_.push_back(rising < 0);
+    order_.push_back(row);
+  }
+  std::ranges::stable_partition(order_, [this](int row) { return below_[static_cast<std::size_t>(row)]; });
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    const auto row = static_cast<std::size_t>(order_[i]);
+    rows_[i + 1] = rows_[i] + row_sums[row];
+    if (below_[row]) below_share_ = rows_[i + 1];
   }
   total_ = rows_.back();
   extent_sr_ = squares > 0 ? total_ * total_ / squares : sphere;
   if (total_ > 0)
     for (double& row : rows_) row /= total_;
+  below_share_ = total_ > 0 ? below_share_ / total_ : 0;
+  row_share_.resize(order_.size());
+  for (std::size_t i = 0; i < order_.size(); ++i)
+    row_share_[static_cast<std::size_t>(order_[i])] = rows_[i + 1] - rows_[i];
   row_cosine_.push_back(-1);
   add_guide(rows_.data(), height_, kRowGuide, row_guide_);
   for (int row = 0; row < height_; ++row)
@@ -80,13 +94,24 @@ double EnvironmentTable::cube_density(const Float3& direction, int column, int r
   return (edges_[c + 1] - edges_[c]) * (edges_[r + 1] - edges_[r]) * (along * along * along);
 }
 
-std::size_t EnvironmentTable::row_at(double u) const {
+double HorizonShares::stretched(double u) const {
+  constexpr double kBelowOne = 1 - 0x1p-40;
+  if (!(chance > 0)) return u;
+  return u < chance ? u / chance * light : std::min(light + (u - chance) / (1 - chance) * (1 - light), kBelowOne);
+}
+
+HorizonShares EnvironmentTable::with_below(double least) const {
+  if (!(below_share_ > 0) || below_share_ >= least) return {};
+  return {least, below_share_, least / below_share_, (1 - least) / (1 - below_share_)};
+}
+
+std::size_t EnvironmentTable::place_of_row(double u) const {
   return static_cast<std::size_t>(interval(rows_.data(), height_, u, row_guide_.data(), kRowGuide));
 }
 
 void EnvironmentTable::fetch(double u, double v) const {
   if (dark()) return;
-  const std::size_t row = row_at(u);
+  const auto row = static_cast<std::size_t>(order_[place_of_row(u)]);
   __builtin_prefetch(&column_guide_[row * kColumnGuide + static_cast<std::size_t>(v * kColumnGuide)]);
 }
 
@@ -94,12 +119,13 @@ void EnvironmentTable::fetch(double u, double v) const {
 // Elsewhere they are even in column and row, for the density hardly changes over a texel.
 EnvironmentTable::Place EnvironmentTable::place(double u, double v) const {
   if (dark()) return {};
-  const std::size_t r = row_at(u);
-  const auto row = static_cast<int>(r);
+  const std::size_t i = place_of_row(u);
+  const int row = order_[i];
+  const auto r = static_cast<std::size_t>(row);
   const float* cumulative = this->cumulative(r);
   const int column = interval(cumulative, width_, v, &column_guide_[r * kColumnGuide], kColumnGuide);
   __builtin_prefetch(environment_->radiance(column, row));
-  const double down = std::clamp((u - rows_[r]) / (rows_[r + 1] - rows_[r]), 0.0, 1.0);
+  const double down = std::clamp((u - rows_[i]) / (rows_[i + 1] - rows_[i]), 0.0, 1.0);
   const double right = std::clamp(
       (v - cumulative[column]) / (static_cast<double>(cumulative[column + 1]) - cumulative[column]), 0.0, 1.0);
   if (environment_->layout() == envmap::Environment::Layout::kLatLong) {
@@ -126,9 +152,9 @@ EnvironmentTable::Place EnvironmentTable::place(double u, double v) const {
 LightSample EnvironmentTable::light(const Float3& direction, int column, int row, double density) const {
   const auto r = static_cast<std::size_t>(row);
   const float* edge = cumulative(r) + column;
-  const double share = (rows_[r + 1] - rows_[r]) * (static_cast<double>(edge[1]) - edge[0]);
+  const double share = row_share_[r] * (static_cast<double>(edge[1]) - edge[0]);
   return {direction, density > 0 ? static_cast<float>(static_cast<float>(share) / density) : 0.0F,
-          texel_radiance(*environment_, column, row)};
+          texel_radiance(*environment_, column, row), below_[r]};
 }
 
 LightSample EnvironmentTable::light(const Place& place) const {

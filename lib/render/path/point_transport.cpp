@@ -15,6 +15,9 @@ using rays::Hit;
 using rays::Spot;
 
 constexpr float kInversePi = 1 / static_cast<float>(kPi);
+// The least chance that a direction that is drawn from the environment comes from below the horizon, where a floor is
+// all that changes the light of most points: of an upright surface, and of any.
+constexpr double kUprightBelowChance = 0.4, kMostBelowChance = 0.6;
 // The most and least chance that a direction is drawn from the environment where there is one.
 constexpr float kLeastLightChance = 0.1F, kMostLightChance = 0.75F, kLeastWindowLightChance = 0.05F;
 
@@ -59,6 +62,9 @@ PointTransport::PointTransport(const Transport& transport, const PathOptions& op
   } else if (transport.environment_) {
     const float wide = 1 - painted_.narrow_share(transport.environment_->extent_sr());
     light_chance_ = std::clamp(kMostLightChance * wide, kLeastLightChance, kMostLightChance);
+    if (over_ground_ && correction_)
+      horizon_ = transport.environment_->with_below(
+          std::min(kMostBelowChance, kUprightBelowChance * (1.0 - static_cast<double>(spot.shading.y))));
   }
   open_ = !transport.rays_->has_floor() && !transport.rays_->any_above(spot.start, spot.shading, 0);
   const bool free = open_ && options.correction;
@@ -223,7 +229,7 @@ PointTransport::Ray PointTransport::drawn_ray(const std::array<double, 4>& numbe
     }
   }
   if (numbers[0] < light_chance_) {
-    ray.place = transport_.environment_->place(numbers[1], numbers[2]);
+    ray.place = transport_.environment_->place(horizon_.stretched(numbers[1]), numbers[2]);
     if (!(ray.place->density > 0)) return ray;
     ray.direction = ray.place->direction;
     if (over_ground_ && transport_.uneven_ground_ && ray.direction.y < 0) {
@@ -300,7 +306,7 @@ LightShares PointTransport::shown_over_ground(const Ray& ray, const Hit& hit, co
     const Reflection reflection = painted_.at(hidden);
     if (reflection.pdf > 0) {
       const LightSample light = light_from(hidden);
-      shares.direct = -1.0 * reflect(scale(light.pdf, reflection) * reflection.f_cos, light.radiance);
+      shares.direct = -1.0 * reflect(scale(horizon_.pdf(light), reflection) * reflection.f_cos, light.radiance);
     }
   }
   if (!ray.above || (!blocked && correction_)) return shares;
@@ -309,12 +315,12 @@ LightShares PointTransport::shown_over_ground(const Ray& ray, const Hit& hit, co
   color::Rgb arriving, sent;
   double light_pdf = 0;
   if (ray.direction.y < 0 && transport_.uneven_ground_) {
-    light_pdf = transport_.ground_pdf(spot_.start, ray.direction);
+    light_pdf = transport_.ground_pdf(spot_.start, ray.direction, horizon_);
   } else if (ray.direction.y < 0) {
-    light_pdf = light_from(ray.direction).pdf;
+    light_pdf = horizon_.pdf(light_from(ray.direction));
   } else {
     const LightSample light = light_from(ray.direction);
-    light_pdf = light.pdf;
+    light_pdf = horizon_.pdf(light);
     if (blocked == correction_) arriving = (blocked ? -1.0 : 1.0) * light.radiance;
   }
   const float scaled = scale(light_pdf, reflection);
@@ -389,7 +395,7 @@ LightShares PointTransport::shares_of(const Sequence& sequence, std::uint32_t be
       std::array<double, 4> drawn[kFan];
       for (std::uint32_t i = 0; i < traced; ++i) {
         drawn[i] = numbers.point(first + i);
-        if (drawn[i][0] < light_chance_) transport_.environment_->fetch(drawn[i][1], drawn[i][2]);
+        if (drawn[i][0] < light_chance_) transport_.environment_->fetch(horizon_.stretched(drawn[i][1]), drawn[i][2]);
       }
       for (std::uint32_t i = 0; i < traced; ++i) {
         rays[i] = drawn_ray(drawn[i], i, traced);

@@ -108,14 +108,14 @@ Float3 Transport::toward_ground(const Float3& from, const Float3& from_eye) cons
 }
 
 // That of the environment's table where it was seen from, by the ratio of the solid angles of a piece of the floor.
-double Transport::ground_pdf(const Float3& from, const Float3& direction) const {
+double Transport::ground_pdf(const Float3& from, const Float3& direction, const HorizonShares& horizon) const {
   const float distance = rays_->floor_distance(from, direction);
   const Float3 seen = from + distance * direction - ground_eye_;
   const float eye_distance = rays::length(seen);
   if (!(distance > 0) || !(eye_distance > 0)) return 0;
   const Float3 from_eye = (1 / eye_distance) * seen;
   const double ratio = static_cast<double>(distance) / eye_distance;
-  return environment_->at(from_eye).pdf * ratio * ratio * (from_eye.y / direction.y);
+  return horizon.pdf(environment_->at(from_eye)) * ratio * ratio * (from_eye.y / direction.y);
 }
 
 // Directions even by the cosine. Light from the ground counts by what the mesh leaves of it.

@@ -125,7 +125,7 @@ class Transport {
   // The direction from a point to where the floor shows what the environment has in a direction below the horizon, and
   // the density by which the environment's table draws a direction so.
   rays::Float3 toward_ground(const rays::Float3& from, const rays::Float3& from_eye) const;
-  double ground_pdf(const rays::Float3& from, const rays::Float3& direction) const;
+  double ground_pdf(const rays::Float3& from, const rays::Float3& direction, const HorizonShares& horizon) const;
   LightShares shown_ground(const rays::Spot& spot, const GroundLight& light) const;
   // The same where a path meets the floor, by a number in [0,1); nothing from below.
   LightShares met_ground(const rays::Hit& hit, const rays::Float3& origin, const rays::Float3& direction,
@@ -249,6 +249,7 @@ class PointTransport {
   rays::Float3 mesh_axis_;
   float mesh_cosine_ = -2;
   float light_chance_ = 0;  // of a direction that is drawn from the environment
+  HorizonShares horizon_;   // of such directions
   rays::Hit mirror_hit_;
   std::uint32_t mirror_samples_ = 0;  // in a batch
   // Lamps that are discs, parts of which the mesh may hide: samples tell what is hidden, or what is free where that is
