@@ -66,6 +66,14 @@ TEST(Material, AGraphOfBlackHasANode) {
   EXPECT_NE(graph->bytes.find("type=\"BSDF\" nodename=\"black_diffuse1_tint\""), std::string::npos);
 }
 
+// The mixture of a metal and a dielectric is what OpenPBR has beside Standard Surface.
+TEST(Material, OpenPbrIsAsNearAsStandardSurface) {
+  const auto one = kStandardSurface.material(silver_for_test(), {"a", "a", "test", {}}),
+             both = kOpenPbr.material(silver_for_test(), {"a", "a", "test", {}});
+  ASSERT_TRUE(one.ok() && both.ok());
+  EXPECT_LE(both->shown.de00_mean, one->shown.de00_mean + 0.05);
+}
+
 // A diffuse paint without a coat is the same in every model here: each of them has a diffuse part of its own.
 TEST(Material, ADiffusePaintIsExactInEveryTarget) {
   const paint::Paint paint = paint_for_test("matt", {0.1, 0.12, 0.09}, {}, paint::kNoCoat);

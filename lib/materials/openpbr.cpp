@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "base/angles.h"
 #include "materials/internal/dielectric_layer.h"
@@ -34,21 +35,41 @@ Specular specular_of(const OneLobe& p) {
 }
 
 // Schlick's reflectance of a metal, less what lowers it to a share `at82` of that at 82 deg [Kutz2021].
+constexpr double kEdgeCosine = 1.0 / 7;
+double rising(double normal, double cosine) {
+  return std::lerp(normal, 1.0, schlick(cosine));
+}
+double edge_shape(double cosine) {
+  const double rest = std::clamp(1 - cosine, 0.0, 1.0);
+  return cosine * rest * schlick(cosine) / (kEdgeCosine * (1 - kEdgeCosine) * schlick(kEdgeCosine));
+}
 double metal_reflectance(double normal, double at82, double cosine) {
-  constexpr double kCosine = 1.0 / 7;
-  const auto rising = [&](double c) { return std::lerp(normal, 1.0, schlick(c)); };
-  const double rest = std::clamp(1 - cosine, 0.0, 1.0), rest6 = rest * schlick(cosine);
-  const double a = rising(kCosine) * (1 - at82) / (kCosine * (1 - kCosine) * schlick(kCosine));
-  return rising(cosine) - a * cosine * rest6;
+  return rising(normal, cosine) - rising(normal, kEdgeCosine) * (1 - at82) * edge_shape(cosine);
 }
 
-// Whether such a metal reflects less than nothing somewhere, as dark ones with a dark edge do.
-bool is_below_zero(const OneLobe& p) {
-  if (p.metalness == 0) return false;
-  for (int step = 0; step <= 100; ++step)
-    for (int c = 0; c < 3; ++c)
-      if (metal_reflectance(p.base[c], p.specular[c], step / 100.0) < 0) return true;
-  return false;
+// The least share at 82 deg with which a metal of that color reflects nothing below 0 at any angle.
+double least_at82(double normal) {
+  constexpr std::size_t kColors = 257, kCosines = 200;
+  static const std::array<double, kColors> table = [] {
+    std::array<double, kColors> least{};
+    for (std::size_t i = 0; i < kColors; ++i)
+      for (std::size_t j = 1; j < kCosines; ++j) {
+        const double color = static_cast<double>(i) / (kColors - 1), cosine = static_cast<double>(j) / kCosines;
+        least[i] = std::max(least[i], 1 - rising(color, cosine) / (rising(color, kEdgeCosine) * edge_shape(cosine)));
+      }
+    return least;
+  }();
+  const double x = std::clamp(normal, 0.0, 1.0) * (kColors - 1);
+  const std::size_t i = std::min(static_cast<std::size_t>(x), kColors - 2);
+  return std::lerp(table[i], table[i + 1], x - static_cast<double>(i));
+}
+
+// The search has the specular color as a share of the range that a metal leaves to it.
+color::Rgb specular_color(const OneLobe& p) {
+  color::Rgb color = p.specular;
+  if (p.metalness > 0)
+    for (int c = 0; c < 3; ++c) color[c] = std::lerp(least_at82(p.base[c]), 1.0, color[c]);
+  return color;
 }
 
 color::Rgb seen(const OneLobe& p, const Vec3& light, const Vec3& view) {
@@ -61,11 +82,12 @@ color::Rgb seen(const OneLobe& p, const Vec3& light, const Vec3& view) {
           : DielectricLayer();
   const double cosine = half_cosine(light, view), all = quick_facet_albedo(alpha, view.z).all;
   const double facets = specular_of(p).weight * ggx(std::max(alpha, kSharpest), light, view);
+  const color::Rgb tint = specular_color(p);
   color::Rgb f;
   for (int c = 0; c < 3; ++c) {
-    double base = p.specular[c] * lobe.reflected + lobe.left * p.base[c] / kPi;
+    double base = tint[c] * lobe.reflected + lobe.left * p.base[c] / kPi;
     if (p.metalness > 0) {
-      const double fresnel = metal_reflectance(p.base[c], p.specular[c], cosine);
+      const double fresnel = metal_reflectance(p.base[c], tint[c], cosine);
       base = std::lerp(base, facets * fresnel * (1 + fresnel * (1 - all) / all), p.metalness);
     }
     f[c] = coat.reflected + coat.left * base;
@@ -75,11 +97,12 @@ color::Rgb seen(const OneLobe& p, const Vec3& light, const Vec3& view) {
 
 ShaderInputs inputs_of(const OneLobe& p) {
   const Specular specular = specular_of(p);
+  const color::Rgb tint = specular_color(p);
   return {{"base_weight", {1}},
           {"base_color", {p.base.x, p.base.y, p.base.z}},
           {"base_metalness", {p.metalness}},
           {"specular_weight", {specular.weight}},
-          {"specular_color", {p.specular.x, p.specular.y, p.specular.z}},
+          {"specular_color", {tint.x, tint.y, tint.z}},
           {"specular_roughness", {p.roughness}},
           {"specular_ior", {specular.index}},
           {"coat_weight", {p.clearcoat}},
@@ -90,14 +113,18 @@ ShaderInputs inputs_of(const OneLobe& p) {
 
 Result<Material> openpbr_material(const paint::Paint& fitted, const Naming& naming, bool usd) {
   GONIO_ASSIGN(const paint::Paint paint, exported(fitted));
-  OneLobe p = rounded(nearest_one_lobe(paint, seen, Searched::kMetalnessToo));
-  if (is_below_zero(p)) p = rounded(nearest_one_lobe(paint, seen, Searched::kStrengthToo));
-  const std::string bytes =
-      usd ? usda_of_shader("ND_open_pbr_surface_surfaceshader", "mtlx:surface", "", inputs_of(p), naming)
-          : mtlx_of_shader("open_pbr_surface", "1.39", inputs_of(p), naming);
-  return Material{bytes, shown(paint, [&](const Vec3& light, const Vec3& view) {
-                    return color::rec2020_from_rec709(seen(p, light, view));
-                  })};
+  std::optional<OneLobe> nearest;
+  Shown least;
+  for (const Searched searched : {Searched::kStrengthToo, Searched::kMetalnessToo}) {
+    const OneLobe p = rounded(nearest_one_lobe(paint, seen, searched));
+    const Shown now = shown(
+        paint, [&](const Vec3& light, const Vec3& view) { return color::rec2020_from_rec709(seen(p, light, view)); });
+    if (!nearest || now.de00_mean < least.de00_mean) nearest = p, least = now;
+  }
+  const ShaderInputs inputs = inputs_of(*nearest);
+  return Material{usd ? usda_of_shader("ND_open_pbr_surface_surfaceshader", "mtlx:surface", "", inputs, naming)
+                      : mtlx_of_shader("open_pbr_surface", "1.39", inputs, naming),
+                  least};
 }
 
 }  // namespace

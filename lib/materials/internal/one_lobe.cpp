@@ -64,6 +64,7 @@ OneLobe nearest_one_lobe(const paint::Paint& paint, const OneLobeModel& model, S
   };
   double best = std::numeric_limits<double>::infinity();
   OneLobe nearest = coat;
+  constexpr double kLeastMetalness = 0.01;
   struct Start {
     double roughness, strength, metalness;
   };
@@ -71,14 +72,14 @@ OneLobe nearest_one_lobe(const paint::Paint& paint, const OneLobeModel& model, S
        {Start{0.35, 0.9, 0}, Start{0.55, 0.9, 0}, Start{0.8, 0.9, 0}, Start{0.55, 0.02, 0}, Start{0.45, 0.5, 0.5},
         Start{0.7, 0.5, 0.5}}) {
     if (!has_strength && strength < 0.9) continue;
-    if (searched != Searched::kMetalnessToo && metalness > 0) continue;
+    if ((searched == Searched::kMetalnessToo) != (metalness > 0)) continue;
     const double peak = std::pow(roughness, 4);
     std::vector<Parameter> x;
     for (int c = 0; c < 3; ++c) x.push_back({darkest[c], 0, 1});
     for (int c = 0; c < 3; ++c) x.push_back({std::clamp(brightest[c] * peak, 0.01, 0.9), 0, 1});
     x.push_back({roughness, 0.08, 1});
     if (has_strength) x.push_back({strength, 0, 1});
-    if (searched == Searched::kMetalnessToo) x.push_back({metalness, 0, 1});
+    if (searched == Searched::kMetalnessToo) x.push_back({metalness, kLeastMetalness, 1});
     const double sum = descend(x, residuals);
     if (sum < best) best = sum, nearest = with(coat, x);
   }

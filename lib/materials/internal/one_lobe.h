@@ -22,6 +22,7 @@ using OneLobeModel = std::function<color::Rgb(const OneLobe& parameters, const V
 // The parameters for which the squared color differences of the model from the lobes of the paint, over fit_samples(),
 // have the least sum. The clear coat is that of the paint: its factor is the share of Fresnel's reflectance that its
 // mirror and satin lobes have, and it is rough where the satin ones have the larger part.
+// What the search moves beside colors and roughness. A metalness that it moves stays above 0.
 enum class Searched { kColorsAndRoughness, kStrengthToo, kMetalnessToo };
 OneLobe nearest_one_lobe(const paint::Paint& paint, const OneLobeModel& model, Searched searched);
 
