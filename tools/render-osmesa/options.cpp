@@ -187,8 +187,8 @@ void add_effects(cli::ToolSpec& spec, Options& o) {
           "in a sentence if the whole is not going to be within the tolerance, and what would keep it. A picture for "
           "which nobody asks how accurate it is to be, nor how long it may take, is to cost seconds: without "
           "--tolerance, --time-limit and --check its rays take at most 16 million samples, beside the first 16 of "
-          "each point, and the engine path is chosen where it is predicted to be faster than that. --engine path, "
-          "--aov transport and shadow, self, bounce or rays with a plus have no such limit. The engine "
+          "each point, and the engine path is chosen where it is predicted to be faster and to need no more. --engine "
+          "path, --aov transport and shadow, self, bounce or rays with a plus have no such limit. The engine "
           "integral makes its sums as coarse as this tolerance allows at 95 of 100 points.");
   spec.option("budget", "MS", "20", &o.budget_ms, "longest time for shading a frame; 0 is no limit")
       .from(0, 1e6)
