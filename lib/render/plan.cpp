@@ -311,8 +311,8 @@ Plan plan_of_everything(const Scene& scene, const Effects& all, const std::vecto
 }
 
 // Where prefiltered maps do not keep the tolerance and rays alone are faster, everything is drawn by these.
-void take_rays_alone(const Effects& all, const RayChoice& by_rays, double tolerance_de00, const Engine& tracer,
-                     Plan& plan) {
+void take_rays_alone(const Effects& all, const RayChoice& by_rays, double tolerance_de00, double most_in_all,
+                     const Engine& tracer, Plan& plan) {
   const double by_maps_ms = plan.predicted_ms() + plan.rays_ms;
   for (PlanItem& item : plan.items) {
     if (!item.needed) continue;
@@ -325,6 +325,7 @@ void take_rays_alone(const Effects& all, const RayChoice& by_rays, double tolera
   plan.engine = tracer.info().name;
   plan.prices.push_back({plan.engine, by_rays.path_ms, 0});
   plan.effects = all;
+  plan.effects.most_samples_in_all = most_in_all;
   plan.de00_p95 = plan.rays_ms = plan.rays_noise_de00 = 0;
   plan.open_de00_p95 = plan.whole_de00_p95 = tolerance_de00;
   plan.not_kept.clear();
@@ -497,6 +498,7 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   leave_to_tilts(scene, plan.effects);
   plan.effects.rays = by_rays.effects;
   plan.effects.most_ray_samples = by_rays.most_samples, plan.effects.ray_noise_de00 = by_rays.aim_de00;
+  plan.effects.most_samples_in_all = by_rays.most_in_all;
   plan.rays_ms = by_rays.cost.ms, plan.rays_noise_de00 = by_rays.noise_de00;
   const bool has_maps = scene.env != nullptr && !engine.info().needs_texels;
   if (open_truth) plan.open_de00_p95 = open_truth->error(prober.colors(choice.on));
@@ -522,9 +524,11 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   const auto tracer = std::ranges::find_if(engines, [](const Engine* of) { return of->info().traces_rays; });
   const bool may_take = asked == nullptr && words.start == Start::kAuto && words.forced.empty();
   plan.path_ms = by_rays.path_ms, plan.path_samples = by_rays.path_samples;
+  const double most_in_all =
+      request.most_ray_samples > 0 ? request.most_ray_samples : std::numeric_limits<double>::infinity();
   if (may_take && tracer != engines.end() && !plan.not_kept.empty() && by_rays.path_ms > 0 &&
-      by_rays.path_ms < plan.predicted_ms() + plan.rays_ms)
-    take_rays_alone(all, by_rays, request.tolerance_de00, **tracer, plan);
+      by_rays.path_ms < plan.predicted_ms() + plan.rays_ms && by_rays.path_in_all <= most_in_all)
+    take_rays_alone(all, by_rays, request.tolerance_de00, request.most_ray_samples, **tracer, plan);
   plan.time_ms = 1000 * clock.elapsed_s();
   return plan;
 }

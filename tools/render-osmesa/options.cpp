@@ -184,7 +184,11 @@ void add_effects(cli::ToolSpec& spec, Options& o) {
           "Where the prefiltered maps err by more than the tolerance, half of what they err by is enough, unless "
           "--effects names effects of rays with a plus. Before drawing, the plan also compares what the "
           "prefiltered maps show at some points with the exact sum, adds what is left out and the noise, and says "
-          "in a sentence if the whole is not going to be within the tolerance, and what would keep it. The engine "
+          "in a sentence if the whole is not going to be within the tolerance, and what would keep it. A picture for "
+          "which nobody asks how accurate it is to be, nor how long it may take, is to cost seconds: without "
+          "--tolerance, --time-limit and --check its rays take at most 16 million samples, beside the first 16 of "
+          "each point, and the engine path is chosen where it is predicted to be faster and to need no more. --engine "
+          "path, --aov transport and shadow, self, bounce or rays with a plus have no such limit. The engine "
           "integral makes its sums as coarse as this tolerance allows at 95 of 100 points.");
   spec.option("budget", "MS", "20", &o.budget_ms, "longest time for shading a frame; 0 is no limit")
       .from(0, 1e6)
@@ -344,6 +348,8 @@ void add_report(cli::ToolSpec& spec) {
       {"plan_de00_p95, plan_ms, plan_rays_ms",
        "change by all effects that are left out together, the time that planning took, and the part of it in which "
        "the effects of rays were priced"},
+      {"plan_most_samples",
+       "samples of rays that a picture may take, where neither accuracy nor time was asked for; null: no limit"},
       {"plan_path_ms, plan_path_samples",
        "predicted for a picture by the engine path within the tolerance: its time, and the samples of a pixel; null "
        "where prefiltered maps keep it, so that it was not priced"},

@@ -123,7 +123,7 @@ class Picture {
       noise = judge();
       if (request_.progress) request_.progress(noise, clock_.elapsed_s());
       reached = request_.tolerance_de00 > 0 && noise <= request_.tolerance_de00;
-      if (reached || deadline_.passed() || !plan(noise, more)) break;
+      if (reached || deadline_.passed() || !plan(noise, more) || !within_all(more)) break;
     }
     PathPicture picture;
     picture.reached = reached;
@@ -397,6 +397,25 @@ class Picture {
       if (in_vain) return false;
       if (limited || scale > 1e6) return asked > 0;
     }
+  }
+
+  // Cuts the round so that no more samples are drawn in all than may be; whether any are left. All points lose the
+  // same part of what they were to get, and what is too little to be drawn is passed on to the points that follow.
+  bool within_all(std::vector<int>& more) const {
+    if (request_.most_in_all == 0) return true;
+    double drawn = 0, asked = 0;
+    for (const State& state : states_) drawn += state.sums.fans();
+    for (const int fans : more) asked += fans;
+    const double left = request_.most_in_all / kFan - drawn;
+    if (left >= asked) return true;
+    double due = 0;
+    bool any = false;
+    for (int& fans : more) {
+      due += std::max(0.0, left) / asked * fans;
+      fans = due >= Round::kSequences ? Round(std::min(fans, static_cast<int>(due))).fans() : 0;
+      due -= fans, any = any || fans > 0;
+    }
+    return any;
   }
 
   const Transport& transport_;
