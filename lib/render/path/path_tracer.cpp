@@ -404,16 +404,16 @@ class Picture {
   bool within_all(std::vector<int>& more) const {
     if (request_.most_in_all == 0) return true;
     double drawn = 0, asked = 0;
-    for (const State& state : states_) drawn += state.sums.fans();
-    for (const int fans : more) asked += fans;
-    const double left = request_.most_in_all / kFan - drawn;
+    for (const State& state : states_) drawn += state.sums.fours();
+    for (const int fours : more) asked += fours;
+    const double left = request_.most_in_all / kOfFour - drawn;
     if (left >= asked) return true;
     double due = 0;
     bool any = false;
-    for (int& fans : more) {
-      due += std::max(0.0, left) / asked * fans;
-      fans = due >= Round::kSequences ? Round(std::min(fans, static_cast<int>(due))).fans() : 0;
-      due -= fans, any = any || fans > 0;
+    for (int& fours : more) {
+      due += std::max(0.0, left) / asked * fours;
+      fours = due >= Round::kSequences ? Round(std::min(fours, static_cast<int>(due))).fours() : 0;
+      due -= fours, any = any || fours > 0;
     }
     return any;
   }
