@@ -27,6 +27,12 @@ double OpenTruth::error(const std::vector<color::Rgb>& planned) const {
   return percentile_95(std::move(de00));
 }
 
+double OpenTruth::difference(const OpenTruth& other) const {
+  std::vector<double> de00;
+  for (std::size_t i = 0; i < exact_.size(); ++i) de00.push_back(seen_difference(other.exact_[i], exact_[i], white_));
+  return percentile_95(std::move(de00));
+}
+
 std::string reason_not_kept(const Plan& plan, const RayChoice& rays, const PlanRequest& request, bool has_maps) {
   if (!plan.whole_de00_p95 || *plan.whole_de00_p95 <= request.tolerance_de00) return "";
   const std::string start = fmt::format(
