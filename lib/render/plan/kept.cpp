@@ -28,6 +28,12 @@ double OpenTruth::error(const std::vector<color::Rgb>& planned) const {
   return percentile_95(std::move(de00));
 }
 
+double OpenTruth::difference(const OpenTruth& other) const {
+  std::vector<double> de00;
+  for (std::size_t i = 0; i < exact_.size(); ++i) de00.push_back(seen_difference(other.exact_[i], exact_[i], white_));
+  return percentile_95(std::move(de00));
+}
+
 namespace {
 
 // To two digits.
