@@ -10,7 +10,7 @@ _prefilter_envmap() {
     --for|-p) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --size|-s) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --spots) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --layout|-l) COMPREPLY=($(compgen -W "env latlong openexr mip" -- "$word")); return ;;
+    --layout|-l) COMPREPLY=($(compgen -W "env latlong openexr mip ktx2 dds" -- "$word")); return ;;
     --tolerance) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --cache|-c) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --verify|-v) COMPREPLY=($(compgen -f -- "$word")); return ;;

@@ -36,13 +36,15 @@ void add_options(cli::ToolSpec& spec, Options& o) {
           "point, which the maps cannot do; more of them come nearer to the truth and take longer, see the effect "
           "spots there. An environment without small bright parts has none.");
   spec.option("layout,l", "WHAT", "latlong", &o.layout, "how the maps lie")
-      .one_of({"env", "latlong", "openexr", "mip"})
+      .one_of({"env", "latlong", "openexr", "mip", "ktx2", "dds"})
       .more(
           "env has a cube for each lobe, and is what render-osmesa reads. latlong has lat-long maps of 2N x N texels, "
           "and openexr has cubes with texel centers on the edges; both follow OpenEXR's own conventions, for other "
           "programs. mip has one mip-mapped cube, for paints whose exponent varies from point to point. The sharpest "
           "exponent is in its finest level, and each coarser level has the next one, or a quarter of the exponent "
-          "after the last; the attribute goniochrome:exponents says which.");
+          "after the last; the attribute goniochrome:exponents says which. ktx2 and dds have the same levels as a cube "
+          "texture in linear Rec.709, for real-time engines; ktx2 names the exponents under the key "
+          "goniochrome:exponents, and dds has no place for them.");
   cli::add_tolerance(spec, o.common, "X", "largest error of a texel, relative to the texel")
       .more(
           "The error is the difference from the sum over all texels of the image in double precision, and includes the "
@@ -76,6 +78,8 @@ void add_report(cli::ToolSpec& spec) {
        "show what each lobe makes of a sky"},
       {"prefilter-envmap -e 256,64,16,4 --layout mip --size 64 --rotate 90 testdata/studio.exr -o studio.mip.exr",
        "make one mip-mapped cube of the studio, turned by a quarter"},
+      {"prefilter-envmap -e 1024 --layout ktx2 --size 64 testdata/studio.exr -o studio.ktx2",
+       "make a cube texture for an engine, whose levels are filtered by exponents from 1024 down to 1"},
       {"prefilter-envmap --basis testdata/b5.basis.xml --tolerance 1e-4 --explain testdata/studio.exr -o fine.env.exr",
        "show the method, the error and the time of each lobe before the work starts"}};
   spec.report = {
@@ -96,7 +100,8 @@ void add_report(cli::ToolSpec& spec) {
       {"spots[].direction", "toward the middle of a bright spot: a unit vector"},
       {"spots[].radius_deg", "radius of its disc"},
       {"spots[].share", "part of it in the light of the environment"},
-      {"layout", "how the maps lie: env, latlong, openexr or mip"},
+      {"layout", "how the maps lie: env, latlong, openexr, mip, ktx2 or dds"},
+      {"clipped_to_rec709", "with ktx2 and dds, number of texels with a color beyond Rec.709, which were clipped"},
       {"left_out[].exponent", "exponent that the paints name but do not need"},
       {"left_out[].share", "largest part that it has in the reflectance of any paint"},
       {"source.path", "the image"},

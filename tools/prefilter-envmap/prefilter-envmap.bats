@@ -243,6 +243,94 @@ lobes_paint() {
   [ ! -e x.exr ]
 }
 
+# made_probe FILE: a lat-long image of 64 x 32 without symmetry, with a lamp.
+made_probe() {
+  /usr/bin/python3 - "$1" <<'PY'
+import sys
+import numpy
+texels = numpy.zeros((32, 64, 4), "u1")
+texels[..., :3] = numpy.random.default_rng(1).integers(40, 255, (8, 16, 3)).repeat(4, 0).repeat(4, 1)
+texels[..., 3] = 129
+texels[5:7, 20:22, 3] = 133
+open(sys.argv[1], "wb").write(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 32 +X 64\n" + texels.tobytes())
+PY
+}
+
+@test "cube textures for engines are read back by numpy: each level is the image filtered by its exponent" {
+  /usr/bin/python3 -c 'import numpy' 2>/dev/null || skip "python3-numpy is not there"
+  made_probe made.hdr
+  for layout in ktx2 dds; do
+    prefilter-envmap -q -e 64,16 --size 16 --layout $layout --verify 5 --report $layout.json made.hdr -o made.$layout
+    jq -e ".results.layout == \"$layout\" and .results.clipped_to_rec709 == 0" $layout.json
+  done
+  # A finer tolerance takes floats, and a light beyond half floats as well.
+  prefilter-envmap -q -e 4 --size 4 --layout ktx2 --tolerance 1e-5 made.hdr -o fine.ktx2
+  prefilter-envmap -q -e 4 --size 4 --layout dds --exposure 20 made.hdr -o bright.dds
+  /usr/bin/python3 - "$BATS_TEST_DIRNAME/readers" <<'PY'
+import sys
+sys.dont_write_bytecode = True
+sys.path.insert(0, sys.argv[1])
+import cube_texture
+image = cube_texture.flat_hdr("made.hdr")
+pairs, levels = cube_texture.ktx2("made.ktx2")
+exponents = [float(word) for word in pairs["goniochrome:exponents"].split()]
+print(pairs)
+assert exponents == [64, 16, 4, 1, 0.25] and [level.shape[1] for level in levels] == [16, 8, 4, 2, 1]
+assert pairs["goniochrome:source"] == "made.hdr" and "--layout ktx2" in pairs["goniochrome:command"]
+assert all(float(word) < 1e-3 for word in pairs["goniochrome:maxErrors"].split())
+# The reference has 16 points a texel of the image; its own error is the larger one.
+for found in levels, cube_texture.dds("made.dds"):
+    print(cube_texture.largest_difference(found, exponents, image))
+    assert cube_texture.largest_difference(found, exponents, image) < 0.005
+# A swapped pair of faces or exponents does not pass.
+assert cube_texture.largest_difference([level[[1, 0, 2, 3, 4, 5]] for level in levels], exponents, image) > 0.05
+assert cube_texture.largest_difference([level.swapaxes(1, 2) for level in levels], exponents, image) > 0.05
+assert cube_texture.largest_difference(levels[:2], [60, 16], image) > 0.005
+assert cube_texture.largest_difference(cube_texture.ktx2("fine.ktx2")[1], [4, 1, 0.25], image) < 0.005
+assert cube_texture.largest_difference(cube_texture.dds("bright.dds"), [4, 1, 0.25], image * 2**20) < 0.005
+PY
+}
+
+@test "three.js reads every level of a cube texture as it was written" {
+  node=$BATS_TEST_DIRNAME/../../build/prefilter-envmap-checks-npm
+  command -v npm >/dev/null || skip "npm is not there"
+  [ -d "$node/node_modules/three" ] || { mkdir -p "$node" && (cd "$node" && timeout 120 npm install --silent three) >/dev/null 2>&1; } ||
+    skip "npm cannot install the package three"
+  prefilter-envmap -q -e 64 --size 8 --layout ktx2 "$sky" -o sky.ktx2
+  cp "$BATS_TEST_DIRNAME/readers/three_levels.mjs" "$node/three_levels.mjs"
+  node "$node/three_levels.mjs" sky.ktx2 >three.json
+  /usr/bin/python3 - "$BATS_TEST_DIRNAME/readers" <<'PY'
+import json
+import sys
+sys.dont_write_bytecode = True
+sys.path.insert(0, sys.argv[1])
+import cube_texture
+import numpy
+texture = json.load(open("three.json"))
+levels = cube_texture.ktx2("sky.ktx2")[1]
+assert texture["halves"] and texture["linear"] and texture["exponents"] == "64 16 4 1"
+assert len(texture["levels"]) == len(levels) == 4
+for three, level in zip(texture["levels"], levels):
+    assert three["width"] == three["height"] == level.shape[1]
+    assert (numpy.array(three["bits"], "<u2").view("<f2") == level.ravel()).all()
+PY
+}
+
+@test "colors beyond Rec.709 are clipped in a cube texture, and counted" {
+  made_probe made.hdr
+  prefilter-envmap -q -e 6 --size 4 --layout latlong --no-mirror made.hdr -o made.exr
+  oiiotool made.exr --subimage 0 --mulc 0,1,0 --attrib colorInteropID lin_rec2020_scene -o green.exr
+  run --separate-stderr prefilter-envmap -e 4 --size 4 --layout ktx2 green.exr -o green.ktx2 --report r.json
+  [ "$status" -eq 0 ]
+  jq -e '.results.clipped_to_rec709 == 126' r.json
+  [[ "$stderr" = *"green.exr: 126 texels beyond Rec.709 clipped to it"* ]]
+  run prefilter-envmap -e 64 --size 12 --layout ktx2 "$sky" -o x.ktx2
+  [ "$status" -eq 2 ]
+  run prefilter-envmap --basis absent.xml --layout dds "$sky" -o x.dds
+  [ "$status" -eq 3 ]
+  [ ! -e x.ktx2 ] && [ ! -e x.dds ]
+}
+
 @test "--rotate, --exposure and --horizon change the environment; wrong ones are refused" {
   prefilter-envmap -q -e 6 --size 8 --verify 5 --rotate 30,20,-100 --exposure 2 --report r.json "$sky" -o a.env.exr
   values max_rel_error | within 1e-3

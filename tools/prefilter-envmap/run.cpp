@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "contact_sheet.h"
+#include "envmap/engine_cube.h"
 #include "envmap/mip.h"
 #include "envmap/open_maps.h"
 #include "prefilter/exact_lobe.h"
@@ -71,7 +72,7 @@ std::string plan_text(const envmap::Environment& env, const Wanted& wanted, cons
   for (const LeftOut& lobe : wanted.left_out)
     text += fmt::format("left out: {}: at most {:.1e} of what any of {} paints reflects, below the tolerance {}\n",
                         exponent_name(lobe.exponent), lobe.share, wanted.paints, shortest(request.tolerance));
-  if (!request.mirror && options.layout == "mip")
+  if (has_levels(options))
     text += "left out: the diffuse lobe and the mirror, which a mip-mapped cube has no level for\n";
   text += "exponent  size  method            degree  error    lookup   time\n";
   double total = 0;
@@ -142,8 +143,19 @@ bool verify(const Options& options, const envmap::Environment& env, const envmap
   return within;
 }
 
-Result<void> write(const Options& options, envmap::PrefilteredEnvironment& result, const cli::Session& session) {
+Result<void> write_for_engines(const Options& options, const envmap::PrefilteredEnvironment& result,
+                               cli::Session& session) {
+  const envmap::Rec709Levels rec709 = envmap::in_rec709(result.lobes);
+  session.results()["clipped_to_rec709"] = rec709.clipped;
+  if (rec709.clipped > 0)
+    session.warn(fmt::format("{}: {} texels beyond Rec.709 clipped to it", result.source, rec709.clipped));
+  if (options.layout == "dds") return envmap::write_dds(options.output, rec709.levels);
+  return envmap::write_ktx2(options.output, rec709.levels, result.source, session.provenance());
+}
+
+Result<void> write(const Options& options, envmap::PrefilteredEnvironment& result, cli::Session& session) {
   const std::string command = session.provenance();
+  if (options.layout == "ktx2" || options.layout == "dds") return write_for_engines(options, result, session);
   if (options.layout == "env") envmap::keep_open_maps(result);
   if (options.layout == "mip") return envmap::write_mip(options.output, result.lobes, result.source, command);
   return envmap::write_env(options.output, result, command);
@@ -192,7 +204,7 @@ Result<void> check_picture(const Options& options) {
   if (options.picture.empty()) return {};
   if (!options.picture.ends_with(".png"))
     return usage_error("--picture is \"{}\": give a name that ends in .png", options.picture);
-  if (options.layout != "env" && options.layout != "mip")
+  if (options.layout != "env" && !has_levels(options))
     return usage_error("--picture shows cubes, and --layout {} makes none: look at the output itself", options.layout);
   return {};
 }
