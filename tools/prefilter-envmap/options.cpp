@@ -10,6 +10,11 @@ void add_options(cli::ToolSpec& spec, Options& o) {
       .from(-360, 360)
       .in("degrees: one to three angles")
       .more("A positive turn about +Y takes +Z toward +X.");
+  spec.option("ball", "WHERE", "auto", &o.ball, "unroll the photograph of a mirror ball")
+      .more(
+          "WHERE is X,Y,RADIUS in texels from the upper left corner, or auto: in front of a dark ground the ball is "
+          "found wherever it lies, and otherwise it touches the sides of a square picture. The camera is far away, at "
+          "+Z, and +X is to the right in the picture. What the ball swallows is not made up for; see --exposure.");
   spec.option("exposure,x", "STOPS", "1.5", &o.exposure, "multiply the radiance by two to this power").from(-64, 64);
   spec.option("horizon", "DEG", "0", &o.horizon, "take as black what lies below this elevation; -90 keeps all")
       .from(-90, 90)
@@ -105,7 +110,12 @@ void add_report(cli::ToolSpec& spec) {
       {"left_out[].exponent", "exponent that the paints name but do not need"},
       {"left_out[].share", "largest part that it has in the reflectance of any paint"},
       {"source.path", "the image"},
-      {"source.layout", "lat-long, cube, cube with texel centers on the edges, or angular probe"},
+      {"source.layout",
+       "lat-long, cube, cube with texel centers on the edges, angular probe, or mirror ball, which is a lat-long map "
+       "from there on"},
+      {"source.ball.x", "middle of the ball: texels from the left edge of the picture"},
+      {"source.ball.y", "middle of the ball: texels from the upper edge of the picture"},
+      {"source.ball.radius", "radius of the ball in texels of the picture"},
       {"source.width", "texels across"},
       {"source.height", "texels down"},
       {"source.nan", "number of texels that were not a number and were set to zero"},
@@ -132,7 +142,10 @@ cli::ToolSpec tool_spec(Options& o) {
       "The image may be a lat-long map (2:1, +Y up, its center +Z, its left quarter +X). It may be a cube as a strip "
       "of six faces (+X -X +Y -Y +Z -Z), as a cross (4:3 or 3:4), or as six square files, which are given one by one "
       "in that order or as one pattern with {face} in the place of px, nx, py and so on. A single square is an angular "
-      "probe, which is what a mirror ball shows, unrolled about +Z. Faces are those of OpenGL; an EXR whose envmap "
+      "probe, which is what a mirror ball shows, unrolled about +Z; the photograph of a ball itself takes --ball. A "
+      "square with light in its corners, of which an angular probe has none, is reported as a likely photograph. "
+      "Before "
+      "a black ground the two cannot be told apart. Faces are those of OpenGL; an EXR whose envmap "
       "attribute says cube is read by OpenEXR's own convention. EXR and Radiance HDR are read directly, and other "
       "formats (TIFF, PNG) through OpenImageIO. Values are linear Rec.709 unless the file says otherwise, and are "
       "converted to linear Rec.2020.",

@@ -256,6 +256,78 @@ open(sys.argv[1], "wb").write(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 32 +X 6
 PY
 }
 
+# ball_photograph FILE GROUND LEFT: what a camera at +Z sees of a mirror ball of radius 60 about 150,70, before a ground
+# of that brightness, from the column LEFT on; the light is one over each half of the sphere.
+ball_photograph() {
+  /usr/bin/python3 - "$@" <<'PY'
+import sys
+import numpy
+y, x = numpy.mgrid[0:140, 0:240] + 0.5
+u, v = (x - 150) / 60, (70 - y) / 60
+on_ball = u**2 + v**2 <= 1
+nz = numpy.sqrt(numpy.maximum(0, 1 - u**2 - v**2))
+d = numpy.stack([2 * nz * u, 2 * nz * v, 2 * nz**2 - 1], -1)
+texels = numpy.zeros((140, 240, 4), "u1")
+texels[..., :3] = numpy.where(on_ball[..., None], 64 + 128 * (d > 0), int(float(sys.argv[2]) * 128))
+texels[..., 3] = 129
+left = int(sys.argv[3])
+header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 140 +X %d\n" % (240 - left)
+open(sys.argv[1], "wb").write(header.encode() + numpy.ascontiguousarray(texels[:, left:]).tobytes())
+PY
+}
+
+@test "the photograph of a mirror ball is unrolled wherever the ball lies" {
+  /usr/bin/python3 -c 'import numpy' 2>/dev/null || skip "python3-numpy is not there"
+  ball_photograph dark.hdr 0 0
+  ball_photograph lit.hdr 0.5 0
+  prefilter-envmap -q -e 40 --size 4 --layout ktx2 --ball auto dark.hdr -o dark.ktx2 --report dark.json
+  prefilter-envmap -q -e 40 --size 4 --layout ktx2 --ball 150,70,60 lit.hdr -o lit.ktx2 --report lit.json
+  jq -e '.results.source | .layout == "mirror ball" and (.ball.x - 150 | fabs) < 0.5 and (.ball.y - 70 | fabs) < 0.5
+    and (.ball.radius - 60 | fabs) < 1' dark.json
+  jq -e '.results.source.ball == {"x": 150, "y": 70, "radius": 60}' lit.json
+  # Red is bright toward +X, green toward +Y and blue toward +Z: 1.5 there and 0.5 on the other side.
+  /usr/bin/python3 - "$BATS_TEST_DIRNAME/readers" <<'PY'
+import sys
+sys.dont_write_bytecode = True
+sys.path.insert(0, sys.argv[1])
+import cube_texture
+for path in "dark.ktx2", "lit.ktx2":
+    faces = cube_texture.ktx2(path)[1][0][:, 1:3, 1:3, :3].mean((1, 2))
+    print(faces)
+    for axis in range(3):
+        assert abs(faces[2 * axis, axis] - 1.5) < 0.03 and abs(faces[2 * axis + 1, axis] - 0.5) < 0.03
+PY
+  # What the picture does not show is not made up.
+  ball_photograph cut.hdr 0 100
+  run prefilter-envmap -e 6 --ball auto cut.hdr -o x.env.exr
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ "cut.hdr: the ball reaches from -"[0-9.]+",".*", beyond the picture of 140 x 140" ]]
+  run prefilter-envmap -e 6 --ball auto lit.hdr -o x.env.exr
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ "lit.hdr: the ball's outline cannot be told from its background" ]]
+  for wrong in "" 1,2 1,2,x 1,2,3,4 1,2,0 1,2,-3 1,2,nan; do
+    run prefilter-envmap -e 6 --ball "$wrong" lit.hdr -o x.env.exr
+    [ "$status" -ge 2 ]
+  done
+  run prefilter-envmap -e 6 --ball auto $(yes lit.hdr | head -6) -o x.env.exr
+  [ "$status" -eq 2 ]
+  run prefilter-envmap -e 6 lit.hdr -o x.env.exr --ball
+  [ "$status" -eq 2 ]
+  [ ! -e x.env.exr ]
+}
+
+@test "a square picture with light in its corners is told to be no angular probe" {
+  /usr/bin/python3 -c 'import numpy' 2>/dev/null || skip "python3-numpy is not there"
+  ball_photograph lit.hdr 0.5 100
+  ball_photograph dark.hdr 0 100
+  run --separate-stderr prefilter-envmap -e 6 --size 4 lit.hdr -o x.env.exr --report r.json
+  [ "$status" -eq 0 ]
+  [[ "$stderr" = *"lit.hdr: is square and has light in its corners"*"give --ball auto"* ]]
+  jq -e '(.results.warnings | length) == 1 and .results.source.layout == "angular probe"' r.json
+  run --separate-stderr prefilter-envmap -e 6 --size 4 dark.hdr -o x.env.exr
+  [[ "$stderr" != *"corners"* ]]
+}
+
 @test "cube textures for engines are read back by numpy: each level is the image filtered by its exponent" {
   /usr/bin/python3 -c 'import numpy' 2>/dev/null || skip "python3-numpy is not there"
   made_probe made.hdr
