@@ -24,6 +24,7 @@ struct Options {
   std::string cache;
   std::string picture;
   std::vector<double> rotate;
+  std::string ball;
   double exposure = 0;
   double horizon = -90;
   int spots = envmap::kUsualSpots;
