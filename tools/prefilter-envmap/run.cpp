@@ -144,7 +144,7 @@ bool verify(const Options& options, const envmap::Environment& env, const envmap
 
 Result<void> write(const Options& options, envmap::PrefilteredEnvironment& result, const cli::Session& session) {
   const std::string command = session.provenance();
-  if (options.layout == "env") envmap::keep_open_maps(result);
+  if (options.layout == "env" && !options.no_open_maps) envmap::keep_open_maps(result);
   if (options.layout == "mip") return envmap::write_mip(options.output, result.lobes, result.source, command);
   return envmap::write_env(options.output, result, command);
 }

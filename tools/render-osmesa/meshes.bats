@@ -1,5 +1,7 @@
 # Meshes of other programs: glTF 2.0 with nodes, instances and materials, units, and formats that must be converted.
 
+bats_require_minimum_version 1.5.0
+
 setup_file() {
   cd "$BATS_FILE_TMPDIR" || exit 1
   fit-paint -q --basis "$TESTDATA/b5.basis.xml" "$TESTDATA/paints.paints.xml" -o fitted.xml
