@@ -40,7 +40,8 @@ cli::ToolSpec tool_spec(Options& o) {
   spec.inputs = {"PAINTS", "paint XML files, or FILE#NAMES for some paints of one; standard input where none is given",
                  &o.paints};
   spec.heading = "what the page holds";
-  spec.option("mesh,m", "FILE", "testdata/speed-shape.obj", &o.mesh, "mesh that wears the paint (OBJ, OFF, PLY or STL)")
+  spec.option("mesh,m", "FILE", "testdata/speed-shape.obj", &o.mesh,
+              "mesh that wears the paint (OBJ, glTF 2.0, OFF, PLY or STL)")
       .needed();
   spec.option("env,e", "FILE", "studio.env.exr", &o.environments,
               "prefiltered environment, made by prefilter-envmap(1)")

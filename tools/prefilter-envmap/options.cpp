@@ -40,6 +40,12 @@ void add_options(cli::ToolSpec& spec, Options& o) {
           "The light of the spots is in the maps as well. render-osmesa cuts each of them by the horizon of every "
           "point, which the maps cannot do; more of them come nearer to the truth and take longer, see the effect "
           "spots there. An environment without small bright parts has none.");
+  spec.flag("no-open-maps", &o.no_open_maps, "leave out the maps without bright spots, and the one under a coat")
+      .more(
+          "The file is then half as large and sooner written, and render-osmesa makes those maps that a picture "
+          "needs at each start. Keeping them pays from the third start on where there are twelve spots, and from "
+          "about the tenth on where there are three; one run that draws many paints is one start. Pictures are "
+          "the same within the rounding of half floats.");
   spec.option("layout,l", "WHAT", "latlong", &o.layout, "how the maps lie")
       .one_of({"env", "latlong", "openexr", "mip", "ktx2", "dds"})
       .more(

@@ -36,6 +36,9 @@ within() { awk -v limit="$1" '$1 > limit { bad = 1 } { n++ } END { exit bad || !
   # An environment without bright spots has one such part.
   prefilter-envmap -q -e 6 --size 8 --verify 4 --spots 0 "$sky" -o even.env.exr
   [ "$(exrheader even.env.exr | grep -c 'goniochrome:version')" -eq 1 ]
+  prefilter-envmap -q -e 6,70 --size 8 --verify 4 --no-open-maps "$sky" -o bare.env.exr
+  [ "$(exrheader bare.env.exr | grep -c 'goniochrome:version')" -eq 0 ]
+  [ "$(exrheader bare.env.exr | grep -c 'goniochrome:brightSpots')" -eq 1 ]
   grep -q 'goniochrome:exponent (type float): 70' header
   grep -q 'goniochrome:maxError' header
   grep -q 'goniochrome:command.*prefilter-envmap [0-9.]*: prefilter-envmap -q -e 6,70' header

@@ -181,7 +181,7 @@ Result<void> write_for_engines(const Options& options, const envmap::Prefiltered
 Result<void> write(const Options& options, envmap::PrefilteredEnvironment& result, cli::Session& session) {
   const std::string command = session.provenance();
   if (options.layout == "ktx2" || options.layout == "dds") return write_for_engines(options, result, session);
-  if (options.layout == "env") envmap::keep_open_maps(result);
+  if (options.layout == "env" && !options.no_open_maps) envmap::keep_open_maps(result);
   if (options.layout == "mip") return envmap::write_mip(options.output, result.lobes, result.source, command);
   return envmap::write_env(options.output, result, command);
 }

@@ -19,6 +19,7 @@ struct Options {
   int verify = 0;
   std::string bad_pixels = "error";
   bool no_mirror = false;
+  bool no_open_maps = false;
   std::string paints;  // --for
   std::string layout = "env";
   std::string cache;

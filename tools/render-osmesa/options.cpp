@@ -16,8 +16,13 @@ std::string engine_sentences() {
 
 void add_surfaces(cli::ToolSpec& spec, Options& o) {
   spec.heading = "surfaces";
-  spec.option("mesh,m", "FILE", "testdata/speed-shape.obj", &o.mesh, "mesh: OBJ with parts, or OFF, PLY, STL")
-      .more("A name without an ending, such as that of a pipe, leaves it to the content to tell the format.");
+  spec.option("mesh,m", "FILE", "testdata/speed-shape.obj", &o.mesh,
+              "mesh: OBJ or glTF 2.0 with parts, or OFF, PLY, STL")
+      .more(
+          "A name without an ending, such as that of a pipe, leaves it to the content to tell the format. Of glTF, as "
+          ".gltf or .glb, each node of the scene that has a mesh is a part with the name of the node or else of the "
+          "mesh, so that nodes of one name are one part; of a mesh in several materials each is a part NAME.MATERIAL. "
+          "Compressed meshes are refused.");
   spec.option("gbuffer", "FILE", "view.exr", &o.gbuffer, "shade the buffers of an earlier picture instead of a mesh")
       .more(
           "The file is an EXR that was made with --aov normal,part. Its buffers and its attributes goniochrome:rays, "
@@ -389,6 +394,8 @@ void add_report(cli::ToolSpec& spec) {
       {"gbuffer_ms", "time to rasterize the mesh once, be it for the plan or for the picture; 0 with --gbuffer"},
       {"frame_ms", "time to draw the picture with all samples, without reading and uploading"},
       {"triangles", "number of triangles of the mesh, where it was read"},
+      {"mesh: longest_side, unit_m",
+       "the longest side of the mesh's box in its units, and the meters of the unit that it is taken to be in"},
       {"parts[]: name, material, paint", "parts of the mesh and what they wear"},
       {"textures[]: part, file, projection, width",
        "what --texture laid where; projection is uv, planar, box, cylinder, sphere or decal, and width that of the "
