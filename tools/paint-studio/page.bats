@@ -264,4 +264,11 @@ PY
   cp "$TESTDATA/paints.paints.xml" library.paints.xml  # an index is written beside it
   colorsnap -q --library library.paints.xml saved.paints.xml >/dev/null || [ $? -eq 1 ]
   grep -q '^sample,geometry,illuminant' saved.csv
+  # The tools' picture of the paint that was saved is that of the page.
+  white=$(sed -n 's|^<script type="application/json" id="data">\(.*\)</script>$|\1|p' page.html | jq '.environments[0].white')
+  render-osmesa -q --trim --mesh "$TESTDATA/speed-shape.obj" --paint by-tools.xml --env studio.env.exr --engine gl \
+    --effects all,-rays --size 640x360 --samples 1 -o path.exr
+  run /usr/bin/python3 "$code/compare.py" path.f32 path.exr "$white"
+  echo "mean p95 largest pixels: $output"
+  awk -v numbers="$output" 'BEGIN { split(numbers, n, " "); exit !(n[1] <= 0.1 && n[2] <= 0.5 && n[4] > 20000) }'
 }
