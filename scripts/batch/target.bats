@@ -105,7 +105,10 @@ cells() {
   cat missed/said
   [ "$(cells missed within | sort | uniq -c | xargs)" = '1 n/a 2 no' ]
   grep -qE '^target dE00 0.01: 0 of 2 drawn paints within it' missed/said
-  grep -qE '^  not within, worst first; 2 of these 2 by their fit alone:' missed/said
+  # Which fit is the cheapest is a matter of times: with weights for several views the solid paint is met.
+  alone=$(cells missed de00_mean | awk '$1 != "n/a" && $1 > 0.01' | wc -l)
+  ((alone > 0))
+  grep -qE "^  not within, worst first; $alone of these 2 by their fit alone:" missed/said
   grep -qE '^    silver_coarse [0-9.]+ \(fit [0-9.]+, picture [0-9.]+, light-box-38,15,0.9\)$' missed/said
   [ "$(jq -r '.target.not_within[].name' missed/report.json | sort | xargs)" = 'red #2 silver_coarse' ]
 }
