@@ -38,13 +38,19 @@ install(
   PATTERN "*_test.bash" EXCLUDE)
 install(PROGRAMS ${PROJECT_SOURCE_DIR}/scripts/paint-book ${PROJECT_SOURCE_DIR}/scripts/accuracy-report
                  ${PROJECT_SOURCE_DIR}/scripts/common.sh DESTINATION ${CMAKE_INSTALL_DATADIR}/goniochrome/scripts)
-# They are commands by links, because Python looks for the modules of a script beside the file that a link leads to.
+# They are commands by links, because Python looks for the modules of a script beside the file that a link leads to. A wheel can
+# hold no links, so there they are commands by scripts of one line.
+file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/commands)
 foreach(script paint-book batch/paint-batch accuracy-report)
   get_filename_component(command ${script} NAME)
-  file(RELATIVE_PATH target ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_DATADIR}/goniochrome/scripts/${script})
-  file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/commands)
-  file(CREATE_LINK ${target} ${PROJECT_BINARY_DIR}/commands/${command} SYMBOLIC)
-  install(FILES ${PROJECT_BINARY_DIR}/commands/${command} TYPE BIN)
+  set(command ${PROJECT_BINARY_DIR}/commands/${command})
+  if(SKBUILD)
+    file(WRITE ${command} "#!/bin/sh\nexec \"$(dirname \"$(readlink -f \"$0\")\")/../share/goniochrome/scripts/${script}\" \"$@\"\n")
+  else()
+    file(RELATIVE_PATH target ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_DATADIR}/goniochrome/scripts/${script})
+    file(CREATE_LINK ${target} ${command} SYMBOLIC)
+  endif()
+  install(PROGRAMS ${command} TYPE BIN)
 endforeach()
 
 set(CPACK_GENERATOR DEB)
@@ -78,4 +84,11 @@ if(GONIOCHROME_TESTS)
   # The program is compiled with the flags of the libraries, which sanitizers demand.
   string(TOUPPER "${CMAKE_BUILD_TYPE}" type)
   set_tests_properties(project.consumer PROPERTIES TIMEOUT 300 ENVIRONMENT "CXXFLAGS=${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${type}}")
+  add_test(NAME project.wheel COMMAND bats --tap ${CMAKE_CURRENT_LIST_DIR}/wheel.bats)
+  set_tests_properties(
+    project.wheel
+    PROPERTIES
+      TIMEOUT 900
+      ENVIRONMENT
+      "PATH=${CMAKE_RUNTIME_OUTPUT_DIRECTORY}:$ENV{PATH};TESTDATA=${PROJECT_SOURCE_DIR}/testdata;GONIOCHROME_BUILD=${PROJECT_BINARY_DIR}")
 endif()
