@@ -4,6 +4,7 @@ _plot_paint() {
     --paint|-p) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --brdf) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --incidence) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --hud) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --output|-o) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --pages) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --format) COMPREPLY=($(compgen -W "svg png" -- "$word")); return ;;
@@ -12,7 +13,7 @@ _plot_paint() {
     --generate) COMPREPLY=($(compgen -W "man completion" -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--paint --brdf --incidence --color-map --output --pages --format --report --threads --quiet --help --version --generate" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--paint --brdf --incidence --color-map --hud --output --pages --format --report --threads --quiet --help --version --generate" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

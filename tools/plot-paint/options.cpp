@@ -35,16 +35,26 @@ cli::ToolSpec tool_spec(Options& o) {
           "10 degrees of specular or more than 75 degrees from the normal, those beyond the critical angle of the "
           "coat, where isolines do not reach, and those more than 10 degrees from the nearest reading. Paints "
           "without a color map are left out, and a warning says so.");
+  spec.option("hud", "VIEW", "view.exr", &o.hud, "draw the rings of each paint on this view instead")
+      .more(
+          "VIEW is a picture of render-osmesa --aov aspecular. The lines are where the aspecular angle to the first "
+          "light is 15 degrees, 45 degrees, and that at which the paint stops traveling; below the picture is the "
+          "color of the paint at each. The lines follow the mesh, so that one sees where on a body a change of face, "
+          "flop or travel will be seen.");
   spec.heading = "output";
   spec.option("output,o", "FILE", "sheet.svg", &o.output, "where the page or sheet goes; - is standard output")
       .more("It is a PNG if the name ends in .png, else an SVG.");
   spec.option("pages", "FOLDER", ".", &o.pages, "write a page for every paint, as FOLDER/name.svg or .png");
   spec.option("format", "FORMAT", "png", &o.format, "format of these pages").one_of({"svg", "png"});
   cli::add_common_options(spec, o.common);
-  spec.examples = {{"plot-paint --paint candy_red testdata/paints.paints.xml -o candy_red.svg",
-                    "draw the readings and the curve of one paint"},
-                   {"fit-paint -q -b testdata/b7.basis.xml testdata/paints.paints.xml | plot-paint -o sheet.svg",
-                    "draw a sheet of all paints with their lobes"}};
+  spec.examples = {
+      {"plot-paint --paint candy_red testdata/paints.paints.xml -o candy_red.svg",
+       "draw the readings and the curve of one paint"},
+      {"fit-paint -q -b testdata/b7.basis.xml testdata/paints.paints.xml | plot-paint -o sheet.svg",
+       "draw a sheet of all paints with their lobes"},
+      {"render-osmesa -q --mesh testdata/speed-shape.obj --light 30,50 --aov aspecular -o view.exr && plot-paint -p "
+       "candy_red --hud view.exr testdata/paints.paints.xml -o rings.svg",
+       "draw where on a body the face, the middle and the flop of a paint are seen"}};
   spec.report = {{"paints[].name", "name of the paint"},
                  {"paints[].file", "file that it was drawn to"},
                  {"paints[].lobes", "number of lobes drawn; 0 where the paint was not fitted"},

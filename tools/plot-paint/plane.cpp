@@ -16,7 +16,8 @@ namespace {
 
 constexpr double kFirst_deg = 15, kLast_deg = 110;
 
-// A color as a style sheet spells it; what the display cannot show is clipped.
+}  // namespace
+
 std::string css(const color::Lab& lab, const color::Xyz& white) {
   const color::Rgb rgb = color::rec709_from_rec2020(color::rgb_from_lab(lab, white));
   std::string text = "#";
@@ -26,6 +27,8 @@ std::string css(const color::Lab& lab, const color::Xyz& white) {
         static_cast<int>(std::lround(255 * std::clamp(display::srgb_signal(std::max(rgb[c], 0.0)), 0.0, 1.0))));
   return text;
 }
+
+namespace {
 
 // Where a* and b* stand in the drawing.
 struct Frame {

@@ -139,3 +139,33 @@ setup() {
   [ "$status" -eq 3 ]
   [[ "$stderr" == *"sea.exr"* ]]
 }
+
+@test "--hud draws the rings of a paint where their angles are in a view" {
+  render-osmesa -q --mesh "$TESTDATA/speed-shape.obj" --light 30,50 --size 480x300 --aov aspecular -o view.exr
+  run --separate-stderr plot-paint --paint candy_red --hud view.exr "$paints" -o hud.svg
+  [ "$status" -eq 0 ]
+  xmllint --noout hud.svg
+  grep -q '>15 deg, face<' hud.svg
+  grep -q '>45 deg<' hud.svg
+  grep -q 'deg, travel' hud.svg
+  /usr/bin/python3 "$BATS_TEST_DIRNAME/hud_test.py" view.exr hud.svg
+  plot-paint -q --hud view.exr --paint candy_red --paint jet_black "$paints" --pages . --format png
+  file candy_red.png jet_black.png | grep -c '480 x 392' | grep -qx 2
+  run plot-paint --hud view.exr --color-map --paint candy_red "$paints" -o x.svg
+  [ "$status" -eq 2 ]
+  render-osmesa -q --mesh "$TESTDATA/speed-shape.obj" --light 30,50 --size 32x20 -o bare.exr
+  run plot-paint --hud bare.exr --paint candy_red "$paints" -o x.svg
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ "aspecular" ]]
+  oiiotool --pattern constant:color=0,0,0,0,180 8x8 5 --chnames R,G,B,A,aspecular -o empty.exr
+  run plot-paint --hud empty.exr --paint candy_red "$paints" -o x.svg
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ "nothing of a mesh is seen in it" ]]
+}
+
+@test "--hud draws each ring of a ball as one closed line" {
+  /usr/bin/python3 "$BATS_TEST_DIRNAME/hud_test.py" --ball >ball.obj
+  render-osmesa -q --mesh ball.obj --light 30,50 --size 480x300 --aov aspecular -o ball.exr
+  plot-paint -q --paint candy_red --hud ball.exr "$paints" -o ball.svg
+  /usr/bin/python3 "$BATS_TEST_DIRNAME/hud_test.py" ball.exr ball.svg --closed
+}

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "base/file.h"
 #include "base/paths.h"
 #include "base/text.h"
 #include "formats/xml.h"
+#include "hud.h"
 #include "image/surface_file.h"
 #include "map_page.h"
 #include "page.h"
@@ -131,7 +133,13 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
       session.warn(fmt::format("no paint is named \"{}\" as the measured BRDF is: it is not used", name));
   session.results()["paints"] = Json::array();
 
+  if (options.color_map && !options.hud.empty())
+    return usage_error("--color-map and --hud exclude each other: each draws a page of its own");
   if (options.color_map) return draw_maps(paints, options, session);
+  std::optional<HudView> view;
+  if (!options.hud.empty()) {
+    GONIO_ASSIGN(view, read_hud_view(options.hud));
+  }
   std::vector<report::Drawing> rows;
   std::size_t unfitted = 0;
   std::set<std::string> taken;  // by pages
@@ -141,7 +149,9 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
     const PageInput input{paint, brdf == brdfs.end() ? nullptr : brdf->second.get(), options.incidence_deg};
     unfitted += !paint.lobes;
     const bool as_page = !options.pages.empty() || paints.size() == 1;
-    GONIO_ASSIGN(report::Drawing drawing, as_page ? page_of(input) : row_of_sheet(input));
+    GONIO_ASSIGN(report::Drawing drawing, view      ? hud_drawing(paint, *view)
+                                          : as_page ? page_of(input)
+                                                    : row_of_sheet(input));
     std::string file = options.output;
     if (!options.pages.empty()) {
       file = fmt::format("{}/{}.{}", options.pages, file_name(paint.name, taken), options.format);

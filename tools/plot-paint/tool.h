@@ -17,6 +17,7 @@ struct Options {
   std::vector<std::string> names;
   std::vector<std::string> brdfs;
   bool color_map = false;
+  std::string hud;  // a view; "" draws no rings
   std::vector<double> incidence_deg = {10, 40, 70};
 };
 
