@@ -227,7 +227,7 @@ void add_engines(cli::ToolSpec& spec, Options& o) {
           "0 draws the light that comes from the environment, lights and shining parts without detour: surfaces that "
           "are seen in others are then black, but for what they emit.");
   spec.flag("print-shader", &o.print_shader, "print the OpenGL program of the scene on standard output")
-      .more("Comments before it name what the picture shows and the program does not: textures, color maps and rays.");
+      .more("Comments before it name what the picture shows and the program does not: color maps and rays.");
 }
 
 void add_checking(cli::ToolSpec& spec, Options& o) {
