@@ -31,11 +31,15 @@ inline void add_geometry_options(cli::ToolSpec& spec, panels::GeometryTexts& geo
 
 inline void add_seam_options(cli::ToolSpec& spec, panels::SeamTexts& seam) {
   spec.heading = "seam of a mesh";
-  spec.option("mesh", "FILE", "testdata/speed-shape.obj", &seam.mesh, "take the panels from a seam of this mesh (OBJ)");
+  spec.option("mesh", "FILE", "testdata/speed-shape.obj", &seam.mesh,
+              "take the panels from a seam of this mesh (OBJ or glTF 2.0)");
   spec.option("seam", "A,B", "Hood,Bumper_F", &seam.seam, "the two parts of the mesh that meet at the seam");
   spec.option("unit", "UNIT", "mm", &seam.unit, "length of one unit of the mesh")
-      .one_of({"auto", "m", "cm", "mm"})
-      .more("auto takes a mesh of more than 30 units as millimeters, and a smaller one as meters.");
+      .one_of({"auto", "m", "in", "cm", "mm"})
+      .more(
+          "auto goes by the diagonal of the mesh's box: up to 30 units are meters, up to 300 inches, up to 900 "
+          "centimeters, "
+          "and more are millimeters. What it took is told.");
   spec.option("max-gap", "MM", "8", &seam.max_gap_mm, "wider gaps are no seam; 0 is a hundredth of the mesh's size")
       .from(0, 1e6);
   spec.option("light-from", "AZ,EL", "0,75", &seam.lights_from, "a light in the world")

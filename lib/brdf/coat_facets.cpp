@@ -4,7 +4,8 @@
 //
 //   p(wi) = G1(wo) D(h) / (4 cos_o),    G1(w) = 1/(1 + L(w)).
 //
-// The two scales are drawn by chance, and p is the mean over both.
+// The two scales are drawn by chance, and p is the mean over both. Facets of Gaussian slopes are drawn as those of GGX
+// with the same a: none occurs more than 4/e times as often as there.
 #include "brdf/coat_facets.h"
 
 #include <algorithm>
@@ -12,23 +13,13 @@
 
 #include "base/angles.h"
 #include "brdf/gloss.h"
+#include "brdf/internal/facets.h"
 #include "brdf/lobe_model.h"
 #include "math/elementary.h"
 
 namespace goniochrome::brdf {
 
 namespace {
-
-double masking(double cosine, double slope) {
-  const double tangent2 = (1 - cosine * cosine) / (cosine * cosine);
-  return 0.5 * (std::sqrt(1 + slope * slope * std::max(0.0, tangent2)) - 1);
-}
-
-// D of GGX. The sine keeps its digits where the half vector is near the normal.
-double facet_density(const Vec3& half, double slope) {
-  const double a2 = slope * slope, spread = a2 * half.z * half.z + half.x * half.x + half.y * half.y;
-  return a2 / (kPi * spread * spread);
-}
 
 Vec3 visible_facet(const Vec3& out, double slope, double u, double v) {
   const Vec3 seen = normalized({slope * out.x, slope * out.y, out.z});
@@ -74,9 +65,9 @@ CoatFacets::Sent CoatFacets::sent(const Vec3& to_light, const Vec3& to_viewer) c
   Sent sent;
   const auto add = [&](double slope, double part, double drawn) {
     if (part <= 0 && drawn <= 0) return;
-    const double d = facet_density(half, slope), out = masking(cos_o, slope);
-    sent.f_cos += part * d / (1 + masking(cos_i, slope) + out);
-    sent.pdf += drawn * d / (1 + out);
+    const Facets facets{slope, coat_.slopes}, of_drawn{slope};
+    sent.f_cos += part * facets.density(half) / (1 + facets.masking(cos_i) + facets.masking(cos_o));
+    sent.pdf += drawn * of_drawn.density(half) / (1 + of_drawn.masking(cos_o));
   };
   add(coat_.slope, share, chance);
   add(coat_.haze, 1 - share, 1 - chance);
@@ -118,6 +109,15 @@ double CoatFacets::over_disc(const Vec3& to_viewer, const Vec3& middle, double r
   return sum / kDirections / (kPi * sine * sine);
 }
 
+// The light of facets of slope a falls as exp(-(x/2a)^2) in the middle, or to its fourth power of the half, by GGX, and
+// cos^E as exp(-E x^2/2). Across the plane it is narrower by the cosine.
+double CoatFacets::sharpest_exponent(double cos_o) const {
+  constexpr double kMost = 1e6;
+  const double finest = coat_.k > 0 ? std::min(coat_.slope, coat_.haze) : coat_.slope,
+               across = finest * std::max(cos_o, 0.05);
+  return std::clamp(1 / (across * across), 1.0, kMost);
+}
+
 // The facets of slope a send light into about 4 pi a^2.
 double CoatFacets::narrow_share(double light_sr, double cos_o) const {
   const double chance = sharp_chance(cos_o);
@@ -125,7 +125,22 @@ double CoatFacets::narrow_share(double light_sr, double cos_o) const {
   return chance * narrow(coat_.slope) + (1 - chance) * narrow(coat_.haze);
 }
 
+bool stands_for_coat(const paint::LobeFit& fit) {
+  bool changes = false;
+  for (const paint::ViewLobes& view : fit.views) {
+    const std::vector<paint::Lobe>& first = fit.views.front().lobes;
+    for (std::size_t j = 0; j < view.lobes.size(); ++j) {
+      if (!is_gray(view.lobes[j].gloss)) return false;
+      changes = changes || j >= first.size() || view.lobes[j].gloss != first[j].gloss;
+    }
+  }
+  return changes && std::ranges::all_of(kCoatViews_deg, [&](double angle) {
+           return std::ranges::find(fit.views, angle, &paint::ViewLobes::view_deg) != fit.views.end();
+         });
+}
+
 std::optional<RoughCoat> coat_of_lobes(const paint::LobeFit& fit, double gloss_deg) {
+  if (!stands_for_coat(fit)) return std::nullopt;
   std::vector<double> exponents;
   paint::LobeFit gloss = fit;
   const auto keep_gloss = [](color::Rgb& diffuse, std::vector<paint::Lobe>& lobes) {
@@ -133,28 +148,19 @@ std::optional<RoughCoat> coat_of_lobes(const paint::LobeFit& fit, double gloss_d
     for (paint::Lobe& lobe : lobes) lobe.directional_diffuse = {};
   };
   keep_gloss(gloss.diffuse, gloss.lobes);
-  bool changes = false;
   for (paint::ViewLobes& view : gloss.views) {
     keep_gloss(view.diffuse, view.lobes);
-    for (std::size_t j = 0; j < view.lobes.size(); ++j) {
-      const paint::Lobe& lobe = view.lobes[j];
-      if (!is_gray(lobe.gloss)) return std::nullopt;
-      const std::vector<paint::Lobe>& first = gloss.views.front().lobes;
-      changes = changes || j >= first.size() || lobe.gloss != first[j].gloss;
+    for (const paint::Lobe& lobe : view.lobes)
       if (!lobe.is_mirror() && lobe.gloss != color::Rgb{}) exponents.push_back(lobe.exponent);
-    }
   }
-  const bool all = std::ranges::all_of(kCoatViews_deg, [&](double angle) {
-    return std::ranges::find(gloss.views, angle, &paint::ViewLobes::view_deg) != gloss.views.end();
-  });
-  if (!changes || !all) return std::nullopt;
   std::ranges::sort(exponents);
   exponents.erase(std::ranges::unique(exponents).begin(), exponents.end());
   const GlossTable table(exponents);
   std::vector<paint::GlossReading> readings;
   for (const double angle : kGlossAngles_deg)
     readings.push_back({angle, gloss_units(table, **table.at(angle), gloss, gloss_deg)});
-  const Result<std::optional<RoughCoat>> coat = rough_coat_of(readings, mirror_index(fit.coat_index));
+  constexpr double kRounding_gu = 0.02;  // the lobes read what their coat does: what is usual is not asked once more
+  const Result<std::optional<RoughCoat>> coat = rough_coat_of(readings, mirror_index(fit.coat_index), kRounding_gu);
   return coat.ok() ? *coat : std::nullopt;
 }
 

@@ -30,6 +30,10 @@ class CoatFacets {
   // radius. The relative error is some 3 %.
   double over_disc(const Vec3& to_viewer, const Vec3& middle, double radius_rad) const;
 
+  // The exponent of a cosine lobe that is about as narrow as the light of the finer scale, across the plane of
+  // incidence, and bends as fast.
+  double sharpest_exponent(double cos_o) const;
+
   // About how much of a light of that extent in sr is narrower than the coat spreads it: from 0, for a wide coat, to 1.
   double narrow_share(double light_sr, double cos_o) const;
 
@@ -41,9 +45,11 @@ class CoatFacets {
   double index_;
 };
 
-// The rough coat that the gloss of a paint stands for, where set_gloss_views() has given it to the paint: gray weights
-// that change with the view, at all of kCoatViews_deg. It is the coat that reads what these lobes read. The weights
-// hold at the incidence `gloss_deg`.
+// Whether the gloss of a paint stands for a rough coat, as set_gloss_views() gives it to the paint: gray weights that
+// change with the view, at all of kCoatViews_deg.
+bool stands_for_coat(const paint::LobeFit& fit);
+// That coat, which reads what these lobes read; none where they stand for none. The weights hold at the incidence
+// `gloss_deg`.
 std::optional<RoughCoat> coat_of_lobes(const paint::LobeFit& fit, double gloss_deg);
 
 }  // namespace goniochrome::brdf

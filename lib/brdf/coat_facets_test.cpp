@@ -11,10 +11,11 @@
 namespace goniochrome::brdf {
 namespace {
 
-const TrueCoat kCoats[] = {{0, 0.004, 0.3}, {0, 0.25, 0.3}, {1.2, 0.008, 0.3}, {2.9, 0.02, 0.45}};
+const TrueCoat kCoats[] = {{0, 0.004, 0.3},       {0, 0.25, 0.3},       {1.2, 0.008, 0.3},      {2.9, 0.02, 0.45},
+                           {0, 0.004, 0.3, true}, {0, 0.25, 0.3, true}, {1.2, 0.008, 0.3, true}};
 
 RoughCoat ours(const TrueCoat& coat) {
-  return {coat.k, coat.slope, coat.haze};
+  return {coat.k, coat.slope, coat.haze, coat.beckmann ? Slopes::kGaussian : Slopes::kGgx};
 }
 
 Vec3 direction(double deg, double azimuth_deg = 0) {
@@ -22,7 +23,8 @@ Vec3 direction(double deg, double azimuth_deg = 0) {
   return {std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)};
 }
 
-// Both are double sums of the same equation: some rounding of the sine of the half vector.
+// Both are double sums of the same equation: some rounding of the sine of the half vector, which the exponent of
+// Gaussian slopes magnifies, and an error function that is known to 1.5e-7.
 TEST(CoatFacets, SendWhatThePaperSays) {
   for (const TrueCoat& coat : kCoats) {
     const CoatFacets facets(ours(coat), 1.5);
@@ -30,7 +32,8 @@ TEST(CoatFacets, SendWhatThePaperSays) {
       for (const double light : {1.0, 29.7, 61.0, 88.0})
         for (const double azimuth : {0.0, 90.0, 179.0}) {
           const double truth = coat.f_cos(direction(light, azimuth), direction(view));
-          EXPECT_NEAR(facets.sent(direction(light, azimuth), direction(view)).f_cos, truth, 1e-9 * truth);
+          EXPECT_NEAR(facets.sent(direction(light, azimuth), direction(view)).f_cos, truth,
+                      (coat.beckmann ? 1e-6 : 1e-9) * truth + 1e-300);
         }
     EXPECT_EQ(facets.sent(direction(91), direction(20)).f_cos, 0);
   }
@@ -65,8 +68,10 @@ TEST(CoatFacets, AreDrawnByTheDensityTheyTell) {
   }
 }
 
-// A dense sum over the disc. The control is one direction in its middle.
+// A dense sum over the disc, of which 1e-9 and less is nothing beside peaks of 100 and more. The control is one
+// direction in its middle.
 TEST(CoatFacets, GatherADisc) {
+  constexpr double kNothing = 1e-9;
   double control = 0;
   for (const TrueCoat& coat : kCoats) {
     const CoatFacets facets(ours(coat), 1.5);
@@ -87,14 +92,16 @@ TEST(CoatFacets, GatherADisc) {
             }
           truth /= kPi * std::pow(std::sin(radius), 2);
           const double found = facets.over_disc(out, middle, radius);
-          EXPECT_NEAR(found, truth, 0.06 * truth) << coat.slope << " " << view << " " << radius_deg << " " << apart_deg;
+          EXPECT_NEAR(found, truth, 0.06 * truth + kNothing)
+              << coat.slope << " " << view << " " << radius_deg << " " << apart_deg;
           control = std::max(control, std::abs(coat.f_cos(middle, out) / truth - 1));
         }
   }
   EXPECT_GT(control, 1);
 }
 
-// The three readings of a coat go into lobes, and come back out of them.
+// The three readings of a coat go into lobes, and come back out of them. No lobe of this basis is as narrow as a coat
+// that meters take for a mirror at 60 and 85 deg, so that its lobes miss a reading by more.
 TEST(CoatFacets, LobesTellTheirCoat) {
   const GlossTable table({1.3, 6, 20, 70, 250, 900, 3000});
   for (const TrueCoat& coat : kCoats) {
@@ -111,8 +118,11 @@ TEST(CoatFacets, LobesTellTheirCoat) {
     ASSERT_TRUE(set_gloss_views(table, readings, fit).ok());
     const std::optional<RoughCoat> found = coat_of_lobes(fit, 20);
     ASSERT_TRUE(found);
+    EXPECT_EQ(found->slopes, ours(coat).slopes) << coat.slope;
+    const bool narrow = coat.beckmann && coat.slope < 0.005;
     for (const double angle : kGlossAngles_deg)
-      EXPECT_NEAR(*coat_reading(*found, angle, 1.5), *coat_reading(ours(coat), angle, 1.5), 0.5) << coat.slope;
+      EXPECT_NEAR(*coat_reading(*found, angle, 1.5), *coat_reading(ours(coat), angle, 1.5), narrow ? 0.75 : 0.1)
+          << coat.slope;
   }
   EXPECT_FALSE(coat_of_lobes({}, 45));
 }

@@ -63,6 +63,8 @@ struct DiscLobeTable {
   std::vector<Node> nodes;  // kNodes, and the last one once more
 
   Node at(double chord) const;
+  // Beyond it the lobe gathers nothing.
+  double last_chord() const { return first_chord + (kNodes - 1) / nodes_per_chord; }
 };
 
 // What a table has at that chord, computed.

@@ -3,19 +3,22 @@
 //   f cos_i cos_o = F(wi.h) D(h) G(wi,wo) / 4,   D = a^2 / (pi cos^4 t (a^2 + tan^2 t)^2),   t the angle of h
 //
 // with the masking G = 1/(1 + L(wi) + L(wo)), L = (sqrt(1 + a^2 tan^2) - 1)/2, of heights that belong together
-// [Heitz2014]. Both scales of a coat are such terms of slopes a of their own; all that a coat reads or sends is
-// therefore a sum of two values of one table over log a, weighted by the shares of the two scales. A reading takes them
-// at the angle of the meter, and each ring at its own mean of (wi.h)^2.
+// [Heitz2014], or the D and L of Gaussian slopes (internal/facets.h). Both scales of a coat are such terms of slopes a
+// of their own; all that a coat reads or sends is therefore a sum of two values of one table over log a, weighted by
+// the shares of the two scales. A reading takes them at the angle of the meter, and each ring at its own mean of
+// (wi.h)^2.
 #include "brdf/rough_coat.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "base/angles.h"
 #include "base/parallel.h"
 #include "brdf/gloss.h"
+#include "brdf/internal/facets.h"
 #include "brdf/internal/gloss_meter.h"
 #include "math/cosine_power.h"
 #include "math/elementary.h"
@@ -25,33 +28,29 @@ namespace goniochrome::brdf {
 
 namespace {
 
-constexpr double kLeastSlope = 5e-4, kMostSlope = 0.8;  // of the tables
 constexpr int kSlopes = 29;
 constexpr std::size_t kViewCount = std::size(kCoatViews_deg);
 constexpr int kRings = 26;  // to 90 deg; one more lies beyond
 constexpr double kFirstRing_deg = 0.03;
+constexpr double kAll = std::numeric_limits<double>::infinity();
+constexpr double kGaussianReach = 4;  // widths, where exp(-16) is left
 
 using Rings = std::array<double, kRings + 1>;
 
-double masking(double cosine, double slope) {
-  const double tangent2 = (1 - cosine * cosine) / (cosine * cosine);
-  return 0.5 * (std::sqrt(1 + slope * slope * tangent2) - 1);
-}
-
 // f cos_i cos_o of one scale; 0 where a direction is below the horizon.
-double facets(const Vec3& in, const Vec3& out, double slope) {
+double sent(const Vec3& in, const Vec3& out, const Facets& facets) {
   if (in.z <= 0 || out.z <= 0) return 0;
   const Vec3 half = normalized(in + out);
-  const double z2 = half.z * half.z, a2 = slope * slope, spread = a2 * z2 + half.x * half.x + half.y * half.y;
-  const double d = a2 / (kPi * spread * spread);  // spread = cos^2 (a^2 + tan^2)
-  const double g = 1 / (1 + masking(std::min(in.z, 1.0), slope) + masking(std::min(out.z, 1.0), slope));
-  return fresnel_dielectric(std::min(1.0, dot(in, half)), kCoatIndex) * d * g / 4;
+  const double g = 1 / (1 + facets.masking(std::min(in.z, 1.0)) + facets.masking(std::min(out.z, 1.0)));
+  return fresnel_dielectric(std::min(1.0, dot(in, half)), kCoatIndex) * facets.density(half) * g / 4;
 }
 
-// Positions and weights of -half..half, dense around `center` on the scale of `width`: x = center + width sinh(t).
-std::vector<math::QuadraturePoint> dense_points(double center, double half, double width) {
+// Positions and weights of -half..half, dense around `center` on the scale of `width`: x = center + width sinh(t), and
+// within so many `widths` of it.
+std::vector<math::QuadraturePoint> dense_points(double center, double half, double width, double widths) {
   static const std::vector<math::QuadraturePoint> rule = math::gauss_legendre(8);
-  const double cuts[] = {std::asinh((-half - center) / width), 0, std::asinh((half - center) / width)};
+  const double cuts[] = {std::asinh(std::max((-half - center) / width, -widths)), 0,
+                         std::asinh(std::min((half - center) / width, widths))};
   std::vector<math::QuadraturePoint> points;
   for (int side = 0; side < 2; ++side) {
     const double middle = (cuts[side] + cuts[side + 1]) / 2, reach = (cuts[side + 1] - cuts[side]) / 2;
@@ -70,18 +69,10 @@ Meter meter_at(std::size_t view) {
   return meter;
 }
 
-// The view at which a meter stands.
-std::optional<std::size_t> view_of(double meter_deg) {
-  for (std::size_t v = 0; v < kViewCount; ++v)
-    if (kCoatViews_deg[v] == meter_deg && std::ranges::find(kMeters, meter_deg, &Meter::angle_deg) != std::end(kMeters))
-      return v;
-  return std::nullopt;
-}
-
 // What a meter reads in GU of f cos_i cos_o = f(wi, wo), which is about so wide around its peak in the plane of
-// incidence and across it, in tangents.
+// incidence and across it, in tangents, and 0 beyond `reach` times that.
 template <class Function>
-double window_reading(const Meter& meter, double width_par, double width_perp, const Function& f) {
+double window_reading(const Meter& meter, double width_par, double width_perp, double reach, const Function& f) {
   static const std::vector<math::QuadraturePoint> rule = math::gauss_legendre(3);
   const double t = meter.angle_deg * kDegree, sine = math::sin(t), cosine = math::cos(t);
   const auto direction = [&](double p, double q) { return Vec3{sine + p * cosine, q, cosine - p * sine}; };
@@ -94,8 +85,8 @@ double window_reading(const Meter& meter, double width_par, double width_perp, c
       const double size = length(image), weight = wx * wy / (size * size * size);
       const Vec3 in = {-image.x / size, -image.y / size, image.z / size};
       standard += weight * in.z * fresnel_dielectric(in.z, kBlackGlassIndex);
-      const auto across = dense_points(q, half(meter.receptor_perp_deg), width_perp);
-      for (const auto& [p_out, wp] : dense_points(p, half(meter.receptor_par_deg), width_par))
+      const auto across = dense_points(q, half(meter.receptor_perp_deg), width_perp, reach);
+      for (const auto& [p_out, wp] : dense_points(p, half(meter.receptor_par_deg), width_par, reach))
         for (const auto& [q_out, wq] : across) {
           const Vec3 to = direction(p_out, q_out);
           const double far = length(to);
@@ -106,9 +97,10 @@ double window_reading(const Meter& meter, double width_par, double width_perp, c
 }
 
 // Of one scale that gets all the light.
-double facets_reading(const Meter& meter, double slope) {
-  return window_reading(meter, 2 * slope, 2 * slope * math::cos(meter.angle_deg * kDegree),
-                        [&](const Vec3& in, const Vec3& out) { return facets(in, out, slope); });
+double facets_reading(const Meter& meter, const Facets& facets) {
+  const double width = 2 * facets.slope, reach = facets.slopes == Slopes::kGaussian ? kGaussianReach : kAll;
+  return window_reading(meter, width, width * math::cos(meter.angle_deg * kDegree), reach,
+                        [&](const Vec3& in, const Vec3& out) { return sent(in, out, facets); });
 }
 
 const std::array<double, kRings + 1>& ring_angles() {
@@ -161,12 +153,12 @@ struct FacetRings {
   Rings light, times_cos2;
 };
 
-FacetRings facet_rings(double slope, std::size_t view) {
+FacetRings facet_rings(const Facets& facets, std::size_t view) {
   const Vec3 out = viewer(view);
   const double smooth = fresnel_dielectric(out.z, kCoatIndex) * out.z;
   const auto each = [&](bool squared) {
     Rings rings = within_rings(kCoatViews_deg[view], 32, [&](double, const Vec3& in) {
-      return facets(in, out, slope) / smooth * (squared ? (1 + dot(in, out)) / 2 : 1);
+      return sent(in, out, facets) / smooth * (squared ? (1 + dot(in, out)) / 2 : 1);
     });
     std::adjacent_difference(rings.begin(), rings.end(), rings.begin());
     return rings;
@@ -174,161 +166,63 @@ FacetRings facet_rings(double slope, std::size_t view) {
   return {each(false), each(true)};
 }
 
-// Readings and rings of one scale, by log slope.
-struct Tables {
-  std::array<std::array<double, kViewCount>, kSlopes> readings;
-  std::array<std::array<FacetRings, kViewCount>, kSlopes> rings;
+// Of one scale, by log slope.
+double node_slope(std::size_t node) {
+  return kLeastSlope * math::pow(kMostSlope / kLeastSlope, static_cast<double>(node) / (kSlopes - 1));
+}
 
-  static double slope(int node) {
-    return kLeastSlope * math::pow(kMostSlope / kLeastSlope, static_cast<double>(node) / (kSlopes - 1));
-  }
-  Tables() {
-    parallel_for(kSlopes, 1, [&](std::size_t node, std::size_t) {
-      const double a = slope(static_cast<int>(node));
-      for (std::size_t v = 0; v < kViewCount; ++v) {
-        readings[node][v] = facets_reading(meter_at(v), a);
-        rings[node][v] = facet_rings(a, v);
-      }
-    });
-  }
-
-  // Cubic through four nodes around a slope.
-  struct Place {
-    int first;
-    std::array<double, 4> weight;
-  };
-  static Place place(double a) {
-    const double at = math::log(std::clamp(a, kLeastSlope, kMostSlope) / kLeastSlope) /
-                      math::log(kMostSlope / kLeastSlope) * (kSlopes - 1);
-    const int first = std::clamp(static_cast<int>(at) - 1, 0, kSlopes - 4);
-    const double t = at - first;
-    return {first,
-            {-(t - 1) * (t - 2) * (t - 3) / 6, t * (t - 2) * (t - 3) / 2, -t * (t - 1) * (t - 3) / 2,
-             t * (t - 1) * (t - 2) / 6}};
-  }
-  double reading(std::size_t view, double a) const {
-    const Place at = place(a);
-    double sum = 0;
-    for (int n = 0; n < 4; ++n) sum += at.weight[n] * readings[at.first + n][view];
-    return sum;
-  }
+// Cubic through four nodes around a slope.
+struct Place {
+  int first;
+  std::array<double, 4> weight;
 };
-
-const Tables& tables() {
-  static const Tables made;
-  return made;
+Place place(double slope) {
+  const double at = math::log(std::clamp(slope, kLeastSlope, kMostSlope) / kLeastSlope) /
+                    math::log(kMostSlope / kLeastSlope) * (kSlopes - 1);
+  const int first = std::clamp(static_cast<int>(at) - 1, 0, kSlopes - 4);
+  const double t = at - first;
+  return {first,
+          {-(t - 1) * (t - 2) * (t - 3) / 6, t * (t - 2) * (t - 3) / 2, -t * (t - 1) * (t - 3) / 2,
+           t * (t - 1) * (t - 2) / 6}};
 }
 
-double reading_at(const RoughCoat& coat, std::size_t view) {
-  const double share = sharp_share(coat, viewer(view).z);
-  return share * tables().reading(view, coat.slope) + (1 - share) * tables().reading(view, coat.haze);
+// of_view(facets, view) for all slopes and views.
+template <class Value>
+using Table = std::array<std::array<Value, kViewCount>, kSlopes>;
+template <class Value, class OfView>
+Table<Value> tabled(Slopes slopes, const OfView& of_view) {
+  Table<Value> table;
+  parallel_for(kSlopes, 1, [&](std::size_t node, std::size_t) {
+    for (std::size_t v = 0; v < kViewCount; ++v) table[node][v] = of_view(Facets{node_slope(node), slopes}, v);
+  });
+  return table;
 }
 
-// The coats of one reading lie on this series. Its satin (60 GU) reads 16 and 84 GU at 20 and 85 deg.
-// [MPI gloss levels] pair 60 with 85 deg: below 5 with below 10, 10 to 25 with 10 to 35, 20 to 35 with 35 and more.
-constexpr double kSeriesSlope = 0.009, kSeriesPower = 1.5, kSeriesMost = 13;
-
-RoughCoat of_series(double k) {
-  const double slope = kSeriesSlope * math::pow(k, kSeriesPower);
-  return {k, slope, std::max(RoughCoat::kHaze, slope)};
-}
-
-// The coat of the series that reads so much; readings fall with k.
-RoughCoat series_coat(std::size_t view, double gu) {
-  double low = 0, high = kSeriesMost;
-  while (high - low > 1e-13 * high) {
-    const double middle = 0.5 * (low + high);
-    (reading_at(of_series(middle), view) > gu ? low : high) = middle;
-  }
-  return of_series(0.5 * (low + high));
-}
-
-// A coat near given readings: least squares in log slope, k and log haze, by Gauss-Newton steps that are damped
-// [Marquardt]. How far a coat lies from the series counts a little, so that readings that leave something open take
-// what is usual.
-class CoatSearch {
- public:
-  struct Wanted {
-    std::size_t view;
-    double gu;
+const Table<double>& readings(Slopes slopes) {
+  const auto made = [](Slopes of) {
+    return tabled<double>(of, [](const Facets& facets, std::size_t v) { return facets_reading(meter_at(v), facets); });
   };
-  explicit CoatSearch(std::vector<Wanted> wanted) : wanted_(std::move(wanted)) {}
+  static const Table<double> ggx = made(Slopes::kGgx);
+  if (slopes == Slopes::kGgx) return ggx;
+  static const Table<double> gaussian = made(Slopes::kGaussian);
+  return gaussian;
+}
 
-  struct Found {
-    RoughCoat coat;
-    double cost;
-  };
-  Found from(const RoughCoat& start) const {
-    Point x = {math::log(start.slope), start.k, math::log(start.haze)};
-    std::vector<double> r = residuals(x);
-    double cost = squares(r), damping = 1e-3;
-    for (int round = 0; round < 60 && damping < 1e9; ++round) {
-      const Point next = clamped(step(x, r, damping));
-      const std::vector<double> tried = residuals(next);
-      const double now = squares(tried);
-      if (!(now < cost)) {
-        damping *= 8;
-        continue;
-      }
-      const bool done = cost - now < 1e-12 * cost;
-      x = next, r = tried, cost = now, damping /= 4;
-      if (done) break;
-    }
-    return {coat(x), cost};
-  }
+const Table<FacetRings>& rings(Slopes slopes) {
+  const auto made = [](Slopes of) { return tabled<FacetRings>(of, facet_rings); };
+  static const Table<FacetRings> ggx = made(Slopes::kGgx);
+  if (slopes == Slopes::kGgx) return ggx;
+  static const Table<FacetRings> gaussian = made(Slopes::kGaussian);
+  return gaussian;
+}
 
- private:
-  using Point = std::array<double, 3>;
-  static constexpr double kReading_gu = 0.2, kApart[] = {2, 0.7};  // standard deviations: a reading, k, log haze
-
-  static RoughCoat coat(const Point& x) { return {x[1], math::exp(x[0]), math::exp(x[2])}; }
-  static Point clamped(const Point& x) {
-    return {std::clamp(x[0], math::log(kLeastSlope), math::log(kMostSlope)), std::clamp(x[1], 0.0, kSeriesMost),
-            std::clamp(x[2], math::log(0.03), math::log(kMostSlope))};
-  }
-  static double squares(const std::vector<double>& r) {
-    double sum = 0;
-    for (const double x : r) sum += x * x;
-    return sum;
-  }
-  std::vector<double> residuals(const Point& x) const {
-    const RoughCoat here = coat(x);
-    std::vector<double> r;
-    for (const Wanted& wanted : wanted_) r.push_back((reading_at(here, wanted.view) - wanted.gu) / kReading_gu);
-    r.push_back((here.k - math::pow(here.slope / kSeriesSlope, 1 / kSeriesPower)) / kApart[0]);
-    r.push_back((x[2] - math::log(RoughCoat::kHaze)) / kApart[1]);
-    return r;
-  }
-  // The solution of (J'J + d diag) s = -J'r, by elimination: three unknowns.
-  Point step(const Point& x, const std::vector<double>& r, double damping) const {
-    constexpr double kDifference = 1e-5;
-    std::array<std::vector<double>, 3> j;
-    for (std::size_t c = 0; c < 3; ++c) {
-      Point moved = x;
-      moved[c] += kDifference;
-      j[c] = residuals(moved);
-      for (std::size_t i = 0; i < r.size(); ++i) j[c][i] = (j[c][i] - r[i]) / kDifference;
-    }
-    double a[3][4] = {};
-    for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t i = 0; i < r.size(); ++i) {
-        for (std::size_t d = 0; d < 3; ++d) a[c][d] += j[c][i] * j[d][i];
-        a[c][3] -= j[c][i] * r[i];
-      }
-    for (std::size_t c = 0; c < 3; ++c) a[c][c] *= 1 + damping;
-    for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t row = 0; row < 3; ++row)
-        if (row != c && a[c][c] > 0) {
-          const double part = a[row][c] / a[c][c];
-          for (std::size_t d = c; d < 4; ++d) a[row][d] -= part * a[c][d];
-        }
-    Point next = x;
-    for (std::size_t c = 0; c < 3; ++c) next[c] += a[c][c] > 0 ? a[c][3] / a[c][c] : 0;
-    return next;
-  }
-
-  std::vector<Wanted> wanted_;
-};
+double reading_of_scale(Slopes slopes, double slope, std::size_t view) {
+  const Table<double>& table = readings(slopes);
+  const Place at = place(slope);
+  double sum = 0;
+  for (int n = 0; n < 4; ++n) sum += at.weight[n] * table[at.first + n][view];
+  return sum;
+}
 
 }  // namespace
 
@@ -336,37 +230,17 @@ double sharp_share(const RoughCoat& coat, double cosine) {
   return math::exp(-coat.k * cosine * cosine);
 }
 
+std::optional<std::size_t> view_of_meter(double meter_deg) {
+  for (std::size_t v = 0; v < kViewCount; ++v)
+    if (kCoatViews_deg[v] == meter_deg && std::ranges::find(kMeters, meter_deg, &Meter::angle_deg) != std::end(kMeters))
+      return v;
+  return std::nullopt;
+}
+
 Result<double> coat_reading(const RoughCoat& coat, double angle_deg, double index) {
   GONIO_ASSIGN(const double smooth, smooth_gloss(angle_deg, index));
   GONIO_ASSIGN(const double usual, smooth_gloss(angle_deg, kCoatIndex));
-  return smooth / usual * reading_at(coat, *view_of(angle_deg));
-}
-
-Result<std::optional<RoughCoat>> rough_coat_of(const std::vector<paint::GlossReading>& readings, double index) {
-  constexpr double kSmooth_gu = 1;
-  std::vector<CoatSearch::Wanted> wanted;
-  bool smooth = true;
-  for (const paint::GlossReading& reading : readings) {
-    GONIO_ASSIGN(const double of_index, smooth_gloss(reading.angle_deg, index));
-    GONIO_ASSIGN(const double usual, smooth_gloss(reading.angle_deg, kCoatIndex));
-    smooth = smooth && reading.gloss_units > of_index - kSmooth_gu;
-    wanted.push_back({*view_of(reading.angle_deg), std::max(0.0, reading.gloss_units) * usual / of_index});
-  }
-  if (wanted.empty()) return std::optional<RoughCoat>();
-  const auto matt = [](const CoatSearch::Wanted& w) { return w.gu <= reading_at(of_series(kSeriesMost), w.view); };
-  if (smooth || std::ranges::all_of(wanted, matt)) return std::optional<RoughCoat>();
-  if (wanted.size() == 1) return std::optional(series_coat(wanted[0].view, wanted[0].gu));
-  const CoatSearch search(wanted);
-  std::optional<CoatSearch::Found> best;
-  for (const CoatSearch::Wanted& w : wanted) {
-    const RoughCoat usual = series_coat(w.view, w.gu);
-    for (const RoughCoat& start :
-         {usual, RoughCoat{0, std::max(usual.slope, 2 * kLeastSlope)}, RoughCoat{usual.k, 2 * kLeastSlope}}) {
-      const CoatSearch::Found found = search.from(start);
-      if (!best || found.cost < best->cost) best = found;
-    }
-  }
-  return std::optional(best->coat);
+  return smooth / usual * coat_reading_at(coat, *view_of_meter(angle_deg));
 }
 
 std::span<const double> ring_angles_rad() {
@@ -374,14 +248,15 @@ std::span<const double> ring_angles_rad() {
 }
 
 std::vector<double> coat_within(const RoughCoat& coat, std::size_t view) {
+  const Table<FacetRings>& table = rings(coat.slopes);
   std::vector<double> within(kRings + 1, 0.0);
   for (const bool sharp : {true, false}) {
-    const Tables::Place at = Tables::place(sharp ? coat.slope : coat.haze);
+    const Place at = place(sharp ? coat.slope : coat.haze);
     for (std::size_t k = 0; k < within.size(); ++k) {
       double light = 0, times_cos2 = 0;
       for (int n = 0; n < 4; ++n) {
-        const FacetRings& rings = tables().rings[at.first + n][view];
-        light += at.weight[n] * rings.light[k], times_cos2 += at.weight[n] * rings.times_cos2[k];
+        const FacetRings& scale = table[at.first + n][view];
+        light += at.weight[n] * scale.light[k], times_cos2 += at.weight[n] * scale.times_cos2[k];
       }
       if (!(light > 0)) continue;
       const double share = math::exp(-coat.k * std::clamp(times_cos2 / light, 0.0, 1.0));
@@ -393,12 +268,14 @@ std::vector<double> coat_within(const RoughCoat& coat, std::size_t view) {
 }
 
 double coat_reading_at(const RoughCoat& coat, std::size_t view) {
-  return reading_at(coat, view);
+  const double share = sharp_share(coat, viewer(view).z);
+  return share * reading_of_scale(coat.slopes, coat.slope, view) +
+         (1 - share) * reading_of_scale(coat.slopes, coat.haze, view);
 }
 
 double lobe_reading_at(double exponent, std::size_t view) {
   const double width = 1 / std::sqrt(exponent + 1);
-  return window_reading(meter_at(view), width, width, [&](const Vec3& in, const Vec3& out) {
+  return window_reading(meter_at(view), width, width, kAll, [&](const Vec3& in, const Vec3& out) {
     const Vec3 apart = out - Vec3{-in.x, -in.y, in.z};
     return out.z * math::cos_power_from_versine(dot(apart, apart) / 2, exponent) *
            fresnel_dielectric(std::min(1.0, length(in + out) / 2), kCoatIndex);

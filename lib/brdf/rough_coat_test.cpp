@@ -28,6 +28,10 @@ std::vector<paint::GlossReading> readings_of(const TrueCoat& coat) {
   return readings;
 }
 
+RoughCoat ours(const TrueCoat& coat) {
+  return {coat.k, coat.slope, coat.haze, coat.beckmann ? Slopes::kGaussian : Slopes::kGgx};
+}
+
 // A paint of gloss alone, with views.
 paint::LobeFit coated(const std::vector<paint::GlossReading>& readings) {
   paint::LobeFit fit;
@@ -58,18 +62,20 @@ double shown_reading(const paint::LobeFit& fit, const TestMeter& meter, double g
 }
 
 TEST(RoughCoat, ReadingsAreThoseOfFacetsDrawnAtRandom) {
-  for (const TrueCoat& coat : {TrueCoat{0, 0.003, 0.3}, TrueCoat{0, 0.05, 0.3}, TrueCoat{0, 0.4, 0.3},
-                               TrueCoat{1.1, 0.009, 0.3}, TrueCoat{2.5, 0.02, 0.2}})
+  for (const TrueCoat& coat :
+       {TrueCoat{0, 0.003, 0.3}, TrueCoat{0, 0.05, 0.3}, TrueCoat{0, 0.4, 0.3}, TrueCoat{1.1, 0.009, 0.3},
+        TrueCoat{2.5, 0.02, 0.2}, TrueCoat{0, 0.003, 0.3, true}, TrueCoat{0, 0.05, 0.3, true},
+        TrueCoat{0, 0.4, 0.3, true}, TrueCoat{1.1, 0.009, 0.3, true}})
     for (const TestMeter& meter : kTestMeters)
-      EXPECT_NEAR(*coat_reading({coat.k, coat.slope, coat.haze}, meter.angle_deg, 1.5),
-                  true_reading(coat, meter, 8 * kDirections), 0.25)
+      EXPECT_NEAR(*coat_reading(ours(coat), meter.angle_deg, 1.5), true_reading(coat, meter, 8 * kDirections), 0.25)
           << coat.k << " " << coat.slope << " " << meter.angle_deg;
 }
 
 // Each ring has one share, that of its mean (wi.h)^2 = m: exp(-k m) falls short of the mean by k^2/2 times the variance
 // of (wi.h)^2, at most 0.04 in the wide rings, which hold less than half of the light.
 TEST(RoughCoat, RingsHoldTheLightOfFacetsDrawnAtRandom) {
-  for (const TrueCoat& coat : {TrueCoat{0, 0.004, 0.3}, TrueCoat{0, 0.1, 0.3}, TrueCoat{1.1, 0.009, 0.4}})
+  for (const TrueCoat& coat : {TrueCoat{0, 0.004, 0.3}, TrueCoat{0, 0.1, 0.3}, TrueCoat{1.1, 0.009, 0.4},
+                               TrueCoat{0, 0.02, 0.3, true}, TrueCoat{1.1, 0.009, 0.3, true}})
     for (const std::size_t view : {0U, 3U, 5U, 8U, 11U, 13U}) {
       const double t = kCoatViews_deg[view] * kDegree;
       const Vec3 out = {std::sin(t), 0, std::cos(t)}, axis = {-out.x, 0, out.z};
@@ -79,9 +85,10 @@ TEST(RoughCoat, RingsHoldTheLightOfFacetsDrawnAtRandom) {
         for (std::size_t k = 0; k < within.size(); ++k)
           if (angle <= ring_angles_rad()[k]) within[k] += energy / TrueCoat::fresnel(out.z, 1.5);
       });
-      const std::vector<double> ours = coat_within({coat.k, coat.slope, coat.haze}, view);
+      const std::vector<double> found = coat_within(ours(coat), view);
       for (std::size_t k = 0; k < within.size(); ++k)
-        EXPECT_NEAR(ours[k], within[k], 1e-2) << coat.slope << " " << kCoatViews_deg[view] << " " << k;
+        EXPECT_NEAR(found[k], within[k], coat.beckmann ? 1.2e-2 : 1e-2)
+            << coat.slope << " " << kCoatViews_deg[view] << " " << k;
     }
 }
 
@@ -109,10 +116,55 @@ TEST(RoughCoat, OneReadingGoesWithItsGlossLevel) {
   EXPECT_FALSE(rough_coat_of({{45, 50}}, 1.5).ok());
 }
 
+// How slopes are distributed, and on how many scales, follows from readings that are simulated by random facets. The
+// control is the two scales of GGX that fit a Gaussian surface best, which miss its readings by several GU. Readings
+// that are off by a tenth still tell the distribution of nearly all surfaces.
+TEST(RoughCoat, ReadingsTellHowSlopesAreDistributed) {
+  TestNumbers next(7);
+  int told = 0, told_noisy = 0, count = 0;
+  for (TrueCoat coat : true_coats())
+    for (const bool gaussian : {false, true}) {
+      coat.beckmann = gaussian;
+      std::vector<paint::GlossReading> readings = readings_of(coat);
+      const auto is_told = [&](const RoughCoat& found) {
+        return found.slopes == ours(coat).slopes && (found.k == 0) == (coat.k == 0);
+      };
+      const RoughCoat found = **rough_coat_of(readings, 1.5);
+      if (coat.k == 0) {
+        EXPECT_TRUE(is_told(found)) << coat.slope;
+        EXPECT_NEAR(found.slope / coat.slope, 1, 0.02) << coat.slope;  // readings are simulated to 0.1 GU
+      }
+      for (const paint::GlossReading& reading : readings)
+        EXPECT_NEAR(*coat_reading(found, reading.angle_deg, 1.5), reading.gloss_units, 0.3) << coat.slope;
+      told += is_told(found) ? 1 : 0, ++count;
+      for (paint::GlossReading& reading : readings) reading.gloss_units += 0.2 * (next() - 0.5);
+      told_noisy += is_told(**rough_coat_of(readings, 1.5)) ? 1 : 0;
+    }
+  EXPECT_GE(told, 0.95 * count);
+  EXPECT_GE(told_noisy, 0.9 * count);
+  const TrueCoat sharp{0, 0.017, 0.3, true};
+  const std::vector<paint::GlossReading> readings = readings_of(sharp);
+  double best = 1e9;
+  for (int i = 0; i < 40; ++i)
+    for (int j = 0; j < 40; ++j)
+      for (int k = 0; k < 40; ++k) {
+        const RoughCoat control{0.075 * i, 0.005 * std::pow(10, j / 40.0), 0.02 * std::pow(30, k / 40.0)};
+        double off = 0;
+        for (const paint::GlossReading& reading : readings)
+          off = std::max(off, std::abs(*coat_reading(control, reading.angle_deg, 1.5) - reading.gloss_units));
+        best = std::min(best, off);
+      }
+  EXPECT_GT(best, 1) << "the control";
+}
+
 TEST(HardCase, GlossSatinMeetsThreeReadingsTogether) {
   std::vector<std::vector<paint::GlossReading>> all = {{{20, 18}, {60, 60}, {85, 88}}};
-  for (const TrueCoat& coat : true_coats()) all.push_back(readings_of(coat));
-  double ours = 0, textbook = 0;
+  for (TrueCoat coat : true_coats())
+    for (const bool gaussian : {false, true}) {
+      coat.beckmann = gaussian;
+      all.push_back(readings_of(coat));
+    }
+  double met = 0, textbook = 0;
   for (const std::vector<paint::GlossReading>& readings : all) {
     const paint::LobeFit fit = coated(readings), control = coated({});
     paint::LobeFit one = control;
@@ -120,13 +172,13 @@ TEST(HardCase, GlossSatinMeetsThreeReadingsTogether) {
     ASSERT_TRUE(set_gloss(table(), {readings[1]}, one).ok());
     for (std::size_t m = 0; m < 3; ++m) {
       const double off = std::abs(shown_reading(fit, kTestMeters[m], 20) - readings[m].gloss_units);
-      ours = worst_of(ours, off);
+      met = worst_of(met, off);
       textbook = worst_of(textbook, std::abs(shown_reading(one, kTestMeters[m], 60) - readings[m].gloss_units));
     }
   }
-  hard_case("gloss-satin", {.what = "readings at 20, 60 and 85 deg of a satin coat and of 40 rough dielectrics",
+  hard_case("gloss-satin", {.what = "readings at 20, 60 and 85 deg of a satin coat and of 80 rough dielectrics",
                             .textbook = textbook,
-                            .ours = ours,
+                            .ours = met,
                             .bound = 3,
                             .unit = "GU"});
 }

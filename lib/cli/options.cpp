@@ -50,7 +50,9 @@ Option& ToolSpec::flag(const std::string& names, bool* target, std::string help)
 }
 
 Option& add_tolerance(ToolSpec& spec, CommonOptions& common, const std::string& value, const std::string& of_what) {
-  return spec.option("tolerance", value, shortest(common.tolerance / 5), &common.tolerance, of_what).from(0);
+  Option& option = spec.option("tolerance", value, shortest(common.tolerance / 5), &common.tolerance, of_what).from(0);
+  option.given = &common.tolerance_given;
+  return option;
 }
 
 void add_common_options(ToolSpec& spec, CommonOptions& common, const CommonTexts& texts) {

@@ -27,6 +27,7 @@ struct Option {
   std::vector<std::string> choices = {};  // the words that the option takes, if it is a choice
   double low = -1e300, high = 1e300;      // the domain of a number; both ends belong to it
   bool required = false;
+  bool* given = nullptr;  // becomes true where the option is given, be it with its default; null: nobody wants to know
 
   // These complete an option where it is added: spec.option(...).from(0, 90).more("...").
   Option& from(double lowest, double highest = 1e300);
@@ -79,6 +80,7 @@ struct CommonOptions {
   bool explain = false;
   std::string report;
   double tolerance = 1e-3;
+  bool tolerance_given = false;  // by name, and not by the default
   double time_limit_s = 0;
   int threads = 0;
   std::uint64_t seed = 1;

@@ -154,6 +154,7 @@ Result<void> parse(const ToolSpec& spec, const std::vector<std::string>& argumen
     if (!option.value.empty() && !is_list(option) && given->second.size() > 1)
       return usage_error("{} is given {} times: give it once", dashed(option), given->second.size());
     GONIO_TRY(std::visit(Setter{option, given->second}, option.target));
+    if (option.given != nullptr) *option.given = true;
   }
   if (spec.inputs) {
     const auto count = static_cast<int>(words.size());

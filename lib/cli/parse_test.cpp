@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/text.h"
 #include "cli/tool.h"
 
 namespace goniochrome::cli {
@@ -68,6 +69,20 @@ TEST(Parse, ValuesReachTheirTargets) {
   EXPECT_EQ(v.parts, (std::vector<std::string>{"A=b", "C=d"}));
   EXPECT_EQ(v.exponents, (std::vector<double>{1, 2.5}));
   EXPECT_EQ(v.inputs, (std::vector<std::string>{"in", "-"}));
+}
+
+TEST(Parse, ItIsKnownWhetherAnOptionWasGiven) {
+  for (const bool given : {false, true}) {
+    CommonOptions common;
+    ToolSpec spec{.name = "sample-tool"};
+    spec.heading = "sampling";
+    add_tolerance(spec, common, "DE00", "largest difference");
+    std::vector<std::string> arguments;
+    if (given) arguments = {"--tolerance", shortest(common.tolerance)};
+    ASSERT_TRUE(parse(spec, arguments).ok());
+    EXPECT_EQ(common.tolerance_given, given);
+    EXPECT_EQ(common.tolerance, CommonOptions{}.tolerance);
+  }
 }
 
 TEST(Parse, NegativeNumbersAreValues) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,11 @@ struct Clip {
   }
 };
 
+// The outline of a mirror ball in a photograph: texels from its upper left corner.
+struct BallDisc {
+  double x = 0, y = 0, radius = 0;
+};
+
 // Piecewise constant radiance: one value, one exact solid angle and one center direction per texel. Working space.
 // How the texels lie is told in sphere_grid.h.
 class Environment {
@@ -47,6 +53,10 @@ class Environment {
   // attribute wins. A path with `{face}` stands for six files (see face_paths()). BadPixels::kError refuses the first
   // texel that is not finite or is negative, by name; kZero sets such texels to zero and counts them.
   static Result<Environment> read(const std::string& path, BadPixels bad_pixels);
+
+  // A photograph of a mirror ball as a lat-long map: see unrolled_ball(). Without an outline, ball_disc() finds it.
+  static Result<Environment> read_ball(const std::string& path, const std::optional<BallDisc>& outline,
+                                       BadPixels bad_pixels);
 
   // The same from six files, in the order +X -X +Y -Y +Z -Z, in OpenGL's orientation.
   static Result<Environment> read_faces(const std::vector<std::string>& paths, BadPixels bad_pixels);
@@ -71,6 +81,10 @@ class Environment {
   int height() const { return grid_.height(); }
   const Counts& replaced() const { return replaced_; }
   const std::string& source() const { return source_; }
+  // The outline of the mirror ball that it was unrolled from, if it was.
+  const std::optional<BallDisc>& ball() const { return ball_; }
+  // Whether it was read as an angular probe whose corners hold light, which suits the photograph of a ball better.
+  bool lit_corners() const { return lit_corners_; }
   const std::vector<float>& values() const { return rgb_; }  // row by row, three to a texel
 
   // Texel by column and row of the stored layout.
@@ -111,6 +125,8 @@ class Environment {
   std::vector<float> rgb_;
   std::string source_;
   Counts replaced_;
+  std::optional<BallDisc> ball_;
+  bool lit_corners_ = false;
 };
 
 // The six paths that a pattern with `{face}` stands for, in the order +X -X +Y -Y +Z -Z: the first of the spellings

@@ -6,6 +6,7 @@
 
 #include "base/paths.h"
 #include "envmap/environment.h"
+#include "envmap/internal/mirror_ball.h"
 #include "image/color_space.h"
 
 namespace goniochrome::envmap {
@@ -117,15 +118,39 @@ class EnvironmentReader {
   }
 
   static Result<Environment> from_part(image::ImagePart part, BadPixels bad_pixels, const std::string& name) {
-    GONIO_TRY(check_inks(part, name));
-    GONIO_ASSIGN(Counts counts, checked(part.image, bad_pixels, name));
     const std::string envmap = envmap_attribute(part);
-    GONIO_ASSIGN(image::Image rgb, image::working_space_rgb(std::move(part), name));
-    counts.out_of_gamut = clip_to_gamut(rgb);
-    return arranged(std::move(rgb), envmap, counts, name);
+    GONIO_ASSIGN(Picture picture, picture_of(std::move(part), bad_pixels, name));
+    return arranged(std::move(picture.rgb), envmap, picture.counts, name);
+  }
+
+  static Result<Environment> from_ball(image::ImagePart part, const std::optional<BallDisc>& outline,
+                                       BadPixels bad_pixels, const std::string& name) {
+    GONIO_ASSIGN(const Picture picture, picture_of(std::move(part), bad_pixels, name));
+    BallDisc disc = outline.value_or(BallDisc{});
+    if (!outline) {
+      GONIO_ASSIGN(disc, ball_disc(picture.rgb, name));
+    }
+    GONIO_ASSIGN(image::Image map, unrolled_ball(picture.rgb, disc, name));
+    Environment env = make(Environment::Layout::kLatLong, std::move(map), picture.counts, name);
+    env.ball_ = disc;
+    return env;
   }
 
  private:
+  // An image in the working space, and the texels that were replaced in it.
+  struct Picture {
+    image::Image rgb;
+    Counts counts;
+  };
+  static Result<Picture> picture_of(image::ImagePart part, BadPixels bad_pixels, const std::string& name) {
+    GONIO_TRY(check_inks(part, name));
+    Picture picture;
+    GONIO_ASSIGN(picture.counts, checked(part.image, bad_pixels, name));
+    GONIO_ASSIGN(picture.rgb, image::working_space_rgb(std::move(part), name));
+    picture.counts.out_of_gamut = clip_to_gamut(picture.rgb);
+    return picture;
+  }
+
   static Result<Environment> arranged(image::Image rgb, const std::string& envmap, const Counts& counts,
                                       const std::string& name) {
     using Layout = Environment::Layout;
@@ -143,7 +168,12 @@ class EnvironmentReader {
     if (w >= 2 && std::abs(w - 2 * h) <= 1) return make(Layout::kLatLong, std::move(rgb), counts, name);
     if (envmap == "latlong")
       return input_error("{}: is tagged as lat-long but is {} x {}: it must be twice as wide as high", name, w, h);
-    if (w == h && w >= 2) return make(Layout::kAngular, without_corners(std::move(rgb)), counts, name);
+    if (w == h && w >= 2) {
+      const bool lit = has_lit_corners(rgb);
+      Environment env = make(Layout::kAngular, without_corners(std::move(rgb)), counts, name);
+      env.lit_corners_ = lit;
+      return env;
+    }
     if (h == 6 * w) return make(Layout::kCube, std::move(rgb), counts, name);
     if (w == 6 * h) return cube(h, {{{0, 0}, {1, 0}, {2, 0}, {3, 0}, {4, 0}, {5, 0}}});
     // Crosses: the faces unfolded around +Z, as OpenGL addresses them; the upright cross has -Z below, upside down.
@@ -170,6 +200,12 @@ Result<Environment> Environment::read(const std::string& path, BadPixels bad_pix
   }
   GONIO_ASSIGN(image::ImagePart part, image::read_image(path));
   return EnvironmentReader::from_part(std::move(part), bad_pixels, path == "-" ? "standard input" : path);
+}
+
+Result<Environment> Environment::read_ball(const std::string& path, const std::optional<BallDisc>& outline,
+                                           BadPixels bad_pixels) {
+  GONIO_ASSIGN(image::ImagePart part, image::read_image(path));
+  return EnvironmentReader::from_ball(std::move(part), outline, bad_pixels, path == "-" ? "standard input" : path);
 }
 
 Result<Environment> Environment::read_faces(const std::vector<std::string>& paths, BadPixels bad_pixels) {

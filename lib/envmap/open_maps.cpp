@@ -24,6 +24,7 @@ void take_out(const std::vector<Spot>& spots, const OfSpot& of_spot, CubeMap& ma
         float* texel = map.at(face, row, column);
         for (std::size_t k = 0; k < spots.size(); ++k) {
           const double share = of_spot(k, direction);
+          if (share == 0) continue;
           for (int c = 0; c < 3; ++c) texel[c] -= static_cast<float>(share * spots[k].white[c]);
         }
       }
@@ -36,10 +37,16 @@ void take_out(const std::vector<Spot>& spots, const OfSpot& of_spot, CubeMap& ma
 // P_E has (E+1)/(2 pi) times what the lobe gathers of each.
 CubeMap without_spots(CubeMap map, double exponent, const std::vector<Spot>& spots) {
   std::vector<std::shared_ptr<const brdf::DiscLobeTable>> tables;
-  for (const Spot& spot : spots) tables.push_back(brdf::disc_lobe_table(exponent, spot.radius_rad));
+  std::vector<double> farthest;  // the cosine beyond which a lobe gathers nothing of the spot
+  for (const Spot& spot : spots) {
+    tables.push_back(brdf::disc_lobe_table(exponent, spot.radius_rad));
+    const double chord = tables.back()->last_chord();
+    farthest.push_back(1 - 0.5 * chord * chord);
+  }
   take_out(
       spots,
       [&](std::size_t k, const Vec3& direction) {
+        if (dot(direction, spots[k].direction) < farthest[k]) return 0.0;
         const brdf::DiscLobeTable::Node gathered = tables[k]->at(length(direction - spots[k].direction));
         return 0.5 * (exponent + 1) * (gathered.plain[0] + gathered.plain[1]);
       },

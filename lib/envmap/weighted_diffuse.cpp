@@ -23,12 +23,21 @@ struct Beam {
 std::vector<Beam> beams_of(const CubeMap& map) {
   const int n = map.size, grid = std::min(n, kGrid);
   std::vector<Vec3> flux(static_cast<std::size_t>(6 * grid * grid)), moment(flux.size());
+  // Faces are alike, so that the areas of one are those of all.
+  std::vector<double> areas(static_cast<std::size_t>(n) * static_cast<std::size_t>(n));
+  parallel_for(static_cast<std::size_t>(n), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row)
+      for (int column = 0; column < n; ++column) {
+        const double s = 2.0 / n, y = s * static_cast<double>(row) - 1;
+        areas[row * static_cast<std::size_t>(n) + static_cast<std::size_t>(column)] =
+            cube_cell_solid_angle(s * column - 1, s * (column + 1) - 1, y, s * static_cast<double>(row + 1) - 1);
+      }
+  });
   for (int face = 0; face < 6; ++face)
     for (int row = 0; row < n; ++row)
       for (int column = 0; column < n; ++column) {
         const float* texel = map.at(face, row, column);
-        const double s = 2.0 / n,
-                     area = cube_cell_solid_angle(s * column - 1, s * (column + 1) - 1, s * row - 1, s * (row + 1) - 1);
+        const double area = areas[static_cast<std::size_t>(row * n + column)];
         const Vec3 light = area * Vec3{texel[0], texel[1], texel[2]};
         const auto into = static_cast<std::size_t>((face * grid + row * grid / n) * grid + column * grid / n);
         flux[into] += light;
@@ -92,12 +101,15 @@ CubeMap weighted_diffuse(const PrefilteredEnvironment& env, const std::function<
   if (source.size == 0 || map.size == 0) return map;
   const std::vector<float> table = weighted_cosines(share);
   const CubeMap ratio = ratios(beams_of(source), table, std::min(map.size, kGrid));
-  for (int face = 0; face < 6; ++face)
-    for (int row = 0; row < map.size; ++row)
+  parallel_for(static_cast<std::size_t>(6 * map.size), 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t line = begin; line < end; ++line) {
+      const int face = static_cast<int>(line) / map.size, row = static_cast<int>(line) % map.size;
       for (int column = 0; column < map.size; ++column) {
         const Vec3 r = bilinear(ratio, cube_direction(face, column + 0.5, row + 0.5, map.size));
         for (int c = 0; c < 3; ++c) map.at(face, row, column)[c] *= static_cast<float>(r[c]);
       }
+    }
+  });
   return map;
 }
 

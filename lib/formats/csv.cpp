@@ -55,11 +55,18 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 16> kOtherNa
     {"gloss", "gloss60"},
 }};
 
-// A heading in lower case and without what spreadsheets and instruments add: `L*`, `L_15`, `L (15)`, `15° L*`.
-std::string plain_heading(std::string_view heading) {
-  std::string text = lower(heading);
+// An angle without the degree sign that instruments add: `-15°`.
+std::string without_degree_sign(std::string_view angle) {
+  std::string text(angle);
   for (auto at = text.find("\xc2\xb0"); at != std::string::npos; at = text.find("\xc2\xb0")) text.erase(at, 2);
-  std::erase_if(text, [](char c) { return c == '*' || c == '_' || c == ' ' || c == '(' || c == ')'; });
+  return std::string(trimmed(text));
+}
+
+// A heading in lower case and without what spreadsheets and instruments add: `L*`, `L_15`, `L (15)`, `15° L*`,
+// `15°:L*`.
+std::string plain_heading(std::string_view heading) {
+  std::string text = without_degree_sign(lower(heading));
+  std::erase_if(text, [](char c) { return c == '*' || c == '_' || c == ' ' || c == '(' || c == ')' || c == ':'; });
   const bool angle_first = text.size() > 1 && (text[0] == '-' || (text[0] >= '0' && text[0] <= '9'));
   if (angle_first && std::string_view("lab").find(text.back()) != std::string_view::npos)
     std::rotate(text.begin(), text.end() - 1, text.end());
@@ -290,7 +297,7 @@ Result<color::ViewingCondition> CsvPaintReader::State::condition() const {
   if (header.column[kIlluminant] >= 0) condition.illuminant = text(header.column[kIlluminant]);
   if (condition.illuminant.empty()) return error("illuminant is empty: write D65, A or another one");
   if (header.column[kObserver] < 0) return condition;
-  const auto observer = observer_in(text(header.column[kObserver]));
+  const auto observer = observer_in(without_degree_sign(text(header.column[kObserver])));
   if (!observer.ok()) return error("observer " + observer.error().message);
   condition.observer_deg = *observer;
   return condition;
@@ -386,7 +393,7 @@ Result<void> CsvPaintReader::State::add_row() {
     row_lines.clear();
     from_curve.clear();
   }
-  auto geometry = paint::parse_geometry(text(header.column[kGeometry]));
+  auto geometry = paint::parse_geometry(without_degree_sign(text(header.column[kGeometry])));
   if (!geometry.ok()) return error(geometry.error().message);
   auto& rows = open->measurement->rows;
   for (std::size_t i = 0; i < rows.size(); ++i)

@@ -355,6 +355,26 @@ TEST(PaintCsv, ReadsTheHeadingsOfInstruments) {
   EXPECT_THAT(read.warnings, testing::Contains(HasSubstr("the column \"Blech\" is taken for the names")));
 }
 
+TEST(PaintCsv, ReadsDegreeSignsInCellsAndHeadings) {
+  const Reading rows = reading_of_text(
+      "Probe;Lichtart;Beobachter;Geometrie;L*;a*;b*\nrot;D65;10\xc2\xb0;-15\xc2\xb0;41,5;-1,25;3\n"
+      "rot;D65;10\xc2\xb0;45 \xc2\xb0;20;1;2\n");
+  EXPECT_THAT(rows.errors, ElementsAre());
+  const Reading columns = reading_of_text(
+      "Probe;Lichtart;Beobachter;-15\xc2\xb0:L*;-15\xc2\xb0:a*;-15\xc2\xb0:b*;45\xc2\xb0:L*;45\xc2\xb0:a*;45\xc2\xb0:b*"
+      "\nrot;D65;10\xc2\xb0;41,5;-1,25;3;20;1;2\n");
+  EXPECT_THAT(columns.errors, ElementsAre());
+  for (const Reading* read : {&rows, &columns}) {
+    const paint::Paint& paint = read->paints.at(0);
+    EXPECT_EQ(paint.measurement->condition.observer_deg, 10);
+    EXPECT_EQ(paint.measurement->rows.at(0).geometry, *paint::parse_geometry("-15"));
+    EXPECT_EQ(paint.measurement->rows.at(0).lab, (color::Lab{41.5, -1.25, 3}));
+    EXPECT_EQ(paint.measurement->rows.at(1).lab, (color::Lab{20, 1, 2}));
+  }
+  EXPECT_THAT(reading_of_text("sample,geometry,illuminant,observer,L,a,b\nrot,45as15,D65,12\xc2\xb0,1,2,3\n").errors,
+              ElementsAre(HasSubstr("write 2 or 10 (degrees)")));
+}
+
 TEST(PaintCsv, ReadsMeasuredPaintsRealData) {
   const char* data = std::getenv("GONIOCHROME_DATA");
   if (!data) GTEST_SKIP() << "GONIOCHROME_DATA is not set";

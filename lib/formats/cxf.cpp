@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -44,6 +45,20 @@ struct Specification {
 // The observer (deg) that a word of CxF3 means; 0 for none.
 int observer_of(std::string_view word) {
   return word == "2_Degree" ? 2 : word == "10_Degree" ? 10 : 0;
+}
+
+// The angle (deg) that the method of a gloss names, as in `60 deg`, `ISO 2813, 20 degree` and `DIN 67530 85°`: its last
+// number that is an angle, because numbers of standards are larger and stand before it. 0 where there is none.
+double gloss_angle_of(std::string_view method) {
+  constexpr std::string_view kDigits = "0123456789";
+  double angle = 0;
+  for (auto at = method.find_first_of(kDigits); at != std::string_view::npos; at = method.find_first_of(kDigits, at)) {
+    const auto end = std::min(method.find_first_not_of("0123456789.", at), method.size());
+    const auto number = parse_number(method.substr(at, method.find_last_not_of('.', end - 1) + 1 - at));
+    if (number && *number > 0 && *number <= 90) angle = *number;
+    at = end;
+  }
+  return angle;
 }
 
 // The specifications stand behind the objects, so a file is read twice: for them first, and then for the objects.
@@ -92,6 +107,7 @@ class CxfHandler final : public XmlHandler {
       custom_illuminant_ = attribute("Name");
     } else if (in("MultiAngle", "BRDFAngle") || in("GeometryChoice", "SingleAngle")) {
       angle_ = {}, measurement_deg_ = 0;
+      angle_.aspecular_deg = std::numeric_limits<double>::quiet_NaN();  // until it is told
       notation_ = attribute("Notation");
     } else if (in("MeasurementSpec", "WavelengthRange") && specification_) {
       GONIO_ASSIGN(specification_->first_nm, number("StartWL", attribute("StartWL")));
@@ -196,12 +212,13 @@ class CxfHandler final : public XmlHandler {
     if (in("PhysicalAttributes", "Gloss")) {
       paint::GlossReading gloss;
       GONIO_TRY(take(gloss.gloss_units, "Gloss", content));
-      const auto first = gloss_method_.find_first_of("0123456789");
-      const auto digits = first == std::string::npos ? "" : gloss_method_.substr(first);
-      const auto angle = parse_number(std::string_view(digits).substr(0, digits.find_first_not_of("0123456789.")));
-      if (!angle) remarks_.note("a gloss without its angle was taken as 60 deg", object.paint.name);
-      gloss.angle_deg = angle.value_or(60);
-      object.paint.gloss.push_back(gloss);
+      const double angle = gloss_angle_of(gloss_method_);
+      if (angle == 0) remarks_.note("a gloss without its angle was taken as 60 deg", object.paint.name);
+      gloss.angle_deg = angle == 0 ? 60 : angle;
+      if (gloss.angle_deg == 20 || gloss.angle_deg == 60 || gloss.angle_deg == 85)
+        object.paint.gloss.push_back(gloss);
+      else
+        remarks_.note("a gloss at another angle than 20, 60 and 85 deg was left out", object.paint.name);
     }
     return {};
   }
@@ -218,7 +235,10 @@ class CxfHandler final : public XmlHandler {
       GONIO_TRY(take(angle_.azimuth_deg, "Azimuth", content));
       angle_.out_of_plane = angle_.azimuth_deg != 0;
     }
-    if (in("MultiAngle", "BRDFAngle")) specification.angles.push_back(noted_angle());
+    if (in("MultiAngle", "BRDFAngle")) {
+      GONIO_ASSIGN(const paint::Geometry angle, noted_angle());
+      specification.angles.push_back(angle);
+    }
     if (in("SingleAngle", "IlluminationAngle")) return take(angle_.incidence_deg, "IlluminationAngle", content);
     if (in("SingleAngle", "MeasurementAngle")) return take(measurement_deg_, "MeasurementAngle", content);
     if (in("GeometryChoice", "SingleAngle")) {
@@ -237,9 +257,15 @@ class CxfHandler final : public XmlHandler {
     return {};
   }
 
-  // The numbers of a BRDFAngle; its notation where that says the same and more (reversed, azimuth 0).
-  paint::Geometry noted_angle() const {
+  // The numbers of a BRDFAngle; its notation where that says the same and more (reversed, azimuth 0), or stands alone.
+  Result<paint::Geometry> noted_angle() const {
     const auto noted = paint::parse_geometry(notation_);
+    if (std::isnan(angle_.aspecular_deg)) {
+      if (noted.ok()) return *noted;
+      return error(
+          fmt::format("BRDFAngle has no Aspecular, and its Notation \"{}\" names no geometry: write one of them",
+                      shown(notation_)));
+    }
     if (noted && noted->incidence_deg == angle_.incidence_deg && noted->aspecular_deg == angle_.aspecular_deg &&
         noted->azimuth_deg == angle_.azimuth_deg)
       return *noted;

@@ -163,6 +163,38 @@ TEST_F(Cxf, ConditionsAreChosenOrAssumed) {
   EXPECT_THAT(silent.warnings, ElementsAre(HasSubstr("taken as D65/10")));
 }
 
+TEST_F(Cxf, TheAngleOfAGlossIsNoNumberOfAStandard) {
+  const auto glosses = [&](const std::string& method) {
+    return good(cxf(
+        object("p", lab("a"), "<PhysicalAttributes><Gloss Method=\"" + method + "\">80</Gloss></PhysicalAttributes>"),
+        specification("a", angles({{15, ""}}))));
+  };
+  for (const auto& [method, angle] :
+       std::initializer_list<std::pair<const char*, double>>{{"60 deg", 60},
+                                                             {"ISO 2813, 20 degree", 20},
+                                                             {"DIN 67530 85\xc2\xb0", 85},
+                                                             {"20\xc2\xb0 (ISO 2813:2014)", 20},
+                                                             {"85.", 85},
+                                                             {"ISO 2813", 60}}) {
+    const auto read = glosses(method);
+    ASSERT_EQ(read.paints[0].gloss.size(), 1u) << method;
+    EXPECT_EQ(read.paints[0].gloss[0].angle_deg, angle) << method;
+  }
+  const auto other = glosses("75 deg");
+  EXPECT_THAT(other.paints[0].gloss, IsEmpty());
+  EXPECT_THAT(other.warnings, ElementsAre(HasSubstr("another angle than 20, 60 and 85 deg")));
+}
+
+TEST_F(Cxf, AnAngleWithoutNumbersIsItsNotationOrRefused) {
+  const auto angle = [](const std::string& notation) {
+    return "<MultiAngle><BRDFAngle Notation=\"" + notation + "\"></BRDFAngle></MultiAngle>";
+  };
+  const auto noted = good(cxf(object("p", lab("a")), specification("a", angle("15as-30"))));
+  EXPECT_EQ(noted.paints[0].measurement->rows[0].geometry, geometry("15as-30"));
+  EXPECT_THAT(refusal(cxf(object("p", lab("a")), specification("a", angle("front")))),
+              HasSubstr("BRDFAngle has no Aspecular, and its Notation \"front\" names no geometry"));
+}
+
 TEST_F(Cxf, RefusalsNameTheLine) {
   EXPECT_THAT(refusal(cxf("\n" + object("p", lab("a", "\n<L>12,5</L><A>1</A><B>2</B>")), "")),
               HasSubstr(":3: L is \"12,5\": write a number with a decimal point"));

@@ -6,6 +6,7 @@
 Files named found-*, inputs that once broke a reader, are kept, and so are grown-*, which scripts/fuzz --keep has made of
 the others.
 """
+import base64
 import io
 import json
 import os
@@ -123,6 +124,17 @@ def buffers():
 def meshes():
     put("obj", "cube.obj", "# made\nmtllib none.mtl\no Body\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\n"
         "vt 0 0\nvn 0 0 1\nusemtl red\nf 1 2 3 4\nf 1/1/1 2/1/1 5/1/1\no Lid\ng top\nf -5//1 -4//1 -1//1\ns off\n")
+    triangle = struct.pack("<9f3H", 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 2)
+    uri = "data:application/octet-stream;base64," + base64.b64encode(triangle).decode()
+    put("gltf", "triangle.gltf", json.dumps({
+        "asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0, "scale": [2, 2, 2], "children": [1]}, {"name": "Lid", "mesh": 0, "rotation": [0, 0, 1, 0]}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0}]}], "materials": [{"name": "red"}],
+        "buffers": [{"byteLength": 42, "uri": uri}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 6}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
+                      {"bufferView": 1, "componentType": 5123, "count": 3, "type": "SCALAR"}]}))
+    put("gltf", "doors.glb", (TESTDATA / "doors.glb").read_bytes())
     put("obj", "colors.obj", "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nf 1 2 3\nl 1 2\np 1\n")
 
 

@@ -161,6 +161,7 @@ const std::vector<FuzzTarget>& fuzz_targets() {
       {"measured", "a.brdf", read_measured_file},
       {"env-exr", "a.env.exr", read_env_file},
       {"obj", "a.obj", read_mesh},
+      {"gltf", "a.gltf", read_mesh},
       {"off", "a.off", read_mesh},
       {"ply", "a.ply", read_mesh},
       {"stl", "a.stl", read_mesh},

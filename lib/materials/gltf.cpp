@@ -131,7 +131,7 @@ std::string written(const OneLobe& p, const Naming& naming, const Shown& shown) 
 
 Result<Material> gltf_material(const paint::Paint& fitted, const Naming& naming) {
   GONIO_ASSIGN(const paint::Paint paint, exported(fitted));
-  const OneLobe p = rounded(nearest_one_lobe(paint, seen, true));
+  const OneLobe p = rounded(nearest_one_lobe(paint, seen, Searched::kStrengthToo));
   Material material;
   material.shown = shown(
       paint, [&](const Vec3& light, const Vec3& view) { return color::rec2020_from_rec709(seen(p, light, view)); });

@@ -54,7 +54,7 @@ struct Target {
   Result<Material> (*material)(const paint::Paint& paint, const Naming& naming);
   const char* companion = nullptr;  // ending of a second file beside the first, with the dot
 };
-extern const Target kRgl, kRglSpectral, kMaterialX, kGltf, kUsd, kStandardSurface, kMdl;
+extern const Target kRgl, kRglSpectral, kMaterialX, kGltf, kUsd, kStandardSurface, kOpenPbr, kOpenPbrUsd, kMdl;
 
 // All targets, in the order in which help names them.
 std::span<const Target* const> targets();

@@ -47,6 +47,33 @@ TEST(Material, AGraphHoldsBesideThePlaneOfIncidence) {
   EXPECT_LE(beside->de00, 3.5);
 }
 
+// Tints are not below 0, so that a graph in Rec.709 cannot show such a blue.
+TEST(Material, AGraphKeepsColorsOutsideOfRec709) {
+  const paint::Paint paint =
+      paint_for_test("blue", {0.001, 0.01, 0.04}, {{6, {0, 0.02, 0.15}, {}}, {20, {0, 0.03, 0.3}, {}}}, 1.5);
+  const auto graph = kMaterialX.material(paint, {"blue", "blue", "test", {}});
+  ASSERT_TRUE(graph.ok());
+  EXPECT_NE(graph->bytes.find("colorspace=\"acescg\""), std::string::npos);
+  EXPECT_LE(graph->shown.de00_mean, 2);
+}
+
+// A surface has to have a node, also where nothing is reflected.
+TEST(Material, AGraphOfBlackHasANode) {
+  const auto graph =
+      kMaterialX.material(paint_for_test("black", {}, {}, paint::kNoCoat), {"black", "black", "test", {}});
+  ASSERT_TRUE(graph.ok());
+  EXPECT_EQ(graph->shown.de00_max, 0);
+  EXPECT_NE(graph->bytes.find("type=\"BSDF\" nodename=\"black_diffuse1_tint\""), std::string::npos);
+}
+
+// The mixture of a metal and a dielectric is what OpenPBR has beside Standard Surface.
+TEST(Material, OpenPbrIsAsNearAsStandardSurface) {
+  const auto one = kStandardSurface.material(silver_for_test(), {"a", "a", "test", {}}),
+             both = kOpenPbr.material(silver_for_test(), {"a", "a", "test", {}});
+  ASSERT_TRUE(one.ok() && both.ok());
+  EXPECT_LE(both->shown.de00_mean, one->shown.de00_mean + 0.05);
+}
+
 // A diffuse paint without a coat is the same in every model here: each of them has a diffuse part of its own.
 TEST(Material, ADiffusePaintIsExactInEveryTarget) {
   const paint::Paint paint = paint_for_test("matt", {0.1, 0.12, 0.09}, {}, paint::kNoCoat);

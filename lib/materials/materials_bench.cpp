@@ -20,6 +20,7 @@ BENCHMARK_CAPTURE(file_of, mdl, &kMdl)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(file_of, materialx, &kMaterialX)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(file_of, gltf, &kGltf)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(file_of, standard_surface, &kStandardSurface)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(file_of, openpbr, &kOpenPbr)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(file_of, usda, &kUsd)->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
 #include "brdf/measured.h"
+#include "materials/internal/documents.h"
 #include "materials/internal/shown.h"
 
 namespace goniochrome::materials {
@@ -50,16 +51,6 @@ double left_by_layer(double weight, double index, double cos_i, double cos_o) {
 void put(std::string& bytes, std::uint32_t value) {
   static_assert(std::endian::native == std::endian::little, "the format is little-endian");
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
-// A value between quotes.
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') result += '\\';
-    result += c == '\n' || c == '\r' || c == '\t' ? ' ' : c;
-  }
-  return result + "\"";
 }
 
 std::string table(const paint::LobeFit& lobes, double weight, double index, const Naming& naming) {

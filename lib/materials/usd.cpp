@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/angles.h"
+#include "materials/internal/documents.h"
 #include "materials/internal/ggx.h"
 #include "materials/internal/one_lobe.h"
 
@@ -36,43 +37,20 @@ color::Rgb seen(const OneLobe& p, const Vec3& light, const Vec3& view) {
   return f;
 }
 
-// A text between quotes.
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') result += '\\';
-    if (c == '\n' || c == '\r' || c == '\t')
-      result += ' ';
-    else
-      result += c;
-  }
-  return result + "\"";
-}
-
 std::string written(const OneLobe& p, const Naming& naming) {
-  const auto color = [](const color::Rgb& rgb) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", rgb.x, rgb.y, rgb.z); };
-  return fmt::format(
-      "#usda 1.0\n"
-      "(\n    defaultPrim = \"{0}\"\n    doc = {1}\n    metersPerUnit = 1\n    upAxis = \"Y\"\n)\n\n"
-      "def Material \"{0}\" (\n    displayName = {2}\n)\n{{\n"
-      "    token outputs:surface.connect = </{0}/surface.outputs:surface>\n\n"
-      "    def Shader \"surface\"\n    {{\n"
-      "        uniform token info:id = \"UsdPreviewSurface\"\n"
-      "        int inputs:useSpecularWorkflow = 1\n"
-      "        color3f inputs:diffuseColor = {3}\n"
-      "        color3f inputs:specularColor = {4}\n"
-      "        float inputs:roughness = {5:.6g}\n"
-      "        float inputs:clearcoat = {6:.6g}\n"
-      "        float inputs:clearcoatRoughness = {7:.6g}\n"
-      "        float inputs:ior = 1.5\n"
-      "        token outputs:surface\n    }}\n}}\n",
-      naming.identifier, quoted(naming.provenance), quoted(naming.display), color(p.base), color(p.specular),
-      p.roughness, p.clearcoat, p.clearcoat_roughness);
+  return usda_of_shader("UsdPreviewSurface", "surface", "        int inputs:useSpecularWorkflow = 1\n",
+                        {{"diffuseColor", {p.base.x, p.base.y, p.base.z}},
+                         {"specularColor", {p.specular.x, p.specular.y, p.specular.z}},
+                         {"roughness", {p.roughness}},
+                         {"clearcoat", {p.clearcoat}},
+                         {"clearcoatRoughness", {p.clearcoat_roughness}},
+                         {"ior", {1.5}}},
+                        naming);
 }
 
 Result<Material> usd_material(const paint::Paint& fitted, const Naming& naming) {
   GONIO_ASSIGN(const paint::Paint paint, exported(fitted));
-  const OneLobe p = rounded(nearest_one_lobe(paint, seen, false));
+  const OneLobe p = rounded(nearest_one_lobe(paint, seen, Searched::kColorsAndRoughness));
   return Material{written(p, naming), shown(paint, [&](const Vec3& light, const Vec3& view) {
                     return color::rec2020_from_rec709(seen(p, light, view));
                   })};

@@ -280,9 +280,31 @@ bool is_binary_stl(std::string_view content) {
   return content.size() == 84 + std::size_t{50} * triangles;
 }
 
+// Formats that other programs turn into one that is read here: an error that names the command.
+Result<void> check_convertible(const std::string& path, const std::string& extension) {
+  const std::string without = std::filesystem::path(path).replace_extension("").string();
+  const std::string_view ending = extension;
+  if (ending == ".usd" || ending == ".usda" || ending == ".usdc" || ending == ".usdz")
+    return input_error(
+        "{}: is USD, which is not read here: convert it to glTF, as with: blender -b --python-expr \"import bpy; "
+        "bpy.ops.wm.usd_import(filepath='{}'); bpy.ops.export_scene.gltf(filepath='{}.glb')\"",
+        path, path, without);
+  if (ending == ".step" || ending == ".stp" || ending == ".iges" || ending == ".igs")
+    return input_error(
+        "{}: is {}, whose surfaces are no triangles yet: convert it to a mesh, as with: gmsh -2 -clcurv 40 {} -o "
+        "{}.stl",
+        path, ending.starts_with(".s") ? "STEP" : "IGES", path, without);
+  return {};
+}
+
 // The ending that a mesh of this content would have. OBJ is what is left, since it has no mark of its own.
 std::string extension_by_content(std::string_view content) {
   if (content.starts_with("ply\n") || content.starts_with("ply\r")) return ".ply";
+  if (content.starts_with("glTF")) return ".glb";
+  if (content.starts_with("#usda ") || content.starts_with("PXR-USDC")) return ".usd";
+  if (content.starts_with("ISO-10303-21;")) return ".step";
+  const std::size_t begin = content.find_first_not_of(" \t\r\n");
+  if (begin != std::string_view::npos && content[begin] == '{') return ".gltf";
   std::string_view first = content;
   while (first.starts_with('#') || first.starts_with('\n') || first.starts_with('\r'))
     first.remove_prefix(std::min(first.size(), first.starts_with('#') ? first.find('\n') : 1));
@@ -296,16 +318,23 @@ std::string extension_by_content(std::string_view content) {
 Result<Mesh> read_mesh(const std::string& path) {
   const std::filesystem::path file(path);
   std::string extension = lower(file.extension().string());
-  constexpr std::array kKnown = {"", ".obj", ".off", ".ply", ".stl"};
+  constexpr std::array kKnown = {"", ".obj", ".gltf", ".glb", ".off", ".ply", ".stl"};
+  GONIO_TRY(check_convertible(path, extension));
   if (std::ranges::find(kKnown, extension) == kKnown.end())
-    return input_error("{}: \"{}\" is no mesh format known here: give .obj (with parts), .off, .ply or .stl", path,
-                       extension);
+    return input_error(
+        "{}: \"{}\" is no mesh format known here: give .obj, .gltf or .glb (with parts), .off, .ply or .stl", path,
+        extension);
   if (path.empty()) return input_error("the name of a mesh is empty: name a file");
   GONIO_ASSIGN(InputFile input, InputFile::open(path));
   GONIO_ASSIGN(std::string content, input.rest(std::string::npos));
   if (extension.empty()) extension = extension_by_content(content);
+  GONIO_TRY(check_convertible(path, extension));
   const Source source{input.name(), is_plain_file(path) ? file.stem().string() : "mesh"};
+  const bool is_gltf = extension == ".gltf" || extension == ".glb";
+  const std::filesystem::path beside = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  const std::string folder = is_plain_file(path) ? beside.string() : "";
   GONIO_ASSIGN(Polygons polygons, extension == ".obj" ? polygons_from_obj(content, source)
+                                  : is_gltf           ? polygons_from_gltf(content, source, folder)
                                                       : polygons_from_soup(content, extension, source));
   content = std::string();  // its memory is needed
   return mesh_from_polygons(std::move(polygons), source.name);

@@ -17,6 +17,7 @@
 
 #include "base/angles.h"
 #include "base/text.h"
+#include "mesh/unit.h"
 
 namespace goniochrome::mesh {
 
@@ -423,7 +424,7 @@ Result<Seam> seam_between(const Mesh& mesh, const std::string& part_a, const std
   const double size = length(box.high - box.low), spacing = size / 1000;
   Seam seam;
   seam.unit_guessed = !(options.unit_m > 0);
-  seam.unit_m = seam.unit_guessed ? (size > 30 ? 1e-3 : 1) : options.unit_m;
+  seam.unit_m = seam.unit_guessed ? likely_unit(box).meters : options.unit_m;
   const double unit_mm = seam.unit_m * 1e3, limit = options.max_gap_mm > 0 ? options.max_gap_mm / unit_mm : size / 100;
 
   GONIO_ASSIGN(auto rims, seen_rims(mesh, {a, b}, size, seam.repairs));

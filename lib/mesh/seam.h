@@ -38,7 +38,7 @@ struct Seam {
 };
 
 struct SeamOptions {
-  double unit_m = 0;      // length of one unit of the mesh; 0: meters up to 30 units across, millimeters above
+  double unit_m = 0;      // length of one unit of the mesh; 0: the likely one of mesh/unit.h
   double max_gap_mm = 0;  // wider gaps are no seam; 0: one part in a hundred of the mesh's size
 };
 

@@ -216,7 +216,11 @@ Result<SeamWorld> seam_world(const SeamTexts& texts) {
   if (parts.size() != 2 || trimmed(parts[0]).empty() || trimmed(parts[1]).empty())
     return usage_error("--seam is \"{}\": name two parts of the mesh, A,B", texts.seam);
   world.part_a = trimmed(parts[0]), world.part_b = trimmed(parts[1]);
-  world.seam.unit_m = texts.unit == "m" ? 1 : texts.unit == "cm" ? 1e-2 : texts.unit == "mm" ? 1e-3 : 0;
+  world.seam.unit_m = texts.unit == "m"    ? 1
+                      : texts.unit == "in" ? 0.0254
+                      : texts.unit == "cm" ? 1e-2
+                      : texts.unit == "mm" ? 1e-3
+                                           : 0;
   world.seam.max_gap_mm = texts.max_gap_mm;
   GONIO_ASSIGN(world.lights, directions_of("--light-from", texts.lights_from));
   GONIO_ASSIGN(world.viewers, directions_of("--view-from", texts.views_from));

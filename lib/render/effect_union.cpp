@@ -26,8 +26,8 @@ Effects united(const Effects& a, const Effects& b) {
   Effects all = a;
   for (const Effects::LobeUse& use : b.lobes) add_lobe(use, all.lobes);
   for (const auto flag : {&Effects::environment, &Effects::diffuse, &Effects::mirror, &Effects::fresnel, &Effects::coat,
-                          &Effects::horizon, &Effects::views, &Effects::maps, &Effects::image_maps, &Effects::texture,
-                          &Effects::anisotropy, &Effects::reflection, &Effects::extent})
+                          &Effects::horizon, &Effects::views, &Effects::satin, &Effects::maps, &Effects::image_maps,
+                          &Effects::texture, &Effects::anisotropy, &Effects::reflection, &Effects::extent})
     all.*flag = a.*flag || b.*flag;
   for (const auto flag : {&RayEffects::shadow, &RayEffects::self, &RayEffects::bounce, &RayEffects::floor})
     all.rays.*flag = a.rays.*flag || b.rays.*flag;
@@ -40,6 +40,8 @@ Effects united(const Effects& a, const Effects& b) {
   all.tolerance_de00 = std::min(a.tolerance_de00, b.tolerance_de00);
   all.ray_noise_de00 = std::min(a.ray_noise_de00, b.ray_noise_de00);
   all.most_ray_samples = std::max(a.most_ray_samples, b.most_ray_samples);
+  const bool limited = a.most_samples_in_all > 0 && b.most_samples_in_all > 0;
+  all.most_samples_in_all = limited ? std::max(a.most_samples_in_all, b.most_samples_in_all) : 0;
   if (all.background == Background::kNone) all.background = b.background;
   return all;
 }
@@ -50,8 +52,8 @@ bool covers(const Effects& all, const Effects& wanted) {
     return x.exponent == y.exponent && x.directional_diffuse == y.directional_diffuse && x.gloss == y.gloss;
   };
   for (const auto flag : {&Effects::environment, &Effects::diffuse, &Effects::mirror, &Effects::fresnel, &Effects::coat,
-                          &Effects::horizon, &Effects::views, &Effects::maps, &Effects::image_maps, &Effects::texture,
-                          &Effects::anisotropy, &Effects::reflection, &Effects::extent})
+                          &Effects::horizon, &Effects::views, &Effects::satin, &Effects::maps, &Effects::image_maps,
+                          &Effects::texture, &Effects::anisotropy, &Effects::reflection, &Effects::extent})
     if (both.*flag != all.*flag) return false;
   return std::ranges::equal(both.lobes, all.lobes, same_use) && both.rays == all.rays && both.spots == all.spots &&
          both.tilt_level == all.tilt_level && both.lights == all.lights && both.background == all.background;

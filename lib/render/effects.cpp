@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "base/angles.h"
+#include "brdf/coat_facets.h"
 #include "brdf/lobe_model.h"
 #include "brdf/tilted_lobes.h"
 #include "math/elementary.h"
@@ -161,6 +162,11 @@ bool is_mapped(const Scene& scene, std::size_t part) {
   return scene.layer != nullptr && scene.layer->surface(static_cast<int>(part)).color_map != nullptr;
 }
 
+bool wears_rough_coat(const Scene& scene, std::size_t part) {
+  const bool worn = scene.layer != nullptr && scene.layer->surface(static_cast<int>(part)).texture != nullptr;
+  return !worn && !is_anisotropic(anisotropy_of(scene, part)) && brdf::stands_for_coat(scene.paints[part]);
+}
+
 bool same_wear(const Scene& scene, std::size_t a, std::size_t b) {
   const paint::LobeFit &x = scene.paints[a], &y = scene.paints[b];
   const paint::Anisotropy brushed_x = anisotropy_of(scene, a), brushed_y = anisotropy_of(scene, b);
@@ -198,6 +204,8 @@ Effects effects_of(const Scene& scene) {
   effects.horizon = effects.environment && !effects.lobes.empty();
   effects.views = std::any_of(scene.paints.begin(), scene.paints.end(),
                               [](const paint::LobeFit& paint) { return !paint.views.empty(); });
+  for (std::size_t part = 0; part < scene.paints.size(); ++part)
+    effects.satin = effects.satin || wears_rough_coat(scene, part);
   effects.anisotropy =
       !effects.lobes.empty() && std::any_of(scene.anisotropy.begin(), scene.anisotropy.end(), is_anisotropic);
   if (effects.environment) {

@@ -39,15 +39,16 @@ struct Effects {
   bool diffuse = true;
   std::vector<LobeUse> lobes;  // ascending exponents
   bool mirror = false;
-  bool fresnel = false;               // of gloss lobes and mirror
-  bool coat = false;                  // light passes the coat on its way to the base and back; else as much everywhere
-  bool horizon = false;               // lobes end at the horizon, and each of their directions has its own cosine
-  std::size_t spots = 0;              // bright spots of the environment that each horizon cuts by itself; with horizon
-  bool views = false;                 // weights of paints that change with the view
-  bool maps = false;                  // color maps under lights
-  bool image_maps = false;            // color maps in image light, by engines that can evaluate them there
-  int tilt_level = 0;                 // what stands for them elsewhere: which set of tilted lobes; 0: none
-  bool texture = false;               // textures of lobes; else the mean texel of each
+  bool fresnel = false;     // of gloss lobes and mirror
+  bool coat = false;        // light passes the coat on its way to the base and back; else as much everywhere
+  bool horizon = false;     // lobes end at the horizon, and each of their directions has its own cosine
+  std::size_t spots = 0;    // bright spots of the environment that each horizon cuts by itself; with horizon
+  bool views = false;       // weights of paints that change with the view
+  bool satin = false;       // rough coats as surfaces of facets, by engines that can evaluate them; else lobes
+  bool maps = false;        // color maps under lights
+  bool image_maps = false;  // color maps in image light, by engines that can evaluate them there
+  int tilt_level = 0;       // what stands for them elsewhere: which set of tilted lobes; 0: none
+  bool texture = false;     // textures of lobes; else the mean texel of each
   std::uint32_t texture_lobes = ~0U;  // of textures, by bits
   bool anisotropy = false;
   double tilt_tolerance = 0.005;  // of the lobes drawn about tilted normals, relative to their peak
@@ -59,6 +60,7 @@ struct Effects {
   RayEffects rays = {};  // effects_of() leaves them out, since no engine with prefiltered maps draws them by itself
   double ray_noise_de00 = 0.25;    // of the picture, one standard deviation at 95 of 100 points
   int most_ray_samples = 1 << 16;  // of a visible point, in all samples of its pixel
+  double most_samples_in_all = 0;  // of rays, of a whole picture, beyond those of a first round; 0: no limit
   Background background = Background::kNone;
 
   // What engines of maps sum one by one: lamps, and bright spots of the environment as discs.
@@ -72,6 +74,10 @@ Effects effects_of(const Scene& scene);
 
 // Whether a part of the scene wears a color map.
 bool is_mapped(const Scene& scene, std::size_t part);
+
+// Whether the gloss of a part of the scene stands for a rough coat, whose facets can be drawn in its place: a plain
+// paint that is not brushed.
+bool wears_rough_coat(const Scene& scene, std::size_t part);
 
 // Whether two parts of the scene wear the same.
 bool same_wear(const Scene& scene, std::size_t a, std::size_t b);

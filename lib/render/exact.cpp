@@ -168,6 +168,18 @@ std::vector<color::Rgb> textured_radiance(const std::vector<TexturedPoint>& poin
 
 namespace {
 
+// The facets of a rough coat in the place of the gloss lobes and the mirror of a paint.
+void put_coat(paint::LobeFit& paint, ExactModel& model) {
+  const std::optional<brdf::RoughCoat> coat = brdf::coat_of_lobes(paint, model.gloss_deg);
+  if (!coat) return;
+  model.coat.emplace(*coat, brdf::mirror_index(paint.coat_index));
+  const auto bare = [](std::vector<paint::Lobe>& lobes) {
+    for (paint::Lobe& lobe : lobes) lobe.gloss = {};
+  };
+  bare(paint.lobes);
+  for (paint::ViewLobes& view : paint.views) bare(view.lobes);
+}
+
 // No light from all around, summed as finely.
 Surroundings darkness(const Surroundings& around) {
   Surroundings none(nullptr);
@@ -213,6 +225,13 @@ std::vector<color::Rgb> exact_radiance(const std::vector<VisiblePoint>& points, 
     model.horizon = effects.horizon || effects.lobes.empty() || !effects.environment;
     if (tilts[part].size() > 1) model.tilts = tilts[part];
     if (effects.reflection) model.reflection = &scene.reflection;
+    if (effects.satin && wears_rough_coat(scene, part)) {
+      if (part > 0 && models[part - 1].coat && same_wear(scene, part, part - 1)) {
+        paints[part] = paints[part - 1], model.coat = models[part - 1].coat;
+      } else {
+        put_coat(paints[part], model);
+      }
+    }
     if (!is_mapped(scene, part) || !(effects.maps || effects.image_maps)) continue;
     model.map = scene.layer->surface(static_cast<int>(part)).color_map;
     model.treatment = scene.layer->treatment();

@@ -4,8 +4,10 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "brdf/coat_facets.h"
 #include "envmap/block_tree.h"
 #include "envmap/environment.h"
 #include "image/image.h"
@@ -22,6 +24,7 @@ struct ExactModel {
   double gloss_deg = 45;
   bool horizon = true;  // each direction with its own cosine, and none from below; else as prefiltered maps have it
   std::vector<brdf::Tilt> tilts;                          // none: isotropic
+  std::optional<brdf::CoatFacets> coat;                   // beside the gloss of the paint
   const color::ReflectionOperator* reflection = nullptr;  // null: component-wise
   // In the place of K_D and K_DD: in image light, under lights, or in both.
   const brdf::ColorMap* map = nullptr;

@@ -1,6 +1,5 @@
 #include "render/page_stage.h"
 
-#include <tuple>
 #include <utility>
 
 #include "render/gl/disc_texture.h"
@@ -17,14 +16,23 @@ PagePrograms page_programs() {
 
 namespace {
 
-// The programs for paints that are not brushed, and for those that are.
-std::pair<std::string, std::string> shading_fragments(Effects effects, const color::ReflectionOperator& op) {
-  std::string plain = for_opengl_es(shading_fragment_shader(effects, op, {}, true));
+PageShading shading_programs(Effects effects, const color::ReflectionOperator& op) {
+  PageShading programs;
+  programs.shading = for_opengl_es(shading_fragment_shader(effects, op, {}, true));
+  programs.gathering = for_opengl_es(gathering_fragment_shader(effects, op, true));
   effects.anisotropy = true;
-  return {std::move(plain), for_opengl_es(shading_fragment_shader(effects, op, {}, true))};
+  programs.brushed_shading = for_opengl_es(shading_fragment_shader(effects, op, {}, true));
+  programs.brushed_gathering = for_opengl_es(gathering_fragment_shader(effects, op, true));
+  return programs;
 }
 
 }  // namespace
+
+PageLayers page_layers(Effects effects, const color::ReflectionOperator& op) {
+  effects.lights = 1;
+  effects.extent = true;
+  return {for_opengl_es(layers_fragment_shader(effects, op)), light_layers(effects), slots_of(effects).light_slot()};
+}
 
 Result<PageLight> page_light(const envmap::PrefilteredEnvironment& env, const Effects& effects,
                              const color::ReflectionOperator& op) {
@@ -38,7 +46,7 @@ Result<PageLight> page_light(const envmap::PrefilteredEnvironment& env, const Ef
   GONIO_ASSIGN(SceneMaps maps, scene_maps(scene, effects));
   const ProductForms forms = effects.reflection ? product_forms(op) : ProductForms{};
   PageLight light;
-  std::tie(light.shading_fragment, light.brushed_fragment) = shading_fragments(effects, op);
+  light.programs = shading_programs(effects, op);
   const auto add = [&](std::string sampler, const envmap::CubeMap& map) {
     const bool in_forms = forms.count == 4;
     std::vector<float> texels =
@@ -67,8 +75,7 @@ PageMovableLamp page_movable_lamp(Effects effects, const color::ReflectionOperat
   const FloatTexture discs = disc_texture({lamp}, effects);
   effects.lights = 1;
   effects.extent = true;
-  auto [plain, brushed] = shading_fragments(effects, op);
-  return {std::move(plain), std::move(brushed), disc_uniform(lamp), discs.rgba};
+  return {shading_programs(effects, op), disc_uniform(lamp), discs.rgba};
 }
 
 }  // namespace goniochrome::render

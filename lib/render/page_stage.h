@@ -7,6 +7,7 @@
 
 #include "base/result.h"
 #include "render/effects.h"
+#include "render/gl/layer_shader.h"
 
 namespace goniochrome::render {
 
@@ -15,6 +16,16 @@ struct PagePrograms {
   std::string gbuffer_vertex, gbuffer_fragment, shading_vertex;
 };
 PagePrograms page_programs();
+
+// How a page keeps the light of a view, so that another paint is shown by sums of a few products a pixel: the picture
+// is drawn by layers_fragment from layers that were drawn by the gathering program of an environment, see
+// render/gl/layer_shader.h.
+struct PageLayers {
+  std::string layers_fragment;
+  std::vector<LightLayer> layers;
+  int light_slot = 0;  // the fourth channel of its weights is the square of the coat's index
+};
+PageLayers page_layers(Effects effects, const color::ReflectionOperator& op);
 
 // One cube texture, by the name of its sampler: six faces of RGB or, where products are taken in four forms, of RGBA.
 struct PageCube {
@@ -28,9 +39,14 @@ struct PageLamp {
   Vec3 direction, white, disc;
 };
 
+// The programs of one light. Those for brushed paints read the texture "tilts".
+struct PageShading {
+  std::string shading, brushed_shading;
+  std::string gathering, brushed_gathering;  // its layers
+};
+
 struct PageLight {
-  std::string shading_fragment;  // the program of this environment
-  std::string brushed_fragment;  // the same for brushed paints, which reads the texture "tilts"
+  PageShading programs;
   std::vector<PageCube> cubes;
   std::vector<PageLamp> lamps;          // its bright spots
   int disc_columns = 0, disc_rows = 0;  // of the texture "discs"
@@ -39,10 +55,9 @@ struct PageLight {
 
 // What a page needs to draw one more lamp in an environment: a disc far away, which the page moves and dims.
 struct PageMovableLamp {
-  std::string shading_fragment;  // the program of the environment with this lamp before its others
-  std::string brushed_fragment;  // the same for brushed paints
-  Vec3 disc;                     // as light_disc has it
-  std::vector<float> discs;      // texels that go before those of the others
+  PageShading programs;      // those of the environment with this lamp before its others
+  Vec3 disc;                 // as light_disc has it
+  std::vector<float> discs;  // texels that go before those of the others
 };
 
 // WebGL 2 promises 16 textures. Besides lobes, the program reads seven.

@@ -311,8 +311,8 @@ Plan plan_of_everything(const Scene& scene, const Effects& all, const std::vecto
 }
 
 // Where prefiltered maps do not keep the tolerance and rays alone are faster, everything is drawn by these.
-void take_rays_alone(const Effects& all, const RayChoice& by_rays, double tolerance_de00, const Engine& tracer,
-                     Plan& plan) {
+void take_rays_alone(const Effects& all, const RayChoice& by_rays, double tolerance_de00, double most_in_all,
+                     const Engine& tracer, Plan& plan) {
   const double by_maps_ms = plan.predicted_ms() + plan.rays_ms;
   for (PlanItem& item : plan.items) {
     if (!item.needed) continue;
@@ -325,6 +325,7 @@ void take_rays_alone(const Effects& all, const RayChoice& by_rays, double tolera
   plan.engine = tracer.info().name;
   plan.prices.push_back({plan.engine, by_rays.path_ms, 0});
   plan.effects = all;
+  plan.effects.most_samples_in_all = most_in_all;
   plan.de00_p95 = plan.rays_ms = plan.rays_noise_de00 = 0;
   plan.open_de00_p95 = plan.whole_de00_p95 = tolerance_de00;
   plan.not_kept.clear();
@@ -465,6 +466,14 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
       (asked == nullptr || asked->info().is_planned))
     open_truth.emplace(scene, all, probe, *rays.texels, request.white_luminance);
   const double open_de00 = open_truth ? open_truth->error(full) : 0;
+  for (std::size_t i = 0; i < switches.size(); ++i) {
+    if (!switches[i].beyond_maps || !switches[i].needed) continue;
+    Effects without = all;
+    switches[i].turn_off(without);
+    plan.items[i].de00_p95 =
+        open_truth ? open_truth->difference(OpenTruth(scene, without, probe, *rays.texels, request.white_luminance))
+                   : std::numeric_limits<double>::quiet_NaN();
+  }
   const Stopwatch ray_clock;
   const RayChoice by_rays =
       planned_rays(scene, gbuffers, request, words, rays, work.points, open_de00, [&](const auto& points) {
@@ -480,6 +489,8 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   Choice choice = forced_choice(words, switches);
   const bool may_leave_out = asked == nullptr || asked->info().is_planned;
   const bool automatic = words.start == Start::kAuto && may_leave_out;
+  for (std::size_t i = 0; i < switches.size() && may_leave_out; ++i)
+    if (switches[i].beyond_maps) choice.on[i] = false, choice.forced[i] = true;
   if (automatic) drop_unseen(prober, switches, plan.items, !scene.lights.empty(), tolerance, choice);
   std::vector<Priced> prices = priced(engines, asked, work, prober.effects(choice.on));
   const Engine& engine = *chosen_of(prices, asked, request.frames).engine;
@@ -497,6 +508,7 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   leave_to_tilts(scene, plan.effects);
   plan.effects.rays = by_rays.effects;
   plan.effects.most_ray_samples = by_rays.most_samples, plan.effects.ray_noise_de00 = by_rays.aim_de00;
+  plan.effects.most_samples_in_all = by_rays.most_in_all;
   plan.rays_ms = by_rays.cost.ms, plan.rays_noise_de00 = by_rays.noise_de00;
   const bool has_maps = scene.env != nullptr && !engine.info().needs_texels;
   if (open_truth) plan.open_de00_p95 = open_truth->error(prober.colors(choice.on));
@@ -517,14 +529,20 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
                          : std::numeric_limits<double>::quiet_NaN();
     item.on = choice.on[i];
     item.decision = decision_of(switches[i], item.on, choice.forced[i], gone.contains(i));
+    if (switches[i].needed && switches[i].beyond_maps && may_leave_out) {
+      item.decision = Decision::kDropped;
+      item.reason += "; prefiltered maps cannot show it, the engines integral and path do";
+    }
   }
   plan.items.insert(plan.items.end(), by_rays.items.begin(), by_rays.items.end());
   const auto tracer = std::ranges::find_if(engines, [](const Engine* of) { return of->info().traces_rays; });
   const bool may_take = asked == nullptr && words.start == Start::kAuto && words.forced.empty();
   plan.path_ms = by_rays.path_ms, plan.path_samples = by_rays.path_samples;
+  const double most_in_all =
+      request.most_ray_samples > 0 ? request.most_ray_samples : std::numeric_limits<double>::infinity();
   if (may_take && tracer != engines.end() && !plan.not_kept.empty() && by_rays.path_ms > 0 &&
-      by_rays.path_ms < plan.predicted_ms() + plan.rays_ms)
-    take_rays_alone(all, by_rays, request.tolerance_de00, **tracer, plan);
+      by_rays.path_ms < plan.predicted_ms() + plan.rays_ms && by_rays.path_in_all <= most_in_all)
+    take_rays_alone(all, by_rays, request.tolerance_de00, request.most_ray_samples, **tracer, plan);
   plan.time_ms = 1000 * clock.elapsed_s();
   return plan;
 }
@@ -533,15 +551,20 @@ void add_truth(Plan& plan, const Scene& scene, const std::vector<VisiblePoint>& 
                double white_luminance) {
   const Effects all = effects_of(scene);
   const std::vector<EffectSwitch> switches = effect_switches(scene, all, points);
-  const std::vector<color::Rgb> full = exact_radiance(points, scene, all, env);
+  // Facets take the place of gloss lobes: what one of these is worth shows where lobes are drawn.
+  Effects by_lobes = all;
+  by_lobes.satin = false;
+  const std::vector<color::Rgb> full = exact_radiance(points, scene, all, env),
+                                lobes = all.satin ? exact_radiance(points, scene, by_lobes, env) : full;
   const double white = white_luminance > 0 ? white_luminance : 1;
   for (std::size_t i = 0; i < switches.size(); ++i) {
     if (!switches[i].needed || switches[i].refines) continue;  // the reference has no sets
-    Effects without = all;
+    Effects without = by_lobes;
     switches[i].turn_off(without);
+    const std::vector<color::Rgb>& with = switches[i].beyond_maps ? full : lobes;
     const std::vector<color::Rgb> colors = exact_radiance(points, scene, without, env);
     std::vector<double> de00;
-    for (std::size_t j = 0; j < full.size(); ++j) de00.push_back(seen_difference(full[j], colors[j], white));
+    for (std::size_t j = 0; j < with.size(); ++j) de00.push_back(seen_difference(with[j], colors[j], white));
     plan.items[i].truth_de00_p95 = percentile_95(std::move(de00));
   }
 }

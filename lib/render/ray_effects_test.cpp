@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "render/internal/seen.h"
 #include "render/path/scenes_for_paths_for_test.h"
@@ -41,7 +42,7 @@ struct Drawn {
   Frame frame;
 };
 
-Drawn drawn(const World& world, const std::string& effects, bool rays, int samples = 1) {
+Drawn drawn(const World& world, const std::string& effects, bool rays, int samples = 1, double most_in_all = 0) {
   auto renderer = Renderer::create();
   EXPECT_TRUE(renderer.ok());
   RaySetup setup;
@@ -54,6 +55,7 @@ Drawn drawn(const World& world, const std::string& effects, bool rays, int sampl
   PlanRequest request;
   request.effects = effects;
   request.samples = samples;
+  request.most_ray_samples = most_in_all;
   auto plan = renderer->load(world.scene, {*seen}, request);
   EXPECT_TRUE(plan.ok()) << plan.error().message;
   Drawn result{*std::move(plan), {}};
@@ -123,6 +125,31 @@ TEST(RayEffects, TheWholeIsPredicted) {
   EXPECT_LT(against_truth(world, with).total.de00_p95, 2 * *with.plan.whole_de00_p95);
   EXPECT_LT(*with.plan.whole_de00_p95, 2 * PlanRequest{}.tolerance_de00);
   EXPECT_GT(item(without.plan, "shadow").de00_p95, 5);
+}
+
+// The samples of a whole picture may be limited: it keeps to that, says which noise that leaves, and where effects are
+// asked for by name there is no such limit.
+TEST(RayEffects, APictureTakesNoMoreSamplesThanItMay) {
+  const World world(ball_in_a_cup());
+  const auto points = [](const Drawn& picture) {
+    double count = 0;
+    const Gbuffer& g = *picture.frame.gbuffer;
+    for (std::size_t i = 3; i < g.data.size(); i += 4) count += g.data[i] != 0 ? 1 : 0;
+    return count;
+  };
+  const Drawn free = drawn(world, "auto", true);
+  const double taken = free.frame.rays.samples * points(free);
+  const Drawn limited = drawn(world, "auto", true, 1, 0.2 * taken);
+  EXPECT_FALSE(limited.frame.rays.reached);
+  EXPECT_LE(limited.frame.rays.samples * points(limited), 0.2 * taken);
+  // What is told beforehand of noise and samples holds to a third.
+  EXPECT_GT(limited.plan.rays_noise_de00, 1.3 * free.plan.rays_noise_de00);
+  EXPECT_LT(std::abs(std::log(limited.plan.rays_noise_de00 / limited.frame.rays.de00_p95)), std::log(1.33));
+  EXPECT_NE(limited.plan.not_kept.find("million samples"), std::string::npos) << limited.plan.not_kept;
+  EXPECT_EQ(free.plan.not_kept.find("million samples"), std::string::npos);
+  const Drawn named = drawn(world, "auto,+rays", true, 1, 0.2 * taken);
+  EXPECT_TRUE(named.frame.rays.reached);
+  EXPECT_GT(named.frame.rays.samples * points(named), 0.5 * taken);
 }
 
 // The mean over the samples of a pixel is that of one sample, apart from edges and noise.

@@ -256,6 +256,7 @@ CorrectionNoise Renderer::State::correct(int first, int count, image::Image& pic
   request.tolerance_de00 = effects.ray_noise_de00 * std::sqrt(groups);
   request.white_luminance = white_luminance;
   request.most_samples = std::max(2 * kBatch, effects.most_ray_samples / groups);
+  request.most_in_all = effects.most_samples_in_all / groups;
   request.progress = effort_asked.progress;
   const image::Image before = picture;
   const Deadline deadline(effort_asked.time_limit_s);

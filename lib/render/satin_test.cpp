@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <functional>
@@ -11,6 +12,7 @@
 #include "brdf/gloss.h"
 #include "brdf/true_coat_for_test.h"
 #include "color/color.h"
+#include "render/effects.h"
 #include "render/exact.h"
 #include "render/path/traced_paint.h"
 
@@ -141,6 +143,17 @@ class Studio {
     for (const Vec3& normal : normals_) points.push_back({normal, {0, 0, 1}, &fit, &model});
     return reference_radiance(points, {blocks_, 0.1}, {});
   }
+  // With all effects, satin among them, and with all but that.
+  std::vector<color::Rgb> integral(const paint::LobeFit& fit, double gloss_deg, bool satin) const {
+    Scene scene;
+    scene.paints = {fit}, scene.gloss_deg = {gloss_deg};
+    Effects effects = effects_of(scene);
+    EXPECT_TRUE(effects.satin);
+    effects.environment = effects.horizon = effects.mirror = true, effects.satin = satin;
+    std::vector<VisiblePoint> points(normals_.size());
+    for (std::size_t i = 0; i < points.size(); ++i) points[i].normal = normals_[i], points[i].to_viewer = {0, 0, 1};
+    return exact_radiance(points, scene, effects, {blocks_, 0.1});
+  }
   std::vector<color::Rgb> coat(const TrueCoat& coat) const {
     std::vector<color::Rgb> light;
     for (const Vec3& normal : normals_) light.push_back(coat_light(coat, normal, sky_, 8000));
@@ -177,11 +190,37 @@ paint::LobeFit base_paint(const color::Rgb& reflectance) {
 // p95 of pictures, dE00, ascending.
 struct Compared {
   std::vector<double> lobes, textbook;
-  std::vector<double> one_scale, two_scales;  // by paths
+  std::vector<double> one_scale, two_scales;                    // by paths
+  std::vector<double> one_scale_gaussian, two_scales_gaussian;  // the same, of Gaussian slopes
+
+  auto all() {
+    return std::array{&lobes, &textbook, &one_scale, &two_scales, &one_scale_gaussian, &two_scales_gaussian};
+  }
 };
 
 double median(const std::vector<double>& ascending) {
   return ascending[ascending.size() / 2];
+}
+
+// Of the base, and of the gloss that is set for these readings: in the views of the coat, and the lobe of 60 deg.
+struct Coated {
+  paint::LobeFit views, one;
+};
+Coated coated(const brdf::GlossTable& table, const paint::LobeFit& base, const TrueCoat& coat) {
+  std::vector<paint::GlossReading> readings;
+  for (const brdf::TestMeter& meter : brdf::kTestMeters)
+    readings.push_back({meter.angle_deg, brdf::true_reading(coat, meter, 1500) +
+                                             brdf::gloss_units(table, **table.at(meter.angle_deg), base)});
+  Coated result{base, base};
+  EXPECT_TRUE(brdf::set_gloss(table, readings, result.views).ok());
+  EXPECT_TRUE(brdf::set_gloss_views(table, readings, result.views).ok());
+  EXPECT_TRUE(brdf::set_gloss(table, {readings[1]}, result.one).ok());
+  return result;
+}
+
+std::vector<color::Rgb> over(std::vector<color::Rgb> picture, const std::vector<color::Rgb>& base) {
+  for (std::size_t k = 0; k < picture.size(); ++k) picture[k] += base[k];
+  return picture;
 }
 
 // Balls in every `step`th coat. The textbook is the lobe of the reading at 60 deg for all views.
@@ -192,62 +231,83 @@ Compared compared(const Studio& studio, const color::Rgb& reflectance, std::size
   const std::vector<TrueCoat> coats = brdf::true_coats();
   Compared result;
   for (std::size_t i = 0; i < coats.size(); i += step) {
-    std::vector<paint::GlossReading> readings;
-    for (const brdf::TestMeter& meter : brdf::kTestMeters)
-      readings.push_back({meter.angle_deg, brdf::true_reading(coats[i], meter, 1500) +
-                                               brdf::gloss_units(table, **table.at(meter.angle_deg), base)});
-    paint::LobeFit fit = base, one = base;
-    EXPECT_TRUE(brdf::set_gloss(table, readings, fit).ok());
-    EXPECT_TRUE(brdf::set_gloss_views(table, readings, fit).ok());
-    EXPECT_TRUE(brdf::set_gloss(table, {readings[1]}, one).ok());
-    std::vector<color::Rgb> truth = studio.coat(coats[i]);
-    for (std::size_t k = 0; k < truth.size(); ++k) truth[k] += bare[k];
-    const auto off = [&](const std::vector<color::Rgb>& picture) {
-      return difference(picture, truth, studio.white()).p95;
-    };
-    result.lobes.push_back(off(studio.shown(fit, 20)));
-    result.textbook.push_back(off(studio.shown(one, 60)));
-    std::vector<color::Rgb> paths = studio.by_paths(fit, 20);
-    for (std::size_t k = 0; k < paths.size(); ++k) paths[k] += bare[k];
-    (coats[i].k > 0 ? result.two_scales : result.one_scale).push_back(off(paths));
+    for (const bool gaussian : {false, true}) {
+      TrueCoat coat = coats[i];
+      coat.beckmann = gaussian;
+      const Coated paint = coated(table, base, coat);
+      const std::vector<color::Rgb> truth = over(studio.coat(coat), bare);
+      const auto off = [&](const std::vector<color::Rgb>& picture) {
+        return difference(picture, truth, studio.white()).p95;
+      };
+      const double by_paths = off(over(studio.by_paths(paint.views, 20), bare));
+      if (gaussian) {
+        (coat.k > 0 ? result.two_scales_gaussian : result.one_scale_gaussian).push_back(by_paths);
+      } else {
+        (coat.k > 0 ? result.two_scales : result.one_scale).push_back(by_paths);
+        result.lobes.push_back(off(studio.shown(paint.views, 20)));
+        result.textbook.push_back(off(studio.shown(paint.one, 60)));
+      }
+      std::printf("%zu %c k %.2f a %.4f h %.3f: %.2f\n", i, gaussian ? 'B' : 'G', coat.k, coat.slope, coat.haze,
+                  by_paths);
+    }
   }
-  for (std::vector<double>* all : {&result.lobes, &result.textbook, &result.one_scale, &result.two_scales})
-    std::ranges::sort(*all);
+  for (std::vector<double>* each : result.all()) std::ranges::sort(*each);
   return result;
 }
 
-void check_pictures(const std::string& name, const std::string& file, double most_of_textbook, double most_median) {
+void check_pictures(const std::string& name, const std::string& file, double most_of_textbook,
+                    double most_of_gaussian) {
   const Studio studio(file);
   for (const color::Rgb& reflectance : {color::Rgb{0.02, 0.03, 0.07}, color::Rgb{0.2, 0.25, 0.4}}) {
-    const Compared c = compared(studio, reflectance, 5);
-    std::printf("%s, base %.2f, p95 dE00, median and worst: lobes %.2f %.2f, textbook %.2f %.2f, ", name.c_str(),
-                reflectance.y, median(c.lobes), c.lobes.back(), median(c.textbook), c.textbook.back());
-    std::printf("paths, one scale %.2f %.2f, two scales %.2f %.2f\n", median(c.one_scale), c.one_scale.back(),
-                median(c.two_scales), c.two_scales.back());
+    Compared c = compared(studio, reflectance, 5);
+    std::printf(
+        "%s, base %.2f, p95 dE00, median and worst: lobes, textbook, paths: one scale, two scales, Gaussian the "
+        "same:",
+        name.c_str(), reflectance.y);
+    for (const std::vector<double>* each : c.all()) std::printf(" %.2f %.2f,", median(*each), each->back());
+    std::printf("\n");
     EXPECT_LE(median(c.lobes), most_of_textbook * median(c.textbook));
     EXPECT_LE(c.lobes.back(), c.textbook.back());
     EXPECT_LE(c.one_scale.back(), 1);
-    EXPECT_LE(median(c.two_scales), most_median);
-    EXPECT_LE(c.two_scales.back(), 2);
+    EXPECT_LE(c.one_scale_gaussian.back(), 1);
+    EXPECT_LE(c.two_scales.back(), 1);
+    EXPECT_LE(median(c.two_scales_gaussian), most_of_gaussian);
   }
 }
 
 // In a studio the error of lobes is less than half of the textbook's. It is not below 1: lobes are round about the
 // mirror direction, and the light of a rough surface at oblique views is wider in the plane of incidence than across it
 // and leans away from the normal. The truth itself, turned at random about the mirror direction, errs as much. In the
-// sun little is won, because the sun shows the shape of a lobe and hardly its energy. Paths draw the coat that the
-// readings tell as a rough surface. Three readings tell the haze of two scales only roughly, and where that is off, so
-// are pictures.
+// sun little is won, because the sun shows the shape of a lobe and hardly its energy. Paths draw the most
+// probable coat of the readings as a rough surface. They tell it for certain where it has one scale, and the haze of
+// two scales of GGX well enough. Where the slopes of two scales are Gaussian and the coat reads nearly as much at 85
+// deg as a mirror, they leave the sharp scale open.
 TEST(Satin, PicturesAreNearTheRoughDielectric) {
   check_pictures("studio", testdata("studio.exr"), 0.5, 1);
-  check_pictures("outdoor", testdata("outdoor.exr"), 1.2, 1);
+  check_pictures("outdoor", testdata("outdoor.exr"), 1.2, 2);
+}
+
+// The reference and the engine integral draw facets in the place of lobes. The control is the lobes.
+TEST(Satin, TheReferenceDrawsFacets) {
+  const brdf::GlossTable table(kBasis);
+  const paint::LobeFit base = base_paint({0.02, 0.03, 0.07});
+  for (const char* file : {"studio.exr", "outdoor.exr"}) {
+    const Studio studio(testdata(file));
+    const std::vector<color::Rgb> bare = studio.shown(base, 60);
+    for (const TrueCoat& coat : {TrueCoat{0, 0.03, 0.3}, TrueCoat{0, 0.15, 0.3, true}, TrueCoat{1.2, 0.008, 0.3}}) {
+      const paint::LobeFit fit = coated(table, base, coat).views;
+      const std::vector<color::Rgb> truth = over(studio.coat(coat), bare);
+      EXPECT_LE(difference(studio.integral(fit, 20, true), truth, studio.white()).p95, 0.5) << file << coat.slope;
+      EXPECT_GT(difference(studio.integral(fit, 20, false), truth, studio.white()).p95, 1) << file << coat.slope;
+    }
+  }
 }
 
 TEST(Satin, PicturesAreNearTheRoughDielectricRealData) {
   const char* data = std::getenv("GONIOCHROME_DATA");
   if (data == nullptr) GTEST_SKIP() << "GONIOCHROME_DATA is not set";
   for (const char* probe : {"studio_small_03_1k.hdr", "rooitou_park_1k.hdr"})
-    check_pictures(probe, std::string(data) + "/probes/" + probe, 1.2, 1.5);
+    check_pictures(probe, std::string(data) + "/probes/" + probe, 1.2, 2);
 }
 
 }  // namespace

@@ -246,7 +246,7 @@ Result<TruthError> truth_error(const Frame& frame, const Scene& scene, const Ray
   paths.environment = request.environment;
   paths.emission = scene.emission;
   paths.ground = scene.ground;
-  paths.rough_coats = request.whole;
+  paths.rough_coats = true;
   GONIO_ASSIGN(const Transport transport, Transport::create(paths));
   std::optional<Transport> bare;
   if (scene.ground && !request.whole) {

@@ -12,7 +12,7 @@ _goniogeom_index() {
     --tolerance-for) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --mesh) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --seam) COMPREPLY=($(compgen -f -- "$word")); return ;;
-    --unit) COMPREPLY=($(compgen -W "auto m cm mm" -- "$word")); return ;;
+    --unit) COMPREPLY=($(compgen -W "auto m in cm mm" -- "$word")); return ;;
     --max-gap) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --light-from) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --view-from) COMPREPLY=($(compgen -f -- "$word")); return ;;

@@ -1,7 +1,7 @@
 _paint_batch() {
   local word=${COMP_WORDS[COMP_CWORD]} words
   if [ "$COMP_CWORD" -eq 1 ]; then
-    COMPREPLY=($(compgen -W "plan list shard merge book --help --generate" -- "$word"))
+    COMPREPLY=($(compgen -W "plan list shard merge slurm book --help --generate" -- "$word"))
     return
   fi
   case ${COMP_WORDS[1]} in
@@ -33,6 +33,12 @@ _paint_batch() {
       ;;
     merge)
       words="--help"
+      ;;
+    slurm)
+      words="--help --task-s"
+      case ${COMP_WORDS[COMP_CWORD-1]} in
+        --task-s) COMPREPLY=($(compgen -f -- "$word")); return ;;
+      esac
       ;;
     book)
       words="--help"

@@ -9,6 +9,7 @@ _paint_book() {
     --basis) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --gloss) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --size) COMPREPLY=($(compgen -f -- "$word")); return ;;
+    --page-paints) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --orbit) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --studio) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --pictures) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -16,7 +17,7 @@ _paint_book() {
     --bin) COMPREPLY=($(compgen -f -- "$word")); return ;;
   esac
   case $word in
-    -*) COMPREPLY=($(compgen -W "--help --generate --output --title --mesh --chips --env --basis --fitted --gloss --size --beside --orbit --studio --pictures --jobs --bin --quiet" -- "$word")) ;;
+    -*) COMPREPLY=($(compgen -W "--help --generate --output --title --mesh --chips --env --basis --fitted --gloss --size --beside --page-paints --orbit --studio --pictures --jobs --bin --quiet" -- "$word")) ;;
     *) COMPREPLY=($(compgen -f -- "$word")) ;;
   esac
 }

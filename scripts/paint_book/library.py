@@ -139,8 +139,17 @@ def paint_of(element):
 
 def read(path):
     """The paints of a paint XML file. A paint that has no color to show is a ValueError."""
+    return paints_in(tree.parse(path).getroot())
+
+
+def read_text(document):
+    """The paints of a text of paint XML, as read() has them."""
+    return paints_in(tree.fromstring(document.encode()))
+
+
+def paints_in(root):
     paints = []
-    for element in tree.parse(path).getroot().iter(f"{{{NAMESPACE}}}paint"):
+    for element in root.iter(f"{{{NAMESPACE}}}paint"):
         paint = paint_of(element)
         if not paint.rows and not paint.appearance:
             raise ValueError(f'paint "{paint.name}" has neither measured rows nor an appearance')

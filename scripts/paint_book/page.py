@@ -37,10 +37,10 @@ def address_beside(file, page_file):
     return urllib.parse.quote(os.path.relpath(file, pathlib.Path(page_file).parent))
 
 
-def page(title, summary, paints, pictures, documents, size, studio=None, beside=None):
+def page(title, summary, paints, pictures, documents, size, studio=None, beside=None, links=""):
     """The HTML. `pictures[i]` is a PNG, as bytes; `documents[i]` has the texts of FILES; `size` is that of a picture in pixels.
     `studio` is the address of a page of paint-studio, or None. `beside` is what page.js needs to know of the folder that has
-    pictures, cards and texts, which are then not in the page, or None."""
+    pictures, cards and texts, which are then not in the page, or None. `links` is HTML that leads to other pages."""
     filed = {}
     for index, paint in enumerate(paints):
         filed.setdefault(paint.place(), []).append(index)
@@ -48,7 +48,7 @@ def page(title, summary, paints, pictures, documents, size, studio=None, beside=
         members.sort(key=lambda index: paints[index].order())
     sets = [key for key in library.SETS if any(place[0] == key for place in filed)]
     style = (HERE / "page.css").read_text().replace("{{aspect}}", f"{size[0]}/{size[1]}")
-    parts = {"title": text(title), "summary": text(summary), "style": style,
+    parts = {"links": links, "title": text(title), "summary": text(summary), "style": style,
              "script": (HERE / "page.js").read_text(), "classes": class_boxes(paints),
              "ranges": "".join(range_slider(index, paints) for index in INDICES),
              "groups": group_links(sets, filed),

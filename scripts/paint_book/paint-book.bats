@@ -296,3 +296,32 @@ PY
   run book small.paints.xml --beside -o -
   [ "$status" -eq 2 ]
 }
+
+@test "--page-paints: pages in the order of class and hue, linked with each other and with an index of all paints" {
+  book small.paints.xml --env small.env.exr --basis "$TESTDATA/b5.basis.xml" --size 96x64 --page-paints 3 --title 'A & B' --quiet -o many.html
+  /usr/bin/python3 - <<'PY'
+import json, re
+def text(name):
+    return open(name, encoding="utf-8").read()
+def data(page):
+    return json.loads(re.search(r'id="data">(.*?)</script>', page, re.S)[1])
+index, single = data(text("many.html")), data(text("small.html"))
+assert [one["page"] for one in index] == ["many-001.html", "many-002.html"], index
+assert [len(one["paints"]) for one in index] == [2, 2]
+listed = [paint[:3] for one in index for paint in one["paints"]]
+assert sorted(listed) == sorted([row["name"], row["code"], row["class"]] for row in single), listed
+order = [int(i) for i in re.findall(r'<li data-paint="(\d+)"', text("small.html"))]
+assert [one[0] for one in listed] == [single[i]["name"] for i in order], "the order of the book of one page"
+assert all(re.fullmatch("(#[0-9a-f]{6}){3}", paint[3]) for one in index for paint in one["paints"])
+for number, one in enumerate(index, 1):
+    page = text(one["page"])
+    assert [row["name"] for row in data(page)] == [paint[0] for paint in one["paints"]]
+    assert f'<a href="many.html">Index, page {number} of 2</a>' in page
+    assert ("many-002.html" in page) == (number == 1) and ("many-001.html" in page) == (number == 2), "the neighbors"
+    assert f"many-{number:03}.files" in page
+assert "{{" not in text("many.html").replace("{{title}}", "", 1) and "A &amp; B" in text("many.html")
+assert text("many.html").count("<script") == 2
+PY
+  [ -s many-001.files/tiles-0001.png ]
+  [ -s many-002.files/cards-0001.js ]
+}

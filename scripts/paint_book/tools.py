@@ -41,7 +41,8 @@ class Tools:
         if str(env).endswith(".env.exr"):
             return env
         filtered = folder / "light.env.exr"
-        self.run("prefilter-envmap", env, "--basis", basis, "-o", filtered)
+        # It serves few starts of render-osmesa, for which the further maps would not pay.
+        self.run("prefilter-envmap", env, "--basis", basis, "--no-open-maps", "-o", filtered)
         return filtered
 
     def pictures(self, paints, mesh, env, size, orbit, folder):

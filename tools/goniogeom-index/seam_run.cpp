@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "mesh/unit.h"
 #include "paint_stream.h"
 #include "panels.h"
 #include "seam_picture.h"
@@ -37,7 +38,8 @@ std::string seam_line(const SeamRequest& request, const mesh::Seam& seam) {
       "flush {:+.1f} to {:+.1f} mm",
       request.world.part_a, request.world.part_b, seam.length_m, fold.low, fold.high, fold.median, gap.median, gap.low,
       gap.high, flush.low, flush.high);
-  if (seam.unit_guessed && seam.unit_m != 1) line += "; taken as millimeters (--unit says otherwise)";
+  if (seam.unit_guessed && seam.unit_m != 1)
+    line += fmt::format("; taken as {} (--unit says otherwise)", mesh::unit_of(seam.unit_m).name);
   return line;
 }
 

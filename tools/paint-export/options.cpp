@@ -36,7 +36,10 @@ cli::ToolSpec tool_spec(Options& o) {
       "A table for Mitsuba holds every paint, but not a mirror: the mirror image in the coat is widened to an orange "
       "peel with "
       "slopes of 0.01. The bands of a spectral table come from the spectra that a paint keeps, and a colored paint "
-      "without spectra has none. All other files have linear Rec.709 colors. In a table of RGB, a color outside of "
+      "without spectra has none. All other files have linear Rec.709 colors, but for graphs of MaterialX whose paint "
+      "is outside of Rec.709: these say "
+      "that they are in ACEScg, and a renderer that works in Rec.709 cuts their colors. In a table of RGB, a color "
+      "outside of "
       "Rec.709 has a value below 0, which Mitsuba carries through to its picture. The other targets know no light "
       "below "
       "0, and what they show of such a color is cut; the difference tells how much that is.",
@@ -45,9 +48,8 @@ cli::ToolSpec tool_spec(Options& o) {
       "gets "
       "their light.",
       "The targets other than tables have few parameters, and the nearest are taken by the color difference over all "
-      "angles. A graph of MaterialX has several lobes. Standard Surface, glTF and USD have one, and a metallic paint "
-      "is "
-      "several dE00 off in them.",
+      "angles. A graph of MaterialX has many lobes. Standard Surface, OpenPBR, glTF and USD have one roughness, and a "
+      "metallic paint is several dE00 off in them.",
       "What no instrument has measured is not invented: no target gets flakes or sparkle. Color maps and anisotropy of "
       "a paint are left out, with a warning. AxF is not written: the layers of paint in its container are not openly "
       "specified, and there is no reader to test a writer with."};

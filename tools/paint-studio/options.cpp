@@ -33,14 +33,17 @@ cli::ToolSpec tool_spec(Options& o) {
       "no light from one part to another, and the ground of the environment lies below the mesh as render-osmesa lays "
       "it, as it is where nothing stands on it. It shows no color maps anywhere, and a warning tells how many paints "
       "have these. Brushed paints take longer to draw. While something moves, and first after each change, slow "
-      "computers draw the picture with fewer pixels.",
+      "computers draw the picture with fewer pixels. Where a picture takes long, the page keeps the light of a view "
+      "that "
+      "has come to rest, in up to 96 MB of the graphics' memory, so that edits are shown several times sooner.",
       "The compiled library lies in ../lib/goniochrome beside the program, as the files studio.wasm and "
       "studio.html, or in $GONIOCHROME_MODULE_PATH. Where the compiler for WebAssembly was missing when the tools "
       "were built, paint-studio says which packages it takes, and the exit status is 3."};
   spec.inputs = {"PAINTS", "paint XML files, or FILE#NAMES for some paints of one; standard input where none is given",
                  &o.paints};
   spec.heading = "what the page holds";
-  spec.option("mesh,m", "FILE", "testdata/speed-shape.obj", &o.mesh, "mesh that wears the paint (OBJ, OFF, PLY or STL)")
+  spec.option("mesh,m", "FILE", "testdata/speed-shape.obj", &o.mesh,
+              "mesh that wears the paint (OBJ, glTF 2.0, OFF, PLY or STL)")
       .needed();
   spec.option("env,e", "FILE", "studio.env.exr", &o.environments,
               "prefiltered environment, made by prefilter-envmap(1)")

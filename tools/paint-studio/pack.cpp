@@ -49,6 +49,13 @@ Json cube_json(const render::PageCube& cube, PackedNumbers& numbers) {
           {"texels", numbers.add_smooth(halves, static_cast<std::size_t>(cube.channels))}};
 }
 
+Json programs_json(const render::PageShading& programs) {
+  return {{"shading", programs.shading},
+          {"brushed_shading", programs.brushed_shading},
+          {"gathering", programs.gathering},
+          {"brushed_gathering", programs.brushed_gathering}};
+}
+
 // Where most of the light comes from: the brightest spot, or, without spots, the brightest side.
 Json brightest_json(const envmap::PrefilteredEnvironment& env) {
   const auto luminance = [](const envmap::Spot& spot) { return color::xyz_d65_from_rgb(spot.white).Y; };
@@ -156,14 +163,12 @@ Result<Json> packed_environment(const std::string& name, const envmap::Prefilter
   const render::Effects effects = studio::page_effects(basis.exponents, basis.mirror, env.spots.size());
   GONIO_ASSIGN(const render::PageLight light, render::page_light(env, effects, studio::page_operator()));
   const Vec3 toward = render::orbit_direction(kAzimuth_deg, kElevation_deg);
-  render::PageMovableLamp lamp = render::page_movable_lamp(effects, studio::page_operator(), kLampRadius_rad);
+  const render::PageMovableLamp lamp = render::page_movable_lamp(effects, studio::page_operator(), kLampRadius_rad);
   Json json = {{"name", name},
-               {"program", light.shading_fragment},
-               {"brushed_program", light.brushed_fragment},
+               {"programs", programs_json(light.programs)},
                {"white", render::metered_white(&env, {}, toward)},
                {"cubes", Json::array()},
-               {"lamp_program", std::move(lamp.shading_fragment)},
-               {"brushed_lamp_program", std::move(lamp.brushed_fragment)},
+               {"lamp_programs", programs_json(lamp.programs)},
                {"brightest", brightest_json(env)},
                {"lamps", Json::array()}};
   for (const render::PageCube& cube : light.cubes) json["cubes"].push_back(cube_json(cube, numbers));
@@ -185,6 +190,19 @@ Json packed_lamp(const formats::Basis& basis, PackedNumbers& numbers) {
           {"discs", numbers.add(lamp.discs)}};
 }
 
+Json packed_layers(const formats::Basis& basis) {
+  const render::PageLayers all =
+      render::page_layers(studio::page_effects(basis.exponents, basis.mirror, 0), studio::page_operator());
+  Json list = Json::array();
+  for (const render::LightLayer& layer : all.layers)
+    list.push_back({{"slot", layer.slot},
+                    {"lamps", layer.of_lamps},
+                    {"sampler", layer.sampler},
+                    {"shift", layer.shift_slot < 0 ? Json() : Json::array({layer.shift_slot, layer.shift_channel})}});
+  return {{"program", all.layers_fragment},   {"list", std::move(list)},        {"light_slot", all.light_slot},
+          {"at_once", render::kLayersAtOnce}, {"beside", render::kBesideLayer}, {"none", render::kNoLayer}};
+}
+
 Json packed_finishes(const std::vector<paint::LobeFit>& finishes, const formats::Basis& basis, PackedNumbers& numbers) {
   const render::Effects effects = studio::page_effects(basis.exponents, basis.mirror, 0);
   render::Scene scene;
@@ -192,7 +210,10 @@ Json packed_finishes(const std::vector<paint::LobeFit>& finishes, const formats:
   scene.reflection = studio::page_operator();
   const render::WeightTable slots = render::slots_of(effects);
   const std::vector<float> weights = finishes.empty() ? std::vector<float>() : render::page_weights(scene, effects);
-  return {{"columns", 2 * slots.slots * slots.segments}, {"rows", finishes.size()}, {"texels", numbers.add(weights)}};
+  return {{"columns", 2 * slots.slots * slots.segments},
+          {"slots", slots.slots},
+          {"rows", finishes.size()},
+          {"texels", numbers.add(weights)}};
 }
 
 }  // namespace goniochrome::tool

@@ -52,6 +52,9 @@ Result<Json> packed_environment(const std::string& name, const envmap::Prefilter
 // The lamp that a page has beside its environments: its extent in degrees, and its disc as the programs read it.
 Json packed_lamp(const formats::Basis& basis, PackedNumbers& numbers);
 
+// The layers in which a page keeps the light of a view, and the program that draws from them.
+Json packed_layers(const formats::Basis& basis);
+
 // The rows of weights of these finishes, one behind the other, and the size of a row.
 Json packed_finishes(const std::vector<paint::LobeFit>& finishes, const formats::Basis& basis, PackedNumbers& numbers);
 

@@ -60,6 +60,7 @@ needs_browser() {
   run node "$code/pictures.js" page.html . 640x360 candy_red silver_black_flop blue_to_purple green_to_gold
   echo "$output"
   [ "$status" -eq 0 ]
+  jq -s '.[-1]' <<<"$output" >pictures.json
   for light in studio outdoor; do
     white=$(sed -n 's|^<script type="application/json" id="data">\(.*\)</script>$|\1|p' page.html |
       jq ".environments[] | select(.name == \"$light\").white")
@@ -71,6 +72,17 @@ needs_browser() {
       awk -v numbers="$output" 'BEGIN { split(numbers, n, " "); exit !(n[1] <= 0.1 && n[2] <= 0.5 && n[4] > 20000) }'
     done
   done
+}
+
+# A half float rounds a layer by at most 4.9e-4 of its value, and few channels are one layer alone. The control takes the layers
+# of another paint, whose wide lobes look elsewhere.
+@test "a picture from layers of gathered light is that of the shading program" {
+  [ -s pictures.json ] || skip "the pictures were not drawn"
+  [ "$(jq '.layers | length' pictures.json)" -eq 8 ]
+  [ "$(jq '[.layers[], .moved, .lamp, .little] | map(.p95 <= 4.9e-4) | all' pictures.json)" = true ]
+  [ "$(jq '.shift > 1e-3 and .control.p95 > 4.9e-4' pictures.json)" = true ]
+  [ "$(jq '.layers_drawn > 8 and .layer_bytes <= 96e6' pictures.json)" = true ]
+  [ "$(jq -r .refused pictures.json)" = "There is no room for the layers of this picture." ]
 }
 
 # Most of the ground is so far from the mesh that nothing takes its light away.
@@ -158,6 +170,7 @@ needs_browser() {
   run node "$code/pictures.js" brushed.html . 640x360 candy_red_brushed
   echo "$output"
   [ "$status" -eq 0 ]
+  [ "$(jq -s '.[-1].layers | length == 1 and map(.p95 <= 4.9e-4) == [true]' <<<"$output")" = true ]
   white=$(sed -n 's|^<script type="application/json" id="data">\(.*\)</script>$|\1|p' brushed.html | jq '.environments[0].white')
   half=$(jq -n "$white / 2")
   draw() {
@@ -251,4 +264,11 @@ PY
   cp "$TESTDATA/paints.paints.xml" library.paints.xml  # an index is written beside it
   colorsnap -q --library library.paints.xml saved.paints.xml >/dev/null || [ $? -eq 1 ]
   grep -q '^sample,geometry,illuminant' saved.csv
+  # The tools' picture of the paint that was saved is that of the page.
+  white=$(sed -n 's|^<script type="application/json" id="data">\(.*\)</script>$|\1|p' page.html | jq '.environments[0].white')
+  render-osmesa -q --trim --mesh "$TESTDATA/speed-shape.obj" --paint by-tools.xml --env studio.env.exr --engine gl \
+    --effects all,-rays --size 640x360 --samples 1 -o path.exr
+  run /usr/bin/python3 "$code/compare.py" path.f32 path.exr "$white"
+  echo "mean p95 largest pixels: $output"
+  awk -v numbers="$output" 'BEGIN { split(numbers, n, " "); exit !(n[1] <= 0.1 && n[2] <= 0.5 && n[4] > 20000) }'
 }

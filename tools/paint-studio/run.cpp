@@ -117,6 +117,7 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
                {"mesh", std::move(packed.json)},
                {"finishes", packed_finishes(packed.finishes, basis, numbers)},
                {"lamp", packed_lamp(basis, numbers)},
+               {"layers", packed_layers(basis)},
                {"programs",
                 {{"gbuffer_vertex", programs.gbuffer_vertex},
                  {"gbuffer_fragment", programs.gbuffer_fragment},

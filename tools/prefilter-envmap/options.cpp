@@ -10,6 +10,11 @@ void add_options(cli::ToolSpec& spec, Options& o) {
       .from(-360, 360)
       .in("degrees: one to three angles")
       .more("A positive turn about +Y takes +Z toward +X.");
+  spec.option("ball", "WHERE", "auto", &o.ball, "unroll the photograph of a mirror ball")
+      .more(
+          "WHERE is X,Y,RADIUS in texels from the upper left corner, or auto: in front of a dark ground the ball is "
+          "found wherever it lies, and otherwise it touches the sides of a square picture. The camera is far away, at "
+          "+Z, and +X is to the right in the picture. What the ball swallows is not made up for; see --exposure.");
   spec.option("exposure,x", "STOPS", "1.5", &o.exposure, "multiply the radiance by two to this power").from(-64, 64);
   spec.option("horizon", "DEG", "0", &o.horizon, "take as black what lies below this elevation; -90 keeps all")
       .from(-90, 90)
@@ -35,14 +40,22 @@ void add_options(cli::ToolSpec& spec, Options& o) {
           "The light of the spots is in the maps as well. render-osmesa cuts each of them by the horizon of every "
           "point, which the maps cannot do; more of them come nearer to the truth and take longer, see the effect "
           "spots there. An environment without small bright parts has none.");
+  spec.flag("no-open-maps", &o.no_open_maps, "leave out the maps without bright spots, and the one under a coat")
+      .more(
+          "The file is then half as large and sooner written, and render-osmesa makes those maps that a picture "
+          "needs at each start. Keeping them pays from the third start on where there are twelve spots, and from "
+          "about the tenth on where there are three; one run that draws many paints is one start. Pictures are "
+          "the same within the rounding of half floats.");
   spec.option("layout,l", "WHAT", "latlong", &o.layout, "how the maps lie")
-      .one_of({"env", "latlong", "openexr", "mip"})
+      .one_of({"env", "latlong", "openexr", "mip", "ktx2", "dds"})
       .more(
           "env has a cube for each lobe, and is what render-osmesa reads. latlong has lat-long maps of 2N x N texels, "
           "and openexr has cubes with texel centers on the edges; both follow OpenEXR's own conventions, for other "
           "programs. mip has one mip-mapped cube, for paints whose exponent varies from point to point. The sharpest "
           "exponent is in its finest level, and each coarser level has the next one, or a quarter of the exponent "
-          "after the last; the attribute goniochrome:exponents says which.");
+          "after the last; the attribute goniochrome:exponents says which. ktx2 and dds have the same levels as a cube "
+          "texture in linear Rec.709, for real-time engines; ktx2 names the exponents under the key "
+          "goniochrome:exponents, and dds has no place for them.");
   cli::add_tolerance(spec, o.common, "X", "largest error of a texel, relative to the texel")
       .more(
           "The error is the difference from the sum over all texels of the image in double precision, and includes the "
@@ -76,6 +89,8 @@ void add_report(cli::ToolSpec& spec) {
        "show what each lobe makes of a sky"},
       {"prefilter-envmap -e 256,64,16,4 --layout mip --size 64 --rotate 90 testdata/studio.exr -o studio.mip.exr",
        "make one mip-mapped cube of the studio, turned by a quarter"},
+      {"prefilter-envmap -e 1024 --layout ktx2 --size 64 testdata/studio.exr -o studio.ktx2",
+       "make a cube texture for an engine, whose levels are filtered by exponents from 1024 down to 1"},
       {"prefilter-envmap --basis testdata/b5.basis.xml --tolerance 1e-4 --explain testdata/studio.exr -o fine.env.exr",
        "show the method, the error and the time of each lobe before the work starts"}};
   spec.report = {
@@ -96,11 +111,17 @@ void add_report(cli::ToolSpec& spec) {
       {"spots[].direction", "toward the middle of a bright spot: a unit vector"},
       {"spots[].radius_deg", "radius of its disc"},
       {"spots[].share", "part of it in the light of the environment"},
-      {"layout", "how the maps lie: env, latlong, openexr or mip"},
+      {"layout", "how the maps lie: env, latlong, openexr, mip, ktx2 or dds"},
+      {"clipped_to_rec709", "with ktx2 and dds, number of texels with a color beyond Rec.709, which were clipped"},
       {"left_out[].exponent", "exponent that the paints name but do not need"},
       {"left_out[].share", "largest part that it has in the reflectance of any paint"},
       {"source.path", "the image"},
-      {"source.layout", "lat-long, cube, cube with texel centers on the edges, or angular probe"},
+      {"source.layout",
+       "lat-long, cube, cube with texel centers on the edges, angular probe, or mirror ball, which is a lat-long map "
+       "from there on"},
+      {"source.ball.x", "middle of the ball: texels from the left edge of the picture"},
+      {"source.ball.y", "middle of the ball: texels from the upper edge of the picture"},
+      {"source.ball.radius", "radius of the ball in texels of the picture"},
       {"source.width", "texels across"},
       {"source.height", "texels down"},
       {"source.nan", "number of texels that were not a number and were set to zero"},
@@ -127,7 +148,10 @@ cli::ToolSpec tool_spec(Options& o) {
       "The image may be a lat-long map (2:1, +Y up, its center +Z, its left quarter +X). It may be a cube as a strip "
       "of six faces (+X -X +Y -Y +Z -Z), as a cross (4:3 or 3:4), or as six square files, which are given one by one "
       "in that order or as one pattern with {face} in the place of px, nx, py and so on. A single square is an angular "
-      "probe, which is what a mirror ball shows, unrolled about +Z. Faces are those of OpenGL; an EXR whose envmap "
+      "probe, which is what a mirror ball shows, unrolled about +Z; the photograph of a ball itself takes --ball. A "
+      "square with light in its corners, of which an angular probe has none, is reported as a likely photograph. "
+      "Before "
+      "a black ground the two cannot be told apart. Faces are those of OpenGL; an EXR whose envmap "
       "attribute says cube is read by OpenEXR's own convention. EXR and Radiance HDR are read directly, and other "
       "formats (TIFF, PNG) through OpenImageIO. Values are linear Rec.709 unless the file says otherwise, and are "
       "converted to linear Rec.2020.",

@@ -36,6 +36,9 @@ within() { awk -v limit="$1" '$1 > limit { bad = 1 } { n++ } END { exit bad || !
   # An environment without bright spots has one such part.
   prefilter-envmap -q -e 6 --size 8 --verify 4 --spots 0 "$sky" -o even.env.exr
   [ "$(exrheader even.env.exr | grep -c 'goniochrome:version')" -eq 1 ]
+  prefilter-envmap -q -e 6,70 --size 8 --verify 4 --no-open-maps "$sky" -o bare.env.exr
+  [ "$(exrheader bare.env.exr | grep -c 'goniochrome:version')" -eq 0 ]
+  [ "$(exrheader bare.env.exr | grep -c 'goniochrome:brightSpots')" -eq 1 ]
   grep -q 'goniochrome:exponent (type float): 70' header
   grep -q 'goniochrome:maxError' header
   grep -q 'goniochrome:command.*prefilter-envmap [0-9.]*: prefilter-envmap -q -e 6,70' header
@@ -241,6 +244,166 @@ lobes_paint() {
   run prefilter-envmap -e 6 "$sky" -o x.exr --layout
   [ "$status" -eq 2 ]
   [ ! -e x.exr ]
+}
+
+# made_probe FILE: a lat-long image of 64 x 32 without symmetry, with a lamp.
+made_probe() {
+  /usr/bin/python3 - "$1" <<'PY'
+import sys
+import numpy
+texels = numpy.zeros((32, 64, 4), "u1")
+texels[..., :3] = numpy.random.default_rng(1).integers(40, 255, (8, 16, 3)).repeat(4, 0).repeat(4, 1)
+texels[..., 3] = 129
+texels[5:7, 20:22, 3] = 133
+open(sys.argv[1], "wb").write(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 32 +X 64\n" + texels.tobytes())
+PY
+}
+
+# ball_photograph FILE GROUND LEFT: what a camera at +Z sees of a mirror ball of radius 60 about 150,70, before a ground
+# of that brightness, from the column LEFT on; the light is one over each half of the sphere.
+ball_photograph() {
+  /usr/bin/python3 - "$@" <<'PY'
+import sys
+import numpy
+y, x = numpy.mgrid[0:140, 0:240] + 0.5
+u, v = (x - 150) / 60, (70 - y) / 60
+on_ball = u**2 + v**2 <= 1
+nz = numpy.sqrt(numpy.maximum(0, 1 - u**2 - v**2))
+d = numpy.stack([2 * nz * u, 2 * nz * v, 2 * nz**2 - 1], -1)
+texels = numpy.zeros((140, 240, 4), "u1")
+texels[..., :3] = numpy.where(on_ball[..., None], 64 + 128 * (d > 0), int(float(sys.argv[2]) * 128))
+texels[..., 3] = 129
+left = int(sys.argv[3])
+header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 140 +X %d\n" % (240 - left)
+open(sys.argv[1], "wb").write(header.encode() + numpy.ascontiguousarray(texels[:, left:]).tobytes())
+PY
+}
+
+@test "the photograph of a mirror ball is unrolled wherever the ball lies" {
+  /usr/bin/python3 -c 'import numpy' 2>/dev/null || skip "python3-numpy is not there"
+  ball_photograph dark.hdr 0 0
+  ball_photograph lit.hdr 0.5 0
+  prefilter-envmap -q -e 40 --size 4 --layout ktx2 --ball auto dark.hdr -o dark.ktx2 --report dark.json
+  prefilter-envmap -q -e 40 --size 4 --layout ktx2 --ball 150,70,60 lit.hdr -o lit.ktx2 --report lit.json
+  jq -e '.results.source | .layout == "mirror ball" and (.ball.x - 150 | fabs) < 0.5 and (.ball.y - 70 | fabs) < 0.5
+    and (.ball.radius - 60 | fabs) < 1' dark.json
+  jq -e '.results.source.ball == {"x": 150, "y": 70, "radius": 60}' lit.json
+  # Red is bright toward +X, green toward +Y and blue toward +Z: 1.5 there and 0.5 on the other side.
+  /usr/bin/python3 - "$BATS_TEST_DIRNAME/readers" <<'PY'
+import sys
+sys.dont_write_bytecode = True
+sys.path.insert(0, sys.argv[1])
+import cube_texture
+for path in "dark.ktx2", "lit.ktx2":
+    faces = cube_texture.ktx2(path)[1][0][:, 1:3, 1:3, :3].mean((1, 2))
+    print(faces)
+    for axis in range(3):
+        assert abs(faces[2 * axis, axis] - 1.5) < 0.03 and abs(faces[2 * axis + 1, axis] - 0.5) < 0.03
+PY
+  # What the picture does not show is not made up.
+  ball_photograph cut.hdr 0 100
+  run prefilter-envmap -e 6 --ball auto cut.hdr -o x.env.exr
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ "cut.hdr: the ball reaches from -"[0-9.]+",".*", beyond the picture of 140 x 140" ]]
+  run prefilter-envmap -e 6 --ball auto lit.hdr -o x.env.exr
+  [ "$status" -eq 3 ]
+  [[ "$output" =~ "lit.hdr: the ball's outline cannot be told from its background" ]]
+  for wrong in "" 1,2 1,2,x 1,2,3,4 1,2,0 1,2,-3 1,2,nan; do
+    run prefilter-envmap -e 6 --ball "$wrong" lit.hdr -o x.env.exr
+    [ "$status" -ge 2 ]
+  done
+  run prefilter-envmap -e 6 --ball auto $(yes lit.hdr | head -6) -o x.env.exr
+  [ "$status" -eq 2 ]
+  run prefilter-envmap -e 6 lit.hdr -o x.env.exr --ball
+  [ "$status" -eq 2 ]
+  [ ! -e x.env.exr ]
+}
+
+@test "a square picture with light in its corners is told to be no angular probe" {
+  /usr/bin/python3 -c 'import numpy' 2>/dev/null || skip "python3-numpy is not there"
+  ball_photograph lit.hdr 0.5 100
+  ball_photograph dark.hdr 0 100
+  run --separate-stderr prefilter-envmap -e 6 --size 4 lit.hdr -o x.env.exr --report r.json
+  [ "$status" -eq 0 ]
+  [[ "$stderr" = *"lit.hdr: is square and has light in its corners"*"give --ball auto"* ]]
+  jq -e '(.results.warnings | length) == 1 and .results.source.layout == "angular probe"' r.json
+  run --separate-stderr prefilter-envmap -e 6 --size 4 dark.hdr -o x.env.exr
+  [[ "$stderr" != *"corners"* ]]
+}
+
+@test "cube textures for engines are read back by numpy: each level is the image filtered by its exponent" {
+  /usr/bin/python3 -c 'import numpy' 2>/dev/null || skip "python3-numpy is not there"
+  made_probe made.hdr
+  for layout in ktx2 dds; do
+    prefilter-envmap -q -e 64,16 --size 16 --layout $layout --verify 5 --report $layout.json made.hdr -o made.$layout
+    jq -e ".results.layout == \"$layout\" and .results.clipped_to_rec709 == 0" $layout.json
+  done
+  # A finer tolerance takes floats, and a light beyond half floats as well.
+  prefilter-envmap -q -e 4 --size 4 --layout ktx2 --tolerance 1e-5 made.hdr -o fine.ktx2
+  prefilter-envmap -q -e 4 --size 4 --layout dds --exposure 20 made.hdr -o bright.dds
+  /usr/bin/python3 - "$BATS_TEST_DIRNAME/readers" <<'PY'
+import sys
+sys.dont_write_bytecode = True
+sys.path.insert(0, sys.argv[1])
+import cube_texture
+image = cube_texture.flat_hdr("made.hdr")
+pairs, levels = cube_texture.ktx2("made.ktx2")
+exponents = [float(word) for word in pairs["goniochrome:exponents"].split()]
+print(pairs)
+assert exponents == [64, 16, 4, 1, 0.25] and [level.shape[1] for level in levels] == [16, 8, 4, 2, 1]
+assert pairs["goniochrome:source"] == "made.hdr" and "--layout ktx2" in pairs["goniochrome:command"]
+assert all(float(word) < 1e-3 for word in pairs["goniochrome:maxErrors"].split())
+# The reference has 16 points a texel of the image; its own error is the larger one.
+for found in levels, cube_texture.dds("made.dds"):
+    print(cube_texture.largest_difference(found, exponents, image))
+    assert cube_texture.largest_difference(found, exponents, image) < 0.005
+# A swapped pair of faces or exponents does not pass.
+assert cube_texture.largest_difference([level[[1, 0, 2, 3, 4, 5]] for level in levels], exponents, image) > 0.05
+assert cube_texture.largest_difference([level.swapaxes(1, 2) for level in levels], exponents, image) > 0.05
+assert cube_texture.largest_difference(levels[:2], [60, 16], image) > 0.005
+assert cube_texture.largest_difference(cube_texture.ktx2("fine.ktx2")[1], [4, 1, 0.25], image) < 0.005
+assert cube_texture.largest_difference(cube_texture.dds("bright.dds"), [4, 1, 0.25], image * 2**20) < 0.005
+PY
+}
+
+@test "three.js reads every level of a cube texture as it was written" {
+  node=$BATS_TEST_DIRNAME/../../build/prefilter-envmap-checks-npm
+  command -v npm >/dev/null || skip "npm is not there"
+  [ -d "$node/node_modules/three" ] || { mkdir -p "$node" && (cd "$node" && timeout 120 npm install --silent three) >/dev/null 2>&1; } ||
+    skip "npm cannot install the package three"
+  prefilter-envmap -q -e 64 --size 8 --layout ktx2 "$sky" -o sky.ktx2
+  cp "$BATS_TEST_DIRNAME/readers/three_levels.mjs" "$node/three_levels.mjs"
+  node "$node/three_levels.mjs" sky.ktx2 >three.json
+  /usr/bin/python3 - "$BATS_TEST_DIRNAME/readers" <<'PY'
+import json
+import sys
+sys.dont_write_bytecode = True
+sys.path.insert(0, sys.argv[1])
+import cube_texture
+import numpy
+texture = json.load(open("three.json"))
+levels = cube_texture.ktx2("sky.ktx2")[1]
+assert texture["halves"] and texture["linear"] and texture["exponents"] == "64 16 4 1"
+assert len(texture["levels"]) == len(levels) == 4
+for three, level in zip(texture["levels"], levels):
+    assert three["width"] == three["height"] == level.shape[1]
+    assert (numpy.array(three["bits"], "<u2").view("<f2") == level.ravel()).all()
+PY
+}
+
+@test "colors beyond Rec.709 are clipped in a cube texture, and counted" {
+  made_probe made.hdr
+  prefilter-envmap -q -e 6 --size 4 --layout latlong --no-mirror made.hdr -o made.exr
+  oiiotool made.exr --subimage 0 --mulc 0,1,0 --attrib colorInteropID lin_rec2020_scene -o green.exr
+  run --separate-stderr prefilter-envmap -e 4 --size 4 --layout ktx2 green.exr -o green.ktx2 --report r.json
+  [ "$status" -eq 0 ]
+  jq -e '.results.clipped_to_rec709 == 126' r.json
+  [[ "$stderr" = *"green.exr: 126 texels beyond Rec.709 clipped to it"* ]]
+  run prefilter-envmap -e 64 --size 12 --layout ktx2 "$sky" -o x.ktx2
+  [ "$status" -eq 2 ]
+  run prefilter-envmap --basis absent.xml --layout dds "$sky" -o x.dds
+  [ "$status" -eq 3 ]
+  [ ! -e x.ktx2 ] && [ ! -e x.dds ]
 }
 
 @test "--rotate, --exposure and --horizon change the environment; wrong ones are refused" {

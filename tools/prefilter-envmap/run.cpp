@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "contact_sheet.h"
+#include "envmap/engine_cube.h"
 #include "envmap/mip.h"
 #include "envmap/open_maps.h"
 #include "prefilter/exact_lobe.h"
@@ -24,8 +25,9 @@ std::string exponent_name(double exponent) {
   return paint::is_mirror(exponent) ? "mirror" : shortest(exponent);
 }
 
-const char* layout_name(envmap::Environment::Layout layout) {
-  switch (layout) {
+const char* layout_name(const envmap::Environment& env) {
+  if (env.ball()) return "mirror ball";
+  switch (env.layout()) {
     case envmap::Environment::Layout::kLatLong:
       return "lat-long";
     case envmap::Environment::Layout::kCube:
@@ -38,12 +40,30 @@ const char* layout_name(envmap::Environment::Layout layout) {
   return "";
 }
 
+// The outline that --ball names, or none for auto. Error: usage.
+Result<std::optional<envmap::BallDisc>> ball_outline(const std::string& where) {
+  if (where == "auto") return std::optional<envmap::BallDisc>();
+  std::vector<double> numbers;
+  for (const std::string_view word : split(where, ','))
+    if (const auto number = parse_number(word); number && std::isfinite(*number)) numbers.push_back(*number);
+  if (numbers.size() != 3 || std::count(where.begin(), where.end(), ',') != 2 || !(numbers[2] > 0))
+    return usage_error("--ball is \"{}\": give auto, or X,Y,RADIUS in texels", where);
+  return std::optional<envmap::BallDisc>({numbers[0], numbers[1], numbers[2]});
+}
+
+Result<envmap::Environment> read_image(const Options& options) {
+  using envmap::Environment;
+  const auto bad = options.bad_pixels == "zero" ? Environment::BadPixels::kZero : Environment::BadPixels::kError;
+  const std::string image = options.images.empty() ? "-" : options.images.front();
+  if (options.ball.empty())
+    return options.images.size() > 1 ? Environment::read_faces(options.images, bad) : Environment::read(image, bad);
+  if (options.images.size() > 1) return usage_error("--ball with {} files: give one photograph", options.images.size());
+  GONIO_ASSIGN(const std::optional<envmap::BallDisc> outline, ball_outline(options.ball));
+  return Environment::read_ball(image, outline, bad);
+}
+
 Result<envmap::Environment> read_environment(const Options& options, const envmap::Rotation& turn) {
-  const auto bad =
-      options.bad_pixels == "zero" ? envmap::Environment::BadPixels::kZero : envmap::Environment::BadPixels::kError;
-  auto read = options.images.size() > 1
-                  ? envmap::Environment::read_faces(options.images, bad)
-                  : envmap::Environment::read(options.images.empty() ? "-" : options.images.front(), bad);
+  auto read = read_image(options);
   if (read.ok() && options.exposure != 0) read = read->scaled(std::exp2(options.exposure));
   if (read.ok() && options.horizon > -90) read = read->above(options.horizon * kDegree, turn);
   return read;
@@ -51,10 +71,16 @@ Result<envmap::Environment> read_environment(const Options& options, const envma
 
 void tell_source(const envmap::Environment& env, cli::Session& session) {
   const envmap::Environment::Counts& n = env.replaced();
-  session.results()["source"] = {{"path", env.source()},   {"layout", layout_name(env.layout())},
-                                 {"width", env.width()},   {"height", env.height()},
-                                 {"nan", n.nan},           {"infinite", n.infinite},
-                                 {"negative", n.negative}, {"out_of_gamut", n.out_of_gamut}};
+  session.results()["source"] = {
+      {"path", env.source()}, {"layout", layout_name(env)}, {"width", env.width()},   {"height", env.height()},
+      {"nan", n.nan},         {"infinite", n.infinite},     {"negative", n.negative}, {"out_of_gamut", n.out_of_gamut}};
+  if (env.ball())
+    session.results()["source"]["ball"] = {{"x", env.ball()->x}, {"y", env.ball()->y}, {"radius", env.ball()->radius}};
+  if (env.lit_corners())
+    session.warn(fmt::format(
+        "{}: is square and has light in its corners, where an angular probe has none: it was read as an angular probe; "
+        "if it is the photograph of a mirror ball, give --ball auto",
+        env.source()));
   if (n.total() > 0)
     session.warn(fmt::format("{}: {} texels set to zero ({} not a number, {} infinite, {} negative)", env.source(),
                              n.total(), n.nan, n.infinite, n.negative));
@@ -66,12 +92,12 @@ void tell_source(const envmap::Environment& env, cli::Session& session) {
 std::string plan_text(const envmap::Environment& env, const Wanted& wanted, const Options& options,
                       const std::vector<prefilter::LobePlan>& plan, const prefilter::LobeSource& known) {
   const prefilter::PrefilterRequest& request = wanted.request;
-  std::string text = fmt::format("{}: {}, {} x {} texels, each a constant patch\n", env.source(),
-                                 layout_name(env.layout()), env.width(), env.height());
+  std::string text = fmt::format("{}: {}, {} x {} texels, each a constant patch\n", env.source(), layout_name(env),
+                                 env.width(), env.height());
   for (const LeftOut& lobe : wanted.left_out)
     text += fmt::format("left out: {}: at most {:.1e} of what any of {} paints reflects, below the tolerance {}\n",
                         exponent_name(lobe.exponent), lobe.share, wanted.paints, shortest(request.tolerance));
-  if (!request.mirror && options.layout == "mip")
+  if (has_levels(options))
     text += "left out: the diffuse lobe and the mirror, which a mip-mapped cube has no level for\n";
   text += "exponent  size  method            degree  error    lookup   time\n";
   double total = 0;
@@ -142,9 +168,20 @@ bool verify(const Options& options, const envmap::Environment& env, const envmap
   return within;
 }
 
-Result<void> write(const Options& options, envmap::PrefilteredEnvironment& result, const cli::Session& session) {
+Result<void> write_for_engines(const Options& options, const envmap::PrefilteredEnvironment& result,
+                               cli::Session& session) {
+  const envmap::Rec709Levels rec709 = envmap::in_rec709(result.lobes);
+  session.results()["clipped_to_rec709"] = rec709.clipped;
+  if (rec709.clipped > 0)
+    session.warn(fmt::format("{}: {} texels beyond Rec.709 clipped to it", result.source, rec709.clipped));
+  if (options.layout == "dds") return envmap::write_dds(options.output, rec709.levels);
+  return envmap::write_ktx2(options.output, rec709.levels, result.source, session.provenance());
+}
+
+Result<void> write(const Options& options, envmap::PrefilteredEnvironment& result, cli::Session& session) {
   const std::string command = session.provenance();
-  if (options.layout == "env") envmap::keep_open_maps(result);
+  if (options.layout == "ktx2" || options.layout == "dds") return write_for_engines(options, result, session);
+  if (options.layout == "env" && !options.no_open_maps) envmap::keep_open_maps(result);
   if (options.layout == "mip") return envmap::write_mip(options.output, result.lobes, result.source, command);
   return envmap::write_env(options.output, result, command);
 }
@@ -192,7 +229,7 @@ Result<void> check_picture(const Options& options) {
   if (options.picture.empty()) return {};
   if (!options.picture.ends_with(".png"))
     return usage_error("--picture is \"{}\": give a name that ends in .png", options.picture);
-  if (options.layout != "env" && options.layout != "mip")
+  if (options.layout != "env" && !has_levels(options))
     return usage_error("--picture shows cubes, and --layout {} makes none: look at the output itself", options.layout);
   return {};
 }

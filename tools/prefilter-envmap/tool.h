@@ -19,11 +19,13 @@ struct Options {
   int verify = 0;
   std::string bad_pixels = "error";
   bool no_mirror = false;
+  bool no_open_maps = false;
   std::string paints;  // --for
   std::string layout = "env";
   std::string cache;
   std::string picture;
   std::vector<double> rotate;
+  std::string ball;
   double exposure = 0;
   double horizon = -90;
   int spots = envmap::kUsualSpots;

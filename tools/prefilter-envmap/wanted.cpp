@@ -88,8 +88,9 @@ Result<void> set_geometry(const Options& options, prefilter::PrefilterRequest& r
 }
 
 // The levels of the mip-mapped cube, in place of diffuse lobe, lobes and mirror.
-Result<void> set_levels(prefilter::PrefilterRequest& request) {
-  if (request.exponents.empty()) return usage_error("--layout mip without an exponent: give --exponents or --basis");
+Result<void> set_levels(const Options& options, prefilter::PrefilterRequest& request) {
+  if (request.exponents.empty())
+    return usage_error("--layout {} without an exponent: give --exponents or --basis", options.layout);
   const double sharpest = *std::max_element(request.exponents.begin(), request.exponents.end());
   int size =
       request.size > 0
@@ -102,6 +103,10 @@ Result<void> set_levels(prefilter::PrefilterRequest& request) {
 }
 
 }  // namespace
+
+bool has_levels(const Options& options) {
+  return options.layout == "mip" || options.layout == "ktx2" || options.layout == "dds";
+}
 
 Result<Wanted> wanted_lobes(const Options& options) {
   if (int(options.basis.empty()) + int(options.exponents.empty()) + int(options.paints.empty()) != 2)
@@ -124,8 +129,8 @@ Result<Wanted> wanted_lobes(const Options& options) {
   std::sort(e.begin(), e.end());
   e.erase(std::unique(e.begin(), e.end()), e.end());
   if (options.no_mirror) request.mirror = false;
-  if (options.layout == "mip") {
-    GONIO_TRY(set_levels(request));
+  if (has_levels(options)) {
+    GONIO_TRY(set_levels(options, request));
   } else {
     std::erase(e, 1.0);
   }

@@ -21,6 +21,9 @@ struct Wanted {
   int paints = 0;
 };
 
+// Whether --layout asks for one mip-mapped cube in the place of a map for each lobe.
+bool has_levels(const Options& options);
+
 // The request that the options make. Errors: usage, or the basis or the paints.
 Result<Wanted> wanted_lobes(const Options& options);
 

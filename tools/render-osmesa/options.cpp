@@ -16,8 +16,13 @@ std::string engine_sentences() {
 
 void add_surfaces(cli::ToolSpec& spec, Options& o) {
   spec.heading = "surfaces";
-  spec.option("mesh,m", "FILE", "testdata/speed-shape.obj", &o.mesh, "mesh: OBJ with parts, or OFF, PLY, STL")
-      .more("A name without an ending, such as that of a pipe, leaves it to the content to tell the format.");
+  spec.option("mesh,m", "FILE", "testdata/speed-shape.obj", &o.mesh,
+              "mesh: OBJ or glTF 2.0 with parts, or OFF, PLY, STL")
+      .more(
+          "A name without an ending, such as that of a pipe, leaves it to the content to tell the format. Of glTF, as "
+          ".gltf or .glb, each node of the scene that has a mesh is a part with the name of the node or else of the "
+          "mesh, so that nodes of one name are one part; of a mesh in several materials each is a part NAME.MATERIAL. "
+          "Compressed meshes are refused.");
   spec.option("gbuffer", "FILE", "view.exr", &o.gbuffer, "shade the buffers of an earlier picture instead of a mesh")
       .more(
           "The file is an EXR that was made with --aov normal,part. Its buffers and its attributes goniochrome:rays, "
@@ -158,11 +163,12 @@ void add_effects(cli::ToolSpec& spec, Options& o) {
   spec.option("effects", "WORDS", "auto,-fresnel", &o.effects,
               "effects to draw: auto, all or none, and then +NAME and -NAME")
       .more(
-          "The names are diffuse, lobes, gloss, mirror, fresnel, coat, horizon, spots, anisotropy, travel, tilts, "
-          "texture, texture-lobes, operator, lights and extent (of lamps). spots draws the bright spots of the "
+          "The names are diffuse, lobes, gloss, mirror, fresnel, coat, horizon, spots, anisotropy, travel, satin, "
+          "tilts, texture, texture-lobes, operator, lights and extent (of lamps). spots draws the bright spots of the "
           "environment, such as its sun, as lamps that each horizon cuts by itself, and needs horizon. lobe-20, "
-          "gloss-900 and texture-0 (lobe0 of the "
-          "textures) are single lobes. tilts are the tilted lobes that stand for color maps under an environment, "
+          "gloss-900 and texture-0 (lobe0 of the textures) are single lobes. satin draws the rough coat of a paint as "
+          "a surface of facets, which integral and path do; to other engines the plan tells what it is worth. tilts "
+          "are the tilted lobes that stand for color maps under an environment, "
           "tilts-1 is the set with the fewest of them, and each finer set, as tilts-2, needs the one before; while "
           "they are drawn, the lobes of these paints are not. Three more are drawn by tracing rays: shadow (the mesh "
           "blocks light), self (lobes and mirror see the body instead of black) and bounce (the same for the diffuse "
@@ -184,7 +190,11 @@ void add_effects(cli::ToolSpec& spec, Options& o) {
           "Where the prefiltered maps err by more than the tolerance, half of what they err by is enough, unless "
           "--effects names effects of rays with a plus. Before drawing, the plan also compares what the "
           "prefiltered maps show at some points with the exact sum, adds what is left out and the noise, and says "
-          "in a sentence if the whole is not going to be within the tolerance, and what would keep it. The engine "
+          "in a sentence if the whole is not going to be within the tolerance, and what would keep it. A picture for "
+          "which nobody asks how accurate it is to be, nor how long it may take, is to cost seconds: without "
+          "--tolerance, --time-limit and --check its rays take at most 16 million samples, beside the first 8 of "
+          "each point, and the engine path is chosen where it is predicted to be faster and to need no more. --engine "
+          "path, --aov transport and shadow, self, bounce or rays with a plus have no such limit. The engine "
           "integral makes its sums as coarse as this tolerance allows at 95 of 100 points.");
   spec.option("budget", "MS", "20", &o.budget_ms, "longest time for shading a frame; 0 is no limit")
       .from(0, 1e6)
@@ -209,9 +219,10 @@ void add_engines(cli::ToolSpec& spec, Options& o) {
             "noise of the picture, estimated from them, is within --tolerance: that is the 95th percentile, over the "
             "visible pixels, of "
             "the CIEDE2000 difference of one standard deviation. A satin coat, see fit-paint --satin, is drawn by "
-            "path as the rough surface that has the readings of the paint. The other engines, and what their pictures "
-            "are compared with, draw the lobes that stand for it: these are round, and typically differ from the rough "
-            "surface by 1 to 3 dE00 at 95 of 100 points in a studio, and by more in the sun. auto takes path where the "
+            "integral and path as the rough surface that has the readings of the paint, with which --check compares "
+            "every picture. Prefiltered maps have the lobes that stand for it: these are round, and typically differ "
+            "from the rough surface by 1 to 3 dE00 at 95 of 100 points in a studio, and by more in the sun; the effect "
+            "satin of the plan tells by how much. auto takes path where the "
             "prefiltered maps are "
             "predicted not to keep --tolerance, and path is predicted to be faster than they and their rays. OpenGL is "
             "OSMesa where that is installed, and else the software renderer of EGL; --explain tells which. Where there "
@@ -344,6 +355,8 @@ void add_report(cli::ToolSpec& spec) {
       {"plan_de00_p95, plan_ms, plan_rays_ms",
        "change by all effects that are left out together, the time that planning took, and the part of it in which "
        "the effects of rays were priced"},
+      {"plan_most_samples",
+       "samples of rays that a picture may take, where neither accuracy nor time was asked for; null: no limit"},
       {"plan_path_ms, plan_path_samples",
        "predicted for a picture by the engine path within the tolerance: its time, and the samples of a pixel; null "
        "where prefiltered maps keep it, so that it was not priced"},
@@ -381,6 +394,8 @@ void add_report(cli::ToolSpec& spec) {
       {"gbuffer_ms", "time to rasterize the mesh once, be it for the plan or for the picture; 0 with --gbuffer"},
       {"frame_ms", "time to draw the picture with all samples, without reading and uploading"},
       {"triangles", "number of triangles of the mesh, where it was read"},
+      {"mesh: longest_side, unit_m",
+       "the longest side of the mesh's box in its units, and the meters of the unit that it is taken to be in"},
       {"parts[]: name, material, paint", "parts of the mesh and what they wear"},
       {"textures[]: part, file, projection, width",
        "what --texture laid where; projection is uv, planar, box, cylinder, sphere or decal, and width that of the "

@@ -30,6 +30,10 @@ std::string plan_table(const render::Plan& plan) {
   }
   if (plan.rays_ms > 0)
     text += fmt::format("rays: predicted {:.0f} ms, noise dE00 {:.2f}\n", plan.rays_ms, plan.rays_noise_de00);
+  if (plan.effects.most_samples_in_all > 0)
+    text += fmt::format(
+        "no tolerance, time limit or check is asked for: rays take at most {:.0f} million samples a picture\n",
+        1e-6 * plan.effects.most_samples_in_all);
   if (plan.open_de00_p95)
     text += fmt::format("open light as planned: dE00 {:.2f} to its exact sum (p95)\n", *plan.open_de00_p95);
   if (plan.whole_de00_p95) text += fmt::format("the whole: dE00 {:.2f} (p95) predicted\n", *plan.whole_de00_p95);

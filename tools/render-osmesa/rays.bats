@@ -69,6 +69,19 @@ of() { jq -r ".results.plan[] | select(.effect == \"$2\") | .$1" r.json; }
   [[ $output != *"predicted to miss"* ]]
 }
 
+@test "a picture of which nothing is asked costs no more than is said, and what is asked for is not cut" {
+  run render-osmesa $scene --explain -o out.exr --report r.json
+  [ "$status" -eq 0 ]
+  [[ $output == *"no tolerance, time limit or check is asked for: rays take at most 16 million samples a picture"* ]]
+  jq -e '.results.plan_most_samples == 16e6' r.json
+  for asked in "--tolerance 0.5" "--time-limit 60" "--effects auto,+rays --tolerance 6"; do
+    run render-osmesa $scene --explain $asked -o out.exr --report r.json
+    [ "$status" -eq 0 ] || [ "$status" -eq 4 ]
+    [[ $output != *"million samples"* ]]
+    jq -e '.results.plan_most_samples == null' r.json
+  done
+}
+
 @test "the mesh stands on the floor of the environment where that is the background" {
   render-osmesa -q $scene --tolerance 2 -o out.exr --report r.json
   [ "$(of needed floor)" = false ]

@@ -204,3 +204,22 @@ number() { sed -n '/"error": {/,/}/p' r.json | grep -m1 "\"$1\"" | sed -E 's/.*:
   [[ "$output" =~ "slide-map" ]]
   [ ! -e none.exr ]
 }
+
+# Maps hold round lobes; the reference has the facets of the coat, and so has the engine integral.
+@test "a satin coat is compared with its facets, which the plan prices and integral draws" {
+  readings='<gloss angle="20">8</gloss><gloss angle="60">40</gloss><gloss angle="85">40</gloss>'
+  sed '/name="reference_gray"/,/<\/paint>/s|<gloss angle="60">.*</gloss>|'"$readings|" "$TESTDATA/paints.paints.xml" >three.xml
+  fit-paint -q -b "$TESTDATA/b7.basis.xml" three.xml#reference_gray -o satin.xml
+  scene="--mesh $shape -p satin.xml --env small.env.exr --check-source small.exr --size 96x54 --samples 1 --check 60"
+  run render-osmesa $scene --explain -o maps.exr --report r.json
+  [ "$status" -le 1 ]
+  [[ "$output" =~ "prefiltered maps cannot show it, the engines integral and path do" ]]
+  [[ "$output" =~ "--engine integral sums it within the tolerance" ]]
+  satin='.results.plan[] | select(.effect == "satin")'
+  [ "$(jq -r "$satin | .decision" r.json)" = dropped ]
+  jq -e "$satin | .de00_p95 > 1 and .de00_p95 < 1.5 * .truth_de00_p95 and .truth_de00_p95 < 1.5 * .de00_p95" r.json
+  jq -e '.results.error.prefilter > 1' r.json
+  render-osmesa -q $scene --effects auto,-rays --engine integral -o facets.exr --report i.json
+  [ "$(jq -r "$satin | .decision" i.json)" = drawn ]
+  jq -e '.results.error.de00_p95 < 0.3' i.json
+}

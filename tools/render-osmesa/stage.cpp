@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "envmap/open_maps.h"
 #include "image/aov_file.h"
+#include "mesh/unit.h"
 #include "prefilter/lobe_tree.h"
 #include "render/aov.h"
 #include "spectra.h"
@@ -25,6 +26,16 @@ void tell_repairs(const mesh::Mesh& mesh, cli::Session& session) {
                                   {"degenerate_dropped", repairs.degenerate_dropped},
                                   {"polygons_split", repairs.polygons_split},
                                   {"triangles_turned", repairs.triangles_turned}};
+  const mesh::Box box = mesh::bounding_box(mesh);
+  const Vec3 sides = box.high - box.low;
+  const double longest = std::max({sides.x, sides.y, sides.z});
+  const mesh::LengthUnit unit = mesh::likely_unit(box);
+  session.results()["mesh"] = {{"longest_side", json_number(longest)}, {"unit_m", unit.meters}};
+  if (unit.meters != 1)
+    session.say(
+        fmt::format("the mesh is {:.4g} units long, which are taken as {} ({:.3g} m): places and heights are in "
+                    "units of the mesh",
+                    longest, unit.name, longest * unit.meters));
   if (repairs.normals_made > 0) {
     session.say(fmt::format("{} of {} vertices had no normal and got one", repairs.normals_made, mesh.normals.size()));
   }

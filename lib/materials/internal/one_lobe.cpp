@@ -19,6 +19,7 @@ OneLobe with(OneLobe p, const std::vector<Parameter>& x) {
   }
   p.roughness = x[6].value;
   if (x.size() > 7) p.strength = x[7].value;
+  if (x.size() > 8) p.metalness = x[8].value;
   return p;
 }
 
@@ -36,7 +37,8 @@ OneLobe coat_of(const paint::LobeFit& lobes) {
 // there, for paints without any. The darkest reflectance of
 // each channel is the first guess of the diffuse color, and the brightest that of the lobe, whose peak is
 // c/(4 pi alpha^2).
-OneLobe nearest_one_lobe(const paint::Paint& paint, const OneLobeModel& model, bool has_strength) {
+OneLobe nearest_one_lobe(const paint::Paint& paint, const OneLobeModel& model, Searched searched) {
+  const bool has_strength = searched != Searched::kColorsAndRoughness;
   const OneLobe coat = coat_of(*paint.lobes);
   const auto known = color::white_point(paint::condition_of(paint));
   const color::Xyz white = known.ok() ? *known : color::Xyz{1, 1, 1};
@@ -62,17 +64,22 @@ OneLobe nearest_one_lobe(const paint::Paint& paint, const OneLobeModel& model, b
   };
   double best = std::numeric_limits<double>::infinity();
   OneLobe nearest = coat;
+  constexpr double kLeastMetalness = 0.01;
   struct Start {
-    double roughness, strength;
+    double roughness, strength, metalness;
   };
-  for (const auto& [roughness, strength] : {Start{0.35, 0.9}, Start{0.55, 0.9}, Start{0.8, 0.9}, Start{0.55, 0.02}}) {
+  for (const auto& [roughness, strength, metalness] :
+       {Start{0.35, 0.9, 0}, Start{0.55, 0.9, 0}, Start{0.8, 0.9, 0}, Start{0.55, 0.02, 0}, Start{0.45, 0.5, 0.5},
+        Start{0.7, 0.5, 0.5}}) {
     if (!has_strength && strength < 0.9) continue;
+    if ((searched == Searched::kMetalnessToo) != (metalness > 0)) continue;
     const double peak = std::pow(roughness, 4);
     std::vector<Parameter> x;
     for (int c = 0; c < 3; ++c) x.push_back({darkest[c], 0, 1});
     for (int c = 0; c < 3; ++c) x.push_back({std::clamp(brightest[c] * peak, 0.01, 0.9), 0, 1});
     x.push_back({roughness, 0.08, 1});
     if (has_strength) x.push_back({strength, 0, 1});
+    if (searched == Searched::kMetalnessToo) x.push_back({metalness, kLeastMetalness, 1});
     const double sum = descend(x, residuals);
     if (sum < best) best = sum, nearest = with(coat, x);
   }
@@ -86,7 +93,8 @@ double rounded(double value) {
 OneLobe rounded(const OneLobe& parameters) {
   OneLobe p = parameters;
   for (int c = 0; c < 3; ++c) p.base[c] = rounded(p.base[c]), p.specular[c] = rounded(p.specular[c]);
-  for (double* value : {&p.strength, &p.roughness, &p.clearcoat, &p.clearcoat_roughness}) *value = rounded(*value);
+  for (double* value : {&p.strength, &p.roughness, &p.clearcoat, &p.clearcoat_roughness, &p.metalness})
+    *value = rounded(*value);
   return p;
 }
 

@@ -13,6 +13,7 @@ struct OneLobe {
   double strength = 1;        // of the lobe; 1 in models without it
   double roughness = 0.5;     // of which alpha is the square
   double clearcoat = 0, clearcoat_roughness = 0;
+  double metalness = 0;  // 0 in models that are not searched for it
 };
 
 // f of a model in 1/sr, Rec.709.
@@ -21,7 +22,9 @@ using OneLobeModel = std::function<color::Rgb(const OneLobe& parameters, const V
 // The parameters for which the squared color differences of the model from the lobes of the paint, over fit_samples(),
 // have the least sum. The clear coat is that of the paint: its factor is the share of Fresnel's reflectance that its
 // mirror and satin lobes have, and it is rough where the satin ones have the larger part.
-OneLobe nearest_one_lobe(const paint::Paint& paint, const OneLobeModel& model, bool has_strength);
+// What the search moves beside colors and roughness. A metalness that it moves stays above 0.
+enum class Searched { kColorsAndRoughness, kStrengthToo, kMetalnessToo };
+OneLobe nearest_one_lobe(const paint::Paint& paint, const OneLobeModel& model, Searched searched);
 
 // A number as files have it, in six digits, and the parameters in such numbers.
 double rounded(double value);

@@ -49,6 +49,10 @@ Result<Polygons> polygons_from_obj(std::string_view text, const Source& source);
 // is ".off", ".ply" or ".stl".
 Result<Polygons> polygons_from_soup(const std::string& content, const std::string& extension, const Source& source);
 
+// The polygons of a glTF text or of the bytes of a GLB file. Files that it names lie in `folder`; "" is none. Errors
+// name the element.
+Result<Polygons> polygons_from_gltf(const std::string& content, const Source& source, const std::string& folder);
+
 // Triangulates, drops what has no area, makes missing normals and turns triangles to their normals.
 // Error: nothing is left, or there are more than 2^32 corners.
 Result<Mesh> mesh_from_polygons(Polygons polygons, const std::string& path);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "base/angles.h"
@@ -111,7 +112,7 @@ Gatherer::Gatherer(const SurfacePoint& point, double texel_rad, double most_spre
       grain_(texel_rad, most_spread),
       summed_(most_spread == 0 && model_.tilts.empty()) {
   set_mirror_directions();
-  if (model_.map != nullptr) {
+  if (model_.map != nullptr || model_.coat) {
     const Vec3& n = point.normal;
     frame_x_ = normalized(cross(std::abs(n.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, n)), frame_y_ = cross(n, frame_x_);
     local_viewer_ = {dot(point.to_viewer, frame_x_), dot(point.to_viewer, frame_y_), cos_o_};
@@ -133,6 +134,8 @@ Gatherer::Gatherer(const SurfacePoint& point, double texel_rad, double most_spre
   for (const Mirrored& m : mirrored_) middles.push_back(m.direction);
   std::vector<double> exponents;
   for (auto lobe = lobes_.rbegin(); lobe != lobes_.rend(); ++lobe) exponents.push_back(lobe->exponent);
+  if (model_.coat) exponents.push_back(model_.coat->sharpest_exponent(cos_o_));
+  std::sort(exponents.begin(), exponents.end(), std::greater<>());
   grain_.add(std::move(middles), exponents);
 }
 
@@ -164,6 +167,10 @@ void Gatherer::add_light(const Light& light) {
   const color::Rgb f = irradiance * (mapped ? mapped_toward(light.direction) : let_in_of(light) * paint_.diffuse) +
                        lobes_toward_disc(light, mapped);
   add_reflected(f, kPi * light.white);
+  if (model_.coat) {
+    const double coat = model_.coat->over_disc(local_viewer_, local(light.direction), light.radius_rad);
+    add_reflected({coat, coat, coat}, kPi * light.white);
+  }
   if (light.meets(reflected_)) add_mirror(light.radiance());
 }
 
@@ -295,6 +302,10 @@ void Gatherer::add(const Patch& patch, const color::Rgb& radiance, bool horizon,
   color::Rgb f =
       above > 0 ? above * (mapped ? mapped_toward(patch.direction) : let_in(above) * paint_.diffuse) : color::Rgb{};
   if (above > 0 || !horizon) f += lobes_toward(patch, cos_i, mapped);
+  if (above > 0 && model_.coat) {
+    const double coat = model_.coat->sent(local(patch.direction), local_viewer_).f_cos;
+    f += {coat, coat, coat};
+  }
   const color::Rgb product =
       model_.reflection != nullptr ? goniochrome::color::reflected(*model_.reflection, f, radiance) : f * radiance;
   sum_ += patch.solid_angle_sr * product;
@@ -312,8 +323,11 @@ void Gatherer::add_mirror(const color::Rgb& radiance) {
 
 // A map holds reflectance factors, pi f. Isolines do not change when both directions turn about the normal.
 color::Rgb Gatherer::mapped_toward(const Vec3& direction) const {
-  const Vec3 light{dot(direction, frame_x_), dot(direction, frame_y_), dot(direction, point_.normal)};
-  return (1 / kPi) * brdf::reflectance_factor(*model_.map, light, local_viewer_, model_.treatment);
+  return (1 / kPi) * brdf::reflectance_factor(*model_.map, local(direction), local_viewer_, model_.treatment);
+}
+
+Vec3 Gatherer::local(const Vec3& direction) const {
+  return {dot(direction, frame_x_), dot(direction, frame_y_), dot(direction, point_.normal)};
 }
 
 color::Rgb Gatherer::lobes_toward(const Patch& patch, double cos_i, bool mapped) const {

@@ -93,6 +93,7 @@ class Gatherer {
   void add(const Patch& patch, const color::Rgb& radiance, bool horizon, bool mapped);
   color::Rgb lobes_toward(const Patch& patch, double cos_i, bool mapped) const;
   color::Rgb mapped_toward(const Vec3& direction) const;
+  Vec3 local(const Vec3& direction) const;
   color::Rgb lobes_toward_disc(const Light& light, bool mapped) const;
   color::Rgb lobe_over_disc(const paint::Lobe& lobe, const Vec3& mirrored, const Light& light, bool mapped) const;
   void add_reflected(const color::Rgb& f, const color::Rgb& light);
@@ -108,7 +109,7 @@ class Gatherer {
   paint::LobeFit paint_;  // its base as the coat lets it out
   double cos_o_ = 1;
   Vec3 reflected_;
-  Vec3 frame_x_, frame_y_, local_viewer_;  // of a color map, with the normal as z
+  Vec3 frame_x_, frame_y_, local_viewer_;  // of a color map and of facets, with the normal as z
   std::vector<Mirrored> mirrored_;
   std::vector<paint::Lobe> lobes_;  // finite exponents, ascending
   Grain grain_;

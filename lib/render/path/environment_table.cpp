@@ -42,13 +42,16 @@ EnvironmentTable::EnvironmentTable(const envmap::Environment& environment)
   rows_.assign(static_cast<std::size_t>(height_) + 1, 0.0);
   columns_.assign(static_cast<std::size_t>(height_) * (static_cast<std::size_t>(width_) + 1), 0.0F);
   std::vector<double> sums(static_cast<std::size_t>(width_) + 1, 0.0);
+  std::vector<double> row_sums;
   double squares = 0, sphere = 0;
   for (int row = 0; row < height_; ++row) {
+    double rising = 0;
     for (int column = 0; column < width_; ++column) {
       const color::Rgb light = texel_radiance(environment, column, row);
       const double mean = (light.x + light.y + light.z) / 3, solid_angle = environment.solid_angle(column, row);
       const auto at = static_cast<std::size_t>(column);
       sums[at + 1] = sums[at] + mean * solid_angle;
+      rising += solid_angle * environment.direction_at(column + 0.5, row + 0.5).y;
       squares += mean * mean * solid_angle;
       sphere += solid_angle;
     }
@@ -57,32 +60,30 @@ EnvironmentTable::EnvironmentTable(const envmap::Environment& environment)
     const double sum = sums.back();
     float* cumulative = &columns_[static_cast<std::size_t>(row) * (static_cast<std::size_t>(width_) + 1)];
     for (std::size_t i = 0; i < sums.size(); ++i) cumulative[i] = sum > 0 ? static_cast<float>(sums[i] / sum) : 0.0F;
-    rows_[static_cast<std::size_t>(row) + 1] = rows_[static_cast<std::size_t>(row)] + sum;
+    row_sums.push_back(sum), below_.push_back(rising < 0);
+    order_.push_back(row);
+  }
+  std::ranges::stable_partition(order_, [this](int row) { return below_[static_cast<std::size_t>(row)]; });
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    const auto row = static_cast<std::size_t>(order_[i]);
+    rows_[i + 1] = rows_[i] + row_sums[row];
+    if (below_[row]) below_share_ = rows_[i + 1];
   }
   total_ = rows_.back();
   extent_sr_ = squares > 0 ? total_ * total_ / squares : sphere;
   if (total_ > 0)
     for (double& row : rows_) row /= total_;
+  below_share_ = total_ > 0 ? below_share_ / total_ : 0;
+  row_share_.resize(order_.size());
+  for (std::size_t i = 0; i < order_.size(); ++i)
+    row_share_[static_cast<std::size_t>(order_[i])] = rows_[i + 1] - rows_[i];
   row_cosine_.push_back(-1);
   add_guide(rows_.data(), height_, kRowGuide, row_guide_);
   for (int row = 0; row < height_; ++row)
     add_guide(&columns_[static_cast<std::size_t>(row) * (static_cast<std::size_t>(width_) + 1)], width_, kColumnGuide,
               column_guide_);
-  lay_shares();
-}
-
-// As the tables have it, whose floats round: what is drawn and what at() says are the same.
-void EnvironmentTable::lay_shares() {
-  const auto width = static_cast<std::size_t>(width_);
-  shares_.reserve(width * static_cast<std::size_t>(height_));
-  for (std::size_t row = 0; row < static_cast<std::size_t>(height_); ++row) {
-    const float* cumulative = &columns_[row * (width + 1)];
-    for (std::size_t column = 0; column < width; ++column)
-      shares_.push_back(static_cast<float>((rows_[row + 1] - rows_[row]) *
-                                           (static_cast<double>(cumulative[column + 1]) - cumulative[column])));
-  }
-  for (int i = 0; environment_->grid().is_cube() && i <= width_; ++i)
-    edges_.push_back(environment_->grid().face_coordinate(i));
+  for (int i = 0; environment.grid().is_cube() && i <= width_; ++i)
+    edges_.push_back(environment.grid().face_coordinate(i));
 }
 
 // SphereGrid::solid_angle_density() of a direction within this texel: 1 + s^2 + t^2 of a unit direction is one over the
@@ -93,15 +94,38 @@ double EnvironmentTable::cube_density(const Float3& direction, int column, int r
   return (edges_[c + 1] - edges_[c]) * (edges_[r + 1] - edges_[r]) * (along * along * along);
 }
 
+double HorizonShares::stretched(double u) const {
+  constexpr double kBelowOne = 1 - 0x1p-40;
+  if (!(chance > 0)) return u;
+  return u < chance ? u / chance * light : std::min(light + (u - chance) / (1 - chance) * (1 - light), kBelowOne);
+}
+
+HorizonShares EnvironmentTable::with_below(double least) const {
+  if (!(below_share_ > 0) || below_share_ >= least) return {};
+  return {least, below_share_, least / below_share_, (1 - least) / (1 - below_share_)};
+}
+
+std::size_t EnvironmentTable::place_of_row(double u) const {
+  return static_cast<std::size_t>(interval(rows_.data(), height_, u, row_guide_.data(), kRowGuide));
+}
+
+void EnvironmentTable::fetch(double u, double v) const {
+  if (dark()) return;
+  const auto row = static_cast<std::size_t>(order_[place_of_row(u)]);
+  __builtin_prefetch(&column_guide_[row * kColumnGuide + static_cast<std::size_t>(v * kColumnGuide)]);
+}
+
 // Of a lat-long map directions are even in solid angle within a texel: in longitude and in the cosine from the pole.
 // Elsewhere they are even in column and row, for the density hardly changes over a texel.
 EnvironmentTable::Place EnvironmentTable::place(double u, double v) const {
   if (dark()) return {};
-  const int row = interval(rows_.data(), height_, u, row_guide_.data(), kRowGuide);
+  const std::size_t i = place_of_row(u);
+  const int row = order_[i];
   const auto r = static_cast<std::size_t>(row);
-  const float* cumulative = &columns_[r * (static_cast<std::size_t>(width_) + 1)];
+  const float* cumulative = this->cumulative(r);
   const int column = interval(cumulative, width_, v, &column_guide_[r * kColumnGuide], kColumnGuide);
-  const double down = std::clamp((u - rows_[r]) / (rows_[r + 1] - rows_[r]), 0.0, 1.0);
+  __builtin_prefetch(environment_->radiance(column, row));
+  const double down = std::clamp((u - rows_[i]) / (rows_[i + 1] - rows_[i]), 0.0, 1.0);
   const double right = std::clamp(
       (v - cumulative[column]) / (static_cast<double>(cumulative[column + 1]) - cumulative[column]), 0.0, 1.0);
   if (environment_->layout() == envmap::Environment::Layout::kLatLong) {
@@ -124,10 +148,13 @@ EnvironmentTable::Place EnvironmentTable::place(double u, double v) const {
           environment_->solid_angle_density(column + right, row + down)};
 }
 
+// The share as the tables have it, whose floats round: what is drawn and what at() says are the same.
 LightSample EnvironmentTable::light(const Float3& direction, int column, int row, double density) const {
-  const auto at = static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column);
-  return {direction, density > 0 ? static_cast<float>(shares_[at] / density) : 0.0F,
-          texel_radiance(*environment_, column, row)};
+  const auto r = static_cast<std::size_t>(row);
+  const float* edge = cumulative(r) + column;
+  const double share = row_share_[r] * (static_cast<double>(edge[1]) - edge[0]);
+  return {direction, density > 0 ? static_cast<float>(static_cast<float>(share) / density) : 0.0F,
+          texel_radiance(*environment_, column, row), below_[r]};
 }
 
 LightSample EnvironmentTable::light(const Place& place) const {

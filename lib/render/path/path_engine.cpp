@@ -132,7 +132,7 @@ Result<void> PathEngine::shade(Sight& sight, int sample, float gain, bool add, i
   const Effort effort = sight.effort();
   PathRequest request;
   request.options.bounces = effort.bounces;
-  request.tolerance_de00 = effects_.tolerance_de00;
+  request.tolerance_de00 = effects_.tolerance_de00, request.most_in_all = effects_.most_samples_in_all;
   request.time_limit_s = effort.time_limit_s;
   request.seed = effort.seed;
   request.progress = effort.progress;

@@ -14,12 +14,13 @@ namespace {
 
 // Points that one thread takes at a time.
 constexpr std::size_t kTogether = 64;
-// The fans of the first round. A fan is the least that can be traced, and most points need no more than a few.
-constexpr int kFirstFans = 2;
-// No round draws more than so many times the fans that a point has.
+// Samples are counted by fours, which are the fewest that can be traced. Most points need no more than a few: the first
+// round takes as many as tell a variance.
+constexpr int kOfFour = kHalfFan, kFirstFours = 2;
+// No round draws more than so many times the fours that a point has.
 constexpr int kGrowth = 3;
-// A round draws no less than this part of all fans so far: after each the noise of every point is judged anew, which
-// takes the time of a fan for every twenty of them.
+// A round draws no less than this part of all fours so far: after each the noise of every point is judged anew, which
+// takes the time of a fan for every twenty points.
 constexpr double kLeastRound = 1.0 / 16;
 // A point's own variance counts by its freedom, that of its neighborhood as so many.
 constexpr double kNeighborhood = 4;
@@ -29,46 +30,53 @@ std::uint64_t seed_of(std::uint64_t seed, std::uint64_t point, int batch) {
   return mixed(mixed(seed, point), static_cast<std::uint64_t>(batch));
 }
 
-// Of a round of so many fans at a point: as few sequences as tell a variance, each of as many directions as it takes,
+// Of a round of so many fours at a point: as few sequences as tell a variance, each of as many directions as it takes,
 // for the longer a sequence is, the more evenly it covers what the point sees.
 struct Round {
   static constexpr int kSequences = 2;
-  int length = 1;  // of each sequence, in fans: a power of two
+  int length = 1;  // of each sequence, in fours: a power of two
 
-  // No more than asked for, but at least one fan of each sequence.
-  explicit Round(int fans) {
-    while (2 * length * kSequences <= fans) length *= 2;
+  // No more than asked for, but at least four of each sequence.
+  explicit Round(int fours) {
+    while (2 * length * kSequences <= fours) length *= 2;
   }
-  int fans() const { return kSequences * length; }
+  int fours() const { return kSequences * length; }
+  // What is traced together: fans, but where a sequence is shorter.
+  int together() const { return std::min(length, kFan / kOfFour); }
+  int fans() const { return fours() / together(); }
+  // Of which sequence a fan is, and which of its samples is the fan's first.
+  int sequence_of(int fan) const { return fan * together() / length; }
+  std::uint32_t first_of(int fan) const { return static_cast<std::uint32_t>(kOfFour * (fan * together() % length)); }
 };
 
-// Independent estimates of what a point shows, gathered round by round. A round counts by its fans, whatever it found.
+// Independent estimates of what a point shows, gathered round by round. A round counts by its samples, whatever it
+// found.
 class Gathered {
  public:
   // The means over the sequences of a round.
   void add(const Round& round, const color::Rgb (&means)[Round::kSequences]) {
     Estimates of_round;
     for (const color::Rgb& mean : means) of_round.add(mean);
-    const double before = fans_, added = round.fans(), all = before + added, share = added / all;
+    const double before = fours_, added = round.fours(), all = before + added, share = added / all;
     mean_ = (1 - share) * mean_ + share * of_round.mean();
     const Covariance now = of_round.covariance();
     for (std::size_t k = 0; k < now.size(); ++k) {
-      const double old = before > 0 ? (1 - share) * (1 - share) * of_fan_[k] / before : 0;
-      of_fan_[k] = all * (old + share * share * now[k] / Round::kSequences);
+      const double old = before > 0 ? (1 - share) * (1 - share) * of_four_[k] / before : 0;
+      of_four_[k] = all * (old + share * share * now[k] / Round::kSequences);
     }
-    fans_ += round.fans(), freedom_ += Round::kSequences - 1;
+    fours_ += round.fours(), freedom_ += Round::kSequences - 1;
   }
 
   const color::Rgb& mean() const { return mean_; }
-  int fans() const { return fans_; }
+  int fours() const { return fours_; }
   int freedom() const { return freedom_; }  // of the covariance
-  // Of the mean, times fans(): what a fan counts.
-  const Covariance& of_fan() const { return of_fan_; }
+  // Of the mean, times fours(): what four samples count.
+  const Covariance& of_four() const { return of_four_; }
 
  private:
   color::Rgb mean_;
-  Covariance of_fan_{};
-  int fans_ = 0, freedom_ = 0;
+  Covariance of_four_{};
+  int fours_ = 0, freedom_ = 0;
 };
 
 class Picture {
@@ -106,7 +114,7 @@ class Picture {
   }
 
   PathPicture draw() {
-    std::vector<int> more(points_.size(), kFirstFans);
+    std::vector<int> more(points_.size(), kFirstFours);
     double noise = 0;
     bool reached = false;
     while (true) {
@@ -115,7 +123,7 @@ class Picture {
       noise = judge();
       if (request_.progress) request_.progress(noise, clock_.elapsed_s());
       reached = request_.tolerance_de00 > 0 && noise <= request_.tolerance_de00;
-      if (reached || deadline_.passed() || !plan(noise, more)) break;
+      if (reached || deadline_.passed() || !plan(noise, more) || !within_all(more)) break;
     }
     PathPicture picture;
     picture.reached = reached;
@@ -123,7 +131,7 @@ class Picture {
     const double count = std::max<double>(1, static_cast<double>(points_.size()));
     for (std::size_t i = 0; i < points_.size(); ++i) {
       PathPoint& point = points_[i];
-      point.needed_samples = kFan * states_[i].needed;
+      point.needed_samples = kOfFour * states_[i].needed;
       picture.noise_mean_de00 += point.noise_de00;
       picture.samples_mean += point.samples;
       picture.free_share += point.samples == 0 ? 1 : 0;
@@ -182,7 +190,7 @@ class Picture {
   struct State {
     Gathered sums;
     color::Rgb sure;
-    double needed = 0;  // fans that bring the noise of the neighborhood to the tolerance
+    double needed = 0;  // fours that bring the noise of the neighborhood to the tolerance
     bool certain = false;
     bool hidden = false;          // most of its light: all that is left is summed, from which the base is taken
     std::uint16_t uncertain = 0;  // samples of the pixel whose light is not known without paths
@@ -220,8 +228,8 @@ class Picture {
     return step;
   }
 
-  void sample(std::size_t i, int fans) {
-    if (count_ > 1) return sample_spread(i, fans);
+  void sample(std::size_t i, int fours) {
+    if (count_ > 1) return sample_spread(i, fours);
     State& state = states_[i];
     const PathPoint& point = points_[i];
     const Gbuffer& g = surface_.gbuffer;
@@ -230,13 +238,9 @@ class Picture {
     state.certain = at.certain();
     state.sure = at.sure();
     if (state.certain) return;
-    const Round round(fans);
+    const Round round(fours);
     color::Rgb means[Round::kSequences];
-    for (int k = 0; k < round.fans(); ++k) {
-      const int which = k / round.length, of_sequence = k % round.length;
-      means[which] +=
-          (1.0 / round.length) * at.fan_of(sequence(i, which, round), kFan * static_cast<std::uint32_t>(of_sequence));
-    }
+    for (int fan = 0; fan < round.fans(); ++fan) add_fan(at, i, round, fan, means);
     state.sums.add(round, means);
   }
 
@@ -256,23 +260,27 @@ class Picture {
     return {transport_, options_of(i), spot, -direction};
   }
 
-  // The sequences of a round at a point; those of other rounds are others.
-  Sequence sequence(std::size_t i, int which, const Round& round) const {
-    return Sequence(seed_of(request_.seed, i, states_[i].sums.fans() + which),
-                    static_cast<std::uint32_t>(kFan * round.length));
+  // Each round at a point has sequences of its own.
+  void add_fan(const PointTransport& at, std::size_t i, const Round& round, int fan,
+               color::Rgb (&means)[Round::kSequences]) const {
+    const int which = round.sequence_of(fan);
+    const Sequence sequence(seed_of(request_.seed, i, states_[i].sums.fours() + which),
+                            static_cast<std::uint32_t>(kOfFour * round.length));
+    means[which] += (static_cast<double>(round.together()) / round.length) *
+                    at.part_of(sequence, round.first_of(fan), static_cast<std::uint32_t>(kOfFour * round.together()));
   }
 
   // The fans take the samples of the pixel in turn from one drawn by chance: the mean over all fans has the right
   // expectation, and the differences between samples count as noise while not all have been seen.
-  void sample_spread(std::size_t i, int fans) {
+  void sample_spread(std::size_t i, int fours) {
     State& state = states_[i];
-    const Round round(fans);
+    const Round round(fours);
     const auto count = static_cast<unsigned>(count_);
     const unsigned covered = coverage_.any[place(points_[i].x, points_[i].y)];
-    const bool first_time = state.sums.fans() == 0;
+    const bool first_time = state.sums.fours() == 0;
     if (first_time) state.uncertain = 0, state.sure = {};
     const unsigned first =
-        (static_cast<unsigned>(mixed(request_.seed, i) >> 32) + static_cast<unsigned>(state.sums.fans())) % count;
+        (static_cast<unsigned>(mixed(request_.seed, i) >> 32) + static_cast<unsigned>(state.sums.fours())) % count;
     color::Rgb means[Round::kSequences];
     for (unsigned sample = 0; sample < count; ++sample) {
       if ((covered >> sample & 1U) == 0) continue;
@@ -285,11 +293,7 @@ class Picture {
         if (!at.certain()) state.uncertain = static_cast<std::uint16_t>(state.uncertain | 1U << sample);
       }
       if (at.certain()) continue;
-      for (; fan < round.fans(); fan += static_cast<int>(count)) {
-        const int which = fan / round.length, of_sequence = fan % round.length;
-        means[which] +=
-            (1.0 / round.length) * at.fan_of(sequence(i, which, round), kFan * static_cast<std::uint32_t>(of_sequence));
-      }
+      for (; fan < round.fans(); fan += static_cast<int>(count)) add_fan(at, i, round, fan, means);
     }
     state.certain = state.uncertain == 0;
     if (!state.certain) state.sums.add(round, means);
@@ -301,7 +305,7 @@ class Picture {
       for (std::size_t i = begin; i < end; ++i) {
         points_[i].radiance = states_[i].sure + states_[i].sums.mean();
         if (states_[i].hidden) points_[i].radiance += -1.0 * base_at(points_[i]);
-        points_[i].samples = kFan * states_[i].sums.fans();
+        points_[i].samples = kOfFour * states_[i].sums.fours();
       }
     });
     parallel_for(points_.size(), 1024, [&](std::size_t begin, std::size_t end) {
@@ -325,9 +329,9 @@ class Picture {
     State& state = states_[i];
     point.covariance = {};
     point.noise_de00 = state.needed = 0;
-    const int fans = state.sums.fans();
-    if (fans == 0) return;
-    const Covariance& own = state.sums.of_fan();
+    const int fours = state.sums.fours();
+    if (fours == 0) return;
+    const Covariance& own = state.sums.of_four();
     Covariance around{};
     color::Rgb light;
     int count = 0;
@@ -335,16 +339,16 @@ class Picture {
       for (int x = std::max(0, point.x - kReach); x <= std::min(surface_.gbuffer.width - 1, point.x + kReach); ++x) {
         const std::int32_t number = number_[place(x, y)];
         const auto other = static_cast<std::size_t>(number);
-        if (number < 0 || other == i || states_[other].sums.fans() == 0) continue;
+        if (number < 0 || other == i || states_[other].sums.fours() == 0) continue;
         ++count;
         light += points_[other].radiance;
-        for (std::size_t k = 0; k < 6; ++k) around[k] += states_[other].sums.of_fan()[k];
+        for (std::size_t k = 0; k < 6; ++k) around[k] += states_[other].sums.of_four()[k];
       }
     }
     const double freedom = state.sums.freedom();
     for (std::size_t k = 0; k < 6; ++k)
       point.covariance[k] =
-          (freedom * own[k] + kNeighborhood * (around[k] + own[k]) / (count + 1)) / (freedom + kNeighborhood) / fans;
+          (freedom * own[k] + kNeighborhood * (around[k] + own[k]) / (count + 1)) / (freedom + kNeighborhood) / fours;
     point.noise_de00 = noise_of(i, point.radiance, point.covariance);
     // How many samples a point is to get is decided by its neighbors alone: were its own sums asked, it would stop
     // where they happen to be bright, and the mean would be too.
@@ -366,25 +370,25 @@ class Picture {
 
   double tolerance() const { return request_.tolerance_de00 > 0 ? request_.tolerance_de00 : 1e-9; }
 
-  // How many fans each point is to get next: as many as its neighborhood's noise asks for, at most so many
+  // How many fours each point is to get next: as many as its neighborhood's noise asks for, at most so many
   // times what it has. The twentieth part of the points that would need most get no more than the rest. Where the
   // neighborhoods are content but the picture is not, or would draw too little for a round, all is scaled by what it
   // lacks, unless points that got all that they may get keep the picture from its tolerance. Whether there are any.
   bool plan(double noise, std::vector<int>& more) const {
     const double typical = worse_percentile([this](std::size_t i) { return states_[i].needed; });
-    const double limit = request_.most_samples / kFan, lacking = noise / tolerance();
+    const double limit = request_.most_samples / kOfFour, lacking = noise / tolerance();
     const bool in_vain =
         request_.tolerance_de00 > 0 && tolerance() < worse_percentile([&](std::size_t i) {
-                                         return states_[i].sums.fans() >= limit ? points_[i].noise_de00 : 0;
+                                         return states_[i].sums.fours() >= limit ? points_[i].noise_de00 : 0;
                                        });
     double drawn = 0;
-    for (const State& state : states_) drawn += state.sums.fans();
+    for (const State& state : states_) drawn += state.sums.fours();
     for (double scale = 1;; scale *= 1.1 * std::max(1.0, lacking * lacking)) {
       const double most = std::min(std::ceil(1.05 * scale * typical), limit);
       double asked = 0;
       bool limited = true;
       for (std::size_t i = 0; i < points_.size(); ++i) {
-        const double n = states_[i].sums.fans(), wanted = std::min(std::ceil(scale * states_[i].needed), most) - n;
+        const double n = states_[i].sums.fours(), wanted = std::min(std::ceil(scale * states_[i].needed), most) - n;
         more[i] = static_cast<int>(std::clamp(wanted, 0.0, kGrowth * n));
         asked += more[i];
         limited = limited && (n == 0 || states_[i].needed == 0 || n >= limit);
@@ -393,6 +397,25 @@ class Picture {
       if (in_vain) return false;
       if (limited || scale > 1e6) return asked > 0;
     }
+  }
+
+  // Cuts the round so that no more samples are drawn in all than may be; whether any are left. All points lose the
+  // same part of what they were to get, and what is too little to be drawn is passed on to the points that follow.
+  bool within_all(std::vector<int>& more) const {
+    if (request_.most_in_all == 0) return true;
+    double drawn = 0, asked = 0;
+    for (const State& state : states_) drawn += state.sums.fours();
+    for (const int fours : more) asked += fours;
+    const double left = request_.most_in_all / kOfFour - drawn;
+    if (left >= asked) return true;
+    double due = 0;
+    bool any = false;
+    for (int& fours : more) {
+      due += std::max(0.0, left) / asked * fours;
+      fours = due >= Round::kSequences ? Round(std::min(fours, static_cast<int>(due))).fours() : 0;
+      due -= fours, any = any || fours > 0;
+    }
+    return any;
   }
 
   const Transport& transport_;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "base/hard_case_for_test.h"
@@ -212,6 +213,31 @@ TEST(PathPicture, TakesFewRounds) {
   }
 }
 
+// Nobody waits for a picture longer than its samples may take, whatever the tolerance is, and all points have their
+// share of them. The control has no such limit.
+TEST(PathPicture, TakesNoMoreSamplesInAllThanItMay) {
+  const auto stage = ball_in_a_cup();
+  const VisibleSurface surface = seen_from_above(*stage, 32, 24);
+  PathRequest request;
+  request.tolerance_de00 = 1;
+  std::array<double, 2> drawn{};
+  for (const bool limited : {false, true}) {
+    request.most_in_all = limited ? 0.3 * drawn[0] : 0;
+    const PathPicture picture = path_picture(*stage->transport, surface, nullptr, request);
+    double sum = 0, least = 1e9;
+    for (const PathPoint& point : picture.points) {
+      sum += point.samples;
+      if (point.noise_de00 > request.tolerance_de00) least = std::min<double>(least, point.samples);
+    }
+    drawn[limited ? 1 : 0] = sum;
+    EXPECT_EQ(picture.reached, !limited);
+    if (!limited) continue;
+    EXPECT_LE(sum, request.most_in_all);
+    EXPECT_GT(sum, 0.8 * request.most_in_all) << "it is made use of";
+    EXPECT_GT(least, 16) << "what is noisy got more than the first round has";
+  }
+}
+
 // Where light grazes a smooth ball of few triangles its facets would shade each other, and the border of light and
 // shadow would be jagged. Over a plane that is there twice, at three sizes, every pixel of the lit side shows the
 // cosine of its smooth normal. The control starts its rays on the flat triangles.
@@ -264,7 +290,8 @@ TEST(HardCase, SmoothBallsAreLitSmoothlyAtAnyScale) {
 }
 
 // Deep in a cup under even light of 1 a matt paint of albedo a shows a without the cup. What is added to that makes the
-// same picture as a sum of all light, also where all that is left is summed; and that has less noise.
+// same picture as a sum of all light, also where all that is left is summed; and that has less noise by as many
+// samples.
 TEST(PathPicture, CorrectsHiddenPointsByTheSumOfWhatIsLeft) {
   constexpr double kAlbedo = 0.5;
   PathStage stage(box_mesh(false), {matt({kAlbedo, kAlbedo, kAlbedo})});
@@ -280,6 +307,7 @@ TEST(PathPicture, CorrectsHiddenPointsByTheSumOfWhatIsLeft) {
   request.tolerance_de00 = 0.5;
   const PathPicture whole = path_picture(*stage.transport, surface, nullptr, request);
   request.options.correction = true, request.seed = 2;
+  request.tolerance_de00 = 0, request.most_samples = 64;
   const PathPicture added = path_picture(*stage.transport, surface, &base, request);
   request.options.correction = true, request.seed = 3;
   const PathPicture never_hidden = path_picture(*stage.transport, surface, nullptr, request);
@@ -292,7 +320,8 @@ TEST(PathPicture, CorrectsHiddenPointsByTheSumOfWhatIsLeft) {
     const rays::Spot spot = spot_at(stage.transport->rays(), surface, a.x, a.y);
     if (stage.transport->open_share(spot) >= kMostlyHidden) continue;
     ++hidden;
-    left += a.covariance[1] * a.samples, taken += c.covariance[1] * c.samples;
+    ASSERT_EQ(a.samples, c.samples);
+    left += a.covariance[1], taken += c.covariance[1];
   }
   EXPECT_LT(std::abs(difference), 4 * std::sqrt(variance));
   ASSERT_GT(hidden, 20);

@@ -15,6 +15,9 @@ using rays::Hit;
 using rays::Spot;
 
 constexpr float kInversePi = 1 / static_cast<float>(kPi);
+// The least chance that a direction that is drawn from the environment comes from below the horizon, where a floor is
+// all that changes the light of most points: of an upright surface, and of any.
+constexpr double kUprightBelowChance = 0.4, kMostBelowChance = 0.6;
 // The most and least chance that a direction is drawn from the environment where there is one.
 constexpr float kLeastLightChance = 0.1F, kMostLightChance = 0.75F, kLeastWindowLightChance = 0.05F;
 
@@ -59,6 +62,9 @@ PointTransport::PointTransport(const Transport& transport, const PathOptions& op
   } else if (transport.environment_) {
     const float wide = 1 - painted_.narrow_share(transport.environment_->extent_sr());
     light_chance_ = std::clamp(kMostLightChance * wide, kLeastLightChance, kMostLightChance);
+    if (over_ground_ && correction_)
+      horizon_ = transport.environment_->with_below(
+          std::min(kMostBelowChance, kUprightBelowChance * (1.0 - static_cast<double>(spot.shading.y))));
   }
   open_ = !transport.rays_->has_floor() && !transport.rays_->any_above(spot.start, spot.shading, 0);
   const bool free = open_ && options.correction;
@@ -159,7 +165,7 @@ color::Rgb PointTransport::lamp_shadows(const Sequence& sequence, std::uint32_t 
     };
     for (std::uint32_t first = begin; first < begin + count; first += kFan) {
       rays::Fan to_places = lamp_fan(lamp.seen), to_lobes = to_places;
-      for (std::uint32_t i = 0; i < kFan; ++i) {
+      for (std::uint32_t i = 0; i < std::min<std::uint32_t>(kFan, begin + count - first); ++i) {
         const std::array<double, 4> numbers = places.point(first + i);
         aim(to_places, i, Transport::drawn_from(lamp.seen, numbers[0], numbers[1]).direction);
         if (!by_lobes) continue;
@@ -208,13 +214,14 @@ double PointTransport::drawn_pdf(const Float3& direction, const Reflection& refl
   return window_ ? transport_.ground_->density(*window_, rays::vec3(direction)) : reflection.pdf;
 }
 
-PointTransport::Ray PointTransport::drawn_ray(const std::array<double, 4>& numbers, std::uint32_t of_fan) const {
+PointTransport::Ray PointTransport::drawn_ray(const std::array<double, 4>& numbers, std::uint32_t of_fan,
+                                              std::uint32_t rays) const {
   Ray ray;
   if (window_ && transport_.ground_->has_bright()) {
     // So many rays of a fan go there, and the others look past them.
-    constexpr std::uint32_t kBright = 2;
-    ray.weight = static_cast<double>(kFan) / (of_fan < kBright ? kBright : kFan - kBright);
-    if (of_fan < kBright) {
+    const std::uint32_t bright = rays / 4;
+    ray.weight = static_cast<double>(rays) / (of_fan < bright ? bright : rays - bright);
+    if (of_fan < bright) {
       ray.bright = transport_.ground_->drawn_bright(numbers[1], numbers[2], numbers[3]);
       ray.direction = rays::float3(ray.bright.direction);
       ray.above = ray.bright.pdf > 0 && rays::dot(ray.direction, spot_.shading) > 0;
@@ -222,7 +229,7 @@ PointTransport::Ray PointTransport::drawn_ray(const std::array<double, 4>& numbe
     }
   }
   if (numbers[0] < light_chance_) {
-    ray.place = transport_.environment_->place(numbers[1], numbers[2]);
+    ray.place = transport_.environment_->place(horizon_.stretched(numbers[1]), numbers[2]);
     if (!(ray.place->density > 0)) return ray;
     ray.direction = ray.place->direction;
     if (over_ground_ && transport_.uneven_ground_ && ray.direction.y < 0) {
@@ -299,7 +306,7 @@ LightShares PointTransport::shown_over_ground(const Ray& ray, const Hit& hit, co
     const Reflection reflection = painted_.at(hidden);
     if (reflection.pdf > 0) {
       const LightSample light = light_from(hidden);
-      shares.direct = -1.0 * reflect(scale(light.pdf, reflection) * reflection.f_cos, light.radiance);
+      shares.direct = -1.0 * reflect(scale(horizon_.pdf(light), reflection) * reflection.f_cos, light.radiance);
     }
   }
   if (!ray.above || (!blocked && correction_)) return shares;
@@ -308,12 +315,12 @@ LightShares PointTransport::shown_over_ground(const Ray& ray, const Hit& hit, co
   color::Rgb arriving, sent;
   double light_pdf = 0;
   if (ray.direction.y < 0 && transport_.uneven_ground_) {
-    light_pdf = transport_.ground_pdf(spot_.start, ray.direction);
+    light_pdf = transport_.ground_pdf(spot_.start, ray.direction, horizon_);
   } else if (ray.direction.y < 0) {
-    light_pdf = light_from(ray.direction).pdf;
+    light_pdf = horizon_.pdf(light_from(ray.direction));
   } else {
     const LightSample light = light_from(ray.direction);
-    light_pdf = light.pdf;
+    light_pdf = horizon_.pdf(light);
     if (blocked == correction_) arriving = (blocked ? -1.0 : 1.0) * light.radiance;
   }
   const float scaled = scale(light_pdf, reflection);
@@ -384,15 +391,21 @@ LightShares PointTransport::shares_of(const Sequence& sequence, std::uint32_t be
       Ray rays[kFan];
       rays::Fan fan;
       fan.origin = spot_.start;
-      for (std::uint32_t i = 0; i < 8; ++i) {
-        rays[i] = drawn_ray(numbers.point(first + i), i);
+      const std::uint32_t traced = std::min<std::uint32_t>(kFan, begin + count - first);
+      std::array<double, 4> drawn[kFan];
+      for (std::uint32_t i = 0; i < traced; ++i) {
+        drawn[i] = numbers.point(first + i);
+        if (drawn[i][0] < light_chance_) transport_.environment_->fetch(horizon_.stretched(drawn[i][1]), drawn[i][2]);
+      }
+      for (std::uint32_t i = 0; i < traced; ++i) {
+        rays[i] = drawn_ray(drawn[i], i, traced);
         fan.x[i] = rays[i].direction.x, fan.y[i] = rays[i].direction.y, fan.z[i] = rays[i].direction.z;
         if (rays[i].above && rays::dot(rays[i].direction, mesh_axis_) >= mesh_cosine_) fan.wanted |= 1U << i;
       }
       if (over_ground_) {
         Hit hits[kFan];
         if (fan.wanted != 0) transport_.rays_->closest(fan, hits);
-        for (std::uint32_t i = 0; i < kFan; ++i) {
+        for (std::uint32_t i = 0; i < traced; ++i) {
           if (any_blocked != nullptr && hits[i].any()) *any_blocked = true;
           sum += shown_over_ground(rays[i], hits[i], sequence, first + i);
         }
@@ -400,7 +413,7 @@ LightShares PointTransport::shares_of(const Sequence& sequence, std::uint32_t be
       }
       const unsigned blocked = fan.wanted != 0 ? transport_.rays_->blocked(fan) : 0;
       if (any_blocked != nullptr && blocked != 0) *any_blocked = true;
-      for (std::uint32_t i = 0; i < 8; ++i) {
+      for (std::uint32_t i = 0; i < traced; ++i) {
         const bool is_blocked = (blocked >> i & 1U) != 0;
         if (!rays[i].above || (!is_blocked && (correction_ || !transport_.environment_))) continue;
         if (rays[i].weight == 1) {

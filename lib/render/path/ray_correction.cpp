@@ -79,7 +79,7 @@ CorrectionNoise add_correction(const Transport& transport, const std::vector<Vis
   paths.tolerance_de00 = request.tolerance_de00;
   paths.white_luminance = request.white_luminance > 0 ? request.white_luminance : 1;
   paths.seed = request.seed;
-  paths.most_samples = request.most_samples;
+  paths.most_samples = request.most_samples, paths.most_in_all = request.most_in_all;
   paths.time_limit_s = request.time_limit_s;
   paths.progress = request.progress;
   const PathPicture drawn = path_picture(transport, samples, &before, paths);

@@ -22,6 +22,7 @@ struct CorrectionRequest {
   double white_luminance = 1;
   std::uint64_t seed = 1;
   int most_samples = 1 << 16;  // of rays, at each point
+  double most_in_all = 0;      // at all points together, as PathRequest has it
   double time_limit_s = 0;     // 0: none
   std::function<void(double noise_de00, double seconds)> progress = {};
 };

@@ -135,7 +135,9 @@ TEST(ShadedGround, LightsTheBodyAsPathsDo) {
             << at.x << " " << at.y << " " << at.z << ", channel " << c << ", " << correction;
         EXPECT_LT(noise, 0.02);
       }
-      EXPECT_LT(deviation(read), deviation(truth)) << "what the grid is for";
+      // What the grid is for: corrections have less noise. A whole sum has that of the light above the horizon either
+      // way, which differs by a few percent from seed to seed.
+      EXPECT_LT(deviation(read), (correction ? 0.7 : 1.05) * deviation(truth));
     }
   }
 }

@@ -108,14 +108,14 @@ Float3 Transport::toward_ground(const Float3& from, const Float3& from_eye) cons
 }
 
 // That of the environment's table where it was seen from, by the ratio of the solid angles of a piece of the floor.
-double Transport::ground_pdf(const Float3& from, const Float3& direction) const {
+double Transport::ground_pdf(const Float3& from, const Float3& direction, const HorizonShares& horizon) const {
   const float distance = rays_->floor_distance(from, direction);
   const Float3 seen = from + distance * direction - ground_eye_;
   const float eye_distance = rays::length(seen);
   if (!(distance > 0) || !(eye_distance > 0)) return 0;
   const Float3 from_eye = (1 / eye_distance) * seen;
   const double ratio = static_cast<double>(distance) / eye_distance;
-  return environment_->at(from_eye).pdf * ratio * ratio * (from_eye.y / direction.y);
+  return horizon.pdf(environment_->at(from_eye)) * ratio * ratio * (from_eye.y / direction.y);
 }
 
 // Directions even by the cosine. Light from the ground counts by what the mesh leaves of it.
@@ -361,6 +361,8 @@ color::Rgb Transport::bounced(Hit hit, Float3 origin, Float3 direction, const Pa
   for (int bounce = 1, surfaces = 0;; ++bounce) {
     if (shaded_ != nullptr && is_laid(hit))
       return sum + path.shown(met_ground(hit, origin, direction, sequence.point(index, set)[0]).sum());
+    const std::array<double, 4> to_light = sequence.point(index, set), onward = sequence.point(index, set + 1);
+    if (environment_) environment_->fetch(to_light[0], to_light[1]);
     const Vertex vertex(*this, rays_->spot(hit, origin, direction), -direction);
     if (vertex.is_laid) {
       sum += path.shown(vertex.open);
@@ -368,7 +370,7 @@ color::Rgb Transport::bounced(Hit hit, Float3 origin, Float3 direction, const Pa
       break;
     }
     if (vertex.painted.black()) break;
-    const std::array<double, 4> to_light = sequence.point(index, set++), onward = sequence.point(index, set++);
+    set += 2;
     sum += direct_light(vertex, path, to_light, onward[3]);
     const Next next = next_ray(vertex, path, onward);
     if (!(next.pdf > 0)) break;

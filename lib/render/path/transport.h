@@ -82,7 +82,8 @@ constexpr LightShares operator*(double scale, const LightShares& a) {
 
 // How many samples are drawn together from one sequence. Their mean is one independent estimate.
 constexpr int kBatch = 16;
-constexpr int kFan = 8;  // and how many of them are traced together
+constexpr int kFan = 8;             // and how many of them are traced together
+constexpr int kHalfFan = kFan / 2;  // the fewest that can be
 
 // Immutable: for any number of threads at once.
 class Transport {
@@ -124,7 +125,7 @@ class Transport {
   // The direction from a point to where the floor shows what the environment has in a direction below the horizon, and
   // the density by which the environment's table draws a direction so.
   rays::Float3 toward_ground(const rays::Float3& from, const rays::Float3& from_eye) const;
-  double ground_pdf(const rays::Float3& from, const rays::Float3& direction) const;
+  double ground_pdf(const rays::Float3& from, const rays::Float3& direction, const HorizonShares& horizon) const;
   LightShares shown_ground(const rays::Spot& spot, const GroundLight& light) const;
   // The same where a path meets the floor, by a number in [0,1); nothing from below.
   LightShares met_ground(const rays::Hit& hit, const rays::Float3& origin, const rays::Float3& direction,
@@ -200,7 +201,7 @@ class PointTransport {
   bool certain() const { return certain_; }
   // The mean of kBatch samples of the rest, drawn from a sequence of this seed. Its expectation is the rest, exactly.
   color::Rgb batch(std::uint64_t seed) const { return part_of_batch(seed, 0, kBatch); }
-  // The mean of the samples first, first + 1, ... of the same; `first` and `count` are multiples of kFan.
+  // The mean of the samples first, first + 1, ... of the same; `first` and `count` are multiples of kHalfFan.
   color::Rgb part_of_batch(std::uint64_t seed, std::uint32_t first, std::uint32_t count) const {
     return batch_shares(seed, first, count).sum();
   }
@@ -209,9 +210,9 @@ class PointTransport {
                            bool* any_blocked = nullptr) const {
     return shares_of(Sequence(seed, kBatch), first, count, any_blocked);
   }
-  // The mean of kFan samples of any sequence, from the number `first` on, which is a multiple of kFan.
-  color::Rgb fan_of(const Sequence& sequence, std::uint32_t first) const {
-    return shares_of(sequence, first, kFan, nullptr).sum();
+  // The same of any sequence.
+  color::Rgb part_of(const Sequence& sequence, std::uint32_t first, std::uint32_t count) const {
+    return shares_of(sequence, first, count, nullptr).sum();
   }
 
  private:
@@ -221,7 +222,7 @@ class PointTransport {
   void add_lights();
   void add_mirror();
   double drawn_pdf(const rays::Float3& direction, const Reflection& reflection) const;
-  Ray drawn_ray(const std::array<double, 4>& numbers, std::uint32_t of_fan) const;
+  Ray drawn_ray(const std::array<double, 4>& numbers, std::uint32_t of_fan, std::uint32_t rays) const;
   // Rays to a lamp, none of which is aimed yet.
   rays::Fan lamp_fan(const Transport::SeenLamp& lamp) const;
   // Sends a ray of a fan there if that is above the horizon.
@@ -248,6 +249,7 @@ class PointTransport {
   rays::Float3 mesh_axis_;
   float mesh_cosine_ = -2;
   float light_chance_ = 0;  // of a direction that is drawn from the environment
+  HorizonShares horizon_;   // of such directions
   rays::Hit mirror_hit_;
   std::uint32_t mirror_samples_ = 0;  // in a batch
   // Lamps that are discs, parts of which the mesh may hide: samples tell what is hidden, or what is free where that is

@@ -50,7 +50,11 @@ void add_lobes(const Scene& scene, const Effects& all, bool gloss, std::vector<E
     const int parts = wearing(scene, exponent, gloss);
     list.push_back({fmt::format("{}-{}", gloss ? "gloss" : "lobe", shortest(exponent)), group, true,
                     fmt::format("{} on {} visible part{}", gloss ? "gloss" : "flake", parts, parts == 1 ? "" : "s"),
-                    [=](Effects& e) { remove_weight(e, exponent, gloss); }, gloss});
+                    [=](Effects& e) {
+                      remove_weight(e, exponent, gloss);
+                      if (gloss) e.satin = false;
+                    },
+                    gloss});
     list.back().left_to_tilts = !gloss && std::ranges::any_of(scene.paints, [&](const paint::LobeFit& paint) {
       return !paint.tilts.empty() && wears_lobe(paint, exponent, LobeWeight::kDirectionalDiffuse);
     });
@@ -207,14 +211,14 @@ std::vector<EffectSwitch> effect_switches(const Scene& scene, const Effects& all
       : !all.environment ? "a smooth coat mirrors the lamps"
       : all.extent       ? "a smooth coat mirrors the environment and the lamps"
                          : "a smooth coat mirrors the environment",
-      [](Effects& e) { e.mirror = false; });
+      [](Effects& e) { e.mirror = e.satin = false; });
   list.back().is_highlight = all.extent;
   const double grazing = percent(seen, [](const VisiblePoint& p) { return cos_o(p) < kGrazingCos; });
   add("fresnel", all.fresnel,
       !all.fresnel  ? "neither gloss lobes nor mirror"
       : grazing > 0 ? fmt::format("{:.0f} % of what is seen lies beyond 60 deg", grazing)
                     : "nothing is seen beyond 60 deg",
-      [](Effects& e) { e.fresnel = false; });
+      [](Effects& e) { e.fresnel = e.satin = false; });
   add("coat", all.coat,
       !all.coat     ? "no visible paint has a coat"
       : grazing > 0 ? fmt::format("the coat takes light from the base, {:.0f} % of what is seen beyond 60 deg", grazing)
@@ -234,7 +238,11 @@ std::vector<EffectSwitch> effect_switches(const Scene& scene, const Effects& all
       : all.views           ? "weights change with the view"
       : all.maps            ? "a color map under lights"
                             : "no visible paint has a color map or weights for several views",
-      [](Effects& e) { e.views = e.maps = false; });
+      [](Effects& e) { e.views = e.maps = e.satin = false; });
+  add("satin", all.satin,
+      all.satin ? "a rough coat as facets, in the place of its round lobes" : "no visible paint has a rough coat",
+      [](Effects& e) { e.satin = false; });
+  list.back().beyond_maps = true;
   add_tilts(scene, all, list);
   add("texture", all.texture, texture_reason(scene, all, seen), [](Effects& e) { e.texture = false; });
   add_texture_lobes(scene, all, list);

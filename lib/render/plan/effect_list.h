@@ -19,6 +19,7 @@ struct EffectSwitch {
   bool is_highlight = false;   // It may be bright between the points at which a plan looks.
   int needs = -1;              // The effect of this number in the list, without which this one is off as well.
   bool refines = false;        // It only draws another effect finer, so that the reference has no part of it.
+  bool beyond_maps = false;    // Engines of prefiltered maps cannot draw it.
   bool left_to_tilts = false;  // Tilted lobes stand for it on some part, and it shows nothing there while they are on.
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "render/exact.h"
 #include "render/integral/integral_engine.h"
@@ -27,6 +28,24 @@ double OpenTruth::error(const std::vector<color::Rgb>& planned) const {
   return percentile_95(std::move(de00));
 }
 
+double OpenTruth::difference(const OpenTruth& other) const {
+  std::vector<double> de00;
+  for (std::size_t i = 0; i < exact_.size(); ++i) de00.push_back(seen_difference(other.exact_[i], exact_[i], white_));
+  return percentile_95(std::move(de00));
+}
+
+namespace {
+
+// To two digits.
+std::string some_seconds(double ms) {
+  const double s = ms / 1000;
+  if (s < 10) return fmt::format("some {:.1g} s", s);
+  const double digit = std::pow(10, std::floor(std::log10(s)) - 1);
+  return fmt::format("some {:.0f} s", digit * std::round(s / digit));
+}
+
+}  // namespace
+
 std::string reason_not_kept(const Plan& plan, const RayChoice& rays, const PlanRequest& request, bool has_maps) {
   if (!plan.whole_de00_p95 || *plan.whole_de00_p95 <= request.tolerance_de00) return "";
   const std::string start = fmt::format(
@@ -37,11 +56,17 @@ std::string reason_not_kept(const Plan& plan, const RayChoice& rays, const PlanR
     return start + fmt::format(
                        "the prefiltered maps miss the open light by {:.2g}; --engine integral sums it within the "
                        "tolerance, and --engine path draws everything within it{}",
-                       open, rays.path_ms > 0 ? fmt::format(" in some {:.1g} s", rays.path_ms / 1000) : "");
+                       open, rays.path_ms > 0 ? " in " + some_seconds(rays.path_ms) : "");
+  if (noise >= left && rays.most_in_all > 0)
+    return start + fmt::format(
+                       "the noise is {:.2g} after {:.0f} million samples of rays, and a picture takes no more where no "
+                       "tolerance is asked for; --effects auto,+rays draws as many as it takes, in {}",
+                       noise, 1e-6 * rays.most_in_all, some_seconds(rays.named_ms));
   if (noise >= left)
     return start +
-           fmt::format("the noise of {} samples a point is {:.2g}; --effects auto,+rays draws as many as it takes",
-                       rays.most_samples, noise);
+           fmt::format(
+               "the noise of {} samples a point is {:.2g}; --effects auto,+rays draws as many as it takes, in {}",
+               rays.most_samples, noise, some_seconds(rays.named_ms));
   return start + fmt::format("the effects of rays that are left out are worth {:.2g}", left);
 }
 

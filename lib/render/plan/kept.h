@@ -20,6 +20,8 @@ class OpenTruth {
             const envmap::BlockTree& texels, double white);
   // The 95th percentile of what they miss of it; `planned` has one radiance for each of all points.
   double error(const std::vector<color::Rgb>& planned) const;
+  // The same of the difference to another truth of the same points.
+  double difference(const OpenTruth& other) const;
 
  private:
   std::size_t step_;

@@ -76,11 +76,20 @@ double aim_of(const RayWishes& wishes, const State& state) {
 }
 
 // Of the mesh and of the floor beside it.
-RayCost cost_of(const RayProbe& probe, const RayWishes& wishes, const RayEffects& effects, double aim_de00) {
-  RayCost cost = probe.cost(effects, aim_de00, wishes.visible_points, wishes.samples);
+RayCost cost_of(const RayProbe& probe, const RayWishes& wishes, const RayEffects& effects, double aim_de00,
+                const RayLimits& limits = {}) {
+  RayCost cost = probe.cost(effects, aim_de00, wishes.visible_points, wishes.samples, limits);
   if (effects.floor && wishes.of_floor != nullptr)
     cost.ms += wishes.of_floor->cost_ms(wishes.floor_pixels, wishes.samples);
   return cost;
+}
+
+RayLimits limits_of(const RayWishes& wishes, const State& state) {
+  RayLimits limits;
+  if (state.named || !wishes.automatic) return limits;
+  limits.of_point = kMostUnaskedSamples;
+  if (wishes.most_in_all > 0) limits.in_all = wishes.most_in_all;
+  return limits;
 }
 
 // Leaves out, cheapest to miss first, what all together cannot be seen. What saves no time is drawn.
@@ -103,8 +112,9 @@ void drop_unseen(const RayProbe& probe, const RayWishes& wishes, State& state) {
 
 // What others need goes last.
 void keep_affordable(const RayProbe& probe, const RayWishes& wishes, State& state) {
+  const RayLimits limits = limits_of(wishes, state);
   for (const std::size_t i : {std::size_t{2}, std::size_t{1}, std::size_t{0}}) {
-    if (cost_of(probe, wishes, state.on, aim_of(wishes, state)).ms <= wishes.budget_ms) return;
+    if (cost_of(probe, wishes, state.on, aim_of(wishes, state), limits).ms <= wishes.budget_ms) return;
     if (!(state.on.*kFlags[i]) || state.forced[i] || (i == 0 && state.on.floor)) continue;
     state.on = without(state.on, i);
     state.over_budget[i] = true;
@@ -153,11 +163,16 @@ RayChoice ray_choice(const RayProbe& probe, const RayWishes& wishes) {
   RayChoice choice;
   choice.effects = state.on;
   choice.aim_de00 = aim_of(wishes, state);
-  const auto cost = [&](const RayEffects& effects) { return cost_of(probe, wishes, effects, choice.aim_de00); };
+  const RayLimits limits = limits_of(wishes, state);
+  const auto cost = [&](const RayEffects& effects) { return cost_of(probe, wishes, effects, choice.aim_de00, limits); };
   choice.cost = cost(state.on);
-  if (!state.named && wishes.automatic) choice.most_samples = kMostUnaskedSamples;
-  if (state.on.any())
-    choice.noise_de00 = choice.aim_de00 * std::sqrt(std::max(1.0, choice.cost.most_samples / choice.most_samples));
+  if (limits.of_point == kMostUnaskedSamples) choice.most_samples = kMostUnaskedSamples;
+  if (state.on.any()) {
+    if (limits.of_point == kMostUnaskedSamples) choice.most_in_all = wishes.most_in_all;
+    choice.noise_de00 = choice.aim_de00 * choice.cost.noise;
+    const double named_de00 = ray_noise(wishes.tolerance_de00, wishes.open_de00_p95).asked_de00;
+    choice.named_ms = cost_of(probe, wishes, state.on, named_de00).ms;
+  }
   choice.left_out_de00_p95 = state.on == wanted ? 0 : probe.worth(wanted, state.on).de00_p95;
   RayEffects everything = kAll;
   everything.floor = wishes.floor;
@@ -207,8 +222,9 @@ FloorChoice floor_choice(const RayProbe& probe, const FloorProbe& beside, const 
   item.de00_p95 = worth.de00_p95, item.standard_error = worth.standard_error;
   const double aim = ray_noise(wishes.tolerance_de00, wishes.open_de00_p95).unasked_de00;
   RayEffects all = kAll;
-  const double without_ms = probe.cost_without_floor(all, aim, wishes.visible_points, wishes.samples).ms;
-  const double mesh_ms = probe.cost(all, aim, wishes.visible_points, wishes.samples).ms;
+  const RayLimits limits = limits_of(wishes, forced_state(wishes));
+  const double mesh_ms = probe.cost(all, aim, wishes.visible_points, wishes.samples, limits).ms;
+  const double without_ms = probe.cost_without_floor(all, aim, wishes.visible_points, wishes.samples, limits).ms;
   const double beside_ms = beside.cost_ms(wishes.floor_pixels, wishes.samples);
   item.cost_ms = std::max(0.0, mesh_ms + beside_ms - without_ms);
   item.decision = forced ? Decision::kForcedOn : Decision::kDrawn;
@@ -245,6 +261,7 @@ RayChoice planned_rays(const Scene& scene, const std::vector<std::shared_ptr<con
   wishes.forced = [&](const std::string& name) { return forced_by(words, name); };
   wishes.open_de00_p95 = open_de00;
   wishes.tolerance_de00 = request.tolerance_de00, wishes.budget_ms = request.budget_ms;
+  wishes.most_in_all = request.most_ray_samples;
   wishes.visible_points = points_drawn / request.samples, wishes.samples = request.samples;
   ProbeSetting setting;
   setting.transport = rays.transport;
@@ -270,6 +287,7 @@ RayChoice planned_rays(const Scene& scene, const std::vector<std::shared_ptr<con
     work.bounces = rays.bounces, work.seed = rays.seed;
     const PathPrice price = path_price(*alone, work);
     choice.path_ms = price.ms, choice.path_samples = price.samples;
+    choice.path_in_all = price.samples * (work.mesh_pixels + work.floor_pixels);
     return choice;
   };
 

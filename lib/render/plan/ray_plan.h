@@ -37,6 +37,7 @@ struct RayWishes {
   double tolerance_de00 = 0.5;
   double open_de00_p95 = 0;  // what the engine misses of the open light
   double budget_ms = 0;      // of one frame's rays; 0: none
+  double most_in_all = 0;    // samples of a picture; 0: no limit
   double visible_points = 0;
   int samples = 1;
   bool floor = false;                    // whether a floor is drawn, which needs `shadow`
@@ -53,10 +54,13 @@ struct RayChoice {
   double left_out_de00_p95 = 0;  // of all that is left out and was not forced off
   RayCost cost;                  // of what is drawn
   int most_samples = 1 << 16;    // of a point
+  double most_in_all = 0;        // of a picture; 0: no limit
   double aim_de00 = 0.25;        // noise that is aimed at
   double noise_de00 = 0;         // that is to be expected of what is drawn
+  double named_ms = 0;           // of a frame with as many samples as it takes, as where the effects are named
   double path_ms = 0;            // of a frame by the engine path, within the tolerance; 0: not known
   double path_samples = 0;       // of a pixel then, the mean
+  double path_in_all = 0;        // and of all pixels together
 };
 
 // Effects that need another one are off with it: `self` and `bounce` need `shadow`. Forcing one of them on forces

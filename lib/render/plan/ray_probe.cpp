@@ -300,10 +300,10 @@ std::optional<Worth> RayProbe::floor_worth() const {
 
 // As path_picture() shares out its samples.
 RayCost RayProbe::cost_of(Light Point::*of, std::size_t count, const RayEffects& effects, double tolerance_de00,
-                          double visible_points, int samples) const {
+                          double visible_points, int samples, const RayLimits& limits) const {
   RayCost cost;
   if (!effects.shadow || count == 0) return cost;
-  constexpr double kFewest = 2;
+  constexpr double kFewest = 1;
   const double groups = std::ceil(samples / 4.0), tolerance = tolerance_de00 * std::sqrt(groups);
   std::vector<double> needed;
   std::size_t traced = 0;
@@ -316,11 +316,27 @@ RayCost RayProbe::cost_of(Light Point::*of, std::size_t count, const RayEffects&
     const double one = noise_de00(points_[i].base + shown, values.covariance(), white_) / tolerance;
     needed.push_back(light.certain ? 0 : one * one);
   }
-  const double most = std::max(kFewest, std::ceil(1.05 * percentile_95(needed)));
-  double fans = 0;
-  for (std::size_t i = 0; i < count; ++i)
-    fans += (points_[i].*of).certain ? 0 : std::clamp(std::ceil(needed[i]), kFewest, most);
   const auto n = static_cast<double>(count);
+  const auto fans_of = [&](double most) {
+    double fans = 0;
+    for (std::size_t i = 0; i < count; ++i)
+      fans += (points_[i].*of).certain ? 0 : std::clamp(std::ceil(needed[i]), kFewest, most);
+    return fans;
+  };
+  const double wanted = std::max(kFewest, std::ceil(1.05 * percentile_95(needed)));
+  double most = std::clamp(limits.of_point / (kFan * groups), kFewest, wanted);
+  // What a limit of the whole picture leaves for the points that need most.
+  const double in_all = limits.in_all / (kFan * groups) * n / visible_points;
+  if (fans_of(most) > in_all) {
+    double within = kFewest;
+    while (most - within > 0.5) {
+      const double middle = 0.5 * (within + most);
+      (fans_of(middle) <= in_all ? within : most) = middle;
+    }
+    most = within;
+  }
+  const double fans = fans_of(most);
+  cost.noise = std::sqrt(wanted / most);
   cost.traced_share = static_cast<double>(traced) / n;
   cost.samples = kFan * groups * fans / n;
   cost.most_samples = kFan * groups * most;
@@ -329,13 +345,14 @@ RayCost RayProbe::cost_of(Light Point::*of, std::size_t count, const RayEffects&
   return cost;
 }
 
-RayCost RayProbe::cost(const RayEffects& effects, double tolerance_de00, double visible_points, int samples) const {
-  return cost_of(&Point::drawn, points_.size(), effects, tolerance_de00, visible_points, samples);
+RayCost RayProbe::cost(const RayEffects& effects, double tolerance_de00, double visible_points, int samples,
+                       const RayLimits& limits) const {
+  return cost_of(&Point::drawn, points_.size(), effects, tolerance_de00, visible_points, samples, limits);
 }
 
 RayCost RayProbe::cost_without_floor(const RayEffects& effects, double tolerance_de00, double visible_points,
-                                     int samples) const {
-  return cost_of(&Point::without_floor, floor_points_, effects, tolerance_de00, visible_points, samples);
+                                     int samples, const RayLimits& limits) const {
+  return cost_of(&Point::without_floor, floor_points_, effects, tolerance_de00, visible_points, samples, limits);
 }
 
 }  // namespace goniochrome::render

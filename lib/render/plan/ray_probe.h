@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -30,11 +31,18 @@ struct Worth {
   double de00_p95 = 0, standard_error = 0;
 };
 
+// The samples that drawing may take.
+struct RayLimits {
+  double of_point = std::numeric_limits<double>::infinity();
+  double in_all = std::numeric_limits<double>::infinity();  // of a picture
+};
+
 // What drawing takes.
 struct RayCost {
   double traced_share = 0;  // of the visible points: those that cannot be told to see all of the light around
   double samples = 0;       // the mean over the visible points
   double most_samples = 0;  // of a point
+  double noise = 1;         // that is left, in units of the tolerance: above 1 where limits end the samples before
   double ms = 0;            // on all cores together
 };
 
@@ -75,10 +83,12 @@ class RayProbe {
   // no floor was probed.
   std::optional<Worth> floor_worth() const;
   // As cost(), of the mesh without the floor that was probed, told from these points.
-  RayCost cost_without_floor(const RayEffects& effects, double tolerance_de00, double visible_points,
-                             int samples) const;
-  // Of drawing so many visible points until their noise is within the tolerance, in so many samples of each pixel.
-  RayCost cost(const RayEffects& effects, double tolerance_de00, double visible_points, int samples) const;
+  RayCost cost_without_floor(const RayEffects& effects, double tolerance_de00, double visible_points, int samples,
+                             const RayLimits& limits = {}) const;
+  // Of drawing so many visible points until their noise is within the tolerance or a limit is reached, in so many
+  // samples of each pixel.
+  RayCost cost(const RayEffects& effects, double tolerance_de00, double visible_points, int samples,
+               const RayLimits& limits = {}) const;
 
  private:
   struct Light {
@@ -113,7 +123,7 @@ class RayProbe {
   }
   Worth worth(std::vector<Change> changes) const;
   RayCost cost_of(Light Point::*light, std::size_t count, const RayEffects& effects, double tolerance_de00,
-                  double visible_points, int samples) const;
+                  double visible_points, int samples, const RayLimits& limits) const;
   bool add_ambiguous(const std::vector<Change>& changes, const Worth& worth, std::vector<double>& wish) const;
 
   std::vector<Point> points_;

@@ -9,9 +9,9 @@ import tempfile
 from accuracy_report.scene import Scene
 from accuracy_report.study import Run
 from accuracy_report.target import BASES, CHOOSING, EFFECTS, INTEGRALS, METHODS, TOLERANCES, Job, found
+from shared import paint_text as library
 from shared.tools import DATA, Failed, tools_folder
 
-from . import library
 from .steps import Shard, frame_words, scene_name
 
 PROBED = 50  # paints, spread over the library, by which the fits are timed

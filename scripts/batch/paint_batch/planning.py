@@ -6,9 +6,10 @@ import sys
 import tempfile
 import time
 
+from shared import paint_text as library
 from shared.tools import Failed
 
-from . import choosing, files, library
+from . import choosing, files
 from .steps import Shard, scene_name
 from .tools import Tools
 

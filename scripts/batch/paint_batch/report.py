@@ -7,10 +7,11 @@ import subprocess
 import sys
 import tempfile
 
+from shared import paint_text as library
 from shared.files import write_whole
 from shared.quantile import quantile
 
-from . import files, library
+from . import files
 from .steps import TARGETED, columns, picture_path
 
 
@@ -113,6 +114,11 @@ def cell(value):
     if isinstance(value, dict):
         return "; ".join(f"{step}: {message}" for step, message in value.items())
     return str(value).replace("\t", " ").replace("\n", " ")
+
+
+def chapters(plan):
+    """The number of chapters of the book: none where there are no pictures."""
+    return -(-plan["paints"] // plan["chapter"]) if plan["chapter"] and plan["scenes"] else 0
 
 
 def book(out, chapter):

@@ -7,10 +7,11 @@ import re
 import shutil
 import tempfile
 
+from shared import paint_text as library
 from shared.files import write_whole
 from shared.tools import Failed
 
-from . import files, library
+from . import files
 from .tools import Tools, json_lines
 
 COLUMNS = ["paint", "name", "class", "fit", "de00_max", "de00_mean", "gamut_de00", "flop_index", "chroma_index",

@@ -3,10 +3,9 @@
 import json
 import time
 
+from shared import paint_text as library
 from shared.files import write_whole
 from shared.tools import Failed, run_tool
-
-from . import library
 
 DONE = (0, 1, 4)  # the exit statuses with a result: done, done with a negative verdict, stopped by a limit
 

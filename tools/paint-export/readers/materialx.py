@@ -4,8 +4,11 @@ import xml.etree.ElementTree
 
 import numpy
 
+import openpbr
 from facets import dielectric, ggx, reflected
 
+# From ACEScg, whose white is that of ACES, by the matrices of S-2014-004, of Bradford and of Rec.709.
+REC709_FROM_ACESCG = numpy.array(((1.705052, -0.621792, -0.083259), (-0.130256, 1.140805, -0.010548), (-0.024003, -0.128969, 1.152972)))
 
 # Nodes of numbers, vectors and colors.
 OPERATIONS = {
@@ -47,6 +50,8 @@ def evaluated(nodes, name, light, view):
         lobe, through = layer(1, numbers("specular_IOR", 1.5), numbers("specular_roughness", 0.2))
         coat, below_coat = layer(numbers("coat", 0), numbers("coat_IOR", 1.5), numbers("coat_roughness", 0.1))
         return coat + below_coat * (numbers("specular_color", 1) * lobe + through * numbers("base_color", 0.8) / numpy.pi), 0
+    if node.tag == "open_pbr_surface":
+        return openpbr.value({key: numbers(key, 0) for key in inputs}, light, view), 0
     if node.tag == "add":
         return below("in1")[0] + below("in2")[0], 0
     if node.tag == "multiply":
@@ -54,8 +59,10 @@ def evaluated(nodes, name, light, view):
     if node.tag == "layer":
         top, through = below("top")
         return top + through * below("base")[0], 0
-    if node.tag == "oren_nayar_diffuse_bsdf":
-        return numbers("color", 0.18) / numpy.pi, 0
+    if node.tag in ("oren_nayar_diffuse_bsdf", "burley_diffuse_bsdf"):
+        assert numbers("roughness", 0) == 0  # where Burley's F_90 is 1/2
+        falls = [1 - (1 - c) ** 5 / 2 if node.tag.startswith("burley") else 1 for c in (light[2], view[2])]
+        return numbers("color", 0.18) * falls[0] * falls[1] / numpy.pi, 0
     alpha, beside = numpy.resize(numbers("roughness", 0.05), 2)
     if alpha != beside:  # then the tangent has to be the view direction
         assert numpy.linalg.norm(numpy.cross(numbers("tangent", 0), view)) < 0.003
@@ -72,7 +79,9 @@ def evaluated(nodes, name, light, view):
 
 def reflection(path, lights, views):
     """f of each pair of directions, one a row, in Rec.709."""
-    nodes = {node.get("name"): node for node in xml.etree.ElementTree.parse(path).getroot()}
-    surface = next(node for node in nodes.values() if node.tag in ("surface", "standard_surface"))
-    surface = surface.get("name") if surface.tag == "standard_surface" else surface.find("input").get("nodename")
-    return numpy.array([evaluated(nodes, surface, light, view)[0] for light, view in zip(lights, views)])
+    root = xml.etree.ElementTree.parse(path).getroot()
+    nodes = {node.get("name"): node for node in root}
+    surface = next(node for node in nodes.values() if node.tag in ("surface", "standard_surface", "open_pbr_surface"))
+    surface = surface.get("name") if surface.tag != "surface" else surface.find("input").get("nodename")
+    f = numpy.array([evaluated(nodes, surface, light, view)[0] for light, view in zip(lights, views)])
+    return f @ {"lin_rec709": numpy.eye(3), "acescg": REC709_FROM_ACESCG}[root.get("colorspace")].T

@@ -1,8 +1,10 @@
-"""Evaluates the UsdPreviewSurface of a .usda file as the reference viewer hdStorm lights it."""
+"""Evaluates the UsdPreviewSurface of a .usda file as the reference viewer hdStorm lights it, or its OpenPBR."""
 
 import re
 
 import numpy
+
+import openpbr
 
 
 def facets(roughness, light, view):
@@ -19,6 +21,8 @@ def reflection(path, light, view):
     text = open(path, encoding="utf-8").read()
     given = {name: numpy.array([float(x) for x in value.strip("()").split(",")])
              for name, value in re.findall(r"inputs:(\w+) = (\([^)]*\)|[-\d.e]+)\n", text)}
+    if 'info:id = "ND_open_pbr_surface_surfaceshader"' in text:
+        return numpy.array([openpbr.value(given, *pair) for pair in zip(light, view)])
     assert given["useSpecularWorkflow"][0] == 1
     grazing = (1 - numpy.linalg.norm(light + view, axis=1) / 2)[:, None] ** 5
     fresnel = given["specularColor"] + (1 - given["specularColor"]) * grazing

@@ -1,14 +1,16 @@
-// A designer's path through a page, by mouse and keyboard: open, pick a variation, drag the face, set travel and gloss,
-// drag a reading, go back and on, compare with the nearest paints, keep, save. Prints the commands that the page shows,
-// and writes the files that it saves and a few screenshots.
+// A designer's path through a page, by mouse and keyboard: open, pick a variation, drag the face, set the travel on the
+// surface and the gloss, drop a picture and take its color, drag a reading, go back and on, compare with the nearest paint,
+// keep, save. Writes the commands that the page shows, the files that it saves, the radiance that it shows at the end as
+// path.f32 (see pictures.js), and a few screenshots.
 //
 //   node path.js PAGE.html FOLDER
 "use strict";
 const fs = require("node:fs");
 const path = require("node:path");
 const { check, drive } = require("./drive.js");
+const { png } = require("./png.js");
 
-drive("the path was walked", { width: 1000, height: 1000 }, async ({ browser, folder, value, shot, quiet, checkNames }) => {
+drive("the path was walked", { width: 1000, height: 1000 }, async ({ browser, folder, value, shot, quiet, choose, checkNames }) => {
   const paint = async () => JSON.stringify(await value("studio.paint"));
   await quiet();
   await shot("1-open");
@@ -24,14 +26,40 @@ drive("the path was walked", { width: 1000, height: 1000 }, async ({ browser, fo
   await browser.drag("#wheel .handle", 25, -15);
   check("dragging the face is one step", (await value("studio.history.now.steps.length")) === 2);
   check("the face is stated", (await value("'face' in studio.history.now.steps[1]")));
-  await value("document.querySelector('#numbers input[aria-label=travel][type=number]').focus()");
-  await value(`(() => { const field = document.activeElement; field.value = 52; field.dispatchEvent(new Event("change")); })()`);
-  check("the travel is what the field says", Math.abs((await value("studio.description.appearance.travel")) - 52) < 1e-9);
+  // The travel ends on the surface where the mouse lets it go.
+  await browser.click("#drag-kinds input[value=travel]");
+  await value("document.getElementById('stage').scrollIntoView({ block: 'center' })");
+  const ended = await value(`(() => {
+    const box = studio.stageView.canvas.getBoundingClientRect();
+    let best = null;
+    for (let y = 0.3; y < 0.75; y += 0.01)
+      for (let x = 0.15; x < 0.85; x += 0.01) {
+        const at = { x: box.left + x * box.width, y: box.top + y * box.height }, seen = studio.stageView.pointAt(at.x, at.y);
+        if (seen && seen.lit && (!best || Math.abs(seen.angle - 52) < Math.abs(best.angle - 52))) best = { ...at, angle: seen.angle };
+      }
+    return best;
+  })()`);
+  await browser.mouseDrag(await browser.middle("#stage"), ended);
+  check("the travel ends where it was dragged to on the surface", Math.abs((await value("studio.description.appearance.travel")) - ended.angle) < 0.06);
+  await browser.click("#drag-kinds input[value=view]");
   await value(`(() => { const range = document.querySelector("#numbers input[aria-label=gloss][type=range]");
     range.value = 70; range.dispatchEvent(new Event("input")); range.dispatchEvent(new Event("change")); })()`);
   check("the gloss is what the slider says", (await value("studio.paint.gloss[0][1]")) === 70);
   await quiet();
   await shot("2-edited");
+  // A picture is dropped on the page, and the dropper of the face takes the color in its middle.
+  const picture = path.join(path.resolve(folder), "dropped.png");
+  fs.writeFileSync(picture, png(200, 120, (x, y) => [150 + (x >> 3), 60 + (y >> 3), 35]));
+  const over = await browser.middle("#controls h2"), data = { items: [], files: [picture], dragOperationsMask: 1 };
+  for (const type of ["dragEnter", "dragOver", "drop"]) await browser.send("Input.dispatchDragEvent", { type, ...over, data });
+  await browser.until("studio.pictures.current !== null && studio.pictures.place.querySelector('canvas')?.clientWidth > 0", 20);
+  await browser.click("input[name=dropper][value=face]");
+  await browser.drag("#picture canvas", 10, 5);
+  const lab = await value(`studio.engine.ask({ do: "describe", paint: studio.paint }).appearance.face`);
+  check("the face has the color of the picture: " + lab, lab[1] > 15 && lab[2] > 15 && lab[0] > 25 && lab[0] < 60);
+  await value("document.getElementById('picture-panel').scrollIntoView()");
+  await quiet();
+  await shot("3-picture");
 
   const edited = await paint(), steps = await value("studio.history.now.steps.length");
   const handle = "#curves g .handle";
@@ -49,10 +77,26 @@ drive("the path was walked", { width: 1000, height: 1000 }, async ({ browser, fo
   await browser.click("#keep");
   check("the palette has the paint", (await value("document.querySelectorAll('#palette .tile').length")) === 1);
   check("five paints are near", (await value("document.querySelectorAll('#nearest .tile').length")) === 5);
+  const near = await value("document.querySelector('#nearest .tile span').textContent");
+  await choose("compare", near);
+  check("the nearest paint is beside the design", (await value("studio.compared.name")) === near && (await value("!document.getElementById('border').hidden")));
+  await value("document.getElementById('stage').scrollIntoView()");
+  await quiet();
+  await shot("4-compared");
+  await choose("compare", "nothing");
+  const shown = await value(`(() => {
+    studio.tiles.stop();
+    const values = studio.stage.radiance(cameraOf(studio.data.mesh.view), 640, 360, studio.weights, 0), bytes = new Uint8Array(values.buffer);
+    let text = "";
+    for (let i = 0; i < bytes.length; i += 32768) text += String.fromCharCode(...bytes.subarray(i, i + 32768));
+    studio.tiles.go();
+    return btoa(text);
+  })()`);
+  fs.writeFileSync(path.join(folder, "path.f32"), Buffer.from(shown, "base64"));
   await browser.drag("#stage", 120, 40);
   await value("(() => { const light = document.getElementById('environment'); light.selectedIndex = light.length - 1; light.dispatchEvent(new Event('change')); })()");
   await quiet();
-  await shot("3-turned");
+  await shot("5-turned");
 
   fs.writeFileSync(path.join(folder, "command.txt"), await value("document.getElementById('command').textContent"));
   const name = await value("fileName(studio.paint.name)");
@@ -72,7 +116,7 @@ drive("the path was walked", { width: 1000, height: 1000 }, async ({ browser, fo
   await browser.send("Emulation.setEmulatedMedia", { features: [{ name: "prefers-color-scheme", value: "dark" }] });
   await browser.send("Emulation.setDeviceMetricsOverride", { width: 360, height: 740, deviceScaleFactor: 1, mobile: false });
   await quiet();
-  await shot("4-narrow");
+  await shot("6-narrow");
   check("nothing is wider than the window", (await value("document.documentElement.scrollWidth")) <= 360);
   await checkNames();
 });

@@ -1,5 +1,6 @@
 // Writes the radiance that a page shows of some paints in each of its environments, as raw floats from the upper left
-// corner: FOLDER/PAINT-ENVIRONMENT.f32, four channels a pixel. Prints the time of an edit until its picture is there.
+// corner: FOLDER/PAINT-ENVIRONMENT.f32, four channels a pixel. Prints how far the pictures from layers of gathered light are
+// from these, and the time of an edit until its picture is there.
 //
 //   node pictures.js PAGE.html FOLDER WIDTHxHEIGHT PAINT...
 "use strict";
@@ -13,6 +14,13 @@ async function main() {
   const browser = await Browser.open(pathToFileURL(path.resolve(page)).href);
   await browser.until("window.studio !== undefined || document.getElementById('status').textContent !== ''");
   const environments = await browser.evaluate("studio.data.environments.map((one) => one.name)");
+  // How far a picture from layers is from one by the shading program: of the value of a channel, and a hundredth of white.
+  await browser.evaluate(`window.apart = (ours, theirs, number) => {
+    const least = 0.01 * studio.stage.environment(number).white;
+    const all = ours.map((value, i) => Math.abs(value - theirs[i]) / (Math.abs(theirs[i]) + least)).sort();
+    return { p95: all[Math.floor(0.95 * all.length)], most: all.at(-1) };
+  }`);
+  const layers = [];
   for (const paint of paints)
     for (let number = 0; number < environments.length; ++number) {
       const base64 = await browser.evaluate(`(() => {
@@ -22,11 +30,13 @@ async function main() {
         app.engine.ask({ do: "fit", paint: one });
         const weights = app.stage.weights(app.engine);
         const values = app.stage.radiance(cameraOf(app.data.mesh.view), ${width}, ${height}, weights, ${number});
+        window.gatheredApart = apart(app.stage.gatheredRadiance(cameraOf(app.data.mesh.view), ${width}, ${height}, weights, ${number}), values, ${number});
         const bytes = new Uint8Array(values.buffer);
         let text = "";
         for (let i = 0; i < bytes.length; i += 32768) text += String.fromCharCode(...bytes.subarray(i, i + 32768));
         return btoa(text);
       })()`);
+      layers.push({ paint, environment: environments[number], ...(await browser.evaluate("gatheredApart")) });
       fs.writeFileSync(path.join(folder, `${paint}-${environments[number]}.f32`), Buffer.from(base64, "base64"));
     }
   // The first paint with the lamp of the page, in each environment turned by a right angle, and without its ground.
@@ -51,7 +61,44 @@ async function main() {
   await variant("lamp", "app.stageView.setLamp({ on: true, azimuth: -25, elevation: 40, stops: -1 });", "app.stageView.setLamp({ on: false });");
   await variant("turned", "app.stageView.turnTo(90);", "app.stageView.turnTo(0);");
   await variant("groundless", "app.stage.ground = false;", "app.stage.ground = true;");
-  // From an edit to its pixels, which are read back so that nothing is still to be drawn.
+  // Layers that were drawn for one paint show another one: that whose wide lobes look elsewhere most, of all that little gloss makes
+  // of paints of the library; and with the lamp. The control takes layers as they are.
+  const moved = await browser.evaluate(`(() => {
+    const app = studio, { stage } = app, { gathered } = stage, camera = cameraOf(app.data.mesh.view);
+    const shown = (paint) => { app.engine.ask({ do: "fit", paint }); return stage.weights(app.engine); };
+    const shifts = (weights) => gathered.layers.list.flatMap((layer) => gathered.shiftsOf(layer, weights));
+    let a = null, b = null, farthest = -1;
+    for (let i = 0; i < Math.min(app.library.count, 100); ++i) {
+      const before = shown(app.library.paint(i)), from = shifts(before);
+      const after = shown(app.engine.ask({ do: "edit", paint: app.library.paint(i), edit: { gloss: 4 } }).paint);
+      const way = shifts(after).reduce((most, shift, j) => Math.max(most, Math.abs(shift - from[j])), 0);
+      if (gathered.ownOf(before) === gathered.ownOf(after) && way > farthest) [farthest, a, b] = [way, before, after];
+    }
+    const pair = (before, after) => {
+      gathered.drop();
+      stage.gatheredRadiance(camera, ${width}, ${height}, before, 0);
+      const kept = stage.gatheredRadiance(camera, ${width}, ${height}, after, 0);
+      return apart(kept, stage.radiance(camera, ${width}, ${height}, after, 0), 0);
+    };
+    const result = { shift: farthest, moved: pair(a, b) };
+    gathered.fits = (layer) => gathered.held.drawn.has(layer.slot);
+    result.control = pair(a, b);
+    delete gathered.fits;
+    app.stageView.environment = 0;
+    app.stageView.setLamp({ on: true, azimuth: -25, elevation: 40, stops: -1 });
+    result.lamp = pair(a, b);
+    app.stageView.setLamp({ on: false });
+    // With little memory, layers give way to others, and a picture that has no room for its own is refused.
+    const room = gathered.needed(b, true).length + 1;
+    gathered.capacity = () => room;
+    result.little = pair(a, b);
+    gathered.capacity = () => room - 2;
+    try { pair(a, b); } catch (error) { result.refused = error.message; }
+    delete gathered.capacity;
+    gathered.drop();
+    return result;
+  })()`);
+  // From an edit to its pixels, which are read back so that nothing is still to be drawn: by the shading program.
   const times = await browser.evaluate(`(() => {
     const app = studio, all = [], fits = [], gl = app.stage.gl, pixel = new Uint8Array(4);
     app.stageView.environment = 0;
@@ -69,6 +116,29 @@ async function main() {
     }
     const middle = (list) => list.sort((a, b) => a - b)[list.length >> 1];
     return { edit_to_picture_ms: middle(all), fit_ms: middle(fits) };
+  })()`);
+  // The same in the page as a whole, whose view has come to rest: all that an edit changes beside the small pictures.
+  const settled = await browser.evaluate(`(async () => {
+    const { stageView, stage } = studio, view = stageView, all = [], frame = () => new Promise(requestAnimationFrame);
+    view.canvas.style.width = "${width}px";
+    view.canvas.style.height = "${height}px";
+    view.canvas.style.aspectRatio = "auto";
+    view.full_ms = 0;
+    view.redraw();
+    const ready = () => stage.gathered.held && stage.gathered.waiting(view.weights, view.environment, true).length === 0;
+    for (const end = performance.now() + 60000; !ready() && performance.now() < end;) await new Promise((resolve) => setTimeout(resolve, 20));
+    for (let i = 0; i < 12; ++i) {
+      studio.tiles.stop();
+      view.rest(null);
+      await frame();
+      const begin = performance.now();
+      studio.display(studio.edited({ "hue-shift": 3 * i + 1 }).paint, false);
+      view.drawNow(false);
+      view.rest(null);
+      stage.wait();
+      all.push(performance.now() - begin);
+    }
+    return { settled_ms: all.sort((a, b) => a - b)[6], settled_size: [view.canvas.width, view.canvas.height], layers_drawn: ready() ? stage.gathered.held.drawn.size : 0, layer_bytes: stage.gathered.bytes };
   })()`);
   // The same as a designer meets it: a handle that moves, until the picture of its frame is drawn, with as many pixels as
   // the page takes for this computer; the pixels are read back here too.
@@ -90,7 +160,7 @@ async function main() {
     return { dragged_ms: late[10], dragged_size: [view.canvas.width, view.canvas.height] };
   })()`);
   await browser.close();
-  console.log(JSON.stringify({ ...times, ...dragged, environments, problems: browser.problems }));
+  console.log(JSON.stringify({ ...times, ...settled, ...dragged, environments, layers, ...moved, problems: browser.problems }));
   if (browser.problems.length > 0) process.exit(1);
 }
 

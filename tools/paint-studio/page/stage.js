@@ -26,8 +26,10 @@ class Stage {
     this.gbuffers = new Map();
     this.targets = new Map();
     this.ground = true;  // whether the environment lies on the ground
+    this.versions = 0;
     this.turn = 0;     // of the environment about +Y, in degrees, as the camera's azimuth counts
     this.lamp = null;  // {direction, white}: where it stands beside the mesh, and what a white surface facing it shows
+    this.gathered = new GatheredLight(this);
     this.uploadMesh();
     gl.frontFace(gl.CW);  // counter-clockwise, seen with y down
   }
@@ -91,20 +93,22 @@ class Stage {
     return texture;
   }
 
-  // What the programs read of the paint that the engine fitted last: {texture, tilts}, in the place of `made` where that is
-  // given. The texture has its weights, and those of the finishes below. `tilts` is null where it is not brushed.
+  // What the programs read of the paint that the engine fitted last: {texture, tilts, values, tiltValues, version}, in the
+  // place of `made` where that is given. The texture has its weights, which are `values`, and those of the finishes below.
+  // `tilts` is null where it is not brushed. No two paints have the same version.
   weights(engine, made = null) {
-    const gl = this.gl, tilts = engine.list("tilts");
+    const gl = this.gl, tilts = engine.list("tilts"), values = engine.list("weights");
     if (made === null) {
       const all = new Float32Array(4 * this.columns * this.rows);
       all.set(this.finishes, 4 * this.columns);
       made = { texture: this.floatTexture(this.columns, this.rows, all), tilts: null };
     }
     gl.bindTexture(gl.TEXTURE_2D, made.texture);
-    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, this.columns, 1, gl.RGBA, gl.FLOAT, engine.list("weights"));
+    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, this.columns, 1, gl.RGBA, gl.FLOAT, values);
     if (made.tilts) gl.deleteTexture(made.tilts);
-    made.tilts = tilts.length > 4 ? this.tiltTexture(tilts) : null;
-    return made;
+    const brushed = tilts.length > 4;
+    made.tilts = brushed ? this.tiltTexture(tilts) : null;
+    return Object.assign(made, { values, tiltValues: brushed ? tilts : null, version: ++this.versions });
   }
   // The tilts of a brushed paint; finishes have their own normal alone.
   tiltTexture(tilts) {
@@ -143,19 +147,19 @@ class Stage {
     return made;
   }
 
-  // How an environment is shaded: its program, lamps and their discs. With the lamp of the page, and for brushed paints,
-  // these are others, which are made when they are first needed.
-  shading(number, brushed) {
+  // How an environment is shaded, or its light gathered: its program, lamps and their discs. With the lamp of the page, and
+  // for brushed paints, these are others, which are made when they are first needed.
+  shading(number, brushed, work = "shading") {
     const made = this.environment(number), packed = this.data.environments[number], lamp = this.data.lamp;
     const discsOf = () => (packed.discs ? numbersOf(packed.discs.texels, Float32Array) : null);
-    const kind = (brushed ? "brushed_" : "") + (this.lamp ? "lamp_program" : "program");
-    if (this.lamp === null) return (made[kind] ??= this.shadingOf(packed[kind], packed.lamps, discsOf()));
+    const name = (brushed ? "brushed_" : "") + work, kind = (this.lamp ? "lamp " : "") + name;
+    if (this.lamp === null) return (made[kind] ??= this.shadingOf(packed.programs[name], packed.lamps, discsOf()));
     if (!made[kind]) {
       const first = numbersOf(lamp.discs, Float32Array), others = discsOf() ?? new Float32Array(0);
       const discs = new Float32Array(first.length + others.length);
       discs.set(first);
       discs.set(others, first.length);
-      made[kind] = this.shadingOf(packed[kind], [{ disc: lamp.disc }, ...packed.lamps], discs);
+      made[kind] = this.shadingOf(packed.lamp_programs[name], [{ disc: lamp.disc }, ...packed.lamps], discs);
     }
     const direction = turnedAgainst(this.lamp.direction, this.turn);
     Object.assign(made[kind].lamps[0], { direction, white: this.lamp.white });
@@ -237,7 +241,7 @@ class Stage {
     const border = weights.left ? Math.round(weights.at * gbuffer.width) : gbuffer.width;
     for (const [paint, begin, end] of [[weights.left ?? weights, 0, border], [weights.right, border, gbuffer.width]]) {
       if (end === begin) continue;
-      this.useShading(gbuffer, paint, environment);
+      this.useShading(gbuffer, paint, environment, this.shading(environment, paint.tilts !== null));
       gl.scissor(begin, 0, end - begin, gbuffer.height);
       gl.drawArrays(gl.TRIANGLES, 0, 3);
     }
@@ -246,9 +250,9 @@ class Stage {
     gl.activeTexture(gl.TEXTURE0);
     return target;
   }
-  // Chooses the program of a paint in an environment, with all that it reads.
-  useShading(gbuffer, { texture, tilts }, environment) {
-    const gl = this.gl, made = this.environment(environment), program = this.shading(environment, tilts !== null);
+  // Chooses a program of shading(), with all that it reads.
+  useShading(gbuffer, { texture, tilts }, environment, program) {
+    const gl = this.gl, made = this.environment(environment);
     gl.useProgram(program.program);
     let unit = 0;
     const bind = (sampler, kind, what) => {
@@ -326,6 +330,33 @@ class Stage {
     const gbuffer = this.gbuffer(name, camera, width, height, [0, 0]);
     this.show(this.shade(name, gbuffer, weights, environment, false), 1, environment, stops);
     if (overlay) this.drawOver(gbuffer, overlay);
+  }
+
+  // The same from gathered light, where that is kept for this view and this light; else it draws nothing. Returns whether it
+  // drew.
+  drawGathered(name, camera, width, height, weights, environment, stops, overlay = null) {
+    const own = weights.left ?? weights, key = this.gathered.keyOf(camera, width, height, environment);
+    if (this.gathered.held && this.gathered.held.key !== key) this.gathered.drop();
+    if (!this.gathered.serves(key, own, environment)) return false;
+    this.resize(width, height);
+    const gbuffer = this.gbuffer(name, camera, width, height, [0, 0]), sides = [this.gathered.shade("gathered", gbuffer, own, environment)];
+    if (weights.left) sides.push(this.otherSide(key, gbuffer, weights.right, environment));
+    this.showSides(sides, weights.left ? Math.round(weights.at * width) : width, this.environment(environment).white, stops);
+    if (overlay) this.drawOver(gbuffer, overlay);
+    return true;
+  }
+  // The paint beside the design, which stays while the design changes.
+  otherSide(key, gbuffer, weights, environment) {
+    const known = this.targets.get("sum other side"), own = key + weights.version;
+    if (known && known.key === own) return known;
+    const target = this.shade("other side", gbuffer, weights, environment, false);
+    target.key = own;
+    return target;
+  }
+  // Gathers some of the light of a view, and returns whether there is more to be gathered.
+  gather(name, camera, width, height, weights, environment) {
+    const key = this.gathered.keyOf(camera, width, height, environment);
+    return this.gathered.gather(key, this.gbuffer(name, camera, width, height, [0, 0]), weights.left ?? weights, environment);
   }
 
   // One more sample of a smoother picture; shows it after the last one.
@@ -406,8 +437,19 @@ class Stage {
 
   // The radiance of every pixel center, as floats from the upper left corner.
   radiance(camera, width, height, weights, environment) {
-    const gl = this.gl, gbuffer = this.gbuffer("radiance", camera, width, height, [0, 0]);
-    const sum = this.shade("radiance", gbuffer, weights, environment, false);
+    const gbuffer = this.gbuffer("radiance", camera, width, height, [0, 0]);
+    return this.valuesOf(this.shade("radiance", gbuffer, weights, environment, false));
+  }
+  // The same from gathered light, which is gathered for it.
+  gatheredRadiance(camera, width, height, weights, environment) {
+    const gbuffer = this.gbuffer("radiance", camera, width, height, [0, 0]);
+    const key = this.gathered.keyOf(camera, width, height, environment);
+    while (this.gathered.gather(key, gbuffer, weights, environment, false));
+    if (!this.gathered.serves(key, weights, environment)) throw new Error("There is no room for the layers of this picture.");
+    return this.valuesOf(this.gathered.shade("radiance", gbuffer, weights, environment));
+  }
+  valuesOf(sum) {
+    const gl = this.gl, { width, height } = sum;
     const values = new Float32Array(4 * width * height);
     gl.bindFramebuffer(gl.FRAMEBUFFER, sum.framebuffer);
     gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, values);

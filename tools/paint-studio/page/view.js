@@ -6,6 +6,7 @@ const whenIdle = (action) => (window.requestIdleCallback ? requestIdleCallback(a
 const cancelIdle = (number) => (window.requestIdleCallback ? cancelIdleCallback(number) : clearTimeout(number));
 
 const firstBudget_ms = 70;  // a picture that takes longer is drawn with fewer pixels first
+const slowPicture_ms = 40;  // the light of a view at rest is gathered where a picture takes longer
 const scales = [1, 0.7, 0.5, 0.35];  // few, so that what is visible is seldom drawn anew
 
 class StageView {
@@ -200,11 +201,26 @@ class StageView {
     this.rest(null);
     if (moving && this.lastFrame !== undefined && now - this.lastFrame < 400) this.pace(now - this.lastFrame);
     this.lastFrame = moving ? now : undefined;
-    if (this.traced !== null) return this.drawTraced(moving);
+    if (this.traced !== null) {
+      this.stage.gathered.drop();
+      return this.drawTraced(moving);
+    }
+    if (this.drawGathered(moving)) return;
     const first = scales.find((scale) => scale * scale * this.full_ms <= firstBudget_ms) ?? scales.at(-1);
     const scale = moving ? Math.min(scales[this.level], first) : first, [width, height] = this.size(scale);
     this.stage.draw(scale < 1 ? "first" : "centers", this.camera, width, height, this.weights, this.environment, this.stops, this.overlay);
     if (!moving) this.rest(() => this.sharpen(scale));
+  }
+  // Draws an edit of a view at rest; returns whether it did.
+  drawGathered(moving) {
+    const scale = this.gatheredScale, [width, height] = this.size(scale);
+    if (!this.stage.drawGathered(scale < 1 ? "gathered" : "centers", this.camera, width, height, this.weights, this.environment, this.stops, this.overlay)) return false;
+    if (!moving) this.rest(() => (scale < 1 ? this.sharpen(scale) : this.gather()));
+    return true;
+  }
+  // The light is gathered at as many pixels as memory allows for half of all layers, which is what a paint takes.
+  get gatheredScale() {
+    return scales.find((scale) => this.stage.gathered.capacity(...this.size(scale)) > this.stage.gathered.layers.list.length / 2) ?? scales.at(-1);
   }
   drawTraced(moving) {
     const drawn = this.app.attempt(() => {
@@ -239,12 +255,13 @@ class StageView {
   }
 
   // Plans the next step of sharpening, in the place of the one that was planned before.
-  rest(step) {
+  rest(step, delay_ms = 60) {
     clearTimeout(this.resting);
     cancelIdle(this.restingIdle);
-    this.resting = step ? setTimeout(() => { this.restingIdle = whenIdle(step); }, 60) : undefined;
+    this.resting = step ? setTimeout(() => { this.restingIdle = whenIdle(step); }, delay_ms) : undefined;
   }
-  // All pixels, and then samples of them: 16 to a pixel where the first picture took little time, else 4.
+  // All pixels, then the light of the view in layers, and then samples: 16 to a pixel where the first picture took little time,
+  // else 4.
   sharpen(scale) {
     const begin = performance.now(), [width, height] = this.size(1);
     if (scale < 1 || this.full_ms === 0) {
@@ -253,7 +270,16 @@ class StageView {
       const took = performance.now() - begin;
       this.full_ms = this.full_ms === 0 ? took : 0.5 * (this.full_ms + took);
     }
-    this.sample(0, this.full_ms < 40 ? 16 : 4);
+    this.gather();
+  }
+  // A few layers at a time, so that the page can answer between them.
+  gather() {
+    if (this.full_ms < slowPicture_ms) return this.sample(0, 16);
+    const scale = this.gatheredScale, [width, height] = this.size(scale);
+    return this.rest(() => {
+      if (this.stage.gather(scale < 1 ? "gathered" : "centers", this.camera, width, height, this.weights, this.environment)) this.gather();
+      else this.sample(0, 4);
+    }, 10);
   }
   sample(number, samples) {
     this.rest(() => {

@@ -1,0 +1,480 @@
+// glTF 2.0 as JSON or GLB, read by tinygltf: the meshes of the scene's nodes, each where its node and the nodes above
+// put it. Animations, skins, cameras, lights, pictures and what materials look like are passed over. The library checks
+// few of the numbers that it reads, so it runs in a child process, as does what is made of them. Sections are those of
+// the specification (Khronos, glTF 2.0, revision 2.0.1).
+#define TINYGLTF_IMPLEMENTATION
+#define TINYGLTF_NO_STB_IMAGE
+#define TINYGLTF_NO_STB_IMAGE_WRITE
+#define TINYGLTF_NO_EXTERNAL_IMAGE
+#define TINYGLTF_NO_FS
+#include <fstream>
+#include <sstream>
+
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <optional>
+
+#include "base/child.h"
+#include "base/file.h"
+#include "base/text.h"
+#include "mesh/internal/polygons_bytes.h"
+
+namespace goniochrome::mesh {
+
+namespace {
+
+using Matrix = std::array<double, 16>;  // column by column
+
+constexpr Matrix kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+// A small file may place a mesh again and again. A triangle takes some 30 bytes of a file, so that a file of many bytes
+// may place each mesh 80 times.
+constexpr std::size_t kLeastRoom = std::size_t{1} << 20, kMostRoom = std::size_t{1} << 27, kRoomAByte = 8;
+constexpr const char* kDraco = "KHR_draco_mesh_compression";
+constexpr const char* kMeshopt = "EXT_meshopt_compression";
+constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
+
+// Addresses for a file: the library's own; what its JSON takes, of which a node of 11 bytes takes 900, and what its
+// meshes take where they are placed often; and buffers in files beside it, whose sizes are not known before it is read.
+ChildLimits limits_for(std::size_t file_bytes, bool has_folder) {
+  constexpr std::size_t kOwn = std::size_t{256} << 20, kArraysAByte = 640, kBeside = std::size_t{4} << 30;
+  return {kOwn + kArraysAByte * file_bytes + (has_folder ? kBeside : 0), 60 + static_cast<int>(file_bytes >> 20)};
+}
+
+Matrix product(const Matrix& a, const Matrix& b) {
+  Matrix result{};
+  for (std::size_t column = 0; column < 4; ++column)
+    for (std::size_t row = 0; row < 4; ++row)
+      for (std::size_t k = 0; k < 4; ++k) result[4 * column + row] += a[4 * k + row] * b[4 * column + k];
+  return result;
+}
+
+Vec3 column_of(const Matrix& m, std::size_t column) {
+  return {m[4 * column], m[4 * column + 1], m[4 * column + 2]};
+}
+
+Vec3 placed(const Matrix& m, const Vec3& p) {
+  return p.x * column_of(m, 0) + p.y * column_of(m, 1) + p.z * column_of(m, 2) + column_of(m, 3);
+}
+
+// An element of a list by its index, where -1 and others are none.
+template <class Element>
+const Element* element(const std::vector<Element>& list, int index) {
+  return index >= 0 && static_cast<std::size_t>(index) < list.size() ? &list[static_cast<std::size_t>(index)] : nullptr;
+}
+
+// Files beside the mesh are read by the project's own reader, and only from its folder: the library would look in the
+// working folder as well.
+bool is_beside(const std::string& path, void* folder) {
+  const auto& name = *static_cast<const std::string*>(folder);
+  return !name.empty() && path.starts_with(name + "/");
+}
+std::string as_it_is(const std::string& path, void*) {
+  return path;
+}
+bool read_whole(std::vector<unsigned char>* bytes, std::string* error, const std::string& path, void*) {
+  const auto content = file_content(path);
+  if (!content.ok()) return *error += content.error().message, false;
+  bytes->assign(content->begin(), content->end());
+  return true;
+}
+bool pass_over_picture(tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int, void*) {
+  return true;
+}
+
+class Reader {
+ public:
+  Reader(const Source& source, std::string folder) : source_(source), folder_(std::move(folder)) {}
+
+  Result<Polygons> polygons(const std::string& content) {
+    GONIO_TRY(load(content));
+    std::size_t bytes = content.size();
+    for (const tinygltf::Buffer& buffer : model_.buffers) bytes += buffer.data.size();
+    room_ = std::clamp(std::min(bytes, kMostRoom) * kRoomAByte, kLeastRoom, kMostRoom);
+    met_.assign(model_.nodes.size(), false);
+    const tinygltf::Scene* scene = element(model_.scenes, std::max(model_.defaultScene, 0));
+    if (scene == nullptr) return refused("scenes", "there is no scene: export one");
+    GONIO_TRY(place_all(scene->nodes));
+    if (result_.faces.empty()) return refused("scene", "no node of it has a mesh of triangles");
+    return std::move(result_);
+  }
+
+ private:
+  Error refused(const std::string& where, const std::string& why) const {
+    return input_error("{}: {}: {}", source_.name, where, why);
+  }
+
+  Result<void> load(const std::string& content) {
+    tinygltf::TinyGLTF library;
+    library.SetImageLoader(pass_over_picture, nullptr);
+    library.SetFsCallbacks({is_beside, as_it_is, read_whole, nullptr, &folder_});
+    std::string error, warning;
+    const auto size = static_cast<unsigned>(content.size());
+    if (size != content.size()) return refused("file", "has more than 4 GB: split it");
+    const bool loaded =
+        content.starts_with("glTF")
+            ? library.LoadBinaryFromMemory(&model_, &error, &warning,
+                                           reinterpret_cast<const unsigned char*>(content.data()), size, folder_)
+            : library.LoadASCIIFromString(&model_, &error, &warning, content.data(), size, folder_);
+    // A compressed file may lack the buffers that others have, so its extensions come first.
+    GONIO_TRY(check_extensions());
+    if (!loaded) {
+      constexpr std::size_t kLongest = 160;  // it may name a buffer that is written out in the file
+      const std::string first(trimmed(std::string_view(error).substr(0, std::min(error.find('\n'), kLongest))));
+      return input_error("{}: is no whole glTF 2.0 file ({}): export it again as glTF 2.0 or GLB", source_.name, first);
+    }
+    if (!model_.asset.version.starts_with("2."))
+      return input_error("{}: is glTF of version \"{}\": export glTF 2.0", source_.name, model_.asset.version);
+    return {};
+  }
+
+  // Extensions that change what the surface is must be known; those of looks are passed over.
+  Result<void> check_extensions() const {
+    for (const std::string& name : model_.extensionsRequired) {
+      GONIO_TRY(check_compression(name));
+      const bool harmless = name.starts_with("KHR_materials_") || name.starts_with("KHR_texture_") ||
+                            name.starts_with("KHR_lights_") || name.starts_with("EXT_texture_") ||
+                            name.starts_with("MSFT_texture_") || name == "KHR_mesh_quantization";
+      if (!harmless)
+        return refused("extensionsRequired", fmt::format("\"{}\" is not known here: export without it", name));
+    }
+    return {};
+  }
+
+  Result<void> check_compression(const std::string& extension) const {
+    if (extension == kDraco || extension == kMeshopt)
+      return refused(extension, fmt::format("the mesh is compressed by {}: export it without compression",
+                                            extension == kDraco ? "Draco" : "meshoptimizer"));
+    return {};
+  }
+
+  // The numbers of a node's property: `usual` where it has none, and nothing where they are not as many or not finite.
+  static std::optional<std::vector<double>> numbers(const std::vector<double>& given, std::vector<double> usual) {
+    if (given.empty()) return usual;
+    const auto is_finite = [](double v) { return std::isfinite(v); };
+    if (given.size() != usual.size() || !std::ranges::all_of(given, is_finite)) return std::nullopt;
+    return given;
+  }
+
+  // The matrix of a node (section 3.5.3): its own, or that of translation, rotation and scale.
+  Result<Matrix> matrix_of(const tinygltf::Node& node, const std::string& where) const {
+    if (!node.matrix.empty()) {
+      const auto values = numbers(node.matrix, std::vector<double>(16));
+      if (!values) return refused(where, "its matrix has no 16 finite numbers");
+      Matrix matrix;
+      std::ranges::copy(*values, matrix.begin());
+      return matrix;
+    }
+    const auto t = numbers(node.translation, {0, 0, 0}), r = numbers(node.rotation, {0, 0, 0, 1}),
+               s = numbers(node.scale, {1, 1, 1});
+    if (!t || !r || !s) return refused(where, "its translation, rotation or scale is no list of finite numbers");
+    const double size = std::sqrt((*r)[0] * (*r)[0] + (*r)[1] * (*r)[1] + (*r)[2] * (*r)[2] + (*r)[3] * (*r)[3]);
+    if (!(size > 0)) return refused(where, "its rotation is no quaternion of length 1");
+    const double x = (*r)[0] / size, y = (*r)[1] / size, z = (*r)[2] / size, w = (*r)[3] / size;
+    const double a = (*s)[0], b = (*s)[1], c = (*s)[2];
+    return Matrix{a * (1 - 2 * (y * y + z * z)),
+                  a * 2 * (x * y + z * w),
+                  a * 2 * (x * z - y * w),
+                  0,
+                  b * 2 * (x * y - z * w),
+                  b * (1 - 2 * (x * x + z * z)),
+                  b * 2 * (y * z + x * w),
+                  0,
+                  c * 2 * (x * z + y * w),
+                  c * 2 * (y * z - x * w),
+                  c * (1 - 2 * (x * x + y * y)),
+                  0,
+                  (*t)[0],
+                  (*t)[1],
+                  (*t)[2],
+                  1};
+  }
+
+  struct Waiting {
+    int node;
+    Matrix above;
+  };
+
+  // Places the meshes of these nodes and of all below them. A node may stand in one place only, so that there are no
+  // circles.
+  Result<void> place_all(const std::vector<int>& roots) {
+    std::vector<Waiting> waiting;
+    const auto push = [&](const std::vector<int>& nodes, const Matrix& above) {
+      for (std::size_t i = nodes.size(); i-- > 0;) waiting.push_back({nodes[i], above});
+    };
+    push(roots, kIdentity);
+    while (!waiting.empty()) {
+      const Waiting next = waiting.back();
+      waiting.pop_back();
+      const std::string where = fmt::format("node {}", next.node);
+      const tinygltf::Node* node = element(model_.nodes, next.node);
+      if (node == nullptr) return refused(where, "there is no such node");
+      const auto number = static_cast<std::size_t>(next.node);
+      if (met_[number]) return refused(where, "stands below two nodes, or below itself");
+      met_[number] = true;
+      if (node->extensions.contains(kInstancing))
+        return refused(where, fmt::format("is placed by {}: export a node for each instance", kInstancing));
+      GONIO_ASSIGN(const Matrix own, matrix_of(*node, where));
+      const Matrix matrix = product(next.above, own);
+      if (node->mesh != -1) GONIO_TRY(place_mesh(*node, matrix, where));
+      push(node->children, matrix);
+    }
+    return {};
+  }
+
+  // A part has the name of its node or, where that has none, of its mesh. Of a mesh in several materials each is a
+  // part.
+  Result<void> place_mesh(const tinygltf::Node& node, const Matrix& matrix, const std::string& where) {
+    const tinygltf::Mesh* mesh = element(model_.meshes, node.mesh);
+    if (mesh == nullptr) return refused(where, fmt::format("there is no mesh {}", node.mesh));
+    std::string name = node.name.empty() ? mesh->name : node.name;
+    if (name.empty()) name = fmt::format("mesh-{}", node.mesh);
+    for (std::size_t i = 0; i < mesh->primitives.size(); ++i) {
+      const tinygltf::Primitive& primitive = mesh->primitives[i];
+      const int mode = primitive.mode;
+      if (mode != TINYGLTF_MODE_TRIANGLES && mode != TINYGLTF_MODE_TRIANGLE_STRIP && mode != TINYGLTF_MODE_TRIANGLE_FAN)
+        continue;  // points and lines
+      const tinygltf::Material* material = element(model_.materials, primitive.material);
+      const std::string made_of = material != nullptr ? material->name : "";
+      const std::string of_several =
+          mesh->primitives.size() > 1 ? "." + (made_of.empty() ? std::to_string(i) : made_of) : "";
+      GONIO_TRY(place(primitive, matrix, part(name + of_several, made_of),
+                      fmt::format("mesh {}, primitive {}", node.mesh, i)));
+    }
+    return {};
+  }
+
+  std::uint32_t part(const std::string& name, const std::string& material) {
+    const auto [found, is_new] = parts_.try_emplace(name, static_cast<std::uint32_t>(result_.parts.size()));
+    if (is_new) result_.parts.push_back({name, material});
+    return found->second;
+  }
+
+  Result<void> place(const tinygltf::Primitive& primitive, const Matrix& matrix, std::uint32_t part,
+                     const std::string& where) {
+    if (primitive.extensions.contains(kDraco)) return check_compression(kDraco);
+    const auto attribute = [&](const char* name, std::size_t wide, std::vector<double>& values) -> Result<void> {
+      const auto found = primitive.attributes.find(name);
+      if (found == primitive.attributes.end()) return {};
+      GONIO_ASSIGN(values, accessor(found->second, wide, where + ", " + name));
+      return {};
+    };
+    std::vector<double> positions, normals, texture, indices;
+    if (!primitive.attributes.contains("POSITION")) return refused(where, "has no POSITION");
+    GONIO_TRY(attribute("POSITION", 3, positions));
+    GONIO_TRY(attribute("NORMAL", 3, normals));
+    GONIO_TRY(attribute("TEXCOORD_0", 2, texture));
+    const std::size_t count = positions.size() / 3;
+    if ((!normals.empty() && normals.size() != 3 * count) || (!texture.empty() && texture.size() != 2 * count))
+      return refused(where, "its attributes have different counts");
+    if (primitive.indices != -1) {
+      GONIO_ASSIGN(indices, accessor(primitive.indices, 1, where + ", indices"));
+    } else {
+      for (std::size_t i = 0; i < count; ++i) indices.push_back(static_cast<double>(i));
+    }
+    for (const double index : indices)
+      if (!(index < static_cast<double>(count)))
+        return refused(where, fmt::format("index {} is beyond its {} vertices", index, count));
+    const auto first = static_cast<std::uint32_t>(result_.positions.size());
+    GONIO_TRY(add_vertices(positions, normals, texture, matrix, where));
+    return add_faces(indices, primitive.mode, matrix, part, first, !normals.empty(), !texture.empty(), where);
+  }
+
+  Result<void> add_vertices(const std::vector<double>& positions, const std::vector<double>& normals,
+                            const std::vector<double>& texture, const Matrix& matrix, const std::string& where) {
+    const std::size_t count = positions.size() / 3;
+    if (result_.positions.size() + count > room_)
+      return refused(where, fmt::format("the scene has more than {} vertices, instances counted", room_));
+    // Normals are turned by the cofactors of the matrix, which its mirror images keep on the outside.
+    const Vec3 x = column_of(matrix, 0), y = column_of(matrix, 1), z = column_of(matrix, 2);
+    const double side = dot(cross(x, y), z) < 0 ? -1 : 1;
+    first_normal_ = static_cast<std::int32_t>(result_.normals.size());
+    first_texture_ = static_cast<std::int32_t>(result_.texture.size());
+    for (std::size_t i = 0; i < count; ++i) {
+      const double* p = &positions[3 * i];
+      const Vec3 at = placed(matrix, {p[0], p[1], p[2]});
+      if (!std::isfinite(at.x + at.y + at.z)) return refused(where, "a vertex is not at a finite place");
+      result_.positions.push_back(at);
+      if (!normals.empty()) {
+        const double* n = &normals[3 * i];
+        const Vec3 normal = side * (n[0] * cross(y, z) + n[1] * cross(z, x) + n[2] * cross(x, y));
+        const double size = length(normal);
+        result_.normals.push_back(size > 0 && std::isfinite(size) ? (1 / size) * normal : Vec3{});
+      }
+      if (!texture.empty())
+        result_.texture.push_back({static_cast<float>(texture[2 * i]), static_cast<float>(1 - texture[2 * i + 1])});
+    }
+    return {};
+  }
+
+  // Triangles of a list, a strip or a fan (section 3.7.2.1), turned where the matrix mirrors them.
+  Result<void> add_faces(const std::vector<double>& indices, int mode, const Matrix& matrix, std::uint32_t part,
+                         std::uint32_t first, bool with_normals, bool with_texture, const std::string& where) {
+    const bool mirrors = dot(cross(column_of(matrix, 0), column_of(matrix, 1)), column_of(matrix, 2)) < 0;
+    const std::size_t count = mode == TINYGLTF_MODE_TRIANGLES ? indices.size() / 3
+                              : indices.size() < 3            ? 0
+                                                              : indices.size() - 2;
+    if (result_.corners.size() + 3 * count > room_)
+      return refused(where, fmt::format("the scene has more than {} corners, instances counted", room_));
+    for (std::size_t i = 0; i < count; ++i) {
+      std::array<std::size_t, 3> at = {3 * i, 3 * i + 1, 3 * i + 2};
+      if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) at = {i, i + 1 + i % 2, i + 2 - i % 2};
+      if (mode == TINYGLTF_MODE_TRIANGLE_FAN) at = {i + 1, i + 2, 0};
+      if (mirrors) std::swap(at[1], at[2]);
+      result_.faces.push_back({result_.corners.size(), 3, part});
+      for (const std::size_t corner : at) {
+        const auto vertex = static_cast<std::uint32_t>(indices[corner]);
+        const auto normal = first_normal_ + static_cast<std::int32_t>(vertex);
+        const bool known = with_normals && length(result_.normals[static_cast<std::size_t>(normal)]) > 0;
+        result_.corners.push_back({first + vertex, known ? normal : kNoNormal,
+                                   with_texture ? first_texture_ + static_cast<std::int32_t>(vertex) : kNoTexture});
+      }
+    }
+    return {};
+  }
+
+  // The bytes of a view; nothing where its buffer has not so many.
+  std::optional<std::string_view> bytes_of_view(const tinygltf::BufferView& view) const {
+    const tinygltf::Buffer* buffer = element(model_.buffers, view.buffer);
+    if (buffer == nullptr) return std::nullopt;
+    const std::string_view bytes(reinterpret_cast<const char*>(buffer->data.data()), buffer->data.size());
+    if (view.byteOffset > bytes.size() || view.byteLength > bytes.size() - view.byteOffset) return std::nullopt;
+    return bytes.substr(view.byteOffset, view.byteLength);
+  }
+
+  // A number of the component type, and as a share of its largest value where it is normalized (section 3.6.2.2).
+  static double number_at(const char* bytes, int component, bool normalized) {
+    const auto read = [&](auto value, double most) {
+      std::memcpy(&value, bytes, sizeof value);
+      return normalized ? std::max(-1.0, static_cast<double>(value) / most) : static_cast<double>(value);
+    };
+    switch (component) {
+      case TINYGLTF_COMPONENT_TYPE_BYTE:
+        return read(std::int8_t{}, 127);
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+        return read(std::uint8_t{}, 255);
+      case TINYGLTF_COMPONENT_TYPE_SHORT:
+        return read(std::int16_t{}, 32767);
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+        return read(std::uint16_t{}, 65535);
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+        return read(std::uint32_t{}, 4294967295.0);
+      default:
+        return read(float{}, 1);
+    }
+  }
+
+  // The bytes of one number of that type; 0 where no mesh has such numbers.
+  static std::size_t bytes_of_number(int component) {
+    const bool known = component >= TINYGLTF_COMPONENT_TYPE_BYTE && component <= TINYGLTF_COMPONENT_TYPE_FLOAT &&
+                       component != TINYGLTF_COMPONENT_TYPE_INT;
+    return known ? static_cast<std::size_t>(tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(component)))
+                 : 0;
+  }
+  static bool is_index(int component) {
+    return component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE || component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
+           component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+  }
+
+  // The numbers of an accessor, `wide` of them to an element. Sparse ones take the place of the others.
+  Result<std::vector<double>> accessor(int index, std::size_t wide, const std::string& where) const {
+    const tinygltf::Accessor* of = element(model_.accessors, index);
+    if (of == nullptr) return refused(where, fmt::format("there is no accessor {}", index));
+    const int type = wide == 1 ? TINYGLTF_TYPE_SCALAR : wide == 2 ? TINYGLTF_TYPE_VEC2 : TINYGLTF_TYPE_VEC3;
+    if (of->type != type || bytes_of_number(of->componentType) == 0 || (wide == 1 && !is_index(of->componentType)))
+      return refused(where, fmt::format("its accessor has component type {}, and elements of {} numbers, which do not "
+                                        "fit",
+                                        of->componentType,
+                                        tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(of->type))));
+    if (of->bufferView == -1 && !of->sparse.isSparse) return refused(where, "its accessor has no bufferView");
+    if (of->count > room_) return refused(where, fmt::format("its accessor counts {} elements", of->count));
+    std::vector<double> values;
+    const Numbers numbers{of->bufferView, of->byteOffset, of->componentType, of->normalized, wide, of->count};
+    if (of->bufferView != -1) {
+      GONIO_TRY(read_elements(numbers, where, values));
+    } else {
+      values.assign(wide * of->count, 0);
+    }
+    if (of->sparse.isSparse) GONIO_TRY(put_sparse(*of, numbers, where, values));
+    for (const double value : values)
+      if (!std::isfinite(value)) return refused(where, "a number of its accessor is not finite");
+    return values;
+  }
+
+  // Elements of `wide` numbers of one type, one behind the other.
+  struct Numbers {
+    int view;
+    std::size_t offset;
+    int component;
+    bool normalized;
+    std::size_t wide, count;
+  };
+
+  Result<void> read_elements(const Numbers& numbers, const std::string& where, std::vector<double>& values) const {
+    const tinygltf::BufferView* view = element(model_.bufferViews, numbers.view);
+    const auto bytes = view == nullptr ? std::nullopt : bytes_of_view(*view);
+    const std::size_t one = bytes_of_number(numbers.component), size = one * numbers.wide,
+                      stride = view == nullptr || view->byteStride == 0 ? size : view->byteStride;
+    if (!bytes || stride < size ||
+        (numbers.count > 0 && (numbers.offset > bytes->size() || bytes->size() - numbers.offset < size ||
+                               (bytes->size() - numbers.offset - size) / stride < numbers.count - 1)))
+      return refused(where,
+                     fmt::format("the bufferView {} has too few bytes for {} elements", numbers.view, numbers.count));
+    values.reserve(numbers.wide * numbers.count);
+    for (std::size_t i = 0; i < numbers.count; ++i)
+      for (std::size_t k = 0; k < numbers.wide; ++k)
+        values.push_back(
+            number_at(bytes->data() + numbers.offset + i * stride + k * one, numbers.component, numbers.normalized));
+    return {};
+  }
+
+  Result<void> put_sparse(const tinygltf::Accessor& of, const Numbers& all, const std::string& where,
+                          std::vector<double>& values) const {
+    const auto& sparse = of.sparse;
+    if (!is_index(sparse.indices.componentType) || sparse.count < 0 || sparse.indices.byteOffset < 0 ||
+        sparse.values.byteOffset < 0)
+      return refused(where, "its sparse accessor has indices that are no whole numbers");
+    const auto count = static_cast<std::size_t>(sparse.count);
+    std::vector<double> places, numbers;
+    GONIO_TRY(read_elements({sparse.indices.bufferView, static_cast<std::size_t>(sparse.indices.byteOffset),
+                             sparse.indices.componentType, false, 1, count},
+                            where, places));
+    GONIO_TRY(read_elements({sparse.values.bufferView, static_cast<std::size_t>(sparse.values.byteOffset),
+                             all.component, all.normalized, all.wide, count},
+                            where, numbers));
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto place = static_cast<std::size_t>(places[i]);
+      if (place >= all.count) return refused(where, "its sparse accessor has an index beyond its count");
+      std::copy_n(&numbers[all.wide * i], all.wide, &values[all.wide * place]);
+    }
+    return {};
+  }
+
+  const Source& source_;
+  std::string folder_;
+  tinygltf::Model model_;
+  std::size_t room_ = 0;  // for corners, and for vertices
+  std::vector<bool> met_;
+  std::map<std::string, std::uint32_t> parts_;
+  std::int32_t first_normal_ = 0, first_texture_ = 0;  // of the primitive that is placed
+  Polygons result_;
+};
+
+}  // namespace
+
+Result<Polygons> polygons_from_gltf(const std::string& content, const Source& source, const std::string& folder) {
+  GONIO_ASSIGN(
+      const ChildBytes bytes,
+      made_by_child(source.name, limits_for(content.size(), !folder.empty()), [&](ChildOutput& output) -> Result<void> {
+        GONIO_ASSIGN(const Polygons polygons, Reader(source, folder).polygons(content));
+        put(output, polygons);
+        return {};
+      }));
+  return polygons_of_bytes(bytes.view(), source.name);
+}
+
+}  // namespace goniochrome::mesh

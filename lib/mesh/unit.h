@@ -1,0 +1,21 @@
+// The unit of length of a mesh whose file does not state one.
+#pragma once
+
+#include "mesh/mesh.h"
+
+namespace goniochrome::mesh {
+
+struct LengthUnit {
+  const char* name;  // in the plural, as in "taken as millimeters"
+  double meters;
+};
+
+// The unit that a mesh of this size is taken to be in, by the diagonal of its box: meters up to 30 of them; inches, of
+// which a car has some 200, up to 300; centimeters, of which it has some 500, up to 900; and millimeters above. A small
+// part can be taken for a larger one of another unit, so that a tool must tell what it has taken.
+LengthUnit likely_unit(const Box& box);
+
+// The unit of that many meters, one of those above.
+LengthUnit unit_of(double meters);
+
+}  // namespace goniochrome::mesh

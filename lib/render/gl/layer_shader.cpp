@@ -1,0 +1,169 @@
+#include "render/gl/layer_shader.h"
+
+#include "base/angles.h"
+#include "base/text.h"
+#include "render/gl/shader_parts.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+// What a slot meets of the maps in a mirror direction.
+std::string map_light_function(const Effects& effects) {
+  std::string text = "\nvec4 map_light(vec3 r, int slot, vec3 n) {\n  vec4 light = vec4(0.0);\n";
+  for (const LightLayer& layer : light_layers(effects)) {
+    if (layer.of_lamps) continue;
+    std::string toward = layer.sampler == "diffuse" || layer.sampler == "coat_diffuse" ? "n" : "r";
+    if (layer.shift_slot >= 0) toward = fmt::format("r + W({}).{} * n", layer.shift_slot, "rgba"[layer.shift_channel]);
+    text += fmt::format("  if (slot == {}) light = textureLod({}, {}, 0.0);\n", layer.slot, layer.sampler, toward);
+  }
+  return text + "  return light;\n}\n";
+}
+
+// What the flakes or the gloss of a lobe send from a disc: the same sums as in the shading program, without weights.
+std::string lamp_light_function(const Effects& effects) {
+  return fmt::format(R"(
+float lamp_light(vec3 r, int slot, vec3 l, vec3 n, vec3 wo, int light, vec2 seen) {{
+  vec4 of = disc_lobe(light, (slot - {0}) / 2, distance(r, l));
+  if (of == vec4(0.0)) return 0.0;
+  if (((slot - {0}) & 1) == 1) return of.z * seen.y + of.w * {1};
+  float cos_r = max(dot(n, r), 0.0);
+{2}  return of.x * seen.x + of.y * cos_r;
+}}
+)",
+                     slots_of(effects).directional_diffuse_slot(0),
+                     lit_gloss(effects) ? "fresnel(sqrt(max(0.5 + 0.5 * dot(r, wo), 0.0)))" : "1.0",
+                     effects.coat ? "  cos_r *= let_in(cos_r, index2);\n" : "");
+}
+
+// Sums over the lamps for each of the layers.
+std::string lamp_layers(const Effects& effects) {
+  const WeightTable slots = slots_of(effects);
+  // Layers of maps are drawn without going through the lamps.
+  std::string text =
+      fmt::format("  if (max(max(slots[0], slots[1]), max(slots[2], slots[3])) >= {0}) {{\n  index2 = W({0}).a;\n",
+                  slots.light_slot()) +
+      disc_loop(effects, "index2");
+  text += fmt::format(R"(    vec3 white = {} * light_white[i];
+    vec2 let = vec2(seen.x, seen.y * {});
+    for (int o = 0; o < {}; ++o) {{
+      int slot = slots[o];
+      float part = 0.0;
+      if (slot == {}) part = seen.x;
+)",
+                      glsl(kPi), disc_fresnel(effects), kLayersAtOnce, slots.light_slot());
+  if (effects.mirror)
+    text += fmt::format("      if (slot == {} && distance(r, l) <= disc.y) part = disc.z;\n", slots.lamp_mirror_slot());
+  if (!effects.lobes.empty())
+    text += fmt::format("      if (slot >= {} && slot <= {}) {{\n      {}      }}\n", slots.directional_diffuse_slot(0),
+                        slots.gloss_slot(effects.lobes.size() - 1),
+                        over_tilts(effects, "part", "lamp_light", ", slot, l, n, wo, i, let"));
+  return text + "      sums[o].rgb += part * white;\n    }\n  }\n  }\n";
+}
+
+}  // namespace
+
+std::vector<LightLayer> light_layers(const Effects& effects) {
+  const WeightTable slots = slots_of(effects);
+  std::vector<LightLayer> layers;
+  if (effects.environment) {
+    if (effects.diffuse) layers.push_back({WeightTable::diffuse_slot(), false, "diffuse"});
+    if (effects.diffuse && effects.coat) layers.push_back({slots.coat_diffuse_slot(), false, "coat_diffuse"});
+    for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
+      LightLayer layer{WeightTable::lobe_slot(j), false, fmt::format("lobe_{}", j)};
+      if (is_shifted(effects, effects.lobes[j].exponent))
+        layer.shift_slot = slots.shift_slot(j), layer.shift_channel = static_cast<int>(j % 4);
+      layers.push_back(std::move(layer));
+    }
+    if (effects.mirror) layers.push_back({slots.mirror_slot(), false, "mirror"});
+  }
+  if (effects.single_lights() == 0) return layers;
+  if (effects.diffuse) layers.push_back({slots.light_slot(), true, ""});
+  for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
+    if (effects.lobes[j].directional_diffuse) layers.push_back({slots.directional_diffuse_slot(j), true, ""});
+    if (effects.lobes[j].gloss) layers.push_back({slots.gloss_slot(j), true, ""});
+  }
+  if (effects.mirror) layers.push_back({slots.lamp_mirror_slot(), true, ""});
+  return layers;
+}
+
+std::string gathering_fragment_shader(const Effects& effects, const color::ReflectionOperator& op, bool laid_ground) {
+  const bool lamps = effects.single_lights() > 0;
+  const ProductForms forms = effects.reflection ? product_forms(op) : ProductForms{};
+  const Product product = product_of(effects, forms);
+  laid_ground = laid_ground && effects.background == Background::kEnvironment;
+  std::string text = std::string(kHead) + "// goniochrome-theory(7), RENDERING, Layers\n" + uniforms(effects) + kRays;
+  text +=
+      fmt::format("uniform int slots[{0}];\nuniform float scales[{0}];\nlayout(location = 0) out vec4 layers[{0}];\n",
+                  kLayersAtOnce);
+  text += kWeight;
+  if (product == Product::kForms && effects.environment)
+    text += forms_functions(forms, effects.background == Background::kEnvironment);
+  if (lit_gloss(effects)) text += fresnel_function();
+  if (effects.coat && lamps) text += kLetIn;
+  if (lamps) text += disc_functions(effects.lobes.size()) + "float index2;  // of the coat, squared\n";
+  if (effects.environment) text += map_light_function(effects);
+  if (lamps && !effects.lobes.empty()) text += lamp_light_function(effects);
+  if (laid_ground) text += kLaidGround;
+  std::string beside, sums, written;
+  for (int o = 0; o < kLayersAtOnce; ++o) {
+    beside += fmt::format("    layers[{0}] = slots[{0}] == {1} ? vec4(shown.rgb / scales[{0}], shown.a) : vec4(0.0);\n",
+                          o, kBesideLayer);
+    sums += fmt::format("{}vec4(0.0)", o == 0 ? "" : ", ");
+    written += fmt::format("  layers[{0}] = sums[{0}] / scales[{0}];\n", o);
+  }
+  text += start_of_main(
+      effects, "",
+      fmt::format("    vec4 shown = {};\n", background_color(effects.background, product, laid_ground)) + beside);
+  text += tilt_frame(effects) + fmt::format("  vec4 sums[{0}] = vec4[{0}]({1});\n", kLayersAtOnce, sums);
+  if (effects.environment) {
+    // A brushed surface has lobes about each of its normals; its diffuse part and its mirror have their own.
+    const std::string whole = "  sums[o] += map_light(r, slots[o], n);\n";
+    text += fmt::format("  for (int o = 0; o < {}; ++o) {{\n", kLayersAtOnce);
+    if (effects.anisotropy && !effects.lobes.empty())
+      text += fmt::format("    if (slots[o] >= {} && slots[o] <= {}) {{\n    {}    }} else {{\n    {}    }}\n",
+                          WeightTable::lobe_slot(0), WeightTable::lobe_slot(effects.lobes.size() - 1),
+                          over_tilts(effects, "sums[o]", "map_light", ", slots[o], n"), whole);
+    else
+      text += "  " + whole;
+    text += "  }\n";
+  }
+  if (lamps) text += lamp_layers(effects);
+  return text + written + "}\n";
+}
+
+std::string layers_fragment_shader(const Effects& effects, const color::ReflectionOperator& op) {
+  const ProductForms forms = effects.reflection ? product_forms(op) : ProductForms{};
+  const Product product = product_of(effects, forms);
+  std::string text = std::string(kHead) + "// goniochrome-theory(7), RENDERING, Layers\n";
+  text += fmt::format(
+      R"(uniform sampler2D gbuffer;  // normal, part + 1 (negative: seen from inside)
+uniform sampler2D weights;  // a row for each part; two texels for each slot of each segment of the view
+uniform sampler2DArray layers;
+uniform int count;
+uniform ivec2 used[{0}];  // slot, place
+uniform float scales[{0}], beside_scale;
+layout(location = 0) out vec4 color;
+)",
+      kMostLayers);
+  text += std::string(kRays) + kWeight;
+  if (effects.reflection) text += reflection_function(op);
+  if (product == Product::kForms) text += forms_functions(forms, false);
+  text += start_of_main(effects, "  ivec2 at = ivec2(gl_FragCoord.xy);\n",
+                        "    vec4 shown = texelFetch(layers, ivec3(at, 0), 0);\n"
+                        "    color = vec4(beside_scale * shown.rgb, shown.a);\n");
+  const std::string by_color = "radiance += " + times(effects, "light.rgb", "W(slot).rgb") + ";\n";
+  text += fmt::format(R"(  vec4 products = vec4(0.0);
+  vec3 radiance = vec3(0.0);
+  for (int o = 0; o < count; ++o) {{
+    int slot = used[o].x;
+    vec4 light = scales[o] * texelFetch(layers, ivec3(at, used[o].y), 0);
+    if (slot < {}) {}    else {}  }}
+)",
+                      slots_of(effects).light_slot(),
+                      product == Product::kForms ? "products += W(slot) * light;\n" : by_color, by_color);
+  if (product == Product::kForms) text += "  radiance += color_of(products);\n";
+  return text + "  color = vec4(radiance, 1.0);\n}\n";
+}
+
+}  // namespace goniochrome::render

@@ -1,0 +1,202 @@
+#include "render/gl/shader_parts.h"
+
+#include <algorithm>
+
+#include "base/angles.h"
+#include "base/text.h"
+#include "brdf/disc_light.h"
+#include "brdf/lobe_model.h"
+
+namespace goniochrome::render {
+
+std::string glsl(double value) {
+  const std::string text = fmt::format("{}", static_cast<float>(value));
+  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
+
+Product product_of(const Effects& effects, const ProductForms& forms) {
+  if (!effects.reflection) return Product::kPlain;
+  return forms.count == 4 ? Product::kForms : Product::kOperator;
+}
+
+std::string uniforms(const Effects& effects) {
+  std::string text = R"(uniform sampler2D gbuffer;  // normal, part + 1 (negative: seen from inside)
+uniform sampler2D weights;  // a row for each part; two texels for each slot of each segment of the view
+)";
+  if (effects.anisotropy) text += "uniform sampler2D tilts;  // a row for each part: normal in its frame, share\n";
+  if (effects.environment) {
+    if (effects.diffuse) text += "uniform samplerCube diffuse;  // P_1\n";
+    if (effects.diffuse && effects.coat) text += "uniform samplerCube coat_diffuse;  // P_1 as a coat lets light in\n";
+    for (std::size_t j = 0; j < effects.lobes.size(); ++j) {
+      text += fmt::format("uniform samplerCube lobe_{};  // P_E, E = {}\n", j, shortest(effects.lobes[j].exponent));
+    }
+    if (effects.mirror || effects.background == Background::kEnvironment) {
+      text += "uniform samplerCube mirror;  // the environment itself\n";
+    }
+  }
+  if (effects.single_lights() > 0) {
+    text += fmt::format("uniform vec3 light_direction[{0}], light_white[{0}];\n", effects.single_lights());
+    if (effects.discs()) {
+      text += fmt::format(
+          "uniform vec3 light_disc[{}];  // sine and chord of the radius, 1/(pi sine^2)\n"
+          "uniform sampler2D discs;  // for each light a row for each lobe, then one for the horizon\n",
+          effects.single_lights());
+    }
+  }
+  if (effects.background == Background::kColor) text += "uniform vec3 background;\n";
+  return text;
+}
+
+std::string row_of_view(const Effects& effects) {
+  if (!effects.depends_on_view()) return "  t = c;\n";
+  return fmt::format(R"(  float view = {0}.0 * sqrt(c);
+  int segment = min(int(view), {1});
+  column = {2} * segment;
+  t = view - float(segment);
+)",
+                     kViewSegments, kViewSegments - 1, 2 * slots_of(effects).slots);
+}
+
+std::string fresnel_function() {
+  return fmt::format(R"(
+float fresnel(float c) {{  // unpolarized, index {0}
+  float g = sqrt({1} + c * c), s = (c - g) / (c + g), p = ({2} * c - g) / ({2} * c + g);
+  return 0.5 * (s * s + p * p);
+}}
+)",
+                     glsl(brdf::kCoatIndex), glsl(brdf::kCoatIndex * brdf::kCoatIndex - 1),
+                     glsl(brdf::kCoatIndex * brdf::kCoatIndex));
+}
+
+std::string disc_functions(std::size_t lobes) {
+  return fmt::format(R"(
+vec4 disc_node(int row, float x) {{
+  x = max(x, 0.0);
+  int node = int(x);
+  return mix(texelFetch(discs, ivec2(node, row), 0), texelFetch(discs, ivec2(node + 1, row), 0), x - float(node));
+}}
+vec4 disc_lobe(int light, int lobe, float chord) {{
+  int row = {0} * light + lobe;
+  vec4 steps = texelFetch(discs, ivec2({1}, row), 0);
+  float x = (chord - steps.x) * steps.y;
+  return x < {1}.0 - 1.0 ? disc_node(row, x) : vec4(0.0);
+}}
+vec2 disc_horizon(int light, float part) {{
+  return disc_node({0} * light + {2}, min(0.5 * (part + 1.0) * ({1}.0 - 1.0), {1}.0 - 1.001)).xy;
+}}
+)",
+                     lobes + 1, brdf::DiscLobeTable::kNodes, lobes);
+}
+
+bool lit_gloss(const Effects& effects) {
+  return effects.single_lights() > 0 && effects.fresnel &&
+         std::any_of(effects.lobes.begin(), effects.lobes.end(), [](const Effects::LobeUse& use) { return use.gloss; });
+}
+
+std::string times(const Effects& effects, const std::string& a, const std::string& b) {
+  return effects.reflection ? fmt::format("times({}, {})", a, b) : fmt::format("{} * {}", a, b);
+}
+
+std::string reflection_function(const color::ReflectionOperator& op) {
+  std::string text = "\nvec3 times(vec3 a, vec3 b) {  // bilinear reflection\n  return vec3(";
+  for (std::size_t c = 0; c < 3; ++c) {
+    text += fmt::format("{}dot(a, mat3(", c == 0 ? "" : "              ");
+    for (std::size_t e = 0; e < 3; ++e) {
+      for (std::size_t d = 0; d < 3; ++d) text += fmt::format("{}{}", e + d == 0 ? "" : ", ", glsl(op.k[c][d][e]));
+    }
+    text += c == 2 ? ") * b));\n}\n" : ") * b),\n";
+  }
+  return text;
+}
+
+std::string forms_functions(const ProductForms& forms, bool background) {
+  std::string columns, white;
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (int c = 0; c < 3; ++c) columns += (columns.empty() ? "" : ", ") + glsl(forms.out[i][c]);
+    white += (white.empty() ? "" : ", ") + glsl(forms.of(static_cast<int>(i), {1, 1, 1}));
+  }
+  std::string text = fmt::format(
+      "\nvec3 color_of(vec4 products) {{  // of weights and maps, both in the four forms of bilinear reflection\n"
+      "  return mat4x3({}) * products;\n}}\n",
+      columns);
+  if (background) {
+    text += fmt::format("vec3 unreflected(vec4 forms) {{ return color_of(forms * vec4({})); }}  // by white\n", white);
+  }
+  return text;
+}
+
+const char* sum_type(Product product) {
+  return product == Product::kForms ? "vec4" : "vec3";
+}
+
+std::string over_tilts(const Effects& effects, const std::string& sum, const std::string& function,
+                       const std::string& more) {
+  if (!effects.anisotropy) return fmt::format("  {} += {}(r{});\n", sum, function, more);
+  return fmt::format(R"(  for (int k = 0; k < tilt_count; ++k) {{
+    vec4 tilt = texelFetch(tilts, ivec2(k, row), 0);
+    if (tilt.w == 0.0) break;
+    vec3 m = tilt.x * x + tilt.y * y + tilt.z * n;
+    float cos_m = dot(m, wo);
+    vec3 r_m = 2.0 * cos_m * m - wo;
+    if (cos_m > 0.0 && dot(r_m, n) > 0.0) {} += tilt.w * {}(r_m{});
+  }}
+)",
+                     sum, function, more);
+}
+
+std::string background_color(Background background, Product product, bool laid_ground) {
+  switch (background) {
+    case Background::kEnvironment: {
+      const std::string seen = fmt::format("textureLod(mirror, {}, 0.0)", laid_ground ? "laid(-wo)" : "-wo");
+      return product == Product::kForms ? fmt::format("vec4(unreflected({}), 1.0)", seen)
+                                        : fmt::format("vec4({}.rgb, 1.0)", seen);
+    }
+    case Background::kColor:
+      return "vec4(background, 1.0)";
+    case Background::kNone:
+      break;
+  }
+  return "vec4(0.0)";
+}
+
+std::string disc_loop(const Effects& effects, const std::string& index2) {
+  return fmt::format(
+      R"(  for (int i = 0; i < {}; ++i) {{
+    vec3 l = light_direction[i], disc = light_disc[i];
+    float cos_i = dot(n, l);
+    if (cos_i <= -disc.x) continue;
+    vec2 seen = cos_i >= disc.x ? vec2(cos_i, 1.0) : disc_horizon(i, cos_i / disc.x);
+{})",
+      effects.single_lights(),
+      // At the mean cosine of what is seen of the disc.
+      effects.coat ? fmt::format("    seen.x *= let_in(min(seen.x / max(seen.y, 1e-6), 1.0), {});\n", index2) : "");
+}
+
+std::string disc_fresnel(const Effects& effects) {
+  return lit_gloss(effects) ? "fresnel(sqrt(max(0.5 + 0.5 * dot(l, wo), 0.0)))" : "1.0";
+}
+
+std::string start_of_main(const Effects& effects, const std::string& more, const std::string& beside) {
+  return fmt::format(R"(
+void main() {{
+  vec4 point = texelFetch(gbuffer, ivec2(gl_FragCoord.xy), 0);
+  vec3 wo = -ray();
+{}  if (point.w == 0.0) {{
+{}    return;
+  }}
+  vec3 n = point.xyz;
+  float c = dot(n, wo);  // = n.r
+  vec3 r = 2.0 * c * n - wo;
+  row = int(abs(point.w)) - 1;
+{})",
+                     more, beside, row_of_view(effects));
+}
+
+std::string tilt_frame(const Effects& effects) {
+  if (!effects.anisotropy) return {};
+  return R"(  int tilt_count = textureSize(tilts, 0).x;
+  vec3 x = dot(n.xz, n.xz) > 1e-12 ? normalize(vec3(n.z, 0.0, -n.x)) : vec3(1.0, 0.0, 0.0), y = cross(n, x);
+)";
+}
+
+}  // namespace goniochrome::render

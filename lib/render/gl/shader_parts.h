@@ -1,0 +1,104 @@
+// Pieces of shading programs that several of them have in common. goniochrome-theory(7), RENDERING.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "render/effects.h"
+#include "render/gl/tilt_shader.h"
+#include "render/internal/product_forms.h"
+
+namespace goniochrome::render {
+
+// How products with the environment's maps are taken: in plain RGB, in the four forms of the operator (which the maps
+// and their weights hold already), or by the operator itself.
+using Product = TiltProduct;
+Product product_of(const Effects& effects, const ProductForms& forms);
+// The type of a sum of such products.
+const char* sum_type(Product product);
+
+// A GLSL constant, which needs a point or an exponent to be a float.
+std::string glsl(double value);
+
+// The first line of every program.
+inline constexpr const char* kHead = "#version 330 core\n";
+
+// Pixels as rays; both programs see the same, so a viewing direction needs no position.
+inline constexpr const char* kRays =
+    R"(uniform vec3 corner, right, down;  // the ray through (x, y), in pixels from the upper left
+vec3 ray() { return normalize(corner + gl_FragCoord.x * right + gl_FragCoord.y * down); }
+)";
+
+// Where the weights of this point begin, and how far into its segment the view is.
+inline constexpr const char* kWeight = R"(
+int row, column = 0;
+float t;
+vec4 W(int slot) {
+  ivec2 at = ivec2(column + 2 * slot, row);
+  return texelFetch(weights, at, 0) + t * texelFetch(weights, at + ivec2(1, 0), 0);
+}
+)";
+
+// What a coat lets in, by brdf's form of the Fresnel reflectance; `index2` is the square of its index, 1 without a
+// coat.
+inline constexpr const char* kLetIn = R"(
+float let_in(float c, float index2) {
+  float contrast = index2 - 1.0, g = sqrt(contrast + c * c), s = c + g, p = index2 * c + g;
+  float r_s = contrast / (s * s), r_p = contrast * ((index2 + 1.0) * c * c - 1.0) / (p * p);
+  return 1.0 - 0.5 * (r_s * r_s + r_p * r_p);
+}
+)";
+
+// What stands on the ground where a ray meets it was seen from ground_eye = 0; elsewhere it is the ray's own direction.
+inline constexpr const char* kLaidGround = R"(uniform vec3 ground_eye;
+uniform float ground_drop;
+vec3 laid(vec3 ray) {
+  float rise = ground_eye.y + ground_drop;
+  return ground_drop > 0.0 && rise > 0.0 && ray.y < 0.0 ? ground_eye - (rise / ray.y) * ray : ray;
+}
+)";
+
+// The samplers and uniforms of the G-buffer, the weights, the maps and the lights.
+std::string uniforms(const Effects& effects);
+
+// Statements that find the column of a point's weights in its row, from c = n.wo.
+std::string row_of_view(const Effects& effects);
+
+// brdf's fresnel_dielectric() with the refracted cosine g/n written in c: r_s = (c-g)/(c+g), r_p = (n^2 c-g)/(n^2 c+g).
+std::string fresnel_function();
+
+// Whether gloss meets single lights, whose reflection then depends on the angle at which they are seen.
+bool lit_gloss(const Effects& effects);
+
+// What a lobe gathers of a disc, by the chord from the mirror direction to its middle; and how much of a disc stands
+// above the horizon, by the cosine to its middle relative to the sine of its radius: irradiance and part.
+std::string disc_functions(std::size_t lobes);
+
+// The start of a loop over lamps that are discs: l, disc, and `seen`, the cosine as the coat lets it in and the part of
+// the disc above the horizon. `index2` is the square of the coat's index.
+std::string disc_loop(const Effects& effects, const std::string& index2);
+
+// The Fresnel reflectance of gloss toward a disc, or "1.0".
+std::string disc_fresnel(const Effects& effects);
+
+// The product of two colors: each channel by itself, or by the operator.
+std::string times(const Effects& effects, const std::string& a, const std::string& b);
+std::string reflection_function(const color::ReflectionOperator& op);
+
+// The color that products of the four forms stand for, and the environment itself again.
+std::string forms_functions(const ProductForms& forms, bool background);
+
+// The start of main(): at points beside the mesh the program does what `beside` says and returns; of others it finds n,
+// c = n.wo, r, and where the weights are. `more` stands before both.
+std::string start_of_main(const Effects& effects, const std::string& more, const std::string& beside);
+
+// The frame of the tilted normals of a brushed surface; nothing without the effect.
+std::string tilt_frame(const Effects& effects);
+// Adds to `sum` a function of the mirror direction: about the normal, or averaged over the tilted normals.
+std::string over_tilts(const Effects& effects, const std::string& sum, const std::string& function,
+                       const std::string& more);
+
+// What a ray shows that meets nothing.
+std::string background_color(Background background, Product product, bool laid_ground);
+
+}  // namespace goniochrome::render
