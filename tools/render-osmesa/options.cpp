@@ -69,7 +69,8 @@ void add_surfaces(cli::ToolSpec& spec, Options& o) {
       .more(
           "The exponents of a texture lie between those of the environment, and are blended. cubes blends maps that "
           "have one exponent each. mip blends the levels of one cube, of which coarser ones hold wider lobes; it "
-          "needs the sharpest exponent and its quarters, or the layout mip of prefilter-envmap(1).");
+          "needs the sharpest exponent and its quarters, or the layout mip of prefilter-envmap(1). Lobes that are "
+          "sharper or wider than all maps are an error, which names the command that makes the maps.");
 }
 
 void add_light(cli::ToolSpec& spec, Options& o) {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/text.h"
+#include "render/gl/shader_parts.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {
@@ -186,11 +187,6 @@ float log_1p(float x) {
 float bounded_exp(float x) { return x > -80.0 ? exp(min(x, 87.0)) : 0.0; }
 )";
 
-// The product of the light that a lobe gathers and the color with which it sends that to the viewer.
-std::string product(const Effects& effects, const char* light, const char* color) {
-  return effects.reflection ? fmt::format("times({}, {})", light, color) : fmt::format("{} * {}", light, color);
-}
-
 // One lobe under the environment: log energy = log(2 pi/(n+1)) + log albedo, by the light about its middle.
 std::string environment_lobe(const Effects& effects) {
   return fmt::format(R"(      if (m.z > 0.0) {{
@@ -201,7 +197,7 @@ std::string environment_lobe(const Effects& effects) {
         sum += {};
       }}
 )",
-                     product(effects, "light", "of"));
+                     times(effects, "light", "of"));
 }
 
 // One lobe under the lights: the exact BRDF. Discs are Gaussians of the same variance.
@@ -217,7 +213,7 @@ std::string lit_lobe(const Effects& effects) {
         sum += {};
       }}
 )",
-                     effects.lights, product(effects, "light", "of"));
+                     effects.lights, times(effects, "light", "of"));
 }
 
 std::string diffuse_terms(const TextureProgram& textures, const Effects& effects) {
@@ -229,7 +225,7 @@ std::string diffuse_terms(const TextureProgram& textures, const Effects& effects
         "  for (int i = 0; i < {}; ++i) light += 3.14159265 * max(dot(light_direction[i], n), 0.0) * light_white[i];\n",
         effects.lights);
   }
-  return text + fmt::format("  return sum + {};\n", product(effects, "light", "diffuse"));
+  return text + fmt::format("  return sum + {};\n", times(effects, "light", "diffuse"));
 }
 
 std::string place_function(const TextureProgram& textures, std::uint32_t on) {
