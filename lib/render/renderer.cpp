@@ -239,7 +239,8 @@ Result<void> Renderer::State::take(int first, int count, image::Image& picture) 
   if (!engine->info().traces_rays && effects.extent && effects.mirror)
     for (int i = first; i < first + count; ++i) add_glints(scene, effects, *gbuffer(i), gain, picture);
   if (scene.layer == nullptr || engine->shades_layer()) return {};
-  for (int i = first; i < first + count; ++i) scene.layer->add(*gbuffer(i), places(i), effects, gain, picture);
+  for (int i = first; i < first + count; ++i)
+    scene.layer->add(*gbuffer(i), places(i), effects, gain, picture, !engine->shades_textures());
   return {};
 }
 
@@ -377,8 +378,7 @@ std::string Renderer::opengl_library() const {
 }
 
 std::string Renderer::shader() const {
-  return shading_fragment_shader(state_->effects, state_->scene.reflection,
-                                 tilt_exponents(state_->scene, state_->effects));
+  return shading_fragment_shader(state_->scene, state_->effects);
 }
 
 Result<void> Renderer::load(const Scene& scene, const std::string& engine) {

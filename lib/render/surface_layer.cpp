@@ -104,6 +104,12 @@ std::size_t SurfaceLayer::shading_of(int part, const Effects& effects) const {
   return effects.texture ? which : textures_.size() + which;
 }
 
+std::vector<std::size_t> SurfaceLayer::drawn(const Effects& effects) const {
+  std::vector<std::size_t> numbers;
+  for (std::size_t i = 0; i < textures_.size(); ++i) numbers.push_back(effects.texture ? i : textures_.size() + i);
+  return numbers;
+}
+
 // Steps of the golden section cover a texture evenly.
 TexturePlace SurfaceLayer::placed(const VisiblePoint& point, std::size_t number) const {
   const double repeat = surface(point.part).repeat;
@@ -216,12 +222,13 @@ class SurfaceLayer::Row {
 };
 
 void SurfaceLayer::add(const Gbuffer& gbuffer, const std::vector<TexturePlace>& places, const Effects& effects,
-                       float weight, image::Image& rgba) const {
-  if (!textured_ && !(mapped_ && effects.maps)) return;
+                       float weight, image::Image& rgba, bool with_textures) const {
+  with_textures = with_textures && textured_;
+  if (!with_textures && !(mapped_ && effects.maps)) return;
   const SbrdfLight light = light_of(scene_, effects);
   parallel_for(static_cast<std::size_t>(gbuffer.height), 8, [&](std::size_t begin, std::size_t end) {
     std::optional<Row> textured;
-    if (textured_) textured.emplace(*shader_, light, weight, rgba);
+    if (with_textures) textured.emplace(*shader_, light, weight, rgba);
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       const Rays& rays = gbuffer.rays;
       const Vec3 first = rays.corner + (y + 0.5) * rays.down;
@@ -230,8 +237,9 @@ void SurfaceLayer::add(const Gbuffer& gbuffer, const std::vector<TexturePlace>& 
         if (part < 0) continue;
         const PartSurface& surface = surfaces_[static_cast<std::size_t>(part)];
         if (surface.texture != nullptr) {
-          textured->put(shading_of(part, effects), x, y, gbuffer.at(x, y), -(first + (x + 0.5) * rays.right),
-                        places[static_cast<std::size_t>(y) * gbuffer.width + x], surface.repeat);
+          if (with_textures)
+            textured->put(shading_of(part, effects), x, y, gbuffer.at(x, y), -(first + (x + 0.5) * rays.right),
+                          places[static_cast<std::size_t>(y) * gbuffer.width + x], surface.repeat);
         } else if (effects.maps && surface.color_map != nullptr) {
           const color::Rgb color = mapped_difference(part, gbuffer.normal(x, y), gbuffer.to_viewer(x, y), effects.coat);
           for (int c = 0; c < 3; ++c) rgba.pixel(x, y)[c] += weight * static_cast<float>(color[c]);

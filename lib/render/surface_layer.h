@@ -1,6 +1,6 @@
 // The surface layer holds what the lobe model of a part cannot show: textures of generalized cosine lobes, and the
-// colors of a color map under directional lights. It is added to a picture pixel by pixel on the processor, whatever
-// engine drew the rest. goniochrome-theory(7), SPATIALLY VARYING SURFACES, Drawing.
+// colors of a color map under directional lights. It is added to a picture pixel by pixel on the processor, unless the
+// engine that drew the rest draws the textures too. goniochrome-theory(7), SPATIALLY VARYING SURFACES, Drawing.
 #pragma once
 
 #include <memory>
@@ -43,6 +43,12 @@ class SurfaceLayer {
   brdf::CriticalAngle treatment() const { return treatment_; }
   // No other layer has it.
   std::uint64_t id() const { return id_; }
+  // The textures as the kernel and the programs of OpenGL have them, and then the mean texel of each; null where there
+  // are none.
+  const SbrdfShader* shader() const { return shader_.get(); }
+  // Which of these a part with a texture shows, and all that are shown.
+  std::size_t shading_of(int part, const Effects& effects) const;
+  std::vector<std::size_t> drawn(const Effects& effects) const;
   // The most lobes of a texture.
   int lobes() const;
 
@@ -51,9 +57,10 @@ class SurfaceLayer {
 
   // Adds `weight` times the layer, as far as the effects have it, to the RGB of every pixel; a part whose texture is
   // left out shows its mean texel. `places` are those of the G-buffer. Of a color map it adds the difference to what
-  // the lobe model shows of the same light, gloss apart. Bit-identical for any number of threads.
+  // the lobe model shows of the same light, gloss apart. Where an engine drew the textures, `with_textures` is false.
+  // Bit-identical for any number of threads.
   void add(const Gbuffer& gbuffer, const std::vector<TexturePlace>& places, const Effects& effects, float weight,
-           image::Image& rgba) const;
+           image::Image& rgba, bool with_textures = true) const;
 
   // The color map's part at one point: radiance under the scene's lights less that of the paint's flake lobes, drawn
   // with the effect `coat` or without it.
@@ -83,7 +90,6 @@ class SurfaceLayer {
 
  private:
   class Row;
-  std::size_t shading_of(int part, const Effects& effects) const;
   TexturePlace placed(const VisiblePoint& point, std::size_t number) const;
 
   const Scene& scene_;

@@ -69,7 +69,8 @@ void add_surfaces(cli::ToolSpec& spec, Options& o) {
       .more(
           "The exponents of a texture lie between those of the environment, and are blended. cubes blends maps that "
           "have one exponent each. mip blends the levels of one cube, of which coarser ones hold wider lobes; it "
-          "needs the sharpest exponent and its quarters, or the layout mip of prefilter-envmap(1).");
+          "needs the sharpest exponent and its quarters, or the layout mip of prefilter-envmap(1). Lobes that are "
+          "sharper or wider than all maps are an error, which names the command that makes the maps.");
 }
 
 void add_light(cli::ToolSpec& spec, Options& o) {
@@ -238,7 +239,7 @@ void add_engines(cli::ToolSpec& spec, Options& o) {
           "0 draws the light that comes from the environment, lights and shining parts without detour: surfaces that "
           "are seen in others are then black, but for what they emit.");
   spec.flag("print-shader", &o.print_shader, "print the OpenGL program of the scene on standard output")
-      .more("Comments before it name what the picture shows and the program does not: textures, color maps and rays.");
+      .more("Comments before it name what the picture shows and the program does not: color maps and rays.");
 }
 
 void add_checking(cli::ToolSpec& spec, Options& o) {

@@ -135,18 +135,33 @@ number() { sed -n '/"error": {/,/}/p' r.json | grep -m1 "\"$1\"" | sed -E 's/.*:
 @test "--texture-maps looks lobes up in a cube for each exponent, or in the levels of one" {
   texture="$TESTDATA/wood.sbrdf.exr"
   part=$(sed -n 's/^[og] //p' "$shape" | head -1)
-  prefilter-envmap -q small.exr -e 64 --size 64 --layout mip -o mip.env.exr
+  prefilter-envmap -q small.exr -e 256 --size 64 --layout mip -o mip.env.exr
   for maps in cubes mip; do
     run render-osmesa --mesh "$shape" --env mip.env.exr $small --texture "$part=$texture" --texture-maps $maps --check 5 \
       -o $maps.exr --report $maps.json
     [ "$status" -eq 0 ]
     jq -e '.results.error.de00_p95 < 3' $maps.json
   done
-  prefilter-envmap -q small.exr -e 4,16,64 -o quarters.env.exr
+  prefilter-envmap -q small.exr -e 4,16,64,256 -o quarters.env.exr
   render-osmesa -q --mesh "$shape" --env quarters.env.exr $small --texture "$part=$texture" --texture-maps cubes -o a.exr
   render-osmesa -q --mesh "$shape" --env quarters.env.exr $small --texture "$part=$texture" --texture-maps mip -o b.exr
   run cmp -s a.exr b.exr
   [ "$status" -eq 1 ]
+}
+
+@test "a texture whose lobes are sharper than all maps is refused with the command that makes them" {
+  texture="$TESTDATA/wood.sbrdf.exr"
+  part=$(sed -n 's/^[og] //p' "$shape" | head -1)
+  prefilter-envmap -q small.exr -e 4,16 -o blunt.env.exr
+  run render-osmesa -q --mesh "$shape" --env blunt.env.exr $small --texture "$part=$texture" -o blunt.exr
+  [ "$status" -eq 3 ] && [ ! -e blunt.exr ]
+  [[ "$output" =~ "a texture has lobes of exponents from "[0-9.]+" to "([0-9.]+)", but the maps of the environment reach from 1 to 16" ]]
+  [[ "$output" == *"\`prefilter-envmap small.exr --exponents 1,4,16,${BASH_REMATCH[1]} -o ENV.env.exr\`"* ]]
+  # The command that it names makes what is missing.
+  prefilter-envmap -q small.exr --exponents "1,4,16,${BASH_REMATCH[1]}" -o sharp.env.exr
+  render-osmesa -q --mesh "$shape" --env sharp.env.exr $small --texture "$part=$texture" -o sharp.exr
+  # A lamp needs no map.
+  render-osmesa -q --mesh "$shape" --light 0,30@0 $small --texture "$part=$texture" -o lamp.exr
 }
 
 @test "--texture lays a surface of lobes, which is planned and checked" {
@@ -161,9 +176,11 @@ number() { sed -n '/"error": {/,/}/p' r.json | grep -m1 "\"$1\"" | sed -E 's/.*:
   [ "$(jq .results.error.checked_pixels r.json)" -eq 5 ]
   run render-osmesa -q --mesh "$shape" -p paints.xml#matt --env small.env.exr $small --texture "$part=$texture*4" \
     --print-shader -o wood.exr
-  [ "${lines[0]}" = "// The picture also shows what this program lacks. It is added to the output of the program:" ]
-  [[ "${lines[1]}" = "//   texture: "* ]]
-  [[ "$output" =~ "#version 330 core" ]]
+  # The program holds the lobes of the texture, its places and the maps that they look up.
+  [[ "$output" != *"//   texture: "* ]]
+  for word in "#version 330 core" "sampler2DArray texture_0" "sampler2DArray places" "vec3 lobe_light(" "vec3 texels("; do
+    [[ "$output" == *"$word"* ]] || { echo "$word"; false; }
+  done
   render-osmesa -q --mesh "$shape" -p paints.xml#matt --env small.env.exr $small -o plain.exr
   run cmp -s wood.exr plain.exr
   [ "$status" -eq 1 ]

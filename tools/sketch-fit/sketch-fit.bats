@@ -143,7 +143,7 @@ planted() {
 
 @test "an effect that the search does not know is told with its remedy" {
   oiiotool "$TESTDATA/studio.exr" --resize:filter=box 64x32 -o coarse.exr
-  prefilter-envmap -q coarse.exr --exponents 4,16,64 -o coarse.env.exr
+  prefilter-envmap -q coarse.exr --exponents 4,16,64,256 -o coarse.env.exr
   echo '<basis xmlns="urn:goniochrome:basis:1" name="b3"><exponent>4</exponent><exponent>16</exponent><exponent>64</exponent></basis>' >b3.xml
   fit-paint -q --basis b3.xml designed.xml -o b3-fitted.xml
   render-osmesa -q --mesh "$TESTDATA/speed-shape.obj" --env coarse.env.exr --size 120x75 --samples 1 \

@@ -22,7 +22,8 @@ constexpr MapCost kCost = {.pixel = 2.5,
                            .view = 2,
                            .tilted = 12,
                            .lookup = 6,
-                           .pairs = true};
+                           .pairs = true,
+                           .texture = {.point = 30, .lobe = 6, .fetches = 10, .lit = 3}};
 
 constexpr std::size_t kBlock = 8;  // floats of a texel: two maps of four forms, or one of six
 

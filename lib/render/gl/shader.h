@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "render/effects.h"
+#include "render/gl/texture_shader.h"
 
 namespace goniochrome::render {
 
@@ -21,7 +22,10 @@ std::string shading_vertex_shader();
 // point above the ground from which the environment was seen, and ground_drop how far below that the ground lies; 0 for
 // no ground. goniochrome-theory(7), PATHS, Ground.
 std::string shading_fragment_shader(const Effects& effects, const color::ReflectionOperator& op,
-                                    const std::vector<double>& tilted, bool laid_ground = false);
+                                    const std::vector<double>& tilted, bool laid_ground = false,
+                                    const TextureProgram& textures = {});
+// That of a scene, with its tilted lobes and its textures.
+std::string shading_fragment_shader(const Scene& scene, const Effects& effects);
 
 // One of these programs for OpenGL ES 3, which is what WebGL 2 draws with: it differs in its head alone. That of the
 // G-buffer must be without triangles, whose numbers OpenGL ES 3 does not tell.

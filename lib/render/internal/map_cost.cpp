@@ -18,13 +18,11 @@ double mapped_point_ns(const Workload& work, const Effects& effects) {
   return effects.maps ? kMapped * directions : 0;
 }
 
-// Four texels around a place, each with its lobes, or the mean texel. Measured by BM_Texture: a point, a lobe of a
-// texel, its two fetches, its light.
-double textured_point_ns(const Effects& effects, int lobes) {
-  constexpr double kPoint = 30, kLobe = 6, kFetches = 10, kLit = 3;
+double textured_point_ns(const Effects& effects, int lobes, const TextureCost& cost) {
   const std::uint32_t on = effects.texture_lobes & ((1U << lobes) - 1);
-  const double lobe = kLobe + (effects.environment ? kFetches : 0) + static_cast<double>(effects.lights) * kLit;
-  return kPoint + (effects.texture ? 4 : 1) * std::popcount(on) * lobe;
+  const double lobe =
+      cost.lobe + (effects.environment ? cost.fetches : 0) + static_cast<double>(effects.lights) * cost.lit;
+  return cost.point + (effects.texture ? 4 : 1) * std::popcount(on) * lobe;
 }
 
 }  // namespace
@@ -50,7 +48,7 @@ double point_ns(const Workload& work, const Effects& effects, const MapCost& c) 
 }
 
 double frame_ms(const Workload& work, const Effects& effects, const MapCost& cost) {
-  const double texture_ns = work.textured > 0 ? textured_point_ns(effects, work.texture_lobes) : 0;
+  const double texture_ns = work.textured > 0 ? textured_point_ns(effects, work.texture_lobes, cost.texture) : 0;
   const double ns = work.pixels * cost.pixel + work.points * point_ns(work, effects, cost) +
                     work.textured * texture_ns + work.mapped * mapped_point_ns(work, effects);
   return 1e-6 * work.speed * ns / threads();

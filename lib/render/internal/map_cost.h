@@ -6,6 +6,11 @@
 
 namespace goniochrome::render {
 
+// Of a textured point: four texels around a place, each with its lobes, or the mean texel.
+struct TextureCost {
+  double point, lobe, fetches, lit;  // the point, a lobe of a texel, its two fetches, its light
+};
+
 // Nanoseconds on one core of the machine that they were measured on (2.6 GHz, AVX-512).
 struct MapCost {
   double pixel;      // a pixel of the picture, which is written and maybe read back, whether it shows the mesh or not
@@ -19,6 +24,7 @@ struct MapCost {
   double tilted;     // tilted lobes, at a point that has any
   double lookup;     // one look-up of a tilted lobe
   bool pairs;        // whether a block holds two maps as long as the product of colors has at most four forms
+  TextureCost texture;
 };
 
 // Of one visible point, textures and color maps apart.

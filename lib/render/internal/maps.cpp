@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "render/internal/tilt_table.h"
+#include "render/surface_layer.h"
 
 namespace goniochrome::render {
 
@@ -76,6 +77,7 @@ Result<SceneMaps> scene_maps(const Scene& scene, const Effects& effects) {
   SceneMaps maps;
   if (!effects.environment) return maps;
   const envmap::PrefilteredEnvironment& env = *scene.env;
+  if (scene.layer != nullptr && scene.layer->textured()) GONIO_TRY(scene.layer->shader()->has_all_maps());
   if (effects.diffuse) maps.diffuse = single(WeightTable::diffuse_slot(), envmap::open_diffuse_map(env, effects.spots));
   if (effects.diffuse && effects.coat) {
     maps.diffuse.slots.push_back(slots_of(effects).coat_diffuse_slot());

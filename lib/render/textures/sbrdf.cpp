@@ -14,7 +14,6 @@ namespace goniochrome::render {
 
 namespace {
 
-constexpr int kHorizonSegments = 64;
 constexpr double kHorizonStep = std::numbers::sqrt2;  // from exponent to exponent of the horizon table
 
 // The faces with their borders, R G B 0 a texel.
@@ -63,8 +62,9 @@ SbrdfShader::SbrdfShader(const envmap::PrefilteredEnvironment* env, const MipCub
   for (const brdf::SbrdfTexture* texture : textures) {
     for (std::size_t i = 0; i < texture->values.size(); i += static_cast<std::size_t>(texture->stride())) {
       for (int lobe = 0; lobe < texture->lobes; ++lobe) {
-        const double exponent = texture->values[i + 11 + 7 * static_cast<std::size_t>(lobe)];
-        low = std::min(low, exponent), high = std::max(high, exponent);
+        const float* values = &texture->values[i + 5 + 7 * static_cast<std::size_t>(lobe)];
+        if (values[0] == 0 && values[1] == 0 && values[2] == 0) continue;
+        low = std::min<double>(low, values[6]), high = std::max<double>(high, values[6]);
       }
     }
   }
@@ -73,7 +73,32 @@ SbrdfShader::SbrdfShader(const envmap::PrefilteredEnvironment* env, const MipCub
     make_maps(*env, mip, low, high);
     make_horizon(low, high);
   }
-  for (const brdf::SbrdfTexture* texture : textures) textures_.push_back(packed(*texture));
+  for (const brdf::SbrdfTexture* texture : textures) textures_.push_back(pack(*texture));
+}
+
+namespace {
+
+// The exponents at which maps have to be there for lobes from `low` to `high`: those that are, and what lies beyond
+// them; for one cube with levels, which end with exponent 1, the sharpest and its quarters.
+std::string wanted_exponents(const std::vector<double>& there, double low, double high, bool levels) {
+  std::vector<double> wanted = there;
+  if (levels) {
+    wanted = {std::pow(4.0, std::ceil(std::log2(high) / 2))};
+    while (wanted.front() > 4) wanted.insert(wanted.begin(), wanted.front() / 4);
+  } else {
+    if (low < there.front()) wanted.insert(wanted.begin(), low);
+    if (high > there.back()) wanted.push_back(high);
+  }
+  std::string list;
+  for (const double exponent : wanted) list += fmt::format("{}{:.6g}", list.empty() ? "" : ",", exponent);
+  return list;
+}
+
+}  // namespace
+
+Result<void> SbrdfShader::has_all_maps() const {
+  if (missing_.empty()) return {};
+  return input_error("{}", missing_);
 }
 
 // Of the exponents there are, those between which the textures' lie.
@@ -94,6 +119,18 @@ void SbrdfShader::make_maps(const envmap::PrefilteredEnvironment& env, const Mip
     }
     if (!diffuse) add(1, env.diffuse.map);
   }
+  // Files hold exponents in half precision.
+  constexpr double kSame = 1e-3;
+  const bool too_sharp = high > exponents_.back() * (1 + kSame), too_wide = low < exponents_.front() * (1 - kSame);
+  if (high > 0 && (too_sharp || too_wide)) {
+    const bool levels = mip != nullptr && !too_wide;
+    missing_ = fmt::format(
+        "a texture has lobes of exponents from {:.6g} to {:.6g}, but the maps of the environment reach from {:.6g} to "
+        "{:.6g}: make them with `prefilter-envmap {} --exponents {} -o ENV.env.exr`{}",
+        low, high, exponents_.front(), exponents_.back(), env.source.empty() ? "SOURCE" : env.source,
+        wanted_exponents(exponents_, low, high, levels),
+        mip != nullptr && too_wide ? ", and look them up in cubes: levels of one cube end with exponent 1" : "");
+  }
   const auto first = static_cast<std::size_t>(brdf::exponent_blend(low, exponents_).lower);
   const brdf::ExponentBlend top = brdf::exponent_blend(high, exponents_);
   const std::size_t last = static_cast<std::size_t>(top.lower) + (top.upper_weight > 0 ? 1 : 0);
@@ -110,7 +147,7 @@ void SbrdfShader::make_maps(const envmap::PrefilteredEnvironment& env, const Mip
 void SbrdfShader::make_horizon(double low, double high) {
   for (double exponent = std::max(low, 0.1);; exponent *= kHorizonStep) {
     horizon_exponents_.push_back(exponent);
-    for (const LobeIntegrals& lobe : lobe_curve(exponent, kHorizonSegments, true)) {
+    for (const LobeIntegrals& lobe : lobe_curve(exponent, kTextureHorizonSegments, true)) {
       horizon_.push_back(static_cast<float>(lobe.cosine * (exponent + 1) / (2 * kPi)));
       horizon_.push_back(static_cast<float>(lobe.cosine_shift));
     }
@@ -136,9 +173,9 @@ void SbrdfShader::pack_lobe(const brdf::LafortuneLobe& lobe, float* to) const {
   to[kLobeHorizon + 1] = static_cast<float>(horizon.upper_weight);
 }
 
-SbrdfShader::Packed SbrdfShader::packed(const brdf::SbrdfTexture& texture) const {
-  Packed result{texture.width, texture.height, texture.lobes, {}};
-  const std::size_t size = kTexelFloats + kTexelLobeFloats * static_cast<std::size_t>(texture.lobes);
+PackedTexture SbrdfShader::pack(const brdf::SbrdfTexture& texture) const {
+  PackedTexture result{texture.width, texture.height, texture.lobes, {}};
+  const std::size_t size = result.stride();
   const auto texels = static_cast<std::size_t>(texture.width) * static_cast<std::size_t>(texture.height);
   result.texels.assign(size * texels, 0.0F);
   parallel_for(texels, 4096, [&](std::size_t begin, std::size_t end) {
@@ -156,15 +193,14 @@ SbrdfShader::Packed SbrdfShader::packed(const brdf::SbrdfTexture& texture) const
 }
 
 SbrdfShader::Batch::Batch(const SbrdfShader& shader, std::size_t texture, const SbrdfLight& light)
-    : shader_(shader), texture_(texture) {
-  const Packed& packed = shader.textures_[texture];
-  shading_.lobes = packed.lobes;
+    : packed_(shader.packed(texture)) {
+  shading_.lobes = packed_.lobes;
   shading_.lobes_on = light.lobes;
   if (light.environment) {
     shading_.diffuse = shader.diffuse_;
     shading_.maps = shader.maps_.data();
     if (light.horizon && !shader.horizon_.empty()) shading_.horizon = shader.horizon_.data();
-    shading_.horizon_segments = kHorizonSegments;
+    shading_.horizon_segments = kTextureHorizonSegments;
   }
   for (const Light& l : light.lights) {
     for (int c = 0; c < 3; ++c) lights_.push_back(static_cast<float>(l.direction[c]));
@@ -180,7 +216,7 @@ SbrdfShader::Batch::Batch(const SbrdfShader& shader, std::size_t texture, const 
         for (const double k : row) reflection_.push_back(static_cast<float>(k));
     shading_.reflection = reflection_.data();
   }
-  points_.taps = packed.width * packed.height > 1 ? 4 : 1;
+  points_.taps = packed_.width * packed_.height > 1 ? 4 : 1;
   constexpr float kUp[3] = {0, 0, 1};
   for (int i = 0; i < kPointsAtOnce; ++i) put(kUp, kUp, {}, 1);
   count_ = 0;
@@ -191,15 +227,14 @@ void SbrdfShader::Batch::put(const float* normal, const float* to_viewer, const 
   p.nx[count_] = normal[0], p.ny[count_] = normal[1], p.nz[count_] = normal[2];
   p.vx[count_] = to_viewer[0], p.vy[count_] = to_viewer[1], p.vz[count_] = to_viewer[2];
   p.tx[count_] = place.tangent[0], p.ty[count_] = place.tangent[1], p.tz[count_] = place.tangent[2];
-  const Packed& packed = shader_.textures_[texture_];
   if (p.taps == 1) {
-    p.texel[0][count_] = packed.texels.data();
+    p.texel[0][count_] = packed_.texels.data();
     p.share[0][count_++] = 1;
     return;
   }
-  const auto taps = brdf::texture_taps(packed.width, packed.height, repeat * place.u, repeat * place.v);
+  const auto taps = brdf::texture_taps(packed_.width, packed_.height, repeat * place.u, repeat * place.v);
   for (std::size_t k = 0; k < taps.size(); ++k) {
-    p.texel[k][count_] = packed.at(taps[k].column, taps[k].row);
+    p.texel[k][count_] = packed_.at(taps[k].column, taps[k].row);
     p.share[k][count_] = static_cast<float>(taps[k].weight);
   }
   ++count_;

@@ -33,6 +33,22 @@ struct SbrdfLight {
   std::uint32_t lobes = ~0U;  // by bits
 };
 
+// Segments of a row of the horizon table.
+constexpr int kTextureHorizonSegments = 64;
+
+// A texture packed for the kernel.
+struct PackedTexture {
+  int width = 0, height = 0, lobes = 0;
+  std::vector<float> texels;
+
+  std::size_t stride() const { return kTexelFloats + kTexelLobeFloats * static_cast<std::size_t>(lobes); }
+  const float* at(int column, int row) const {
+    return &texels[(static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+                    static_cast<std::size_t>(column)) *
+                   stride()];
+  }
+};
+
 // Textures packed for the kernel, and the maps that their lobes need.
 class SbrdfShader {
  public:
@@ -41,10 +57,22 @@ class SbrdfShader {
   SbrdfShader(const envmap::PrefilteredEnvironment* env, const MipCube* mip,
               const std::vector<const brdf::SbrdfTexture*>& textures);
 
+  // Error: lobes of the textures are sharper or wider than all maps that there are, with the command that makes those
+  // that are missing. Such lobes would be drawn as those of the nearest map.
+  Result<void> has_all_maps() const;
+
   // Radiance in the working space of points on one texture, at their places; 0 seen from below. The four texels around
   // a place are shaded one by one, and their colors blended. Single precision; the same for any company of points.
   std::vector<color::Rgb> shade(std::size_t texture, const SbrdfLight& light,
                                 const std::vector<VisiblePoint>& points) const;
+
+  // What the programs of OpenGL read: the textures in the order in which they were given, the maps that their lobes
+  // number, the map of the diffuse part (null without an environment), and the table of SbrdfShading::horizon.
+  const PackedTexture& packed(std::size_t texture) const { return textures_[texture]; }
+  const std::vector<LobeMap>& maps() const { return maps_; }
+  const LobeMap& diffuse() const { return diffuse_; }
+  const std::vector<float>& horizon() const { return horizon_; }
+  int horizon_rows() const { return static_cast<int>(horizon_exponents_.size()); }
 
   // Shades up to kPointsAtOnce points that were put.
   class Batch {
@@ -60,8 +88,7 @@ class SbrdfShader {
     const float* shade();
 
    private:
-    const SbrdfShader& shader_;
-    std::size_t texture_;
+    const PackedTexture& packed_;
     SbrdfShading shading_;
     std::vector<float> lights_, reflection_;
     SbrdfPoints points_;
@@ -70,20 +97,13 @@ class SbrdfShader {
   };
 
  private:
-  struct Packed {
-    int width = 0, height = 0, lobes = 0;
-    std::vector<float> texels;
-    const float* at(int column, int row) const {
-      return &texels[(static_cast<std::size_t>(row) * width + column) *
-                     (kTexelFloats + kTexelLobeFloats * static_cast<std::size_t>(lobes))];
-    }
-  };
   void make_maps(const envmap::PrefilteredEnvironment& env, const MipCube* mip, double low, double high);
   void make_horizon(double low, double high);
-  Packed packed(const brdf::SbrdfTexture& texture) const;
+  PackedTexture pack(const brdf::SbrdfTexture& texture) const;
   void pack_lobe(const brdf::LafortuneLobe& lobe, float* to) const;
 
-  std::vector<Packed> textures_;
+  std::vector<PackedTexture> textures_;
+  std::string missing_;            // see has_all_maps()
   std::vector<double> exponents_;  // of the maps, ascending
   std::vector<LobeMap> maps_;
   LobeMap diffuse_;

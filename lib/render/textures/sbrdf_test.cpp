@@ -110,6 +110,31 @@ TEST(SbrdfShader, BlendsNeighborsInTheLogarithmOfTheExponent) {
   EXPECT_FALSE(mip_cube(slope_environment({4, 20, 64}, 4)).ok());
 }
 
+TEST(SbrdfShader, MissesMapsOfLobesBeyondTheEnvironment) {
+  envmap::PrefilteredEnvironment env = slope_environment({4, 16, 64}, 8);
+  env.source = "hall.hdr";
+  const auto told = [&](double exponent, const MipCube* mip = nullptr) -> std::string {
+    const brdf::SbrdfTexture texture = texture_of({phong_texel(10), phong_texel(exponent)});
+    const Result<void> all = SbrdfShader(&env, mip, {&texture}).has_all_maps();
+    return all.ok() ? "" : all.error().message;
+  };
+  // The diffuse map is the lobe of exponent 1.
+  for (const double exponent : {1.0, 3.0, 64.0}) EXPECT_EQ(told(exponent), "") << exponent;
+  EXPECT_NE(told(100).find("`prefilter-envmap hall.hdr --exponents 1,4,16,64,100 "), std::string::npos) << told(100);
+  EXPECT_NE(told(0.5).find("--exponents 0.5,1,4,16,64 "), std::string::npos) << told(0.5);
+  const auto mip = mip_cube(env);
+  ASSERT_TRUE(mip.ok());
+  EXPECT_NE(told(100, &*mip).find("--exponents 4,16,64,256 "), std::string::npos) << told(100, &*mip);
+  EXPECT_NE(told(0.5, &*mip).find("--exponents 0.5,1,4,16,64 "), std::string::npos) << told(0.5, &*mip);
+  EXPECT_NE(told(0.5, &*mip).find("in cubes"), std::string::npos) << told(0.5, &*mip);
+  // A lobe that reflects nothing needs no map, nor does one that is lit by lamps alone.
+  brdf::SbrdfTexel dark = phong_texel(100);
+  dark.surface.lobes[0].albedo = {};
+  const brdf::SbrdfTexture texture = texture_of({phong_texel(10), dark}), sharp = texture_of({phong_texel(5000)});
+  EXPECT_TRUE(SbrdfShader(&env, nullptr, {&texture}).has_all_maps().ok());
+  EXPECT_TRUE(SbrdfShader(nullptr, nullptr, {&sharp}).has_all_maps().ok());
+}
+
 // Single precision, some tens of operations: a few 1e-6.
 constexpr double kFloat = 1e-5;
 

@@ -1,0 +1,57 @@
+// The part of the shading program that draws textures of generalized cosine lobes, and the layout of what it reads them
+// from. goniochrome-theory(7), SPATIALLY VARYING SURFACES, Drawing.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "render/effects.h"
+#include "render/gl/disc_texture.h"
+#include "render/textures/sbrdf.h"
+#include "render/textures/texture_places.h"
+
+namespace goniochrome::render {
+
+// What the text of the program knows of the textures.
+struct TextureProgram {
+  std::vector<int> lobes;  // of each texture that is drawn; none: the scene has none
+  // Of each cube of prefiltered light in "lobe_maps": the texels along a face, and the row where it begins. That of the
+  // diffuse part is the last. None: no environment.
+  struct Cube {
+    int size = 0, row = 0;
+  };
+  std::vector<Cube> cubes;
+  int horizon_rows = 0;  // of "lobe_horizon", for the exponents that it has
+
+  bool any() const { return !lobes.empty(); }
+};
+// Of the scene's textures, or of their mean texels where the effects leave the textures out.
+TextureProgram texture_program(const Scene& scene, const Effects& effects);
+
+// One texture as an array of layers, each of RGBA texels row by row from the top. Layer 0: the diffuse color, and the
+// angle from the tangent to the x axis of the texel. Then three for each lobe: its color with the largest channel 1,
+// and the logarithm of its largest albedo; its axes and its exponent; its place among the cubes and among the rows of
+// the horizon, where a half lies between two of them.
+constexpr int kTextureLobeLayers = 3;
+struct TextureLayers {
+  int width = 0, height = 0, layers = 0;
+  std::vector<float> rgba;
+};
+TextureLayers texture_layers(const PackedTexture& texture);
+
+// The cubes of prefiltered light: six faces side by side, each with a border of one texel, and cube above cube.
+FloatTexture lobe_map_texture(const SbrdfShader& shader);
+// The table of SbrdfShading::horizon, with a node in R and G of each texel.
+FloatTexture lobe_horizon_texture(const SbrdfShader& shader);
+
+// A texel for each pixel, in two layers: the place on the texture within 0..1 and the number of the texture and 1 (0:
+// none); the tangent.
+TextureLayers place_layers(const SurfaceLayer& layer, const Effects& effects, const Gbuffer& gbuffer,
+                           const std::vector<TexturePlace>& places);
+
+// The uniforms, and the function `textured(at, n, wo)` that returns the radiance of the texture at a pixel, black where
+// it has none. Both are empty where nothing is textured.
+std::string texture_uniforms(const TextureProgram& textures, const Effects& effects);
+std::string texture_function(const TextureProgram& textures, const Effects& effects);
+
+}  // namespace goniochrome::render
