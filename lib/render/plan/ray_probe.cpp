@@ -202,15 +202,15 @@ void RayProbe::refine(const ProbeSetting& setting) {
 bool RayProbe::add_ambiguous(const std::vector<Change>& changes, const Worth& worth, std::vector<double>& wish) const {
   const double enough = std::max(kUnseen, kSharpPart * worth.de00_p95);
   // A point that rare bright paths have missed so far shows too small an error of its own: it has at least what
-  // three quarters of the points have.
+  // 19 of 20 points have.
   std::vector<double> errors;
   for (std::size_t i = 0; i < changes.size(); ++i)
     if (changes[i].standard_error > 0) errors.push_back(changes[i].standard_error * std::sqrt(fans(i)));
   double usual = 0;
   if (!errors.empty()) {
-    const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(3 * errors.size() / 4);
-    std::ranges::nth_element(errors, middle);
-    usual = *middle;
+    const auto large = errors.begin() + static_cast<std::ptrdiff_t>(19 * errors.size() / 20);
+    std::ranges::nth_element(errors, large);
+    usual = *large;
   }
   bool any = false;
   for (std::size_t i = 0; i < changes.size(); ++i) {
