@@ -89,7 +89,7 @@ async function main() {
     result.lamp = pair(a, b);
     app.stageView.setLamp({ on: false });
     // With little memory, layers give way to others, and a picture that has no room for its own is refused.
-    const room = gathered.needed(b, true).length + 1;
+    const room = Math.max(...[a, b].map((weights) => gathered.needed(weights, true).length)) + 1;
     gathered.capacity = () => room;
     result.little = pair(a, b);
     gathered.capacity = () => room - 2;
