@@ -199,6 +199,14 @@ PY
   [[ $output == *"give width x height in pixels"* ]]
   run book small.paints.xml --jobs 0 -o none.html
   [ "$status" -eq 2 ]
+  for wrong in 0 -1 two 1.5; do
+    run book small.paints.xml --page-paints="$wrong" -o none.html
+    [ "$status" -eq 2 ]
+    [[ "$output" == *'--page-paints: "'"$wrong"'": give a whole number of 1 or more'* ]]
+  done
+  run book small.paints.xml -o none.html --page-paints
+  [ "$status" -eq 2 ]
+  [[ "$output" == *"--page-paints"* ]]
   run book small.paints.xml --gloss 101 -o none.html
   [ "$status" -eq 2 ]
   [[ $output == *"give gloss units from 0 to 100"* ]]

@@ -8,7 +8,7 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.heading = "surface";
   spec.option("width", "W", "120", &o.width, "width of the surface in the photographs, in the unit of the table")
       .from(1e-9, 1e9)
-      .in("that of the positions in the table")
+      .in("the unit of the positions in the table")
       .more(
           "The height follows from the number of rows. The middle of the surface is the origin of the table, x runs "
           "right, y runs up, and z is the normal.");
@@ -33,11 +33,11 @@ void add_options(cli::ToolSpec& spec, Options& o) {
           "error and the time of each.");
   spec.option("noise", "SHARE", "0.01", &o.noise, "relative standard deviation of a value, besides its rounding")
       .from(1e-4, 0.5)
-      .in("share of the value")
+      .in("parts of the value")
       .more("How far a value may be off and still count is taken from the values themselves; this is where it begins.");
   spec.option("saturated", "V", "0.98", &o.saturated, "value from which a pixel of floats is saturated")
       .from(0)
-      .in("value of a pixel")
+      .in("pixel values")
       .more("Whole numbers are saturated where a channel has the largest one. No float is saturated by default.");
   spec.flag("mend-exposures", &o.mend_exposures, "correct exposures that are wrong by a factor")
       .more(

@@ -193,8 +193,9 @@ void add_effects(cli::ToolSpec& spec, Options& o) {
           "prefiltered maps show at some points with the exact sum, adds what is left out and the noise, and says "
           "in a sentence if the whole is not going to be within the tolerance, and what would keep it. A picture for "
           "which nobody asks how accurate it is to be, nor how long it may take, is to cost seconds: without "
-          "--tolerance, --time-limit and --check its rays take at most 16 million samples, beside the first 8 of "
-          "each point, and the engine path is chosen where it is predicted to be faster and to need no more. --engine "
+          "--tolerance, --time-limit and --check its rays take at most 16 million samples, or 8 of each point "
+          "where those are more, and the engine path is chosen where it is predicted to be faster and to need no more. "
+          "--engine "
           "path, --aov transport and shadow, self, bounce or rays with a plus have no such limit. The engine "
           "integral makes its sums as coarse as this tolerance allows at 95 of 100 points.");
   spec.option("budget", "MS", "20", &o.budget_ms, "longest time for shading a frame; 0 is no limit")

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
@@ -102,7 +103,6 @@ std::vector<FitSample> picture_samples(const paint::LobeFit& lobes) {
     std::vector<FitSample> list;
     constexpr double kGlare_deg = 12, kViews_deg[] = {0, 15, 30, 45, 60, 72}, kLights_deg[] = {5, 20, 35, 50, 65, 78};
     constexpr double kLeastPart = 0.15;  // of viewers near the normal, which are few
-    double sum = 0;
     for (const double view : kViews_deg)
       for (const double light : kLights_deg)
         for (const double azimuth : {0, 45, 90, 120, 150, 180}) {
@@ -111,19 +111,11 @@ std::vector<FitSample> picture_samples(const paint::LobeFit& lobes) {
           if (paint::aspecular_angle_rad(sample.light, sample.view, {0, 0, 1}) < kGlare_deg * kDegree) continue;
           sample.weight = sample.light.z * std::sin(light * kDegree) * sample.view.z *
                           std::max(kLeastPart, std::sin(view * kDegree));
-          sum += sample.weight;
           list.push_back(sample);
         }
-    for (FitSample& sample : list) sample.weight *= 0.5 / sum;
-    for (const paint::Geometry& geometry : compared_geometries()) {
-      const auto [light, view] = paint::directions(geometry);
-      list.push_back({light, view, 0.5 / static_cast<double>(compared_geometries().size()), {}});
-    }
-    return list;
+    return with_geometries(std::move(list));
   }();
-  std::vector<FitSample> samples = directions;
-  for (FitSample& sample : samples) sample.f = brdf::coated_brdf(lobes, sample.light, sample.view, {0, 0, 1});
-  return samples;
+  return reflected(directions, lobes);
 }
 
 // All nodes that a base may have, and what each is at the directions of picture_samples(), sample by sample. Nodes of

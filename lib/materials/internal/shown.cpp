@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
@@ -67,6 +68,22 @@ Shown shown(const paint::Paint& paint, const Reflection& target) {
   return result;
 }
 
+std::vector<FitSample> with_geometries(std::vector<FitSample> samples) {
+  double sum = 0;
+  for (const FitSample& sample : samples) sum += sample.weight;
+  for (FitSample& sample : samples) sample.weight *= 0.5 / sum;
+  for (const paint::Geometry& geometry : compared_geometries()) {
+    const auto [light, view] = paint::directions(geometry);
+    samples.push_back({light, view, 0.5 / static_cast<double>(compared_geometries().size()), {}});
+  }
+  return samples;
+}
+
+std::vector<FitSample> reflected(std::vector<FitSample> samples, const paint::LobeFit& lobes) {
+  for (FitSample& sample : samples) sample.f = brdf::coated_brdf(lobes, sample.light, sample.view, {0, 0, 1});
+  return samples;
+}
+
 std::vector<FitSample> fit_samples(const paint::LobeFit& lobes) {
   static const std::vector<FitSample> directions = [] {
     std::vector<FitSample> list;
@@ -79,16 +96,9 @@ std::vector<FitSample> fit_samples(const paint::LobeFit& lobes) {
           if (paint::aspecular_angle_rad(sample.light, sample.view, {0, 0, 1}) >= kGlare_deg * kDegree)
             list.push_back(sample);
         }
-    for (FitSample& sample : list) sample.weight = 0.5 / static_cast<double>(list.size());
-    for (const paint::Geometry& geometry : compared_geometries()) {
-      const auto [light, view] = paint::directions(geometry);
-      list.push_back({light, view, 0.5 / static_cast<double>(compared_geometries().size()), {}});
-    }
-    return list;
+    return with_geometries(std::move(list));
   }();
-  std::vector<FitSample> samples = directions;
-  for (FitSample& sample : samples) sample.f = brdf::coated_brdf(lobes, sample.light, sample.view, {0, 0, 1});
-  return samples;
+  return reflected(directions, lobes);
 }
 
 // The light that a lobe K_G cos^E reflects of even light is 2 pi K_G / (E + 1), of which F(45) is Fresnel's. A GGX is

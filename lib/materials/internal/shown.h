@@ -32,6 +32,11 @@ struct FitSample {
   color::Rgb f;  // of the paint
 };
 
+// Pairs whose weights become half of all, and compared_geometries() with the other half.
+std::vector<FitSample> with_geometries(std::vector<FitSample> samples);
+// Pairs with what a paint reflects at each.
+std::vector<FitSample> reflected(std::vector<FitSample> samples, const paint::LobeFit& lobes);
+
 // The pairs for a paint: compared_geometries() with half of the weight, the other half on a grid over both hemispheres
 // to 70 deg from the normal and at least 13 deg off the mirror direction.
 std::vector<FitSample> fit_samples(const paint::LobeFit& lobes);

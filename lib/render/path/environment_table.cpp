@@ -153,7 +153,7 @@ LightSample EnvironmentTable::light(const Float3& direction, int column, int row
   const auto r = static_cast<std::size_t>(row);
   const float* edge = cumulative(r) + column;
   const double share = row_share_[r] * (static_cast<double>(edge[1]) - edge[0]);
-  return {direction, density > 0 ? static_cast<float>(static_cast<float>(share) / density) : 0.0F,
+  return {direction, density > 0 ? static_cast<float>(share / density) : 0.0F,
           texel_radiance(*environment_, column, row), below_[r]};
 }
 

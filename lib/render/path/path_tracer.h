@@ -21,7 +21,7 @@ struct PathRequest {
   double tolerance_de00 = 0.5;  // of the picture's noise; 0: until another limit ends it
   double time_limit_s = 0;      // 0: none
   int most_samples = 1 << 16;   // of a pixel
-  double most_in_all = 0;       // of all pixels together, after a first round in which each gets 8; 0: no limit
+  double most_in_all = 0;       // of all pixels together, but no less than a first round of 8; 0: no limit
   double white_luminance = 1;   // what noise is seen before
   std::uint64_t seed = 1;
   // Of a pixel, as sample_shifts() has them; with 1 the pixel centers are seen. Paths are spread over them.
