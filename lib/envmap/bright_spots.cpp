@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/angles.h"
+#include "base/parallel.h"
 #include "base/text.h"
 #include "envmap/patch.h"
 
@@ -79,19 +80,32 @@ double whole_light(const Environment& environment) {
   return mean_of(environment.flux());
 }
 
-std::vector<Excess> brighter_than(const Environment& environment, double level) {
+std::vector<Excess> brighter_in_row(const Environment& environment, int row, double level) {
   std::vector<Excess> found;
-  for (int row = 0; row < environment.height(); ++row) {
-    for (int column = 0; column < environment.width(); ++column) {
-      const color::Rgb radiance = texel(environment, column, row);
-      const double mean = mean_of(radiance);
-      if (!(mean > level)) continue;
-      Excess e{column, row, (1 - level / mean) * radiance, {}, 0};
-      e.moment = moment_of_cell(environment, {1.0 * column, 1.0 * row, column + 1.0, row + 1.0});
-      e.light = mean_of(e.radiance) * environment.solid_angle(column, row);
-      if (length(e.moment) > 0) found.push_back(std::move(e));
-    }
+  for (int column = 0; column < environment.width(); ++column) {
+    const color::Rgb radiance = texel(environment, column, row);
+    const double mean = mean_of(radiance);
+    if (!(mean > level)) continue;
+    Excess e{column, row, (1 - level / mean) * radiance, {}, 0};
+    e.moment = moment_of_cell(environment, {1.0 * column, 1.0 * row, column + 1.0, row + 1.0});
+    e.light = mean_of(e.radiance) * environment.solid_angle(column, row);
+    if (length(e.moment) > 0) found.push_back(e);
   }
+  return found;
+}
+
+// In the order of the rows.
+std::vector<Excess> brighter_than(const Environment& environment, double level) {
+  std::vector<std::vector<Excess>> rows(static_cast<std::size_t>(environment.height()));
+  parallel_for(rows.size(), 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row)
+      rows[row] = brighter_in_row(environment, static_cast<int>(row), level);
+  });
+  std::size_t count = 0;
+  for (const std::vector<Excess>& row : rows) count += row.size();
+  std::vector<Excess> found;
+  found.reserve(count);
+  for (const std::vector<Excess>& row : rows) found.insert(found.end(), row.begin(), row.end());
   return found;
 }
 

@@ -1,6 +1,7 @@
 #include "envmap/open_maps.h"
 
 #include <algorithm>
+#include <array>
 
 #include "base/parallel.h"
 #include "brdf/disc_light.h"
@@ -12,25 +13,61 @@ namespace goniochrome::envmap {
 
 namespace {
 
-// Takes away from every texel what `of_spot` has of a spot in that direction.
-template <class OfSpot>
-void take_out(const std::vector<Spot>& spots, const OfSpot& of_spot, CubeMap& map) {
+// Takes away from every texel of each map, which are of one size, what `of_spot` has for that map of a spot in that
+// direction.
+template <std::size_t kMaps, class OfSpot>
+void take_out(const std::vector<Spot>& spots, const OfSpot& of_spot, const std::array<CubeMap*, kMaps>& maps) {
   if (spots.empty()) return;
-  parallel_for(static_cast<std::size_t>(6 * map.size), 8, [&](std::size_t begin, std::size_t end) {
+  const int size = maps[0]->size;
+  parallel_for(static_cast<std::size_t>(6 * size), 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const int face = static_cast<int>(i) / map.size, row = static_cast<int>(i) % map.size;
-      for (int column = 0; column < map.size; ++column) {
-        const Vec3 direction = cube_direction(face, column + 0.5, row + 0.5, map.size);
-        float* texel = map.at(face, row, column);
+      const int face = static_cast<int>(i) / size, row = static_cast<int>(i) % size;
+      for (int column = 0; column < size; ++column) {
+        const Vec3 direction = cube_direction(face, column + 0.5, row + 0.5, size);
         for (std::size_t k = 0; k < spots.size(); ++k) {
-          const double share = of_spot(k, direction);
-          if (share == 0) continue;
-          for (int c = 0; c < 3; ++c) texel[c] -= static_cast<float>(share * spots[k].white[c]);
+          const std::array<double, kMaps> shares = of_spot(k, direction);
+          for (std::size_t j = 0; j < kMaps; ++j) {
+            if (shares[j] == 0) continue;
+            float* texel = maps[j]->at(face, row, column);
+            for (int c = 0; c < 3; ++c) texel[c] -= static_cast<float>(shares[j] * spots[k].white[c]);
+          }
         }
       }
     }
   });
 }
+
+// What spots give to the diffuse map and to that under a coat.
+class DiffuseOfSpots {
+ public:
+  explicit DiffuseOfSpots(const std::vector<Spot>& spots) : spots_(spots) {
+    for (const Spot& spot : spots) sines_.push_back(math::sin(spot.radius_rad));
+  }
+
+  std::array<double, 1> plain(std::size_t k, const Vec3& normal) const {
+    return {irradiance(k, dot(normal, spots_[k].direction))};
+  }
+  std::array<double, 1> coated(std::size_t k, const Vec3& normal) const { return {both(k, normal)[1]}; }
+  std::array<double, 2> both(std::size_t k, const Vec3& normal) const {
+    const double cosine = dot(normal, spots_[k].direction), plain = irradiance(k, cosine);
+    if (!(plain > 0)) return {plain, plain};
+    const double mean_cosine =
+        is_whole(k, cosine) ? cosine : std::min(1.0, plain / brdf::disc_above(cosine, spots_[k].radius_rad));
+    return {plain, plain * brdf::coat_transmission(mean_cosine, brdf::kCoatIndex) / even_};
+  }
+
+ private:
+  // Whether all of the spot is above the horizon.
+  bool is_whole(std::size_t k, double cosine) const { return cosine >= sines_[k]; }
+  double irradiance(std::size_t k, double cosine) const {
+    if (cosine <= -sines_[k]) return 0;
+    return is_whole(k, cosine) ? cosine : brdf::disc_irradiance(cosine, spots_[k].radius_rad);
+  }
+
+  const std::vector<Spot>& spots_;
+  std::vector<double> sines_;
+  double even_ = brdf::mean_coat_transmission(brdf::kCoatIndex);
+};
 
 }  // namespace
 
@@ -46,30 +83,23 @@ CubeMap without_spots(CubeMap map, double exponent, const std::vector<Spot>& spo
   take_out(
       spots,
       [&](std::size_t k, const Vec3& direction) {
-        if (dot(direction, spots[k].direction) < farthest[k]) return 0.0;
+        if (dot(direction, spots[k].direction) < farthest[k]) return std::array{0.0};
         const brdf::DiscLobeTable::Node gathered = tables[k]->at(length(direction - spots[k].direction));
-        return 0.5 * (exponent + 1) * (gathered.plain[0] + gathered.plain[1]);
+        return std::array{0.5 * (exponent + 1) * (gathered.plain[0] + gathered.plain[1])};
       },
-      map);
+      std::array{&map});
   return map;
 }
 
 CubeMap diffuse_without_spots(CubeMap map, bool coated, const std::vector<Spot>& spots) {
-  const double even = brdf::mean_coat_transmission(brdf::kCoatIndex);
-  std::vector<double> sines;
-  for (const Spot& spot : spots) sines.push_back(math::sin(spot.radius_rad));
-  take_out(
-      spots,
-      [&](std::size_t k, const Vec3& normal) {
-        const double cosine = dot(normal, spots[k].direction), radius = spots[k].radius_rad;
-        if (cosine <= -sines[k]) return 0.0;
-        const bool whole = cosine >= sines[k];  // above the horizon
-        const double irradiance = whole ? cosine : brdf::disc_irradiance(cosine, radius);
-        if (!coated || !(irradiance > 0)) return irradiance;
-        const double mean_cosine = whole ? cosine : std::min(1.0, irradiance / brdf::disc_above(cosine, radius));
-        return irradiance * brdf::coat_transmission(mean_cosine, brdf::kCoatIndex) / even;
-      },
-      map);
+  const DiffuseOfSpots diffuse(spots);
+  const std::array maps{&map};
+  if (coated)
+    take_out(
+        spots, [&](std::size_t k, const Vec3& normal) { return diffuse.coated(k, normal); }, maps);
+  else
+    take_out(
+        spots, [&](std::size_t k, const Vec3& normal) { return diffuse.plain(k, normal); }, maps);
   return map;
 }
 
@@ -115,6 +145,16 @@ void keep_open_maps(PrefilteredEnvironment& env) {
   env.coat_diffuse = coat_diffuse_map(env);
   const std::size_t spots = env.spots.size();
   if (spots == 0) return;
+  if (env.open_coat_diffuse == nullptr && env.diffuse.open == nullptr) {
+    // Both of them at once, for the price of one.
+    CubeMap plain = env.diffuse.map, coated = *env.coat_diffuse;
+    const DiffuseOfSpots diffuse(env.spots);
+    take_out(
+        env.spots, [&](std::size_t k, const Vec3& normal) { return diffuse.both(k, normal); },
+        std::array{&plain, &coated});
+    env.diffuse.open = std::make_shared<const CubeMap>(std::move(plain));
+    env.open_coat_diffuse = std::make_shared<const CubeMap>(std::move(coated));
+  }
   env.open_coat_diffuse = open_coat_diffuse_map(env, spots);
   env.diffuse.open = open_diffuse_map(env, spots);
   for (PrefilteredLobe& lobe : env.lobes) lobe.open = open_map(env, lobe, spots);

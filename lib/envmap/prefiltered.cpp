@@ -276,19 +276,27 @@ Result<PrefilteredEnvironment> read_env(const std::string& path, const std::func
 }
 
 Result<void> write_env(const std::string& path, const PrefilteredEnvironment& env, const std::string& command) {
-  std::vector<image::ImagePart> parts = {part_of("diffuse", env.diffuse, env.source, command)};
-  if (!env.spots.empty()) parts.front().attributes[kSpots] = text_of_spots(env.spots);
-  for (std::size_t i = 0; i < env.lobes.size(); ++i)
-    parts.push_back(part_of(fmt::format("lobe-{:03}", i), env.lobes[i], env.source, command));
-  if (env.mirror.map.size > 0) parts.push_back(part_of("mirror", env.mirror, env.source, command));
-  const auto add = [&](const std::string& name, const MapPointer& map, const PrefilteredLobe& lobe) {
-    if (map != nullptr && lobe.layout == SphereGrid::Layout::kCube) parts.push_back(part_of_map(name, *map, lobe));
+  std::vector<std::function<image::ImagePart()>> made;
+  const auto add_lobe = [&](const std::string& name, const PrefilteredLobe& lobe) {
+    made.emplace_back([&, name] { return part_of(name, lobe, env.source, command); });
   };
-  add(kCoat, env.coat_diffuse, env.diffuse);
-  add(std::string(kOpen) + kCoat, env.open_coat_diffuse, env.diffuse);
-  add(std::string(kOpen) + "diffuse", env.diffuse.open, env.diffuse);
+  const auto add_map = [&](const std::string& name, const MapPointer& map, const PrefilteredLobe& lobe) {
+    if (map != nullptr && lobe.layout == SphereGrid::Layout::kCube)
+      made.emplace_back([&, name] { return part_of_map(name, *map, lobe); });
+  };
+  add_lobe("diffuse", env.diffuse);
+  for (std::size_t i = 0; i < env.lobes.size(); ++i) add_lobe(fmt::format("lobe-{:03}", i), env.lobes[i]);
+  if (env.mirror.map.size > 0) add_lobe("mirror", env.mirror);
+  add_map(kCoat, env.coat_diffuse, env.diffuse);
+  add_map(std::string(kOpen) + kCoat, env.open_coat_diffuse, env.diffuse);
+  add_map(std::string(kOpen) + "diffuse", env.diffuse.open, env.diffuse);
   for (std::size_t i = 0; i < env.lobes.size(); ++i)
-    add(fmt::format("{}lobe-{:03}", kOpen, i), env.lobes[i].open, env.lobes[i]);
+    add_map(fmt::format("{}lobe-{:03}", kOpen, i), env.lobes[i].open, env.lobes[i]);
+  std::vector<image::ImagePart> parts(made.size());  // each a copy of a map
+  parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) parts[i] = made[i]();
+  });
+  if (!env.spots.empty()) parts.front().attributes[kSpots] = text_of_spots(env.spots);
   return image::write_exr(path, parts);
 }
 

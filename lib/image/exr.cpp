@@ -220,13 +220,17 @@ constexpr int kZipLevel = 2;  // within 3 % of the size of the highest level at 
 
 class MemoryOutput : public Imf::OStream {
  public:
-  MemoryOutput() : OStream("memory") {}
+  explicit MemoryOutput(std::size_t expected) : OStream("memory") { content_.reserve(expected); }
 
   void write(const char bytes[], int count) override {
-    const std::size_t end = position_ + static_cast<std::size_t>(count);
-    if (end > content_.size()) content_.resize(end);
-    std::memcpy(content_.data() + position_, bytes, static_cast<std::size_t>(count));
-    position_ = end;
+    const std::size_t size = static_cast<std::size_t>(count);
+    if (position_ == content_.size()) {
+      content_.append(bytes, size);
+    } else {
+      if (position_ + size > content_.size()) content_.resize(position_ + size);
+      std::memcpy(content_.data() + position_, bytes, size);
+    }
+    position_ += size;
   }
   std::uint64_t tellp() override { return position_; }
   void seekp(std::uint64_t position) override { position_ = position; }
@@ -331,6 +335,19 @@ void write_part(Imf::MultiPartOutputFile& file, int index, const ImagePart& part
   output.writePixels(image.height);
 }
 
+// The bytes of the parts that are not compressed, with the place and the length of every row.
+std::size_t plain_bytes(const std::vector<ImagePart>& parts, const std::vector<Imf::Header>& headers) {
+  constexpr std::size_t kRow = 8 + 12, kHeader = 4096;
+  std::size_t bytes = 0;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (headers[i].compression() != Imf::NO_COMPRESSION) continue;
+    const bool as_half = headers[i].channels().begin().channel().type == Imf::HALF;
+    bytes += kHeader + kRow * static_cast<std::size_t>(parts[i].image.height) +
+             (as_half ? sizeof(half) : sizeof(float)) * parts[i].image.data.size();
+  }
+  return bytes;
+}
+
 Result<std::string> encoded(const std::vector<ImagePart>& given, ExrStorage storage) {
   std::vector<ImagePart> unnamed;  // only filled where names are missing
   const bool name_all = std::any_of(given.begin(), given.end(), [](const ImagePart& p) { return p.name.empty(); });
@@ -353,10 +370,15 @@ Result<std::string> encoded(const std::vector<ImagePart>& given, ExrStorage stor
     types.push_back(type);
     headers.push_back(header_of(part, type, names.back(), display, storage));
   }
-  use_threads();
-  MemoryOutput stream;
+  const auto is_packed = [](const Imf::Header& h) { return h.compression() != Imf::NO_COMPRESSION; };
+  // The library gives every row of a part that is not compressed to a thread of its own: to hand it over takes longer
+  // than to copy it.
+  const bool packed = std::ranges::any_of(headers, is_packed);
+  if (packed) use_threads();
+  MemoryOutput stream(plain_bytes(parts, headers));
   {
-    Imf::MultiPartOutputFile file(stream, headers.data(), static_cast<int>(headers.size()), false, threads());
+    Imf::MultiPartOutputFile file(stream, headers.data(), static_cast<int>(headers.size()), false,
+                                  packed ? threads() : 0);
     for (std::size_t i = 0; i < parts.size(); ++i) write_part(file, static_cast<int>(i), parts[i], types[i], names[i]);
   }
   return stream.take_content();

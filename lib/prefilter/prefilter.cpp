@@ -571,16 +571,20 @@ double energy_ratio(const Vec3& flux, const envmap::PrefilteredLobe& lobe) {
   const envmap::SphereGrid grid = envmap::map_grid(lobe.layout, lobe.map.size);
   // The six faces of a cube have the same solid angles.
   const int rows = grid.is_cube() ? grid.width() : grid.height();
-  std::vector<double> solid_angles;
-  for (int row = 0; row < rows; ++row)
-    for (int column = 0; column < grid.width(); ++column) solid_angles.push_back(grid.solid_angle(column, row));
-  const float* rgb = lobe.map.texels.data();
+  std::vector<Vec3> sums(static_cast<std::size_t>(rows));  // of the rows that are alike
+  parallel_for(sums.size(), 8, [&](std::size_t begin, std::size_t end) {
+    const std::size_t width = static_cast<std::size_t>(grid.width());
+    for (std::size_t row = begin; row < end; ++row)
+      for (std::size_t column = 0; column < width; ++column) {
+        const double solid_angle = grid.solid_angle(static_cast<int>(column), static_cast<int>(row));
+        for (std::size_t like = row; like < static_cast<std::size_t>(grid.height()); like += sums.size()) {
+          const float* rgb = &lobe.map.texels[3 * (like * width + column)];
+          sums[row] += solid_angle * Vec3{rgb[0], rgb[1], rgb[2]};
+        }
+      }
+  });
   Vec3 sum;
-  for (int row = 0; row < grid.height(); ++row) {
-    const double* solid_angle = &solid_angles[static_cast<std::size_t>(row % rows) * grid.width()];
-    for (int column = 0; column < grid.width(); ++column, rgb += 3)
-      sum += solid_angle[column] * Vec3{rgb[0], rgb[1], rgb[2]};
-  }
+  for (const Vec3& row : sums) sum += row;
   const double all = flux.x + flux.y + flux.z;
   return all > 0 ? (sum.x + sum.y + sum.z) / all : 1;
 }

@@ -131,6 +131,7 @@ void add_report(cli::ToolSpec& spec) {
       {"read_s", "time of reading"},
       {"filter_s", "time of filtering"},
       {"verify_s", "time of verifying"},
+      {"open_maps_s", "time of the maps that follow from the others: under a coat, and without the bright spots"},
       {"write_s", "time of writing"},
       {"warnings[]", "what was replaced or is outside the tolerance"}};
   spec.see_also = {"fit-basis(1)", "render-osmesa(1)", "goniochrome-paint(5)", "goniochrome-theory(7)"};

@@ -21,6 +21,7 @@ within() { awk -v limit="$1" '$1 > limit { bad = 1 } { n++ } END { exit bad || !
   [[ "$stderr" =~ ^"prefilter-envmap: "[0-9]+" lobes in "[0-9.]+" s; largest error "[0-9.e-]+" of 12 texels a lobe, tolerance 0.001"$ ]]
   values max_rel_error | within 1e-3
   values energy_ratio | head -1 | awk '{ if ($1 < .999 || $1 > 1.001) exit 1 }'
+  for time in read_s filter_s verify_s open_maps_s write_s; do [ "$(values "$time" | wc -l)" -eq 1 ]; done
 }
 
 @test "the file has its parts and attributes" {

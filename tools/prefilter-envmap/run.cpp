@@ -178,10 +178,9 @@ Result<void> write_for_engines(const Options& options, const envmap::Prefiltered
   return envmap::write_ktx2(options.output, rec709.levels, result.source, session.provenance());
 }
 
-Result<void> write(const Options& options, envmap::PrefilteredEnvironment& result, cli::Session& session) {
+Result<void> write(const Options& options, const envmap::PrefilteredEnvironment& result, cli::Session& session) {
   const std::string command = session.provenance();
   if (options.layout == "ktx2" || options.layout == "dds") return write_for_engines(options, result, session);
-  if (options.layout == "env" && !options.no_open_maps) envmap::keep_open_maps(result);
   if (options.layout == "mip") return envmap::write_mip(options.output, result.lobes, result.source, command);
   return envmap::write_env(options.output, result, command);
 }
@@ -282,6 +281,9 @@ Result<cli::Verdict> run(const Options& options, cli::Session& session) {
          {"radius_deg", spot.radius_rad / kDegree},
          {"share", json_number((light.x + light.y + light.z) / (flux.x + flux.y + flux.z))}});
   }
+  const Stopwatch open_maps_clock;
+  if (options.layout == "env" && !options.no_open_maps) envmap::keep_open_maps(result);
+  session.results()["open_maps_s"] = open_maps_clock.elapsed_s();
   const Stopwatch write_clock;
   GONIO_TRY(write(options, result, session));
   if (!options.picture.empty()) GONIO_TRY(image::write_png(options.picture, contact_sheet(result)));

@@ -11,6 +11,7 @@
 
 #include "base/angles.h"
 #include "base/parallel.h"
+#include "base/unset_array.h"
 #include "math/fft.h"
 #include "math/legendre.h"
 #include "math/quadrature.h"
@@ -46,7 +47,7 @@ struct Grid {
   double theta_step = 0, phi_step = 0;
   std::ptrdiff_t first_row = 0;     // the row of the circle that row 0 is
   std::ptrdiff_t first_column = 0;  // likewise
-  std::vector<double> plane[3];
+  UnsetArray<double> plane[3];
 };
 
 }  // namespace goniochrome::prefilter::harmonic_grid
@@ -191,8 +192,8 @@ std::vector<double> corrections(const Bump& bump, int degree, double step) {
 }
 
 // F_m on the fine rows: [row][m][re R G B im R G B], some orders at a time. `correction` is that of the polar angle.
-std::vector<double> fine_rows(const Harmonics& harmonics, const std::vector<double>& k, const Grid& grid,
-                              std::size_t fine, const std::vector<double>& correction) {
+UnsetArray<double> fine_rows(const Harmonics& harmonics, const std::vector<double>& k, const Grid& grid,
+                             std::size_t fine, const std::vector<double>& correction) {
   const int degree = static_cast<int>(k.size()) - 1;
   const std::size_t orders = static_cast<std::size_t>(degree) + 1;
   const std::size_t circle = math::fast_length(static_cast<std::size_t>(2 * degree + 2), 4), half = circle / 2;
@@ -201,7 +202,7 @@ std::vector<double> fine_rows(const Harmonics& harmonics, const std::vector<doub
     theta[i] = 2 * kPi * (static_cast<double>(i) + 0.5) / static_cast<double>(circle);
   const math::Rings rings(theta);
   const math::Fft coarse_fft(circle), fine_fft(fine);
-  std::vector<double> rows(grid.rows * orders * 6);
+  UnsetArray<double> rows(grid.rows * orders * 6);
   parallel_for(orders, kOrdersAtOnce, [&](std::size_t begin, std::size_t end) {
     constexpr std::size_t kLanes = 3 * kOrdersAtOnce;
     math::Block coarse(circle, kLanes), refined(fine, kLanes);
@@ -253,8 +254,8 @@ std::vector<double> fine_rows(const Harmonics& harmonics, const std::vector<doub
   return rows;
 }
 
-// A grid of zeros that is twice as fine as a function of this degree needs.
-Grid blank_grid(int degree, const Bump& bump) {
+// A grid that is twice as fine as a function of this degree needs, without samples.
+Grid unset_grid(int degree, const Bump& bump) {
   const std::size_t fine = math::fast_length(std::max<std::size_t>(4 * (static_cast<std::size_t>(degree) + 1), 32), 4);
   const std::size_t margin = bump.taps / 2 + 1;
   Grid grid;
@@ -263,7 +264,7 @@ Grid blank_grid(int degree, const Bump& bump) {
   grid.rows = fine / 2 + 2 * margin + 1;
   grid.columns = fine;
   grid.stride = fine + 2 * margin + harmonic_grid::kMostTaps;
-  for (auto& plane : grid.plane) plane.assign(grid.rows * grid.stride, 0.0);
+  for (auto& plane : grid.plane) plane = UnsetArray<double>(grid.rows * grid.stride);
   return grid;
 }
 
@@ -271,10 +272,10 @@ Grid blank_grid(int degree, const Bump& bump) {
 Grid make_grid(const Harmonics& harmonics, const std::vector<double>& k, const Bump& bump) {
   const int degree = static_cast<int>(k.size()) - 1;
   const std::size_t orders = static_cast<std::size_t>(degree) + 1;
-  Grid grid = blank_grid(degree, bump);
+  Grid grid = unset_grid(degree, bump);
   const std::size_t fine = grid.columns, margin = static_cast<std::size_t>(-grid.first_column);
   const std::vector<double> correction = corrections(bump, degree, grid.phi_step);  // of either angle: equal steps
-  const std::vector<double> rows = fine_rows(harmonics, k, grid, fine, correction);
+  const UnsetArray<double> rows = fine_rows(harmonics, k, grid, fine, correction);
   const math::Fft fft(fine);
   parallel_for(grid.rows, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     constexpr std::size_t kSeries = 3 * kRowsAtOnce;
@@ -395,7 +396,8 @@ ScatteredMoments scattered_moments(const envmap::Environment& env, const std::ve
                                    const envmap::Clip& clip) {
   const int degree = static_cast<int>(k.size()) - 1;
   const Bump bump = make_bump(14);
-  Grid grid = blank_grid(degree + 1, bump);
+  Grid grid = unset_grid(degree + 1, bump);
+  for (auto& plane : grid.plane) std::fill_n(plane.data(), plane.size(), 0.0);
   const std::size_t fine = grid.columns, orders = static_cast<std::size_t>(degree) + 1;
   const math::GaussRule rule = rule_for(k, env.largest_texel_rad());
   // Step 1: the texels as weighted points, spread onto the grid; some rows at a time, because points take memory.
@@ -417,7 +419,7 @@ ScatteredMoments scattered_moments(const envmap::Environment& env, const std::ve
   moments.circle = fine;
   moments.first_row = grid.first_row;
   moments.scale = corrections(bump, degree + 1, grid.theta_step);
-  moments.values.resize(orders * grid.rows * 6);
+  moments.values = UnsetArray<double>(orders * grid.rows * 6);
   const math::Fft fft(fine);
   parallel_for(grid.rows, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     constexpr std::size_t kSeries = 3 * kRowsAtOnce;  // as complex series whose imaginary parts are zero

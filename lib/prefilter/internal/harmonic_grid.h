@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "base/unset_array.h"
 #include "envmap/rotation.h"
 #include "envmap/sphere_grid.h"
 #include "prefilter/internal/harmonics.h"
@@ -31,7 +32,7 @@ std::vector<float> lobe_values(const Harmonics& harmonics, const std::vector<dou
 // nodes of a quadrature that is good enough once degree l is multiplied by k[l]) are spread: the way back of the same
 // transform. Frequency n of the column moments is to be multiplied by scale[|n|].
 struct ScatteredMoments {
-  std::vector<double> values;  // [m][row][re R G B im R G B]
+  UnsetArray<double> values;  // [m][row][re R G B im R G B]
   std::size_t rows = 0, circle = 0;
   std::ptrdiff_t first_row = 0;
   std::vector<double> scale;

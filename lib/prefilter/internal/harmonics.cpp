@@ -39,9 +39,9 @@ Complex turn(double angle) {
 }
 
 // f_m of every row: [m][row][re R G B im R G B], some rows at a time.
-std::vector<double> row_moments(const envmap::Environment& env, int degree, const envmap::Clip& clip) {
+UnsetArray<double> row_moments(const envmap::Environment& env, int degree, const envmap::Clip& clip) {
   const std::size_t width = static_cast<std::size_t>(env.width()), height = static_cast<std::size_t>(env.height());
-  std::vector<double> moments(static_cast<std::size_t>(degree + 1) * height * 6);
+  UnsetArray<double> moments(static_cast<std::size_t>(degree + 1) * height * 6);
   const math::Fft fft(width);
   parallel_for(height, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     constexpr std::size_t kReals = 3 * kRowsAtOnce;
@@ -128,7 +128,7 @@ void sum_order(const RingCircle& on, const math::Block& g, std::size_t lane, int
 
 // Moments along the rows, and how their rows lie on the circle.
 struct RowMoments {
-  std::vector<double> values;        // [m][row][re R G B im R G B]
+  UnsetArray<double> values;         // [m][row][re R G B im R G B]
   std::size_t rows = 0, circle = 0;  // `rows` equal steps of a circle of `circle`
   std::ptrdiff_t first = 0;          // the step of row 0
   double offset = 0;                 // of a row's angle within its step, in steps
