@@ -14,14 +14,15 @@ namespace goniochrome::render {
 
 namespace {
 
-// The points of the first round, and the fans of each point in every round that adds points.
-constexpr std::size_t kFirstPoints = 1024;
-constexpr int kFirstFans = 8;
+// The points, and the fans of each in the first round. Rare bright paths hold much of the light that is passed on: a
+// point that has seen none of them looks darker than it is, so that fewer points with more fans tell its worth better.
+constexpr std::size_t kPoints = 2048;
+constexpr int kFirstFans = 4;
 // Those of them at which a floor is traced as well.
 constexpr std::size_t kFloorPoints = 512;
 // No point gets more fans than that, and all points together no more than so many.
 constexpr int kMostFans = 128;
-constexpr int kMostInAll = 32768;
+constexpr int kMostInAll = 65536;
 constexpr int kMostRounds = 8;
 // A percentile is known well enough when its standard error is within this part of it, or below what nobody sees.
 constexpr double kSharpPart = 0.07, kUnseen = 0.03;
@@ -75,29 +76,13 @@ RayProbe RayProbe::traced(const ProbeSetting& setting, const std::vector<RayPoin
   probe.visible_points_ = setting.visible_points;
   if (points.empty()) return probe;
   probe.floor_points_ = setting.without_floor != nullptr ? std::min(kFloorPoints, points.size()) : 0;
-  probe.add_points(points, base, std::min(kFirstPoints, points.size()));
-  const std::size_t first_points = probe.size();
+  probe.add_points(points, base, std::min(kPoints, points.size()));
   const Stopwatch clock;
   probe.trace(setting, std::vector<int>(probe.size(), kFirstFans));
   const double first_round_ms = 1000 * clock.elapsed_s();
   if (probe.free() && probe.floor_points_ == 0) return probe;
-  // Where nothing is sharp yet, more points help those percentiles that few points decide.
-  for (const bool all : {false, true}) {
-    probe.refine(setting);
-    if (all || probe.free() || probe.size() == points.size()) break;
-    const bool sharp = std::ranges::all_of(comparisons(), [&](const Comparison& comparison) {
-      if (comparison.floor) return true;
-      const Worth worth = probe.worth(probe.changes(comparison));
-      return worth.standard_error <= std::max(kUnseen, kSharpPart * worth.de00_p95);
-    });
-    if (sharp) break;
-    const std::size_t before = probe.size();
-    probe.add_points(points, base, points.size());
-    std::vector<int> more(probe.size(), 0);
-    std::fill(more.begin() + static_cast<std::ptrdiff_t>(before), more.end(), kFirstFans);
-    probe.trace(setting, more);
-  }
-  probe.time(setting, first_round_ms / static_cast<double>(first_points + probe.floor_points_));
+  probe.refine(setting);
+  probe.time(setting, first_round_ms / static_cast<double>(probe.size() + probe.floor_points_));
   return probe;
 }
 
@@ -120,10 +105,9 @@ void RayProbe::time(const ProbeSetting& setting, double of_point_ms) {
   passed_ms_ = std::max(direct_ms_, (of_point_ms - point_ms_) / kFirstFans);
 }
 
-// Up to so many of them, those that are there already among them.
 void RayProbe::add_points(const std::vector<RayPoint>& points, const std::vector<color::Rgb>& base, std::size_t count) {
   const std::size_t step = scattering(points.size());
-  for (std::size_t k = points_.size(); k < count; ++k) {
+  for (std::size_t k = 0; k < count; ++k) {
     const std::size_t i = k * step % points.size();
     points_.push_back({points[i], base[i], {}, {}});
   }
