@@ -52,6 +52,8 @@ struct Found {
   double cost;  // sum of squares in standard deviations
 };
 
+constexpr double kLeastHaze = 0.03;
+
 // By how much, in squares of standard deviations, a coat of one scale may explain three readings worse than one of two
 // scales, which has two more numbers to meet them by.
 constexpr double kSimpler = 9;
@@ -86,9 +88,17 @@ Found of_one_scale(const Wanted& wanted, Slopes slopes) {
 class CoatSearch {
  public:
   CoatSearch(const Wanted& wanted, Slopes slopes) : wanted_(wanted), slopes_(slopes) {}
+  // Of coats with this haze alone.
+  CoatSearch(const Wanted& wanted, Slopes slopes, double haze)
+      : wanted_(wanted), slopes_(slopes), least_(math::log(haze)), most_(least_), free_(2) {}
+
+  // What a coat costs as it is.
+  Found at(const RoughCoat& coat) const {
+    return {coat, squares(residuals({math::log(coat.slope), coat.k, math::log(coat.haze)}))};
+  }
 
   Found from(const RoughCoat& start) const {
-    Point x = {math::log(start.slope), start.k, math::log(start.haze)};
+    Point x = clamped({math::log(start.slope), start.k, math::log(start.haze)});
     std::vector<double> r = residuals(x);
     double cost = squares(r), damping = 1e-3;
     for (int round = 0; round < 60 && damping < 1e9; ++round) {
@@ -111,9 +121,9 @@ class CoatSearch {
   static constexpr double kApart[] = {2, 0.7};  // standard deviations of k and log haze
 
   RoughCoat coat(const Point& x) const { return {x[1], math::exp(x[0]), math::exp(x[2]), slopes_}; }
-  static Point clamped(const Point& x) {
+  Point clamped(const Point& x) const {
     return {std::clamp(x[0], math::log(kLeastSlope), math::log(kMostSlope)), std::clamp(x[1], 0.0, kSeriesMost),
-            std::clamp(x[2], math::log(0.03), math::log(kMostSlope))};
+            std::clamp(x[2], least_, most_)};
   }
   static double squares(const std::vector<double>& r) {
     double sum = 0;
@@ -128,36 +138,38 @@ class CoatSearch {
     r.push_back((x[2] - math::log(RoughCoat::kHaze)) / kApart[1]);
     return r;
   }
-  // The solution of (J'J + d diag) s = -J'r, by elimination: three unknowns.
+  // The solution of (J'J + d diag) s = -J'r, by elimination: three unknowns, or two.
   Point step(const Point& x, const std::vector<double>& r, double damping) const {
     constexpr double kDifference = 1e-5;
     std::array<std::vector<double>, 3> j;
-    for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t c = 0; c < free_; ++c) {
       Point moved = x;
       moved[c] += kDifference;
       j[c] = residuals(moved);
       for (std::size_t i = 0; i < r.size(); ++i) j[c][i] = (j[c][i] - r[i]) / kDifference;
     }
     double a[3][4] = {};
-    for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t c = 0; c < free_; ++c)
       for (std::size_t i = 0; i < r.size(); ++i) {
-        for (std::size_t d = 0; d < 3; ++d) a[c][d] += j[c][i] * j[d][i];
+        for (std::size_t d = 0; d < free_; ++d) a[c][d] += j[c][i] * j[d][i];
         a[c][3] -= j[c][i] * r[i];
       }
-    for (std::size_t c = 0; c < 3; ++c) a[c][c] *= 1 + damping;
-    for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t row = 0; row < 3; ++row)
+    for (std::size_t c = 0; c < free_; ++c) a[c][c] *= 1 + damping;
+    for (std::size_t c = 0; c < free_; ++c)
+      for (std::size_t row = 0; row < free_; ++row)
         if (row != c && a[c][c] > 0) {
           const double part = a[row][c] / a[c][c];
           for (std::size_t d = c; d < 4; ++d) a[row][d] -= part * a[c][d];
         }
     Point next = x;
-    for (std::size_t c = 0; c < 3; ++c) next[c] += a[c][c] > 0 ? a[c][3] / a[c][c] : 0;
+    for (std::size_t c = 0; c < free_; ++c) next[c] += a[c][c] > 0 ? a[c][3] / a[c][c] : 0;
     return next;
   }
 
   const Wanted& wanted_;
   Slopes slopes_;
+  double least_ = math::log(kLeastHaze), most_ = math::log(kMostSlope);  // log haze
+  std::size_t free_ = 3;                                                 // numbers
 };
 
 Found of_two_scales(const Wanted& wanted, Slopes slopes) {
@@ -174,10 +186,32 @@ Found of_two_scales(const Wanted& wanted, Slopes slopes) {
   return *best;
 }
 
-}  // namespace
+// The coat at the end of the range of hazes, upward or downward from a found one. The haze is what readings tell least:
+// with each haze, the other two numbers are the most probable ones.
+RoughCoat end_of_range(const Wanted& wanted, const Found& found, bool up) {
+  constexpr double kRise = 4;      // two standard deviations
+  constexpr double kStep = 0.005;  // of log haze
+  const double end = math::log(up ? kMostSlope : kLeastHaze);
+  double inside = math::log(found.coat.haze), outside = end;
+  RoughCoat last = found.coat;
+  const auto try_haze = [&](double log_haze) {
+    const Found with = CoatSearch(wanted, found.coat.slopes, math::exp(log_haze)).from(last);
+    if (with.cost > found.cost + kRise) return false;
+    last = with.coat, inside = log_haze;
+    return true;
+  };
+  if (try_haze(end)) return last;
+  while (std::abs(outside - inside) > kStep) {
+    const double middle = 0.5 * (inside + outside);
+    if (!try_haze(middle)) outside = middle;
+  }
+  return last;
+}
 
-Result<std::optional<RoughCoat>> rough_coat_of(const std::vector<paint::GlossReading>& readings, double index,
-                                               double deviation_gu) {
+// What the readings say of the coat alone, relative to black glass as a coat of the usual index would read; none where
+// they are those of a smooth coat, or too dull for any.
+Result<std::optional<Wanted>> wanted_of(const std::vector<paint::GlossReading>& readings, double index,
+                                        double deviation_gu) {
   constexpr double kSmooth_gu = 1;
   Wanted wanted{{}, deviation_gu};
   bool smooth = true;
@@ -188,9 +222,18 @@ Result<std::optional<RoughCoat>> rough_coat_of(const std::vector<paint::GlossRea
     wanted.readings.push_back(
         {*view_of_meter(reading.angle_deg), std::max(0.0, reading.gloss_units) * usual / of_index});
   }
-  if (wanted.readings.empty()) return std::optional<RoughCoat>();
   const auto matt = [](const Wanted::Reading& w) { return w.gu <= coat_reading_at(of_series(kSeriesMost), w.view); };
-  if (smooth || std::ranges::all_of(wanted.readings, matt)) return std::optional<RoughCoat>();
+  if (smooth || std::ranges::all_of(wanted.readings, matt)) return std::optional<Wanted>();
+  return std::optional(std::move(wanted));
+}
+
+}  // namespace
+
+Result<std::optional<RoughCoat>> rough_coat_of(const std::vector<paint::GlossReading>& readings, double index,
+                                               double deviation_gu) {
+  GONIO_ASSIGN(const std::optional<Wanted> known, wanted_of(readings, index, deviation_gu));
+  if (!known) return std::optional<RoughCoat>();
+  const Wanted& wanted = *known;
   if (wanted.readings.size() == 1) return std::optional(series_coat(wanted.readings[0].view, wanted.readings[0].gu));
   Found best = of_two_scales(wanted, Slopes::kGgx);
   if (wanted.readings.size() < std::size(kGlossAngles_deg)) return std::optional(best.coat);
@@ -200,6 +243,15 @@ Result<std::optional<RoughCoat>> rough_coat_of(const std::vector<paint::GlossRea
   take(of_two_scales(wanted, Slopes::kGaussian), 0);
   for (const Slopes slopes : {Slopes::kGgx, Slopes::kGaussian}) take(of_one_scale(wanted, slopes), kSimpler);
   return std::optional(best.coat);
+}
+
+Result<std::optional<CoatRange>> rough_coat_range(const std::vector<paint::GlossReading>& readings, double index,
+                                                  double deviation_gu) {
+  GONIO_ASSIGN(const std::optional<RoughCoat> coat, rough_coat_of(readings, index, deviation_gu));
+  if (!coat || coat->k == 0) return std::optional<CoatRange>();
+  GONIO_ASSIGN(const std::optional<Wanted> wanted, wanted_of(readings, index, deviation_gu));
+  const Found found = CoatSearch(*wanted, coat->slopes).at(*coat);
+  return std::optional(CoatRange{end_of_range(*wanted, found, false), found.coat, end_of_range(*wanted, found, true)});
 }
 
 }  // namespace goniochrome::brdf

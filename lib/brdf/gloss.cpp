@@ -402,4 +402,10 @@ Result<void> set_gloss_views(const GlossTable& table, const std::vector<paint::G
   return {};
 }
 
+Result<std::optional<CoatRange>> coat_range(const GlossTable& table, const std::vector<paint::GlossReading>& readings,
+                                            const paint::LobeFit& fit) {
+  GONIO_ASSIGN(const std::vector<paint::GlossReading> wanted, without_base(table, readings, fit));
+  return rough_coat_range(wanted, mirror_index(fit.coat_index));
+}
+
 }  // namespace goniochrome::brdf

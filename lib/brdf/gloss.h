@@ -3,10 +3,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "base/result.h"
 #include "brdf/lobe_model.h"
+#include "brdf/rough_coat.h"
 #include "paint/paint.h"
 
 namespace goniochrome::brdf {
@@ -82,5 +84,9 @@ Result<std::vector<double>> set_gloss(const GlossTable& table, const std::vector
 // the views that are there get those. Errors as in set_gloss().
 Result<void> set_gloss_views(const GlossTable& table, const std::vector<paint::GlossReading>& readings,
                              paint::LobeFit& fit);
+
+// What these readings, of which the base of `fit` is a part, leave open of its rough coat; see rough_coat_range().
+Result<std::optional<CoatRange>> coat_range(const GlossTable& table, const std::vector<paint::GlossReading>& readings,
+                                            const paint::LobeFit& fit);
 
 }  // namespace goniochrome::brdf

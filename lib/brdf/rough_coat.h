@@ -48,6 +48,17 @@ inline constexpr double kStatedDeviation_gu = 0.1;
 Result<std::optional<RoughCoat>> rough_coat_of(const std::vector<paint::GlossReading>& readings, double index,
                                                double deviation_gu = kStatedDeviation_gu);
 
+// What readings leave open of a coat of two scales: all coats from one to the other have them within two standard
+// deviations, with numbers as usual. The haze is what readings tell least, so that they are sorted by it. Of three
+// readings to a tenth, coats may have nearly the same and differ in pictures by several units of CIEDE2000.
+struct CoatRange {
+  RoughCoat least_haze, probable, most_haze;
+};
+// The range about the coat of rough_coat_of(), which is the probable one. None where that has one scale, or there is
+// none. Error: no meter has that angle.
+Result<std::optional<CoatRange>> rough_coat_range(const std::vector<paint::GlossReading>& readings, double index,
+                                                  double deviation_gu = kStatedDeviation_gu);
+
 // The angles of the viewer at which weights stand for a rough coat, between which they are linear.
 inline constexpr double kCoatViews_deg[] = {0, 20, 35, 45, 53, 60, 66, 71, 75, 78.5, 82, 85, 87, 89};
 // Which of them has a meter of that angle.

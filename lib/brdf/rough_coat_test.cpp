@@ -157,6 +157,39 @@ TEST(RoughCoat, ReadingsTellHowSlopesAreDistributed) {
   EXPECT_GT(best, 1) << "the control";
 }
 
+// The true coat of readings in tenths lies within the range, whose ends have the readings as well. The control has ten
+// thousand times finer readings, which leave next to nothing open: it is the readings that tell too little.
+TEST(RoughCoat, ReadingsLeaveARangeOfCoats) {
+  int count = 0, within = 0;
+  for (const TrueCoat& coat : true_coats())
+    for (const Slopes slopes : {Slopes::kGgx, Slopes::kGaussian}) {
+      const RoughCoat truth{coat.k, coat.slope, coat.haze, slopes};
+      std::vector<paint::GlossReading> exact, tenths;
+      for (const double angle : kGlossAngles_deg) {
+        exact.push_back({angle, *coat_reading(truth, angle, 1.5)});
+        tenths.push_back({angle, 0.1 * std::round(10 * exact.back().gloss_units)});
+      }
+      const auto range = *rough_coat_range(tenths, 1.5);
+      if (coat.k == 0) {
+        EXPECT_FALSE(range) << "one scale has no haze: " << coat.slope;
+        continue;
+      }
+      ASSERT_TRUE(range) << coat.slope;
+      EXPECT_EQ(range->probable, **rough_coat_of(tenths, 1.5));
+      for (const RoughCoat& end : {range->least_haze, range->probable, range->most_haze})
+        for (const paint::GlossReading& reading : tenths)
+          EXPECT_NEAR(*coat_reading(end, reading.angle_deg, 1.5), reading.gloss_units, 0.25) << coat.slope;
+      ++count;
+      within += truth.haze >= range->least_haze.haze && truth.haze <= range->most_haze.haze ? 1 : 0;
+      EXPECT_GT(range->most_haze.haze, 1.2 * range->least_haze.haze) << coat.slope;
+      const auto narrow = *rough_coat_range(exact, 1.5, 1e-5);
+      ASSERT_TRUE(narrow) << coat.slope;
+      EXPECT_LT(narrow->most_haze.haze, 1.02 * narrow->least_haze.haze) << "the control: " << coat.slope;
+    }
+  EXPECT_EQ(count, 40);
+  EXPECT_GE(within, 0.95 * count);
+}
+
 TEST(HardCase, GlossSatinMeetsThreeReadingsTogether) {
   std::vector<std::vector<paint::GlossReading>> all = {{{20, 18}, {60, 60}, {85, 88}}};
   for (TrueCoat coat : true_coats())

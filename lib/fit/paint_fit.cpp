@@ -263,6 +263,9 @@ Result<PaintFit> PaintFitter::fit(const paint::Paint& paint) const {
   GONIO_TRY(brdf::set_gloss(gloss_, readings, out.lobes));
   const bool satin = options_.satin == Satin::kAll || (options_.satin == Satin::kBySeveral && readings.size() > 1);
   GONIO_TRY(brdf::set_gloss_views(gloss_, satin ? readings : std::vector<paint::GlossReading>(), out.lobes));
+  if (satin && readings.size() > 1) {
+    GONIO_ASSIGN(out.report.coat_range, brdf::coat_range(gloss_, readings, out.lobes));
+  }
   double gloss_deg = readings.empty() ? brdf::kGlossIncidence_deg : readings.front().angle_deg;
   if (paint.gloss.empty() && !readings.empty()) {
     // The paint will not state this reading, so that its weights are taken to hold at the usual incidence.

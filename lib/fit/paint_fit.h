@@ -8,6 +8,7 @@
 
 #include "base/result.h"
 #include "brdf/gloss.h"
+#include "brdf/rough_coat.h"
 #include "fit/brdf_target.h"
 #include "formats/basis.h"
 #include "paint/curve.h"
@@ -133,6 +134,7 @@ struct PaintFitReport {
   std::vector<double> dropped;     // exponents that a limit on lobes or visibility left out
   int glare_rows = 0;              // readings left out for being within kGlareAngle_deg of specular
   std::vector<GlossMisfit> gloss;  // at 20, 60 and 85 deg
+  std::optional<brdf::CoatRange> coat_range = {};  // where several readings are those of a coat of two scales
   std::optional<BrdfFigures> brdf;
   std::optional<ViewFigures> views;
   double time_us = 0;

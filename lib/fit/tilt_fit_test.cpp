@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <functional>
 
 #include "base/angles.h"
 #include "base/parallel.h"
@@ -57,10 +59,15 @@ TEST(TiltFit, FollowsATravelingColorBetterTheMoreLookupsThereAre) {
   }
 }
 
+const TiltFit& many() {
+  static const TiltFit fit = fitted({32, 64});
+  return fit;
+}
+
 // Few lobes stay near the mirror direction, since far ones show a small lamp as spots; many may stand farther out. The
 // control is the set of 32, which stays near.
 TEST(TiltFit, ManyLookupsReachFartherAndComeCloser) {
-  const TiltFit fit = fitted({32, 64});
+  const TiltFit& fit = many();
   ASSERT_EQ(fit.sets.size(), 2u);
   EXPECT_LT(fit.sets[1].mean_de00, 0.8 * fit.sets[0].mean_de00);
   const auto farthest = [](const paint::TiltedLobes& set) {
@@ -71,6 +78,68 @@ TEST(TiltFit, ManyLookupsReachFartherAndComeCloser) {
   };
   EXPECT_LE(farthest(fit.sets[0]), 2.2);
   EXPECT_GT(farthest(fit.sets[1]), 2.2);
+}
+
+// The color at one view under a lamp cos^32 that stands so far from the mirror direction, in the plane of incidence and
+// out of it, and a quarter of even light.
+color::Rgb lit(const std::function<color::Rgb(const Vec3& light)>& f_cos, double view_deg, double in_deg,
+               double out_deg) {
+  const double at = (view_deg + in_deg) * kDegree, out = out_deg * kDegree;
+  const Vec3 lamp{std::sin(at) * std::cos(out), std::sin(out), std::cos(at) * std::cos(out)};
+  constexpr int kRows = 60, kColumns = 120;
+  constexpr double kExponent = 32;
+  color::Rgb sum;
+  for (int row = 0; row < kRows; ++row) {
+    const double z = -1 + 2 * (row + 0.5) / kRows, r = std::sqrt(1 - z * z);
+    for (int column = 0; column < kColumns; ++column) {
+      const double phi = 2 * kPi * (column + 0.5) / kColumns;
+      const Vec3 light{r * std::cos(phi), r * std::sin(phi), z};
+      const double lamp_light = (kExponent + 1) / 2 * std::pow(std::max(0.0, dot(light, lamp)), kExponent);
+      sum += (4 * kPi / (kRows * kColumns)) * (0.25 + 0.75 * lamp_light) * f_cos(light);
+    }
+  }
+  return sum;
+}
+
+// What a set is off by at a quarter of the way between the views of `at`, in the mean over lamps about the mirror
+// direction.
+double error_between(const paint::TiltedLobes& set, const std::vector<paint::TiltedView>& at) {
+  double error = 0;
+  int count = 0;
+  for (std::size_t v = 0; v + 1 < at.size(); ++v) {
+    const double view_deg = 0.75 * at[v].view_deg + 0.25 * at[v + 1].view_deg, view_rad = view_deg * kDegree;
+    const Vec3 viewer{-std::sin(view_rad), 0, std::cos(view_rad)};
+    for (const auto& [in_deg, out_deg] : {std::pair{0, 0}, {-25, 0}, {10, 20}}) {
+      const color::Rgb shown =
+          lit([&](const Vec3& light) { return brdf::reflected_part(set, light, view_deg); }, view_deg, in_deg, out_deg);
+      const color::Rgb truth = lit(
+          [&](const Vec3& light) {
+            return light.z <= 0
+                       ? color::Rgb{}
+                       : light.z / kPi *
+                             brdf::reflectance_factor(traveling().map, light, viewer, brdf::CriticalAngle::kSlide);
+          },
+          view_deg, in_deg, out_deg);
+      const color::Xyz white = *color::white_point({"D65", 2});
+      error += color::delta_e_2000(color::lab_from_rgb(shown, white), color::lab_from_rgb(truth, white)), ++count;
+    }
+  }
+  return error / count;
+}
+
+// Between its views a set is linear, and its colors are not. The control is the same set with every other view.
+TEST(TiltFit, ViewsAreCloseEnoughForWeightsThatAreLinearBetweenThem) {
+  ASSERT_EQ(many().sets.size(), 2u);
+  const paint::TiltedLobes& set = many().sets[1];
+  paint::TiltedLobes sparse = set;
+  sparse.views.clear();
+  for (std::size_t v = 0; v < set.views.size(); v += 2) sparse.views.push_back(set.views[v]);
+  EXPECT_EQ(sparse.views.back().view_deg, 90);
+  const double error = error_between(set, sparse.views);
+  std::printf("half-way between the views: %.2f; with every other view alone %.2f\n", error,
+              error_between(sparse, sparse.views));
+  EXPECT_LT(error, 0.5);
+  EXPECT_GT(error_between(sparse, sparse.views), 1.5 * error);
 }
 
 // The truth is the map itself, whose light from below the horizon is 0: a set sends little there at any view. A lobe of

@@ -10,6 +10,7 @@
 #include "base/angles.h"
 #include "base/testdata_for_test.h"
 #include "brdf/gloss.h"
+#include "brdf/rough_coat.h"
 #include "brdf/true_coat_for_test.h"
 #include "color/color.h"
 #include "render/effects.h"
@@ -285,6 +286,38 @@ void check_pictures(const std::string& name, const std::string& file, double mos
 TEST(Satin, PicturesAreNearTheRoughDielectric) {
   check_pictures("studio", testdata("studio.exr"), 0.5, 1);
   check_pictures("outdoor", testdata("outdoor.exr"), 1.2, 2);
+}
+
+// Readings in tenths, as meters print them, leave a range of coats of two scales. Its ends have these readings, and
+// their pictures differ from that of the probable coat by more than the picture of the true coat does: what this one
+// errs by lies in the readings.
+TEST(Satin, WhatReadingsLeaveOpenIsSeen) {
+  const Studio studio(testdata("outdoor.exr"));
+  const std::vector<color::Rgb> bare = studio.shown(base_paint({0.02, 0.03, 0.07}), 60);
+  const auto picture = [&](const brdf::RoughCoat& coat) {
+    return over(studio.coat({coat.k, coat.slope, coat.haze, coat.slopes == brdf::Slopes::kGaussian}), bare);
+  };
+  const std::vector<TrueCoat> coats = brdf::true_coats();
+  double widest = 0;
+  for (std::size_t i = 1; i < coats.size(); i += 12) {
+    const brdf::RoughCoat truth{coats[i].k, coats[i].slope, coats[i].haze, brdf::Slopes::kGaussian};
+    std::vector<paint::GlossReading> readings;
+    for (const double angle : brdf::kGlossAngles_deg)
+      readings.push_back({angle, 0.1 * std::round(10 * *brdf::coat_reading(truth, angle, 1.5))});
+    const auto range = *brdf::rough_coat_range(readings, 1.5);
+    ASSERT_TRUE(range) << i;
+    const auto shown = picture(range->probable);
+    const auto apart = [&](const brdf::RoughCoat& coat) {
+      return difference(picture(coat), shown, studio.white()).p95;
+    };
+    const double error = apart(truth), low = apart(range->least_haze), high = apart(range->most_haze);
+    std::printf("%.1f %.1f %.1f GU: off by %.2f, hazes from %.3f to %.3f by %.2f and %.2f\n", readings[0].gloss_units,
+                readings[1].gloss_units, readings[2].gloss_units, error, range->least_haze.haze, range->most_haze.haze,
+                low, high);
+    EXPECT_LE(error, std::max(low, high)) << i;
+    widest = std::max(widest, std::min(low, high));
+  }
+  EXPECT_GT(widest, 5);
 }
 
 // The reference and the engine integral draw facets in the place of lobes. The control is the lobes.

@@ -102,10 +102,14 @@ number() { grep -m1 "\"$1\"" r.json | sed -E 's/.*: ([-0-9.e+]+),?$/\1/'; }
   fit-paint -q -b "$basis" three.xml -o out.xml --report r.json
   [ "$(grep -c '<view angle=' out.xml)" -eq 14 ]
   jq -e '.results.paints[0].gloss | length == 3 and all(.misfit_gu | fabs < 1)' r.json
+  jq -e '.results.paints[0].coat_range | .slopes == "ggx" and .least_haze.haze < 0.8 * .most_haze.haze and
+    .least_haze.haze <= .probable.haze and .probable.haze <= .most_haze.haze' r.json
+  run --separate-stderr fit-paint -b "$basis" three.xml -o out.xml
+  [[ "$stderr" =~ "leave open how wide the haze of their coats is" ]]
   # The control: for all views alike, the reading at 20 deg is met and the others are missed.
   fit-paint -q -b "$basis" --satin none three.xml -o out.xml --report r.json
   [ "$(grep -c '<view angle=' out.xml)" -eq 0 ]
-  jq -e '.results.paints[0].gloss | any(.misfit_gu | fabs > 10)' r.json
+  jq -e '.results.paints[0] | (.gloss | any(.misfit_gu | fabs > 10)) and (has("coat_range") | not)' r.json
   echo "$head$one</paints>" >one.xml
   fit-paint -q -b "$basis" --gloss 60 one.xml -o out.xml
   [ "$(grep -c '<view angle=' out.xml)" -eq 0 ]

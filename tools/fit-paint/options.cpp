@@ -130,6 +130,11 @@ void add_report(cli::ToolSpec& spec) {
       {"paints[].gloss[]",
        "angle_deg and simulated_gu; where the paint states its gloss also stated_gu, and misfit_gu, which is the "
        "simulated gloss minus the stated one"},
+      {"paints[].coat_range",
+       "where several gloss readings are those of a coat of two scales: slopes, which is ggx or gaussian, and "
+       "least_haze, probable and most_haze, each with the k, slope and haze of a coat (goniochrome-theory(7), SATIN). "
+       "The probable coat is drawn. All coats between the other two have the same readings within two standard "
+       "deviations of 0.1 GU, and look different"},
       {"paints[].brdf",
        "of a measured BRDF: the number of directions fitted; glare_directions and steep_directions, which are left "
        "out; relative_error_median and relative_error_p95 of the color triple, de00_median and de00_p95, all over the "

@@ -35,6 +35,16 @@ Json gloss_of(const std::vector<fit::GlossMisfit>& gloss) {
   return array;
 }
 
+Json range_of(const brdf::CoatRange& range) {
+  const auto coat = [](const brdf::RoughCoat& of) {
+    return Json{{"k", json_number(of.k)}, {"slope", json_number(of.slope)}, {"haze", json_number(of.haze)}};
+  };
+  return {{"slopes", range.probable.slopes == brdf::Slopes::kGgx ? "ggx" : "gaussian"},
+          {"least_haze", coat(range.least_haze)},
+          {"probable", coat(range.probable)},
+          {"most_haze", coat(range.most_haze)}};
+}
+
 Json report_of(const paint::Paint& paint, const fit::PaintFit& fit) {
   const fit::PaintFitReport& r = fit.report;
   Json report = {{"name", paint.name},
@@ -57,6 +67,7 @@ Json report_of(const paint::Paint& paint, const fit::PaintFit& fit) {
                  {"gamut_de00", json_number(r.gamut_de00)},
                  {"glare_rows", r.glare_rows},
                  {"gloss", gloss_of(r.gloss)}};
+  if (r.coat_range) report["coat_range"] = range_of(*r.coat_range);
   if (r.brdf)
     report["brdf"] = {{"directions", r.brdf->fitted},
                       {"glare_directions", r.brdf->glare},
@@ -112,6 +123,13 @@ void Tally::add_worst(const paint::Paint& paint, const fit::PaintFitReport& r) {
   if (worst_.size() > kWorstShown) worst_.pop_back();
 }
 
+void Tally::add_range(const paint::Paint& paint, const brdf::CoatRange& range) {
+  ++open_coats_;
+  const double factor = range.most_haze.haze / range.least_haze.haze;
+  if (open_coats_ > 1 && factor <= widest_.most_haze.haze / widest_.least_haze.haze) return;
+  widest_ = range, widest_name_ = paint.name;
+}
+
 void Tally::add(const paint::Paint& paint, const fit::PaintFit& fit) {
   const fit::PaintFitReport& r = fit.report;
   ++fitted_;
@@ -126,6 +144,7 @@ void Tally::add(const paint::Paint& paint, const fit::PaintFit& fit) {
   sum_floor_ += r.floor.de00_mean * static_cast<double>(r.de00_by_geometry.size());
   for (const double floor : r.floor.largest_de00) floors_.add(floor);
   if (r.views) sum_gain_ += r.views->gain_de00();
+  if (r.coat_range) add_range(paint, *r.coat_range);
   if (r.brdf) {
     ++measured_, sum_relative_ += r.brdf->relative_error_median;
     if (r.brdf->albedo_error) ++resolved_, sum_misplaced_ += *r.brdf->albedo_error;
@@ -208,6 +227,12 @@ cli::Verdict Tally::finish() {
         "{}: {} readings that lobes meet without a coat are off by up to dE00 {:.2f} under it, where no "
         "weights for all views meet them{}",
         session_.tool(), lost_to_coat_, largest_lost_, options_.views.empty() ? "; --views auto meets them" : ""));
+  if (open_coats_ > 0)
+    session_.say(fmt::format(
+        "{}: the gloss readings of {} paints leave open how wide the haze of their coats is; that of {} may have "
+        "slopes from {:.2f} to {:.2f}, and {:.2f} is drawn",
+        session_.tool(), open_coats_, widest_name_, widest_.least_haze.haze, widest_.most_haze.haze,
+        widest_.probable.haze));
   if (stopped_ > 0) return cli::Verdict::kStopped;
   return failed_ > 0 || not_converged_ > 0 ? cli::Verdict::kNegative : cli::Verdict::kDone;
 }

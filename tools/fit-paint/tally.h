@@ -44,6 +44,7 @@ class Tally {
   };
 
   void add_worst(const paint::Paint& paint, const fit::PaintFitReport& report);
+  void add_range(const paint::Paint& paint, const brdf::CoatRange& range);
   std::string summary() const;
   std::string floor() const;
 
@@ -59,6 +60,9 @@ class Tally {
   double sum_floor_ = 0;           // over all readings
   Spread floors_;                  // of the worse readings at shared angles
   std::vector<Bad> worst_;         // the worst paints, worst first
+  std::size_t open_coats_ = 0;     // paints whose gloss readings leave a range of coats
+  brdf::CoatRange widest_;         // of these
+  std::string widest_name_;
 };
 
 }  // namespace goniochrome::tool
