@@ -48,7 +48,9 @@ cli::ToolSpec tool_spec(Options& o) {
       "gets "
       "their light.",
       "The targets other than tables have few parameters, and the nearest are taken by the color difference over all "
-      "angles. A graph of MaterialX has many lobes. Standard Surface, OpenPBR, glTF and USD have one roughness, and a "
+      "angles. A graph of MaterialX has many lobes. glTF gets a thin film where that brings the colors nearer by 0.1 "
+      "or "
+      "more. Standard Surface, OpenPBR, glTF and USD have one roughness, and a "
       "metallic paint is several dE00 off in them.",
       "What no instrument has measured is not invented: no target gets flakes or sparkle. Color maps and anisotropy of "
       "a paint are left out, with a warning. AxF is not written: the layers of paint in its container are not openly "

@@ -138,6 +138,9 @@ PY
 @test "the parameters of glTF read back as told" {
   read_back gltf gltf
   jq -e '.asset.version == "2.0" and .materials[0].name == "candy_red"' candy_red.gltf
+  # A film brings a metallic paint nearer, and a solid one has none.
+  jq -e '.extensionsUsed | index("KHR_materials_iridescence")' candy_red.gltf
+  jq -e '.extensionsUsed | index("KHR_materials_iridescence") | not' jet_black.gltf
 }
 
 @test "the parameters of UsdPreviewSurface read back as told" {
