@@ -60,8 +60,9 @@ TEST(TensorTree, KeepsTheLight) {
 TEST(TensorTree, AnEvenColorIsAFewLeaves) {
   const TensorTree tree([](const Vec3&, const Vec3&) { return color::Xyz{0.2, 0.2, 0.2}; });
   const std::string text = tree.text(0);
-  // Only the ways to the black cell and to its mirror image branch: eight leaves at each of eight depths.
-  EXPECT_LT(std::ranges::count(text, '.'), 2 * 8 * 8);
+  // All branch down to the 4 x 8 x 8 cells of depth 3, and below these the ways to the black cell and to its mirror
+  // image, which leave seven leaves at each of five depths.
+  EXPECT_EQ(std::ranges::count(text, '.'), 256 - 2 + 2 * 5 * 7);
   EXPECT_EQ(std::ranges::count(text, '{'), std::ranges::count(text, '}'));
 }
 
