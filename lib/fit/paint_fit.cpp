@@ -1,6 +1,7 @@
 #include "fit/paint_fit.h"
 
 #include <algorithm>
+#include <map>
 
 #include "base/angles.h"
 #include "base/clock.h"
@@ -232,7 +233,37 @@ void PaintFitter::finish(const std::vector<paint::LabReading>& readings, const c
   report.views = ViewFigures{report.de00_mean, mean_de00(errors)};
 }
 
+// Readings beyond glare, one angle of incidence after the other. A paint without readings at any other angle has none
+// to be predicted from.
+std::vector<IncidenceFigures> PaintFitter::incidences(const paint::Paint& paint, const paint::LobeFit& together) const {
+  const auto white = color::white_point(paint::condition_of(paint));
+  if (!paint.measurement || !white.ok()) return {};
+  std::map<double, std::vector<paint::LabReading>> groups;
+  for (const paint::LabReading& row : paint.measurement->rows)
+    if (paint::aspecular_angle_deg(row.geometry) >= kGlareAngle_deg) groups[row.geometry.incidence_deg].push_back(row);
+  std::vector<IncidenceFigures> figures;
+  if (groups.size() < 2) return figures;
+  for (const auto& [incidence_deg, here] : groups) {
+    paint::Paint others = paint;
+    others.appearance.reset();
+    others.measurement->spectra.clear();
+    std::erase_if(others.measurement->rows,
+                  [at = incidence_deg](const paint::LabReading& row) { return row.geometry.incidence_deg == at; });
+    const auto alone = fit_all(others);
+    if (alone.ok())
+      figures.push_back({incidence_deg, here.size(), mean_de00(errors_at(here, *white, together)),
+                         mean_de00(errors_at(here, *white, alone->lobes))});
+  }
+  return figures;
+}
+
 Result<PaintFit> PaintFitter::fit(const paint::Paint& paint) const {
+  GONIO_ASSIGN(PaintFit all, fit_all(paint));
+  if (options_.by_incidence) all.report.incidences = incidences(paint, all.lobes);
+  return all;
+}
+
+Result<PaintFit> PaintFitter::fit_all(const paint::Paint& paint) const {
   const Stopwatch clock;
   const std::vector<paint::GlossReading>& readings = paint.gloss.empty() ? options_.assumed_gloss : paint.gloss;
   GONIO_ASSIGN(const double coat, coat_index(paint, readings));

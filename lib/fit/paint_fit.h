@@ -44,8 +44,9 @@ struct FitOptions {
                                        // angle or that a coat keeps from being met; of a measured BRDF, views every
                                        // 15 deg
   Satin satin = Satin::kBySeveral;
-  double steepest_deg = 75;  // measured BRDFs: directions farther from the normal are left out
-  double time_limit_s = 0;   // for one paint; 0: none
+  double steepest_deg = 75;   // measured BRDFs: directions farther from the normal are left out
+  double time_limit_s = 0;    // for one paint; 0: none
+  bool by_incidence = false;  // PaintFitReport::incidences, of paints with several angles: a fit more for each of them
 };
 
 // Readings nearer to specular than this hold conventional glare, which the gloss meter measures.
@@ -103,6 +104,14 @@ struct ViewFloor {
   std::vector<double> largest_de00;  // for each shared angle, at the worse of its readings
 };
 
+// What the readings at one angle of incidence and those at the others say of each other.
+struct IncidenceFigures {
+  double incidence_deg = 45;
+  std::size_t readings = 0;
+  double de00_mean = 0;            // of these readings, in the fit to all
+  double predicted_de00_mean = 0;  // of these readings, in a fit to the readings at the other angles alone
+};
+
 // How a fit ended.
 enum class FitStatus {
   kOptimal,
@@ -137,7 +146,8 @@ struct PaintFitReport {
   std::optional<brdf::CoatRange> coat_range = {};  // where several readings are those of a coat of two scales
   std::optional<BrdfFigures> brdf;
   std::optional<ViewFigures> views;
-  double time_us = 0;
+  std::vector<IncidenceFigures> incidences;  // where they were asked for, and there are two or more
+  double time_us = 0;                        // without that
 };
 
 struct PaintFit {
@@ -167,6 +177,8 @@ class PaintFitter {
   PaintFit started(double coat_index) const;
   Result<FiveAngleFigures> from_five_angles(const BrdfTarget& brdf) const;
   void finish(const std::vector<paint::LabReading>& readings, const color::Xyz& white, PaintFit& fit) const;
+  Result<PaintFit> fit_all(const paint::Paint& paint) const;
+  std::vector<IncidenceFigures> incidences(const paint::Paint& paint, const paint::LobeFit& together) const;
 
   formats::Basis basis_;
   FitOptions options_;

@@ -52,6 +52,37 @@ PaintFitReport report_of(const paint::Paint& paint, FitOptions options = {}) {
   return fit->report;
 }
 
+// The readings at 15 deg of incidence are those of the lobes that 45 deg tells, so that either predicts the other.
+// Where they are lighter, no fit meets both, and the prediction is off by what they are lighter.
+TEST(PaintFit, TellsByHowMuchTheReadingsOfTwoIncidencesDisagree) {
+  paint::LobeFit truth;
+  truth.diffuse = {0.02, 0.03, 0.06};
+  truth.lobes = {{6, {0.05, 0.06, 0.1}, {}}, {20, {0.2, 0.2, 0.3}, {}}};
+  paint::Paint paint = paint_from(truth, kFive);
+  const color::Xyz white = *color::white_point({});
+  for (const double aspecular_deg : {-30, 15, 45, 80})
+    paint.measurement->rows.push_back(
+        {{.incidence_deg = 15, .aspecular_deg = aspecular_deg},
+         color::lab_from_rgb(brdf::flake_reflectance_factor(truth, std::abs(aspecular_deg)), white)});
+  const FitOptions options = {.coat_index = paint::kNoCoat, .by_incidence = true};
+  auto incidences = report_of(paint, options).incidences;
+  ASSERT_EQ(incidences.size(), 2u);
+  EXPECT_EQ(incidences[0].incidence_deg, 15);
+  EXPECT_EQ(incidences[0].readings, 4u);
+  EXPECT_EQ(incidences[1].readings, 5u);
+  EXPECT_LT(incidences[0].de00_mean, 0.01);
+  EXPECT_LT(incidences[0].predicted_de00_mean, 0.5);
+  for (paint::LabReading& row : paint.measurement->rows)
+    if (row.geometry.incidence_deg == 15) row.lab.L += 8;
+  incidences = report_of(paint, options).incidences;
+  ASSERT_EQ(incidences.size(), 2u);
+  EXPECT_GT(incidences[0].predicted_de00_mean, 4);
+  EXPECT_LT(incidences[0].de00_mean, incidences[0].predicted_de00_mean);
+  // Neither is told where it was not asked for, or where there is one angle of incidence.
+  EXPECT_TRUE(report_of(paint, {}).incidences.empty());
+  EXPECT_TRUE(report_of(metallic_blue(), options).incidences.empty());
+}
+
 TEST(PaintFit, RecoversTheColorOfKnownLobes) {
   paint::LobeFit truth;
   truth.diffuse = {0.02, 0.03, 0.06};

@@ -11,6 +11,7 @@
 
 #include "base/file.h"
 #include "base/result.h"
+#include "formats/imported.h"
 #include "paint/paint.h"
 
 namespace goniochrome::formats {
@@ -49,6 +50,8 @@ struct CsvLayout {
   bool all_columns = false;
   // The table has a last column origin, which marks rows that come from the curve of a paint.
   bool origin = false;
+  // A long table also has columns of wavelengths, which are those of the first spectrum of the first paint.
+  bool spectra = false;
 };
 
 class CsvPaintWriter {
@@ -61,13 +64,26 @@ class CsvPaintWriter {
   Result<void> write(const paint::Paint& paint, const std::vector<paint::Geometry>& from_curve = {});
   // Puts the file in place.
   Result<void> finish();
+  // Which spectra the table has no columns for.
+  std::vector<std::string> warnings() const { return remarks_.lines(); }
 
  private:
+  Result<void> write_header();
+  void choose_wavelengths(const paint::Measurement& measurement);
+  std::string spectrum_cells(const paint::Paint& paint, const paint::Geometry& geometry) const;
+  void note_spectra_left_out(const paint::Paint& paint);
+  bool has_columns_for(const paint::SpectrumReading& spectrum) const;
+
   CsvPaintWriter(OutputFile file, CsvLayout layout)
       : file_(std::move(file)), layout_(std::move(layout)), is_stream_(file_.scratch_path().empty()) {}
   OutputFile file_;
   CsvLayout layout_;
   bool is_stream_;
+  bool has_header_ = false;
+  // The wavelengths of the table, with no values; nothing where it has none.
+  std::optional<paint::SpectrumReading> wavelengths_;
+  std::size_t wavelength_count_ = 0;
+  Remarks remarks_;
 };
 
 }  // namespace goniochrome::formats

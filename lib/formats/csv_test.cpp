@@ -278,6 +278,46 @@ TEST(PaintCsv, BothFormsComeBackToTheLastBit) {
   }
 }
 
+// Spectra have columns named by wavelengths, which the first paint chooses; rows without a spectrum have empty cells.
+TEST(PaintCsv, SpectraComeBackAsTheyWere) {
+  std::vector<paint::Paint> paints = {paint_with("x", {{"15", {10, 2, 3}}, {"25", {20, 5, 6}}}),
+                                      paint_with("y", {{"15", {1, 2, 3}}})};
+  const paint::Geometry at_15 = *paint::parse_geometry("15"), at_25 = *paint::parse_geometry("25");
+  paints[0].measurement->spectra = {{at_25, 400.1, 0.1, {0.01, 0.1 / 3, 0.02, 0.03, 0.04}}};
+  CsvLayout layout;
+  layout.all_columns = layout.spectra = true;
+  const std::string text = written(paints, layout);
+  EXPECT_NE(text.find(",gloss85,400.1,400.2,400.3,400.4,400.5\n"), std::string::npos) << text;
+  const Reading reading = reading_of_text(text);
+  EXPECT_THAT(reading.errors, ElementsAre());
+  ASSERT_EQ(reading.paints.size(), 2u);
+  EXPECT_EQ(reading.paints[0].measurement->rows[1].lab, (color::Lab{20, 5, 6}));
+  ASSERT_EQ(reading.paints[0].measurement->spectra.size(), 1u);
+  const paint::SpectrumReading& read = reading.paints[0].measurement->spectra[0];
+  EXPECT_EQ(read.geometry, at_25);
+  EXPECT_EQ(read.from_nm, 400.1);
+  EXPECT_NEAR(read.step_nm, 0.1, 1e-9);
+  EXPECT_EQ(read.factors, paints[0].measurement->spectra[0].factors);
+  EXPECT_TRUE(reading.paints[1].measurement->spectra.empty());
+  // A table that is not asked for them, and one of paints that have none, are what they were before.
+  EXPECT_EQ(written(paints, {}),
+            "sample,geometry,illuminant,observer,L,a,b\nx,45as15,D65,10,10,2,3\n"
+            "x,45as25,D65,10,20,5,6\ny,45as15,D65,10,1,2,3\n");
+  paints[0].measurement->spectra.clear();
+  EXPECT_EQ(written(paints, layout), written(paints, {{}, true}));
+  EXPECT_EQ(written({}, layout), written({}, {{}, true}));
+  // What has no columns is named.
+  const ScratchFolder folder;
+  auto writer = CsvPaintWriter::begin(*OutputFile::create(folder.path("p.csv")), layout);
+  paints[0].measurement->spectra = {{at_15, 400, 10, {1, 1, 1, 1}}, {at_25, 400, 10, {1, 1, 1, 1, 1}}};
+  paints[1].measurement->spectra = {{at_15, 410, 10, {1, 1, 1, 1, 1}}, {at_25, 400, 10, {1, 1, 1, 1, 1}}};
+  for (const paint::Paint& paint : paints) ASSERT_TRUE(writer->write(paint).ok());
+  EXPECT_THAT(writer->warnings(),
+              ElementsAre("spectra are left out that have other wavelengths than the first paint of the table (x at "
+                          "45as15 and 1 more)",
+                          "spectra without L*, a* and b* beside them are left out (y at 45as25)"));
+}
+
 // Rows of the curve are marked; they are read only where a paint has no others.
 TEST(PaintCsv, TheOriginOfRowsIsToldAndRead) {
   const paint::Paint paint = paint_with("x", {{"15", {1, 2, 3}}, {"25", {4, 5, 6}}});

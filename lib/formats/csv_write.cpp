@@ -1,9 +1,10 @@
 #include <algorithm>
+#include <cmath>
 
 #include "base/text.h"
 #include "formats/csv.h"
-#include "formats/imported.h"
 #include "formats/internal/csv_records.h"
+#include "formats/internal/spectral_rows.h"
 
 namespace goniochrome::formats {
 
@@ -19,6 +20,12 @@ std::string lab_cells(const color::Lab& lab) {
 std::string column_name(const paint::Geometry& geometry) {
   const bool usual = geometry.incidence_deg == 45 && !geometry.out_of_plane && !geometry.reversed;
   return usual ? shortest(geometry.aspecular_deg) : paint::geometry_name(geometry);
+}
+
+// The i-th wavelength, without the last bits that adding up steps would leave.
+double nm_of(const paint::SpectrumReading& spectrum, std::size_t i) {
+  constexpr double kUnits = 1e9;
+  return std::round((spectrum.from_nm + spectrum.step_nm * static_cast<double>(i)) * kUnits) / kUnits;
 }
 
 std::string listed_names(const std::vector<paint::Geometry>& geometries) {
@@ -40,16 +47,60 @@ std::string other_cells(const paint::Paint& paint) {
 }  // namespace
 
 Result<CsvPaintWriter> CsvPaintWriter::begin(OutputFile file, const CsvLayout& layout) {
-  std::string head = layout.wide.empty() ? kLongHeader : "sample,illuminant,observer";
-  for (const paint::Geometry& geometry : layout.wide) {
+  CsvPaintWriter writer(std::move(file), layout);
+  if (!layout.spectra) GONIO_TRY(writer.write_header());
+  return writer;
+}
+
+Result<void> CsvPaintWriter::write_header() {
+  has_header_ = true;
+  std::string head = layout_.wide.empty() ? kLongHeader : "sample,illuminant,observer";
+  for (const paint::Geometry& geometry : layout_.wide) {
     const std::string name = column_name(geometry);
     head += fmt::format(",L{},a{},b{}", name, name, name);
   }
-  if (layout.all_columns) head += kOtherColumns;
-  if (layout.origin) head += ",origin";
-  CsvPaintWriter writer(std::move(file), layout);
-  GONIO_TRY(writer.file_.write(head + "\n"));
-  return writer;
+  if (layout_.all_columns) head += kOtherColumns;
+  for (std::size_t i = 0; i < wavelength_count_; ++i) head += "," + shortest(nm_of(*wavelengths_, i));
+  if (layout_.origin) head += ",origin";
+  return file_.write(head + "\n");
+}
+
+// Those that the reader takes for wavelengths again.
+void CsvPaintWriter::choose_wavelengths(const paint::Measurement& measurement) {
+  for (const paint::SpectrumReading& spectrum : measurement.spectra) {
+    const std::size_t count = spectrum.factors.size();
+    if (count < kFewestWavelengths || !wavelength_in(shortest(nm_of(spectrum, 0))) ||
+        !wavelength_in(shortest(nm_of(spectrum, count - 1))))
+      continue;
+    wavelengths_ = {spectrum.geometry, spectrum.from_nm, spectrum.step_nm, {}};
+    wavelength_count_ = count;
+    return;
+  }
+}
+
+bool CsvPaintWriter::has_columns_for(const paint::SpectrumReading& spectrum) const {
+  return wavelengths_ && spectrum.from_nm == wavelengths_->from_nm && spectrum.step_nm == wavelengths_->step_nm &&
+         spectrum.factors.size() == wavelength_count_;
+}
+
+std::string CsvPaintWriter::spectrum_cells(const paint::Paint& paint, const paint::Geometry& geometry) const {
+  const auto& spectra = paint.measurement->spectra;
+  const auto spectrum = std::ranges::find(spectra, geometry, &paint::SpectrumReading::geometry);
+  const bool there = spectrum != spectra.end() && has_columns_for(*spectrum);
+  std::string text;
+  for (std::size_t i = 0; i < wavelength_count_; ++i) text += "," + (there ? shortest(spectrum->factors[i]) : "");
+  return text;
+}
+
+void CsvPaintWriter::note_spectra_left_out(const paint::Paint& paint) {
+  for (const paint::SpectrumReading& spectrum : paint.measurement->spectra) {
+    const std::string place = fmt::format("{} at {}", paint.name, paint::geometry_name(spectrum.geometry));
+    if (!has_columns_for(spectrum))
+      remarks_.note("spectra are left out that have other wavelengths than the first paint of the table", place);
+    else if (std::ranges::find(paint.measurement->rows, spectrum.geometry, &paint::LabReading::geometry) ==
+             paint.measurement->rows.end())
+      remarks_.note("spectra without L*, a* and b* beside them are left out", place);
+  }
 }
 
 Result<void> CsvPaintWriter::write(const paint::Paint& paint, const std::vector<paint::Geometry>& from_curve) {
@@ -57,13 +108,19 @@ Result<void> CsvPaintWriter::write(const paint::Paint& paint, const std::vector<
     return input_error("paint \"{}\" has no Lab values: a table cannot hold it", shown(paint.name));
   GONIO_TRY(check_writable(paint));
   const auto& [condition, instrument, rows, spectra, textures] = *paint.measurement;
+  if (!has_header_) {
+    choose_wavelengths(*paint.measurement);
+    GONIO_TRY(write_header());
+  }
+  if (layout_.spectra) note_spectra_left_out(paint);
   const std::string viewing = fmt::format(",{},{}", csv_cell(condition.illuminant), condition.observer_deg);
   const std::string others = layout_.all_columns ? other_cells(paint) : "";
   std::string text;
   if (layout_.wide.empty()) {
     for (const paint::LabReading& row : rows) {
       const bool curve = std::ranges::find(from_curve, row.geometry) != from_curve.end();
-      text += csv_cell(paint.name) + "," + paint::geometry_name(row.geometry) + viewing + lab_cells(row.lab) + others;
+      text += csv_cell(paint.name) + "," + paint::geometry_name(row.geometry) + viewing + lab_cells(row.lab) + others +
+              spectrum_cells(paint, row.geometry);
       text += layout_.origin ? curve ? ",curve\n" : ",row\n" : "\n";
     }
   } else {
@@ -83,6 +140,7 @@ Result<void> CsvPaintWriter::write(const paint::Paint& paint, const std::vector<
 }
 
 Result<void> CsvPaintWriter::finish() {
+  if (!has_header_) GONIO_TRY(write_header());
   return file_.commit();
 }
 

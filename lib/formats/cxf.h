@@ -58,20 +58,25 @@ class CxfWriter {
     bool one_object_per_angle = false;  // for programs that read only the first Lab of an object
   };
   static Result<CxfWriter> begin(OutputFile file, const Info& info);
-  // A tag `curve` names the geometries `from_curve`. Error: a paint without readings, or an L* below 0, which CxF3 does
-  // not allow.
+  // A tag `curve` names the geometries `from_curve`. A reading with a spectrum is written with it. Error: a paint
+  // without readings, or an L* below 0, which CxF3 does not allow.
   Result<void> write(const paint::Paint& paint, const std::vector<paint::Geometry>& from_curve = {});
   Result<void> finish();
+  // Which spectra CxF3 does not allow, and were left out.
+  std::vector<std::string> warnings() const { return remarks_.lines(); }
 
  private:
   struct Specification {
     color::ViewingCondition condition;
     std::string instrument;
     paint::Geometry geometry;
+    double from_nm = 0, step_nm = 0;  // of the spectra; 0 where there are none
     friend bool operator==(const Specification&, const Specification&) = default;
   };
   CxfWriter(OutputFile file, Info info) : file_(std::move(file)), info_(std::move(info)) {}
   std::size_t number_of(const Specification& specification);
+  std::string color_values(const paint::Measurement& measurement, const paint::LabReading& row);
+  void note_spectra_left_out(const paint::Paint& paint);
   std::string object(const paint::Paint& paint, const std::vector<paint::LabReading>& rows, const std::string& part,
                      bool first, const std::string& curve);
 
@@ -79,6 +84,7 @@ class CxfWriter {
   Info info_;
   std::vector<Specification> specifications_;  // in the order of first use; a library has few
   std::size_t objects_ = 0;
+  Remarks remarks_;
 };
 
 }  // namespace goniochrome::formats

@@ -31,6 +31,56 @@ TEST_F(Cxf, RoundTripKeepsEveryBit) {
   }
 }
 
+TEST_F(Cxf, SpectraComeBackAsTheyWere) {
+  std::vector<paint::Paint> paints = two_paints("D50");
+  paints[0].measurement->spectra = {{geometry("45as15"), 400, 10, {0.1, 1.0 / 3, 2.9}},
+                                    {geometry("45as25az-76"), 360, 20, {0.2, -0.01, 0.4, 1}}};
+  for (const bool one_object_per_angle : {false, true}) {
+    write(paints, one_object_per_angle);
+    const auto read = read_file(path());
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    EXPECT_THAT(read->warnings, IsEmpty());
+    expect_same(paints, read->paints);
+    const auto &was = paints[0].measurement->spectra, &is = read->paints[0].measurement->spectra;
+    ASSERT_EQ(is.size(), was.size());
+    for (std::size_t i = 0; i < was.size(); ++i) {
+      EXPECT_EQ(is[i].geometry, was[i].geometry);
+      EXPECT_EQ(is[i].from_nm, was[i].from_nm);
+      EXPECT_EQ(is[i].step_nm, was[i].step_nm);
+      EXPECT_EQ(is[i].factors, was[i].factors);
+    }
+    EXPECT_THAT(read->paints[1].measurement->spectra, IsEmpty());
+  }
+}
+
+// The schema of CxF3 has bounds for wavelengths and factors, and a spectrum has its place beside a Lab.
+TEST_F(Cxf, SpectraThatTheSchemaDoesNotAllowAreLeftOutAndNamed) {
+  paint::Paint paint;
+  paint.name = "p";
+  paint.measurement = paint::Measurement{{},
+                                         "",
+                                         {{geometry("45as15"), {90, 0, 0}},
+                                          {geometry("45as25"), {80, 0, 0}},
+                                          {geometry("45as45"), {70, 0, 0}},
+                                          {geometry("45as75"), {60, 0, 0}}}};
+  paint.measurement->spectra = {{geometry("45as15"), 400, 10, {0.1, 3}},
+                                {geometry("45as25"), 410, 10, {0.1, 0.2}},
+                                {geometry("45as45"), 400, 7, {0.1, 0.2}},
+                                {geometry("45as75"), 400, 10, {0.1, 0.2}},
+                                {geometry("45as110"), 400, 10, {0.1, 0.2}}};
+  auto writer = CxfWriter::begin(OutputFile::create(path()).value(), {"t", "t", "2026-01-02T03:04:05Z", false});
+  ASSERT_TRUE(writer->write(paint).ok());
+  ASSERT_TRUE(writer->finish().ok());
+  EXPECT_THAT(writer->warnings(),
+              ElementsAre(HasSubstr("that CxF3 does not allow"), HasSubstr("without L*, a* and b* beside them")));
+  EXPECT_THAT(writer->warnings()[0], HasSubstr("(p at 45as15 and 2 more)"));
+  const auto read = read_file(path());
+  ASSERT_TRUE(read.ok());
+  EXPECT_EQ(read->paints[0].measurement->rows.size(), 4u);
+  ASSERT_EQ(read->paints[0].measurement->spectra.size(), 1u);
+  EXPECT_EQ(read->paints[0].measurement->spectra[0].geometry, geometry("45as75"));
+}
+
 TEST_F(Cxf, OneObjectPerAnglePutsOneLabIntoEach) {
   write(two_paints("LED-B3"), true);
   const std::string text = file_content(path()).value();

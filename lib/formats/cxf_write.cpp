@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <utility>
 
 #include "base/text.h"
@@ -15,6 +17,14 @@ bool has_word(const std::string& illuminant) {
                                                   "E",    "F2",   "F3",   "F7",   "F9",   "F10", "F11", "F12",
                                                   "9300", "TL84", "TL83", "UL30", "UL35", "UL50"};
   return std::ranges::find(kWords, illuminant) != kWords.end();
+}
+
+// Whether the schema of CxF3 allows the spectrum.
+bool allowed(const paint::SpectrumReading& spectrum) {
+  constexpr std::array kSteps_nm = {1.0, 2.0, 5.0, 10.0, 20.0};
+  return spectrum.from_nm >= 360 && spectrum.from_nm <= 400 && spectrum.from_nm == std::floor(spectrum.from_nm) &&
+         std::ranges::find(kSteps_nm, spectrum.step_nm) != kSteps_nm.end() &&
+         std::ranges::all_of(spectrum.factors, [](double factor) { return factor > -0.1 && factor < 3; });
 }
 
 }  // namespace
@@ -41,6 +51,39 @@ std::size_t CxfWriter::number_of(const Specification& specification) {
   return number;
 }
 
+// Lab, and the spectrum behind it under the same specification.
+std::string CxfWriter::color_values(const paint::Measurement& measurement, const paint::LabReading& row) {
+  const auto spectrum = std::ranges::find_if(measurement.spectra, [&](const paint::SpectrumReading& candidate) {
+    return candidate.geometry == row.geometry && allowed(candidate);
+  });
+  const bool spectral = spectrum != measurement.spectra.end();
+  const std::size_t number = number_of({measurement.condition, measurement.instrument, row.geometry,
+                                        spectral ? spectrum->from_nm : 0, spectral ? spectrum->step_nm : 0});
+  std::string text = fmt::format(
+      "          <cc:ColorCIELab "
+      "ColorSpecification=\"cs{}\"><cc:L>{}</cc:L><cc:A>{}</cc:A><cc:B>{}</cc:B></cc:ColorCIELab>\n",
+      number, shortest(row.lab.L), shortest(row.lab.a), shortest(row.lab.b));
+  if (!spectral) return text;
+  text += fmt::format("          <cc:ReflectanceSpectrum ColorSpecification=\"cs{}\" StartWL=\"{}\">", number,
+                      shortest(spectrum->from_nm));
+  for (std::size_t i = 0; i < spectrum->factors.size(); ++i) text += (i ? " " : "") + shortest(spectrum->factors[i]);
+  return text + "</cc:ReflectanceSpectrum>\n";
+}
+
+void CxfWriter::note_spectra_left_out(const paint::Paint& paint) {
+  for (const paint::SpectrumReading& spectrum : paint.measurement->spectra) {
+    const std::string place = fmt::format("{} at {}", paint.name, paint::geometry_name(spectrum.geometry));
+    if (!allowed(spectrum))
+      remarks_.note(
+          "spectra are left out that CxF3 does not allow: it has factors from -0.1 to 3, in steps of 1, 2, 5, 10 or 20 "
+          "nm from 360 to 400 nm on",
+          place);
+    else if (std::ranges::find(paint.measurement->rows, spectrum.geometry, &paint::LabReading::geometry) ==
+             paint.measurement->rows.end())
+      remarks_.note("spectra without L*, a* and b* beside them are left out", place);
+  }
+}
+
 // `part` is the ending of the object's name where an angle has its own; the `first` of them carries class, code, gloss
 // and the names of geometries from the curve. Our tags join the parts again.
 std::string CxfWriter::object(const paint::Paint& paint, const std::vector<paint::LabReading>& rows,
@@ -50,12 +93,7 @@ std::string CxfWriter::object(const paint::Paint& paint, const std::vector<paint
       "<cc:CreationDate>{}</cc:CreationDate>\n"
       "        <cc:ColorValues>\n",
       xml_escaped(paint.name + part), ++objects_, xml_escaped(info_.created));
-  for (const paint::LabReading& row : rows)
-    text += fmt::format(
-        "          <cc:ColorCIELab "
-        "ColorSpecification=\"cs{}\"><cc:L>{}</cc:L><cc:A>{}</cc:A><cc:B>{}</cc:B></cc:ColorCIELab>\n",
-        number_of({paint.measurement->condition, paint.measurement->instrument, row.geometry}), shortest(row.lab.L),
-        shortest(row.lab.a), shortest(row.lab.b));
+  for (const paint::LabReading& row : rows) text += color_values(*paint.measurement, row);
   text += "        </cc:ColorValues>\n";
 
   std::string tags;
@@ -91,6 +129,7 @@ Result<void> CxfWriter::write(const paint::Paint& paint, const std::vector<paint
   std::string text = objects_ == 0 ? "    <cc:ObjectCollection>\n" : "", curve;
   for (const paint::Geometry& geometry : from_curve)
     curve += (curve.empty() ? "" : " ") + paint::geometry_name(geometry);
+  note_spectra_left_out(paint);
   if (!info_.one_object_per_angle) {
     text += object(paint, paint.measurement->rows, "", true, curve);
   } else {
@@ -110,7 +149,7 @@ Result<void> CxfWriter::finish() {
         "      <cc:ColorSpecification Id=\"cs{}\">\n        <cc:TristimulusSpec>\n          {}\n"
         "          <cc:Observer>{}_Degree</cc:Observer>\n          <cc:Method>unknown</cc:Method>\n"
         "        </cc:TristimulusSpec>\n        <cc:MeasurementSpec>\n"
-        "          <cc:MeasurementType>Colorimetric_Reflectance</cc:MeasurementType>\n"
+        "          <cc:MeasurementType>{}</cc:MeasurementType>\n"
         "          <cc:GeometryChoice>\n            <cc:MultiAngle>\n"
         "              <cc:BRDFAngle Notation=\"{}\">\n"
         "                <cc:IlluminationAngle>{}</cc:IlluminationAngle>\n"
@@ -119,11 +158,15 @@ Result<void> CxfWriter::finish() {
         has_word(illuminant)
             ? fmt::format("<cc:Illuminant>{}</cc:Illuminant>", illuminant)
             : fmt::format("<cc:Illuminant Name=\"{}\">Custom</cc:Illuminant>", xml_escaped(illuminant)),
-        specification.condition.observer_deg, paint::geometry_name(geometry), shortest(geometry.incidence_deg),
-        shortest(geometry.aspecular_deg));
+        specification.condition.observer_deg,
+        specification.step_nm > 0 ? "Spectrum_Reflectance" : "Colorimetric_Reflectance", paint::geometry_name(geometry),
+        shortest(geometry.incidence_deg), shortest(geometry.aspecular_deg));
     if (geometry.out_of_plane)
       text += fmt::format("                <cc:Azimuth>{}</cc:Azimuth>\n", shortest(geometry.azimuth_deg));
     text += "              </cc:BRDFAngle>\n            </cc:MultiAngle>\n          </cc:GeometryChoice>\n";
+    if (specification.step_nm > 0)
+      text += fmt::format("          <cc:WavelengthRange StartWL=\"{}\" Increment=\"{}\"/>\n",
+                          shortest(specification.from_nm), shortest(specification.step_nm));
     if (!specification.instrument.empty())
       text += fmt::format("          <cc:Device>\n            <cc:Model>{}</cc:Model>\n          </cc:Device>\n",
                           xml_escaped(specification.instrument));

@@ -1,7 +1,8 @@
 // glTF 2.0: a sphere that wears the paint, as web viewers show it. The base is the dielectric of the core model, whose
 // reflectance along the normal is a color of its own (KHR_materials_specular with the index 0 of KHR_materials_ior,
 // which stands for a reflectance of 1), under KHR_materials_clearcoat. So face and flop have different colors, and one
-// roughness. Which parameters are the nearest is found by the color difference over all angles.
+// roughness. A film of KHR_materials_iridescence lies between them where it brings the colors nearer. Which parameters
+// are the nearest is found by the color difference over all angles.
 #include <algorithm>
 #include <cmath>
 
@@ -10,12 +11,14 @@
 #include "base/json.h"
 #include "materials/internal/ggx.h"
 #include "materials/internal/one_lobe.h"
+#include "materials/internal/thin_film.h"
 
 namespace goniochrome::materials {
 
 namespace {
 
 constexpr double kSharpest = 1e-4;  // a roughness of 0 as evaluated, alpha
+constexpr double kLeastGain = 0.1;  // of a film, in the mean difference
 
 double square(double x) {
   return x * x;
@@ -28,6 +31,12 @@ color::Rgb seen(const OneLobe& p, const Vec3& light, const Vec3& view) {
   const double facets = ggx(std::max(square(p.roughness), kSharpest), light, view);
   color::Rgb fresnel;
   for (int c = 0; c < 3; ++c) fresnel[c] = std::lerp(std::min(p.specular[c], 1.0) * p.strength, p.strength, grazing);
+  if (p.film > 0) {
+    color::Rgb normal;
+    for (int c = 0; c < 3; ++c) normal[c] = std::min(p.specular[c], 1.0) * p.strength;
+    const color::Rgb film = film_reflectance(p.film_index, p.film_nm, normal, half_cosine(light, view));
+    fresnel = (1 - p.film) * fresnel + p.film * film;
+  }
   const double diffuse = (1 - std::max({fresnel.x, fresnel.y, fresnel.z})) / kPi;
   const color::Rgb base = diffuse * p.base + facets * fresnel;
   if (p.clearcoat == 0) return base;
@@ -123,6 +132,11 @@ std::string written(const OneLobe& p, const Naming& naming, const Shown& shown) 
                                                          {"clearcoatRoughnessFactor", p.clearcoat_roughness}};
     used.push_back("KHR_materials_clearcoat");
   }
+  if (p.film > 0) {
+    material["extensions"]["KHR_materials_iridescence"] = {
+        {"iridescenceFactor", p.film}, {"iridescenceIor", p.film_index}, {"iridescenceThicknessMaximum", p.film_nm}};
+    used.push_back("KHR_materials_iridescence");
+  }
   Json document = {{"asset", {{"version", "2.0"}, {"generator", naming.provenance}}}, {"extensionsUsed", used}};
   document["materials"] = Json::array({material});
   document.update(sphere_json());
@@ -131,10 +145,20 @@ std::string written(const OneLobe& p, const Naming& naming, const Shown& shown) 
 
 Result<Material> gltf_material(const paint::Paint& fitted, const Naming& naming) {
   GONIO_ASSIGN(const paint::Paint paint, exported(fitted));
-  const OneLobe p = rounded(nearest_one_lobe(paint, seen, Searched::kStrengthToo));
+  const auto shown_of = [&paint](const OneLobe& p) {
+    return shown(paint,
+                 [&](const Vec3& light, const Vec3& view) { return color::rec2020_from_rec709(seen(p, light, view)); });
+  };
+  OneLobe p = rounded(nearest_one_lobe(paint, seen, Searched::kStrengthToo));
   Material material;
-  material.shown = shown(
-      paint, [&](const Vec3& light, const Vec3& view) { return color::rec2020_from_rec709(seen(p, light, view)); });
+  material.shown = shown_of(p);
+  // A film costs every viewer time, and what does not turn its hue has no use for it.
+  if (material.shown.de00_mean > kLeastGain) {
+    const OneLobe with_film = rounded(nearest_with_film(paint, seen, p));
+    const Shown shown_with_film = shown_of(with_film);
+    if (shown_with_film.de00_mean < material.shown.de00_mean - kLeastGain)
+      p = with_film, material.shown = shown_with_film;
+  }
   material.bytes = written(p, naming, material.shown);
   return material;
 }

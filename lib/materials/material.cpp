@@ -7,8 +7,8 @@
 namespace goniochrome::materials {
 
 std::span<const Target* const> targets() {
-  static constexpr std::array<const Target*, 9> kTargets = {
-      &kRgl, &kRglSpectral, &kMdl, &kMaterialX, &kStandardSurface, &kOpenPbr, &kOpenPbrUsd, &kGltf, &kUsd};
+  static constexpr std::array<const Target*, 10> kTargets = {
+      &kRgl, &kRglSpectral, &kMdl, &kRadiance, &kMaterialX, &kStandardSurface, &kOpenPbr, &kOpenPbrUsd, &kGltf, &kUsd};
   return kTargets;
 }
 

@@ -53,8 +53,10 @@ struct Target {
   // The file for a fitted paint. Error: the paint has no lobes.
   Result<Material> (*material)(const paint::Paint& paint, const Naming& naming);
   const char* companion = nullptr;  // ending of a second file beside the first, with the dot
+  std::size_t at_once = 16;         // files to make and hold side by side; large ones are fewer
 };
-extern const Target kRgl, kRglSpectral, kMaterialX, kGltf, kUsd, kStandardSurface, kOpenPbr, kOpenPbrUsd, kMdl;
+extern const Target kRgl, kRglSpectral, kMaterialX, kGltf, kUsd, kStandardSurface, kOpenPbr, kOpenPbrUsd, kMdl,
+    kRadiance;
 
 // All targets, in the order in which help names them.
 std::span<const Target* const> targets();

@@ -19,6 +19,7 @@
 #include "brdf/measured.h"
 #include "materials/internal/ggx.h"
 #include "materials/internal/shown.h"
+#include "materials/internal/widened_mirror.h"
 #include "math/cosine_power.h"
 
 namespace goniochrome::materials {
@@ -60,22 +61,6 @@ double luminance(const color::Rgb& rgb) {
   return color::xyz_d65_from_rgb(rgb).Y;
 }
 
-// The image of the mirror lobe has no place in a table: it is widened to an orange peel of these slopes, a Gaussian
-// distribution of half vectors.
-constexpr double kMirrorSlope = 0.01;
-
-double peak(double half_rad) {
-  const double t = std::tan(half_rad) / kMirrorSlope, c = std::cos(half_rad);
-  return half_rad < 0.2 ? std::exp(-t * t) / (kPi * kMirrorSlope * kMirrorSlope * c * c * c * c) : 0;
-}
-
-// What of the area of such a surface a viewer sees, relative to the area of the ground: cos, and more near grazing.
-double peak_area(double cosine) {
-  const double sine = std::sqrt(1 - cosine * cosine), a = cosine / (kMirrorSlope * std::max(sine, 1e-9));
-  if (a > 6) return cosine;
-  return cosine * (1 + std::erf(a)) / 2 + kMirrorSlope * sine * std::exp(-a * a) / (2 * std::sqrt(kPi));
-}
-
 // A paint seen from one angle, whose values are f cos(theta_light) with the widened mirror: in Rec.709, or in bands.
 template <std::size_t kChannels>
 class SeenPaint {
@@ -83,7 +68,7 @@ class SeenPaint {
   using Values = std::array<double, kChannels>;
 
   SeenPaint(double coat_index, double view_rad)
-      : coat_index_(coat_index), view_(direction(view_rad, 0)), mirror_scale_(1 / (4 * peak_area(view_.z))) {}
+      : coat_index_(coat_index), view_(direction(view_rad, 0)), mirror_scale_(1 / (4 * mirror_area(view_.z))) {}
   virtual ~SeenPaint() = default;
   const Vec3& view() const { return view_; }
 
@@ -92,7 +77,7 @@ class SeenPaint {
     light = raised(light);
     const double fresnel =
         brdf::fresnel_dielectric(std::clamp(dot(view_, half), 0.0, 1.0), brdf::mirror_index(coat_index_));
-    return values(light, mirror_scale_ * fresnel * peak(half_rad));
+    return values(light, mirror_scale_ * fresnel * mirror_peak(half_rad));
   }
 
  protected:
@@ -197,7 +182,7 @@ Shapes shapes_of(const paint::LobeFit& lobes) {
     double sum = shapes.ground;
     for (const auto& [weight, exponent] : shapes.lobes) {
       if (paint::is_mirror(exponent)) {
-        sum += weight * 0.01 * peak(t);  // a coat reflects some 4 %, and D is 4 f
+        sum += weight * 0.01 * mirror_peak(t);  // a coat reflects some 4 %, and D is 4 f
         continue;
       }
       if (t < kPi / 4) sum += weight * std::pow(std::cos(2 * t), exponent);
@@ -242,7 +227,7 @@ void fill_parts(const Shapes& shapes, const Vec3& view, const Vec3& half, double
   *values++ = 1 / (half_rad * half_rad + kSlope2);
   *values++ = 1 / (off_rad * off_rad + 4 * kSlope2);
   for (const Shapes::Lobe& lobe : shapes.lobes)
-    *values++ = paint::is_mirror(lobe.exponent) ? peak(half_rad) : std::exp(lobe.exponent * log_cos);
+    *values++ = paint::is_mirror(lobe.exponent) ? mirror_peak(half_rad) : std::exp(lobe.exponent * log_cos);
 }
 
 Density density_of(const Shapes& shapes, const Vec3& view) {
@@ -351,7 +336,7 @@ Grid<kChannels> grid_of(const SeenPaint<kChannels>& paint, const std::array<doub
       const Vec3 half = direction(t, azimuth);
       auto values = paint(2 * dot(paint.view(), half) * half - paint.view(), half, t);
       const double facets = linear_at(shapes.facets, u), at_place = linear_at(smooth, u);
-      const double scale = 4 * peak_area(paint.view().z) / facets;
+      const double scale = 4 * mirror_area(paint.view().z) / facets;
       double luminance = 0;
       for (std::size_t c = 0; c < kChannels; ++c) {
         luminance += weights[c] * values[c];
@@ -477,7 +462,7 @@ std::string file_of(const Shapes& shapes, const Tables& tables, const std::vecto
   for (int row = 0; row < 2; ++row)
     for (std::size_t i = 0; i < kFine; ++i) {
       facets.push_back(static_cast<float>(shapes.facets[i]));
-      sigma.push_back(static_cast<float>(peak_area(std::max(std::cos(polar_of(part(i, kFine))), 0.0))));
+      sigma.push_back(static_cast<float>(mirror_area(std::max(std::cos(polar_of(part(i, kFine))), 0.0))));
     }
   TensorFile file;
   file.add("description", naming.display + "\n" + naming.provenance);

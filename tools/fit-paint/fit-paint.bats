@@ -482,3 +482,16 @@ cornell() {
   run fit-paint -b "$basis" out.xml -o wrong.xml --tilts
   [ "$status" -eq 2 ]
 }
+
+@test "the report tells what two angles of incidence say of each other" {
+  cat >two.xml <<'XML'
+<?xml version="1.0"?><paints xmlns="urn:goniochrome:paint:1" version="1"><paint name="two"><measurement illuminant="D65" observer="10">
+<lab geometry="45as15" L="60" a="1" b="2"/><lab geometry="45as45" L="35" a="1" b="2"/><lab geometry="45as110" L="20" a="1" b="2"/>
+<lab geometry="15as15" L="66" a="1" b="2"/><lab geometry="15as45" L="40" a="1" b="2"/></measurement></paint></paints>
+XML
+  fit-paint -q -b "$TESTDATA/b7.basis.xml" two.xml -o /dev/null --report r.json
+  jq -e '.results.paints[0].incidences | map([.incidence_deg, .readings]) == [[15, 2], [45, 3]]' r.json
+  jq -e '.results.paints[0].incidences | all(.predicted_de00_mean > .de00_mean and .predicted_de00_mean > 1)' r.json
+  fit-paint -q -b "$TESTDATA/b7.basis.xml" "$TESTDATA/paints.paints.xml#silver_fine" -o /dev/null --report r.json
+  jq -e '.results.paints[0] | has("incidences") | not' r.json
+}

@@ -125,6 +125,11 @@ void add_report(cli::ToolSpec& spec) {
        "grows away from specular, or the basis; empty below dE00 0.5"},
       {"paints[].apart_de00", "largest difference of two readings at one aspecular angle"},
       {"paints[].floor_de00_mean", "for such readings, the least de00_mean that weights for all views can have"},
+      {"paints[].incidences[]",
+       "of a paint that was read at several angles of incidence, which are all fitted together: incidence_deg; "
+       "readings, "
+       "their number; de00_mean, their mean difference in this fit; and predicted_de00_mean, the same in a fit to the "
+       "readings at the other angles alone, which tells by how much they disagree"},
       {"paints[].gamut_de00", "color that is lost because the working space has no negative channels"},
       {"paints[].glare_rows", "readings that are left out because they are within 10 degrees of specular"},
       {"paints[].gloss[]",

@@ -174,6 +174,7 @@ class Run {
 
 Result<cli::Verdict> run(const Options& options, cli::Session& session) {
   GONIO_ASSIGN(fit::FitOptions fit, fit_options(options));
+  fit.by_incidence = !options.common.report.empty();
   GONIO_ASSIGN(formats::Basis basis, formats::read_basis(options.basis));
   if (!options.illuminant.empty()) {
     GONIO_ASSIGN(const std::vector<std::string> illuminants, illuminants_of({options.illuminant}));

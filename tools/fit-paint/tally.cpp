@@ -45,6 +45,16 @@ Json range_of(const brdf::CoatRange& range) {
           {"most_haze", coat(range.most_haze)}};
 }
 
+Json incidences_of(const std::vector<fit::IncidenceFigures>& incidences) {
+  Json array = Json::array();
+  for (const fit::IncidenceFigures& figures : incidences)
+    array.push_back({{"incidence_deg", figures.incidence_deg},
+                     {"readings", figures.readings},
+                     {"de00_mean", json_number(figures.de00_mean)},
+                     {"predicted_de00_mean", json_number(figures.predicted_de00_mean)}});
+  return array;
+}
+
 Json report_of(const paint::Paint& paint, const fit::PaintFit& fit) {
   const fit::PaintFitReport& r = fit.report;
   Json report = {{"name", paint.name},
@@ -82,6 +92,7 @@ Json report_of(const paint::Paint& paint, const fit::PaintFit& fit) {
     report["brdf"]["from_five_angles"] = {{"directions", r.brdf->from_five_angles->directions},
                                           {"by_aspecular", json_number(r.brdf->from_five_angles->by_aspecular)},
                                           {"by_flake", json_number(r.brdf->from_five_angles->by_flake)}};
+  if (!r.incidences.empty()) report["incidences"] = incidences_of(r.incidences);
   if (r.views)
     report["views"] = {{"de00_mean", json_number(r.views->de00_mean)},
                        {"de00_mean_without", json_number(r.views->de00_mean_without)},

@@ -208,7 +208,9 @@ brdf() {
   # A color that is changed has no spectrum any more, and other formats say that they hold none.
   paint-edit -q --lightness-shift 2 slope.xml | grep -c '<spectrum' | grep -qx 0
   run --separate-stderr paint-convert slope.xml --to csv
-  [[ "$stderr" == *"spectra are left out: only paint XML holds them (slope)"* ]]
+  [[ "$stderr" == *"spectra are left out: --columns all keeps them (slope)"* ]]
+  run --separate-stderr paint-convert slope.xml --to wide --geometry 15
+  [[ "$stderr" == *"spectra are left out: paint XML, CxF and long tables with --columns all hold them (slope)"* ]]
   run --separate-stderr paint-convert slope.xml --illuminant F4
   [ "$status" -eq 3 ]
   [[ "$stderr" == *'paint "slope": illuminant is "F4"'* ]]
@@ -257,6 +259,19 @@ EOF
   [ "$(grep -c '<lab ' both.xml)" -eq 24 ]
   [ "$(grep -c '<spectrum .*from="400" to="700" step="10"' both.xml)" -eq 24 ]
   paint-convert -q both.xml -o both.cxf
-  paint-convert -q both.cxf --to csv -o back.csv
-  paint-convert -q both.xml --to csv | cut -d, -f1-7 | cmp - back.csv
+  xmllint --noout --schema "$GONIOCHROME_DATA/cxf/CxF3_Core.xsd" both.cxf
+  paint-convert -q both.xml --to csv --columns all -o both.csv
+  for back in both.cxf both.csv; do
+    paint-convert -q "$back" -o back.xml
+    # Readings and spectra come back to the last digit; a table keeps no textures.
+    [ "$(grep -E '<(lab|spectrum) ' back.xml)" = "$(grep -E '<(lab|spectrum) ' both.xml)" ]
+    # Lab from the spectra, which a look under another light and back makes, is that of the sheet.
+    paint-convert -q back.xml --illuminant A -o a.xml
+    paint-convert -q a.xml --illuminant D65 -o from_spectra.xml
+    join -t, <(paint-convert -q back.xml --to csv | awk -F, 'NR > 1 { print $1 "@" $2 "," $5 "," $6 "," $7 }' | sort) \
+      <(paint-convert -q from_spectra.xml --to csv | awk -F, 'NR > 1 { print $1 "@" $2 "," $5 "," $6 "," $7 }' | sort) >pairs
+    [ "$(wc -l <pairs)" -eq 24 ]
+    # CIEDE2000 is at most 1.5 times the plain distance: it stretches a* by that much near gray.
+    awk -F, '{ d = sqrt(($2-$5)^2 + ($3-$6)^2 + ($4-$7)^2); if (d > worst) worst = d } END { print worst; exit !(1.5 * worst <= 0.05) }' pairs
+  done
 }

@@ -143,11 +143,11 @@ constexpr std::array kInputs = {
 };
 
 const std::array kOutputs = {
-    OutputFormat{"xml", "paint XML", false, false, true, begin_xml},
-    OutputFormat{"csv", "long table", true, false, false, begin_csv},
-    OutputFormat{"wide", "wide table", true, true, false, begin_csv},
-    OutputFormat{"cxf", "CxF3", true, false, true, begin_cxf},
-    OutputFormat{"cgats", "CGATS text", true, false, true, begin_cgats},
+    OutputFormat{"xml", "paint XML", false, false, true, true, begin_xml},
+    OutputFormat{"csv", "long table", true, false, true, false, begin_csv},
+    OutputFormat{"wide", "wide table", true, true, false, false, begin_csv},
+    OutputFormat{"cxf", "CxF3", true, false, true, true, begin_cxf},
+    OutputFormat{"cgats", "CGATS text", true, false, false, true, begin_cgats},
 };
 
 }  // namespace

@@ -51,6 +51,8 @@ class PaintSink {
   virtual Result<void> write(const paint::Paint& paint, const std::vector<paint::Geometry>& from_curve) = 0;
   // Puts the file in place.
   virtual Result<void> finish() = 0;
+  // What the format did not allow.
+  virtual std::vector<std::string> warnings() const { return {}; }
 };
 
 // A writer with write() and finish() as a sink.
@@ -65,6 +67,12 @@ class SinkOf : public PaintSink {
       return writer_.write(paint);
   }
   Result<void> finish() override { return writer_.finish(); }
+  std::vector<std::string> warnings() const override {
+    if constexpr (requires { writer_.warnings(); })
+      return writer_.warnings();
+    else
+      return {};
+  }
 
  private:
   Writer writer_;
@@ -81,9 +89,10 @@ struct SinkSetup {
 // What an output format can hold.
 struct OutputFormat {
   std::string name, title;
-  bool only_rows;  // only geometries and Lab, under a viewing condition
-  bool is_wide;    // needs its geometries before the first paint
-  bool has_gloss;  // also gloss, class, code and instrument, whatever --columns says
+  bool only_rows;    // only geometries and Lab, under a viewing condition
+  bool is_wide;      // needs its geometries before the first paint
+  bool has_spectra;  // a table has them in its optional columns
+  bool has_gloss;    // also gloss, class, code and instrument, whatever --columns says
   Result<std::unique_ptr<PaintSink>> (*begin)(OutputFile file, const SinkSetup& setup);
 };
 

@@ -39,7 +39,10 @@ void add_options(cli::ToolSpec& spec, Options& o) {
       .more("xml is paint XML, csv a long table, wide a wide table, cxf CxF3, and cgats CGATS text.");
   spec.option("columns", "WHICH", "all", &o.columns, "columns of a table")
       .one_of({"core", "all"})
-      .more("core has names, conditions and Lab. all adds class, code, instrument and gloss.");
+      .more(
+          "core has names, conditions and Lab. all adds class, code, instrument and gloss, and to a long table the "
+          "spectra, at the "
+          "wavelengths of the first paint.");
   spec.flag("cxf-compat", &o.cxf_compat, "write CxF with one object for each angle")
       .more("Some programs take only the first Lab of an object. Such a file, too, is read back as one paint.");
   cli::add_common_options(spec, o.common, {.explain = true});
@@ -96,7 +99,9 @@ cli::ToolSpec tool_spec(Options& o) {
       "CxF3 and CGATS.17 files of other programs are read as far as their colors stand at an angle; a warning names "
       "the colors that do not. Where a sample has readings under several illuminants or observers, the first counts, "
       "or the one of --illuminant and --observer. Spectra in CxF are integrated under what their specification states. "
-      "CxF is written with one color specification for each angle.",
+      "CxF is written with one color specification for each angle, and with the spectra that its schema allows: "
+      "factors "
+      "from -0.1 to 3, in steps of 1, 2, 5, 10 or 20 nm from 360 to 400 nm on.",
       "A workbook (XLSX) of a multi-angle instrument is read on all its sheets. A table is found by its headings: L*, "
       "a* and "
       "b*, or wavelengths, beside a column of geometries and one of names. The condition may stand in the headings, as "

@@ -164,6 +164,7 @@ Result<void> Conversion::convert(Input& input) {
 Result<void> Conversion::finish() {
   GONIO_TRY(sink_.finish());
   for (const std::string& remark : remarks_.lines()) session_.warn(remark);
+  for (const std::string& warning : sink_.warnings()) session_.warn(warning);
   session_.results()["read"] = read;
   session_.results()["written"] = written;
   session_.results()["skipped"] = skipped;

@@ -40,8 +40,9 @@ Result<Selection> Selection::make(const Options& options, const OutputFormat& fo
 }
 
 formats::CsvLayout Selection::layout() const {
-  return {format_.is_wide ? chosen_ : std::vector<paint::Geometry>(), options_.columns == "all",
-          !options_.geometry.empty() || options_.fit_appearance};
+  const bool all = options_.columns == "all";
+  return {format_.is_wide ? chosen_ : std::vector<paint::Geometry>(), all,
+          !options_.geometry.empty() || options_.fit_appearance, all && format_.has_spectra};
 }
 
 std::vector<paint::Geometry> Selection::requested() const {
@@ -120,7 +121,11 @@ void Selection::note_losses(const paint::Paint& paint, bool designed, formats::R
     if (there) remarks.note(fmt::format("{} left out: only paint XML holds them", what), paint.name);
   };
   lost(paint.lobes.has_value(), "lobes are");
-  lost(paint.measurement && !paint.measurement->spectra.empty(), "spectra are");
+  const bool spectral = paint.measurement && !paint.measurement->spectra.empty();
+  if (spectral && !format_.has_spectra)
+    remarks.note("spectra are left out: paint XML, CxF and long tables with --columns all hold them", paint.name);
+  else if (spectral && !format_.has_gloss && options_.columns != "all")
+    remarks.note("spectra are left out: --columns all keeps them", paint.name);
   lost(paint.measurement && !paint.measurement->textures.empty(), "values of texture are");
   lost(paint.appearance.has_value() && !designed, "face, flop and travel are");
   lost(paint.anisotropy || paint.color_map, "anisotropy and color maps are");

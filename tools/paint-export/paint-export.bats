@@ -138,10 +138,46 @@ PY
 @test "the parameters of glTF read back as told" {
   read_back gltf gltf
   jq -e '.asset.version == "2.0" and .materials[0].name == "candy_red"' candy_red.gltf
+  # A film brings a metallic paint nearer, and a solid one has none.
+  jq -e '.extensionsUsed | index("KHR_materials_iridescence")' candy_red.gltf
+  jq -e '.extensionsUsed | index("KHR_materials_iridescence") | not' jet_black.gltf
 }
 
 @test "the parameters of UsdPreviewSurface read back as told" {
   read_back usda usda
+}
+
+@test "the tree for Radiance reads back as told" {
+  read_back radiance xml
+  awk '{ sum += $2 } $2 > 0.5 { exit 1 } END { exit !(sum / NR <= 0.3) }' both
+  xmllint --noout --huge ./*.xml
+}
+
+@test "the library of Radiance reads the tree, in color" {
+  venv_with pyradiance.bsdf pyradiance
+  paint-export -q --to radiance "$fitted#jet_black,arctic_white" >/dev/null
+  "$venv/bin/python" -c 'import numpy' 2>/dev/null || "$venv/bin/pip" install -q numpy >/dev/null 2>&1 || skip "pip cannot install the package numpy"
+  "$venv/bin/python" - "$readers" <<'PY'
+import sys
+sys.dont_write_bytecode = True
+sys.path.insert(0, sys.argv[1])
+import numpy
+import radiance
+from compare import XYZ_FROM_REC709, geometries
+from shared.colors import de2000, lab
+from pyradiance import bsdf
+light, view = geometries()
+light, view = (rows + (0.003, 0.004, 0) for rows in (light, view))  # off the edges of leaves
+light, view = (rows / numpy.linalg.norm(rows, axis=1, keepdims=True) for rows in (light, view))
+for name in ("jet_black", "arctic_white"):
+    angles = [numpy.degrees((numpy.arccos(d[:, 2]), numpy.arctan2(d[:, 1], d[:, 0]))) for d in (light, view)]
+    file = bsdf.load_file(name + ".xml")
+    found = numpy.array([bsdf.query(file, *row) for row in numpy.vstack(angles).T])
+    own = radiance.xyz(name + ".xml", light, view)
+    apart = de2000(lab(numpy.pi * own), lab(numpy.pi * found))
+    print(name, apart.max())
+    assert apart.max() < 0.05
+PY
 }
 
 @test "the table, the summary and the report tell the same" {

@@ -19,9 +19,6 @@ namespace {
 
 constexpr std::string_view kName = "{name}";
 
-// A table of a paint is some megabytes, so that no more than these are held at once.
-constexpr std::size_t kAtOnce = 16;
-
 const materials::Target& target_of(const std::string& name) {
   const auto& all = materials::targets();
   return **std::ranges::find(all, name, [](const materials::Target* target) { return std::string(target->name); });
@@ -61,8 +58,8 @@ class Run {
     const auto left_out = [&](const Error& error) { leave_out(error); };
     const auto keep_going = options_.keep_going ? std::function<void(const Error&)>(left_out) : nullptr;
     const auto in_parts = [&](const std::vector<paint::Paint>& batch) -> Result<void> {
-      for (std::size_t from = 0; from < batch.size(); from += kAtOnce)
-        GONIO_TRY(take(std::span(batch).subspan(from, std::min(kAtOnce, batch.size() - from))));
+      for (std::size_t from = 0; from < batch.size(); from += target_.at_once)
+        GONIO_TRY(take(std::span(batch).subspan(from, std::min(target_.at_once, batch.size() - from))));
       return {};
     };
     GONIO_TRY(for_each_batch(paints, session_, in_parts, keep_going));

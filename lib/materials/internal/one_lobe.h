@@ -13,7 +13,8 @@ struct OneLobe {
   double strength = 1;        // of the lobe; 1 in models without it
   double roughness = 0.5;     // of which alpha is the square
   double clearcoat = 0, clearcoat_roughness = 0;
-  double metalness = 0;  // 0 in models that are not searched for it
+  double metalness = 0;                              // 0 in models that are not searched for it
+  double film = 0, film_index = 1.3, film_nm = 400;  // share, index and thickness of a thin film over the lobe
 };
 
 // f of a model in 1/sr, Rec.709.
@@ -25,6 +26,9 @@ using OneLobeModel = std::function<color::Rgb(const OneLobe& parameters, const V
 // What the search moves beside colors and roughness. A metalness that it moves stays above 0.
 enum class Searched { kColorsAndRoughness, kStrengthToo, kMetalnessToo };
 OneLobe nearest_one_lobe(const paint::Paint& paint, const OneLobeModel& model, Searched searched);
+
+// The parameters of the film as well, from those without one.
+OneLobe nearest_with_film(const paint::Paint& paint, const OneLobeModel& model, const OneLobe& without);
 
 // A number as files have it, in six digits, and the parameters in such numbers.
 double rounded(double value);
