@@ -174,7 +174,8 @@ class Picture {
   bool shows_pane(int x, int y) const {
     const std::size_t at = place(x, y);
     if (seen_ == nullptr) return transport_.meets_pane(surface_.hits[at]);
-    return std::ranges::any_of(*seen_, [&](const VisibleSurface& seen) { return transport_.meets_pane(seen.hits[at]); });
+    return std::ranges::any_of(*seen_,
+                               [&](const VisibleSurface& seen) { return transport_.meets_pane(seen.hits[at]); });
   }
 
   const PathOptions& options_of(std::size_t i) const { return states_[i].hidden ? whole_ : request_.options; }
