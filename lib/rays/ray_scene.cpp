@@ -117,6 +117,7 @@ struct RayScene::State {
   Placing placing;
   std::vector<Float3> positions, normals;  // local, with one more element: Embree reads 16 bytes of each
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::array<std::uint32_t, 3>> met;  // those triangles where rays pass some of them; else empty
   std::vector<std::uint32_t> part_of;
   std::vector<std::array<float, 2>> texture;
   int parts = 0;
@@ -138,8 +139,9 @@ struct RayScene::State {
     RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions.data(), 0,
                                sizeof(Float3), positions.size() - 1);
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
-                               sizeof(triangles[0]), triangles.size());
+    const auto& traced = met.empty() ? triangles : met;
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, traced.data(), 0,
+                               sizeof(traced[0]), traced.size());
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene.get(), geometry);
     rtcReleaseGeometry(geometry);
@@ -153,7 +155,8 @@ struct RayScene::State {
   }
 };
 
-Result<RayScene> RayScene::create(const mesh::Mesh& mesh, const std::optional<Floor>& floor) {
+Result<RayScene> RayScene::create(const mesh::Mesh& mesh, const std::optional<Floor>& floor,
+                                  const std::vector<bool>& passed) {
   GONIO_TRY(check(mesh, floor));
   auto state = std::make_shared<State>();
   state->placing = placing_of(mesh);
@@ -168,6 +171,14 @@ Result<RayScene> RayScene::create(const mesh::Mesh& mesh, const std::optional<Fl
   state->parts = static_cast<int>(mesh.parts.size());
   for (std::size_t part = 0; part < mesh.parts.size(); ++part)
     state->part_of.insert(state->part_of.end(), mesh.parts[part].count, static_cast<std::uint32_t>(part));
+  if (std::ranges::find(passed, true) != passed.end()) {
+    // A triangle whose corners are one point is met by no ray, and the others keep their numbers.
+    state->met = state->triangles;
+    for (std::size_t i = 0; i < state->met.size(); ++i) {
+      const std::size_t part = state->part_of[i];
+      if (part < passed.size() && passed[part]) state->met[i].fill(state->met[i].front());
+    }
+  }
   GONIO_TRY(state->build());
   const RayScene bare(std::move(state), std::nullopt);
   return floor ? bare.over(*floor) : RayScene(bare.state_, std::nullopt);

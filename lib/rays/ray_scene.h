@@ -74,7 +74,9 @@ class RayScene {
  public:
   // Error: a vertex that is not finite, a triangle that refers to no vertex, parts that do not cover the triangles, no
   // triangle at all, a floor whose height is not finite, or Embree's own word where it fails.
-  static Result<RayScene> create(const mesh::Mesh& mesh, const std::optional<Floor>& floor = {});
+  // Rays pass the parts of the mesh that are named in `passed` as if they were not there; their spots are known.
+  static Result<RayScene> create(const mesh::Mesh& mesh, const std::optional<Floor>& floor = {},
+                                 const std::vector<bool>& passed = {});
   // The same mesh over this floor, whose height is finite. The tree of the mesh is shared.
   RayScene over(const Floor& floor) const;
   RayScene(RayScene&&) noexcept;

@@ -13,6 +13,7 @@
 #include "render/internal/lobe_curves.h"
 #include "render/internal/tilt_table.h"
 #include "render/internal/worn_lobes.h"
+#include "render/panes.h"
 #include "render/spots.h"
 #include "render/surface_layer.h"
 
@@ -219,6 +220,7 @@ Effects effects_of(const Scene& scene) {
   if (effects.horizon && !maps_alone) effects.spots = scene.env->spots.size();
   effects.texture = scene.layer != nullptr && scene.layer->textured();
   effects.maps = scene.layer != nullptr && scene.layer->mapped();
+  effects.panes = has_panes(scene);
   effects.reflection = scene.reflection.k != color::component_wise().k;
   return effects;
 }

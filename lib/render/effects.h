@@ -55,6 +55,7 @@ struct Effects {
   int most_tilts = 1024;
   double tolerance_de00 = 0.3;  // of engines that sum light instead of looking it up: p95 over the visible pixels
   bool reflection = false;      // the scene's reflection operator in place of the component-wise product
+  bool panes = false;           // what lies behind panes; else they mirror before black
   std::size_t lights = 0;
   bool extent = false;   // lamps as discs, which lobes and the mirror see; else as points
   RayEffects rays = {};  // effects_of() leaves them out, since no engine with prefiltered maps draws them by itself

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "render/integral/gatherer.h"
 #include "render/internal/seen.h"
+#include "render/panes.h"
 
 namespace goniochrome::render {
 
@@ -257,7 +258,8 @@ PixelSample sampled_pixels(const Gbuffer& g, const Scene& scene, int count, std:
   std::vector<std::array<int, 2>> visible;
   for (int y = 0; y < g.height; ++y) {
     for (int x = 0; x < g.width; ++x) {
-      if (g.part(x, y) >= 0) visible.push_back({x, y});
+      const int part = g.part(x, y);
+      if (part >= 0 && !is_pane(scene, static_cast<std::size_t>(part))) visible.push_back({x, y});
     }
   }
   std::vector<TexturePlace> places;

@@ -83,7 +83,7 @@ struct PictureError {
   double time_s = 0;
 };
 
-// Random visible pixels, `count` of them or all where there are fewer: their places in the picture
+// Random visible pixels that show no panes, `count` of them or all where there are fewer: their places in the picture
 // and their points.
 struct PixelSample {
   std::vector<std::array<int, 2>> places;

@@ -14,6 +14,7 @@
 #include "render/internal/product_forms.h"
 #include "render/internal/seen.h"
 #include "render/internal/tilt_table.h"
+#include "render/panes.h"
 #include "render/plan/effect_list.h"
 #include "render/plan/effect_words.h"
 #include "render/plan/kept.h"
@@ -408,6 +409,7 @@ std::vector<VisiblePoint> probe_points(const std::vector<std::shared_ptr<const G
 }
 
 Scene seen_scene(const Scene& scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers) {
+  if (has_panes(scene)) return scene;
   std::vector<bool> seen(scene.paints.size(), false);
   for (const auto& g : gbuffers) {
     for (std::size_t i = 3; i < g->data.size(); i += 4) {
@@ -439,9 +441,12 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
 
   // What each effect is worth.
   const std::vector<EffectSwitch> switches = effect_switches(scene, all, probe);
-  const Compact compact = compacted(scene, probe);
-  Prober prober(compact.scene, all, switches, compact.points, probe, request.white_luminance, probers.all,
-                probers.component_wise(all));
+  const PaneProbe panes = pane_probe(rays.whole, scene, probe_pixels(gbuffers, kProbe));
+  std::vector<VisiblePoint> with_behind = probe;
+  with_behind.insert(with_behind.end(), panes.behind.begin(), panes.behind.end());
+  const Compact compact = compacted(scene, with_behind);
+  Prober prober(compact.scene, all, switches, compact.points, with_behind, request.white_luminance, probers.all,
+                probers.component_wise(all), &panes);
   const std::vector<bool> everything(switches.size(), true);
   const auto all_but = [&](std::size_t i) {
     std::vector<bool> without = everything;
@@ -450,6 +455,11 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   };
   const std::vector<color::Rgb> full = prober.colors(everything);
   Workload work = workload_of(scene, all, probe, gbuffers, request);
+  if (!probe.empty()) {
+    const double of_probe = work.points / static_cast<double>(probe.size());
+    work.behind_points = of_probe * static_cast<double>(panes.behind.size());
+    work.behind_pixels = work.behind_points + of_probe * static_cast<double>(panes.beyond.size());
+  }
   if (!probe.empty())
     work.speed = prober.seconds_per_point() / (1e-9 * CpuEngine::counted_point_ns(work, all) / threads());
   Plan plan;
@@ -465,7 +475,7 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   if (scene.env != nullptr && rays.texels != nullptr && !probe.empty() &&
       (asked == nullptr || asked->info().is_planned))
     open_truth.emplace(scene, all, probe, *rays.texels, request.white_luminance);
-  const double open_de00 = open_truth ? open_truth->error(full) : 0;
+  const double open_de00 = open_truth ? open_truth->error(prober.front_colors(everything)) : 0;
   for (std::size_t i = 0; i < switches.size(); ++i) {
     if (!switches[i].beyond_maps || !switches[i].needed) continue;
     Effects without = all;
@@ -511,7 +521,7 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   plan.effects.most_samples_in_all = by_rays.most_in_all;
   plan.rays_ms = by_rays.cost.ms, plan.rays_noise_de00 = by_rays.noise_de00;
   const bool has_maps = scene.env != nullptr && !engine.info().needs_texels;
-  if (open_truth) plan.open_de00_p95 = open_truth->error(prober.colors(choice.on));
+  if (open_truth) plan.open_de00_p95 = open_truth->error(prober.front_colors(choice.on));
   if (!has_maps)
     plan.open_de00_p95 = scene.env != nullptr ? request.tolerance_de00 : plan.de00_p95 - by_rays.left_out_de00_p95;
   if (rays.transport != nullptr && plan.open_de00_p95)

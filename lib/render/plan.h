@@ -19,6 +19,10 @@ class BlockTree;
 class Environment;
 }  // namespace goniochrome::envmap
 
+namespace goniochrome::rays {
+class RayScene;
+}
+
 namespace goniochrome::render {
 
 class Engine;
@@ -39,6 +43,7 @@ struct RayContext {
   std::string absent = "no rays are traced";  // why there is no transport
   bool refused = false;                       // whether that is because --effects says so
   std::string no_floor;                       // why no floor is priced; "" where one is, or where nothing is said of it
+  const rays::RayScene* whole = nullptr;      // the mesh with its panes, of a scene that has any
   // Of the light that rays meet, to measure by how much maps miss the open light; null: that is not measured.
   const envmap::BlockTree* texels = nullptr;
 };
@@ -126,6 +131,7 @@ std::vector<ProbePixel> probe_pixels(const std::vector<std::shared_ptr<const Gbu
 std::vector<VisiblePoint> probe_points(const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers, std::size_t count);
 
 // The scene as far as it is seen: paints of parts that no G-buffer shows are bare, so that nothing is loaded for them.
+// Behind panes anything may be seen.
 Scene seen_scene(const Scene& scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers);
 
 // Plans the drawing of `scene`, as seen_scene() has it, by one of these engines, of which there is at least one. The

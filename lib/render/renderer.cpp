@@ -9,6 +9,7 @@
 #include "render/gl/gl.h"
 #include "render/gl/shader.h"
 #include "render/glints.h"
+#include "render/internal/seen_through.h"
 #include "render/internal/tilt_table.h"
 #include "render/path/path_engine.h"
 #include "render/path/visible_surface.h"
@@ -77,6 +78,8 @@ struct Renderer::State : Sight {
   std::optional<RaySetup> ray_setup;
   Scene ray_scene;  // all of it, seen or not: rays meet parts that the camera does not see
   std::shared_ptr<const rays::RayScene> ray_mesh;  // of that scene; none: not yet
+  std::vector<bool> ray_panes;                     // which it passes; empty: the scene has none
+  std::shared_ptr<const rays::RayScene> whole;     // the same with its panes, where there are any
   std::optional<envmap::SunlitSky> ray_sun;        // of the environment of ray_setup, where it has a sun
   std::shared_ptr<const EnvironmentTable> ray_table;
   std::optional<Transport> transport;
@@ -103,10 +106,12 @@ struct Renderer::State : Sight {
   Result<void> show(const mesh::Mesh& mesh);
   Result<void> look_at(const View& wanted);
   Result<void> take(int first, int count, image::Image& picture);
+  Result<void> meet(const Scene& whole_scene);
+  Result<void> add_seen_through(int sample, float gain, image::Image& picture);
   CorrectionNoise correct(int first, int count, image::Image& picture);
   Result<Transport> traced_light(bool over_floor) const;
   Result<std::optional<Transport>> transport_over_floor() const;
-  Result<void> trace(const Scene& whole);
+  Result<void> trace(const Scene& whole_scene);
   Scene completed(const Scene& scene) const;
   // The light of which rays are drawn; a sun is asked for by itself.
   const envmap::Environment* ray_environment() const { return ray_sun ? &ray_sun->sky : ray_setup->environment; }
@@ -133,6 +138,12 @@ Result<void> Renderer::State::can_shade(const Scene& wanted, const Engine& by) c
         "the engine {} draws neither floors nor parts that shine nor lamps at a place: take the engine path",
         by.info().name);
   GONIO_TRY(by.can_shade(wanted));
+  if (has_panes(wanted) && given)
+    return usage_error(
+        "a pane is seen through where the mesh is there: a G-buffer that is given has nothing behind it");
+  if (has_panes(wanted) && by.info().needs_opengl)
+    return usage_error("the engine {} does not draw what lies behind panes: take the engine cpu or path",
+                       by.info().name);
   if (given && wanted.layer != nullptr && wanted.layer->textured())
     return usage_error("textures lie on the mesh: a G-buffer that is given has no places on them");
   return {};
@@ -147,8 +158,26 @@ Result<void> Renderer::State::show(const mesh::Mesh& mesh) {
     traced = std::make_shared<const rays::RayScene>(std::move(scene_of_rays));
   }
   uploaded = &mesh, uploaded_triangles = mesh.triangles.size();
-  ray_mesh = traced;
+  ray_mesh.reset(), whole.reset();
   view.reset();
+  return {};
+}
+
+// The mesh of a scene as rays meet it, and as it is seen where that is another.
+Result<void> Renderer::State::meet(const Scene& whole_scene) {
+  const std::vector<bool> panes = has_panes(whole_scene) ? whole_scene.panes : std::vector<bool>();
+  if (ray_mesh != nullptr && ray_panes == panes) return {};
+  const auto tree = [&](const std::vector<bool>& passed) -> Result<std::shared_ptr<const rays::RayScene>> {
+    if (passed.empty() && traced != nullptr) return traced;
+    GONIO_ASSIGN(rays::RayScene scene_of_rays, rays::RayScene::create(*whole_scene.mesh, floor_of(ground), passed));
+    return std::shared_ptr<const rays::RayScene>(std::make_shared<const rays::RayScene>(std::move(scene_of_rays)));
+  };
+  GONIO_ASSIGN(ray_mesh, tree(panes));
+  whole.reset();
+  if (!panes.empty()) {
+    GONIO_ASSIGN(whole, tree({}));
+  }
+  ray_panes = panes;
   return {};
 }
 
@@ -193,7 +222,8 @@ std::shared_ptr<const Gbuffer> Renderer::State::gbuffer(int sample) {
   std::shared_ptr<Gbuffer>& g = kept[place];
   if (!g) g = std::make_shared<Gbuffer>();
   // Triangles of samples are memory that only textures, and engines that need the mesh, make use of.
-  const bool with_triangles = sample == 0 || effects.rays.any() || (engine != nullptr && engine->info().needs_mesh) ||
+  const bool with_triangles = sample == 0 || effects.rays.any() || effects.panes ||
+                              (engine != nullptr && engine->info().needs_mesh) ||
                               (scene.layer != nullptr && scene.layer->textured());
   const bool complete = g->width != 0 && (!with_triangles || !g->triangles.empty());
   if (complete && (room || sample == 0)) return g;
@@ -238,9 +268,31 @@ Result<void> Renderer::State::take(int first, int count, image::Image& picture) 
   picture.channel_names = {"R", "G", "B", "A"};
   if (!engine->info().traces_rays && effects.extent && effects.mirror)
     for (int i = first; i < first + count; ++i) add_glints(scene, effects, *gbuffer(i), gain, picture);
-  if (scene.layer == nullptr || engine->shades_layer()) return {};
-  for (int i = first; i < first + count; ++i)
+  for (int i = first; scene.layer != nullptr && !engine->shades_layer() && i < first + count; ++i)
     scene.layer->add(*gbuffer(i), places(i), effects, gain, picture, !engine->shades_textures());
+  for (int i = first; effects.panes && !engine->info().traces_rays && i < first + count; ++i)
+    GONIO_TRY(add_seen_through(i, gain, picture));
+  return {};
+}
+
+// What lies behind the panes of a sample is shaded as what is seen without panes is.
+Result<void> Renderer::State::add_seen_through(int sample, float gain, image::Image& picture) {
+  for (const BehindPanes& behind : behind_panes(*whole, scene, *gbuffer(sample))) {
+    BehindSight sight(behind, scene.layer);
+    image::Image shown;
+    GONIO_TRY(engine->shade(sight, sample, 1, false, shown));
+    engine->finish(shown);
+    if (effects.extent && effects.mirror) add_glints(scene, effects, behind.gbuffer, 1, shown);
+    if (scene.layer != nullptr && !engine->shades_layer())
+      scene.layer->add(behind.gbuffer, sight.places(sample), effects, 1, shown, !engine->shades_textures());
+    uncover(behind, gain, picture);
+    add_behind(behind, shown, gain, picture);
+    if (!effects.rays.floor || !transport) continue;
+    std::fill(shown.data.begin(), shown.data.end(), 0.0F);
+    add_surroundings(*transport, behind.gbuffer, {effects.background, scene.background_color, ray_setup->environment},
+                     effects.rays, 1, shown);
+    add_behind(behind, shown, gain, picture);
+  }
   return {};
 }
 
@@ -281,15 +333,14 @@ CorrectionNoise Renderer::State::correct(int first, int count, image::Image& pic
   return all;
 }
 
-Result<void> Renderer::State::trace(const Scene& whole) {
+Result<void> Renderer::State::trace(const Scene& whole_scene) {
   transport.reset(), ray_failure.reset();
   if (!ray_setup || !ray_setup->absent.empty()) return {};
-  ray_scene = whole;
+  ray_scene = whole_scene;
   if (ray_sun) ray_scene.lights.push_back(light_of(ray_sun->sun));
-  if (whole.mesh != nullptr) GONIO_TRY(show(*whole.mesh));
-  if (whole.mesh != nullptr && ray_mesh == nullptr) {
-    GONIO_ASSIGN(rays::RayScene scene_of_rays, rays::RayScene::create(*whole.mesh));
-    ray_mesh = std::make_shared<const rays::RayScene>(std::move(scene_of_rays));
+  if (whole_scene.mesh != nullptr) {
+    GONIO_TRY(show(*whole_scene.mesh));
+    GONIO_TRY(meet(whole_scene));
   }
   if (ray_setup->environment != nullptr && ray_table == nullptr)
     ray_table = std::make_shared<const EnvironmentTable>(*ray_environment());
@@ -302,7 +353,7 @@ Result<Transport> Renderer::State::traced_light(bool over_floor) const {
   PathScene paths;
   paths.scene = &ray_scene;
   paths.environment = ray_environment(), paths.mirrored = ray_setup->environment, paths.table = ray_table;
-  paths.rays = ray_mesh;
+  paths.rays = ray_mesh, paths.eye = whole;
   if (over_floor) {
     paths.ground = ray_setup->floor;
     paths.rays = std::make_shared<const rays::RayScene>(ray_mesh->over({ray_setup->floor->height}));
@@ -395,6 +446,7 @@ Result<void> Renderer::load(const Scene& scene, const Effects& effects, const st
   s.effects = effects;
   s.engine = &engine;
   GONIO_TRY(s.show(*scene.mesh));
+  if (effects.panes && !info->traces_rays) GONIO_TRY(s.meet(scene));
   // The floor lies before the background, and is drawn with it.
   Effects by_engine = effects;
   if (effects.rays.floor) by_engine.background = Background::kNone;
@@ -417,7 +469,7 @@ Result<Plan> Renderer::load(const Scene& scene, const std::vector<std::shared_pt
   rays.alone = [&]() -> const Transport* {
     complete = s.completed(scene);
     if (complete.texels == nullptr || s.ray_mesh == nullptr) return nullptr;
-    std::shared_ptr<const rays::RayScene> mesh = s.ray_mesh;
+    std::shared_ptr<const rays::RayScene> mesh = s.whole != nullptr ? s.whole : s.ray_mesh;
     if (complete.ground) mesh = std::make_shared<const rays::RayScene>(mesh->over({complete.ground->height}));
     auto made = Transport::create(path_scene_of(complete, std::move(mesh)));
     return made.ok() ? &alone.emplace(*std::move(made)) : nullptr;
@@ -437,6 +489,11 @@ Result<Plan> Renderer::load(const Scene& scene, const std::vector<std::shared_pt
       if (!s.ray_texels) s.ray_texels.emplace(*s.ray_setup->environment);
       rays.texels = &*s.ray_texels;
     }
+  }
+  if (has_panes(scene) && !s.given) {
+    GONIO_TRY(s.show(*scene.mesh));
+    GONIO_TRY(s.meet(scene));
+    rays.whole = s.whole.get();
   }
   std::vector<const Engine*> able;
   std::optional<Error> refusal;  // of the engine that was asked for, or of the first

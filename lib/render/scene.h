@@ -78,6 +78,9 @@ struct Scene {
   // The spectra of all paints and lamps, for engines that follow light in bands of wavelength (SceneSpectra, in
   // spectra.h). None: light and paint have three channels.
   const SceneSpectra* spectra = nullptr;
+  // Whether each part is a pane of clear glass that is seen through, and wears pane_finish(); none where there are
+  // fewer. Light passes panes on its way to other surfaces as if they were not there. See panes.h.
+  std::vector<bool> panes = {};
 };
 
 // Whether the scene has what only engines that trace rays can draw: a floor, parts that shine by themselves, or lamps

@@ -10,6 +10,7 @@
 #include "brdf/lobe_model.h"
 #include "rays/ray_scene.h"
 #include "render/light_transport.h"
+#include "render/panes.h"
 #include "stream.h"
 
 namespace goniochrome::tool {
@@ -181,9 +182,9 @@ bool has_open_views(const Options& options, const Request& request, const Stage&
   const bool brushed = std::ranges::any_of(base.anisotropy, [](const auto& alpha) { return alpha.alpha_x > 0; });
   const bool tilted = std::ranges::any_of(base.paints, [](const paint::LobeFit& fit) { return !fit.tilts.empty(); });
   return stage.scene.env != nullptr && stage.env.mirror.map.size > 0 && stage.env.diffuse.map.size > 0 &&
-         stage.scene.lights.empty() && stage.scene.layer == nullptr && !brushed && !tilted && samples <= kMostSamples &&
-         stage.scene.background != render::Background::kEnvironment && options.effects == kStreamEffects &&
-         (options.engine == "auto" || options.engine == "cpu");
+         stage.scene.lights.empty() && stage.scene.layer == nullptr && !render::has_panes(stage.scene) && !brushed &&
+         !tilted && samples <= kMostSamples && stage.scene.background != render::Background::kEnvironment &&
+         options.effects == kStreamEffects && (options.engine == "auto" || options.engine == "cpu");
 }
 
 std::unique_ptr<PaintViews> open_views(const Options& options, const Request& request, Stage& stage,

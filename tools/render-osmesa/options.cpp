@@ -43,7 +43,11 @@ void add_surfaces(cli::ToolSpec& spec, Options& o) {
   spec.option("part", "PART=PAINT", "Glass=fitted.xml#silver_fine", &o.parts, "paint of a part or material")
       .more(
           "The part of that name is painted, or, where no part has it, every part of that material. The material of a "
-          "part is that of its first face.");
+          "part is that of its first face. In the place of a PAINT the word glass makes clear glass that is seen "
+          "through, as in Glass=glass: each of its surfaces is a thin pane, which mirrors as both of its faces do "
+          "together and lets the rest of the light pass straight on. What lies behind it is drawn as all else is, by "
+          "the engines cpu, integral and path. Light that lights other surfaces passes glass as if it were not there. "
+          "Glass needs --mesh.");
   spec.flag("trim", &o.trim, "dress glass, tires, rims, seams and the underside instead of painting them")
       .more(
           "Parts are known by words in their names or materials, such as glass, window, tire, rubber, rim, chrome, "

@@ -10,6 +10,7 @@
 #include "formats/reference.h"
 #include "formats/xml.h"
 #include "image/surface_file.h"
+#include "render/panes.h"
 #include "render/trim.h"
 #include "setup.h"
 #include "textures.h"
@@ -20,6 +21,8 @@ namespace {
 
 constexpr double kUnpaintedReflectance = 0.18;
 constexpr double kUnreadGlossDeg = 45;
+// What --part takes in the place of a paint, for glass that is seen through.
+constexpr const char* kGlass = "glass";
 
 // Up to `most` names, in order, then how many there are.
 std::string listed(const std::vector<std::string>& names, std::size_t most = 12) {
@@ -43,6 +46,19 @@ std::string path_beside(const std::string& file, const std::string& name) {
   return (std::filesystem::path(file).parent_path() / name).string();
 }
 
+// Whether somebody may have meant kGlass, and no file.
+bool is_like_glass(const std::string& file) {
+  return edit_distance(lower(file), kGlass) <= 2 && !std::filesystem::exists(file);
+}
+
+// Glass in the place of a paint.
+void put_glass_on(std::size_t part, DressedMesh& dress) {
+  dress.paints[part] = render::pane_finish(), dress.gloss_deg[part] = kUnreadGlossDeg;
+  dress.anisotropy[part] = {}, dress.surfaces[part] = {}, dress.names[part] = kGlass;
+  dress.worn[part].reset();
+  dress.panes[part] = true;
+}
+
 // The paints of all files named, each file read once.
 class PaintShelf {
  public:
@@ -53,6 +69,8 @@ class PaintShelf {
   Result<paint::Paint> paint(const std::string& reference) {
     const auto [file, name] = formats::paint_reference(reference);
     if (!files_.contains(file)) {
+      if (!name && is_like_glass(file))
+        return usage_error("there is no file \"{}\": for glass that is seen through write PART={}", file, kGlass);
       GONIO_ASSIGN(files_[file], formats::read_paints(file));
     }
     const std::vector<paint::Paint>& paints = files_[file];
@@ -185,6 +203,7 @@ Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options, bool
   result.surfaces.resize(parts_there);
   result.worn.resize(parts_there);
   result.names.resize(parts_there);
+  result.panes.assign(parts_there, false);
   const auto wear = [&](std::size_t part, const paint::Paint& paint, const brdf::ColorMap* map) {
     put_on(part, paint, map, result);
     result.worn[part] = std::make_shared<const paint::Paint>(paint);
@@ -207,6 +226,11 @@ Result<DressedMesh> dressed(const mesh::Mesh& mesh, const Options& options, bool
     for (const Assignment& assignment : all) {
       GONIO_ASSIGN(const std::vector<std::size_t> parts, parts_of(mesh, assignment.part));
       if ((mesh.parts[parts.front()].name == assignment.part) != by_name) continue;
+      for (const std::size_t part : parts) result.panes[part] = false;
+      if (assignment.reference == kGlass) {
+        for (const std::size_t part : parts) put_glass_on(part, result);
+        continue;
+      }
       GONIO_ASSIGN(const paint::Paint paint, shelf.paint(assignment.reference));
       GONIO_ASSIGN(const brdf::ColorMap* map, shelf.color_map(assignment.reference, paint));
       for (const std::size_t part : parts) wear(part, paint, map);

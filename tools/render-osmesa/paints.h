@@ -31,6 +31,7 @@ struct DressedMesh {
   std::vector<std::shared_ptr<const paint::Paint>> worn;  // as they were read; null where none was
   std::vector<std::string> names;                         // of those paints; "" where none was given
   std::vector<LaidTexture> laid;
+  std::vector<bool> panes;             // for each part, whether it is clear glass that is seen through
   std::vector<std::string> unplaced;   // parts of --texture without texture coordinates, of which nothing was said
   std::vector<std::string> unpainted;  // names of the parts that wear the gray of unpainted parts
 };

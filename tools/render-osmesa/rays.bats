@@ -174,3 +174,50 @@ of() { jq -r ".results.plan[] | select(.effect == \"$2\") | .$1" r.json; }
   [ "$status" -eq 2 ]
   [[ $output == *"rays, shadow, self, bounce"* ]]
 }
+
+@test "glass is seen through, by every engine that can, and refused by name by the others" {
+  cat >case.obj <<'OBJ'
+v -1 -1 0
+v 1 -1 0
+v 1 1 0
+v -1 1 0
+v -1.5 -1.5 .5
+v 1.5 -1.5 .5
+v 1.5 1.5 .5
+v -1.5 1.5 .5
+o Picture
+f 1 2 3 4
+o Window
+f 5 6 7 8
+OBJ
+  local view="--mesh case.obj -p fitted.xml#signal_white --env small.env.exr --camera 0,0,6,0,0,0 --size 32x32 --samples 1"
+  # behind FILE: the red of the middle, where the picture is.
+  behind() { oiiotool "$1" --cut 8x8+12+12 --printstats | sed -nE 's/.*Stats Avg: +([-0-9.e+]+) .*/\1/p'; }
+  render-osmesa -q $view --part Window=glass --effects all,-rays -o glass.exr --report r.json
+  [ "$(of decision panes)" = drawn ]
+  [ "$(jq -r '.results.parts[1].paint' r.json)" = glass ]
+  render-osmesa -q $view --part Window=glass --effects all,-rays,-panes -o black.exr --report r.json
+  [ "$(of decision panes)" = "forced off" ]
+  render-osmesa -q $view --part Window=glass --engine integral -o integral.exr
+  render-osmesa -q $view --part Window=glass --engine path --tolerance 2 -o path.exr
+  render-osmesa -q $view --effects all,-rays -o wall.exr --report r.json
+  [ "$(of needed panes)" = false ]
+  awk -v glass="$(behind glass.exr)" -v black="$(behind black.exr)" -v integral="$(behind integral.exr)" \
+    'BEGIN { exit !(glass > 3 * black && (glass - integral) ^ 2 < (.02 * glass) ^ 2) }'
+  run render-osmesa $view --part Window=glass --engine gl -o x.exr
+  [ "$status" -eq 2 ]
+  [[ "$output" =~ "the engine gl does not draw what lies behind panes: take the engine cpu or path" ]]
+  run render-osmesa $view --part Window=glas -o x.exr
+  [ "$status" -eq 2 ]
+  [[ "$output" =~ "for glass that is seen through write PART=glass" ]]
+  run render-osmesa $view --part Window=glass --aov transport -o x.exr
+  [ "$status" -eq 2 ]
+  [[ "$output" =~ "holds the light of one surface a pixel" ]]
+  render-osmesa -q $view --aov normal,aspecular,lambert,mask,part -o view.exr
+  run render-osmesa --gbuffer view.exr --env small.env.exr -p fitted.xml#signal_white --part Window=glass -o x.exr
+  [ "$status" -eq 2 ]
+  [[ "$output" =~ "--gbuffer does not hold what lies behind it: give --mesh" ]]
+  # A stream of paints shows each of them through the glass.
+  render-osmesa -q ${view/signal_white/s*} --part Window=glass -o '{name}.png'
+  [ "$(ls s*.png | wc -l)" -ge 2 ]
+}

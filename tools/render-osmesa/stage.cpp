@@ -12,6 +12,7 @@
 #include "mesh/unit.h"
 #include "prefilter/lobe_tree.h"
 #include "render/aov.h"
+#include "render/panes.h"
 #include "spectra.h"
 #include "stream.h"
 
@@ -250,6 +251,7 @@ void wear(const DressedMesh& dress, const Options& options, Stage& stage) {
   scene.paints = dress.paints;
   scene.gloss_deg = dress.gloss_deg;
   scene.anisotropy = dress.anisotropy;
+  scene.panes = dress.panes;
   stage.layer = std::make_unique<render::SurfaceLayer>(
       scene, dress.surfaces, brdf::critical_angle_of(options.critical_angle).value_or(brdf::CriticalAngle::kSlide),
       stage.mip ? &*stage.mip : nullptr);
@@ -286,6 +288,8 @@ Result<void> set_stage(const Options& options, Request& request, Stage& stage, c
     }
   }
   wear(stage.dresses.front(), options, stage);
+  if (render::has_panes(scene) && !options.gbuffer.empty())
+    return usage_error("--part dresses a part in glass, and --gbuffer does not hold what lies behind it: give --mesh");
   GONIO_TRY(set_rays(options, request, stage));
   const bool summed = request.engine != nullptr && request.engine->needs_texels;
   if (options.check > 0 || summed || request.transport) {

@@ -10,6 +10,7 @@
 #include "envmap/cube_map.h"
 #include "render/aov.h"
 #include "render/effects.h"
+#include "render/panes.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::tool {
@@ -74,6 +75,8 @@ void put_background(const render::Gbuffer& gbuffer, const render::Scene& scene, 
 Result<void> can_trace_view(const render::Scene& scene) {
   if (scene.layer != nullptr && scene.layer->textured())
     return usage_error("--aov transport holds light by the lobes of paints: leave out --texture");
+  if (render::has_panes(scene))
+    return usage_error("--aov transport holds the light of one surface a pixel: leave glass out of --part");
   render::PathScene path;
   path.scene = &scene, path.emission = scene.emission, path.ground = scene.ground;
   GONIO_ASSIGN(const render::LobeColumns columns, render::lobe_columns(scene));

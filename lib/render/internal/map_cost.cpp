@@ -25,6 +25,9 @@ double textured_point_ns(const Effects& effects, int lobes, const TextureCost& c
   return cost.point + (effects.texture ? 4 : 1) * std::popcount(on) * lobe;
 }
 
+// Of the ray that goes on behind a pane, and of adding up what it meets.
+constexpr double kBehind_ns = 400;
+
 }  // namespace
 
 double point_ns(const Workload& work, const Effects& effects, const MapCost& c) {
@@ -49,7 +52,10 @@ double point_ns(const Workload& work, const Effects& effects, const MapCost& c) 
 
 double frame_ms(const Workload& work, const Effects& effects, const MapCost& cost) {
   const double texture_ns = work.textured > 0 ? textured_point_ns(effects, work.texture_lobes, cost.texture) : 0;
-  const double ns = work.pixels * cost.pixel + work.points * point_ns(work, effects, cost) +
+  const double behind_ns = effects.panes ? work.behind_pixels * (cost.pixel + kBehind_ns) +
+                                               work.behind_points * point_ns(work, effects, cost)
+                                         : 0;
+  const double ns = behind_ns + work.pixels * cost.pixel + work.points * point_ns(work, effects, cost) +
                     work.textured * texture_ns + work.mapped * mapped_point_ns(work, effects);
   return 1e-6 * work.speed * ns / threads();
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "render/panes.h"
 #include "render/path/path_tracer.h"
 #include "render/path/visible_white.h"
 
@@ -28,6 +29,7 @@ PathScene path_scene_of(const Scene& scene, std::shared_ptr<const rays::RayScene
   path.scene = &scene;
   path.environment = scene.texels != nullptr ? &scene.texels->environment() : nullptr;
   path.emission = scene.emission;
+  if (has_panes(scene)) path.eye = rays, rays = nullptr;
   path.ground = scene.ground;
   path.rays = std::move(rays);
   path.rough_coats = true;
@@ -92,27 +94,30 @@ void PathEngine::load_paints(const Scene& scene) {
   if (!loaded.ok()) failure_ = loaded.error();
 }
 
-// Behind everything: in each pixel the mean over its samples, that the scene then covers.
+// Behind everything: in each pixel the mean over its samples, that the scene then covers. Panes cover it in part.
 void PathEngine::draw_background(const Rays& rays, int samples, image::Image& rgba) const {
   const auto shifts = sample_shifts(samples);
-  const rays::RayScene& traced = transport_->rays();
-  const rays::Float3 eye = traced.local(rays.eye);
+  const rays::Float3 eye = transport_->eye().local(rays.eye);
   parallel_for(static_cast<std::size_t>(rgba.height), 8, [&](std::size_t begin, std::size_t end) {
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       for (int x = 0; x < rgba.width; ++x) {
         color::Rgb sum;
+        double clear = 0;
         for (const auto& [dx, dy] : shifts) {
           const Vec3 direction = rays.direction(x + 0.5 + dx, y + 0.5 + dy);
-          if (traced.closest(eye, rays::float3(direction)).any()) continue;
+          const double share = transport_->clear_share(eye, rays::float3(direction));
+          clear += share;
+          if (share == 0) continue;
           if (effects_.background == Background::kColor) {
-            sum += scene_.background_color;
-          } else if (scene_.texels != nullptr) {
-            sum += smooth_radiance(scene_.texels->environment(), direction);
+            sum += share * scene_.background_color;
+          } else if (effects_.background == Background::kEnvironment && scene_.texels != nullptr) {
+            sum += share * smooth_radiance(scene_.texels->environment(), direction);
           }
         }
+        const auto count = static_cast<double>(shifts.size());
         float* pixel = rgba.pixel(x, y);
-        for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(sum[c] / static_cast<double>(shifts.size()));
-        pixel[3] = 1;
+        for (int c = 0; c < 3; ++c) pixel[c] = static_cast<float>(sum[c] / count);
+        pixel[3] = static_cast<float>(effects_.background == Background::kNone ? 1 - clear / count : 1);
       }
     }
   });
@@ -128,7 +133,7 @@ Result<void> PathEngine::shade(Sight& sight, int sample, float gain, bool add, i
     surface.gbuffer.width = seen->width, surface.gbuffer.height = seen->height, surface.gbuffer.rays = seen->rays;
   }
   const Gbuffer& g = surface.gbuffer;
-  if (samples == 1) surface = visible_surface(transport_->rays(), Rays(g.rays), g.width, g.height);
+  if (samples == 1) surface = visible_surface(transport_->eye(), Rays(g.rays), g.width, g.height);
   const Effort effort = sight.effort();
   PathRequest request;
   request.options.bounces = effort.bounces;
@@ -140,7 +145,7 @@ Result<void> PathEngine::shade(Sight& sight, int sample, float gain, bool add, i
   if (!(request.white_luminance > 0)) {
     if (samples > 1) {
       request.white_luminance =
-          visible_white(*transport_, visible_surface(transport_->rays(), Rays(g.rays), g.width, g.height),
+          visible_white(*transport_, visible_surface(transport_->eye(), Rays(g.rays), g.width, g.height),
                         effort.bounces, effort.seed);
     } else {
       request.white_luminance = visible_white(*transport_, surface, effort.bounces, effort.seed);
@@ -151,7 +156,8 @@ Result<void> PathEngine::shade(Sight& sight, int sample, float gain, bool add, i
   const PathPicture picture = path_picture(*transport_, surface, nullptr, request);
   rgba = {g.width, g.height, 4, {}, {}};
   rgba.data.assign(static_cast<std::size_t>(g.width) * static_cast<std::size_t>(g.height) * 4, 0.0F);
-  if (effects_.background != Background::kNone) draw_background(g.rays, samples, rgba);
+  const bool with_panes = has_panes(scene_);
+  if (effects_.background != Background::kNone || with_panes) draw_background(g.rays, samples, rgba);
   Noise noise{picture.noise_p95_de00,
               picture.noise_mean_de00,
               picture.samples_mean,
@@ -163,7 +169,7 @@ Result<void> PathEngine::shade(Sight& sight, int sample, float gain, bool add, i
   for (const PathPoint& point : picture.points) {
     float* pixel = rgba.pixel(point.x, point.y);
     for (int c = 0; c < 3; ++c) pixel[c] += static_cast<float>(point.radiance[c]);
-    if (effects_.background == Background::kNone) pixel[3] = point.coverage;
+    if (effects_.background == Background::kNone && !with_panes) pixel[3] = point.coverage;
     *noise.de00.pixel(point.x, point.y) = static_cast<float>(point.noise_de00);
   }
   noise_ = std::move(noise);

@@ -37,6 +37,7 @@ class PathEngine : public Engine {
   Price price(const Workload&, const Effects&) const override { return {}; }
 
  private:
+  // With Background::kNone what the scene covers of each pixel, alone.
   void draw_background(const Rays& rays, int samples, image::Image& rgba) const;
 
   const Sight& sight_;

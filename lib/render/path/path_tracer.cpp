@@ -7,6 +7,7 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "render/internal/seen.h"
+#include "render/path/seen_point.h"
 
 namespace goniochrome::render {
 
@@ -87,7 +88,7 @@ class Picture {
     const Gbuffer& g = surface.gbuffer;
     shifts_ = sample_shifts(request.pixel_samples);
     count_ = shifts_.size();
-    if (count_ > 1) coverage_ = coverage(transport.rays(), g.rays, g.width, g.height, shifts_);
+    if (count_ > 1) coverage_ = coverage(transport.eye(), g.rays, g.width, g.height, shifts_);
     add_points();
   }
 
@@ -162,10 +163,19 @@ class Picture {
         const PathPoint& point = points_[i];
         const unsigned covered = seen_ != nullptr ? coverage_.any[place(point.x, point.y)] : 1;
         const VisibleSurface& surface = seen_ != nullptr ? (*seen_)[std::countr_zero(covered)] : surface_;
+        if (shows_pane(point.x, point.y)) continue;  // the picture has there what is behind as well
         const rays::Spot spot = spot_at(transport_.rays(), surface, point.x, point.y);
         states_[i].hidden = transport_.open_share(spot) < kMostlyHidden;
       }
     });
+  }
+
+  // Whether a sample of the pixel shows a pane, where the surfaces of all samples are given.
+  bool shows_pane(int x, int y) const {
+    const std::size_t at = place(x, y);
+    if (seen_ == nullptr) return transport_.meets_pane(surface_.hits[at]);
+    return std::ranges::any_of(*seen_,
+                               [&](const VisibleSurface& seen) { return transport_.meets_pane(seen.hits[at]); });
   }
 
   const PathOptions& options_of(std::size_t i) const { return states_[i].hidden ? whole_ : request_.options; }
@@ -234,7 +244,7 @@ class Picture {
     const PathPoint& point = points_[i];
     const Gbuffer& g = surface_.gbuffer;
     const rays::Spot spot = spot_at(transport_.rays(), surface_, point.x, point.y);
-    const PointTransport at(transport_, options_of(i), spot, rays::float3(g.to_viewer(point.x, point.y)));
+    const SeenPoint at(transport_, options_of(i), spot, rays::float3(g.to_viewer(point.x, point.y)));
     state.certain = at.certain();
     state.sure = at.sure();
     if (state.certain) return;
@@ -245,9 +255,9 @@ class Picture {
   }
 
   // What a sample of a pixel sees, which is something.
-  PointTransport transport_at(std::size_t i, std::size_t sample, rays::Spot& spot) const {
+  SeenPoint transport_at(std::size_t i, std::size_t sample, rays::Spot& spot) const {
     const PathPoint& point = points_[i];
-    const rays::RayScene& scene = transport_.rays();
+    const rays::RayScene& scene = transport_.eye();
     if (seen_ != nullptr) {
       const VisibleSurface& surface = (*seen_)[sample];
       spot = spot_at(scene, surface, point.x, point.y);
@@ -261,7 +271,7 @@ class Picture {
   }
 
   // Each round at a point has sequences of its own.
-  void add_fan(const PointTransport& at, std::size_t i, const Round& round, int fan,
+  void add_fan(const SeenPoint& at, std::size_t i, const Round& round, int fan,
                color::Rgb (&means)[Round::kSequences]) const {
     const int which = round.sequence_of(fan);
     const Sequence sequence(seed_of(request_.seed, i, states_[i].sums.fours() + which),
@@ -287,7 +297,7 @@ class Picture {
       auto fan = static_cast<int>((sample + count - first) % count);
       if (!first_time && (fan >= round.fans() || (state.uncertain >> sample & 1U) == 0)) continue;
       rays::Spot spot;
-      const PointTransport at = transport_at(i, sample, spot);
+      const SeenPoint at = transport_at(i, sample, spot);
       if (first_time) {
         state.sure += (1.0 / count) * at.sure();
         if (!at.certain()) state.uncertain = static_cast<std::uint16_t>(state.uncertain | 1U << sample);

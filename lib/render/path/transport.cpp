@@ -6,6 +6,7 @@
 #include "base/angles.h"
 #include "brdf/lobe_model.h"
 #include "render/effects.h"
+#include "render/panes.h"
 #include "render/path/spectral_paths.h"
 #include "render/surface_layer.h"
 
@@ -46,14 +47,23 @@ Result<Transport> Transport::create(const PathScene& path_scene) {
     return input_error("{} paints for {} parts of the mesh: each part needs one", scene.paints.size(),
                        scene.mesh->parts.size());
   const std::optional<Ground>& ground = path_scene.ground;
-  std::shared_ptr<const rays::RayScene> rays = path_scene.rays;
+  std::optional<rays::Floor> floor;
+  if (ground) floor = rays::Floor{ground->height};
+  std::shared_ptr<const rays::RayScene> rays = path_scene.rays, eye = path_scene.eye;
   if (rays == nullptr) {
-    std::optional<rays::Floor> floor;
-    if (ground) floor = rays::Floor{ground->height};
-    GONIO_ASSIGN(rays::RayScene made, rays::RayScene::create(*scene.mesh, floor));
+    GONIO_ASSIGN(rays::RayScene made, rays::RayScene::create(*scene.mesh, floor, scene.panes));
     rays = std::make_shared<const rays::RayScene>(std::move(made));
   }
+  if (has_panes(scene) && eye == nullptr) {
+    GONIO_ASSIGN(rays::RayScene made, rays::RayScene::create(*scene.mesh, floor));
+    eye = std::make_shared<const rays::RayScene>(std::move(made));
+  }
   Transport transport(std::move(rays));
+  if (has_panes(scene)) {
+    transport.eye_ = std::move(eye);
+    for (std::size_t part = 0; part < scene.mesh->parts.size(); ++part)
+      transport.panes_.push_back(is_pane(scene, part));
+  }
   const mesh::Box box = bounding_box(*scene.mesh);
   transport.mesh_box_ = box;
   transport.mesh_radius_ = static_cast<float>(1.0001 * transport.rays_->scale() * length(0.5 * (box.high - box.low)));
@@ -90,6 +100,16 @@ Result<Transport> Transport::create(const PathScene& path_scene) {
   for (const Light& light : scene.lights) transport.seen_.emplace_back(light);
   if (scene.reflection.k != color::component_wise().k) transport.reflection_ = &scene.reflection;
   return transport;
+}
+
+double Transport::clear_share(const Float3& from, const Float3& direction) const {
+  double share = 1;
+  Hit hit = eye().closest(from, direction);
+  while (meets_pane(hit) && share > kLeastPassed) {
+    const PassedPane passed = through_pane(eye(), eye().spot(hit, from, direction), direction);
+    share *= passed.passed, hit = passed.hit;
+  }
+  return hit.any() ? 0 : share;
 }
 
 void Transport::shade_ground(GroundRequest request, int bounces) {

@@ -31,6 +31,9 @@ struct PathScene {
   std::optional<Ground> ground = {};
   // The mesh with its floor, where they are there already; else they are made.
   std::shared_ptr<const rays::RayScene> rays = nullptr;
+  // The same with the panes of the scene, which other rays pass: what cameras see. Where there are panes and it is
+  // null, it is made.
+  std::shared_ptr<const rays::RayScene> eye = nullptr;
   // Of that environment, where it is there already; else it is made.
   std::shared_ptr<const EnvironmentTable> table = nullptr;
   // Whether satin coats are drawn as rough surfaces, and not by the lobes that stand for them: for pictures that are
@@ -93,6 +96,14 @@ class Transport {
   static Result<Transport> create(const PathScene& scene);
 
   const rays::RayScene& rays() const { return *rays_; }
+  // What cameras see: the same, and panes as well. Its triangles are those of rays().
+  const rays::RayScene& eye() const { return eye_ != nullptr ? *eye_ : *rays_; }
+  // Whether what a ray of a camera meets is a pane.
+  bool meets_pane(const rays::Hit& hit) const {
+    return eye_ != nullptr && hit.triangle < rays::kFloor && panes_[static_cast<std::size_t>(eye_->part(hit.triangle))];
+  }
+  // The part of what lies behind the scene that is seen there: 1 beside the scene, less through panes, 0 before others.
+  double clear_share(const rays::Float3& from, const rays::Float3& direction) const;
   const Emitters& emitters() const { return emitters_; }
   // What a floor that shows the environment shows in the open.
   color::Rgb open_ground(const rays::Spot& spot) const;
@@ -169,6 +180,8 @@ class Transport {
   PaintedPoint painted(const rays::Spot& spot, const rays::Float3& to_viewer) const;
 
   std::shared_ptr<const rays::RayScene> rays_;  // stays where it is when the transport is moved
+  std::shared_ptr<const rays::RayScene> eye_;   // of a scene with panes
+  std::vector<bool> panes_;                     // of its parts
   std::vector<TracedPaint> paints_;             // of the parts, then of the floor
   std::optional<LaidGround> ground_;            // of a floor that shows the environment
   std::shared_ptr<const ShadedGround> shaded_;  // see shade_ground()

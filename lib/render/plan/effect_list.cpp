@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "color/color.h"
 #include "render/internal/worn_lobes.h"
+#include "render/panes.h"
 #include "render/plan/ray_plan.h"
 #include "render/surface_layer.h"
 
@@ -248,6 +249,12 @@ std::vector<EffectSwitch> effect_switches(const Scene& scene, const Effects& all
   add_texture_lobes(scene, all, list);
   add("operator", all.reflection && light_chroma(scene, all) > kWhiteChroma, reflection_reason(scene, all),
       [](Effects& e) { e.reflection = false; });
+  add("panes", all.panes,
+      all.panes
+          ? fmt::format("{:.0f} % of what is seen is glass, and what lies behind it is seen",
+                        percent(seen, [&](const auto& p) { return is_pane(scene, static_cast<std::size_t>(p.part)); }))
+          : "no part is a pane of glass",
+      [](Effects& e) { e.panes = false; });
   add("lights", all.lights > 0, fmt::format("{} directional light{}", all.lights, all.lights == 1 ? "" : "s"),
       [](Effects& e) {
         e.lights = 0;

@@ -59,7 +59,7 @@ VisibleSurface window_about(const Transport& transport, const ProbePixel& at, in
             top = std::clamp(at.y - height / 2, 0, g.height - height);
   Rays rays = g.rays;
   rays.corner += left * rays.right + top * rays.down;
-  if (pixel_samples == 1) return visible_surface(transport.rays(), rays, width, height);
+  if (pixel_samples == 1) return visible_surface(transport.eye(), rays, width, height);
   VisibleSurface surface;
   surface.gbuffer.width = width, surface.gbuffer.height = height, surface.gbuffer.rays = rays;
   return surface;

@@ -10,6 +10,7 @@
 #include "render/cpu/cpu_engine.h"
 #include "render/internal/seen.h"
 #include "render/plan/effect_list.h"
+#include "render/plan/pane_probe.h"
 #include "render/surface_layer.h"
 
 namespace goniochrome::render {
@@ -17,9 +18,10 @@ namespace goniochrome::render {
 // Shades the probe with any choice of effects.
 class Prober {
  public:
+  // `panes`, unless null, tells what is behind the first of the points, which are followed by those behind them.
   Prober(const Scene& scene, const Effects& all, const std::vector<EffectSwitch>& switches,
          const std::vector<VisiblePoint>& points, const std::vector<VisiblePoint>& seen, double white,
-         CpuEngine& engine, CpuEngine& component_wise)
+         CpuEngine& engine, CpuEngine& component_wise, const PaneProbe* panes = nullptr)
       : scene_(scene),
         all_(all),
         switches_(switches),
@@ -27,7 +29,8 @@ class Prober {
         seen_(seen),
         white_(white > 0 ? white : 1),
         engine_(engine),
-        component_wise_(component_wise) {}
+        component_wise_(component_wise),
+        panes_(panes) {}
 
   Effects effects(const std::vector<bool>& on) const {
     Effects effects = all_;
@@ -37,13 +40,13 @@ class Prober {
     return effects;
   }
 
-  std::vector<color::Rgb> colors(const std::vector<bool>& on) {
-    const Effects chosen = effects(on);
-    CpuEngine& engine = chosen.reflection ? engine_ : component_wise_;
-    engine.load_paints(scene_, chosen);
-    std::vector<color::Rgb> colors = engine.colors(points_);
-    if (scene_.layer != nullptr) scene_.layer->add(seen_, chosen, colors);
-    return colors;
+  std::vector<color::Rgb> colors(const std::vector<bool>& on) { return colors(effects(on)); }
+
+  // The same without what is behind panes.
+  std::vector<color::Rgb> front_colors(const std::vector<bool>& on) {
+    Effects chosen = effects(on);
+    chosen.panes = false;
+    return colors(chosen);
   }
 
   double difference(const std::vector<color::Rgb>& a, const std::vector<color::Rgb>& b) const {
@@ -93,6 +96,19 @@ class Prober {
   }
 
  private:
+  std::vector<color::Rgb> colors(const Effects& chosen) {
+    CpuEngine& engine = chosen.reflection ? engine_ : component_wise_;
+    engine.load_paints(scene_, chosen);
+    std::vector<color::Rgb> colors = engine.colors(points_);
+    if (scene_.layer != nullptr) scene_.layer->add(seen_, chosen, colors);
+    if (panes_ == nullptr) return colors;
+    const auto behind = colors.end() - static_cast<std::ptrdiff_t>(panes_->behind.size());
+    const std::vector<color::Rgb> of_behind(behind, colors.end());
+    colors.erase(behind, colors.end());
+    if (chosen.panes) panes_->add(of_behind, colors);
+    return colors;
+  }
+
   const Scene& scene_;
   const Effects& all_;
   const std::vector<EffectSwitch>& switches_;
@@ -100,6 +116,7 @@ class Prober {
   const std::vector<VisiblePoint>& seen_;  // the same, with the parts of the whole scene
   double white_;
   CpuEngine &engine_, &component_wise_;
+  const PaneProbe* panes_;
 };
 
 }  // namespace goniochrome::render

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numeric>
 
+#include "render/plan/pane_probe.h"
 #include "render/plan/path_price.h"
 
 namespace goniochrome::render {
@@ -250,10 +251,17 @@ RayChoice planned_rays(const Scene& scene, const std::vector<std::shared_ptr<con
   }
   std::vector<VisiblePoint> points;
   std::vector<RayPoint> ray_points;
-  for (const auto& [gbuffer, x, y] : probe_pixels(gbuffers, kRayProbe)) {
+  const std::vector<ProbePixel> pixels_seen = probe_pixels(gbuffers, kRayProbe);
+  for (const auto& [gbuffer, x, y] : pixels_seen) {
     points.push_back(gbuffer->point(x, y));
     ray_points.push_back(ray_point(rays.transport->rays(), *scene.mesh, *gbuffer, x, y));
   }
+  // Points behind panes count as if nothing were before them.
+  const PaneProbe panes = pane_probe(rays.whole, scene, pixels_seen);
+  points.insert(points.end(), panes.behind.begin(), panes.behind.end());
+  ray_points.insert(ray_points.end(), panes.ray_points.begin(), panes.ray_points.end());
+  if (!pixels_seen.empty())
+    points_drawn *= static_cast<double>(points.size()) / static_cast<double>(pixels_seen.size());
   const std::vector<color::Rgb> base = colors(points);
   RayWishes wishes;
   wishes.on = words.start != Start::kNone;
