@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/file_names.h"
 #include "base/text.h"
 #include "cli/tool.h"
 #include "image/image.h"
@@ -112,7 +113,9 @@ inline void tell_traced(const panels::SeamLights& lights, std::size_t views, con
 // option does, as in "--picture shows". Error (usage): it is not the first paint.
 inline Result<void> check_only_paint(int count, const char* option_does, const std::string& name) {
   if (count <= 1) return {};
-  return usage_error("{} one paint and there is another, \"{}\": choose one by --only", option_does, name);
+  return usage_error(
+      "{} one paint and there is another, \"{}\": choose one by --only, or write {{name}} in the name of the file",
+      option_does, name);
 }
 
 // A PNG that says which run made it.
@@ -120,5 +123,45 @@ inline Result<void> write_picture(const std::string& path, const image::Image& i
   return image::write_png(
       path, image, {{"Software", session.tool() + " " + cli::Session::version()}, {"Comment", session.command_line()}});
 }
+
+// The files of --picture: one for the only paint of a run or, where its name has words in braces, one for each paint.
+class PaintPictures {
+ public:
+  // `option_does` as check_only_paint() has it.
+  PaintPictures(const std::string& pattern, const char* option_does) : pattern_(pattern), option_does_(option_does) {}
+
+  // Error (usage): a word in braces that there is not; a second paint for one file.
+  static Result<void> check(const std::string& pattern) {
+    if (!FileNames::is_pattern(pattern)) return {};
+    GONIO_TRY(FileNames::create(pattern, words(), "--picture"));
+    return {};
+  }
+  Result<void> write(const paint::Paint& paint, const image::Image& image, const cli::Session& session) {
+    GONIO_ASSIGN(const std::string file, next(paint));
+    return write_picture(file, image, session);
+  }
+
+ private:
+  static std::vector<std::string> words() { return {"name", "code", "index"}; }
+
+  Result<std::string> next(const paint::Paint& paint) {
+    ++count_;
+    if (!FileNames::is_pattern(pattern_)) {
+      const Result<void> only = check_only_paint(count_, option_does_, paint.name);
+      if (only.ok()) return pattern_;
+      return Error{only.error().kind, only.error().message + ", or write {name} in the name of the file"};
+    }
+    if (!names_) {
+      GONIO_ASSIGN(FileNames names, FileNames::create(pattern_, words(), "--picture"));
+      names_.emplace(std::move(names));
+    }
+    return names_->next(static_cast<std::size_t>(count_), paint.name, paint.code);
+  }
+
+  std::string pattern_;
+  const char* option_does_;
+  std::optional<FileNames> names_;
+  int count_ = 0;
+};
 
 }  // namespace goniochrome::tool

@@ -241,7 +241,7 @@ column() { sed -n 2p | cut -f "$1"; }
   seam_refused 'max-gap' $shape --seam Hood,Bumper_F --max-gap -1
   run goniogeom-index "$paints" $shape --seam Hood,Bumper_F --picture x.png -q -o x.tsv
   [ "$status" -eq 2 ]
-  [[ "$output" =~ "choose one by --only" ]]
+  [[ "$output" =~ "choose one by --only, or write {name} in the name of the file" ]]
 }
 
 # Two spectra whose colors part in one light only: the flop is the face with more red, which daylight lamps hide.

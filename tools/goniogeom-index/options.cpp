@@ -67,6 +67,7 @@ Result<SeamRequest> seam_request_of(const Options& options) {
     return usage_error("--tolerance-for, --curve and --illuminant are for panels without a mesh: leave out --mesh");
   if (!options.picture.empty() && !options.picture.ends_with(".png"))
     return usage_error("--picture is \"{}\": give a name that ends in .png", options.picture);
+  GONIO_TRY(PaintPictures::check(options.picture));
   GONIO_ASSIGN(static_cast<DifferenceRequest&>(request), difference_of(options));
   GONIO_ASSIGN(request.geometries, panels::geometry_list(options.geometries));
   return request;
@@ -109,7 +110,8 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("misalignments", "LIST", "1,2,3,5", &o.misalignments_deg, "angles of --curve, positive toward the light")
       .from(-90, 90)
       .in("degrees");
-  spec.option("picture", "FILE", "seam.png", &o.picture, "PNG of the seam, colored by the difference of one paint");
+  spec.option("picture", "FILE", "seam.png", &o.picture, "PNG of the seam, colored by the difference of a paint")
+      .more("{name}, {code} and {index} in it make a picture for each paint; without them there may be one paint.");
   cli::add_common_options(spec, o.common, {.explain = true});
 }
 

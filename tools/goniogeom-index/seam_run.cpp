@@ -141,11 +141,10 @@ class SeamRun {
         session_.results()["paints"].back()["advice"].push_back(line);
       }
     if (options_.picture.empty()) return {};
-    GONIO_TRY(check_only_paint(++pictures_, "--picture draws", paint.name));
     const SeamPicture picture{fmt::format("{}: {} | {}", paint.name, request_.world.part_a, request_.world.part_b),
                               request_.threshold, places};
     GONIO_ASSIGN(const image::Image image, seam_picture(stage_.mesh, request_, stage_.seam, picture));
-    return write_picture(options_.picture, image, session_);
+    return pictures_.write(paint, image, session_);
   }
 
   Result<void> write_rows(const paint::Paint& paint, const std::vector<panels::SeamDifference>& places,
@@ -208,7 +207,8 @@ class SeamRun {
   cli::Session& session_;
   panels::SeamStage stage_;
   std::optional<panels::TracedSeam> traced_;  // in an environment with a mirror part
-  int failed_ = 0, pictures_ = 0;
+  int failed_ = 0;
+  PaintPictures pictures_{options_.picture, "--picture draws"};
 };
 
 std::string plan(const Options& options, const SeamRequest& request) {

@@ -57,6 +57,7 @@ Result<void> parse_fit(const Options& options, panels::TrompeOptions& fit) {
   fit.least_maximum = options.objective == "max";
   if (!options.picture.empty() && !options.picture.ends_with(".png"))
     return usage_error("--picture is \"{}\": give a name that ends in .png", options.picture);
+  GONIO_TRY(PaintPictures::check(options.picture));
   return {};
 }
 
@@ -149,7 +150,9 @@ void add_options(cli::ToolSpec& spec, Options& o) {
   spec.option("suffix", "TEXT", "_panel", &o.suffix, "text to append to the name of the paint");
   spec.option("output,o", "FILE", "b.paints.xml", &o.output, "paint XML to write; - is standard output");
   spec.option("picture", "FILE", "pair.png", &o.picture, "PNG of before and after")
-      .more("It shows flat panels, or the mesh as the first --view-from sees it.");
+      .more(
+          "It shows flat panels, or the mesh as the first --view-from sees it. {name}, {code} and {index} in it make a "
+          "picture for each paint; without them there may be one paint.");
   spec.option("dark", "PART", "Glass", &o.dark, "a part that the picture shows black");
   cli::add_common_options(spec, o.common, {.explain = true});
 }

@@ -120,9 +120,8 @@ class Run {
   }
 
   Result<void> draw(const paint::Paint& paint, const Answers& answers) {
-    GONIO_TRY(check_only_paint(++pictures_, "--picture shows", paint.name));
     GONIO_ASSIGN(const image::Image image, swatches(paint::condition_of(paint), answers));
-    return write_picture(options_.picture, image, session_);
+    return pictures_.write(paint, image, session_);
   }
 
   void note(const Answer& answer) {
@@ -148,7 +147,8 @@ class Run {
   const TrompeRequest& request_;
   cli::Session& session_;
   std::vector<Json> fits_;
-  int told_ = 0, pictures_ = 0;
+  int told_ = 0;
+  PaintPictures pictures_{options_.picture, "--picture shows"};
   bool negative_ = false;
 };
 

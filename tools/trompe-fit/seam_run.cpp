@@ -130,7 +130,6 @@ class SeamRun {
   }
 
   Result<void> draw(const paint::Paint& paint, const Answer& answer) {
-    GONIO_TRY(check_only_paint(++pictures_, "--picture shows", paint.name));
     SeamPair pair;
     pair.mesh = &stage_.mesh, pair.seam = &stage_.seam;
     pair.env = options_.seam.environment.empty() ? nullptr : &stage_.env;
@@ -138,7 +137,7 @@ class SeamRun {
     pair.part_b = request_.world.part_b, pair.dark = options_.dark;
     pair.a = paint, pair.answer = answer;
     GONIO_ASSIGN(const image::Image image, seam_pair(pair));
-    return write_picture(options_.picture, image, session_);
+    return pictures_.write(paint, image, session_);
   }
 
   const Options& options_;
@@ -148,7 +147,7 @@ class SeamRun {
   std::optional<panels::TracedSeam> traced_;  // in an environment with a mirror part
   std::vector<panels::SeamView> fitted_;
   std::vector<Json> fits_;
-  int pictures_ = 0;
+  PaintPictures pictures_{options_.picture, "--picture shows"};
   bool negative_ = false;
 };
 

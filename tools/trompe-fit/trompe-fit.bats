@@ -132,7 +132,14 @@ setup() {
   [ "$(head -c 4 p.png | tail -c 3)" = PNG ]
   run trompe-fit "$paints" --angle -2 --picture q.png -q -o c.xml
   [ "$status" -eq 2 ]
-  [[ "$output" =~ "choose one by --only" ]]
+  [[ "$output" =~ "choose one by --only, or write {name} in the name of the file" ]]
+  # A picture of each paint of a stream, and a word that there is not.
+  trompe-fit - <"$paints" --angle -2 --picture 'each-{index}-{name}.png' -q -o c.xml || [ $? -eq 1 ]
+  [ "$(ls each-*.png | wc -l)" -eq "$(grep -c '<paint ' c.xml)" ]
+  [ "$(ls each-*.png | wc -l)" -ge 2 ]
+  run trompe-fit "$paints" --angle -2 --picture '{color}.png' -q -o c.xml
+  [ "$status" -eq 2 ]
+  [[ "$output" =~ "--picture" ]]
 }
 
 @test "bad seams and pictures are refused by name" {
