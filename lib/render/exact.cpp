@@ -263,7 +263,7 @@ PixelSample sampled_pixels(const Gbuffer& g, const Scene& scene, int count, std:
     }
   }
   std::vector<TexturePlace> places;
-  if (scene.layer != nullptr) places = scene.layer->places(g);
+  if (scene.layer != nullptr) places = scene.layer->filtered_places(g);
   PixelSample sample;
   for (const std::size_t i : drawn(visible.size(), static_cast<std::size_t>(count), seed)) {
     const auto [x, y] = visible[i];

@@ -12,6 +12,7 @@ import numpy
 from make_testdata.blend import mix, smooth_step
 from shared import pictures
 
+# Texels along each side of the files, and the unit of length of the patterns, so that larger maps show the same.
 SIZE = 128
 
 
@@ -70,12 +71,12 @@ def frame(angle):
 STEEL, BRASS = (0.80, 0.82, 0.84), (0.86, 0.68, 0.36)
 
 
-def brushed(column, row):
-    """Steel with fine streaks, whose brush direction makes one full turn across the texture."""
+def brushed(column, row, fine):
+    """Steel with streaks, `fine` times finer than a texel of SIZE, whose brush direction makes one full turn across."""
     angle = 2 * math.pi * (column + 0.5) / SIZE
     along = math.cos(angle) * column + math.sin(angle) * row
     across = -math.sin(angle) * column + math.cos(angle) * row
-    streak = 0.85 + 0.3 * soft_noise(along / 24, across * 1.5, 4096, 4096, 1)
+    streak = 0.85 + 0.3 * soft_noise(along / 24, across * 1.5 * fine, 4096, 4096, 1)
     return [0.012 * c for c in STEEL] + frame(angle) + metal(STEEL, streak)
 
 
@@ -89,7 +90,8 @@ LINES, DOT = ("GONIO", "CHROME"), 3
 
 
 def lettered(column, row):
-    """Whether the texel is inside the lettering, which is two centered lines."""
+    """Whether a place is inside the lettering, which is two centered lines."""
+    column, row = math.floor(column + 0.5), math.floor(row + 0.5)
     for number, word in enumerate(LINES):
         width, top = (6 * len(word) - 1) * DOT, SIZE // 2 - 26 + 30 * number
         x, y = column - (SIZE - width) // 2, row - top
@@ -99,7 +101,7 @@ def lettered(column, row):
     return False
 
 
-def nameplate(column, row):
+def nameplate(column, row, fine):
     """Brass that is brushed across, with letters that are brushed upright.
 
     The letters are the same metal, only a little darker; what makes them readable is the direction of their highlights.
@@ -107,41 +109,45 @@ def nameplate(column, row):
     inside = lettered(column, row)
     angle = math.pi / 2 if inside else 0.0
     along, across = (row, column) if inside else (column, row)
-    streak = 0.85 + 0.3 * soft_noise(along / 16, across * 1.0, SIZE // 16, SIZE, 2)
+    streak = 0.85 + 0.3 * soft_noise(along / 16, across * fine, SIZE // 16, SIZE * fine, 2)
     return [0.012 * c for c in BRASS] + frame(angle) + metal(BRASS, streak * (0.8 if inside else 1.0))
 
 
-def wood(column, row):
-    """Varnished wood: rings that are cut along the trunk.
+def wood(column, row, _fine):
+    """Varnished oak, cut along the trunk: rings that darken slowly and end at once, fibers, and short dark pores.
 
-    The lobe is wide on the grain (an exponent of about 10) and glossier between (about 150). Both reflect more at grazing
-    angles, where the length of p is above 1.
+    The lobe is wide on the dark part of a ring (an exponent of about 10) and glossier between (about 150). Both reflect more at
+    grazing angles, where the length of p is above 1.
     """
     x, y = (column + 0.5) / SIZE, (row + 0.5) / SIZE
-    bend = 0.12 * math.sin(2 * math.pi * x) + 0.05 * soft_noise(4 * x, 4 * y, 4, 4, 3)
-    ring = 6 * (y + bend) + 0.35 * soft_noise(8 * x, 24 * y, 8, 24, 4)
+    bend = 0.05 * math.sin(2 * math.pi * x) + 0.16 * soft_noise(2 * x, 3 * y, 2, 3, 3) + 0.02 * soft_noise(9 * x, 12 * y, 9, 12, 6)
+    ring = 9 * (y + bend) + 0.15 * soft_noise(12 * x, 48 * y, 12, 48, 4)
     phase = ring - math.floor(ring)
-    grain = smooth_step(0.55, 0.92, phase) * (1 - smooth_step(0.94, 1.0, phase))
-    fiber = 0.85 + 0.3 * soft_noise(6 * x, 64 * y, 6, 64, 5)
-    color = tuple(fiber * c / math.pi for c in mix((0.36, 0.19, 0.085), (0.13, 0.055, 0.025), grain))
-    exponent = 150 * (10 / 150) ** grain
-    strength = 0.035 * (1 - 0.6 * grain) * lobe_energy(exponent)
+    grain = smooth_step(0.25, 0.92, phase) ** 2 * (1 - smooth_step(0.94, 1.0, phase))
+    fiber = 0.8 + 0.25 * soft_noise(8 * x, 96 * y, 8, 96, 5) + 0.2 * soft_noise(24 * x, 256 * y, 24, 256, 7)
+    pore = smooth_step(0.72, 0.86, soft_noise(14 * x, 128 * y, 14, 128, 8)) * (0.35 + 0.65 * grain)
+    color = tuple(fiber * (1 - 0.55 * pore) * c / math.pi for c in mix((0.27, 0.18, 0.085), (0.13, 0.075, 0.032), grain))
+    rough = min(1.0, grain + 0.5 * pore)
+    exponent = 150 * (10 / 150) ** rough
+    strength = 0.035 * (1 - 0.6 * rough) * lobe_energy(exponent)
     return list(color) + frame(0.0) + [strength] * 3 + [-1 - 1.5 / exponent] * 2 + [1.0, exponent]
 
 
-def surface_exr(texel, lobes, comments):
-    """The bytes of one texture."""
-    rows = [[texel(column, row) for column in range(SIZE)] for row in range(SIZE)]
+def surface_exr(texel, lobes, comments, size):
+    """The bytes of one texture of so many texels along each side, a multiple of SIZE."""
+    fine = size // SIZE
+    places = [(i + 0.5) / fine - 0.5 for i in range(size)]
+    rows = [[texel(column, row, fine) for column in places] for row in places]
     return pictures.exr_file(rows, numpy.float16, comments, names(lobes))
 
 
-def brushed_exr():
-    return surface_exr(brushed, 3, "brushed steel, the brush turning once across; generalized cosine lobes, linear Rec.2020")
+def brushed_exr(size=SIZE):
+    return surface_exr(brushed, 3, "brushed steel, the brush turning once across; generalized cosine lobes, linear Rec.2020", size)
 
 
-def nameplate_exr():
-    return surface_exr(nameplate, 3, "lettering in brushed brass; generalized cosine lobes, linear Rec.2020")
+def nameplate_exr(size=SIZE):
+    return surface_exr(nameplate, 3, "lettering in brushed brass; generalized cosine lobes, linear Rec.2020", size)
 
 
-def wood_exr():
-    return surface_exr(wood, 1, "varnished wood; generalized cosine lobes, linear Rec.2020")
+def wood_exr(size=SIZE):
+    return surface_exr(wood, 1, "varnished wood; generalized cosine lobes, linear Rec.2020", size)
