@@ -56,12 +56,14 @@ double lobe_energy(const LafortuneLobe& lobe) {
   return 2 * kPi / (lobe.exponent + 1) * (lobe.albedo.x + lobe.albedo.y + lobe.albedo.z) / 3;
 }
 
-LobeSurface lobe_surface(const SbrdfTexture& texture, int column, int row) {
+LobeSurface lobe_surface(const SbrdfTexture& texture, int column, int row, std::uint32_t lobes) {
   const SbrdfTexel texel = sbrdf_texel(texture, column, row);
   const double turn = std::atan2(texel.x_bitangent, texel.x_tangent);
   LobeSurface surface{texel.surface.diffuse, {}};
-  for (const LafortuneLobe& lobe : texel.surface.lobes)
-    if (!(lobe.albedo == color::Rgb{})) surface.lobes.push_back(turned_lobe(lobe, turn));
+  for (std::size_t i = 0; i < texel.surface.lobes.size(); ++i) {
+    const LafortuneLobe& lobe = texel.surface.lobes[i];
+    if ((lobes >> i & 1U) != 0 && !(lobe.albedo == color::Rgb{})) surface.lobes.push_back(turned_lobe(lobe, turn));
+  }
   return surface;
 }
 

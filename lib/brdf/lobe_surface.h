@@ -2,6 +2,7 @@
 // such surfaces. goniochrome-theory(7), SPATIALLY VARYING SURFACES, Mixtures.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "base/vec3.h"
@@ -32,8 +33,8 @@ color::Rgb brdf(const LobeSurface& surface, const Vec3& to_light, const Vec3& to
 // The light that a lobe about its own middle reflects where |p| is 1: 2 pi/(n+1) times the mean albedo.
 double lobe_energy(const LafortuneLobe& lobe);
 
-// One texel, without its lobes of albedo 0.
-LobeSurface lobe_surface(const SbrdfTexture& texture, int column, int row);
+// One texel, without its lobes of albedo 0 and those whose bits are not set.
+LobeSurface lobe_surface(const SbrdfTexture& texture, int column, int row, std::uint32_t lobes = ~0U);
 
 // Adds `share` times the reflectance of `part` to `sum`. A lobe that has the shape of one that is there adds to its
 // albedo, so that mixtures of paints on one basis have no more lobes than the basis. The sum is exact.

@@ -47,6 +47,22 @@ std::array<TextureTap, 4> texture_taps(int width, int height, double u, double v
   return {{{x0, y0, (1 - s) * (1 - t)}, {x1, y0, s * (1 - t)}, {x0, y1, (1 - s) * t}, {x1, y1, s * t}}};
 }
 
+std::vector<std::pair<int, double>> covered_texels(int at, int to, int from) {
+  if (from == to) return {{at, 1.0}};
+  std::vector<std::pair<int, double>> result;
+  const double scale = static_cast<double>(from) / to;
+  if (from < to) {
+    const double place = (at + 0.5) * scale - 0.5, low = std::floor(place);
+    const int first = (static_cast<int>(low) + from) % from;
+    result = {{first, 1 - (place - low)}, {(first + 1) % from, place - low}};
+  } else {
+    for (int i = static_cast<int>(at * scale); i < from && i < (at + 1) * scale; ++i)
+      result.emplace_back(i, std::min(i + 1.0, (at + 1) * scale) / scale - std::max<double>(i, at * scale) / scale);
+  }
+  std::erase_if(result, [](const auto& part) { return part.second < 1e-9; });
+  return result;
+}
+
 namespace {
 
 // Sums over texels of one lobe. Its axes in the tangent frame are the matrix even I + odd (cos 2a, sin 2a; sin 2a,

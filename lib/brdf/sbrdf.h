@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "brdf/lafortune.h"
@@ -45,6 +46,9 @@ struct TextureTap {
   double weight = 0;
 };
 std::array<TextureTap, 4> texture_taps(int width, int height, double u, double v);
+
+// The texels of a row of `from` that a texel of a row of `to` covers, or between which it lies, and their shares.
+std::vector<std::pair<int, double>> covered_texels(int at, int to, int from);
 
 // One texel in the place of all: the mean diffuse part, and for each lobe, weighted by albedo/(n+1), the mean of that,
 // of log(n+1) and of the axes as matrices of the tangent frame, whose common direction is its frame's. It is the

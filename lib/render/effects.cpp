@@ -218,7 +218,7 @@ Effects effects_of(const Scene& scene) {
   // Color maps and tilted lobes stand for the light of all the maps.
   const bool maps_alone = effects.tilt_level > 0 || (scene.layer != nullptr && scene.layer->mapped());
   if (effects.horizon && !maps_alone) effects.spots = scene.env->spots.size();
-  effects.texture = scene.layer != nullptr && scene.layer->textured();
+  effects.texture = effects.texture_filter = scene.layer != nullptr && scene.layer->textured();
   effects.maps = scene.layer != nullptr && scene.layer->mapped();
   effects.panes = has_panes(scene);
   effects.reflection = scene.reflection.k != color::component_wise().k;

@@ -50,6 +50,7 @@ struct Effects {
   int tilt_level = 0;       // what stands for them elsewhere: which set of tilted lobes; 0: none
   bool texture = false;     // textures of lobes; else the mean texel of each
   std::uint32_t texture_lobes = ~0U;  // of textures, by bits
+  bool texture_filter = false;        // pixels show the mean of all texels that they cover; else those in their middle
   bool anisotropy = false;
   double tilt_tolerance = 0.005;  // of the lobes drawn about tilted normals, relative to their peak
   int most_tilts = 1024;

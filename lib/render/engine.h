@@ -103,6 +103,7 @@ struct Workload {
   std::vector<double> lookups = {};  // of tilted lobes, the mean over the points, by each level of Effects
   int forms = 3;                     // in which the product of colors is taken; internal/product_forms.h
   int texture_lobes = 0;             // of the texture that has most
+  double texture_filter = 1;         // what a textured point takes with the filter, relative to one without it
   double speed = 1;                  // nanoseconds on this machine for each nanosecond that was counted
 };
 

@@ -25,18 +25,28 @@ VisiblePoint Gbuffer::point(int x, int y, const std::vector<TexturePlace>& place
 
 // By Cramer's rule from the origin's place beside the first corner: in the edges a and b, the ray meets the plane at
 // (share of a, share of b) = (d x b . s, d . s x a)/(d x b . a).
-MeshPoint mesh_point(const mesh::Mesh& mesh, std::uint32_t triangle, const Vec3& origin, const Vec3& direction) {
+PlaneHit plane_hit(const mesh::Mesh& mesh, std::uint32_t triangle, const Vec3& origin, const Vec3& direction) {
   const auto& corners = mesh.triangles[triangle];
   const Vec3 &p = mesh.positions[corners[0]], &q = mesh.positions[corners[1]], &r = mesh.positions[corners[2]];
   const Vec3 a = q - p, b = r - p, s = origin - p, across = cross(direction, b);
   const double determinant = dot(across, a);
-  MeshPoint point{triangle, {1.0 / 3, 1.0 / 3, 1.0 / 3}, {}, normalized(cross(a, b))};
-  if (determinant != 0) {
-    const double v = dot(across, s) / determinant, w = dot(direction, cross(s, a)) / determinant;
-    point.shares = {std::max(0.0, 1 - v - w), std::max(0.0, v), std::max(0.0, w)};
-    const double sum = point.shares[0] + point.shares[1] + point.shares[2];
-    for (double& share : point.shares) share /= sum;
-  }
+  PlaneHit hit;
+  if (determinant == 0) return hit;
+  const Vec3 turned = cross(s, a);
+  const double v = dot(across, s) / determinant, w = dot(direction, turned) / determinant;
+  hit.shares = {1 - v - w, v, w};
+  hit.ahead = dot(b, turned) / determinant > 0;
+  return hit;
+}
+
+MeshPoint mesh_point(const mesh::Mesh& mesh, std::uint32_t triangle, const Vec3& origin, const Vec3& direction) {
+  const auto& corners = mesh.triangles[triangle];
+  const Vec3& p = mesh.positions[corners[0]];
+  const Vec3 a = mesh.positions[corners[1]] - p, b = mesh.positions[corners[2]] - p;
+  MeshPoint point{triangle, plane_hit(mesh, triangle, origin, direction).shares, {}, normalized(cross(a, b))};
+  double sum = 0;
+  for (double& share : point.shares) share = std::max(0.0, share), sum += share;
+  for (double& share : point.shares) share /= sum;
   point.position = p + point.shares[1] * a + point.shares[2] * b;
   return point;
 }

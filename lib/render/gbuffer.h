@@ -22,6 +22,8 @@ class GlContext;
 struct TexturePlace {
   float u = 0, v = 0;
   float tangent[3] = {0, 0, 0};  // world, along growing u; of about unit length, or 0 where it is not known
+  // The footprint: how far u and v go from one pixel to the next, to the right and downward; 0 where it is not known.
+  float across[2] = {0, 0}, down[2] = {0, 0};
 };
 
 // A visible point that is shaded alone.
@@ -60,6 +62,14 @@ struct MeshPoint {
   Vec3 position;
   Vec3 face;  // the unit normal of the triangle, to the side from which its corners run counter-clockwise
 };
+
+// Where a ray meets the plane of a triangle, as shares of its corners, which may be below 0 and together are 1; and
+// whether it meets it ahead. The middle of the triangle where the ray runs along the plane.
+struct PlaneHit {
+  std::array<double, 3> shares = {1.0 / 3, 1.0 / 3, 1.0 / 3};
+  bool ahead = false;
+};
+PlaneHit plane_hit(const mesh::Mesh& mesh, std::uint32_t triangle, const Vec3& origin, const Vec3& direction);
 
 // Where a ray meets the plane of a triangle of the mesh. If that is outside of the triangle, as it is by a part of a
 // pixel where a rasterizer rounds, it is the nearest place within by shares of the corners; if the ray runs along the

@@ -58,6 +58,7 @@ void tidy(Effects& effects) {
   effects.horizon = effects.horizon && !effects.lobes.empty();
   if (!effects.horizon) effects.spots = 0;
   effects.anisotropy = effects.anisotropy && !effects.lobes.empty();
+  effects.texture_filter = effects.texture_filter && effects.texture;
 }
 
 // What one frame of such pictures consists of.
@@ -82,6 +83,7 @@ Workload workload_of(const Scene& scene, const Effects& all, const std::vector<V
   for (int level = 1; level <= all.tilt_level; ++level) work.lookups.push_back(mean_lookups(scene, level, probe));
   work.forms = all.reflection ? product_forms(scene.reflection).count : 3;
   work.texture_lobes = scene.layer != nullptr ? scene.layer->lobes() : 0;
+  work.texture_filter = scene.layer != nullptr ? scene.layer->filter_cost(probe) : 1;
   return work;
 }
 
@@ -408,6 +410,24 @@ std::vector<VisiblePoint> probe_points(const std::vector<std::shared_ptr<const G
   return points;
 }
 
+namespace {
+
+// With the footprints on textures that one of so many samples of a pixel has; their places are left open.
+std::vector<VisiblePoint> probe_points(const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers, std::size_t count,
+                                       const Scene& scene, int samples) {
+  std::vector<VisiblePoint> points = probe_points(gbuffers, count);
+  if (scene.layer == nullptr || !scene.layer->textured()) return points;
+  std::size_t number = 0;
+  for (const ProbePixel& pixel : probe_pixels(gbuffers, count)) {
+    VisiblePoint& point = points[number++];
+    if (const auto place = scene.layer->place(*pixel.gbuffer, pixel.x, pixel.y); place)
+      point.place = repeated(*place, 1 / std::sqrt(samples));
+  }
+  return points;
+}
+
+}  // namespace
+
 Scene seen_scene(const Scene& scene, const std::vector<std::shared_ptr<const Gbuffer>>& gbuffers) {
   if (has_panes(scene)) return scene;
   std::vector<bool> seen(scene.paints.size(), false);
@@ -430,7 +450,7 @@ Result<Plan> make_plan(const Scene& scene, const std::vector<std::shared_ptr<con
   GONIO_ASSIGN(const Words words, words_of(request.effects));
   Effects all = effects_of(scene);
   all.tolerance_de00 = request.tolerance_de00;
-  const std::vector<VisiblePoint> probe = probe_points(gbuffers, kProbe);
+  const std::vector<VisiblePoint> probe = probe_points(gbuffers, kProbe, scene, request.samples);
   const auto wanted = std::ranges::find_if(
       engines, [&](const Engine* engine) { return request.engine && *request.engine == engine->info().name; });
   const Engine* asked = wanted == engines.end() ? nullptr : *wanted;

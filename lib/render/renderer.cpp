@@ -56,6 +56,15 @@ std::array<double, 2> shift_of(int sample, int samples) {
   return sample_shifts(samples)[static_cast<std::size_t>(sample - 1)];
 }
 
+// From a sample to the middle of the part of its pixel that it stands for, one of as many squares as there are samples.
+std::array<double, 2> to_middle_of_part(int sample, int samples) {
+  std::array<double, 2> result = shift_of(sample, samples);
+  const double squares = std::round(std::sqrt(samples));
+  for (double& shift : result)
+    shift = sample == 0 ? 0 : (std::floor((shift + 0.5) * squares) + 0.5) / squares - 0.5 - shift;
+  return result;
+}
+
 }  // namespace
 
 struct OpenGl {
@@ -95,6 +104,7 @@ struct Renderer::State : Sight {
   std::vector<std::shared_ptr<Gbuffer>> kept;
   std::vector<std::vector<TexturePlace>> placed;  // on textures, of the same; empty: not yet
   std::uint64_t placed_for = 0;                   // the layer
+  bool placed_footprints = false;
   int in_texture = -1;
   double rasterization_ms = 0;  // the last one of this view, which a plan may have made
 
@@ -249,14 +259,20 @@ const std::vector<TexturePlace>& Renderer::State::places(int sample) {
   static const std::vector<TexturePlace> nowhere;
   if (scene.layer == nullptr || !scene.layer->textured()) return nowhere;
   const SurfaceLayer& layer = *scene.layer;
-  if (placed_for != layer.id()) {
+  if (placed_for != layer.id() || placed_footprints != effects.texture_filter) {
     for (std::vector<TexturePlace>& old : placed) old.clear();
-    placed_for = layer.id();
+    placed_for = layer.id(), placed_footprints = effects.texture_filter;
   }
   const std::shared_ptr<const Gbuffer> of = gbuffer(sample);
   const auto place = static_cast<std::size_t>(std::find(kept.begin(), kept.end(), of) - kept.begin());
   placed.resize(kept.size());
-  if (placed[place].empty()) placed[place] = layer.places(*of);
+  if (placed[place].empty()) {
+    if (effects.texture_filter) {
+      placed[place] = layer.filtered_places(*of, to_middle_of_part(sample, view->samples));
+    } else {
+      placed[place] = layer.places(*of);
+    }
+  }
   return placed[place];
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "base/angles.h"
@@ -53,6 +54,39 @@ int SurfaceLayer::lobes() const {
 
 std::vector<TexturePlace> SurfaceLayer::places(const Gbuffer& gbuffer) const {
   return textured_ ? layout_->places(gbuffer) : std::vector<TexturePlace>();
+}
+
+std::vector<TexturePlace> SurfaceLayer::filtered_places(const Gbuffer& gbuffer,
+                                                        const std::array<double, 2>& middle) const {
+  return textured_ ? layout_->filtered_places(gbuffer, middle) : std::vector<TexturePlace>();
+}
+
+std::optional<TexturePlace> SurfaceLayer::place(const Gbuffer& gbuffer, int x, int y) const {
+  const int part = gbuffer.part(x, y);
+  if (part < 0 || gbuffer.triangles.empty() || surface(part).texture == nullptr) return std::nullopt;
+  return layout_->place(gbuffer, x, y);
+}
+
+double SurfaceLayer::filter_cost(const std::vector<VisiblePoint>& points) const {
+  double sum = 0, count = 0;
+  for (const VisiblePoint& point : points) {
+    const brdf::SbrdfTexture* texture = surface(point.part).texture;
+    if (texture == nullptr) continue;
+    const auto which = static_cast<std::size_t>(std::ranges::find(textures_, texture) - textures_.begin());
+    const FilterProbes probes = shader_->probes(which, repeated(point.place, surface(point.part).repeat), 1);
+    sum += probes.count() * (1.0 + shader_->packed(which, probes.level).lobes) / (1.0 + shader_->packed(which).lobes);
+    ++count;
+  }
+  return count > 0 ? sum / count : 1;
+}
+
+double SurfaceLayer::covered_texels(const VisiblePoint& point) const {
+  const PartSurface& of = surface(point.part);
+  if (of.texture == nullptr) return 1;
+  const auto texels = [&](const float* step) {
+    return std::max(1.0, of.repeat * std::hypot(step[0] * of.texture->width, step[1] * of.texture->height));
+  };
+  return texels(point.place.across) * texels(point.place.down);
 }
 
 namespace {
@@ -119,22 +153,33 @@ TexturePlace SurfaceLayer::placed(const VisiblePoint& point, std::size_t number)
   };
   if (!point.placed) {
     const Vec3 level = cross({0, 1, 0}, point.normal);
-    return {step(0.61803398875),
-            step(0.7548776662),
-            {static_cast<float>(level.x), static_cast<float>(level.y), static_cast<float>(level.z)}};
+    TexturePlace place = repeated(point.place, repeat);
+    place.u = step(0.61803398875), place.v = step(0.7548776662);
+    for (int c = 0; c < 3; ++c) place.tangent[c] = static_cast<float>(level[c]);
+    return place;
   }
-  TexturePlace place = point.place;
-  place.u = static_cast<float>(repeat * place.u), place.v = static_cast<float>(repeat * place.v);
-  return place;
+  return repeated(point.place, repeat);
 }
 
 namespace {
 
-SurfaceLayer::Place seen_texels(const brdf::SbrdfTexture& texture, const TexturePlace& at) {
-  SurfaceLayer::Place result{{at.tangent[0], at.tangent[1], at.tangent[2]}, {}};
+void add_seen_texels(const brdf::SbrdfTexture& texture, const TexturePlace& at, double share,
+                     SurfaceLayer::Place& result) {
   for (const brdf::TextureTap& tap : brdf::texture_taps(texture.width, texture.height, at.u, at.v)) {
-    if (tap.weight != 0) result.pieces.push_back({brdf::sbrdf_texel(texture, tap.column, tap.row), tap.weight});
+    if (tap.weight == 0) continue;
+    result.pieces.push_back({brdf::sbrdf_texel(texture, tap.column, tap.row), share * tap.weight});
   }
+}
+
+// The texels themselves at places that are spread over the whole footprint, up to 16 x 16.
+SurfaceLayer::Place seen_texels(const brdf::SbrdfTexture& texture, const TexturePlace& at, bool filtered) {
+  SurfaceLayer::Place result{{at.tangent[0], at.tangent[1], at.tangent[2]}, {}};
+  const auto places = [&](const float* step) {
+    const double texels = std::hypot(step[0] * texture.width, step[1] * texture.height);
+    return filtered ? static_cast<int>(std::clamp(std::ceil(texels), 1.0, 16.0)) : 1;
+  };
+  const FilterProbes all{0, places(at.across), places(at.down)};
+  for (int i = 0; i < all.count(); ++i) add_seen_texels(texture, probe_place(at, 1, all, i), 1.0 / all.count(), result);
   return result;
 }
 
@@ -143,7 +188,7 @@ SurfaceLayer::Place seen_texels(const brdf::SbrdfTexture& texture, const Texture
 SurfaceLayer::Place SurfaceLayer::place(const VisiblePoint& point, std::size_t number, const Effects& effects) const {
   const std::size_t which = shading_of(point.part, effects);
   const brdf::SbrdfTexture& texture = which < textures_.size() ? *textures_[which] : means_[which - textures_.size()];
-  Place result = seen_texels(texture, placed(point, number));
+  Place result = seen_texels(texture, placed(point, number), effects.texture_filter);
   for (Piece& piece : result.pieces) {
     std::vector<brdf::LafortuneLobe>& lobes = piece.texel.surface.lobes;
     for (std::size_t i = 0; i < lobes.size(); ++i)
@@ -153,10 +198,7 @@ SurfaceLayer::Place SurfaceLayer::place(const VisiblePoint& point, std::size_t n
 }
 
 SurfaceLayer::Place SurfaceLayer::place(int part, const MeshPoint& point) const {
-  TexturePlace at = layout_->place(part, point);
-  const double repeat = surface(part).repeat;
-  at.u = static_cast<float>(repeat * at.u), at.v = static_cast<float>(repeat * at.v);
-  return seen_texels(*surface(part).texture, at);
+  return seen_texels(*surface(part).texture, repeated(layout_->place(part, point), surface(part).repeat), false);
 }
 
 void SurfaceLayer::add_mapped(const std::vector<VisiblePoint>& points, bool coat,
@@ -170,37 +212,52 @@ void SurfaceLayer::add_mapped(const std::vector<VisiblePoint>& points, bool coat
 void SurfaceLayer::add(const std::vector<VisiblePoint>& points, const Effects& effects,
                        std::vector<color::Rgb>& colors) const {
   if (effects.maps) add_mapped(points, effects.coat, colors);
-  std::vector<std::vector<VisiblePoint>> by_texture(2 * textures_.size());
-  std::vector<std::vector<std::size_t>> numbers(by_texture.size());
+  // Those of one texture and one of its levels, with the shares of the points that they are probes of.
+  struct Probes {
+    std::vector<VisiblePoint> points;
+    std::vector<std::pair<std::size_t, double>> shares;
+  };
+  std::map<std::pair<std::size_t, int>, Probes> all;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (surface(points[i].part).texture == nullptr) continue;
     const std::size_t which = shading_of(points[i].part, effects);
-    by_texture[which].push_back(points[i]);
-    by_texture[which].back().place = placed(points[i], i);
-    numbers[which].push_back(i);
+    const TexturePlace place = placed(points[i], i);
+    const FilterProbes probes = effects.texture_filter ? shader_->probes(which, place, 1) : FilterProbes{};
+    for (int k = 0; k < probes.count(); ++k) {
+      Probes& into = all[{which, probes.level}];
+      into.points.push_back(points[i]);
+      into.points.back().place = probe_place(place, 1, probes, k);
+      into.shares.emplace_back(i, 1.0 / probes.count());
+    }
   }
   const SbrdfLight light = light_of(scene_, effects);
-  for (std::size_t which = 0; which < by_texture.size(); ++which) {
-    if (by_texture[which].empty()) continue;
-    const std::vector<color::Rgb> shown = shader_->shade(which, light, by_texture[which]);
-    for (std::size_t i = 0; i < shown.size(); ++i) colors[numbers[which][i]] += shown[i];
+  for (const auto& [of, probes] : all) {
+    const std::vector<color::Rgb> shown = shader_->shade(of.first, light, probes.points, of.second);
+    for (std::size_t i = 0; i < shown.size(); ++i) colors[probes.shares[i].first] += probes.shares[i].second * shown[i];
   }
 }
 
 // The textured points of one row of a picture, gathered until the kernel has enough of one texture.
 class SurfaceLayer::Row {
  public:
-  Row(const SbrdfShader& shader, const SbrdfLight& light, float weight, image::Image& rgba)
-      : shader_(shader), light_(light), weight_(weight), rgba_(rgba) {}
+  Row(const SbrdfShader& shader, const SbrdfLight& light, float weight, bool filtered, image::Image& rgba)
+      : shader_(shader), light_(light), weight_(weight), filtered_(filtered), rgba_(rgba) {}
 
   void put(std::size_t texture, int x, int y, const float* normal, const Vec3& to_viewer, const TexturePlace& place,
            double repeat) {
-    if (batch_ && (texture != texture_ || batch_->full())) flush();
-    if (!batch_ || texture != texture_) batch_.emplace(shader_, texture, light_), texture_ = texture;
     const float toward[3] = {static_cast<float>(to_viewer.x), static_cast<float>(to_viewer.y),
                              static_cast<float>(to_viewer.z)};
-    pixels_[batch_->count()] = rgba_.pixel(x, y);
-    batch_->put(normal, toward, place, repeat);
+    float* pixel = rgba_.pixel(x, y);
+    // A sample stands for its share of the area of the pixel.
+    const double scale = std::sqrt(weight_);
+    const TexturePlace whole = filtered_ ? repeated(place, repeat) : place;
+    const FilterProbes probes = filtered_ ? shader_.probes(texture, whole, scale) : FilterProbes{};
+    if (probes.level == 0 && probes.count() == 1)
+      return put_one(texture, 0, pixel, weight_, normal, toward, place, repeat);
+    for (int i = 0; i < probes.count(); ++i) {
+      put_one(texture, probes.level, pixel, weight_ / static_cast<float>(probes.count()), normal, toward,
+              probe_place(whole, scale, probes, i), 1);
+    }
   }
   void flush() {
     if (!batch_) return;
@@ -208,17 +265,29 @@ class SurfaceLayer::Row {
     if (count == 0) return;
     const float* shown = batch_->shade();
     for (int i = 0; i < count; ++i)
-      for (int c = 0; c < 3; ++c) pixels_[i][c] += weight_ * shown[4 * i + c];
+      for (int c = 0; c < 3; ++c) pixels_[i][c] += weights_[i] * shown[4 * i + c];
   }
 
  private:
+  void put_one(std::size_t texture, int level, float* pixel, float weight, const float* normal, const float* to_viewer,
+               const TexturePlace& place, double repeat) {
+    const bool other = texture != texture_ || level != level_;
+    if (batch_ && (other || batch_->full())) flush();
+    if (!batch_ || other) batch_.emplace(shader_, texture, light_, level), texture_ = texture, level_ = level;
+    pixels_[batch_->count()] = pixel, weights_[batch_->count()] = weight;
+    batch_->put(normal, to_viewer, place, repeat);
+  }
+
   const SbrdfShader& shader_;
   const SbrdfLight& light_;
   float weight_;
+  bool filtered_;
   image::Image& rgba_;
   std::size_t texture_ = 0;
+  int level_ = 0;
   std::optional<SbrdfShader::Batch> batch_;
   float* pixels_[kPointsAtOnce] = {};
+  float weights_[kPointsAtOnce] = {};
 };
 
 void SurfaceLayer::add(const Gbuffer& gbuffer, const std::vector<TexturePlace>& places, const Effects& effects,
@@ -228,7 +297,7 @@ void SurfaceLayer::add(const Gbuffer& gbuffer, const std::vector<TexturePlace>& 
   const SbrdfLight light = light_of(scene_, effects);
   parallel_for(static_cast<std::size_t>(gbuffer.height), 8, [&](std::size_t begin, std::size_t end) {
     std::optional<Row> textured;
-    if (with_textures) textured.emplace(*shader_, light, weight, rgba);
+    if (with_textures) textured.emplace(*shader_, light, weight, effects.texture_filter, rgba);
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       const Rays& rays = gbuffer.rays;
       const Vec3 first = rays.corner + (y + 0.5) * rays.down;

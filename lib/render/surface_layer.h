@@ -3,7 +3,9 @@
 // engine that drew the rest draws the textures too. goniochrome-theory(7), SPATIALLY VARYING SURFACES, Drawing.
 #pragma once
 
+#include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "brdf/color_map.h"
@@ -54,10 +56,20 @@ class SurfaceLayer {
 
   // Where the textured parts of a G-buffer's pixels lie on their textures; empty without textures.
   std::vector<TexturePlace> places(const Gbuffer& gbuffer) const;
+  // The same with footprints, whose middles lie so far from the points, in pixels to the right and downward.
+  std::vector<TexturePlace> filtered_places(const Gbuffer& gbuffer, const std::array<double, 2>& middle = {}) const;
+  // That of one pixel, with its footprint; nothing where it shows no texture or the G-buffer has no triangles.
+  std::optional<TexturePlace> place(const Gbuffer& gbuffer, int x, int y) const;
+  // In how many places a textured point is shaded with the effect texture_filter, where each counts with the lobes of
+  // its level, relative to those without it: the mean over the points.
+  double filter_cost(const std::vector<VisiblePoint>& points) const;
+  // How many texels its footprint covers, 1 or more.
+  double covered_texels(const VisiblePoint& point) const;
 
   // Adds `weight` times the layer, as far as the effects have it, to the RGB of every pixel; a part whose texture is
   // left out shows its mean texel. `places` are those of the G-buffer. Of a color map it adds the difference to what
   // the lobe model shows of the same light, gloss apart. Where an engine drew the textures, `with_textures` is false.
+  // With the effect texture_filter, the weight is also the part of its pixel that a sample stands for.
   // Bit-identical for any number of threads.
   void add(const Gbuffer& gbuffer, const std::vector<TexturePlace>& places, const Effects& effects, float weight,
            image::Image& rgba, bool with_textures = true) const;

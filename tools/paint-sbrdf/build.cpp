@@ -68,23 +68,6 @@ Result<Layout> layout_of(const Options& o, const Surfaces& surfaces, const Patte
 
 namespace {
 
-// The texels of a row of `from` that a texel of a row of `to` covers, or between which it lies, and their shares.
-std::vector<std::pair<int, double>> covered(int at, int to, int from) {
-  if (from == to) return {{at, 1.0}};
-  std::vector<std::pair<int, double>> result;
-  const double scale = static_cast<double>(from) / to;
-  if (from < to) {
-    const double place = (at + 0.5) * scale - 0.5, low = std::floor(place);
-    const int first = (static_cast<int>(low) + from) % from;
-    result = {{first, 1 - (place - low)}, {(first + 1) % from, place - low}};
-  } else {
-    for (int i = static_cast<int>(at * scale); i < from && i < (at + 1) * scale; ++i)
-      result.emplace_back(i, std::min(i + 1.0, (at + 1) * scale) / scale - std::max<double>(i, at * scale) / scale);
-  }
-  std::erase_if(result, [](const auto& part) { return part.second < 1e-9; });
-  return result;
-}
-
 // The lobe with another exponent that reflects as much light. Where its axes x and y are longer than z, they keep how
 // much it grows toward grazing angles: n (a^2 - 1) stays.
 void widen(brdf::LafortuneLobe& lobe, double factor) {
@@ -182,8 +165,8 @@ class Builder {
       return;
     }
     brdf::LobeSurface sum;
-    for (const auto& [y, high] : covered(row, layout_.height, surface.height()))
-      for (const auto& [x, wide] : covered(column, layout_.width, surface.width()))
+    for (const auto& [y, high] : brdf::covered_texels(row, layout_.height, surface.height()))
+      for (const auto& [x, wide] : brdf::covered_texels(column, layout_.width, surface.width()))
         brdf::add_surface(sum, surface.texel(x, y), wide * high);
     const int most = most_lobes_ > 0 ? std::min(most_lobes_, surface.lobes()) : surface.lobes();
     fit::Refit fitted = fit::refit(sum, most);

@@ -56,6 +56,22 @@ draw() { # draw NAME MESH TEXTURE: also its report, seen and lit from the azimut
   [ "$status" -eq 3 ] && [[ "$output" == *"give project=box"* ]] && [ ! -e none.exr ]
 }
 
+@test "pixels that cover many texels show their mean, whichever engine draws" {
+  paint-sbrdf -q four.ppm --tile 8x8 -o many.sbrdf.exr
+  floor() { # floor NAME EFFECTS ENGINE
+    render-osmesa -q --mesh square.obj --texture 'Square=many.sbrdf.exr*20' --light 0,30@0 --size 48x48 --samples 1 \
+      --orbit 0,10,1 --effects "$2" --engine "$3" --report "$1.json" -o "$1.exr"
+  }
+  floor with auto,-rays cpu
+  floor without auto,-rays,-texture-filter cpu
+  floor gl auto,-rays gl
+  jq -e '.results.plan[] | select(.effect == "texture-filter") | .needed and .decision == "drawn" and .de00_p95 > 5' with.json
+  jq -e '.results.plan[] | select(.effect == "texture-filter") | .decision == "forced off"' without.json
+  spread() { oiiotool "$1.exr" --ch R --cut 16x16+16+16 --stats | sed -n 's/.*Stats StdDev: *\([0-9.]*\).*/\1/p'; }
+  awk -v with="$(spread with)" -v without="$(spread without)" 'BEGIN { exit !(with < 0.2 * without) }'
+  oiiotool with.exr gl.exr --fail 0.002 --diff
+}
+
 @test "axis, scale, center and turn place it" {
   draw half cube.obj Cube=four.sbrdf.exr,project=planar,axis=z,scale=4,center=1,1,0
   # A texture of four units about the corner: what is seen is its lower left quarter.

@@ -168,8 +168,14 @@ Result<void> GlEngine::upload_textures(const Scene& scene) {
     layers_.emplace_back(sampler, layered(layers));
     return {};
   };
-  for (const std::size_t number : layer_->drawn(effects_))
-    GONIO_TRY(add(fmt::format("texture_{}", layers_.size()), texture_layers(shader.packed(number))));
+  std::size_t i = 0;
+  for (const std::size_t number : layer_->drawn(effects_)) {
+    GONIO_TRY(add(fmt::format("texture_{}", i), texture_layers(shader.packed(number))));
+    const TextureProgram::Texture& texture = program.textures[i];
+    if (!texture.levels.empty())
+      GONIO_TRY(add(fmt::format("levels_{}", i), level_layers(shader, number, effects_.texture_lobes, texture)));
+    ++i;
+  }
   if (program.cubes.empty()) return {};
   const FloatTexture maps = lobe_map_texture(shader), horizon = lobe_horizon_texture(shader);
   GONIO_TRY(fits(maps.columns, maps.rows, "maps of the textures' lobes"));
@@ -229,7 +235,7 @@ Result<void> GlEngine::shade(Sight& sight, int sample, float gain, bool add, ima
   GONIO_TRY(resize(seen.width(), seen.height()));
   if (layer_ != nullptr) {
     gl_->DeleteTextures(1, &places_);
-    places_ = layered(place_layers(*layer_, effects_, *sight.gbuffer(sample), sight.places(sample)));
+    places_ = layered(place_layers(*layer_, effects_, *sight.gbuffer(sample), sight.places(sample), gain));
   }
   gain_ = gain;
   gl_->BindFramebuffer(GL_FRAMEBUFFER, target_);

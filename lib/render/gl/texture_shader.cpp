@@ -29,7 +29,17 @@ TextureProgram texture_program(const Scene& scene, const Effects& effects) {
   TextureProgram program;
   if (scene.layer == nullptr || !scene.layer->textured()) return program;
   const SbrdfShader& shader = *scene.layer->shader();
-  for (const std::size_t number : scene.layer->drawn(effects)) program.lobes.push_back(shader.packed(number).lobes);
+  for (const std::size_t number : scene.layer->drawn(effects)) {
+    TextureProgram::Texture& texture = program.textures.emplace_back();
+    texture.lobes = shader.packed(number).lobes;
+    int row = 0;
+    for (int level = 1; effects.texture_filter && level <= shader.levels(number); ++level) {
+      const PackedTexture& packed = shader.packed(number, level, effects.texture_lobes);
+      texture.levels.push_back({packed.width, packed.height, row});
+      texture.level_lobes = std::max(texture.level_lobes, packed.lobes);
+      row += packed.height;
+    }
+  }
   if (!effects.environment) return program;
   int row = 0;
   for (const LobeMap& map : cubes_of(shader)) {
@@ -40,15 +50,21 @@ TextureProgram texture_program(const Scene& scene, const Effects& effects) {
   return program;
 }
 
-TextureLayers texture_layers(const PackedTexture& texture) {
-  const std::size_t texels = static_cast<std::size_t>(texture.width) * static_cast<std::size_t>(texture.height);
-  TextureLayers result{texture.width, texture.height, 1 + kTextureLobeLayers * texture.lobes, {}};
-  result.rgba.resize(4 * texels * static_cast<std::size_t>(result.layers));
-  for (std::size_t i = 0; i < texels; ++i) {
+bool TextureProgram::filtered() const {
+  return std::ranges::any_of(textures, [](const Texture& texture) { return !texture.levels.empty(); });
+}
+
+namespace {
+
+// From the row on, in a texture of so many texels a layer.
+void put_layers(const PackedTexture& texture, int row, TextureLayers& result) {
+  const std::size_t texels = static_cast<std::size_t>(result.width) * static_cast<std::size_t>(result.height),
+                    wide = static_cast<std::size_t>(texture.width);
+  for (std::size_t i = 0; i < wide * static_cast<std::size_t>(texture.height); ++i) {
     const float* from = &texture.texels[i * texture.stride()];
-    float* to = &result.rgba[4 * i];
+    float* to = &result.rgba[4 * ((static_cast<std::size_t>(row) + i / wide) * static_cast<std::size_t>(result.width) +
+                                  i % wide)];
     std::copy_n(from, 3, to);
-    to[3] = std::atan2(from[5], from[4]);
     from += kTexelFloats;
     for (int lobe = 0; lobe < texture.lobes; ++lobe, from += kTexelLobeFloats) {
       to += 4 * texels;
@@ -59,8 +75,38 @@ TextureLayers texture_layers(const PackedTexture& texture) {
       to += 4 * texels;
       to[0] = from[kLobeMap] + from[kLobeMap + 1];
       to[1] = from[kLobeHorizon] + from[kLobeHorizon + 1];
+      to[2] = std::atan2(from[kLobeTurn + 1], from[kLobeTurn]);
     }
   }
+}
+
+TextureLayers empty_layers(int width, int height, int lobes) {
+  TextureLayers result{width, height, 1 + kTextureLobeLayers * lobes, {}};
+  result.rgba.resize(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
+                     static_cast<std::size_t>(result.layers));
+  // Lobes that are not there have the logarithm of no albedo.
+  const std::size_t layer = 4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  for (std::size_t lobe = 0; lobe < static_cast<std::size_t>(lobes); ++lobe) {
+    float* first = &result.rgba[(1 + kTextureLobeLayers * lobe) * layer];
+    for (std::size_t i = 3; i < layer; i += 4) first[i] = kNoLobe;
+  }
+  return result;
+}
+
+}  // namespace
+
+TextureLayers texture_layers(const PackedTexture& texture) {
+  TextureLayers result = empty_layers(texture.width, texture.height, texture.lobes);
+  put_layers(texture, 0, result);
+  return result;
+}
+
+TextureLayers level_layers(const SbrdfShader& shader, std::size_t number, std::uint32_t lobes,
+                           const TextureProgram::Texture& texture) {
+  const TextureProgram::Level &first = texture.levels.front(), &last = texture.levels.back();
+  TextureLayers result = empty_layers(first.width, last.row + last.height, texture.level_lobes);
+  for (std::size_t i = 0; i < texture.levels.size(); ++i)
+    put_layers(shader.packed(number, static_cast<int>(i) + 1, lobes), texture.levels[i].row, result);
   return result;
 }
 
@@ -90,9 +136,9 @@ FloatTexture lobe_horizon_texture(const SbrdfShader& shader) {
 }
 
 TextureLayers place_layers(const SurfaceLayer& layer, const Effects& effects, const Gbuffer& gbuffer,
-                           const std::vector<TexturePlace>& places) {
-  TextureLayers result{gbuffer.width, gbuffer.height, 2, {}};
-  result.rgba.assign(8 * places.size(), 0.0F);
+                           const std::vector<TexturePlace>& places, double share) {
+  TextureLayers result{gbuffer.width, gbuffer.height, 3, {}};
+  result.rgba.assign(12 * places.size(), 0.0F);
   const std::vector<std::size_t> drawn = layer.drawn(effects);
   // The program counts from 0 to below 1, so that it has all digits for the place within the texture.
   const auto within = [](double x) {
@@ -102,22 +148,37 @@ TextureLayers place_layers(const SurfaceLayer& layer, const Effects& effects, co
     const int part = static_cast<int>(std::abs(gbuffer.data[4 * i + 3])) - 1;
     if (part < 0 || layer.surface(part).texture == nullptr) continue;
     const double repeat = layer.surface(part).repeat;
+    const TexturePlace place = repeated(places[i], repeat);
     const std::size_t which = layer.shading_of(part, effects);
+    const FilterProbes probes =
+        effects.texture_filter ? layer.shader()->probes(which, place, std::sqrt(share)) : FilterProbes{};
     float* to = &result.rgba[4 * i];
     to[0] = within(repeat * places[i].u), to[1] = within(repeat * places[i].v);
     to[2] = static_cast<float>(std::ranges::find(drawn, which) - drawn.begin() + 1);
-    std::copy_n(places[i].tangent, 3, to + 4 * places.size());
+    to[3] = static_cast<float>(probes.level);
+    to += 4 * places.size();
+    std::copy_n(place.tangent, 3, to);
+    to[3] = static_cast<float>(kMostProbes * probes.down + probes.across - 1);
+    to += 4 * places.size();
+    for (std::size_t c = 0; c < 2; ++c) {
+      to[c] = static_cast<float>(std::sqrt(share) * probes.wide * place.across[c]);
+      to[2 + c] = static_cast<float>(std::sqrt(share) * probes.high * place.down[c]);
+    }
   }
   return result;
 }
 
 std::string texture_uniforms(const TextureProgram& textures, const Effects& effects) {
   if (!textures.any()) return "";
-  std::string text = "uniform sampler2DArray places;  // u, v, number of the texture + 1; tangent\n";
-  for (std::size_t i = 0; i < textures.lobes.size(); ++i) {
+  std::string text =
+      "uniform sampler2DArray places;  // u, v, number of the texture + 1, level; tangent, probes; footprint\n";
+  for (std::size_t i = 0; i < textures.textures.size(); ++i) {
     text += fmt::format(
-        "uniform sampler2DArray texture_{};  // diffuse, angle; {} x (color, log albedo; axes, exponent; cube, row)\n",
-        i, textures.lobes[i]);
+        "uniform sampler2DArray texture_{};  // diffuse; {} x (color, log albedo; axes, exponent; cube, row, angle)\n",
+        i, textures.textures[i].lobes);
+    if (!textures.textures[i].levels.empty())
+      text += fmt::format("uniform sampler2DArray levels_{};  // likewise, {} lobes, one level below the other\n", i,
+                          textures.textures[i].level_lobes);
   }
   if (!textures.cubes.empty()) {
     text +=
@@ -228,15 +289,44 @@ std::string diffuse_terms(const TextureProgram& textures, const Effects& effects
   return text + fmt::format("  return sum + {};\n", times(effects, "light", "diffuse"));
 }
 
-std::string place_function(const TextureProgram& textures, std::uint32_t on) {
+// The mean over the probes of a pixel, which lie within the texture once it is taken to repeat.
+std::string probed_function(const TextureProgram& textures, std::uint32_t on) {
   std::string text = R"(vec3 textured(ivec2 at, vec3 n, vec3 wo) {
-  vec4 place = texelFetch(places, ivec3(at, 0), 0);
-  vec3 tangent = texelFetch(places, ivec3(at, 1), 0).xyz;
+  vec4 place = texelFetch(places, ivec3(at, 0), 0), tangent = texelFetch(places, ivec3(at, 1), 0);
 )";
-  for (std::size_t i = 0; i < textures.lobes.size(); ++i)
-    text += fmt::format("  if (place.z == {}.0) return texels(texture_{}, {}, {}u, place.xy, tangent, n, wo);\n", i + 1,
-                        i, textures.lobes[i], on);
-  return text + "  return vec3(0.0);\n}\n";
+  if (!textures.filtered()) {
+    for (std::size_t i = 0; i < textures.textures.size(); ++i) {
+      text += fmt::format(
+          "  if (place.z == {0}.0) return texels(texture_{1}, {2}, {3}u, ivec3(textureSize(texture_{1}, 0).xy, 0), "
+          "place.xy, tangent.xyz, n, wo);\n",
+          i + 1, i, textures.textures[i].lobes, on);
+    }
+    return text + "  return vec3(0.0);\n}\n";
+  }
+  text += fmt::format(R"(  vec4 footprint = texelFetch(places, ivec3(at, 2), 0);
+  int across = int(tangent.w) % {0} + 1, down = int(tangent.w) / {0}, level = int(place.w);
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < across * down; ++i) {{
+    vec2 in_pixel = (vec2(i % across, i / across) + 0.5) / vec2(across, down) - 0.5;
+    vec2 probe = fract(place.xy + in_pixel.x * footprint.xy + in_pixel.y * footprint.zw);
+)",
+                      kMostProbes);
+  for (std::size_t i = 0; i < textures.textures.size(); ++i) {
+    const TextureProgram::Texture& texture = textures.textures[i];
+    std::string levels;
+    for (const TextureProgram::Level& level : texture.levels)
+      levels += fmt::format("{}ivec3({}, {}, {})", levels.empty() ? "" : ", ", level.width, level.height, level.row);
+    text += fmt::format(
+        "    if (place.z == {}.0{}) sum += texels(texture_{}, {}, {}u, ivec3(textureSize(texture_{}, 0).xy, 0), "
+        "probe, tangent.xyz, n, wo);\n",
+        i + 1, levels.empty() ? "" : " && level == 0", i, texture.lobes, on, i);
+    if (levels.empty()) continue;
+    text += fmt::format(
+        "    if (place.z == {}.0 && level > 0)\n      sum += texels(levels_{}, {}, ~0u, ivec3[{}]({})[level - 1], "
+        "probe, tangent.xyz, n, wo);\n",
+        i + 1, i, texture.level_lobes, texture.levels.size(), levels);
+  }
+  return text + "  }\n  return sum / float(across * down);\n}\n";
 }
 
 }  // namespace
@@ -248,30 +338,29 @@ std::string texture_function(const TextureProgram& textures, const Effects& effe
   if (!textures.cubes.empty()) text += cube_functions(textures);
   text += fmt::format(
       R"(
-vec3 texels(sampler2DArray map, int lobes, uint on, vec2 place, vec3 tangent, vec3 n, vec3 wo) {{
+vec3 texels(sampler2DArray map, int lobes, uint on, ivec3 level, vec2 place, vec3 tangent, vec3 n, vec3 wo) {{
   // The frame of the surface. A tangent along the normal says nothing: any direction in the surface will do.
   vec3 t = tangent - dot(tangent, n) * n, other = abs(n.x) < 0.7 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
   if (dot(t, t) < 1e-12) t = other - dot(other, n) * n;
   t = normalize(t);
   vec3 b = cross(n, t), v = vec3(dot(wo, t), dot(wo, b), dot(wo, n));
   if (v.z <= 0.0) return vec3(0.0);
-  ivec2 size = textureSize(map, 0).xy;
+  ivec2 size = level.xy;
   vec2 at = vec2(place.x, 1.0 - place.y) * vec2(size) - 0.5, low = floor(at), part = at - low;
   vec3 sum = vec3(0.0), diffuse = vec3(0.0);
   for (int tap = 0; tap < 4; ++tap) {{
     ivec2 next = ivec2(tap & 1, tap >> 1);
     float share = (next.x == 1 ? part.x : 1.0 - part.x) * (next.y == 1 ? part.y : 1.0 - part.y);
     if (share <= 0.0) continue;
-    ivec2 texel = (ivec2(low) + next + size) % size;
-    vec4 base = texelFetch(map, ivec3(texel, 0), 0);
-    vec2 turn = vec2(cos(base.a), sin(base.a));  // from the tangent to the x axis of the texel
-    vec3 w = vec3(turn.x * v.x + turn.y * v.y, turn.x * v.y - turn.y * v.x, v.z);
-    diffuse += share * base.rgb;
+    ivec2 texel = (ivec2(low) + next + size) % size + ivec2(0, level.z);
+    diffuse += share * texelFetch(map, ivec3(texel, 0), 0).rgb;
     for (int k = 0; k < lobes; ++k) {{
       if ((on >> uint(k) & 1u) == 0u) continue;
       ivec3 layer = ivec3(texel, 1 + {} * k);
       vec4 lobe = texelFetch(map, layer, 0), shape = texelFetch(map, layer + ivec3(0, 0, 1), 0);
-      vec2 where = texelFetch(map, layer + ivec3(0, 0, 2), 0).xy;
+      vec3 where = texelFetch(map, layer + ivec3(0, 0, 2), 0).xyz;
+      vec2 turn = vec2(cos(where.z), sin(where.z));  // from the tangent to the lobe's x axis
+      vec3 w = vec3(turn.x * v.x + turn.y * v.y, turn.x * v.y - turn.y * v.x, v.z);
       // p = C wo, its direction m, and log |p|^n from |p|^2 - 1, which is exact where a lobe mirrors.
       vec3 p = shape.xyz * w;
       float size2 = max(dot(p, p), 1e-30), excess = dot((shape.xyz - 1.0) * (shape.xyz + 1.0), w * w);
@@ -283,7 +372,7 @@ vec3 texels(sampler2DArray map, int lobes, uint on, vec2 place, vec3 tangent, ve
 )",
       kTextureLobeLayers, textures.cubes.empty() ? "" : environment_lobe(effects),
       effects.lights > 0 ? lit_lobe(effects) : "", diffuse_terms(textures, effects));
-  return text + place_function(textures, effects.texture_lobes);
+  return text + probed_function(textures, effects.texture_lobes);
 }
 
 }  // namespace goniochrome::render

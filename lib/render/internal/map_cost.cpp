@@ -18,11 +18,11 @@ double mapped_point_ns(const Workload& work, const Effects& effects) {
   return effects.maps ? kMapped * directions : 0;
 }
 
-double textured_point_ns(const Effects& effects, int lobes, const TextureCost& cost) {
+double textured_point_ns(const Effects& effects, int lobes, double filter, const TextureCost& cost) {
   const std::uint32_t on = effects.texture_lobes & ((1U << lobes) - 1);
   const double lobe =
       cost.lobe + (effects.environment ? cost.fetches : 0) + static_cast<double>(effects.lights) * cost.lit;
-  return cost.point + (effects.texture ? 4 : 1) * std::popcount(on) * lobe;
+  return cost.point + (effects.texture ? 4 : 1) * (effects.texture_filter ? filter : 1) * std::popcount(on) * lobe;
 }
 
 // Of the ray that goes on behind a pane, and of adding up what it meets.
@@ -51,7 +51,8 @@ double point_ns(const Workload& work, const Effects& effects, const MapCost& c) 
 }
 
 double frame_ms(const Workload& work, const Effects& effects, const MapCost& cost) {
-  const double texture_ns = work.textured > 0 ? textured_point_ns(effects, work.texture_lobes, cost.texture) : 0;
+  const double texture_ns =
+      work.textured > 0 ? textured_point_ns(effects, work.texture_lobes, work.texture_filter, cost.texture) : 0;
   const double behind_ns = effects.panes ? work.behind_pixels * (cost.pixel + kBehind_ns) +
                                                work.behind_points * point_ns(work, effects, cost)
                                          : 0;

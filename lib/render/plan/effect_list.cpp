@@ -133,6 +133,13 @@ std::string texture_reason(const Scene& scene, const Effects& all, const std::ve
                      percent(seen, [&](const auto& p) { return scene.layer->surface(p.part).texture != nullptr; }));
 }
 
+// The most texels that a pixel covers.
+double most_covered(const Scene& scene, const std::vector<VisiblePoint>& seen) {
+  double most = 1;
+  for (const VisiblePoint& point : seen) most = std::max(most, scene.layer->covered_texels(point));
+  return most;
+}
+
 // The sets of tilted lobes, the coarsest first. Each set but the first is drawn in the place of the one before it.
 void add_tilts(const Scene& scene, const Effects& all, std::vector<EffectSwitch>& list) {
   int before = -1;
@@ -246,6 +253,12 @@ std::vector<EffectSwitch> effect_switches(const Scene& scene, const Effects& all
   list.back().beyond_maps = true;
   add_tilts(scene, all, list);
   add("texture", all.texture, texture_reason(scene, all, seen), [](Effects& e) { e.texture = false; });
+  const int texture = static_cast<int>(list.size()) - 1;
+  const double covered = all.texture_filter ? most_covered(scene, seen) : 1;
+  add("texture-filter", covered > 1,
+      covered > 1 ? fmt::format("pixels cover up to {:.3g} texels", covered) : "no pixel covers more than a texel",
+      [](Effects& e) { e.texture_filter = false; });
+  list.back().needs = texture;
   add_texture_lobes(scene, all, list);
   add("operator", all.reflection && light_chroma(scene, all) > kWhiteChroma, reflection_reason(scene, all),
       [](Effects& e) { e.reflection = false; });

@@ -1,6 +1,7 @@
 #include "render/textures/sbrdf.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -15,6 +16,8 @@ namespace goniochrome::render {
 namespace {
 
 constexpr double kHorizonStep = std::numbers::sqrt2;  // from exponent to exponent of the horizon table
+// Lobes of coarser levels may be as much wider than the widest of the texture.
+constexpr double kWider = 4;
 
 // The faces with their borders, R G B 0 a texel.
 std::vector<float> quads(const envmap::CubeMap& map) {
@@ -71,9 +74,10 @@ SbrdfShader::SbrdfShader(const envmap::PrefilteredEnvironment* env, const MipCub
   low = std::min(low, high);
   if (env != nullptr) {
     make_maps(*env, mip, low, high);
-    make_horizon(low, high);
+    make_horizon(low / kWider, high);
   }
-  for (const brdf::SbrdfTexture* texture : textures) textures_.push_back(pack(*texture));
+  given_ = textures;
+  for (const brdf::SbrdfTexture* texture : textures) textures_.push_back(pack(*texture)), levels_.emplace_back();
 }
 
 namespace {
@@ -131,7 +135,7 @@ void SbrdfShader::make_maps(const envmap::PrefilteredEnvironment& env, const Mip
         wanted_exponents(exponents_, low, high, levels),
         mip != nullptr && too_wide ? ", and look them up in cubes: levels of one cube end with exponent 1" : "");
   }
-  const auto first = static_cast<std::size_t>(brdf::exponent_blend(low, exponents_).lower);
+  const auto first = static_cast<std::size_t>(brdf::exponent_blend(low / kWider, exponents_).lower);
   const brdf::ExponentBlend top = brdf::exponent_blend(high, exponents_);
   const std::size_t last = static_cast<std::size_t>(top.lower) + (top.upper_weight > 0 ? 1 : 0);
   for (std::size_t i = first; i <= last; ++i) texels_.push_back(quads(*all[i]));
@@ -186,16 +190,60 @@ PackedTexture SbrdfShader::pack(const brdf::SbrdfTexture& texture) const {
       for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(texel.surface.diffuse[c]);
       to[4] = static_cast<float>(texel.x_tangent), to[5] = static_cast<float>(texel.x_bitangent);
       to += kTexelFloats;
-      for (const brdf::LafortuneLobe& lobe : texel.surface.lobes) pack_lobe(lobe, to), to += kTexelLobeFloats;
+      for (const brdf::LafortuneLobe& lobe : texel.surface.lobes) {
+        pack_lobe(lobe, to);
+        to[kLobeTurn] = static_cast<float>(texel.x_tangent), to[kLobeTurn + 1] = static_cast<float>(texel.x_bitangent);
+        to += kTexelLobeFloats;
+      }
     }
   });
   return result;
 }
 
-SbrdfShader::Batch::Batch(const SbrdfShader& shader, std::size_t texture, const SbrdfLight& light)
-    : packed_(shader.packed(texture)) {
+PackedTexture SbrdfShader::pack(const TextureLevel& level) const {
+  PackedTexture result{level.width, level.height, 0, {}};
+  for (const brdf::LobeSurface& texel : level.texels)
+    result.lobes = std::max(result.lobes, static_cast<int>(texel.lobes.size()));
+  result.texels.assign(result.stride() * level.texels.size(), 0.0F);
+  for (std::size_t i = 0; i < level.texels.size(); ++i) {
+    float* to = &result.texels[result.stride() * i];
+    for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(level.texels[i].diffuse[c]);
+    to[4] = 1, to += kTexelFloats;
+    for (std::size_t lobe = 0; lobe < static_cast<std::size_t>(result.lobes); ++lobe, to += kTexelLobeFloats) {
+      const bool there = lobe < level.texels[i].lobes.size();
+      const brdf::TurnedLobe turned = there ? level.texels[i].lobes[lobe] : brdf::TurnedLobe{};
+      pack_lobe(turned.lobe, to);
+      to[kLobeTurn] = static_cast<float>(std::cos(turned.turn_rad));
+      to[kLobeTurn + 1] = static_cast<float>(std::sin(turned.turn_rad));
+    }
+  }
+  return result;
+}
+
+const PackedTexture& SbrdfShader::packed(std::size_t texture, int level, std::uint32_t lobes) const {
+  if (level == 0) return textures_[texture];
+  Levels& levels = levels_[texture];
+  if (textures_[texture].lobes < 32) lobes &= (1U << textures_[texture].lobes) - 1;
+  const std::lock_guard<std::mutex> lock(levels.mutex);
+  std::vector<PackedTexture>& made = levels.packed[lobes];
+  if (made.empty())
+    for (const TextureLevel& of : texture_levels(*given_[texture], lobes)) made.push_back(pack(of));
+  return made[static_cast<std::size_t>(level) - 1];
+}
+
+FilterProbes SbrdfShader::probes(std::size_t texture, const TexturePlace& place, double scale) const {
+  return filter_probes(place, scale, textures_[texture].width, textures_[texture].height, levels(texture));
+}
+
+int SbrdfShader::levels(std::size_t texture) const {
+  const PackedTexture& packed = textures_[texture];
+  return static_cast<int>(std::bit_width(static_cast<unsigned>(std::max(packed.width, packed.height)))) - 1;
+}
+
+SbrdfShader::Batch::Batch(const SbrdfShader& shader, std::size_t texture, const SbrdfLight& light, int level)
+    : packed_(shader.packed(texture, level, light.lobes)) {
   shading_.lobes = packed_.lobes;
-  shading_.lobes_on = light.lobes;
+  shading_.lobes_on = level == 0 ? light.lobes : ~0U;
   if (light.environment) {
     shading_.diffuse = shader.diffuse_;
     shading_.maps = shader.maps_.data();
@@ -247,9 +295,9 @@ const float* SbrdfShader::Batch::shade() {
 }
 
 std::vector<color::Rgb> SbrdfShader::shade(std::size_t texture, const SbrdfLight& light,
-                                           const std::vector<VisiblePoint>& points) const {
+                                           const std::vector<VisiblePoint>& points, int level) const {
   std::vector<color::Rgb> colors;
-  Batch batch(*this, texture, light);
+  Batch batch(*this, texture, light, level);
   const auto flush = [&] {
     const int count = batch.count();
     const float* rgba = batch.shade();

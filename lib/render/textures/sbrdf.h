@@ -3,6 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
+#include <map>
+#include <mutex>
 #include <vector>
 
 #include "base/result.h"
@@ -11,6 +14,7 @@
 #include "render/gbuffer.h"
 #include "render/scene.h"
 #include "render/textures/sbrdf_kernel.h"
+#include "render/textures/texture_filter.h"
 
 namespace goniochrome::render {
 
@@ -53,7 +57,7 @@ struct PackedTexture {
 class SbrdfShader {
  public:
   // With `mip` lobes are fetched there (trilinearly), else from the environment's own maps, two neighbors in exponent
-  // blended. Both may be null, and all but the textures must outlive the shader.
+  // blended. Both may be null, and all must outlive the shader.
   SbrdfShader(const envmap::PrefilteredEnvironment* env, const MipCube* mip,
               const std::vector<const brdf::SbrdfTexture*>& textures);
 
@@ -61,14 +65,21 @@ class SbrdfShader {
   // that are missing. Such lobes would be drawn as those of the nearest map.
   Result<void> has_all_maps() const;
 
-  // Radiance in the working space of points on one texture, at their places; 0 seen from below. The four texels around
-  // a place are shaded one by one, and their colors blended. Single precision; the same for any company of points.
-  std::vector<color::Rgb> shade(std::size_t texture, const SbrdfLight& light,
-                                const std::vector<VisiblePoint>& points) const;
+  // Radiance in the working space of points on one texture, or on one of its levels, at their places; 0 seen from
+  // below. The four texels around a place are shaded one by one, and their colors blended. Single precision; the same
+  // for any company of points.
+  std::vector<color::Rgb> shade(std::size_t texture, const SbrdfLight& light, const std::vector<VisiblePoint>& points,
+                                int level = 0) const;
+
+  // How a texture is shaded whose footprint is `scale` times that of the place. Levels are made when they are first
+  // called for, and that may be on many threads.
+  FilterProbes probes(std::size_t texture, const TexturePlace& place, double scale) const;
 
   // What the programs of OpenGL read: the textures in the order in which they were given, the maps that their lobes
   // number, the map of the diffuse part (null without an environment), and the table of SbrdfShading::horizon.
-  const PackedTexture& packed(std::size_t texture) const { return textures_[texture]; }
+  // Levels have these lobes of the texture alone, since theirs stand for several.
+  const PackedTexture& packed(std::size_t texture, int level = 0, std::uint32_t lobes = ~0U) const;
+  int levels(std::size_t texture) const;  // coarser ones
   const std::vector<LobeMap>& maps() const { return maps_; }
   const LobeMap& diffuse() const { return diffuse_; }
   const std::vector<float>& horizon() const { return horizon_; }
@@ -77,7 +88,7 @@ class SbrdfShader {
   // Shades up to kPointsAtOnce points that were put.
   class Batch {
    public:
-    Batch(const SbrdfShader& shader, std::size_t texture, const SbrdfLight& light);
+    Batch(const SbrdfShader& shader, std::size_t texture, const SbrdfLight& light, int level = 0);
     Batch(const Batch&) = delete;  // the kernel's tables point into it
     Batch& operator=(const Batch&) = delete;
     // `normal` and `to_viewer` on the same side, the first unit.
@@ -100,9 +111,17 @@ class SbrdfShader {
   void make_maps(const envmap::PrefilteredEnvironment& env, const MipCube* mip, double low, double high);
   void make_horizon(double low, double high);
   PackedTexture pack(const brdf::SbrdfTexture& texture) const;
+  PackedTexture pack(const TextureLevel& level) const;
   void pack_lobe(const brdf::LafortuneLobe& lobe, float* to) const;
 
+  struct Levels {
+    std::mutex mutex;
+    std::map<std::uint32_t, std::vector<PackedTexture>> packed;  // by the lobes that they have; from 1 on
+  };
+
+  std::vector<const brdf::SbrdfTexture*> given_;
   std::vector<PackedTexture> textures_;
+  mutable std::deque<Levels> levels_;
   std::string missing_;            // see has_all_maps()
   std::vector<double> exponents_;  // of the maps, ascending
   std::vector<LobeMap> maps_;

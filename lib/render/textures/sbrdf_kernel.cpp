@@ -66,7 +66,7 @@ HWY_INLINE void set_up_frames(const SbrdfPoints& p, SurfaceFrames& frames) {
 
 // One lobe of one texel for each point, its values side by side.
 struct LobeValues {
-  HWY_ALIGN float cos_x[kPointsAtOnce], sin_x[kPointsAtOnce];  // of the texel's frame
+  HWY_ALIGN float cos_x[kPointsAtOnce], sin_x[kPointsAtOnce];  // of the lobe's frame
   HWY_ALIGN float ax[kPointsAtOnce], ay[kPointsAtOnce], az[kPointsAtOnce], exponent[kPointsAtOnce];
   HWY_ALIGN float energy[kPointsAtOnce], albedo[kPointsAtOnce];  // logarithms
   const float* lobe[kPointsAtOnce];
@@ -76,7 +76,7 @@ HWY_INLINE void gather_lobe(const SbrdfPoints& p, int tap, int lobe, LobeValues&
   for (int i = 0; i < kPointsAtOnce; ++i) {
     const float* texel = p.texel[tap][i];
     const float* l = texel + kTexelFloats + kTexelLobeFloats * static_cast<std::size_t>(lobe);
-    values.cos_x[i] = texel[4], values.sin_x[i] = texel[5];
+    values.cos_x[i] = l[kLobeTurn], values.sin_x[i] = l[kLobeTurn + 1];
     values.ax[i] = l[kLobeAxes], values.ay[i] = l[kLobeAxes + 1], values.az[i] = l[kLobeAxes + 2];
     values.exponent[i] = l[kLobeExponent];
     values.energy[i] = l[kLobeEnergy], values.albedo[i] = l[kLobeAlbedo];

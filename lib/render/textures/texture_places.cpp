@@ -1,5 +1,6 @@
 #include "render/textures/texture_places.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -110,18 +111,81 @@ TexturePlace TextureLayout::place(int part, const MeshPoint& point) const {
   return place(point, faces_[at][point.triangle - mesh_.parts[at].first]);
 }
 
-std::vector<TexturePlace> TextureLayout::places(const Gbuffer& gbuffer) const {
+// The differences of u and v across a pixel, from the rays through the middles of its sides, which meet the plane of
+// the triangle. Beyond the horizon of that plane the footprint has no end.
+void TextureLayout::add_footprint(const Gbuffer& gbuffer, int x, int y, const MeshPoint& point,
+                                  TexturePlace& place) const {
+  constexpr float kEndless = 1e3F;
+  const auto part = static_cast<std::size_t>(gbuffer.part(x, y));
+  const auto& corners = mesh_.triangles[point.triangle];
+  const bool own = layings_[part].projection == Projection::kOwn;
+  Vec3 normal;
+  for (std::size_t k = 0; k < 3; ++k) normal += point.shares[k] * mesh_.normals[corners[k]];
+  // The place toward (x, y), or nothing.
+  const auto met = [&](double at_x, double at_y, float* uv) {
+    const PlaneHit hit = plane_hit(mesh_, point.triangle, gbuffer.rays.eye, gbuffer.rays.direction(at_x, at_y));
+    if (!hit.ahead) return false;
+    Vec3 position;
+    uv[0] = uv[1] = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (own) {
+        const auto& corner = faces_[part][point.triangle - mesh_.parts[part].first][k];
+        for (std::size_t c = 0; c < 2; ++c) uv[c] += static_cast<float>(hit.shares[k] * corner[c]);
+      } else {
+        position += hit.shares[k] * mesh_.positions[corners[k]];
+      }
+    }
+    if (own) return true;
+    const TexturePlace there = projected(layings_[part], position, normal);
+    uv[0] = there.u, uv[1] = there.v;
+    return true;
+  };
+  const auto step = [&](double dx, double dy, float* to) {
+    float low[2], high[2];
+    const bool whole = met(x + 0.5 - dx, y + 0.5 - dy, low) && met(x + 0.5 + dx, y + 0.5 + dy, high);
+    for (int c = 0; c < 2; ++c) to[c] = whole ? std::clamp(high[c] - low[c], -kEndless, kEndless) : kEndless;
+    // Around an axis, u may go on at the other edge.
+    const Projection by = layings_[part].projection;
+    if (whole && (by == Projection::kCylinder || by == Projection::kSphere))
+      to[0] -= static_cast<float>(layings_[part].around * std::round(to[0] / layings_[part].around));
+  };
+  step(0.5, 0, place.across), step(0, 0.5, place.down);
+}
+
+TexturePlace TextureLayout::place(const Gbuffer& gbuffer, int x, int y) const {
+  const MeshPoint point = mesh_point(mesh_, gbuffer, x, y);
+  TexturePlace result = place(gbuffer.part(x, y), point);
+  add_footprint(gbuffer, x, y, point, result);
+  return result;
+}
+
+template <class PlaceAt>
+std::vector<TexturePlace> TextureLayout::each_pixel(const Gbuffer& gbuffer, const PlaceAt& place_at) const {
   std::vector<TexturePlace> places(gbuffer.triangles.size());
   parallel_for(static_cast<std::size_t>(gbuffer.height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       for (int x = 0; x < gbuffer.width; ++x) {
         const int part = gbuffer.part(x, y);
         if (part < 0 || faces_[static_cast<std::size_t>(part)].empty()) continue;
-        places[gbuffer.index(x, y)] = place(part, mesh_point(mesh_, gbuffer, x, y));
+        places[gbuffer.index(x, y)] = place_at(x, y);
       }
     }
   });
   return places;
+}
+
+std::vector<TexturePlace> TextureLayout::places(const Gbuffer& gbuffer) const {
+  return each_pixel(gbuffer, [&](int x, int y) { return place(gbuffer.part(x, y), mesh_point(mesh_, gbuffer, x, y)); });
+}
+
+std::vector<TexturePlace> TextureLayout::filtered_places(const Gbuffer& gbuffer,
+                                                         const std::array<double, 2>& middle) const {
+  return each_pixel(gbuffer, [&](int x, int y) {
+    TexturePlace result = place(gbuffer, x, y);
+    result.u += static_cast<float>(middle[0] * result.across[0] + middle[1] * result.down[0]);
+    result.v += static_cast<float>(middle[0] * result.across[1] + middle[1] * result.down[1]);
+    return result;
+  });
 }
 
 }  // namespace goniochrome::render

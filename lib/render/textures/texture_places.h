@@ -22,8 +22,13 @@ class TextureLayout {
   TextureLayout(const mesh::Mesh& mesh, const std::vector<bool>& parts, std::vector<TextureLaying> layings = {});
 
   // The places of what a G-buffer of the mesh shows, pixel by pixel; those of other parts, and of nothing, are left at
-  // 0. The G-buffer must have triangles. Bit-identical for any number of threads.
+  // 0, and so are footprints. The G-buffer must have triangles. Bit-identical for any number of threads.
   std::vector<TexturePlace> places(const Gbuffer& gbuffer) const;
+  // The same with footprints, which takes four times as long. Their middles, which become the places, lie so far from
+  // the points, in pixels to the right and downward.
+  std::vector<TexturePlace> filtered_places(const Gbuffer& gbuffer, const std::array<double, 2>& middle = {}) const;
+  // That of one pixel, which shows one of the parts, with its footprint.
+  TexturePlace place(const Gbuffer& gbuffer, int x, int y) const;
 
   // The place of a point of the mesh, of which the triangle and the shares are read. The triangle is one of a part that
   // the layout was made for.
@@ -32,6 +37,9 @@ class TextureLayout {
  private:
   using Corners = std::array<std::array<float, 2>, 3>;  // u and v of each corner
   TexturePlace place(const MeshPoint& point, const Corners& corners) const;
+  template <class PlaceAt>
+  std::vector<TexturePlace> each_pixel(const Gbuffer& gbuffer, const PlaceAt& place_at) const;
+  void add_footprint(const Gbuffer& gbuffer, int x, int y, const MeshPoint& point, TexturePlace& place) const;
 
   const mesh::Mesh& mesh_;
   std::vector<TextureLaying> layings_;       // of each part

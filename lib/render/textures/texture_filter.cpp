@@ -1,0 +1,97 @@
+#include "render/textures/texture_filter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "base/parallel.h"
+#include "brdf/lobe_merge.h"
+
+namespace goniochrome::render {
+
+namespace {
+
+using TexelAt = std::function<brdf::LobeSurface(int column, int row)>;
+
+TextureLevel half_size(int width, int height, const TexelAt& texel, int most_lobes) {
+  TextureLevel level{std::max(width / 2, 1), std::max(height / 2, 1), {}};
+  level.texels.resize(static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height));
+  parallel_for(static_cast<std::size_t>(level.height), 4, [&](std::size_t begin, std::size_t end) {
+    for (int row = static_cast<int>(begin); row < static_cast<int>(end); ++row) {
+      for (int column = 0; column < level.width; ++column) {
+        brdf::LobeSurface sum;
+        for (const auto& [y, high] : brdf::covered_texels(row, level.height, height))
+          for (const auto& [x, wide] : brdf::covered_texels(column, level.width, width))
+            brdf::add_surface(sum, texel(x, y), wide * high);
+        level.texels[static_cast<std::size_t>(row * level.width + column)] = brdf::merged(std::move(sum), most_lobes);
+      }
+    }
+  });
+  return level;
+}
+
+}  // namespace
+
+std::vector<TextureLevel> texture_levels(const brdf::SbrdfTexture& texture, std::uint32_t lobes) {
+  const int most = std::max(kMostLevelLobes, texture.lobes);
+  std::vector<TextureLevel> levels;
+  int width = texture.width, height = texture.height;
+  TexelAt texel = [&](int column, int row) { return brdf::lobe_surface(texture, column, row, lobes); };
+  while (width > 1 || height > 1) {
+    levels.push_back(half_size(width, height, texel, most));
+    width = levels.back().width, height = levels.back().height;
+    texel = [&levels, width](int column, int row) {
+      return levels.back().texels[static_cast<std::size_t>(row * width + column)];
+    };
+  }
+  return levels;
+}
+
+TexturePlace repeated(const TexturePlace& place, double repeat) {
+  TexturePlace result = place;
+  for (float* value : {&result.u, &result.v, &result.across[0], &result.across[1], &result.down[0], &result.down[1]})
+    *value = static_cast<float>(repeat * *value);
+  return result;
+}
+
+namespace {
+
+// How much wider than a footprint of so many texels the row of its probes is, so that what they see together has the
+// variance of the footprint. Of level 0 each probe shows what it would show without a filter. A texel of a coarser
+// level is the mean of `size` texels, of the variance (size^2-1)/12, and blending of two such texels adds
+// (size^2-1)/6. The probes themselves, in the middles of equal parts, have (1 - 1/count^2)/12 of their row's square.
+double stretch(double texels, int count, double size) {
+  if (count == 1) return 1;
+  const double rest = texels * texels - 3 * (size * size - 1);
+  return std::sqrt(std::max(rest, 0.0) / (1 - 1.0 / (count * count))) / texels;
+}
+
+}  // namespace
+
+FilterProbes filter_probes(const TexturePlace& place, double scale, int width, int height, int levels) {
+  const auto texels = [&](const float* step) { return scale * std::hypot(step[0] * width, step[1] * height); };
+  const double across = texels(place.across), down = texels(place.down);
+  const auto probes = [](double along) { return static_cast<int>(std::clamp(std::ceil(along), 1.0, 1e4)); };
+  FilterProbes result;
+  double size = 1;  // of a texel of the level
+  while (true) {
+    result.across = probes(across / size), result.down = probes(down / size);
+    if (result.count() <= kMostProbes) {
+      result.wide = stretch(across, result.across, size), result.high = stretch(down, result.down, size);
+      return result;
+    }
+    if (result.level == levels) return {levels, 1, 1};
+    ++result.level, size *= 2;
+  }
+}
+
+TexturePlace probe_place(const TexturePlace& place, double scale, const FilterProbes& probes, int number) {
+  const double x = scale * probes.wide * ((number % probes.across + 0.5) / probes.across - 0.5),
+               y = scale * probes.high * ((number / probes.across + 0.5) / probes.down - 0.5);
+  TexturePlace result = place;
+  result.u = static_cast<float>(place.u + x * place.across[0] + y * place.down[0]);
+  result.v = static_cast<float>(place.v + x * place.across[1] + y * place.down[1]);
+  return result;
+}
+
+}  // namespace goniochrome::render
