@@ -56,7 +56,7 @@ struct Target {
   std::size_t at_once = 16;         // files to make and hold side by side; large ones are fewer
 };
 extern const Target kRgl, kRglSpectral, kMaterialX, kGltf, kUsd, kStandardSurface, kOpenPbr, kOpenPbrUsd, kMdl,
-    kRadiance;
+    kRadiance, kEnterprise;
 
 // All targets, in the order in which help names them.
 std::span<const Target* const> targets();

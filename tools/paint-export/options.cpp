@@ -55,8 +55,11 @@ cli::ToolSpec tool_spec(Options& o) {
       "The targets other than tables have few parameters, and the nearest are taken by the color difference over all "
       "angles. A graph of MaterialX has many lobes. glTF gets a thin film where that brings the colors nearer by 0.1 "
       "or "
-      "more. Standard Surface, OpenPBR, glTF and USD have one roughness, and a "
+      "more. Standard Surface, OpenPBR, glTF, USD and Enterprise PBR have one roughness, and a "
       "metallic paint is several dE00 off in them.",
+      "A material for the Enterprise PBR Shading Model 2022x of Dassault Systemes is glTF with the extensions that the "
+      "model maps to its parameters: albedo, metallic, roughness, specular, specular tint, index of refraction and "
+      "clearcoat. Renderers that read such a file as plain glTF show another color.",
       "What no instrument has measured is not invented: no target gets flakes or sparkle. Color maps and anisotropy of "
       "a paint are left out, with a warning. AxF is not written: the layers of paint in its container are not openly "
       "specified, and there is no reader to test a writer with."};

@@ -143,6 +143,13 @@ PY
   jq -e '.extensionsUsed | index("KHR_materials_iridescence") | not' jet_black.gltf
 }
 
+@test "the parameters of the Enterprise PBR Shading Model read back as told" {
+  read_back enterprise dspbr.gltf
+  jq -e '.materials[0] | .name == "candy_red" and .extras.shading_model == "Enterprise PBR Shading Model 2022x"' candy_red.dspbr.gltf
+  # An index of refraction is at least 1, and a tint at most 1.
+  jq -es 'all(.[].materials[0].extensions; .KHR_materials_ior.ior >= 1 and (.KHR_materials_specular.specularColorFactor | max <= 1))' ./*.dspbr.gltf
+}
+
 @test "the parameters of UsdPreviewSurface read back as told" {
   read_back usda usda
 }
@@ -291,6 +298,7 @@ PY
   [ -d "$node/node_modules/gltf-validator" ] || { mkdir -p "$node" && (cd "$node" && timeout 120 npm install --silent gltf-validator) >/dev/null 2>&1; } ||
     skip "npm cannot install the package gltf-validator"
   paint-export -q --to gltf "$fitted" >/dev/null
+  paint-export -q --to enterprise "$fitted" >/dev/null
   NODE_PATH=$node/node_modules node -e '
     const validator = require("gltf-validator"), fs = require("fs");
     Promise.all(process.argv.slice(1).map(async path => {
