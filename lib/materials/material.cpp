@@ -7,8 +7,8 @@
 namespace goniochrome::materials {
 
 std::span<const Target* const> targets() {
-  static constexpr std::array<const Target*, 11> kTargets = {
-      &kRgl,     &kRglSpectral, &kMdl,  &kRadiance, &kMaterialX, &kStandardSurface,
+  static constexpr std::array<const Target*, 12> kTargets = {
+      &kRgl,     &kRglSpectral, &kMdl,  &kRadiance, &kOpenMaterial, &kMaterialX, &kStandardSurface,
       &kOpenPbr, &kOpenPbrUsd,  &kGltf, &kUsd,      &kEnterprise};
   return kTargets;
 }
