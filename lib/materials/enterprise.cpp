@@ -1,5 +1,5 @@
 // The nearest parameters of the Enterprise PBR Shading Model of Dassault Systemes, in the form that it documents: glTF
-// whose material has the extensions of that model. Its thin film has no place in that form, and is not used.
+// whose material has the extensions of that model. The thin film of later versions has no place in that form.
 #include <algorithm>
 #include <optional>
 
